@@ -2,9 +2,9 @@
 /* balls: the sphereflake over a floor, 9^0 + ... + 9^size spheres and one polygon.
  *
  * E. Haines, "A Proposal for Standard Graphics Environments", IEEE CG&A 7(11), 1987. Every sphere carries
- * nine of a third of its radius: six about its equator and three towards its tip, the root's being +Z, a
- * child's the direction in which it sits. Objects come depth first, in the order of the Standard Procedural
- * Databases. All angles have known sines and cosines, so nothing but + - * / sqrt is used. */
+ * nine of a third of its radius: six around its equator and three towards its tip. The root's tip is +Z, a
+ * child's the direction in which it sits. Objects come depth first, in the order of the Standard
+ * Procedural Databases. All angles have known sines and cosines, so only + - * / sqrt are used. */
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 

@@ -6,7 +6,7 @@
 
 #include <assert.h>
 
-/* A generator sets a camera while it counts, too: that of an empty scene. */
+/* While counting, a generator sets the camera of an unused scene. */
 static RtSceneBuilder run(RtScene *scene, bool counting, RtSceneGenerator *generate, const RtValue *values,
                           RtError *error) {
     RtSceneBuilder b = {
@@ -29,7 +29,7 @@ void rt_build_check(RtSceneBuilder *b, RtStatus status) {
     if (b->status == RT_OK) b->status = status;
 }
 
-/* Are things still added? */
+/* True unless counting or after an error. */
 static bool adds(const RtSceneBuilder *b) {
     return !b->counting && b->status == RT_OK;
 }
@@ -71,7 +71,8 @@ RtVec3d rt_on_circle(uint32_t i, uint32_t n) {
     return rt_vec3d(turn.cosine, turn.sine, 0);
 }
 
-RtVec3d rt_curve_point(const RtVec3d *points, uint32_t count, uint32_t step, uint32_t steps) {
+/* Point `step` of `steps` on the Catmull-Rom spline (1974) through points[0..count), count >= 2. */
+static RtVec3d curve_point(const RtVec3d *points, uint32_t count, uint32_t step, uint32_t steps) {
     uint64_t along = (uint64_t)step * (count - 1);
     uint32_t i = (uint32_t)(along / steps);
     if (i == count - 1) return points[i];
@@ -144,7 +145,7 @@ void rt_build_disc(RtSceneBuilder *b, RtVec3d center, double radius, uint32_t si
 }
 
 void rt_build_box(RtSceneBuilder *b, RtVec3d lo, RtVec3d hi, unsigned sides) {
-    /* Corner k is at hi along the axes whose bits are set in k. */
+    /* Bit a of k: corner k is at hi along axis a. */
     static const unsigned char quads[6][4] = {{4, 6, 2, 0}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                               {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     for (unsigned side = 0; side < 6; side++) {
@@ -193,7 +194,7 @@ static void cell_corners(const RtGridMesh *grid, const Mesh *mesh, uint32_t colu
     corners[3] = above + column;
 }
 
-/* The corners of the two triangles of a cell; the first is left out along the first pole, the second along
+/* The corners of the two triangles of a cell; the first is omitted along the first pole, the second along
  * the last. */
 static const unsigned char halves[2][3] = {{0, 1, 2}, {2, 3, 0}};
 
@@ -273,7 +274,7 @@ void rt_build_grid_mesh(RtSceneBuilder *b, const RtGridMesh *grid) {
 
 static RtVec3d lathe_point(const void *of, uint32_t column, uint32_t row) {
     const RtLathe *lathe = of;
-    RtVec3d p = rt_curve_point(lathe->profile, lathe->count, row, lathe->steps);
+    RtVec3d p = curve_point(lathe->profile, lathe->count, row, lathe->steps);
     RtVec3d around = rt_add_scaledd(lathe->center, rt_on_circle(column, lathe->sides), p.x);
     return rt_vec3d(around.x, around.y, around.z + p.z);
 }

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What generators of built-in scenes build with: materials, lights, and objects from single spheres to boxes,
- * meshes and surfaces of revolution.
+/* The toolkit of scene generators: materials, lights, and objects from single spheres to boxes, meshes and
+ * surfaces of revolution.
  *
- * The first error is kept in the builder. After it nothing more is added, so generators need not check each
- * call. A counting builder adds nothing and counts the objects, so the object count of a scene comes from its
- * generator. Points are computed in double with + - * / sqrt alone, transformed and rounded to float32 once:
- * points that are equal in double stay equal in the scene. */
+ * The builder keeps the first error and adds nothing after it, so generators need not check each call. A
+ * counting builder adds nothing and counts the objects, so the object count of a scene follows from its
+ * generator. Points are computed in double with + - * / sqrt alone, transformed, and rounded to float32
+ * once: points that are equal in double stay equal in the scene. */
 #ifndef RT_SCENES_BUILD_H
 #define RT_SCENES_BUILD_H
 
@@ -15,9 +15,9 @@
 
 typedef struct RtSceneBuilder {
     RtScene *scene;        /* borrowed; camera and background are set here */
-    bool counting;         /* add nothing, count */
+    bool counting;         /* count instead of adding */
     uint32_t material;     /* of the next objects */
-    bool polygons;         /* a quad is one polygon; else two triangles */
+    bool polygons;         /* a quad becomes one polygon; else two triangles */
     bool transformed;      /* else points are used as they are */
     RtTransform transform; /* of the next objects; spheres and cones need a uniform scale */
     uint64_t count;        /* objects so far */
@@ -35,10 +35,10 @@ RtStatus rt_build_scene(RtScene *scene, RtSceneGenerator *generate, const RtValu
 /* The number of objects that the generator adds. */
 uint64_t rt_build_count(RtSceneGenerator *generate, const RtValue *values);
 
-/* For errors from elsewhere: keeps the first. */
+/* Records an error of another function, if it is the first. */
 void rt_build_check(RtSceneBuilder *b, RtStatus status);
 
-/* Adds materials and lights; a single material is used for the next objects. */
+/* Add materials and lights; a single material applies to the next objects. */
 void rt_build_material(RtSceneBuilder *b, RtMaterial material);
 void rt_build_materials(RtSceneBuilder *b, const RtMaterial *materials, uint32_t count);
 void rt_build_light(RtSceneBuilder *b, RtVec3d position, RtVec3 intensity);
@@ -48,7 +48,7 @@ void rt_build_light(RtSceneBuilder *b, RtVec3d position, RtVec3 intensity);
 #define RT_STUDIO_MATERIALS 4
 void rt_build_studio(RtSceneBuilder *b, bool glass);
 
-/* A material for a table. */
+/* An initialiser for tables of materials. */
 #define RT_MATERIAL(what, red, green, blue, ka, kd, ks, exponent, kr)                                        \
     {                                                                                                        \
         .name = what, .color = {red, green, blue}, .ambient = ka, .diffuse = kd, .specular = ks,             \
@@ -56,15 +56,12 @@ void rt_build_studio(RtSceneBuilder *b, bool glass);
     }
 #define RT_MATTE(what, red, green, blue) RT_MATERIAL(what, red, green, blue, 0.12f, 0.8f, 0, 1, 0)
 
-/* Sets the transform: moves the origin to `at` after `quarters` exact turns of 90 degrees about z. */
+/* Sets the transform: `quarters` exact turns of 90 degrees about z, then a move of the origin to `at`. */
 void rt_build_origin(RtSceneBuilder *b, RtVec3d at, int quarters);
 
-/* Point `i` of `n` on the unit circle, (cos, sin, 0) of i / n of a turn: the same bits everywhere, and exact
+/* Point `i` of `n` on the unit circle, (cos, sin, 0) of i / n of a turn: the same bits everywhere, exact
  * at quarter turns. */
 RtVec3d rt_on_circle(uint32_t i, uint32_t n);
-
-/* Point `step` of `steps` on the Catmull-Rom spline (1974) through points[0..count), count >= 2. */
-RtVec3d rt_curve_point(const RtVec3d *points, uint32_t count, uint32_t step, uint32_t steps);
 
 void rt_build_sphere(RtSceneBuilder *b, RtVec3d center, double radius);
 void rt_build_cone(RtSceneBuilder *b, RtVec3d base, double base_radius, RtVec3d apex, double apex_radius);
@@ -73,7 +70,7 @@ void rt_build_triangle(RtSceneBuilder *b, RtVec3d v0, RtVec3d v1, RtVec3d v2);
 /* One polygon of 3 to 144 corners. */
 void rt_build_polygon(RtSceneBuilder *b, const RtVec3d *corners, uint32_t count);
 
-/* Four coplanar corners, counter-clockwise from the front. */
+/* Four coplanar corners, counter-clockwise seen from the front. */
 void rt_build_quad(RtSceneBuilder *b, const RtVec3d corners[4]);
 
 /* A horizontal regular polygon about `center`. */
@@ -87,11 +84,11 @@ enum {
     RT_SIDES_STANDING = 47 /* all but the bottom */
 };
 
-/* The quads of a box that `sides` names. */
+/* Adds the sides of a box selected by `sides`. */
 void rt_build_box(RtSceneBuilder *b, RtVec3d lo, RtVec3d hi, unsigned sides);
 
-/* An open prism or truncated pyramid of 2 * sides triangles; a pyramid of `sides` triangles if `to_radius` is
- * 0. */
+/* An open prism or truncated pyramid of 2 * sides triangles, or a pyramid of `sides` triangles if
+ * `to_radius` is 0. */
 void rt_build_prism(RtSceneBuilder *b, RtVec3d from, double from_radius, RtVec3d to, double to_radius,
                     uint32_t sides);
 
@@ -99,8 +96,8 @@ void rt_build_prism(RtSceneBuilder *b, RtVec3d from, double from_radius, RtVec3d
  * go up. */
 typedef struct RtGridMesh {
     uint32_t columns, rows;
-    bool wrapped;               /* the last column of points is the first again */
-    bool first_pole, last_pole; /* row 0, row `rows` is a single point: no triangle along it */
+    bool wrapped;               /* the columns wrap around */
+    bool first_pole, last_pole; /* row 0, row `rows` is a single point, so it has no triangles along it */
     bool smooth;                /* vertex normals: means over the adjacent triangles */
     RtVec3d (*point)(const void *of, uint32_t column, uint32_t row); /* column <= columns, row <= rows */
     const void *of;
@@ -108,9 +105,9 @@ typedef struct RtGridMesh {
 
 void rt_build_grid_mesh(RtSceneBuilder *b, const RtGridMesh *grid);
 
-/* The surface of revolution about the vertical through `center` of the curve through profile[0..count), x the
- * radius and z the height. Upward profiles have outward normals. With `steps` = count - 1 it is straight
- * between the points. It is closed where the first or last radius is 0. */
+/* The surface of revolution of the curve through profile[0..count), x the radius and z the height, around
+ * the vertical through `center`. Upward profiles have outward normals. With `steps` = count - 1 it is
+ * straight between the points. It is closed if the first or last radius is 0. */
 typedef struct RtLathe {
     RtVec3d center;
     const RtVec3d *profile;
@@ -121,7 +118,7 @@ typedef struct RtLathe {
 
 void rt_build_lathe(RtSceneBuilder *b, const RtLathe *lathe);
 
-/* A torus about the line through `center` along axis 0, 1 or 2: 2 * around * sides triangles. */
+/* A torus around the line through `center` along axis 0, 1 or 2: 2 * around * sides triangles. */
 typedef struct RtTorus {
     RtVec3d center;
     int axis;

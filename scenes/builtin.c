@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* In the order in which they are listed: the Standard Procedural Databases, and then others. */
+/* In the order of listing: the Standard Procedural Databases, then others. */
 static const RtBuiltin *const builtins[] = {
     &rt_builtin_balls,  &rt_builtin_gears,     &rt_builtin_jacks,   &rt_builtin_lattice, &rt_builtin_mount,
     &rt_builtin_rings,  &rt_builtin_shells,    &rt_builtin_teapot,  &rt_builtin_tetra,   &rt_builtin_tree,
@@ -48,7 +48,7 @@ RtStatus rt_builtin_named(const char *spec, const RtBuiltin **builtin, RtError *
     rt_join_names(names, BUILTIN_COUNT, list, sizeof list);
     rt_suggest(name, names, BUILTIN_COUNT, suggestion);
     return rt_fail(error, RT_BAD_INPUT,
-                   "there is no built-in scene '%s'%s%s Built-in are: %s; a file is named with its extension",
+                   "there is no built-in scene '%s'%s%s Built-in scenes: %s; a file needs its extension",
                    name, suggestion, *suggestion ? "" : ".", list);
 }
 
@@ -83,7 +83,7 @@ RtStatus rt_builtin_check_memory(const RtBuiltin *builtin, const RtValue *values
     }
     uint64_t objects = rt_builtin_object_count(builtin, values);
     return rt_fail(error, RT_BAD_INPUT,
-                   "scene %s: %s=%lld makes %llu objects, which may take %.1f GB where %.1f GB are "
+                   "scene %s: %s=%lld makes %llu objects, which may take %.1f GB, but only %.1f GB are "
                    "available: %s=%lld would fit",
                    builtin->name, size->name, (long long)values[0].i, (unsigned long long)objects,
                    (double)rt_builtin_bytes(builtin, values) / 1e9, (double)bytes / 1e9, size->name,
@@ -113,7 +113,7 @@ RtStatus rt_builtin_open(const char *spec, RtScene *scene, RtError *error) {
     const RtBuiltin *builtin;
     RtValue values[RT_MAX_PARAMS];
     RT_TRY(parse(spec, &builtin, values, error));
-    /* The other half of the memory is for what is built over the scene. */
+    /* Half of the memory is left for accelerators. */
     RT_TRY(rt_builtin_check_memory(builtin, values, rt_memory_size() / 2, error));
 
     rt_scene_init(scene);
@@ -126,7 +126,7 @@ RtStatus rt_builtin_open(const char *spec, RtScene *scene, RtError *error) {
     return status;
 }
 
-/* A spec that is neither a file nor a built-in is refused with the list of built-ins. */
+/* A spec that is neither a file nor a built-in is rejected with the list of built-ins. */
 RtStatus rt_scene_open(const char *spec, RtScene *scene, RtError *error) {
     bool builtin = rt_builtin_find(spec) || !rt_scene_is_file(spec);
     return builtin ? rt_builtin_open(spec, scene, error) : rt_scene_load(spec, rt_builtin_open, scene, error);

@@ -2,10 +2,10 @@
 /* city: size x size blocks of houses and towers: faces along the axes, most of which share their planes with
  * many others (walls of neighbours, floors of windows, pavements), beside cylinders and spheres.
  *
- * Hard for structures that cut space by planes: cells become flat, and there is much to gain by cutting at
- * the right plane. Lengths are in metres. Block (i, j) is made from the random numbers of stream i, j alone;
- * towers are likely, and tall, towards the middle. This file lays out blocks and streets; what stands in them
- * is in city_parts.c. */
+ * Hard for structures that split space by planes: cells become flat, and the choice of the split plane
+ * matters a lot. Lengths are in metres. Block (i, j) depends only on random stream (i, j); towers are
+ * likely, and tall, near the middle. This file lays out blocks and streets; city_parts.c builds what
+ * stands in them. */
 #include "scenes/builtin.h"
 #include "scenes/city_parts.h"
 
@@ -21,7 +21,7 @@ static const double block = 72, street = 18, kerb = 0.2, pavement = 4;
 
 enum { LOTS_ALONG = 3, LAMPS = 3, DASHES = 6, CARS = 3, STRIPES = 6 };
 
-/* Four quarter turns about the middle of the block bring what is along one street to all. */
+/* Four quarter turns around the middle of the block bring the parts of one street to all sides. */
 static void turn_block(RtSceneBuilder *b, RtVec3d corner, int quarters) {
     static const double x[4] = {0, 1, 1, 0}, y[4] = {0, 0, 1, 1};
     RtVec3d at = {corner.x + block * x[quarters], corner.y + block * y[quarters], corner.z};
@@ -34,7 +34,7 @@ static void add_street(RtSceneBuilder *b, RtRandom *random, RtVec3d corner, int 
     turn_block(b, ground, quarters);
     b->material = RT_CITY_PAINT;
     for (int i = 0; quarters % 2 == 0 && i < DASHES;
-         i++) { /* in the middle of the street: of one side only */
+         i++) { /* in the middle of the street: for one side only */
         double x = block * (i + 0.3) / DASHES;
         rt_build_box(b, rt_vec3d(x, -street / 2 - 0.1, 0), rt_vec3d(x + 5, -street / 2 + 0.1, 0.02),
                      RT_SIDE_TOP);

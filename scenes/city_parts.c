@@ -107,14 +107,14 @@ static double between(const RtCityLot *lot, double lo, double hi) {
     return rt_random_betweend(lot->random, lo, hi);
 }
 
-/* What comes next has its origin at (x, y, z) of the lot and is turned once more. */
+/* The next parts have their origin at (x, y, z) of the lot and are turned by `quarters`. */
 static void stand(const RtCityLot *lot, double x, double y, double z, int quarters) {
     rt_build_origin(lot->b, lot->corner, lot->quarters);
     RtVec3d at = rt_transform_pointd(&lot->b->transform, rt_vec3d(x, y, z));
     rt_build_origin(lot->b, at, lot->quarters + quarters);
 }
 
-/* Windows in a wall at y = 0, from x0 to x1 and from z0 upwards, a little before it. */
+/* Windows slightly in front of a wall at y = 0, from x0 to x1 and from z0 upwards. */
 static void add_windows(RtSceneBuilder *b, double x0, double x1, double z0, uint32_t storeys, uint32_t bays) {
     double bay = (x1 - x0) / bays, pier = bays == 1 ? 0.3 : 0.22 * bay;
     b->material = RT_CITY_GLASS;
@@ -142,7 +142,7 @@ static void add_tank(RtSceneBuilder *b) {
     rt_build_cone(b, top, 1.9, tip, 0);
 }
 
-/* A parapet about a flat roof, and what stands on it. */
+/* A parapet around a flat roof, and what stands on it. */
 static void add_flat_roof(const RtCityLot *lot, double height) {
     RtSceneBuilder *b = lot->b;
     double w = lot->width, d = lot->depth, t = 0.4;

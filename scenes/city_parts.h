@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a city is made of: each part stands at the origin of b->transform and its front, if it has one, looks
- * towards -y. Lengths are in metres; quads are polygons. How many objects a part is depends on the random
+/* The parts of a city. Each stands at the origin of b->transform, with its front, if it has one, towards
+ * -y. Lengths are in metres; quads are polygons. The number of objects of a part depends on the random
  * numbers alone. */
 #ifndef RT_SCENES_CITY_PARTS_H
 #define RT_SCENES_CITY_PARTS_H

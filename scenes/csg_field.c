@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* csg-field: n random CSG trees of 8 to 64 solids each, on a jittered grid, to measure what a tree costs.
+/* csg-field: n random CSG trees of 8 to 64 solids each, on a jittered grid, to measure the cost of a tree.
  *
- * Tree i is made from the random numbers of stream i alone. Its solids (spheres, boxes, cones, cylinders,
- * tori, turned any way) lie in a ball, and are joined as a binary tree as even as can be: unions near the
- * root, so that no single operation empties it, and any operation below. */
+ * Tree i depends only on random stream i. Its solids (spheres, boxes, cones, cylinders, tori, rotated at
+ * random) lie in a ball and are joined as a balanced binary tree: unions near the root, so that no single
+ * operation empties it, and any operation below. */
 #include "core/base/random.h"
 #include "scenes/builtin.h"
 
@@ -20,9 +20,9 @@ static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 typedef struct Field {
     RtCsgBuilder builder;
-    RtRandom random; /* of the tree in hand */
+    RtRandom random; /* of the current tree */
     RtVec3d center;
-    double radius; /* of the ball about its solids */
+    double radius; /* of the ball around its solids */
     RtError *error;
 } Field;
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The families of scenes. One recipe a row: how many objects of which shapes, where, how large, and how the
- * whole is scaled and moved. */
+/* The families of scenes. One row per recipe: how many objects of which shapes, where, how large, and how
+ * the whole is scaled and moved. */
 #include "scenes/family.h"
 
 #include "scenes/builtin.h"
@@ -22,11 +22,12 @@ typedef enum Make {
     NEEDLES
 } Make;
 
-/* How the whole is scaled and moved: scale * p + (offset, offset, offset). Or, where the seed draws it, by
- * 2^k for a k of -40..40; and then moved by 2^0..2^16 times its scale. */
+/* The scale and offset of the whole: scale * p + (offset, offset, offset). If drawn from the seed, the
+ * scale is 2^k for a k in -40..40, and the offset 2^0..2^16 times the scale. */
 typedef enum Scaling { GIVEN, DRAWN_SCALE, DRAWN_SCALE_AND_OFFSET } Scaling;
 
-/* What stands around the objects; otherwise a camera that sees them all, with a light beside it. */
+/* Lights, or an eye, placed among the objects; otherwise a camera that sees them all, with a light beside
+ * it. */
 typedef enum Around { CAMERA, LIGHTS, EYE } Around;
 
 typedef struct Recipe {
@@ -53,7 +54,7 @@ static void add_triangle_of(Family *f, const RtVec3d v[3]) {
 
 static void add_triangle(Family *f, RtPlacement at) {
     RtVec3d v[3];
-    for (int i = 0; i < 3; i++) v[i] = rt_add_scaledd(at.center, rt_in_cube(&f->random), at.size);
+    for (int i = 0; i < 3; i++) v[i] = rt_add_scaledd(at.center, rt_random_in_cube(&f->random), at.size);
     add_triangle_of(f, v);
 }
 
@@ -61,8 +62,9 @@ static void add_triangle(Family *f, RtPlacement at) {
 static void add_sliver(Family *f, RtPlacement at, uint32_t i) {
     static const double thin[] = {1e-3, 1e-5, 1e-7, 1e-9};
     RtVec3d p[3];
-    for (int k = 0; k < 3; k++) p[k] = rt_add_scaledd(at.center, rt_in_cube(&f->random), at.size);
-    RtVec3d along = rt_subd(p[1], p[0]), aside = rt_scaled(rt_in_cube(&f->random), at.size * thin[i / 6 % 4]);
+    for (int k = 0; k < 3; k++) p[k] = rt_add_scaledd(at.center, rt_random_in_cube(&f->random), at.size);
+    RtVec3d along = rt_subd(p[1], p[0]),
+            aside = rt_scaled(rt_random_in_cube(&f->random), at.size * thin[i / 6 % 4]);
     switch (i % 6) {
     case 0: p[2] = rt_addd(rt_add_scaledd(p[0], along, rt_random_betweend(&f->random, 0, 1)), aside); break;
     case 1: p[2] = rt_addd(p[1], aside); break;
@@ -74,14 +76,14 @@ static void add_sliver(Family *f, RtPlacement at, uint32_t i) {
     add_triangle_of(f, p);
 }
 
-/* Triangles around one edge, like the leaves of a book, and around one vertex. */
+/* Triangles around one edge, like the pages of a book, or around one vertex. */
 static void add_shared(Family *f, uint32_t i) {
-    RtVec3d p[3] = {{0.1, -0.7, 0.3}, {-0.2, 0.6, 0.4}, rt_in_cube(&f->random)};
-    if (i % 2) p[1] = rt_in_cube(&f->random);
+    RtVec3d p[3] = {{0.1, -0.7, 0.3}, {-0.2, 0.6, 0.4}, rt_random_in_cube(&f->random)};
+    if (i % 2) p[1] = rt_random_in_cube(&f->random);
     rt_build_triangle(f->b, p[i % 3], p[(i + 1) % 3], p[(i + 2) % 3]);
 }
 
-/* A concave L of six vertices in a coordinate plane, so that offsets and scales do not warp it. */
+/* A concave L of six vertices in a coordinate plane, which offsets and scales do not warp. */
 static void add_polygon(Family *f, RtPlacement at) {
     static const double outline[6][2] = {{-1, -1}, {1, -1}, {1, 0}, {0, 0}, {0, 1}, {-1, 1}};
     uint32_t plane = rt_random_below(&f->random, 3);
@@ -120,13 +122,13 @@ static void add_axis_aligned(Family *f, RtPlacement at, uint32_t i) {
 
 /* Across the whole scene near each axis in turn: a triangle, or a cylinder. */
 static void add_needle(Family *f, RtPlacement at, uint32_t i) {
-    RtVec3d from = at.center, to = rt_add_scaledd(at.center, rt_in_cube(&f->random), at.size);
+    RtVec3d from = at.center, to = rt_add_scaledd(at.center, rt_random_in_cube(&f->random), at.size);
     from.at[i % 3] = -1;
     to.at[i % 3] = 1;
     if (i / 3 % 2) {
         rt_build_cone(f->b, from, at.size / 64, to, at.size / 64);
     } else {
-        rt_build_triangle(f->b, from, to, rt_add_scaledd(to, rt_in_cube(&f->random), at.size / 32));
+        rt_build_triangle(f->b, from, to, rt_add_scaledd(to, rt_random_in_cube(&f->random), at.size / 32));
     }
 }
 
@@ -156,7 +158,7 @@ static RtStatus try_tree(Family *f, RtPlacement at, uint32_t i, RtError *error) 
     return status;
 }
 
-/* The next tree that is not flat. */
+/* Adds the next tree that is not flat. */
 static void add_tree(Family *f, RtPlacement at, uint32_t i) {
     RtStatus status = RT_BAD_INPUT;
     for (int tries = 0; tries < 100 && status == RT_BAD_INPUT; tries++)
@@ -201,7 +203,7 @@ static void add_object(Family *f, uint32_t i) {
 
 /* ---- lights and cameras ---- */
 
-/* Lights within objects and on them, at vertices, among them, in a corner of the scene and far from it. */
+/* Lights inside objects and on them, at vertices, between them, in a corner of the scene and far away. */
 static void add_lights(RtSceneBuilder *b) {
     const RtGeometry *g = &b->scene->geometry;
     if (b->status != RT_OK) return;
@@ -215,7 +217,7 @@ static void add_lights(RtSceneBuilder *b) {
         rt_build_light(b, rt_widen(at[i]), rt_vec3(0.2f, 0.2f, 0.2f));
 }
 
-/* The eye at the origin, with objects on all sides. If the number of sample columns or rows is odd, the
+/* The eye at the origin, with objects on all sides. With an odd number of sample columns or rows, the
  * middle one looks along a coordinate plane. */
 static void add_eye(RtSceneBuilder *b) {
     b->scene->camera.from = rt_vec3(0, 0, 0);
@@ -226,8 +228,7 @@ static void add_eye(RtSceneBuilder *b) {
 
 /* ---- the families ---- */
 
-/* X(name, count, make, place, scale, offset, scaling, around): in the order of the streams of their random
- * numbers. */
+/* X(name, count, make, place, scale, offset, scaling, around), in the order of the random streams. */
 #define RECIPES(X)                                                                                           \
     X("empty", 0, SPHERES, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                            \
     X("one-sphere", 1, SPHERES, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                       \
@@ -270,7 +271,7 @@ static void add_eye(RtSceneBuilder *b) {
 #define AS_CHOICE(name, ...) "|" name
 static const Recipe recipes[] = {RECIPES(AS_RECIPE)};
 
-/* Of the choices without the first bar. */
+/* The choices without the first bar. */
 #define PARAMS(X)                                                                                            \
     X(SEED, RT_BUILTIN_SEED)                                                                                 \
     X(KIND, "kind", RT_PARAM_CHOICE, "mixed", 0, 0, &RECIPES(AS_CHOICE)[1], "mixed",                         \
@@ -295,7 +296,7 @@ static uint64_t object_count(const RtValue *values) {
     return recipe->make == AXIS_ALIGNED ? n + (n + 1) / 2 : n; /* every other one is two triangles */
 }
 
-/* More than any takes: they are few, and trees and meshes are the largest. */
+/* A generous bound: there are few objects, and trees and meshes are the largest. */
 static uint64_t object_bytes(const RtValue *values) {
     (void)values;
     return UINT64_C(1) << 16;

@@ -1,15 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "scenes/family_places.h"
 
-RtVec3d rt_in_cube(RtRandom *random) {
-    double x = rt_random_betweend(random, -1, 1), y = rt_random_betweend(random, -1, 1),
-           z = rt_random_betweend(random, -1, 1);
-    return rt_vec3d(x, y, z);
-}
-
 RtPlacement rt_place_uniform(RtRandom *random, uint32_t i, uint32_t count) {
     (void)i, (void)count;
-    RtVec3d p = rt_in_cube(random);
+    RtVec3d p = rt_random_in_cube(random);
     return (RtPlacement){p, rt_random_betweend(random, 0.02, 0.2)};
 }
 
@@ -25,13 +19,13 @@ RtPlacement rt_place_on_a_line(RtRandom *random, uint32_t i, uint32_t count) {
 
 RtPlacement rt_place_in_a_plane(RtRandom *random, uint32_t i, uint32_t count) {
     (void)i, (void)count;
-    RtVec3d p = rt_in_cube(random);
+    RtVec3d p = rt_random_in_cube(random);
     return (RtPlacement){{p.x, p.y, 0.5}, rt_random_betweend(random, 0.02, 0.2)};
 }
 
 RtPlacement rt_place_huge_beside_tiny(RtRandom *random, uint32_t i, uint32_t count) {
     (void)count;
-    RtVec3d p = rt_in_cube(random);
+    RtVec3d p = rt_random_in_cube(random);
     return i % 8 == 0 ? (RtPlacement){rt_scaled(p, 3), 2} : (RtPlacement){rt_scaled(p, 1e-3), 1e-4};
 }
 
@@ -39,18 +33,18 @@ RtPlacement rt_place_huge_beside_tiny(RtRandom *random, uint32_t i, uint32_t cou
 RtPlacement rt_place_clustered(RtRandom *random, uint32_t i, uint32_t count) {
     (void)count;
     RtVec3d corner = {i & 1 ? 0.75 : -0.75, i & 2 ? 0.75 : -0.75, i & 4 ? 0.75 : -0.75};
-    RtVec3d p = rt_add_scaledd(corner, rt_in_cube(random), 0.01);
+    RtVec3d p = rt_add_scaledd(corner, rt_random_in_cube(random), 0.01);
     return (RtPlacement){p, rt_random_betweend(random, 0.001, 0.005)};
 }
 
-/* Every four in a row are alike. */
+/* Groups of four are identical. */
 RtPlacement rt_place_duplicated(RtRandom *random, uint32_t i, uint32_t count) {
     (void)random, (void)count;
     RtRandom shared = rt_random(11, i / 4);
     return rt_place_uniform(&shared, i, count);
 }
 
-/* Corners and edges on multiples of 1/4, where a grid's own planes are. */
+/* Corners and edges on multiples of 1/4, on the planes of a grid. */
 RtPlacement rt_place_on_a_lattice(RtRandom *random, uint32_t i, uint32_t count) {
     (void)count, (void)i;
     RtVec3d p;
@@ -58,8 +52,8 @@ RtPlacement rt_place_on_a_lattice(RtRandom *random, uint32_t i, uint32_t count) 
     return (RtPlacement){p, 0.125};
 }
 
-/* Spheres of a quarter's width on multiples of 1/4: neighbours touch. Some are half as large, and touch one
- * from within. */
+/* Spheres of diameter 1/4 on multiples of 1/4: neighbours touch. Some are half as large, and touch one
+ * from inside. */
 RtPlacement rt_place_touching(RtRandom *random, uint32_t i, uint32_t count) {
     (void)count;
     RtVec3d p;
@@ -76,7 +70,7 @@ RtPlacement rt_place_in_progression(RtRandom *random, uint32_t i, uint32_t count
     return (RtPlacement){{size, size, size}, size / 4};
 }
 
-/* In one another: no plane parts them. */
+/* Nested: no plane separates them. */
 RtPlacement rt_place_concentric(RtRandom *random, uint32_t i, uint32_t count) {
     (void)random;
     return (RtPlacement){{0.25, 0.5, -0.125}, (i + 1.0) / count};
@@ -90,8 +84,8 @@ RtPlacement rt_place_stacked(RtRandom *random, uint32_t i, uint32_t count) {
     return (RtPlacement){p, 0.5 + 0.25 * rt_random_below(random, 3)};
 }
 
-/* Of two by turns one has edges in the planes of coordinates, where they cut at the origin, and one lies in
- * them: as the lattice, and as it is moved by half its width. */
+/* Alternating: one has edges in the coordinate planes, which meet at the origin, the next lies in them:
+ * the lattice, and the lattice moved by half its width. */
 RtPlacement rt_place_around_the_origin(RtRandom *random, uint32_t i, uint32_t count) {
     RtPlacement at = rt_place_on_a_lattice(random, i, count);
     if (i / 2 % 2) at.center = rt_subd(at.center, rt_vec3d(0.125, 0.125, 0.125));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Where the objects of a family of scenes are, and how large. */
+/* Positions and sizes of the objects in a family of scenes. */
 #ifndef RT_SCENES_FAMILY_PLACES_H
 #define RT_SCENES_FAMILY_PLACES_H
 
@@ -11,9 +11,6 @@ typedef struct RtPlacement {
     double size;
 } RtPlacement;
 typedef RtPlacement RtPlace(RtRandom *random, uint32_t i, uint32_t count);
-
-/* A point of [-1, 1]^3. */
-RtVec3d rt_in_cube(RtRandom *random);
 
 RtPlace rt_place_uniform, rt_place_coincident, rt_place_on_a_line, rt_place_in_a_plane,
     rt_place_huge_beside_tiny, rt_place_clustered, rt_place_duplicated, rt_place_on_a_lattice,

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* forest: trees on a hilly ground, a million small triangles that lie any way, most of them in crowns where
- * much overlaps: for measuring how builders scale, from 10^3 to 10^7 triangles.
+/* forest: trees on hilly ground, a million small triangles in random orientations, most of them in
+ * overlapping crowns: measures how builders scale, from 10^3 to 10^7 triangles.
  *
- * Trees stand one in each square of a grid, n of them from the front on, anywhere within it. A broadleaf is a
- * trunk that forks LEVELS times into FORKS (prisms that taper) with leaves about every twig; a conifer a
- * trunk with whorls of boughs, and hanging from each a few broad triangles of needles. Tree i is made from
- * the random numbers of stream i alone. The ground is noise from lattices of random heights (Perlin 1985, in
- * its simplest form); all lengths are in metres. */
+ * Trees stand one per square of a grid, n of them from the front on, at a random position within it. A
+ * broadleaf is a trunk that forks LEVELS times into FORKS (tapered prisms), with leaves around every twig;
+ * a conifer is a trunk with whorls of boughs, each with a few broad hanging triangles of needles. Tree i
+ * depends only on random stream i. The ground is noise from lattices of random heights (Perlin 1985, in
+ * its simplest form); lengths are in metres. */
 #include "core/base/random.h"
 #include "scenes/build.h"
 #include "scenes/builtin.h"
@@ -45,7 +45,7 @@ static const double square = 6; /* edge of a tree's ground */
 
 /* ---- the ground ---- */
 
-/* Streams of lattice points lie beyond those of trees. */
+/* Streams of lattice points follow those of trees. */
 #define LATTICE_STREAM (UINT64_C(1) << 63)
 
 static double lattice_height(uint64_t seed, uint32_t octave, uint32_t x, uint32_t y) {
@@ -101,7 +101,7 @@ static void add_ground(RtSceneBuilder *b, const Ground *ground) {
 typedef struct Tree {
     RtSceneBuilder *b;
     RtRandom random;
-    uint32_t bark, leaves; /* materials; of leaves the first of three */
+    uint32_t bark, leaves; /* materials; for leaves the first of three */
 } Tree;
 
 static double between(Tree *tree, double lo, double hi) {
@@ -117,7 +117,7 @@ static void add_leaf(Tree *tree, RtVec3d at) {
     rt_build_triangle(tree->b, at, rt_add_scaledd(middle, across, 0.6 * length), tip);
 }
 
-/* A branch from `base`, and what grows on it. */
+/* A branch from `base` with its forks or leaves. */
 static void add_branch(Tree *tree, RtVec3d base, RtVec3d direction, double length, uint32_t level) {
     static const uint32_t sides[LEVELS + 1] = {6, 4, 3, 3};
     double radius = length * (level == 0 ? 0.045 : 0.03);
@@ -138,7 +138,7 @@ static void add_branch(Tree *tree, RtVec3d base, RtVec3d direction, double lengt
     }
 }
 
-/* From the trunk at height `up` (0 to 1) of the tree outwards and down a little. */
+/* A bough from the trunk at height `up` (0 to 1) of the tree, outwards and slightly down. */
 static void add_bough(Tree *tree, RtVec3d foot, double height, double up) {
     RtVec3d turn = rt_random_direction(&tree->random);
     RtVec3d out = rt_normalized(rt_vec3d(turn.x, turn.y, 0)), across = {-out.y, out.x, 0};
@@ -175,7 +175,7 @@ static void add_tree(RtSceneBuilder *b, const Ground *ground, uint64_t i) {
     tree.leaves = LEAVES + (die < 9 ? 0 : die < 11 ? 3 : 6);
     if (die == 9 || die == 10) tree.bark = BIRCH_BARK;
     if (b->counting) {
-        /* What follows is as much for every tree of a kind. */
+        /* All trees of a kind have equally many triangles. */
         const uint64_t broadleaf = 12 + 4 * 8 + 16 * 6 + 64 * (6 + TWIG_LEAVES);
         b->count += conifer ? 6 + WHORLS * BOUGHS * (3 + BOUGH_TUFTS) : broadleaf;
         return;

@@ -2,9 +2,9 @@
 /* gears: size^3 gears that mesh, some of glass, above a mirror.
  *
  * E. Haines, "A Proposal for Standard Graphics Environments", IEEE CG&A 7(11), 1987. A gear has two faces,
- * which are concave polygons of four corners a tooth, and a rectangle under each edge between them. Angles
- * are whole tenths of a degree: so both faces have the same corners, bit for bit. Colours, of which the paper
- * says nothing, and the order of objects are those of the database. */
+ * which are concave polygons of four corners per tooth, and a rectangle under each edge between them.
+ * Angles are whole tenths of a degree, so both faces have the same corners, bit for bit. Colours, which
+ * the paper does not specify, and the order of objects are those of the database. */
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 
@@ -59,7 +59,7 @@ static void add_gear(RtSceneBuilder *b, const Gear *gear) {
     rt_build_polygon(b, lower, CORNERS);
 }
 
-/* A colour of hues that vary, the largest component of which is 1. */
+/* A varying hue whose largest component is 1. */
 static RtVec3 gear_color(int64_t x, int64_t y, int64_t z) {
     double red = 0.01 + (double)((3 * x + 2 * y + z + 1) * 5 % 7) / 7;
     double green = 0.01 + (double)((3 * y + 2 * z + x + 1) * 3 % 7) / 7;

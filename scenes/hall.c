@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* hall: a nave with two aisles, about 280,000 triangles and nothing else: long thin ones (fluted shafts,
- * mouldings, walls over arches) together with small ones close together (vases, balusters, chains), and
- * no way out, so that every ray from within hits something.
+ * mouldings, walls over arches) beside dense small ones (vases, balusters, chains), in a closed room, so that
+ * every ray from inside hits something.
  *
- * Like the atria and sibeniks of the papers, but made by the program. x is across, y along, z up, in metres.
- * The room itself comes first: one closed sheet, a section swept along y and drawn together to a point at
- * either end; everything else stands or hangs inside of it or is set into its walls. */
+ * Like the atria and sibeniks of the papers, but generated. x is across, y along, z up, in metres. The
+ * room itself comes first: one closed sheet, a section swept along y and drawn together to a point at
+ * either end; everything else stands or hangs inside it or is set into its walls. */
 #include "core/base/elementary.h"
 #include "scenes/builtin.h"
 #include "scenes/ornaments.h"
@@ -44,7 +44,7 @@ static const double front_y = -1, back_y = 33, arch_z = RT_COLUMN_HEIGHT, arch_r
 
 enum { ARC_STEPS = 32, SECTION_POINTS = ARC_STEPS + 7, ROOM_ROWS = 12 };
 
-/* Counter-clockwise for one who looks along -y. */
+/* Counter-clockwise seen along -y. */
 static RtVec3d section_point(uint32_t i) {
     const RtVec3d right[4] = {
         {-aisle_x, 0, 0}, {aisle_x, 0, 0}, {aisle_x, 0, aisle_top}, {nave_x, 0, aisle_top}};
@@ -55,7 +55,7 @@ static RtVec3d section_point(uint32_t i) {
     return rt_vec3d(nave_x * turn.x, 0, spring + nave_x * turn.y);
 }
 
-/* The ends are drawn together to a point from which all of the section can be seen. */
+/* The ends are drawn together to a point that sees the whole section. */
 static RtVec3d room_point(const void *of, uint32_t column, uint32_t row) {
     (void)of;
     bool first = row == 0, last = row == ROOM_ROWS;
@@ -77,14 +77,14 @@ static void add_room(RtSceneBuilder *b) {
 
 /* ---- floor and vault ---- */
 
-/* A rectangle drawn in step by step, on levels above a ground: a tile or a coffer. */
+/* A rectangle that shrinks step by step, on levels above a ground: a tile or a coffer. */
 typedef struct Panel {
     double lo[2], hi[2];       /* of the rectangle */
     uint32_t steps;            /* along each of its edges */
-    const double (*levels)[2]; /* of row i: how much of the rectangle is left, and how high it is there */
+    const double (*levels)[2]; /* of row i: the remaining fraction of the rectangle, and its height */
 } Panel;
 
-/* Where column and row lie in the rectangle, and how high: x, y, z. */
+/* The position of column and row in the rectangle, and its height: x, y, z. */
 static RtVec3d panel_point(const Panel *panel, uint32_t column, uint32_t row) {
     uint32_t edge = column / panel->steps;
     double along = 2.0 * (column % panel->steps) / panel->steps - 1, left = panel->levels[row][0];
@@ -216,7 +216,7 @@ static void add_rail(RtSceneBuilder *b, double side, uint32_t size) {
     }
 }
 
-/* ---- what stands and hangs in it ---- */
+/* ---- furniture ---- */
 
 /* A round window in the wall behind `at`, which faces +x turned by `quarters`; its frame is a ring. */
 static void add_window(RtSceneBuilder *b, RtVec3d at, int quarters, double radius, uint32_t size) {

@@ -2,11 +2,10 @@
 /* jacks: jacks (three crossed cylinders with a sphere at each end) that carry smaller jacks between their
  * arms.
  *
- * Standard Procedural Databases of E. Haines, in which it is later than the paper of 1987. Arms are 0.75
- * long; a jack has eight children, of half its size, at the corners of the cube with edges of 1 about it that
- * its arms are normal to. Inferred from the numbers of the database: the axes are turned by -20 degrees about
- * Y and by -30 about X; all lengths; and the order, which is that of the files: depth first, cylinders before
- * spheres. */
+ * Standard Procedural Databases of E. Haines, where it is later than the paper of 1987. Arms are 0.75
+ * long; a jack has eight children of half its size, at the corners of the axis-aligned cube with edges of
+ * 1 around it. Inferred from the numbers of the database: the axes are rotated by -20 degrees about Y and
+ * by -30 about X; all lengths; and the order of the files: depth first, cylinders before spheres. */
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 

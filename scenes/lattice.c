@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* lattice: a cube of (size + 1)^3 spheres, joined along the edges of the lattice by cylinders.
  *
- * Standard Procedural Databases of E. Haines, added to the set after its paper of 1987. The cube is that from
- * 0 to 1; the eye is half a spacing below its upper side. Cylinders reach from inside one sphere to inside
- * the next. Objects come in the order of the database: a sphere, and the cylinders to its upper
- * neighbours. */
+ * Standard Procedural Databases of E. Haines, added after its paper of 1987. The cube is that from 0 to 1;
+ * the eye is half a spacing below its upper side. Cylinders reach from inside one sphere to inside the
+ * next. Objects come in the order of the database: a sphere, then the cylinders to its upper neighbours. */
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 

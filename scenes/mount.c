@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* mount: a fractal mountain of 2 * 4^size triangles, seen through four spheres of glass.
  *
- * E. Haines, "A Proposal for Standard Graphics Environments", IEEE CG&A 7(11), 1987; midpoint
- * displacement after A. Fournier, D. Fussell and L. Carpenter, CACM 25(6), 1982. Each level parts a square in
- * four; a new corner lies at the mean height of those it is between, displaced by a normal random number that
- * depends on its place in the lattice alone, so that neighbours fit. Above size 7 the database leaves the
- * random numbers undefined (a shift by a negative amount); here the lattice coordinate is shifted the other
- * way. */
+ * E. Haines, "A Proposal for Standard Graphics Environments", IEEE CG&A 7(11), 1987; midpoint displacement
+ * after A. Fournier, D. Fussell and L. Carpenter, CACM 25(6), 1982. Each level divides a square into four;
+ * a new corner has the mean height of its neighbours plus a normal random number that depends on its
+ * lattice position alone, so that adjacent squares fit. Above size 7 the random numbers of the database
+ * are undefined (a shift by a negative amount); here the lattice coordinate is shifted the other way. */
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Scenes by name: a file in any format raytally reads, or a built-in with parameters ("balls:size=5"). */
+/* Opens scenes by name: a file in any format that raytally reads, or a built-in with parameters
+ * ("balls:size=5"). */
 #ifndef RT_SCENES_OPEN_H
 #define RT_SCENES_OPEN_H
 

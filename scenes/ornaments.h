@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a hall is furnished with, of triangles: each stands on (or hangs at) the origin of b->transform and
- * has b->material. `size`, from 1, sets how fine they are: what is round has a few times as many sides.
+/* The furniture of a hall, made of triangles: each stands on (or hangs at) the origin of b->transform and
+ * has b->material. `size`, from 1, sets the tessellation: round parts have a few times as many sides.
  * Lengths are in metres. */
 #ifndef RT_SCENES_ORNAMENTS_H
 #define RT_SCENES_ORNAMENTS_H

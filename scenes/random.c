@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* random: n objects in the cube from -1 to 1, uniformly, in clusters, or where they are hard on accelerators:
+/* random: n objects in the cube from -1 to 1, uniformly, in clusters, or placed to be hard on accelerators:
  * all in one place, on a line, in a plane, huge beside tiny.
  *
- * Object i is made from the random numbers of stream i alone, so it does not depend on what came before.
- * Sizes are in units of the mean spacing (edge of the cube over the cube root of n): the density of the scene
- * stays the same for any n. In clusters, the distance from a centre along each axis is the sum of four
- * uniform numbers: nearly a normal distribution, without a logarithm. */
+ * Object i depends only on random stream i, not on earlier objects. Sizes are in units of the mean spacing
+ * (edge of the cube over the cube root of n), so the density of the scene is the same for any n. In
+ * clusters, the distance from a centre along each axis is the sum of four uniform numbers: nearly a normal
+ * distribution, without a logarithm. */
 #include "core/base/random.h"
 #include "core/base/elementary.h"
 #include "scenes/builtin.h"
@@ -35,19 +35,13 @@ enum { SPHERES, TRIANGLES, MIXED };
 enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
-/* Streams of cluster centres lie beyond those of objects. */
+/* Streams of cluster centres follow those of objects. */
 #define CLUSTER_STREAM (UINT64_C(1) << 32)
-
-static RtVec3d point_in_cube(RtRandom *random) {
-    RtVec3d p;
-    for (int a = 0; a < 3; a++) p.at[a] = 2 * (double)rt_random_unit(random) - 1;
-    return p;
-}
 
 static RtVec3d point_in_cluster(RtRandom *random, const RtValue *values) {
     uint64_t chosen = rt_random_bits(random) % (uint64_t)values[CLUSTERS].i;
     RtRandom of_cluster = rt_random(random->seed, CLUSTER_STREAM + chosen);
-    RtVec3d center = point_in_cube(&of_cluster);
+    RtVec3d center = rt_random_in_cube(&of_cluster);
     for (int a = 0; a < 3; a++) {
         double sum = -2; /* four uniform numbers: mean 2, variance 4 / 12 */
         for (int i = 0; i < 4; i++) sum += (double)rt_random_unit(random);
@@ -69,9 +63,9 @@ static RtVec3d center_of(uint64_t i, RtRandom *random, const RtValue *values) {
     case CLUSTERED: return point_in_cluster(random, values);
     case COINCIDENT: return rt_vec3d(0.25, 0.5, -0.125);
     case LINE: return rt_vec3d((2 * (double)i + 1) / (double)values[N].i - 1, 0.5, -0.125);
-    case PLANE: p = point_in_cube(random); return rt_vec3d(p.x, p.y, 0.5);
-    case STADIUM: p = point_in_cube(random); return is_huge(i) ? p : rt_scaled(p, stadium_scale[0]);
-    default: return point_in_cube(random);
+    case PLANE: p = rt_random_in_cube(random); return rt_vec3d(p.x, p.y, 0.5);
+    case STADIUM: p = rt_random_in_cube(random); return is_huge(i) ? p : rt_scaled(p, stadium_scale[0]);
+    default: return rt_random_in_cube(random);
     }
 }
 
@@ -148,7 +142,7 @@ static uint64_t object_count(const RtValue *values) {
 
 static void generate(RtSceneBuilder *b, const RtValue *values) {
     rt_build_studio(b, true);
-    /* Rounded to float32, so that scenes keep the sizes that published counts were made with. */
+    /* Rounded to float32, because published counts were made with these sizes. */
     double mean_radius = (double)(float)(values[RADIUS].f * mean_spacing(values));
     for (uint64_t i = 0; i < (uint64_t)values[N].i && b->status == RT_OK; i++)
         add_object(b, i, mean_radius, values);

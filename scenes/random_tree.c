@@ -3,37 +3,37 @@
 
 #include <assert.h>
 
-typedef struct Maker {
+typedef struct Generator {
     RtCsgBuilder *builder;
     RtRandom *random;
     bool coarse;
-    bool endless; /* some solid so far has no end */
+    bool endless; /* some solid so far is unbounded */
     uint32_t materials;
     RtError *error;
-} Maker;
+} Generator;
 
-static uint32_t choose(Maker *m, uint32_t count) {
+static uint32_t choose(Generator *m, uint32_t count) {
     return rt_random_below(m->random, count);
 }
 
 /* In [lo, hi), both multiples of 1/2. */
-static float number(Maker *m, float lo, float hi) {
+static float number(Generator *m, float lo, float hi) {
     if (!m->coarse) return rt_random_between(m->random, lo, hi);
     return lo + 0.5f * (float)choose(m, (uint32_t)(2 * (hi - lo)));
 }
 
-static RtVec3 vector(Maker *m, float lo, float hi) {
+static RtVec3 vector(Generator *m, float lo, float hi) {
     RtVec3 v;
     for (int a = 0; a < 3; a++) v.at[a] = number(m, lo, hi);
     return v;
 }
 
-static uint32_t material(Maker *m) {
+static uint32_t material(Generator *m) {
     return choose(m, m->materials);
 }
 
-/* Of a size between 1/2 and 2, uneven or not, turned, and put somewhere. */
-static RtStatus random_place(Maker *m, RtTransform *place) {
+/* A random scale between 1/2 and 2, uneven or not, rotation and position. */
+static RtStatus random_place(Generator *m, RtTransform *place) {
     *place = rt_transform_identity();
     RtVec3 size = vector(m, 0.5f, 2);
     if (choose(m, 2)) size = rt_vec3(size.x, size.x, size.x);
@@ -55,7 +55,7 @@ RtStatus rt_add_box(RtCsgBuilder *builder, RtBox box, uint32_t material, RtCsgTe
     return rt_csg_solid(builder, solid, material, out, error);
 }
 
-static RtStatus add_box(Maker *m, RtCsgTerm *out) {
+static RtStatus add_box(Generator *m, RtCsgTerm *out) {
     RtBox box;
     box.lo = vector(m, -3, 2);
     box.hi = rt_add(box.lo, vector(m, 0.5f, 3));
@@ -63,7 +63,7 @@ static RtStatus add_box(Maker *m, RtCsgTerm *out) {
 }
 
 /* A cube cut by random planes, or one half-space. */
-static RtStatus add_polyhedron(Maker *m, uint32_t *solid) {
+static RtStatus add_polyhedron(Generator *m, uint32_t *solid) {
     RtPlane planes[10];
     bool half_space = choose(m, 4) == 0;
     uint32_t count = half_space ? 1 : 6 + choose(m, 5);
@@ -80,7 +80,7 @@ static RtStatus add_polyhedron(Maker *m, uint32_t *solid) {
 }
 
 /* An octahedron, half of its edges bent inward where it is dented. */
-static RtStatus add_mesh(Maker *m, const RtTransform *place, uint32_t *solid) {
+static RtStatus add_mesh(Generator *m, const RtTransform *place, uint32_t *solid) {
     RtTriangle triangles[8];
     float dent = choose(m, 2) ? 0.125f : 1;
     for (uint32_t i = 0; i < 8; i++) {
@@ -92,7 +92,7 @@ static RtStatus add_mesh(Maker *m, const RtTransform *place, uint32_t *solid) {
     return rt_solid_add_mesh(&m->builder->set, triangles, 8, place, solid, m->error);
 }
 
-static RtStatus add_solid(Maker *m, RtCsgTerm *out) {
+static RtStatus add_solid(Generator *m, RtCsgTerm *out) {
     RtSolidSet *set = &m->builder->set;
     uint32_t solid, kind = choose(m, m->coarse ? 9 : 6);
     RtTransform place;
@@ -110,8 +110,8 @@ static RtStatus add_solid(Maker *m, RtCsgTerm *out) {
     return rt_csg_solid(m->builder, solid, material(m), out, m->error);
 }
 
-/* Now and then a term is moved, or used once more. */
-static RtStatus vary(Maker *m, RtCsgTerm *term) {
+/* Occasionally moves a term. */
+static RtStatus vary(Generator *m, RtCsgTerm *term) {
     RtTransform move = rt_transform_identity();
     if (choose(m, 4)) return RT_OK;
     if (!m->coarse) {
@@ -125,7 +125,7 @@ static RtStatus vary(Maker *m, RtCsgTerm *term) {
 RtStatus rt_random_tree(RtCsgBuilder *builder, RtRandom *random, const RtTreeRecipe *recipe,
                         uint32_t materials, RtCsgTerm *root, RtError *error) {
     assert(recipe->solids >= 1 && recipe->solids <= RT_MAX_RANDOM_TREE);
-    Maker m = {builder, random, recipe->coarse, false, materials, error};
+    Generator m = {builder, random, recipe->coarse, false, materials, error};
     RtCsgTerm terms[RT_MAX_RANDOM_TREE] = {0};
     uint32_t count = recipe->solids;
     for (uint32_t i = 0; i < count; i++) RT_TRY(add_solid(&m, &terms[i]));

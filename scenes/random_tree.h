@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Random CSG trees, for holding accelerators and the trees themselves to account. */
+/* Random CSG trees, for testing accelerators and the trees themselves. */
 #ifndef RT_SCENES_RANDOM_TREE_H
 #define RT_SCENES_RANDOM_TREE_H
 
@@ -9,12 +9,12 @@
 #define RT_MAX_RANDOM_TREE 64
 
 typedef struct RtTreeRecipe {
-    uint32_t solids; /* 1..RT_MAX_RANDOM_TREE; a half-space among them brings one more */
+    uint32_t solids; /* 1..RT_MAX_RANDOM_TREE; a half-space adds one more */
     bool coarse;     /* coordinates are multiples of 1/2 and turns of 90 degrees: many faces coincide */
 } RtTreeRecipe;
 
-/* A term of random solids of every kind under random operations and moves, within about 4 of the origin along
- * each axis; its inside may be empty. The solids get materials below `materials`. */
+/* A term of random solids of every kind with random operations and moves, within about 4 of the origin
+ * along each axis; its inside may be empty. The solids get materials below `materials`. */
 RtStatus rt_random_tree(RtCsgBuilder *builder, RtRandom *random, const RtTreeRecipe *recipe,
                         uint32_t materials, RtCsgTerm *root, RtError *error);
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* rings: a pyramid of objects made of six interlocked rings, seen from its tip before a wall.
+/* rings: a pyramid of objects made of six interlocked rings, seen from its tip in front of a wall.
  *
- * E. Haines, "A Proposal for Standard Graphics Environments", IEEE CG&A 7(11), 1987. A ring is a pentagon of
- * five cylinders, with spheres where they meet. The six go through the midpoints of the edges of a
- * dodecahedron, five each; cylinders of RADIUS about pentagons of circumradius 1 would just touch. Here the
- * pentagons are smaller by 1 + RADIUS, and the radius is not, so that cylinders of different rings overlap a
- * little. Layer n of the pyramid is n by n objects. Colours, of which the paper says nothing, and the order
- * of objects are those of the database. */
+ * E. Haines, "A Proposal for Standard Graphics Environments", IEEE CG&A 7(11), 1987. A ring is a pentagon
+ * of five cylinders, with spheres where they meet. The six pass through the midpoints of the edges of a
+ * dodecahedron, five each; cylinders of RADIUS around pentagons of circumradius 1 would just touch. Here
+ * the pentagons are smaller by the factor 1 + RADIUS, and the radius is not, so that cylinders of
+ * different rings overlap slightly. Layer n of the pyramid is n by n objects. Colours, which the paper
+ * does not specify, and the order of objects are those of the database. */
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 

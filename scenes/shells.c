@@ -3,9 +3,9 @@
  *
  * Standard Procedural Databases of E. Haines, after C. Pickover, "A Short Recipe for Seashell Synthesis",
  * IEEE CG&A 9(6), 1989; "tends to bring ray tracers to their knees". The spheres lie on a spiral of nine
- * turns on a cone, each as large as it is far from the axis: at the angle a, from -12 pi to 6 pi, the radius
- * is r = e^(0.15 a) and the centre (r sin a, r cos a, -2 r). These numbers were inferred from the files of
- * the database, smallest sphere first. */
+ * turns on a cone; the radius of each is its distance from the axis: at the angle a, from -12 pi to 6 pi,
+ * the radius is r = e^(0.15 a) and the centre (r sin a, r cos a, -2 r). These numbers were inferred from
+ * the files of the database, smallest sphere first. */
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 

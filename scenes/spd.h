@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What scenes of the Standard Procedural Databases share. Their objects come in the order of the files that
- * the package writes. They are made in double with + - * / sqrt and core/base/elementary.h alone and rounded
- * once, so that every compiler and library makes the same float32. */
+/* Shared by scenes of the Standard Procedural Databases. Objects come in the order of the package's files.
+ * They are computed in double with + - * / sqrt and core/base/elementary.h alone and rounded once, so that
+ * every compiler and library produces the same float32. */
 #ifndef RT_SCENES_SPD_H
 #define RT_SCENES_SPD_H
 
@@ -12,13 +12,13 @@
 
 #define RT_SPD_LATER_SOURCE "SPD: E. Haines, Standard Procedural Databases 3, later than the paper of 1987"
 
-/* Adds white lights of the intensity that SPD asks for (rt_nff_light_intensity). */
+/* Adds white lights with SPD's intensity (rt_nff_light_intensity). */
 void rt_spd_lights(RtSceneBuilder *b, const RtVec3d *positions, uint32_t count);
 
-/* `v` turned about the unit vector `axis`, counter-clockwise for one who looks against it (Rodrigues). */
+/* `v` rotated around the unit vector `axis`, counter-clockwise seen against it (Rodrigues). */
 RtVec3d rt_spd_rotate(RtVec3d v, RtVec3d axis, RtTurn turn);
 
-/* `v` turned as +Z has to be turned, in the shortest way, to point along the unit vector `towards`. */
+/* `v` under the shortest rotation that takes +Z to the unit vector `towards`. */
 RtVec3d rt_spd_rotate_from_z(RtVec3d v, RtVec3d towards);
 
 #endif

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* stadium: a teapot in a stadium: thousands of tiny triangles in the middle of a few thousand huge polygons.
  *
- * The classical case against a uniform grid (E. Haines, Ray Tracing News, 1988): voxels that suit the stadium
- * put the whole teapot into one of them. Lengths are in units of the teapot: it is 6.4 long and stands at the
- * origin, and the stadium is `ratio` times as long. The bowl is an oval of SECTORS, every tier a step of two
- * quads. */
+ * The classical case against a uniform grid (E. Haines, Ray Tracing News, 1988): voxels that suit the
+ * stadium put the whole teapot into one of them. Lengths are in units of the teapot, which is 6.4 long and
+ * stands at the origin; the stadium is `ratio` times as long. The bowl is an oval of SECTORS; each tier is
+ * a step of two quads. */
 #include "scenes/builtin.h"
 #include "scenes/teapot_mesh.h"
 
@@ -56,7 +56,7 @@ static const RtMaterial materials[MATERIALS] = {
     [LAMP] = RT_MATERIAL("lamp", 1, 0.98f, 0.9f, 1, 0.2f, 0, 1, 0),
 };
 
-/* Of the bowl, in half lengths of the stadium: how far out, over the pitch's oval, and how high. */
+/* A ledge of the bowl, in half lengths of the stadium: distance from the pitch's oval, and height. */
 typedef struct Ledge {
     double out, up;
 } Ledge;
@@ -73,7 +73,7 @@ static RtVec3d on_bowl(const Stadium *s, uint32_t i, Ledge ledge) {
                     s->half * ledge.up);
 }
 
-/* One flat piece of the bowl, seen from the pitch: from ledge a, near or below, to b. */
+/* One flat piece of the bowl, seen from the pitch: from ledge a, nearer or lower, to b. */
 static void add_piece(Stadium *s, uint32_t sector, Ledge a, Ledge b) {
     const RtVec3d corners[4] = {on_bowl(s, sector + 1, a), on_bowl(s, sector, a), on_bowl(s, sector, b),
                                 on_bowl(s, sector + 1, b)};

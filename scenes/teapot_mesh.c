@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Patches are evaluated by de Casteljau's scheme with the weights n - i and i, so that a border comes out the
- * same bit for bit in both patches that share it, from whichever end; where control points coincide so do the
- * points between them. 8 patches have a border that is one point, where n triangles collapse and are left
- * out. */
+/* Patches are evaluated by de Casteljau's scheme with the weights n - i and i, so that a shared border has
+ * the same bits in both patches, from either end, and coincident control points yield coincident points. 8
+ * patches have a border that is a single point, where n triangles collapse and are omitted. */
 #include "scenes/teapot_mesh.h"
 
 #include "scenes/teapot_patches.h"

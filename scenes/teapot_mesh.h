@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Newell's teapot as triangles, for the scenes in which it stands. */
+/* Newell's teapot as triangles. */
 #ifndef RT_SCENES_TEAPOT_MESH_H
 #define RT_SCENES_TEAPOT_MESH_H
 
 #include "scenes/build.h"
 
-/* The finest tessellation there is. */
+/* The finest tessellation. */
 #define RT_TEAPOT_MAX_SIZE 1000
 
 /* Adds 64 n^2 - 8 n triangles with vertex normals (32 patches of n x n cells, 1 <= n <= RT_TEAPOT_MAX_SIZE),

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* tree: a binary tree of 2^(size+1) - 1 branches, each a cone with a sphere at its tip, on a field.
  *
- * E. Haines, "A Proposal for Standard Graphics Environments", IEEE CG&A 7(11), 1987. The trunk goes from the
- * origin to (0, 0, 1). A branch has two children: smaller copies of it, turned and moved to its tip, of which
- * only the radii go by a factor of their own. Objects come depth first, in the order of the Standard
- * Procedural Databases. */
+ * E. Haines, "A Proposal for Standard Graphics Environments", IEEE CG&A 7(11), 1987. The trunk goes from
+ * the origin to (0, 0, 1). A branch has two children: smaller copies of it, rotated and moved to its tip,
+ * with a separate factor for radii. Objects come depth first, in the order of the Standard Procedural
+ * Databases. */
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 

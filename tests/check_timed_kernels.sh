@@ -4,7 +4,7 @@
 # no function of the library called ..._timed may add to a 64-bit word in memory, except on its own
 # stack (which SIMD code addresses by %rbp).
 # The functions called ..._counted must: the counted kernels of each file show that this script would detect it. Nor may a
-# timed kernel test for an observer (core/base/observe.h): it may not name rt_observer, as counted kernels do. A file
+# timed kernel test for an observer (core/base/observe.h): it may not name rt_trace_observer, as counted kernels do. A file
 # without timed kernels (isa.c, which passes rays on to the kernels of an instruction set) must count nothing.
 # For optimised x86-64 builds; otherwise it is skipped (exit code 77).
 set -eu
@@ -27,7 +27,7 @@ objdump --disassemble --reloc --no-show-raw-insn "$library" | awk '
     next
 }
 kind == "" { next }
-/R_X86_64_.*rt_observe/ {
+/R_X86_64_.*rt_(trace_observer|observe)/ {
     looks[file, kind]++
     if (kind == "timed") print "  " file ": " name ": " $0
 }

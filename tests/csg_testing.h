@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the tests of CSG trees share: terms in short, the hits along a ray, random rays. */
+/* Shared by tests of CSG trees: short notation for terms, the hits along a ray, random rays. */
 #ifndef RT_TESTS_CSG_TESTING_H
 #define RT_TESTS_CSG_TESTING_H
 

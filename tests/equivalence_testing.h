@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Holding accelerators against brute, by rays of every family: on a scene of a family, or on any; all answers
- * by both kernels, in streams of several lengths. */
+/* Compares accelerators with brute on rays of every family, over a scene of a family or any other; both
+ * kernels, in streams of several lengths. */
 #ifndef RT_TESTS_EQUIVALENCE_TESTING_H
 #define RT_TESTS_EQUIVALENCE_TESTING_H
 
@@ -64,7 +64,8 @@ static inline void tear_down_family(FamilyBench *bench) {
     rt_scene_clear(&bench->scene);
 }
 
-/* An accelerator of this spec is valid and gives the answers of the reference, bit for bit. */
+/* Asserts that the accelerator of this spec is valid and returns the answers of the reference, bit for
+ * bit. */
 static inline void assert_gives(const RtReference *reference, const char *spec) {
     RtAccel *accel;
     RtEquivalence result = {0};

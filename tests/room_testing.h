@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Room for the hit functions of tests that ask them directly, one thread at a time. */
+/* Scratch memory for tests that call hit functions directly, one thread at a time. */
 #ifndef RT_TESTS_ROOM_TESTING_H
 #define RT_TESTS_ROOM_TESTING_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What tests of scenes share: opening one, its objects by shape, and memory that runs out on the way. */
+/* Shared by tests of scenes: opening a scene, its objects by shape, and failing allocations. */
 #ifndef RT_TESTS_SCENE_TESTING_H
 #define RT_TESTS_SCENE_TESTING_H
 

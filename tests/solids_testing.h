@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What tests of solids share: lines and their lists of crossings, models of every kind of solid with
- * membership of points in long double, which shares no code with spans, and the two held against each
- * other. */
+/* Shared by tests of solids: lines and their lists of crossings, and models of every kind of solid with
+ * membership of points in long double, which shares no code with spans; and the comparison of the two. */
 #ifndef RT_TESTS_SOLIDS_TESTING_H
 #define RT_TESTS_SOLIDS_TESTING_H
 
@@ -34,7 +33,7 @@ static inline RtRay make_ray(RtVec3 org, RtVec3 dir) {
     return (RtRay){.org = org, .dir = dir, .tmin = 0, .tmax = INFINITY};
 }
 
-/* What a tree would ask, and what every list keeps. */
+/* The crossings as a tree would compute them, with the invariants of every list. */
 static inline List cross(const RtSolidSet *set, uint32_t index, const RtRay *ray) {
     const RtSolid *solid = &set->solids[index];
     RtSolidRay r = {rt_widen(ray->org), rt_widen(ray->dir), rt_ray_prepare(ray, &solid->box)};

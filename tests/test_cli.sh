@@ -134,9 +134,9 @@ rm -r full.yaml out
 # ---- a dangling link is not a misspelt name ----
 
 for name in link.nff link.yaml link.npy; do ln -s gone/away $name; done
-refuses "link\.nff is a symbolic link that leads to no file: its target is 'gone/away'" info link.nff
-refuses "link\.yaml is a symbolic link that leads to no file" run link.yaml
-refuses "link\.npy is a symbolic link that leads to no file" verify --replay link.npy
+refuses "link\.nff is a symbolic link to a missing file: its target is 'gone/away'" info link.nff
+refuses "link\.yaml is a symbolic link to a missing file" run link.yaml
+refuses "link\.npy is a symbolic link to a missing file" verify --replay link.npy
 refuses "link\.npy is a symbolic link" bench balls:size=1 --accel bvh --rays nearest --rays-from link.npy
 refuses "link\.nff is a symbolic link" bench link.nff --accel bvh
 rm link.*

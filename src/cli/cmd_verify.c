@@ -300,7 +300,7 @@ static RtStatus replay(const Options *o, bool *failed, RtError *error) {
     RtReplay file;
     RtStatus status = RT_OK;
     RT_TRY(rt_replay_load(&file, o->replay, error));
-    RtMaker maker = rt_maker_of_spec(file.accel_spec);
+    RtAccelBuilder maker = rt_accel_builder_of_spec(file.accel_spec);
     maker.threads = o->threads;
     printf("%s on %s\n", file.accel_spec, file.scene_spec);
     uint32_t asked = 0;

@@ -16,7 +16,8 @@ int rt_polynomial_sign(RtExactArena *arena, const RtPolynomial *p, RtRational t)
     return sign;
 }
 
-/* Times the least common multiple of the denominators, by the greatest common divisor of the numerators. */
+/* Multiplies by the least common multiple of the denominators over the greatest common divisor of the
+ * numerators. */
 static RtPolynomial shortened(RtExactArena *arena, RtPolynomial p) {
     if (p.degree < 0) return p;
     mpq_ptr factor = rt_exact_arena_number(arena);
@@ -37,8 +38,9 @@ static RtPolynomial derivative(RtExactArena *arena, const RtPolynomial *p) {
     return out;
 }
 
-/* Long division by q, which is not 0, of numbers that are integers: p, times a number above 0, is quotient
- * times q and the remainder, which is given; the quotient too, if wanted. No step leaves the integers. */
+/* Long division of integer polynomials by q, which is not 0: p times a positive number is quotient times q
+ * plus the remainder. Returns the remainder, and the quotient if wanted. All intermediate numbers are
+ * integers. */
 static RtPolynomial divided(RtExactArena *arena, RtPolynomial p, const RtPolynomial *q,
                             RtPolynomial *quotient) {
     RtPolynomial parts = {.degree = p.degree - q->degree};
@@ -60,7 +62,8 @@ static RtPolynomial divided(RtExactArena *arena, RtPolynomial p, const RtPolynom
     return shortened(arena, p);
 }
 
-RtPolynomial rt_polynomial_common(RtExactArena *arena, const RtPolynomial *p, const RtPolynomial *q) {
+/* The greatest common divisor of two polynomials, not both 0. */
+static RtPolynomial common_divisor(RtExactArena *arena, const RtPolynomial *p, const RtPolynomial *q) {
     RtPolynomial a = shortened(arena, *p), b = shortened(arena, *q);
     while (b.degree >= 0) {
         RtPolynomial rest = divided(arena, a, &b, NULL);
@@ -76,7 +79,7 @@ static RtRational width_of(RtExactArena *arena, const RtAlgebraic *a) {
     return rt_exact_sub(arena, a->hi, a->lo);
 }
 
-/* x 2^by */
+/* x * 2^by */
 static RtRational scaled(RtExactArena *arena, RtRational x, long by) {
     mpq_ptr out = rt_exact_arena_number(arena);
     if (by >= 0) {
@@ -87,8 +90,8 @@ static RtRational scaled(RtExactArena *arena, RtRational x, long by) {
     return out;
 }
 
-/* Cuts the interval down to lo..hi, of which one end at most is one of the old interval's; where the other is
- * the root itself, to as much with the root in its middle. False where the root is elsewhere. */
+/* Narrows the interval to lo..hi, which shares at least one end with it. If an end is the root itself, the
+ * new interval has the same width with the root in its middle. False if the root is elsewhere. */
 static bool cut_down(RtExactArena *arena, RtAlgebraic *a, RtRational lo, RtRational hi) {
     int below = rt_polynomial_sign(arena, &a->of, lo), above = rt_polynomial_sign(arena, &a->of, hi);
     if (below * above > 0) return false;
@@ -103,7 +106,7 @@ static bool cut_down(RtExactArena *arena, RtAlgebraic *a, RtRational lo, RtRatio
     return true;
 }
 
-/* Of 2^bits equal parts of the interval tries the one in which the secant is 0. */
+/* Divides the interval into 2^bits equal parts and tries the one in which the secant is 0. */
 static bool try_secant(RtExactArena *arena, RtAlgebraic *a, unsigned bits) {
     RtRational at_lo = value_at(arena, &a->of, a->lo), at_hi = value_at(arena, &a->of, a->hi);
     RtRational span = rt_exact_sub(arena, at_lo, at_hi);
@@ -118,7 +121,7 @@ static bool try_secant(RtExactArena *arena, RtAlgebraic *a, unsigned bits) {
     return cut_down(arena, a, lo, rt_exact_add(arena, lo, part));
 }
 
-/* Until the interval is no wider than `width`. A secant that is right is trusted with twice as many bits. */
+/* Narrows the interval to at most `width`. Each success of the secant doubles the number of bits. */
 static void narrow(RtExactArena *arena, RtAlgebraic *a, RtRational width) {
     unsigned bits = 1;
     while (mpq_cmp(width_of(arena, a), width) > 0) {
@@ -134,7 +137,7 @@ static void narrow(RtExactArena *arena, RtAlgebraic *a, RtRational width) {
 
 /* ---- roots ---- */
 
-/* Sturm's; the last is the greatest common divisor of p and p'. */
+/* Sturm's chain; the last polynomial is the greatest common divisor of p and p'. */
 typedef struct Chain {
     int count;
     RtPolynomial at[RT_MAX_DEGREE + 1];
@@ -161,7 +164,8 @@ static int sign_changes(RtExactArena *arena, const Chain *chain, RtRational t) {
     return changes;
 }
 
-/* A power of two above |t| of all roots t: Fujiwara's 2 max |a[n - i] / a[n]|^(1 / i), by numbers of bits. */
+/* A power of two above |t| for all roots t: Fujiwara's bound 2 max |a[n - i] / a[n]|^(1 / i), from numbers
+ * of bits. */
 static RtRational bound_of(RtExactArena *arena, const RtPolynomial *p) {
     const long top = (long)mpz_sizeinbase(mpq_numref(p->at[p->degree]), 2);
     long most = -(1L << 40);
@@ -174,7 +178,7 @@ static RtRational bound_of(RtExactArena *arena, const RtPolynomial *p) {
     return most == -(1L << 40) ? rt_exact_of(arena, 1) : scaled(arena, rt_exact_of(arena, 1), most + 2);
 }
 
-/* Between lo and hi, and no root; they are none either. */
+/* A point between lo and hi that is no root; nor are lo and hi. */
 static RtRational point_between(RtExactArena *arena, const RtPolynomial *p, RtRational lo, RtRational hi) {
     do lo = scaled(arena, rt_exact_add(arena, lo, hi), -1);
     while (rt_polynomial_sign(arena, p, lo) == 0);
@@ -213,8 +217,8 @@ int rt_polynomial_roots(RtExactArena *arena, const RtPolynomial *p, RtAlgebraic 
 
 /* ---- numbers ---- */
 
-/* A root of (t - p)^2 - q^2 d, on the side of p that q is on, and nearer to it than |q| (d + 1). */
-RtAlgebraic rt_algebraic_of_surd(RtExactArena *arena, const RtSurd *surd) {
+/* A root of (t - p)^2 - q^2 d on the side of p given by q's sign, nearer to p than |q| (d + 1). */
+static RtAlgebraic algebraic_of_surd(RtExactArena *arena, const RtSurd *surd) {
     RtRational one = rt_exact_of(arena, 1);
     if (rt_exact_sign(surd->q) == 0 || rt_exact_sign(surd->d) == 0) {
         return (RtAlgebraic){{1, {rt_exact_neg(arena, surd->p), one}},
@@ -231,9 +235,10 @@ RtAlgebraic rt_algebraic_of_surd(RtExactArena *arena, const RtSurd *surd) {
     return (RtAlgebraic){of, up ? p : far, up ? far : p};
 }
 
-/* Is it the same root, given that the intervals overlap? A common root in both is the one of each. */
+/* Are the roots equal, given that the intervals overlap? A common root in both intervals is each one's
+ * only root. */
 static bool same(RtExactArena *arena, const RtAlgebraic *a, const RtAlgebraic *b) {
-    RtPolynomial common = rt_polynomial_common(arena, &a->of, &b->of);
+    RtPolynomial common = common_divisor(arena, &a->of, &b->of);
     RtRational lo = mpq_cmp(a->lo, b->lo) > 0 ? a->lo : b->lo;
     RtRational hi = mpq_cmp(a->hi, b->hi) < 0 ? a->hi : b->hi;
     return common.degree > 0 &&
@@ -257,7 +262,7 @@ int rt_algebraic_compare(RtExactArena *arena, const RtAlgebraic *a, const RtAlge
     return order;
 }
 
-/* With 32 bits more each time, until the interval is narrower than 2^-66 of how far it is from `from`. */
+/* Adds 32 bits at a time until the interval is narrower than 2^-66 of its distance from `from`. */
 long double rt_algebraic_value(RtExactArena *arena, const RtAlgebraic *a, RtRational from) {
     size_t mark = rt_exact_arena_mark(arena);
     RtAlgebraic x = *a;
@@ -275,6 +280,58 @@ long double rt_algebraic_value(RtExactArena *arena, const RtAlgebraic *a, RtRati
         }
         narrow(arena, &x, scaled(arena, width, -32));
     }
+    rt_exact_arena_rewind(arena, mark);
+    return value;
+}
+
+/* ---- where a line meets a surface ---- */
+
+RtRoot rt_root_of_surd(const RtSurd *surd) {
+    return (RtRoot){.surd = *surd};
+}
+
+RtRoot rt_root_of(RtExactArena *arena, RtRational t) {
+    return (RtRoot){.surd = rt_surd_of(arena, t)};
+}
+
+RtRoot rt_root_of_algebraic(const RtAlgebraic *algebraic) {
+    return (RtRoot){.algebraic = *algebraic};
+}
+
+static bool is_surd(const RtRoot *root) {
+    return root->algebraic.of.degree == 0;
+}
+
+/* The surd is nearly always outside the interval, which is cheap to see. */
+static int compare_mixed(RtExactArena *arena, const RtAlgebraic *algebraic, const RtSurd *surd) {
+    size_t mark = rt_exact_arena_mark(arena);
+    RtSurd lo = rt_surd_of(arena, algebraic->lo), hi = rt_surd_of(arena, algebraic->hi);
+    int order;
+    if (rt_surd_compare(arena, surd, &lo) <= 0) {
+        order = 1;
+    } else if (rt_surd_compare(arena, surd, &hi) >= 0) {
+        order = -1;
+    } else {
+        RtAlgebraic other = algebraic_of_surd(arena, surd);
+        order = rt_algebraic_compare(arena, algebraic, &other);
+    }
+    rt_exact_arena_rewind(arena, mark);
+    return order;
+}
+
+int rt_root_compare(RtExactArena *arena, const RtRoot *a, const RtRoot *b) {
+    if (is_surd(a) && is_surd(b)) return rt_surd_compare(arena, &a->surd, &b->surd);
+    if (is_surd(b)) return compare_mixed(arena, &a->algebraic, &b->surd);
+    if (is_surd(a)) return -compare_mixed(arena, &b->algebraic, &a->surd);
+    return rt_algebraic_compare(arena, &a->algebraic, &b->algebraic);
+}
+
+long double rt_root_value(RtExactArena *arena, const RtRoot *root, RtRational from) {
+    if (!is_surd(root)) return rt_algebraic_value(arena, &root->algebraic, from);
+    size_t mark = rt_exact_arena_mark(arena);
+    RtSurd apart = root->surd;
+    apart.p = rt_exact_sub(arena, apart.p, from);
+    long double value = rt_surd_value(arena, &apart);
     rt_exact_arena_rewind(arena, mark);
     return value;
 }

@@ -37,29 +37,17 @@ RtRational rt_exact_of(RtExactArena *arena, double x) {
     return out;
 }
 
-RtRational rt_exact_add(RtExactArena *arena, RtRational a, RtRational b) {
-    mpq_ptr out = rt_exact_arena_number(arena);
-    mpq_add(out, a, b);
-    return out;
-}
-
-RtRational rt_exact_sub(RtExactArena *arena, RtRational a, RtRational b) {
-    mpq_ptr out = rt_exact_arena_number(arena);
-    mpq_sub(out, a, b);
-    return out;
-}
-
-RtRational rt_exact_mul(RtExactArena *arena, RtRational a, RtRational b) {
-    mpq_ptr out = rt_exact_arena_number(arena);
-    mpq_mul(out, a, b);
-    return out;
-}
-
-RtRational rt_exact_div(RtExactArena *arena, RtRational a, RtRational b) {
-    mpq_ptr out = rt_exact_arena_number(arena);
-    mpq_div(out, a, b);
-    return out;
-}
+#define DEFINE(operation)                                                                                    \
+    RtRational rt_exact_##operation(RtExactArena *arena, RtRational a, RtRational b) {                       \
+        mpq_ptr out = rt_exact_arena_number(arena);                                                          \
+        mpq_##operation(out, a, b);                                                                          \
+        return out;                                                                                          \
+    }
+DEFINE(add)
+DEFINE(sub)
+DEFINE(mul)
+DEFINE(div)
+#undef DEFINE
 
 RtRational rt_exact_neg(RtExactArena *arena, RtRational a) {
     mpq_ptr out = rt_exact_arena_number(arena);
@@ -67,8 +55,8 @@ RtRational rt_exact_neg(RtExactArena *arena, RtRational a) {
     return out;
 }
 
-/* Shifts the quotient of numerator and denominator until it has 64 bits or 65, and rounds it down: an error
- * of at most 2^-63, and that of one rounding to long double. */
+/* Shifts the quotient of numerator and denominator to 64 or 65 bits and rounds it down: an error of at
+ * most 2^-63, plus one rounding to long double. */
 long double rt_exact_value(RtRational a) {
     if (mpq_sgn(a) == 0) return 0;
     mpz_t top, bottom;
@@ -141,7 +129,7 @@ static RtRational square(RtExactArena *arena, RtRational a) {
     return rt_exact_mul(arena, a, a);
 }
 
-/* Of p + q sqrt(d). */
+/* The sign of p + q sqrt(d). */
 static int sign_of(RtExactArena *arena, RtRational p, RtRational q, RtRational d) {
     int first = mpq_sgn(p), second = mpq_sgn(q) * mpq_sgn(d);
     if (first * second >= 0) return first != 0 ? first : second;
@@ -155,7 +143,7 @@ int rt_surd_sign(RtExactArena *arena, const RtSurd *a) {
     return (sign > 0) - (sign < 0);
 }
 
-/* (a.p - b.p + a.q sqrt(a.d)) and -b.q sqrt(b.d) are the parts whose squares are compared. */
+/* Compares the squares of (a.p - b.p + a.q sqrt(a.d)) and -b.q sqrt(b.d). */
 int rt_surd_compare(RtExactArena *arena, const RtSurd *a, const RtSurd *b) {
     size_t mark = rt_exact_arena_mark(arena);
     RtRational p = rt_exact_sub(arena, a->p, b->p);
@@ -185,7 +173,7 @@ static RtRational root_below(RtExactArena *arena, RtRational d, mp_bitcnt_t bits
     return root;
 }
 
-/* With twice as many bits each time, until q times what the root may be off is below 2^-66 of the number. */
+/* Doubles the bits until q times the error of the root is below 2^-66 of the number. */
 long double rt_surd_value(RtExactArena *arena, const RtSurd *a) {
     if (mpq_sgn(a->q) == 0 || mpq_sgn(a->d) == 0) return rt_exact_value(a->p);
     if (rt_surd_sign(arena, a) == 0) return 0;

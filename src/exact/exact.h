@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Exact numbers: rationals (GMP), vectors of them, and surds p + q sqrt(d), which are what roots of quadratic
- * equations are. A float32 or double is a rational, so whatever + - * / make of such numbers is here without
- * any rounding, and order and sign are decided, never estimated.
+/* Exact numbers: rationals (GMP), vectors of them, and surds p + q sqrt(d), the roots of quadratic equations.
+ * A float32 or double is a rational, so + - * / on such numbers are exact, and order and sign are decided,
+ * never estimated.
  *
- * Signs of sums of roots are found by algebra alone. Of a + b sqrt(c): where a and b pull opposite ways, that
- * of a^2 - b^2 c. Of (p + q sqrt(d)) + r sqrt(e): where the two parts pull opposite ways, that of the
- * difference of their squares, which has one root less. No approximation comes in, so a tie is a tie.
+ * The signs of sums of square roots are found by algebra alone. The sign of a + b sqrt(c), if both parts have
+ * opposite signs, is that of a^2 - b^2 c. For (p + q sqrt(d)) + r sqrt(e) with parts of opposite signs it is
+ * that of the difference of their squares, which has one root less. Nothing is approximated, so a tie is a
+ * tie.
  *
- * Layout. Numbers are written in an arena, one after another, and never changed; rewinding the arena to a
- * mark forgets the later ones, and their memory serves again. Memory is that of GMP (a number of a ray takes
- * a few hundred bytes), which ends the program with a message where there is none. */
+ * Layout. Numbers are written to an arena one after another and never changed. Rewinding the arena to a
+ * mark discards the later ones and reuses their memory. Memory is allocated by GMP (a number of a ray
+ * takes a few hundred bytes), which ends the program with a message if it fails. */
 #ifndef RT_EXACT_EXACT_H
 #define RT_EXACT_EXACT_H
 
@@ -21,7 +22,7 @@
 /* A number in an arena. */
 typedef mpq_srcptr RtRational;
 
-/* A zeroed struct is empty. One thread uses it at a time. */
+/* A zeroed struct is empty. For one thread at a time. */
 typedef struct RtExactArena {
     mpq_t **blocks; /* [block_count] of RT_EXACT_ARENA_BLOCK numbers each, all initialised */
     size_t block_count, used;
@@ -35,17 +36,17 @@ static inline size_t rt_exact_arena_mark(const RtExactArena *arena) {
     return arena->used;
 }
 
-/* Forgets what was written after the mark was taken. */
+/* Discards all numbers written after the mark. */
 static inline void rt_exact_arena_rewind(RtExactArena *arena, size_t mark) {
     arena->used = mark;
 }
 
-/* A number of the arena that is still to be written, once. */
+/* A new number of the arena, to be written once. */
 mpq_ptr rt_exact_arena_number(RtExactArena *arena);
 
 /* ---- rationals ---- */
 
-/* `x`, which is finite. */
+/* A finite `x`. */
 RtRational rt_exact_of(RtExactArena *arena, double x);
 RtRational rt_exact_add(RtExactArena *arena, RtRational a, RtRational b);
 RtRational rt_exact_sub(RtExactArena *arena, RtRational a, RtRational b);
@@ -58,7 +59,7 @@ static inline int rt_exact_sign(RtRational a) {
     return mpq_sgn(a);
 }
 
-/* The nearest long double, or one of the two beside: an error below 2^-62 of the number. */
+/* The nearest long double or one next to it: a relative error below 2^-62. */
 long double rt_exact_value(RtRational a);
 
 typedef struct RtExactVec {
@@ -83,15 +84,15 @@ RtSurd rt_surd_of(RtExactArena *arena, RtRational p);
 /* a + b x */
 RtSurd rt_surd_line(RtExactArena *arena, RtRational a, RtRational b, const RtSurd *x);
 
-/* -1, 0, 1: that of the number, and that of a - b. Nothing stays in the arena. */
+/* The sign (-1, 0, 1) of the number, and of a - b. Nothing stays in the arena. */
 int rt_surd_sign(RtExactArena *arena, const RtSurd *a);
 int rt_surd_compare(RtExactArena *arena, const RtSurd *a, const RtSurd *b);
 
-/* Like rt_exact_value, however much p and q sqrt(d) cancel. */
+/* Like rt_exact_value, also under cancellation of p and q sqrt(d). */
 long double rt_surd_value(RtExactArena *arena, const RtSurd *a);
 
-/* The real roots of a t^2 + 2 b t + c in ascending order; gives their number. A double root is given once; an
- * equation that holds for no t or for all of them has none. */
+/* The real roots of a t^2 + 2 b t + c in ascending order; returns their number. A double root appears
+ * once; an equation that holds for no t or for every t has none. */
 int rt_exact_roots(RtExactArena *arena, RtRational a, RtRational half_b, RtRational c, RtSurd roots[2]);
 
 #endif

@@ -1,23 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* CSG trees in exact arithmetic. A solid is made of parts that one equation describes, a quadric, a
- * half-space or a torus; on a line the inside of each is an alternation of in and out at a few places. Meshes
- * are parts with any number of places (exact_mesh.c). Solids join parts, and trees join solids, by the same
- * machine: a stack of such lists, the two on top of which are merged. All lists lie one behind another in one
- * array. */
-#include "exact/exact_csg.h"
+/* CSG trees in exact arithmetic. A solid consists of parts with one equation each: a quadric, a half-space
+ * or a torus. On a line, the inside of a part alternates at a few roots; a mesh has any number of roots
+ * (exact_mesh.c). Parts are joined to solids, and solids to trees, by one stack machine, which merges the
+ * two topmost lists of roots. All lists lie one behind another in one array. */
+#include "exact/exact_hit.h"
 
 #include "core/base/memory.h"
-#include "exact/exact_mesh.h"
 
 #include <assert.h>
 
-/* What is inside along the line: `before` all places, and changing at each. */
+/* The inside along the line: `before` is its value before all roots, and it changes at each. */
 typedef struct List {
     bool before;
     uint32_t first, count;
 } List;
 
-/* A solid of parts has two lists of its own on top of those of the tree. */
+/* The parts of a solid need two lists on top of the tree's. */
 #define MOST_LISTS (RT_CSG_MAX_LISTS + 2)
 
 typedef struct Machine {
@@ -26,25 +24,25 @@ typedef struct Machine {
     List lists[MOST_LISTS];
     uint32_t depth;
     uint32_t capacity;
-    RtPlace *places; /* [capacity] */
+    RtRoot *roots; /* [capacity] */
 } Machine;
 
 /* ---- lists ---- */
 
-/* Adds a place behind those of the list on top. */
-static RtStatus extend(Machine *m, RtPlace place, RtError *error) {
+/* Appends a root to the topmost list. */
+static RtStatus extend(Machine *m, RtRoot root, RtError *error) {
     List *top = &m->lists[m->depth - 1];
     uint32_t end = top->first + top->count;
-    RT_TRY(rt_reserve(&m->places, &m->capacity, (uint64_t)end + 1, sizeof(RtPlace), error));
-    m->places[end] = place;
+    RT_TRY(rt_reserve(&m->roots, &m->capacity, (uint64_t)end + 1, sizeof(RtRoot), error));
+    m->roots[end] = root;
     top->count++;
     return RT_OK;
 }
 
-static RtStatus push(Machine *m, bool before, const RtSurd *places, int count, RtError *error) {
+static RtStatus push(Machine *m, bool before, const RtSurd *roots, int count, RtError *error) {
     const List *top = m->depth > 0 ? &m->lists[m->depth - 1] : NULL;
     m->lists[m->depth++] = (List){before, top ? top->first + top->count : 0, 0};
-    for (int i = 0; i < count; i++) RT_TRY(extend(m, rt_place_of_surd(&places[i]), error));
+    for (int i = 0; i < count; i++) RT_TRY(extend(m, rt_root_of_surd(&roots[i]), error));
     return RT_OK;
 }
 
@@ -57,25 +55,25 @@ static bool joined(RtCsgOp op, bool left, bool right) {
     return false;
 }
 
-/* Puts what `op` makes of the two lists on top in their place. */
+/* Replaces the two topmost lists by the result of `op`. */
 static RtStatus apply(Machine *m, RtCsgOp op, bool reversed, RtError *error) {
     List *low = &m->lists[m->depth - 2], *high = &m->lists[m->depth - 1];
     const List *left = reversed ? high : low, *right = reversed ? low : high;
     uint32_t end = high->first + high->count, count = 0, i = 0, k = 0;
     uint64_t room = (uint64_t)end + left->count + right->count;
-    RT_TRY(rt_reserve(&m->places, &m->capacity, room, sizeof(RtPlace), error));
+    RT_TRY(rt_reserve(&m->roots, &m->capacity, room, sizeof(RtRoot), error));
     bool in_left = left->before, in_right = right->before;
     bool before = joined(op, in_left, in_right), inside = before;
     while (i < left->count || k < right->count) {
-        const RtPlace *a = &m->places[left->first + i], *b = &m->places[right->first + k];
-        int order = i == left->count ? 1 : k == right->count ? -1 : rt_place_compare(m->arena, a, b);
+        const RtRoot *a = &m->roots[left->first + i], *b = &m->roots[right->first + k];
+        int order = i == left->count ? 1 : k == right->count ? -1 : rt_root_compare(m->arena, a, b);
         if (order <= 0) in_left = !in_left, i++;
         if (order >= 0) in_right = !in_right, k++;
         if (joined(op, in_left, in_right) == inside) continue;
         inside = !inside;
-        m->places[end + count++] = order <= 0 ? *a : *b;
+        m->roots[end + count++] = order <= 0 ? *a : *b;
     }
-    for (uint32_t n = 0; n < count; n++) m->places[low->first + n] = m->places[end + n];
+    for (uint32_t n = 0; n < count; n++) m->roots[low->first + n] = m->roots[end + n];
     *low = (List){before, low->first, count};
     m->depth--;
     return RT_OK;
@@ -83,7 +81,7 @@ static RtStatus apply(Machine *m, RtCsgOp op, bool reversed, RtError *error) {
 
 /* ---- parts ---- */
 
-/* Where a t^2 + 2 b t + c < 0. A place where it is 0 without a change of sign is none. */
+/* Where a t^2 + 2 b t + c < 0. A root without a change of sign does not count. */
 static RtStatus push_quadric(Machine *m, RtRational a, RtRational half_b, RtRational c, RtError *error) {
     RtSurd roots[2];
     int count = rt_exact_roots(m->arena, a, half_b, c, roots);
@@ -100,19 +98,19 @@ static RtStatus push_half(Machine *m, RtRational gap, RtRational rate, RtError *
 
 /* ---- solids ---- */
 
-/* The line in standard coordinates, all times `unit`, which spares divisions: rows of the inverse of the
- * place are cross products of columns over the determinant, and that is the unit. It is above 0, for what is
- * flat or turned inside out is no solid (rt_solid_finish). */
-typedef struct Standard {
+/* The line in object space, scaled by `unit`, which avoids divisions: the rows of the inverse transform
+ * are cross products of columns over the determinant, which is the unit. It is above 0, because flat or
+ * inverted solids are rejected (rt_solid_finish). */
+typedef struct ObjectLine {
     RtExactVec org, dir;
     RtRational unit;
-} Standard;
+} ObjectLine;
 
-static Standard standard(RtExactArena *arena, const RtSolid *solid, const RtExactLine *line) {
+static ObjectLine to_object_space(RtExactArena *arena, const RtSolid *solid, const RtExactLine *line) {
     RtExactVec columns[4];
     for (int i = 0; i < 4; i++) columns[i] = rt_exact_vec(arena, rt_transform_column(&solid->to_world, i));
     RtExactVec from = rt_exact_vec_sub(arena, line->org, columns[3]);
-    Standard out;
+    ObjectLine out;
     for (int i = 0; i < 3; i++) {
         RtExactVec row = rt_exact_cross(arena, columns[(i + 1) % 3], columns[(i + 2) % 3]);
         if (i == 0) out.unit = rt_exact_dot(arena, columns[0], row);
@@ -124,18 +122,17 @@ static Standard standard(RtExactArena *arena, const RtSolid *solid, const RtExac
 }
 
 static RtStatus push_sphere(Machine *m, const RtSolid *solid, RtError *error) {
-    Standard s = standard(m->arena, solid, m->line);
+    ObjectLine s = to_object_space(m->arena, solid, m->line);
     RtRational radius = rt_exact_mul(m->arena, s.unit, s.unit);
     RtRational c = rt_exact_sub(m->arena, rt_exact_dot(m->arena, s.org, s.org), radius);
     return push_quadric(m, rt_exact_dot(m->arena, s.dir, s.dir), rt_exact_dot(m->arena, s.org, s.dir), c,
                         error);
 }
 
-/* x^2 + y^2 - R^2 with R = 1 + (ratio - 1) z; where that is below 0 beyond the tip, R is negative, and z is
- * out of 0..1. */
+/* x^2 + y^2 - R^2 with R = 1 + (ratio - 1) z. Beyond the tip R is negative, but there z is outside 0..1. */
 static RtStatus push_cone(Machine *m, const RtSolid *solid, RtError *error) {
     RtExactArena *arena = m->arena;
-    Standard s = standard(arena, solid, m->line);
+    ObjectLine s = to_object_space(arena, solid, m->line);
     RtRational z = s.org.at[2], dz = s.dir.at[2];
     RtRational slope = rt_exact_sub(arena, rt_exact_of(arena, solid->ratio), rt_exact_of(arena, 1));
     RtExactVec org = s.org, dir = s.dir;
@@ -152,9 +149,9 @@ static RtStatus push_cone(Machine *m, const RtSolid *solid, RtError *error) {
     return apply(m, RT_CSG_INTERSECTION, false, error);
 }
 
-/* The square of the distance of org + t dir from the origin, in the first `axes` coordinates, is
- * c[0] + c[1] t + c[2] t^2. */
-static void squared_distance(RtExactArena *arena, const Standard *s, int axes, RtRational c[3]) {
+/* The squared distance of org + t dir from the origin in the first `axes` coordinates: c[0] + c[1] t +
+ * c[2] t^2. */
+static void squared_distance(RtExactArena *arena, const ObjectLine *s, int axes, RtRational c[3]) {
     for (int i = 0; i < 3; i++) c[i] = rt_exact_of(arena, 0);
     for (int a = 0; a < axes; a++) {
         RtRational cross = rt_exact_mul(arena, s->org.at[a], s->dir.at[a]);
@@ -164,8 +161,8 @@ static void squared_distance(RtExactArena *arena, const Standard *s, int axes, R
     }
 }
 
-/* Inside is where (x^2 + y^2 + z^2 + 1 - ratio^2)^2 < 4 (x^2 + y^2): see shape/solid_torus.c. */
-static RtPolynomial torus_polynomial(RtExactArena *arena, const RtSolid *solid, const Standard *s) {
+/* Inside where (x^2 + y^2 + z^2 + 1 - ratio^2)^2 < 4 (x^2 + y^2): see shape/solid_torus.c. */
+static RtPolynomial torus_polynomial(RtExactArena *arena, const RtSolid *solid, const ObjectLine *s) {
     RtPolynomial p = {.degree = 4};
     RtRational k[3], w[3], one = rt_exact_of(arena, 1), ratio = rt_exact_of(arena, solid->ratio);
     squared_distance(arena, s, 3, k);
@@ -182,9 +179,9 @@ static RtPolynomial torus_polynomial(RtExactArena *arena, const RtSolid *solid, 
     return p;
 }
 
-/* A place where the polynomial is 0 without a change of sign is none. */
+/* A root without a change of sign does not count. */
 static RtStatus push_torus(Machine *m, const RtSolid *solid, RtError *error) {
-    Standard s = standard(m->arena, solid, m->line);
+    ObjectLine s = to_object_space(m->arena, solid, m->line);
     RtPolynomial p = torus_polynomial(m->arena, solid, &s);
     RtAlgebraic roots[RT_MAX_DEGREE];
     int count = rt_polynomial_roots(m->arena, &p, roots);
@@ -192,7 +189,7 @@ static RtStatus push_torus(Machine *m, const RtSolid *solid, RtError *error) {
     for (int i = 0; i < count; i++) {
         int before = rt_polynomial_sign(m->arena, &p, roots[i].lo);
         if (before == rt_polynomial_sign(m->arena, &p, roots[i].hi)) continue;
-        RT_TRY(extend(m, rt_place_of_root(&roots[i]), error));
+        RT_TRY(extend(m, rt_root_of_algebraic(&roots[i]), error));
     }
     return RT_OK;
 }
@@ -209,13 +206,13 @@ static RtStatus push_polyhedron(Machine *m, const RtPlane *planes, uint32_t coun
 }
 
 static RtStatus push_mesh(Machine *m, const RtSolidSet *set, uint32_t index, RtError *error) {
-    RtRational *places;
+    RtRational *roots;
     uint32_t count;
-    RT_TRY(rt_exact_mesh_places(m->arena, set, index, m->line, &places, &count, error));
+    RT_TRY(rt_exact_mesh_roots(m->arena, set, index, m->line, &roots, &count, error));
     RtStatus status = push(m, false, NULL, 0, error);
     for (uint32_t i = 0; i < count && status == RT_OK; i++)
-        status = extend(m, rt_place_of(m->arena, places[i]), error);
-    rt_free(places);
+        status = extend(m, rt_root_of(m->arena, roots[i]), error);
+    rt_free(roots);
     return status;
 }
 
@@ -234,7 +231,7 @@ static RtStatus push_solid(Machine *m, const RtSolidSet *set, uint32_t index, Rt
 
 /* ---- trees ---- */
 
-/* The whole program, no operand spared. */
+/* Runs the whole program, without skipping operands. */
 static RtStatus run(Machine *m, const RtCsgForest *forest, const RtCsg *tree, RtError *error) {
     const RtCsgInstruction *program = forest->instructions + tree->first;
     for (uint32_t i = 0; i < tree->count; i++) {
@@ -246,18 +243,18 @@ static RtStatus run(Machine *m, const RtCsgForest *forest, const RtCsg *tree, Rt
     return RT_OK;
 }
 
-RtFinding rt_exact_csg_hit(RtExactArena *arena, const RtCsgForest *forest, const RtCsg *tree,
-                           const RtExactLine *line, RtPlace *t) {
+RtExactResult rt_exact_csg_hit(RtExactArena *arena, const RtCsgForest *forest, const RtCsg *tree,
+                               const RtExactLine *line, RtRoot *t) {
     Machine machine = {.arena = arena, .line = line};
     RtError error;
-    RtFinding finding = RT_UNDECIDED;
+    RtExactResult result = RT_UNDECIDED;
     if (run(&machine, forest, tree, &error) == RT_OK) {
-        finding = RT_MISSED;
-        for (uint32_t i = 0; i < machine.lists[0].count && finding == RT_MISSED; i++) {
-            *t = machine.places[i];
-            if (rt_exact_counts(arena, line, t)) finding = RT_HIT;
+        result = RT_MISSED;
+        for (uint32_t i = 0; i < machine.lists[0].count && result == RT_MISSED; i++) {
+            *t = machine.roots[i];
+            if (rt_exact_counts(arena, line, t)) result = RT_HIT;
         }
     }
-    rt_free(machine.places);
-    return finding;
+    rt_free(machine.roots);
+    return result;
 }

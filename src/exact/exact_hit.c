@@ -1,23 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "exact/exact_hit.h"
 
-#include "exact/exact_csg.h"
-
 static RtExactVec vertex(RtExactArena *arena, RtVec3 v) {
     return rt_exact_vec(arena, rt_widen(v));
 }
 
 /* ---- flat shapes ---- */
 
-static bool flat_hit(RtExactArena *arena, const RtExactLine *line, RtRational t, RtPlace *out) {
-    *out = rt_place_of(arena, t);
+static bool flat_hit(RtExactArena *arena, const RtExactLine *line, RtRational t, RtRoot *out) {
+    *out = rt_root_of(arena, t);
     return rt_exact_counts(arena, line, out);
 }
 
-/* Edge functions are the volumes between direction and edge as seen from the origin. They sum to the normal's
- * part along the direction. */
+/* Edge functions are the volumes spanned by direction and edge as seen from the origin. Their sum is the
+ * normal's component along the direction. */
 static bool triangle_hit(RtExactArena *arena, const RtTriangle *triangle, const RtExactLine *line,
-                         RtPlace *t) {
+                         RtRoot *t) {
     RtExactVec from[3], normals[3];
     RtRational edges[3];
     bool left = false, right = false;
@@ -28,13 +26,13 @@ static bool triangle_hit(RtExactArena *arena, const RtTriangle *triangle, const 
         left |= rt_exact_sign(edges[i]) < 0;
         right |= rt_exact_sign(edges[i]) > 0;
     }
-    if (left == right) return false; /* passes by, or all three are 0: in the plane, or no plane at all */
+    if (left == right) return false; /* a miss, or all three are 0: in the plane, or no plane at all */
     RtRational sum = rt_exact_add(arena, rt_exact_add(arena, edges[0], edges[1]), edges[2]);
     RtRational volume = rt_exact_dot(arena, normals[0], from[2]);
     return flat_hit(arena, line, rt_exact_div(arena, volume, sum), t);
 }
 
-/* Of p beside the edge from a to b: does the edge count for the even-odd rule, or is p on it? */
+/* Does the edge from a to b count for p in the even-odd rule, or is p on it? */
 typedef enum EdgeCase { EDGE_ASIDE, EDGE_CROSSED, EDGE_MET } EdgeCase;
 
 static EdgeCase edge_case(RtExactArena *arena, const RtRational a[2], const RtRational b[2],
@@ -66,9 +64,9 @@ static bool inside_polygon(RtExactArena *arena, const RtPolygon *polygon, const 
     return inside;
 }
 
-/* About vertex 0: the sums are exact wherever they are taken. */
+/* Relative to vertex 0: the sums are exact anyway. */
 static bool polygon_hit(RtExactArena *arena, const RtPolygon *polygon, const RtVec3 *vertices,
-                        const RtExactLine *line, RtPlace *t) {
+                        const RtExactLine *line, RtRoot *t) {
     RtExactVec first = vertex(arena, vertices[0]), normal = rt_exact_vec(arena, (RtVec3d){0});
     RtExactVec sum = normal, last = normal;
     RtRational one = rt_exact_of(arena, 1);
@@ -90,7 +88,7 @@ static bool polygon_hit(RtExactArena *arena, const RtPolygon *polygon, const RtV
 
 /* ---- round shapes ---- */
 
-static bool sphere_hit(RtExactArena *arena, const RtSphere *sphere, const RtExactLine *line, RtPlace *t) {
+static bool sphere_hit(RtExactArena *arena, const RtSphere *sphere, const RtExactLine *line, RtRoot *t) {
     RtExactVec org = rt_exact_vec_sub(arena, line->org, vertex(arena, sphere->center));
     RtRational radius = rt_exact_of(arena, (double)sphere->radius);
     RtRational c = rt_exact_sub(arena, rt_exact_dot(arena, org, org), rt_exact_mul(arena, radius, radius));
@@ -98,15 +96,15 @@ static bool sphere_hit(RtExactArena *arena, const RtSphere *sphere, const RtExac
     int count = rt_exact_roots(arena, rt_exact_dot(arena, line->dir, line->dir),
                                rt_exact_dot(arena, org, line->dir), c, roots);
     for (int i = 0; i < count; i++) {
-        *t = rt_place_of_surd(&roots[i]);
+        *t = rt_root_of_surd(&roots[i]);
         if (rt_exact_counts(arena, line, t)) return true;
     }
     return false;
 }
 
-/* With s the height in parts of the axis (0 at the base, 1 at the apex) and H the square of its length, the
- * side is where |p - base|^2 - H s^2 = (r0 + (r1 - r0) s)^2: no root is taken to get there. */
-static bool cone_hit(RtExactArena *arena, const RtCone *cone, const RtExactLine *line, RtPlace *t) {
+/* With s the height as a fraction of the axis (0 at the base, 1 at the apex) and H its squared length, the
+ * side is where |p - base|^2 - H s^2 = (r0 + (r1 - r0) s)^2: no square root is needed. */
+static bool cone_hit(RtExactArena *arena, const RtCone *cone, const RtExactLine *line, RtRoot *t) {
     RtExactVec base = vertex(arena, cone->base), org = rt_exact_vec_sub(arena, line->org, base),
                dir = line->dir;
     RtExactVec axis = rt_exact_vec_sub(arena, vertex(arena, cone->apex), base);
@@ -132,7 +130,7 @@ static bool cone_hit(RtExactArena *arena, const RtCone *cone, const RtExactLine 
     int count = rt_exact_roots(arena, form[2], form[1], form[0], roots);
     RtRational beyond = rt_exact_sub(arena, s, rt_exact_of(arena, 1));
     for (int i = 0; i < count; i++) {
-        *t = rt_place_of_surd(&roots[i]);
+        *t = rt_root_of_surd(&roots[i]);
         RtSurd over = rt_surd_line(arena, s, ds, &roots[i]),
                under = rt_surd_line(arena, beyond, ds, &roots[i]);
         if (rt_surd_sign(arena, &over) < 0 || rt_surd_sign(arena, &under) > 0) continue;
@@ -141,8 +139,8 @@ static bool cone_hit(RtExactArena *arena, const RtCone *cone, const RtExactLine 
     return false;
 }
 
-RtFinding rt_exact_hit(RtExactArena *arena, const RtGeometry *geometry, uint32_t id, const RtExactLine *line,
-                       RtPlace *t) {
+RtExactResult rt_exact_hit(RtExactArena *arena, const RtGeometry *geometry, uint32_t id,
+                           const RtExactLine *line, RtRoot *t) {
     uint32_t index = rt_ref_index(geometry->objects[id]);
     bool hit = false;
     switch (rt_ref_shape(geometry->objects[id])) {

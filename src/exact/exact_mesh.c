@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Meshes in exact arithmetic, by the rule of shape/solid_mesh.c without its rounding. The line is seen along
- * itself: vertices are moved to the origin and sheared along its largest component until it is the z axis,
- * and x and y are left. A triangle is crossed where its outline winds about the line; the sign of the volume
- * between normal and direction says whether the surface is entered or left there, and the line is inside
- * where more of it has been entered than left.
+/* Meshes in exact arithmetic, by the rule of shape/solid_mesh.c without its rounding. Seen along the line,
+ * vertices are moved to the origin and sheared along its largest component until the line is the z axis; x
+ * and y are left. The line crosses a triangle if the outline winds about it; the sign of the volume spanned
+ * by normal and direction says whether it enters or leaves, and the line is inside where it has entered more
+ * of the surface than it has left.
  *
- * A line that meets an edge or a vertex is taken to pass beside it: it is moved up along x by less than any
- * number, and down along y by less than that. In exact numbers that is to count vertices at y = 0 as above
- * the line and edges through it as to its left. So every triangle is crossed or not, a closed surface is left
- * as often as it is entered, and a triangle seen edge on, which the moved line misses, is not crossed at all:
- * a line in the plane of a face sees the faces beside it. t is that of the line that was not moved. */
-#include "exact/exact_mesh.h"
+ * A line through an edge or a vertex is taken to pass beside it: it is moved by an infinitesimal amount up
+ * along x, and by a smaller one down along y. In exact numbers this means: vertices at y = 0 count as
+ * above the line, and edges through it as to its left. So every triangle is crossed or not, a closed
+ * surface is left as often as it is entered, and a triangle seen edge-on, which the moved line misses, is
+ * not crossed: a line in the plane of a face sees the faces beside it. t is that of the unmoved line. */
+#include "exact/exact_hit.h"
 
 #include "core/base/memory.h"
 
-/* Where the line crosses one triangle; `turn` is 1 where it goes in, -1 where it comes out. */
+/* A crossing with one triangle; `turn` is 1 where the line enters, -1 where it leaves. */
 typedef struct Crossing {
     RtRational t;
     int turn;
@@ -46,7 +46,7 @@ static bool right(RtExactArena *arena, const Seen *lower, const Seen *upper) {
     return mpq_cmp(from, to) > 0;
 }
 
-/* The edges to the right of the line that go up, less those that go down: 1, 0 or -1. */
+/* The upward edges to the right of the line minus the downward ones: 1, 0 or -1. */
 static int winding(RtExactArena *arena, const RtExactLine *line, const RtTriangle *triangle) {
     Seen v[3];
     int number = 0;
@@ -68,7 +68,7 @@ static RtStatus insert(List *list, Crossing crossing, RtError *error) {
     return RT_OK;
 }
 
-/* About vertex 0 of the triangle, whose plane the line crosses. */
+/* Relative to vertex 0 of the triangle, whose plane the line crosses. */
 static RtStatus cross(RtExactArena *arena, const RtExactLine *line, const RtTriangle *triangle, List *list,
                       RtError *error) {
     RtExactVec v[3];
@@ -100,7 +100,7 @@ static RtStatus collect(RtExactArena *arena, const RtSolidSet *set, const RtSoli
     return RT_OK;
 }
 
-/* Keeps one crossing of each place at which the inside begins or ends. */
+/* Keeps one crossing of each t at which the inside begins or ends. */
 static void thin_out(List *list) {
     uint32_t count = 0;
     int64_t depth = 0;
@@ -113,18 +113,18 @@ static void thin_out(List *list) {
     list->count = count;
 }
 
-RtStatus rt_exact_mesh_places(RtExactArena *arena, const RtSolidSet *set, uint32_t index,
-                              const RtExactLine *line, RtRational **places, uint32_t *count, RtError *error) {
+RtStatus rt_exact_mesh_roots(RtExactArena *arena, const RtSolidSet *set, uint32_t index,
+                             const RtExactLine *line, RtRational **roots, uint32_t *count, RtError *error) {
     List list = {0};
-    *places = NULL;
+    *roots = NULL;
     RtStatus status = collect(arena, set, &set->solids[index], line, &list, error);
     if (status == RT_OK) {
         thin_out(&list);
-        *places = rt_alloc(list.count, sizeof(RtRational));
-        if (!*places) status = rt_fail_memory(error, "places of a mesh", list.count * sizeof(RtRational));
+        *roots = rt_alloc(list.count, sizeof(RtRational));
+        if (!*roots) status = rt_fail_memory(error, "the roots of a mesh", list.count * sizeof(RtRational));
     }
     *count = status == RT_OK ? list.count : 0;
-    for (uint32_t i = 0; i < *count; i++) (*places)[i] = list.at[i].t;
+    for (uint32_t i = 0; i < *count; i++) (*roots)[i] = list.at[i].t;
     rt_free(list.at);
     return status;
 }

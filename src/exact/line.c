@@ -33,10 +33,10 @@ RtExactLine rt_exact_line(RtExactArena *arena, const RtWideRay *line) {
                          .tmax = rt_exact_of(arena, fmin(line->tmax, (double)FLT_MAX))};
 }
 
-bool rt_exact_counts(RtExactArena *arena, const RtExactLine *line, const RtPlace *t) {
+bool rt_exact_counts(RtExactArena *arena, const RtExactLine *line, const RtRoot *t) {
     size_t mark = rt_exact_arena_mark(arena);
-    RtPlace first = rt_place_of(arena, line->tmin), last = rt_place_of(arena, line->tmax);
-    bool counts = rt_place_compare(arena, t, &first) >= 0 && rt_place_compare(arena, t, &last) <= 0;
+    RtRoot first = rt_root_of(arena, line->tmin), last = rt_root_of(arena, line->tmax);
+    bool counts = rt_root_compare(arena, t, &first) >= 0 && rt_root_compare(arena, t, &last) <= 0;
     rt_exact_arena_rewind(arena, mark);
     return counts;
 }

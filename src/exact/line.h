@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Lines that are asked about in exact arithmetic: rays whose origin need not be float32, in double and as
- * exact numbers, and what can come of asking. */
+/* Lines for exact arithmetic: rays whose origin need not be float32, in double and as exact numbers, and
+ * the possible results of a query. */
 #ifndef RT_EXACT_LINE_H
 #define RT_EXACT_LINE_H
 
 #include "core/base/box.h"
 #include "core/base/ray.h"
-#include "exact/place.h"
+#include "exact/algebraic.h"
 
 /* A ray whose origin need not be float32. */
 typedef struct RtWideRay {
@@ -16,15 +16,15 @@ typedef struct RtWideRay {
 
 RtWideRay rt_wide_ray(const RtRay *ray);
 
-/* May the line meet what lies in `box`, within [tmin, tmax], and how soon at the earliest? In double; rounds
- * towards yes. */
+/* Conservative test in double: may the line meet something in `box` within [tmin, tmax], and at which t at
+ * the earliest? */
 bool rt_line_may_meet(const RtWideRay *line, const RtBox *box, double *soonest);
 
-/* By how much that is wider than the box, in parts of the numbers it is computed from: far above the rounding
- * of a few operations in double, and far below what would let many objects in. */
+/* The relative widening of that test: far above the rounding of a few operations in double, and far too
+ * small to admit many objects. */
 #define RT_LINE_SLACK 0x1p-40
 
-/* The same in an arena; tmax is at most FLT_MAX, for a hit at infinity is none. */
+/* The same in an arena; tmax is at most FLT_MAX, since a hit at infinity does not count. */
 typedef struct RtExactLine {
     RtWideRay wide;
     RtExactVec org, dir;
@@ -34,9 +34,9 @@ typedef struct RtExactLine {
 RtExactLine rt_exact_line(RtExactArena *arena, const RtWideRay *line);
 
 /* Is t within [tmin, tmax]? */
-bool rt_exact_counts(RtExactArena *arena, const RtExactLine *line, const RtPlace *t);
+bool rt_exact_counts(RtExactArena *arena, const RtExactLine *line, const RtRoot *t);
 
-/* Of an object: whether the line meets it within [tmin, tmax], so far as that can be said. */
-typedef enum RtFinding { RT_MISSED, RT_HIT, RT_UNDECIDED } RtFinding;
+/* Does the line meet an object within [tmin, tmax]? */
+typedef enum RtExactResult { RT_MISSED, RT_HIT, RT_UNDECIDED } RtExactResult;
 
 #endif

@@ -18,10 +18,10 @@ long double rt_float_ulp(long double x) {
     return ldexpl(1, x == 0 || exponent < FLT_MIN_EXP ? FLT_MIN_EXP - FLT_MANT_DIG : exponent - FLT_MANT_DIG);
 }
 
-/* ---- numbers of a thread ---- */
+/* ---- the thread's arena ---- */
 
-/* Each thread has an arena for as long as it runs: making its numbers anew takes as long as computing with
- * them. What a search has grown beyond MOST_BLOCKS is not kept. */
+/* Each thread keeps an arena while it runs, because creating numbers takes as long as computing with them.
+ * Blocks beyond MOST_BLOCKS are freed after a search. */
 enum { MOST_BLOCKS = 256 };
 static _Thread_local RtExactArena kept;
 static pthread_key_t threads_end;
@@ -35,7 +35,7 @@ static void begin(void) {
     pthread_key_create(&threads_end, forget);
 }
 
-/* Where numbers may be written; who borrows it within a search goes on behind them. */
+/* The thread's arena. A nested borrower continues behind the numbers of the outer one. */
 static RtExactArena *borrow(void) {
     pthread_once(&begun, begin);
     if (kept.block_count == 0) pthread_setspecific(threads_end, &kept);
@@ -50,129 +50,129 @@ static void give_back(RtExactArena *arena, size_t mark) {
 /* ---- the nearest ---- */
 
 typedef struct Search {
-    RtExactArena *arena; /* the thread's, from `mark` on */
+    RtExactArena *arena; /* the thread's arena, used from `mark` on */
     size_t mark;
     const RtGeometry *geometry;
     RtWideRay line;
     RtExactLine exact;
-    RtPlace best;
-    RtRuling ruling;
-    double open; /* the soonest t at which an undecided object may be met */
+    RtRoot best;
+    RtExactAnswer nearest;
+    double open; /* the smallest t at which an undecided object may be met */
 } Search;
 
 static void search_init(Search *s, const RtGeometry *geometry, const RtRay *ray) {
     *s = (Search){.arena = borrow(),
                   .geometry = geometry,
                   .line = rt_wide_ray(ray),
-                  .ruling = {.finding = RT_MISSED, .object = RT_NO_OBJECT, .t = HUGE_VALL},
+                  .nearest = {.result = RT_MISSED, .object = RT_NO_OBJECT, .t = HUGE_VALL},
                   .open = HUGE_VAL};
     s->mark = rt_exact_arena_mark(s->arena);
     s->exact = rt_exact_line(s->arena, &s->line);
 }
 
-/* Numbers of what is not the nearest are forgotten at once. */
+/* Numbers of objects that are not the nearest are discarded at once. */
 static void consider(Search *s, uint32_t id, double soonest) {
     size_t mark = rt_exact_arena_mark(s->arena);
-    RtPlace t;
-    RtFinding finding = rt_exact_hit(s->arena, s->geometry, id, &s->exact, &t);
-    if (finding == RT_UNDECIDED) s->open = fmin(s->open, soonest);
+    RtRoot t;
+    RtExactResult result = rt_exact_hit(s->arena, s->geometry, id, &s->exact, &t);
+    if (result == RT_UNDECIDED) s->open = fmin(s->open, soonest);
     int order = -1;
-    if (finding == RT_HIT && s->ruling.together > 0) order = rt_place_compare(s->arena, &t, &s->best);
-    if (finding != RT_HIT || order >= 0) {
-        if (finding == RT_HIT && order == 0) s->ruling.together++;
+    if (result == RT_HIT && s->nearest.tied > 0) order = rt_root_compare(s->arena, &t, &s->best);
+    if (result != RT_HIT || order >= 0) {
+        if (result == RT_HIT && order == 0) s->nearest.tied++;
         rt_exact_arena_rewind(s->arena, mark);
         return;
     }
     s->best = t;
-    s->ruling = (RtRuling){
-        .finding = RT_HIT, .object = id, .together = 1, .t = rt_place_value(s->arena, &t, s->exact.zero)};
+    s->nearest = (RtExactAnswer){
+        .result = RT_HIT, .object = id, .tied = 1, .t = rt_root_value(s->arena, &t, s->exact.zero)};
 }
 
 static void search(Search *s) {
     for (uint32_t id = 0; id < s->geometry->object_count; id++) {
         double soonest;
         if (!rt_line_may_meet(&s->line, &s->geometry->boxes[id], &soonest)) continue;
-        if ((long double)soonest * (1 - RT_LINE_SLACK) > s->ruling.t) continue;
+        if ((long double)soonest * (1 - RT_LINE_SLACK) > s->nearest.t) continue;
         consider(s, id, soonest);
     }
-    if (s->open < HUGE_VAL && (long double)s->open <= s->ruling.t) s->ruling.finding = RT_UNDECIDED;
+    if (s->open < HUGE_VAL && (long double)s->open <= s->nearest.t) s->nearest.result = RT_UNDECIDED;
 }
 
-RtRuling rt_referee_nearest(const RtGeometry *geometry, const RtRay *ray) {
+RtExactAnswer rt_referee_nearest(const RtGeometry *geometry, const RtRay *ray) {
     Search s;
     search_init(&s, geometry, ray);
     search(&s);
     give_back(s.arena, s.mark);
-    return s.ruling;
+    return s.nearest;
 }
 
-RtFinding rt_referee_occluded(const RtGeometry *geometry, const RtRay *ray) {
+RtExactResult rt_referee_occluded(const RtGeometry *geometry, const RtRay *ray) {
     Search s;
     search_init(&s, geometry, ray);
-    for (uint32_t id = 0; id < geometry->object_count && s.ruling.finding != RT_HIT; id++) {
+    for (uint32_t id = 0; id < geometry->object_count && s.nearest.result != RT_HIT; id++) {
         double soonest;
         if (rt_line_may_meet(&s.line, &geometry->boxes[id], &soonest)) consider(&s, id, soonest);
     }
     give_back(s.arena, s.mark);
-    return s.ruling.finding == RT_MISSED && s.open < HUGE_VAL ? RT_UNDECIDED : s.ruling.finding;
+    return s.nearest.result == RT_MISSED && s.open < HUGE_VAL ? RT_UNDECIDED : s.nearest.result;
 }
 
 /* ---- judging ---- */
 
-/* RT_HIT: the answer is right. */
-static RtFinding is_right(const RtGeometry *geometry, const RtRay *ray, const RtRuling *ruling, RtHit answer,
-                          double tolerance) {
-    if (answer.object == RT_NO_OBJECT) return ruling->finding == RT_MISSED ? RT_HIT : RT_MISSED;
-    if (ruling->finding == RT_MISSED || answer.object >= geometry->object_count) return RT_MISSED;
+/* RT_HIT if the answer is right. */
+static RtExactResult is_right(const RtGeometry *geometry, const RtRay *ray, const RtExactAnswer *nearest,
+                              RtHit answer, double tolerance) {
+    if (answer.object == RT_NO_OBJECT) return nearest->result == RT_MISSED ? RT_HIT : RT_MISSED;
+    if (nearest->result == RT_MISSED || answer.object >= geometry->object_count) return RT_MISSED;
     RtWideRay line = rt_wide_ray(ray);
     long double t;
-    RtFinding own = rt_referee_hit(geometry, answer.object, &line, &t);
+    RtExactResult own = rt_referee_hit(geometry, answer.object, &line, &t);
     if (own != RT_HIT) return own;
-    long double most = fmaxl((long double)tolerance, rt_float_ulp(ruling->t));
-    bool right = t - ruling->t <= most && fabsl((long double)answer.t - t) <= most;
+    long double most = fmaxl((long double)tolerance, rt_float_ulp(nearest->t));
+    bool right = t - nearest->t <= most && fabsl((long double)answer.t - t) <= most;
     return right ? RT_HIT : RT_MISSED;
 }
 
-RtRuling rt_referee_judge(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit got,
-                          double tolerance) {
-    RtRuling ruling = rt_referee_nearest(geometry, ray);
-    ruling.side = RT_SIDE_UNDECIDED;
-    if (ruling.finding == RT_UNDECIDED) return ruling;
-    RtFinding one = is_right(geometry, ray, &ruling, expected, tolerance);
-    RtFinding other = is_right(geometry, ray, &ruling, got, tolerance);
-    if (one == RT_UNDECIDED || other == RT_UNDECIDED) return ruling;
-    ruling.side = one == RT_HIT ? (other == RT_HIT ? RT_SIDE_BOTH : RT_SIDE_EXPECTED)
-                                : (other == RT_HIT ? RT_SIDE_GOT : RT_SIDE_NEITHER);
-    return ruling;
+RtExactAnswer rt_referee_judge(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit got,
+                               double tolerance) {
+    RtExactAnswer nearest = rt_referee_nearest(geometry, ray);
+    nearest.side = RT_SIDE_UNDECIDED;
+    if (nearest.result == RT_UNDECIDED) return nearest;
+    RtExactResult one = is_right(geometry, ray, &nearest, expected, tolerance);
+    RtExactResult other = is_right(geometry, ray, &nearest, got, tolerance);
+    if (one == RT_UNDECIDED || other == RT_UNDECIDED) return nearest;
+    nearest.side = one == RT_HIT ? (other == RT_HIT ? RT_SIDE_BOTH : RT_SIDE_EXPECTED)
+                                 : (other == RT_HIT ? RT_SIDE_GOT : RT_SIDE_NEITHER);
+    return nearest;
 }
 
 /* ---- one or two objects ---- */
 
-RtFinding rt_referee_hit(const RtGeometry *geometry, uint32_t id, const RtWideRay *line, long double *t) {
+RtExactResult rt_referee_hit(const RtGeometry *geometry, uint32_t id, const RtWideRay *line, long double *t) {
     RtExactArena *arena = borrow();
     size_t mark = rt_exact_arena_mark(arena);
     RtExactLine exact = rt_exact_line(arena, line);
-    RtPlace at;
-    RtFinding finding = rt_exact_hit(arena, geometry, id, &exact, &at);
-    if (finding == RT_HIT) *t = rt_place_value(arena, &at, exact.zero);
+    RtRoot at;
+    RtExactResult result = rt_exact_hit(arena, geometry, id, &exact, &at);
+    if (result == RT_HIT) *t = rt_root_value(arena, &at, exact.zero);
     give_back(arena, mark);
-    return finding;
+    return result;
 }
 
-RtFinding rt_referee_order(const RtGeometry *geometry, uint32_t a, uint32_t b, const RtRay *ray, int *order,
-                           long double *apart) {
+RtExactResult rt_referee_order(const RtGeometry *geometry, uint32_t a, uint32_t b, const RtRay *ray,
+                               int *order, long double *apart) {
     RtExactArena *arena = borrow();
     size_t mark = rt_exact_arena_mark(arena);
     RtWideRay line = rt_wide_ray(ray);
     RtExactLine exact = rt_exact_line(arena, &line);
-    RtPlace at[2];
-    RtFinding finding = rt_exact_hit(arena, geometry, a, &exact, &at[0]);
-    if (finding == RT_HIT) finding = rt_exact_hit(arena, geometry, b, &exact, &at[1]);
-    if (finding == RT_HIT) {
-        *order = rt_place_compare(arena, &at[0], &at[1]);
-        long double first = rt_place_value(arena, &at[0], exact.zero);
-        *apart = *order == 0 ? 0 : fabsl(first - rt_place_value(arena, &at[1], exact.zero));
+    RtRoot at[2];
+    RtExactResult result = rt_exact_hit(arena, geometry, a, &exact, &at[0]);
+    if (result == RT_HIT) result = rt_exact_hit(arena, geometry, b, &exact, &at[1]);
+    if (result == RT_HIT) {
+        *order = rt_root_compare(arena, &at[0], &at[1]);
+        long double first = rt_root_value(arena, &at[0], exact.zero);
+        *apart = *order == 0 ? 0 : fabsl(first - rt_root_value(arena, &at[1], exact.zero));
     }
     give_back(arena, mark);
-    return finding;
+    return result;
 }

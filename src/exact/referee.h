@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The referee: which of two answers to a ray is right, in exact arithmetic from the float32 input alone
- * (exact/exact_hit.h). It trusts no margin and no hit function, and takes some 0.1 ms per object that
- * the ray comes near to, a few ms at a tree of many tori: it is asked where others disagree.
+/* The referee: decides in exact arithmetic, from the float32 input alone (exact/exact_hit.h), which of two
+ * answers to a ray is right. It relies on no margin and no hit function. It takes about 0.1 ms per object
+ * near the ray, and a few ms for a tree of many tori, so it is used only where others disagree.
  *
- * What is exact about an answer is its object. Its t is a rounded number, and two objects nearer to one
- * another than rounding are told apart by luck: hence the tolerance. An answer is right if its object is met,
- * first at t, with
+ * The object of an answer is exact, its t is rounded; rounding can swap two objects that are closer than it,
+ * hence the tolerance. An answer is right if its object is met, first at t, with
  *
  *     t - (the nearest exact t of the scene) <= tolerance   and   |answer.t - t| <= tolerance,
  *
- * and a miss is right if nothing is met. No tolerance is less than one ulp of t in float32. */
+ * and a miss is right if nothing is met. The tolerance is at least one ulp of t in float32. */
 #ifndef RT_EXACT_REFEREE_H
 #define RT_EXACT_REFEREE_H
 
@@ -33,36 +32,36 @@ typedef enum RtSide {
 /* "both", ... */
 const char *rt_side_name(RtSide side);
 
-/* The exact answer: what a ray meets first. */
-typedef struct RtRuling {
+/* The exact answer to `nearest`. */
+typedef struct RtExactAnswer {
     RtSide side;
-    RtFinding finding;
-    uint32_t object;   /* the lowest id of those at the nearest t, or RT_NO_OBJECT */
-    uint32_t together; /* objects at exactly that t: above 1 a true tie */
-    long double t;     /* INFINITY where nothing is met */
-} RtRuling;
+    RtExactResult result;
+    uint32_t object; /* the lowest id at the nearest t, or RT_NO_OBJECT */
+    uint32_t tied;   /* objects at exactly that t: above 1 in a true tie */
+    long double t;   /* INFINITY for a miss */
+} RtExactAnswer;
 
-/* The exact nearest hit of a valid ray in the scene; `side` is not filled in. */
-RtRuling rt_referee_nearest(const RtGeometry *geometry, const RtRay *ray);
+/* The exact nearest hit of a valid ray; `side` is not set. */
+RtExactAnswer rt_referee_nearest(const RtGeometry *geometry, const RtRay *ray);
 
-/* The same, and which of two answers it finds right. */
-RtRuling rt_referee_judge(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit got,
-                          double tolerance);
+/* The same, and which of two answers is right. */
+RtExactAnswer rt_referee_judge(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit got,
+                               double tolerance);
 
-/* Does the ray meet anything at all? The first object that it does meet ends the search. */
-RtFinding rt_referee_occluded(const RtGeometry *geometry, const RtRay *ray);
+/* Does the ray meet anything? Stops at the first object that it does meet. */
+RtExactResult rt_referee_occluded(const RtGeometry *geometry, const RtRay *ray);
 
 /* ---- one or two objects ---- */
 
-/* Does the line meet object `id`, and where first? *t is not touched unless it does. */
-RtFinding rt_referee_hit(const RtGeometry *geometry, uint32_t id, const RtWideRay *line, long double *t);
+/* Does the line meet object `id`? If so, *t is the first t. */
+RtExactResult rt_referee_hit(const RtGeometry *geometry, uint32_t id, const RtWideRay *line, long double *t);
 
-/* Which of two objects that the ray meets does it meet first? *order is -1 (a), 1 (b), 0 for a true tie, and
- * *apart |difference of t|. RT_MISSED if one of them is not met. */
-RtFinding rt_referee_order(const RtGeometry *geometry, uint32_t a, uint32_t b, const RtRay *ray, int *order,
-                           long double *apart);
+/* Which of two objects does the ray meet first? *order is -1 (a), 1 (b) or 0 for a true tie, and *apart is
+ * |difference of t|. RT_MISSED if one of them is missed. */
+RtExactResult rt_referee_order(const RtGeometry *geometry, uint32_t a, uint32_t b, const RtRay *ray,
+                               int *order, long double *apart);
 
-/* One ulp of x in float32: the distance between floats of its size, never 0. */
+/* One ulp of x in float32, never 0. */
 long double rt_float_ulp(long double x);
 
 #endif

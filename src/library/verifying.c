@@ -25,20 +25,20 @@ static RtStatus judge(const RtAccel *accel, const RtEquivalence *result, const c
     return rt_fail(error, RT_MISMATCH, "%.200s differs from %s, first on %s", spec, rt_accel_truth(), says);
 }
 
-static RtStatus verify(RtVerifyStage *stage, const RtVerifyRays *wanted, RtAccel *accel, const char *spec,
+static RtStatus verify(RtVerifyScene *stage, const RtVerifyRays *wanted, RtAccel *accel, const char *spec,
                        raytally_verified *out, RtError *error) {
     RtEquivalence result;
-    RT_TRY(rt_verify_stage_answer(stage, wanted, error));
+    RT_TRY(rt_verify_scene_answer(stage, wanted, error));
     RT_TRY(rt_equivalence_check(&stage->reference, accel, wanted->threads, &result, error));
     fill(&result, out);
     return judge(accel, &result, spec, error);
 }
 
 /* Answering the rays takes longest, so the accelerator is built first: a bad spec fails at once. */
-static RtStatus build_and_verify(RtVerifyStage *stage, const RtScene *scene, const RtVerifyRays *wanted,
+static RtStatus build_and_verify(RtVerifyScene *stage, const RtScene *scene, const RtVerifyRays *wanted,
                                  const char *spec, raytally_verified *out, RtError *error) {
     RtAccel *accel;
-    RT_TRY(rt_verify_stage_init(stage, scene, wanted, error));
+    RT_TRY(rt_verify_scene_init(stage, scene, wanted, error));
     RT_TRY(rt_accel_open_on(spec, &stage->scene, wanted->threads, &accel, error));
     RtStatus status = verify(stage, wanted, accel, spec, out, error);
     rt_accel_destroy(accel);
@@ -54,7 +54,7 @@ static RtStatus check(const raytally_verifying *how, RtError *error) {
 
 raytally_status raytally_verify(const raytally_scene *scene, const char *spec, const raytally_verifying *how,
                                 raytally_verified *out, raytally_error *error) {
-    RtVerifyStage stage = {0};
+    RtVerifyScene stage = {0};
     raytally_verifying own = RAYTALLY_VERIFYING;
     *out = (raytally_verified){0};
     RT_C_LOCALE;
@@ -66,6 +66,6 @@ raytally_status raytally_verify(const raytally_scene *scene, const char *spec, c
     if (status == RT_OK) status = check(&own, rt_error_of(error));
     if (status == RT_OK)
         status = build_and_verify(&stage, &scene->scene, &wanted, spec, out, rt_error_of(error));
-    rt_verify_stage_clear(&stage);
+    rt_verify_scene_clear(&stage);
     return (raytally_status)status;
 }

@@ -11,7 +11,7 @@ enum { LEAST_WIDTH = 330 }; /* of a legend, pixels */
 
 static const RtColor magenta = {{255, 0, 200}}, unseen = {{60, 60, 60}}, red = {{230, 40, 40}};
 
-/* Where line `line` of the legend below `top` is, and how high `lines` lines are. */
+/* The baseline of a legend line below `top`, and the height of `lines` lines. */
 static double baseline(double top, int line, double em) {
     return top + (1.5 + RT_LINE * line) * em;
 }
@@ -82,8 +82,8 @@ static RtStatus draw_item_buffer(const char *file, const RtAccel *layer, RtError
 
 /* ---- the light buffer ---- */
 
-/* A face of the unfolded cube map: its place among 4 x 3 squares, and the directions of its middle, its right
- * and its top as 1 + axis, negative for the opposite direction. Axis 1 is up. */
+/* A face of the unfolded cube map: its position among 4 x 3 squares, and the directions of its middle,
+ * right and top as 1 + axis, negative for the opposite direction. Axis 1 is up. */
 typedef struct Face {
     int column, row, middle, right, top;
 } Face;
@@ -96,7 +96,7 @@ enum {
     WIDTH = 4 * SIDE,
     HEIGHT = 3 * SIDE,
     LINES = 7
-}; /* pixels of a face and of all; of the legend */
+}; /* pixels of a face and of the map; lines of the legend */
 
 #define NO_CELL UINT32_MAX
 
@@ -104,13 +104,13 @@ typedef struct CubeMap {
     cairo_t *cairo;
     const RtAccel *layer;
     uint32_t light;
-    int up;            /* the axis of the scene that is axis 1 */
-    RtCellView *cells; /* [HEIGHT][WIDTH], number NO_CELL where there is none */
+    int up;            /* the scene's axis for axis 1 */
+    RtCellView *cells; /* [HEIGHT][WIDTH], number NO_CELL if there is none */
     RtScale scale;     /* of lengths */
     double em;
 } CubeMap;
 
-/* The axis of the scene that `signed_axis` of a face is. */
+/* The scene's axis for `signed_axis` of a face. */
 static int axis_of(const CubeMap *map, int signed_axis) {
     int axis = (signed_axis < 0 ? -signed_axis : signed_axis) - 1;
     return (axis + map->up + 2) % 3;
@@ -129,14 +129,14 @@ static RtVec3 direction_of(const CubeMap *map, const Face *face, int x, int y) {
     return direction;
 }
 
-/* Looks up all directions; returns whether any has a cell. */
+/* Looks up all directions; true if any has a cell. */
 static bool look_up_cells(CubeMap *map) {
     bool any = false;
     for (int i = 0; i < WIDTH * HEIGHT; i++) map->cells[i].number = NO_CELL;
     for (int i = 0; i < 6 * SIDE * SIDE; i++) {
         const Face *face = &faces[i / (SIDE * SIDE)];
         int x = i % SIDE, y = i / SIDE % SIDE;
-        RtRay ray = {.dir = rt_scale(direction_of(map, face, x, y), -1), /* rays go to the light */
+        RtRay ray = {.dir = rt_scale(direction_of(map, face, x, y), -1), /* shadow rays point at the light */
                      .kind = RT_RAY_SHADOW,
                      .source = map->light};
         RtCellView *cell = &map->cells[(face->row * SIDE + y) * WIDTH + face->column * SIDE + x];
@@ -225,7 +225,7 @@ static RtStatus draw_cube_map(CubeMap *map, const char *file, const RtRay *marke
     if (!look_up_cells(map))
         return rt_fail(
             error, RT_NOT_AVAILABLE,
-            "%s has no cells around light %u, and passes its rays on: ask for some, as in light:cells=64",
+            "%s has no cells around light %u, and passes its rays on: choose a number, as in light:cells=64",
             map->layer->ops->name, map->light);
     if (marked && !map->layer->ops->look_up(map->layer, marked, &cell)) cell.number = NO_CELL;
     RT_TRY(rt_image_init(&image, WIDTH, HEIGHT, error));

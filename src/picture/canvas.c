@@ -10,7 +10,7 @@
 
 /* ---- colours ---- */
 
-/* Between `count` colours that are equally far apart. */
+/* Interpolates between `count` equidistant colours. */
 static RtColor between(const uint8_t stops[][3], int count, double position) {
     double at = (count - 1) * (position > 0 ? fmin(position, 1) : 0);
     int below = at < count - 1 ? (int)at : count - 2;
@@ -281,7 +281,7 @@ double rt_scale_position(const RtScale *scale, double value) {
 
 /* Mark `i`: 0 and powers of ten, or round steps of a fifth to a half of the range. */
 static double mark_value(const RtScale *scale, int i) {
-    double range = scale->most - scale->least, power = 1; /* of ten, the greatest up to half the range */
+    double range = scale->most - scale->least, power = 1; /* the largest power of ten up to half the range */
     if (scale->logarithmic) {
         for (int k = 1; k < i; k++) power *= 10;
         return i > 0 ? power : 0;
@@ -293,14 +293,14 @@ static double mark_value(const RtScale *scale, int i) {
     return (ceil(scale->least / step) + i) * step;
 }
 
-/* The bar, and the room on it that numbers have left. */
+/* The bar, and the space that numbers leave free. */
 typedef struct Bar {
     cairo_t *cairo;
     const RtScale *scale;
     double x, y, width, em, free_from, free_to;
 } Bar;
 
-/* Marks a value below the bar, with its number where there is room; returns the left end of the number. */
+/* Marks a value below the bar, with its number if it fits; returns the left end of the number. */
 static double put_mark(Bar *bar, double value) {
     char text[32];
     snprintf(text, sizeof text, "%.10g", value);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What all pictures are drawn on: a cairo surface of pixels from the upper left, written as PNG, SVG or PDF,
- * whichever the file's name ends in. */
+/* The surface that all pictures are drawn on: a cairo surface in pixels from the upper left, written as
+ * PNG, SVG or PDF according to the extension of the file. */
 #ifndef RT_PICTURE_CANVAS_H
 #define RT_PICTURE_CANVAS_H
 
@@ -17,8 +17,8 @@ typedef struct RtColor {
 #define RT_WHITE ((RtColor){{255, 255, 255}})
 #define RT_GREY  ((RtColor){{150, 150, 150}})
 
-/* The scale "viridis" (van der Walt & Smith 2015), from nine of its colours: dark violet at 0, yellow at 1,
- * evenly growing lightness. Clamps `position` to 0..1. */
+/* The colour scale "viridis" (van der Walt & Smith 2015), from nine of its colours: dark violet at 0,
+ * yellow at 1, with uniformly growing lightness. Clamps `position` to 0..1. */
 RtColor rt_color_scale(double position);
 
 /* A diverging scale: blue at -1, near white at 0, red at 1. */
@@ -39,12 +39,11 @@ typedef struct RtCanvas {
     bool png;
 } RtCanvas;
 
-/* Opens `file`, for a picture of one colour; the font is DejaVu Sans of `font_size`, lines are 1 pixel wide.
- */
+/* Opens `file` with a plain background; the font is DejaVu Sans of `font_size`, lines are 1 pixel wide. */
 RtStatus rt_canvas_open(RtCanvas *canvas, const char *file, double width, double height, RtColor background,
                         double font_size, RtError *error);
 
-/* Writes the file, or discards it if `drawn`, the status of what was drawn, is not RT_OK. Returns `drawn` or
+/* Writes the file, or discards it if `drawn`, the status of the drawing, is not RT_OK. Returns `drawn`, or
  * why writing failed. */
 RtStatus rt_canvas_close(RtCanvas *canvas, RtStatus drawn, RtError *error);
 
@@ -60,47 +59,48 @@ typedef struct RtPoint {
     double x, y;
 } RtPoint;
 
-/* Add a closed convex polygon, or a line, to the path. What lies far outside of the picture is cut off, since
- * cairo's coordinates are limited. */
+/* Add a closed convex polygon, or a line, to the path, clipped far outside the picture, since cairo's
+ * coordinates are limited. */
 #define RT_MAX_CORNERS 56
 void rt_add_polygon(cairo_t *cairo, const RtPoint *points, uint32_t count);
 void rt_add_line(cairo_t *cairo, RtPoint from, RtPoint to);
 
-/* Adds a circle of any size: above a million pixels, one of a million that passes the picture's middle at the
- * same distance. */
+/* Adds a circle of any size; one above a million pixels is replaced by one of a million at the same
+ * distance from the picture's middle. */
 void rt_add_circle(cairo_t *cairo, RtPoint center, double radius);
 
-/* Cuts the convex polygon to normal . p <= limit (Sutherland & Hodgman 1974), which may add one corner;
+/* Clips the convex polygon to normal . p <= limit (Sutherland & Hodgman 1974), which may add one corner;
  * returns its number of corners. */
 uint32_t rt_polygon_cut(RtPoint *points, uint32_t count, RtPoint normal, double limit);
 
 /* ---- text and scales ---- */
 
-/* A legible font size for a picture of this width, and the distance from line to line. */
+/* A legible font size for a picture of this width, and the line spacing. */
 double rt_font_size(double width);
 #define RT_LINE 1.5 /* font sizes */
 
-/* Writes UTF-8 with its baseline from (x, y) on; returns its width. Text that is not UTF-8 has `?` for other
- * bytes than ASCII. */
+/* Draws UTF-8 with its baseline from (x, y) on; returns its width. In text that is not UTF-8, bytes other
+ * than ASCII become `?`. */
 double rt_draw_text(cairo_t *cairo, double x, double y, const char *text);
 double rt_text_width(cairo_t *cairo, const char *text);
 
-/* The same, ending in "..." where the text is wider than `room`. */
+/* The same, truncated with "..." if the text is wider than `room`. */
 void rt_draw_text_within(cairo_t *cairo, double x, double y, double room, const char *text);
 
-/* A square of `color` as high as a capital letter, and a white text beside it; returns the width of both. */
+/* A legend entry: a square of `color` as high as a capital letter, and white text; returns the width of
+ * both. */
 double rt_draw_key(cairo_t *cairo, double x, double y, RtColor color, const char *text);
 
-/* Maps values to positions of a colour scale: `least` to 0, `most` to 1. A logarithmic one, of log(1 +
- * value), begins at 0. */
+/* Maps values to positions on a colour scale: `least` to 0, `most` to 1. A logarithmic scale, of log(1 +
+ * value), starts at 0. */
 typedef struct RtScale {
     double least, most;
     bool logarithmic;
 } RtScale;
 double rt_scale_position(const RtScale *scale, double value);
 
-/* Draws a bar with the scale's colours and round values below; `rt_scale_height` high. Scales that begin
- * below 0 have the colours of differences. */
+/* Draws a bar with the scale's colours and round values below, `rt_scale_height` high. Scales that start
+ * below 0 use the colours of differences. */
 void rt_draw_scale(cairo_t *cairo, double x, double y, double width, const RtScale *scale);
 double rt_scale_height(double font_size);
 

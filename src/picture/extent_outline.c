@@ -9,7 +9,7 @@ typedef struct Side {
     double at;
 } Side;
 
-/* A convex polytope: what all its sides, in opposite pairs, allow. */
+/* A convex polytope: the intersection of its sides, in opposite pairs. */
 typedef struct Polytope {
     Side sides[2 * RT_MAX_SLABS];
     uint32_t count;
@@ -28,7 +28,7 @@ static void add_oriented(Polytope *p, const RtOrientedBox *box) {
     for (int a = 0; a < 3; a++) add_sides(p, box->axes[a], -box->half[a], box->half[a]);
 }
 
-/* The first three sets are those of the axes. */
+/* The first three slabs are those of the axes. */
 static void add_slabs(Polytope *p, const RtSlab *slabs, uint32_t count) {
     RtVec3d half;
     for (int a = 0; a < 3; a++) {
@@ -56,14 +56,14 @@ RtExtentKind rt_outline_kind(const RtBoxView *view) {
     return view->extents ? view->extents->kind : RT_EXTENT_BOX;
 }
 
-/* Shorter lengths are rounding: a side may touch the polytope in an edge or a corner alone. */
+/* Shorter lengths are rounding: a side may touch the polytope only in an edge or a corner. */
 static double tolerance(const Polytope *p) {
     return 1e-6 * (p->reach + rt_lengthd(p->middle));
 }
 
 /* ---- lines ---- */
 
-/* Shows the line in which sides i and j meet, cut by the other sides. */
+/* Emits the line in which sides i and j meet, clipped by the other sides. */
 static void show_edge(const Polytope *p, uint32_t i, uint32_t j, RtLineViewer viewer) {
     const Side *a = &p->sides[i], *b = &p->sides[j];
     RtVec3d along = rt_crossd(a->normal, b->normal);
@@ -92,7 +92,7 @@ static RtVec3d on_circle(RtVec3d center, RtVec3d u, RtVec3d v, uint32_t i) {
     return rt_add_scaledd(rt_add_scaledd(center, u, turn.cosine), v, turn.sine);
 }
 
-/* Slightly wider, so that its chords lie outside: an extent may be the very sphere that is seen. */
+/* Slightly enlarged, so that its chords lie outside: the extent may be the visible sphere itself. */
 static void show_circle(RtVec3d center, RtVec3d u, RtVec3d v, RtLineViewer viewer) {
     const double wider = 1.003;
     u = rt_scaled(u, wider), v = rt_scaled(v, wider);
@@ -106,7 +106,7 @@ static RtVec3d axis_of_length(int axis, double length) {
     return v;
 }
 
-/* Lines of sight touch a ball in a circle that is nearer than its centre. */
+/* Lines of sight touch a sphere in a circle nearer than its centre. */
 static void show_silhouette(const RtBall *ball, RtVec3d eye, RtLineViewer viewer) {
     RtVec3d away = rt_subd(ball->center, eye);
     double squared = rt_dotd(away, away), r = ball->radius;

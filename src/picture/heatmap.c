@@ -11,7 +11,7 @@ typedef struct Statistics {
 
 typedef struct Drawing {
     cairo_t *cairo;
-    RtImage image; /* of the panel that is being drawn */
+    RtImage image; /* of the current panel */
     const RtHeatmapPanel *panels;
     const RtHeatmapOptions *options;
     uint32_t count;      /* of panels, without the difference */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The upper part is a section through the plane of the ray and the axis of the scene along which the ray
- * moves least: boxes are upright rectangles in it, spheres are circles, and the ray crosses exactly those
- * that it goes through, from left to right. The lower part has a row for each row of the path, with a bar
- * where the ray is in its box. Both parts have the same x axis. */
+/* The upper part is a section through the plane of the ray and the scene axis along which the ray moves
+ * least: boxes are upright rectangles, spheres are circles, and the ray crosses exactly those that it
+ * passes through, from left to right. The lower part has a line for each row of the path, with a bar where
+ * the ray is in its box. Both parts share the x axis. */
 #include "picture/path_picture.h"
 
 #include "core/base/words.h"
@@ -17,7 +17,8 @@ enum {
 enum { TOP = 64, SECTION = 330, GAP = 46, ROW = 14, MOST_ROWS = 90, MOST_TICKS = 20 };
 enum { FONT_SIZE = 11, TITLE_SIZE = 16 };
 
-/* x shows s, the distance along the ray without its part along `axis`, in world units; y shows `axis`. */
+/* x shows s, the distance along the ray's projection perpendicular to `axis`, in world units; y shows
+ * `axis`. */
 typedef struct Drawing {
     const RtPath *path;
     const RtGeometry *geometry;
@@ -74,7 +75,7 @@ static void choose_plane(Drawing *d) {
     d->normal = rt_crossd(d->along, up);
 }
 
-/* The interval of s in which the plane is inside the box, whatever the height; false if there is none. */
+/* The interval of s in which the plane is inside the box, at any height; false if there is none. */
 static bool section_of_box(const Drawing *d, const RtBox *box, double *from, double *to) {
     *from = -(double)INFINITY, *to = (double)INFINITY;
     for (int a = 0; a < 3; a++) {
@@ -90,8 +91,8 @@ static bool section_of_box(const Drawing *d, const RtBox *box, double *from, dou
     return *from <= *to;
 }
 
-/* Shows the ray from where it first enters something, or from the surface that it leaves, to where it last
- * leaves something, or hits. */
+/* Shows the ray from where it first enters anything, or from its origin on a surface, to where it last
+ * leaves anything, or hits. */
 static void choose_window(Drawing *d) {
     const RtPath *path = d->path;
     double first = (double)INFINITY, last = 0;
@@ -99,7 +100,7 @@ static void choose_window(Drawing *d) {
         const RtPathRow *row = &path->rows[i];
         if (!row->boxed || !(row->enter <= row->leave)) continue;
         first = fmin(first, row->enter);
-        double end = row->round ? row->enter : row->leave; /* large balls end far behind what is in them */
+        double end = row->round ? row->enter : row->leave; /* large balls extend far beyond their content */
         if (isfinite(end)) last = fmax(last, end);
     }
     if (isfinite((double)path->hit.t))
@@ -149,7 +150,7 @@ static void add_ball(const Drawing *d, RtVec3d center, double r) {
     if (fabs(off) < r) rt_add_circle(d->cairo, point_of(d, center), sqrt(r * r - off * off) * d->scale);
 }
 
-/* Adds the rectangle in which the plane cuts a box, which may be infinitely long. */
+/* Adds the rectangle in which the plane cuts a box, which may be infinite. */
 static void add_box(const Drawing *d, const RtBox *box) {
     double from, to;
     if (!section_of_box(d, box, &from, &to)) return;
@@ -184,7 +185,7 @@ static void add_flat(const Drawing *d, const RtVec3 *corners, uint32_t count) {
         rt_add_line(d->cairo, point_of(d, cut[0]), point_of(d, cut[1]));
 }
 
-/* Cones and CSG trees are shown by their boxes alone, in rows of their own. */
+/* Cones and CSG trees appear only as boxes, in rows of their own. */
 static void draw_object(const Drawing *d, const RtPathRow *row) {
     const RtGeometry *g = d->geometry;
     if (row->index >= g->object_count) return;
@@ -276,7 +277,7 @@ static void draw_row(const Drawing *d, uint32_t i, double y) {
         draw_disc(d, (RtPoint){x_of(d, (double)row->t * d->speed), y + ROW / 2.0}, 4, hit_color);
 }
 
-/* Object tests that all missed, as one row. */
+/* Draws consecutive object tests that missed as one row. */
 static void draw_run(const Drawing *d, uint32_t first, uint32_t run, double y) {
     char text[128];
     snprintf(text, sizeof text, "%u to %u  %u object tests: missed", first + 1, first + run, run);
@@ -291,8 +292,8 @@ static void draw_nearest(const Drawing *d, const RtPathRow *row, double y) {
     paint(d->cairo, (Style){hit_color, 1.5, 0, false});
 }
 
-/* Draws the rows if `draw`; returns their number, MOST_ROWS at most, and in *left how many rows of the path
- * are left out. */
+/* Draws the rows if `draw`; returns their number, at most MOST_ROWS, and in *left the number of omitted
+ * rows. */
 static uint32_t draw_rows(const Drawing *d, double top, bool draw, uint32_t *left) {
     uint32_t line = 0, i = 0;
     for (uint32_t run; i < d->path->count && line < MOST_ROWS; i += run, line++) {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* In perspective, boxes are drawn in the homogeneous coordinates of the view: (x, y, w) with w the distance
- * along the axis and -w <= x, y <= w inside the image, so the near plane and the sides of the view clip
- * alike. In section, boxes and objects are cut by a plane whose coordinates (across, up) map to pixels by
- * `left`, `top` and `scale`. */
+/* In perspective, boxes are drawn in homogeneous view coordinates: (x, y, w) with w the distance along the
+ * axis and -w <= x, y <= w inside the image, so that the near plane and the sides of the view clip alike.
+ * In section, boxes and objects are cut by a plane whose coordinates (across, up) map to pixels by `left`,
+ * `top` and `scale`. */
 #include "picture/structure.h"
 
 #include "core/base/elementary.h"
@@ -24,9 +24,9 @@ typedef struct Drawing {
     double near;
     RtSectionPlane plane;
     double left, top, scale; /* of a section */
-    uint32_t first, last;    /* the levels that are drawn */
-    uint32_t level;          /* the one that is being drawn */
-    bool hidden;             /* which edges are being drawn */
+    uint32_t first, last;    /* range of drawn levels */
+    uint32_t level;          /* current level */
+    bool hidden;             /* draw hidden or visible edges */
     RtExtentKind kind;       /* of what is drawn */
     uint64_t drawn, all;     /* boxes */
     double least, most;      /* their sizes: lengths of diagonals, points left out */
@@ -34,7 +34,7 @@ typedef struct Drawing {
 
 /* ---- which boxes, in which colours ---- */
 
-/* Is the box on the levels, and in the slice, that are asked for? */
+/* Is the box within the requested levels and slice? */
 static bool is_shown(const Drawing *d, const RtBoxView *view) {
     const RtStructureOptions *o = d->options;
     RtPoint corners[RT_OUTLINE_CORNERS];
@@ -67,7 +67,7 @@ static RtColor color_of_level(const Drawing *d, uint32_t depth) {
     return rt_color_scale(1 - 0.7 * deep);
 }
 
-/* Where all boxes are on one level, colours show sizes. */
+/* If all boxes are on one level, colours show sizes. */
 static bool is_by_size(const Drawing *d) {
     return d->first == d->last && d->most > 1.5 * d->least;
 }
@@ -100,7 +100,7 @@ static double inside(const Drawing *d, RtVec3d p, int plane) {
     }
 }
 
-/* Cuts the segment to the view frustum; false if nothing is left. */
+/* Clips the segment to the view frustum; false if nothing is left. */
 static bool clip(const Drawing *d, RtVec3d *a, RtVec3d *b) {
     for (int plane = 0; plane < 5; plane++) {
         double at_a = inside(d, *a, plane), at_b = inside(d, *b, plane);
@@ -121,8 +121,8 @@ static bool is_hidden(const Drawing *d, double x, double y, double w) {
     return w > (double)d->frame->depth[sample] * (1 + 1e-4);
 }
 
-/* Walks along the line a pixel at a time, and adds its hidden or its visible parts to the path. 1 / w is
- * linear along it. */
+/* Walks along the line pixel by pixel and adds its hidden or visible parts to the path. 1 / w is linear
+ * along it. */
 static void add_edge(void *context, RtVec3d from, RtVec3d to) {
     const Drawing *d = context;
     RtVec3d a = project(&d->view, from), b = project(&d->view, to);
@@ -165,7 +165,7 @@ static RtStatus draw_perspective(Drawing *d, RtError *error) {
     RtStatus status = rt_paint_image(d->cairo, &image, 0, 0, error);
     rt_image_clear(&image);
     d->near = fmax(d->view.near, 1e-3 * rt_lengthd(rt_subd(rt_widen(camera->at), d->view.eye)));
-    /* The large boxes come last, over the small ones that share their edges. */
+    /* Large boxes are drawn last, over small ones that share their edges. */
     for (d->level = d->last + 1; status == RT_OK && d->level-- > d->first;)
         d->layer->ops->each_box(d->layer, (RtBoxViewer){draw_box, d});
     return status;
@@ -218,7 +218,7 @@ static void choose_plane(Drawing *d) {
     d->plane.across = 3 - d->plane.up - d->plane.axis;
 }
 
-/* As much as the camera sees at its aim, or the whole scene if that is smaller. */
+/* The region that the camera sees at its target, or the whole scene if that is smaller. */
 static void choose_window(Drawing *d) {
     const RtBox *box = &d->layer->scene->geometry.box;
     const RtCamera *camera = &d->layer->scene->camera;
@@ -251,7 +251,7 @@ static double legend_height(double em) {
     return ceil((0.9 + RT_LINE * LINES) * em);
 }
 
-/* Squares with the colours of levels, every nth if they are many, or of sizes. */
+/* Legend entries for the levels, every nth if there are many, or for sizes. */
 static void draw_colors(const Drawing *d, double x, double y) {
     enum { MOST = 7, SIZES = 5 };
     bool by_size = is_by_size(d);
@@ -303,7 +303,7 @@ static RtStatus refuse(const RtAccelOps *ops, RtError *error) {
         ops->name);
 }
 
-/* Is this layer the one to draw? `last`: there is none below. */
+/* Is this the layer to draw? `last`: no layer below. */
 static RtStatus choose(const RtAccelOps *ops, const char *name, bool last, bool *chosen, RtError *error) {
     *chosen = name ? strcmp(ops->name, name) == 0 : has_picture(ops);
     if (*chosen && !has_picture(ops)) return refuse(ops, error);
@@ -358,12 +358,12 @@ RtStatus rt_structure_draw(const char *file, const RtAccel *layer, const RtFrame
     choose_plane(&d);
     layer->ops->each_box(layer, (RtBoxViewer){count_box, &d});
     RT_TRY(rt_accel_check(layer, error));
-    /* A floor much larger than the view does not set the scale. */
+    /* A floor much larger than the view should not determine the scale. */
     double view = rt_lengthd(rt_subd(rt_widen(camera->at), rt_widen(camera->from)));
     d.most = fmax(d.least, fmin(d.most, 2 * view));
     if (d.drawn == 0 && layer->scene->geometry.object_count > 0)
         return rt_fail(error, RT_BAD_INPUT,
-                       "none of the %llu boxes of %s is on the levels, or in the slice, that are asked for",
+                       "none of the %llu boxes of %s is on the requested levels or in the slice",
                        (unsigned long long)d.all, layer->ops->name);
     RT_TRY(rt_canvas_open(&canvas, file, width, s->height + legend_height(d.em), RT_BLACK, d.em, error));
     d.cairo = canvas.cairo;

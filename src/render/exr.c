@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* OpenEXR through the C API of OpenEXRCore. The library writes through a stream of ours, into the temporary
- * file; each block of scan lines is gathered into one row-major array of pixels with all channels
- * interleaved. */
+/* OpenEXR through the C API of OpenEXRCore. The library writes through our stream into the temporary file;
+ * each block of scan lines is collected in one row-major array of pixels with interleaved channels. */
 #include "render/image.h"
 
 #include "core/base/file.h"
@@ -23,12 +22,12 @@ typedef struct Pixel {
     float counters[COUNTER_CHANNELS];
 } Pixel;
 
-/* The channels of a file; only a counted frame has the last COUNTER_CHANNELS of them. */
+/* The channels of a file; the last COUNTER_CHANNELS exist only in counted frames. */
 static const struct {
     const char *name;
     exr_pixel_type_t type;
     size_t offset;  /* in Pixel */
-    size_t counter; /* offset in RtTally, of the channels that only a counted frame has */
+    size_t counter; /* offset in RtTally of a counter channel */
 } channels[] = {
     {"R", EXR_PIXEL_FLOAT, offsetof(Pixel, rgb[0]), 0},
     {"G", EXR_PIXEL_FLOAT, offsetof(Pixel, rgb[1]), 0},
@@ -46,13 +45,13 @@ static int channel_count(const RtFrame *frame) {
     return frame->cost ? CHANNELS : PLAIN_CHANNELS;
 }
 
-/* What the library's callbacks reach through its user data. */
+/* The user data of the library's callbacks. */
 typedef struct Stream {
     RtOutput output;
-    int reason; /* why a write failed, as errno has it; 0: none did */
+    int reason; /* errno of a failed write; 0: none */
 } Stream;
 
-/* The library holds a lock on the context, which `report` would wait for: the caller tells of a failure. */
+/* The library holds a lock that `report` would wait for, so the caller reports failures. */
 static int64_t write_at(exr_const_context_t context, void *user, const void *bytes, uint64_t size,
                         uint64_t offset, exr_stream_error_func_ptr_t report) {
     Stream *stream = user;
@@ -69,8 +68,8 @@ static int64_t write_at(exr_const_context_t context, void *user, const void *byt
     return (int64_t)size;
 }
 
-/* Without a handler the library would print; that of one may not ask the context for anything, which is
- * locked. What went wrong is in the result. */
+/* Without a handler the library would print. A handler must not call the context, which is locked. The
+ * result says what went wrong. */
 static void print_nothing(exr_const_context_t context, exr_result_t code, const char *message) {
     (void)context, (void)code, (void)message;
 }
@@ -102,7 +101,7 @@ static exr_result_t write_header(exr_context_t context, const RtFrame *frame) {
     return result == EXR_ERR_SUCCESS ? exr_write_header(context) : result;
 }
 
-/* The library orders channels by name: each is found again by its name. */
+/* The library sorts channels by name, so each is looked up. */
 static void point_to_pixels(exr_encode_pipeline_t *encoder, const Pixel *pixels, uint32_t width) {
     for (int i = 0; i < encoder->channel_count; i++) {
         exr_coding_channel_info_t *to = &encoder->channels[i];
@@ -117,7 +116,7 @@ static void point_to_pixels(exr_encode_pipeline_t *encoder, const Pixel *pixels,
     }
 }
 
-/* pixels[lines * width] is room for one block. */
+/* pixels[lines * width] holds one block. */
 static exr_result_t write_blocks(exr_context_t context, const RtFrame *frame, Pixel *pixels, uint32_t lines) {
     uint32_t width = frame->sampling.width, height = frame->sampling.height;
     exr_encode_pipeline_t encoder = EXR_ENCODE_PIPELINE_INITIALIZER;

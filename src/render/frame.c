@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Frames. Each thread has a worker with all the memory it will need: one buffer of rays for each level of the
- * ray tree, and room for the answers of one stream.
+/* Frames. Each thread has a worker with all its memory: a buffer of rays for each level of the ray tree, and
+ * the answers of one stream.
  *
- * A level is traced in streams of at most STREAM rays; each stream is answered, shaded, its shadow rays asked
- * light by light, and all that it spawned traced to the bottom before the next one begins. So a level never
- * holds more than RT_MAX_SPAWN * STREAM rays, however deep the tree grows, and at the usual depths a level is
- * a single stream. */
+ * A level is traced in streams of at most STREAM rays. Each stream is traced and shaded, its shadow rays
+ * are traced light by light, and all rays that it spawned are traced to the bottom before the next stream
+ * begins. So a level never holds more than RT_MAX_SPAWN * STREAM rays, however deep the tree grows, and at
+ * usual depths a level is a single stream. */
 #include "render/frame.h"
 
 #include "core/base/clock.h"
@@ -18,19 +18,19 @@
 
 enum { STREAM = 1024, LEVEL = RT_MAX_SPAWN * STREAM };
 
-/* What a ray brings light to. */
+/* Where the light of a ray goes. */
 typedef struct Path {
     uint32_t sample; /* of the frame */
-    float factor;    /* of the light it brings: the product of kr and kt on the way */
+    float factor;    /* of the light: the product of kr and kt along the path */
 } Path;
 
 typedef struct Level {
-    RtRay *rays; /* [LEVEL] */
-    Path *paths; /* [LEVEL] */
     uint32_t count;
+    RtRay rays[LEVEL];
+    Path paths[LEVEL];
 } Level;
 
-/* The rays of one tile that are kept, by kind. */
+/* The kept rays of one tile, by kind. */
 typedef struct TileRays {
     uint32_t count[RT_RAY_KIND_COUNT], capacity[RT_RAY_KIND_COUNT];
     RtRay *rays[RT_RAY_KIND_COUNT];
@@ -46,17 +46,17 @@ typedef struct Worker {
     size_t tile;
     Level *levels; /* [depth]; 0 holds the primary rays */
 
-    /* The stream in hand: its answers and surfaces. */
-    RtHit *hits;         /* [STREAM] */
-    RtSurface *surfaces; /* [STREAM], of the rays that hit, with the path of each: */
-    Path *surface_paths; /* [STREAM] */
+    /* The current stream: its answers, and the surfaces that it hit with the path of each. */
+    RtHit hits[STREAM];
+    RtSurface surfaces[STREAM];
+    Path surface_paths[STREAM];
 
-    /* Shadow rays waiting to be asked together. */
+    /* Shadow rays to be traced together, and the light that arrives if they are not occluded. */
     uint32_t shadow_count;
-    RtRay *shadow_rays;    /* [STREAM] */
-    bool *blocked;         /* [STREAM] */
-    RtVec3 *shadow_lights; /* [STREAM] what arrives unless blocked */
-    Path *shadow_paths;    /* [STREAM] */
+    RtRay shadow_rays[STREAM];
+    bool occluded[STREAM];
+    RtVec3 shadow_lights[STREAM];
+    Path shadow_paths[STREAM];
 } Worker;
 
 struct Job {
@@ -76,9 +76,9 @@ static void add_light(Worker *worker, Path path, RtVec3 light) {
     *color = rt_add(*color, rt_scale(light, path.factor));
 }
 
-/* ---- asking the accelerator ---- */
+/* ---- queries ---- */
 
-/* Moves what one ray cost from `cost` to its sample and its kind. */
+/* Moves the cost of one ray to its sample and its kind. */
 static void charge(Worker *worker, uint32_t sample, uint32_t kind, RtTally cost[RT_RAY_KIND_COUNT]) {
     uint32_t kinds = worker->job->options->cost_kinds;
     if (kinds == 0 || kinds >> kind & 1) rt_tally_add(&worker->job->frame->cost[sample], &cost[kind]);
@@ -86,7 +86,7 @@ static void charge(Worker *worker, uint32_t sample, uint32_t kind, RtTally cost[
     cost[kind] = (RtTally){0};
 }
 
-/* Counts rays by kind, and keeps them where that is asked for. */
+/* Counts rays by kind, and keeps them with keep_rays. */
 static RtStatus take_rays(Worker *worker, const RtRay *rays, uint32_t count, RtError *error) {
     TileRays *to = worker->job->kept ? &worker->job->kept[worker->tile] : NULL;
     for (uint32_t i = 0; i < count; i++) {
@@ -99,8 +99,8 @@ static RtStatus take_rays(Worker *worker, const RtRay *rays, uint32_t count, RtE
     return RT_OK;
 }
 
-static RtStatus ask_nearest(Worker *worker, const RtRay *rays, const Path *paths, uint32_t count,
-                            RtError *error) {
+static RtStatus trace_nearest(Worker *worker, const RtRay *rays, const Path *paths, uint32_t count,
+                              RtError *error) {
     RT_TRY(take_rays(worker, rays, count, error));
     if (!worker->job->options->counted) {
         rt_nearest(&worker->query, rays, count, worker->hits, NULL);
@@ -114,16 +114,16 @@ static RtStatus ask_nearest(Worker *worker, const RtRay *rays, const Path *paths
     return RT_OK;
 }
 
-static RtStatus ask_occluded(Worker *worker, RtError *error) {
+static RtStatus trace_occluded(Worker *worker, RtError *error) {
     const RtRay *rays = worker->shadow_rays;
     RT_TRY(take_rays(worker, rays, worker->shadow_count, error));
     if (!worker->job->options->counted) {
-        rt_occluded(&worker->query, rays, worker->shadow_count, worker->blocked, NULL);
+        rt_occluded(&worker->query, rays, worker->shadow_count, worker->occluded, NULL);
         return RT_OK;
     }
     RtTally cost[RT_RAY_KIND_COUNT] = {0};
     for (uint32_t i = 0; i < worker->shadow_count; i++) {
-        rt_occluded(&worker->query, &rays[i], 1, &worker->blocked[i], cost);
+        rt_occluded(&worker->query, &rays[i], 1, &worker->occluded[i], cost);
         charge(worker, worker->shadow_paths[i].sample, rays[i].kind, cost);
     }
     return RT_OK;
@@ -133,15 +133,15 @@ static RtStatus ask_occluded(Worker *worker, RtError *error) {
 
 static RtStatus flush_shadows(Worker *worker, RtError *error) {
     if (worker->shadow_count == 0) return RT_OK;
-    RT_TRY(ask_occluded(worker, error));
+    RT_TRY(trace_occluded(worker, error));
     for (uint32_t i = 0; i < worker->shadow_count; i++) {
-        if (!worker->blocked[i]) add_light(worker, worker->shadow_paths[i], worker->shadow_lights[i]);
+        if (!worker->occluded[i]) add_light(worker, worker->shadow_paths[i], worker->shadow_lights[i]);
     }
     worker->shadow_count = 0;
     return RT_OK;
 }
 
-/* Light by light, so that neighbours in the stream go to the same place. */
+/* Light by light, so that neighbours in the stream have the same target. */
 static RtStatus trace_shadows(Worker *worker, uint32_t surface_count, RtError *error) {
     const RtScene *scene = worker->job->scene;
     const bool outward = worker->job->options->light_from_outside;
@@ -160,7 +160,8 @@ static RtStatus trace_shadows(Worker *worker, uint32_t surface_count, RtError *e
     return flush_shadows(worker, error);
 }
 
-/* The surfaces that the stream met; what met none brings the background. Gives the number of surfaces. */
+/* Finds the surfaces that the stream hit and adds the background for misses. Returns the number of
+ * surfaces. */
 static uint32_t find_surfaces(Worker *worker, const RtRay *rays, const Path *paths, uint32_t count) {
     const RtScene *scene = worker->job->scene;
     uint32_t surface_count = 0;
@@ -204,7 +205,7 @@ static RtStatus trace_level(Worker *worker, uint32_t depth, RtError *error) {
         uint32_t count = level->count - begin < STREAM ? level->count - begin : STREAM;
         const RtRay *rays = level->rays + begin;
         const Path *paths = level->paths + begin;
-        RT_TRY(ask_nearest(worker, rays, paths, count, error));
+        RT_TRY(trace_nearest(worker, rays, paths, count, error));
         if (depth == 0) record_primary(worker, paths, count);
         uint32_t surface_count = find_surfaces(worker, rays, paths, count);
         RT_TRY(trace_shadows(worker, surface_count, error));
@@ -250,40 +251,11 @@ static RtStatus trace_tile(void *context, size_t tile, int thread, RtError *erro
 
 /* ---- memory ---- */
 
-static void clear_worker(Worker *worker, uint32_t depth) {
-    rt_query_clear(&worker->query);
-    for (uint32_t i = 0; worker->levels && i < depth; i++) {
-        rt_free(worker->levels[i].rays);
-        rt_free(worker->levels[i].paths);
-    }
-    void *const blocks[] = {worker->levels,        worker->hits,        worker->surfaces,
-                            worker->surface_paths, worker->shadow_rays, worker->blocked,
-                            worker->shadow_lights, worker->shadow_paths};
-    for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; i++) rt_free(blocks[i]);
-}
-
 static RtStatus init_worker(Worker *worker, Job *job, const RtAccel *accel, RtError *error) {
     uint32_t depth = job->options->depth;
     worker->job = job;
-    bool complete = true;
-#define MAKE(array, count) (complete = ((array) = rt_alloc(count, sizeof *(array))) && complete)
-    MAKE(worker->levels, depth);
-    for (uint32_t i = 0; worker->levels && i < depth; i++) {
-        MAKE(worker->levels[i].rays, LEVEL);
-        MAKE(worker->levels[i].paths, LEVEL);
-    }
-    MAKE(worker->hits, STREAM);
-    MAKE(worker->surfaces, STREAM);
-    MAKE(worker->surface_paths, STREAM);
-    MAKE(worker->shadow_rays, STREAM);
-    MAKE(worker->blocked, STREAM);
-    MAKE(worker->shadow_lights, STREAM);
-    MAKE(worker->shadow_paths, STREAM);
-#undef MAKE
-    if (!complete) {
-        size_t bytes = (size_t)LEVEL * depth * (sizeof(RtRay) + sizeof(Path));
-        return rt_fail_memory(error, "the rays of a thread", bytes);
-    }
+    worker->levels = rt_alloc(depth, sizeof(Level));
+    if (!worker->levels) return rt_fail_memory(error, "the rays of a thread", depth * sizeof(Level));
     return rt_query_init(&worker->query, accel, error);
 }
 
@@ -316,7 +288,7 @@ static RtStatus init_tiles(Job *job, const RtSampling *sampling, RtError *error)
     return rt_fail_memory(error, "the ray lists of tiles", job->tile_count * sizeof(TileRays));
 }
 
-/* Joins the lists of all tiles, kind by kind, and frees them as it goes. */
+/* Concatenates the lists of all tiles, kind by kind, and frees them on the way. */
 static RtStatus join_rays(Job *job, RtError *error) {
     for (int kind = 0; job->kept && kind < RT_RAY_KIND_COUNT; kind++) {
         const uint64_t count = job->frame->ray_count[kind];
@@ -371,7 +343,8 @@ static RtStatus run(Job *job, const RtAccel *accel, RtError *error) {
             rt_tally_add(&job->frame->tallies[kind], &job->workers[i].tallies[kind]);
             job->frame->ray_count[kind] += job->workers[i].ray_count[kind];
         }
-        clear_worker(&job->workers[i], job->options->depth);
+        rt_query_clear(&job->workers[i].query);
+        rt_free(job->workers[i].levels);
     }
     rt_free(job->workers);
     return status == RT_OK ? join_rays(job, error) : status;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Frames: one image of a scene, traced recursively under the standard illumination model, on any accelerator.
+/* Frames: one image of a scene, traced recursively with the standard illumination model, on any accelerator.
  *
- * A frame is cut into tiles (render/tiles.h); a tile is the unit of work of a thread. Within a
- * tile rays are traced level by level (all primary rays as one stream, then all shadow rays of their hits,
- * then all reflection and transmission rays they spawned, and so on), so that an accelerator sees streams. A
- * level of more than 1024 rays is cut into streams, each followed to the bottom before the next; shadow rays
- * go light by light. A counted frame hands over one ray at a time, to charge each to its sample. What a tile
- * computes lies in its own place, in an order that depends on the tile alone: the frame is byte-identical at
+ * A frame is cut into tiles (render/tiles.h), the work items of threads. Within a tile rays are traced
+ * level by level: all primary rays as one stream, then all shadow rays of their hits, then all reflection
+ * and transmission rays that they spawned, and so on, so that an accelerator sees streams. A level of more
+ * than 1024 rays is cut into streams, each followed to the bottom before the next; shadow rays are traced
+ * light by light. A counted frame traces one ray at a time, to attribute its cost to its sample. A tile
+ * writes only to its own place, in an order that depends on the tile alone: the frame is byte-identical at
  * any number of threads. */
 #ifndef RT_RENDER_FRAME_H
 #define RT_RENDER_FRAME_H
@@ -15,19 +15,19 @@
 #include "render/tiles.h"
 
 #define RT_MAX_DEPTH     64
-#define RT_DEFAULT_DEPTH 5 /* levels where nobody asks for another number, as SPD does */
+#define RT_DEFAULT_DEPTH 5 /* as in SPD */
 
-/* A frame of more samples is refused: 8192 x 8192, which take 1.3 GB, counted 6.7 GB. */
+/* Larger frames are rejected: 8192 x 8192 samples take 1.3 GB, counted 6.7 GB. */
 #define RT_MAX_FRAME_SAMPLES (UINT32_C(1) << 26)
 
 typedef struct RtFrameOptions {
-    uint32_t depth;      /* levels of the ray tree, 1..RT_MAX_DEPTH; the primary ray is the first */
-    int threads;         /* 0 = all processors */
-    bool counted;        /* fill tallies and the count channels; else the timed kernels run */
-    uint32_t cost_kinds; /* rays that are added to a sample's cost, bits 1 << RtRayKind; 0: of all kinds */
-    bool light_from_outside; /* ask for light on the outside of surfaces, whatever side a ray comes from */
-    bool keep_rays;          /* keep all rays that are traced */
-    /* Optional: called by one thread at a time as tiles are finished. */
+    uint32_t depth;          /* levels of the ray tree, 1..RT_MAX_DEPTH; the primary ray is the first */
+    int threads;             /* 0 = all processors */
+    bool counted;            /* fill tallies and the count channels; else the timed kernels run */
+    uint32_t cost_kinds;     /* ray kinds that count towards a sample's cost, bits 1 << RtRayKind; 0: all */
+    bool light_from_outside; /* light surfaces from outside, whichever side the ray comes from */
+    bool keep_rays;          /* keep all traced rays */
+    /* Optional: called by one thread at a time when a tile is finished. */
     void (*progress)(void *context, size_t tiles_done, size_t tiles);
     void *progress_context;
 } RtFrameOptions;
@@ -38,17 +38,17 @@ typedef struct RtFrame {
     RtVec3 *color;    /* linear rgb */
     uint32_t *object; /* primary hit, RT_NO_OBJECT for none */
     float *depth;     /* t of the primary hit (distance along the camera's axis), INFINITY for none */
-    RtTally *cost;    /* rays of the sample's tree, of cost_kinds; NULL unless counted */
+    RtTally *cost;    /* cost of the sample's ray tree, restricted to cost_kinds; NULL unless counted */
     RtTally tallies[RT_RAY_KIND_COUNT];    /* zero unless counted */
     uint64_t ray_count[RT_RAY_KIND_COUNT]; /* rays traced, by kind */
-    /* [ray_count] with keep_rays, else NULL. Tile after tile, and within a tile in the order in which they
-     * are traced: level by level, each stream as it goes to the accelerator. */
+    /* [ray_count] with keep_rays, else NULL. Tile after tile; within a tile in the order of tracing: level
+     * by level, stream by stream. */
     RtRay *rays[RT_RAY_KIND_COUNT];
     double seconds; /* wall time of the tracing */
 } RtFrame;
 
-/* Traces the frame. Scene and sampling are the accelerator's. Free with rt_frame_clear; after a failure it is
- * empty. */
+/* Traces the frame of the accelerator's scene and sampling. Free with rt_frame_clear; after a failure it
+ * is empty. */
 RtStatus rt_frame_trace(RtFrame *frame, const RtAccel *accel, const RtFrameOptions *options, RtError *error);
 void rt_frame_clear(RtFrame *frame);
 

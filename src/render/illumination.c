@@ -7,7 +7,7 @@ static double max_norm(RtVec3d a) {
     return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z)));
 }
 
-/* `way`: what the ray came, in the max norm. */
+/* `way`: the distance that the ray travelled, in the max norm. */
 static double offset_of(const RtGeometry *g, uint32_t object, RtVec3d point, double way) {
     double reach = fmax(max_norm(point), way);
     double own = (double)rt_thickness(rt_narrow(point), &g->boxes[object]);
@@ -48,12 +48,12 @@ RtVec3 rt_ambient_light(const RtScene *scene, const RtSurface *surface) {
     return rt_scale(rt_mul(surface->material->color, scene->ambient), surface->material->ambient);
 }
 
-/* The direction `dir` mirrored at the plane with unit normal `n`. */
+/* `dir` mirrored at the plane with unit normal `n`. */
 static RtVec3d mirrored(RtVec3d dir, RtVec3d n) {
     return rt_add_scaledd(dir, n, -2 * rt_dotd(dir, n));
 }
 
-/* A ray from the surface, on the side of it that `away` (+1 or -1 times surface->side) says. */
+/* A ray that starts on the side `away` * surface->side, away = +1 or -1. */
 static RtRay start_ray(const RtSurface *surface, double away, RtVec3d dir, RtRayKind kind) {
     RtVec3d org = rt_add_scaledd(surface->point, surface->side, away * surface->offset);
     return (RtRay){.org = rt_narrow(org), .dir = rt_narrow(dir), .tmax = INFINITY, .kind = kind};
@@ -91,7 +91,7 @@ static RtVec3d reflected(const RtSurface *surface) {
 }
 
 /* Snell's law in vectors; false under total internal reflection. `ratio`: the index of refraction on this
- * side of the surface over that on the other. */
+ * side over that on the other. */
 static bool refract(RtVec3d arriving, RtVec3d n, double ratio, RtVec3d *dir) {
     double cosine = -rt_dotd(arriving, n);
     double squared = 1 - ratio * ratio * (1 - cosine * cosine);

@@ -64,7 +64,7 @@ RtStatus rt_image_from_frame(RtImage *image, const RtFrame *frame, RtError *erro
     return RT_OK;
 }
 
-/* libpng's simplified interface has no long jumps. */
+/* libpng's simplified interface, which uses no longjmp. */
 RtStatus rt_png_write(const RtImage *image, const char *path, RtError *error) {
     RtOutput output;
     RT_TRY(rt_output_open(&output, path, error));

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Images: from the samples of a frame to pixels, and to files. Files are written whole or not at all. */
+/* Images: from the samples of a frame to pixels and files. Files are written completely or not at all. */
 #ifndef RT_RENDER_IMAGE_H
 #define RT_RENDER_IMAGE_H
 
 #include "render/frame.h"
 
-/* 8-bit sRGB, what a PNG holds. Owns its pixels. */
+/* 8-bit sRGB, as in a PNG. Owns its pixels. */
 typedef struct RtImage {
     uint32_t width, height;
     uint8_t *rgb; /* [height][width][3], from the upper left */
@@ -15,8 +15,8 @@ typedef struct RtImage {
 RtStatus rt_image_init(RtImage *image, uint32_t width, uint32_t height, RtError *error);
 void rt_image_clear(RtImage *image);
 
-/* The samples of one pixel: `span` x `span` of the frame's grid, from (column, row) on. N x N of its own; or,
- * sampled at corners, its 4 corners, which it shares with its neighbours. */
+/* The samples of one pixel: `span` x `span` of the frame's grid, from (column, row) on. N x N of its own,
+ * or, for samples at corners, its 4 corners, shared with its neighbours. */
 typedef struct RtFootprint {
     uint32_t column, row, span;
 } RtFootprint;

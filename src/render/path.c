@@ -14,7 +14,7 @@ typedef struct Recorder {
     RtError *error;
 } Recorder;
 
-/* Where the ray is in the box, as thin as it is, within tmin..tmax ... */
+/* The interval of the exact ray in the box, within tmin..tmax ... */
 static void find_span(const RtRay *ray, RtPathRow *row) {
     row->enter = (double)ray->tmin, row->leave = (double)ray->tmax;
     for (int a = 0; a < 3; a++) {
@@ -41,7 +41,7 @@ static void find_span_of_ball(const RtRay *ray, RtPathRow *row) {
     row->leave = inside < 0 ? -(double)INFINITY : fmin((double)ray->tmax, nearest + half);
 }
 
-/* The row of the object test that a hit belongs to. */
+/* Marks the row of the object test that a hit belongs to. */
 static void note_hit(RtPath *path, const RtTraced *event) {
     for (uint32_t i = path->count; i-- > 0;) {
         RtPathRow *row = &path->rows[i];
@@ -96,14 +96,14 @@ static void find_nearest(RtPath *path) {
 
 /* ---- tracing ---- */
 
-/* What the ray hits, learnt by accelerators that replay answers. */
+/* Accelerators that replay answers learn what the ray hits. */
 static RtStatus teach(RtAccel *accel, RtQuery *query, const RtRay *ray, RtError *error) {
     RtHit hit;
     rt_nearest(query, ray, 1, &hit, NULL);
     return rt_accel_learn(accel, ray, &hit, 1, error);
 }
 
-/* By the kernels of the top layer itself, which name the occluder. */
+/* The kernels of the top layer are called directly, because they name the occluder. */
 static void ask(const RtQuery *query, const RtRay *ray, RtPath *path, RtTally *tallies) {
     const RtAccel *accel = query->accel;
     if (path->any)
@@ -133,9 +133,9 @@ RtStatus rt_path_trace(RtPath *path, RtAccel *accel, const RtRay *ray, RtError *
     if (status == RT_OK) {
         Recorder recorder = {path, RT_OK, error};
         rt_query_begin(&query);
-        rt_observer = &(RtObserver){record, &recorder};
+        rt_trace_observer = &(RtTraceObserver){record, &recorder};
         ask(&query, &path->ray, path, tallies);
-        rt_observer = NULL;
+        rt_trace_observer = NULL;
         status = recorder.status;
     }
     rt_query_clear(&query);
@@ -192,7 +192,7 @@ static RtStatus spawn(const RtAccel *accel, RtRayKind kind, uint32_t light, RtRa
         if (rt_shadow_ray(scene, &surface, light, ray, &arrives)) return RT_OK;
         return rt_fail(
             error, RT_BAD_INPUT,
-            "object %u turns away from light %u there, and sends no shadow ray: choose another pixel "
+            "object %u faces away from light %u there, so there is no shadow ray: choose another pixel "
             "or light",
             hit.object, light);
     }
@@ -201,7 +201,7 @@ static RtStatus spawn(const RtAccel *accel, RtRayKind kind, uint32_t light, RtRa
         *ray = spawned[i];
         return RT_OK;
     }
-    return rt_fail(error, RT_BAD_INPUT, "object %u, which the primary ray hits, sends no %s ray", hit.object,
+    return rt_fail(error, RT_BAD_INPUT, "the primary ray hits object %u, which spawns no %s ray", hit.object,
                    rt_ray_kind_name(kind));
 }
 

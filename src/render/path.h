@@ -13,41 +13,42 @@ typedef struct RtPathRow {
     const char *what;  /* as in RtTraced; "object" for object tests */
     uint32_t index;    /* as in RtTraced */
     bool leaf, empty;  /* of a step */
-    bool met;          /* extent test: the ray may find something there; object test: it is hit, at `t` */
+    bool met;          /* extent test: something may be found there; object test: it is hit, at `t` */
     float t;
-    bool boxed; /* there is a box, and the thin ray is in it from `enter` to `leave`: not, if enter > leave */
-    bool round; /* it is the box of a ball, and it is the ball that the ray is in */
+    bool boxed; /* there is a box, and the exact ray is in it from `enter` to `leave`, or misses it if
+                 * enter > leave */
+    bool round; /* the box is that of `ball`; enter and leave are for the ball */
     RtBox box;
     RtBall ball;
     double enter, leave; /* t, within tmin..tmax */
-    float nearest;       /* t of the nearest hit so far, this row's included; INFINITY while there is none */
+    float nearest;       /* t of the nearest hit so far, including this row; INFINITY if there is none */
 } RtPathRow;
 
 /* Owned; free with rt_path_clear. */
 typedef struct RtPath {
     RtRay ray;
-    bool any;      /* it was asked whether anything is hit, as of shadow rays, not what is nearest */
-    RtHit hit;     /* of `any`: t is that of the occluder, if one was named */
-    RtTally tally; /* sums over the rows; `rays` and `hits` are the kernel's own */
+    bool any;      /* traced for any hit, like shadow rays, not for the nearest */
+    RtHit hit;     /* for `any`, t is that of the occluder if one was named */
+    RtTally tally; /* sums over the rows, except `rays` and `hits`, from the kernel */
     RtPathRow *rows;
     uint32_t count, capacity;
 } RtPath;
 
-/* Traces a valid ray by a counted kernel: `occluded` if it is a shadow ray, else `nearest`. What recorded
- * answers are for (rt_accel_learn) is handed the ray's own. RT_MISMATCH if the events do not add up to what
- * the kernel counted, which would be a bug of this program. */
+/* Traces a valid ray with a counted kernel: `occluded` for a shadow ray, else `nearest`. An accelerator
+ * that learns (rt_accel_learn) learns the ray's own hit first. RT_MISMATCH if the events do not add up to
+ * the kernel's counts, which would be a bug in this program. */
 RtStatus rt_path_trace(RtPath *path, RtAccel *accel, const RtRay *ray, RtError *error);
 void rt_path_clear(RtPath *path);
 
 /* "step", "leaf", "extent test", ... */
 const char *rt_path_row_name(const RtPathRow *row);
 
-/* How many rows from `first` on may be shown as one: four or more object tests in a row that all missed;
+/* The number of rows from `first` on to display as one: four or more consecutive object tests that missed;
  * else 1. */
 uint32_t rt_path_run(const RtPath *path, uint32_t first);
 
-/* Follows the primary ray of sample (column, row) to the ray of another kind that starts where it hits: to
- * light `light` for shadow rays. RT_BAD_INPUT, and why, where there is none. */
+/* The ray of another kind that starts where the primary ray of sample (column, row) hits; a shadow ray
+ * goes to light `light`. RT_BAD_INPUT, with the reason, if there is none. */
 RtStatus rt_path_ray(const RtAccel *accel, RtRayKind kind, uint32_t column, uint32_t row, uint32_t light,
                      RtRay *ray, RtError *error);
 

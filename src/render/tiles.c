@@ -4,7 +4,7 @@
 typedef struct Walk {
     const RtSampling *sampling;
     uint32_t across, down; /* tiles */
-    bool whole;            /* which tiles are taken */
+    bool whole;            /* visit whole or cut tiles */
     RtSample *next;
 } Walk;
 
@@ -16,13 +16,13 @@ size_t rt_tile_count(const RtSampling *sampling) {
     return (size_t)tiles_along(sampling->columns) * tiles_along(sampling->rows);
 }
 
-/* Is all that the border leaves of the tile made of blocks of 8 x 8? */
+/* Does the part of the tile inside the frame consist of whole 8 x 8 blocks? */
 static bool is_whole(const RtSampling *sampling, RtSample tile) {
     uint32_t right = sampling->columns - tile.column, below = sampling->rows - tile.row;
     return (right >= RT_TILE || right % 8 == 0) && (below >= RT_TILE || below % 8 == 0);
 }
 
-/* The square of side x side tiles from that column and row of tiles on. */
+/* Visits the square of side x side tiles from that column and row of tiles on. */
 static void walk_square(Walk *walk, uint32_t column, uint32_t row, uint32_t side) {
     if (column >= walk->across || row >= walk->down) return;
     if (side == 1) {

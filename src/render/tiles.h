@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The order in which a frame is traced: along a Z-order curve (Morton 1966, "A Computer Oriented Geodetic
- * Data Base and a New Technique in File Sequencing"), so that rays which follow one another are neighbours in
- * the image in both directions, and packets of 8, 16 or 64 are blocks of 4 x 2, 4 x 4 or 8 x 8 samples.
+ * Data Base and a New Technique in File Sequencing"). Consecutive rays are neighbours in the image in both
+ * directions, and packets of 8, 16 or 64 are blocks of 4 x 2, 4 x 4 or 8 x 8 samples.
  *
- * The frame is cut into tiles of RT_TILE x RT_TILE samples. Those that are made of whole blocks of 8 x 8 come
- * first, in the order of the curve, and then those that the border cuts off: so the first 64 samples are a
- * block, the next 64 are, and so on until only the border is left. */
+ * The frame is cut into tiles of RT_TILE x RT_TILE samples. Tiles made of whole 8 x 8 blocks come first,
+ * in the order of the curve, then those cut by the border. So each group of 64 consecutive samples is a
+ * block until only the border is left. */
 #ifndef RT_RENDER_TILES_H
 #define RT_RENDER_TILES_H
 
@@ -14,24 +14,24 @@
 #define RT_TILE       16
 #define RT_TILE_BLOCK 64 /* samples of an aligned block of 8 x 8 */
 
-/* A sample of the frame; a tile is known by its upper left one. */
+/* A sample of the frame; the upper left one identifies a tile. */
 typedef struct RtSample {
     uint32_t column, row;
 } RtSample;
 
 size_t rt_tile_count(const RtSampling *sampling);
 
-/* All tiles in order, to tiles[0..rt_tile_count(sampling)). */
+/* Writes all tiles in order to tiles[0..rt_tile_count(sampling)). */
 void rt_tiles_in_order(const RtSampling *sampling, RtSample *tiles);
 
-/* Every other bit of `code`, from bit 0 on, closed up. */
+/* Every other bit of `code`, from bit 0 on, compacted. */
 static inline uint32_t rt_even_bits(uint32_t code) {
     uint32_t bits = 0;
     for (uint32_t i = 0; i < 16; i++) bits |= (code >> 2 * i & 1) << i;
     return bits;
 }
 
-/* Sample number i, 0..RT_TILE * RT_TILE - 1, of the tile; it may lie outside of the frame. */
+/* Sample i, 0..RT_TILE * RT_TILE - 1, of the tile; it may lie outside the frame. */
 static inline RtSample rt_tile_sample(RtSample tile, uint32_t i) {
     return (RtSample){tile.column + rt_even_bits(i), tile.row + rt_even_bits(i >> 1)};
 }

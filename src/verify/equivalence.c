@@ -8,84 +8,85 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Rays of one item of work, and the longest stream: more than is handed on in one piece anywhere. */
+/* Rays per work item, and the longest stream: more than any accelerator processes at once. */
 #define CHUNK 1500
 
 static const size_t stream_lengths[] = {1, 7, 64, CHUNK};
 enum { STREAM_LENGTHS = sizeof stream_lengths / sizeof stream_lengths[0], KERNELS = 2, PASSES = 2 };
 
-/* One of the ways in which a chunk is asked. */
-typedef struct Way {
+/* One of the modes in which a chunk is traced. */
+typedef struct Mode {
     bool counted;
-    size_t stream; /* rays at once */
-} Way;
+    size_t stream; /* rays per stream */
+} Mode;
 
-/* How a chunk is asked. */
+/* The queries of a chunk. */
 typedef struct Plan {
     size_t count; /* of rays */
-    Way ways[PASSES * KERNELS];
-    int way_count;
-    bool recount; /* count twice, to see whether that is the same */
+    Mode modes[PASSES * KERNELS];
+    int mode_count;
+    bool recount; /* count twice and compare */
 } Plan;
 
-/* The answers to a chunk in all ways; in one piece with its rays, for an accelerator that is away. */
-typedef struct Asked {
+/* The answers to a chunk in all modes, in one block with its rays, for a remote accelerator. */
+typedef struct Answers {
     Plan plan;
     RtTally tallies[RT_RAY_KIND_COUNT];
     RtTally recounts[2][RT_RAY_KIND_COUNT];
     RtHit hits[PASSES * KERNELS][CHUNK];
     bool blocked[PASSES * KERNELS][CHUNK];
-    RtRay rays[CHUNK]; /* unset for others: they are asked about the reference's, by which some know them */
-} Asked;
+    RtRay rays[CHUNK]; /* for remote accelerators only; others get the reference's rays, which some
+                        * recognise by address */
+} Answers;
 
-_Static_assert(sizeof(Asked) <= RT_REMOTE_BYTES, "it fits");
+_Static_assert(sizeof(Answers) <= RT_REMOTE_BYTES, "it fits");
 
-/* What one thread writes to. The plan is the desk's own: what comes back from a plugin's process may have
- * been written over, and is answers and nothing else. */
-typedef struct Desk {
+/* One thread's memory. It has its own copy of the plan, because a plugin's process may have overwritten
+ * the one in `answers`. */
+typedef struct Worker {
     RtQuery query;
     Plan plan;
-    Asked asked;
-} Desk;
+    Answers answers;
+} Worker;
 
 typedef struct Job {
     const RtReference *reference;
     const RtAccel *accel;
     int threads;
     size_t chunks;
-    Desk *desks;          /* [threads] */
-    RtHit *hits;          /* what a reference is filled with, or NULL */
-    RtEquivalence *parts; /* [chunks] what a check is summed from, or NULL */
-    RtError recounted;    /* RT_BROKEN where chunk 0, of a plugin, was not counted the same twice */
+    Worker *workers;      /* [threads] */
+    RtHit *hits;          /* the reference's answers, when computing them */
+    RtEquivalence *parts; /* [chunks] parts of the result, when checking */
+    RtError recounted;    /* RT_BROKEN if a plugin counted chunk 0 differently twice */
 } Job;
 
-/* Both kernels in streams of one length; an exact accelerator, whose answers must not depend on that, in
- * short streams and in long ones. */
-static void choose_ways(Desk *desk, size_t chunk) {
-    int passes = desk->query.accel->exact ? PASSES : 1;
-    desk->plan.way_count = 0;
+/* Both kernels, in streams of one length; for an exact accelerator, whose answers must not depend on it,
+ * in short and long streams. */
+static void choose_modes(Worker *worker, size_t chunk) {
+    int passes = worker->query.accel->exact ? PASSES : 1;
+    worker->plan.mode_count = 0;
     for (size_t i = 0; i < (size_t)passes * KERNELS; i++) {
         size_t pass = i / KERNELS, counted = i % KERNELS;
         size_t length = (chunk + counted + pass * STREAM_LENGTHS / PASSES) % STREAM_LENGTHS;
-        desk->plan.ways[desk->plan.way_count++] = (Way){counted, stream_lengths[length]};
+        worker->plan.modes[worker->plan.mode_count++] = (Mode){counted, stream_lengths[length]};
     }
 }
 
-/* ---- work in chunks, a desk a thread ---- */
+/* ---- work in chunks ---- */
 
 static RtStatus run(Job *job, RtWork work, RtError *error) {
     job->threads = rt_thread_count(job->threads);
     job->chunks = (job->reference->count + CHUNK - 1) / CHUNK;
-    job->desks = rt_alloc((size_t)job->threads, sizeof(Desk));
-    if (!job->desks) return rt_fail_memory(error, "answers", (size_t)job->threads * sizeof(Desk));
+    job->workers = rt_alloc((size_t)job->threads, sizeof(Worker));
+    if (!job->workers) return rt_fail_memory(error, "answers", (size_t)job->threads * sizeof(Worker));
     RtStatus status = RT_OK;
     for (int i = 0; i < job->threads && status == RT_OK; i++) {
-        status = rt_query_init(&job->desks[i].query, job->accel, error);
+        status = rt_query_init(&job->workers[i].query, job->accel, error);
     }
     if (status == RT_OK) status = rt_parallel_for(job->chunks, job->threads, work, job, error);
     if (status == RT_OK) status = rt_accel_check(job->accel, error);
-    for (int i = 0; i < job->threads; i++) rt_query_clear(&job->desks[i].query);
-    rt_free(job->desks);
+    for (int i = 0; i < job->threads; i++) rt_query_clear(&job->workers[i].query);
+    rt_free(job->workers);
     return status;
 }
 
@@ -99,7 +100,7 @@ static size_t chunk_count(const Job *job, size_t chunk) {
 static RtStatus answer_chunk(void *context, size_t chunk, int thread, RtError *error) {
     (void)error;
     Job *job = context;
-    rt_nearest(&job->desks[thread].query, job->reference->rays + chunk * CHUNK, chunk_count(job, chunk),
+    rt_nearest(&job->workers[thread].query, job->reference->rays + chunk * CHUNK, chunk_count(job, chunk),
                job->hits + chunk * CHUNK, NULL);
     return RT_OK;
 }
@@ -122,36 +123,36 @@ void rt_reference_clear(RtReference *reference) {
 
 /* ---- checking ---- */
 
-/* Answers a chunk in all ways. */
-static void ask(RtQuery *query, const Plan *plan, const RtRay *rays, Asked *asked) {
-    for (int w = 0; w < plan->way_count; w++) {
-        size_t stream = plan->ways[w].stream;
-        RtTally *tallies = plan->ways[w].counted ? asked->tallies : NULL;
+/* Traces a chunk in all modes. */
+static void answer(RtQuery *query, const Plan *plan, const RtRay *rays, Answers *answers) {
+    for (int w = 0; w < plan->mode_count; w++) {
+        size_t stream = plan->modes[w].stream;
+        RtTally *tallies = plan->modes[w].counted ? answers->tallies : NULL;
         for (size_t first = 0; first < plan->count; first += stream) {
             size_t n = plan->count - first < stream ? plan->count - first : stream;
-            rt_nearest(query, rays + first, n, asked->hits[w] + first, tallies);
+            rt_nearest(query, rays + first, n, answers->hits[w] + first, tallies);
             rt_remote_progress();
-            rt_occluded(query, rays + first, n, asked->blocked[w] + first, tallies);
+            rt_occluded(query, rays + first, n, answers->blocked[w] + first, tallies);
             rt_remote_progress();
         }
     }
 }
 
-/* Twice the same, from the same beginning, over what hits there were. */
-static void recount(RtQuery *query, const Plan *plan, const RtRay *rays, Asked *asked) {
+/* Counts a chunk twice from the same initial state, over the hits of earlier queries. */
+static void recount(RtQuery *query, const Plan *plan, const RtRay *rays, Answers *answers) {
     for (int i = 0; i < 2; i++) {
         rt_query_begin(query);
         rt_remote_progress();
-        memset(asked->recounts[i], 0, sizeof asked->recounts[i]);
-        rt_nearest(query, rays, plan->count, asked->hits[plan->way_count - 1], asked->recounts[i]);
+        memset(answers->recounts[i], 0, sizeof answers->recounts[i]);
+        rt_nearest(query, rays, plan->count, answers->hits[plan->mode_count - 1], answers->recounts[i]);
     }
 }
 
-static void ask_away(RtQuery *query, void *message) {
-    Asked *asked = message;
-    const Plan plan = asked->plan;
-    if (plan.recount) recount(query, &plan, asked->rays, asked);
-    ask(query, &plan, asked->rays, asked);
+static void answer_remotely(RtQuery *query, void *message) {
+    Answers *answers = message;
+    const Plan plan = answers->plan;
+    if (plan.recount) recount(query, &plan, answers->rays, answers);
+    answer(query, &plan, answers->rays, answers);
 }
 
 RtStatus rt_answer_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, RtHit got,
@@ -187,8 +188,8 @@ static void keep_wrong_answer(RtEquivalence *part, RtWrongAnswer wrong) {
     part->first_wrong = wrong;
 }
 
-/* The verdict of ray `i` of a chunk goes to the chunk's part. */
-static RtStatus judge(const Job *job, const Desk *desk, size_t chunk, size_t i, RtError *error) {
+/* Judges ray `i` of a chunk, and adds the verdict to the chunk's part. */
+static RtStatus judge(const Job *job, const Worker *worker, size_t chunk, size_t i, RtError *error) {
     RtEquivalence *part = &job->parts[chunk];
     size_t index = chunk * CHUNK + i;
     const RtRay *ray = &job->reference->rays[index];
@@ -196,25 +197,25 @@ static RtStatus judge(const Job *job, const Desk *desk, size_t chunk, size_t i, 
     RtVerdict worst = RT_EQUAL;
     bool occluded_wrong = false;
     const RtHit *doubtful = NULL;
-    for (int w = 0; w < desk->plan.way_count; w++) {
-        RtHit got = desk->asked.hits[w][i];
-        bool blocked = desk->asked.blocked[w][i];
-        RtWrongAnswer asked = {.index = index,
-                               .counted = desk->plan.ways[w].counted,
-                               .stream = desk->plan.ways[w].stream,
+    for (int w = 0; w < worker->plan.mode_count; w++) {
+        RtHit got = worker->answers.hits[w][i];
+        bool blocked = worker->answers.blocked[w][i];
+        RtWrongAnswer wrong = {.index = index,
+                               .counted = worker->plan.modes[w].counted,
+                               .stream = worker->plan.modes[w].stream,
                                .ray = *ray,
                                .expected = expected,
                                .got = got,
                                .blocked = blocked};
         RtVerdict verdict;
-        RT_TRY(rt_answer_verdict(&desk->query, ray, expected, got, &verdict, error));
-        if (verdict == RT_WRONG) keep_wrong_answer(part, asked);
-        if (verdict >= RT_MARGINAL) doubtful = &desk->asked.hits[w][i];
+        RT_TRY(rt_answer_verdict(&worker->query, ray, expected, got, &verdict, error));
+        if (verdict == RT_WRONG) keep_wrong_answer(part, wrong);
+        if (verdict >= RT_MARGINAL) doubtful = &worker->answers.hits[w][i];
         if (verdict > worst) worst = verdict;
-        RT_TRY(rt_blocked_verdict(&desk->query, ray, expected, blocked, &verdict, error));
+        RT_TRY(rt_blocked_verdict(&worker->query, ray, expected, blocked, &verdict, error));
         if (verdict == RT_WRONG) {
-            occluded_wrong = asked.occluded = true;
-            keep_wrong_answer(part, asked);
+            occluded_wrong = wrong.occluded = true;
+            keep_wrong_answer(part, wrong);
         } else if (verdict > worst) {
             worst = verdict;
         }
@@ -230,14 +231,14 @@ static RtStatus judge(const Job *job, const Desk *desk, size_t chunk, size_t i, 
     return RT_OK;
 }
 
-static void compare_recounts(Job *job, const Asked *asked) {
+static void compare_recounts(Job *job, const Answers *answers) {
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
         for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
-            uint64_t was = rt_tally_get(&asked->recounts[0][kind], i);
-            uint64_t is = rt_tally_get(&asked->recounts[1][kind], i);
+            uint64_t was = rt_tally_get(&answers->recounts[0][kind], i);
+            uint64_t is = rt_tally_get(&answers->recounts[1][kind], i);
             if (was == is) continue;
             rt_fail(&job->recounted, RT_BROKEN,
-                    "it counts %llu %s on some %s rays, and %llu when it is asked again",
+                    "it counts %llu %s on some %s rays, and %llu when they are traced again",
                     (unsigned long long)was, rt_tally_name(i), rt_ray_kind_name((RtRayKind)kind),
                     (unsigned long long)is);
             return;
@@ -247,21 +248,21 @@ static void compare_recounts(Job *job, const Asked *asked) {
 
 static RtStatus check_chunk(void *context, size_t chunk, int thread, RtError *error) {
     Job *job = context;
-    Desk *desk = &job->desks[thread];
-    Asked *asked = &desk->asked;
-    choose_ways(desk, chunk);
-    desk->plan.count = chunk_count(job, chunk);
+    Worker *worker = &job->workers[thread];
+    Answers *answers = &worker->answers;
+    choose_modes(worker, chunk);
+    worker->plan.count = chunk_count(job, chunk);
     const RtRay *rays = job->reference->rays + chunk * CHUNK;
     if (rt_accel_is_remote(job->accel)) {
-        desk->plan.recount = chunk == 0;
-        asked->plan = desk->plan;
-        memcpy(asked->rays, rays, desk->plan.count * sizeof(RtRay));
-        rt_remote_do(&desk->query, ask_away, asked, sizeof *asked);
-        if (desk->plan.recount) compare_recounts(job, asked);
+        worker->plan.recount = chunk == 0;
+        answers->plan = worker->plan;
+        memcpy(answers->rays, rays, worker->plan.count * sizeof(RtRay));
+        rt_remote_do(&worker->query, answer_remotely, answers, sizeof *answers);
+        if (worker->plan.recount) compare_recounts(job, answers);
     } else {
-        ask(&desk->query, &desk->plan, rays, asked);
+        answer(&worker->query, &worker->plan, rays, answers);
     }
-    for (size_t i = 0; i < desk->plan.count; i++) RT_TRY(judge(job, desk, chunk, i, error));
+    for (size_t i = 0; i < worker->plan.count; i++) RT_TRY(judge(job, worker, chunk, i, error));
     return RT_OK;
 }
 
@@ -289,7 +290,7 @@ RtStatus rt_equivalence_check(const RtReference *reference, RtAccel *accel, int 
 
 /* ---- results as text ---- */
 
-/* Nine significant digits read back to the same float32. */
+/* Nine significant digits restore the same float32. */
 static json_t *float_json(float x) {
     char text[32];
     snprintf(text, sizeof text, "%.9g", (double)x);

@@ -2,10 +2,10 @@
 /* Equivalence: does an accelerator answer every ray like brute?
  *
  * The reference answers are computed once for a scene and its rays, and then compared with any number of
- * accelerators. Each ray is asked four times, `nearest` and `occluded` by the timed and by the counted
- * kernel, in streams of 1, 7, 64 or a whole chunk of rays in turn. An exact accelerator is asked all that in
- * short streams and in long ones, and must give the bits of t and the id of the reference in each; one that
- * is not exact gets a verdict (verify/verdict.h), the most severe of the four. Results are the same on any
+ * accelerators. Each ray is traced four times, by the timed and the counted kernels of `nearest` and
+ * `occluded`, in streams of 1, 7, 64 or a whole chunk of rays in turn. An exact accelerator is queried
+ * both in short and in long streams, and must return the t bits and the id of the reference in each. Other
+ * accelerators get verdicts (verify/verdict.h), the most severe of the four. Results are the same on any
  * number of threads. */
 #ifndef RT_VERIFY_EQUIVALENCE_H
 #define RT_VERIFY_EQUIVALENCE_H
@@ -17,13 +17,13 @@
 
 typedef struct RtReference {
     const RtScene *scene; /* borrowed */
-    const RtRay *rays;    /* [count] borrowed; they stay where they are */
+    const RtRay *rays;    /* [count] borrowed; they must not move */
     size_t count;
     RtHit *hits; /* [count] owned */
 } RtReference;
 
-/* Answers rays[0..count), all valid, by `oracle`: brute as a rule, or another that has been proved exact
- * where the scene is too large for it. */
+/* Computes the answers to rays[0..count), all valid, with `oracle`: usually brute, or an accelerator
+ * proved exact if the scene is too large for it. */
 RtStatus rt_reference_init(RtReference *reference, const RtAccel *oracle, const RtRay *rays, size_t count,
                            int threads, RtError *error);
 void rt_reference_clear(RtReference *reference);
@@ -32,7 +32,7 @@ void rt_reference_clear(RtReference *reference);
 typedef struct RtWrongAnswer {
     size_t index; /* of the ray in the reference */
     bool occluded, counted;
-    size_t stream; /* length of the streams in which it was asked */
+    size_t stream; /* length of its streams */
     RtRay ray;
     RtHit expected;
     RtHit got;    /* of `nearest` */
@@ -41,37 +41,38 @@ typedef struct RtWrongAnswer {
 
 typedef struct RtEquivalence {
     uint64_t rays;
-    uint64_t verdicts[RT_VERDICT_COUNT]; /* they sum to rays */
-    /* Rays with a marginal or wrong answer to `nearest`, by who is exactly right. */
+    uint64_t verdicts[RT_VERDICT_COUNT]; /* sum to `rays` */
+    /* Rays with a marginal or wrong answer to `nearest`, by which answer is exactly right. */
     uint64_t sides[RT_SIDE_COUNT];
-    uint64_t occluded_wrong; /* rays, whatever their verdict */
+    uint64_t occluded_wrong; /* rays, regardless of their verdict */
     bool any_wrong;
-    RtWrongAnswer first_wrong; /* if any_wrong: of the ray with the lowest index */
+    RtWrongAnswer first_wrong; /* if any_wrong: of the lowest ray index */
 } RtEquivalence;
 
 /* Compares `accel`, built over the reference's scene. Wrong answers are a result, not an error. An
- * accelerator that learns is taught the reference's hits first. */
+ * accelerator that learns receives the reference's hits first. */
 RtStatus rt_equivalence_check(const RtReference *reference, RtAccel *accel, int threads, RtEquivalence *out,
                               RtError *error);
 
-/* The verdict on an answer of the query's accelerator to `nearest`, or to `occluded`, where brute's nearest
- * hit is `expected`: RT_EQUAL or RT_WRONG if it is exact. RT_NO_MEMORY as in verify/verdict.h. */
+/* The verdict on an answer of the query's accelerator to `nearest`, or to `occluded`, given brute's
+ * nearest hit `expected`: RT_EQUAL or RT_WRONG for an exact accelerator. RT_NO_MEMORY as in
+ * verify/verdict.h. */
 RtStatus rt_answer_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, RtHit got,
                            RtVerdict *verdict, RtError *error);
 RtStatus rt_blocked_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, bool got,
                             RtVerdict *verdict, RtError *error);
 
-/* The rays that were asked together with the ray of a wrong answer, from those that came before it to the end
- * of its stream: `count` of the reference's, from `first` on. */
+/* The rays that were traced together with that of a wrong answer, up to the end of its stream: `count` of
+ * the reference's, from `first` on. */
 void rt_wrong_answer_context(const RtReference *reference, const RtWrongAnswer *wrong, size_t *first,
                              size_t *count);
 
-/* The row of `verify --json`; a new reference, NULL if memory is short. Floats are strings that read back to
- * the same bits ("inf" included). */
+/* The row of `verify --json`: a new reference, NULL if memory is short. Floats are strings that read back
+ * to the same bits ("inf" included). */
 json_t *rt_equivalence_json(const RtEquivalence *result, const char *scene, const char *accel,
                             const char *against);
 
-/* One line that says what was asked, expected and got, to out[0..room). */
+/* Describes the query, the expected and the actual answer in one line, to out[0..room). */
 void rt_wrong_answer_format(const RtWrongAnswer *wrong, char *out, size_t room);
 
 #endif

@@ -8,15 +8,16 @@ static RtStatus build_spec(const void *context, const RtScene *scene, int thread
     return rt_accel_open_on(context, scene, threads, out, error);
 }
 
-RtMaker rt_maker_of_spec(const char *spec) {
-    return (RtMaker){build_spec, spec, 0};
+RtAccelBuilder rt_accel_builder_of_spec(const char *spec) {
+    return (RtAccelBuilder){build_spec, spec, 0};
 }
 
-RtStatus rt_maker_build(const RtMaker *maker, const RtScene *scene, RtAccel **out, RtError *error) {
-    return maker->build(maker->context, scene, maker->threads, out, error);
+RtStatus rt_accel_builder_run(const RtAccelBuilder *builder, const RtScene *scene, RtAccel **out,
+                              RtError *error) {
+    return builder->build(builder->context, scene, builder->threads, out, error);
 }
 
-/* What is asked of, and room for the answers. */
+/* The accelerators, and memory for the answers. */
 typedef struct Session {
     RtAccel *brute, *accel;
     RtQuery truth, query;
@@ -24,8 +25,8 @@ typedef struct Session {
     bool *blocked;         /* [count] */
 } Session;
 
-static RtStatus open_session(Session *s, const RtFailure *failure, const RtScene *scene, RtMaker maker,
-                             RtError *error) {
+static RtStatus open_session(Session *s, const RtFailure *failure, const RtScene *scene,
+                             RtAccelBuilder builder, RtError *error) {
     size_t count = failure->count;
     s->expected = rt_alloc(count, sizeof(RtHit));
     s->got = rt_alloc(count, sizeof(RtHit));
@@ -36,7 +37,7 @@ static RtStatus open_session(Session *s, const RtFailure *failure, const RtScene
     RT_TRY(rt_accel_open(rt_accel_truth(), scene, &s->brute, error));
     RT_TRY(rt_query_init(&s->truth, s->brute, error));
     rt_nearest(&s->truth, failure->rays, count, s->expected, NULL);
-    RT_TRY(rt_maker_build(&maker, scene, &s->accel, error));
+    RT_TRY(rt_accel_builder_run(&builder, scene, &s->accel, error));
     RT_TRY(rt_accel_learn(s->accel, failure->rays, s->expected, count, error));
     return rt_query_init(&s->query, s->accel, error);
 }
@@ -69,29 +70,29 @@ static RtStatus ask(Session *s, const RtFailure *failure, RtAnswer *answer, RtEr
     return RT_OK;
 }
 
-RtStatus rt_failure_ask(const RtFailure *failure, const RtScene *scene, RtMaker maker, RtAnswer *answer,
-                        RtError *error) {
+RtStatus rt_failure_ask(const RtFailure *failure, const RtScene *scene, RtAccelBuilder builder,
+                        RtAnswer *answer, RtError *error) {
     Session session = {0};
-    RtStatus status = open_session(&session, failure, scene, maker, error);
+    RtStatus status = open_session(&session, failure, scene, builder, error);
     if (status == RT_OK) status = ask(&session, failure, answer, error);
     if (status == RT_OK) status = rt_accel_check(session.accel, error);
     close_session(&session);
     return status;
 }
 
-RtStatus rt_failure_of(const RtReference *reference, const RtWrongAnswer *wrong, RtMaker maker,
+RtStatus rt_failure_of(const RtReference *reference, const RtWrongAnswer *wrong, RtAccelBuilder builder,
                        RtFailure *failure, RtAnswer *answer, RtError *error) {
     *failure = (RtFailure){.rays = reference->rays + wrong->index,
                            .count = 1,
                            .stream = 1,
                            .occluded = wrong->occluded,
                            .counted = wrong->counted};
-    RT_TRY(rt_failure_ask(failure, reference->scene, maker, answer, error));
+    RT_TRY(rt_failure_ask(failure, reference->scene, builder, answer, error));
     if (answer->wrong) return RT_OK;
     size_t first;
     rt_wrong_answer_context(reference, wrong, &first, &failure->count);
     failure->rays = reference->rays + first;
     failure->asked = wrong->index - first;
     failure->stream = wrong->stream;
-    return rt_failure_ask(failure, reference->scene, maker, answer, error);
+    return rt_failure_ask(failure, reference->scene, builder, answer, error);
 }

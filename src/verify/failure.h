@@ -1,30 +1,31 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A failure: rays of which an accelerator answers one wrong, so that they can be asked about again: over the
- * same scene, over a part of it, by another build.
+/* A failure: rays one of which an accelerator answers wrong, for repeating the query: over the same scene,
+ * over a part of it, or with another build.
  *
- * It is asked by a fresh query, of an accelerator built anew, and as in a check (verify/equivalence.h):
- * `nearest` and `occluded` in turn, stream by stream, by one of the two kernels. The answer to one ray is
- * wrong; the others are there because a failure may depend on what was asked before or beside it. */
+ * The query is repeated with a newly built accelerator as in a check (verify/equivalence.h): `nearest` and
+ * `occluded` in turn, stream by stream, with one of the two kernels. The other rays are included because a
+ * failure may depend on earlier or simultaneous queries. */
 #ifndef RT_VERIFY_FAILURE_H
 #define RT_VERIFY_FAILURE_H
 
 #include "verify/equivalence.h"
 
-/* How the accelerator in question is built over a scene. */
-typedef struct RtMaker {
+/* Builds the accelerator in question over a scene. */
+typedef struct RtAccelBuilder {
     RtStatus (*build)(const void *context, const RtScene *scene, int threads, RtAccel **out, RtError *error);
     const void *context; /* borrowed */
-    int threads;         /* 0 = all processors; does not change the structure */
-} RtMaker;
+    int threads;         /* 0 = all processors; does not affect the structure */
+} RtAccelBuilder;
 
-/* By a spec, which stays the caller's. */
-RtMaker rt_maker_of_spec(const char *spec);
-RtStatus rt_maker_build(const RtMaker *maker, const RtScene *scene, RtAccel **out, RtError *error);
+/* Builds from a spec, which is borrowed. */
+RtAccelBuilder rt_accel_builder_of_spec(const char *spec);
+RtStatus rt_accel_builder_run(const RtAccelBuilder *builder, const RtScene *scene, RtAccel **out,
+                              RtError *error);
 
 typedef struct RtFailure {
     const RtRay *rays; /* [count] borrowed, valid */
     size_t count;
-    size_t asked;  /* the ray that is answered wrong */
+    size_t asked;  /* the ray with the wrong answer */
     size_t stream; /* length of the streams */
     bool occluded, counted;
 } RtFailure;
@@ -33,17 +34,16 @@ typedef struct RtAnswer {
     RtHit expected; /* brute's nearest hit */
     RtHit got;      /* answer to `nearest` */
     bool blocked;   /* answer to `occluded` */
-    bool wrong;     /* the one that was asked for */
+    bool wrong;     /* the answer in question is wrong */
 } RtAnswer;
 
-/* Builds over `scene`, asks, and compares with brute. */
-RtStatus rt_failure_ask(const RtFailure *failure, const RtScene *scene, RtMaker maker, RtAnswer *answer,
-                        RtError *error);
+/* Builds over `scene`, traces the rays, and compares with brute. */
+RtStatus rt_failure_ask(const RtFailure *failure, const RtScene *scene, RtAccelBuilder builder,
+                        RtAnswer *answer, RtError *error);
 
-/* The failure of a wrong answer: its ray alone if that gives a wrong answer, too, and otherwise with all rays
- * that were asked together with it. `answer->wrong` is false where even then the answer is right: what was
- * wrong depended on more than that. */
-RtStatus rt_failure_of(const RtReference *reference, const RtWrongAnswer *wrong, RtMaker maker,
+/* The failure for a wrong answer: its ray alone if that suffices, otherwise with all rays that were traced
+ * together with it. `answer->wrong` is false if even then the answer is right: the error depended on more. */
+RtStatus rt_failure_of(const RtReference *reference, const RtWrongAnswer *wrong, RtAccelBuilder builder,
                        RtFailure *failure, RtAnswer *answer, RtError *error);
 
 #endif

@@ -1,27 +1,27 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The families of rays: one function a family, which makes one ray from the random numbers it is given. */
+/* The families of rays: one function per family generates one ray from its random numbers. */
 #include "verify/ray_families.h"
 #include "rays/rayset.h"
 #include "verify/ray_points.h"
 
 #include <assert.h>
 
-typedef struct Maker {
+typedef struct Generator {
     RtQuery *query;
     const RtScene *scene;
     const RtGeometry *geometry; /* the scene's */
-    RtView view;                /* of its camera; without samples if that sees nothing */
+    RtView view;                /* of its camera; no samples if the camera is invalid */
     RtVec3d center;             /* of the scene's box */
     double size;                /* half its diagonal */
     RtRandom random;
     RtRandom shared; /* the same for RT_RAY_BUNDLE rays in a row */
-} Maker;
+} Generator;
 
-static uint32_t below(Maker *m, uint32_t n) {
+static uint32_t below(Generator *m, uint32_t n) {
     return rt_random_below(&m->random, n);
 }
 
-static RtVec3d point_of_object(Maker *m, RtWhere where, uint32_t *id) {
+static RtVec3d point_of_object(Generator *m, RtWhere where, uint32_t *id) {
     return rt_point_of_object(m->geometry, where, &m->random, rt_query_room(m->query), id);
 }
 
@@ -29,8 +29,8 @@ static RtRay ray_along(RtVec3d from, RtVec3d dir) {
     return (RtRay){.org = rt_narrow(from), .dir = rt_narrow(dir), .tmax = INFINITY, .kind = RT_RAY_RANDOM};
 }
 
-/* From a random place around or inside the scene through `target`. */
-static RtRay ray_through(Maker *m, RtVec3d target) {
+/* From a random point around or inside the scene through `target`. */
+static RtRay ray_through(Generator *m, RtVec3d target) {
     RtVec3d from = below(m, 2) ? rt_point_in_scene(m->geometry, &m->random)
                                : rt_add_scaledd(m->center, rt_random_direction(&m->random), 2 * m->size);
     return (RtRay){.org = rt_narrow(from),
@@ -41,12 +41,12 @@ static RtRay ray_through(Maker *m, RtVec3d target) {
 
 /* ---- the families ---- */
 
-static RtRay chord(Maker *m) {
+static RtRay chord(Generator *m) {
     return rt_random_chord(&m->geometry->box, &m->random);
 }
 
-/* Parallel to an axis, the other components +0 or -0. */
-static RtRay along_axis(Maker *m) {
+/* Parallel to an axis; the other components are +0 or -0. */
+static RtRay along_axis(Generator *m) {
     RtVec3d p = rt_point_in_scene(m->geometry, &m->random), dir;
     int axis = (int)below(m, 3);
     for (int a = 0; a < 3; a++) dir.at[a] = below(m, 2) ? 0.0 : -0.0;
@@ -55,9 +55,9 @@ static RtRay along_axis(Maker *m) {
     return ray_along(p, dir);
 }
 
-/* Directions of whole numbers from points at whole fractions of a box: through its corners, edges and
- * halves, and through the corners of a grid's voxels. */
-static RtRay on_fractions(Maker *m) {
+/* From points at simple fractions of a box in simple directions: through its corners, edges and midpoints,
+ * and through the corners of a grid's voxels. */
+static RtRay on_fractions(Generator *m) {
     const RtBox *box = rt_some_box(m->geometry, &m->random);
     RtVec3d from, to;
     for (int a = 0; a < 3; a++) {
@@ -71,14 +71,14 @@ static RtRay on_fractions(Maker *m) {
     return ray;
 }
 
-static RtRay from_surface(Maker *m) {
+static RtRay from_surface(Generator *m) {
     uint32_t id;
     RtVec3d p = point_of_object(m, RT_ON_SURFACE, &id);
     return ray_along(p, rt_random_direction(&m->random));
 }
 
-/* From a point in a face of a box, in the face or off it. */
-static RtRay from_box_face(Maker *m) {
+/* From a point on a face of a box, within the face or away from it. */
+static RtRay from_box_face(Generator *m) {
     const RtBox *box = rt_some_box(m->geometry, &m->random);
     RtVec3d p = rt_point_in_box(box, &m->random), dir = rt_random_direction(&m->random);
     int axis = (int)below(m, 3);
@@ -89,7 +89,7 @@ static RtRay from_box_face(Maker *m) {
 }
 
 /* Some end where they begin. */
-static RtRay from_inside(Maker *m) {
+static RtRay from_inside(Generator *m) {
     const RtBox *box = rt_some_box(m->geometry, &m->random);
     RtVec3d p = below(m, 2) ? rt_widen(rt_box_center(*box)) : rt_point_in_box(box, &m->random);
     RtRay ray = ray_along(p, rt_random_direction(&m->random));
@@ -97,18 +97,18 @@ static RtRay from_inside(Maker *m) {
     return ray;
 }
 
-static RtRay at_vertex(Maker *m) {
+static RtRay at_vertex(Generator *m) {
     uint32_t id;
     return ray_through(m, point_of_object(m, RT_AT_VERTEX, &id));
 }
 
-static RtRay at_edge(Maker *m) {
+static RtRay at_edge(Generator *m) {
     uint32_t id;
     return ray_through(m, point_of_object(m, RT_ON_EDGE, &id));
 }
 
 /* Touches an object: in the plane of a flat one, along the silhouette of a round one. */
-static RtRay tangent(Maker *m) {
+static RtRay tangent(Generator *m) {
     uint32_t id;
     RtVec3d p = point_of_object(m, below(m, 2) ? RT_ON_SURFACE : RT_AT_VERTEX, &id);
     RtVec3d dir = rt_random_direction(&m->random);
@@ -120,8 +120,8 @@ static RtRay tangent(Maker *m) {
     return ray_along(rt_add_scaledd(p, dir, -m->size), dir);
 }
 
-/* From 10^3 to 10^7 sizes away. */
-static RtRay from_afar(Maker *m) {
+/* From a distance of 10^3 to 10^7 scene sizes. */
+static RtRay from_afar(Generator *m) {
     static const double sizes[] = {1e3, 1e4, 1e5, 1e6, 1e7};
     double distance = m->size * sizes[below(m, 5)];
     RtVec3d from = rt_add_scaledd(m->center, rt_random_direction(&m->random), distance);
@@ -131,9 +131,9 @@ static RtRay from_afar(Maker *m) {
     return ray_along(from, rt_normalized(rt_subd(to, from)));
 }
 
-/* A length of direction anywhere from 1e-15 to 3e38, or so great that float32 has few numbers for the t at
- * which the scene is crossed: boxes are entered and left at the same t, or at 0. */
-static RtRay of_any_length(Maker *m) {
+/* A direction length between 1e-15 and 3e38, or one so great that float32 has few numbers for t within the
+ * scene: boxes are entered and left at the same t, or at 0. */
+static RtRay of_any_length(Generator *m) {
     static const double lengths[] = {1e-15, 1e-12, 1e-10, 1e-7, 1e-5, 1e-2, 1e2,
                                      1e5,   1e10,  1e15,  1e30, 1e37, 1e38, 3e38};
     RtRay ray = below(m, 2) ? chord(m) : at_vertex(m);
@@ -143,8 +143,8 @@ static RtRay of_any_length(Maker *m) {
     return ray;
 }
 
-/* Begins or ends exactly at a hit, or one float beside it. */
-static RtRay ends_at_hit(Maker *m) {
+/* Starts or ends exactly at a hit, or one float beside it. */
+static RtRay ends_at_hit(Generator *m) {
     uint32_t kind = below(m, 5);
     RtRay ray = kind < 2 ? chord(m) : kind < 4 ? at_vertex(m) : of_any_length(m);
     RtHit hit = RT_MISS;
@@ -160,8 +160,8 @@ static RtRay ends_at_hit(Maker *m) {
     return ray;
 }
 
-/* Any direction, or one whose components are 0 or +-1: along axes and diagonals. */
-static RtVec3d free_direction(Maker *m) {
+/* A random direction, or one along an axis or diagonal, with components 0 or +-1. */
+static RtVec3d free_direction(Generator *m) {
     if (below(m, 2)) return rt_random_direction(&m->random);
     RtVec3d dir;
     for (int a = 0; a < 3; a++) dir.at[a] = (double)below(m, 3) - 1;
@@ -169,20 +169,20 @@ static RtVec3d free_direction(Maker *m) {
     return dir;
 }
 
-/* A plane of the voxels of a grid over the scene, or over a box in it; in float32 or rounded from double. */
-static double voxel_plane(Maker *m, const RtBox *box, int axis, uint32_t voxels) {
+/* A voxel plane of a grid over the scene or a box, computed in float32 or rounded from double. */
+static double voxel_plane(Generator *m, const RtBox *box, int axis, uint32_t voxels) {
     float lo = box->lo.at[axis], hi = box->hi.at[axis];
     uint32_t i = below(m, voxels + 1);
     if (below(m, 2)) return (double)(lo + (hi - lo) / (float)voxels * (float)i);
     return (double)lo + ((double)hi - (double)lo) * i / voxels;
 }
 
-static uint32_t some_resolution(Maker *m) {
+static uint32_t some_resolution(Generator *m) {
     return below(m, 2) ? 1U << below(m, 7) : 1 + below(m, 50);
 }
 
-/* From a corner of a voxel, or from a point of an edge of one. */
-static RtRay from_voxel_corner(Maker *m) {
+/* From a corner or an edge of a voxel. */
+static RtRay from_voxel_corner(Generator *m) {
     const RtBox *box = below(m, 2) ? &m->geometry->box : rt_some_box(m->geometry, &m->random);
     if (m->geometry->object_count == 0) box = rt_some_box(m->geometry, &m->random);
     RtVec3d p = rt_point_in_box(box, &m->random);
@@ -194,7 +194,7 @@ static RtRay from_voxel_corner(Maker *m) {
 }
 
 /* Within a plane of voxels or a face of a box, from inside or outside. */
-static RtRay in_plane(Maker *m) {
+static RtRay in_plane(Generator *m) {
     const RtBox *box = rt_some_box(m->geometry, &m->random);
     int axis = (int)below(m, 3);
     RtVec3d p = rt_point_in_box(box, &m->random), dir = free_direction(m);
@@ -205,8 +205,8 @@ static RtRay in_plane(Maker *m) {
     return ray_along(p, dir);
 }
 
-/* Along an edge: from one vertex to the next, from before it, or from between them. */
-static RtRay along_edge(Maker *m) {
+/* Along an edge: from a vertex, before it, or between two. */
+static RtRay along_edge(Generator *m) {
     const RtGeometry *g = m->geometry;
     if (g->triangle_count + g->polygon_count == 0) return along_axis(m);
     uint32_t i = below(m, g->triangle_count + g->polygon_count), count = 3;
@@ -226,7 +226,7 @@ static RtRay along_edge(Maker *m) {
 }
 
 /* Nearly parallel to a flat object or to the silhouette of a round one, by an angle of 1e-2 to 1e-8. */
-static RtRay grazing(Maker *m) {
+static RtRay grazing(Generator *m) {
     static const double angles[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
     uint32_t id;
     RtVec3d p = point_of_object(m, RT_ON_SURFACE, &id), dir = rt_random_direction(&m->random);
@@ -240,8 +240,8 @@ static RtRay grazing(Maker *m) {
     return ray_along(rt_add_scaledd(p, dir, -m->size * rt_random_betweend(&m->random, 0, 2)), dir);
 }
 
-/* Components that are denormal, the least normal number, 0 or -0, beside one that is not. */
-static RtRay denormal(Maker *m) {
+/* Components that are denormal, the smallest normal number, 0 or -0, beside a regular one. */
+static RtRay denormal(Generator *m) {
     static const float tiny[] = {0x1p-149f, -0x1p-149f, 0x1p-140f, -0x1p-130f, 0x1p-127f,
                                  0x1p-126f, -0x1p-126f, 0.0f,      -0.0f};
     uint32_t id;
@@ -259,9 +259,9 @@ static RtRay denormal(Maker *m) {
     return ray;
 }
 
-/* A shadow ray, as the renderer makes them or nearly so: off a surface, on it, at an edge, or from anywhere
- * around; some with the wrong light, a limit of their own, or a direction that is not quite the light's. */
-static RtRay to_light(Maker *m) {
+/* A shadow ray, exactly or nearly as the renderer generates them: off a surface, on it, at an edge, or
+ * from anywhere around; some with a wrong light, another tmax, or a slightly wrong direction. */
+static RtRay to_light(Generator *m) {
     if (m->scene->light_count == 0) return chord(m);
     uint32_t id, light = below(m, m->scene->light_count);
     RtVec3d to = rt_widen(m->scene->lights[light].position), from;
@@ -269,7 +269,7 @@ static RtRay to_light(Maker *m) {
     case 0: from = point_of_object(m, RT_ON_SURFACE, &id); break;
     case 1: from = point_of_object(m, RT_ON_EDGE, &id); break;
     case 2: from = rt_point_in_scene(m->geometry, &m->random); break;
-    case 3: /* from afar, past an edge, or from behind the light */
+    case 3: /* far away, past an edge, or behind the light */
         from = point_of_object(m, RT_ON_EDGE, &id);
         from =
             rt_add_scaledd(to, rt_subd(to, from), below(m, 2) ? 1 : -rt_random_betweend(&m->random, 1, 1e4));
@@ -289,11 +289,12 @@ static RtRay to_light(Maker *m) {
     return ray;
 }
 
-/* A primary ray of the scene's sampling, or nearly so: some of another sample, or not quite through it. */
-static RtRay through_sample(Maker *m) {
+/* A primary ray, exactly or nearly: some with the index of another sample, or not quite through their
+ * sample. */
+static RtRay through_sample(Generator *m) {
     const RtSampling *s = &m->scene->sampling;
     if (m->view.sampling.columns == 0) return chord(m);
-    /* Not as arguments: in what order these are evaluated C leaves open. */
+    /* Not as arguments, whose order of evaluation C leaves open. */
     uint32_t row = below(m, s->rows), column = below(m, s->columns);
     RtRay ray = rt_view_ray(&m->view, column, row);
     switch (below(m, 16)) {
@@ -306,9 +307,9 @@ static RtRay through_sample(Maker *m) {
     return ray;
 }
 
-/* One of many in a row that go nearly the same way: from one place, side by side, or both. Of some bundles
- * the two largest components of dir are equal, or nearly so. */
-static RtRay in_bundle(Maker *m) {
+/* One of a bundle of nearly equal rays: with a common origin, side by side, or both. In some bundles the
+ * two largest components of dir are nearly equal. */
+static RtRay in_bundle(Generator *m) {
     static const double spreads[] = {1e-7, 1e-4, 1e-2, 0.05};
     RtRandom own = m->random;
     m->random = m->shared;
@@ -327,7 +328,7 @@ static RtRay in_bundle(Maker *m) {
 
 static const struct {
     const char *name;
-    RtRay (*make)(Maker *maker);
+    RtRay (*make)(Generator *maker);
 } families[] = {
     {"chord", chord},
     {"along-axis", along_axis},
@@ -361,7 +362,7 @@ const char *rt_ray_family_name(size_t family) {
 
 void rt_ray_family_fill(size_t family, RtQuery *query, uint64_t seed, uint64_t first, size_t count,
                         RtRay *rays) {
-    Maker maker = {
+    Generator maker = {
         .query = query, .scene = query->accel->scene, .geometry = &query->accel->scene->geometry, .size = 1};
     rt_view_init(&maker.view, &maker.scene->camera, maker.scene->sampling, NULL);
     if (maker.geometry->object_count > 0) {
@@ -374,7 +375,7 @@ void rt_ray_family_fill(size_t family, RtQuery *query, uint64_t seed, uint64_t f
         maker.shared =
             rt_random(seed, (uint64_t)family << 56 | UINT64_C(1) << 55 | (first + i) / RT_RAY_BUNDLE);
         rays[i] = families[family].make(&maker);
-        /* A target that is its own origin, or a direction that rounds to zero. */
+        /* The target may equal the origin, or the direction may round to zero. */
         if (!rt_ray_is_valid(&rays[i])) rays[i] = chord(&maker);
         assert(rt_ray_is_valid(&rays[i]));
     }

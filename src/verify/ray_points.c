@@ -22,7 +22,7 @@ const RtBox *rt_some_box(const RtGeometry *g, RtRandom *random) {
     return &g->boxes[rt_random_below(random, g->object_count)];
 }
 
-/* A point of a cone's side, or with `rim` of one of its circles. */
+/* A point of a cone's side, or of one of its circles if `rim`. */
 static RtVec3d point_of_cone(const RtCone *cone, bool rim, RtRandom *random) {
     RtVec3d around = rt_normalized(rt_crossd(cone->axis, rt_random_direction(random)));
     double s = rim ? (double)rt_random_below(random, 2) : rt_random_betweend(random, 0, 1);
@@ -38,7 +38,7 @@ static RtVec3d point_of_vertices(const RtVec3 *v, uint32_t count, RtWhere where,
     return where == RT_ON_EDGE ? p : rt_add_scaledd(p, rt_subd(c, p), rt_random_betweend(random, 0, 1));
 }
 
-/* One of the six points at which a sphere touches its box, or any other. */
+/* One of the six points where a sphere touches its box, or any other. */
 static RtVec3d point_of_sphere(const RtSphere *sphere, RtWhere where, RtRandom *random) {
     RtVec3d out = rt_random_direction(random);
     if (where == RT_AT_VERTEX) {
@@ -49,8 +49,8 @@ static RtVec3d point_of_sphere(const RtSphere *sphere, RtWhere where, RtRandom *
     return rt_add_scaledd(rt_widen(sphere->center), out, (double)sphere->radius);
 }
 
-/* Of a tree: a corner of the box of one of its solids, a point of an edge of such a box, or where a random
- * line meets the tree. */
+/* For a tree: a corner or an edge point of the box of one of its solids, or where a random line meets the
+ * tree. */
 static RtVec3d point_of_csg(const RtGeometry *g, uint32_t id, RtWhere where, RtRandom *random,
                             RtCrossing *room) {
     const RtCsg *tree = &g->csgs[rt_ref_index(g->objects[id])];

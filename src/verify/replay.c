@@ -15,7 +15,7 @@
 
 enum {
     MOST_BYTES = 1 << 30, /* of a replay file */
-    MOST_OBJECTS = 20000, /* of a scene that is written down whole */
+    MOST_OBJECTS = 20000, /* of a scene that is stored in the file */
     NUMBERS = 8           /* of a ray: org, dir, tmin, tmax */
 };
 
@@ -45,7 +45,7 @@ static json_t *got_json(const RtFailure *failure, const RtAnswer *answer) {
     return failure->occluded ? json_boolean(answer->blocked) : hit_json(answer->got);
 }
 
-/* The scene as YAML; NULL if memory is short. */
+/* The scene as YAML, or NULL if memory is short. */
 static json_t *yaml_json(const RtScene *scene) {
     char *text = NULL;
     size_t size = 0;
@@ -133,7 +133,7 @@ static bool get_ray(const json_t *object, RtRay *ray) {
     return rt_ray_is_valid(ray);
 }
 
-/* False, with the name of the first member that is wrong, or NULL where memory is short. */
+/* On failure returns false and the name of the first wrong member, or NULL if memory is short. */
 static bool take(RtReplay *r, const char **wrong) {
     const json_t *d = r->document, *rays = json_object_get(d, "rays");
     const json_t *sampling = json_object_get(d, "sampling"), *shrunk = json_object_get(d, "shrunk");
@@ -181,12 +181,10 @@ RtStatus rt_replay_load(RtReplay *replay, const char *path, RtError *error) {
                           at.text);
     }
     if (take(replay, &wrong)) return RT_OK;
-    RtStatus status =
-        wrong ? rt_fail(
-                    error, RT_BAD_INPUT,
-                    "%s: this is not a file to replay: '%s' is missing or not what `raytally verify` writes",
-                    path, wrong)
-              : rt_fail_memory(error, "rays", replay->failure.count * sizeof(RtRay));
+    RtStatus status = wrong
+                          ? rt_fail(error, RT_BAD_INPUT,
+                                    "%s: this is not a replay file: '%s' is missing or invalid", path, wrong)
+                          : rt_fail_memory(error, "rays", replay->failure.count * sizeof(RtRay));
     rt_replay_clear(replay);
     return status;
 }
@@ -197,7 +195,7 @@ void rt_replay_clear(RtReplay *replay) {
     *replay = (RtReplay){0};
 }
 
-/* ---- asking again ---- */
+/* ---- repeating the query ---- */
 
 static RtStatus open_text(const char *text, RtScene *scene, RtError *error) {
     rt_scene_init(scene);
@@ -213,16 +211,16 @@ static RtStatus open_scene(const RtReplay *r, bool shrunk, RtScene *scene, RtErr
     RT_TRY(r->yaml ? open_text(r->yaml, scene, error) : rt_scene_open(r->scene_spec, scene, error));
     if (rt_scene_fingerprint(scene) == r->fingerprint) return RT_OK;
     rt_scene_clear(scene);
-    return rt_fail(error, RT_BAD_INPUT, "%s is no longer the scene that it was when this was written",
-                   r->scene_spec);
+    return rt_fail(error, RT_BAD_INPUT, "%s has changed since the replay file was written", r->scene_spec);
 }
 
-RtStatus rt_replay_ask(const RtReplay *replay, RtMaker maker, bool shrunk, RtAnswer *answer, RtError *error) {
+RtStatus rt_replay_ask(const RtReplay *replay, RtAccelBuilder builder, bool shrunk, RtAnswer *answer,
+                       RtError *error) {
     RtScene scene;
     RT_TRY(open_scene(replay, shrunk, &scene, error));
     RtStatus status = rt_scene_sample(&scene, replay->columns, replay->rows, 1, false, error);
     if (status == RT_OK) {
-        status = rt_failure_ask(&replay->failure, &scene, maker, answer, error);
+        status = rt_failure_ask(&replay->failure, &scene, builder, answer, error);
     }
     rt_scene_clear(&scene);
     return status;

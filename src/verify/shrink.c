@@ -6,21 +6,21 @@
 
 #include <string.h>
 
-/* A try costs this many objects besides those it builds over. */
+/* The fixed cost of a try, in objects. */
 #define TRY_COST 32
 
 typedef struct Shrinking {
     const RtScene *scene;
     const RtFailure *failure;
-    RtMaker maker;
+    RtAccelBuilder builder;
     const RtShrinkObserver *observer;
-    uint64_t left;  /* of the budget */
-    uint32_t *part; /* [object_count] what is tried */
+    uint64_t left;  /* remaining budget */
+    uint32_t *part; /* [object_count] the objects of the current try */
     RtShrunk *out;
     RtError *error;
 } Shrinking;
 
-/* Asks over s->part[0..count); if the answer is still wrong, that is what is left. */
+/* Repeats the query over s->part[0..count); if the answer is still wrong, those objects remain. */
 static RtStatus try_part(Shrinking *s, uint32_t count, bool *shrunk) {
     RtScene scene;
     RtAnswer answer = {.wrong = false};
@@ -29,7 +29,7 @@ static RtStatus try_part(Shrinking *s, uint32_t count, bool *shrunk) {
     s->left = cost < s->left ? s->left - cost : 0;
     if (s->left == 0) return RT_OK;
     RT_TRY(rt_scene_subset(s->scene, s->part, count, &scene, s->error));
-    RtStatus status = rt_failure_ask(s->failure, &scene, s->maker, &answer, s->error);
+    RtStatus status = rt_failure_ask(s->failure, &scene, s->builder, &answer, s->error);
     rt_scene_clear(&scene);
     if (status != RT_OK && status != RT_BAD_INPUT) return status;
     s->out->tries++;
@@ -43,7 +43,7 @@ static RtStatus try_part(Shrinking *s, uint32_t count, bool *shrunk) {
     return RT_OK;
 }
 
-/* Of the objects left, those with places first..end-1, or with `others` all but those, to s->part. */
+/* Copies to s->part the remaining objects first..end-1, or all others. */
 static uint32_t choose(Shrinking *s, uint32_t first, uint32_t end, bool others) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < s->out->count; i++) {
@@ -52,7 +52,7 @@ static uint32_t choose(Shrinking *s, uint32_t first, uint32_t end, bool others) 
     return count;
 }
 
-/* Tries each of `pieces` equal pieces of what is left, or with `others` what each of them leaves. */
+/* Tries each of `pieces` equal pieces of the remaining objects, or the complement of each if `others`. */
 static RtStatus try_pieces(Shrinking *s, uint32_t pieces, bool others, bool *shrunk) {
     uint64_t count = s->out->count;
     *shrunk = false;
@@ -63,7 +63,7 @@ static RtStatus try_pieces(Shrinking *s, uint32_t pieces, bool others, bool *shr
     return RT_OK;
 }
 
-/* Most failures are about the two objects that were named. */
+/* Most failures involve just the two objects of the answers. */
 static RtStatus try_those_named(Shrinking *s, const RtAnswer *answer) {
     uint32_t a = answer->expected.object, b = s->failure->occluded ? RT_NO_OBJECT : answer->got.object;
     uint32_t count = 0, objects = s->out->count;
@@ -88,7 +88,7 @@ static RtStatus shrink(Shrinking *s, const RtAnswer *answer) {
             pieces = 2;
             continue;
         }
-        /* What one half leaves is the other half. */
+        /* The complement of one half is the other half. */
         if (pieces > 2) RT_TRY(try_pieces(s, pieces, true, &shrunk));
         if (shrunk) {
             pieces = pieces > 3 ? pieces - 1 : 2;
@@ -102,13 +102,14 @@ static RtStatus shrink(Shrinking *s, const RtAnswer *answer) {
     return RT_OK;
 }
 
-RtStatus rt_shrink(const RtScene *scene, const RtFailure *failure, const RtAnswer *answer, RtMaker maker,
-                   uint64_t budget, const RtShrinkObserver *observer, RtShrunk *out, RtError *error) {
+RtStatus rt_shrink(const RtScene *scene, const RtFailure *failure, const RtAnswer *answer,
+                   RtAccelBuilder builder, uint64_t budget, const RtShrinkObserver *observer, RtShrunk *out,
+                   RtError *error) {
     uint32_t count = scene->geometry.object_count;
     *out = (RtShrunk){.ids = rt_alloc(count, sizeof(uint32_t)), .count = count, .answer = *answer};
     Shrinking s = {.scene = scene,
                    .failure = failure,
-                   .maker = maker,
+                   .builder = builder,
                    .observer = observer,
                    .left = budget,
                    .part = rt_alloc(count, sizeof(uint32_t)),

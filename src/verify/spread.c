@@ -4,13 +4,14 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Adds ":text" to a layer that ends at out[used], or ",text" where it has parameters. Gives the new end. */
+/* Appends ":text" to a layer that ends at out[used], or ",text" if it already has parameters. Returns the
+ * new end. */
 static size_t add_text(char *out, size_t used, const char *text, size_t chars, bool first) {
     int added = snprintf(out + used, RT_MAX_SPEC_CHARS - used, "%c%.*s", first ? ':' : ',', (int)chars, text);
     return used + (size_t)added;
 }
 
-/* The trial's values but that of `param`, then param=value; parameters of the layer that `out` is to be. */
+/* Appends the trial's values except that of `param`, then param=value. */
 static void add_values(const RtAccelOps *ops, const RtParam *param, const char *value, char *out) {
     char own[RT_MAX_SPEC_CHARS];
     size_t used = strlen(out), name = strlen(param->name);
@@ -26,7 +27,7 @@ static void add_values(const RtAccelOps *ops, const RtParam *param, const char *
     add_text(out, used, own, (size_t)chars, first);
 }
 
-/* The `n`th value worth testing, of all parameters, that is not the default. */
+/* The `n`th test value over all parameters that is not a default. */
 static bool try_value(const RtAccelOps *ops, size_t n, const RtParam **param, char *value, size_t room) {
     for (size_t i = 0; i < ops->param_count; i++) {
         *param = &ops->params[i];
@@ -40,7 +41,7 @@ static bool try_value(const RtAccelOps *ops, size_t n, const RtParam **param, ch
 bool rt_spread_spec(const RtAccelOps *ops, size_t n, char *out) {
     const RtParam *param;
     char value[RT_MAX_SPEC_CHARS / 2];
-    size_t whole = ops->trial ? 2 : 1; /* specs that are not about one parameter */
+    size_t whole = ops->trial ? 2 : 1; /* specs that do not vary a parameter */
     snprintf(out, RT_MAX_SPEC_CHARS, "%s", n == 1 && ops->trial ? ops->trial : ops->name);
     if (n >= whole) {
         if (!try_value(ops, n - whole, &param, value, sizeof value)) return false;

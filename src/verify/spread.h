@@ -1,19 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The spread of an accelerator: its defaults, and then each parameter at each value worth testing, one at a
- * time. What verification and the conformance tests go through. */
+/* The parameter sweep of an accelerator: its defaults, then each parameter at each test value, one at a
+ * time. Verification and the conformance tests use it. */
 #ifndef RT_VERIFY_SPREAD_H
 #define RT_VERIFY_SPREAD_H
 
 #include "accel/accel.h"
 
-/* Writes the `n`th spec of the spread, "name" or "name:key=value", to out[0..RT_MAX_SPEC_CHARS); false when
- * there are no more. Values that are the default are left out. An overlay lies over the default accelerator.
- * Behind the defaults stands the trial (RtAccelOps.trial), if there is one, whose values the others have
- * too. */
+/* Writes the `n`th spec of the sweep, "name" or "name:key=value", to out[0..RT_MAX_SPEC_CHARS); false past
+ * the last. Default values are skipped. An overlay lies over the default accelerator. After the defaults
+ * comes the trial (RtAccelOps.trial), if there is one; the others include its values, too. */
 bool rt_spread_spec(const RtAccelOps *ops, size_t n, char *out);
 
-/* The trial of a valid spec of which no parameter is given, "light+wide", each layer that has one by its own,
- * to out[0..RT_MAX_SPEC_CHARS); false where there is none. */
+/* The trial of a valid spec without parameters ("light+wide"), with that of each layer that has one, to
+ * out[0..RT_MAX_SPEC_CHARS); false if there is none. */
 bool rt_trial_spec(const char *spec, char *out);
 
 #endif

@@ -5,12 +5,12 @@
 #define SHIFT     0x1p-21
 #define TOLERANCE 0x1p-18
 
-/* Sums of a few products of this size may be more than float32 holds. */
+/* Sums of a few products of this size may overflow float32. */
 #define OVERFLOW_SIZE 0x1p124
 
 enum { PROBES = 28 }; /* unmoved first, straightened last */
 
-/* One ray, moved by the error bound, with its interval widened and narrowed. */
+/* One ray, displaced by the error bound, with its interval widened and narrowed. */
 typedef struct Probes {
     RtPreparedRay wide[PROBES], narrow[PROBES];
     double shift;     /* of the origin along an axis */
@@ -22,7 +22,7 @@ typedef struct Probes {
 typedef struct Margin {
     bool possible, certain;
     double lo[2], hi[2]; /* possible t, in up to two ranges; empty is lo > hi */
-    double latest;       /* if certain: it is hit no later than this */
+    double latest;       /* if certain: an upper bound of its t */
 } Margin;
 
 static const Margin impossible = {.lo = {HUGE_VAL, HUGE_VAL}, .hi = {-HUGE_VAL, -HUGE_VAL}};
@@ -45,7 +45,7 @@ static double largest_coordinate(const RtGeometry *g, const RtRay *ray) {
 }
 
 static double tolerance_of(const RtGeometry *g, const RtRay *ray) {
-    /* Of the longest directions t is so small that float32 has nothing closer to it than its least number. */
+    /* For the longest directions t is below the resolution of float32. */
     return fmax(TOLERANCE * largest_coordinate(g, ray) / rt_lengthd(rt_widen(ray->dir)), 0x1p-149);
 }
 
@@ -53,7 +53,7 @@ static bool within(double a, double b, double tolerance) {
     return fabs(a - b) <= tolerance;
 }
 
-/* The direction without components that move no place by more than its rounding; Embree is given it so. */
+/* The direction without components below its rounding, as Embree receives it. */
 static RtVec3 straightened(RtVec3 dir) {
     float least = 0x1p-24f * fabsf(dir.at[rt_major_axis(dir)]);
     for (int a = 0; a < 3; a++) {
@@ -68,7 +68,7 @@ static void make_probes(Probes *p, const RtGeometry *g, const RtRay *ray, RtCros
     p->tolerance = tolerance_of(g, ray);
     double tmin = (double)ray->tmin, tmax = (double)ray->tmax;
     for (int i = 0; i < PROBES; i++) {
-        /* 13, the middle of the 3 x 3 x 3 places, comes first. */
+        /* 13, the centre of the 3 x 3 x 3 positions, comes first. */
         bool last = i == PROBES - 1;
         int place = i == 0 || last ? 13 : i <= 13 ? i - 1 : i;
         int x = place % 3, y = place / 3 % 3, z = place / 9;
@@ -85,7 +85,7 @@ static void make_probes(Probes *p, const RtGeometry *g, const RtRay *ray, RtCros
     }
 }
 
-/* Can a probe meet the object at all? Its box, grown by the shift, is asked once for all of them. */
+/* Can any probe meet the object? Tests its box, grown by the shift, once for all probes. */
 static bool in_reach(const RtGeometry *g, uint32_t id, const Probes *p) {
     RtBox box = g->boxes[id];
     for (int a = 0; a < 3; a++) {
@@ -96,13 +96,13 @@ static bool in_reach(const RtGeometry *g, uint32_t id, const Probes *p) {
     return rt_box_hit(&box, &p->wide[0], p->wide[0].tmax, &enter);
 }
 
-/* Does the ray meet the object's front, seen along its normal, or its back? */
+/* Does the ray hit the object's front, seen along its normal (0), or its back (1)? */
 static int side_met(const RtGeometry *g, uint32_t id, const RtPreparedRay *ray, float t) {
     RtRay again = {.org = ray->org, .tmin = ray->tmin, .dir = ray->dir, .tmax = ray->tmax};
     return rt_dotd(rt_object_normals(g, id, &again, t, ray->room).geometric, rt_widen(ray->dir)) > 0;
 }
 
-/* Shapes that only our hit functions know: what the probes say. */
+/* Shapes that only our hit functions test: from the probes. */
 static Margin probed_margin(const RtGeometry *g, uint32_t id, const Probes *p) {
     Margin m = impossible;
     m.certain = true;
@@ -124,9 +124,9 @@ static Margin probed_margin(const RtGeometry *g, uint32_t id, const Probes *p) {
     return m;
 }
 
-/* ---- shapes that Embree has arithmetic of its own for: the errors of that arithmetic, in double ---- */
+/* ---- shapes that Embree tests with its own arithmetic: its errors, in double ---- */
 
-/* Is t in lo..hi possibly, or certainly, within the ray's interval? */
+/* Is t in lo..hi possibly, or certainly, inside the ray's interval? */
 static bool may_count(const Probes *p, const RtRay *ray, double lo, double hi) {
     return hi >= (double)ray->tmin - p->tolerance && lo <= (double)ray->tmax + p->tolerance;
 }
@@ -135,9 +135,9 @@ static bool must_count(const Probes *p, const RtRay *ray, double lo, double hi) 
     return lo >= (double)ray->tmin + p->tolerance && hi <= (double)ray->tmax - p->tolerance;
 }
 
-/* The edge functions, their sum and the height above the plane are triple products of vectors that are wrong
- * by `error` each, and a side, which is a difference of two and up to twice as long, by 2 `error`; a plane
- * seen edge on is hit anywhere along the ray, and so is one where the products overflow. */
+/* The edge functions, their sum and the height above the plane are triple products of vectors with an
+ * error of `error` each, and of 2 `error` for a side, a difference of two vectors that is up to twice as
+ * long. A plane seen edge-on may be hit anywhere along the ray, and so may one whose products overflow. */
 static Margin triangle_margin(const RtTriangle *triangle, const RtRay *ray, const Probes *p) {
     RtVec3d dir = rt_widen(ray->dir), from[3], side[3];
     double longest = 0, least = HUGE_VAL, most = -HUGE_VAL, sum = 0;
@@ -167,8 +167,8 @@ static Margin triangle_margin(const RtTriangle *triangle, const RtRay *ray, cons
     return m;
 }
 
-/* The distance of the line from the centre is wrong by `error`; near the silhouette half the chord, and with
- * it t, is wrong by much more. */
+/* The distance of the line from the centre has the error `error`; near the silhouette half the chord, and
+ * with it t, has a much larger one. */
 static Margin sphere_margin(const RtSphere *sphere, const RtRay *ray, const Probes *p) {
     RtVec3d dir = rt_widen(ray->dir), org = rt_subd(rt_widen(ray->org), rt_widen(sphere->center));
     double dd = rt_dotd(dir, dir), radius = (double)sphere->radius;
@@ -197,7 +197,7 @@ static Margin sphere_margin(const RtSphere *sphere, const RtRay *ray, const Prob
 static Margin margin_of(const RtGeometry *g, uint32_t id, const RtRay *ray, const Probes *p) {
     uint32_t index = rt_ref_index(g->objects[id]);
     RtShape shape = rt_ref_shape(g->objects[id]);
-    /* A needle seen edge on may be found hit beside its box, too. */
+    /* A needle seen edge-on may be hit beside its box, too. */
     if (shape != RT_SHAPE_TRIANGLE && !in_reach(g, id, p)) return impossible;
     switch (shape) {
     case RT_SHAPE_TRIANGLE: return triangle_margin(&g->triangles[index], ray, p);
@@ -233,8 +233,8 @@ static RtStatus lack_memory(RtError *error) {
     return rt_fail_memory(error, "exact arithmetic on a CSG tree", 0);
 }
 
-/* Does the ray meet both objects, exactly, at t's within the tolerance? Our hit function, which is quick, is
- * asked first. */
+/* Does the ray exactly meet both objects, at t's within the tolerance? Our hit function is quick and comes
+ * first. */
 static RtStatus is_tie(const RtGeometry *g, const RtRay *ray, RtHit expected, RtHit answer, RtCrossing *room,
                        bool *tie, RtError *error) {
     float t;
@@ -247,9 +247,9 @@ static RtStatus is_tie(const RtGeometry *g, const RtRay *ray, RtHit expected, Rt
     if (!within((double)answer.t, (double)expected.t, tolerance)) return RT_OK;
     if (!rt_object_hit(g, answer.object, &prepared, &t, NULL)) return RT_OK;
     if (!within((double)t, (double)expected.t, tolerance)) return RT_OK;
-    RtFinding finding = rt_referee_order(g, expected.object, answer.object, ray, &order, &apart);
-    if (finding == RT_UNDECIDED) return lack_memory(error);
-    *tie = finding == RT_HIT && apart <= (long double)tolerance;
+    RtExactResult result = rt_referee_order(g, expected.object, answer.object, ray, &order, &apart);
+    if (result == RT_UNDECIDED) return lack_memory(error);
+    *tie = result == RT_HIT && apart <= (long double)tolerance;
     return RT_OK;
 }
 
@@ -286,7 +286,7 @@ RtStatus rt_verdict_occluded(const RtGeometry *geometry, const RtRay *ray, bool 
                              RtCrossing *room, RtVerdict *verdict, RtError *error) {
     *verdict = RT_EQUAL;
     if (answer == expected) return RT_OK;
-    RtFinding exact = rt_referee_occluded(geometry, ray);
+    RtExactResult exact = rt_referee_occluded(geometry, ray);
     if (exact == RT_UNDECIDED) return lack_memory(error);
     *verdict = RT_MARGINAL;
     if (exact == (answer ? RT_HIT : RT_MISSED)) return RT_OK;

@@ -14,13 +14,12 @@
 #include <ctype.h>
 #include <string.h>
 
-/* More marginal answers than this part of rays that were given are too many to be called margins; our own
- * are aimed at the margins, and may have any number. */
+/* A larger share of marginal answers is a problem for given rays; our own rays target the margins. */
 #define MARGINAL_PART 0.01
 
-#define FAILURES "verify-failures" /* where no folder is given */
+#define FAILURES "verify-failures" /* default folder */
 
-/* Where all is wrong no time is lost on the same fault again and again. */
+/* If everything fails, the same fault is not shrunk again and again. */
 enum { MOST_SHRUNK = 8 };
 
 typedef struct Run {
@@ -29,23 +28,17 @@ typedef struct Run {
     RtVerifyProgress progress;
     RtLock lock;
     RtScene *scenes; /* [scene_count], each open until its turn is over */
-    json_t *header;  /* what a run must have in common with the one that it goes on with */
+    json_t *header;  /* must be equal when a run is resumed */
     json_t *known;   /* the journal, or NULL */
     size_t next_known;
     json_t *rows;
     RtJsonLines journal;
 } Run;
 
-/* One scene with its rays and the right answers. */
-typedef struct Stage {
-    RtVerifyStage base;
-    const char *name;
-} Stage;
-
-static RtMaker maker_of(const Run *run, const RtVerifySpec *spec) {
-    RtMaker maker = spec->maker.build ? spec->maker : rt_maker_of_spec(spec->spec);
-    maker.threads = run->verify->rays.threads;
-    return maker;
+static RtAccelBuilder builder_of(const Run *run, const RtVerifySpec *spec) {
+    RtAccelBuilder builder = spec->builder.build ? spec->builder : rt_accel_builder_of_spec(spec->spec);
+    builder.threads = run->verify->rays.threads;
+    return builder;
 }
 
 static void doing(Run *run, const char *what) {
@@ -55,7 +48,7 @@ static void doing(Run *run, const char *what) {
 
 /* ---- the journal ---- */
 
-/* Every scene is opened before any is verified: one that cannot be would stop the run in the night. */
+/* All scenes are opened first: a missing one should not stop a long run halfway. */
 static RtStatus open_scenes(Run *run, RtError *error) {
     const RtVerify *v = run->verify;
     run->scenes = rt_alloc(v->scene_count, sizeof(RtScene));
@@ -82,7 +75,7 @@ static json_t *header_json(const Run *run) {
                      "rays_hash", given, "seed", (json_int_t)v->rays.seed);
 }
 
-/* What was verified, and with what, in the folder's manifest.json. */
+/* Records what was verified, and with what, in the folder's manifest.json. */
 static RtStatus write_manifest(const Run *run, RtError *error) {
     char path[RT_MAX_PATH];
     RT_TRY(rt_path_join(run->verify->folder, RT_MANIFEST, path, error));
@@ -100,14 +93,14 @@ static RtStatus load_known(Run *run, const char *path, RtError *error) {
     json_object_foreach(run->header, key, value) {
         if (json_equal(json_object_get(json_array_get(run->known, 0), key), value)) continue;
         return rt_fail(error, RT_BAD_INPUT,
-                       "%s: this is the journal of another verification, with other %s (see its first line): "
-                       "start over and lose it with --force, or give another --out",
+                       "%s: this journal belongs to another verification, with different %s (see its first "
+                       "line): start over and lose it with --force, or choose another --out",
                        path, key);
     }
     return RT_OK;
 }
 
-/* Keeps others away from the folder and looks at what is there, as soon as it is there. */
+/* Locks the folder and examines its content, as soon as it exists. */
 static RtStatus take_folder(Run *run, bool *resumed, RtError *error) {
     const char *folder = run->verify->folder;
     if (!folder || rt_lock_is_held(&run->lock)) return RT_OK;
@@ -123,7 +116,7 @@ static RtStatus open_journal(Run *run, bool resumed, RtError *error) {
     return rt_json_lines_open(&run->journal, path, resumed ? NULL : run->header, error);
 }
 
-/* Up to the journal nothing of an earlier run is touched. */
+/* Nothing of an earlier run is touched before the journal. */
 static RtStatus begin(Run *run, RtError *error) {
     bool resumed = false;
     RT_TRY(take_folder(run, &resumed, error));
@@ -142,8 +135,8 @@ static bool is_text(const json_t *row, const char *key, const char *text) {
     return value && strcmp(value, text) == 0;
 }
 
-/* The row of an earlier run, borrowed, or NULL. The journal has its rows in the order in which they are asked
- * for here, so the next one is this one or there is none. */
+/* The row of an earlier run, borrowed, or NULL. The journal has its rows in the order of the requests, so
+ * the next one is this one or there is none. */
 static json_t *known_row(Run *run, const char *scene, const char *spec) {
     json_t *row;
     while (json_is_null(row = json_array_get(run->known, run->next_known))) run->next_known++;
@@ -169,7 +162,7 @@ static void on_tried(void *context, uint32_t left, uint32_t tries) {
     doing(context, what);
 }
 
-/* FOLDER/NUMBER-SCENE-SPEC.json, in letters that every file system takes. */
+/* FOLDER/NUMBER-SCENE-SPEC.json, in characters that every file system accepts. */
 static RtStatus replay_path(const Run *run, const char *scene, const char *spec, char *path, RtError *error) {
     const char *folder = run->verify->folder ? run->verify->folder : FAILURES;
     char name[160];
@@ -181,9 +174,9 @@ static RtStatus replay_path(const Run *run, const char *scene, const char *spec,
     return rt_path_join(folder, name, path, error);
 }
 
-/* The budget for shrinking a failure, half that of the one before: they take some seconds in all. 0: the
- * first of this accelerator has been shrunk, or enough of all. It follows from the rows, as all that is
- * written. */
+/* The budget for shrinking a failure: half that of the one before, so that all take some seconds. 0 if one
+ * of this accelerator, or enough of all, have been shrunk. It depends on the rows alone, so that resumed
+ * runs agree. */
 static uint64_t shrink_budget(const Run *run, const char *spec) {
     size_t i, shrunk = 0;
     json_t *row;
@@ -195,21 +188,21 @@ static uint64_t shrink_budget(const Run *run, const char *spec) {
     return shrunk < MOST_SHRUNK ? RT_SHRINK_BUDGET >> shrunk : 0;
 }
 
-/* Shrinks the failure within its budget, writes it to a replay file, and names that in the row. */
-static RtStatus keep_failure(Run *run, const Stage *stage, const RtVerifySpec *spec,
+/* Shrinks the failure within its budget, writes a replay file, and adds its name to the row. */
+static RtStatus keep_failure(Run *run, const RtVerifyScene *scene, const RtVerifySpec *spec,
                              const RtWrongAnswer *wrong, json_t *row, RtError *error) {
-    RtMaker maker = maker_of(run, spec);
+    RtAccelBuilder builder = builder_of(run, spec);
     RtShrinkObserver observer = {on_tried, run};
     RtFailure failure;
     RtAnswer answer;
-    RtShrunk shrunk = {.count = stage->base.scene.geometry.object_count};
+    RtShrunk shrunk = {.count = scene->scene.geometry.object_count};
     uint64_t budget = shrink_budget(run, spec->spec);
     char path[RT_MAX_PATH];
-    RT_TRY(replay_path(run, stage->name, spec->spec, path, error));
-    RT_TRY(rt_failure_of(&stage->base.reference, wrong, maker, &failure, &answer, error));
-    RtReplayRecord record = {stage->name, spec->spec, &stage->base.scene, &failure, &answer, NULL};
+    RT_TRY(replay_path(run, scene->name, spec->spec, path, error));
+    RT_TRY(rt_failure_of(&scene->reference, wrong, builder, &failure, &answer, error));
+    RtReplayRecord record = {scene->name, spec->spec, &scene->scene, &failure, &answer, NULL};
     if (answer.wrong && budget > 0) {
-        RT_TRY(rt_shrink(&stage->base.scene, &failure, &answer, maker, budget, &observer, &shrunk, error));
+        RT_TRY(rt_shrink(&scene->scene, &failure, &answer, builder, budget, &observer, &shrunk, error));
         record.shrunk = &shrunk;
     }
     RtStatus status = rt_replay_save(path, &record, error);
@@ -232,7 +225,7 @@ static json_t *problem_json(const Run *run, const RtEquivalence *result, const c
 }
 
 /* A broken structure is a problem, like a wrong answer; rays are traced through it all the same. */
-static RtStatus check(Run *run, const Stage *stage, RtAccel *accel, const RtVerifySpec *spec,
+static RtStatus check(Run *run, const RtVerifyScene *scene, RtAccel *accel, const RtVerifySpec *spec,
                       RtError *error) {
     char broken[sizeof error->message] = "";
     RtEquivalence result;
@@ -242,59 +235,60 @@ static RtStatus check(Run *run, const Stage *stage, RtAccel *accel, const RtVeri
     } else {
         RT_TRY(status);
     }
-    RT_TRY(rt_equivalence_check(&stage->base.reference, accel, run->verify->rays.threads, &result, error));
-    json_t *row = rt_equivalence_json(&result, stage->name, spec->spec, rt_accel_truth());
+    RT_TRY(rt_equivalence_check(&scene->reference, accel, run->verify->rays.threads, &result, error));
+    json_t *row = rt_equivalence_json(&result, scene->name, spec->spec, rt_accel_truth());
     json_object_set_new(row, "exact", json_boolean(accel->exact));
     json_object_set_new(row, "problem", problem_json(run, &result, broken));
-    status = result.any_wrong ? keep_failure(run, stage, spec, &result.first_wrong, row, error) : RT_OK;
+    status = result.any_wrong ? keep_failure(run, scene, spec, &result.first_wrong, row, error) : RT_OK;
     if (status == RT_OK) return add_row(run, row, error);
     json_decref(row);
     return status;
 }
 
-/* One of a plugin broke before it could be asked all that it was to be: a row without rays, and why. */
-static RtStatus add_broken(Run *run, const Stage *stage, const RtVerifySpec *spec, const char *why,
+/* A plugin's accelerator broke before it answered all rays: a row without rays, with the reason. */
+static RtStatus add_broken(Run *run, const RtVerifyScene *scene, const RtVerifySpec *spec, const char *why,
                            RtError *error) {
     const RtEquivalence nothing = {0};
-    json_t *row = rt_equivalence_json(&nothing, stage->name, spec->spec, rt_accel_truth());
+    json_t *row = rt_equivalence_json(&nothing, scene->name, spec->spec, rt_accel_truth());
     json_object_set_new(row, "exact", json_true());
     json_object_set_new(row, "problem", json_string(why));
     return add_row(run, row, error);
 }
 
-static RtStatus verify_spec(Run *run, const Stage *stage, const RtVerifySpec *spec, RtError *error) {
+static RtStatus verify_spec(Run *run, const RtVerifyScene *scene, const RtVerifySpec *spec, RtError *error) {
     RtAccel *accel = NULL;
-    RtMaker maker = maker_of(run, spec);
+    RtAccelBuilder builder = builder_of(run, spec);
     doing(run, spec->spec);
-    RtStatus status = rt_maker_build(&maker, &stage->base.scene, &accel, error);
+    RtStatus status = rt_accel_builder_run(&builder, &scene->scene, &accel, error);
     if ((status == RT_NOT_AVAILABLE || status == RT_BAD_INPUT) && !spec->named) {
         char notice[sizeof error->message + RT_MAX_SPEC_CHARS + RT_MAX_SCENE_NAME];
-        snprintf(notice, sizeof notice, "%s on %s is skipped: %s", spec->spec, stage->name, error->message);
+        snprintf(notice, sizeof notice, "%s on %s is skipped: %s", spec->spec, scene->name, error->message);
         run->observer->notice(run->observer->context, notice);
         return RT_OK;
     }
     const bool refused = status != RT_OK && rt_spec_text_is_remote(spec->spec); /* for itself alone */
-    if (status == RT_OK) status = check(run, stage, accel, spec, error);
+    if (status == RT_OK) status = check(run, scene, accel, spec, error);
     rt_accel_destroy(accel);
     if (status != RT_BROKEN && !refused) return status;
     const RtError broken = *error;
-    return add_broken(run, stage, spec, broken.message, error);
+    return add_broken(run, scene, spec, broken.message, error);
 }
 
 /* ---- a scene ---- */
 
-static RtStatus set_stage(Run *run, const RtScene *scene, Stage *stage, RtError *error) {
+static RtStatus prepare_scene(Run *run, uint32_t i, RtVerifyScene *scene, RtError *error) {
     const RtVerify *v = run->verify;
     doing(run, "recording rays");
-    RT_TRY(rt_verify_stage_init(&stage->base, scene, &v->rays, error));
+    RT_TRY(rt_verify_scene_init(scene, &run->scenes[i], &v->rays, error));
     doing(run, "answering them by brute force");
-    return rt_verify_stage_answer(&stage->base, &v->rays, error);
+    scene->name = v->scenes[i];
+    return rt_verify_scene_answer(scene, &v->rays, error);
 }
 
-static RtStatus verify_scene(Run *run, uint32_t scene, RtError *error) {
+static RtStatus verify_scene(Run *run, uint32_t index, RtError *error) {
     const RtVerify *v = run->verify;
-    const char *name = v->scenes[scene];
-    Stage stage = {.name = name};
+    const char *name = v->scenes[index];
+    RtVerifyScene scene = {.truth = NULL};
     RtStatus status = RT_OK;
     for (uint32_t i = 0; i < v->spec_count && status == RT_OK; i++) {
         json_t *known = known_row(run, name, v->specs[i].spec);
@@ -304,12 +298,12 @@ static RtStatus verify_scene(Run *run, uint32_t scene, RtError *error) {
             run->progress.all -= v->rays.count;
             continue;
         }
-        if (!stage.base.reference.hits) status = set_stage(run, &run->scenes[scene], &stage, error);
-        if (status == RT_OK) status = verify_spec(run, &stage, &v->specs[i], error);
+        if (!scene.reference.hits) status = prepare_scene(run, index, &scene, error);
+        if (status == RT_OK) status = verify_spec(run, &scene, &v->specs[i], error);
         run->progress.done += v->rays.count;
     }
-    rt_verify_stage_clear(&stage.base);
-    rt_scene_clear(&run->scenes[scene]);
+    rt_verify_scene_clear(&scene);
+    rt_scene_clear(&run->scenes[index]);
     return status;
 }
 

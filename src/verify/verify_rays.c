@@ -6,10 +6,10 @@
 
 #include <string.h>
 
-/* The levels of the camera's frame, and the part of the rays that is its: one in so many. */
+/* The levels of the camera's frame, and the share of its rays: one in CAMERA_PART. */
 enum { FRAME_DEPTH = 4, CAMERA_PART = 10 };
 
-/* Half of the camera's rays are primary ones at most, in the shape of its image. */
+/* At most half of the camera's rays are primary ones, in the shape of its image. */
 static RtStatus sample(const RtVerifyRays *wanted, RtScene *scene, RtError *error) {
     if (wanted->given) return RT_OK;
     uint64_t primary = wanted->count / (UINT64_C(2) * CAMERA_PART);
@@ -31,7 +31,7 @@ static RtStatus append(RtRay *rays, uint64_t *count, const RtRaySet *set, uint64
     return RT_OK;
 }
 
-/* Appends the share of each kind of ray that the camera's frame produces. */
+/* Appends an equal share of each kind of ray in the camera's frame. */
 static RtStatus append_camera_rays(const RtVerifyRays *wanted, const RtAccel *oracle, RtRay *rays,
                                    uint64_t *count, RtError *error) {
     RtRecording recording = {.depth = FRAME_DEPTH, .seed = wanted->seed, .threads = wanted->threads};
@@ -48,9 +48,8 @@ static RtStatus append_camera_rays(const RtVerifyRays *wanted, const RtAccel *or
     return status;
 }
 
-/* Appends `count` rays of all families, the same number of each to within one. They take turns: the slowest
- * family for a structure is not all of one thread's work, and neighbours of a ray are of more than one
- * family. */
+/* Appends `count` rays of all families, in equal numbers to within one. Families alternate, so that no
+ * thread gets all rays of a slow family and neighbouring rays differ. */
 static void append_family_rays(RtQuery *query, uint64_t seed, RtRay *rays, uint64_t count) {
     uint64_t families = rt_ray_family_count(), done = 0;
     for (uint64_t turn = 0; done < count; turn += RT_RAY_BUNDLE) {
@@ -64,7 +63,7 @@ static void append_family_rays(RtQuery *query, uint64_t seed, RtRay *rays, uint6
     }
 }
 
-/* What the camera's kinds leave goes to the families. */
+/* The families get the rest. */
 RtStatus rt_verify_rays(const RtVerifyRays *wanted, const RtAccel *oracle, RtRay *rays, RtError *error) {
     RtQuery query;
     uint64_t count = 0;
@@ -79,24 +78,24 @@ RtStatus rt_verify_rays(const RtVerifyRays *wanted, const RtAccel *oracle, RtRay
     return rt_accel_check(oracle, error);
 }
 
-RtStatus rt_verify_stage_init(RtVerifyStage *stage, const RtScene *scene, const RtVerifyRays *wanted,
+RtStatus rt_verify_scene_init(RtVerifyScene *scene, const RtScene *from, const RtVerifyRays *wanted,
                               RtError *error) {
-    *stage = (RtVerifyStage){.scene = *scene};
-    RT_TRY(sample(wanted, &stage->scene, error));
-    RT_TRY(rt_accel_open_on(rt_accel_truth(), &stage->scene, wanted->threads, &stage->truth, error));
-    stage->rays = rt_alloc(wanted->count, sizeof(RtRay));
-    if (!stage->rays) return rt_fail_memory(error, "rays", wanted->count * sizeof(RtRay));
-    return rt_verify_rays(wanted, stage->truth, stage->rays, error);
+    *scene = (RtVerifyScene){.scene = *from};
+    RT_TRY(sample(wanted, &scene->scene, error));
+    RT_TRY(rt_accel_open_on(rt_accel_truth(), &scene->scene, wanted->threads, &scene->truth, error));
+    scene->rays = rt_alloc(wanted->count, sizeof(RtRay));
+    if (!scene->rays) return rt_fail_memory(error, "rays", wanted->count * sizeof(RtRay));
+    return rt_verify_rays(wanted, scene->truth, scene->rays, error);
 }
 
-RtStatus rt_verify_stage_answer(RtVerifyStage *stage, const RtVerifyRays *wanted, RtError *error) {
-    return rt_reference_init(&stage->reference, stage->truth, stage->rays, wanted->count, wanted->threads,
+RtStatus rt_verify_scene_answer(RtVerifyScene *scene, const RtVerifyRays *wanted, RtError *error) {
+    return rt_reference_init(&scene->reference, scene->truth, scene->rays, wanted->count, wanted->threads,
                              error);
 }
 
-void rt_verify_stage_clear(RtVerifyStage *stage) {
-    rt_reference_clear(&stage->reference);
-    rt_free(stage->rays);
-    rt_accel_destroy(stage->truth);
-    *stage = (RtVerifyStage){0};
+void rt_verify_scene_clear(RtVerifyScene *scene) {
+    rt_reference_clear(&scene->reference);
+    rt_free(scene->rays);
+    rt_accel_destroy(scene->truth);
+    *scene = (RtVerifyScene){0};
 }

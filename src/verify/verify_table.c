@@ -239,19 +239,13 @@ static void write_markdown(const Sums *sums, FILE *out) {
 
 /* ---- files ---- */
 
-static RtStatus open_in(const char *folder, const char *name, RtOutput *output, RtError *error) {
-    char path[RT_MAX_PATH];
-    RT_TRY(rt_path_join(folder, name, path, error));
-    return rt_output_open(output, path, error);
-}
-
 static RtStatus write_files(json_t *rows, const Sums *sums, const char *folder, RtError *error) {
     RtOutput output;
     RtTable table = {rt_verify_csv, RT_VERIFY_GROUPS, json_array_size(rows), member_of, .context = rows};
-    RT_TRY(open_in(folder, "verify.csv", &output, error));
+    RT_TRY(rt_output_open_in(&output, folder, "verify.csv", error));
     rt_table_csv(&table, output.file);
     RT_TRY(rt_output_commit(&output, error));
-    RT_TRY(open_in(folder, "verify.md", &output, error));
+    RT_TRY(rt_output_open_in(&output, folder, "verify.md", error));
     write_markdown(sums, output.file);
     return rt_output_commit(&output, error);
 }

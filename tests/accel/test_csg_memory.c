@@ -161,7 +161,7 @@ static RtStatus build_item(const Row *row, RtError *error) {
 static RtStatus ask(const Row *row, RtError *error) {
     RtAnswer answer;
     RtFailure failure = {.rays = row->rays, .count = RAYS, .stream = RAYS};
-    RT_TRY(rt_failure_ask(&failure, &row->scene, rt_maker_of_spec("item+grid"), &answer, error));
+    RT_TRY(rt_failure_ask(&failure, &row->scene, rt_accel_builder_of_spec("item+grid"), &answer, error));
     assert_int_equal(answer.expected.object, 0);
     assert_false(answer.wrong);
     return RT_OK;

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Rays and points at the ends of float32, and what core/base/ray.h does in vectors said again, number by
- * number.
- */
+/* Rays and points at the limits of float32, and a scalar version of the vector code in core/base/ray.h. */
 #ifndef RT_TESTS_RAY_TESTING_H
 #define RT_TESTS_RAY_TESTING_H
 

@@ -255,7 +255,7 @@ RT_TEST(wrong_parameters_are_refused_with_what_would_be_right) {
     }
 }
 
-/* Of any range that a table may state, 64-bit integers beyond it included. */
+/* For any range in a table, including the limits of 64-bit integers. */
 RT_TEST(whole_numbers_are_exact_or_refused) {
     static const RtParam any = {
         .name = "n", .type = RT_PARAM_INT, .default_text = "0", .lo = -1e30, .hi = 1e30, .meaning = "m"};

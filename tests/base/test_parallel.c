@@ -35,7 +35,7 @@ RT_TEST(no_items_are_no_work) {
     assert_ok(rt_parallel_for(0, 2, visit, &count, error));
 }
 
-/* Seen by what is asked for: a thread takes memory before it starts. */
+/* Observed through memory: a thread allocates before it starts. */
 RT_TEST(more_threads_than_items_are_not_started) {
     Count count = {.threads = 1, .fails_from = ITEMS};
     RtError one, many;
@@ -127,7 +127,7 @@ RT_TEST(a_task_that_fails_stops_the_others_and_is_reported) {
     }
 }
 
-/* Of one thread the order is known: the oldest first. */
+/* With one thread the order is defined: the oldest first. */
 static RtStatus list_order(void *context, RtTasks *tasks, const void *task, RtError *error) {
     Count *count = context;
     uint32_t item = *(const uint32_t *)task, more = 2 * item + 2;

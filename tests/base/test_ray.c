@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* core/base/ray.h works in vectors: here it is held against the same, number by number, bit for bit, where
- * numbers are zero, denormal or huge. */
+/* The vector code of core/base/ray.h returns the same bits as a scalar version, for zero, denormal and
+ * huge numbers, too. */
 #include "testing.h"
 
 #include "ray_testing.h"

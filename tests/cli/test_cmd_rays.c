@@ -164,7 +164,7 @@ RT_TEST(a_verification_knows_its_rays_again) {
     assert_int_equal(run("verify balls:size=1 --accel bvh --rays-from '%s' --out '%s.d' --resume", RAYS, OUT),
                      2);
     Bytes says = bytes_of(OUT ".err");
-    assert_non_null(strstr(says.data, "with other rays_hash"));
+    assert_non_null(strstr(says.data, "with different rays_hash"));
     rt_free(says.data);
 }
 

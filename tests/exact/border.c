@@ -27,10 +27,10 @@ RtDecision rt_decision_of(const RtGeometry *geometry, uint32_t id, const RtRay *
     return decision;
 }
 
-RtFinding rt_decision_check(const RtGeometry *geometry, uint32_t id, const RtWideRay *line,
-                            RtDecision decision) {
+RtExactResult rt_decision_check(const RtGeometry *geometry, uint32_t id, const RtWideRay *line,
+                                RtDecision decision) {
     long double t;
-    RtFinding finding = rt_referee_hit(geometry, id, line, &t);
+    RtExactResult finding = rt_referee_hit(geometry, id, line, &t);
     if (finding == RT_UNDECIDED) return finding;
     if (!decision.hit || finding == RT_MISSED)
         return decision.hit == (finding == RT_HIT) ? RT_HIT : RT_MISSED;
@@ -86,16 +86,16 @@ double rt_border_distance(const RtGeometry *geometry, uint32_t id, const RtRay *
     }
 }
 
-RtFinding rt_referee_error(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
-                           long double *ulps) {
+RtExactResult rt_referee_error(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
+                               long double *ulps) {
     RtExactArena arena = {0};
     RtWideRay line = rt_wide_ray(ray);
     RtExactLine exact = rt_exact_line(&arena, &line);
-    RtPlace at;
-    RtFinding finding = rt_exact_hit(&arena, geometry, id, &exact, &at);
+    RtRoot at;
+    RtExactResult finding = rt_exact_hit(&arena, geometry, id, &exact, &at);
     if (finding == RT_HIT) {
-        long double ulp = rt_float_ulp(rt_place_value(&arena, &at, exact.zero));
-        *ulps = -rt_place_value(&arena, &at, rt_exact_of(&arena, (double)t)) / ulp;
+        long double ulp = rt_float_ulp(rt_root_value(&arena, &at, exact.zero));
+        *ulps = -rt_root_value(&arena, &at, rt_exact_of(&arena, (double)t)) / ulp;
     }
     rt_exact_arena_clear(&arena);
     return finding;

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The distance of a ray from the border of an object: a hit function may differ from exact arithmetic if the
- * ray, moved a little, would be decided its way.
+/* The distance of a ray from the decision boundary of an object: a hit function may differ from exact
+ * arithmetic only if a slightly moved ray would be decided its way.
  *
- * The unit is the effect of rounding to float32 on a point seen from the origin: 2^-24 of the distance to the
- * farthest plane of the object's box, along the axis where it is largest. The thickness by which boxes are
- * widened (core/base/ray.h) is 16 units. */
+ * The unit is the effect of rounding to float32 on a point seen from the origin: 2^-24 of the distance to
+ * the farthest plane of the object's box, along the axis where it is largest. The thickness by which boxes
+ * are widened (core/base/ray.h) is 16 units. */
 #ifndef RT_TESTS_EXACT_BORDER_H
 #define RT_TESTS_EXACT_BORDER_H
 
 #include "exact/referee.h"
 
-/* What a hit function says of a ray and an object. */
+/* The result of a hit function for a ray and an object. */
 typedef struct RtDecision {
     bool hit;
     float t;
@@ -19,19 +19,19 @@ typedef struct RtDecision {
 /* The unit for object `id`. */
 double rt_border_unit(const RtGeometry *geometry, uint32_t id, const RtWideRay *line);
 
-/* What our hit function says; `room` is of rt_hit_room. */
+/* The result of our hit function; `room` comes from rt_hit_room. */
 RtDecision rt_decision_of(const RtGeometry *geometry, uint32_t id, const RtRay *ray, RtCrossing *room);
 
 /* Is it what exact arithmetic decides? A hit on an object that a line can meet more than once has to be the
  * same one: t and the exact t are no farther apart than 2^-8 of the size of the box and two units.
  * RT_UNDECIDED where that is. */
-RtFinding rt_decision_check(const RtGeometry *geometry, uint32_t id, const RtWideRay *line,
-                            RtDecision decision);
+RtExactResult rt_decision_check(const RtGeometry *geometry, uint32_t id, const RtWideRay *line,
+                                RtDecision decision);
 
 /* (t - exact t) in ulps of the exact t in float32, the difference being exact. RT_MISSED if object `id` is
  * not met. */
-RtFinding rt_referee_error(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
-                           long double *ulps);
+RtExactResult rt_referee_error(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
+                               long double *ulps);
 
 /* How near to a border of the object the ray's line passes, in units. Of flat shapes it is the distance from
  * the nearest edge. Of others it is the least power of two, 2^RT_BORDER_NEAR or more, by which the origin has

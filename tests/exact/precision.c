@@ -257,9 +257,9 @@ static RtStatus measure_ray(const Range *r, uint32_t id, const RtRay *ray, doubl
     const RtGeometry *g = r->geometry;
     RtDecision ours = rt_decision_of(g, id, ray, r->room);
     long double ulps;
-    RtFinding exact = rt_referee_error(g, id, ray, ours.hit ? ours.t : 0, &ulps);
+    RtExactResult exact = rt_referee_error(g, id, ray, ours.hit ? ours.t : 0, &ulps);
     RtWideRay line = rt_wide_ray(ray);
-    RtFinding same = rt_decision_check(g, id, &line, ours);
+    RtExactResult same = rt_decision_check(g, id, &line, ours);
     if (exact == RT_UNDECIDED || same == RT_UNDECIDED) {
         return rt_fail_memory(error, "exact arithmetic on a CSG tree", 0);
     }

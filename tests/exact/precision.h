@@ -35,7 +35,7 @@ size_t rt_precision_case_count(void);
 const char *rt_precision_case_name(size_t index);
 const char *rt_precision_case_meaning(size_t index);
 
-/* Of the rays that both hit, the errors of t in ulps of float32; of the others what differed, and where. */
+/* For rays that both hit, the errors of t in ulps of float32; for the others, what differed and where. */
 typedef struct RtPrecision {
     uint64_t rays, hits;       /* hits: both say so, of the same place */
     double median, most99;     /* of |error|: half, and 99 of 100 hits, are no farther off */

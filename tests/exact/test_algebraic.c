@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Roots of polynomials as exact numbers: where they are, that multiple roots are given once, and that equal
- * ones are told from those that nearly are. */
+/* Roots of polynomials as exact numbers: their positions, multiple roots, which appear once, and the
+ * comparison of equal and nearly equal roots. */
 #include "testing.h"
 
 #include "core/base/random.h"
-#include "exact/place.h"
+#include "exact/algebraic.h"
 
 /* ---- polynomials by their roots ---- */
 
@@ -38,9 +38,9 @@ static RtPolynomial with_squares(RtExactArena *s, double a, double b) {
 }
 
 static bool is_at(RtExactArena *s, const RtAlgebraic *root, RtRational t) {
-    RtPlace a = rt_place_of_root(root), b = rt_place_of(s, t);
-    int order = rt_place_compare(s, &a, &b);
-    assert_int_equal(rt_place_compare(s, &b, &a), -order);
+    RtRoot a = rt_root_of_algebraic(root), b = rt_root_of(s, t);
+    int order = rt_root_compare(s, &a, &b);
+    assert_int_equal(rt_root_compare(s, &b, &a), -order);
     return order == 0;
 }
 
@@ -137,9 +137,9 @@ RT_TEST(equal_roots_of_different_polynomials_are_a_tie) {
     }
     for (int sign = -1; sign <= 1; sign += 2) {
         RtSurd surd = {rt_exact_of(&s, 0), rt_exact_of(&s, sign), rt_exact_of(&s, 2)};
-        RtPlace place = rt_place_of_surd(&surd), root = rt_place_of_root(&a[sign < 0 ? 1 : 2]);
-        assert_int_equal(rt_place_compare(&s, &place, &root), 0);
-        assert_int_equal(rt_place_compare(&s, &root, &place), 0);
+        RtRoot place = rt_root_of_surd(&surd), root = rt_root_of_algebraic(&a[sign < 0 ? 1 : 2]);
+        assert_int_equal(rt_root_compare(&s, &place, &root), 0);
+        assert_int_equal(rt_root_compare(&s, &root, &place), 0);
     }
     rt_exact_arena_clear(&s);
 }
@@ -154,12 +154,12 @@ RT_TEST(roots_2_to_the_minus_200_apart_are_told_apart) {
         assert_int_equal(rt_polynomial_roots(&s, &p, a), 3);
         assert_int_equal(rt_polynomial_roots(&s, &q, b), 2);
         RtSurd surd = {rt_exact_of(&s, 0), rt_exact_of(&s, 1), rt_exact_of(&s, 2)};
-        RtPlace root = rt_place_of_surd(&surd), above = rt_place_of_root(&b[1]);
+        RtRoot root = rt_root_of_surd(&surd), above = rt_root_of_algebraic(&b[1]);
         assert_int_equal(rt_algebraic_compare(&s, &a[2], &b[1]), -1);
         assert_int_equal(rt_algebraic_compare(&s, &b[1], &a[2]), 1);
         assert_int_equal(rt_algebraic_compare(&s, &a[0], &b[0]), 1);
-        assert_int_equal(rt_place_compare(&s, &root, &above), -1);
-        assert_int_equal(rt_place_compare(&s, &above, &root), 1);
+        assert_int_equal(rt_root_compare(&s, &root, &above), -1);
+        assert_int_equal(rt_root_compare(&s, &above, &root), 1);
     }
     rt_exact_arena_clear(&s);
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Hit functions against the referee: ours decides otherwise than exact arithmetic only where a ray passes an
- * edge within the rounding of float32; broken ones do so elsewhere. docs/precision.md counts it for all
- * shapes. */
+/* Hit functions against the referee: ours differ from exact arithmetic only if a ray passes an edge within
+ * the rounding of float32; broken ones do so elsewhere. docs/precision.md has the counts for all shapes. */
 #include "testing.h"
 
 #include "core/base/random.h"
@@ -91,10 +90,10 @@ RT_TEST(the_referee_decides_against_us_too) {
         RtRay ray = ray_at_triangle(&random, v, i);
         RtHit expected = RT_MISS, right = RT_MISS;
         RtDecision decision = ours(&g, &ray);
-        RtRuling ruling = rt_referee_nearest(&g, &ray);
+        RtExactAnswer ruling = rt_referee_nearest(&g, &ray);
         if (decision.hit) expected = (RtHit){decision.t, 0};
-        if (ruling.finding == RT_HIT) right = (RtHit){(float)ruling.t, 0};
-        if (decision.hit != (ruling.finding == RT_HIT)) {
+        if (ruling.result == RT_HIT) right = (RtHit){(float)ruling.t, 0};
+        if (decision.hit != (ruling.result == RT_HIT)) {
             against++;
             RtSide side;
             RtVerdict verdict;

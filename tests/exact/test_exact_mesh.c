@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Meshes in exact arithmetic: lines through vertices and edges and in faces, meshes that overlap themselves,
- * and that all lines through a point are of one mind whether it is inside. */
+/* Meshes in exact arithmetic: lines through vertices and edges and in faces, meshes that overlap
+ * themselves, and that all lines through a point agree whether it is inside. */
 #include "solids_testing.h"
 
-#include "exact/exact_mesh.h"
+#include "exact/exact_hit.h"
 #include "exact/referee.h"
 
 /* ---- meshes of boxes ---- */
@@ -59,14 +59,14 @@ static RtRay lattice_ray(RtRandom *random) {
     return ray;
 }
 
-/* The places, to out[0..MOST); gives their number. */
+/* Writes the roots to out[0..MOST); returns their number. */
 static uint32_t places_of(const RtSolidSet *set, uint32_t index, const RtRay *ray, long double *out) {
     RtExactArena arena = {0};
     RtRational *places;
     uint32_t count;
     RtWideRay wide = rt_wide_ray(ray);
     RtExactLine line = rt_exact_line(&arena, &wide);
-    assert_ok(rt_exact_mesh_places(&arena, set, index, &line, &places, &count, error));
+    assert_ok(rt_exact_mesh_roots(&arena, set, index, &line, &places, &count, error));
     assert_true(count <= MOST && count % 2 == 0);
     for (uint32_t i = 0; i < count; i++) out[i] = rt_exact_value(places[i]);
     rt_free(places);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Trees in exact arithmetic: tori, their tangents and ties, and that every ray at the trees of the families
- * is decided, as our hit functions do but for rays that pass a border within rounding. */
+/* Trees in exact arithmetic: tori, their tangents and ties; and every ray at the trees of the families is
+ * decided as by our hit functions, except within rounding of a decision boundary. */
 #include "equivalence_testing.h"
 #include "room_testing.h"
 #include "solids_testing.h"
@@ -107,8 +107,8 @@ RT_TEST(equal_places_of_rings_and_balls_are_a_tie) {
         assert_int_equal(rt_referee_order(&g, 0, other, &ray, &order, &apart), RT_HIT);
         assert_true(order == 0 && apart == 0);
     }
-    RtRuling ruling = rt_referee_nearest(&g, &ray);
-    assert_true(ruling.object == 0 && ruling.together == 3);
+    RtExactAnswer ruling = rt_referee_nearest(&g, &ray);
+    assert_true(ruling.object == 0 && ruling.tied == 3);
     assert_true(fabsl(ruling.t - (4 - sqrtl(0.75L))) <= 0x1p-60L);
     RtWideRay line = rt_wide_ray(&ray);
     long double t;
@@ -189,9 +189,9 @@ static bool has_few_digits(const RtGeometry *g, const RtWideRay *line) {
  * [tmin, tmax] is one number the exact t, which has more digits, is not in it; nor may it be where float32
  * has few. */
 static void judge(const RtGeometry *g, const RtRay *ray, int *hits) {
-    RtRuling ruling = rt_referee_nearest(g, ray);
-    assert_int_not_equal(ruling.finding, RT_UNDECIDED);
-    *hits += ruling.finding == RT_HIT;
+    RtExactAnswer ruling = rt_referee_nearest(g, ray);
+    assert_int_not_equal(ruling.result, RT_UNDECIDED);
+    *hits += ruling.result == RT_HIT;
     RtWideRay line = rt_wide_ray(ray);
     if (ray->tmin == ray->tmax || has_few_digits(g, &line)) return;
     for (uint32_t id = 0; id < g->object_count; id++) {
@@ -233,11 +233,11 @@ RT_TEST(a_tree_is_undecided_where_memory_is_short_and_only_there) {
     make_rings(&g, &b);
     RtRay ray = make_ray(rt_vec3(0, 0, 0.5f), rt_vec3(1, 0, 0));
     int64_t before = rt_alloc_live();
-    RtFinding finding = RT_UNDECIDED;
+    RtExactResult finding = RT_UNDECIDED;
     int short_of = 0;
     for (uint64_t n = 1; finding == RT_UNDECIDED; n++, short_of++) {
         rt_alloc_fail_at(n);
-        finding = rt_referee_nearest(&g, &ray).finding;
+        finding = rt_referee_nearest(&g, &ray).result;
         rt_alloc_fail_at(0);
         assert_int_equal(rt_alloc_live(), before);
     }

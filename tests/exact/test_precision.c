@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How exact our hit functions are, held against exact arithmetic. Prints the table of docs/precision.md and
- * looks whether it is the one that is printed there. */
+/* The precision of our hit functions against exact arithmetic. Prints the table of docs/precision.md and
+ * checks that the page contains it. */
 #include "testing.h"
 
 #include "core/base/file.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The referee: exact numbers, hits at borders, true ties, and that our hit functions and it are of one mind
- * but for rays that pass a border within the rounding of float32. */
+/* The referee: exact numbers, hits at boundaries, true ties, and agreement with our hit functions except
+ * within the rounding of float32 of a decision boundary. */
 #include "testing.h"
 
 #include "exact/border.h"
@@ -210,9 +210,9 @@ RT_TEST(a_sphere_and_a_triangle_tie_where_they_meet_at_a_rational_t) {
     assert_int_equal(order_of(&g, 0, 2, &ray), 1);
     assert_int_equal(order_of(&g, 0, 3, &ray), -1);
     assert_int_equal(order_of(&g, 2, 3, &ray), -1);
-    RtRuling ruling = rt_referee_nearest(&g, &ray);
+    RtExactAnswer ruling = rt_referee_nearest(&g, &ray);
     assert_int_equal(ruling.object, 2);
-    assert_int_equal(ruling.together, 1);
+    assert_int_equal(ruling.tied, 1);
     rt_geometry_clear(&g);
 }
 
@@ -228,13 +228,13 @@ RT_TEST(equal_roots_of_different_objects_are_a_tie) {
     RtRay ray = ray_from(1, 0, 10, 0, 0, -1);
     for (uint32_t id = 1; id < 4; id++) assert_int_equal(order_of(&g, 0, id, &ray), 0);
     assert_int_equal(order_of(&g, 0, 4, &ray), -1);
-    RtRuling ruling = rt_referee_nearest(&g, &ray);
+    RtExactAnswer ruling = rt_referee_nearest(&g, &ray);
     assert_int_equal(ruling.object, 0);
-    assert_int_equal(ruling.together, 4);
+    assert_int_equal(ruling.tied, 4);
     assert_true(fabsl(ruling.t - (10 - sqrtl(3))) <= 0x1p-60L);
     assert_int_equal(rt_referee_occluded(&g, &ray), RT_HIT);
     ray.tmax = 8;
-    assert_int_equal(rt_referee_nearest(&g, &ray).finding, RT_MISSED);
+    assert_int_equal(rt_referee_nearest(&g, &ray).result, RT_MISSED);
     assert_int_equal(rt_referee_occluded(&g, &ray), RT_MISSED);
     rt_geometry_clear(&g);
 }
@@ -254,7 +254,7 @@ RT_TEST(huge_and_denormal_numbers_are_as_exact_as_others) {
     assert_true(first_t(&g, 1, &far) == 0x1p117L);
     far.dir.z = -0x1p-100f; /* t = 2^157 is beyond the largest float32 */
     assert_true(first_t(&g, 1, &far) == HUGE_VALL);
-    assert_int_equal(rt_referee_nearest(&g, &far).finding, RT_MISSED);
+    assert_int_equal(rt_referee_nearest(&g, &far).result, RT_MISSED);
     rt_geometry_clear(&g);
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What tests of pictures share: pictures that were drawn, as pixels. */
+/* Shared by tests of pictures: reading drawn pictures as pixels. */
 #ifndef RT_TESTS_PICTURE_TESTING_H
 #define RT_TESTS_PICTURE_TESTING_H
 

@@ -142,7 +142,7 @@ RT_TEST(nobody_looks_on_after_a_path) {
     RtScene scene;
     RtAccel *accel;
     RtPath path = path_along_the_row("bvh", 0, &scene, &accel);
-    assert_null(rt_observer);
+    assert_null(rt_trace_observer);
     forget(&path, &scene, accel);
 }
 

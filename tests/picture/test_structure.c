@@ -291,7 +291,7 @@ RT_TEST(the_item_buffer_has_a_color_for_each_object_black_for_none_and_magenta_f
     rt_scene_clear(&scene);
 }
 
-/* What is looked up for a picture is what the kernel reads: a ray's steps are entries of that cell. */
+/* A picture looks up the cells that the kernel reads: a ray's steps are entries of that cell. */
 RT_TEST(a_shadow_ray_reads_the_cell_that_is_marked) {
     RtScene scene;
     RtAccel *accel;

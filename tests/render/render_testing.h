@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What tests of shading and frames share: small scenes under a camera, frames by brute, surfaces that rays
- * meet. */
+/* Shared by tests of shading and frames: small scenes with a camera, frames by brute, surfaces that rays
+ * hit. */
 #ifndef RT_TESTS_RENDER_TESTING_H
 #define RT_TESTS_RENDER_TESTING_H
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Frames: every registered accelerator, at every value worth testing of each of its parameters, and overlays
- * in stacks, make the same frame as brute: the same bits of colour, object and depth in every sample, by the
- * timed and by the counted kernels, on one thread and on three; and the same counts on both. */
+/* Frames: every registered accelerator, at every test value of each parameter, and stacked overlays,
+ * render the same frame as brute: the same bits of colour, object and depth in every sample, with timed
+ * and counted kernels, on one thread and on three; and the same counts on both. */
 #include "testing.h"
 
 #include "core/base/memory.h"

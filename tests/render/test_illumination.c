@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* render/illumination.h: shading and the rays that leave a surface, against answers known by hand. */
+/* render/illumination.h: shading, and the rays that leave a surface, against results known by hand. */
 #include "render_testing.h"
 
 RT_TEST(a_point_is_shaded_by_the_sum_of_all_five_terms) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* render/: images, read back from the files they were written to. */
+/* render/: images, read back from their files. */
 #include "testing.h"
 
 #include "core/base/file.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* render/illumination.h: secondary rays start so far off their surface that neither it nor its box is in
- * their way, and no farther. */
+/* render/illumination.h: secondary rays start far enough off their surface to miss it and its box, and no
+ * farther. */
 #include "render_testing.h"
 
 /* Counts of a frame that sees one object of size `s`, moved to `away`, under a light beside the camera. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* render/frame.h: how deep rays go, what is counted, who sees it, and what fails; the same bytes on any
- * number of threads. */
+/* render/frame.h: the depth of rays, counts, progress, and failures; the same bytes on any number of
+ * threads. */
 #include "render_testing.h"
 
 #include "core/base/memory.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Formulas of CSG trees: what they mean, and what is said of those that mean nothing. */
+/* Formulas of CSG trees: their meaning, and the messages about invalid ones. */
 #include "core/scene/formula.h"
 #include "testing.h"
 
@@ -84,7 +84,7 @@ RT_TEST(mistakes_are_placed_at_their_character) {
     expect_complaint("(a - b", "a ')' is missing");
     expect_complaint("a - b)", "at character 6");
     expect_complaint("()", "at character 2");
-    expect_complaint("a + b", "one of | (union), & (intersection), - (difference)");
+    expect_complaint("a + b", "expected | (union), & (intersection), - (difference)");
     expect_complaint("a - who", "there is no solid 'who'");
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Meshes through Assimp: what is kept, what is placed where, what is refused. */
+/* Meshes through Assimp: what is kept, where it is placed, what is rejected. */
 #include "testing.h"
 
 #include "core/base/file.h"
@@ -139,12 +139,12 @@ RT_TEST(bad_meshes_are_refused_with_what_is_wrong) {
         {OBJ_NAME, "", "Assimp cannot read"},
         {OBJ_NAME, "v 0 0 0\nv 1 0 0\n", ""},
         {OBJ_NAME, "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", "vertex 1 of mesh"},
-        {OBJ_NAME, "v 0 0 0\nv 1e30 0 0\nv 0 1 0\nf 1 2 3\n", "beyond"},
+        {OBJ_NAME, "v 0 0 0\nv 1e30 0 0\nv 0 1 0\nf 1 2 3\n", "exceeds"},
         {OBJ_NAME, "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\n", "no triangle"},
         {OBJ_NAME, "v 0 0 0\nv 1 0 0\nf 1 2 9\n", ""},
         {RT_BINARY_DIR "/test_mesh.glb", "glTF but not really", "Assimp cannot read"},
         {RT_BINARY_DIR "/test_mesh.stl", "solid\nfacet", ""},
-        {RT_BINARY_DIR "/test_mesh.ply", PLY("0\n"), "has no corners"},
+        {RT_BINARY_DIR "/test_mesh.ply", PLY("0\n"), "has no vertices"},
         {RT_BINARY_DIR "/test_mesh.ply", PLY("4 0 1 2 99999999\n"), "names vertex 99999999 of 3"},
         {RT_BINARY_DIR "/test_mesh.ply", PLY("5 0 1 2 0 -1\n"), "names vertex 4294967295 of 3"},
         {RT_BINARY_DIR "/test_mesh.ply", "ply\nformat ascii 1.0\nelement vertex 4000000000\nend_header\n",

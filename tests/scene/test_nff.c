@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* NFF: what is read, what is written, and what is refused with which line. */
+/* NFF: reading, writing, and the lines of rejected input. */
 #include "scene_testing.h"
 
 #include "core/base/file.h"
@@ -156,7 +156,7 @@ RT_TEST(bad_files_are_refused_with_line_and_remedy) {
         {"\n\ns 0 0 nan 1\n", ":3:", "invalid value 'nan': expected a finite number"},
         {"s 0 0 inf 1\n", ":1:", "expected a finite number"},
         {"s 0 0 1e999 1\n", ":1:", "expected a finite number"},
-        {"s 0 0 1e30 1\n", ":1:", "beyond"},
+        {"s 0 0 1e30 1\n", ":1:", "exceeds"},
         {"s 0 0 0 1x\n", ":1:", "'1x'"},
         {"s 0 0 0 1 2\n", ":1:", "'2'"},
         {"c 0 0 0 1 0 0 0 1\n", ":1:", "same point"},
@@ -165,8 +165,8 @@ RT_TEST(bad_files_are_refused_with_line_and_remedy) {
         {"p 2\n0 0 0\n1 0 0\n", ":1:", "3..4294967295"},
         {"p 3.5\n0 0 0\n1 0 0\n0 1 0\n", ":1:", "whole number"},
         {"p -3\n0 0 0\n1 0 0\n0 1 0\n", ":1:", "3..4294967295"},
-        {"p 1000000000\n0 0 0\n1 0 0\n0 1 0\n", ":1:", "what is left of the file"},
-        {"pp 4294967295\n0 0 0 0 0 1\n", ":1:", "what is left of the file"},
+        {"p 1000000000\n0 0 0\n1 0 0\n0 1 0\n", ":1:", "the rest of the file"},
+        {"pp 4294967295\n0 0 0 0 0 1\n", ":1:", "the rest of the file"},
         {"p 4\n0 0 0\n1 0 0\n0 1 0\nf 1 1 1 1 0 0 0 1\n", ":4:", "'f'"},
         {"p 3\n0 0 0\n1 1 1\n2 2 2\n", ":1:", "no area"},
         {"s 0 0 0 1\np 4\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n", ":2:", "no area"},
@@ -181,7 +181,7 @@ RT_TEST(bad_files_are_refused_with_line_and_remedy) {
         {"l 1 2 3 -1 0 0\ns 0 0 0 1\n", ":1:", "negative"},
         {"l 1 2 3 1\ns 0 0 0 1\n", ":1:", "colour of a light"},
         {"v\nfrom 0 0 1\nat 0 0 0\nangle 45\ns 0 0 0 1\n", ":4:", "'up'"},
-        {"v\nfrom 0 0 0\nat 0 0 0\nup 0 0 1\nangle 45\ns 0 0 0 1\n", ":1:", "looks nowhere"},
+        {"v\nfrom 0 0 0\nat 0 0 0\nup 0 0 1\nangle 45\ns 0 0 0 1\n", ":1:", "no direction"},
         {"v\nfrom 0 0 1\nat 0 0 0\nup 0 0 1\nangle 45\ns 0 0 0 1\n", ":1:", "along its line of sight"},
         {"v\nfrom 0 0 1\nat 0 0 0\nup 0 1 0\nangle 180\ns 0 0 0 1\n", ":1:", "180"},
         {"v\nfrom 0 0 1\nat 0 0 0\nup 0 1 0\nangle 45\nhither -1\ns 0 0 0 1\n", ":1:", "hither"},

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The YAML scene format: what it reads, in the documentation and in the scenes that come along, too. */
+/* The YAML scene format: reading, including the examples in the documentation and the scenes of the
+ * repository. */
 #include "yaml_testing.h"
 
 #include "scenes/builtin.h"

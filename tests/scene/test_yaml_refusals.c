@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The YAML scene format: what it refuses, and where; nothing is left of it, whichever allocation fails. */
+/* The YAML scene format: rejected input, with its position; and whichever allocation fails, nothing leaks. */
 #include "yaml_testing.h"
 
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* ---- what is said of bad input: its line, and a phrase ---- */
+/* ---- bad input: its line, and a phrase of the message ---- */
 
 #define SPHERE "objects:\n- sphere: {center: [0, 0, 0], radius: 1}\n"
 #define SOLIDS                                                                                               \
@@ -104,7 +104,7 @@ static const struct {
     {SPHERE "materials: {red: {color: [1, 0, 0]}}\n", 3, "expected a list of materials, found a mapping"},
     /* camera, lights, colours */
     {SPHERE "camera:\n  from: [1, 2, 3]\n", 3, "belong together"},
-    {SPHERE "camera:\n  from: [1, 2, 3]\n  at: [1, 2, 3]\n", 5, "looks nowhere"},
+    {SPHERE "camera:\n  from: [1, 2, 3]\n  at: [1, 2, 3]\n", 5, "no direction"},
     {SPHERE "camera:\n  from: [0, 0, 3]\n  at: [0, 0, 0]\n  up: [0, 0, 1]\n", 6, "`up`"},
     {SPHERE "camera:\n  up: [0, 0, 0]\n", 4, "`up`"},
     {SPHERE "camera:\n  up: [0, 0, 1]\n  fov: 180\n", 5, "below 180"},
@@ -118,7 +118,7 @@ static const struct {
     {SPHERE "lights:\n- {position: [0, 0, 0]}\n- {position: [0, 0, 0], intensity: [-1, 0, 0]}\n", 5,
      "negative"},
     {SPHERE "lights:\n- {intensity: [1, 1, 1]}\n", 4, "'position' is missing"},
-    {SPHERE "background: [0, -1, 0]\n", 3, "no negative"},
+    {SPHERE "background: [0, -1, 0]\n", 3, "must not be negative"},
     {SPHERE "ambient: [a, b, c]\n", 3, "invalid value 'a'"},
     /* meshes, built-ins, transforms */
     {SPHERE "- mesh:\n    path: no-such.obj\n", 4, "no-such.obj"},
@@ -151,18 +151,18 @@ static const struct {
     {SOLIDS "- {name: c, polyhedron: {planes: [[1, 0, 0, 1e400]]}}\n" CSG("a"), 5, "invalid value '1e400'"},
     {SOLIDS "- {name: c, polyhedron: {planes: [[1, 0, nan, 1]]}}\n" CSG("a"), 5,
      "planes[0][2]: invalid value 'nan'"},
-    {SOLIDS "- name: c\n  mesh:\n    path: corner.obj\n" CSG("a"), 7, "at least 4 triangles; this one has 1"},
+    {SOLIDS "- name: c\n  mesh:\n    path: corner.obj\n" CSG("a"), 7, "at least 4 triangles, this one has 1"},
     {SOLIDS "- name: c\n  mesh:\n    path: open.obj\n" CSG("a"), 7, "closed"},
     {SOLIDS CSG("x"), 6, "no solid 'x'"},
     {SOLIDS CSG("a |"), 6, "at character 4"},
-    {SOLIDS CSG("a h"), 6, "(difference) or ')' should stand here"},
+    {SOLIDS CSG("a h"), 6, "(difference) or ')'"},
     {SOLIDS CSG("(a - h"), 6, "a ')' is missing"},
     {SOLIDS CSG("a - h)"), 6, "has no '(' before it"},
-    {SOLIDS CSG("a - - h"), 6, "a name or '(' should stand here"},
+    {SOLIDS CSG("a - - h"), 6, "expected a name or '('"},
     {SOLIDS CSG("''"), 6, "0 characters"},
-    {SOLIDS CSG("h"), 6, "no end"},
-    {SOLIDS CSG("a | h"), 6, "no end"},
-    {SOLIDS CSG("h - a"), 6, "no end"},
+    {SOLIDS CSG("h"), 6, "unbounded"},
+    {SOLIDS CSG("a | h"), 6, "unbounded"},
+    {SOLIDS CSG("h - a"), 6, "unbounded"},
     {SOLIDS CSG("a, extents: maybe"), 6, "invalid value 'maybe': expected on or off"},
     {SOLIDS CSG("a, extents: ''"), 6, "invalid value '': expected on or off"},
     {SOLIDS CSG("a, extents: true"), 6, "invalid value 'true': expected on or off"},
@@ -170,7 +170,7 @@ static const struct {
     {"objects:\n- csg: {extents: on}\n", 2, "'formula' is missing"},
     {SOLIDS TIMES_64("c", "a") TIMES_64("d", "c") TIMES_64("e", "d") TIMES_64("f", "e") TIMES_64("g", "f")
          CSG("g"),
-     9, "at most 16777216"},
+     9, "the limit is 16777216"},
 };
 
 RT_TEST(bad_input_is_refused_with_its_line_and_a_remedy) {

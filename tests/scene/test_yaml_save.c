@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The YAML scene format: what is saved and loaded again is the same to the bit. */
+/* The YAML scene format: saving and loading restores every bit. */
 #include "yaml_testing.h"
 
 #include "scenes/builtin.h"

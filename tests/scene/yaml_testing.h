@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What tests of the YAML scene format share: a folder with meshes that scenes refer to, a scene of
- * everything, and loading what stands in a text. */
+/* Shared by tests of the YAML scene format: a folder with meshes, a scene with every element, and loading
+ * from a text. */
 #ifndef RT_TESTS_YAML_TESTING_H
 #define RT_TESTS_YAML_TESTING_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* scenes/: random scenes, what is refused, and memory; test_spd.c has the databases. */
+/* scenes/: random scenes, rejected specs, and memory; test_spd.c tests the databases. */
 #include "scene_testing.h"
 
 #include "scenes/builtin.h"
@@ -129,7 +129,7 @@ RT_TEST(wrong_names_are_refused_with_what_would_be_right) {
         const char *spec, *says;
     } cases[] = {
         {"bals", "did you mean 'balls'?"},
-        {"", "Built-in are: balls, "},
+        {"", "Built-in scenes: balls, "},
         {"balls:size=0", "1..7"},
         {"balls:size=8", "1..7"},
         {"balls:size=1000000000", "1..7"},

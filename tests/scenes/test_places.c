@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* scenes/: the built-in scenes that are places (a teapot on a board, in a stadium, a hall, a forest, a city)
- * and the forms that they are made of. */
+/* scenes/: the built-in scenes of places (a teapot on a board, in a stadium, a hall, a forest, a city) and
+ * their parts. */
 #include "scene_testing.h"
 
 #include "accel/accel.h"
@@ -224,8 +224,7 @@ static int compare_floats(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Of the polygons that are flat along `axis`, how many there are, and how many have `others` in their
- * plane. */
+/* The number of polygons that are flat along `axis`, and how many have `others` in their plane. */
 static void count_in_planes(const RtGeometry *g, int axis, uint32_t others, uint32_t *flat, uint32_t *share) {
     float *planes = malloc(g->polygon_count * sizeof *planes);
     assert_non_null(planes);

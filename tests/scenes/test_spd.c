@@ -13,7 +13,7 @@ typedef struct Line {
     size_t used;
 } Line;
 
-/* What is 0 there may be off in the 16th digit here. */
+/* A 0 in the files may differ here in the 16th digit. */
 static void print_number(Line *line, float x) {
     double shown = fabsf(x) < 1e-12f ? 0 : (double)x;
     line->used += (size_t)snprintf(line->text + line->used, sizeof line->text - line->used, "%s%.6g",
@@ -231,7 +231,8 @@ RT_TEST(they_are_seen_and_lit_as_the_databases_say) {
     }
 }
 
-/* Of the object `id`: colour, diffuse, specular, shine, transmission, index of refraction, and reflection. */
+/* The material of object `id`: colour, diffuse, specular, shine, transmission, index of refraction, and
+ * reflection. */
 RT_TEST(their_materials_are_those_of_the_databases) {
     static const struct {
         const char *spec;

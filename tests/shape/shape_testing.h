@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What tests of shapes share: rays, and where they meet an object. */
+/* Shared by tests of shapes: rays, and their hits on an object. */
 #ifndef RT_TESTS_SHAPE_TESTING_H
 #define RT_TESTS_SHAPE_TESTING_H
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Boxes, balls and support functions of every shape hold a thousand points of its surface, and touch it. */
+/* Boxes, balls and support functions of every shape contain a thousand points of its surface, and touch
+ * it. */
 #include "testing.h"
 
 #include "core/base/random.h"

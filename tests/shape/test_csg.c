@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* shape/csg: what each operation leaves, faces and materials, refusals, and the identities of sets. Hits are
- * compared by their bits, over random rays through random trees (experiments/random_tree). */
+/* shape/csg: the result of each operation, faces and materials, rejected trees, and the identities of
+ * sets. Hits are compared bit for bit, over random rays through random trees. */
 #include "csg_testing.h"
 
 /* ---- by hand ---- */
@@ -129,7 +129,7 @@ RT_TEST(a_tree_without_end_is_refused_and_leaves_nothing_behind) {
     const RtCsgTerm endless[3] = {half, join(&b, unit, half), cut(&b, half, unit)};
     for (int i = 0; i < 3; i++) {
         assert_int_equal(rt_csg_compile(&forest, &b, endless[i], true, &tree, &error), RT_BAD_INPUT);
-        assert_non_null(strstr(error.message, "no end"));
+        assert_non_null(strstr(error.message, "unbounded"));
         assert_int_equal(forest.set.solid_count + forest.set.plane_count + forest.instruction_count, 0);
     }
     tree = compile(&forest, &b, meet(&b, unit, half));
@@ -150,7 +150,7 @@ RT_TEST(a_tree_of_too_many_solids_is_refused) {
     }
     assert_int_equal(status, RT_BAD_INPUT);
     assert_int_equal(b.nodes[term].size, RT_CSG_MAX_SOLIDS);
-    assert_non_null(strstr(error.message, "at most 16777216"));
+    assert_non_null(strstr(error.message, "the limit is 16777216"));
     rt_csg_builder_clear(&b);
 }
 
@@ -158,7 +158,7 @@ RT_TEST(a_tree_of_too_many_solids_is_refused) {
 
 typedef RtCsgTerm Side(RtCsgBuilder *b, const RtCsgTerm *terms, bool right_side);
 
-/* Both sides of an identity, made of three random terms and a box about all of them, give the same hits. */
+/* Both sides of an identity of three random terms and a box around them have the same hits. */
 static void check_identity(Side *side, uint64_t seed) {
     RtRandom random = rt_random(seed, 0);
     for (uint32_t round = 0; round < 60; round++) {

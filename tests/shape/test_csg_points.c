@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Trees against points: is a point inside? Asked of the formula and of what each solid is, in long double and
- * by other arithmetic than that of rays: quadratic and quartic forms, half-spaces, solid angles. Along random
- * rays points are taken on either side of every hit and midway between two; what rays say of them must be
- * true. RAYTALLY_CSG_RAYS sets the number of rays. */
+/* Trees against points. Whether a point is inside follows from the formula and the definition of each
+ * solid, in long double and with other arithmetic than that of rays: quadratic and quartic forms,
+ * half-spaces, solid angles. Along random rays, points are taken on either side of every hit and midway
+ * between hits; the rays must agree with them. RAYTALLY_CSG_RAYS sets the number of rays. */
 #include "csg_testing.h"
 
 #include "core/base/memory.h"
@@ -19,12 +19,12 @@ typedef struct Point {
     Real at[3];
 } Point;
 
-/* So near to a surface that long double cannot tell, or the solid's own numbers are rounded: unsure. */
+/* Unsure: so near to a surface that long double cannot decide, or the solid's own numbers are rounded. */
 typedef enum Side { OUTSIDE, UNSURE, INSIDE } Side;
 
 #define NEAR 1e-10L
 
-/* Of a form that is below 0 inside. */
+/* From a form that is negative inside. */
 static Side side_of(Real form) {
     return form < -NEAR ? INSIDE : form > NEAR ? OUTSIDE : UNSURE;
 }

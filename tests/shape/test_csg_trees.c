@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* shape/csg: trees as a whole. Extents that change nothing, moves, trees of any depth, and lack of memory. */
+/* shape/csg: whole trees. Extents that change no hit, moves, trees of any depth, and lack of memory. */
 #include "csg_testing.h"
 
 #include "core/base/memory.h"
@@ -188,7 +188,7 @@ RT_TEST(a_copied_tree_is_the_same_tree) {
 
 typedef enum DeepShape { LEFT_DEEP, RIGHT_DEEP, BALANCED } DeepShape;
 
-/* Unit balls at x = 0, 1, 2, ...; with `drilled` each is what is left of it after another one. */
+/* Unit balls at x = 0, 1, 2, ...; with `drilled`, the next one is subtracted from each. */
 static RtCsgTerm deep_tree(RtCsgBuilder *b, DeepShape shape, RtCsgOp op) {
     static RtCsgTerm terms[DEEP];
     for (uint32_t i = 0; i < DEEP; i++) terms[i] = ball(b, rt_vec3((float)i, 0, 0), 1, 0);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* shape/: what all hit functions promise: closed intervals of t, powers of two that scale it exactly, and no
- * hits beyond an object, however flat. */
+/* shape/: the guarantees of all hit functions: closed intervals of t, exact scaling by powers of two, and
+ * no hits beyond an object, however flat. */
 #include "shape_testing.h"
 
 #include "core/base/random.h"

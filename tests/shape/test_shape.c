@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* shape/: hits, normals and refusals of every shape, against answers known by hand. */
+/* shape/: hits, normals and rejected input of every shape, against results known by hand. */
 #include "shape_testing.h"
 
 #include <string.h>
@@ -165,7 +165,7 @@ RT_TEST(a_full_cone_is_hit_up_to_its_tip) {
 
 /* ---- normals ---- */
 
-/* What a ray that starts at `point` meets there. */
+/* The hit of a ray that starts at `point`. */
 static RtNormals normals_at(const RtGeometry *g, uint32_t id, RtVec3d point) {
     RtRay ray = {.org = rt_narrow(point), .dir = {0, 0, 1}, .tmax = INFINITY};
     return rt_object_normals(g, id, &ray, 0, room_of_tests());

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* core/shape/solid.h: solids of each kind met by lines whose crossings are known by hand, and what is
- * refused. */
+/* core/shape/solid.h: lines through solids of each kind with crossings known by hand, and rejected input. */
 #include "solids_testing.h"
 
 /* ---- by hand ---- */
@@ -184,7 +183,7 @@ RT_TEST(bad_solids_are_refused_and_leave_nothing) {
     expect(rt_solid_add_cone(&set, 1.5, &here, &at, &e), &e, "expected 0..1");
     expect(rt_solid_add_torus(&set, 1, &here, &at, &e), &e, "below 1");
     expect(rt_solid_add_torus(&set, (double)NAN, &here, &at, &e), &e, "below 1");
-    expect(rt_solid_add_polyhedron(&set, planes, 0, &here, &at, &e), &e, "from 1 to");
+    expect(rt_solid_add_polyhedron(&set, planes, 0, &here, &at, &e), &e, "expected 1..");
     expect(rt_solid_add_polyhedron(&set, planes, 2, &here, &at, &e), &e, "no inside");
     expect(rt_solid_add_polyhedron(&set, planes, 3, &here, &at, &e), &e, "plane 2");
     planes[1].offset = 0;
@@ -198,7 +197,7 @@ RT_TEST(bad_solids_are_refused_and_leave_nothing) {
     expect(rt_solid_add_frustum(&set, one, 1, one, 1, &at, &e), &e, "same point");
     expect(rt_solid_add_ring(&set, zero, one, 1, 1, &at, &e), &e, "minor < major");
     expect(rt_solid_add_ring(&set, zero, zero, 2, 1, &at, &e), &e, "length 0");
-    expect(rt_solid_add_hull(&set, corners, 3, &at, &e), &e, "from 4 to");
+    expect(rt_solid_add_hull(&set, corners, 3, &at, &e), &e, "expected 4..");
     expect(rt_solid_add_hull(&set, corners, 5, &at, &e), &e, "one plane");
     expect(rt_solid_add_mesh(&set, triangles, 3, &here, &at, &e), &e, "4 triangles");
     expect(rt_solid_add_mesh(&set, triangles, count - 1, &here, &at, &e), &e, "not closed");

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* core/shape/solid.h: meshes, hulls and planes that coincide: faces that several solids, or several
- * triangles, share. */
+/* core/shape/solid.h: meshes, hulls and coincident planes: faces that several solids or triangles share. */
 #include "solids_testing.h"
 
 /* ---- what different solids have in common ---- */
@@ -301,7 +300,7 @@ RT_TEST(the_hull_of_the_corners_of_a_box_is_the_box) {
     rt_solid_set_clear(&set);
 }
 
-/* Of the plane of each three points with all others on one side: a definition, not the search. */
+/* The planes of three points with all others on one side: the definition, not the search. */
 static bool is_inside_hull(const RtVec3 *points, uint32_t count, Point p, long double close) {
     long double most = -1;
     for (uint32_t i = 0; i < count * count * count; i++) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* core/shape/solid.h: spans of every kind of solid against membership of points, accuracy, extents, normals.
- */
+/* core/shape/solid.h: spans of every kind of solid against membership of points, accuracy, extents,
+ * normals. */
 #include "solids_testing.h"
 
 static uint32_t check_random_lines(const RtSolidSet *set, const Model *model, RtRandom *random,

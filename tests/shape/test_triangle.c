@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* core/shape/triangle.h works in vectors, on triangles that lie among others: here it is held against the
- * same, number by number, bit for bit, on triangles and rays that are not kind. */
+/* The vector code of core/shape/triangle.h, on triangles in place among others, returns the same bits as a
+ * scalar version, for difficult triangles and rays. */
 #include "testing.h"
 
 #include "base/ray_testing.h"
@@ -8,7 +8,7 @@
 
 enum { TRIES = 400000, LANES = 4 };
 
-/* Woop, Benthin & Wald's test as the head of core/shape/triangle.h has it, from the ray as it was given. */
+/* Woop, Benthin & Wald's test as described in core/shape/triangle.h, from the original ray. */
 static bool hit_by_hand(const RtTriangle *triangle, const RtRay *ray, float *t) {
     int kz = rt_major_axis(ray->dir), kx = (kz + 1) % 3, ky = (kx + 1) % 3;
     float inv = 1 / ray->dir.at[kz], shear_x = ray->dir.at[kx] * inv, shear_y = ray->dir.at[ky] * inv;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* core/text/csv.h: fields that are quoted, and files that are no tables. */
+/* core/text/csv.h: quoted fields, and files that are not tables. */
 #include "experiment_testing.h"
 
 #include "core/text/csv.h"
@@ -36,7 +36,7 @@ RT_TEST_IN_PLACE(a_csv_file_with_a_byte_0_is_refused_and_not_cut_off_there) {
     RtError error = {RT_OK, ""};
     RtStatus status = rt_csv_read(&csv, path_in(place, "some.csv").text, &error);
     rt_csv_clear(&csv);
-    assert_refused(status, RT_BAD_INPUT, &error, ":3: there is a zero byte");
+    assert_refused(status, RT_BAD_INPUT, &error, ":3: the file contains a zero byte");
 }
 
 RT_TEST_IN_PLACE(a_csv_file_that_is_none_is_refused_with_its_line) {

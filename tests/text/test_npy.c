@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* core/text/npy.h: arrays as NumPy writes them, and files that are none, or other ones. */
+/* core/text/npy.h: arrays as NumPy writes them, and files that are invalid or of other types. */
 #include "experiment_testing.h"
 
 #include "core/text/npy.h"
@@ -99,7 +99,7 @@ RT_TEST_IN_PLACE(arrays_of_another_type_order_shape_or_length_are_refused) {
         {1, 0, "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 8)}", 128, "expected '<f4'"},
         {1, 0, "{'descr': '>f4', 'fortran_order': False, 'shape': (2, 8)}", 64, "expected '<f4'"},
         {1, 0, "{'descr': [('t', '<f4')], 'fortran_order': False, 'shape': (2, 8)}", 64, "expected '<f4'"},
-        {1, 0, "{'descr': '<f4', 'fortran_order': True, 'shape': (2, 8)}", 64, "row after row"},
+        {1, 0, "{'descr': '<f4', 'fortran_order': True, 'shape': (2, 8)}", 64, "column-major"},
         {1, 0, "{'descr': '<f4', 'fortran_order': 0, 'shape': (2, 8)}", 64, "the header is not"},
         {1, 0, "{'descr': '<f4', 'shape': (2, 8)}", 64, "the header is not"},
         {1, 0, "{'descr': '<f4', 'fortran_order': False}", 64, "the header is not"},
@@ -121,7 +121,7 @@ RT_TEST_IN_PLACE(arrays_of_another_type_order_shape_or_length_are_refused) {
     }
 }
 
-/* Whatever byte is another one, and wherever the file ends, it is the array, or is refused. */
+/* Whichever byte changes, and wherever the file ends, it is read as the array or rejected. */
 RT_TEST_IN_PLACE(no_damage_to_a_file_goes_further_than_a_message) {
     const char header[] = "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 8), }\n";
     Path path = write_array(*state, 1, 0, header, 64);

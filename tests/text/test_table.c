@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* core/text/table.h: one small table, with every kind of field, in every form. */
+/* core/text/table.h: one small table with every type of field, in every format. */
 #include "testing.h"
 
 #include "core/text/table.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Accelerators that are broken on purpose, each by one known pitfall, and their unbroken controls. They are
- * tiny and slow, and built over any scene: a flat list of boxes, a grid of 3 x 3 x 3 voxels that are visited
- * in the order in which a ray enters them, lists of objects for the octants around a light. */
+/* Accelerators that are broken on purpose, each by one known pitfall, and their correct counterparts. They
+ * are tiny and slow, and can be built over any scene: a flat list of boxes, a grid of 3 x 3 x 3 voxels
+ * visited in the order of the ray, object lists for the octants around a light. */
 #ifndef RT_TESTS_MUTANTS_H
 #define RT_TESTS_MUTANTS_H
 
@@ -53,7 +53,7 @@ static bool box_is_skipped(const Mutant *m, const RtBox *box, const RtPreparedRa
     return kind == PRUNED_TIE && m->recipe.broken && enter >= limit;
 }
 
-/* From the last object to the first, so that of two at the same t the second that is asked counts. */
+/* From the last object to the first, so that of two at the same t the one tested later counts. */
 static void search_boxes(const Mutant *m, const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
     const RtGeometry *g = &m->base.scene->geometry;
     for (uint32_t id = g->object_count; id-- > 0;) {
@@ -194,7 +194,7 @@ static void search_light(const Mutant *m, const RtPreparedRay *ray, bool any, Rt
 
 /* ---- triangles ---- */
 
-/* What Moeller & Trumbore 1997 divide by. */
+/* The divisor of Moeller & Trumbore 1997. */
 static double determinant(const RtTriangle *triangle, const RtPreparedRay *ray) {
     RtVec3d a = rt_widen(triangle->v[0]);
     RtVec3d u = rt_subd(rt_widen(triangle->v[1]), a), v = rt_subd(rt_widen(triangle->v[2]), a);
@@ -252,8 +252,8 @@ static RtStatus build_mutant(const void *context, const RtScene *scene, int thre
 }
 
 /* `recipe` stays the caller's. */
-static inline RtMaker maker_of_mutant(const MutantRecipe *recipe) {
-    return (RtMaker){build_mutant, recipe, 1};
+static inline RtAccelBuilder builder_of_mutant(const MutantRecipe *recipe) {
+    return (RtAccelBuilder){build_mutant, recipe, 1};
 }
 
 #endif

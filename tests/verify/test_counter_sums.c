@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Counters are the same numbers on any number of threads and in streams of any length, and plausible beside
- * one another, for every accelerator at every setting of the spread. */
+/* Counters are the same on any number of threads and in streams of any length, and plausible relative to
+ * each other, for every accelerator at every setting of the sweep. */
 #include "equivalence_testing.h"
 
 #include "core/base/parallel.h"

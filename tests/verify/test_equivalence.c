@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Equivalence and verdicts: lies are found, whichever kernel tells them and in whatever stream; margins and
- * ties are told from errors. */
+/* Equivalence and verdicts: wrong answers are found, in either kernel and in any stream; margins and ties
+ * are distinguished from errors. */
 #include "equivalence_testing.h"
 
 #include "measure/measure.h"
@@ -208,19 +208,19 @@ RT_TEST(what_goes_wrong_while_tracing_is_a_status_of_all_who_trace) {
     RtCount count;
     static RtHit hits[RAYS];
     static RtRay more[64];
-    const RtMaker maker = {build_unlucky, NULL, 0};
+    const RtAccelBuilder builder = {build_unlucky, NULL, 0};
     const RtRaySet set = {.kind = RT_RAY_RANDOM, .count = RAYS, .rays = rays};
     const RtFailure question = {.rays = rays, .count = 1, .stream = 1};
     const RtVerifyRays wanted = {.count = 64, .seed = 1, .threads = 1};
     const RtFrameOptions options = {.depth = 1, .threads = 1};
     double seconds, wall;
-    assert_ok(rt_maker_build(&maker, &stage->scene, &accel, error));
+    assert_ok(rt_accel_builder_run(&builder, &stage->scene, &accel, error));
     const RtTimed timed = {.accel = accel, .set = &set, .seconds = &seconds, .wall = &wall};
     const RtTiming timing = {.rounds = {.rounds = 1, .most = 1}, .threads = 1};
     uint32_t done;
     assert_went_wrong(rt_equivalence_check(&stage->reference, accel, 1, &equivalence, &failure), &failure);
     assert_went_wrong(rt_reference_init(&reference, accel, rays, RAYS, 1, &failure), &failure);
-    assert_went_wrong(rt_failure_ask(&question, &stage->scene, maker, &reply, &failure), &failure);
+    assert_went_wrong(rt_failure_ask(&question, &stage->scene, builder, &reply, &failure), &failure);
     assert_went_wrong(rt_frame_trace(&frame, accel, &options, &failure), &failure);
     assert_went_wrong(rt_measure_answers(accel, &set, 1, hits, &failure), &failure);
     assert_went_wrong(rt_measure_count(accel, &set, stage->reference.hits, 1, &count, &failure), &failure);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A test of the test: accelerators with a known pitfall are caught by the rays and scenes that `verify`
- * takes, within a bounded number of rays, and their first failure shrinks to a few objects; the same code
- * without the fault is not caught. */
+/* A test of the test: accelerators with a known pitfall are caught by the rays and scenes of `verify`
+ * within a bounded number of rays, and their first failure shrinks to a few objects; the same code without
+ * the fault is not caught. */
 #include "equivalence_testing.h"
 #include "mutants.h"
 
@@ -15,25 +15,26 @@ static const char *const names[] = {
 #undef MUTANT_NAME
 };
 
-static RtEquivalence check(const FamilyBench *bench, RtMaker maker) {
+static RtEquivalence check(const FamilyBench *bench, RtAccelBuilder builder) {
     RtEquivalence result;
     RtAccel *accel;
-    assert_ok(rt_maker_build(&maker, &bench->scene, &accel, error));
+    assert_ok(rt_accel_builder_run(&builder, &bench->scene, &accel, error));
     assert_ok(rt_equivalence_check(&bench->reference, accel, 0, &result, error));
     rt_accel_destroy(accel);
     return result;
 }
 
 /* The failure shrinks to a few objects, of which none can be spared. */
-static void shrink(const FamilyBench *bench, RtMaker maker, const RtWrongAnswer *wrong, const char *name) {
+static void shrink(const FamilyBench *bench, RtAccelBuilder builder, const RtWrongAnswer *wrong,
+                   const char *name) {
     RtFailure failure;
     RtAnswer answer;
     RtShrunk shrunk;
     char says[512];
-    assert_ok(rt_failure_of(&bench->reference, wrong, maker, &failure, &answer, error));
+    assert_ok(rt_failure_of(&bench->reference, wrong, builder, &failure, &answer, error));
     assert_true(answer.wrong);
     assert_int_equal(failure.count, 1);
-    assert_ok(rt_shrink(&bench->scene, &failure, &answer, maker, RT_SHRINK_BUDGET, NULL, &shrunk, error));
+    assert_ok(rt_shrink(&bench->scene, &failure, &answer, builder, RT_SHRINK_BUDGET, NULL, &shrunk, error));
     rt_wrong_answer_format(wrong, says, sizeof says);
     print_message("%s: scene %s with %u objects, rays %s, %u objects left after %u tries: %s\n", name,
                   bench->scene.name, bench->scene.geometry.object_count,
@@ -45,15 +46,15 @@ static void shrink(const FamilyBench *bench, RtMaker maker, const RtWrongAnswer 
 
 static void a_mutant_is_caught_and_its_failure_shrinks(void **state) {
     MutantRecipe recipe = {*(const MutantKind *)*state, true};
-    RtMaker maker = maker_of_mutant(&recipe);
+    RtAccelBuilder builder = builder_of_mutant(&recipe);
     uint64_t rays = 0;
     for (size_t scene = 0; scene < rt_family_count() && rays < MOST_RAYS; scene++) {
         FamilyBench bench;
         set_up_family(&bench, scene, 1, RAYS_PER_FAMILY);
-        RtEquivalence result = check(&bench, maker);
+        RtEquivalence result = check(&bench, builder);
         /* One that fails where there is little to fail on would be no example. */
         bool caught = result.any_wrong && bench.scene.geometry.object_count > MOST_OBJECTS_LEFT;
-        if (caught) shrink(&bench, maker, &result.first_wrong, names[recipe.kind]);
+        if (caught) shrink(&bench, builder, &result.first_wrong, names[recipe.kind]);
         rays += result.rays;
         tear_down_family(&bench);
         if (caught) return;
@@ -66,7 +67,7 @@ static void its_control_is_not_caught(void **state) {
     for (size_t scene = 0; scene < rt_family_count(); scene++) {
         FamilyBench bench;
         set_up_family(&bench, scene, 1, RAYS_PER_FAMILY);
-        RtEquivalence result = check(&bench, maker_of_mutant(&recipe));
+        RtEquivalence result = check(&bench, builder_of_mutant(&recipe));
         tear_down_family(&bench);
         if (!result.any_wrong) continue;
         char says[512];
@@ -79,17 +80,17 @@ static void its_control_is_not_caught(void **state) {
 static void shrinking_ends_with_its_budget(void **state) {
     (void)state;
     MutantRecipe recipe = {EARLY_EXIT, true};
-    RtMaker maker = maker_of_mutant(&recipe);
+    RtAccelBuilder builder = builder_of_mutant(&recipe);
     FamilyBench bench;
     set_up_family(&bench, scene_family("line"), 1, RAYS_PER_FAMILY);
-    RtEquivalence result = check(&bench, maker);
+    RtEquivalence result = check(&bench, builder);
     RtFailure failure;
     RtAnswer answer;
-    assert_ok(rt_failure_of(&bench.reference, &result.first_wrong, maker, &failure, &answer, error));
+    assert_ok(rt_failure_of(&bench.reference, &result.first_wrong, builder, &failure, &answer, error));
     assert_true(answer.wrong);
     for (uint64_t budget = 0; budget <= 2000; budget += 400) {
         RtShrunk shrunk;
-        assert_ok(rt_shrink(&bench.scene, &failure, &answer, maker, budget, NULL, &shrunk, error));
+        assert_ok(rt_shrink(&bench.scene, &failure, &answer, builder, budget, NULL, &shrunk, error));
         assert_false(shrunk.minimal);
         assert_true(shrunk.answer.wrong && shrunk.tries <= budget / 32);
         if (budget == 0) assert_int_equal(shrunk.count, bench.scene.geometry.object_count);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Verification as the harness runs it: what it finds is kept in a replay file that still disagrees when it is
- * asked again, and no longer does once the fault is mended; an interrupted run goes on to the same table. */
+/* Verification as a whole: a failure is kept in a replay file that reproduces it until the fault is fixed;
+ * an interrupted run resumes to the same table. */
 #include "mutants.h"
 #include "testing.h"
 
@@ -65,6 +65,21 @@ static json_t *verify(const char *folder, int threads, RtStart start) {
     return rows;
 }
 
+/* Verifies one spec on `count` scenes; the rows are the caller's. */
+static json_t *verify_spec(const RtVerifySpec *spec, const char *const *names, uint32_t count, uint64_t rays,
+                           int threads, const char *folder) {
+    RtVerify work = {.scenes = names,
+                     .scene_count = count,
+                     .specs = spec,
+                     .spec_count = 1,
+                     .rays = {rays, 1, threads, NULL},
+                     .folder = folder,
+                     .start = RT_START_ANEW};
+    json_t *rows;
+    assert_ok(rt_verify_run(&work, &observer, &rows, error));
+    return rows;
+}
+
 static char *text_of(const char *folder, const char *name) {
     char path[RT_MAX_PATH], *text;
     size_t size;
@@ -97,8 +112,8 @@ RT_TEST(a_failure_can_be_replayed_until_it_is_mended) {
     assert_string_equal(replay.accel_spec, "unpadded");
     for (int shrunk = 0; shrunk < 2; shrunk++) {
         RtAnswer broken, mended;
-        assert_ok(rt_replay_ask(&replay, maker_of_mutant(&unpadded), shrunk, &broken, error));
-        assert_ok(rt_replay_ask(&replay, maker_of_mutant(&padded), shrunk, &mended, error));
+        assert_ok(rt_replay_ask(&replay, builder_of_mutant(&unpadded), shrunk, &broken, error));
+        assert_ok(rt_replay_ask(&replay, builder_of_mutant(&padded), shrunk, &mended, error));
         assert_true(broken.wrong);
         assert_false(mended.wrong);
     }
@@ -106,7 +121,7 @@ RT_TEST(a_failure_can_be_replayed_until_it_is_mended) {
     json_decref(rows);
 }
 
-/* What docs/columns.md says of `verify --json`, and of a wrong answer. */
+/* The columns that docs/columns.md documents for `verify --json`. */
 RT_TEST(a_row_has_the_members_that_its_columns_name) {
     json_t *rows = verify(OUT "/a", 0, RT_START_ANEW), *row = json_array_get(rows, 1);
     size_t expected = RT_VERIFY_GROUPS - 1; /* objects in the row */
@@ -164,13 +179,7 @@ static RtStatus build_noting_threads(const void *context, const RtScene *scene, 
 RT_TEST(accelerators_are_built_on_the_threads_of_the_run) {
     const RtVerifySpec spec = {"noting", true, {build_noting_threads, &padded, 0}};
     for (int threads = 1; threads <= 3; threads += 2) {
-        RtVerify work = {.scenes = scenes,
-                         .scene_count = 1,
-                         .specs = &spec,
-                         .spec_count = 1,
-                         .rays = {100, 1, threads, NULL}};
-        json_t *rows;
-        assert_ok(rt_verify_run(&work, &observer, &rows, error));
+        json_t *rows = verify_spec(&spec, scenes, 1, 100, threads, NULL);
         assert_int_equal(threads_of_build, threads);
         json_decref(rows);
     }
@@ -186,19 +195,11 @@ RT_TEST(another_run_is_not_gone_on_with) {
     json_decref(rows);
 }
 
-/* Only its first failure; the scene of the next is left whole, and kept all the same. */
+/* Only its first failure is shrunk; the next one is kept with its whole scene. */
 RT_TEST(an_accelerator_has_one_failure_shrunk) {
     const char *const both[] = {scenes[0], "family:kind=axis-aligned,seed=1"};
     const RtVerifySpec spec = {"unpadded", true, {build_mutant, &unpadded, 0}};
-    RtVerify work = {.scenes = both,
-                     .scene_count = 2,
-                     .specs = &spec,
-                     .spec_count = 1,
-                     .rays = {6000, 1, 0, NULL},
-                     .folder = OUT "/g",
-                     .start = RT_START_ANEW};
-    json_t *rows;
-    assert_ok(rt_verify_run(&work, &observer, &rows, error));
+    json_t *rows = verify_spec(&spec, both, 2, 6000, 0, OUT "/g");
     for (size_t i = 0; i < 2; i++) {
         RtReplay replay;
         RtAnswer answer;
@@ -208,7 +209,7 @@ RT_TEST(an_accelerator_has_one_failure_shrunk) {
         assert_true(i == 0 ? left <= 3 : left == 150);
         assert_ok(rt_replay_load(&replay, replay_of(json_array_get(rows, i)), error));
         assert_true((replay.shrunk_yaml != NULL) == (i == 0));
-        assert_ok(rt_replay_ask(&replay, spec.maker, false, &answer, error));
+        assert_ok(rt_replay_ask(&replay, spec.builder, false, &answer, error));
         assert_true(answer.wrong);
         rt_replay_clear(&replay);
     }
@@ -237,42 +238,26 @@ static RtStatus build_losing(const void *context, const RtScene *scene, int thre
 
 RT_TEST(a_failure_that_takes_its_neighbours_is_kept_with_them) {
     const RtVerifySpec spec = {"losing", true, {build_losing, &padded, 1}};
-    RtVerify work = {.scenes = scenes,
-                     .scene_count = 1,
-                     .specs = &spec,
-                     .spec_count = 1,
-                     .rays = {4000, 1, 0, NULL},
-                     .folder = OUT "/d",
-                     .start = RT_START_ANEW};
-    json_t *rows;
     RtReplay replay;
     RtAnswer answer;
     shortest_losing = 2;
-    assert_ok(rt_verify_run(&work, &observer, &rows, error));
+    json_t *rows = verify_spec(&spec, scenes, 1, 4000, 0, OUT "/d");
     assert_ok(rt_replay_load(&replay, replay_of(json_array_get(rows, 0)), error));
     assert_true(replay.failure.count > 1 && replay.failure.stream > 1);
     assert_int_equal((replay.failure.asked + 1) % replay.failure.stream, 0);
     for (int shrunk = 0; shrunk < 2; shrunk++) {
-        assert_ok(rt_replay_ask(&replay, spec.maker, shrunk, &answer, error));
+        assert_ok(rt_replay_ask(&replay, spec.builder, shrunk, &answer, error));
         assert_true(answer.wrong);
     }
     rt_replay_clear(&replay);
     json_decref(rows);
 }
 
-/* Those of the camera, which come first, too: packets are made of them. */
+/* Including the camera's rays, which come first: they form packets. */
 RT_TEST(the_first_rays_are_asked_in_long_streams_as_well_as_alone) {
     const RtVerifySpec spec = {"losing", true, {build_losing, &padded, 1}};
-    RtVerify work = {.scenes = scenes + 1,
-                     .scene_count = 1,
-                     .specs = &spec,
-                     .spec_count = 1,
-                     .rays = {1000, 1, 0, NULL},
-                     .folder = OUT "/h",
-                     .start = RT_START_ANEW};
-    json_t *rows;
     shortest_losing = 64;
-    assert_ok(rt_verify_run(&work, &observer, &rows, error));
+    json_t *rows = verify_spec(&spec, scenes + 1, 1, 1000, 0, OUT "/h");
     assert_true(rt_verify_row_fails(json_array_get(rows, 0)));
     json_decref(rows);
 }
@@ -298,7 +283,7 @@ RT_TEST(the_spread_has_the_trial_and_that_beside_each_value) {
     assert_false(rt_trial_spec("item+bvh", spec));
 }
 
-/* A scene from a file is written into the replay file whole, and read from there to the last bit. */
+/* A scene from a file is stored in the replay file and restored to the last bit. */
 RT_TEST(a_replay_file_needs_no_other_file) {
     const char *path = OUT "/lecture.json";
     RtScene scene;
@@ -322,12 +307,13 @@ RT_TEST(a_replay_file_needs_no_other_file) {
     assert_true(replay.failure.occluded && replay.failure.counted);
     assert_int_equal(replay.fingerprint, rt_scene_fingerprint(&scene));
     for (int part = 0; part < 2; part++) {
-        assert_ok(rt_replay_ask(&replay, rt_maker_of_spec("bvh"), part, &again, error));
+        assert_ok(rt_replay_ask(&replay, rt_accel_builder_of_spec("bvh"), part, &again, error));
         assert_false(again.wrong);
     }
     replay.fingerprint ^= 1;
     RtError error;
-    assert_int_equal(rt_replay_ask(&replay, rt_maker_of_spec("bvh"), false, &again, &error), RT_BAD_INPUT);
+    assert_int_equal(rt_replay_ask(&replay, rt_accel_builder_of_spec("bvh"), false, &again, &error),
+                     RT_BAD_INPUT);
     rt_replay_clear(&replay);
     rt_scene_clear(&scene);
 }

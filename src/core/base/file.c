@@ -202,8 +202,7 @@ bool rt_file_is_dead_link(const char *path, RtError *error) {
     ssize_t length = readlink(path, target, sizeof target - 1);
     if (length < 0 || stat(path, &info) == 0 || errno == EACCES) return false;
     target[length] = '\0';
-    rt_fail(error, RT_BAD_INPUT, "%s is a symbolic link that leads to no file: its target is '%s'", path,
-            target);
+    rt_fail(error, RT_BAD_INPUT, "%s is a symbolic link to a missing file: its target is '%s'", path, target);
     return true;
 }
 

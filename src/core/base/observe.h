@@ -37,18 +37,18 @@ typedef struct RtTraced {
     float t;
 } RtTraced;
 
-typedef struct RtObserver {
+typedef struct RtTraceObserver {
     void (*observe)(void *context, const RtTraced *event);
     void *context;
-} RtObserver;
+} RtTraceObserver;
 
 /* This thread's observer, or NULL (the default). Set it around the tracing of one ray. */
-extern _Thread_local const RtObserver *rt_observer;
+extern _Thread_local const RtTraceObserver *rt_trace_observer;
 
 #define RT_COLD __attribute__((cold, noinline))
 
 /* True in a counted kernel with an observer. */
-#define RT_OBSERVED(tally) ((tally) && __builtin_expect(rt_observer != NULL, 0))
+#define RT_OBSERVED(tally) ((tally) && __builtin_expect(rt_trace_observer != NULL, 0))
 
 /* Reports an event, given by its members, to the observer if there is one: RT_OBSERVE(tally, .kind = ...). */
 #define RT_OBSERVE(tally, ...)                                                                               \

@@ -149,8 +149,7 @@ static bool parse_value(const RtParam *param, const char *text, RtValue *out) {
 
 static RtStatus fail_unknown(const RtParam *table, size_t count, const char *key, const char *what,
                              RtError *error) {
-    if (count == 0)
-        return rt_fail(error, RT_BAD_INPUT, "%s has no parameters, so not '%s' either", what, key);
+    if (count == 0) return rt_fail(error, RT_BAD_INPUT, "%s has no parameters, and so no '%s'", what, key);
     const char *names[RT_MAX_PARAMS];
     char list[512], suggestion[RT_MAX_SUGGESTION];
     for (size_t i = 0; i < count; i++) names[i] = table[i].name;
@@ -203,7 +202,7 @@ RtStatus rt_params_parse(const RtParam *table, size_t count, const char *text, c
     bool given[RT_MAX_PARAMS] = {false};
     for (size_t i = 0; i < count; i++) {
         if (!parse_value(&table[i], table[i].default_text, &values[i]))
-            return rt_fail(error, RT_BAD_INPUT, "%s: the default '%s=%s' does not lie in its own range", what,
+            return rt_fail(error, RT_BAD_INPUT, "%s: the default '%s=%s' is outside its own range", what,
                            table[i].name, table[i].default_text);
     }
     if (!text || !*text) return RT_OK;

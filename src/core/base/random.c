@@ -34,8 +34,7 @@ float rt_random_unit(RtRandom *random) {
 
 RtVec3d rt_random_direction(RtRandom *random) {
     for (;;) {
-        RtVec3d d;
-        for (int a = 0; a < 3; a++) d.at[a] = 2 * (double)rt_random_unit(random) - 1;
+        RtVec3d d = rt_random_in_cube(random);
         double dd = rt_dotd(d, d);
         if (dd > 1e-4 && dd <= 1) return rt_normalized(d);
     }

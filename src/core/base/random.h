@@ -47,6 +47,13 @@ static inline RtVec3 rt_random_point(RtRandom *random, float size) {
     return p;
 }
 
+/* Uniform in the cube of points with coordinates in [-1, 1). */
+static inline RtVec3d rt_random_in_cube(RtRandom *random) {
+    RtVec3d p;
+    for (int a = 0; a < 3; a++) p.at[a] = rt_random_betweend(random, -1, 1);
+    return p;
+}
+
 /* Uniform on the unit sphere, by rejection from the cube: no sine or cosine, the same bits everywhere. */
 RtVec3d rt_random_direction(RtRandom *random);
 

@@ -58,7 +58,7 @@ RtStatus rt_fail_at(RtError *error, const char *file, size_t line, size_t column
 }
 
 RtStatus rt_fail_memory(RtError *error, const char *what, size_t bytes) {
-    if (bytes == 0) return rt_fail(error, RT_NO_MEMORY, "out of memory: there is too little for %s", what);
+    if (bytes == 0) return rt_fail(error, RT_NO_MEMORY, "out of memory: not enough for %s", what);
     return rt_fail(error, RT_NO_MEMORY, "out of memory: %zu bytes for %s could not be allocated", bytes,
                    what);
 }

@@ -21,8 +21,8 @@ RtTransform rt_transform_compose(const RtTransform *first, const RtTransform *se
 
 static RtStatus check_finite(RtVec3 v, const char *what, RtError *error) {
     if (rt_finite(v)) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT, "%s is not made of finite numbers: (%g, %g, %g)", what, (double)v.x,
-                   (double)v.y, (double)v.z);
+    return rt_fail(error, RT_BAD_INPUT, "%s is not finite: (%g, %g, %g)", what, (double)v.x, (double)v.y,
+                   (double)v.z);
 }
 
 RtStatus rt_transform_scale(RtTransform *transform, RtVec3 factors, RtError *error) {

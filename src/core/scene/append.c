@@ -8,10 +8,10 @@
 typedef struct Append {
     RtScene *to;
     const RtScene *from;
-    const uint32_t *ids; /* [count] of the objects, or NULL: all of them */
+    const uint32_t *ids; /* [count] objects, or NULL: all */
     uint32_t count;
     const RtTransform *transform; /* or NULL */
-    double scale;                 /* of lengths, 0 if uneven */
+    double scale;                 /* the uniform scale, 0 if uneven */
     uint32_t *materials;          /* [from->material_count] index in `to` */
     RtVec3 *vertices;             /* [from->geometry.polygon_vertex_count] moved */
     RtError *error;
@@ -23,7 +23,7 @@ static RtVec3 move_point(const Append *a, RtVec3 p) {
 
 static RtStatus fail_uneven(const Append *a, const char *shape) {
     return rt_fail(a->error, RT_BAD_INPUT,
-                   "the transform scales unevenly, and the scene has a %s, which would not stay one: use one "
+                   "the transform scales unevenly, which would deform a %s of the scene: use one "
                    "factor for all axes",
                    shape);
 }

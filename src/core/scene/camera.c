@@ -26,7 +26,7 @@ RtStatus rt_sampling_init(RtSampling *sampling, uint32_t width, uint32_t height,
     }
     if (corners && samples > 1) {
         return rt_fail(error, RT_BAD_INPUT,
-                       "pixel corners take one sample each: leave out the samples, or the corners");
+                       "pixel corners have one sample each: omit the number of samples or the corners");
     }
     *sampling = (RtSampling){.width = width,
                              .height = height,
@@ -49,7 +49,8 @@ RtStatus rt_view_init(RtView *view, const RtCamera *camera, RtSampling sampling,
     }
     RtVec3d axis = rt_subd(rt_widen(camera->at), rt_widen(camera->from));
     if (rt_lengthd(axis) == 0) {
-        return rt_fail(error, RT_BAD_INPUT, "the camera looks nowhere: `from` and `at` are the same point");
+        return rt_fail(error, RT_BAD_INPUT,
+                       "the camera has no direction: `from` and `at` are the same point");
     }
     RtVec3d forward = rt_normalized(axis);
     RtVec3d right = rt_crossd(forward, rt_normalized(rt_widen(camera->up)));

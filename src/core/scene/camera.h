@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The camera: a pinhole. One function makes every primary ray, so that rays, item buffers and ray sets agree
- * on them bit for bit.
+/* The pinhole camera. One function makes every primary ray, so rays, item buffers and ray sets agree on them
+ * bit for bit.
  *
  * Samples lie on a grid of `columns` x `rows` over the image plane, row by row from the upper left:
+ *
  *   pixel centres:  columns = width * samples, sample i at (i + 1/2) / columns of the width;
- *   pixel corners:  columns = width + 1,       sample i at i / width of the width (what SPD asks for). */
+ *   pixel corners:  columns = width + 1,       sample i at i / width of the width (as in SPD). */
 #ifndef RT_SCENE_CAMERA_H
 #define RT_SCENE_CAMERA_H
 
@@ -14,14 +15,14 @@
 typedef struct RtCamera {
     RtVec3 from, at, up;
     float fov;              /* full vertical angle, degrees, in (0, 180) */
-    float near;             /* distance along the axis to the near plane, >= 0: nothing nearer is seen */
+    float near;             /* distance along the axis to the near plane, >= 0 */
     uint32_t width, height; /* pixels, the default image size */
 } RtCamera;
 
 #define RT_MAX_IMAGE_SIDE 32768
 
-/* "640x480": width and height in pixels, each 1..RT_MAX_IMAGE_SIDE; false, and nothing changes, if it is
- * not. */
+/* Parses "640x480": width and height in pixels, each 1..RT_MAX_IMAGE_SIDE. Returns false, changing
+ * nothing, for anything else. */
 bool rt_image_size_parse(const char *text, uint32_t *width, uint32_t *height);
 
 /* How an image of width x height pixels is sampled. */
@@ -32,11 +33,11 @@ typedef struct RtSampling {
     uint32_t columns, rows; /* of the sample grid */
 } RtSampling;
 
-/* Refuses sides outside 1..RT_MAX_IMAGE_SIDE, samples outside 1..64, and corners with samples > 1. */
+/* Rejects sides outside 1..RT_MAX_IMAGE_SIDE, samples outside 1..64, and corners with samples > 1. */
 RtStatus rt_sampling_init(RtSampling *sampling, uint32_t width, uint32_t height, uint32_t samples,
                           bool corners, RtError *error);
 
-/* The camera's frame of reference for one sampling, computed once. */
+/* The camera's coordinate frame for one sampling, computed once. */
 typedef struct RtView {
     RtSampling sampling;
     RtVec3d eye, forward; /* forward: to the centre of the image plane, at distance 1 */
@@ -44,15 +45,15 @@ typedef struct RtView {
     double near;
 } RtView;
 
-/* Refuses a camera that looks nowhere (from = at), has `up` along its axis, or a fov outside (0, 180). */
+/* Rejects a camera with from = at, `up` along its axis, or a fov outside (0, 180). */
 RtStatus rt_view_init(RtView *view, const RtCamera *camera, RtSampling sampling, RtError *error);
 
-/* Position of sample `i` of `n`, a column or a row of the grid, in -1..1 across the image plane. */
+/* Position of sample `i` of `n` (a column or a row of the grid) across the image plane, in -1..1. */
 double rt_sample_position(uint32_t i, uint32_t n, bool corners);
 
-/* The primary ray of the sample in `column`, `row`: from the eye, dir not normalised (its component along the
- * axis is 1, so t is depth), tmin at the near plane, source = row * columns + column. Its
- * dir is (forward + right * position of the column) + down * position of the row, in double, rounded. */
+/* The primary ray of the sample in `column`, `row`: from the eye, not normalised (its component along the
+ * axis is 1, so t is depth), tmin at the near plane, source = row * columns + column. Its direction is
+ * (forward + right * column position) + down * row position, in double, rounded once. */
 RtRay rt_view_ray(const RtView *view, uint32_t column, uint32_t row);
 
 #endif

@@ -17,9 +17,9 @@ typedef struct Parser {
     RtFormulaLookup *lookup;
     void *context;
     uint32_t term_count, term_capacity;
-    RtCsgTerm *terms; /* operands that wait for their operator */
+    RtCsgTerm *terms; /* operands that await their operator */
     uint32_t operator_count, operator_capacity;
-    char *operators; /* '|', '&', '-' and OPEN that wait for their right operand */
+    char *operators; /* '|', '&', '-' and OPEN that await their right operand */
     RtError *error;
 } Parser;
 
@@ -58,7 +58,7 @@ static int rank(char c) {
     return c == OPEN ? 0 : c == '&' ? 2 : 1;
 }
 
-/* Does what the operators on the stack say, down to one of a rank below `least`. */
+/* Applies the operators on the stack down to precedence `least`. */
 static RtStatus reduce(Parser *p, int least) {
     while (p->operator_count > 0 && rank(p->operators[p->operator_count - 1]) >= least) {
         char c = p->operators[--p->operator_count];
@@ -80,8 +80,7 @@ static RtStatus read_operand(Parser *p, bool *done) {
         return push_operator(p, OPEN);
     }
     if (length == 0) {
-        return fail(p, *here == '\0' ? "it ends where a name or '(' should follow"
-                                     : "a name or '(' should stand here");
+        return fail(p, *here == '\0' ? "it ends where a name or '(' is expected" : "expected a name or '('");
     }
     if (length >= RT_FORMULA_MAX_NAME) return fail(p, "this name is too long");
     char name[RT_FORMULA_MAX_NAME];
@@ -94,7 +93,7 @@ static RtStatus read_operand(Parser *p, bool *done) {
     return rt_append(&p->terms, &p->term_count, &p->term_capacity, &term, sizeof term, p->error);
 }
 
-/* After an operand: an operator, ')' or the end. */
+/* Reads what may follow an operand: an operator or ')'. */
 static RtStatus read_operator(Parser *p, bool *operand_next) {
     char c = p->text[p->at];
     *operand_next = false;
@@ -106,7 +105,7 @@ static RtStatus read_operator(Parser *p, bool *operand_next) {
         return RT_OK;
     }
     if (c != '|' && c != '&' && c != '-') {
-        return fail(p, "one of | (union), & (intersection), - (difference) or ')' should stand here");
+        return fail(p, "expected | (union), & (intersection), - (difference) or ')'");
     }
     RT_TRY(reduce(p, rank(c)));
     p->at++;
@@ -146,13 +145,13 @@ RtStatus rt_formula_read(const char *formula, RtCsgBuilder *builder, RtFormulaLo
 
 enum { LEAF = 0 };
 
-/* What an instruction of the tree made. */
+/* A node of the tree, made by an instruction. */
 typedef struct Branch {
-    char sign;            /* of an operation; LEAF */
-    uint32_t left, right; /* branches; of a leaf `left` is the solid */
+    char sign;            /* an operator, or LEAF */
+    uint32_t left, right; /* branches; in a leaf `left` is the solid */
 } Branch;
 
-/* What is still to be written, last first: a branch, or where `branch` is NOTHING a character. */
+/* Still to be written, last first: a branch, or a character if `branch` is NOTHING. */
 #define NOTHING UINT32_MAX
 typedef struct Pending {
     uint32_t branch;
@@ -163,7 +162,7 @@ typedef struct Writer {
     const RtCsgForest *forest;
     const RtCsg *tree;
     Branch *branches; /* [2 * solids] */
-    uint32_t *stack;  /* [solids] branches that stand for lists */
+    uint32_t *stack;  /* [solids] */
     uint32_t pending_count, pending_capacity;
     Pending *pending;
     uint32_t length, capacity;
@@ -171,7 +170,7 @@ typedef struct Writer {
     RtError *error;
 } Writer;
 
-/* Runs the program on branches instead of lists; gives the root. */
+/* Runs the program on branches instead of lists; returns the root. */
 static uint32_t grow(Writer *w) {
     uint32_t count = 0, height = 0;
     for (uint32_t i = 0; i < w->tree->count; i++) {
@@ -203,7 +202,7 @@ static RtStatus push(Writer *w, uint32_t branch, char character) {
     return rt_append(&w->pending, &w->pending_count, &w->pending_capacity, &next, sizeof next, w->error);
 }
 
-/* In reverse: what is pushed last is written first. */
+/* In reverse: the stack is written from its top. */
 static RtStatus push_operand(Writer *w, uint32_t branch, bool enclosed) {
     if (enclosed) RT_TRY(push(w, NOTHING, ')'));
     RT_TRY(push(w, branch, 0));

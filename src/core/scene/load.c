@@ -25,7 +25,7 @@ static RtStatus load_mesh(const char *path, RtSceneOpener *open_named, RtScene *
     return rt_mesh_load(path, scene, error);
 }
 
-/* Formats with a reader and a writer of our own; all else is a mesh. */
+/* Formats with our own reader and writer; everything else is a mesh. */
 static const struct {
     const char *extension; /* without the dot */
     Load *load;
@@ -38,13 +38,13 @@ static const struct {
 
 enum { FORMAT_COUNT = sizeof formats / sizeof formats[0], MAX_WRITTEN = FORMAT_COUNT + 8 };
 
-/* What follows the last dot of the last part of a path; "" if there is none. */
+/* The text after the last dot of the last path component, or "". */
 static const char *extension_of(const char *path) {
     const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
     return dot && (!slash || dot > slash) ? dot + 1 : "";
 }
 
-/* Index of our own format of that extension, or -1. */
+/* Index of our own format with that extension, or -1. */
 static int find_format(const char *extension) {
     for (int i = 0; i < FORMAT_COUNT; i++) {
         if (strcasecmp(formats[i].extension, extension) == 0) return i;
@@ -57,7 +57,7 @@ static Load *find_loader(const char *extension) {
     return own >= 0 ? formats[own].load : rt_mesh_reads(extension) ? load_mesh : NULL;
 }
 
-/* The extensions that can be written, to names[0..MAX_WRITTEN); returns how many there are. */
+/* Lists the extensions that can be written in names[0..MAX_WRITTEN); returns their number. */
 static size_t list_written(const char *names[MAX_WRITTEN]) {
     size_t count = 0;
     for (int i = 0; i < FORMAT_COUNT; i++) names[count++] = formats[i].extension;
@@ -80,7 +80,7 @@ static RtStatus fail_extension(const char *path, const char *doing, const char *
                    list, more);
 }
 
-/* Names the file of the same folder whose name is nearest. */
+/* Suggests the file with the nearest name in the same folder. */
 static RtStatus fail_missing(const char *path, RtError *error) {
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
     char folder[RT_MAX_PATH], best[256] = "";

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Reading meshes. Assimp's scene is a tree of nodes, each with a matrix and indices of meshes; the matrices
- * are multiplied on the way down, in double, and every vertex is rounded to float32 once. */
+/* Reading and writing meshes. Assimp's scene is a tree of nodes, each with a matrix and indices of meshes;
+ * matrices are multiplied on the way down, in double, and every vertex is rounded to float32 once. For
+ * writing, one aiScene of one mesh with three vertices per triangle is borrowed by Assimp's exporter. OBJ
+ * is written here, because that exporter invents vertex normals. */
 #include "core/scene/mesh.h"
 
 #include "core/base/file.h"
@@ -28,8 +30,8 @@ static RtTransform transform_of(const struct aiMatrix4x4 *m) {
                           {(double)m->c1, (double)m->c2, (double)m->c3, (double)m->c4}}};
 }
 
-/* Turns the inside out: then corners are taken in reverse, and normals, which go by cofactors, change
- * sign. */
+/* True if the transform turns the surface inside out: then the order of vertices is reversed and normals,
+ * which transform by cofactors, change sign. */
 static bool is_mirror(const RtTransform *t) {
     RtVec3d x = rt_transform_column(t, 0), y = rt_transform_column(t, 1), z = rt_transform_column(t, 2);
     return rt_dotd(rt_crossd(x, y), z) < 0;
@@ -39,14 +41,14 @@ static RtVec3 vector_at(const struct aiVector3D *vectors, unsigned i) {
     return rt_vec3(vectors[i].x, vectors[i].y, vectors[i].z);
 }
 
-/* Assimp does not look before it splits polygons: it reads vertices that are not there, and stops the program
- * at a face without corners. */
+/* Assimp triangulates without checking: it reads vertices that do not exist, and aborts at a face without
+ * vertices. */
 static RtStatus check_faces(const struct aiMesh *mesh, const char *path, RtError *error) {
     for (unsigned face = 0; face < mesh->mNumFaces; face++) {
         const struct aiFace *f = &mesh->mFaces[face];
         if (f->mNumIndices == 0) {
             return rt_fail_at(error, path, 0, 0,
-                              "face %u of mesh '%.60s' (counted from 0) has no corners: the file is damaged",
+                              "face %u of mesh '%.60s' (counted from 0) has no vertices: the file is damaged",
                               face, mesh->mName.data);
         }
         for (unsigned i = 0; i < f->mNumIndices; i++) {
@@ -111,8 +113,8 @@ static RtStatus add_node(const Reader *r, const struct aiNode *node, const RtTra
     return RT_OK;
 }
 
-/* Headers of PLY and OFF say how many elements follow, and Assimp makes room for them before it looks; so one
- * that promises more elements than the file has bytes is refused. */
+/* PLY and OFF headers declare the number of elements, and Assimp allocates them unchecked. So a header
+ * that declares more elements than the file has bytes is rejected. */
 static RtStatus check_header(FILE *file, const char *path, RtError *error) {
     fseek(file, 0, SEEK_END);
     long bytes = ftell(file);
@@ -129,8 +131,8 @@ static RtStatus check_header(FILE *file, const char *path, RtError *error) {
         sscanf(line, ply ? "element %*s %llu" : "%llu", &count);
         if (bytes >= 0 && count > (unsigned long long)bytes) {
             return rt_fail_at(error, path, number, 0,
-                              "%llu elements are promised, but the file has only %ld bytes: it is cut off or "
-                              "damaged",
+                              "the header declares %llu elements, but the file has only %ld bytes: it is "
+                              "truncated or damaged",
                               count, bytes);
         }
         end = !ply || strncmp(line, "end_header", 10) == 0;
@@ -138,7 +140,7 @@ static RtStatus check_header(FILE *file, const char *path, RtError *error) {
     return RT_OK;
 }
 
-/* The file as Assimp reads it, with all polygons split into triangles; aiReleaseImport. */
+/* Imports the file with all polygons triangulated; free with aiReleaseImport. */
 static RtStatus import(const char *path, const struct aiScene **out, RtError *error) {
     const struct aiScene *file = aiImportFile(path, 0);
     if (!file) return rt_fail_at(error, path, 0, 0, "Assimp cannot read this file: %s", aiGetErrorString());
@@ -148,7 +150,7 @@ static RtStatus import(const char *path, const struct aiScene **out, RtError *er
         aiReleaseImport(file);
         return status;
     }
-    *out = aiApplyPostProcessing(file, aiProcess_Triangulate); /* which on failure has freed the file */
+    *out = aiApplyPostProcessing(file, aiProcess_Triangulate); /* on failure this has freed the file */
     if (*out) return RT_OK;
     return rt_fail_at(error, path, 0, 0, "Assimp cannot split its polygons into triangles");
 }
@@ -191,7 +193,7 @@ RtStatus rt_mesh_load(const char *path, RtScene *scene, RtError *error) {
 
 /* ---- writing ---- */
 
-/* Assimp's name of each format, the binary one where there are two; NULL: written here. */
+/* Assimp's name of each format, the binary variant if there are two; NULL: written here. */
 static const struct {
     const char *extension, *format;
 } writers[] = {{"obj", NULL}, {"ply", "plyb"}, {"stl", "stlb"}, {"glb", "glb2"}};
@@ -276,7 +278,7 @@ static RtStatus export_arrays(const Arrays *arrays, uint32_t triangles, const ch
 static RtStatus save_assimp(const RtGeometry *g, const char *format, FILE *file, RtError *error) {
     if (g->triangle_count == 0) {
         return rt_fail(error, RT_BAD_INPUT,
-                       "this format holds one triangle or more, and the scene has none: "
+                       "this format needs at least one triangle, and the scene has none: "
                        "write .yaml, .nff or .obj");
     }
     if (g->triangle_count > UINT32_MAX / 3) {
@@ -293,7 +295,7 @@ static void put_line(FILE *file, const char *word, RtVec3 v) {
     fprintf(file, "%s %.9g %.9g %.9g\n", word, (double)v.x, (double)v.y, (double)v.z);
 }
 
-/* Indices from the end: -1 is the latest. */
+/* Negative indices count from the end: -1 is the latest. */
 static void save_obj(const RtGeometry *g, FILE *file) {
     for (uint32_t i = 0; i < g->triangle_count; i++) {
         uint32_t entry = g->triangle_normals ? g->triangle_normals[i] : RT_NO_NORMALS;

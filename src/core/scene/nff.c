@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Reading NFF. The file is read whole and cut into tokens, words between blanks, each of which knows its
- * line; line ends matter only to the optional colour of a light and to comments. Invariant: `at` never passes
- * `end`, where a 0 stands, so that strtod stops there too. Numbers announced by the file are checked against
- * what is left of it before room is made for them. */
+/* Reading NFF. The file is read whole and split into tokens, words between blanks that know their line;
+ * line ends matter only for the optional colour of a light and for comments. Invariant: `at` never passes
+ * `end`, where there is a 0, so strtod stops there too. Counts declared by the file are checked against
+ * its remaining length before memory is allocated. */
 #include "core/scene/nff.h"
 
 #include "core/base/file.h"
@@ -37,7 +37,7 @@ typedef struct Reader {
 
 /* ---- tokens ---- */
 
-/* The next token, which is left where it is. */
+/* The next token, without consuming it. */
 static Token peek(Reader *r) {
     while (r->at < r->end) {
         if (*r->at == '\n') {
@@ -58,7 +58,7 @@ static bool is_word(Token token, const char *word) {
     return strlen(word) == token.length && strncmp(token.text, word, token.length) == 0;
 }
 
-/* The token for a message: in quotes, cut, without bytes that are no text. */
+/* The token for a message: quoted, truncated, with only printable characters. */
 static const char *show(Token token, char out[48]) {
     if (token.length == 0) return "the end of the file";
     size_t n = token.length < 32 ? token.length : 32;
@@ -80,15 +80,15 @@ static RtStatus fail_token(Reader *r, Token token, const char *wanted) {
     return rt_fail_at(r->error, r->path, token.line, 0, "expected %s, found %s", wanted, show(token, text));
 }
 
-/* The same inside a statement: where the next statement or the end has come too soon, the place is the end of
- * what was read. */
+/* The same inside a statement: if the next statement or the end comes too soon, the position is the end of
+ * the text so far. */
 static RtStatus fail_inside(Reader *r, Token token, const char *wanted) {
     bool too_soon = token.length == 0 || isalpha((unsigned char)token.text[0]);
     if (too_soon) token.line = r->last;
     return fail_token(r, token, wanted);
 }
 
-/* What the scene refuses gets the line of its statement. */
+/* Adds the line of the statement to a message of the scene. */
 static RtStatus located(Reader *r, RtStatus status) {
     if (status != RT_BAD_INPUT || !r->error) return status;
     RtError inner = *r->error;
@@ -137,7 +137,7 @@ static RtStatus read_count(Reader *r, const char *what, double lo, double hi, ui
     return RT_OK;
 }
 
-/* Is there another token on this line, and might it be a number? */
+/* Is there another token on this line that might be a number? */
 static bool number_follows(Reader *r) {
     size_t line = r->line;
     Token token = peek(r);
@@ -146,7 +146,7 @@ static bool number_follows(Reader *r) {
 
 /* ---- camera, lights, materials ---- */
 
-/* Refuses here, where the line is known, a camera that could make no rays. */
+/* Rejects a camera that could make no rays here, where its line is known. */
 static RtStatus check_camera(Reader *r, const RtCamera *camera) {
     RtSampling sampling;
     RtView view;
@@ -233,7 +233,7 @@ static RtStatus read_material(Reader *r) {
     snprintf(name, sizeof name, "line %zu", r->statement);
     RtMaterial material = rt_nff_material(name, color, k[0], k[1], k[2], k[3], k[4]);
 
-    /* Files tend to switch between a few materials, naming them anew each time. */
+    /* Files often switch between a few materials, and repeat each in full. */
     uint32_t count = r->scene->material_count;
     for (uint32_t i = count; i > 0 && count - i < 64; i--) {
         if (!same_material(&r->scene->materials[i - 1], &material)) continue;
@@ -243,7 +243,7 @@ static RtStatus read_material(Reader *r) {
     return located(r, rt_scene_add_material(r->scene, &material, &r->material, r->error));
 }
 
-/* The material in force; the default one where no `f` came before. */
+/* The current material; the default if there was no `f` yet. */
 static RtStatus use_material(Reader *r) {
     if (r->material != NO_MATERIAL) return RT_OK;
     RtMaterial material = rt_default_material();
@@ -275,17 +275,17 @@ static RtStatus read_cone(Reader *r) {
                                         fabsf(radii[1]), r->error));
 }
 
-/* n and the n vertices of a polygon, or of a patch with their normals. */
+/* Reads n and the n vertices of a polygon, or of a patch with their normals. */
 static RtStatus read_vertices(Reader *r, bool patch, uint32_t *count) {
     const char *what =
         patch ? "a number of a vertex and its normal, x y z nx ny nz" : "a number of a vertex x y z";
     RT_TRY(read_count(r, "the number of vertices", 3, UINT32_MAX, count));
-    size_t least = patch ? 12 : 6; /* bytes of a vertex, with blanks */
+    size_t least = patch ? 12 : 6; /* bytes of the shortest vertex, with blanks */
     size_t room = (size_t)(r->end - r->at) / least + 1;
     if (*count > room) {
         return rt_fail_at(r->error, r->path, r->statement, 0,
-                          "%u vertices are announced, but what is left of the file holds at most %zu", *count,
-                          room);
+                          "the statement declares %u vertices, but the rest of the file holds at most %zu",
+                          *count, room);
     }
     RT_TRY(rt_reserve(&r->vertices, &r->vertex_capacity, *count, sizeof(RtVec3), r->error));
     if (patch) {
@@ -317,7 +317,7 @@ static RtVec3d twice_area(const RtVec3 *v, uint32_t i) {
     return rt_crossd(rt_subd(rt_widen(v[i]), origin), rt_subd(rt_widen(v[i + 1]), origin));
 }
 
-/* A fan about the first vertex; no triangle of it may be turned against the whole. */
+/* A fan around the first vertex; no triangle may be oriented against the whole. */
 static RtStatus read_patch(Reader *r) {
     uint32_t count;
     RT_TRY(read_vertices(r, true, &count));

@@ -6,41 +6,36 @@
 #include <errno.h>
 #include <string.h>
 
-/* 9 digits bring every float32 back. */
+/* 9 digits restore every float32. */
 static void put(FILE *file, float number) {
     fprintf(file, " %.9g", (double)number);
 }
 
-static void put_vector(FILE *file, RtVec3 v) {
+static void put_vector(FILE *file, const char *before, RtVec3 v) {
+    fputs(before, file);
     for (int a = 0; a < 3; a++) put(file, v.at[a]);
 }
 
 static void save_header(const RtScene *scene, FILE *file) {
     const RtCamera *camera = &scene->camera;
-    fprintf(file, "b");
-    put_vector(file, scene->background);
-    fprintf(file, "\nv\nfrom");
-    put_vector(file, camera->from);
-    fprintf(file, "\nat");
-    put_vector(file, camera->at);
-    fprintf(file, "\nup");
-    put_vector(file, camera->up);
+    put_vector(file, "b", scene->background);
+    put_vector(file, "\nv\nfrom", camera->from);
+    put_vector(file, "\nat", camera->at);
+    put_vector(file, "\nup", camera->up);
     fprintf(file, "\nangle");
     put(file, camera->fov);
     fprintf(file, "\nhither");
     put(file, camera->near);
     fprintf(file, "\nresolution %u %u\n", camera->width, camera->height);
     for (uint32_t i = 0; i < scene->light_count; i++) {
-        fprintf(file, "l");
-        put_vector(file, scene->lights[i].position);
-        put_vector(file, scene->lights[i].intensity);
+        put_vector(file, "l", scene->lights[i].position);
+        put_vector(file, "", scene->lights[i].intensity);
         fprintf(file, "\n");
     }
 }
 
 static void save_material(const RtMaterial *material, FILE *file) {
-    fprintf(file, "f");
-    put_vector(file, material->color);
+    put_vector(file, "f", material->color);
     put(file, material->diffuse);
     put(file, material->reflection);
     put(file, material->shine);
@@ -53,8 +48,7 @@ static void save_polygon(const RtGeometry *g, uint32_t index, FILE *file) {
     const RtPolygon *polygon = &g->polygons[index];
     fprintf(file, "p %u", polygon->count);
     for (uint32_t i = 0; i < polygon->count; i++) {
-        fprintf(file, "\n");
-        put_vector(file, g->polygon_vertices[polygon->first + i]);
+        put_vector(file, "\n", g->polygon_vertices[polygon->first + i]);
     }
 }
 
@@ -66,9 +60,8 @@ static void save_triangle(const RtGeometry *g, uint32_t index, FILE *file) {
     if (!normals && rt_lengthd(rt_triangle_normal(triangle)) == 0) normals = &any;
     fprintf(file, normals ? "pp 3" : "p 3");
     for (int i = 0; i < 3; i++) {
-        fprintf(file, "\n");
-        put_vector(file, triangle->v[i]);
-        if (normals) put_vector(file, normals->n[i]);
+        put_vector(file, "\n", triangle->v[i]);
+        if (normals) put_vector(file, "", normals->n[i]);
     }
 }
 
@@ -76,21 +69,18 @@ static void save_object(const RtGeometry *g, RtRef ref, FILE *file) {
     uint32_t index = rt_ref_index(ref);
     switch (rt_ref_shape(ref)) {
     case RT_SHAPE_SPHERE:
-        fprintf(file, "s");
-        put_vector(file, g->spheres[index].center);
+        put_vector(file, "s", g->spheres[index].center);
         put(file, g->spheres[index].radius);
         break;
     case RT_SHAPE_CONE:
-        fprintf(file, "c");
-        put_vector(file, g->cones[index].base);
+        put_vector(file, "c", g->cones[index].base);
         put(file, g->cones[index].base_radius);
-        fprintf(file, "\n");
-        put_vector(file, g->cones[index].apex);
+        put_vector(file, "\n", g->cones[index].apex);
         put(file, g->cones[index].apex_radius);
         break;
     case RT_SHAPE_POLYGON: save_polygon(g, index, file); break;
     case RT_SHAPE_TRIANGLE: save_triangle(g, index, file); break;
-    case RT_SHAPE_CSG: /* refused before */
+    case RT_SHAPE_CSG: /* rejected earlier */
     case RT_SHAPE_COUNT: break;
     }
     fprintf(file, "\n");

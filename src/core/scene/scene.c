@@ -7,7 +7,7 @@
 #include <assert.h>
 #include <string.h>
 
-/* Its state is on our stack, where it cannot fail to be had. */
+/* Keeps the state on the stack, so that no allocation can fail. */
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
@@ -65,7 +65,7 @@ RtStatus rt_scene_add_light(RtScene *scene, RtVec3 position, RtVec3 intensity, R
         return rt_fail(error, RT_BAD_INPUT, "a light's position or intensity is not finite");
     }
     if (rt_maxf(fabsf(position.x), rt_maxf(fabsf(position.y), fabsf(position.z))) > RT_MAX_COORDINATE) {
-        return rt_fail(error, RT_BAD_INPUT, "a light is farther away than %g: bring it nearer",
+        return rt_fail(error, RT_BAD_INPUT, "a light is farther than %g from the origin: move it nearer",
                        (double)RT_MAX_COORDINATE);
     }
     if (intensity.x < 0 || intensity.y < 0 || intensity.z < 0) {
@@ -76,7 +76,7 @@ RtStatus rt_scene_add_light(RtScene *scene, RtVec3 position, RtVec3 intensity, R
                      error);
 }
 
-/* Room for the material of the next object, made before the object is added. */
+/* Stores the material of the next object, before the object is added. */
 static RtStatus reserve_material_of(RtScene *scene, uint32_t material, RtError *error) {
     assert(material < scene->material_count);
     RT_TRY(rt_reserve(&scene->material_of, &scene->material_of_capacity,
@@ -108,7 +108,7 @@ RtStatus rt_scene_add_cone(RtScene *scene, uint32_t material, RtVec3 base, float
     return rt_geometry_add_cone(&scene->geometry, base, base_radius, apex, apex_radius, error);
 }
 
-/* The tree just added as a whole has the material of its first solid. */
+/* The tree just added has the material of its first solid. */
 static void set_csg_material(RtScene *scene) {
     const RtGeometry *g = &scene->geometry;
     const RtSolid *solids = g->forest.set.solids + g->csgs[g->csg_count - 1].first_solid;
@@ -150,7 +150,7 @@ static bool same_point(RtVec3 a, RtVec3 b) {
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/* The nearest point that may be an origin of rays. */
+/* The nearest point that is a valid ray origin. */
 static RtVec3 within_bounds(RtVec3d p) {
     RtVec3 q;
     for (int a = 0; a < 3; a++)
@@ -158,18 +158,18 @@ static RtVec3 within_bounds(RtVec3d p) {
     return q;
 }
 
-/* From the front, a little to the right and above, far enough for the bounding sphere to fill the view. */
+/* From the front, slightly right and above, at a distance where the bounding sphere fills the view. */
 static void place_camera(RtCamera *camera, const RtBox *box) {
     RtVec3d center = {0, 0, 0};
     double radius = 1;
     if (!rt_box_is_empty(*box)) {
         center = rt_widen(rt_box_center(*box));
         radius = rt_lengthd(rt_subd(rt_widen(box->hi), center));
-        /* A point has no size, but float32 has to tell `from` and `at` apart. */
+        /* A point has no size, but `from` and `at` must differ in float32. */
         radius = fmax(radius, fmax(1e-5 * rt_lengthd(center), 1e-30));
     }
     RtVec3d up = rt_normalized(rt_widen(camera->up));
-    /* Two directions across `up`, whichever axis that is. */
+    /* Two directions perpendicular to `up`. */
     RtVec3d side = fabs(up.x) < 0.5 ? rt_vec3d(1, 0, 0) : rt_vec3d(0, 1, 0);
     RtVec3d front = rt_normalized(rt_crossd(side, up));
     RtVec3d towards = rt_addd(rt_scaled(front, 1), rt_addd(rt_scaled(side, 0.4), rt_scaled(up, 0.3)));
@@ -209,7 +209,7 @@ _Static_assert(sizeof(RtTransform) == 12 * sizeof(double), "a transform has no p
 
 #define ADD(array, count) XXH3_64bits_update(state, array, (size_t)(count) * sizeof *(array))
 
-/* Solids and operations; boxes follow from them, and their tests change no answer. */
+/* Solids and operations only: boxes follow from them, and box tests change no answer. */
 static void add_forest(XXH3_state_t *state, const RtCsgForest *forest) {
     const RtSolidSet *set = &forest->set;
     for (uint32_t i = 0; i < set->solid_count; i++) {
@@ -242,7 +242,7 @@ uint64_t rt_scene_fingerprint(const RtScene *scene) {
     ADD(g->cones, g->cone_count);
     if (g->csg_count) add_forest(state, &g->forest);
     ADD(g->vertex_normals, g->vertex_normal_count);
-    /* Which triangles they belong to; where all have some, that is known. */
+    /* Which triangles they belong to, unless all have some. */
     bool some = g->vertex_normal_count > 0 && g->vertex_normal_count < g->triangle_count;
     if (some) ADD(g->triangle_normals, g->triangle_count);
     for (uint32_t i = 0; i < scene->material_count; i++) { /* all but the name */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A scene: objects in flat arrays (RtGeometry), a material per object, lights, a camera. It owns its memory;
- * a zeroed struct is the empty scene. Readers and generators fill it through the functions below, call
- * rt_scene_finish once, and from then on it is read only and may be shared by threads. Only its sampling may
- * still change, as long as no accelerator stands over it. */
+/* A scene: objects in flat arrays (RtGeometry), a material per object, lights, a camera. It owns its
+ * memory; a zeroed struct is the empty scene. Readers and generators fill it through the functions below
+ * and call rt_scene_finish once. From then on it is read only and threads may share it; only its sampling
+ * may still change, while no accelerator is built over it. */
 #ifndef RT_SCENE_SCENE_H
 #define RT_SCENE_SCENE_H
 
@@ -17,14 +17,15 @@
  * ka and kd act on `color`; ks, kt and kr are white. */
 typedef struct RtMaterial {
     char name[RT_MAX_NAME];
-    RtVec3 color;       /* linear rgb, 0..1 as a rule */
+    RtVec3 color;       /* linear rgb, usually 0..1 */
     float ambient;      /* ka >= 0 */
     float diffuse;      /* kd >= 0 */
     float specular;     /* ks >= 0 */
     float shine;        /* exponent >= 0 */
     float reflection;   /* kr in 0..1; above 0 spawns a reflection ray at every hit */
     float transmission; /* kt in 0..1; above 0 spawns a transmission ray, or its total internal reflection */
-    float ior;          /* index of refraction, > 0, of the inside (behind the normal) against the outside */
+    float ior;          /* index of refraction, > 0, of the inside (behind the normal) relative to the
+                         * outside */
 } RtMaterial;
 
 /* A point light. */
@@ -45,19 +46,19 @@ typedef struct RtScene {
     RtVec3 ambient;    /* Ia */
     RtVec3 background; /* colour of a ray that hits nothing */
     RtCamera camera;
-    RtSampling sampling; /* of the camera's image: where primary rays go through */
+    RtSampling sampling; /* of the camera's image: defines the primary rays */
 } RtScene;
 
-/* Opens the scene that `spec` names, finished; on failure *scene is empty. */
+/* Opens the scene named `spec` and finishes it; on failure *scene is empty. */
 typedef RtStatus RtSceneOpener(const char *spec, RtScene *scene, RtError *error);
 
-/* Gives the scene its default ambient light, background and camera settings. */
+/* Sets the default ambient light, background and camera. */
 void rt_scene_init(RtScene *scene);
 
-/* Grey, matte: ka .1, kd .9, no more. */
+/* Matte grey: ka .1, kd .9. */
 RtMaterial rt_default_material(void);
 
-/* Appends a material and gives its index; refuses values out of range. */
+/* Appends a material and returns its index; rejects values out of range. */
 RtStatus rt_scene_add_material(RtScene *scene, const RtMaterial *material, uint32_t *index, RtError *error);
 
 /* Index of the material called `name`, or UINT32_MAX. */
@@ -65,7 +66,7 @@ uint32_t rt_scene_find_material(const RtScene *scene, const char *name);
 
 RtStatus rt_scene_add_light(RtScene *scene, RtVec3 position, RtVec3 intensity, RtError *error);
 
-/* Objects, each with a material; what rt_geometry_add_... refuses, these refuse. */
+/* Add objects, each with a material. They reject what rt_geometry_add_... rejects. */
 RtStatus rt_scene_add_sphere(RtScene *scene, uint32_t material, RtVec3 center, float radius, RtError *error);
 RtStatus rt_scene_add_polygon(RtScene *scene, uint32_t material, const RtVec3 *vertices, uint32_t count,
                               RtError *error);
@@ -74,28 +75,28 @@ RtStatus rt_scene_add_triangle(RtScene *scene, uint32_t material, const RtVec3 v
 RtStatus rt_scene_add_cone(RtScene *scene, uint32_t material, RtVec3 base, float base_radius, RtVec3 apex,
                            float apex_radius, RtError *error);
 
-/* The tree below `root`; the materials of its solids are those of this scene. As a whole it has the material
- * of its first solid. */
+/* Adds the tree below `root`; the materials of its solids are indices of this scene. The object has the
+ * material of its first solid. */
 RtStatus rt_scene_add_csg(RtScene *scene, const RtCsgBuilder *builder, RtCsgTerm root, bool extents,
                           RtError *error);
-/* Gives the tree that was added last this material in all its solids. */
+/* Sets the material of all solids of the tree added last. */
 void rt_scene_paint_csg(RtScene *scene, uint32_t material);
-/* Tree `index` of another scene's geometry, moved by `move`, which may be NULL; material i of that scene is
+/* Adds tree `index` of another scene, moved by `move` (NULL: in place); material i of that scene is
  * materials[i] of this one. */
 RtStatus rt_scene_copy_csg(RtScene *scene, const RtScene *from, uint32_t index, const uint32_t *materials,
                            const RtTransform *move, RtError *error);
 
-/* Computes the boxes. Where no camera was given (from = at), places one that sees the whole scene, and where
- * there is no light, one beside that camera. The sampling becomes one sample at each pixel's centre. */
+/* Computes the boxes. If no camera was given (from = at), places one that sees the whole scene; if there
+ * is no light, places one beside the camera. The sampling becomes one sample at each pixel's centre. */
 RtStatus rt_scene_finish(RtScene *scene, RtError *error);
 
-/* Has the camera's image sampled in another way; a width or height of 0 is the camera's own. Refuses what
- * rt_sampling_init refuses. */
+/* Changes the sampling of the camera's image; a width or height of 0 is the camera's own. Rejects what
+ * rt_sampling_init rejects. */
 RtStatus rt_scene_sample(RtScene *scene, uint32_t width, uint32_t height, uint32_t samples, bool corners,
                          RtError *error);
 
-/* A hash of everything that can change an answer or a picture (geometry, materials, lights, camera; not the
- * sampling). It takes no memory, so that it cannot fail. */
+/* A hash of everything that can change an answer or a picture (geometry, materials, lights, camera; not
+ * the sampling). It allocates nothing, so it cannot fail. */
 uint64_t rt_scene_fingerprint(const RtScene *scene);
 
 /* Bytes of memory that the scene holds. */

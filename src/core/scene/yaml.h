@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* raytally's own scene format, described with examples in docs/scenes.md. */
+/* raytally's own scene format; see docs/scenes.md. */
 #ifndef RT_SCENE_YAML_H
 #define RT_SCENE_YAML_H
 
@@ -7,18 +7,18 @@
 
 #include <stdio.h>
 
-/* Adds what the file at `path` describes to `scene`, initialised by rt_scene_init; the caller then finishes
- * it, or clears it after a failure. Meshes are looked for beside the file, other scenes that it names are
- * opened by `open_named`. The scene's name is not touched. */
+/* Reads the file at `path` into `scene`, initialised by rt_scene_init; the caller then finishes it, or
+ * clears it after a failure. Mesh paths are relative to the file; `open_named` opens scenes that it names.
+ * The scene's name does not change. */
 RtStatus rt_yaml_load(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error);
 
-/* The same of a text in memory; `name` stands for the path. */
+/* The same for a text in memory; `name` stands for the path. */
 RtStatus rt_yaml_load_text(const char *name, const char *text, RtSceneOpener *open_named, RtScene *scene,
                            RtError *error);
 
-/* Writes a finished scene, one object a line; read again it has the same fingerprint. Meshes and built-ins
- * are written out as the objects they are. Materials keep their names if these are all there and all
- * different, and are called m0, m1 ... otherwise. */
+/* Writes a finished scene, one object per line; reading it back yields the same fingerprint. Meshes and
+ * built-ins are written as their objects. Materials keep their names if all are valid and different;
+ * otherwise they are called m0, m1 ... */
 RtStatus rt_yaml_save(const RtScene *scene, FILE *out, RtError *error);
 
 #endif

@@ -143,14 +143,15 @@ static bool is_far(RtVec3 p) {
     return rt_maxf(fabsf(p.x), rt_maxf(fabsf(p.y), fabsf(p.z))) > RT_MAX_COORDINATE;
 }
 
-/* Tries the camera as rendering will; where it is to be placed later, with a line of sight across `up`. */
+/* Checks the camera as rendering does. If it will be placed later, its line of sight is assumed
+ * perpendicular to `up`. */
 static RtStatus check_camera(const RtCamera *camera, bool placed, const char **key, RtError *error) {
     *key = "size";
     RtSampling sampling;
     RT_TRY(rt_sampling_init(&sampling, camera->width, camera->height, 1, false, error));
     *key = is_far(camera->from) ? "from" : "at";
     if (is_far(camera->from) || is_far(camera->at)) {
-        return rt_fail(error, RT_BAD_INPUT, "the camera is beyond %g: bring it nearer",
+        return rt_fail(error, RT_BAD_INPUT, "the camera is farther than %g from the origin: move it nearer",
                        (double)RT_MAX_COORDINATE);
     }
     RtCamera tried = *camera;
@@ -194,7 +195,7 @@ static RtStatus set_camera(RtYamlReader *r, const RtYamlNode *n) {
 static RtStatus set_color(RtYamlReader *r, const RtYamlNode *scene, const char *key, RtVec3 *color) {
     RT_TRY(rt_yaml_point(&r->yaml, scene, key, color));
     if (color->x >= 0 && color->y >= 0 && color->z >= 0) return RT_OK;
-    RtStatus status = rt_fail(r->error, RT_BAD_INPUT, "a colour has no negative parts: [red, green, blue]");
+    RtStatus status = rt_fail(r->error, RT_BAD_INPUT, "a colour must not be negative: [red, green, blue]");
     return rt_yaml_place(&r->yaml, status, scene, key);
 }
 
@@ -231,7 +232,7 @@ static RtStatus build(RtYamlReader *r) {
     return RT_OK;
 }
 
-/* What was opened, to the scene; closes it. */
+/* Builds the scene from the open file, and closes it. */
 static RtStatus load(RtYamlReader *r) {
     RtStatus status = build(r);
     rt_csg_builder_clear(&r->builder);

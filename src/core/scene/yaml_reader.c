@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What scenes have in several places: names, materials, transforms, cones, meshes. */
+/* Elements that scenes have in several places: names, materials, transforms, cones, meshes. */
 #include "core/scene/yaml_reader.h"
 
 #include "core/base/memory.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the files between YAML and scenes share, private to yaml_read.c, yaml_solids.c and yaml_write.c. What
- * is wrong with values themselves is found by the functions that add them to the scene; rt_yaml_place says
- * where. */
+/* Shared by yaml_read.c, yaml_solids.c and yaml_write.c. The functions that add objects to the scene check
+ * the values; rt_yaml_place adds the position to their messages. */
 #ifndef RT_SCENE_YAML_READER_H
 #define RT_SCENE_YAML_READER_H
 
@@ -13,10 +12,10 @@
 typedef struct RtYamlNamed {
     const char *name;
     const RtYamlNode *node; /* the entry of the list */
-    uint32_t index;         /* its place in the list */
+    uint32_t index;         /* its position in the list */
 } RtYamlNamed;
 
-/* The entries of a list, sorted by name for finding. */
+/* The entries of a list, sorted by name. */
 typedef struct RtYamlNames {
     RtYamlNamed *all; /* owned, [count] */
     uint32_t count;
@@ -27,11 +26,11 @@ typedef struct RtYamlReader {
     RtSceneOpener *open_named;
     RtScene *scene;
     RtYamlNames materials; /* entry i is material i of the scene */
-    uint32_t standard;     /* index of the default material; UINT32_MAX until an object wants it */
+    uint32_t standard;     /* index of the default material; UINT32_MAX until it is needed */
     RtCsgBuilder builder;  /* holds the solids */
     RtYamlNames solids;    /* entry i is terms[i] */
     RtCsgTerm *terms;
-    uint32_t solids_known; /* of them, those that are read: a formula sees what stands before it */
+    uint32_t solids_known; /* solids read so far: formulas see only earlier ones */
     RtError *error;
 } RtYamlReader;
 
@@ -39,28 +38,28 @@ typedef struct RtYamlReader {
 #define RT_YAML_COEFFICIENTS(X)                                                                              \
     X(ambient) X(diffuse) X(specular) X(shine) X(reflection) X(transmission) X(ior)
 
-/* For a list X(name) of what an entry can be: their keys (rt_yaml_keys). */
+/* For a list X(name) of alternatives: their keys (rt_yaml_keys). */
 #define RT_YAML_ONE_OF(name) #name "| "
 
 /* yaml_reader.c */
 
-/* Holds the entries of `list` (NULL: none) against `keys`, and fills `names` with theirs, of at most `most`
- * characters. Refuses two that are the same; `what` they are is for messages. */
+/* Checks the entries of `list` (NULL: none) against `keys`, and fills `names` with their names, of at most
+ * `most` characters. Rejects duplicates; `what` describes the entries in messages. */
 RtStatus rt_yaml_read_names(RtYamlReader *r, const RtYamlNode *list, const char *keys, size_t most,
                             const char *what, RtYamlNames *names);
 const RtYamlNamed *rt_yaml_find_name(const RtYamlNames *names, const char *name);
 
-/* The `material` of an object; the default one, made when first wanted, where it gives none. */
+/* The `material` of an object; without one, the default material, created on first use. */
 RtStatus rt_yaml_find_material(RtYamlReader *r, const RtYamlNode *object, uint32_t *index);
 
-/* The `transform` of an object. *given is `transform`, or NULL where there are no steps. */
+/* The `transform` of an object. *given is `transform`, or NULL if there are no steps. */
 RtStatus rt_yaml_read_transform(RtYamlReader *r, const RtYamlNode *object, RtTransform *transform,
                                 const RtTransform **given);
 
 /* A cone, or a cylinder: keys and values. */
 RtStatus rt_yaml_read_cone(const RtYaml *yaml, const RtYamlNode *node, bool cylinder, RtCone *cone);
 
-/* The file at the `path` of an object, moved by its `transform`, its triangles added to `scene`. */
+/* Adds the triangles of the file at the `path` of an object to `scene`, moved by its `transform`. */
 RtStatus rt_yaml_append_mesh(RtYamlReader *r, const RtYamlNode *object, uint32_t material, RtScene *scene);
 
 /* yaml_solids.c */
@@ -68,7 +67,7 @@ RtStatus rt_yaml_append_mesh(RtYamlReader *r, const RtYamlNode *object, uint32_t
 /* Reads the list of solids (NULL: none) into the builder. */
 RtStatus rt_yaml_add_solids(RtYamlReader *r, const RtYamlNode *list);
 
-/* One object: a tree of them. */
+/* Adds a CSG tree as one object. */
 RtStatus rt_yaml_add_csg(RtYamlReader *r, const RtYamlNode *csg);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The solids of a YAML scene, and the trees that its formulas make of them. A formula sees the solids that
- * stand before it, so none can contain itself. */
+/* The solids of a YAML scene, and the trees that its formulas make of them. A formula sees only the solids
+ * before it, so no solid can contain itself. */
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "core/scene/mesh.h"
@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-/* ---- solids: one adder a kind, called add_KIND, which gives the index in the set ---- */
+/* ---- solids: add_KIND adds one kind and returns its index in the set ---- */
 
 static RtStatus add_sphere(RtYamlReader *r, const RtYamlNode *n, uint32_t *index) {
     const RtYaml *y = &r->yaml;
@@ -26,35 +26,30 @@ static RtStatus add_sphere(RtYamlReader *r, const RtYamlNode *n, uint32_t *index
                          "center");
 }
 
-/* Keys and values of solids by two points or vectors. */
-static RtStatus read_pair(RtYamlReader *r, const RtYamlNode *n, const char *first, const char *second,
-                          RtVec3 pair[2]) {
+typedef RtStatus AddPair(RtSolidSet *set, RtVec3 first, RtVec3 second, uint32_t *index, RtError *error);
+
+/* Adds a solid given by two points or vectors. */
+static RtStatus add_pair(RtYamlReader *r, const RtYamlNode *n, const char *first, const char *second,
+                         AddPair *add, uint32_t *index) {
     char keys[64];
+    RtVec3 pair[2] = {{0}};
     snprintf(keys, sizeof keys, "%s %s material?", first, second);
     RT_TRY(rt_yaml_keys(&r->yaml, n, keys));
     RT_TRY(rt_yaml_point(&r->yaml, n, first, &pair[0]));
-    return rt_yaml_point(&r->yaml, n, second, &pair[1]);
+    RT_TRY(rt_yaml_point(&r->yaml, n, second, &pair[1]));
+    return rt_yaml_place(&r->yaml, add(&r->builder.set, pair[0], pair[1], index, r->error), n, NULL);
 }
 
 static RtStatus add_ellipsoid(RtYamlReader *r, const RtYamlNode *n, uint32_t *index) {
-    RtVec3 p[2] = {{0}};
-    RT_TRY(read_pair(r, n, "center", "radii", p));
-    RtStatus status = rt_solid_add_ellipsoid(&r->builder.set, p[0], p[1], index, r->error);
-    return rt_yaml_place(&r->yaml, status, n, NULL);
+    return add_pair(r, n, "center", "radii", rt_solid_add_ellipsoid, index);
 }
 
 static RtStatus add_box(RtYamlReader *r, const RtYamlNode *n, uint32_t *index) {
-    RtVec3 p[2] = {{0}};
-    RT_TRY(read_pair(r, n, "lo", "hi", p));
-    RtStatus status = rt_solid_add_box(&r->builder.set, p[0], p[1], index, r->error);
-    return rt_yaml_place(&r->yaml, status, n, NULL);
+    return add_pair(r, n, "lo", "hi", rt_solid_add_box, index);
 }
 
 static RtStatus add_half_space(RtYamlReader *r, const RtYamlNode *n, uint32_t *index) {
-    RtVec3 p[2] = {{0}};
-    RT_TRY(read_pair(r, n, "point", "normal", p));
-    RtStatus status = rt_solid_add_half_space(&r->builder.set, p[0], p[1], index, r->error);
-    return rt_yaml_place(&r->yaml, status, n, NULL);
+    return add_pair(r, n, "point", "normal", rt_solid_add_half_space, index);
 }
 
 static RtStatus add_round(RtYamlReader *r, const RtYamlNode *n, bool cylinder, uint32_t *index) {
@@ -118,7 +113,7 @@ static RtStatus add_polyhedron(RtYamlReader *r, const RtYamlNode *n, uint32_t *i
     return rt_yaml_place(&r->yaml, status, n, "vertices");
 }
 
-/* The triangles of a file, by way of a scene that holds nothing else. */
+/* Reads the triangles of a file through a temporary scene. */
 static RtStatus add_mesh(RtYamlReader *r, const RtYamlNode *n, uint32_t *index) {
     RtTransform here = rt_transform_identity();
     RtMaterial standard = rt_default_material();
@@ -151,7 +146,7 @@ static RtStatus add_facets(RtYamlReader *r, const RtYamlNode *n, uint32_t *index
     return rt_yaml_place(&r->yaml, status, n, "triangles");
 }
 
-/* As raytally writes solids: a standard one of solid.h, and where it is. */
+/* A solid as raytally writes it: in object space (solid.h), with its transform. */
 static RtStatus add_standard(RtYamlReader *r, const RtYamlNode *n, uint32_t *index) {
     const RtYaml *y = &r->yaml;
     RtSolidSet *set = &r->builder.set;
@@ -179,11 +174,11 @@ static RtStatus look_up(void *context, const char *name, RtCsgTerm *term, RtErro
     }
     if (found && found->index == r->solids_known) {
         return rt_fail(error, RT_BAD_INPUT,
-                       "the solid '%s' cannot contain itself: give the part a name of its own", name);
+                       "the solid '%s' cannot contain itself: give the part another name", name);
     }
     if (found) {
         return rt_fail(error, RT_BAD_INPUT,
-                       "the solid '%s' comes after this formula: formulas use what stands before them", name);
+                       "the solid '%s' comes after this formula, which can use only earlier solids", name);
     }
     const char *names[64];
     uint32_t count = 0;
@@ -217,7 +212,7 @@ static RtStatus move(RtYamlReader *r, const RtYamlNode *n, RtCsgTerm *term) {
     X(sphere)                                                                                                \
     X(ellipsoid) X(box) X(cylinder) X(cone) X(torus) X(half_space) X(polyhedron) X(mesh) X(facets) X(standard)
 
-/* Whichever kind it is. */
+/* Adds a solid of any kind. */
 static RtStatus add_kind(RtYamlReader *r, const RtYamlNode *entry, RtCsgTerm *term) {
     uint32_t index = 0, material = 0;
     const RtYamlNode *n;
@@ -237,7 +232,7 @@ static RtStatus add_solid(RtYamlReader *r, const RtYamlNode *entry, RtCsgTerm *t
     RT_TRY(rt_yaml_text(&r->yaml, entry, "name", RT_FORMULA_MAX_NAME - 1, &name));
     if (!rt_formula_is_name(name)) {
         return rt_yaml_fail(&r->yaml, rt_yaml_get(&r->yaml, entry, "name"),
-                            "'%s' cannot be told apart in a formula: a name is a letter or _, then letters, "
+                            "'%s' is not a valid name in a formula: a name is a letter or _, then letters, "
                             "digits and _",
                             name);
     }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A scene to YAML, plainly printed. Numbers are written with as many significant digits as give the float32
- * back bit for bit: 9 always do, 6 often. */
+/* Writing a scene as YAML. Numbers have as many significant digits as restore the float32 bit for bit: 9
+ * always suffice, 6 often. */
 #include "core/base/memory.h"
 #include "core/scene/yaml.h"
 #include "core/scene/yaml_reader.h"
@@ -11,12 +11,12 @@
 typedef struct Writer {
     const RtScene *scene;
     FILE *out;
-    bool numbered; /* the names of materials cannot be used: m0, m1 ... */
+    bool numbered; /* material names are not usable: m0, m1 ... */
 } Writer;
 
 /* ---- values ---- */
 
-/* As few digits as give the value back, as a float32 or a double. */
+/* Writes the fewest digits that restore the value, as a float32 or a double. */
 static void number(Writer *w, double value, bool wide) {
     char text[32];
     for (int digits = wide ? 15 : 6; digits <= (wide ? 17 : 9); digits++) {
@@ -26,23 +26,26 @@ static void number(Writer *w, double value, bool wide) {
     fputs(text, w->out);
 }
 
-static void numbers(Writer *w, const float *values, int count) {
+/* A list of float32 or, if `wide`, double values. */
+static void numbers(Writer *w, const void *values, int count, bool wide) {
     for (int i = 0; i < count; i++) {
         fputs(i ? ", " : "[", w->out);
-        number(w, (double)values[i], false);
+        number(w, wide ? ((const double *)values)[i] : (double)((const float *)values)[i], wide);
     }
     fputc(']', w->out);
 }
 
-static void wide_numbers(Writer *w, const double *values, int count) {
-    for (int i = 0; i < count; i++) {
+/* A list of lists of `width` values each. */
+static void rows(Writer *w, const void *values, uint32_t count, int width, bool wide) {
+    size_t bytes = (size_t)width * (wide ? sizeof(double) : sizeof(float));
+    for (uint32_t i = 0; i < count; i++) {
         fputs(i ? ", " : "[", w->out);
-        number(w, values[i], true);
+        numbers(w, (const char *)values + i * bytes, width, wide);
     }
     fputc(']', w->out);
 }
 
-/* Keys are given with what stands before and behind them: "{center: ", ", radius: ". */
+/* Keys include the text around them: "{center: ", ", radius: ". */
 
 static void number_key(Writer *w, const char *key, float value) {
     fputs(key, w->out);
@@ -51,16 +54,15 @@ static void number_key(Writer *w, const char *key, float value) {
 
 static void point_key(Writer *w, const char *key, RtVec3 p) {
     fputs(key, w->out);
-    numbers(w, p.at, 3);
+    numbers(w, p.at, 3, false);
 }
 
 static void points_key(Writer *w, const char *key, const RtVec3 *p, uint32_t count) {
     fputs(key, w->out);
-    for (uint32_t i = 0; i < count; i++) point_key(w, i ? ", " : "[", p[i]);
-    fputc(']', w->out);
+    rows(w, p, count, 3, false);
 }
 
-/* In single quotes nothing but these has a meaning. */
+/* Inside single quotes only quotes need escaping. */
 static void quote(const char *name, char out[2 * RT_MAX_NAME + 2]) {
     *out++ = '\'';
     for (; *name; name++) {
@@ -115,25 +117,6 @@ static void write_materials(Writer *w) {
 
 /* ---- solids ---- */
 
-static void write_planes(Writer *w, const RtPlane *planes, uint32_t count) {
-    fputs("polyhedron: {planes: ", w->out);
-    for (uint32_t i = 0; i < count; i++) {
-        RtVec3d n = planes[i].normal;
-        fputs(i ? ", " : "[", w->out);
-        wide_numbers(w, (const double[4]){n.x, n.y, n.z, planes[i].offset}, 4);
-    }
-    fputc(']', w->out);
-}
-
-static void write_facets(Writer *w, const RtTriangle *triangles, uint32_t count) {
-    fputs("facets: {triangles: ", w->out);
-    for (uint32_t i = 0; i < count; i++) {
-        fputs(i ? ", " : "[", w->out);
-        numbers(w, (const float *)&triangles[i], 9);
-    }
-    fputc(']', w->out);
-}
-
 static void write_solids(Writer *w) {
     const RtSolidSet *set = &w->scene->geometry.forest.set;
     if (set->solid_count > 0) fputs("solids:\n", w->out);
@@ -141,14 +124,16 @@ static void write_solids(Writer *w) {
         const RtSolid *solid = &set->solids[i];
         fprintf(w->out, "- {name: s%u, ", i);
         if (solid->kind == RT_SOLID_POLYHEDRON) {
-            write_planes(w, set->planes + solid->first, solid->count);
+            fputs("polyhedron: {planes: ", w->out);
+            rows(w, set->planes + solid->first, solid->count, 4, true);
         } else if (solid->kind == RT_SOLID_MESH) {
-            write_facets(w, set->triangles + solid->first, solid->count);
+            fputs("facets: {triangles: ", w->out);
+            rows(w, set->triangles + solid->first, solid->count, 9, false);
         } else {
             fprintf(w->out, "standard: {kind: %s, ratio: ", rt_solid_kind_name(solid->kind));
             number(w, solid->ratio, true);
             fputs(", place: ", w->out);
-            wide_numbers(w, &solid->to_world.m[0][0], 12);
+            numbers(w, solid->to_world.m, 12, true);
         }
         material_name(w, ", material: ", solid->material);
         fputs("}}\n", w->out);
@@ -212,7 +197,7 @@ static int compare_names(const void *a, const void *b) {
     return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-/* Whether reading tells the name back: it is not empty, and UTF-8 without control characters. */
+/* Does reading restore the name? It must be non-empty UTF-8 without control characters. */
 static RtStatus try_name(const char *name, bool *good, RtError *error) {
     char text[2 * RT_MAX_NAME + 2];
     RtYaml yaml;

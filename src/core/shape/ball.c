@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Smallest enclosing balls, by few points that span one: as long as a point lies outside the smallest ball
- * about those, the farthest joins them, and those that the next ball does not need leave. The ball grows at
- * every step, so no choice comes back (an LP-type problem: Sharir & Welzl 1992). For coplanar points a ball
- * is spanned by two or by three of them, so that at most four are looked at together; three points are always
- * coplanar, and so are those of a planar polygon. */
+/* Smallest enclosing balls. A few points span the ball. While some point lies outside it, the farthest one
+ * joins them, and points that the new ball does not need leave. The ball grows at every step, so the loop
+ * ends (an LP-type problem: Sharir & Welzl 1992). Two or three coplanar points span a ball, so at most
+ * four are examined together; the vertices of a triangle or a planar polygon are coplanar. */
 #include "core/shape/ball.h"
 
 static double distance_squared(RtVec3d a, RtVec3d b) {
@@ -11,7 +10,7 @@ static double distance_squared(RtVec3d a, RtVec3d b) {
     return rt_dotd(d, d);
 }
 
-/* The ball about `center` that holds all points, and no larger. */
+/* The smallest ball around `center` that contains all points. */
 static RtBall ball_about(RtVec3d center, const RtVec3 *points, size_t count) {
     double most = 0;
     for (size_t i = 0; i < count; i++) {
@@ -32,14 +31,14 @@ static bool circumcenter(RtVec3d a, RtVec3d b, RtVec3d c, RtVec3d *center) {
     return true;
 }
 
-/* Points that span a ball, and room for one more. */
+/* The points that span a ball, and space for one more. */
 typedef struct Span {
     RtVec3 points[4];
     size_t count;
 } Span;
 
-/* The ball about two or three of the points, if it holds all of `span` and is smaller than *best; then those
- * points are put to *least. `c` may be `b`. */
+/* Tries the ball spanned by two or three of the points (`c` may equal `b`). If it contains all of `span`
+ * and is smaller than *best, it replaces *best, and *least becomes its points. */
 static void try_span(const Span *span, size_t a, size_t b, size_t c, RtBall *best, Span *least) {
     const RtVec3 *p = span->points;
     RtVec3d center = rt_scaled(rt_addd(rt_widen(p[a]), rt_widen(p[b])), 0.5);
@@ -50,7 +49,7 @@ static void try_span(const Span *span, size_t a, size_t b, size_t c, RtBall *bes
     *least = (Span){{p[a], p[b], p[c]}, c == b ? 2 : 3};
 }
 
-/* The smallest ball about the points of `span`, which is left with those that span it. */
+/* The smallest ball around the points of `span`; keeps only those that span it. */
 static RtBall spanned_ball(Span *span) {
     RtBall best = ball_about(rt_widen(span->points[0]), span->points, span->count);
     Span least = {{span->points[0]}, 1};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Bounding spheres, in double. */
+/* Bounding spheres ("balls"), in double. */
 #ifndef RT_SHAPE_BALL_H
 #define RT_SHAPE_BALL_H
 
@@ -12,8 +12,9 @@ typedef struct RtBall {
     double radius;
 } RtBall;
 
-/* The smallest ball about coplanar `points` (count >= 1), up to rounding; it contains every point exactly,
- * because its radius is measured last. About points that are not quite coplanar it is nearly the smallest. */
+/* The smallest ball around coplanar `points` (count >= 1), up to rounding. It contains every point
+ * exactly, because its radius is measured last. For points that are not quite coplanar it is nearly the
+ * smallest. */
 RtBall rt_ball_of_points(const RtVec3 *points, size_t count);
 
 #endif

@@ -24,7 +24,7 @@ RtStatus rt_cone_init(RtCone *cone, RtVec3 base, float base_radius, RtVec3 apex,
     return RT_OK;
 }
 
-/* Largest dot product of `direction` with a point of the disc about `center`. */
+/* The largest dot product of `direction` with a point of the disc around `center`. */
 static double disc_support(const RtCone *cone, RtVec3 center, float radius, RtVec3d direction) {
     RtVec3d across = rt_add_scaledd(direction, cone->axis, -rt_dotd(direction, cone->axis));
     return rt_dotd(rt_widen(center), direction) + (double)radius * rt_lengthd(across);
@@ -47,8 +47,8 @@ RtBox rt_cone_box(const RtCone *cone) {
     return box;
 }
 
-/* The centre lies on the axis, where both circles are equally far; if that is beyond an end, the larger
- * circle alone decides. */
+/* The centre is the point of the axis with equal distance to both circles; if that is beyond an end, the
+ * larger circle alone decides. */
 RtBall rt_cone_ball(const RtCone *cone) {
     double r0 = (double)cone->base_radius, r1 = (double)cone->apex_radius, h = cone->height;
     double s = (h * h + r1 * r1 - r0 * r0) / (2 * h);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Cones: the side of a truncated cone between two circles, open at both ends as in NFF; equal radii make a
- * cylinder, one radius 0 a full cone. Both sides are hit.
+/* Cones: the side of a truncated cone between two circles, open at both ends as in NFF. Equal radii make a
+ * cylinder, one radius 0 a full cone. Both sides can be hit.
  *
  * With s the height along the axis and R(s) = base_radius + slope * s, a point is on the cone where its
- * distance from the axis equals R(s), 0 <= s <= height: a quadratic in t, solved in double about the point of
- * the ray nearest to the middle of the axis, so that far origins cost no precision. */
+ * distance from the axis equals R(s), 0 <= s <= height. This is a quadratic in t, solved in double about
+ * the point of the ray nearest to the middle of the axis, so that distant origins cost no precision. */
 #ifndef RT_SHAPE_CONE_H
 #define RT_SHAPE_CONE_H
 
@@ -22,20 +22,20 @@ typedef struct RtCone {
     double slope;   /* change of radius per unit of height */
 } RtCone;
 
-/* Fills `cone`; refuses negative radii, two radii of 0 and equal centres, with a message without a place. */
+/* Fills `cone`; rejects negative radii, two radii of 0 and equal centres. */
 RtStatus rt_cone_init(RtCone *cone, RtVec3 base, float base_radius, RtVec3 apex, float apex_radius,
                       RtError *error);
 
 /* The box of the two circles, rounded outward. */
 RtBox rt_cone_box(const RtCone *cone);
-/* The smallest ball about both circles. */
+/* The smallest ball around both circles. */
 RtBall rt_cone_ball(const RtCone *cone);
 double rt_cone_support(const RtCone *cone, RtVec3d direction);
 /* Unit normal at `point` on the side, away from the axis. */
 RtVec3d rt_cone_normal(const RtCone *cone, RtVec3d point);
 
-/* Is across + root * d_across, an offset from the axis, as long as a radius of the cone? Where a cone is flat
- * the height of a point says little about that: it is 2^-20 of the radius, say, and has lost all its
+/* True if across + root * d_across, an offset from the axis, is as long as some radius of the cone. On a
+ * flat cone the height of a point is no criterion: if it is 2^-20 of the radius, say, it has lost all its
  * digits. */
 static inline bool rt_cone_between_radii(const RtCone *cone, RtVec3d across, RtVec3d d_across, double root) {
     RtVec3d offset = rt_add_scaledd(across, d_across, root);
@@ -53,7 +53,7 @@ static inline bool rt_cone_hit(const RtCone *cone, const RtBox *own, const RtPre
     double closest = -rt_dotd(from_middle, dir) / rt_dotd(dir, dir);
     RtVec3d near = rt_add_scaledd(from_middle, dir, closest);
 
-    /* Split position and direction into the part along the axis and the part across it. */
+    /* Split position and direction into the parts along and across the axis. */
     double s0 = rt_dotd(near, cone->axis), ds = rt_dotd(dir, cone->axis);
     RtVec3d across = rt_add_scaledd(near, cone->axis, -s0), d_across = rt_add_scaledd(dir, cone->axis, -ds);
     double half = cone->height / 2;

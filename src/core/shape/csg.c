@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Rays and trees: the machine that runs a tree's program (csg.h). Its stack of lists lies in one array of
- * crossings, list after list: the ray's room. Two lists are merged to behind them, and the result moved down
- * to where they began. */
+/* Rays and trees: the stack machine that runs a tree's program (csg.h). Its lists lie one after another in
+ * one array of crossings, the ray's scratch memory. Two lists are merged to behind them, and the result is
+ * moved down to where they began. */
 #include "core/shape/csg.h"
 
 #include "core/base/observe.h"
@@ -23,10 +23,10 @@ static inline void start(Machine *m, const RtCsg *tree, const RtPreparedRay *ray
     m->crossings = ray->room;
     m->capacity = tree->most_crossings;
     m->depth = 0;
-    m->starts[0] = m->starts[1] = 0; /* also what a program without instructions leaves */
+    m->starts[0] = m->starts[1] = 0; /* also the result of a program without instructions */
 }
 
-/* Is there room for `more` crossings behind all lists? For assertions. */
+/* For assertions: do `more` crossings fit behind all lists? */
 __attribute__((unused)) static inline bool has_room(const Machine *m, uint32_t more) {
     return (uint64_t)m->starts[m->depth] + more <= m->capacity;
 }
@@ -48,7 +48,7 @@ static inline bool holds(RtCsgOp op, bool in_left, bool in_right) {
     return false;
 }
 
-/* The one rule of csg.h: place by place. Even a NaN is passed by. */
+/* The merging rule of csg.h, place by place. A NaN cannot stall the loop. */
 static uint32_t merge(RtCsgOp op, const RtCrossing *left, const RtCrossing *left_end, const RtCrossing *right,
                       const RtCrossing *right_end, RtCrossing *out) {
     bool in_left = false, in_right = false, inside = false;
@@ -112,7 +112,7 @@ INLINE void push_solid(Machine *m, const RtSolidSet *set, uint32_t index, const 
     push(m, rt_solid_crossings(set, index, ray, near, far, m->crossings + m->starts[m->depth]));
 }
 
-/* Leaves one list on the stack. */
+/* Runs the program; it leaves one list on the stack. */
 INLINE void run(Machine *m, const RtCsgForest *forest, const RtCsg *tree, const RtSolidRay *ray,
                 RtTally *tally) {
     const RtCsgInstruction *program = forest->instructions + tree->first;
@@ -146,7 +146,7 @@ static inline RtSolidRay solid_ray(const RtCsg *tree, const RtPreparedRay *ray) 
     return solid;
 }
 
-/* Can rt_box_admit admit anything at all? An empty tree has a point for a box. */
+/* Can rt_box_admit accept any t? The box of an empty tree is a point. */
 static inline bool comes_near(const RtCsg *tree, const RtPreparedRay *ray) {
     float near, far;
     rt_box_own_span(&tree->box, ray, &near, &far);
@@ -162,7 +162,7 @@ INLINE bool search(const RtCsgForest *forest, const RtCsg *tree, const RtPrepare
     run(&m, forest, tree, &solid, tally);
     bool found = false;
     for (uint32_t i = 0; i < m.starts[1] && !found; i++) {
-        *t = m.crossings[i].t + 0.0f; /* of two faces one may be met at -0, the other at 0 */
+        *t = m.crossings[i].t + 0.0f; /* two faces may be met at -0 and at 0 */
         found = *t >= ray->tmin && *t <= ray->tmax && rt_box_admit(&tree->box, ray, t);
     }
     return found;
@@ -191,7 +191,7 @@ RtCsgFacet rt_csg_facet(const RtCsgForest *forest, const RtCsg *tree, const RtPr
     const RtCrossing *best = NULL;
     float least = INFINITY;
     for (uint32_t i = 0; i < m.starts[1]; i++) {
-        float at = m.crossings[i].t; /* as rt_csg_hit would say it */
+        float at = m.crossings[i].t; /* as rt_csg_hit computes it */
         (void)rt_box_admit(&tree->box, ray, &at);
         if (!(fabsf(at - t) < least)) continue;
         least = fabsf(at - t);

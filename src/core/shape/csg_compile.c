@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* From terms to programs (csg.h). The tree is written out as an array of parts in preorder, one for each use
- * of a term: a part's left operand follows it at once, its right one after all of that. So a pass from the
- * back sees operands before operations, and nothing here calls itself; what must be remembered lies on stacks
- * of our own, no higher than the tree is deep. */
+/* Building and compiling trees (csg.h). To compile, the tree is written out as an array of parts in
+ * preorder, one per use of a term: the left operand follows its part at once, the right one after all of
+ * the left. A pass from the back sees operands before operations. Nothing here is recursive; the stacks
+ * are no higher than the tree is deep. */
 #include "core/shape/csg.h"
 
 #include "core/base/memory.h"
@@ -38,15 +38,14 @@ RtStatus rt_csg_combine(RtCsgBuilder *builder, RtCsgOp op, RtCsgTerm left, RtCsg
     uint32_t size = builder->nodes[left].size + builder->nodes[right].size;
     if (size > RT_CSG_MAX_SOLIDS) {
         return rt_fail(error, RT_BAD_INPUT,
-                       "a tree of %u solids, those of named parts counted at each use: at most %u can be in "
-                       "one tree",
-                       size, RT_CSG_MAX_SOLIDS);
+                       "a tree of %u solids, counting each use of a named part: the limit is %u", size,
+                       RT_CSG_MAX_SOLIDS);
     }
     RtCsgNode node = {.kind = RT_CSG_COMBINE, .op = op, .left = left, .right = right, .size = size};
     return add_node(builder, &node, out, error);
 }
 
-/* Moves of moves are made one, so that a tree has no more moves than twice its solids. */
+/* Consecutive moves are composed, so that a tree has at most twice as many moves as solids. */
 RtStatus rt_csg_move(RtCsgBuilder *builder, RtCsgTerm term, const RtTransform *move, RtCsgTerm *out,
                      RtError *error) {
     assert(term < builder->node_count);
@@ -63,7 +62,7 @@ RtStatus rt_csg_move(RtCsgBuilder *builder, RtCsgTerm term, const RtTransform *m
 
 #define NONE UINT32_MAX
 
-/* Up to here operands are ordered to be spared, beyond it to need few lists. */
+/* Up to this many lists, operands are ordered to save tests; beyond, to need few lists. */
 #define FEW_LISTS 16
 
 typedef struct Part {
@@ -71,12 +70,12 @@ typedef struct Part {
     RtCsgTerm term;           /* never a move */
     uint32_t right;           /* operation: its right operand */
     uint32_t solid;           /* leaf: in the forest's set */
-    uint32_t crossings, room; /* most in its list, and on the stack while it is made; UINT32_MAX and more */
-    uint8_t lists;            /* most on the stack while it is made */
+    uint32_t crossings, room; /* most in its list, and on the stack while it is computed; saturates */
+    uint8_t lists;            /* most on the stack while it is computed */
     bool right_first;
 } Part;
 
-/* A term to be written out. */
+/* A term still to be written out. */
 typedef struct Use {
     RtCsgTerm term;
     uint32_t move;     /* index, or NONE */
@@ -84,13 +83,13 @@ typedef struct Use {
     bool subtracted;
 } Use;
 
-/* An operation of which a part of the instructions is there. */
+/* An operation whose instructions are partly written. */
 typedef struct Frame {
     uint32_t part;
     uint32_t operands;   /* done */
-    uint32_t test, skip; /* instructions that lead to its end, or NONE */
-    RtBox box;           /* where it matters; before the first operand: that of the operation around */
-    double tested_area;  /* half, of the nearest box around that is tested */
+    uint32_t test, skip; /* instructions that jump to its end, or NONE */
+    RtBox box;           /* its clipped box; before the first operand, that of the operation above */
+    double tested_area;  /* half the area of the nearest tested box above */
 } Frame;
 
 typedef struct Compiler {
@@ -114,7 +113,7 @@ static RtStatus push_use(Compiler *p, Use use) {
     return rt_append(&p->uses, &p->use_count, &p->use_capacity, &use, sizeof use, p->error);
 }
 
-/* `move`, and then what *index stands for; to *index. */
+/* Composes `move` with the move *index (or NONE); *index becomes the result. */
 static RtStatus add_move(Compiler *p, const RtTransform *move, uint32_t *index) {
     const RtTransform whole = *index == NONE ? *move : rt_transform_compose(move, &p->moves[*index]);
     *index = p->move_count;
@@ -167,7 +166,7 @@ static uint32_t lists_in_order(const Part *first, const Part *second) {
     return max_of(first->lists, second->lists + 1u);
 }
 
-/* Which operand comes first: see csg.h. */
+/* Which operand comes first (csg.h)? */
 static bool is_right_first(const Compiler *p, RtCsgOp op, const Part *left, const Part *right) {
     const RtCsgNode *nodes = p->builder->nodes;
     bool smaller = nodes[right->term].size < nodes[left->term].size;
@@ -187,7 +186,7 @@ static void measure_operation(const Compiler *p, Part *part) {
     const Part *first = part->right_first ? right : left, *second = part->right_first ? left : right;
     part->lists = (uint8_t)lists_in_order(first, second);
     part->crossings = saturating_sum(left->crossings, right->crossings);
-    /* While lists are merged, they and the result are there. */
+    /* While two lists are merged, both and the result are there. */
     part->room = max_of(first->room, saturating_sum(first->crossings, second->room));
     part->room = max_of(part->room, saturating_sum(part->crossings, part->crossings));
 }
@@ -215,7 +214,7 @@ static RtStatus emit(Compiler *p, RtCsgInstruction instruction, uint32_t *at) {
                      sizeof instruction, p->error);
 }
 
-/* `box`: of the operation around. */
+/* `box`: that of the operation above. */
 static RtStatus push_frame(Compiler *p, uint32_t part, RtBox box, double tested_area) {
     const Frame frame = {part, 0, NONE, NONE, box, tested_area};
     return rt_append(&p->frames, &p->frame_count, &p->frame_capacity, &frame, sizeof frame, p->error);
@@ -232,7 +231,7 @@ static RtStatus emit_test(Compiler *p, Frame *frame) {
     return emit(p, test, &frame->test);
 }
 
-/* What comes before the first operand of an operation, between them, or after the second. */
+/* Emits the instructions before, between or after the operands of an operation. */
 static RtStatus advance(Compiler *p, bool extents) {
     Frame *frame = &p->frames[p->frame_count - 1];
     const Part *part = &p->parts[frame->part];
@@ -272,7 +271,7 @@ static RtStatus write_program(Compiler *p, bool extents) {
 
 /* ---- trees ---- */
 
-/* About the boxes of solids[0..count), infinite sides left out. */
+/* The box around the finite sides of the boxes of solids[0..count). */
 static RtBox reach_of(const RtSolid *solids, uint32_t count) {
     RtBox reach = RT_EMPTY_BOX;
     for (uint32_t i = 0; i < count; i++) {
@@ -291,7 +290,7 @@ static RtBox reach_of(const RtSolid *solids, uint32_t count) {
     return reach;
 }
 
-/* Nothing with an inside is in such a box. */
+/* No inside fits into such a box. */
 static bool is_flat(RtBox box) {
     return !(box.lo.x < box.hi.x && box.lo.y < box.hi.y && box.lo.z < box.hi.z);
 }
@@ -299,8 +298,8 @@ static bool is_flat(RtBox box) {
 static RtStatus check_end(RtBox box, RtError *error) {
     if (rt_finite(box.lo) && rt_finite(box.hi)) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT,
-                   "the tree has no end, or none that the boxes of its solids show: intersect it with a "
-                   "bounded solid, or make one polyhedron of its half-spaces");
+                   "the tree is unbounded, as far as the boxes of its solids show: intersect it with a "
+                   "bounded solid, or combine its half-spaces into one polyhedron");
 }
 
 static RtStatus compile(Compiler *p, RtCsgTerm root, bool extents, RtCsg *out) {
@@ -350,7 +349,7 @@ RtStatus rt_csg_compile(RtCsgForest *forest, const RtCsgBuilder *builder, RtCsgT
 
 /* ---- moving trees ---- */
 
-/* The terms that `tree` was made from. */
+/* Recovers the terms of a compiled tree. */
 static RtStatus recover_terms(RtCsgBuilder *builder, const RtCsgForest *from, const RtCsg *tree,
                               RtCsgTerm *root, RtError *error) {
     RtCsgTerm terms[RT_CSG_MAX_LISTS];

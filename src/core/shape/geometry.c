@@ -25,7 +25,7 @@ static RtStatus check_point(RtVec3 p, RtError *error) {
     }
     float most = rt_maxf(fabsf(p.x), rt_maxf(fabsf(p.y), fabsf(p.z)));
     if (most > RT_MAX_COORDINATE) {
-        return rt_fail(error, RT_BAD_INPUT, "a coordinate of %g is beyond %g: scale the scene down",
+        return rt_fail(error, RT_BAD_INPUT, "a coordinate of %g exceeds %g: scale the scene down",
                        (double)most, (double)RT_MAX_COORDINATE);
     }
     return RT_OK;
@@ -37,7 +37,7 @@ static RtStatus check_radius(float radius, RtError *error) {
                    (double)RT_MAX_COORDINATE);
 }
 
-/* Room for one more object of any shape in the table of objects. */
+/* Makes space for one more entry in the table of objects. */
 static RtStatus reserve_object(RtGeometry *g, RtError *error) {
     if (g->object_count >= RT_MAX_OBJECTS) {
         return rt_fail(error, RT_BAD_INPUT, "a scene holds at most %u objects", RT_MAX_OBJECTS);
@@ -45,8 +45,8 @@ static RtStatus reserve_object(RtGeometry *g, RtError *error) {
     return rt_reserve(&g->objects, &g->object_capacity, (uint64_t)g->object_count + 1, sizeof(RtRef), error);
 }
 
-/* Two functions per shape: one makes all room that an object needs, before anything changes; the other does
- * so and appends a checked object. */
+/* Two functions per shape: one makes all the space that an object needs, before anything changes; the
+ * other also appends a checked object. */
 #define DEFINE_APPEND(CONSTANT, name, Type)                                                                  \
     static RtStatus reserve_##name(RtGeometry *g, RtError *error) {                                          \
         uint64_t needed = (uint64_t)g->name##_count + 1;                                                     \
@@ -115,7 +115,7 @@ RtStatus rt_geometry_copy_csg(RtGeometry *geometry, const RtGeometry *from, uint
     return append_csg(geometry, &tree, error);
 }
 
-/* Makes triangle_normals as long as there is room for triangles; new entries say "none". */
+/* Makes triangle_normals as long as the array of triangles; new entries are RT_NO_NORMALS. */
 static RtStatus reserve_triangle_normals(RtGeometry *g, uint64_t needed, RtError *error) {
     uint32_t before = g->triangle_normal_capacity;
     RT_TRY(rt_reserve(&g->triangle_normals, &g->triangle_normal_capacity, needed, sizeof(uint32_t), error));
@@ -123,7 +123,7 @@ static RtStatus reserve_triangle_normals(RtGeometry *g, uint64_t needed, RtError
     return RT_OK;
 }
 
-/* A normal of unit length already stays as it is, bit for bit, so that scenes survive saving and loading. */
+/* Keeps a unit normal bit for bit, so that scenes survive saving and loading. */
 static RtVec3 unit_normal(RtVec3 normal) {
     RtVec3d n = rt_widen(normal);
     return fabs(rt_dotd(n, n) - 1) <= 0x1p-22 ? normal : rt_narrow(rt_normalized(n));
@@ -217,7 +217,7 @@ void rt_geometry_clear(RtGeometry *geometry) {
     *geometry = (RtGeometry){0};
 }
 
-/* ---- room for hit functions ---- */
+/* ---- scratch memory of hit functions ---- */
 
 RtStatus rt_hit_room(const RtGeometry *geometry, RtCrossing **room, RtError *error) {
     uint32_t most = 0;
@@ -309,7 +309,7 @@ static RtVec3d longest_edge(const RtVec3 *vertices, uint32_t count) {
     return best;
 }
 
-/* The longest of the three axes of a tree's largest solid, and another one; of a polyhedron, two normals. */
+/* The longest axis of a tree's largest solid, and another one; of a polyhedron, two normals. */
 static void csg_axes(const RtGeometry *g, const RtCsg *tree, RtVec3d *main, RtVec3d *normal) {
     const RtSolidSet *set = &g->forest.set;
     double largest = -1;
@@ -354,7 +354,7 @@ void rt_object_frame(const RtGeometry *geometry, uint32_t id, RtVec3d axes[3]) {
     }
     if (rt_dotd(main, main) == 0) main = rt_vec3d(1, 0, 0);
     main = rt_normalized(main);
-    /* Gram-Schmidt, from whichever candidate is not along the main axis. */
+    /* Gram-Schmidt, starting from a candidate that is not along the main axis. */
     RtVec3d candidates[4] = {normal, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (int i = 0; i < 4; i++) {
         RtVec3d rest = rt_add_scaledd(candidates[i], main, -rt_dotd(candidates[i], main));

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Geometry: all objects of a scene in flat arrays, one array per shape, and the one entry point that
- * dispatches on shape.
+/* Geometry: all objects of a scene in flat arrays, one array per shape, and the functions that dispatch on
+ * shape.
  *
- * Objects have dense ids 0..object_count-1 in the order they were added. An object is a reference (shape and
- * index into that shape's array); the arrays of a shape keep the order of ids, so a loop over a shape meets
- * ids in ascending order. This is the one place that lists the shapes: RT_SHAPES. */
+ * Objects have dense ids 0..object_count-1 in the order in which they were added. An object is a reference
+ * (shape and index into that shape's array). Each shape's array is in order of ids, so a loop over a shape
+ * meets ids in ascending order. RT_SHAPES is the one list of shapes. */
 #ifndef RT_SHAPE_GEOMETRY_H
 #define RT_SHAPE_GEOMETRY_H
 
@@ -16,7 +16,7 @@
 #include "core/shape/sphere.h"
 #include "core/shape/triangle.h"
 
-/* X(CONSTANT, name, Type): `name`s in the singular; the geometry's array is called name##s. */
+/* X(CONSTANT, name, Type): `name` in the singular; the array is called name##s. */
 #define RT_SHAPES(X)                                                                                         \
     X(SPHERE, sphere, RtSphere)                                                                              \
     X(POLYGON, polygon, RtPolygon)                                                                           \
@@ -51,12 +51,12 @@ static inline uint32_t rt_ref_index(RtRef ref) {
     return ref & (RT_MAX_OBJECTS - 1);
 }
 
-/* Vertex normals of one triangle, unit length. */
+/* Vertex normals of one triangle, of unit length. */
 typedef struct RtVertexNormals {
     RtVec3 n[3];
 } RtVertexNormals;
 
-/* Owns all its arrays; a zeroed struct is the empty geometry. Add objects, then rt_geometry_finish, then
+/* Owns its arrays; a zeroed struct is the empty geometry. Add objects, call rt_geometry_finish, then only
  * read. */
 typedef struct RtGeometry {
     uint32_t object_count, object_capacity;
@@ -78,7 +78,7 @@ typedef struct RtGeometry {
     uint32_t *triangle_normals; /* [triangle_count] or NULL */
     RtVertexNormals *vertex_normals;
 
-    RtCsgForest forest; /* what the CSG trees are made of */
+    RtCsgForest forest; /* the CSG trees' parts */
 
     /* Made by rt_geometry_finish. */
     RtBox *boxes; /* [object_count] own box of each object */
@@ -92,9 +92,9 @@ static inline const RtVec3 *rt_polygon_vertices(const RtGeometry *geometry, uint
     return geometry->polygon_vertices + geometry->polygons[index].first;
 }
 
-/* Each adds one object and gives it the next id. They refuse what is not finite, beyond RT_MAX_COORDINATE or
- * degenerate (a radius of 0, a polygon without area), with a message without a place, and then change
- * nothing. A triangle without area is let in: meshes have them; it is never hit. */
+/* Each adds one object with the next id. They reject values that are not finite, beyond RT_MAX_COORDINATE
+ * or degenerate (a radius of 0, a polygon without area); messages have no file position, and nothing
+ * changes. Triangles without area are accepted, since meshes contain them; they are never hit. */
 RtStatus rt_geometry_add_sphere(RtGeometry *geometry, RtVec3 center, float radius, RtError *error);
 RtStatus rt_geometry_add_polygon(RtGeometry *geometry, const RtVec3 *vertices, uint32_t count,
                                  RtError *error);
@@ -104,14 +104,14 @@ RtStatus rt_geometry_add_cone(RtGeometry *geometry, RtVec3 base, float base_radi
 RtStatus rt_geometry_add_triangle(RtGeometry *geometry, const RtVec3 vertices[3], const RtVec3 *normals,
                                   RtError *error);
 
-/* The tree below `root` as one object, with or without tests of inner nodes. Nothing of `builder` is kept. */
+/* Adds the tree below `root` as one object, with or without tests of inner nodes. `builder` is not kept. */
 RtStatus rt_geometry_add_csg(RtGeometry *geometry, const RtCsgBuilder *builder, RtCsgTerm root, bool extents,
                              RtError *error);
-/* Tree `index` of another geometry, moved by `move`, which may be NULL. */
+/* Adds tree `index` of another geometry, moved by `move` (NULL: in place). */
 RtStatus rt_geometry_copy_csg(RtGeometry *geometry, const RtGeometry *from, uint32_t index,
                               const RtTransform *move, RtError *error);
 
-/* Computes the boxes. To be called once, after the last object. */
+/* Computes the boxes. Call it once, after the last object. */
 RtStatus rt_geometry_finish(RtGeometry *geometry, RtError *error);
 
 /* Bytes of memory that the arrays hold. */
@@ -122,22 +122,22 @@ void rt_geometry_clear(RtGeometry *geometry);
 
 #define RT_NO_SOLID UINT32_MAX
 
-/* Room for what hit functions write down while they work, the crossings of a ray with the largest CSG tree:
- * to *room, to be freed with rt_free, and NULL where there is no tree. It serves one thread at a time.
- * Whoever asks for hits has it made beforehand, so that nothing is allocated while tracing. */
+/* Allocates the scratch memory of hit functions, for the crossings of a ray with the largest CSG tree;
+ * *room becomes NULL if there is no tree. It serves one thread at a time; free it with rt_free. Allocate
+ * it before tracing, during which nothing is allocated. */
 RtStatus rt_hit_room(const RtGeometry *geometry, RtCrossing **room, RtError *error);
 
-/* The ray, prepared for tests of boxes and for hit functions of this geometry, to *prepared; `room` is
- * borrowed. Traversals are many per cent slower where it is returned and copied. */
+/* Prepares *prepared for box tests and for the hit functions of this geometry; `room` is borrowed.
+ * Returning the struct by value makes traversals many per cent slower. */
 static inline void rt_hit_ray(RtPreparedRay *prepared, const RtGeometry *geometry, const RtRay *ray,
                               RtCrossing *room) {
     rt_ray_prepare_in(prepared, ray, &geometry->box, room);
 }
 
-/* What `ray` meets at `t`, one of its hits on object `id`: normals, both unit, the geometric one by the
- * shape's own orientation, the shading one interpolated where a triangle has vertex normals and equal to the
- * geometric one elsewhere; and for a CSG tree the solid that was met (of geometry->forest), else
- * RT_NO_SOLID. `room` is of rt_hit_room. */
+/* The surface of object `id` at `t`, one of the ray's hits: two unit normals, geometric (oriented by the
+ * shape) and shading (interpolated if a triangle has vertex normals, otherwise the geometric one), and for
+ * a CSG tree the solid that was hit (in geometry->forest), else RT_NO_SOLID. `room` comes from
+ * rt_hit_room. */
 typedef struct RtNormals {
     RtVec3d geometric, shading;
     uint32_t solid;
@@ -145,16 +145,16 @@ typedef struct RtNormals {
 RtNormals rt_object_normals(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
                             RtCrossing *room);
 
-/* Extents of object `id` besides geometry->boxes[id]: a ball, and the largest dot product with `direction`
- * (the support function: what slabs and oriented boxes are made from). */
+/* Extents of object `id` besides geometry->boxes[id]: a ball, and the support function, which is the
+ * largest dot product with `direction` (for slabs and oriented boxes). */
 RtBall rt_object_ball(const RtGeometry *geometry, uint32_t id);
 double rt_object_support(const RtGeometry *geometry, uint32_t id, RtVec3d direction);
 
 /* Three orthonormal axes that suit an oriented box of object `id`: along its longest edge or axis and its
- * normal; those of its largest solid for a CSG tree. */
+ * normal; for a CSG tree, those of its largest solid. */
 void rt_object_frame(const RtGeometry *geometry, uint32_t id, RtVec3d axes[3]);
 
-/* The hit functions of what is neither triangle nor sphere: out of line, for they take many registers. */
+/* The hit functions of all shapes but triangles and spheres: out of line, because they use many registers. */
 static __attribute__((noinline)) bool rt_rarer_hit(const RtGeometry *geometry, uint32_t id,
                                                    const RtPreparedRay *ray, float *t, RtTally *tally) {
     RtRef ref = geometry->objects[id];
@@ -172,9 +172,9 @@ static __attribute__((noinline)) bool rt_rarer_hit(const RtGeometry *geometry, u
     return false;
 }
 
-/* The hit function of every object: true if the ray (of rt_hit_ray) meets object `id` at some t in [tmin,
- * tmax], the first of which goes to *t. The same bits of t for the same ray and object, whatever was found
- * before. `tally` may be NULL; it counts what is tested inside of CSG trees. */
+/* The hit function of every object: true if the ray (from rt_hit_ray) hits object `id` in [tmin, tmax]; *t
+ * is the first hit. The result has the same bits for the same ray and object, whatever was found before.
+ * `tally` may be NULL; it counts tests inside CSG trees. */
 static inline __attribute__((always_inline)) bool
 rt_object_hit(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray, float *t, RtTally *tally) {
     RtRef ref = geometry->objects[id];

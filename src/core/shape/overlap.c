@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Surfaces against boxes: a convex thing and a box are apart if their shadows on some axis are. For polygons
- * the axes that can tell are their normal, the box's, and the cross products of an edge of each (Akenine-
- * Möller 2001, "Fast 3D Triangle-Box Overlap Testing", JGT 6(1), from Gottschalk, Lin & Manocha 1996). Of
- * other shapes the support function gives the shadows on the axes of their frame. Everything is taken
- * relative to the centre of the box and in double, and the box is grown by the margin first.
+/* Surfaces against boxes, by separating axes: two convex sets are disjoint if their projections on some axis
+ * are. For polygons these axes are the polygon's normal, the box's, and the cross products of their edges
+ * (Akenine-Möller 2001, "Fast 3D Triangle-Box Overlap Testing", JGT 6(1), from Gottschalk, Lin & Manocha
+ * 1996). For other shapes the support function provides the projections on the axes of their frame.
+ * Everything is computed in double relative to the centre of the box, which is grown by the margin first.
  *
- * The part of a surface within a box: polygons are clipped by one plane of the box after the other
- * (Sutherland & Hodgman 1974, "Reentrant Polygon Clipping"), balls and cones cut along their axes of
- * symmetry. Rounding loses only what is as near as rounding to the faces of the grown box, far from the box
+ * The part of a surface within a box: polygons are clipped by one plane of the box after another
+ * (Sutherland & Hodgman 1974, "Reentrant Polygon Clipping"), spheres and cones are cut along their axes of
+ * symmetry. Rounding can lose only points within rounding of the faces of the grown box, far from the box
  * itself. */
 #include "core/shape/overlap.h"
 
-/* Polygons of more vertices are judged by plane and box alone: the edges take the square of their number. */
+/* Larger polygons are tested by plane and box alone: edge tests take time quadratic in the vertices. */
 enum { MAX_EDGES = 16 };
 
 typedef struct Block {
@@ -28,7 +28,7 @@ static Block grown_block(const RtBox *box, double margin) {
     return block;
 }
 
-/* Is the block beyond [lo, hi] along `axis`, which may have any length? */
+/* Is the block outside [lo, hi] along `axis`, which may have any length? */
 static bool beyond(const Block *block, RtVec3d axis, double lo, double hi) {
     double reach = fabs(axis.x) * block->half.x + fabs(axis.y) * block->half.y + fabs(axis.z) * block->half.z;
     return lo > reach || hi < -reach;
@@ -44,7 +44,7 @@ static bool points_beyond(const Block *block, const RtVec3d *points, uint32_t co
     return beyond(block, axis, lo, hi);
 }
 
-/* For a flat convex chain of points, relative to the block. */
+/* For a flat convex polygon, relative to the block. */
 static bool chain_meets(const Block *block, const RtVec3d *points, uint32_t count, RtVec3d normal) {
     if (points_beyond(block, points, count, normal)) return false;
     for (uint32_t i = 0; i < count; i++) {
@@ -68,7 +68,7 @@ static bool triangle_meets(const RtTriangle *triangle, const Block *block) {
     return chain_meets(block, points, 3, normal);
 }
 
-/* The polygon as it is hit: its vertices moved to its plane along the axis it is projected along. */
+/* The polygon as it is hit: its vertices moved to its plane along the axis of projection. */
 static void polygon_points(const RtPolygon *polygon, const RtVec3 *vertices, const Block *block,
                            RtVec3d points[MAX_EDGES]) {
     RtVec3d center = rt_subd(polygon->center, block->center), n = polygon->normal;
@@ -89,7 +89,7 @@ static bool polygon_meets(const RtPolygon *polygon, const RtVec3 *vertices, cons
     return chain_meets(block, points, polygon->count, polygon->normal);
 }
 
-/* The nearest point of the block is within the ball, the farthest is not. */
+/* The surface meets the block if its nearest point is inside the sphere and its farthest is not. */
 static bool sphere_meets(const RtSphere *sphere, const Block *block) {
     RtVec3d offset = rt_subd(rt_widen(sphere->center), block->center);
     double radius = (double)sphere->radius, nearest = 0, farthest = 0;
@@ -134,7 +134,7 @@ bool rt_outline_meets_box(const RtOutline *outline, const RtBox *box, double mar
         if (own_lo - hi > margin || lo - own_hi > margin) return false;
         held &= lo - own_lo <= margin && own_hi - hi <= margin;
     }
-    if (held) return true; /* what the grown box holds whole need not be looked at */
+    if (held) return true; /* an object entirely inside the grown box meets it */
     uint32_t index = rt_ref_index(geometry->objects[id]);
     switch (rt_ref_shape(geometry->objects[id])) {
     case RT_SHAPE_TRIANGLE: return triangle_meets(&geometry->triangles[index], &block);
@@ -152,16 +152,16 @@ bool rt_object_meets_box(const RtGeometry *geometry, uint32_t id, const RtBox *b
 
 /* ---- parts ---- */
 
-/* Each plane cuts each edge at most once, and at most half as often as there are edges. */
+/* Each plane cuts each edge at most once, and at most half the edges. */
 enum { MAX_CLIPPED = 192 };
 
-/* Shadows on the axes. */
+/* Projections on the axes. */
 typedef struct Bounds {
     double lo[3], hi[3];
 } Bounds;
 
-/* Keeps what of a closed chain is within `half` of the block's centre along an axis, on the side of `sign`;
- * gives its length. */
+/* Clips a polygon to within `half` of the block's centre along an axis, on the side of `sign`; returns the
+ * number of points. */
 static uint32_t clip_chain(const RtVec3d *in, uint32_t count, int axis, double sign, double half,
                            RtVec3d *out) {
     uint32_t n = 0;
@@ -193,8 +193,8 @@ static bool chain_part(const Block *block, RtVec3d *points, uint32_t count, Boun
     return count > 0;
 }
 
-/* Along an axis the ball reaches as far as the point of the block that is nearest to its centre along the
- * others lets it. */
+/* Along an axis the sphere reaches as far as the point of the block that is nearest to its centre along
+ * the other axes allows. */
 static bool sphere_part(const RtSphere *sphere, const Block *block, Bounds *bounds) {
     double square = (double)sphere->radius * (double)sphere->radius * (1 + 0x1p-40), apart[3];
     if (!sphere_meets(sphere, block)) return false;
@@ -210,14 +210,14 @@ static bool sphere_part(const RtSphere *sphere, const Block *block, Bounds *boun
     return true;
 }
 
-/* Cuts [*from, *to] down to where value + slope * s <= limit. */
+/* Clips [*from, *to] to where value + slope * s <= limit. */
 static void keep_below(double value, double slope, double limit, double *from, double *to) {
     if (slope > 0) *to = fmin(*to, (limit - value) / slope);
     if (slope < 0) *from = fmax(*from, (limit - value) / slope);
 }
 
-/* The circle at height s reaches, along an axis, from one linear function of s to another: these are cut by
- * the block, which leaves some of the heights. */
+/* Along an axis, the circle at height s extends between two linear functions of s. The block limits these,
+ * which leaves an interval of heights. */
 static bool cone_part(const RtCone *cone, const Block *block, Bounds *bounds) {
     double from = -cone->height / 2, to = cone->height / 2, value[3][2], slope[3][2];
     double radius = (double)cone->base_radius + cone->slope * cone->height / 2;
@@ -241,7 +241,7 @@ static bool cone_part(const RtCone *cone, const Block *block, Bounds *bounds) {
     return true;
 }
 
-/* False if there is none; `bounds`, of the whole own box at first, may stay as they are. */
+/* False if there is none. `bounds` is initially the own box and may remain unchanged. */
 static bool surface_part(const RtGeometry *geometry, uint32_t id, const RtBox *box, double margin,
                          Bounds *bounds) {
     RtVec3d points[MAX_CLIPPED];

@@ -1,34 +1,34 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Which boxes does the surface of an object meet, and how much of them? For structures that put an object
- * only into such cells, not into all that its box touches. */
+/* Tests of surfaces against boxes, and the part of a surface within a box: for structures that put an
+ * object only into the cells that its surface meets, not into all that its box touches. */
 #ifndef RT_SHAPE_OVERLAP_H
 #define RT_SHAPE_OVERLAP_H
 
 #include "core/shape/geometry.h"
 
-/* What is to be known of object `id` before it is asked about boxes, many as a rule. */
+/* Data of object `id`, computed once before it is tested against many boxes. */
 typedef struct RtOutline {
     const RtGeometry *geometry; /* borrowed */
     uint32_t id;
-    RtVec3d axes[3];     /* of cones and CSG trees: rt_object_frame; of others not set */
-    double lo[3], hi[3]; /* their shadows on these axes */
+    RtVec3d axes[3];     /* of cones and CSG trees: rt_object_frame; otherwise unset */
+    double lo[3], hi[3]; /* the object's projections on these axes */
 } RtOutline;
 
 RtOutline rt_object_outline(const RtGeometry *geometry, uint32_t id);
 
-/* False only if every point of the object's surface, as its hit function sees it, is more than `margin` from
- * `box` along some axis; a box inside a sphere is not met. Nearly always false then, for all shapes but cones
- * and concave polygons (taken as convex), where it may be true nearby. `margin` must be at least 2^-40 of the
- * largest coordinate of the scene and the box, to cover rounding. */
+/* False only if every point of the object's surface, as its hit function sees it, is more than `margin`
+ * from `box` along some axis; a box strictly inside a sphere does not meet it. The test is nearly exact
+ * except for cones and concave polygons (treated as convex), where it may return true nearby. To cover
+ * rounding, `margin` must be at least 2^-40 of the largest coordinate of scene and box. */
 bool rt_outline_meets_box(const RtOutline *outline, const RtBox *box, double margin);
 
-/* The same for one box. */
+/* The same for a single box. */
 bool rt_object_meets_box(const RtGeometry *geometry, uint32_t id, const RtBox *box, double margin);
 
-/* To *out, a box about all points of `box` that are inside the object's own box and within `margin`, along
- * each axis, of its surface; false only if there are none. Nearly the least such box for triangles, spheres
- * and cones, and for polygons of up to 16 vertices; for others all of `box` that is in the own box, where
- * rt_object_meets_box does not say no. `margin` as there. */
+/* Sets *out to a box around all points of `box` that are inside the object's own box and within `margin`,
+ * along each axis, of its surface; false only if there are none. It is nearly the smallest such box for
+ * triangles, spheres, cones, and polygons of up to 16 vertices; for others it is the intersection of `box`
+ * and the own box, unless rt_object_meets_box returns false. `margin` as above. */
 bool rt_object_part(const RtGeometry *geometry, uint32_t id, const RtBox *box, double margin, RtBox *out);
 
 #endif

@@ -32,7 +32,7 @@ RtStatus rt_polygon_init(RtPolygon *polygon, const RtVec3 *vertices, uint32_t fi
     double warp = 0;
     for (uint32_t i = 0; i < count; i++) {
         double off = fabs(rt_dotd(normal, rt_subd(rt_widen(vertices[i]), center)));
-        if (off > warp) warp = off; /* gcc 12 for ARM breaks off on fmax here, and below */
+        if (off > warp) warp = off; /* gcc 12 for ARM fails to compile fmax here, and below */
     }
     if (warp > RT_POLYGON_MAX_WARP * size) {
         return rt_fail(

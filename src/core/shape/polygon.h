@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Polygons: planar, n >= 3 vertices, convex or concave, both sides hit.
+/* Polygons: planar, n >= 3 vertices, convex or concave; both sides can be hit.
  *
- * Hit by projection (the lecture's way): the ray meets the plane, and the point is tested for being inside in
- * the coordinate plane that the polygon is least perpendicular to, by counting crossings of its edges. Edges
- * and vertices belong to the polygon, so that a symmetric ray through the edge of a cube does not slip
- * through. The plane is Newell's, through the centroid, in double. Vertices lie in one array of the
- * geometry. */
+ * Hit by projection (the lecture's method): the ray meets the plane, and the point is tested in the
+ * coordinate plane onto which the polygon projects best, by counting crossings of its edges. Edges and
+ * vertices belong to the polygon, so a symmetric ray through the edge of a cube does not slip through. The
+ * plane is Newell's, through the centroid, in double. Vertices lie in one array of the geometry. */
 #ifndef RT_SHAPE_POLYGON_H
 #define RT_SHAPE_POLYGON_H
 
@@ -18,27 +17,28 @@ typedef struct RtPolygon {
     RtVec3d center; /* a point of the plane */
     uint32_t first; /* first vertex */
     uint32_t count; /* vertices */
-    uint32_t u, v;  /* axes of the plane it is projected to */
-    float warp;     /* the largest distance of a vertex from the plane along the third axis, rounded up */
+    uint32_t u, v;  /* axes of the projection plane */
+    float warp;     /* largest distance of a vertex from the plane along the third axis, rounded up */
 } RtPolygon;
 
-/* A polygon with a vertex farther from the plane (along the normal) than this part of its size is refused. */
+/* A polygon is rejected if a vertex is farther from its plane (along the normal) than this fraction of its
+ * size. */
 #define RT_POLYGON_MAX_WARP 1e-3
 
-/* Fills `polygon` from vertices[0..count): its plane and projection. Refuses fewer than 3 vertices, no area,
- * or a warp above RT_POLYGON_MAX_WARP, with a message without a place. */
+/* Fills `polygon` from vertices[0..count): its plane and projection. Rejects fewer than 3 vertices, no
+ * area, or a warp above RT_POLYGON_MAX_WARP. */
 RtStatus rt_polygon_init(RtPolygon *polygon, const RtVec3 *vertices, uint32_t first, uint32_t count,
                          RtError *error);
 
-/* In what follows `vertices` are the polygon's own: the geometry's array from `first` on. */
+/* Below, `vertices` are the polygon's own: the geometry's array from `first` on. */
 
-/* Extents hold the vertices and the polygon as it is hit, that is, projected to its plane along the third
- * axis. The box is flat and exact where the polygon lies in a coordinate plane. */
+/* Extents contain the vertices and the polygon as it is hit, projected to its plane along the third axis.
+ * The box is flat and exact for a polygon in a coordinate plane. */
 RtBox rt_polygon_box(const RtPolygon *polygon, const RtVec3 *vertices);
 RtBall rt_polygon_ball(const RtPolygon *polygon, const RtVec3 *vertices);
 double rt_polygon_support(const RtPolygon *polygon, const RtVec3 *vertices, RtVec3d direction);
 
-/* Even-odd rule in the plane of projection; a point on an edge is inside. */
+/* Even-odd rule in the projection plane; a point on an edge is inside. */
 static inline bool rt_polygon_inside(const RtPolygon *polygon, const RtVec3 *vertices, RtVec3d point) {
     double pu = point.at[polygon->u], pv = point.at[polygon->v];
     const float *last = vertices[polygon->count - 1].at;

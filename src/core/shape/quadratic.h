@@ -6,9 +6,9 @@
 
 #include <math.h>
 
-/* Writes the real roots in ascending order and returns how many there are: 0, 1 (a = 0) or 2 (equal when the
- * discriminant is 0). The caller gives `discriminant` = b^2 - a c, because it may know a better way to get
- * it. */
+/* Writes the real roots in ascending order and returns their number: 0, 1 (a = 0) or 2 (equal if the
+ * discriminant is 0). The caller passes `discriminant` = b^2 - a c, because it may compute it more
+ * precisely. */
 static inline int rt_quadratic_roots(double a, double half_b, double c, double discriminant,
                                      double roots[2]) {
     if (!(discriminant >= 0)) return 0;
@@ -19,7 +19,7 @@ static inline int rt_quadratic_roots(double a, double half_b, double c, double d
         roots[0] = -c / (2 * half_b);
         return 1;
     }
-    /* Of a double root c / q is the rounding of c over that of b, near 0 anything. */
+    /* For a double root c / q is the ratio of two rounding errors; near 0 it could be anything. */
     double first = q / a, second = discriminant > 0 ? c / q : first;
     roots[0] = first < second ? first : second;
     roots[1] = first < second ? second : first;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Sets of solids: the dispatch on the kind, and moving. What a kind is, and how one is added, stands in its
- * own file, solid_KIND.c. */
+/* Sets of solids: dispatch on the kind, and moving. Each kind has its own file, solid_KIND.c. */
 #include "core/shape/solid.h"
 
 #include "core/base/memory.h"
@@ -72,7 +71,7 @@ RtBall rt_solid_ball(const RtSolidSet *set, uint32_t index) {
 
 /* ---- moving ---- */
 
-/* Puts the moved planes of a solid of `source` behind those of the set. */
+/* Appends the moved planes of a solid of `source` behind those of the set. */
 static RtStatus move_planes(RtSolidSet *set, const RtSolidSet *source, RtSolid *solid,
                             const RtTransform *move, RtError *error) {
     RT_TRY(rt_reserve(&set->planes, &set->plane_capacity, (uint64_t)set->plane_count + solid->count,
@@ -98,7 +97,7 @@ static RtStatus move_triangles(RtSolidSet *set, const RtSolidSet *source, RtSoli
     return RT_OK;
 }
 
-/* What moving does to a solid besides, now that its planes or triangles are where they go. */
+/* Completes a moved solid, whose planes or triangles have been appended. */
 static RtStatus settle(const RtSolidSet *set, RtSolid *solid, const RtTransform *move, RtError *error) {
     switch (solid->kind) {
     case RT_SOLID_MESH: return rt_solid_check_volume(set->triangles + solid->first, solid->count, error);

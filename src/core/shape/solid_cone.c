@@ -1,24 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The convex cone of standard coordinates, cut by its caps: |(x, y)| <= r(z) = 1 + (ratio - 1) z between two
- * planes of the world.
+/* The cone of object space, |(x, y)| <= r(z) = 1 + (ratio - 1) z, cut by two cap planes in world space.
  *
- * With p(s) = near + s dir, x^2 + y^2 - r^2 is the quadratic a s^2 + 2 b s + c, whose inside is that of both
- * nappes of the double cone. A line that is steeper than the side (a < 0) goes into one and out of the other;
- * of its two half-lines the one is inside on which r is above 0. A line that is less steep (a > 0) is inside
- * between the roots, if that is on the nappe with r > 0; it is the same nappe at both. A line as steep as the
- * side (a = 0) has one root, and goes into one nappe for good. So the apex needs no care, and the second
- * nappe is never met.
+ * With p(s) = near + s dir, x^2 + y^2 - r^2 is the quadratic a s^2 + 2 b s + c, which is negative inside
+ * either nappe of the double cone. A line that is steeper than the side (a < 0) enters one nappe and leaves
+ * the other; of its two half-lines the one with r above 0 is inside. A less steep line (a > 0) is inside
+ * between the roots, which lie on the same nappe, if r > 0 there. A line as steep as the side (a = 0) has one
+ * root and enters one nappe for good. So the apex needs no special case, and the second nappe is never hit.
  *
- * Caps across an axis of the world are at a float32, like all such faces, and the place is drawn to them, as
- * near as a double comes: what is between the caps is what the place says, for extents and for the referee,
- * too. */
+ * Caps across a world axis lie at a float32, like all such faces, and the transform is fitted to them as
+ * closely as double allows. So the transform describes what is between the caps, for extents and for the
+ * referee, too. */
 #include "core/base/memory.h"
 #include "core/shape/quadratic.h"
 #include "core/shape/solid_parts.h"
 
 enum { SIDE, BASE, APEX };
 
-/* Fills span->open and close with where near + s dir, from the middle of the axis, is within the side. */
+/* Sets span->open and close to where near + s dir, relative to the middle of the axis, is within the side. */
 static bool within_side(double ratio, const RtSolidLine *line, RtSpan *span) {
     RtVec3d p = line->near, d = line->dir;
     double r = 1 + (ratio - 1) * (p.z + 0.5), dr = (ratio - 1) * d.z;
@@ -56,7 +54,7 @@ uint32_t rt_solid_cone_crossings(const RtSolidSet *set, uint32_t index, const Rt
     return rt_span_put(&span, index, near, far, out, 0);
 }
 
-/* Of the side the gradient, in which the distance from the axis stands for r: at the apex it is along the
+/* On the side, the gradient, with the distance from the axis in place of r: at the apex it is along the
  * axis. */
 RtVec3d rt_solid_cone_normal(const RtSolidSet *set, const RtSolid *solid, uint32_t face, RtVec3d point) {
     if (face != SIDE) return set->planes[solid->first + face - BASE].normal;
@@ -76,7 +74,7 @@ static RtVec3d apex_of(const RtSolid *solid) {
     return rt_addd(column(solid, 3), column(solid, 2));
 }
 
-/* Half the width of the disc of radius 1 along `direction`. */
+/* Half the width of the unit disc along `direction`. */
 static double disc_reach(const RtSolid *solid, RtVec3d direction) {
     double x = rt_dotd(direction, column(solid, 0)), y = rt_dotd(direction, column(solid, 1));
     return sqrt(x * x + y * y);
@@ -89,13 +87,13 @@ double rt_solid_cone_support(const RtSolidSet *set, const RtSolid *solid, RtVec3
                 rt_dotd(direction, apex_of(solid)) + solid->ratio * reach);
 }
 
-/* At most how far a point of the disc about v, of `radius` times the standard one, is from the origin,
- * squared: |v + w|^2 = v^2 + 2 v.w + w^2. Exact where v is across the disc. */
+/* An upper bound of the squared distance from the origin of a point of the disc around v, with `radius`
+ * times the unit disc: |v + w|^2 = v^2 + 2 v.w + w^2. Exact if v is perpendicular to the disc. */
 static double farthest_squared(const RtSolid *solid, RtVec3d v, double radius, double stretch) {
     return rt_dotd(v, v) + 2 * radius * disc_reach(solid, v) + radius * radius * stretch * stretch;
 }
 
-/* About the point of the axis from which both circles of an upright cone are equally far; if that is beyond
+/* Around the point of the axis with equal distance to both circles of an upright cone; if that is beyond
  * an end, the larger circle alone decides. */
 RtBall rt_solid_cone_ball(const RtSolidSet *set, const RtSolid *solid) {
     (void)set;
@@ -123,8 +121,8 @@ void rt_solid_cone_to_caps(const RtSolidSet *set, RtSolid *solid) {
 RtStatus rt_solid_add_cone(RtSolidSet *set, double ratio, const RtTransform *to_world, uint32_t *index,
                            RtError *error) {
     if (!(ratio >= 0 && ratio <= 1)) {
-        return rt_fail(error, RT_BAD_INPUT,
-                       "the ratio of a cone's radii is %g: expected 0..1; turn the cone round", ratio);
+        return rt_fail(error, RT_BAD_INPUT, "the ratio of a cone's radii is %g: expected 0..1; swap its ends",
+                       ratio);
     }
     RT_TRY(rt_solid_check_transform(to_world, error));
     RtSolid solid = {.kind = RT_SOLID_CONE,

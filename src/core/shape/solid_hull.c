@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The convex hull of points, as a polyhedron: the planes of all faces that the points have, by trying the
- * plane of each three. Most are given up at once, at a point on one side and a point on the other; those that
- * are left are faces, found as often as they have triples of vertices, and taken once.
+/* The convex hull of points as a polyhedron: tries the plane of each three points. Most planes are discarded
+ * at once, having a point on either side; the rest are faces. Each face is found once per triple of its
+ * vertices, and kept once.
  *
- * Points have been rounded to float32, so that four of a face need not be in one plane: all that are within
- * `close` of the plane of three belong to the face. Its plane is then that of the three of them which span
- * the most, so that a sliver does not tilt it, moved outward to hold all points. */
+ * Points have been rounded to float32, so four vertices of a face need not be coplanar: all points within
+ * `close` of a plane belong to the face. Its plane is then that of the three of them that span the most,
+ * so that a sliver does not tilt it, moved outward to contain all points. */
 #include "core/base/memory.h"
 #include "core/shape/solid_parts.h"
 
 typedef struct Cloud {
     const RtVec3 *points;
     uint32_t count;
-    double close; /* distance at which a point is in a plane */
+    double close; /* distance within which a point counts as in a plane */
 } Cloud;
 
 static RtVec3d point_of(const Cloud *cloud, uint32_t i) {
@@ -32,7 +32,7 @@ static double height_above(const RtPlane *plane, RtVec3d point) {
     return rt_dotd(plane->normal, point) - plane->offset;
 }
 
-/* The plane of three points; false if they are nearly on a line. */
+/* The plane of three points; false if they are nearly collinear. */
 static bool plane_of_three(const Cloud *cloud, const uint32_t at[3], RtPlane *plane) {
     RtVec3d a = point_of(cloud, at[0]), ab = rt_subd(point_of(cloud, at[1]), a),
             ac = rt_subd(point_of(cloud, at[2]), a), bc = rt_subd(ac, ab), normal = rt_crossd(ab, ac);
@@ -42,7 +42,7 @@ static bool plane_of_three(const Cloud *cloud, const uint32_t at[3], RtPlane *pl
     return true;
 }
 
-/* Turns the plane so that no point is above it; false if there are points on both sides, or on neither. */
+/* Orients the plane so that no point is above it; false if there are points on both sides, or on neither. */
 static bool turn_outward(const Cloud *cloud, RtPlane *plane) {
     bool above = false, below = false;
     for (uint32_t i = 0; i < cloud->count && !(above && below); i++) {
@@ -55,8 +55,7 @@ static bool turn_outward(const Cloud *cloud, RtPlane *plane) {
     return true;
 }
 
-/* Of the points in the plane the one that is farthest from `from`, or, with `to`, from the line through
- * both. */
+/* The point in the plane that is farthest from `from`, or with `to` from the line through both. */
 static uint32_t farthest_in(const Cloud *cloud, const RtPlane *plane, RtVec3d from, const RtVec3d *to) {
     uint32_t best = 0;
     double most = -1;
@@ -89,7 +88,7 @@ static void settle(const Cloud *cloud, RtPlane *plane, uint32_t any) {
     *plane = rt_plane_through(point_of(cloud, highest), plane->normal);
 }
 
-/* Is the face of these three points there already? */
+/* Is there already a face with these three points? */
 static bool is_known(const Cloud *cloud, const RtPlane *planes, uint32_t count, const uint32_t at[3]) {
     for (uint32_t i = 0; i < count; i++) {
         bool holds = true;
@@ -100,7 +99,7 @@ static bool is_known(const Cloud *cloud, const RtPlane *planes, uint32_t count, 
     return false;
 }
 
-/* Finds the faces of the hull, `capacity` at most, and gives their number. */
+/* Finds the faces of the hull, at most `capacity`, and returns their number. */
 static uint32_t find_faces(const Cloud *cloud, RtPlane *planes, uint32_t capacity) {
     uint32_t found = 0, at[3];
     for (at[0] = 0; at[0] < cloud->count; at[0]++) {
@@ -121,8 +120,8 @@ RtStatus rt_solid_add_hull(RtSolidSet *set, const RtVec3 *vertices, uint32_t cou
                            RtError *error) {
     if (count < 4 || count > RT_SOLID_MAX_VERTICES) {
         return rt_fail(error, RT_BAD_INPUT,
-                       "a convex polyhedron of %u vertices: it can have from 4 to %d; more make a mesh",
-                       count, RT_SOLID_MAX_VERTICES);
+                       "a convex polyhedron of %u vertices: expected 4..%d; use a mesh for more", count,
+                       RT_SOLID_MAX_VERTICES);
     }
     for (uint32_t i = 0; i < count; i++) {
         if (rt_finite(vertices[i])) continue;

@@ -1,21 +1,24 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The inside of a closed triangle mesh: every directed edge is there as often as its reverse, so that the
- * surface has no border; more of it is entered than left, seen along any line, where the line is inside.
+/* The inside of a closed triangle mesh: every directed edge occurs as often as its reverse, so the surface
+ * has no border. A line is inside where it has entered more of the surface than it has left.
  *
- * A line meets a triangle by the winding number of its outline about the line (as seen along it: moved to the
- * origin and sheared until the ray is the z axis, as in core/shape/triangle.h). The number is counted on the
- * half line y = 0, x > 0: an edge from below (y < 0) to above that passes to the right of the origin gives 1,
- * its reverse gives -1, any other nothing. What an edge gives is computed from the lower end to the upper
- * one, whatever the direction: so it is the same bits, with the sign turned, for both triangles at the edge,
- * and what all triangles give adds up to 0 exactly, whatever the rounding. A line through an edge or a vertex
- * enters as often as it leaves, and crosses no triangle twice: one outline winds about the line once at most.
+ * Whether a line crosses a triangle is decided by the winding number of the triangle's outline about the
+ * line, seen along it: moved to the origin and sheared until the ray is the z axis, as in
+ * core/shape/triangle.h. The number is counted on the half line y = 0, x > 0: an edge from below (y < 0) to
+ * above that passes to the right of the origin counts 1, its reverse -1, any other 0. An edge's contribution
+ * is computed from its lower end to its upper one, whatever its direction. So both triangles at an edge
+ * compute the same bits with opposite signs, and the contributions of all triangles add up to 0 exactly,
+ * however they round. A line through an edge or a vertex enters as often as it leaves, and crosses no
+ * triangle twice.
  *
- * Triangles lie in leaves of a binary tree of boxes (solid_mesh_make.c). A box that the thick ray misses is
- * farther from the line than rounding reaches, and holds none that winds about it.
+ * Triangles lie in the leaves of a binary tree of boxes, complete, RT_SOLID_LEAF per leaf: the half of the
+ * triangles that is lower along the longest side of their box goes left. So the boxes are the whole tree,
+ * from the root (node 1, with children 2 and 3), and a moved copy needs new boxes but no new order. If the
+ * thick ray misses a box, no outline in it winds about the line, however it rounds.
  *
- * t is that of a point between two edges, which is on the triangle whatever its shape: slivers, those without
- * area too, and triangles seen edge-on are among those crossed. Faces along an axis are planes as those of
- * other solids are, and met at the same bits. */
+ * t is computed for a point between two edges, which lies on the triangle whatever its shape: slivers,
+ * triangles without area and triangles seen edge-on can be crossed. Faces across an axis are planes, as in
+ * other solids, and are met at the same bits. */
 #include "core/base/memory.h"
 #include "core/shape/solid_parts.h"
 
@@ -50,14 +53,13 @@ static int winding(const Seen v[3]) {
     return number;
 }
 
-/* Where the edge meets the plane y = 0, as a point of the edge: y may be off by rounding, x and z go with
- * it. */
+/* The point of the edge at y = 0; y may be off by rounding, and x and z with it. */
 static Seen at_level(const Seen *lower, const Seen *upper) {
     double part = lower->y / (lower->y - upper->y);
     return (Seen){lower->x + (upper->x - lower->x) * part, 0, lower->z + (upper->z - lower->z) * part};
 }
 
-/* The t of a triangle about whose outline the line winds: between the two edges that meet y = 0, at x = 0. */
+/* The t of a crossed triangle: between its two edges that meet y = 0, at x = 0. */
 static double depth_between_edges(const Seen v[3]) {
     Seen met[2] = {0};
     for (int i = 0, n = 0; i < 3 && n < 2; i++) {
@@ -77,7 +79,7 @@ static double depth_of(const RtTriangle *triangle, const RtSolidRay *ray, const 
     return (a.at[axis] - ray->org.at[axis]) / ray->dir.at[axis];
 }
 
-/* Puts a crossing among those before it, by t and then by face. In `solid` stands whether the line enters. */
+/* Inserts a crossing by t and then by face. Its `solid` says whether the line enters. */
 static void insert(RtCrossing *list, uint32_t count, RtCrossing crossing) {
     uint32_t i = count;
     for (; i > 0; i--) {
@@ -88,7 +90,7 @@ static void insert(RtCrossing *list, uint32_t count, RtCrossing crossing) {
     list[i] = crossing;
 }
 
-/* Puts in order those triangles of a leaf that the line crosses. */
+/* Inserts the triangles of a leaf that the line crosses. */
 static uint32_t collect_leaf(const RtTriangle *triangles, uint32_t first, uint32_t end, const RtSolidRay *ray,
                              float near, float far, RtCrossing *list, uint32_t found) {
     bool backward = ray->thick.negative[ray->thick.kz] != 0;
@@ -105,8 +107,8 @@ static uint32_t collect_leaf(const RtTriangle *triangles, uint32_t first, uint32
     return found;
 }
 
-/* All triangles that the line crosses. The tree is walked without a stack: the children of node n are 2n and
- * 2n + 1, so that after a node comes the brother of the last even one on the way up. */
+/* All triangles that the line crosses. The tree is walked without a stack: the children of node n are 2n
+ * and 2n + 1, so the node after a subtree is the sibling of the last even node on the way up. */
 static uint32_t collect(const RtSolidSet *set, const RtSolid *solid, const RtSolidRay *ray, float near,
                         float far, RtCrossing *list) {
     uint32_t found = 0, node = 1;
@@ -128,7 +130,7 @@ static uint32_t collect(const RtSolidSet *set, const RtSolid *solid, const RtSol
     return found;
 }
 
-/* One place after the other: is the line inside before it, and after? The list shrinks where it stands. */
+/* For each place: is the line inside before it, and after? The list shrinks in place. */
 uint32_t rt_solid_mesh_crossings(const RtSolidSet *set, uint32_t index, const RtSolidRay *ray, float near,
                                  float far, RtCrossing *out) {
     const RtSolid *solid = &set->solids[index];
@@ -163,7 +165,7 @@ double rt_solid_mesh_support(const RtSolidSet *set, const RtSolid *solid, RtVec3
     return most;
 }
 
-/* About the middle of the box. */
+/* Around the centre of the box. */
 RtBall rt_solid_mesh_ball(const RtSolidSet *set, const RtSolid *solid) {
     RtVec3d center = rt_widen(rt_box_center(solid->box));
     double most = 0;
@@ -180,7 +182,7 @@ RtBall rt_solid_mesh_ball(const RtSolidSet *set, const RtSolid *solid) {
 
 /* ---- is it closed? ---- */
 
-/* An edge with its ends in order; `turned` is 1 where the triangle has it so, -1 where it has the reverse. */
+/* An edge with its ends in order; `turned` is 1 if the triangle has them in this order, -1 otherwise. */
 typedef struct Edge {
     RtVec3 ends[2];
     int turned;
@@ -203,7 +205,7 @@ static Edge edge_of(RtVec3 from, RtVec3 to) {
     return compare_points(from, to) <= 0 ? (Edge){{from, to}, 1} : (Edge){{to, from}, -1};
 }
 
-/* Sorts the edges, and looks at those that are the same together. An edge from a point to itself is none. */
+/* Sorts the edges and examines equal ones together. An edge from a point to itself does not count. */
 static RtStatus check_edges(Edge *edges, size_t count, RtError *error) {
     qsort(edges, count, sizeof *edges, compare_edges);
     for (size_t i = 0, next; i < count; i = next) {
@@ -214,8 +216,8 @@ static RtStatus check_edges(Edge *edges, size_t count, RtError *error) {
         if (sum == 0 || compare_points(a, b) == 0) continue;
         return rt_fail(
             error, RT_BAD_INPUT,
-            "the mesh is not closed: at the edge from (%g, %g, %g) to (%g, %g, %g) triangles on one "
-            "side have no neighbour that is turned alike; close the hole there, or turn them round",
+            "the mesh is not closed: at the edge from (%g, %g, %g) to (%g, %g, %g) triangles on one side "
+            "have no neighbour with the same winding; close the hole or reverse the triangles",
             (double)a.x, (double)a.y, (double)a.z, (double)b.x, (double)b.y, (double)b.z);
     }
     return RT_OK;
@@ -234,7 +236,7 @@ static RtStatus check_closed(const RtTriangle *triangles, uint32_t count, RtErro
     return status;
 }
 
-/* The volume is that of the tetrahedra from one vertex to all triangles. */
+/* The volume is the sum of the tetrahedra from one vertex to all triangles. */
 RtStatus rt_solid_check_volume(const RtTriangle *triangles, uint32_t count, RtError *error) {
     RtVec3d origin = rt_widen(triangles[0].v[0]);
     double volume = 0;
@@ -244,16 +246,15 @@ RtStatus rt_solid_check_volume(const RtTriangle *triangles, uint32_t count, RtEr
         volume += rt_dotd(v[0], rt_crossd(v[1], v[2])) / 6;
     }
     if (volume > 0) return RT_OK;
-    return rt_fail(
-        error, RT_BAD_INPUT,
-        "the volume in the mesh is %g: expected a value above 0; if it is turned inside out, turn its "
-        "triangles round (counter-clockwise seen from outside)",
-        volume);
+    return rt_fail(error, RT_BAD_INPUT,
+                   "the volume of the mesh is %g: expected a value above 0; if the mesh is inside out, "
+                   "reverse its triangles (counter-clockwise seen from outside)",
+                   volume);
 }
 
 /* ---- order and boxes ---- */
 
-/* A triangle by its place along an axis, and by its number where two are at one place. */
+/* A triangle with its position along an axis, and its number to break ties. */
 typedef struct Placed {
     float place;
     uint32_t number;
@@ -272,7 +273,7 @@ static RtBox box_about(const RtTriangle *triangles, uint32_t count) {
     return box;
 }
 
-/* Brings the triangles of a node with so many leaves into order. */
+/* Sorts the triangles of a node with that many leaves. */
 static void put_in_order(RtTriangle *triangles, uint32_t count, uint32_t leaves, Placed *scratch) {
     if (count <= RT_SOLID_LEAF) return;
     uint32_t left = leaves / 2 * RT_SOLID_LEAF;
@@ -329,7 +330,8 @@ static RtStatus check_and_order(RtTriangle *triangles, uint32_t count, RtError *
 RtStatus rt_solid_add_mesh(RtSolidSet *set, const RtTriangle *triangles, uint32_t count,
                            const RtTransform *to_world, uint32_t *index, RtError *error) {
     if (count < 4) {
-        return rt_fail(error, RT_BAD_INPUT, "a closed mesh has at least 4 triangles; this one has %u", count);
+        return rt_fail(error, RT_BAD_INPUT, "a closed mesh needs at least 4 triangles, this one has %u",
+                       count);
     }
     RT_TRY(rt_solid_check_transform(to_world, error));
     RT_TRY(rt_reserve(&set->triangles, &set->triangle_capacity, (uint64_t)set->triangle_count + count,

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the solids of all kinds are made from: planes and places, and putting a solid into its set.
+/* Common to solids of all kinds: planes, transforms, and adding a solid to its set.
  *
- * Adding ends in rt_solid_finish, whatever the kind: planes and triangles are put behind those of the set,
- * the box is made from them, and only when nothing can fail any more the set counts them. */
+ * Every rt_solid_add_... ends in rt_solid_finish: planes and triangles are put behind those of the set,
+ * the box is computed from them, and the set counts them only when nothing can fail any more. */
 #include "core/shape/solid_parts.h"
 
 #include "core/base/memory.h"
@@ -27,19 +27,19 @@ RtPlane rt_plane_moved(const RtPlane *plane, const RtTransform *move) {
     return rt_plane_through(rt_transform_pointd(move, foot), rt_transform_normald(move, plane->normal));
 }
 
-/* ---- places ---- */
+/* ---- transforms ---- */
 
 RtStatus rt_solid_check_transform(const RtTransform *to_world, RtError *error) {
     RtVec3d x = rt_transform_column(to_world, 0), y = rt_transform_column(to_world, 1),
             z = rt_transform_column(to_world, 2), by = rt_transform_column(to_world, 3);
     double volume = rt_dotd(x, rt_crossd(y, z)), most = rt_lengthd(x) * rt_lengthd(y) * rt_lengthd(z);
     if (!isfinite(most) || !isfinite(rt_lengthd(by))) {
-        return rt_fail(error, RT_BAD_INPUT, "the place of a solid is not made of finite numbers");
+        return rt_fail(error, RT_BAD_INPUT, "the transform of a solid is not finite");
     }
     if (!(volume > 0x1p-40 * most)) {
         return rt_fail(error, RT_BAD_INPUT,
-                       "a solid would be flat, or turned inside out: its axes need some length each, and "
-                       "not to lie in one plane");
+                       "a solid would be flat or turned inside out: its axes must have a length and not lie "
+                       "in one plane");
     }
     return RT_OK;
 }
@@ -58,8 +58,8 @@ RtTransform rt_solid_transform_about(RtVec3d origin, RtVec3d axis, double radius
     return to_world;
 }
 
-/* The largest eigenvalue of the matrix G of dot products is at most its trace, and that of G^2 is its square:
- * squaring again and again brings the bound down to it. */
+/* The largest eigenvalue of the matrix G of dot products is at most its trace, and that of G^2 is its
+ * square: repeated squaring tightens the bound. */
 double rt_largest_stretch(RtVec3d x, RtVec3d y, RtVec3d z) {
     enum { SQUARINGS = 30 };
     const RtVec3d columns[3] = {x, y, z};
@@ -97,7 +97,7 @@ static void invert(RtSolid *solid) {
     solid->inverse[2] = rt_scaled(rt_crossd(x, y), 1 / volume);
 }
 
-/* By the support function, rounded outward; faces along an axis bound it exactly. */
+/* From the support function, rounded outward; faces across an axis bound it exactly. */
 static RtBox box_of(const RtSolidSet *set, const RtSolid *solid, RtSolidSupport *support) {
     if (solid->kind == RT_SOLID_MESH) return set->boxes[solid->first_box];
     RtBox box = RT_EMPTY_BOX;
@@ -124,7 +124,7 @@ static RtStatus check_box(const RtBox *box, RtError *error) {
         for (int i = 0; i < 2; i++) {
             if (fabsf(sides[i]) <= RT_MAX_COORDINATE || sides[i] == (i ? INFINITY : -INFINITY)) continue;
             return rt_fail(error, RT_BAD_INPUT,
-                           "a solid would reach to %g: coordinates go to %g at most; scale it down",
+                           "a solid would extend to %g: coordinates are limited to %g; scale it down",
                            (double)sides[i], (double)RT_MAX_COORDINATE);
         }
     }

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the files of the solids share: the functions that each kind has, planes, lines in standard
- * coordinates, and how spans become crossings. For the solid_*.c alone. */
+/* Shared by the solid_*.c files: the functions of each kind, planes, lines in object space, and how spans
+ * become crossings. */
 #ifndef RT_SHAPE_SOLID_PARTS_H
 #define RT_SHAPE_SOLID_PARTS_H
 
 #include "core/shape/solid.h"
 
-/* What solid.h promises of all solids, by kind. */
+/* The functions that solid.h promises, per kind. */
 #define RT_SOLID_FUNCTIONS(CONSTANT, name)                                                                   \
     uint32_t rt_solid_##name##_crossings(const RtSolidSet *set, uint32_t index, const RtSolidRay *ray,       \
                                          float near, float far, RtCrossing *out);                            \
@@ -17,65 +17,64 @@
 RT_SOLID_KINDS(RT_SOLID_FUNCTIONS)
 #undef RT_SOLID_FUNCTIONS
 
-/* ---- making solids: in solid_parts.c, but where another file is named ---- */
+/* ---- building solids: in solid_parts.c unless another file is named ---- */
 
-/* Largest dot product of `direction` with a point of the solid. */
+/* The largest dot product of `direction` with a point of the solid. */
 typedef double RtSolidSupport(const RtSolidSet *set, const RtSolid *solid, RtVec3d direction);
 
-/* Adds `solid`, of which all is filled in but `back` and `box`, and whose `count` planes or triangles, if it
- * has any, and the boxes of a mesh stand ready behind those of the set (room for them: rt_reserve). */
+/* Adds `solid`, complete except for `inverse` and `box`. Its `count` planes or triangles, and the boxes of
+ * a mesh, already lie behind those of the set (rt_reserve). */
 RtStatus rt_solid_finish(RtSolidSet *set, RtSolid *solid, RtSolidSupport *support, uint32_t *index,
                          RtError *error);
 
-/* In solid_mesh_make.c: makes the boxes of a mesh, behind those of the set, and fills in first_box and
- * leaves. */
+/* In solid_mesh.c: builds the boxes of a mesh behind those of the set, and sets first_box and leaves. */
 RtStatus rt_solid_mesh_boxes(RtSolidSet *set, RtSolid *solid, RtError *error);
 
-/* Triangles in a leaf of them. */
+/* Triangles per leaf. */
 #define RT_SOLID_LEAF 4
 
-/* In solid_cone.c: draws the place of a cone to its caps, which stand in the set: those across an axis of the
- * world are rounded to float32. The place may become flat, which rt_solid_finish refuses. */
+/* In solid_cone.c: fits the transform of a cone to its caps, which lie in the set; caps across a world
+ * axis are rounded to float32. The cone may become flat, which rt_solid_finish rejects. */
 void rt_solid_cone_to_caps(const RtSolidSet *set, RtSolid *solid);
 
-/* Refuse planes that leave no inside, or a flat one (in solid_polyhedron.c), and a closed mesh whose volume
- * is not above 0 (in solid_mesh_make.c). */
+/* Reject planes that leave no inside or a flat one (in solid_polyhedron.c), and a closed mesh whose volume
+ * is not above 0 (in solid_mesh.c). */
 RtStatus rt_solid_check_inside(const RtPlane *planes, uint32_t count, RtError *error);
 RtStatus rt_solid_check_volume(const RtTriangle *triangles, uint32_t count, RtError *error);
 
-/* Refuses a transform that is not finite, or flattens. */
+/* Rejects a transform that is not finite or that flattens. */
 RtStatus rt_solid_check_transform(const RtTransform *to_world, RtError *error);
 
-/* The place whose z axis is `height` along `axis`, and whose x and y axes are `radius` long; all at right
- * angles. Axes along those of the world give such. */
+/* The transform whose z axis is `height` along `axis` and whose x and y axes are `radius` long, all
+ * orthogonal. An axis along a world axis yields axes along world axes. */
 RtTransform rt_solid_transform_about(RtVec3d origin, RtVec3d axis, double radius, double height);
 
-/* The axis along which the vector lies, or -1. */
+/* The coordinate axis along which the vector lies, or -1. */
 static inline int rt_axis_of(RtVec3d v) {
     if (v.y == 0 && v.z == 0) return v.x == 0 ? -1 : 0;
     if (v.x == 0 && v.z == 0) return 1;
     return v.x == 0 && v.y == 0 ? 2 : -1;
 }
 
-/* The plane through `point` across `normal`, of any length but 0. */
+/* The plane through `point` with normal `normal`, of any length but 0. */
 RtPlane rt_plane_through(RtVec3d point, RtVec3d normal);
 
-/* The plane where `move` takes it. */
+/* The plane moved by `move`. */
 RtPlane rt_plane_moved(const RtPlane *plane, const RtTransform *move);
 
-/* The largest factor, or very little more, by which M stretches any vector; its columns are x, y, z. */
+/* The largest factor by which the matrix with columns x, y, z stretches any vector, slightly rounded up. */
 double rt_largest_stretch(RtVec3d x, RtVec3d y, RtVec3d z);
 
 /* ---- spans ---- */
 
-/* Where a line is inside. */
+/* An interval of t in which a line is inside. */
 typedef struct RtSpan {
     double open, close; /* t */
     uint32_t open_face, close_face;
 } RtSpan;
 
-/* Adds the crossings of a span, which opens at or after the close of the one before, to the `count` there are
- * by now; gives their new number. */
+/* Appends the crossings of a span, which opens at or after the end of the previous one, to the `count` so
+ * far; returns the new number. */
 static inline uint32_t rt_span_put(const RtSpan *span, uint32_t solid, float near, float far, RtCrossing *out,
                                    uint32_t count) {
     float open = (float)rt_clampd(span->open, (double)near, (double)far);
@@ -90,7 +89,7 @@ static inline uint32_t rt_span_put(const RtSpan *span, uint32_t solid, float nea
     return count;
 }
 
-/* Cuts the span down to the side of the plane on which the solid is. */
+/* Clips the span to the inner side of the plane. */
 static inline void rt_span_cut(RtSpan *span, const RtPlane *plane, uint32_t face, const RtSolidRay *ray) {
     double gap = plane->offset - rt_dotd(plane->normal, ray->org);
     double rate = rt_dotd(plane->normal, ray->dir);
@@ -103,28 +102,28 @@ static inline void rt_span_cut(RtSpan *span, const RtPlane *plane, uint32_t face
     if (rate > 0 && t < span->close) span->close = t, span->close_face = face;
 }
 
-/* ---- standard coordinates ---- */
+/* ---- object space ---- */
 
 static inline RtVec3d rt_solid_to_object(const RtSolid *solid, RtVec3d v) {
     return rt_vec3d(rt_dotd(solid->inverse[0], v), rt_dotd(solid->inverse[1], v),
                     rt_dotd(solid->inverse[2], v));
 }
 
-/* A point of the world in standard coordinates. The origins are subtracted first: that is exact, or nearly
- * so, where a product would lose digits. */
+/* A world-space point in object space. The origins are subtracted first, which is exact or nearly so; a
+ * product would lose digits. */
 static inline RtVec3d rt_solid_point_to_object(const RtSolid *solid, RtVec3d point) {
     return rt_solid_to_object(solid, rt_subd(point, rt_transform_column(&solid->to_world, 3)));
 }
 
-/* A normal in standard coordinates, in the world, of length 1. */
+/* An object-space normal in world space, of unit length. */
 static inline RtVec3d rt_solid_normal_to_world(const RtSolid *solid, RtVec3d normal) {
     RtVec3d sum = rt_scaled(solid->inverse[0], normal.x);
     sum = rt_add_scaledd(sum, solid->inverse[1], normal.y);
     return rt_normalized(rt_add_scaledd(sum, solid->inverse[2], normal.z));
 }
 
-/* The line of a ray in standard coordinates, as seen from `middle`: p(t) = near + (t - closest) dir, with
- * `near` the point nearest to the middle, so that far origins cost no precision. */
+/* The line of a ray in object space relative to `middle`: p(t) = near + (t - closest) dir, with `near` the
+ * point nearest to the middle, so that distant origins cost no precision. */
 typedef struct RtSolidLine {
     RtVec3d near, dir;
     double closest;

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Convex polyhedra: what is behind all of count planes of the world, bounded or not. A line is cut by one
- * plane after the other.
+/* Convex polyhedra: the points behind all of `count` planes in world space, bounded or not. A line is clipped
+ * by one plane after another.
  *
- * All else is asked of the edges: the line of each two planes, cut by all others. A polyhedron in three
- * dimensions has a point if and only if it has an edge, or all its planes are parallel; and if it has a
- * corner it reaches as far as its edges do. To be on the safe side of rounding the planes are moved: outward
- * for extents, inward to see that the inside is not flat. About count^2 / 2 lines are tried, most of which a
- * few planes cut away. */
+ * Everything else follows from the edges: the line of each two planes, clipped by all others. A polyhedron
+ * in three dimensions has a point if and only if it has an edge or all its planes are parallel; and if it
+ * has a corner, it reaches as far as its edges do. To be safe from rounding, the planes are moved outward
+ * for extents, and inward to check that the inside is not flat. About count^2 / 2 lines are tried; a few
+ * planes clip most of them away. */
 #include "core/base/memory.h"
 #include "core/shape/solid_parts.h"
 
 #include <string.h>
 
-/* What is less than this, against 1, is the noise of rounding. */
+/* Anything below this, relative to 1, is rounding noise. */
 #define NOISE 0x1p-40
 
 uint32_t rt_solid_polyhedron_crossings(const RtSolidSet *set, uint32_t index, const RtSolidRay *ray,
@@ -45,14 +45,15 @@ typedef struct Edge {
     double lo, hi;     /* possibly infinite */
 } Edge;
 
-/* A length below which the polyhedron is flat; whatever its size where all planes go through the origin. */
+/* A polyhedron thinner than this counts as flat; 1, for want of a size, if all planes go through the
+ * origin. */
 static double least_width(const RtPlane *planes, uint32_t count) {
     double most = 0;
     for (uint32_t i = 0; i < count; i++) most = fmax(most, fabs(planes[i].offset));
     return most > 0 ? NOISE * most : 1;
 }
 
-/* The line that two planes have in common; false if they are parallel. */
+/* The line in which two planes meet; false if they are parallel. */
 static bool line_of(const Faces *faces, uint32_t i, uint32_t j, Edge *edge) {
     const RtPlane *a = &faces->planes[i], *b = &faces->planes[j];
     RtVec3d along = rt_crossd(a->normal, b->normal);
@@ -64,7 +65,7 @@ static bool line_of(const Faces *faces, uint32_t i, uint32_t j, Edge *edge) {
     return true;
 }
 
-/* Cuts the line of planes i and j by all others; false if nothing is left. */
+/* Clips the line of planes i and j by all others; false if nothing is left. */
 static bool cut_line(const Faces *faces, uint32_t i, uint32_t j, Edge *edge) {
     for (uint32_t k = 0; k < faces->count && edge->lo <= edge->hi; k++) {
         if (k == i || k == j) continue;
@@ -82,7 +83,7 @@ static bool cut_line(const Faces *faces, uint32_t i, uint32_t j, Edge *edge) {
     return edge->lo <= edge->hi;
 }
 
-/* The next edge, from those of planes *i and *j > *i on (0 and 0 to begin with); false when there is none. */
+/* The next edge after that of planes *i and *j > *i (0 and 0 to begin with); false if there is none. */
 static bool next_edge(const Faces *faces, uint32_t *i, uint32_t *j, Edge *edge) {
     for (; *i < faces->count; *j = ++*i) {
         while (++*j < faces->count) {
@@ -92,7 +93,7 @@ static bool next_edge(const Faces *faces, uint32_t *i, uint32_t *j, Edge *edge) 
     return false;
 }
 
-/* Are all planes parallel? Then *lo and *hi, along the normal of the first, bound what is behind them. */
+/* Are all planes parallel? Then *lo and *hi, along the normal of the first, bound the polyhedron. */
 static bool is_slab(const Faces *faces, double *lo, double *hi) {
     RtVec3d normal = faces->planes[0].normal;
     *lo = -INFINITY, *hi = INFINITY;
@@ -117,9 +118,9 @@ static Faces grown_faces(const RtSolidSet *set, const RtSolid *solid) {
     return (Faces){planes, solid->count, least_width(planes, solid->count)};
 }
 
-/* The same as below of a polyhedron without a corner, whose normals lie in a plane: with direction =
- * l a.normal + m b.normal, l and m at least 0, the planes a and b alone bound it (duality of linear
- * programs); b may be a. */
+/* Like rt_solid_polyhedron_support, for a polyhedron without a corner, whose normals lie in a plane. With
+ * direction = l a.normal + m b.normal, l and m at least 0, the planes a and b alone bound it (duality of
+ * linear programs); b may equal a. */
 static double flat_support(const Faces *faces, RtVec3d direction) {
     double least = INFINITY, length = rt_lengthd(direction);
     for (uint32_t i = 0; i < faces->count * faces->count; i++) {
@@ -137,8 +138,8 @@ static double flat_support(const Faces *faces, RtVec3d direction) {
     return least;
 }
 
-/* Largest dot product of `direction` with a point of the edge. What is along it but for noise counts as along
- * it, where it has no end. */
+/* The largest dot product of `direction` with a point of the edge. At an infinite end, a direction that is
+ * perpendicular up to noise counts as perpendicular. */
 static double edge_support(const Edge *edge, RtVec3d direction) {
     double base = rt_dotd(edge->from, direction), rate = rt_dotd(edge->dir, direction);
     double end = rate > 0 ? edge->hi : edge->lo, start = rate > 0 ? edge->lo : edge->hi;
@@ -157,7 +158,7 @@ double rt_solid_polyhedron_support(const RtSolidSet *set, const RtSolid *solid, 
     return most == -INFINITY ? flat_support(&faces, direction) : most;
 }
 
-/* About the middle of the box. */
+/* Around the centre of the box. */
 RtBall rt_solid_polyhedron_ball(const RtSolidSet *set, const RtSolid *solid) {
     RtVec3d center = rt_widen(rt_box_center(solid->box));
     if (!isfinite(rt_lengthd(center))) return (RtBall){{{0, 0, 0}}, INFINITY};
@@ -178,11 +179,10 @@ static RtStatus check_plane(const RtPlane *plane, uint32_t i, RtError *error) {
     RtVec3d n = plane->normal;
     double squared = rt_dotd(n, n);
     if (isfinite(squared) && isfinite(plane->offset) && squared > 0) return RT_OK;
-    return rt_fail(
-        error, RT_BAD_INPUT,
-        "plane %u of the polyhedron, normal (%g, %g, %g), offset %g, is not made of finite numbers "
-        "with a normal above 0",
-        i, n.x, n.y, n.z, plane->offset);
+    return rt_fail(error, RT_BAD_INPUT,
+                   "plane %u of the polyhedron, normal (%g, %g, %g), offset %g, must have finite numbers and "
+                   "a normal other than 0",
+                   i, n.x, n.y, n.z, plane->offset);
 }
 
 RtStatus rt_solid_check_inside(const RtPlane *planes, uint32_t count, RtError *error) {
@@ -198,8 +198,7 @@ RtStatus rt_solid_check_inside(const RtPlane *planes, uint32_t count, RtError *e
         count);
 }
 
-/* A plane whose normal has length 1 already stays as it is, bit for bit, so that solids survive saving and
- * loading. */
+/* Keeps a plane with a unit normal bit for bit, so that solids survive saving and loading. */
 static RtPlane unit_plane(const RtPlane *plane) {
     RtVec3d n = plane->normal;
     double squared = rt_dotd(n, n);
@@ -210,7 +209,7 @@ static RtPlane unit_plane(const RtPlane *plane) {
 RtStatus rt_solid_add_polyhedron(RtSolidSet *set, const RtPlane *planes, uint32_t count,
                                  const RtTransform *to_world, uint32_t *index, RtError *error) {
     if (count == 0 || count > RT_SOLID_MAX_FACES) {
-        return rt_fail(error, RT_BAD_INPUT, "a polyhedron of %u planes: it can have from 1 to %d", count,
+        return rt_fail(error, RT_BAD_INPUT, "a polyhedron of %u planes: expected 1..%d", count,
                        RT_SOLID_MAX_FACES);
     }
     RT_TRY(rt_solid_check_transform(to_world, error));

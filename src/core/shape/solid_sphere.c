@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The unit ball behind its map: p = place(q), |q| <= 1. A line is met about its point nearest to the centre
- * (core/shape/sphere.h), where the half chord is sqrt(1 - |l|^2) with l the vector to that point. */
+/* The unit ball under its transform: p = to_world(q), |q| <= 1. The hit is computed about the point of the
+ * line nearest to the centre (core/shape/sphere.h): the half chord is sqrt(1 - |l|^2), with l the vector
+ * to that point. */
 #include "core/shape/solid_parts.h"
 
 uint32_t rt_solid_sphere_crossings(const RtSolidSet *set, uint32_t index, const RtSolidRay *ray, float near,

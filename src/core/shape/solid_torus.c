@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The torus about the unit circle of the xy plane, with a tube of radius `ratio` < 1.
+/* The torus around the unit circle of the xy plane, with a tube of radius `ratio` < 1.
  *
- * A point is inside where g = (w - 1)^2 + z^2 - ratio^2 < 0, w = sqrt(x^2 + y^2). Times
- * (w + 1)^2 + z^2 - ratio^2, which is above 0, g is a polynomial of degree 4 in s along a line p + s e. With
- * p the point nearest to the centre and e of length 1 it has no cubic term:
+ * A point is inside where g = (w - 1)^2 + z^2 - ratio^2 < 0, w = sqrt(x^2 + y^2). Multiplied by (w + 1)^2 +
+ * z^2 - ratio^2, which is above 0, g becomes a polynomial of degree 4 in s along a line p + s e. With p the
+ * point nearest to the centre and e of length 1 it has no cubic term:
  *
  *     f(s) = (s^2 + k)^2 - 4 ((p.x + s e.x)^2 + (p.y + s e.y)^2),    k = p^2 + 1 - ratio^2,
  *
- * and all roots are within 1 + ratio of the centre. f' / 4 is s^3 + a s + b, monotone between the roots -h
- * and h of its derivative: so it has at most one root between each two of these and the ends, and its roots
- * cut the line into pieces on which f is monotone. A piece whose ends differ holds one crossing, which a
- * bracket closes in on.
+ * and all roots are within 1 + ratio of the centre. f' / 4 is s^3 + a s + b, which is monotone between the
+ * roots -h and h of its derivative: it has at most one root between each two of these and the ends. Its roots
+ * cut the line into pieces on which f is monotone. A piece whose ends differ in sign holds one crossing,
+ * which a bracketing iteration finds.
  *
- * Inside or not is asked of g, for f has lost a thin tube in rounding; f only says where to ask. A line that
- * touches from outside has no point inside; where rounding decides, a short span is there with both its ends
- * or not at all. */
+ * The sign is taken from g, because rounding in f loses a thin tube; f only says where to look. A line
+ * that touches from outside has no point inside; where rounding decides, a short span appears with both
+ * its ends or not at all. */
 #include "core/shape/solid_parts.h"
 
 /* ---- changes of sign along a line ---- */
@@ -42,8 +42,8 @@ static Value cubic_at(const Curve *c, double s) {
     return (Value){(s * s + c->a) * s + c->b, 3 * s * s + c->a};
 }
 
-/* Where between lo and hi y changes from below 0 (or the other way round): by Newton's steps where they stay
- * within the bracket and shrink, else by halving. */
+/* The point between lo and hi where y changes from below 0 (or to below 0): by Newton steps while they
+ * stay within the bracket and shrink, otherwise by bisection. */
 static double change_between(const Curve *curve, double lo, double hi, bool from_below) {
     double s = lo / 2 + hi / 2, step = hi - lo;
     while (lo < s && s < hi) {
@@ -62,8 +62,8 @@ static double change_between(const Curve *curve, double lo, double hi, bool from
     return s;
 }
 
-/* The places at which y changes between below 0 and not, at most one between each two of the ascending
- * `cuts`; gives their number, below `count`. */
+/* The points at which y changes between below 0 and not, at most one between each two of the ascending
+ * `cuts`; returns their number, below `count`. */
 static int changes(const Curve *curve, const double *cuts, int count, double *places) {
     int found = 0;
     bool below = curve->at(curve, cuts[0]).y < 0;
@@ -82,7 +82,7 @@ uint32_t rt_solid_torus_crossings(const RtSolidSet *set, uint32_t index, const R
     const RtSolid *solid = &set->solids[index];
     RtSolidLine line = rt_solid_line(solid, ray, rt_vec3d(0, 0, 0));
     double length = rt_lengthd(line.dir), p_squared = rt_dotd(line.near, line.near);
-    double reach = 1 + solid->ratio + 0x1p-20; /* a little more: the ends of the line are outside */
+    double reach = 1 + solid->ratio + 0x1p-20; /* slightly more, so that the ends of the line are outside */
     if (!(p_squared < reach * reach)) return 0;
     RtVec3d p = line.near, e = rt_scaled(line.dir, 1 / length);
     double k = p_squared + 1 - solid->ratio * solid->ratio;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Spheres: centre and radius > 0; the surface, hit from outside and from inside.
  *
- * The hit is computed in double about the point of the ray nearest to the centre (Haines, Günther & Akenine-
- * Möller 2019, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems ch. 7): the half chord
- * is sqrt(r^2 - |l|^2) with l the vector from the centre to that point, which loses nothing when the origin
- * is far. */
+ * The hit is computed in double about the point of the ray nearest to the centre (Haines, Günther &
+ * Akenine-Möller 2019, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems ch. 7): the
+ * half chord is sqrt(r^2 - |l|^2), with l the vector from the centre to that point, which loses no
+ * precision for distant origins. */
 #ifndef RT_SHAPE_SPHERE_H
 #define RT_SHAPE_SPHERE_H
 
@@ -23,10 +23,10 @@ RtBox rt_sphere_box(const RtSphere *sphere);
 /* The sphere itself. */
 RtBall rt_sphere_ball(const RtSphere *sphere);
 
-/* Largest dot product of `direction` with a point of the sphere. */
+/* The largest dot product of `direction` with a point of the sphere. */
 double rt_sphere_support(const RtSphere *sphere, RtVec3d direction);
 
-/* Unit normal at `point` on the sphere, away from the centre. */
+/* Unit normal at `point` on the sphere, pointing outward. */
 RtVec3d rt_sphere_normal(const RtSphere *sphere, RtVec3d point);
 
 /* The first t in [tmin, tmax] at which the ray meets the sphere. */

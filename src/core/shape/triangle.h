@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Triangles: three vertices, both sides hit, edges and vertices included.
+/* Triangles: three vertices; both sides, edges and vertices can be hit.
  *
  * Woop, Benthin & Wald 2013, "Watertight Ray/Triangle Intersection" (JCGT 2(1)): vertices are moved to the
- * ray's origin and sheared until the ray is the z axis; the three edge functions of the projection decide.
- * The transformed position of a shared vertex is the same for every triangle that shares it, and the signs of
- * edge functions are exact: so neighbours agree, and a ray cannot pass between them.
+ * ray's origin and sheared until the ray is the z axis; the three edge functions of the projection decide. A
+ * shared vertex is transformed to the same position for every triangle, and the signs of edge functions are
+ * exact. So neighbouring triangles agree, and no ray passes between them.
  *
- * An edge function in float32 has the right sign or is 0, because rounding is monotone; that turns nearly all
- * rays away. Only for the rest are the functions evaluated in double, where products of two float32 are exact
- * and one rounding is left. Their ratios, the weights, are then right too: on a sliver those of float32 would
- * be noise, and the t with them. Only + - * / in a fixed order, for SIMD kernels to repeat bit for bit: in
- * float32 up to the first test, and in double for the few lanes that pass it. */
+ * An edge function in float32 has the right sign or is 0, because rounding is monotone; that rejects
+ * nearly all rays. Only for the rest are the functions evaluated in double, where products of two float32
+ * are exact and only one rounding is left. Their ratios, the barycentric weights, are then accurate too;
+ * on a sliver those of float32 would be noise, and t with them. Only + - * / in a fixed order, so that
+ * SIMD kernels can repeat it bit for bit: in float32 up to the first test, in double for the few lanes
+ * that pass it. */
 #ifndef RT_SHAPE_TRIANGLE_H
 #define RT_SHAPE_TRIANGLE_H
 
@@ -27,10 +28,10 @@ static inline RtBox rt_triangle_box(const RtTriangle *triangle) {
                    rt_vec_max(rt_vec_max(triangle->v[0], triangle->v[1]), triangle->v[2])};
 }
 
-/* The smallest ball. */
+/* The smallest enclosing ball. */
 RtBall rt_triangle_ball(const RtTriangle *triangle);
 
-/* Largest dot product of `direction` with a point of the triangle. */
+/* The largest dot product of `direction` with a point of the triangle. */
 double rt_triangle_support(const RtTriangle *triangle, RtVec3d direction);
 
 /* Unit normal by the right-hand rule over v[0], v[1], v[2]; zero for a triangle without area. */
@@ -39,8 +40,7 @@ RtVec3d rt_triangle_normal(const RtTriangle *triangle);
 /* Barycentric weights of v[0], v[1], v[2] at `point` in the plane of the triangle; they sum to 1. */
 RtVec3d rt_triangle_weights(const RtTriangle *triangle, RtVec3d point);
 
-/* A coordinate of each vertex, and 0: a lane that is loaded with what does not matter takes a shuffle more.
- */
+/* A coordinate of each vertex, and 0: loading an arbitrary fourth lane would take another shuffle. */
 static inline RtFour rt_triangle_along(const float *v, size_t vertex, size_t axis) {
     v += axis;
     return (RtFour){v[0], v[vertex], v[2 * vertex], 0};
@@ -51,9 +51,9 @@ static inline RtFour rt_triangle_vertex(const float *v, size_t axis) {
     return (RtFour){v[0], v[axis], v[2 * axis], 0};
 }
 
-/* The t in [tmin, tmax] at which the ray meets a triangle; a ray in its plane misses it. Coordinate a of
- * vertex i is v[i * vertex + a * axis], so that a triangle among others, coordinate by coordinate, can be
- * tested where it is. */
+/* The t in [tmin, tmax] at which the ray hits a triangle; a ray in its plane misses it. Coordinate a of
+ * vertex i is v[i * vertex + a * axis], so that a triangle stored coordinate by coordinate among others
+ * can be tested in place. */
 static inline bool rt_triangle_hit_strided(const float *v, size_t vertex, size_t axis,
                                            const RtPreparedRay *ray, float *t) {
     const float *org = ray->org.at;

@@ -8,8 +8,8 @@
 
 enum { MOST_BYTES = 1 << 24 };
 
-/* Ends the field that begins at `field`, its quotes taken away, and gives what lies behind its comma; NULL
- * behind the last one of the line. *bad is set where a quote is not closed or something follows it. */
+/* Terminates the field that begins at `field`, removes its quotes, and returns the start of the next
+ * field, or NULL after the last one of the line. Sets *bad if a quote is not closed or text follows it. */
 static char *cut_field(char *field, bool *bad) {
     char *to = field, *from = field;
     if (*from == '"') {
@@ -30,7 +30,7 @@ static uint32_t count_of(const char *text, char c) {
     return count;
 }
 
-/* Cuts a line into the fields of row `csv->rows`, the header being the row before all. */
+/* Splits a line into the fields of row `csv->rows`; the header comes before all rows. */
 static RtStatus take_line(RtCsv *csv, char *line, uint32_t number, bool header, RtError *error) {
     bool bad = false;
     uint32_t count = 0;
@@ -74,10 +74,10 @@ RtStatus rt_csv_read(RtCsv *csv, const char *path, RtError *error) {
     size_t size;
     *csv = (RtCsv){.path = path};
     RT_TRY(rt_file_read(path, MOST_BYTES, &csv->text, &size, error));
-    /* The text would seem to end there, and the rows behind it would be missing without a word. */
+    /* Otherwise the text would end there, and later rows would be lost silently. */
     if (strlen(csv->text) < size) {
         return rt_fail_at(error, path, count_of(csv->text, '\n') + 1, 0,
-                          "there is a zero byte, which no text has");
+                          "the file contains a zero byte, so it is not text");
     }
     return take_text(csv, error);
 }

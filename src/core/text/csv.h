@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* CSV files with a header (RFC 4180): fields quoted where commas or quotes ask for it, none across lines.
- * Lines that begin with # are comments. */
+/* CSV files with a header (RFC 4180): fields may be quoted, but none spans lines. Lines that begin with #
+ * are comments. */
 #ifndef RT_TEXT_CSV_H
 #define RT_TEXT_CSV_H
 
@@ -11,26 +11,26 @@
 
 typedef struct RtCsv {
     const char *path; /* borrowed */
-    char *text;       /* owned; the fields lie in it */
+    char *text;       /* owned; contains the fields */
     char **fields;    /* [rows + 1][columns], the header first */
     uint32_t *lines;  /* [rows], of the file, from 1 */
     uint32_t rows, columns;
 } RtCsv;
 
-/* Reads the file at `path`, which has to stay as long as the table. Refuses an empty one, a row with more or
- * fewer fields than the header, a quote that is not closed, and a byte 0. Clear with rt_csv_clear, also after
- * a failure. */
+/* Reads the file at `path`; the string `path` must outlive the table. Rejects an empty file, a row with
+ * more or fewer fields than the header, an unclosed quote, and a zero byte. Clear with rt_csv_clear, also
+ * after a failure. */
 RtStatus rt_csv_read(RtCsv *csv, const char *path, RtError *error);
 void rt_csv_clear(RtCsv *csv);
 
-/* The column of that name; csv->columns where there is none. */
+/* The column of that name, or csv->columns if there is none. */
 uint32_t rt_csv_find(const RtCsv *csv, const char *name);
 
-/* Name of a column, and a field; that of the column csv->columns is "". */
+/* The name of a column, and a field; in column csv->columns every field is "". */
 const char *rt_csv_name(const RtCsv *csv, uint32_t column);
 const char *rt_csv_field(const RtCsv *csv, uint32_t row, uint32_t column);
 
-/* Writes a field, quoted where it has to be. */
+/* Writes a field, quoted if necessary. */
 void rt_csv_put(FILE *out, const char *field);
 
 #endif

@@ -36,7 +36,7 @@ RtStatus rt_json_save(const char *path, json_t *document, RtError *error) {
     if (status == RT_OK) {
         bool whole = json_dumpf(document, output.file, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) == 0;
         fputc('\n', output.file);
-        /* A failed write is the output's to report; without one it was memory that ran out. */
+        /* A failed write is reported by the output; any other failure is short memory. */
         if (whole || ferror(output.file)) {
             status = rt_output_commit(&output, error);
         } else {

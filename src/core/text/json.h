@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* JSON that several writers share: figures that may be unknown, fingerprints, dates, documents as files. */
+/* JSON helpers: numbers that may be unknown, fingerprints, dates, and documents as files. */
 #ifndef RT_TEXT_JSON_H
 #define RT_TEXT_JSON_H
 
@@ -8,21 +8,21 @@
 #include <jansson.h>
 #include <stdint.h>
 
-/* Each gives a new reference, NULL where memory is short; json_pack then gives NULL, too. */
+/* Each returns a new reference, or NULL if memory is short; json_pack then returns NULL, too. */
 
-/* The number, null for NAN and infinities. */
+/* The number; null for NAN and infinities. */
 json_t *rt_json_number(double value);
 
 /* A fingerprint: 16 hexadecimal digits. */
 json_t *rt_json_hex(uint64_t value);
 
-/* The end of a ratio's interval, which nine digits do not show as 1 if it is not 1. */
+/* One end of a ratio's interval; if it is not 1, nine digits do not show it as 1. */
 json_t *rt_json_ratio_end(double value);
 
-/* Date and time now, UTC: "2001-04-30T12:00:00Z". */
+/* The current date and time, UTC: "2001-04-30T12:00:00Z". */
 json_t *rt_json_now(void);
 
-/* Writes `document`, indented, to `path`, whole or not at all. NULL counts as short memory. Takes the
+/* Writes `document`, indented, to `path`, completely or not at all. NULL counts as short memory. Takes the
  * reference. */
 RtStatus rt_json_save(const char *path, json_t *document, RtError *error);
 

@@ -9,7 +9,7 @@
 
 enum { MOST_BYTES = 1 << 28 };
 
-/* Cuts off what an interruption left behind the last whole line. */
+/* Removes an incomplete last line. */
 static RtStatus trim(const char *path, RtError *error) {
     char *text;
     size_t size;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Files of one JSON object a line, each on the disk before the next is found out: what an interrupted run
- * goes on from. A last line that was cut off is none. */
+/* Files with one JSON object per line, each flushed to disk before the next result is computed, so that an
+ * interrupted run can resume. An incomplete last line is ignored. */
 #ifndef RT_TEXT_JSON_LINES_H
 #define RT_TEXT_JSON_LINES_H
 
@@ -13,22 +13,23 @@ typedef struct RtJsonLines {
     char path[RT_MAX_PATH];
 } RtJsonLines;
 
-/* Opens the file at `path` for writing, behind what is there. With `first`, which is borrowed, that line
- * alone takes the place of all that was there: a failure, or an end of the process at any time, leaves the
- * one or the other whole. Close with rt_json_lines_close, also after a failure. */
+/* Opens the file at `path` for appending. With `first` (borrowed), that line replaces the whole file: if
+ * this fails, or the process dies at any time, either the old or the new content is complete. Close with
+ * rt_json_lines_close, also after a failure. */
 RtStatus rt_json_lines_open(RtJsonLines *lines, const char *path, const json_t *first, RtError *error);
 void rt_json_lines_close(RtJsonLines *lines);
 
-/* Writes all lines of an array, borrowed, to a file that is open; a failure discards it. */
+/* Writes all lines of an array (borrowed) to an open file; a failure discards the file. */
 RtStatus rt_json_lines_put(RtOutput *output, const json_t *lines, RtError *error);
 
-/* The lines of an array, borrowed, take the place of all that was there, as above. */
+/* Replaces the whole file by the lines of an array (borrowed), as above. */
 RtStatus rt_json_lines_save(const char *path, const json_t *lines, RtError *error);
 
-/* Writes one line; it is on the disk when this returns. Takes the reference; NULL is memory that is short. */
+/* Writes one line, which is on disk when this returns. Takes the reference; NULL counts as short memory. */
 RtStatus rt_json_lines_write(RtJsonLines *lines, json_t *line, RtError *error);
 
-/* All lines of the file, those that are not JSON as null, as a new array. Refuses a file without any. */
+/* Reads all lines of the file into a new array; lines that are not JSON become null. Rejects a file
+ * without lines. */
 RtStatus rt_json_lines_load(const char *path, json_t **lines, RtError *error);
 
 #endif

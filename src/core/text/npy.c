@@ -12,8 +12,8 @@
 
 enum {
     MAGIC_BYTES = 6,
-    MOST_HEADER = 4096, /* bytes of text; an array of plain numbers needs a hundred */
-    MULTIPLE = 64       /* numbers begin at a multiple of so many bytes */
+    MOST_HEADER = 4096, /* bytes of text; an array of numbers needs about a hundred */
+    MULTIPLE = 64       /* alignment of the numbers */
 };
 static const char MAGIC[MAGIC_BYTES + 1] = "\x93NUMPY";
 
@@ -33,7 +33,7 @@ static void skip_blanks(Header *h) {
     while (*h->at == ' ' || *h->at == '\n' || *h->at == '\t' || *h->at == '\r') h->at++;
 }
 
-/* Steps over `c`, and the blanks around it. */
+/* Skips `c` and the blanks around it. */
 static bool take(Header *h, char c) {
     skip_blanks(h);
     if (*h->at != c) return false;
@@ -42,7 +42,7 @@ static bool take(Header *h, char c) {
     return true;
 }
 
-/* A text in quotes of either kind, without escapes. */
+/* A quoted string, with quotes of either kind, without escapes. */
 static bool take_text(Header *h, char *out, size_t room) {
     skip_blanks(h);
     char quote = *h->at;
@@ -75,7 +75,7 @@ static bool take_number(Header *h, uint64_t *number) {
     return true;
 }
 
-/* (), (7,), (7, 8), (7, 8, 9): of more than two dimensions the first two are kept. */
+/* (), (7,), (7, 8), (7, 8, 9): the first two dimensions are kept. */
 static bool take_shape(Header *h) {
     if (!take(h, '(')) return false;
     for (h->dimensions = 0; !take(h, ')'); h->dimensions++) {
@@ -89,7 +89,7 @@ static bool take_shape(Header *h) {
     return true;
 }
 
-/* A type of several fields is a list, of which its bracket is enough to know that it is another. */
+/* A structured type is a list; its bracket suffices to reject it. */
 static bool take_descr(Header *h) {
     if (*h->at != '[') return take_text(h, h->descr, sizeof h->descr);
     strcpy(h->descr, "[...]");
@@ -109,7 +109,7 @@ static bool take_entry(Header *h) {
     return false;
 }
 
-/* {'descr': '<f4', 'fortran_order': False, 'shape': (7, 8), }, the keys in any order, and blanks. */
+/* {'descr': '<f4', 'fortran_order': False, 'shape': (7, 8), }, with keys in any order. */
 static bool parse(Header *h) {
     h->at = h->text;
     if (!take(h, '{')) return false;
@@ -125,14 +125,13 @@ static bool parse(Header *h) {
 static RtStatus read_text(RtNpy *npy, Header *h, RtError *error) {
     unsigned char start[MAGIC_BYTES + 2], size[4] = {0};
     if (fread(start, 1, sizeof start, npy->file) != sizeof start || memcmp(start, MAGIC, MAGIC_BYTES) != 0) {
-        return rt_fail(error, RT_BAD_INPUT, "%s: this is not an array of NumPy: write it with numpy.save",
+        return rt_fail(error, RT_BAD_INPUT, "%s: this is not a NumPy array: write it with numpy.save",
                        npy->path);
     }
     unsigned major = start[MAGIC_BYTES], minor = start[MAGIC_BYTES + 1];
     if (major < 1 || major > 3 || minor != 0) {
-        return rt_fail(error, RT_BAD_INPUT,
-                       "%s: version %u.%u of the format is not known: 1.0, 2.0 and 3.0 are", npy->path, major,
-                       minor);
+        return rt_fail(error, RT_BAD_INPUT, "%s: unknown format version %u.%u: expected 1.0, 2.0 or 3.0",
+                       npy->path, major, minor);
     }
     size_t bytes = major == 1 ? 2 : 4;
     if (fread(size, 1, bytes, npy->file) != bytes)
@@ -146,15 +145,15 @@ static RtStatus read_text(RtNpy *npy, Header *h, RtError *error) {
         return rt_fail(error, RT_BAD_INPUT, "%s: the file ends within its header", npy->path);
     h->text[length] = '\0';
     if (strlen(h->text) == length) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT, "%s: a byte 0 in the header", npy->path);
+    return rt_fail(error, RT_BAD_INPUT, "%s: the header contains a zero byte", npy->path);
 }
 
 static RtStatus check(RtNpy *npy, const Header *h, bool parsed, uint64_t most_rows, RtError *error) {
     uint32_t columns = npy->columns;
     if (*h->descr && strcmp(h->descr, "<f4") != 0) {
         return rt_fail(error, RT_BAD_INPUT,
-                       "%s: numbers of type %s: expected '<f4', as array.astype('float32') gives them",
-                       npy->path, h->descr);
+                       "%s: numbers of type %s: expected '<f4', as from array.astype('float32')", npy->path,
+                       h->descr);
     }
     if (!parsed) {
         return rt_fail(error, RT_BAD_INPUT,
@@ -162,10 +161,9 @@ static RtStatus check(RtNpy *npy, const Header *h, bool parsed, uint64_t most_ro
                        npy->path, h->text);
     }
     if (!h->c_order) {
-        return rt_fail(
-            error, RT_BAD_INPUT,
-            "%s: column after column: expected row after row, as numpy.ascontiguousarray gives them",
-            npy->path);
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: the array is column-major: expected row-major, as from numpy.ascontiguousarray",
+                       npy->path);
     }
     if (h->dimensions != 2 || h->shape[1] != columns) {
         return rt_fail(error, RT_BAD_INPUT,
@@ -185,7 +183,7 @@ static RtStatus check_length(const RtNpy *npy, RtError *error) {
     struct stat info;
     long start = ftell(npy->file);
     if (start < 0 || fstat(fileno(npy->file), &info) != 0)
-        return rt_fail(error, RT_IO, "%s: its length cannot be found out", npy->path);
+        return rt_fail(error, RT_IO, "%s: its length is unknown", npy->path);
     uint64_t wanted = npy->rows * npy->columns * sizeof(float),
              there = (uint64_t)info.st_size - (uint64_t)start;
     if (wanted == there) return RT_OK;
@@ -225,7 +223,7 @@ void rt_npy_begin(FILE *out, const char *descr, uint64_t rows, uint32_t columns)
     int length =
         snprintf(text, sizeof text, "{'descr': %s, 'fortran_order': False, 'shape': %s, }", descr, shape);
     assert(length > 0 && (size_t)length < sizeof text);
-    /* Magic, version, two bytes of length, the text, blanks, an end of line. */
+    /* Magic, version, two bytes of length, the text, padding, a newline. */
     int before = MAGIC_BYTES + 4, all = (before + length + 1 + MULTIPLE - 1) / MULTIPLE * MULTIPLE;
     int header = all - before;
     fwrite(MAGIC, 1, MAGIC_BYTES, out);

@@ -82,7 +82,7 @@ void rt_format_figure(double value, char *out) {
     }
 }
 
-/* Is it 1, or was it only printed so? */
+/* Does the text read as 1? */
 static bool reads_as_1(const char *text) {
     return strtod(text, NULL) == 1;
 }
@@ -94,8 +94,8 @@ static void show_end(double value, char room[RT_MAX_FIELD]) {
     }
 }
 
-/* As figures; where the interval does not hold 1, the end that is nearer to it says how many decimals there
- * are. */
+/* As figures; if the interval does not contain 1, with enough decimals to show that its nearer end is not
+ * 1. */
 static void show_interval(const RtField *field, char room[RT_MAX_FIELD]) {
     char value[32], low[32], high[32];
     rt_format_figure(field->real, value);
@@ -140,12 +140,6 @@ const char *rt_field_show(RtForm form, const RtField *field, char room[RT_MAX_FI
     return room;
 }
 
-/* What nine digits do not show as 1 if it is not 1. */
-static double not_quite_1(double value) {
-    if (value > 1 && value < 1 + 1e-8) return 1 + 1e-8;
-    return value < 1 && value > 1 - 1e-9 ? 1 - 1e-9 : value;
-}
-
 static json_t *field_json(RtForm form, const RtField *field) {
     char room[RT_MAX_FIELD];
     switch (field->is) {
@@ -153,7 +147,7 @@ static json_t *field_json(RtForm form, const RtField *field) {
     case RT_FIELD_INTEGER:
         if (form != RT_FORM_hash) return json_integer((json_int_t)field->integer);
         break;
-    case RT_FIELD_REAL: return json_real(form == RT_FORM_end ? not_quite_1(field->real) : field->real);
+    case RT_FIELD_REAL: return form == RT_FORM_end ? rt_json_ratio_end(field->real) : json_real(field->real);
     case RT_FIELD_INTERVAL:
         return json_pack("{s:o, s:o, s:o}", "value", rt_json_number(field->real), "low",
                          rt_json_number(field->low), "high", rt_json_number(field->high));
@@ -170,7 +164,7 @@ static RtField field_of(const RtColumnGroup *group, size_t i, const void *row) {
     return row ? group->columns[i].get(row, &group->columns[i]) : rt_field_missing();
 }
 
-/* Without a row the columns alone. */
+/* Without a row, only the columns. */
 static void take(RtTableLine *line, const RtTable *table, const void *row) {
     line->count = 0;
     for (size_t g = 0; g < table->group_count; g++) {
@@ -257,7 +251,7 @@ void rt_table_text(const RtTable *table, FILE *out) {
 
 /* ---- JSON ---- */
 
-/* False where memory is short. */
+/* False if memory is short. */
 static bool put_members(const RtColumnGroup *group, const void *row, json_t *object) {
     for (size_t i = 0; i < group->count; i++) {
         RtField field = field_of(group, i, row);

@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Tables: what was found, described once and written in every form: CSV, text for a terminal, Markdown,
- * LaTeX, HTML and JSON.
+/* Tables: results, described once and written in every format: CSV, text for a terminal, Markdown, LaTeX,
+ * HTML and JSON.
  *
- * A column says what it is called, what it means, in which unit and form its fields are written, and how one
- * is got from a row. Columns come in groups; a table is some groups over some rows. A row is whatever the
- * getters of its columns take, as a rule a cursor of the caller's that is set to one place after another. A
- * field that is not known is empty in CSV and Markdown, null in JSON, - elsewhere.
+ * A column has a name, a meaning, a unit, the format of its fields, and a getter that computes a field from a
+ * row. Columns come in groups; a table is some groups over some rows. A row is whatever the getters take,
+ * usually a cursor of the caller that is set to one item after another. An unknown field is empty in CSV and
+ * Markdown, null in JSON, - elsewhere.
  *
- * Columns are listed by a macro, so that each stands on a line with its value, an expression of `r`, the row,
- * which is a Row, a type that the file defines:
+ * A macro lists the columns, so that each stands on a line with its value, an expression of `r`, the row. The
+ * file defines the type Row:
  *
  *     typedef RtThing Row;
- *     #define COLUMNS(X) X(bytes, "bytes", integer, "bytes", "what it takes in memory", r->bytes)
+ *     #define COLUMNS(X) X(bytes, "bytes", integer, "bytes", "memory it takes", r->bytes)
  *     RT_TABLE_COLUMNS(columns, COLUMNS)
  *
- * defines the array `columns`; rt_field says what a value may be. */
+ * defines the array `columns`; rt_field lists the types of values. */
 #ifndef RT_TEXT_TABLE_H
 #define RT_TEXT_TABLE_H
 
@@ -24,11 +24,11 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* X(form, what docs call it, printf format of a real number): how fields are written. Numbers stand to the
- * right. An end is that of a ratio's interval: six digits, or as many as show that it is not 1; an interval
- * that does not hold 1 is seen not to, too. A figure takes about four characters; so does an amount, but for
- * what is less than 0.001; markup is text with Markdown's `code` and **bold**; json is what no table has a
- * cell for. */
+/* X(form, name in docs, printf format of a real number): how fields are written. Numbers are
+ * right-aligned. `end` is one end of a ratio's interval: six digits, or as many as show that it is not 1;
+ * `interval` shows likewise that it does not contain 1. `figure` takes about four characters; `amount`,
+ * too, except that less than 0.001 is <0.001. `markup` is text with Markdown's `code` and **bold**; `json`
+ * cannot be a table cell. */
 #define RT_FORMS(X)                                                                                          \
     X(text, "text", NULL)                                                                                    \
     X(markup, "text", NULL)                                                                                  \
@@ -56,7 +56,7 @@ const char *rt_form_name(RtForm form);
 
 /* ---- fields ---- */
 
-#define RT_MAX_FIELD 160 /* characters of a text that is made for a field */
+#define RT_MAX_FIELD 160 /* bytes of a printed text */
 
 typedef struct RtField {
     enum {
@@ -70,8 +70,8 @@ typedef struct RtField {
     const char *text; /* borrowed; NULL: it is in `room` */
     uint64_t integer; /* flags, too */
     double real, low, high;
-    const char *note; /* borrowed; HTML shows it when the field is pointed at. Or NULL */
-    bool missed;      /* HTML marks it: not what was hoped for */
+    const char *note; /* borrowed; a tooltip in HTML; or NULL */
+    bool missed;      /* marked in HTML as below expectation */
     char room[RT_MAX_FIELD];
 } RtField;
 
@@ -83,7 +83,7 @@ RtField rt_field_real(double real); /* NAN and infinities: missing */
 RtField rt_field_interval(double value, double low, double high);
 RtField rt_field_same(RtField field);
 
-/* A text that is printed; cut to what there is room for. */
+/* A printed text, truncated if it does not fit. */
 __attribute__((format(printf, 1, 2))) RtField rt_field_print(const char *format, ...);
 
 /* The field of a value, of any of these types. */
@@ -100,7 +100,7 @@ __attribute__((format(printf, 1, 2))) RtField rt_field_print(const char *format,
 /* A field as text; "" if it is missing. In `room` or the field. */
 const char *rt_field_show(RtForm form, const RtField *field, char room[RT_MAX_FIELD]);
 
-/* A figure in about four characters: 0, 0.0034, 1.24, 12.4, 124, 69666; "-" for NAN. Room for 16. */
+/* A number in about four characters: 0, 0.0034, 1.24, 12.4, 124, 69666; "-" for NAN. Needs 16 bytes. */
 void rt_format_figure(double value, char *out);
 
 /* ---- columns ---- */
@@ -116,7 +116,7 @@ struct RtTableColumn {
     int key; /* the getter's own */
 };
 
-/* LIST(X) is of X(id, name, form, unit, meaning, value); the ids are those of one file. */
+/* LIST(X) lists X(id, name, form, unit, meaning, value); ids are unique within a file. */
 #define RT_TABLE_GETTER(id, name, form, unit, meaning, value)                                                \
     static RtField get_##id(const void *row, const RtTableColumn *column) {                                  \
         const Row *r = row;                                                                                  \
@@ -131,17 +131,17 @@ struct RtTableColumn {
     enum { LIST(RT_TABLE_PLACE) };                                                                           \
     static const RtTableColumn array[] = {LIST(RT_TABLE_COLUMN)};
 
-/* Columns that stand together, over one kind of row. A named group is an object of its own in JSON, and one
- * named "GROUP.NAME" a member of the object of the group before it. */
+/* Adjacent columns over one kind of row. In JSON a named group is an object of its own, and a group named
+ * "GROUP.NAME" is a member of the object GROUP before it. */
 typedef struct RtColumnGroup {
     const char *name; /* or NULL */
     const RtTableColumn *columns;
     size_t count;
-    const void *(*of)(const void *row); /* their row, from the table's; NULL: it is the same. Where it gives
-                                           NULL all are missing */
+    const void *(*of)(const void *row); /* maps the table's row to the group's; NULL: the same row. If it
+                                         * returns NULL, all fields are missing */
 } RtColumnGroup;
 
-/* All columns of an array; those from one to another; one. */
+/* All columns of an array; a range of columns; one column. */
 #define RT_ALL(array)                                                                                        \
     { NULL, array, sizeof(array) / sizeof *(array), NULL }
 #define RT_FROM_TO(array, first, last)                                                                       \
@@ -152,45 +152,45 @@ typedef struct RtColumnGroup {
 
 #define RT_MAX_TABLE_COLUMNS 80
 
-/* How a row compares with the others: the best is marked, and what intervals do not tell apart from it. */
+/* How a row compares with the others: the best row is marked, and so are rows whose intervals overlap with
+ * its interval. */
 typedef enum RtStanding { RT_STANDING_BEHIND, RT_STANDING_LEVEL, RT_STANDING_BEST } RtStanding;
 
 typedef struct RtTable {
     const RtColumnGroup *groups;
     size_t group_count;
     size_t row_count;
-    const void *(*row)(void *context, size_t i); /* NULL: there is no such row; the next call may reuse it */
+    const void *(*row)(void *context, size_t i); /* NULL: skip this row; the next call may reuse the row */
     void *context;
-    const char *(*color)(const void *row);   /* HTML: of a dot before the row; or NULL */
-    RtStanding (*standing)(const void *row); /* Markdown, LaTeX, HTML; or NULL: none is marked */
+    const char *(*color)(const void *row);   /* HTML: colour of a dot before the row; or NULL */
+    RtStanding (*standing)(const void *row); /* Markdown, LaTeX, HTML; NULL: no marks */
     const char *caption;                     /* LaTeX, HTML; or NULL */
-    bool ragged;                             /* Markdown: numbers do not stand to the right */
+    bool ragged;                             /* Markdown: numbers are not right-aligned */
 } RtTable;
 
-/* The first two members of a table of all groups of an array; the others are named. */
+/* Initialises the first two members of a table from an array of groups. */
 #define RT_GROUPS(array) .groups = array, .group_count = sizeof(array) / sizeof *(array)
 
 void rt_table_csv(const RtTable *table, FILE *out);
 void rt_table_text(const RtTable *table, FILE *out);
 void rt_table_markdown(const RtTable *table, FILE *out);
 
-/* A table environment for the packages booktabs and graphicx, made smaller where it is wider than the column.
- */
+/* A table environment for the packages booktabs and graphicx, shrunk if it is wider than the column. */
 void rt_table_tex(const RtTable *table, FILE *out);
 
-/* <table>; data-id of a header and data-value of a number serve for sorting. */
+/* <table>, with data-id in headers and data-value in numbers for sorting. */
 void rt_table_html(const RtTable *table, FILE *out);
 
-/* An array of objects, and one of them: new references, NULL where memory is short. */
+/* An array of objects, and a single one: new references, NULL if memory is short. */
 json_t *rt_table_json(const RtTable *table);
 json_t *rt_row_json(const RtColumnGroup *groups, size_t count, const void *row);
 
-/* Text line by line, for rows that come one after another: widths that do for the header and all rows that
- * are there, and one row; NULL is the header. */
+/* Text output line by line, for rows that arrive one by one: column widths for the header and all rows so
+ * far, and one row (NULL: the header). */
 void rt_table_widths(const RtTable *table, int widths[RT_MAX_TABLE_COLUMNS]);
 void rt_table_line(const RtTable *table, int *widths, const void *row, FILE *out);
 
-/* Text as HTML, with what has a meaning there escaped; NULL is "". */
+/* Writes text as HTML, escaped; NULL is "". */
 void rt_html_put(FILE *out, const char *text);
 
 /* The same between `before` and `after`, which are HTML. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the writers of tables share (table.c: CSV, text, JSON; table_markup.c: Markdown, LaTeX, HTML), and
- * nobody else: a row whose fields are got, and the walk over all rows. */
+/* Shared by the writers of tables (table.c: CSV, text, JSON; table_markup.c: Markdown, LaTeX, HTML): a row
+ * with its fields, and the walk over all rows. */
 #ifndef RT_TEXT_TABLE_LINE_H
 #define RT_TEXT_TABLE_LINE_H
 
@@ -21,10 +21,10 @@ struct RtTableWriter {
     int *widths; /* of text */
 };
 
-/* Puts the header, then each row that there is. */
+/* Writes the header and then each row. */
 void rt_table_walk(RtTableWriter writer);
 
-/* Numbers stand to the right. */
+/* True if the column's fields are numbers, which are right-aligned. */
 bool rt_column_is_number(const RtTableColumn *column);
 
 /* Field `i` as text; in `room` or the line. */

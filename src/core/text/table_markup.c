@@ -159,7 +159,7 @@ static void put_field(const RtTableColumn *column, const RtField *field, FILE *o
     (column->form == RT_FORM_markup ? rt_html_markup : rt_html_put)(out, *text ? text : "-");
 }
 
-/* Seen without colour, and read aloud. */
+/* Visible without colour, and to screen readers. */
 static const char *const standings[] = {
     [RT_STANDING_BEHIND] = "",
     [RT_STANDING_LEVEL] = " <span class=\"mark\" title=\"overlaps with the best\">&asymp;&#8239;best</span>",
@@ -183,7 +183,7 @@ static void put_html(RtTableWriter *w, const RtTableLine *line, const void *row)
     fputs(row ? "</tr>\n" : "</tr></thead><tbody>\n", w->out);
 }
 
-/* The box scrolls where the table is wider; so it is reached by the keyboard, and has a name. */
+/* The box scrolls if the table is wider; so it can be reached by keyboard and has a name. */
 void rt_table_html(const RtTable *table, FILE *out) {
     fputs("<div class=\"wide\" tabindex=\"0\" role=\"region\"", out);
     put_attribute(out, "aria-label", table->caption ? table->caption : "table");

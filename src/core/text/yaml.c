@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The tree is built in one loop over the events with a stack of what is open, whose nodes have the size
- * "everything that follows" until they are closed. So a node's path can be told at any time, by descending
- * from the whole to it, and nothing is kept for messages. */
+/* The tree is built in one loop over the events, with a stack of open nodes. Until a node is closed its
+ * size means "everything that follows". So the path of a node can be computed at any time by descending
+ * from the root; nothing is stored for messages. */
 #include "core/text/yaml.h"
 
 #include "core/base/file.h"
@@ -15,7 +15,7 @@ enum { MAX_CHARS = 512 };
 
 /* ---- places ---- */
 
-/* "objects[3].sphere.radius"; of a key it is that of its mapping. */
+/* "objects[3].sphere.radius"; for a key, the path of its mapping. */
 static void write_path(const RtYaml *yaml, const RtYamlNode *target, char out[MAX_CHARS]) {
     size_t used = 0;
     out[0] = '\0';
@@ -73,7 +73,7 @@ typedef struct Builder {
     const char *text; /* all of it */
     yaml_parser_t parser;
     yaml_event_t event;               /* the current one */
-    uint32_t open[RT_YAML_MAX_DEPTH]; /* the lists and mappings that it is in */
+    uint32_t open[RT_YAML_MAX_DEPTH]; /* the open lists and mappings */
     uint32_t depth;
 } Builder;
 
@@ -94,7 +94,7 @@ static RtStatus next_event(Builder *b) {
     if (yaml_parser_parse(parser, &b->event)) return RT_OK;
     if (parser->error == YAML_MEMORY_ERROR) return rt_fail_memory(b->yaml->error, "parsing YAML", 0);
     const char *problem = parser->problem ? parser->problem : "unknown fault";
-    if (parser->error == YAML_READER_ERROR) { /* it reads ahead: its mark is not the place */
+    if (parser->error == YAML_READER_ERROR) { /* it reads ahead, so its mark is not the position */
         char message[MAX_CHARS];
         snprintf(message, sizeof message, "this is not text in UTF-8: %s", problem);
         return fail_at_byte(b, parser->problem_offset, message);
@@ -104,7 +104,7 @@ static RtStatus next_event(Builder *b) {
                       parser->context ? " " : "", parser->context ? parser->context : "");
 }
 
-/* A node for the current event, below what is open. */
+/* Adds a node for the current event below the innermost open node. */
 static RtStatus add_node(Builder *b, RtYamlKind kind, RtYamlNode **added) {
     RtYaml *yaml = b->yaml;
     yaml_mark_t mark = b->event.start_mark;
@@ -137,10 +137,9 @@ static RtStatus add_scalar(Builder *b) {
                       yaml->error));
     RT_TRY(add_node(b, RT_YAML_SCALAR, &node));
     for (size_t i = 0; i < length; i++) {
-        if (value[i] == '\0')
-            return rt_yaml_fail(yaml, node, "the value has a zero byte in it: leave it out");
+        if (value[i] == '\0') return rt_yaml_fail(yaml, node, "the value contains a zero byte: remove it");
         if (value[i] >= ' ' && value[i] != 0x7f) continue;
-        return rt_yaml_fail(yaml, node, "the text has a control character in it: leave it out");
+        return rt_yaml_fail(yaml, node, "the text contains a control character: remove it");
     }
     node->text = yaml->text_size;
     memcpy(yaml->text + node->text, value, length + 1);
@@ -168,7 +167,7 @@ static RtStatus add_event(Builder *b) {
     case YAML_ALIAS_EVENT:
         RT_TRY(add_node(b, RT_YAML_SCALAR, &node));
         return rt_yaml_fail(b->yaml, node, "aliases (*name) are not supported: write the value out");
-    default: /* the end of what was opened last */
+    default: /* the end of the innermost open node */
         node = &b->yaml->nodes[b->open[--b->depth]];
         node->size = (uint32_t)(b->yaml->nodes + b->yaml->node_count - node);
         return RT_OK;
@@ -192,13 +191,13 @@ static RtStatus add_document(Builder *b) {
                       b->event.start_mark.column + 1, "a second document begins here: a file holds one");
 }
 
-/* libyaml compares each %TAG with all before it, so a file of them would take its length squared. They stand
- * at the beginning of a line, and lines may end with characters beyond ASCII, too. */
+/* libyaml compares each %TAG with all earlier ones, so a file of them would take quadratic time. They
+ * stand at the beginning of a line, and non-ASCII characters may end lines, too. */
 static RtStatus refuse_directives(const Builder *b, size_t length) {
     const char *at = b->text, *end = b->text + length;
     for (; (at = memmem(at, (size_t)(end - at), "%TAG", 4)); at++) {
         if (at > b->text && (unsigned char)at[-1] >= ' ' && (unsigned char)at[-1] < 0x80) continue;
-        return fail_at_byte(b, (size_t)(at - b->text), "%TAG is not supported: leave it and the tags out");
+        return fail_at_byte(b, (size_t)(at - b->text), "%TAG is not supported: remove it and the tags");
     }
     return RT_OK;
 }
@@ -207,7 +206,7 @@ RtStatus rt_yaml_parse(RtYaml *yaml, const char *name, const char *text, size_t 
     *yaml = (RtYaml){.path = name, .error = error};
     Builder b = {.yaml = yaml, .text = text};
     if (length > RT_YAML_MAX_BYTES) {
-        return rt_fail_at(error, name, 0, 0, "this has %zu bytes, more than the %d there may be", length,
+        return rt_fail_at(error, name, 0, 0, "the file has %zu bytes: the limit is %d", length,
                           RT_YAML_MAX_BYTES);
     }
     RT_TRY(refuse_directives(&b, length));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the nodes of a YAML tree say, and what is wrong with them. */
+/* Reading values from the nodes of a YAML tree, and the messages about wrong ones. */
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "core/text/yaml.h"
@@ -14,12 +14,12 @@ enum { MAX_WORDS = 32, MAX_CHARS = 512 };
 
 /* ---- words ---- */
 
-/* A list of words, taken apart. */
+/* A list of words, split. */
 typedef struct Words {
     char text[MAX_CHARS];
-    const char *names[MAX_WORDS]; /* without their marks */
+    const char *names[MAX_WORDS]; /* without the suffixes ? and | */
     uint32_t count;
-    uint32_t required, choice; /* bit i: names[i] had no mark, or a | */
+    uint32_t required, choice; /* bit i: names[i] had no suffix, or | */
 } Words;
 
 static void split(const char *list, Words *words) {
@@ -125,7 +125,7 @@ RtStatus rt_yaml_list(const RtYaml *yaml, const RtYamlNode *node, const char *ke
 
 /* ---- numbers ---- */
 
-/* To one of the two, whichever is not NULL. */
+/* Stores to whichever of the two is not NULL. */
 static RtStatus read_number(const RtYaml *yaml, const RtYamlNode *node, float *narrow, double *wide) {
     if (!node) return RT_OK;
     if (node->kind != RT_YAML_SCALAR) return fail_unexpected(yaml, node, "a number, as in 1.5");
@@ -201,7 +201,7 @@ RtStatus rt_yaml_u64(const RtYaml *yaml, const RtYamlNode *node, const char *key
     char *end = NULL;
     errno = 0;
     uint64_t given = text[0] >= '0' && text[0] <= '9' ? strtoull(text, &end, 10) : 0;
-    bool padded = text[0] == '0' && text[1]; /* octal to some, decimal to others */
+    bool padded = text[0] == '0' && text[1]; /* ambiguous: octal in YAML 1.1, decimal in 1.2 */
     if (end && !*end && !errno && !padded && given >= lo && given <= hi) {
         *value = given;
         return RT_OK;
