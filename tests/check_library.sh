@@ -117,7 +117,7 @@ int main(void) {
     if (raytally_spec_format("grid:density=4.5", spec, &error) != RAYTALLY_OK) puts(error.message);
     puts(spec);
     if (raytally_scene_open("balls:size=1", &scene, &error) != RAYTALLY_OK) puts(error.message);
-    if (raytally_scene_look(scene, &camera, &error) != RAYTALLY_OK) puts(error.message);
+    if (raytally_scene_set_camera(scene, &camera, &error) != RAYTALLY_OK) puts(error.message);
     return printf("%.1f\n", 4.5) == 4 ? 0 : 2;
 }
 END

@@ -182,7 +182,7 @@ static void destroy(void *self) {
     free(bih);
 }
 
-static int fill(Bih *bih, const raytally_build *what) {
+static int fill(Bih *bih, const raytally_build_input *what) {
     const uint32_t count = what->object_count;
     const size_t most = 2 * (size_t)count - 1; /* a node for each object, and one for each that parts them */
     bih->nodes = (Node *)malloc(most * sizeof(Node));
@@ -199,7 +199,7 @@ static int fill(Bih *bih, const raytally_build *what) {
     return RAYTALLY_BUILD_OK;
 }
 
-static int build(const raytally_build *what, void **self) {
+static int build(const raytally_build_input *what, void **self) {
     const uint64_t count = what->object_count;
     if (count > MAX_OBJECTS) {
         snprintf(what->message, what->message_room, "a bih holds %u objects at most", (unsigned)MAX_OBJECTS);
@@ -275,7 +275,7 @@ RAYTALLY_INLINE void search(const Bih *bih, void *memory, const raytally_prepare
             if (raytally_object_hits(ray, bih->ids + first, node->at.count, any, best, counters)) return;
         }
         /* What is entered where the best hit is may hold one at the same t with a lower number. */
-        const float limit = raytally_limit(ray, best);
+        const float limit = raytally_tmax(ray, best);
         do {
             if (stacked == 0) return;
             span = stack[--stacked];
@@ -334,13 +334,13 @@ static void describe(const void *self, raytally_description *out) {
     describe_below(bih, (Place){0, 0, bih->box}, out);
 }
 
-static void show_below(const Bih *bih, Place place, raytally_show_box *show, void *viewer) {
+static void show_below(const Bih *bih, Place place, raytally_box_visitor *show, void *viewer) {
     const int leaf = is_leaf(&bih->nodes[place.node]);
     show(viewer, &place.cell, place.depth, leaf);
     for (uint32_t s = 0; s < 2 && !leaf; s++) show_below(bih, child_of(bih, &place, s), show, viewer);
 }
 
-static void each_box(const void *self, raytally_show_box *show, void *viewer) {
+static void each_box(const void *self, raytally_box_visitor *show, void *viewer) {
     const Bih *bih = (const Bih *)self;
     if (bih->node_count > 0) show_below(bih, (Place){0, 0, bih->box}, show, viewer);
 }

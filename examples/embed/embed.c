@@ -29,7 +29,7 @@ static raytally_status prepare(Work *work, const char *scene, raytally_error *er
     printf("%s: %lu objects\n", scene, (unsigned long)raytally_scene_object_count(work->scene));
 
     /* A smaller picture than the scene's own; from here on accelerators know its samples. */
-    status = raytally_scene_sample(work->scene, 128, 128, 1, error);
+    status = raytally_scene_set_sampling(work->scene, 128, 128, 1, error);
     for (int i = 0; i < 2 && status == RAYTALLY_OK; i++) {
         status = raytally_accelerator_build(work->scene, specs[i], 0, &work->accels[i], error);
     }
@@ -38,8 +38,8 @@ static raytally_status prepare(Work *work, const char *scene, raytally_error *er
 
 /* Are the grid's hits right? Rays that are hard on accelerators are asked of it and of brute. */
 static raytally_status verify(const Work *work, raytally_error *error) {
-    raytally_verifying how = RAYTALLY_VERIFYING;
-    raytally_verified found;
+    raytally_verify_options how = RAYTALLY_VERIFY_DEFAULTS;
+    raytally_verify_result found;
     how.rays = 2000;
     raytally_status status =
         raytally_verify(work->scene, raytally_accelerator_spec(work->accels[1]), &how, &found, error);
@@ -52,7 +52,7 @@ static raytally_status verify(const Work *work, raytally_error *error) {
 static raytally_status count(const Work *work, raytally_error *error) {
     for (int i = 0; i < 2; i++) {
         raytally_counters counters;
-        raytally_structure what;
+        raytally_statistics what;
         raytally_status status = raytally_count(work->accels[i], work->rays, 0, &counters, error);
         if (status != RAYTALLY_OK) return status;
         raytally_accelerator_describe(work->accels[i], &what);
@@ -66,7 +66,7 @@ static raytally_status count(const Work *work, raytally_error *error) {
 
 /* Who is faster? Times are this machine's; the ratio is paired round by round, with its interval. */
 static raytally_status time_both(const Work *work, raytally_error *error) {
-    raytally_timing how = RAYTALLY_TIMING;
+    raytally_time_options how = RAYTALLY_TIME_DEFAULTS;
     raytally_time times[2];
     how.least = 0.005; /* seconds: to be quick. Left out, it is as in `raytally bench` */
     raytally_status status = raytally_time_all(work->accels, 2, work->rays, &how, times, error);

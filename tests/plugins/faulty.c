@@ -25,7 +25,7 @@ static void destroy(void *self) {
     free(self);
 }
 
-static int build(const raytally_build *from, void **self) {
+static int build(const raytally_build_input *from, void **self) {
     List *list = malloc(sizeof *list);
     uint32_t *ids = malloc((from->object_count + 1) * sizeof *ids);
     if (!list || !ids) {
@@ -75,30 +75,30 @@ static void free_twice(void) {
 
 /* ---- while it builds ---- */
 
-static int build_crash(const raytally_build *from, void **self) {
+static int build_crash(const raytally_build_input *from, void **self) {
     crash();
     return build(from, self);
 }
 
-static int build_loop(const raytally_build *from, void **self) {
+static int build_loop(const raytally_build_input *from, void **self) {
     loop();
     return build(from, self);
 }
 
-static int build_refused(const raytally_build *from, void **self) {
+static int build_refused(const raytally_build_input *from, void **self) {
     (void)self;
     snprintf(from->message, from->message_room, "scenes of %u objects are beneath it", from->object_count);
     return RAYTALLY_BUILD_REFUSED;
 }
 
-static int build_nonsense(const raytally_build *from, void **self) {
+static int build_nonsense(const raytally_build_input *from, void **self) {
     (void)from;
     (void)self;
     return 42;
 }
 
 /* Takes all the memory that it is given, and much more than that if nobody stops it. */
-static int build_memory(const raytally_build *from, void **self) {
+static int build_memory(const raytally_build_input *from, void **self) {
     enum { BLOCKS = 64, BLOCK = 1 << 30 };
     for (int i = 0; i < BLOCKS; i++) {
         if (mmap(NULL, BLOCK, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0) ==
@@ -108,7 +108,7 @@ static int build_memory(const raytally_build *from, void **self) {
     return build(from, self);
 }
 
-static int build_print(const raytally_build *from, void **self) {
+static int build_print(const raytally_build_input *from, void **self) {
     puts("{ faulty-print is built");
     fflush(stdout);
     return build(from, self);
@@ -127,23 +127,23 @@ static void scribble(void) {
     if (maps) fclose(maps);
 }
 
-static int build_scribble(const raytally_build *from, void **self) {
+static int build_scribble(const raytally_build_input *from, void **self) {
     scribble();
     return build(from, self);
 }
 
-static int build_kill(const raytally_build *from, void **self) {
+static int build_kill(const raytally_build_input *from, void **self) {
     kill(getppid(), SIGKILL);
     return build(from, self);
 }
 
-static int build_close(const raytally_build *from, void **self) {
+static int build_close(const raytally_build_input *from, void **self) {
     for (int descriptor = 0; descriptor < 64; descriptor++) close(descriptor);
     return build(from, self);
 }
 
 /* Leaves a process behind, for a while, that belongs to nobody. */
-static int build_daemon(const raytally_build *from, void **self) {
+static int build_daemon(const raytally_build_input *from, void **self) {
     if (fork() == 0) {
         setsid();
         sleep(2);
@@ -153,7 +153,7 @@ static int build_daemon(const raytally_build *from, void **self) {
 }
 
 /* A structure may be NULL: this one knows no object, and answers so. It is wrong, but no crash. */
-static int build_null(const raytally_build *from, void **self) {
+static int build_null(const raytally_build_input *from, void **self) {
     (void)from;
     *self = NULL;
     return RAYTALLY_BUILD_OK;
@@ -289,22 +289,22 @@ static void shorten_rays(const void *self, void *memory, raytally_query *query, 
 
 /* ---- beside that ---- */
 
-static void show_none(const void *self, raytally_show_box *show, void *viewer) {
+static void show_none(const void *self, raytally_box_visitor *show, void *viewer) {
     (void)self;
     show(viewer, NULL, 0, 1);
 }
 
-static void show_deep(const void *self, raytally_show_box *show, void *viewer) {
+static void show_deep(const void *self, raytally_box_visitor *show, void *viewer) {
     const List *list = self;
     if (list->count > 0) show(viewer, list->boxes, UINT32_MAX, 1);
 }
 
-static void show_crash(const void *self, raytally_show_box *show, void *viewer) {
+static void show_crash(const void *self, raytally_box_visitor *show, void *viewer) {
     (void)self, (void)show, (void)viewer;
     crash();
 }
 
-static int build_mumble(const raytally_build *from, void **self) {
+static int build_mumble(const raytally_build_input *from, void **self) {
     (void)self;
     for (size_t i = 0; i + 1 < from->message_room; i++) from->message[i] = i % 7 ? '\xe9' : '\x1b';
     return RAYTALLY_BUILD_REFUSED;

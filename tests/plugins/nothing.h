@@ -5,7 +5,7 @@
 
 #include <raytally/accel.h>
 
-static int build(const raytally_build *from, void **self) {
+static int build(const raytally_build_input *from, void **self) {
     (void)from;
     *self = NULL;
     return RAYTALLY_BUILD_OK;

@@ -39,7 +39,7 @@ static void destroy(void *self) {
 
 /* STRUCTURE: made from the boxes of the objects alone. The same boxes must give the same structure, on any
  * number of threads. */
-static int build(const raytally_build *from, void **self) {
+static int build(const raytally_build_input *from, void **self) {
     Structure *s = calloc(1, sizeof *s);
     if (!s) return RAYTALLY_BUILD_NO_MEMORY;
     s->boxes = from->boxes;
@@ -59,7 +59,7 @@ static int build(const raytally_build *from, void **self) {
 
 /* STRUCTURE: finds objects on the way of the ray, and has them tested. raytally_object_hits improves *best
  * and counts the object tests; of several hits at the same t it keeps the object with the lower number. A box
- * may be skipped only where raytally_box_hit says no: it is asked up to raytally_limit, the best hit so far.
+ * may be skipped only where raytally_box_hit says no: it is asked up to raytally_tmax, the best hit so far.
  * With any = 1 the question is whether there is a hit at all.
  *
  * Whatever else is counted is counted where it is done. Where rays are timed `counters` is a constant NULL,
@@ -73,7 +73,7 @@ RAYTALLY_INLINE void search(const Structure *s, void *memory, const raytally_pre
         RAYTALLY_COUNT(counters, RAYTALLY_STEPS, 1);
         if (s->test_boxes) {
             RAYTALLY_COUNT(counters, RAYTALLY_EXTENT_TESTS, 1);
-            if (!raytally_box_hit(&s->boxes[*id], ray, raytally_limit(ray, best), &enter)) continue;
+            if (!raytally_box_hit(&s->boxes[*id], ray, raytally_tmax(ray, best), &enter)) continue;
         }
         if (raytally_object_hits(ray, id, 1, any, best, counters)) return;
     }
