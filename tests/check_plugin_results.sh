@@ -73,10 +73,10 @@ ends 0 compare results/mine results/again
 says 'my-accel:boxes=on +primary +1\.00 .*no difference +same'
 says_not 'plugin'
 ends 2 reproduce results/mine
-says "results/mine/manifest.json: 'my-accel' was of the plugin $work/old/mine.so \($hash\) then, and is not now"
+says "results/mine/manifest.json: 'my-accel' belonged to the plugin $work/old/mine.so \($hash\) then, and does not now"
 says 'one of a plugin needs --plugin FILE.so'
 ends 2 run results/mine/manifest.json --out results/other
-says "'my-accel' was of the plugin .*mine.so.*no accelerator 'my-accel'"
+says "'my-accel' belonged to the plugin .*mine.so.*no accelerator 'my-accel'"
 
 # ---- other plugins ----
 
@@ -85,24 +85,24 @@ ends 0 run mine.yaml --plugin old/mine.so --plugin "$plugins/bvh_copy.so" --resu
 says 'nothing was left to measure'
 cmp -s before.jsonl results/mine/cells.jsonl || complain 'with another plugin loaded the journal is another'
 ends 0 reproduce results/mine --plugin old/mine.so
-says_not 'another one'
+says_not 'has changed'
 
 # ---- a plugin that has changed ----
 
 ends 0 reproduce results/mine --plugin new/mine.so
-both="the plugin of 'my-accel' is another one: $work/old/mine.so \($hash\) then, $work/new/mine.so \($hash\) now"
+both="the plugin of 'my-accel' has changed: $work/old/mine.so \($hash\) then, $work/new/mine.so \($hash\) now"
 says "results/mine/manifest.json: $both"
 ends 0 run results/mine/manifest.json --out results/newer --plugin new/mine.so
 says "$both"
 ends 0 compare results/mine results/newer
-says "Note: the plugin of 'my-accel' is another one: .*old/mine.so \($hash\) before, .*new/mine.so \($hash\) after"
+says "Note: the plugin of 'my-accel' has changed: .*old/mine.so \($hash\) before, .*new/mine.so \($hash\) after"
 "$program" compare results/mine results/newer --json | python3 -c '
 import json, sys
 change = json.load(sys.stdin)["plugins"]["my-accel"]
 sys.exit(change["before"]["hash"] == change["after"]["hash"] or len(change["after"]["hash"]) != 16)' ||
     complain 'compare --json does not name the plugin that has changed'
 ends 2 run mine.yaml --plugin new/mine.so --resume
-says "'my-accel' is another one: .*old/mine.so.* when this run was begun, .*new/mine.so.* now: .*--renew.*--force"
+says "'my-accel' has changed: .*old/mine.so.* when this run was begun, .*new/mine.so.* now: .*--renew.*--force"
 cmp -s before.jsonl results/mine/cells.jsonl || complain 'a run that is refused changed the journal'
 ends 0 run mine.yaml --plugin new/mine.so --renew --dry-run
 says '16 cells, 8 of them finished'
@@ -132,7 +132,7 @@ ends 0 run mine.yaml --plugin new/mine.so --resume
 says 'nothing was left'
 ends 2 run mine.yaml --plugin old/mine.so --resume
 ends 0 reproduce results/mine --plugin new/mine.so
-says_not 'another one'
+says_not 'has changed'
 
 # Where ratios refer to it nothing would stay.
 ends 0 run based.yaml --plugin old/mine.so
@@ -146,7 +146,7 @@ cmp -s before.jsonl results/based/cells.jsonl || complain 'a run that is refused
 ends 0 run mine.yaml --plugin old/mine.so --shard 1/2
 ends 0 run mine.yaml --plugin old/mine.so --plugin "$plugins/bvh_copy.so" --shard 2/2
 ends 2 merge results/mine-*-of-2 -o results/merged --plugin new/mine.so
-says "mine-1-of-2: .*'my-accel' is another one: .*old/mine.so \($hash\) there, .*new/mine.so \($hash\) here: load that one"
+says "mine-1-of-2: .*'my-accel' has changed: .*old/mine.so \($hash\) there, .*new/mine.so \($hash\) here: load that one"
 ends 0 merge results/mine-*-of-2 -o results/merged --plugin old/mine.so
 cmp -s results/mine/counts.csv results/merged/counts.csv || complain 'shards of a plugin count otherwise'
 
