@@ -140,8 +140,7 @@ static RtStatus take_lines(RtCallgrind *callgrind, const char *path, RtError *er
     return status;
 }
 
-RtStatus rt_callgrind_save_broken(const RtCallgrind *callgrind, const RtResults *results,
-                                       RtError *error) {
+RtStatus rt_callgrind_save_broken(const RtCallgrind *callgrind, const RtResults *results, RtError *error) {
     const RtExperiment *e = callgrind->experiment;
     const uint32_t count = e->workload_count * e->candidate_count * e->kind_count;
     char path[RT_MAX_PATH];

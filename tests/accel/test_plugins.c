@@ -236,7 +236,7 @@ RT_TEST(loading_needs_no_error) {
 
 RT_TEST(a_rejected_library_registers_nothing) {
     static const char *const kinds[] = {"EMPTY", "ABI",      "SIZE",       "NAME",     "TAKEN",
-                                        "TWICE", "FUNCTION", "PARAMETERS", "STANDARD", "CONSTRUCTOR",
+                                        "TWICE", "FUNCTION", "PARAMETERS", "DEFAULT", "CONSTRUCTOR",
                                         "ENTRY", "MANY",     "CHOICES"};
     const RtAccelOps *found;
     load_all();

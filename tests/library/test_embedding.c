@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* raytally.h: what those who embed us call does what the program does, refuses what it refuses, and leaves
- * nothing behind. */
+/* raytally.h: its functions do what the program does, reject what it rejects, and leak nothing. */
 #include "library_testing.h"
 
 #include "core/base/memory.h"
@@ -259,7 +258,7 @@ RT_TEST(counts_are_those_of_the_definition) {
     assert_int_equal(counters.at[RAYTALLY_OBJECT_TESTS], hits); /* one for each ray that hits */
 }
 
-/* ideal knows rays by their addresses: what it was taught must not answer for others that come to lie there.
+/* ideal knows rays by their addresses: it must not use what it learned for other rays at the same addresses.
  */
 RT_TEST(what_was_taught_for_a_count_is_forgotten) {
     raytally_counters counters[RAYTALLY_RAY_KINDS] = {{{0}}}, taught;
@@ -273,7 +272,7 @@ RT_TEST(what_was_taught_for_a_count_is_forgotten) {
     raytally_tracer_free(tracer);
 }
 
-/* Answers otherwise when it counts. */
+/* A counted kernel with wrong answers. */
 static void lie(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count, RtHit *hits,
                 RtTally *tallies) {
     (void)accel;
@@ -348,7 +347,7 @@ RT_TEST(a_picture_is_the_frame_of_the_program) {
 
 /* ---- memory ---- */
 
-/* All that allocates, once. */
+/* Every function that allocates, once. */
 static raytally_status use_all(raytally_error *error) {
     raytally_objects objects = two_objects();
     raytally_record_options recording = RAYTALLY_RECORD_DEFAULTS;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Plugins as those who embed us load them. */
+/* Loading plugins through the library. */
 #include "library_testing.h"
 
 #define PLUGIN(name) RT_BINARY_DIR "/plugins/" name ".so"

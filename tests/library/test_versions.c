@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Programs and libraries that were built with other headers: structs of options are as long as they say, and
- * what is told has room for more. */
+/* Programs and libraries built with other headers: structs of options have the size that they state, and
+ * structs of results have room for new members. */
 #include "library_testing.h"
 
 #include <raytally/accel.h>
 
-/* A plugin writes all of its own header's, into what our header has. */
+/* A plugin writes the struct of its own header into that of this one. */
 _Static_assert(sizeof(raytally_description) == 128, "the room for descriptions does not change");
 
-/* What a later header may make of each struct of options. */
+/* Structs of options as a later header may define them. */
 #define LATER(Options)                                                                                       \
     struct {                                                                                                 \
         Options known;                                                                                       \
@@ -79,7 +79,7 @@ RT_TEST(options_that_nobody_initialised_are_refused) {
     }
 }
 
-/* A struct that is told: all that a later library may say in it is 0 now, whatever lay there. */
+/* Room for new members of results is 0, whatever was there before. */
 static void assert_silent(const void *room, size_t bytes) {
     for (size_t i = 0; i < bytes; i++) assert_int_equal(((const unsigned char *)room)[i], 0);
 }

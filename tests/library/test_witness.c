@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What an accelerator sees of its callers: the rays that it is verified by, and the locale of the thread. It
- * is brute, and keeps that in mind. */
+/* An accelerator that records its callers: the rays that it is verified with, and the locale of the thread.
+ * It wraps brute. */
 #include "library_testing.h"
 
 #include "verify/verify.h"
@@ -11,7 +11,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
-static atomic_uint_fast64_t calls, rays_asked, rays_sum; /* the sum of the hashes of all rays asked */
+static atomic_uint_fast64_t calls, rays_asked, rays_sum; /* the sum of the hashes of all rays */
 static atomic_bool met_comma;
 static RtAccelOps witness;
 static const RtAccelOps *brute;
@@ -155,7 +155,7 @@ RT_TEST(the_library_verifies_by_the_rays_of_the_program) {
     const uint64_t asked = rays_asked, sum = rays_sum;
     assert_true(asked >= 4 * UINT64_C(3000));
 
-    /* However the scene is sampled, and whatever stands over it. */
+    /* However the scene is sampled, and whatever is built over it. */
     assert_fine(raytally_scene_open(name, &scene, error));
     assert_fine(raytally_scene_set_sampling(scene, 30, 20, 2, error));
     assert_fine(raytally_accelerator_build(scene, "item+bvh", 1, &item, error));
@@ -168,7 +168,7 @@ RT_TEST(the_library_verifies_by_the_rays_of_the_program) {
     raytally_scene_size(scene, &width, &height);
     assert_true(width == 30 && height == 20);
 
-    /* And by those alone that are given. */
+    /* And only with the given rays. */
     raytally_rays *rays;
     assert_fine(raytally_rays_record(item, RAYTALLY_PRIMARY, NULL, &rays, error));
     how.given = rays;
@@ -214,7 +214,7 @@ static int choose_standard(void **state) {
     return 0;
 }
 
-/* After each call: the caller has its comma again, and whoever worked had a point. */
+/* After each call the caller has its comma again; during the call there was a point. */
 #define assert_point(expr)                                                                                   \
     do {                                                                                                     \
         met_comma = false;                                                                                   \
@@ -293,7 +293,7 @@ RT_TEST_WITH(numbers_are_written_and_read_with_a_point, choose_comma, choose_sta
     raytally_accelerator_free(accel);
     raytally_scene_free(scene);
     snprintf(text, sizeof text, "%.1f", 4.5);
-    assert_string_equal(text, "4,5"); /* as the program wants it */
+    assert_string_equal(text, "4,5"); /* in the locale of the program */
 }
 
 RT_TESTS(witness, call_witness, NULL)

@@ -143,7 +143,7 @@ RT_TEST(a_baseline_that_learns_knows_the_rays_of_thinned_candidates) {
     assert_true(0.2 < cell.ratio.median && cell.ratio.median < 5);
 }
 
-/* Two structures that were built and timed by hand: seconds to build, nanoseconds a ray. */
+/* Two structures with given times: seconds to build, nanoseconds per ray. */
 static double break_even(double theirs, double their_ray, double ours, double our_ray) {
     RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
     RtResults results;
@@ -172,8 +172,7 @@ RT_TEST(a_build_pays_off_after_as_many_rays_as_save_what_it_takes_more) {
     assert_true(isinf(break_even(1, 200, 2, 300)));
 }
 
-/* What a pass over the rays before all others was given: rays, and of the eight parts of a frame of 64 rows
- * those that it has rays of. */
+/* The first counting pass: its rays, and which of the eight parts of a frame of 64 rows they cover. */
 static uint64_t first_count;
 static unsigned first_parts;
 
@@ -234,7 +233,7 @@ static void assert_one_is_baseline(const RtResults *results, RtRayKind kind) {
     assert_int_equal(rt_cell_at(results, 0, e->candidate_count, kind)->baseline, e->baseline);
 }
 
-/* Of the baseline's candidates most are slower than the one that ratios refer to. */
+/* Most of the baseline's candidates are slower than the one that ratios refer to. */
 static bool most_are_slower(const RtResults *results, RtRayKind kind) {
     const RtExperiment *e = results->experiment;
     uint32_t slower = 0;
@@ -356,7 +355,7 @@ static void note(void *context, const char *message) {
     snprintf(context, 256, "%s", message);
 }
 
-/* Where a test asks for it the wall clock is a millisecond later each time that somebody looks at it. */
+/* If set, the wall clock advances by a millisecond each time it is read. */
 static bool wall_ticks;
 
 int __real_clock_gettime(clockid_t clock, struct timespec *now);

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* bvh_copy: the built-in `bvh`, as a plugin, to compare the speed of the two: what is lost on the way through
- * the interface is what `bench --accel bvh_copy --baseline bvh` shows.
+/* bvh_copy: the built-in `bvh` as a plugin. `bench --accel bvh_copy --baseline bvh` shows the cost of the
+ * plugin interface.
  *
- * The tree is that of accel/bvh as it is by default: from the top by the surface area heuristic, in 16 bins
- * along every axis, or at every place between centres where there are no more objects than bins; then, from
- * the bottom up, subtrees of up to 8 objects become leaves where that costs no more. Layout and traversal are
- * accel/bvh's: nodes of 32 bytes, siblings side by side, both children's boxes tested, the nearer child
- * first. */
+ * The tree is that of accel/bvh with its default parameters: built from the top by the surface area
+ * heuristic, in 16 bins along every axis, or at every place between centres if there are no more objects than
+ * bins; then, from the bottom up, subtrees of up to 8 objects become leaves if that costs no more. Layout and
+ * traversal are those of accel/bvh: nodes of 32 bytes, siblings side by side, both children's boxes tested,
+ * the nearer child first. */
 #include <raytally/accel.h>
 
 #include <math.h>

@@ -120,7 +120,7 @@ static void scribble(void) {
     if (maps) fclose(maps);
 }
 
-/* Leaves a process behind, for a while, that has no parent. */
+/* Leaves behind a process without a parent that runs for a while. */
 static void start_daemon(void) {
     if (fork() != 0) return;
     setsid();

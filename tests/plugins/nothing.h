@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* An accelerator that finds nothing, for plugins of which only the table or the loading is of interest. */
+/* An accelerator that finds no hits, for plugins that only test tables or loading. */
 #ifndef RT_TESTS_PLUGINS_NOTHING_H
 #define RT_TESTS_PLUGINS_NOTHING_H
 

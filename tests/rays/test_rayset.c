@@ -251,7 +251,7 @@ static void assert_blocks(const RtRaySet *set, uint64_t count, uint32_t columns)
     }
 }
 
-/* Of 50 x 37 samples, 3 x 2 tiles of 256 are whole. */
+/* 50 x 37 samples contain 3 x 2 whole tiles of 256. */
 RT_TEST(primary_rays_come_in_blocks_of_neighbours_and_a_limit_keeps_them_whole) {
     Stage *stage = *state;
     RtRaySet sets[RT_RAY_KIND_COUNT], kept;

@@ -104,7 +104,7 @@ RT_TEST_VALGRIND(an_instruction_set_that_valgrind_does_not_know_is_replaced_and_
     json_decref(rows);
 }
 
-/* It is built in the child's own process; one that breaks is not asked there. */
+/* Plugins are built in the child's own process; one that breaks is not built there. */
 RT_TEST_VALGRIND(instructions_of_a_plugin_are_counted_and_a_broken_one_is_named) {
     assert_int_equal(raytally(place, "bench random:n=50 --count-only --threads 1 --json --callgrind=64 "
                                      "--rays primary,shadow --size 16x16 --plugin " RT_BINARY_DIR
@@ -123,7 +123,7 @@ RT_TEST_VALGRIND(instructions_of_a_plugin_are_counted_and_a_broken_one_is_named)
     rt_free(text);
 }
 
-/* Of what is recorded at most so many, and no file stays behind. */
+/* The child gets at most so many rays, and no file stays behind. */
 RT_TEST_VALGRIND(the_child_gets_a_few_rays_and_leaves_nothing_behind) {
     glob_t found;
     assert_int_equal(setenv("TMPDIR", place->folder, 1), 0);
