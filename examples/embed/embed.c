@@ -7,7 +7,7 @@
 
 #include <stdio.h>
 
-/* All that the program makes, so that it is freed in one place. NULL is allowed everywhere. */
+/* All objects of the program, freed in one place. Each may be NULL. */
 typedef struct Work {
     raytally_scene *scene;
     raytally_accelerator *accels[2];
@@ -18,7 +18,7 @@ static void clear(Work *work) {
     raytally_rays_free(work->rays);
     raytally_accelerator_free(work->accels[0]);
     raytally_accelerator_free(work->accels[1]);
-    raytally_scene_free(work->scene); /* after what stands over it */
+    raytally_scene_free(work->scene); /* after its accelerators */
 }
 
 /* Opens the scene, and builds a hierarchy and a grid over it on all processors. */
@@ -36,7 +36,7 @@ static raytally_status prepare(Work *work, const char *scene, raytally_error *er
     return status;
 }
 
-/* Are the grid's hits right? Rays that are hard on accelerators are asked of it and of brute. */
+/* Are the grid's hits right? It is compared with brute on difficult rays. */
 static raytally_status verify(const Work *work, raytally_error *error) {
     raytally_verify_options how = RAYTALLY_VERIFY_DEFAULTS;
     raytally_verify_result found;
@@ -78,7 +78,7 @@ static raytally_status time_both(const Work *work, raytally_error *error) {
     return status;
 }
 
-/* One ray by hand, as a renderer would ask: each thread has a tracer of its own. */
+/* Traces one ray, as a renderer would: each thread has a tracer of its own. */
 static raytally_status ask(const Work *work, raytally_error *error) {
     raytally_tracer *tracer;
     raytally_hit hit;

@@ -235,7 +235,7 @@ RT_TEST(loading_needs_no_error) {
 }
 
 RT_TEST(a_rejected_library_registers_nothing) {
-    static const char *const kinds[] = {"EMPTY", "ABI",      "SIZE",       "NAME",     "TAKEN",
+    static const char *const kinds[] = {"EMPTY", "ABI",      "SIZE",       "NAME",    "TAKEN",
                                         "TWICE", "FUNCTION", "PARAMETERS", "DEFAULT", "CONSTRUCTOR",
                                         "ENTRY", "MANY",     "CHOICES"};
     const RtAccelOps *found;
