@@ -160,6 +160,14 @@ static void write_other(const Place *place, const char *before, const char *argu
     assert_int_equal(system(script), 0);
 }
 
+RT_TEST_IN_PLACE(a_program_that_crashes_while_it_is_compared_is_reported_with_its_signal) {
+    const Place *place = *state;
+    write_other(place, "echo '{\"worker\": 1, \"build\": \"none\"}'; kill -SEGV $$", "");
+    assert_int_equal(
+        raytally(place, "compare balls:size=1 --accel bvh --rays random --limit 100 --with ./other"), 2);
+    assert_in_file(place, "message", "./other cannot be compared: it crashed (Segmentation fault)");
+}
+
 /* The other program has another accelerator in the place of the grid in the second round, as one has none
  * whose limit of time it goes beyond. */
 RT_TEST_IN_PLACE(what_was_not_timed_in_every_round_is_not_compared) {
