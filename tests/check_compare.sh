@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_compare.sh [--clock]: `raytally compare` finds a difference of 2 %, and none between equal programs. raytally_even and
-# raytally_slower, beside $RT_PROGRAM, are the same program, but the second needs 2 % more time: --strict must return
-# exit code 1, and the reverse comparison must say faster. Of twenty comparisons of a program with itself, of four cells
-# each, one may report a difference, as 95 % allow. Times are simulated (tests/cli/compared.c), the same in every run.
-# --clock: times are measured, and 2 % of the rays are traced twice, which needs a quiet machine and a release
-# build; then three of twenty may report a difference, which more do in less than two of a hundred runs.
+# check_compare.sh [--clock]: `raytally compare` finds a difference of 2 %, and none where there is none. raytally_even and
+# raytally_slower, beside $RT_PROGRAM, are the same program, except that the second takes 2 % longer: --strict then ends with
+# exit code 1, and the first, compared with it, is faster. Of twenty comparisons of the program with itself, of four cells each,
+# at most one may report a difference, as 95 % allow. Times are random numbers (tests/cli/compared.c), the same in every run.
+# --clock: times are measured, and 2 % of the rays are traced twice; this needs a quiet machine and a release build. Then three
+# of twenty may report a difference; more do in less than two of a hundred runs.
 set -euo pipefail
 programs=$(dirname "$(realpath "${RT_PROGRAM:-build/release/raytally}")")
 program=$programs/raytally_even slower=$programs/raytally_slower
@@ -37,7 +37,7 @@ compare "$program" compare balls --accel bvh $rays --with "$slower" --strict
 compare "$slower" compare balls --accel bvh $rays --with "$program" --strict
 [ $code = 1 ] && grep -q '^0 faster, 2 slower' said || fail '2 % more time are not found, or not told by the exit code'
 
-# ---- nothing ----
+# ---- no difference ----
 
 cat >null.yaml <<'YAML'
 name: "null"

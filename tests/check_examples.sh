@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_examples.sh: the plugins of examples/ and tests/plugins/bvh_copy.c, built with only the public headers by every
-# available compiler, without a warning. verify finds no wrong hit; bvh_copy has the counts of bvh; verify detects a bih with one
-# origin for both kinds of planes. examples/header-only says how to get what it needs, and is built and verified too
-# if $BVH_DIR is a copy of madmann91/bvh.
+# check_examples.sh: the plugins of examples/ and tests/plugins/bvh_copy.c, built against the public headers alone with every
+# available compiler, without a warning: verify finds no wrong hit; bvh_copy counts what bvh counts; verify detects a bih with
+# one origin for both kinds of planes. examples/header-only explains how to get what it needs, and is built and verified if
+# $BVH_DIR is a copy of madmann91/bvh.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 program=${RT_PROGRAM:-build/release/raytally}
@@ -31,7 +31,7 @@ verified() {
         tail -n 1 || true
 }
 
-# right NAME: all rays of all scenes were traced, and nothing is wrong
+# right NAME: all rays of all scenes were traced, without a wrong answer
 right() {
     local said form='^6 scenes, ([1-9][0-9]*) accelerators?, 5000 rays, ([0-9]+) pairs of a ray and an accelerator: nothing wrong$'
     said=$(verified "$1")

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_library.sh: raytally as installed. Installs the build beside $RT_PROGRAM into a scratch prefix and requires:
-# each header compiles as C99, C17 and C++17 without a warning, by every available compiler, and so do all of them in one
-# file; both libraries export raytally_* and nothing else; examples/embed builds by the CMake package and by pkg-config,
-# runs, and has the counts of the program, also after the prefix was moved; doxygen finds every declaration
-# described. Skipped (77) without cmake, pkg-config or nm; prints other missing tools and skips their parts.
+# check_library.sh: raytally as installed. Installs the build beside $RT_PROGRAM into a scratch prefix and checks: each header
+# compiles as C99, C17 and C++17 without a warning with every available compiler, and so do all of them in one file; both
+# libraries export raytally_* and nothing else; examples/embed builds with the CMake package and with pkg-config, runs, and
+# counts what the program counts, also after the prefix was moved; doxygen finds a description of every declaration. Skipped
+# (77) without cmake, pkg-config or nm; checks whose tools are missing are reported and skipped.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=$(cd "$(dirname "${RT_PROGRAM:-build/release/raytally}")" && pwd)
@@ -19,7 +19,7 @@ complain() {
     status=1
 }
 
-# quietly WHAT COMMAND...: if the command fails, prints WHAT and its output
+# quietly WHAT COMMAND...: if it fails, prints WHAT and its output
 quietly() {
     local what=$1
     shift
@@ -29,7 +29,7 @@ quietly() {
     return 1
 }
 
-# ---- what is installed ----
+# ---- installed files ----
 quietly "cmake --install fails" cmake --install "$build" --prefix "$prefix"
 libraries=$(dirname "$(find "$prefix" -name libraytally.so)")
 for file in bin/raytally include/raytally/raytally.h include/raytally/types.h; do
@@ -117,7 +117,7 @@ int main(void) {
     if (raytally_spec_format("grid:density=4.5", spec, &error) != RAYTALLY_OK) puts(error.message);
     puts(spec);
     if (raytally_scene_open("balls:size=1", &scene, &error) != RAYTALLY_OK) puts(error.message);
-    if (raytally_scene_look(scene, &camera, &error) != RAYTALLY_OK) puts(error.message);
+    if (raytally_scene_set_camera(scene, &camera, &error) != RAYTALLY_OK) puts(error.message);
     return printf("%.1f\n", 4.5) == 4 ? 0 : 2;
 }
 END

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_plugin_results.sh: results of a missing or changed plugin. Without the plugin they can be plotted, reported and compared as
-# with it. A run resumes whatever other plugins are loaded. If its own plugin has changed (here by a byte after the library), raytally
-# names both builds, and --renew measures only its cells again. Uses $RT_PROGRAM, in its build folder, and python3.
+# check_plugin_results.sh: results of plugins stay usable. Without the plugin they are plotted, reported and compared as with
+# it. A run resumes with other plugins loaded; if its own plugin has changed (here by a byte after the library), both builds are
+# named, and --renew measures only its cells again. Uses $RT_PROGRAM, in its build folder, and python3.
 set -uo pipefail
 program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
 plugins=$(dirname "$program")/plugins
@@ -17,7 +17,7 @@ complain() {
     failures=$((failures + 1))
 }
 
-# ends WITH ARGUMENT...: checks raytally's exit code; all its output is in `said`, on one line
+# ends CODE ARGUMENT...: runs raytally, and checks its exit code; its output goes to `said`, and on one line to `line`
 ends() {
     local wanted=$1 code=0
     shift
@@ -35,7 +35,7 @@ says_not() {
     [[ ! $(cat line) =~ $1 ]] || complain "raytally $last: says '$1': $(cat said)"
 }
 
-# Without a named baseline it is the first that is not of a plugin, which must be in the results.
+# The default baseline is the first accelerator that is not a plugin's; the results must name it.
 cat >mine.yaml <<'END_OF_YAML'
 name: mine
 question: Do boxes help?
@@ -73,10 +73,10 @@ ends 0 compare results/mine results/again
 says 'my-accel:boxes=on +primary +1\.00 .*no difference +same'
 says_not 'plugin'
 ends 2 reproduce results/mine
-says "results/mine/manifest.json: 'my-accel' was of the plugin $work/old/mine.so \($hash\) then, and is not now"
+says "results/mine/manifest.json: 'my-accel' belonged to the plugin $work/old/mine.so \($hash\) then, and does not now"
 says 'one of a plugin needs --plugin FILE.so'
 ends 2 run results/mine/manifest.json --out results/other
-says "'my-accel' was of the plugin .*mine.so.*no accelerator 'my-accel'"
+says "'my-accel' belonged to the plugin .*mine.so.*no accelerator 'my-accel'"
 
 # ---- other plugins ----
 
@@ -85,24 +85,24 @@ ends 0 run mine.yaml --plugin old/mine.so --plugin "$plugins/bvh_copy.so" --resu
 says 'nothing was left to measure'
 cmp -s before.jsonl results/mine/cells.jsonl || complain 'with another plugin loaded the journal is another'
 ends 0 reproduce results/mine --plugin old/mine.so
-says_not 'another one'
+says_not 'has changed'
 
 # ---- a plugin that has changed ----
 
 ends 0 reproduce results/mine --plugin new/mine.so
-both="the plugin of 'my-accel' is another one: $work/old/mine.so \($hash\) then, $work/new/mine.so \($hash\) now"
+both="the plugin of 'my-accel' has changed: $work/old/mine.so \($hash\) then, $work/new/mine.so \($hash\) now"
 says "results/mine/manifest.json: $both"
 ends 0 run results/mine/manifest.json --out results/newer --plugin new/mine.so
 says "$both"
 ends 0 compare results/mine results/newer
-says "Note: the plugin of 'my-accel' is another one: .*old/mine.so \($hash\) before, .*new/mine.so \($hash\) after"
+says "Note: the plugin of 'my-accel' has changed: .*old/mine.so \($hash\) before, .*new/mine.so \($hash\) after"
 "$program" compare results/mine results/newer --json | python3 -c '
 import json, sys
 change = json.load(sys.stdin)["plugins"]["my-accel"]
 sys.exit(change["before"]["hash"] == change["after"]["hash"] or len(change["after"]["hash"]) != 16)' ||
     complain 'compare --json does not name the plugin that has changed'
 ends 2 run mine.yaml --plugin new/mine.so --resume
-says "'my-accel' is another one: .*old/mine.so.* when this run was begun, .*new/mine.so.* now: .*--renew.*--force"
+says "'my-accel' has changed: .*old/mine.so.* when this run was begun, .*new/mine.so.* now: .*--renew.*--force"
 cmp -s before.jsonl results/mine/cells.jsonl || complain 'a run that is refused changed the journal'
 ends 0 run mine.yaml --plugin new/mine.so --renew --dry-run
 says '16 cells, 8 of them finished'
@@ -132,9 +132,9 @@ ends 0 run mine.yaml --plugin new/mine.so --resume
 says 'nothing was left'
 ends 2 run mine.yaml --plugin old/mine.so --resume
 ends 0 reproduce results/mine --plugin new/mine.so
-says_not 'another one'
+says_not 'has changed'
 
-# If ratios refer to it, all cells would be lost.
+# If it is the baseline, no results could be kept.
 ends 0 run based.yaml --plugin old/mine.so
 cp results/based/cells.jsonl before.jsonl
 ends 2 run based.yaml --plugin new/mine.so --renew
@@ -146,11 +146,11 @@ cmp -s before.jsonl results/based/cells.jsonl || complain 'a run that is refused
 ends 0 run mine.yaml --plugin old/mine.so --shard 1/2
 ends 0 run mine.yaml --plugin old/mine.so --plugin "$plugins/bvh_copy.so" --shard 2/2
 ends 2 merge results/mine-*-of-2 -o results/merged --plugin new/mine.so
-says "mine-1-of-2: .*'my-accel' is another one: .*old/mine.so \($hash\) there, .*new/mine.so \($hash\) here: load that one"
+says "mine-1-of-2: .*'my-accel' has changed: .*old/mine.so \($hash\) there, .*new/mine.so \($hash\) here: load that one"
 ends 0 merge results/mine-*-of-2 -o results/merged --plugin old/mine.so
 cmp -s results/mine/counts.csv results/merged/counts.csv || complain 'shards of a plugin count otherwise'
 
-# ---- messages about plugins ----
+# ---- messages ----
 
 bench=(bench balls:size=1 --rays primary --size 16x16 --rounds 1 --accel bvh --accel my-accel)
 ends 2 "${bench[@]}"

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_plugins.sh: a faulty plugin harms only its own results. For each fault of tests/plugins/faulty.c `verify` and `bench`
-# name it and end with exit code 1, and the results of other accelerators are complete, JSON included. A plugin that cannot be
-# loaded is refused with exit code 2 and a message. A fresh `raytally new-accel` and the plugins of examples/ are built against
-# an installed raytally, are right and are measured. Uses $RT_PROGRAM, in its build folder, and python3.
+# check_plugins.sh: a faulty plugin damages only its own results. For each fault of tests/plugins/faulty.c, `verify` and `bench`
+# report it and end with 1, and the results of another accelerator beside it are complete, JSON included. A library that cannot
+# be loaded is rejected with exit code 2 and a sentence. A fresh `raytally new-accel` and the plugins of examples/ are built
+# against an installed raytally, verified and measured. Uses $RT_PROGRAM, in its build folder, and python3.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 2
 root=$PWD
@@ -22,7 +22,7 @@ complain() {
     failures=$((failures + 1))
 }
 
-# ends WITH FILE ARGUMENT...: checks raytally's exit code; stdout goes to FILE, stderr to `said`
+# ends CODE FILE ARGUMENT...: runs raytally, and checks its exit code; stdout goes to FILE, stderr to `said`
 ends() {
     local wanted=$1 file=$2 code=0
     shift 2
@@ -43,7 +43,7 @@ refuses() {
     says "$1" printed
 }
 
-# It takes ten seconds, and everything else continues.
+# This takes ten seconds, in parallel with the rest.
 (mkdir forever && cd forever && refuses 'does not survive loading: it takes more than 10 seconds' "$plugins/unloadable-FOREVER.so"
     exit "$failures") &
 forever=$!
@@ -54,8 +54,7 @@ verify=(verify balls:size=1 --rays 600 --threads 2 --json)
 bench=(bench balls:size=1 --rays 'primary,shadow' --size 16x16 --depth 2 --rounds 1 --json)
 ends 0 alone.json "${bench[@]}" --accel kd
 
-# fault NAME VERIFIED [MEASURED]: the messages of `verify` and of `bench` (the same if left out). If a message is
-# empty, nothing is reported and the results are right.
+# fault NAME VERIFIED [MEASURED]: the reports of `verify` and `bench` (default: the same). Empty: no report, and exit code 0.
 fault() {
     local name=faulty-$1 verified=$2 measured=${3-$2}
     ends $((${#verified} > 0)) "verify-$1.json" "${verify[@]}" --plugin "$plugins/faulty.so" --accel "$name" --accel kd
@@ -119,7 +118,7 @@ patience=0.2 # a build may take ten times as long
 fault loop-build 'no progress for 2 s .* while it was built'
 unset patience
 fault greedy 'memory is short'
-ends 0 bench-unruly.json "${bench[@]}" --plugin "$plugins/odd-UNRULY.so" --accel kd
+ends 0 bench-invasive.json "${bench[@]}" --plugin "$plugins/odd-INVASIVE.so" --accel kd
 
 python3 - <<'END' || failures=$((failures + 1))
 import glob, json, sys
@@ -136,13 +135,13 @@ def of_kd(document):
 alone, failed = of_kd(load("alone.json")), False
 for name in sorted(glob.glob("bench-*.json")):
     if of_kd(load(name)) != alone:
-        print(f"{name}: what is measured of kd is not what it is without the plugin")
+        print(f"{name}: the measurements of kd differ from those without the plugin")
         failed = True
 right = ("verify-not.json", "verify-print.json")
 for name in sorted(glob.glob("verify-*.json")):
     rows = [row for row in load(name)["rows"] if row["accel"] == "kd" or name in right]
     if len(rows) != 1 + (name in right) or any(row["rays"] != 600 or row["equal"] != 600 or row["problem"] for row in rows):
-        print(f"{name}: what is in order is not right: {rows}")
+        print(f"{name}: correct accelerators fail: {rows}")
         failed = True
 sys.exit(failed or len(alone) != 2)
 END
@@ -173,7 +172,7 @@ ends 1 printed run faulty.yaml --plugin "$plugins/faulty.so" --resume
 ends 0 printed reproduce results/faulty --plugin "$plugins/faulty.so"
 ends 0 printed report results/faulty --plugin "$plugins/faulty.so"
 
-# ---- plugins that cannot be loaded ----
+# ---- libraries that cannot be loaded ----
 
 refuses 'nowhere.so: no such plugin' nowhere.so
 echo text >text.so
@@ -187,7 +186,7 @@ refuses "accelerator 'grid' already: choose another name" "$plugins/unloadable-T
 refuses "it has two accelerators 'unloadable': choose another name" "$plugins/unloadable-TWICE.so"
 refuses "lacks its .*nearest" "$plugins/unloadable-FUNCTION.so"
 refuses "'unloadable' lacks its .params" "$plugins/unloadable-PARAMETERS.so"
-refuses "contradicts itself.*depth" "$plugins/unloadable-STANDARD.so"
+refuses "contradicts itself.*depth" "$plugins/unloadable-DEFAULT.so"
 refuses "parameter 'mode' of 'unloadable' has 71 choices; 64 is the most" "$plugins/unloadable-CHOICES.so"
 refuses 'does not survive loading: it crashed \(Aborted\)' "$plugins/unloadable-CONSTRUCTOR.so"
 refuses 'does not survive loading: it crashed \(Aborted\)' "$plugins/unloadable-ENTRY.so"
@@ -198,17 +197,17 @@ for list in folder "$plugins/faulty.so:$plugins/new-accel.so" 'a\:b' 'c\d/faulty
     RAYTALLY_PLUGINS=$list "$program" accels >printed
     grep -q '^faulty-not' printed || complain "RAYTALLY_PLUGINS=$list: not loaded"
 done
-# raytally passes --plugin on to the processes that it starts.
+# Processes that raytally starts get the same plugins.
 ends 0 printed compare balls:size=1 --plugin 'a:b/faulty.so' --accel faulty-not --with "$program" --rays primary --size 8x8 --limit 64 \
     --until 90% --patience 1
 
-# ---- plugins that work, against the installation ----
+# ---- correct plugins, built against an installation ----
 
 cmake --install "$build" --prefix "$work/prefix" >log 2>&1 || complain "cmake --install: $(tail -n 5 log)"
 program=$work/prefix/bin/raytally
 export PATH=$work/prefix/bin:$PATH
 
-# works FOLDER: its plugin, if there is one, builds, is right, and is measured
+# works FOLDER: builds its plugin, if it has one, verifies and measures it
 works() {
     local name=${1##*/} library accel
     grep -q 'raytally::headers\|MODULE' "$1/CMakeLists.txt" || return
@@ -223,7 +222,7 @@ works() {
     done
 }
 
-# names ARGUMENT...: names of all accelerators, in order
+# names ARGUMENT...: the names of all accelerators, sorted
 names() {
     "$program" accels --json "$@" | sed -nE 's/^      "name": "(.*)",?$/\1/p' | sort
 }

@@ -340,7 +340,7 @@ for subject in '' 'a' 'a b c' 'a b --with c' 'a b --accel bvh' 'a b --until 1%' 
 done
 refuses "margin: invalid value '3'" compare a b --margin 3
 refuses 'nowhere is not a finished result directory.*raytally run EXPERIMENT --out nowhere --resume' compare nowhere nowhere
-refuses 'an EXPERIMENT says what its rays are' compare a.yaml --rays primary --with "$program"
+refuses 'an EXPERIMENT defines its rays' compare a.yaml --rays primary --with "$program"
 refuses 'no/such: cannot be started: No such file' compare balls:size=1 --accel bvh --size 8x8 --with no/such
 refuses '/bin/true cannot be compared' compare balls:size=1 --accel bvh --size 8x8 --with /bin/true
 refuses '/bin/cat cannot be compared' compare balls:size=1 --accel bvh --size 8x8 --with /bin/cat

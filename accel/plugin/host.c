@@ -48,14 +48,14 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     raytally_value values[RAYTALLY_MAX_PARAMS] = {0};
     char message[900] = "";
     copy_values(what, values);
-    raytally_build input = {.size = sizeof input,
-                            .object_count = geometry->object_count,
-                            .boxes = (const raytally_box *)geometry->boxes,
-                            .values = values,
-                            .threads = rt_thread_count(what->threads),
-                            .byte_limit = what->limit,
-                            .message = message,
-                            .message_room = sizeof message - 1};
+    raytally_build_input input = {.size = sizeof input,
+                                  .object_count = geometry->object_count,
+                                  .boxes = (const raytally_box *)geometry->boxes,
+                                  .values = values,
+                                  .threads = rt_thread_count(what->threads),
+                                  .byte_limit = what->limit,
+                                  .message = message,
+                                  .message_room = sizeof message - 1};
     memcpy(&input.box, &geometry->box, sizeof input.box);
     RT_TRY(rt_accel_new(what, sizeof(RtPluginAccel), out, error));
     RtPluginAccel *self = (RtPluginAccel *)*out;

@@ -48,8 +48,8 @@ static void pass_param(Cursor *c, raytally_param *p) {
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) pass_text(c, texts[i]);
 }
 
-static void each_box_is_remote(const void *self, raytally_show_box *show, void *viewer) {
-    (void)self, (void)show, (void)viewer;
+static void each_box_is_remote(const void *self, raytally_box_visitor *visit, void *context) {
+    (void)self, (void)visit, (void)context;
 }
 
 static void pass_table(Cursor *c, raytally_accel_ops *table) {

@@ -217,7 +217,8 @@ static RtStatus start(Remote *remote, const RtSpec *spec, int threads, RtError *
         mmap(NULL, sizeof(Wire), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (wire == MAP_FAILED) return rt_fail_memory(error, "memory shared with a plugin", sizeof(Wire));
     remote->wire = wire;
-    remote->asked[0] = wire->lanes[0].asked = WIRE_BUILD;
+    remote->asked[0] = WIRE_BUILD;
+    wire->lanes[0].asked = WIRE_BUILD;
     if (pipe2(ends, O_CLOEXEC) != 0) return rt_fail(error, RT_IO, "a pipe: %s", strerror(errno));
     RtStatus status = rt_process_fork(&remote->process, ends[0], error);
     if (status == RT_OK && remote->process.pid == 0) rt_wire_serve(wire, spec, remote->base.scene, threads);

@@ -1,30 +1,35 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* bih: a bounding interval hierarchy as a plugin, a worked example of an accelerator written from its paper.
+/* bih: a bounding interval hierarchy, as a plugin; a worked example of implementing a structure from its
+ * paper.
  *
  * Paper: Waechter & Keller 2006, "Instant Ray Tracing: The Bounding Interval Hierarchy", Eurographics
- * Symposium on Rendering. Like a hierarchy of boxes it divides objects, so each is listed once and memory is
- * known in advance. Like a kd-tree it stores planes, so a node takes 12 bytes and a step two crossings.
+ * Symposium on Rendering. Like a bounding volume hierarchy it partitions objects, so each is listed once and
+ * the memory is known in advance; like a kd-tree it stores planes, so a node takes 12 bytes and a step two
+ * crossings.
  *
- * Layout. Nodes are in one array, the root first; siblings are side by side, after their parent. An inner
- * node has an axis and two planes across it: its left child ends at clip[0], its right child begins at
- * clip[1]. Between the planes there may be empty space, or the children may overlap. A leaf owns a run of
- * `ids`.
+ * Layout. Nodes are in one array, the root first; the two children of a node are adjacent and follow it. An
+ * inner node has an axis and two planes perpendicular to it: its left child ends at clip[0], its right child
+ * begins at clip[1]. Between the planes there may be empty space, or the children may overlap. A leaf owns a
+ * run of `ids`.
  *
- * Invariant. The cell of the root is the box of the scene; that of a child is its parent's cell, cut at its
- * plane. A cell contains the boxes of all objects below its node: a left child's boxes end at or below
- * clip[0], a right child's begin at or above clip[1]. Every object is in one leaf; the leaves own the ids
- * from left to right. No leaf is empty, or deeper than MAX_DEPTH, which bounds the stack of the traversal.
+ * Invariant. The cell of the root is the box of the scene; the cell of a child is its parent's cell, cut off
+ * at its plane. The boxes of all objects below a node lie in its cell; in a left child they end at or below
+ * clip[0], in a right child they begin at or above clip[1]. Every object is in one leaf; the leaves own the
+ * ids from left to right. No leaf is empty, or deeper than MAX_DEPTH, which bounds the stack of the
+ * traversal.
  *
- * Why it is exact. By box.h, a box that contains the box of an object may be skipped only if
- * raytally_box_hit says no, or if the ray enters it beyond the best hit. Cells are such boxes. A traversal
- * keeps the interval of t in which the thick ray is in the current cell: from the last crossing of a plane
- * where it enters to the first where it leaves. The ray crosses one plane of a node at the end of the near
- * child (leave) and the other at the beginning of the far child (enter). Both crossings are computed by the
- * operations of raytally_box_hit, and maximum and minimum do not depend on the order. So the interval of a
- * node is, bit for bit, that of raytally_box_hit for its cell, and a child is skipped if that would say no.
- * With one origin for both kinds of planes, as in the paper, hits at the faces of cells would be lost.
+ * Why it is exact. By box.h, a box that contains the box of an object may be skipped only if raytally_box_hit
+ * returns 0, or if the ray enters it beyond the best hit. Cells are such boxes. A traversal carries the
+ * interval of t in which the thick ray is in the current cell: from the last crossing of planes where it
+ * enters to the first crossing where it leaves. Along its direction, the ray crosses one plane of a node at
+ * the end of the near child (leave) and the other one at the beginning of the far child (enter). Both
+ * crossings are computed by the operations of raytally_box_hit, and maximum and minimum do not depend on the
+ * order. So the interval of a node is, bit for bit, what raytally_box_hit finds for its cell, and a child is
+ * skipped if that returned 0. With one origin for both kinds of planes, as in the paper, hits at the faces of
+ * cells would be lost.
  *
- * Counting: a step is a visited node; an extent test is the root's box, or the interval of a child. */
+ * Counting: a step is a visited node; an extent test is the test of the root's box, or of the interval of a
+ * child. */
 #include <raytally/accel.h>
 
 #include <math.h>
@@ -32,12 +37,12 @@
 #include <stdlib.h>
 
 enum {
-    PLANE_DEPTH = 32, /* deeper groups are halved by number, so ... */
+    PLANE_DEPTH = 32, /* deeper groups are halved by number, so that ... */
     MAX_DEPTH = 64,   /* ... no leaf is deeper than this, even for 2^32 objects */
     LEAF = 3          /* the axis of a leaf */
 };
 
-/* For more objects node numbers do not fit into a link. */
+/* The node numbers of more objects would not fit into a link. */
 #define MAX_OBJECTS (UINT32_C(1) << 29)
 
 typedef struct Node {
@@ -49,7 +54,7 @@ typedef struct Node {
 } Node;
 
 typedef struct Bih {
-    Node *nodes;   /* [node_count], 0 for no objects */
+    Node *nodes;   /* [node_count]; none if there are no objects */
     uint32_t *ids; /* [id_count] leaf by leaf */
     uint32_t node_count, id_count;
     raytally_box box;          /* the cell of the root */
@@ -80,7 +85,7 @@ typedef struct Group {
     raytally_box cell;
 } Group;
 
-/* Halved before the addition, to keep the sum finite. */
+/* Halved before the addition, so that the sum is finite. */
 static float center(const raytally_box *box, int axis) {
     return 0.5F * box->lo[axis] + 0.5F * box->hi[axis];
 }
@@ -97,7 +102,7 @@ static raytally_box box_of_centers(const Bih *bih, const Group *group) {
     return box;
 }
 
-/* The paper's heuristic: planes halve the longest side of a cell. If all objects are on one side nothing is
+/* The paper's heuristic: planes halve the longest side of a cell. If all objects are on one side, nothing is
  * stored, and the search continues in that half of the cell. Returns 0 if no plane separates the centres. */
 static int find_plane(const raytally_box *centers, raytally_box *cell, int *axis, float *plane) {
     for (;;) {
@@ -134,7 +139,7 @@ static uint32_t part(const Bih *bih, const Group *group, int axis, float plane) 
     return left;
 }
 
-/* Splits a group into its sides. Returns the axis. */
+/* Computes the sides of a group; returns the axis. */
 static int split(const Builder *b, const Group *group, Group sides[2]) {
     int axis = 0;
     float plane = 0;
@@ -180,9 +185,9 @@ static void destroy(void *self) {
     free(bih);
 }
 
-static int fill(Bih *bih, const raytally_build *what) {
+static int fill(Bih *bih, const raytally_build_input *what) {
     const uint32_t count = what->object_count;
-    const size_t most = 2 * (size_t)count - 1; /* a leaf per object, and the inner nodes */
+    const size_t most = 2 * (size_t)count - 1; /* one for each object, and one for each split */
     bih->nodes = (Node *)malloc(most * sizeof(Node));
     bih->ids = (uint32_t *)malloc(count * sizeof(uint32_t));
     if (!bih->nodes || !bih->ids) return RAYTALLY_BUILD_NO_MEMORY;
@@ -197,7 +202,7 @@ static int fill(Bih *bih, const raytally_build *what) {
     return RAYTALLY_BUILD_OK;
 }
 
-static int build(const raytally_build *what, void **self) {
+static int build(const raytally_build_input *what, void **self) {
     const uint64_t count = what->object_count;
     if (count > MAX_OBJECTS) {
         snprintf(what->message, what->message_room, "a bih holds %u objects at most", (unsigned)MAX_OBJECTS);
@@ -225,8 +230,8 @@ typedef struct Span {
     float enter, leave;
 } Span;
 
-/* Clip a span at a plane where a cell begins, or at one where it ends. A NaN, from a ray within the moved
- * plane, is ignored, as in raytally_box_hit. */
+/* Clips a span at the plane where a cell begins, or at the one where it ends. A NaN, of a ray within the
+ * moved plane, is ignored, as by raytally_box_hit. */
 RAYTALLY_INLINE void begin_at(Span *span, const raytally_prepared *ray, uint32_t axis, float plane) {
     const float enter = (plane - ray->org_near[axis]) * ray->inv[axis];
     span->enter = enter > span->enter ? enter : span->enter;
@@ -239,7 +244,7 @@ RAYTALLY_INLINE void end_at(Span *span, const raytally_prepared *ray, uint32_t a
 
 RAYTALLY_INLINE void search(const Bih *bih, void *memory, const raytally_prepared *ray, int any,
                             raytally_hit *best, raytally_counters *counters) {
-    Span stack[MAX_DEPTH]; /* each inner node above adds one child */
+    Span stack[MAX_DEPTH]; /* one pending child for every inner node above */
     Span span = {0, ray->tmin, ray->tmax};
     uint32_t stacked = 0;
     (void)memory;
@@ -272,8 +277,8 @@ RAYTALLY_INLINE void search(const Bih *bih, void *memory, const raytally_prepare
             RAYTALLY_COUNT(counters, RAYTALLY_LEAF_STEPS, 1);
             if (raytally_object_hits(ray, bih->ids + first, node->at.count, any, best, counters)) return;
         }
-        /* A cell entered at the best t may hold a hit at the same t with a lower number. */
-        const float limit = raytally_limit(ray, best);
+        /* A cell entered at the t of the best hit may hold an object with the same t and a lower number. */
+        const float limit = raytally_tmax(ray, best);
         do {
             if (stacked == 0) return;
             span = stack[--stacked];
@@ -284,7 +289,7 @@ RAYTALLY_INLINE void search(const Bih *bih, void *memory, const raytally_prepare
 
 RAYTALLY_DEFINE_KERNELS(Bih, search)
 
-/* ---- inspection ---- */
+/* ---- describe and validate ---- */
 
 /* A node and its cell. */
 typedef struct Place {
@@ -332,13 +337,13 @@ static void describe(const void *self, raytally_description *out) {
     describe_below(bih, (Place){0, 0, bih->box}, out);
 }
 
-static void show_below(const Bih *bih, Place place, raytally_show_box *show, void *viewer) {
+static void show_below(const Bih *bih, Place place, raytally_box_visitor *show, void *viewer) {
     const int leaf = is_leaf(&bih->nodes[place.node]);
     show(viewer, &place.cell, place.depth, leaf);
     for (uint32_t s = 0; s < 2 && !leaf; s++) show_below(bih, child_of(bih, &place, s), show, viewer);
 }
 
-static void each_box(const void *self, raytally_show_box *show, void *viewer) {
+static void each_box(const void *self, raytally_box_visitor *show, void *viewer) {
     const Bih *bih = (const Bih *)self;
     if (bih->node_count > 0) show_below(bih, (Place){0, 0, bih->box}, show, viewer);
 }
@@ -355,7 +360,7 @@ static int holds(const raytally_box *cell, const raytally_box *box) {
     return inside;
 }
 
-/* Returns the broken invariant, or NULL. */
+/* Returns what is wrong, or NULL. */
 static const char *check_leaf(Check *check, const Place *place, const Node *node) {
     const Bih *bih = check->bih;
     if (node->at.count == 0) return "a leaf is empty";

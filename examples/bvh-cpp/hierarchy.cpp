@@ -52,13 +52,13 @@ float center(const raytally_box &box, int axis) {
 
 class Hierarchy {
   public:
-    explicit Hierarchy(const raytally_build &what);
+    explicit Hierarchy(const raytally_build_input &what);
 
     [[gnu::always_inline]] void search(const raytally_prepared &ray, bool any, raytally_hit &best,
                                        raytally_counters *counters) const;
     void describe(raytally_description &out) const;
-    void validate() const; // throws std::logic_error with the broken invariant
-    void each_box(raytally_show_box *show, void *viewer) const;
+    void validate() const; // throws std::logic_error, with what is broken
+    void each_box(raytally_box_visitor *show, void *viewer) const;
 
   private:
     struct Node {
@@ -104,7 +104,7 @@ const std::array<raytally_param, 2> params = {{
      "as in bvh"},
 }};
 
-Hierarchy::Hierarchy(const raytally_build &what)
+Hierarchy::Hierarchy(const raytally_build_input &what)
     : boxes(what.boxes), bins(static_cast<std::uint32_t>(what.values[param_bins].integer)),
       max_leaf_size(static_cast<std::uint32_t>(what.values[param_max_leaf_size].integer)) {
     const std::size_t count = what.object_count;
@@ -210,7 +210,7 @@ inline void Hierarchy::search(const raytally_prepared &ray, bool any, raytally_h
         const Node &node = nodes[index];
         RAYTALLY_COUNT(counters, RAYTALLY_STEPS, 1);
         if (node.count == 0) {
-            const float limit = raytally_limit(&ray, &best);
+            const float limit = raytally_tmax(&ray, &best);
             const bool left = raytally_box_hit(&nodes[node.first].box, &ray, limit, &enter[0]);
             const bool right = raytally_box_hit(&nodes[node.first + 1].box, &ray, limit, &enter[1]);
             RAYTALLY_COUNT(counters, RAYTALLY_EXTENT_TESTS, 2);
@@ -227,7 +227,7 @@ inline void Hierarchy::search(const raytally_prepared &ray, bool any, raytally_h
         do {
             if (stacked == 0) return;
             stacked--;
-        } while (stack[stacked].enter > raytally_limit(&ray, &best));
+        } while (stack[stacked].enter > raytally_tmax(&ray, &best));
         index = stack[stacked].node;
     }
 }
@@ -266,7 +266,7 @@ void Hierarchy::validate() const {
     demand(std::find(seen.begin(), seen.end(), false) == seen.end(), "an object is in no leaf");
 }
 
-void Hierarchy::each_box(raytally_show_box *show, void *viewer) const {
+void Hierarchy::each_box(raytally_box_visitor *show, void *viewer) const {
     visit([&](const Node &node, std::uint32_t depth) { show(viewer, &node.box, depth, node.count > 0); });
 }
 
@@ -276,7 +276,7 @@ const Hierarchy &of(const void *self) {
     return *static_cast<const Hierarchy *>(self);
 }
 
-int build(const raytally_build *what, void **self) noexcept {
+int build(const raytally_build_input *what, void **self) noexcept {
     try {
         *self = new Hierarchy(*what);
         return RAYTALLY_BUILD_OK;
@@ -322,7 +322,7 @@ const raytally_accel_ops ops = {
     nullptr, // begin
     [](const void *self, raytally_description *out) { of(self).describe(*out); },
     validate,
-    [](const void *self, raytally_show_box *show, void *viewer) { of(self).each_box(show, viewer); },
+    [](const void *self, raytally_box_visitor *show, void *viewer) { of(self).each_box(show, viewer); },
 };
 
 } // namespace

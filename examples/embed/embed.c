@@ -7,7 +7,7 @@
 
 #include <stdio.h>
 
-/* Everything that the program creates, freed in one place. All functions accept NULL. */
+/* All objects of the program, freed in one place. Each may be NULL. */
 typedef struct Work {
     raytally_scene *scene;
     raytally_accelerator *accels[2];
@@ -28,18 +28,18 @@ static raytally_status prepare(Work *work, const char *scene, raytally_error *er
     if (status != RAYTALLY_OK) return status;
     printf("%s: %lu objects\n", scene, (unsigned long)raytally_scene_object_count(work->scene));
 
-    /* A smaller image than the scene's own. Accelerators built later know its samples. */
-    status = raytally_scene_sample(work->scene, 128, 128, 1, error);
+    /* A smaller picture than the scene's own; from here on accelerators know its samples. */
+    status = raytally_scene_set_sampling(work->scene, 128, 128, 1, error);
     for (int i = 0; i < 2 && status == RAYTALLY_OK; i++) {
         status = raytally_accelerator_build(work->scene, specs[i], 0, &work->accels[i], error);
     }
     return status;
 }
 
-/* Are the grid's hits right? Traces hard rays through it and through brute. */
+/* Are the grid's hits right? It is compared with brute on difficult rays. */
 static raytally_status verify(const Work *work, raytally_error *error) {
-    raytally_verifying how = RAYTALLY_VERIFYING;
-    raytally_verified found;
+    raytally_verify_options how = RAYTALLY_VERIFY_DEFAULTS;
+    raytally_verify_result found;
     how.rays = 2000;
     raytally_status status =
         raytally_verify(work->scene, raytally_accelerator_spec(work->accels[1]), &how, &found, error);
@@ -52,7 +52,7 @@ static raytally_status verify(const Work *work, raytally_error *error) {
 static raytally_status count(const Work *work, raytally_error *error) {
     for (int i = 0; i < 2; i++) {
         raytally_counters counters;
-        raytally_structure what;
+        raytally_statistics what;
         raytally_status status = raytally_count(work->accels[i], work->rays, 0, &counters, error);
         if (status != RAYTALLY_OK) return status;
         raytally_accelerator_describe(work->accels[i], &what);
@@ -66,7 +66,7 @@ static raytally_status count(const Work *work, raytally_error *error) {
 
 /* Which is faster? Times depend on the machine; the ratio is paired round by round, with its interval. */
 static raytally_status time_both(const Work *work, raytally_error *error) {
-    raytally_timing how = RAYTALLY_TIMING;
+    raytally_time_options how = RAYTALLY_TIME_DEFAULTS;
     raytally_time times[2];
     how.least = 0.005; /* seconds, to be quick; the default is that of `raytally bench` */
     raytally_status status = raytally_time_all(work->accels, 2, work->rays, &how, times, error);
@@ -78,7 +78,7 @@ static raytally_status time_both(const Work *work, raytally_error *error) {
     return status;
 }
 
-/* One ray, traced as a renderer would: each thread has its own tracer. */
+/* Traces one ray, as a renderer would: each thread has a tracer of its own. */
 static raytally_status ask(const Work *work, raytally_error *error) {
     raytally_tracer *tracer;
     raytally_hit hit;

@@ -50,7 +50,7 @@ struct Madmann {
     std::vector<std::uint32_t> ids;
     std::size_t depth = 0;
 
-    explicit Madmann(const raytally_build &what) {
+    explicit Madmann(const raytally_build_input &what) {
         const std::size_t count = what.object_count, bytes = count * (2 * sizeof(Node) + sizeof ids[0]);
         if (count >= Node::Index::max_first_id / 2 || bytes > what.byte_limit) throw std::bad_alloc();
         if (count == 0) return;
@@ -86,7 +86,7 @@ RAYTALLY_INLINE void search(const Madmann *self, void *memory, const raytally_pr
                             raytally_hit *best, raytally_counters *counters) {
     const auto hit = [&](const Node &node, float &enter) {
         RAYTALLY_COUNT(counters, RAYTALLY_EXTENT_TESTS, 1);
-        return raytally_box_hit(&node.box, ray, raytally_limit(ray, best), &enter) != 0;
+        return raytally_box_hit(&node.box, ray, raytally_tmax(ray, best), &enter) != 0;
     };
     const auto inner = [&](const Node &left, const Node &right) {
         float enter[2];
@@ -110,7 +110,7 @@ RAYTALLY_INLINE void search(const Madmann *self, void *memory, const raytally_pr
 
 RAYTALLY_DEFINE_KERNELS(Madmann, search)
 
-int build(const raytally_build *what, void **self) noexcept {
+int build(const raytally_build_input *what, void **self) noexcept {
     try {
         *self = new Madmann(*what);
         return RAYTALLY_BUILD_OK;
@@ -128,7 +128,7 @@ void describe(const void *self, raytally_description *out) {
     out->bytes = nodes * sizeof(Node) + of(self).ids.size() * sizeof of(self).ids[0];
 }
 
-void each_box(const void *self, raytally_show_box *show, void *viewer) {
+void each_box(const void *self, raytally_box_visitor *show, void *viewer) {
     of(self).visit([&](const Node &node, std::size_t level) {
         show(viewer, &node.box, static_cast<std::uint32_t>(level), node.is_leaf());
     });

@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file
- * An accelerator of your own. A plugin is a shared library that hands raytally one table of functions for
- * each accelerator in it; raytally then gives them specs, parameters, help, `verify`, `bench`, `run`, plots
- * and reports like those that it has. A plugin is compiled against these headers alone and linked with
- * nothing: what it needs of raytally it calls through the table of functions in its query (raytally_host).
+ * An accelerator of your own. A plugin is a shared library that exports a table of functions for each of its
+ * accelerators. raytally then provides specs, parameters, help, `verify`, `bench`, `run`, plots and reports
+ * for them, as for its own. A plugin is compiled against these headers alone and linked with nothing: it
+ * calls raytally through the table of functions in its query (raytally_host).
  *
  * The contract, which `raytally verify` checks:
- *  - the nearest hit is the least (t, object) of all hits, bit for bit: of two objects at the same t the one
- *    with the lower number. raytally_object_hits tests objects and keeps that order; raytally_box_hit (box.h)
- *    is the only test of boxes to prune by;
+ *  - the nearest hit is the least (t, object) of all hits, bit for bit: of two objects at the same t, the one
+ *    with the lower number. raytally_object_hits tests objects and keeps that order; prune only by
+ *    raytally_box_hit (box.h);
  *  - `occluded` names any object on the ray, or RAYTALLY_NO_OBJECT;
- *  - a structure is read only once it is built. What a traversal writes to lies in the memory of its query,
- *    of which each thread has one;
+ *  - a structure is read-only once it is built. A traversal writes only to the memory of its query; each
+ *    thread has its own query;
  *  - tracing allocates nothing and cannot fail;
- *  - the same rays give the same counts, and the same build the same structure, wherever its memory lies and
- *    on any number of threads. (That of a build `raytally reproduce` checks, which builds anew.)
+ *  - the same rays give the same counts, and the same build the same structure, independent of memory
+ *    addresses and of the number of threads. (`raytally reproduce`, which builds again, checks the latter.)
  *
- * What may go wrong stays where it is: a plugin runs in a process of its own, and one that crashes, hangs,
- * answers nonsense or writes beside the memory of its query loses its own results and no others. */
+ * A plugin runs in a process of its own. If it crashes, hangs, returns invalid answers or writes outside the
+ * memory of its query, it loses its own results and no others. */
 #ifndef RAYTALLY_ACCEL_H
 #define RAYTALLY_ACCEL_H
 
@@ -28,12 +28,12 @@
 extern "C" {
 #endif
 
-/** The version of this interface. A plugin of another one is refused. */
+/** The version of this interface. Plugins of another version are rejected. */
 #define RAYTALLY_ACCEL_ABI 1
 
 /* ---- parameters ---- */
 
-/** What a parameter is. */
+/** The type of a parameter. */
 enum raytally_param_type {
     RAYTALLY_INT,    /**< A whole number. */
     RAYTALLY_FLOAT,  /**< A finite number. */
@@ -44,36 +44,36 @@ enum raytally_param_type {
 /** The most parameters that an accelerator may have. */
 #define RAYTALLY_MAX_PARAMS 16
 
-/** One parameter, as in NAME:KEY=VALUE. From this table come parsing, range checks, help, and the values that
+/** One parameter, as in NAME:KEY=VALUE. This table drives parsing, range checks, help, and the values that
  * `verify --spread` tries. */
 typedef struct raytally_param {
     const char *name;         /**< The key: up to 63 letters, digits and '_'. */
     uint32_t type;            /**< One of ::raytally_param_type. */
-    const char *default_text; /**< The default, as text. */
+    const char *default_text; /**< The default value, as text. */
     double lo;                /**< The least number, inclusive; 0 for choices and flags. */
     double hi;                /**< The largest number, inclusive; 0 for choices and flags. */
     const char *choices;      /**< "sah|median" for a choice; else NULL. */
-    const char *test_values;  /**< Values worth testing, "1|4|20"; NULL for choices and flags: all of them. */
-    const char *meaning;      /**< One line, with the unit where there is one. */
-    const char *source;       /**< Where the default comes from: a paper, a measurement. */
+    const char *test_values;  /**< Values to test, "1|4|20"; NULL for choices and flags: all are tested. */
+    const char *meaning;      /**< One line, with the unit if there is one. */
+    const char *source;       /**< Source of the default: a paper, a measurement. */
 } raytally_param;
 
 /** The value of a parameter, by its type. */
 typedef union raytally_value {
-    int64_t integer; /**< Of a ::RAYTALLY_INT. */
-    double number;   /**< Of a ::RAYTALLY_FLOAT. */
-    uint32_t choice; /**< Of a ::RAYTALLY_CHOICE: which of them, from 0 on. */
-    uint32_t flag;   /**< Of a ::RAYTALLY_FLAG: 1 is on. */
+    int64_t integer; /**< A ::RAYTALLY_INT. */
+    double number;   /**< A ::RAYTALLY_FLOAT. */
+    uint32_t choice; /**< A ::RAYTALLY_CHOICE: index of the word, from 0. */
+    uint32_t flag;   /**< A ::RAYTALLY_FLAG: 1 is on. */
 } raytally_value;
 
-/* ---- what raytally does for a plugin ---- */
+/* ---- functions that raytally provides ---- */
 
 typedef struct raytally_query raytally_query;
 
-/** Functions of raytally. Call them through raytally_prepare and raytally_object_hits below. */
+/** Functions of raytally. Call them by raytally_prepare and raytally_object_hits below. */
 typedef struct raytally_host {
     uint32_t abi;  /**< RAYTALLY_ACCEL_ABI of the program. */
-    uint32_t size; /**< Of this struct, in bytes: later ones may have more at the end. */
+    uint32_t size; /**< Of this struct, in bytes: later versions may add members at the end. */
     /** See raytally_prepare. */
     void (*prepare)(raytally_query *query, const raytally_ray *ray, raytally_prepared *out);
     /** See raytally_object_hits. */
@@ -81,148 +81,146 @@ typedef struct raytally_host {
                        raytally_hit *best, raytally_counters *counters);
 } raytally_host;
 
-/** The state of one thread's rays. Only what is here is a plugin's business. */
+/** The state of one thread's rays. Plugins use only the members declared here. */
 struct raytally_query {
-    const raytally_host *host; /**< What raytally does for the plugin. */
+    const raytally_host *host; /**< Functions of raytally. */
 };
 
 /** Prepares a ray for tests of boxes and objects: reciprocals, signs, thickness.
- * @param query  of the kernel that was called
- * @param ray    valid; it must outlive `out`
- * @param out    what to test with */
+ * @param query  the argument of the kernel
+ * @param ray    a valid ray; it must outlive `out`
+ * @param out    the prepared ray */
 RAYTALLY_INLINE void raytally_prepare(raytally_query *query, const raytally_ray *ray,
                                       raytally_prepared *out) {
     query->host->prepare(query, ray, out);
 }
 
-/** Tests objects: calls the exact hit function of each, and keeps the best hit, the least (t, object). Counts
+/** Tests objects: calls the exact hit function of each and keeps the best hit, the least (t, object). Counts
  * RAYTALLY_OBJECT_TESTS, RAYTALLY_OBJECT_HITS and RAYTALLY_CSG_TESTS.
- * @param ray       of raytally_prepare
- * @param ids       [count] numbers of objects, each below raytally_build.object_count
- * @param count     how many, possibly 0
- * @param any       1: any hit will do; the first one ends it
- * @param best      the best hit so far, or {INFINITY, RAYTALLY_NO_OBJECT}; improved
- * @param counters  of the ray's kind, or NULL where nothing is counted
- * @return 1 if the search is over: any hit will do, and here is one; else 0 */
+ * @param ray       from raytally_prepare
+ * @param ids       [count] numbers of objects, each below raytally_build_input.object_count
+ * @param count     number of objects, possibly 0
+ * @param any       1: any hit is sufficient, and the first one ends the search
+ * @param best      the best hit so far, or {INFINITY, RAYTALLY_NO_OBJECT}; updated
+ * @param counters  of the ray's kind, or NULL if nothing is counted
+ * @return 1 if the search is over, because `any` is set and there is a hit; else 0 */
 RAYTALLY_INLINE int raytally_object_hits(const raytally_prepared *ray, const uint32_t *ids, uint32_t count,
                                          int any, raytally_hit *best, raytally_counters *counters) {
     return ray->query->host->object_hits(ray, ids, count, any, best, counters);
 }
 
-/** Adds `n` to one of ::raytally_counter. With a NULL that the compiler knows of nothing is left of it. */
+/** Adds `n` to one of ::raytally_counter. With a constant NULL it compiles to nothing. */
 #define RAYTALLY_COUNT(counters, counter, n)                                                                 \
     do {                                                                                                     \
         if (counters) (counters)->at[counter] += (uint64_t)(n);                                              \
     } while (0)
 
-/* ---- what a plugin does ---- */
+/* ---- functions that a plugin provides ---- */
 
 /** What `build` returns. */
-enum raytally_built {
+enum raytally_build_result {
     RAYTALLY_BUILD_OK = 0,       /**< *self is the structure. */
-    RAYTALLY_BUILD_REFUSED = 1,  /**< Not from this scene with these values: `message` says why. */
-    RAYTALLY_BUILD_NO_MEMORY = 2 /**< Memory is short, or the structure would go beyond the limit. */
+    RAYTALLY_BUILD_REFUSED = 1,  /**< This scene or these values are not supported: `message` says why. */
+    RAYTALLY_BUILD_NO_MEMORY = 2 /**< Out of memory, or the structure would exceed the limit. */
 };
 
-/** What a structure is built from, valid during the call of `build`. */
-typedef struct raytally_build {
-    uint32_t size;         /**< Of this struct, in bytes: later ones may have more at the end. */
-    uint32_t object_count; /**< Objects of the scene, numbered from 0 on; possibly 0. */
+/** Input of `build`, valid during the call. */
+typedef struct raytally_build_input {
+    uint32_t size;         /**< Of this struct, in bytes: later versions may add members at the end. */
+    uint32_t object_count; /**< Objects of the scene, numbered from 0; possibly none. */
     const raytally_box
         *boxes;       /**< [object_count] the box of each object. Borrowed; outlives the structure. */
-    raytally_box box; /**< Around all of them. */
+    raytally_box box; /**< Around all objects. */
     const raytally_value *values; /**< [param_count] in the order of the table, each within its range. */
-    int32_t threads;              /**< To build on, at least 1; must not change the structure. */
-    uint64_t byte_limit; /**< A structure that takes more is to be refused: RAYTALLY_BUILD_NO_MEMORY. */
-    char *message;       /**< [message_room] why it failed: a sentence for the user. */
-    size_t message_room; /**< In bytes. */
-} raytally_build;
+    int32_t threads;              /**< To build with, at least 1; must not change the structure. */
+    uint64_t byte_limit;          /**< A structure that needs more must fail: RAYTALLY_BUILD_NO_MEMORY. */
+    char *message;                /**< [message_room] out: why it failed, a sentence for the user. */
+    size_t message_room;          /**< In bytes. */
+} raytally_build_input;
 
-/** What a structure looks like. All is 0, and what is expected NaN, unless `describe` sets it. */
+/** Statistics of a structure. Numbers are 0 and predictions NaN unless `describe` sets them. */
 typedef struct raytally_description {
     uint64_t interior;      /**< Inner nodes. */
     uint64_t leaves;        /**< Leaves, or voxels. */
-    uint64_t empty_leaves;  /**< Of them, those without an object. */
+    uint64_t empty_leaves;  /**< Leaves without an object. */
     uint64_t references;    /**< Entries in all lists of objects. */
     uint64_t depth;         /**< Of the deepest leaf, the root being 0. */
     uint64_t bytes;         /**< Of its arrays. */
     double predicted_cost;  /**< Expected cost of a random line through the box, in object tests (SAH). */
     double predicted_tests; /**< Its expected object tests. */
     double predicted_steps; /**< Its expected steps. */
-    double reserved[7];     /**< Room for what later ones say. Not to be set. */
+    double reserved[7];     /**< For later versions. Do not set. */
 } raytally_description;
 
-/** Who looks at the boxes of a structure, for pictures: to be called once for each.
- * @param viewer  as it was given
- * @param box     of a node
- * @param depth   below the root, which is at 0
- * @param leaf    1 if it lists objects */
-typedef void raytally_show_box(void *viewer, const raytally_box *box, uint32_t depth, int leaf);
+/** Visits the boxes of a structure, for pictures: called once for each box.
+ * @param context  the argument of `each_box`
+ * @param box      of a node
+ * @param depth    below the root, which has depth 0
+ * @param leaf     1 if it lists objects */
+typedef void raytally_box_visitor(void *context, const raytally_box *box, uint32_t depth, int leaf);
 
 /** Nearest hits of a stream of rays.
  * @param self      the structure
- * @param memory    of the query: what query_bytes asked for; NULL where that was nothing
+ * @param memory    of the query: query_bytes bytes, or NULL if that is 0
  * @param query     for raytally_prepare
- * @param rays      [count] valid, of any kinds
+ * @param rays      [count] valid rays of any kinds
  * @param count     at least 1
- * @param hits      [count] the answers: {INFINITY, RAYTALLY_NO_OBJECT} where there is no hit
- * @param counters  [RAYTALLY_RAY_KINDS] to add to, by the kind of each ray; or NULL: the rays are timed, and
- *                  nothing is counted. RAYTALLY_RAYS and RAYTALLY_HITS are raytally's to count */
+ * @param hits      [count] out: the answers; {INFINITY, RAYTALLY_NO_OBJECT} for a miss
+ * @param counters  [RAYTALLY_RAY_KINDS] to add to, by the kind of each ray; or NULL if nothing is counted.
+ *                  Do not count RAYTALLY_RAYS and RAYTALLY_HITS: raytally does */
 typedef void raytally_nearest_kernel(const void *self, void *memory, raytally_query *query,
                                      const raytally_ray *rays, size_t count, raytally_hit *hits,
                                      raytally_counters *counters);
 
-/** Whether anything lies on each ray; as ::raytally_nearest_kernel, but for the answers: any object on the
- * ray, or RAYTALLY_NO_OBJECT. */
+/** Whether anything lies on each ray. As ::raytally_nearest_kernel, except that an answer is any object on
+ * the ray, or RAYTALLY_NO_OBJECT. */
 typedef void raytally_occluded_kernel(const void *self, void *memory, raytally_query *query,
                                       const raytally_ray *rays, size_t count, uint32_t *occluders,
                                       raytally_counters *counters);
 
-/** One accelerator. Members that are optional may be NULL.
+/** One accelerator. Optional members may be NULL.
  *
- * Who calls: `build`, `query_bytes`, `describe`, `validate`, `each_box` and `destroy` are called by the main
- * thread of the plugin's process, one after the other, `destroy` when no query is left; but `validate` and
- * `each_box` perhaps while others trace. `nearest`, `occluded` and `begin` are called by a thread for each
- * query, all at the same time. */
+ * Threads: the main thread of the plugin's process calls `build`, `query_bytes`, `describe`, `validate`,
+ * `each_box` and, when no query is left, `destroy`, one after the other. Each query has a thread that calls
+ * `nearest`, `occluded` and `begin`; these threads run at the same time, possibly during `validate` and
+ * `each_box`. */
 typedef struct raytally_accel_ops {
-    uint32_t abi;                 /**< RAYTALLY_ACCEL_ABI. */
-    uint32_t size;                /**< sizeof(raytally_accel_ops): later ones may have more at the end. */
-    const char *name;             /**< As in a spec: a letter, and then letters, digits, '_' and '-', 63 at
-                                     most; of no other accelerator, and not "all". */
-    const char *summary;          /**< One line. */
-    const char *paper;            /**< Author, year, title, venue. */
+    uint32_t abi;        /**< RAYTALLY_ACCEL_ABI. */
+    uint32_t size;       /**< sizeof(raytally_accel_ops): later versions may add members at the end. */
+    const char *name;    /**< As in a spec: a letter, and then letters, digits, '_' and '-', at most 63
+                            characters; not the name of another accelerator, and not "all". */
+    const char *summary; /**< One line. */
+    const char *paper;   /**< Author, year, title, venue. */
     const raytally_param *params; /**< [param_count], or NULL. */
     uint32_t param_count;         /**< Up to RAYTALLY_MAX_PARAMS. */
 
-    /** One of ::raytally_built. On failure nothing is left behind. */
-    int (*build)(const raytally_build *build, void **self);
+    /** Builds *self. Returns one of ::raytally_build_result; on failure it has freed everything. */
+    int (*build)(const raytally_build_input *input, void **self);
     /** Frees what `build` made. */
     void (*destroy)(void *self);
 
-    raytally_nearest_kernel *nearest;   /**< RAYTALLY_DEFINE_KERNELS makes one of a search for a ray. */
+    raytally_nearest_kernel *nearest;   /**< RAYTALLY_DEFINE_KERNELS defines it from a search for one ray. */
     raytally_occluded_kernel *occluded; /**< The same. */
 
-    /** Optional: bytes of memory for each query; zeroed, and 64-byte aligned. Asked once, behind `build`.
-     * Where it is NULL, or says 0, `memory` is NULL wherever it is handed over. */
+    /** Optional: the bytes of memory that each query needs; zeroed and 64-byte aligned. Called once, after
+     * `build`. Without it, or if it returns 0, `memory` is NULL everywhere. */
     size_t (*query_bytes)(const void *self);
-    /** Optional: brings the memory of a query back to what a fresh one has, as far as later counts could
-     * tell. */
+    /** Optional: resets the memory of a query, so that later counts do not depend on earlier rays. */
     void (*begin)(const void *self, void *memory);
-    /** Optional: what the structure looks like. */
+    /** Optional: writes statistics of the structure. */
     void (*describe)(const void *self, raytally_description *out);
-    /** Optional: 0, or 1 with a sentence in message[0..room) that names the first broken invariant. */
+    /** Optional: 0, or 1 and a sentence in message[0..room) that names the first broken invariant. */
     int (*validate)(const void *self, char *message, size_t room);
-    /** Optional: shows every box of the structure; where there are many it is called again, and is to show
-     * them in the same order. */
-    void (*each_box)(const void *self, raytally_show_box *show, void *viewer);
+    /** Optional: visits every box of the structure. It may be called several times and must visit them in the
+     * same order. */
+    void (*each_box)(const void *self, raytally_box_visitor *visit, void *context);
 } raytally_accel_ops;
 
-/** What a plugin exports, by the name `raytally_plugin`: the table number `index` of those that it has, from
- * 0 on, and NULL beyond the last. The tables stay where they are. */
+/** The function that a plugin exports under the name `raytally_plugin`: returns its table number `index`,
+ * from 0, and NULL after the last. The tables must stay valid. */
 typedef const raytally_accel_ops *raytally_plugin_function(uint32_t index);
 
-/** The definition of raytally_plugin begins with this: RAYTALLY_PLUGIN { return index == 0 ? &mine : NULL; }
- */
+/** Begins the definition of raytally_plugin: RAYTALLY_PLUGIN { return index == 0 ? &mine : NULL; } */
 #ifdef __cplusplus
 #define RAYTALLY_PLUGIN                                                                                      \
     extern "C" __attribute__((visibility("default"))) const raytally_accel_ops *raytally_plugin(             \
@@ -234,13 +232,14 @@ typedef const raytally_accel_ops *raytally_plugin_function(uint32_t index);
     const raytally_accel_ops *raytally_plugin(uint32_t index)
 #endif
 
-/** Defines NAME_nearest and NAME_occluded from a search for one ray, which is inlined into each of them
- * twice, with counters and with a constant NULL, so that nothing is left of counting where rays are timed:
+/** Defines the kernels NAME_nearest and NAME_occluded from a search for one ray. The search is inlined twice
+ * into each kernel: with counters, and with a constant NULL, so that no counting code remains when rays are
+ * timed:
  *
  *     RAYTALLY_INLINE void NAME(const Type *self, void *memory, const raytally_prepared *ray, int any,
  *                               raytally_hit *best, raytally_counters *counters);
  *
- * It improves *best, and may return as soon as raytally_object_hits says that the search is over. */
+ * It updates *best, and may return as soon as raytally_object_hits returns 1. */
 #define RAYTALLY_DEFINE_KERNELS(Type, name)                                                                  \
     RAYTALLY_INLINE raytally_hit name##_one(const Type *self, void *memory, raytally_query *query,           \
                                             const raytally_ray *ray, int any, raytally_counters *counters) { \

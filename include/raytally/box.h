@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file
- * Boxes, rays prepared for tests of boxes, and the one box test that exactness rests on. It is frozen: within
- * a major version these operations give the same bits.
+ * Boxes, prepared rays, and the one box test that exactness depends on. It is frozen: within a major version
+ * these operations give the same bits.
  *
- * Why a traversal that uses it is exact. Hit functions compute in rounded arithmetic, so a ray may be said to
- * hit an object that it misses by a few ulps. A prepared ray is therefore thick: the planes of a box are
- * moved outward by a little, enough for every box within the scene's. What raytally calls a hit on an object
- * is brought into the interval in which the thick ray is within the object's own box. Crossings are monotone
- * in the planes, in float32 as in the real numbers. So for a box B that contains the box of an object,
+ * Why a traversal that uses it is exact. Hit functions compute in rounded arithmetic, so a ray may hit an
+ * object that it misses by a few ulps. A prepared ray is therefore thick: it moves the planes of a box
+ * outward by a little, enough for every box within the scene's. Every hit that raytally reports on an object
+ * is clamped to the interval in which the thick ray is within the object's own box. Crossings are monotone in
+ * the planes, in float32 as in real numbers. So for a box B that contains the box of an object,
  *
  *     enter(B) <= t <= leave(B), bit for bit, for every hit t on that object.
  *
- * A structure may skip a box only where raytally_box_hit says no, or where it enters beyond the best hit so
- * far: enter > t. Where enter == t there may lie another object at the same t with a lower number, which is
- * then the answer; so `>=` is wrong. No other tolerance is needed anywhere.
+ * A structure may skip a box only if raytally_box_hit returns 0, or if the ray enters it beyond the best hit
+ * so far: enter > t. If enter == t, the box may hold another object at the same t with a lower number, which
+ * is then the answer; so `>=` is wrong. No other tolerance is needed anywhere.
  *
  * Compile without -ffast-math and -ffinite-math-only: NaN and infinities are part of the test. */
 #ifndef RAYTALLY_BOX_H
@@ -32,10 +32,10 @@
 extern "C" {
 #endif
 
-/** For functions that are to vanish into their callers. */
+/** For functions that must be inlined. */
 #define RAYTALLY_INLINE static inline __attribute__((always_inline))
 
-/** An axis-aligned box, closed: its faces belong to it. That of an empty scene has lo = INFINITY and
+/** An axis-aligned box, closed: its faces belong to it. The box of an empty scene has lo = INFINITY and
  * hi = -INFINITY. */
 typedef struct raytally_box {
     float lo[3]; /**< The least x, y, z. */
@@ -44,38 +44,38 @@ typedef struct raytally_box {
 
 struct raytally_query;
 
-/** A ray with what box tests need, computed once by raytally_prepare. Arrays are indexed by axis, x, y, z;
- * the fourth number of each is there for vectors and has no meaning. It may be copied. */
+/** A ray with the values that box tests need, computed once by raytally_prepare. Arrays are indexed by axis
+ * x, y, z; the fourth number of each is padding for vector loads. It may be copied. */
 typedef struct raytally_prepared {
-    float tmin;                   /**< As in the ray. */
-    float tmax;                   /**< As in the ray, but finite: a hit at infinity is none. */
-    float org[4];                 /**< Origin. */
-    float dir[4];                 /**< Direction. */
-    float inv[4];                 /**< 1 / dir, possibly infinite. */
-    float org_near[4];            /**< The origin moved by the thickness, for planes crossed first ... */
-    float org_far[4];             /**< ... and for those crossed last. */
-    uint32_t negative[4];         /**< 1 where dir has its sign bit set, -0 included; else 0. */
-    uint32_t first[4];            /**< Where in a box the sides are that it crosses first, in bytes ... */
-    uint32_t last[4];             /**< ... and those that it crosses last. */
-    const raytally_ray *ray;      /**< What it was made from; it must outlive it. */
-    struct raytally_query *query; /**< That it was made for. */
-    uint64_t own[40];             /**< raytally's own. */
+    float tmin;              /**< As in the ray. */
+    float tmax;              /**< As in the ray, but finite: there are no hits at infinity. */
+    float org[4];            /**< Origin. */
+    float dir[4];            /**< Direction. */
+    float inv[4];            /**< 1 / dir, possibly infinite. */
+    float org_near[4];       /**< Origin moved by the thickness, for the planes that are crossed first ... */
+    float org_far[4];        /**< ... and for those that are crossed last. */
+    uint32_t negative[4];    /**< 1 if dir has its sign bit set, -0 included; else 0. */
+    uint32_t first[4];       /**< Byte offset, in a raytally_box, of the side that is crossed first ... */
+    uint32_t last[4];        /**< ... and of the side that is crossed last. */
+    const raytally_ray *ray; /**< The original, which must outlive this. */
+    struct raytally_query *query; /**< Its query. */
+    uint64_t own[40];             /**< Private to raytally. */
 } raytally_prepared;
 
-/** A side of a box, so many bytes from its beginning (raytally_prepared.first). */
+/** The side of a box at a byte offset (raytally_prepared.first). */
 RAYTALLY_INLINE float raytally_box_side(const raytally_box *box, uint32_t place) {
     float at;
     memcpy(&at, (const char *)box + place, sizeof at);
     return at;
 }
 
-/** True if the thick ray meets the box for some t in [ray->tmin, tmax]; then *enter is where, at least tmin.
- * (The slab test of Kay & Kajiya 1986.) A NaN, of an origin on a plane that the ray runs along, is passed
- * over: such a ray counts as inside.
+/** Whether the thick ray intersects the box for some t in [ray->tmin, tmax]: the slab test of Kay & Kajiya
+ * 1986. A ray whose origin lies on a plane that it is parallel to gives NaN there, and counts as inside.
  * @param box    within the scene's box
- * @param ray    of raytally_prepare
- * @param tmax   raytally_limit: the best hit so far, or the ray's end
- * @param enter  set in any case */
+ * @param ray    from raytally_prepare
+ * @param tmax   from raytally_tmax
+ * @param enter  out: the t of entry, at least tmin; set in any case
+ * @return 1 or 0 */
 RAYTALLY_INLINE int raytally_box_hit(const raytally_box *box, const raytally_prepared *ray, float tmax,
                                      float *enter) {
     float from = ray->tmin, to = tmax;
@@ -89,8 +89,8 @@ RAYTALLY_INLINE int raytally_box_hit(const raytally_box *box, const raytally_pre
     return from <= to;
 }
 
-/** What a traversal compares boxes with: t of the best hit so far, or the ray's end while there is none. */
-RAYTALLY_INLINE float raytally_limit(const raytally_prepared *ray, const raytally_hit *best) {
+/** The end of the search: t of the best hit so far, or the ray's tmax if there is none. */
+RAYTALLY_INLINE float raytally_tmax(const raytally_prepared *ray, const raytally_hit *best) {
     return best->t < ray->tmax ? best->t : ray->tmax;
 }
 

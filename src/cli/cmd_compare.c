@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* raytally compare: what a change has made faster or slower, and which counts it changed; by two result
- * directories, or by two programs that run in turns. */
+/* raytally compare: what a change made faster or slower, and which counts it changed; from two result
+ * directories, or two programs that run in turns. */
 #include "cli/cli.h"
 #include "cli/plugins.h"
 #include "cli/recording.h"
@@ -28,7 +28,7 @@ enum {
     OPT_JSON
 };
 
-/* A difference between two directories: runs of one build, made one after the other, differ by less. */
+/* Runs of one build, one after the other, differ by less. */
 static const double MARGIN_OF_DIRECTORIES = 0.05;
 
 typedef struct Options {
@@ -44,21 +44,19 @@ typedef struct Options {
 
 static const struct argp_option options[] = {
     {"with", OPT_WITH, "PROGRAM", 0,
-     "Another raytally, as in ../old/build/release/raytally: the one that was `before`. This one is `after`",
-     0},
+     "Another raytally, such as ../old/build/release/raytally, as `before`; this one is `after`", 0},
     {"accel", 'a', "SPEC", 0, "An accelerator, for a SCENE; once per accelerator. `all`: every one", 0},
-    {"strict", OPT_STRICT, 0, 0, "Exit code 1 where anything is slower", 0},
+    {"strict", OPT_STRICT, 0, 0, "Exit code 1 if anything is slower", 0},
     {"margin", OPT_MARGIN, "P%", 0,
-     "Call it a difference only beyond P % (none with --with; 5% for directories, which are single runs)", 0},
+     "Report only differences beyond P % (default: 0 with --with; 5% for directories, which are single runs)",
+     0},
     {"rounds", OPT_ROUNDS, "N", 0,
-     "With --with: at least N rounds, each of both programs started anew (10; more where there are many "
-     "cells)",
-     0},
+     "With --with: at least N rounds; each starts both programs again (10; more if there are many cells)", 0},
     {"until", OPT_UNTIL, "P%", 0,
-     "With --with: go on with rounds until all intervals lie within P % of their medians, for 1000 rounds or "
-     "--patience seconds at most",
+     "With --with: continue until all intervals are within P % of their medians, for at most 1000 rounds or "
+     "--patience seconds",
      0},
-    {"patience", OPT_PATIENCE, "SECONDS", 0, "With --until: at most so long, of all (600)", 0},
+    {"patience", OPT_PATIENCE, "SECONDS", 0, "With --until: most seconds in all (600)", 0},
     {"quick", OPT_QUICK, 0, 0, "The smaller variant of the EXPERIMENT", 0},
     {"threads", OPT_THREADS, "N", 0, "Threads, as in `raytally bench`", 0},
     {"json", OPT_JSON, 0, 0, "One JSON document on stdout instead of the table", 0},
@@ -74,12 +72,10 @@ static void check(Options *o, struct argp_state *state) {
         argp_error(state, "--with takes one EXPERIMENT.yaml, or one SCENE with --accel");
     if (!programs &&
         (e->candidate_count || o->recording.frame || o->recording.kinds || o->until > 0 || o->rounds))
-        argp_error(
-            state,
-            "two result directories are compared as they are: rays, --accel, --rounds and --until go with "
-            "--with PROGRAM");
+        argp_error(state, "rays, --accel, --rounds and --until need --with PROGRAM: two result directories "
+                          "are compared as they are");
     if (programs && !e->candidate_count && (o->recording.frame || o->recording.kinds))
-        argp_error(state, "an EXPERIMENT says what its rays are; for a SCENE give --accel");
+        argp_error(state, "an EXPERIMENT defines its rays; for a SCENE give --accel");
     rt_recording_finish(&o->recording, state);
 }
 
@@ -143,7 +139,7 @@ static void on_notice(void *context, const char *message) {
     fprintf(stderr, "%sraytally: %s\n", *terminal ? "\r\033[K" : "", message);
 }
 
-/* A worker is asked for by the same arguments, so that it measures the same. */
+/* A worker gets the same arguments, so it measures the same. */
 static RtStatus compare_programs(Options *o, int argc, char **argv, RtComparison *comparison,
                                  RtError *error) {
     bool terminal = isatty(STDERR_FILENO) == 1;
@@ -154,7 +150,7 @@ static RtStatus compare_programs(Options *o, int argc, char **argv, RtComparison
     arguments[1] = compare;
     arguments[2] = worker;
     for (int i = 1; i < argc; i++) arguments[i + 2] = argv[i];
-    RtStatus status = load(o, error); /* what is wrong with it is told once */
+    RtStatus status = load(o, error); /* reports errors once */
     RtPrograms programs = {.before = o->with,
                            .after = "/proc/self/exe",
                            .arguments = arguments,
@@ -228,20 +224,19 @@ const struct argp rt_compare_argp = {
     .options = options,
     .parser = parse_option,
     .args_doc = "BEFORE AFTER\nEXPERIMENT.yaml --with PROGRAM\nSCENE --accel SPEC --with PROGRAM",
-    .doc = "Say what is faster, slower or no different after a change, and which counts changed: from "
-           "two result "
-           "directories, or by running this raytally and another one in turns on the same rays, which "
-           "finds much "
-           "smaller differences."
-           "\vRatios are of throughput: above 1 it is faster now. All intervals hold together in 95 %, "
-           "however many "
-           "cells there are. Directories are single runs at two times; what they differ by anyway is "
-           "left to "
-           "--margin. Examples:\n"
-           "  raytally compare balls --accel bvh --accel grid --with ../old/build/release/raytally\n"
-           "  raytally compare experiments/first-look.yaml --quick --with ../old/build/release/raytally "
-           "--until 1%\n"
-           "  raytally compare results/last-month results/first-look --strict",
+    .doc =
+        "Report what is faster, slower or no different after a change, and which counts changed: from two "
+        "result "
+        "directories, or by running this raytally and another one in turns on the same rays, which finds "
+        "much "
+        "smaller differences."
+        "\vRatios are of throughput: above 1 means faster now. All intervals hold together in 95 %, however "
+        "many cells there are. Directories are single runs at two times; --margin allows for what such runs "
+        "differ by anyway. Examples:\n"
+        "  raytally compare balls --accel bvh --accel grid --with ../old/build/release/raytally\n"
+        "  raytally compare experiments/first-look.yaml --quick --with ../old/build/release/raytally "
+        "--until 1%\n"
+        "  raytally compare results/last-month results/first-look --strict",
     .children = children};
 
 int rt_command_compare(int argc, char **argv) {

@@ -63,7 +63,7 @@ RtStatus rt_callgrind_run(RtCallgrind *callgrind, char *const *arguments, RtErro
 
 /* ---- as tables ---- */
 
-/* The row at hand. */
+/* The current row. */
 typedef struct RtInstructionsRow {
     const RtCallgrind *callgrind;
     const RtInstructions *cell;

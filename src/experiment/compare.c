@@ -45,7 +45,7 @@ RtComparedCell *rt_comparison_cell(RtComparison *comparison, const char *scene, 
 
 /* ---- two directories ---- */
 
-/* The candidate of `other` that is meant by candidate `c` on workload `t`; its candidate_count where there is
+/* The candidate of `other` with the label of candidate `c`, on workload `t`; its candidate_count if there is
  * none. */
 static uint32_t find_candidate(const RtResults *results, uint32_t c, const RtResults *other, uint32_t t) {
     const RtExperiment *e = other->experiment;
@@ -55,7 +55,7 @@ static uint32_t find_candidate(const RtResults *results, uint32_t c, const RtRes
     return found < e->candidate_count ? found : e->candidate_count;
 }
 
-/* Where cells are in one of them alone, `alone` says in which. */
+/* `swapped`: only looks for cells that are missing before. */
 static RtStatus compare_cell(const RtResults *before, uint32_t t, uint32_t c, const RtResults *after,
                              RtRayKind kind, bool swapped, RtComparison *comparison, RtError *error) {
     const char *scene = before->experiment->workloads[t].label;
@@ -101,7 +101,7 @@ static RtStatus compare_all(const RtResults *before, const RtResults *after, boo
     return RT_OK;
 }
 
-/* The interval of each cell, once it is known how many there are. */
+/* The interval of a cell; its coverage depends on the number of cells. */
 static RtStatus estimate_cell(RtComparedCell *cell, const RtResults *before, const RtResults *after,
                               double coverage, RtError *error) {
     RtRayKind kind = RT_RAY_PRIMARY;
@@ -129,7 +129,7 @@ RtStatus rt_compare_results(const RtResults *before, const RtResults *after, RtC
     return RT_OK;
 }
 
-/* ---- what came out ---- */
+/* ---- results ---- */
 
 void rt_comparison_judge(RtComparison *comparison) {
     const double margin = 1 + comparison->margin;
@@ -191,14 +191,14 @@ static const void *tally_after(const void *row) {
     X(accel, "accelerator", text, "", "the accelerator's label", r->cell->accel)                             \
     X(kind, "kind", text, "", "kind of the rays", r->cell->kind)                                             \
     X(interval, "ratio", interval, "", "throughput after over that before", interval_of(r))                  \
-    X(change, "time", text, "", "faster, slower, or why that is not known", change_names[r->cell->change])   \
-    X(counts, "counts", text, "", "same or changed; null: not known, or not the same on every machine",      \
+    X(change, "time", text, "", "faster, slower, or why that is unknown", change_names[r->cell->change])     \
+    X(counts, "counts", text, "", "same or changed; null: unknown, or dependent on the machine",             \
       counts_of(r))                                                                                          \
     X(rays, "rays", integer, "", "rays measured", r->cell->rays)                                             \
     X(ns_before, "ns_before", real6, "ns", "time per ray before; median", TIMED(1e9 * r->cell->before))      \
     X(ns_after, "ns_after", real6, "ns", "time per ray after; median", TIMED(1e9 * r->cell->after))          \
     X(ratio, "ratio", real6, "", "throughput after over that before; median", TIMED(r->cell->ratio.median))  \
-    X(ratio_low, "ratio_low", end, "", "lower end of its interval; all of them hold together in 95 %",       \
+    X(ratio_low, "ratio_low", end, "", "lower end of its interval; all intervals hold together in 95 %",     \
       TIMED(r->cell->ratio.low))                                                                             \
     X(ratio_high, "ratio_high", end, "", "upper end of its interval", TIMED(r->cell->ratio.high))
 
@@ -228,7 +228,7 @@ RtTable rt_comparison_table(RtComparedRow *row, bool all) {
     return table;
 }
 
-/* ---- all of it ---- */
+/* ---- text and JSON ---- */
 
 static void print_changed_counts(const RtComparison *comparison, FILE *out) {
     for (uint32_t i = 0; i < comparison->count; i++) {
@@ -285,8 +285,7 @@ void rt_comparison_print(const RtComparison *comparison, FILE *out) {
     if (comparison->rounds)
         fprintf(out, " %" PRIu32 " round%s in %.0f s.", comparison->rounds, rt_plural(comparison->rounds),
                 comparison->seconds);
-    if (comparison->margin > 0)
-        fprintf(out, " A difference is one beyond %.3g %%.", 100 * comparison->margin);
+    if (comparison->margin > 0) fprintf(out, " Differences count beyond %.3g %%.", 100 * comparison->margin);
     fputc('\n', out);
 }
 

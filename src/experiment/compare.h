@@ -1,24 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Comparisons of what was measured before and after a change: by two programs that run in turns on the same
- * rays, or as two result directories have it. Each cell (scene, accelerator, kind of rays) gets the ratio of
- * throughput after to that before, with an interval, and a verdict.
+/* Comparisons before and after a change: of two programs that run in turns on the same rays, or of two result
+ * directories. Each cell (scene, accelerator, kind of rays) gets the ratio of throughput after to that
+ * before, an interval, and a verdict.
  *
- * Two programs. What a process is given by chance, where its code, stack and arrays lie, makes it faster or
- * slower by a percent or two for as long as it lives (Mytkowicz et al. 2009, "Producing Wrong Data Without
- * Doing Anything Obviously Wrong!", ASPLOS), so it is processes that are repeated: a round starts both
- * programs anew, in an order drawn by lot, and has them take turns RT_TURNS times in each cell, on the same
- * processor. Its ratio is the median of the turns, and rounds are what the order statistics of
- * measure/statistics.h are over. If both programs are the same, which of them is called `after` makes no
- * difference to a round, so each ratio is as likely above 1 as below, whatever the noise: the interval is
- * exact.
+ * Two programs. A process is faster or slower by a percent or two for as long as it lives, because of where
+ * its code, stack and arrays happen to lie (Mytkowicz et al. 2009, "Producing Wrong Data Without Doing
+ * Anything Obviously Wrong!", ASPLOS). So processes are repeated: each round starts both programs again, in
+ * random order, and runs them in turns, RT_TURNS times in each cell, on the same processor. The ratio of a
+ * round is the median of its turns; the order statistics of measure/statistics.h are over rounds. If both
+ * programs are the same, which one is called `after` does not matter, so each ratio is as likely above 1 as
+ * below, whatever the noise: the interval is exact.
  *
- * Two directories are one process each, at two times. Nothing in them says what such runs differ by on their
- * own, so a difference is one from a margin on (Options.margin), and their rounds, which were not taken
- * together, are compared as unpaired ones.
+ * Two directories are one process each, at two times. They do not show how much such runs differ anyway, so
+ * only differences beyond a margin count (RtComparison.margin), and their rounds are compared as unpaired
+ * ones.
  *
  * Many cells. All intervals of a comparison hold together in 95 % of all cases (rt_coverage_of_each): of
- * twenty comparisons of a program with itself, however many cells they have, about one says that something
- * differs. */
+ * twenty comparisons of a program with itself, about one reports a difference, however many cells they have.
+ */
 #ifndef RT_EXPERIMENT_COMPARE_H
 #define RT_EXPERIMENT_COMPARE_H
 
@@ -50,10 +49,10 @@ typedef struct RtComparedCell {
     bool timed;                    /* ratio is known */
     RtEstimate ratio;              /* of throughput after to that before */
     double before, after;          /* seconds a ray: median */
-    bool counted;                  /* both of these are known, and the same wherever they are counted */
+    bool counted;                  /* both of these are known, and independent of the machine */
     RtTally counts_before, counts; /* of the cell */
     double *ratios;                /* [RT_MAX_ROUNDS] owned: of each round of two programs; or NULL */
-    uint32_t rounds;               /* of them: where limits leave a cell out of one, fewer than of others */
+    uint32_t rounds;               /* of these; fewer if a limit excluded the cell from some */
 } RtComparedCell;
 
 typedef struct RtComparison {
@@ -61,19 +60,19 @@ typedef struct RtComparison {
     uint32_t count, capacity;
     uint32_t timed;               /* cells with an interval */
     uint32_t rounds;              /* of two programs; 0: of two directories */
-    double margin;                /* a difference is one beyond this part */
-    double seconds;               /* that it took */
-    char before[256], after[256]; /* who was compared */
+    double margin;                /* differences count beyond this part */
+    double seconds;               /* of the comparison */
+    char before[256], after[256]; /* what was compared */
     json_t
         *plugins; /* owned: of two directories, whose plugins are not the same (experiment/plugins_used.h) */
 } RtComparison;
 
-/* Zero it before. Clear also after a failure. */
+/* Zero a comparison first; clear it, also after a failure. */
 void rt_comparison_clear(RtComparison *comparison);
 
 /* ---- two directories ---- */
 
-/* Compares all cells of results that were loaded from two directories; their null runs aside. */
+/* Compares all cells of results loaded from two directories, except null runs. */
 RtStatus rt_compare_results(const RtResults *before, const RtResults *after, RtComparison *comparison,
                             RtError *error);
 
@@ -82,12 +81,12 @@ RtStatus rt_compare_results(const RtResults *before, const RtResults *after, RtC
 typedef struct RtPrograms {
     const char *before, *after; /* paths of programs: another, and this one */
     char *const *arguments;     /* of either, NULL behind the last: which make it a worker (worker.c) */
-    uint32_t rounds;            /* at least; more where so many cells ask for them */
+    uint32_t rounds;            /* at least; more if the number of cells requires them */
     double until, patience;     /* as in RtWorkloadOptions; patience is of all */
-    double least;               /* seconds that a turn takes at least */
+    double least;               /* least seconds of a turn */
     bool pinned;                /* each cell on one processor */
     uint64_t seed;              /* of all orders */
-    void *context;              /* who is told; both members may be NULL */
+    void *context;              /* for the callbacks, which may be NULL */
     void (*progress)(void *context, uint32_t round, uint32_t rounds, const char *scene, const char *kind);
     void (*notice)(void *context, const char *message);
 } RtPrograms;
@@ -99,13 +98,12 @@ RtStatus rt_compare_programs(const RtPrograms *programs, RtComparison *compariso
 RtStatus rt_worker_serve(const RtExperiment *experiment, const RtWorkloadOptions *options, FILE *in,
                          FILE *out, RtError *error);
 
-/* ---- what came out ---- */
+/* ---- results ---- */
 
-/* Decides on all cells, of which the ratios are there. */
+/* Sets the verdict of every cell from its ratio. */
 void rt_comparison_judge(RtComparison *comparison);
 
-/* The cell, appended where it is not there yet; NULL where memory is short. It stays where it is until the
- * next call. */
+/* Finds the cell, or appends it; NULL if memory is short. Valid until the next call. */
 RtComparedCell *rt_comparison_cell(RtComparison *comparison, const char *scene, const char *accel,
                                    const char *kind);
 
@@ -113,15 +111,16 @@ RtComparedCell *rt_comparison_cell(RtComparison *comparison, const char *scene, 
 uint32_t rt_comparison_count(const RtComparison *comparison, RtChange change);
 uint32_t rt_comparison_changed(const RtComparison *comparison);
 
-/* A row per cell, for the eye and for JSON; `row` is used by the table alone. */
+/* A table with a row per cell, for text or, with all columns, for JSON; `row` is scratch memory of the table.
+ */
 typedef struct RtComparedRow {
     const RtComparison *comparison;
     const RtComparedCell *cell;
 } RtComparedRow;
 RtTable rt_comparison_table(RtComparedRow *row, bool all);
 
-/* All of it: the table, counts that changed, and sentences that say what it is worth; or a new reference to a
- * document, NULL where memory is short. */
+/* Prints the table, changed counts, and an explanation; or makes a JSON document, a new reference, NULL if
+ * memory is short. */
 void rt_comparison_print(const RtComparison *comparison, FILE *out);
 json_t *rt_comparison_json(const RtComparison *comparison);
 

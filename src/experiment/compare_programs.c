@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Two programs against each other: two workers (worker.c), started anew for each round, that run in turns. */
+/* Two programs against each other: two workers (worker.c), started again for each round, that run in turns.
+ */
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/process.h"

@@ -22,7 +22,7 @@ static bool is_used(const RtExperiment *experiment, const char *name) {
     return false;
 }
 
-/* Of the list that rt_machine_json has under "plugins". */
+/* From the list under "plugins" of rt_machine_json. */
 static json_t *used_of(const RtExperiment *experiment, const json_t *plugins) {
     json_t *used = json_object(), *plugin, *name;
     size_t i, n;
@@ -73,7 +73,7 @@ bool rt_plugins_concern(const json_t *object, const RtExperiment *experiment, ui
     return false;
 }
 
-/* ---- for the eye ---- */
+/* ---- sentences ---- */
 
 static const char *text_of(const json_t *plugin, const char *key) {
     const char *text = json_string_value(json_object_get(plugin, key));
@@ -85,15 +85,15 @@ void rt_plugins_change_format(const char *name, const json_t *change, const char
     const json_t *then = json_object_get(change, "before"), *now = json_object_get(change, "after");
     if (json_is_object(then) && json_is_object(now))
         snprintf(out, RT_MAX_PLUGIN_CHANGE,
-                 "the plugin of '%s' is another one: %.200s (%.16s) %s, %.200s (%.16s) %s", name,
+                 "the plugin of '%s' has changed: %.200s (%.16s) %s, %.200s (%.16s) %s", name,
                  text_of(then, "file"), text_of(then, "hash"), before, text_of(now, "file"),
                  text_of(now, "hash"), after);
     else if (json_is_object(then))
-        snprintf(out, RT_MAX_PLUGIN_CHANGE, "'%s' was of the plugin %.400s (%.16s) %s, and is not %s", name,
-                 text_of(then, "file"), text_of(then, "hash"), before, after);
+        snprintf(out, RT_MAX_PLUGIN_CHANGE, "'%s' belonged to the plugin %.400s (%.16s) %s, and does not %s",
+                 name, text_of(then, "file"), text_of(then, "hash"), before, after);
     else
-        snprintf(out, RT_MAX_PLUGIN_CHANGE, "'%s' is of the plugin %.400s (%.16s) %s, and was not %s", name,
-                 text_of(now, "file"), text_of(now, "hash"), after, before);
+        snprintf(out, RT_MAX_PLUGIN_CHANGE, "'%s' belongs to the plugin %.400s (%.16s) %s, and did not %s",
+                 name, text_of(now, "file"), text_of(now, "hash"), after, before);
 }
 
 void rt_plugins_tell_changes(const RtExperiment *experiment, const json_t *manifest,

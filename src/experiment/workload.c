@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A workload in order: record, build, and then for each kind of rays count, time, and read hardware counters.
- */
+/* A workload in order: record, build, and for each kind of rays count, time, and read hardware counters. */
 #include "core/base/memory.h"
 #include "experiment/workload_state.h"
 #include "measure/ray_file.h"
 
 #include <string.h>
 
-/* ---- what is left to do ---- */
+/* ---- what is unknown ---- */
 
 static bool kind_is_done(const RtWorkloadState *workload, RtRayKind kind) {
     for (uint32_t c = 0; c < workload->count; c++) {
@@ -39,7 +38,7 @@ static bool workload_is_done(const RtWorkloadState *workload) {
 
 /* ---- the steps ---- */
 
-/* Row by row what each ray met and cost, where that is asked for: of one candidate, on one kind of rays. */
+/* Saves the hit and cost of each ray, if that is requested: for one candidate and one kind of rays. */
 static RtStatus save_rows(const RtWorkloadState *workload, RtRayKind kind, RtError *error) {
     const RtWorkloadOptions *options = workload->options;
     RtRows rows;
@@ -52,7 +51,7 @@ static RtStatus save_rows(const RtWorkloadState *workload, RtRayKind kind, RtErr
     return status;
 }
 
-/* One that broke on other rays is built anew for these. Whatever goes wrong then is its own fault, too. */
+/* Builds an accelerator again that broke on other rays. */
 static RtStatus rebuild_broken(RtWorkloadState *workload, uint32_t c, RtError *error) {
     RtAccel *accel = workload->built[c];
     if (!accel || rt_accel_check(accel, NULL) == RT_OK) return RT_OK;
@@ -62,7 +61,7 @@ static RtStatus rebuild_broken(RtWorkloadState *workload, uint32_t c, RtError *e
                           workload->options->threads, &workload->built[c], error);
 }
 
-/* Those that are not known to go beyond a limit, or to break. */
+/* Selects accelerators that are not known to exceed a limit, or to break. */
 static RtStatus choose_accels(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
     for (uint32_t c = 0; c < workload->count; c++) {
         const RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);

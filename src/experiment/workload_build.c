@@ -40,8 +40,7 @@ static RtStatus distribute_leaves(const RtAccel *accel, RtBuildResult *result, R
 
 /* ---- structures ---- */
 
-/* Builds one candidate up to RT_MOST_BUILDS times and keeps the last; *median gets the median of the seconds.
- */
+/* Builds one candidate up to RT_MOST_BUILDS times and keeps the last; *median gets the median seconds. */
 static RtStatus build_one(RtWorkloadState *workload, const RtSpec *spec, RtAccel **out, double *median,
                           RtError *error) {
     double seconds[RT_MOST_BUILDS], sum = 0;
@@ -58,8 +57,8 @@ static RtStatus build_one(RtWorkloadState *workload, const RtSpec *spec, RtAccel
     return RT_OK;
 }
 
-/* Builds a candidate within the limits. One that goes beyond a limit is not kept; result->limit says which.
- */
+/* Builds a candidate within the limits. If it exceeds one, it is destroyed, and result->limit names the
+ * limit. */
 static RtStatus build_within(RtWorkloadState *workload, uint32_t c, const RtSpec *spec, double *seconds,
                              RtError *error) {
     const RtExperiment *experiment = workload->experiment;
@@ -68,7 +67,7 @@ static RtStatus build_within(RtWorkloadState *workload, uint32_t c, const RtSpec
     RtStatus status = build_one(workload, spec, &workload->built[c], seconds, error);
     rt_memory_limit(0);
     bool too_large = status == RT_NO_MEMORY && experiment->limit_megabytes;
-    /* A plugin that refuses the scene, or takes all memory for it, does so for itself alone. */
+    /* If a plugin rejects the scene, or takes all memory, only its own results are lost. */
     bool broken = status == RT_BROKEN || (status != RT_OK && !too_large && rt_spec_is_remote(spec));
     if (status != RT_OK && !broken && !too_large) return status;
     if (broken) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Counting: the rays of one kind are dealt out as shares; what would go beyond a limit is left out; every
- * other candidate is counted, its answers are compared with the expected ones, and distributions are found.
- */
+/* Counting: each candidate gets a share of the rays of one kind. Those that would exceed a limit are
+ * excluded; the others are counted, their answers are compared with the expected ones, and distributions are
+ * computed. */
 #include "core/base/memory.h"
 #include "experiment/workload_state.h"
 
@@ -12,12 +12,12 @@ enum { PROBE_RAYS = 256 }; /* at most */
 
 /* ---- shares ---- */
 
-/* Rays of a set of which every `stride`th is kept. */
+/* Rays that stay if every `stride`th is kept. */
 static uint64_t thinned_count(const RtRaySet *set, uint64_t stride) {
     return (set->count + stride - 1) / stride;
 }
 
-/* Rays of the set, of all shares that are thinned, and of the probe. */
+/* Rays of the set, of all thinned shares, and of the probe. */
 static uint64_t count_with_shares(const RtWorkloadState *workload, const RtRaySet *set) {
     uint64_t count = set->count + PROBE_RAYS;
     for (uint32_t c = 0; c < workload->count; c++) {
@@ -27,7 +27,7 @@ static uint64_t count_with_shares(const RtWorkloadState *workload, const RtRaySe
     return count;
 }
 
-/* Picks the rays and answers of a share, to lie from `first` on. */
+/* Copies the rays and answers of a thinned share to index `first`. */
 static void thin_share(const RtWorkloadState *workload, const RtRaySet *set, uint64_t stride, uint64_t first,
                        RtWorkloadShare *share) {
     share->set.rays = set->rays + first;
@@ -39,8 +39,8 @@ static void thin_share(const RtWorkloadState *workload, const RtRaySet *set, uin
     }
 }
 
-/* Draws the probe from all of the set, in short runs, with its answers, to lie from `first` on. The first
- * rays of a set are the uppermost of the image, and as a rule cheaper than others. */
+/* Draws the probe from the whole set, in short runs, to index `first`. The first rays of a set would be those
+ * at the top of the image, which are usually cheaper than others. */
 static RtStatus draw_probe(RtWorkloadState *workload, const RtRaySet *set, uint64_t first, RtError *error) {
     RtRaySet drawn;
     RT_TRY(rt_rayset_limit(set, PROBE_RAYS, PROBE_RAYS, &drawn, error));
@@ -54,8 +54,8 @@ static RtStatus draw_probe(RtWorkloadState *workload, const RtRaySet *set, uint6
 }
 
 /* Gives every candidate its share of the set, and the answers to those that learn. Thinned shares and the
- * probe are copies behind the set, in the same array: the baseline, which may be one that learns and knows
- * rays by their places, is timed on all of them. */
+ * probe are copies after the set, in the same array: the baseline is timed on all of them, and may be an
+ * accelerator that learns, which knows rays by their addresses. */
 static RtStatus deal_shares(RtWorkloadState *workload, RtRaySet *set, RtError *error) {
     uint64_t all = count_with_shares(workload, set), used = set->count;
     uint32_t capacity = (uint32_t)set->count;
@@ -85,7 +85,8 @@ static RtStatus deal_shares(RtWorkloadState *workload, RtRaySet *set, RtError *e
 
 /* ---- limits ---- */
 
-/* Whether a cell would take longer than it may to be counted and timed, by what a part of its rays takes. */
+/* Predicts how long counting and timing a cell takes, from a part of its rays, and excludes it if that is too
+ * long. */
 static RtStatus check_seconds(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtCell *cell,
                               RtError *error) {
     const RtExperiment *experiment = workload->experiment;
@@ -105,8 +106,8 @@ static RtStatus check_seconds(RtWorkloadState *workload, uint32_t c, RtRayKind k
 
 /* ---- answers ---- */
 
-/* The invariants of Havran & Sixta 1999: equal for every correct accelerator are the rays, the rays that hit,
- * and, stronger, each answer. */
+/* The invariants of Havran & Sixta 1999: every correct accelerator has the same number of rays and of hits,
+ * and, stronger, the same answers. */
 static RtStatus check_differ(const RtWorkloadState *workload, uint32_t candidate, RtRayKind kind,
                              const RtCount *count, RtError *error) {
     const RtWorkloadShare *share = &workload->shares[candidate];
@@ -151,7 +152,7 @@ static RtStatus count_cell(RtWorkloadState *workload, uint32_t c, RtRayKind kind
     return rt_workload_tell(workload, RT_EVENT_COUNT, c, kind, error);
 }
 
-/* ---- distributions over rays, each asked by itself ---- */
+/* ---- distributions over rays, each traced by itself ---- */
 
 static uint64_t value_of(const RtTally *tally, RtRayQuantity quantity) {
 #define GET(name, meaning)                                                                                   \
@@ -194,11 +195,11 @@ static RtStatus distribute_cell(RtWorkloadState *workload, uint32_t c, RtRayKind
     return rt_workload_tell(workload, RT_EVENT_DISTRIBUTION, c, kind, error);
 }
 
-/* ---- all of it ---- */
+/* ---- all steps ---- */
 
 typedef RtStatus Step(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtCell *cell, RtError *error);
 
-/* A plugin that is broken, or whose answers are wrong, is left out; no other candidate is concerned. */
+/* A plugin that is broken, or gives wrong answers, is excluded; other candidates are unaffected. */
 static RtStatus each_cell(RtWorkloadState *workload, RtRayKind kind, Step *step, RtError *error) {
     for (uint32_t c = 0; c < workload->experiment->candidate_count; c++) {
         if (!workload->accels[c]) continue;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the machine did for the rays of a workload: rounds of their own, after those that are timed, so that
- * no time is changed by counting. As those they are interleaved. */
+/* Hardware counters of the rays of a workload: separate interleaved rounds after the timed ones, so that
+ * counting changes no time. */
 #include "accel/remote.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
@@ -10,12 +10,12 @@
 #include <math.h>
 #include <string.h>
 
-enum { ROUNDS = 5 }; /* medians of these: instructions hardly differ, cycles and misses little */
+enum { ROUNDS = 5 }; /* of which medians are taken; the counts differ little */
 
 typedef struct TimingRun {
     const RtHardware *hardware;
     RtRunner *runners;        /* [count] */
-    RtHardwareCounts *counts; /* [count][ROUNDS] a ray */
+    RtHardwareCounts *counts; /* [count][ROUNDS] per ray */
     uint32_t count;
 } TimingRun;
 
@@ -34,7 +34,7 @@ static RtStatus run_counted(const TimingRun *run, uint32_t i, int round, RtError
 static RtStatus run_rounds(const TimingRun *run, double least, RtError *error) {
     for (uint32_t i = 0; i < run->count; i++) {
         double seconds, wall;
-        RT_TRY(rt_runner_time(&run->runners[i], 1, &seconds, &wall, error)); /* warms up, too */
+        RT_TRY(rt_runner_time(&run->runners[i], 1, &seconds, &wall, error)); /* also warms up */
         run->runners[i].repeats = rt_runner_repeats(seconds, least);
     }
     for (int round = 0; round < ROUNDS; round++) {
@@ -43,7 +43,7 @@ static RtStatus run_rounds(const TimingRun *run, double least, RtError *error) {
     return RT_OK;
 }
 
-/* Medians of the rounds; what was not counted in one of them is not known. */
+/* Medians of the rounds; unknown if not counted in every round. */
 static RtHardwareCounts median_of(const RtHardwareCounts counts[ROUNDS]) {
     RtHardwareCounts median = {.running = 1};
     for (int e = 0; e < RT_HARDWARE_COUNT; e++) {
@@ -55,8 +55,8 @@ static RtHardwareCounts median_of(const RtHardwareCounts counts[ROUNDS]) {
     return median;
 }
 
-/* What an accelerator of a plugin does is done in another process, which these counters do not see. */
-static bool is_seen(const RtWorkloadState *workload, uint32_t c) {
+/* Counters do not see other processes, in which remote accelerators run. */
+static bool is_countable(const RtWorkloadState *workload, uint32_t c) {
     return workload->accels[c] && !rt_accel_is_remote(workload->accels[c]);
 }
 
@@ -65,12 +65,12 @@ static RtStatus count_all(RtWorkloadState *workload, RtRayKind kind, TimingRun *
     RtStatus status = RT_OK;
     for (uint32_t c = 0; c < candidates && status == RT_OK; c++) {
         RtTimed timed = {.accel = workload->accels[c], .set = &workload->shares[c].set};
-        if (!is_seen(workload, c)) continue;
+        if (!is_countable(workload, c)) continue;
         status = rt_runner_open(&run->runners[run->count++], &timed, workload->options->timing, error);
     }
     if (status == RT_OK) status = run_rounds(run, 1e-3 * workload->experiment->milliseconds, error);
     for (uint32_t c = 0, i = 0; c < candidates && status == RT_OK; c++) {
-        if (!is_seen(workload, c)) continue;
+        if (!is_countable(workload, c)) continue;
         RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
         cell->hardware.counts = median_of(&run->counts[(size_t)ROUNDS * i++]);
     }
@@ -78,7 +78,7 @@ static RtStatus count_all(RtWorkloadState *workload, RtRayKind kind, TimingRun *
     return status;
 }
 
-/* Where nothing can be counted the reason is what is known. */
+/* Counts, or records the reason why nothing can be counted. */
 static RtStatus count_or_say_why(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
     const uint32_t candidates = workload->experiment->candidate_count;
     const RtHardwareEvent *events = workload->options->events;
@@ -99,10 +99,10 @@ static RtStatus count_or_say_why(RtWorkloadState *workload, RtRayKind kind, RtEr
     rt_free(run.counts);
     for (uint32_t c = 0; c < candidates && status == RT_OK; c++) {
         RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
-        bool away = workload->accels[c] && !is_seen(workload, c);
-        if (available && !away) continue;
+        bool remote = workload->accels[c] && !is_countable(workload, c);
+        if (available && !remote) continue;
         snprintf(cell->hardware.why, sizeof cell->hardware.why, "%.*s", RT_MAX_WHY - 1,
-                 away ? "a plugin lives in a process of its own, which is not counted" : why.message);
+                 remote ? "a plugin runs in a process of its own, which is not counted" : why.message);
         for (int e = 0; e < RT_HARDWARE_COUNT; e++) cell->hardware.counts.of[e] = (double)NAN;
     }
     return status;

@@ -1,27 +1,27 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Which part of a workload is measured, and who is told of what is left out. */
+/* The part of an experiment that is measured, and reports of what is excluded. */
 #include "experiment/workload_state.h"
 
 #include <stdio.h>
 #include <string.h>
 
-/* ---- what is asked for ---- */
+/* ---- parts ---- */
 
-static bool is_called(const char *name, const char *label, const char *base) {
+static bool matches(const char *name, const char *label, const char *base) {
     return !name || strcmp(name, label) == 0 || strcmp(name, base) == 0;
 }
 
 bool rt_only_scene(const RtOnly *only, const RtExperiment *experiment, uint32_t workload) {
     const RtWorkload *setup = &experiment->workloads[workload];
     if (only->shards && workload % only->shards != only->shard - 1) return false;
-    return is_called(only->scene, setup->label, setup->base);
+    return matches(only->scene, setup->label, setup->base);
 }
 
 bool rt_only_accel(const RtOnly *only, const RtExperiment *experiment, uint32_t candidate) {
     const RtCandidate *setup = &experiment->candidates[candidate];
     if (candidate == experiment->candidate_count || rt_candidate_is_baseline(experiment, candidate))
         return true;
-    return is_called(only->accel, setup->label, setup->base);
+    return matches(only->accel, setup->label, setup->base);
 }
 
 bool rt_only_kind(const RtOnly *only, RtRayKind kind) {
@@ -34,7 +34,7 @@ bool rt_workload_runs(const RtWorkloadState *workload, uint32_t c) {
            !*rt_build_at(workload->results, workload->index, c)->limit;
 }
 
-/* ---- who is told ---- */
+/* ---- reports ---- */
 
 RtStatus rt_workload_tell(const RtWorkloadState *workload, RtEventKind what, uint32_t candidate,
                           RtRayKind kind, RtError *error) {
@@ -55,7 +55,7 @@ RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKin
     if (c == experiment->candidate_count || rt_candidate_is_baseline(experiment, c)) {
         RtStatus status = broken ? RT_BROKEN : RT_BAD_INPUT;
         rt_fail(error, status, "the baseline '%s' %s on '%s': %s", rt_candidate_label(experiment, c),
-                broken ? "is broken" : "goes beyond a limit", experiment->workloads[workload->index].label,
+                broken ? "is broken" : "exceeds a limit", experiment->workloads[workload->index].label,
                 limit);
         *limit = '\0';
         return status;

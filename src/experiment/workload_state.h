@@ -6,8 +6,7 @@
 #include "experiment/workload.h"
 #include "measure/measure.h"
 
-/* The rays of one kind that one candidate gets, and the answers to them: views into what the workload owns.
- */
+/* The rays of one kind for one candidate, and their answers: views into arrays of the workload. */
 typedef struct RtWorkloadShare {
     RtRaySet set;
     const RtHit *expected;
@@ -17,47 +16,46 @@ typedef struct RtWorkloadState {
     RtResults *results;
     const RtExperiment *experiment;
     const RtWorkloadOptions *options;
-    uint32_t index, count; /* count: candidates and, where times are taken, the null run */
+    uint32_t index, count; /* count: candidates and, if times are taken, the null run */
     bool count_only, hardware, distributions;
     RtScene *scene;
-    RtAccel *reference;               /* its answers are the expected ones */
+    RtAccel *reference;               /* gives the expected answers */
     RtAccel **built;                  /* [count], NULL for one that does not run here */
-    RtAccel **accels;                 /* [count], those of them that get the rays of the current kind */
-    RtRaySet sets[RT_RAY_KIND_COUNT]; /* behind the `count` rays of the current one: thinned shares, probe */
+    RtAccel **accels;                 /* [count], those that trace the current kind of rays, or NULL */
+    RtRaySet sets[RT_RAY_KIND_COUNT]; /* the current one is followed by its thinned shares and the probe */
     RtWorkloadShare *shares;          /* [count], of the current kind */
-    RtWorkloadShare probe;            /* the part of the set by which times are predicted */
-    RtHit *answers;                   /* to the set of the current kind and all that lies behind it */
+    RtWorkloadShare probe;            /* the part of the set that predicts times */
+    RtHit *answers;                   /* for the set of the current kind and what follows it */
 } RtWorkloadState;
 
-/* What candidate `c` is built from: itself, or the baseline for the null run. */
+/* The candidate that is built: itself, or the baseline for the null run. */
 static inline const RtCandidate *rt_workload_setup(const RtWorkloadState *workload, uint32_t candidate) {
     const RtExperiment *e = workload->experiment;
     return &e->candidates[candidate < e->candidate_count ? candidate : e->baseline];
 }
 
-/* Tells the observer. */
+/* Notifies the observer. */
 RtStatus rt_workload_tell(const RtWorkloadState *workload, RtEventKind what, uint32_t candidate,
                           RtRayKind kind, RtError *error);
 void rt_workload_notice(const RtWorkloadState *workload, const char *message);
 
-/* Tells that candidate `c`, or a cell of it, went beyond the limit that `limit` names, or is broken. Without
- * a baseline there is nothing to compare with: then the workload fails, and `limit` is cleared. */
+/* Reports that candidate `c`, or a cell of it, exceeds the limit that `limit` names, or is broken. If it is
+ * the baseline, the workload fails, and `limit` is cleared. */
 RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKind what, RtRayKind kind,
                                char *limit, RtError *error);
 
-/* Leaves that candidate out on the rays of that kind, as broken; *error says why. */
+/* Excludes the candidate on rays of that kind as broken, for the reason in *error. */
 RtStatus rt_workload_break(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtError *error);
 
 /* ---- the steps ---- */
 
-/* Records the rays; fills the workload's part of the results, or compares it with that of a previous run. */
+/* Records the rays; fills the workload's part of the results, or compares it with the previous run's. */
 RtStatus rt_workload_prepare(RtWorkloadState *workload, RtError *error);
 
 /* Builds all candidates, within the limits. */
 RtStatus rt_workload_build(RtWorkloadState *workload, RtError *error);
 
-/* Counts all candidates on their shares of the rays of one kind, and finds distributions where they are asked
- * for. */
+/* Counts all candidates on their shares of the rays of one kind, and distributions if they are requested. */
 RtStatus rt_workload_count(RtWorkloadState *workload, RtRayKind kind, RtError *error);
 
 /* Times all candidates on their shares of the rays of one kind. */

@@ -9,18 +9,18 @@
 #include <math.h>
 #include <string.h>
 
-/* All that is timed against each other: each candidate on its share, and the baseline (all that it is the
- * best of) on every share that is thinned, so that a ratio compares times on the same rays. */
+/* Each candidate is timed on its share, and the baseline (with all settings of a best-of) on every thinned
+ * share, so that ratios compare times on the same rays. */
 typedef struct TimingRun {
     const RtWorkloadState *workload;
     RtRayKind kind;
     uint32_t count;
-    uint32_t rounds, most;    /* done, and as many as there is room for */
+    uint32_t rounds, most;    /* done, and most */
     double start;             /* wall seconds */
     RtTimed *timed;           /* [count] */
-    double *seconds;          /* [count][2][most], where they go */
+    double *seconds;          /* [count][2][most] of `timed` */
     bool *broken;             /* [count] */
-    uint32_t *place;          /* [workload->count] of a candidate among them */
+    uint32_t *place;          /* [workload->count] index of a candidate in `timed` */
     uint32_t *baseline_entry; /* [workload->count] of the first candidate of the baseline on its rays; others
                                  follow */
 } TimingRun;
@@ -72,8 +72,8 @@ static void timing_run_clear(TimingRun *run) {
     rt_free(run->baseline_entry);
 }
 
-/* The median of what part number `i` of baselines[0..count) has of the time that all of them take in a round:
- * paired as ratios are, so that a drift does not decide. */
+/* The median part of baselines[i] in the time that baselines[0..count) take in a round: paired, as ratios
+ * are, so that drift cancels. */
 static double part_of_round(const RtTimed *baselines, uint32_t count, uint32_t i, uint32_t rounds) {
     double part[RT_MAX_ROUNDS];
     for (uint32_t r = 0; r < rounds; r++) {
@@ -84,8 +84,8 @@ static double part_of_round(const RtTimed *baselines, uint32_t count, uint32_t i
     return rt_median(part, rounds);
 }
 
-/* Which of the baseline's candidates is the fastest on the rays of `candidate`. To pick it by the times that
- * ratios are then made of favours the baseline, if anyone. The null run is compared with what it repeats. */
+/* The baseline's fastest setting on the rays of `candidate`. Choosing it by the same times as the ratios can
+ * only favour the baseline. The null run is compared with the setting that it repeats. */
 static uint32_t pick_baseline(const TimingRun *run, uint32_t candidate) {
     const RtExperiment *experiment = run->workload->experiment;
     const RtTimed *baselines = &run->timed[run->baseline_entry[candidate]];
@@ -104,7 +104,7 @@ static uint32_t pick_baseline(const TimingRun *run, uint32_t candidate) {
 
 /* ---- until the intervals are narrow ---- */
 
-/* Which candidate's ratio has the widest interval, and how wide that is (rt_estimate_width). */
+/* The width of the widest interval of a ratio (rt_estimate_width), and whose it is. */
 static double widest_of(const TimingRun *run, uint32_t *candidate) {
     double widest = 0;
     *candidate = 0;
@@ -121,9 +121,9 @@ static double widest_of(const TimingRun *run, uint32_t *candidate) {
     return widest;
 }
 
-/* To stop as soon as intervals are narrow favours those that are so by chance; as they narrow, their coverage
- * still tends to what they promise (Chow & Robbins 1965, "On the Asymptotic Theory of Fixed-Width Sequential
- * Confidence Intervals for the Mean", Annals of Mathematical Statistics 36(2)). */
+/* Stopping as soon as intervals are narrow favours those that are narrow by chance; still, as they narrow,
+ * their coverage tends to the nominal one (Chow & Robbins 1965, "On the Asymptotic Theory of Fixed-Width
+ * Sequential Confidence Intervals for the Mean", Annals of Mathematical Statistics 36(2)). */
 static bool is_enough(void *context, uint32_t rounds) {
     TimingRun *run = context;
     const RtWorkloadOptions *options = run->workload->options;
@@ -132,8 +132,8 @@ static bool is_enough(void *context, uint32_t rounds) {
     return rt_wall_seconds() - run->start > options->patience || widest_of(run, &candidate) <= options->until;
 }
 
-/* Says so where time or rounds were over before. */
-static void tell_width(const TimingRun *run) {
+/* Reports intervals that did not become narrow enough. */
+static void report_width(const TimingRun *run) {
     const RtWorkloadState *workload = run->workload;
     char message[RT_MAX_LABEL * 3 + 160];
     uint32_t candidate;
@@ -150,10 +150,10 @@ static void tell_width(const TimingRun *run) {
     rt_workload_notice(workload, message);
 }
 
-/* ---- all of it ---- */
+/* ---- timing ---- */
 
-/* Leaves out those that broke on any of the rays: a baseline may have broken on those of another's share. */
-static RtStatus leave_out_broken(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
+/* Excludes accelerators that broke on any rays; the baseline may have broken on another's share. */
+static RtStatus exclude_broken(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
     for (uint32_t c = 0; c < workload->count; c++) {
         const RtAccel *accel = workload->accels[c];
         if (!accel || rt_accel_check(accel, error) == RT_OK) continue;
@@ -162,7 +162,7 @@ static RtStatus leave_out_broken(RtWorkloadState *workload, RtRayKind kind, RtEr
     return RT_OK;
 }
 
-/* Takes what was timed into the cells. */
+/* Copies the times to the cells. */
 static RtStatus keep_times(RtWorkloadState *workload, RtRayKind kind, const TimingRun *run, RtError *error) {
     const RtMachine here = rt_machine_here();
     uint32_t rounds = run->rounds, machine = rt_results_machine(workload->results, &here);
@@ -202,8 +202,8 @@ RtStatus rt_workload_time(RtWorkloadState *workload, RtRayKind kind, RtError *er
                                   .context = &run},
                        .threads = workload->options->timing};
     if (status == RT_OK) status = rt_measure_time(run.timed, run.count, &timing, &run.rounds, error);
-    if (status == RT_OK) status = leave_out_broken(workload, kind, error);
-    if (status == RT_OK) tell_width(&run);
+    if (status == RT_OK) status = exclude_broken(workload, kind, error);
+    if (status == RT_OK) report_width(&run);
     if (status == RT_OK) status = keep_times(workload, kind, &run, error);
     timing_run_clear(&run);
     return status;

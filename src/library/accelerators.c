@@ -73,21 +73,21 @@ raytally_status raytally_accelerator_check(const raytally_accelerator *accelerat
     return (raytally_status)rt_accel_check(accelerator->accel, rt_error_of(error));
 }
 
-void raytally_accelerator_describe(const raytally_accelerator *accelerator, raytally_structure *out) {
+void raytally_accelerator_describe(const raytally_accelerator *accelerator, raytally_statistics *out) {
     RtDescription d;
     RT_C_LOCALE;
     rt_accel_describe(accelerator->accel, &d);
-    *out = (raytally_structure){.at = {
-                                    [RAYTALLY_INTERIOR] = (double)d.interior,
-                                    [RAYTALLY_LEAVES] = (double)d.leaves,
-                                    [RAYTALLY_EMPTY_LEAVES] = (double)d.empty_leaves,
-                                    [RAYTALLY_REFERENCES] = (double)d.references,
-                                    [RAYTALLY_DEPTH] = (double)d.depth,
-                                    [RAYTALLY_BYTES] = (double)d.bytes,
-                                    [RAYTALLY_PREDICTED_COST] = d.predicted_cost,
-                                    [RAYTALLY_PREDICTED_TESTS] = d.predicted_tests,
-                                    [RAYTALLY_PREDICTED_STEPS] = d.predicted_steps,
-                                }};
+    *out = (raytally_statistics){.at = {
+                                     [RAYTALLY_INTERIOR] = (double)d.interior,
+                                     [RAYTALLY_LEAVES] = (double)d.leaves,
+                                     [RAYTALLY_EMPTY_LEAVES] = (double)d.empty_leaves,
+                                     [RAYTALLY_REFERENCES] = (double)d.references,
+                                     [RAYTALLY_DEPTH] = (double)d.depth,
+                                     [RAYTALLY_BYTES] = (double)d.bytes,
+                                     [RAYTALLY_PREDICTED_COST] = d.predicted_cost,
+                                     [RAYTALLY_PREDICTED_TESTS] = d.predicted_tests,
+                                     [RAYTALLY_PREDICTED_STEPS] = d.predicted_steps,
+                                 }};
 }
 
 /* ---- tracers ---- */

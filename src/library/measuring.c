@@ -108,7 +108,7 @@ typedef struct TimingRun {
     double *seconds; /* [count][2][rounds] */
 } TimingRun;
 
-static RtStatus check_timing(const raytally_timing *how, const TimingRun *run, RtError *error) {
+static RtStatus check_timing(const raytally_time_options *how, const TimingRun *run, RtError *error) {
     RT_TRY(check_rounds(how->rounds, "rounds", error));
     RT_TRY(rt_threads_check(how->threads, error));
     if (!(how->least >= 0 && how->least <= 60))
@@ -118,7 +118,7 @@ static RtStatus check_timing(const raytally_timing *how, const TimingRun *run, R
     return RT_OK;
 }
 
-static RtStatus timing_run_init(TimingRun *run, const raytally_timing *how, RtError *error) {
+static RtStatus timing_run_init(TimingRun *run, const raytally_time_options *how, RtError *error) {
     size_t doubles = 2 * (size_t)how->rounds;
     run->hits = rt_alloc((size_t)run->set->count, sizeof(RtHit));
     run->timed = rt_alloc(run->count, sizeof(RtTimed));
@@ -143,7 +143,8 @@ static RtStatus teach(const TimingRun *run, int threads, RtError *error) {
     return RT_OK;
 }
 
-static RtStatus take_times(TimingRun *run, const raytally_timing *how, raytally_time *times, RtError *error) {
+static RtStatus take_times(TimingRun *run, const raytally_time_options *how, raytally_time *times,
+                           RtError *error) {
     const RtTiming timing = {
         .rounds = {.rounds = how->rounds, .most = how->rounds, .least = how->least, .seed = how->seed},
         .threads = how->threads};
@@ -160,12 +161,12 @@ static RtStatus take_times(TimingRun *run, const raytally_timing *how, raytally_
 }
 
 raytally_status raytally_time_all(raytally_accelerator *const *accelerators, size_t count,
-                                  const raytally_rays *rays, const raytally_timing *how, raytally_time *times,
-                                  raytally_error *error) {
+                                  const raytally_rays *rays, const raytally_time_options *how,
+                                  raytally_time *times, raytally_error *error) {
     TimingRun run = {.accelerators = accelerators, .count = count, .set = &rays->set};
-    raytally_timing own = RAYTALLY_TIMING;
+    raytally_time_options own = RAYTALLY_TIME_DEFAULTS;
     RT_C_LOCALE;
-    RtStatus status = rt_options_take(&own, sizeof own, how, "raytally_timing", rt_error_of(error));
+    RtStatus status = rt_options_take(&own, sizeof own, how, "raytally_time_options", rt_error_of(error));
     if (status == RT_OK) status = check_timing(&own, &run, rt_error_of(error));
     if (status == RT_OK) status = timing_run_init(&run, &own, rt_error_of(error));
     if (status == RT_OK) {

@@ -14,7 +14,7 @@ static RtStatus check_kind(enum raytally_ray_kind kind, RtError *error) {
     return rt_fail(error, RT_BAD_INPUT, "there is no kind of rays of number %d", (int)kind);
 }
 
-static RtStatus check_recording(const raytally_recording *how, const RtAccel *accel, RtError *error) {
+static RtStatus check_recording(const raytally_record_options *how, const RtAccel *accel, RtError *error) {
     RT_TRY(rt_threads_check(how->threads, error));
     if (how->limit < 1 || how->limit > RT_MAX_RAYS_A_KIND) {
         return rt_fail(error, RT_BAD_INPUT, "a limit of %llu rays: expected 1..%llu",
@@ -25,7 +25,7 @@ static RtStatus check_recording(const raytally_recording *how, const RtAccel *ac
                    accel->ops->name, rt_accel_default());
 }
 
-static RtStatus record(const RtAccel *accel, enum raytally_ray_kind kind, const raytally_recording *how,
+static RtStatus record(const RtAccel *accel, enum raytally_ray_kind kind, const raytally_record_options *how,
                        RtRaySet *out, RtError *error) {
     RtRaySet sets[RT_RAY_KIND_COUNT] = {0};
     RT_TRY(check_kind(kind, error));
@@ -70,12 +70,12 @@ static raytally_status finish(RtRaySet *made, RtStatus status, raytally_rays **o
 }
 
 raytally_status raytally_rays_record(const raytally_accelerator *accelerator, enum raytally_ray_kind kind,
-                                     const raytally_recording *how, raytally_rays **out,
+                                     const raytally_record_options *how, raytally_rays **out,
                                      raytally_error *error) {
     RtRaySet made = {0};
-    raytally_recording own = RAYTALLY_RECORDING;
+    raytally_record_options own = RAYTALLY_RECORD_DEFAULTS;
     RT_C_LOCALE;
-    RtStatus status = rt_options_take(&own, sizeof own, how, "raytally_recording", rt_error_of(error));
+    RtStatus status = rt_options_take(&own, sizeof own, how, "raytally_record_options", rt_error_of(error));
     if (status == RT_OK) status = record(accelerator->accel, kind, &own, &made, rt_error_of(error));
     return finish(&made, status, out, rt_error_of(error));
 }

@@ -44,13 +44,13 @@ SAME_COUNTER(PASSED_ON, passed_on)
 _Static_assert((int)RAYTALLY_COUNTERS_KNOWN == (int)RT_TALLY_COUNTER_COUNT, "none is left out");
 
 /* The room in structs of results is part of the binary interface. */
-_Static_assert(RAYTALLY_MAX_RAY_KINDS == 16 && RAYTALLY_COUNTERS == 32 && RAYTALLY_FIGURES == 32 &&
-                   sizeof(raytally_verified) == 128 && sizeof(raytally_estimate) == 64 &&
+_Static_assert(RAYTALLY_MAX_RAY_KINDS == 16 && RAYTALLY_COUNTERS == 32 && RAYTALLY_STATISTICS == 32 &&
+                   sizeof(raytally_verify_result) == 128 && sizeof(raytally_estimate) == 64 &&
                    sizeof(raytally_time) == 192,
                "the size of results does not change");
 _Static_assert((int)RAYTALLY_RAY_KINDS <= (int)RAYTALLY_MAX_RAY_KINDS &&
                    (int)RAYTALLY_COUNTERS_KNOWN <= (int)RAYTALLY_COUNTERS &&
-                   (int)RAYTALLY_FIGURES_KNOWN <= (int)RAYTALLY_FIGURES,
+                   (int)RAYTALLY_STATISTICS_KNOWN <= (int)RAYTALLY_STATISTICS,
                "and is large enough");
 
 /* A member that a later header adds to options must lie beyond their size here, not in padding, which an
@@ -59,10 +59,10 @@ _Static_assert((int)RAYTALLY_RAY_KINDS <= (int)RAYTALLY_MAX_RAY_KINDS &&
     _Static_assert(sizeof(Options) == offsetof(Options, member) + sizeof((Options){0}.member),               \
                    #Options " has no padding at its end")
 ENDS_WITH(raytally_objects, reserved);
-ENDS_WITH(raytally_recording, limit);
+ENDS_WITH(raytally_record_options, limit);
 /* NOLINTNEXTLINE(bugprone-sizeof-expression): the size of a pointer is meant */
-ENDS_WITH(raytally_verifying, given);
-ENDS_WITH(raytally_timing, seed);
+ENDS_WITH(raytally_verify_options, given);
+ENDS_WITH(raytally_time_options, seed);
 
 _Static_assert(RAYTALLY_NO_OBJECT == RT_NO_OBJECT, "a miss is the same");
 _Static_assert(RAYTALLY_SPEC_CHARS == RT_MAX_SPEC_CHARS, "specs are as long");

@@ -77,8 +77,8 @@ static RtStatus fill_by_objects(RtScene *scene, const void *what, RtError *error
     return rt_scene_finish(scene, error);
 }
 
-raytally_status raytally_scene_make(const raytally_objects *objects, raytally_scene **out,
-                                    raytally_error *error) {
+raytally_status raytally_scene_from_objects(const raytally_objects *objects, raytally_scene **out,
+                                            raytally_error *error) {
     raytally_objects own = RAYTALLY_OBJECTS;
     *out = NULL;
     RT_C_LOCALE;
@@ -142,14 +142,14 @@ static RtStatus look(raytally_scene *scene, const raytally_camera *camera, RtErr
     return RT_OK;
 }
 
-raytally_status raytally_scene_look(raytally_scene *scene, const raytally_camera *camera,
-                                    raytally_error *error) {
+raytally_status raytally_scene_set_camera(raytally_scene *scene, const raytally_camera *camera,
+                                          raytally_error *error) {
     RT_C_LOCALE;
     return (raytally_status)look(scene, camera, rt_error_of(error));
 }
 
-raytally_status raytally_scene_sample(raytally_scene *scene, uint32_t width, uint32_t height,
-                                      uint32_t samples, raytally_error *error) {
+raytally_status raytally_scene_set_sampling(raytally_scene *scene, uint32_t width, uint32_t height,
+                                            uint32_t samples, raytally_error *error) {
     RT_C_LOCALE;
     RtStatus status = check_free(scene, rt_error_of(error));
     if (status == RT_OK)

@@ -8,13 +8,13 @@
 /* The limit of `raytally verify`. */
 #define MOST_RAYS UINT64_C(20000000)
 
-static void fill(const RtEquivalence *result, raytally_verified *out) {
-    *out = (raytally_verified){.rays = result->rays,
-                               .equal = result->verdicts[RT_EQUAL],
-                               .tie = result->verdicts[RT_TIE],
-                               .marginal = result->verdicts[RT_MARGINAL],
-                               .wrong = result->verdicts[RT_WRONG],
-                               .occluded_wrong = result->occluded_wrong};
+static void fill(const RtEquivalence *result, raytally_verify_result *out) {
+    *out = (raytally_verify_result){.rays = result->rays,
+                                    .equal = result->verdicts[RT_EQUAL],
+                                    .tie = result->verdicts[RT_TIE],
+                                    .marginal = result->verdicts[RT_MARGINAL],
+                                    .wrong = result->verdicts[RT_WRONG],
+                                    .occluded_wrong = result->occluded_wrong};
 }
 
 /* Reports the first wrong answer; a broken structure only if all answers are right. */
@@ -26,7 +26,7 @@ static RtStatus judge(const RtAccel *accel, const RtEquivalence *result, const c
 }
 
 static RtStatus verify(RtVerifyScene *stage, const RtVerifyRays *wanted, RtAccel *accel, const char *spec,
-                       raytally_verified *out, RtError *error) {
+                       raytally_verify_result *out, RtError *error) {
     RtEquivalence result;
     RT_TRY(rt_verify_scene_answer(stage, wanted, error));
     RT_TRY(rt_equivalence_check(&stage->reference, accel, wanted->threads, &result, error));
@@ -36,7 +36,7 @@ static RtStatus verify(RtVerifyScene *stage, const RtVerifyRays *wanted, RtAccel
 
 /* Answering the rays takes longest, so the accelerator is built first: a bad spec fails at once. */
 static RtStatus build_and_verify(RtVerifyScene *stage, const RtScene *scene, const RtVerifyRays *wanted,
-                                 const char *spec, raytally_verified *out, RtError *error) {
+                                 const char *spec, raytally_verify_result *out, RtError *error) {
     RtAccel *accel;
     RT_TRY(rt_verify_scene_init(stage, scene, wanted, error));
     RT_TRY(rt_accel_open_on(spec, &stage->scene, wanted->threads, &accel, error));
@@ -45,20 +45,21 @@ static RtStatus build_and_verify(RtVerifyScene *stage, const RtScene *scene, con
     return status;
 }
 
-static RtStatus check(const raytally_verifying *how, RtError *error) {
+static RtStatus check(const raytally_verify_options *how, RtError *error) {
     RT_TRY(rt_threads_check(how->threads, error));
     if (how->given || (how->rays >= 1 && how->rays <= MOST_RAYS)) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT, "%" PRIu64 " rays to verify by: expected 1..%" PRIu64, how->rays,
                    MOST_RAYS);
 }
 
-raytally_status raytally_verify(const raytally_scene *scene, const char *spec, const raytally_verifying *how,
-                                raytally_verified *out, raytally_error *error) {
+raytally_status raytally_verify(const raytally_scene *scene, const char *spec,
+                                const raytally_verify_options *how, raytally_verify_result *out,
+                                raytally_error *error) {
     RtVerifyScene stage = {0};
-    raytally_verifying own = RAYTALLY_VERIFYING;
-    *out = (raytally_verified){0};
+    raytally_verify_options own = RAYTALLY_VERIFY_DEFAULTS;
+    *out = (raytally_verify_result){0};
     RT_C_LOCALE;
-    RtStatus status = rt_options_take(&own, sizeof own, how, "raytally_verifying", rt_error_of(error));
+    RtStatus status = rt_options_take(&own, sizeof own, how, "raytally_verify_options", rt_error_of(error));
     RtVerifyRays wanted = {.count = own.given ? own.given->set.count : own.rays,
                            .seed = own.seed,
                            .threads = own.threads,

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "measure/extent_cost.h"
+/* Timing tests of extents: see extents_table.h. */
+#include "measure/extents_table.h"
 
 #include "core/base/memory.h"
 #include "rays/rayset.h"
 
 #include <assert.h>
 
-/* Objects whose extents are in the list, evenly spread over the population; lines that go through it; rays
- * for object tests. */
+/* Objects whose extents are in the list, evenly spread over the population; lines that traverse it; rays for
+ * object tests; attempts to draw those. */
 enum { SAMPLE = 256, LINES = 64, CHORDS = 512, TRIES = 8192 };
 
 typedef struct PreparedRays {
@@ -23,7 +24,7 @@ typedef struct Bench {
     uint32_t count; /* objects sampled */
     uint32_t ids[SAMPLE];
     RtBox boxes[SAMPLE];
-    uint32_t met[SAMPLE]; /* the extents that the last line met: what a search would go on with */
+    uint32_t met[SAMPLE]; /* extents that the last line hit, which a search would visit next */
     PreparedRays lines;   /* through the scene */
     PreparedRays chords;  /* that meet the box of their object */
     RtCrossing *room;     /* of hit functions */
@@ -35,9 +36,9 @@ typedef struct Extents {
     RtExtentSet set;
 } Extents;
 
-/* ---- what is timed ---- */
+/* ---- the timed work ---- */
 
-RT_KERNEL void go_through(RtExtentKind kind, const Extents *extents) {
+RT_KERNEL void test_list(RtExtentKind kind, const Extents *extents) {
     Bench *bench = extents->bench;
     for (uint32_t k = 0; k < bench->lines.count; k++) {
         RtPreparedRay ray = rt_ray_prepare(&bench->lines.rays[k], &bench->geometry->box);
@@ -55,7 +56,7 @@ RT_KERNEL void go_through(RtExtentKind kind, const Extents *extents) {
 static RtStatus run_extents(void *context, RtError *error) {
     (void)error;
     const Extents *extents = context;
-    RT_BY_EXTENT_KIND(extents->set.kind, go_through, extents);
+    RT_BY_EXTENT_KIND(extents->set.kind, test_list, extents);
     return RT_OK;
 }
 
@@ -72,7 +73,7 @@ static RtStatus run_objects(void *context, RtError *error) {
     return RT_OK;
 }
 
-/* ---- preparing it ---- */
+/* ---- preparing ---- */
 
 static void add_ray(PreparedRays *to, const RtGeometry *geometry, const RtRay *ray, RtCrossing *room,
                     uint32_t id) {

@@ -43,7 +43,7 @@ RtStatus rt_extents_table(RtExtentsTable *table, const RtScene *scene, bool ever
 
 /* ---- showing ---- */
 
-/* The extent at hand; for JSON those of a shape after those of another. */
+/* The current extent; in JSON, shape by shape. */
 typedef struct Row {
     const RtExtentsTable *table;
     size_t shape, choice;
@@ -78,22 +78,20 @@ static RtField estimate(const RtEstimate *e, double unit) {
     X(shape, "shape", text, "", "shape of the objects, or all", shape_name(of(r)))                           \
     X(objects, "objects", integer, "", "objects of this shape", of(r)->objects)                              \
     X(kind, "kind", text, "", "kind of the extents", kind_names[r->table->choices[r->choice].kind])          \
-    X(slabs, "slabs", integer, "", "their number, where these are the kind", slabs_of(r))                    \
-    X(tightness, "tightness", interval, "", "projected area over the object's; null: none was ever met",     \
+    X(slabs, "slabs", integer, "", "number of slabs, for that kind", slabs_of(r))                            \
+    X(tightness, "tightness", interval, "", "projected area over the object's; null: no object was hit",     \
       rt_field_interval(tightness_of(r)->ratio, tightness_of(r)->low, tightness_of(r)->high))                \
     X(test_ns, "test_ns", interval, "ns", "time of an extent test", estimate(&cost_of(r)->test, 1e-9))       \
     X(line_ns, "line_ns", interval, "ns", "time of a line against a list of all: b B + i I",                 \
       estimate(&cost_of(r)->line, 1e-9))                                                                     \
-    X(line_of_box, "line_of_box", interval, "", "that over the same with boxes",                             \
+    X(line_of_box, "line_of_box", interval, "", "line_ns over that of boxes",                                \
       estimate(&cost_of(r)->ratio, 1))                                                                       \
     X(object_test_ns, "object_test_ns", interval, "ns", "time of an object test",                            \
       estimate(&of(r)->object, 1e-9))                                                                        \
-    X(lines, "lines", integer, "", "random lines that were counted with", tightness_of(r)->lines)            \
-    X(extent_hits, "extent_hits", integer, "", "of them, those that met the extent",                         \
-      tightness_of(r)->extent_hits)                                                                          \
-    X(object_hits, "object_hits", integer, "", "of them, those that met the object",                         \
-      tightness_of(r)->object_hits)                                                                          \
-    X(met_per_line, "met_per_line", real9, "", "extents that a random line through the scene meets",         \
+    X(lines, "lines", integer, "", "random lines", tightness_of(r)->lines)                                   \
+    X(extent_hits, "extent_hits", integer, "", "lines that hit the extent", tightness_of(r)->extent_hits)    \
+    X(object_hits, "object_hits", integer, "", "lines that hit the object", tightness_of(r)->object_hits)    \
+    X(met_per_line, "met_per_line", real9, "", "extents that a random line through the scene hits",          \
       tightness_of(r)->met)
 
 RT_TABLE_COLUMNS(columns, COLUMNS)
@@ -115,7 +113,7 @@ static const void *any_row(void *context, size_t i) {
 
 void rt_extents_table_print(const RtExtentsTable *table, FILE *out) {
     fprintf(out,
-            "extents, by %llu random lines a shape, with 95 %% intervals; a line costs b B + i I against a "
+            "extents, by %llu random lines per shape, with 95 %% intervals; a line costs b B + i I against a "
             "list of all\n",
             (unsigned long long)table->lines);
     for (size_t i = 0; i < table->shape_count; i++) {
@@ -124,7 +122,7 @@ void rt_extents_table_print(const RtExtentsTable *table, FILE *out) {
         RtField object = estimate(&table->shapes[i].object, 1e-9);
         const char *known = rt_field_show(RT_FORM_interval, &object, room);
         fprintf(out, "\n%s: %u; object test, ns: %s\n", shape_name(&table->shapes[i]),
-                table->shapes[i].objects, *known ? known : "unknown, none was met");
+                table->shapes[i].objects, *known ? known : "unknown, none was hit");
         rt_table_text(&(RtTable){of_a_shape, 1, table->choice_count, choice_row, .context = &row}, out);
     }
 }

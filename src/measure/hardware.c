@@ -35,7 +35,7 @@ static int open_event(const RtHardwareEvent *event) {
                                    .read_format =
                                        PERF_FORMAT_TOTAL_TIME_ENABLED | PERF_FORMAT_TOTAL_TIME_RUNNING,
                                    .disabled = 1,
-                                   .inherit = 1, /* by threads that are started from now on */
+                                   .inherit = 1, /* by threads started from now on */
                                    .exclude_kernel = 1,
                                    .exclude_hv = 1};
     return (int)syscall(SYS_perf_event_open, &attr, 0, -1, -1, PERF_FLAG_FD_CLOEXEC);
@@ -49,13 +49,15 @@ static RtStatus explain(int problem, RtError *error) {
     switch (problem) {
     case ENOENT:
     case EOPNOTSUPP:
-    case ENODEV: return rt_fail(error, RT_NOT_AVAILABLE, "this machine has none, as many a virtual one");
+    case ENODEV:
+        return rt_fail(error, RT_NOT_AVAILABLE, "this machine has none; virtual machines often have none");
     case EACCES:
     case EPERM:
-        return rt_fail(error, RT_NOT_AVAILABLE,
-                       "the kernel does not allow them: kernel.perf_event_paranoid is %d, and has to be 2 or "
-                       "less (sysctl); a container may forbid them, too",
-                       paranoid);
+        return rt_fail(
+            error, RT_NOT_AVAILABLE,
+            "the kernel does not allow them: kernel.perf_event_paranoid is %d, and must be at most "
+            "2 (sysctl); a container may forbid them, too",
+            paranoid);
     case ENOSYS: return rt_fail(error, RT_NOT_AVAILABLE, "this kernel has no perf_event_open");
     default: return rt_fail(error, RT_NOT_AVAILABLE, "perf_event_open fails: %s", strerror(problem));
     }
@@ -81,7 +83,7 @@ void rt_hardware_close(RtHardware *hardware) {
 
 /* ---- counting ---- */
 
-/* Counts of threads that have ended are never set back, so what is counted is a difference. */
+/* Counts of threads that have ended are never reset, so differences are taken. */
 static RtHardwareStart read_all(const RtHardware *hardware) {
     RtHardwareStart now = {0};
     for (int i = 0; i < RT_HARDWARE_COUNT; i++) {

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Counters of the processor, by perf_event_open(2): what a piece of work took in instructions, cycles, cache
- * misses and branch misses, in the program itself, not in the kernel, on the calling thread and on all that
- * it starts meanwhile. Few machines have more than some; virtual ones often have none, and a kernel may
- * forbid them: then there is a reason. More events than the processor has counters for take turns, and what
- * is read is scaled to the whole of the time. */
+/* Hardware counters, by perf_event_open(2): instructions, cycles, cache misses and branch misses of a piece
+ * of work, in user mode, on the calling thread and all threads that it starts meanwhile. Machines may lack
+ * some, virtual ones often all, and a kernel may forbid them: then there is a reason. If there are more
+ * events than counters, they take turns, and counts are scaled to the whole time. */
 #ifndef RT_MEASURE_HARDWARE_H
 #define RT_MEASURE_HARDWARE_H
 
@@ -29,36 +28,35 @@ typedef struct RtHardwareEvent {
     uint64_t config;
 } RtHardwareEvent;
 
-/* Those of the names above. Tests count others in their place. */
+/* The events of these names. Tests use others. */
 extern const RtHardwareEvent rt_hardware_events[RT_HARDWARE_COUNT];
 
 const char *rt_hardware_name(size_t i);
 
 typedef struct RtHardware {
-    int files[RT_HARDWARE_COUNT]; /* -1: this one cannot be had */
+    int files[RT_HARDWARE_COUNT]; /* -1: not available */
 } RtHardware;
 
-/* What was counted between start and stop. */
 typedef struct RtHardwareCounts {
-    double of[RT_HARDWARE_COUNT]; /* scaled; NAN: not known */
-    double running; /* the least part of the time, 0..1, that any event that is known was counted */
+    double of[RT_HARDWARE_COUNT]; /* scaled; NAN: unknown */
+    double running;               /* the least part of the time, 0..1, in which a known event was counted */
 } RtHardwareCounts;
 
-/* Opens what can be had of `events`. RT_NOT_AVAILABLE, with the reason, where that is nothing. Close with
+/* Opens the available ones of `events`. RT_NOT_AVAILABLE, with the reason, if there are none. Close with
  * rt_hardware_close, also after a failure. */
 RtStatus rt_hardware_open(RtHardware *hardware, const RtHardwareEvent events[RT_HARDWARE_COUNT],
                           RtError *error);
 void rt_hardware_close(RtHardware *hardware);
 
-/* What is started is stopped. Threads that were started before are not counted. */
+/* Counting between start and stop. Threads that were started earlier are not counted. */
 typedef struct RtHardwareStart {
-    uint64_t read[RT_HARDWARE_COUNT][3]; /* value, nanoseconds enabled, of them running */
+    uint64_t read[RT_HARDWARE_COUNT][3]; /* value, nanoseconds enabled, nanoseconds running */
 } RtHardwareStart;
 RtHardwareStart rt_hardware_start(const RtHardware *hardware);
 RtHardwareCounts rt_hardware_stop(const RtHardware *hardware, const RtHardwareStart *start);
 
-/* A value that was counted in `running` of `enabled` nanoseconds, for all of them; NAN where that is in none.
- */
+/* Scales a value that was counted in `running` of `enabled` nanoseconds to all of them; NAN if `running` is
+ * 0. */
 double rt_hardware_scale(uint64_t value, uint64_t enabled, uint64_t running);
 
 #endif

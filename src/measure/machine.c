@@ -18,7 +18,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
-/* What /proc says of the first processor under `key`, "" where it does not tell. */
+/* The value of `key` in /proc/cpuinfo for the first processor, or "". */
 static void read_cpu(const char *key, char *out, size_t room) {
     char line[512];
     out[0] = '\0';
@@ -32,7 +32,7 @@ static void read_cpu(const char *key, char *out, size_t room) {
     if (file) fclose(file);
 }
 
-/* The first line of a file of the kernel's, "" where there is none. */
+/* The first line of a file of the kernel, or "". */
 static void read_line(const char *path, char *out, int room) {
     out[0] = '\0';
     FILE *file = fopen(path, "r");
@@ -84,7 +84,7 @@ json_t *rt_plugins_json(void) {
     return list;
 }
 
-/* Of all bytes of the running program; 0 where it cannot be read. */
+/* Hash of the running program; 0 if it cannot be read. */
 static uint64_t program_hash(void) {
     static uint64_t hash;
     struct stat info;
@@ -125,7 +125,7 @@ json_t *rt_machine_json(void) {
     return machine;
 }
 
-/* Programs of one clean commit differ at most by paths, and by compiler and flags, which are named. */
+/* Programs of one clean commit differ only by paths, and by compiler and flags, which are included. */
 const char *rt_build_alone(void) {
     static char identity[1024];
     char program[64] = "";

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the measurements were made with: the machine, the compiler, the version. */
+/* The origin of measurements: machine, compiler, version. */
 #ifndef RT_MEASURE_MACHINE_H
 #define RT_MEASURE_MACHINE_H
 
@@ -8,23 +8,20 @@
 /* Where cells were timed. */
 #define RT_MAX_MACHINES 256
 typedef struct RtMachine {
-    char host[64], cpu[128]; /* "": not known */
+    char host[64], cpu[128]; /* "": unknown */
 } RtMachine;
 
-/* {"cpu", "clock_mhz" (the highest of the first processor, or what it has just now), "governor", "simd",
- * "processors", "os", "compiler", "flags", "version", "commit", "dirty", "program" (the hash of the one that
- * runs)}, "plugins" where any are loaded, and
- * by the name of each accelerator that a library does the work of, its version; what cannot be found out is
- * null. NULL where memory is short; the caller owns the reference. */
+/* {"cpu", "clock_mhz" (the highest of the first processor, or its current one), "governor", "simd",
+ * "processors", "os", "compiler", "flags", "version", "commit", "dirty", "program" (the hash of the running
+ * one)}, "plugins" if any are loaded, and under the name of each accelerator that uses a library, its
+ * version. Unknown values are null. NULL if memory is short; the caller owns the reference. */
 json_t *rt_machine_json(void);
 
-/* [{"file", "hash", "accelerators": [NAME, ...]}, ...]: the plugins that are loaded; the caller's, as well.
- */
+/* The loaded plugins, [{"file", "hash", "accelerators": [NAME, ...]}, ...]; the caller owns the reference. */
 json_t *rt_plugins_json(void);
 
-/* Version, commit, compiler and flags in one line, and where the sources are no commit, the hash of the
- * program: only what was measured by one and the same build may be mixed. rt_build_identity has every plugin
- * that is loaded, too. */
+/* Version, commit, compiler and flags in one line, and the hash of the program if its sources are not a
+ * commit: only measurements of one build may be mixed. rt_build_identity also has every loaded plugin. */
 const char *rt_build_alone(void);
 const char *rt_build_identity(void);
 

@@ -13,7 +13,7 @@ const char *const rt_result_files[RT_RESULT_FILE_COUNT] = {
 #undef NAME
 };
 
-/* Those that are removed: all but the copy of the experiment, the last one. */
+/* Files that are removed: all except the last, the copy of the experiment. */
 enum { RESULTS = RT_FILE_EXPERIMENT };
 
 bool rt_previous_results_has(const char *name) {
@@ -27,7 +27,7 @@ static bool has(const char *directory, const char *name) {
     return rt_path_join(directory, name, path, NULL) == RT_OK && rt_file_exists(path);
 }
 
-/* The journal that stands for results that are being removed. */
+/* The journal of results that are being removed. */
 static const char given_up[] = "{\"given_up\": true}\n";
 
 static bool is_given_up(const char *directory, const char *journal) {

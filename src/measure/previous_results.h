@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The files of a result directory, and what becomes of those that a previous run left there: nothing is
- * overwritten unasked. */
+/* The files of a result directory, and how results of a previous run are treated: nothing is overwritten
+ * unless the user asks for it. */
 #ifndef RT_MEASURE_PREVIOUS_RESULTS_H
 #define RT_MEASURE_PREVIOUS_RESULTS_H
 
@@ -8,15 +8,15 @@
 
 #include <stdbool.h>
 
-/* How a run or a verification takes a directory with results. */
+/* How a run or a verification treats a directory with results. */
 typedef enum RtStart {
-    RT_START_FRESH,  /* it is refused */
-    RT_START_RESUME, /* gone on with, if it is the same run by the same build; what is known stays */
-    RT_START_ANEW    /* the results are lost */
+    RT_START_FRESH,  /* it is rejected */
+    RT_START_RESUME, /* continued, if it is the same run by the same build */
+    RT_START_ANEW    /* its results are removed */
 } RtStart;
 
-/* Every file of a result directory, X(ID, name). Journals come first; experiment.yaml, which is a copy, is
- * not a result. report/result_files.h says which experiments have which, and writes them. */
+/* Every file of a result directory, X(ID, name). Journals come first; experiment.yaml is a copy, not a
+ * result. report/result_files.h defines which experiments have which files, and writes them. */
 #define RT_RESULT_FILES(X)                                                                                   \
     X(RUN_JOURNAL, "cells.jsonl")                                                                            \
     X(VERIFY_JOURNAL, "rows.jsonl")                                                                          \
@@ -51,18 +51,18 @@ extern const char *const rt_result_files[RT_RESULT_FILE_COUNT];
 #define RT_VERIFY_JOURNAL "rows.jsonl"
 #define RT_MANIFEST       "manifest.json"
 
-/* Whether a result directory has a file of that name of its own. */
+/* Whether `name` is a file of result directories. */
 bool rt_previous_results_has(const char *name);
 
-/* Whether there is the journal that such a start goes on with. Refuses results that are not to be touched:
- * any at all by a fresh start, any without the journal by one that resumes, unless they are given up. */
+/* *goes_on gets whether the start continues a journal. Rejects results that must not be touched: any by a
+ * fresh start, and those without a journal by one that resumes, unless they were given up. */
 RtStatus rt_previous_results_look(const char *directory, const char *journal, RtStart start, bool *goes_on,
                                   RtError *error);
 
-/* Removes the results in the directory, where there are any: tables, manifest, report, pictures, plots, and
- * the journal of the other kind. Scripts, replay files and all else stay. Before that, one line takes the
- * place of the journal, in one step: it says that the results are given up. So whenever the process ends,
- * either nothing is removed, or a start that resumes begins anew. */
+/* Removes all results in the directory: tables, manifest, report, pictures, plots, and the journal of the
+ * other kind. Scripts, replay files and everything else stay. First, one line that marks the results as given
+ * up replaces the journal in one step: if the process ends at any time, either nothing was removed, or a
+ * start that resumes begins anew. */
 RtStatus rt_previous_results_remove(const char *directory, const char *journal, RtError *error);
 
 #endif

@@ -12,7 +12,7 @@ _Static_assert(offsetof(RtRay, org) == 0 && offsetof(RtRay, tmin) == 3 * sizeof(
                    offsetof(RtRay, dir) == 4 * sizeof(float) && offsetof(RtRay, tmax) == 7 * sizeof(float),
                "a ray begins with its row");
 
-/* Rows that are read at a time. */
+/* Rows read at a time. */
 enum { BLOCK = 1024 };
 
 /* ---- rays ---- */
@@ -27,14 +27,14 @@ RtStatus rt_rays_save(const RtRaySet *set, const char *path, RtError *error) {
     return rt_output_commit(&output, error);
 }
 
-/* Which of the invariants of rt_ray_is_valid is broken. */
+/* The broken invariant of rt_ray_is_valid. */
 static const char *fault_of(const RtRay *ray) {
     float size = rt_maxf(rt_maxf(fabsf(ray->org.x), fabsf(ray->org.y)), fabsf(ray->org.z));
     if (!rt_finite(ray->org) || size > RT_MAX_COORDINATE) return "its origin is not finite, or beyond 5e17";
     if (!rt_finite(ray->dir)) return "its direction is not finite";
     if (ray->dir.x == 0 && ray->dir.y == 0 && ray->dir.z == 0) return "its direction is zero";
     if (!(ray->tmin >= 0) || !isfinite(ray->tmin)) return "its tmin is negative or not finite";
-    return "its tmax is less than its tmin, or no number";
+    return "its tmax is less than its tmin, or not a number";
 }
 
 static RtStatus read_rays(RtNpy *npy, RtRaySet *set, RtError *error) {
@@ -49,7 +49,7 @@ static RtStatus read_rays(RtNpy *npy, RtRaySet *set, RtError *error) {
             if (rt_ray_is_valid(ray)) continue;
             return rt_fail(error, RT_BAD_INPUT,
                            "%s: row %" PRIu64
-                           " (the first is 0) is no ray: %s. It reads origin %.9g %.9g %.9g, tmin "
+                           " (the first is 0) is not a valid ray: %s. It has origin %.9g %.9g %.9g, tmin "
                            "%.9g, direction %.9g %.9g %.9g, tmax %.9g",
                            npy->path, first + i, fault_of(ray), (double)rows[i][0], (double)rows[i][1],
                            (double)rows[i][2], (double)rows[i][3], (double)rows[i][4], (double)rows[i][5],
@@ -64,7 +64,7 @@ RtStatus rt_rays_load(const char *path, RtRayKind kind, RtRaySet *set, RtError *
     *set = (RtRaySet){.kind = kind};
     RtStatus status = rt_npy_open(&npy, path, RT_RAY_COLUMNS, RT_MAX_RAYS_A_KIND, error);
     if (status == RT_OK && npy.rows == 0)
-        status = rt_fail(error, RT_BAD_INPUT, "%s: there are no rays in it", path);
+        status = rt_fail(error, RT_BAD_INPUT, "%s: it contains no rays", path);
     if (status == RT_OK) status = rt_rayset_init(set, kind, npy.rows, error);
     if (status == RT_OK) status = read_rays(&npy, set, error);
     rt_npy_close(&npy);

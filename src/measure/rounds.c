@@ -24,7 +24,7 @@ uint32_t rt_runner_repeats(double seconds, double least) {
     return (uint32_t)fmin(fmax(ceil(least / fmax(seconds, 1e-9)), 1), MOST_REPEATS);
 }
 
-/* A tenth of the least round, so a hundredth of ten: what a whole run would take is then told from a part. */
+/* Takes a tenth of the least round, a hundredth of ten rounds, and extrapolates to a whole run. */
 static RtStatus warm_one(const RtRunner *runner, double least, double *seconds, RtError *error) {
     double wall, part = 1, start = rt_thread_seconds();
     if (!runner->warm || runner->parallel) return rt_runner_time(runner, 1, seconds, &wall, error);
@@ -33,22 +33,22 @@ static RtStatus warm_one(const RtRunner *runner, double least, double *seconds, 
     return RT_OK;
 }
 
-/* Whether a runner that returned `status` is left out from now on. */
+/* Whether a runner that returned `status` is excluded from now on. */
 static bool becomes_broken(const RtRunner *runner, RtStatus status) {
     if (status != RT_BROKEN || !runner->broken) return false;
     *runner->broken = true;
     return true;
 }
 
-static bool is_left_out(const RtRunner *runner) {
+static bool is_excluded(const RtRunner *runner) {
     return runner->broken && *runner->broken;
 }
 
-/* Brings code and data into the caches, and finds how often each must run to last `least` seconds. */
+/* Loads code and data into the caches, and finds how often each must run to last `least` seconds. */
 static RtStatus warm_up(RtRunner *runners, size_t count, double least, RtError *error) {
     for (size_t i = 0; i < count; i++) {
         double seconds;
-        if (is_left_out(&runners[i])) continue;
+        if (is_excluded(&runners[i])) continue;
         RtStatus status = warm_one(&runners[i], least, &seconds, error);
         if (becomes_broken(&runners[i], status)) continue;
         RT_TRY(status);
@@ -76,12 +76,12 @@ static RtStatus run_rounds(RtRunner *runners, size_t *order, size_t count, const
         for (size_t i = 0; i < count; i++) {
             RtRunner *runner = &runners[order[i]];
             double seconds, wall, work = runner->repeats * runner->work;
-            if (is_left_out(runner)) continue;
+            if (is_excluded(runner)) continue;
             RtStatus status = rt_runner_time(runner, runner->repeats, &seconds, &wall, error);
             if (becomes_broken(runner, status)) continue;
             RT_TRY(status);
             runner->seconds[round] = seconds / work;
-            if (seconds < rounds->least) /* it was told wrong from a part */
+            if (seconds < rounds->least) /* the extrapolation was wrong */
                 runner->repeats = rt_runner_repeats(seconds / runner->repeats, rounds->least);
             if (runner->wall) runner->wall[round] = wall / work;
         }

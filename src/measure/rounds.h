@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Interleaved rounds: how things are timed against each other. After a warm-up, each round runs all of them
- * once, in an order drawn anew, so that a drift of the machine meets them all alike and the times of one
- * round may be paired. */
+/* Interleaved rounds: timing several runners against each other. After a warm-up, each round runs all of them
+ * once, in a new random order, so that drift of the machine affects all alike and the times of one round can
+ * be paired. */
 #ifndef RT_MEASURE_ROUNDS_H
 #define RT_MEASURE_ROUNDS_H
 
@@ -10,34 +10,31 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define RT_MAX_ROUNDS 1000 /* measurements of one thing */
+#define RT_MAX_ROUNDS 1000 /* most measurements of one runner */
 
-/* One of the things that are timed. */
 typedef struct RtRunner {
     RtStatus (*run)(void *context, RtError *error); /* all of its work once */
-    /* Optional, for the warm-up: some of the work on this thread, spread over all of it, for about `seconds`;
-     * *part gets how much of a run that was, above 0. NULL: a whole run, which then takes as long as a round.
-     */
+    /* Optional, for the warm-up: does a sample of the work on this thread, for about `seconds`; *part gets
+     * the part of a run that it was, above 0. NULL: a whole run. */
     RtStatus (*warm)(void *context, double seconds, double *part, RtError *error);
-    /* Of one whose work is done in another process: runs it `repeats` times, and says how long that took
-     * there. NULL: it is run here, and the clocks of this thread say. */
+    /* For work in another process: runs it `repeats` times, and returns the time that took there. NULL: it
+     * runs here, and this thread's clocks are used. */
     RtStatus (*time)(void *context, uint32_t repeats, double *seconds, double *wall, RtError *error);
     void *context;
-    double work;      /* pieces of work in one run, > 0: times are per piece */
+    double work;      /* units of work in one run, > 0: times are per unit */
     bool parallel;    /* runs on several threads: the wall clock is then the clock of the comparison */
     double *seconds;  /* [most] out: by the clock of the comparison, else the thread's processor time */
-    double *wall;     /* [most] out: by the wall clock; NULL if nobody asks */
+    double *wall;     /* [most] out: by the wall clock, or NULL */
     uint32_t repeats; /* scratch: runs in a round */
-    bool *broken; /* in and out: it is never run while this is true. RT_BROKEN sets it; NULL: RT_BROKEN ends
-                     the rounds */
+    bool *broken;     /* in and out: set by RT_BROKEN, and never run again. NULL: RT_BROKEN ends the rounds */
 } RtRunner;
 
 typedef struct RtRounds {
     uint32_t rounds; /* 1..most, after a warm-up */
-    uint32_t most;   /* ..RT_MAX_ROUNDS: as many as are run unless `enough` ends it before */
-    double least;    /* seconds: what is shorter is repeated within a round until it takes this long */
+    uint32_t most;   /* ..RT_MAX_ROUNDS: rounds to run unless `enough` ends them earlier */
+    double least;    /* seconds: shorter runs are repeated within a round until they take this long */
     uint64_t seed;   /* of the order */
-    /* Asked from `rounds` rounds on, after each, with their number, whether these will do. NULL: they do. */
+    /* Called after each round from number `rounds` on: whether these are enough. NULL: they are. */
     bool (*enough)(void *context, uint32_t rounds);
     void *context;
 } RtRounds;
@@ -46,11 +43,11 @@ typedef struct RtRounds {
 RtStatus rt_rounds_run(RtRunner *runners, size_t count, const RtRounds *rounds, uint32_t *done,
                        RtError *error);
 
-/* Runs one of them `repeats` times: seconds by both clocks for all of that. */
+/* Runs one of them `repeats` times; returns the seconds of all runs by both clocks. */
 RtStatus rt_runner_time(const RtRunner *runner, uint32_t repeats, double *seconds, double *wall,
                         RtError *error);
 
-/* How often a run that takes `seconds` is to be repeated to last `least` seconds. */
+/* How often a run of `seconds` must be repeated to last `least` seconds. */
 uint32_t rt_runner_repeats(double seconds, double least);
 
 #endif

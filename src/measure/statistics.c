@@ -94,7 +94,7 @@ RtEstimate rt_estimate_ratio(const double *over, const double *under, uint32_t c
 
 /* ---- unpaired ---- */
 
-/* From so many measurements of both together on, the normal distribution is near enough. */
+/* The normal distribution is accurate enough for more measurements of both together. */
 enum { UNPAIRED_EXACT = 60, NORMAL_STEPS = 300 };
 
 /* How many of the smallest of n * m pairs lie below the interval: the largest k with P(U < k) <= tail, where

@@ -71,8 +71,8 @@ typedef struct Survey {
     RtCrossing *room;  /* of hit functions */
 } Survey;
 
-/* A random line that meets the sphere, as a ray from so far behind it that nothing is turned away for lying
- * behind the ray: extents stick out of the box of their object. */
+/* A random line through the sphere, as a ray that starts far behind it: extents may extend beyond the box of
+ * their object, and must not lie behind the ray. */
 static RtRay random_line(const RtBall *sphere, RtRandom *random) {
     RtRay ray = rt_sphere_chord(sphere, random);
     RtVec3d back = rt_scaled(rt_normalized(rt_widen(ray.dir)), -4 * sphere->radius);
@@ -105,8 +105,8 @@ static void count_lines(const Survey *survey, uint32_t index, uint64_t lines) {
     }
 }
 
-/* Deals the lines out by area: each object gets its part, rounded up or down so that none is left over and
- * nobody is preferred. Gives the sum of the squared radii. */
+/* Distributes the lines by area, each part rounded up or down without bias. Returns the sum of the squared
+ * radii. */
 static double deal_lines(const Survey *survey, uint64_t lines) {
     uint32_t count = survey->population->count;
     double whole = 0, sum = 0;
@@ -126,7 +126,7 @@ static double deal_lines(const Survey *survey, uint64_t lines) {
     return whole;
 }
 
-/* Wilson's interval of the part `met` of `all`, turned over. */
+/* The inverse of Wilson's interval of the part of extent hits that hit the object. */
 static void estimate(RtTightness *out) {
     double n = (double)out->extent_hits, k = (double)out->object_hits;
     const double z = 1.959963984540054;

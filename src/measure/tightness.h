@@ -2,16 +2,16 @@
 /* Tightness of extents (Weghorst, Hooper & Greenberg 1984): the projected area of an extent over that of its
  * object, averaged over all directions.
  *
- * Of the lines that meet a sphere, drawn uniformly, a part that is proportional to this area meets a thing
- * within it (Crofton's formula). So tightness is found by counting: random lines through a sphere about the
- * object and its extents, those that meet the extent over those that meet the object.
+ * The part of uniform random lines through a sphere that hit a body within it is proportional to this area
+ * (Crofton's formula). So tightness is found by counting: of random lines through a sphere around the object
+ * and its extents, those that hit the extent over those that hit the object.
  *
- * A row is about many objects: the sum of the areas of their extents over the sum of theirs. That is how many
- * extents a random line meets for every object that it meets, and so what tightness costs. Each object gets
- * lines in proportion to the area of the sphere about it; then plain sums of hits have this ratio.
+ * A row covers many objects: the summed areas of their extents over their own summed areas. That is the
+ * number of extents that a random line hits for each object that it hits. Each object gets lines in
+ * proportion to the area of its sphere, so plain sums of hits have this ratio.
  *
- * A line that meets an object meets its extent (accel/extent.h), so O of the E lines that meet the extent is
- * a binomial count, and the interval of O / E is Wilson's (1927, "Probable Inference", JASA 22). */
+ * A line that hits an object hits its extent (accel/extent.h), so the number O of the E lines through the
+ * extent is binomial, and the interval of O / E is Wilson's (1927, "Probable Inference", JASA 22). */
 #ifndef RT_MEASURE_TIGHTNESS_H
 #define RT_MEASURE_TIGHTNESS_H
 
@@ -22,7 +22,7 @@ typedef struct RtExtentChoice {
     uint32_t slabs; /* plane sets, 3..RT_MAX_SLABS; 0 for the other kinds */
 } RtExtentChoice;
 
-/* Objects of one shape of a finished geometry, or all of it: RT_SHAPE_COUNT. */
+/* Objects of one shape of a finished geometry, or all of them: RT_SHAPE_COUNT. */
 typedef struct RtPopulation {
     const RtGeometry *geometry; /* borrowed */
     RtShape shape;
@@ -36,18 +36,18 @@ void rt_population_clear(RtPopulation *population);
 
 typedef struct RtTightness {
     uint64_t lines, extent_hits, object_hits;
-    double ratio, low, high; /* tightness and its 95 % interval. Where no object is ever met (triangles
-                                without area) the ratio is NaN and `high` infinite; where no extent is met,
-                                either, all three are NaN */
-    double met; /* extents of the population that a random line through the scene's bounding sphere meets, on
-                   average */
+    double ratio, low, high; /* tightness and its 95 % interval. If no object is hit (triangles without
+                                area), the ratio is NaN and `high` infinite; if no extent is hit either, all
+                                three are NaN */
+    double met; /* mean number of extents of the population that a random line through the scene's bounding
+                   sphere hits */
 } RtTightness;
 
-/* Counts what `lines` lines meet; the same lines for out[i] of each choices[i]. */
+/* Counts the hits of `lines` lines; out[i] is for choices[i], with the same lines. */
 RtStatus rt_tightness_count(const RtPopulation *population, const RtExtentChoice *choices, size_t count,
                             uint64_t lines, uint64_t seed, RtTightness *out, RtError *error);
 
-/* A sphere about object `id` and its extents of every kind, with some room. */
+/* A sphere around object `id` and its extents of every kind, slightly enlarged. */
 RtBall rt_sphere_about_extents(const RtGeometry *geometry, uint32_t id);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Ray sets. A frame keeps the rays that it traces; diffuse and random rays are made here. Each draws its
- * numbers from a stream of its own, numbered by kind and index. */
+/* Ray sets. A frame records the rays that it traces; diffuse and random rays are made here. Each ray has its
+ * own stream of random numbers, numbered by kind and index. */
 #include "rays/rayset.h"
 
 #include "core/base/memory.h"
@@ -39,7 +39,7 @@ void rt_rayset_seal(RtRaySet *set) {
 
 /* ---- diffuse rays ---- */
 
-/* The ray that bounces where `primary` hit, off the side it came from. */
+/* The diffuse ray from the hit of `primary`, on the side that it came from. */
 static RtRay bounce(const Recorder *recorder, const RtRay *primary, RtCrossing *room) {
     uint32_t sample = primary->source;
     RtHit hit = {recorder->frame.depth[sample], recorder->frame.object[sample]};
@@ -69,7 +69,7 @@ static RtStatus make_diffuse(Recorder *recorder, RtError *error) {
     return RT_OK;
 }
 
-/* The same rays, to be asked whether anything lies on them. */
+/* The same rays, as any-hit queries. */
 static RtStatus make_occlusion(Recorder *recorder, RtError *error) {
     const RtRaySet *diffuse = &recorder->sets[RT_RAY_DIFFUSE];
     RtRaySet *set = &recorder->sets[RT_RAY_OCCLUSION];
@@ -101,7 +101,7 @@ RtRay rt_sphere_chord(const RtBall *sphere, RtRandom *random) {
     RtVec3 from = point_of_sphere(random, sphere);
     RtVec3 to = point_of_sphere(random, sphere);
     RtVec3 dir = rt_sub(to, from);
-    /* So small a sphere, or so far from the origin, that its points coincide in float32: any direction. */
+    /* The points of a very small or distant sphere coincide in float32: any direction. */
     if (dir.x == 0 && dir.y == 0 && dir.z == 0) dir = rt_narrow(rt_random_direction(random));
     return (RtRay){.org = from, .dir = dir, .tmin = 0, .tmax = INFINITY, .kind = RT_RAY_RANDOM};
 }
@@ -141,7 +141,7 @@ static RtStatus make_sets(Recorder *recorder, const RtAccel *accel, RtError *err
     for (int kind = RT_RAY_PRIMARY; kind <= RT_RAY_TRANSMISSION; kind++) {
         recorder->sets[kind].count = frame->ray_count[kind];
         recorder->sets[kind].rays = frame->rays[kind];
-        frame->rays[kind] = NULL; /* it is the set's now */
+        frame->rays[kind] = NULL; /* the set owns them now */
     }
     RT_TRY(make_diffuse(recorder, error));
     RT_TRY(make_occlusion(recorder, error));
@@ -170,8 +170,8 @@ RtStatus rt_rayset_thin(const RtRaySet *from, uint64_t stride, RtRaySet *to, RtE
     return RT_OK;
 }
 
-/* Where the run of a group of `stride` runs starts, in runs from the start of the group. At random, for a
- * constant would pick columns of the image where `stride` divides the runs of a row. */
+/* The run of a group of `stride` runs that is kept. It is random, because a constant would pick columns of
+ * the image where `stride` divides the runs of a row. */
 static uint64_t pick(uint64_t group, uint64_t stride) {
     RtRandom random = rt_random(0, group);
     return (uint64_t)rt_random_bits(&random) * stride >> 32;

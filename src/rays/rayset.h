@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Ray sets: rays of one kind recorded from one scene, to be replayed to every accelerator alike.
+/* Ray sets: rays of one kind recorded from one scene, and traced by every accelerator alike.
  *
- * Primary, shadow, reflection and transmission rays are those of a frame of the scene, in the order in which
- * the frame's tiles produce them (tile after tile, each along a Z-order curve: render/tiles.h), whatever the
- * number of threads: neighbours in a set start and end close to one another where the kind allows it. Diffuse
- * rays start at the primary hits, cosine-distributed about the normal; random rays are chords of the scene's
- * bounding sphere between two uniform points of it. Occlusion rays are the diffuse ones, of another kind. */
+ * Primary, shadow, reflection and transmission rays are those of a frame of the scene, in the order of the
+ * frame's tiles (each along a Z-order curve: render/tiles.h), on any number of threads: neighbours in a set
+ * start and end close to one another if the kind allows it. Diffuse rays start at the primary hits,
+ * cosine-distributed about the normal; random rays are chords of the scene's bounding sphere between two
+ * uniform points of it. Occlusion rays are the diffuse ones, of another kind. */
 #ifndef RT_RAYS_RAYSET_H
 #define RT_RAYS_RAYSET_H
 
@@ -18,7 +18,7 @@ typedef struct RtRaySet {
     RtRayKind kind;
     uint64_t count;
     RtRay *rays;          /* [count], owned; every ray is valid */
-    uint64_t fingerprint; /* XXH3 of the rays: equal sets, equal fingerprint, on every machine */
+    uint64_t fingerprint; /* XXH3 of the rays: equal sets have equal fingerprints on every machine */
 } RtRaySet;
 
 typedef struct RtRecording {
@@ -30,21 +30,20 @@ typedef struct RtRecording {
 } RtRecording;
 
 /* Fills sets[RT_RAY_KIND_COUNT], indexed by kind; a kind that the scene does not produce gets an empty set.
- * `accel` answers the recorded rays (any exact one will do: hits are the same). Free each with
- * rt_rayset_clear. */
+ * `accel` answers the recorded rays; it may be any exact one. Free each set with rt_rayset_clear. */
 RtStatus rt_rayset_record(RtRaySet *sets, const RtAccel *accel, const RtRecording *recording, RtError *error);
 
 /* Keeps each `stride`th ray, starting with the first; 1 keeps all. */
 RtStatus rt_rayset_thin(const RtRaySet *from, uint64_t stride, RtRaySet *to, RtError *error);
 
-/* At most `limit` rays, evenly spread, in runs of `run` neighbours: of every ceil(count / limit) runs
- * one is kept. Runs of 1 thin the set as above: the widest spread, for counting. Longer ones, up to a
- * 64th of `limit`, are picked at random within their group and keep the coherence that packets and caches
- * live on, for timing; from 64 rays on they are cut to a multiple of that, so that of primary rays whole
- * blocks of 8 x 8 samples are kept. */
+/* Keeps at most `limit` rays, evenly spread, in runs of `run` neighbours: one of every ceil(count / limit)
+ * runs. Runs of 1 thin the set as above: the widest spread, for counting. Longer runs, up to a 64th of
+ * `limit`, are picked at random within their group; they preserve the coherence that packets and caches need,
+ * for timing. Runs of 64 and more are cut to a multiple of 64, which keeps whole blocks of 8 x 8 samples of
+ * primary rays. */
 RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, uint64_t run, RtRaySet *to, RtError *error);
 
-/* A set of `count` rays for the caller to fill, all of them zero, and what is to follow: its fingerprint. */
+/* Makes a set of `count` rays, unset, for the caller to fill; rt_rayset_seal then sets its fingerprint. */
 RtStatus rt_rayset_init(RtRaySet *set, RtRayKind kind, uint64_t count, RtError *error);
 void rt_rayset_seal(RtRaySet *set);
 
@@ -53,12 +52,11 @@ void rt_rayset_clear(RtRaySet *set);
 /* The sphere through the corners of `box`; the unit sphere for the empty box. */
 RtBall rt_bounding_sphere(const RtBox *box);
 
-/* One random ray: from one uniform point of `sphere` towards another, dir not normalised, so that t = 1 is
- * the other point; tmin 0, tmax infinite. Such chords are uniformly distributed lines: by direction, and
- * across it by area. */
+/* A random ray from one uniform point of `sphere` towards another; dir is not normalised: t = 1 is the other
+ * point; tmin 0, tmax infinite. Such chords are uniformly distributed lines, by direction and by area. */
 RtRay rt_sphere_chord(const RtBall *sphere, RtRandom *random);
 
-/* The same of the bounding sphere of `box`. */
+/* A chord of the bounding sphere of `box`. */
 RtRay rt_random_chord(const RtBox *box, RtRandom *random);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Accelerators of plugins, which live in processes of their own: they answer, count and show what they would
- * here, and of one that breaks nobody else takes harm. What commands make of them is in
- * tests/check_plugins.sh. */
+/* Accelerators of plugins, which run in processes of their own: they answer, count and show boxes as they
+ * would in this one, and one that breaks damages no other results. tests/check_plugins.sh tests what commands
+ * report of them. */
 #include "accel_testing.h"
 #include "equivalence_testing.h"
 
@@ -23,20 +23,56 @@ static void load_all(void) {
     assert_ok(rt_plugin_load_all(PLUGINS "new-accel.so:" PLUGINS "bvh_copy.so:" PLUGINS "faulty.so", error));
 }
 
-static void open_random(RtScene *scene) {
+/* An accelerator of a plugin over a scene, and random chords with their right answers. */
+typedef struct Stage {
+    RtScene scene;
+    RtRaySet set;
+    RtAccel *bvh, *accel;
+    RtHit *expected; /* [set.count] */
+} Stage;
+
+static void open_stage(Stage *stage, const char *spec, uint64_t count) {
+    RtQuery query;
     load_all();
-    assert_ok(rt_scene_open("random:n=300,shape=mixed", scene, error));
+    assert_ok(rt_scene_open("random:n=300,shape=mixed", &stage->scene, error));
+    assert_ok(rt_accel_open("bvh", &stage->scene, &stage->bvh, error));
+    assert_ok(rt_query_init(&query, stage->bvh, error));
+    assert_ok(rt_rayset_init(&stage->set, RT_RAY_RANDOM, count, error));
+    rt_ray_family_fill(0, &query, 1, 0, count, stage->set.rays);
+    for (uint64_t i = 0; i < count; i++) stage->set.rays[i].kind = RT_RAY_RANDOM;
+    rt_query_clear(&query);
+    stage->expected = rt_alloc(count, sizeof(RtHit));
+    assert_ok(rt_measure_answers(stage->bvh, &stage->set, 2, stage->expected, error));
+    assert_ok(rt_accel_open(spec, &stage->scene, &stage->accel, error));
 }
 
-/* Random chords of a scene. */
-static void open_chords(const RtScene *scene, uint64_t count, RtRaySet *set, RtAccel **bvh) {
-    RtQuery query;
-    assert_ok(rt_accel_open("bvh", scene, bvh, error));
-    assert_ok(rt_query_init(&query, *bvh, error));
-    assert_ok(rt_rayset_init(set, RT_RAY_RANDOM, count, error));
-    rt_ray_family_fill(0, &query, 1, 0, count, set->rays);
-    for (uint64_t i = 0; i < count; i++) set->rays[i].kind = RT_RAY_RANDOM;
-    rt_query_clear(&query);
+static void close_stage(Stage *stage) {
+    rt_accel_destroy(stage->accel);
+    rt_accel_destroy(stage->bvh);
+    rt_free(stage->expected);
+    rt_rayset_clear(&stage->set);
+    rt_scene_clear(&stage->scene);
+}
+
+static RtCount count_on(const Stage *stage, const RtAccel *accel, int threads) {
+    RtCount count;
+    assert_ok(rt_measure_count(accel, &stage->set, stage->expected, threads, &count, error));
+    assert_int_equal(count.differ, 0);
+    return count;
+}
+
+/* Traces all rays of the stage by its accelerator, which breaks, and every ray misses. */
+static void break_by_tracing(const Stage *stage, RtQuery *query) {
+    RtHit hits[200];
+    assert_ok(rt_query_init(query, stage->accel, error));
+    rt_nearest(query, stage->set.rays, stage->set.count, hits, NULL);
+    for (uint64_t i = 0; i < stage->set.count; i++) assert_int_equal(hits[i].object, RT_NO_OBJECT);
+}
+
+static void assert_it_broke(const RtAccel *accel, const char *says) {
+    RtError why;
+    assert_int_equal(rt_accel_check(accel, &why), RT_BROKEN);
+    assert_non_null(strstr(why.message, says));
 }
 
 RT_TEST(one_that_is_loaded_twice_is_there_once) {
@@ -67,26 +103,13 @@ RT_TEST(answers_are_those_of_brute_in_streams_of_every_length_on_several_threads
 }
 
 RT_TEST(counts_are_the_same_on_any_number_of_threads) {
-    RtScene scene;
-    RtRaySet set;
-    RtAccel *bvh, *copy;
-    open_random(&scene);
-    open_chords(&scene, 20000, &set, &bvh);
-    assert_ok(rt_accel_open("bvh_copy", &scene, &copy, error));
-    RtHit *expected = rt_alloc(set.count, sizeof(RtHit));
-    RtCount once, again;
-    assert_ok(rt_measure_answers(bvh, &set, 2, expected, error));
-    assert_ok(rt_measure_count(copy, &set, expected, 1, &once, error));
-    assert_ok(rt_measure_count(copy, &set, expected, 3, &again, error));
-    assert_int_equal(once.differ, 0);
-    assert_memory_equal(&once, &again, offsetof(RtCount, seconds));
-    assert_int_equal(once.tally.rays, set.count);
+    Stage stage;
+    open_stage(&stage, "bvh_copy", 20000);
+    RtCount once = count_on(&stage, stage.accel, 1), again = count_on(&stage, stage.accel, 3);
+    assert_memory_equal(&once.tally, &again.tally, sizeof once.tally);
+    assert_int_equal(once.tally.rays, stage.set.count);
     assert_true(once.tally.object_tests > 0 && once.tally.steps > 0);
-    rt_free(expected);
-    rt_accel_destroy(copy);
-    rt_accel_destroy(bvh);
-    rt_rayset_clear(&set);
-    rt_scene_clear(&scene);
+    close_stage(&stage);
 }
 
 static void count_box(void *context, const RtBoxView *view) {
@@ -111,131 +134,84 @@ RT_TEST(its_boxes_are_those_that_it_describes) {
     rt_scene_clear(&scene);
 }
 
-RT_TEST(one_that_breaks_among_those_timed_is_left_out_and_the_others_are_timed) {
-    RtScene scene;
-    RtRaySet set;
-    RtAccel *bvh, *faulty;
-    double seconds[2][3], wall[2][3];
+/* Times the stage's accelerator, which breaks, and bvh, which does not. */
+static void time_broken(const Stage *stage) {
+    enum { ROUNDS = 3 };
+    double seconds[2][ROUNDS], wall[2][ROUNDS];
     bool broken[2] = {false, false};
     uint32_t done = 0;
-    open_random(&scene);
-    open_chords(&scene, 500, &set, &bvh);
-    assert_ok(rt_accel_open("faulty-crash-timed", &scene, &faulty, error));
-    RtTimed timed[2] = {{faulty, &set, seconds[0], wall[0], &broken[0]},
-                        {bvh, &set, seconds[1], wall[1], &broken[1]}};
-    RtTiming timing = {.rounds = {.rounds = 3, .most = 3, .seed = 1}, .threads = 1};
+    RtTimed timed[2] = {{stage->accel, &stage->set, seconds[0], wall[0], &broken[0]},
+                        {stage->bvh, &stage->set, seconds[1], wall[1], &broken[1]}};
+    RtTiming timing = {.rounds = {.rounds = ROUNDS, .most = ROUNDS, .seed = 1}, .threads = 1};
     assert_ok(rt_measure_time(timed, 2, &timing, &done, error));
-    assert_int_equal(done, 3);
+    assert_int_equal(done, ROUNDS);
     assert_true(broken[0] && !broken[1]);
-    RtError why;
-    assert_int_equal(rt_accel_check(faulty, &why), RT_BROKEN);
-    assert_non_null(strstr(why.message, "faulty-crash-timed: it crashed (Segmentation fault)"));
-    for (int i = 0; i < 3; i++) assert_true(seconds[1][i] > 0);
-    rt_accel_destroy(faulty);
-    rt_accel_destroy(bvh);
-    rt_rayset_clear(&set);
-    rt_scene_clear(&scene);
+    for (int i = 0; i < ROUNDS; i++) assert_true(seconds[1][i] > 0);
+}
+
+RT_TEST(one_that_breaks_among_those_timed_is_left_out_and_the_others_are_timed) {
+    Stage stage;
+    open_stage(&stage, "faulty-crash-timed", 500);
+    time_broken(&stage);
+    assert_it_broke(stage.accel, "faulty-crash-timed: it crashed (Segmentation fault)");
+    close_stage(&stage);
 }
 
 RT_TEST(one_that_broke_before_it_is_timed_is_left_out) {
-    RtScene scene;
-    RtRaySet set;
-    RtAccel *bvh, *faulty;
+    Stage stage;
     RtQuery query;
-    RtHit hit;
-    double seconds[2][2], wall[2][2];
-    bool broken[2] = {false, false};
-    uint32_t done = 0;
-    open_random(&scene);
-    open_chords(&scene, 100, &set, &bvh);
-    assert_ok(rt_accel_open("faulty-killed", &scene, &faulty, error));
-    assert_ok(rt_query_init(&query, faulty, error));
-    rt_nearest(&query, set.rays, 1, &hit, NULL);
+    open_stage(&stage, "faulty-killed", 100);
+    break_by_tracing(&stage, &query);
     rt_query_clear(&query);
-    RtTimed timed[2] = {{faulty, &set, seconds[0], wall[0], &broken[0]},
-                        {bvh, &set, seconds[1], wall[1], &broken[1]}};
-    RtTiming timing = {.rounds = {.rounds = 2, .most = 2, .seed = 1}, .threads = 1};
-    assert_ok(rt_measure_time(timed, 2, &timing, &done, error));
-    assert_int_equal(done, 2);
-    assert_true(broken[0] && !broken[1]);
-    rt_accel_destroy(faulty);
-    rt_accel_destroy(bvh);
-    rt_rayset_clear(&set);
-    rt_scene_clear(&scene);
+    time_broken(&stage);
+    close_stage(&stage);
 }
 
-RT_TEST(one_that_breaks_as_it_is_asked_ray_by_ray_has_no_rows) {
-    RtScene scene;
-    RtRaySet set;
-    RtAccel *bvh, *faulty;
+RT_TEST(one_that_breaks_as_it_traces_ray_by_ray_has_no_rows) {
+    Stage stage;
     RtRows rows;
-    open_random(&scene);
-    open_chords(&scene, 100, &set, &bvh);
-    assert_ok(rt_accel_open("faulty-crash-alone", &scene, &faulty, error));
-    assert_int_equal(rt_measure_rows(faulty, &set, 1, &rows, NULL), RT_BROKEN);
+    open_stage(&stage, "faulty-crash-alone", 100);
+    assert_int_equal(rt_measure_rows(stage.accel, &stage.set, 1, &rows, NULL), RT_BROKEN);
     rt_rows_clear(&rows);
-    rt_accel_destroy(faulty);
-    rt_accel_destroy(bvh);
-    rt_rayset_clear(&set);
-    rt_scene_clear(&scene);
+    close_stage(&stage);
 }
 
-RT_TEST(one_that_writes_to_shared_memory_harms_nobody_else) {
-    RtScene scene;
-    RtRaySet set;
-    RtAccel *bvh, *copy, *faulty;
-    RtHit expected[100];
+RT_TEST(one_that_writes_to_shared_memory_damages_no_other) {
+    Stage stage;
+    RtAccel *faulty;
     RtCount count;
     RtError why;
-    open_random(&scene);
-    open_chords(&scene, 100, &set, &bvh);
-    assert_ok(rt_measure_answers(bvh, &set, 1, expected, error));
-    assert_ok(rt_accel_open("bvh_copy", &scene, &copy, error));
-    assert_int_equal(rt_accel_open("faulty-scribble", &scene, &faulty, &why), RT_BROKEN);
+    open_stage(&stage, "bvh_copy", 100);
+    assert_int_equal(rt_accel_open("faulty-scribble", &stage.scene, &faulty, &why), RT_BROKEN);
     assert_non_null(strstr(why.message, "it overwrote memory that it shares with raytally while it was bu"));
-    assert_ok(rt_measure_count(copy, &set, expected, 1, &count, error));
-    assert_int_equal(count.differ, 0);
-    assert_ok(rt_accel_open("faulty-scribbled", &scene, &faulty, error));
-    assert_int_equal(rt_measure_count(faulty, &set, expected, 1, &count, &why), RT_BROKEN);
+    count_on(&stage, stage.accel, 1);
+    assert_ok(rt_accel_open("faulty-scribbled", &stage.scene, &faulty, error));
+    assert_int_equal(rt_measure_count(faulty, &stage.set, stage.expected, 1, &count, &why), RT_BROKEN);
     assert_non_null(
         strstr(why.message, "it overwrote memory that it shares with raytally while it answered"));
-    assert_ok(rt_measure_count(copy, &set, expected, 1, &count, error));
-    assert_int_equal(count.differ, 0);
+    count_on(&stage, stage.accel, 1);
     rt_accel_destroy(faulty);
-    rt_accel_destroy(copy);
-    rt_accel_destroy(bvh);
-    rt_rayset_clear(&set);
-    rt_scene_clear(&scene);
+    close_stage(&stage);
 }
 
 RT_TEST(a_broken_one_misses_everything_says_why_and_takes_no_more_queries) {
-    RtScene scene;
-    RtRaySet set;
-    RtAccel *bvh, *faulty;
+    Stage stage;
     RtQuery query, another;
     RtError why;
-    RtHit hits[200];
-    open_random(&scene);
-    open_chords(&scene, 200, &set, &bvh);
-    assert_ok(rt_accel_open("faulty-abort", &scene, &faulty, error));
-    assert_ok(rt_query_init(&query, faulty, error));
-    rt_nearest(&query, set.rays, set.count, hits, NULL);
-    for (int i = 0; i < 200; i++) assert_int_equal(hits[i].object, RT_NO_OBJECT);
-    assert_int_equal(rt_accel_check(faulty, &why), RT_BROKEN);
-    assert_non_null(strstr(why.message, "(Aborted) while it answered a stream of 200 rays, at the ray org"));
-    assert_int_equal(rt_query_init(&another, faulty, &why), RT_BROKEN);
+    open_stage(&stage, "faulty-abort", 200);
+    break_by_tracing(&stage, &query);
+    assert_it_broke(stage.accel, "(Aborted) while it answered a stream of 200 rays, at the ray org");
+    assert_int_equal(rt_query_init(&another, stage.accel, &why), RT_BROKEN);
     rt_query_clear(&query);
-    rt_accel_destroy(faulty);
-    rt_accel_destroy(bvh);
-    rt_rayset_clear(&set);
-    rt_scene_clear(&scene);
+    close_stage(&stage);
 }
 
 RT_TEST(one_that_does_not_survive_its_build_leaves_nothing_behind) {
     RtScene scene;
     RtAccel *accel;
     RtError why;
-    open_random(&scene);
+    load_all();
+    assert_ok(rt_scene_open("random:n=300,shape=mixed", &scene, error));
     int64_t live = rt_alloc_live();
     assert_int_equal(rt_accel_open("faulty-crash-build", &scene, &accel, &why), RT_BROKEN);
     assert_non_null(strstr(why.message, "while it was built over 300 objects"));
@@ -258,9 +234,9 @@ RT_TEST(loading_needs_no_error) {
     assert_int_equal(rt_plugin_load(PLUGINS "odd-LONGER.so", NULL), RT_OK);
 }
 
-RT_TEST(of_a_library_that_is_refused_nothing_is_registered) {
-    static const char *const kinds[] = {"EMPTY", "ABI",      "SIZE",       "NAME",     "TAKEN",
-                                        "TWICE", "FUNCTION", "PARAMETERS", "STANDARD", "CONSTRUCTOR",
+RT_TEST(a_rejected_library_registers_nothing) {
+    static const char *const kinds[] = {"EMPTY", "ABI",      "SIZE",       "NAME",    "TAKEN",
+                                        "TWICE", "FUNCTION", "PARAMETERS", "DEFAULT", "CONSTRUCTOR",
                                         "ENTRY", "MANY",     "CHOICES"};
     const RtAccelOps *found;
     load_all();
@@ -283,40 +259,33 @@ static void wait_for_all(int number) {
     errno = before;
 }
 
-/* What is said of a plugin that crashes must not depend on who waits for children. */
+/* Reports of a plugin that crashes must not depend on who waits for children. */
 static void crash_where_children_are(void (*handled)(int)) {
-    RtScene scene;
-    RtRaySet set;
-    RtAccel *bvh, *faulty;
+    Stage stage;
     RtQuery query;
     RtError why;
-    RtHit hit;
-    open_random(&scene);
-    open_chords(&scene, 1, &set, &bvh);
+    open_stage(&stage, "bvh", 1);
+    rt_accel_destroy(stage.accel);
     void (*before)(int) = signal(SIGCHLD, handled);
     double began = rt_wall_seconds();
-    assert_ok(rt_accel_open("faulty-abort", &scene, &faulty, error));
-    assert_ok(rt_query_init(&query, faulty, error));
-    rt_nearest(&query, set.rays, 1, &hit, NULL);
-    assert_int_equal(rt_accel_check(faulty, &why), RT_BROKEN);
-    assert_non_null(
-        strstr(why.message, "it crashed (Aborted) while it answered a stream of 1 ray, at the ray"));
+    assert_ok(rt_accel_open("faulty-abort", &stage.scene, &stage.accel, error));
+    break_by_tracing(&stage, &query);
+    assert_it_broke(stage.accel, "it crashed (Aborted) while it answered a stream of 1 ray, at the ray");
     assert_int_equal(rt_plugin_load(PLUGINS "unloadable-CONSTRUCTOR.so", &why), RT_BAD_INPUT);
     assert_non_null(strstr(why.message, "it does not survive loading: it "));
     assert_true(rt_wall_seconds() - began < 1.5); /* less than it may hang */
     rt_query_clear(&query);
-    rt_accel_destroy(faulty);
+    rt_accel_destroy(stage.accel);
     signal(SIGCHLD, before);
-    rt_accel_destroy(bvh);
-    rt_rayset_clear(&set);
-    rt_scene_clear(&scene);
+    stage.accel = NULL;
+    close_stage(&stage);
 }
 
-RT_TEST(a_crash_is_told_where_children_are_ignored) {
+RT_TEST(a_crash_is_reported_where_children_are_ignored) {
     crash_where_children_are(SIG_IGN);
 }
 
-RT_TEST(a_crash_is_told_where_somebody_else_waits_for_children) {
+RT_TEST(a_crash_is_reported_where_other_code_waits_for_children) {
     crash_where_children_are(wait_for_all);
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the tests of the library have in common. */
+/* Helpers of the tests of the library. */
 #ifndef RT_TESTS_LIBRARY_TESTING_H
 #define RT_TESTS_LIBRARY_TESTING_H
 

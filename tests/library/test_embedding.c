@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* raytally.h: what those who embed us call does what the program does, refuses what it refuses, and leaves
- * nothing behind. */
+/* raytally.h: its functions do what the program does, reject what it rejects, and leak nothing. */
 #include "library_testing.h"
 
 #include "core/base/memory.h"
@@ -38,7 +37,7 @@ RT_TEST(counters_and_kinds_of_rays_have_their_names) {
 static raytally_scene *two_object_scene(void) {
     raytally_objects objects = two_objects();
     raytally_scene *scene;
-    assert_fine(raytally_scene_make(&objects, &scene, error));
+    assert_fine(raytally_scene_from_objects(&objects, &scene, error));
     return scene;
 }
 
@@ -84,17 +83,17 @@ RT_TEST(objects_that_are_none_are_refused_by_their_number) {
     int64_t live = rt_alloc_live();
     raytally_objects objects = two_objects();
     objects.corners = beyond;
-    assert_int_equal(raytally_scene_make(&objects, &scene, &why), RAYTALLY_BAD_INPUT);
+    assert_int_equal(raytally_scene_from_objects(&objects, &scene, &why), RAYTALLY_BAD_INPUT);
     assert_null(scene);
     assert_says(why, "triangle 0 (the first is 0): corner 2 is vertex 3, and there are 3");
     objects = two_objects();
     objects.spheres = flat;
     objects.sphere_count = 2;
-    assert_int_equal(raytally_scene_make(&objects, &scene, &why), RAYTALLY_BAD_INPUT);
+    assert_int_equal(raytally_scene_from_objects(&objects, &scene, &why), RAYTALLY_BAD_INPUT);
     assert_says(why, "sphere 1");
     objects = two_objects();
     objects.vertices = nowhere;
-    assert_int_equal(raytally_scene_make(&objects, &scene, NULL), RAYTALLY_BAD_INPUT);
+    assert_int_equal(raytally_scene_from_objects(&objects, &scene, NULL), RAYTALLY_BAD_INPUT);
     assert_int_equal(raytally_scene_open("bals", &scene, &why), RAYTALLY_BAD_INPUT);
     assert_null(scene);
     assert_says(why, "balls");
@@ -107,22 +106,22 @@ RT_TEST(the_camera_changes_only_while_no_accelerator_stands_over_the_scene) {
     raytally_error why;
     raytally_camera camera = {{0, 0, 9}, {0, 0, 0}, {0, 1, 0}, 40};
     uint32_t width, height;
-    assert_fine(raytally_scene_look(scene, &camera, error));
-    assert_fine(raytally_scene_sample(scene, 30, 20, 2, error));
+    assert_fine(raytally_scene_set_camera(scene, &camera, error));
+    assert_fine(raytally_scene_set_sampling(scene, 30, 20, 2, error));
     raytally_scene_size(scene, &width, &height);
     assert_true(width == 30 && height == 20);
-    assert_int_equal(raytally_scene_sample(scene, 30, 20, 65, &why), RAYTALLY_BAD_INPUT);
+    assert_int_equal(raytally_scene_set_sampling(scene, 30, 20, 65, &why), RAYTALLY_BAD_INPUT);
     camera.up[1] = 0;
-    assert_int_equal(raytally_scene_look(scene, &camera, &why), RAYTALLY_BAD_INPUT);
+    assert_int_equal(raytally_scene_set_camera(scene, &camera, &why), RAYTALLY_BAD_INPUT);
     camera.up[1] = INFINITY;
-    assert_int_equal(raytally_scene_look(scene, &camera, &why), RAYTALLY_BAD_INPUT);
+    assert_int_equal(raytally_scene_set_camera(scene, &camera, &why), RAYTALLY_BAD_INPUT);
     camera.up[1] = 1;
     assert_fine(raytally_accelerator_build(scene, "item+bvh", 1, &accel, error));
-    assert_int_equal(raytally_scene_look(scene, &camera, &why), RAYTALLY_BAD_INPUT);
-    assert_int_equal(raytally_scene_sample(scene, 8, 8, 1, &why), RAYTALLY_BAD_INPUT);
+    assert_int_equal(raytally_scene_set_camera(scene, &camera, &why), RAYTALLY_BAD_INPUT);
+    assert_int_equal(raytally_scene_set_sampling(scene, 8, 8, 1, &why), RAYTALLY_BAD_INPUT);
     assert_says(why, "1 are");
     raytally_accelerator_free(accel);
-    assert_fine(raytally_scene_sample(scene, 8, 8, 1, error));
+    assert_fine(raytally_scene_set_sampling(scene, 8, 8, 1, error));
     raytally_scene_free(scene);
 }
 
@@ -139,7 +138,7 @@ static Balls balls;
 static int open_balls(void **state) {
     static const char *const specs[3] = {"brute", "grid", "ideal"};
     assert_fine(raytally_scene_open("balls:size=1", &balls.scene, error));
-    assert_fine(raytally_scene_sample(balls.scene, 16, 16, 1, error));
+    assert_fine(raytally_scene_set_sampling(balls.scene, 16, 16, 1, error));
     for (int i = 0; i < 3; i++) {
         assert_fine(raytally_accelerator_build(balls.scene, specs[i], 1, &balls.accels[i], error));
     }
@@ -158,7 +157,7 @@ static int close_balls(void **state) {
 
 RT_TEST(accelerators_are_listed_described_and_refused) {
     char spec[RAYTALLY_SPEC_CHARS];
-    raytally_structure structure;
+    raytally_statistics structure;
     raytally_error why;
     raytally_accelerator *none;
     assert_int_equal(raytally_accelerator_count(), rt_accel_count());
@@ -169,7 +168,7 @@ RT_TEST(accelerators_are_listed_described_and_refused) {
     assert_true(raytally_accelerator_exact(balls.accels[1]));
     raytally_accelerator_describe(balls.accels[1], &structure);
     assert_true(structure.at[RAYTALLY_LEAVES] > 0 && structure.at[RAYTALLY_BYTES] > 0);
-    assert_true(structure.at[RAYTALLY_FIGURES_KNOWN] == 0);
+    assert_true(structure.at[RAYTALLY_STATISTICS_KNOWN] == 0);
     assert_int_equal(raytally_spec_format("gird", spec, &why), RAYTALLY_BAD_INPUT);
     assert_says(why, "grid");
     assert_int_equal(raytally_accelerator_build(balls.scene, "gird", 1, &none, &why), RAYTALLY_BAD_INPUT);
@@ -183,7 +182,7 @@ RT_TEST(accelerators_are_listed_described_and_refused) {
 RT_TEST(rays_are_recorded_as_the_program_records_them) {
     RtRaySet sets[RT_RAY_KIND_COUNT], thin;
     RtRecording recording = {.depth = 5, .seed = 1, .random = 128, .threads = 1};
-    raytally_recording how = RAYTALLY_RECORDING;
+    raytally_record_options how = RAYTALLY_RECORD_DEFAULTS;
     how.limit = 128; /* fewer than there are: neighbours are kept together */
     assert_ok(rt_rayset_record(sets, balls.accels[0]->accel, &recording, error));
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
@@ -201,7 +200,7 @@ RT_TEST(rays_are_recorded_as_the_program_records_them) {
 
 /* A program that was built with a header in which the struct ended sooner. */
 RT_TEST(options_that_are_left_out_have_their_defaults) {
-    raytally_recording how = {offsetof(raytally_recording, threads), 1, -7, 0, 0};
+    raytally_record_options how = {offsetof(raytally_record_options, threads), 1, -7, 0, 0};
     raytally_rays *rays;
     assert_fine(raytally_rays_record(balls.accels[1], RAYTALLY_PRIMARY, &how, &rays, error));
     assert_int_equal(raytally_rays_fingerprint(rays), raytally_rays_fingerprint(balls.rays));
@@ -230,8 +229,8 @@ RT_TEST(rays_of_ones_own_are_checked) {
 /* ---- verifying ---- */
 
 RT_TEST(every_ray_is_accounted_for_in_a_verification) {
-    raytally_verifying how = RAYTALLY_VERIFYING;
-    raytally_verified found;
+    raytally_verify_options how = RAYTALLY_VERIFY_DEFAULTS;
+    raytally_verify_result found;
     raytally_error why;
     how.rays = 500;
     assert_fine(raytally_verify(balls.scene, "grid:density=4", &how, &found, error));
@@ -259,7 +258,7 @@ RT_TEST(counts_are_those_of_the_definition) {
     assert_int_equal(counters.at[RAYTALLY_OBJECT_TESTS], hits); /* one for each ray that hits */
 }
 
-/* ideal knows rays by their addresses: what it was taught must not answer for others that come to lie there.
+/* ideal knows rays by their addresses: it must not use what it learned for other rays at the same addresses.
  */
 RT_TEST(what_was_taught_for_a_count_is_forgotten) {
     raytally_counters counters[RAYTALLY_RAY_KINDS] = {{{0}}}, taught;
@@ -273,7 +272,7 @@ RT_TEST(what_was_taught_for_a_count_is_forgotten) {
     raytally_tracer_free(tracer);
 }
 
-/* Answers otherwise when it counts. */
+/* A counted kernel with wrong answers. */
 static void lie(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count, RtHit *hits,
                 RtTally *tallies) {
     (void)accel;
@@ -297,7 +296,7 @@ RT_TEST(a_kernel_that_answers_otherwise_when_it_counts_is_a_mismatch) {
 }
 
 RT_TEST(times_are_positive_and_the_first_is_the_measure_of_all) {
-    raytally_timing how = RAYTALLY_TIMING;
+    raytally_time_options how = RAYTALLY_TIME_DEFAULTS;
     raytally_time times[3];
     raytally_rays *none;
     raytally_error why;
@@ -348,25 +347,25 @@ RT_TEST(a_picture_is_the_frame_of_the_program) {
 
 /* ---- memory ---- */
 
-/* All that allocates, once. */
+/* Every function that allocates, once. */
 static raytally_status use_all(raytally_error *error) {
     raytally_objects objects = two_objects();
-    raytally_recording recording = RAYTALLY_RECORDING;
-    raytally_verifying verifying = RAYTALLY_VERIFYING;
-    raytally_timing timing = RAYTALLY_TIMING;
+    raytally_record_options recording = RAYTALLY_RECORD_DEFAULTS;
+    raytally_verify_options verifying = RAYTALLY_VERIFY_DEFAULTS;
+    raytally_time_options timing = RAYTALLY_TIME_DEFAULTS;
     raytally_scene *scene = NULL;
     raytally_accelerator *accels[2] = {NULL, NULL};
     raytally_rays *rays = NULL, *copy = NULL;
     raytally_tracer *tracer = NULL;
-    raytally_verified found;
+    raytally_verify_result found;
     raytally_counters counters;
     raytally_time times[2];
     recording.threads = verifying.threads = timing.threads = 1;
     verifying.rays = 20;
     timing.rounds = 1;
     timing.least = 0;
-    raytally_status status = raytally_scene_make(&objects, &scene, error);
-    if (status == RAYTALLY_OK) status = raytally_scene_sample(scene, 2, 2, 1, error);
+    raytally_status status = raytally_scene_from_objects(&objects, &scene, error);
+    if (status == RAYTALLY_OK) status = raytally_scene_set_sampling(scene, 2, 2, 1, error);
     if (status == RAYTALLY_OK) status = raytally_accelerator_build(scene, "bvh", 1, &accels[0], error);
     if (status == RAYTALLY_OK) status = raytally_accelerator_build(scene, "ideal", 1, &accels[1], error);
     if (status == RAYTALLY_OK)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Plugins as those who embed us load them. */
+/* Loading plugins through the library. */
 #include "library_testing.h"
 
 #define PLUGIN(name) RT_BINARY_DIR "/plugins/" name ".so"
@@ -39,11 +39,11 @@ RT_TEST(what_is_no_plugin_is_refused_with_and_without_room_for_a_message) {
 RT_TEST(accelerators_of_a_plugin_are_verified_like_others) {
     raytally_objects objects = two_objects();
     raytally_scene *scene;
-    raytally_verifying how = RAYTALLY_VERIFYING;
-    raytally_verified found;
+    raytally_verify_options how = RAYTALLY_VERIFY_DEFAULTS;
+    raytally_verify_result found;
     how.rays = 500;
     assert_fine(raytally_plugin_load(PLUGIN("new-accel"), error));
-    assert_fine(raytally_scene_make(&objects, &scene, error));
+    assert_fine(raytally_scene_from_objects(&objects, &scene, error));
     assert_fine(raytally_verify(scene, "my-accel", &how, &found, error));
     assert_int_equal(found.equal, 500);
     raytally_scene_free(scene);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What an accelerator sees of its callers: the rays that it is verified by, and the locale of the thread. It
- * is brute, and keeps that in mind. */
+/* An accelerator that records its callers: the rays that it is verified with, and the locale of the thread.
+ * It wraps brute. */
 #include "library_testing.h"
 
 #include "verify/verify.h"
@@ -11,7 +11,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
-static atomic_uint_fast64_t calls, rays_asked, rays_sum; /* the sum of the hashes of all rays asked */
+static atomic_uint_fast64_t calls, rays_asked, rays_sum; /* the sum of the hashes of all rays */
 static atomic_bool met_comma;
 static RtAccelOps witness;
 static const RtAccelOps *brute;
@@ -147,17 +147,17 @@ RT_TEST(the_library_verifies_by_the_rays_of_the_program) {
     static const char name[] = "balls:size=1";
     raytally_scene *scene;
     raytally_accelerator *item;
-    raytally_verifying how = RAYTALLY_VERIFYING;
-    raytally_verified found;
+    raytally_verify_options how = RAYTALLY_VERIFY_DEFAULTS;
+    raytally_verify_result found;
     uint32_t width, height;
     forget_rays();
     verify_by_program(name, 3000, 7);
     const uint64_t asked = rays_asked, sum = rays_sum;
     assert_true(asked >= 4 * UINT64_C(3000));
 
-    /* However the scene is sampled, and whatever stands over it. */
+    /* However the scene is sampled, and whatever is built over it. */
     assert_fine(raytally_scene_open(name, &scene, error));
-    assert_fine(raytally_scene_sample(scene, 30, 20, 2, error));
+    assert_fine(raytally_scene_set_sampling(scene, 30, 20, 2, error));
     assert_fine(raytally_accelerator_build(scene, "item+bvh", 1, &item, error));
     how.rays = 3000;
     how.seed = 7;
@@ -168,7 +168,7 @@ RT_TEST(the_library_verifies_by_the_rays_of_the_program) {
     raytally_scene_size(scene, &width, &height);
     assert_true(width == 30 && height == 20);
 
-    /* And by those alone that are given. */
+    /* And only with the given rays. */
     raytally_rays *rays;
     assert_fine(raytally_rays_record(item, RAYTALLY_PRIMARY, NULL, &rays, error));
     how.given = rays;
@@ -214,7 +214,7 @@ static int choose_standard(void **state) {
     return 0;
 }
 
-/* After each call: the caller has its comma again, and whoever worked had a point. */
+/* After each call the caller has its comma again; during the call there was a point. */
 #define assert_point(expr)                                                                                   \
     do {                                                                                                     \
         met_comma = false;                                                                                   \
@@ -229,22 +229,22 @@ RT_TEST_WITH(whoever_is_called_works_in_the_locale_of_c, choose_comma, choose_st
     raytally_accelerator *accel;
     raytally_rays *rays;
     raytally_tracer *tracer;
-    raytally_structure structure;
+    raytally_statistics structure;
     raytally_counters counters;
-    raytally_verified found;
+    raytally_verify_result found;
     raytally_time time;
     raytally_hit hits[64];
     bool blocked[64];
-    raytally_recording recording = RAYTALLY_RECORDING;
-    raytally_verifying verifying = RAYTALLY_VERIFYING;
-    raytally_timing timing = RAYTALLY_TIMING;
+    raytally_record_options recording = RAYTALLY_RECORD_DEFAULTS;
+    raytally_verify_options verifying = RAYTALLY_VERIFY_DEFAULTS;
+    raytally_time_options timing = RAYTALLY_TIME_DEFAULTS;
     recording.limit = 64;
     recording.threads = verifying.threads = timing.threads = 3; /* those of ours, too */
     verifying.rays = 2000;
     timing.rounds = 2;
     timing.least = 0;
     assert_fine(raytally_scene_open("random:n=9,shape=mixed", &scene, error));
-    assert_fine(raytally_scene_sample(scene, 16, 16, 1, error));
+    assert_fine(raytally_scene_set_sampling(scene, 16, 16, 1, error));
     calls = 0;
     assert_point(assert_fine(raytally_accelerator_build(scene, "witness", 3, &accel, error)));
     assert_point(raytally_accelerator_describe(accel, &structure));
@@ -275,15 +275,15 @@ RT_TEST_WITH(numbers_are_written_and_read_with_a_point, choose_comma, choose_sta
     raytally_rays *rays;
     raytally_time time;
     raytally_error why;
-    raytally_timing timing = RAYTALLY_TIMING;
+    raytally_time_options timing = RAYTALLY_TIME_DEFAULTS;
     const raytally_camera camera = {{0, 0, 9}, {0, 0, 0}, {0, 1, 0}, 199.5f};
     assert_fine(raytally_spec_format("grid:density=4.5", spec, error));
     assert_non_null(strstr(spec, "density=4.5,"));
     assert_int_equal(raytally_spec_format("grid:density=4,5", spec, &why), RAYTALLY_BAD_INPUT);
     assert_fine(raytally_scene_open("balls:size=1", &scene, error));
-    assert_int_equal(raytally_scene_look(scene, &camera, &why), RAYTALLY_BAD_INPUT);
+    assert_int_equal(raytally_scene_set_camera(scene, &camera, &why), RAYTALLY_BAD_INPUT);
     assert_says(why, "199.5");
-    assert_fine(raytally_scene_sample(scene, 4, 4, 1, error));
+    assert_fine(raytally_scene_set_sampling(scene, 4, 4, 1, error));
     assert_fine(raytally_accelerator_build(scene, "bvh", 1, &accel, error));
     assert_fine(raytally_rays_record(accel, RAYTALLY_PRIMARY, NULL, &rays, error));
     timing.least = 99.5;
@@ -293,7 +293,7 @@ RT_TEST_WITH(numbers_are_written_and_read_with_a_point, choose_comma, choose_sta
     raytally_accelerator_free(accel);
     raytally_scene_free(scene);
     snprintf(text, sizeof text, "%.1f", 4.5);
-    assert_string_equal(text, "4,5"); /* as the program wants it */
+    assert_string_equal(text, "4,5"); /* in the locale of the program */
 }
 
 RT_TESTS(witness, call_witness, NULL)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* measure/measure.h and workload.h: what is counted is the sum over threads and is compared with right
- * answers; thinned candidates are timed against the baseline on their own rays. */
+/* measure/measure.h and workload.h: counts are sums over threads and are compared with right answers; thinned
+ * candidates are timed against the baseline on their own rays. */
 #include "testing.h"
 
 #include "core/base/clock.h"
@@ -11,89 +11,112 @@
 
 #include <string.h>
 
+/* A scene, accelerators over it, and the rays that the first of them recorded. */
+typedef struct Stage {
+    RtScene scene;
+    RtAccel *accels[2];
+    RtRaySet sets[RT_RAY_KIND_COUNT];
+} Stage;
+
+static void open_stage(Stage *stage, const char *scene, uint32_t size, uint64_t random, const char *spec,
+                       const char *other) {
+    RtRecording recording = {.depth = 1, .seed = 1, .random = random, .threads = 1};
+    *stage = (Stage){.accels = {NULL, NULL}};
+    assert_ok(rt_scene_open(scene, &stage->scene, error));
+    assert_ok(rt_scene_sample(&stage->scene, size, size, 1, false, error));
+    assert_ok(rt_accel_open(spec, &stage->scene, &stage->accels[0], error));
+    if (other) assert_ok(rt_accel_open(other, &stage->scene, &stage->accels[1], error));
+    assert_ok(rt_rayset_record(stage->sets, stage->accels[0], &recording, error));
+}
+
+static void close_stage(Stage *stage) {
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&stage->sets[k]);
+    for (int i = 0; i < 2; i++) rt_accel_destroy(stage->accels[i]);
+    rt_scene_clear(&stage->scene);
+}
+
 /* The spheres of balls:size=1 are 10, and one polygon; brute tests each for every ray. */
 RT_TEST(a_count_is_the_sum_over_threads_and_finds_wrong_answers) {
-    RtScene scene;
-    RtAccel *accel;
-    RtRaySet sets[RT_RAY_KIND_COUNT];
-    RtRecording recording = {.depth = 1, .seed = 1, .random = 10000, .threads = 1};
-    RtCount count;
-    assert_ok(rt_scene_open("balls:size=1", &scene, error));
-    assert_ok(rt_scene_sample(&scene, 8, 8, 1, false, error));
-    assert_ok(rt_accel_open("brute", &scene, &accel, error));
-    assert_ok(rt_rayset_record(sets, accel, &recording, error));
-    const RtRaySet *set = &sets[RT_RAY_RANDOM];
+    Stage stage;
+    open_stage(&stage, "balls:size=1", 8, 10000, "brute", NULL);
+    const RtRaySet *set = &stage.sets[RT_RAY_RANDOM];
     RtHit *expected = rt_alloc(set->count, sizeof(RtHit));
-    assert_ok(rt_measure_answers(accel, set, 2, expected, error));
+    RtCount count;
+    assert_ok(rt_measure_answers(stage.accels[0], set, 2, expected, error));
     for (int threads = 1; threads <= 3; threads++) {
-        assert_ok(rt_measure_count(accel, set, expected, threads, &count, error));
+        assert_ok(rt_measure_count(stage.accels[0], set, expected, threads, &count, error));
         assert_int_equal(count.tally.rays, 10000);
-        assert_int_equal(count.tally.object_tests, 10000u * scene.geometry.object_count);
+        assert_int_equal(count.tally.object_tests, 10000u * stage.scene.geometry.object_count);
         assert_int_equal(count.differ, 0);
     }
     expected[42].object ^= 1;
     expected[4242].t += 1;
-    assert_ok(rt_measure_count(accel, set, expected, 2, &count, error));
+    assert_ok(rt_measure_count(stage.accels[0], set, expected, 2, &count, error));
     assert_int_equal(count.differ, expected[4242].object == RT_NO_OBJECT ? 1 : 2);
     assert_int_equal(count.first, 42);
     rt_free(expected);
-    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&sets[k]);
-    rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
+    close_stage(&stage);
 }
 
-/* Where `occluded` is asked, t does not matter, and a ray that hits is done before every object was tested.
- */
-RT_TEST(shadow_and_occlusion_rays_are_asked_for_any_hit) {
-    RtScene scene;
-    RtAccel *accel;
-    RtRaySet sets[RT_RAY_KIND_COUNT];
-    RtRecording recording = {.depth = 1, .seed = 1, .random = 100, .threads = 1};
-    assert_ok(rt_scene_open("balls:size=1", &scene, error));
-    assert_ok(rt_scene_sample(&scene, 16, 16, 1, false, error));
-    assert_ok(rt_accel_open("brute", &scene, &accel, error));
-    assert_ok(rt_rayset_record(sets, accel, &recording, error));
+/* For `occluded`, t does not matter, and a ray that hits is done before every object was tested. */
+RT_TEST(shadow_and_occlusion_rays_are_traced_for_any_hit) {
+    Stage stage;
+    open_stage(&stage, "balls:size=1", 16, 100, "brute", NULL);
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        const RtRaySet *set = &stage.sets[k];
         RtCount count;
-        uint64_t hits = 0, tests = sets[k].count * scene.geometry.object_count;
-        RtHit *expected = rt_alloc(sets[k].count, sizeof(RtHit));
-        assert_ok(rt_measure_answers(accel, &sets[k], 1, expected, error));
-        for (uint64_t i = 0; i < sets[k].count; i++) {
+        uint64_t hits = 0, tests = set->count * stage.scene.geometry.object_count;
+        RtHit *expected = rt_alloc(set->count, sizeof(RtHit));
+        assert_ok(rt_measure_answers(stage.accels[0], set, 1, expected, error));
+        for (uint64_t i = 0; i < set->count; i++) {
             hits += expected[i].object != RT_NO_OBJECT;
             expected[i].t = -1;
         }
-        assert_ok(rt_measure_count(accel, &sets[k], expected, 1, &count, error));
+        assert_ok(rt_measure_count(stage.accels[0], set, expected, 1, &count, error));
         bool any = k == RT_RAY_SHADOW || k == RT_RAY_OCCLUSION;
         assert_int_equal(count.tally.hits, hits);
-        assert_int_equal(count.differ, any ? 0 : sets[k].count);
+        assert_int_equal(count.differ, any ? 0 : set->count);
         assert_true((count.tally.object_tests < tests) == (any && hits > 0));
         rt_free(expected);
-        rt_rayset_clear(&sets[k]);
     }
-    rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
+    close_stage(&stage);
 }
 
-/* Times `spec` on every 64th primary ray of a cloud against `baseline` on all, and gives the cell. In a frame
- * of 8 x 8 that is the ray of the upper left corner, which passes by everything. */
-static RtCell time_thinned(const char *baseline, const char *spec) {
+/* ---- workloads ---- */
+
+/* An experiment with primary rays of one scene. */
+typedef struct Candidates {
+    RtCandidate of[2];
+} Candidates;
+
+static RtExperiment *experiment_of(const char *name, Candidates candidates) {
     RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
-    RtWorkloadOptions options = {.threads = 1, .timing = 1};
-    RtResults results;
-    char where[RT_MAX_LABEL];
     assert_non_null(e);
     rt_experiment_init(e);
-    strcpy(e->name, "thinned");
+    strcpy(e->name, name);
     e->milliseconds = 1;
     e->kind_count = 1;
-    const RtWorkload scene = {.depth = 1, .width = 8, .height = 8};
-    e->candidate_count = 2;
-    e->candidates[0] = (RtCandidate){.label = "all", .ray_stride = 1};
-    e->candidates[1] = (RtCandidate){.label = "some", .ray_stride = 64};
-    strcpy(e->candidates[0].spec, baseline);
-    strcpy(e->candidates[1].spec, spec);
-    assert_ok(rt_experiment_add_scenes(e, &scene, "random:n=300", "", error));
+    for (; e->candidate_count < 2 && *candidates.of[e->candidate_count].spec; e->candidate_count++)
+        e->candidates[e->candidate_count] = candidates.of[e->candidate_count];
+    return e;
+}
+
+static void add_scene(RtExperiment *e, const char *scene, uint32_t size) {
+    const RtWorkload like = {.depth = 1, .width = size, .height = size};
+    char where[RT_MAX_LABEL];
+    assert_ok(rt_experiment_add_scenes(e, &like, scene, "", error));
     assert_ok(rt_experiment_check(e, where, error));
+}
+
+/* Times `spec` on every 64th primary ray of a cloud against itself on all, and returns the cell. In a frame
+ * of 8 x 8 that is the ray of the upper left corner, which misses everything. */
+static RtCell time_thinned(const char *spec) {
+    const RtWorkloadOptions options = {.threads = 1, .timing = 1};
+    Candidates candidates = {{{.label = "all", .ray_stride = 1}, {.label = "some", .ray_stride = 64}}};
+    RtResults results;
+    for (int c = 0; c < 2; c++) strcpy(candidates.of[c].spec, spec);
+    RtExperiment *e = experiment_of("thinned", candidates);
+    add_scene(e, "random:n=300", 8);
     assert_ok(rt_results_init(&results, e, error));
     assert_ok(rt_workload_run(&results, 0, &options, error));
     RtCell cell = *rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
@@ -107,7 +130,7 @@ static RtCell time_thinned(const char *baseline, const char *spec) {
 /* The hierarchy needs 1 extent test for this ray and 10 for one of all: on all rays the ratio would
  * be 4 and more. */
 RT_TEST(a_thinned_candidate_is_compared_with_the_baseline_on_its_own_rays) {
-    RtCell cell = time_thinned("bvh", "bvh");
+    RtCell cell = time_thinned("bvh");
     assert_int_equal(cell.tally.rays, 1);
     assert_int_equal(cell.tally.extent_tests, 1);
     assert_true(0.5 < cell.ratio.median && cell.ratio.median < 2);
@@ -115,12 +138,12 @@ RT_TEST(a_thinned_candidate_is_compared_with_the_baseline_on_its_own_rays) {
 
 /* ideal knows rays by their addresses; a ray that it does not know costs it 300 tests. */
 RT_TEST(a_baseline_that_learns_knows_the_rays_of_thinned_candidates) {
-    RtCell cell = time_thinned("ideal", "ideal");
+    RtCell cell = time_thinned("ideal");
     assert_int_equal(cell.tally.object_tests, cell.tally.hits);
     assert_true(0.2 < cell.ratio.median && cell.ratio.median < 5);
 }
 
-/* Two structures that were built and timed by hand: seconds to build, nanoseconds a ray. */
+/* Two structures with given times: seconds to build, nanoseconds per ray. */
 static double break_even(double theirs, double their_ray, double ours, double our_ray) {
     RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
     RtResults results;
@@ -149,8 +172,7 @@ RT_TEST(a_build_pays_off_after_as_many_rays_as_save_what_it_takes_more) {
     assert_true(isinf(break_even(1, 200, 2, 300)));
 }
 
-/* What a pass over the rays before all others was given: rays, and of the eight parts of a frame of 64 rows
- * those that it has rays of. */
+/* The first counting pass: its rays, and which of the eight parts of a frame of 64 rows they cover. */
 static uint64_t first_count;
 static unsigned first_parts;
 
@@ -168,20 +190,12 @@ RtStatus __wrap_rt_measure_count(const RtAccel *accel, const RtRaySet *set, cons
 }
 
 RT_TEST(a_time_is_foretold_from_rays_of_all_parts_of_the_image) {
-    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
-    RtWorkloadOptions options = {.threads = 1, .timing = 1, .count_only = true};
+    const RtWorkloadOptions options = {.threads = 1, .timing = 1, .count_only = true};
     RtResults results;
-    char where[RT_MAX_LABEL];
-    assert_non_null(e);
-    rt_experiment_init(e);
-    strcpy(e->name, "limited");
+    RtExperiment *e =
+        experiment_of("limited", (Candidates){{{.label = "ideal", .spec = "ideal", .ray_stride = 1}}});
     e->limit_seconds = 1e9;
-    e->kind_count = 1;
-    const RtWorkload scene = {.depth = 1, .width = 64, .height = 64};
-    e->candidate_count = 1;
-    e->candidates[0] = (RtCandidate){.label = "ideal", .spec = "ideal", .ray_stride = 1};
-    assert_ok(rt_experiment_add_scenes(e, &scene, "balls:size=1", "", error));
-    assert_ok(rt_experiment_check(e, where, error));
+    add_scene(e, "balls:size=1", 64);
     assert_ok(rt_results_init(&results, e, error));
     first_count = first_parts = 0;
     assert_ok(rt_workload_run(&results, 0, &options, error));
@@ -219,7 +233,7 @@ static void assert_one_is_baseline(const RtResults *results, RtRayKind kind) {
     assert_int_equal(rt_cell_at(results, 0, e->candidate_count, kind)->baseline, e->baseline);
 }
 
-/* Of the baseline's candidates most are slower than the one that ratios refer to. */
+/* Most of the baseline's candidates are slower than the one that ratios refer to. */
 static bool most_are_slower(const RtResults *results, RtRayKind kind) {
     const RtExperiment *e = results->experiment;
     uint32_t slower = 0;
@@ -230,29 +244,19 @@ static bool most_are_slower(const RtResults *results, RtRayKind kind) {
 }
 
 RT_TEST(ratios_to_a_best_of_several_refer_to_the_fastest_of_them) {
-    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
-    RtWorkloadOptions options = {.threads = 1, .timing = 1};
+    const RtWorkloadOptions options = {.threads = 1, .timing = 1};
     RtResults results;
-    char where[RT_MAX_LABEL], name[RT_MAX_LABEL];
-    assert_non_null(e);
-    if (!any_best(name)) {
-        rt_free(e);
-        return;
-    }
-    rt_experiment_init(e);
-    strcpy(e->name, "best");
-    e->milliseconds = 1;
+    char name[RT_MAX_LABEL];
+    if (!any_best(name)) return;
+    RtExperiment *e =
+        experiment_of("best", (Candidates){{{.label = "all", .spec = "bvh", .ray_stride = 1},
+                                            {.label = "some", .spec = "bvh", .ray_stride = 7}}});
     e->kind_count = 2;
-    const RtWorkload scene = {.depth = 1, .width = 32, .height = 32};
-    e->candidate_count = 2;
-    e->candidates[0] = (RtCandidate){.label = "all", .spec = "bvh", .ray_stride = 1};
-    e->candidates[1] = (RtCandidate){.label = "some", .spec = "bvh", .ray_stride = 7};
     assert_ok(rt_experiment_set_baseline(e, name, error));
     assert_true(e->baseline == 2 && e->baseline_count > 1 && e->candidate_count == 2 + e->baseline_count);
     assert_string_equal(rt_baseline_label(e), name);
-    assert_ok(rt_experiment_add_scenes(e, &scene, "random:n=300", "", error));
-    assert_ok(rt_experiment_check(e, where, error));
-    /* Who else is on the machine may slow the fastest down for a while: one of some attempts will do. */
+    add_scene(e, "random:n=300", 32);
+    /* Other programs may slow the fastest down for a while: one of some attempts is sufficient. */
     bool most = false;
     for (int attempt = 0; attempt < 5 && !most; attempt++) {
         assert_ok(rt_results_init(&results, e, error));
@@ -266,29 +270,22 @@ RT_TEST(ratios_to_a_best_of_several_refer_to_the_fastest_of_them) {
     rt_free(e);
 }
 
-/* ---- what measuring itself takes ---- */
+/* ---- overhead of timing ---- */
 
-/* A set takes longer than a round has to, so that each round is one pass: `seconds` is all of it. Memory,
- * warm-up and what is between the passes are the rest. In processor time, so that others on the machine do
- * not matter; the best of some attempts, as what they leave of the caches does. */
+/* The set takes longer than a round must, so each round is one pass, and `seconds` is all of it; the rest is
+ * memory, warm-up and work between passes. It is processor time, which other programs do not change, and the
+ * best of some attempts, because they do change the caches. */
 RT_TEST(of_the_time_that_timing_takes_ninety_eight_percent_are_rounds) {
     enum { ROUNDS = 10 };
-    const char *const specs[] = {"brute", "extents"};
     double seconds[2][ROUNDS], wall[2][ROUNDS], best = 0;
-    RtScene scene;
-    RtAccel *accels[2];
-    RtRaySet sets[RT_RAY_KIND_COUNT];
-    RtRecording recording = {.depth = 1, .seed = 1, .random = 20000, .threads = 1};
     const RtTiming timing = {.rounds = {.rounds = ROUNDS, .most = ROUNDS, .least = 2e-3, .seed = 1},
                              .threads = 1};
-    assert_ok(rt_scene_open("balls:size=3", &scene, error));
-    assert_ok(rt_scene_sample(&scene, 8, 8, 1, false, error));
-    for (int i = 0; i < 2; i++) assert_ok(rt_accel_open(specs[i], &scene, &accels[i], error));
-    assert_ok(rt_rayset_record(sets, accels[0], &recording, error));
+    Stage stage;
+    open_stage(&stage, "balls:size=3", 8, 20000, "brute", "extents");
     for (int attempt = 0; attempt < 5 && best < 0.98; attempt++) {
-        const RtRaySet *set = &sets[RT_RAY_RANDOM];
-        RtTimed timed[2] = {{.accel = accels[0], .set = set, .seconds = seconds[0], .wall = wall[0]},
-                            {.accel = accels[1], .set = set, .seconds = seconds[1], .wall = wall[1]}};
+        const RtRaySet *set = &stage.sets[RT_RAY_RANDOM];
+        RtTimed timed[2] = {{.accel = stage.accels[0], .set = set, .seconds = seconds[0], .wall = wall[0]},
+                            {.accel = stage.accels[1], .set = set, .seconds = seconds[1], .wall = wall[1]}};
         uint32_t done;
         double rounds = 0, start = rt_thread_seconds();
         assert_ok(rt_measure_time(timed, 2, &timing, &done, error));
@@ -297,9 +294,7 @@ RT_TEST(of_the_time_that_timing_takes_ninety_eight_percent_are_rounds) {
         if (rounds / all > best) best = rounds / all;
     }
     if (best < 0.98) fail_msg("rounds are %.2f %% of the time", 100 * best);
-    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&sets[k]);
-    for (int i = 0; i < 2; i++) rt_accel_destroy(accels[i]);
-    rt_scene_clear(&scene);
+    close_stage(&stage);
 }
 
 static RtStatus spin_a_millisecond(void *context, RtError *error) {
@@ -360,7 +355,7 @@ static void note(void *context, const char *message) {
     snprintf(context, 256, "%s", message);
 }
 
-/* Where a test asks for it the wall clock is a millisecond later each time that somebody looks at it. */
+/* If set, the wall clock advances by a millisecond each time it is read. */
 static bool wall_ticks;
 
 int __real_clock_gettime(clockid_t clock, struct timespec *now);
@@ -374,25 +369,16 @@ int __wrap_clock_gettime(clockid_t clock, struct timespec *now) {
     return 0;
 }
 
-/* Times bvh until its null run is as narrow as `until`, and gives the rounds; `says` is what was told. */
+/* Times bvh until its null run is as narrow as `until`, and returns the rounds; `says` gets the notice. */
 static uint32_t rounds_until(double until, double patience, char says[256]) {
-    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
     RtWorkloadOptions options = {.threads = 1, .timing = 1, .until = until, .patience = patience};
     RtResults results;
-    char where[RT_MAX_LABEL];
-    assert_non_null(e);
+    RtExperiment *e =
+        experiment_of("until", (Candidates){{{.label = "bvh", .spec = "bvh", .ray_stride = 1}}});
     says[0] = '\0';
     options.observer = (RtRunObserver){says, NULL, note};
-    rt_experiment_init(e);
-    strcpy(e->name, "until");
-    e->milliseconds = 1;
     e->rounds = 6;
-    e->kind_count = 1;
-    e->candidate_count = 1;
-    e->candidates[0] = (RtCandidate){.label = "bvh", .spec = "bvh", .ray_stride = 1};
-    RtWorkload like = {.depth = 1, .width = 16, .height = 16};
-    assert_ok(rt_experiment_add_scenes(e, &like, "random:n=300", "", error));
-    assert_ok(rt_experiment_check(e, where, error));
+    add_scene(e, "random:n=300", 16);
     assert_ok(rt_results_init(&results, e, error));
     wall_ticks = true;
     RtStatus status = rt_workload_run(&results, 0, &options, NULL);

@@ -138,7 +138,8 @@ RT_TEST(as_many_rounds_are_taken_as_so_many_cells_ask_for) {
     assert_int_equal(rt_rounds_for(rt_coverage_of_each(100)), 17);
 }
 
-/* Rounds of `cells` cells with a spread of half a percent about `truth`; how many of them say what is so. */
+/* Draws rounds of `cells` cells with a spread of half a percent about `truth`; returns how many report a
+ * difference. */
 static int decided(uint64_t seed, uint32_t cells, double truth) {
     RtRandom random = rt_random(seed, cells);
     const double coverage = rt_coverage_of_each(cells);
@@ -157,7 +158,7 @@ static int decided(uint64_t seed, uint32_t cells, double truth) {
     return count;
 }
 
-/* Of 1000 comparisons of things that are alike at most a twentieth reports anything, however many cells they
+/* At most a twentieth of 1000 comparisons of equal programs report a difference, however many cells they
  * have; and a difference of 2 % is found. */
 RT_TEST(comparisons_of_many_cells_report_no_more_than_those_of_one_and_find_two_percent) {
     const uint32_t cells[] = {1, 4, 40};

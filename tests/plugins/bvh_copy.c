@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* bvh_copy: the built-in `bvh`, as a plugin, to compare the speed of the two: what is lost on the way through
- * the interface is what `bench --accel bvh_copy --baseline bvh` shows.
+/* bvh_copy: the built-in `bvh` as a plugin. `bench --accel bvh_copy --baseline bvh` shows the cost of the
+ * plugin interface.
  *
- * The tree is that of accel/bvh as it is by default: from the top by the surface area heuristic, in 16 bins
- * along every axis, or at every place between centres where there are no more objects than bins; then, from
- * the bottom up, subtrees of up to 8 objects become leaves where that costs no more. Layout and traversal are
- * accel/bvh's: nodes of 32 bytes, siblings side by side, both children's boxes tested, the nearer child
- * first. */
+ * The tree is that of accel/bvh with its default parameters: built from the top by the surface area
+ * heuristic, in 16 bins along every axis, or at every place between centres if there are no more objects than
+ * bins; then, from the bottom up, subtrees of up to 8 objects become leaves if that costs no more. Layout and
+ * traversal are those of accel/bvh: nodes of 32 bytes, siblings side by side, both children's boxes tested,
+ * the nearer child first. */
 #include <raytally/accel.h>
 
 #include <math.h>
@@ -227,7 +227,7 @@ static void destroy(void *self) {
     free(bvh);
 }
 
-static int fill(Bvh *bvh, const raytally_build *what, Ref *refs, TreeNode *tree) {
+static int fill(Bvh *bvh, const raytally_build_input *what, Ref *refs, TreeNode *tree) {
     const uint32_t count = what->object_count;
     if (!refs || !tree) return RAYTALLY_BUILD_NO_MEMORY;
     for (uint32_t i = 0; i < count; i++) refs[i] = (Ref){what->boxes[i], i};
@@ -242,7 +242,7 @@ static int fill(Bvh *bvh, const raytally_build *what, Ref *refs, TreeNode *tree)
     return RAYTALLY_BUILD_OK;
 }
 
-static int build(const raytally_build *what, void **self) {
+static int build(const raytally_build_input *what, void **self) {
     const size_t count = what->object_count, nodes = 2 * count;
     if (nodes * sizeof(Node) + count * sizeof(uint32_t) > what->byte_limit) return RAYTALLY_BUILD_NO_MEMORY;
     Bvh *bvh = (Bvh *)calloc(1, sizeof(Bvh));
@@ -279,7 +279,7 @@ RAYTALLY_INLINE void search(const Bvh *bvh, void *memory, const raytally_prepare
         RAYTALLY_COUNT(counters, RAYTALLY_STEPS, 1);
         if (!(node->count & LEAF)) {
             const Node *children = nodes + node->first;
-            const float limit = raytally_limit(ray, best);
+            const float limit = raytally_tmax(ray, best);
             const int left = raytally_box_hit(&children[0].box, ray, limit, &enter[0]);
             const int right = raytally_box_hit(&children[1].box, ray, limit, &enter[1]);
             RAYTALLY_COUNT(counters, RAYTALLY_EXTENT_TESTS, 2);
@@ -301,7 +301,7 @@ RAYTALLY_INLINE void search(const Bvh *bvh, void *memory, const raytally_prepare
         do {
             if (top == stack) return;
             top--;
-        } while (top->enter > raytally_limit(ray, best));
+        } while (top->enter > raytally_tmax(ray, best));
         node = top->node;
     }
 }
@@ -326,7 +326,7 @@ static void describe(const void *self, raytally_description *out) {
     out->bytes = bvh->node_count * sizeof(Node) + bvh->id_count * sizeof(uint32_t);
 }
 
-static void show_below(const Bvh *bvh, uint32_t index, uint32_t depth, raytally_show_box *show,
+static void show_below(const Bvh *bvh, uint32_t index, uint32_t depth, raytally_box_visitor *show,
                        void *viewer) {
     const Node *node = &bvh->nodes[index];
     show(viewer, &node->box, depth, (node->count & LEAF) != 0);
@@ -335,7 +335,7 @@ static void show_below(const Bvh *bvh, uint32_t index, uint32_t depth, raytally_
     show_below(bvh, node->first + 1, depth + 1, show, viewer);
 }
 
-static void each_box(const void *self, raytally_show_box *show, void *viewer) {
+static void each_box(const void *self, raytally_box_visitor *show, void *viewer) {
     const Bvh *bvh = (const Bvh *)self;
     if (bvh->node_count > 0) show_below(bvh, 0, 0, show, viewer);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A plugin of faults: an accelerator for each, all others of its functions being in order. What raytally is
- * to say of each of them is in tests/check_plugins.sh. */
+/* A plugin of faults: an accelerator for each fault, whose other functions are correct.
+ * tests/check_plugins.sh tests what raytally reports of each. */
 #include <raytally/accel.h>
 
 #include <math.h>
@@ -12,7 +12,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-/* ---- in order ---- */
+/* ---- correct functions ---- */
 
 typedef struct List {
     const raytally_box *boxes;
@@ -25,7 +25,7 @@ static void destroy(void *self) {
     free(self);
 }
 
-static int build(const raytally_build *from, void **self) {
+static int build(const raytally_build_input *from, void **self) {
     List *list = malloc(sizeof *list);
     uint32_t *ids = malloc((from->object_count + 1) * sizeof *ids);
     if (!list || !ids) {
@@ -47,7 +47,7 @@ RAYTALLY_INLINE void search(const List *list, void *memory, const raytally_prepa
 }
 RAYTALLY_DEFINE_KERNELS(List, search)
 
-/* ---- what can go wrong anywhere ---- */
+/* ---- faults ---- */
 
 static int *volatile nowhere;
 static volatile int zero;
@@ -75,46 +75,39 @@ static void free_twice(void) {
 
 /* ---- while it builds ---- */
 
-static int build_crash(const raytally_build *from, void **self) {
-    crash();
-    return build(from, self);
-}
+/* The function NAME, which does something and then builds as `build` does. */
+#define BUILD(name, ...)                                                                                     \
+    static int name(const raytally_build_input *from, void **self) {                                         \
+        __VA_ARGS__                                                                                          \
+        return build(from, self);                                                                            \
+    }
 
-static int build_loop(const raytally_build *from, void **self) {
-    loop();
-    return build(from, self);
-}
+BUILD(build_crash, crash();)
+BUILD(build_loop, loop();)
+BUILD(build_refused,
+      snprintf(from->message, from->message_room, "scenes of %u objects are beneath it", from->object_count);
+      if (zero == 0) return RAYTALLY_BUILD_REFUSED;)
+BUILD(build_nonsense, if (zero == 0) return 42;)
 
-static int build_refused(const raytally_build *from, void **self) {
-    (void)self;
-    snprintf(from->message, from->message_room, "scenes of %u objects are beneath it", from->object_count);
-    return RAYTALLY_BUILD_REFUSED;
-}
-
-static int build_nonsense(const raytally_build *from, void **self) {
-    (void)from;
-    (void)self;
-    return 42;
-}
-
-/* Takes all the memory that it is given, and much more than that if nobody stops it. */
-static int build_memory(const raytally_build *from, void **self) {
+/* Takes all the memory that it gets, and much more if nothing limits it. */
+static int take_memory(void) {
     enum { BLOCKS = 64, BLOCK = 1 << 30 };
     for (int i = 0; i < BLOCKS; i++) {
         if (mmap(NULL, BLOCK, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0) ==
             MAP_FAILED)
-            return RAYTALLY_BUILD_NO_MEMORY;
+            return 0;
     }
-    return build(from, self);
+    return 1;
 }
+BUILD(build_memory, if (!take_memory()) return RAYTALLY_BUILD_NO_MEMORY;)
 
-static int build_print(const raytally_build *from, void **self) {
-    puts("{ faulty-print is built");
+static void print_line(const char *line) {
+    puts(line);
     fflush(stdout);
-    return build(from, self);
 }
+BUILD(build_print, print_line("{ faulty-print is built");)
 
-/* Writes to all memory that it shares with others, to the first of it where there is much. */
+/* Overwrites all shared memory, or the first of it if it is large. */
 static void scribble(void) {
     enum { MOST = 1 << 21 };
     char line[512], how[5];
@@ -127,54 +120,37 @@ static void scribble(void) {
     if (maps) fclose(maps);
 }
 
-static int build_scribble(const raytally_build *from, void **self) {
-    scribble();
-    return build(from, self);
+/* Leaves behind a process without a parent that runs for a while. */
+static void start_daemon(void) {
+    if (fork() != 0) return;
+    setsid();
+    sleep(2);
+    _exit(0);
 }
 
-static int build_kill(const raytally_build *from, void **self) {
-    kill(getppid(), SIGKILL);
-    return build(from, self);
-}
+BUILD(build_scribble, scribble();)
+BUILD(build_kill, kill(getppid(), SIGKILL);)
+BUILD(build_close, for (int descriptor = 0; descriptor < 64; descriptor++) close(descriptor);)
+BUILD(build_daemon, start_daemon();)
 
-static int build_close(const raytally_build *from, void **self) {
-    for (int descriptor = 0; descriptor < 64; descriptor++) close(descriptor);
-    return build(from, self);
-}
-
-/* Leaves a process behind, for a while, that belongs to nobody. */
-static int build_daemon(const raytally_build *from, void **self) {
-    if (fork() == 0) {
-        setsid();
-        sleep(2);
-        _exit(0);
-    }
-    return build(from, self);
-}
-
-/* A structure may be NULL: this one knows no object, and answers so. It is wrong, but no crash. */
-static int build_null(const raytally_build *from, void **self) {
-    (void)from;
-    *self = NULL;
-    return RAYTALLY_BUILD_OK;
-}
-
-RAYTALLY_INLINE void none(const List *list, void *memory, const raytally_prepared *ray, int any,
-                          raytally_hit *best, raytally_counters *counters) {
-    (void)list, (void)memory, (void)ray, (void)any, (void)best, (void)counters;
-}
-RAYTALLY_DEFINE_KERNELS(List, none)
+/* A structure may be NULL. */
+BUILD(build_null, *self = NULL; if (zero == 0) return RAYTALLY_BUILD_OK;)
 
 /* ---- while it traces ---- */
 
-/* The search NAME, which does what `search` does and then something else. */
-#define SEARCH(name, ...)                                                                                    \
+/* The search NAME, which does as it says. */
+#define SEARCH_ALONE(name, ...)                                                                              \
     RAYTALLY_INLINE void name(const List *list, void *memory, const raytally_prepared *ray, int any,         \
                               raytally_hit *best, raytally_counters *counters) {                             \
-        search(list, memory, ray, any, best, counters);                                                      \
+        (void)list, (void)memory, (void)ray, (void)any, (void)best, (void)counters;                          \
         __VA_ARGS__                                                                                          \
     }                                                                                                        \
     RAYTALLY_DEFINE_KERNELS(List, name)
+
+/* The search NAME, which does what `search` does and then something else. */
+#define SEARCH(name, ...) SEARCH_ALONE(name, search(list, memory, ray, any, best, counters); __VA_ARGS__)
+
+SEARCH_ALONE(none, )
 
 /* One ray of 256. */
 static int is_rare(const raytally_ray *ray) {
@@ -195,13 +171,9 @@ SEARCH(scribbled, scribble();)
 SEARCH(divide, zero = 7 / zero;)
 SEARCH(overflow, zero = recurse(&zero) & 0;)
 SEARCH(freed_twice, free_twice();)
-SEARCH(
-    print, if (is_rare(ray->ray)) {
-        puts("{ faulty-print is asked");
-        fflush(stdout);
-    })
+SEARCH(print, if (is_rare(ray->ray)) print_line("{ faulty-print is asked");)
 
-/* Into what is not its own: `memory` has MEMORY bytes. */
+/* Writing outside its own memory, which has MEMORY bytes. */
 enum { MEMORY = 48, FEW = 4, PAGE = 4096 };
 static size_t query_bytes(const void *self) {
     (void)self;
@@ -215,100 +187,74 @@ static size_t query_bytes_huge(const void *self) {
     return SIZE_MAX / 2;
 }
 
-/* Answers. */
+/* Wrong answers. */
 SEARCH(no_such_object, if (best->object != RAYTALLY_NO_OBJECT) best->object = list->count + 5;)
 SEARCH(not_a_number, if (best->object != RAYTALLY_NO_OBJECT) best->t = NAN;)
 SEARCH(farther, if (isinf(ray->ray->tmax)) best->t = nextafterf(best->t, INFINITY);)
 
 /* A plain mistake: its list ends one too early. */
-RAYTALLY_INLINE void forgetful(const List *list, void *memory, const raytally_prepared *ray, int any,
-                               raytally_hit *best, raytally_counters *counters) {
-    (void)memory;
-    raytally_object_hits(ray, list->ids, list->count ? list->count - 1 : 0, any, best, counters);
-}
-RAYTALLY_DEFINE_KERNELS(List, forgetful)
+SEARCH_ALONE(forgetful,
+             raytally_object_hits(ray, list->ids, list->count ? list->count - 1 : 0, any, best, counters);)
 
-/* Right, but never the same count twice. */
+/* Right, but with different counts each time. */
 static atomic_uint calls;
 SEARCH(moody, RAYTALLY_COUNT(counters, RAYTALLY_EXTENT_TESTS, atomic_fetch_add(&calls, 1));)
 
-/* The right answers only where they are counted. */
-RAYTALLY_INLINE void lazy(const List *list, void *memory, const raytally_prepared *ray, int any,
-                          raytally_hit *best, raytally_counters *counters) {
-    if (counters) search(list, memory, ray, any, best, counters);
-}
-RAYTALLY_DEFINE_KERNELS(List, lazy)
+/* Right only if rays are counted. */
+SEARCH_ALONE(lazy, if (counters) search(list, memory, ray, any, best, counters);)
 
-/* Counts that are not right. */
-RAYTALLY_INLINE void uncounted(const List *list, void *memory, const raytally_prepared *ray, int any,
-                               raytally_hit *best, raytally_counters *counters) {
-    (void)memory;
-    RAYTALLY_COUNT(counters, RAYTALLY_STEPS, 1);
-    raytally_object_hits(ray, list->ids, list->count, any, best, NULL);
-}
-RAYTALLY_DEFINE_KERNELS(List, uncounted)
+/* Wrong counts. */
+SEARCH_ALONE(uncounted, RAYTALLY_COUNT(counters, RAYTALLY_STEPS, 1);
+             raytally_object_hits(ray, list->ids, list->count, any, best, NULL);)
 SEARCH(counted_twice, RAYTALLY_COUNT(counters, RAYTALLY_OBJECT_TESTS, list->count);)
 SEARCH(backwards, RAYTALLY_COUNT(counters, RAYTALLY_STEPS, -1000000);)
 
-/* What is no answer, or beside them. */
+/* Invalid answers, and writing beside them. */
 static void occluded_by_first(const void *self, void *memory, raytally_query *query, const raytally_ray *rays,
                               size_t count, uint32_t *occluders, raytally_counters *counters) {
     search_occluded(self, memory, query, rays, count, occluders, counters);
     for (size_t i = 0; i < count; i++) occluders[i] = occluders[i] == RAYTALLY_NO_OBJECT ? occluders[i] : 0;
 }
 
-static void all_but_one(const void *self, void *memory, raytally_query *query, const raytally_ray *rays,
-                        size_t count, raytally_hit *hits, raytally_counters *counters) {
-    search_nearest(self, memory, query, rays, count - 1, hits, counters);
+/* The kernel NAME, which answers all rays but `left`, and then does something else. */
+#define NEAREST(name, left, ...)                                                                             \
+    static void name(const void *self, void *memory, raytally_query *query, const raytally_ray *rays,        \
+                     size_t count, raytally_hit *hits, raytally_counters *counters) {                        \
+        search_nearest(self, memory, query, rays, count - (left), hits, counters);                           \
+        __VA_ARGS__                                                                                          \
+    }
+
+static void shorten(raytally_ray *rays, size_t count, const raytally_hit *hits) {
+    for (size_t i = 0; i < count; i++) rays[i].tmax = hits[i].t < rays[i].tmax ? hits[i].t : rays[i].tmax;
 }
 
-static void crash_alone(const void *self, void *memory, raytally_query *query, const raytally_ray *rays,
-                        size_t count, raytally_hit *hits, raytally_counters *counters) {
-    search_nearest(self, memory, query, rays, count, hits, counters);
-    if (count == 1) crash();
-}
+NEAREST(all_but_one, 1, )
+NEAREST(crash_alone, 0, if (count == 1) crash();)
+NEAREST(one_too_many, 0, hits[count] = hits[count - 1];)
+NEAREST(one_too_early, 0, *(hits - 1) = hits[0];)
+NEAREST(shorten_rays, 0, shorten((raytally_ray *)(uintptr_t)rays, count, hits);)
 
-static void one_too_many(const void *self, void *memory, raytally_query *query, const raytally_ray *rays,
-                         size_t count, raytally_hit *hits, raytally_counters *counters) {
-    search_nearest(self, memory, query, rays, count, hits, counters);
-    hits[count] = hits[count - 1];
-}
+/* ---- other functions ---- */
 
-static void one_too_early(const void *self, void *memory, raytally_query *query, const raytally_ray *rays,
-                          size_t count, raytally_hit *hits, raytally_counters *counters) {
-    search_nearest(self, memory, query, rays, count, hits, counters);
-    *(hits - 1) = hits[0];
-}
-
-static void shorten_rays(const void *self, void *memory, raytally_query *query, const raytally_ray *rays,
-                         size_t count, raytally_hit *hits, raytally_counters *counters) {
-    search_nearest(self, memory, query, rays, count, hits, counters);
-    raytally_ray *own = (raytally_ray *)(uintptr_t)rays;
-    for (size_t i = 0; i < count; i++) own[i].tmax = hits[i].t < own[i].tmax ? hits[i].t : own[i].tmax;
-}
-
-/* ---- beside that ---- */
-
-static void show_none(const void *self, raytally_show_box *show, void *viewer) {
+static void show_none(const void *self, raytally_box_visitor *visit, void *context) {
     (void)self;
-    show(viewer, NULL, 0, 1);
+    visit(context, NULL, 0, 1);
 }
 
-static void show_deep(const void *self, raytally_show_box *show, void *viewer) {
+static void show_deep(const void *self, raytally_box_visitor *visit, void *context) {
     const List *list = self;
-    if (list->count > 0) show(viewer, list->boxes, UINT32_MAX, 1);
+    if (list->count > 0) visit(context, list->boxes, UINT32_MAX, 1);
 }
 
-static void show_crash(const void *self, raytally_show_box *show, void *viewer) {
-    (void)self, (void)show, (void)viewer;
+static void show_crash(const void *self, raytally_box_visitor *visit, void *context) {
+    (void)self, (void)visit, (void)context;
     crash();
 }
 
-static int build_mumble(const raytally_build *from, void **self) {
-    (void)self;
+static void mumble(const raytally_build_input *from) {
     for (size_t i = 0; i + 1 < from->message_room; i++) from->message[i] = i % 7 ? '\xe9' : '\x1b';
-    return RAYTALLY_BUILD_REFUSED;
 }
+BUILD(build_mumble, mumble(from); if (zero == 0) return RAYTALLY_BUILD_REFUSED;)
 
 static void destroy_crash(void *self) {
     destroy(self);
@@ -336,7 +282,7 @@ static int validate_broken(const void *self, char *message, size_t room) {
 
 #define KERNELS(name) .nearest = name##_nearest, .occluded = name##_occluded
 
-/* What is not set is in order. */
+/* Members that are not set get the correct functions. */
 static raytally_accel_ops tables[] = {
     {.name = "faulty-not", .summary = "is in order"},
     {.name = "faulty-crash-build", .summary = "crashes while it builds", .build = build_crash},
@@ -362,7 +308,9 @@ static raytally_accel_ops tables[] = {
     {.name = "faulty-divide", .summary = "divides by zero", KERNELS(divide)},
     {.name = "faulty-recursion", .summary = "recurses for ever", KERNELS(overflow)},
     {.name = "faulty-free", .summary = "frees a block twice", KERNELS(freed_twice)},
-    {.name = "faulty-object", .summary = "answers with an object that there is not", KERNELS(no_such_object)},
+    {.name = "faulty-object",
+     .summary = "answers with an object that does not exist",
+     KERNELS(no_such_object)},
     {.name = "faulty-nan", .summary = "answers with a t that is no number", KERNELS(not_a_number)},
     {.name = "faulty-farther", .summary = "answers with a t a little too large", KERNELS(farther)},
     {.name = "faulty-wrong", .summary = "forgets the last object", KERNELS(forgetful)},

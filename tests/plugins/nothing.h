@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* An accelerator that finds nothing, for plugins of which only the table or the loading is of interest. */
+/* An accelerator that finds no hits, for plugins that only test tables or loading. */
 #ifndef RT_TESTS_PLUGINS_NOTHING_H
 #define RT_TESTS_PLUGINS_NOTHING_H
 
 #include <raytally/accel.h>
 
-static int build(const raytally_build *from, void **self) {
+static int build(const raytally_build_input *from, void **self) {
     (void)from;
     *self = NULL;
     return RAYTALLY_BUILD_OK;

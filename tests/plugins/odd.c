@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Plugins that are to be loaded, odd as they are: one for each KIND that this is compiled with. They find
- * nothing. */
+/* Unusual plugins that must load: one for each KIND that this is compiled with. They find no hits. */
 #include "nothing.h"
 
 #include <fenv.h>
@@ -11,9 +10,9 @@
 #include <unistd.h>
 
 enum {
-    FLUSHING, /* has the processor take small numbers for 0, as what is linked with -ffast-math does */
-    LONGER,   /* has a table of a later version of the interface, with more at its end */
-    UNRULY    /* makes a mess of the process that loads it, and crashes when that ends */
+    FLUSHING, /* flushes denormals to 0, as libraries linked with -ffast-math do */
+    LONGER,   /* has a table of a later version of the interface, with more members */
+    INVASIVE  /* changes global state of the process that loads it, and crashes when that ends */
 };
 
 static void flush_to_zero(void) {
@@ -26,15 +25,15 @@ static void flush_to_zero(void) {
 
 __attribute__((constructor)) static void when_loaded(void) {
     if (KIND == FLUSHING) flush_to_zero();
-    if (KIND != UNRULY) return;
+    if (KIND != INVASIVE) return;
     fesetround(FE_UPWARD);
     setlocale(LC_ALL, "");
     signal(SIGCHLD, SIG_IGN);
-    if (chdir("/") == 0) puts("{ odd-UNRULY is here");
+    if (chdir("/") == 0) puts("{ odd-INVASIVE is here");
 }
 
 __attribute__((destructor)) static void when_unloaded(void) {
-    if (KIND == UNRULY) abort();
+    if (KIND == INVASIVE) abort();
 }
 
 typedef struct LongerOps {
@@ -45,9 +44,9 @@ typedef struct LongerOps {
 static const LongerOps longer = {
     .ops = {.abi = RAYTALLY_ACCEL_ABI,
             .size = KIND == LONGER ? sizeof longer : sizeof longer.ops,
-            .name = KIND == LONGER   ? "longer"
-                    : KIND == UNRULY ? "unruly"
-                                     : "flushing",
+            .name = KIND == LONGER     ? "longer"
+                    : KIND == INVASIVE ? "invasive"
+                                       : "flushing",
             .summary = "finds nothing",
             .paper = "none",
             .build = build,

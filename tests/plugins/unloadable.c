@@ -8,21 +8,21 @@
 #include <unistd.h>
 
 enum {
-    SYMBOL,      /* exports something else: raytally_plugin is defined to be another name */
+    SYMBOL,      /* exports another name instead of raytally_plugin */
     EMPTY,       /* has no table */
     ABI,         /* is of another version */
     SIZE,        /* has a table of another size */
-    NAME,        /* has a name that no spec can have */
-    TAKEN,       /* has the name of an accelerator that there is */
+    NAME,        /* has a name that is impossible in a spec */
+    TAKEN,       /* has the name of an existing accelerator */
     TWICE,       /* has two tables of one name */
     FUNCTION,    /* lacks a function */
-    PARAMETERS,  /* says that there is a parameter, and has no table of them */
-    STANDARD,    /* has a default out of its range */
-    CONSTRUCTOR, /* crashes before it is asked anything */
-    ENTRY,       /* crashes when it is asked for its tables */
-    FOREVER,     /* is never loaded, and takes no alarm */
-    CHOICES,     /* has a parameter of more choices than there is room for */
-    MANY         /* has more tables than there is room for beside others */
+    PARAMETERS,  /* claims a parameter, but has no table of them */
+    DEFAULT,     /* has a default out of its range */
+    CONSTRUCTOR, /* crashes while it is loaded */
+    ENTRY,       /* crashes when its tables are read */
+    FOREVER,     /* never finishes loading, and ignores SIGALRM */
+    CHOICES,     /* has a parameter with too many choices */
+    MANY         /* has too many tables */
 };
 
 #define TEN(x) x "0|" x "1|" x "2|" x "3|" x "4|" x "5|" x "6|" x "7|" x "8|" x "9|"
@@ -43,7 +43,7 @@ static const raytally_param params[] = {{.name = "depth",
                                          .meaning = "levels",
                                          .source = "nowhere"}};
 
-/* In order, and first in every library: it is not to stay either. */
+/* Correct, and first in every library; it must not be registered either. */
 static const raytally_accel_ops first = {
     .abi = RAYTALLY_ACCEL_ABI,
     .size = sizeof first,
@@ -64,10 +64,10 @@ static const raytally_accel_ops ops = {
                            : "unloadable",
     .summary = "cannot be loaded",
     .paper = "none",
-    .params = KIND == STANDARD  ? params
+    .params = KIND == DEFAULT   ? params
               : KIND == CHOICES ? choices
                                 : NULL,
-    .param_count = KIND == PARAMETERS || KIND == STANDARD || KIND == CHOICES,
+    .param_count = KIND == PARAMETERS || KIND == DEFAULT || KIND == CHOICES,
     .build = build,
     .destroy = destroy,
     .nearest = KIND == FUNCTION ? NULL : search_nearest,

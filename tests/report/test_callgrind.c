@@ -15,6 +15,15 @@ static bool has_valgrind(void) {
 
 #define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_place, remove_place)
 
+/* A test that needs valgrind, in `place`. */
+#define RT_TEST_VALGRIND(name)                                                                               \
+    static void name##_with(const Place *place);                                                             \
+    RT_TEST_IN_PLACE(name) {                                                                                 \
+        if (!has_valgrind()) RT_SKIP("valgrind, and no sanitizers");                                         \
+        name##_with(*state);                                                                                 \
+    }                                                                                                        \
+    static void name##_with(const Place *place)
+
 /* "instructions" of what bench prints, a new reference. */
 static json_t *instructions_of(const Place *place, const char *arguments) {
     char command[300];
@@ -37,11 +46,9 @@ static const char *text_of(const json_t *rows, size_t i, const char *key) {
     return json_string_value(json_object_get(json_array_get(rows, i), key));
 }
 
-RT_TEST_IN_PLACE(instructions_are_the_same_figure_twice_whatever_the_environment) {
-    const Place *place = *state;
+RT_TEST_VALGRIND(instructions_are_the_same_figure_twice_whatever_the_environment) {
     const char *const arguments = "balls:size=2 --accel bvh --accel grid --accel cache+wide --accel ideal "
                                   "--rays primary,shadow --size 32x32";
-    if (!has_valgrind()) RT_SKIP("valgrind, and no sanitizers");
     json_t *one = instructions_of(place, arguments);
     assert_int_equal(setenv("RT_TEST_FILLER", "some text that moves the stack to another place", 1), 0);
     json_t *two = instructions_of(place, arguments);
@@ -66,10 +73,8 @@ static void write_alike(const Place *place, const char *name, uint64_t count) {
 }
 
 /* So neither the start of the program nor a build is in it, and every ray is. */
-RT_TEST_IN_PLACE(each_ray_more_costs_exactly_as_much_as_the_one_before) {
-    const Place *place = *state;
+RT_TEST_VALGRIND(each_ray_more_costs_exactly_as_much_as_the_one_before) {
     const char *const specs[] = {"brute", "bvh", "octree"};
-    if (!has_valgrind()) RT_SKIP("valgrind, and no sanitizers");
     for (int s = 0; s < 3; s++) {
         json_int_t sums[3];
         for (int i = 0; i < 3; i++) {
@@ -89,9 +94,7 @@ RT_TEST_IN_PLACE(each_ray_more_costs_exactly_as_much_as_the_one_before) {
     }
 }
 
-RT_TEST_IN_PLACE(an_instruction_set_that_valgrind_does_not_know_is_replaced_and_said) {
-    const Place *place = *state;
-    if (!has_valgrind()) RT_SKIP("valgrind, and no sanitizers");
+RT_TEST_VALGRIND(an_instruction_set_that_valgrind_does_not_know_is_replaced_and_said) {
     json_t *rows =
         instructions_of(place, "random:n=50 --accel wide --accel wide:isa=portable --rays primary --size "
                                "16x16");
@@ -101,10 +104,8 @@ RT_TEST_IN_PLACE(an_instruction_set_that_valgrind_does_not_know_is_replaced_and_
     json_decref(rows);
 }
 
-/* It is built in the child's own process; one that breaks is not asked there. */
-RT_TEST_IN_PLACE(instructions_of_a_plugin_are_counted_and_a_broken_one_is_named) {
-    const Place *place = *state;
-    if (!has_valgrind()) RT_SKIP("valgrind, and no sanitizers");
+/* Plugins are built in the child's own process; one that breaks is not built there. */
+RT_TEST_VALGRIND(instructions_of_a_plugin_are_counted_and_a_broken_one_is_named) {
     assert_int_equal(raytally(place, "bench random:n=50 --count-only --threads 1 --json --callgrind=64 "
                                      "--rays primary,shadow --size 16x16 --plugin " RT_BINARY_DIR
                                      "/plugins/bvh_copy.so --plugin " RT_BINARY_DIR
@@ -122,11 +123,9 @@ RT_TEST_IN_PLACE(instructions_of_a_plugin_are_counted_and_a_broken_one_is_named)
     rt_free(text);
 }
 
-/* Of what is recorded at most so many, and no file stays behind. */
-RT_TEST_IN_PLACE(the_child_gets_a_few_rays_and_leaves_nothing_behind) {
-    const Place *place = *state;
+/* The child gets at most so many rays, and no file stays behind. */
+RT_TEST_VALGRIND(the_child_gets_a_few_rays_and_leaves_nothing_behind) {
     glob_t found;
-    if (!has_valgrind()) RT_SKIP("valgrind, and no sanitizers");
     assert_int_equal(setenv("TMPDIR", place->folder, 1), 0);
     json_t *rows = instructions_of(place, "random:n=50 --accel bvh --rays primary --size 64x64");
     unsetenv("TMPDIR");
@@ -136,9 +135,7 @@ RT_TEST_IN_PLACE(the_child_gets_a_few_rays_and_leaves_nothing_behind) {
     globfree(&found);
 }
 
-RT_TEST_IN_PLACE(the_table_names_the_instruction_set) {
-    const Place *place = *state;
-    if (!has_valgrind()) RT_SKIP("valgrind, and no sanitizers");
+RT_TEST_VALGRIND(the_table_names_the_instruction_set) {
     assert_int_equal(raytally(place,
                               "bench random:n=50 --accel wide:isa=portable --rays primary --size 16x16 "
                               "--rounds 1 --callgrind"),

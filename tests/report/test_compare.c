@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* experiment/compare.h: two result directories, one of which is changed as a change would. */
+/* experiment/compare.h: two result directories, one of which is changed. */
 #include "experiment_testing.h"
 
 #include "experiment/compare.h"
@@ -150,8 +150,7 @@ RT_TEST_IN_PLACE(strict_makes_something_slower_an_exit_code) {
     assert_int_equal(raytally(place, "compare b a --strict"), 0);
 }
 
-/* A program that lies beside the experiment, as `other`: lines before it becomes raytally, and its arguments.
- */
+/* Writes the program `other` beside the experiment: runs `before`, then raytally with `arguments`. */
 static void write_other(const Place *place, const char *before, const char *arguments) {
     char script[1024];
     snprintf(script, sizeof script, "#!/bin/bash\ncd '%s' || exit\n%s\nexec '%s' %s\n", place->folder, before,
@@ -159,6 +158,14 @@ static void write_other(const Place *place, const char *before, const char *argu
     write_in(place, "other", script);
     snprintf(script, sizeof script, "chmod +x '%s/other'", place->folder);
     assert_int_equal(system(script), 0);
+}
+
+RT_TEST_IN_PLACE(a_program_that_crashes_while_it_is_compared_is_reported_with_its_signal) {
+    const Place *place = *state;
+    write_other(place, "echo '{\"worker\": 1, \"build\": \"none\"}'; kill -SEGV $$", "");
+    assert_int_equal(
+        raytally(place, "compare balls:size=1 --accel bvh --rays random --limit 100 --with ./other"), 2);
+    assert_in_file(place, "message", "./other cannot be compared: it crashed (Segmentation fault)");
 }
 
 /* The other program has another accelerator in the place of the grid in the second round, as one has none
@@ -174,7 +181,7 @@ RT_TEST_IN_PLACE(what_was_not_timed_in_every_round_is_not_compared) {
     assert_in_file(place, "output", "only before");
 }
 
-/* What is advised is what there is: the options that it names are those of the commands that it names. */
+/* The advice is correct: the commands that it names have the options that it names. */
 RT_TEST_IN_PLACE(programs_that_record_other_rays_are_told_how_to_compare_all_the_same) {
     const Place *place = *state;
     write_other(place, "", "\"$@\" --seed 7");

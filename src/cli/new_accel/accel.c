@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* my-accel: an accelerator of raytally, as a plugin. It works as it is, and saves nothing yet: every object
- * is looked at for every ray, but where `boxes` is on only those whose own box the ray meets are tested. Put
- * your structure in the place of the list: what to change says STRUCTURE.
+/* my-accel: an accelerator of raytally, as a plugin. It works, but saves little: every ray visits every
+ * object, and with `boxes` on it tests only those objects whose box it hits. Replace the list by your
+ * structure: STRUCTURE marks the places to change.
  *
- * The contract is in <raytally/accel.h>, why the test of boxes loses no hit in <raytally/box.h>. */
+ * <raytally/accel.h> defines the contract; <raytally/box.h> explains why the box test loses no hit. */
 #include <raytally/accel.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-/* STRUCTURE: nodes, cells, lists, whatever a search needs. Once built it is only read: all threads have it in
- * common. What a search writes to, a stack say, is a local variable of it, or the memory of its query. */
+/* STRUCTURE: nodes, cells, lists, or whatever a search needs. It is read-only once built: all threads share
+ * it. Data that a search writes, such as a stack, belongs in local variables or in the memory of its query.
+ */
 typedef struct Structure {
     const raytally_box *boxes; /* [count] of the objects; borrowed */
     uint32_t *ids;             /* [count] the objects in the order in which they are tested */
@@ -17,9 +18,8 @@ typedef struct Structure {
     int test_boxes; /* the parameter `boxes` */
 } Structure;
 
-/* What can be set, as in my-accel:boxes=off. From this table come help, checks of values and what `verify
- * --spread` tries; `build` finds the values in the same order. Whole numbers and fractions have a range, and
- * test_values such as "1|4|20" to try. */
+/* Parameters, as in my-accel:boxes=off. This table drives help, range checks and `verify --spread`; `build`
+ * gets the values in the same order. Numbers have a range, and test_values such as "1|4|20". */
 enum { BOXES, PARAMS };
 static const raytally_param params[PARAMS] = {
     [BOXES] = {.name = "boxes",
@@ -37,9 +37,9 @@ static void destroy(void *self) {
     free(s);
 }
 
-/* STRUCTURE: made from the boxes of the objects alone. The same boxes must give the same structure, on any
- * number of threads. */
-static int build(const raytally_build *from, void **self) {
+/* STRUCTURE: build it from the boxes of the objects alone. The same boxes must give the same structure, on
+ * any number of threads. */
+static int build(const raytally_build_input *from, void **self) {
     Structure *s = calloc(1, sizeof *s);
     if (!s) return RAYTALLY_BUILD_NO_MEMORY;
     s->boxes = from->boxes;
@@ -57,34 +57,33 @@ static int build(const raytally_build *from, void **self) {
 
 /* ---- trace ---- */
 
-/* STRUCTURE: finds objects on the way of the ray, and has them tested. raytally_object_hits improves *best
- * and counts the object tests; of several hits at the same t it keeps the object with the lower number. A box
- * may be skipped only where raytally_box_hit says no: it is asked up to raytally_limit, the best hit so far.
- * With any = 1 the question is whether there is a hit at all.
+/* STRUCTURE: find objects along the ray and test them. raytally_object_hits updates *best and counts the
+ * object tests; of several hits at the same t it keeps the object with the lower number. Skip a box only if
+ * raytally_box_hit returns 0 for raytally_tmax, the best hit so far. With any = 1, any hit is sufficient.
  *
- * Whatever else is counted is counted where it is done. Where rays are timed `counters` is a constant NULL,
- * and nothing is left of RAYTALLY_COUNT. */
+ * Count other events where they happen. When rays are timed, `counters` is a constant NULL, and
+ * RAYTALLY_COUNT compiles to nothing. */
 RAYTALLY_INLINE void search(const Structure *s, void *memory, const raytally_prepared *ray, int any,
                             raytally_hit *best, raytally_counters *counters) {
-    (void)memory; /* of the query, where the table below has query_bytes */
+    (void)memory; /* of the query, if the table below has query_bytes */
     float enter;
     for (uint32_t i = 0; i < s->count; i++) {
         const uint32_t *id = &s->ids[i];
         RAYTALLY_COUNT(counters, RAYTALLY_STEPS, 1);
         if (s->test_boxes) {
             RAYTALLY_COUNT(counters, RAYTALLY_EXTENT_TESTS, 1);
-            if (!raytally_box_hit(&s->boxes[*id], ray, raytally_limit(ray, best), &enter)) continue;
+            if (!raytally_box_hit(&s->boxes[*id], ray, raytally_tmax(ray, best), &enter)) continue;
         }
         if (raytally_object_hits(ray, id, 1, any, best, counters)) return;
     }
 }
 
-/* search_nearest and search_occluded, each with counters and without. */
+/* Defines search_nearest and search_occluded, each with counters and without. */
 RAYTALLY_DEFINE_KERNELS(Structure, search)
 
 /* ---- describe, validate ---- */
 
-/* STRUCTURE: what of it is printed and plotted. */
+/* STRUCTURE: its statistics, which are printed and plotted. */
 static void describe(const void *self, raytally_description *out) {
     const Structure *s = self;
     out->leaves = s->count > 0;
@@ -92,7 +91,7 @@ static void describe(const void *self, raytally_description *out) {
     out->bytes = sizeof *s + s->count * sizeof *s->ids;
 }
 
-/* STRUCTURE: what must be true of it, whatever the scene. `verify` asks before it traces any ray. */
+/* STRUCTURE: its invariants, which hold for every scene. `verify` checks them before it traces rays. */
 static int validate(const void *self, char *message, size_t room) {
     const Structure *s = self;
     for (uint32_t i = 0; i < s->count; i++) {
@@ -103,7 +102,7 @@ static int validate(const void *self, char *message, size_t room) {
     return 0;
 }
 
-/* ---- the table that raytally asks for ---- */
+/* ---- the table ---- */
 
 static const raytally_accel_ops ops = {
     .abi = RAYTALLY_ACCEL_ABI,
