@@ -32,6 +32,7 @@
 #include "accel/accel.h"
 #include "accel/isa.h"
 #include "accel/raster/bins.h"
+#include "core/base/simd.h"
 
 enum { RT_ITEM_SETTLE, RT_ITEM_ISA, RT_ITEM_PARAM_COUNT };
 extern const RtParam rt_item_params[RT_ITEM_PARAM_COUNT];
@@ -43,9 +44,7 @@ RT_DECLARE_KERNELS(item);
 typedef struct RtItemRaster RtItemRaster;
 
 /* A vector in double, and a fourth component. */
-typedef struct RtItemTerm {
-    double at[4];
-} RtItemTerm;
+typedef RtDouble4 RtItemTerm;
 
 /* Homogeneous coordinates in samples: a point q relative to the eye is seen at column x . q / z, row
  * y . q / z, at t = z, with z = depth . q. */
@@ -101,13 +100,13 @@ uint32_t rt_item_place_footprint(const RtItemBuffer *buffer, uint32_t id, uint16
 
 enum {
     RT_ITEM_TILE = 32,                             /* samples along an edge of a tile */
-    RT_ITEM_BLOCK = 4,                             /* and of a block, which is a vector */
+    RT_ITEM_BLOCK = 4,                             /* and of a block */
     RT_ITEM_ACROSS = RT_ITEM_TILE / RT_ITEM_BLOCK, /* blocks along an edge of a tile */
-    RT_ITEM_LANES = RT_ITEM_BLOCK * RT_ITEM_BLOCK,
+    RT_ITEM_BLOCK_SAMPLES = RT_ITEM_BLOCK * RT_ITEM_BLOCK,
     RT_ITEM_BLOCKS = RT_ITEM_ACROSS * RT_ITEM_ACROSS,
     RT_ITEM_TILE_SAMPLES = RT_ITEM_TILE * RT_ITEM_TILE,
     RT_ITEM_MAX_EDGES = 16, /* of a facet */
-    RT_ITEM_FACETS = 16,    /* made at once */
+    RT_ITEM_FACETS = 16,    /* made at once, at most; RT_LANES are */
     RT_ITEM_CLASSES = 8     /* of depth, the layers of tiles: near ones are drawn first */
 };
 
