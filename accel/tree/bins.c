@@ -3,7 +3,7 @@
 
 void rt_bins_init(RtBins *self, uint32_t count, RtBox4 centers) {
     self->lo = centers.lo;
-    self->last = rt_four_all((float)(count - 1));
+    self->last = rt_all4((float)(count - 1));
     for (int axis = 0; axis < 3; axis++) {
         float lo = centers.lo[axis], hi = centers.hi[axis], scale = (float)count / (hi - lo);
         self->scale[axis] = hi > lo && isfinite(scale) ? scale : 0;
@@ -26,13 +26,13 @@ void rt_bins_merge(RtBins *self, const RtBins *other) {
 enum { BATCH = 16 };
 
 static void add_batch(RtBins *self, const RtTreeRef *refs, uint32_t count) {
-    RtFour lo = self->lo, scale = self->scale, last = self->last;
-    RtFourBits bin[BATCH];
+    RtFloat4 lo = self->lo, scale = self->scale, last = self->last;
+    RtInt4 bin[BATCH];
     for (uint32_t i = 0; i < count; i++) {
         __builtin_prefetch(refs + i + RT_REFS_AHEAD);
         /* Of infinity times 0 the maximum is 0. */
-        RtFour at = rt_four_max((rt_box4_center(rt_box4_load(&refs[i].box)) - lo) * scale, rt_four_all(0));
-        bin[i] = rt_four_truncate(rt_four_min(at, last));
+        RtFloat4 at = rt_max((rt_box4_center(rt_box4_load(&refs[i].box)) - lo) * scale, rt_all4(0));
+        bin[i] = rt_to_ints4(rt_min(at, last));
     }
     for (uint32_t i = 0; i < count; i++) {
         RtBox4 box = rt_box4_load(&refs[i].box);

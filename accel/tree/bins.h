@@ -25,8 +25,9 @@ typedef struct RtBin {
 } RtBin;
 
 typedef struct RtBins {
-    RtFour lo, scale, last; /* bin of a centre c: (c - lo) * scale, at most `last`; an axis that cannot be */
-    uint32_t size[3];       /*   divided has scale 0. size: bins along each axis, 1..RT_MAX_BINS */
+    RtFloat4 lo, scale,
+        last;         /* bin of a centre c: (c - lo) * scale, at most `last`; an axis that cannot be */
+    uint32_t size[3]; /*   divided has scale 0. size: bins along each axis, 1..RT_MAX_BINS */
     RtBin bins[3][RT_MAX_BINS];
 } RtBins;
 
@@ -58,17 +59,17 @@ void rt_bins_try(const RtBin *bins, uint32_t size, int axis, uint32_t count, RtS
 
 /* What tells the sides of a split apart. */
 typedef struct RtSide {
-    RtFour lo, scale, least;
+    RtFloat4 lo, scale, least;
     unsigned mask;
 } RtSide;
 
 static inline RtSide rt_bins_side(const RtBins *self, const RtSplit *split) {
-    return (RtSide){self->lo, self->scale, rt_four_all((float)split->bin), 1U << split->axis};
+    return (RtSide){self->lo, self->scale, rt_all4((float)split->bin), 1U << split->axis};
 }
 
 /* 1: right, 0: left. */
-static inline uint32_t rt_side_of(const RtSide *side, RtFour center) {
-    unsigned right = rt_four_at_least((center - side->lo) * side->scale, side->least);
+static inline uint32_t rt_side_of(const RtSide *side, RtFloat4 center) {
+    unsigned right = rt_le_bits(side->least, (center - side->lo) * side->scale);
     return (right & side->mask) != 0;
 }
 

@@ -5,11 +5,11 @@
  * branch, four at a time; at[count..) up to a multiple of 4 may hold anything. */
 static void sort_axis(const float *at, uint32_t count, uint8_t *order) {
     for (uint32_t i = 0; i < count; i += 4) {
-        RtFour self;
-        RtFourBits before = {0, 0, 0, 0};
+        RtFloat4 self;
+        RtInt4 before = {0, 0, 0, 0};
         memcpy(&self, at + i, sizeof self);
-        for (uint32_t j = 0; j < i; j++) before -= rt_four_all(at[j]) <= self;
-        for (uint32_t j = i; j < count; j++) before -= rt_four_all(at[j]) < self;
+        for (uint32_t j = 0; j < i; j++) before -= rt_all4(at[j]) <= self;
+        for (uint32_t j = i; j < count; j++) before -= rt_all4(at[j]) < self;
         for (uint32_t s = 0; s < 4 && i + s < count; s++) {
             uint32_t place = (uint32_t)before[s];
             for (uint32_t j = i; j < i + s; j++) place += at[j] == at[i + s];
@@ -21,7 +21,7 @@ static void sort_axis(const float *at, uint32_t count, uint8_t *order) {
 void rt_few_init(RtFew *self, const RtTreeRef *refs, uint32_t count) {
     self->refs = refs;
     for (uint32_t i = 0; i < count; i++) {
-        RtFour center = rt_box4_center(rt_box4_load(&refs[i].box));
+        RtFloat4 center = rt_box4_center(rt_box4_load(&refs[i].box));
         for (int axis = 0; axis < 3; axis++) self->at[axis][i] = center[axis];
     }
     for (uint32_t i = count; i % 4 != 0; i++) {

@@ -43,7 +43,7 @@ uint32_t rt_split_binned(RtTreeRef *refs, uint32_t count, int bins, RtBox4 cente
     for (uint32_t i = 0; i < count; i++) {
         __builtin_prefetch(refs + i + RT_REFS_AHEAD);
         /* refs[left..i) are right: the first of them and this change places, whichever side this is on. */
-        RtFour center = rt_box4_center(rt_box4_load(&refs[i].box));
+        RtFloat4 center = rt_box4_center(rt_box4_load(&refs[i].box));
         RtTreeRef ref = refs[i];
         uint32_t right = rt_side_of(&side, center);
         sides[right] = rt_box4_add_point(sides[right], center);

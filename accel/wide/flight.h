@@ -224,7 +224,7 @@ RT_KERNEL bool admit(const float *triangle, const RtPreparedRay *ray, float *t) 
     RtFloat4 a = rt_triangle_vertex(triangle, RT_WIDE_BLOCK);
     RtFloat4 b = rt_triangle_vertex(triangle + VERTEX, RT_WIDE_BLOCK);
     RtFloat4 c = rt_triangle_vertex(triangle + (size_t)2 * VERTEX, RT_WIDE_BLOCK);
-    return rt_four_admit(rt_min(rt_min(a, b), c), rt_max(rt_max(a, b), c), ray, t);
+    return rt_admit4(rt_min(rt_min(a, b), c), rt_max(rt_max(a, b), c), ray, t);
 }
 
 /* Tests those triangles of a block in full; true where the search is over. */

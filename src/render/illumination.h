@@ -17,7 +17,7 @@
  *   offset = 2^-21 * reach + 2 * own + min(scene, 2^-18 * reach).
  *
  * The first bounds the rounding of the point and of t (a few 2^-24), and what boxes move besides their
- * thickness (rt_four_shift). The others are by how much box tests take boxes for thicker than they are: a ray
+ * thickness (rt_shift4). The others are by how much box tests take boxes for thicker than they are: a ray
  * that starts above that leaves the box of a floor, which is flat, behind and does not ask for the floor
  * again. The second is the object's own, twice, for a hit may lie as much to the side; the third is that of a
  * structure, which is the scene's, but only as far as the point's own size allows: in a scene of 10^6 with
