@@ -2,11 +2,11 @@
 /* Accelerators whose kernels are compiled more than once, each time for another instruction set, and chosen
  * among at run time. Every one gives the same bits and counts: what differs is how many lanes a vector has.
  *
- * Such an accelerator NAME has its kernels in accel/NAME/kernels.h, which ends with the definition of a table
+ * Such an accelerator NAME has its kernels in accel/NAME/NAME_kernels.h, which ends with the definition of a table
  * called RT_KERNELS (accel/kernel.h: RT_DEFINE_KERNEL_TABLE), and three files that include it,
  *
  *     #define RT_KERNELS rt_NAME_avx2
- *     #include "accel/NAME/kernels.h"
+ *     #include "accel/NAME/NAME_kernels.h"
  *
  * and so on, whose flags CMakeLists.txt sets. Its own struct begins with an RtIsaAccel, `kernels` of which
  * `build` sets to RT_KERNELS_FOR(NAME, isa); RT_ISA_OPS are its queries. */

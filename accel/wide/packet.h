@@ -44,7 +44,7 @@ typedef struct Packet {
     uint32_t pair_triangle[MOST_PAIRS]; /* and where in the arena their coordinates begin, in floats */
     /* Ray by ray what triangles are sieved by: the origin by kx, ky and kz, nothing; the shear, the ray's
      * number, nothing. What stands behind the last is hit by no triangle. */
-    float sieve[PACKET + 1][8];
+    float prefilter[PACKET + 1][8];
     Beam beam[BEAMS];
     RtHit best[PACKET];
     RtPreparedRay ray[PACKET];
@@ -53,12 +53,12 @@ typedef struct Packet {
     uint64_t going;    /* the rays that go on to `next` */
     uint64_t rays[RT_WIDE_STACK];
     float enter[RT_WIDE_STACK];
-    RtWideRef waiting[RT_WIDE_STACK], next;
+    RtWideRef stack[RT_WIDE_STACK], next;
     uint32_t top; /* entries of the stack */
     uint32_t pair_count;
     uint32_t count, index[PACKET];        /* of rays, and which of the question's they are */
     uint32_t kx, ky, kz, near[3], far[3]; /* as of a flight */
-    bool negative[3], sieve_ready;
+    bool negative[3], prefilter_ready;
 } Packet;
 
 /* The rays of each class that wait for a packet of their own; and those of the question not yet sorted. */
@@ -212,9 +212,9 @@ RT_KERNEL void bound_beam(Packet *p, uint32_t b) {
 }
 
 /* Once a packet, where it comes to a leaf with few rays. */
-RT_KERNEL void prepare_sieve(Packet *p) {
-    if (p->sieve_ready) return;
-    p->sieve_ready = true;
+RT_KERNEL void prepare_prefilter(Packet *p) {
+    if (p->prefilter_ready) return;
+    p->prefilter_ready = true;
     for (uint32_t i = 0; i < p->count; i += 4) {
         const RtInt4 number = (RtInt4){0, 1, 2, 3} + (int32_t)i;
         RtFloat4 place[4] = {rt_load4(&p->org[p->kx][i]), rt_load4(&p->org[p->ky][i]),
@@ -223,15 +223,15 @@ RT_KERNEL void prepare_sieve(Packet *p) {
         rt_transpose4(place);
         rt_transpose4(more);
         for (uint32_t k = 0; k < 4; k++) {
-            rt_store(p->sieve[i + k], place[k]);
-            rt_store(p->sieve[i + k] + 4, more[k]);
+            rt_store(p->prefilter[i + k], place[k]);
+            rt_store(p->prefilter[i + k] + 4, more[k]);
         }
     }
-    for (int k = 0; k < 8; k++) p->sieve[PACKET][k] = NAN;
+    for (int k = 0; k < 8; k++) p->prefilter[PACKET][k] = NAN;
 }
 
 /* Ray i with what hit functions ask for. */
-RT_KERNEL const RtPreparedRay *prepared(Packet *p, const Question *q, uint32_t i) {
+RT_KERNEL const RtPreparedRay *prepared(Packet *p, const Query *q, uint32_t i) {
     if (!(p->prepared & one_ray(i)))
         rt_hit_ray(&p->ray[i], q->geometry, &q->rays[p->index[i]], q->scratch->room);
     p->prepared |= one_ray(i);
@@ -239,7 +239,7 @@ RT_KERNEL const RtPreparedRay *prepared(Packet *p, const Question *q, uint32_t i
 }
 
 /* Tests rays that are too odd for the boxes of divided objects against all. */
-RT_KERNEL void answer_odd_rays(Packet *p, const Question *q, bool any) {
+RT_KERNEL void test_extreme_rays(Packet *p, const Query *q, bool any) {
     uint64_t odd = 0;
     for (uint32_t i = 0; i < PACKET; i += RT_LANES) {
         RtFloats longest = rt_abs(rt_load(&p->dir[p->kz][i]));
@@ -254,7 +254,7 @@ RT_KERNEL void answer_odd_rays(Packet *p, const Question *q, bool any) {
 }
 
 /* Makes a packet of up to PACKET rays of a class. */
-RT_KERNEL void take_up(Packet *p, const Question *q, Sorter *s, uint32_t class, bool any) {
+RT_KERNEL void init_packet(Packet *p, const Query *q, Sorter *s, uint32_t class, bool any) {
     uint32_t *list = s->list[class], count = s->count[class] < PACKET ? s->count[class] : PACKET;
     p->count = count;
     for (uint32_t i = 0; i < count; i++) p->index[i] = list[i];
@@ -289,12 +289,12 @@ RT_KERNEL void take_up(Packet *p, const Question *q, Sorter *s, uint32_t class, 
     }
     for (uint32_t i = 0; i < end; i += RT_LANES) prepare_lanes(p, q->geometry, i, q->tree->divided);
     for (uint32_t b = 0; b < beams; b++) bound_beam(p, b);
-    p->sieve_ready = false;
+    p->prefilter_ready = false;
     for (uint32_t i = 0; i < count; i++) p->best[i] = RT_MISS;
     p->open = ~UINT64_C(0) >> (PACKET - count);
     p->prepared = 0;
     p->pair_count = p->top = p->next = 0;
-    if (q->tree->divided) answer_odd_rays(p, q, any);
+    if (q->tree->divided) test_extreme_rays(p, q, any);
     p->going = p->open;
 }
 

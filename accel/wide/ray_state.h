@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* One ray on its way through a wide hierarchy, and what it does at a node and at a leaf. */
-#ifndef RT_ACCEL_WIDE_FLIGHT_H
-#define RT_ACCEL_WIDE_FLIGHT_H
+#ifndef RT_ACCEL_WIDE_RAY_STATE_H
+#define RT_ACCEL_WIDE_RAY_STATE_H
 
 #include "accel/kernel.h"
 #include "accel/surface.h"
@@ -19,7 +19,7 @@ typedef struct Axes {
     float org_x, org_y, org_z, shear_x, shear_y;
 } Axes;
 
-typedef struct Flight {
+typedef struct RayState {
     _Alignas(RT_CACHE_LINE) RtPreparedRay ray;
     float limit;              /* the best t so far, or tmax */
     RtWideRef next;           /* what it goes on to */
@@ -30,8 +30,8 @@ typedef struct Flight {
     size_t index;               /* in the stream */
     RtTally *tally;             /* NULL in the timed kernels */
     float enter[RT_WIDE_STACK]; /* what waits, the next one last; at the bottom RT_WIDE_DONE */
-    RtWideRef waiting[RT_WIDE_STACK];
-} Flight;
+    RtWideRef stack[RT_WIDE_STACK];
+} RayState;
 
 /* Bytes from a plane of a node to the next, and from a coordinate of a block to the next. */
 enum { PLANE = RT_WIDE * sizeof(float), COORDINATE = RT_WIDE_BLOCK * sizeof(float) };
@@ -77,7 +77,7 @@ RT_KERNEL void test_all(const RtGeometry *g, const RtPreparedRay *ray, bool any,
 
 /* Ready for the root. False where the ray is answered already: there is nothing, or the ray is too odd for
  * the boxes of divided objects, and was tested against all. */
-RT_KERNEL bool take_off(Flight *f, const RtWideTree *tree, const RtGeometry *g, const RtScratch *scratch,
+RT_KERNEL bool init_ray(RayState *f, const RtWideTree *tree, const RtGeometry *g, const RtScratch *scratch,
                         const RtRay *ray, size_t index, bool any, RtTally *tally) {
     const RtPreparedRay *r = &f->ray;
     rt_hit_ray(&f->ray, g, ray, scratch->room);
@@ -107,7 +107,7 @@ RT_KERNEL bool take_off(Flight *f, const RtWideTree *tree, const RtGeometry *g, 
                      r->shear_x,
                      r->shear_y};
     f->enter[0] = -INFINITY;
-    f->waiting[0] = RT_WIDE_DONE;
+    f->stack[0] = RT_WIDE_DONE;
     f->top = 1;
     return true;
 }
@@ -125,7 +125,7 @@ RT_KERNEL RtFloat8 planes(const RtWideNode *node, uint32_t offset) {
 
 /* The children that the ray meets, as a mask, by rt_box_hit in eight lanes; where it enters each, to
  * *enter. */
-RT_KERNEL uint32_t meet(const RtWideNode *node, const Flight *f, RtFloat8 *enter) {
+RT_KERNEL uint32_t hit_children(const RtWideNode *node, const RayState *f, RtFloat8 *enter) {
     const RtPreparedRay *r = &f->ray;
     RtFloat8 near = rt_all8(r->tmin), far = rt_all8(f->limit);
     for (uint32_t a = 0; a < 3; a++) {
@@ -170,19 +170,19 @@ RT_KERNEL uint32_t least_lane(uint32_t mask, RtInt8 enter) {
 }
 
 /* The child to go on to: the nearest, or without order the last; any where the mask is empty. */
-RT_KERNEL uint32_t choose(uint32_t mask, RtFloat8 enter, bool ordered) {
+RT_KERNEL uint32_t choose_child(uint32_t mask, RtFloat8 enter, bool ordered) {
     return ordered ? least_lane(mask, (RtInt8)enter) : 31 - (uint32_t)__builtin_clz(mask | 1);
 }
 
 /* Goes on to one child of the mask, and waits with the others; where there is none, to what waits last.
  * Without a branch, for which way it went nobody could predict. */
-RT_KERNEL RtWideRef go_on(Flight *f, const RtWideNode *node, uint32_t mask, RtFloat8 enter, bool ordered,
-                          bool any) {
-    uint32_t top = f->top, lane = choose(mask, enter, ordered), others = mask & ~(1u << lane);
-    RtWideRef popped = f->waiting[top - 1], child = node->child[lane];
+RT_KERNEL RtWideRef descend(RayState *f, const RtWideNode *node, uint32_t mask, RtFloat8 enter, bool ordered,
+                            bool any) {
+    uint32_t top = f->top, lane = choose_child(mask, enter, ordered), others = mask & ~(1u << lane);
+    RtWideRef popped = f->stack[top - 1], child = node->child[lane];
     RtOrder8 order = rt_order8(others);
     if (!any) rt_store(&f->enter[top], rt_compress8(order, (RtInt8)enter));
-    rt_store(&f->waiting[top], rt_compress8(order, rt_load_ints8(node->child)));
+    rt_store(&f->stack[top], rt_compress8(order, rt_load_ints8(node->child)));
     f->top = top + (uint32_t)__builtin_popcount(others) - (mask == 0);
     return mask == 0 ? popped : child;
 }
@@ -207,15 +207,15 @@ RT_KERNEL RtSheared4 shear(const RtWideTriangles *block, const Axes *axes) {
 }
 
 /* Bit i: triangle i of a block passes the edge-function prefilter. */
-RT_KERNEL uint32_t sieve_block(const RtWideTriangles *block, const Axes *axes) {
+RT_KERNEL uint32_t prefilter_block(const RtWideTriangles *block, const Axes *axes) {
     const RtSheared4 s = shear(block, axes);
     return rt_edge_prefilter4(&s);
 }
 
 /* The same of a leaf: bit i is triangle i of it. */
-RT_KERNEL uint32_t sieve_leaf(const RtWideTriangles *blocks, RtWideRef ref, const Axes *axes) {
-    uint32_t mask = sieve_block(&blocks[0], axes);
-    if (rt_wide_count(ref) > RT_WIDE_BLOCK) mask |= sieve_block(&blocks[1], axes) << RT_WIDE_BLOCK;
+RT_KERNEL uint32_t prefilter_leaf(const RtWideTriangles *blocks, RtWideRef ref, const Axes *axes) {
+    uint32_t mask = prefilter_block(&blocks[0], axes);
+    if (rt_wide_count(ref) > RT_WIDE_BLOCK) mask |= prefilter_block(&blocks[1], axes) << RT_WIDE_BLOCK;
     return mask;
 }
 
@@ -289,7 +289,7 @@ RT_KERNEL void count_leaf(RtTally *tally, const RtWideTree *tree, const RtGeomet
 
 /* What follows a leaf in which something was tested: what waits and is entered beyond the best hit is
  * dropped, so that what is taken from the stack need not be looked at again. */
-RT_KERNEL void narrow(Flight *f) {
+RT_KERNEL void cull_stack(RayState *f) {
     float limit = rt_minf(f->best.t, f->ray.tmax);
     if (!(limit < f->limit)) return;
     f->limit = limit;
@@ -299,9 +299,9 @@ RT_KERNEL void narrow(Flight *f) {
         uint32_t left = top - i, lanes = left < RT_WIDE ? (1u << left) - 1 : 255;
         uint32_t mask = rt_le_bits(enter, rt_all8(limit)) & lanes;
         RtOrder8 order = rt_order8(mask);
-        RtInt8 refs = rt_load_ints8(&f->waiting[i]);
+        RtInt8 refs = rt_load_ints8(&f->stack[i]);
         rt_store(&f->enter[kept], rt_compress8(order, (RtInt8)enter));
-        rt_store(&f->waiting[kept], rt_compress8(order, refs));
+        rt_store(&f->stack[kept], rt_compress8(order, refs));
         kept += (uint32_t)__builtin_popcount(mask);
     }
     f->top = kept;
