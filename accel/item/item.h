@@ -173,7 +173,7 @@ void rt_item_place_facet(const RtItemDrawing *drawing, const RtItemFootprint *fo
 bool rt_item_polygon(const RtItemDrawing *drawing, uint32_t id, const RtItemFootprint *footprint,
                      RtItemFacets *facets, uint32_t *count);
 
-/* ---- item_kernels.h, for each instruction set ---- */
+/* ---- item_kernels.c, for each instruction set ---- */
 
 /* What placing triangles needs. */
 typedef struct RtItemPlacing {

@@ -206,7 +206,7 @@ void rt_light_outline(const RtLightTile *tile, uint32_t id, const RtLightFootpri
 bool rt_light_touches(const RtLightTile *tile, uint32_t id, uint32_t column, uint32_t row);
 bool rt_light_covers(const RtLightTile *tile, uint32_t id, uint32_t column, uint32_t row, float *depth);
 
-/* ---- light_kernels.h, for each instruction set ---- */
+/* ---- light_kernels.c, for each instruction set ---- */
 
 /* Set in the objects of tiles that are drawn by their footprint, not in lanes. */
 #define RT_LIGHT_BY_FOOTPRINT 0x80000000u

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Answering shadow rays in streams, and drawing from the light; included once for each instruction set
+/* Answering shadow rays in streams, and drawing from the light; compiled once for each instruction set
  * (accel/isa.h).
  *
  * Of a stream a block of rays is taken at a time, light by light. First each ray finds its cell, RT_LANES at
@@ -233,5 +233,5 @@ RT_KERNEL void occluded_all(const RtAccel *accel, const RtScratch *scratch, cons
 RT_REFUSE_QUESTION(nearest, RtHit)
 RT_DEFINE_BOTH(occluded, uint32_t, occluded_all)
 
-RT_DEFINE_KERNEL_TABLE(sizeof(Stream));
-const RtLightRaster RT_RASTER = {place, cover, draw, cover_outline, draw_outline};
+RT_DEFINE_KERNEL_TABLE(light, sizeof(Stream));
+const RtLightRaster RT_OF_ISA(light_raster) = {place, cover, draw, cover_outline, draw_outline};

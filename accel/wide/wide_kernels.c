@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The kernels of `wide`, included once for each instruction set (accel/isa.h).
+/* The kernels of `wide`, compiled once for each instruction set (accel/isa.h).
  *
  * Rays are traced as packets while these share enough of their visits, else as streams of rays alone. How
  * much they share is seen when they are, and tried again from time to time. Counted kernels trace no packets:
@@ -99,4 +99,4 @@ RT_KERNEL void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay
 }
 
 RT_DEFINE_STREAM_KERNELS(trace)
-RT_DEFINE_KERNEL_TABLE(sizeof(Scratch));
+RT_DEFINE_KERNEL_TABLE(wide, sizeof(Scratch));
