@@ -7,7 +7,7 @@
  *
  * Invariant: the exact ray of a sample that names an object hits no other object before that one, by (t, id),
  * if it hits that one at all; the ray of a sample that is RT_NO_OBJECT hits nothing. Whether the named object
- * is hit need not be known: its hit function is asked.
+ * is hit need not be known: its hit function is called.
  *
  * Flat objects are drawn as facets, with the projection and the bounds of accel/raster/raster.h. Nothing is
  * divided by depth, so facets around the eye need no clipping. With P = (x . q, y . q, depth . q) for a point

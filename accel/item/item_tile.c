@@ -2,7 +2,7 @@
 /* What a tile needs beside vectors: samples at which it is open which object is nearest, and objects that are
  * no triangles.
  *
- * With `settle` the objects' own hit functions are asked there, with the very ray that will be traced: their
+ * With `settle` the objects' own hit functions are called there, with the very ray that will be traced: their
  * t is exact. Without, such samples stay undecided, as in 1984. */
 #include "accel/item/item.h"
 #include "accel/kernel.h"

@@ -19,7 +19,7 @@
  * Invariant: an object that can occlude a ray from inside `domain` to the light is in the near list, or in
  * the list of the ray's cell, with a depth not above that of the ray's origin and the part of the cell that
  * the ray is in; or the list was cut, at a depth not above that of the origin. light_footprint.c proves it.
- * So cutting lists never changes an answer, only who gives it. */
+ * So cutting lists never changes an answer, only which layer finds it. */
 #ifndef RT_ACCEL_LIGHT_LIGHT_H
 #define RT_ACCEL_LIGHT_LIGHT_H
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What a packet does at a leaf. RT_GROUPS rays at a time are tested with four triangles, RT_LANES pairs in a
  * vector; what passes waits until there are RT_LANES pairs to be tested in full, by the operations of
- * rt_triangle_hit. Their rays go on meanwhile, for nothing at worst. */
+ * rt_triangle_hit. Their rays continue meanwhile. */
 #ifndef RT_ACCEL_WIDE_PACKET_LEAF_H
 #define RT_ACCEL_WIDE_PACKET_LEAF_H
 
@@ -48,7 +48,7 @@ RT_KERNEL void prefilter_rays(Packet *p, const RtWideTriangles *block, uint32_t 
     } while (rays);
 }
 
-/* From so many rays of a beam on a block is tested triangle by triangle. */
+/* With at least so many rays of a beam, a block is tested triangle by triangle. */
 enum { MANY_RAYS = 6 };
 
 /* The same as sieve_rays for rays of beam b, with `count` triangles. */

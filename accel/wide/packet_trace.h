@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The way of packets through the hierarchy. At a node those rays of a packet that are there are tested one
+/* The traversal of packets. At a node those rays of a packet that are there are tested one
  * after the other, against all its children at once, and each child gets the set of rays that meet it: the
  * node is read once for all, and what remains of a visit is shared by them. A beam that meets few of the
  * children is tested in place of its rays. This is the stream tracing of Wald, Gribble, Boulos & Kensler 2007
  * ("SIMD Ray Stream Tracing"), with sets as bits in place of lists.
  *
- * A packet alone would wait for each node to come from memory. So several are in flight, and take turns: what
- * one goes on to comes while the others are at theirs. */
+ * A single packet would wait for each node to come from memory. So several are interleaved: while one waits
+ * for its prefetched node, the others continue. */
 #ifndef RT_ACCEL_WIDE_PACKET_TRACE_H
 #define RT_ACCEL_WIDE_PACKET_TRACE_H
 
@@ -16,7 +16,7 @@
  * the children, or its rays would visit too much that they miss. */
 enum { BEAM_LEAST_RAYS = 8, BEAM_MOST_CHILDREN = 3 };
 
-/* What has been done, to tell how much was shared. */
+/* Measures how much was shared. */
 typedef struct Shared {
     uint64_t visits, rays; /* of nodes, and the rays there */
 } Shared;
@@ -63,7 +63,7 @@ RT_KERNEL bool test_beam(ChildSets *met, const Planes *planes, const Beam *beam,
     return true;
 }
 
-/* Goes on to one child that rays meet, and waits with the others; false where they meet none. */
+/* Descends to one child that rays hit, and pushes the others; false if they hit none. */
 RT_KERNEL bool visit_node(Packet *p, const RtWideNode *node, uint64_t rays, bool ordered, bool any) {
     ChildSets met = {.first = rt_all8(INFINITY)};
     Planes sides;
@@ -94,7 +94,7 @@ RT_KERNEL bool visit_node(Packet *p, const RtWideNode *node, uint64_t rays, bool
     return true;
 }
 
-/* ---- the way ---- */
+/* ---- the traversal ---- */
 
 /* The rays of a set that have found nothing nearer than this. */
 RT_KERNEL uint64_t rays_before(const Packet *p, uint64_t rays, float enter) {
@@ -104,7 +104,7 @@ RT_KERNEL uint64_t rays_before(const Packet *p, uint64_t rays, float enter) {
     return rays & open;
 }
 
-/* Goes on to what waits last and still matters to a ray; false where there is nothing. */
+/* Pops the stack down to an entry that some ray must still visit; false if there is none. */
 RT_KERNEL bool pop_stack(Packet *p, bool any) {
     while (p->top > 0) {
         uint64_t rays = p->rays[--p->top];
@@ -115,7 +115,7 @@ RT_KERNEL bool pop_stack(Packet *p, bool any) {
     return false;
 }
 
-/* One visit; false where it was the last. */
+/* One visit; false if it was the last. */
 RT_KERNEL bool step_packet(Packet *p, const Query *q, Shared *shared, bool any) {
     bool more = true;
     if (rt_wide_kind(p->next) == RT_WIDE_NODE) {
@@ -141,7 +141,7 @@ RT_KERNEL void finish_packet(Packet *p, const Query *q, bool any) {
     }
 }
 
-/* Traces rays[first..first + count) of a question, few enough for the numbers of a Sorter. */
+/* Traces rays[first..first + count) of a query, few enough for the numbers of a Sorter. */
 RT_KERNEL Shared trace_packets(const Query *q, Packet *packets, Sorter *sorter, size_t first, size_t count,
                                bool any) {
     Shared shared = {0};

@@ -1,21 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Rays that go each their own way: one after the other, or many at once on one thread.
+/* Rays traced independently: one after the other, or many interleaved on one thread.
  *
- * A ray alone waits for memory, then for one long chain of arithmetic after the other. So many are in flight
- * together, in lists by what they go on to: a node, a leaf of triangles, another leaf, or nothing any more.
- * One list after the other is taken up, in loops that do one short thing for each of its rays: the processor
- * works at several rays at once, and no branch depends on which way a ray went. As soon as it is known what a
- * ray goes on to that is fetched, and has come by the time it is its turn. The idea of following rays in
- * lists is Wald, Gribble, Boulos & Kensler's (2007, "SIMD Ray Stream Tracing"); there a list shares a node,
- * here it only shares the work to be done.
+ * A single ray waits for memory and for long chains of dependent arithmetic. So many rays are in flight, in
+ * queues by what each visits next: a node, a leaf of triangles, another leaf, or nothing. Each queue is
+ * processed by a loop with one short body: the processor overlaps several rays, and no branch depends on the
+ * path of a ray. What a ray visits next is prefetched when it is enqueued. Wald, Gribble, Boulos & Kensler
+ * 2007 ("SIMD Ray Stream Tracing") process rays in lists; their lists share a node, these queues only share
+ * the kind of work.
  *
- * A ray's own path is the same in either way, so the counts are. */
+ * A ray takes the same path either way, so the counts are equal. */
 #ifndef RT_ACCEL_WIDE_STREAM_H
 #define RT_ACCEL_WIDE_STREAM_H
 
 #include "accel/wide/ray_state.h"
 
-/* What is asked: a stream of rays, and where the answers go. */
+/* A stream of rays, and where the answers go. */
 typedef struct Query {
     const RtWide *self;
     const RtWideTree *tree;
@@ -27,7 +26,7 @@ typedef struct Query {
     RtTally *tallies;    /* of the counted kernels */
 } Query;
 
-/* The ray is answered by what the flight has found. */
+/* Writes the answer of a ray. */
 RT_KERNEL void finish_ray(const Query *q, const RayState *f, bool any, bool counted) {
     RtTally *tally = counted ? f->tally : NULL;
     RT_COUNT(tally, rays, 1);
@@ -87,13 +86,13 @@ RT_KERNEL void trace_one_by_one(const Query *q, size_t first, size_t count, bool
 /* ---- many at once ---- */
 
 typedef struct RayQueues {
-    size_t next, end; /* of the question's rays: the first that is not under way, and where they end */
+    size_t next, end; /* of the query's rays: the first not started, and the end */
     uint32_t in_flight;
-    uint32_t count[4]; /* rays that go on to each RtWideKind */
+    uint32_t count[4]; /* rays in the queue of each RtWideKind */
     RayState *list[4][RT_WIDE_MAX_IN_FLIGHT];
 } RayQueues;
 
-/* Enters a flight in a list, if `one` is 1; where it is 0 the entry is written over by the next. */
+/* Enqueues a ray if `one` is 1; if it is 0, the next entry overwrites it. */
 RT_KERNEL void enqueue(RayQueues *t, const RtWideTree *tree, RayState *f, RtWideRef next, uint32_t one,
                        bool ahead) {
     uint32_t kind = rt_wide_kind(next), count = t->count[kind];
@@ -103,7 +102,7 @@ RT_KERNEL void enqueue(RayQueues *t, const RtWideTree *tree, RayState *f, RtWide
     if (ahead) prefetch(tree, next);
 }
 
-/* How many are in a list, which is empty from now on; they stay where they are until as many are entered. */
+/* Empties a queue and returns its length. The entries stay in place until new ones overwrite them. */
 RT_KERNEL uint32_t take_queue(RayQueues *t, RtWideKind kind) {
     uint32_t count = t->count[kind];
     t->count[kind] = 0;
@@ -134,13 +133,14 @@ RT_KERNEL void visit_nodes(const Query *q, RayQueues *t, bool any, bool counted,
     }
 }
 
-/* Some triangles of a leaf that a ray is to be tested against in full. */
+/* The triangles of a leaf that pass the prefilter for a ray. */
 typedef struct Candidates {
     RayState *flight;
     uint32_t mask;
 } Candidates;
 
-/* Of the rays at leaves of triangles those with suspects, to found[0..result); the others go on. */
+/* Prefilters all queued leaves of triangles: rays with candidates go to found[0..result), the others to
+ * their next queue. */
 RT_KERNEL uint32_t prefilter_leaves(const Query *q, RayQueues *t, Candidates *found, bool counted,
                                     bool ahead) {
     uint32_t masks[RT_WIDE_MAX_IN_FLIGHT], n = take_queue(t, RT_WIDE_TRIANGLES), count = 0;
@@ -183,7 +183,7 @@ RT_KERNEL void visit_objects(const Query *q, RayQueues *t, bool any, bool counte
     }
 }
 
-/* Sends rays off until one is in flight, or there are no more. */
+/* Starts rays until one is in flight, or none are left. */
 RT_KERNEL void start_next_ray(const Query *q, RayQueues *t, RayState *f, bool any, bool counted, bool ahead) {
     while (t->next < t->end) {
         size_t i = t->next++;

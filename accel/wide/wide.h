@@ -34,7 +34,7 @@ typedef enum RtWideKind {
     RT_WIDE_NODE,
     RT_WIDE_TRIANGLES, /* blocks of them */
     RT_WIDE_OBJECTS,   /* a list of anything */
-    RT_WIDE_FINISHED   /* no place at all, but where a ray goes that has nowhere left to go */
+    RT_WIDE_FINISHED   /* no place: the ray has finished */
 } RtWideKind;
 
 #define RT_WIDE_UNIT      32

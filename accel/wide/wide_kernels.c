@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The kernels of `wide`, compiled once for each instruction set (accel/isa.h).
  *
- * Rays are traced as packets while these share enough of their visits, else as streams of rays alone. How
- * much they share is seen when they are, and tried again from time to time. Counted kernels trace no packets:
- * a count belongs to one ray. */
+ * Rays are traced in packets while the rays of a packet share enough of their visits, else one by one in
+ * streams. The sharing is estimated from the packets traced last, and packets are tried again from time to
+ * time. Counted kernels trace no packets, because a count belongs to one ray. */
 #include "accel/wide/packet_trace.h"
 
-/* How rays of a kind are traced on. */
+/* The sharing of visits by rays of a kind. */
 typedef struct RateEstimate {
-    float sharing;  /* rays at a node, on average of late; 0: none traced yet */
-    bool alone;     /* as streams */
+    float sharing;  /* rays per visit of a node, a moving average; 0: no packets traced yet */
+    bool alone;     /* packets did not pay */
     uint64_t trial; /* rays until packets are tried again */
 } RateEstimate;
 
@@ -21,7 +21,7 @@ typedef struct Scratch {
     RateEstimate estimates[RT_RAY_KIND_COUNT];
 } Scratch;
 
-/* The ways as functions of their own, so that each stands in the program once. */
+/* Functions of their own, so that each is compiled once. */
 #define DEFINE_STREAMS(question, any)                                                                        \
     static __attribute__((noinline)) void stream_##question##_timed(const Query *q, size_t first,            \
                                                                     size_t count) {                          \
@@ -44,9 +44,8 @@ enum {
     TRIAL = 256 * 1024, /* rays traced alone between two trials of packets */
 };
 
-/* How much more than asked for rays must share. Streams that ask for any hit need no distances, and are
- * harder to beat. Without AVX2 what packets gather is gathered word by word: they pay for nearest hits of
- * rays that share much, and for any hit nowhere to speak of. */
+/* Factors on the parameter `sharing`. Streams for any hit need no distances, so packets pay later. Without
+ * AVX2 a gather loads word by word, so packets pay only for nearest hits of rays that share much. */
 #if defined(__AVX2__)
 #define WORTH_NEAREST 1.0f
 #define WORTH_ANY     1.2f
@@ -55,7 +54,7 @@ enum {
 #define WORTH_ANY     13.0f
 #endif
 
-/* As packets, as far as these pay; gives how many rays have been. */
+/* Traces packets while they pay; returns the number of rays traced. */
 RT_KERNEL size_t trace_as_packets(const Query *q, size_t count, bool any) {
     RateEstimate *estimate = &((Scratch *)q->scratch->own)->estimates[q->rays[0].kind];
     const float worth = q->self->sharing * (any ? WORTH_ANY : WORTH_NEAREST);
