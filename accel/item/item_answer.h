@@ -56,7 +56,7 @@ RT_KERNEL void pass_on(RayRun *run, size_t i, RtTally *tallies) {
     if (p->count == PASSED) flush_passed(run, tallies);
 }
 
-/* The object that the ray's sample names is hit or, for all we know, missed. */
+/* Writes the hit of the object that the ray's sample names; passes the ray on if it misses that object. */
 RT_KERNEL void answer(RayRun *run, size_t i, RtHit hit, RtTally *tallies) {
     if (hit.object == RT_NO_OBJECT)
         pass_on(run, i, tallies);
@@ -104,7 +104,7 @@ RT_KERNEL void flush_pending(RayRun *run, RtTally *tallies) {
 
 __extension__ typedef unsigned __int128 Wide;
 
-/* Is it, bit for bit, the ray of its sample? */
+/* Is a ray, bit for bit, the ray of its sample? */
 RT_KERNEL bool is_of_sample(const RtItemBuffer *self, const RtRay *ray, RtFloat4 org, uint64_t reciprocal) {
     if (ray->source >= rt_item_sample_count(self)) return false;
     uint32_t row = reciprocal ? (uint32_t)((Wide)reciprocal * ray->source >> 64) : ray->source;

@@ -109,7 +109,7 @@ RT_KERNEL void make_half(const RtItemDrawing *drawing, RtFloats v[3][3], int hal
     rt_store_doubles(&f->depth_error[1][at], once + 0x1p-19);
     rt_store_doubles(&f->depth_error[2][at], e * 2);
 
-    /* Where the side from which it is seen is unknown its edges say nothing either. */
+    /* If the side from which a facet is seen is unknown, its edges bound nothing. */
     uint32_t known = rt_le_bits(rough, rt_all_doubles(0x1p-4));
     for (size_t k = 0; k < RT_HALF; k++) {
         if (!(known >> k & 1)) f->edge_error[0][at + k] = f->depth_error[0][at + k] = INFINITY;

@@ -2,21 +2,21 @@
 /* Answering shadow rays in streams, and drawing from the light; compiled once for each instruction set
  * (accel/isa.h).
  *
- * Of a stream a block of rays is taken at a time, light by light. First each ray finds its cell, RT_LANES at
- * a time. Then the rays that have a list go through it in rounds, of one entry, of two, and of four: those
- * whose entry is not deeper and is seen in their part of the cell make pairs of a ray and an object, which
- * are tested in lanes where they are triangles. A ray that is occluded, or at the end of its list, drops out.
- * What a ray does depends on no other, so that counts are the same in streams of any length. Rays at the end
- * of a list that was cut, and those that are not exactly what a shadow ray is, are passed on together.
+ * A stream is answered in blocks of rays, light by light. First each ray finds its cell, RT_LANES rays at a
+ * time. Then the rays walk through their lists in rounds of one entry, of two, and of four. An entry that is
+ * not deeper than its ray, and is seen in the ray's part of the cell, makes a pair of a ray and an object.
+ * Pairs with triangles are tested in lanes. A ray drops out when it is occluded or at the end of its list. No
+ * ray depends on another, so counts are the same in streams of any length. Rays at the end of a list that was
+ * cut, and rays that are not exactly a shadow ray, are passed on together.
  *
- * A step is an entry looked at that is not deeper than the ray; an extent test that of the part of the cell,
- * and of the side of a polygon or sphere (light_facing.h). */
+ * A step is an entry that is not deeper than the ray. An extent test is that of the part of the cell, or of
+ * the side of a polygon or sphere (light_facing.h). */
 #include "accel/light/light_draw.h"
 #include "accel/light/light_pairs.h"
 
 /* ---- a round ---- */
 
-/* What is looked up in a round. */
+/* The pairs of a round, and the rays that remain. */
 typedef struct Round {
     uint32_t pairs, others, left;
     bool all_triangles;
@@ -45,7 +45,7 @@ RT_KERNEL void add_pairs(const RayBatch *batch, Round *round, uint32_t met, RtIn
     round->pairs = after;
 }
 
-/* Not of an RayBatch: were its address handed out, the compiler could not tell that its tally stays NULL. */
+/* Takes no RayBatch: if its address escaped, the compiler could not see that its tally stays NULL. */
 RT_COLD static void observe_entries(const RtGeometry *g, bool extents, const RtInts *object, uint32_t lanes,
                                     uint32_t met) {
     uint32_t objects[RT_LANES];
@@ -102,7 +102,7 @@ RT_KERNEL void look_up(const RayBatch *batch, const RtLightEntry *entries, uint3
     round->left += (uint32_t)__builtin_popcount(lanes);
 }
 
-/* A round of all rays in lists; returns how many are left. */
+/* A round of all rays in lists; returns the number that remain. */
 RT_KERNEL uint32_t take_round(const RayBatch *batch, uint32_t light, uint32_t count, uint32_t deep,
                               bool all_triangles) {
     const RtLightEntry *entries = batch->self->cubes[light].entries;

@@ -44,7 +44,7 @@ typedef struct LightRays {
     RtFloats dir[3]; /* light - org, which is the ray's own if it is served */
 } LightRays;
 
-/* Their origins, and all that follows from them. */
+/* Sets origins, tmin, and directions to the light. */
 RT_KERNEL void load_origins(const RayBatch *batch, uint32_t light, const uint32_t *order, uint32_t count,
                             LightRays *s) {
     const RtVec3 position = batch->self->isa.base.scene->lights[light].position;
@@ -80,7 +80,7 @@ RT_KERNEL RtFloats whole(RtFloats a) {
     return rt_to_floats(rt_to_ints(a));
 }
 
-/* Puts the rays of `lanes`, which are in this face, on their way: appends them to the cursors. */
+/* Finds the cells of the rays in `lanes`, which are on this face, and appends the rays to the cursors. */
 RT_KERNEL uint32_t enter_cells(const RtLightCube *cube, int face, const LightRays *s, uint32_t lanes,
                                const uint32_t *order, Cursors *cursors, uint32_t count) {
     const RtLightGrid *grid = &cube->grids[face];
@@ -130,7 +130,7 @@ RT_KERNEL uint32_t enter_cells(const RtLightCube *cube, int face, const LightRay
     return after;
 }
 
-/* Tests the objects that touch the light; returns the rays that are left. */
+/* Tests the objects that touch the light; returns the rays without a hit. */
 RT_KERNEL uint32_t test_near(const RayBatch *batch, const RtLightCube *cube, uint32_t lanes,
                              const uint32_t *order) {
     const RtGeometry *g = &batch->self->isa.base.scene->geometry;

@@ -75,7 +75,7 @@ RT_KERNEL void test_pairs(const RayBatch *batch, uint32_t light, uint32_t count)
     }
 }
 
-/* Tests objects of other shapes one by one. */
+/* Tests pairs with objects of other shapes one by one. */
 RT_KERNEL void test_others(const RayBatch *batch, uint32_t count) {
     const RtGeometry *g = &batch->self->isa.base.scene->geometry;
     for (uint32_t i = 0; i < count; i++) {

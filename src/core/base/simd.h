@@ -12,7 +12,7 @@
  * as many doubles. A kernel takes its items RT_LANES at a time. gcc would keep wider vectors in memory, which
  * doubles the instructions. Where the data set the width, use RtFloat4 or RtFloat8.
  *
- * The helpers below stand where operators do not reach. Those that take a vector accept each width and
+ * The helpers below do what operators cannot. Those that take a vector accept each width and
  * element. Those that make one end in the number of its lanes (rt_load8), or make RT_LANES (rt_load). A mask
  * is a vector of -1 and 0, for rt_select, or an integer whose bit i is lane i, for loops and branches:
  * rt_le_bits(a, b) and its kin compare straight to such bits, which AVX-512 does in one instruction.
