@@ -86,7 +86,7 @@ RT_KERNEL void rt_batch_begin(RtBatch *batch, const RtGeometry *g, const RtScrat
  *     void test_all(RtBatch *batch, const RtGeometry *geometry, bool any, bool counted);
  *
  * which tests all objects against the active rays of a batch. */
-#define RT_DEFINE_BATCH_KERNELS(test_all)                                                                    \
+#define RT_DEFINE_BATCH_KERNELS(name, test_all)                                                              \
     RT_KERNEL void trace_batches(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,          \
                                  size_t count, RtHit *hits, uint32_t *occluders, RtTally *tallies, bool any, \
                                  bool counted) {                                                             \
@@ -108,6 +108,6 @@ RT_KERNEL void rt_batch_begin(RtBatch *batch, const RtGeometry *g, const RtScrat
         }                                                                                                    \
     }                                                                                                        \
     RT_DEFINE_STREAM_KERNELS(trace_batches)                                                                  \
-    RT_DEFINE_KERNEL_TABLE(sizeof(RtBatch))
+    RT_DEFINE_KERNEL_TABLE(name, sizeof(RtBatch))
 
 #endif

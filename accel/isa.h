@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Accelerators whose kernels are compiled more than once, each time for another instruction set, and chosen
- * among at run time. Every one gives the same bits and counts: what differs is how many lanes a vector has.
+/* Accelerators whose kernels are compiled once for each instruction set, and chosen among at run time. All
+ * return the same bits and counts; they differ in how many lanes a vector has (core/base/simd.h).
  *
- * Such an accelerator NAME has its kernels in accel/NAME/kernels.h, which ends with the definition of a table
- * called RT_KERNELS (accel/kernel.h: RT_DEFINE_KERNEL_TABLE), and three files that include it,
- *
- *     #define RT_KERNELS rt_NAME_avx2
- *     #include "accel/NAME/kernels.h"
- *
- * and so on, whose flags CMakeLists.txt sets. Its own struct begins with an RtIsaAccel, `kernels` of which
- * `build` sets to RT_KERNELS_FOR(NAME, isa); RT_ISA_OPS are its queries. */
+ * Such an accelerator NAME has its kernels in accel/NAME/NAME_kernels.c, which ends with a table of them
+ * (RT_DEFINE_KERNEL_TABLE in accel/kernel.h). CMakeLists.txt compiles it three times, with RT_ISA portable,
+ * avx2 and avx512. Its own struct begins with an RtIsaAccel, `kernels` of which `build` sets to
+ * RT_KERNELS_FOR(NAME, isa); RT_ISA_OPS are its queries. */
 #ifndef RT_ACCEL_ISA_H
 #define RT_ACCEL_ISA_H
 
@@ -41,6 +37,11 @@ typedef struct RtKernels {
     RtOccludedCounted *occluded_counted;
     size_t scratch_bytes; /* of a query, where that does not depend on what was built */
 } RtKernels;
+
+/* The name of a table in a file that is compiled for the instruction set RT_ISA. */
+#define RT_OF_ISA(name)             RT_OF_ISA_NAMED(name, RT_ISA)
+#define RT_OF_ISA_NAMED(name, isa)  RT_OF_ISA_JOINED(name, isa)
+#define RT_OF_ISA_JOINED(name, isa) rt_##name##_##isa
 
 #define RT_DECLARE_KERNELS(name)                                                                             \
     extern const RtKernels rt_##name##_portable, rt_##name##_avx2, rt_##name##_avx512

@@ -115,11 +115,11 @@ RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
         trace(accel, scratch, rays, count, NULL, occluders, tallies, true, true);                            \
     }
 
-/* Where there are kernels for each instruction set (accel/isa.h): the table of those that one of the
- * RT_DEFINE_..._KERNELS has defined, and the bytes of scratch memory that they need. RT_KERNELS is its name.
- */
-#define RT_DEFINE_KERNEL_TABLE(bytes)                                                                        \
-    const RtKernels RT_KERNELS = {nearest_timed, occluded_timed, nearest_counted, occluded_counted, bytes}
+/* For an accelerator with kernels for each instruction set (accel/isa.h): the table of those that one of the
+ * RT_DEFINE_..._KERNELS has defined, and the bytes of scratch memory that they need. */
+#define RT_DEFINE_KERNEL_TABLE(name, bytes)                                                                  \
+    const RtKernels RT_OF_ISA(name) = {nearest_timed, occluded_timed, nearest_counted, occluded_counted,     \
+                                       bytes}
 
 /* ---- overlays ---- */
 

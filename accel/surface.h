@@ -31,7 +31,7 @@
  * point of the surface near to p. Then at t the ray is in every box that holds s: enter(box) <= t <=
  * leave(box). The thickness is 32 * 2^-24 D. Of these 16 bring the line to s, on each axis; the rest
  * outweighs the 3 roundings of a crossing, (plane - org') * inv, each of 2^-24 |plane - org'|, as that of
- * org' is made up for by rt_four_shift. */
+ * org' is made up for by rt_shift4. */
 #ifndef RT_ACCEL_SURFACE_H
 #define RT_ACCEL_SURFACE_H
 

@@ -2,8 +2,8 @@
 /* brute: tests every object for every ray. It has no structure and gives the answer by its definition, the
  * least (t, id): rt_test_all in accel/kernel.h. With lanes=1 it calls that loop, as a scalar baseline for the
  * other scalar structures. With lanes=16, the default, it tests many objects and many rays at a time
- * (kernels.h), because every verification waits for it. Both return the same answers and counts, and a test
- * compares them. */
+ * (brute_kernels.c), because every verification waits for it. Both return the same answers and counts, and a
+ * test compares them. */
 #include "accel/brute/brute.h"
 #include "accel/kernel.h"
 

@@ -18,33 +18,33 @@ enum { ORG_WORDS = 0, DIR_WORDS = 4 };
 _Static_assert(offsetof(RtRay, tmin) == 12 && offsetof(RtRay, dir) == 16 && offsetof(RtRay, tmax) == 28,
                "a ray is read as two vectors of four words");
 
-RT_KERNEL RtFour read_words(const RtRay *ray, size_t first) {
-    return rt_four((const char *)ray + first * sizeof(float));
+RT_KERNEL RtFloat4 read_words(const RtRay *ray, size_t first) {
+    return rt_loadu4((const char *)ray + first * sizeof(float));
 }
 
-RT_KERNEL void write_words(RtEmbreeWord *to, RtFour words) {
+RT_KERNEL void write_words(RtEmbreeWord *to, RtFloat4 words) {
     memcpy(to, &words, sizeof words);
 }
 
-RT_KERNEL RtFour without_tiny(RtFour dir) {
-    return (RtFour)((RtFourBits)dir & (rt_four_abs(dir) >= RT_EMBREE_LEAST_DIR));
+RT_KERNEL RtFloat4 without_tiny(RtFloat4 dir) {
+    return (RtFloat4)((RtInt4)dir & (rt_abs(dir) >= RT_EMBREE_LEAST_DIR));
 }
 
 /* Four rays to lanes i, i + 1, ... of a packet, as if their directions were ordinary; -1 for each of which
  * that is true. */
-RT_KERNEL RtFourBits put_four(RtEmbreeBatch *batch, unsigned lanes, size_t i, const RtRay *rays) {
-    RtFour org[4], dir[4];
-    RtFourBits is_short = {-1, -1, -1, -1}, is_long = {0, 0, 0, 0};
+RT_KERNEL RtInt4 put_four(RtEmbreeBatch *batch, unsigned lanes, size_t i, const RtRay *rays) {
+    RtFloat4 org[4], dir[4];
+    RtInt4 is_short = {-1, -1, -1, -1}, is_long = {0, 0, 0, 0};
     for (size_t k = 0; k < 4; k++) {
         org[k] = read_words(&rays[k], ORG_WORDS) + 0.0f; /* -0 becomes 0, which matters to tnear */
         dir[k] = read_words(&rays[k], DIR_WORDS);
     }
-    rt_four_transpose(org);
-    rt_four_transpose(dir);
+    rt_transpose4(org);
+    rt_transpose4(dir);
     for (unsigned a = 0; a < 4; a++) write_words(rt_embree_at(batch, lanes, i, RT_EMBREE_ORG + a), org[a]);
     for (unsigned a = 0; a < 3; a++) {
-        is_short &= rt_four_abs(dir[a]) < RT_EMBREE_SHORT;
-        is_long |= rt_four_abs(dir[a]) > RT_EMBREE_LONG;
+        is_short &= rt_abs(dir[a]) < RT_EMBREE_SHORT;
+        is_long |= rt_abs(dir[a]) > RT_EMBREE_LONG;
         write_words(rt_embree_at(batch, lanes, i, RT_EMBREE_DIR + a), without_tiny(dir[a]));
     }
     write_words(rt_embree_at(batch, lanes, i, RT_EMBREE_TFAR), dir[3]);
@@ -53,7 +53,7 @@ RT_KERNEL RtFourBits put_four(RtEmbreeBatch *batch, unsigned lanes, size_t i, co
 
 /* The same for a ray that is a packet of its own. */
 RT_KERNEL bool put_one(RtEmbreeBatch *batch, size_t i, const RtRay *ray) {
-    RtFour org = read_words(ray, ORG_WORDS) + 0.0f, dir = without_tiny(read_words(ray, DIR_WORDS));
+    RtFloat4 org = read_words(ray, ORG_WORDS) + 0.0f, dir = without_tiny(read_words(ray, DIR_WORDS));
     write_words(rt_embree_at(batch, 1, i, RT_EMBREE_ORG), org);
     write_words(rt_embree_at(batch, 1, i, RT_EMBREE_DIR), dir);
     rt_embree_at(batch, 1, i, RT_EMBREE_TIME)->f = 0; /* where tmax was written */
@@ -78,7 +78,7 @@ RT_KERNEL bool put_chunk(RtEmbreeBatch *batch, unsigned lanes, const RtRay *rays
     if (lanes == 1) {
         for (size_t i = 0; i < count; i++) ordinary &= put_one(batch, i, &rays[i]);
     } else {
-        RtFourBits all = {-1, -1, -1, -1};
+        RtInt4 all = {-1, -1, -1, -1};
         size_t i = 0;
         for (; i + 4 <= count; i += 4) all &= put_four(batch, lanes, i, &rays[i]);
         ordinary = (all[0] & all[1] & all[2] & all[3]) == -1;

@@ -2,7 +2,7 @@
 /* extents: one extent per object and no hierarchy. Every ray is tested against every extent, and against the
  * object only where it meets the extent (Weghorst, Hooper & Greenberg 1984: the cost is b B + i I).
  *
- * With lanes=16, the default, sixteen boxes are tested at once (kernels.h), as `brute` tests sixteen objects.
+ * With lanes=16, the default, many boxes are tested at once (extents_kernels.c), as `brute` tests objects.
  * With lanes=1, and for every other kind of extent, it is one after the other. A test compares the counts.
  *
  * Exact for every kind: see accel/extent.h. */

@@ -12,6 +12,6 @@ typedef struct RtExtents {
     RtExtentSet set;
 } RtExtents;
 
-RT_DECLARE_KERNELS(extents); /* of boxes, sixteen at a time */
+RT_DECLARE_KERNELS(extents); /* of boxes, RT_LANES at a time */
 
 #endif

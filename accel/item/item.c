@@ -2,7 +2,7 @@
 /* item: the item buffer of Weghorst, Hooper & Greenberg 1984, an overlay for primary rays.
  *
  * Each sample of the image knows which object its ray meets first, found once by drawing all objects
- * (build.c). A ray through a sample tests that one object, sixteen rays at a time where they are triangles;
+ * (build.c). A ray through a sample tests that one object, RT_LANES rays at a time where they are triangles;
  * where the sample sees nothing, none.
  *
  * Exact: the object's own hit function says whether and where it is hit, and no other object is hit before.

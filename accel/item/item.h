@@ -7,7 +7,7 @@
  *
  * Invariant: the exact ray of a sample that names an object hits no other object before that one, by (t, id),
  * if it hits that one at all; the ray of a sample that is RT_NO_OBJECT hits nothing. Whether the named object
- * is hit need not be known: its hit function is asked.
+ * is hit need not be known: its hit function is called.
  *
  * Flat objects are drawn as facets, with the projection and the bounds of accel/raster/raster.h. Nothing is
  * divided by depth, so facets around the eye need no clipping. With P = (x . q, y . q, depth . q) for a point
@@ -32,6 +32,7 @@
 #include "accel/accel.h"
 #include "accel/isa.h"
 #include "accel/raster/bins.h"
+#include "core/base/simd.h"
 
 enum { RT_ITEM_SETTLE, RT_ITEM_ISA, RT_ITEM_PARAM_COUNT };
 extern const RtParam rt_item_params[RT_ITEM_PARAM_COUNT];
@@ -43,9 +44,7 @@ RT_DECLARE_KERNELS(item);
 typedef struct RtItemRaster RtItemRaster;
 
 /* A vector in double, and a fourth component. */
-typedef struct RtItemTerm {
-    double at[4];
-} RtItemTerm;
+typedef RtDouble4 RtItemTerm;
 
 /* Homogeneous coordinates in samples: a point q relative to the eye is seen at column x . q / z, row
  * y . q / z, at t = z, with z = depth . q. */
@@ -101,13 +100,13 @@ uint32_t rt_item_place_footprint(const RtItemBuffer *buffer, uint32_t id, uint16
 
 enum {
     RT_ITEM_TILE = 32,                             /* samples along an edge of a tile */
-    RT_ITEM_BLOCK = 4,                             /* and of a block, which is a vector */
+    RT_ITEM_BLOCK = 4,                             /* and of a block */
     RT_ITEM_ACROSS = RT_ITEM_TILE / RT_ITEM_BLOCK, /* blocks along an edge of a tile */
-    RT_ITEM_LANES = RT_ITEM_BLOCK * RT_ITEM_BLOCK,
+    RT_ITEM_BLOCK_SAMPLES = RT_ITEM_BLOCK * RT_ITEM_BLOCK,
     RT_ITEM_BLOCKS = RT_ITEM_ACROSS * RT_ITEM_ACROSS,
     RT_ITEM_TILE_SAMPLES = RT_ITEM_TILE * RT_ITEM_TILE,
     RT_ITEM_MAX_EDGES = 16, /* of a facet */
-    RT_ITEM_FACETS = 16,    /* made at once */
+    RT_ITEM_FACETS = 16,    /* made at once, at most; RT_LANES are */
     RT_ITEM_CLASSES = 8     /* of depth, the layers of tiles: near ones are drawn first */
 };
 
@@ -174,7 +173,7 @@ void rt_item_place_facet(const RtItemDrawing *drawing, const RtItemFootprint *fo
 bool rt_item_polygon(const RtItemDrawing *drawing, uint32_t id, const RtItemFootprint *footprint,
                      RtItemFacets *facets, uint32_t *count);
 
-/* ---- item_kernels.h, for each instruction set ---- */
+/* ---- item_kernels.c, for each instruction set ---- */
 
 /* What placing triangles needs. */
 typedef struct RtItemPlacing {

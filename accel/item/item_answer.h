@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Answering primary rays from the samples that they belong to. Rays of triangles are tested sixteen at a
+/* Answering primary rays from the samples that they belong to. Rays of triangles are tested RT_LANES at a
  * time; rays that no sample decides are passed on, sixty-four at a time. */
 #ifndef RT_ACCEL_ITEM_ITEM_ANSWER_H
 #define RT_ACCEL_ITEM_ITEM_ANSWER_H
 
 #include "accel/item/item.h"
 #include "accel/kernel.h"
-#include "accel/pairs.h"
+#include "accel/watertight.h"
 
 enum {
     PREFETCH = 64, /* rays ahead */
@@ -16,9 +16,9 @@ enum {
 
 /* Rays and the triangles that their samples name. */
 typedef struct PendingTests {
-    const RtTriangle *triangle[RT_ITEM_LANES];
-    const float *dir[RT_ITEM_LANES]; /* and tmax */
-    uint32_t id[RT_ITEM_LANES], ray[RT_ITEM_LANES];
+    const RtTriangle *triangle[RT_LANES];
+    const float *dir[RT_LANES]; /* and tmax */
+    uint32_t id[RT_LANES], ray[RT_LANES];
     uint32_t count;
 } PendingTests;
 
@@ -56,7 +56,7 @@ RT_KERNEL void pass_on(RayRun *run, size_t i, RtTally *tallies) {
     if (p->count == PASSED) flush_passed(run, tallies);
 }
 
-/* The object that the ray's sample names is hit or, for all we know, missed. */
+/* Writes the hit of the object that the ray's sample names; passes the ray on if it misses that object. */
 RT_KERNEL void answer(RayRun *run, size_t i, RtHit hit, RtTally *tallies) {
     if (hit.object == RT_NO_OBJECT)
         pass_on(run, i, tallies);
@@ -73,25 +73,25 @@ RT_COLD static void observe_pending(const RtGeometry *g, const PendingTests *p, 
     }
 }
 
-/* Tests up to sixteen rays, all from the eye. */
+/* Tests up to RT_LANES rays, all from the eye. */
 RT_KERNEL void flush_pending(RayRun *run, RtTally *tallies) {
     const RtItemBuffer *buffer = run->buffer;
     PendingTests *p = &run->pending;
-    _Alignas(64) float t[RT_ITEM_LANES];
-    for (uint32_t k = p->count; k < RT_ITEM_LANES; k++) {
+    float t[RT_LANES];
+    for (uint32_t k = p->count; k < RT_LANES; k++) {
         p->triangle[k] = p->triangle[0];
         p->dir[k] = p->dir[0];
     }
-    RtV16 four[4], at;
-    RtPairs pairs = {.tmin = rt_v16_all((float)buffer->view.near), .tmax = rt_v16_all(INFINITY)};
-    rt_v16_columns(p->dir, four);
+    RtFloats four[4], at;
+    RtRayTriangles pairs = {.tmin = rt_all((float)buffer->view.near), .tmax = rt_all(INFINITY)};
+    rt_load_columns(p->dir, four);
     for (int a = 0; a < 3; a++) {
-        pairs.org[a] = rt_v16_all((float)buffer->view.eye.at[a]);
+        pairs.org[a] = rt_all((float)buffer->view.eye.at[a]);
         pairs.dir[a] = four[a];
     }
-    rt_pairs_gather(p->triangle, pairs.v);
-    uint32_t hit = rt_pairs_hit(&pairs, &at);
-    rt_v16_store(t, at);
+    rt_load_triangles(p->triangle, pairs.v);
+    uint32_t hit = rt_hit_pairs(&pairs, &at);
+    rt_store(t, at);
     if (tallies) {
         tallies[RT_RAY_PRIMARY].object_tests += p->count;
         tallies[RT_RAY_PRIMARY].object_hits += (uint32_t)__builtin_popcount(hit & ((1u << p->count) - 1));
@@ -104,17 +104,14 @@ RT_KERNEL void flush_pending(RayRun *run, RtTally *tallies) {
 
 __extension__ typedef unsigned __int128 Wide;
 
-/* Is it, bit for bit, the ray of its sample? */
-RT_KERNEL bool is_of_sample(const RtItemBuffer *self, const RtRay *ray, __m128 org, uint64_t reciprocal) {
+/* Is a ray, bit for bit, the ray of its sample? */
+RT_KERNEL bool is_of_sample(const RtItemBuffer *self, const RtRay *ray, RtFloat4 org, uint64_t reciprocal) {
     if (ray->source >= rt_item_sample_count(self)) return false;
     uint32_t row = reciprocal ? (uint32_t)((Wide)reciprocal * ray->source >> 64) : ray->source;
     uint32_t column = ray->source - row * self->view.sampling.columns;
-    __m256d dir = _mm256_add_pd(_mm256_load_pd(self->columns[column].at), _mm256_load_pd(self->rows[row].at));
-    __m128i same = _mm_cmpeq_epi32(_mm_castps_si128(_mm256_cvtpd_ps(dir)),
-                                   _mm_loadu_si128((const __m128i *)(const void *)&ray->dir));
-    same = _mm_and_si128(same, _mm_cmpeq_epi32(_mm_castps_si128(org),
-                                               _mm_loadu_si128((const __m128i *)(const void *)&ray->org)));
-    return _mm_movemask_epi8(same) == 0xffff;
+    RtFloat4 dir = rt_round4(self->columns[column] + self->rows[row]);
+    RtInt4 same = ((RtInt4)dir == rt_load_ints4(&ray->dir)) & ((RtInt4)org == rt_load_ints4(&ray->org));
+    return rt_bits(same) == 15;
 }
 
 /* If it is, *triangle is its index. */
@@ -136,8 +133,8 @@ RT_KERNEL void answer_run(const RtAccel *accel, const RtScratch *scratch, const 
     run.reciprocal = UINT64_MAX / self->view.sampling.columns + 1;
     run.pending.count = run.passed.count = 0;
     const bool mixed = g->triangle_count < g->object_count;
-    const __m128 org = _mm_setr_ps((float)self->view.eye.x, (float)self->view.eye.y, (float)self->view.eye.z,
-                                   (float)self->view.near);
+    const RtFloat4 org = {(float)self->view.eye.x, (float)self->view.eye.y, (float)self->view.eye.z,
+                          (float)self->view.near};
     for (size_t i = 0; i < count; i++) {
         const RtRay *ray = &rays[i];
         if (!is_of_sample(self, ray, org, run.reciprocal)) {
@@ -161,7 +158,7 @@ RT_KERNEL void answer_run(const RtAccel *accel, const RtScratch *scratch, const 
             p->dir[p->count] = ray->dir.at;
             p->id[p->count] = id;
             p->ray[p->count++] = (uint32_t)i;
-            if (p->count == RT_ITEM_LANES) flush_pending(&run, tallies);
+            if (p->count == RT_LANES) flush_pending(&run, tallies);
         } else {
             RtPreparedRay prepared;
             RtHit hit = RT_MISS;

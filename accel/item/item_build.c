@@ -197,11 +197,11 @@ static RtStatus make_terms(RtItemBuffer *buffer, RtError *error) {
     for (uint32_t i = 0; i < s->columns; i++) {
         double at = rt_sample_position(i, s->columns, s->corners);
         RtVec3d term = rt_add_scaledd(view->forward, view->right, at);
-        buffer->columns[i] = (RtItemTerm){{term.x, term.y, term.z, INFINITY}};
+        buffer->columns[i] = (RtItemTerm){term.x, term.y, term.z, INFINITY};
     }
     for (uint32_t i = 0; i < s->rows; i++) {
         RtVec3d term = rt_scaled(view->down, rt_sample_position(i, s->rows, s->corners));
-        buffer->rows[i] = (RtItemTerm){{term.x, term.y, term.z, 0}};
+        buffer->rows[i] = (RtItemTerm){term.x, term.y, term.z, 0};
     }
     return RT_OK;
 }

@@ -2,7 +2,7 @@
 /* What a tile needs beside vectors: samples at which it is open which object is nearest, and objects that are
  * no triangles.
  *
- * With `settle` the objects' own hit functions are asked there, with the very ray that will be traced: their
+ * With `settle` the objects' own hit functions are called there, with the very ray that will be traced: their
  * t is exact. Without, such samples stay undecided, as in 1984. */
 #include "accel/item/item.h"
 #include "accel/kernel.h"
@@ -15,23 +15,24 @@ typedef struct Span {
 
 /* Column and row of a sample in the tile, and back. */
 static uint32_t column_of(uint32_t sample) {
-    return sample / RT_ITEM_LANES % RT_ITEM_ACROSS * RT_ITEM_BLOCK + sample % RT_ITEM_BLOCK;
+    return sample / RT_ITEM_BLOCK_SAMPLES % RT_ITEM_ACROSS * RT_ITEM_BLOCK + sample % RT_ITEM_BLOCK;
 }
 
 static uint32_t row_of(uint32_t sample) {
-    uint32_t block_row = sample / (RT_ITEM_LANES * RT_ITEM_ACROSS);
+    uint32_t block_row = sample / (RT_ITEM_BLOCK_SAMPLES * RT_ITEM_ACROSS);
     return block_row * RT_ITEM_BLOCK + sample / RT_ITEM_BLOCK % RT_ITEM_BLOCK;
 }
 
 static uint32_t sample_at(uint32_t column, uint32_t row) {
     uint32_t block = row / RT_ITEM_BLOCK * RT_ITEM_ACROSS + column / RT_ITEM_BLOCK;
-    return block * RT_ITEM_LANES + row % RT_ITEM_BLOCK * RT_ITEM_BLOCK + column % RT_ITEM_BLOCK;
+    return block * RT_ITEM_BLOCK_SAMPLES + row % RT_ITEM_BLOCK * RT_ITEM_BLOCK + column % RT_ITEM_BLOCK;
 }
 
 static void update_least(RtItemTile *tile, uint32_t block) {
-    const float *lo = &tile->lo[block * RT_ITEM_LANES];
+    const float *lo = &tile->lo[block * RT_ITEM_BLOCK_SAMPLES];
     tile->least[block] = lo[0];
-    for (uint32_t i = 1; i < RT_ITEM_LANES; i++) tile->least[block] = rt_minf(lo[i], tile->least[block]);
+    for (uint32_t i = 1; i < RT_ITEM_BLOCK_SAMPLES; i++)
+        tile->least[block] = rt_minf(lo[i], tile->least[block]);
 }
 
 static uint32_t lesser(uint32_t a, uint32_t b) {
@@ -85,7 +86,7 @@ static void name(RtItemTile *tile, uint32_t sample, uint32_t id, Span span) {
     tile->lo[sample] = span.lo;
     tile->hi[sample] = span.hi;
     tile->t[sample] = span.t;
-    update_least(tile, sample / RT_ITEM_LANES);
+    update_least(tile, sample / RT_ITEM_BLOCK_SAMPLES);
 }
 
 void rt_item_resolve(RtItemDrawing *d, uint32_t sample, uint32_t id, float lo, float hi, bool certain) {

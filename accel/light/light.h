@@ -19,7 +19,7 @@
  * Invariant: an object that can occlude a ray from inside `domain` to the light is in the near list, or in
  * the list of the ray's cell, with a depth not above that of the ray's origin and the part of the cell that
  * the ray is in; or the list was cut, at a depth not above that of the origin. light_footprint.c proves it.
- * So cutting lists never changes an answer, only who gives it. */
+ * So cutting lists never changes an answer, only which layer finds it. */
 #ifndef RT_ACCEL_LIGHT_LIGHT_H
 #define RT_ACCEL_LIGHT_LIGHT_H
 
@@ -206,7 +206,7 @@ void rt_light_outline(const RtLightTile *tile, uint32_t id, const RtLightFootpri
 bool rt_light_touches(const RtLightTile *tile, uint32_t id, uint32_t column, uint32_t row);
 bool rt_light_covers(const RtLightTile *tile, uint32_t id, uint32_t column, uint32_t row, float *depth);
 
-/* ---- light_kernels.h, for each instruction set ---- */
+/* ---- light_kernels.c, for each instruction set ---- */
 
 /* Set in the objects of tiles that are drawn by their footprint, not in lanes. */
 #define RT_LIGHT_BY_FOOTPRINT 0x80000000u

@@ -335,7 +335,7 @@ static RtStatus move_tile(void *context, size_t item, int thread, RtError *error
     return RT_OK;
 }
 
-/* Gives faces and tiles their places; returns how many entries there are. */
+/* Assigns faces and tiles their places; returns the number of entries. */
 static uint32_t place_tiles(Drawing *d) {
     RtLightCube *cube = &d->buffer->cubes[d->light];
     uint32_t sum = 0;

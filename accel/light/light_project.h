@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Where triangles are seen from a light, sixteen at a time in lanes, for the kernels of every instruction
- * set: only
- * + - * / and comparisons of float32, so that all give the same bits.
+/* Where triangles are seen from a light, RT_LANES at a time, for the kernels of every instruction set. All
+ * return the same bits, because only + - * / and comparisons of float32 are used.
  *
  * Projection. An offset from the light is off by 2^-24 of itself, which the margin m = 1.25 * margin makes up
  * for. Only triangles at a depth of 16 m or more, and with |u|, |w| <= 2, are drawn here. Their u and w are
@@ -20,92 +19,89 @@
 
 /* Seen from a light on a face. */
 typedef struct Projected {
-    RtV16 x[3], y[3];              /* columns and rows from the origin of the grid */
-    RtV16 lo[2], hi[2], near, far; /* grown */
-    RtV16 grow;                    /* in cells */
-    uint32_t drawn, small;         /* can be drawn in lanes; and is small */
+    RtFloats x[3], y[3];              /* columns and rows from the origin of the grid */
+    RtFloats lo[2], hi[2], near, far; /* grown */
+    RtFloats grow;                    /* in cells */
+    uint32_t drawn, small;            /* can be drawn in lanes; and is small */
 } Projected;
 
 /* rt_light_depth_key in lanes. */
-RT_KERNEL RtW16 depth_steps(const RtLightGrid *grid, RtV16 depth) {
-    RtV16 step = rt_v16_mul(rt_v16_sub(depth, rt_v16_all(grid->depth)), rt_v16_all(grid->depth_scale));
-    return rt_w16_truncate(rt_v16_min(rt_v16_max(step, rt_v16_all(0)), rt_v16_all(RT_LIGHT_DEPTHS - 1)));
+RT_KERNEL RtInts depth_steps(const RtLightGrid *grid, RtFloats depth) {
+    RtFloats step = (depth - grid->depth) * grid->depth_scale;
+    return rt_to_ints(rt_min(rt_max(step, rt_all(0)), rt_all(RT_LIGHT_DEPTHS - 1)));
 }
 
 /* The position and margin of a light. */
 typedef struct Center {
-    RtV16 position[3], margin;
+    RtFloats position[3], margin;
 } Center;
 
 RT_KERNEL Center make_center(const RtLightFace *on) {
     Center center;
-    for (int a = 0; a < 3; a++) center.position[a] = rt_v16_all(on->position.at[a]);
-    center.margin = rt_v16_all(rt_float_above(1.25 * on->cube->margin));
+    for (int a = 0; a < 3; a++) center.position[a] = rt_all(on->position.at[a]);
+    center.margin = rt_all(rt_float_above(1.25 * on->cube->margin));
     return center;
 }
 
 /* From vertices to offsets. */
-RT_KERNEL void subtract_center(const Center *center, RtV16 v[3][3]) {
+RT_KERNEL void subtract_center(const Center *center, RtFloats v[3][3]) {
     for (int i = 0; i < 3; i++) {
-        for (int a = 0; a < 3; a++) v[i][a] = rt_v16_sub(v[i][a], center->position[a]);
+        for (int a = 0; a < 3; a++) v[i][a] -= center->position[a];
     }
 }
 
 /* Depths of vertices, and how far they are to the side along u and w. */
-RT_KERNEL void turn_to_face(int face, RtV16 v[3][3], RtV16 z[3], RtV16 side[2][3]) {
+RT_KERNEL void turn_to_face(int face, RtFloats v[3][3], RtFloats z[3], RtFloats side[2][3]) {
     const int axis = face / 2;
     for (int i = 0; i < 3; i++) {
-        z[i] = face % 2 ? v[i][axis] : rt_v16_sub(rt_v16_all(0), v[i][axis]);
+        z[i] = face % 2 ? v[i][axis] : -v[i][axis];
         side[0][i] = v[i][(axis + 1) % 3];
         side[1][i] = v[i][(axis + 2) % 3];
     }
 }
 
 /* Those that may be seen on a face. */
-RT_KERNEL uint32_t seen_on(const Center *center, int face, RtV16 v[3][3]) {
-    RtV16 z[3], side[2][3];
+RT_KERNEL uint32_t seen_on(const Center *center, int face, RtFloats v[3][3]) {
+    RtFloats z[3], side[2][3];
     turn_to_face(face, v, z, side);
-    const RtV16 zero = rt_v16_all(0), far = rt_v16_add(rt_raster_most3(z), center->margin);
-    uint32_t seen = ~rt_v16_at_most(far, zero) & 0xffff;
+    const RtFloats zero = rt_all(0), far = rt_raster_most3(z) + center->margin;
+    uint32_t seen = ~rt_le_bits(far, zero);
     for (int k = 0; k < 2; k++) {
-        RtV16 least = rt_v16_sub(rt_raster_least3(side[k]), center->margin),
-              most = rt_v16_add(rt_raster_most3(side[k]), center->margin);
-        seen &= rt_v16_at_most(least, far) & rt_v16_at_most(rt_v16_sub(zero, most), far);
+        RtFloats least = rt_raster_least3(side[k]) - center->margin,
+                 most = rt_raster_most3(side[k]) + center->margin;
+        seen &= rt_le_bits(least, far) & rt_le_bits(-most, far);
     }
     return seen;
 }
 
 /* In n x n cells of a tile; column and row are the first of them. */
 RT_KERNEL void project(const Center *center, const RtLightGrid *grid, int face, uint32_t n, uint32_t column,
-                       uint32_t row, RtV16 v[3][3], Projected *p) {
-    const RtV16 m = center->margin;
-    RtV16 z[3], side[2][3];
+                       uint32_t row, RtFloats v[3][3], Projected *p) {
+    const RtFloats m = center->margin;
+    RtFloats z[3], side[2][3];
     turn_to_face(face, v, z, side);
-    RtV16 nearest = rt_raster_least3(z);
-    p->near = rt_v16_sub(nearest, m);
-    p->far = rt_v16_add(rt_raster_most3(z), m);
-    p->drawn = rt_v16_at_most(rt_v16_mul(m, rt_v16_all(16)), nearest);
+    RtFloats nearest = rt_raster_least3(z);
+    p->near = nearest - m;
+    p->far = rt_raster_most3(z) + m;
+    p->drawn = rt_le_bits(m * 16, nearest);
     for (int i = 0; i < 3; i++) {
-        RtV16 wide = rt_v16_add(z[i], z[i]);
-        p->drawn &= rt_v16_at_most(rt_v16_abs(side[0][i]), wide);
-        p->drawn &= rt_v16_at_most(rt_v16_abs(side[1][i]), wide);
+        RtFloats wide = z[i] + z[i];
+        p->drawn &= rt_le_bits(rt_abs(side[0][i]), wide);
+        p->drawn &= rt_le_bits(rt_abs(side[1][i]), wide);
     }
-    const RtV16 scale = rt_v16_all(grid->scale * (float)n), most_cells = rt_v16_all(0x1p13f);
-    RtV16 grow = rt_v16_div(rt_v16_mul(m, rt_v16_all(4)), rt_v16_max(nearest, m));
-    grow = rt_v16_add(rt_v16_all(0x1p-18f), grow);
-    p->grow = rt_v16_add(rt_v16_mul(scale, grow), rt_v16_all(RT_LIGHT_SLACK));
+    const RtFloats scale = rt_all(grid->scale * (float)n), most_cells = rt_all(0x1p13f);
+    p->grow = scale * (0x1p-18f + m * 4 / rt_max(nearest, m)) + RT_LIGHT_SLACK;
     p->small = p->drawn;
     for (int k = 0; k < 2; k++) {
-        RtV16 *to = k ? p->y : p->x;
-        const RtV16 origin = rt_v16_all(k ? grid->w : grid->u), from = rt_v16_all((float)(k ? row : column));
+        RtFloats *to = k ? p->y : p->x;
+        const RtFloats origin = rt_all(k ? grid->w : grid->u), from = rt_all((float)(k ? row : column));
         for (int i = 0; i < 3; i++) {
-            to[i] = rt_v16_mul(rt_v16_sub(rt_v16_div(side[k][i], z[i]), origin), scale);
-            to[i] = rt_v16_sub(to[i], from);
-            p->drawn &= rt_v16_at_most(rt_v16_abs(to[i]), most_cells);
+            to[i] = (side[k][i] / z[i] - origin) * scale - from;
+            p->drawn &= rt_le_bits(rt_abs(to[i]), most_cells);
         }
-        p->lo[k] = rt_v16_sub(rt_raster_least3(to), p->grow);
-        p->hi[k] = rt_v16_add(rt_raster_most3(to), p->grow);
-        p->small &= rt_v16_at_most(rt_v16_sub(p->hi[k], p->lo[k]), rt_v16_all(RT_LIGHT_SMALL_CELLS - 1));
+        p->lo[k] = rt_raster_least3(to) - p->grow;
+        p->hi[k] = rt_raster_most3(to) + p->grow;
+        p->small &= rt_le_bits(p->hi[k] - p->lo[k], rt_all(RT_LIGHT_SMALL_CELLS - 1));
     }
     p->small &= p->drawn;
 }
@@ -115,8 +111,8 @@ static uint32_t place(const void *view, uint32_t first, uint32_t count, RtTileRa
     const RtGeometry *g = faces[0].geometry;
     const Center center = make_center(&faces[0]);
     uint32_t placed = 0;
-    for (const uint32_t end = first + count; first < end; first += 16) {
-        RtV16 v[3][3];
+    for (const uint32_t end = first + count; first < end; first += RT_LANES) {
+        RtFloats v[3][3];
         rt_raster_gather_row(g, first, end - first, v);
         subtract_center(&center, v);
         for (int face = 0; face < 6; face++) {
@@ -126,13 +122,13 @@ static uint32_t place(const void *view, uint32_t first, uint32_t count, RtTileRa
             if (!seen) continue;
             Projected p;
             project(&center, grid, face, 1, 0, 0, v, &p);
-            _Alignas(64) uint32_t lo[2][16], hi[2][16];
+            uint32_t lo[2][RT_LANES], hi[2][RT_LANES];
             for (int k = 0; k < 2; k++) {
-                const RtV16 zero = rt_v16_all(0), cells = rt_v16_all((float)(k ? grid->rows : grid->columns));
-                seen &= ~(p.drawn & ~(rt_v16_at_most(zero, p.hi[k]) & ~rt_v16_at_most(cells, p.lo[k])));
-                RtV16 last = rt_v16_sub(cells, rt_v16_all(1));
-                rt_w16_put(lo[k], rt_w16_truncate(rt_v16_min(rt_v16_max(p.lo[k], zero), last)));
-                rt_w16_put(hi[k], rt_w16_truncate(rt_v16_min(rt_v16_max(p.hi[k], zero), last)));
+                const RtFloats zero = rt_all(0), cells = rt_all((float)(k ? grid->rows : grid->columns));
+                seen &= ~(p.drawn & ~(rt_le_bits(zero, p.hi[k]) & ~rt_le_bits(cells, p.lo[k])));
+                RtFloats last = cells - 1;
+                rt_store(lo[k], rt_to_ints(rt_min(rt_max(p.lo[k], zero), last)));
+                rt_store(hi[k], rt_to_ints(rt_min(rt_max(p.hi[k], zero), last)));
             }
             for (; seen; seen &= seen - 1) {
                 uint32_t i = (uint32_t)__builtin_ctz(seen), id = g->triangle_ids[first + i];

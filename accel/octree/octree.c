@@ -82,7 +82,7 @@ RT_KERNEL bool visit_leaf(const RtOctree *self, RtMailbox *mailbox, const RtOctr
  * each axis it is in the children below the split from low_near to low_far, in those above from high_near to
  * high_far. */
 typedef struct Planes {
-    RtFour low_near, high_near, low_far, high_far;
+    RtFloat4 low_near, high_near, low_far, high_far;
 } Planes;
 
 /* A node that waits. */
@@ -96,56 +96,56 @@ typedef struct Waiting {
 /* What crossings are computed from. The fourth lane is the third again, so that it never holds what is slow
  * to compute with. */
 typedef struct Line {
-    RtFour org_near, org_far, inv;
-    RtFourBits sign;
+    RtFloat4 org_near, org_far, inv;
+    RtInt4 sign;
 } Line;
 
-RT_KERNEL RtFour three(const void *at) {
-    RtFour four = rt_four(at);
+RT_KERNEL RtFloat4 three(const void *at) {
+    RtFloat4 four = rt_loadu4(at);
     return __builtin_shufflevector(four, four, 0, 1, 2, 2);
 }
 
 RT_KERNEL Line line_of(const RtPreparedRay *ray) {
-    return (Line){three(ray->org_near), three(ray->org_far), three(ray->inv), rt_four_sign(three(&ray->dir))};
+    return (Line){three(ray->org_near), three(ray->org_far), three(ray->inv), (RtInt4)three(&ray->dir) < 0};
 }
 
 /* The lanes of the axes on which child `place` is the upper one, from `high`, the others from `low`. */
-RT_KERNEL RtFour choose(uint32_t place, RtFour low, RtFour high) {
-    static const RtFourBits upper[8] = {{0, 0, 0, 0},   {-1, 0, 0, 0},   {0, -1, 0, 0},   {-1, -1, 0, 0},
-                                        {0, 0, -1, -1}, {-1, 0, -1, -1}, {0, -1, -1, -1}, {-1, -1, -1, -1}};
-    return rt_four_pick(upper[place], low, high);
+RT_KERNEL RtFloat4 choose(uint32_t place, RtFloat4 low, RtFloat4 high) {
+    static const RtInt4 upper[8] = {{0, 0, 0, 0},   {-1, 0, 0, 0},   {0, -1, 0, 0},   {-1, -1, 0, 0},
+                                    {0, 0, -1, -1}, {-1, 0, -1, -1}, {0, -1, -1, -1}, {-1, -1, -1, -1}};
+    return rt_select(upper[place], high, low);
 }
 
 /* Cuts a node, in which the ray is from `near` to `far` on each axis, at its split. */
-RT_KERNEL Planes cut(const Line *line, const RtVec3 *split, RtFour near, RtFour far) {
-    RtFour at = three(split); /* and what follows it in the node */
-    RtFour first = (at - line->org_near) * line->inv, last = (at - line->org_far) * line->inv;
-    return (Planes){rt_four_pick(line->sign, near, first), rt_four_pick(line->sign, first, near),
-                    rt_four_pick(line->sign, last, far), rt_four_pick(line->sign, far, last)};
+RT_KERNEL Planes cut(const Line *line, const RtVec3 *split, RtFloat4 near, RtFloat4 far) {
+    RtFloat4 at = three(split); /* and what follows it in the node */
+    RtFloat4 first = (at - line->org_near) * line->inv, last = (at - line->org_far) * line->inv;
+    return (Planes){rt_select(line->sign, first, near), rt_select(line->sign, near, first),
+                    rt_select(line->sign, far, last), rt_select(line->sign, last, far)};
 }
 
 /* Where the ray enters and leaves the eight children, by their places: [0] those below the split along z, [1]
  * those above. */
-RT_KERNEL void span_children(const Planes *p, float tmin, float limit, RtFour enter[2], RtFour leave[2]) {
-    RtFour near = __builtin_shufflevector(p->low_near, p->high_near, 0, 4, 1, 5);
-    RtFour far = __builtin_shufflevector(p->low_far, p->high_far, 0, 4, 1, 5);
-    RtFour from = rt_four_max(__builtin_shufflevector(near, near, 0, 1, 0, 1), rt_four_all(tmin));
-    RtFour to = rt_four_min(__builtin_shufflevector(far, far, 0, 1, 0, 1), rt_four_all(limit));
-    from = rt_four_max(__builtin_shufflevector(near, near, 2, 2, 3, 3), from);
-    to = rt_four_min(__builtin_shufflevector(far, far, 2, 2, 3, 3), to);
-    enter[0] = rt_four_max(__builtin_shufflevector(p->low_near, p->low_near, 2, 2, 2, 2), from);
-    enter[1] = rt_four_max(__builtin_shufflevector(p->high_near, p->high_near, 2, 2, 2, 2), from);
-    leave[0] = rt_four_min(__builtin_shufflevector(p->low_far, p->low_far, 2, 2, 2, 2), to);
-    leave[1] = rt_four_min(__builtin_shufflevector(p->high_far, p->high_far, 2, 2, 2, 2), to);
+RT_KERNEL void span_children(const Planes *p, float tmin, float limit, RtFloat4 enter[2], RtFloat4 leave[2]) {
+    RtFloat4 near = __builtin_shufflevector(p->low_near, p->high_near, 0, 4, 1, 5);
+    RtFloat4 far = __builtin_shufflevector(p->low_far, p->high_far, 0, 4, 1, 5);
+    RtFloat4 from = rt_max(__builtin_shufflevector(near, near, 0, 1, 0, 1), rt_all4(tmin));
+    RtFloat4 to = rt_min(__builtin_shufflevector(far, far, 0, 1, 0, 1), rt_all4(limit));
+    from = rt_max(__builtin_shufflevector(near, near, 2, 2, 3, 3), from);
+    to = rt_min(__builtin_shufflevector(far, far, 2, 2, 3, 3), to);
+    enter[0] = rt_max(__builtin_shufflevector(p->low_near, p->low_near, 2, 2, 2, 2), from);
+    enter[1] = rt_max(__builtin_shufflevector(p->high_near, p->high_near, 2, 2, 2, 2), from);
+    leave[0] = rt_min(__builtin_shufflevector(p->low_far, p->low_far, 2, 2, 2, 2), to);
+    leave[1] = rt_min(__builtin_shufflevector(p->high_far, p->high_far, 2, 2, 2, 2), to);
 }
 
 /* Puts the children that the ray meets onto the stack, the one it enters first on top, of those that it
  * enters at once the last; gives their number. All eight are asked at once. */
 RT_KERNEL uint32_t push_children(const Planes *planes, const RtOctreeNode *node, uint32_t depth,
                                  const RtPreparedRay *ray, float limit, Waiting *stack) {
-    RtFour enter[2], leave[2];
+    RtFloat4 enter[2], leave[2];
     span_children(planes, ray->tmin, limit, enter, leave);
-    uint32_t children = rt_four_at_least(leave[0], enter[0]) | rt_four_at_least(leave[1], enter[1]) << 4;
+    uint32_t children = rt_le_bits(enter[0], leave[0]) | rt_le_bits(enter[1], leave[1]) << 4;
     float enters[8];
     uint32_t pushed = 0;
     memcpy(enters, enter, sizeof enters);
@@ -163,7 +163,7 @@ RT_KERNEL void descend(const RtOctree *self, RtMailbox *mailbox, const RtPrepare
     Planes visited[RT_OCTREE_DEPTH_LIMIT]; /* by depth */
     Waiting stack[MAX_STACK], at = {.depth = 0};
     uint32_t stacked = 0;
-    RtFour near, far;
+    RtFloat4 near, far;
     float limit = rt_limit(ray, best);
     const RtBox *root = &self->boxes[0];
     for (int a = 0; a < 3; a++) {

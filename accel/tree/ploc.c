@@ -69,8 +69,8 @@ static inline __attribute__((always_inline)) void measure(const Rounds *r, uint3
             rt_box4_half_areas(rt_box4_union(own, r->row[j].box), rt_box4_union(own, r->row[k].box));
         double its = tell_it ? r->distance[i] : -1;
         RtDouble2 known = {its, its};
-        if (tell_them) known = rt_max2(known, (RtDouble2){r->distance[j], r->distance[k]});
-        if (!rt_any_at_most2(distances, known)) continue;
+        if (tell_them) known = rt_max(known, ((RtDouble2){r->distance[j], r->distance[k]}));
+        if (!rt_le_bits(distances, known)) continue;
         if (tell_it) offer(r, i, j, distances[0]);
         if (tell_it) offer(r, i, k, distances[1]);
         if (tell_them) offer(r, j, i, distances[0]);

@@ -21,7 +21,7 @@ static inline void add_to_bin(RtBin *bin, RtBox4 box, uint32_t number) {
 
 void rt_bins_init(RtBins *self, uint32_t count, RtBox4 centers) {
     self->lo = centers.lo;
-    self->last = rt_four_all((float)(count - 1));
+    self->last = rt_all4((float)(count - 1));
     for (int axis = 0; axis < 3; axis++) {
         float lo = centers.lo[axis], hi = centers.hi[axis], scale = (float)count / (hi - lo);
         self->scale[axis] = hi > lo && isfinite(scale) ? scale : 0;
@@ -43,13 +43,13 @@ void rt_bins_merge(RtBins *self, const RtBins *other) {
 enum { BATCH = 16 };
 
 static void add_batch(RtBins *self, const RtTreeRef *refs, uint32_t count) {
-    RtFour lo = self->lo, scale = self->scale, last = self->last;
-    RtFourBits bin[BATCH];
+    RtFloat4 lo = self->lo, scale = self->scale, last = self->last;
+    RtInt4 bin[BATCH];
     for (uint32_t i = 0; i < count; i++) {
         __builtin_prefetch(refs + i + RT_REFS_AHEAD);
         /* max(NaN, 0) is 0, for infinity times 0. */
-        RtFour at = rt_four_max((rt_box4_center(rt_box4_load(&refs[i].box)) - lo) * scale, rt_four_all(0));
-        bin[i] = rt_four_truncate(rt_four_min(at, last));
+        RtFloat4 at = rt_max((rt_box4_center(rt_box4_load(&refs[i].box)) - lo) * scale, rt_all4(0));
+        bin[i] = rt_to_ints4(rt_min(at, last));
     }
     for (uint32_t i = 0; i < count; i++) {
         RtBox4 box = rt_box4_load(&refs[i].box);
@@ -94,11 +94,11 @@ RtSplit rt_bins_split(const RtBins *self, uint32_t count) {
  * time; at[count..) up to a multiple of 4 may hold anything. */
 static void sort_axis(const float *at, uint32_t count, uint8_t *order) {
     for (uint32_t i = 0; i < count; i += 4) {
-        RtFour self;
-        RtFourBits before = {0, 0, 0, 0};
+        RtFloat4 self;
+        RtInt4 before = {0, 0, 0, 0};
         memcpy(&self, at + i, sizeof self);
-        for (uint32_t j = 0; j < i; j++) before -= rt_four_all(at[j]) <= self;
-        for (uint32_t j = i; j < count; j++) before -= rt_four_all(at[j]) < self;
+        for (uint32_t j = 0; j < i; j++) before -= rt_all4(at[j]) <= self;
+        for (uint32_t j = i; j < count; j++) before -= rt_all4(at[j]) < self;
         for (uint32_t s = 0; s < 4 && i + s < count; s++) {
             uint32_t place = (uint32_t)before[s];
             for (uint32_t j = i; j < i + s; j++) place += at[j] == at[i + s];
@@ -110,7 +110,7 @@ static void sort_axis(const float *at, uint32_t count, uint8_t *order) {
 void rt_small_group_init(RtSmallGroup *self, const RtTreeRef *refs, uint32_t count) {
     self->refs = refs;
     for (uint32_t i = 0; i < count; i++) {
-        RtFour center = rt_box4_center(rt_box4_load(&refs[i].box));
+        RtFloat4 center = rt_box4_center(rt_box4_load(&refs[i].box));
         for (int axis = 0; axis < 3; axis++) self->at[axis][i] = center[axis];
     }
     for (uint32_t i = count; i % 4 != 0; i++) {
@@ -202,7 +202,7 @@ uint32_t rt_split_binned(RtTreeRef *refs, uint32_t count, int bins, RtBox4 cente
     for (uint32_t i = 0; i < count; i++) {
         __builtin_prefetch(refs + i + RT_REFS_AHEAD);
         /* refs[left..i) are right: swap the first of them with this one, whichever side this is on. */
-        RtFour center = rt_box4_center(rt_box4_load(&refs[i].box));
+        RtFloat4 center = rt_box4_center(rt_box4_load(&refs[i].box));
         RtTreeRef ref = refs[i];
         uint32_t right = rt_side_of(&side, center);
         sides[right] = rt_box4_add_point(sides[right], center);

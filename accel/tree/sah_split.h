@@ -27,7 +27,7 @@ typedef struct RtBin {
 } RtBin;
 
 typedef struct RtBins {
-    RtFour lo, scale,
+    RtFloat4 lo, scale,
         last;         /* bin of a centre c: (c - lo) * scale, at most `last`; scale is 0 along an axis */
     uint32_t size[3]; /*   without extent. size: bins along each axis, 1..RT_MAX_BINS */
     RtBin bins[3][RT_MAX_BINS];
@@ -57,17 +57,17 @@ RtSplit rt_bins_split(const RtBins *self, uint32_t count);
 
 /* Classifies centres by the side of a split. */
 typedef struct RtSide {
-    RtFour lo, scale, least;
+    RtFloat4 lo, scale, least;
     unsigned mask;
 } RtSide;
 
 static inline RtSide rt_bins_side(const RtBins *self, const RtSplit *split) {
-    return (RtSide){self->lo, self->scale, rt_four_all((float)split->bin), 1U << split->axis};
+    return (RtSide){self->lo, self->scale, rt_all4((float)split->bin), 1U << split->axis};
 }
 
 /* 1: right, 0: left. */
-static inline uint32_t rt_side_of(const RtSide *side, RtFour center) {
-    unsigned right = rt_four_at_least((center - side->lo) * side->scale, side->least);
+static inline uint32_t rt_side_of(const RtSide *side, RtFloat4 center) {
+    unsigned right = rt_le_bits(side->least, (center - side->lo) * side->scale);
     return (right & side->mask) != 0;
 }
 

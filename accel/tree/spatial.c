@@ -127,8 +127,7 @@ static bool split_group(const Builder *b, Group *group, uint32_t counts[2]) {
     RtSides sides = {
         0, {box_of(refs, counts[0]), box_of(refs + counts[0], counts[1])}, {counts[0], counts[1]}};
     rt_sides_set_cost(&sides);
-    RtBox4 common = {rt_four_max(sides.box[0].lo, sides.box[1].lo),
-                     rt_four_min(sides.box[0].hi, sides.box[1].hi)};
+    RtBox4 common = {rt_max(sides.box[0].lo, sides.box[1].lo), rt_min(sides.box[0].hi, sides.box[1].hi)};
     RtSpatialGroup spatial = {b->geometry, refs, count, group->spare, box, b->margin};
     RtSpatialSplit plane = {.sides.cost = INFINITY};
     if (area_of(common) > b->least_overlap) plane = rt_spatial_bins_split(&spatial, b->how.bins);

@@ -11,8 +11,8 @@ typedef struct Bin {
 /* Bin i lies between planes i and i + 1. */
 typedef struct Bins {
     int count;
-    RtFour lo, scale, last; /* bin of x, approximately: (x - lo) * scale, at most `last` */
-    bool divides[3];        /* false: the planes of the axis coincide */
+    RtFloat4 lo, scale, last; /* bin of x, approximately: (x - lo) * scale, at most `last` */
+    bool divides[3];          /* false: the planes of the axis coincide */
     float plane[3][RT_MAX_BINS + 1];
     Bin bins[3][RT_MAX_BINS];
 } Bins;
@@ -28,8 +28,8 @@ bool rt_ref_part(const RtSpatialGroup *group, const RtTreeRef *ref, int axis, fl
 static void init(Bins *self, int count, RtBox4 box) {
     self->count = count;
     self->lo = box.lo;
-    self->scale = rt_four_all(0);
-    self->last = rt_four_all((float)(count - 1));
+    self->scale = rt_all4(0);
+    self->last = rt_all4((float)(count - 1));
     for (int axis = 0; axis < 3; axis++) {
         double lo = (double)box.lo[axis], width = (double)box.hi[axis] - lo;
         self->divides[axis] = (float)(lo + width / count) > box.lo[axis];
@@ -41,9 +41,9 @@ static void init(Bins *self, int count, RtBox4 box) {
     self->lo[3] = 0;
 }
 
-static RtFourBits bins_of(const Bins *self, RtFour point) {
-    RtFour at = rt_four_max((point - self->lo) * self->scale, rt_four_all(0));
-    return rt_four_truncate(rt_four_min(at, self->last));
+static RtInt4 bins_of(const Bins *self, RtFloat4 point) {
+    RtFloat4 at = rt_max((point - self->lo) * self->scale, rt_all4(0));
+    return rt_to_ints4(rt_min(at, self->last));
 }
 
 /* A part that begins on a plane is in the bin above; one that ends there, in the bin below. */
@@ -64,19 +64,18 @@ static int last_bin(const Bins *self, int axis, int guess, float x, int first) {
 /* ---- chopping ---- */
 
 static bool is_empty(RtBox4 box) {
-    return (rt_four_at_least(box.hi, box.lo) & 7) != 7;
+    return (rt_le_bits(box.lo, box.hi) & 7) != 7;
 }
 
 /* -INFINITY, which add_gated lets a point through, in the lanes where `held` is true; INFINITY elsewhere. */
-static RtFour gate_of(RtFourBits held) {
-    return rt_four_pick(held, rt_four_all(INFINITY), rt_four_all(-INFINITY));
+static RtFloat4 gate_of(RtInt4 held) {
+    return rt_select(held, rt_all4(-INFINITY), rt_all4(INFINITY));
 }
 
 /* Adds a point, or nothing if the gate is INFINITY: branchless. */
-static RtBox4 add_gated(RtBox4 box, RtFour point, float gate) {
-    RtFour off = rt_four_all(gate);
-    return (RtBox4){rt_four_min(box.lo, rt_four_max(point, off)),
-                    rt_four_max(box.hi, rt_four_min(point, -off))};
+static RtBox4 add_gated(RtBox4 box, RtFloat4 point, float gate) {
+    RtFloat4 off = rt_all4(gate);
+    return (RtBox4){rt_min(box.lo, rt_max(point, off)), rt_max(box.hi, rt_min(point, -off))};
 }
 
 /* Sets parts[first..last] to the box of the part of a triangle in each bin: its corners there, and where its
@@ -84,23 +83,24 @@ static RtBox4 add_gated(RtBox4 box, RtFour point, float gate) {
 static void chop_triangle(const Bins *self, int axis, const RtTriangle *triangle, int first, int last,
                           RtBox4 *parts) {
     const float *plane = self->plane[axis];
-    RtFour corner[3], along[3];
-    for (int k = 0; k < 3; k++) corner[k] = (RtFour){triangle->v[k].x, triangle->v[k].y, triangle->v[k].z, 0};
+    RtFloat4 corner[3], along[3];
+    for (int k = 0; k < 3; k++)
+        corner[k] = (RtFloat4){triangle->v[k].x, triangle->v[k].y, triangle->v[k].z, 0};
     for (int k = 0; k < 3; k++) along[k] = corner[(k + 1) % 3] - corner[k];
     /* Lane k: edge k. */
-    RtFour from = {triangle->v[0].at[axis], triangle->v[1].at[axis], triangle->v[2].at[axis], 0};
-    RtFour to = __builtin_shufflevector(from, from, 1, 2, 0, 3);
-    RtFour low = rt_four_min(from, to), high = rt_four_max(from, to), inverse = rt_four_all(1) / (to - from);
+    RtFloat4 from = {triangle->v[0].at[axis], triangle->v[1].at[axis], triangle->v[2].at[axis], 0};
+    RtFloat4 to = __builtin_shufflevector(from, from, 1, 2, 0, 3);
+    RtFloat4 low = rt_min(from, to), high = rt_max(from, to), inverse = rt_all4(1) / (to - from);
     RtBox4 below = rt_box4_empty(); /* what meets the lower plane of the bin */
-    RtFour lower = rt_four_all(-INFINITY);
+    RtFloat4 lower = rt_all4(-INFINITY);
     for (int i = first; i <= last; i++) {
-        RtFour upper = rt_four_all(i < last ? plane[i + 1] : INFINITY);
-        RtFour here = gate_of((from >= lower) & (from < upper)), at = (upper - from) * inverse;
-        RtFour meets = gate_of((low < upper) & (upper <= high));
+        RtFloat4 upper = rt_all4(i < last ? plane[i + 1] : INFINITY);
+        RtFloat4 here = gate_of((from >= lower) & (from < upper)), at = (upper - from) * inverse;
+        RtFloat4 meets = gate_of((low < upper) & (upper <= high));
         RtBox4 above = rt_box4_empty();
         for (int k = 0; k < 3; k++) below = add_gated(below, corner[k], here[k]);
         for (int k = 0; k < 3 && i < last; k++)
-            above = add_gated(above, corner[k] + along[k] * rt_four_all(at[k]), meets[k]);
+            above = add_gated(above, corner[k] + along[k] * rt_all4(at[k]), meets[k]);
         parts[i] = rt_box4_union(below, above);
         below = above;
         lower = upper;
@@ -127,7 +127,7 @@ static void chop(Bins *self, const RtSpatialGroup *group, const RtTreeRef *ref, 
     else
         chop_other(self, group, ref, axis, first, last, parts);
     for (int i = first; i <= last; i++) {
-        RtBox4 part = {rt_four_max(parts[i].lo, box.lo), rt_four_min(parts[i].hi, box.hi)};
+        RtBox4 part = {rt_max(parts[i].lo, box.lo), rt_min(parts[i].hi, box.hi)};
         if (is_empty(part)) continue;
         bins[i].box = rt_box4_union(bins[i].box, part);
         begin = i < begin ? i : begin;
@@ -143,7 +143,7 @@ static void fill(Bins *self, const RtSpatialGroup *group) {
     for (uint32_t i = 0; i < group->count; i++) {
         const RtTreeRef *ref = &group->refs[i];
         RtBox4 box = rt_box4_load(&ref->box);
-        RtFourBits from = bins_of(self, box.lo), to = bins_of(self, box.hi);
+        RtInt4 from = bins_of(self, box.lo), to = bins_of(self, box.hi);
         for (int axis = 0; axis < 3; axis++) {
             if (!self->divides[axis]) continue;
             int first = first_bin(self, axis, from[axis], ref->box.lo.at[axis]);

@@ -188,7 +188,7 @@ static void partition_chunk(void *context, size_t item) {
     if (!(top->splits[chunk->group].cost < INFINITY)) return;
     for (uint32_t i = 0; i < chunk->count; i++) {
         __builtin_prefetch(from + i + RT_REFS_AHEAD);
-        RtFour center = rt_box4_center(rt_box4_load(&from[i].box));
+        RtFloat4 center = rt_box4_center(rt_box4_load(&from[i].box));
         uint32_t s = rt_side_of(&side, center);
         centers[s] = rt_box4_add_point(centers[s], center);
         into[s ? right : left] = from[i];

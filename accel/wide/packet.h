@@ -2,9 +2,9 @@
 /* Packets: up to sixty-four rays whose directions have the same signs and the same major axis, and how rays
  * are sorted into them.
  *
- * The rays need not start where the others do, nor go exactly where they go: diffuse rays of a patch of the
- * image, sorted by direction, share most of their visits near the root. What a packet holds lies field by
- * field, so that sixteen rays are made ready at once, and one field of a ray can be spread over a vector.
+ * Origins and directions may differ: diffuse rays of a patch of the image, sorted by direction, share most of
+ * their visits near the root. A packet is a structure of arrays, so that RT_LANES rays are prepared at once,
+ * and one field of a ray fills a vector.
  *
  * Sixteen neighbours of a packet are a beam, if they are close to one another: between the least and the most
  * of their origins and reciprocals lies, along each axis, where any of them enters a box and leaves it
@@ -21,7 +21,7 @@ enum {
     BEAM = 16,
     BEAMS = PACKET / BEAM,
     CLASSES = 24, /* signs and major axis of a direction: class_of */
-    /* Pairs of a ray and a triangle that wait to be tested: fewer than a batch, and what a leaf may add; and
+    /* Pairs of a ray and a triangle to be tested: fewer than a vector, and those that a leaf may add; and
      * whole vectors may be written behind the last. */
     MOST_PAIRS = BEAM + PACKET * RT_WIDE_MAX_LEAF + BEAM
 };
@@ -42,26 +42,26 @@ typedef struct Packet {
     float limit[PACKET];                /* the best t so far, or tmax */
     uint32_t pair_ray[MOST_PAIRS];      /* [pair_count] that wait to be tested in full, */
     uint32_t pair_triangle[MOST_PAIRS]; /* and where in the arena their coordinates begin, in floats */
-    /* Ray by ray what triangles are sieved by: the origin by kx, ky and kz, nothing; the shear, the ray's
-     * number, nothing. What stands behind the last is hit by no triangle. */
-    float sieve[PACKET + 1][8];
+    /* Each ray, prepared for the prefilter: the origin by kx, ky and kz, nothing; the shear, the ray's
+     * number, nothing. The entry behind the last passes no triangle. */
+    float prefilter[PACKET + 1][8];
     Beam beam[BEAMS];
     RtHit best[PACKET];
     RtPreparedRay ray[PACKET];
-    uint64_t open;     /* bit i: ray i still looks for an answer */
+    uint64_t open;     /* bit i: ray i has no answer yet */
     uint64_t prepared; /* bit i: ray[i] is */
-    uint64_t going;    /* the rays that go on to `next` */
+    uint64_t going;    /* the rays that visit `next` */
     uint64_t rays[RT_WIDE_STACK];
     float enter[RT_WIDE_STACK];
-    RtWideRef waiting[RT_WIDE_STACK], next;
+    RtWideRef stack[RT_WIDE_STACK], next;
     uint32_t top; /* entries of the stack */
     uint32_t pair_count;
-    uint32_t count, index[PACKET];        /* of rays, and which of the question's they are */
-    uint32_t kx, ky, kz, near[3], far[3]; /* as of a flight */
-    bool negative[3], sieve_ready;
+    uint32_t count, index[PACKET];        /* of rays, and their indices in the query */
+    uint32_t kx, ky, kz, near[3], far[3]; /* as in RayState */
+    bool negative[3], prefilter_ready;
 } Packet;
 
-/* The rays of each class that wait for a packet of their own; and those of the question not yet sorted. */
+/* The rays of each class that wait for a packet of their own; and those of the query not yet sorted. */
 typedef struct Sorter {
     size_t next, end;
     uint32_t class; /* then: the first that may still have rays */
@@ -94,7 +94,7 @@ RT_KERNEL uint32_t class_of(const RtRay *ray) {
     return class;
 }
 
-/* The class of sixteen rays; CLASSES where they differ. */
+/* The class of BEAM rays; CLASSES if they differ. */
 RT_KERNEL uint32_t class_of_all(const RtRay *rays) {
     const uint32_t class = class_of(rays), axis = class / 8;
     const RtFloat4 dir = rt_loadu4((const char *)rays + offsetof(RtRay, dir));
@@ -136,7 +136,7 @@ RT_KERNEL uint32_t sort_rays(Sorter *s, const RtRay *rays) {
     return s->class;
 }
 
-/* ---- taking up ---- */
+/* ---- preparing ---- */
 
 /* Rays [first, first + RT_LANES) of the packet, thickened as rt_ray_prepare_in does or, where objects are
  * divided, rt_surface_thicken. */
@@ -211,10 +211,10 @@ RT_KERNEL void bound_beam(Packet *p, uint32_t b) {
     beam->tight &= -hi[3] - lo[3] < BEAM_SPREAD && -up[1] - up[0] < BEAM_SPREAD;
 }
 
-/* Once a packet, where it comes to a leaf with few rays. */
-RT_KERNEL void prepare_sieve(Packet *p) {
-    if (p->sieve_ready) return;
-    p->sieve_ready = true;
+/* Once per packet, at the first leaf with few rays. */
+RT_KERNEL void prepare_prefilter(Packet *p) {
+    if (p->prefilter_ready) return;
+    p->prefilter_ready = true;
     for (uint32_t i = 0; i < p->count; i += 4) {
         const RtInt4 number = (RtInt4){0, 1, 2, 3} + (int32_t)i;
         RtFloat4 place[4] = {rt_load4(&p->org[p->kx][i]), rt_load4(&p->org[p->ky][i]),
@@ -223,23 +223,23 @@ RT_KERNEL void prepare_sieve(Packet *p) {
         rt_transpose4(place);
         rt_transpose4(more);
         for (uint32_t k = 0; k < 4; k++) {
-            rt_store(p->sieve[i + k], place[k]);
-            rt_store(p->sieve[i + k] + 4, more[k]);
+            rt_store(p->prefilter[i + k], place[k]);
+            rt_store(p->prefilter[i + k] + 4, more[k]);
         }
     }
-    for (int k = 0; k < 8; k++) p->sieve[PACKET][k] = NAN;
+    for (int k = 0; k < 8; k++) p->prefilter[PACKET][k] = NAN;
 }
 
-/* Ray i with what hit functions ask for. */
-RT_KERNEL const RtPreparedRay *prepared(Packet *p, const Question *q, uint32_t i) {
+/* Ray i, prepared for hit functions. */
+RT_KERNEL const RtPreparedRay *prepared(Packet *p, const Query *q, uint32_t i) {
     if (!(p->prepared & one_ray(i)))
         rt_hit_ray(&p->ray[i], q->geometry, &q->rays[p->index[i]], q->scratch->room);
     p->prepared |= one_ray(i);
     return &p->ray[i];
 }
 
-/* Tests rays that are too odd for the boxes of divided objects against all. */
-RT_KERNEL void answer_odd_rays(Packet *p, const Question *q, bool any) {
+/* Tests rays that are too extreme for the boxes of split references against all objects. */
+RT_KERNEL void test_extreme_rays(Packet *p, const Query *q, bool any) {
     uint64_t odd = 0;
     for (uint32_t i = 0; i < PACKET; i += RT_LANES) {
         RtFloats longest = rt_abs(rt_load(&p->dir[p->kz][i]));
@@ -254,7 +254,7 @@ RT_KERNEL void answer_odd_rays(Packet *p, const Question *q, bool any) {
 }
 
 /* Makes a packet of up to PACKET rays of a class. */
-RT_KERNEL void take_up(Packet *p, const Question *q, Sorter *s, uint32_t class, bool any) {
+RT_KERNEL void init_packet(Packet *p, const Query *q, Sorter *s, uint32_t class, bool any) {
     uint32_t *list = s->list[class], count = s->count[class] < PACKET ? s->count[class] : PACKET;
     p->count = count;
     for (uint32_t i = 0; i < count; i++) p->index[i] = list[i];
@@ -289,12 +289,12 @@ RT_KERNEL void take_up(Packet *p, const Question *q, Sorter *s, uint32_t class, 
     }
     for (uint32_t i = 0; i < end; i += RT_LANES) prepare_lanes(p, q->geometry, i, q->tree->divided);
     for (uint32_t b = 0; b < beams; b++) bound_beam(p, b);
-    p->sieve_ready = false;
+    p->prefilter_ready = false;
     for (uint32_t i = 0; i < count; i++) p->best[i] = RT_MISS;
     p->open = ~UINT64_C(0) >> (PACKET - count);
     p->prepared = 0;
     p->pair_count = p->top = p->next = 0;
-    if (q->tree->divided) answer_odd_rays(p, q, any);
+    if (q->tree->divided) test_extreme_rays(p, q, any);
     p->going = p->open;
 }
 

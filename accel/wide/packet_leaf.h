@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What a packet does at a leaf. RT_GROUPS rays at a time are tested with four triangles, RT_LANES pairs in a
  * vector; what passes waits until there are RT_LANES pairs to be tested in full, by the operations of
- * rt_triangle_hit. Their rays go on meanwhile, for nothing at worst. */
+ * rt_triangle_hit. Their rays continue meanwhile. */
 #ifndef RT_ACCEL_WIDE_PACKET_LEAF_H
 #define RT_ACCEL_WIDE_PACKET_LEAF_H
 
@@ -23,7 +23,7 @@ RT_KERNEL void add_pairs(Packet *p, uint32_t passed, RtInts rays, RtInts triangl
 
 /* Adds to the pairs of rays with triangles of a block, which lies `at` floats from the arena's start, those
  * that pass the prefilter. Each vector holds RT_GROUPS rays with the four triangles. */
-RT_KERNEL void sieve_rays(Packet *p, const RtWideTriangles *block, uint32_t at, uint64_t rays) {
+RT_KERNEL void prefilter_rays(Packet *p, const RtWideTriangles *block, uint32_t at, uint64_t rays) {
     const RtInts triangles = (RtInts)rt_repeat4((RtFloat4)((RtInt4){0, 1, 2, 3} + (int32_t)at));
     RtSheared corners;
     for (int i = 0; i < 3; i++) {
@@ -31,11 +31,11 @@ RT_KERNEL void sieve_rays(Packet *p, const RtWideTriangles *block, uint32_t at, 
         corners.y[i] = rt_repeat4(coordinate(block, i, p->ky * COORDINATE));
         corners.z[i] = rt_repeat4(coordinate(block, i, p->kz * COORDINATE));
     }
-    prepare_sieve(p);
+    prepare_prefilter(p);
     do {
         const float *at_place[RT_GROUPS], *at_shear[RT_GROUPS];
         for (int k = 0; k < RT_GROUPS; k++) {
-            at_place[k] = p->sieve[first_ray(rays)];
+            at_place[k] = p->prefilter[first_ray(rays)];
             at_shear[k] = at_place[k] + 4;
             rays &= rays - 1;
         }
@@ -48,12 +48,12 @@ RT_KERNEL void sieve_rays(Packet *p, const RtWideTriangles *block, uint32_t at, 
     } while (rays);
 }
 
-/* From so many rays of a beam on a block is tested triangle by triangle. */
+/* With at least so many rays of a beam, a block is tested triangle by triangle. */
 enum { MANY_RAYS = 6 };
 
 /* The same as sieve_rays for rays of beam b, with `count` triangles. */
-RT_KERNEL void sieve_beam(Packet *p, const RtWideTriangles *block, uint32_t at, uint32_t count, uint32_t b,
-                          uint32_t rays) {
+RT_KERNEL void prefilter_beam(Packet *p, const RtWideTriangles *block, uint32_t at, uint32_t count,
+                              uint32_t b, uint32_t rays) {
     for (uint32_t k = 0; k < count; k++) {
         const float *triangle = &block->v[0][0][k];
         RtSheared corners;
@@ -149,7 +149,7 @@ RT_KERNEL void test_pairs(Packet *p, const RtWideTree *tree, uint32_t least, boo
 
 /* ---- leaves ---- */
 
-RT_KERNEL void visit_list(Packet *p, const Question *q, RtWideRef ref, uint64_t rays, bool any) {
+RT_KERNEL void visit_list(Packet *p, const Query *q, RtWideRef ref, uint64_t rays, bool any) {
     for (; rays; rays &= rays - 1) {
         uint32_t i = first_ray(rays);
         RtHit best = p->best[i];
@@ -164,13 +164,13 @@ RT_KERNEL void visit_block(Packet *p, const RtWideTree *tree, const RtWideTriang
     for (uint32_t b = 0; b < BEAMS; b++) {
         uint32_t some = (uint32_t)(rays >> b * BEAM) & ((1u << BEAM) - 1);
         if (__builtin_popcount(some) < MANY_RAYS) continue;
-        sieve_beam(p, block, at, count, b, some);
+        prefilter_beam(p, block, at, count, b, some);
         rays &= ~((uint64_t)some << b * BEAM);
     }
-    if (rays) sieve_rays(p, block, at, rays);
+    if (rays) prefilter_rays(p, block, at, rays);
 }
 
-RT_KERNEL void visit_leaf(Packet *p, const Question *q, RtWideRef ref, uint64_t rays, bool any) {
+RT_KERNEL void visit_leaf(Packet *p, const Query *q, RtWideRef ref, uint64_t rays, bool any) {
     if (rt_wide_kind(ref) != RT_WIDE_TRIANGLES) {
         visit_list(p, q, ref, rays, any);
         return;

@@ -127,7 +127,7 @@ static RtStatus check_leaf(const Check *check, RtWideRef ref) {
     uint32_t blocks = (count + RT_WIDE_BLOCK - 1) / RT_WIDE_BLOCK;
     bool triangles = rt_wide_kind(ref) == RT_WIDE_TRIANGLES;
     uint64_t bytes = triangles ? blocks * sizeof(RtWideTriangles) : sizeof(RtWideList);
-    if (rt_wide_kind(ref) == RT_WIDE_LANDED || at + bytes > check->self->bytes)
+    if (rt_wide_kind(ref) == RT_WIDE_FINISHED || at + bytes > check->self->bytes)
         return rt_fail(check->error, RT_MISMATCH, "wide: a leaf at %u is not in the arena", at);
     for (uint32_t i = count; !triangles && i < RT_WIDE_MAX_LEAF; i++) {
         if (id_at(check->self, ref, i) == RT_NO_OBJECT) continue;

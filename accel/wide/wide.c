@@ -7,8 +7,8 @@
  * methods of accel/tree/tree.h, as for `bvh`.
  *
  * Exact, because boxes are tested by the operations of rt_box_hit and hits found by those of rt_triangle_hit,
- * lane by lane; what a beam's interval turns away each of its rays would (packet.h). In which order
- * children are visited is free.
+ * lane by lane. A child that a beam's interval misses is missed by each of its rays (packet.h). The order of
+ * visits changes no answer.
  *
  * Counting: an extent test per child of a node visited; a step per node and per leaf; an object test per
  * triangle of a leaf, which are tested at once. Counts are those of rays alone, the same for all instruction

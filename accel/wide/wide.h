@@ -34,11 +34,11 @@ typedef enum RtWideKind {
     RT_WIDE_NODE,
     RT_WIDE_TRIANGLES, /* blocks of them */
     RT_WIDE_OBJECTS,   /* a list of anything */
-    RT_WIDE_LANDED     /* no place at all, but where a ray goes that has nowhere left to go */
+    RT_WIDE_FINISHED   /* no place: the ray has finished */
 } RtWideKind;
 
 #define RT_WIDE_UNIT      32
-#define RT_WIDE_DONE      ((RtWideRef)RT_WIDE_LANDED)
+#define RT_WIDE_DONE      ((RtWideRef)RT_WIDE_FINISHED)
 #define RT_WIDE_MAX_BYTES UINT64_C(0xffffff00)
 
 static inline RtWideRef rt_wide_leaf(RtWideKind kind, uint32_t at, uint32_t count) {

@@ -145,7 +145,7 @@ RT_TEST(validate_names_what_is_wrong_with_a_leaf_of_triangles) {
     assert_broken(&wide->isa.base, "is in 0 leaves");
     root->child[0] = rt_wide_leaf(RT_WIDE_TRIANGLES, rt_wide_place(leaf) + RT_WIDE_UNIT, 5);
     assert_broken(&wide->isa.base, "is not in the arena");
-    root->child[0] = rt_wide_leaf(RT_WIDE_LANDED, rt_wide_place(leaf), 5);
+    root->child[0] = rt_wide_leaf(RT_WIDE_FINISHED, rt_wide_place(leaf), 5);
     assert_broken(&wide->isa.base, "is not in the arena");
     unmake(wide, &scene);
 }

@@ -12,7 +12,7 @@
  *
  * at no cost, by using one origin for near planes and another for far planes (Woop, Benthin & Wald 2013,
  * "Watertight Ray/Triangle Intersection", section 3.4). The origin moves along each axis by a further 2^-23
- * |org| (rt_four_shift), since otherwise rounding would swallow the thickness far from the coordinate origin.
+ * |org| (rt_shift4), since otherwise rounding would swallow the thickness far from the coordinate origin.
  *
  * Why pruning is exact. The crossings (plane - org') * inv are monotone in the plane, in float32 as in the
  * real numbers, and the thickness grows with the box. So for b inside B, with the thickness of B or of
@@ -26,8 +26,7 @@
 #ifndef RT_BASE_RAY_H
 #define RT_BASE_RAY_H
 
-#include "core/base/box.h"
-#include "core/base/four.h"
+#include "core/base/box4.h"
 #include "core/base/status.h"
 
 #include <float.h>
@@ -126,25 +125,26 @@ static inline bool rt_hit_before(float t, uint32_t object, RtHit best) {
     return t < best.t || (t == best.t && object < best.object);
 }
 
-static inline float rt_four_thickness(RtFour lo, RtFour hi, RtFour org) {
-    return rt_four_most(rt_four_max(rt_four_abs(lo - org), rt_four_abs(hi - org))) * 0x1p-20f;
+static inline float rt_thickness4(RtFloat4 lo, RtFloat4 hi, RtFloat4 org) {
+    RtFloat4 far = rt_max(rt_abs(lo - org), rt_abs(hi - org)); /* not NaN */
+    return rt_maxf(far[2], rt_maxf(far[1], far[0])) * 0x1p-20f;
 }
 
 static inline float rt_thickness(RtVec3 org, const RtBox *box) {
-    return rt_four_thickness(rt_four_lo(box), rt_four_hi(box), (RtFour){org.x, org.y, org.z, org.z});
+    return rt_thickness4(rt_box_lo4(box), rt_box_hi4(box), (RtFloat4){org.x, org.y, org.z, org.z});
 }
 
 /* How far an origin moves along each axis for a thickness, against the ray's direction, whose sign bits
  * are `sign`. */
-static inline RtFour rt_four_shift(float thickness, RtFour org, RtFourBits sign) {
-    RtFour shift = thickness + rt_four_abs(org) * 0x1p-23f;
-    return (RtFour)((RtFourBits)shift ^ sign);
+static inline RtFloat4 rt_shift4(float thickness, RtFloat4 org, RtInt4 sign) {
+    RtFloat4 shift = thickness + rt_abs(org) * 0x1p-23f;
+    return (RtFloat4)((RtInt4)shift ^ sign);
 }
 
 static inline void rt_ray_set_thickness(RtPreparedRay *ray, float thickness) {
-    RtFour org = rt_four(&ray->org); /* reads the four floats at org; likewise below */
-    RtFour shift = rt_four_shift(thickness, org, rt_four_sign(rt_four(&ray->dir)));
-    RtFour near = org + shift, far = org - shift;
+    RtFloat4 org = rt_loadu4(&ray->org); /* and what follows, here and below */
+    RtFloat4 shift = rt_shift4(thickness, org, (RtInt4)rt_loadu4(&ray->dir) & INT32_MIN);
+    RtFloat4 near = org + shift, far = org - shift;
     memcpy(ray->org_near, &near, sizeof ray->org_near);
     memcpy(ray->org_far, &far, sizeof ray->org_far);
 }
@@ -160,13 +160,11 @@ static inline void rt_ray_thicken(RtPreparedRay *ray, const RtBox *around) {
 static inline void rt_ray_prepare_in(RtPreparedRay *p, const RtRay *ray, const RtBox *scene_box,
                                      struct RtCrossing *room) {
     /* The loads rely on the layout of RtRay: org, tmin, dir, tmax. */
-    RtFour org = rt_four(ray), dir = rt_four((const char *)ray + offsetof(RtRay, dir)), inv = 1 / dir;
-    RtFourBits sign = rt_four_sign(dir), negative = sign < 0;
-    RtFour shift =
-        rt_four_shift(rt_four_thickness(rt_four_lo(scene_box), rt_four_hi(scene_box), org), org, sign);
-    RtFour near = org + shift, far = org - shift;
-    RtFourBits first = (RtFourBits){0, 4, 8, 8} + (negative & 12),
-               last = (RtFourBits){12, 16, 20, 20} - (negative & 12);
+    RtFloat4 org = rt_loadu4(ray), dir = rt_loadu4((const char *)ray + offsetof(RtRay, dir)), inv = 1 / dir;
+    RtInt4 sign = (RtInt4)dir & INT32_MIN, negative = sign < 0;
+    RtFloat4 shift = rt_shift4(rt_thickness4(rt_box_lo4(scene_box), rt_box_hi4(scene_box), org), org, sign);
+    RtFloat4 near = org + shift, far = org - shift;
+    RtInt4 first = (RtInt4){0, 4, 8, 8} + (negative & 12), last = (RtInt4){12, 16, 20, 20} - (negative & 12);
     negative &= 1;
     p->original = ray;
     p->room = room;
@@ -224,12 +222,12 @@ static inline bool rt_box_hit(const RtBox *box, const RtPreparedRay *ray, float 
 
 /* The interval [*near, *far] of t in which the ray is within an object's box lo..hi, with the thickness of
  * that box alone; empty if *near > *far. */
-static inline void rt_four_own_span(RtFour lo, RtFour hi, const RtPreparedRay *ray, float *near, float *far) {
-    RtFour org = rt_four(&ray->org), inv = rt_four(ray->inv); /* the loads read four floats */
-    RtFourBits sign = rt_four_sign(rt_four(&ray->dir));
-    RtFour shift = rt_four_shift(rt_four_thickness(lo, hi, org), org, sign);
-    RtFour first = (rt_four_pick(sign, lo, hi) - (org + shift)) * inv;
-    RtFour second = (rt_four_pick(sign, hi, lo) - (org - shift)) * inv;
+static inline void rt_own_span4(RtFloat4 lo, RtFloat4 hi, const RtPreparedRay *ray, float *near, float *far) {
+    RtFloat4 org = rt_loadu4(&ray->org), inv = rt_loadu4(ray->inv); /* and what follows org */
+    RtInt4 sign = (RtInt4)rt_loadu4(&ray->dir) & INT32_MIN, negative = sign < 0;
+    RtFloat4 shift = rt_shift4(rt_thickness4(lo, hi, org), org, sign);
+    RtFloat4 first = (rt_select(negative, hi, lo) - (org + shift)) * inv;
+    RtFloat4 second = (rt_select(negative, lo, hi) - (org - shift)) * inv;
     *near = -INFINITY, *far = INFINITY;
     for (int a = 0; a < 3; a++) {
         *near = rt_maxf(first[a], *near);
@@ -240,9 +238,9 @@ static inline void rt_four_own_span(RtFour lo, RtFour hi, const RtPreparedRay *r
 /* Decides whether a candidate t is a hit on an object with box lo..hi: the thick ray must meet the box, t
  * is clamped to [enter, leave] (a change within rounding), and must then lie in [tmin, tmax]. NaN is
  * rejected. */
-static inline bool rt_four_admit(RtFour lo, RtFour hi, const RtPreparedRay *ray, float *t) {
+static inline bool rt_admit4(RtFloat4 lo, RtFloat4 hi, const RtPreparedRay *ray, float *t) {
     float near, far;
-    rt_four_own_span(lo, hi, ray, &near, &far);
+    rt_own_span4(lo, hi, ray, &near, &far);
     if (!(near <= far)) return false;
     float clamped = *t < near ? near : *t > far ? far : *t;
     if (!(clamped >= ray->tmin && clamped <= ray->tmax)) return false;
@@ -252,11 +250,11 @@ static inline bool rt_four_admit(RtFour lo, RtFour hi, const RtPreparedRay *ray,
 
 /* The same for a box in memory. */
 static inline void rt_box_own_span(const RtBox *own, const RtPreparedRay *ray, float *near, float *far) {
-    rt_four_own_span(rt_four_lo(own), rt_four_hi(own), ray, near, far);
+    rt_own_span4(rt_box_lo4(own), rt_box_hi4(own), ray, near, far);
 }
 
 static inline bool rt_box_admit(const RtBox *own, const RtPreparedRay *ray, float *t) {
-    return rt_four_admit(rt_four_lo(own), rt_four_hi(own), ray, t);
+    return rt_admit4(rt_box_lo4(own), rt_box_hi4(own), ray, t);
 }
 
 #endif

@@ -12,7 +12,7 @@
  * as many doubles. A kernel takes its items RT_LANES at a time. gcc would keep wider vectors in memory, which
  * doubles the instructions. Where the data set the width, use RtFloat4 or RtFloat8.
  *
- * The helpers below stand where operators do not reach. Those that take a vector accept each width and
+ * The helpers below do what operators cannot. Those that take a vector accept each width and
  * element. Those that make one end in the number of its lanes (rt_load8), or make RT_LANES (rt_load). A mask
  * is a vector of -1 and 0, for rt_select, or an integer whose bit i is lane i, for loops and branches:
  * rt_le_bits(a, b) and its kin compare straight to such bits, which AVX-512 does in one instruction.
@@ -343,6 +343,7 @@ typedef RT_OF_HALF(RtLong) RtLongs;
 #define rt_one_sign_bits(least, most)    _Generic((least), RT_BY_FLOATS(rt_one_sign))(least, most)
 #define rt_inside_bits(least, most, sum) _Generic((least), RT_BY_DOUBLES(rt_inside))(least, most, sum)
 #define rt_to_ints(a)                    __builtin_convertvector(a, RtInts) /* towards 0 */
+#define rt_to_ints4(a)                   __builtin_convertvector(a, RtInt4)
 #define rt_to_floats(a)                  __builtin_convertvector(a, RtFloats)
 
 /* Lane i holds i. */
@@ -660,6 +661,15 @@ RT_INLINE RtFloat4 rt_round4(RtDouble4 a) {
     return __builtin_convertvector(a, RtFloat4);
 }
 #endif
+
+/* The lower two of four floats as doubles. */
+RT_INLINE RtDouble2 rt_widen_lower(RtFloat4 a) {
+#if defined(__SSE2__)
+    return _mm_cvtps_pd(a);
+#else
+    return (RtDouble2){(double)a[0], (double)a[1]};
+#endif
+}
 
 /* The lower lanes, half 0, or the upper, half 1, as doubles; floats of both, rounded; and RT_LANES / 2
  * doubles rounded to at[0..RT_LANES / 2). */

@@ -41,14 +41,14 @@ RtVec3d rt_triangle_normal(const RtTriangle *triangle);
 RtVec3d rt_triangle_weights(const RtTriangle *triangle, RtVec3d point);
 
 /* A coordinate of each vertex, and 0: loading an arbitrary fourth lane would take another shuffle. */
-static inline RtFour rt_triangle_along(const float *v, size_t vertex, size_t axis) {
+static inline RtFloat4 rt_triangle_along(const float *v, size_t vertex, size_t axis) {
     v += axis;
-    return (RtFour){v[0], v[vertex], v[2 * vertex], 0};
+    return (RtFloat4){v[0], v[vertex], v[2 * vertex], 0};
 }
 
 /* A vertex, and 0. */
-static inline RtFour rt_triangle_vertex(const float *v, size_t axis) {
-    return (RtFour){v[0], v[axis], v[2 * axis], 0};
+static inline RtFloat4 rt_triangle_vertex(const float *v, size_t axis) {
+    return (RtFloat4){v[0], v[axis], v[2 * axis], 0};
 }
 
 /* The t in [tmin, tmax] at which the ray hits a triangle; a ray in its plane misses it. Coordinate a of
@@ -57,13 +57,13 @@ static inline RtFour rt_triangle_vertex(const float *v, size_t axis) {
 static inline bool rt_triangle_hit_strided(const float *v, size_t vertex, size_t axis,
                                            const RtPreparedRay *ray, float *t) {
     const float *org = ray->org.at;
-    RtFour z = rt_triangle_along(v, vertex, (size_t)ray->kz * axis) - org[ray->kz];
-    RtFour x = rt_triangle_along(v, vertex, (size_t)ray->kx * axis) - org[ray->kx] - ray->shear_x * z;
-    RtFour y = rt_triangle_along(v, vertex, (size_t)ray->ky * axis) - org[ray->ky] - ray->shear_y * z;
-    RtFour x1 = __builtin_shufflevector(x, x, 1, 2, 0, 3), x2 = __builtin_shufflevector(x, x, 2, 0, 1, 3);
-    RtFour y1 = __builtin_shufflevector(y, y, 1, 2, 0, 3), y2 = __builtin_shufflevector(y, y, 2, 0, 1, 3);
-    RtFour edges = x2 * y1 - y2 * x1;
-    if (rt_four_any(edges < 0) && rt_four_any(edges > 0)) return false;
+    RtFloat4 z = rt_triangle_along(v, vertex, (size_t)ray->kz * axis) - org[ray->kz];
+    RtFloat4 x = rt_triangle_along(v, vertex, (size_t)ray->kx * axis) - org[ray->kx] - ray->shear_x * z;
+    RtFloat4 y = rt_triangle_along(v, vertex, (size_t)ray->ky * axis) - org[ray->ky] - ray->shear_y * z;
+    RtFloat4 x1 = __builtin_shufflevector(x, x, 1, 2, 0, 3), x2 = __builtin_shufflevector(x, x, 2, 0, 1, 3);
+    RtFloat4 y1 = __builtin_shufflevector(y, y, 1, 2, 0, 3), y2 = __builtin_shufflevector(y, y, 2, 0, 1, 3);
+    RtFloat4 edges = x2 * y1 - y2 * x1;
+    if ((rt_bits(edges < 0) & 7) && (rt_bits(edges > 0) & 7)) return false;
     double u = (double)x[2] * (double)y[1] - (double)y[2] * (double)x[1];
     double w1 = (double)x[0] * (double)y[2] - (double)y[0] * (double)x[2];
     double w2 = (double)x[1] * (double)y[0] - (double)y[1] * (double)x[0];
@@ -72,9 +72,9 @@ static inline bool rt_triangle_hit_strided(const float *v, size_t vertex, size_t
     if (determinant == 0) return false;
     double depth = (u * (double)z[0] + w1 * (double)z[1] + w2 * (double)z[2]) / determinant;
     *t = (float)(depth / (double)ray->dir.at[ray->kz]);
-    RtFour a = rt_triangle_vertex(v, axis), b = rt_triangle_vertex(v + vertex, axis);
-    RtFour c = rt_triangle_vertex(v + 2 * vertex, axis);
-    return rt_four_admit(rt_four_min(rt_four_min(a, b), c), rt_four_max(rt_four_max(a, b), c), ray, t);
+    RtFloat4 a = rt_triangle_vertex(v, axis), b = rt_triangle_vertex(v + vertex, axis);
+    RtFloat4 c = rt_triangle_vertex(v + 2 * vertex, axis);
+    return rt_admit4(rt_min(rt_min(a, b), c), rt_max(rt_max(a, b), c), ray, t);
 }
 
 static inline bool rt_triangle_hit(const RtTriangle *triangle, const RtPreparedRay *ray, float *t) {

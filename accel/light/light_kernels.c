@@ -1,41 +1,41 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Answering shadow rays in streams, and drawing from the light; included once for each instruction set
+/* Answering shadow rays in streams, and drawing from the light; compiled once for each instruction set
  * (accel/isa.h).
  *
- * Of a stream a block of rays is taken at a time, light by light. First each ray finds its cell, sixteen in
- * lanes. Then the rays that have a list go through it in rounds, of one entry, of two, and of four: those
- * whose entry is not deeper and is seen in their part of the cell make pairs of a ray and an object, which
- * are tested in lanes where they are triangles. A ray that is occluded, or at the end of its list, drops out.
- * What a ray does depends on no other, so that counts are the same in streams of any length. Rays at the end
- * of a list that was cut, and those that are not exactly what a shadow ray is, are passed on together.
+ * A stream is answered in blocks of rays, light by light. First each ray finds its cell, RT_LANES rays at a
+ * time. Then the rays walk through their lists in rounds of one entry, of two, and of four. An entry that is
+ * not deeper than its ray, and is seen in the ray's part of the cell, makes a pair of a ray and an object.
+ * Pairs with triangles are tested in lanes. A ray drops out when it is occluded or at the end of its list. No
+ * ray depends on another, so counts are the same in streams of any length. Rays at the end of a list that was
+ * cut, and rays that are not exactly a shadow ray, are passed on together.
  *
- * A step is an entry looked at that is not deeper than the ray; an extent test that of the part of the cell,
- * and of the side of a polygon or sphere (light_facing.h). */
+ * A step is an entry that is not deeper than the ray. An extent test is that of the part of the cell, or of
+ * the side of a polygon or sphere (light_facing.h). */
 #include "accel/light/light_draw.h"
 #include "accel/light/light_pairs.h"
 
 /* ---- a round ---- */
 
-/* What is looked up in a round. */
+/* The pairs of a round, and the rays that remain. */
 typedef struct Round {
     uint32_t pairs, others, left;
     bool all_triangles;
 } Round;
 
 /* Appends the pairs of lanes `met`. */
-RT_KERNEL void add_pairs(const RayBatch *batch, Round *round, uint32_t met, RtW16 ray, RtW16 object) {
+RT_KERNEL void add_pairs(const RayBatch *batch, Round *round, uint32_t met, RtInts ray, RtInts object) {
     const RtGeometry *g = &batch->self->isa.base.scene->geometry;
     Stream *stream = batch->stream;
     if (!round->all_triangles) {
-        const RtW16 triangle = rt_w16_all(RT_SHAPE_TRIANGLE);
-        uint32_t other = met & ~rt_w16_equal(rt_w16_right(object, RT_REF_INDEX_BITS), triangle);
-        rt_w16_put_some(stream->other_ray + round->others, other, ray);
-        rt_w16_put_some(stream->other_object + round->others, other, object);
+        const RtInts triangle = rt_all_ints(RT_SHAPE_TRIANGLE);
+        uint32_t other = met & ~rt_eq_bits((RtInts)((RtWords)object >> RT_REF_INDEX_BITS), triangle);
+        rt_compress_store(stream->other_ray + round->others, other, ray);
+        rt_compress_store(stream->other_object + round->others, other, object);
         round->others += (uint32_t)__builtin_popcount(other);
         met &= ~other;
     }
-    rt_w16_put_some(stream->pair_ray + round->pairs, met, ray);
-    rt_w16_put_some(stream->pair_object + round->pairs, met, object);
+    rt_compress_store(stream->pair_ray + round->pairs, met, ray);
+    rt_compress_store(stream->pair_object + round->pairs, met, object);
     uint32_t after = round->pairs + (uint32_t)__builtin_popcount(met);
     for (uint32_t i = round->pairs; i < after; i++) {
         const RtTriangle *t = &g->triangles[rt_ref_index(stream->pair_object[i])];
@@ -45,11 +45,11 @@ RT_KERNEL void add_pairs(const RayBatch *batch, Round *round, uint32_t met, RtW1
     round->pairs = after;
 }
 
-/* Not of an RayBatch: were its address handed out, the compiler could not tell that its tally stays NULL. */
-RT_COLD static void observe_entries(const RtGeometry *g, bool extents, const RtW16 *object, uint32_t lanes,
+/* Takes no RayBatch: if its address escaped, the compiler could not see that its tally stays NULL. */
+RT_COLD static void observe_entries(const RtGeometry *g, bool extents, const RtInts *object, uint32_t lanes,
                                     uint32_t met) {
-    uint32_t objects[16];
-    rt_w16_put_some(objects, 0xffff, *object);
+    uint32_t objects[RT_LANES];
+    rt_store(objects, *object);
     for (; lanes; lanes &= lanes - 1) {
         uint32_t lane = (uint32_t)__builtin_ctz(lanes), id = rt_raster_id(g, objects[lane]);
         const char *what = "entry of object";
@@ -60,54 +60,55 @@ RT_COLD static void observe_entries(const RtGeometry *g, bool extents, const RtW
     }
 }
 
-/* Sixteen rays in lists look at their next `deep` entries. */
+/* RT_LANES rays in lists look at their next `deep` entries. */
 RT_KERNEL void look_up(const RayBatch *batch, const RtLightEntry *entries, uint32_t first, uint32_t count,
                        uint32_t deep, Round *round) {
     Stream *stream = batch->stream;
     Cursors *cursors = &stream->cursors;
-    const RtW16 beyond = rt_w16_all(RT_LIGHT_BEYOND), one = rt_w16_all(1), none = rt_w16_all(0);
-    uint32_t lanes = count - first < 16 ? (1u << (count - first)) - 1 : 0xffff;
-    RtW16 ray = rt_w16_pick(lanes, none, rt_w16_get(cursors->ray + first));
-    RtW16 at = rt_w16_pick(lanes, none, rt_w16_get(cursors->at + first));
-    RtW16 end = rt_w16_get(cursors->end + first), key = rt_w16_get(cursors->key + first);
-    const RtW16 depth = rt_w16_right(key, 16);
-    const RtW16 part = rt_w16_and(key, rt_w16_all(RT_LIGHT_PART * RT_LIGHT_PART - 1));
-    lanes &= rt_w16_equal(rt_w16_lookup(batch->occluders, ray), rt_w16_all(RT_NO_OBJECT));
+    const RtInts beyond = rt_all_ints((int32_t)RT_LIGHT_BEYOND), none = rt_all_ints(0);
+    uint32_t lanes = rt_raster_first_lanes(count - first);
+    RtInts ray = rt_select_bits(lanes, rt_load_ints(cursors->ray + first), none);
+    RtInts at = rt_select_bits(lanes, rt_load_ints(cursors->at + first), none);
+    RtInts end = rt_load_ints(cursors->end + first), key = rt_load_ints(cursors->key + first);
+    const RtInts depth = (RtInts)((RtWords)key >> 16);
+    const RtInts part = key & (CELL_PARTS - 1);
+    lanes &= rt_eq_bits(rt_gather_words(batch->occluders, ray, 1), rt_all_ints((int32_t)RT_NO_OBJECT));
     for (uint32_t i = 0; i < deep && lanes; i++) {
-        RtW16 object = rt_w16_lookup_pair(&entries[0].object, at);
-        RtW16 of_entry = rt_w16_lookup_pair(&entries[0].key, at);
-        lanes &= ~rt_w16_below(depth, rt_w16_right(of_entry, 16));
-        uint32_t ends = lanes & rt_w16_equal(object, beyond);
+        RtInts object = rt_gather_words(&entries[0].object, at, 2);
+        RtInts of_entry = rt_gather_words(&entries[0].key, at, 2);
+        lanes &= ~rt_lt_bits(depth, (RtInts)((RtWords)of_entry >> 16));
+        uint32_t ends = lanes & rt_eq_bits(object, beyond);
         lanes &= ~ends;
-        rt_w16_put_some(stream->ended + stream->ended_count, ends, ray);
+        rt_compress_store(stream->ended + stream->ended_count, ends, ray);
         stream->ended_count += (uint32_t)__builtin_popcount(ends);
         RT_COUNT(batch->tally, steps, __builtin_popcount(lanes));
         uint32_t met = lanes;
         if (batch->self->extents) {
             RT_COUNT(batch->tally, extent_tests, __builtin_popcount(lanes));
-            met &= rt_w16_equal(rt_w16_and(rt_w16_down(of_entry, part), one), one);
+            met &= rt_eq_bits((RtInts)((RtWords)of_entry >> (RtWords)part) & 1, rt_all_ints(1));
         }
         if (RT_OBSERVED(batch->tally))
             observe_entries(&batch->self->isa.base.scene->geometry, batch->self->extents, &object, lanes,
                             met);
         if (met) add_pairs(batch, round, met, ray, object);
-        RtW16 next = rt_w16_add(at, one);
-        lanes &= rt_w16_below(next, end);
-        at = rt_w16_pick(lanes, none, next);
+        RtInts next = at + 1;
+        lanes &= rt_lt_bits(next, end);
+        at = rt_select_bits(lanes, next, none);
     }
-    rt_w16_put_some(cursors->ray + round->left, lanes, ray);
-    rt_w16_put_some(cursors->at + round->left, lanes, at);
-    rt_w16_put_some(cursors->end + round->left, lanes, end);
-    rt_w16_put_some(cursors->key + round->left, lanes, key);
+    rt_compress_store(cursors->ray + round->left, lanes, ray);
+    rt_compress_store(cursors->at + round->left, lanes, at);
+    rt_compress_store(cursors->end + round->left, lanes, end);
+    rt_compress_store(cursors->key + round->left, lanes, key);
     round->left += (uint32_t)__builtin_popcount(lanes);
 }
 
-/* A round of all rays in lists; returns how many are left. */
+/* A round of all rays in lists; returns the number that remain. */
 RT_KERNEL uint32_t take_round(const RayBatch *batch, uint32_t light, uint32_t count, uint32_t deep,
                               bool all_triangles) {
     const RtLightEntry *entries = batch->self->cubes[light].entries;
     Round round = {0, 0, 0, all_triangles};
-    for (uint32_t first = 0; first < count; first += 16) look_up(batch, entries, first, count, deep, &round);
+    for (uint32_t first = 0; first < count; first += RT_LANES)
+        look_up(batch, entries, first, count, deep, &round);
     RT_COUNT(batch->tally, object_tests, round.pairs);
     if (RT_OBSERVED(batch->tally))
         observe_pairs(&batch->self->isa.base.scene->geometry, batch->stream->pair_object, round.pairs);
@@ -232,5 +233,5 @@ RT_KERNEL void occluded_all(const RtAccel *accel, const RtScratch *scratch, cons
 RT_REFUSE_QUESTION(nearest, RtHit)
 RT_DEFINE_BOTH(occluded, uint32_t, occluded_all)
 
-RT_DEFINE_KERNEL_TABLE(sizeof(Stream));
-const RtLightRaster RT_RASTER = {place, cover, draw, cover_outline, draw_outline};
+RT_DEFINE_KERNEL_TABLE(light, sizeof(Stream));
+const RtLightRaster RT_OF_ISA(light_raster) = {place, cover, draw, cover_outline, draw_outline};

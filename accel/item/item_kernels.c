@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The kernels of item, included once for each instruction set (accel/isa.h): placing triangles, drawing
+/* The kernels of item, compiled once for each instruction set (accel/isa.h): placing triangles, drawing
  * facets, and answering primary rays. */
 #include "accel/item/item_answer.h"
 #include "accel/item/item_draw.h"
 
 RT_DEFINE_BOTH(nearest, RtHit, answer_all)
 RT_REFUSE_QUESTION(occluded, uint32_t)
-RT_DEFINE_KERNEL_TABLE(0);
-const RtItemRaster RT_RASTER = {place, draw, draw_facet};
+RT_DEFINE_KERNEL_TABLE(item, 0);
+const RtItemRaster RT_OF_ISA(item_raster) = {place, draw, draw_facet};

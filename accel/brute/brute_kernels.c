@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* rt_test_all for many rays, RT_LANES spheres or triangles at a time (accel/batch.h); included once for each
+/* rt_test_all for many rays, RT_LANES spheres or triangles at a time (accel/batch.h); compiled once for each
  * instruction set (accel/isa.h).
  *
  * The same bits: lanes only reject objects, by the first operations of their hit functions; the hit function
@@ -141,4 +141,4 @@ RT_KERNEL void test_all(RtBatch *batch, const RtGeometry *g, bool any, bool coun
 #undef TEST_SHAPE
 }
 
-RT_DEFINE_BATCH_KERNELS(test_all);
+RT_DEFINE_BATCH_KERNELS(brute, test_all);

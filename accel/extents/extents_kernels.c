@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Boxes for many rays, RT_LANES at a time (accel/batch.h); included once for each instruction set
+/* Boxes for many rays, RT_LANES at a time (accel/batch.h); compiled once for each instruction set
  * (accel/isa.h).
  *
  * The same tests: a lane does what rt_box_hit does, operation by operation. The limit enters that test only
@@ -109,4 +109,4 @@ RT_KERNEL void test_all(RtBatch *batch, const RtGeometry *g, bool any, bool coun
     }
 }
 
-RT_DEFINE_BATCH_KERNELS(test_all);
+RT_DEFINE_BATCH_KERNELS(extents, test_all);

@@ -1,52 +1,51 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The kernels of `wide`, included once for each instruction set (accel/isa.h).
+/* The kernels of `wide`, compiled once for each instruction set (accel/isa.h).
  *
- * Rays are traced as packets while these share enough of their visits, else as streams of rays alone. How
- * much they share is seen when they are, and tried again from time to time. Counted kernels trace no packets:
- * a count belongs to one ray. */
-#include "accel/wide/packet_way.h"
+ * Rays are traced in packets while the rays of a packet share enough of their visits, else one by one in
+ * streams. The sharing is estimated from the packets traced last, and packets are tried again from time to
+ * time. Counted kernels trace no packets, because a count belongs to one ray. */
+#include "accel/wide/packet_trace.h"
 
-/* How rays of a kind are traced on. */
-typedef struct Habit {
-    float sharing;  /* rays at a node, on average of late; 0: none traced yet */
-    bool alone;     /* as streams */
+/* The sharing of visits by rays of a kind. */
+typedef struct RateEstimate {
+    float sharing;  /* rays per visit of a node, a moving average; 0: no packets traced yet */
+    bool alone;     /* packets did not pay */
     uint64_t trial; /* rays until packets are tried again */
-} Habit;
+} RateEstimate;
 
 /* The scratch memory of a query. */
 typedef struct Scratch {
-    Flight flights[RT_WIDE_MAX_IN_FLIGHT];
+    RayState states[RT_WIDE_MAX_IN_FLIGHT];
     Packet packets[RT_WIDE_MAX_PACKETS];
     Sorter sorter;
-    Habit habits[RT_RAY_KIND_COUNT];
+    RateEstimate estimates[RT_RAY_KIND_COUNT];
 } Scratch;
 
-/* The ways as functions of their own, so that each stands in the program once. */
-#define DEFINE_WAYS(question, any)                                                                           \
-    static __attribute__((noinline)) void stream_##question##_timed(const Question *q, size_t first,         \
+/* Functions of their own, so that each is compiled once. */
+#define DEFINE_STREAMS(question, any)                                                                        \
+    static __attribute__((noinline)) void stream_##question##_timed(const Query *q, size_t first,            \
                                                                     size_t count) {                          \
         trace_many(q, first, count, any, false);                                                             \
     }                                                                                                        \
-    static __attribute__((noinline)) void stream_##question##_counted(const Question *q, size_t first,       \
+    static __attribute__((noinline)) void stream_##question##_counted(const Query *q, size_t first,          \
                                                                       size_t count) {                        \
         trace_many(q, first, count, any, true);                                                              \
     }                                                                                                        \
     static __attribute__((noinline))                                                                         \
-    Shared packets_##question##_timed(const Question *q, size_t first, size_t count) {                       \
+    Shared packets_##question##_timed(const Query *q, size_t first, size_t count) {                          \
         Scratch *own = q->scratch->own;                                                                      \
         return trace_packets(q, own->packets, &own->sorter, first, count, any);                              \
     }
-DEFINE_WAYS(nearest, false)
-DEFINE_WAYS(occluded, true)
+DEFINE_STREAMS(nearest, false)
+DEFINE_STREAMS(occluded, true)
 
 enum {
     WINDOW = 4096,      /* rays that are sorted together */
     TRIAL = 256 * 1024, /* rays traced alone between two trials of packets */
 };
 
-/* How much more than asked for rays must share. Streams that ask for any hit need no distances, and are
- * harder to beat. Without AVX2 what packets gather is gathered word by word: they pay for nearest hits of
- * rays that share much, and for any hit nowhere to speak of. */
+/* Factors on the parameter `sharing`. Streams for any hit need no distances, so packets pay later. Without
+ * AVX2 a gather loads word by word, so packets pay only for nearest hits of rays that share much. */
 #if defined(__AVX2__)
 #define WORTH_NEAREST 1.0f
 #define WORTH_ANY     1.2f
@@ -55,25 +54,25 @@ enum {
 #define WORTH_ANY     13.0f
 #endif
 
-/* As packets, as far as these pay; gives how many rays have been. */
-RT_KERNEL size_t trace_together(const Question *q, size_t count, bool any) {
-    Habit *habit = &((Scratch *)q->scratch->own)->habits[q->rays[0].kind];
+/* Traces packets while they pay; returns the number of rays traced. */
+RT_KERNEL size_t trace_as_packets(const Query *q, size_t count, bool any) {
+    RateEstimate *estimate = &((Scratch *)q->scratch->own)->estimates[q->rays[0].kind];
     const float worth = q->self->sharing * (any ? WORTH_ANY : WORTH_NEAREST);
     size_t i = 0;
-    if (habit->alone && habit->trial > count) {
-        habit->trial -= count;
+    if (estimate->alone && estimate->trial > count) {
+        estimate->trial -= count;
         return 0;
     }
     /* A trial begins with hope, which a single window does not end. */
-    if (habit->alone || habit->sharing == 0) habit->sharing = 1.5f * worth;
-    habit->alone = false;
-    while (i < count && !habit->alone) {
+    if (estimate->alone || estimate->sharing == 0) estimate->sharing = 1.5f * worth;
+    estimate->alone = false;
+    while (i < count && !estimate->alone) {
         size_t some = count - i < WINDOW ? count - i : WINDOW;
         Shared shared = any ? packets_occluded_timed(q, i, some) : packets_nearest_timed(q, i, some);
         float sharing = (float)shared.rays / (float)(shared.visits + 1);
-        habit->sharing += 0.25f * (sharing - habit->sharing);
-        habit->alone = habit->sharing < worth;
-        habit->trial = TRIAL;
+        estimate->sharing += 0.25f * (sharing - estimate->sharing);
+        estimate->alone = estimate->sharing < worth;
+        estimate->trial = TRIAL;
         i += some;
     }
     return i;
@@ -83,14 +82,14 @@ RT_KERNEL void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay
                      RtHit *hits, uint32_t *occluders, RtTally *tallies, bool any, bool counted) {
     const RtWide *self = (const RtWide *)accel;
     const RtWideTree *tree = any ? self->occluded : self->nearest;
-    const Question q = {self, tree, &accel->scene->geometry, scratch, rays, hits, occluders, tallies};
+    const Query q = {self, tree, &accel->scene->geometry, scratch, rays, hits, occluders, tallies};
     size_t done = 0;
     if (self->in_flight == 1) {
-        trace_singly(&q, 0, count, any, counted);
+        trace_one_by_one(&q, 0, count, any, counted);
         return;
     }
     if (!counted && self->packets > 0 && tree->node_count > 0 && count >= PACKET)
-        done = trace_together(&q, count, any);
+        done = trace_as_packets(&q, count, any);
     if (done == count) return;
     if (any)
         (counted ? stream_occluded_counted : stream_occluded_timed)(&q, done, count - done);
@@ -99,4 +98,4 @@ RT_KERNEL void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay
 }
 
 RT_DEFINE_STREAM_KERNELS(trace)
-RT_DEFINE_KERNEL_TABLE(sizeof(Scratch));
+RT_DEFINE_KERNEL_TABLE(wide, sizeof(Scratch));

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* One ray on its way through a wide hierarchy, and what it does at a node and at a leaf. */
-#ifndef RT_ACCEL_WIDE_FLIGHT_H
-#define RT_ACCEL_WIDE_FLIGHT_H
+/* The state of one ray in a wide hierarchy, and its visits of nodes and leaves. */
+#ifndef RT_ACCEL_WIDE_RAY_STATE_H
+#define RT_ACCEL_WIDE_RAY_STATE_H
 
 #include "accel/kernel.h"
 #include "accel/surface.h"
@@ -9,29 +9,29 @@
 #include "accel/wide/wide.h"
 #include "core/base/memory.h"
 
-/* A vector of eight may be written above what waits. */
+/* A vector of eight may be written above the top. */
 enum { RT_WIDE_STACK = RT_TREE_MAX_DEPTH * (RT_WIDE - 1) + 2 * RT_WIDE };
 
-/* What triangles are tested by first: for kx, ky and kz of a ray, where in a block the coordinates of the
- * first vertex are, in bytes, and the origin; and the shear. */
+/* A ray, prepared for the prefilter: for kx, ky and kz the offset of a vertex's coordinate in a block, in
+ * bytes, and the origin; and the shear. */
 typedef struct Axes {
     uint32_t x, y, z;
     float org_x, org_y, org_z, shear_x, shear_y;
 } Axes;
 
-typedef struct Flight {
+typedef struct RayState {
     _Alignas(RT_CACHE_LINE) RtPreparedRay ray;
     float limit;              /* the best t so far, or tmax */
-    RtWideRef next;           /* what it goes on to */
+    RtWideRef next;           /* what it visits next */
     uint32_t top;             /* entries of the stack */
-    uint32_t near[3], far[3]; /* of each axis, where in a node the planes are that are met first, and last */
+    uint32_t near[3], far[3]; /* for each axis the offsets in a node of the planes crossed first and last */
     Axes axes;
     RtHit best;
     size_t index;               /* in the stream */
     RtTally *tally;             /* NULL in the timed kernels */
-    float enter[RT_WIDE_STACK]; /* what waits, the next one last; at the bottom RT_WIDE_DONE */
-    RtWideRef waiting[RT_WIDE_STACK];
-} Flight;
+    float enter[RT_WIDE_STACK]; /* the stack, its top last; at the bottom RT_WIDE_DONE */
+    RtWideRef stack[RT_WIDE_STACK];
+} RayState;
 
 /* Bytes from a plane of a node to the next, and from a coordinate of a block to the next. */
 enum { PLANE = RT_WIDE * sizeof(float), COORDINATE = RT_WIDE_BLOCK * sizeof(float) };
@@ -39,8 +39,7 @@ enum { PLANE = RT_WIDE * sizeof(float), COORDINATE = RT_WIDE_BLOCK * sizeof(floa
 /* Floats from a vertex of a triangle in a block to the next. */
 enum { VERTEX = 3 * RT_WIDE_BLOCK };
 
-/* Objects that are tested one by one, in functions of their own: what stands in each of the many loops here
- * takes long to compile. */
+/* Objects tested one by one: functions of their own, which are not inlined, to save compile time. */
 static __attribute__((noinline)) bool object_timed(const RtGeometry *g, uint32_t id, const RtPreparedRay *ray,
                                                    bool any, RtHit *best) {
     return rt_test_object(g, id, ray, any, best, NULL);
@@ -75,9 +74,9 @@ RT_KERNEL void test_all(const RtGeometry *g, const RtPreparedRay *ray, bool any,
         all_timed(g, ray, any, best);
 }
 
-/* Ready for the root. False where the ray is answered already: there is nothing, or the ray is too odd for
- * the boxes of divided objects, and was tested against all. */
-RT_KERNEL bool take_off(Flight *f, const RtWideTree *tree, const RtGeometry *g, const RtScratch *scratch,
+/* Prepares a ray for the root. False if it is answered already: the tree is empty, or the ray is too extreme
+ * for the boxes of split references and was tested against all objects. */
+RT_KERNEL bool init_ray(RayState *f, const RtWideTree *tree, const RtGeometry *g, const RtScratch *scratch,
                         const RtRay *ray, size_t index, bool any, RtTally *tally) {
     const RtPreparedRay *r = &f->ray;
     rt_hit_ray(&f->ray, g, ray, scratch->room);
@@ -107,7 +106,7 @@ RT_KERNEL bool take_off(Flight *f, const RtWideTree *tree, const RtGeometry *g, 
                      r->shear_x,
                      r->shear_y};
     f->enter[0] = -INFINITY;
-    f->waiting[0] = RT_WIDE_DONE;
+    f->stack[0] = RT_WIDE_DONE;
     f->top = 1;
     return true;
 }
@@ -123,9 +122,8 @@ RT_KERNEL RtFloat8 planes(const RtWideNode *node, uint32_t offset) {
     return rt_load8((const char *)node + offset);
 }
 
-/* The children that the ray meets, as a mask, by rt_box_hit in eight lanes; where it enters each, to
- * *enter. */
-RT_KERNEL uint32_t meet(const RtWideNode *node, const Flight *f, RtFloat8 *enter) {
+/* The mask of children that the ray hits, by rt_box_hit in eight lanes; *enter: where it enters each. */
+RT_KERNEL uint32_t hit_children(const RtWideNode *node, const RayState *f, RtFloat8 *enter) {
     const RtPreparedRay *r = &f->ray;
     RtFloat8 near = rt_all8(r->tmin), far = rt_all8(f->limit);
     for (uint32_t a = 0; a < 3; a++) {
@@ -136,7 +134,7 @@ RT_KERNEL uint32_t meet(const RtWideNode *node, const Flight *f, RtFloat8 *enter
     return rt_le_bits(near, far);
 }
 
-/* A node has no box of its own but those of its children, which are tested together. */
+/* A node has no box of its own; the boxes of its children are tested together. */
 RT_COLD static void observe_node(const RtWideNode *node, RtWideRef ref, uint32_t mask) {
     RtBox child[RT_WIDE], all = RT_EMPTY_BOX;
     for (uint32_t i = 0; i < node->count; i++) {
@@ -158,8 +156,8 @@ RT_COLD static void observe_node(const RtWideNode *node, RtWideRef ref, uint32_t
     }
 }
 
-/* The lane of a mask with the least entry, but for the last three bits, by which ties are few; any lane of no
- * mask. Entries are at least 0, so their bits are in their order. */
+/* The lane of a mask with the least entry, ignoring its last three bits; any lane if the mask is empty.
+ * Entries are at least 0, so their bits are in their order. */
 RT_KERNEL uint32_t least_lane(uint32_t mask, RtInt8 enter) {
     const RtInt8 lanes = {0, 1, 2, 3, 4, 5, 6, 7};
     RtFloat8 key = (RtFloat8)rt_select_bits8(mask, (enter & ~7) | lanes, rt_all_ints8(INT32_MAX));
@@ -169,20 +167,20 @@ RT_KERNEL uint32_t least_lane(uint32_t mask, RtInt8 enter) {
     return (uint32_t)least[0] & 7;
 }
 
-/* The child to go on to: the nearest, or without order the last; any where the mask is empty. */
-RT_KERNEL uint32_t choose(uint32_t mask, RtFloat8 enter, bool ordered) {
+/* The child to visit next: the nearest, or without order the last; any if the mask is empty. */
+RT_KERNEL uint32_t choose_child(uint32_t mask, RtFloat8 enter, bool ordered) {
     return ordered ? least_lane(mask, (RtInt8)enter) : 31 - (uint32_t)__builtin_clz(mask | 1);
 }
 
-/* Goes on to one child of the mask, and waits with the others; where there is none, to what waits last.
- * Without a branch, for which way it went nobody could predict. */
-RT_KERNEL RtWideRef go_on(Flight *f, const RtWideNode *node, uint32_t mask, RtFloat8 enter, bool ordered,
-                          bool any) {
-    uint32_t top = f->top, lane = choose(mask, enter, ordered), others = mask & ~(1u << lane);
-    RtWideRef popped = f->waiting[top - 1], child = node->child[lane];
+/* Returns one child of the mask and pushes the others; if there is none, pops the stack. Without a branch,
+ * because it would be unpredictable. */
+RT_KERNEL RtWideRef descend(RayState *f, const RtWideNode *node, uint32_t mask, RtFloat8 enter, bool ordered,
+                            bool any) {
+    uint32_t top = f->top, lane = choose_child(mask, enter, ordered), others = mask & ~(1u << lane);
+    RtWideRef popped = f->stack[top - 1], child = node->child[lane];
     RtOrder8 order = rt_order8(others);
     if (!any) rt_store(&f->enter[top], rt_compress8(order, (RtInt8)enter));
-    rt_store(&f->waiting[top], rt_compress8(order, rt_load_ints8(node->child)));
+    rt_store(&f->stack[top], rt_compress8(order, rt_load_ints8(node->child)));
     f->top = top + (uint32_t)__builtin_popcount(others) - (mask == 0);
     return mask == 0 ? popped : child;
 }
@@ -207,15 +205,15 @@ RT_KERNEL RtSheared4 shear(const RtWideTriangles *block, const Axes *axes) {
 }
 
 /* Bit i: triangle i of a block passes the edge-function prefilter. */
-RT_KERNEL uint32_t sieve_block(const RtWideTriangles *block, const Axes *axes) {
+RT_KERNEL uint32_t prefilter_block(const RtWideTriangles *block, const Axes *axes) {
     const RtSheared4 s = shear(block, axes);
     return rt_edge_prefilter4(&s);
 }
 
 /* The same of a leaf: bit i is triangle i of it. */
-RT_KERNEL uint32_t sieve_leaf(const RtWideTriangles *blocks, RtWideRef ref, const Axes *axes) {
-    uint32_t mask = sieve_block(&blocks[0], axes);
-    if (rt_wide_count(ref) > RT_WIDE_BLOCK) mask |= sieve_block(&blocks[1], axes) << RT_WIDE_BLOCK;
+RT_KERNEL uint32_t prefilter_leaf(const RtWideTriangles *blocks, RtWideRef ref, const Axes *axes) {
+    uint32_t mask = prefilter_block(&blocks[0], axes);
+    if (rt_wide_count(ref) > RT_WIDE_BLOCK) mask |= prefilter_block(&blocks[1], axes) << RT_WIDE_BLOCK;
     return mask;
 }
 
@@ -224,10 +222,10 @@ RT_KERNEL bool admit(const float *triangle, const RtPreparedRay *ray, float *t) 
     RtFloat4 a = rt_triangle_vertex(triangle, RT_WIDE_BLOCK);
     RtFloat4 b = rt_triangle_vertex(triangle + VERTEX, RT_WIDE_BLOCK);
     RtFloat4 c = rt_triangle_vertex(triangle + (size_t)2 * VERTEX, RT_WIDE_BLOCK);
-    return rt_four_admit(rt_min(rt_min(a, b), c), rt_max(rt_max(a, b), c), ray, t);
+    return rt_admit4(rt_min(rt_min(a, b), c), rt_max(rt_max(a, b), c), ray, t);
 }
 
-/* Tests those triangles of a block in full; true where the search is over. */
+/* Tests the triangles `mask` of a block in full; true if the search is over. */
 RT_KERNEL bool test_block(const RtWideTriangles *block, uint32_t mask, const Axes *axes,
                           const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
     float at[RT_WIDE_BLOCK];
@@ -256,7 +254,7 @@ RT_KERNEL bool test_triangles(const RtWideTriangles *blocks, uint32_t mask, cons
     return false;
 }
 
-/* Tests what is in a leaf of anything else; true where the search is over. */
+/* Tests the objects of another leaf; true if the search is over. */
 RT_KERNEL bool test_objects(const RtWideTree *tree, const RtGeometry *g, RtWideRef ref,
                             const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
     const RtWideList *list = rt_wide_leaf_at(tree, ref);
@@ -287,9 +285,9 @@ RT_KERNEL void count_leaf(RtTally *tally, const RtWideTree *tree, const RtGeomet
     if (RT_OBSERVED(tally)) observe_leaf(tree, g, ref);
 }
 
-/* What follows a leaf in which something was tested: what waits and is entered beyond the best hit is
- * dropped, so that what is taken from the stack need not be looked at again. */
-RT_KERNEL void narrow(Flight *f) {
+/* After a leaf: drops the stack entries that are entered beyond the best hit, so entries need no test when
+ * they are popped. */
+RT_KERNEL void cull_stack(RayState *f) {
     float limit = rt_minf(f->best.t, f->ray.tmax);
     if (!(limit < f->limit)) return;
     f->limit = limit;
@@ -299,9 +297,9 @@ RT_KERNEL void narrow(Flight *f) {
         uint32_t left = top - i, lanes = left < RT_WIDE ? (1u << left) - 1 : 255;
         uint32_t mask = rt_le_bits(enter, rt_all8(limit)) & lanes;
         RtOrder8 order = rt_order8(mask);
-        RtInt8 refs = rt_load_ints8(&f->waiting[i]);
+        RtInt8 refs = rt_load_ints8(&f->stack[i]);
         rt_store(&f->enter[kept], rt_compress8(order, (RtInt8)enter));
-        rt_store(&f->waiting[kept], rt_compress8(order, refs));
+        rt_store(&f->stack[kept], rt_compress8(order, refs));
         kept += (uint32_t)__builtin_popcount(mask);
     }
     f->top = kept;

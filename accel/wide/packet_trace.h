@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The way of packets through the hierarchy. At a node those rays of a packet that are there are tested one
+/* The traversal of packets. At a node those rays of a packet that are there are tested one
  * after the other, against all its children at once, and each child gets the set of rays that meet it: the
  * node is read once for all, and what remains of a visit is shared by them. A beam that meets few of the
  * children is tested in place of its rays. This is the stream tracing of Wald, Gribble, Boulos & Kensler 2007
  * ("SIMD Ray Stream Tracing"), with sets as bits in place of lists.
  *
- * A packet alone would wait for each node to come from memory. So several are in flight, and take turns: what
- * one goes on to comes while the others are at theirs. */
-#ifndef RT_ACCEL_WIDE_PACKET_WAY_H
-#define RT_ACCEL_WIDE_PACKET_WAY_H
+ * A single packet would wait for each node to come from memory. So several are interleaved: while one waits
+ * for its prefetched node, the others continue. */
+#ifndef RT_ACCEL_WIDE_PACKET_TRACE_H
+#define RT_ACCEL_WIDE_PACKET_TRACE_H
 
 #include "accel/wide/packet_leaf.h"
 
@@ -16,7 +16,7 @@
  * the children, or its rays would visit too much that they miss. */
 enum { BEAM_LEAST_RAYS = 8, BEAM_MOST_CHILDREN = 3 };
 
-/* What has been done, to tell how much was shared. */
+/* Measures how much was shared. */
 typedef struct Shared {
     uint64_t visits, rays; /* of nodes, and the rays there */
 } Shared;
@@ -29,28 +29,28 @@ typedef struct Planes {
 } Planes;
 
 /* The rays that meet each child, and where the first of them may enter it. */
-typedef struct Met {
+typedef struct ChildSets {
     RtSets8 rays;
     RtFloat8 first;
-} Met;
+} ChildSets;
 
-RT_KERNEL void meet_child(Met *met, uint64_t rays, RtFloat8 near, RtFloat8 far) {
+RT_KERNEL void add_rays(ChildSets *met, uint64_t rays, RtFloat8 near, RtFloat8 far) {
     RtMask8 mask = rt_le_mask8(near, far);
     rt_sets8_add(&met->rays, mask, rays);
     met->first = rt_select_mask8(mask, rt_min(near, met->first), met->first);
 }
 
-RT_KERNEL void meet_ray(Met *met, const Planes *planes, const Packet *p, uint32_t i) {
+RT_KERNEL void test_ray(ChildSets *met, const Planes *planes, const Packet *p, uint32_t i) {
     RtFloat8 near = rt_all8(p->tmin[i]), far = rt_all8(p->limit[i]);
     for (uint32_t a = 0; a < 3; a++) {
         near = rt_max((planes->enter[a] - p->org_near[a][i]) * p->inv[a][i], near);
         far = rt_min((planes->leave[a] - p->org_far[a][i]) * p->inv[a][i], far);
     }
-    meet_child(met, one_ray(i), near, far);
+    add_rays(met, one_ray(i), near, far);
 }
 
 /* False where the rays are to be tested one by one. */
-RT_KERNEL bool meet_beam(Met *met, const Planes *planes, const Beam *beam, uint64_t rays) {
+RT_KERNEL bool test_beam(ChildSets *met, const Planes *planes, const Beam *beam, uint64_t rays) {
     RtFloat8 near = rt_all8(beam->tmin), far = rt_all8(beam->limit);
     for (uint32_t a = 0; a < 3; a++) {
         float least = beam->inv_least[a], most = beam->inv_most[a];
@@ -59,13 +59,13 @@ RT_KERNEL bool meet_beam(Met *met, const Planes *planes, const Beam *beam, uint6
         far = rt_min(rt_max(leave * least, leave * most), far);
     }
     if (__builtin_popcount(rt_le_bits(near, far)) > BEAM_MOST_CHILDREN) return false;
-    meet_child(met, rays, near, far);
+    add_rays(met, rays, near, far);
     return true;
 }
 
-/* Goes on to one child that rays meet, and waits with the others; false where they meet none. */
+/* Descends to one child that rays hit, and pushes the others; false if they hit none. */
 RT_KERNEL bool visit_node(Packet *p, const RtWideNode *node, uint64_t rays, bool ordered, bool any) {
-    Met met = {.first = rt_all8(INFINITY)};
+    ChildSets met = {.first = rt_all8(INFINITY)};
     Planes sides;
     for (uint32_t a = 0; a < 3; a++) {
         sides.enter[a] = planes(node, p->near[a]);
@@ -75,18 +75,18 @@ RT_KERNEL bool visit_node(Packet *p, const RtWideNode *node, uint64_t rays, bool
     for (uint32_t b = 0; b < BEAMS; b++) {
         uint64_t some = rays & UINT64_C(0xffff) << b * BEAM;
         if (!p->beam[b].tight || __builtin_popcountll(some) < BEAM_LEAST_RAYS) continue;
-        if (meet_beam(&met, &sides, &p->beam[b], some)) alone &= ~some;
+        if (test_beam(&met, &sides, &p->beam[b], some)) alone &= ~some;
     }
-    for (; alone; alone &= alone - 1) meet_ray(&met, &sides, p, first_ray(alone));
+    for (; alone; alone &= alone - 1) test_ray(&met, &sides, p, first_ray(alone));
 
     uint32_t mask = rt_sets8_bits(&met.rays);
     if (mask == 0) return false;
-    uint32_t top = p->top, lane = choose(mask, met.first, ordered), others = mask & ~(1u << lane);
+    uint32_t top = p->top, lane = choose_child(mask, met.first, ordered), others = mask & ~(1u << lane);
     _Alignas(RT_CACHE_LINE) uint64_t sets[RT_WIDE];
     RtOrder8 order = rt_order8(others);
     memcpy(sets, &met.rays, sizeof sets);
     if (!any) rt_store(&p->enter[top], rt_compress8(order, (RtInt8)met.first));
-    rt_store(&p->waiting[top], rt_compress8(order, rt_load_ints8(node->child)));
+    rt_store(&p->stack[top], rt_compress8(order, rt_load_ints8(node->child)));
     rt_sets8_compress(&p->rays[top], others, &met.rays);
     p->top = top + (uint32_t)__builtin_popcount(others);
     p->next = node->child[lane];
@@ -94,44 +94,44 @@ RT_KERNEL bool visit_node(Packet *p, const RtWideNode *node, uint64_t rays, bool
     return true;
 }
 
-/* ---- the way ---- */
+/* ---- the traversal ---- */
 
 /* The rays of a set that have found nothing nearer than this. */
-RT_KERNEL uint64_t not_beyond(const Packet *p, uint64_t rays, float enter) {
+RT_KERNEL uint64_t rays_before(const Packet *p, uint64_t rays, float enter) {
     uint64_t open = 0;
     for (uint32_t i = 0; i < PACKET; i += RT_LANES)
         open |= (uint64_t)rt_le_bits(rt_all(enter), rt_load(&p->limit[i])) << i;
     return rays & open;
 }
 
-/* Goes on to what waits last and still matters to a ray; false where there is nothing. */
-RT_KERNEL bool take_waiting(Packet *p, bool any) {
+/* Pops the stack down to an entry that some ray must still visit; false if there is none. */
+RT_KERNEL bool pop_stack(Packet *p, bool any) {
     while (p->top > 0) {
         uint64_t rays = p->rays[--p->top];
-        p->going = any ? rays & p->open : not_beyond(p, rays, p->enter[p->top]);
-        p->next = p->waiting[p->top];
+        p->going = any ? rays & p->open : rays_before(p, rays, p->enter[p->top]);
+        p->next = p->stack[p->top];
         if (p->going) return true;
     }
     return false;
 }
 
-/* One visit; false where it was the last. */
-RT_KERNEL bool go_ahead(Packet *p, const Question *q, Shared *shared, bool any) {
+/* One visit; false if it was the last. */
+RT_KERNEL bool step_packet(Packet *p, const Query *q, Shared *shared, bool any) {
     bool more = true;
     if (rt_wide_kind(p->next) == RT_WIDE_NODE) {
         shared->visits++;
         shared->rays += (uint64_t)__builtin_popcountll(p->going);
         if (!visit_node(p, rt_wide_node(q->tree, p->next), p->going, !any && q->self->order, any))
-            more = take_waiting(p, any);
+            more = pop_stack(p, any);
     } else {
         visit_leaf(p, q, p->next, p->going, any);
-        more = take_waiting(p, any);
+        more = pop_stack(p, any);
     }
     if (q->self->prefetch) prefetch(q->tree, p->next);
     return more;
 }
 
-RT_KERNEL void land_packet(Packet *p, const Question *q, bool any) {
+RT_KERNEL void finish_packet(Packet *p, const Query *q, bool any) {
     test_pairs(p, q->tree, 1, any);
     for (uint32_t i = 0; i < p->count; i++) {
         if (any)
@@ -141,31 +141,31 @@ RT_KERNEL void land_packet(Packet *p, const Question *q, bool any) {
     }
 }
 
-/* Traces rays[first..first + count) of a question, few enough for the numbers of a Sorter. */
-RT_KERNEL Shared trace_packets(const Question *q, Packet *packets, Sorter *sorter, size_t first, size_t count,
+/* Traces rays[first..first + count) of a query, few enough for the numbers of a Sorter. */
+RT_KERNEL Shared trace_packets(const Query *q, Packet *packets, Sorter *sorter, size_t first, size_t count,
                                bool any) {
     Shared shared = {0};
-    Packet *flying[RT_WIDE_MAX_PACKETS];
+    Packet *active[RT_WIDE_MAX_PACKETS];
     uint32_t n = 0, class;
     begin_sorting(sorter, first, count);
     for (; n < q->self->packets; n++) {
         class = sort_rays(sorter, q->rays);
         if (class == CLASSES) break;
-        flying[n] = &packets[n];
-        take_up(flying[n], q, sorter, class, any);
+        active[n] = &packets[n];
+        init_packet(active[n], q, sorter, class, any);
     }
     while (n > 0) {
         uint32_t kept = 0;
         for (uint32_t i = 0; i < n; i++) {
-            Packet *p = flying[kept] = flying[i];
-            if (go_ahead(p, q, &shared, any)) {
+            Packet *p = active[kept] = active[i];
+            if (step_packet(p, q, &shared, any)) {
                 kept++;
                 continue;
             }
-            land_packet(p, q, any);
+            finish_packet(p, q, any);
             class = sort_rays(sorter, q->rays);
             if (class == CLASSES) continue;
-            take_up(p, q, sorter, class, any);
+            init_packet(p, q, sorter, class, any);
             kept++;
         }
         n = kept;

@@ -1,3 +1,0 @@
-/* SPDX-License-Identifier: Apache-2.0 */
-#define RT_KERNELS rt_brute_portable
-#include "accel/brute/kernels.h"

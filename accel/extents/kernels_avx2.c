@@ -1,3 +1,0 @@
-/* SPDX-License-Identifier: Apache-2.0 */
-#define RT_KERNELS rt_extents_avx2
-#include "accel/extents/kernels.h"
