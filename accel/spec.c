@@ -5,7 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Where the first layer of `text` ends: at a '+' that is not that of an exponent, as in 1e+06. */
+/* The length of the first layer of `text`, which ends at a '+' that is not part of an exponent, as in
+ * 1e+06. */
 static size_t layer_length(const char *text) {
     size_t length = strcspn(text, "+");
     while (text[length] == '+' && text[length + 1] >= '0' && text[length + 1] <= '9') {
@@ -33,7 +34,7 @@ static RtStatus parse_layer(const char *text, size_t chars, RtSpecLayer *layer, 
     return rt_params_parse(layer->ops->params, layer->ops->param_count, params, what, layer->values, error);
 }
 
-/* Overlays above, one base below. */
+/* Checks that there are overlays above one base. */
 static RtStatus check_layers(const RtSpec *spec, const char *text, RtError *error) {
     for (uint32_t i = 0; i + 1 < spec->layer_count; i++) {
         const char *name = spec->layers[i].ops->name;
@@ -68,12 +69,12 @@ RtStatus rt_spec_parse(const char *text, RtSpec *spec, RtError *error) {
 
 bool rt_spec_is_remote(const RtSpec *spec) {
     for (uint32_t i = 0; i < spec->layer_count; i++) {
-        if (spec->layers[i].ops->away) return true;
+        if (spec->layers[i].ops->remote) return true;
     }
     return false;
 }
 
-bool rt_spec_text_is_away(const char *text) {
+bool rt_spec_text_is_remote(const char *text) {
     RtSpec spec;
     return rt_spec_parse(text, &spec, NULL) == RT_OK && rt_spec_is_remote(&spec);
 }

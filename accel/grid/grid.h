@@ -21,30 +21,30 @@
 
 #define RT_GRID_PARAMS(X)                                                                                    \
     X(RT_GRID_RULE, "rule", RT_CHOICE("cubic", "cubic|woo|heterogeneous|regular"),                           \
-      "how density becomes a resolution: cubic voxels; Woo's by the longest side; Klimaszewski's; as many "  \
-      "along each axis",                                                                                     \
+      "how density determines the resolution: cubic voxels; Woo's, by the longest side; Klimaszewski's; "    \
+      "equal along all axes",                                                                                \
       "Cleary & Wyvill 1988; Woo 1992; Klimaszewski & Sederberg 1997; Jevans & Wyvill 1989")                 \
     X(RT_GRID_DENSITY, "density", RT_FLOAT("4", 1e-6, 1e6, "0.001|1|20"),                                    \
-      "voxels per object that the rule aims at", "between 1 (too coarse) and 20 of Havran & Sixta 1999")     \
+      "voxels per object that the rule aims for", "between 1 (too coarse) and 20 of Havran & Sixta 1999")    \
     X(RT_GRID_RESOLUTION, "resolution",                                                                      \
       RT_RESOLUTION("auto", 1, RT_GRID_MAX_RESOLUTION, "1x1x1|2x3x5|64x1x64"),                               \
-      "voxels along x, y, z, of the outermost grid; auto follows the rule", "this program")                  \
+      "voxels along x, y, z of the outermost grid; auto: by the rule", "this program")                       \
     X(RT_GRID_DEPTH, "depth", RT_INT("1", 1, RT_GRID_MAX_LEVELS, "2|3"),                                     \
-      "levels of grids; from 2 on a voxel may hold a grid of its own, by the rule",                          \
-      "one grid; nested ones are Jevans & Wyvill 1989")                                                      \
+      "levels of grids; above 1, a voxel may contain a grid, by the rule",                                   \
+      "1: a uniform grid; nested grids: Jevans & Wyvill 1989")                                               \
     X(RT_GRID_NEST, "nest", RT_INT("8", 1, 1e6, "1|30"),                                                     \
-      "depth=2 and more: most objects of a voxel that holds no grid, above the last level",                  \
-      "the only number that gives the integers of Havran & Sixta 1999")                                      \
+      "depth > 1: most objects of a voxel without a nested grid, above the last level",                      \
+      "the only value that reproduces Havran & Sixta 1999")                                                  \
     X(RT_GRID_MARGIN, RT_MARGIN_PARAM("the grid"))                                                           \
     X(RT_GRID_FLAT, "flat", RT_FLOAT("0", 0, 1e9, "0.5"),                                                    \
-      "by how much the grid's box reaches beyond objects without thickness",                                 \
-      "0.02 comes nearest to the integers of Havran & Sixta 1999")                                           \
+      "distance by which the grid's box extends beyond flat objects",                                        \
+      "0.02 comes nearest to Havran & Sixta 1999")                                                           \
     X(RT_GRID_SLACK, "slack", RT_FLOAT("0", 0, 1e9, "0.1"),                                                  \
-      "objects also go into the voxels that come so close, in units of the scene",                           \
-      "0.01 gives the integers of Havran & Sixta 1999 for nested grids")                                     \
+      "a voxel also lists objects within this distance, in scene units",                                     \
+      "0.01 reproduces the nested grids of Havran & Sixta 1999")                                             \
     X(RT_GRID_MAILBOX, RT_MAILBOX_PARAM)                                                                     \
     X(RT_GRID_OVERLAP, "overlap", RT_CHOICE("box", "box|exact"),                                             \
-      "an object goes into the voxels that its box, or its surface, meets",                                  \
+      "a voxel lists the objects whose boxes, or whose surfaces, it meets",                                  \
       "boxes: Havran & Sixta 1999; exact: Akenine-Möller 2001")
 
 enum { RT_GRID_PARAMS(RT_PARAM_INDEX) RT_GRID_PARAM_COUNT };
@@ -131,7 +131,6 @@ void rt_grid_destroy(RtAccel *accel);
 void rt_grid_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_grid_validate(const RtAccel *accel, RtError *error);
 void rt_grid_each_box(const RtAccel *accel, RtBoxViewer viewer);
-RtStatus rt_grid_each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error);
 
 /* The box of a voxel, by its number in the level. */
 RtBox rt_grid_voxel_box(const RtGridLevel *level, uint32_t voxel);

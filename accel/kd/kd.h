@@ -21,18 +21,17 @@
     X(RT_KD_TRAVERSAL_COST, "traversal_cost", RT_FLOAT("0.3", 0, 1000, "0|1|10"),                            \
       "cost of visiting an inner node, in object tests", "measured")                                         \
     X(RT_KD_EMPTY_BONUS, "empty_bonus", RT_FLOAT("0.2", 0, 1, "0|0.5|1"),                                    \
-      "part of its cost that a split is forgiven for cutting off empty space", "Wald & Havran 2006")         \
+      "cost reduction, as a fraction, of a split that cuts off empty space", "Wald & Havran 2006")           \
     X(RT_KD_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("0", 0, 1e6, "1|2|1000000"),                              \
-      "a cell with at most so many objects is not divided", "Wald & Havran 2006: the cost alone decides")    \
+      "a cell with at most this many objects is not divided", "Wald & Havran 2006: the cost alone decides")  \
     X(RT_KD_MAX_DEPTH, "max_depth", RT_INT("-1", -1, RT_KD_DEPTH_LIMIT, "0|5|60"),                           \
-      "depth at which cells are divided no more, the root's being 0; -1: 8 and 1.3 times the binary "        \
-      "logarithm of the objects",                                                                            \
+      "largest depth of a leaf, the root's being 0; -1: 8 + 1.3 log2 of the number of objects",              \
       "Pharr & Humphreys 2004, Physically Based Rendering")                                                  \
     X(RT_KD_FAILURES, "failures", RT_INT("1", 0, RT_KD_DEPTH_LIMIT, "0|4"),                                  \
-      "splits on the way to a leaf that need not be expected to save anything",                              \
-      "Havran & Bittner 2002; measured: tests for steps")                                                    \
+      "splits on the path to a leaf that need not reduce the expected cost",                                 \
+      "Havran & Bittner 2002; measured: trades tests for steps")                                             \
     X(RT_KD_OVERLAP, "overlap", RT_CHOICE("box", "box|exact"),                                               \
-      "an object that is cut is as large, in each half, as its box or its surface",                          \
+      "the part of an object in a cell: its clipped box, or the box of its clipped surface",                 \
       "exact: Havran & Bittner 2002; Wald & Havran 2006")                                                    \
     X(RT_KD_MARGIN, RT_MARGIN_PARAM("the root"))                                                             \
     X(RT_KD_MAILBOX, RT_MAILBOX_PARAM)
@@ -194,8 +193,8 @@ void rt_kd_clear(RtKdBuilder *b);
  * then the result is useless. */
 RtStatus rt_kd_build_subtrees(RtKdBuilder *b, uint32_t most, int threads, bool *fits, RtError *error);
 
-/* kd_events.c. Writes the sorted events of the parts of ids[0..count) in a cell along an axis to
- * out[0..2 * count), and returns their number. `spare`: a buffer of the same size. */
+/* kd_events.c. Writes the sorted events of the parts of ids[0..count) in a cell along an axis to out[0..2 *
+ * count), and returns their number. `spare`: a buffer of the same size. */
 uint32_t rt_kd_make_events(const uint32_t *ids, const RtBox *parts, uint32_t count, const RtBox *cell,
                            int axis, RtKdEvent *out, RtKdEvent *spare);
 
@@ -206,7 +205,6 @@ void rt_kd_merge_events(RtKdEvent *events, uint32_t count, const RtKdEvent *more
 void rt_kd_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_kd_validate(const RtAccel *accel, RtError *error);
 void rt_kd_each_box(const RtAccel *accel, RtBoxViewer viewer);
-RtStatus rt_kd_each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error);
 
 /* The cell of a node, found by going through the tree: for pictures. */
 RtBox rt_kd_cell(const RtKd *kd, uint32_t node);

@@ -8,8 +8,8 @@
  * Invariants: the cells of children are the cell of their parent cut at its split, so neighbours share the
  * same bits of a plane. A split lies strictly between the planes of its cell or, where float32 has nothing in
  * between, on the upper one; then the upper children have no width and never hold an object
- * (rt_octree_sides). An object is in the list of every other leaf whose closed cell meets its box, grown
- * by rt_octree_grown. No leaf is deeper than max_depth, which bounds the stacks of traversals. */
+ * (rt_octree_sides). An object is in the list of every other leaf whose closed cell meets its box, grown by
+ * rt_octree_grown. No leaf is deeper than max_depth, which bounds the stacks of traversals. */
 #ifndef RT_ACCEL_OCTREE_OCTREE_H
 #define RT_ACCEL_OCTREE_OCTREE_H
 
@@ -17,26 +17,26 @@
 
 #define RT_OCTREE_PARAMS(X)                                                                                  \
     X(RT_OCTREE_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("1", 1, 1e6, "2|1000000"),                            \
-      "a cell with at most so many objects is not divided", "Havran 1999, RTN 12(2)")                        \
+      "a cell with at most this many objects is not divided", "Havran 1999, RTN 12(2)")                      \
     X(RT_OCTREE_MAX_DEPTH, "max_depth", RT_INT("-1", -1, RT_OCTREE_DEPTH_LIMIT, "0|4|6"),                    \
-      "depth at which cells are divided no more, the root's being 0; -1: two more than gives a cell per "    \
-      "object",                                                                                              \
+      "largest depth of a leaf, the root's being 0; -1: two more than gives one cell per object",            \
       "the best depths of Havran 1999: 5 to 7 for 8000 objects")                                             \
     X(RT_OCTREE_SPLIT, "split", RT_CHOICE("centre", "centre|cost"),                                          \
-      "where a cell is cut: its centre, or the cheapest of eleven planes per axis", "Glassner 1984")         \
+      "split planes: through the centre, or the cheapest of eleven per axis", "Glassner 1984")               \
     X(RT_OCTREE_MARGIN, RT_MARGIN_PARAM("the root"))                                                         \
     X(RT_OCTREE_SLACK, "slack", RT_FLOAT("0", 0, 1e6, "0.01|100"),                                           \
-      "how far from a cell an object may be and still be listed there, in units of the scene",               \
-      "0 is enough; Havran 1999 lists more (README)")                                                        \
+      "a cell also lists objects within this distance, in scene units",                                      \
+      "0 suffices; Havran 1999 lists more (README)")                                                         \
     X(RT_OCTREE_FLAT, "flat", RT_FLOAT("0", 0, 1e6, "0.01"),                                                 \
-      "how far objects that are flat along an axis reach to both sides, in units of the scene",              \
-      "0 is enough; Havran 1999 thickens them (README)")                                                     \
+      "thickness added on both sides of objects that are flat along an axis, in scene units",                \
+      "0 suffices; Havran 1999 thickens them (README)")                                                      \
     X(RT_OCTREE_CUT_FILLED, "cut_filled", RT_FLAG("off"),                                                    \
-      "divide cells, too, that every one of their objects' boxes fills",                                     \
+      "also divide cells that are filled by the boxes of all their objects",                                 \
       "off: it separates nothing; Havran 1999 does")                                                         \
     X(RT_OCTREE_MAILBOX, RT_MAILBOX_PARAM)                                                                   \
     X(RT_OCTREE_TRAVERSAL, "traversal", RT_CHOICE("parametric", "points|neighbours|parametric"),             \
-      "next leaf: sought from the root, from an ancestor, or left on a stack", "Havran 1999: fewest steps")
+      "the next leaf: searched from the root, from an ancestor, or kept on a stack",                         \
+      "Havran 1999: fewest steps")
 
 enum { RT_OCTREE_PARAMS(RT_PARAM_INDEX) RT_OCTREE_PARAM_COUNT };
 extern const RtParam rt_octree_params[RT_OCTREE_PARAM_COUNT];
@@ -88,7 +88,6 @@ bool rt_octree_divisible(const RtOctree *tree, const RtBox *boxes, const RtBox *
 void rt_octree_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_octree_validate(const RtAccel *accel, RtError *error);
 void rt_octree_each_box(const RtAccel *accel, RtBoxViewer viewer);
-RtStatus rt_octree_each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error);
 
 /* Of eight children, as bits, those on the lower and those on the upper side along an axis. */
 static inline uint32_t rt_octree_lower(int axis) {

@@ -11,10 +11,10 @@ static uint32_t depth_of(const RtOctree *tree, uint32_t index) {
     return depth;
 }
 
-/* Steps that traversal=neighbours is expected to take into a leaf and out of it, times twice the half area of
- * the root. A line comes in through a face, or goes out, with the ratio of areas: from the node that is cut
- * there down to the leaf and up again. Through a face of the root it comes from the root, or goes for good,
- * once it has climbed there. */
+/* Expected steps of traversal=neighbours into a leaf and out of it, times twice the half area of the root. A
+ * line enters or leaves through a face with the ratio of areas: it walks down from the node that is divided
+ * there to the leaf, and up again. Through a face of the root it starts at the root, or leaves once it has
+ * climbed there. */
 static double seeking_steps(const RtOctree *tree, uint32_t leaf) {
     const RtVec3 size = rt_box_size(tree->boxes[leaf]);
     const double face[3] = {(double)size.y * size.z, (double)size.z * size.x, (double)size.x * size.y};
@@ -30,10 +30,10 @@ static double seeking_steps(const RtOctree *tree, uint32_t leaf) {
             open -= face[a];
         }
     }
-    return steps + (2 * climbed - 1) * open; /* climbed: depth + 1 by now */
+    return steps + (2 * climbed - 1) * open; /* climbed: depth + 1 */
 }
 
-/* It meets a node with the ratio of their areas, and then takes the steps that lead there. */
+/* A line meets a node with the ratio of areas, and then takes the steps that lead there. */
 static double steps_to(const RtOctree *tree, uint32_t index) {
     double area = rt_box_half_area(tree->boxes[index]);
     if (tree->traversal == RT_OCTREE_PARAMETRIC) return area;
@@ -42,27 +42,30 @@ static double steps_to(const RtOctree *tree, uint32_t index) {
                                                : seeking_steps(tree, index) / 2;
 }
 
-void rt_octree_describe(const RtAccel *accel, RtDescription *out) {
+void rt_octree_each_box(const RtAccel *accel, RtBoxViewer viewer) {
     const RtOctree *tree = (const RtOctree *)accel;
-    *out =
-        (RtDescription){.bytes = tree->node_count * RT_OCTREE_NODE_BYTES + tree->id_count * sizeof(uint32_t),
-                        .references = tree->id_count,
-                        RT_NO_PREDICTION};
-    if (tree->node_count == 0) return;
-    double tests = 0, steps = 0, area = rt_box_half_area(tree->boxes[0]);
     for (uint32_t i = 0; i < tree->node_count; i++) {
         const RtOctreeNode *node = &tree->nodes[i];
         bool leaf = !rt_octree_is_inner(node);
-        out->interior += !leaf;
-        out->leaves += leaf;
-        out->empty_leaves += node->count == 0;
-        steps += steps_to(tree, i);
-        if (leaf) tests += rt_box_half_area(tree->boxes[i]) * node->count;
+        viewer.show(viewer.context, &(RtBoxView){.box = &tree->boxes[i],
+                                                 .depth = depth_of(tree, i),
+                                                 .leaf = leaf,
+                                                 .objects = leaf ? node->count : 0});
     }
-    out->depth = depth_of(tree, tree->node_count - 1);
-    if (!(area > 0)) return;
-    out->predicted_tests = out->predicted_cost = tests / area;
-    out->predicted_steps = steps / area;
+}
+
+void rt_octree_describe(const RtAccel *accel, RtDescription *out) {
+    const RtOctree *tree = (const RtOctree *)accel;
+    RtBoxSums sums = {.out = out};
+    *out =
+        (RtDescription){.bytes = tree->node_count * RT_OCTREE_NODE_BYTES + tree->id_count * sizeof(uint32_t),
+                        RT_NO_PREDICTION};
+    if (tree->node_count == 0) return;
+    double steps = 0, area = rt_box_half_area(tree->boxes[0]);
+    rt_octree_each_box(accel, (RtBoxViewer){rt_box_sums_add, &sums});
+    rt_box_sums_predict(&sums, &tree->boxes[0], 0);
+    for (uint32_t i = 0; i < tree->node_count; i++) steps += steps_to(tree, i);
+    if (area > 0) out->predicted_steps = steps / area;
 }
 
 /* ---- validate ---- */
@@ -199,25 +202,4 @@ RtStatus rt_octree_validate(const RtAccel *accel, RtError *error) {
     RtStatus status = check_all(&check);
     rt_free(check.listed);
     return status;
-}
-
-void rt_octree_each_box(const RtAccel *accel, RtBoxViewer viewer) {
-    const RtOctree *tree = (const RtOctree *)accel;
-    for (uint32_t i = 0; i < tree->node_count; i++) {
-        const RtOctreeNode *node = &tree->nodes[i];
-        bool leaf = !rt_octree_is_inner(node);
-        if (!leaf || node->count > 0)
-            viewer.show(viewer.context,
-                        &(RtBoxView){.box = &tree->boxes[i], .depth = depth_of(tree, i), .leaf = leaf});
-    }
-}
-
-RtStatus rt_octree_each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error) {
-    const RtOctree *tree = (const RtOctree *)accel;
-    (void)error;
-    for (uint32_t i = 0; i < tree->node_count; i++) {
-        const RtOctreeNode *node = &tree->nodes[i];
-        if (!rt_octree_is_inner(node)) viewer.show(viewer.context, node->count, depth_of(tree, i));
-    }
-    return RT_OK;
 }

@@ -154,7 +154,7 @@ void rt_plugin_ops_init(RtPluginOps *ops, const raytally_accel_ops *table) {
                             .paper = table->paper,
                             .params = ops->params,
                             .param_count = table->param_count,
-                            .away = true,
+                            .remote = true,
                             .build = build,
                             .destroy = destroy,
                             .describe = describe,

@@ -113,7 +113,7 @@ static RtStatus enter(RtPluginOps *ops, RtError *error) {
 RtStatus rt_plugin_enter(const RtSpec *spec, RtError *error) {
     for (uint32_t i = 0; i < spec->layer_count; i++) {
         const RtAccelOps *ops = spec->layers[i].ops;
-        if (ops->away) RT_TRY(enter((RtPluginOps *)ops, error));
+        if (ops->remote) RT_TRY(enter((RtPluginOps *)ops, error));
     }
     return RT_OK;
 }

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Trees from the top by the surface area heuristic, with every place between two neighbouring centres along
- * each of the axes tried (MacDonald & Booth 1990; the sweep of Wald, Boulos & Shirley 2007, "Ray Tracing
- * Deformable Scenes Using Dynamic Bounding Volume Hierarchies"). Time O(n log n) for balanced trees: the
- * references are sorted once per axis and then parted stably.
+/* Trees from the top by the surface area heuristic, with every position between two neighbouring centres
+ * tried along each axis (MacDonald & Booth 1990; the sweep of Wald, Boulos & Shirley 2007, "Ray Tracing
+ * Deformable Scenes Using Dynamic Bounding Volume Hierarchies"). O(n log n) for balanced trees: the
+ * references are sorted once per axis and then partitioned stably.
  *
- * There are three rows of the same references, each sorted along one axis. Those of a node are one run, at
- * the same place in all three, so that every pass over them reads memory in a row. */
+ * There are three rows of the same references, each sorted along one axis. The references of a node are one
+ * run, at the same position in all rows, so every pass reads memory sequentially. */
 #include "accel/tree/order.h"
 #include "accel/tree/sah_split.h"
 #include "accel/tree/tree.h"
@@ -15,7 +15,7 @@ typedef struct Sweep {
     RtTree *tree;
     RtTreeRef *rows[3];  /* [count] */
     RtTreeRef *spare;    /* [count] */
-    double *right_costs; /* [count] of what is right of a place: half area x number */
+    double *right_costs; /* [count] half area x number of the references right of a position */
     uint64_t *right;     /* a bit per reference, by id: it goes to the right */
 } Sweep;
 
@@ -30,8 +30,8 @@ static bool more_even(uint32_t left, uint32_t than, uint32_t count) {
     return a > b;
 }
 
-/* Improves *best by the places of row[0..count). Of places of equal cost, as between coincident boxes, the
- * more even one is better. */
+/* Improves *best by the positions in row[0..count). Among positions of equal cost, as between coincident
+ * boxes, the more balanced one wins. */
 static void try_axis(const Sweep *s, const RtTreeRef *row, uint32_t count, int axis, Place *best) {
     RtBox box = RT_EMPTY_BOX;
     for (uint32_t i = count; i-- > 1;) {
@@ -56,7 +56,7 @@ static Place find_place(const Sweep *s, uint32_t begin, uint32_t count, int dept
     return (Place){0, count / 2, rt_longest_axis(rt_refs_centers(s->rows[0] + begin, count))};
 }
 
-/* Moves what goes to the left to the front, either side in the order that it has. */
+/* Partitions stably, left side first. */
 static void part(const Sweep *s, RtTreeRef *row, uint32_t count) {
     uint32_t left = 0, right = 0;
     for (uint32_t i = 0; i < count; i++) {
@@ -66,7 +66,7 @@ static void part(const Sweep *s, RtTreeRef *row, uint32_t count) {
     for (uint32_t i = 0; i < right; i++) row[left + i] = s->spare[i];
 }
 
-/* Parts the references of a node in all rows; gives how many go to the left. */
+/* Partitions the references of a node in all rows; returns the number that go left. */
 static uint32_t divide(const Sweep *s, uint32_t begin, uint32_t count, int depth) {
     Place place = find_place(s, begin, count, depth);
     const RtTreeRef *row = s->rows[place.axis] + begin;
@@ -92,7 +92,7 @@ static uint32_t build(const Sweep *s, uint32_t begin, uint32_t count, int depth)
     return node;
 }
 
-/* The references in order along an axis, or NULL. */
+/* The references sorted along an axis, or NULL. */
 static RtTreeRef *make_row(const RtBox *boxes, uint32_t count, int axis) {
     RtKeyed *order = rt_order_axis(boxes, count, axis, 1);
     RtTreeRef *row = order ? rt_alloc(count, sizeof(RtTreeRef)) : NULL;

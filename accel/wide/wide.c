@@ -68,15 +68,15 @@ static void destroy(RtAccel *accel) {
 static RtTreeOptions options_of(const RtBuild *what, RtTreeMethod method) {
     const RtValue *values = what->values;
     return (RtTreeOptions){.method = method,
-                          .bits = MORTON_BITS,
-                          .radius = PLOC_RADIUS,
-                          .spatial = {.bins = (int)values[PARAM_BINS].i,
-                                      .alpha = values[PARAM_ALPHA].f,
-                                      .budget = values[PARAM_BUDGET].f,
-                                      .leaf = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
-                                      .traversal = 1,
-                                      .limit = what->limit},
-                          .reinsertion = (uint32_t)values[PARAM_REINSERTION].i};
+                           .bits = MORTON_BITS,
+                           .radius = PLOC_RADIUS,
+                           .spatial = {.bins = (int)values[PARAM_BINS].i,
+                                       .alpha = values[PARAM_ALPHA].f,
+                                       .budget = values[PARAM_BUDGET].f,
+                                       .leaf = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
+                                       .traversal = 1,
+                                       .limit = what->limit},
+                           .reinsertion = (uint32_t)values[PARAM_REINSERTION].i};
 }
 
 static RtStatus fill(RtWideTree *self, const RtBuild *what, RtTreeMethod method, RtError *error) {
@@ -144,10 +144,6 @@ static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
     rt_wide_each_box(((const RtWide *)accel)->nearest, viewer);
 }
 
-static RtStatus each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error) {
-    return rt_wide_each_leaf(((const RtWide *)accel)->nearest, viewer, error);
-}
-
 const RtAccelOps rt_wide_ops = {
     .name = "wide",
     .summary = "hierarchy of boxes eight wide, traced in vectors, many rays at once: the fastest",
@@ -162,6 +158,6 @@ const RtAccelOps rt_wide_ops = {
     .describe = describe,
     .validate = validate,
     .each_box = each_box,
-    .each_leaf = each_leaf,
+    .shows_lists = true,
     .available = available,
 };

@@ -273,7 +273,7 @@ static RtStatus verify_spec(Run *run, const Stage *stage, const RtVerifySpec *sp
         run->observer->notice(run->observer->context, notice);
         return RT_OK;
     }
-    const bool refused = status != RT_OK && rt_spec_text_is_away(spec->spec); /* for itself alone */
+    const bool refused = status != RT_OK && rt_spec_text_is_remote(spec->spec); /* for itself alone */
     if (status == RT_OK) status = check(run, stage, accel, spec, error);
     rt_accel_destroy(accel);
     if (status != RT_BROKEN && !refused) return status;

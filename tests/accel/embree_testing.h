@@ -121,6 +121,12 @@ typedef struct Rays {
     size_t count;
 } Rays;
 
+static inline void free_rays(Rays *r) {
+    rt_free(r->rays);
+}
+
+#define OWNED_RAYS OWNED(free_rays) Rays
+
 /* Rays through a target each, from `distance` scene sizes away at most, with dir of every length and with and
  * without bounds; kinds in runs, so that packets are coherent and not. */
 static inline Rays make_rays(const RtScene *scene, size_t count, float size, float distance) {
@@ -154,16 +160,12 @@ typedef struct Answers {
 
 static inline Answers ask(const RtScene *scene, const char *spec, Rays rays, bool counted) {
     Answers a = {rt_alloc(rays.count, sizeof(RtHit)), rt_alloc(rays.count, sizeof(bool)), {{0}}};
-    RtAccel *accel;
-    RtQuery query;
-    assert_ok(rt_accel_open(spec, scene, &accel, error));
-    assert_ok(accel->ops->validate(accel, error));
+    OWNED_ACCEL RtAccel *accel = open_valid(scene, spec);
+    OWNED_QUERY query;
     assert_ok(rt_query_init(&query, accel, error));
     rt_nearest(&query, rays.rays, rays.count, a.hits, counted ? a.tallies : NULL);
     RtTally apart[RT_RAY_KIND_COUNT] = {{0}};
     rt_occluded(&query, rays.rays, rays.count, a.blocked, counted ? apart : NULL);
-    rt_query_clear(&query);
-    rt_accel_destroy(accel);
     return a;
 }
 
@@ -171,6 +173,8 @@ static inline void forget(Answers *a) {
     rt_free(a->hits);
     rt_free(a->blocked);
 }
+
+#define OWNED_ANSWERS OWNED(forget) Answers
 
 static inline void assert_same(const Answers *got, const Answers *right, Rays rays, const char *spec) {
     for (size_t i = 0; i < rays.count; i++) {
@@ -192,14 +196,12 @@ static inline void assert_same(const Answers *got, const Answers *right, Rays ra
 /* By those of the specs that can be had here. */
 static inline void compare_with_brute(const RtScene *scene, Rays rays, const char *const *specs,
                                       size_t count) {
-    Answers right = ask(scene, "brute", rays, false);
+    OWNED_ANSWERS right = ask(scene, "brute", rays, false);
     for (size_t i = 0; i < count; i++) {
         if (!embree_has(specs[i])) continue;
-        Answers got = ask(scene, specs[i], rays, i % 2 == 1);
+        OWNED_ANSWERS got = ask(scene, specs[i], rays, i % 2 == 1);
         assert_same(&got, &right, rays, specs[i]);
-        forget(&got);
     }
-    forget(&right);
 }
 
 #endif

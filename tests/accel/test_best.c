@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* rt_best_specs: names that stand for the fastest of several settings. */
-#include "testing.h"
+#include "accel_testing.h"
 
 #include "accel/accel.h"
 
@@ -22,7 +22,7 @@ static size_t combinations(const char *settings) {
 }
 
 RT_TEST(every_name_stands_for_different_specs_that_can_be_built) {
-    RtScene scene;
+    OWNED_SCENE scene;
     rt_scene_init(&scene);
     assert_ok(rt_scene_finish(&scene, error));
     for (size_t i = 0; i < rt_accel_count(); i++) {
@@ -43,7 +43,6 @@ RT_TEST(every_name_stands_for_different_specs_that_can_be_built) {
             }
         }
     }
-    rt_scene_clear(&scene);
 }
 
 /* Embree's, where it was built in: packets and both builds, none robust; and what one ray at a time leaves.

@@ -64,8 +64,8 @@ RT_TEST(the_room_for_hits_is_had_or_it_is_a_status) {
 
 /* Asks all four kernels, and for a normal, while not one allocation may be made. */
 static void trace_without_memory(const char *spec, Row *row, const RtHit *expected) {
-    RtAccel *accel;
-    RtQuery query;
+    OWNED_ACCEL RtAccel *accel = NULL;
+    OWNED_QUERY query;
     RtError unavailable;
     RtHit hits[2][RAYS];
     bool blocked[2][RAYS];
@@ -90,8 +90,6 @@ static void trace_without_memory(const char *spec, Row *row, const RtHit *expect
             assert_int_equal(blocked[counted][i], expected[i].object != RT_NO_OBJECT);
         }
     }
-    rt_query_clear(&query);
-    rt_accel_destroy(accel);
 }
 
 RT_TEST(nothing_is_allocated_while_tracing) {

@@ -33,13 +33,13 @@ RT_TEST(native_mode_agrees_with_brute_on_triangles) {
         "embree",           "embree:query=8",  "embree:query=16",     "embree:query=stream",
         "embree:robust=on", "embree:isa=sse2", "embree:quality=high", "embree:quality=low",
     };
-    RtScene scene;
+    OWNED_SCENE scene;
     make_triangles(&scene, 500);
-    Rays rays = make_plain_rays(20000, 1);
-    Answers right = ask(&scene, "brute", rays, false);
+    OWNED_RAYS rays = make_plain_rays(20000, 1);
+    OWNED_ANSWERS right = ask(&scene, "brute", rays, false);
     for (size_t s = 0; s < sizeof specs / sizeof specs[0]; s++) {
         if (!embree_has(specs[s])) continue;
-        Answers got = ask(&scene, specs[s], rays, s % 2 == 1);
+        OWNED_ANSWERS got = ask(&scene, specs[s], rays, s % 2 == 1);
         size_t agree = 0, hits = 0;
         for (size_t i = 0; i < rays.count; i++) {
             RtHit g = got.hits[i], r = right.hits[i];
@@ -51,17 +51,13 @@ RT_TEST(native_mode_agrees_with_brute_on_triangles) {
         assert_true(hits > rays.count / 4);
         if (agree < rays.count / 1000 * 999)
             fail_msg("%s: only %zu of %zu agree", specs[s], agree, rays.count);
-        forget(&got);
     }
-    forget(&right);
-    rt_free(rays.rays);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(native_mode_sees_every_shape) {
-    RtScene scene;
+    OWNED_SCENE scene;
     make_soup(&scene, 80, 1, 10);
-    Rays rays = make_plain_rays(20000, 10);
+    OWNED_RAYS rays = make_plain_rays(20000, 10);
     Answers right = ask(&scene, "brute", rays, false), got = ask(&scene, "embree", rays, false);
     size_t seen[RT_SHAPE_COUNT] = {0}, agreed[RT_SHAPE_COUNT] = {0};
     for (size_t i = 0; i < rays.count; i++) {
@@ -79,8 +75,6 @@ RT_TEST(native_mode_sees_every_shape) {
     }
     forget(&right);
     forget(&got);
-    rt_free(rays.rays);
-    rt_scene_clear(&scene);
 }
 
 /* Embree asserts what it assumes, and ends the process where that does not hold. */
@@ -91,19 +85,16 @@ RT_TEST(native_mode_takes_every_valid_ray) {
                                         "embree:query=stream",
                                         "embree:query=8,robust=on",
                                         "embree:query=stream,isa=avx"};
-    RtScene scene;
+    OWNED_SCENE scene;
     make_soup(&scene, 60, 2, 10);
-    Rays rays = make_rays(&scene, 50000, 10, 3);
+    OWNED_RAYS rays = make_rays(&scene, 50000, 10, 3);
     for (size_t s = 0; s < sizeof specs / sizeof specs[0]; s++) {
         if (!embree_has(specs[s])) continue;
-        Answers got = ask(&scene, specs[s], rays, false);
+        OWNED_ANSWERS got = ask(&scene, specs[s], rays, false);
         for (size_t i = 0; i < rays.count; i++) {
             assert_true(got.hits[i].object == RT_NO_OBJECT ? isinf(got.hits[i].t) : isfinite(got.hits[i].t));
         }
-        forget(&got);
     }
-    rt_free(rays.rays);
-    rt_scene_clear(&scene);
 }
 
 /* ---- margins that verify found ---- */
