@@ -122,8 +122,7 @@ typedef struct RtCellView {
 } RtCellView;
 
 /* For `describe`: sums over the boxes of a structure that shows_lists, and a viewer that adds to them and to
- * *out.
- * */
+ * the counts of *out. */
 typedef struct RtBoxSums {
     RtDescription *out;
     double inner, leaves, tests; /* half areas; of leaves also times the lengths of their lists */
@@ -207,7 +206,7 @@ struct RtAccelOps {
 
     /* Optional, of an overlay, for pictures: the cell in which it looks up `ray`, of a kind that it answers.
      * Only the direction and the source of the ray matter. False if no cell contains it. */
-    bool (*look_up)(const RtAccel *accel, const RtRay *ray, RtCellView *cell);
+    bool (*find_cell)(const RtAccel *accel, const RtRay *ray, RtCellView *cell);
 
     /* Optional: RT_OK, or the error that occurred while rays were traced, which kernels cannot return. Not to
      * be called while a thread traces. */

@@ -7,20 +7,20 @@
  * conservative tests:
  *
  * 1. The *line* of the ray misses the extent, computed in double, with the extent widened by a pad. Let m be
- * the largest distance along one axis from the origin to a corner of the scene's box, and e = 2^-24.
- * Triangles have the least precise hit function: a sheared coordinate has an error of at most (1 + 4 + 2) e m
- * (difference, shear and product, sum), and its signs are exact from there on, so a line that hits passes
- * within sqrt(2) 7 e m < 16 e m = 2^-20 m of the triangle. The other shapes compute in double; the worst
- * case, a ray near the tip of a cone, has the square root of an ulp, 2^-25 m. The pad is 2^-18 m. The
- * remaining 3 * 2^-20 m exceeds all rounding here: 2^-50 m for positions relative to the origin, and 2^-50 c
- * for absolute ones, where c is a coordinate of the scene; c <= |org| + m, so another 2^-48 |org| is added
- * for scenes that are a point. Where float32 runs out of exponents, a rounding is not proportional to m, but
- * at most 2^-150; 2^-140 is added for that. Rounding the direction moves the point of the hit by at most
- * 2^-51 m, which is covered. Extents are built in double and inflated by 2^-46 c (extent.c); slabs are then
- * rounded outward to float32.
+ *    the largest distance along one axis from the origin to a corner of the scene's box, and e = 2^-24.
+ *    Triangles have the least precise hit function: a sheared coordinate has an error of at most (1 + 4 + 2)
+ *    e m (difference, shear and product, sum), and its signs are exact from there on, so a line that hits
+ *    passes within sqrt(2) 7 e m < 16 e m = 2^-20 m of the triangle. The other shapes compute in double; the
+ *    worst case, a ray near the tip of a cone, is off by the root of an ulp, 2^-25 m. The pad is 2^-18 m.
+ *    The remaining 3 * 2^-20 m exceeds all rounding here: 2^-50 m for positions relative to the origin, and
+ *    2^-50 c for absolute ones, where c is a coordinate of the scene; c <= |org| + m, so another 2^-48 |org|
+ *    is added for scenes that are a point. Where float32 runs out of exponents, a rounding is not
+ *    proportional to m, but at most 2^-150; 2^-140 is added for that. Rounding the direction moves the point
+ *    of the hit by at most 2^-51 m, which is covered. Extents are built in double and inflated by 2^-46 c
+ *    (extent.c); slabs are then rounded outward to float32.
  * 2. The box of the object or group, along the ray's major axis alone, begins beyond the best t or ends
- * before tmin. The t of a hit is clamped to the object's box, so the theorem applies. The t at which the line
- * enters the extent is no bound: a triangle seen edge-on may be hit at any t in its box. */
+ *    before tmin. The t of a hit is clamped to the object's box, so the theorem applies. The t at which the
+ *    line enters the extent is no bound: a triangle seen edge-on may be hit at any t in its box. */
 #ifndef RT_ACCEL_EXTENT_H
 #define RT_ACCEL_EXTENT_H
 
@@ -85,8 +85,7 @@ size_t rt_extent_set_bytes(const RtExtentSet *set);
  * (Gottschalk, Lin & Manocha 1996). */
 void rt_extent_fit(RtExtentSet *set, uint32_t index, const RtGroup *group);
 
-/* Half the surface area of extent `index`, whose box is `box`; NaN for slabs, whose polytope is not computed.
- */
+/* Half the surface area of extent `index`, whose box is `box`; NaN for slabs. */
 double rt_extent_half_area(const RtExtentSet *set, uint32_t index, const RtBox *box);
 
 /* RT_OK, or RT_MISMATCH with a message that begins with `owner` if extent `index` does not contain `group`
@@ -181,8 +180,7 @@ static inline bool rt_box_in_reach(const RtBox *box, const RtPreparedRay *ray, f
 }
 
 /* The extent test: false only if no hit of an object in extent `index`, whose box is `box`, lies in
- * [ray->tmin, limit]; otherwise *enter is at most the t of any such hit. `kind` is a constant after inlining.
- */
+ * [ray->tmin, limit]; otherwise *enter is at most the t of such a hit. `kind` becomes a constant. */
 RT_KERNEL bool rt_extent_hit(const RtExtentSet *set, RtExtentKind kind, uint32_t index, const RtBox *box,
                              const RtPreparedRay *ray, const RtLine *line, float limit, float *enter) {
     if (kind == RT_EXTENT_BOX) return rt_box_hit(box, ray, limit, enter);

@@ -68,17 +68,6 @@ static RtTreeOptions options_of(const RtBuild *what) {
                            .reinsertion = (uint32_t)values[PARAM_REINSERTION].i};
 }
 
-static RtStatus fill(RtHierarchy *hierarchy, const RtBuild *what, RtError *error) {
-    const RtGeometry *geometry = &what->scene->geometry;
-    RtTreeOptions options = options_of(what);
-    RtTree tree;
-    if (geometry->object_count == 0) return RT_OK;
-    RT_TRY(rt_tree_build(&tree, geometry, &options, what->threads, error));
-    RtStatus status = rt_hierarchy_lay_out(hierarchy, &tree, what->threads, error);
-    rt_tree_clear(&tree);
-    return status;
-}
-
 static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     const RtValue *values = what->values;
     RtAccel *accel;
@@ -88,7 +77,9 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
                                .leaf_limit = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
                                .traversal_cost = values[PARAM_TRAVERSAL_COST].f};
     ((RtBvh *)accel)->mailbox = values[PARAM_MAILBOX].flag;
-    return rt_accel_built(accel, fill(hierarchy, what, error), out);
+    const RtTreeOptions options = options_of(what);
+    return rt_accel_built(
+        accel, rt_hierarchy_build(hierarchy, &what->scene->geometry, &options, what->threads, error), out);
 }
 
 /* ---- queries ---- */

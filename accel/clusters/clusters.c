@@ -17,9 +17,8 @@
 #include "accel/clusters/clusters.h"
 
 #include "accel/tree/order.h"
+#include "accel/tree/tree_build.h"
 #include "core/base/memory.h"
-
-typedef enum Method { AGGLOMERATIVE, PLOC, GOLDSMITH_SALMON, RUBIN_WHITTED, SAH } Method;
 
 #define PARAMS(X)                                                                                            \
     X(PARAM_METHOD, "method",                                                                                \
@@ -62,23 +61,18 @@ static void destroy(RtAccel *accel) {
     rt_free(self);
 }
 
-static RtStatus make_tree(RtTree *tree, const RtBuild *what, RtError *error) {
-    const RtGeometry *geometry = &what->scene->geometry;
-    const RtValue *values = what->values;
-    const RtBox *boxes = geometry->boxes;
-    uint32_t count = geometry->object_count;
-    const RtInsertionOrder order = {values[PARAM_ORDER].choice == 1, (uint32_t)values[PARAM_PERMUTATIONS].i,
-                                    (uint64_t)values[PARAM_SEED].i};
-    switch ((Method)values[PARAM_METHOD].choice) {
-    case AGGLOMERATIVE: return rt_tree_agglomerative(tree, boxes, count, error);
-    case PLOC:
-        return rt_tree_ploc(tree, boxes, count, RT_MAX_MORTON_BITS, (uint32_t)values[PARAM_RADIUS].i,
-                            what->threads, error);
-    case GOLDSMITH_SALMON: return rt_tree_insertion(tree, boxes, count, &order, error);
-    case RUBIN_WHITTED: return rt_tree_topdown(tree, boxes, count, 0, what->threads, error);
-    case SAH: break;
-    }
-    return rt_tree_topdown(tree, boxes, count, 16, what->threads, error);
+/* In the order of the choices of `method`. */
+static const RtTreeMethod methods[] = {RT_TREE_AGGLOMERATIVE, RT_TREE_PLOC, RT_TREE_INSERTION, RT_TREE_MEDIAN,
+                                       RT_TREE_BINNED};
+
+static RtTreeOptions options_of(const RtValue *values) {
+    return (RtTreeOptions){.method = methods[values[PARAM_METHOD].choice],
+                           .bits = RT_MAX_MORTON_BITS,
+                           .radius = (uint32_t)values[PARAM_RADIUS].i,
+                           .spatial = {.bins = 16},
+                           .insertion = {values[PARAM_ORDER].choice == 1,
+                                         (uint32_t)values[PARAM_PERMUTATIONS].i,
+                                         (uint64_t)values[PARAM_SEED].i}};
 }
 
 /* The objects below node `index`, a run of ids. */
@@ -94,13 +88,8 @@ static RtGroup group_of(const RtClusters *self, uint32_t index) {
 static RtStatus fill(RtClusters *self, const RtBuild *what, RtError *error) {
     const RtGeometry *geometry = &what->scene->geometry;
     const RtValue *values = what->values;
-    RtTree tree;
-    if (geometry->object_count > 0) {
-        RT_TRY(make_tree(&tree, what, error));
-        RtStatus status = rt_hierarchy_lay_out(&self->hierarchy, &tree, what->threads, error);
-        rt_tree_clear(&tree);
-        if (status != RT_OK) return status;
-    }
+    const RtTreeOptions options = options_of(values);
+    RT_TRY(rt_hierarchy_build(&self->hierarchy, geometry, &options, what->threads, error));
     uint32_t node_count = self->hierarchy.node_count;
     RT_TRY(rt_extent_set_init(&self->set, (RtExtentKind)values[PARAM_EXTENT].choice,
                               (uint32_t)values[PARAM_SLABS].i, node_count, error));

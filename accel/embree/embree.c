@@ -2,9 +2,10 @@
 /* embree: Intel's ray tracing kernels, as a competitor and as a reference.
  *
  *   mode=native  Triangles and spheres are Embree's own geometry, with its own arithmetic: fast, and judged
- * by verdicts. Polygons and cones, which Embree lacks, use our hit functions (embree_native.c). mode=user
- * Everything uses our hit functions in Embree's hierarchy: the same bits as brute (embree.h proves it),
- * independent of our structures. Its time is that of the callbacks; never quote it as Embree's.
+ *                by verdicts. Polygons and cones, which Embree lacks, use our hit functions.
+ *   mode=user    Everything uses our hit functions in Embree's hierarchy: the same bits as brute (embree.h
+ *                proves it), independent of our structures. Its time is that of the callbacks; never quote
+ *                it as Embree's.
  *
  * Paper: Wald, Woop, Benthin, Johnson & Ernst 2014, "Embree: A Kernel Framework for Efficient CPU Ray
  * Tracing", ACM TOG 33(4). Object tests are counted in user mode only. Embree exposes no extent tests, steps

@@ -4,8 +4,7 @@
  * dir by 0. Fields that are the same for all rays are written once per call. Consecutive object ids are
  * computed, not looked up. A chunk with a direction that is not ordinary (embree_batch.h) takes a slow path.
  *
- * Denormals are disabled from the first ray to the last, except while the slow path measures dir in double.
- * */
+ * Denormals are disabled from the first ray to the last, except where the slow path uses double. */
 #include "accel/embree/embree_batch.h"
 
 #include <stddef.h>

@@ -108,11 +108,11 @@ RT_KERNEL Line line_of(const RtPreparedRay *ray) {
     return (Line){three(ray->org_near), three(ray->org_far), three(ray->inv), rt_four_sign(three(&ray->dir))};
 }
 
-/* Selects `high` on the axes on which child `place` is the upper one, otherwise `low`. */
-RT_KERNEL RtFour choose(uint32_t place, RtFour low, RtFour high) {
+/* Selects `high` on the axes on which child `octant` is the upper one, otherwise `low`. */
+RT_KERNEL RtFour choose(uint32_t octant, RtFour low, RtFour high) {
     static const RtFourBits upper[8] = {{0, 0, 0, 0},   {-1, 0, 0, 0},   {0, -1, 0, 0},   {-1, -1, 0, 0},
                                         {0, 0, -1, -1}, {-1, 0, -1, -1}, {0, -1, -1, -1}, {-1, -1, -1, -1}};
-    return rt_four_pick(upper[place], low, high);
+    return rt_four_pick(upper[octant], low, high);
 }
 
 /* Splits the interval `near`..`far` of the ray in a node, on each axis, at its split. */
@@ -123,7 +123,7 @@ RT_KERNEL Planes cut(const Line *line, const RtVec3 *split, RtFour near, RtFour 
                     rt_four_pick(line->sign, last, far), rt_four_pick(line->sign, far, last)};
 }
 
-/* The entry and exit of the ray for the eight children, by place: [0] below the split along z, [1] above. */
+/* The entry and exit of the ray for the eight children, by octant: [0] below the split along z, [1] above. */
 RT_KERNEL void span_children(const Planes *p, float tmin, float limit, RtFour enter[2], RtFour leave[2]) {
     RtFour near = __builtin_shufflevector(p->low_near, p->high_near, 0, 4, 1, 5);
     RtFour far = __builtin_shufflevector(p->low_far, p->high_far, 0, 4, 1, 5);
@@ -148,9 +148,10 @@ RT_KERNEL uint32_t push_children(const Planes *planes, const RtOctreeNode *node,
     uint32_t pushed = 0;
     memcpy(enters, enter, sizeof enters);
     for (; children; children &= children - 1) {
-        uint32_t place = (uint32_t)__builtin_ctz(children), i = pushed++;
-        for (; i > 0 && stack[i - 1].enter < enters[place]; i--) stack[i] = stack[i - 1];
-        stack[i] = (Waiting){enters[place], node->first + place, (uint16_t)depth, node->count >> place & 1};
+        uint32_t octant = (uint32_t)__builtin_ctz(children), i = pushed++;
+        for (; i > 0 && stack[i - 1].enter < enters[octant]; i--) stack[i] = stack[i - 1];
+        stack[i] =
+            (Waiting){enters[octant], node->first + octant, (uint16_t)depth, node->count >> octant & 1};
     }
     return pushed;
 }
@@ -178,9 +179,9 @@ RT_KERNEL void descend(const RtOctree *self, RtMailbox *mailbox, const RtPrepare
         } else if (rt_octree_is_inner(node)) {
             if (at.node > 0) {
                 const Planes *p = &visited[at.depth - 1];
-                uint32_t place = rt_octree_place(at.node);
-                near = choose(place, p->low_near, p->high_near);
-                far = choose(place, p->low_far, p->high_far);
+                uint32_t octant = rt_octree_octant(at.node);
+                near = choose(octant, p->low_near, p->high_near);
+                far = choose(octant, p->low_far, p->high_far);
             }
             Planes *own = &visited[at.depth];
             *own = cut(&line, &node->split, near, far);
@@ -312,7 +313,7 @@ RT_KERNEL Crossing next_crossing(const RtOctree *self, const RtPreparedRay *ray,
 RT_KERNEL uint32_t climb(const RtOctree *self, const RtPreparedRay *ray, uint32_t index, int axis,
                          RtTally *tally) {
     while (index != 0) {
-        bool first = near_side(ray, axis) >> rt_octree_place(index) & 1;
+        bool first = near_side(ray, axis) >> rt_octree_octant(index) & 1;
         index = self->nodes[index].parent;
         if (first) return index;
         RT_COUNT(tally, steps, 1);

@@ -23,7 +23,7 @@ static double seeking_steps(const RtOctree *tree, uint32_t leaf) {
     double climbed = 1;
     for (uint32_t at = leaf; at > 0; at = tree->nodes[at].parent, climbed++) {
         for (int a = 0; a < 3; a++) {
-            bool *side = &sought[a][rt_octree_place(at) >> a & 1 ? 0 : 1];
+            bool *side = &sought[a][rt_octree_octant(at) >> a & 1 ? 0 : 1];
             if (*side) continue;
             *side = true;
             steps += 2 * climbed * face[a];
@@ -44,11 +44,14 @@ static double steps_to(const RtOctree *tree, uint32_t index) {
 
 void rt_octree_each_box(const RtAccel *accel, RtBoxViewer viewer) {
     const RtOctree *tree = (const RtOctree *)accel;
+    uint32_t depth = 0, end = 1, next = 1; /* of the level, of the next one */
     for (uint32_t i = 0; i < tree->node_count; i++) {
         const RtOctreeNode *node = &tree->nodes[i];
         bool leaf = !rt_octree_is_inner(node);
+        if (i == end) depth++, end = next;
+        if (!leaf) next = node->first + 8;
         viewer.show(viewer.context, &(RtBoxView){.box = &tree->boxes[i],
-                                                 .depth = depth_of(tree, i),
+                                                 .depth = depth,
                                                  .leaf = leaf,
                                                  .objects = leaf ? node->count : 0});
     }
@@ -86,10 +89,10 @@ static RtStatus check_place(const Check *check, uint32_t index) {
     const RtOctree *tree = check->tree;
     uint32_t parent = tree->nodes[index].parent;
     const RtOctreeNode *above = &tree->nodes[parent];
-    if (parent >= index || !rt_octree_is_inner(above) || above->first != index - rt_octree_place(index)) {
+    if (parent >= index || !rt_octree_is_inner(above) || above->first != index - rt_octree_octant(index)) {
         return rt_fail(check->error, RT_MISMATCH, "octree: node %u is no child of its parent", index);
     }
-    RtBox cell = rt_octree_child_box(tree->boxes[parent], above->split, rt_octree_place(index));
+    RtBox cell = rt_octree_child_box(tree->boxes[parent], above->split, rt_octree_octant(index));
     if (!same_box(cell, tree->boxes[index])) {
         return rt_fail(check->error, RT_MISMATCH, "octree: the cell of node %u is not cut from its parent's",
                        index);
@@ -105,7 +108,7 @@ static RtStatus check_inner(const Check *check, uint32_t index) {
     const RtOctree *tree = check->tree;
     const RtOctreeNode *node = &tree->nodes[index];
     const RtBox *cell = &tree->boxes[index];
-    if (node->first <= index || rt_octree_place(node->first) != 0 || node->first > tree->node_count - 8) {
+    if (node->first <= index || rt_octree_octant(node->first) != 0 || node->first > tree->node_count - 8) {
         return rt_fail(check->error, RT_MISMATCH, "octree: the children of node %u are not where nodes are",
                        index);
     }
@@ -115,15 +118,15 @@ static RtStatus check_inner(const Check *check, uint32_t index) {
         return rt_fail(check->error, RT_MISMATCH, "octree: the split of node %u lies outside its cell",
                        index);
     }
-    for (uint32_t place = 0; place < 8; place++) {
-        const RtOctreeNode *child = &tree->nodes[node->first + place];
+    for (uint32_t octant = 0; octant < 8; octant++) {
+        const RtOctreeNode *child = &tree->nodes[node->first + octant];
         if (child->parent != index) {
             return rt_fail(check->error, RT_MISMATCH, "octree: node %u is no child of its parent",
-                           node->first + place);
+                           node->first + octant);
         }
-        if ((node->count >> place & 1) != (child->count == 0)) {
+        if ((node->count >> octant & 1) != (child->count == 0)) {
             return rt_fail(check->error, RT_MISMATCH, "octree: node %u is not as empty as its parent says",
-                           node->first + place);
+                           node->first + octant);
         }
     }
     return RT_OK;
@@ -164,8 +167,8 @@ static uint64_t leaves_touched(const RtOctree *tree, uint32_t index, const RtBox
     if (!rt_octree_is_inner(node)) return 1;
     uint32_t children = rt_octree_sides(&tree->boxes[index], node->split, object);
     uint64_t touched = 0;
-    for (uint32_t place = 0; place < 8; place++) {
-        if (children >> place & 1) touched += leaves_touched(tree, node->first + place, object);
+    for (uint32_t octant = 0; octant < 8; octant++) {
+        if (children >> octant & 1) touched += leaves_touched(tree, node->first + octant, object);
     }
     return touched;
 }

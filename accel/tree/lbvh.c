@@ -29,7 +29,7 @@ typedef struct Builder {
 } Builder;
 
 /* The number of row[0..count) that go left; count >= 2. */
-static uint32_t divide(const RtKeyed *row, uint32_t count) {
+static uint32_t find_split(const RtKeyed *row, uint32_t count) {
     uint64_t differing = row[0].key ^ row[count - 1].key;
     if (differing == 0) return count / 2;
     while (differing & (differing - 1)) differing &= differing - 1; /* only the highest bit is left */
@@ -42,7 +42,7 @@ static uint32_t divide(const RtKeyed *row, uint32_t count) {
 }
 
 static void get_sides(const Builder *b, Group group, Group sides[2]) {
-    uint32_t left = divide(b->row + group.begin, group.count);
+    uint32_t left = find_split(b->row + group.begin, group.count);
     sides[0] = (Group){group.begin, left, group.node + 1};
     sides[1] = (Group){group.begin + left, group.count - left, group.node + 2 * left};
 }

@@ -109,8 +109,7 @@ RtStatus rt_tree_insertion(RtTree *tree, const RtBox *boxes, uint32_t count, con
 RtStatus rt_tree_topdown(RtTree *tree, const RtBox *boxes, uint32_t count, int bins, int threads,
                          RtError *error);
 
-/* Top-down by the surface area heuristic, with every position between centres tried (MacDonald & Booth 1990).
- * */
+/* Top-down by the surface area heuristic, all positions between centres tried (MacDonald & Booth 1990). */
 RtStatus rt_tree_sweep(RtTree *tree, const RtBox *boxes, uint32_t count, RtError *error);
 
 typedef struct RtSpatial {

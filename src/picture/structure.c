@@ -298,7 +298,7 @@ static void draw_legend(const Drawing *d) {
 /* ---- from outside ---- */
 
 static bool has_picture(const RtAccelOps *ops) {
-    return ops->each_box || ops->look_up;
+    return ops->each_box || ops->find_cell;
 }
 
 static RtStatus refuse(const RtAccelOps *ops, RtError *error) {

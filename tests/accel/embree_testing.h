@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What tests of accel/embree share: soups of all shapes, rays that graze boxes, and answers beside those of
+/* Shared by tests of accel/embree: soups of all shapes, rays that graze boxes, and answers next to those of
  * brute. */
 #ifndef RT_TESTS_EMBREE_TESTING_H
 #define RT_TESTS_EMBREE_TESTING_H
@@ -10,7 +10,7 @@
 
 #include <stdio.h>
 
-/* Tells why, where it is not: the tests are skipped then. */
+/* Prints why not; then the tests are skipped. */
 static inline bool embree_is_built_in(void) {
     const RtAccelOps *ops;
     RtError error = {RT_OK, ""};
@@ -19,8 +19,8 @@ static inline bool embree_is_built_in(void) {
     return false;
 }
 
-/* Whether this processor and this Embree have what the spec asks for: Embree 4 has no streams. Anything else
- * that is refused fails the test. */
+/* Whether this processor and this Embree support the spec: Embree 4 has no streams. Any other refusal fails
+ * the test. */
 static inline bool embree_has(const char *text) {
     RtSpec spec;
     RtError why = {RT_OK, ""};
@@ -161,7 +161,7 @@ typedef struct Answers {
 static inline Answers ask(const RtScene *scene, const char *spec, Rays rays, bool counted) {
     Answers a = {rt_alloc(rays.count, sizeof(RtHit)), rt_alloc(rays.count, sizeof(bool)), {{0}}};
     OWNED_ACCEL RtAccel *accel = open_valid(scene, spec);
-    OWNED_QUERY query;
+    OWNED_QUERY query = {0};
     assert_ok(rt_query_init(&query, accel, error));
     rt_nearest(&query, rays.rays, rays.count, a.hits, counted ? a.tallies : NULL);
     RtTally apart[RT_RAY_KIND_COUNT] = {{0}};
@@ -193,7 +193,7 @@ static inline void assert_same(const Answers *got, const Answers *right, Rays ra
     }
 }
 
-/* By those of the specs that can be had here. */
+/* Tests the specs that are available here. */
 static inline void compare_with_brute(const RtScene *scene, Rays rays, const char *const *specs,
                                       size_t count) {
     OWNED_ANSWERS right = ask(scene, "brute", rays, false);

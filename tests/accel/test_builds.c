@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Every accelerator, on any number of threads and at any scale: no array overflows, and the structure is that
- * of one thread. */
+/* Every accelerator, on any number of threads and at any scale: no array overflows, and the structure does
+ * not depend on threads. */
 #include "equivalence_testing.h"
 
 #include "accel_testing.h"
@@ -26,7 +26,7 @@ static void make_triangles(RtScene *scene, uint32_t count, float from, float siz
     assert_ok(rt_scene_finish(scene, error));
 }
 
-/* False where this machine cannot build it. */
+/* False if this machine cannot build it. */
 static bool describe(const char *spec, const RtScene *scene, int threads, RtDescription *out) {
     RtAccel *accel;
     RtError problem;

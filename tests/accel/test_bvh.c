@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/bvh from the inside: its invariants, broken on purpose, and its depth. */
+/* accel/bvh: invariants, each broken on purpose, and depth. */
 #include "accel_testing.h"
 #include "clock_testing.h"
 
@@ -37,7 +37,7 @@ RT_TEST(validate_names_each_invariant_that_is_broken) {
     hierarchy->nodes[0].first = hierarchy->node_count - 1;
     assert_broken(&bvh->base, "children that are not there");
     hierarchy->nodes[0] = root;
-    hierarchy->nodes[0].count = 3; /* the traversal knows pairs only */
+    hierarchy->nodes[0].count = 3; /* the traversal is binary */
     assert_broken(&bvh->base, "node 0 has 3 children, not 2 to 2");
     hierarchy->nodes[0] = root;
 
@@ -97,7 +97,7 @@ RT_TEST(coincident_objects_are_halved_within_the_depth_limit) {
     }
 }
 
-/* Spheres at distances that grow by powers of 2: a split always cuts off the last few, the worst case in
+/* Spheres at distances that grow by powers of 2: each split cuts off only the last few, the worst case for
  * depth. */
 RT_TEST(a_chain_of_growing_distances_stays_within_the_depth_limit) {
     OWNED_SCENE scene;
@@ -114,7 +114,7 @@ RT_TEST(a_chain_of_growing_distances_stays_within_the_depth_limit) {
         snprintf(spec, sizeof spec, "bvh:max_leaf_size=1,build=%s", builds[b]);
         OWNED_ACCEL RtBvh *bvh = open_valid(&scene, spec);
         RtDescription description = described(bvh);
-        if (b < 2 || b == 4) assert_true(description.depth > 34); /* or the test would show nothing */
+        if (b < 2 || b == 4) assert_true(description.depth > 34); /* otherwise the test proves nothing */
         assert_true(description.depth <= RT_TREE_MAX_DEPTH);
     }
 }

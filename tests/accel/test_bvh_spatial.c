@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* bvh:build=spatial: what is cut, that nothing of it is lost, and rays that would find out. */
+/* bvh:build=spatial: which objects are cut, that no part is lost, and rays that would reveal it. */
 #include "slivers_testing.h"
 #include "tree_testing.h"
 
@@ -99,7 +99,7 @@ RT_TEST(without_budget_or_overlap_it_is_the_binned_tree) {
     }
 }
 
-RT_TEST(validate_misses_a_part_of_a_divided_object) {
+RT_TEST(validate_misses_a_part_of_a_split_object) {
     OWNED_SCENE scene = make_slivers(200, 3, 1, 0);
     OWNED_ACCEL RtBvh *bvh = open_valid(&scene, "bvh:build=spatial,max_leaf_size=4");
     RtHierarchy *hierarchy = &bvh->hierarchy;
@@ -182,7 +182,7 @@ RT_TEST(degenerate_scenes_are_built) {
     }
 }
 
-/* Enough of them for the top to be built by all threads; and for more than FEW to share a budget. */
+/* Enough objects for all threads to build the top, and for groups of more than SMALL references. */
 RT_TEST(the_tree_is_the_same_bit_for_bit_on_any_number_of_threads) {
     OWNED_SCENE scene = make_slivers(12000, 7, 1, 0);
     RtSpatial how = {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/clusters: exactness of every kind of extent with every order and method, the shape of its nodes, and
- * each invariant broken on purpose. */
+/* accel/clusters: every kind of extent with every order and method is exact; the shape of nodes; invariants,
+ * each broken on purpose. */
 #include "accel_testing.h"
 #include "equivalence_testing.h"
 
@@ -13,8 +13,7 @@
 static const char *const methods[] = {"agglomerative", "ploc", "goldsmith-salmon", "rubin-whitted", "sah"};
 enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
 
-/* Every kind with every order and method, on wide nodes and full leaves: more than one parameter at a
- * time. */
+/* Every kind with every order and method, on wide nodes and full leaves: several parameters at a time. */
 RT_TEST(every_combination_answers_like_brute) {
     static const char *const shapes[] = {"width=2", "width=5,max_leaf_size=4", "width=16,max_leaf_size=32"};
     static const char *const kinds[] = {"box", "sphere", "obb", "slabs"};
@@ -70,17 +69,14 @@ RT_TEST(widening_opens_the_largest_child_and_lowers_the_predicted_cost_by_its_vi
 }
 
 RT_TEST(objects_share_a_leaf_where_that_costs_no_more) {
-    RtScene apart = make_row(2);
-    OWNED_ACCEL RtClusters *self = open_valid(&apart, "clusters:max_leaf_size=2");
-    assert_int_equal(self->hierarchy.node_count, 3); /* 28 * 2 > 28 + 2 * 12 */
-    rt_accel_destroy(&self->base);
-    rt_scene_clear(&apart);
-    OWNED_SCENE scene;
+    OWNED_SCENE apart = make_row(2), scene;
+    OWNED_ACCEL RtClusters *two = open_valid(&apart, "clusters:max_leaf_size=2");
+    assert_int_equal(two->hierarchy.node_count, 3); /* 28 * 2 > 28 + 2 * 12 */
     begin_scene(&scene);
     for (int i = 0; i < 2; i++) assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(1, 0, 0), 1, error));
     assert_ok(rt_scene_finish(&scene, error));
-    self = open_valid(&scene, "clusters:max_leaf_size=2");
-    assert_int_equal(self->hierarchy.node_count, 1);
+    OWNED_ACCEL RtClusters *one = open_valid(&scene, "clusters:max_leaf_size=2");
+    assert_int_equal(one->hierarchy.node_count, 1);
 }
 
 static void count_box(void *context, const RtBoxView *view) {
@@ -161,7 +157,8 @@ RT_TEST(validate_names_each_invariant_of_the_tree_that_is_broken) {
 }
 
 RT_TEST(validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep) {
-    RtScene scene = make_row(2);
+    enum { COUNT = 80 };
+    OWNED_SCENE scene = make_row(2), three = make_row(3), row = make_row(COUNT);
     for (uint32_t i = 0; i < 2; i++) scene.geometry.boxes[i] = scene.geometry.box;
     OWNED_ACCEL RtClusters *self = open_valid(&scene, "clusters");
     self->hierarchy.ids[1] = self->hierarchy.ids[0];
@@ -169,9 +166,7 @@ RT_TEST(validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep) {
     self->hierarchy.node_count = 1;
     assert_broken(&self->base, "children that are not there");
     rt_accel_destroy(&self->base);
-    rt_scene_clear(&scene);
 
-    RtScene three = make_row(3);
     self = open_valid(&three, "clusters:method=rubin-whitted,max_leaf_size=3");
     RtNode root = self->hierarchy.nodes[0];
     assert_int_equal(self->hierarchy.node_count, 5);
@@ -185,11 +180,8 @@ RT_TEST(validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep) {
     self->hierarchy.nodes[1] = two;
     assert_broken(&self->base, "has two parents");
     rt_accel_destroy(&self->base);
-    rt_scene_clear(&three);
 
     /* A chain by hand: node 2 i has a leaf and the rest. */
-    enum { COUNT = 80 };
-    OWNED_SCENE row = make_row(COUNT);
     self = open_valid(&row, "clusters");
     for (uint32_t i = 0; i < COUNT; i++) {
         self->hierarchy.ids[i] = i;

@@ -43,7 +43,7 @@ static const Row rows[] = {
     {"brute", BETWEEN, ANY, {MISSES(2)}},
     {"brute", BESIDE, NEAREST, {MISSES(2)}},
 
-    /* ideal, which was told the answers: one test for a hit, none for a miss. */
+    /* ideal, which recorded the answers: one test for a hit, none for a miss. */
     {"ideal", THROUGH, NEAREST, {HITS(1)}},
     {"ideal", THROUGH, ANY, {HITS(1)}},
     {"ideal", BETWEEN, NEAREST, {MISSES(0)}},
@@ -64,7 +64,7 @@ static const Row rows[] = {
     /* A visit that costs ten object tests never pays here: the root is a leaf of two. */
     {"bvh:traversal_cost=10", THROUGH, NEAREST, {HITS(2), VISITS(1, 1, 1)}},
     {"bvh:traversal_cost=10", THROUGH, ANY, {HITS(1), VISITS(1, 1, 1)}},
-    /* However a root and two leaves are built. */
+    /* Every build makes a root and two leaves. */
     {"bvh:max_leaf_size=1,build=sweep", THROUGH, NEAREST, {HITS(1), VISITS(3, 2, 1)}},
     {"bvh:max_leaf_size=1,build=lbvh", THROUGH, NEAREST, {HITS(1), VISITS(3, 2, 1)}},
     {"bvh:max_leaf_size=1,build=spatial", THROUGH, NEAREST, {HITS(1), VISITS(3, 2, 1)}},
@@ -72,7 +72,7 @@ static const Row rows[] = {
 
     /* clusters: a step per node visited. A root and two leaves, as of bvh; with traversal_order=fixed an
      * extent is tested when its turn comes, so `occluded` has never asked for the second leaf's. BETWEEN
-     * enters the ball about both spheres, but neither's own; the slabs about both turn it away at once. */
+     * enters the ball about both spheres, but neither's own; the slabs about both reject it at once. */
     {"clusters", THROUGH, NEAREST, {HITS(1), VISITS(3, 2, 1)}},
     {"clusters:extent=sphere", THROUGH, NEAREST, {HITS(1), VISITS(3, 2, 1)}},
     {"clusters:method=sah", THROUGH, ANY, {HITS(1), VISITS(3, 2, 1)}},
@@ -153,7 +153,7 @@ static const Row rows[] = {
 
     /* extents: a step and an extent test per object, until the search is over; sphere 1 begins beyond the hit
      * on sphere 0. BETWEEN is inside the boxes, but 0.64 from the centres of the spheres; of slabs, the three
-     * of the axes are the box again, and the diagonals of a cube's faces turn the ray away. */
+     * of the axes are the box again, and the diagonals of a cube's faces reject the ray. */
     {"extents:kind=box", THROUGH, NEAREST, {HITS(1), .extent_tests = 2, .steps = 2}},
     {"extents:kind=box", THROUGH, ANY, {HITS(1), .extent_tests = 1, .steps = 1}},
     {"extents:kind=box", BETWEEN, NEAREST, {MISSES(2), .extent_tests = 2, .steps = 2}},
@@ -191,7 +191,7 @@ RT_TEST(counters_are_what_was_counted_by_hand) {
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         const Row *row = &rows[i];
         OWNED_ACCEL RtAccel *accel = NULL;
-        OWNED_QUERY query;
+        OWNED_QUERY query = {0};
         RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
         assert_ok(rt_accel_open(row->spec, &scene, &accel, error));
         assert_ok(rt_accel_learn(accel, rays, answers, RAY_COUNT, error));

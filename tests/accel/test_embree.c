@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/embree: no objects, a structure outgrown, memory, and which Embree it is. Skipped without Embree. */
+/* accel/embree: an empty scene, a scene that outgrows its structure, memory, and the version. Skipped without
+ * Embree. */
 #include "embree_testing.h"
 
 #ifdef RT_WITH_EMBREE
@@ -63,7 +64,7 @@ RT_TEST(an_error_of_the_device_is_known_after_tracing) {
     assert_non_null(strstr(failure.message, "Embree reports error 2"));
 }
 
-/* What its memory monitor has counted, and our indices of triangles where it has triangles. */
+/* The count of its memory monitor, and our indices of triangles if there are triangles. */
 RT_TEST(its_bytes_are_what_it_has_allocated_and_our_arrays) {
     static const char *const specs[] = {"embree", "embree:mode=user"};
     OWNED_SCENE scene;

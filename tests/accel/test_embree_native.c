@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/embree, mode=native: as brute says but at edges, and what it says otherwise is a margin. Skipped
- * without Embree. */
+/* accel/embree, mode=native: agrees with brute except at edges, and a difference is a margin. Skipped without
+ * Embree. */
 #include "embree_testing.h"
 
 #include "scenes/open.h"
@@ -13,7 +13,7 @@ static void make_triangles(RtScene *scene, uint32_t count) {
     assert_ok(rt_scene_finish(scene, error));
 }
 
-/* Rays between random points, which go past edges and corners at ordinary distances; dir short and long. */
+/* Rays between random points, past edges and corners at ordinary distances; dir short and long. */
 static Rays make_plain_rays(size_t count, float size) {
     Rays r = {rt_alloc(count, sizeof(RtRay)), count};
     assert_non_null(r.rays);
@@ -27,7 +27,7 @@ static Rays make_plain_rays(size_t count, float size) {
     return r;
 }
 
-/* Between triangles lie edges, where native mode may see another object; hence 99.9 %. */
+/* Native mode may hit another object at edges; hence 99.9 %. */
 RT_TEST(native_mode_agrees_with_brute_on_triangles) {
     static const char *const specs[] = {
         "embree",           "embree:query=8",  "embree:query=16",     "embree:query=stream",
@@ -77,7 +77,7 @@ RT_TEST(native_mode_sees_every_shape) {
     forget(&got);
 }
 
-/* Embree asserts what it assumes, and ends the process where that does not hold. */
+/* Embree asserts its assumptions, and aborts if one fails. */
 RT_TEST(native_mode_takes_every_valid_ray) {
     static const char *const specs[] = {"embree",
                                         "embree:query=8",

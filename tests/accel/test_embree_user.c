@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/embree, mode=user: brute bit for bit, by every query, instruction set and quality, at every size.
- * Skipped without Embree. */
+/* accel/embree, mode=user: brute bit for bit, by every query, instruction set and quality, in scenes of every
+ * size. Skipped without Embree. */
 #include "embree_testing.h"
 
 RT_TEST(user_mode_is_brute_bit_for_bit_by_every_query) {
@@ -16,7 +16,7 @@ RT_TEST(user_mode_is_brute_bit_for_bit_by_every_query) {
     compare_with_brute(&scene, rays, specs, sizeof specs / sizeof specs[0]);
 }
 
-/* An ISA that the machine lacks is refused, and then there is nothing to compare. */
+/* An instruction set that the machine lacks is refused; then there is nothing to compare. */
 RT_TEST(user_mode_is_brute_by_every_isa_and_quality) {
     static const char *const isas[] = {"sse2", "sse4.2", "avx", "avx2", "avx512"};
     static const char *const qualities[] = {"low", "medium", "high"};
@@ -44,7 +44,7 @@ RT_TEST(user_mode_is_brute_in_scenes_of_every_size_and_from_far_away) {
     }
 }
 
-/* Every hit is asked for again with nothing but its t left of the interval, and from where it is. */
+/* Every hit is traced again with an interval that is only its t, and from its point. */
 RT_TEST(user_mode_finds_hits_at_the_very_ends_of_the_interval) {
     static const char *const specs[] = {"embree:mode=user", "embree:mode=user,query=8,robust=on",
                                         "embree:mode=user,query=16", "embree:mode=user,query=stream"};

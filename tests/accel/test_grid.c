@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/grid/ from the inside: its invariants, broken on purpose, its rules of resolution, its limits. */
+/* accel/grid: invariants, each broken on purpose, rules of resolution, and limits. */
 #include "accel_testing.h"
 
 #include "accel/grid/grid.h"
@@ -33,8 +33,8 @@ RT_TEST(the_rules_of_resolution_give_what_their_formulas_say) {
     assert_resolution(&scene, "grid:density=0.000001", 1, 1, 1);
 }
 
-/* The planes halfway are where spheres touch one another. A voxel holds its lower planes but not its upper
- * ones: along each axis the lower sphere is in both voxels, the upper one in its own alone. */
+/* Spheres touch at the planes halfway. A voxel contains its lower planes but not its upper ones: along each
+ * axis the lower sphere is in both voxels, the upper one only in its own. */
 RT_TEST(a_voxel_holds_its_lower_planes) {
     OWNED_SCENE scene;
     make_lattice(&scene, 2, 2, 2);
@@ -84,7 +84,7 @@ RT_TEST(validate_names_each_invariant_that_is_broken) {
     assert_broken(&grid->base, "not ascending ids");
     level->ids[last] = id;
 
-    /* The first object taken out of the first list. */
+    /* The first list without its first object. */
     memmove(level->ids, level->ids + 1, (level->first[512] - 1) * sizeof(uint32_t));
     for (uint32_t v = 1; v <= 512; v++) level->first[v]--;
     assert_broken(&grid->base, "voxels, but");
@@ -103,7 +103,7 @@ RT_TEST(a_grid_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {
                      RT_BAD_INPUT);
     assert_int_equal(rt_alloc_live(), live);
 
-    /* What is said to fit does, and one voxel more a side does not. */
+    /* The named resolution fits, and one more voxel a side does not. */
     static const char *const specs[] = {"density=1e6", "resolution=500x90x3", "overlap=exact,density=1e5"};
     for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
         enum { LIMIT = 100000 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/kd/ from the inside: splits worked out by hand, its invariants, broken on purpose, its limits. */
+/* accel/kd: splits computed by hand, invariants, each broken on purpose, and limits. */
 #include "accel_testing.h"
 #include "equivalence_testing.h"
 
@@ -20,7 +20,7 @@ static void assert_lists(const RtKd *kd, uint32_t node, uint32_t length, uint32_
     if (length > 0) assert_int_equal(kd->ids[kd->nodes[node].first], first_id);
 }
 
-/* An upright square at height z. */
+/* A horizontal square at height z. */
 static void add_floor(RtScene *scene, float x, float y, float z, float size) {
     const RtVec3 v[4] = {{x, y, z}, {x + size, y, z}, {x + size, y + size, z}, {x, y + size, z}};
     assert_ok(rt_scene_add_polygon(scene, 0, v, 4, error));
@@ -96,7 +96,7 @@ RT_TEST(a_flat_scene_is_divided_within_its_plane) {
     }
 }
 
-/* Objects in one place cannot be parted: whatever is spent on it ends. */
+/* Coincident objects cannot be separated: building stops whatever the parameters allow. */
 RT_TEST(coincident_objects_stay_in_one_leaf) {
     OWNED_SCENE scene;
     begin_scene(&scene);
@@ -110,7 +110,7 @@ RT_TEST(coincident_objects_stay_in_one_leaf) {
     assert_int_equal(d.empty_leaves, 6); /* one at each face */
 }
 
-/* Ten parallel cylinders across the boxes of each other: only their surfaces can be parted. */
+/* Ten parallel cylinders whose boxes overlap: only their surfaces can be separated. */
 RT_TEST(slanted_objects_are_parted_by_their_surfaces) {
     OWNED_SCENE scene;
     begin_scene(&scene);
@@ -222,7 +222,7 @@ RT_TEST(several_threads_refuse_what_one_refuses_and_leave_nothing_behind) {
     assert_ok(rt_scene_open("random:n=70000", &scene, error));
     assert_ok(rt_params_parse(rt_kd_params, RT_KD_PARAM_COUNT, "", "kd", values, error));
     int64_t live = rt_alloc_live();
-    /* In the top, in a subtree, in no subtree alone. */
+    /* Exceeded in the top, in a subtree, only by the sum. */
     for (uint64_t limit = 1 << 12; limit <= 1 << 20; limit *= 16) {
         RtError refusals[2];
         for (int t = 0; t < 2; t++) {

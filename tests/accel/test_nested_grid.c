@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/grid/ with depth > 1: which voxels hold grids, the published structures, the invariants of nested
- * grids, broken on purpose, their limits, and what they gain. */
+/* accel/grid with depth > 1: which voxels contain grids, the published structures, invariants of nested
+ * grids, each broken on purpose, their limits, and their gain. */
 #include "accel_testing.h"
 
 #include "accel/grid/grid.h"
@@ -42,7 +42,7 @@ RT_TEST(nesting_ends_at_the_depth_given_or_with_the_voxels_that_hold_too_many) {
     assert_int_equal(describe_spec(&scene, "grid:nest=300,depth=4").depth, 1);
 }
 
-/* 40 objects with one and the same box. */
+/* 40 objects with the same box. */
 RT_TEST(nothing_is_nested_where_every_object_fills_the_voxel) {
     OWNED_SCENE scene;
     begin_scene(&scene);

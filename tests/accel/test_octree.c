@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/octree/ from the inside: its invariants, broken on purpose, what goes into which cell, its limits. */
+/* accel/octree: invariants, each broken on purpose, the cells of objects, and limits. */
 #include "accel_testing.h"
 #include "equivalence_testing.h"
 
@@ -45,7 +45,7 @@ RT_TEST(a_split_by_cost_is_nearer_to_the_objects) {
     assert_ok(rt_octree_validate(&cost->base, error));
 }
 
-/* Thirty objects that fill the same box cannot be separated: no depth is spent on it. */
+/* Thirty objects with the same box cannot be separated, so no depth is spent on them. */
 RT_TEST(coincident_objects_stay_in_one_leaf) {
     OWNED_SCENE same;
     const float x[30] = {0};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* core/shape/overlap.h: which boxes the surface of an object meets, and grids that list objects by it. */
+/* core/shape/overlap.h: boxes that the surface of an object meets, and grids that list objects by surface. */
 #include "accel_testing.h"
 #include "equivalence_testing.h"
 
@@ -61,7 +61,7 @@ RT_TEST(a_slanted_cylinder_leaves_corners_of_its_box_free) {
     rt_geometry_clear(&g);
 }
 
-/* Asserts what the part of object 0 in a box is, to a few units of float32. */
+/* Asserts the part of object 0 in a box, to a few units of float32. */
 static void assert_part(const RtGeometry *g, RtBox box, RtBox expected) {
     RtBox part;
     assert_true(rt_object_part(g, 0, &box, margin, &part));
@@ -108,7 +108,7 @@ RT_TEST(parts_of_balls_and_cones_end_where_they_narrow) {
     rt_geometry_clear(&g);
 }
 
-/* The own box of the object is cut into eight by planes through a point of its surface: that is in the part
+/* The box of the object is cut into eight by planes through a point of its surface: the point is in the part
  * in each of them. */
 static void assert_parts_hold(const RtScene *scene, uint32_t id, RtVec3 point, double near) {
     RtBox own = scene->geometry.boxes[id], part;
@@ -124,12 +124,12 @@ static void assert_parts_hold(const RtScene *scene, uint32_t id, RtVec3 point, d
     }
 }
 
-/* Points that rays hit are points of surfaces: boxes about them are met, whatever the shape. */
+/* Points that rays hit are points of surfaces: boxes around them are met, for every shape. */
 RT_TEST(boxes_about_hits_are_met) {
     for (size_t family = 0; family < rt_family_count(); family++) {
         OWNED_SCENE scene;
         OWNED_ACCEL RtAccel *brute = NULL;
-        OWNED_QUERY query;
+        OWNED_QUERY query = {0};
         enum { RAYS = 500 };
         RtRay rays[RAYS];
         RtHit hits[RAYS];
@@ -179,7 +179,7 @@ RT_TEST(a_ray_with_the_shortest_of_directions_is_not_trusted_to_voxels) {
     assert_ok(rt_scene_finish(&scene, error));
     for (size_t i = 0; i < 2; i++) {
         OWNED_ACCEL RtAccel *accel = NULL;
-        OWNED_QUERY query;
+        OWNED_QUERY query = {0};
         RtHit hit;
         assert_ok(rt_accel_open(specs[i], &scene, &accel, error));
         assert_ok(rt_query_init(&query, accel, error));

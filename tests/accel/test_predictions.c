@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Predictions of what a random line costs, held against random lines: over objects so small that hardly any
- * line meets one, nothing stops a line, as the predictions assume. */
+/* Predictions for random lines against random lines: over objects so small that hardly any line hits one, no
+ * hit ends a traversal, as the predictions assume. */
 #include "accel_testing.h"
 
 #include "rays/rayset.h"

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* End-point overlap and leaf-count variability of hierarchies that are small enough to know them. */
+/* End-point overlap and leaf-count variability of hierarchies small enough to compute them by hand. */
 #include "accel_testing.h"
 
 #include <math.h>
 
-/* Sampled by 4096 points and as many lines: three standard errors of what is here. */
+/* Three standard errors of 4096 points and 8192 lines. */
 static const double CLOSE = 0.03;
 
 /* A triangle whose box is a unit cube from x on: the part of it below x + 1/2 is a quarter. */
@@ -78,8 +78,8 @@ RT_TEST(what_is_no_triangle_has_no_overlap_and_what_is_no_hierarchy_no_quality) 
     }
 }
 
-/* A point of a divided object is held by the leaf of its part. */
-RT_TEST(parts_of_divided_objects_are_told_apart) {
+/* The leaf of a part contains the points of that part. */
+RT_TEST(parts_of_split_objects_are_distinguished) {
     OWNED_SCENE scene = make_pair(0, 0);
     const char *spec = "bvh:build=spatial,max_leaf_size=1,budget=4,alpha=0";
     RtDescription description = describe_spec(&scene, spec);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/tree/reinsertion.c: what moves, what it gains, and that nothing else changes. */
+/* accel/tree/reinsertion.c: which subtrees move, the gain, and that nothing else changes. */
 #include "tree_testing.h"
 
 #include <string.h>
 
-/* A binned tree, and poor ones: medians, and chains in the order of ids. */
+/* A binned tree, and bad ones: medians, and chains in the order of ids. */
 enum { BINNED, MEDIANS, CHAIN, KINDS };
 
 static RtTree make_tree(const RtBox *boxes, uint32_t count, int kind) {
@@ -38,7 +38,7 @@ static void assert_same_references(const RtTree *tree, const RtBox *boxes) {
     rt_free(seen);
 }
 
-/* Boxes of unions hold their children and nothing else. */
+/* Boxes of inner nodes are tight. */
 static void assert_tight(const RtTree *tree) {
     for (uint32_t i = 0; i < tree->used; i++) {
         if (rt_tree_is_leaf(tree, i)) continue;
@@ -137,7 +137,7 @@ static double cost_after(const RtTree *tree, uint32_t node, uint32_t target) {
     uint32_t p = parent_of(tree, node);
     uint32_t sibling = tree->nodes[p].child[tree->nodes[p].child[0] == node ? 1 : 0];
     put_instead(&copy, parent_of(tree, p), p, sibling);
-    copy.nodes[p].child[0] = RT_TREE_LEAF; /* it is the parent of none for now */
+    copy.nodes[p].child[0] = RT_TREE_LEAF; /* it has no children for now */
     put_instead(&copy, parent_of(&copy, target), target, p);
     copy.nodes[p].child[0] = target;
     copy.nodes[p].child[1] = node;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/tree: orders along axes and by Morton codes, and the methods that rest on them, linear hierarchies
- * and sweeps. */
+/* accel/tree: orders along axes and by Morton codes, and the methods based on them: LBVH and sweep. */
 #include "tree_testing.h"
 
 #include "accel/tree/order.h"
@@ -117,7 +116,7 @@ RT_TEST(a_sweep_finds_the_cheapest_of_all_splits_and_so_do_as_many_bins_as_objec
     }
 }
 
-/* Boxes with all that is hard: a group far off, many in one place, and the zeros of either sign. */
+/* Hard boxes: a distant group, coincident boxes, zeros of either sign. */
 static RtBox *make_hard_boxes(uint32_t count) {
     RtBox *boxes = make_boxes(count, 3);
     for (uint32_t i = 0; i < count; i += 7) boxes[i] = boxes[i % 3];

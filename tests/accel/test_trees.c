@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/tree: the methods against their definitions, and bounded depth. */
+/* accel/tree: methods against their definitions, and the depth limit. */
 #include "tree_testing.h"
 
 #include "accel/tree/neighbours.h"
@@ -59,7 +59,7 @@ RT_TEST(the_nearest_neighbour_is_the_one_that_a_scan_finds) {
     rt_neighbours_clear(&neighbours);
 }
 
-/* The definition: of all pairs of all clusters the nearest, until one is left. */
+/* The definition: merges the nearest pair of all clusters until one is left. */
 static RtTree make_greedy_tree(const RtBox *boxes, uint32_t count) {
     RtTree tree;
     bool gone[1024] = {false};
@@ -87,7 +87,7 @@ RT_TEST(agglomeration_unites_the_nearest_pair_of_all) {
         OWNED_MEMORY RtBox *boxes = make_boxes(COUNT, seed);
         RtTree greedy = make_greedy_tree(boxes, COUNT), tree = make_tree(boxes, COUNT, 0);
         assert_tree(&tree);
-        /* The same unions, in another order. */
+        /* The same merges, in another order. */
         for (uint32_t i = COUNT; i < greedy.used; i++) {
             uint32_t j = COUNT;
             while (j < tree.used && memcmp(&tree.nodes[j].box, &greedy.nodes[i].box, sizeof(RtBox)) != 0) j++;
@@ -177,7 +177,7 @@ RT_TEST(coincident_objects_stay_within_the_depth_limit) {
     for (int m = 0; m < METHOD_COUNT; m++) {
         OWNED_TREE tree = make_tree(boxes, COUNT, m);
         uint32_t before = assert_tree(&tree);
-        if (m == 2) assert_true(before > RT_TREE_MAX_DEPTH); /* or the test would show less */
+        if (m == 2) assert_true(before > RT_TREE_MAX_DEPTH); /* otherwise the test proves less */
         if (m != 2) assert_in_range(before, 10, 12);
         assert_ok(rt_tree_limit_depth(&tree, error));
         assert_true(assert_tree(&tree) <= RT_TREE_MAX_DEPTH);
@@ -195,7 +195,7 @@ RT_TEST(a_chain_of_growing_distances_is_cut_by_medians) {
         OWNED_TREE tree = make_tree(boxes, COUNT, m);
         uint32_t before = assert_tree(&tree);
         if (m < 2) assert_true(before > RT_TREE_MAX_DEPTH);
-        if (m == 1) assert_in_range(before, RT_TREE_MAX_DEPTH, 80); /* its patience is at an end */
+        if (m == 1) assert_in_range(before, RT_TREE_MAX_DEPTH, 80); /* beyond its PATIENCE */
         assert_ok(rt_tree_limit_depth(&tree, error));
         assert_true(assert_tree(&tree) <= RT_TREE_MAX_DEPTH);
     }
