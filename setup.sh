@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Sourced by run.sh and test.sh: moves to the top of the tree, installs missing packages, builds a preset.
-# Works without root where nothing is missing.
+# Sourced by run.sh and test.sh: changes to the top of the tree, installs missing packages, builds a preset.
+# Works without root if nothing is missing.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
-exec </dev/null # nothing here asks questions; a closed stdin will do
+exec </dev/null # nothing here reads stdin, which may be closed
 
 say() { printf '== %s\n' "$*"; }
 die() { printf '%s: %s\n' "${0##*/}" "$*" >&2 && exit 2; }
 
-# packages SECTION...: the names that packages.txt lists there
+# packages SECTION...: the names that packages.txt lists in these sections
 packages() {
     awk -v wanted="$*" '
         BEGIN { split(wanted, list, " "); for (i in list) want[list[i]] = 1 }
@@ -17,7 +17,7 @@ packages() {
         /^[a-z0-9]/ && section in want { print $1 }' packages.txt
 }
 
-# missing SECTION...: of them, those not installed
+# missing SECTION...: the packages of these sections that are not installed
 missing() {
     local name
     for name in $(packages "$@"); do
@@ -25,7 +25,7 @@ missing() {
     done
 }
 
-# logged FILE COMMAND...: quietly; where it fails, the end of its output
+# logged FILE COMMAND...: runs quietly; if the command fails, prints the end of its output
 logged() {
     local log=$1 && shift
     mkdir -p "${log%/*}"
@@ -38,8 +38,8 @@ apt() {
     "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 "$@"
 }
 
-# add_packages NAME...: those that go together with what is here; where apt refuses, halves are tried by themselves, so that one
-# package that conflicts keeps no other away and is found in few steps. Nothing is removed for them.
+# add_packages NAME...: installs all that are compatible with this system. If apt refuses, each half is tried alone, which finds a
+# conflicting package in few steps and installs the others. No package is removed.
 add_packages() {
     local options=(-y --no-install-recommends --no-remove)
     if logged build/apt.log apt install --simulate "${options[@]}" "$@" 2>/dev/null; then
@@ -48,11 +48,11 @@ add_packages() {
         add_packages "${@:1:$#/2}" || true
         add_packages "${@:$#/2+1}"
     else
-        say "$1 does not go with what is installed here: \`apt-get install $1\` says why"
+        say "$1 does not go with the installed packages: \`apt-get install $1\` says why"
     fi
 }
 
-# install_missing SECTION...: what cannot be installed is named, and is fatal unless it is optional, or of the cluster or the pages
+# install_missing SECTION...: names packages that cannot be installed; fatal unless they are optional, or for the cluster or the pages
 install_missing() {
     local section wanted=() needed=()
     for section; do
@@ -62,7 +62,7 @@ install_missing() {
         esac
     done
     command -v dpkg-query >/dev/null || {
-        say "this is not Debian: have the counterparts of these ready: $(packages "$@" | xargs)"
+        say "this is not Debian: install the equivalents of these packages: $(packages "$@" | xargs)"
         return
     }
     local names
@@ -70,19 +70,19 @@ install_missing() {
     [ -n "$names" ] || return 0
     if [ "$(id -u)" = 0 ] || { command -v sudo >/dev/null && sudo true; }; then
         say "installing $names"
-        # shellcheck disable=SC2086 # the names are words of their own
+        # shellcheck disable=SC2086 # the names are separate words
         if logged build/apt.log apt update; then
             add_packages $names || true
         fi
     fi
     names=$(missing "${wanted[@]}" | xargs)
-    [ -z "$names" ] || say "going on without $names"
+    [ -z "$names" ] || say "continuing without $names"
     names=$(missing "${needed[@]}" | xargs)
     [ -z "$names" ] || die "packages are missing; as root: apt-get install --no-install-recommends $names"
 }
 
-# build PRESET [CMAKE OPTION...]: the targets of $targets, or all; from the beginning where
-# build/PRESET came with a copy of another tree, which cmake refuses
+# build PRESET [CMAKE OPTION...]: builds $targets, or everything. Configures from scratch if build/PRESET is a copy from
+# another tree, which cmake refuses.
 build() {
     local preset=$1 made_for fresh=()
     say "building build/$preset"
@@ -93,11 +93,11 @@ build() {
     fi
     logged "build/$preset.log" cmake "${fresh[@]}" --preset "$@" || die "cmake failed: build/$preset.log"
     grep -A 3 'CMake Warning' "build/$preset.log" | grep '^  ' || true
-    # shellcheck disable=SC2086 # the targets are words of their own
+    # shellcheck disable=SC2086 # the targets are separate words
     logged "build/$preset.log" cmake --build --preset "$preset" -j "$(nproc)" --target ${targets:-all} ||
         die "the build failed: build/$preset.log"
 }
 
 fetch_bunny() {
-    scenes/fetch.sh bunny 2>/dev/null || say "going on without scenes/fetched/bunny.obj"
+    scenes/fetch.sh bunny 2>/dev/null || say "continuing without scenes/fetched/bunny.obj"
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What the kernels of `brute` and `extents` share: the rays of a stream in batches, against records (objects
- * or boxes) in chunks, sixteen records in lanes against one ray.
+ * or boxes) in chunks, RT_LANES records in lanes against one ray.
  *
  * Layout: nothing outlives a query. A batch of rays is prepared. Then, chunk by chunk, records are copied to
  * blocks that fit into the first cache, coordinate by coordinate, a record per lane, and every active ray of
@@ -9,20 +9,17 @@
 #define RT_ACCEL_BATCH_H
 
 #include "accel/kernel.h"
-#include "accel/lanes.h"
-#include "accel/simd.h"
+#include "accel/sphere_prefilter.h"
 
 enum {
-    RT_BATCH = 128, /* rays */
-    RT_BLOCK_LANES = 16,
-    RT_BLOCKS = 16, /* of a chunk */
-    RT_CHUNK = RT_BLOCKS * RT_BLOCK_LANES,
+    RT_BATCH = 128,                                   /* rays */
+    RT_CHUNK = 256,                                   /* records */
     RT_MOST_ROWS = sizeof(RtTriangle) / sizeof(float) /* of the longest record */
 };
 
-/* Sixteen records: row i holds float i of each. */
+/* RT_LANES records: row i holds float i of each. */
 typedef struct RtBlock {
-    _Alignas(64) float row[RT_MOST_ROWS][RT_BLOCK_LANES];
+    _Alignas(RtFloats) float row[RT_MOST_ROWS][RT_LANES];
 } RtBlock;
 
 typedef struct RtActiveRay {
@@ -33,7 +30,7 @@ typedef struct RtActiveRay {
 } RtActiveRay;
 
 typedef struct RtBatch {
-    RtBlock chunk[RT_BLOCKS];
+    RtBlock chunk[RT_CHUNK / RT_LANES];
     RtActiveRay rays[RT_BATCH];
     uint32_t active[RT_BATCH], active_count; /* the rays whose search is not over */
 } RtBatch;
@@ -41,17 +38,17 @@ typedef struct RtBatch {
 /* ---- filling a chunk ---- */
 
 /* Four floats of each of four records, which are `size` floats apart, to lanes of four rows. */
-RT_KERNEL void rt_block_transpose(float row[][RT_BLOCK_LANES], size_t lane, const float *from, size_t size) {
-    RtFour columns[4];
-    for (size_t i = 0; i < 4; i++) columns[i] = rt_four(from + i * size);
-    rt_four_transpose(columns);
-    for (size_t i = 0; i < 4; i++) memcpy(&row[i][lane], &columns[i], sizeof columns[i]);
+RT_KERNEL void rt_block_transpose(float row[][RT_LANES], size_t lane, const float *from, size_t size) {
+    RtFloat4 columns[4];
+    for (size_t i = 0; i < 4; i++) columns[i] = rt_loadu4(from + i * size);
+    rt_transpose4(columns);
+    for (size_t i = 0; i < 4; i++) rt_store(&row[i][lane], columns[i]);
 }
 
-/* `count` records, at least one, of `size` floats each; the first sixteen fill the block. */
+/* `count` records, at least one, of `size` floats each; the first RT_LANES fill the block. */
 RT_KERNEL void rt_fill_block(RtBlock *block, const float *from, size_t size, size_t count) {
     size_t lane = 0;
-    for (; lane + 4 <= count && lane < RT_BLOCK_LANES; lane += 4) {
+    for (; lane + 4 <= count && lane < RT_LANES; lane += 4) {
         const float *four = from + lane * size;
         size_t row = 0;
         for (; row + 4 <= size; row += 4) rt_block_transpose(block->row + row, lane, four + row, size);
@@ -59,15 +56,15 @@ RT_KERNEL void rt_fill_block(RtBlock *block, const float *from, size_t size, siz
             for (size_t i = 0; i < 4; i++) block->row[row][lane + i] = four[i * size + row];
         }
     }
-    for (; lane < RT_BLOCK_LANES; lane++) {
+    for (; lane < RT_LANES; lane++) {
         for (size_t row = 0; row < size; row++)
             block->row[row][lane] = lane < count ? from[lane * size + row] : NAN;
     }
 }
 
 RT_KERNEL void rt_fill_chunk(RtBatch *batch, const float *from, size_t size, uint32_t count) {
-    for (uint32_t i = 0; i < count; i += RT_BLOCK_LANES)
-        rt_fill_block(&batch->chunk[i / RT_BLOCK_LANES], from + i * size, size, count - i);
+    for (uint32_t i = 0; i < count; i += RT_LANES)
+        rt_fill_block(&batch->chunk[i / RT_LANES], from + i * size, size, count - i);
 }
 
 /* ---- a stream ---- */

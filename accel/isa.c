@@ -3,7 +3,8 @@
 
 typedef enum Choice { BEST, PORTABLE, AVX2, AVX512 } Choice; /* of RT_ISA_PARAM */
 
-RtIsa rt_isa_best(void) {
+/* What this processor has. */
+static RtIsa machine_isa(void) {
 #if defined(__x86_64__)
     if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("bmi2")) return RT_ISA_PORTABLE;
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
@@ -16,6 +17,26 @@ RtIsa rt_isa_best(void) {
 #endif
 }
 
+#if defined(RT_ONLY_ISA)
+enum { portable = RT_ISA_PORTABLE, avx2 = RT_ISA_AVX2, avx512 = RT_ISA_AVX512 };
+
+RtIsa rt_isa_best(void) {
+    return (RtIsa)RT_ONLY_ISA;
+}
+
+bool rt_isa_runs(RtIsa isa) {
+    return isa == rt_isa_best() && isa <= machine_isa();
+}
+#else
+RtIsa rt_isa_best(void) {
+    return machine_isa();
+}
+
+bool rt_isa_runs(RtIsa isa) {
+    return isa <= machine_isa();
+}
+#endif
+
 RtIsa rt_isa_asked(RtValue value) {
     switch ((Choice)value.choice) {
     case BEST: break;
@@ -26,12 +47,33 @@ RtIsa rt_isa_asked(RtValue value) {
     return rt_isa_best();
 }
 
+const char *rt_isa_name(RtIsa isa) {
+    static const char *const names[] = {
+        [RT_ISA_PORTABLE] = "portable", [RT_ISA_AVX2] = "avx2", [RT_ISA_AVX512] = "avx512"};
+    return names[isa];
+}
+
+static RtStatus available(RtIsa isa, RtError *error) {
+    if (rt_isa_runs(isa)) return RT_OK;
+    if (rt_isa_best() > machine_isa()) {
+        return rt_fail(error, RT_NOT_AVAILABLE,
+                       "this build has kernels for %s alone, which this processor has not: configure it with "
+                       "-DRT_KERNELS=all",
+                       rt_isa_name(rt_isa_best()));
+    }
+    if (isa > machine_isa()) {
+        return rt_fail(error, RT_NOT_AVAILABLE, "this processor has no %s: leave isa out", rt_isa_name(isa));
+    }
+    return rt_fail(error, RT_NOT_AVAILABLE,
+                   "this build has no kernels for %s: configure it with -DRT_KERNELS=all", rt_isa_name(isa));
+}
+
+RtStatus rt_isa_best_available(RtError *error) {
+    return available(rt_isa_best(), error);
+}
+
 RtStatus rt_isa_available(RtValue value, RtError *error) {
-    static const RtParam param = {RT_ISA_PARAM};
-    char name[RT_MAX_SPEC_CHARS];
-    if (rt_isa_asked(value) <= rt_isa_best()) return RT_OK;
-    rt_param_format(&param, value, name, sizeof name);
-    return rt_fail(error, RT_NOT_AVAILABLE, "this processor has no %s: leave isa out", name);
+    return available(rt_isa_asked(value), error);
 }
 
 static const RtKernels *kernels_of(const RtAccel *accel) {

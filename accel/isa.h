@@ -21,8 +21,17 @@ typedef enum RtIsa {
     RT_ISA_AVX512,   /* F, VL, DQ and BW */
 } RtIsa;
 
-/* The most that this machine has. */
+/* The best that this machine has and this build has kernels for. */
 RtIsa rt_isa_best(void);
+
+/* Whether this machine has it, and this build kernels for it. */
+bool rt_isa_runs(RtIsa isa);
+
+/* As its parameter has it: portable, avx2 or avx512. */
+const char *rt_isa_name(RtIsa isa);
+
+/* RT_OK, or RT_NOT_AVAILABLE where this build is for a better machine. */
+RtStatus rt_isa_best_available(RtError *error);
 
 /* The kernels for one instruction set. */
 typedef struct RtKernels {
@@ -36,11 +45,18 @@ typedef struct RtKernels {
 #define RT_DECLARE_KERNELS(name)                                                                             \
     extern const RtKernels rt_##name##_portable, rt_##name##_avx2, rt_##name##_avx512
 
-/* Those of an accelerator for an RtIsa, which this machine must have. */
+/* Those of an accelerator for an RtIsa that runs. The build option RT_KERNELS=native compiles those of one
+ * alone, RT_ONLY_ISA. */
+#define RT_KERNELS_OF(name, isa) (&rt_##name##_##isa)
+#if defined(RT_ONLY_ISA)
+#define RT_KERNELS_FOR(name, isa) ((void)(isa), RT_EXPAND(RT_KERNELS_OF, name, RT_ONLY_ISA))
+#define RT_EXPAND(macro, ...)     macro(__VA_ARGS__)
+#else
 #define RT_KERNELS_FOR(name, isa)                                                                            \
-    ((isa) == RT_ISA_AVX512 ? &rt_##name##_avx512                                                            \
-     : (isa) == RT_ISA_AVX2 ? &rt_##name##_avx2                                                              \
-                            : &rt_##name##_portable)
+    ((isa) == RT_ISA_AVX512 ? RT_KERNELS_OF(name, avx512)                                                    \
+     : (isa) == RT_ISA_AVX2 ? RT_KERNELS_OF(name, avx2)                                                      \
+                            : RT_KERNELS_OF(name, portable))
+#endif
 
 /* What an accelerator that has them begins with. */
 typedef struct RtIsaAccel {
@@ -68,7 +84,7 @@ size_t rt_isa_scratch_bytes(const RtAccel *accel);
 /* What a value of it asks for. */
 RtIsa rt_isa_asked(RtValue value);
 
-/* RT_OK, or RT_NOT_AVAILABLE where this machine has not what a value asks for. */
+/* RT_OK, or RT_NOT_AVAILABLE where what a value asks for does not run. */
 RtStatus rt_isa_available(RtValue value, RtError *error);
 
 /* For accelerators that have their kernels in lanes and, to be compared with scalar structures, one record at

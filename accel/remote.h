@@ -1,41 +1,36 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Accelerators that live away, in a process of their own: whatever one of a plugin does there, results of
- * others are safe.
+/* Remote accelerators: they run in a process of their own, so that a faulty plugin damages only its own
+ * results.
  *
- * rt_accel_build builds a spec away as soon as one of its layers is a plugin's. What it gives back stands in
- * for the whole stack: an RtAccel without layers, kernels of which send rays there and fetch the answers. If
- * the process crashes, hangs, ends, or answers nonsense, the accelerator is broken: rays miss,
- * rt_accel_check says what happened, RT_BROKEN, and so does all else that can. */
+ * rt_accel_build builds a spec remotely if one of its layers is a plugin's. The result represents the whole
+ * stack: an RtAccel without layers, whose kernels send rays to that process and receive the answers. If the
+ * process crashes, hangs, exits or returns invalid answers, the accelerator is broken: its rays miss, and
+ * rt_accel_check and every other function that can fail return RT_BROKEN and the reason. */
 #ifndef RT_ACCEL_REMOTE_H
 #define RT_ACCEL_REMOTE_H
 
 #include "accel/accel.h"
 
-/* Builds `spec` in a new process. RT_BROKEN where that did not survive it. */
+/* Builds `spec` in a new process. RT_BROKEN if the process does not survive it. */
 RtStatus rt_remote_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
                          RtError *error);
 
 bool rt_accel_is_remote(const RtAccel *accel);
 
-/* Runs `work` in the process of the query's accelerator, which is away, with the query that is there;
- * `message` of `bytes` <= RT_AWAY_BYTES, which has no pointers that both follow, goes there and comes back.
- * Of a broken one nothing is run, and the message stays as it is. */
-enum { RT_AWAY_BYTES = 256 * 1024 };
+/* Runs `work` in the process of the query's accelerator, which is remote, with the query that is there. A
+ * `message` of `bytes` <= RT_REMOTE_BYTES is copied there and back; it must not contain pointers to memory of
+ * one process that the other reads. For a broken accelerator nothing runs, and the message is unchanged. */
+enum { RT_REMOTE_BYTES = 256 * 1024 };
 typedef void RtRemoteWork(RtQuery *query, void *message);
 void rt_remote_do(RtQuery *query, RtRemoteWork *work, void *message, size_t bytes);
 
-/* Breaks an accelerator that is away, for what was found wrong with it while it did `doing`. */
+/* Marks a remote accelerator as broken: `what` was found wrong with it while it did `doing`. */
 void rt_remote_break(const RtAccel *accel, const char *what, const char *doing);
 
-/* To be called now and then by work that takes long: it goes on. What does not for 60 seconds, or what
- * RAYTALLY_PLUGIN_SECONDS says, is taken to hang; ten times that for building. Where RAYTALLY_PLUGIN_WAIT is
- * set nothing is, and the process waits for a debugger before it loads the plugin. */
-void rt_remote_beat(void);
-
-/* A status that came from there, as far as it is one. */
-static inline RtStatus rt_remote_status(RtStatus status) {
-    return status >= RT_OK && status <= RT_IO ? status : RT_BROKEN;
-}
+/* Reports progress; long work calls it regularly. A process without progress for 60 seconds, or for
+ * RAYTALLY_PLUGIN_SECONDS, counts as hung; a build has ten times as long. With RAYTALLY_PLUGIN_WAIT set there
+ * is no limit, and the process waits for a debugger before it loads the plugin. */
+void rt_remote_progress(void);
 
 /* Why the last accelerator that the calling thread destroyed did not survive it, or NULL. */
 const char *rt_remote_exit_message(void);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Specs: "name:key=value,key=value", with '+' between layers. */
 #include "accel/accel.h"
+#include "accel/isa.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -80,6 +81,7 @@ bool rt_spec_text_is_remote(const char *text) {
 }
 
 RtStatus rt_spec_available(const RtSpec *spec, RtError *error) {
+    RT_TRY(rt_isa_best_available(error));
     for (uint32_t i = 0; i < spec->layer_count; i++) {
         const RtSpecLayer *layer = &spec->layers[i];
         if (layer->ops->available) RT_TRY(layer->ops->available(layer->values, error));

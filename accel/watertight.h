@@ -3,7 +3,7 @@
  * four. It repeats rt_triangle_hit (core/shape/triangle.h) operation by operation, to the same bits.
  *
  *     rt_shear        moves vertices to the ray's origin and shears them, until the ray is the z axis
- *     rt_prefilter    the edge functions in float32: rejects nearly all pairs
+ *     rt_edge_prefilter    the edge functions in float32: rejects nearly all pairs
  *     rt_cross        the edge functions in double, and t
  *     rt_admit        rt_box_admit with the triangle's own box
  *
@@ -31,7 +31,7 @@
             s->y[i] = s->y[i] - ray->org_y - ray->shear_y * s->z[i];                                         \
         }                                                                                                    \
     }                                                                                                        \
-    RT_KERNEL uint32_t rt_prefilter##N(const RtSheared##N *s) {                                              \
+    RT_KERNEL uint32_t rt_edge_prefilter##N(const RtSheared##N *s) {                                         \
         const RtFloat##N *x = s->x, *y = s->y;                                                               \
         RtFloat##N u = x[2] * y[1] - y[2] * x[1], v = x[0] * y[2] - y[0] * x[2];                             \
         RtFloat##N w = x[1] * y[0] - y[1] * x[0];                                                            \
@@ -42,7 +42,6 @@
  * along kz. */
 #define RT_DEFINE_CROSS(N, D, PART, ROUND)                                                                   \
     RT_KERNEL uint32_t rt_cross##N(const RtSheared##N *s, RtFloat##N major, RtFloat##N *t) {                 \
-        const RtDouble##D zero = {0};                                                                        \
         RtDouble##D at[(N) / (D)];                                                                           \
         uint32_t within = 0;                                                                                 \
         for (int part = 0; part < (N) / (D); part++) {                                                       \
@@ -51,9 +50,9 @@
                 x[i] = PART(s->x[i], part), y[i] = PART(s->y[i], part), z[i] = PART(s->z[i], part);          \
             RtDouble##D u = x[2] * y[1] - y[2] * x[1], v = x[0] * y[2] - y[0] * x[2];                        \
             RtDouble##D w = x[1] * y[0] - y[1] * x[0];                                                       \
+            RtDouble##D least = rt_min(rt_min(u, v), w), most = rt_max(rt_max(u, v), w);                     \
             RtDouble##D determinant = u + v + w;                                                             \
-            uint32_t inside = rt_one_sign_bits(rt_min(rt_min(u, v), w), rt_max(rt_max(u, v), w));            \
-            within |= (inside & ~rt_eq_bits(determinant, zero)) << part * (D);                               \
+            within |= rt_inside_bits(least, most, determinant) << part * (D);                                \
             at[part] = (u * z[0] + v * z[1] + w * z[2]) / determinant / PART(major, part);                   \
         }                                                                                                    \
         *t = ROUND(at);                                                                                      \
@@ -66,8 +65,8 @@ RT_DEFINE_PREFILTER(4)
 #if RT_LANES == 4
 RT_DEFINE_CROSS(4, 2, rt_to_doubles, RT_ROUND_HALVES)
 #else
-#define RT_FOUR_DOUBLES(a, part) __builtin_convertvector(a, RtDouble4)
-#define RT_ROUND_FOUR(whole)     __builtin_convertvector((whole)[0], RtFloat4)
+#define RT_FOUR_DOUBLES(a, part) rt_widen4(a)
+#define RT_ROUND_FOUR(whole)     rt_round4((whole)[0])
 RT_DEFINE_CROSS(4, 4, RT_FOUR_DOUBLES, RT_ROUND_FOUR)
 #endif
 #if RT_LANES == 8
@@ -82,9 +81,9 @@ RT_DEFINE_CROSS(16, 8, rt_to_doubles, RT_ROUND_HALVES)
 
 typedef RT_OF_LANES(RtSheared) RtSheared;
 typedef RT_OF_LANES(RtShear) RtShear;
-#define rt_shear     RT_OF_LANES(rt_shear)
-#define rt_prefilter RT_OF_LANES(rt_prefilter)
-#define rt_cross     RT_OF_LANES(rt_cross)
+#define rt_shear          RT_OF_LANES(rt_shear)
+#define rt_edge_prefilter RT_OF_LANES(rt_edge_prefilter)
+#define rt_cross          RT_OF_LANES(rt_cross)
 
 /* What rt_box_admit needs of each ray, by axis. */
 typedef struct RtLaneRays {
@@ -147,12 +146,12 @@ RT_KERNEL void rt_shear_pairs(const RtRayTriangles *p, RtInts y, RtInts z, RtShe
 }
 
 /* The pairs that the prefilter lets pass. */
-RT_KERNEL uint32_t rt_prefilter_pairs(const RtRayTriangles *p) {
+RT_KERNEL uint32_t rt_edge_prefilter_pairs(const RtRayTriangles *p) {
     RtInts y, z;
     RtSheared s;
     rt_major_axes(p->dir, &y, &z);
     rt_shear_pairs(p, y, z, &s);
-    return rt_prefilter(&s);
+    return rt_edge_prefilter(&s);
 }
 
 /* The pairs that hit, and t of each: any ray, any triangle. */

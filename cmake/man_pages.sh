@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# man_pages.sh PROGRAM DIR: manual pages of raytally and of each of its commands, by help2man (Debian), into DIR. What they
-# say is what --help says, which argp makes from the tables of options. SOURCE_DATE_EPOCH, where set, is their date.
+# man_pages.sh PROGRAM DIR: writes manual pages of raytally and each of its commands to DIR, by help2man (Debian), from
+# --help, which argp makes from the tables of options. SOURCE_DATE_EPOCH, if set, is their date.
 set -euo pipefail
 program=$1 folder=$2
 mkdir -p "$folder"

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# pictures.sh [PAGE.md...]: makes the pictures of docs/accelerators anew, by the commands that stand beside them in the
+# pictures.sh [PAGE.md...]: redraws the pictures of docs/accelerators with the commands beside them in the
 # pages (all pages, or those named). A picture X.svg of a sweep is plots/X.svg, or the first plot, of the directory X.
-# RT_PROGRAM: the program (build/release/raytally). Exit code 1 if a command fails or makes no picture for a page.
+# RT_PROGRAM: the program (build/release/raytally). Exit code 1 if a command fails or draws no picture for a page.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 root=$PWD program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
 pages=("$@")
 [ $# -gt 0 ] || pages=(docs/accelerators/*.md)
 
-# The commands of a page that draw: in fences marked sh alone, for others take long or need meshes.
+# The drawing commands of a page: only in fences marked sh, since others take long or need meshes.
 commands() {
     awk '/^```sh$/ { on = 1; next } /^```/ { on = 0 } on' "$1" | grep -E '^raytally (render|trace|run) ' || true
 }

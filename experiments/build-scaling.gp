@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# build-scaling: time to build per object, over the number of objects; exponents of the powers fitted to it.
+# build-scaling: time to build per object, over the number of objects, with the exponents of fitted powers.
 #: 1-build-scaling: Time to build each structure in nanoseconds per object, over the number of objects.
-#:   Both axes logarithmic; the legend has the order of the lines at their right ends, and the exponents of fitted powers.
+#:   Both axes logarithmic; the legend lists the lines in the order of their right ends, with the exponents of fitted powers.
 
 n_accels = words(accels)
 own(a) = strcol("accel") eq word(accels, a) ? column("objects") : NaN

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-# csg: what extents on the inner nodes of CSG trees save, a row of panels for the small trees and one for the large.
-#: 1-csg: Solids tested, extents tested and time per ray with extents on the inner nodes of CSG trees and without, an accelerator
-#:   a line. Means over all kinds of rays; axes begin at 0. Above: trees of 8 to 64 solids; below: of 512.
+# csg: the savings of extents on the inner nodes of CSG trees, one row of panels for the small trees and one for the large.
+#: 1-csg: Solids tested, extents tested and time per ray with and without extents on the inner nodes of CSG trees, one line per
+#:   accelerator. Means over all ray kinds; axes begin at 0. Above: trees of 8 to 64 solids; below: of 512.
 
 n_accels = words(accels)
 sizes = "small large"
 caption = "'trees of 8 to 64 solids' 'trees of 512 solids'"
 array title[3] = ["solids tested / ray", "extents tested / ray", "ns / ray"]
 
-# Means over all kinds of rays, each weighed by what its whole set has; unknown where a kind was left out.
+# Means over all ray kinds, weighted by the size of the whole set; unknown if a kind was left out.
 chosen(size, inner, a) = strcol("scene") eq size."-".inner && strcol("accel") eq word(accels, a)
 per_ray(m) = m == 1 ? column("csg_tests") / column("rays") : m == 2 ? column("extent_tests") / column("rays") : column("ns")
 array value[12 * n_accels]

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 # havran-1999: published against measured figures, their deviations row by row, and ours against the best published row.
-#: 1-published: Figures as measured over those published, a panel a column of the published tables, a marker a structure.
+#: 1-published: Measured over published figures, one panel per column of the published tables, one marker per structure.
 #:   Both axes logarithmic; band: the tolerance; large: beyond it.
-#: 2-deviations: Deviation of measured figures from published ones in percent, a panel a scene and column, a point a row.
+#: 2-deviations: Deviation of measured figures from published ones in percent, one panel per scene and column, one point per row.
 #:   Band: the tolerance; points at the edges lie beyond the panel.
-#: 3-best: Tests per ray of ours beside those of the best published row, a scene a pair of bars: left without steps, right with steps.
-#:   Blue is what the published rows count, too; the orange end of a bar is extent tests, which they do not count: a grid or an octree
-#:   makes one per ray. A hierarchy trades object tests for extent tests: ours needs less in all only where the whole bar is shorter.
+#: 3-best: Tests per ray of ours beside those of the best published row, a pair of bars per scene: left without steps, right with
+#:   steps. Blue: what the published rows also count. Orange: extent tests, which they do not count (a grid or an octree makes one
+#:   per ray). A hierarchy trades object tests for extent tests: ours needs less in all only if the whole bar is shorter.
 #:   Axes begin at 0.
 
 n_scenes = words(scenes)
@@ -65,7 +65,7 @@ do for [m = 1:6] {
 unset multiplot
 unset output
 
-# ---- deviations, a point a row, a panel a scene and column ----
+# ---- deviations, one point per row, one panel per scene and column ----
 
 most = 12.0
 clipped(x) = x > most ? most : x < -most ? -most : x

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# Histograms of object tests and steps per ray, a figure a scene, a column of panels a ray kind, and one of the leaves of
-# structures. Both axes are logarithmic: heights are parts of all per doubling of the value, so that areas compare; a point
-# is in the middle of its bin, and 0 stands at 1/2. raytally writes this where an experiment asks for `distributions`.
+# Histograms of object tests and steps per ray, one figure per scene, one column of panels per ray kind, and one of the leaves of
+# structures. Both axes are logarithmic: heights are fractions per doubling of the value, so areas compare; a point
+# is in the middle of its bin, and 0 is drawn at 1/2. raytally writes this if an experiment sets `distributions`.
 
 n_kinds = words(kinds); n_accels = words(accels)
 first(low) = low < 1 ? 0.5 : low

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-# item-buffer: throughput of whole frames over that of Embree's best, by samples along a side, with the buffer built and with its
-# build counted in one frame or ten.
-#: 1-frames: Throughput of whole frames over that of Embree's best, over the samples along a side, with the buffer built, and with
-#:   its build counted in one frame or ten. Medians, with intervals where the buffer is built; above 1 the item buffer is faster.
-#: 2-triangles: The same of a frame of 1024 x 1024 samples over the triangles of the dragon.
+# item-buffer: throughput of whole frames over that of Embree's best, by samples along a side, without the buffer's build and with
+# it in one frame or ten.
+#: 1-frames: Throughput of whole frames over that of Embree's best, over the samples along a side, without the buffer's build and
+#:   with it in one frame or ten. Medians, with intervals without the build; above 1 the item buffer is faster.
+#: 2-triangles: The same for a frame of 1024 x 1024 samples over the triangles of the dragon.
 
 names = "bunny dragon hall forest"
 of(name) = strcol("scene")[1:strlen(name) + 1] eq name."-" && strcol("accel") eq "item"
 side(name) = of(name) ? column("width") : NaN
 
-# Of `frames` frames with the build counted, Embree's time over ours; its own build is not counted.
+# For `frames` frames including the build: Embree's time over ours; Embree's build is not counted.
 theirs(x) = column("ns") * column("ratio")
 with_build(frames) = theirs(0) / (column("ns") + 1e9 * column("build_seconds") / (frames * column("set_rays")))
 

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-# prediction: tests and steps of random lines against what areas say; of all kinds of rays, as a ratio; and time from a
-# time per ray, test and step fitted to each accelerator. On the eight scenes of every kind of object: what is measured on
-# triangles alone is for prediction-trees.gp.
-#: 1-random-lines: Object tests and steps of random lines as measured, over those that areas predict, a marker a scene.
-#:   A point an accelerator; on the line they agree. Both axes logarithmic.
-#: 2-by-kind: Tests and steps measured over those predicted, by kind of ray, a scene a line, a point an accelerator.
-#:   Logarithmic; at 1 they agree. Points are spread within a line so that they are seen.
-#: 3-time: Nanoseconds per ray as measured, over those from fitted times of a ray, a test and a step, a marker a scene.
-#:   Left with tests and steps as measured, right as predicted. Both axes logarithmic.
+# prediction: tests and steps of random lines against their prediction from areas; the ratio for all ray kinds; and time from a
+# time per ray, test and step fitted to each accelerator. On the eight scenes of all object kinds; prediction-trees.gp draws the
+# scenes of triangles.
+#: 1-random-lines: Measured object tests and steps of random lines over their prediction from areas, one marker per scene.
+#:   One point per accelerator; on the line they agree. Both axes logarithmic.
+#: 2-by-kind: Measured over predicted tests and steps, by ray kind, one line per scene, one point per accelerator.
+#:   Logarithmic; at 1 they agree. Points are spread within a line to be visible.
+#: 3-time: Measured nanoseconds per ray, over those from fitted times of a ray, a test and a step, one marker per scene.
+#:   Left with measured tests and steps, right with predicted ones. Both axes logarithmic.
 
 all_scenes = scenes; all_accels = accels
 scenes = "points spheres balls tetra mount lattice tree stadium"
@@ -16,7 +16,7 @@ agglomerative rubin-whitted"
 here(s) = strstrt(" ".scenes." ", " ".s." ") > 0
 n_scenes = words(scenes); n_accels = words(accels); n_kinds = words(kinds)
 
-# ---- what part of the random lines meets the box of the scene: the steps of a grid of one voxel ----
+# ---- the fraction of random lines that hit the box of the scene: the steps of a grid of one voxel ----
 
 array meets[n_scenes]
 do for [s = 1:n_scenes] {
@@ -53,7 +53,7 @@ do for [m = 1:2] {
 unset multiplot
 unset key
 
-# ---- measured over predicted, for each kind of ray; the part that misses the box counts as it is ----
+# ---- measured over predicted, for each ray kind; the fraction that misses the box counts unchanged ----
 
 eval canvas("2-by-kind", 960, 680)
 set multiplot
@@ -110,7 +110,7 @@ do for [a = 1:n_accels] {
 }
 unset print
 
-# ---- pairs of structures of a family over a scene whose order by time these tell from predicted tests and steps ----
+# ---- pairs of structures of a family on a scene whose order by time follows from predicted tests and steps ----
 
 set print "plots/3-order.csv"
 print "family,kind,pairs,right"

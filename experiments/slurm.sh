@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # experiments/slurm.sh EXPERIMENT.yaml N [OPTION...]: runs an experiment on a Slurm cluster, as an array of N jobs, each with
-# a part of the scenes and a node to itself, and a job that joins what they measured into results/NAME. OPTIONs are those of
-# `raytally run`, but for --out, --shard and --resume. Run it at the top of the tree, on a file system that the nodes share.
+# some of the scenes and its own node, and a job that joins their results into results/NAME. OPTIONs are those of
+# `raytally run`, except --out, --shard and --resume. Run it at the top of the tree, on a file system that the nodes share.
 #
-# Submitted again, it goes on where jobs were ended, whether by hand, by a limit or by a kill. Prints the ids of the jobs.
+# Submitted again, it continues jobs that were ended by hand, by a limit or by a kill. Prints the ids of the jobs.
 #
 #   RT_PROGRAM     the program (build/release/raytally)
 #   OUT            the result directory (results/NAME); shards and the jobs' output go to $OUT-shards
@@ -18,8 +18,8 @@ case "${1:-}" in -h | --help) usage && exit ;; esac
 [ $# -ge 2 ] || { usage >&2 && exit 2; }
 experiment=$1 shards=$2
 shift 2
-[[ $shards =~ ^[1-9][0-9]*$ ]] || die "'$shards' is no number of jobs"
-command -v sbatch >/dev/null || die "there is no sbatch: this is for machines that submit to Slurm (Debian: slurm-client)"
+[[ $shards =~ ^[1-9][0-9]*$ ]] || die "'$shards' is not a number of jobs"
+command -v sbatch >/dev/null || die "sbatch is missing: run this on a machine that submits to Slurm (Debian: slurm-client)"
 program=$(realpath -- "${RT_PROGRAM:-build/release/raytally}") || die "build raytally first, or set RT_PROGRAM"
 # The experiment is read before anything is submitted.
 "$program" run "$experiment" --shard "$shards/$shards" --dry-run --force "$@" >/dev/null || exit 2
@@ -28,7 +28,7 @@ out=${OUT:-results/$name}
 mkdir -p "$out-shards"
 read -r -a options <<<"${SBATCH_OPTS:-}"
 
-# submit OPTION... COMMAND: its id
+# submit OPTION... COMMAND: prints the job's id
 submit() {
     sbatch --parsable --exclusive --requeue --open-mode=append "${@:1:$#-1}" "${options[@]}" --wrap "exec ${*: -1}"
 }

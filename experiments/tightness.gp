@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# tightness: what each kind of extent lets through, and the time per ray, against the number of plane sets.
-#: 1-tightness: Object tests per object met, and time per ray, over the number of plane sets k of slabs, with box, sphere and
+# tightness: object tests per object hit of each kind of extent, and the time per ray, against the number of plane sets.
+#: 1-tightness: Object tests per object hit, and time per ray, over the number of plane sets k of slabs, with box, sphere and
 #:   oriented box as level lines. Above: 1 is tight. Below: time over that of boxes, with intervals.
 
 n_scenes = words(scenes)
@@ -12,7 +12,7 @@ others = "box sphere obb"
 number_of(label) = sum [a = 1:words(accels)] (word(accels, a) eq label ? a : 0)
 look(i) = color(number_of(word("box sphere obb slabs-7", i)))
 
-# Of the box, the sphere and the oriented box, which have no k: object tests per object met, and the time.
+# For the box, the sphere and the oriented box, which have no k: object tests per object hit, and the time.
 array passed[3 * n_scenes]
 array taken[3 * n_scenes]
 do for [s = 1:n_scenes] {

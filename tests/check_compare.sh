@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_compare.sh [--clock]: `raytally compare` finds 2 %, and finds nothing where there is nothing. raytally_even and
-# raytally_slower, which lie beside $RT_PROGRAM, are the same program, but the second needs 2 % more time: exit code 1
-# of --strict says so; the first compared with it is faster. Of twenty comparisons of the program with itself, of four cells
-# each, one may report a difference, as 95 % allow. Times are drawn (tests/cli/compared.c), the same in every run.
-# --clock: they are taken, and 2 % of the rays are asked twice, which says something on a quiet machine and in a build of
-# release; then three of twenty may report one, which more do in less than two of a hundred runs.
+# check_compare.sh [--clock]: `raytally compare` finds a difference of 2 %, and none between equal programs. raytally_even and
+# raytally_slower, beside $RT_PROGRAM, are the same program, but the second needs 2 % more time: --strict must return
+# exit code 1, and the reverse comparison must say faster. Of twenty comparisons of a program with itself, of four cells
+# each, one may report a difference, as 95 % allow. Times are simulated (tests/cli/compared.c), the same in every run.
+# --clock: times are measured, and 2 % of the rays are traced twice, which needs a quiet machine and a release
+# build; then three of twenty may report a difference, which more do in less than two of a hundred runs.
 set -euo pipefail
 programs=$(dirname "$(realpath "${RT_PROGRAM:-build/release/raytally}")")
 program=$programs/raytally_even slower=$programs/raytally_slower

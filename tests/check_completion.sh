@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_completion.sh: what `raytally completion bash` prints completes commands, options, accelerators, scenes and what is
-# set of them; the function is called as bash calls it. Uses $RT_PROGRAM.
+# check_completion.sh: the output of `raytally completion bash` completes commands, options, accelerators, scenes and their
+# parameters; the function is called as bash calls it. Uses $RT_PROGRAM.
 set -uo pipefail
 program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
@@ -12,11 +12,11 @@ failures=0
 # shellcheck disable=SC1091
 source ./script || exit 1
 
-# Outside of a completion bash has none of its own.
+# Outside a completion bash has no compopt.
 compopt() { told="$told $2"; }
 
-# complete_line LINE: COMPREPLY, and in told what compopt was. Words are as readline parts them: at blanks without a
-# backslash, which stays, and : and = are words of their own.
+# complete_line LINE: sets COMPREPLY, and `told` to the options of compopt. Words are split as by readline: at blanks without a
+# backslash, which stays; : and = are words of their own.
 complete_line() {
     local parted
     COMP_LINE=$1 COMP_POINT=${#1} COMPREPLY=() told=''
@@ -28,7 +28,7 @@ complete_line() {
     _raytally
 }
 
-# offers LINE WORD...: those, among others
+# offers LINE WORD...: these words, among others
 offers() {
     local word
     complete_line "$1"
@@ -40,7 +40,7 @@ offers() {
     done
 }
 
-# offers_only LINE WORD...: those and no others
+# offers_only LINE WORD...: exactly these words
 offers_only() {
     offers "$@"
     [ ${#COMPREPLY[@]} = $(($# - 1)) ] || {
@@ -91,7 +91,7 @@ offers_only 'raytally info our\ sc' 'our scene.yaml'
 offers_only 'raytally run --out=fol' folder
 offers_only 'raytally render balls --le' --level --leaves
 
-# tells LINE WHAT: so compopt was told to add no blank, or to treat words as paths
+# tells LINE WHAT: compopt was told to add no blank, or to treat words as paths
 tells() {
     complete_line "$1"
     [ "$told" = "$2" ] || {
@@ -105,8 +105,8 @@ tells 'raytally info tet' ''
 tells 'raytally bench balls --accel fol' ''
 tells 'raytally bench balls --accel grid:dens' ' nospace'
 
-# Words are no patterns for files: --level=A[..B] is offered however the shell takes those that match none. In a shell of
-# its own, which failglob would end.
+# Words are no file patterns: --level=A[..B] is offered whatever the shell does with patterns that match nothing. In its own
+# shell, which failglob would end.
 for option in failglob nullglob; do
     (
         shopt -s "$option"
@@ -118,7 +118,7 @@ for option in failglob nullglob; do
     ) || failures=$((failures + 1))
 done
 
-# Every option that --help lists, but for those of argp's own.
+# Every option that --help lists, except argp's own.
 for command in $("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\) .*/\1/p'); do
     for option in $("$program" "$command" --help | grep -oE '^ {2,6}(-., )?--[a-z-]+' | grep -o -e '--.*'); do
         offers "raytally $command --" "$option"

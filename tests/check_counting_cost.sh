@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_counting_cost.sh [SCENE [KIND,... [SPEC...]]]: what the kernels of accelerators take in instructions, which
-# unlike times are the same on every run: per ray by the timed and by the counted kernel, and of the timed one's per ray
-# before it is traced (set-up), per step, and per object test. Fails where counting makes a kernel take more than twice
+# check_counting_cost.sh [SCENE [KIND,... [SPEC...]]]: the cost of accelerators' kernels in instructions, which unlike times are
+# the same on every run: per ray for the timed and the counted kernel, and for the timed one per ray
+# before it is traced (set-up), per step, and per object test. Fails if counting makes a kernel need more than twice
 # the instructions. Mailboxes and lists belong to tests, boxes to steps. Uses $RT_PROGRAM.
-# Release builds only, and where there are valgrind and addr2line; elsewhere it is skipped (exit code 77).
+# For release builds with valgrind and addr2line; otherwise it is skipped (exit code 77).
 set -euo pipefail
 program=${RT_PROGRAM:-build/release/raytally}
 scene=${1:-balls:size=3}
@@ -16,21 +16,21 @@ command -v valgrind >/dev/null && command -v addr2line >/dev/null || { echo "ski
 grep -q '^CMAKE_BUILD_TYPE:[A-Z]*=Rel' "$(dirname "$program")/CMakeCache.txt" || { echo "skipped: what counting costs in instructions; needs a release build"; exit 77; }
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 
-# member NAME: of the one row, a number
+# member NAME: a number of the only row
 member() {
     awk -v name="\"$1\":" '/"counts"/ || name == "\"rays\":" { on = 1 } on && $1 == name { print $2 + 0; exit }' "$work/json"
 }
 
-# costs KERNEL ACCELERATOR: address and instructions for each instruction of the kernel, calls added to who makes them; and
-# "calls N", how often it was entered. Other accelerators have kernels of the same name, in other files. Addresses of
-# callgrind are relative to those of the line before.
+# costs KERNEL ACCELERATOR: prints address and instructions for each instruction of the kernel, calls added to their callers; and
+# "calls N", how often it was entered. Other accelerators have kernels of the same name, in other files. callgrind's
+# addresses are relative to those of the previous line.
 costs() {
     awk -v kernel="$1'" -v file="/accel/$2[/.]" '
     function hex(text,   i, value) {
         for (i = 3; i <= length(text); i++) value = 16 * value + index("0123456789abcdef", substr(text, i, 1)) - 1
         return value
     }
-    function number(line, names,   part) { # of "(number) name", where the name is there the first time only
+    function number(line, names,   part) { # from "(number) name"; the name appears only the first time
         split(line, part, /[(] *|[)] */)
         if (part[3] != "") names[part[2]] = part[3]
         return part[2]
@@ -55,7 +55,7 @@ costs() {
     }' "$work/callgrind"
 }
 
-# parts: of costs on stdin, the sums of "test", "setup" and "step", and the calls. By what is inlined where.
+# parts: from costs on stdin, the sums of "test", "setup" and "step", and the calls, by the place where code is inlined.
 parts() {
     tee "$work/costs" | awk '$1 != "calls" { printf "%x\n", $1 }' >"$work/addresses"
     addr2line -a -f -i -e "$program" <"$work/addresses" | awk '
@@ -86,7 +86,7 @@ for kind in ${kinds//,/ }; do
             -v passes="$timed_calls/$counted_calls" -v rays="$(member rays)" -v steps="$(member steps)" \
             -v tests="$(member object_tests)" 'BEGIN {
                 split(passes, calls, "/")
-                k = calls[1] / calls[2] # timed passes for each counted one
+                k = calls[1] / calls[2] # timed passes per counted one
                 printf "%10.0f %8.0f %8.1f %9.1f %9.0f %11.2f", timed / k / rays, setup / k / rays, step / k / steps,
                     tests ? test / k / tests : 0, counted / rays, timed / k / counted
             }')

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_counts.sh [--update]: tests/golden/experiment.yaml gives tests/golden/counts.csv, byte for byte, on one thread
-# and on two; run for every build, this makes the counts of compilers and optimisation levels the same. --update
-# replaces the file: say in tests/golden/CHANGES.md why it changed. Uses $RT_PROGRAM.
+# check_counts.sh [--update]: tests/golden/experiment.yaml reproduces tests/golden/counts.csv, byte for byte, on one thread
+# and on two. Run for every build, this makes the counts of compilers and optimisation levels equal. --update
+# replaces the file: give the reason in tests/golden/CHANGES.md. Uses $RT_PROGRAM.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 program=${RT_PROGRAM:-build/release/raytally}

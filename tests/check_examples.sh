@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_examples.sh: the plugins of examples/ and tests/plugins/bvh_copy.c, built against the public headers alone by every
-# compiler there is, without a warning: verify finds no wrong hit; bvh_copy counts what bvh counts; a bih with one origin for
-# both kinds of planes is found out. examples/header-only says how to get what it needs, and is built and verified too
-# where $BVH_DIR is a copy of madmann91/bvh.
+# check_examples.sh: the plugins of examples/ and tests/plugins/bvh_copy.c, built with only the public headers by every
+# available compiler, without a warning. verify finds no wrong hit; bvh_copy has the counts of bvh; verify detects a bih with one
+# origin for both kinds of planes. examples/header-only says how to get what it needs, and is built and verified too
+# if $BVH_DIR is a copy of madmann91/bvh.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 program=${RT_PROGRAM:-build/release/raytally}
@@ -15,7 +15,7 @@ complain() {
     status=1
 }
 
-# builds COMPILER STANDARD SOURCE NAME [OPTION...]: to $work/NAME.so; false where there is no such compiler
+# builds COMPILER STANDARD SOURCE NAME [OPTION...]: to $work/NAME.so; false without this compiler
 builds() {
     command -v "$1" >/dev/null || { echo "check_examples: no $1: $4 is not built by it" >&2 && return 1; }
     "$1" -std="$2" -O2 -fPIC -shared -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror "${@:5}" -I include "$3" \
@@ -24,21 +24,21 @@ builds() {
     return 1
 }
 
-# verified NAME: what verify says of it last
+# verified NAME: the last line of verify
 verified() {
     "$program" verify balls:size=2 tetra:size=3 random:n=0 random:n=1 random:n=40,shape=mixed,distribution=coincident \
         family:kind=axis-aligned --rays 5000 --plugin "$work/$1.so" --accel "$1" --spread --out "$work/out" --force 2>&1 |
         tail -n 1 || true
 }
 
-# right NAME: all rays of all scenes were asked, and nothing is wrong
+# right NAME: all rays of all scenes were traced, and nothing is wrong
 right() {
     local said form='^6 scenes, ([1-9][0-9]*) accelerators?, 5000 rays, ([0-9]+) pairs of a ray and an accelerator: nothing wrong$'
     said=$(verified "$1")
     [[ $said =~ $form && ${BASH_REMATCH[2]} = $((6 * 5000 * BASH_REMATCH[1])) ]] || complain "$1: $said"
 }
 
-# refused COMPILER STANDARD OPTION: box.h is not compiled without NaN and infinities
+# refused COMPILER STANDARD OPTION: box.h does not compile without NaN and infinities
 refused() {
     command -v "$1" >/dev/null || return 0
     "$1" -std="$2" "$3" -fsyntax-only -I include -include raytally/box.h -x c /dev/null 2>"$work/log" &&
@@ -61,21 +61,21 @@ for compiler in g++ clang++; do
     fi
 done
 
-# ---- a copy of bvh does what bvh does ----
-if [ -e "$work/bvh_copy.so" ]; then # and has the same structure: two rows of each table are alike
+# ---- a copy of bvh behaves like bvh ----
+if [ -e "$work/bvh_copy.so" ]; then # and the same structure: two rows of each table are equal
     counted=$("$program" bench balls:size=3 --size 64x64 --plugin "$work/bvh_copy.so" --accel bvh --accel bvh_copy --count-only |
         awk '$1 == "bvh" || $1 == "bvh_copy" { $1 = ""; print }' | sort | uniq -c)
     [ -n "$counted" ] && [ -z "$(awk '$1 % 2 != 0' <<<"$counted")" ] || complain "bvh_copy does not count what bvh counts: $counted"
 fi
 
-# ---- what the text of bih says would go wrong does ----
+# ---- the mistake that the text of bih describes ----
 sed 's/ray->org_near\[/ray->org[/; s/ray->org_far\[/ray->org[/' examples/bih/bih.c >"$work/bih.c"
 if builds "${CC:-cc}" c99 "$work/bih.c" bih; then
     said=$(verified bih)
     grep -q '[1-9][0-9]* wrong' <<<"$said" || complain "bih without the thickness of rays is not found out: $said"
 fi
 
-# ---- without what the user brings ----
+# ---- without the library that the user must get ----
 if command -v cmake >/dev/null; then
     cmake -S examples/header-only -B "$work/build" >"$work/log" 2>&1 && complain "header-only is made without BVH_DIR"
     grep -q 'git clone https://' "$work/log" || complain "header-only does not say how to get what it needs: $(cat "$work/log")"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_faults.sh [TREE]: each line of tests/faults/faults.tsv can be used: its text occurs exactly once in its file, and its
+# check_faults.sh [TREE]: each line of tests/faults/faults.tsv applies: its text occurs exactly once in its file, and its
 # accelerators exist. There are at least 60 faults, and at least one for each registered accelerator.
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"

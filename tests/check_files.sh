@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_files.sh [TREE]: every .c file of the tree is built: CMakeLists.txt lists it, tests/ROOM/test_NAME.c as
-# NAME in raytally_tests(ROOM ...); and every source says its licence. Prints those that are not; exit code 1 where
+# check_files.sh [TREE]: every .c file of the tree is built: CMakeLists.txt lists it, or for tests/ROOM/test_NAME.c lists
+# NAME in raytally_tests(ROOM ...); kernels as NAME_${isa}.c. Every source states its licence. Prints the files that fail; exit code 1 if
 # there is one.
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
@@ -11,6 +11,7 @@ list=$(tr '\n' ' ' <CMakeLists.txt)
 while read -r path; do
     pattern="(^|[[:space:](])${path//./\\.}([[:space:])]|\$)"
     case $path in
+    accel/*_portable.c | accel/*_avx2.c | accel/*_avx512.c) pattern="[[:space:](]${path%_*}_[$]\\{isa\\}\\.c[[:space:])]" ;;
     tests/*/test_*)
         name=${path##*/test_} room=${path#tests/} room=${room%%/*}
         pattern="raytally_tests\\($room[[:space:]]+([^)]*[[:space:]])?${name%.c}([[:space:])])"

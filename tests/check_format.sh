@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_format.sh: every C file is laid out as .clang-format says. Other versions than 14 lay out differently:
+# check_format.sh: every C file is formatted as .clang-format says. Other versions format differently:
 # without clang-format 14 the check is skipped (77).
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_guide.sh [--slow] [DOCUMENT...]: runs the commands of docs/guide/*.md and docs/accelerators/*.md, or of those
-# named, a folder for all in it. Uses $RT_PROGRAM. Of a document, in order and in one scratch directory that has copies of docs/,
-# experiments/, results/ and scenes/:
-#   ```sh                 run by bash, -euo pipefail; `raytally` is in PATH; it must end with exit code 0
-#   ```sh exit=1          with that one
-#   ```sh slow            run with --slow alone, by hand
-#   ```sh needs=X         only where X is there: numpy, embree, library (installed to $PREFIX from beside $RT_PROGRAM), a
+# check_guide.sh [--slow] [DOCUMENT...]: runs the commands of docs/guide/*.md and docs/accelerators/*.md, or of the named
+# documents (a folder names all in it). Uses $RT_PROGRAM. The blocks of a document run in order in one scratch directory with
+# copies of docs/, experiments/, results/ and scenes/:
+#   ```sh                 run by bash, -euo pipefail; `raytally` is in PATH; must end with exit code 0
+#   ```sh exit=1          must end with exit code 1
+#   ```sh slow            run only with --slow, by hand
+#   ```sh needs=X         run only if X exists: numpy, embree, library (installed to $PREFIX from beside $RT_PROGRAM), a
 #                         file of the tree (X has a /), or else a command
-#   ```text exact         what the block before it prints, stderr too; a line ... stands for one or more lines
-#   ```text alike         likewise, but for figures, blanks, and what follows from times, which are others on each machine
+#   ```text exact         the output of the previous block, stderr too; a line ... matches one or more lines
+#   ```text alike         the same except figures, blanks, and words that follow from times
 #   ```LANG file=NAME     is written to NAME first
-# Links into the tree must lead somewhere. Prints what does not hold, and how many blocks were run, compared and skipped; exit
-# code 1 where anything does not.
+# Links into the tree must exist. Prints all failures, and how many blocks were run, compared and skipped; exit
+# code 1 if anything failed.
 set -uo pipefail
 here=$PWD
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 2
@@ -29,15 +29,15 @@ complain() {
     failures=$((failures + 1))
 }
 
-# available X: as in needs=X
+# available X: for needs=X
 available() {
     case $1 in
-    numpy) # of a python3 that may not be the first in PATH
+    numpy) # for a python3 that may not be the first in PATH
         python3 -c 'import numpy' 2>/dev/null && return
         /usr/bin/python3 -c 'import numpy' 2>/dev/null && ln -sf /usr/bin/python3 "$work/bin/python3"
         ;;
     embree) raytally info balls:size=1 >/dev/null && raytally render balls:size=1 --size 2x2 --accel embree -o "$work/x.png" >/dev/null 2>&1 ;;
-    library) # with what it takes to link with it
+    library) # and the tools to link with it
         command -v cc >/dev/null && command -v pkg-config >/dev/null || return
         export PREFIX=$work/prefix PKG_CONFIG_PATH=$work/prefix/lib/pkgconfig
         [ -d "$PREFIX" ] && return
@@ -48,7 +48,7 @@ available() {
     esac
 }
 
-# as_expected EXPECTED GOT: the same lines, but for blank ones at the end; a line ... in EXPECTED stands for some others
+# as_expected EXPECTED GOT: the same lines, except blank ones at the end; a line ... in EXPECTED matches some lines
 as_expected() {
     local pattern got
     pattern=$(sed -E 's/[][*?\\]/\\&/g; s/^\.\.\.$/*/' "$1")
@@ -57,13 +57,13 @@ as_expected() {
     [[ $got == $pattern ]]
 }
 
-# What is left of a text without figures, blanks, and what follows from times: verdicts, who is ahead, null runs.
+# A text without figures, blanks, and words that follow from times: verdicts, who is ahead, null runs.
 without_figures() {
     sed -E '/^Null runs/,/^$/d; s/[-+<]?[0-9][0-9.,]*(e[-+]?[0-9]+)?/0/g; s/faster|slower|no difference/verdict/g
         s/ (ahead (from|up to) 0|(always|never) ahead)$/ ahead/; s/[-=|+ ]+/ /g; s/^ //; s/ $//' "$1"
 }
 
-# run_block PLACE WORD...: the lines in $work/block; leaves what was printed in $work/printed, and `last`
+# run_block PLACE WORD...: runs $work/block; sets $work/printed and `last`
 run_block() {
     local place=$1 word expected=0 code=0
     shift
@@ -82,7 +82,7 @@ run_block() {
 $(tail -n 20 "$work/printed")"
 }
 
-# compare_block PLACE HOW: the lines in $work/block with what was printed
+# compare_block PLACE HOW: compares $work/block with the output
 compare_block() {
     local place=$1
     [ "$last" = ran ] || { [ "$last" = skipped ] || complain "$place: no command stands before this output" && return; }
@@ -98,7 +98,7 @@ compare_block() {
 $(diff "$work/want" "$work/got")"
 }
 
-# end_block PLACE WORD...: the words behind the fence
+# end_block PLACE WORD...: the words after the fence
 end_block() {
     local place=$1 language=${2-} name=''
     shift $(($# > 1 ? 2 : 1))
@@ -114,7 +114,7 @@ end_block() {
     [ "$language" = sh ] || last=''
 }
 
-# check_links DOCUMENT: what it links to in the tree is there
+# check_links DOCUMENT: its links into the tree exist
 check_links() {
     local link
     while read -r link; do

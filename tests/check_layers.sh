@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_layers.sh [TREE]: no file includes a header of a room above its own (linking sees symbols alone), and nothing but
-# the registry and an accelerator's own file or folder knows that accelerator: names its operations, includes from its folder
-# or, outside accel/, opens it by its name. Tests may include and open. Prints each violation; exit code 1 where there is one.
+# check_layers.sh [TREE]: no file includes a header of a room above its own (linking only sees symbols). Only
+# the registry and an accelerator's own file or folder know that accelerator: they alone name its operations, include from its
+# folder or, outside accel/, open it by its name. Tests may include and open. Prints each violation; exit code 1 if there is one.
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
 # A room may include itself and those before it.
@@ -23,8 +23,8 @@ includes_upward() {
         }'
 }
 
-# An accelerator defines rt_NAME_ops in one file, accel/NAME.c or one in a folder of its own. "NAME", "NAME:KEY=VALUE" and
-# "OVERLAY+NAME" open it; parameters and columns are called like some, which count only where they are seen to be opened.
+# An accelerator defines rt_NAME_ops in one file, accel/NAME.c or one in its own folder. "NAME", "NAME:KEY=VALUE" and
+# "OVERLAY+NAME" open it. Some parameters and columns have the same names; they count only if they are opened.
 knows_accelerators() {
     local home name names= spec opens='rt_(accel_open|accel_find|spec_parse)\('
     while IFS=: read -r home name; do

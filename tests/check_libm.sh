@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_libm.sh [TREE]: nothing in the program calls a function of the mathematical library whose last bits differ from one
-# library to the next; src/core/base/elementary.h has what there is instead. Prints each call; exit code 1 where there is one.
+# check_libm.sh [TREE]: the program calls no function of the mathematical library whose last bits differ between
+# libraries; src/core/base/elementary.h has replacements. Prints each call; exit code 1 if there is one.
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
 

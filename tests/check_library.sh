@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_library.sh: raytally as others have it. Installs the build beside $RT_PROGRAM into a scratch prefix and demands:
-# each header compiles as C99, C17 and C++17 without a warning, by every compiler there is, and so do all of them in one
+# check_library.sh: raytally as installed. Installs the build beside $RT_PROGRAM into a scratch prefix and requires:
+# each header compiles as C99, C17 and C++17 without a warning, by every available compiler, and so do all of them in one
 # file; both libraries export raytally_* and nothing else; examples/embed builds by the CMake package and by pkg-config,
-# runs, and counts what the program counts, there and where the prefix was moved to; doxygen finds every declaration
-# described. Skipped (77) without cmake, pkg-config or nm; what else is missing is said and left out.
+# runs, and has the counts of the program, also after the prefix was moved; doxygen finds every declaration
+# described. Skipped (77) without cmake, pkg-config or nm; prints other missing tools and skips their parts.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=$(cd "$(dirname "${RT_PROGRAM:-build/release/raytally}")" && pwd)
@@ -19,7 +19,7 @@ complain() {
     status=1
 }
 
-# quietly WHAT COMMAND...: where it fails, WHAT and what it printed
+# quietly WHAT COMMAND...: if the command fails, prints WHAT and its output
 quietly() {
     local what=$1
     shift
@@ -54,7 +54,7 @@ for compiler in gcc clang; do
 done
 for compiler in g++ clang++; do compiles "$compiler" c++ c++17; done
 
-# exports FILE NM-OPTION...: names that a linker sees in it and that are not ours; and ours must be among them
+# exports FILE NM-OPTION...: visible names must be ours, and ours must be among them
 exports() {
     local file=$1 names
     shift
@@ -74,7 +74,7 @@ done
 counted=$("$RT_PROGRAM" bench balls:size=3 --size 128x128 --rays primary --accel bvh --accel grid:density=20 --count-only |
     awk '$1 == "bvh" || $1 == "grid:density=20" { if (++n <= 2) print $2, $4 }')
 
-# runs PROGRAM: prints what the program counts, and writes an image
+# runs PROGRAM: it prints the counts of raytally, and writes an image
 runs() {
     local got
     rm -f "$work/embed.png"
@@ -85,7 +85,7 @@ runs() {
     [ "$(head -c 4 "$work/embed.png" | tail -c 3)" = PNG ] || complain "${1##*/} writes no PNG"
 }
 
-# embed: by what lies in $prefix
+# embed: builds with the installation in $prefix
 embed() {
     local libraries build=$work/embed-${prefix##*/} flags
     libraries=$(dirname "$(find "$prefix" -name libraytally.so)")
@@ -103,7 +103,7 @@ embed
 mv "$prefix" "$work/second" && prefix=$work/second
 embed
 
-# ---- a program that has another locale, where 4.5 is written 4,5 ----
+# ---- a program with a locale that writes 4.5 as 4,5 ----
 cat >"$work/comma.c" <<'END'
 #include <locale.h>
 #include <raytally/raytally.h>

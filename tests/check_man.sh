@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # check_man.sh: cmake/man_pages.sh makes a manual page for raytally and one for each command, with its options, and neither man
-# nor mandoc (as far as they are there) finds fault with them. Uses $RT_PROGRAM. Skipped (77) without help2man.
+# nor mandoc (if available) reports a problem. Uses $RT_PROGRAM. Skipped (77) without help2man.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 program=$(realpath "${RT_PROGRAM:-build/release/raytally}")

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Rays, hits and counts go through NumPy: the commands and the lines of Python of experiments/README.md do what it says,
-# and what NumPy has written is read as what it is. Uses $RT_PROGRAM. Skipped (77) without python3 or NumPy.
+# Rays, hits and counts as NumPy arrays: the commands and Python lines of experiments/README.md work as described,
+# and raytally reads NumPy's files correctly. Uses $RT_PROGRAM. Skipped (77) without python3 or NumPy.
 set -euo pipefail
 program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
 readme=$(realpath "$(dirname "$0")/../experiments/README.md")
-# Another python3 may stand before Debian's, without Debian's NumPy.
+# Another python3, without Debian's NumPy, may come first in PATH.
 python=
 for candidate in python3 /usr/bin/python3; do
     if [ -z "$python" ] && "$candidate" -c 'import numpy' 2>/dev/null; then python=$(command -v "$candidate"); fi
@@ -36,7 +36,7 @@ awk '/^## / { inside = /^## Your own rays$/ }
     fail 'experiments/README.md has no such section'
 bash -e section.sh >said || fail 'what experiments/README.md says fails'
 
-# Through NumPy and back: the same hits and counts. In other orders and types: refused.
+# Through NumPy and back: the same hits and counts. Other orders and types: refused.
 raytally rays balls:size=2 --size 64x64 --rays diffuse -o rays.npy >said
 raytally bench balls:size=2 --size 64x64 --rays diffuse --accel grid --count-only --json --hits h1.npy --counts c1.npy \
     >one.json

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Reports and the index as a reader has them, in headless Chromium: tables sort and filter, nothing is cut at any width or in
-# print, no request leaves a page, the console stays empty, 5,000 cells are under 10 MB and usable, and axe (through npm) finds
-# nothing serious. Skipped where Chromium, its driver or node is not there, and without axe where npm cannot bring it.
+# Reports and the index in headless Chromium: tables sort and filter, nothing is cut off at any width or in
+# print, no page makes a request, the console stays empty, 5,000 cells are under 10 MB and usable, and axe (through npm) finds
+# nothing serious. Skipped without Chromium, its driver or node, and without axe if npm cannot install it.
 set -euo pipefail
 program=$(realpath "${RT_PROGRAM:?the path of raytally}")
 here=$(realpath "$(dirname "$0")")

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_plugin_results.sh: results of plugins outlive them. Without the plugin they are plotted, reported and compared as with
-# it; a run goes on whatever other plugins are loaded, and where its own has changed (here by a byte behind the library) both
-# builds are named, and --renew measures its cells alone. Uses $RT_PROGRAM, in its build folder, and python3.
+# check_plugin_results.sh: results of a missing or changed plugin. Without the plugin they can be plotted, reported and compared as
+# with it. A run resumes whatever other plugins are loaded. If its own plugin has changed (here by a byte after the library), raytally
+# names both builds, and --renew measures only its cells again. Uses $RT_PROGRAM, in its build folder, and python3.
 set -uo pipefail
 program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
 plugins=$(dirname "$program")/plugins
@@ -17,7 +17,7 @@ complain() {
     failures=$((failures + 1))
 }
 
-# ends WITH ARGUMENT...: raytally's exit code; what it prints and says is in `said`, on one line
+# ends WITH ARGUMENT...: checks raytally's exit code; all its output is in `said`, on one line
 ends() {
     local wanted=$1 code=0
     shift
@@ -35,7 +35,7 @@ says_not() {
     [[ ! $(cat line) =~ $1 ]] || complain "raytally $last: says '$1': $(cat said)"
 }
 
-# Where no baseline is named it is the first that is not of a plugin, which has to stand in the results.
+# Without a named baseline it is the first that is not of a plugin, which must be in the results.
 cat >mine.yaml <<'END_OF_YAML'
 name: mine
 question: Do boxes help?
@@ -134,7 +134,7 @@ ends 2 run mine.yaml --plugin old/mine.so --resume
 ends 0 reproduce results/mine --plugin new/mine.so
 says_not 'another one'
 
-# Where ratios refer to it nothing would stay.
+# If ratios refer to it, all cells would be lost.
 ends 0 run based.yaml --plugin old/mine.so
 cp results/based/cells.jsonl before.jsonl
 ends 2 run based.yaml --plugin new/mine.so --renew
@@ -150,7 +150,7 @@ says "mine-1-of-2: .*'my-accel' is another one: .*old/mine.so \($hash\) there, .
 ends 0 merge results/mine-*-of-2 -o results/merged --plugin old/mine.so
 cmp -s results/mine/counts.csv results/merged/counts.csv || complain 'shards of a plugin count otherwise'
 
-# ---- what is said of plugins ----
+# ---- messages about plugins ----
 
 bench=(bench balls:size=1 --rays primary --size 16x16 --rounds 1 --accel bvh --accel my-accel)
 ends 2 "${bench[@]}"

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_plugins.sh: what is wrong with a plugin stays with it. For each fault of tests/plugins/faulty.c `verify` and `bench`
-# say what it is and end with 1, and what another accelerator has beside it is whole, JSON included. What cannot be loaded is
-# refused with exit code 2 and a sentence. A fresh `raytally new-accel` and the plugins of examples/ are built against an
-# installed raytally, are right and are measured. Uses $RT_PROGRAM, in its build folder, and python3.
+# check_plugins.sh: a faulty plugin harms only its own results. For each fault of tests/plugins/faulty.c `verify` and `bench`
+# name it and end with exit code 1, and the results of other accelerators are complete, JSON included. A plugin that cannot be
+# loaded is refused with exit code 2 and a message. A fresh `raytally new-accel` and the plugins of examples/ are built against
+# an installed raytally, are right and are measured. Uses $RT_PROGRAM, in its build folder, and python3.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 2
 root=$PWD
@@ -22,7 +22,7 @@ complain() {
     failures=$((failures + 1))
 }
 
-# ends WITH FILE ARGUMENT...: raytally's exit code; what it prints is in FILE, what it says in `said`
+# ends WITH FILE ARGUMENT...: checks raytally's exit code; stdout goes to FILE, stderr to `said`
 ends() {
     local wanted=$1 file=$2 code=0
     shift 2
@@ -43,8 +43,8 @@ refuses() {
     says "$1" printed
 }
 
-# It takes ten seconds, and all else goes on.
-(mkdir forever && cd forever && refuses 'does not survive being loaded: it takes more than 10 seconds' "$plugins/unloadable-FOREVER.so"
+# It takes ten seconds, and everything else continues.
+(mkdir forever && cd forever && refuses 'does not survive loading: it takes more than 10 seconds' "$plugins/unloadable-FOREVER.so"
     exit "$failures") &
 forever=$!
 
@@ -54,8 +54,8 @@ verify=(verify balls:size=1 --rays 600 --threads 2 --json)
 bench=(bench balls:size=1 --rays 'primary,shadow' --size 16x16 --depth 2 --rounds 1 --json)
 ends 0 alone.json "${bench[@]}" --accel kd
 
-# fault NAME VERIFIED [MEASURED]: what `verify` says of it, and `bench`: the same where that is left out. Where it is
-# empty nothing is said, and all is well.
+# fault NAME VERIFIED [MEASURED]: the messages of `verify` and of `bench` (the same if left out). If a message is
+# empty, nothing is reported and the results are right.
 fault() {
     local name=faulty-$1 verified=$2 measured=${3-$2}
     ends $((${#verified} > 0)) "verify-$1.json" "${verify[@]}" --plugin "$plugins/faulty.so" --accel "$name" --accel kd
@@ -85,7 +85,7 @@ fault daemon ''
 fault divide "crashed \(Floating point exception\) .*$at_ray"
 fault recursion "$crash\) .*$at_ray"
 fault free "crashed \(Aborted\) .*$at_ray"
-fault object 'an object that there is not, 1[0-9] \(the scene has 11 objects\)'
+fault object 'an object that does not exist, 1[0-9] \(the scene has 11 objects\)'
 fault nan 't = nan'
 fault farther 'expected .* got ' "$differs"
 fault wrong 'expected .* got ' "$differs"
@@ -102,8 +102,8 @@ fault moody 'counts [0-9]+ extent_tests on some [a-z]+ rays, and [0-9]+ when' \
 fault lazy 'expected .* got ' "$differs.* where nothing is counted"
 fault uncounted 'its object_tests for [a-z]+ rays add up to 0, and were [0-9]+'
 fault twice 'its object_tests for [a-z]+ rays add up to [0-9]+, and were [0-9]+'
-fault backwards 'counted [0-9]+ steps for [a-z]+ rays, more than there can be'
-fault occluder 'an object is in the way that the ray does not hit, 0 '
+fault backwards 'counted [0-9]+ steps for [a-z]+ rays, more than possible'
+fault occluder 'an occluder that the ray does not hit, 0 '
 fault silent 'wrote no answer'
 fault beyond 'wrote or read past its answers'
 fault before 'wrote in front of its answers'
@@ -115,7 +115,7 @@ fault debts 'describes itself by a number of 18446744073709551615'
 fault mumble '[?]{40}'
 fault loop-nearest "no progress for 1 s .*$at_ray"
 fault loop-timed "no progress for 1 s .*$at_ray"
-patience=0.2 # it has ten times as long to build
+patience=0.2 # a build may take ten times as long
 fault loop-build 'no progress for 2 s .* while it was built'
 unset patience
 fault greedy 'memory is short'
@@ -173,9 +173,9 @@ ends 1 printed run faulty.yaml --plugin "$plugins/faulty.so" --resume
 ends 0 printed reproduce results/faulty --plugin "$plugins/faulty.so"
 ends 0 printed report results/faulty --plugin "$plugins/faulty.so"
 
-# ---- what cannot be loaded ----
+# ---- plugins that cannot be loaded ----
 
-refuses 'nowhere.so: no plugin there' nowhere.so
+refuses 'nowhere.so: no such plugin' nowhere.so
 echo text >text.so
 refuses 'cannot be loaded: .*text.so' ./text.so
 refuses 'no function .raytally_plugin.*new-accel' "$plugins/unloadable-SYMBOL.so"
@@ -187,10 +187,10 @@ refuses "accelerator 'grid' already: choose another name" "$plugins/unloadable-T
 refuses "it has two accelerators 'unloadable': choose another name" "$plugins/unloadable-TWICE.so"
 refuses "lacks its .*nearest" "$plugins/unloadable-FUNCTION.so"
 refuses "'unloadable' lacks its .params" "$plugins/unloadable-PARAMETERS.so"
-refuses "does not fit itself.*depth" "$plugins/unloadable-STANDARD.so"
+refuses "contradicts itself.*depth" "$plugins/unloadable-STANDARD.so"
 refuses "parameter 'mode' of 'unloadable' has 71 choices; 64 is the most" "$plugins/unloadable-CHOICES.so"
-refuses 'does not survive being loaded: it crashed \(Aborted\)' "$plugins/unloadable-CONSTRUCTOR.so"
-refuses 'does not survive being loaded: it crashed \(Aborted\)' "$plugins/unloadable-ENTRY.so"
+refuses 'does not survive loading: it crashed \(Aborted\)' "$plugins/unloadable-CONSTRUCTOR.so"
+refuses 'does not survive loading: it crashed \(Aborted\)' "$plugins/unloadable-ENTRY.so"
 wait $forever || failures=$((failures + 1))
 mkdir folder && cp "$plugins/faulty.so" folder/
 mkdir a:b 'c\d' && cp folder/faulty.so a:b/ && cp folder/faulty.so 'c\d/' && cp "$plugins/odd-LONGER.so" 'c\d/x:y.so'
@@ -198,17 +198,17 @@ for list in folder "$plugins/faulty.so:$plugins/new-accel.so" 'a\:b' 'c\d/faulty
     RAYTALLY_PLUGINS=$list "$program" accels >printed
     grep -q '^faulty-not' printed || complain "RAYTALLY_PLUGINS=$list: not loaded"
 done
-# What --plugin names is also told to the processes that raytally starts.
+# raytally passes --plugin on to the processes that it starts.
 ends 0 printed compare balls:size=1 --plugin 'a:b/faulty.so' --accel faulty-not --with "$program" --rays primary --size 8x8 --limit 64 \
     --until 90% --patience 1
 
-# ---- plugins that work, against what is installed ----
+# ---- plugins that work, against the installation ----
 
 cmake --install "$build" --prefix "$work/prefix" >log 2>&1 || complain "cmake --install: $(tail -n 5 log)"
 program=$work/prefix/bin/raytally
 export PATH=$work/prefix/bin:$PATH
 
-# works FOLDER: the plugin that is built of it, where one is, is right, and is measured
+# works FOLDER: its plugin, if there is one, builds, is right, and is measured
 works() {
     local name=${1##*/} library accel
     grep -q 'raytally::headers\|MODULE' "$1/CMakeLists.txt" || return
@@ -223,7 +223,7 @@ works() {
     done
 }
 
-# names ARGUMENT...: those of all accelerators, in order
+# names ARGUMENT...: names of all accelerators, in order
 names() {
     "$program" accels --json "$@" | sed -nE 's/^      "name": "(.*)",?$/\1/p' | sort
 }
@@ -233,7 +233,7 @@ works mine
 (cmake --build built-mine --target check) >log 2>&1 || complain "the test of new-accel fails: $(tail -n 20 log)"
 for example in "$root"/examples/*/CMakeLists.txt; do
     case $example in
-    *'*'* | */header-only/*) ;; # none is there; needs a library that the user brings
+    *'*'* | */header-only/*) ;; # no match, or it needs a library that the user must get
     *) works "${example%/*}" ;;
     esac
 done

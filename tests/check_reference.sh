@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_reference.sh: counting again gives the counts of results/havran-1999, and the same comparison with published
-# figures, and the counts of every directory in results/reference, byte for byte. Where the bunny was not fetched the
+# check_reference.sh: counting again reproduces the counts of results/havran-1999, its comparison with published
+# figures, and the counts of every directory in results/reference, byte for byte. Without the bunny the
 # latter are skipped (exit code 77). Uses $RT_PROGRAM. Takes four minutes of processor time, on all processors.
 set -euo pipefail
 cd "$(dirname "$0")/.."

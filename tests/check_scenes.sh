@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_scenes.sh [--update]: every built-in scene and family of scenes has the fingerprint that tests/golden/scenes.txt
-# says; run for every build, this makes scenes the same bits by every compiler and library. --update replaces the
-# fingerprints: say in tests/golden/CHANGES.md why they changed. Uses $RT_PROGRAM.
+# check_scenes.sh [--update]: every built-in scene and family of scenes has its fingerprint in tests/golden/scenes.txt.
+# Run for every build, this makes scenes bit-identical with every compiler and library. --update replaces the
+# fingerprints: give the reason in tests/golden/CHANGES.md. Uses $RT_PROGRAM.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 program=${RT_PROGRAM:-build/release/raytally}

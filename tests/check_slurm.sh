@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_slurm.sh: experiments/slurm.sh on a cluster of one node, which is begun and ended here: munged, slurmctld and slurmd
-# on loopback, with files, keys and ports of their own. 4 shards give the counts of one run; a job that is killed is gone on
-# with when the experiment is submitted again. Needs root and Debian's slurm-wlm; skipped (77) where either is missing, or the
+# check_slurm.sh: experiments/slurm.sh on a cluster of one node, which it starts and ends: munged, slurmctld and slurmd
+# on loopback, with their own files, keys and ports. 4 shards have the counts of one run; a killed job is continued
+# when the experiment is submitted again. Needs root and Debian's slurm-wlm; skipped (77) without either, or if the
 # daemons do not start. Uses $RT_PROGRAM.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -28,7 +28,7 @@ trap end EXIT
 
 # ---- the cluster ----
 
-free_port() { # that nobody listens at; PORT is the first to try
+free_port() { # PORT: prints the first port from PORT on without a listener
     local port=$1
     while (exec 3<>"/dev/tcp/127.0.0.1/$port") 2>/dev/null; do port=$((port + 1)); done
     echo "$port"
@@ -112,7 +112,7 @@ END
 
 submit() { OUT=$work/all RT_PROGRAM=$program experiments/slurm.sh "$work/sharded.yaml" 4 --threads 1; }
 
-# wait_for FILE: until it is there, or no job is left
+# wait_for FILE: until it exists, or no job is left
 wait_for() {
     local i
     for ((i = 0; i < 600; i++)); do

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_tidy.sh [--deep]: clang-tidy has nothing to say, by the checks of .clang-tidy, about all but the tests (it is blind
-# to their assertions) and status.c (which status.h tells it about). Reads the compile_commands.json beside
-# $RT_PROGRAM, with assertions on, from which it learns. Of each function a third of the states are looked at that the
-# tool would by itself, which takes half the time; --deep: all of them. Without clang-tidy 14 it is skipped (77).
+# check_tidy.sh [--deep]: clang-tidy reports nothing, with the checks of .clang-tidy, except on tests (it does not understand
+# their assertions) and status.c (status.h explains why). Reads the compile_commands.json beside
+# $RT_PROGRAM, with assertions enabled, which inform it. It examines a third of the tool's default number of states per
+# function, which takes half the time; --deep: all of them. Skipped (77) without clang-tidy 14.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=$(dirname "${RT_PROGRAM:-build/release/raytally}")

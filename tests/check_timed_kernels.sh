@@ -1,12 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # The timed kernels hold no counting code. Counters are 64-bit words in memory, and counting adds to them; so
-# no function of the library that is called ..._timed may add to a 64-bit word in memory, its own
-# stack apart (which vectors make it address by %rbp).
-# The functions called ..._counted must: each file's counted kernels show that this script would see it. Nor may a
-# timed kernel look whether there is an onlooker (core/base/observe.h): it may not name rt_onlooker, which counted kernels do. A file
-# without timed kernels (isa.c, which hands rays on to those of an instruction set) must count nothing at all.
-# Optimised x86-64 builds only; elsewhere it is skipped (exit code 77).
+# no function of the library called ..._timed may add to a 64-bit word in memory, except on its own
+# stack (which SIMD code addresses by %rbp).
+# The functions called ..._counted must: the counted kernels of each file show that this script would detect it. Nor may a
+# timed kernel test for an observer (core/base/observe.h): it may not name rt_observer, as counted kernels do. A file
+# without timed kernels (isa.c, which passes rays on to the kernels of an instruction set) must count nothing.
+# For optimised x86-64 builds; otherwise it is skipped (exit code 77).
 set -eu
 
 build=$(dirname "${RT_PROGRAM:?the path of raytally, beside which its library lies}")
@@ -27,12 +27,12 @@ objdump --disassemble --reloc --no-show-raw-insn "$library" | awk '
     next
 }
 kind == "" { next }
-/R_X86_64_.*rt_(onlooker|observe)/ {
+/R_X86_64_.*rt_observe/ {
     looks[file, kind]++
     if (kind == "timed") print "  " file ": " name ": " $0
 }
 /[ \t]mov[ \t]+%rsp,%rbp/ { framed = 1 }
-# addq $1,8(%rdi)   incq (%rax)   lock addq ...   add %rax,8(%rdi)   -- but not n(%rsp), nor -n(%rbp) where %rbp is the
+# addq $1,8(%rdi)   incq (%rax)   lock addq ...   add %rax,8(%rdi)   -- but not n(%rsp), nor -n(%rbp) if %rbp is the
 # frame: spilled registers
 /[ \t](addq|subq|incq|decq|adcq)[ \t].*\(/ || /[ \t](add|sub|adc|xadd)[ \t]+%r[a-z0-9]+,[^%]*\(/ {
     if ($0 ~ /\(%rsp[,)]/ || (framed && $0 ~ /-0x[0-9a-f]+\(%rbp\)/)) next
@@ -45,16 +45,16 @@ END {
         f = files[i]
         printf "%-24s timed kernels: %d, additions to memory: %d; counted: %d, additions: %d\n", f,
             seen[f, "timed"], adds[f, "timed"], seen[f, "counted"], adds[f, "counted"]
-        if (looks[f, "timed"] > 0) { print "  FAILED: a timed kernel looks for an onlooker"; bad = 1 }
-        if (looks[f, "counted"] > 0) onlookers++
+        if (looks[f, "timed"] > 0) { print "  FAILED: a timed kernel looks for an observer"; bad = 1 }
+        if (looks[f, "counted"] > 0) observers++
         if (adds[f, "timed"] > 0) { print "  FAILED: a timed kernel counts"; bad = 1 }
         if (seen[f, "timed"] == 0 && adds[f, "counted"] > 0) { print "  FAILED: it counts, and has no timed kernel"; bad = 1 }
         if (seen[f, "timed"] > 0 && (seen[f, "counted"] == 0 || adds[f, "counted"] == 0)) {
             print "  FAILED: nothing to compare with: the counted kernels show no counting"; bad = 1
         }
     }
-    print onlookers + 0 " files have counted kernels that look for an onlooker"
-    if (onlookers == 0) { print "FAILED: no counted kernel is seen to look for an onlooker: this script would not see a timed one"; bad = 1 }
+    print observers + 0 " files have counted kernels that look for an observer"
+    if (observers == 0) { print "FAILED: no counted kernel is seen to look for an observer: this script would not see a timed one"; bad = 1 }
     if (n == 0) { print "FAILED: there are no kernels"; bad = 1 }
     exit bad
 }'

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_verified.sh: results/verify is of a thousand million pairs of a ray and an accelerator without a wrong answer, and
-# one of its scenes, verified again by the accelerators that its manifest names, gives the same rows (but for Embree's,
+# check_verified.sh: results/verify has a thousand million pairs of a ray and an accelerator without a wrong answer. One
+# of its scenes, verified again with the accelerators in its manifest, has the same rows (except Embree's,
 # whose own arithmetic differs between processors). Half a minute. Uses $RT_PROGRAM.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -16,10 +16,10 @@ sum() {
         { sum += $column }
         END { printf "%.0f\n", sum }'
 }
-# setting NAME: of the run
+# setting NAME: a setting of the run
 setting() { sed -n "s/^  \"$1\": \([0-9]*\),$/\1/p" "$manifest"; }
 
-# What this processor has no instructions for is not verified again.
+# Skips accelerators that need instructions this processor lacks.
 absent=no-such-instructions
 ! grep -q 'this processor has no avx512' <<<"$("$program" verify tetra --rays 1 --accel wide:isa=avx512 2>&1)" || absent=isa=avx512
 # accels: the accelerators of the run, as options

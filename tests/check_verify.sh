@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_verify.sh [RAYS]: every accelerator answers RAYS hard rays on each family of scenes, and more than five million
-# of them on all, without a wrong answer; what is wrong is left in verify-failures/ to be replayed. Takes some three
-# minutes on two cores: once, by the release build, is enough. Uses $RT_PROGRAM.
+# check_verify.sh [RAYS]: every accelerator traces RAYS hard rays on each family of scenes, more than five million
+# in all, without a wrong answer; wrong ones are left in verify-failures/ to be replayed. Takes some three
+# minutes on two cores: once, with the release build, is enough. Uses $RT_PROGRAM.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 program=${RT_PROGRAM:-build/release/raytally}
@@ -13,7 +13,7 @@ table=$(mktemp) && trap 'rm -f "$table"' EXIT
     grep '"says"\|"replay"\|"problem": "' "$table"
     exit 1
 }
-# The accelerators answer the same rays, a tenth of which are the camera's.
+# The accelerators trace the same rays, a tenth of which are camera rays.
 scenes=$(grep -c '"accel": "brute"' "$table")
 hard=$((scenes * rays / 10 * 9))
 echo "$hard hard rays on $scenes scenes, each answered by $(($(grep -c '"accel"' "$table") / scenes)) accelerators"

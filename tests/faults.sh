@@ -51,7 +51,7 @@ root=$here/build/faults
 mkdir -p "$root"
 rm -f "$root"/*.log "$root"/*/verdicts
 
-# Files that differ are copied and become new, so whatever depends on them is built again.
+# Files that differ are copied with a new date, so their dependents are rebuilt.
 copy_tree() { # COPY
     (cd "$here" && find . \( -path ./build -o -name .git -o -path ./results -o -path ./scenes/fetched \) -prune -o -type f -print) |
         while read -r path; do
@@ -59,16 +59,10 @@ copy_tree() { # COPY
         done
 }
 
-# Kernels that this machine does not choose take longest to compile: they are not optimised, and the others little.
 configure() { # COPY
-    local idle="portable avx2" isa launcher=()
-    grep -qw avx512bw /proc/cpuinfo || idle="portable avx512"
-    grep -qw avx2 /proc/cpuinfo || idle="avx2 avx512"
+    local launcher=()
     if command -v ccache >/dev/null; then launcher=(-DCMAKE_C_COMPILER_LAUNCHER=ccache); fi
-    for isa in $idle; do
-        printf '%s\n' "file(GLOB idle accel/*/*_$isa.c)" "set_property(SOURCE \${idle} APPEND PROPERTY COMPILE_OPTIONS -O0)"
-    done >>"$1/CMakeLists.txt"
-    cmake -S "$1" -B "$1/build" -G Ninja -DCMAKE_BUILD_TYPE=Release "-DCMAKE_C_FLAGS_RELEASE=-O1 -DNDEBUG" "${launcher[@]}"
+    cmake -S "$1" -B "$1/build" -G Ninja -DRT_KERNELS=native -DCMAKE_BUILD_TYPE=Release "-DCMAKE_C_FLAGS_RELEASE=-O1 -DNDEBUG" "${launcher[@]}"
 }
 
 build() { # COPY

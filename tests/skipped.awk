@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# awk -f skipped.awk REPORT...: the tests and the cases of tests that ctest's JUnit reports say were skipped, and that none of
-# them says were run: one a line, with what the test has printed after "skipped: ", which is what it needs.
+# awk -f skipped.awk REPORT...: tests and cases of tests that ctest's JUnit reports list as skipped, and none of
+# them as run: one per line, with the requirement that the test printed after "skipped: ".
 function add(name) {
     if (!(name in needs)) {
         order[++count] = name

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# The checks of the tree find what they are there for: each is shown a small tree that breaks the rule. And setup.sh builds
-# a tree that was copied with its build folder, and installs what does not conflict; skipped.awk lists what was skipped.
+# The checks of the tree detect violations: each runs on a small tree that breaks its rule. setup.sh builds
+# a tree that was copied with its build folder, and installs packages that do not conflict; skipped.awk lists skipped tests.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 tree=$(mktemp -d) && trap 'rm -rf "$tree"' EXIT
@@ -86,7 +86,7 @@ expect fails check_files.sh "a test that is not registered"
 fresh_tree && touch "$tree/accel/grid_c.c" && sed -i 's|accel/grid\.c|accel/grid.c.orig|' "$tree/CMakeLists.txt"
 expect fails check_files.sh "a name that only resembles one in the list"
 
-# built TREE: what setup.sh says while it builds a tree that is as small as can be
+# built TREE: the output of setup.sh while it builds a minimal tree
 built() {
     bash -c 'source "$0/setup.sh" && build release' "$1" && [ -e "$1/build/release/made" ]
 }
@@ -104,7 +104,7 @@ said=$(built "$tree/copy") && [[ $said == *"made for $tree/original: configuring
     echo "setup.sh: where the tree is a copy: $said"
     failures=$((failures + 1))
 }
-# add_packages where apt refuses whatever has `bad` in it
+# add_packages if apt refuses any list with `bad` in it
 cat >"$tree/original/adds.sh" <<'END'
 source "${BASH_SOURCE[0]%/*}/setup.sh"
 apt() {
@@ -118,7 +118,7 @@ said=$(bash "$tree/original/adds.sh" 2>&1)
     echo "setup.sh: where a package conflicts: $said"
     failures=$((failures + 1))
 }
-# skipped.awk, on what ctest reports of a build, and of another that has run more
+# skipped.awk, on ctest's reports of one build, and of another that ran more tests
 cat >"$tree/one.xml" <<'END'
 <testcase name="script" classname="script" time="0.02" status="notrun">
 <skipped message="SKIP_RETURN_CODE=77"/>
@@ -143,7 +143,7 @@ said=$(awk -f "$here/skipped.awk" "$tree/one.xml" "$tree/two.xml")
     echo "skipped.awk: $said"
     failures=$((failures + 1))
 }
-# object FILE TEXT: a source of that text, compiled to where the build keeps the objects of its library
+# object FILE TEXT: a source with this text, compiled to the place of its library's objects
 export RT_PROGRAM=$tree/build/raytally
 object() {
     local output=$tree/build/CMakeFiles/raytally_${1%/*}.dir/src/$1.o
@@ -176,7 +176,7 @@ if command -v nm >/dev/null && command -v "${CC:-cc}" >/dev/null; then
     expect fails check_circles.sh "a build without objects"
 fi
 
-# guide passes|fails WHAT LINE...: a document of those lines
+# guide passes|fails WHAT LINE...: a document with these lines
 guide() {
     local outcome=passes wanted=$1 what=$2
     shift 2

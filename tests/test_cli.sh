@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# The command line on bad input: exit code 2, nothing on stdout, a message that says where, what is wrong and what
+# The command line on bad input: exit code 2, nothing on stdout, a message that says where the mistake is, what it is and what
 # would be right, and no file left behind. Uses $RT_PROGRAM.
 set -uo pipefail
 program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
@@ -13,7 +13,7 @@ complain() {
     failures=$((failures + 1))
 }
 
-# refuses PATTERN ARGUMENT...: what the message must say is an extended regular expression
+# refuses PATTERN ARGUMENT...: the message must match the extended regular expression
 refuses() {
     local pattern=$1 code=0 before after message
     shift
@@ -36,7 +36,7 @@ does() {
     rm stdout stderr
 }
 
-# nff NAME LINE...: a scene of a camera, a material and those lines, the first being line 9
+# nff NAME LINE...: a scene of a camera, a material and these lines, the first being line 9
 nff() {
     local name=$1
     shift
@@ -78,7 +78,7 @@ does info balls:size=1 --extents --rays 1000
 does info balls:size=1 --extents=all --rays 1000 --json
 refuses "extents: invalid value 'some'.*--extents=all" info balls --extents=some
 
-# a scene without objects, and one of one
+# a scene without objects, and one with one
 none=random:n=0
 does info $none --extents --rays 10
 "$program" info $none --json | python3 -c 'import json, sys; sys.exit(json.load(sys.stdin)["bounds"] is not None)' ||
@@ -103,7 +103,7 @@ refuses 'nope\.nff: there is no such file' verify nope.nff
 
 # ---- a full disk: exit code 2, a message that names the file, and no part of it ----
 
-# full FILE ARGUMENT...: where not a byte can be written
+# full FILE ARGUMENT...: on a disk without a free byte
 full() {
     local file=$1 message
     shift
@@ -131,7 +131,7 @@ yaml full 'name: full' 'question: q' 'prediction: p' 'scenes: [{scene: "balls:si
 full experiment.yaml run full.yaml --out out
 rm -r full.yaml out
 
-# ---- a link that leads nowhere is no misspelt name ----
+# ---- a dangling link is not a misspelt name ----
 
 for name in link.nff link.yaml link.npy; do ln -s gone/away $name; done
 refuses "link\.nff is a symbolic link that leads to no file: its target is 'gone/away'" info link.nff
@@ -141,7 +141,7 @@ refuses "link\.npy is a symbolic link" bench balls:size=1 --accel bvh --rays nea
 refuses "link\.nff is a symbolic link" bench link.nff --accel bvh
 rm link.*
 
-# ---- new-accel: a whole folder, or nothing ----
+# ---- new-accel: a complete folder, or nothing ----
 
 refuses 'a NAME .* is missing.*new-accel --help' new-accel
 refuses 'one NAME at a time' new-accel mine yours
@@ -179,7 +179,7 @@ refuses "siz.*size" render balls:siz=2 -o x.png
 refuses 'a whole number' render balls:size=two -o x.png
 refuses '0\.\.' render random:n=-1 -o x.png
 
-# ---- scenes: what is in them ----
+# ---- scenes: their contents ----
 
 nff empty
 refuses 'empty\.nff: .*empty.*at least one object' render empty.nff -o x.png
@@ -297,7 +297,7 @@ refuses 'missing/x\.csv.*No such file' $bench --accel bvh --csv missing/x.csv
 does $bench --accel all --json
 does $bench --accel brute --ray-stride 3 --accel bvh --baseline bvh --count-only
 does $bench --accel bvh --rays diffuse,occlusion
-# What it says of a second is what it says of a ray, times rays a second.
+# Times per second are times per ray, multiplied by rays per second.
 timeout 60 "$program" $bench --accel kd --accel grid --rays primary,shadow --json >seconds.json
 awk -F '[":, ]+' '
     { value[$2] = $3 }
@@ -309,7 +309,7 @@ awk -F '[":, ]+' '
     }
     END { exit rows != 4 }' seconds.json || complain "bench --json: steps and tests a second are not those of a ray"
 
-# The table fits a terminal, names its baseline, and says why a ratio on a part of the rays is another one.
+# The table fits a terminal, names its baseline, and says why a ratio on some of the rays differs.
 long=wide:in_flight=1,packets=0,order=off
 "$program" $bench --accel bvh --accel brute --ray-stride 7 --accel $long --rays primary,shadow >table 2>&1
 awk 'length > 80 { exit 1 }' table || complain "bench: the table has lines of more than 80 characters"
@@ -332,7 +332,7 @@ for says in '"scene": "balls:size=1"' '"scene": "balls:size=2"'; do
     [ "$(grep -c "$says" seconds.json)" = 3 ] || complain "bench --json: scenes, rows and null runs are not each of $says"
 done
 rm table seconds.json
-refuses '--hits and --counts are of one scene' bench 'balls:size=1|2' --accel bvh --rays primary --size 8x8 --hits hits.npy
+refuses '--hits and --counts write the rays of one scene' bench 'balls:size=1|2' --accel bvh --rays primary --size 8x8 --hits hits.npy
 refuses 'one SCENE at a time' rays 'balls:size=1|2' --size 8x8 -o rays.npy
 
 for subject in '' 'a' 'a b c' 'a b --with c' 'a b --accel bvh' 'a b --until 1%' 'a b --rounds 9' 'a b --size 8x8'; do
@@ -342,8 +342,8 @@ refuses "margin: invalid value '3'" compare a b --margin 3
 refuses 'nowhere is not a finished result directory.*raytally run EXPERIMENT --out nowhere --resume' compare nowhere nowhere
 refuses 'an EXPERIMENT says what its rays are' compare a.yaml --rays primary --with "$program"
 refuses 'no/such: cannot be started: No such file' compare balls:size=1 --accel bvh --size 8x8 --with no/such
-refuses '/bin/true cannot be compared with' compare balls:size=1 --accel bvh --size 8x8 --with /bin/true
-refuses '/bin/cat cannot be compared with' compare balls:size=1 --accel bvh --size 8x8 --with /bin/cat
+refuses '/bin/true cannot be compared' compare balls:size=1 --accel bvh --size 8x8 --with /bin/true
+refuses '/bin/cat cannot be compared' compare balls:size=1 --accel bvh --size 8x8 --with /bin/cat
 refuses "'grd': did you mean 'grid'" compare balls:size=1 --accel grd --with "$program"
 
 refuses 'EXPERIMENT is missing' run
@@ -377,7 +377,7 @@ for scene in 'my scene.obj' 'a folder/Größe & Co.obj'; do
 done
 refuses 'verified is not the result directory of an experiment' report verified
 
-# ---- and what is right works: the same scenes without their mistake ----
+# ---- correct input passes: the same scenes without their mistake ----
 
 nff right 's 0 0 0 1' 'p 3' '0 0 0' '1 0 0' '1 1 0' 'c' '0 0 0 1' '0 0 1 1'
 does render right.nff -o x.png
@@ -406,7 +406,7 @@ mv kept.yaml small.yaml
 echo '{}' >damaged/manifest.json
 refuses 'does not say what was run' run damaged/manifest.json
 cp results/small/counts.csv counted
-# differs WHERE THERE NOW: from what is counted now
+# differs WHERE THERE NOW: from the current counts
 differs() {
     "$program" reproduce results/small >stdout 2>stderr && complain "raytally reproduce: takes counts that differ"
     message=$(tr '\n' ' ' <stderr)

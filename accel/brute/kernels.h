@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* rt_test_all for many rays, sixteen spheres or triangles at a time (accel/batch.h); included once for each
+/* rt_test_all for many rays, RT_LANES spheres or triangles at a time (accel/batch.h); included once for each
  * instruction set (accel/isa.h).
  *
- * The same bits: in lanes objects are only turned away, by the first operations of their hit functions; those
- * that are left are tested by the hit function itself. Of a triangle that is the signs of the edge functions
- * in float32, by the operations of rt_triangle_hit; where all three are numbers it is turned away by both or
- * by neither. Coordinates below RT_MAX_COORDINATE cannot overflow, so one is no number only where a shear is
- * infinite or none, of the shortest dir: then weights in double are infinite or NaN too, t is NaN, and the
- * triangle is not hit. Of spheres see accel/lanes.h.
+ * The same bits: lanes only reject objects, by the first operations of their hit functions; the hit function
+ * itself tests those that pass. Triangles are rejected by the signs of the edge functions in float32
+ * (accel/watertight.h). If all three are numbers, rt_triangle_hit rejects the same triangles. Coordinates
+ * below RT_MAX_COORDINATE cannot overflow, so one is NaN only if a shear is infinite or NaN, for the shortest
+ * dir: then the weights in double are infinite or NaN too, t is NaN, and the triangle is not hit. For spheres
+ * see accel/sphere_prefilter.h.
  *
  * The same counts: a ray meets objects shape by shape in the order of RT_SHAPES, by ascending id, as in
- * rt_test_all, so it has tested all up to where it stops. */
+ * rt_test_all, so it has tested all objects up to the one at which it stops. */
 #include "accel/batch.h"
 #include "accel/brute/brute.h"
-#include "accel/sieve.h"
+#include "accel/watertight.h"
 
 enum { SPHERE = sizeof(RtSphere) / sizeof(float), TRIANGLE = sizeof(RtTriangle) / sizeof(float) };
 
@@ -21,9 +21,9 @@ _Static_assert(SPHERE == 4 && TRIANGLE == 9, "an object is its coordinates, with
 
 /* ---- a ray and a block ---- */
 
-/* What a ray turns triangles away by. */
+/* A ray, prepared for the edge-function prefilter. */
 typedef struct Line {
-    RtSieveLine lanes;
+    RtShear lanes;
     int x, y, z; /* the ray's kx, ky and kz */
 } Line;
 
@@ -31,24 +31,24 @@ RT_KERNEL void make_line(Line *line, const RtPreparedRay *ray) {
     line->x = ray->kx;
     line->y = ray->ky;
     line->z = ray->kz;
-    line->lanes.org_x = rt_v16_all(ray->org.at[ray->kx]);
-    line->lanes.org_y = rt_v16_all(ray->org.at[ray->ky]);
-    line->lanes.org_z = rt_v16_all(ray->org.at[ray->kz]);
-    line->lanes.shear_x = rt_v16_all(ray->shear_x);
-    line->lanes.shear_y = rt_v16_all(ray->shear_y);
+    line->lanes.org_x = rt_all(ray->org.at[ray->kx]);
+    line->lanes.org_y = rt_all(ray->org.at[ray->ky]);
+    line->lanes.org_z = rt_all(ray->org.at[ray->kz]);
+    line->lanes.shear_x = rt_all(ray->shear_x);
+    line->lanes.shear_y = rt_all(ray->shear_y);
 }
 
-/* Bit i: the edge functions of triangle i are not of different signs. */
-RT_KERNEL uint32_t sieve_triangles(const RtBlock *block, const Line *line) {
-    RtV16 x[3], y[3], z[3];
+/* Bit i: triangle i passes the edge-function prefilter. */
+RT_KERNEL uint32_t prefilter_triangles(const RtBlock *block, const Line *line) {
+    RtSheared s;
     for (size_t i = 0; i < 3; i++) {
-        const float(*vertex)[RT_BLOCK_LANES] = block->row + 3 * i;
-        x[i] = rt_v16_load(vertex[line->x]);
-        y[i] = rt_v16_load(vertex[line->y]);
-        z[i] = rt_v16_load(vertex[line->z]);
+        const float(*vertex)[RT_LANES] = block->row + 3 * i;
+        s.x[i] = rt_load(vertex[line->x]);
+        s.y[i] = rt_load(vertex[line->y]);
+        s.z[i] = rt_load(vertex[line->z]);
     }
-    rt_sieve_shear(&line->lanes, x, y, z);
-    return rt_sieve(x, y);
+    rt_shear(&line->lanes, &s);
+    return rt_edge_prefilter(&s);
 }
 
 /* ---- a batch and a shape ---- */
@@ -61,7 +61,7 @@ typedef struct Objects {
     RtShape shape;
 } Objects;
 
-/* Tells of the tests of objects first..end-1; gives end. */
+/* Reports the tests of objects first..end-1 to the observer; returns end. */
 RT_COLD static uint32_t observe_tests(const RtGeometry *g, const Objects *objects, uint32_t first,
                                       uint32_t end) {
     for (uint32_t i = first; i < end; i++) {
@@ -75,19 +75,19 @@ RT_COLD static uint32_t observe_tests(const RtGeometry *g, const Objects *object
 RT_KERNEL bool test_chunk(const RtBatch *batch, const RtGeometry *g, RtActiveRay *a, const Objects *objects,
                           uint32_t first, uint32_t count, bool any, RtTally *tally) {
     Line line;
-    uint32_t told = first;
+    uint32_t reported = first;
     make_line(&line, &a->ray);
-    for (uint32_t i = 0; i < count; i += RT_BLOCK_LANES) {
-        const RtBlock *block = &batch->chunk[i / RT_BLOCK_LANES];
-        uint32_t left = objects->shape == RT_SHAPE_SPHERE
-                            ? rt_spheres_left16(block->row[0], RT_BLOCK_LANES, &a->line)
-                            : sieve_triangles(block, &line);
-        for (; left; left &= left - 1) {
-            uint32_t index = first + i + (uint32_t)__builtin_ctz(left), id = objects->ids[index];
+    for (uint32_t i = 0; i < count; i += RT_LANES) {
+        const RtBlock *block = &batch->chunk[i / RT_LANES];
+        uint32_t passed = objects->shape == RT_SHAPE_SPHERE
+                              ? rt_sphere_prefilter(block->row[0], RT_LANES, &a->line)
+                              : prefilter_triangles(block, &line);
+        for (; passed; passed &= passed - 1) {
+            uint32_t index = first + i + (uint32_t)__builtin_ctz(passed), id = objects->ids[index];
             float t;
             if (!rt_object_hit(g, id, &a->ray, &t, NULL)) continue;
             RT_COUNT(tally, object_hits, 1);
-            if (RT_OBSERVED(tally)) told = observe_tests(g, objects, told, index + 1);
+            if (RT_OBSERVED(tally)) reported = observe_tests(g, objects, reported, index + 1);
             RT_OBSERVE(tally, .kind = RT_TRACED_OBJECT_HIT, .index = id, .t = t);
             if (rt_hit_before(t, id, a->best)) a->best = (RtHit){t, id};
             if (!any) continue;
@@ -95,7 +95,7 @@ RT_KERNEL bool test_chunk(const RtBatch *batch, const RtGeometry *g, RtActiveRay
             return true;
         }
     }
-    if (RT_OBSERVED(tally)) observe_tests(g, objects, told, first + count);
+    if (RT_OBSERVED(tally)) observe_tests(g, objects, reported, first + count);
     return false;
 }
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "accel/plugin/host.h"
 
-#include "accel/plugin/query.h"
 #include "accel/plugin/wire.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 
+#include <inttypes.h>
 #include <string.h>
 
 /* ---- the structure ---- */
@@ -17,19 +17,19 @@ static void destroy(RtAccel *accel) {
     rt_free(self);
 }
 
-/* What the plugin says of a failure, or that it says nothing. */
+/* Reports that `build` failed, with the plugin's message if it wrote one. */
 static RtStatus refuse(const raytally_accel_ops *table, int result, const char *message, RtError *error) {
     if (result == RAYTALLY_BUILD_NO_MEMORY)
         return rt_fail(error, RT_NO_MEMORY, "%s: memory is short%s%s", table->name, *message ? ": " : "",
                        message);
     if (result != RAYTALLY_BUILD_REFUSED)
-        return rt_fail(error, RT_BROKEN, "%s: its `build` returned %d, which means nothing", table->name,
-                       result);
+        return rt_fail(error, RT_BROKEN, "%s: its `build` returned %d, which is no result of a build",
+                       table->name, result);
     return rt_fail(error, RT_BAD_INPUT, "%s: %s", table->name,
-                   *message ? message : "it refuses this scene and does not say why");
+                   *message ? message : "it refuses this scene without giving a reason");
 }
 
-static void take_values(const RtBuild *what, raytally_value *values) {
+static void copy_values(const RtBuild *what, raytally_value *values) {
     for (size_t i = 0; i < what->ops->param_count; i++) {
         const RtValue value = what->values[i];
         switch (what->ops->params[i].type) {
@@ -37,7 +37,7 @@ static void take_values(const RtBuild *what, raytally_value *values) {
         case RT_PARAM_FLOAT: values[i].number = value.f; break;
         case RT_PARAM_CHOICE: values[i].choice = value.choice; break;
         case RT_PARAM_FLAG: values[i].flag = value.flag; break;
-        case RT_PARAM_RESOLUTION: break; /* no parameter of a plugin is one */
+        case RT_PARAM_RESOLUTION: break; /* plugins have none */
         }
     }
 }
@@ -47,8 +47,8 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     const RtGeometry *geometry = &what->scene->geometry;
     raytally_value values[RAYTALLY_MAX_PARAMS] = {0};
     char message[900] = "";
-    take_values(what, values);
-    raytally_build asked = {.size = sizeof asked,
+    copy_values(what, values);
+    raytally_build input = {.size = sizeof input,
                             .object_count = geometry->object_count,
                             .boxes = (const raytally_box *)geometry->boxes,
                             .values = values,
@@ -56,10 +56,10 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
                             .byte_limit = what->limit,
                             .message = message,
                             .message_room = sizeof message - 1};
-    memcpy(&asked.box, &geometry->box, sizeof asked.box);
+    memcpy(&input.box, &geometry->box, sizeof input.box);
     RT_TRY(rt_accel_new(what, sizeof(RtPluginAccel), out, error));
     RtPluginAccel *self = (RtPluginAccel *)*out;
-    int result = table->build(&asked, &self->self);
+    int result = table->build(&input, &self->self);
     if (result != RAYTALLY_BUILD_OK) {
         rt_free(self);
         return refuse(table, result, message, error);
@@ -70,32 +70,29 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     return RT_OK;
 }
 
-/* Those that no structure has: below zero, as a rule. */
-static void refuse_numbers(RtPluginAccel *accel, const raytally_description *said) {
-    const uint64_t numbers[] = {said->interior,   said->leaves, said->empty_leaves,
-                                said->references, said->depth,  said->bytes};
+/* Numbers that no structure has: usually below zero. */
+static void check_numbers(RtPluginAccel *accel, const raytally_description *d) {
+    const uint64_t numbers[] = {d->interior, d->leaves, d->empty_leaves, d->references, d->depth, d->bytes};
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
-        if (numbers[i] <= UINT64_C(1) << 53) continue;
-        RtError error;
-        rt_fail(&error, RT_BROKEN, "it describes itself by a number of %llu", (unsigned long long)numbers[i]);
-        rt_plugin_say(accel, &error);
+        if (numbers[i] > UINT64_C(1) << 53)
+            rt_plugin_break(accel, "it describes itself by a number of %" PRIu64, numbers[i]);
     }
 }
 
 static void describe(const RtAccel *accel, RtDescription *out) {
     const RtPluginAccel *self = rt_plugin_of(accel);
-    raytally_description said = {.predicted_cost = NAN, .predicted_tests = NAN, .predicted_steps = NAN};
-    if (self->table->describe) self->table->describe(self->self, &said);
-    refuse_numbers((RtPluginAccel *)accel, &said);
-    *out = (RtDescription){.interior = said.interior,
-                           .leaves = said.leaves,
-                           .empty_leaves = said.empty_leaves,
-                           .references = said.references,
-                           .depth = said.depth,
-                           .bytes = said.bytes,
-                           .predicted_cost = said.predicted_cost,
-                           .predicted_tests = said.predicted_tests,
-                           .predicted_steps = said.predicted_steps,
+    raytally_description d = {.predicted_cost = NAN, .predicted_tests = NAN, .predicted_steps = NAN};
+    if (self->table->describe) self->table->describe(self->self, &d);
+    check_numbers((RtPluginAccel *)accel, &d);
+    *out = (RtDescription){.interior = d.interior,
+                           .leaves = d.leaves,
+                           .empty_leaves = d.empty_leaves,
+                           .references = d.references,
+                           .depth = d.depth,
+                           .bytes = d.bytes,
+                           .predicted_cost = d.predicted_cost,
+                           .predicted_tests = d.predicted_tests,
+                           .predicted_steps = d.predicted_steps,
                            RT_NO_QUALITY};
 }
 
@@ -105,7 +102,7 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
     if (!self->table->validate || self->table->validate(self->self, message, sizeof message - 1) == 0)
         return RT_OK;
     return rt_fail(error, RT_MISMATCH, "%s: %s", self->table->name,
-                   *message ? message : "it is not valid and does not say why");
+                   *message ? message : "it is not valid, and gives no reason");
 }
 
 typedef struct Showing {
@@ -116,16 +113,15 @@ typedef struct Showing {
 static void show_box(void *context, const raytally_box *theirs, uint32_t depth, int leaf) {
     const Showing *showing = context;
     RtBox box;
-    RtError said;
-    if (theirs) memcpy(&box, theirs, sizeof box);
-    if (!theirs || !rt_wire_is_box(&box, depth)) {
-        if (theirs)
-            rt_fail(&said, RT_BROKEN, "it showed a box at depth %u from (%g, %g, %g) to (%g, %g, %g)", depth,
-                    (double)box.lo.x, (double)box.lo.y, (double)box.lo.z, (double)box.hi.x, (double)box.hi.y,
-                    (double)box.hi.z);
-        else
-            rt_fail(&said, RT_BROKEN, "it showed a box that is NULL");
-        rt_plugin_say(showing->accel, &said);
+    if (!theirs) {
+        rt_plugin_break(showing->accel, "it showed a box that is NULL");
+        return;
+    }
+    memcpy(&box, theirs, sizeof box);
+    if (!rt_wire_is_box(&box, depth)) {
+        rt_plugin_break(showing->accel, "it showed a box at depth %u from (%g, %g, %g) to (%g, %g, %g)",
+                        depth, (double)box.lo.x, (double)box.lo.y, (double)box.lo.z, (double)box.hi.x,
+                        (double)box.hi.y, (double)box.hi.z);
         return;
     }
     showing->viewer.show(showing->viewer.context,

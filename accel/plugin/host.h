@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* An accelerator of a plugin as an RtAccel, in the process where it lives: what raytally's side of
- * include/raytally/accel.h is. */
+/* An accelerator of a plugin as an RtAccel, in its own process: the host's side of include/raytally/accel.h.
+ *
+ * Queries check every answer of the plugin before anything else reads it: the object exists, and t is on the
+ * ray. Answers and the plugin's memory for a query lie between guard pages, and known bytes (canaries) fill
+ * the rest of their pages. Object tests are counted here, whatever the plugin does with its counters. */
 #ifndef RT_ACCEL_PLUGIN_HOST_H
 #define RT_ACCEL_PLUGIN_HOST_H
 
@@ -8,17 +11,62 @@
 
 #include <raytally/accel.h>
 
-/* The operations of a plugin's table, which the registry knows by the first member. */
+#include <pthread.h>
+#include <stdatomic.h>
+
+/* The operations of a plugin's table; the registry holds pointers to the first member. */
 typedef struct RtPluginOps {
     RtAccelOps ops;
     RtParam params[RAYTALLY_MAX_PARAMS];
     const char *path;         /* of the library */
-    uint64_t fingerprint;     /* of its bytes, when it was loaded */
+    uint64_t fingerprint;     /* of its bytes when it was loaded */
     uint32_t place;           /* of the table in the library */
-    raytally_accel_ops table; /* where it is entered (rt_plugin_enter); else nothing */
+    raytally_accel_ops table; /* once rt_plugin_enter has opened the library here */
 } RtPluginOps;
 
-/* Fills the operations and parameters from a table that was looked at, the text of which has to stay. */
+/* Fills the operations and parameters from a checked table, whose text must stay valid. */
 void rt_plugin_ops_init(RtPluginOps *ops, const raytally_accel_ops *table);
+
+typedef struct RtPluginAccel {
+    RtAccel base;
+    const raytally_accel_ops *table;
+    void *self;
+    size_t query_bytes;
+    atomic_bool broken; /* `error` says why */
+    pthread_mutex_t lock;
+    RtError error;
+} RtPluginAccel;
+
+static inline const RtPluginAccel *rt_plugin_of(const RtAccel *accel) {
+    return (const RtPluginAccel *)accel;
+}
+
+/* Marks it as broken, with a message as of printf. Only the first failure is kept. */
+__attribute__((format(printf, 2, 3))) void rt_plugin_break(RtPluginAccel *accel, const char *what, ...);
+
+/* Sets the kernels, what opens and closes queries, and `check`. */
+void rt_plugin_query_ops(RtAccelOps *ops);
+
+/* ---- what a query is doing, for reports of crashes ---- */
+
+/* Memory between guard pages; `mapping` includes them. */
+typedef struct RtGuarded {
+    char *mapping; /* [mapped] or NULL */
+    size_t mapped;
+    char *begin, *end; /* of the pages that may be accessed */
+} RtGuarded;
+
+enum { RT_GUARD_QUERY, RT_GUARD_ANSWERS, RT_GUARD_COUNT };
+
+typedef struct RtPluginNow {
+    const RtRay *volatile ray;         /* the last one prepared; NULL: the query is idle */
+    RtGuarded guarded[RT_GUARD_COUNT]; /* the plugin's memory, and the answers */
+} RtPluginNow;
+
+/* Of the calling thread; NULL if it traces nothing. Safe in signal handlers. */
+const RtPluginNow *rt_plugin_now(void);
+
+/* Of any thread that traces, or NULL. */
+const RtPluginNow *rt_plugin_busy(void);
 
 #endif

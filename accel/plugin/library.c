@@ -11,9 +11,9 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-/* What the table of the first version has; later ones have more, which is optional. */
+/* The table of the first version; later ones have more members, which are optional. */
 enum { LEAST_BYTES = offsetof(raytally_accel_ops, each_box) + sizeof(((raytally_accel_ops *)0)->each_box) };
-_Static_assert(sizeof(raytally_accel_ops) == LEAST_BYTES, "nothing behind the last member");
+_Static_assert(sizeof(raytally_accel_ops) == LEAST_BYTES, "nothing after the last member");
 
 RtStatus rt_library_fingerprint(const char *path, uint64_t *fingerprint, RtError *error) {
     char *data;
@@ -26,19 +26,19 @@ RtStatus rt_library_fingerprint(const char *path, uint64_t *fingerprint, RtError
 
 /* ---- reading its tables ---- */
 
-/* Nothing of the table is read but what every version has before its size is known. */
+/* Until its size is known, only members that every version has are read. */
 static RtStatus take_table(const char *path, const raytally_accel_ops *theirs, RtTables *tables,
                            RtError *error) {
     if (theirs->abi == 0)
         return rt_fail(error, RT_BAD_INPUT, "%s: `abi` is not set: it is RAYTALLY_ACCEL_ABI", path);
     if (theirs->abi != RAYTALLY_ACCEL_ABI)
         return rt_fail(error, RT_BAD_INPUT,
-                       "%s: it is made for version %u of the interface of plugins, and this raytally has "
-                       "version %d: compile it against the headers of this one",
+                       "%s: it is made for version %u of the plugin interface, and this raytally has "
+                       "version %d: compile it against the headers of this raytally",
                        path, theirs->abi, RAYTALLY_ACCEL_ABI);
     if (theirs->size < LEAST_BYTES)
         return rt_fail(error, RT_BAD_INPUT,
-                       "%s: its table has %u bytes where %d are the least: set `size` to "
+                       "%s: its table has %u bytes instead of at least %d: set `size` to "
                        "sizeof(raytally_accel_ops)",
                        path, theirs->size, LEAST_BYTES);
     raytally_accel_ops *table = &tables->at[tables->count];
@@ -69,20 +69,20 @@ RtStatus rt_library_open(const char *path, RtTables *tables, RtError *error) {
     tables->count = 0;
     void *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     if (!library) return rt_fail(error, RT_BAD_INPUT, "it cannot be loaded: %s", dlerror());
-    raytally_plugin_function *give;
+    raytally_plugin_function *get_table;
     void *symbol = dlsym(library, "raytally_plugin");
-    memcpy(&give, &symbol, sizeof give);
-    if (!give) {
+    memcpy(&get_table, &symbol, sizeof get_table);
+    if (!get_table) {
         return rt_fail(error, RT_BAD_INPUT,
-                       "%s: it is no plugin, for it has no function `raytally_plugin`; `raytally new-accel` "
-                       "writes one that has",
+                       "%s: not a plugin: it has no function `raytally_plugin`; `raytally new-accel` writes "
+                       "an example that has",
                        path);
     }
     const raytally_accel_ops *last = NULL;
-    for (const raytally_accel_ops *table; (table = give(tables->count)); last = table) {
+    for (const raytally_accel_ops *table; (table = get_table(tables->count)); last = table) {
         if (table == last)
             return rt_fail(error, RT_BAD_INPUT,
-                           "%s: it gives the same table for index %u and %u: NULL ends them", path,
+                           "%s: it returns the same table for index %u and %u; NULL must end them", path,
                            tables->count - 1, tables->count);
         if (tables->count == RT_MOST_TABLES)
             return rt_fail(error, RT_BAD_INPUT, "%s: more than %d accelerators in one library", path,
@@ -93,8 +93,7 @@ RtStatus rt_library_open(const char *path, RtTables *tables, RtError *error) {
     return RT_OK;
 }
 
-/* Opens the library of a plugin's accelerator, if that file is still what it was, for *ops to have its table.
- */
+/* Opens the library of a plugin's accelerator, if the file is unchanged, and sets ops->table. */
 static RtStatus enter(RtPluginOps *ops, RtError *error) {
     RtTables tables;
     uint64_t fingerprint;
@@ -105,7 +104,7 @@ static RtStatus enter(RtPluginOps *ops, RtError *error) {
     const raytally_accel_ops *table = &tables.at[ops->place];
     if (ops->place >= tables.count || strcmp(table->name, ops->ops.name) != 0 ||
         table->param_count != ops->ops.param_count)
-        return rt_fail(error, RT_BROKEN, "%s: it has other tables each time it is loaded", ops->path);
+        return rt_fail(error, RT_BROKEN, "%s: it has different tables each time it is loaded", ops->path);
     ops->table = *table;
     return RT_OK;
 }
@@ -118,9 +117,9 @@ RtStatus rt_plugin_enter(const RtSpec *spec, RtError *error) {
     return RT_OK;
 }
 
-/* ---- are they right? ---- */
+/* ---- checking the tables ---- */
 
-/* As the headers say, whatever the locale takes for a letter. */
+/* Letters as the header defines them, in any locale. */
 static bool is_key(const char *name) {
     static const char characters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
     size_t length = name ? strspn(name, characters) : 0;
@@ -135,11 +134,11 @@ static RtStatus check_value(const char *path, const char *name, const RtParam *p
     snprintf(what, sizeof what, "accelerator %s", name);
     snprintf(setting, sizeof setting, "%s=%s", param->name, text);
     if (rt_params_parse(param, 1, setting, what, &value, &why) == RT_OK) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT, "%s: the table of '%s' does not fit itself: %s of '%s': %s", path,
+    return rt_fail(error, RT_BAD_INPUT, "%s: the table of '%s' contradicts itself: %s of '%s': %s", path,
                    name, member, param->name, why.message);
 }
 
-/* Its default and what it names for testing are within its range. */
+/* Its default and its test values are within its range. */
 static RtStatus check_values(const char *path, const char *name, const RtParam *param, RtError *error) {
     char text[RT_MAX_SPEC_CHARS];
     RT_TRY(check_value(path, name, param, "`default_text`", param->default_text, error));
@@ -148,7 +147,7 @@ static RtStatus check_values(const char *path, const char *name, const RtParam *
     return RT_OK;
 }
 
-/* The number of words joined by '|', each as a spec can have it; 0 if one cannot be in a spec. */
+/* The number of words joined by '|'; 0 if one of them cannot be in a spec. */
 static size_t count_choices(const char *choices) {
     static const char others[] = "+:,=| \t\n";
     size_t count = 1;
@@ -200,15 +199,10 @@ static RtStatus check_params(const char *path, const raytally_accel_ops *table, 
     return RT_OK;
 }
 
-/* The plugin that has the accelerator `name`, or "". */
+/* The library that has the accelerator `name`, or "". */
 static const char *file_of(const char *name) {
-    for (size_t i = 0; i < rt_plugin_count(); i++) {
-        const RtPlugin *plugin = rt_plugin_at(i);
-        for (uint32_t k = 0; k < plugin->count; k++) {
-            if (strcmp(plugin->names[k], name) == 0) return plugin->path;
-        }
-    }
-    return "";
+    const RtAccelOps *ops;
+    return rt_accel_find(name, &ops, NULL) == RT_OK && ops->remote ? ((const RtPluginOps *)ops)->path : "";
 }
 
 static RtStatus check_name(const char *path, const RtTables *tables, uint32_t place, RtError *error) {
@@ -218,7 +212,7 @@ static RtStatus check_name(const char *path, const RtTables *tables, uint32_t pl
         return rt_fail(error, RT_BAD_INPUT, "%s: a table in it has no name, summary or paper", path);
     if (rt_accel_name_is_free(name, &why) != RT_OK) {
         const char *file = file_of(name);
-        return rt_fail(error, RT_BAD_INPUT, "%s: %s%s%s", path, why.message, *file ? "; it is that of " : "",
+        return rt_fail(error, RT_BAD_INPUT, "%s: %s%s%s", path, why.message, *file ? "; it belongs to " : "",
                        file);
     }
     for (uint32_t i = 0; i < place; i++) {

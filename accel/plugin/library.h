@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a plugin's library says of itself: its tables, read where it may be loaded, and told where not.
+/* The tables in a plugin's library.
  *
- * Nothing of a library ever runs in raytally's own process: what constructors do (the locale, rounding,
- * signal handlers, a crash) stays in others. One process tries it and packs its tables, as far as they are
- * numbers and text, into memory that both have; raytally unpacks them there, and believes them as little as
- * any other input. Each process that builds an accelerator opens the library for itself. */
+ * No code of a library ever runs in raytally's own process: effects of its constructors (the locale,
+ * rounding, signal handlers, a crash) stay in other processes. One process tries the library and packs its
+ * tables, that is their numbers and texts, into shared memory; raytally unpacks them and trusts them as
+ * little as any other input. Each process that builds an accelerator opens the library for itself. */
 #ifndef RT_ACCEL_PLUGIN_LIBRARY_H
 #define RT_ACCEL_PLUGIN_LIBRARY_H
 
@@ -13,34 +13,29 @@
 
 enum { RT_MOST_TABLES = sizeof(((RtPlugin *)0)->names) / sizeof(char *) };
 
-/* The tables of a library, as tables of this version: what theirs lack is NULL. */
+/* The tables of a library, converted to this version: members that theirs lack are NULL. */
 typedef struct RtTables {
     uint32_t count;
     raytally_accel_ops at[RT_MOST_TABLES];
 } RtTables;
 
-/* Loads the library here, for as long as the process lives, and asks it for its tables. RT_BAD_INPUT where it
- * is no plugin, or one of another version. */
+/* Loads the library into this process, for as long as that lives, and reads its tables. RT_BAD_INPUT if it is
+ * not a plugin, or one of another version. */
 RtStatus rt_library_open(const char *path, RtTables *tables, RtError *error);
 
-/* Whether the tables are complete, fit themselves, and have names that are free. */
+/* Checks that the tables are complete and consistent, and that their names are free. */
 RtStatus rt_tables_check(const char *path, const RtTables *tables, RtError *error);
 
-/* Where the next plugin is to be put down, empty; NULL, and RT_BAD_INPUT in *error, where there are too many.
- * It is one of those that were loaded once it joins them. */
-RtPlugin *rt_plugin_next(RtError *error);
-void rt_plugin_join(void);
-
-/* Bytes of the file (XXH3). */
+/* Hash of the file's bytes (XXH3). */
 RtStatus rt_library_fingerprint(const char *path, uint64_t *fingerprint, RtError *error);
 
-/* To out[0..room): so many bytes of it, or 0 where there are not enough. */
+/* To out[0..room). Returns the number of bytes written, or 0 if there is not enough room. */
 size_t rt_tables_pack(const RtTables *tables, char *out, size_t room);
 
-/* From packed[0..room), which stays as long as the tables do, and of which every byte may be anything: false
- * where it is not what rt_tables_pack writes. In place of their functions the tables have none, but for
- * `each_box`, which is not to be called, where they had that. Free the parameters with rt_tables_clear. */
-bool rt_tables_unpack(const char *packed, size_t room, RtTables *tables);
+/* From packed[0..room), which may hold anything and must stay as long as the tables. False if it was not
+ * written by rt_tables_pack. The tables have no functions, except that `each_box` is not NULL where theirs
+ * was not; it must not be called. Free the parameters with rt_tables_clear. */
+bool rt_tables_unpack(char *packed, size_t room, RtTables *tables);
 void rt_tables_clear(RtTables *tables);
 
 #endif

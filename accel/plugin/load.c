@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Trying and registering plugins. */
+/* Plugins that are loaded: a library is tried in a process of its own, and its tables are registered. */
 #include "accel/plugin.h"
 #include "accel/plugin/library.h"
-#include "accel/plugin/process.h"
+#include "core/base/process.h"
 
 #include "core/base/file.h"
 #include "core/base/memory.h"
@@ -15,40 +15,51 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* ---- trying one ---- */
+enum { MOST_LIBRARIES = 32, MOST_SECONDS = 10 /* to load a library and read its tables */ };
 
-enum { MOST_SECONDS = 10 }; /* that a library may take to be loaded and asked for its tables */
+static RtPlugin plugins[MOST_LIBRARIES];
+static size_t plugin_count;
 
-/* What the trial writes. */
+size_t rt_plugin_count(void) {
+    return plugin_count;
+}
+
+const RtPlugin *rt_plugin_at(size_t i) {
+    return &plugins[i];
+}
+
+/* ---- trying a library ---- */
+
+/* Written by the process that tries it; the plugin may write to all of this. */
 typedef struct Answer {
-    uint32_t given; /* 0: nothing was; the plugin may write to all of this */
-    RtError said;
+    uint32_t given; /* 0: there is none */
+    RtError error;
     size_t bytes;
-    char packed[4 << 20]; /* [bytes] the tables, where said.status is RT_OK */
+    char packed[4 << 20]; /* [bytes] the tables, if error.status is RT_OK */
 } Answer;
 
 static _Noreturn void answer_trial(const char *path, Answer *answer) {
     RtTables tables;
-    RtError said = {RT_OK, ""};
-    alarm(MOST_SECONDS + 1); /* where nobody waits any more */
-    RtStatus status = rt_library_open(path, &tables, &said);
-    if (status == RT_OK) status = rt_tables_check(path, &tables, &said);
+    RtError failure = {RT_OK, ""};
+    alarm(MOST_SECONDS + 1); /* if raytally has ended */
+    RtStatus status = rt_library_open(path, &tables, &failure);
+    if (status == RT_OK) status = rt_tables_check(path, &tables, &failure);
     if (status == RT_OK) answer->bytes = rt_tables_pack(&tables, answer->packed, sizeof answer->packed);
     if (status == RT_OK && answer->bytes == 0)
-        status = rt_fail(&said, RT_BAD_INPUT, "%s: there is more text in its tables than %zu bytes", path,
+        status = rt_fail(&failure, RT_BAD_INPUT, "%s: the text of its tables takes more than %zu bytes", path,
                          sizeof answer->packed);
-    said.status = status;
-    answer->said = said;
+    failure.status = status;
+    answer->error = failure;
     answer->given = 1;
     _exit(EXIT_SUCCESS);
 }
 
-/* Loads it in a process of its own, where it may crash as it likes; what that had to say to *answer. */
+/* Loads the library in a process of its own, which may crash; *answer gets the result. */
 static RtStatus run_trial(const char *path, Answer *answer, RtError *error) {
     char what[160];
     RtProcess trial;
     RtProcessEnd end;
-    RT_TRY(rt_process_start(&trial, -1, error));
+    RT_TRY(rt_process_fork(&trial, -1, error));
     if (trial.pid == 0) answer_trial(path, answer);
     bool ended = rt_process_wait(&trial, 1000 * MOST_SECONDS, &end);
     rt_process_end(&trial, 0);
@@ -58,16 +69,15 @@ static RtStatus run_trial(const char *path, Answer *answer, RtError *error) {
     } else {
         snprintf(what, sizeof what, "it takes more than %d seconds", MOST_SECONDS);
     }
-    return rt_fail(error, RT_BAD_INPUT, "%s: it does not survive being loaded: %s", path, what);
+    return rt_fail(error, RT_BAD_INPUT, "%s: it does not survive loading: %s", path, what);
 }
 
-/* The tables that it has, checked there and here. Their text is theirs for as long as the program runs. */
+/* Unpacks the tables and checks them again. Their text stays for as long as the program runs. */
 static RtStatus read_answer(const char *path, const Answer *answer, RtTables *tables, RtError *error) {
-    RtError said = answer->said;
-    said.message[sizeof said.message - 1] = '\0';
-    if (said.status != RT_OK) return rt_fail(error, RT_BAD_INPUT, "%s", said.message);
-    char *packed =
-        rt_alloc_unset(sizeof answer->packed, 1); /* its own: others could still write to the answer */
+    RtError failure = answer->error;
+    failure.message[sizeof failure.message - 1] = '\0';
+    if (failure.status != RT_OK) return rt_fail(error, RT_BAD_INPUT, "%s", failure.message);
+    char *packed = rt_alloc_unset(sizeof answer->packed, 1); /* a copy that nobody else can write to */
     if (!packed) return rt_fail_memory(error, "a plugin", sizeof answer->packed);
     memcpy(packed, answer->packed, sizeof answer->packed);
     RtStatus status = rt_tables_unpack(packed, sizeof answer->packed, tables)
@@ -82,14 +92,14 @@ static RtStatus read_answer(const char *path, const Answer *answer, RtTables *ta
 static RtStatus try_tables(const char *path, RtTables *tables, RtError *error) {
     Answer *answer =
         mmap(NULL, sizeof(Answer), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (answer == MAP_FAILED) return rt_fail_memory(error, "what a plugin says of itself", sizeof(Answer));
+    if (answer == MAP_FAILED) return rt_fail_memory(error, "the tables of a plugin", sizeof(Answer));
     RtStatus status = run_trial(path, answer, error);
     if (status == RT_OK) status = read_answer(path, answer, tables, error);
     munmap(answer, sizeof(Answer));
     return status;
 }
 
-/* ---- registering it ---- */
+/* ---- registering its tables ---- */
 
 static RtStatus register_tables(RtPlugin *plugin, const RtTables *tables, RtError *error) {
     RtPluginOps *all = rt_alloc(tables->count, sizeof(RtPluginOps)); /* for as long as the program runs */
@@ -99,16 +109,16 @@ static RtStatus register_tables(RtPlugin *plugin, const RtTables *tables, RtErro
         all[i].path = plugin->path;
         all[i].fingerprint = plugin->fingerprint;
         all[i].place = i;
-        RT_TRY(rt_accel_register(&all[i].ops, error)); /* rt_tables_check asked for what it asks */
+        RT_TRY(rt_accel_register(&all[i].ops, error)); /* rt_tables_check has checked its conditions */
         plugin->names[plugin->count++] = all[i].ops.name;
     }
     return RT_OK;
 }
 
-/* dlopen takes a name without a slash for one in the system's folders. */
+/* An absolute path: dlopen searches the system's folders for a name without a slash. */
 static RtStatus real_path(const char *path, char *out, RtError *error) {
     char *found = realpath(path, NULL);
-    if (!found) return rt_fail(error, RT_BAD_INPUT, "%s: no plugin there: %s", path, strerror(errno));
+    if (!found) return rt_fail(error, RT_BAD_INPUT, "%s: no such plugin: %s", path, strerror(errno));
     snprintf(out, RT_MAX_PATH, "%s", found);
     free(found);
     return RT_OK;
@@ -118,21 +128,23 @@ RtStatus rt_plugin_load(const char *path, RtError *error) {
     RtTables tables;
     char real[RT_MAX_PATH];
     RT_TRY(real_path(path, real, error));
-    for (size_t i = 0; i < rt_plugin_count(); i++) {
-        if (strcmp(rt_plugin_at(i)->path, real) == 0) return RT_OK;
+    for (size_t i = 0; i < plugin_count; i++) {
+        if (strcmp(plugins[i].path, real) == 0) return RT_OK;
     }
-    RtPlugin *plugin = rt_plugin_next(error);
-    if (!plugin) return RT_BAD_INPUT;
+    if (plugin_count == MOST_LIBRARIES)
+        return rt_fail(error, RT_BAD_INPUT, "more than %d plugins", MOST_LIBRARIES);
+    RtPlugin *plugin = &plugins[plugin_count];
+    *plugin = (RtPlugin){0};
     snprintf(plugin->path, sizeof plugin->path, "%s", real);
     RT_TRY(rt_library_fingerprint(real, &plugin->fingerprint, error));
     RT_TRY(try_tables(real, &tables, error));
     RtStatus status = register_tables(plugin, &tables, error);
     rt_tables_clear(&tables);
-    if (status == RT_OK) rt_plugin_join();
+    if (status == RT_OK) plugin_count++;
     return status;
 }
 
-/* ---- many ---- */
+/* ---- lists of libraries ---- */
 
 typedef struct Folder {
     RtStatus status;
@@ -144,7 +156,8 @@ static void load_from(void *context, const char *path) {
     if (folder->status == RT_OK) folder->status = rt_plugin_load(path, folder->error);
 }
 
-/* The first name of a list to path[0..room); gives what is left of the list, or NULL where it is too long. */
+/* Copies the first name of a list to path[0..room). Returns the rest of the list, or NULL if the name is too
+ * long. */
 static const char *take_path(const char *list, char *path, size_t room) {
     size_t length = 0;
     for (; *list && *list != ':' && length < room; list++) {
@@ -161,7 +174,7 @@ RtStatus rt_plugin_load_all(const char *list, RtError *error) {
     struct stat about;
     while (*list) {
         list = take_path(list, path, sizeof path);
-        if (!list) return rt_fail(error, RT_BAD_INPUT, "a path of a plugin is too long");
+        if (!list) return rt_fail(error, RT_BAD_INPUT, "the path of a plugin is too long");
         Folder folder = {RT_OK, error};
         if (*path && stat(path, &about) == 0 && S_ISDIR(about.st_mode)) {
             rt_directory_each(path, ".so", load_from, &folder);

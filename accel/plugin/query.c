@@ -1,15 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "accel/plugin/query.h"
+#include "accel/plugin/host.h"
 
 #include "accel/kernel.h"
-#include "accel/plugin/guard.h"
-#include "accel/plugin/now.h"
 #include "core/base/memory.h"
 
 #include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
-/* The layouts that both sides have in common. */
+/* Types of the interface have the layout of raytally's own. */
 _Static_assert(sizeof(raytally_ray) == sizeof(RtRay) && offsetof(raytally_ray, dir) == offsetof(RtRay, dir) &&
                    offsetof(raytally_ray, source) == offsetof(RtRay, source) &&
                    (int)RAYTALLY_RAY_KINDS == (int)RT_RAY_KIND_COUNT,
@@ -18,23 +20,21 @@ _Static_assert(sizeof(raytally_hit) == sizeof(RtHit) && RAYTALLY_NO_OBJECT == RT
 _Static_assert(sizeof(raytally_box) == sizeof(RtBox), "boxes");
 _Static_assert(sizeof(RtPreparedRay) <= sizeof(((raytally_prepared *)0)->own), "a prepared ray fits");
 
-/* What a query has. The plugin sees the first member alone. */
+/* The plugin sees only the first member. */
 typedef struct PluginQuery {
     raytally_query face;
     RtPluginNow now;
     RtPluginAccel *accel;
     const RtGeometry *geometry;
     RtCrossing *room;
-    RtGuarded own;     /* of `memory` */
-    RtGuarded answers; /* of a stream of at most MOST_ANSWERS */
-    void *memory;      /* [accel->query_bytes] or NULL */
+    void *memory; /* [accel->query_bytes] or NULL */
     bool counting;
     RtTally tallies[RT_RAY_KIND_COUNT]; /* of object tests, in a stream that is counted */
 } PluginQuery;
 
-/* ---- what is said of one that went wrong ---- */
+/* ---- reports ---- */
 
-enum { MOST_QUERIES = 2048 }; /* of which the ray of a crash is known */
+enum { MOST_QUERIES = 2048 }; /* whose ray can be reported after a hang */
 static _Atomic(PluginQuery *) open_queries[MOST_QUERIES];
 static _Thread_local const RtPluginNow *now;
 
@@ -50,20 +50,23 @@ const RtPluginNow *rt_plugin_busy(void) {
     return NULL;
 }
 
-void rt_plugin_say(RtPluginAccel *accel, const RtError *what) {
+void rt_plugin_break(RtPluginAccel *accel, const char *what, ...) {
+    char text[sizeof accel->error.message];
+    va_list arguments;
+    va_start(arguments, what);
+    vsnprintf(text, sizeof text, what, arguments);
+    va_end(arguments);
     pthread_mutex_lock(&accel->lock);
-    if (!accel->nonsense) accel->said = *what;
-    accel->nonsense = true;
+    if (!accel->broken) rt_fail(&accel->error, RT_BROKEN, "%s", text);
+    accel->broken = true;
     pthread_mutex_unlock(&accel->lock);
 }
 
-static void say_of_ray(RtPluginAccel *accel, const RtRay *ray, const char *what, uint32_t object) {
-    RtError said;
+static void break_at_ray(RtPluginAccel *accel, const RtRay *ray, const char *what, uint32_t object) {
     char text[RT_RAY_TEXT];
     rt_ray_format(ray, text, sizeof text);
-    rt_fail(&said, RT_BROKEN, "%s, %u (the scene has %u objects), for the ray %s", what, object,
-            accel->base.scene->geometry.object_count, text);
-    rt_plugin_say(accel, &said);
+    rt_plugin_break(accel, "%s, %u (the scene has %u objects), for the ray %s", what, object,
+                    accel->base.scene->geometry.object_count, text);
 }
 
 /* ---- what the plugin calls ---- */
@@ -97,8 +100,8 @@ RT_KERNEL int hits_of(const raytally_prepared *ray, const uint32_t *ids, uint32_
     bool over = false;
     for (uint32_t i = 0; i < count && !over; i++) {
         if (ids[i] >= geometry->object_count) {
-            say_of_ray(query->accel, own->original, "it asked for a test of an object that there is not",
-                       ids[i]);
+            break_at_ray(query->accel, own->original, "it asked for a test of an object that does not exist",
+                         ids[i]);
             break;
         }
         over = rt_test_object(geometry, ids[i], own, any, &hit, tally);
@@ -123,47 +126,74 @@ static int object_hits(const raytally_prepared *ray, const uint32_t *ids, uint32
 
 static const raytally_host host = {RAYTALLY_ACCEL_ABI, sizeof(raytally_host), prepare, object_hits};
 
-/* ---- queries ---- */
+/* ---- memory between guard pages ---- */
 
-enum { CANARIES = 1024, MOST_ANSWERS = 4096, UNSET = 0xFE };
+enum { GUARD = 64 * 1024, CANARY = 0xA5, CANARIES = 1024, MOST_ANSWERS = 4096, UNSET = 0xFE };
 
-/* Around the memory of a query, to the ends of its pages. */
-static void lay_canaries(const PluginQuery *query) {
-    char *memory = query->memory, *begin = query->own.begin, *end = memory + query->accel->query_bytes;
-    rt_canaries_lay(begin, memory);
-    rt_canaries_lay(end, query->own.end);
+static RtStatus map_guarded(RtGuarded *guarded, size_t bytes, RtError *error) {
+    size_t page = (size_t)sysconf(_SC_PAGESIZE), room = (bytes + page - 1) / page * page;
+    size_t mapped = room + 2 * (size_t)GUARD;
+    char *mapping = mmap(NULL, mapped, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (mapping != MAP_FAILED && mprotect(mapping + GUARD, room, PROT_READ | PROT_WRITE) == 0) {
+        *guarded = (RtGuarded){mapping, mapped, mapping + GUARD, mapping + GUARD + room};
+        return RT_OK;
+    }
+    if (mapping != MAP_FAILED) munmap(mapping, mapped);
+    return rt_fail_memory(error, "the memory of a plugin's query", bytes);
+}
+
+static void unmap_guarded(PluginQuery *query) {
+    for (int i = 0; i < RT_GUARD_COUNT; i++) {
+        RtGuarded *guarded = &query->now.guarded[i];
+        if (guarded->mapping) munmap(guarded->mapping, guarded->mapped);
+        *guarded = (RtGuarded){0};
+    }
+}
+
+static void lay_canaries(char *from, const char *end) {
+    memset(from, CANARY, (size_t)(end - from));
+}
+
+/* All bytes are CANARY if the first is and each equals the one before. */
+static bool canaries_are_intact(const char *from, const char *end) {
+    size_t bytes = (size_t)(end - from);
+    return bytes == 0 || ((unsigned char)*from == CANARY && memcmp(from, from + 1, bytes - 1) == 0);
 }
 
 static bool wrote_beside_memory(const PluginQuery *query) {
     const char *memory = query->memory;
-    if (!memory) return false;
-    return !rt_canaries_live(query->own.begin, memory) ||
-           !rt_canaries_live(memory + query->accel->query_bytes, query->own.end);
+    const RtGuarded *own = &query->now.guarded[RT_GUARD_QUERY];
+    return memory && !(canaries_are_intact(own->begin, memory) &&
+                       canaries_are_intact(memory + query->accel->query_bytes, own->end));
 }
 
 static RtStatus map_memory(PluginQuery *query, RtError *error) {
-    size_t wanted = query->accel->query_bytes;
+    const size_t wanted = query->accel->query_bytes;
+    RtGuarded *own = &query->now.guarded[RT_GUARD_QUERY];
     if (wanted > RT_ACCEL_MAX_BYTES)
         return rt_fail(error, RT_BROKEN, "its query_bytes asks for %zu bytes for each query", wanted);
-    size_t used = (wanted + RT_CACHE_LINE - 1) / RT_CACHE_LINE * RT_CACHE_LINE;
-    RT_TRY(rt_guarded_map(&query->answers, CANARIES + MOST_ANSWERS * sizeof(RtHit),
-                          &query->now.guards[RT_GUARD_ANSWERS], error));
+    RT_TRY(
+        map_guarded(&query->now.guarded[RT_GUARD_ANSWERS], CANARIES + MOST_ANSWERS * sizeof(RtHit), error));
     if (wanted == 0) return RT_OK;
-    RtStatus status = rt_guarded_map(&query->own, used, &query->now.guards[RT_GUARD_QUERY], error);
-    if (status != RT_OK) {
-        rt_guarded_unmap(&query->answers);
-        return status;
-    }
-    query->memory = query->own.end - used;
-    lay_canaries(query);
+    const size_t used = (wanted + RT_CACHE_LINE - 1) / RT_CACHE_LINE * RT_CACHE_LINE;
+    RT_TRY(map_guarded(own, used, error));
+    char *memory = query->memory = own->end - used;
+    lay_canaries(own->begin, memory);
+    lay_canaries(memory + wanted, own->end);
     return RT_OK;
 }
+
+/* ---- queries ---- */
 
 static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) {
     PluginQuery *query = scratch;
     *query = (PluginQuery){
         .face.host = &host, .accel = (RtPluginAccel *)accel, .geometry = &accel->scene->geometry};
-    RT_TRY(map_memory(query, error));
+    RtStatus status = map_memory(query, error);
+    if (status != RT_OK) {
+        unmap_guarded(query);
+        return status;
+    }
     for (int i = 0; i < MOST_QUERIES; i++) {
         PluginQuery *none = NULL;
         if (atomic_compare_exchange_strong(&open_queries[i], &none, query)) break;
@@ -178,8 +208,7 @@ static void close_query(const RtAccel *accel, void *scratch) {
         PluginQuery *own = query;
         atomic_compare_exchange_strong(&open_queries[i], &own, NULL);
     }
-    rt_guarded_unmap(&query->own);
-    rt_guarded_unmap(&query->answers);
+    unmap_guarded(query);
 }
 
 static void begin(const RtAccel *accel, void *scratch) {
@@ -189,11 +218,11 @@ static void begin(const RtAccel *accel, void *scratch) {
 
 /* ---- kernels ---- */
 
-/* Before a stream: where its answers go, [count] of `size` bytes, none of which is one yet. */
+/* Before a stream: returns memory for `count` answers of `size` bytes, set to no valid answer. */
 static void *enter(PluginQuery *query, const RtScratch *scratch, const RtRay *rays, size_t count,
                    size_t size) {
-    char *answers = query->answers.end - count * size;
-    rt_canaries_lay(answers - CANARIES, answers);
+    char *answers = query->now.guarded[RT_GUARD_ANSWERS].end - count * size;
+    lay_canaries(answers - CANARIES, answers);
     memset(answers, UNSET, count * size);
     query->room = scratch->room;
     query->now.ray = rays;
@@ -201,32 +230,27 @@ static void *enter(PluginQuery *query, const RtScratch *scratch, const RtRay *ra
     return answers;
 }
 
-/* Behind it. */
+/* After a stream. */
 static void leave(PluginQuery *query, const char *answers) {
-    RtError said;
     query->now.ray = NULL;
     now = NULL;
-    if (!rt_canaries_live(answers - CANARIES, answers)) {
-        rt_fail(&said, RT_BROKEN, "it wrote in front of its answers");
-        rt_plugin_say(query->accel, &said);
-    }
-    if (wrote_beside_memory(query)) {
-        rt_fail(&said, RT_BROKEN, "it wrote past the %zu bytes of its query's memory, or in front of them",
-                query->accel->query_bytes);
-        rt_plugin_say(query->accel, &said);
-    }
+    if (!canaries_are_intact(answers - CANARIES, answers))
+        rt_plugin_break(query->accel, "it wrote in front of its answers");
+    if (wrote_beside_memory(query))
+        rt_plugin_break(query->accel,
+                        "it wrote past the %zu bytes of its query's memory, or in front of them",
+                        query->accel->query_bytes);
 }
 
-/* An object that there is not. */
-static void say_of_object(RtPluginAccel *accel, const RtRay *ray, uint32_t object) {
+static void break_at_object(RtPluginAccel *accel, const RtRay *ray, uint32_t object) {
     uint32_t unset;
     memset(&unset, UNSET, sizeof unset);
-    say_of_ray(accel, ray,
-               object == unset ? "it wrote no answer" : "it answered with an object that there is not",
-               object);
+    break_at_ray(accel, ray,
+                 object == unset ? "it wrote no answer" : "it answered with an object that does not exist",
+                 object);
 }
 
-static void look_at_hits(PluginQuery *query, const RtRay *rays, size_t count, RtHit *hits) {
+static void check_hits(PluginQuery *query, const RtRay *rays, size_t count, RtHit *hits) {
     RtPluginAccel *accel = query->accel;
     const uint32_t objects = accel->base.scene->geometry.object_count;
     for (size_t i = 0; i < count; i++) {
@@ -235,20 +259,17 @@ static void look_at_hits(PluginQuery *query, const RtRay *rays, size_t count, Rt
         if (miss || (hit.object < objects && hit.t >= rays[i].tmin && hit.t <= rays[i].tmax)) continue;
         hits[i] = RT_MISS;
         if (hit.object < objects || hit.object == RT_NO_OBJECT) {
-            RtError said;
             char text[RT_RAY_TEXT];
             rt_ray_format(&rays[i], text, sizeof text);
-            rt_fail(&said, RT_BROKEN, "it answered %s at t = %.9g, which is not on the ray %s",
-                    hit.object == RT_NO_OBJECT ? "no object" : "an object", (double)hit.t, text);
-            rt_plugin_say(accel, &said);
+            rt_plugin_break(accel, "it answered %s at t = %.9g, which is not on the ray %s",
+                            hit.object == RT_NO_OBJECT ? "no object" : "an object", (double)hit.t, text);
         } else {
-            say_of_object(accel, &rays[i], hit.object);
+            break_at_object(accel, &rays[i], hit.object);
         }
     }
 }
 
-/* Whether each occluder is on its ray, by its exact hit: where there is time for it, in streams that are
- * counted. */
+/* Tests each occluder by its exact hit function; only in counted streams, because it takes time. */
 static void test_occluders(PluginQuery *query, const RtRay *rays, size_t count, const uint32_t *occluders) {
     for (size_t i = 0; i < count; i++) {
         RtPreparedRay ray;
@@ -256,24 +277,24 @@ static void test_occluders(PluginQuery *query, const RtRay *rays, size_t count, 
         if (occluders[i] == RT_NO_OBJECT) continue;
         rt_hit_ray(&ray, query->geometry, &rays[i], query->room);
         if (rt_object_hit(query->geometry, occluders[i], &ray, &t, NULL)) continue;
-        say_of_ray(query->accel, &rays[i],
-                   "it answered that an object is in the way that the ray does not hit", occluders[i]);
+        break_at_ray(query->accel, &rays[i], "it answered with an occluder that the ray does not hit",
+                     occluders[i]);
     }
 }
 
-static void look_at_occluders(PluginQuery *query, const RtRay *rays, size_t count, uint32_t *occluders) {
+static void check_occluders(PluginQuery *query, const RtRay *rays, size_t count, uint32_t *occluders) {
     RtPluginAccel *accel = query->accel;
     const uint32_t objects = accel->base.scene->geometry.object_count;
     for (size_t i = 0; i < count; i++) {
         if (occluders[i] < objects || occluders[i] == RT_NO_OBJECT) continue;
-        say_of_object(accel, &rays[i], occluders[i]);
+        break_at_object(accel, &rays[i], occluders[i]);
         occluders[i] = RT_NO_OBJECT;
     }
     if (query->counting) test_occluders(query, rays, count, occluders);
 }
 
-/* The counters of a plugin's own, and those that object_hits counts. Rays and hits are counted here, and an
- * overlay, which passes rays on, no plugin is. X(CONSTANT, name) */
+/* Counters that the plugin counts, and those that object_hits counts. Rays and hits are counted here; a
+ * plugin is never an overlay, which passes rays on. X(CONSTANT, name) */
 #define OWN_COUNTERS(X)                                                                                      \
     X(EXTENT_TESTS, extent_tests)                                                                            \
     X(STEPS, steps)                                                                                          \
@@ -289,27 +310,10 @@ static void look_at_occluders(PluginQuery *query, const RtRay *rays, size_t coun
 _Static_assert(2 OWN_COUNTERS(ONE) OBJECT_COUNTERS(ONE) + 1 == RT_TALLY_COUNTER_COUNT,
                "a counter is a plugin's, or counted here");
 
-/* No ray costs so much: what is beyond has been counted backwards, or is of memory that was never set. */
+/* No ray costs this much: the plugin counted below zero, or copied unset memory. */
 #define MOST_A_RAY (UINT64_C(1) << 32)
 
-static void say_of_excess(RtPluginAccel *accel, RtRayKind kind, const char *what, uint64_t counted) {
-    RtError said;
-    rt_fail(&said, RT_BROKEN, "it counted %" PRIu64 " %s for %s rays, more than there can be", counted, what,
-            rt_ray_kind_name(kind));
-    rt_plugin_say(accel, &said);
-}
-
-static void say_of_counts(RtPluginAccel *accel, RtRayKind kind, const char *what, uint64_t counted,
-                          uint64_t right) {
-    RtError said;
-    rt_fail(&said, RT_BROKEN,
-            "its %s for %s rays add up to %" PRIu64 ", and were %" PRIu64
-            ": raytally_object_hits counts them, in the counters that it is given",
-            what, rt_ray_kind_name(kind), counted, right);
-    rt_plugin_say(accel, &said);
-}
-
-/* Of a stream of so many rays. */
+/* Adds the counts of a stream of so many rays. */
 static void add_counters(PluginQuery *query, const raytally_counters *counted, size_t rays,
                          RtTally *tallies) {
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
@@ -319,23 +323,22 @@ static void add_counters(PluginQuery *query, const raytally_counters *counted, s
     if (at[RAYTALLY_##CONSTANT] <= rays * MOST_A_RAY)                                                        \
         tallies[kind].name += at[RAYTALLY_##CONSTANT];                                                       \
     else                                                                                                     \
-        say_of_excess(query->accel, (RtRayKind)kind, #name, at[RAYTALLY_##CONSTANT]);
+        rt_plugin_break(query->accel, "it counted %" PRIu64 " " #name " for %s rays, more than possible",    \
+                        at[RAYTALLY_##CONSTANT], rt_ray_kind_name((RtRayKind)kind));
 #define ADD_RIGHT(CONSTANT, name)                                                                            \
     tallies[kind].name += right->name;                                                                       \
     if (at[RAYTALLY_##CONSTANT] != right->name)                                                              \
-        say_of_counts(query->accel, (RtRayKind)kind, #name, at[RAYTALLY_##CONSTANT], right->name);
+        rt_plugin_break(query->accel,                                                                        \
+                        "its " #name " for %s rays add up to %" PRIu64 ", and were %" PRIu64                 \
+                        ": raytally_object_hits counts them, in the counters passed to it",                  \
+                        rt_ray_kind_name((RtRayKind)kind), at[RAYTALLY_##CONSTANT], right->name);
         OWN_COUNTERS(ADD_OWN)
         OBJECT_COUNTERS(ADD_RIGHT)
     }
 }
 
-static void count_from_here(PluginQuery *query) {
-    query->counting = true;
-    memset(query->tallies, 0, sizeof query->tallies);
-}
-
-/* The two kernels of a question, whose answers are of type Answer, or Theirs as the plugin calls it. */
-#define DEFINE_KERNELS(question, Answer, Theirs, look_at, is_hit)                                            \
+/* The two kernels of a question. Answers have the type Answer, which the plugin calls Theirs. */
+#define DEFINE_KERNELS(question, Answer, Theirs, check, is_hit)                                              \
     static void question##_some(PluginQuery *query, const RtScratch *scratch, const RtRay *rays,             \
                                 size_t count, Answer *answers, raytally_counters *counters) {                \
         RtPluginAccel *accel = query->accel;                                                                 \
@@ -343,11 +346,11 @@ static void count_from_here(PluginQuery *query) {
         accel->table->question(accel->self, query->memory, &query->face, (const raytally_ray *)rays, count,  \
                                (Theirs *)theirs, counters);                                                  \
         leave(query, (const char *)theirs);                                                                  \
-        look_at(query, rays, count, theirs);                                                                 \
+        check(query, rays, count, theirs);                                                                   \
         memcpy(answers, theirs, count * sizeof(Answer));                                                     \
     }                                                                                                        \
-    static void ask_##question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,            \
-                               size_t count, Answer *answers) {                                              \
+    static void time_##question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,           \
+                                size_t count, Answer *answers) {                                             \
         (void)accel;                                                                                         \
         for (size_t first = 0; first < count; first += MOST_ANSWERS) {                                       \
             size_t n = count - first < MOST_ANSWERS ? count - first : MOST_ANSWERS;                          \
@@ -361,7 +364,8 @@ static void count_from_here(PluginQuery *query) {
         for (size_t first = 0; first < count; first += MOST_ANSWERS) {                                       \
             size_t n = count - first < MOST_ANSWERS ? count - first : MOST_ANSWERS;                          \
             raytally_counters counters[RAYTALLY_RAY_KINDS] = {0};                                            \
-            count_from_here(query);                                                                          \
+            query->counting = true;                                                                          \
+            memset(query->tallies, 0, sizeof query->tallies);                                                \
             question##_some(query, scratch, rays + first, n, answers + first, counters);                     \
             query->counting = false;                                                                         \
             add_counters(query, counters, n, tallies);                                                       \
@@ -371,12 +375,12 @@ static void count_from_here(PluginQuery *query) {
             tallies[rays[i].kind].hits += (is_hit);                                                          \
         }                                                                                                    \
     }
-DEFINE_KERNELS(nearest, RtHit, raytally_hit, look_at_hits, answers[i].object != RT_NO_OBJECT)
-DEFINE_KERNELS(occluded, uint32_t, uint32_t, look_at_occluders, answers[i] != RT_NO_OBJECT)
+DEFINE_KERNELS(nearest, RtHit, raytally_hit, check_hits, answers[i].object != RT_NO_OBJECT)
+DEFINE_KERNELS(occluded, uint32_t, uint32_t, check_occluders, answers[i] != RT_NO_OBJECT)
 
 static RtStatus check(const RtAccel *accel, RtError *error) {
     const RtPluginAccel *self = rt_plugin_of(accel);
-    return self->nonsense ? rt_fail(error, RT_BROKEN, "%s", self->said.message) : RT_OK;
+    return self->broken ? rt_fail(error, RT_BROKEN, "%s", self->error.message) : RT_OK;
 }
 
 static size_t scratch_bytes(const RtAccel *accel) {
@@ -385,8 +389,8 @@ static size_t scratch_bytes(const RtAccel *accel) {
 }
 
 void rt_plugin_query_ops(RtAccelOps *ops) {
-    ops->nearest = ask_nearest;
-    ops->occluded = ask_occluded;
+    ops->nearest = time_nearest;
+    ops->occluded = time_occluded;
     ops->nearest_counted = count_nearest;
     ops->occluded_counted = count_occluded;
     ops->scratch_bytes = scratch_bytes;

@@ -1,17 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Raytally's side of an accelerator that lives away: what stands in for it, and what is said of one that
- * broke. See wire.h. */
+/* Remote accelerators in raytally's own process: sending requests, watching the process, and reporting how it
+ * failed. See wire.h. */
 #include "accel/remote.h"
-#include "accel/plugin/futex.h"
-#include "accel/plugin/now.h"
-#include "accel/plugin/process.h"
+#include "accel/plugin/host.h"
 #include "accel/plugin/wire.h"
+#include "core/base/process.h"
 #include "core/base/words.h"
 
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 
-#include <errno.h>
 #include <fcntl.h>
 #include <math.h>
 #include <pthread.h>
@@ -20,44 +18,42 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <unistd.h>
 
-typedef struct Away {
+typedef struct Remote {
     RtAccel base;
-    RtAccelOps ops; /* away_ops, by the name of the base */
+    RtAccelOps ops; /* remote_ops, with the name of the base */
     char name[RT_MAX_SPEC_CHARS];
     Wire *wire;
     RtProcess process;
-    int alive;       /* the end of a pipe: closed, it ends the process */
-    double patience; /* seconds without progress after which it hangs */
+    int pipe_end;      /* the process ends when this is closed */
+    double time_limit; /* seconds without progress after which the process counts as hung */
     RtDescription description;
-    pthread_mutex_t lock;   /* of what follows */
+    pthread_mutex_t lock;   /* of the following members */
     atomic_bool broken;     /* error says why */
-    bool gone;              /* the process has ended, and was waited for */
-    bool taken[LANES];      /* by queries; lane 0 is nobody's */
-    unsigned asked[LANES];  /* the number of the last request on each lane, of who has it */
+    bool ended;             /* the process has ended */
+    bool used[LANES];       /* by queries; lane 0 by none */
+    unsigned asked[LANES];  /* number of the last request on each lane */
     pthread_mutex_t master; /* of lane 0 */
     RtError error;
-} Away;
+} Remote;
 
-/* What a query has: its lane, and whether it has begun anew since the last request. */
 typedef struct RemoteQuery {
     uint32_t lane;
-    bool begin;
+    bool begin; /* rt_query_begin was called since the last request */
 } RemoteQuery;
 
-static const RtAccelOps away_ops;
+static const RtAccelOps remote_ops;
 static void destroy(RtAccel *accel);
 
-static Away *of(const RtAccel *accel) {
-    return (Away *)accel;
+static Remote *of(const RtAccel *accel) {
+    return (Remote *)accel;
 }
 
 bool rt_accel_is_remote(const RtAccel *accel) {
     return accel->ops->destroy == destroy;
 }
 
-static double patience_of_user(void) {
+static double time_limit_of_user(void) {
     if (getenv("RAYTALLY_PLUGIN_WAIT")) return INFINITY; /* for a debugger */
     const char *text = getenv("RAYTALLY_PLUGIN_SECONDS");
     char *end;
@@ -67,205 +63,206 @@ static double patience_of_user(void) {
 
 /* ---- how it ended ---- */
 
-static void say_end(const Away *away, RtProcessEnd end, char *out, size_t room) {
-    const Crash *crash = &away->wire->crash;
-    static const char *const past[] = {"", ": it wrote or read past the memory of its query",
-                                       ": it wrote or read past its answers"};
-    uint32_t out_of = crash->out_of;
-    rt_process_end_format(end, crash->signal, out_of <= RT_GUARD_COUNT ? past[out_of] : "", out, room);
-}
-
-/* "NAME: WHAT while DOING, at the ray ...". The first thing that is said of it stays. */
-static void break_remote(Away *away, const char *what, const char *doing, bool ray) {
+/* "NAME: WHAT while DOING, at the ray ...". Only the first failure is kept. */
+static void set_broken(Remote *remote, const char *what, const char *doing, bool ray) {
     char text[RT_RAY_TEXT] = "";
-    if (ray && away->wire->crash.has_ray) {
-        RtRay traced = away->wire->crash.ray;
+    if (ray && remote->wire->crash.has_ray) {
+        RtRay traced = remote->wire->crash.ray;
         rt_ray_format(&traced, text, sizeof text);
     }
-    if (away->broken) return;
-    rt_fail(&away->error, RT_BROKEN, "%s: %s while %s%s%s", away->name, what, doing,
+    if (remote->broken) return;
+    rt_fail(&remote->error, RT_BROKEN, "%s: %s while %s%s%s", remote->name, what, doing,
             *text ? ", at the ray " : "", text);
-    away->broken = true;
+    remote->broken = true;
 }
 
 void rt_remote_break(const RtAccel *accel, const char *what, const char *doing) {
-    Away *away = of(accel);
-    pthread_mutex_lock(&away->lock);
-    break_remote(away, what, doing, false);
-    pthread_mutex_unlock(&away->lock);
+    Remote *remote = of(accel);
+    pthread_mutex_lock(&remote->lock);
+    set_broken(remote, what, doing, false);
+    pthread_mutex_unlock(&remote->lock);
 }
 
-/* Of one that hangs: it is asked at which ray, and ended. */
-static void end_hanging(Away *away, const char *doing, double limit) {
+static void report_end(Remote *remote, RtProcessEnd end, const char *doing) {
+    static const char *const past[1 + RT_GUARD_COUNT] = {
+        "", ": it wrote or read past the memory of its query", ": it wrote or read past its answers"};
+    const uint32_t out_of = remote->wire->crash.out_of;
+    char what[160];
+    rt_process_end_format(end, remote->wire->crash.signal, out_of <= RT_GUARD_COUNT ? past[out_of] : "", what,
+                          sizeof what);
+    set_broken(remote, what, doing, true);
+}
+
+/* SIGXCPU makes a hung process record its ray. */
+static void end_hung(Remote *remote, const char *doing, double limit) {
     char what[96];
-    away->wire->crash.has_ray = false;
-    rt_process_signal(&away->process, SIGXCPU);
-    rt_process_end(&away->process, 1000);
-    away->gone = true;
+    remote->wire->crash.has_ray = false;
+    rt_process_signal(&remote->process, SIGXCPU);
+    rt_process_end(&remote->process, 1000);
     snprintf(what, sizeof what, "it made no progress for %g s (RAYTALLY_PLUGIN_SECONDS)", limit);
-    break_remote(away, what, doing, true);
+    set_broken(remote, what, doing, true);
 }
 
-/* Whether its plugin wrote to the words of a lane, which are known at any time. */
-static bool is_overwritten(const Away *away, uint32_t number, unsigned answered) {
-    const unsigned asked = away->asked[number];
-    return away->wire->lanes[number].asked != asked || (answered != asked && answered != asked - 1);
+/* Whether the plugin overwrote the words of a lane, whose values are always known. */
+static bool is_overwritten(const Remote *remote, uint32_t number, unsigned answered) {
+    const unsigned asked = remote->asked[number];
+    return remote->wire->lanes[number].asked != asked || (answered != asked && answered != asked - 1);
 }
 
-/* Is it broken, has it ended, or hung for longer than it may? */
-static bool look_after(Away *away, const char *doing, bool overwritten, double waited, double limit) {
-    pthread_mutex_lock(&away->lock);
+/* Ends a process that overwrote shared memory or hangs. Returns whether the accelerator is broken. */
+static bool check_process(Remote *remote, const char *doing, bool overwritten, double waited, double limit) {
+    pthread_mutex_lock(&remote->lock);
     RtProcessEnd end;
-    if (!away->gone && overwritten) {
-        away->gone = true;
-        rt_process_end(&away->process, 0);
-        break_remote(away, "it overwrote memory that it shares with raytally", doing, false);
-    } else if (!away->gone && rt_process_wait(&away->process, 0, &end)) {
-        char what[160];
-        away->gone = true;
-        say_end(away, end, what, sizeof what);
-        break_remote(away, what, doing, true);
-    } else if (!away->gone && waited > limit) {
-        end_hanging(away, doing, limit);
+    if (!remote->ended) {
+        remote->ended = true;
+        if (overwritten) {
+            rt_process_end(&remote->process, 0);
+            set_broken(remote, "it overwrote memory that it shares with raytally", doing, false);
+        } else if (rt_process_wait(&remote->process, 0, &end)) {
+            report_end(remote, end, doing);
+        } else if (waited > limit) {
+            end_hung(remote, doing, limit);
+        } else {
+            remote->ended = false;
+        }
     }
-    bool broken = away->broken;
-    pthread_mutex_unlock(&away->lock);
+    bool broken = remote->broken;
+    pthread_mutex_unlock(&remote->lock);
     return broken;
 }
 
-/* Waits for the answer on a lane; false if there will be none. What is waited for is time in which this
- * process looked: if both were stopped for a while, that was no time. */
-static bool wait_for(Away *away, uint32_t number, const char *doing, double limit) {
+/* Waits for the answer on a lane; false if none will come. Each pause counts for at most a second: both
+ * processes may have been stopped. */
+static bool wait_for(Remote *remote, uint32_t number, const char *doing, double limit) {
     const struct timespec some = {.tv_nsec = 50000000};
-    atomic_uint *answered = &away->wire->lanes[number].answered;
-    unsigned long beat = away->wire->beat;
+    atomic_uint *answered = &remote->wire->lanes[number].answered;
+    unsigned long progress = remote->wire->progress;
     double last = rt_wall_seconds(), waited = 0;
     for (;;) {
         unsigned value = atomic_load_explicit(answered, memory_order_acquire);
-        bool overwritten = is_overwritten(away, number, value);
-        if (!overwritten && value == away->asked[number]) return true;
+        bool overwritten = is_overwritten(remote, number, value);
+        if (!overwritten && value == remote->asked[number]) return true;
         if (!overwritten && rt_futex_wait(answered, value, &some) && atomic_load(answered) != value) continue;
-        unsigned long seen = away->wire->beat;
+        unsigned long seen = remote->wire->progress;
         double now = rt_wall_seconds();
-        waited = seen == beat ? waited + fmin(now - last, 1) : 0;
-        beat = seen;
+        waited = seen == progress ? waited + fmin(now - last, 1) : 0;
+        progress = seen;
         last = now;
-        if (look_after(away, doing, overwritten, waited, limit)) return false;
+        if (check_process(remote, doing, overwritten, waited, limit)) return false;
     }
 }
 
-/* ---- asking ---- */
+/* ---- requests ---- */
 
-/* Has a message that lies in its lane answered there. False where it is broken, or breaks now. */
-static bool ask_in_place(Away *away, uint32_t number, bool begin, WireWork *work, size_t bytes,
-                         const char *doing) {
-    Lane *lane = &away->wire->lanes[number];
-    if (away->broken) return false;
+/* Sends a message that lies in its lane. False if the accelerator is broken, or breaks now. */
+static bool request_in_place(Remote *remote, uint32_t number, bool begin, WireWork *work, size_t bytes,
+                             const char *doing) {
+    Lane *lane = &remote->wire->lanes[number];
+    if (remote->broken) return false;
     lane->work = work;
     lane->bytes = bytes;
     lane->begin = begin;
-    rt_futex_set(&lane->asked, ++away->asked[number]);
-    return wait_for(away, number, doing, away->patience);
+    rt_futex_set(&lane->asked, ++remote->asked[number]);
+    return wait_for(remote, number, doing, remote->time_limit);
 }
 
-/* The same for one that comes from elsewhere, and goes back there only if it was answered. */
-static bool ask(Away *away, uint32_t number, bool begin, WireWork *work, void *message, size_t bytes,
-                const char *doing) {
-    Lane *lane = &away->wire->lanes[number];
+/* The same for a message that lies elsewhere; it changes only if there is an answer. */
+static bool request(Remote *remote, uint32_t number, bool begin, WireWork *work, void *message, size_t bytes,
+                    const char *doing) {
+    Lane *lane = &remote->wire->lanes[number];
     if (bytes > 0) memcpy(lane->message, message, bytes);
-    if (!ask_in_place(away, number, begin, work, bytes, doing)) return false;
+    if (!request_in_place(remote, number, begin, work, bytes, doing)) return false;
     if (bytes > 0) memcpy(message, lane->message, bytes);
     return true;
 }
 
-static bool ask_master(Away *away, WireWork *work, void *message, size_t bytes, const char *doing) {
-    pthread_mutex_lock(&away->master);
-    bool answered = ask(away, 0, false, work, message, bytes, doing);
-    pthread_mutex_unlock(&away->master);
+static bool request_master(Remote *remote, WireWork *work, void *message, size_t bytes, const char *doing) {
+    pthread_mutex_lock(&remote->master);
+    bool answered = request(remote, 0, false, work, message, bytes, doing);
+    pthread_mutex_unlock(&remote->master);
     return answered;
 }
 
-/* What was said over there, which may lack its end, and be no status of ours. */
-static RtStatus hand_on(RtStatus status, const char *name, RtError *said, RtError *error) {
-    said->message[sizeof said->message - 1] = '\0';
-    return rt_fail(error, rt_remote_status(status), "%s%s%s", name, *name ? ": " : "", said->message);
+/* Takes an error from the process: its text may lack its end, and its status may be invalid. */
+static RtStatus forward(RtStatus status, const char *name, RtError *from, RtError *error) {
+    from->message[sizeof from->message - 1] = '\0';
+    return rt_fail(error, status >= RT_OK && status <= RT_IO ? status : RT_BROKEN, "%s%s%s", name,
+                   *name ? ": " : "", from->message);
 }
 
-static RtStatus why(const Away *away, RtError *error) {
-    if (error) *error = away->error;
+static RtStatus fail_broken(const Remote *remote, RtError *error) {
+    if (error) *error = remote->error;
     return RT_BROKEN;
+}
+
+/* A request to lane 0 whose message is a WireChecked. */
+static RtStatus request_check(Remote *remote, WireWork *work, WireChecked *message, const char *doing,
+                              RtError *error) {
+    if (!request_master(remote, work, message, sizeof *message, doing)) return fail_broken(remote, error);
+    if (message->status == RT_OK) return RT_OK;
+    return forward(message->status, message->status == RT_BROKEN ? remote->name : "", &message->error, error);
 }
 
 void rt_remote_do(RtQuery *query, RtRemoteWork *work, void *message, size_t bytes) {
     RemoteQuery *own = query->scratch[0].own;
-    ask(of(query->accel), own->lane, own->begin, work, message, bytes, "it was traced");
+    request(of(query->accel), own->lane, own->begin, work, message, bytes, "it was traced");
     own->begin = false;
 }
 
 /* ---- building ---- */
 
-/* The memory that both have, and the pipe whose end says that raytally is no more. */
-static RtStatus connect_away(Away *away, int alive[2], RtError *error) {
-    away->wire =
+static RtStatus start(Remote *remote, const RtSpec *spec, int threads, RtError *error) {
+    int ends[2];
+    Wire *wire =
         mmap(NULL, sizeof(Wire), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (away->wire == MAP_FAILED) {
-        away->wire = NULL;
-        return rt_fail_memory(error, "what is shared with a plugin", sizeof(Wire));
-    }
-    away->asked[0] = WIRE_BUILD;
-    away->wire->lanes[0].asked = WIRE_BUILD;
-    if (pipe2(alive, O_CLOEXEC) == 0) return RT_OK;
-    return rt_fail(error, RT_IO, "a pipe: %s", strerror(errno));
-}
-
-static RtStatus start(Away *away, const RtSpec *spec, int threads, RtError *error) {
-    int alive[2] = {-1, -1};
-    RT_TRY(connect_away(away, alive, error));
-    RtStatus status = rt_process_start(&away->process, alive[0], error);
-    if (status == RT_OK && away->process.pid == 0) rt_wire_serve(away->wire, spec, away->base.scene, threads);
-    madvise(away->wire, sizeof(Wire), MADV_DONTFORK); /* other plugins do not get it */
-    close(alive[0]);
-    away->alive = alive[1];
+    if (wire == MAP_FAILED) return rt_fail_memory(error, "memory shared with a plugin", sizeof(Wire));
+    remote->wire = wire;
+    remote->asked[0] = wire->lanes[0].asked = WIRE_BUILD;
+    if (pipe2(ends, O_CLOEXEC) != 0) return rt_fail(error, RT_IO, "a pipe: %s", strerror(errno));
+    RtStatus status = rt_process_fork(&remote->process, ends[0], error);
+    if (status == RT_OK && remote->process.pid == 0) rt_wire_serve(wire, spec, remote->base.scene, threads);
+    madvise(wire, sizeof(Wire), MADV_DONTFORK); /* other plugins must not have it */
+    close(ends[0]);
+    remote->pipe_end = ends[1];
     return status;
 }
 
-/* What was built, or why not. */
-static RtStatus take_built(Away *away, RtError *error) {
+static RtStatus take_built(Remote *remote, RtError *error) {
     char doing[96];
     WireBuilt built;
-    snprintf(doing, sizeof doing, "it was built over %u object%s", away->base.scene->geometry.object_count,
-             rt_plural(away->base.scene->geometry.object_count));
-    if (!wait_for(away, 0, doing, 10 * away->patience)) return why(away, error);
-    memcpy(&built, away->wire->lanes[0].message, sizeof built);
-    if (built.status != RT_OK) return hand_on(built.status, "", &built.error, error);
-    away->base.exact = built.exact != 0;
-    away->base.counts = built.counts != 0;
-    away->base.build_seconds = built.seconds;
-    away->base.build_tally = built.description.build;
-    away->description = built.description;
+    snprintf(doing, sizeof doing, "it was built over %u object%s", remote->base.scene->geometry.object_count,
+             rt_plural(remote->base.scene->geometry.object_count));
+    if (!wait_for(remote, 0, doing, 10 * remote->time_limit)) return fail_broken(remote, error);
+    memcpy(&built, remote->wire->lanes[0].message, sizeof built);
+    if (built.status != RT_OK) return forward(built.status, "", &built.error, error);
+    remote->base.exact = built.exact != 0;
+    remote->base.counts = built.counts != 0;
+    remote->base.build_seconds = built.seconds;
+    remote->base.build_tally = built.description.build;
+    remote->description = built.description;
     return RT_OK;
 }
 
 RtStatus rt_remote_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
                          RtError *error) {
-    Away *away = rt_alloc(1, sizeof(Away));
+    Remote *remote = rt_alloc(1, sizeof(Remote));
     *out = NULL;
-    if (!away) return rt_fail_memory(error, "an accelerator", sizeof(Away));
-    *away = (Away){.base = {.ops = &away->ops, .scene = scene, .scratch_room = RT_CACHE_LINE},
-                   .ops = away_ops,
-                   .alive = -1,
-                   .patience = patience_of_user()};
-    away->ops.name = spec->layers[spec->layer_count - 1].ops->name;
-    pthread_mutex_init(&away->lock, NULL);
-    pthread_mutex_init(&away->master, NULL);
-    rt_spec_format(spec, away->name);
-    RtStatus status = start(away, spec, threads, error);
-    if (status == RT_OK) status = take_built(away, error);
+    if (!remote) return rt_fail_memory(error, "an accelerator", sizeof(Remote));
+    *remote = (Remote){.base = {.ops = &remote->ops, .scene = scene, .scratch_room = RT_CACHE_LINE},
+                       .ops = remote_ops,
+                       .pipe_end = -1,
+                       .time_limit = time_limit_of_user()};
+    remote->ops.name = spec->layers[spec->layer_count - 1].ops->name;
+    pthread_mutex_init(&remote->lock, NULL);
+    pthread_mutex_init(&remote->master, NULL);
+    rt_spec_format(spec, remote->name);
+    RtStatus status = start(remote, spec, threads, error);
+    if (status == RT_OK) status = take_built(remote, error);
     if (status == RT_OK) {
-        *out = &away->base;
+        *out = &remote->base;
     } else {
-        away->broken = true;
-        destroy(&away->base);
+        remote->broken = true;
+        destroy(&remote->base);
     }
     return status;
 }
@@ -276,19 +273,19 @@ const char *rt_remote_exit_message(void) {
     return *exit_message ? exit_message : NULL;
 }
 
-/* In peace, if it still can: a plugin may crash as it frees what it has. */
+/* A plugin may crash while it frees its memory. */
 static void destroy(RtAccel *accel) {
-    Away *away = of(accel);
-    if (away->process.pid > 0 && !away->broken) {
-        ask_master(away, rt_wire_destroy, NULL, 0, "it was destroyed");
-        if (away->broken) snprintf(exit_message, sizeof exit_message, "%s", away->error.message);
+    Remote *remote = of(accel);
+    if (remote->process.pid > 0 && !remote->broken) {
+        request_master(remote, rt_wire_destroy, NULL, 0, "it was destroyed");
+        if (remote->broken) snprintf(exit_message, sizeof exit_message, "%s", remote->error.message);
     }
-    if (away->alive >= 0) close(away->alive); /* ends it */
-    rt_process_end(&away->process, 0);
-    if (away->wire) munmap(away->wire, sizeof(Wire));
-    pthread_mutex_destroy(&away->lock);
-    pthread_mutex_destroy(&away->master);
-    rt_free(away);
+    if (remote->pipe_end >= 0) close(remote->pipe_end);
+    rt_process_end(&remote->process, 0);
+    if (remote->wire) munmap(remote->wire, sizeof(Wire));
+    pthread_mutex_destroy(&remote->lock);
+    pthread_mutex_destroy(&remote->master);
+    rt_free(remote);
 }
 
 /* ---- queries ---- */
@@ -298,46 +295,35 @@ static size_t scratch_bytes(const RtAccel *accel) {
     return sizeof(RemoteQuery);
 }
 
-static uint32_t take_lane(Away *away) {
-    uint32_t lane = 1;
-    pthread_mutex_lock(&away->lock);
-    while (lane < LANES && away->taken[lane]) lane++;
-    if (lane < LANES) away->taken[lane] = true;
-    pthread_mutex_unlock(&away->lock);
-    return lane;
-}
-
-static void give_lane_back(Away *away, uint32_t lane) {
-    pthread_mutex_lock(&away->lock);
-    away->taken[lane] = false;
-    pthread_mutex_unlock(&away->lock);
-}
-
-static RtStatus open_lane(Away *away, uint32_t lane, RtError *error) {
-    WireChecked message = {.lane = lane, .done = away->asked[lane]};
-    if (!ask_master(away, rt_wire_open, &message, sizeof message, "a query was opened"))
-        return why(away, error);
-    if (message.status == RT_OK) return RT_OK;
-    return hand_on(RT_BROKEN, away->name, &message.error, error);
+static void release_lane(Remote *remote, uint32_t lane) {
+    pthread_mutex_lock(&remote->lock);
+    remote->used[lane] = false;
+    pthread_mutex_unlock(&remote->lock);
 }
 
 static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) {
-    Away *away = of(accel);
-    RemoteQuery *query = scratch;
-    query->lane = take_lane(away);
-    if (query->lane == LANES) {
-        return rt_fail(error, RT_BAD_INPUT, "%s: a plugin traces on %d threads at most", away->name,
+    Remote *remote = of(accel);
+    uint32_t lane = 1;
+    pthread_mutex_lock(&remote->lock);
+    while (lane < LANES && remote->used[lane]) lane++;
+    if (lane < LANES) remote->used[lane] = true;
+    pthread_mutex_unlock(&remote->lock);
+    if (lane == LANES)
+        return rt_fail(error, RT_BAD_INPUT, "%s: a plugin traces on at most %d threads", remote->name,
                        LANES - 1);
-    }
-    RtStatus status = open_lane(away, query->lane, error);
-    if (status != RT_OK) give_lane_back(away, query->lane);
-    return status;
+    ((RemoteQuery *)scratch)->lane = lane;
+    WireChecked message = {.lane = lane, .done = remote->asked[lane]};
+    RtStatus status = request_check(remote, rt_wire_open, &message, "a query was opened", error);
+    if (status == RT_OK) return RT_OK;
+    release_lane(remote, lane);
+    if (status != RT_BROKEN) forward(RT_BROKEN, remote->name, &message.error, error);
+    return RT_BROKEN;
 }
 
 static void close_query(const RtAccel *accel, void *scratch) {
     const RemoteQuery *query = scratch;
-    ask(of(accel), query->lane, false, NULL, NULL, 0, "a query was closed");
-    give_lane_back(of(accel), query->lane);
+    request(of(accel), query->lane, false, NULL, NULL, 0, "a query was closed");
+    release_lane(of(accel), query->lane);
 }
 
 static void begin(const RtAccel *accel, void *scratch) {
@@ -347,65 +333,56 @@ static void begin(const RtAccel *accel, void *scratch) {
 
 /* ---- kernels ---- */
 
-/* A stream of at most WIRE_RAYS; returns the answers, which lie in shared memory, or NULL where it broke. */
-static const RtHit *trace_some(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
-                               uint32_t count, bool any, RtTally *tallies) {
-    Away *away = of(accel);
+/* Traces at most WIRE_RAYS rays. The process has checked its answers; an invalid one here was overwritten. */
+static void trace_part(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, uint32_t count,
+                       bool any, RtHit *hits, RtTally *tallies) {
+    Remote *remote = of(accel);
     RemoteQuery *query = scratch->own;
-    WireRays *asked = (WireRays *)away->wire->lanes[query->lane].message;
+    WireRays *message = (WireRays *)remote->wire->lanes[query->lane].message;
+    const bool begin_first = query->begin;
     char doing[64];
     snprintf(doing, sizeof doing, "it answered a stream of %u ray%s", count, rt_plural(count));
-    *asked = (WireRays){.count = count, .any = any, .counted = tallies != NULL};
-    memcpy(rt_wire_rays(asked, count), rays, count * sizeof *rays);
-    bool begin_anew = query->begin;
+    *message = (WireRays){.count = count, .any = any, .counted = tallies != NULL};
+    memcpy(rt_wire_rays(message, count), rays, count * sizeof *rays);
     query->begin = false;
-    if (!ask_in_place(away, query->lane, begin_anew, rt_wire_trace, rt_wire_rays_bytes(count), doing))
-        return NULL;
+    if (!request_in_place(remote, query->lane, begin_first, rt_wire_trace, rt_wire_rays_bytes(count),
+                          doing)) {
+        for (uint32_t i = 0; i < count; i++) hits[i] = RT_MISS;
+        return;
+    }
     for (int kind = 0; kind < RT_RAY_KIND_COUNT && tallies; kind++)
-        rt_tally_add(&tallies[kind], &asked->tallies[kind]);
-    return asked->hits;
-}
-
-/* Answers are looked at where they are written: what is not sound here was changed since. */
-static void tell_overwritten(const RtAccel *accel) {
-    rt_remote_break(accel, "it overwrote its answers", "it answered a stream");
-}
-
-static bool is_object(const RtAccel *accel, uint32_t object) {
-    return object < accel->scene->geometry.object_count;
+        rt_tally_add(&tallies[kind], &message->tallies[kind]);
+    memcpy(hits, message->hits, count * sizeof *hits);
+    for (uint32_t i = 0; i < count; i++) {
+        const RtHit hit = hits[i];
+        if (hit.object < accel->scene->geometry.object_count && hit.t >= rays[i].tmin &&
+            hit.t <= rays[i].tmax)
+            continue;
+        if (hit.object != RT_NO_OBJECT)
+            rt_remote_break(accel, "it overwrote its answers", "it answered a stream");
+        hits[i] = RT_MISS;
+    }
 }
 
 static void trace_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                           RtHit *hits, RtTally *tallies) {
     for (size_t first = 0; first < count; first += WIRE_RAYS) {
         uint32_t n = (uint32_t)(count - first < WIRE_RAYS ? count - first : WIRE_RAYS);
-        const RtHit *answers = trace_some(accel, scratch, rays + first, n, false, tallies);
-        if (answers) memcpy(hits + first, answers, n * sizeof(RtHit));
-        for (size_t i = first; i < first + n; i++) {
-            bool sound = answers && is_object(accel, hits[i].object) && hits[i].t >= rays[i].tmin &&
-                         hits[i].t <= rays[i].tmax;
-            if (answers && !sound && hits[i].object != RT_NO_OBJECT) tell_overwritten(accel);
-            if (!sound) hits[i] = RT_MISS;
-        }
+        trace_part(accel, scratch, rays + first, n, false, hits + first, tallies);
     }
 }
 
 static void trace_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                            uint32_t *occluders, RtTally *tallies) {
+    RtHit hits[WIRE_RAYS];
     for (size_t first = 0; first < count; first += WIRE_RAYS) {
         uint32_t n = (uint32_t)(count - first < WIRE_RAYS ? count - first : WIRE_RAYS);
-        const RtHit *answers = trace_some(accel, scratch, rays + first, n, true, tallies);
-        for (uint32_t i = 0; i < n; i++) {
-            uint32_t *occluder = &occluders[first + i];
-            memcpy(occluder, answers ? &answers[i].object : &RT_MISS.object, sizeof *occluder);
-            if (is_object(accel, *occluder)) continue;
-            if (*occluder != RT_NO_OBJECT) tell_overwritten(accel);
-            *occluder = RT_NO_OBJECT;
-        }
+        trace_part(accel, scratch, rays + first, n, true, hits, tallies);
+        for (uint32_t i = 0; i < n; i++) occluders[first + i] = hits[i].object;
     }
 }
 
-/* What is timed is timed over there: here a counted question differs in its message alone. */
+/* The process times itself, so here a timed kernel is a counted one without tallies. */
 static void nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                     RtHit *hits) {
     trace_nearest(accel, scratch, rays, count, hits, NULL);
@@ -422,32 +399,26 @@ static void describe(const RtAccel *accel, RtDescription *out) {
     *out = of(accel)->description;
 }
 
-static RtStatus ask_checked(const RtAccel *accel, WireWork *work, const char *doing, RtError *error) {
-    Away *away = of(accel);
-    WireChecked message = {.status = RT_OK};
-    if (!ask_master(away, work, &message, sizeof message, doing)) return why(away, error);
-    if (message.status == RT_OK) return RT_OK;
-    return hand_on(message.status, message.status == RT_BROKEN ? away->name : "", &message.error, error);
-}
-
 static RtStatus validate(const RtAccel *accel, RtError *error) {
-    RT_TRY(ask_checked(accel, rt_wire_validate, "it was validated", error));
-    return ask_checked(accel, rt_wire_show, "it showed its boxes", error);
+    WireChecked message = {.status = RT_OK};
+    RT_TRY(request_check(of(accel), rt_wire_validate, &message, "it was validated", error));
+    return request_check(of(accel), rt_wire_show, &message, "it showed its boxes", error);
 }
 
 static RtStatus check(const RtAccel *accel, RtError *error) {
-    return ask_checked(accel, rt_wire_check, "it was asked how it went", error);
+    WireChecked message = {.status = RT_OK};
+    return request_check(of(accel), rt_wire_check, &message, "it was checked after tracing", error);
 }
 
-/* Broken if not all are shown: rt_accel_check tells. */
+/* The accelerator breaks if not all boxes could be shown; rt_accel_check reports it. */
 static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
-    Away *away = of(accel);
+    Remote *remote = of(accel);
     WireBoxes *some = rt_alloc(1, sizeof(WireBoxes));
     uint64_t first = 0;
     bool more = some != NULL, all = more;
     while (more) {
         some->first = first;
-        if (!ask_master(away, rt_wire_boxes, some, sizeof *some, "it showed its boxes")) break;
+        if (!request_master(remote, rt_wire_boxes, some, sizeof *some, "it showed its boxes")) break;
         uint32_t count = some->count < WIRE_BOXES ? some->count : WIRE_BOXES;
         for (uint32_t i = 0; i < count; i++) {
             const WireBox *shown = &some->boxes[i];
@@ -459,16 +430,16 @@ static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
                         &(RtBoxView){.box = &shown->box, .depth = shown->depth, .leaf = shown->leaf != 0});
         }
         first += count;
-        more = count == WIRE_BOXES && !away->broken && first < UINT32_MAX;
+        more = count == WIRE_BOXES && !remote->broken && first < UINT32_MAX;
         all = some->complete != 0;
     }
     if (!all) rt_remote_break(accel, "there is no memory for all its boxes", "it showed them");
     rt_free(some);
 }
 
-static const RtAccelOps away_ops = {
+static const RtAccelOps remote_ops = {
     .name = "plugin",
-    .summary = "stands in for one that lives in a process of its own",
+    .summary = "represents an accelerator in another process",
     .paper = "",
     .destroy = destroy,
     .nearest = nearest,

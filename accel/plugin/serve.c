@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The process in which an accelerator lives that raytally does not trust: see wire.h. */
+/* The process of a remote accelerator: see wire.h. */
 #include "accel/plugin.h"
-#include "accel/plugin/futex.h"
-#include "accel/plugin/now.h"
-#include "accel/plugin/process.h"
+#include "accel/plugin/host.h"
 #include "accel/plugin/wire.h"
-#include "accel/remote.h"
+#include "core/base/process.h"
 
 #include "core/base/memory.h"
 
@@ -21,19 +19,18 @@
 #include <time.h>
 #include <unistd.h>
 
-/* All of it, in this process. */
 static struct Served {
     Wire *wire;
     RtAccel *accel;
 } served;
 
-void rt_remote_beat(void) {
-    if (served.wire) atomic_fetch_add_explicit(&served.wire->beat, 1, memory_order_relaxed);
+void rt_remote_progress(void) {
+    if (served.wire) atomic_fetch_add_explicit(&served.wire->progress, 1, memory_order_relaxed);
 }
 
-/* ---- when it ends ---- */
+/* ---- how it ends ---- */
 
-/* Says what it can: the signal, and the ray. Not more than may be done in a signal handler. */
+/* Records the signal and the ray, using only what is safe in a signal handler. */
 static void on_signal(int number, siginfo_t *info, void *unused) {
     (void)unused;
     Crash *crash = &served.wire->crash;
@@ -44,32 +41,31 @@ static void on_signal(int number, siginfo_t *info, void *unused) {
         crash->has_ray = 1;
         const char *at = number == SIGSEGV || number == SIGBUS ? info->si_addr : NULL;
         for (uint32_t i = 0; at && i < RT_GUARD_COUNT; i++) {
-            if (at >= now->guards[i].begin && at < now->guards[i].end) crash->out_of = i + 1;
+            const RtGuarded *guarded = &now->guarded[i];
+            if (at >= guarded->mapping && at < guarded->mapping + guarded->mapped) crash->out_of = i + 1;
         }
     }
     crash->signal = number;
     _exit(EXIT_FAILURE);
 }
 
-/* A plugin that calls exit: what raytally and its libraries have to do at their own end is none of this
- * process's. */
+/* A plugin that calls exit must not run the exit handlers of raytally and its libraries. */
 static void on_exit_called(int code, void *unused) {
     (void)unused;
     _exit(code);
 }
 
-/* Every thread has a stack for that, which it gives back: the crash may be that its own is full. Whoever
- * hangs is told by SIGXCPU to say at which ray. */
-static void *watch_thread(void) {
+/* Gives the thread a stack for signal handlers, because its own may have overflowed. */
+static void *add_signal_stack(void) {
     stack_t stack;
-    if (sigaltstack(NULL, &stack) == 0 && !(stack.ss_flags & SS_DISABLE)) return NULL; /* sanitizers' own */
+    if (sigaltstack(NULL, &stack) == 0 && !(stack.ss_flags & SS_DISABLE)) return NULL; /* a sanitizer's */
     stack = (stack_t){.ss_size = (size_t)64 * 1024};
     stack.ss_sp = malloc(stack.ss_size);
     if (stack.ss_sp) sigaltstack(&stack, NULL);
     return stack.ss_sp;
 }
 
-static void watch_thread_no_more(void *stack) {
+static void remove_signal_stack(void *stack) {
     if (stack) sigaltstack(&(stack_t){.ss_flags = SS_DISABLE}, NULL);
     free(stack);
 }
@@ -79,25 +75,25 @@ static void watch_signals(void) {
     struct sigaction action = {.sa_flags = SA_SIGINFO | SA_ONSTACK};
     action.sa_sigaction = on_signal;
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) sigaction(numbers[i], &action, NULL);
-    signal(SIGINT, SIG_IGN);  /* is raytally's to take */
-    signal(SIGTTOU, SIG_IGN); /* what it says it says from behind */
+    signal(SIGINT, SIG_IGN);  /* raytally handles it */
+    signal(SIGTTOU, SIG_IGN); /* it may write to the terminal from the background */
     on_exit(on_exit_called, NULL);
-    watch_thread();
+    add_signal_stack();
 }
 
-/* Ends when raytally does, whatever the plugin is at. One that closes all files closes this one, too:
- * raytally is then no more when the process has another parent. */
+/* Ends the process when raytally ends, whatever the plugin is doing. A plugin may close all files; then
+ * another parent shows that raytally has ended. */
 static void *watch_raytally(void *unused) {
     const pid_t raytally = getppid();
     char byte;
     while (read(RT_PROCESS_KEPT, &byte, 1) < 0 && getppid() == raytally)
         nanosleep(&(struct timespec){.tv_nsec = 50000000}, NULL);
     (void)unused;
-    if (getpgrp() == getpid()) kill(0, SIGKILL); /* with all that it started */
+    if (getpgrp() == getpid()) kill(0, SIGKILL); /* and everything it started */
     _exit(EXIT_FAILURE);
 }
 
-/* What the plugin allocates beyond the limit of a structure it does not get. */
+/* Limits what the plugin can allocate, by the limit of a structure. */
 static void limit_memory(void) {
     unsigned long pages = 0;
     FILE *file = fopen("/proc/self/statm", "r");
@@ -117,14 +113,14 @@ static bool is_debugged(void) {
     return tracer != 0;
 }
 
-/* Where RAYTALLY_PLUGIN_WAIT is set a debugger is waited for: before any of the library is loaded. */
+/* Waits for a debugger if RAYTALLY_PLUGIN_WAIT is set, before the library is loaded. */
 static void wait_for_debugger(void) {
     if (!getenv("RAYTALLY_PLUGIN_WAIT")) return;
     fprintf(stderr, "raytally: the process of the plugin waits for a debugger: gdb -p %d\n", (int)getpid());
     while (!is_debugged()) nanosleep(&(struct timespec){.tv_nsec = 100000000}, NULL);
 }
 
-/* ---- what it is asked ---- */
+/* ---- requests ---- */
 
 void rt_wire_validate(RtQuery *query, void *message) {
     (void)query;
@@ -148,14 +144,14 @@ static void ignore(void *context, const RtBoxView *view) {
     (void)context, (void)view;
 }
 
-/* All boxes to nobody: host.c looks at them. */
+/* Shows all boxes to a viewer that ignores them: host.c checks them. */
 void rt_wire_show(RtQuery *query, void *message) {
     const RtAccel *base = rt_accel_base(served.accel);
     if (base->ops->each_box) base->ops->each_box(base, (RtBoxViewer){ignore, NULL});
     rt_wire_check(query, message);
 }
 
-/* All that the structure shows, from when the first are asked for until the last have been given. */
+/* All boxes of the structure, from the request for the first until the last are sent. */
 static struct Shown {
     WireBox *boxes; /* [room] */
     uint32_t count, room;
@@ -194,44 +190,41 @@ void rt_wire_boxes(RtQuery *query, void *message) {
     if (left <= WIRE_BOXES) forget_shown();
 }
 
-/* Occluders go where the first of the hits lie, and then each to its own. */
-static void trace_any(RtQuery *query, WireRays *asked) {
+/* Occluders are written over the first hits, and then expanded to hits at tmin. */
+static void trace_occluded(RtQuery *query, WireRays *asked, const RtRay *rays) {
     const RtAccelOps *ops = query->accel->ops;
     uint32_t *occluders = (uint32_t *)asked->hits;
     if (asked->counted) {
-        ops->occluded_counted(query->accel, query->scratch, rt_wire_rays(asked, asked->count), asked->count,
-                              occluders, asked->tallies);
+        ops->occluded_counted(query->accel, query->scratch, rays, asked->count, occluders, asked->tallies);
     } else {
-        ops->occluded(query->accel, query->scratch, rt_wire_rays(asked, asked->count), asked->count,
-                      occluders);
+        ops->occluded(query->accel, query->scratch, rays, asked->count, occluders);
     }
     for (uint32_t i = asked->count; i-- > 0;) {
         uint32_t occluder;
         memcpy(&occluder, (const char *)asked->hits + i * sizeof occluder, sizeof occluder);
-        asked->hits[i].object = occluder;
+        asked->hits[i] = (RtHit){rays[i].tmin, occluder};
     }
 }
 
 void rt_wire_trace(RtQuery *query, void *message) {
     WireRays *asked = message;
     const RtAccelOps *ops = query->accel->ops;
+    const RtRay *rays = rt_wire_rays(asked, asked->count);
     if (asked->any) {
-        trace_any(query, asked);
+        trace_occluded(query, asked, rays);
     } else if (asked->counted) {
-        ops->nearest_counted(query->accel, query->scratch, rt_wire_rays(asked, asked->count), asked->count,
-                             asked->hits, asked->tallies);
+        ops->nearest_counted(query->accel, query->scratch, rays, asked->count, asked->hits, asked->tallies);
     } else {
-        ops->nearest(query->accel, query->scratch, rt_wire_rays(asked, asked->count), asked->count,
-                     asked->hits);
+        ops->nearest(query->accel, query->scratch, rays, asked->count, asked->hits);
     }
 }
 
 /* ---- lanes ---- */
 
-/* Answers one request after the other, of which each is done on memory of this process alone, until there is
- * none to do: the query is then cleared; lane 0 ends with the accelerator. `done` is the number of the last
- * request that others have answered. A plugin may have told its thread
- * to round otherwise, or to drop what is denormal; hit functions do neither. */
+/* Answers requests one after the other, on copies in this process's own memory, until the lane is closed
+ * (then the query is cleared) or the accelerator is destroyed (lane 0). `done` is the number of the last
+ * request answered before. A plugin may have changed the rounding mode or flushed denormals, which hit
+ * functions must not see. */
 static void serve_lane(Lane *lane, unsigned done, RtQuery *query) {
     char *message = rt_alloc_unset(MESSAGE_BYTES, 1);
     if (!message) _exit(EXIT_FAILURE);
@@ -251,7 +244,7 @@ static void serve_lane(Lane *lane, unsigned done, RtQuery *query) {
             rt_query_clear(query);
         }
         more = work && served.accel;
-        rt_remote_beat();
+        rt_remote_progress();
         rt_futex_set(&lane->answered, ++done);
     }
     rt_free(message);
@@ -266,9 +259,9 @@ typedef struct Opening {
 static void *serve_query(void *context) {
     Opening opening = *(Opening *)context;
     free(context);
-    void *stack = watch_thread();
+    void *stack = add_signal_stack();
     serve_lane(opening.lane, opening.done, &opening.query);
-    watch_thread_no_more(stack);
+    remove_signal_stack(stack);
     return NULL;
 }
 
@@ -296,7 +289,7 @@ void rt_wire_open(RtQuery *query, void *message) {
     pthread_attr_destroy(&detached);
 }
 
-/* ---- all of it ---- */
+/* ---- the process ---- */
 
 static void build(const RtSpec *spec, const RtScene *scene, int threads) {
     WireBuilt built = {.status = rt_plugin_enter(spec, &built.error)};
@@ -315,13 +308,13 @@ static void build(const RtSpec *spec, const RtScene *scene, int threads) {
 void rt_wire_serve(Wire *wire, const RtSpec *spec, const RtScene *scene, int threads) {
     pthread_t thread;
     served = (struct Served){.wire = wire};
-    madvise(wire, sizeof(Wire), MADV_DONTFORK); /* what the plugin forks does not answer in its place */
+    madvise(wire, sizeof(Wire), MADV_DONTFORK); /* processes that the plugin forks must not have it */
     limit_memory();
     watch_signals();
-    setlocale(LC_ALL, "C"); /* raytally may be a library in a program that has another */
+    setlocale(LC_ALL, "C"); /* the program that uses the library may have another one */
     fesetenv(FE_DFL_ENV);
     if (pthread_create(&thread, NULL, watch_raytally, NULL) != 0)
-        _exit(EXIT_FAILURE); /* it would outlive it */
+        _exit(EXIT_FAILURE); /* it would outlive raytally */
     wait_for_debugger();
     build(spec, scene, threads);
     if (served.accel) serve_lane(&wire->lanes[0], WIRE_BUILD, NULL);

@@ -1,55 +1,75 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Between raytally and the process in which an accelerator lives that it does not trust: what lies in the
- * memory that both share.
+/* The memory that raytally shares with the process of a remote accelerator.
  *
- * The process is a fork, so it has the scene, the code, and every function at the same address. What it is
- * asked to do is therefore a function and a message: raytally writes both into a lane and sets `asked` to the
- * number of the request; over there the lane's thread runs the function on a copy of the message, writes that
- * back, and sets `answered` to the same number. Lane 0 is the process's main thread: it builds, looks after
- * the other lanes, and destroys. Each of the others belongs to one RtQuery.
+ * The process is a fork, so it has the scene, the code, and every function at the same address. A request is
+ * therefore a function and a message: raytally writes both into a lane and sets `asked` to the number of the
+ * request; in the process, the lane's thread runs the function on a copy of the message, writes the copy
+ * back, and sets `answered` to the same number. Lane 0 belongs to the main thread of the process: it builds,
+ * opens the other lanes, and destroys. Each other lane belongs to one RtQuery.
  *
  * Invariant: a plugin may write anything here at any time. raytally copies what it reads, checks the copy,
- * and reads no bool, size or address from here; what it must know of a lane it keeps on its own side. */
+ * and reads no bool, size or address from here; what it must know of a lane it keeps in its own memory.
+ *
+ * Threads wait on words of this memory by futexes, not semaphores: an overwritten futex is only a number
+ * nobody waits for, whereas the C library aborts on an invalid semaphore. */
 #ifndef RT_ACCEL_PLUGIN_WIRE_H
 #define RT_ACCEL_PLUGIN_WIRE_H
 
 #include "accel/remote.h"
 
+#include <errno.h>
+#include <limits.h>
+#include <linux/futex.h>
 #include <stdatomic.h>
+#include <sys/syscall.h>
+#include <time.h>
+#include <unistd.h>
 
-/* One more than there can be threads. The memory of those that nobody takes is never touched. */
-enum { LANES = 1 + 1024, MESSAGE_BYTES = RT_AWAY_BYTES };
+/* One more than the most threads. The memory of unused lanes is never touched. */
+enum { LANES = 1 + 1024, MESSAGE_BYTES = RT_REMOTE_BYTES };
 
-/* What is asked: of the accelerator, by the lane's query, which lane 0 has not. */
+/* A request: called with the lane's query; lane 0 has none. */
 typedef RtRemoteWork WireWork;
 
 typedef struct Lane {
-    atomic_uint asked, answered; /* the number of the last request, and of the last answer */
-    WireWork *work;              /* NULL: the lane is closed */
+    atomic_uint asked, answered; /* number of the last request, and of the last answer */
+    WireWork *work;              /* NULL: closes the lane */
     size_t bytes;                /* of the message */
     bool begin;                  /* rt_query_begin comes first */
     _Alignas(64) char message[MESSAGE_BYTES];
 } Lane;
 
-/* How the process ended, as far as it could still say so. */
+/* What the process recorded of its own end. */
 typedef struct Crash {
-    atomic_int signal; /* 0: it said nothing */
+    atomic_int signal; /* 0: nothing */
     uint32_t has_ray;  /* 0 or 1 */
-    uint32_t out_of;   /* 1 + the RtPluginGuard that was run into; 0: none */
+    uint32_t out_of;   /* 1 + the guard pages that were hit (RT_GUARD_QUERY, ..); 0: none */
     RtRay ray;         /* that was being traced */
 } Crash;
 
 typedef struct Wire {
-    atomic_ulong beat; /* grows while work makes progress */
+    atomic_ulong progress; /* grows while work makes progress */
     Crash crash;
     Lane lanes[LANES];
 } Wire;
 
-/* What the process does: builds `spec` over `scene`, answers, and ends with it. RT_PROCESS_KEPT is a file
- * that reads as ended when raytally has. */
+/* Sleeps while *word is `value`, for at most `most` (NULL: without limit). True if the word may have changed;
+ * false after a timeout or a signal. */
+static inline bool rt_futex_wait(atomic_uint *word, unsigned value, const struct timespec *most) {
+    return syscall(SYS_futex, word, FUTEX_WAIT, value, most, NULL, 0) == 0 || errno == EAGAIN;
+}
+
+/* Sets *word and wakes its waiters, which then see everything written before. */
+static inline void rt_futex_set(atomic_uint *word, unsigned value) {
+    atomic_store_explicit(word, value, memory_order_release);
+    syscall(SYS_futex, word, FUTEX_WAKE, INT_MAX, NULL, NULL, 0);
+}
+
+/* The process: builds `spec` over `scene`, answers requests, and ends with the accelerator. RT_PROCESS_KEPT
+ * is a pipe that reads as ended once raytally has ended. */
 _Noreturn void rt_wire_serve(Wire *wire, const RtSpec *spec, const RtScene *scene, int threads);
 
-/* Messages to lane 0. Its first request is to build; it needs no message. */
+/* Messages of lane 0. Its first request, to build, has none. */
 enum { WIRE_BUILD = 1 };
 typedef struct WireBuilt {
     RtStatus status;
@@ -60,15 +80,15 @@ typedef struct WireBuilt {
 } WireBuilt;
 
 typedef struct WireChecked {
-    uint32_t lane, done; /* of rt_wire_open: a lane, and the number of its last request */
+    uint32_t lane, done; /* for rt_wire_open: a lane, and the number of its last request */
     RtStatus status;
     RtError error;
 } WireChecked;
 
-WireWork rt_wire_validate, rt_wire_show, rt_wire_check, rt_wire_open; /* of a WireChecked */
-WireWork rt_wire_destroy;                                             /* of nothing; the process ends */
+WireWork rt_wire_validate, rt_wire_show, rt_wire_check, rt_wire_open; /* message: WireChecked */
+WireWork rt_wire_destroy;                                             /* no message; the process ends */
 
-/* Boxes number first.. of the structure, as many as there is room for; from 0 on in a row. */
+/* Boxes number first, first + 1, ... of the structure, as many as fit; called in order from 0. */
 enum { WIRE_BOXES = 4096, WIRE_DEPTH = 10000 };
 typedef struct WireBox {
     RtBox box;
@@ -81,14 +101,13 @@ static inline bool rt_wire_is_box(const RtBox *box, uint32_t depth) {
 
 typedef struct WireBoxes {
     uint64_t first;
-    uint32_t count;    /* out; fewer than WIRE_BOXES: the last */
-    uint32_t complete; /* out: 1, there was memory for all of them, or 0 */
+    uint32_t count;    /* out; fewer than WIRE_BOXES: these are the last */
+    uint32_t complete; /* out: 1 if memory sufficed for all of them, else 0 */
     WireBox boxes[WIRE_BOXES];
 } WireBoxes;
 WireWork rt_wire_boxes;
 
-/* A stream of rays, and behind it in the message: the answers, as RtHit whatever was asked (of `any` the
- * object alone counts), and the rays. */
+/* A stream of rays. The message also holds the answers, as hits: an occluder is a hit at tmin. */
 enum { WIRE_RAYS = 4096 };
 typedef struct WireRays {
     uint32_t count;
@@ -109,6 +128,6 @@ WireWork rt_wire_trace;
 
 _Static_assert(sizeof(WireBoxes) <= MESSAGE_BYTES &&
                    sizeof(WireRays) + WIRE_RAYS * (sizeof(RtHit) + sizeof(RtRay)) <= MESSAGE_BYTES,
-               "it fits a lane");
+               "messages fit a lane");
 
 #endif

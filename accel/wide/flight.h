@@ -4,8 +4,8 @@
 #define RT_ACCEL_WIDE_FLIGHT_H
 
 #include "accel/kernel.h"
-#include "accel/simd.h"
 #include "accel/surface.h"
+#include "accel/watertight.h"
 #include "accel/wide/wide.h"
 #include "core/base/memory.h"
 
@@ -119,24 +119,21 @@ RT_KERNEL void prefetch(const RtWideTree *tree, RtWideRef ref) {
 
 /* ---- nodes ---- */
 
-RT_KERNEL __m256 planes(const RtWideNode *node, uint32_t offset) {
-    return _mm256_load_ps((const float *)(const void *)((const char *)node + offset));
+RT_KERNEL RtFloat8 planes(const RtWideNode *node, uint32_t offset) {
+    return rt_load8((const char *)node + offset);
 }
 
 /* The children that the ray meets, as a mask, by rt_box_hit in eight lanes; where it enters each, to
  * *enter. */
-RT_KERNEL uint32_t meet(const RtWideNode *node, const Flight *f, __m256 *enter) {
+RT_KERNEL uint32_t meet(const RtWideNode *node, const Flight *f, RtFloat8 *enter) {
     const RtPreparedRay *r = &f->ray;
-    __m256 near = _mm256_set1_ps(r->tmin), far = _mm256_set1_ps(f->limit);
+    RtFloat8 near = rt_all8(r->tmin), far = rt_all8(f->limit);
     for (uint32_t a = 0; a < 3; a++) {
-        __m256 inv = _mm256_set1_ps(r->inv[a]);
-        __m256 first = _mm256_sub_ps(planes(node, f->near[a]), _mm256_set1_ps(r->org_near[a]));
-        __m256 second = _mm256_sub_ps(planes(node, f->far[a]), _mm256_set1_ps(r->org_far[a]));
-        near = _mm256_max_ps(_mm256_mul_ps(first, inv), near);
-        far = _mm256_min_ps(_mm256_mul_ps(second, inv), far);
+        near = rt_max((planes(node, f->near[a]) - r->org_near[a]) * r->inv[a], near);
+        far = rt_min((planes(node, f->far[a]) - r->org_far[a]) * r->inv[a], far);
     }
     *enter = near;
-    return rt_v8_at_most(near, far);
+    return rt_le_bits(near, far);
 }
 
 /* A node has no box of its own but those of its children, which are tested together. */
@@ -163,68 +160,56 @@ RT_COLD static void observe_node(const RtWideNode *node, RtWideRef ref, uint32_t
 
 /* The lane of a mask with the least entry, but for the last three bits, by which ties are few; any lane of no
  * mask. Entries are at least 0, so their bits are in their order. */
-RT_KERNEL uint32_t least_lane(uint32_t mask, __m256i enter) {
-    const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7), none = _mm256_set1_epi32(INT32_MAX);
-    __m256i key = _mm256_or_si256(_mm256_and_si256(enter, _mm256_set1_epi32(~7)), lanes);
-    key = rt_v8_pick(mask, none, key);
-    __m128i least = _mm_min_epi32(_mm256_castsi256_si128(key), _mm256_extracti128_si256(key, 1));
-    least = _mm_min_epi32(least, _mm_shuffle_epi32(least, 0x4e));
-    least = _mm_min_epi32(least, _mm_shuffle_epi32(least, 0xb1));
-    return (uint32_t)_mm_cvtsi128_si32(least) & 7;
+RT_KERNEL uint32_t least_lane(uint32_t mask, RtInt8 enter) {
+    const RtInt8 lanes = {0, 1, 2, 3, 4, 5, 6, 7};
+    RtFloat8 key = (RtFloat8)rt_select_bits8(mask, (enter & ~7) | lanes, rt_all_ints8(INT32_MAX));
+    RtInt4 least = rt_min((RtInt4)rt_lower4(key), (RtInt4)rt_upper4(key));
+    least = rt_min(least, __builtin_shufflevector(least, least, 2, 3, 0, 1));
+    least = rt_min(least, __builtin_shufflevector(least, least, 1, 0, 3, 2));
+    return (uint32_t)least[0] & 7;
 }
 
 /* The child to go on to: the nearest, or without order the last; any where the mask is empty. */
-RT_KERNEL uint32_t choose(uint32_t mask, __m256 enter, bool ordered) {
-    return ordered ? least_lane(mask, _mm256_castps_si256(enter)) : 31 - (uint32_t)__builtin_clz(mask | 1);
+RT_KERNEL uint32_t choose(uint32_t mask, RtFloat8 enter, bool ordered) {
+    return ordered ? least_lane(mask, (RtInt8)enter) : 31 - (uint32_t)__builtin_clz(mask | 1);
 }
 
 /* Goes on to one child of the mask, and waits with the others; where there is none, to what waits last.
  * Without a branch, for which way it went nobody could predict. */
-RT_KERNEL RtWideRef go_on(Flight *f, const RtWideNode *node, uint32_t mask, __m256 enter, bool ordered,
+RT_KERNEL RtWideRef go_on(Flight *f, const RtWideNode *node, uint32_t mask, RtFloat8 enter, bool ordered,
                           bool any) {
     uint32_t top = f->top, lane = choose(mask, enter, ordered), others = mask & ~(1u << lane);
     RtWideRef popped = f->waiting[top - 1], child = node->child[lane];
-    RtV8Order order = rt_v8_order(others);
-    if (!any) rt_v8_put(&f->enter[top], rt_v8_take(order, _mm256_castps_si256(enter)));
-    rt_v8_put(&f->waiting[top], rt_v8_take(order, rt_v8_get(node->child)));
+    RtOrder8 order = rt_order8(others);
+    if (!any) rt_store(&f->enter[top], rt_compress8(order, (RtInt8)enter));
+    rt_store(&f->waiting[top], rt_compress8(order, rt_load_ints8(node->child)));
     f->top = top + (uint32_t)__builtin_popcount(others) - (mask == 0);
     return mask == 0 ? popped : child;
 }
 
 /* ---- leaves ---- */
 
-/* The vertices of a block as rt_triangle_hit moves and shears them. */
-typedef struct Sheared {
-    __m128 x[3], y[3], z[3];
-} Sheared;
-
-RT_KERNEL __m128 coordinate(const RtWideTriangles *block, int vertex, uint32_t offset) {
-    return _mm_load_ps((const float *)(const void *)((const char *)block->v[vertex] + offset));
+RT_KERNEL RtFloat4 coordinate(const RtWideTriangles *block, int vertex, uint32_t offset) {
+    return rt_load4((const char *)block->v[vertex] + offset);
 }
 
-RT_KERNEL Sheared shear(const RtWideTriangles *block, const Axes *axes) {
-    const __m128 shear_x = _mm_set1_ps(axes->shear_x), shear_y = _mm_set1_ps(axes->shear_y);
-    const __m128 org_x = _mm_set1_ps(axes->org_x), org_y = _mm_set1_ps(axes->org_y),
-                 org_z = _mm_set1_ps(axes->org_z);
-    Sheared s;
+RT_KERNEL RtSheared4 shear(const RtWideTriangles *block, const Axes *axes) {
+    const RtShear4 ray = {rt_all4(axes->org_x), rt_all4(axes->org_y), rt_all4(axes->org_z),
+                          rt_all4(axes->shear_x), rt_all4(axes->shear_y)};
+    RtSheared4 s;
     for (int i = 0; i < 3; i++) {
-        s.z[i] = _mm_sub_ps(coordinate(block, i, axes->z), org_z);
-        s.x[i] = _mm_sub_ps(_mm_sub_ps(coordinate(block, i, axes->x), org_x), _mm_mul_ps(shear_x, s.z[i]));
-        s.y[i] = _mm_sub_ps(_mm_sub_ps(coordinate(block, i, axes->y), org_y), _mm_mul_ps(shear_y, s.z[i]));
+        s.x[i] = coordinate(block, i, axes->x);
+        s.y[i] = coordinate(block, i, axes->y);
+        s.z[i] = coordinate(block, i, axes->z);
     }
+    rt_shear4(&ray, &s);
     return s;
 }
 
-/* Of a block the triangles whose edge functions in float32 let the ray pass: all that rt_triangle_hit would
- * not turn away by them, but for those where one is no number, of which it finds none hit either. */
+/* Bit i: triangle i of a block passes the edge-function prefilter. */
 RT_KERNEL uint32_t sieve_block(const RtWideTriangles *block, const Axes *axes) {
-    const __m128 zero = _mm_setzero_ps();
-    Sheared s = shear(block, axes);
-    __m128 u = _mm_sub_ps(_mm_mul_ps(s.x[2], s.y[1]), _mm_mul_ps(s.y[2], s.x[1]));
-    __m128 v = _mm_sub_ps(_mm_mul_ps(s.x[0], s.y[2]), _mm_mul_ps(s.y[0], s.x[2]));
-    __m128 w = _mm_sub_ps(_mm_mul_ps(s.x[1], s.y[0]), _mm_mul_ps(s.y[1], s.x[0]));
-    __m128 least = _mm_min_ps(_mm_min_ps(u, v), w), most = _mm_max_ps(_mm_max_ps(u, v), w);
-    return (uint32_t)_mm_movemask_ps(_mm_or_ps(_mm_cmpge_ps(least, zero), _mm_cmple_ps(most, zero)));
+    const RtSheared4 s = shear(block, axes);
+    return rt_edge_prefilter4(&s);
 }
 
 /* The same of a leaf: bit i is triangle i of it. */
@@ -234,46 +219,22 @@ RT_KERNEL uint32_t sieve_leaf(const RtWideTriangles *blocks, RtWideRef ref, cons
     return mask;
 }
 
-/* What rt_triangle_hit does in double, with four triangles: those whose plane the ray crosses within them,
- * and where. `major`: dir along kz. */
-RT_KERNEL uint32_t cross(const Sheared *s, __m128 major, __m128 *t) {
-    const __m256d zero = _mm256_setzero_pd();
-    __m256d x[3], y[3], z[3];
-    for (int i = 0; i < 3; i++) {
-        x[i] = _mm256_cvtps_pd(s->x[i]);
-        y[i] = _mm256_cvtps_pd(s->y[i]);
-        z[i] = _mm256_cvtps_pd(s->z[i]);
-    }
-    __m256d u = _mm256_sub_pd(_mm256_mul_pd(x[2], y[1]), _mm256_mul_pd(y[2], x[1]));
-    __m256d v = _mm256_sub_pd(_mm256_mul_pd(x[0], y[2]), _mm256_mul_pd(y[0], x[2]));
-    __m256d w = _mm256_sub_pd(_mm256_mul_pd(x[1], y[0]), _mm256_mul_pd(y[1], x[0]));
-    __m256d least = _mm256_min_pd(_mm256_min_pd(u, v), w), most = _mm256_max_pd(_mm256_max_pd(u, v), w);
-    __m256d determinant = _mm256_add_pd(_mm256_add_pd(u, v), w);
-    __m256d within =
-        _mm256_or_pd(_mm256_cmp_pd(least, zero, _CMP_GE_OQ), _mm256_cmp_pd(most, zero, _CMP_LE_OQ));
-    within = _mm256_and_pd(within, _mm256_cmp_pd(determinant, zero, _CMP_NEQ_OQ));
-    __m256d depth = _mm256_add_pd(_mm256_mul_pd(u, z[0]), _mm256_mul_pd(v, z[1]));
-    depth = _mm256_div_pd(_mm256_add_pd(depth, _mm256_mul_pd(w, z[2])), determinant);
-    *t = _mm256_cvtpd_ps(_mm256_div_pd(depth, _mm256_cvtps_pd(major)));
-    return (uint32_t)_mm256_movemask_pd(within);
-}
-
 /* The last of rt_triangle_hit for one triangle of a block. */
 RT_KERNEL bool admit(const float *triangle, const RtPreparedRay *ray, float *t) {
-    RtFour a = rt_triangle_vertex(triangle, RT_WIDE_BLOCK);
-    RtFour b = rt_triangle_vertex(triangle + VERTEX, RT_WIDE_BLOCK);
-    RtFour c = rt_triangle_vertex(triangle + (size_t)2 * VERTEX, RT_WIDE_BLOCK);
-    return rt_four_admit(rt_four_min(rt_four_min(a, b), c), rt_four_max(rt_four_max(a, b), c), ray, t);
+    RtFloat4 a = rt_triangle_vertex(triangle, RT_WIDE_BLOCK);
+    RtFloat4 b = rt_triangle_vertex(triangle + VERTEX, RT_WIDE_BLOCK);
+    RtFloat4 c = rt_triangle_vertex(triangle + (size_t)2 * VERTEX, RT_WIDE_BLOCK);
+    return rt_four_admit(rt_min(rt_min(a, b), c), rt_max(rt_max(a, b), c), ray, t);
 }
 
 /* Tests those triangles of a block in full; true where the search is over. */
 RT_KERNEL bool test_block(const RtWideTriangles *block, uint32_t mask, const Axes *axes,
                           const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
-    _Alignas(16) float at[RT_WIDE_BLOCK];
-    __m128 t;
-    const Sheared s = shear(block, axes);
-    mask &= cross(&s, _mm_set1_ps(ray->dir.at[ray->kz]), &t);
-    _mm_store_ps(at, t);
+    float at[RT_WIDE_BLOCK];
+    RtFloat4 t;
+    const RtSheared4 s = shear(block, axes);
+    mask &= rt_cross4(&s, rt_all4(ray->dir.at[ray->kz]), &t);
+    rt_store(at, t);
     for (; mask; mask &= mask - 1) {
         uint32_t lane = (uint32_t)__builtin_ctz(mask);
         if (!admit(&block->v[0][0][lane], ray, &at[lane])) continue;
@@ -334,13 +295,13 @@ RT_KERNEL void narrow(Flight *f) {
     f->limit = limit;
     uint32_t kept = 1, top = f->top;
     for (uint32_t i = 1; i < top; i += RT_WIDE) {
-        __m256 enter = _mm256_loadu_ps(&f->enter[i]);
+        RtFloat8 enter = rt_loadu8(&f->enter[i]);
         uint32_t left = top - i, lanes = left < RT_WIDE ? (1u << left) - 1 : 255;
-        uint32_t mask = rt_v8_at_most(enter, _mm256_set1_ps(limit)) & lanes;
-        RtV8Order order = rt_v8_order(mask);
-        __m256i refs = rt_v8_get(&f->waiting[i]);
-        rt_v8_put(&f->enter[kept], rt_v8_take(order, _mm256_castps_si256(enter)));
-        rt_v8_put(&f->waiting[kept], rt_v8_take(order, refs));
+        uint32_t mask = rt_le_bits(enter, rt_all8(limit)) & lanes;
+        RtOrder8 order = rt_order8(mask);
+        RtInt8 refs = rt_load_ints8(&f->waiting[i]);
+        rt_store(&f->enter[kept], rt_compress8(order, (RtInt8)enter));
+        rt_store(&f->waiting[kept], rt_compress8(order, refs));
         kept += (uint32_t)__builtin_popcount(mask);
     }
     f->top = kept;

@@ -97,15 +97,15 @@ RT_KERNEL uint32_t class_of(const RtRay *ray) {
 /* The class of sixteen rays; CLASSES where they differ. */
 RT_KERNEL uint32_t class_of_all(const RtRay *rays) {
     const uint32_t class = class_of(rays), axis = class / 8;
-    const RtFour dir = rt_four((const char *)rays + offsetof(RtRay, dir));
-    RtFourBits signs = {0}, larger = {0};
+    const RtFloat4 dir = rt_loadu4((const char *)rays + offsetof(RtRay, dir));
+    RtInt4 signs = {0}, larger = {0};
     for (int i = 0; i < BEAM; i++) {
-        RtFour own = rt_four((const char *)&rays[i] + offsetof(RtRay, dir));
-        signs |= (RtFourBits)own ^ (RtFourBits)dir;
-        larger |= rt_four_abs(own) >= rt_four_all(fabsf(rays[i].dir.at[axis]));
+        RtFloat4 own = rt_loadu4((const char *)&rays[i] + offsetof(RtRay, dir));
+        signs |= (RtInt4)own ^ (RtInt4)dir;
+        larger |= rt_abs(own) >= fabsf(rays[i].dir.at[axis]);
     }
     larger[axis] = 0;
-    RtFourBits differ = (signs < 0) | larger;
+    RtInt4 differ = (signs < 0) | larger;
     return differ[0] | differ[1] | differ[2] ? CLASSES : class;
 }
 
@@ -138,56 +138,66 @@ RT_KERNEL uint32_t sort_rays(Sorter *s, const RtRay *rays) {
 
 /* ---- taking up ---- */
 
-/* Rays [first, first + 16) of the packet, thickened as rt_ray_prepare_in does or, where objects are divided,
- * rt_surface_thicken. */
-RT_KERNEL void prepare_beam(Packet *p, const RtGeometry *g, uint32_t first, bool divided) {
-    RtV16 farthest = rt_v16_all(0);
+/* Rays [first, first + RT_LANES) of the packet, thickened as rt_ray_prepare_in does or, where objects are
+ * divided, rt_surface_thicken. */
+RT_KERNEL void prepare_lanes(Packet *p, const RtGeometry *g, uint32_t first, bool divided) {
+    RtFloats farthest = rt_all(0);
     for (int a = 0; a < 3; a++) {
-        RtV16 org = rt_v16_load(&p->org[a][first]);
-        farthest = rt_v16_max(rt_v16_abs(rt_v16_sub(rt_v16_all(g->box.lo.at[a]), org)), farthest);
-        farthest = rt_v16_max(rt_v16_abs(rt_v16_sub(rt_v16_all(g->box.hi.at[a]), org)), farthest);
+        RtFloats org = rt_load(&p->org[a][first]);
+        farthest = rt_max(rt_abs(g->box.lo.at[a] - org), farthest);
+        farthest = rt_max(rt_abs(g->box.hi.at[a] - org), farthest);
     }
-    RtV16 thickness = rt_v16_mul(farthest, rt_v16_all(0x1p-20f));
-    if (divided) thickness = rt_v16_add(rt_v16_mul(rt_v16_all(2), thickness), rt_v16_all(0x1p-80f));
+    RtFloats thickness = farthest * 0x1p-20f;
+    if (divided) thickness = 2 * thickness + 0x1p-80f;
     for (int a = 0; a < 3; a++) {
-        RtV16 org = rt_v16_load(&p->org[a][first]);
-        RtV16 shift = rt_v16_add(thickness, rt_v16_mul(rt_v16_abs(org), rt_v16_all(0x1p-23f)));
-        RtV16 above = rt_v16_add(org, shift), below = rt_v16_sub(org, shift);
-        rt_v16_store(&p->org_near[a][first], p->negative[a] ? below : above);
-        rt_v16_store(&p->org_far[a][first], p->negative[a] ? above : below);
-        rt_v16_store(&p->inv[a][first], rt_v16_div(rt_v16_all(1), rt_v16_load(&p->dir[a][first])));
+        RtFloats org = rt_load(&p->org[a][first]), shift = thickness + rt_abs(org) * 0x1p-23f;
+        RtFloats above = org + shift, below = org - shift;
+        rt_store(&p->org_near[a][first], p->negative[a] ? below : above);
+        rt_store(&p->org_far[a][first], p->negative[a] ? above : below);
+        rt_store(&p->inv[a][first], 1 / rt_load(&p->dir[a][first]));
     }
-    RtV16 limit = rt_v16_min(rt_v16_load(&p->tmax[first]), rt_v16_all(FLT_MAX));
-    RtV16 inv = rt_v16_load(&p->inv[p->kz][first]);
-    rt_v16_store(&p->tmax[first], limit);
-    rt_v16_store(&p->limit[first], limit);
-    rt_v16_store(&p->shear_x[first], rt_v16_mul(rt_v16_load(&p->dir[p->kx][first]), inv));
-    rt_v16_store(&p->shear_y[first], rt_v16_mul(rt_v16_load(&p->dir[p->ky][first]), inv));
+    RtFloats limit = rt_min(rt_load(&p->tmax[first]), rt_all(FLT_MAX));
+    RtFloats inv = rt_load(&p->inv[p->kz][first]);
+    rt_store(&p->tmax[first], limit);
+    rt_store(&p->limit[first], limit);
+    rt_store(&p->shear_x[first], rt_load(&p->dir[p->kx][first]) * inv);
+    rt_store(&p->shear_y[first], rt_load(&p->dir[p->ky][first]) * inv);
+}
+
+/* The least lane of each of four vectors. */
+RT_KERNEL RtFloat4 least_of_each(const RtFloats v[4]) {
+    RtFloat4 rows[4];
+    for (int i = 0; i < 4; i++) rows[i] = rt_fold4(v[i]);
+    rt_transpose4(rows);
+    return rt_min(rt_min(rows[0], rows[1]), rt_min(rows[2], rows[3]));
 }
 
 /* Rays of a beam differ in direction by no more than this, as a slope along the major axis. */
 #define BEAM_SPREAD 0.1f
 
-RT_KERNEL RtV16 negated(RtV16 a, bool so) {
-    return so ? rt_v16_sub(rt_v16_all(-0.0f), a) : a;
-}
-
 RT_KERNEL void bound_beam(Packet *p, uint32_t b) {
     Beam *beam = &p->beam[b];
-    RtV16 near[3], far[3], least[3], most[3], zero = rt_v16_all(0);
-    RtV16 x = rt_v16_load(&p->shear_x[first_of(b)]), y = rt_v16_load(&p->shear_y[first_of(b)]);
-    for (int a = 0; a < 3; a++) {
-        least[a] = rt_v16_load(&p->inv[a][first_of(b)]);
-        most[a] = rt_v16_sub(zero, least[a]);
-        near[a] = negated(rt_v16_load(&p->org_near[a][first_of(b)]), !p->negative[a]);
-        far[a] = negated(rt_v16_load(&p->org_far[a][first_of(b)]), p->negative[a]);
+    RtFloats ends[5][4]; /* of `first`, `last`, the least, the most and y: what is to be the least */
+    for (int k = 0; k < 20; k++) ends[k / 4][k % 4] = rt_all(INFINITY);
+    for (size_t i = first_of(b); i < first_of(b) + BEAM; i += RT_LANES) {
+        RtFloats x = rt_load(&p->shear_x[i]), y = rt_load(&p->shear_y[i]);
+        for (int a = 0; a < 3; a++) {
+            RtFloats inv = rt_load(&p->inv[a][i]), near = rt_load(&p->org_near[a][i]);
+            RtFloats far = rt_load(&p->org_far[a][i]);
+            ends[0][a] = rt_min(ends[0][a], p->negative[a] ? near : -near);
+            ends[1][a] = rt_min(ends[1][a], p->negative[a] ? -far : far);
+            ends[2][a] = rt_min(ends[2][a], inv);
+            ends[3][a] = rt_min(ends[3][a], -inv);
+        }
+        ends[0][3] = rt_min(ends[0][3], rt_load(&p->tmin[i]));
+        ends[1][3] = rt_min(ends[1][3], -rt_load(&p->limit[i]));
+        ends[2][3] = rt_min(ends[2][3], x);
+        ends[3][3] = rt_min(ends[3][3], -x);
+        ends[4][0] = rt_min(ends[4][0], y);
+        ends[4][1] = rt_min(ends[4][1], -y);
     }
-    RtFour first = rt_v16_least4(near[0], near[1], near[2], rt_v16_load(&p->tmin[first_of(b)]));
-    RtFour last =
-        rt_v16_least4(far[0], far[1], far[2], rt_v16_sub(zero, rt_v16_load(&p->limit[first_of(b)])));
-    RtFour lo = rt_v16_least4(least[0], least[1], least[2], x);
-    RtFour hi = rt_v16_least4(most[0], most[1], most[2], rt_v16_sub(zero, x));
-    RtFour up = rt_v16_least4(y, rt_v16_sub(zero, y), y, y);
+    RtFloat4 first = least_of_each(ends[0]), last = least_of_each(ends[1]), lo = least_of_each(ends[2]);
+    RtFloat4 hi = least_of_each(ends[3]), up = least_of_each(ends[4]);
     beam->tight = true;
     for (int a = 0; a < 3; a++) {
         beam->first[a] = p->negative[a] ? first[a] : -first[a];
@@ -206,15 +216,15 @@ RT_KERNEL void prepare_sieve(Packet *p) {
     if (p->sieve_ready) return;
     p->sieve_ready = true;
     for (uint32_t i = 0; i < p->count; i += 4) {
-        const RtFourBits number = (RtFourBits){0, 1, 2, 3} + (int32_t)i;
-        RtFour place[4] = {rt_four(&p->org[p->kx][i]), rt_four(&p->org[p->ky][i]),
-                           rt_four(&p->org[p->kz][i])};
-        RtFour more[4] = {rt_four(&p->shear_x[i]), rt_four(&p->shear_y[i]), (RtFour)number};
-        rt_four_transpose(place);
-        rt_four_transpose(more);
+        const RtInt4 number = (RtInt4){0, 1, 2, 3} + (int32_t)i;
+        RtFloat4 place[4] = {rt_load4(&p->org[p->kx][i]), rt_load4(&p->org[p->ky][i]),
+                             rt_load4(&p->org[p->kz][i])};
+        RtFloat4 more[4] = {rt_load4(&p->shear_x[i]), rt_load4(&p->shear_y[i]), (RtFloat4)number};
+        rt_transpose4(place);
+        rt_transpose4(more);
         for (uint32_t k = 0; k < 4; k++) {
-            memcpy(p->sieve[i + k], &place[k], sizeof place[k]);
-            memcpy(p->sieve[i + k] + 4, &more[k], sizeof more[k]);
+            rt_store(p->sieve[i + k], place[k]);
+            rt_store(p->sieve[i + k] + 4, more[k]);
         }
     }
     for (int k = 0; k < 8; k++) p->sieve[PACKET][k] = NAN;
@@ -231,11 +241,10 @@ RT_KERNEL const RtPreparedRay *prepared(Packet *p, const Question *q, uint32_t i
 /* Tests rays that are too odd for the boxes of divided objects against all. */
 RT_KERNEL void answer_odd_rays(Packet *p, const Question *q, bool any) {
     uint64_t odd = 0;
-    for (uint32_t b = 0; b < BEAMS; b++) {
-        RtV16 longest = rt_v16_abs(rt_v16_load(&p->dir[p->kz][first_of(b)]));
-        uint32_t near = rt_v16_at_most(rt_v16_all(0x1p-64f), longest) &
-                        rt_v16_at_most(longest, rt_v16_all(0x1p64f)); /* rt_surface_is_near */
-        odd |= (uint64_t)(near ^ ((1u << BEAM) - 1)) << b * BEAM;
+    for (uint32_t i = 0; i < PACKET; i += RT_LANES) {
+        RtFloats longest = rt_abs(rt_load(&p->dir[p->kz][i]));
+        RtInts near = (longest >= 0x1p-64f) & (longest <= 0x1p64f); /* rt_surface_is_near */
+        odd |= (uint64_t)rt_bits(~near) << i;
     }
     for (odd &= p->open; odd; odd &= odd - 1) {
         uint32_t i = first_ray(odd);
@@ -263,25 +272,23 @@ RT_KERNEL void take_up(Packet *p, const Question *q, Sorter *s, uint32_t class, 
         p->far[a] = (2 * a + !p->negative[a]) * PLANE;
     }
     for (uint32_t i = 0; i < end; i += 4) {
-        RtFour org[4], dir[4];
+        RtFloat4 org[4], dir[4];
         for (uint32_t k = 0; k < 4; k++) {
             const RtRay *ray = &q->rays[p->index[i + k]];
-            org[k] = rt_four(ray);
-            dir[k] = rt_four((const char *)ray + offsetof(RtRay, dir));
+            org[k] = rt_loadu4(ray);
+            dir[k] = rt_loadu4((const char *)ray + offsetof(RtRay, dir));
         }
-        rt_four_transpose(org);
-        rt_four_transpose(dir);
+        rt_transpose4(org);
+        rt_transpose4(dir);
         for (int a = 0; a < 3; a++) {
-            memcpy(&p->org[a][i], &org[a], sizeof org[a]);
-            memcpy(&p->dir[a][i], &dir[a], sizeof dir[a]);
+            rt_store(&p->org[a][i], org[a]);
+            rt_store(&p->dir[a][i], dir[a]);
         }
-        memcpy(&p->tmin[i], &org[3], sizeof org[3]);
-        memcpy(&p->tmax[i], &dir[3], sizeof dir[3]);
+        rt_store(&p->tmin[i], org[3]);
+        rt_store(&p->tmax[i], dir[3]);
     }
-    for (uint32_t b = 0; b < beams; b++) {
-        prepare_beam(p, q->geometry, b * BEAM, q->tree->divided);
-        bound_beam(p, b);
-    }
+    for (uint32_t i = 0; i < end; i += RT_LANES) prepare_lanes(p, q->geometry, i, q->tree->divided);
+    for (uint32_t b = 0; b < beams; b++) bound_beam(p, b);
     p->sieve_ready = false;
     for (uint32_t i = 0; i < count; i++) p->best[i] = RT_MISS;
     p->open = ~UINT64_C(0) >> (PACKET - count);

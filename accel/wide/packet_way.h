@@ -25,51 +25,47 @@ typedef struct Shared {
 
 /* The planes of a node in the order in which the rays of a packet meet them. */
 typedef struct Planes {
-    __m256 enter[3], leave[3];
+    RtFloat8 enter[3], leave[3];
 } Planes;
 
 /* The rays that meet each child, and where the first of them may enter it. */
 typedef struct Met {
-    RtV8Sets rays;
-    __m256 first;
+    RtSets8 rays;
+    RtFloat8 first;
 } Met;
 
-RT_KERNEL void meet_child(Met *met, uint64_t rays, __m256 near, __m256 far) {
-    RtV8Mask mask = rt_v8_within(near, far);
-    rt_v8_sets_add(&met->rays, mask, rays);
-    met->first = rt_v8_min_where(mask, near, met->first);
+RT_KERNEL void meet_child(Met *met, uint64_t rays, RtFloat8 near, RtFloat8 far) {
+    RtMask8 mask = rt_le_mask8(near, far);
+    rt_sets8_add(&met->rays, mask, rays);
+    met->first = rt_select_mask8(mask, rt_min(near, met->first), met->first);
 }
 
 RT_KERNEL void meet_ray(Met *met, const Planes *planes, const Packet *p, uint32_t i) {
-    __m256 near = _mm256_set1_ps(p->tmin[i]), far = _mm256_set1_ps(p->limit[i]);
+    RtFloat8 near = rt_all8(p->tmin[i]), far = rt_all8(p->limit[i]);
     for (uint32_t a = 0; a < 3; a++) {
-        __m256 inv = _mm256_set1_ps(p->inv[a][i]);
-        __m256 enter = _mm256_sub_ps(planes->enter[a], _mm256_set1_ps(p->org_near[a][i]));
-        __m256 leave = _mm256_sub_ps(planes->leave[a], _mm256_set1_ps(p->org_far[a][i]));
-        near = _mm256_max_ps(_mm256_mul_ps(enter, inv), near);
-        far = _mm256_min_ps(_mm256_mul_ps(leave, inv), far);
+        near = rt_max((planes->enter[a] - p->org_near[a][i]) * p->inv[a][i], near);
+        far = rt_min((planes->leave[a] - p->org_far[a][i]) * p->inv[a][i], far);
     }
     meet_child(met, one_ray(i), near, far);
 }
 
 /* False where the rays are to be tested one by one. */
 RT_KERNEL bool meet_beam(Met *met, const Planes *planes, const Beam *beam, uint64_t rays) {
-    __m256 near = _mm256_set1_ps(beam->tmin), far = _mm256_set1_ps(beam->limit);
+    RtFloat8 near = rt_all8(beam->tmin), far = rt_all8(beam->limit);
     for (uint32_t a = 0; a < 3; a++) {
-        __m256 least = _mm256_set1_ps(beam->inv_least[a]), most = _mm256_set1_ps(beam->inv_most[a]);
-        __m256 enter = _mm256_sub_ps(planes->enter[a], _mm256_set1_ps(beam->first[a]));
-        __m256 leave = _mm256_sub_ps(planes->leave[a], _mm256_set1_ps(beam->last[a]));
-        near = _mm256_max_ps(_mm256_min_ps(_mm256_mul_ps(enter, least), _mm256_mul_ps(enter, most)), near);
-        far = _mm256_min_ps(_mm256_max_ps(_mm256_mul_ps(leave, least), _mm256_mul_ps(leave, most)), far);
+        float least = beam->inv_least[a], most = beam->inv_most[a];
+        RtFloat8 enter = planes->enter[a] - beam->first[a], leave = planes->leave[a] - beam->last[a];
+        near = rt_max(rt_min(enter * least, enter * most), near);
+        far = rt_min(rt_max(leave * least, leave * most), far);
     }
-    if (__builtin_popcount(rt_v8_at_most(near, far)) > BEAM_MOST_CHILDREN) return false;
+    if (__builtin_popcount(rt_le_bits(near, far)) > BEAM_MOST_CHILDREN) return false;
     meet_child(met, rays, near, far);
     return true;
 }
 
 /* Goes on to one child that rays meet, and waits with the others; false where they meet none. */
 RT_KERNEL bool visit_node(Packet *p, const RtWideNode *node, uint64_t rays, bool ordered, bool any) {
-    Met met = {rt_v8_sets_none(), _mm256_set1_ps(INFINITY)};
+    Met met = {.first = rt_all8(INFINITY)};
     Planes sides;
     for (uint32_t a = 0; a < 3; a++) {
         sides.enter[a] = planes(node, p->near[a]);
@@ -83,15 +79,15 @@ RT_KERNEL bool visit_node(Packet *p, const RtWideNode *node, uint64_t rays, bool
     }
     for (; alone; alone &= alone - 1) meet_ray(&met, &sides, p, first_ray(alone));
 
-    uint32_t mask = rt_v8_sets_some(&met.rays);
+    uint32_t mask = rt_sets8_bits(&met.rays);
     if (mask == 0) return false;
     uint32_t top = p->top, lane = choose(mask, met.first, ordered), others = mask & ~(1u << lane);
     _Alignas(RT_CACHE_LINE) uint64_t sets[RT_WIDE];
-    RtV8Order order = rt_v8_order(others);
-    rt_v8_sets_put(sets, &met.rays);
-    if (!any) rt_v8_put(&p->enter[top], rt_v8_take(order, _mm256_castps_si256(met.first)));
-    rt_v8_put(&p->waiting[top], rt_v8_take(order, rt_v8_get(node->child)));
-    rt_v8_sets_take(&p->rays[top], others, &met.rays);
+    RtOrder8 order = rt_order8(others);
+    memcpy(sets, &met.rays, sizeof sets);
+    if (!any) rt_store(&p->enter[top], rt_compress8(order, (RtInt8)met.first));
+    rt_store(&p->waiting[top], rt_compress8(order, rt_load_ints8(node->child)));
+    rt_sets8_compress(&p->rays[top], others, &met.rays);
     p->top = top + (uint32_t)__builtin_popcount(others);
     p->next = node->child[lane];
     p->going = sets[lane];
@@ -102,10 +98,10 @@ RT_KERNEL bool visit_node(Packet *p, const RtWideNode *node, uint64_t rays, bool
 
 /* The rays of a set that have found nothing nearer than this. */
 RT_KERNEL uint64_t not_beyond(const Packet *p, uint64_t rays, float enter) {
-    uint64_t not = 0;
-    for (uint32_t b = 0; b < BEAMS; b++)
-        not |= (uint64_t)rt_v16_at_most(rt_v16_all(enter), rt_v16_load(&p->limit[first_of(b)])) << b * BEAM;
-    return rays & not ;
+    uint64_t open = 0;
+    for (uint32_t i = 0; i < PACKET; i += RT_LANES)
+        open |= (uint64_t)rt_le_bits(rt_all(enter), rt_load(&p->limit[i])) << i;
+    return rays & open;
 }
 
 /* Goes on to what waits last and still matters to a ray; false where there is nothing. */

@@ -48,7 +48,7 @@ RT_KERNEL void fly_alone(const Question *q, Flight *f, bool any, bool counted) {
     do {
         if (rt_wide_kind(ref) == RT_WIDE_NODE) {
             const RtWideNode *node = rt_wide_node(tree, ref);
-            __m256 enter;
+            RtFloat8 enter;
             uint32_t mask = meet(node, f, &enter);
             RT_COUNT(tally, steps, 1);
             RT_COUNT(tally, extent_tests, node->count);
@@ -118,9 +118,9 @@ RT_KERNEL void visit_nodes(const Question *q, Traffic *t, bool any, bool counted
     for (uint32_t i = 0; i < n; i++) {
         Flight *f = t->list[RT_WIDE_NODE][i];
         const RtWideNode *node = rt_wide_node(&tree, f->next);
-        __m256 enter;
+        RtFloat8 enter;
         masks[i] = meet(node, f, &enter);
-        if (!any) _mm256_store_ps(enters[i], enter);
+        if (!any) rt_store(enters[i], enter);
         if (counted) {
             f->tally->steps++, f->tally->extent_tests += node->count;
             if (RT_OBSERVED(f->tally)) observe_node(node, f->next, masks[i]);
@@ -129,7 +129,7 @@ RT_KERNEL void visit_nodes(const Question *q, Traffic *t, bool any, bool counted
     for (uint32_t i = 0; i < n; i++) {
         Flight *f = t->list[RT_WIDE_NODE][i];
         const RtWideNode *node = rt_wide_node(&tree, f->next);
-        __m256 enter = any ? _mm256_setzero_ps() : _mm256_load_ps(enters[i]);
+        RtFloat8 enter = any ? rt_all8(0) : rt_load8(enters[i]);
         enlist(t, &tree, f, go_on(f, node, masks[i], enter, ordered, any), 1, ahead);
     }
 }

@@ -1,32 +1,30 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* bih: a bounding interval hierarchy, as a plugin; a worked example of how a structure is made from its
- * paper.
+/* bih: a bounding interval hierarchy as a plugin, a worked example of an accelerator written from its paper.
  *
  * Paper: Waechter & Keller 2006, "Instant Ray Tracing: The Bounding Interval Hierarchy", Eurographics
- * Symposium on Rendering. Like a hierarchy of boxes it parts objects, so each is listed once and memory is
- * known before; like a kd-tree it stores planes, so a node takes 12 bytes and a step two crossings.
+ * Symposium on Rendering. Like a hierarchy of boxes it divides objects, so each is listed once and memory is
+ * known in advance. Like a kd-tree it stores planes, so a node takes 12 bytes and a step two crossings.
  *
- * Layout. Nodes in one array, the root first, the two children of a node side by side and after it. An inner
+ * Layout. Nodes are in one array, the root first; siblings are side by side, after their parent. An inner
  * node has an axis and two planes across it: its left child ends at clip[0], its right child begins at
  * clip[1]. Between the planes there may be empty space, or the children may overlap. A leaf owns a run of
  * `ids`.
  *
- * Invariant. The cell of the root is the box of the scene, that of a child its parent's cell cut off at its
- * plane. The boxes of all objects below a node lie in its cell; a left child's end at clip[0] or below, a
- * right child's begin at clip[1] or above. Every object is in one leaf; the leaves own the ids from left to
- * right. No leaf is empty, nor deeper than MAX_DEPTH, which bounds the stack of the traversal.
+ * Invariant. The cell of the root is the box of the scene; that of a child is its parent's cell, cut at its
+ * plane. A cell contains the boxes of all objects below its node: a left child's boxes end at or below
+ * clip[0], a right child's begin at or above clip[1]. Every object is in one leaf; the leaves own the ids
+ * from left to right. No leaf is empty, or deeper than MAX_DEPTH, which bounds the stack of the traversal.
  *
- * Why it is exact. box.h says: a box that holds the box of an object may be skipped only where
- * raytally_box_hit says no, or where it enters beyond the best hit. Cells are such boxes. A traversal carries
- * the interval of t in which the thick ray is in the current cell: the last of the crossings of planes where
- * it enters, the first of those where it leaves. With the direction the ray crosses one plane of a node at
- * the end of the near child (leave) and the other one at the beginning of the far child (enter). Both
- * crossings are computed by the operations of raytally_box_hit, and maximum and minimum do not depend on the
- * order. So the interval of a node is, bit for bit, what raytally_box_hit finds for its cell, and a child is
- * skipped where that would say no. With one origin for both kinds of planes, as the paper has it, hits at the
- * faces of cells would be lost.
+ * Why it is exact. By box.h, a box that contains the box of an object may be skipped only if
+ * raytally_box_hit says no, or if the ray enters it beyond the best hit. Cells are such boxes. A traversal
+ * keeps the interval of t in which the thick ray is in the current cell: from the last crossing of a plane
+ * where it enters to the first where it leaves. The ray crosses one plane of a node at the end of the near
+ * child (leave) and the other at the beginning of the far child (enter). Both crossings are computed by the
+ * operations of raytally_box_hit, and maximum and minimum do not depend on the order. So the interval of a
+ * node is, bit for bit, that of raytally_box_hit for its cell, and a child is skipped if that would say no.
+ * With one origin for both kinds of planes, as in the paper, hits at the faces of cells would be lost.
  *
- * Counting: a step is a node visited; an extent test the root's box, or the interval of a child. */
+ * Counting: a step is a visited node; an extent test is the root's box, or the interval of a child. */
 #include <raytally/accel.h>
 
 #include <math.h>
@@ -34,12 +32,12 @@
 #include <stdlib.h>
 
 enum {
-    PLANE_DEPTH = 32, /* from here on groups are halved by number, so that ... */
-    MAX_DEPTH = 64,   /* ... no leaf is deeper than this, of 2^32 objects even */
+    PLANE_DEPTH = 32, /* deeper groups are halved by number, so ... */
+    MAX_DEPTH = 64,   /* ... no leaf is deeper than this, even for 2^32 objects */
     LEAF = 3          /* the axis of a leaf */
 };
 
-/* More objects have nodes whose numbers do not fit into a link. */
+/* For more objects node numbers do not fit into a link. */
 #define MAX_OBJECTS (UINT32_C(1) << 29)
 
 typedef struct Node {
@@ -51,11 +49,11 @@ typedef struct Node {
 } Node;
 
 typedef struct Bih {
-    Node *nodes;   /* [node_count], none of no objects */
+    Node *nodes;   /* [node_count], 0 for no objects */
     uint32_t *ids; /* [id_count] leaf by leaf */
     uint32_t node_count, id_count;
     raytally_box box;          /* the cell of the root */
-    const raytally_box *boxes; /* [id_count] of the objects. Borrowed */
+    const raytally_box *boxes; /* [id_count] boxes of the objects. Borrowed */
 } Bih;
 
 enum { PARAM_MAX_LEAF_SIZE, PARAM_SPLIT, PARAMS };
@@ -76,13 +74,13 @@ typedef struct Builder {
     int local;
 } Builder;
 
-/* ids[first..first + count), and where in the grid they are. */
+/* ids[first..first + count), and their cell of the grid. */
 typedef struct Group {
     uint32_t first, count, depth;
     raytally_box cell;
 } Group;
 
-/* Halved before they are added, so that the sum is finite. */
+/* Halved before the addition, to keep the sum finite. */
 static float center(const raytally_box *box, int axis) {
     return 0.5F * box->lo[axis] + 0.5F * box->hi[axis];
 }
@@ -99,8 +97,8 @@ static raytally_box box_of_centers(const Bih *bih, const Group *group) {
     return box;
 }
 
-/* The paper's heuristic: planes halve the longest side of a cell. Where all objects are on one side nothing
- * is stored, and the search goes on in that half of the cell. Gives 0 where no plane parts the centres. */
+/* The paper's heuristic: planes halve the longest side of a cell. If all objects are on one side nothing is
+ * stored, and the search continues in that half of the cell. Returns 0 if no plane separates the centres. */
 static int find_plane(const raytally_box *centers, raytally_box *cell, int *axis, float *plane) {
     for (;;) {
         int longest = 0;
@@ -121,7 +119,7 @@ static int find_plane(const raytally_box *centers, raytally_box *cell, int *axis
     }
 }
 
-/* As in quicksort. Gives how many are left of the plane. */
+/* As in quicksort. Returns the number of objects left of the plane. */
 static uint32_t part(const Bih *bih, const Group *group, int axis, float plane) {
     uint32_t *ids = bih->ids + group->first, left = 0, right = group->count;
     while (left < right) {
@@ -136,7 +134,7 @@ static uint32_t part(const Bih *bih, const Group *group, int axis, float plane) 
     return left;
 }
 
-/* The sides of a group; gives the axis. */
+/* Splits a group into its sides. Returns the axis. */
 static int split(const Builder *b, const Group *group, Group sides[2]) {
     int axis = 0;
     float plane = 0;
@@ -184,7 +182,7 @@ static void destroy(void *self) {
 
 static int fill(Bih *bih, const raytally_build *what) {
     const uint32_t count = what->object_count;
-    const size_t most = 2 * (size_t)count - 1; /* a node for each object, and one for each that parts them */
+    const size_t most = 2 * (size_t)count - 1; /* a leaf per object, and the inner nodes */
     bih->nodes = (Node *)malloc(most * sizeof(Node));
     bih->ids = (uint32_t *)malloc(count * sizeof(uint32_t));
     if (!bih->nodes || !bih->ids) return RAYTALLY_BUILD_NO_MEMORY;
@@ -227,8 +225,8 @@ typedef struct Span {
     float enter, leave;
 } Span;
 
-/* Where the thick ray crosses a plane behind which a cell begins, and one at which it ends, and what that
- * leaves of a span. A NaN, of a ray that runs in the moved plane, is passed over, as by raytally_box_hit. */
+/* Clip a span at a plane where a cell begins, or at one where it ends. A NaN, from a ray within the moved
+ * plane, is ignored, as in raytally_box_hit. */
 RAYTALLY_INLINE void begin_at(Span *span, const raytally_prepared *ray, uint32_t axis, float plane) {
     const float enter = (plane - ray->org_near[axis]) * ray->inv[axis];
     span->enter = enter > span->enter ? enter : span->enter;
@@ -241,7 +239,7 @@ RAYTALLY_INLINE void end_at(Span *span, const raytally_prepared *ray, uint32_t a
 
 RAYTALLY_INLINE void search(const Bih *bih, void *memory, const raytally_prepared *ray, int any,
                             raytally_hit *best, raytally_counters *counters) {
-    Span stack[MAX_DEPTH]; /* every inner node above leaves one child waiting */
+    Span stack[MAX_DEPTH]; /* each inner node above adds one child */
     Span span = {0, ray->tmin, ray->tmax};
     uint32_t stacked = 0;
     (void)memory;
@@ -274,7 +272,7 @@ RAYTALLY_INLINE void search(const Bih *bih, void *memory, const raytally_prepare
             RAYTALLY_COUNT(counters, RAYTALLY_LEAF_STEPS, 1);
             if (raytally_object_hits(ray, bih->ids + first, node->at.count, any, best, counters)) return;
         }
-        /* What is entered where the best hit is may hold one at the same t with a lower number. */
+        /* A cell entered at the best t may hold a hit at the same t with a lower number. */
         const float limit = raytally_limit(ray, best);
         do {
             if (stacked == 0) return;
@@ -286,9 +284,9 @@ RAYTALLY_INLINE void search(const Bih *bih, void *memory, const raytally_prepare
 
 RAYTALLY_DEFINE_KERNELS(Bih, search)
 
-/* ---- looking at it ---- */
+/* ---- inspection ---- */
 
-/* A node that is being looked at, and its cell. */
+/* A node and its cell. */
 typedef struct Place {
     uint32_t node, depth;
     raytally_box cell;
@@ -313,7 +311,7 @@ static double half_area(const raytally_box *box) {
 
 static void describe_below(const Bih *bih, Place place, raytally_description *out) {
     const Node *node = &bih->nodes[place.node];
-    const double share = half_area(&place.cell) / half_area(&bih->box); /* of random lines */
+    const double share = half_area(&place.cell) / half_area(&bih->box); /* of random lines that hit it */
     out->predicted_steps += share;
     if (is_leaf(node)) {
         out->leaves++;
@@ -357,7 +355,7 @@ static int holds(const raytally_box *cell, const raytally_box *box) {
     return inside;
 }
 
-/* Gives what is wrong, or NULL. */
+/* Returns the broken invariant, or NULL. */
 static const char *check_leaf(Check *check, const Place *place, const Node *node) {
     const Bih *bih = check->bih;
     if (node->at.count == 0) return "a leaf is empty";

@@ -5,9 +5,9 @@
 // Paper: Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies", RT'07.
 //
 // Layout: nodes of 32 bytes in one vector, the root first, siblings side by side and after their parent; all
-// lists of objects in another. Invariant: the box of a node holds all that is below it, every object is in
-// one leaf, no leaf is deeper than max_depth. Exactness follows from box.h: a node is skipped only where
-// raytally_box_hit says no, or where it is entered beyond the best hit, by `>` and not by `>=`.
+// lists of objects in another. Invariant: the box of a node contains everything below it, every object is in
+// one leaf, no leaf is deeper than max_depth. Exactness follows from box.h: a node is skipped only if
+// raytally_box_hit says no, or if the ray enters it beyond the best hit, by `>` and not by `>=`.
 //
 // No exception leaves this file: `build` and `validate` are the only functions that allocate, and they catch.
 #include <raytally/accel.h>
@@ -24,7 +24,7 @@
 
 namespace {
 
-constexpr std::uint32_t plane_depth = 32; // from here on groups are halved by number, so that ...
+constexpr std::uint32_t plane_depth = 32; // deeper groups are halved by number, so ...
 constexpr std::uint32_t max_depth = 64;   // ... no leaf is deeper than this
 constexpr std::uint32_t most_bins = 64;
 
@@ -57,7 +57,7 @@ class Hierarchy {
     [[gnu::always_inline]] void search(const raytally_prepared &ray, bool any, raytally_hit &best,
                                        raytally_counters *counters) const;
     void describe(raytally_description &out) const;
-    void validate() const; // throws std::logic_error, with what is broken
+    void validate() const; // throws std::logic_error with the broken invariant
     void each_box(raytally_show_box *show, void *viewer) const;
 
   private:
@@ -72,7 +72,7 @@ class Hierarchy {
     struct Split {
         double cost;
         int axis;
-        float plane; // centres below it are left
+        float plane; // centres below it go left
     };
 
     void divide(std::uint32_t index, Range range, std::uint32_t depth);
@@ -87,7 +87,7 @@ class Hierarchy {
             visit(each, nodes[index].first + s, depth + 1);
     }
 
-    const raytally_box *boxes; // of the objects. Borrowed
+    const raytally_box *boxes; // boxes of the objects. Borrowed
     std::uint32_t bins, max_leaf_size;
     std::vector<Node> nodes;
     std::vector<std::uint32_t> ids;
@@ -158,7 +158,7 @@ Hierarchy::Split Hierarchy::find_split(Range range) const {
     return best;
 }
 
-// The planes between bins that part the centres, of which at least one is at `lo` and one at `hi`.
+// Tries the planes between bins that separate the centres, at least one of which is at `lo` and one at `hi`.
 void Hierarchy::try_axis(Range range, int axis, float lo, float hi, Split &best) const {
     std::array<Range, most_bins> counts{};
     std::array<raytally_box, most_bins> around;
@@ -200,7 +200,7 @@ inline void Hierarchy::search(const raytally_prepared &ray, bool any, raytally_h
         std::uint32_t node;
         float enter;
     };
-    std::array<Waiting, max_depth> stack; // every level leaves one child waiting
+    std::array<Waiting, max_depth> stack; // each level adds one child
     std::uint32_t stacked = 0, index = 0;
     float enter[2];
     if (nodes.empty()) return;
@@ -232,7 +232,7 @@ inline void Hierarchy::search(const raytally_prepared &ray, bool any, raytally_h
     }
 }
 
-// ---- looking at it ----
+// ---- inspection ----
 
 void Hierarchy::describe(raytally_description &out) const {
     out.references = ids.size();
@@ -305,7 +305,7 @@ RAYTALLY_INLINE void search(const Hierarchy *self, void *, const raytally_prepar
 
 RAYTALLY_DEFINE_KERNELS(Hierarchy, search)
 
-// C++17 has no names in initializers: in the order of raytally_accel_ops.
+// C++17 has no designated initializers: in the order of raytally_accel_ops.
 const raytally_accel_ops ops = {
     RAYTALLY_ACCEL_ABI,
     sizeof(raytally_accel_ops),

@@ -7,7 +7,7 @@
 
 #include <stdio.h>
 
-/* All that the program makes, so that it is freed in one place. NULL is allowed everywhere. */
+/* Everything that the program creates, freed in one place. All functions accept NULL. */
 typedef struct Work {
     raytally_scene *scene;
     raytally_accelerator *accels[2];
@@ -18,7 +18,7 @@ static void clear(Work *work) {
     raytally_rays_free(work->rays);
     raytally_accelerator_free(work->accels[0]);
     raytally_accelerator_free(work->accels[1]);
-    raytally_scene_free(work->scene); /* after what stands over it */
+    raytally_scene_free(work->scene); /* after its accelerators */
 }
 
 /* Opens the scene, and builds a hierarchy and a grid over it on all processors. */
@@ -28,7 +28,7 @@ static raytally_status prepare(Work *work, const char *scene, raytally_error *er
     if (status != RAYTALLY_OK) return status;
     printf("%s: %lu objects\n", scene, (unsigned long)raytally_scene_object_count(work->scene));
 
-    /* A smaller picture than the scene's own; from here on accelerators know its samples. */
+    /* A smaller image than the scene's own. Accelerators built later know its samples. */
     status = raytally_scene_sample(work->scene, 128, 128, 1, error);
     for (int i = 0; i < 2 && status == RAYTALLY_OK; i++) {
         status = raytally_accelerator_build(work->scene, specs[i], 0, &work->accels[i], error);
@@ -36,7 +36,7 @@ static raytally_status prepare(Work *work, const char *scene, raytally_error *er
     return status;
 }
 
-/* Are the grid's hits right? Rays that are hard on accelerators are asked of it and of brute. */
+/* Are the grid's hits right? Traces hard rays through it and through brute. */
 static raytally_status verify(const Work *work, raytally_error *error) {
     raytally_verifying how = RAYTALLY_VERIFYING;
     raytally_verified found;
@@ -48,7 +48,7 @@ static raytally_status verify(const Work *work, raytally_error *error) {
     return status;
 }
 
-/* What do the rays cost? Counts are exact, and the same on every machine. */
+/* What do the rays cost? Counts are exact and the same on every machine. */
 static raytally_status count(const Work *work, raytally_error *error) {
     for (int i = 0; i < 2; i++) {
         raytally_counters counters;
@@ -64,11 +64,11 @@ static raytally_status count(const Work *work, raytally_error *error) {
     return RAYTALLY_OK;
 }
 
-/* Who is faster? Times are this machine's; the ratio is paired round by round, with its interval. */
+/* Which is faster? Times depend on the machine; the ratio is paired round by round, with its interval. */
 static raytally_status time_both(const Work *work, raytally_error *error) {
     raytally_timing how = RAYTALLY_TIMING;
     raytally_time times[2];
-    how.least = 0.005; /* seconds: to be quick. Left out, it is as in `raytally bench` */
+    how.least = 0.005; /* seconds, to be quick; the default is that of `raytally bench` */
     raytally_status status = raytally_time_all(work->accels, 2, work->rays, &how, times, error);
     for (int i = 0; i < 2 && status == RAYTALLY_OK; i++) {
         printf("%-4.4s  %6.3f Mrays/s, ratio %.3f [%.3f, %.3f]\n", raytally_accelerator_spec(work->accels[i]),
@@ -78,7 +78,7 @@ static raytally_status time_both(const Work *work, raytally_error *error) {
     return status;
 }
 
-/* One ray by hand, as a renderer would ask: each thread has a tracer of its own. */
+/* One ray, traced as a renderer would: each thread has its own tracer. */
 static raytally_status ask(const Work *work, raytally_error *error) {
     raytally_tracer *tracer;
     raytally_hit hit;
@@ -99,7 +99,7 @@ int main(int argc, char **argv) {
     Work work = {NULL, {NULL, NULL}, NULL};
     raytally_error error = {RAYTALLY_OK, ""};
 
-    /* Another number: the header is not that of the library. */
+    /* If they differ, the header does not belong to the library. */
     if (raytally_abi_version() != RAYTALLY_ABI_VERSION) {
         fprintf(stderr, "embed: built for interface %d, and runs with %d\n", RAYTALLY_ABI_VERSION,
                 raytally_abi_version());

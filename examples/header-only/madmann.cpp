@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// madmann: the hierarchy of a public library, madmann91/bvh, as a plugin that is exact.
+// madmann: the hierarchy of a public library, madmann91/bvh, as an exact plugin.
 //
-// The library builds the tree and walks it; its nodes, stack and box test are template arguments. Here nodes have
-// raytally's boxes, and the test is raytally_box_hit. The library's own tests round otherwise and lose hits at the
-// edges of boxes; its tree is safe as it is: minima and maxima of floats are exact, so the box of a node holds
-// the boxes of all objects below it, and by box.h no hit is lost. README.md tells more.
+// The library builds and traverses the tree; its nodes, stack and box test are template arguments. Here nodes have
+// raytally's boxes, and the test is raytally_box_hit. The library's own tests round differently and lose hits at the
+// edges of boxes. Its tree is safe: minima and maxima of floats are exact, so the box of a node contains
+// the boxes of all objects below it, and by box.h no hit is lost. README.md explains more.
 //
-// No exception leaves this file. A traversal's stack is the memory of a query, as large as the tree is deep.
+// No exception leaves this file. A traversal's stack is the memory of a query; its size is the depth of the tree.
 #include <raytally/accel.h>
 
 #include <bvh/v2/default_builder.h>
@@ -21,7 +21,7 @@ namespace {
 using Vec = bvh::v2::Vec<float, 3>;
 using BBox = bvh::v2::BBox<float, 3>;
 
-struct Node { // as the library asks for
+struct Node { // as the library requires
     using Scalar = float;
     using Index = bvh::v2::Index<32, 4>;
     static constexpr std::size_t dimension = 3;
@@ -62,7 +62,7 @@ struct Madmann {
         }
         Builder::Config config;
         config.quality = static_cast<Builder::Quality>(what.values[0].choice);
-        bvh = Builder::build(boxes, centers, config); // the same on any number of threads: on one
+        bvh = Builder::build(boxes, centers, config); // on one thread, so it is the same everywhere
         ids.assign(bvh.prim_ids.begin(), bvh.prim_ids.end());
         visit([&](const Node &, std::size_t level) { depth = std::max(depth, level); });
     }
@@ -114,7 +114,7 @@ int build(const raytally_build *what, void **self) noexcept {
     try {
         *self = new Madmann(*what);
         return RAYTALLY_BUILD_OK;
-    } catch (...) { // it allocates, and else does nothing that may fail
+    } catch (...) { // only allocations can fail
         return RAYTALLY_BUILD_NO_MEMORY;
     }
 }
@@ -141,7 +141,7 @@ const raytally_accel_ops ops = {
     RAYTALLY_ACCEL_ABI, sizeof(raytally_accel_ops), "madmann", "the hierarchy of madmann91/bvh, made exact",
     "Wald 2007, On fast Construction of SAH-based Bounding Volume Hierarchies, RT'07", &quality, 1, build,
     [](void *self) { delete static_cast<Madmann *>(self); }, search_nearest, search_occluded,
-    [](const void *self) { return (of(self).depth + 1) * sizeof(Node::Index); }, nullptr, // one more: the root
+    [](const void *self) { return (of(self).depth + 1) * sizeof(Node::Index); }, nullptr, // + 1 for the root
     describe, nullptr, each_box};
 
 } // namespace

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/cli.h"
 
-#include <argp.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -132,16 +131,23 @@ void rt_cli_set_path(struct argp_state *state, const char *option, const char **
     *slot = path;
 }
 
-const struct argp_option rt_list_options[] = {{"json", 'j', 0, 0, "One JSON document on stdout", 0}, {0}};
+#define Options RtListOptions
+const RtOption rt_list_options[] = {{"json", 'j', NULL, RT_TO_FLAG(json), "One JSON document on stdout"},
+                                    {0}};
+#undef Options
 
-int rt_list_parse(int key, char *argument, struct argp_state *state) {
-    RtListOptions *o = state->input;
-    switch (key) {
-    case 'j': o->json = true; return 0;
-    case ARGP_KEY_ARG:
-        if (o->name) argp_error(state, "one NAME at a time");
-        o->name = argument;
-        return 0;
-    default: return ARGP_ERR_UNKNOWN;
-    }
+void rt_list_finish(const RtListOptions *options, const char *key, json_t *list, const char *syntax) {
+    if (options->json)
+        rt_cli_print_json(json_pack("{s:O}", key, list));
+    else if (!options->name)
+        puts(syntax);
+    json_decref(list);
+}
+
+json_t *rt_cli_vector_json(RtVec3 v) {
+    return json_pack("[f, f, f]", (double)v.x, (double)v.y, (double)v.z);
+}
+
+const struct argp *rt_cli_command_argp(const RtCommand *command) {
+    return command->syntax ? rt_cli_argp(command->syntax) : command->argp;
 }

@@ -4,12 +4,12 @@
 #ifndef RT_CLI_CLI_H
 #define RT_CLI_CLI_H
 
+#include "cli/options.h"
 #include "core/base/param.h"
 #include "core/base/ray.h"
 #include "core/base/status.h"
 #include "core/scene/camera.h"
 
-#include <argp.h>
 #include <jansson.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -19,45 +19,30 @@ enum { RT_EXIT_OK = 0, RT_EXIT_CHECK_FAILED = 1, RT_EXIT_BAD_INPUT = 2 };
 typedef struct RtCommand {
     const char *name, *arguments, *summary;
     int (*run)(int argc, char **argv); /* argv[0] is "raytally NAME"; returns the exit code */
-    const struct argp *argp;           /* its options; NULL: it has none but --help */
+    const RtSyntax *syntax;            /* or NULL */
+    const struct argp *argp;           /* without a syntax */
 } RtCommand;
 
-int rt_command_accels(int argc, char **argv);
-int rt_command_scenes(int argc, char **argv);
-int rt_command_info(int argc, char **argv);
-int rt_command_render(int argc, char **argv);
-int rt_command_trace(int argc, char **argv);
-int rt_command_verify(int argc, char **argv);
-int rt_command_bench(int argc, char **argv);
-int rt_command_rays(int argc, char **argv);
+/* X(name): the commands whose options are an RtSyntax. */
+#define RT_COMMANDS(X)                                                                                       \
+    X(accels)                                                                                                \
+    X(scenes)                                                                                                \
+    X(info)                                                                                                  \
+    X(render)                                                                                                \
+    X(trace) X(verify) X(bench) X(rays) X(run) X(merge) X(plot) X(report) X(reproduce) X(convert) X(new_accel)
+#define RT_COMMAND(name)                                                                                     \
+    int rt_command_##name(int argc, char **argv);                                                            \
+    extern const RtSyntax rt_##name##_syntax;
+RT_COMMANDS(RT_COMMAND)
+
 int rt_command_compare(int argc, char **argv);
-int rt_command_run(int argc, char **argv);
-int rt_command_merge(int argc, char **argv);
-int rt_command_plot(int argc, char **argv);
-int rt_command_report(int argc, char **argv);
-int rt_command_reproduce(int argc, char **argv);
-int rt_command_convert(int argc, char **argv);
-int rt_command_new_accel(int argc, char **argv);
-
-extern const struct argp rt_accels_argp;
-extern const struct argp rt_scenes_argp;
-extern const struct argp rt_info_argp;
-extern const struct argp rt_render_argp;
-extern const struct argp rt_trace_argp;
-extern const struct argp rt_verify_argp;
-extern const struct argp rt_bench_argp;
-extern const struct argp rt_rays_argp;
 extern const struct argp rt_compare_argp;
-extern const struct argp rt_plot_argp;
-extern const struct argp rt_report_argp;
-extern const struct argp rt_run_argp;
-extern const struct argp rt_merge_argp;
-extern const struct argp rt_convert_argp;
-extern const struct argp rt_new_accel_argp;
 
-/* Of the command that completes all others, whose table main has: its parser, whose input is a const char *,
- * the shell; and what it prints, a script for bash. */
-extern const struct argp rt_completion_argp;
+/* The options of a command, as argp has them; valid until the next call. */
+const struct argp *rt_cli_command_argp(const RtCommand *command);
+
+/* The command that completes all others, whose table main has; it prints a script for bash. */
+extern const RtSyntax rt_completion_syntax;
 void rt_completion_print(const RtCommand *commands, int count);
 
 /* Prints "raytally: MESSAGE" to stderr and gives the exit code that belongs to the status. */
@@ -86,40 +71,40 @@ bool rt_cli_digits(const char **text, uint32_t *number);
 /* A share such as "1%", more than 0 and at most 100 of a hundred, as a part: 0.01. */
 double rt_cli_percent(struct argp_state *state, const char *option, const char *text);
 
-/* Of the commands that time: rounds go on until intervals are narrow. */
+/* Options of several commands. */
 #define RT_PATIENCE 60 /* seconds */
 #define RT_UNTIL_OPTIONS(until, patience)                                                                    \
-    {"until",                                                                                                \
-     until,                                                                                                  \
-     "P%",                                                                                                   \
-     0,                                                                                                      \
-     "Go on with rounds until the intervals of all ratios lie within P % of their medians, for 1000 rounds " \
-     "or --patience seconds at most; where that was not enough a line says how narrow they are",             \
-     0},                                                                                                     \
+    {"until", 0, "P%", RT_TO_PERCENT(until),                                                                 \
+     "Add rounds until the intervals of all ratios lie within P % of their medians, up to 1000 rounds or "   \
+     "--patience seconds; if that is not enough, a line says how narrow they are"},                          \
     {                                                                                                        \
-        "patience", patience, "SECONDS", 0,                                                                  \
-            "With --until: at most so long for a kind of rays on a scene (60)", 0                            \
+        "patience", 0, "SECONDS", RT_TO_SECONDS(patience, 1, 86400),                                         \
+            "With --until: the longest time for one kind of rays on one scene (60)"                          \
     }
-
-/* Of the commands that run gnuplot. */
-#define RT_TRUST_OPTION(key)                                                                                 \
+#define RT_TRUST_OPTION                                                                                      \
     {                                                                                                        \
-        "trust", key, 0, 0,                                                                                  \
-            "Also run gnuplot scripts from a result directory that raytally does not ship: they may run "    \
-            "any "                                                                                           \
-            "command, so read them first",                                                                   \
-            0                                                                                                \
+        "trust", 0, NULL, RT_TO_FLAG(trust),                                                                 \
+            "Also run gnuplot scripts of a result directory that raytally does not ship. A script can run "  \
+            "any command: read it first"                                                                     \
     }
+#define RT_THREADS_HELP                                                                                      \
+    "Threads, 0 for all processors. Default: time on one thread, by processor time, and build and count on " \
+    "all. Times on several threads are wall times"
 
-/* Of the commands that list what there is: all of it, or one by name. The parser's input is an RtListOptions.
- */
+/* Commands that list what there is: all of it, or one by name. */
 typedef struct RtListOptions {
     const char *name; /* NULL: all */
     bool json;
 } RtListOptions;
+extern const RtOption rt_list_options[];
+#define RT_LIST_ARGUMENT                                                                                     \
+    { "NAME", NULL, offsetof(RtListOptions, name), NULL }
 
-extern const struct argp_option rt_list_options[];
-int rt_list_parse(int key, char *argument, struct argp_state *state);
+/* Prints `list`, an array, under `key` with `json`; else `syntax`, without a name. Takes the reference. */
+void rt_list_finish(const RtListOptions *options, const char *key, json_t *list, const char *syntax);
+
+/* A vector as [x, y, z]. */
+json_t *rt_cli_vector_json(RtVec3 v);
 
 /* "X,Y", of --pixel; RT_BAD_INPUT, once the image is known, if the pixel is not in it. */
 void rt_cli_pixel(struct argp_state *state, const char *text, uint32_t *x, uint32_t *y);

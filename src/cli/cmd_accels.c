@@ -4,7 +4,6 @@
 #include "cli/cli.h"
 #include "cli/plugins.h"
 
-#include <argp.h>
 #include <stdio.h>
 
 static void print_accelerator(const RtAccelOps *ops) {
@@ -42,17 +41,16 @@ static json_t *accelerator_json(const RtAccelOps *ops) {
 }
 
 static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
-const struct argp rt_accels_argp = {
-    .options = rt_list_options,
-    .parser = rt_list_parse,
-    .args_doc = "[NAME]",
-    .doc = "List the accelerators, or explain the one called NAME: its parameters with defaults "
-           "and ranges, and the paper it follows.",
-    .children = children};
+const RtSyntax rt_accels_syntax = {.options = rt_list_options,
+                                   .children = children,
+                                   .arguments = "[NAME]",
+                                   .argument = RT_LIST_ARGUMENT,
+                                   .help = "List the accelerators, or explain the one called NAME: its "
+                                           "parameters with defaults and ranges, and the paper it follows."};
 
 int rt_command_accels(int argc, char **argv) {
     RtListOptions o = {0};
-    argp_parse(&rt_accels_argp, argc, argv, 0, 0, &o);
+    rt_cli_parse(&rt_accels_syntax, argc, argv, &o);
     RtError error;
     const RtAccelOps *only = NULL;
     if (o.name && rt_accel_find(o.name, &only, &error) != RT_OK) return rt_cli_fail(&error);
@@ -66,12 +64,9 @@ int rt_command_accels(int argc, char **argv) {
             print_accelerator(ops);
         }
     }
-    if (o.json) {
-        rt_cli_print_json(json_pack("{s:O}", "accelerators", list));
-    } else if (!only) {
-        puts("An accelerator is written NAME[:KEY=VALUE[,KEY=VALUE]...], as in grid:density=4; overlays\n"
-             "come before it, as in OVERLAY+grid:density=4.");
-    }
-    json_decref(list);
+    rt_list_finish(
+        &o, "accelerators", list,
+        "An accelerator is written NAME[:KEY=VALUE[,KEY=VALUE]...], as in grid:density=4; overlays\n"
+        "come before it, as in OVERLAY+grid:density=4.");
     return RT_EXIT_OK;
 }

@@ -1,119 +1,39 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally bench: one scene, a few accelerators, counted and timed at once. It is an experiment of one
  * workload that leaves no directory behind. */
-#include "cli/bench_output.h"
 #include "cli/cli.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
 #include "cli/recording.h"
 #include "core/base/memory.h"
+#include "core/base/words.h"
+#include "core/text/json.h"
 #include "experiment/callgrind.h"
+#include "experiment/distribution_tables.h"
+#include "experiment/result_tables.h"
+#include "measure/machine.h"
 #include "verify/spread.h"
 
-#include <argp.h>
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
-enum {
-    OPT_ROUNDS = 256,
-    OPT_BASELINE,
-    OPT_THREADS,
-    OPT_COUNT_ONLY,
-    OPT_DISTRIBUTION,
-    OPT_HARDWARE,
-    OPT_CALLGRIND,
-    OPT_CALLGRIND_CHILD,
-    OPT_CSV,
-    OPT_JSON,
-    OPT_RAY_STRIDE,
-    OPT_RAYS_FROM,
-    OPT_HITS,
-    OPT_COUNTS,
-    OPT_UNTIL,
-    OPT_PATIENCE
-};
-
 typedef struct Options {
     RtRecordingOptions recording;
     const char *scene, *baseline, *csv;
     RtWorkloadOptions workload;
-    bool json;
+    bool json, hardware, distributions;
+    uint32_t rounds;    /* 0: the default */
+    int threads;        /* -1: one to time, all to build and count */
     uint64_t callgrind; /* rays of a kind at most; 0: it is not asked for */
     const char *child;  /* of it: the folder that it serves */
     char *const *argv;  /* all arguments, NULL behind the last */
 } Options;
 
-static const struct argp_option options[] = {
-    {"accel", 'a', "SPEC", 0,
-     "An accelerator, NAME[:KEY=VALUE,...]; once per accelerator. `all`: every one, at "
-     "its defaults. A VALUE may be a list, 1|4|16, or a range, 1..9+2 (in steps of 2) or 1..64*2 (each twice "
-     "the one before): then it is an accelerator for each, of several such VALUEs each with each",
-     0},
-    {"ray-stride", OPT_RAY_STRIDE, "K", 0,
-     "Measure the preceding --accel on every Kth ray only, for slow ones", 0},
-    {"baseline", OPT_BASELINE, "SPEC", 0,
-     "The accelerator that ratios refer to (the first that is not a plugin's); or NAME:best, the fastest of "
-     "several settings for "
-     "each "
-     "kind, as in embree:best (`raytally accels NAME`)",
-     0},
-    {"rounds", OPT_ROUNDS, "N", 0,
-     "Timing rounds, each in an order drawn anew (10); at least 6 for intervals of 95 %", 0},
-    RT_UNTIL_OPTIONS(OPT_UNTIL, OPT_PATIENCE),
-    {"threads", OPT_THREADS, "N", 0,
-     "Threads, 0 for all processors. Left out: timing on one, by its processor time, and building and "
-     "counting on all; on several, wall time is compared",
-     0},
-    {"count-only", OPT_COUNT_ONLY, 0, 0, "Count, do not time", 0},
-    {"distribution", OPT_DISTRIBUTION, 0, 0,
-     "Also show how object tests and steps are distributed over the rays, each asked by itself, and objects "
-     "and "
-     "depths over the leaves: medians, 99th percentiles, maxima. A mean hides the rays that cost a hundred "
-     "times "
-     "as much. With --json all percentiles and the histograms. An experiment has `distributions: yes`",
-     0},
-    {"hardware", OPT_HARDWARE, 0, 0,
-     "Also show what the machine did for a ray, by the processor's counters: instructions, cycles, misses of "
-     "the "
-     "last cache, mispredicted branches. In rounds of their own, so that times do not change; not in the "
-     "kernel. Where the machine or the kernel gives none, why. An experiment has `hardware: yes`",
-     0},
-    {"callgrind", OPT_CALLGRIND, "N", OPTION_ARG_OPTIONAL,
-     "Also show instructions per ray, by valgrind's callgrind: exact, and the same on every run, also where "
-     "--hardware "
-     "has nothing. Builds each accelerator again under valgrind, where building takes many times as long, "
-     "and "
-     "asks it "
-     "N of the rays of each kind (4096). Without AVX-512, which valgrind does not know",
-     0},
-    {"callgrind-child", OPT_CALLGRIND_CHILD, "DIR", OPTION_HIDDEN, NULL, 0}, /* experiment/callgrind.h */
-    {"csv", OPT_CSV, "FILE", 0,
-     "Also write a row per cell to FILE, in the columns of times.csv; with "
-     "--count-only of counts.csv",
-     0},
-    {"hits", OPT_HITS, "FILE.npy", 0,
-     "Also write what each ray met, for NumPy, a row per ray: t and object (inf and -1 for a miss); of "
-     "shadow and "
-     "occlusion rays whether anything lies on them. With one --accel and one kind of --rays",
-     0},
-    {"counts", OPT_COUNTS, "FILE.npy", 0,
-     "Also write what each ray cost, a row per ray and a field per counter, each ray asked by itself: where "
-     "rays "
-     "share visits (wide) rows sum to more than the table shows",
-     0},
-    {"json", OPT_JSON, 0, 0, "One JSON document on stdout instead of the table", 0},
-    {"rays-from", OPT_RAYS_FROM, "FILE.npy", 0,
-     "Measure with the rays of FILE, an array of float32 of shape (N, 8) as `raytally rays` writes it, in "
-     "place of "
-     "recorded ones; --rays says what they ask for: nearest, or occlusion (any hit)",
-     2},
-    {0}};
-
 /* ---- options ---- */
 
-/* All that the spec stands for. */
+/* One accelerator, or each of a sweep. */
 static void add_accel(RtExperiment *experiment, const char *text, struct argp_state *state) {
     RtError error;
     RtCandidate like = {.entry = experiment->candidate_count, .ray_stride = 1};
@@ -134,14 +54,6 @@ void rt_cli_add_accels(RtExperiment *experiment, const char *text, struct argp_s
         char spec[RT_MAX_SPEC_CHARS];
         rt_spread_spec(rt_accel_at(i), 0, spec);
         add_accel(experiment, spec, state);
-    }
-}
-
-/* Of all that the preceding --accel stands for. */
-static void set_ray_stride(RtExperiment *experiment, uint64_t stride) {
-    uint32_t last = experiment->candidate_count - 1, entry = experiment->candidates[last].entry;
-    for (uint32_t c = 0; c <= last; c++) {
-        if (experiment->candidates[c].entry == entry) experiment->candidates[c].ray_stride = stride;
     }
 }
 
@@ -167,85 +79,114 @@ static void check_rows(const Options *o, struct argp_state *state) {
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < i; k++) {
             if (files[i] && files[k] && strcmp(files[i], files[k]) == 0)
-                argp_error(state, "'%s' is named twice: each file needs a name of its own", files[i]);
+                argp_error(state, "'%s' is named twice: give each file its own name", files[i]);
         }
     }
     if (!o->workload.hits && !o->workload.counts) return;
     if (e->candidate_count != 1 || e->candidates[0].ray_stride != 1) {
-        argp_error(state,
-                   "--hits and --counts are of one accelerator: give one --accel, and no --ray-stride or "
-                   "other --baseline");
+        argp_error(state, "--hits and --counts write the rays of one accelerator: give one --accel, no "
+                          "--ray-stride, and no other --baseline");
     }
-    if (e->kind_count != 1) argp_error(state, "--hits and --counts are of one kind of rays: --rays KIND");
+    if (e->kind_count != 1) argp_error(state, "--hits and --counts write one kind of rays: give --rays KIND");
 }
 
-static error_t parse_option(int key, char *argument, struct argp_state *state) {
-    Options *o = state->input;
-    RtExperiment *e = o->recording.experiment;
-    switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &o->recording; return 0;
-    case 'a': rt_cli_add_accels(e, argument, state); return 0;
-    case OPT_RAY_STRIDE:
-        if (!e->candidate_count) argp_error(state, "--ray-stride comes after the --accel that it applies to");
-        set_ray_stride(
-            e, (uint64_t)rt_cli_integer(state, "--ray-stride", argument, 1, (int64_t)RT_MAX_RAYS_A_KIND));
-        return 0;
-    case OPT_BASELINE: o->baseline = argument; return 0;
-    case OPT_ROUNDS:
-        e->rounds = (uint32_t)rt_cli_integer(state, "--rounds", argument, 1, RT_MAX_ROUNDS);
-        return 0;
-    case OPT_THREADS:
-        o->workload.threads = o->workload.timing = (int)rt_cli_integer(state, "--threads", argument, 0, 1024);
-        return 0;
-    case OPT_RAYS_FROM:
-        if (strlen(argument) >= RT_MAX_PATH) argp_error(state, "--rays-from: the path is too long");
-        strcpy(e->rays_from, argument);
-        return 0;
-    case OPT_HITS: o->workload.hits = argument; return 0;
-    case OPT_COUNTS: o->workload.counts = argument; return 0;
-    case OPT_UNTIL: o->workload.until = rt_cli_percent(state, "--until", argument); return 0;
-    case OPT_PATIENCE:
-        o->workload.patience = (double)rt_cli_integer(state, "--patience", argument, 1, 86400);
-        return 0;
-    case OPT_COUNT_ONLY: o->workload.count_only = true; return 0;
-    case OPT_HARDWARE: e->hardware = true; return 0;
-    case OPT_CALLGRIND:
-        o->callgrind = argument ? (uint64_t)rt_cli_integer(state, "--callgrind", argument, 1, 100000000)
-                                : RT_CALLGRIND_RAYS;
-        return 0;
-    case OPT_CALLGRIND_CHILD: o->child = argument; return 0;
-    case OPT_DISTRIBUTION: e->distributions = true; return 0;
-    case OPT_CSV: o->csv = argument; return 0;
-    case OPT_JSON: o->json = true; return 0;
-    case ARGP_KEY_ARG:
-        if (o->scene) argp_error(state, "one SCENE at a time; '%s' is a second one", argument);
-        o->scene = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!o->scene)
-            argp_error(state, "a SCENE is missing: a file, or a built-in as `raytally scenes` lists");
-        if (!e->candidate_count) argp_error(state, "an accelerator is missing: --accel SPEC, or --accel all");
-        if (o->baseline) set_baseline(e, o->baseline, state);
-        if (!o->baseline) rt_experiment_set_baseline(e, NULL, NULL);
-        if (o->workload.until > 0 && e->rounds < RT_FULL_ROUNDS) e->rounds = RT_FULL_ROUNDS;
-        if (e->hardware && o->workload.count_only)
-            argp_error(state,
-                       "--hardware counts while rays are traced for their time: not with --count-only");
-        rt_recording_finish(&o->recording, state);
-        check_rows(o, state);
-        return 0;
-    default: return ARGP_ERR_UNKNOWN;
+static void take_accel(void *options, const char *text, struct argp_state *state) {
+    Options *o = options;
+    rt_cli_add_accels(o->recording.experiment, text, state);
+}
+
+/* Of all accelerators of the preceding --accel. */
+static void take_ray_stride(void *options, const char *text, struct argp_state *state) {
+    RtExperiment *e = ((Options *)options)->recording.experiment;
+    if (!e->candidate_count) argp_error(state, "--ray-stride comes after the --accel that it applies to");
+    const int64_t stride = rt_cli_integer(state, "--ray-stride", text, 1, (int64_t)RT_MAX_RAYS_A_KIND);
+    const uint32_t last = e->candidate_count - 1, entry = e->candidates[last].entry;
+    for (uint32_t c = 0; c <= last; c++) {
+        if (e->candidates[c].entry == entry) e->candidates[c].ray_stride = (uint64_t)stride;
     }
 }
+
+static void take_callgrind(void *options, const char *text, struct argp_state *state) {
+    Options *o = options;
+    o->callgrind =
+        text ? (uint64_t)rt_cli_integer(state, "--callgrind", text, 1, 100000000) : RT_CALLGRIND_RAYS;
+}
+
+static void take_rays_from(void *options, const char *text, struct argp_state *state) {
+    RtExperiment *e = ((Options *)options)->recording.experiment;
+    if (strlen(text) >= RT_MAX_PATH) argp_error(state, "--rays-from: the path is too long");
+    strcpy(e->rays_from, text);
+}
+
+static void finish(void *options, struct argp_state *state) {
+    Options *o = options;
+    RtExperiment *e = o->recording.experiment;
+    if (!e->candidate_count) argp_error(state, "an accelerator is missing: --accel SPEC, or --accel all");
+    if (o->baseline) set_baseline(e, o->baseline, state);
+    if (!o->baseline) rt_experiment_set_baseline(e, NULL, NULL);
+    if (o->rounds) e->rounds = o->rounds;
+    if (o->threads >= 0) o->workload.threads = o->workload.timing = o->threads;
+    if (o->workload.until > 0 && e->rounds < RT_FULL_ROUNDS) e->rounds = RT_FULL_ROUNDS;
+    e->hardware = o->hardware;
+    e->distributions = o->distributions;
+    if (o->hardware && o->workload.count_only)
+        argp_error(state, "--hardware needs timed rays, and --count-only times nothing: leave one out");
+    rt_recording_finish(&o->recording, state);
+    check_rows(o, state);
+}
+
+static const RtOption options[] = {
+    {"accel", 'a', "SPEC", RT_TO_TAKE(take_accel),
+     "An accelerator, NAME[:KEY=VALUE,...]; repeat the option for several. `all`: every accelerator at its "
+     "defaults. A VALUE may be a list, 1|4|16, or a range, 1..9+2 (steps of 2) or 1..64*2 (doubling): "
+     "raytally then measures an accelerator for each value, and for each combination of several such VALUEs"},
+    {"ray-stride", 0, "K", RT_TO_TAKE(take_ray_stride),
+     "Measure the preceding --accel on every Kth ray only, for slow accelerators"},
+    {"baseline", 0, "SPEC", RT_TO_TEXT(baseline),
+     "The accelerator that ratios refer to (default: the first that is not a plugin). NAME:best is the "
+     "fastest of several settings for each kind of rays, as in embree:best (`raytally accels NAME`)"},
+    {"rounds", 0, "N", RT_TO_INTEGER(rounds, 1, RT_MAX_ROUNDS),
+     "Timing rounds, each in a new random order (10); intervals of 95 % need 6 or more"},
+    RT_UNTIL_OPTIONS(workload.until, workload.patience),
+    {"threads", 0, "N", RT_TO_INTEGER(threads, 0, 1024), RT_THREADS_HELP},
+    {"count-only", 0, NULL, RT_TO_FLAG(workload.count_only), "Count, do not time"},
+    {"distribution", 0, NULL, RT_TO_FLAG(distributions),
+     "Also show distributions: object tests and steps over the rays, each ray traced alone, and objects and "
+     "depths over the leaves. Medians, 99th percentiles and maxima reveal the few rays that cost a hundred "
+     "times the mean. --json adds all percentiles and the histograms. In an experiment: `distributions: "
+     "yes`"},
+    {"hardware", 0, NULL, RT_TO_FLAG(hardware),
+     "Also show the processor's counters per ray: instructions, cycles, last-level cache misses, branch "
+     "mispredictions. They run in separate rounds, so times do not change, and exclude the kernel. If the "
+     "machine or the kernel has no counters, raytally says why. In an experiment: `hardware: yes`"},
+    {"callgrind", 0, "N", RT_TO_TAKE_OPTIONAL(take_callgrind),
+     "Also show instructions per ray, counted by valgrind's callgrind: exact, the same on every run, and "
+     "available where --hardware is not. raytally builds each accelerator again under valgrind, which is "
+     "many times slower, and traces N rays of each kind (4096). valgrind does not support AVX-512, so this "
+     "runs without it"},
+    {"callgrind-child", 0, "DIR", RT_TO_HIDDEN(child), NULL}, /* experiment/callgrind.h */
+    {"csv", 0, "FILE", RT_TO_TEXT(csv),
+     "Also write a row per cell to FILE, in the columns of times.csv, or of counts.csv with --count-only"},
+    {"hits", 0, "FILE.npy", RT_TO_TEXT(workload.hits),
+     "Also write each ray's hit for NumPy, a row per ray: t and object (inf and -1 for a miss); for shadow "
+     "and occlusion rays whether the ray is blocked. Takes one --accel and one kind of --rays"},
+    {"counts", 0, "FILE.npy", RT_TO_TEXT(workload.counts),
+     "Also write each ray's cost for NumPy, a row per ray and a field per counter. Each ray is traced alone: "
+     "for accelerators whose rays share visits (wide) the rows sum to more than the table shows"},
+    {"json", 0, NULL, RT_TO_FLAG(json), "One JSON document on stdout instead of the table"},
+    {"rays-from", 0, "FILE.npy", RT_TO_TAKE(take_rays_from),
+     "Measure the rays of FILE instead of recorded ones: an array of float32 of shape (N, 8) as `raytally "
+     "rays` writes it. --rays says what they ask for: nearest, or occlusion (any hit)"},
+    {0}};
 
 /* ---- instructions ---- */
 
-static RtStatus leave_rays(void *context, uint32_t workload, const RtRaySet *set, const RtAccel *exact,
-                           RtError *error) {
-    return rt_callgrind_leave_rays(context, workload, set, exact, error);
+static RtStatus save_rays(void *context, uint32_t workload, const RtRaySet *set, const RtAccel *exact,
+                          RtError *error) {
+    return rt_callgrind_save_rays(context, workload, set, exact, error);
 }
 
-/* The child is asked for by the same arguments, so that it has the same accelerators on the same scenes. */
+/* The child gets the same arguments, and so the same accelerators and scenes. */
 static RtStatus count_instructions(RtCallgrind *callgrind, char *const *argv, RtError *error) {
     char command[] = "bench", child[RT_MAX_PATH + 32];
     size_t count = 0;
@@ -261,7 +202,7 @@ static RtStatus count_instructions(RtCallgrind *callgrind, char *const *argv, Rt
     return status;
 }
 
-/* What a plugin prints does not go between the rows that are printed for raytally. */
+/* Keeps what a plugin prints out of the rows. */
 static RtStatus serve_callgrind(const Options *o, RtError *error) {
     int rows = dup(STDOUT_FILENO);
     FILE *out = rows >= 0 ? fdopen(rows, "w") : NULL;
@@ -272,6 +213,97 @@ static RtStatus serve_callgrind(const Options *o, RtError *error) {
     return status;
 }
 
+/* ---- the report ---- */
+
+/* Appends the rows of one scene. */
+static void extend(json_t *array, const RtResults *results, RtResultTable which, uint32_t workload) {
+    RtResultRow row = {.results = results, .workload = workload};
+    RtTable table = rt_result_table(which, &row);
+    json_t *rows = rt_table_json(&table);
+    json_array_extend(array, rows);
+    json_decref(rows);
+}
+
+/* One scene, and what was recorded of it. */
+static json_t *scene_json(const RtResults *results, uint32_t workload) {
+    const RtExperiment *e = results->experiment;
+    const RtWorkload *setup = &e->workloads[workload];
+    const RtWorkloadResult *scene = &results->workloads[workload];
+    const bool given = *e->rays_from;
+    json_t *rays = given ? json_pack("{s:s}", "from", e->rays_from)
+                         : json_pack("{s:I, s:I, s:b, s:I, s:I, s:I}", "width", (json_int_t)scene->width,
+                                     "height", (json_int_t)scene->height, "corners", setup->corners, "depth",
+                                     (json_int_t)setup->depth, "limit", (json_int_t)e->limit, "coherent_run",
+                                     (json_int_t)e->coherent_run);
+    return json_pack("{s:s, s:I, s:o, s:o}", "scene", setup->spec, "objects", (json_int_t)scene->objects,
+                     "scene_hash", rt_json_hex(scene->scene), "recorded", rays);
+}
+
+static json_t *distributions_json(const RtResults *results, RtDistributionTable which) {
+    RtDistributionRow row = {.results = results};
+    RtTable table = rt_distribution_table(which, &row);
+    return rt_table_json(&table);
+}
+
+static json_t *instructions_json(const RtCallgrind *callgrind) {
+    RtInstructionsRow row = {.callgrind = callgrind};
+    RtTable table = rt_instructions_table(&row);
+    return rt_table_json(&table);
+}
+
+static void print_json(const RtResults *results, const RtCallgrind *callgrind) {
+    const RtExperiment *e = results->experiment;
+    json_t *scenes = json_array(), *rows = json_array(), *nulls = json_array();
+    for (uint32_t t = 0; t < e->workload_count; t++) {
+        json_array_append_new(scenes, scene_json(results, t));
+        extend(rows, results, RT_BENCH, t);
+        extend(nulls, results, RT_NULL_RUNS, t);
+    }
+    json_t *all = json_pack("{s:o, s:o, s:I, s:I, s:s, s:o, s:o}", "machine", rt_machine_json(), "scenes",
+                            scenes, "seed", (json_int_t)e->seed, "rounds", (json_int_t)e->rounds, "baseline",
+                            rt_baseline_label(e), "rows", rows, "null_runs", nulls);
+    if (e->distributions) {
+        json_object_set_new(all, "distributions", distributions_json(results, RT_DISTRIBUTIONS));
+        json_object_set_new(all, "histograms", distributions_json(results, RT_HISTOGRAMS));
+    }
+    if (e->hardware) {
+        RtResultRow row = {.results = results};
+        RtTable table = rt_result_table(RT_HARDWARE, &row);
+        json_object_set_new(all, "hardware", rt_table_json(&table));
+    }
+    if (callgrind->count) json_object_set_new(all, "instructions", instructions_json(callgrind));
+    rt_cli_print_json(all);
+}
+
+static RtStatus write_csv(const Options *o, const RtResults *results, RtError *error) {
+    RtOutput output;
+    RtResultRow row = {.results = results};
+    RtTable table = rt_result_table(o->workload.count_only ? RT_COUNTS : RT_TIMES, &row);
+    RT_TRY(rt_output_open(&output, o->csv, error));
+    rt_table_csv(&table, output.file);
+    return rt_output_commit(&output, error);
+}
+
+static RtStatus report(const Options *o, const RtResults *results, const RtCallgrind *callgrind,
+                       RtError *error) {
+    const RtExperiment *e = results->experiment;
+    char sentence[RT_MAX_SENTENCE];
+    if (o->csv) RT_TRY(write_csv(o, results, error));
+    if (o->json) {
+        print_json(results, callgrind);
+        return RT_OK;
+    }
+    rt_print_results(results, RT_CELLS, stdout);
+    if (e->hardware) rt_print_hardware(results, stdout);
+    if (callgrind->count) rt_print_instructions(callgrind, stdout);
+    if (e->distributions) rt_print_distributions(results, stdout);
+    rt_null_sentence(results, sentence);
+    if (!sentence[0]) return RT_OK;
+    putchar('\n');
+    rt_print_wrapped(sentence, stdout);
+    return RT_OK;
+}
+
 /* ---- the command ---- */
 
 /* Everything but the report. */
@@ -280,7 +312,7 @@ static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, 
     if (o->callgrind) {
         RT_TRY(rt_callgrind_check(error));
         RT_TRY(rt_callgrind_init(callgrind, experiment, o->callgrind, error));
-        o->workload.rays = leave_rays;
+        o->workload.rays = save_rays;
         o->workload.rays_context = callgrind;
     }
     RtProgress progress = rt_progress_begin(&o->workload);
@@ -289,10 +321,9 @@ static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, 
     for (uint32_t t = 0; status == RT_OK && t < experiment->workload_count; t++)
         status = rt_workload_run(results, t, &o->workload, error);
     if (status == RT_OK && o->callgrind)
-        o->workload.observer.notice(&progress,
-                                    "instructions are counted under valgrind, which takes a while");
+        o->workload.observer.notice(&progress, "counting instructions under valgrind, which takes a while");
     rt_progress_end(&progress);
-    if (status == RT_OK && o->callgrind) status = rt_callgrind_leave_out_broken(callgrind, results, error);
+    if (status == RT_OK && o->callgrind) status = rt_callgrind_save_broken(callgrind, results, error);
     if (status == RT_OK && o->callgrind) status = count_instructions(callgrind, o->argv, error);
     return status;
 }
@@ -302,7 +333,8 @@ static RtStatus bench(Options *o, RtError *error) {
     RtExperiment *experiment = o->recording.experiment;
     RT_TRY(rt_experiment_add_scenes(experiment, &o->recording.like, o->scene, "", error));
     if (experiment->workload_count > 1 && (o->workload.hits || o->workload.counts))
-        return rt_fail(error, RT_BAD_INPUT, "--hits and --counts are of one scene: '%s' is %u", o->scene,
+        return rt_fail(error, RT_BAD_INPUT,
+                       "--hits and --counts write the rays of one scene: '%s' stands for %u", o->scene,
                        experiment->workload_count);
     strcpy(experiment->name, "bench");
     RT_TRY(rt_experiment_check(experiment, where, error));
@@ -311,9 +343,7 @@ static RtStatus bench(Options *o, RtError *error) {
     RtCallgrind callgrind = {0};
     RtStatus status = rt_results_init(&results, experiment, error);
     if (status == RT_OK) status = measure(o, &results, &callgrind, error);
-    if (status == RT_OK)
-        status = rt_bench_report(&results, &callgrind,
-                                 &(RtBenchOutput){o->csv, o->json, o->workload.count_only}, error);
+    if (status == RT_OK) status = report(o, &results, &callgrind, error);
     if (status == RT_OK) status = rt_results_check_broken(&results, error);
     rt_callgrind_clear(&callgrind);
     rt_results_clear(&results);
@@ -322,25 +352,26 @@ static RtStatus bench(Options *o, RtError *error) {
 
 static const struct argp_child children[] = {
     {&rt_recording_argp, 0, NULL, 1}, {&rt_plugin_argp, 0, NULL, 0}, {0}};
-const struct argp rt_bench_argp = {
+const RtSyntax rt_bench_syntax = {
     .options = options,
-    .parser = parse_option,
-    .args_doc = "SCENE",
-    .doc = "Count and time accelerators on the rays of one scene, and compare them."
-           "\vSCENE is a file or a built-in, as in balls:size=3, or several: random:n=1e2..1e5*10 (quote "
-           "what "
-           "your shell would take for its own: | and *). Every accelerator gets the "
-           "same rays and must give the same answers (exit code 1 otherwise). Example:\n"
-           "  raytally bench balls --accel bvh --accel grid --accel brute --ray-stride 100\n"
-           "  raytally bench 'balls:size=2|3' --accel bvh --accel 'grid:density=1..16*4'\n"
-           "  raytally bench balls --accel bvh --rays-from rays.npy --rays nearest --hits hits.npy",
-    .children = children};
+    .children = children,
+    .child = offsetof(Options, recording),
+    .arguments = "SCENE",
+    .argument = RT_SCENE_ARGUMENT,
+    .finish = finish,
+    .help = "Count and time accelerators on the rays of one scene, and compare them.\v"
+            "SCENE is a file or a built-in, as in balls:size=3, or several: random:n=1e2..1e5*10 (quote what "
+            "your shell would interpret: | and *). Every accelerator traces the same rays and must return "
+            "the same answers; otherwise the exit code is 1. Example:\n"
+            "  raytally bench balls --accel bvh --accel grid --accel brute --ray-stride 100\n"
+            "  raytally bench 'balls:size=2|3' --accel bvh --accel 'grid:density=1..16*4'\n"
+            "  raytally bench balls --accel bvh --rays-from rays.npy --rays nearest --hits hits.npy"};
 
 int rt_command_bench(int argc, char **argv) {
-    Options o = {.workload = {.timing = 1, .patience = RT_PATIENCE}, .argv = argv};
+    Options o = {.threads = -1, .workload = {.timing = 1, .patience = RT_PATIENCE}, .argv = argv};
     RtError error;
     if (rt_recording_init(&o.recording, &error) != RT_OK) return rt_cli_fail(&error);
-    argp_parse(&rt_bench_argp, argc, argv, 0, 0, &o);
+    rt_cli_parse(&rt_bench_syntax, argc, argv, &o);
     RtStatus status = bench(&o, &error);
     rt_recording_clear(&o.recording);
     return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);

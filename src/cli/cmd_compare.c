@@ -8,7 +8,6 @@
 #include "experiment/compare.h"
 #include "experiment/manifest.h"
 #include "experiment/plugins_used.h"
-#include "experiment/worker.h"
 #include "report/result_directory.h"
 
 #include <argp.h>
@@ -63,7 +62,7 @@ static const struct argp_option options[] = {
     {"quick", OPT_QUICK, 0, 0, "The smaller variant of the EXPERIMENT", 0},
     {"threads", OPT_THREADS, "N", 0, "Threads, as in `raytally bench`", 0},
     {"json", OPT_JSON, 0, 0, "One JSON document on stdout instead of the table", 0},
-    {"worker", OPT_WORKER, 0, OPTION_HIDDEN, NULL, 0}, /* experiment/worker.h */
+    {"worker", OPT_WORKER, 0, OPTION_HIDDEN, NULL, 0}, /* experiment/worker.c */
     {0}};
 
 static void check(Options *o, struct argp_state *state) {

@@ -4,42 +4,36 @@
 #include "core/scene/load.h"
 #include "scenes/open.h"
 
-#include <argp.h>
-
 typedef struct Options {
     const char *in, *out;
     bool force;
 } Options;
 
-static const struct argp_option options[] = {
-    {"force", 'f', 0, 0, "Write OUT even if there is a file of that name", 0}, {0}};
-
-static error_t parse_option(int key, char *argument, struct argp_state *state) {
-    Options *o = state->input;
-    switch (key) {
-    case 'f': o->force = true; return 0;
-    case ARGP_KEY_ARG:
-        if (o->out) argp_error(state, "one scene IN and one file OUT; '%s' is one too many", argument);
-        *(o->in ? &o->out : &o->in) = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!o->out) argp_error(state, "give a scene IN and a file OUT");
-        return 0;
-    default: return ARGP_ERR_UNKNOWN;
-    }
+static void take_file(void *options, const char *text, struct argp_state *state) {
+    Options *o = options;
+    if (o->out) argp_error(state, "one scene IN and one file OUT; '%s' is one too many", text);
+    *(o->in ? &o->out : &o->in) = text;
 }
 
-const struct argp rt_convert_argp = {
-    .options = options,
-    .parser = parse_option,
-    .args_doc = "IN OUT",
-    .doc = "Read the scene IN (a file or a built-in) and write it to OUT, in the format that the "
-           "extension of OUT names.\vFor example:\n  raytally convert balls:size=2 balls.yaml\n"
-           "  raytally convert bunny.obj bunny.ply"};
+static void finish(void *options, struct argp_state *state) {
+    if (!((Options *)options)->out) argp_error(state, "give a scene IN and a file OUT");
+}
+
+static const RtOption options[] = {{"force", 'f', NULL, RT_TO_FLAG(force), "Replace OUT if it exists"}, {0}};
+
+const RtSyntax rt_convert_syntax = {.options = options,
+                                    .arguments = "IN OUT",
+                                    .argument = {.name = "IN", .take = take_file},
+                                    .finish = finish,
+                                    .help = "Read the scene IN (a file or a built-in) and write it to OUT, "
+                                            "in the format that the extension of OUT names.\v"
+                                            "For example:\n"
+                                            "  raytally convert balls:size=2 balls.yaml\n"
+                                            "  raytally convert bunny.obj bunny.ply"};
 
 int rt_command_convert(int argc, char **argv) {
     Options o = {0};
-    argp_parse(&rt_convert_argp, argc, argv, 0, 0, &o);
+    rt_cli_parse(&rt_convert_syntax, argc, argv, &o);
     RtError error;
     RtScene scene;
     if (rt_scene_open(o.in, &scene, &error) != RT_OK) return rt_cli_fail(&error);

@@ -5,7 +5,6 @@
 #include "measure/extents_table.h"
 #include "scenes/open.h"
 
-#include <argp.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -23,36 +22,22 @@ typedef struct Counts {
     char fingerprint[17];
 } Counts;
 
-static const struct argp_option options[] = {
-    {"extents", 'e', "all", OPTION_ARG_OPTIONAL,
-     "Also measure how tight the extents of the objects are and what their tests take: boxes, spheres, "
-     "oriented boxes, 3, 7 and 13 slabs, or with =all every number of slabs",
-     0},
-    {"rays", 'n', "N", 0, "Random lines per shape for --extents (100000)", 0},
-    {"seed", 's', "S", 0, "Seed of these lines (1)", 0},
-    {"json", 'j', 0, 0, "One JSON document on stdout", 0},
-    {0}};
-
-static error_t parse_option(int key, char *argument, struct argp_state *state) {
-    Options *o = state->input;
-    switch (key) {
-    case 'j': o->json = true; return 0;
-    case 'e':
-        o->extents = true;
-        o->every_slabs = argument != NULL;
-        if (argument && strcmp(argument, "all") != 0)
-            argp_error(state, "--extents: invalid value '%s': expected --extents or --extents=all", argument);
-        return 0;
-    case 'n': o->rays = (uint64_t)rt_cli_integer(state, "--rays", argument, 1, 1000000000); return 0;
-    case 's': o->seed = (uint64_t)rt_cli_integer(state, "--seed", argument, 0, INT64_MAX); return 0;
-    case ARGP_KEY_ARG:
-        if (o->scene) argp_error(state, "one SCENE at a time; '%s' is a second one", argument);
-        o->scene = argument;
-        return 0;
-    case ARGP_KEY_NO_ARGS: argp_error(state, "which SCENE? A file, or a built-in such as balls"); return 0;
-    default: return ARGP_ERR_UNKNOWN;
-    }
+static void take_extents(void *options, const char *text, struct argp_state *state) {
+    Options *o = options;
+    o->extents = true;
+    o->every_slabs = text != NULL;
+    if (text && strcmp(text, "all") != 0)
+        argp_error(state, "--extents: invalid value '%s': expected --extents or --extents=all", text);
 }
+
+static const RtOption options[] = {
+    {"extents", 'e', "all", RT_TO_TAKE_OPTIONAL(take_extents),
+     "Also measure how tight the objects' extents are and what their tests cost: boxes, spheres, oriented "
+     "boxes, 3, 7 and 13 slabs; with =all every number of slabs"},
+    {"rays", 'n', "N", RT_TO_INTEGER(rays, 1, 1000000000), "Random lines per shape for --extents (100000)"},
+    {"seed", 's', "S", RT_TO_INTEGER(seed, 0, INT64_MAX), "Seed of these lines (1)"},
+    {"json", 'j', NULL, RT_TO_FLAG(json), "One JSON document on stdout"},
+    {0}};
 
 static Counts count(const RtScene *scene) {
     const RtGeometry *g = &scene->geometry;
@@ -119,28 +104,25 @@ static void print_info(const RtScene *scene, const Counts *counts) {
 
 /* ---- as JSON ---- */
 
-static json_t *vector_json(RtVec3 v) {
-    return json_pack("[f, f, f]", (double)v.x, (double)v.y, (double)v.z);
-}
-
 static json_t *material_json(const RtMaterial *m) {
     return json_pack("{s:s, s:o, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "name", m->name, "color",
-                     vector_json(m->color), "ambient", (double)m->ambient, "diffuse", (double)m->diffuse,
-                     "specular", (double)m->specular, "shine", (double)m->shine, "reflection",
-                     (double)m->reflection, "transmission", (double)m->transmission, "ior", (double)m->ior);
+                     rt_cli_vector_json(m->color), "ambient", (double)m->ambient, "diffuse",
+                     (double)m->diffuse, "specular", (double)m->specular, "shine", (double)m->shine,
+                     "reflection", (double)m->reflection, "transmission", (double)m->transmission, "ior",
+                     (double)m->ior);
 }
 
 static json_t *camera_json(const RtCamera *camera) {
-    return json_pack("{s:o, s:o, s:o, s:f, s:f, s:I, s:I}", "from", vector_json(camera->from), "at",
-                     vector_json(camera->at), "up", vector_json(camera->up), "fov", (double)camera->fov,
-                     "near", (double)camera->near, "width", (json_int_t)camera->width, "height",
-                     (json_int_t)camera->height);
+    return json_pack("{s:o, s:o, s:o, s:f, s:f, s:I, s:I}", "from", rt_cli_vector_json(camera->from), "at",
+                     rt_cli_vector_json(camera->at), "up", rt_cli_vector_json(camera->up), "fov",
+                     (double)camera->fov, "near", (double)camera->near, "width", (json_int_t)camera->width,
+                     "height", (json_int_t)camera->height);
 }
 
 /* Those of no object: null. */
 static json_t *bounds_json(const RtGeometry *g) {
     if (g->object_count == 0) return json_null();
-    return json_pack("{s:o, s:o}", "lo", vector_json(g->box.lo), "hi", vector_json(g->box.hi));
+    return json_pack("{s:o, s:o}", "lo", rt_cli_vector_json(g->box.lo), "hi", rt_cli_vector_json(g->box.hi));
 }
 
 static json_t *info_json(const RtScene *scene, const Counts *counts) {
@@ -154,16 +136,16 @@ static json_t *info_json(const RtScene *scene, const Counts *counts) {
     }
     for (uint32_t i = 0; i < scene->light_count; i++) {
         const RtLight *light = &scene->lights[i];
-        json_array_append_new(lights, json_pack("{s:o, s:o}", "position", vector_json(light->position),
-                                                "intensity", vector_json(light->intensity)));
+        json_array_append_new(lights, json_pack("{s:o, s:o}", "position", rt_cli_vector_json(light->position),
+                                                "intensity", rt_cli_vector_json(light->intensity)));
     }
     return json_pack("{s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:I}", "scene",
                      scene->name, "fingerprint", counts->fingerprint, "objects", (json_int_t)g->object_count,
                      "shapes", shapes, "solids", (json_int_t)g->forest.set.solid_count,
                      "triangles_with_normals", (json_int_t)g->vertex_normal_count, "triangles_without_area",
                      (json_int_t)counts->zero_area, "bounds", bounds_json(g), "materials", materials,
-                     "lights", lights, "ambient", vector_json(scene->ambient), "background",
-                     vector_json(scene->background), "camera", camera_json(&scene->camera), "bytes",
+                     "lights", lights, "ambient", rt_cli_vector_json(scene->ambient), "background",
+                     rt_cli_vector_json(scene->background), "camera", camera_json(&scene->camera), "bytes",
                      (json_int_t)rt_scene_bytes(scene));
 }
 
@@ -184,19 +166,19 @@ static RtStatus show(const RtScene *scene, const Options *o, RtError *error) {
     return RT_OK;
 }
 
-const struct argp rt_info_argp = {
-    .options = options,
-    .parser = parse_option,
-    .args_doc = "SCENE",
-    .doc = "Say what is in a scene: objects by shape, bounds, materials, lights, the camera, "
-           "memory, and a fingerprint that changes with anything that can change an answer. "
-           "SCENE is a file or a built-in such as balls:size=5."};
+const RtSyntax rt_info_syntax = {.options = options,
+                                 .arguments = "SCENE",
+                                 .argument = RT_SCENE_ARGUMENT,
+                                 .help =
+                                     "Show what is in a scene: objects by shape, bounds, materials, lights, "
+                                     "the camera, memory, and a fingerprint of everything that affects an "
+                                     "answer. SCENE is a file or a built-in such as balls:size=5."};
 
 int rt_command_info(int argc, char **argv) {
     Options o = {.rays = 100000, .seed = 1};
     RtScene scene;
     RtError error;
-    argp_parse(&rt_info_argp, argc, argv, 0, 0, &o);
+    rt_cli_parse(&rt_info_syntax, argc, argv, &o);
     if (o.json && rt_cli_check_json_name(o.scene, &error) != RT_OK) return rt_cli_fail(&error);
     if (rt_scene_open(o.scene, &scene, &error) != RT_OK) return rt_cli_fail(&error);
     RtStatus status = show(&scene, &o, &error);

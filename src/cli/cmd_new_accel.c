@@ -9,7 +9,6 @@
 #include "new_accel_cmake.h"
 #include "new_accel_readme.h"
 
-#include <argp.h>
 #include <errno.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -19,31 +18,18 @@ typedef struct Options {
     const char *name, *out;
 } Options;
 
-static const struct argp_option options[] = {
-    {"out", 'o', "DIR", 0, "Where the folder NAME is made (the current folder)", 0}, {0}};
+static const RtOption options[] = {
+    {"out", 'o', "DIR", RT_TO_TEXT(out), "The folder to make NAME in (the current folder)"}, {0}};
 
-static error_t parse_option(int key, char *argument, struct argp_state *state) {
-    Options *o = state->input;
-    switch (key) {
-    case 'o': o->out = argument; return 0;
-    case ARGP_KEY_ARG:
-        if (o->name) argp_error(state, "one NAME at a time; '%s' is a second one", argument);
-        o->name = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!o->name) argp_error(state, "a NAME for the accelerator is missing, as in my-grid");
-        return 0;
-    default: return ARGP_ERR_UNKNOWN;
-    }
-}
-
-const struct argp rt_new_accel_argp = {
+const RtSyntax rt_new_accel_syntax = {
     .options = options,
-    .parser = parse_option,
-    .args_doc = "NAME",
-    .doc = "Write a folder NAME with an accelerator of your own, a plugin that works and is to be changed: "
-           "its code, how it is built and verified, and how to go on.\vFor example:\n"
-           "  raytally new-accel my-grid\n  raytally new-accel my-grid --out ~/plugins"};
+    .arguments = "NAME",
+    .argument = RT_ARGUMENT("NAME", name, "a NAME for the accelerator is missing, as in my-grid"),
+    .help = "Make a folder NAME with a new accelerator, as a working plugin to edit: its code, its build "
+            "file, its check, and a README.\v"
+            "For example:\n"
+            "  raytally new-accel my-grid\n"
+            "  raytally new-accel my-grid --out ~/plugins"};
 
 /* ---- files ---- */
 
@@ -113,7 +99,7 @@ static RtStatus write_folder(const char *folder, const char *name, RtError *erro
 
 int rt_command_new_accel(int argc, char **argv) {
     Options o = {.out = ""};
-    argp_parse(&rt_new_accel_argp, argc, argv, 0, 0, &o);
+    rt_cli_parse(&rt_new_accel_syntax, argc, argv, &o);
     RtError error;
     char folder[RT_MAX_PATH];
     RtStatus status = rt_accel_name_is_free(o.name, &error);

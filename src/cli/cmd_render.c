@@ -15,7 +15,6 @@
 #include "scenes/open.h"
 #include "verify/equivalence.h"
 
-#include <argp.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -24,7 +23,7 @@ typedef struct Options {
     const char *scene;
     const char *accels[RT_MAX_PANELS]; /* the first makes all but heatmaps */
     uint32_t accel_count;
-    uint32_t width, height; /* 0: the camera's */
+    uint32_t size[2]; /* width, height; 0: the camera's */
     uint32_t samples, depth;
     int threads;
     bool corners, check;
@@ -34,25 +33,8 @@ typedef struct Options {
 
 enum { MOST_OUTPUTS = RT_TALLY_COUNTER_COUNT + 4 };
 
-enum { KEY_CORNERS = 256, KEY_STATS, KEY_CHECK };
-
-static const struct argp_option options[] = {
-    {"accel", 'a', "SPEC", 0,
-     "Accelerator (default bvh); `raytally accels` lists them. With --heatmap up to 8 times, to compare", 0},
-    {"size", 's', "WxH", 0, "Size of the image in pixels (default: the scene's)", 0},
-    {"corners", KEY_CORNERS, 0, 0, "Sample the corners of pixels, (W+1) x (H+1) rays, as SPD asks", 0},
-    {"samples", 'n', "N", 0, "N x N samples per pixel, 1..64 (default 1)", 0},
-    {"depth", 'd', "N", 0, "Levels of the ray tree, the primary ray being the first, 1..64 (default 5)", 0},
-    {"threads", 't', "N", 0, "Threads (default: all processors)", 0},
-    {"output", 'o', "FILE", 0, "The image, .png or .exr; may be given once for each", 0},
-    {"stats", KEY_STATS, "FILE.json", 0, "Counts by ray kind, times and sizes", 0},
-    {"check", KEY_CHECK, 0, 0,
-     "Compare the answer to every ray, and the frame, with brute's; exit 1 if one differs. brute is slow: "
-     "try a small --size first",
-     0},
-    {0}};
-
-static void parse_output(Options *o, struct argp_state *state, const char *path) {
+static void take_output(void *options, const char *path, struct argp_state *state) {
+    Options *o = options;
     if (!rt_cli_has_extension(path, ".png or .exr"))
         argp_error(state, "-o: invalid value '%s': expected a file name that ends in .png or .exr", path);
     const char **slot = rt_cli_has_extension(path, ".png") ? &o->png : &o->exr;
@@ -60,7 +42,8 @@ static void parse_output(Options *o, struct argp_state *state, const char *path)
     *slot = path;
 }
 
-static void add_accel(Options *o, struct argp_state *state, const char *spec) {
+static void take_accel(void *options, const char *spec, struct argp_state *state) {
+    Options *o = options;
     if (o->accel_count == RT_MAX_PANELS) argp_error(state, "--accel: %d at most", RT_MAX_PANELS);
     o->accels[o->accel_count++] = spec;
 }
@@ -75,13 +58,11 @@ static size_t list_outputs(const Options *o, const char *paths[MOST_OUTPUTS]) {
     return rt_pictures_list(&o->pictures, paths, count);
 }
 
-static void check_options(Options *o, struct argp_state *state) {
+static void finish(void *options, struct argp_state *state) {
+    Options *o = options;
     const char *paths[MOST_OUTPUTS];
     size_t count = list_outputs(o, paths);
-    if (o->accel_count == 0) add_accel(o, state, rt_accel_default());
-    if (!o->scene)
-        argp_error(state,
-                   "a SCENE is needed: a file or a built-in, as in `raytally render balls -o balls.png`");
+    if (o->accel_count == 0) take_accel(o, rt_accel_default(), state);
     if (count == 0 && !o->check) {
         argp_error(state, "nothing to make: give -o FILE.png, or --heatmap, --structure, --stats or --check");
     }
@@ -94,27 +75,22 @@ static void check_options(Options *o, struct argp_state *state) {
     rt_pictures_finish(&o->pictures, o->accel_count, state);
 }
 
-static error_t parse_option(int key, char *argument, struct argp_state *state) {
-    Options *o = state->input;
-    switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &o->pictures; return 0;
-    case 'a': add_accel(o, state, argument); return 0;
-    case 's': rt_cli_size(state, argument, &o->width, &o->height); return 0;
-    case 'n': o->samples = (uint32_t)rt_cli_integer(state, "--samples", argument, 1, 64); return 0;
-    case 'd': o->depth = (uint32_t)rt_cli_integer(state, "--depth", argument, 1, RT_MAX_DEPTH); return 0;
-    case 't': o->threads = (int)rt_cli_integer(state, "--threads", argument, 1, 1024); return 0;
-    case 'o': parse_output(o, state, argument); return 0;
-    case KEY_CORNERS: o->corners = true; return 0;
-    case KEY_CHECK: o->check = true; return 0;
-    case KEY_STATS: rt_cli_set_path(state, "--stats", &o->stats, argument, ".json"); return 0;
-    case ARGP_KEY_ARG:
-        if (o->scene) argp_error(state, "one SCENE at a time; '%s' is a second one", argument);
-        o->scene = argument;
-        return 0;
-    case ARGP_KEY_END: check_options(o, state); return 0;
-    default: return ARGP_ERR_UNKNOWN;
-    }
-}
+static const RtOption options[] = {
+    {"accel", 'a', "SPEC", RT_TO_TAKE(take_accel),
+     "Accelerator (default bvh); `raytally accels` lists them. With --heatmap up to 8 times, to compare"},
+    {"size", 's', "WxH", RT_TO_SIZE(size), "Size of the image in pixels (default: the scene's)"},
+    {"corners", 0, NULL, RT_TO_FLAG(corners),
+     "Sample the corners of pixels, (W+1) x (H+1) rays, as the SPD scenes require"},
+    {"samples", 'n', "N", RT_TO_INTEGER(samples, 1, 64), "N x N samples per pixel, 1..64 (default 1)"},
+    {"depth", 'd', "N", RT_TO_INTEGER(depth, 1, RT_MAX_DEPTH),
+     "Levels of the ray tree, the primary ray being the first, 1..64 (default 5)"},
+    {"threads", 't', "N", RT_TO_INTEGER(threads, 1, 1024), "Threads (default: all processors)"},
+    {"output", 'o', "FILE", RT_TO_TAKE(take_output), "The image, .png or .exr; may be given once for each"},
+    {"stats", 0, "FILE.json", RT_TO_PATH(stats, ".json"), "Counts by ray kind, times and sizes"},
+    {"check", 0, NULL, RT_TO_FLAG(check),
+     "Compare the answer to every ray, and the frame, with those of brute; exit code 1 if one differs. brute "
+     "is slow: try a small --size first"},
+    {0}};
 
 /* ---- the frames ---- */
 
@@ -174,7 +150,7 @@ static RtStatus prepare(Run *run, RtError *error) {
     if (o->pictures.structure) RT_TRY(rt_structure_available(&spec, o->pictures.layer, error));
     if (o->stats) RT_TRY(rt_cli_check_json_name(o->scene, error));
     RT_TRY(rt_scene_open(o->scene, &run->scene, error));
-    RT_TRY(rt_scene_sample(&run->scene, o->width, o->height, o->samples, o->corners, error));
+    RT_TRY(rt_scene_sample(&run->scene, o->size[0], o->size[1], o->samples, o->corners, error));
     double start = rt_wall_seconds();
     RT_TRY(rt_accel_build(&spec, &run->scene, o->threads, &run->accel, error));
     run->build_seconds = rt_wall_seconds() - start;
@@ -348,7 +324,7 @@ static RtStatus check_rays(const Run *run, RtError *error) {
     return status;
 }
 
-static const char doc[] =
+static const char help[] =
     "Trace SCENE, a file or a built-in (as in balls:size=4), under the standard illumination model.\v"
     "For example:\n"
     "  raytally render balls -o balls.png\n"
@@ -358,15 +334,20 @@ static const char doc[] =
     "  raytally render balls --accel light:cells=64+bvh --structure cells.png --pixel 256,400\n"
     "  raytally render balls --accel grid --accel kd --heatmap object_tests tests.png "
     "--heatmap-difference\n"
-    "`raytally trace` follows a single ray. What the counters count is in docs/columns.md.";
+    "`raytally trace` follows a single ray. docs/columns.md explains the counters.";
 static const struct argp_child children[] = {
     {&rt_picture_argp, 0, NULL, 0}, {&rt_plugin_argp, 0, NULL, 0}, {0}};
-const struct argp rt_render_argp = {
-    .options = options, .parser = parse_option, .args_doc = "SCENE", .doc = doc, .children = children};
+const RtSyntax rt_render_syntax = {.options = options,
+                                   .children = children,
+                                   .child = offsetof(Options, pictures),
+                                   .arguments = "SCENE",
+                                   .argument = RT_SCENE_ARGUMENT,
+                                   .finish = finish,
+                                   .help = help};
 
 int rt_command_render(int argc, char **argv) {
     Options o = {.samples = 1, .depth = RT_DEFAULT_DEPTH, .pictures = {.boxes = RT_ALL_LEVELS}};
-    argp_parse(&rt_render_argp, argc, argv, 0, 0, &o);
+    rt_cli_parse(&rt_render_syntax, argc, argv, &o);
     RtError error = {RT_OK, ""};
     Run *run = rt_alloc(1, sizeof(Run));
     if (!run) {

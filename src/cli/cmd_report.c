@@ -26,25 +26,9 @@ static RtStatus report(const char *directory, const RtExperiment *experiment, Rt
     return status;
 }
 
-static const char help[] =
-    "Write DIR/report.html again, from what is in DIR, and tables.md and tables.tex beside it.\n"
-    "--index: FOLDER/index.html, a page over all result directories in FOLDER and in folders of it.";
-
-static error_t parse_option(int key, char *argument, struct argp_state *state) {
-    const char **folder = state->input;
-    switch (key) {
-    case 'i':
-        if (*folder) argp_error(state, "one FOLDER at a time; '%s' is a second one", argument);
-        *folder = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (*folder && state->arg_num > 0)
-            argp_error(state, "--index is about all of FOLDER, and takes no DIR");
-        return 0;
-    case ARGP_KEY_ARG: return 0; /* for rt_cli_directory */
-    default: return ARGP_ERR_UNKNOWN;
-    }
-}
+typedef struct Options {
+    const char *directory, *folder;
+} Options;
 
 static int write_index(const char *folder) {
     RtError error;
@@ -54,19 +38,35 @@ static int write_index(const char *folder) {
     return RT_EXIT_OK;
 }
 
-static const struct argp_option options[] = {
-    {"index", 'i', "FOLDER", 0,
-     "Write FOLDER/index.html over all result directories in it, as in `--index results`", 0},
+static void take_index(void *options, const char *text, struct argp_state *state) {
+    Options *o = options;
+    if (o->folder) argp_error(state, "one FOLDER at a time; '%s' is a second one", text);
+    o->folder = text;
+}
+
+static void finish(void *options, struct argp_state *state) {
+    const Options *o = options;
+    if (o->folder && o->directory)
+        argp_error(state, "--index FOLDER covers all directories in FOLDER, and takes no DIR");
+    if (!o->folder && !o->directory) argp_error(state, "a result DIR is missing, as in results/first-look");
+}
+
+static const RtOption options[] = {
+    {"index", 'i', "FOLDER", RT_TO_TAKE(take_index),
+     "Write FOLDER/index.html over all result directories in it, as in `--index results`"},
     {0}};
 static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
-const struct argp rt_report_argp = {.options = options,
-                                    .parser = parse_option,
-                                    .args_doc = "DIR\n--index FOLDER",
-                                    .doc = help,
-                                    .children = children};
+const RtSyntax rt_report_syntax = {
+    .options = options,
+    .children = children,
+    .arguments = "DIR\n--index FOLDER",
+    .argument = RT_ARGUMENT("DIR", directory, NULL),
+    .finish = finish,
+    .help = "Write DIR/report.html again, from what is in DIR, and tables.md and tables.tex beside it.\n"
+            "--index: FOLDER/index.html, a page over all result directories in FOLDER and its folders."};
 
 int rt_command_report(int argc, char **argv) {
-    const char *folder = NULL;
-    argp_parse(&rt_report_argp, argc, argv, 0, 0, &folder);
-    return folder ? write_index(folder) : rt_cli_directory(argc, argv, help, true, report);
+    Options o = {0};
+    rt_cli_parse(&rt_report_syntax, argc, argv, &o);
+    return o.folder ? write_index(o.folder) : rt_cli_directory_work(o.directory, true, report);
 }

@@ -98,11 +98,20 @@ static RtStatus reproduce(const char *directory, const RtExperiment *experiment,
     return status;
 }
 
+typedef struct Options {
+    const char *directory;
+} Options;
+
+static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
+const RtSyntax rt_reproduce_syntax = {
+    .children = children,
+    .arguments = "DIR",
+    .argument = RT_DIRECTORY_ARGUMENT,
+    .help = "Count everything in a result directory again and compare it with DIR/counts.csv, byte for byte, "
+            "and with published figures if the experiment names any. Start it where the experiment was run."};
+
 int rt_command_reproduce(int argc, char **argv) {
-    return rt_cli_directory(
-        argc, argv,
-        "Count everything in a result directory again and compare with DIR/counts.csv, byte "
-        "for byte; with published figures, too, where the experiment names any. Run it from where the "
-        "experiment was run.",
-        false, reproduce);
+    Options o = {0};
+    rt_cli_parse(&rt_reproduce_syntax, argc, argv, &o);
+    return rt_cli_directory_work(o.directory, false, reproduce);
 }

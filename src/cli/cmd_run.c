@@ -3,31 +3,16 @@
 #include "cli/cli.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
-#include "cli/summary.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "experiment/claims.h"
 #include "experiment/journal.h"
 #include "experiment/manifest.h"
+#include "experiment/result_tables.h"
 #include "report/result_directory.h"
 
-#include <argp.h>
 #include <stdio.h>
 #include <string.h>
-
-enum {
-    OPT_RESUME = 256,
-    OPT_RENEW,
-    OPT_FORCE,
-    OPT_TRUST,
-    OPT_QUICK,
-    OPT_STRICT,
-    OPT_DRY_RUN,
-    OPT_ONLY,
-    OPT_SHARD,
-    OPT_UNTIL,
-    OPT_PATIENCE
-};
 
 typedef struct Options {
     const char *path, *out;
@@ -36,43 +21,12 @@ typedef struct Options {
     bool found; /* the experiment is one that a manifest leads to */
     char only_text[3 * RT_MAX_LABEL];
     RtOnly only;
-    int threads, timing;
+    int threads; /* -1: one to time, all to build and count */
     double until, patience;
 } Options;
 
-static const struct argp_option options[] = {
-    {"out", 'o', "DIR", 0, "The result directory (results/NAME)", 0},
-    {"resume", OPT_RESUME, 0, 0,
-     "Go on where an interrupted run stopped; what it measured is kept. Of a finished one, write tables and "
-     "plots again",
-     0},
-    {"renew", OPT_RENEW, 0, 0,
-     "As --resume, where a plugin has changed since: what it does is measured again, all else is kept", 0},
-    {"force", OPT_FORCE, 0, 0,
-     "Start over: the results in DIR are lost. Of --resume and --force the last one counts", 0},
-    RT_TRUST_OPTION(OPT_TRUST),
-    {"threads", 't', "N", 0,
-     "Threads, 0 for all processors. Left out: timing on one, by its processor time, and building and "
-     "counting on all; on several, wall time is compared",
-     0},
-    RT_UNTIL_OPTIONS(OPT_UNTIL, OPT_PATIENCE),
-    {"quick", OPT_QUICK, 0, 0, "The smaller variant that the YAML describes under `quick`", 0},
-    {"strict", OPT_STRICT, 0, 0, "Exit code 1 where a claim of the experiment (`expect`) does not hold", 0},
-    {"dry-run", OPT_DRY_RUN, 0, 0,
-     "Measure nothing: list the cells, which of them are finished, and how long the others will take", 0},
-    {"only", OPT_ONLY, "SCENE[/ACCEL[/KIND]]", 0,
-     "Measure one scene, or one accelerator on it, or on one kind of rays, and the baseline; by labels. "
-     "--resume "
-     "without it measures the rest",
-     0},
-    {"shard", OPT_SHARD, "I/N", 0,
-     "Measure each Nth scene, from the Ith on (into results/NAME-I-of-N), all accelerators on it: for N "
-     "machines. "
-     "`raytally merge` joins the directories",
-     0},
-    {0}};
-
-static void parse_only(Options *o, const char *text, struct argp_state *state) {
+static void take_only(void *options, const char *text, struct argp_state *state) {
+    Options *o = options;
     if (strlen(text) >= sizeof o->only_text) argp_error(state, "--only: '%s' is too long", text);
     strcpy(o->only_text, text);
     char *accel = strchr(o->only_text, '/'), *kind = accel ? strchr(accel + 1, '/') : NULL;
@@ -83,7 +37,8 @@ static void parse_only(Options *o, const char *text, struct argp_state *state) {
     o->only.kind = kind;
 }
 
-static void parse_shard(Options *o, const char *text, struct argp_state *state) {
+static void take_shard(void *options, const char *text, struct argp_state *state) {
+    Options *o = options;
     unsigned shard, shards;
     int end = 0;
     bool fine = sscanf(text, "%3u/%3u%n", &shard, &shards, &end) == 2 && !text[end];
@@ -93,34 +48,35 @@ static void parse_shard(Options *o, const char *text, struct argp_state *state) 
     o->only.shards = shards;
 }
 
-static error_t parse_option(int key, char *argument, struct argp_state *state) {
-    Options *o = state->input;
-    switch (key) {
-    case 'o': o->out = argument; return 0;
-    case OPT_RESUME: o->start = RT_START_RESUME; return 0;
-    case OPT_RENEW: o->start = RT_START_RESUME, o->renew = true; return 0;
-    case OPT_FORCE: o->start = RT_START_ANEW; return 0;
-    case OPT_TRUST: o->trust = true; return 0;
-    case 't': o->threads = o->timing = (int)rt_cli_integer(state, "--threads", argument, 0, 1024); return 0;
-    case OPT_UNTIL: o->until = rt_cli_percent(state, "--until", argument); return 0;
-    case OPT_PATIENCE:
-        o->patience = (double)rt_cli_integer(state, "--patience", argument, 1, 86400);
-        return 0;
-    case OPT_QUICK: o->quick = true; return 0;
-    case OPT_STRICT: o->strict = true; return 0;
-    case OPT_DRY_RUN: o->dry = true; return 0;
-    case OPT_ONLY: parse_only(o, argument, state); return 0;
-    case OPT_SHARD: parse_shard(o, argument, state); return 0;
-    case ARGP_KEY_ARG:
-        if (o->path) argp_error(state, "one EXPERIMENT at a time; '%s' is a second one", argument);
-        o->path = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!o->path) argp_error(state, "an EXPERIMENT is missing, as in experiments/first-look.yaml");
-        return 0;
-    default: return ARGP_ERR_UNKNOWN;
-    }
+static void take_renew(void *options, const char *text, struct argp_state *state) {
+    (void)text, (void)state;
+    ((Options *)options)->start = RT_START_RESUME;
+    ((Options *)options)->renew = true;
 }
+
+static const RtOption options[] = {
+    {"out", 'o', "DIR", RT_TO_TEXT(out), "The result directory (results/NAME)"},
+    {"resume", 0, NULL, RT_TO_SET(start, RT_START_RESUME),
+     "Continue an interrupted run: its measurements stay. For a finished run, write tables and plots again"},
+    {"renew", 0, NULL, RT_TO_TAKE(take_renew),
+     "As --resume, after a plugin has changed: measure its cells again, keep all others"},
+    {"force", 0, NULL, RT_TO_SET(start, RT_START_ANEW),
+     "Start over: the results in DIR are lost. The last of --resume and --force counts"},
+    RT_TRUST_OPTION,
+    {"threads", 't', "N", RT_TO_INTEGER(threads, 0, 1024), RT_THREADS_HELP},
+    RT_UNTIL_OPTIONS(until, patience),
+    {"quick", 0, NULL, RT_TO_FLAG(quick), "The smaller variant that the YAML describes under `quick`"},
+    {"strict", 0, NULL, RT_TO_FLAG(strict),
+     "Exit code 1 if a claim of the experiment (`expect`) does not hold"},
+    {"dry-run", 0, NULL, RT_TO_FLAG(dry),
+     "Measure nothing: list the cells, which of them are finished, and the time that the others will take"},
+    {"only", 0, "SCENE[/ACCEL[/KIND]]", RT_TO_TAKE(take_only),
+     "Measure only the baseline and one scene, one accelerator on it, or one kind of rays; by labels. "
+     "--resume without --only measures the rest"},
+    {"shard", 0, "I/N", RT_TO_TAKE(take_shard),
+     "Measure every Nth scene from the Ith on with all accelerators (into results/NAME-I-of-N), to share a "
+     "run among N machines. `raytally merge` joins the directories"},
+    {0}};
 
 /* ---- before ---- */
 
@@ -191,7 +147,7 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, RtError *er
 /* The command that goes on. */
 static void go_on(const Options *o, const RtExperiment *e, const char *directory, char *out, size_t room) {
     char threads[32] = "", shard[32] = "", until[64] = "", plugins[1024];
-    if (o->timing != 1 || o->threads) snprintf(threads, sizeof threads, " --threads %d", o->threads);
+    if (o->threads >= 0) snprintf(threads, sizeof threads, " --threads %d", o->threads);
     if (o->only.shards) snprintf(shard, sizeof shard, " --shard %u/%u", o->only.shard, o->only.shards);
     if (o->until > 0)
         snprintf(until, sizeof until, " --until %g%% --patience %g", 100 * o->until, o->patience);
@@ -209,7 +165,7 @@ static RtStatus measure(const Options *o, RtResults *results, RtRunOptions *how,
     RtStatus status = rt_run_experiment(results, how, error);
     rt_progress_end(&progress);
     if (status != RT_OK) return status;
-    rt_cli_print_summary(results, stdout);
+    rt_print_summary(results, stdout);
     if (!o->only.scene && !o->only.shards) printf("\nReport: %s/report.html\n", how->directory);
     RT_TRY(rt_results_check_broken(results, error));
     return o->strict ? rt_claims_check(results, error) : RT_OK;
@@ -249,8 +205,8 @@ static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
         .scripts = o->trust   ? RT_SCRIPTS_ALL
                    : o->found ? RT_SCRIPTS_SHIPPED
                               : RT_SCRIPTS_OWN,
-        .workload = {.threads = o->threads,
-                     .timing = o->timing,
+        .workload = {.threads = o->threads < 0 ? 0 : o->threads,
+                     .timing = o->threads < 0 ? 1 : o->threads,
                      .only = o->only,
                      .until = o->until,
                      .patience = o->patience},
@@ -262,24 +218,24 @@ static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
 }
 
 static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
-const struct argp rt_run_argp = {
+const RtSyntax rt_run_syntax = {
     .options = options,
-    .parser = parse_option,
-    .args_doc = "EXPERIMENT.yaml|DIR/manifest.json",
-    .doc = "Run an experiment and write its result directory: counts.csv, times.csv, "
-           "manifest.json, plots, images and report.html. By the manifest of a "
-           "directory, run its experiment again, from where it was run. A directory with results, "
-           "finished or not, is refused without --resume or --force; so is one that "
-           "another process writes into. Ctrl-C at any time: what is measured is kept."
-           "\vExit code 1 if an accelerator answers wrong, gnuplot fails (without "
-           "gnuplot there is a note), a published figure is missed, or with "
-           "--strict a claim does not hold. "
-           "experiments/README.md says how to write an experiment.",
-    .children = children};
+    .children = children,
+    .arguments = "EXPERIMENT.yaml|DIR/manifest.json",
+    .argument =
+        RT_ARGUMENT("EXPERIMENT", path, "an EXPERIMENT is missing, as in experiments/first-look.yaml"),
+    .help = "Run an experiment and write its result directory: counts.csv, times.csv, manifest.json, plots, "
+            "images and report.html. Given the manifest of a directory, run its experiment again; start that "
+            "where the first run was started. A directory that has results, finished or not, needs --resume "
+            "or --force. Only one process at a time may write into a directory. Ctrl-C at any time keeps "
+            "what is measured.\v"
+            "Exit code 1 if an accelerator returns a wrong answer, gnuplot fails (without gnuplot there is a "
+            "note), a published figure is outside its tolerance, or with --strict a claim does not hold. "
+            "experiments/README.md describes how to write an experiment."};
 
 int rt_command_run(int argc, char **argv) {
-    Options o = {.timing = 1, .patience = RT_PATIENCE};
-    argp_parse(&rt_run_argp, argc, argv, 0, 0, &o);
+    Options o = {.threads = -1, .patience = RT_PATIENCE};
+    rt_cli_parse(&rt_run_syntax, argc, argv, &o);
     RtError error;
     RtExperiment *experiment = rt_alloc(1, sizeof *experiment);
     RtStatus status = experiment ? run(&o, experiment, &error)

@@ -3,7 +3,6 @@
 #include "cli/cli.h"
 #include "scenes/builtin.h"
 
-#include <argp.h>
 #include <stdio.h>
 
 static void print_scene(const RtBuiltin *builtin) {
@@ -17,16 +16,15 @@ static json_t *scene_json(const RtBuiltin *builtin) {
                      builtin->source, "params", rt_cli_params_json(builtin->params, builtin->param_count));
 }
 
-const struct argp rt_scenes_argp = {
-    .options = rt_list_options,
-    .parser = rt_list_parse,
-    .args_doc = "[NAME]",
-    .doc = "List the built-in scenes, or explain the one called NAME: its parameters "
-           "with defaults and ranges, and where it comes from."};
+const RtSyntax rt_scenes_syntax = {.options = rt_list_options,
+                                   .arguments = "[NAME]",
+                                   .argument = RT_LIST_ARGUMENT,
+                                   .help = "List the built-in scenes, or explain the one called NAME: its "
+                                           "parameters with defaults and ranges, and where it comes from."};
 
 int rt_command_scenes(int argc, char **argv) {
     RtListOptions o = {0};
-    argp_parse(&rt_scenes_argp, argc, argv, 0, 0, &o);
+    rt_cli_parse(&rt_scenes_syntax, argc, argv, &o);
     RtError error;
     const RtBuiltin *only = NULL;
     if (o.name && rt_builtin_named(o.name, &only, &error) != RT_OK) return rt_cli_fail(&error);
@@ -39,11 +37,7 @@ int rt_command_scenes(int argc, char **argv) {
             print_scene(rt_builtin_at(i));
         }
     }
-    if (o.json) {
-        rt_cli_print_json(json_pack("{s:O}", "scenes", list));
-    } else if (!only) {
-        puts("A built-in scene is written NAME[:KEY=VALUE[,KEY=VALUE]...], as in balls:size=5.");
-    }
-    json_decref(list);
+    rt_list_finish(&o, "scenes", list,
+                   "A built-in scene is written NAME[:KEY=VALUE[,KEY=VALUE]...], as in balls:size=5.");
     return RT_EXIT_OK;
 }

@@ -10,64 +10,53 @@
 #include "picture/path_picture.h"
 #include "scenes/open.h"
 
-#include <argp.h>
 #include <stdio.h>
 #include <string.h>
 
 typedef struct Options {
     const char *scene, *accel, *svg;
-    uint32_t x, y, width, height, light;
+    uint32_t x, y, size[2], light;
     int64_t rows;
     RtRayKind kind;
     bool aimed, json;
 } Options;
 
-enum { KEY_LIGHT = 256, KEY_SVG, KEY_ROWS };
 enum { DEFAULT_ROWS = 200 };
 
-static const struct argp_option options[] = {
-    {"pixel", 'p', "X,Y", 0, "The ray through the middle of this pixel, 0,0 being the upper left", 0},
-    {"accel", 'a', "SPEC", 0, "Accelerator (default bvh); `raytally accels` lists them", 0},
-    {"size", 's', "WxH", 0, "Size of the image in pixels (default: the scene's)", 0},
-    {"rays", 'k', "KIND", 0,
+static void take_pixel(void *options, const char *text, struct argp_state *state) {
+    Options *o = options;
+    rt_cli_pixel(state, text, &o->x, &o->y);
+    o->aimed = true;
+}
+
+static void take_kind(void *options, const char *text, struct argp_state *state) {
+    ((Options *)options)->kind = rt_cli_image_ray_kind(state, "--rays", text);
+}
+
+static void finish(void *options, struct argp_state *state) {
+    if (!((Options *)options)->aimed) argp_error(state, "say which ray: --pixel X,Y");
+}
+
+static const RtOption options[] = {
+    {"pixel", 'p', "X,Y", RT_TO_TAKE(take_pixel),
+     "The ray through the middle of this pixel, 0,0 being the upper left"},
+    {"accel", 'a', "SPEC", RT_TO_TEXT(accel), "Accelerator (default bvh); `raytally accels` lists them"},
+    {"size", 's', "WxH", RT_TO_SIZE(size), "Size of the image in pixels (default: the scene's)"},
+    {"rays", 'k', "KIND", RT_TO_TAKE(take_kind),
      "primary (default), or the shadow, reflection or transmission ray that starts where the primary ray "
-     "hits",
-     0},
-    {"light", KEY_LIGHT, "N", 0, "The light that the shadow ray goes to (default 0)", 0},
-    {"svg", KEY_SVG, "FILE.svg", 0, "Draw it: a section through the ray, and where on it what was met", 0},
-    {"rows", KEY_ROWS, "N", 0, "Print so many rows at most, 0 for all (200); rows of hits are printed always",
-     0},
-    {"json", 'j', 0, 0, "One JSON document on stdout, with all rows", 0},
+     "hits"},
+    {"light", 0, "N", RT_TO_INTEGER(light, 0, UINT32_MAX),
+     "The light that the shadow ray goes to (default 0)"},
+    {"svg", 0, "FILE.svg", RT_TO_PATH(svg, RT_CLI_PICTURES),
+     "Draw the path: a section through the ray, and what it met where"},
+    {"rows", 0, "N", RT_TO_INTEGER(rows, 0, UINT32_MAX),
+     "Print at most N rows, 0 for all (200); rows of hits are always printed"},
+    {"json", 'j', NULL, RT_TO_FLAG(json), "One JSON document on stdout, with all rows"},
     {0}};
-
-static void check_options(const Options *o, struct argp_state *state) {
-    if (!o->scene) argp_error(state, "a SCENE is needed: a file or a built-in, as `raytally scenes` lists");
-    if (!o->aimed) argp_error(state, "say which ray: --pixel X,Y");
-}
-
-static error_t parse_option(int key, char *argument, struct argp_state *state) {
-    Options *o = state->input;
-    switch (key) {
-    case 'p': rt_cli_pixel(state, argument, &o->x, &o->y), o->aimed = true; return 0;
-    case 'a': o->accel = argument; return 0;
-    case 's': rt_cli_size(state, argument, &o->width, &o->height); return 0;
-    case 'k': o->kind = rt_cli_image_ray_kind(state, "--rays", argument); return 0;
-    case 'j': o->json = true; return 0;
-    case KEY_LIGHT: o->light = (uint32_t)rt_cli_integer(state, "--light", argument, 0, UINT32_MAX); return 0;
-    case KEY_SVG: rt_cli_set_path(state, "--svg", &o->svg, argument, RT_CLI_PICTURES); return 0;
-    case KEY_ROWS: o->rows = rt_cli_integer(state, "--rows", argument, 0, UINT32_MAX); return 0;
-    case ARGP_KEY_ARG:
-        if (o->scene) argp_error(state, "one SCENE at a time; '%s' is a second one", argument);
-        o->scene = argument;
-        return 0;
-    case ARGP_KEY_END: check_options(o, state); return 0;
-    default: return ARGP_ERR_UNKNOWN;
-    }
-}
 
 /* ---- in words ---- */
 
-/* A t; "-" for none, which INFINITY stands for. */
+/* A t; "-" for INFINITY. */
 static void print_t(double t) {
     if (t < (double)INFINITY)
         printf("  %9.6g", t);
@@ -165,10 +154,6 @@ static void print_path(const RtPath *path, const Options *o, const char *title, 
 
 /* ---- as JSON ---- */
 
-static json_t *vector_json(RtVec3 v) {
-    return json_pack("[f, f, f]", (double)v.x, (double)v.y, (double)v.z);
-}
-
 static json_t *row_json(const RtPathRow *row) {
     bool is_in = row->boxed && row->enter <= row->leave;
     json_t *json = json_pack(
@@ -179,7 +164,7 @@ static json_t *row_json(const RtPathRow *row) {
         rt_json_number(row->kind == RT_TRACED_OBJECT_TEST && row->met ? (double)row->t : (double)NAN),
         "nearest", rt_json_number((double)row->nearest));
     if (!json || !row->boxed) return json;
-    json_t *box = json_pack("[o, o]", vector_json(row->box.lo), vector_json(row->box.hi));
+    json_t *box = json_pack("[o, o]", rt_cli_vector_json(row->box.lo), rt_cli_vector_json(row->box.hi));
     if (json_object_set_new(json, "box", box) == 0) return json;
     json_decref(json);
     return NULL;
@@ -202,9 +187,10 @@ static json_t *path_json(const RtPath *path, const Options *o, const char *spec)
     const RtRay *r = &path->ray;
     return json_pack("{s:s, s:s, s:[i, i], s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
                      o->scene, "accel", spec, "pixel", (int)o->x, (int)o->y, "kind",
-                     rt_ray_kind_name(o->kind), "org", vector_json(r->org), "dir", vector_json(r->dir),
-                     "tmin", rt_json_number((double)r->tmin), "tmax", rt_json_number((double)r->tmax), "rows",
-                     rows_json(path), "counts", rt_json_tally(&path->tally), "object",
+                     rt_ray_kind_name(o->kind), "org", rt_cli_vector_json(r->org), "dir",
+                     rt_cli_vector_json(r->dir), "tmin", rt_json_number((double)r->tmin), "tmax",
+                     rt_json_number((double)r->tmax), "rows", rows_json(path), "counts",
+                     rt_json_tally(&path->tally), "object",
                      path->hit.object >= RT_UNNAMED_OBJECT ? json_null() : json_integer(path->hit.object),
                      "blocked", path->any ? json_boolean(path->hit.object != RT_NO_OBJECT) : json_null(), "t",
                      rt_json_number((double)path->hit.t));
@@ -243,15 +229,14 @@ static RtStatus run(const Options *o, RtError *error) {
     rt_spec_format(&spec, text);
     if (o->json) RT_TRY(rt_cli_check_json_name(o->scene, error));
     RT_TRY(rt_scene_open(o->scene, &scene, error));
-    RtStatus status = rt_scene_sample(&scene, o->width, o->height, 1, false, error);
+    RtStatus status = rt_scene_sample(&scene, o->size[0], o->size[1], 1, false, error);
     if (status == RT_OK) status = rt_cli_check_pixel(&scene.sampling, o->x, o->y, error);
     if (status == RT_OK) status = rt_accel_build(&spec, &scene, 0, &accel, error);
     if (status == RT_OK && rt_accel_is_remote(accel))
-        status =
-            rt_fail(error, RT_BAD_INPUT,
-                    "%s: the path through an accelerator of a plugin is not seen from here, for it lives "
-                    "in a process of its own; `raytally render --heatmap` shows what its rays cost",
-                    text);
+        status = rt_fail(error, RT_BAD_INPUT,
+                         "%s: a plugin runs in its own process, so raytally cannot follow a ray through it; "
+                         "`raytally render --heatmap` shows what its rays cost",
+                         text);
     if (status == RT_OK) status = trace(o, &scene, accel, text, error);
     rt_accel_destroy(accel);
     rt_scene_clear(&scene);
@@ -259,32 +244,31 @@ static RtStatus run(const Options *o, RtError *error) {
 }
 
 static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
-const struct argp rt_trace_argp = {
+const RtSyntax rt_trace_syntax = {
     .options = options,
-    .parser = parse_option,
-    .args_doc = "SCENE",
-    .doc = "Follow one ray through an accelerator: each step, extent test and object test, in order."
-           "\vA row says what was visited or tested, from which t to which the ray is in its box (as far as "
-           "it has one), whether an extent was met or an object hit, and the t of the nearest hit so far. "
-           "An "
-           "extent that the ray goes through is missed where it is entered only behind that hit. A step is "
-           "a "
-           "node, voxel, sample or list entry visited; what else the words mean, and what each accelerator "
-           "counts, is in accel/README.md. The rows come from the counted kernel itself and add up to its "
-           "tally, which is checked.\n\n"
-           "Of the drawing the upper part is a section along the ray and one axis of the scene: a box is "
-           "in it where the ray goes through it. The bars below say where on the ray that is, in the order "
-           "of "
-           "the rows. Examples:\n"
-           "  raytally trace balls --pixel 256,256\n"
-           "  raytally trace balls --pixel 256,256 --accel grid:density=1 --svg path.svg\n"
-           "  raytally trace balls --pixel 256,400 --accel light:cells=40+octree --rays shadow --light 1\n"
-           "Through embree no steps are seen, for it counts none; with mode=user, object tests.",
-    .children = children};
+    .children = children,
+    .arguments = "SCENE",
+    .argument = RT_SCENE_ARGUMENT,
+    .finish = finish,
+    .help =
+        "Follow one ray through an accelerator: each step, extent test and object test, in order.\v"
+        "A row shows what was visited or tested, the interval of t in which the ray is inside its box (if it "
+        "has one), whether the ray met the extent or hit the object, and the t of the nearest hit so far. An "
+        "extent that the ray enters behind that hit counts as missed. A step is a visit to a node, voxel, "
+        "sample or list entry; accel/README.md explains the other words and what each accelerator counts. "
+        "The rows come from the counted kernel itself; raytally checks that they add up to its tally.\n"
+        "\n"
+        "The upper part of the drawing is a section along the ray and one axis of the scene; it shows a box "
+        "where the ray passes through it. The bars below show that part of the ray, in the order of the "
+        "rows. Examples:\n"
+        "  raytally trace balls --pixel 256,256\n"
+        "  raytally trace balls --pixel 256,256 --accel grid:density=1 --svg path.svg\n"
+        "  raytally trace balls --pixel 256,400 --accel light:cells=40+octree --rays shadow --light 1\n"
+        "embree shows no steps, because it counts none; with mode=user it shows object tests."};
 
 int rt_command_trace(int argc, char **argv) {
     RtError error;
     Options o = {.accel = rt_accel_default(), .rows = DEFAULT_ROWS};
-    argp_parse(&rt_trace_argp, argc, argv, 0, 0, &o);
+    rt_cli_parse(&rt_trace_syntax, argc, argv, &o);
     return run(&o, &error) == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
 }

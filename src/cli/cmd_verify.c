@@ -12,7 +12,6 @@
 #include "verify/replay.h"
 #include "verify/verify_table.h"
 
-#include <argp.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -33,84 +32,61 @@ typedef struct Options {
     RtVerifyChoice choice;
 } Options;
 
-enum { KEY_SPREAD = 256, KEY_QUICK, KEY_RESUME, KEY_FORCE, KEY_REPLAY, KEY_RAYS_FROM };
-
-static const struct argp_option options[] = {
-    {"accel", 'a', "SPEC", 0, "An accelerator, or `all` of them (the default); may be repeated", 0},
-    {"spread", KEY_SPREAD, 0, 0, "Also try each parameter at every value worth testing, one at a time", 0},
-    {"quick", KEY_QUICK, 0, 0,
-     "The short one, of a few seconds: 2000 rays, and where no SCENE is given only scenes of up to 100 "
-     "objects; what that leaves out the last line says",
-     0},
-    {"rays", 'n', "N", 0,
-     "Rays for each scene and accelerator (default 20000): a tenth from the camera, the others chords and "
-     "rays that graze, start and end on surfaces, run along axes, edges and faces",
-     0},
-    {"rays-from", KEY_RAYS_FROM, "FILE.npy", 0,
-     "The rays of FILE in place of all others: an array of float32 of shape (N, 8), as `raytally rays` "
-     "writes it. Each "
-     "is asked both for its nearest hit and for any",
-     0},
-    {"seed", 's', "S", 0, "Seed of the random rays and of the families of scenes (default 1)", 0},
-    {"threads", 't', "N", 0, "Threads; 0, the default, is all processors", 0},
-    {"out", 'o', "DIR", 0,
-     "Keep the rows in DIR as they are found, tables of them (verify.csv, verify.md), and what was wrong to "
-     "be replayed",
-     0},
-    {"resume", KEY_RESUME, 0, 0, "Go on with the interrupted run in --out DIR", 0},
-    {"force", KEY_FORCE, 0, 0,
-     "Start over: the results in --out DIR are lost, which is refused without it. Of --resume and "
-     "--force the last one counts",
-     0},
-    {"replay", KEY_REPLAY, "FILE", 0,
-     "Ask again what was answered wrong: exit code 1 if it still is, 2 if it cannot be asked", 0},
-    {"json", 'j', 0, 0, "One JSON document on stdout", 0},
-    {0}};
-
-static error_t parse_option(int key, char *argument, struct argp_state *state) {
-    Options *o = state->input;
-    switch (key) {
-    case 'a':
-        if (o->accel_count == RT_VERIFY_MAX_SPECS) {
-            argp_error(state, "more than %d accelerators", RT_VERIFY_MAX_SPECS);
-        }
-        o->accels[o->accel_count++] = argument;
-        return 0;
-    case KEY_SPREAD: o->spread = true; return 0;
-    case KEY_QUICK: o->quick = true; return 0;
-    case KEY_RESUME: o->start = RT_START_RESUME; return 0;
-    case KEY_FORCE: o->start = RT_START_ANEW; return 0;
-    case KEY_REPLAY: o->replay = argument; return 0;
-    case 'o': o->folder = argument; return 0;
-    case KEY_RAYS_FROM: o->rays_from = argument; return 0;
-    case 'n': o->rays = (uint64_t)rt_cli_integer(state, "--rays", argument, 1, 20000000); return 0;
-    case 's': o->seed = (uint64_t)rt_cli_integer(state, "--seed", argument, 0, INT64_MAX); return 0;
-    case 't': o->threads = (int)rt_cli_integer(state, "--threads", argument, 0, 1024); return 0;
-    case 'j': o->json = true; return 0;
-    case ARGP_KEY_ARG:
-        if (o->scene_count == RT_VERIFY_MAX_SCENES) {
-            argp_error(state, "more than %d scenes", RT_VERIFY_MAX_SCENES);
-        }
-        o->scenes[o->scene_count++] = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (o->replay && (o->scene_count > 0 || o->accel_count > 0 || o->folder || o->json)) {
-            argp_error(state,
-                       "--replay asks again what is in FILE and prints text: it takes no SCENE, --accel, "
-                       "--out or --json");
-        }
-        if (o->rays_from && (o->quick || o->rays > 0 || o->replay || o->scene_count == 0)) {
-            argp_error(state,
-                       "--rays-from has all rays in it, and they belong to a SCENE: name that, and leave "
-                       "--rays, --quick and --replay out");
-        }
-        if (o->start != RT_START_FRESH && !o->folder) {
-            argp_error(state, "--resume and --force are about the run in --out DIR: name it");
-        }
-        return 0;
-    default: return ARGP_ERR_UNKNOWN;
-    }
+static void take_accel(void *options, const char *text, struct argp_state *state) {
+    Options *o = options;
+    if (o->accel_count == RT_VERIFY_MAX_SPECS)
+        argp_error(state, "more than %d accelerators", RT_VERIFY_MAX_SPECS);
+    o->accels[o->accel_count++] = text;
 }
+
+static void take_scene(void *options, const char *text, struct argp_state *state) {
+    Options *o = options;
+    if (o->scene_count == RT_VERIFY_MAX_SCENES)
+        argp_error(state, "more than %d scenes", RT_VERIFY_MAX_SCENES);
+    o->scenes[o->scene_count++] = text;
+}
+
+static void finish(void *options, struct argp_state *state) {
+    const Options *o = options;
+    if (o->replay && (o->scene_count > 0 || o->accel_count > 0 || o->folder || o->json))
+        argp_error(
+            state,
+            "--replay traces the ray in FILE and prints text: it takes no SCENE, --accel, --out or --json");
+    if (o->rays_from && (o->quick || o->rays > 0 || o->replay || o->scene_count == 0))
+        argp_error(state, "--rays-from names all rays of one SCENE: name the SCENE, and leave out --rays, "
+                          "--quick and --replay");
+    if (o->start != RT_START_FRESH && !o->folder)
+        argp_error(state, "--resume and --force need the run's directory: --out DIR");
+}
+
+static const RtOption options[] = {
+    {"accel", 'a', "SPEC", RT_TO_TAKE(take_accel),
+     "An accelerator, or `all` of them (the default); may be repeated"},
+    {"spread", 0, NULL, RT_TO_FLAG(spread),
+     "Also try each parameter at every value worth testing, one at a time"},
+    {"quick", 0, NULL, RT_TO_FLAG(quick),
+     "A short check of a few seconds: 2000 rays, and without a SCENE only scenes of up to 100 objects; the "
+     "last line says what it left out"},
+    {"rays", 'n', "N", RT_TO_INTEGER(rays, 1, 20000000),
+     "Rays for each scene and accelerator (default 20000): a tenth from the camera; the others are chords "
+     "and rays that graze, start and end on surfaces, and run along axes, edges and faces"},
+    {"rays-from", 0, "FILE.npy", RT_TO_TEXT(rays_from),
+     "Trace the rays of FILE instead: an array of float32 of shape (N, 8), as `raytally rays` writes it. "
+     "Each ray asks for its nearest hit and for any hit"},
+    {"seed", 's', "S", RT_TO_INTEGER(seed, 0, INT64_MAX),
+     "Seed of the random rays and of the families of scenes (default 1)"},
+    {"threads", 't', "N", RT_TO_INTEGER(threads, 0, 1024), "Threads; 0, the default, is all processors"},
+    {"out", 'o', "DIR", RT_TO_TEXT(folder),
+     "Write rows to DIR as they are found, tables of them (verify.csv, verify.md), and replay files of wrong "
+     "answers"},
+    {"resume", 0, NULL, RT_TO_SET(start, RT_START_RESUME), "Continue the interrupted run in --out DIR"},
+    {"force", 0, NULL, RT_TO_SET(start, RT_START_ANEW),
+     "Start over: the results in --out DIR are lost. The last of --resume and --force counts"},
+    {"replay", 0, "FILE", RT_TO_TEXT(replay),
+     "Trace the ray of a wrong answer again: exit code 1 if the answer is still wrong, 2 if the ray cannot "
+     "be traced"},
+    {"json", 'j', NULL, RT_TO_FLAG(json), "One JSON document on stdout"},
+    {0}};
 
 static RtStatus choose(Options *o, RtError *error) {
     RtVerifyChoice *choice = &o->choice;
@@ -348,25 +324,26 @@ static RtStatus replay(const Options *o, bool *failed, RtError *error) {
 }
 
 static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
-const struct argp rt_verify_argp = {
+const RtSyntax rt_verify_syntax = {
     .options = options,
-    .parser = parse_option,
-    .args_doc = "[SCENE...]\n--replay FILE",
-    .doc = "Verify that accelerators answer every ray of each SCENE (if none is given, some fifty small ones "
-           "that are hard on accelerators) like brute: the same object and the same bits of t, timed and "
-           "counted, singly and in "
-           "streams. SCENE may be `families`, generated scenes that are hard on accelerators, or one of "
-           "them, as in family:kind=slivers,seed=7 (`raytally scenes family` names them all).\v"
-           "Those that compute in arithmetic of their own (Embree's native mode) get verdicts: equal, tie, "
-           "marginal (explained by rounding) or wrong. The first wrong answer of each row is written to a "
-           "file (in --out DIR, else in verify-failures/), with the scene shrunk to the objects that it "
-           "takes; --replay asks it again. Exit code 1 if anything is wrong.",
-    .children = children};
+    .children = children,
+    .arguments = "[SCENE...]\n--replay FILE",
+    .argument = {.name = "SCENE", .take = take_scene},
+    .finish = finish,
+    .help =
+        "Verify that accelerators answer every ray of each SCENE (default: some fifty small scenes that are "
+        "hard on accelerators) like brute: the same object and the same bits of t, timed and counted, singly "
+        "and in streams. SCENE may be `families`, generated scenes that are hard on accelerators, or one of "
+        "them, as in family:kind=slivers,seed=7 (`raytally scenes family` lists them).\v"
+        "Accelerators that compute in their own arithmetic (Embree's native mode) get verdicts: equal, tie, "
+        "marginal (explained by rounding) or wrong. raytally writes the first wrong answer of each row to a "
+        "file (in --out DIR, or in verify-failures/), with the scene shrunk to the objects that it takes; "
+        "--replay traces it again. Exit code 1 if anything is wrong."};
 
 int rt_command_verify(int argc, char **argv) {
     static Options o;
     o = (Options){.seed = 1};
-    argp_parse(&rt_verify_argp, argc, argv, 0, 0, &o);
+    rt_cli_parse(&rt_verify_syntax, argc, argv, &o);
     RtError error;
     bool failed = false;
     RtStatus status = o.replay ? replay(&o, &failed, &error) : choose(&o, &error);

@@ -9,7 +9,6 @@
 #include "core/text/table.h"
 #include "scenes/builtin.h"
 
-#include <argp.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -46,7 +45,7 @@ static void print_commands(const RtCommand *commands, int count) {
         const RtCommand *command = &commands[i];
         begin("options", command->name);
         fputs("--help --usage", stdout);
-        if (command->argp) print_options(command->argp);
+        print_options(rt_cli_command_argp(command));
         end();
         begin("argument", command->name);
         fputs(command->arguments, stdout);
@@ -110,29 +109,19 @@ static void print_words(void) {
     end();
 }
 
-static error_t parse_option(int key, char *argument, struct argp_state *state) {
-    const char **shell = state->input;
-    switch (key) {
-    case ARGP_KEY_ARG:
-        if (*shell) argp_error(state, "one SHELL at a time; '%s' is a second one", argument);
-        if (strcmp(argument, "bash") != 0)
-            argp_error(state, "there is none for '%s', only for bash", argument);
-        *shell = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!*shell) argp_error(state, "a SHELL is missing: bash");
-        return 0;
-    default: return ARGP_ERR_UNKNOWN;
-    }
+static void take_shell(void *options, const char *text, struct argp_state *state) {
+    (void)options;
+    if (strcmp(text, "bash") != 0) argp_error(state, "there is no completion for '%s', only for bash", text);
 }
 
-const struct argp rt_completion_argp = {.parser = parse_option,
-                                        .args_doc = "bash",
-                                        .doc = "Print a script that completes commands, options, "
-                                               "accelerators and scenes with their parameters in bash."
-                                               "\vIn the shell at hand: source <(raytally completion bash)\n"
-                                               "For all shells to come: raytally completion bash > "
-                                               "~/.local/share/bash-completion/completions/raytally"};
+const RtSyntax rt_completion_syntax = {
+    .arguments = "bash",
+    .argument = {.name = "SHELL", .missing = "a SHELL is missing: bash", .take = take_shell},
+    .help = "Print a script that completes commands, options, accelerators and scenes with their parameters "
+            "in bash.\v"
+            "In this shell: source <(raytally completion bash)\n"
+            "In all later shells: raytally completion bash > "
+            "~/.local/share/bash-completion/completions/raytally"};
 
 void rt_completion_print(const RtCommand *commands, int count) {
     puts("# Made by `raytally completion bash`.\n_raytally_names() {\n    case $1 in");

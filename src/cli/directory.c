@@ -2,36 +2,8 @@
 #include "cli/directory.h"
 
 #include "cli/cli.h"
-#include "cli/plugins.h"
 #include "core/base/lock.h"
 #include "core/base/memory.h"
-
-#include <argp.h>
-
-static error_t parse_option(int key, char *argument, struct argp_state *state) {
-    const char **directory = state->input;
-    switch (key) {
-    case ARGP_KEY_ARG:
-        if (*directory) argp_error(state, "one DIR at a time; '%s' is a second one", argument);
-        *directory = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!*directory) argp_error(state, "a result DIR is missing, as in results/first-look");
-        return 0;
-    default: return ARGP_ERR_UNKNOWN;
-    }
-}
-
-static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
-const struct argp rt_directory_argp = {.parser = parse_option, .args_doc = "DIR", .children = children};
-
-int rt_cli_directory(int argc, char **argv, const char *help, bool writes, RtDirectoryWork *work) {
-    const char *directory = NULL;
-    struct argp argp = rt_directory_argp;
-    argp.doc = help;
-    argp_parse(&argp, argc, argv, 0, 0, &directory);
-    return rt_cli_directory_work(directory, writes, work);
-}
 
 int rt_cli_directory_work(const char *directory, bool writes, RtDirectoryWork *work) {
     RtError error;

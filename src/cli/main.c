@@ -2,11 +2,9 @@
 /* raytally: the list of commands. */
 #include "accel/remote.h"
 #include "cli/cli.h"
-#include "cli/directory.h"
 #include "cli/plugins.h"
 #include "core/base/words.h"
 
-#include <argp.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -14,41 +12,43 @@ static int run_completion(int argc, char **argv);
 
 static const RtCommand commands[] = {
     {"accels", "[NAME]", "list the accelerators, their parameters, defaults, ranges and papers",
-     rt_command_accels, &rt_accels_argp},
-    {"scenes", "[NAME]", "list the built-in scenes and their parameters", rt_command_scenes, &rt_scenes_argp},
+     rt_command_accels, &rt_accels_syntax, NULL},
+    {"scenes", "[NAME]", "list the built-in scenes and their parameters", rt_command_scenes,
+     &rt_scenes_syntax, NULL},
     {"info", "SCENE", "objects by shape, bounds, materials, lights, camera of a scene", rt_command_info,
-     &rt_info_argp},
+     &rt_info_syntax, NULL},
     {"render", "SCENE", "an image of a scene, heatmaps of its cost, a picture of the structure",
-     rt_command_render, &rt_render_argp},
+     rt_command_render, &rt_render_syntax, NULL},
     {"trace", "SCENE", "one ray's path through an accelerator, step by step", rt_command_trace,
-     &rt_trace_argp},
+     &rt_trace_syntax, NULL},
     {"verify", "[SCENE...]", "check that accelerators answer every ray like brute", rt_command_verify,
-     &rt_verify_argp},
+     &rt_verify_syntax, NULL},
     {"bench", "SCENE", "count and time accelerators on the rays of one scene", rt_command_bench,
-     &rt_bench_argp},
+     &rt_bench_syntax, NULL},
     {"compare", "BEFORE AFTER", "faster or slower: two results, or two programs run in turns",
-     rt_command_compare, &rt_compare_argp},
+     rt_command_compare, NULL, &rt_compare_argp},
     {"rays", "SCENE", "write rays of a scene for NumPy; bench and verify take such files", rt_command_rays,
-     &rt_rays_argp},
-    {"run", "EXPERIMENT", "run an experiment: CSV files, plots, report", rt_command_run, &rt_run_argp},
-    {"merge", "DIR...", "join the shards of an experiment (run --shard)", rt_command_merge, &rt_merge_argp},
-    {"plot", "DIR", "draw the plots of a result directory again", rt_command_plot, &rt_plot_argp},
+     &rt_rays_syntax, NULL},
+    {"run", "EXPERIMENT", "run an experiment: CSV files, plots, report", rt_command_run, &rt_run_syntax,
+     NULL},
+    {"merge", "DIR...", "join the shards of an experiment (run --shard)", rt_command_merge, &rt_merge_syntax,
+     NULL},
+    {"plot", "DIR", "draw the plots of a result directory again", rt_command_plot, &rt_plot_syntax, NULL},
     {"report", "DIR", "write the report of a result directory again; an index of all", rt_command_report,
-     &rt_report_argp},
+     &rt_report_syntax, NULL},
     {"reproduce", "DIR", "count again, and compare with DIR/counts.csv byte for byte", rt_command_reproduce,
-     &rt_directory_argp},
-    {"convert", "IN OUT", "write a scene in another format", rt_command_convert, &rt_convert_argp},
+     &rt_reproduce_syntax, NULL},
+    {"convert", "IN OUT", "write a scene in another format", rt_command_convert, &rt_convert_syntax, NULL},
     {"new-accel", "NAME", "a folder with an accelerator of your own, to be changed: a plugin",
-     rt_command_new_accel, &rt_new_accel_argp},
+     rt_command_new_accel, &rt_new_accel_syntax, NULL},
     {"completion", "SHELL", "print a script that completes all this in bash", run_completion,
-     &rt_completion_argp},
+     &rt_completion_syntax, NULL},
 };
 
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
 static int run_completion(int argc, char **argv) {
-    const char *shell = NULL;
-    argp_parse(&rt_completion_argp, argc, argv, 0, 0, &shell);
+    rt_cli_parse(&rt_completion_syntax, argc, argv, NULL);
     rt_completion_print(commands, COMMAND_COUNT);
     return RT_EXIT_OK;
 }
@@ -100,7 +100,7 @@ static int run_command(int argc, char **argv) {
     snprintf(title, sizeof title, "raytally %s", command->name);
     argv[0] = title;
     RtError error;
-    if (takes_plugins(command->argp) && rt_cli_load_plugins(argc, argv, &error) != RT_OK)
+    if (takes_plugins(rt_cli_command_argp(command)) && rt_cli_load_plugins(argc, argv, &error) != RT_OK)
         return rt_cli_fail(&error);
     int code = command->run(argc, argv);
     if (rt_remote_exit_message()) {

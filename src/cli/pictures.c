@@ -27,36 +27,34 @@ enum {
 };
 
 static const struct argp_option options[] = {
-    {0, 0, 0, 0, "What a structure looks like:", 1},
+    {0, 0, 0, 0, "Pictures of a structure:", 1},
     {"structure", KEY_STRUCTURE, "FILE.png", 0,
-     "The boxes of the accelerator over the image; of item the objects that samples name, of light the "
-     "lengths of "
-     "lists on an unfolded cube",
+     "Draw the accelerator's boxes over the image; for item the objects in its samples, for light the "
+     "lengths of its lists on an unfolded cube",
      1},
-    {"layer", KEY_LAYER, "NAME", 0, "Of overlays: the layer to draw (default: the topmost that can be drawn)",
-     1},
-    {"level", KEY_LEVEL, "A[..B]", 0, "Boxes of this level alone, or of these; the root's is 0", 1},
-    {"leaves", KEY_LEAVES, 0, 0, "Leaves alone: boxes that list objects", 1},
+    {"layer", KEY_LAYER, "NAME", 0,
+     "For overlays: the layer to draw (default: the topmost that can be drawn)", 1},
+    {"level", KEY_LEVEL, "A[..B]", 0,
+     "Draw only the boxes of this level, or of these levels; the root is level 0", 1},
+    {"leaves", KEY_LEAVES, 0, 0, "Draw only leaves: boxes that list objects", 1},
     {"slice", KEY_SLICE, "AXIS[=AT]", 0,
-     "A section instead, where x, y or z is AT (default: in the middle of the scene), with what it cuts of "
-     "boxes and "
-     "objects",
+     "Draw the section at x, y or z = AT (default: the middle of the scene), with the boxes and objects that "
+     "it cuts",
      1},
-    {"light", KEY_LIGHT, "N", 0, "Of light: the light whose cells are drawn (default 0)", 1},
-    {"pixel", KEY_PIXEL, "X,Y", 0, "Of light: mark the cell that the shadow ray of this pixel reads", 1},
-    {0, 0, 0, 0, "What each pixel cost:", 2},
+    {"light", KEY_LIGHT, "N", 0, "For light: the light whose cells are drawn (default 0)", 1},
+    {"pixel", KEY_PIXEL, "X,Y", 0, "For light: mark the cell that the shadow ray of this pixel reads", 1},
+    {0, 0, 0, 0, "Heatmaps, the cost of each pixel:", 2},
     {"heatmap", KEY_HEATMAP, "COUNTER FILE.png", 0,
-     "object_tests, extent_tests, steps, or any other counter; may be given once for each. With several "
-     "--accel a "
-     "picture each, side by side on one scale",
+     "object_tests, extent_tests, steps, or any other counter; may be given once for each. Several --accel "
+     "are drawn side by side on one scale",
      2},
     {"heatmap-max", KEY_MAX, "VALUE", 0,
-     "The value of the brightest colour, and of all above it (default: the most)", 2},
+     "The value of the brightest colour; larger values get it too (default: the maximum)", 2},
     {"heatmap-scale", KEY_SCALE, "linear|log", 0,
-     "How values become colours (default: log where the mean is below an eighth of the most)", 2},
-    {"heatmap-rays", KEY_RAYS, "KIND", 0, "Count primary, shadow, reflection or transmission rays alone", 2},
+     "How values map to colours (default: log if the mean is below an eighth of the maximum)", 2},
+    {"heatmap-rays", KEY_RAYS, "KIND", 0, "Count only primary, shadow, reflection or transmission rays", 2},
     {"heatmap-difference", KEY_DIFFERENCE, 0, 0,
-     "Of two --accel: the first less the second, too, red where the first costs more", 2},
+     "For two --accel: also draw the first minus the second, red where the first costs more", 2},
     {0}};
 
 static size_t counter_by_name(struct argp_state *state, const char *name) {
@@ -159,13 +157,12 @@ void rt_pictures_finish(RtPictureOptions *o, uint32_t accels, struct argp_state 
     bool heats = rt_pictures_any_heatmap(o);
     const char *structural = o->layer ? "--layer" : o->of_boxes ? o->of_boxes : o->of_light;
     if (structural && !o->structure)
-        argp_error(state, "%s is about the picture of a structure: say where it goes, --structure FILE.png",
-                   structural);
-    if (o->thermal && !heats)
-        argp_error(state, "%s is about heatmaps: say of what, --heatmap COUNTER FILE.png", o->thermal);
+        argp_error(state, "%s needs a picture of a structure: --structure FILE.png", structural);
+    if (o->thermal && !heats) argp_error(state, "%s needs a heatmap: --heatmap COUNTER FILE.png", o->thermal);
     if (o->heat.difference && accels != 2)
-        argp_error(state, "--heatmap-difference is of two accelerators: give --accel twice");
-    if (accels > 1 && !heats) argp_error(state, "several accelerators are for --heatmap: give one --accel");
+        argp_error(state, "--heatmap-difference needs two accelerators: give --accel twice");
+    if (accels > 1 && !heats)
+        argp_error(state, "only --heatmap takes several accelerators: give one --accel");
 }
 
 bool rt_pictures_any_heatmap(const RtPictureOptions *o) {
@@ -196,14 +193,15 @@ RtStatus rt_pictures_check(const RtPictureOptions *o, const RtAccel *accel, RtEr
     if (o->of_boxes && layer->ops->find_cell)
         return rt_fail(
             error, RT_BAD_INPUT,
-            "%s is for layers that have boxes, such as bvh or grid, and the picture is of %s: leave "
-            "it out, or choose another layer by --layer",
+            "%s needs a layer that has boxes, such as bvh or grid, and the picture shows %s: leave it out, "
+            "or choose another --layer",
             o->of_boxes, layer->ops->name);
     if (o->of_light && !has_cells_of_lights(layer))
-        return rt_fail(error, RT_BAD_INPUT,
-                       "%s is for the cells around a light, which the layer light has, and the picture is of "
-                       "%s: leave it out, or draw light, as of --accel light:cells=64+bvh",
-                       o->of_light, layer->ops->name);
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "%s needs the cells around a light, which the layer light has, and the picture shows %s: "
+            "leave it out, or draw light, as in --accel light:cells=64+bvh",
+            o->of_light, layer->ops->name);
     return RT_OK;
 }
 

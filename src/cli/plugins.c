@@ -18,9 +18,9 @@ enum { OPT_PLUGIN = 0x10000 };
 
 static const struct argp_option options[] = {
     {"plugin", OPT_PLUGIN, "FILE.so", 0,
-     "Load accelerators of your own; may be repeated. $" VARIABLE " names files and folders of them, joined "
-     "by ':' (in a name, '\\:'). Each runs in a process of its own, and is given up after "
-     "$RAYTALLY_PLUGIN_SECONDS (60) without progress",
+     "Load your own accelerators; may be repeated. $" VARIABLE
+     " names more files and folders, joined by ':' (in a name, '\\:'). Each plugin runs in its own process; "
+     "raytally gives it up after $RAYTALLY_PLUGIN_SECONDS (60) without progress",
      100},
     {0}};
 

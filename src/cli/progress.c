@@ -98,8 +98,8 @@ static void on_notice(void *context, const char *message) {
     fprintf(stderr, "%sraytally: %s\n", progress->terminal ? "\r\033[K" : "", message);
 }
 
-RtObserver rt_progress_observer(RtProgress *progress) {
-    return (RtObserver){progress, on_event, on_notice};
+RtRunObserver rt_progress_observer(RtProgress *progress) {
+    return (RtRunObserver){progress, on_event, on_notice};
 }
 
 /* ---- the watch ---- */

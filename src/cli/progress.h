@@ -34,7 +34,7 @@ RtProgress rt_progress_begin(const RtWorkloadOptions *options);
 void rt_progress_watch(RtProgress *progress, const char *directory, const char *go_on);
 
 /* What a workload tells its progress to; notices get a line of their own, on a terminal or not. */
-RtObserver rt_progress_observer(RtProgress *progress);
+RtRunObserver rt_progress_observer(RtProgress *progress);
 
 /* Seconds that are left, by what the forecast said of what is done since the beginning and what that took;
  * NAN where that is not known yet. */

@@ -13,13 +13,13 @@ enum { OPT_RAYS = 256, OPT_LIMIT, OPT_COHERENT_RUN, OPT_SEED, OPT_SIZE, OPT_CORN
 static const struct argp_option options[] = {
     {0, 0, 0, 0, "The rays:", 1},
     {"rays", OPT_RAYS, "KIND,...", 0,
-     "Ray kinds: primary, shadow, reflection, transmission, diffuse, random; and occlusion, the diffuse rays "
-     "asked for any hit (all but occlusion; primary where there can be one kind)",
+     "Kinds of rays: primary, shadow, reflection, transmission, diffuse, random, and occlusion, the diffuse "
+     "rays as any-hit queries (default: all but occlusion; primary where only one kind is possible)",
      0},
     {"limit", OPT_LIMIT, "N", 0, "At most N rays of a kind; a larger set is thinned evenly (100000)", 0},
     {"coherent-run", OPT_COHERENT_RUN, "N", 0,
-     "Neighbouring rays kept together where a set is thinned, for packets and caches (256)", 0},
-    {"seed", OPT_SEED, "S", 0, "Seed of diffuse and random rays and of orders (1)", 0},
+     "Thin a set in runs of N neighbouring rays, for packets and caches (256)", 0},
+    {"seed", OPT_SEED, "S", 0, "Seed of diffuse and random rays and of the order of timing (1)", 0},
     {"size", OPT_SIZE, "WxH", 0, "Size of the frame whose rays are recorded (the camera's)", 0},
     {"corners", OPT_CORNERS, 0, 0, "Sample pixel corners, (W+1) x (H+1) rays", 0},
     {"depth", OPT_DEPTH, "N", 0, "Levels of the ray tree, the primary ray being the first (5)", 0},
@@ -91,8 +91,7 @@ void rt_recording_finish(const RtRecordingOptions *o, struct argp_state *state) 
     RtExperiment *e = o->experiment;
     const bool given = *e->rays_from, one = given || o->one_kind;
     if (given && o->frame)
-        argp_error(state, "%s is about rays that are recorded: those of --rays-from are all measured",
-                   o->frame);
+        argp_error(state, "%s applies to recorded rays; --rays-from measures all rays of its file", o->frame);
     if (given && !o->kinds)
         argp_error(state,
                    "say what the rays of --rays-from ask for: --rays nearest, or --rays occlusion (any hit)");

@@ -110,7 +110,7 @@ typedef struct Standard {
 
 static Standard standard(RtExactArena *arena, const RtSolid *solid, const RtExactLine *line) {
     RtExactVec columns[4];
-    for (int i = 0; i < 4; i++) columns[i] = rt_exact_vec(arena, rt_transform_column(&solid->place, i));
+    for (int i = 0; i < 4; i++) columns[i] = rt_exact_vec(arena, rt_transform_column(&solid->to_world, i));
     RtExactVec from = rt_exact_vec_sub(arena, line->org, columns[3]);
     Standard out;
     for (int i = 0; i < 3; i++) {

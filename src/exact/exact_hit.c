@@ -148,11 +148,9 @@ RtFinding rt_exact_hit(RtExactArena *arena, const RtGeometry *geometry, uint32_t
     switch (rt_ref_shape(geometry->objects[id])) {
     case RT_SHAPE_TRIANGLE: hit = triangle_hit(arena, &geometry->triangles[index], line, t); break;
     case RT_SHAPE_SPHERE: hit = sphere_hit(arena, &geometry->spheres[index], line, t); break;
-    case RT_SHAPE_POLYGON: {
-        const RtPolygon *polygon = &geometry->polygons[index];
-        hit = polygon_hit(arena, polygon, geometry->polygon_vertices + polygon->first, line, t);
+    case RT_SHAPE_POLYGON:
+        hit = polygon_hit(arena, &geometry->polygons[index], rt_polygon_vertices(geometry, index), line, t);
         break;
-    }
     case RT_SHAPE_CONE: hit = cone_hit(arena, &geometry->cones[index], line, t); break;
     case RT_SHAPE_CSG: return rt_exact_csg_hit(arena, &geometry->forest, &geometry->csgs[index], line, t);
     case RT_SHAPE_COUNT: return RT_UNDECIDED;

@@ -3,24 +3,18 @@
 
 #include "core/base/file.h"
 #include "core/base/memory.h"
+#include "core/base/process.h"
 #include "core/base/words.h"
 #include "core/text/json_lines.h"
 #include "experiment/result_tables.h"
 
 #include <ctype.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <math.h>
-#include <spawn.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 #include <unistd.h>
-
-static const char missing[] =
-    "valgrind is not installed: it is a package of that name (`apt install valgrind`), and counts the "
-    "instructions of a ray where the processor's own counters cannot be had";
 
 /* ---- the folder ---- */
 
@@ -31,7 +25,7 @@ RtStatus rt_callgrind_init(RtCallgrind *callgrind, const RtExperiment *experimen
     RT_TRY(rt_path_join(place && *place ? place : "/tmp", "raytally-callgrind-XXXXXX", callgrind->folder,
                         error));
     if (mkdtemp(callgrind->folder)) return RT_OK;
-    RtStatus status = rt_fail(error, RT_IO, "%s: a folder for a while cannot be made: %s", callgrind->folder,
+    RtStatus status = rt_fail(error, RT_IO, "%s: no temporary folder can be created: %s", callgrind->folder,
                               strerror(errno));
     callgrind->folder[0] = '\0';
     return status;
@@ -57,31 +51,24 @@ static RtStatus path_of(const RtCallgrind *callgrind, const char *name, char *pa
 
 /* ---- the child ---- */
 
-/* Runs it to its end, what it says going to files. */
-static RtStatus run_valgrind(char *const *arguments, const char *out, const char *log, int *result,
+static RtStatus run_valgrind(char *const *arguments, const char *out, const char *log, RtProcessEnd *end,
                              RtError *error) {
-    pid_t child;
-    posix_spawn_file_actions_t actions;
-    if (posix_spawn_file_actions_init(&actions) != 0) return rt_fail_memory(error, "starting valgrind", 0);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out, O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, log, O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    int failed = posix_spawnp(&child, arguments[0], &actions, NULL, arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    if (failed == ENOENT) return rt_fail(error, RT_NOT_AVAILABLE, "%s", missing);
-    if (failed) return rt_fail(error, RT_IO, "starting valgrind failed: %s", strerror(failed));
-    while (waitpid(child, result, 0) < 0 && errno == EINTR) continue;
-    return RT_OK;
+    const RtCommand command = {.arguments = arguments, .out = out, .log = log};
+    RtStatus status = rt_process_run(&command, end, error);
+    if (status != RT_NOT_AVAILABLE) return status;
+    return rt_fail(error, status,
+                   "valgrind is not installed: the package of that name (`apt install valgrind`) counts the "
+                   "instructions of a ray where the processor's own counters are not available");
 }
 
 RtStatus rt_callgrind_check(RtError *error) {
     char valgrind[] = "valgrind", version[] = "--version", *arguments[] = {valgrind, version, NULL};
-    int result = 0;
-    RT_TRY(run_valgrind(arguments, "/dev/null", "/dev/null", &result, error));
-    return result == 0 ? RT_OK : rt_fail(error, RT_NOT_AVAILABLE, "`valgrind --version` fails");
+    RtProcessEnd end;
+    RT_TRY(run_valgrind(arguments, "/dev/null", "/dev/null", &end, error));
+    return end.code == 0 ? RT_OK : rt_fail(error, RT_NOT_AVAILABLE, "`valgrind --version` fails");
 }
 
-/* The last that the child said. */
+/* The end of the child's messages. */
 static RtStatus fail_child(const char *log, RtError *error) {
     enum { MOST_BYTES = 1 << 24, MOST_SHOWN = 600 };
     char *text = NULL;
@@ -94,9 +81,9 @@ static RtStatus fail_child(const char *log, RtError *error) {
     return RT_NOT_AVAILABLE;
 }
 
-/* ---- what it left ---- */
+/* ---- its results ---- */
 
-/* The sum of the costs in the `n`th file that callgrind wrote, from 1. */
+/* Reads the sum of costs from file number `n` of callgrind, from 1. */
 static RtStatus read_total(const RtCallgrind *callgrind, uint32_t n, uint64_t *total, RtError *error) {
     char path[RT_MAX_PATH], name[32], *text;
     size_t size;
@@ -109,7 +96,7 @@ static RtStatus read_total(const RtCallgrind *callgrind, uint32_t n, uint64_t *t
     const char *at = strstr(text, "\ntotals: ");
     bool found = at && sscanf(at, "\ntotals: %" SCNu64, total) == 1;
     rt_free(text);
-    return found ? RT_OK : rt_fail(error, RT_NOT_AVAILABLE, "%s: callgrind left no sum of its costs", path);
+    return found ? RT_OK : rt_fail(error, RT_NOT_AVAILABLE, "%s: callgrind wrote no sum of costs", path);
 }
 
 static void copy_text(char *out, size_t room, const json_t *line, const char *key) {
@@ -117,7 +104,7 @@ static void copy_text(char *out, size_t room, const json_t *line, const char *ke
     snprintf(out, room, "%s", text ? text : "");
 }
 
-/* Of its passes the last. */
+/* Takes one cell; the last of its passes counts. */
 static RtStatus take_line(RtCallgrind *callgrind, const json_t *line, uint32_t *passes, RtError *error) {
     const RtExperiment *e = callgrind->experiment;
     char scene[RT_MAX_LABEL], accel[RT_MAX_LABEL], kind[RT_MAX_LABEL];
@@ -130,13 +117,14 @@ static RtStatus take_line(RtCallgrind *callgrind, const json_t *line, uint32_t *
     cell->workload = rt_workload_find(e, scene);
     cell->rays = (uint64_t)json_integer_value(json_object_get(line, "rays"));
     if (cell->workload == e->workload_count || rt_ray_kind_parse(kind, &cell->kind, NULL) != RT_OK)
-        return rt_fail(error, RT_BAD_INPUT, "raytally under valgrind says what is not understood");
+        return rt_fail(error, RT_BAD_INPUT, "raytally under valgrind printed an unknown row");
     cell->candidate = rt_candidate_find(e, accel, cell->workload);
     *passes += (uint32_t)json_integer_value(json_object_get(line, "passes"));
     if (!*cell->why) {
         RT_TRY(read_total(callgrind, *passes, &cell->instructions, error));
     }
-    callgrind->count += cell->candidate < e->candidate_count; /* else a setting that only the child has */
+    callgrind->count +=
+        cell->candidate < e->candidate_count; /* else a setting that only the child could build */
     return RT_OK;
 }
 
@@ -152,8 +140,7 @@ static RtStatus take_lines(RtCallgrind *callgrind, const char *path, RtError *er
     return status;
 }
 
-RtStatus rt_callgrind_leave_out_broken(const RtCallgrind *callgrind, const RtResults *results,
-                                       RtError *error) {
+RtStatus rt_callgrind_save_broken(const RtCallgrind *callgrind, const RtResults *results, RtError *error) {
     const RtExperiment *e = callgrind->experiment;
     const uint32_t count = e->workload_count * e->candidate_count * e->kind_count;
     char path[RT_MAX_PATH];
@@ -176,13 +163,14 @@ RtStatus rt_callgrind_leave_out_broken(const RtCallgrind *callgrind, const RtRes
 }
 
 RtStatus rt_callgrind_run(RtCallgrind *callgrind, char *const *arguments, RtError *error) {
-    enum { OPTIONS = 6 };
     char program[RT_MAX_PATH], rows[RT_MAX_PATH], log[RT_MAX_PATH], out[RT_MAX_PATH];
     char out_file[RT_MAX_PATH + 32], valgrind[] = "valgrind", tool[] = "--tool=callgrind";
     char off[] = "--collect-atstart=no", toggle[] = "--toggle-collect=rt_callgrind_pass";
     char dump[] = "--dump-after=rt_callgrind_pass";
+    char *const options[] = {valgrind, tool, off, toggle, dump, out_file, program};
+    const size_t option_count = sizeof options / sizeof options[0];
     size_t count = 0;
-    int result = 0;
+    RtProcessEnd end;
     ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
     if (length < 0) return rt_fail(error, RT_IO, "/proc/self/exe: %s", strerror(errno));
     program[length] = '\0';
@@ -191,17 +179,14 @@ RtStatus rt_callgrind_run(RtCallgrind *callgrind, char *const *arguments, RtErro
     RT_TRY(path_of(callgrind, "out", out, error));
     snprintf(out_file, sizeof out_file, "--callgrind-out-file=%s", out);
     while (arguments[count]) count++;
-    char **all = rt_alloc(OPTIONS + 1 + count + 1, sizeof(char *));
+    char **all = rt_alloc(option_count + count + 1, sizeof(char *));
     if (!all) return rt_fail_memory(error, "arguments", count * sizeof(char *));
-    char *const options[OPTIONS] = {valgrind, tool, off, toggle, dump, out_file};
     memcpy(all, options, sizeof options);
-    all[OPTIONS] = program;
-    memcpy(all + OPTIONS + 1, arguments, count * sizeof(char *));
-    RtStatus status = run_valgrind(all, rows, log, &result, error);
+    memcpy(all + option_count, arguments, count * sizeof(char *));
+    RtStatus status = run_valgrind(all, rows, log, &end, error);
     rt_free(all);
     RT_TRY(status);
-    if (!WIFEXITED(result) || WEXITSTATUS(result) != 0) return fail_child(log, error);
-    return take_lines(callgrind, rows, error);
+    return end.code == 0 ? take_lines(callgrind, rows, error) : fail_child(log, error);
 }
 
 /* ---- tables ---- */
@@ -228,15 +213,15 @@ static RtField isa_of(const Row *r) {
       rt_experiment_kind_name(r->callgrind->experiment, r->cell->kind))                                      \
     X(accel, "accelerator", text, "", "the accelerator's label",                                             \
       rt_candidate_label(r->callgrind->experiment, r->cell->candidate))                                      \
-    X(spec, "accel", text, "", "the accelerator as it was built under valgrind, which has no AVX-512",       \
+    X(spec, "accel", text, "", "the accelerator as built under valgrind, which has no AVX-512",              \
       r->cell->spec)                                                                                         \
-    X(rays, "rays", integer, "", "rays that were asked, of those recorded", r->cell->rays)                   \
-    X(instructions, "instructions", integer, "", "instructions of all of them, by callgrind: exact",         \
+    X(rays, "rays", integer, "", "rays that were traced, of those recorded", r->cell->rays)                  \
+    X(instructions, "instructions", integer, "", "instructions of all these rays, by callgrind: exact",      \
       *r->cell->why ? rt_field_missing() : rt_field_integer(r->cell->instructions))                          \
-    X(instructions_per_ray, "instructions_per_ray", real6, "", "of one of them", a_ray(r))                   \
-    X(why, "why", text, "", "why there are none; else empty", why_of(r))                                     \
+    X(instructions_per_ray, "instructions_per_ray", real6, "", "instructions per ray", a_ray(r))             \
+    X(why, "why", text, "", "why instructions are unknown; else empty", why_of(r))                           \
     X(eye, "instr./ray", figure, "", "instructions per ray", a_ray(r))                                       \
-    X(isa, "isa", text, "", "the instruction set, of those that choose one", isa_of(r))
+    X(isa, "isa", text, "", "the instruction set, for accelerators that choose one", isa_of(r))
 
 RT_TABLE_COLUMNS(columns, COLUMNS)
 
@@ -261,8 +246,8 @@ void rt_print_instructions(const RtCallgrind *callgrind, FILE *out) {
                            .context = &row};
     fputc('\n', out);
     rt_print_wrapped(
-        "Instructions of a ray, by valgrind's callgrind: exact, the same on every run. It knows no "
-        "AVX-512: the instruction set is that of the last column.",
+        "Instructions per ray, by valgrind's callgrind: exact, the same on every run. Valgrind has no "
+        "AVX-512; the last column names the instruction set that was used.",
         out);
     fputc('\n', out);
     rt_table_text(&table, out);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The child that valgrind looks at, and the rays that it is left. */
+/* The child that runs under valgrind, and the rays it is given. */
 #include "accel/isa.h"
 #include "accel/plugin.h"
 #include "core/base/file.h"
@@ -13,7 +13,7 @@
 
 enum { PASSES = 2 };
 
-/* ---- rays: those of a kind and the answers to them, as they lie in memory, for the same program ---- */
+/* ---- files of rays: those of a kind and their answers, as in memory, for the same program ---- */
 
 static RtStatus rays_path(const char *folder, uint32_t workload, RtRayKind kind, char *path, RtError *error) {
     char name[64];
@@ -30,9 +30,9 @@ static RtStatus write_rays(const char *path, const RtRaySet *set, const RtHit *h
     return rt_output_commit(&output, error);
 }
 
-RtStatus rt_callgrind_leave_rays(const RtCallgrind *callgrind, uint32_t workload, const RtRaySet *set,
-                                 const RtAccel *accel, RtError *error) {
-    enum { RUN = 64 }; /* coherent, as packets need them */
+RtStatus rt_callgrind_save_rays(const RtCallgrind *callgrind, uint32_t workload, const RtRaySet *set,
+                                const RtAccel *accel, RtError *error) {
+    enum { RUN = 64 }; /* neighbours, so that packets are coherent */
     char path[RT_MAX_PATH];
     RtRaySet some;
     RT_TRY(rays_path(callgrind->folder, workload, set->kind, path, error));
@@ -46,11 +46,11 @@ RtStatus rt_callgrind_leave_rays(const RtCallgrind *callgrind, uint32_t workload
     return status;
 }
 
-/* Rays of one kind, and the answers; none where none were left. */
+/* Rays of one kind and their answers; none if there is no file. */
 typedef struct Given {
     RtRaySet set;
     const RtHit *hits;
-    char *data; /* owned; both lie in it */
+    char *data; /* owned; the hits are in it */
 } Given;
 
 static RtStatus read_rays(const char *folder, uint32_t workload, RtRayKind kind, Given *given,
@@ -64,30 +64,27 @@ static RtStatus read_rays(const char *folder, uint32_t workload, RtRayKind kind,
     uint64_t count;
     memcpy(&count, given->data, sizeof count);
     if (size != sizeof count + count * (sizeof(RtRay) + sizeof(RtHit)))
-        return rt_fail(error, RT_BAD_INPUT, "%s: these are no rays of this program", path);
+        return rt_fail(error, RT_BAD_INPUT, "%s: not a file of rays of this program", path);
     RT_TRY(rt_rayset_init(&given->set, kind, count, error));
     memcpy(given->set.rays, given->data + sizeof count, count * sizeof(RtRay));
     given->hits = (const RtHit *)(given->data + sizeof count + count * sizeof(RtRay));
     return RT_OK;
 }
 
-/* ---- asking ---- */
+/* ---- tracing ---- */
 
-/* What callgrind collects, by its name. */
+/* The function that callgrind counts, by its name. */
 __attribute__((noinline, visibility("default"))) RtStatus rt_callgrind_pass(const RtRunner *runner,
                                                                             RtError *error);
 RtStatus rt_callgrind_pass(const RtRunner *runner, RtError *error) {
     RtStatus status = runner->run(runner->context, error);
-    __asm__ volatile("" ::: "memory"); /* no tail call: it ends where the pass does */
+    __asm__ volatile("" ::: "memory"); /* no tail call: the function must end after the pass */
     return status;
 }
 
-/* Instruction sets that are not here, and the best of this machine, become the best that there is: by name.
- */
+/* Replaces instruction sets that are not available here, and `best`, by the name of the best one. */
 static void settle_isa(RtSpec *spec) {
-    static const char *const names[] = {
-        [RT_ISA_PORTABLE] = "portable", [RT_ISA_AVX2] = "avx2", [RT_ISA_AVX512] = "avx512"};
-    const char *best = names[rt_isa_best()];
+    const char *best = rt_isa_name(rt_isa_best());
     for (uint32_t i = 0; i < spec->layer_count; i++) {
         RtSpecLayer *layer = &spec->layers[i];
         for (size_t p = 0; p < layer->ops->param_count; p++) {
@@ -104,24 +101,16 @@ static void settle_isa(RtSpec *spec) {
     }
 }
 
-/* What is served, and to whom. */
 typedef struct Serving {
     const RtExperiment *experiment;
     const char *folder;
-    json_t *broken; /* the lines of RT_CALLGRIND_BROKEN, owned */
+    json_t *broken; /* lines of RT_CALLGRIND_BROKEN, owned */
     FILE *out;
 } Serving;
 
-static void say(const Serving *serving, json_t *line) {
-    json_dumpf(line, serving->out, JSON_COMPACT);
-    fputc('\n', serving->out);
-    fflush(serving->out);
-    json_decref(line);
-}
-
-/* What an accelerator did wrong on such rays before, or NULL. */
-static const char *why_left_out(const Serving *serving, const char *scene, const char *accel,
-                                const char *kind) {
+/* What an accelerator did wrong on these rays before, or NULL. */
+static const char *why_broken(const Serving *serving, const char *scene, const char *accel,
+                              const char *kind) {
     const json_t *line;
     size_t i;
     json_array_foreach(serving->broken, i, line) {
@@ -134,25 +123,20 @@ static const char *why_left_out(const Serving *serving, const char *scene, const
     return NULL;
 }
 
-static RtStatus ask(const RtAccel *accel, const Given *given, int *passes, RtError *error) {
+/* Traces the rays of one kind with *accel, which is built from `spec` if it is NULL. */
+static RtStatus serve_kind(const RtSpec *spec, const RtScene *scene, const Given *given, RtAccel **accel,
+                           int *passes, RtError *error) {
     RtRunner runner;
-    RtTimed timed = {.accel = accel, .set = &given->set};
+    if (!*accel) {
+        RT_TRY(rt_plugin_enter(spec, error)); /* callgrind sees this process, so plugins run in it, too */
+        RT_TRY(rt_accel_build_here(spec, scene, 1, accel, error));
+    }
+    RT_TRY(rt_accel_learn(*accel, given->set.rays, given->hits, given->set.count, error));
+    RtTimed timed = {.accel = *accel, .set = &given->set};
     RtStatus status = rt_runner_open(&runner, &timed, 1, error);
     for (; *passes < PASSES && status == RT_OK; ++*passes) status = rt_callgrind_pass(&runner, error);
     rt_runner_close(&runner);
     return status;
-}
-
-/* The rays of one kind, asked of what *accel is; that is built of `spec` where it is NULL. */
-static RtStatus serve_kind(const RtSpec *spec, const RtScene *scene, const Given *given, RtAccel **accel,
-                           int *passes, RtError *error) {
-    if (!*accel) {
-        /* Also of a plugin: this process is one of its own, and the one that is looked at. */
-        RT_TRY(rt_plugin_enter(spec, error));
-        RT_TRY(rt_accel_build_here(spec, scene, 1, accel, error));
-    }
-    RT_TRY(rt_accel_learn(*accel, given->set.rays, given->hits, given->set.count, error));
-    return ask(*accel, given, passes, error);
 }
 
 static void serve_accel(const Serving *serving, const RtScene *scene, uint32_t t, uint32_t c,
@@ -166,17 +150,22 @@ static void serve_accel(const Serving *serving, const RtScene *scene, uint32_t t
     rt_spec_format(&spec, text);
     for (uint32_t k = 0; k < e->kind_count; k++) {
         const Given *g = &given[e->kinds[k]];
-        const char *kind = rt_ray_kind_name(e->kinds[k]), *why = why_left_out(serving, at, label, kind);
+        const char *kind = rt_ray_kind_name(e->kinds[k]), *why = why_broken(serving, at, label, kind);
         RtError failure = {RT_OK, ""};
         int passes = 0;
         if (!g->set.count) continue;
         if (!why && serve_kind(&spec, scene, g, &accel, &passes, &failure) != RT_OK) why = failure.message;
+        json_t *row =
+            json_pack("{s:s, s:s, s:s, s:i}", "scene", at, "accel", label, "kind", kind, "passes", passes);
         if (why)
-            say(serving, json_pack("{s:s, s:s, s:s, s:i, s:s}", "scene", at, "accel", label, "kind", kind,
-                                   "passes", passes, "why", why));
+            json_object_set_new(row, "why", json_string(why));
         else
-            say(serving, json_pack("{s:s, s:s, s:s, s:i, s:s, s:I}", "scene", at, "accel", label, "kind",
-                                   kind, "passes", passes, "spec", text, "rays", (json_int_t)g->set.count));
+            json_object_update_new(row,
+                                   json_pack("{s:s, s:I}", "spec", text, "rays", (json_int_t)g->set.count));
+        json_dumpf(row, serving->out, JSON_COMPACT);
+        fputc('\n', serving->out);
+        fflush(serving->out);
+        json_decref(row);
     }
     rt_accel_destroy(accel);
 }

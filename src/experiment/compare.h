@@ -23,7 +23,7 @@
 #define RT_EXPERIMENT_COMPARE_H
 
 #include "core/text/table.h"
-#include "experiment/results.h"
+#include "experiment/workload.h"
 
 #define RT_TURNS 5 /* of each program in each cell, in a round */
 
@@ -81,19 +81,23 @@ RtStatus rt_compare_results(const RtResults *before, const RtResults *after, RtC
 
 typedef struct RtPrograms {
     const char *before, *after; /* paths of programs: another, and this one */
-    char *const
-        *arguments;  /* of either, NULL behind the last: which make it a worker (experiment/worker.h) */
-    uint32_t rounds; /* at least; more where so many cells ask for them */
-    double until, patience; /* as in RtWorkloadOptions; patience is of all */
-    double least;           /* seconds that a turn takes at least */
-    bool pinned;            /* each cell on one processor */
-    uint64_t seed;          /* of all orders */
-    void *context;          /* who is told; both members may be NULL */
+    char *const *arguments;     /* of either, NULL behind the last: which make it a worker (worker.c) */
+    uint32_t rounds;            /* at least; more where so many cells ask for them */
+    double until, patience;     /* as in RtWorkloadOptions; patience is of all */
+    double least;               /* seconds that a turn takes at least */
+    bool pinned;                /* each cell on one processor */
+    uint64_t seed;              /* of all orders */
+    void *context;              /* who is told; both members may be NULL */
     void (*progress)(void *context, uint32_t round, uint32_t rounds, const char *scene, const char *kind);
     void (*notice)(void *context, const char *message);
 } RtPrograms;
 
 RtStatus rt_compare_programs(const RtPrograms *programs, RtComparison *comparison, RtError *error);
+
+/* The worker's side (worker.c): answers requests from `in` on `out` until everything is timed or the input
+ * ends. */
+RtStatus rt_worker_serve(const RtExperiment *experiment, const RtWorkloadOptions *options, FILE *in,
+                         FILE *out, RtError *error);
 
 /* ---- what came out ---- */
 

@@ -1,39 +1,114 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Two programs against one another: two workers (experiment/worker.h), started anew for each round, that run
- * by turns. */
+/* Two programs against each other: two workers (worker.c), started anew for each round, that run in turns. */
 #include "core/base/clock.h"
 #include "core/base/memory.h"
+#include "core/base/process.h"
 #include "core/base/random.h"
 #include "experiment/compare.h"
-#include "experiment/worker.h"
 
+#include <inttypes.h>
 #include <math.h>
+#include <signal.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { BEFORE, AFTER };
 
-/* One cell of a section: its numbers in both workers. */
+typedef struct Worker {
+    const char *program; /* borrowed */
+    RtProcess process;
+    FILE *to, *from;
+} Worker;
+
+/* A cell of a section that both workers have. */
 typedef struct Pair {
-    uint32_t number[2];
-    uint32_t cell; /* in the comparison */
+    uint32_t number[2]; /* in each worker */
+    uint32_t cell;      /* in the comparison */
     uint32_t repeats;
     double turns[RT_TURNS];
     double seconds[2][RT_TURNS];
 } Pair;
 
-typedef struct Match {
+typedef struct Run {
     const RtPrograms *programs;
     RtComparison *comparison;
     RtRandom random;
-    uint32_t round, rounds; /* the one at hand, and how many there will be as far as is known */
+    uint32_t round, rounds; /* the current one, and how many are expected */
     double start;
-    RtWorker workers[2];
-} Match;
+    Worker workers[2];
+} Run;
 
 static const char *text_of(const json_t *object, const char *key) {
     const char *text = json_string_value(json_object_get(object, key));
     return text ? text : "";
+}
+
+/* ---- workers ---- */
+
+static RtStatus fail_ended(Worker *worker, RtError *error) {
+    RtProcessEnd end;
+    char how[160] = "it no longer answers";
+    if (rt_process_wait(&worker->process, 1000, &end)) rt_process_end_format(end, 0, "", how, sizeof how);
+    return rt_fail(error, RT_BAD_INPUT, "%s cannot be compared: %s; its messages are above", worker->program,
+                   how);
+}
+
+/* Takes one line of JSON, a new reference. The worker's messages go to stderr. */
+static RtStatus take_json(Worker *worker, json_t **document, RtError *error) {
+    char *line = NULL;
+    size_t room = 0;
+    *document = NULL;
+    if (getline(&line, &room, worker->from) > 0) *document = json_loads(line, 0, NULL);
+    free(line);
+    return *document ? RT_OK : fail_ended(worker, error);
+}
+
+/* Starts a worker; *build gets the line in which it introduces itself, a new reference. */
+static RtStatus start_worker(Worker *worker, const char *program, char *const *arguments, json_t **build,
+                             RtError *error) {
+    const RtCommand command = {
+        .program = program, .arguments = arguments, .to = &worker->to, .from = &worker->from};
+    RtError why;
+    worker->program = program;
+    signal(SIGPIPE, SIG_IGN); /* a worker that has ended sends no answer */
+    if (rt_process_spawn(&worker->process, &command, &why) != RT_OK)
+        return rt_fail(error, RT_BAD_INPUT, "%s", why.message);
+    if (take_json(worker, build, error) == RT_OK &&
+        json_integer_value(json_object_get(*build, "worker")) == 1)
+        return RT_OK;
+    json_decref(*build);
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "%s cannot be compared: it must be a raytally that has the command `compare`. For an older "
+        "one, compare result directories",
+        program);
+}
+
+/* Closes its input, which ends it. */
+static void end_worker(Worker *worker) {
+    enum { MILLISECONDS = 60000 }; /* to finish a run, and clear */
+    if (worker->to) fclose(worker->to);
+    if (worker->from) fclose(worker->from);
+    rt_process_end(&worker->process, MILLISECONDS);
+    *worker = (Worker){0};
+}
+
+__attribute__((format(printf, 3, 4))) static RtStatus ask(Worker *worker, RtError *error, const char *request,
+                                                          ...) {
+    va_list arguments;
+    va_start(arguments, request);
+    bool sent = vfprintf(worker->to, request, arguments) >= 0 && fflush(worker->to) == 0;
+    va_end(arguments);
+    return sent ? RT_OK : fail_ended(worker, error);
+}
+
+/* Seconds per ray of `repeats` runs of cell number `cell` of the section. */
+static RtStatus ask_time(Worker *worker, uint32_t cell, uint32_t repeats, double *seconds, RtError *error) {
+    char line[64];
+    RT_TRY(ask(worker, error, "time %" PRIu32 " %" PRIu32 "\n", cell, repeats));
+    *seconds = fgets(line, sizeof line, worker->from) ? strtod(line, NULL) : 0;
+    return *seconds > 0 ? RT_OK : fail_ended(worker, error);
 }
 
 /* ---- a section: a scene and a kind of rays ---- */
@@ -53,11 +128,11 @@ static const json_t *cell_of(const json_t *section, const char *accel, uint32_t 
     return NULL;
 }
 
-/* The cell of the comparison, with what both count; one that only one of them has is noted as such. */
-static RtComparedCell *enter(Match *match, const json_t *const sections[2], const json_t *before,
+/* The cell of the comparison, with the counts of both; or a note that only one of them has it. */
+static RtComparedCell *enter(Run *run, const json_t *const sections[2], const json_t *before,
                              const json_t *after) {
     const json_t *either = before ? before : after, *section = sections[before ? BEFORE : AFTER];
-    RtComparedCell *cell = rt_comparison_cell(match->comparison, text_of(section, "scene"),
+    RtComparedCell *cell = rt_comparison_cell(run->comparison, text_of(section, "scene"),
                                               text_of(either, "accel"), text_of(section, "kind"));
     if (!cell) return NULL;
     if (!cell->ratios) cell->ratios = rt_alloc(RT_MAX_ROUNDS, sizeof(double));
@@ -75,7 +150,7 @@ static RtComparedCell *enter(Match *match, const json_t *const sections[2], cons
     return cell;
 }
 
-static RtStatus find_pairs(Match *match, const json_t *const sections[2], Pair *pairs, uint32_t *count,
+static RtStatus find_pairs(Run *run, const json_t *const sections[2], Pair *pairs, uint32_t *count,
                            RtError *error) {
     *count = 0;
     for (int who = BEFORE; who <= AFTER; who++) {
@@ -84,47 +159,47 @@ static RtStatus find_pairs(Match *match, const json_t *const sections[2], Pair *
             Pair pair = {.number = {i, i}};
             const json_t *own = json_array_get(cells, i);
             const json_t *other = cell_of(sections[!who], text_of(own, "accel"), &pair.number[!who]);
-            if (who == AFTER && other) continue; /* it was met before */
+            if (who == AFTER && other) continue; /* it was entered above */
             RtComparedCell *cell =
-                enter(match, sections, who == BEFORE ? own : other, who == BEFORE ? other : own);
+                enter(run, sections, who == BEFORE ? own : other, who == BEFORE ? other : own);
             if (!cell) return rt_fail_memory(error, "a comparison", 0);
-            pair.cell = (uint32_t)(cell - match->comparison->cells);
+            pair.cell = (uint32_t)(cell - run->comparison->cells);
             if (other) pairs[(*count)++] = pair;
         }
     }
     return RT_OK;
 }
 
-/* As often as lets the faster one take long enough. */
-static RtStatus warm_up(Match *match, Pair *pair, RtError *error) {
-    double rays = (double)match->comparison->cells[pair->cell].rays, least = INFINITY;
+/* Finds the number of repeats for which the faster program takes long enough. */
+static RtStatus warm_up(Run *run, Pair *pair, RtError *error) {
+    double rays = (double)run->comparison->cells[pair->cell].rays, least = INFINITY;
     for (int who = BEFORE; who <= AFTER; who++) {
         double seconds;
-        RT_TRY(rt_worker_time(&match->workers[who], pair->number[who], 1, &seconds, error));
+        RT_TRY(ask_time(&run->workers[who], pair->number[who], 1, &seconds, error));
         least = fmin(least, seconds * rays);
     }
-    pair->repeats = rt_runner_repeats(least, match->programs->least);
+    pair->repeats = rt_runner_repeats(least, run->programs->least);
     return RT_OK;
 }
 
-static RtStatus take_turn(Match *match, Pair *pair, uint32_t turn, RtError *error) {
-    int first = (int)rt_random_below(&match->random, 2);
+static RtStatus take_turn(Run *run, Pair *pair, uint32_t turn, RtError *error) {
+    int first = (int)rt_random_below(&run->random, 2);
     for (int i = 0; i < 2; i++) {
         int who = i ? !first : first;
-        RT_TRY(rt_worker_time(&match->workers[who], pair->number[who], pair->repeats,
-                              &pair->seconds[who][turn], error));
+        RT_TRY(
+            ask_time(&run->workers[who], pair->number[who], pair->repeats, &pair->seconds[who][turn], error));
     }
     pair->turns[turn] = pair->seconds[BEFORE][turn] / pair->seconds[AFTER][turn];
     return RT_OK;
 }
 
-static RtStatus time_pairs(Match *match, Pair *pairs, uint32_t count, RtError *error) {
-    for (uint32_t i = 0; i < count; i++) RT_TRY(warm_up(match, &pairs[i], error));
+static RtStatus time_pairs(Run *run, Pair *pairs, uint32_t count, RtError *error) {
+    for (uint32_t i = 0; i < count; i++) RT_TRY(warm_up(run, &pairs[i], error));
     for (uint32_t turn = 0; turn < RT_TURNS; turn++) {
-        for (uint32_t i = 0; i < count; i++) RT_TRY(take_turn(match, &pairs[i], turn, error));
+        for (uint32_t i = 0; i < count; i++) RT_TRY(take_turn(run, &pairs[i], turn, error));
     }
     for (uint32_t i = 0; i < count; i++) {
-        RtComparedCell *cell = &match->comparison->cells[pairs[i].cell];
+        RtComparedCell *cell = &run->comparison->cells[pairs[i].cell];
         cell->ratios[cell->rounds++] = rt_median(pairs[i].turns, RT_TURNS);
         cell->before = rt_median(pairs[i].seconds[BEFORE], RT_TURNS);
         cell->after = rt_median(pairs[i].seconds[AFTER], RT_TURNS);
@@ -132,7 +207,7 @@ static RtStatus time_pairs(Match *match, Pair *pairs, uint32_t count, RtError *e
     return RT_OK;
 }
 
-static RtStatus check_alike(const Match *match, const json_t *const sections[2], RtError *error) {
+static RtStatus check_alike(const Run *run, const json_t *const sections[2], RtError *error) {
     const char *scene = text_of(sections[AFTER], "scene"), *kind = text_of(sections[AFTER], "kind");
     bool same_place = strcmp(text_of(sections[BEFORE], "scene"), scene) == 0 &&
                       strcmp(text_of(sections[BEFORE], "kind"), kind) == 0;
@@ -140,28 +215,29 @@ static RtStatus check_alike(const Match *match, const json_t *const sections[2],
         return RT_OK;
     return rt_fail(
         error, RT_BAD_INPUT,
-        "%s and %s do not record the same rays (%s, %s): times would not compare. Record the rays once with "
+        "%s and %s do not record the same rays (%s, %s), so times would not compare. Record the rays once "
+        "with "
         "`raytally rays`, and measure each program on that file: `raytally bench --rays-from FILE`",
-        match->programs->before, match->programs->after, scene, kind);
+        run->programs->before, run->programs->after, scene, kind);
 }
 
-static RtStatus compare_section(Match *match, const json_t *const sections[2], RtError *error) {
-    const RtPrograms *programs = match->programs;
+static RtStatus compare_section(Run *run, const json_t *const sections[2], RtError *error) {
+    const RtPrograms *programs = run->programs;
     uint32_t count = (uint32_t)json_array_size(json_object_get(sections[BEFORE], "cells"));
-    RT_TRY(check_alike(match, sections, error));
+    RT_TRY(check_alike(run, sections, error));
     if (programs->progress) {
-        programs->progress(programs->context, match->round, match->rounds, text_of(sections[BEFORE], "scene"),
+        programs->progress(programs->context, run->round, run->rounds, text_of(sections[BEFORE], "scene"),
                            text_of(sections[BEFORE], "kind"));
     }
     Pair *pairs = rt_alloc(count, sizeof(Pair));
     if (!pairs) return rt_fail_memory(error, "cells", count * sizeof(Pair));
-    RtStatus status = find_pairs(match, sections, pairs, &count, error);
+    RtStatus status = find_pairs(run, sections, pairs, &count, error);
     for (int who = BEFORE; who <= AFTER && status == RT_OK && programs->pinned; who++) {
-        status = rt_worker_pin(&match->workers[who], match->round, error);
+        status = ask(&run->workers[who], error, "pin %" PRIu32 "\n", run->round);
     }
-    if (status == RT_OK) status = time_pairs(match, pairs, count, error);
+    if (status == RT_OK) status = time_pairs(run, pairs, count, error);
     for (int who = BEFORE; who <= AFTER && status == RT_OK; who++) {
-        status = rt_worker_go_on(&match->workers[who], error);
+        status = ask(&run->workers[who], error, "next\n");
     }
     rt_free(pairs);
     return status;
@@ -169,11 +245,11 @@ static RtStatus compare_section(Match *match, const json_t *const sections[2], R
 
 /* ---- a round ---- */
 
-static RtStatus compare_sections(Match *match, bool *more, RtError *error) {
+static RtStatus compare_sections(Run *run, bool *more, RtError *error) {
     json_t *sections[2] = {NULL, NULL};
     RtStatus status = RT_OK;
     for (int who = BEFORE; who <= AFTER && status == RT_OK; who++) {
-        status = rt_worker_next(&match->workers[who], &sections[who], error);
+        status = take_json(&run->workers[who], &sections[who], error);
     }
     if (status == RT_OK) {
         bool done[2];
@@ -181,44 +257,40 @@ static RtStatus compare_sections(Match *match, bool *more, RtError *error) {
             done[who] = json_object_get(sections[who], "done") != NULL;
         *more = !(done[BEFORE] && done[AFTER]);
         const json_t *const both[2] = {sections[BEFORE], sections[AFTER]};
-        if (*more) status = compare_section(match, both, error);
+        if (*more) status = compare_section(run, both, error);
     }
     json_decref(sections[BEFORE]);
     json_decref(sections[AFTER]);
     return status;
 }
 
-static void name(char *out, size_t room, const char *program, const json_t *build) {
-    snprintf(out, room, "%s (%s)", program, text_of(build, "build"));
-}
-
-static RtStatus start(Match *match, int who, RtError *error) {
+static RtStatus start(Run *run, int who, RtError *error) {
     json_t *build;
-    const char *program = who == BEFORE ? match->programs->before : match->programs->after;
-    RT_TRY(rt_worker_start(&match->workers[who], program, match->programs->arguments, &build, error));
+    const char *program = who == BEFORE ? run->programs->before : run->programs->after;
+    RT_TRY(start_worker(&run->workers[who], program, run->programs->arguments, &build, error));
     if (who == AFTER) program = "this one";
-    char *out = who == BEFORE ? match->comparison->before : match->comparison->after;
-    name(out, sizeof match->comparison->before, program, build);
+    char *out = who == BEFORE ? run->comparison->before : run->comparison->after;
+    snprintf(out, sizeof run->comparison->before, "%s (%s)", program, text_of(build, "build"));
     json_decref(build);
     return RT_OK;
 }
 
-static RtStatus run_round(Match *match, RtError *error) {
+static RtStatus run_round(Run *run, RtError *error) {
     bool more = true;
-    int first = (int)rt_random_below(&match->random, 2);
-    RT_TRY(start(match, first, error));
-    RT_TRY(start(match, !first, error));
-    while (more) RT_TRY(compare_sections(match, &more, error));
+    int first = (int)rt_random_below(&run->random, 2);
+    RT_TRY(start(run, first, error));
+    RT_TRY(start(run, !first, error));
+    while (more) RT_TRY(compare_sections(run, &more, error));
     return RT_OK;
 }
 
-/* Intervals of what there is after so many rounds; how wide the widest is. */
+/* Computes the intervals after so many rounds; returns the width of the widest. */
 static double estimate(RtComparison *comparison, uint32_t rounds) {
     double widest = 0;
     for (uint32_t i = 0; i < comparison->count; i++) {
         RtComparedCell *cell = &comparison->cells[i];
         if (!cell->timed || cell->rounds == rounds) continue;
-        cell->timed = false; /* a limit of time left it out in some round */
+        cell->timed = false; /* a time limit excluded it from some round */
         cell->change = RT_CHANGE_NOT_TIMED;
     }
     rt_comparison_judge(comparison);
@@ -233,36 +305,36 @@ static double estimate(RtComparison *comparison, uint32_t rounds) {
     return widest;
 }
 
-/* At least as many as so many cells ask for; then as `until` says. */
-static bool is_enough(Match *match) {
-    const RtPrograms *programs = match->programs;
-    double width = estimate(match->comparison, match->round), passed = rt_wall_seconds() - match->start;
-    uint32_t needed = rt_rounds_for(rt_coverage_of_each(match->comparison->timed));
+/* At least as many rounds as the number of cells requires; then until the intervals are narrow. */
+static bool is_enough(Run *run) {
+    const RtPrograms *programs = run->programs;
+    double width = estimate(run->comparison, run->round), passed = rt_wall_seconds() - run->start;
+    uint32_t needed = rt_rounds_for(rt_coverage_of_each(run->comparison->timed));
     char message[160];
-    match->comparison->seconds = passed;
-    match->rounds = needed > programs->rounds ? needed : programs->rounds;
-    if (match->round == RT_MAX_ROUNDS) return true;
-    if (match->round < match->rounds) return false;
+    run->comparison->seconds = passed;
+    run->rounds = needed > programs->rounds ? needed : programs->rounds;
+    if (run->round == RT_MAX_ROUNDS) return true;
+    if (run->round < run->rounds) return false;
     if (programs->until <= 0 || width <= programs->until) return true;
     if (passed < programs->patience) return false;
     snprintf(message, sizeof message, "after %u rounds in %.0f s intervals are within %.2g %%, not %.2g %%",
-             match->round, passed, 100 * width, 100 * programs->until);
+             run->round, passed, 100 * width, 100 * programs->until);
     if (programs->notice) programs->notice(programs->context, message);
     return true;
 }
 
 RtStatus rt_compare_programs(const RtPrograms *programs, RtComparison *comparison, RtError *error) {
-    Match match = {.programs = programs,
-                   .comparison = comparison,
-                   .random = rt_random(programs->seed, 0),
-                   .rounds = programs->rounds,
-                   .start = rt_wall_seconds()};
+    Run run = {.programs = programs,
+               .comparison = comparison,
+               .random = rt_random(programs->seed, 0),
+               .rounds = programs->rounds,
+               .start = rt_wall_seconds()};
     RtStatus status = RT_OK;
     do {
-        status = run_round(&match, error);
-        rt_worker_end(&match.workers[BEFORE]);
-        rt_worker_end(&match.workers[AFTER]);
-        match.round++;
-    } while (status == RT_OK && !is_enough(&match));
+        status = run_round(&run, error);
+        end_worker(&run.workers[BEFORE]);
+        end_worker(&run.workers[AFTER]);
+        run.round++;
+    } while (status == RT_OK && !is_enough(&run));
     return status;
 }

@@ -1,135 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "experiment/journal.h"
 
-#include "accel/columns.h"
 #include "core/text/json.h"
-#include "experiment/journal_state.h"
+#include "experiment/journal_lines.h"
 #include "experiment/plugins_used.h"
 #include "measure/machine.h"
 
-#include <math.h>
 #include <string.h>
-
-const char *const rt_journal_each_names[RT_EACH_COUNT] = {"each_seconds", "each_wall", "each_baseline"};
-
-/* ---- to JSON ---- */
 
 static json_t *header_json(const RtExperiment *experiment, const RtOnly *only) {
     return json_pack("{s:s, s:o, s:b, s:s, s:i, s:i, s:o}", "experiment", experiment->name, "hash",
                      rt_json_hex(experiment->fingerprint), "quick", experiment->quick, "build",
                      rt_build_alone(), "shard", (int)only->shard, "shards", (int)only->shards, "plugins",
                      rt_plugins_used(experiment));
-}
-
-static json_t *workload_json(const RtWorkloadResult *workload) {
-    json_t *sets = json_object();
-    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
-        json_object_set_new(sets, rt_ray_kind_name((RtRayKind)k),
-                            json_pack("{s:I, s:o}", "rays", (json_int_t)workload->rays[k], "hash",
-                                      rt_json_hex(workload->ray_fingerprints[k])));
-    }
-    return json_pack("{s:I, s:I, s:I, s:o, s:o}", "objects", (json_int_t)workload->objects, "width",
-                     (json_int_t)workload->width, "height", (json_int_t)workload->height, "hash",
-                     rt_json_hex(workload->scene), "sets", sets);
-}
-
-static json_t *build_json(const RtBuildResult *build) {
-    json_t *object = rt_json_structure(&build->shape);
-    json_t *run =
-        json_pack("{s:s, s:b, s:b, s:f, s:I}", "spec", build->spec, "exact", build->exact, "counts",
-                  build->counts, "seconds", build->seconds, "bytes", (json_int_t)build->shape.bytes);
-    if (json_object_update_new(object, run) != 0) {
-        json_decref(object);
-        return NULL;
-    }
-    if (build->leaves)
-        json_object_set_new(
-            object, "distributions",
-            rt_distributions_json(build->leaves, RT_RAY_QUANTITY_COUNT, RT_LEAF_QUANTITY_COUNT));
-    return object;
-}
-
-static json_t *count_json(const RtCell *cell) {
-    json_t *object = rt_json_tally(&cell->tally);
-    if (json_object_set_new(object, "differ", json_integer((json_int_t)cell->differ)) == 0) return object;
-    json_decref(object);
-    return NULL;
-}
-
-static json_t *estimate_json(const RtEstimate *e) {
-    return json_pack("[f, f, f, f]", e->median, e->low, e->high, e->least);
-}
-
-static json_t *rounds_json(const RtCell *cell, RtEach each) {
-    json_t *list = json_array();
-    for (uint32_t r = 0; r < cell->rounds; r++) {
-        json_array_append_new(list, json_real(rt_cell_rounds(cell, each)[r]));
-    }
-    return list;
-}
-
-static json_t *time_json(const RtResults *results, const RtCell *cell) {
-    const RtMachine *machine = &results->machines[cell->machine];
-    json_t *object = json_pack(
-        "{s:I, s:I, s:i, s:o, s:o, s:o, s:s, s:s, s:s}", "rays", (json_int_t)cell->tally.rays, "rounds",
-        (json_int_t)cell->rounds, "threads", cell->threads, "seconds", estimate_json(&cell->seconds), "wall",
-        estimate_json(&cell->wall), "ratio", estimate_json(&cell->ratio), "baseline",
-        rt_candidate_label(results->experiment, cell->baseline), "host", machine->host, "cpu", machine->cpu);
-    for (int i = 0; i < RT_EACH_COUNT && cell->each; i++) {
-        json_object_set_new(object, rt_journal_each_names[i], rounds_json(cell, (RtEach)i));
-    }
-    return object;
-}
-
-/* What is not known is null. */
-static json_t *hardware_json(const RtResults *results, const RtCell *cell) {
-    const RtCellHardware *hardware = &cell->hardware;
-    const RtMachine *machine = &results->machines[hardware->machine];
-    json_t *object =
-        json_pack("{s:i, s:f, s:s, s:s, s:s}", "threads", hardware->threads, "running",
-                  hardware->counts.running, "why", hardware->why, "host", machine->host, "cpu", machine->cpu);
-    for (size_t i = 0; i < RT_HARDWARE_COUNT; i++) {
-        double count = *hardware->why ? (double)NAN : hardware->counts.of[i];
-        json_object_set_new(object, rt_hardware_name(i), isnan(count) ? json_null() : json_real(count));
-    }
-    return object;
-}
-
-static json_t *event_json(const RtResults *results, const RtEvent *event) {
-    const RtExperiment *experiment = results->experiment;
-    const RtCell *cell = rt_cell_at(results, event->workload, event->candidate, event->kind);
-    const RtBuildResult *build = rt_build_at(results, event->workload, event->candidate);
-    const char *scene = experiment->workloads[event->workload].label;
-    const char *accel = rt_candidate_label(experiment, event->candidate);
-    const char *kind = rt_ray_kind_name(event->kind);
-    switch (event->what) {
-    case RT_EVENT_WORKLOAD:
-        return json_pack("{s:s, s:o}", "scene", scene, "workload",
-                         workload_json(&results->workloads[event->workload]));
-    case RT_EVENT_BUILD:
-        return json_pack("{s:s, s:s, s:o}", "scene", scene, "accel", accel, "built", build_json(build));
-    case RT_EVENT_COUNT:
-        return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "counted",
-                         count_json(cell));
-    case RT_EVENT_DISTRIBUTION:
-        return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "distributed",
-                         rt_distributions_json(cell->distributions, 0, RT_RAY_QUANTITY_COUNT));
-    case RT_EVENT_TIME:
-        return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "timed",
-                         time_json(results, cell));
-    case RT_EVENT_HARDWARE:
-        return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "hardware",
-                         hardware_json(results, cell));
-    case RT_EVENT_TOO_LARGE:
-    case RT_EVENT_BROKEN_BUILD:
-        return json_pack("{s:s, s:s, s:s, s:b}", "scene", scene, "accel", accel, "too_large", build->limit,
-                         "broken", build->broken);
-    case RT_EVENT_TOO_LONG:
-    case RT_EVENT_BROKEN:
-        return json_pack("{s:s, s:s, s:s, s:s, s:b}", "scene", scene, "accel", accel, "kind", kind,
-                         "too_long", cell->limit, "broken", cell->broken);
-    }
-    return NULL;
 }
 
 /* ---- writing ---- */
@@ -141,15 +24,6 @@ RtStatus rt_journal_open(RtJsonLines *journal, const char *path, const RtExperim
     RtStatus status = rt_json_lines_open(journal, path, header, error);
     json_decref(header);
     return status;
-}
-
-bool rt_journal_line_concerns(const json_t *line, const RtExperiment *experiment, const json_t *plugins) {
-    const char *scene = json_string_value(json_object_get(line, "scene"));
-    const char *accel = json_string_value(json_object_get(line, "accel"));
-    uint32_t workload = scene ? rt_workload_find(experiment, scene) : experiment->workload_count;
-    if (!accel || workload == experiment->workload_count) return false;
-    uint32_t candidate = rt_candidate_find(experiment, accel, workload);
-    return candidate <= experiment->candidate_count && rt_plugins_concern(plugins, experiment, candidate);
 }
 
 /* Behind a new header, all lines but those of accelerators whose plugin has changed. */
@@ -193,5 +67,98 @@ RtStatus rt_journal_add(RtOutputs *outputs, const char *path, const RtExperiment
 
 RtStatus rt_journal_append(RtJsonLines *journal, const RtResults *results, const RtEvent *event,
                            RtError *error) {
-    return rt_json_lines_write(journal, event_json(results, event), error);
+    return rt_json_lines_write(journal, rt_journal_line(results, event), error);
+}
+
+/* ---- reading ---- */
+
+static RtStatus check_experiment(const char *path, const json_t *header, const RtExperiment *experiment,
+                                 RtError *error) {
+    const char *name = json_string_value(json_object_get(header, "experiment"));
+    bool quick = json_is_true(json_object_get(header, "quick"));
+    bool good;
+    if (rt_json_parse_hex(json_object_get(header, "hash"), &good) != experiment->fingerprint || !good) {
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "%s: this is a run of another experiment, or of another version of it ('%s'): start over "
+            "and lose it with --force, or give another --out",
+            path, name ? name : "");
+    }
+    if (quick == experiment->quick) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "%s: this is a run %s --quick: start over and lose it with --force, or give another --out",
+                   path, quick ? "with" : "without");
+}
+
+static RtStatus check_build(const char *path, const json_t *header, const RtOnly *only, RtError *error) {
+    const char *build = json_string_value(json_object_get(header, "build"));
+    json_int_t shard = json_integer_value(json_object_get(header, "shard")),
+               shards = json_integer_value(json_object_get(header, "shards"));
+    if (shard != only->shard || shards != only->shards) {
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "%s: this is a run with another --shard (%d/%d): start over and lose it with --force, or "
+            "give another --out",
+            path, (int)shard, (int)shards);
+    }
+    if (build && strcmp(build, rt_build_alone()) == 0) return RT_OK;
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "%s: this run was begun by another build (%s; this is %s): start over and lose it with --force, or "
+        "give another --out",
+        path, build ? build : "unknown", rt_build_alone());
+}
+
+/* Where ratios refer to an accelerator of the plugin, nothing of the run would stay. */
+static RtStatus check_plugins(const char *path, const RtExperiment *experiment, const json_t *changed,
+                              bool renew, RtError *error) {
+    char sentence[RT_MAX_PLUGIN_CHANGE];
+    bool baseline = false;
+    if (json_object_size(changed) == 0) return RT_OK;
+    for (uint32_t i = 0; i < experiment->baseline_count; i++)
+        baseline |= rt_plugins_concern(changed, experiment, experiment->baseline + i);
+    if (renew && !baseline) return RT_OK;
+    const char *name = json_object_iter_key(json_object_iter((json_t *)changed));
+    rt_plugins_change_format(name, json_object_get(changed, name), "when this run was begun", "now",
+                             sentence);
+    if (baseline)
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: %s, and so is the baseline: start over and lose this run with --force, or give "
+                       "another --out",
+                       path, sentence);
+    return rt_fail(error, RT_BAD_INPUT,
+                   "%s: %s: measure its cells again and keep all others with --renew, start over and lose "
+                   "all with --force, or give another --out",
+                   path, sentence);
+}
+
+static RtStatus take_lines(const char *path, RtResults *results, const json_t *lines, const RtOnly *only,
+                           bool renew, RtError *error) {
+    const RtExperiment *experiment = results->experiment;
+    const json_t *header = json_array_get(lines, 0);
+    if (json_is_true(json_object_get(header, "given_up"))) return RT_OK; /* rt_previous_results_remove */
+    RT_TRY(check_experiment(path, header, experiment, error));
+    if (only) RT_TRY(check_build(path, header, only, error));
+    json_t *used = only ? rt_plugins_used(experiment) : NULL;
+    json_t *changed = only ? rt_plugins_changed(json_object_get(header, "plugins"), used) : NULL;
+    RtStatus status = only ? check_plugins(path, experiment, changed, renew, error) : RT_OK;
+    for (size_t i = 1; status == RT_OK && i < json_array_size(lines); i++) {
+        const json_t *line = json_array_get(lines, i);
+        if (changed && rt_journal_line_concerns(line, experiment, changed)) continue;
+        RtRecordReader reader = {path, i + 1, RT_OK, error};
+        rt_journal_line_take(&reader, results, line);
+        status = reader.status;
+    }
+    json_decref(changed);
+    json_decref(used);
+    return status;
+}
+
+RtStatus rt_journal_load(const char *path, RtResults *results, const RtOnly *only, bool renew,
+                         RtError *error) {
+    json_t *lines;
+    RT_TRY(rt_json_lines_load(path, &lines, error));
+    RtStatus status = take_lines(path, results, lines, only, renew, error);
+    json_decref(lines);
+    return status;
 }

@@ -3,6 +3,7 @@
 
 #include "core/base/parallel.h"
 #include "core/text/json.h"
+#include "experiment/journal_lines.h"
 #include "measure/machine.h"
 
 static json_t *scenes_json(const RtResults *results) {
@@ -11,12 +12,9 @@ static json_t *scenes_json(const RtResults *results) {
     for (uint32_t t = 0; t < experiment->workload_count; t++) {
         const RtWorkloadResult *workload = &results->workloads[t];
         json_t *sets = json_object();
-        for (uint32_t k = 0; workload->known && k < experiment->kind_count; k++) {
-            RtRayKind kind = experiment->kinds[k];
-            json_object_set_new(sets, rt_ray_kind_name(kind),
-                                json_pack("{s:I, s:o}", "rays", (json_int_t)workload->rays[kind], "hash",
-                                          rt_json_hex(workload->ray_fingerprints[kind])));
-        }
+        for (uint32_t k = 0; workload->known && k < experiment->kind_count; k++)
+            json_object_set_new(sets, rt_ray_kind_name(experiment->kinds[k]),
+                                rt_record_json(&rt_ray_set_records[experiment->kinds[k]], workload));
         json_array_append_new(
             list, json_pack("{s:s, s:s, s:b, s:I, s:o, s:I, s:I, s:b, s:b, s:I, s:o}", "label",
                             experiment->workloads[t].label, "scene", experiment->workloads[t].spec, "skipped",

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Results for a terminal of 80 columns. */
 #include "core/base/words.h"
+#include "experiment/claims.h"
+#include "experiment/frame_table.h"
 #include "experiment/result_tables.h"
 
 #include <inttypes.h>
@@ -187,4 +189,28 @@ void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
              ", too few for 95 %%; an interval is all that was measured and holds the median in "
              "%.3g %%. Take %d or more.",
              rounds, 100 * coverage, RT_FULL_ROUNDS);
+}
+
+/* ---- the end of a run ---- */
+
+void rt_print_summary(const RtResults *results, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    const bool frames = *experiment->frame.without;
+    char text[RT_MAX_FRAME_SENTENCE];
+    if (frames)
+        rt_print_frames(results, out);
+    else
+        rt_print_results(results, RT_TOTALS, out);
+    if (experiment->hardware) rt_print_hardware(results, out);
+    rt_print_limits(results, out);
+    rt_claims_print(results, out);
+    rt_null_sentence(results, text);
+    fputc('\n', out);
+    if (*text) rt_print_wrapped(text, out);
+    for (uint32_t t = 0; frames && t < experiment->workload_count; t++) {
+        rt_frame_sentence(results, t, text);
+        if (!*text) continue;
+        fputc('\n', out);
+        rt_print_wrapped(text, out);
+    }
 }

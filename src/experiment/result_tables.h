@@ -87,6 +87,10 @@ void rt_print_hardware(const RtResults *results, FILE *out);
 /* The rows of a table for the eye, behind a blank line and the names of its columns. */
 void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workload, FILE *out);
 
+/* What a run ends with: the frames' costs, or the totals if the experiment has no frames; hardware counters;
+ * limits; claims; null runs; and for frames the accelerator that helped most. */
+void rt_print_summary(const RtResults *results, FILE *out);
+
 /* "12 of 12 null runs straddle 1.", and what to think of it otherwise; and where rounds are too few, what
  * their intervals are worth. "" where none was timed. */
 #define RT_MAX_SENTENCE 384

@@ -1,32 +1,32 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "experiment/worker.h"
+/* The worker: a raytally that another one starts to be timed against it (compare_programs.c). It has done
+ * everything that is not timed (scene, rays, builds, counts) and waits for requests, so that runs of two
+ * programs can alternate however short they are.
+ *
+ * The protocol is lines of text. The worker introduces itself: {"worker": 1, "build": ...}. For each workload
+ * and kind of rays, in the order of the experiment, it lists its cells: {"scene", "kind", "rays", "hash",
+ * "cells": [{"accel", "spec", "counts", "exact"}]}, and then waits. "time C N" runs cell number C of them N
+ * times; the answer is the seconds per ray. "pin P" keeps it on processor number P of those it may use, until
+ * "next", which goes on to the next kind of rays. The last line is {"done": true}. The end of its input ends
+ * the worker. */
 #include "accel/columns.h"
+#include "experiment/compare.h"
 
 #include "core/base/memory.h"
 #include "core/text/json.h"
-#include "core/text/table.h"
 #include "experiment/workload_state.h"
 #include "measure/machine.h"
 #include "measure/rounds.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <sched.h>
-#include <signal.h>
-#include <spawn.h>
-#include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-enum { MOST_LINE = 256 }; /* characters of a request, and of an answer that is a number */
-
-/* ---- the worker ---- */
+enum { MOST_LINE = 256 }; /* characters of a request */
 
 typedef struct Server {
     FILE *in, *out;
-    bool gone; /* nobody asks any more */
+    bool closed; /* the input has ended */
 } Server;
 
 static void say(Server *server, json_t *line) {
@@ -36,7 +36,7 @@ static void say(Server *server, json_t *line) {
     json_decref(line);
 }
 
-/* The candidates that are timed on these rays, with what they count. */
+/* The candidates to be timed on these rays, with their counts. */
 static json_t *section_json(const RtWorkloadState *workload, RtRayKind kind) {
     const RtExperiment *e = workload->experiment;
     const RtRaySet *set = &workload->sets[kind];
@@ -54,7 +54,7 @@ static json_t *section_json(const RtWorkloadState *workload, RtRayKind kind) {
                      rt_json_hex(set->fingerprint), "cells", cells);
 }
 
-/* Keeps this thread on one of the processors that it may run on. */
+/* Keeps this thread on one of the processors it may use. */
 static void pin(const cpu_set_t *allowed, uint32_t number) {
     cpu_set_t one;
     number %= (uint32_t)CPU_COUNT(allowed);
@@ -80,16 +80,16 @@ static RtStatus serve_runners(Server *server, const RtRunner *runners, uint32_t 
     RtStatus status = RT_OK;
     bool pinned = sched_getaffinity(0, sizeof allowed, &allowed) == 0;
     while (status == RT_OK) {
-        server->gone = !fgets(line, sizeof line, server->in);
-        if (server->gone) status = rt_fail(error, RT_IO, "nobody asks any more");
-        if (server->gone || strcmp(line, "next\n") == 0) break;
+        server->closed = !fgets(line, sizeof line, server->in);
+        if (server->closed) status = rt_fail(error, RT_IO, "the input has ended");
+        if (server->closed || strcmp(line, "next\n") == 0) break;
         if (sscanf(line, "pin %" SCNu32, &number) == 1) {
             if (pinned) pin(&allowed, number);
         } else if (sscanf(line, "time %" SCNu32 " %" SCNu32, &number, &repeats) == 2 && number < count &&
                    repeats > 0) {
             status = answer_time(server, &runners[number], repeats, error);
         } else {
-            status = rt_fail(error, RT_BAD_INPUT, "this is no request to a worker: %.40s", line);
+            status = rt_fail(error, RT_BAD_INPUT, "not a request to a worker: %.40s", line);
         }
     }
     if (pinned) sched_setaffinity(0, sizeof allowed, &allowed);
@@ -129,107 +129,5 @@ RtStatus rt_worker_serve(const RtExperiment *experiment, const RtWorkloadOptions
     }
     if (status == RT_OK) say(&server, json_pack("{s:b}", "done", 1));
     rt_results_clear(&results);
-    return server.gone ? RT_OK : status;
-}
-
-/* ---- who has it work ---- */
-
-static RtStatus fail_gone(const RtWorker *worker, RtError *error) {
-    return rt_fail(error, RT_BAD_INPUT, "%s ended while it was compared; what it said is above",
-                   worker->program);
-}
-
-static RtStatus spawn(RtWorker *worker, char *const *arguments, const int to[2], const int from[2],
-                      RtError *error) {
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, to[0], STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, from[1], STDOUT_FILENO);
-    int failure = posix_spawn(&worker->pid, worker->program, &actions, NULL, arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    if (failure == 0) return RT_OK;
-    worker->pid = 0;
-    return rt_fail(error, RT_BAD_INPUT, "%s: cannot be started: %s", worker->program, strerror(failure));
-}
-
-/* The ends of pipes that are for the worker alone are closed in any case. */
-static RtStatus connect_worker(RtWorker *worker, char *const *arguments, RtError *error) {
-    int to[2], from[2];
-    if (pipe2(to, O_CLOEXEC) != 0) return rt_fail(error, RT_IO, "a pipe: %s", strerror(errno));
-    if (pipe2(from, O_CLOEXEC) != 0) {
-        close(to[0]);
-        close(to[1]);
-        return rt_fail(error, RT_IO, "a pipe: %s", strerror(errno));
-    }
-    RtStatus status = spawn(worker, arguments, to, from, error);
-    close(to[0]);
-    close(from[1]);
-    worker->to = fdopen(to[1], "w");
-    worker->from = fdopen(from[0], "r");
-    if (!worker->to) close(to[1]);
-    if (!worker->from) close(from[0]);
-    if (status != RT_OK || (worker->to && worker->from)) return status;
-    return rt_fail_memory(error, "a pipe", 0);
-}
-
-/* One line of JSON; the worker's own messages go to stderr. */
-static RtStatus take_json(RtWorker *worker, json_t **document, RtError *error) {
-    char *line = NULL;
-    size_t room = 0;
-    *document = NULL;
-    if (getline(&line, &room, worker->from) > 0) *document = json_loads(line, 0, NULL);
-    free(line);
-    return *document ? RT_OK : fail_gone(worker, error);
-}
-
-RtStatus rt_worker_start(RtWorker *worker, const char *program, char *const *arguments, json_t **build,
-                         RtError *error) {
-    *worker = (RtWorker){.program = program};
-    *build = NULL;
-    signal(SIGPIPE, SIG_IGN); /* who has ended is noticed by what does not arrive */
-    RT_TRY(connect_worker(worker, arguments, error));
-    if (take_json(worker, build, error) == RT_OK &&
-        json_integer_value(json_object_get(*build, "worker")) == 1)
-        return RT_OK;
-    json_decref(*build);
-    *build = NULL;
-    return rt_fail(error, RT_BAD_INPUT,
-                   "%s cannot be compared with: it has to be a raytally that has `compare`, as this one. Of "
-                   "an older one, "
-                   "compare result directories",
-                   program);
-}
-
-RtStatus rt_worker_next(RtWorker *worker, json_t **section, RtError *error) {
-    return take_json(worker, section, error);
-}
-
-static RtStatus ask(RtWorker *worker, const char *request, RtError *error) {
-    return fputs(request, worker->to) >= 0 && fflush(worker->to) == 0 ? RT_OK : fail_gone(worker, error);
-}
-
-RtStatus rt_worker_pin(RtWorker *worker, uint32_t processor, RtError *error) {
-    char request[MOST_LINE];
-    snprintf(request, sizeof request, "pin %" PRIu32 "\n", processor);
-    return ask(worker, request, error);
-}
-
-RtStatus rt_worker_time(RtWorker *worker, uint32_t cell, uint32_t repeats, double *seconds, RtError *error) {
-    char line[MOST_LINE];
-    snprintf(line, sizeof line, "time %" PRIu32 " %" PRIu32 "\n", cell, repeats);
-    RT_TRY(ask(worker, line, error));
-    if (!fgets(line, sizeof line, worker->from)) return fail_gone(worker, error);
-    *seconds = strtod(line, NULL);
-    return *seconds > 0 ? RT_OK : fail_gone(worker, error);
-}
-
-RtStatus rt_worker_go_on(RtWorker *worker, RtError *error) {
-    return ask(worker, "next\n", error);
-}
-
-void rt_worker_end(RtWorker *worker) {
-    if (worker->to) fclose(worker->to);
-    if (worker->from) fclose(worker->from);
-    if (worker->pid > 0) waitpid(worker->pid, NULL, 0);
-    *worker = (RtWorker){0};
+    return server.closed ? RT_OK : status;
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A workload in order: record, build, and then for each kind of rays count, time, and read hardware counters.
  */
-#include "accel/remote.h"
 #include "core/base/memory.h"
 #include "experiment/workload_state.h"
 #include "measure/ray_file.h"
@@ -56,7 +55,7 @@ static RtStatus save_rows(const RtWorkloadState *workload, RtRayKind kind, RtErr
 /* One that broke on other rays is built anew for these. Whatever goes wrong then is its own fault, too. */
 static RtStatus rebuild_broken(RtWorkloadState *workload, uint32_t c, RtError *error) {
     RtAccel *accel = workload->built[c];
-    if (!accel || !rt_accel_is_remote(accel) || rt_accel_check(accel, NULL) == RT_OK) return RT_OK;
+    if (!accel || rt_accel_check(accel, NULL) == RT_OK) return RT_OK;
     rt_accel_destroy(accel);
     workload->built[c] = NULL;
     return rt_accel_build(&rt_workload_setup(workload, c)->parsed, workload->scene,

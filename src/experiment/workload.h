@@ -33,11 +33,11 @@ typedef struct RtEvent {
 
 /* Who is told. Both members are called from the thread that runs the workload; either may be NULL. A status
  * other than RT_OK ends the workload with it. */
-typedef struct RtObserver {
+typedef struct RtRunObserver {
     void *context;
     RtStatus (*event)(void *context, const RtResults *results, const RtEvent *event, RtError *error);
     void (*notice)(void *context, const char *message);
-} RtObserver;
+} RtRunObserver;
 
 /* A part of an experiment: one scene, or one accelerator on it, or one kind of rays, by labels or what labels
  * of a sweep have in common; NULL for all. What ratios refer to is always measured, too. */
@@ -62,7 +62,7 @@ typedef struct RtWorkloadOptions {
     /* Files for what each ray met and cost (measure/ray_file.h), or NULL: of an experiment of one workload,
      * one candidate without a stride, and one kind of rays. */
     const char *hits, *counts;
-    RtObserver observer;
+    RtRunObserver observer;
     const RtHardwareEvent *events; /* [RT_HARDWARE_COUNT] counted in place of those of their names; or NULL */
     /* Is shown the rays of each kind that were recorded on a workload, while they and the exact accelerator
      * that answers them are there; or NULL. */

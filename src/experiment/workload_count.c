@@ -2,8 +2,6 @@
 /* Counting: the rays of one kind are dealt out as shares; what would go beyond a limit is left out; every
  * other candidate is counted, its answers are compared with the expected ones, and distributions are found.
  */
-#include "accel/remote.h"
-#include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "experiment/workload_state.h"
 
@@ -95,10 +93,9 @@ static RtStatus check_seconds(RtWorkloadState *workload, uint32_t c, RtRayKind k
     RtCount count;
     double all = (double)workload->shares[c].set.count;
     double passes = workload->count_only ? 1 : 2 + experiment->rounds;
-    double start = rt_wall_seconds();
     if (cell->counted) return RT_OK;
     RT_TRY(rt_measure_count(workload->accels[c], part, workload->probe.expected, 1, &count, error));
-    double seconds = (rt_wall_seconds() - start) / (double)part->count * all * passes;
+    double seconds = count.seconds / (double)part->count * all * passes;
     if (seconds <= experiment->limit_seconds) return RT_OK;
     snprintf(cell->limit, RT_MAX_LIMIT, "it would take about %.2g s, more than %g s", seconds,
              experiment->limit_seconds);
@@ -111,7 +108,7 @@ static RtStatus check_seconds(RtWorkloadState *workload, uint32_t c, RtRayKind k
 /* The invariants of Havran & Sixta 1999: equal for every correct accelerator are the rays, the rays that hit,
  * and, stronger, each answer. */
 static RtStatus check_differ(const RtWorkloadState *workload, uint32_t candidate, RtRayKind kind,
-                             const char *where, const RtCount *count, RtError *error) {
+                             const RtCount *count, RtError *error) {
     const RtWorkloadShare *share = &workload->shares[candidate];
     if (count->differ == 0) return RT_OK;
     return rt_fail(error, RT_MISMATCH,
@@ -120,7 +117,8 @@ static RtStatus check_differ(const RtWorkloadState *workload, uint32_t candidate
                    rt_candidate_label(workload->experiment, candidate),
                    workload->experiment->workloads[workload->index].label, (unsigned long long)count->differ,
                    (unsigned long long)share->set.count, rt_experiment_kind_name(workload->experiment, kind),
-                   rt_accel_default(), where, (unsigned long long)count->first);
+                   rt_accel_default(), count->timed_kernel ? " where nothing is counted" : "",
+                   (unsigned long long)count->first);
 }
 
 static RtStatus check_answers(const RtWorkloadState *workload, uint32_t candidate, RtRayKind kind,
@@ -130,40 +128,13 @@ static RtStatus check_answers(const RtWorkloadState *workload, uint32_t candidat
     const char *accel = rt_candidate_label(workload->experiment, candidate);
     uint64_t hits = 0;
     for (uint64_t i = 0; i < share->set.count; i++) hits += share->expected[i].object != RT_NO_OBJECT;
-    RT_TRY(check_differ(workload, candidate, kind, "", count, error));
+    RT_TRY(check_differ(workload, candidate, kind, count, error));
     if (count->tally.rays == share->set.count && count->tally.hits == hits) return RT_OK;
     return rt_fail(error, RT_MISMATCH,
                    "%s on %s counts %llu %s rays with %llu hits, where there are %llu with %llu", accel,
                    scene, (unsigned long long)count->tally.rays,
                    rt_experiment_kind_name(workload->experiment, kind), (unsigned long long)count->tally.hits,
                    (unsigned long long)share->set.count, (unsigned long long)hits);
-}
-
-/* What is timed gives the answers that were counted: of a plugin that is asked, too. */
-static RtStatus answer_as_timed(const RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtError *error) {
-    const RtWorkloadShare *share = &workload->shares[c];
-    RtCount timed;
-    if (!workload->accels[c]->exact) return RT_OK;
-    RT_TRY(rt_measure_differ(workload->accels[c], &share->set, share->expected, workload->options->threads,
-                             &timed, error));
-    return check_differ(workload, c, kind, " where nothing is counted", &timed, error);
-}
-
-/* Counts are promised to be the same every time. Of a plugin that is asked. */
-static RtStatus count_again(const RtWorkloadState *workload, uint32_t c, const RtCount *first,
-                            RtError *error) {
-    const RtWorkloadShare *share = &workload->shares[c];
-    RtCount again;
-    RT_TRY(rt_measure_count(workload->accels[c], &share->set, share->expected, workload->options->threads,
-                            &again, error));
-    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
-        uint64_t was = rt_tally_get(&first->tally, i), is = rt_tally_get(&again.tally, i);
-        if (was == is) continue;
-        return rt_fail(error, RT_BROKEN, "%s: it counts %llu %s on some rays, and %llu when asked again",
-                       rt_candidate_label(workload->experiment, c), (unsigned long long)was, rt_tally_name(i),
-                       (unsigned long long)is);
-    }
-    return RT_OK;
 }
 
 static RtStatus count_cell(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtCell *cell,
@@ -174,10 +145,6 @@ static RtStatus count_cell(RtWorkloadState *workload, uint32_t c, RtRayKind kind
     if (cell->counted) return RT_OK;
     RT_TRY(rt_measure_count(accel, &share->set, share->expected, workload->options->threads, &count, error));
     if (accel->exact) RT_TRY(check_answers(workload, c, kind, &count, error));
-    if (rt_accel_is_remote(accel)) {
-        RT_TRY(count_again(workload, c, &count, error));
-        RT_TRY(answer_as_timed(workload, c, kind, error));
-    }
     cell->counted = true;
     cell->tally = count.tally;
     cell->differ = count.differ;
@@ -218,8 +185,6 @@ static RtStatus distribute_cell(RtWorkloadState *workload, uint32_t c, RtRayKind
     RtStatus status = rt_measure_rows(workload->accels[c], &workload->shares[c].set,
                                       workload->options->threads, &rows, error);
     if (status == RT_OK) status = distribute_rows(&rows, made, error);
-    if (status == RT_NO_MEMORY && rt_accel_is_remote(workload->accels[c]))
-        status = RT_BROKEN; /* it counts beyond all reason: its own fault */
     rt_rows_clear(&rows);
     if (status != RT_OK) {
         rt_free(made);
@@ -238,10 +203,8 @@ static RtStatus each_cell(RtWorkloadState *workload, RtRayKind kind, Step *step,
     for (uint32_t c = 0; c < workload->experiment->candidate_count; c++) {
         if (!workload->accels[c]) continue;
         RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
-        const bool away = rt_accel_is_remote(workload->accels[c]);
-        RtStatus status = step(workload, c, kind, cell, error);
-        if (status == RT_BROKEN || (status == RT_MISMATCH && away))
-            status = rt_workload_break(workload, c, kind, error);
+        RtStatus status = rt_measure_status(workload->accels[c], step(workload, c, kind, cell, error));
+        if (status == RT_BROKEN) status = rt_workload_break(workload, c, kind, error);
         RT_TRY(status);
     }
     return RT_OK;

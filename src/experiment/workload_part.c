@@ -38,13 +38,13 @@ bool rt_workload_runs(const RtWorkloadState *workload, uint32_t c) {
 
 RtStatus rt_workload_tell(const RtWorkloadState *workload, RtEventKind what, uint32_t candidate,
                           RtRayKind kind, RtError *error) {
-    const RtObserver *observer = &workload->options->observer;
+    const RtRunObserver *observer = &workload->options->observer;
     const RtEvent event = {what, workload->index, candidate, kind};
     return observer->event ? observer->event(observer->context, workload->results, &event, error) : RT_OK;
 }
 
 void rt_workload_notice(const RtWorkloadState *workload, const char *message) {
-    const RtObserver *observer = &workload->options->observer;
+    const RtRunObserver *observer = &workload->options->observer;
     if (observer->notice) observer->notice(observer->context, message);
 }
 

@@ -19,7 +19,7 @@ RtStatus rt_workload_open_scene(const RtWorkload *workload, RtScene *scene, RtEr
 RtStatus rt_workload_open(RtResults *results, uint32_t index, const RtWorkloadOptions *options,
                           RtScene *scene, RtError *error) {
     const RtWorkload *setup = &results->experiment->workloads[index];
-    const RtObserver *observer = &options->observer;
+    const RtRunObserver *observer = &options->observer;
     char message[RT_MAX_PATH + 128];
     *scene = (RtScene){0};
     if (!setup->optional || !setup->file || rt_file_exists(setup->path))

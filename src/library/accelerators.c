@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Accelerators for those who embed us, and tracers. */
+/* Accelerators and tracers of the embedding interface. */
 #include "accel/plugin.h"
 #include "core/base/memory.h"
 #include "library/library.h"
@@ -16,20 +16,17 @@ const char *raytally_accelerator_name(size_t i) {
 
 raytally_status raytally_spec_format(const char *spec, char out[RAYTALLY_SPEC_CHARS], raytally_error *error) {
     RtSpec parsed;
-    locale_t before = rt_locale_enter();
+    RT_C_LOCALE;
     RtStatus status = rt_spec_parse(spec, &parsed, rt_error_of(error));
     if (status == RT_OK) rt_spec_format(&parsed, out);
-    rt_locale_leave(before);
     return (raytally_status)status;
 }
 
 /* ---- accelerators ---- */
 
 raytally_status raytally_plugin_load(const char *path, raytally_error *error) {
-    locale_t before = rt_locale_enter();
-    RtStatus status = rt_plugin_load(path, rt_error_of(error));
-    rt_locale_leave(before);
-    return (raytally_status)status;
+    RT_C_LOCALE;
+    return (raytally_status)rt_plugin_load(path, rt_error_of(error));
 }
 
 static RtStatus build(raytally_accelerator *made, const char *text, int threads, RtError *error) {
@@ -44,28 +41,21 @@ static RtStatus build(raytally_accelerator *made, const char *text, int threads,
 
 raytally_status raytally_accelerator_build(const raytally_scene *scene, const char *spec, int threads,
                                            raytally_accelerator **out, raytally_error *error) {
+    RT_C_LOCALE;
+    raytally_accelerator *made = *out = rt_alloc(1, sizeof *made);
+    if (!made) return (raytally_status)rt_fail_memory(rt_error_of(error), "an accelerator", sizeof *made);
+    made->scene = (raytally_scene *)scene; /* it counts its accelerators */
+    RtStatus status = build(made, spec, threads, rt_error_of(error));
+    if (status == RT_OK) return RAYTALLY_OK;
+    rt_free(made);
     *out = NULL;
-    locale_t before = rt_locale_enter();
-    raytally_accelerator *made = rt_alloc(1, sizeof *made);
-    RtStatus status = made ? RT_OK : rt_fail_memory(rt_error_of(error), "an accelerator", sizeof *made);
-    if (status == RT_OK) {
-        made->scene = (raytally_scene *)scene; /* to be counted there */
-        status = build(made, spec, threads, rt_error_of(error));
-    }
-    rt_locale_leave(before);
-    if (status == RT_OK) {
-        *out = made;
-    } else {
-        rt_free(made);
-    }
     return (raytally_status)status;
 }
 
 void raytally_accelerator_free(raytally_accelerator *accelerator) {
     if (!accelerator) return;
-    locale_t before = rt_locale_enter();
+    RT_C_LOCALE;
     rt_accel_destroy(accelerator->accel);
-    rt_locale_leave(before);
     atomic_fetch_sub(&accelerator->scene->accelerators, 1);
     rt_free(accelerator);
 }
@@ -79,17 +69,14 @@ bool raytally_accelerator_exact(const raytally_accelerator *accelerator) {
 }
 
 raytally_status raytally_accelerator_check(const raytally_accelerator *accelerator, raytally_error *error) {
-    locale_t before = rt_locale_enter();
-    RtStatus status = rt_accel_check(accelerator->accel, rt_error_of(error));
-    rt_locale_leave(before);
-    return (raytally_status)status;
+    RT_C_LOCALE;
+    return (raytally_status)rt_accel_check(accelerator->accel, rt_error_of(error));
 }
 
 void raytally_accelerator_describe(const raytally_accelerator *accelerator, raytally_structure *out) {
     RtDescription d;
-    locale_t before = rt_locale_enter();
+    RT_C_LOCALE;
     rt_accel_describe(accelerator->accel, &d);
-    rt_locale_leave(before);
     *out = (raytally_structure){.at = {
                                     [RAYTALLY_INTERIOR] = (double)d.interior,
                                     [RAYTALLY_LEAVES] = (double)d.leaves,
@@ -111,32 +98,26 @@ bool raytally_ray_is_valid(const raytally_ray *ray) {
 
 raytally_status raytally_tracer_new(const raytally_accelerator *accelerator, raytally_tracer **out,
                                     raytally_error *error) {
+    RT_C_LOCALE;
+    raytally_tracer *made = *out = rt_alloc(1, sizeof *made);
+    if (!made) return (raytally_status)rt_fail_memory(rt_error_of(error), "a tracer", sizeof *made);
+    RtStatus status = rt_query_init(&made->query, accelerator->accel, rt_error_of(error));
+    if (status == RT_OK) return RAYTALLY_OK;
+    rt_free(made);
     *out = NULL;
-    locale_t before = rt_locale_enter();
-    raytally_tracer *made = rt_alloc(1, sizeof *made);
-    RtStatus status = made ? rt_query_init(&made->query, accelerator->accel, rt_error_of(error))
-                           : rt_fail_memory(rt_error_of(error), "a tracer", sizeof *made);
-    rt_locale_leave(before);
-    if (status == RT_OK) {
-        *out = made;
-    } else {
-        rt_free(made);
-    }
     return (raytally_status)status;
 }
 
 void raytally_tracer_free(raytally_tracer *tracer) {
     if (!tracer) return;
-    locale_t before = rt_locale_enter();
+    RT_C_LOCALE;
     rt_query_clear(&tracer->query);
-    rt_locale_leave(before);
     rt_free(tracer);
 }
 
 void raytally_tracer_begin(raytally_tracer *tracer) {
-    locale_t before = rt_locale_enter();
+    RT_C_LOCALE;
     rt_query_begin(&tracer->query);
-    rt_locale_leave(before);
 }
 
 static void add_tallies(raytally_counters *counters, const RtTally *tallies) {
@@ -146,17 +127,15 @@ static void add_tallies(raytally_counters *counters, const RtTally *tallies) {
 void raytally_nearest(raytally_tracer *tracer, const raytally_ray *rays, size_t count, raytally_hit *hits,
                       raytally_counters *counters) {
     RtTally tallies[RT_RAY_KIND_COUNT] = {0};
-    locale_t before = rt_locale_enter();
+    RT_C_LOCALE;
     rt_nearest(&tracer->query, (const RtRay *)rays, count, (RtHit *)hits, counters ? tallies : NULL);
-    rt_locale_leave(before);
     if (counters) add_tallies(counters, tallies);
 }
 
 void raytally_occluded(raytally_tracer *tracer, const raytally_ray *rays, size_t count, bool *blocked,
                        raytally_counters *counters) {
     RtTally tallies[RT_RAY_KIND_COUNT] = {0};
-    locale_t before = rt_locale_enter();
+    RT_C_LOCALE;
     rt_occluded(&tracer->query, (const RtRay *)rays, count, blocked, counters ? tallies : NULL);
-    rt_locale_leave(before);
     if (counters) add_tallies(counters, tallies);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the files of the library share: the types that raytally.h keeps to itself, and the way between its
- * plain types and ours, which are laid out alike and so are never copied. */
+/* What the files of the library share: the types that raytally.h leaves opaque. Its plain types have the
+ * layout of raytally's own, so pointers to them are cast and nothing is copied. */
 #ifndef RT_LIBRARY_LIBRARY_H
 #define RT_LIBRARY_LIBRARY_H
 
@@ -12,12 +12,12 @@
 
 struct raytally_scene {
     RtScene scene;
-    atomic_uint accelerators; /* that stand over it */
+    atomic_uint accelerators; /* built over it */
 };
 
 struct raytally_accelerator {
     RtAccel *accel;
-    raytally_scene *scene; /* borrowed, to be told when this one is gone */
+    raytally_scene *scene; /* borrowed; it counts its accelerators */
     char spec[RT_MAX_SPEC_CHARS];
 };
 
@@ -33,21 +33,20 @@ static inline RtError *rt_error_of(raytally_error *error) {
     return (RtError *)error;
 }
 
-/* From here to rt_locale_leave this thread reads and writes numbers by the rules of "C", whatever locale the
- * program that embeds us has chosen. (That locale is one that the system has: it is not to be freed.) All
- * that may write a message or read a number does so, and tracing too, for a plugin may break at it: 7 ns. */
-static inline locale_t rt_locale_enter(void) {
-    return uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0));
+/* Until the end of the block this thread reads and writes numbers by the rules of the locale "C", whatever
+ * locale the program has chosen. (The system owns that locale: it is not freed.) Every function that may read
+ * a number or write a message needs it; tracing too (7 ns), because a plugin may break there. */
+#define RT_C_LOCALE                                                                                          \
+    __attribute__((cleanup(rt_locale_leave), unused)) locale_t locale_before =                               \
+        uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0))
+
+static inline void rt_locale_leave(const locale_t *before) {
+    uselocale(*before);
 }
 
-static inline void rt_locale_leave(locale_t before) {
-    uselocale(before);
-}
-
-/* Takes what a caller says of options: `own` holds the defaults of the `size` bytes that are known here;
- * `given`, a struct of the name `what`, begins with its size, which an older or a newer header may have made
- * another one, or is NULL. RT_NOT_AVAILABLE where anything is set behind what is known, RT_BAD_INPUT where
- * the size is none. */
+/* Reads options: `own` holds the defaults of the `size` bytes known here; `given`, a struct of the name
+ * `what`, begins with its size, which differs with the version of the header, or is NULL. RT_NOT_AVAILABLE if
+ * it sets anything beyond the known bytes, RT_BAD_INPUT if the size is impossible. */
 RtStatus rt_options_take(void *own, size_t size, const void *given, const char *what, RtError *error);
 
 /* Refuses a number of threads outside 0..1024. */

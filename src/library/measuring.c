@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Counting, timing and statistics for those who embed us. */
+/* Counting, timing and statistics of the embedding interface. */
 #include "core/base/memory.h"
 #include "library/library.h"
 #include "measure/measure.h"
@@ -14,8 +14,8 @@ static bool learns(const RtAccel *accel) {
     return accel != NULL;
 }
 
-/* The right answers, to hits[0..set->count): those of the accelerator itself; but one that learns answers
- * what it does not know yet as slowly as can be, so another does for it. */
+/* Writes the right answers to hits[0..set->count): those of the accelerator itself, or of the default one
+ * where it learns, because one that has not learned yet is very slow. */
 static RtStatus answer(const RtAccel *accel, const RtRaySet *set, int threads, RtHit *hits, RtError *error) {
     RtAccel *other;
     if (!learns(accel)) return rt_measure_answers(accel, set, threads, hits, error);
@@ -25,7 +25,8 @@ static RtStatus answer(const RtAccel *accel, const RtRaySet *set, int threads, R
     return status;
 }
 
-/* Accelerators that learn know rays by their addresses: after `status` they are made to forget them again. */
+/* Makes an accelerator that learns forget the rays, which it knows by their addresses. Returns `status`
+ * unless that is RT_OK and this fails. */
 static RtStatus forget(RtAccel *accel, RtStatus status, RtError *error) {
     RtStatus forgotten = rt_accel_learn(accel, NULL, NULL, 0, status == RT_OK ? error : NULL);
     return status == RT_OK ? forgotten : status;
@@ -56,13 +57,12 @@ static RtStatus count_rays(RtAccel *accel, const RtRaySet *set, RtHit *hits, int
 raytally_status raytally_count(raytally_accelerator *accelerator, const raytally_rays *rays, int threads,
                                raytally_counters *out, raytally_error *error) {
     *out = (raytally_counters){{0}};
-    locale_t before = rt_locale_enter();
+    RT_C_LOCALE;
     RtHit *hits = rt_alloc((size_t)rays->set.count, sizeof *hits);
     RtStatus status =
         hits ? count_rays(accelerator->accel, &rays->set, hits, threads, out, rt_error_of(error))
              : rt_fail_memory(rt_error_of(error), "answers", (size_t)rays->set.count * sizeof *hits);
     rt_free(hits);
-    rt_locale_leave(before);
     return (raytally_status)status;
 }
 
@@ -83,25 +83,22 @@ static raytally_estimate public_estimate(RtEstimate estimate, uint32_t count) {
 
 raytally_status raytally_estimate_median(const double *values, uint32_t count, raytally_estimate *out,
                                          raytally_error *error) {
-    locale_t before = rt_locale_enter();
+    RT_C_LOCALE;
     RtStatus status = check_rounds(count, "measurements", rt_error_of(error));
     if (status == RT_OK) *out = public_estimate(rt_estimate(values, count), count);
-    rt_locale_leave(before);
     return (raytally_status)status;
 }
 
 raytally_status raytally_estimate_ratio(const double *over, const double *under, uint32_t count,
                                         raytally_estimate *out, raytally_error *error) {
-    locale_t before = rt_locale_enter();
+    RT_C_LOCALE;
     RtStatus status = check_rounds(count, "pairs of measurements", rt_error_of(error));
     if (status == RT_OK) *out = public_estimate(rt_estimate_ratio(over, under, count), count);
-    rt_locale_leave(before);
     return (raytally_status)status;
 }
 
 /* ---- timing ---- */
 
-/* What is timed against each other, and where the times go. */
 typedef struct TimingRun {
     raytally_accelerator *const *accelerators; /* [count] */
     size_t count;
@@ -167,7 +164,7 @@ raytally_status raytally_time_all(raytally_accelerator *const *accelerators, siz
                                   raytally_error *error) {
     TimingRun run = {.accelerators = accelerators, .count = count, .set = &rays->set};
     raytally_timing own = RAYTALLY_TIMING;
-    locale_t before = rt_locale_enter();
+    RT_C_LOCALE;
     RtStatus status = rt_options_take(&own, sizeof own, how, "raytally_timing", rt_error_of(error));
     if (status == RT_OK) status = check_timing(&own, &run, rt_error_of(error));
     if (status == RT_OK) status = timing_run_init(&run, &own, rt_error_of(error));
@@ -179,6 +176,5 @@ raytally_status raytally_time_all(raytally_accelerator *const *accelerators, siz
     rt_free(run.hits);
     rt_free(run.timed);
     rt_free(run.seconds);
-    rt_locale_leave(before);
     return (raytally_status)status;
 }

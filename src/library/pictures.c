@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pictures for those who embed us. */
+/* Pictures of the embedding interface. */
 #include "library/library.h"
 #include "render/image.h"
 
@@ -26,12 +26,11 @@ raytally_status raytally_render(const raytally_accelerator *accelerator, uint32_
                                 const char *png, float *rgb, raytally_error *error) {
     RtFrame frame = {0};
     RtFrameOptions options = {.depth = depth ? depth : RT_DEFAULT_DEPTH, .threads = threads};
-    locale_t before = rt_locale_enter();
+    RT_C_LOCALE;
     RtStatus status = rt_threads_check(threads, rt_error_of(error));
     if (status == RT_OK) status = rt_frame_trace(&frame, accelerator->accel, &options, rt_error_of(error));
     if (status == RT_OK && png) status = write_png(&frame, png, rt_error_of(error));
     if (status == RT_OK && rgb) copy_pixels(&frame, rgb);
     rt_frame_clear(&frame);
-    rt_locale_leave(before);
     return (raytally_status)status;
 }

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Sets of rays for those who embed us: recorded, or their own. */
+/* Sets of rays of the embedding interface: recorded, or copied from the caller. */
 #include "core/base/memory.h"
 #include "experiment/experiment.h"
 #include "library/library.h"
 
 #include <string.h>
 
-/* Neighbours that are kept together where a set is thinned: those of `raytally bench`. */
+/* Neighbours that stay together when a set is thinned, as in `raytally bench`. */
 enum { COHERENT_RUN = 256 };
 
 static RtStatus check_kind(enum raytally_ray_kind kind, RtError *error) {
@@ -50,7 +50,7 @@ static RtStatus copy(enum raytally_ray_kind kind, const raytally_ray *rays, size
         if (rt_ray_is_valid(&out->rays[i])) continue;
         return rt_fail(
             error, RT_BAD_INPUT,
-            "ray %zu (the first is 0) is none: org and dir are finite, dir is not 0, and 0 <= tmin "
+            "ray %zu (the first is 0) is not valid: org and dir are finite, dir is not 0, and 0 <= tmin "
             "<= tmax",
             i);
     }
@@ -58,15 +58,15 @@ static RtStatus copy(enum raytally_ray_kind kind, const raytally_ray *rays, size
     return RT_OK;
 }
 
-/* To *out, what lies at `made`, where `status` says that it could be made; else nothing is left of it. */
-static RtStatus hand_out(RtRaySet *made, RtStatus status, raytally_rays **out, RtError *error) {
+/* Moves the rays to a new *out if `status` is RT_OK; else frees them. */
+static raytally_status finish(RtRaySet *made, RtStatus status, raytally_rays **out, RtError *error) {
     *out = status == RT_OK ? rt_alloc(1, sizeof **out) : NULL;
     if (*out) {
         (*out)->set = *made;
-        return RT_OK;
+        return RAYTALLY_OK;
     }
     rt_rayset_clear(made);
-    return status != RT_OK ? status : rt_fail_memory(error, "rays", sizeof **out);
+    return (raytally_status)(status != RT_OK ? status : rt_fail_memory(error, "rays", sizeof **out));
 }
 
 raytally_status raytally_rays_record(const raytally_accelerator *accelerator, enum raytally_ray_kind kind,
@@ -74,22 +74,18 @@ raytally_status raytally_rays_record(const raytally_accelerator *accelerator, en
                                      raytally_error *error) {
     RtRaySet made = {0};
     raytally_recording own = RAYTALLY_RECORDING;
-    locale_t before = rt_locale_enter();
+    RT_C_LOCALE;
     RtStatus status = rt_options_take(&own, sizeof own, how, "raytally_recording", rt_error_of(error));
     if (status == RT_OK) status = record(accelerator->accel, kind, &own, &made, rt_error_of(error));
-    status = hand_out(&made, status, out, rt_error_of(error));
-    rt_locale_leave(before);
-    return (raytally_status)status;
+    return finish(&made, status, out, rt_error_of(error));
 }
 
 raytally_status raytally_rays_copy(enum raytally_ray_kind kind, const raytally_ray *rays, size_t count,
                                    raytally_rays **out, raytally_error *error) {
     RtRaySet made = {0};
-    locale_t before = rt_locale_enter();
+    RT_C_LOCALE;
     RtStatus status = copy(kind, rays, count, &made, rt_error_of(error));
-    status = hand_out(&made, status, out, rt_error_of(error));
-    rt_locale_leave(before);
-    return (raytally_status)status;
+    return finish(&made, status, out, rt_error_of(error));
 }
 
 void raytally_rays_free(raytally_rays *rays) {

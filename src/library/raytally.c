@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Versions, names, and that the plain types of the library are laid out as ours. */
+/* Versions, names, and checks that the plain types of the interface have the layout of raytally's own. */
 #include "library/library.h"
 
 #include <string.h>
@@ -27,7 +27,7 @@ _Static_assert(sizeof(raytally_ray) == sizeof(RtRay) && sizeof(raytally_hit) == 
 RT_RAY_KINDS(SAME_KIND)
 _Static_assert((int)RAYTALLY_RAY_KINDS == (int)RT_RAY_KIND_COUNT, "kinds of rays are the same");
 
-/* Each counter has the place of the tally's member of its name, so that rt_counters_add copies them. */
+/* Each counter has the offset of the tally's member of its name: rt_counters_add copies them. */
 #define SAME_COUNTER(CONSTANT, name)                                                                         \
     _Static_assert(RAYTALLY_##CONSTANT * sizeof(uint64_t) == offsetof(RtTally, name), #name);
 SAME_COUNTER(RAYS, rays)
@@ -43,18 +43,18 @@ SAME_COUNTER(REPEATS_AVOIDED, repeats_avoided)
 SAME_COUNTER(PASSED_ON, passed_on)
 _Static_assert((int)RAYTALLY_COUNTERS_KNOWN == (int)RT_TALLY_COUNTER_COUNT, "none is left out");
 
-/* What programs have room for is part of the binary interface. */
+/* The room in structs of results is part of the binary interface. */
 _Static_assert(RAYTALLY_MAX_RAY_KINDS == 16 && RAYTALLY_COUNTERS == 32 && RAYTALLY_FIGURES == 32 &&
                    sizeof(raytally_verified) == 128 && sizeof(raytally_estimate) == 64 &&
                    sizeof(raytally_time) == 192,
-               "the room for what is told does not change");
+               "the size of results does not change");
 _Static_assert((int)RAYTALLY_RAY_KINDS <= (int)RAYTALLY_MAX_RAY_KINDS &&
                    (int)RAYTALLY_COUNTERS_KNOWN <= (int)RAYTALLY_COUNTERS &&
                    (int)RAYTALLY_FIGURES_KNOWN <= (int)RAYTALLY_FIGURES,
-               "and is enough");
+               "and is large enough");
 
-/* A member that a later header adds to options lies behind the size of them here, not in padding, where an
- * older program would have left anything. */
+/* A member that a later header adds to options must lie beyond their size here, not in padding, which an
+ * older program leaves unset. */
 #define ENDS_WITH(Options, member)                                                                           \
     _Static_assert(sizeof(Options) == offsetof(Options, member) + sizeof((Options){0}.member),               \
                    #Options " has no padding at its end")
@@ -88,7 +88,7 @@ const char *raytally_ray_kind_name(enum raytally_ray_kind kind) {
     return (unsigned)kind < RT_RAY_KIND_COUNT ? rt_ray_kind_name((RtRayKind)kind) : NULL;
 }
 
-/* More than options of any version take: a larger size is one that nobody has set. */
+/* More than the options of any version: a larger size was never set. */
 enum { MOST_OPTION_BYTES = 4096 };
 
 RtStatus rt_options_take(void *own, size_t size, const void *given, const char *what, RtError *error) {
@@ -102,9 +102,8 @@ RtStatus rt_options_take(void *own, size_t size, const void *given, const char *
     for (size_t i = size; i < given_size; i++) {
         if (((const unsigned char *)given)[i] == 0) continue;
         return rt_fail(error, RT_NOT_AVAILABLE,
-                       "%s: what is set at byte %zu of it means nothing to raytally " RT_VERSION
-                       ", which knows %zu bytes",
-                       what, i, size);
+                       "%s: byte %zu is set, but raytally " RT_VERSION " knows only %zu bytes", what, i,
+                       size);
     }
     memcpy(own, given, given_size < size ? given_size : size);
     return RT_OK;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Scenes for those who embed us: opened, or made of arrays; and the camera. */
+/* Scenes of the embedding interface: opened, or made from arrays; and the camera. */
 #include "core/base/memory.h"
 #include "library/library.h"
 #include "scenes/open.h"
@@ -9,7 +9,7 @@
 
 /* ---- making ---- */
 
-/* To *out, what `fill` makes of a zeroed scene; nothing where that fails. */
+/* Makes *out with `fill`, which gets a zeroed scene. */
 static RtStatus make(RtStatus (*fill)(RtScene *scene, const void *what, RtError *error), const void *what,
                      raytally_scene **out, RtError *error) {
     raytally_scene *made = rt_alloc(1, sizeof *made);
@@ -30,13 +30,11 @@ static RtStatus fill_by_spec(RtScene *scene, const void *spec, RtError *error) {
 
 raytally_status raytally_scene_open(const char *spec, raytally_scene **out, raytally_error *error) {
     *out = NULL;
-    locale_t before = rt_locale_enter();
-    RtStatus status = make(fill_by_spec, spec, out, rt_error_of(error));
-    rt_locale_leave(before);
-    return (raytally_status)status;
+    RT_C_LOCALE;
+    return (raytally_status)make(fill_by_spec, spec, out, rt_error_of(error));
 }
 
-/* The failure `why`, with what was being added before its message. */
+/* Reports the failure `why` of adding object number `i`. */
 static RtStatus fail_object(const RtError *why, const char *what, uint32_t i, RtError *error) {
     return rt_fail(error, why->status, "%s %" PRIu32 " (the first is 0): %.900s", what, i, why->message);
 }
@@ -83,11 +81,10 @@ raytally_status raytally_scene_make(const raytally_objects *objects, raytally_sc
                                     raytally_error *error) {
     raytally_objects own = RAYTALLY_OBJECTS;
     *out = NULL;
-    locale_t before = rt_locale_enter();
+    RT_C_LOCALE;
     RtStatus status = rt_options_take(&own, offsetof(raytally_objects, reserved), objects, "raytally_objects",
                                       rt_error_of(error));
     if (status == RT_OK) status = make(fill_by_objects, &own, out, rt_error_of(error));
-    rt_locale_leave(before);
     return (raytally_status)status;
 }
 
@@ -97,7 +94,7 @@ void raytally_scene_free(raytally_scene *scene) {
     rt_free(scene);
 }
 
-/* ---- what it is like ---- */
+/* ---- size ---- */
 
 uint32_t raytally_scene_object_count(const raytally_scene *scene) {
     return scene->scene.geometry.object_count;
@@ -114,9 +111,9 @@ void raytally_scene_size(const raytally_scene *scene, uint32_t *width, uint32_t 
     *height = scene->scene.sampling.height;
 }
 
-/* ---- what may change ---- */
+/* ---- camera and sampling ---- */
 
-/* Accelerators know the samples of the image (item), so none may stand over a scene that changes. */
+/* Accelerators know the samples of the image (item), so a scene must not change once one is built over it. */
 static RtStatus check_free(raytally_scene *scene, RtError *error) {
     unsigned count = atomic_load(&scene->accelerators);
     if (count == 0) return RT_OK;
@@ -147,18 +144,15 @@ static RtStatus look(raytally_scene *scene, const raytally_camera *camera, RtErr
 
 raytally_status raytally_scene_look(raytally_scene *scene, const raytally_camera *camera,
                                     raytally_error *error) {
-    locale_t before = rt_locale_enter();
-    RtStatus status = look(scene, camera, rt_error_of(error));
-    rt_locale_leave(before);
-    return (raytally_status)status;
+    RT_C_LOCALE;
+    return (raytally_status)look(scene, camera, rt_error_of(error));
 }
 
 raytally_status raytally_scene_sample(raytally_scene *scene, uint32_t width, uint32_t height,
                                       uint32_t samples, raytally_error *error) {
-    locale_t before = rt_locale_enter();
+    RT_C_LOCALE;
     RtStatus status = check_free(scene, rt_error_of(error));
     if (status == RT_OK)
         status = rt_scene_sample(&scene->scene, width, height, samples, false, rt_error_of(error));
-    rt_locale_leave(before);
     return (raytally_status)status;
 }

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Verification for those who embed us: one accelerator against brute on one scene. */
+/* Verification of the embedding interface: one accelerator against brute on one scene. */
 #include "library/library.h"
 #include "verify/verify_rays.h"
 
 #include <inttypes.h>
 
-/* As many as `raytally verify` takes. */
+/* The limit of `raytally verify`. */
 #define MOST_RAYS UINT64_C(20000000)
 
 static void fill(const RtEquivalence *result, raytally_verified *out) {
@@ -17,7 +17,7 @@ static void fill(const RtEquivalence *result, raytally_verified *out) {
                                .occluded_wrong = result->occluded_wrong};
 }
 
-/* A broken structure is told of only where all its answers are right all the same. */
+/* Reports the first wrong answer; a broken structure only if all answers are right. */
 static RtStatus judge(const RtAccel *accel, const RtEquivalence *result, const char *spec, RtError *error) {
     char says[512];
     if (!result->any_wrong) return rt_accel_validate(accel, error);
@@ -34,8 +34,7 @@ static RtStatus verify(RtVerifyStage *stage, const RtVerifyRays *wanted, RtAccel
     return judge(accel, &result, spec, error);
 }
 
-/* The accelerator is built before the rays are answered, which takes longest: a spec that is refused is so at
- * once. */
+/* Answering the rays takes longest, so the accelerator is built first: a bad spec fails at once. */
 static RtStatus build_and_verify(RtVerifyStage *stage, const RtScene *scene, const RtVerifyRays *wanted,
                                  const char *spec, raytally_verified *out, RtError *error) {
     RtAccel *accel;
@@ -58,7 +57,7 @@ raytally_status raytally_verify(const raytally_scene *scene, const char *spec, c
     RtVerifyStage stage = {0};
     raytally_verifying own = RAYTALLY_VERIFYING;
     *out = (raytally_verified){0};
-    locale_t before = rt_locale_enter();
+    RT_C_LOCALE;
     RtStatus status = rt_options_take(&own, sizeof own, how, "raytally_verifying", rt_error_of(error));
     RtVerifyRays wanted = {.count = own.given ? own.given->set.count : own.rays,
                            .seed = own.seed,
@@ -68,6 +67,5 @@ raytally_status raytally_verify(const raytally_scene *scene, const char *spec, c
     if (status == RT_OK)
         status = build_and_verify(&stage, &scene->scene, &wanted, spec, out, rt_error_of(error));
     rt_verify_stage_clear(&stage);
-    rt_locale_leave(before);
     return (raytally_status)status;
 }

@@ -37,7 +37,7 @@ uint64_t rt_histogram_low(uint32_t bin) {
 RtStatus rt_occurrences_add(RtOccurrences *occurrences, uint64_t value, RtError *error) {
     const uint64_t most = UINT64_C(1) << 27; /* a gigabyte of numbers */
     if (value >= most)
-        return rt_fail(error, RT_NO_MEMORY, "a count of %llu for one ray is too large for a distribution",
+        return rt_fail(error, RT_BROKEN, "a count of %llu for one ray is too large for a distribution",
                        (unsigned long long)value);
     if (value >= occurrences->end) {
         uint32_t end = (uint32_t)value + 1;

@@ -5,12 +5,11 @@
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
-#include "measure/measure_local.h"
 #include "measure/rounds.h"
 
 #include <string.h>
 
-/* Rays handed to a thread at a time. */
+/* Rays of a work item. */
 enum { CHUNK = 4096 };
 
 /* Rays traced at a time while warming up. */
@@ -56,7 +55,7 @@ static RtStatus pass_init(Pass *pass, const RtAccel *accel, const RtRaySet *set,
 
 static void trace(Pass *pass, int thread, size_t first, size_t count) {
     const RtRay *rays = pass->set->rays + first;
-    rt_remote_beat();
+    rt_remote_progress();
     rt_query_begin(&pass->queries[thread]);
     RtTally *tallies = pass->tallies ? pass->tallies[thread] : NULL;
     if (pass->blocked) {
@@ -105,13 +104,16 @@ static bool answers_agree(const Pass *pass, size_t i, RtHit expected) {
     return memcmp(&pass->hits[i], &expected, sizeof expected) == 0;
 }
 
-/* By the counted kernel or the timed one. */
+/* One pass by the counted kernel or the timed one. */
 static RtStatus compare_pass(const RtAccel *accel, const RtRaySet *set, const RtHit *expected, int threads,
                              bool counted, RtCount *count, RtError *error) {
     *count = (RtCount){0};
     Pass pass;
     RtStatus status = pass_init(&pass, accel, set, threads, counted, error);
+    double start = rt_wall_seconds();
     if (status == RT_OK) status = run_pass(&pass, error);
+    count->seconds = rt_wall_seconds() - start;
+    count->timed_kernel = !counted;
     if (status == RT_OK) {
         for (int i = 0; counted && i < pass.threads; i++)
             rt_tally_add(&count->tally, &pass.tallies[i][set->kind]);
@@ -124,19 +126,41 @@ static RtStatus compare_pass(const RtAccel *accel, const RtRaySet *set, const Rt
     return status;
 }
 
-RtStatus rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit *expected, int threads,
-                          RtCount *count, RtError *error) {
-    return compare_pass(accel, set, expected, threads, true, count, error);
+/* Whether two passes over the same rays counted the same. */
+static RtStatus check_counts(const RtAccel *accel, const RtTally *first, const RtTally *second,
+                             RtError *error) {
+    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
+        uint64_t was = rt_tally_get(first, i), is = rt_tally_get(second, i);
+        if (was != is)
+            return rt_fail(error, RT_BROKEN, "%s: it counts %llu %s on some rays, and %llu when asked again",
+                           accel->ops->name, (unsigned long long)was, rt_tally_name(i),
+                           (unsigned long long)is);
+    }
+    return RT_OK;
 }
 
-RtStatus rt_measure_differ(const RtAccel *accel, const RtRaySet *set, const RtHit *expected, int threads,
-                           RtCount *count, RtError *error) {
-    return compare_pass(accel, set, expected, threads, false, count, error);
+RtStatus rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit *expected, int threads,
+                          RtCount *count, RtError *error) {
+    RtCount other;
+    RT_TRY(compare_pass(accel, set, expected, threads, true, count, error));
+    if (!rt_accel_is_remote(accel) || (accel->exact && count->differ > 0)) return RT_OK;
+    RT_TRY(compare_pass(accel, set, expected, threads, true, &other, error));
+    RT_TRY(check_counts(accel, &count->tally, &other.tally, error));
+    if (!accel->exact) return RT_OK;
+    RT_TRY(compare_pass(accel, set, expected, threads, false, &other, error));
+    if (other.differ == 0) return RT_OK;
+    count->differ = other.differ;
+    count->first = other.first;
+    count->timed_kernel = true;
+    return RT_OK;
+}
+
+RtStatus rt_measure_status(const RtAccel *accel, RtStatus status) {
+    return status == RT_MISMATCH && rt_accel_is_remote(accel) ? RT_BROKEN : status;
 }
 
 /* ---- ray by ray ---- */
 
-/* What a chunk of rays costs, each asked by itself. */
 typedef struct RowsPass {
     Pass pass;
     RtTally *rows; /* [set->count] */
@@ -198,8 +222,8 @@ static RtStatus run_runner(void *context, RtError *error) {
     return run_pass(context, error);
 }
 
-/* Blocks of rays, one after the other where the golden ratio puts it, so that however few they are they are
- * spread; the answers' memory is touched, too. */
+/* Traces blocks of rays whose places follow the golden ratio, so that even few blocks are spread over the
+ * set; also touches the memory of the answers. */
 static RtStatus warm_runner(void *context, double seconds, double *part, RtError *error) {
     const double golden = 0.6180339887498949;
     Pass *pass = context;
@@ -218,7 +242,7 @@ static RtStatus warm_runner(void *context, double seconds, double *part, RtError
     return rt_accel_check(pass->queries[0].accel, error);
 }
 
-RtStatus rt_runner_open_here(RtRunner *runner, const RtTimed *timed, int threads, RtError *error) {
+RtStatus rt_runner_open_local(RtRunner *runner, const RtTimed *timed, int threads, RtError *error) {
     Pass *pass = rt_alloc(1, sizeof(Pass));
     *runner = (RtRunner){.run = run_runner,
                          .warm = warm_runner,
@@ -232,7 +256,7 @@ RtStatus rt_runner_open_here(RtRunner *runner, const RtTimed *timed, int threads
     return pass_init(pass, timed->accel, timed->set, threads, false, error);
 }
 
-void rt_runner_close_here(RtRunner *runner) {
+void rt_runner_close_local(RtRunner *runner) {
     if (runner->context) pass_clear(runner->context);
     rt_free(runner->context);
     *runner = (RtRunner){0};

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "picture/canvas.h"
 
-#include "core/base/clamp.h"
 #include "core/base/elementary.h"
 
 #include <cairo-pdf.h>

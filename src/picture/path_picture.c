@@ -5,7 +5,6 @@
  * where the ray is in its box. Both parts have the same x axis. */
 #include "picture/path_picture.h"
 
-#include "core/base/clamp.h"
 #include "core/base/words.h"
 #include "picture/extent_outline.h"
 
@@ -196,7 +195,7 @@ static void draw_object(const Drawing *d, const RtPathRow *row) {
     else if (shape == RT_SHAPE_TRIANGLE)
         add_flat(d, g->triangles[index].v, 3);
     else if (shape == RT_SHAPE_POLYGON)
-        add_flat(d, g->polygon_vertices + g->polygons[index].first, g->polygons[index].count);
+        add_flat(d, rt_polygon_vertices(g, index), g->polygons[index].count);
     paint(d->cairo, row->met ? (Style){hit_color, 2, 0.25, false} : (Style){dark, 1, 0.1, false});
 }
 

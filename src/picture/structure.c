@@ -247,7 +247,7 @@ static void draw_section(Drawing *d) {
     for (uint32_t i = 0; i < g->sphere_count; i++) outline_sphere(d, &g->spheres[i]);
     for (uint32_t i = 0; i < g->triangle_count; i++) outline_flat(d, g->triangles[i].v, 3);
     for (uint32_t i = 0; i < g->polygon_count; i++)
-        outline_flat(d, g->polygon_vertices + g->polygons[i].first, g->polygons[i].count);
+        outline_flat(d, rt_polygon_vertices(g, i), g->polygons[i].count);
 }
 
 /* ---- the legend ---- */

@@ -93,9 +93,8 @@ static RtStatus take_rays(Worker *worker, const RtRay *rays, uint32_t count, RtE
         const uint32_t kind = rays[i].kind;
         worker->ray_count[kind]++;
         if (!to) continue;
-        RT_TRY(rt_reserve(&to->rays[kind], &to->capacity[kind], (uint64_t)to->count[kind] + 1, sizeof(RtRay),
-                          error));
-        to->rays[kind][to->count[kind]++] = rays[i];
+        RT_TRY(rt_append(&to->rays[kind], &to->count[kind], &to->capacity[kind], &rays[i], sizeof(RtRay),
+                         error));
     }
     return RT_OK;
 }

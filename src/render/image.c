@@ -2,7 +2,10 @@
 #include "render/image.h"
 
 #include "core/base/elementary.h"
+#include "core/base/file.h"
 #include "core/base/memory.h"
+
+#include <png.h>
 
 RtStatus rt_image_init(RtImage *image, uint32_t width, uint32_t height, RtError *error) {
     size_t pixels = (size_t)width * height;
@@ -59,4 +62,19 @@ RtStatus rt_image_from_frame(RtImage *image, const RtFrame *frame, RtError *erro
         }
     }
     return RT_OK;
+}
+
+/* libpng's simplified interface has no long jumps. */
+RtStatus rt_png_write(const RtImage *image, const char *path, RtError *error) {
+    RtOutput output;
+    RT_TRY(rt_output_open(&output, path, error));
+    png_image png = {.version = PNG_IMAGE_VERSION,
+                     .width = image->width,
+                     .height = image->height,
+                     .format = PNG_FORMAT_RGB};
+    if (!png_image_write_to_stdio(&png, output.file, 0, image->rgb, 0, NULL)) {
+        rt_output_discard(&output);
+        return rt_fail(error, RT_IO, "%s: writing the PNG failed: %s", path, png.message);
+    }
+    return rt_output_commit(&output, error);
 }

@@ -133,9 +133,9 @@ RtStatus rt_path_trace(RtPath *path, RtAccel *accel, const RtRay *ray, RtError *
     if (status == RT_OK) {
         Recorder recorder = {path, RT_OK, error};
         rt_query_begin(&query);
-        rt_onlooker = &(RtOnlooker){record, &recorder};
+        rt_observer = &(RtObserver){record, &recorder};
         ask(&query, &path->ray, path, tallies);
-        rt_onlooker = NULL;
+        rt_observer = NULL;
         status = recorder.status;
     }
     rt_query_clear(&query);

@@ -15,7 +15,7 @@
 /* ---- what the shards say of themselves ---- */
 
 typedef struct Merge {
-    char *const *directories;
+    const char *const *directories;
     uint32_t count;
     const char *out;
     json_t *journals[RT_MAX_SHARDS];
@@ -224,7 +224,7 @@ static RtStatus take_directory(const Merge *merge, const RtExperiment *experimen
 }
 
 static RtStatus merge_all(Merge *merge, RtStart start, bool trust, RtExperiment *experiment,
-                          RtResults *results, const RtObserver *observer, RtError *error) {
+                          RtResults *results, const RtRunObserver *observer, RtError *error) {
     RtRunOptions options = {.directory = merge->out,
                             .start = RT_START_RESUME,
                             .scripts = trust ? RT_SCRIPTS_ALL : RT_SCRIPTS_SHIPPED,
@@ -242,8 +242,9 @@ static RtStatus merge_all(Merge *merge, RtStart start, bool trust, RtExperiment 
     return rt_run_experiment(results, &options, error);
 }
 
-RtStatus rt_merge(char *const *directories, uint32_t count, const char *out, RtStart start, bool trust,
-                  RtExperiment *experiment, RtResults *results, const RtObserver *observer, RtError *error) {
+RtStatus rt_merge(const char *const *directories, uint32_t count, const char *out, RtStart start, bool trust,
+                  RtExperiment *experiment, RtResults *results, const RtRunObserver *observer,
+                  RtError *error) {
     Merge merge = {.directories = directories, .count = count, .out = out};
     *results = (RtResults){0};
     RtStatus status = merge_all(&merge, start, trust, experiment, results, observer, error);

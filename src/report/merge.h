@@ -16,7 +16,8 @@
  * Refuses what is no finished shard, shards of different experiments, variants or builds, and one that is
  * missing or there twice. Nothing is measured. What lies in `out` is removed only once the joined journal,
  * the pictures and the scripts are whole on its disk. As rt_run_experiment otherwise. */
-RtStatus rt_merge(char *const *directories, uint32_t count, const char *out, RtStart start, bool trust,
-                  RtExperiment *experiment, RtResults *results, const RtObserver *observer, RtError *error);
+RtStatus rt_merge(const char *const *directories, uint32_t count, const char *out, RtStart start, bool trust,
+                  RtExperiment *experiment, RtResults *results, const RtRunObserver *observer,
+                  RtError *error);
 
 #endif

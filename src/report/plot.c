@@ -2,6 +2,7 @@
 #include "report/plot.h"
 
 #include "core/base/memory.h"
+#include "core/base/process.h"
 #include "histograms_gp.h"
 #include "report/color.h"
 #include "report/page.h"
@@ -10,10 +11,7 @@
 
 #include <ctype.h>
 #include <errno.h>
-#include <fcntl.h>
-#include <spawn.h>
 #include <string.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 enum { MOST_ARGUMENTS = RT_MAX_PLOTS + 4 };
@@ -129,26 +127,17 @@ static RtStatus fail_drawing(char **arguments, const char *directory, RtError *e
 
 /* Runs gnuplot in `directory` with the scripts as arguments, its messages going to plots/gnuplot.log. */
 static RtStatus run_gnuplot(char **arguments, const char *directory, RtError *error) {
-    pid_t child;
-    int result = 0;
-    posix_spawn_file_actions_t actions;
-    if (posix_spawn_file_actions_init(&actions) != 0) return rt_fail_memory(error, "starting gnuplot", 0);
-    posix_spawn_file_actions_addchdir_np(&actions, directory);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "plots/gnuplot.log",
-                                     O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    int failed = posix_spawnp(&child, arguments[0], &actions, NULL, arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    if (failed == ENOENT) {
+    const RtCommand command = {
+        .arguments = arguments, .directory = directory, .out = "/dev/null", .log = "plots/gnuplot.log"};
+    RtProcessEnd end;
+    RtStatus status = rt_process_run(&command, &end, error);
+    if (status == RT_NOT_AVAILABLE)
         return rt_fail(
-            error, RT_NOT_AVAILABLE,
+            error, status,
             "gnuplot is not installed, so no plots were drawn; `raytally plot %s` draws them later",
             directory);
-    }
-    if (failed) return rt_fail(error, RT_IO, "starting gnuplot failed: %s", strerror(failed));
-    while (waitpid(child, &result, 0) < 0 && errno == EINTR) continue;
-    if (WIFEXITED(result) && WEXITSTATUS(result) == 0) return RT_OK;
-    return fail_drawing(arguments, directory, error);
+    RT_TRY(status);
+    return end.code == 0 ? RT_OK : fail_drawing(arguments, directory, error);
 }
 
 /* What becomes of the files that the scripts wrote: they get their names, or go where drawing failed. */

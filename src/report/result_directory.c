@@ -36,7 +36,7 @@ static RtStatus path_in(const Run *run, const char *name, char *path, RtError *e
 }
 
 static void notify(const Run *run, const char *message) {
-    const RtObserver *observer = &run->options->workload.observer;
+    const RtRunObserver *observer = &run->options->workload.observer;
     if (observer->notice) observer->notice(observer->context, message);
 }
 
@@ -203,7 +203,7 @@ static RtStatus unfinish(Run *run, RtError *error) {
 
 static RtStatus on_event(void *context, const RtResults *results, const RtEvent *event, RtError *error) {
     Run *run = context;
-    const RtObserver *observer = &run->options->workload.observer;
+    const RtRunObserver *observer = &run->options->workload.observer;
     if (!run->measured) RT_TRY(unfinish(run, error));
     RT_TRY(rt_journal_append(&run->journal, results, event, error));
     return observer->event ? observer->event(observer->context, results, event, error) : RT_OK;
@@ -273,7 +273,7 @@ static void tell_end(const Run *run) {
 
 static RtStatus measure(Run *run, RtError *error) {
     RtWorkloadOptions options = run->options->workload;
-    options.observer = (RtObserver){run, on_event, on_notice};
+    options.observer = (RtRunObserver){run, on_event, on_notice};
     RT_TRY(open_journal(run, error));
     name_missing(run);
     for (uint32_t t = 0; t < run->experiment->workload_count; t++) {

@@ -38,7 +38,7 @@ typedef struct Asked {
     RtRay rays[CHUNK]; /* unset for others: they are asked about the reference's, by which some know them */
 } Asked;
 
-_Static_assert(sizeof(Asked) <= RT_AWAY_BYTES, "it fits");
+_Static_assert(sizeof(Asked) <= RT_REMOTE_BYTES, "it fits");
 
 /* What one thread writes to. The plan is the desk's own: what comes back from a plugin's process may have
  * been written over, and is answers and nothing else. */
@@ -130,9 +130,9 @@ static void ask(RtQuery *query, const Plan *plan, const RtRay *rays, Asked *aske
         for (size_t first = 0; first < plan->count; first += stream) {
             size_t n = plan->count - first < stream ? plan->count - first : stream;
             rt_nearest(query, rays + first, n, asked->hits[w] + first, tallies);
-            rt_remote_beat();
+            rt_remote_progress();
             rt_occluded(query, rays + first, n, asked->blocked[w] + first, tallies);
-            rt_remote_beat();
+            rt_remote_progress();
         }
     }
 }
@@ -141,7 +141,7 @@ static void ask(RtQuery *query, const Plan *plan, const RtRay *rays, Asked *aske
 static void recount(RtQuery *query, const Plan *plan, const RtRay *rays, Asked *asked) {
     for (int i = 0; i < 2; i++) {
         rt_query_begin(query);
-        rt_remote_beat();
+        rt_remote_progress();
         memset(asked->recounts[i], 0, sizeof asked->recounts[i]);
         rt_nearest(query, rays, plan->count, asked->hits[plan->way_count - 1], asked->recounts[i]);
     }

@@ -83,7 +83,7 @@ RtVec3d rt_point_of_object(const RtGeometry *g, RtWhere where, RtRandom *random,
     case RT_SHAPE_TRIANGLE: return point_of_vertices(g->triangles[index].v, 3, where, random);
     case RT_SHAPE_POLYGON: {
         const RtPolygon *polygon = &g->polygons[index];
-        return point_of_vertices(g->polygon_vertices + polygon->first, polygon->count, where, random);
+        return point_of_vertices(rt_polygon_vertices(g, index), polygon->count, where, random);
     }
     case RT_SHAPE_CONE: return point_of_cone(&g->cones[index], where != RT_ON_SURFACE, random);
     case RT_SHAPE_CSG: return point_of_csg(g, *id, where, random, room);

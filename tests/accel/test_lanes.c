@@ -7,7 +7,7 @@
 #include "accel/brute/brute.h"
 #include "accel/extents/extents.h"
 #include "accel/kernel.h"
-#include "accel/lanes.h"
+#include "accel/sphere_prefilter.h"
 #include "accel_testing.h"
 #include "core/base/random.h"
 
@@ -97,9 +97,13 @@ static void assert_kernels_are_right(const RtKernels *kernels, const RtQuery *qu
     }
 }
 
-static const RtKernels *const brute_kernels[] = {&rt_brute_portable, &rt_brute_avx2, &rt_brute_avx512};
-static const RtKernels *const extents_kernels[] = {&rt_extents_portable, &rt_extents_avx2,
-                                                   &rt_extents_avx512};
+static const RtKernels *brute_kernels(RtIsa isa) {
+    return RT_KERNELS_FOR(brute, isa);
+}
+
+static const RtKernels *extents_kernels(RtIsa isa) {
+    return RT_KERNELS_FOR(extents, isa);
+}
 
 typedef struct Opened {
     RtAccel *accel;
@@ -121,16 +125,17 @@ static void close_spec(Opened *opened) {
 }
 
 /* `spec`, which is in lanes, by the kernels of every instruction set. */
-static void assert_lanes_are_right(const char *spec, const RtKernels *const kernels[], const RtScene *scene,
+static void assert_lanes_are_right(const char *spec, const RtKernels *(*kernels)(RtIsa), const RtScene *scene,
                                    const Asked *right) {
     const size_t streams[] = {1, 5, 128, right->count};
     Opened lanes = open_spec(spec, scene);
     char who[RT_MAX_SPEC_CHARS];
-    assert_ptr_equal(lanes.kernels, kernels[rt_isa_best()]);
-    for (int isa = RT_ISA_PORTABLE; isa <= (int)rt_isa_best(); isa++) {
+    assert_ptr_equal(lanes.kernels, kernels(rt_isa_best()));
+    for (RtIsa isa = RT_ISA_PORTABLE; isa <= RT_ISA_AVX512; isa++) {
+        if (!rt_isa_runs(isa)) continue;
         snprintf(who, sizeof who, "%s by instruction set %d", spec, isa);
         for (size_t s = 0; s < sizeof streams / sizeof streams[0]; s++)
-            assert_kernels_are_right(kernels[isa], &lanes.query, right, who, streams[s]);
+            assert_kernels_are_right(kernels(isa), &lanes.query, right, who, streams[s]);
     }
     close_spec(&lanes);
 }
@@ -280,44 +285,44 @@ RT_TEST(objects_of_every_magnitude_that_rays_touch_are_answered_in_lanes_as_with
     rt_free(rays);
 }
 
-/* ---- accel/lanes.h ---- */
+/* ---- accel/sphere_prefilter.h ---- */
 
-/* Where the same sphere with a radius less by a part of its distance would be turned away, the lane is not
- * left needlessly. */
-static void check_lane(const RtSphere *sphere, const RtPreparedRay *ray, bool left, uint32_t *hits,
+/* A sphere that passes needlessly would be rejected if its radius were less by a small part of its distance.
+ */
+static void check_lane(const RtSphere *sphere, const RtPreparedRay *ray, bool passed, uint32_t *hits,
                        uint32_t *misses) {
     RtBox box = rt_sphere_box(sphere);
     RtVec3d o = rt_subd(rt_widen(sphere->center), rt_widen(ray->org)), u = rt_normalized(rt_widen(ray->dir));
-    double passed = rt_lengthd(rt_crossd(o, u));
+    double distance = rt_lengthd(rt_crossd(o, u));
     float t;
     bool hit = rt_sphere_hit(sphere, &box, ray, &t);
-    assert_true(left || !hit);
-    if (left) assert_true(passed <= (double)sphere->radius * 1.002 + rt_lengthd(o) * 0x1p-15);
+    assert_true(passed || !hit);
+    if (passed) assert_true(distance <= (double)sphere->radius * 1.002 + rt_lengthd(o) * 0x1p-15);
     *hits += hit;
-    *misses += !left;
+    *misses += !passed;
 }
 
-RT_TEST(spheres_are_left_in_lanes_that_may_be_hit_and_hardly_any_other) {
+RT_TEST(spheres_that_may_be_hit_pass_the_prefilter_and_hardly_any_other) {
     RtRandom random = rt_random(5, 5);
     uint32_t hits = 0, misses = 0;
-    for (int round = 0; round < 20000; round++) {
+    for (int round = 0; round < 20000 * 16 / RT_LANES; round++) {
         RtRay ray = far_ray(&random, 1);
         RtPreparedRay prepared = rt_ray_prepare(&ray, &RT_EMPTY_BOX);
         RtSphereLine line = rt_sphere_line(&prepared);
-        float rows[4][16];
-        RtSphere spheres[16];
-        for (int i = 0; i < 16; i++) {
+        float rows[4][RT_LANES];
+        RtSphere spheres[RT_LANES];
+        for (int i = 0; i < RT_LANES; i++) {
             spheres[i] = touched_sphere(&random, &ray, 1);
             if (i % 4 == 3) spheres[i].radius *= 0.997f;
             for (int a = 0; a < 3; a++) rows[a][i] = spheres[i].center.at[a];
             rows[3][i] = spheres[i].radius;
         }
-        uint32_t left = rt_spheres_left16(rows[0], 16, &line);
-        assert_int_equal(left & 255, rt_spheres_left8(rows[0], 16, &line));
-        assert_int_equal(left & 15, rt_spheres_left4(rows[0], 16, &line));
-        for (int i = 0; i < 16; i++) check_lane(&spheres[i], &prepared, left >> i & 1, &hits, &misses);
-        rows[round % 4][round % 16] = NAN;
-        assert_int_equal(rt_spheres_left16(rows[0], 16, &line), left & ~(1u << round % 16));
+        uint32_t passed = rt_sphere_prefilter(rows[0], RT_LANES, &line);
+        for (int i = 0; i < RT_LANES; i++)
+            check_lane(&spheres[i], &prepared, passed >> i & 1, &hits, &misses);
+        rows[round % 4][round / 4 % RT_LANES] = NAN;
+        assert_int_equal(rt_sphere_prefilter(rows[0], RT_LANES, &line),
+                         passed & ~(1u << round / 4 % RT_LANES));
     }
     assert_true(hits > 10000 && misses > 10000);
 }

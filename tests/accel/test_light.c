@@ -162,7 +162,8 @@ RT_TEST(every_instruction_set_makes_the_same_lists_and_counts) {
             rays[k] = shadow_ray(&scene, rt_box_center(*box), k % scene.light_count);
         }
         answer(accel, rays, expected, &by_best);
-        for (RtIsa isa = RT_ISA_PORTABLE; isa <= rt_isa_best(); isa++) {
+        for (RtIsa isa = RT_ISA_PORTABLE; isa <= RT_ISA_AVX512; isa++) {
+            if (!rt_isa_runs(isa)) continue;
             RtLightBuffer other = *best;
             other.isa.kernels = RT_KERNELS_FOR(light, isa);
             other.raster = RT_KERNELS_FOR(light_raster, isa);

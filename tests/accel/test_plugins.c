@@ -79,7 +79,7 @@ RT_TEST(counts_are_the_same_on_any_number_of_threads) {
     assert_ok(rt_measure_count(copy, &set, expected, 1, &once, error));
     assert_ok(rt_measure_count(copy, &set, expected, 3, &again, error));
     assert_int_equal(once.differ, 0);
-    assert_memory_equal(&once, &again, sizeof once);
+    assert_memory_equal(&once, &again, offsetof(RtCount, seconds));
     assert_int_equal(once.tally.rays, set.count);
     assert_true(once.tally.object_tests > 0 && once.tally.steps > 0);
     rt_free(expected);
@@ -302,7 +302,7 @@ static void crash_where_children_are(void (*handled)(int)) {
     assert_non_null(
         strstr(why.message, "it crashed (Aborted) while it answered a stream of 1 ray, at the ray"));
     assert_int_equal(rt_plugin_load(PLUGINS "unloadable-CONSTRUCTOR.so", &why), RT_BAD_INPUT);
-    assert_non_null(strstr(why.message, "it does not survive being loaded: it "));
+    assert_non_null(strstr(why.message, "it does not survive loading: it "));
     assert_true(rt_wall_seconds() - began < 1.5); /* less than it may hang */
     rt_query_clear(&query);
     rt_accel_destroy(faulty);

@@ -212,14 +212,15 @@ RT_TEST(what_does_not_go_together_is_refused_and_leaves_no_file) {
         {"bench balls:size=1 --accel bvh --rays-from x.npy", "--rays nearest, or --rays occlusion"},
         {"bench balls:size=1 --accel bvh --rays-from x.npy --rays diffuse", "not 'diffuse'"},
         {"bench balls:size=1 --accel bvh --rays-from x.npy --rays nearest,occlusion", "one kind at a time"},
-        {"bench balls:size=1 --accel bvh --rays-from x.npy --rays nearest --size 8x8", "--size is about"},
+        {"bench balls:size=1 --accel bvh --rays-from x.npy --rays nearest --size 8x8",
+         "--size applies to recorded rays"},
         {"bench balls:size=1 --accel bvh --rays-from x.npy --rays nearest", "x.npy: cannot be opened"},
         {"bench balls:size=1 --accel bvh --rays-from /dev/null --rays nearest", "this is not a file"},
         {"bench balls:size=1 --accel bvh --accel grid --rays primary --hits y.npy", "of one accelerator"},
         {"bench balls:size=1 --accel bvh --ray-stride 2 --rays primary --hits y.npy", "of one accelerator"},
         {"bench balls:size=1 --accel bvh --baseline grid --rays primary --counts y.npy",
          "of one accelerator"},
-        {"bench balls:size=1 --accel bvh --hits y.npy", "of one kind"},
+        {"bench balls:size=1 --accel bvh --hits y.npy", "one kind of rays"},
         {"bench balls:size=1 --accel bvh --rays primary --hits y.npy --counts y.npy", "named twice"},
         {"bench balls:size=1 --accel bvh --rays nearest --rays-from y.npy --hits y.npy", "named twice"},
         {"bench balls:size=1 --accel bvh --rays primary --size 8x8 --count-only --hits no/y.npy",
@@ -229,9 +230,9 @@ RT_TEST(what_does_not_go_together_is_refused_and_leaves_no_file) {
         {"rays balls:size=1 -o y.npy --rays transmission", "has no transmission rays"},
         {"rays nope.nff -o y.npy", "there is no such file"},
         {"rays balls:size=1 --size 8x8 -o no/y.npy", "No such file"},
-        {"verify --accel bvh --rays-from x.npy", "belong to a SCENE"},
-        {"verify balls:size=1 --rays 10 --rays-from x.npy", "leave --rays"},
-        {"verify balls:size=1 --quick --rays-from x.npy", "leave --rays, --quick"}};
+        {"verify --accel bvh --rays-from x.npy", "all rays of one SCENE"},
+        {"verify balls:size=1 --rays 10 --rays-from x.npy", "leave out --rays"},
+        {"verify balls:size=1 --quick --rays-from x.npy", "leave out --rays, --quick"}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         int code = run("%s", cases[i][0]);
         Bytes says = bytes_of(OUT ".err");

@@ -153,7 +153,7 @@ RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
     const struct {
         const char *arguments, *says;
     } cases[] = {
-        {"", "a SCENE is needed"},
+        {"", "a SCENE is missing"},
         {"balls", "--pixel X,Y"},
         {"balls --pixel 3", "as in 256,200"},
         {"balls --pixel -1,2", "as in 256,200"},

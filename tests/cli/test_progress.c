@@ -40,7 +40,7 @@ static char *said(const Place *place, bool terminal, double every, int duration)
     RtProgress progress = rt_progress_begin(&options);
     progress.terminal = terminal;
     progress.every = every;
-    RtObserver observer = rt_progress_observer(&progress);
+    RtRunObserver observer = rt_progress_observer(&progress);
     assert_true(file >= 0 && stderr_was >= 0);
     dup2(file, STDERR_FILENO);
     for (int end = milliseconds + duration; milliseconds < end; milliseconds++) {

@@ -43,7 +43,7 @@ RT_TEST(options_of_a_later_header_are_taken_as_far_as_they_say_nothing_new) {
     objects.more[1] = recording.more[0] = verifying.more[0] = timing.more[1] = 1;
     assert_int_equal(raytally_scene_make(&objects.known, &none, &why), RAYTALLY_NOT_AVAILABLE);
     assert_null(none);
-    assert_says(why, "raytally_objects: what is set at byte 60 of it means nothing to raytally " RT_VERSION);
+    assert_says(why, "raytally_objects: byte 60 is set, but raytally " RT_VERSION " knows only");
     assert_int_equal(raytally_rays_record(accel, RAYTALLY_PRIMARY, &recording.known, &no_rays, &why),
                      RAYTALLY_NOT_AVAILABLE);
     assert_null(no_rays);

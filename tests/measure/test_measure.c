@@ -382,7 +382,7 @@ static uint32_t rounds_until(double until, double patience, char says[256]) {
     char where[RT_MAX_LABEL];
     assert_non_null(e);
     says[0] = '\0';
-    options.observer = (RtObserver){says, NULL, note};
+    options.observer = (RtRunObserver){says, NULL, note};
     rt_experiment_init(e);
     strcpy(e->name, "until");
     e->milliseconds = 1;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The path of a ray: what counted kernels tell an onlooker adds up to what they count. */
+/* The path of a ray: the events that counted kernels report to an observer add up to their counts. */
 #define PICTURE_FILE RT_BINARY_DIR "/test_path_picture.png"
 #include "accel_testing.h"
 
@@ -142,7 +142,7 @@ RT_TEST(nobody_looks_on_after_a_path) {
     RtScene scene;
     RtAccel *accel;
     RtPath path = path_along_the_row("bvh", 0, &scene, &accel);
-    assert_null(rt_onlooker);
+    assert_null(rt_observer);
     forget(&path, &scene, accel);
 }
 

@@ -36,7 +36,7 @@ static int make_small(void **state) {
 
 /* Runs the experiment into `directory`; the observer may stop it. */
 static RtStatus run(const Place *place, const char *directory, RtStart start, int threads,
-                    RtObserver observer, RtError *error) {
+                    RtRunObserver observer, RtError *error) {
     RtResults results;
     Path path = path_in(place, directory);
     RT_TRY(load_small(place, false, error));
@@ -49,7 +49,7 @@ static RtStatus run(const Place *place, const char *directory, RtStart start, in
     return status;
 }
 
-static const RtObserver nobody = {NULL, NULL, NULL};
+static const RtRunObserver nobody = {NULL, NULL, NULL};
 
 #define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_small, remove_place)
 
@@ -259,7 +259,7 @@ RT_TEST_IN_PLACE(an_interrupted_run_resumes_and_loses_no_finished_cell) {
     for (int events = 1; events < 60; events += 17) {
         Stopper stopper = {events};
         RtError stopped;
-        RtObserver observer = {&stopper, stop_after, NULL};
+        RtRunObserver observer = {&stopper, stop_after, NULL};
         assert_int_equal(run(place, "parts", RT_START_ANEW, 1, observer, &stopped), RT_IO);
         cut_last_line(place, "parts/cells.jsonl");
         char *before = read_in(place, "parts/cells.jsonl");
@@ -283,7 +283,7 @@ RT_TEST_IN_PLACE(a_run_that_goes_on_measuring_is_not_finished_until_it_is) {
     const Place *place = *state;
     RtError stopped;
     Stopper stopper = {0};
-    RtObserver observer = {&stopper, stop_after, NULL};
+    RtRunObserver observer = {&stopper, stop_after, NULL};
     assert_ok(run(place, "parts", RT_START_FRESH, 1, nobody, error));
     cut_last_line(place, "parts/cells.jsonl");
     assert_true(rt_file_exists(path_in(place, "parts/manifest.json").text));
@@ -299,7 +299,7 @@ RT_TEST_IN_PLACE(a_finished_run_that_is_resumed_measures_nothing_and_writes_the_
     char *counts = read_in(place, "done/counts.csv"), *times = read_in(place, "done/times.csv");
     char *rounds = read_in(place, "done/rounds.csv");
     Stopper stopper = {0}; /* the first event would stop it */
-    RtObserver observer = {&stopper, stop_after, NULL};
+    RtRunObserver observer = {&stopper, stop_after, NULL};
     assert_ok(run(place, "done", RT_START_RESUME, 1, observer, error));
     char *counts_now = read_in(place, "done/counts.csv"), *times_now = read_in(place, "done/times.csv");
     char *rounds_now = read_in(place, "done/rounds.csv");

@@ -52,10 +52,10 @@ static RtStatus run(const Place *place, const char *directory, RtStart start, Rt
 
 /* The shards in s1 and s2. */
 static RtStatus merge(const Place *place, const char *directory, RtStart start, RtError *error) {
-    const RtObserver nobody = {0};
+    const RtRunObserver nobody = {0};
     RtResults results;
     Path shards[] = {path_in(place, "s1"), path_in(place, "s2")}, out = path_in(place, directory);
-    char *const directories[] = {shards[0].text, shards[1].text};
+    const char *const directories[] = {shards[0].text, shards[1].text};
     RtStatus status =
         rt_merge(directories, 2, out.text, start, false, place->experiment, &results, &nobody, error);
     rt_results_clear(&results);

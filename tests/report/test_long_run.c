@@ -239,7 +239,7 @@ RT_TEST_IN_PLACE(the_time_that_is_left_is_foretold_from_a_tenth_on) {
     write_changed(place, "small.yaml", long_experiment, "milliseconds: 3", "milliseconds: 8");
     assert_ok(load_small(place, false, error));
     assert_ok(rt_results_init(&results, place->experiment, error));
-    watch.options.observer = (RtObserver){&watch, look, NULL};
+    watch.options.observer = (RtRunObserver){&watch, look, NULL};
     watch.start = rt_wall_seconds();
     for (uint32_t t = 0; t < place->experiment->workload_count; t++)
         assert_ok(rt_workload_run(&results, t, &watch.options, error));

@@ -138,9 +138,9 @@ RT_TEST(the_fingerprint_sees_trees_but_not_their_extents) {
     forest->set.solids[0].subtracted = !forest->set.solids[0].subtracted;
     assert_true(before != rt_scene_fingerprint(&scene));
     forest->set.solids[0].subtracted = !forest->set.solids[0].subtracted;
-    forest->set.solids[0].place.m[0][3] += 1;
+    forest->set.solids[0].to_world.m[0][3] += 1;
     assert_true(before != rt_scene_fingerprint(&scene));
-    forest->set.solids[0].place.m[0][3] -= 1;
+    forest->set.solids[0].to_world.m[0][3] -= 1;
     uint32_t last = forest->instruction_count - 1;
     assert_int_equal(forest->instructions[last].code, RT_CSG_APPLY);
     forest->instructions[last].operand = (forest->instructions[last].operand + 1) % 3;

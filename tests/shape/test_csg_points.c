@@ -91,7 +91,7 @@ static Side side_of_mesh(const RtSolidSet *set, const RtSolid *solid, Point p) {
 
 static Side side_of_solid(const RtSolidSet *set, uint32_t index, Point p) {
     const RtSolid *solid = &set->solids[index];
-    Point q = in_standard_coordinates(&solid->place, p);
+    Point q = in_standard_coordinates(&solid->to_world, p);
     Real x = q.at[0], y = q.at[1], z = q.at[2], across = x * x + y * y, ratio = (Real)solid->ratio;
     switch (solid->kind) {
     case RT_SOLID_SPHERE: return side_of(across + z * z - 1);

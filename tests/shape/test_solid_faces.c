@@ -242,9 +242,9 @@ RT_TEST(a_cone_ends_where_float32_has_its_caps) {
         const uint32_t both[2] = {standing, moved};
         for (int i = 0; i < 2; i++) {
             const RtSolid *solid = &set.solids[both[i]];
-            assert_true(solid->place.m[2][3] == (double)99999.87427f);
+            assert_true(solid->to_world.m[2][3] == (double)99999.87427f);
             double apex = ratio ? (double)(float)(99999.87427 - 0.0039) : 99999.87427 - 0.0039;
-            assert_true(solid->place.m[2][3] + solid->place.m[2][2] == apex);
+            assert_true(solid->to_world.m[2][3] + solid->to_world.m[2][2] == apex);
             assert_true(rt_solid_support(&set, both[i], up) == (double)99999.87427f);
             assert_true(rt_solid_support(&set, both[i], rt_scaled(up, -1)) == -apex);
         }

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-# Plots of a page of docs/accelerators: counts over the one parameter that an experiment sweeps, a line for each
-# scene; bars where its values are words. All kinds of rays together. To plots/NAME.svg, NAME being the experiment's.
+# Plots of the pages in docs/accelerators: counts over the one parameter that an experiment sweeps, one line per
+# scene; bars if its values are words. All ray kinds together. Writes plots/NAME.svg, where NAME is the experiment's.
 #
-# What is counted depends on the accelerator, whose name NAME begins with.
+# The plotted counts depend on the accelerator, whose name begins NAME.
 
 counters = experiment[1:6] eq "light-" || experiment[1:5] eq "item-" ? "object_tests steps passed_on" : \
            experiment[1:8] eq "extents-" ? "object_tests" : \
            experiment[1:9] eq "clusters-" || experiment[1:4] eq "bvh-" ? "object_tests extent_tests steps" : "object_tests steps"
 param = system("head -n 1 counts.csv | sed 's/.*,//'")   # the swept parameter is the last column
 
-# Rows of value, and a column for each scene: events per ray. Commas within quotes are in `spec` alone, so columns
+# One row per value, one column per scene: events per ray. Only `spec` has commas within quotes, so columns
 # behind it are counted from the end.
 table(counter) = "< awk -F, -v counter=".counter." -v scenes='".scenes."' '\
 NR == 1 { for (i = 1; i <= NF; i++) { if ($i == counter) what = NF - i; if ($i == \"rays\") rays = NF - i } \

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# embree-ablation: throughput over that of `wide` as it is, a variant a line, a panel a scene, a mark a ray kind.
-#: 1-ablation: Throughput of variants of wide over that of wide as it is, a variant a line, a panel a scene, a marker a ray kind.
-#:   Medians with intervals, on a logarithmic axis; left of 1 the variant is slower.
+# embree-ablation: throughput over that of the default `wide`, one line per variant, one panel per scene, one mark per ray kind.
+#: 1-ablation: Throughput of variants of wide over that of the default, one line per variant, one panel per scene, one marker per
+#:   ray kind. Medians with intervals, on a logarithmic axis; left of 1 the variant is slower.
 
 n_scenes = words(scenes); n_kinds = words(kinds); n_accels = words(accels)
 chosen(s, a, k) = strcol("scene") eq word(scenes, s) && strcol("accel") eq word(accels, a) && strcol("kind") eq word(kinds, k)

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-# embree: throughput over that of Embree's best, by scene and ray kind; and how Embree's settings compare with the best of
+# embree: throughput over that of Embree's best, by scene and ray kind; and each of Embree's settings compared with the best of
 # them. 1 is the best of Embree in both.
-#: 1-embree: Throughput of our hierarchies over that of Embree's best, by kind of ray, a panel a scene.
+#: 1-embree: Throughput of our hierarchies over that of Embree's best, by ray kind, one panel per scene.
 #:   Medians with intervals; above 1 ours is faster.
-#: 2-settings: Throughput of each of Embree's settings over that of its best, by kind of ray, a panel a scene.
-#:   Filled: AVX-512, open: AVX2; the marker says how it is asked: one ray, packets of 8 and 16, streams. Of each the medium
-#:   build stands left of the high one.
+#: 2-settings: Throughput of each of Embree's settings over that of its best, by ray kind, one panel per scene.
+#:   Filled: AVX-512, open: AVX2; markers show the query mode: one ray, packets of 8 and 16, streams. The medium
+#:   build is left of the high one.
 
 n_scenes = words(scenes); n_kinds = words(kinds); n_accels = words(accels)
 place(kind) = sum [k = 1:n_kinds] (word(kinds, k) eq kind ? k : 0)
 own(s, a) = strcol("scene") eq word(scenes, s) && strcol("accel") eq word(accels, a)
 is_embree(a) = word(accels, a)[1:7] eq "embree-"
 
-# Our own accelerators, and those that are Embree's.
+# Our own accelerators, and Embree's.
 ours = ""; theirs = ""
 do for [a = 1:n_accels] { if (is_embree(a)) { theirs = theirs.sprintf("%d ", a) } else { ours = ours.sprintf("%d ", a) } }
 n_ours = words(ours)
@@ -43,7 +43,7 @@ do for [s = 1:n_scenes] {
 unset multiplot
 unset output
 
-# By the way of asking, from left to right in each kind: one ray, packets of 8 and 16, streams; of each the medium build
+# By query mode, from left to right in each kind: one ray, packets of 8 and 16, streams; the medium build
 # left of the high one.
 queries = "1 8 16 stream"
 open_mark(q) = int(word("6 4 8 12", q)) # the filled one is the next

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# light-buffer: throughput of shadow rays over that of `wide` alone, and time to build, a line for each choice of cells.
-#: 1-light-buffer: Throughput of shadow rays over that of wide alone, and seconds to build, by scene, a marker a choice of cells.
-#:   Medians with intervals; right of 1 the light buffer is faster. Times to build are on a logarithmic axis. In each scene from top to bottom in the
-#:   order of the legend.
+# light-buffer: throughput of shadow rays over that of `wide` alone, and time to build, one line per choice of cells.
+#: 1-light-buffer: Throughput of shadow rays over that of wide alone, and seconds to build, by scene, one marker per choice of cells.
+#:   Medians with intervals; right of 1 the light buffer is faster. Times to build are on a logarithmic axis. The order in each
+#:   scene, from top to bottom, is that of the legend.
 
 n_scenes = words(scenes); n_accels = words(accels)
 chosen(s, a) = strcol("scene") eq word(scenes, s) && strcol("accel") eq word(accels, a)

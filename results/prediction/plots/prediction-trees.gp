@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-# prediction-trees: of hierarchies over the same triangles, the correlation of time with (1 - alpha) SAH cost + alpha
-# end-point overlap + beta leaf-count variability: a family of hierarchies a panel, a ray kind a curve. Means over scenes;
+# prediction-trees: for hierarchies over the same triangles, the correlation of time with (1 - alpha) SAH cost + alpha
+# end-point overlap + beta leaf-count variability: one panel per family of hierarchies, one curve per ray kind. Means over scenes;
 # alpha and beta are the same for all scenes.
-#: 4-trees: Correlation of time with a weighed sum of cost and end-point overlap, over the weight of the overlap, a family of
-#:   hierarchies a panel, a ray kind a line. Means over scenes; the marker stands at the best weight.
+#: 4-trees: Correlation of time with a weighted sum of cost and end-point overlap, over the weight of the overlap, one panel per
+#:   family of hierarchies, one line per ray kind. Means over scenes; the marker shows the best weight.
 
 scenes = all_scenes; accels = all_accels
 tree_scenes = "soup crowd bunny dragon hall forest"
@@ -42,7 +42,7 @@ do for [f = 1:n_families] { do for [s = 1:n_scenes] { do for [k = 1:n_kinds] {
   }
 } } }
 
-# ---- correlation of time with a weighed sum of them ----
+# ---- correlation of time with a weighted sum of them ----
 
 variance(c, u, v, w) = u * u * var_1[c] + v * v * var_2[c] + w * w * var_3[c] \
                        + 2 * (u * v * both_12[c] + u * w * both_13[c] + v * w * both_23[c])
@@ -51,7 +51,7 @@ correlation(c, u, v, w) = (u * with_1[c] + v * with_2[c] + w * with_3[c]) / safe
 n_known(f, k) = sum [s = 1:n_scenes] known[cell(f, s, k)]
 mean(f, k, alpha, beta) = (sum [s = 1:n_scenes] (known[cell(f, s, k)] ? correlation(cell(f, s, k), 1 - alpha, alpha, beta) : 0)) / n_known(f, k)
 
-# ---- the best weights; the same for a scene alone ----
+# ---- the best weights; the same for a single scene ----
 
 array best_alpha[n_families * n_kinds]
 set print "plots/4-trees.csv"

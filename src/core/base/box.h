@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Axis-aligned boxes in float32, the common extent of everything. A box is closed: its faces belong to it.
- * The empty box has lo = +inf, hi = -inf, and is the neutral element of a union.
+/* Axis-aligned boxes in float32, the usual extent. A box is closed: its faces belong to it. The empty box has
+ * lo = +inf, hi = -inf and is the neutral element of the union.
  *
- * Numbers that come from wider arithmetic are rounded outward (rt_float_below, rt_float_above), so that a box
- * always contains what it was made for. */
+ * Bounds computed in wider arithmetic are rounded outward (rt_float_below, rt_float_above), so a box
+ * always contains its contents. */
 #ifndef RT_BASE_BOX_H
 #define RT_BASE_BOX_H
 
@@ -15,7 +15,7 @@ typedef struct RtBox {
 
 #define RT_EMPTY_BOX ((RtBox){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}})
 
-/* With a > b ? a : b a NaN in `a` is passed over: the slab test relies on it. */
+/* a > b ? a : b skips a NaN in `a`: the slab test relies on it. */
 static inline float rt_maxf(float a, float b) {
     return a > b ? a : b;
 }
@@ -51,7 +51,7 @@ static inline RtBox rt_box_add_point(RtBox a, RtVec3 p) {
     return (RtBox){rt_vec_min(a.lo, p), rt_vec_max(a.hi, p)};
 }
 
-/* What two boxes have in common; an empty box, if not always RT_EMPTY_BOX, where that is nothing. */
+/* The intersection of two boxes; if that is empty, the result is an empty box but not always RT_EMPTY_BOX. */
 static inline RtBox rt_box_common(RtBox a, RtBox b) {
     return (RtBox){rt_vec_max(a.lo, b.lo), rt_vec_min(a.hi, b.hi)};
 }
@@ -70,12 +70,12 @@ static inline RtVec3 rt_box_size(RtBox a) {
     return rt_sub(a.hi, a.lo);
 }
 
-/* Half before the sum, so that the centre of a huge box does not overflow. */
+/* Halved before the sum, so that the centre of a huge box does not overflow. */
 static inline RtVec3 rt_box_center(RtBox a) {
     return rt_add(rt_scale(a.lo, 0.5f), rt_scale(a.hi, 0.5f));
 }
 
-/* A box that is wider by `part` of its width along each axis, at both ends alike; never narrower. */
+/* Widens a box by `part` of its width along each axis, equally at both ends. */
 static inline RtBox rt_box_widened(RtBox a, double part) {
     for (int i = 0; i < 3; i++) {
         double lo = (double)a.lo.at[i], hi = (double)a.hi.at[i];
@@ -93,7 +93,7 @@ static inline double rt_box_half_area(RtBox a) {
     return s.x * (s.y + s.z) + s.y * s.z;
 }
 
-/* The longest of the three sides, and the largest magnitude of a coordinate; not of the empty box. */
+/* The longest side, and the largest magnitude of a coordinate; undefined for the empty box. */
 static inline double rt_box_longest_side(RtBox a) {
     RtVec3d s = rt_subd(rt_widen(a.hi), rt_widen(a.lo));
     return fmax(s.x, fmax(s.y, s.z));

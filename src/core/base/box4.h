@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Boxes in vectors of four float32 (four.h), for builds, which do little else than unite boxes and compare
- * their areas. The fourth lane holds anything. Every operation gives, lane by lane, the bits of its namesake
- * in box.h; the vectors are those of gcc and clang on every processor, and SSE2 where there is no operator.
- */
+/* Boxes as vectors of four float32 (four.h), for builds, which mostly unite boxes and compare their areas.
+ * The fourth lane may hold anything. Each operation returns, lane by lane, the bits of its namesake in
+ * box.h. The vectors are those of gcc and clang on every processor, with SSE2 where there is no operator. */
 #ifndef RT_BASE_BOX4_H
 #define RT_BASE_BOX4_H
 
@@ -60,7 +59,7 @@ static inline RtFour rt_box4_center(RtBox4 a) {
     return a.lo * rt_four_all(0.5f) + a.hi * rt_four_all(0.5f);
 }
 
-/* The half areas of two boxes, neither of them empty. */
+/* The half areas of two non-empty boxes. */
 static inline RtDouble2 rt_box4_half_areas(RtBox4 a, RtBox4 b) {
 #ifdef __SSE2__
     RtDouble2 a_xy = _mm_cvtps_pd(a.hi) - _mm_cvtps_pd(a.lo), b_xy = _mm_cvtps_pd(b.hi) - _mm_cvtps_pd(b.lo);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Clocks, in seconds: the wall, and the processor time of the calling thread alone. */
+/* Clocks, in seconds: wall time, and the processor time of the calling thread. */
 #ifndef RT_BASE_CLOCK_H
 #define RT_BASE_CLOCK_H
 

@@ -4,13 +4,13 @@
 #include <assert.h>
 #include <math.h>
 
-/* log 2 in two parts, of which the first is a multiple of 2^-32: its multiples by exponents are exact */
+/* log 2 in two parts; the first is a multiple of 2^-32, so its multiples by exponents are exact */
 static const double log2_high = 0x1.62e42feep-1, log2_low = 0x1.a39ef35793c76p-33;
 
-/* x = m 2^e with m = 1 + f between sqrt(1/2) and sqrt(2), and s = f / (2 + f). Then log m = 2 artanh s is
- * 2s + s R with R = 2 (s^2/3 + s^4/5 + ...), and 2s = f - s f: the leading term is f, which is exact, and the
- * rounding of s only reaches the small rest. s^2 < 0.0295, so that what follows the last term is below 2^-64
- * of the sum. */
+/* x = m 2^e with m = 1 + f between sqrt(1/2) and sqrt(2), and s = f / (2 + f). Then log m = 2 artanh s =
+ * 2s + s R with R = 2 (s^2/3 + s^4/5 + ...), and 2s = f - s f: the leading term f is exact, and the
+ * rounding of s affects only the small rest. Since s^2 < 0.0295, the omitted terms are below 2^-64 of the
+ * sum. */
 double rt_log(double x) {
     assert(isfinite(x) && x > 0);
     int exponent;
@@ -24,8 +24,7 @@ double rt_log(double x) {
     return exponent * log2_high + (f - (s * (f - rest) - exponent * log2_low));
 }
 
-/* p = 2^n e^r with |r| <= log 2 / 2, where the first term of Taylor's series that is left out is below 1e-17.
- */
+/* p = 2^n e^r with |r| <= log 2 / 2; the first omitted Taylor term is below 1e-17. */
 double rt_power(double x, double y) {
     assert(isfinite(x) && x > 0 && isfinite(y));
     double exponent = y * rt_log(x);
@@ -36,7 +35,7 @@ double rt_power(double x, double y) {
     return ldexp(sum, (int)n);
 }
 
-/* Taylor's series on -45..45 degrees: the first terms left out are below 1e-18. */
+/* Taylor series on -45..45 degrees; the first omitted terms are below 1e-18. */
 static RtTurn small_turn(double degrees) {
     double x = degrees * 0.017453292519943295769, x2 = x * x, sine = 1, cosine = 1;
     for (int k = 16; k >= 2; k -= 2) {
@@ -59,7 +58,7 @@ RtTurn rt_turn(double degrees) {
     }
 }
 
-/* Newton's method, from above, where every step but the last comes nearer. */
+/* Newton's method from above: every step but the last comes nearer. */
 double rt_cube_root(double x) {
     assert(isnormal(x) && x > 0);
     double root = fmax(x, 1), last;

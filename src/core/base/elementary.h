@@ -1,24 +1,25 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Logarithm, powers, cube root, sine and cosine from + - * / alone: libraries differ in their last bits,
- * these are the same with every compiler and library. Rays, hits, counts and images depend on no others. */
+/* Logarithm, power, cube root, sine and cosine from + - * / alone. Libraries differ in their last bits;
+ * these functions return the same bits with every compiler and library. Rays, hits, counts and images use
+ * no others. */
 #ifndef RT_BASE_ELEMENTARY_H
 #define RT_BASE_ELEMENTARY_H
 
 /* The natural logarithm of a finite x > 0, to within one unit in the last place. */
 double rt_log(double x);
 
-/* p, x to the power y, for finite x > 0 and y: to within 4e-16 (1 + |log p|) p, and exact where p is 1
- * because x is 1 or y is 0. 0 where log p is below -708, infinite where it is above 709. */
+/* p = x^y for finite x > 0 and y, to within 4e-16 (1 + |log p|) p; exact if p is 1 because x is 1 or y is
+ * 0. 0 where log p < -708, infinite where log p > 709. */
 double rt_power(double x, double y);
 
-/* The cube root of a normal number x > 0, to within 4e-16 of itself. */
+/* The cube root of a normal number x > 0, to within a relative error of 4e-16. */
 double rt_cube_root(double x);
 
 typedef struct RtTurn {
     double cosine, sine;
 } RtTurn;
 
-/* Of any finite angle in degrees, each to within 4e-16; multiples of 90 degrees are exact. */
+/* Sine and cosine of any finite angle in degrees, each to within 4e-16; multiples of 90 degrees are exact. */
 RtTurn rt_turn(double degrees);
 
 #endif

@@ -21,10 +21,9 @@ static RtStatus fail_io(RtError *error, const char *doing, const char *path) {
 
 /* ---- writing ---- */
 
-/* Nobody can put a link, or another file, where the temporary file is going to be: its name holds 64 random
- * bits, and what has that name already is not opened. */
+/* The name holds 64 random bits and must not exist, so nobody can plant a link or another file there. */
 static RtStatus create_temporary(RtOutput *output, RtError *error) {
-    /* A file system has names of up to 255 bytes: a long one is cut to leave room for the end. */
+    /* File names have at most 255 bytes: cut long ones to leave room for the suffix. */
     const size_t most = 255 - strlen(".0123456789abcdef" TEMPORARY_END);
     const char *slash = strrchr(output->path, '/'), *name = slash ? slash + 1 : output->path;
     const int kept = (int)(name - output->path) + (int)strnlen(name, most);
@@ -173,7 +172,7 @@ static RtStatus read_all(FILE *file, const char *path, size_t limit, char **data
 
 RtStatus rt_file_open(const char *path, FILE **file, RtError *error) {
     struct stat info;
-    /* Before it is opened: opening a pipe waits for somebody to write to it. */
+    /* Checked before opening, because opening a pipe waits for a writer. */
     if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
         return rt_fail(error, RT_BAD_INPUT, "%s: this is not a file", path);
     *file = fopen(path, "rb");

@@ -10,8 +10,7 @@
 #include <sys/sysmacros.h>
 #include <unistd.h>
 
-/* The process that holds the lock on the file behind `descriptor`, as /proc/locks has it; 0 where it does
- * not. */
+/* The process that holds the lock, from /proc/locks; 0 if unknown. */
 static int find_holder(int descriptor) {
     char line[256];
     struct stat info;

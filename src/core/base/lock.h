@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A directory that one process writes into at a time. The lock is the kernel's, on the directory itself: it
- * leaves no file behind, and goes with the process that holds it, however that ends. */
+/* A lock on a directory that one process at a time writes into. It is the kernel's lock on the directory
+ * itself: it leaves no file behind and ends with its process, however that ends. */
 #ifndef RT_BASE_LOCK_H
 #define RT_BASE_LOCK_H
 
@@ -8,7 +8,7 @@
 
 #include <stdbool.h>
 
-/* RT_NO_LOCK holds nothing, and may be released. */
+/* RT_NO_LOCK holds nothing and may be released. */
 typedef struct RtLock {
     int descriptor; /* of the directory, or -1 */
 } RtLock;
@@ -19,8 +19,8 @@ static inline bool rt_lock_is_held(const RtLock *lock) {
     return lock->descriptor >= 0;
 }
 
-/* Takes the lock of the directory at `path`, or refuses with the number of the process that holds it. Nothing
- * is held, and all is well, where there is no such directory, or its file system has no locks. */
+/* Locks the directory at `path`, or fails with the number of the process that holds the lock. Succeeds
+ * without a lock if there is no such directory or its file system has no locks. */
 RtStatus rt_lock_take(RtLock *lock, const char *path, RtError *error);
 
 void rt_lock_release(RtLock *lock);

@@ -12,7 +12,7 @@
 static _Atomic uint64_t fail_countdown;
 static _Atomic int64_t live_blocks, live_bytes, most_bytes = INT64_MAX;
 
-static bool told_to_fail(void) {
+static bool fails_on_purpose(void) {
     uint64_t left = atomic_load(&fail_countdown);
     while (left > 0) {
         if (atomic_compare_exchange_weak(&fail_countdown, &left, left - 1)) return left == 1;
@@ -20,13 +20,13 @@ static bool told_to_fail(void) {
     return false;
 }
 
-/* Pages of this size are asked for from blocks of LARGE_BLOCK bytes on. */
+/* Blocks of LARGE_BLOCK bytes or more use pages of this size. */
 enum { LARGE_PAGE = 1 << 21, LARGE_BLOCK = 2 * LARGE_PAGE };
 
-/* `count` elements of `size` bytes on a boundary; to *padded their bytes and what follows up to the next. */
+/* Allocates on a boundary; *padded becomes the size, rounded up to the next boundary. */
 static void *allocate(size_t count, size_t size, size_t boundary, size_t *padded) {
     if (size != 0 && count > (SIZE_MAX - boundary) / size) return NULL;
-    if (told_to_fail()) return NULL;
+    if (fails_on_purpose()) return NULL;
     *padded = (count * size + boundary) / boundary * boundary;
     if (*padded > (uint64_t)INT64_MAX / 2 ||
         atomic_load(&live_bytes) + (int64_t)*padded > atomic_load(&most_bytes))
@@ -49,7 +49,7 @@ void *rt_alloc_unset(size_t count, size_t size) {
     size_t padded;
     bool large = size != 0 && count >= LARGE_BLOCK / size;
     void *block = allocate(count, size, large ? LARGE_PAGE : RT_CACHE_LINE, &padded);
-    if (block && large) madvise(block, padded, MADV_HUGEPAGE); /* does what it can: it may fail */
+    if (block && large) madvise(block, padded, MADV_HUGEPAGE); /* a hint: it may fail */
     return block;
 }
 
@@ -75,14 +75,23 @@ RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t siz
     if (grown > UINT32_MAX) grown = UINT32_MAX;
     void *block = rt_alloc_unset((size_t)grown, size);
     if (!block) return rt_fail_memory(error, "a growing array", (size_t)grown * size);
-    /* The caller's pointer is read and written as bytes: it is no void pointer, and may not be taken for
-     * one. */
+    /* The caller's pointer is no void pointer, so it is read and written as bytes. */
     void *old;
     memcpy(&old, array, sizeof old);
     if (old) memcpy(block, old, (size_t)*capacity * size);
     rt_free(old);
     memcpy(array, &block, sizeof block);
     *capacity = (uint32_t)grown;
+    return RT_OK;
+}
+
+RtStatus rt_append(void *array, uint32_t *count, uint32_t *capacity, const void *element, size_t size,
+                   RtError *error) {
+    char *elements;
+    RT_TRY(rt_reserve(array, capacity, (uint64_t)*count + 1, size, error));
+    memcpy(&elements, array, sizeof elements);
+    memcpy(elements + *count * size, element, size);
+    (*count)++;
     return RT_OK;
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Memory: one allocator for everything, so that a test can count allocations and make the nth one fail.
- * Blocks are 64-byte aligned (a cache line, an AVX-512 register). No allocation happens while tracing. */
+ * Blocks are 64-byte aligned (a cache line, an AVX-512 register). Nothing is allocated while tracing. */
 #ifndef RT_BASE_MEMORY_H
 #define RT_BASE_MEMORY_H
 
@@ -11,33 +11,38 @@
 
 #define RT_CACHE_LINE 64
 
-/* `count` elements of `size` bytes, set to zero; NULL where count * size overflows or memory is short. A
- * count of 0 gives a valid block that may be freed. Free with rt_free. */
+/* Allocates `count` elements of `size` bytes, set to zero; NULL if count * size overflows or memory is
+ * short. A count of 0 returns a valid block. Free with rt_free. */
 void *rt_alloc(size_t count, size_t size);
 
-/* The same, but nothing is set: for large arrays that are filled anyway, so that the threads that fill them
- * touch them first. Large blocks are of large pages where the system gives them. */
+/* The same without initialisation: for large arrays, so that the threads which fill them touch them first.
+ * Large blocks use large pages where the system has them. */
 void *rt_alloc_unset(size_t count, size_t size);
 
 /* Frees a block of rt_alloc or rt_alloc_unset; NULL is allowed. */
 void rt_free(void *block);
 
-/* Makes room for `needed` elements in a growing array. `array` is the address of a pointer, of any type, to
- * `*capacity` elements of `size` bytes each (or of NULL); the block is replaced by a larger one with the same
- * contents; nothing beyond them is set. On failure nothing changes. */
+/* Grows an array to at least `needed` elements. `array` is the address of a pointer (of any type) to
+ * `*capacity` elements of `size` bytes, or of NULL. Contents are kept; new elements are not initialised.
+ * On failure nothing changes. */
 RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error);
+
+/* Appends a copy of `element`, of `size` bytes, to a growing array of `*count` elements; otherwise like
+ * rt_reserve. `element` must not lie in the array. */
+RtStatus rt_append(void *array, uint32_t *count, uint32_t *capacity, const void *element, size_t size,
+                   RtError *error);
 
 /* Bytes of memory in this machine. */
 uint64_t rt_memory_size(void);
 
-/* From now on at most `bytes` more are handed out than are now; 0: as many as there are. What other libraries
- * allocate is not counted. */
+/* Limits further allocation to `bytes` more than now; 0 removes the limit. Memory of other libraries does
+ * not count. */
 void rt_memory_limit(uint64_t bytes);
 
 /* For tests: the allocation `n` calls from now fails (1 = the next); 0 switches this off. */
 void rt_alloc_fail_at(uint64_t n);
 
-/* Blocks handed out and not yet freed; a test asserts that it returns to where it was. */
+/* Blocks allocated and not yet freed; tests assert that it returns to its earlier value. */
 int64_t rt_alloc_live(void);
 
 #endif

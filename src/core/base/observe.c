@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "core/base/observe.h"
 
-_Thread_local const RtOnlooker *rt_onlooker;
+_Thread_local const RtObserver *rt_observer;
 
 void rt_observe(const RtTraced *event) {
-    rt_onlooker->see(rt_onlooker->context, event);
+    rt_observer->observe(rt_observer->context, event);
 }
 
 void rt_traced_count(const RtTraced *event, RtTally *tally) {

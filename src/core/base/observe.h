@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Looking on while a ray is traced: counted kernels tell an onlooker of every event that they count, in
- * order.
+/* Observing a ray while it is traced: counted kernels report every event that they count, in order.
  *
- * An onlooker belongs to a thread. Kernels tell it with RT_OBSERVE beside the RT_COUNT of the same event, and
- * with the same tally: where that is a constant NULL (the timed kernels) nothing is left of it after
- * inlining, which tests/check_timed_kernels.sh looks for. Counted kernels look once per event whether there
- * is an onlooker. What is only of use to one (the box of a voxel, say) is computed where RT_OBSERVED says
- * that there is. */
+ * A thread has at most one observer. Kernels call RT_OBSERVE beside the RT_COUNT of the same event with
+ * the same tally. In timed kernels the tally is a constant NULL and the call vanishes, which
+ * tests/check_timed_kernels.sh verifies; counted kernels check for an observer once per event. Arguments
+ * that are costly to compute (the box of a voxel, say) belong inside `if (RT_OBSERVED(tally))`. */
 #ifndef RT_BASE_OBSERVE_H
 #define RT_BASE_OBSERVE_H
 
@@ -16,54 +14,53 @@
 #include <stdbool.h>
 
 typedef enum RtTracedKind {
-    RT_TRACED_STEP,        /* a node, voxel, sample or list entry is visited */
-    RT_TRACED_EXTENT_TEST, /* `met`: the ray meets the extent where there may still be something to find */
-    RT_TRACED_OBJECT_TEST, /* the hit function of object `index` is entered */
-    RT_TRACED_OBJECT_HIT,  /* ... and has found it, at `t`; other events of the same test may lie between */
-    RT_TRACED_CSG_TEST,    /* a solid of the CSG tree that is being tested */
-    RT_TRACED_REPEAT_AVOIDED, /* a mailbox knows object `index` */
-    RT_TRACED_PASSED_ON,      /* an overlay hands the ray to what lies below */
+    RT_TRACED_STEP,           /* a node, voxel, sample or list entry is visited */
+    RT_TRACED_EXTENT_TEST,    /* `met`: the ray meets the extent where something may still be found */
+    RT_TRACED_OBJECT_TEST,    /* the hit function of object `index` is called */
+    RT_TRACED_OBJECT_HIT,     /* it hit, at `t`; other events of the same test may come in between */
+    RT_TRACED_CSG_TEST,       /* a leaf solid of the CSG tree under test */
+    RT_TRACED_REPEAT_AVOIDED, /* a mailbox skipped object `index` */
+    RT_TRACED_PASSED_ON,      /* an overlay passes the ray to the accelerator below */
     RT_TRACED_KIND_COUNT
 } RtTracedKind;
 
-/* What happened. Members that have no meaning for the kind are zero. */
+/* One event. Members without meaning for its kind are zero. */
 typedef struct RtTraced {
     RtTracedKind kind;
-    const char
-        *what; /* "node", "voxel", ... that `index` is the number of; NULL where there is none. Static */
+    const char *what; /* what `index` numbers: "node", "voxel", ...; a static string or NULL */
     uint32_t index;
-    const RtBox *box; /* where it is; NULL where it has no box. Valid during the call */
+    const RtBox *box; /* its box or NULL; valid during the call */
     const struct RtBall
-        *ball;        /* of an extent test of a sphere (core/shape/ball.h); else NULL. Valid likewise */
-    bool leaf, empty; /* of a step: is it counted in leaf_steps, and in empty_steps? */
+        *ball;        /* the sphere of an extent test (core/shape/ball.h) or NULL; valid during the call */
+    bool leaf, empty; /* of a step: counted in leaf_steps, in empty_steps */
     bool met;
     float t;
 } RtTraced;
 
-typedef struct RtOnlooker {
-    void (*see)(void *context, const RtTraced *event);
+typedef struct RtObserver {
+    void (*observe)(void *context, const RtTraced *event);
     void *context;
-} RtOnlooker;
+} RtObserver;
 
-/* Of this thread; NULL, as it is at first, where nobody looks on. To be set around the tracing of one ray. */
-extern _Thread_local const RtOnlooker *rt_onlooker;
+/* This thread's observer, or NULL (the default). Set it around the tracing of one ray. */
+extern _Thread_local const RtObserver *rt_observer;
 
 #define RT_COLD __attribute__((cold, noinline))
 
-/* Is this a counted kernel, and does anybody look on? */
-#define RT_OBSERVED(tally) ((tally) && __builtin_expect(rt_onlooker != NULL, 0))
+/* True in a counted kernel with an observer. */
+#define RT_OBSERVED(tally) ((tally) && __builtin_expect(rt_observer != NULL, 0))
 
-/* Tells the onlooker, if there is one, of an event given by its members: RT_OBSERVE(tally, .kind = ...). */
+/* Reports an event, given by its members, to the observer if there is one: RT_OBSERVE(tally, .kind = ...). */
 #define RT_OBSERVE(tally, ...)                                                                               \
     do {                                                                                                     \
         if (RT_OBSERVED(tally)) rt_observe(&(RtTraced){__VA_ARGS__});                                        \
     } while (0)
 
-/* For RT_OBSERVE: there is an onlooker. */
+/* For RT_OBSERVE, which has checked that there is an observer. */
 RT_COLD void rt_observe(const RtTraced *event);
 
-/* Adds an event to the counters that a kernel would count it in: the events of a ray add up to its tally,
- * but for `rays` and `hits`. */
+/* Counts an event as the kernel does: the events of a ray add up to its tally, except for `rays` and
+ * `hits`. */
 void rt_traced_count(const RtTraced *event, RtTally *tally);
 
 #endif

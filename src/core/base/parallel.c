@@ -3,6 +3,7 @@
 
 #include "core/base/memory.h"
 
+#include <assert.h>
 #include <locale.h>
 #include <pthread.h>
 #include <sched.h>
@@ -20,11 +21,6 @@ typedef struct Pool {
     RtStatus status;
     RtError error;
 } Pool;
-
-typedef struct Worker {
-    Pool *pool;
-    int thread;
-} Worker;
 
 int rt_processor_count(void) {
     cpu_set_t set;
@@ -48,63 +44,58 @@ static void record_failure(Pool *pool, size_t item, RtStatus status, const RtErr
     atomic_store(&pool->stop, true);
 }
 
-static void *run_worker(void *argument) {
-    Worker *worker = argument;
-    Pool *pool = worker->pool;
+/* A new thread. */
+typedef struct Thread {
+    pthread_t handle;
+    void (*run)(void *shared, int thread);
+    void *shared;
+    int number;
+    locale_t locale; /* of the starting thread: numbers are printed alike on all threads */
+} Thread;
+
+static void *start(void *argument) {
+    const Thread *thread = argument;
+    uselocale(thread->locale);
+    thread->run(thread->shared, thread->number);
+    return NULL;
+}
+
+/* Calls run(shared, i) for i < count, each on its own thread; 0 is the calling thread. If a thread cannot be
+ * created, the others take its work. */
+static RtStatus run_all(void (*run)(void *shared, int thread), void *shared, int count, RtError *error) {
+    Thread *threads = rt_alloc((size_t)count, sizeof(Thread));
+    if (!threads) return rt_fail_memory(error, "worker threads", (size_t)count * sizeof(Thread));
+    const locale_t locale = uselocale((locale_t)0);
+    int started = 1;
+    for (; started < count; started++) {
+        Thread *next = &threads[started];
+        *next = (Thread){.run = run, .shared = shared, .number = started, .locale = locale};
+        if (pthread_create(&next->handle, NULL, start, next) != 0) break;
+    }
+    run(shared, 0);
+    for (int i = 1; i < started; i++) pthread_join(threads[i].handle, NULL);
+    rt_free(threads);
+    return RT_OK;
+}
+
+static void run_items(void *shared, int thread) {
+    Pool *pool = shared;
     while (!atomic_load(&pool->stop)) {
         size_t item = atomic_fetch_add(&pool->next, 1);
         if (item >= pool->items) break;
         RtError error = {RT_OK, ""};
-        RtStatus status = pool->work(pool->context, item, worker->thread, &error);
+        RtStatus status = pool->work(pool->context, item, thread, &error);
         if (status != RT_OK) record_failure(pool, item, status, &error);
     }
-    return NULL;
-}
-
-/* What a thread of its own begins with. */
-typedef struct Start {
-    pthread_t handle;
-    void *(*run)(void *);
-    void *of;
-    locale_t locale; /* that of the thread which starts it: numbers are written alike on all */
-} Start;
-
-static void *start(void *argument) {
-    const Start *own = argument;
-    uselocale(own->locale);
-    return own->run(own->of);
-}
-
-/* Calls run(of[i]) for the first of `count` values of `size` bytes on this thread, and for the others on
- * threads of their own. Threads that cannot be had are done without: the others take their work. */
-static RtStatus run_all(void *(*run)(void *), void *of, size_t size, int count, RtError *error) {
-    Start *starts = rt_alloc((size_t)count, sizeof(Start));
-    if (!starts) return rt_fail_memory(error, "worker threads", (size_t)count * sizeof(Start));
-    const locale_t locale = uselocale((locale_t)0);
-    int started = 1;
-    while (started < count) {
-        Start *next = &starts[started];
-        *next = (Start){.run = run, .of = (char *)of + (size_t)started * size, .locale = locale};
-        if (pthread_create(&next->handle, NULL, start, next) != 0) break;
-        started++;
-    }
-    run(of);
-    for (int i = 1; i < started; i++) pthread_join(starts[i].handle, NULL);
-    rt_free(starts);
-    return RT_OK;
 }
 
 RtStatus rt_parallel_for(size_t items, int threads, RtWork work, void *context, RtError *error) {
     int count = rt_thread_count(threads);
     if ((size_t)count > items) count = items > 0 ? (int)items : 1;
     Pool pool = {.work = work, .context = context, .items = items, .status = RT_OK};
-    Worker *workers = rt_alloc((size_t)count, sizeof(Worker));
-    if (!workers) return rt_fail_memory(error, "worker threads", (size_t)count * sizeof(Worker));
     pthread_mutex_init(&pool.lock, NULL);
-    for (int i = 0; i < count; i++) workers[i] = (Worker){&pool, i};
-    RtStatus status = run_all(run_worker, workers, sizeof(Worker), count, error);
+    RtStatus status = run_all(run_items, &pool, count, error);
     pthread_mutex_destroy(&pool.lock);
-    rt_free(workers);
     if (status != RT_OK) return status;
     if (pool.status != RT_OK && error) *error = pool.error;
     return pool.status;
@@ -126,7 +117,7 @@ RtStatus rt_parallel_each(size_t items, int threads, RtSureWork work, void *cont
     return rt_parallel_for(items, threads, run_sure, &(SureJob){work, context}, error);
 }
 
-/* ---- tasks that make tasks ---- */
+/* ---- tasks that create tasks ---- */
 
 struct RtTasks {
     RtTaskWork work;
@@ -134,29 +125,28 @@ struct RtTasks {
     size_t size;
     pthread_mutex_t lock; /* guards all below */
     pthread_cond_t changed;
-    char *waiting; /* [end] values, of which those before `begin` were handed out */
+    char *waiting; /* [end] values; those before `begin` were handed out */
     uint32_t begin, end, capacity;
     int running;
     RtStatus status;
     RtError error;
 };
 
-static RtStatus add_task(RtTasks *tasks, const void *task) {
-    RtError error;
-    RT_TRY(rt_reserve(&tasks->waiting, &tasks->capacity, (uint64_t)tasks->end + 1, tasks->size, &error));
+static RtStatus add_task(RtTasks *tasks, const void *task, RtError *error) {
+    RT_TRY(rt_reserve(&tasks->waiting, &tasks->capacity, (uint64_t)tasks->end + 1, tasks->size, error));
     memcpy(tasks->waiting + tasks->end++ * tasks->size, task, tasks->size);
     return RT_OK;
 }
 
 bool rt_tasks_add(RtTasks *tasks, const void *task) {
     pthread_mutex_lock(&tasks->lock);
-    bool added = add_task(tasks, task) == RT_OK;
+    bool added = add_task(tasks, task, NULL) == RT_OK;
     pthread_cond_signal(&tasks->changed);
     pthread_mutex_unlock(&tasks->lock);
     return added;
 }
 
-/* Takes the oldest task, waiting for one if need be. False where no more can come. */
+/* Takes the oldest task, waiting for one if necessary; false when no more can come. */
 static bool take_task(RtTasks *tasks, void *task) {
     while (tasks->status == RT_OK && tasks->begin == tasks->end && tasks->running > 0)
         pthread_cond_wait(&tasks->changed, &tasks->lock);
@@ -166,20 +156,15 @@ static bool take_task(RtTasks *tasks, void *task) {
     return true;
 }
 
-/* One thread's. */
-typedef struct TaskWorker {
-    RtTasks *tasks;
-    void *task; /* room for one */
-} TaskWorker;
-
-static void *run_tasks(void *argument) {
-    TaskWorker *worker = argument;
-    RtTasks *tasks = worker->tasks;
+static void run_tasks(void *shared, int thread) {
+    RtTasks *tasks = shared;
+    _Alignas(RT_CACHE_LINE) char task[RT_MAX_TASK_BYTES]; /* a copy: adding a task may move the array */
+    (void)thread;
     pthread_mutex_lock(&tasks->lock);
-    while (take_task(tasks, worker->task)) {
+    while (take_task(tasks, task)) {
         RtError error = {RT_OK, ""};
         pthread_mutex_unlock(&tasks->lock);
-        RtStatus status = tasks->work(tasks->context, tasks, worker->task, &error);
+        RtStatus status = tasks->work(tasks->context, tasks, task, &error);
         pthread_mutex_lock(&tasks->lock);
         tasks->running--;
         if (status != RT_OK && tasks->status == RT_OK) {
@@ -189,31 +174,18 @@ static void *run_tasks(void *argument) {
     }
     pthread_cond_broadcast(&tasks->changed);
     pthread_mutex_unlock(&tasks->lock);
-    return NULL;
-}
-
-static RtStatus start_tasks(RtTasks *tasks, const void *first, size_t count, int threads, RtError *error) {
-    TaskWorker *workers = rt_alloc((size_t)threads, sizeof(TaskWorker));
-    size_t room = (tasks->size + RT_CACHE_LINE - 1) / RT_CACHE_LINE * RT_CACHE_LINE;
-    char *rooms = rt_alloc((size_t)threads, room);
-    RtStatus status = workers && rooms ? RT_OK : RT_NO_MEMORY;
-    for (size_t i = 0; i < count && status == RT_OK; i++)
-        status = add_task(tasks, (const char *)first + i * tasks->size);
-    if (status != RT_OK) rt_fail_memory(error, "tasks", (count + (size_t)threads) * tasks->size);
-    for (int i = 0; i < threads && status == RT_OK; i++)
-        workers[i] = (TaskWorker){tasks, rooms + (size_t)i * room};
-    if (status == RT_OK) status = run_all(run_tasks, workers, sizeof(TaskWorker), threads, error);
-    rt_free(workers);
-    rt_free(rooms);
-    return status;
 }
 
 RtStatus rt_parallel_tasks(const void *first, size_t count, size_t size, int threads, RtTaskWork work,
                            void *context, RtError *error) {
+    assert(size <= RT_MAX_TASK_BYTES);
     RtTasks tasks = {.work = work, .context = context, .size = size, .status = RT_OK};
+    RtStatus status = RT_OK;
+    for (size_t i = 0; i < count && status == RT_OK; i++)
+        status = add_task(&tasks, (const char *)first + i * size, error);
     pthread_mutex_init(&tasks.lock, NULL);
     pthread_cond_init(&tasks.changed, NULL);
-    RtStatus status = start_tasks(&tasks, first, count, rt_thread_count(threads), error);
+    if (status == RT_OK) status = run_all(run_tasks, &tasks, rt_thread_count(threads), error);
     pthread_cond_destroy(&tasks.changed);
     pthread_mutex_destroy(&tasks.lock);
     rt_free(tasks.waiting);

@@ -81,15 +81,15 @@ bool rt_param_try(const RtParam *param, size_t n, char *out, size_t room) {
 
 /* ---- text to values ---- */
 
-/* A number that is all of `text`. */
+/* The whole of `text` must be one finite number. */
 static bool parse_number(const char *text, double *out) {
     char *end;
     *out = strtod(text, &end);
     return end != text && *end == '\0' && isfinite(*out);
 }
 
-/* Digits are taken as they stand; other numbers, such as 1e6, as far as int64_t holds them, whatever the
- * range of the parameter. */
+/* Digits are read exactly; other notations, such as 1e6, as far as int64_t holds them, whatever the range
+ * of the parameter. */
 static bool parse_whole(const RtParam *param, const char *text, int64_t *out) {
     char *end;
     double number;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Parameter tables: what can be set on an accelerator or a built-in scene. One table drives parsing, range
+/* Parameter tables: the settings of an accelerator or a built-in scene. One table drives parsing, range
  * checks, `raytally accels` and `scenes`, the CSV columns, the docs, and the values that tests try.
  *
- * Text form: "key=value,key=value"; a key may be left out and then has its default. */
+ * Text form: "key=value,key=value"; a key that is left out has its default. */
 #ifndef RT_BASE_PARAM_H
 #define RT_BASE_PARAM_H
 
@@ -35,7 +35,7 @@ typedef struct RtParam {
     const char *source;       /* where the default comes from */
 } RtParam;
 
-/* What a parameter may be, in an entry {name, RT_INT(...), meaning, source} of a table. */
+/* The type of a parameter, in an entry {name, RT_INT(...), meaning, source} of a table. */
 #define RT_INT(default_text, lo, hi, test_values)   RT_PARAM_INT, default_text, lo, hi, NULL, test_values
 #define RT_FLOAT(default_text, lo, hi, test_values) RT_PARAM_FLOAT, default_text, lo, hi, NULL, test_values
 #define RT_RESOLUTION(default_text, lo, hi, test_values)                                                     \
@@ -43,12 +43,12 @@ typedef struct RtParam {
 #define RT_CHOICE(default_text, choices) RT_PARAM_CHOICE, default_text, 0, 0, choices, NULL
 #define RT_FLAG(default_text)            RT_PARAM_FLAG, default_text, 0, 0, NULL, NULL
 
-/* A list PARAMS(X), of X(INDEX, the entry without its braces), makes both the indices,
- * enum { PARAMS(RT_PARAM_INDEX) }, and the table, {PARAMS(RT_PARAM_ENTRY)}. */
+/* A list PARAMS(X) of X(INDEX, the entry without its braces) defines both the indices, enum {
+ * PARAMS(RT_PARAM_INDEX) }, and the table, {PARAMS(RT_PARAM_ENTRY)}. */
 #define RT_PARAM_INDEX(index, ...) index,
 #define RT_PARAM_ENTRY(index, ...) [index] = {__VA_ARGS__},
 
-/* The members `params` and `param_count` of what has this table. */
+/* Initialises the members `params` and `param_count` of a struct from a table. */
 #define RT_PARAMS_OF(table) .params = (table), .param_count = sizeof(table) / sizeof((table)[0])
 
 typedef union RtValue {
@@ -59,9 +59,9 @@ typedef union RtValue {
     uint32_t resolution[3];
 } RtValue;
 
-/* Fills values[0..count) from `text` (NULL or "" for all defaults), in the order of the table. `what` names
- * the owner in messages ("accelerator grid"). Refuses unknown and repeated keys and values out of range, and
- * says what would be right; an unknown key gets the nearest known one as a suggestion. */
+/* Fills values[0..count), in the order of the table, from `text` (NULL or "": all defaults). `what` names
+ * the owner in messages ("accelerator grid"). Rejects unknown and repeated keys and values out of range;
+ * the message says what would be right and suggests the nearest known key. */
 RtStatus rt_params_parse(const RtParam *table, size_t count, const char *text, const char *what,
                          RtValue *values, RtError *error);
 
@@ -74,7 +74,7 @@ void rt_param_format(const RtParam *param, RtValue value, char *out, size_t room
 /* The range or the choices as text: "1..4096", "box|sphere", "on|off", "auto or NXxNYxNZ, each 1..512". */
 void rt_param_range(const RtParam *param, char *out, size_t room);
 
-/* The `n`th value worth testing, as text, from `test_values` or all choices; false when there are no more. */
+/* The `n`th test value as text, from `test_values` or all choices; false past the last. */
 bool rt_param_try(const RtParam *param, size_t n, char *out, size_t room);
 
 #endif

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Counter-based random numbers (Philox 4x32-10, Salmon et al. 2011, through Random123): the nth number of a
- * stream is a function of (seed, stream, n) alone, so any part of an experiment can be generated on its own
- * and on any thread. Uniform numbers use + - * only; the same bits everywhere, as long as no two are drawn in
- * one list of initialisers or arguments, nor on both sides of an operator: C leaves their order open. */
+/* Counter-based random numbers (Philox 4x32-10, Salmon et al. 2011, through Random123): the nth number of
+ * a stream depends on (seed, stream, n) alone, so any part of an experiment can be generated separately,
+ * on any thread. Uniform numbers use + - * only and are the same bits everywhere. Never draw two numbers
+ * in one initialiser or argument list, nor on both sides of an operator: C does not define their order. */
 #ifndef RT_BASE_RANDOM_H
 #define RT_BASE_RANDOM_H
 
@@ -14,7 +14,7 @@ typedef struct RtRandom {
     uint64_t seed, stream;
     uint64_t next; /* block to generate next */
     uint32_t block[4];
-    uint32_t used; /* words of `block` already handed out, 4 = none left */
+    uint32_t used; /* words of `block` already used; 4 = all */
 } RtRandom;
 
 /* The stream numbered `stream` of `seed`, from its beginning. */
@@ -23,7 +23,7 @@ RtRandom rt_random(uint64_t seed, uint64_t stream);
 /* 32 uniform bits. */
 uint32_t rt_random_bits(RtRandom *random);
 
-/* One of 0..count-1, count > 0; uniform but for count / 2^32. */
+/* One of 0..count-1, count > 0; uniform to within count / 2^32. */
 static inline uint32_t rt_random_below(RtRandom *random, uint32_t count) {
     return rt_random_bits(random) % count;
 }

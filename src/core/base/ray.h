@@ -1,19 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Rays, hits, and the one box test that everything conservative rests on.
+/* Rays, hits, and the one box test on which all pruning rests.
  *
- * A ray is org + t * dir for tmin <= t <= tmax; dir need not have length 1, so t is in lengths of dir. Before
- * it is traced a ray is prepared once (rt_ray_prepare): reciprocals, signs, and a thickness.
+ * A ray is org + t * dir for tmin <= t <= tmax; dir need not have length 1, so t is in multiples of |dir|.
+ * Each ray is prepared once (rt_ray_prepare): reciprocals, signs, and a thickness.
  *
- * Thickness. Hit functions compute in rounded arithmetic, so a ray may be said to hit an object that it
- * misses by a few ulps of the distance between them. A box test that is to be trusted must be wider than
- * that: it moves the planes of the box outward by
+ * Thickness. Hit functions compute in rounded arithmetic, so they may report a hit on an object that the
+ * exact ray misses by a few ulps of the distance. A conservative box test must be wider than that. It moves
+ * the planes of the box outward by
  *
  *     thickness(ray, B) = 2^-20 * max over axes of max(|B.lo - org|, |B.hi - org|)          (16 half-ulps)
  *
- * which is done for free by using one origin for near planes and another for far planes (the idea is in Woop,
- * Benthin & Wald 2013, "Watertight Ray/Triangle Intersection", section 3.4). The origin moves along each axis
- * by 2^-23 |org| more (rt_four_shift), for otherwise the rounding of the sum would swallow the thickness
- * where a scene lies far from the zero of coordinates.
+ * at no cost, by using one origin for near planes and another for far planes (Woop, Benthin & Wald 2013,
+ * "Watertight Ray/Triangle Intersection", section 3.4). The origin moves along each axis by a further 2^-23
+ * |org| (rt_four_shift), since otherwise rounding would swallow the thickness far from the coordinate origin.
  *
  * Why pruning is exact. The crossings (plane - org') * inv are monotone in the plane, in float32 as in the
  * real numbers, and the thickness grows with the box. So for b inside B, with the thickness of B or of
@@ -21,9 +20,9 @@
  *
  *     enter(B) <= enter(b)  and  leave(b) <= leave(B),  bit for bit.
  *
- * rt_box_admit makes enter(b) <= t <= leave(b) part of what a hit on an object with box b *is*. Therefore a
- * structure that skips B only if enter(B) > leave(B) or enter(B) > t of the best hit never skips the answer,
- * whatever the rounding of the hit function. No other epsilon is needed anywhere. */
+ * rt_box_admit makes enter(b) <= t <= leave(b) part of the definition of a hit on an object with box b. A
+ * structure that skips B only if enter(B) > leave(B), or enter(B) > t of the best hit, therefore never
+ * skips the answer, however the hit function rounds. No other epsilon is needed anywhere. */
 #ifndef RT_BASE_RAY_H
 #define RT_BASE_RAY_H
 
@@ -52,18 +51,18 @@ typedef enum RtRayKind {
         RT_RAY_KIND_COUNT
 } RtRayKind;
 
-/* Rays that ask whether anything lies on them, and not what is nearest: `occluded` answers them. */
+/* Rays that test for any hit instead of the nearest: `occluded` answers them. */
 static inline bool rt_ray_kind_is_occlusion(RtRayKind kind) {
     return kind == RT_RAY_SHADOW || kind == RT_RAY_OCCLUSION;
 }
 
-/* Rays that a frame is rendered with. */
+/* Ray kinds that rendering a frame traces. */
 static inline bool rt_ray_kind_is_of_frame(RtRayKind kind) {
     return kind == RT_RAY_PRIMARY || kind == RT_RAY_SHADOW || kind == RT_RAY_REFLECTION ||
            kind == RT_RAY_TRANSMISSION;
 }
 
-/* "primary", ...; and the kind of a name, or RT_BAD_INPUT and the names there are. */
+/* "primary", ...; and the kind with that name, or RT_BAD_INPUT with the list of names. */
 const char *rt_ray_kind_name(RtRayKind kind);
 RtStatus rt_ray_kind_parse(const char *name, RtRayKind *kind, RtError *error);
 
@@ -75,10 +74,10 @@ typedef struct RtRay {
     RtVec3 dir;
     float tmax;
     uint32_t kind;   /* RtRayKind */
-    uint32_t source; /* primary: index of the sample in the frame's sample grid; shadow: index of the light */
+    uint32_t source; /* primary: index of the sample in the frame's grid; shadow: index of the light */
 } RtRay;
 
-/* "org (0, 0, 5) dir (0, 0, -1) t in [0, inf]", of nine digits, which read back to the same bits. */
+/* "org (0, 0, 5) dir (0, 0, -1) t in [0, inf]", with nine digits, which read back to the same bits. */
 #define RT_RAY_TEXT 192
 void rt_ray_format(const RtRay *ray, char *out, size_t room);
 
@@ -92,20 +91,20 @@ typedef struct RtHit {
 
 #define RT_MISS ((RtHit){INFINITY, RT_NO_OBJECT})
 
-/* Coordinates of scenes and origins stay below this (about 2^59), so that products of four of them are finite
- * in double and Embree, which drops what is above 1.8e18, sees all that we see. */
+/* Largest coordinate of scenes and ray origins (about 2^59): products of four of them are finite in
+ * double, and Embree, which drops anything above 1.8e18, sees all that we see. */
 #define RT_MAX_COORDINATE 5e17f
 
-/* A ray with what box and triangle tests need, computed once. Arrays are indexed by axis. */
+/* A ray with everything that box and triangle tests need, computed once. Arrays are indexed by axis. */
 typedef struct RtPreparedRay {
-    const RtRay *original;   /* what it was made from */
-    struct RtCrossing *room; /* what hit functions write to (rt_hit_ray); NULL: for boxes alone */
+    const RtRay *original;   /* the ray itself */
+    struct RtCrossing *room; /* scratch memory of hit functions (rt_hit_ray); NULL: for box tests only */
     RtVec3 org, dir;
-    float tmin, tmax; /* tmax finite: a hit at infinity is none */
-    float inv[4];     /* 1 / dir, possibly infinite; here and below x, y, z and one more for vectors */
+    float tmin, tmax; /* tmax is finite: a hit at infinity does not count */
+    float inv[4];     /* 1 / dir, possibly infinite; x, y, z and a fourth lane for vectors, here and below */
     float org_near[4], org_far[4]; /* origins moved by the thickness */
     uint32_t negative[4];          /* 1 where dir has its sign bit set, -0 included */
-    uint32_t first[4], last[4]; /* where in a box the sides are that it crosses first and last: rt_box_side */
+    uint32_t first[4], last[4]; /* byte offsets in a box of the sides crossed first and last (rt_box_side) */
     int kx, ky, kz;             /* kz: the axis of largest |dir|; kx, ky the others, right-handed */
     float shear_x, shear_y;     /* dir[kx] / dir[kz], dir[ky] / dir[kz] */
 } RtPreparedRay;
@@ -122,7 +121,7 @@ static inline RtVec3d rt_ray_point(const RtRay *ray, float t) {
     return rt_add_scaledd(rt_widen(ray->org), rt_widen(ray->dir), (double)t);
 }
 
-/* Does `a` come before `b` in the order that defines the nearest hit? */
+/* True if (t, object) precedes `best` in the order that defines the nearest hit. */
 static inline bool rt_hit_before(float t, uint32_t object, RtHit best) {
     return t < best.t || (t == best.t && object < best.object);
 }
@@ -135,31 +134,32 @@ static inline float rt_thickness(RtVec3 org, const RtBox *box) {
     return rt_four_thickness(rt_four_lo(box), rt_four_hi(box), (RtFour){org.x, org.y, org.z, org.z});
 }
 
-/* By how much an origin moves along each axis for a thickness, towards where the ray comes from, of which
- * `sign` has the sign bits. */
+/* How far an origin moves along each axis for a thickness, against the ray's direction, whose sign bits
+ * are `sign`. */
 static inline RtFour rt_four_shift(float thickness, RtFour org, RtFourBits sign) {
     RtFour shift = thickness + rt_four_abs(org) * 0x1p-23f;
     return (RtFour)((RtFourBits)shift ^ sign);
 }
 
 static inline void rt_ray_set_thickness(RtPreparedRay *ray, float thickness) {
-    RtFour org = rt_four(&ray->org); /* and what follows, here and below */
+    RtFour org = rt_four(&ray->org); /* reads the four floats at org; likewise below */
     RtFour shift = rt_four_shift(thickness, org, rt_four_sign(rt_four(&ray->dir)));
     RtFour near = org + shift, far = org - shift;
     memcpy(ray->org_near, &near, sizeof ray->org_near);
     memcpy(ray->org_far, &far, sizeof ray->org_far);
 }
 
-/* Gives the ray the thickness for boxes inside `around`. */
+/* Sets the thickness for boxes inside `around`. */
 static inline void rt_ray_thicken(RtPreparedRay *ray, const RtBox *around) {
     rt_ray_set_thickness(ray, rt_thickness(ray->org, around));
 }
 
-/* To *p. `scene_box` must contain every box the prepared ray will be tested against; it sets the thickness.
- * `room` is for hit functions, and may be NULL where none are asked (rt_hit_ray in core/shape/geometry.h). */
+/* Prepares *p. `scene_box` must contain every box that the ray will be tested against; it sets the
+ * thickness. `room` is for hit functions; NULL if none will be called (rt_hit_ray in
+ * core/shape/geometry.h). */
 static inline void rt_ray_prepare_in(RtPreparedRay *p, const RtRay *ray, const RtBox *scene_box,
                                      struct RtCrossing *room) {
-    /* A ray is org, tmin, dir, tmax, and what follows. */
+    /* The loads rely on the layout of RtRay: org, tmin, dir, tmax. */
     RtFour org = rt_four(ray), dir = rt_four((const char *)ray + offsetof(RtRay, dir)), inv = 1 / dir;
     RtFourBits sign = rt_four_sign(dir), negative = sign < 0;
     RtFour shift =
@@ -187,24 +187,24 @@ static inline void rt_ray_prepare_in(RtPreparedRay *p, const RtRay *ray, const R
     p->shear_y = p->dir.at[p->ky] * p->inv[p->kz];
 }
 
-/* The same for tests of boxes alone. */
+/* The same for box tests only. */
 static inline RtPreparedRay rt_ray_prepare(const RtRay *ray, const RtBox *scene_box) {
     RtPreparedRay p;
     rt_ray_prepare_in(&p, ray, scene_box, NULL);
     return p;
 }
 
-/* A side of a box, so many bytes from its beginning. Which of two a ray crosses first is looked up, not
- * asked: of rays in all directions no one could predict that branch. */
+/* The side of a box at a byte offset. The side that a ray crosses first is looked up instead of branched
+ * on: with rays in all directions that branch would be unpredictable. */
 static inline float rt_box_side(const RtBox *box, uint32_t place) {
     float at;
     memcpy(&at, (const char *)box + place, sizeof at);
     return at;
 }
 
-/* The slab test (Kay & Kajiya 1986): brings [*near, *far] down to where the thick ray is within the box; none
- * is left where *near > *far. Where dir is 0, inv is infinite: the crossings are -inf or +inf, or NaN for an
- * origin exactly on a moved plane, and NaN is passed over: such a ray counts as inside. */
+/* The slab test (Kay & Kajiya 1986): clips [*near, *far] to the interval in which the thick ray is within
+ * the box, empty if *near > *far. If a component of dir is 0, inv is infinite and the crossings are -inf
+ * or +inf, or NaN for an origin exactly on a moved plane. NaN is skipped, so such a ray counts as inside. */
 static inline void rt_box_cut(const RtBox *box, const RtPreparedRay *ray, float *near, float *far) {
     for (int a = 0; a < 3; a++) {
         float first = (rt_box_side(box, ray->first[a]) - ray->org_near[a]) * ray->inv[a];
@@ -214,8 +214,7 @@ static inline void rt_box_cut(const RtBox *box, const RtPreparedRay *ray, float 
     }
 }
 
-/* True if the thick ray meets the box for some t in [ray->tmin, tmax]; then *enter is where, at least
- * tmin. */
+/* True if the thick ray meets the box for some t in [ray->tmin, tmax]; *enter is the first such t. */
 static inline bool rt_box_hit(const RtBox *box, const RtPreparedRay *ray, float tmax, float *enter) {
     float near = ray->tmin, far = tmax;
     rt_box_cut(box, ray, &near, &far);
@@ -223,10 +222,10 @@ static inline bool rt_box_hit(const RtBox *box, const RtPreparedRay *ray, float 
     return near <= far;
 }
 
-/* The interval [*near, *far] of t in which the ray is within an object's box, from `lo` to `hi`, by the
- * thickness of that box alone; none where *near > *far. */
+/* The interval [*near, *far] of t in which the ray is within an object's box lo..hi, with the thickness of
+ * that box alone; empty if *near > *far. */
 static inline void rt_four_own_span(RtFour lo, RtFour hi, const RtPreparedRay *ray, float *near, float *far) {
-    RtFour org = rt_four(&ray->org), inv = rt_four(ray->inv); /* and what follows org */
+    RtFour org = rt_four(&ray->org), inv = rt_four(ray->inv); /* the loads read four floats */
     RtFourBits sign = rt_four_sign(rt_four(&ray->dir));
     RtFour shift = rt_four_shift(rt_four_thickness(lo, hi, org), org, sign);
     RtFour first = (rt_four_pick(sign, lo, hi) - (org + shift)) * inv;
@@ -238,9 +237,9 @@ static inline void rt_four_own_span(RtFour lo, RtFour hi, const RtPreparedRay *r
     }
 }
 
-/* What makes a candidate t a hit on an object whose own box is from `lo` to `hi`: the thick ray meets the
- * box, t is brought into [enter, leave] (it moves by rounding only), and then lies in [tmin, tmax]. NaN is
- * refused. */
+/* Decides whether a candidate t is a hit on an object with box lo..hi: the thick ray must meet the box, t
+ * is clamped to [enter, leave] (a change within rounding), and must then lie in [tmin, tmax]. NaN is
+ * rejected. */
 static inline bool rt_four_admit(RtFour lo, RtFour hi, const RtPreparedRay *ray, float *t) {
     float near, far;
     rt_four_own_span(lo, hi, ray, &near, &far);

@@ -97,14 +97,22 @@
         return (RtDouble##HALF)((RtLong##HALF)a & INT64_MAX);                                                \
     }                                                                                                        \
     RT_INLINE RtInt##N rt_select_int##N(RtInt##N mask, RtInt##N a, RtInt##N b) {                             \
-        return (mask & a) | (~mask & b);                                                                     \
+        return RT_BLEND(N, mask, a, b);                                                                      \
     }                                                                                                        \
     RT_INLINE RtFloat##N rt_select_float##N(RtInt##N mask, RtFloat##N a, RtFloat##N b) {                     \
         return (RtFloat##N)rt_select_int##N(mask, (RtInt##N)a, (RtInt##N)b);                                 \
     }                                                                                                        \
     RT_INLINE RtDouble##HALF rt_select_double##HALF(RtLong##HALF mask, RtDouble##HALF a, RtDouble##HALF b) { \
-        return (RtDouble##HALF)((mask & (RtLong##HALF)a) | (~mask & (RtLong##HALF)b));                       \
+        return (RtDouble##HALF)rt_select_int##N((RtInt##N)mask, (RtInt##N)a, (RtInt##N)b);                   \
     }
+
+#if defined(__AVX2__) && !RT_AVX512
+#define RT_BLEND(N, mask, a, b) RT_BLEND_##N(mask, a, b)
+#define RT_BLEND_4(mask, a, b)  ((RtInt4)_mm_blendv_epi8((__m128i)(b), (__m128i)(a), (__m128i)(mask)))
+#define RT_BLEND_8(mask, a, b)  ((RtInt8)_mm256_blendv_epi8((__m256i)(b), (__m256i)(a), (__m256i)(mask)))
+#else
+#define RT_BLEND(N, mask, a, b) (((mask) & (a)) | (~(mask) & (b)))
+#endif
 
 RT_DEFINE_VECTORS(4, 2)
 RT_DEFINE_VECTORS(8, 4)
@@ -128,6 +136,14 @@ RT_DEFINE_VECTORS(16, 8)
     }                                                                                                        \
     RT_INLINE RtDouble##HALF rt_max_double##HALF(RtDouble##HALF a, RtDouble##HALF b) {                       \
         return MM##_max_pd(a, b);                                                                            \
+    }
+
+#define RT_DEFINE_INTS_BY_REGISTER(N, MM, Reg)                                                               \
+    RT_INLINE RtInt##N rt_min_int##N(RtInt##N a, RtInt##N b) {                                               \
+        return (RtInt##N)MM##_min_epi32((Reg)a, (Reg)b);                                                     \
+    }                                                                                                        \
+    RT_INLINE RtInt##N rt_max_int##N(RtInt##N a, RtInt##N b) {                                               \
+        return (RtInt##N)MM##_max_epi32((Reg)a, (Reg)b);                                                     \
     }
 
 #define RT_DEFINE_BITS_BY_REGISTER(N, HALF, MM)                                                              \
@@ -162,9 +178,15 @@ RT_DEFINE_BY_OPERATOR(RtDouble2, double2)
 RT_DEFINE_BITS_BY_LANE(RtInt4, int4, 4)
 RT_DEFINE_BITS_BY_LANE(RtLong2, long2, 2)
 #endif
-RT_DEFINE_BY_OPERATOR(RtInt4, int4)
-RT_DEFINE_BY_OPERATOR(RtInt8, int8)
 
+#if defined(__AVX2__)
+RT_INLINE RtFloat4 rt_lower4(RtFloat8 a) {
+    return _mm256_castps256_ps128(a);
+}
+RT_INLINE RtFloat4 rt_upper4(RtFloat8 a) {
+    return _mm256_extractf128_ps(a, 1);
+}
+#else
 RT_INLINE RtFloat4 rt_lower4(RtFloat8 a) {
     return __builtin_shufflevector(a, a, 0, 1, 2, 3);
 }
@@ -174,11 +196,16 @@ RT_INLINE RtFloat4 rt_upper4(RtFloat8 a) {
 RT_INLINE RtFloat8 rt_join4(RtFloat4 lower, RtFloat4 upper) {
     return __builtin_shufflevector(lower, upper, 0, 1, 2, 3, 4, 5, 6, 7);
 }
+#endif
 
 #if defined(__AVX2__)
 RT_DEFINE_BY_REGISTER(8, 4, _mm256)
+RT_DEFINE_INTS_BY_REGISTER(4, _mm, __m128i)
+RT_DEFINE_INTS_BY_REGISTER(8, _mm256, __m256i)
 RT_DEFINE_BITS_BY_REGISTER(8, 4, _mm256)
 #else
+RT_DEFINE_BY_OPERATOR(RtInt4, int4)
+RT_DEFINE_BY_OPERATOR(RtInt8, int8)
 RT_INLINE RtFloat8 rt_min_float8(RtFloat8 a, RtFloat8 b) {
     return rt_join4(rt_min_float4(rt_lower4(a), rt_lower4(b)), rt_min_float4(rt_upper4(a), rt_upper4(b)));
 }
@@ -192,7 +219,7 @@ RT_INLINE uint32_t rt_bits_int8(RtInt8 mask) {
 #endif
 #if RT_AVX512
 RT_DEFINE_BY_REGISTER(16, 8, _mm512)
-RT_DEFINE_BY_OPERATOR(RtInt16, int16)
+RT_DEFINE_INTS_BY_REGISTER(16, _mm512, __m512i)
 RT_INLINE uint32_t rt_bits_int16(RtInt16 mask) {
     return _mm512_movepi32_mask((__m512i)mask);
 }
@@ -210,8 +237,7 @@ RT_INLINE uint32_t rt_bits_int16(RtInt16 mask) {
     RT_DEFINE_COMPARISON(lt, <, int##N, RtInt##N, int##N, RtInt##N)                                          \
     RT_DEFINE_COMPARISON(eq, ==, int##N, RtInt##N, int##N, RtInt##N)
 #define RT_DEFINE_DOUBLE_COMPARISONS(N)                                                                      \
-    RT_DEFINE_COMPARISON(le, <=, double##N, RtDouble##N, long##N, RtLong##N)                                 \
-    RT_DEFINE_COMPARISON(eq, ==, double##N, RtDouble##N, long##N, RtLong##N)
+    RT_DEFINE_COMPARISON(le, <=, double##N, RtDouble##N, long##N, RtLong##N)
 #define RT_DEFINE_MASK_COMPARISON(name, type, Type, intrinsic, Reg, predicate)                               \
     RT_INLINE uint32_t rt_##name##_bits_##type(Type a, Type b) {                                             \
         return intrinsic((Reg)a, (Reg)b, predicate);                                                         \
@@ -229,7 +255,6 @@ RT_DEFINE_MASK_COMPARISON(lt, float16, RtFloat16, _mm512_cmp_ps_mask, __m512, _C
 RT_DEFINE_MASK_COMPARISON(lt, int16, RtInt16, _mm512_cmp_epi32_mask, __m512i, _MM_CMPINT_LT)
 RT_DEFINE_MASK_COMPARISON(eq, int16, RtInt16, _mm512_cmp_epi32_mask, __m512i, _MM_CMPINT_EQ)
 RT_DEFINE_MASK_COMPARISON(le, double8, RtDouble8, _mm512_cmp_pd_mask, __m512d, _CMP_LE_OQ)
-RT_DEFINE_MASK_COMPARISON(eq, double8, RtDouble8, _mm512_cmp_pd_mask, __m512d, _CMP_EQ_OQ)
 #else
 RT_DEFINE_COMPARISONS(8)
 #endif
@@ -237,25 +262,38 @@ RT_DEFINE_COMPARISONS(8)
 RT_DEFINE_DOUBLE_COMPARISONS(4)
 #endif
 
-/* Bit i: numbers between `least` and `most` are not of different signs. */
-#define RT_DEFINE_ONE_SIGN(Type, type, sign)                                                                 \
-    RT_INLINE uint32_t rt_one_sign_##type(Type least, Type most) {                                           \
-        return rt_bits_##sign((least >= 0) | (most <= 0));                                                   \
+/* rt_one_sign_bits(least, most), floats: bit i: numbers between the two are not of different signs.
+ * rt_inside_bits(least, most, sum), doubles: and `sum` is not 0. */
+#define RT_DEFINE_SIGNS(N, HALF)                                                                             \
+    RT_INLINE uint32_t rt_one_sign_float##N(RtFloat##N least, RtFloat##N most) {                             \
+        return rt_bits_int##N((least >= 0) | (most <= 0));                                                   \
+    }                                                                                                        \
+    RT_INLINE uint32_t rt_inside_double##HALF(RtDouble##HALF least, RtDouble##HALF most,                     \
+                                              RtDouble##HALF sum) {                                          \
+        return rt_bits_long##HALF(((least >= 0) | (most <= 0)) & (sum != 0));                                \
     }
-#define RT_DEFINE_MASK_ONE_SIGN(Type, type)                                                                  \
-    RT_INLINE uint32_t rt_one_sign_##type(Type least, Type most) {                                           \
-        const Type zero = {0};                                                                               \
-        return rt_le_bits_##type(zero, least) | rt_le_bits_##type(most, zero);                               \
-    }
-RT_DEFINE_ONE_SIGN(RtFloat4, float4, int4)
-RT_DEFINE_ONE_SIGN(RtFloat8, float8, int8)
-RT_DEFINE_ONE_SIGN(RtDouble2, double2, long2)
-#if defined(__AVX2__)
-RT_DEFINE_ONE_SIGN(RtDouble4, double4, long4)
-#endif
+RT_DEFINE_SIGNS(4, 2)
 #if RT_AVX512
-RT_DEFINE_MASK_ONE_SIGN(RtFloat16, float16)
-RT_DEFINE_MASK_ONE_SIGN(RtDouble8, double8)
+RT_INLINE uint32_t rt_one_sign_float8(RtFloat8 least, RtFloat8 most) {
+    return rt_le_bits_float8((RtFloat8){0}, least) | rt_le_bits_float8(most, (RtFloat8){0});
+}
+RT_INLINE uint32_t rt_one_sign_float16(RtFloat16 least, RtFloat16 most) {
+    return rt_le_bits_float16((RtFloat16){0}, least) | rt_le_bits_float16(most, (RtFloat16){0});
+}
+RT_INLINE uint32_t rt_inside_double4(RtDouble4 least, RtDouble4 most, RtDouble4 sum) {
+    return rt_bits_long4(((least >= 0) | (most <= 0)) & (sum != 0));
+}
+RT_INLINE uint32_t rt_inside_double8(RtDouble8 least, RtDouble8 most, RtDouble8 sum) {
+    const RtDouble8 zero = {0};
+    uint32_t one_sign = rt_le_bits_double8(zero, least) | rt_le_bits_double8(most, zero);
+    return one_sign & _mm512_cmp_pd_mask((__m512d)sum, (__m512d)zero, _CMP_NEQ_UQ);
+}
+#elif defined(__AVX2__)
+RT_DEFINE_SIGNS(8, 4)
+#else
+RT_INLINE uint32_t rt_one_sign_float8(RtFloat8 least, RtFloat8 most) {
+    return rt_bits_int8((least >= 0) | (most <= 0));
+}
 #endif
 
 /* ---- the width of the instruction set ---- */
@@ -298,14 +336,25 @@ typedef RT_OF_HALF(RtLong) RtLongs;
 #define rt_max(a, b)    _Generic((a), RT_BY_FLOATS(rt_max), RT_BY_INTS(rt_max), RT_BY_DOUBLES(rt_max))(a, b)
 #define rt_select(mask, a, b)                                                                                \
     _Generic((a), RT_BY_FLOATS(rt_select), RT_BY_INTS(rt_select), RT_BY_DOUBLES(rt_select))(mask, a, b)
-#define rt_bits(mask)    _Generic((mask), RT_BY_INTS(rt_bits))(mask)
-#define rt_le_bits(a, b) _Generic((a), RT_BY_FLOATS(rt_le_bits), RT_BY_DOUBLES(rt_le_bits))(a, b)
-#define rt_lt_bits(a, b) _Generic((a), RT_BY_FLOATS(rt_lt_bits), RT_BY_INTS(rt_lt_bits))(a, b)
-#define rt_eq_bits(a, b) _Generic((a), RT_BY_INTS(rt_eq_bits), RT_BY_DOUBLES(rt_eq_bits))(a, b)
-#define rt_one_sign_bits(least, most)                                                                        \
-    _Generic((least), RT_BY_FLOATS(rt_one_sign), RT_BY_DOUBLES(rt_one_sign))(least, most)
-#define rt_to_ints(a)   __builtin_convertvector(a, RtInts) /* towards 0 */
-#define rt_to_floats(a) __builtin_convertvector(a, RtFloats)
+#define rt_bits(mask)                    _Generic((mask), RT_BY_INTS(rt_bits))(mask)
+#define rt_le_bits(a, b)                 _Generic((a), RT_BY_FLOATS(rt_le_bits), RT_BY_DOUBLES(rt_le_bits))(a, b)
+#define rt_lt_bits(a, b)                 _Generic((a), RT_BY_FLOATS(rt_lt_bits), RT_BY_INTS(rt_lt_bits))(a, b)
+#define rt_eq_bits(a, b)                 _Generic((a), RT_BY_INTS(rt_eq_bits))(a, b)
+#define rt_one_sign_bits(least, most)    _Generic((least), RT_BY_FLOATS(rt_one_sign))(least, most)
+#define rt_inside_bits(least, most, sum) _Generic((least), RT_BY_DOUBLES(rt_inside))(least, most, sum)
+#define rt_to_ints(a)                    __builtin_convertvector(a, RtInts) /* towards 0 */
+#define rt_to_floats(a)                  __builtin_convertvector(a, RtFloats)
+
+/* Lane i holds i. */
+RT_INLINE RtInts rt_lane_numbers(void) {
+#if RT_LANES == 16
+    return (RtInts){0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+#elif RT_LANES == 8
+    return (RtInts){0, 1, 2, 3, 4, 5, 6, 7};
+#else
+    return (RtInts){0, 1, 2, 3};
+#endif
+}
 
 /* ---- bits as masks ---- */
 
@@ -421,10 +470,17 @@ RT_INLINE RtMask8 rt_le_mask8(RtFloat8 a, RtFloat8 b) {
 RT_INLINE RtFloat8 rt_select_mask8(RtMask8 mask, RtFloat8 a, RtFloat8 b) {
     return rt_select(mask, a, b);
 }
+/* Each lane of a mask twice as wide. */
+RT_INLINE RtLong4 rt_widen_mask4(RtFloat4 mask) {
+#if defined(__AVX2__)
+    return (RtLong4)_mm256_cvtepi32_epi64((__m128i)mask);
+#else
+    return (RtLong4)__builtin_shufflevector(mask, mask, 0, 0, 1, 1, 2, 2, 3, 3);
+#endif
+}
 RT_INLINE void rt_sets8_add(RtSets8 *sets, RtMask8 mask, uint64_t members) {
-    RtInt4 lower = (RtInt4)rt_lower4((RtFloat8)mask), upper = (RtInt4)rt_upper4((RtFloat8)mask);
-    sets->lower |= __builtin_convertvector(lower, RtLong4) & (int64_t)members;
-    sets->upper |= __builtin_convertvector(upper, RtLong4) & (int64_t)members;
+    sets->lower |= rt_widen_mask4(rt_lower4((RtFloat8)mask)) & (int64_t)members;
+    sets->upper |= rt_widen_mask4(rt_upper4((RtFloat8)mask)) & (int64_t)members;
 }
 RT_INLINE uint32_t rt_sets8_bits(const RtSets8 *sets) {
 #if defined(__AVX2__)
@@ -584,6 +640,24 @@ RT_INLINE RtFloats rt_floor(RtFloats a) {
 }
 RT_INLINE RtFloats rt_ceil(RtFloats a) {
     return (RtFloats){ceilf(a[0]), ceilf(a[1]), ceilf(a[2]), ceilf(a[3])};
+}
+#endif
+
+/* Four floats as doubles, and four doubles rounded to floats. gcc 12 makes five instructions of a conversion
+ * by __builtin_convertvector that changes the size of a vector. */
+#if defined(__AVX2__)
+RT_INLINE RtDouble4 rt_widen4(RtFloat4 a) {
+    return _mm256_cvtps_pd(a);
+}
+RT_INLINE RtFloat4 rt_round4(RtDouble4 a) {
+    return _mm256_cvtpd_ps(a);
+}
+#else
+RT_INLINE RtDouble4 rt_widen4(RtFloat4 a) {
+    return __builtin_convertvector(a, RtDouble4);
+}
+RT_INLINE RtFloat4 rt_round4(RtDouble4 a) {
+    return __builtin_convertvector(a, RtFloat4);
 }
 #endif
 

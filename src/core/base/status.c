@@ -5,8 +5,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-/* Bytes of the UTF-8 character that begins at `s`, or 0 where none does. Overlong ones, surrogates and what
- * is above U+10FFFF are none. */
+/* Bytes of the UTF-8 character at `s`; 0 if it is invalid (overlong, a surrogate, above U+10FFFF). */
 static size_t character(const unsigned char *s) {
     if (s[0] < 0x80) return 1;
     size_t bytes = s[0] >= 0xF5 ? 0 : s[0] >= 0xF0 ? 4 : s[0] >= 0xE0 ? 3 : s[0] >= 0xC2 ? 2 : 0;
@@ -18,8 +17,8 @@ static size_t character(const unsigned char *s) {
     return overlong || none ? 0 : bytes;
 }
 
-/* Messages quote files and plugins, and go to terminals and to JSON: what is no UTF-8 (of a name, or where
- * the end was cut off) and what commands a terminal becomes a question mark. */
+/* Messages quote files and plugins and go to terminals and JSON: bytes that are not UTF-8 (in a name, or
+ * where the end was cut off) and terminal control characters become question marks. */
 static void clean(char *message) {
     for (unsigned char *s = (unsigned char *)message; *s;) {
         size_t bytes = character(s);

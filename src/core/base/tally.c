@@ -21,7 +21,7 @@ const char *rt_tally_meaning(size_t i) {
 
 uint64_t rt_tally_get(const RtTally *tally, size_t i) {
     assert(i < RT_TALLY_COUNTER_COUNT);
-    return ((const uint64_t *)tally)[i]; /* counters are all a tally has */
+    return ((const uint64_t *)tally)[i]; /* a tally holds nothing but counters */
 }
 
 void rt_tally_add(RtTally *sum, const RtTally *part) {

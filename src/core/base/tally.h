@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Tallies: what tracing cost, in events that are the same on every machine. RT_TALLY_COUNTERS is the one list
- * of counters: the struct, the sums, the CSV columns, --help and the docs all expand it.
+/* Tallies: the cost of tracing, counted in events that are the same on every machine. RT_TALLY_COUNTERS is
+ * the one list of counters: the struct, the sums, the CSV columns, --help and the docs all expand it.
  *
- * A tally belongs to one thread and one ray kind; tallies are summed at the end, so counts do not depend on
- * the number of threads. Kernels count with RT_COUNT(tally, field, n): where the tally is a constant NULL
- * (the timed kernels) nothing is left of it after inlining. */
+ * A tally belongs to one thread and one ray kind; tallies are summed at the end, so counts do not depend
+ * on the number of threads. Kernels count with RT_COUNT(tally, field, n). In timed kernels the tally is a
+ * constant NULL, and the count vanishes. */
 #ifndef RT_BASE_TALLY_H
 #define RT_BASE_TALLY_H
 
@@ -33,7 +33,7 @@ typedef struct RtTally {
 
 enum { RT_TALLY_COUNTER_COUNT = sizeof(RtTally) / sizeof(uint64_t) };
 
-/* Adds `n` to a counter of `tally`, which may be NULL: then nothing is counted. */
+/* Adds `n` to a counter of `tally`, unless that is NULL. */
 #define RT_COUNT(tally, counter, n)                                                                          \
     do {                                                                                                     \
         if (tally) (tally)->counter += (uint64_t)(n);                                                        \

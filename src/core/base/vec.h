@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Vectors: three float32 (RtVec3, what geometry and rays are made of) or three doubles (RtVec3d, what hit
- * functions compute with). Only + - * / sqrt, in the order written: with -ffp-contract=off every compiler
- * gives the same bits. */
+/* Vectors: three float32 (RtVec3, for geometry and rays) or three doubles (RtVec3d, for arithmetic in hit
+ * functions). Only + - * / sqrt, in the order written: with -ffp-contract=off every compiler returns the
+ * same bits. */
 #ifndef RT_BASE_VEC_H
 #define RT_BASE_VEC_H
 
@@ -96,6 +96,11 @@ static inline RtVec3d rt_normalized(RtVec3d a) {
     return length > 0 ? rt_scaled(a, 1 / length) : a;
 }
 
+/* Clamps `value` to lo..hi; NaN stays NaN. */
+static inline double rt_clampd(double value, double lo, double hi) {
+    return value < lo ? lo : value > hi ? hi : value;
+}
+
 /* No infinity and no NaN in any component. */
 static inline bool rt_finite(RtVec3 a) {
     return isfinite(a.x) && isfinite(a.y) && isfinite(a.z);
@@ -103,7 +108,7 @@ static inline bool rt_finite(RtVec3 a) {
 
 /* The axis along which |a| is largest; the lower axis wins a tie. */
 static inline int rt_major_axis(RtVec3 a) {
-    /* Without branches, which no one could predict. */
+    /* Branch-free: the outcome is unpredictable. */
     float x = fabsf(a.x), y = fabsf(a.y), z = fabsf(a.z);
     int is_z = (z > x) & (z > y);
     return 2 * is_z | ((y > x) & !is_z);

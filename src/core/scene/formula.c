@@ -18,8 +18,8 @@ typedef struct Parser {
     void *context;
     uint32_t term_count, term_capacity;
     RtCsgTerm *terms; /* operands that wait for their operator */
-    uint32_t mark_count, mark_capacity;
-    char *marks; /* '|', '&', '-' and OPEN that wait for their right operand */
+    uint32_t operator_count, operator_capacity;
+    char *operators; /* '|', '&', '-' and OPEN that wait for their right operand */
     RtError *error;
 } Parser;
 
@@ -50,27 +50,19 @@ static RtStatus fail(Parser *p, const char *what) {
 
 /* ---- the stacks ---- */
 
-static RtStatus push_mark(Parser *p, char mark) {
-    RT_TRY(rt_reserve(&p->marks, &p->mark_capacity, (uint64_t)p->mark_count + 1, 1, p->error));
-    p->marks[p->mark_count++] = mark;
-    return RT_OK;
+static RtStatus push_operator(Parser *p, char c) {
+    return rt_append(&p->operators, &p->operator_count, &p->operator_capacity, &c, 1, p->error);
 }
 
-static RtStatus push_term(Parser *p, RtCsgTerm term) {
-    RT_TRY(rt_reserve(&p->terms, &p->term_capacity, (uint64_t)p->term_count + 1, sizeof term, p->error));
-    p->terms[p->term_count++] = term;
-    return RT_OK;
-}
-
-static int rank(char mark) {
-    return mark == OPEN ? 0 : mark == '&' ? 2 : 1;
+static int rank(char c) {
+    return c == OPEN ? 0 : c == '&' ? 2 : 1;
 }
 
 /* Does what the operators on the stack say, down to one of a rank below `least`. */
 static RtStatus reduce(Parser *p, int least) {
-    while (p->mark_count > 0 && rank(p->marks[p->mark_count - 1]) >= least) {
-        char mark = p->marks[--p->mark_count];
-        RtCsgOp op = mark == '|' ? RT_CSG_UNION : mark == '&' ? RT_CSG_INTERSECTION : RT_CSG_DIFFERENCE;
+    while (p->operator_count > 0 && rank(p->operators[p->operator_count - 1]) >= least) {
+        char c = p->operators[--p->operator_count];
+        RtCsgOp op = c == '|' ? RT_CSG_UNION : c == '&' ? RT_CSG_INTERSECTION : RT_CSG_DIFFERENCE;
         RtCsgTerm right = p->terms[--p->term_count], left = p->terms[p->term_count - 1];
         RT_TRY(rt_csg_combine(p->builder, op, left, right, &p->terms[p->term_count - 1], p->error));
     }
@@ -85,7 +77,7 @@ static RtStatus read_operand(Parser *p, bool *done) {
     *done = false;
     if (*here == '(') {
         p->at++;
-        return push_mark(p, OPEN);
+        return push_operator(p, OPEN);
     }
     if (length == 0) {
         return fail(p, *here == '\0' ? "it ends where a name or '(' should follow"
@@ -99,7 +91,7 @@ static RtStatus read_operand(Parser *p, bool *done) {
     RT_TRY(p->lookup(p->context, name, &term, p->error));
     p->at += length;
     *done = true;
-    return push_term(p, term);
+    return rt_append(&p->terms, &p->term_count, &p->term_capacity, &term, sizeof term, p->error);
 }
 
 /* After an operand: an operator, ')' or the end. */
@@ -108,8 +100,8 @@ static RtStatus read_operator(Parser *p, bool *operand_next) {
     *operand_next = false;
     if (c == ')') {
         RT_TRY(reduce(p, 1));
-        if (p->mark_count == 0) return fail(p, "this ')' has no '(' before it");
-        p->mark_count--;
+        if (p->operator_count == 0) return fail(p, "this ')' has no '(' before it");
+        p->operator_count--;
         p->at++;
         return RT_OK;
     }
@@ -119,7 +111,7 @@ static RtStatus read_operator(Parser *p, bool *operand_next) {
     RT_TRY(reduce(p, rank(c)));
     p->at++;
     *operand_next = true;
-    return push_mark(p, c);
+    return push_operator(p, c);
 }
 
 static RtStatus read_all(Parser *p, RtCsgTerm *term) {
@@ -134,7 +126,7 @@ static RtStatus read_all(Parser *p, RtCsgTerm *term) {
             RT_TRY(read_operator(p, &operand_next));
         } else {
             RT_TRY(reduce(p, 1));
-            if (p->mark_count > 0) return fail(p, "a ')' is missing");
+            if (p->operator_count > 0) return fail(p, "a ')' is missing");
             *term = p->terms[0];
             return RT_OK;
         }
@@ -146,7 +138,7 @@ RtStatus rt_formula_read(const char *formula, RtCsgBuilder *builder, RtFormulaLo
     Parser p = {.text = formula, .builder = builder, .lookup = lookup, .context = context, .error = error};
     RtStatus status = read_all(&p, term);
     rt_free(p.terms);
-    rt_free(p.marks);
+    rt_free(p.operators);
     return status;
 }
 
@@ -207,10 +199,8 @@ static RtStatus put(Writer *w, const char *text) {
 }
 
 static RtStatus push(Writer *w, uint32_t branch, char character) {
-    RT_TRY(rt_reserve(&w->pending, &w->pending_capacity, (uint64_t)w->pending_count + 1, sizeof(Pending),
-                      w->error));
-    w->pending[w->pending_count++] = (Pending){branch, character};
-    return RT_OK;
+    const Pending next = {branch, character};
+    return rt_append(&w->pending, &w->pending_count, &w->pending_capacity, &next, sizeof next, w->error);
 }
 
 /* In reverse: what is pushed last is written first. */

@@ -195,9 +195,8 @@ static RtStatus read_light(Reader *r) {
     RT_TRY(read_vector(r, "l x y z, the position of a light", &position));
     bool plain = !number_follows(r);
     if (plain) {
-        RT_TRY(rt_reserve(&r->plain, &r->plain_capacity, (uint64_t)r->plain_count + 1, sizeof(uint32_t),
-                          r->error));
-        r->plain[r->plain_count++] = r->scene->light_count;
+        RT_TRY(rt_append(&r->plain, &r->plain_count, &r->plain_capacity, &r->scene->light_count,
+                         sizeof(uint32_t), r->error));
     } else {
         RT_TRY(read_vector(r, "l x y z r g b, the colour of a light", &color));
     }

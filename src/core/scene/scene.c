@@ -48,11 +48,9 @@ RtStatus rt_scene_add_material(RtScene *scene, const RtMaterial *material, uint3
     RT_TRY(check_range(m->name, "reflection", m->reflection, 0, 1, error));
     RT_TRY(check_range(m->name, "transmission", m->transmission, 0, 1, error));
     RT_TRY(check_range(m->name, "ior", m->ior, 1e-3f, 1e3f, error));
-    RT_TRY(rt_reserve(&scene->materials, &scene->material_capacity, (uint64_t)scene->material_count + 1,
-                      sizeof(RtMaterial), error));
-    *index = scene->material_count++;
-    scene->materials[*index] = *material;
-    return RT_OK;
+    *index = scene->material_count;
+    return rt_append(&scene->materials, &scene->material_count, &scene->material_capacity, material,
+                     sizeof *material, error);
 }
 
 uint32_t rt_scene_find_material(const RtScene *scene, const char *name) {
@@ -73,10 +71,9 @@ RtStatus rt_scene_add_light(RtScene *scene, RtVec3 position, RtVec3 intensity, R
     if (intensity.x < 0 || intensity.y < 0 || intensity.z < 0) {
         return rt_fail(error, RT_BAD_INPUT, "a light's intensity is negative");
     }
-    RT_TRY(rt_reserve(&scene->lights, &scene->light_capacity, (uint64_t)scene->light_count + 1,
-                      sizeof(RtLight), error));
-    scene->lights[scene->light_count++] = (RtLight){position, intensity};
-    return RT_OK;
+    const RtLight light = {position, intensity};
+    return rt_append(&scene->lights, &scene->light_count, &scene->light_capacity, &light, sizeof light,
+                     error);
 }
 
 /* Room for the material of the next object, made before the object is added. */
@@ -220,7 +217,7 @@ static void add_forest(XXH3_state_t *state, const RtCsgForest *forest) {
         const uint32_t numbers[4] = {(uint32_t)s->kind, s->material, s->subtracted, s->count};
         ADD(numbers, 4);
         ADD(&s->ratio, 1);
-        ADD(&s->place, 1);
+        ADD(&s->to_world, 1);
     }
     ADD(set->planes, set->plane_count);
     ADD(set->triangles, set->triangle_count);

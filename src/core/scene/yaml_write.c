@@ -148,7 +148,7 @@ static void write_solids(Writer *w) {
             fprintf(w->out, "standard: {kind: %s, ratio: ", rt_solid_kind_name(solid->kind));
             number(w, solid->ratio, true);
             fputs(", place: ", w->out);
-            wide_numbers(w, &solid->place.m[0][0], 12);
+            wide_numbers(w, &solid->to_world.m[0][0], 12);
         }
         material_name(w, ", material: ", solid->material);
         fputs("}}\n", w->out);
@@ -173,7 +173,7 @@ static RtStatus write_shape(Writer *w, RtShape shape, uint32_t index, RtError *e
         number_key(w, ", radius: ", g->spheres[index].radius);
         break;
     case RT_SHAPE_POLYGON:
-        points_key(w, "vertices: ", g->polygon_vertices + g->polygons[index].first, g->polygons[index].count);
+        points_key(w, "vertices: ", rt_polygon_vertices(g, index), g->polygons[index].count);
         break;
     case RT_SHAPE_TRIANGLE:
         points_key(w, "vertices: ", g->triangles[index].v, 3);

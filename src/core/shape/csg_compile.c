@@ -9,6 +9,58 @@
 
 #include <assert.h>
 
+/* ---- terms: nodes in a growing array, operands before operations ---- */
+
+void rt_csg_builder_clear(RtCsgBuilder *builder) {
+    rt_solid_set_clear(&builder->set);
+    rt_free(builder->nodes);
+    *builder = (RtCsgBuilder){0};
+}
+
+static RtStatus add_node(RtCsgBuilder *builder, const RtCsgNode *node, RtCsgTerm *out, RtError *error) {
+    *out = builder->node_count;
+    return rt_append(&builder->nodes, &builder->node_count, &builder->node_capacity, node, sizeof *node,
+                     error);
+}
+
+RtStatus rt_csg_solid(RtCsgBuilder *builder, uint32_t solid, uint32_t material, RtCsgTerm *out,
+                      RtError *error) {
+    assert(solid < builder->set.solid_count);
+    RtCsgNode node = {.kind = RT_CSG_SOLID, .left = solid, .size = 1};
+    RT_TRY(add_node(builder, &node, out, error));
+    builder->set.solids[solid].material = material;
+    return RT_OK;
+}
+
+RtStatus rt_csg_combine(RtCsgBuilder *builder, RtCsgOp op, RtCsgTerm left, RtCsgTerm right, RtCsgTerm *out,
+                        RtError *error) {
+    assert(left < builder->node_count && right < builder->node_count);
+    uint32_t size = builder->nodes[left].size + builder->nodes[right].size;
+    if (size > RT_CSG_MAX_SOLIDS) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "a tree of %u solids, those of named parts counted at each use: at most %u can be in "
+                       "one tree",
+                       size, RT_CSG_MAX_SOLIDS);
+    }
+    RtCsgNode node = {.kind = RT_CSG_COMBINE, .op = op, .left = left, .right = right, .size = size};
+    return add_node(builder, &node, out, error);
+}
+
+/* Moves of moves are made one, so that a tree has no more moves than twice its solids. */
+RtStatus rt_csg_move(RtCsgBuilder *builder, RtCsgTerm term, const RtTransform *move, RtCsgTerm *out,
+                     RtError *error) {
+    assert(term < builder->node_count);
+    const RtCsgNode *moved = &builder->nodes[term];
+    RtCsgNode node = {.kind = RT_CSG_MOVE, .left = term, .move = *move, .size = moved->size};
+    if (moved->kind == RT_CSG_MOVE) {
+        node.left = moved->left;
+        node.move = rt_transform_compose(&moved->move, move);
+    }
+    return add_node(builder, &node, out, error);
+}
+
+/* ---- from terms to programs ---- */
+
 #define NONE UINT32_MAX
 
 /* Up to here operands are ordered to be spared, beyond it to need few lists. */
@@ -59,18 +111,14 @@ typedef struct Compiler {
 /* ---- writing out ---- */
 
 static RtStatus push_use(Compiler *p, Use use) {
-    RT_TRY(rt_reserve(&p->uses, &p->use_capacity, (uint64_t)p->use_count + 1, sizeof(Use), p->error));
-    p->uses[p->use_count++] = use;
-    return RT_OK;
+    return rt_append(&p->uses, &p->use_count, &p->use_capacity, &use, sizeof use, p->error);
 }
 
 /* `move`, and then what *index stands for; to *index. */
 static RtStatus add_move(Compiler *p, const RtTransform *move, uint32_t *index) {
-    RT_TRY(
-        rt_reserve(&p->moves, &p->move_capacity, (uint64_t)p->move_count + 1, sizeof(RtTransform), p->error));
-    p->moves[p->move_count] = *index == NONE ? *move : rt_transform_compose(move, &p->moves[*index]);
-    *index = p->move_count++;
-    return RT_OK;
+    const RtTransform whole = *index == NONE ? *move : rt_transform_compose(move, &p->moves[*index]);
+    *index = p->move_count;
+    return rt_append(&p->moves, &p->move_count, &p->move_capacity, &whole, sizeof whole, p->error);
 }
 
 static RtStatus write_part(Compiler *p, Use use) {
@@ -162,18 +210,15 @@ static void measure(const Compiler *p) {
 
 static RtStatus emit(Compiler *p, RtCsgInstruction instruction, uint32_t *at) {
     RtCsgForest *f = p->forest;
-    RT_TRY(rt_reserve(&f->instructions, &f->instruction_capacity, (uint64_t)f->instruction_count + 1,
-                      sizeof(RtCsgInstruction), p->error));
-    *at = f->instruction_count++;
-    f->instructions[*at] = instruction;
-    return RT_OK;
+    *at = f->instruction_count;
+    return rt_append(&f->instructions, &f->instruction_count, &f->instruction_capacity, &instruction,
+                     sizeof instruction, p->error);
 }
 
 /* `box`: of the operation around. */
 static RtStatus push_frame(Compiler *p, uint32_t part, RtBox box, double tested_area) {
-    RT_TRY(rt_reserve(&p->frames, &p->frame_capacity, (uint64_t)p->frame_count + 1, sizeof(Frame), p->error));
-    p->frames[p->frame_count++] = (Frame){part, 0, NONE, NONE, box, tested_area};
-    return RT_OK;
+    const Frame frame = {part, 0, NONE, NONE, box, tested_area};
+    return rt_append(&p->frames, &p->frame_count, &p->frame_capacity, &frame, sizeof frame, p->error);
 }
 
 static RtStatus emit_test(Compiler *p, Frame *frame) {
@@ -181,10 +226,10 @@ static RtStatus emit_test(Compiler *p, Frame *frame) {
     double area = rt_box_half_area(frame->box);
     double spared = (1 - area / frame->tested_area) * p->builder->nodes[p->parts[frame->part].term].size;
     if (!(spared > 1)) return RT_OK;
-    RT_TRY(rt_reserve(&f->boxes, &f->box_capacity, (uint64_t)f->box_count + 1, sizeof(RtBox), p->error));
-    f->boxes[f->box_count] = frame->box;
+    RtCsgInstruction test = {.code = RT_CSG_TEST, .operand = f->box_count};
+    RT_TRY(rt_append(&f->boxes, &f->box_count, &f->box_capacity, &frame->box, sizeof(RtBox), p->error));
     frame->tested_area = area;
-    return emit(p, (RtCsgInstruction){.code = RT_CSG_TEST, .operand = f->box_count++}, &frame->test);
+    return emit(p, test, &frame->test);
 }
 
 /* What comes before the first operand of an operation, between them, or after the second. */

@@ -163,8 +163,7 @@ static RtBox object_box(const RtGeometry *g, RtRef ref) {
     uint32_t index = rt_ref_index(ref);
     switch (rt_ref_shape(ref)) {
     case RT_SHAPE_SPHERE: return rt_sphere_box(&g->spheres[index]);
-    case RT_SHAPE_POLYGON:
-        return rt_polygon_box(&g->polygons[index], g->polygon_vertices + g->polygons[index].first);
+    case RT_SHAPE_POLYGON: return rt_polygon_box(&g->polygons[index], rt_polygon_vertices(g, index));
     case RT_SHAPE_TRIANGLE: return rt_triangle_box(&g->triangles[index]);
     case RT_SHAPE_CONE: return rt_cone_box(&g->cones[index]);
     case RT_SHAPE_CSG: return g->csgs[index].box;
@@ -273,10 +272,8 @@ RtBall rt_object_ball(const RtGeometry *geometry, uint32_t id) {
     uint32_t index = rt_ref_index(geometry->objects[id]);
     switch (rt_ref_shape(geometry->objects[id])) {
     case RT_SHAPE_SPHERE: return rt_sphere_ball(&geometry->spheres[index]);
-    case RT_SHAPE_POLYGON: {
-        const RtPolygon *polygon = &geometry->polygons[index];
-        return rt_polygon_ball(polygon, geometry->polygon_vertices + polygon->first);
-    }
+    case RT_SHAPE_POLYGON:
+        return rt_polygon_ball(&geometry->polygons[index], rt_polygon_vertices(geometry, index));
     case RT_SHAPE_TRIANGLE: return rt_triangle_ball(&geometry->triangles[index]);
     case RT_SHAPE_CONE: return rt_cone_ball(&geometry->cones[index]);
     case RT_SHAPE_CSG: return geometry->csgs[index].ball;
@@ -290,10 +287,9 @@ double rt_object_support(const RtGeometry *geometry, uint32_t id, RtVec3d direct
     uint32_t index = rt_ref_index(geometry->objects[id]);
     switch (rt_ref_shape(geometry->objects[id])) {
     case RT_SHAPE_SPHERE: return rt_sphere_support(&geometry->spheres[index], direction);
-    case RT_SHAPE_POLYGON: {
-        const RtPolygon *polygon = &geometry->polygons[index];
-        return rt_polygon_support(polygon, geometry->polygon_vertices + polygon->first, direction);
-    }
+    case RT_SHAPE_POLYGON:
+        return rt_polygon_support(&geometry->polygons[index], rt_polygon_vertices(geometry, index),
+                                  direction);
     case RT_SHAPE_TRIANGLE: return rt_triangle_support(&geometry->triangles[index], direction);
     case RT_SHAPE_CONE: return rt_cone_support(&geometry->cones[index], direction);
     case RT_SHAPE_CSG: return rt_csg_support(&geometry->forest, &geometry->csgs[index], direction);
@@ -329,7 +325,7 @@ static void csg_axes(const RtGeometry *g, const RtCsg *tree, RtVec3d *main, RtVe
         }
         *main = *normal = rt_vec3d(0, 0, 0);
         for (int a = 0; a < 3; a++) {
-            RtVec3d axis = {solid->place.m[0][a], solid->place.m[1][a], solid->place.m[2][a]};
+            RtVec3d axis = rt_transform_column(&solid->to_world, a);
             bool longer = rt_dotd(axis, axis) > rt_dotd(*main, *main);
             *normal = rt_normalized(longer ? *main : axis);
             if (longer) *main = axis;
@@ -347,7 +343,7 @@ void rt_object_frame(const RtGeometry *geometry, uint32_t id, RtVec3d axes[3]) {
         break;
     case RT_SHAPE_POLYGON: {
         const RtPolygon *polygon = &geometry->polygons[index];
-        main = longest_edge(geometry->polygon_vertices + polygon->first, polygon->count);
+        main = longest_edge(rt_polygon_vertices(geometry, index), polygon->count);
         normal = polygon->normal;
         break;
     }

@@ -87,6 +87,11 @@ typedef struct RtGeometry {
 
 #define RT_NO_NORMALS UINT32_MAX
 
+/* The vertices of polygon `index`. */
+static inline const RtVec3 *rt_polygon_vertices(const RtGeometry *geometry, uint32_t index) {
+    return geometry->polygon_vertices + geometry->polygons[index].first;
+}
+
 /* Each adds one object and gives it the next id. They refuse what is not finite, beyond RT_MAX_COORDINATE or
  * degenerate (a radius of 0, a polygon without area), with a message without a place, and then change
  * nothing. A triangle without area is let in: meshes have them; it is never hit. */
@@ -156,10 +161,8 @@ static __attribute__((noinline)) bool rt_rarer_hit(const RtGeometry *geometry, u
     uint32_t index = rt_ref_index(ref);
     const RtBox *own = &geometry->boxes[id];
     switch (rt_ref_shape(ref)) {
-    case RT_SHAPE_POLYGON: {
-        const RtPolygon *polygon = &geometry->polygons[index];
-        return rt_polygon_hit(polygon, geometry->polygon_vertices + polygon->first, own, ray, t);
-    }
+    case RT_SHAPE_POLYGON:
+        return rt_polygon_hit(&geometry->polygons[index], rt_polygon_vertices(geometry, index), own, ray, t);
     case RT_SHAPE_CONE: return rt_cone_hit(&geometry->cones[index], own, ray, t);
     case RT_SHAPE_CSG: return rt_csg_hit(&geometry->forest, &geometry->csgs[index], ray, t, tally);
     case RT_SHAPE_TRIANGLE:

@@ -139,10 +139,8 @@ bool rt_outline_meets_box(const RtOutline *outline, const RtBox *box, double mar
     switch (rt_ref_shape(geometry->objects[id])) {
     case RT_SHAPE_TRIANGLE: return triangle_meets(&geometry->triangles[index], &block);
     case RT_SHAPE_SPHERE: return sphere_meets(&geometry->spheres[index], &block);
-    case RT_SHAPE_POLYGON: {
-        const RtPolygon *polygon = &geometry->polygons[index];
-        return polygon_meets(polygon, geometry->polygon_vertices + polygon->first, &block);
-    }
+    case RT_SHAPE_POLYGON:
+        return polygon_meets(&geometry->polygons[index], rt_polygon_vertices(geometry, index), &block);
     default: return frame_meets(outline, &block);
     }
 }
@@ -258,7 +256,7 @@ static bool surface_part(const RtGeometry *geometry, uint32_t id, const RtBox *b
     case RT_SHAPE_POLYGON: {
         const RtPolygon *polygon = &geometry->polygons[index];
         if (polygon->count > MAX_EDGES) break;
-        polygon_points(polygon, geometry->polygon_vertices + polygon->first, &block, points);
+        polygon_points(polygon, rt_polygon_vertices(geometry, index), &block, points);
         return chain_part(&block, points, polygon->count, bounds);
     }
     default: break;

@@ -8,15 +8,25 @@
 
 #include <assert.h>
 
-static const char *const kind_names[RT_SOLID_KIND_COUNT] = {
-#define NAME(CONSTANT, name) #name,
-    RT_SOLID_KINDS(NAME)
-#undef NAME
+/* The functions of each kind. */
+static const struct {
+    const char *name;
+    uint32_t (*crossings)(const RtSolidSet *set, uint32_t index, const RtSolidRay *ray, float near, float far,
+                          RtCrossing *out);
+    RtVec3d (*normal)(const RtSolidSet *set, const RtSolid *solid, uint32_t face, RtVec3d point);
+    RtSolidSupport *support;
+    RtBall (*ball)(const RtSolidSet *set, const RtSolid *solid);
+} kinds[] = {
+#define KIND(CONSTANT, name)                                                                                 \
+    {#name, rt_solid_##name##_crossings, rt_solid_##name##_normal, rt_solid_##name##_support,                \
+     rt_solid_##name##_ball},
+    RT_SOLID_KINDS(KIND)
+#undef KIND
 };
 
 const char *rt_solid_kind_name(RtSolidKind kind) {
     assert(kind < RT_SOLID_KIND_COUNT);
-    return kind_names[kind];
+    return kinds[kind].name;
 }
 
 void rt_solid_set_clear(RtSolidSet *set) {
@@ -45,53 +55,19 @@ uint32_t rt_solid_most_crossings(const RtSolid *solid) {
 
 uint32_t rt_solid_crossings(const RtSolidSet *set, uint32_t index, const RtSolidRay *ray, float near,
                             float far, RtCrossing *out) {
-    switch (set->solids[index].kind) {
-#define CROSSINGS(CONSTANT, name)                                                                            \
-    case RT_SOLID_##CONSTANT: return rt_solid_##name##_crossings(set, index, ray, near, far, out);
-        RT_SOLID_KINDS(CROSSINGS)
-#undef CROSSINGS
-    case RT_SOLID_KIND_COUNT: break;
-    }
-    return 0;
+    return kinds[set->solids[index].kind].crossings(set, index, ray, near, far, out);
 }
 
 RtVec3d rt_solid_normal(const RtSolidSet *set, uint32_t index, uint32_t face, RtVec3d point) {
-    const RtSolid *solid = &set->solids[index];
-    switch (solid->kind) {
-#define NORMAL(CONSTANT, name)                                                                               \
-    case RT_SOLID_##CONSTANT: return rt_solid_##name##_normal(set, solid, face, point);
-        RT_SOLID_KINDS(NORMAL)
-#undef NORMAL
-    case RT_SOLID_KIND_COUNT: break;
-    }
-    return rt_vec3d(0, 0, 0);
-}
-
-static double support(const RtSolidSet *set, const RtSolid *solid, RtVec3d direction) {
-    switch (solid->kind) {
-#define SUPPORT(CONSTANT, name)                                                                              \
-    case RT_SOLID_##CONSTANT: return rt_solid_##name##_support(set, solid, direction);
-        RT_SOLID_KINDS(SUPPORT)
-#undef SUPPORT
-    case RT_SOLID_KIND_COUNT: break;
-    }
-    return INFINITY;
+    return kinds[set->solids[index].kind].normal(set, &set->solids[index], face, point);
 }
 
 double rt_solid_support(const RtSolidSet *set, uint32_t index, RtVec3d direction) {
-    return support(set, &set->solids[index], direction);
+    return kinds[set->solids[index].kind].support(set, &set->solids[index], direction);
 }
 
 RtBall rt_solid_ball(const RtSolidSet *set, uint32_t index) {
-    const RtSolid *solid = &set->solids[index];
-    switch (solid->kind) {
-#define BALL(CONSTANT, name)                                                                                 \
-    case RT_SOLID_##CONSTANT: return rt_solid_##name##_ball(set, solid);
-        RT_SOLID_KINDS(BALL)
-#undef BALL
-    case RT_SOLID_KIND_COUNT: break;
-    }
-    return (RtBall){{{0, 0, 0}}, INFINITY};
+    return kinds[set->solids[index].kind].ball(set, &set->solids[index]);
 }
 
 /* ---- moving ---- */
@@ -127,7 +103,7 @@ static RtStatus settle(const RtSolidSet *set, RtSolid *solid, const RtTransform 
     switch (solid->kind) {
     case RT_SOLID_MESH: return rt_solid_check_volume(set->triangles + solid->first, solid->count, error);
     case RT_SOLID_POLYHEDRON: return rt_solid_check_inside(set->planes + solid->first, solid->count, error);
-    default: solid->place = rt_transform_compose(&solid->place, move);
+    default: solid->to_world = rt_transform_compose(&solid->to_world, move);
     }
     if (solid->kind == RT_SOLID_CONE) rt_solid_cone_to_caps(set, solid);
     return RT_OK;
@@ -136,7 +112,7 @@ static RtStatus settle(const RtSolidSet *set, RtSolid *solid, const RtTransform 
 RtStatus rt_solid_add_moved(RtSolidSet *set, const RtSolidSet *source, uint32_t from, const RtTransform *move,
                             uint32_t *index, RtError *error) {
     RtSolid solid = source->solids[from];
-    if (move) RT_TRY(rt_solid_check_place(move, error));
+    if (move) RT_TRY(rt_solid_check_transform(move, error));
     if (solid.kind == RT_SOLID_MESH) {
         RT_TRY(move_triangles(set, source, &solid, move, error));
     } else {
@@ -144,5 +120,5 @@ RtStatus rt_solid_add_moved(RtSolidSet *set, const RtSolidSet *source, uint32_t 
     }
     if (move) RT_TRY(settle(set, &solid, move, error));
     if (solid.kind == RT_SOLID_MESH) RT_TRY(rt_solid_mesh_boxes(set, &solid, error));
-    return rt_solid_finish(set, &solid, support, index, error);
+    return rt_solid_finish(set, &solid, kinds[solid.kind].support, index, error);
 }

@@ -62,8 +62,8 @@ typedef struct RtSolid {
                               in `planes`; mesh: in `triangles` */
     uint32_t first_box, leaves; /* mesh: its tree of 2 leaves - 1 boxes, in `boxes` */
     double ratio;               /* cone, torus */
-    RtTransform place;          /* from standard to world coordinates; of polyhedron and mesh the identity */
-    RtVec3d back[3];            /* rows of the inverse of its linear part */
+    RtTransform to_world;       /* from standard to world coordinates; of polyhedron and mesh the identity */
+    RtVec3d inverse[3];         /* rows of the inverse of its linear part */
     RtBox box;                  /* outward; infinite sides where the solid has no end */
 } RtSolid;
 
@@ -86,21 +86,21 @@ uint64_t rt_solid_set_bytes(const RtSolidSet *set);
 /* Each adds a solid of standard shape at `place` and gives its index. They refuse, with a message without a
  * place, what is not finite, flat or empty, and coordinates beyond RT_MAX_COORDINATE, and then change
  * nothing. */
-RtStatus rt_solid_add_sphere(RtSolidSet *set, const RtTransform *place, uint32_t *index, RtError *error);
-RtStatus rt_solid_add_cone(RtSolidSet *set, double ratio, const RtTransform *place, uint32_t *index,
+RtStatus rt_solid_add_sphere(RtSolidSet *set, const RtTransform *to_world, uint32_t *index, RtError *error);
+RtStatus rt_solid_add_cone(RtSolidSet *set, double ratio, const RtTransform *to_world, uint32_t *index,
                            RtError *error);
-RtStatus rt_solid_add_torus(RtSolidSet *set, double ratio, const RtTransform *place, uint32_t *index,
+RtStatus rt_solid_add_torus(RtSolidSet *set, double ratio, const RtTransform *to_world, uint32_t *index,
                             RtError *error);
 /* planes[0..count) in standard coordinates, 1 <= count <= RT_SOLID_MAX_FACES. Refuses a set without a point,
  * and one whose inside is flat: less wide than 2^-40 of the largest distance of a plane from the origin. */
 #define RT_SOLID_MAX_FACES 1024
 RtStatus rt_solid_add_polyhedron(RtSolidSet *set, const RtPlane *planes, uint32_t count,
-                                 const RtTransform *place, uint32_t *index, RtError *error);
+                                 const RtTransform *to_world, uint32_t *index, RtError *error);
 /* triangles[0..count) in standard coordinates; the set puts them in an order of its own. Refuses a mesh that
  * is not closed (each edge must be there as often in one direction as in the other, naming one that is not)
  * and one turned inside out (volume not above 0). */
 RtStatus rt_solid_add_mesh(RtSolidSet *set, const RtTriangle *triangles, uint32_t count,
-                           const RtTransform *place, uint32_t *index, RtError *error);
+                           const RtTransform *to_world, uint32_t *index, RtError *error);
 
 /* The same by what scenes give. Box: faces -x, x, -y, y, -z, z. Half-space: the side of the plane through
  * `point` that `normal` points away from. Frustum: a cone by its two circles, a cylinder where their radii

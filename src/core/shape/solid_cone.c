@@ -19,7 +19,7 @@
 enum { SIDE, BASE, APEX };
 
 /* Fills span->open and close with where near + s dir, from the middle of the axis, is within the side. */
-static bool within_side(double ratio, const RtStandardLine *line, RtSpan *span) {
+static bool within_side(double ratio, const RtSolidLine *line, RtSpan *span) {
     RtVec3d p = line->near, d = line->dir;
     double r = 1 + (ratio - 1) * (p.z + 0.5), dr = (ratio - 1) * d.z;
     double a = d.x * d.x + d.y * d.y - dr * dr;
@@ -47,7 +47,7 @@ static bool within_side(double ratio, const RtStandardLine *line, RtSpan *span) 
 uint32_t rt_solid_cone_crossings(const RtSolidSet *set, uint32_t index, const RtSolidRay *ray, float near,
                                  float far, RtCrossing *out) {
     const RtSolid *solid = &set->solids[index];
-    RtStandardLine line = rt_solid_line(solid, ray, rt_vec3d(0, 0, 0.5));
+    RtSolidLine line = rt_solid_line(solid, ray, rt_vec3d(0, 0, 0.5));
     RtSpan span;
     if (!within_side(solid->ratio, &line, &span)) return 0;
     span.open += line.closest, span.close += line.closest;
@@ -60,7 +60,7 @@ uint32_t rt_solid_cone_crossings(const RtSolidSet *set, uint32_t index, const Rt
  * axis. */
 RtVec3d rt_solid_cone_normal(const RtSolidSet *set, const RtSolid *solid, uint32_t face, RtVec3d point) {
     if (face != SIDE) return set->planes[solid->first + face - BASE].normal;
-    RtVec3d p = rt_solid_point_back(solid, point);
+    RtVec3d p = rt_solid_point_to_object(solid, point);
     double across = sqrt(p.x * p.x + p.y * p.y);
     if (across == 0) return rt_solid_normal_to_world(solid, rt_vec3d(0, 0, 1));
     return rt_solid_normal_to_world(solid, rt_vec3d(p.x, p.y, (1 - solid->ratio) * across));
@@ -69,7 +69,7 @@ RtVec3d rt_solid_cone_normal(const RtSolidSet *set, const RtSolid *solid, uint32
 /* ---- extents: those of the two discs ---- */
 
 static RtVec3d column(const RtSolid *solid, int i) {
-    return rt_transform_column(&solid->place, i);
+    return rt_transform_column(&solid->to_world, i);
 }
 
 static RtVec3d apex_of(const RtSolid *solid) {
@@ -114,24 +114,24 @@ void rt_solid_cone_to_caps(const RtSolidSet *set, RtSolid *solid) {
     const RtPlane *caps = set->planes + solid->first;
     int a = rt_axis_of(caps[0].normal);
     if (a < 0) return;
-    double apex = solid->place.m[a][3] + solid->place.m[a][2];
+    double apex = solid->to_world.m[a][3] + solid->to_world.m[a][2];
     if (solid->count > 1) apex = caps[1].normal.at[a] * caps[1].offset;
-    solid->place.m[a][3] = caps[0].normal.at[a] * caps[0].offset;
-    solid->place.m[a][2] = apex - solid->place.m[a][3];
+    solid->to_world.m[a][3] = caps[0].normal.at[a] * caps[0].offset;
+    solid->to_world.m[a][2] = apex - solid->to_world.m[a][3];
 }
 
-RtStatus rt_solid_add_cone(RtSolidSet *set, double ratio, const RtTransform *place, uint32_t *index,
+RtStatus rt_solid_add_cone(RtSolidSet *set, double ratio, const RtTransform *to_world, uint32_t *index,
                            RtError *error) {
     if (!(ratio >= 0 && ratio <= 1)) {
         return rt_fail(error, RT_BAD_INPUT,
                        "the ratio of a cone's radii is %g: expected 0..1; turn the cone round", ratio);
     }
-    RT_TRY(rt_solid_check_place(place, error));
+    RT_TRY(rt_solid_check_transform(to_world, error));
     RtSolid solid = {.kind = RT_SOLID_CONE,
                      .first = set->plane_count,
                      .count = ratio > 0 ? 2 : 1,
                      .ratio = ratio,
-                     .place = *place};
+                     .to_world = *to_world};
     RT_TRY(rt_reserve(&set->planes, &set->plane_capacity, (uint64_t)set->plane_count + 2, sizeof(RtPlane),
                       error));
     RtVec3d up = rt_crossd(column(&solid, 0), column(&solid, 1));
@@ -155,6 +155,7 @@ RtStatus rt_solid_add_frustum(RtSolidSet *set, RtVec3 base, float base_radius, R
     if (!(rt_lengthd(axis) > 0)) {
         return rt_fail(error, RT_BAD_INPUT, "the two ends of the cone are the same point: move one of them");
     }
-    RtTransform place = rt_solid_place_about(rt_widen(base), axis, (double)base_radius, rt_lengthd(axis));
-    return rt_solid_add_cone(set, (double)apex_radius / (double)base_radius, &place, index, error);
+    RtTransform to_world =
+        rt_solid_transform_about(rt_widen(base), axis, (double)base_radius, rt_lengthd(axis));
+    return rt_solid_add_cone(set, (double)apex_radius / (double)base_radius, &to_world, index, error);
 }

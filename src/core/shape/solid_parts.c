@@ -29,9 +29,9 @@ RtPlane rt_plane_moved(const RtPlane *plane, const RtTransform *move) {
 
 /* ---- places ---- */
 
-RtStatus rt_solid_check_place(const RtTransform *place, RtError *error) {
-    RtVec3d x = rt_transform_column(place, 0), y = rt_transform_column(place, 1),
-            z = rt_transform_column(place, 2), by = rt_transform_column(place, 3);
+RtStatus rt_solid_check_transform(const RtTransform *to_world, RtError *error) {
+    RtVec3d x = rt_transform_column(to_world, 0), y = rt_transform_column(to_world, 1),
+            z = rt_transform_column(to_world, 2), by = rt_transform_column(to_world, 3);
     double volume = rt_dotd(x, rt_crossd(y, z)), most = rt_lengthd(x) * rt_lengthd(y) * rt_lengthd(z);
     if (!isfinite(most) || !isfinite(rt_lengthd(by))) {
         return rt_fail(error, RT_BAD_INPUT, "the place of a solid is not made of finite numbers");
@@ -44,18 +44,18 @@ RtStatus rt_solid_check_place(const RtTransform *place, RtError *error) {
     return RT_OK;
 }
 
-RtTransform rt_solid_place_about(RtVec3d origin, RtVec3d axis, double radius, double height) {
+RtTransform rt_solid_transform_about(RtVec3d origin, RtVec3d axis, double radius, double height) {
     RtVec3d z = rt_normalized(axis), aside = {{0, 0, 0}};
     int least = 0;
     for (int a = 1; a < 3; a++) least = fabs(z.at[a]) < fabs(z.at[least]) ? a : least;
     aside.at[least] = 1;
     RtVec3d x = rt_normalized(rt_crossd(aside, z)), y = rt_crossd(z, x);
     const RtVec3d columns[4] = {rt_scaled(x, radius), rt_scaled(y, radius), rt_scaled(z, height), origin};
-    RtTransform place;
+    RtTransform to_world;
     for (int row = 0; row < 3; row++) {
-        for (int i = 0; i < 4; i++) place.m[row][i] = columns[i].at[row];
+        for (int i = 0; i < 4; i++) to_world.m[row][i] = columns[i].at[row];
     }
-    return place;
+    return to_world;
 }
 
 /* The largest eigenvalue of the matrix G of dot products is at most its trace, and that of G^2 is its square:
@@ -88,13 +88,13 @@ double rt_largest_stretch(RtVec3d x, RtVec3d y, RtVec3d z) {
 /* ---- finishing ---- */
 
 static void invert(RtSolid *solid) {
-    RtVec3d x = rt_transform_column(&solid->place, 0), y = rt_transform_column(&solid->place, 1),
-            z = rt_transform_column(&solid->place, 2);
+    RtVec3d x = rt_transform_column(&solid->to_world, 0), y = rt_transform_column(&solid->to_world, 1),
+            z = rt_transform_column(&solid->to_world, 2);
     RtVec3d yz = rt_crossd(y, z);
     double volume = rt_dotd(x, yz);
-    solid->back[0] = rt_scaled(yz, 1 / volume);
-    solid->back[1] = rt_scaled(rt_crossd(z, x), 1 / volume);
-    solid->back[2] = rt_scaled(rt_crossd(x, y), 1 / volume);
+    solid->inverse[0] = rt_scaled(yz, 1 / volume);
+    solid->inverse[1] = rt_scaled(rt_crossd(z, x), 1 / volume);
+    solid->inverse[2] = rt_scaled(rt_crossd(x, y), 1 / volume);
 }
 
 /* By the support function, rounded outward; faces along an axis bound it exactly. */
@@ -104,7 +104,7 @@ static RtBox box_of(const RtSolidSet *set, const RtSolid *solid, RtSolidSupport 
     for (int a = 0; a < 3; a++) {
         RtVec3d up = {{a == 0, a == 1, a == 2}};
         double hi = support(set, solid, up), lo = -support(set, solid, rt_scaled(up, -1));
-        double slack = 0x1p-50 * fabs(solid->place.m[a][3]);
+        double slack = 0x1p-50 * fabs(solid->to_world.m[a][3]);
         box.lo.at[a] = rt_float_below(lo - slack - 0x1p-50 * fabs(lo));
         box.hi.at[a] = rt_float_above(hi + slack + 0x1p-50 * fabs(hi));
     }
@@ -134,7 +134,7 @@ static RtStatus check_box(const RtBox *box, RtError *error) {
 RtStatus rt_solid_finish(RtSolidSet *set, RtSolid *solid, RtSolidSupport *support, uint32_t *index,
                          RtError *error) {
     bool is_mesh = solid->kind == RT_SOLID_MESH;
-    RT_TRY(rt_solid_check_place(&solid->place, error));
+    RT_TRY(rt_solid_check_transform(&solid->to_world, error));
     invert(solid);
     solid->box = box_of(set, solid, support);
     RT_TRY(check_box(&solid->box, error));

@@ -4,7 +4,6 @@
 #ifndef RT_SHAPE_SOLID_PARTS_H
 #define RT_SHAPE_SOLID_PARTS_H
 
-#include "core/base/clamp.h"
 #include "core/shape/solid.h"
 
 /* What solid.h promises of all solids, by kind. */
@@ -45,11 +44,11 @@ RtStatus rt_solid_check_inside(const RtPlane *planes, uint32_t count, RtError *e
 RtStatus rt_solid_check_volume(const RtTriangle *triangles, uint32_t count, RtError *error);
 
 /* Refuses a transform that is not finite, or flattens. */
-RtStatus rt_solid_check_place(const RtTransform *place, RtError *error);
+RtStatus rt_solid_check_transform(const RtTransform *to_world, RtError *error);
 
 /* The place whose z axis is `height` along `axis`, and whose x and y axes are `radius` long; all at right
  * angles. Axes along those of the world give such. */
-RtTransform rt_solid_place_about(RtVec3d origin, RtVec3d axis, double radius, double height);
+RtTransform rt_solid_transform_about(RtVec3d origin, RtVec3d axis, double radius, double height);
 
 /* The axis along which the vector lies, or -1. */
 static inline int rt_axis_of(RtVec3d v) {
@@ -106,35 +105,36 @@ static inline void rt_span_cut(RtSpan *span, const RtPlane *plane, uint32_t face
 
 /* ---- standard coordinates ---- */
 
-static inline RtVec3d rt_solid_back(const RtSolid *solid, RtVec3d v) {
-    return rt_vec3d(rt_dotd(solid->back[0], v), rt_dotd(solid->back[1], v), rt_dotd(solid->back[2], v));
+static inline RtVec3d rt_solid_to_object(const RtSolid *solid, RtVec3d v) {
+    return rt_vec3d(rt_dotd(solid->inverse[0], v), rt_dotd(solid->inverse[1], v),
+                    rt_dotd(solid->inverse[2], v));
 }
 
 /* A point of the world in standard coordinates. The origins are subtracted first: that is exact, or nearly
  * so, where a product would lose digits. */
-static inline RtVec3d rt_solid_point_back(const RtSolid *solid, RtVec3d point) {
-    return rt_solid_back(solid, rt_subd(point, rt_transform_column(&solid->place, 3)));
+static inline RtVec3d rt_solid_point_to_object(const RtSolid *solid, RtVec3d point) {
+    return rt_solid_to_object(solid, rt_subd(point, rt_transform_column(&solid->to_world, 3)));
 }
 
 /* A normal in standard coordinates, in the world, of length 1. */
 static inline RtVec3d rt_solid_normal_to_world(const RtSolid *solid, RtVec3d normal) {
-    RtVec3d sum = rt_scaled(solid->back[0], normal.x);
-    sum = rt_add_scaledd(sum, solid->back[1], normal.y);
-    return rt_normalized(rt_add_scaledd(sum, solid->back[2], normal.z));
+    RtVec3d sum = rt_scaled(solid->inverse[0], normal.x);
+    sum = rt_add_scaledd(sum, solid->inverse[1], normal.y);
+    return rt_normalized(rt_add_scaledd(sum, solid->inverse[2], normal.z));
 }
 
 /* The line of a ray in standard coordinates, as seen from `middle`: p(t) = near + (t - closest) dir, with
  * `near` the point nearest to the middle, so that far origins cost no precision. */
-typedef struct RtStandardLine {
+typedef struct RtSolidLine {
     RtVec3d near, dir;
     double closest;
-} RtStandardLine;
+} RtSolidLine;
 
-static inline RtStandardLine rt_solid_line(const RtSolid *solid, const RtSolidRay *ray, RtVec3d middle) {
-    RtVec3d org = rt_subd(rt_solid_point_back(solid, ray->org), middle);
-    RtVec3d dir = rt_solid_back(solid, ray->dir);
+static inline RtSolidLine rt_solid_line(const RtSolid *solid, const RtSolidRay *ray, RtVec3d middle) {
+    RtVec3d org = rt_subd(rt_solid_point_to_object(solid, ray->org), middle);
+    RtVec3d dir = rt_solid_to_object(solid, ray->dir);
     double closest = -rt_dotd(org, dir) / rt_dotd(dir, dir);
-    return (RtStandardLine){rt_add_scaledd(org, dir, closest), dir, closest};
+    return (RtSolidLine){rt_add_scaledd(org, dir, closest), dir, closest};
 }
 
 #endif

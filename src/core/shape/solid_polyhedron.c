@@ -208,21 +208,21 @@ static RtPlane unit_plane(const RtPlane *plane) {
 }
 
 RtStatus rt_solid_add_polyhedron(RtSolidSet *set, const RtPlane *planes, uint32_t count,
-                                 const RtTransform *place, uint32_t *index, RtError *error) {
+                                 const RtTransform *to_world, uint32_t *index, RtError *error) {
     if (count == 0 || count > RT_SOLID_MAX_FACES) {
         return rt_fail(error, RT_BAD_INPUT, "a polyhedron of %u planes: it can have from 1 to %d", count,
                        RT_SOLID_MAX_FACES);
     }
-    RT_TRY(rt_solid_check_place(place, error));
+    RT_TRY(rt_solid_check_transform(to_world, error));
     RT_TRY(rt_reserve(&set->planes, &set->plane_capacity, (uint64_t)set->plane_count + count, sizeof(RtPlane),
                       error));
     RtPlane *own = set->planes + set->plane_count;
     RtTransform here = rt_transform_identity();
-    bool stays = memcmp(place, &here, sizeof here) == 0;
+    bool stays = memcmp(to_world, &here, sizeof here) == 0;
     for (uint32_t i = 0; i < count; i++) {
         RT_TRY(check_plane(&planes[i], i, error));
         RtPlane standing = unit_plane(&planes[i]);
-        own[i] = stays ? standing : rt_plane_moved(&standing, place);
+        own[i] = stays ? standing : rt_plane_moved(&standing, to_world);
         if (!(fabs(own[i].offset) <= (double)RT_MAX_COORDINATE)) {
             return rt_fail(error, RT_BAD_INPUT,
                            "plane %u of the polyhedron is %g from the origin: at most %g", i,
@@ -233,7 +233,7 @@ RtStatus rt_solid_add_polyhedron(RtSolidSet *set, const RtPlane *planes, uint32_
     RtSolid solid = {.kind = RT_SOLID_POLYHEDRON,
                      .first = set->plane_count,
                      .count = count,
-                     .place = rt_transform_identity()};
+                     .to_world = rt_transform_identity()};
     return rt_solid_finish(set, &solid, rt_solid_polyhedron_support, index, error);
 }
 

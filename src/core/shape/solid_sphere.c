@@ -5,7 +5,7 @@
 
 uint32_t rt_solid_sphere_crossings(const RtSolidSet *set, uint32_t index, const RtSolidRay *ray, float near,
                                    float far, RtCrossing *out) {
-    RtStandardLine line = rt_solid_line(&set->solids[index], ray, rt_vec3d(0, 0, 0));
+    RtSolidLine line = rt_solid_line(&set->solids[index], ray, rt_vec3d(0, 0, 0));
     double half_chord_squared = 1 - rt_dotd(line.near, line.near);
     if (!(half_chord_squared > 0)) return 0;
     double half = sqrt(half_chord_squared / rt_dotd(line.dir, line.dir));
@@ -15,26 +15,26 @@ uint32_t rt_solid_sphere_crossings(const RtSolidSet *set, uint32_t index, const 
 
 RtVec3d rt_solid_sphere_normal(const RtSolidSet *set, const RtSolid *solid, uint32_t face, RtVec3d point) {
     (void)set, (void)face;
-    return rt_solid_normal_to_world(solid, rt_solid_point_back(solid, point));
+    return rt_solid_normal_to_world(solid, rt_solid_point_to_object(solid, point));
 }
 
 double rt_solid_sphere_support(const RtSolidSet *set, const RtSolid *solid, RtVec3d direction) {
     (void)set;
     RtVec3d along;
-    for (int i = 0; i < 3; i++) along.at[i] = rt_dotd(direction, rt_transform_column(&solid->place, i));
-    return rt_dotd(direction, rt_transform_column(&solid->place, 3)) + rt_lengthd(along);
+    for (int i = 0; i < 3; i++) along.at[i] = rt_dotd(direction, rt_transform_column(&solid->to_world, i));
+    return rt_dotd(direction, rt_transform_column(&solid->to_world, 3)) + rt_lengthd(along);
 }
 
 RtBall rt_solid_sphere_ball(const RtSolidSet *set, const RtSolid *solid) {
     (void)set;
-    const RtTransform *place = &solid->place;
-    return (RtBall){rt_transform_column(place, 3),
-                    rt_largest_stretch(rt_transform_column(place, 0), rt_transform_column(place, 1),
-                                       rt_transform_column(place, 2))};
+    const RtTransform *to_world = &solid->to_world;
+    return (RtBall){rt_transform_column(to_world, 3),
+                    rt_largest_stretch(rt_transform_column(to_world, 0), rt_transform_column(to_world, 1),
+                                       rt_transform_column(to_world, 2))};
 }
 
-RtStatus rt_solid_add_sphere(RtSolidSet *set, const RtTransform *place, uint32_t *index, RtError *error) {
-    RtSolid solid = {.kind = RT_SOLID_SPHERE, .place = *place};
+RtStatus rt_solid_add_sphere(RtSolidSet *set, const RtTransform *to_world, uint32_t *index, RtError *error) {
+    RtSolid solid = {.kind = RT_SOLID_SPHERE, .to_world = *to_world};
     return rt_solid_finish(set, &solid, rt_solid_sphere_support, index, error);
 }
 
@@ -44,8 +44,8 @@ RtStatus rt_solid_add_ellipsoid(RtSolidSet *set, RtVec3 center, RtVec3 radii, ui
         return rt_fail(error, RT_BAD_INPUT, "the radii of an ellipsoid must be above 0; these are %g, %g, %g",
                        (double)radii.x, (double)radii.y, (double)radii.z);
     }
-    RtTransform place = rt_transform_identity();
-    RT_TRY(rt_transform_scale(&place, radii, error));
-    RT_TRY(rt_transform_translate(&place, center, error));
-    return rt_solid_add_sphere(set, &place, index, error);
+    RtTransform to_world = rt_transform_identity();
+    RT_TRY(rt_transform_scale(&to_world, radii, error));
+    RT_TRY(rt_transform_translate(&to_world, center, error));
+    return rt_solid_add_sphere(set, &to_world, index, error);
 }

@@ -80,7 +80,7 @@ static int changes(const Curve *curve, const double *cuts, int count, double *pl
 uint32_t rt_solid_torus_crossings(const RtSolidSet *set, uint32_t index, const RtSolidRay *ray, float near,
                                   float far, RtCrossing *out) {
     const RtSolid *solid = &set->solids[index];
-    RtStandardLine line = rt_solid_line(solid, ray, rt_vec3d(0, 0, 0));
+    RtSolidLine line = rt_solid_line(solid, ray, rt_vec3d(0, 0, 0));
     double length = rt_lengthd(line.dir), p_squared = rt_dotd(line.near, line.near);
     double reach = 1 + solid->ratio + 0x1p-20; /* a little more: the ends of the line are outside */
     if (!(p_squared < reach * reach)) return 0;
@@ -112,7 +112,7 @@ uint32_t rt_solid_torus_crossings(const RtSolidSet *set, uint32_t index, const R
 /* From the nearest point of the circle. */
 RtVec3d rt_solid_torus_normal(const RtSolidSet *set, const RtSolid *solid, uint32_t face, RtVec3d point) {
     (void)set, (void)face;
-    RtVec3d q = rt_solid_point_back(solid, point);
+    RtVec3d q = rt_solid_point_to_object(solid, point);
     double w = sqrt(q.x * q.x + q.y * q.y);
     RtVec3d circle = w > 0 ? rt_vec3d(q.x / w, q.y / w, 0) : rt_vec3d(1, 0, 0);
     return rt_solid_normal_to_world(solid, rt_subd(q, circle));
@@ -123,22 +123,22 @@ RtVec3d rt_solid_torus_normal(const RtSolidSet *set, const RtSolid *solid, uint3
 double rt_solid_torus_support(const RtSolidSet *set, const RtSolid *solid, RtVec3d direction) {
     (void)set;
     RtVec3d along;
-    for (int i = 0; i < 3; i++) along.at[i] = rt_dotd(direction, rt_transform_column(&solid->place, i));
-    return rt_dotd(direction, rt_transform_column(&solid->place, 3)) +
+    for (int i = 0; i < 3; i++) along.at[i] = rt_dotd(direction, rt_transform_column(&solid->to_world, i));
+    return rt_dotd(direction, rt_transform_column(&solid->to_world, 3)) +
            sqrt(along.x * along.x + along.y * along.y) + solid->ratio * rt_lengthd(along);
 }
 
 RtBall rt_solid_torus_ball(const RtSolidSet *set, const RtSolid *solid) {
     (void)set;
-    RtVec3d x = rt_transform_column(&solid->place, 0), y = rt_transform_column(&solid->place, 1),
-            z = rt_transform_column(&solid->place, 2);
+    RtVec3d x = rt_transform_column(&solid->to_world, 0), y = rt_transform_column(&solid->to_world, 1),
+            z = rt_transform_column(&solid->to_world, 2);
     double circle = rt_largest_stretch(x, y, rt_vec3d(0, 0, 0)), tube = rt_largest_stretch(x, y, z);
-    return (RtBall){rt_transform_column(&solid->place, 3), circle + solid->ratio * tube};
+    return (RtBall){rt_transform_column(&solid->to_world, 3), circle + solid->ratio * tube};
 }
 
 /* ---- making ---- */
 
-RtStatus rt_solid_add_torus(RtSolidSet *set, double ratio, const RtTransform *place, uint32_t *index,
+RtStatus rt_solid_add_torus(RtSolidSet *set, double ratio, const RtTransform *to_world, uint32_t *index,
                             RtError *error) {
     if (!(ratio > 0 && ratio < 1)) {
         return rt_fail(
@@ -146,7 +146,7 @@ RtStatus rt_solid_add_torus(RtSolidSet *set, double ratio, const RtTransform *pl
             "the tube of a torus is %g times as wide as its circle: expected a value above 0 and below 1",
             ratio);
     }
-    RtSolid solid = {.kind = RT_SOLID_TORUS, .ratio = ratio, .place = *place};
+    RtSolid solid = {.kind = RT_SOLID_TORUS, .ratio = ratio, .to_world = *to_world};
     return rt_solid_finish(set, &solid, rt_solid_torus_support, index, error);
 }
 
@@ -163,6 +163,7 @@ RtStatus rt_solid_add_ring(RtSolidSet *set, RtVec3 center, RtVec3 axis, float ma
         return rt_fail(error, RT_BAD_INPUT,
                        "the axis of the torus has length 0: give a direction, as in [0, 0, 1]");
     }
-    RtTransform place = rt_solid_place_about(rt_widen(center), rt_widen(axis), (double)major, (double)major);
-    return rt_solid_add_torus(set, (double)minor / (double)major, &place, index, error);
+    RtTransform to_world =
+        rt_solid_transform_about(rt_widen(center), rt_widen(axis), (double)major, (double)major);
+    return rt_solid_add_torus(set, (double)minor / (double)major, &to_world, index, error);
 }

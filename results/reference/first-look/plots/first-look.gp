@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-# first-look: the table of frames as bars, a column of panels a scene.
-#: frame: How many times faster, and with how many times fewer object tests, each accelerator traces a whole frame than no
-#:   structure does, on logarithmic axes. The columns at the right are milliseconds a frame and to build, and millions of
-#:   object tests. Blue: the lecture's six; orange: the one that helps most. item and light stand on wide: the pale part of a bar is what wide
-#:   does alone. ideal is
-#:   the least that any accelerator can do.
-#: by-kind: How many times faster than without a structure, for each kind of rays.
-#:   Logarithmic axes; secondary rays are reflected and transmitted ones. The item buffer answers primary rays alone, the light buffer shadow rays alone.
+# first-look: the table of frames as bars, one column of panels per scene.
+#: frame: Speedup and reduction in object tests of each accelerator for a whole frame over no structure, on logarithmic axes.
+#:   The columns at the right are milliseconds per frame, milliseconds to build, and millions of object tests. Blue: the lecture's
+#:   six; orange: the one that helps most. item and light are overlays over wide: the pale part of a bar is the share of wide
+#:   alone. ideal is the lower bound for any accelerator.
+#: by-kind: Speedup over no structure, for each ray kind.
+#:   Logarithmic axes; secondary rays are reflected and transmitted ones. The item buffer answers only primary rays, the light
+#:   buffer only shadow rays.
 
 n_scenes = words(scenes); n_accels = words(accels)
 
@@ -42,7 +42,7 @@ legend = "set label 11 among at screen 0.52, screen 1 - 18.0 / height left font 
 set label 12 '{/:Bold the one that helps most}' at screen 0.635, screen 1 - 18.0 / height left font ',12' textcolor rgb '#d55e00'; \
 set label 13 'pale: wide alone' at screen 0.995, screen 1 - 18.0 / height right font ',12' textcolor rgb soft"
 
-# ---- a whole frame: times as fast, and times fewer object tests ----
+# ---- a whole frame: speedup, and reduction in object tests ----
 
 n_metrics = 2
 array metric[2] = ["times_faster", "times_fewer"]
@@ -68,7 +68,7 @@ set grid xtics noytics
 set xtics scale 0.4 offset 0, 0.4 font ",11"
 do for [m = 1:n_metrics] {
   highest = most[m]; lowest = least[m] < 0.5 ? least[m] : 0.5
-  # Room for the figure behind a bar, and for the columns at the right.
+  # Space for the figure after a bar, and for the columns at the right.
   set xrange [lowest : highest * (highest / lowest) ** spare[m]]
   set xtics 1, 100, highest
   do for [s = 1:n_scenes] {
@@ -86,7 +86,7 @@ do for [m = 1:n_metrics] {
     set label 3 (m == 1 ? "ms" : "") at graph 0.82, graph 1 right offset 0, 0.7 font ",11" textcolor rgb soft
     set label 4 (m == 1 ? "build ms" : "million tests") at graph 1, graph 1 right offset 0, 0.7 font ",11" textcolor rgb soft
     last = highest * (highest / lowest) ** spare[m]
-    # What the accelerator below an overlay gains by itself, then what this one gains: logarithms add.
+    # The gain of the accelerator below an overlay, then that of the overlay: logarithms add.
     plot "frame.csv" using (least_of(1, below(s, m))):(at(s)):(least_of(1, below(s, m))):(most_of(1, below(s, m))):(at(s) - 0.36):(at(s) + 0.36) \
            with boxxyerror linecolor rgb faint, \
          "" using (least_of(whole(s, m), below(s, m))):(at(s)):(least_of(whole(s, m), below(s, m))):(most_of(whole(s, m), below(s, m))): \
@@ -103,7 +103,7 @@ do for [m = 1:n_metrics] {
 unset multiplot
 unset output
 
-# ---- by kind of rays ----
+# ---- by ray kind ----
 
 n_parts = 3
 array part[3] = ["primary_faster", "shadow_faster", "secondary_faster"]

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "accel/plugin/process.h"
+#include "core/base/process.h"
 
 #include "core/base/clock.h"
 
@@ -7,21 +7,26 @@
 #include <fcntl.h>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
+#include <math.h>
 #include <poll.h>
 #include <signal.h>
+#include <spawn.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
+#include <sys/socket.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
-enum { BY_DESCRIPTOR = 3 /* P_PIDFD, which is younger than other things of waitid */, PAUSE = 10 /* ms */ };
+enum { BY_DESCRIPTOR = 3 /* P_PIDFD, which some C libraries lack */, PAUSE = 10 /* ms */ };
 
-/* The child begins when its number has become a descriptor: until then it lives, and has the number. */
+/* ---- copies of this process ---- */
+
+/* The child starts work once the parent has its descriptor: until then it runs, and keeps its process id. */
 static void await_go(int go) {
     char byte;
     ssize_t got;
@@ -30,7 +35,7 @@ static void await_go(int go) {
     if (got != 1) _exit(EXIT_FAILURE);
 }
 
-/* Closes all that raytally has open but its messages to the user, and `keep`. */
+/* Closes all of raytally's files except stderr and `keep`. */
 static void close_inherited(int keep) {
     int nothing = open("/dev/null", O_RDONLY);
     if (nothing >= 0) dup2(nothing, STDIN_FILENO);
@@ -39,11 +44,11 @@ static void close_inherited(int keep) {
     close_range((unsigned)RT_PROCESS_KEPT + (keep >= 0), ~0U, 0);
 }
 
-/* Has the kernel refuse (EPERM) what would end raytally or stop it: signals to it, to its process group and
- * to all processes. Where the kernel cannot do that, nothing is refused. */
+/* The kernel refuses (EPERM) system calls that would end or stop raytally: signals to it, to its process
+ * group and to all processes. A kernel without seccomp refuses nothing. */
 static void protect(pid_t raytally, pid_t group) {
     if (group == 0)
-        group = raytally; /* its leader is outside of this process namespace: nobody can name it */
+        group = raytally; /* its leader is outside of this process namespace: it has no number here */
     const struct {
         long call;
         int argument;
@@ -76,22 +81,22 @@ static void protect(pid_t raytally, pid_t group) {
     }
     filter[rules * A_RULE] = (struct sock_filter)BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW);
     const struct sock_fprog program = {sizeof filter / sizeof filter[0], filter};
-    if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0) /* the flag: it costs what is timed nothing */
+    if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0) /* the flag keeps timings unchanged */
         syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_SPEC_ALLOW, &program);
 }
 
-RtStatus rt_process_start(RtProcess *process, int keep, RtError *error) {
+RtStatus rt_process_fork(RtProcess *process, int keep, RtError *error) {
     const pid_t raytally = getpid(), group = getpgrp();
     int go[2];
-    *process = (RtProcess){.descriptor = -1};
+    *process = (RtProcess){.descriptor = -1, .group = true};
     if (pipe2(go, O_CLOEXEC) != 0) return rt_fail(error, RT_IO, "a pipe: %s", strerror(errno));
-    fflush(NULL); /* or what waits to be written is written twice */
+    fflush(NULL); /* or buffered output would be written twice */
     process->pid = fork();
     int why = errno;
     if (process->pid == 0) {
         close(go[1]);
         await_go(go[0]);
-        setpgid(0, 0); /* what it starts goes with it */
+        setpgid(0, 0); /* so that what it starts can be ended with it */
         close_inherited(keep);
         protect(raytally, group);
         return RT_OK;
@@ -108,6 +113,62 @@ RtStatus rt_process_start(RtProcess *process, int keep, RtError *error) {
     return rt_fail(error, RT_IO, "a process for a plugin: %s", strerror(why));
 }
 
+/* ---- other programs ---- */
+
+/* `talk`: its end of a connection to its stdin and from its stdout, or -1. */
+static int spawn(RtProcess *process, const RtCommand *command, int talk) {
+    enum { WRITE = O_WRONLY | O_CREAT | O_TRUNC, MODE = 0666 };
+    posix_spawn_file_actions_t actions;
+    if (posix_spawn_file_actions_init(&actions) != 0) return ENOMEM;
+    if (command->directory) posix_spawn_file_actions_addchdir_np(&actions, command->directory);
+    if (talk >= 0) {
+        posix_spawn_file_actions_adddup2(&actions, talk, STDIN_FILENO);
+        posix_spawn_file_actions_adddup2(&actions, talk, STDOUT_FILENO);
+    } else {
+        posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    }
+    if (command->out) posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, command->out, WRITE, MODE);
+    if (command->log) posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, command->log, WRITE, MODE);
+    int failed =
+        command->program
+            ? posix_spawn(&process->pid, command->program, &actions, NULL, command->arguments, environ)
+            : posix_spawnp(&process->pid, command->arguments[0], &actions, NULL, command->arguments, environ);
+    posix_spawn_file_actions_destroy(&actions);
+    return failed;
+}
+
+RtStatus rt_process_spawn(RtProcess *process, const RtCommand *command, RtError *error) {
+    int ends[2] = {-1, -1};
+    *process = (RtProcess){.descriptor = -1};
+    if (command->to && socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+        *command->to = *command->from = NULL;
+        return rt_fail(error, RT_IO, "a connection to a process: %s", strerror(errno));
+    }
+    int failed = spawn(process, command, ends[1]);
+    if (command->to) {
+        close(ends[1]);
+        *command->to = fdopen(dup(ends[0]), "w");
+        *command->from = fdopen(ends[0], "r");
+    }
+    if (failed) {
+        *process = (RtProcess){0};
+        return rt_fail(error, failed == ENOENT ? RT_NOT_AVAILABLE : RT_IO, "%s: cannot be started: %s",
+                       command->program ? command->program : command->arguments[0], strerror(failed));
+    }
+    process->descriptor = (int)syscall(SYS_pidfd_open, process->pid, 0);
+    if (!command->to || (*command->to && *command->from)) return RT_OK;
+    return rt_fail_memory(error, "a connection to a process", 0);
+}
+
+RtStatus rt_process_run(const RtCommand *command, RtProcessEnd *end, RtError *error) {
+    RtProcess process;
+    RT_TRY(rt_process_spawn(&process, command, error));
+    rt_process_wait(&process, -1, end);
+    return RT_OK;
+}
+
+/* ---- watching and ending ---- */
+
 void rt_process_signal(const RtProcess *process, int number) {
     if (process->pid <= 0) return;
     if (process->descriptor >= 0) {
@@ -117,9 +178,6 @@ void rt_process_signal(const RtProcess *process, int number) {
     }
 }
 
-/* ---- its end ---- */
-
-/* Has it ended? If so, what is known of that. */
 static bool has_ended(const RtProcess *process, RtProcessEnd *end) {
     struct pollfd ended = {.fd = process->descriptor, .events = POLLIN};
     bool held = process->descriptor >= 0;
@@ -130,28 +188,29 @@ static bool has_ended(const RtProcess *process, RtProcessEnd *end) {
     if (held && poll(&ended, 1, 0) != 1) return false;
     do got = waitid(type, id, &about, WEXITED | WNOHANG);
     while (got != 0 && errno == EINTR);
-    if (got != 0) return true; /* ECHILD: somebody else waited for it */
+    if (got != 0) return true; /* ECHILD: other code waited for it */
     if (about.si_pid == 0) return held;
     if (about.si_code == CLD_EXITED) end->code = about.si_status;
     if (about.si_code == CLD_KILLED || about.si_code == CLD_DUMPED) end->signal = about.si_status;
     return true;
 }
 
-static void nap(const RtProcess *process, int milliseconds) {
+/* Until it has ended, or for so many milliseconds. */
+static void pause_for(const RtProcess *process, int milliseconds) {
     struct pollfd ended = {.fd = process->descriptor, .events = POLLIN};
     poll(&ended, 1, milliseconds < PAUSE || process->descriptor >= 0 ? milliseconds : PAUSE);
 }
 
 bool rt_process_wait(RtProcess *process, int milliseconds, RtProcessEnd *end) {
-    double until = rt_wall_seconds() + milliseconds / 1000.0;
+    const double until = milliseconds < 0 ? INFINITY : rt_wall_seconds() + milliseconds / 1000.0;
     *end = (RtProcessEnd){0, -1};
     if (process->pid <= 0) return true;
     while (!has_ended(process, end)) {
         double left = until - rt_wall_seconds();
         if (left <= 0) return false;
-        nap(process, (int)(left * 1000) + 1);
+        pause_for(process, (int)(fmin(left, 60) * 1000) + 1);
     }
-    kill(-process->pid, SIGKILL); /* what it started, if that is still there */
+    if (process->group) kill(-process->pid, SIGKILL); /* what it started, if that still runs */
     if (process->descriptor >= 0) close(process->descriptor);
     *process = (RtProcess){0};
     return true;
@@ -161,12 +220,11 @@ void rt_process_end(RtProcess *process, int milliseconds) {
     RtProcessEnd end;
     if (process->pid <= 0 || rt_process_wait(process, milliseconds, &end)) return;
     rt_process_signal(process, SIGKILL);
-    while (!rt_process_wait(process, 1000, &end)) {
-    }
+    rt_process_wait(process, -1, &end);
 }
 
-void rt_process_end_format(RtProcessEnd end, int said, const char *detail, char *out, size_t room) {
-    int number = said ? said : end.signal;
+void rt_process_end_format(RtProcessEnd end, int reported, const char *detail, char *out, size_t room) {
+    int number = reported ? reported : end.signal;
     const char *name = sigdescr_np(number);
     if (number) {
         snprintf(out, room, "it crashed (%s%s)", name ? name : "an unknown signal", detail);

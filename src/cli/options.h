@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The command line of a command: one table of its options says what --help prints and where each value goes.
+ *
+ * The values go to a struct that the command's file calls Options. */
+#ifndef RT_CLI_OPTIONS_H
+#define RT_CLI_OPTIONS_H
+
+#include <argp.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Reads `text`; ends the process by argp_error if it is wrong. */
+typedef void RtTakeOption(void *options, const char *text, struct argp_state *state);
+
+/* Where the value of an option goes, and what it may be. */
+typedef struct RtOptionValue {
+    enum {
+        RT_OPTION_FLAG,    /* bool: true */
+        RT_OPTION_TEXT,    /* const char *: as given */
+        RT_OPTION_INTEGER, /* an integer type of `size` bytes: low..high */
+        RT_OPTION_SECONDS, /* double: a whole number, low..high */
+        RT_OPTION_PERCENT, /* double: "1%" is 0.01 */
+        RT_OPTION_SET,     /* int, or an enum: `low` */
+        RT_OPTION_SIZE,    /* uint32_t[2]: WIDTHxHEIGHT */
+        RT_OPTION_PATH,    /* const char *: a file name that ends in one of `endings` */
+        RT_OPTION_TAKE     /* as `take` reads it */
+    } form;
+    size_t offset, size;
+    int64_t low, high;
+    RtTakeOption *take;
+    const char *endings;
+    int flags; /* argp's */
+} RtOptionValue;
+
+#define RT_TO_FLAG(field)                                                                                    \
+    { .form = RT_OPTION_FLAG, .offset = offsetof(Options, field) }
+#define RT_TO_TEXT(field)                                                                                    \
+    { .form = RT_OPTION_TEXT, .offset = offsetof(Options, field) }
+#define RT_TO_HIDDEN(field)                                                                                  \
+    { .form = RT_OPTION_TEXT, .offset = offsetof(Options, field), .flags = OPTION_HIDDEN }
+#define RT_TO_INTEGER(field, from, to)                                                                       \
+    {                                                                                                        \
+        .form = RT_OPTION_INTEGER, .offset = offsetof(Options, field), .size = sizeof((Options *)0)->field,  \
+        .low = (from), .high = (to)                                                                          \
+    }
+#define RT_TO_SECONDS(field, from, to)                                                                       \
+    { .form = RT_OPTION_SECONDS, .offset = offsetof(Options, field), .low = (from), .high = (to) }
+#define RT_TO_PERCENT(field)                                                                                 \
+    { .form = RT_OPTION_PERCENT, .offset = offsetof(Options, field) }
+#define RT_TO_SET(field, value)                                                                              \
+    { .form = RT_OPTION_SET, .offset = offsetof(Options, field), .low = (value) }
+#define RT_TO_SIZE(field)                                                                                    \
+    { .form = RT_OPTION_SIZE, .offset = offsetof(Options, field) }
+#define RT_TO_PATH(field, ends)                                                                              \
+    { .form = RT_OPTION_PATH, .offset = offsetof(Options, field), .endings = (ends) }
+#define RT_TO_TAKE(function)                                                                                 \
+    { .form = RT_OPTION_TAKE, .take = (function) }
+#define RT_TO_TAKE_OPTIONAL(function) /* `text` may be NULL */                                               \
+    { .form = RT_OPTION_TAKE, .take = (function), .flags = OPTION_ARG_OPTIONAL }
+
+typedef struct RtOption {
+    const char *name;
+    int letter;          /* of the short option, or 0 */
+    const char *operand; /* what --help calls the value; NULL: it takes none */
+    RtOptionValue value;
+    const char *help;
+} RtOption;
+
+/* The arguments that are no options. */
+typedef struct RtArgument {
+    const char *name;    /* SCENE */
+    const char *missing; /* what is said if there is none; NULL: there may be none */
+    size_t offset;       /* const char *: the one there may be */
+    RtTakeOption *take;  /* reads each; NULL: there is one at most */
+} RtArgument;
+
+#define RT_ARGUMENT(name, field, missing)                                                                    \
+    { name, missing, offsetof(Options, field), NULL }
+#define RT_SCENE_ARGUMENT                                                                                    \
+    RT_ARGUMENT("SCENE", scene, "a SCENE is missing: a file, or a built-in as `raytally scenes` lists")
+
+typedef struct RtSyntax {
+    const RtOption *options;           /* the last has no name; NULL: none */
+    const struct argp_child *children; /* more options; or NULL */
+    size_t child;                      /* offset of the input of the first child */
+    const char *arguments, *help;      /* args_doc and doc of argp */
+    RtArgument argument;
+    void (*finish)(void *options, struct argp_state *state); /* checks all values together; or NULL */
+} RtSyntax;
+
+/* Fills `options`, a command's Options. Ends the process if the arguments are wrong, or ask for help. */
+void rt_cli_parse(const RtSyntax *syntax, int argc, char **argv, void *options);
+
+/* The syntax as argp has it, valid until the next call. */
+const struct argp *rt_cli_argp(const RtSyntax *syntax);
+
+#endif

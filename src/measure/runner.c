@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Runners of accelerators, local and remote, and timing accelerators against each other. A remote runner has
+ * a counterpart in the accelerator's process, which holds the rays. */
+#include "measure/measure.h"
+
+#include "accel/remote.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
+
+#include <math.h>
+#include <string.h>
+#include <xxhash.h>
+
+typedef struct Remote {
+    RtQuery query;
+    struct Counterpart *counterpart; /* an address of the other process */
+} Remote;
+
+typedef struct Counterpart {
+    RtRunner runner;
+    RtRaySet set;
+    XXH64_hash_t rays; /* hash of the rays when they were complete */
+} Counterpart;
+
+enum { RAYS_A_MESSAGE = 4096 };
+typedef struct Message {
+    Counterpart *counterpart;
+    RtStatus status;
+    RtError error;
+    RtRayKind kind;
+    uint64_t count; /* rays in all */
+    int threads;
+    uint32_t repeats;
+    double seconds, wall;
+    uint64_t first; /* of rays[0..some) in the set */
+    uint32_t some;
+    RtRay rays[RAYS_A_MESSAGE];
+} Message;
+
+/* A message without its rays. */
+enum { HEAD = offsetof(Message, rays) };
+
+/* ---- in the accelerator's process ---- */
+
+static XXH64_hash_t hash_rays(const RtRaySet *set) {
+    return XXH3_64bits(set->rays, set->count * sizeof(RtRay));
+}
+
+static void create(RtQuery *query, void *message) {
+    (void)query;
+    Message *m = message;
+    m->counterpart = rt_alloc(1, sizeof(Counterpart));
+    m->status = m->counterpart ? rt_rayset_init(&m->counterpart->set, m->kind, m->count, &m->error)
+                               : rt_fail_memory(&m->error, "a runner", sizeof(Counterpart));
+}
+
+static void take_rays(RtQuery *query, void *message) {
+    (void)query;
+    Message *m = message;
+    memcpy(m->counterpart->set.rays + m->first, m->rays, m->some * sizeof(RtRay));
+}
+
+static void open_counterpart(RtQuery *query, void *message) {
+    Message *m = message;
+    RtTimed timed = {.accel = query->accel, .set = &m->counterpart->set};
+    m->counterpart->rays = hash_rays(&m->counterpart->set);
+    m->status = rt_runner_open_local(&m->counterpart->runner, &timed, m->threads, &m->error);
+}
+
+/* The accelerator could change the rays, so they are checked. */
+static void time_counterpart(RtQuery *query, void *message) {
+    (void)query;
+    Message *m = message;
+    m->status = rt_runner_time(&m->counterpart->runner, m->repeats, &m->seconds, &m->wall, &m->error);
+    if (m->status == RT_OK && hash_rays(&m->counterpart->set) != m->counterpart->rays)
+        m->status = rt_fail(&m->error, RT_BROKEN, "it wrote to the rays that it was given");
+}
+
+static void destroy(RtQuery *query, void *message) {
+    (void)query;
+    Message *m = message;
+    if (!m->counterpart) return;
+    rt_runner_close_local(&m->counterpart->runner);
+    rt_rayset_clear(&m->counterpart->set);
+    rt_free(m->counterpart);
+    m->counterpart = NULL;
+}
+
+/* ---- in this process ---- */
+
+/* Runs `work` there. Returns its failure, or RT_BROKEN if the accelerator is broken. */
+static RtStatus request(Remote *remote, RtRemoteWork *work, Message *message, size_t bytes, RtError *error) {
+    message->counterpart = remote->counterpart;
+    message->status = RT_OK;
+    rt_remote_do(&remote->query, work, message, bytes);
+    remote->counterpart = message->counterpart;
+    message->error.message[sizeof message->error.message - 1] = '\0';
+    if (message->status > RT_OK && message->status <= RT_IO && message->status != RT_BROKEN)
+        return rt_fail(error, message->status, "%s", message->error.message);
+    if (message->status != RT_OK)
+        rt_remote_break(remote->query.accel, message->error.message, "it was timed");
+    return rt_accel_check(remote->query.accel, error);
+}
+
+static bool is_duration(double seconds) {
+    return isfinite(seconds) && seconds >= 0;
+}
+
+static RtStatus time_remote(void *context, uint32_t repeats, double *seconds, double *wall, RtError *error) {
+    Remote *remote = context;
+    Message message; /* its rays stay unset */
+    message.repeats = repeats;
+    RT_TRY(request(remote, time_counterpart, &message, HEAD, error));
+    *seconds = message.seconds;
+    *wall = message.wall;
+    if (is_duration(*seconds) && is_duration(*wall)) return RT_OK;
+    rt_remote_break(remote->query.accel, "it overwrote the times", "it was timed");
+    return rt_accel_check(remote->query.accel, error);
+}
+
+static RtStatus run_remote(void *context, RtError *error) {
+    double seconds, wall;
+    return time_remote(context, 1, &seconds, &wall, error);
+}
+
+static RtStatus open_remote(Remote *remote, const RtTimed *timed, int threads, Message *message,
+                            RtError *error) {
+    const RtRaySet *set = timed->set;
+    RT_TRY(rt_query_init(&remote->query, timed->accel, error));
+    message->kind = set->kind;
+    message->count = set->count;
+    message->threads = threads;
+    RT_TRY(request(remote, create, message, HEAD, error));
+    for (uint64_t first = 0; first < set->count; first += RAYS_A_MESSAGE) {
+        uint64_t left = set->count - first, some = left < RAYS_A_MESSAGE ? left : RAYS_A_MESSAGE;
+        message->first = first;
+        message->some = (uint32_t)some;
+        memcpy(message->rays, set->rays + first, some * sizeof(RtRay));
+        RT_TRY(request(remote, take_rays, message, HEAD + some * sizeof(RtRay), error));
+    }
+    return request(remote, open_counterpart, message, HEAD, error);
+}
+
+RtStatus rt_runner_open(RtRunner *runner, const RtTimed *timed, int threads, RtError *error) {
+    if (!rt_accel_is_remote(timed->accel)) return rt_runner_open_local(runner, timed, threads, error);
+    Remote *remote = rt_alloc(1, sizeof(Remote));
+    Message *message = rt_alloc(1, sizeof(Message));
+    *runner = (RtRunner){.run = run_remote,
+                         .time = time_remote,
+                         .context = remote,
+                         .work = (double)timed->set->count,
+                         .parallel = rt_thread_count(threads) > 1,
+                         .seconds = timed->seconds,
+                         .wall = timed->wall,
+                         .broken = timed->broken};
+    RtStatus status = remote && message ? open_remote(remote, timed, threads, message, error)
+                                        : rt_fail_memory(error, "a runner", sizeof(Message));
+    rt_free(message);
+    return status;
+}
+
+void rt_runner_close(RtRunner *runner) {
+    Remote *remote = runner->context;
+    Message message;
+    if (!runner->time) {
+        rt_runner_close_local(runner);
+        return;
+    }
+    if (remote && remote->query.accel) {
+        request(remote, destroy, &message, HEAD, NULL);
+        rt_query_clear(&remote->query);
+    }
+    rt_free(remote);
+    *runner = (RtRunner){0};
+}
+
+/* ---- timing ---- */
+
+RtStatus rt_measure_time(const RtTimed *timed, size_t count, const RtTiming *timing, uint32_t *done,
+                         RtError *error) {
+    RtRunner *runners = rt_alloc(count, sizeof(RtRunner));
+    if (!runners) return rt_fail_memory(error, "the rounds", count * sizeof(RtRunner));
+    RtStatus status = RT_OK;
+    for (size_t i = 0; status == RT_OK && i < count; i++) {
+        status = rt_runner_open(&runners[i], &timed[i], timing->threads, error);
+        if (status != RT_BROKEN || !timed[i].broken) continue;
+        *timed[i].broken = true;
+        status = RT_OK;
+    }
+    if (status == RT_OK) status = rt_rounds_run(runners, count, &timing->rounds, done, error);
+    for (size_t i = 0; i < count; i++) rt_runner_close(&runners[i]);
+    rt_free(runners);
+    return status;
+}
