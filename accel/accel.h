@@ -1,24 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The interface of accelerators: structures that answer `nearest` and `occluded` for rays.
+/* The interface of accelerators: structures that answer `nearest` and `occluded` queries for rays.
  *
- * Every accelerator returns the same hits, bit for bit (see core/base/ray.h for why that is possible); they
- * differ in what it costs. One that is not exact says so (RtAccel.exact) and is judged by verdicts.
+ * Every accelerator returns the same hits, bit for bit; they differ in cost. (core/base/ray.h proves why this
+ * is possible.) One that is not exact clears RtAccel.exact, and `verify` judges its answers one by one.
  *
- * Queries come in streams: arrays of rays, one of them as a special case. Each accelerator answers them by
- * four kernels: nearest and occluded, timed and counted. The body of a traversal is written once, as an
- * inline function with an RtTally pointer, and RT_DEFINE_KERNELS expands it twice: with the tally of the
- * ray's kind, and with a constant NULL, of which the compiler leaves nothing. A timed kernel has no tally to
- * count in.
+ * Queries come in streams, arrays of rays; a single ray is a stream of one. Each accelerator has four
+ * kernels: nearest and occluded, timed and counted. The body of a traversal is written once, as an inline
+ * function with an RtTally pointer. RT_DEFINE_KERNELS (kernel.h) expands it with the tally of the ray's kind,
+ * and again with a constant NULL, so the timed kernel contains no counting code.
  *
- * An accelerator is built over a scene that must outlive it, and is read only from then on. What a traversal
- * writes to (mailboxes, the room of hit functions) lies in an RtQuery, one per thread, and is all there
- * before the first ray: kernels allocate nothing and cannot fail.
+ * An accelerator is built over a scene, which must outlive it, and is read-only afterwards. What a traversal
+ * writes (mailboxes, buffers of hit functions) is in an RtQuery, one per thread, allocated before the first
+ * ray: kernels allocate nothing and cannot fail.
  *
- * Overlays. An overlay answers rays of some kinds (RtAccelOps.kinds) and hands the others, and those that it
- * cannot decide with certainty, to the accelerator below it, which may be an overlay in turn; a base, which
- * answers every ray, lies at the bottom. rt_accel_build stacks them and hands back the topmost. A ray is
- * counted in `rays` and `hits` once, by the layer that answers it, and in `passed_on` by each overlay that
- * ought to have. */
+ * Overlays. An overlay answers rays of some kinds (RtAccelOps.kinds). It hands all other rays, and those that
+ * it cannot decide with certainty, to the accelerator below it, which may be an overlay, too. At the bottom
+ * is a base, which answers every ray. rt_accel_build stacks the layers and returns the topmost. A ray counts
+ * in `rays` and `hits` once, in the layer that answers it, and in `passed_on` in each overlay that should
+ * have. */
 #ifndef RT_ACCEL_ACCEL_H
 #define RT_ACCEL_ACCEL_H
 
@@ -34,36 +33,35 @@ typedef struct RtAccel {
     const RtAccelOps *ops; /* set by rt_accel_build */
     const RtScene *scene;  /* borrowed */
     struct RtAccel *below; /* owned; NULL for a base. Set by rt_accel_build */
-    size_t scratch_room;  /* bytes of a query's scratch memory that are this layer's. Set by rt_accel_build */
-    bool exact;           /* bit for bit like brute; false: judged by verdicts */
-    bool counts;          /* its counts are the same on every machine and belong into counts.csv */
-    double build_seconds; /* wall seconds that building it took, with all below. Set by rt_accel_build */
-    RtTally build_tally;  /* what hit functions were asked while building; kept apart from tracing */
+    size_t scratch_room;   /* bytes of its scratch memory in a query. Set by rt_accel_build */
+    bool exact;            /* its hits equal brute's bit for bit; false: judged by verdicts */
+    bool counts;           /* its counts are the same on every machine, so counts.csv has them */
+    double build_seconds;  /* wall seconds to build it and all layers below. Set by rt_accel_build */
+    RtTally build_tally;   /* hit functions called while building; not part of tracing */
 } RtAccel;
 
-/* Expectations of a random line through the box of a structure, if nothing stopped it and no mailbox knew
- * an object again, by the ratios of areas (MacDonald & Booth 1990). NaN where none is known. Each of X(name,
- * meaning). */
+/* Expected values for a random line through the box of a structure, by ratios of areas (MacDonald & Booth
+ * 1990), without early exit and without mailboxes. NaN if unknown. X(name, meaning). */
 #define RT_PREDICTIONS(X)                                                                                    \
     X(predicted_cost, "expected cost in object tests, by the structure's own cost of a step (SAH)")          \
     X(predicted_tests, "expected object tests")                                                              \
     X(predicted_steps, "expected steps")
 
-/* What hierarchies of boxes are like beside that (Aila, Karras & Laine 2013; accel/tree/quality.c). NaN
- * elsewhere. Each of X(name, meaning). */
+/* Further quality metrics of hierarchies of boxes (Aila, Karras & Laine 2013; accel/tree/quality.c). NaN for
+ * other structures. X(name, meaning). */
 #define RT_QUALITIES(X)                                                                                      \
     X(end_point_overlap, "expected cost, at a point of the surface, of nodes that contain it but not its "   \
                          "object; triangles only")                                                           \
     X(leaf_count_variability, "standard deviation of the leaves that a random line meets")
 
-/* What a structure looks like. Zero where a figure does not apply. */
+/* Statistics of a structure. Zero where a figure does not apply. */
 typedef struct RtDescription {
     uint64_t interior;     /* inner nodes */
     uint64_t leaves;       /* leaves, or voxels */
-    uint64_t empty_leaves; /* of them, those without an object */
+    uint64_t empty_leaves; /* leaves without an object */
     uint64_t references;   /* entries in all lists of objects */
-    uint64_t depth;        /* of the deepest leaf, the root being 0 */
-    uint64_t bytes;        /* of its arrays: without the scene, and without what is one per accelerator */
+    uint64_t depth;        /* of the deepest leaf; the root has depth 0 */
+    uint64_t bytes;        /* of its arrays, without the scene and without what exists once per accelerator */
     RtTally build;         /* the build_tally. Set by rt_accel_describe */
 #define RT_PREDICTION_FIELD(name, meaning) double name;
     RT_PREDICTIONS(RT_PREDICTION_FIELD)
@@ -71,23 +69,23 @@ typedef struct RtDescription {
 #undef RT_PREDICTION_FIELD
 } RtDescription;
 
-/* Initialise the qualities of an RtDescription, or the predictions too, as unknown. */
+/* Initialisers of an RtDescription: unknown qualities; unknown predictions and qualities. */
 #define RT_NO_QUALITY    .end_point_overlap = NAN, .leaf_count_variability = NAN
 #define RT_NO_PREDICTION .predicted_cost = NAN, .predicted_tests = NAN, .predicted_steps = NAN, RT_NO_QUALITY
 
-/* The limit of rt_accel_build. */
+/* RtBuild.limit of rt_accel_build. */
 #define RT_ACCEL_MAX_BYTES (UINT64_C(4) << 30)
 
-/* What the kernels of a layer may write to. */
+/* The memory that the kernels of a layer may write to. */
 typedef struct RtScratch {
-    void *own;        /* scratch_bytes of it; NULL where no layer asks for any */
-    RtCrossing *room; /* for hit functions (rt_hit_ray) */
+    void *own;        /* [scratch_bytes]; NULL if no layer needs any */
+    RtCrossing *room; /* buffer of hit functions (rt_hit_ray) */
 } RtScratch;
 
-/* The four kernels. rays[0..count) are valid (rt_ray_is_valid); scratch[0] is the layer's, and those of the
- * layers below follow; answers go to hits[0..count) and occluders[0..count); tallies[RT_RAY_KIND_COUNT] are
- * added to, by the kind of each ray. A occluder is any object that lies on the ray, RT_NO_OBJECT where none
- * does, or RT_UNNAMED_OBJECT from those who know only that there is one. */
+/* The four kernels. rays[0..count) are valid (rt_ray_is_valid). scratch[0] belongs to the layer; those of the
+ * layers below follow. Answers go to hits[0..count) or occluders[0..count). Counts are added to
+ * tallies[RT_RAY_KIND_COUNT], by the kind of each ray. An occluder is any object that the ray hits,
+ * RT_NO_OBJECT if there is none, or RT_UNNAMED_OBJECT if the accelerator knows only that there is one. */
 #define RT_UNNAMED_OBJECT (UINT32_MAX - 1)
 
 typedef void RtNearestKernel(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
@@ -99,63 +97,66 @@ typedef void RtNearestCounted(const RtAccel *accel, const RtScratch *scratch, co
 typedef void RtOccludedCounted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
                                size_t count, uint32_t *occluders, RtTally *tallies);
 
-/* A box of a structure. */
+/* A node or voxel of a structure. */
 typedef struct RtBoxView {
-    const RtBox *box;                  /* valid during the call */
-    uint32_t depth;                    /* below the root */
-    bool leaf;                         /* it lists objects */
-    const struct RtExtentSet *extents; /* that it is the box of one of (accel/extent.h), or NULL ... */
-    uint32_t extent;                   /* ... and of which */
+    const RtBox *box; /* valid during the call */
+    uint32_t depth;   /* below the root */
+    bool leaf;
+    const struct RtExtentSet *extents; /* the set that contains its extent (accel/extent.h), or NULL */
+    uint32_t extent;                   /* index in that set */
+    uint32_t objects;                  /* of a leaf: in its list, if RtAccelOps.shows_lists */
 } RtBoxView;
 
-/* Who looks at the boxes of a structure: one call of `show` each. */
+/* Receives the boxes of a structure, one per call of `show`. */
 typedef struct RtBoxViewer {
     void (*show)(void *context, const RtBoxView *view);
     void *context;
 } RtBoxViewer;
 
-/* What an overlay has in a cell: a sample of the image, or a direction as seen from a light. */
+/* A cell of an overlay: a sample of the image, or a direction as seen from a light. */
 typedef struct RtCellView {
     uint32_t number; /* of the cell */
     uint32_t length; /* objects in its list */
-    uint32_t
-        object; /* the first of them; RT_NO_OBJECT if there is none, RT_UNNAMED_OBJECT if it is undecided */
-    bool cut;   /* a ray that finds nothing in it is passed on */
+    uint32_t object; /* the first of them; RT_NO_OBJECT if there is none, RT_UNNAMED_OBJECT if undecided */
+    bool cut;        /* a ray that finds nothing in it is passed on */
 } RtCellView;
 
-/* Who looks at the leaves of a structure, or its voxels: one call of `show` each, with the number of objects
- * in its list and its depth below the root. */
-typedef struct RtLeafViewer {
-    void (*show)(void *context, uint32_t objects, uint32_t depth);
-    void *context;
-} RtLeafViewer;
+/* For `describe`: sums over the boxes of a structure that shows_lists, and a viewer that adds to them and to
+ * the counts of *out. */
+typedef struct RtBoxSums {
+    RtDescription *out;
+    double inner, leaves, tests; /* half areas; of leaves also times the lengths of their lists */
+} RtBoxSums;
+void rt_box_sums_add(void *sums, const RtBoxView *view);
 
-/* What an accelerator is built from. */
+/* Sets the predictions: a random line through the root meets a box with the ratio of their areas. */
+void rt_box_sums_predict(const RtBoxSums *sums, const RtBox *root, double traversal_cost);
+
+/* The arguments of `build`. */
 typedef struct RtBuild {
     const RtAccelOps *ops; /* of the accelerator itself */
-    const RtScene *scene;  /* finished; it may hold no object at all */
+    const RtScene *scene;  /* finished; it may be empty */
     const RtValue *values; /* [param_count], in range */
     int threads;           /* 0 = all processors; does not change the structure */
-    uint64_t limit;        /* one that would take more bytes, as far as its own folder counts, is refused */
+    uint64_t limit;        /* a structure of more bytes, as its `build` estimates them, is refused */
 } RtBuild;
 
-/* Parameters that several accelerators have. */
-#define RT_MAILBOX_PARAM                                                                                     \
-    "mailbox", RT_FLAG("on"), "do not test an object twice for one ray", "Kirk & Arvo 1991"
+/* Parameters of several accelerators. */
+#define RT_MAILBOX_PARAM "mailbox", RT_FLAG("on"), "test an object at most once per ray", "Kirk & Arvo 1991"
 #define RT_MARGIN_PARAM(what)                                                                                \
-    "margin", RT_FLOAT("0", 0, 1, "0.01|1"),                                                                 \
-        "how much wider than the scene's box " what " is, as a part of it",                                  \
-        "the published scene boxes are a little wider than tight"
+    "margin", RT_FLOAT("0", 0, 1, "0.01|1"), "fraction by which " what " is wider than the scene's box",     \
+        "0: tight; published scene boxes are slightly wider"
 
-/* A name under which several settings of an accelerator stand together as one competitor, the fastest of them
- * on the rays at hand: `embree:best`. It is what others are compared with, and cannot be built itself. */
+/* A name for the fastest of several settings of an accelerator, `embree:best`: a baseline that takes the
+ * fastest setting for each ray set. It cannot be built itself. */
 typedef struct RtBestOf {
     const char *name;
-    const char *settings; /* "isa=avx2|avx512,query=1|8": every combination; the other parameters' defaults */
-    const char *meaning;  /* one line */
+    const char
+        *settings; /* "isa=avx2|avx512,query=1|8": all combinations; other parameters have their defaults */
+    const char *meaning; /* one line */
 } RtBestOf;
 
-/* One accelerator, as a const table in its own file. Optional members may be NULL. */
+/* The operations of an accelerator: a const table in its own file. Optional members may be NULL. */
 struct RtAccelOps {
     const char *name;    /* as in a spec */
     const char *summary; /* one line */
@@ -163,15 +164,15 @@ struct RtAccelOps {
     const RtParam *params;
     size_t param_count;
     uint32_t kinds; /* of an overlay: the rays it answers, bits 1 << RtRayKind; 0: a base, for all rays */
-    bool remote;    /* a plugin's: built in another process (accel/remote.h) */
-    /* Optional: a spec of it alone, "light:cells=100", that is verified beside the default where that, over
-     * few objects or rays, chooses to leave its own ways unused. */
+    bool remote;    /* a plugin's, which is built in a process of its own (accel/remote.h) */
+    /* Optional: a spec, "light:cells=100", that is verified in addition to the default. For accelerators that
+     * do not use their own structure over few objects or rays by default. */
     const char *trial;
     const RtBestOf *bests; /* [best_count], or NULL */
     size_t best_count;
 
-    /* On failure nothing is left behind. *out is owned by the caller: `destroy`, which leaves what lies below
-     * alone. An overlay is built without regard to what it will lie on. */
+    /* On failure nothing is left behind. The caller owns *out and frees it by `destroy`, which does not
+     * destroy the layer below. An overlay does not know what it will lie on. */
     RtStatus (*build)(const RtBuild *build, RtAccel **out, RtError *error);
     void (*destroy)(RtAccel *accel);
 
@@ -180,81 +181,80 @@ struct RtAccelOps {
     RtNearestCounted *nearest_counted;
     RtOccludedCounted *occluded_counted;
 
-    /* Optional: bytes of scratch memory per query; it starts zeroed and 64-byte aligned. */
+    /* Optional: bytes of scratch memory per query, which is zeroed and 64-byte aligned. */
     size_t (*scratch_bytes)(const RtAccel *accel);
 
-    /* Optional, both or none: what scratch memory needs that is not memory, before the first ray and after
-     * the last. Where `open` fails nothing is to be closed. */
+    /* Optional, both or none: set up and tear down resources in the scratch memory, before the first ray and
+     * after the last. If `open` fails, `close` is not called. */
     RtStatus (*open)(const RtAccel *accel, void *scratch, RtError *error);
     void (*close)(const RtAccel *accel, void *scratch);
 
-    /* Optional: brings the scratch memory back to what a fresh query has, as far as later counts could tell
-     * (rt_query_begin). */
+    /* Optional: resets the state in the scratch memory that would affect later counts (rt_query_begin). */
     void (*begin)(const RtAccel *accel, void *scratch);
 
-    /* Of this layer alone. */
+    /* Describes this layer alone. */
     void (*describe)(const RtAccel *accel, RtDescription *out);
 
-    /* RT_OK, or RT_MISMATCH with a message that names the first broken invariant. */
+    /* RT_OK, or RT_MISMATCH and a message that names the first broken invariant. */
     RtStatus (*validate)(const RtAccel *accel, RtError *error);
 
-    /* Optional: shows the boxes of the structure, for pictures. */
+    /* Optional: shows the boxes of the structure, for pictures and distributions. If `shows_lists`, the
+     * leaves shown are exactly those that `describe` counts, empty ones included, with the lengths of their
+     * lists. */
     void (*each_box)(const RtAccel *accel, RtBoxViewer viewer);
+    bool shows_lists;
 
-    /* Optional, of an overlay, for pictures: the cell in which it looks up `ray`, one of those that it
-     * answers, of which only the direction and the source matter. False if there is no cell: nothing is seen
-     * there. */
-    bool (*look_up)(const RtAccel *accel, const RtRay *ray, RtCellView *cell);
+    /* Optional, of an overlay, for pictures: the cell in which it looks up `ray`, of a kind that it answers.
+     * Only the direction and the source of the ray matter. False if no cell contains it. */
+    bool (*find_cell)(const RtAccel *accel, const RtRay *ray, RtCellView *cell);
 
-    /* Optional: shows all leaves, the empty ones included: those that `describe` counts. RT_NO_MEMORY. */
-    RtStatus (*each_leaf)(const RtAccel *accel, RtLeafViewer viewer, RtError *error);
-
-    /* Optional: RT_OK, or what went wrong while rays were traced, which kernels cannot say. To be asked where
-     * no thread traces. */
+    /* Optional: RT_OK, or the error that occurred while rays were traced, which kernels cannot return. Not to
+     * be called while a thread traces. */
     RtStatus (*check)(const RtAccel *accel, RtError *error);
 
-    /* Optional: takes recorded answers for rays[0..count), which stay where they are while the accelerator is
-     * asked about them. */
+    /* Optional: records answers for rays[0..count). The rays must stay at their addresses while they are
+     * queried. */
     RtStatus (*learn)(RtAccel *accel, const RtRay *rays, const RtHit *hits, size_t count, RtError *error);
 
-    /* Optional: RT_OK, or RT_NOT_AVAILABLE and why this machine, or the library at hand, cannot do what
-     * values[param_count] ask for. `build` is called only where it is RT_OK. */
+    /* Optional: RT_OK, or RT_NOT_AVAILABLE and why this machine, or the installed library, does not support
+     * values[param_count]. `build` is called only after RT_OK. */
     RtStatus (*available)(const RtValue *values, RtError *error);
 
-    /* Optional: the version of the library that does the work, and what it runs on here, "3.13.5 avx512", to
-     * out[0..room); false, and "", where it cannot be had. */
+    /* Optional: writes the version of the underlying library and its instruction set, "3.13.5 avx512", to
+     * out[0..room); false, and "", if it is not available. */
     bool (*library)(char *out, size_t room);
 };
 
-/* For `build`, in accel.c: `bytes` for the own struct of the accelerator, zeroed but for the RtAccel that it
- * begins with, which is exact and counts; to *out, to be freed with rt_free. */
+/* For `build`: allocates `bytes` for the accelerator's own struct, zeroed except for the RtAccel that it
+ * begins with, which is exact and counts. Free *out with rt_free. */
 RtStatus rt_accel_new(const RtBuild *what, size_t bytes, RtAccel **out, RtError *error);
 
-/* What `build` ends with: *out is the accelerator or, if it failed, nothing is left of it. Gives `status`. */
+/* The end of `build`: sets *out to the accelerator, or destroys it if `status` is a failure. Returns
+ * `status`. */
 RtStatus rt_accel_built(RtAccel *accel, RtStatus status, RtAccel **out);
 
 /* ---- the registry ---- */
 
-/* The registered accelerators, in the order in which they are listed: brute first. */
+/* The registered accelerators in the order of lists, brute first. */
 size_t rt_accel_count(void);
 const RtAccelOps *rt_accel_at(size_t i);
 
-/* RT_BAD_INPUT where `name` is that of an accelerator, or means all of them. */
+/* RT_BAD_INPUT if `name` is an accelerator's, or "all", or not a name. */
 RtStatus rt_accel_name_is_free(const char *name, RtError *error);
 
-/* Adds one of a plugin behind them; it stays where it is. RT_BAD_INPUT where its name is not free. */
+/* Appends an accelerator of a plugin; borrows `ops`. RT_BAD_INPUT if its name is not free. */
 RtStatus rt_accel_register(const RtAccelOps *ops, RtError *error);
 
-/* By name, to *out; where there is none, RT_BAD_INPUT and a message that suggests the nearest name. */
+/* Finds one by name; if there is none, RT_BAD_INPUT and a message that suggests the nearest name. */
 RtStatus rt_accel_find(const char *name, const RtAccelOps **out, RtError *error);
 
-/* The spec that is used where none is asked for: exact, and fast on every scene. */
+/* The default spec: exact, and fast on every scene. */
 const char *rt_accel_default(void);
 
 /* The spec whose answers are right by definition: it tests every object. */
 const char *rt_accel_truth(void);
 
-/* The spec that knows the answers beforehand: the least that any can do, and no competitor. */
+/* The spec that knows the answers in advance: a lower bound on the cost of any accelerator. */
 const char *rt_accel_yardstick(void);
 
 /* ---- specs ---- */
@@ -267,7 +267,7 @@ typedef struct RtSpecLayer {
     RtValue values[RT_MAX_PARAMS];
 } RtSpecLayer;
 
-/* Overlays, topmost first, and then the base: layers[layer_count - 1]. */
+/* Overlays, topmost first, then the base, layers[layer_count - 1]. */
 typedef struct RtSpec {
     uint32_t layer_count; /* 1..RT_MAX_LAYERS */
     RtSpecLayer layers[RT_MAX_LAYERS];
@@ -276,81 +276,80 @@ typedef struct RtSpec {
 /* Parses `name[:key=value[,key=value]...]`, several of them joined by '+': overlays over one base. */
 RtStatus rt_spec_parse(const char *text, RtSpec *spec, RtError *error);
 
-/* Whether one of its layers is a plugin's, so that all of it is remote (accel/remote.h). */
+/* Whether one of its layers is a plugin's; then the whole stack is built in a process of its own. */
 bool rt_spec_is_remote(const RtSpec *spec);
 
-/* The same of a text, which may be no spec. */
+/* The same for a text; false if it is not a spec. */
 bool rt_spec_text_is_remote(const char *text);
 
-/* RT_OK, or RT_NOT_AVAILABLE and why this machine, or a library, cannot do what a layer asks for. */
+/* RT_OK, or RT_NOT_AVAILABLE and why this machine, or a library, does not support a layer. */
 RtStatus rt_spec_available(const RtSpec *spec, RtError *error);
 
-/* The spec with every effective parameter, "grid:rule=woo,density=10,...", to out[0..RT_MAX_SPEC_CHARS). */
+/* Writes the spec with all its parameters, "grid:rule=woo,density=10,...", to out[0..RT_MAX_SPEC_CHARS). */
 void rt_spec_format(const RtSpec *spec, char *out);
 
 #define RT_MAX_BEST 32
 
-/* Whether `text` is written like a best of, NAME:WORD; no spec is. */
+/* Whether `text` has the form of an RtBestOf, NAME:WORD, which no spec has. */
 bool rt_best_is(const char *text);
 
-/* The specs that `text` ("embree:best") stands for, as far as they are available here, to specs[0..*count).
- * RT_BAD_INPUT where there is no such name, RT_NOT_AVAILABLE where none is available. */
+/* Expands `text` ("embree:best") to the specs that are available here, specs[0..*count). RT_BAD_INPUT if
+ * there is no such name, RT_NOT_AVAILABLE if no spec is available. */
 RtStatus rt_best_specs(const char *text, char specs[RT_MAX_BEST][RT_MAX_SPEC_CHARS], size_t *count,
                        RtError *error);
 
 /* ---- using an accelerator ---- */
 
-/* Builds what the spec says over `scene`, on `threads` threads (0 = all processors), which does not change
- * the structure; remotely (accel/remote.h) where a layer asks for that, but not by rt_accel_build_here.
- * rt_accel_open_on takes the spec as text, rt_accel_open too, and all processors. Destroy with
- * rt_accel_destroy. */
+/* Builds the accelerator of a spec over `scene`, on `threads` threads (0 = all processors), which do not
+ * change the structure. rt_accel_build builds a remote spec in a process of its own (accel/remote.h);
+ * rt_accel_build_here builds any spec in this process. rt_accel_open_on takes the spec as text; rt_accel_open
+ * also uses all processors. Destroy with rt_accel_destroy. */
 RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
                              RtError *error);
 RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out, RtError *error);
 RtStatus rt_accel_open_on(const char *spec, const RtScene *scene, int threads, RtAccel **out, RtError *error);
 RtStatus rt_accel_open(const char *spec, const RtScene *scene, RtAccel **out, RtError *error);
-void rt_accel_destroy(RtAccel *accel); /* with all below it; NULL is allowed */
+void rt_accel_destroy(RtAccel *accel); /* and the layers below; NULL is allowed */
 
-/* The layer at the bottom. */
+/* The bottom layer. */
 const RtAccel *rt_accel_base(const RtAccel *accel);
 
-/* All layers together: sums, the largest depth, and the predicted cost of the base. What an overlay itself
- * has is the difference to the same base alone. */
+/* Describes the whole stack: sums over the layers, the largest depth, and the predictions of the base. */
 void rt_accel_describe(const RtAccel *accel, RtDescription *out);
 
-/* Of every layer. */
+/* Validates every layer. */
 RtStatus rt_accel_validate(const RtAccel *accel, RtError *error);
 
-/* To be asked after tracing: RT_OK, or why the answers of some layer are not to be believed. */
+/* After tracing: RT_OK, or why the answers of some layer are invalid. */
 RtStatus rt_accel_check(const RtAccel *accel, RtError *error);
 
-/* Hands recorded answers to the layers that take them: see `learn` above. */
+/* Hands recorded answers to the layers that have `learn`. */
 RtStatus rt_accel_learn(RtAccel *accel, const RtRay *rays, const RtHit *hits, size_t count, RtError *error);
 
-/* The state of one thread's queries. */
+/* The state of queries, one per thread. */
 typedef struct RtQuery {
     const RtAccel *accel;
-    RtScratch scratch[RT_MAX_LAYERS]; /* of each layer, topmost first. The first owns all there is */
+    RtScratch scratch[RT_MAX_LAYERS]; /* of each layer, topmost first; scratch[0] owns all memory */
 } RtQuery;
 
 RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error);
 void rt_query_clear(RtQuery *query);
 
-/* The room of hit functions that a query has, for whoever asks them on the same thread. */
+/* The query's buffer of hit functions, for other calls of hit functions on the same thread. */
 static inline RtCrossing *rt_query_room(const RtQuery *query) {
     return query->scratch[0].room;
 }
 
-/* Forgets what the rays before have left behind (the last occluders of a shadow cache), so that the counts of
- * the rays that follow depend on them alone. To be called where a piece of work begins that is the same at
- * any number of threads: a tile of a frame, a chunk of a ray set. Answers never depend on it. */
+/* Forgets the state left by earlier rays (the last occluders of a shadow cache), so that later counts depend
+ * on later rays alone. Called at the start of each unit of work that is the same on any number of threads: a
+ * tile of a frame, a chunk of a ray set. Answers never depend on it. */
 void rt_query_begin(RtQuery *query);
 
-/* Nearest hits of a stream of valid rays: timed where `tallies` is NULL, else counted into
+/* Nearest hits of a stream of valid rays: timed if `tallies` is NULL, otherwise counted in
  * tallies[RT_RAY_KIND_COUNT]. */
 void rt_nearest(RtQuery *query, const RtRay *rays, size_t count, RtHit *hits, RtTally *tallies);
 
-/* Whether anything lies on each ray within [tmin, tmax]. */
+/* Whether each ray hits anything within [tmin, tmax]. */
 void rt_occluded(RtQuery *query, const RtRay *rays, size_t count, bool *blocked, RtTally *tallies);
 
 #endif

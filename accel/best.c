@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The best of several settings: a name in the table of an accelerator, and the specs that it stands for,
- * every combination of the choices listed there, those of the first parameter varying fastest. */
+/* RtBestOf: a name in the table of an accelerator, and the specs that it stands for: all combinations of the
+ * choices listed there, those of the first parameter varying fastest. */
 #include "accel/accel.h"
 
 #include <stdio.h>
@@ -11,7 +11,7 @@ bool rt_best_is(const char *text) {
     return colon && colon > text && colon[1] && !strpbrk(text, "=,+");
 }
 
-/* The spec of combination number `n` to out[0..RT_MAX_SPEC_CHARS); false where there are no more. */
+/* Writes the spec of combination `n` to out[0..RT_MAX_SPEC_CHARS); false if there are no more. */
 static bool combine(const RtAccelOps *ops, const RtBestOf *best, size_t n, char *out) {
     int used = snprintf(out, RT_MAX_SPEC_CHARS, "%s", ops->name);
     for (const char *key = best->settings; *key;) {

@@ -1,18 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* cache: the shadow cache of Haines & Greenberg 1986, an overlay for shadow rays.
  *
- * Neighbouring points are mostly in the shadow of the same object. So the object that blocked the last ray to
- * a light is tested first; where it blocks this one too, the ray is answered by one object test. Otherwise it
- * is passed on, and the occluder that comes back, if any, is remembered.
+ * The same object shadows most neighbouring points. So the last occluder of each light is tested first; if it
+ * occludes this ray too, one object test answers it. Otherwise the ray is passed on, and its occluder is
+ * cached.
  *
- * Layout: the scratch memory of a query holds one id per light, the last occluder or RT_NO_OBJECT. There is
- * nothing else: no structure, no cost to build.
+ * Layout: the scratch memory of a query has one id per light, the last occluder or RT_NO_OBJECT. There is no
+ * structure, and building costs nothing.
  *
- * Exact, because what is remembered is tested by its own hit function, and any occluder will do.
+ * Exact, because the cached object is tested by its own hit function, and any occluder is a right answer.
  *
- * Which object is remembered depends on the rays before. So that counts do not depend on the number of
- * threads, rt_query_begin forgets all; between two of its calls the rays come in one order, in streams of any
- * length. */
+ * The cached object depends on earlier rays. rt_query_begin empties the cache, so counts do not depend on the
+ * number of threads: between two of its calls the rays come in one order, in streams of any length. */
 #include "accel/kernel.h"
 
 #include "core/base/memory.h"
@@ -40,7 +39,8 @@ static void begin(const RtAccel *accel, void *scratch) {
 
 /* ---- queries ---- */
 
-RT_KERNEL uint32_t shade(const Cache *self, const RtScratch *scratch, const RtRay *ray, RtTally *tallies) {
+RT_KERNEL uint32_t find_occluder(const Cache *self, const RtScratch *scratch, const RtRay *ray,
+                                 RtTally *tallies) {
     const RtScene *scene = self->base.scene;
     RtTally *tally = tallies ? &tallies[RT_RAY_SHADOW] : NULL;
     if (ray->source >= scene->light_count) return rt_pass_on_occluded(&self->base, scratch, ray, tallies);
@@ -61,7 +61,7 @@ RT_KERNEL uint32_t shade(const Cache *self, const RtScratch *scratch, const RtRa
     return occluder;
 }
 
-RT_DEFINE_SHADOW_KERNELS(Cache, shade)
+RT_DEFINE_SHADOW_KERNELS(Cache, find_occluder)
 
 /* ---- describe and validate ---- */
 
@@ -77,7 +77,7 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
 
 const RtAccelOps rt_cache_ops = {
     .name = "cache",
-    .summary = "overlay: the object that blocked the last ray to a light is tested before all others",
+    .summary = "overlay: the last occluder of each light is tested first",
     .paper = "Haines & Greenberg 1986, The Light Buffer: A Shadow-Testing Accelerator, CG&A 6(9)",
     .kinds = 1u << RT_RAY_SHADOW,
     .build = build,

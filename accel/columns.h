@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Tallies and descriptions of structures as table columns and as JSON: the same wherever they are written. */
+/* Tallies and descriptions of structures as table columns and as JSON. */
 #ifndef RT_ACCEL_COLUMNS_H
 #define RT_ACCEL_COLUMNS_H
 
@@ -10,11 +10,10 @@
 /* The counters of an RtTally. */
 extern const RtTableColumn rt_tally_columns[RT_TALLY_COUNTER_COUNT];
 
-/* Every counter under its name: a new reference, NULL if out of memory. */
+/* All counters by name. Returns a new reference, or NULL if out of memory. */
 json_t *rt_json_tally(const RtTally *tally);
 
-/* The fields of an RtDescription, without its bytes; predictions, then qualities, follow the first
- * RT_SHAPE_COLUMNS. */
+/* The fields of an RtDescription except its bytes: RT_SHAPE_COLUMNS, then predictions, then qualities. */
 #define RT_PLUS_ONE(name, meaning) +1
 enum {
     RT_SHAPE_COLUMNS = 5,
@@ -24,7 +23,7 @@ enum {
 #undef RT_PLUS_ONE
 extern const RtTableColumn rt_structure_columns[RT_STRUCTURE_COLUMNS];
 
-/* These columns of one, and the counters of its build under "build": a new reference, NULL if out of
+/* These columns, and the counters of the build under "build". Returns a new reference, or NULL if out of
  * memory. */
 json_t *rt_json_structure(const RtDescription *description);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Making extents, and checking that they hold their objects. Both ask the shapes alone: a ball, a frame, and
- * the support function, the farthest that an object reaches in a direction. All in double, then inflated by
- * more than that arithmetic can be wrong by. */
+/* Fitting extents, and validating them. Both use shapes only through a ball, a frame, and the support
+ * function, the farthest reach of an object in a direction. All in double, then inflated by more than the
+ * rounding errors. */
 #include "accel/extent.h"
 
 #include "core/base/memory.h"
@@ -68,7 +68,7 @@ void rt_extent_set_clear(RtExtentSet *set) {
 
 /* ---- making ---- */
 
-/* How far the objects of a group reach in a direction. */
+/* The support function of a group. */
 static double support(const RtGroup *group, RtVec3d direction) {
     double most = -INFINITY;
     for (uint32_t i = 0; i < group->count; i++) {
@@ -78,7 +78,8 @@ static double support(const RtGroup *group, RtVec3d direction) {
     return most;
 }
 
-/* What rounding in double may cost an extent of an object in `box`: 2^-46 of its largest coordinate. */
+/* The rounding error of an extent of an object in `box`, computed in double: 2^-46 of its largest
+ * coordinate. */
 static double inflation(const RtBox *box) {
     float most = 0;
     for (int a = 0; a < 3; a++) {
@@ -92,7 +93,7 @@ static RtVec3d opposite(RtVec3d a) {
     return rt_subd(rt_vec3d(0, 0, 0), a);
 }
 
-/* The ball about `center` that holds the group; *far is the point of it that is farthest from the centre. */
+/* The ball with this centre that contains the group; *far is the point farthest from the centre. */
 static RtBall ball_about(const RtGroup *group, RtVec3d center, RtVec3d *far) {
     RtBall ball = {center, -1};
     for (uint32_t i = 0; i < group->count; i++) {
@@ -107,8 +108,7 @@ static RtBall ball_about(const RtGroup *group, RtVec3d center, RtVec3d *far) {
     return ball;
 }
 
-/* The centre moves ever smaller steps towards whatever is farthest from it; the smallest ball seen is
- * kept. */
+/* The centre moves in decreasing steps towards the farthest point; the smallest ball is kept. */
 static RtBall fit_ball(const RtGroup *group) {
     RtBall best;
     if (group->count == 1) {
@@ -157,7 +157,8 @@ static void covariance(const RtGroup *group, double c[3][3]) {
     }
 }
 
-/* Turns `axes` and the symmetric `c` in the plane of axes p and q so that c[p][q] vanishes (Jacobi 1846). */
+/* One Jacobi rotation (1846): rotates `axes` and the symmetric `c` in the plane of axes p and q so that
+ * c[p][q] vanishes. */
 static void rotate_away(double c[3][3], RtVec3d axes[3], int p, int q) {
     if (c[p][q] == 0) return;
     double theta = (c[q][q] - c[p][p]) / (2 * c[p][q]);
@@ -178,7 +179,7 @@ static void rotate_away(double c[3][3], RtVec3d axes[3], int p, int q) {
     axes[q] = rt_add_scaledd(rt_scaled(old, sine), axes[q], cosine);
 }
 
-/* The principal axes of the group; the world's where it has none. */
+/* The principal axes of the group, or the world's if it has none. */
 static void principal_frame(const RtGroup *group, RtVec3d axes[3]) {
     double c[3][3] = {{0}};
     for (int a = 0; a < 3; a++) axes[a] = rt_slab_normals[a];
@@ -240,7 +241,7 @@ double rt_extent_half_area(const RtExtentSet *set, uint32_t index, const RtBox *
 
 /* ---- checking ---- */
 
-/* What is being checked. */
+/* The extent and its group. */
 typedef struct Check {
     const RtExtentSet *set;
     uint32_t index;
@@ -249,8 +250,8 @@ typedef struct Check {
     RtError *error;
 } Check;
 
-/* How far an extent reaches along `direction`, which is the normal of one of its faces: of a box, any axis;
- * of a sphere, any unit vector. */
+/* The reach of an extent along `direction`, the normal of one of its faces: any axis of a box, any unit
+ * vector for a sphere. */
 static double extent_support(const Check *check, RtVec3d direction) {
     const RtExtentSet *set = check->set;
     double sum = 0;
@@ -271,7 +272,7 @@ static double extent_support(const Check *check, RtVec3d direction) {
     return sum;
 }
 
-/* Does the extent reach `reach` along `direction`, as far as each of its objects does? */
+/* Whether the extent reaches `reach` along `direction`, the reach of its objects. */
 static RtStatus check_reach(const Check *check, RtVec3d direction, double reach) {
     const RtGroup *group = check->group;
     for (uint32_t i = 0; i < group->count; i++) {
@@ -285,7 +286,7 @@ static RtStatus check_reach(const Check *check, RtVec3d direction, double reach)
     return RT_OK;
 }
 
-/* Both ways along a direction; up to the rounding of the two sums. */
+/* Checks both senses of a direction, up to the rounding of the two sums. */
 static RtStatus check_along(const Check *check, RtVec3d direction) {
     double slack = 0.25 * inflation(&check->group->box);
     const RtVec3d both[2] = {direction, opposite(direction)};
@@ -323,7 +324,7 @@ RtStatus rt_extent_check(const RtExtentSet *set, uint32_t index, const RtGroup *
                          RtError *error) {
     Check check = {set, index, group, owner, error};
     if (set->kind == RT_EXTENT_SLABS) return check_slabs(&check);
-    /* Along other directions less may be known of an object than the extent's own faces say together. */
+    /* Along other directions support functions may be less tight than the extent's own faces together. */
     if (set->kind == RT_EXTENT_OBB) return check_axes(&check);
     for (uint32_t i = 0; i < (set->kind == RT_EXTENT_BOX ? 3 : RT_MAX_SLABS); i++) {
         RT_TRY(check_along(&check, rt_slab_normals[i]));

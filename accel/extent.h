@@ -1,24 +1,26 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Extents: bounding volumes of one object or of a group of them, of four kinds, and the tests of a ray
- * against them. Shared by the accelerators that may use any kind.
+/* Extents: bounding volumes of one object or of a group, of four kinds, and ray-extent tests, for
+ * accelerators that support any kind.
  *
- * Exact for every kind. Boxes are, by the theorem in core/base/ray.h. There is none for spheres, oriented
- * boxes and slabs, so a ray is turned away by two tests that cannot be wrong:
+ * The tests are exact for every kind: they never reject a ray that hits. For boxes this is the theorem in
+ * core/base/ray.h. It does not cover spheres, oriented boxes and slabs, so these reject a ray only by two
+ * conservative tests:
  *
- * 1. Its *line* misses the extent widened by a pad, in double. Let m be the distance along an axis from the
- *    origin to the farthest corner of the scene's box, e = 2^-24. Triangles have the coarsest hit function: a
- *    sheared coordinate is off by at most (1 + 4 + 2) e m (difference, shear and product, sum), its signs are
- *    exact from there on, so a line said to hit passes within sqrt(2) 7 e m < 16 e m = 2^-20 m of the
- *    triangle. The other shapes compute in double; the worst, a ray by the tip of a cone, is off by the root
- *    of an ulp, 2^-25 m. The pad is 2^-18 m. What remains of it, 3 * 2^-20 m, is more than all rounding here:
- *    2^-50 m for positions relative to the origin and 2^-50 c for absolute ones, where c is a coordinate of
- *    the scene; c <= |org| + m, so another 2^-48 |org| is added for scenes that are a point. Where float32
- *    runs out of exponents a rounding is no part of m, but up to 2^-150, for which 2^-140 is added. A
- *    direction's rounding moves the point of the hit by 2^-51 m at most, and can be seen as part of that.
- *    Extents are built in double and inflated by 2^-46 c (extent.c), slabs then rounded outward to float32.
- * 2. The box of the object or the group, along the ray's largest axis alone, begins beyond the best t or ends
- *    before tmin. A hit's t is brought into its own box, so the theorem holds. Where the line enters the
- *    extent says nothing: the t of a triangle seen edge-on may lie anywhere in its box. */
+ * 1. The *line* of the ray misses the extent, computed in double, with the extent widened by a pad. Let m be
+ *    the largest distance along one axis from the origin to a corner of the scene's box, and e = 2^-24.
+ *    Triangles have the least precise hit function: a sheared coordinate has an error of at most (1 + 4 + 2)
+ *    e m (difference, shear and product, sum), and its signs are exact from there on, so a line that hits
+ *    passes within sqrt(2) 7 e m < 16 e m = 2^-20 m of the triangle. The other shapes compute in double; the
+ *    worst case, a ray near the tip of a cone, is off by the root of an ulp, 2^-25 m. The pad is 2^-18 m.
+ *    The remaining 3 * 2^-20 m exceeds all rounding here: 2^-50 m for positions relative to the origin, and
+ *    2^-50 c for absolute ones, where c is a coordinate of the scene; c <= |org| + m, so another 2^-48 |org|
+ *    is added for scenes that are a point. Where float32 runs out of exponents, a rounding is not
+ *    proportional to m, but at most 2^-150; 2^-140 is added for that. Rounding the direction moves the point
+ *    of the hit by at most 2^-51 m, which is covered. Extents are built in double and inflated by 2^-46 c
+ *    (extent.c); slabs are then rounded outward to float32.
+ * 2. The box of the object or group, along the ray's major axis alone, begins beyond the best t or ends
+ *    before tmin. The t of a hit is clamped to the object's box, so the theorem applies. The t at which the
+ *    line enters the extent is no bound: a triangle seen edge-on may be hit at any t in its box. */
 #ifndef RT_ACCEL_EXTENT_H
 #define RT_ACCEL_EXTENT_H
 
@@ -36,8 +38,7 @@ typedef enum RtExtentKind {
 #define RT_EXTENT_KINDS "box|sphere|obb|slabs"
 #define RT_MAX_SLABS    13
 
-/* The box of the points whose offset from `center` has, along each of three orthonormal axes, a length of at
- * most `half`. */
+/* The points whose offset from `center` is at most `half` along each of three orthonormal axes. */
 typedef struct RtOrientedBox {
     RtVec3d axes[3], center;
     double half[3];
@@ -47,8 +48,8 @@ typedef struct RtSlab {
     float lo, hi; /* along the unit normal of the plane set, rounded outward */
 } RtSlab;
 
-/* `count` extents of one kind. Only the array of the kind is there; axis-aligned boxes are kept by the owner
- * for every kind, because they also say where along a ray an extent may be. */
+/* `count` extents of one kind; the arrays of other kinds are NULL. The owner has the axis-aligned boxes for
+ * every kind, because they bound t. */
 typedef struct RtExtentSet {
     RtExtentKind kind;
     uint32_t count;
@@ -58,7 +59,7 @@ typedef struct RtExtentSet {
     RtSlab *slabs;           /* [count][slabs_each] */
 } RtExtentSet;
 
-/* Objects that share an extent: ids[0..count), with the union of their boxes. */
+/* Objects that share an extent, ids[0..count), and the union of their boxes. */
 typedef struct RtGroup {
     const RtGeometry *geometry;
     const uint32_t *ids;
@@ -70,7 +71,7 @@ typedef struct RtGroup {
  * faces. */
 extern const RtVec3d rt_slab_normals[RT_MAX_SLABS];
 
-/* Makes room for `count` extents. On failure the set is empty. Free with rt_extent_set_clear. */
+/* Allocates `count` extents. On failure the set is empty. Free with rt_extent_set_clear. */
 RtStatus rt_extent_set_init(RtExtentSet *set, RtExtentKind kind, uint32_t slabs_each, uint32_t count,
                             RtError *error);
 void rt_extent_set_clear(RtExtentSet *set);
@@ -78,24 +79,23 @@ void rt_extent_set_clear(RtExtentSet *set);
 /* Bytes of the set's array. */
 size_t rt_extent_set_bytes(const RtExtentSet *set);
 
-/* Computes extent `index` as that of `group`, which is not empty. Of one object it is what the shape knows
- * best; of several, the ball is within a few per cent of the smallest (Badoiu & Clarkson 2003), and the
- * oriented box the best of three frames: the world's, that of the largest object, and the principal axes of
- * the centres (Gottschalk, Lin & Manocha 1996). */
+/* Fits extent `index` to `group`, which is not empty. For one object the shape provides the extent. For
+ * several, the ball is within a few per cent of the smallest (Badoiu & Clarkson 2003), and the oriented box
+ * is the best of three frames: the world's, that of the largest object, and the principal axes of the centres
+ * (Gottschalk, Lin & Manocha 1996). */
 void rt_extent_fit(RtExtentSet *set, uint32_t index, const RtGroup *group);
 
-/* Half the surface of extent `index` with the box `box`; NaN for slabs, whose polytope is not worth the
- * trouble. */
+/* Half the surface area of extent `index`, whose box is `box`; NaN for slabs. */
 double rt_extent_half_area(const RtExtentSet *set, uint32_t index, const RtBox *box);
 
-/* RT_OK, or RT_MISMATCH with a message that begins with `owner` if extent `index` does not hold `group`, as
- * far as support functions tell. */
+/* RT_OK, or RT_MISMATCH with a message that begins with `owner` if extent `index` does not contain `group`
+ * according to support functions. */
 RtStatus rt_extent_check(const RtExtentSet *set, uint32_t index, const RtGroup *group, const char *owner,
                          RtError *error);
 
 /* ---- tests ---- */
 
-/* A ray as the line it lies on, in double, with what the tests of one kind need. */
+/* The line of a ray, in double, prepared for the tests of one kind. */
 typedef struct RtLine {
     RtVec3d org, dir;
     double pad;
@@ -138,7 +138,7 @@ static inline bool rt_line_meets_ball(const RtLine *line, const RtBall *ball) {
     return !(rt_dotd(across, across) > radius * radius * line->dir_squared);
 }
 
-/* Separating axes of a line and a box: the line's direction crossed with each axis of the box. */
+/* The separating axes are the line's direction crossed with each axis of the box. */
 static inline bool rt_line_meets_oriented_box(const RtLine *line, const RtOrientedBox *box) {
     RtVec3d offset = rt_subd(line->org, box->center);
     double at[3], d[3], half[3];
@@ -154,7 +154,7 @@ static inline bool rt_line_meets_oriented_box(const RtLine *line, const RtOrient
     return true;
 }
 
-/* Where the line runs along a plane set its crossings are infinite, or NaN, which is passed over. */
+/* If the line is parallel to a plane set, its crossings are infinite, or NaN, which is ignored. */
 static inline bool rt_line_meets_slabs(const RtLine *line, const RtSlab *slabs, uint32_t count) {
     double near = -INFINITY, far = INFINITY;
     for (uint32_t i = 0; i < count; i++) {
@@ -169,8 +169,8 @@ static inline bool rt_line_meets_slabs(const RtLine *line, const RtSlab *slabs, 
     return true;
 }
 
-/* Can a hit on an object within `box` lie in [ray->tmin, limit]? Asks the ray's largest axis only. *enter is
- * where the ray enters the box along that axis. */
+/* Whether a hit on an object within `box` may lie in [ray->tmin, limit], by the ray's major axis alone.
+ * *enter is the t at which the ray enters the box along that axis. */
 static inline bool rt_box_in_reach(const RtBox *box, const RtPreparedRay *ray, float limit, float *enter) {
     int k = ray->kz;
     float near = ray->negative[k] ? box->hi.at[k] : box->lo.at[k];
@@ -180,8 +180,7 @@ static inline bool rt_box_in_reach(const RtBox *box, const RtPreparedRay *ray, f
 }
 
 /* The extent test: false only if no hit of an object in extent `index`, whose box is `box`, lies in
- * [ray->tmin, limit]; else *enter is no larger than any such hit's t. `kind` is a constant where this is
- * inlined. */
+ * [ray->tmin, limit]; otherwise *enter is at most the t of such a hit. `kind` becomes a constant. */
 RT_KERNEL bool rt_extent_hit(const RtExtentSet *set, RtExtentKind kind, uint32_t index, const RtBox *box,
                              const RtPreparedRay *ray, const RtLine *line, float limit, float *enter) {
     if (kind == RT_EXTENT_BOX) return rt_box_hit(box, ray, limit, enter);
@@ -191,12 +190,12 @@ RT_KERNEL bool rt_extent_hit(const RtExtentSet *set, RtExtentKind kind, uint32_t
     return rt_line_meets_slabs(line, set->slabs + (size_t)index * set->slabs_each, set->slabs_each);
 }
 
-/* Extent `index` for an onlooker (core/base/observe.h): NULL where it is no ball. */
+/* Extent `index` for RT_OBSERVE (core/base/observe.h): NULL if it is not a ball. */
 RT_KERNEL const RtBall *rt_extent_ball(const RtExtentSet *set, RtExtentKind kind, uint32_t index) {
     return kind == RT_EXTENT_SPHERE ? &set->balls[index] : NULL;
 }
 
-/* Calls one of four copies of the inlined function f(kind, ...), in each of which `kind` is a constant. */
+/* Calls one of four inlined copies of f(kind, ...), each with a constant `kind`. */
 #define RT_BY_EXTENT_KIND(kind, f, ...)                                                                      \
     do {                                                                                                     \
         switch (kind) {                                                                                      \

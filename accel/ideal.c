@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* ideal: answers from a record: one object test for a ray that hits, none for one that misses. It is the
- * floor of every plot, what an accelerator that knew everything beforehand would still have to do.
+/* ideal: recorded answers, with one object test for a ray that hits and none for one that misses: the cost of
+ * an accelerator that knows everything in advance, a lower bound for all others.
  *
- * Layout: the id of the nearest object per recorded ray. A ray is recognised by its address, so that looking
- * it up costs nothing: rays between `rays` and `rays + count` are recorded. All other rays are tested against
- * every object, as brute does, so the answers are right for any ray. */
+ * Layout: the id of the nearest object for each recorded ray. A ray is recognised by its address, so the
+ * lookup costs nothing: rays between `rays` and `rays + count` are recorded. All other rays are tested
+ * against every object, as by brute, so every answer is right. */
 #include "accel/kernel.h"
 
 #include "core/base/memory.h"
 
 typedef struct Ideal {
     RtAccel base;
-    const RtRay *rays; /* borrowed; NULL until something was learned */
+    const RtRay *rays; /* borrowed; NULL before `learn` */
     uint32_t *objects; /* [count] the nearest object, or RT_NO_OBJECT */
     size_t count;
 } Ideal;
@@ -74,7 +74,7 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
 const RtAccelOps rt_ideal_ops = {
     .name = "ideal",
     .summary =
-        "recorded answers: one test for a ray that hits, none for one that misses; the floor of every plot",
+        "recorded answers: one test for a ray that hits, none for one that misses; a lower bound on cost",
     .paper = "none: a yardstick",
     .build = build,
     .destroy = destroy,

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Mailboxes, and testing the objects of a cell's list: for structures that may list an object more than once.
+/* Mailboxes, for structures that may list an object more than once, and tests of the objects of a list.
  *
  * Paper: Kirk & Arvo 1991, Improved Ray Tagging for Voxel-Based Ray Tracing, Graphics Gems II.
  *
- * A mailbox belongs to one thread (it lies in the query's scratch memory, which starts zeroed) and remembers
- * for every object the number of the ray that last tested it. */
+ * A mailbox is part of a query's scratch memory, which is zeroed at first, so each thread has its own. It
+ * stores for every object the number of the last ray that tested it. */
 #ifndef RT_ACCEL_MAILBOX_H
 #define RT_ACCEL_MAILBOX_H
 
@@ -21,15 +21,15 @@ static inline size_t rt_mailbox_bytes(const RtGeometry *geometry) {
     return sizeof(RtMailbox) + geometry->object_count * sizeof(uint32_t);
 }
 
-/* To be called before each ray. NULL, for no mailbox, is allowed. */
+/* Call before each ray. The mailbox may be NULL. */
 RT_KERNEL void rt_mailbox_next_ray(RtMailbox *mailbox, const RtGeometry *geometry) {
     if (!mailbox || ++mailbox->ray != 0) return;
     memset(mailbox->last, 0, geometry->object_count * sizeof(uint32_t));
     mailbox->ray = 1;
 }
 
-/* Tests the objects ids[0..count), but none that `mailbox` (or NULL) has seen with this ray. True when the
- * search is over. */
+/* Tests the objects ids[0..count), except those that this ray has already tested, as `mailbox` (or NULL)
+ * knows. Returns true if the search is over. */
 RT_KERNEL bool rt_test_list(const RtGeometry *geometry, RtMailbox *mailbox, const uint32_t *ids,
                             uint32_t count, const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
     for (uint32_t i = 0; i < count; i++) {

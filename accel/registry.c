@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The one list of accelerators. To add one: write its file, add a line here, add the file to CMakeLists.txt.
- * Those of plugins join it at run time. */
+/* The list of accelerators. To add one, write its file, add a line here, and add the file to CMakeLists.txt.
+ * Plugins register theirs at run time. */
 #include "accel/accel.h"
 #include "accel/plugin.h"
 
@@ -34,7 +34,7 @@ ACCELERATORS(DECLARE)
 EMBREE_ACCELERATORS(DECLARE)
 #undef DECLARE
 
-enum { MOST_PLUGINS = 64 }; /* accelerators of plugins */
+enum { MOST_PLUGINS = 64 }; /* of plugins */
 
 #define ENTRY(ops) &ops,
 #define ONE(ops)   +1
@@ -46,7 +46,7 @@ size_t rt_accel_count(void) {
     return count;
 }
 
-/* A letter is what C calls one, whatever the locale does. */
+/* Letters of the C locale. */
 #define LETTERS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 RtStatus rt_accel_name_is_free(const char *name, RtError *error) {

@@ -6,7 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Where the first layer of `text` ends: at a '+' that is not that of an exponent, as in 1e+06. */
+/* The length of the first layer of `text`, which ends at a '+' that is not part of an exponent, as in
+ * 1e+06. */
 static size_t layer_length(const char *text) {
     size_t length = strcspn(text, "+");
     while (text[length] == '+' && text[length + 1] >= '0' && text[length + 1] <= '9') {
@@ -34,7 +35,7 @@ static RtStatus parse_layer(const char *text, size_t chars, RtSpecLayer *layer, 
     return rt_params_parse(layer->ops->params, layer->ops->param_count, params, what, layer->values, error);
 }
 
-/* Overlays above, one base below. */
+/* Checks that there are overlays above one base. */
 static RtStatus check_layers(const RtSpec *spec, const char *text, RtError *error) {
     for (uint32_t i = 0; i + 1 < spec->layer_count; i++) {
         const char *name = spec->layers[i].ops->name;

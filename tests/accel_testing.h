@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What tests of accelerators share: scenes that several of them stand on, rays to lights, and what validate
- * says. */
+/* Shared by tests of accelerators: structures that clear themselves, scenes, rays to lights, validation. */
 #ifndef RT_TESTS_ACCEL_TESTING_H
 #define RT_TESTS_ACCEL_TESTING_H
 
@@ -9,21 +8,79 @@
 #include "accel/accel.h"
 #include "core/base/memory.h"
 
+#include <stdio.h>
 #include <string.h>
 
-/* Asserts that validate of this layer refuses it with a message that holds `phrase`. */
+/* Owned variables clear themselves at the end of their scope, the last declared first. */
+#define OWNED(clear) __attribute__((cleanup(clear)))
+#define OWNED_SCENE  OWNED(rt_scene_clear) RtScene
+#define OWNED_QUERY  OWNED(rt_query_clear) RtQuery
+#define OWNED_ACCEL  OWNED(destroy_owned)
+#define OWNED_MEMORY OWNED(free_owned)
+
+/* pointer: to any struct that begins with an RtAccel. */
+static inline void destroy_owned(void *pointer) {
+    rt_accel_destroy(*(RtAccel **)pointer);
+}
+
+static inline void free_owned(void *pointer) {
+    rt_free(*(void **)pointer);
+}
+
+/* Builds a spec and asserts that the structure is valid; the struct of the topmost layer. */
+static inline void *open_valid(const RtScene *scene, const char *spec) {
+    RtAccel *accel;
+    assert_ok(rt_accel_open(spec, scene, &accel, error));
+    assert_ok(rt_accel_validate(accel, error));
+    return accel;
+}
+
+static inline RtDescription describe_spec(const RtScene *scene, const char *spec) {
+    OWNED_ACCEL RtAccel *accel = open_valid(scene, spec);
+    RtDescription description;
+    rt_accel_describe(accel, &description);
+    return description;
+}
+
+/* Asserts that validate of this layer refuses it with a message that contains `phrase`. */
 static inline void assert_broken(const RtAccel *accel, const char *phrase) {
     RtError error = {RT_OK, ""};
     assert_int_equal(accel->ops->validate(accel, &error), RT_MISMATCH);
     if (!strstr(error.message, phrase)) fail_msg("'%s' does not say '%s'", error.message, phrase);
 }
 
-/* Builds one layer that is refused above `limit` bytes. */
+/* Builds one layer, which is refused above `limit` bytes. */
 static inline RtStatus build_within(const char *name, uint64_t limit, const RtScene *scene,
                                     const RtValue *values, RtAccel **out, RtError *problem) {
     const RtAccelOps *ops;
     assert_ok(rt_accel_find(name, &ops, error));
     return ops->build(&(RtBuild){ops, scene, values, 1, limit}, out, problem);
+}
+
+/* Asserts that such a build is refused and leaves nothing behind. Returns the bytes that it would take;
+ * *depth is the max_depth that would fit. */
+static inline double refused_bytes(const char *name, uint64_t limit, const RtScene *scene,
+                                   const RtValue *values, long *depth) {
+    RtAccel *accel = NULL;
+    RtError refusal = {RT_OK, ""};
+    double gib;
+    int64_t live = rt_alloc_live();
+    assert_int_equal(build_within(name, limit, scene, values, &accel, &refusal), RT_BAD_INPUT);
+    assert_int_equal(rt_alloc_live(), live);
+    const char *about = strstr(refusal.message, "about "), *remedy = strstr(refusal.message, ": max_depth=");
+    assert_true(about && remedy);
+    assert_int_equal(sscanf(about, "about %lf GiB", &gib), 1);
+    assert_int_equal(sscanf(remedy, ": max_depth=%ld", depth), 1);
+    return gib * 0x1p30;
+}
+
+/* Whether it fits with this depth; *max_depth is one of the values. */
+static inline bool fits_within(const char *name, uint64_t limit, const RtScene *scene, const RtValue *values,
+                               RtValue *max_depth, long depth) {
+    OWNED_ACCEL RtAccel *accel = NULL;
+    RtError refusal;
+    max_depth->i = depth;
+    return build_within(name, limit, scene, values, &accel, &refusal) == RT_OK;
 }
 
 /* A scene without objects, and a grey material, which is number 0. */

@@ -2,13 +2,13 @@
 /* bvh: a binary hierarchy of boxes, built in one of several ways.
  *
  * Papers: MacDonald & Booth 1990 (the surface area heuristic), Wald 2007, "On fast Construction of SAH-based
- * Bounding Volume Hierarchies", and those named in accel/tree/tree.h. A tree of references is made first and
- * laid out then, which decides what shares a leaf (accel/tree/hierarchy.h, where the layout and its
- * invariants are written down). One traversal for all of them: near child first, the far one on a stack with
- * its entry; the stack is bounded by RT_TREE_MAX_DEPTH. Where objects were cut an object may be met in
- * several leaves; a mailbox saves the later tests.
+ * Bounding Volume Hierarchies", and those in accel/tree/tree.h. A tree of references is built first, then
+ * laid out, which decides what shares a leaf (accel/tree/hierarchy.h has the layout and its invariants). One
+ * traversal serves all builds: the near child first, the far one on a stack with its entry; RT_TREE_MAX_DEPTH
+ * bounds the stack. With split references an object may be in several leaves; a mailbox avoids repeated
+ * tests.
  *
- * Counting: an extent test per box tested, the root's included; a step per node visited. */
+ * Counting: an extent test per box tested, including the root's; a step per node visited. */
 #include "accel/bvh/bvh.h"
 
 #include "accel/mailbox.h"
@@ -20,28 +20,29 @@
 
 #define PARAMS(X)                                                                                            \
     X(PARAM_BUILD, "build", RT_CHOICE("binned", RT_TREE_METHODS),                                            \
-      "SAH in bins; SAH at every centre; halves of Morton codes; nearest in Morton order; SAH in bins with " \
-      "planes that cut objects",                                                                             \
+      "binned SAH; SAH at every centre; splits of the Morton order; nearest neighbours in Morton order; "    \
+      "binned SAH with spatial splits",                                                                      \
       "Wald 2007")                                                                                           \
     X(PARAM_BINS, "bins", RT_INT("16", 2, RT_MAX_BINS, "2|5|64"),                                            \
-      "build=binned, spatial: bins along each axis in which split positions are sought", "Wald 2007")        \
+      "build=binned, spatial: SAH bins along each axis", "Wald 2007")                                        \
     X(PARAM_BITS, "bits", RT_INT("21", 1, RT_MAX_MORTON_BITS, "1|10"),                                       \
-      "build=lbvh, ploc: bits of a Morton code along each axis", "the most that 64 bits hold")               \
+      "build=lbvh, ploc: bits of a Morton code along each axis", "the most that fit 64 bits")                \
     X(PARAM_RADIUS, "radius", RT_INT("25", 1, 1024, "1|100"),                                                \
       "build=ploc: neighbours searched on either side", "Meister & Bittner 2018")                            \
     X(PARAM_ALPHA, "alpha", RT_FLOAT("1e-05", 0, 1, "0|0.01"),                                               \
-      "build=spatial: objects may be cut where groups overlap by more than this part of the root's area",    \
+      "build=spatial: spatial splits are tried where the sides overlap by more than this part of the "       \
+      "root's area",                                                                                         \
       "Stich et al. 2009")                                                                                   \
     X(PARAM_BUDGET, "budget", RT_FLOAT("2", 1, 16, "1|1.1|16"),                                              \
       "build=spatial: most references per object, on average", "this program")                               \
-    X(PARAM_MAILBOX, "mailbox", RT_FLAG("on"), "build=spatial: do not test an object twice for one ray",     \
+    X(PARAM_MAILBOX, "mailbox", RT_FLAG("on"), "build=spatial: test an object at most once per ray",         \
       "Kirk & Arvo 1991")                                                                                    \
-    X(PARAM_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("8", 1, 1024, "1|2|64"), "most objects a leaf may hold",  \
-      "measured: no better beyond")                                                                          \
+    X(PARAM_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("8", 1, 1024, "1|2|64"), "most objects of a leaf",        \
+      "measured: larger is no better")                                                                       \
     X(PARAM_TRAVERSAL_COST, "traversal_cost", RT_FLOAT("1", 0, 1000, "0|0.1|10"),                            \
       "cost of visiting an inner node, in object tests", "MacDonald & Booth 1990")                           \
     X(PARAM_REINSERTION, "reinsertion", RT_INT("0", 0, 1000, "1|3"),                                         \
-      "rounds in which subtrees move to where they cost less", "0: the tree as it is built")
+      "most rounds in which subtrees move to where the tree costs less", "0: the tree as built")
 
 enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
@@ -67,17 +68,6 @@ static RtTreeOptions options_of(const RtBuild *what) {
                            .reinsertion = (uint32_t)values[PARAM_REINSERTION].i};
 }
 
-static RtStatus fill(RtHierarchy *hierarchy, const RtBuild *what, RtError *error) {
-    const RtGeometry *geometry = &what->scene->geometry;
-    RtTreeOptions options = options_of(what);
-    RtTree tree;
-    if (geometry->object_count == 0) return RT_OK;
-    RT_TRY(rt_tree_build(&tree, geometry, &options, what->threads, error));
-    RtStatus status = rt_hierarchy_lay_out(hierarchy, &tree, what->threads, error);
-    rt_tree_clear(&tree);
-    return status;
-}
-
 static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     const RtValue *values = what->values;
     RtAccel *accel;
@@ -87,7 +77,9 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
                                .leaf_limit = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
                                .traversal_cost = values[PARAM_TRAVERSAL_COST].f};
     ((RtBvh *)accel)->mailbox = values[PARAM_MAILBOX].flag;
-    return rt_accel_built(accel, fill(hierarchy, what, error), out);
+    const RtTreeOptions options = options_of(what);
+    return rt_accel_built(
+        accel, rt_hierarchy_build(hierarchy, &what->scene->geometry, &options, what->threads, error), out);
 }
 
 /* ---- queries ---- */
@@ -112,7 +104,7 @@ RT_KERNEL void walk(const RtBvh *self, RtMailbox *mailbox, const RtPreparedRay *
     const RtGeometry *g = &self->base.scene->geometry;
     const RtNode *nodes = self->hierarchy.nodes, *node = nodes;
     const uint32_t *ids = self->hierarchy.ids;
-    Waiting stack[RT_TREE_MAX_DEPTH]; /* every level leaves one child waiting */
+    Waiting stack[RT_TREE_MAX_DEPTH]; /* at most one entry per level */
     Waiting *top = stack;
     float enter[2];
     if (self->hierarchy.node_count == 0) return;
@@ -131,8 +123,8 @@ RT_KERNEL void walk(const RtBvh *self, RtMailbox *mailbox, const RtPreparedRay *
             bool right = rt_box_hit(&children[1].box, ray, limit, &enter[1]);
             RT_COUNT(tally, extent_tests, 2);
             if (RT_OBSERVED(tally)) observe_children(nodes, node->first, left, right);
-            /* Branches, not an index that is computed: these are predicted, and the next boxes on their way
-             * to the processor before the tests are done. A third and more faster so. */
+            /* Branches, not a computed index: they are predicted, so the next boxes are loaded before the
+             * tests are done. At least a third faster. */
             if (left && (!right || enter[0] <= enter[1])) {
                 if (right) *top++ = (Waiting){&children[1], enter[1]};
                 node = &children[0];
@@ -148,7 +140,7 @@ RT_KERNEL void walk(const RtBvh *self, RtMailbox *mailbox, const RtPreparedRay *
             if (rt_test_list(g, mailbox, ids + node->first, rt_node_fanout(node), ray, any, best, tally))
                 return;
         }
-        /* The next node that may still hold a nearer hit, or an equal one of lower id. */
+        /* The next node that may contain a nearer hit, or an equal one of lower id. */
         do {
             if (top == stack) return;
             top--;
@@ -157,8 +149,8 @@ RT_KERNEL void walk(const RtBvh *self, RtMailbox *mailbox, const RtPreparedRay *
     }
 }
 
-/* Of split_refs objects the leaf is sought that holds the surface next to the hit: with a thicker ray, or
- * among all objects where hits are not near surfaces (accel/surface.h, accel/tree/spatial.c). */
+/* With split references, test the leaf that contains the surface near the hit: with a thickened ray, or among
+ * all objects if hits are not near surfaces (accel/surface.h, accel/tree/spatial.c). */
 RT_KERNEL void search(const RtBvh *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
                       RtTally *tally) {
     const RtGeometry *g = &self->base.scene->geometry;
@@ -197,15 +189,9 @@ static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
     rt_hierarchy_each_box(&((const RtBvh *)accel)->hierarchy, NULL, viewer);
 }
 
-static RtStatus each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error) {
-    (void)error;
-    rt_hierarchy_each_leaf(&((const RtBvh *)accel)->hierarchy, viewer);
-    return RT_OK;
-}
-
 const RtAccelOps rt_bvh_ops = {
     .name = "bvh",
-    .summary = "binary hierarchy of boxes, by the surface area heuristic or along the Morton curve",
+    .summary = "binary hierarchy of boxes, built by the surface area heuristic or along the Morton curve",
     .paper = "Wald 2007, On fast Construction of SAH-based Bounding Volume Hierarchies, RT'07",
     RT_PARAMS_OF(params),
     .build = build,
@@ -215,5 +201,5 @@ const RtAccelOps rt_bvh_ops = {
     .describe = describe,
     .validate = validate,
     .each_box = each_box,
-    .each_leaf = each_leaf,
+    .shows_lists = true,
 };

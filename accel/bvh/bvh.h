@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The structure behind `bvh`: for its own file and its test, which breaks it on purpose. */
+/* The data of `bvh`, for its own file and its test, which breaks invariants. */
 #ifndef RT_ACCEL_BVH_BVH_H
 #define RT_ACCEL_BVH_BVH_H
 
@@ -7,8 +7,8 @@
 
 typedef struct RtBvh {
     RtAccel base;
-    RtHierarchy hierarchy; /* of pairs */
-    bool mailbox;          /* where objects are divided */
+    RtHierarchy hierarchy; /* binary */
+    bool mailbox;          /* for split references */
 } RtBvh;
 
 #endif

@@ -2,48 +2,52 @@
 /* clusters: a hierarchy of extents of any kind, made by clustering objects.
  *
  * Papers: Rubin & Whitted 1980 (hierarchies of bounding volumes), Goldsmith & Salmon 1987, Walter et al.
- * 2008, Meister & Bittner 2018 (four ways to cluster; accel/tree/tree.h). All cluster boxes by their surface;
- * the extents, of whichever kind, are fitted to the objects of each node afterwards, not to the extents
+ * 2008, Meister & Bittner 2018 (clustering; accel/tree/tree.h). All methods cluster boxes by their surface
+ * area. Extents of the chosen kind are fitted to the objects of each node afterwards, not to the extents
  * below.
  *
- * Layout: that of accel/tree/hierarchy.h, and one extent per node. Exact by accel/extent.h: what misses the
- * extent of a group misses its objects, and a node is dropped only if its box begins beyond the best hit, so
- * ties survive. No leaf is deeper than RT_TREE_MAX_DEPTH, which bounds the stack.
+ * Layout: that of accel/tree/hierarchy.h, with one extent per node. Exact by accel/extent.h: a ray that
+ * misses the extent of a group misses its objects, and a node is skipped only if its box begins beyond the
+ * best hit, so ties survive. RT_TREE_MAX_DEPTH bounds the stack.
  *
- * Counting: a step per node visited. With traversal_order=fixed children are taken as they stand and a node's
- * extent is tested when its turn comes (Rubin & Whitted); with nearest all children of a node are tested when
- * it is visited, and then taken by where the ray enters them. */
+ * Counting: a step per node visited. With traversal_order=fixed children are visited in stored order, and the
+ * extent of a node is tested when it is popped (Rubin & Whitted). With nearest the extents of all children
+ * are tested when their parent is visited, and children are visited in the order in which the ray enters
+ * them. */
 #include "accel/clusters/clusters.h"
 
 #include "accel/tree/order.h"
+#include "accel/tree/tree_build.h"
 #include "core/base/memory.h"
-
-typedef enum Method { AGGLOMERATIVE, PLOC, GOLDSMITH_SALMON, RUBIN_WHITTED, SAH } Method;
 
 #define PARAMS(X)                                                                                            \
     X(PARAM_METHOD, "method",                                                                                \
       RT_CHOICE("agglomerative", "agglomerative|ploc|goldsmith-salmon|rubin-whitted|sah"),                   \
-      "nearest pairs; nearest in Morton order; insertion; medians; SAH in 16 bins", "Walter et al. 2008")    \
+      "nearest pairs; nearest neighbours in Morton order; insertion; medians; SAH in 16 bins",               \
+      "Walter et al. 2008")                                                                                  \
     X(PARAM_EXTENT, "extent", RT_CHOICE("box", RT_EXTENT_KINDS),                                             \
-      "the extents of nodes: axis-aligned boxes, spheres, oriented boxes, or slabs", "the cheapest test")    \
+      "extents of nodes: axis-aligned boxes, spheres, oriented boxes or slabs", "the cheapest test")         \
     X(PARAM_SLABS, "slabs", RT_INT("7", 3, RT_MAX_SLABS, "3|13"),                                            \
-      "plane sets of extent=slabs: 3 axes, 4 diagonals of a cube, 6 of its faces", "Kay & Kajiya 1986")      \
+      "extent=slabs: plane sets, first 3 axes, then 4 diagonals of a cube, then 6 of its faces",             \
+      "Kay & Kajiya 1986")                                                                                   \
     X(PARAM_WIDTH, "width", RT_INT("2", 2, RT_NODE_MAX_WIDTH, "3|4|16"),                                     \
-      "most children of a node: the largest are opened into their parents", "clustering makes binary trees") \
+      "most children of a node; the largest are replaced by their own children",                             \
+      "clustering makes binary trees")                                                                       \
     X(PARAM_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("1", 1, 1024, "2|8|64"),                                  \
       "most objects of a leaf; several share one where that costs no more by SAH",                           \
-      "an extent about every object")                                                                        \
+      "an extent for every object")                                                                          \
     X(PARAM_TRAVERSAL_ORDER, "traversal_order", RT_CHOICE("nearest", "fixed|nearest"),                       \
-      "children as they stand, or by where the ray enters them", "Kay & Kajiya 1986")                        \
+      "children in stored order, or by where the ray enters them", "Kay & Kajiya 1986")                      \
     X(PARAM_RADIUS, "radius", RT_INT("25", 1, 1024, "1|100"),                                                \
       "method=ploc: neighbours searched on either side", "Meister & Bittner 2018")                           \
     X(PARAM_ORDER, "order", RT_CHOICE("random", "given|random"),                                             \
-      "method=goldsmith-salmon: order of insertion, that of ids or a random one", "Goldsmith & Salmon 1987") \
+      "method=goldsmith-salmon: insertion in the order of ids, or in random order",                          \
+      "Goldsmith & Salmon 1987")                                                                             \
     X(PARAM_PERMUTATIONS, "permutations", RT_INT("1", 1, 1000, "3"),                                         \
-      "method=goldsmith-salmon: orders tried, all but the first random; the best is kept",                   \
+      "method=goldsmith-salmon: orders tried, all but the first random; the cheapest tree is kept",          \
       "Goldsmith & Salmon 1987")                                                                             \
     X(PARAM_SEED, "seed", RT_INT("1", 0, 1e9, "2"), "method=goldsmith-salmon: seed of the random orders",    \
-      "any")
+      "arbitrary")
 
 enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
@@ -57,26 +61,21 @@ static void destroy(RtAccel *accel) {
     rt_free(self);
 }
 
-static RtStatus make_tree(RtTree *tree, const RtBuild *what, RtError *error) {
-    const RtGeometry *geometry = &what->scene->geometry;
-    const RtValue *values = what->values;
-    const RtBox *boxes = geometry->boxes;
-    uint32_t count = geometry->object_count;
-    const RtInsertionOrder order = {values[PARAM_ORDER].choice == 1, (uint32_t)values[PARAM_PERMUTATIONS].i,
-                                    (uint64_t)values[PARAM_SEED].i};
-    switch ((Method)values[PARAM_METHOD].choice) {
-    case AGGLOMERATIVE: return rt_tree_agglomerative(tree, boxes, count, error);
-    case PLOC:
-        return rt_tree_ploc(tree, boxes, count, RT_MAX_MORTON_BITS, (uint32_t)values[PARAM_RADIUS].i,
-                            what->threads, error);
-    case GOLDSMITH_SALMON: return rt_tree_insertion(tree, boxes, count, &order, error);
-    case RUBIN_WHITTED: return rt_tree_topdown(tree, boxes, count, 0, what->threads, error);
-    case SAH: break;
-    }
-    return rt_tree_topdown(tree, boxes, count, 16, what->threads, error);
+/* In the order of the choices of `method`. */
+static const RtTreeMethod methods[] = {RT_TREE_AGGLOMERATIVE, RT_TREE_PLOC, RT_TREE_INSERTION, RT_TREE_MEDIAN,
+                                       RT_TREE_BINNED};
+
+static RtTreeOptions options_of(const RtValue *values) {
+    return (RtTreeOptions){.method = methods[values[PARAM_METHOD].choice],
+                           .bits = RT_MAX_MORTON_BITS,
+                           .radius = (uint32_t)values[PARAM_RADIUS].i,
+                           .spatial = {.bins = 16},
+                           .insertion = {values[PARAM_ORDER].choice == 1,
+                                         (uint32_t)values[PARAM_PERMUTATIONS].i,
+                                         (uint64_t)values[PARAM_SEED].i}};
 }
 
-/* The objects below node `index`: leaves come in the order of their ids. */
+/* The objects below node `index`, a run of ids. */
 static RtGroup group_of(const RtClusters *self, uint32_t index) {
     const RtHierarchy *hierarchy = &self->hierarchy;
     const RtNode *first = &hierarchy->nodes[index], *last = first;
@@ -89,13 +88,8 @@ static RtGroup group_of(const RtClusters *self, uint32_t index) {
 static RtStatus fill(RtClusters *self, const RtBuild *what, RtError *error) {
     const RtGeometry *geometry = &what->scene->geometry;
     const RtValue *values = what->values;
-    RtTree tree;
-    if (geometry->object_count > 0) {
-        RT_TRY(make_tree(&tree, what, error));
-        RtStatus status = rt_hierarchy_lay_out(&self->hierarchy, &tree, what->threads, error);
-        rt_tree_clear(&tree);
-        if (status != RT_OK) return status;
-    }
+    const RtTreeOptions options = options_of(values);
+    RT_TRY(rt_hierarchy_build(&self->hierarchy, geometry, &options, what->threads, error));
     uint32_t node_count = self->hierarchy.node_count;
     RT_TRY(rt_extent_set_init(&self->set, (RtExtentKind)values[PARAM_EXTENT].choice,
                               (uint32_t)values[PARAM_SLABS].i, node_count, error));
@@ -122,20 +116,20 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
 
 typedef struct StackEntry {
     uint32_t node;
-    float enter; /* no hit below the node comes before this */
+    float enter; /* a lower bound on t of hits below */
 } StackEntry;
 
-/* Every level leaves at most all children but one waiting. */
+/* Each level pushes at most all children but one. */
 enum { STACK_SIZE = RT_TREE_MAX_DEPTH * (RT_NODE_MAX_WIDTH - 1) + 1 };
 
-/* Puts `entry` among stack[bottom..top), of which the topmost is entered first and equal ones keep the order
- * in which they came. */
+/* Inserts `entry` into stack[bottom..top): the entry with the least t on top, equal ones in the order of
+ * insertion. */
 static inline void push_by_entry(StackEntry *stack, uint32_t bottom, uint32_t top, StackEntry entry) {
     for (; top > bottom && stack[top - 1].enter <= entry.enter; top--) stack[top] = stack[top - 1];
     stack[top] = entry;
 }
 
-/* One extent test. `kind` is a constant where this is inlined, and below. */
+/* One extent test. `kind` is a constant after inlining, here and below. */
 RT_KERNEL bool meets(RtExtentKind kind, const RtClusters *self, uint32_t index, const RtPreparedRay *ray,
                      const RtLine *line, float limit, float *enter, RtTally *tally) {
     const RtBox *box = &self->hierarchy.nodes[index].box;
@@ -218,16 +212,10 @@ static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
     rt_hierarchy_each_box(&self->hierarchy, &self->set, viewer);
 }
 
-static RtStatus each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error) {
-    (void)error;
-    rt_hierarchy_each_leaf(&((const RtClusters *)accel)->hierarchy, viewer);
-    return RT_OK;
-}
-
 const RtAccelOps rt_clusters_ops = {
     .name = "clusters",
     .summary =
-        "hierarchy of extents of any kind, by clustering objects from the bottom, the top or one by one",
+        "hierarchy of extents of any kind, built by clustering objects bottom-up, top-down or one by one",
     .paper = "Walter, Bala, Kulkarni & Pingali 2008, Fast Agglomerative Clustering for Rendering, RT'08",
     RT_PARAMS_OF(params),
     .build = build,
@@ -236,5 +224,5 @@ const RtAccelOps rt_clusters_ops = {
     .describe = describe,
     .validate = validate,
     .each_box = each_box,
-    .each_leaf = each_leaf,
+    .shows_lists = true,
 };

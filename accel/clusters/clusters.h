@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The structure behind `clusters`: for its own file and its test, which breaks it on purpose. */
+/* The data of `clusters`, for its own file and its test, which breaks invariants. */
 #ifndef RT_ACCEL_CLUSTERS_CLUSTERS_H
 #define RT_ACCEL_CLUSTERS_CLUSTERS_H
 
@@ -9,7 +9,7 @@
 typedef struct RtClusters {
     RtAccel base;
     RtHierarchy hierarchy;
-    bool nearest_first; /* the traversal order; else the children as they stand */
+    bool nearest_first; /* traversal_order=nearest */
     RtExtentSet set;    /* an extent per node */
 } RtClusters;
 

@@ -1,223 +1,145 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* embree: Intel's ray tracing kernels, as the competitor and as an oracle.
+/* embree: Intel's ray tracing kernels, as a competitor and as a reference.
  *
- *   mode=native  triangles and spheres are Embree's own geometry, with its own arithmetic: fast, and judged
- *                by verdicts. Polygons and cones, which it has not, use our hit functions.
- *   mode=user    everything uses our hit functions on Embree's hierarchy: the same bits as brute (embree.h
- * says why), independent of any structure of ours. Its time is that of calling back; never quote it as
- * Embree's.
+ *   mode=native  Triangles and spheres are Embree's own geometry, with its own arithmetic: fast, and judged
+ *                by verdicts. Polygons and cones, which Embree lacks, use our hit functions.
+ *   mode=user    Everything uses our hit functions in Embree's hierarchy: the same bits as brute (embree.h
+ *                proves it), independent of our structures. Its time is that of the callbacks; never quote
+ *                it as Embree's.
  *
- * Wald, Woop, Benthin, Johnson & Ernst 2014, "Embree: A Kernel Framework for Efficient CPU Ray Tracing", ACM
- * TOG 33(4). Object tests are counted in user mode alone; extent tests, steps and the look of the structure
- * are Embree's secret and reported as 0. */
-#include "accel/embree/embree.h"
+ * Paper: Wald, Woop, Benthin, Johnson & Ernst 2014, "Embree: A Kernel Framework for Efficient CPU Ray
+ * Tracing", ACM TOG 33(4). Object tests are counted in user mode only. Embree exposes no extent tests, steps
+ * or structure, so these are reported as 0.
+ *
+ * A stream of rays goes to Embree in chunks: as single rays, packets of 8 or 16, or streams. The loop is
+ * written once; after inlining, the kind of query and whether it counts are constants. */
+#include "accel/embree/embree_batch.h"
 
-#include "core/base/memory.h"
-
-#include <stdatomic.h>
-#include <string.h>
-
-#define PARAMS(X)                                                                                            \
-    X(MODE, "mode", RT_CHOICE("native", "native|user"),                                                      \
-      "Embree's own triangles and spheres, or our hit functions on its hierarchy",                           \
-      "native is the competitor")                                                                            \
-    X(QUALITY, "quality", RT_CHOICE("medium", "low|medium|high"),                                            \
-      "build: Morton codes, binned SAH, SAH with spatial splits", "Embree's default")                        \
-    X(ISA, "isa", RT_CHOICE("default", RT_EMBREE_ISAS),                                                      \
-      "instruction set; default is the widest of the processor", "Embree's default")                         \
-    X(ROBUST, "robust", RT_FLAG("off"),                                                                      \
-      "no ray slips between triangles that share an edge; user mode is exact either way",                    \
-      "Embree's default")                                                                                    \
-    X(QUERY, "query", RT_CHOICE("1", "1|8|16|stream"),                                                       \
-      "rays handed over at once: one, a packet of 8 or 16, a stream (not by Embree 4)",                      \
-      "the most general one")
-
-enum { PARAMS(RT_PARAM_INDEX) };
-static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
-
-/* Which of them is the fastest depends on the scene and on the rays: packets for coherent ones, AVX2 on some
- * machines that have AVX-512. `robust` costs speed, so it stays off. */
+/* The fastest setting depends on the scene and on the rays: packets for coherent rays, AVX2 on some machines
+ * that have AVX-512. `robust` costs speed, so it is off. */
 static const RtBestOf bests[] = {
     {"best", "query=1|8|16|stream,quality=medium|high,isa=avx2|avx512",
-     "the fastest way to ask Embree, by scene and ray kind"},
-    {"one", "query=1,quality=medium|high,isa=avx2|avx512", "the fastest way to ask it one ray at a time"},
+     "Embree's fastest setting for each scene and ray kind"},
+    {"one", "query=1,quality=medium|high,isa=avx2|avx512", "its fastest setting for single rays"},
 };
 
-static RtStatus available(const RtValue *values, RtError *error) {
-    if (values[QUERY].choice == RT_EMBREE_STREAM && !RT_EMBREE_STREAMS) {
-        return rt_fail(error, RT_NOT_AVAILABLE,
-                       "accelerator embree: Embree 4 has no streams; choose query=1, 8 or 16");
+/* ---- rays in ---- */
+
+/* Out of line, once with and once without a tally. */
+static __attribute__((noinline)) void test_all_timed(const RtGeometry *geometry, RtEmbreeSearch *search,
+                                                     bool any) {
+    rt_test_all(geometry, &search->ray, any, &search->best, NULL);
+}
+
+static __attribute__((noinline)) void test_all_counted(const RtGeometry *geometry, RtEmbreeSearch *search,
+                                                       bool any) {
+    rt_test_all(geometry, &search->ray, any, &search->best, search->tally);
+}
+
+/* Whether Embree proposes all objects that this ray hits (embree.h). |dir| is at most 2^17 * shrink. */
+RT_KERNEL bool is_in_reach(const RtEmbree *self, const RtRay *ray, double shrink) {
+    return rt_thickness(ray->org, &self->base.scene->geometry.box) <= self->max_thickness &&
+           0x1p-150 * 0x1p17 * shrink <= 0.25 * (double)self->growth;
+}
+
+/* Writes a ray to the batch; one out of reach is answered at once, and is inactive in the batch. */
+RT_KERNEL void put_search(const RtEmbree *self, RtEmbreeBatch *batch, unsigned lanes, size_t i,
+                          const RtRay *ray, RtCrossing *room, bool any, RtTally *tally) {
+    const RtGeometry *geometry = &self->base.scene->geometry;
+    double stretch = rt_embree_stretch(ray->dir);
+    RtEmbreeSearch *search = &batch->searches[i];
+    rt_hit_ray(&search->ray, geometry, ray, room);
+    search->shrink = 1 / stretch;
+    search->best = RT_MISS;
+    search->tally = tally;
+    float tnear = (float)((double)ray->tmin * search->shrink * (1 - 0x1p-20));
+    rt_embree_put_constants(batch, lanes, i);
+    rt_embree_put_ray(batch, lanes, i, ray, stretch, tnear, rt_embree_limit(ray->tmax, search->shrink));
+    if (is_in_reach(self, ray, search->shrink)) return;
+    if (tally) {
+        test_all_counted(geometry, search, any);
+    } else {
+        test_all_timed(geometry, search, any);
     }
-    return rt_embree_isa_check(values[ISA].choice, error);
+    batch->valid[i] = 0;
+    rt_embree_at(batch, lanes, i, RT_EMBREE_TFAR)->f = -INFINITY;
 }
 
-/* ---- build ---- */
+/* ---- user mode ---- */
 
-/* How far from an origin a box may be, and what follows from it. At least four times the size of the scene,
- * and twice as far as the camera. */
-static void set_reach(RtEmbree *self) {
-    const RtScene *scene = self->base.scene;
-    const RtBox *box = &scene->geometry.box;
-    double size = 0, magnitude = 0;
-    for (int a = 0; a < 3; a++) {
-        size = fmax(size, (double)box->hi.at[a] - (double)box->lo.at[a]);
-        magnitude = fmax(magnitude, fmax(fabs((double)box->lo.at[a]), fabs((double)box->hi.at[a])));
+/* Writes nearest hits to `hits`, or if that is NULL, occluders to `occluders`. */
+RT_KERNEL void answer(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays, size_t count,
+                      RtHit *hits, uint32_t *occluders, RtTally *tallies, unsigned lanes, bool stream) {
+    const size_t chunk = stream ? RT_EMBREE_STREAM_RAYS : RT_EMBREE_PACKET_RAYS;
+    const bool any = !hits;
+    RtEmbreeBatch *batch = scratch->own;
+    for (size_t begin = 0; begin < count; begin += chunk) {
+        const RtRay *ray = rays + begin;
+        size_t n = count - begin < chunk ? count - begin : chunk;
+        for (size_t i = 0; i < n; i++) {
+            RtTally *tally = tallies ? &tallies[ray[i].kind] : NULL;
+            put_search(self, batch, lanes, i, &ray[i], scratch->room, any, tally);
+        }
+        RtEmbreeTrace trace;
+        bool coherent = rt_embree_is_coherent(ray);
+        rt_embree_trace_init(&trace, coherent, tallies != NULL, batch->searches, scratch->room);
+        rt_embree_trace(self, batch, &trace.context, coherent, n, any, lanes, stream);
+        for (size_t i = 0; i < n; i++) {
+            if (any) {
+                occluders[begin + i] = batch->searches[i].best.object;
+            } else {
+                hits[begin + i] = batch->searches[i].best;
+            }
+        }
     }
-    double camera = (double)rt_thickness(scene->camera.from, box) * 0x1p20;
-    double reach = fmax(4 * size, 2 * camera);
-    self->max_thickness = rt_float_below(reach * 0x1p-20);
-    self->growth = rt_float_above(reach * 0x1p-19 + magnitude * 0x1p-21 + 0x1p-100);
 }
 
-static void attach(RtEmbree *self, RTCGeometry geometry, RtShape shape, const uint32_t *ids, uint32_t count) {
-    RtEmbreeSlot slot = {.self = self, .ids = ids, .first = ids[0], .consecutive = true};
-    for (uint32_t i = 0; i < count; i++) slot.consecutive &= ids[i] == slot.first + i;
-    self->slots[shape] = slot;
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(self->scene, geometry, shape);
-    rtcReleaseGeometry(geometry);
-}
+/* ---- the kernels ---- */
 
-static void attach_user(RtEmbree *self, RtShape shape, const uint32_t *ids, uint32_t count) {
-    RTCGeometry geometry = rtcNewGeometry(self->device.device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, count);
-    rtcSetGeometryUserData(geometry, &self->slots[shape]);
-    rtcSetGeometryBoundsFunction(geometry, rt_embree_bounds, NULL);
-    rtcSetGeometryIntersectFunction(geometry,
-                                    self->user ? rt_embree_user_intersect : rt_embree_native_intersect);
-    rtcSetGeometryOccludedFunction(geometry,
-                                   self->user ? rt_embree_user_occluded : rt_embree_native_occluded);
-    attach(self, geometry, shape, ids, count);
-}
-
-/* The scene's vertices are shared. Embree reads 16 bytes of each, 4 more than the last one has; a block of
- * rt_alloc always has them. */
-static RtStatus attach_triangles(RtEmbree *self, enum RTCBuildQuality quality, RtError *error) {
-    const RtGeometry *g = &self->base.scene->geometry;
-    size_t count = (size_t)g->triangle_count * 3;
-    self->indices = rt_alloc(count, sizeof(uint32_t));
-    if (!self->indices) return rt_fail_memory(error, "Embree's list of vertices", count * sizeof(uint32_t));
-    for (size_t i = 0; i < count; i++) self->indices[i] = (uint32_t)i;
-    RTCGeometry geometry = rtcNewGeometry(self->device.device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetGeometryBuildQuality(geometry, quality);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, g->triangles, 0,
-                               sizeof(RtVec3), count);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, self->indices, 0,
-                               3 * sizeof(uint32_t), g->triangle_count);
-    attach(self, geometry, RT_SHAPE_TRIANGLE, g->triangle_ids, g->triangle_count);
-    return RT_OK;
-}
-
-_Static_assert(sizeof(RtSphere) == 4 * sizeof(float), "centre and radius, as Embree wants them");
-
-static void attach_spheres(RtEmbree *self, enum RTCBuildQuality quality) {
-    const RtGeometry *g = &self->base.scene->geometry;
-    RTCGeometry geometry = rtcNewGeometry(self->device.device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-    rtcSetGeometryBuildQuality(geometry, quality);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, g->spheres, 0,
-                               sizeof(RtSphere), g->sphere_count);
-    attach(self, geometry, RT_SHAPE_SPHERE, g->sphere_ids, g->sphere_count);
-}
-
-static RtStatus attach_all(RtEmbree *self, enum RTCBuildQuality quality, RtError *error) {
-    const RtGeometry *g = &self->base.scene->geometry;
-    bool own[RT_SHAPE_COUNT] = {false}; /* done as Embree's own geometry */
-    if (!self->user) {
-        own[RT_SHAPE_TRIANGLE] = own[RT_SHAPE_SPHERE] = true;
-        if (g->triangle_count > 0) RT_TRY(attach_triangles(self, quality, error));
-        if (g->sphere_count > 0) attach_spheres(self, quality);
+/* Counts rays and hits from the answers, which are either hits or occluders. */
+RT_KERNEL void count_answers(const RtRay *rays, size_t count, const RtHit *hits, const uint32_t *occluders,
+                             RtTally *tallies) {
+    for (size_t i = 0; i < count; i++) {
+        uint32_t object = hits ? hits[i].object : occluders[i];
+        RT_COUNT(&tallies[rays[i].kind], rays, 1);
+        RT_COUNT(&tallies[rays[i].kind], hits, object != RT_NO_OBJECT);
     }
-#define ATTACH(CONSTANT, name, Type)                                                                         \
-    if (!own[RT_SHAPE_##CONSTANT] && g->name##_count > 0) {                                                  \
-        attach_user(self, RT_SHAPE_##CONSTANT, g->name##_ids, g->name##_count);                              \
-    }
-    RT_SHAPES(ATTACH)
-#undef ATTACH
-    return RT_OK;
 }
 
-static RtStatus build_into(RtEmbree *self, const RtBuild *what, RtError *error) {
-    const RtValue *values = what->values;
-    static const enum RTCBuildQuality qualities[] = {RTC_BUILD_QUALITY_LOW, RTC_BUILD_QUALITY_MEDIUM,
-                                                     RTC_BUILD_QUALITY_HIGH};
-    enum RTCBuildQuality quality = qualities[values[QUALITY].choice];
-    RT_TRY(rt_embree_device_open(&self->device, values[ISA].choice, what->threads, error));
-    set_reach(self);
-    self->scene = rtcNewScene(self->device.device);
-    rtcSetSceneFlags(self->scene, values[ROBUST].flag ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
-    rtcSetSceneBuildQuality(self->scene, quality);
-    RT_TRY(attach_all(self, quality, error));
-    rtcCommitScene(self->scene);
-    return rt_embree_device_check(&self->device, error);
-}
-
-static void destroy(RtAccel *accel) {
-    RtEmbree *self = (RtEmbree *)accel;
-    if (self->scene) rtcReleaseScene(self->scene);
-    rt_embree_device_close(&self->device);
-    rt_free(self->indices);
-    rt_free(self);
-}
-
-static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
-    const RtValue *values = what->values;
-    RtAccel *accel;
-    RT_TRY(rt_accel_new(what, sizeof(RtEmbree), &accel, error));
-    RtEmbree *self = (RtEmbree *)accel;
-    self->user = values[MODE].choice == 1;
-    self->query = (RtEmbreeQueryKind)values[QUERY].choice;
-    accel->exact = self->user;
-    accel->counts = false;
-    return rt_accel_built(accel, build_into(self, what, error), out);
-}
-
-/* ---- describe, validate ---- */
-
-static RtStatus check(const RtAccel *accel, RtError *error) {
-    return rt_embree_device_check(&((const RtEmbree *)accel)->device, error);
-}
-
-/* Bytes: what Embree has allocated, and our list of indices, without which it cannot trace; not the vertices,
- * which are the scene's. */
-static void describe(const RtAccel *accel, RtDescription *out) {
+RT_KERNEL void answer_all(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                          RtHit *hits, uint32_t *occluders, RtTally *tallies, bool any, bool counted) {
     const RtEmbree *self = (const RtEmbree *)accel;
-    const RtGeometry *g = &accel->scene->geometry;
-    uint64_t indices = self->indices ? (uint64_t)g->triangle_count * 3 * sizeof(uint32_t) : 0;
-    *out = (RtDescription){.references = g->object_count,
-                           .bytes = (uint64_t)atomic_load(&self->device.bytes) + indices,
-                           RT_NO_PREDICTION};
+    (void)any;
+    if (self->user) {
+        RT_EMBREE_BY_QUERY(self->query, answer, self, scratch, rays, count, hits, occluders, tallies);
+    } else {
+        rt_embree_answer_native(self, scratch, rays, count, hits, occluders);
+    }
+    if (counted) count_answers(rays, count, hits, occluders, tallies);
 }
 
-static RtStatus validate(const RtAccel *accel, RtError *error) {
-    const RtEmbree *self = (const RtEmbree *)accel;
-    RT_TRY(check(accel, error));
-    if (!self->user || accel->scene->geometry.object_count == 0) return RT_OK;
-    struct RTCBounds bounds;
-    rtcGetSceneBounds(self->scene, &bounds);
-    RtBox all = {{bounds.lower_x, bounds.lower_y, bounds.lower_z},
-                 {bounds.upper_x, bounds.upper_y, bounds.upper_z}};
-    if (rt_box_contains(all, accel->scene->geometry.box)) return RT_OK;
-    return rt_fail(error, RT_MISMATCH, "Embree's bounds do not contain the box of the scene");
+RT_DEFINE_STREAM_KERNELS(answer_all)
+
+static size_t scratch_bytes(const RtAccel *accel) {
+    (void)accel;
+    return sizeof(RtEmbreeBatch);
 }
 
 const RtAccelOps rt_embree_ops = {
     .name = "embree",
-    .summary = "Intel's kernels: the competitor (mode=native) and an oracle (mode=user)",
+    .summary = "Intel's library: the competitor (mode=native) and a reference (mode=user)",
     .paper = "Wald, Woop, Benthin, Johnson & Ernst 2014, Embree: A Kernel Framework for Efficient CPU Ray "
              "Tracing, ACM TOG 33(4)",
-    RT_PARAMS_OF(params),
+    RT_PARAMS_OF(rt_embree_params),
     .bests = bests,
     .best_count = sizeof bests / sizeof bests[0],
-    .available = available,
-    .build = build,
-    .destroy = destroy,
-    .nearest = rt_embree_nearest_timed,
-    .occluded = rt_embree_occluded_timed,
-    .nearest_counted = rt_embree_nearest_counted,
-    .occluded_counted = rt_embree_occluded_counted,
-    .scratch_bytes = rt_embree_scratch_bytes,
-    .describe = describe,
-    .validate = validate,
+    .available = rt_embree_available,
+    .build = rt_embree_build,
+    .destroy = rt_embree_destroy,
+    RT_KERNEL_OPS,
+    .scratch_bytes = scratch_bytes,
+    .describe = rt_embree_describe,
+    .validate = rt_embree_validate,
     .library = rt_embree_library,
-    .check = check,
+    .check = rt_embree_check,
 };

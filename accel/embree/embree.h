@@ -1,28 +1,28 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the files of `embree` share: the accelerator's struct, the state of a query, and Embree's device.
+/* The data of `embree`: the accelerator's struct, the state of a query, and Embree's device.
  *
- * Each shape with objects is one Embree geometry, whose geometry id is the RtShape and whose primitive ids
- * are the indices of that shape's array; `slots` leads back to object ids.
+ * Each shape that has objects is one Embree geometry. The geometry id is the RtShape; primitive ids are
+ * indices in that shape's array; `slots` maps them to object ids.
  *
- * Why user mode is exact. There Embree only proposes candidates, and our hit functions decide; so it must
- * propose every object that brute would find. Brute finds an object on a ray where the thick ray meets its
- * own box (core/base/ray.h). Embree knows no thick rays, so the boxes it gets are thick instead: grown by
+ * Why user mode is exact. Embree only proposes candidates, and our hit functions decide; so Embree must
+ * propose every object that brute finds. Brute finds an object on a ray where the thick ray meets its box
+ * (core/base/ray.h). Embree has no thick rays, so its boxes are enlarged instead, by
  *
- *     growth = 2^-19 R + 2^-21 M,     R = reach, the farthest that a box may be from an origin,
+ *     growth = 2^-19 R + 2^-21 M,     R = reach, the largest distance of a box from an origin,
  *                                     M = the largest coordinate of the scene,
  *
- * twice the thickness of any ray whose origin is within reach, and the other half covers the rounding of
- * Embree's box test (at most 2^-22 R + 2^-23 (M + R) in the place of a plane, robust or not, with or without
- * fused multiply-add) and of ours. A ray from farther away is answered by testing every object, and so is one
- * with dir so long that the rounding of a denormal t moves its hit by more than growth / 4. Embree takes
- * |dir| < 1e-18 for 1e-18, so directions are brought to ordinary lengths by a power of two. A search keeps
- * its own best hit and gives Embree a tfar that lies above it by 2^-20, so that ties and near ties are
- * proposed too, whatever Embree does at t = tfar. */
+ * twice the thickness of any ray whose origin is within reach. The other half covers the rounding of Embree's
+ * box test (at most 2^-22 R + 2^-23 (M + R) in the position of a plane, robust or not, with or without fused
+ * multiply-add) and ours. Rays from farther away are tested against every object, and so are rays whose dir
+ * is so long that rounding a denormal t moves the hit by more than growth / 4. Embree replaces |dir| < 1e-18
+ * by 1e-18, so directions are scaled to ordinary lengths by a power of two. A search keeps its own best hit
+ * and gives Embree a tfar that is larger by 2^-20, so ties and near ties are proposed, too, whatever Embree
+ * does at t = tfar. */
 #ifndef RT_ACCEL_EMBREE_H
 #define RT_ACCEL_EMBREE_H
 
 #include "accel/accel.h"
-#include "accel/embree/api.h"
+#include "accel/embree/embree_api.h"
 
 /* ---- the device ---- */
 
@@ -31,13 +31,13 @@ typedef struct RtEmbreeDevice {
     RTCDevice device;
     _Atomic int64_t bytes; /* allocated and not freed */
     _Atomic int code;      /* RTCError: the first one, on whatever thread */
-    char message[256];     /* of that one; to be read where no thread builds or traces */
+    char message[256];     /* of that error; read only while no thread builds or traces */
 } RtEmbreeDevice;
 
 /* The choices of the parameter `isa`, in order, "default" first. */
 #define RT_EMBREE_ISAS "default|sse2|sse4.2|avx|avx2|avx512"
 
-/* RT_OK, or RT_NOT_AVAILABLE where the processor lacks instruction set number `isa` of RT_EMBREE_ISAS. */
+/* RT_OK, or RT_NOT_AVAILABLE if the processor lacks instruction set number `isa` of RT_EMBREE_ISAS. */
 RtStatus rt_embree_isa_check(uint32_t isa, RtError *error);
 
 /* Opens a device that uses instruction set number `isa` of RT_EMBREE_ISAS, which the processor has, and
@@ -46,17 +46,33 @@ RtStatus rt_embree_device_open(RtEmbreeDevice *device, uint32_t isa, int threads
 
 /* RT_OK, or the first error that the device reported, while building or tracing. */
 RtStatus rt_embree_device_check(const RtEmbreeDevice *device, RtError *error);
-void rt_embree_device_close(RtEmbreeDevice *device); /* a zeroed one is allowed */
+void rt_embree_device_close(RtEmbreeDevice *device); /* may be zeroed */
 
-/* RtAccelOps.library: the version at run time and the instruction set that isa=default stands for on this
- * machine. */
+/* RtAccelOps.library: the version at run time, and the instruction set of isa=default on this machine. */
 bool rt_embree_library(char *out, size_t room);
 
 /* ---- the accelerator ---- */
 
+#define RT_EMBREE_PARAMS(X)                                                                                  \
+    X(RT_EMBREE_MODE, "mode", RT_CHOICE("native", "native|user"),                                            \
+      "Embree's own triangles and spheres, or our hit functions in its hierarchy",                           \
+      "native is the competitor")                                                                            \
+    X(RT_EMBREE_QUALITY, "quality", RT_CHOICE("medium", "low|medium|high"),                                  \
+      "build: Morton codes, binned SAH, SAH with spatial splits", "Embree's default")                        \
+    X(RT_EMBREE_ISA, "isa", RT_CHOICE("default", RT_EMBREE_ISAS),                                            \
+      "instruction set; default: the widest that the processor has", "Embree's default")                     \
+    X(RT_EMBREE_ROBUST, "robust", RT_FLAG("off"),                                                            \
+      "no ray passes between triangles that share an edge; user mode is exact either way",                   \
+      "Embree's default")                                                                                    \
+    X(RT_EMBREE_QUERY, "query", RT_CHOICE("1", "1|8|16|stream"),                                             \
+      "rays per call: one, a packet of 8 or 16, a stream (not in Embree 4)", "the most general one")
+
+enum { RT_EMBREE_PARAMS(RT_PARAM_INDEX) RT_EMBREE_PARAM_COUNT };
+extern const RtParam rt_embree_params[RT_EMBREE_PARAM_COUNT];
+
 typedef struct RtEmbree RtEmbree;
 
-/* One geometry of Embree's: the user pointer that its callbacks get. */
+/* One Embree geometry: the user pointer of its callbacks. */
 typedef struct RtEmbreeSlot {
     const RtEmbree *self;
     const uint32_t *ids; /* object id of each primitive; the scene's */
@@ -85,11 +101,11 @@ struct RtEmbree {
 
 /* ---- queries ---- */
 
-/* Rays handed over at once as single rays or packets: 32 to 128 were slower, by up to a tenth. */
+/* Rays per chunk as single rays or packets: 32 to 128 were slower by up to a tenth. */
 #define RT_EMBREE_PACKET_RAYS 16
-#define RT_EMBREE_STREAM_RAYS 256 /* the same as a stream */
+#define RT_EMBREE_STREAM_RAYS 256 /* and as a stream */
 
-/* One ray of user mode: ours, and what was found on it. */
+/* A ray of user mode, and its best hit. */
 typedef struct RtEmbreeSearch {
     RtPreparedRay ray;
     double shrink; /* Embree's t is t * shrink, a power of two */
@@ -97,44 +113,43 @@ typedef struct RtEmbreeSearch {
     RtTally *tally; /* NULL in the timed kernels */
 } RtEmbreeSearch;
 
-/* Embree's context of one call, extended by what the callbacks need. Those of user mode are reached through
- * it, so that one structure serves the timed and the counted kernels. */
+/* Embree's context of one call, extended for the callbacks. Those of user mode are called through it, so one
+ * structure serves the timed and the counted kernels. */
 typedef struct RtEmbreeTrace {
-    RtEmbreeContext context; /* first: callbacks get a pointer to it */
+    RtEmbreeContext context; /* first, because callbacks get a pointer to it */
     RTCIntersectFunctionN intersect;
     RTCOccludedFunctionN occluded;
     RtEmbreeSearch *searches; /* by ray id */
     RtCrossing *room;         /* of hit functions */
 } RtEmbreeTrace;
 
-/* tfar for Embree where only hits up to t matter: a little above it. */
+/* The tfar for hits up to t: slightly larger. */
 static inline float rt_embree_limit(float t, double shrink) {
     return (float)((double)t * shrink * (1 + 0x1p-20)) + FLT_MIN;
 }
 
-/* Callbacks of user geometry: the box of a primitive, grown; candidates of user mode, by way of the context;
- * and those of native mode, with no more of ours than the room of hit functions. */
+/* Callbacks of user geometry: the enlarged box of a primitive; the candidates of user mode, which call those
+ * of the context; and the candidates of native mode. */
 void rt_embree_bounds(const struct RTCBoundsFunctionArguments *arguments);
 void rt_embree_user_intersect(const struct RTCIntersectFunctionNArguments *arguments);
 void rt_embree_user_occluded(const struct RTCOccludedFunctionNArguments *arguments);
 void rt_embree_native_intersect(const struct RTCIntersectFunctionNArguments *arguments);
 void rt_embree_native_occluded(const struct RTCOccludedFunctionNArguments *arguments);
 
-/* A context for rays that are handed over together. */
+/* A context for one chunk of rays. */
 void rt_embree_trace_init(RtEmbreeTrace *trace, bool coherent, bool counted, RtEmbreeSearch *searches,
                           RtCrossing *room);
 
-/* What native mode answers (native.c). */
-void rt_embree_native_nearest(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays, size_t count,
-                              RtHit *hits);
-void rt_embree_native_occlusion(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays,
-                                size_t count, uint32_t *occluders);
+/* embree_native.c. Native mode: answers to `hits`, or if that is NULL, to `occluders`. */
+void rt_embree_answer_native(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays, size_t count,
+                             RtHit *hits, uint32_t *occluders);
 
-/* The kernels of the table of operations, and their scratch memory. */
-RtNearestKernel rt_embree_nearest_timed;
-RtOccludedKernel rt_embree_occluded_timed;
-RtNearestCounted rt_embree_nearest_counted;
-RtOccludedCounted rt_embree_occluded_counted;
-size_t rt_embree_scratch_bytes(const RtAccel *accel);
+/* embree_build.c, for the table of operations. */
+RtStatus rt_embree_available(const RtValue *values, RtError *error);
+RtStatus rt_embree_build(const RtBuild *what, RtAccel **out, RtError *error);
+void rt_embree_destroy(RtAccel *accel);
+void rt_embree_describe(const RtAccel *accel, RtDescription *out);
+RtStatus rt_embree_validate(const RtAccel *accel, RtError *error);
+RtStatus rt_embree_check(const RtAccel *accel, RtError *error);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* grid: uniform spatial partitioning. The scene's box is cut into equal voxels, each with a list of the
- * objects whose boxes touch it; a ray visits the voxels it passes through, in order. With depth > 1 a voxel
- * with too many objects is a grid in turn.
+/* grid: uniform spatial partitioning. The scene's box is divided into equal voxels, each with a list of the
+ * objects whose boxes touch it; a ray visits the voxels it passes through in order. With depth > 1 a voxel
+ * with too many objects is a grid itself.
  *
  * Papers: Fujimoto, Tanaka & Iwata 1986 (ARTS); Amanatides & Woo 1987 (the walk); Jevans & Wyvill 1989
  * (nested grids); Woo 1992 and Klimaszewski & Sederberg 1997 (rules of resolution); Kirk & Arvo 1991
@@ -11,27 +11,27 @@
  *
  * The walk is exact because it uses the crossings of core/base/ray.h. On each axis the thick ray is in
  * interval i of planes from near(i) = (plane - org_near) * inv until far(i) = (plane' - org_far) * inv;
- * neighbours overlap, because the thick ray is in both while it crosses their plane. A voxel is visited at
- * the moment at which the ray is in all three of its intervals. Now let a hit at t have own box b: enter(b)
- * <= t <= leave(b). Its intervals i0..i1 on an axis cover b, so near(i0) <= t <= far(i1), and at t the ray is
- * in one of them; on all three axes at once, so in a voxel that lists the object, entered at or before t.
- * Stopping when the next voxel is entered beyond the best t therefore loses nothing, and no hit need be
- * refused for lying outside the current voxel. Usually an axis has one current interval, two while the ray
- * crosses a plane; rays in a plane of voxels, or so far away that float32 cannot tell voxels apart, have
+ * neighbouring intervals overlap, because the thick ray is in both while it crosses their plane. A voxel is
+ * visited at the moment at which the ray is in all three of its intervals. Now let an object with box b be
+ * hit at t: enter(b) <= t <= leave(b). Its intervals i0..i1 on an axis cover b, so near(i0) <= t <= far(i1),
+ * and at t the ray is in one of them; on all three axes, so in a voxel that lists the object, entered at or
+ * before t. Therefore the walk may stop when the next voxel is entered beyond the best t, and no hit is
+ * rejected for lying outside the current voxel. Usually an axis has one current interval, two while the ray
+ * crosses a plane; rays in a plane of voxels, or so far away that float32 cannot distinguish voxels, have
  * more, and visit more.
  *
- * Nested. A voxel that is a grid itself is walked through when it is visited, from the same moment on. Its
+ * Nested grids. A voxel that is a grid is walked through when it is visited, from the same moment on. Its
  * outermost planes are the voxel's, bit for bit, and the crossings of a plane are the same on every level; so
- * the ray is in one of its intervals on each axis whenever it is in the voxel. At the t of a hit it is in a
- * voxel whose intervals cover a part of b; b's part in there is covered by intervals i0..i1 of the nested
- * grid, near(i0) <= t because plane i0 does not lie beyond b or is the voxel's own, far(i1) >= t likewise,
- * and the argument goes on from there. A nested walk ends where the voxel does, or beyond the best t; only
- * the outermost one ends the search.
+ * whenever the ray is in the voxel it is in some interval of the nested grid on each axis. At the t of a hit
+ * it is in a voxel whose intervals cover a part of b; the part of b in there is covered by intervals i0..i1
+ * of the nested grid, with near(i0) <= t because plane i0 does not lie beyond b or is the voxel's own, and
+ * far(i1) >= t likewise. Then the argument continues inside. A nested walk ends where the voxel does, or
+ * beyond the best t; only the outermost walk ends the search.
  *
- * With overlap=exact a voxel lists fewer objects; accel/surface.h proves that they are enough.
+ * With overlap=exact a voxel lists fewer objects; accel/surface.h proves that they suffice.
  *
- * Counting: an extent test for the box of the grid; a step per voxel visited. With nested grids a step per
- * grid walked through, too: the voxel that it fills is no leaf, and the outermost grid fills one. */
+ * Counting: an extent test for the box of the grid; a step per voxel visited. With nested grids also a step
+ * per grid walked through, including the outermost. */
 #include "accel/grid/grid.h"
 #include "accel/mailbox.h"
 
@@ -41,7 +41,7 @@ static size_t scratch_bytes(const RtAccel *accel) {
 }
 
 /* One axis of a walk. Intervals are numbered along the ray: 0 is the first it can meet, and lies between
- * planes 0 and 1. Steps and strides are negative (modulo 2^32) where the ray runs against the axis. */
+ * planes 0 and 1. Steps and strides are negative (modulo 2^32) if the ray runs against the axis. */
 typedef struct Axis {
     const float *planes; /* plane i is planes[i * step] */
     int32_t step;
@@ -55,9 +55,9 @@ typedef struct Axis {
 /* The walk through one block. */
 typedef struct Walk {
     Axis axes[3];
-    uint32_t voxel;  /* in the intervals hi of the three axes */
-    uint32_t spread; /* current intervals, three of them not counted */
-    int entered;     /* the axis that was crossed last; at first, when none was, any */
+    uint32_t voxel;  /* in the last current intervals of the three axes */
+    uint32_t spread; /* number of current intervals, minus three */
+    int entered;     /* the axis crossed last; any before the first crossing */
     float t;         /* when that was */
 } Walk;
 
@@ -69,12 +69,12 @@ RT_KERNEL float far_crossing(const Axis *axis, uint32_t i) {
     return (axis->planes[(ptrdiff_t)(i + 1) * axis->step] - axis->far_org) * axis->inv;
 }
 
-/* A crossing is NaN where the ray lies exactly in the moved plane: then it is in the interval, always. */
+/* A crossing is NaN if the ray lies exactly in the moved plane: then it is always in the interval. */
 RT_KERNEL void update_enter(Axis *axis) {
     axis->enter = axis->hi + 1 < axis->n ? near_crossing(axis, axis->hi + 1) : INFINITY;
 }
 
-/* The intervals that the ray is in at `t`, of voxels that are `stride` apart. */
+/* The intervals that the ray is in at `t`; voxels are `stride` apart. */
 RT_KERNEL Axis start_axis(const RtGridBlock *block, const RtPreparedRay *ray, int a, uint32_t stride,
                           float t) {
     const float *planes = block->planes[a];
@@ -125,8 +125,7 @@ RT_KERNEL bool retire_axis(Walk *walk, Axis *axis, float t) {
     return true;
 }
 
-/* The same of all axes. Nearly always it is the axis crossed last that has something to drop, and no other.
- */
+/* The same for all axes. Nearly always only the axis crossed last has something to drop. */
 RT_KERNEL bool retire(Walk *walk, float t) {
     Axis *axes = walk->axes;
     if (!retire_axis(walk, &axes[walk->entered], t)) return false;
@@ -137,14 +136,14 @@ RT_KERNEL bool retire(Walk *walk, float t) {
     return true;
 }
 
-/* The axis on which the next interval is entered: at INFINITY where there is none left on any. */
+/* The axis on which the next interval is entered, at INFINITY if there is none. */
 RT_KERNEL int next_axis(const Axis axes[3]) {
     return axes[0].enter <= axes[1].enter ? (axes[0].enter <= axes[2].enter ? 0 : 2)
                                           : (axes[1].enter <= axes[2].enter ? 1 : 2);
 }
 
-/* Goes to the moment at which the next interval is entered; false where the walk is over, or that comes after
- * `limit`. */
+/* Advances to the moment at which the next interval is entered; false if the walk is over, or that moment is
+ * after `limit`. */
 RT_KERNEL bool next_moment(Walk *walk, float limit) {
     int next = next_axis(walk->axes);
     Axis *axis = &walk->axes[next];
@@ -179,8 +178,8 @@ RT_KERNEL bool visit_voxel(const RtGrid *self, const RtGridLevel *level, RtMailb
                         tally);
 }
 
-/* Several voxels at a moment: those in the intervals from..hi of the axes, on the axis just crossed the last
- * alone. The next is in the intervals i; none is left where i[2] is beyond. */
+/* The voxels entered at one moment: in the intervals from..hi of the axes, but only the last on the axis just
+ * crossed. The next is in the intervals i; none is left if i[2] is beyond. */
 typedef struct Moment {
     uint32_t from[3], i[3];
 } Moment;
@@ -194,7 +193,7 @@ RT_KERNEL Moment begin_moment(const Walk *walk, bool begins) {
     return moment;
 }
 
-/* The next voxel of this moment; false where there is none. */
+/* The next voxel of this moment; false if there is none. */
 RT_KERNEL bool next_voxel(const Walk *walk, Moment *moment, uint32_t *voxel) {
     const Axis *axes = walk->axes;
     uint32_t *i = moment->i;
@@ -209,8 +208,8 @@ RT_KERNEL bool next_voxel(const Walk *walk, Moment *moment, uint32_t *voxel) {
     return true;
 }
 
-/* Most moments have one voxel alone, walk->voxel: of the axis just crossed no interval but the last counts,
- * and the other two have one. */
+/* Whether a moment has other voxels than walk->voxel: only the last interval counts on the axis just crossed,
+ * and usually the other two axes have one. */
 RT_KERNEL bool several_voxels(const Walk *walk) {
     const Axis *entered = &walk->axes[walk->entered];
     return walk->spread > entered->hi - entered->lo;
@@ -240,7 +239,7 @@ RT_KERNEL void walk_flat(const RtGrid *self, RtMailbox *mailbox, float t, const 
 
 /* ---- several levels ---- */
 
-/* A walk on the stack, where it is interrupted by that through a voxel. */
+/* A walk that is interrupted by one through a nested grid. */
 typedef struct Interrupted {
     Walk walk;
     Moment moment;
@@ -281,7 +280,7 @@ RT_KERNEL void walk_nested(const RtGrid *self, RtMailbox *mailbox, float t, cons
     }
 }
 
-/* Out of line, so that what one level needs is all that the walk through one level keeps in registers. */
+/* Out of line, so that the walk through one level keeps its own variables in registers. */
 __attribute__((noinline)) static RtHit nested_timed(const RtGrid *self, RtMailbox *mailbox, float t,
                                                     const RtPreparedRay *ray, bool any) {
     RtHit best = RT_MISS;
@@ -322,7 +321,7 @@ RT_DEFINE_KERNELS(RtGrid, search)
 
 const RtAccelOps rt_grid_ops = {
     .name = "grid",
-    .summary = "uniform spatial partitioning: equal voxels with lists of objects, walked in order",
+    .summary = "uniform grid: equal voxels with lists of objects, walked in order",
     .paper = "Fujimoto, Tanaka & Iwata 1986, ARTS, CG&A 6(4); Amanatides & Woo 1987, A Fast Voxel Traversal "
              "Algorithm; Jevans & Wyvill 1989, Adaptive Voxel Subdivision for Ray Tracing, GI'89",
     RT_PARAMS_OF(rt_grid_params),
@@ -333,5 +332,5 @@ const RtAccelOps rt_grid_ops = {
     .describe = rt_grid_describe,
     .validate = rt_grid_validate,
     .each_box = rt_grid_each_box,
-    .each_leaf = rt_grid_each_leaf,
+    .shows_lists = true,
 };

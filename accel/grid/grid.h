@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The inside of grid: its data, shared by the files of this folder.
+/* The data of grid, shared by the files of this folder.
  *
- * Levels. Level 0 is one block: the box of the grid, cut into voxels by planes. A voxel may be cut into
- * voxels again: a block of the next level, nested in it. Per level, all voxels of all blocks are numbered
- * block after block, within a block x fastest; all lists are in one array, `ids`; the list of voxel v is
- * ids[first[v]..first[v + 1]), empty where a block is nested in it.
+ * Levels. Level 0 is one block: the box of the grid, divided into voxels by planes. A voxel may be divided
+ * again into a block of the next level, nested in it. Per level, all voxels are numbered block after block,
+ * within a block x fastest; all lists are in one array, `ids`. The list of voxel v is ids[first[v]..first[v +
+ * 1]), empty if a block is nested in it.
  *
- * Invariants. The outermost planes of a nested block are those of its voxel, bit for bit. An object is in the
- * list of each voxel without a nested block whose intervals of planes meet its box, grown by `slack`, on all
- * three axes, as those of the voxels around it do, and of no other; an interval holds its lower plane but not
- * its upper one, unless it is the last of its block. A list is ascending. With overlap=exact an object is
- * only in those of them that its surface meets as well, and rays that these do not serve (accel/surface.h)
- * are tested against every object. */
+ * Invariants. The outermost planes of a nested block are those of its voxel, bit for bit. A voxel without a
+ * nested block lists exactly the objects whose boxes, grown by `slack`, overlap its intervals of planes on
+ * all three axes, and those of all enclosing voxels; an interval contains its lower plane but not its upper
+ * one, unless it is the last of its block. Lists are ascending. With overlap=exact a voxel lists only those
+ * of them whose surfaces meet it, too, and rays that these do not serve (accel/surface.h) are tested against
+ * every object. */
 #ifndef RT_ACCEL_GRID_GRID_H
 #define RT_ACCEL_GRID_GRID_H
 
@@ -21,30 +21,30 @@
 
 #define RT_GRID_PARAMS(X)                                                                                    \
     X(RT_GRID_RULE, "rule", RT_CHOICE("cubic", "cubic|woo|heterogeneous|regular"),                           \
-      "how density becomes a resolution: cubic voxels; Woo's by the longest side; Klimaszewski's; as many "  \
-      "along each axis",                                                                                     \
+      "how density determines the resolution: cubic voxels; Woo's, by the longest side; Klimaszewski's; "    \
+      "equal along all axes",                                                                                \
       "Cleary & Wyvill 1988; Woo 1992; Klimaszewski & Sederberg 1997; Jevans & Wyvill 1989")                 \
     X(RT_GRID_DENSITY, "density", RT_FLOAT("4", 1e-6, 1e6, "0.001|1|20"),                                    \
-      "voxels per object that the rule aims at", "between 1 (too coarse) and 20 of Havran & Sixta 1999")     \
+      "voxels per object that the rule aims for", "between 1 (too coarse) and 20 of Havran & Sixta 1999")    \
     X(RT_GRID_RESOLUTION, "resolution",                                                                      \
       RT_RESOLUTION("auto", 1, RT_GRID_MAX_RESOLUTION, "1x1x1|2x3x5|64x1x64"),                               \
-      "voxels along x, y, z, of the outermost grid; auto follows the rule", "this program")                  \
+      "voxels along x, y, z of the outermost grid; auto: by the rule", "this program")                       \
     X(RT_GRID_DEPTH, "depth", RT_INT("1", 1, RT_GRID_MAX_LEVELS, "2|3"),                                     \
-      "levels of grids; from 2 on a voxel may hold a grid of its own, by the rule",                          \
-      "one grid; nested ones are Jevans & Wyvill 1989")                                                      \
+      "levels of grids; above 1, a voxel may contain a grid, by the rule",                                   \
+      "1: a uniform grid; nested grids: Jevans & Wyvill 1989")                                               \
     X(RT_GRID_NEST, "nest", RT_INT("8", 1, 1e6, "1|30"),                                                     \
-      "depth=2 and more: most objects of a voxel that holds no grid, above the last level",                  \
-      "the only number that gives the integers of Havran & Sixta 1999")                                      \
+      "depth > 1: most objects of a voxel without a nested grid, above the last level",                      \
+      "the only value that reproduces Havran & Sixta 1999")                                                  \
     X(RT_GRID_MARGIN, RT_MARGIN_PARAM("the grid"))                                                           \
     X(RT_GRID_FLAT, "flat", RT_FLOAT("0", 0, 1e9, "0.5"),                                                    \
-      "by how much the grid's box reaches beyond objects without thickness",                                 \
-      "0.02 comes nearest to the integers of Havran & Sixta 1999")                                           \
+      "distance by which the grid's box extends beyond flat objects",                                        \
+      "0.02 comes nearest to Havran & Sixta 1999")                                                           \
     X(RT_GRID_SLACK, "slack", RT_FLOAT("0", 0, 1e9, "0.1"),                                                  \
-      "objects also go into the voxels that come so close, in units of the scene",                           \
-      "0.01 gives the integers of Havran & Sixta 1999 for nested grids")                                     \
+      "a voxel also lists objects within this distance, in scene units",                                     \
+      "0.01 reproduces the nested grids of Havran & Sixta 1999")                                             \
     X(RT_GRID_MAILBOX, RT_MAILBOX_PARAM)                                                                     \
     X(RT_GRID_OVERLAP, "overlap", RT_CHOICE("box", "box|exact"),                                             \
-      "an object goes into the voxels that its box, or its surface, meets",                                  \
+      "a voxel lists the objects whose boxes, or whose surfaces, it meets",                                  \
       "boxes: Havran & Sixta 1999; exact: Akenine-Möller 2001")
 
 enum { RT_GRID_PARAMS(RT_PARAM_INDEX) RT_GRID_PARAM_COUNT };
@@ -56,18 +56,18 @@ enum { RT_GRID_BOX, RT_GRID_EXACT };
 
 enum { RT_GRID_MAX_LEVELS = 8, RT_GRID_MAX_RESOLUTION = 4096 };
 
-/* A box that is cut into voxels. */
+/* A box divided into voxels. */
 typedef struct RtGridBlock {
     uint32_t n[3];    /* voxels along each axis */
     uint32_t voxel;   /* number of its first voxel in the level */
-    float *planes[3]; /* [n[axis] + 1], ascending, parts of the level's array */
+    float *planes[3]; /* [n[axis] + 1] ascending, parts of the level's array */
 } RtGridBlock;
 
 /* RtGridLevel.inner of a voxel without a nested block. */
 #define RT_GRID_LEAF UINT32_MAX
 
 typedef struct RtGridLevel {
-    RtGridBlock *blocks; /* [block_count], in the order of the voxels that they are nested in */
+    RtGridBlock *blocks; /* [block_count] in the order of the voxels that they are nested in */
     float *planes;       /* of all blocks */
     uint32_t *first;     /* [voxel_count + 1] */
     uint32_t *ids;       /* [first[voxel_count]] */
@@ -79,11 +79,11 @@ typedef struct RtGrid {
     RtAccel base;
     RtBox box;
     RtGridLevel levels[RT_GRID_MAX_LEVELS];
-    uint32_t depth; /* levels there are; 0 if there is no object */
+    uint32_t depth; /* used levels; 0 for an empty scene */
     bool mailbox;
     bool surfaces;        /* overlap=exact */
-    double slack;         /* voxels are grown by so much before objects are put into them */
-    RtSurfaceRays served; /* ... and by its margin more before surfaces are */
+    double slack;         /* objects' boxes are grown by this */
+    RtSurfaceRays served; /* rays that lists of surfaces serve */
 } RtGrid;
 
 /* ---- grid_voxels.c ---- */
@@ -91,7 +91,7 @@ typedef struct RtGrid {
 /* The resolution, by the rule, of a grid over a box with so many objects. */
 void rt_grid_choose_resolution(const RtBox *box, uint32_t objects, const RtValue *values, uint32_t n[3]);
 
-/* A range of voxels, first to last on each axis. */
+/* A range of voxels, inclusive on each axis. */
 typedef struct RtGridRange {
     uint32_t from[3], to[3];
 } RtGridRange;
@@ -131,12 +131,11 @@ void rt_grid_destroy(RtAccel *accel);
 void rt_grid_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_grid_validate(const RtAccel *accel, RtError *error);
 void rt_grid_each_box(const RtAccel *accel, RtBoxViewer viewer);
-RtStatus rt_grid_each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error);
 
 /* The box of a voxel, by its number in the level. */
 RtBox rt_grid_voxel_box(const RtGridLevel *level, uint32_t voxel);
 
-/* The voxel of `block` at a place, as a number in the level. */
+/* The voxel of `block` at given coordinates, by its number in the level. */
 static inline size_t rt_grid_voxel_at(const RtGridBlock *block, const uint32_t at[3]) {
     return block->voxel + ((size_t)at[2] * block->n[1] + at[1]) * block->n[0] + at[0];
 }
@@ -149,7 +148,7 @@ static inline uint32_t rt_grid_inner(const RtGridLevel *level, size_t voxel) {
 /* Bytes of the arrays of a level. */
 uint64_t rt_grid_level_bytes(const RtGridLevel *level);
 
-/* A voxel on its way through rt_grid_each_voxel. */
+/* The argument of rt_grid_each_voxel's visitor. */
 typedef struct RtGridVoxel {
     const RtGridLevel *level;
     uint32_t at[3]; /* in its block */
@@ -157,7 +156,7 @@ typedef struct RtGridVoxel {
     RtBox box;
 } RtGridVoxel;
 
-/* Calls visit for every voxel of a level, in the order of their numbers, until it returns something else than
+/* Calls visit for every voxel of a level, in the order of their numbers, until it returns a status other than
  * RT_OK. */
 RtStatus rt_grid_each_voxel(const RtGridLevel *level,
                             RtStatus (*visit)(void *context, const RtGridVoxel *voxel), void *context);

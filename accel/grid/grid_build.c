@@ -27,8 +27,8 @@ typedef struct Cut {
     size_t planes; /* of the new level's blocks; then those filled so far */
 } Cut;
 
-/* Whether cutting a box can separate its objects at all: some object does not fill it, and float32 has a
- * plane inside it. */
+/* Whether dividing a box can separate its objects: some object does not fill it, and float32 has a plane
+ * inside it. */
 static bool divisible(const RtGrid *grid, const RtBox *box, const uint32_t *ids, uint32_t count) {
     bool room = false;
     for (int a = 0; a < 3; a++) room |= nextafterf(box->lo.at[a], INFINITY) < box->hi.at[a];

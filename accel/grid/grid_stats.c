@@ -49,7 +49,7 @@ uint64_t rt_grid_level_bytes(const RtGridLevel *level) {
 }
 
 /* A random line through the box of the grid meets a voxel with the ratio of their areas; the voxels of a
- * block are equal. Those that hold a grid are counted here as its step. */
+ * block are equal. A voxel with a nested grid counts as the step of that grid. */
 static void predict(const RtGrid *grid, const RtGridLevel *level, RtDescription *out) {
     double whole = rt_box_half_area(grid->box);
     for (uint32_t b = 0; b < level->block_count; b++) {
@@ -93,17 +93,17 @@ typedef struct Check {
     const RtGrid *grid;
     uint64_t *listed;    /* [object_count] voxels that list each object */
     RtOutline *outlines; /* [object_count] */
-    uint32_t nested;     /* blocks that the voxels so far hold */
+    uint32_t nested;     /* blocks nested in the voxels so far */
     RtError *error;
 } Check;
 
-/* Fails for a voxel, with the words that follow its place. */
+/* Fails with the name of a voxel and `words`. */
 static RtStatus fail_voxel(const Check *check, const RtGridVoxel *voxel, const char *words) {
     return rt_fail(check->error, RT_MISMATCH, "grid: voxel (%u, %u, %u) of level %d %s", voxel->at[0],
                    voxel->at[1], voxel->at[2], (int)(voxel->level - check->grid->levels), words);
 }
 
-/* A voxel that has been cut: its block is the next one, and ends where it does. */
+/* A voxel with a nested block, which must be the next one and have the same box. */
 static RtStatus check_nested(Check *check, const RtGridVoxel *voxel, uint32_t inner) {
     const RtGridLevel *next = voxel->level + 1;
     if (inner != check->nested++ || inner >= next->block_count) {
@@ -167,7 +167,7 @@ static RtStatus check_level(Check *check, const RtGridLevel *level) {
     return rt_fail(check->error, RT_MISMATCH, "grid: a nested grid is in no voxel");
 }
 
-/* The least voxel on `axis` that touches [lo, hi], and how many do, sought plane by plane. */
+/* The first voxel on `axis` that touches [lo, hi], and their number, by a linear search. */
 static uint32_t count_touched(const RtGridBlock *block, int axis, const RtBox *box, uint32_t *first) {
     const float *plane = block->planes[axis];
     uint32_t count = 0;
@@ -180,8 +180,8 @@ static uint32_t count_touched(const RtGridBlock *block, int axis, const RtBox *b
     return count;
 }
 
-/* Voxels of a block, and of those nested in it, that ought to list an object: one by one, where building
- * halves ranges. */
+/* Voxels of a block, and of blocks nested in it, that must list an object, found one by one, not by bisecting
+ * ranges as in the build. */
 static uint64_t voxels_touched(const Check *check, const RtGridLevel *level, uint32_t index, uint32_t id) {
     const RtGrid *grid = check->grid;
     const RtGridBlock *block = &level->blocks[index];
@@ -203,7 +203,7 @@ static uint64_t voxels_touched(const Check *check, const RtGridLevel *level, uin
     return met;
 }
 
-/* Each level by itself, and each object against the voxels that ought to list it. */
+/* Checks each level, and the voxels of each object. */
 static RtStatus check_lists(Check *check) {
     const RtGrid *grid = check->grid;
     const RtGeometry *g = &grid->base.scene->geometry;
@@ -244,7 +244,7 @@ RtStatus rt_grid_validate(const RtAccel *accel, RtError *error) {
     return status;
 }
 
-/* ---- boxes and leaves ---- */
+/* ---- boxes ---- */
 
 typedef struct Show {
     RtBoxViewer viewer;
@@ -253,15 +253,16 @@ typedef struct Show {
 
 static RtStatus show_voxel(void *context, const RtGridVoxel *voxel) {
     const Show *show = context;
-    const RtGridLevel *level = voxel->level;
-    bool leaf = rt_grid_inner(level, voxel->number) == RT_GRID_LEAF;
-    bool holds = !leaf || level->first[voxel->number] < level->first[voxel->number + 1];
-    if (holds)
-        show->viewer.show(show->viewer.context,
-                          &(RtBoxView){.box = &voxel->box, .depth = show->depth, .leaf = leaf});
+    const uint32_t *first = &voxel->level->first[voxel->number];
+    show->viewer.show(show->viewer.context,
+                      &(RtBoxView){.box = &voxel->box,
+                                   .depth = show->depth,
+                                   .leaf = rt_grid_inner(voxel->level, voxel->number) == RT_GRID_LEAF,
+                                   .objects = first[1] - first[0]});
     return RT_OK;
 }
 
+/* Voxels of the outermost grid have depth 1. */
 void rt_grid_each_box(const RtAccel *accel, RtBoxViewer viewer) {
     const RtGrid *grid = (const RtGrid *)accel;
     if (grid->depth == 0) return;
@@ -270,18 +271,4 @@ void rt_grid_each_box(const RtAccel *accel, RtBoxViewer viewer) {
         Show show = {viewer, i + 1};
         rt_grid_each_voxel(&grid->levels[i], show_voxel, &show);
     }
-}
-
-/* A voxel of the outermost grid is as deep as the depth of a grid that has no other: 1. */
-RtStatus rt_grid_each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error) {
-    const RtGrid *grid = (const RtGrid *)accel;
-    (void)error;
-    for (uint32_t i = 0; i < grid->depth; i++) {
-        const RtGridLevel *level = &grid->levels[i];
-        for (uint32_t v = 0; v < level->voxel_count; v++) {
-            if (rt_grid_inner(level, v) != RT_GRID_LEAF) continue;
-            viewer.show(viewer.context, level->first[v + 1] - level->first[v], i + 1);
-        }
-    }
-    return RT_OK;
 }

@@ -26,6 +26,6 @@ const RtAccelOps rt_item_ops = {
     RT_ISA_OPS,
     .describe = rt_item_describe,
     .validate = rt_item_validate,
-    .look_up = rt_item_look_up,
+    .find_cell = rt_item_find_cell,
     .available = available,
 };

@@ -196,7 +196,7 @@ extern const RtItemRaster rt_item_raster_portable, rt_item_raster_avx2, rt_item_
 
 RtStatus rt_item_build(const RtBuild *what, RtAccel **out, RtError *error);
 void rt_item_destroy(RtAccel *accel);
-bool rt_item_look_up(const RtAccel *accel, const RtRay *ray, RtCellView *cell);
+bool rt_item_find_cell(const RtAccel *accel, const RtRay *ray, RtCellView *cell);
 void rt_item_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_item_validate(const RtAccel *accel, RtError *error);
 

@@ -5,6 +5,6 @@
 #include "accel/item/item_draw.h"
 
 RT_DEFINE_BOTH(nearest, RtHit, answer_all)
-RT_REFUSE_QUESTION(occluded, uint32_t)
+RT_DEFINE_HANDED_DOWN(occluded, uint32_t)
 RT_DEFINE_KERNEL_TABLE(item, 0);
 const RtItemRaster RT_OF_ISA(item_raster) = {place, draw, draw_facet};

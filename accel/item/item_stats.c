@@ -7,7 +7,7 @@
 /* Validating asks hit functions at most about this often. */
 #define MOST_TESTS (UINT64_C(1) << 24)
 
-bool rt_item_look_up(const RtAccel *accel, const RtRay *ray, RtCellView *cell) {
+bool rt_item_find_cell(const RtAccel *accel, const RtRay *ray, RtCellView *cell) {
     uint32_t named = ((const RtItemBuffer *)accel)->samples[ray->source];
     bool undecided = named == RT_ITEM_UNDECIDED;
     *cell = (RtCellView){ray->source, named < RT_ITEM_UNDECIDED, undecided ? RT_UNNAMED_OBJECT : named,

@@ -1,26 +1,25 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* kd: cells cut in two by planes of the least expected cost; a ray visits the leaves it meets, nearest first.
+/* kd: cells split at planes of the least expected cost; a ray visits the leaves it meets, nearest first.
  *
  * Papers: MacDonald & Booth 1990 (the surface area heuristic); Havran 2000, Heuristic Ray Shooting Algorithms
- * (the traversal: the interval of the ray in a cell is cut at its plane, the far part waits on a stack); Wald
- * & Havran 2006 (building).
+ * (the traversal: the interval of the ray in a cell is split at its plane, the far part goes on a stack);
+ * Wald & Havran 2006 (building).
  *
- * Layout and invariants: kd.h. Exactness: in core/base/ray.h's terms the thick ray is in a cell at t if it
- * has crossed its near planes, (plane - org_near) * inv <= t, and not yet its far planes, (plane - org_far) *
- * inv
- * >= t. Children overlap while the thick ray crosses their plane, so at each t at which it is in a cell it is
- * in one of its children or in both, and a crossing that is NaN, of a ray exactly in the moved plane, is
- * passed over: the ray is in both. Now let a hit at t have the own box b, and the ray be in a cell that lists
- * the object. If that goes into the lower child alone, then b ends at or below the split, or the cell itself
- * does, and with enter(b) <= t <= leave(b) the ray is in the lower child at t because crossings are monotone;
- * the same holds above; a part that lies in the plane is in both cells at t. So the ray is, at t, in a leaf
- * that lists the object. A leaf is left out only where it is entered beyond the best t. No hit is refused for
- * lying outside the current cell.
+ * Layout and invariants: kd.h. Exactness: in the terms of core/base/ray.h, the thick ray is in a cell at t if
+ * it has crossed the near planes, (plane - org_near) * inv <= t, and not yet the far planes, (plane -
+ * org_far) * inv >= t. Children overlap while the thick ray crosses their plane, so whenever it is in a cell
+ * it is in at least one child. A crossing is NaN for a ray exactly in the moved plane, and is ignored: the
+ * ray is in both. Now let an object with box b be hit at t, and let the ray be in a cell that lists the
+ * object at t. If the object goes into the lower child alone, then b ends at or below the split, or the cell
+ * does, and because enter(b) <= t <= leave(b) and crossings are monotone, the ray is in the lower child at t.
+ * The same holds above; a part that lies in the plane is in both cells at t. So at t the ray is in a leaf
+ * that lists the object. A leaf is skipped only if it is entered beyond the best t, and no hit is rejected
+ * for lying outside the current cell.
  *
- * With overlap=exact the same follows from accel/surface.h. Its q, at which the ray is in all closed cells
- * that hold it, is in the part of the object in each cell, for parts are boxes about all points of the cell
- * within the margin of the surface and inside the own box; so where q lies below the split the part begins
- * below it, and where q lies in the split either child that lists the object will do.
+ * With overlap=exact the same follows from accel/surface.h. At t the ray is in all closed cells that contain
+ * its q, and q is in the part of the object in each such cell, because parts are boxes of all points of the
+ * cell within the margin of the surface and inside the object's box. So if q lies below the split, the part
+ * begins below it; if q lies in the split, either child that lists the object will do.
  *
  * Counting: an extent test for the cell of the root; a step per node visited. */
 #include "accel/kd/kd.h"
@@ -31,7 +30,7 @@ static size_t scratch_bytes(const RtAccel *accel) {
     return kd->mailbox ? rt_mailbox_bytes(&accel->scene->geometry) : 0;
 }
 
-/* A node that waits, with the interval of t in which the ray is in its cell. */
+/* A pending node, and the interval of t in which the ray is in its cell. */
 typedef struct Span {
     uint32_t node;
     float enter, leave;
@@ -49,7 +48,7 @@ RT_COLD static void observe_node(const RtKd *self, uint32_t index) {
                            .empty = leaf && rt_kd_length(node) == 0});
 }
 
-/* From the node of *span down to a leaf, nearest first; the others are put on the stack. */
+/* Descends from the node of *span to a leaf, nearest child first; pushes the other children. */
 RT_KERNEL const RtKdNode *descend(const RtKd *self, const RtPreparedRay *ray, Span *span, Span *stack,
                                   uint32_t *stacked, RtTally *tally) {
     for (;;) {
@@ -61,7 +60,7 @@ RT_KERNEL const RtKdNode *descend(const RtKd *self, const RtPreparedRay *ray, Sp
         float enter = (node->split - ray->org_near[axis]) * ray->inv[axis]; /* the second child */
         float leave = (node->split - ray->org_far[axis]) * ray->inv[axis];  /* the first */
         uint32_t first = child + ray->negative[axis], second = child + 1 - ray->negative[axis];
-        /* Branches, as in accel/bvh: predicted, so that the next node is there before the crossings are. */
+        /* Branches, as in accel/bvh: predicted, so the next node is loaded before the crossings are known. */
         if (leave < span->enter) {
             span->node = second;
             continue;
@@ -108,7 +107,7 @@ RT_DEFINE_KERNELS(RtKd, search)
 
 const RtAccelOps rt_kd_ops = {
     .name = "kd",
-    .summary = "cells cut in two where that is expected to cost least, by the surface area heuristic",
+    .summary = "cells split at the plane of the least expected cost, by the surface area heuristic",
     .paper =
         "Wald & Havran 2006, On building fast kd-trees for Ray Tracing, and on doing that in O(N log N), "
         "RT'06",
@@ -120,5 +119,5 @@ const RtAccelOps rt_kd_ops = {
     .describe = rt_kd_describe,
     .validate = rt_kd_validate,
     .each_box = rt_kd_each_box,
-    .each_leaf = rt_kd_each_leaf,
+    .shows_lists = true,
 };

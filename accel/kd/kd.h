@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The inside of kd: its data, shared by the files of this folder.
+/* The data of kd, shared by the files of this folder.
  *
- * Nodes of 8 bytes in one flat array: the root is node 0; the two children of a node lie side by side, after
- * it, the lower one first. All lists of objects in one array, `ids`.
+ * Nodes of 8 bytes in one flat array: the root is node 0; the two children of a node are adjacent, after it,
+ * the lower one first. All lists of objects are in one array, `ids`.
  *
  * Invariants: the cells of children are the cell of their parent cut at its split, so neighbours share the
- * same bits of a plane. A split lies in the closed cell of its node; on a face of it, it cuts off a cell
- * without width for objects that lie in that plane. Every object has a part, a box, in each cell that lists
- * it (rt_kd_part): it goes into the lower child if its part begins below the split, into the upper one if it
- * ends above, into one of the two if it does neither. Lists are ascending. No leaf is deeper than max_depth,
- * which bounds the stack of a traversal. */
+ * bits of a plane. A split lies in the closed cell of its node; on a face of it, it cuts off a flat cell for
+ * objects in that plane. Every object has a part, a box, in each cell that lists it (rt_kd_part): it goes
+ * into the lower child if its part begins below the split, into the upper one if it ends above, and into one
+ * of the two if neither. Lists are ascending. No leaf is deeper than max_depth, which bounds the stack of a
+ * traversal. */
 #ifndef RT_ACCEL_KD_KD_H
 #define RT_ACCEL_KD_KD_H
 
@@ -21,18 +21,17 @@
     X(RT_KD_TRAVERSAL_COST, "traversal_cost", RT_FLOAT("0.3", 0, 1000, "0|1|10"),                            \
       "cost of visiting an inner node, in object tests", "measured")                                         \
     X(RT_KD_EMPTY_BONUS, "empty_bonus", RT_FLOAT("0.2", 0, 1, "0|0.5|1"),                                    \
-      "part of its cost that a split is forgiven for cutting off empty space", "Wald & Havran 2006")         \
+      "cost reduction, as a fraction, of a split that cuts off empty space", "Wald & Havran 2006")           \
     X(RT_KD_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("0", 0, 1e6, "1|2|1000000"),                              \
-      "a cell with at most so many objects is not divided", "Wald & Havran 2006: the cost alone decides")    \
+      "a cell with at most this many objects is not divided", "Wald & Havran 2006: the cost alone decides")  \
     X(RT_KD_MAX_DEPTH, "max_depth", RT_INT("-1", -1, RT_KD_DEPTH_LIMIT, "0|5|60"),                           \
-      "depth at which cells are divided no more, the root's being 0; -1: 8 and 1.3 times the binary "        \
-      "logarithm of the objects",                                                                            \
+      "largest depth of a leaf, the root's being 0; -1: 8 + 1.3 log2 of the number of objects",              \
       "Pharr & Humphreys 2004, Physically Based Rendering")                                                  \
     X(RT_KD_FAILURES, "failures", RT_INT("1", 0, RT_KD_DEPTH_LIMIT, "0|4"),                                  \
-      "splits on the way to a leaf that need not be expected to save anything",                              \
-      "Havran & Bittner 2002; measured: tests for steps")                                                    \
+      "splits on the path to a leaf that need not reduce the expected cost",                                 \
+      "Havran & Bittner 2002; measured: trades tests for steps")                                             \
     X(RT_KD_OVERLAP, "overlap", RT_CHOICE("box", "box|exact"),                                               \
-      "an object that is cut is as large, in each half, as its box or its surface",                          \
+      "the part of an object in a cell: its clipped box, or the box of its clipped surface",                 \
       "exact: Havran & Bittner 2002; Wald & Havran 2006")                                                    \
     X(RT_KD_MARGIN, RT_MARGIN_PARAM("the root"))                                                             \
     X(RT_KD_MAILBOX, RT_MAILBOX_PARAM)
@@ -42,7 +41,7 @@ extern const RtParam rt_kd_params[RT_KD_PARAM_COUNT];
 
 enum { RT_KD_DEPTH_LIMIT = 60 };
 
-/* RtKdNode.link & 3 of a leaf; else it is the axis of the split. */
+/* RtKdNode.link & 3 of a leaf; of an inner node it is the axis of the split. */
 enum { RT_KD_LEAF = 3 };
 
 typedef struct RtKdNode {
@@ -70,7 +69,7 @@ static inline bool rt_kd_is_leaf(const RtKdNode *node) {
     return (node->link & 3) == RT_KD_LEAF;
 }
 
-/* Of an inner node: the axis of its split and its lower child. Of a leaf: the length of its list. */
+/* An inner node: the axis of its split, and its lower child. A leaf: the length of its list. */
 static inline uint32_t rt_kd_axis(const RtKdNode *node) {
     return node->link & 3;
 }
@@ -83,7 +82,7 @@ static inline uint32_t rt_kd_length(const RtKdNode *node) {
     return node->link >> 2;
 }
 
-/* The lower (0) or upper (1) of the two cells that a plane makes of one. */
+/* The lower (0) or upper (1) half of a cell that a plane divides. */
 static inline RtBox rt_kd_half(RtBox cell, uint32_t axis, float split, uint32_t upper) {
     if (upper) {
         cell.lo.at[axis] = split;
@@ -108,8 +107,8 @@ void rt_kd_destroy(RtAccel *accel);
 
 /* ---- while building ---- */
 
-/* Where the part of an object begins, ends, or lies flat, along an axis. Events are in ascending order of
- * (plane, what): ends before planars before starts, and then by object. */
+/* The plane at which the part of an object begins, ends, or lies flat, along an axis. Events are sorted by
+ * (plane, what): ends before planars before starts, then by object. */
 typedef struct RtKdEvent {
     float plane;   /* never -0 */
     uint32_t what; /* RT_KD_END, _PLANAR or _START, + the object */
@@ -132,12 +131,12 @@ typedef struct RtKdRun {
     uint32_t from, count;
 } RtKdRun;
 
-/* A cell that is to be divided or made a leaf. Starts on its lower face and ends on its upper one, or beyond,
- * are not among its events. */
+/* A cell to be divided or made a leaf. Starts on its lower face and ends on its upper one, or beyond, are not
+ * among its events. */
 typedef struct RtKdCell {
     uint32_t node, depth;
-    uint32_t failures; /* splits, from the root to here, that were not expected to save anything */
-    double share;      /* of the objects, and so of the work, where the root's is 1 */
+    uint32_t failures; /* splits above that did not reduce the expected cost */
+    double share;      /* of the work, by objects; the share of the root is 1 */
     RtBox box;
     RtKdRun events[3]; /* of each axis's array */
     RtKdRun ids;       /* of the array of lists */
@@ -147,11 +146,11 @@ typedef struct RtKdSplit {
     double cost; /* expected, times half the area of the cell */
     float plane;
     uint32_t axis;
-    bool planar_upper; /* parts in the plane go into the upper cell */
+    bool planar_upper; /* planar parts go into the upper cell */
 } RtKdSplit;
 
-/* A tree that is being built, depth first. The lists of the cells that are still to be divided lie on stacks,
- * one of objects and one of events for each axis, in the order in which they will be popped. */
+/* A tree under construction, depth first. The lists of pending cells are on stacks, one of objects and one of
+ * events per axis, in the order in which they are popped. */
 typedef struct RtKdBuilder {
     RtKd *kd;
     struct RtKdMemory *memory; /* borrowed */
@@ -161,7 +160,7 @@ typedef struct RtKdBuilder {
     uint8_t *sides; /* [object_count] of the objects of the current cell: kd_divide.c */
     RtKdCell pending[RT_KD_DEPTH_LIMIT + 2];
     uint32_t pending_count;
-    /* Scratch: the new parts of objects that are cut, and their events. */
+    /* Scratch: the parts of clipped objects, and their events. */
     uint32_t *cut_ids[2];
     RtBox *cut_parts[2];
     RtKdEvent *fresh, *spare;
@@ -194,8 +193,8 @@ void rt_kd_clear(RtKdBuilder *b);
  * then the result is useless. */
 RtStatus rt_kd_build_subtrees(RtKdBuilder *b, uint32_t most, int threads, bool *fits, RtError *error);
 
-/* kd_events.c. Writes the sorted events of the parts of ids[0..count) in a cell along an axis to
- * out[0..2 * count), and returns their number. `spare`: a buffer of the same size. */
+/* kd_events.c. Writes the sorted events of the parts of ids[0..count) in a cell along an axis to out[0..2 *
+ * count), and returns their number. `spare`: a buffer of the same size. */
 uint32_t rt_kd_make_events(const uint32_t *ids, const RtBox *parts, uint32_t count, const RtBox *cell,
                            int axis, RtKdEvent *out, RtKdEvent *spare);
 
@@ -206,9 +205,8 @@ void rt_kd_merge_events(RtKdEvent *events, uint32_t count, const RtKdEvent *more
 void rt_kd_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_kd_validate(const RtAccel *accel, RtError *error);
 void rt_kd_each_box(const RtAccel *accel, RtBoxViewer viewer);
-RtStatus rt_kd_each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error);
 
-/* The cell of a node, found by going through the tree: for pictures. */
+/* The cell of a node, found by a search of the tree: for pictures. */
 RtBox rt_kd_cell(const RtKd *kd, uint32_t node);
 
 #endif

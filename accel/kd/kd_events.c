@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Events: making, sorting and merging them. Sorted once, for the root, by radix; afterwards only the events
- * of objects that a plane has cut are made anew, sorted and merged. */
+/* Making, sorting and merging events. Radix sort orders those of the root; later only the events of clipped
+ * objects are made anew, sorted and merged. */
 #include "accel/kd/kd.h"
 
 #include <string.h>
 
-/* Up to so many events insertion is quicker than radix. */
-enum { FEW = 64 };
+/* Up to so many events, insertion sort is faster than radix sort. */
+enum { SMALL = 64 };
 
-/* Grows with the plane. */
+/* Increases with the plane. */
 static uint32_t key(RtKdEvent event) {
     uint32_t bits;
     memcpy(&bits, &event.plane, sizeof bits);
@@ -19,7 +19,7 @@ static bool before(RtKdEvent a, RtKdEvent b) {
     return a.plane < b.plane || (a.plane == b.plane && a.what < b.what);
 }
 
-static void sort_few(RtKdEvent *events, uint32_t count) {
+static void sort_by_insertion(RtKdEvent *events, uint32_t count) {
     for (uint32_t i = 1; i < count; i++) {
         RtKdEvent event = events[i];
         uint32_t k = i;
@@ -35,7 +35,7 @@ static uint32_t digit(RtKdEvent event, int pass) {
 }
 
 /* Stable, from the lowest digits of the keys to the highest. */
-static void sort_many(RtKdEvent *events, RtKdEvent *spare, uint32_t count) {
+static void sort_by_radix(RtKdEvent *events, RtKdEvent *spare, uint32_t count) {
     uint32_t place[PASSES][DIGITS] = {{0}}, sum[PASSES] = {0};
     for (uint32_t i = 0; i < count; i++) {
         for (int pass = 0; pass < PASSES; pass++) place[pass][digit(events[i], pass)]++;
@@ -54,12 +54,12 @@ static void sort_many(RtKdEvent *events, RtKdEvent *spare, uint32_t count) {
     memcpy(events, spare, count * sizeof *events);
 }
 
-/* Adding 0 makes -0 a 0, which is the same plane. */
+/* Adding 0 turns -0 into 0, the same plane. */
 static RtKdEvent event_at(float plane, uint32_t type, uint32_t id) {
     return (RtKdEvent){plane + 0.0f, type + id};
 }
 
-/* In the order of `what`, which a stable sort by planes keeps where planes are equal. */
+/* Made in the order of `what`, which a stable sort by planes preserves for equal planes. */
 uint32_t rt_kd_make_events(const uint32_t *ids, const RtBox *parts, uint32_t count, const RtBox *cell,
                            int axis, RtKdEvent *out, RtKdEvent *spare) {
     uint32_t n = 0;
@@ -76,10 +76,10 @@ uint32_t rt_kd_make_events(const uint32_t *ids, const RtBox *parts, uint32_t cou
         float lo = parts[i].lo.at[axis], hi = parts[i].hi.at[axis];
         if (lo < hi && lo > first) out[n++] = event_at(lo, RT_KD_START, ids[i]);
     }
-    if (n <= FEW) {
-        sort_few(out, n);
+    if (n <= SMALL) {
+        sort_by_insertion(out, n);
     } else {
-        sort_many(out, spare, n);
+        sort_by_radix(out, spare, n);
     }
     return n;
 }

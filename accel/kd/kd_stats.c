@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Describing, validating and drawing a kd-tree. Cells are not kept, but cut from the root's on the way
+/* Describing, validating and drawing a kd-tree. Cells are not stored, but cut from the root's on the way
  * down. */
 #include "accel/kd/kd.h"
 
 #include "core/base/memory.h"
 
-/* Calls visit for each node, its cell and its depth, parents first, until it returns something else than
- * RT_OK. The tree may be broken as long as children come after their parents and none is deeper than
- * RT_KD_DEPTH_LIMIT, which `visit` is to see to. */
+/* Calls visit for each node with its cell and depth, parents first, until it returns a status other than
+ * RT_OK. In a broken tree, `visit` must reject children that come before their parents and nodes deeper than
+ * RT_KD_DEPTH_LIMIT. */
 typedef struct CellView {
     uint32_t node, depth;
     RtBox cell;
@@ -32,43 +32,30 @@ static RtStatus each_node(const RtKd *kd,
     return RT_OK;
 }
 
-/* ---- describe ---- */
+/* ---- boxes ---- */
 
-typedef struct Sums {
-    RtDescription *out;
-    double inner, leaves, tests; /* sums of halves of areas; of leaves, times lengths of lists, too */
-} Sums;
-
-static RtStatus describe_node(void *context, const RtKd *kd, const CellView *view) {
-    Sums *sums = context;
+static RtStatus show_node(void *context, const RtKd *kd, const CellView *view) {
+    const RtBoxViewer *viewer = context;
     const RtKdNode *node = &kd->nodes[view->node];
-    double area = rt_box_half_area(view->cell);
-    if (view->depth > sums->out->depth) sums->out->depth = view->depth;
-    if (rt_kd_is_leaf(node)) {
-        sums->out->leaves++;
-        sums->out->empty_leaves += rt_kd_length(node) == 0;
-        sums->leaves += area;
-        sums->tests += area * rt_kd_length(node);
-    } else {
-        sums->out->interior++;
-        sums->inner += area;
-    }
+    bool leaf = rt_kd_is_leaf(node);
+    viewer->show(viewer->context, &(RtBoxView){.box = &view->cell,
+                                               .depth = view->depth,
+                                               .leaf = leaf,
+                                               .objects = leaf ? rt_kd_length(node) : 0});
     return RT_OK;
 }
 
-/* A random line through the root meets a cell with the ratio of their areas. */
+void rt_kd_each_box(const RtAccel *accel, RtBoxViewer viewer) {
+    each_node((const RtKd *)accel, show_node, &viewer);
+}
+
 void rt_kd_describe(const RtAccel *accel, RtDescription *out) {
     const RtKd *kd = (const RtKd *)accel;
-    Sums sums = {.out = out};
-    *out = (RtDescription){.references = kd->id_count,
-                           .bytes = kd->node_count * sizeof(RtKdNode) + kd->id_count * sizeof(uint32_t),
+    RtBoxSums sums = {.out = out};
+    *out = (RtDescription){.bytes = kd->node_count * sizeof(RtKdNode) + kd->id_count * sizeof(uint32_t),
                            RT_NO_PREDICTION};
-    each_node(kd, describe_node, &sums);
-    double area = rt_box_half_area(kd->box);
-    if (kd->node_count == 0 || !(area > 0)) return;
-    out->predicted_tests = sums.tests / area;
-    out->predicted_steps = (sums.inner + sums.leaves) / area;
-    out->predicted_cost = (sums.tests + kd->traversal_cost * sums.inner) / area;
+    rt_kd_each_box(accel, (RtBoxViewer){rt_box_sums_add, &sums});
+    if (kd->node_count > 0) rt_box_sums_predict(&sums, &kd->box, kd->traversal_cost);
 }
 
 /* ---- validate ---- */
@@ -76,7 +63,7 @@ void rt_kd_describe(const RtAccel *accel, RtDescription *out) {
 typedef struct Check {
     RtError *error;
     uint64_t *listed; /* [object_count] leaves that list each object */
-    uint8_t *reached; /* [node_count] whether a parent has led here */
+    uint8_t *reached; /* [node_count] whether it is the child of a visited node */
     uint32_t ids;     /* entries in the lists so far */
 } Check;
 
@@ -138,8 +125,8 @@ static bool lists(const RtKd *kd, const RtKdNode *leaf, uint32_t id) {
     return false;
 }
 
-/* Adds to *leaves in how many leaves below a node an object with this part of its cell is to be listed; false
- * if one of them does not list it. */
+/* Adds to *leaves the number of leaves below a node that must list an object with this part of its cell;
+ * false if one of them does not list it. */
 static bool listed_below(const RtKd *kd, uint32_t index, RtBox cell, uint32_t id, RtBox part,
                          uint64_t *leaves) {
     const RtKdNode *node = &kd->nodes[index];
@@ -201,20 +188,7 @@ RtStatus rt_kd_validate(const RtAccel *accel, RtError *error) {
     return status;
 }
 
-/* ---- boxes and leaves ---- */
-
-static RtStatus show_node(void *context, const RtKd *kd, const CellView *view) {
-    const RtBoxViewer *viewer = context;
-    const RtKdNode *node = &kd->nodes[view->node];
-    bool leaf = rt_kd_is_leaf(node), empty = leaf && rt_kd_length(node) == 0;
-    if (!empty)
-        viewer->show(viewer->context, &(RtBoxView){.box = &view->cell, .depth = view->depth, .leaf = leaf});
-    return RT_OK;
-}
-
-void rt_kd_each_box(const RtAccel *accel, RtBoxViewer viewer) {
-    each_node((const RtKd *)accel, show_node, &viewer);
-}
+/* ---- one cell ---- */
 
 typedef struct Sought {
     uint32_t node;
@@ -232,16 +206,4 @@ RtBox rt_kd_cell(const RtKd *kd, uint32_t node) {
     Sought sought = {node, RT_EMPTY_BOX};
     each_node(kd, compare_node, &sought);
     return sought.cell;
-}
-
-static RtStatus show_leaf(void *context, const RtKd *kd, const CellView *view) {
-    const RtLeafViewer *viewer = context;
-    const RtKdNode *node = &kd->nodes[view->node];
-    if (rt_kd_is_leaf(node)) viewer->show(viewer->context, rt_kd_length(node), view->depth);
-    return RT_OK;
-}
-
-RtStatus rt_kd_each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error) {
-    (void)error;
-    return each_node((const RtKd *)accel, show_leaf, &viewer);
 }

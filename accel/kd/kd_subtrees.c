@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Building the subtrees of a kd-tree on all threads. The top is built as on one thread, but small cells are
  * deferred with their lists. Each deferred cell is then a task, which defers cells of its own while it is
- * large. Finally all nodes are copied into one tree, in the order in which one thread would have made them.
- */
+ * large. Finally all nodes are copied into one tree, in the order in which one thread makes them. */
 #include "accel/kd/kd.h"
 
 #include "core/base/memory.h"

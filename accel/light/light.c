@@ -27,5 +27,5 @@ const RtAccelOps rt_light_ops = {
     .scratch_bytes = rt_isa_scratch_bytes,
     .describe = rt_light_describe,
     .validate = rt_light_validate,
-    .look_up = rt_light_look_up,
+    .find_cell = rt_light_find_cell,
 };

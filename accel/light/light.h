@@ -252,7 +252,7 @@ RtStatus rt_light_make_lists(RtLightBuffer *buffer, uint32_t most, int threads, 
 /* ---- light_build.c, light_stats.c ---- */
 RtStatus rt_light_build(const RtBuild *what, RtAccel **out, RtError *error);
 void rt_light_destroy(RtAccel *accel);
-bool rt_light_look_up(const RtAccel *accel, const RtRay *ray, RtCellView *cell);
+bool rt_light_find_cell(const RtAccel *accel, const RtRay *ray, RtCellView *cell);
 void rt_light_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_light_validate(const RtAccel *accel, RtError *error);
 

@@ -230,7 +230,7 @@ RT_KERNEL void occluded_all(const RtAccel *accel, const RtScratch *scratch, cons
     }
 }
 
-RT_REFUSE_QUESTION(nearest, RtHit)
+RT_DEFINE_HANDED_DOWN(nearest, RtHit)
 RT_DEFINE_BOTH(occluded, uint32_t, occluded_all)
 
 RT_DEFINE_KERNEL_TABLE(light, sizeof(Stream));

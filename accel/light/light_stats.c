@@ -4,7 +4,7 @@
 
 #include "core/base/memory.h"
 
-bool rt_light_look_up(const RtAccel *accel, const RtRay *ray, RtCellView *cell) {
+bool rt_light_find_cell(const RtAccel *accel, const RtRay *ray, RtCellView *cell) {
     const RtLightCube *cube = &((const RtLightBuffer *)accel)->cubes[ray->source];
     int z = rt_major_axis(ray->dir);
     bool down = ray->dir.at[z] < 0; /* as the ray comes to the light: it is seen from there along +z */

@@ -1,37 +1,38 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* octree: cells cut into eight until each holds few objects; a ray tests the objects of the leaves it meets.
+/* octree: cells divided into eight until each holds few objects; a ray tests the objects of the leaves it
+ * meets.
  *
- * Papers: Glassner 1984 (traversal=points: every next leaf is sought from the root); Samet 1989 (neighbours:
+ * Papers: Glassner 1984 (traversal=points: searches every next leaf from the root); Samet 1989 (neighbours:
  * from the nearest common ancestor); Gargantini & Atkinson 1993, Revelles, Ureña & Lastra 2000 (parametric:
  * one descent by the ray's parameters at the planes).
  *
- * Layout and invariants: octree.h. Exactness: no point is nudged, and none computed. By core/base/ray.h a hit
- * lies at a t at which the thick ray is in the object's own box, so in a leaf that lists it; the ray is in a
- * cell at t unless it has not yet crossed one of its near planes, (plane - org_near) * inv > t, or has
- * crossed one of its far planes, (plane - org_far) * inv < t. (A crossing is NaN for a ray that runs exactly
- * in the moved plane: it is in the cells on both sides.) A leaf met may be visited in any order, and may be
- * left out once it is entered beyond the best t.
+ * Layout and invariants: octree.h. Exactness: no point is computed or moved. By core/base/ray.h a hit has a t
+ * at which the thick ray is in the object's box, so in a leaf that lists the object. The ray is in a cell at
+ * t unless it has not yet crossed one of its near planes, (plane - org_near) * inv > t, or has crossed one of
+ * its far planes, (plane - org_far) * inv < t. (A crossing is NaN for a ray exactly in the moved plane: it is
+ * in the cells on both sides.) Leaves may be visited in any order, and may be skipped if they are entered
+ * beyond the best t.
  *
  * `parametric` visits the nodes whose thick intervals overlap, nearest first; children inherit the crossings
  * of their parent and add those of its split.
  *
  * `points` and `neighbours` keep the cells that the ray is in: one, two while it crosses a plane, more near
- * edges. They go from crossing to crossing: where the ray enters what lies beyond face p of a current cell L,
- * at t, they visit every leaf that lies beyond p and that the ray is in at t. None is missed: let Q be
- * entered at t, last through its plane p of axis a. Just before p, and along the other axes where Q and the
- * ray at t meet, lies a leaf L; it ends at p (else it would overlap Q), and the ray is in it at t, so L is
- * current, and was to be left through p at t. The least ancestor of L that goes on beyond p holds Q, for it
- * holds the points on both sides of p: that is where `neighbours` begins. A current cell is found again while
- * it is still current, so that none is visited twice. Rays for which MAX_CELLS are not enough (so far away
- * that float32 can hardly tell cells apart) are handed to `parametric`; those from where not even the scene
- * is told from its cells, whatever the traversal, to all objects.
+ * edges. They proceed from crossing to crossing: where the ray enters what lies beyond face p of a current
+ * cell L, at t, they visit every leaf that lies beyond p and that the ray is in at t. None is missed: let the
+ * ray enter Q at t, last through Q's plane p of axis a. Just before p, and where Q and the ray at t meet
+ * along the other axes, lies a leaf L. It ends at p (otherwise it would overlap Q), and the ray is in it at
+ * t, so L is current, and its crossing of p at t is pending. The lowest ancestor of L that extends beyond p
+ * contains points on both sides of p, so it contains Q: there `neighbours` starts. A cell that is found again
+ * is still current, so none is visited twice. Rays that need more than MAX_CELLS cells (so far away that
+ * float32 hardly distinguishes cells) use `parametric`; rays for which even the scene is not larger than a
+ * cell are tested against all objects, in every traversal.
  *
  * Counting: an extent test for the box of the root; a step per node visited, on the way down or up; an empty
  * step per empty leaf. */
 #include "accel/octree/octree.h"
 #include "accel/mailbox.h"
 
-/* A descent leaves at most 7 nodes of each depth behind. */
+/* A descent pushes at most 7 nodes per depth. */
 enum { MAX_STACK = 7 * RT_OCTREE_DEPTH_LIMIT + 8, MAX_CELLS = 64 };
 
 static size_t scratch_bytes(const RtAccel *accel) {
@@ -47,7 +48,7 @@ RT_KERNEL float far_crossing(const RtPreparedRay *ray, int axis, float plane) {
     return (plane - ray->org_far[axis]) * ray->inv[axis];
 }
 
-/* The children on the near side of a split along an axis, as the ray comes. */
+/* The children on the near side of a split along an axis. */
 RT_KERNEL uint32_t near_side(const RtPreparedRay *ray, int axis) {
     return ray->negative[axis] ? rt_octree_upper(axis) : rt_octree_lower(axis);
 }
@@ -57,7 +58,7 @@ RT_KERNEL void count_leaf(bool empty, RtTally *tally) {
     RT_COUNT(tally, empty_steps, empty);
 }
 
-/* `again`: a leaf that has been visited, and is not now. */
+/* `again`: a leaf that was visited before and is not visited now. */
 RT_COLD static void observe_node(const RtOctree *self, uint32_t index, bool again) {
     const RtOctreeNode *node = &self->nodes[index];
     bool leaf = !rt_octree_is_inner(node) && !again;
@@ -78,23 +79,21 @@ RT_KERNEL bool visit_leaf(const RtOctree *self, RtMailbox *mailbox, const RtOctr
 
 /* ---- parametric ---- */
 
-/* An inner node that is being visited: when the ray crosses the planes of its children, lanes x, y, z. On
- * each axis it is in the children below the split from low_near to low_far, in those above from high_near to
- * high_far. */
+/* The crossings of the planes of an inner node's children, lanes x, y, z. On each axis the ray is in the
+ * lower children from low_near to low_far, and in the upper ones from high_near to high_far. */
 typedef struct Planes {
     RtFloat4 low_near, high_near, low_far, high_far;
 } Planes;
 
-/* A node that waits. */
+/* A pending node. */
 typedef struct Waiting {
     float enter;
     uint32_t node;
     uint16_t depth;
-    bool empty; /* a leaf without an object, which need not be fetched from memory to be a step */
+    bool empty; /* an empty leaf, which need not be loaded to count as a step */
 } Waiting;
 
-/* What crossings are computed from. The fourth lane is the third again, so that it never holds what is slow
- * to compute with. */
+/* The ray in vectors. The fourth lane repeats the third, so it never holds slow denormals. */
 typedef struct Line {
     RtFloat4 org_near, org_far, inv;
     RtInt4 sign;
@@ -109,23 +108,22 @@ RT_KERNEL Line line_of(const RtPreparedRay *ray) {
     return (Line){three(ray->org_near), three(ray->org_far), three(ray->inv), (RtInt4)three(&ray->dir) < 0};
 }
 
-/* The lanes of the axes on which child `place` is the upper one, from `high`, the others from `low`. */
-RT_KERNEL RtFloat4 choose(uint32_t place, RtFloat4 low, RtFloat4 high) {
+/* Selects `high` on the axes on which child `octant` is the upper one, otherwise `low`. */
+RT_KERNEL RtFloat4 choose(uint32_t octant, RtFloat4 low, RtFloat4 high) {
     static const RtInt4 upper[8] = {{0, 0, 0, 0},   {-1, 0, 0, 0},   {0, -1, 0, 0},   {-1, -1, 0, 0},
                                     {0, 0, -1, -1}, {-1, 0, -1, -1}, {0, -1, -1, -1}, {-1, -1, -1, -1}};
-    return rt_select(upper[place], high, low);
+    return rt_select(upper[octant], high, low);
 }
 
-/* Cuts a node, in which the ray is from `near` to `far` on each axis, at its split. */
+/* Splits the interval `near`..`far` of the ray in a node, on each axis, at its split. */
 RT_KERNEL Planes cut(const Line *line, const RtVec3 *split, RtFloat4 near, RtFloat4 far) {
-    RtFloat4 at = three(split); /* and what follows it in the node */
+    RtFloat4 at = three(split); /* reads one word beyond, which is in the node */
     RtFloat4 first = (at - line->org_near) * line->inv, last = (at - line->org_far) * line->inv;
     return (Planes){rt_select(line->sign, first, near), rt_select(line->sign, near, first),
                     rt_select(line->sign, far, last), rt_select(line->sign, last, far)};
 }
 
-/* Where the ray enters and leaves the eight children, by their places: [0] those below the split along z, [1]
- * those above. */
+/* The entry and exit of the ray for the eight children, by octant: [0] below the split along z, [1] above. */
 RT_KERNEL void span_children(const Planes *p, float tmin, float limit, RtFloat4 enter[2], RtFloat4 leave[2]) {
     RtFloat4 near = __builtin_shufflevector(p->low_near, p->high_near, 0, 4, 1, 5);
     RtFloat4 far = __builtin_shufflevector(p->low_far, p->high_far, 0, 4, 1, 5);
@@ -139,8 +137,8 @@ RT_KERNEL void span_children(const Planes *p, float tmin, float limit, RtFloat4 
     leave[1] = rt_min(__builtin_shufflevector(p->high_far, p->high_far, 2, 2, 2, 2), to);
 }
 
-/* Puts the children that the ray meets onto the stack, the one it enters first on top, of those that it
- * enters at once the last; gives their number. All eight are asked at once. */
+/* Pushes the children that the ray meets, the first on top, of those entered at once the last; returns their
+ * number. All eight are tested at once. */
 RT_KERNEL uint32_t push_children(const Planes *planes, const RtOctreeNode *node, uint32_t depth,
                                  const RtPreparedRay *ray, float limit, Waiting *stack) {
     RtFloat4 enter[2], leave[2];
@@ -150,9 +148,10 @@ RT_KERNEL uint32_t push_children(const Planes *planes, const RtOctreeNode *node,
     uint32_t pushed = 0;
     memcpy(enters, enter, sizeof enters);
     for (; children; children &= children - 1) {
-        uint32_t place = (uint32_t)__builtin_ctz(children), i = pushed++;
-        for (; i > 0 && stack[i - 1].enter < enters[place]; i--) stack[i] = stack[i - 1];
-        stack[i] = (Waiting){enters[place], node->first + place, (uint16_t)depth, node->count >> place & 1};
+        uint32_t octant = (uint32_t)__builtin_ctz(children), i = pushed++;
+        for (; i > 0 && stack[i - 1].enter < enters[octant]; i--) stack[i] = stack[i - 1];
+        stack[i] =
+            (Waiting){enters[octant], node->first + octant, (uint16_t)depth, node->count >> octant & 1};
     }
     return pushed;
 }
@@ -180,9 +179,9 @@ RT_KERNEL void descend(const RtOctree *self, RtMailbox *mailbox, const RtPrepare
         } else if (rt_octree_is_inner(node)) {
             if (at.node > 0) {
                 const Planes *p = &visited[at.depth - 1];
-                uint32_t place = rt_octree_place(at.node);
-                near = choose(place, p->low_near, p->high_near);
-                far = choose(place, p->low_far, p->high_far);
+                uint32_t octant = rt_octree_octant(at.node);
+                near = choose(octant, p->low_near, p->high_near);
+                far = choose(octant, p->low_far, p->high_far);
             }
             Planes *own = &visited[at.depth];
             *own = cut(&line, &node->split, near, far);
@@ -204,17 +203,17 @@ RT_KERNEL void descend(const RtOctree *self, RtMailbox *mailbox, const RtPrepare
 typedef struct Cell {
     uint32_t node;
     float leave;   /* when the ray has left it */
-    float next[3]; /* when the ray enters what lies beyond its far face; INFINITY: never, or seen to */
+    float next[3]; /* when the ray enters what lies beyond its far face; INFINITY: never, or done */
 } Cell;
 
 /* Crossing.start of a ray that leaves the root. */
 #define NOWHERE UINT32_MAX
 
-/* Where next to look for leaves. */
+/* Where to search for leaves next. */
 typedef struct Crossing {
     float t, plane;
-    int axis;       /* the leaf lies beyond `plane` of this axis; -1: anywhere */
-    uint32_t start; /* from this node downward */
+    int axis;       /* leaves beyond `plane` of this axis; -1: anywhere */
+    uint32_t start; /* below this node */
 } Crossing;
 
 RT_KERNEL float far_plane(const RtPreparedRay *ray, const RtBox *box, int axis) {
@@ -223,7 +222,7 @@ RT_KERNEL float far_plane(const RtPreparedRay *ray, const RtBox *box, int axis) 
 
 RT_KERNEL Cell make_cell(const RtOctree *self, const RtPreparedRay *ray, uint32_t index, float t) {
     Cell cell = {.node = index, .leave = INFINITY};
-    bool climbs = self->traversal == RT_OCTREE_NEIGHBOURS; /* it learns at the root that it is leaving */
+    bool climbs = self->traversal == RT_OCTREE_NEIGHBOURS; /* it finds out at the root that it leaves */
     for (int a = 0; a < 3; a++) {
         cell.leave = rt_minf(far_crossing(ray, a, far_plane(ray, &self->boxes[index], a)), cell.leave);
     }
@@ -236,7 +235,7 @@ RT_KERNEL Cell make_cell(const RtOctree *self, const RtPreparedRay *ray, uint32_
     return cell;
 }
 
-/* The children of an inner node in which leaves at the crossing may be, as bits. */
+/* The children of an inner node that may contain leaves of the crossing, as bits. */
 RT_KERNEL uint32_t children_at(const RtPreparedRay *ray, const RtOctreeNode *node, const Crossing *at) {
     uint32_t children = 0xff;
     for (int a = 0; a < 3; a++) {
@@ -259,8 +258,8 @@ RT_KERNEL bool is_current(const Cell *cells, uint32_t count, uint32_t node) {
     return false;
 }
 
-/* Visits the leaves of a crossing and makes them current. True if the search is over, or *count is one more
- * than MAX_CELLS. */
+/* Visits the leaves of a crossing and makes them current. True if the search is over, or if *count is
+ * MAX_CELLS + 1. */
 RT_KERNEL bool enter_leaves(const RtOctree *self, RtMailbox *mailbox, const Crossing *at, Cell *cells,
                             uint32_t *count, const RtPreparedRay *ray, bool any, RtHit *best,
                             RtTally *tally) {
@@ -288,7 +287,7 @@ RT_KERNEL bool enter_leaves(const RtOctree *self, RtMailbox *mailbox, const Cros
     }
 }
 
-/* The soonest crossing out of a current cell, which is then marked as seen to; its t is INFINITY if there is
+/* The next crossing out of a current cell, which is then marked as done; its t is INFINITY if there is
  * none. */
 RT_KERNEL Crossing next_crossing(const RtOctree *self, const RtPreparedRay *ray, Cell *cells,
                                  uint32_t count) {
@@ -309,12 +308,12 @@ RT_KERNEL Crossing next_crossing(const RtOctree *self, const RtPreparedRay *ray,
     return soonest;
 }
 
-/* From a leaf up to the least ancestor that goes on beyond the leaf's far face along an axis; NOWHERE if none
- * does, which the root only can tell. */
+/* Climbs from a leaf to the lowest ancestor that extends beyond the leaf's far face along an axis; NOWHERE if
+ * there is none. */
 RT_KERNEL uint32_t climb(const RtOctree *self, const RtPreparedRay *ray, uint32_t index, int axis,
                          RtTally *tally) {
     while (index != 0) {
-        bool first = near_side(ray, axis) >> rt_octree_place(index) & 1;
+        bool first = near_side(ray, axis) >> rt_octree_octant(index) & 1;
         index = self->nodes[index].parent;
         if (first) return index;
         RT_COUNT(tally, steps, 1);
@@ -342,8 +341,8 @@ RT_KERNEL bool walk(const RtOctree *self, RtMailbox *mailbox, float enter, const
     }
 }
 
-/* Of a ray from very far away the thickness that its boxes need is a good part of the scene: is it likely to
- * be in more leaves than there are objects? */
+/* Whether a ray from very far away is likely to be in more leaves than there are objects: its thickness is a
+ * good part of the scene. */
 RT_KERNEL bool is_in_too_many_leaves(const RtOctree *self, const RtPreparedRay *ray) {
     const RtGeometry *g = &self->base.scene->geometry;
     double side = rt_box_longest_side(self->boxes[0]);
@@ -375,7 +374,7 @@ RT_DEFINE_KERNELS(RtOctree, search)
 
 const RtAccelOps rt_octree_ops = {
     .name = "octree",
-    .summary = "cells cut into eight until each holds few objects, met by a ray in one of three ways",
+    .summary = "cells divided into eight until each holds few objects, with three traversals",
     .paper = "Glassner 1984, Space Subdivision for Fast Ray Tracing, CG&A 4(10); Revelles, Ureña & Lastra "
              "2000, An Efficient Parametric Algorithm for Octree Traversal, WSCG",
     RT_PARAMS_OF(rt_octree_params),
@@ -386,5 +385,5 @@ const RtAccelOps rt_octree_ops = {
     .describe = rt_octree_describe,
     .validate = rt_octree_validate,
     .each_box = rt_octree_each_box,
-    .each_leaf = rt_octree_each_leaf,
+    .shows_lists = true,
 };

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The inside of octree: its data, shared by the files of this folder.
+/* The data of octree, shared by the files of this folder.
  *
- * Nodes in one flat array, level by level: the root is node 0, the eight children of a node lie side by side,
- * after it. Bit a of a child's place among the eight says on which side of its parent's `split` it lies along
- * axis a (0 = lower). All lists of objects in one array, `ids`, leaf after leaf.
+ * Nodes are in one flat array, level by level: the root is node 0; the eight children of a node are adjacent,
+ * after it. Bit a of a child's octant (its position among the eight) tells on which side of its parent's
+ * `split` it lies along axis a (0 = lower). All lists of objects are in one array, `ids`, leaf after leaf.
  *
  * Invariants: the cells of children are the cell of their parent cut at its split, so neighbours share the
- * same bits of a plane. A split lies strictly between the planes of its cell or, where float32 has nothing in
- * between, on the upper one; then the upper children have no width and never hold an object
- * (rt_octree_sides). An object is in the list of every other leaf whose closed cell meets its box, grown
- * by rt_octree_grown. No leaf is deeper than max_depth, which bounds the stacks of traversals. */
+ * bits of a plane. A split lies strictly between the planes of its cell or, if float32 has no number in
+ * between, on the upper one; then the upper children are flat and never contain an object (rt_octree_sides).
+ * An object is in the list of every other leaf whose closed cell meets its box, grown by rt_octree_grown. No
+ * leaf is deeper than max_depth, which bounds the stacks of traversals. */
 #ifndef RT_ACCEL_OCTREE_OCTREE_H
 #define RT_ACCEL_OCTREE_OCTREE_H
 
@@ -17,26 +17,26 @@
 
 #define RT_OCTREE_PARAMS(X)                                                                                  \
     X(RT_OCTREE_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("1", 1, 1e6, "2|1000000"),                            \
-      "a cell with at most so many objects is not divided", "Havran 1999, RTN 12(2)")                        \
+      "a cell with at most this many objects is not divided", "Havran 1999, RTN 12(2)")                      \
     X(RT_OCTREE_MAX_DEPTH, "max_depth", RT_INT("-1", -1, RT_OCTREE_DEPTH_LIMIT, "0|4|6"),                    \
-      "depth at which cells are divided no more, the root's being 0; -1: two more than gives a cell per "    \
-      "object",                                                                                              \
+      "largest depth of a leaf, the root's being 0; -1: two more than gives one cell per object",            \
       "the best depths of Havran 1999: 5 to 7 for 8000 objects")                                             \
     X(RT_OCTREE_SPLIT, "split", RT_CHOICE("centre", "centre|cost"),                                          \
-      "where a cell is cut: its centre, or the cheapest of eleven planes per axis", "Glassner 1984")         \
+      "split planes: through the centre, or the cheapest of eleven per axis", "Glassner 1984")               \
     X(RT_OCTREE_MARGIN, RT_MARGIN_PARAM("the root"))                                                         \
     X(RT_OCTREE_SLACK, "slack", RT_FLOAT("0", 0, 1e6, "0.01|100"),                                           \
-      "how far from a cell an object may be and still be listed there, in units of the scene",               \
-      "0 is enough; Havran 1999 lists more (README)")                                                        \
+      "a cell also lists objects within this distance, in scene units",                                      \
+      "0 suffices; Havran 1999 lists more (README)")                                                         \
     X(RT_OCTREE_FLAT, "flat", RT_FLOAT("0", 0, 1e6, "0.01"),                                                 \
-      "how far objects that are flat along an axis reach to both sides, in units of the scene",              \
-      "0 is enough; Havran 1999 thickens them (README)")                                                     \
+      "thickness added on both sides of objects that are flat along an axis, in scene units",                \
+      "0 suffices; Havran 1999 thickens them (README)")                                                      \
     X(RT_OCTREE_CUT_FILLED, "cut_filled", RT_FLAG("off"),                                                    \
-      "divide cells, too, that every one of their objects' boxes fills",                                     \
+      "also divide cells that are filled by the boxes of all their objects",                                 \
       "off: it separates nothing; Havran 1999 does")                                                         \
     X(RT_OCTREE_MAILBOX, RT_MAILBOX_PARAM)                                                                   \
     X(RT_OCTREE_TRAVERSAL, "traversal", RT_CHOICE("parametric", "points|neighbours|parametric"),             \
-      "next leaf: sought from the root, from an ancestor, or left on a stack", "Havran 1999: fewest steps")
+      "the next leaf: searched from the root, from an ancestor, or kept on a stack",                         \
+      "Havran 1999: fewest steps")
 
 enum { RT_OCTREE_PARAMS(RT_PARAM_INDEX) RT_OCTREE_PARAM_COUNT };
 extern const RtParam rt_octree_params[RT_OCTREE_PARAM_COUNT];
@@ -47,16 +47,16 @@ enum { RT_OCTREE_POINTS, RT_OCTREE_NEIGHBOURS, RT_OCTREE_PARAMETRIC };
 
 enum { RT_OCTREE_DEPTH_LIMIT = 20 };
 
-/* RtOctreeNode.count of an inner node, and which of its children are leaves without an object, as bits. */
+/* RtOctreeNode.count of an inner node; its low bits mark the children that are empty leaves. */
 #define RT_OCTREE_INNER UINT32_C(0xffffff00)
 
-/* What a node takes: itself and its cell. */
+/* Bytes of a node and its cell. */
 #define RT_OCTREE_NODE_BYTES (sizeof(RtOctreeNode) + sizeof(RtBox))
 
 typedef struct RtOctreeNode {
     RtVec3 split;    /* inner: the planes between its children */
     uint32_t first;  /* inner: the first of its children; leaf: the first of its ids */
-    uint32_t count;  /* leaf: length of its list; inner: RT_OCTREE_INNER, and its empty children */
+    uint32_t count;  /* leaf: length of its list; inner: RT_OCTREE_INNER | empty children */
     uint32_t parent; /* 0 for the root */
 } RtOctreeNode;
 
@@ -88,9 +88,8 @@ bool rt_octree_divisible(const RtOctree *tree, const RtBox *boxes, const RtBox *
 void rt_octree_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_octree_validate(const RtAccel *accel, RtError *error);
 void rt_octree_each_box(const RtAccel *accel, RtBoxViewer viewer);
-RtStatus rt_octree_each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error);
 
-/* Of eight children, as bits, those on the lower and those on the upper side along an axis. */
+/* The children on the lower or upper side along an axis, as bits. */
 static inline uint32_t rt_octree_lower(int axis) {
     return axis == 0 ? 0x55 : axis == 1 ? 0x33 : 0x0f;
 }
@@ -99,14 +98,13 @@ static inline uint32_t rt_octree_upper(int axis) {
     return 0xff ^ rt_octree_lower(axis);
 }
 
-/* The place of a node other than the root among the children of its parent: blocks of eight follow the
- * root. */
-static inline uint32_t rt_octree_place(uint32_t index) {
+/* The octant of a node other than the root among its siblings: groups of eight follow the root. */
+static inline uint32_t rt_octree_octant(uint32_t index) {
     return (index - 1) & 7;
 }
 
-/* The box by which an object goes into cells, from its own: all sides reach `slack` farther, and what is flat
- * along an axis `flat` farther there. */
+/* The box by which an object goes into cells: its own, extended by `slack` on all sides, and along an axis in
+ * which it is flat also by `flat`. */
 static inline RtBox rt_octree_grown(const RtOctree *tree, RtBox own) {
     if (tree->slack == 0 && tree->flat == 0) return own;
     for (int a = 0; a < 3; a++) {
@@ -117,7 +115,7 @@ static inline RtBox rt_octree_grown(const RtOctree *tree, RtBox own) {
     return own;
 }
 
-/* The children, as bits, that an object with this box belongs to; it meets the cell. */
+/* The children, as bits, that list an object with this box, which meets the cell. */
 static inline uint32_t rt_octree_sides(const RtBox *cell, RtVec3 split, const RtBox *object) {
     uint32_t children = 0xff;
     for (int a = 0; a < 3; a++) {
@@ -128,10 +126,10 @@ static inline uint32_t rt_octree_sides(const RtBox *cell, RtVec3 split, const Rt
     return children;
 }
 
-/* The cell of the child at `place` among eight. */
-static inline RtBox rt_octree_child_box(RtBox cell, RtVec3 split, uint32_t place) {
+/* The cell of the child at `octant` among eight. */
+static inline RtBox rt_octree_child_box(RtBox cell, RtVec3 split, uint32_t octant) {
     for (int a = 0; a < 3; a++) {
-        if (place >> a & 1) {
+        if (octant >> a & 1) {
             cell.lo.at[a] = split.at[a];
         } else {
             cell.hi.at[a] = split.at[a];

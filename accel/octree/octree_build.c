@@ -8,8 +8,7 @@
  * The memory limit: the size of the tree at each depth below a level is estimated by random probes (Knuth
  * 1975, Estimating the efficiency of backtrack programs, Mathematics of Computation 29). A probe walks from a
  * cell of the level down to one child at a time, picked from those that would be divided too, and stands for
- * as many cells as there were to pick from. Its sums are unbiased; their variance says how reliable they are.
- */
+ * as many cells as there were to pick from. Its sums are unbiased; their variance is their precision. */
 #include "accel/octree/octree.h"
 
 #include "core/base/memory.h"

@@ -11,10 +11,10 @@ static uint32_t depth_of(const RtOctree *tree, uint32_t index) {
     return depth;
 }
 
-/* Steps that traversal=neighbours is expected to take into a leaf and out of it, times twice the half area of
- * the root. A line comes in through a face, or goes out, with the ratio of areas: from the node that is cut
- * there down to the leaf and up again. Through a face of the root it comes from the root, or goes for good,
- * once it has climbed there. */
+/* Expected steps of traversal=neighbours into a leaf and out of it, times twice the half area of the root. A
+ * line enters or leaves through a face with the ratio of areas: it walks down from the node that is divided
+ * there to the leaf, and up again. Through a face of the root it starts at the root, or leaves once it has
+ * climbed there. */
 static double seeking_steps(const RtOctree *tree, uint32_t leaf) {
     const RtVec3 size = rt_box_size(tree->boxes[leaf]);
     const double face[3] = {(double)size.y * size.z, (double)size.z * size.x, (double)size.x * size.y};
@@ -23,17 +23,17 @@ static double seeking_steps(const RtOctree *tree, uint32_t leaf) {
     double climbed = 1;
     for (uint32_t at = leaf; at > 0; at = tree->nodes[at].parent, climbed++) {
         for (int a = 0; a < 3; a++) {
-            bool *side = &sought[a][rt_octree_place(at) >> a & 1 ? 0 : 1];
+            bool *side = &sought[a][rt_octree_octant(at) >> a & 1 ? 0 : 1];
             if (*side) continue;
             *side = true;
             steps += 2 * climbed * face[a];
             open -= face[a];
         }
     }
-    return steps + (2 * climbed - 1) * open; /* climbed: depth + 1 by now */
+    return steps + (2 * climbed - 1) * open; /* climbed: depth + 1 */
 }
 
-/* It meets a node with the ratio of their areas, and then takes the steps that lead there. */
+/* A line meets a node with the ratio of areas, and then takes the steps that lead there. */
 static double steps_to(const RtOctree *tree, uint32_t index) {
     double area = rt_box_half_area(tree->boxes[index]);
     if (tree->traversal == RT_OCTREE_PARAMETRIC) return area;
@@ -42,27 +42,33 @@ static double steps_to(const RtOctree *tree, uint32_t index) {
                                                : seeking_steps(tree, index) / 2;
 }
 
-void rt_octree_describe(const RtAccel *accel, RtDescription *out) {
+void rt_octree_each_box(const RtAccel *accel, RtBoxViewer viewer) {
     const RtOctree *tree = (const RtOctree *)accel;
-    *out =
-        (RtDescription){.bytes = tree->node_count * RT_OCTREE_NODE_BYTES + tree->id_count * sizeof(uint32_t),
-                        .references = tree->id_count,
-                        RT_NO_PREDICTION};
-    if (tree->node_count == 0) return;
-    double tests = 0, steps = 0, area = rt_box_half_area(tree->boxes[0]);
+    uint32_t depth = 0, end = 1, next = 1; /* of the level, of the next one */
     for (uint32_t i = 0; i < tree->node_count; i++) {
         const RtOctreeNode *node = &tree->nodes[i];
         bool leaf = !rt_octree_is_inner(node);
-        out->interior += !leaf;
-        out->leaves += leaf;
-        out->empty_leaves += node->count == 0;
-        steps += steps_to(tree, i);
-        if (leaf) tests += rt_box_half_area(tree->boxes[i]) * node->count;
+        if (i == end) depth++, end = next;
+        if (!leaf) next = node->first + 8;
+        viewer.show(viewer.context, &(RtBoxView){.box = &tree->boxes[i],
+                                                 .depth = depth,
+                                                 .leaf = leaf,
+                                                 .objects = leaf ? node->count : 0});
     }
-    out->depth = depth_of(tree, tree->node_count - 1);
-    if (!(area > 0)) return;
-    out->predicted_tests = out->predicted_cost = tests / area;
-    out->predicted_steps = steps / area;
+}
+
+void rt_octree_describe(const RtAccel *accel, RtDescription *out) {
+    const RtOctree *tree = (const RtOctree *)accel;
+    RtBoxSums sums = {.out = out};
+    *out =
+        (RtDescription){.bytes = tree->node_count * RT_OCTREE_NODE_BYTES + tree->id_count * sizeof(uint32_t),
+                        RT_NO_PREDICTION};
+    if (tree->node_count == 0) return;
+    double steps = 0, area = rt_box_half_area(tree->boxes[0]);
+    rt_octree_each_box(accel, (RtBoxViewer){rt_box_sums_add, &sums});
+    rt_box_sums_predict(&sums, &tree->boxes[0], 0);
+    for (uint32_t i = 0; i < tree->node_count; i++) steps += steps_to(tree, i);
+    if (area > 0) out->predicted_steps = steps / area;
 }
 
 /* ---- validate ---- */
@@ -83,10 +89,10 @@ static RtStatus check_place(const Check *check, uint32_t index) {
     const RtOctree *tree = check->tree;
     uint32_t parent = tree->nodes[index].parent;
     const RtOctreeNode *above = &tree->nodes[parent];
-    if (parent >= index || !rt_octree_is_inner(above) || above->first != index - rt_octree_place(index)) {
+    if (parent >= index || !rt_octree_is_inner(above) || above->first != index - rt_octree_octant(index)) {
         return rt_fail(check->error, RT_MISMATCH, "octree: node %u is no child of its parent", index);
     }
-    RtBox cell = rt_octree_child_box(tree->boxes[parent], above->split, rt_octree_place(index));
+    RtBox cell = rt_octree_child_box(tree->boxes[parent], above->split, rt_octree_octant(index));
     if (!same_box(cell, tree->boxes[index])) {
         return rt_fail(check->error, RT_MISMATCH, "octree: the cell of node %u is not cut from its parent's",
                        index);
@@ -102,7 +108,7 @@ static RtStatus check_inner(const Check *check, uint32_t index) {
     const RtOctree *tree = check->tree;
     const RtOctreeNode *node = &tree->nodes[index];
     const RtBox *cell = &tree->boxes[index];
-    if (node->first <= index || rt_octree_place(node->first) != 0 || node->first > tree->node_count - 8) {
+    if (node->first <= index || rt_octree_octant(node->first) != 0 || node->first > tree->node_count - 8) {
         return rt_fail(check->error, RT_MISMATCH, "octree: the children of node %u are not where nodes are",
                        index);
     }
@@ -112,15 +118,15 @@ static RtStatus check_inner(const Check *check, uint32_t index) {
         return rt_fail(check->error, RT_MISMATCH, "octree: the split of node %u lies outside its cell",
                        index);
     }
-    for (uint32_t place = 0; place < 8; place++) {
-        const RtOctreeNode *child = &tree->nodes[node->first + place];
+    for (uint32_t octant = 0; octant < 8; octant++) {
+        const RtOctreeNode *child = &tree->nodes[node->first + octant];
         if (child->parent != index) {
             return rt_fail(check->error, RT_MISMATCH, "octree: node %u is no child of its parent",
-                           node->first + place);
+                           node->first + octant);
         }
-        if ((node->count >> place & 1) != (child->count == 0)) {
+        if ((node->count >> octant & 1) != (child->count == 0)) {
             return rt_fail(check->error, RT_MISMATCH, "octree: node %u is not as empty as its parent says",
-                           node->first + place);
+                           node->first + octant);
         }
     }
     return RT_OK;
@@ -161,8 +167,8 @@ static uint64_t leaves_touched(const RtOctree *tree, uint32_t index, const RtBox
     if (!rt_octree_is_inner(node)) return 1;
     uint32_t children = rt_octree_sides(&tree->boxes[index], node->split, object);
     uint64_t touched = 0;
-    for (uint32_t place = 0; place < 8; place++) {
-        if (children >> place & 1) touched += leaves_touched(tree, node->first + place, object);
+    for (uint32_t octant = 0; octant < 8; octant++) {
+        if (children >> octant & 1) touched += leaves_touched(tree, node->first + octant, object);
     }
     return touched;
 }
@@ -199,25 +205,4 @@ RtStatus rt_octree_validate(const RtAccel *accel, RtError *error) {
     RtStatus status = check_all(&check);
     rt_free(check.listed);
     return status;
-}
-
-void rt_octree_each_box(const RtAccel *accel, RtBoxViewer viewer) {
-    const RtOctree *tree = (const RtOctree *)accel;
-    for (uint32_t i = 0; i < tree->node_count; i++) {
-        const RtOctreeNode *node = &tree->nodes[i];
-        bool leaf = !rt_octree_is_inner(node);
-        if (!leaf || node->count > 0)
-            viewer.show(viewer.context,
-                        &(RtBoxView){.box = &tree->boxes[i], .depth = depth_of(tree, i), .leaf = leaf});
-    }
-}
-
-RtStatus rt_octree_each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error) {
-    const RtOctree *tree = (const RtOctree *)accel;
-    (void)error;
-    for (uint32_t i = 0; i < tree->node_count; i++) {
-        const RtOctreeNode *node = &tree->nodes[i];
-        if (!rt_octree_is_inner(node)) viewer.show(viewer.context, node->count, depth_of(tree, i));
-    }
-    return RT_OK;
 }

@@ -165,6 +165,8 @@ static void forget_shown(void) {
 
 static void record(void *context, const RtBoxView *view) {
     (void)context;
+    if (rt_accel_base(served.accel)->ops->shows_lists && view->leaf && view->objects == 0)
+        return; /* an empty leaf */
     if (shown.complete)
         shown.complete =
             rt_reserve(&shown.boxes, &shown.room, (uint64_t)shown.count + 1, sizeof(WireBox), NULL) == RT_OK;

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Agglomerative clustering (Walter, Bala, Kulkarni & Pingali 2008): the two nearest clusters are united,
- * until one is left.
+/* Agglomerative clustering (Walter, Bala, Kulkarni & Pingali 2008): merges the two nearest clusters until one
+ * is left.
  *
- * The box about a union and a third is never smaller than the box about either part and the third. So two
- * clusters that are each other's nearest may be united at once: nothing that happens elsewhere comes between
- * them, and the tree is that of always uniting the nearest pair of all (up to equal distances). They are
- * found by following chains from a cluster to its nearest, to that one's nearest and so on, along which
- * distances strictly fall; a union leaves the rest of the chain good, so each step is made once. Chains begin
- * at every slot in turn, round and round, which makes coincident objects a balanced tree. */
+ * The box of a union and a third cluster is never smaller than that of either part and the third. So two
+ * clusters that are each other's nearest can be merged at once: no other merge comes between them, and the
+ * tree is the one that always merging the globally nearest pair would make (up to ties). Nearest-neighbour
+ * chains find them: from a cluster to its nearest, to that one's nearest and so on, with strictly decreasing
+ * distances; a merge leaves the rest of the chain valid, so each step is made once. Chains start at every
+ * slot in turn, cyclically, which makes a balanced tree of coincident objects. */
 #include "accel/tree/neighbours.h"
 
 #include "core/base/memory.h"

@@ -23,7 +23,7 @@ typedef struct Used {
 typedef struct Part {
     uint32_t node; /* its root; unset if the part is inside a leaf */
     Used used;     /* before it */
-    bool placed;
+    bool has_node;
 } Part;
 
 typedef struct Layout {
@@ -107,8 +107,8 @@ static void append_ids(const Layout *layout, uint32_t first, uint32_t index, Use
 }
 
 /* Makes a node and reserves its children, whose nodes of the tree go to children[..]; none of a leaf. */
-static void place_one(const Layout *layout, uint32_t node_index, uint32_t index, uint32_t *children,
-                      Used *used) {
+static void lay_out_node(const Layout *layout, uint32_t node_index, uint32_t index, uint32_t *children,
+                         Used *used) {
     RtNode *node = &layout->self->nodes[node_index];
     node->box = layout->tree->nodes[index].box;
     if (layout->leaf[index]) {
@@ -122,19 +122,19 @@ static void place_one(const Layout *layout, uint32_t node_index, uint32_t index,
     used->nodes += node->count;
 }
 
-static void place(const Layout *layout, uint32_t node_index, uint32_t index, Used *used) {
+static void lay_out_subtree(const Layout *layout, uint32_t node_index, uint32_t index, Used *used) {
     const RtNode *node = &layout->self->nodes[node_index];
     uint32_t children[RT_NODE_MAX_WIDTH] = {0};
-    place_one(layout, node_index, index, children, used);
+    lay_out_node(layout, node_index, index, children, used);
     if (rt_node_is_leaf(node)) return;
-    for (uint32_t i = 0; i < node->count; i++) place(layout, node->first + i, children[i], used);
+    for (uint32_t i = 0; i < node->count; i++) lay_out_subtree(layout, node->first + i, children[i], used);
 }
 
-static void place_part(void *context, size_t item) {
+static void lay_out_part(void *context, size_t item) {
     const Layout *layout = context;
     const Part *part = &layout->parts[item];
     Used used = part->used;
-    if (part->placed) place(layout, part->node, layout->reduced.index[item], &used);
+    if (part->has_node) lay_out_subtree(layout, part->node, layout->reduced.index[item], &used);
 }
 
 /* Skips the parts of a subtree. */
@@ -148,36 +148,36 @@ static void skip_parts(Layout *layout, uint32_t index, uint32_t depth) {
 }
 
 /* Binary nodes without split references: the sizes of the parts are known. */
-static void place_top(Layout *layout, uint32_t node_index, uint32_t index, uint32_t depth, Used *used) {
+static void lay_out_top(Layout *layout, uint32_t node_index, uint32_t index, uint32_t depth, Used *used) {
     if (!rt_reduction_is_top(layout->tree, index, depth)) {
         const Cost *cost = (const Cost *)(const void *)layout->reduced.values + layout->next;
         Part *part = &layout->parts[layout->next++];
         part->node = node_index;
         part->used = *used;
-        part->placed = true;
+        part->has_node = true;
         used->nodes += 2 * cost->leaves - 2;
         used->ids += cost->references;
         return;
     }
     const RtNode *node = &layout->self->nodes[node_index];
     uint32_t children[RT_NODE_MAX_WIDTH] = {0};
-    place_one(layout, node_index, index, children, used);
+    lay_out_node(layout, node_index, index, children, used);
     if (rt_node_is_leaf(node)) {
         skip_parts(layout, index, depth);
         return;
     }
-    for (uint32_t i = 0; i < 2; i++) place_top(layout, node->first + i, children[i], depth + 1, used);
+    for (uint32_t i = 0; i < 2; i++) lay_out_top(layout, node->first + i, children[i], depth + 1, used);
 }
 
-static RtStatus place_all(Layout *layout, int threads, RtError *error) {
+static RtStatus lay_out_all(Layout *layout, int threads, RtError *error) {
     RtHierarchy *self = layout->self;
     uint32_t root = layout->tree->root;
     Used used = {1, 0};
     if (self->width > 2 || self->split_refs) {
-        place(layout, 0, root, &used);
+        lay_out_subtree(layout, 0, root, &used);
     } else {
-        place_top(layout, 0, root, 0, &used);
-        RT_TRY(rt_parallel_each(layout->reduced.count, threads, place_part, layout, error));
+        lay_out_top(layout, 0, root, 0, &used);
+        RT_TRY(rt_parallel_each(layout->reduced.count, threads, lay_out_part, layout, error));
     }
     self->node_count = used.nodes;
     self->id_count = used.ids;
@@ -193,7 +193,7 @@ static RtStatus lay_out(Layout *layout, RtTree *tree, int threads, RtError *erro
     self->nodes = rt_alloc_unset(most, sizeof(RtNode));
     self->ids = rt_alloc_unset(whole.references, sizeof(uint32_t));
     self->split_refs = tree->split_refs;
-    if (self->nodes && self->ids) return place_all(layout, threads, error);
+    if (self->nodes && self->ids) return lay_out_all(layout, threads, error);
     return rt_fail_memory(error, "the nodes of a hierarchy",
                           most * sizeof(RtNode) + whole.references * sizeof(uint32_t));
 }

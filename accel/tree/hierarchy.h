@@ -58,7 +58,6 @@ void rt_hierarchy_measure(const RtHierarchy *self, const RtGeometry *geometry, R
 
 /* `extents`: those of the nodes, by index, or NULL. */
 void rt_hierarchy_each_box(const RtHierarchy *self, const struct RtExtentSet *extents, RtBoxViewer viewer);
-void rt_hierarchy_each_leaf(const RtHierarchy *self, RtLeafViewer viewer);
 
 /* RT_OK, or RT_MISMATCH with the first broken invariant, in a message that begins with `name`. */
 RtStatus rt_hierarchy_validate(const RtHierarchy *self, const RtGeometry *geometry, const char *name,

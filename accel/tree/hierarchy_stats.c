@@ -4,65 +4,29 @@
 
 #include "core/base/memory.h"
 
-typedef struct Stats {
-    const RtHierarchy *self;
-    RtDescription *out;
-    /* Visits of nodes and tests of objects expected, times the area of the root. */
-    double inner, leaves, tests;
-} Stats;
-
-static void add_node(Stats *stats, uint32_t index, uint32_t depth) {
-    const RtNode *node = &stats->self->nodes[index];
-    RtDescription *out = stats->out;
-    uint32_t fanout = rt_node_fanout(node);
-    bool leaf = rt_node_is_leaf(node);
-    out->interior += !leaf;
-    out->leaves += leaf;
-    out->references += leaf ? fanout : 0;
-    if (depth > out->depth) out->depth = depth;
-    double area = rt_box_half_area(node->box);
-    *(leaf ? &stats->leaves : &stats->inner) += area;
-    stats->tests += leaf ? area * fanout : 0;
-    for (uint32_t i = 0; i < fanout && !leaf; i++) add_node(stats, node->first + i, depth + 1);
-}
-
-void rt_hierarchy_describe(const RtHierarchy *self, const RtGeometry *geometry, RtDescription *out) {
-    *out = (RtDescription){.bytes = self->node_count * sizeof(RtNode) + self->id_count * sizeof(uint32_t),
-                           RT_NO_PREDICTION};
-    if (self->node_count == 0) return;
-    Stats stats = {self, out, 0, 0, 0};
-    add_node(&stats, 0, 0);
-    double area = rt_box_half_area(self->nodes[0].box);
-    rt_hierarchy_measure(self, geometry, out);
-    if (!(area > 0)) return;
-    out->predicted_tests = stats.tests / area;
-    out->predicted_steps = (stats.inner + stats.leaves) / area;
-    out->predicted_cost = (stats.tests + self->traversal_cost * stats.inner) / area;
-}
-
 static void show_node(const RtHierarchy *self, const struct RtExtentSet *extents, uint32_t index,
                       uint32_t depth, RtBoxViewer viewer) {
     const RtNode *node = &self->nodes[index];
-    viewer.show(viewer.context, &(RtBoxView){&node->box, depth, rt_node_is_leaf(node), extents, index});
-    if (rt_node_is_leaf(node)) return;
-    for (uint32_t i = 0; i < node->count; i++) show_node(self, extents, node->first + i, depth + 1, viewer);
+    uint32_t fanout = rt_node_fanout(node);
+    bool leaf = rt_node_is_leaf(node);
+    viewer.show(viewer.context,
+                &(RtBoxView){&node->box, depth, leaf, extents, index, .objects = leaf ? fanout : 0});
+    for (uint32_t i = 0; i < fanout && !leaf; i++)
+        show_node(self, extents, node->first + i, depth + 1, viewer);
 }
 
 void rt_hierarchy_each_box(const RtHierarchy *self, const struct RtExtentSet *extents, RtBoxViewer viewer) {
     if (self->node_count > 0) show_node(self, extents, 0, 0, viewer);
 }
 
-static void show_leaves(const RtHierarchy *self, uint32_t index, uint32_t depth, RtLeafViewer viewer) {
-    const RtNode *node = &self->nodes[index];
-    if (rt_node_is_leaf(node)) {
-        viewer.show(viewer.context, rt_node_fanout(node), depth);
-        return;
-    }
-    for (uint32_t i = 0; i < node->count; i++) show_leaves(self, node->first + i, depth + 1, viewer);
-}
-
-void rt_hierarchy_each_leaf(const RtHierarchy *self, RtLeafViewer viewer) {
-    if (self->node_count > 0) show_leaves(self, 0, 0, viewer);
+void rt_hierarchy_describe(const RtHierarchy *self, const RtGeometry *geometry, RtDescription *out) {
+    RtBoxSums sums = {.out = out};
+    *out = (RtDescription){.bytes = self->node_count * sizeof(RtNode) + self->id_count * sizeof(uint32_t),
+                           RT_NO_PREDICTION};
+    if (self->node_count == 0) return;
+    rt_hierarchy_each_box(self, NULL, (RtBoxViewer){rt_box_sums_add, &sums});
+    rt_hierarchy_measure(self, geometry, out);
+    rt_box_sums_predict(&sums, &self->nodes[0].box, self->traversal_cost);
 }
 
 /* ---- checking ---- */

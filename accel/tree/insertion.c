@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Clusters by insertion (Goldsmith & Salmon 1987): objects come one by one, and each is united with whatever
- * cluster makes the sum of all areas grow least. The best place is found by branch and bound: all that lies
- * below a cluster costs at least what its ancestors grow by, and the area of the object itself.
+/* Insertion (Goldsmith & Salmon 1987): objects come one by one, and each is merged with the node that makes
+ * the sum of all areas grow least. Branch and bound finds it: any position below a node costs at least the
+ * growth of its ancestors plus the area of the object.
  *
- * The result depends on the order of insertion, so several permutations can be tried and the cheapest tree
- * kept. The search goes no deeper than the depth that trees may have in the end, which bounds the cost of an
- * insertion where objects come in an unlucky order. */
+ * The result depends on the order of insertion, so several permutations can be tried; the cheapest tree is
+ * kept. The search goes no deeper than the depth limit of trees, which bounds the cost of an insertion in an
+ * unlucky order. */
 #include "accel/tree/tree.h"
 
 #include "core/base/memory.h"
@@ -18,35 +18,35 @@ typedef struct Insertion {
     uint32_t count;
 } Insertion;
 
-typedef struct Place {
+typedef struct Candidate {
     uint32_t node, depth;
-    double inherited; /* by how much the areas of its ancestors grow */
-} Place;
+    double inherited; /* growth of the areas of its ancestors */
+} Candidate;
 
 static double area_with(const RtTree *tree, uint32_t cluster, const RtBox *box) {
     return rt_box_half_area(rt_box_union(tree->nodes[cluster].box, *box));
 }
 
-/* The cluster beside which an object with box `box` costs least. */
+/* The best sibling for an object with box `box`. */
 static uint32_t find_sibling(const RtTree *tree, const RtBox *box) {
-    Place stack[RT_TREE_MAX_DEPTH + 2];
+    Candidate stack[RT_TREE_MAX_DEPTH + 2];
     uint32_t stacked = 0, sibling = tree->root;
     double own = rt_box_half_area(*box), best = INFINITY;
-    stack[stacked++] = (Place){tree->root, 0, 0};
+    stack[stacked++] = (Candidate){tree->root, 0, 0};
     while (stacked > 0) {
-        Place place = stack[--stacked];
-        if (!(place.inherited + own < best)) continue;
-        const RtTreeNode *node = &tree->nodes[place.node];
-        double area = area_with(tree, place.node, box);
-        if (place.inherited + area < best) {
-            best = place.inherited + area;
-            sibling = place.node;
+        Candidate at = stack[--stacked];
+        if (!(at.inherited + own < best)) continue;
+        const RtTreeNode *node = &tree->nodes[at.node];
+        double area = area_with(tree, at.node, box);
+        if (at.inherited + area < best) {
+            best = at.inherited + area;
+            sibling = at.node;
         }
-        if (rt_tree_is_leaf(tree, place.node) || place.depth == RT_TREE_MAX_DEPTH) continue;
-        double inherited = place.inherited + area - rt_box_half_area(node->box);
+        if (rt_tree_is_leaf(tree, at.node) || at.depth == RT_TREE_MAX_DEPTH) continue;
+        double inherited = at.inherited + area - rt_box_half_area(node->box);
         bool second = area_with(tree, node->child[1], box) < area_with(tree, node->child[0], box);
-        stack[stacked++] = (Place){node->child[!second], place.depth + 1, inherited};
-        stack[stacked++] = (Place){node->child[second], place.depth + 1, inherited};
+        stack[stacked++] = (Candidate){node->child[!second], at.depth + 1, inherited};
+        stack[stacked++] = (Candidate){node->child[second], at.depth + 1, inherited};
     }
     return sibling;
 }
@@ -88,7 +88,7 @@ static void build_once(Insertion *insertion, const RtInsertionOrder *order, uint
     for (uint32_t i = 1; i < count; i++) insert(insertion, insertion->order[i]);
 }
 
-/* Tries all orders in `tree` and in `spare`, the better of which is kept aside. */
+/* Tries all orders in `tree` and `spare`; the cheapest ends up in `tree`. */
 static void build_all(RtTree *tree, RtTree *spare, Insertion *insertion, const RtInsertionOrder *order) {
     insertion->tree = tree;
     build_once(insertion, order, 0);

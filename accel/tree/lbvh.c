@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Trees along the Morton curve (Lauterbach, Garland, Sengupta, Luebke & Manocha 2009): references in Morton
- * order are parted where the highest bit in which their codes differ changes, which cuts space in the middle
- * along one axis after another. Equal codes are halved by number.
+ * order are split where the highest differing bit of their codes changes, which halves space along one axis
+ * after another. Equal codes are halved by number.
  *
- * The nodes of a subtree of n references are a run of 2 n - 1, so subtrees are built by threads that know
- * nothing of each other.
+ * A subtree of n references is a run of 2 n - 1 nodes, so subtrees are built in parallel.
  *
- * The place of the change is found by halving, as in Karras 2012, "Maximizing Parallelism in the Construction
- * of BVHs, Octrees, and k-d Trees"; his order, in which all nodes can be made at once, is left out. */
+ * Bisection finds the position of the change, as in Karras 2012, "Maximizing Parallelism in the Construction
+ * of BVHs, Octrees, and k-d Trees". His numbering of nodes, which allows to make all nodes at once, is left
+ * out. */
 #include "accel/tree/order.h"
 #include "accel/tree/tree.h"
 #include "core/base/memory.h"
@@ -23,16 +23,16 @@ typedef struct Builder {
     const RtBox *boxes; /* by id */
     const RtKeyed *row; /* in Morton order */
     RtBox *in_row;      /* boxes in the same order */
-    uint32_t limit;     /* a group of no more is for one thread */
-    Group *groups;      /* [group_count] such */
+    uint32_t limit;     /* larger groups are shared among threads */
+    Group *groups;      /* [group_count] built by one thread each */
     uint32_t group_count;
 } Builder;
 
-/* How many of row[0..count) go to the left; count >= 2. */
-static uint32_t divide(const RtKeyed *row, uint32_t count) {
+/* The number of row[0..count) that go left; count >= 2. */
+static uint32_t find_split(const RtKeyed *row, uint32_t count) {
     uint64_t differing = row[0].key ^ row[count - 1].key;
     if (differing == 0) return count / 2;
-    while (differing & (differing - 1)) differing &= differing - 1; /* the highest bit alone is left */
+    while (differing & (differing - 1)) differing &= differing - 1; /* only the highest bit is left */
     uint32_t first = 0, last = count - 1;                           /* the bit is 0 in `first`, 1 in `last` */
     while (last - first > 1) {
         uint32_t middle = first + (last - first) / 2;
@@ -42,12 +42,12 @@ static uint32_t divide(const RtKeyed *row, uint32_t count) {
 }
 
 static void get_sides(const Builder *b, Group group, Group sides[2]) {
-    uint32_t left = divide(b->row + group.begin, group.count);
+    uint32_t left = find_split(b->row + group.begin, group.count);
     sides[0] = (Group){group.begin, left, group.node + 1};
     sides[1] = (Group){group.begin + left, group.count - left, group.node + 2 * left};
 }
 
-/* Goes no deeper than a code has bits and a number of references has halves. */
+/* The depth is at most the bits of a code plus the halvings of a number. */
 static void build(const Builder *b, Group group) {
     if (group.count == 1) {
         rt_tree_set_leaf(b->tree, group.node, b->in_row[group.begin], b->row[group.begin].id);
@@ -61,11 +61,11 @@ static void build(const Builder *b, Group group) {
 
 /* ---- on all threads ---- */
 
-/* The top ends where groups are such a part of what one thread has to do; CHUNK references are for one. */
+/* A group is built by one thread if it has at most this fraction of a thread's share; CHUNK references at
+ * least. */
 enum { SHARES = 8, CHUNK = 1 << 13, LEVELS = 3 * RT_MAX_MORTON_BITS + 32 };
 
-/* Lists the groups that are for one thread; their boxes are fetched all at once, so that the processor waits
- * for many of them at a time. */
+/* Lists the groups that one thread builds. */
 static void list_groups(Builder *b, Group group) {
     if (group.count <= b->limit) {
         b->groups[b->group_count++] = group;
@@ -110,7 +110,7 @@ RtStatus rt_tree_lbvh(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t
                        .row = row,
                        .in_row = rt_alloc_unset(count, sizeof(RtBox)),
                        .limit = share > CHUNK ? share : CHUNK};
-    /* At each of the levels, of 63 bits and then of halves, so many groups at most have two sides. */
+    /* At most so many groups have two sides at each level, of 63 bits and then of halvings. */
     builder.groups = rt_alloc(2 * (size_t)LEVELS * (count / builder.limit + 1), sizeof(Group));
     RtStatus status = RT_NO_MEMORY;
     if (row && builder.in_row && builder.groups)

@@ -4,14 +4,14 @@
 #include "accel/tree/sah_split.h"
 #include "core/base/memory.h"
 
-#define NOBODY                                                                                               \
+#define EMPTY_BOUND                                                                                          \
     ((RtNeighbourBound){                                                                                     \
         {-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}, {INFINITY, INFINITY, INFINITY}})
 
 static void set_slot(RtNeighbours *self, uint32_t slot, uint32_t cluster) {
     RtNeighbourBound *bound = &self->bounds[self->capacity + slot];
     self->cluster_at[slot] = cluster;
-    *bound = NOBODY;
+    *bound = EMPTY_BOUND;
     if (cluster == RT_NO_CLUSTER) return;
     const RtBox *box = &self->tree->nodes[cluster].box;
     self->slot_of[cluster] = slot;
@@ -29,7 +29,7 @@ static void fit_node(RtNeighbours *self, uint32_t node) {
     self->bounds[node] = bound;
 }
 
-/* Puts refs[0..count) into slots[first..first + room), halves into halves; count <= room. */
+/* Fills slots[first..first + room) by medians; count <= room. */
 static void fill_slots(RtNeighbours *self, RtTreeRef *refs, uint32_t count, uint32_t first, uint32_t room) {
     if (count == 0) return;
     if (count == 1) {
@@ -78,8 +78,8 @@ void rt_neighbours_unite(RtNeighbours *self, uint32_t a, uint32_t b, uint32_t un
     }
 }
 
-/* No cluster below `node` is nearer to one with box `box`. Rounding is monotone, so this holds for distances
- * as they are computed. */
+/* A lower bound on the distance of the clusters below `node` from one with box `box`. Rounding is monotone,
+ * so it also bounds computed distances. */
 static double least_distance(const RtNeighbours *self, uint32_t node, const RtBox *box) {
     const RtNeighbourBound *bound = &self->bounds[node];
     double size[3];

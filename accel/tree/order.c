@@ -8,24 +8,24 @@
 
 enum { DIGIT_BITS = 8, DIGITS = 1 << DIGIT_BITS, CHUNK = 1 << 14 };
 
-/* Where a chunk's items of each digit go. */
-typedef struct Places {
+/* The next position of the items of a chunk, by digit. */
+typedef struct Offsets {
     uint32_t of[DIGITS];
-} Places;
+} Offsets;
 
-/* Items are dealt in chunks of one size, which does not show in the order. */
+/* The chunks do not affect the order. */
 typedef struct Sorter {
     const RtBox *boxes;
-    RtBox centers; /* about all, of the chunks that were looked at */
-    uint32_t bits; /* of a Morton code along an axis */
-    int axis;      /* or the axis that is sorted along, if there are no bits */
+    RtBox centers; /* the box of all centres */
+    uint32_t bits; /* of a Morton code along each axis; 0: sort along `axis` */
+    int axis;
     RtKeyed *items, *out;
     uint32_t count, chunk_size, shift;
-    Places *places;    /* [chunks] */
+    Offsets *offsets;  /* [chunks] */
     RtBox *centers_of; /* [chunks] */
 } Sorter;
 
-/* A chunk's first item and the one after its last. */
+/* The range of a chunk. */
 static uint32_t chunk_begin(const Sorter *s, size_t chunk) {
     return (uint32_t)chunk * s->chunk_size;
 }
@@ -45,27 +45,27 @@ static void find_centers(void *context, size_t chunk) {
 
 static void count_digits(void *context, size_t chunk) {
     Sorter *s = context;
-    uint32_t *place = s->places[chunk].of;
-    memset(place, 0, sizeof(Places));
+    uint32_t *offset = s->offsets[chunk].of;
+    memset(offset, 0, sizeof(Offsets));
     for (uint32_t i = chunk_begin(s, chunk); i < chunk_end(s, chunk); i++)
-        place[s->items[i].key >> s->shift & (DIGITS - 1)]++;
+        offset[s->items[i].key >> s->shift & (DIGITS - 1)]++;
 }
 
 static void move_items(void *context, size_t chunk) {
     Sorter *s = context;
-    uint32_t *place = s->places[chunk].of;
+    uint32_t *offset = s->offsets[chunk].of;
     for (uint32_t i = chunk_begin(s, chunk); i < chunk_end(s, chunk); i++)
-        s->out[place[s->items[i].key >> s->shift & (DIGITS - 1)]++] = s->items[i];
+        s->out[offset[s->items[i].key >> s->shift & (DIGITS - 1)]++] = s->items[i];
 }
 
-/* Turns numbers of digits into places: digit by digit, and of each chunk by chunk. False if there is but one
- * digit: all is in order. */
-static bool find_places(Sorter *s, size_t chunks) {
+/* Turns counts of digits into positions, digit by digit, then chunk by chunk. False if all items have the
+ * same digit. */
+static bool find_offsets(Sorter *s, size_t chunks) {
     for (uint32_t digit = 0, begin = 0; digit < DIGITS; digit++) {
         for (size_t c = 0; c < chunks; c++) {
-            uint32_t number = s->places[c].of[digit];
+            uint32_t number = s->offsets[c].of[digit];
             if (number == s->count && chunks == 1) return false;
-            s->places[c].of[digit] = begin;
+            s->offsets[c].of[digit] = begin;
             begin += number;
         }
     }
@@ -76,7 +76,7 @@ static bool find_places(Sorter *s, size_t chunks) {
 static RtStatus sort(Sorter *s, uint32_t bits, size_t chunks, int threads) {
     for (s->shift = 0; s->shift < bits; s->shift += DIGIT_BITS) {
         RT_TRY(rt_parallel_each(chunks, threads, count_digits, s, NULL));
-        if (!find_places(s, chunks)) continue;
+        if (!find_offsets(s, chunks)) continue;
         RT_TRY(rt_parallel_each(chunks, threads, move_items, s, NULL));
         RtKeyed *kept = s->items;
         s->items = s->out;
@@ -85,7 +85,7 @@ static RtStatus sort(Sorter *s, uint32_t bits, size_t chunks, int threads) {
     return RT_OK;
 }
 
-/* Spreads 21 bits so that two zeros follow each. */
+/* Inserts two zeros after each of 21 bits. */
 static uint64_t spread_bits(uint64_t x) {
     x = (x | x << 32) & UINT64_C(0x1f00000000ffff);
     x = (x | x << 16) & UINT64_C(0x1f0000ff0000ff);
@@ -105,7 +105,7 @@ static uint64_t morton_code(RtVec3 center, const RtBox *centers, int cells) {
     return code;
 }
 
-/* The bits of a number, so that they ascend with it: those of negative ones turned about. */
+/* Bits whose order as integers is that of the floats. */
 static uint32_t ascending_bits(float x) {
     uint32_t bits;
     memcpy(&bits, &x, sizeof bits);
@@ -137,11 +137,11 @@ static RtKeyed *ordered(Sorter s, int threads) {
     size_t chunks = s.count / s.chunk_size + 1;
     s.items = rt_alloc_unset(s.count, sizeof(RtKeyed));
     s.out = rt_alloc_unset(s.count, sizeof(RtKeyed));
-    s.places = rt_alloc(chunks, sizeof(Places));
+    s.offsets = rt_alloc(chunks, sizeof(Offsets));
     s.centers_of = rt_alloc(chunks, sizeof(RtBox));
-    bool done = s.items && s.out && s.places && s.centers_of && make_order(&s, chunks, threads) == RT_OK;
+    bool done = s.items && s.out && s.offsets && s.centers_of && make_order(&s, chunks, threads) == RT_OK;
     rt_free(s.out);
-    rt_free(s.places);
+    rt_free(s.offsets);
     rt_free(s.centers_of);
     if (done) return s.items;
     rt_free(s.items);

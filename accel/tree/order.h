@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Orders of boxes by their centres: along the Morton curve (Morton 1966) or along an axis. Sorted by radix,
- * so in time linear in their number; what has equal keys stays in the order of ids. */
+/* Sorting boxes by their centres: along the Morton curve (Morton 1966) or along an axis. Radix sort, in
+ * linear time; equal keys stay in the order of ids. */
 #ifndef RT_ACCEL_TREE_ORDER_H
 #define RT_ACCEL_TREE_ORDER_H
 
@@ -15,11 +15,11 @@ typedef struct RtKeyed {
     uint32_t id;
 } RtKeyed;
 
-/* boxes[0..count) in ascending order of keys; NULL where memory is short. Free with rt_free. The same on any
- * number of `threads` (0 = all processors).
- *   morton  the box about all centres is cut into 2^bits cells along each axis (bits 1..RT_MAX_MORTON_BITS);
- *           the key is the cell of the centre, of whose numbers x gives the lowest bit, y the next, z
- *   axis    the key ascends with the centre along `axis` */
+/* Returns boxes[0..count) in ascending order of keys, or NULL if out of memory. Free with rt_free. The order
+ * does not depend on the number of `threads` (0 = all processors).
+ *   morton  the box of all centres is divided into 2^bits cells along each axis, bits 1..RT_MAX_MORTON_BITS;
+ *           the key interleaves the coordinates of the centre's cell, x in the lowest bit, then y, then z
+ *   axis    the key increases with the centre along `axis` */
 RtKeyed *rt_order_morton(const RtBox *boxes, uint32_t count, uint32_t bits, int threads);
 RtKeyed *rt_order_axis(const RtBox *boxes, uint32_t count, int axis, int threads);
 

@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Parallel locally-ordered clustering (Meister & Bittner 2018).
  *
- * Clusters stand in a row, in Morton order of the objects' centres. In a round everyone looks for its nearest
- * among the `radius` before and after; two that chose each other are united and stand where the first stood.
- * Equal distances are decided by the exclusive or of the places, which is the same seen from either side and
- * differs among the partners of one cluster: so the least pair of a round always is mutual, every round makes
- * progress, and coincident objects pair up like a balanced tree.
+ * Clusters form a row, in Morton order of the objects' centres. In each round every cluster finds its nearest
+ * neighbour among the `radius` before and after it; two that chose each other are merged in the place of the
+ * first. Ties go to the smaller exclusive or of the positions, which is symmetric and differs among the
+ * neighbours of a cluster. So the nearest pair of a round is always mutual, every round makes progress, and
+ * coincident objects pair up into a balanced tree.
  *
- * The row is dealt in chunks. A chunk measures the pairs that its own clusters are in, and writes its part of
- * the next row where the chunks before end: so unions are numbered in the order of the row, whichever thread
- * makes them.
+ * The row is divided into chunks. A chunk measures the pairs of its own clusters, and writes its part of the
+ * next row behind those of the chunks before it. So merged nodes are numbered in the order of the row, on any
+ * thread.
  *
- * Deviation: where distances grow along the row, the nearest of everyone is the one before, and only one pair
- * of a round is mutual. So after PATIENCE rounds, in which most scenes are done, a cluster is also united
- * with its nearest if that has not been united yet: rounds are then fewer than objects by far, and the time
- * is linear in the objects but for a logarithm. */
+ * Deviation: where distances increase along the row, the nearest of every cluster is the one before it, and
+ * only one pair of a round is mutual. After PATIENCE rounds, which suffice for most scenes, a cluster is also
+ * merged with its nearest neighbour if that one is free. So there are far fewer rounds than objects, and the
+ * time is linear in the objects up to a logarithm. */
 #include "accel/tree/order.h"
 #include "accel/tree/tree.h"
 #include "core/base/box4.h"
@@ -28,17 +28,17 @@ typedef struct Cluster {
     uint32_t node;
 } Cluster;
 
-/* What a chunk leaves of its clusters, and how many unions it makes; then those of the chunks before. */
-typedef struct Left {
+/* The clusters that a chunk leaves, and its merges; later the sums over the chunks before it. */
+typedef struct Remaining {
     uint32_t clusters, unions;
-} Left;
+} Remaining;
 
 typedef struct Rounds {
     RtTree *tree;
     Cluster *row, *next; /* [count] */
     double *distance;    /* [count] to the nearest */
-    uint32_t *nearest;   /* [count] its place in the row */
-    Left *left;          /* [chunks] */
+    uint32_t *nearest;   /* [count] its position in the row */
+    Remaining *left;     /* [chunks] */
     uint32_t count, radius;
 } Rounds;
 
@@ -58,23 +58,23 @@ static inline void offer(const Rounds *r, uint32_t from, uint32_t place, double 
     r->nearest[from] = place;
 }
 
-/* Measures cluster i against first..last, two at a time, and tells it, or them, or both. Nearly always nobody
- * is nearer than who is known. */
+/* Measures cluster i against first..last, two at a time; updates i, or them, or both. Rarely is one nearer
+ * than the nearest so far. */
 static inline __attribute__((always_inline)) void measure(const Rounds *r, uint32_t i, uint32_t first,
-                                                          uint32_t last, bool tell_it, bool tell_them) {
+                                                          uint32_t last, bool update_it, bool update_them) {
     RtBox4 own = r->row[i].box;
     for (uint32_t j = first; j <= last; j += 2) {
         uint32_t k = j < last ? j + 1 : j;
         RtDouble2 distances =
             rt_box4_half_areas(rt_box4_union(own, r->row[j].box), rt_box4_union(own, r->row[k].box));
-        double its = tell_it ? r->distance[i] : -1;
+        double its = update_it ? r->distance[i] : -1;
         RtDouble2 known = {its, its};
-        if (tell_them) known = rt_max(known, ((RtDouble2){r->distance[j], r->distance[k]}));
+        if (update_them) known = rt_max(known, ((RtDouble2){r->distance[j], r->distance[k]}));
         if (!rt_le_bits(distances, known)) continue;
-        if (tell_it) offer(r, i, j, distances[0]);
-        if (tell_it) offer(r, i, k, distances[1]);
-        if (tell_them) offer(r, j, i, distances[0]);
-        if (tell_them) offer(r, k, i, distances[1]);
+        if (update_it) offer(r, i, j, distances[0]);
+        if (update_it) offer(r, i, k, distances[1]);
+        if (update_them) offer(r, j, i, distances[0]);
+        if (update_them) offer(r, k, i, distances[1]);
     }
 }
 
@@ -85,7 +85,7 @@ static void find_nearest(void *context, size_t chunk) {
         r->distance[i] = INFINITY;
         r->nearest[i] = UINT32_MAX;
     }
-    /* Downward, so that everyone meets the near ones first, among whom the nearest is as a rule. */
+    /* Downward, so that near neighbours, where the nearest usually is, come first. */
     for (uint32_t i = end, lowest = begin > r->radius ? begin - r->radius : 0; i-- > lowest;) {
         uint32_t last = r->count - 1 - i > r->radius ? i + r->radius : r->count - 1;
         uint32_t last_here = last < end ? last : end - 1;
@@ -102,7 +102,7 @@ static bool is_mutual(const uint32_t *nearest, uint32_t i) {
     return nearest[nearest[i]] == i;
 }
 
-/* Whoever's choice is still free gets it. */
+/* Pairs clusters whose nearest neighbour is still free. */
 static void pair_more(uint32_t *nearest, uint32_t count) {
     for (uint32_t i = 0; i < count; i++) {
         uint32_t other = nearest[i];
@@ -112,7 +112,7 @@ static void pair_more(uint32_t *nearest, uint32_t count) {
 
 static void count_left(void *context, size_t chunk) {
     const Rounds *r = context;
-    Left left = {0, 0};
+    Remaining left = {0, 0};
     for (uint32_t i = chunk_begin(chunk); i < chunk_end(r, chunk); i++) {
         bool mutual = is_mutual(r->nearest, i), first = r->nearest[i] > i;
         left.clusters += !mutual || first;
@@ -144,11 +144,11 @@ static RtStatus run_round(Rounds *r, uint32_t round, int threads, RtError *error
     RT_TRY(rt_parallel_each(chunks, threads, find_nearest, r, error));
     if (round >= PATIENCE) pair_more(r->nearest, r->count);
     RT_TRY(rt_parallel_each(chunks, threads, count_left, r, error));
-    Left sum = {0, 0};
+    Remaining sum = {0, 0};
     for (size_t c = 0; c < chunks; c++) {
-        Left left = r->left[c];
+        Remaining left = r->left[c];
         r->left[c] = sum;
-        sum = (Left){sum.clusters + left.clusters, sum.unions + left.unions};
+        sum = (Remaining){sum.clusters + left.clusters, sum.unions + left.unions};
     }
     RT_TRY(rt_parallel_each(chunks, threads, unite_pairs, r, error));
     Cluster *kept = r->row;
@@ -160,7 +160,7 @@ static RtStatus run_round(Rounds *r, uint32_t round, int threads, RtError *error
     return RT_OK;
 }
 
-/* What rounds begin with. Neighbours in the row are neighbours in memory, as far as can be. */
+/* The input of the first round. Neighbours in the row are neighbours in memory where possible. */
 typedef struct Start {
     const Rounds *rounds;
     const RtKeyed *order;
@@ -197,7 +197,7 @@ RtStatus rt_tree_ploc(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t
                 rt_alloc_unset(count, sizeof(Cluster)),
                 rt_alloc_unset(count, sizeof(double)),
                 rt_alloc_unset(count, sizeof(uint32_t)),
-                rt_alloc((size_t)count / CHUNK + 1, sizeof(Left)),
+                rt_alloc((size_t)count / CHUNK + 1, sizeof(Remaining)),
                 count,
                 radius};
     bool enough = r.row && r.next && r.distance && r.nearest && r.left;

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a hierarchy is like beside its expected cost: end-point overlap and leaf-count variability (Aila,
- * Karras & Laine 2013, "On Quality Metrics of Bounding Volume Hierarchies").
+/* Quality metrics of hierarchies beside the expected cost: end-point overlap and leaf-count variability
+ * (Aila, Karras & Laine 2013, "On Quality Metrics of Bounding Volume Hierarchies").
  *
- * Both are means over samples, the same for every hierarchy over a scene, which are functions of their
- * numbers alone; so they are quick with any number of objects, and figures of two hierarchies differ by less
- * than each is uncertain. End-point overlap is the part of the surface that lies in a node but is not below
- * it, weighed by what the node costs, which is the mean, over points of the surface, of what nodes cost that
- * contain the point but not its object. There is a point in each of POINTS parts of the surface of the same
- * area. A divided object is below a node where the part is that holds the point. Leaf-count variability is
- * the standard deviation of the number of leaves that a line meets: lines are uniform, those of LINES that
- * meet the root. */
+ * Both are means over samples. The samples are the same for every hierarchy over a scene, so the computation
+ * is fast for any number of objects, and differences between hierarchies are more precise than the values.
+ * End-point overlap is the area of the surface that lies in a node but does not belong to its subtree,
+ * weighted by the cost of the node: the mean, over points of the surface, of the cost of all nodes that
+ * contain the point but not its object. There is one point in each of POINTS parts of the surface of equal
+ * area. The part of a split object that contains the point belongs to a node. Leaf-count variability is the
+ * standard deviation of the number of leaves that a line meets, over those of LINES uniform lines that meet
+ * the root. */
 #include "accel/tree/hierarchy.h"
 
 #include "core/base/random.h"
@@ -32,8 +32,8 @@ static bool lists(const RtHierarchy *self, const RtNode *leaf, uint32_t id) {
     return false;
 }
 
-/* Whether a leaf below lists the object and contains the point of it; adds to *cost that of the nodes that
- * contain the point, and none such. */
+/* Whether a leaf below lists the object and contains the point; adds to *cost the cost of the nodes that
+ * contain the point without such a leaf. */
 static bool add_overlap(const RtHierarchy *self, uint32_t index, RtVec3 point, uint32_t id, double *cost) {
     const RtNode *node = &self->nodes[index];
     uint32_t fanout = rt_node_fanout(node);
@@ -61,7 +61,7 @@ static RtVec3 point_of(const RtTriangle *triangle, const RtBox *box, RtRandom *r
     return rt_vec_max(box->lo, rt_vec_min(box->hi, p));
 }
 
-/* Not known but of triangles. */
+/* Triangles only. */
 static double end_point_overlap(const RtHierarchy *self, const RtGeometry *g) {
     double total = 0, passed = 0, cost = 0;
     uint32_t points = 0, held = 0;
@@ -74,7 +74,8 @@ static double end_point_overlap(const RtHierarchy *self, const RtGeometry *g) {
         while (points < POINTS && next < passed) {
             double own = 0;
             RtVec3 point = point_of(&g->triangles[i], &g->boxes[i], &random);
-            bool found = add_overlap(self, 0, point, i, &own); /* rounding may take it out of a part's box */
+            bool found =
+                add_overlap(self, 0, point, i, &own); /* rounding may move it out of the box of a part */
             held += found;
             cost += found ? own : 0;
             random = rt_random(POINT_SEED, ++points);
@@ -96,7 +97,7 @@ static uint32_t leaves_met(const RtHierarchy *self, uint32_t index, const RtPrep
     return sum;
 }
 
-/* Through two uniform points of the sphere about a box. */
+/* A line through two uniform points of the sphere around a box. */
 static RtRay line_about(const RtBox *box, RtRandom *random) {
     RtVec3d lo = rt_widen(box->lo), half = rt_scaled(rt_subd(rt_widen(box->hi), lo), 0.5);
     RtVec3d center = rt_addd(lo, half);

@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Better trees by moving subtrees to where they cost less.
+/* Optimising trees by moving subtrees to where they cost less.
  *
  * Papers: Bittner, Hapala & Havran 2013, "Fast Insertion-Based Optimization of Bounding Volume Hierarchies"
  * (CGF 32(1); the move, the search by branch and bound); Meister & Bittner 2018, "Parallel Reinsertion for
- * Bounding Volume Hierarchy Optimization" (CGF 37(2); every node at once, from where it stands).
+ * Bounding Volume Hierarchy Optimization" (CGF 37(2); all nodes at once, each from its own position).
  *
- * A move takes node N from its parent P, puts N's sibling into P's place, and P, with N, between some node X
- * and X's parent. It gains what the areas of inner nodes lose in all. In a round every node looks for its
- * best X in the tree as it stands, on all threads. Then the moves are made one by one, those that gain most
- * first, equal ones by node: each only if it still gains in the tree as the moves before have left it, which
- * is told by going up from N and from X. So the cost never rises, moves never close a circle, and the tree
- * does not depend on threads. This stands for the paper's locks, under which moves go by what they gained
- * before the others. Boxes are refitted at once, from both ends of the move.
+ * A move removes node N and its parent P, puts N's sibling in P's place, and inserts P, with N, between some
+ * node X and X's parent. Its gain is the decrease of the sum of areas of inner nodes. In a round every node
+ * searches for its best X in the current tree, in parallel. Then the moves are made one by one, the largest
+ * gain first, ties by node, each only if climbing from N and from X shows that it still gains in the tree
+ * left by the moves before. So the cost never rises, moves never make a cycle, and the tree does not depend
+ * on threads. This replaces the paper's locks, under which moves rely on the gain they had before the others.
+ * Boxes are refitted at once, from both ends of the move.
  *
- * Left out: cyclic choice of a part of the nodes. */
+ * Left out: the cyclic choice of a subset of the nodes. */
 #include "accel/tree/tree.h"
 
 #include "core/base/memory.h"
@@ -24,18 +24,18 @@
 
 #define NONE UINT32_MAX
 
-/* Nodes that a search looks at, and that it keeps for later, at most: boxes that all lie in one another leave
- * branch and bound nothing to go by. What is beyond is not looked at. */
+/* Most nodes that a search visits, and that it keeps on its stack: branch and bound prunes nothing among
+ * boxes nested in one another. The search ignores the others. */
 enum { MAX_VISITS = 1024, MAX_KEPT = 96 };
 
-/* Nodes that a move climbs, at most. Such boxes cost least in a chain as deep as they are many, along which
- * every move would climb: what stands lower stays where it is. */
+/* Most nodes that a move climbs. Nested boxes cost least in a chain as deep as their number, which every move
+ * would climb; deeper nodes stay where they are. */
 enum { MAX_CLIMB = 512 };
 
 /* Nodes per item of parallel work. */
 enum { CHUNK = 1024 };
 
-/* A gain must be more than rounding could make of none, as a part of the area that is moved. */
+/* The least gain, as a fraction of the area that is moved: more than rounding errors. */
 #define LEAST_GAIN 0x1p-30
 
 typedef struct Move {
@@ -46,9 +46,9 @@ typedef struct Move {
 typedef struct Optimizer {
     RtTree *tree;
     uint32_t *parent; /* [used], NONE for the root */
-    uint32_t *mark;   /* [used] number of the last move that had the node above its N */
-    Move *moves;      /* [used] by node; then those that gain, in a row */
-    uint32_t marked;  /* moves tried so far in this round */
+    uint32_t *mark;   /* [used] the last move whose N was below this node */
+    Move *moves;      /* [used] by node; then those with a gain */
+    uint32_t marked;  /* moves tried in this round */
 } Optimizer;
 
 static double area_of(const Optimizer *o, uint32_t node) {
@@ -68,19 +68,18 @@ static uint32_t sibling(const Optimizer *o, uint32_t node) {
 
 typedef struct Search {
     const Optimizer *o;
-    RtBox box;   /* of the node that is to move */
-    double area; /* its */
+    RtBox box;   /* of the node to move */
+    double area; /* of that box */
     Move best;
     uint32_t visits;
 } Search;
 
 typedef struct Kept {
     uint32_t node;
-    double left; /* what taking the node away gains, less what the nodes above this one have grown */
+    double left; /* the gain of the removal, minus the growth of the nodes above */
 } Kept;
 
-/* Offers `node` and what is below to the search; `itself` is false where the node would only come back to
- * where it is. */
+/* Searches `node` and its subtree; `itself` is false if `node` would be the old position. */
 static void search_below(Search *s, uint32_t node, double gained, bool itself) {
     const RtTreeNode *nodes = s->o->tree->nodes;
     Kept stack[MAX_KEPT];
@@ -98,7 +97,7 @@ static void search_below(Search *s, uint32_t node, double gained, bool itself) {
         double left = at.left - (with - area_of(s->o, at.node));
         if (rt_tree_is_leaf(s->o->tree, at.node) || kept + 2 > MAX_KEPT) continue;
         if (!(left - s->area > s->best.gain)) continue;
-        /* On top the child that would grow less. */
+        /* The child that grows less is searched first. */
         const uint32_t *child = nodes[at.node].child;
         double growth[2];
         for (int c = 0; c < 2; c++) {
@@ -110,7 +109,7 @@ static void search_below(Search *s, uint32_t node, double gained, bool itself) {
     }
 }
 
-/* Goes up from the node, and from each node passed down into what hangs on its other side. */
+/* Climbs from the node, and searches the sibling of every node on the way. */
 static Move find_move(const Optimizer *o, uint32_t node) {
     Search s = {o, o->tree->nodes[node].box, area_of(o, node), {0, node, NONE}, 0};
     uint32_t at = o->parent[node];
@@ -127,7 +126,7 @@ static Move find_move(const Optimizer *o, uint32_t node) {
         search_below(&s, beside, gained, true);
         rest = box_with(o, beside, rest);
         double without = rt_box_half_area(rest);
-        /* Above all that is left of `above`: the union of both is what it was. */
+        /* Insert above `above`: the union of both is the box it had. */
         if (gained - without > s.best.gain) {
             s.best.gain = gained - without;
             s.best.target = above;
@@ -145,7 +144,7 @@ static void find_moves(void *context, size_t item) {
 
 /* ---- the moves ---- */
 
-/* Marks the nodes from `at` to the root with a stamp of their own; false if they are too many. */
+/* Marks the nodes from `at` to the root with a new stamp; false if there are too many. */
 static bool mark_path(Optimizer *o, uint32_t at) {
     uint32_t stamp = ++o->marked;
     for (uint32_t climbed = 0; at != NONE && climbed < MAX_CLIMB; at = o->parent[at], climbed++)
@@ -153,7 +152,7 @@ static bool mark_path(Optimizer *o, uint32_t at) {
     return at == NONE;
 }
 
-/* Whether the move can be made and gains, in the tree as it is. */
+/* Whether the move is valid and gains in the current tree. */
 static bool still_gains(Optimizer *o, const Move *move) {
     uint32_t node = move->node, target = move->target, p = o->parent[node];
     if (p == NONE || target == p || target == sibling(o, node) || !mark_path(o, p)) return false;
@@ -193,7 +192,7 @@ static bool equal_boxes(RtBox a, RtBox b) {
     return rt_box_contains(a, b) && rt_box_contains(b, a);
 }
 
-/* Makes the boxes of `node` and above those of their children. */
+/* Refits the boxes of `node` and its ancestors. */
 static void refit(Optimizer *o, uint32_t node) {
     for (; node != NONE; node = o->parent[node]) {
         RtBox before = o->tree->nodes[node].box;
@@ -210,7 +209,7 @@ static void make_move(Optimizer *o, const Move *move) {
     replace_child(o, o->parent[target], target, p);
     rt_tree_set_union(o->tree, p, target, node);
     o->parent[target] = p;
-    /* What has grown first: then the nodes above both ends are seen not to change. */
+    /* The insertion first: then common ancestors do not change twice. */
     refit(o, o->parent[p]);
     refit(o, old);
 }
@@ -221,7 +220,7 @@ static int by_gain(const void *a, const void *b) {
     return x->node < y->node ? -1 : x->node > y->node;
 }
 
-/* Gives the number of moves made. */
+/* Sets *made to the number of moves. */
 static RtStatus run_round(Optimizer *o, int threads, uint32_t *made, RtError *error) {
     uint32_t used = o->tree->used, found = 0;
     RT_TRY(rt_parallel_each((used + CHUNK - 1) / CHUNK, threads, find_moves, o, error));

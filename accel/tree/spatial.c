@@ -287,7 +287,8 @@ static RtStatus build_all(Builder *b, RtTree *tree, uint32_t count, uint32_t mos
     top.runs = rt_alloc(runs, sizeof(Run));
     if (!top.runs) return rt_fail_memory(error, "the top of a tree with spatial splits", runs * sizeof(Run));
     top.runs[0].group = (Group){.count = count, .spare = most - count};
-    RtStatus status = rt_parallel_tasks(&root, 1, sizeof root, threads, build_run, &top, error);
+    int workers = count > top.limit ? threads : 1;
+    RtStatus status = rt_parallel_tasks(&root, 1, sizeof root, workers, build_run, &top, error);
     rt_free(b->refs); /* before there are two trees */
     b->refs = NULL;
     if (status == RT_OK) status = close_gaps(&top, tree, threads, error);

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Trees from the top by the surface area heuristic, with every place between two neighbouring centres along
- * each of the axes tried (MacDonald & Booth 1990; the sweep of Wald, Boulos & Shirley 2007, "Ray Tracing
- * Deformable Scenes Using Dynamic Bounding Volume Hierarchies"). Time O(n log n) for balanced trees: the
- * references are sorted once per axis and then parted stably.
+/* Trees from the top by the surface area heuristic, with every position between two neighbouring centres
+ * tried along each axis (MacDonald & Booth 1990; the sweep of Wald, Boulos & Shirley 2007, "Ray Tracing
+ * Deformable Scenes Using Dynamic Bounding Volume Hierarchies"). O(n log n) for balanced trees: the
+ * references are sorted once per axis and then partitioned stably.
  *
- * There are three rows of the same references, each sorted along one axis. Those of a node are one run, at
- * the same place in all three, so that every pass over them reads memory in a row. */
+ * There are three rows of the same references, each sorted along one axis. The references of a node are one
+ * run, at the same position in all rows, so every pass reads memory sequentially. */
 #include "accel/tree/order.h"
 #include "accel/tree/sah_split.h"
 #include "accel/tree/tree.h"
@@ -15,24 +15,24 @@ typedef struct Sweep {
     RtTree *tree;
     RtTreeRef *rows[3];  /* [count] */
     RtTreeRef *spare;    /* [count] */
-    double *right_costs; /* [count] of what is right of a place: half area x number */
+    double *right_costs; /* [count] half area x number of the references right of a position */
     uint64_t *right;     /* a bit per reference, by id: it goes to the right */
 } Sweep;
 
-typedef struct Place {
+typedef struct Split {
     double cost;
-    uint32_t left; /* references before it */
+    uint32_t left; /* references on the left */
     int axis;
-} Place;
+} Split;
 
 static bool more_even(uint32_t left, uint32_t than, uint32_t count) {
     uint32_t a = left < count - left ? left : count - left, b = than < count - than ? than : count - than;
     return a > b;
 }
 
-/* Improves *best by the places of row[0..count). Of places of equal cost, as between coincident boxes, the
- * more even one is better. */
-static void try_axis(const Sweep *s, const RtTreeRef *row, uint32_t count, int axis, Place *best) {
+/* Improves *best by the positions in row[0..count). Among positions of equal cost, as between coincident
+ * boxes, the more balanced one wins. */
+static void try_axis(const Sweep *s, const RtTreeRef *row, uint32_t count, int axis, Split *best) {
     RtBox box = RT_EMPTY_BOX;
     for (uint32_t i = count; i-- > 1;) {
         box = rt_box_union(box, row[i].box);
@@ -43,21 +43,21 @@ static void try_axis(const Sweep *s, const RtTreeRef *row, uint32_t count, int a
         box = rt_box_union(box, row[i - 1].box);
         double cost = rt_box_half_area(box) * i + s->right_costs[i];
         if (cost > best->cost || (cost == best->cost && !more_even(i, best->left, count))) continue;
-        *best = (Place){cost, i, axis};
+        *best = (Split){cost, i, axis};
     }
 }
 
-static Place find_place(const Sweep *s, uint32_t begin, uint32_t count, int depth) {
+static Split find_split(const Sweep *s, uint32_t begin, uint32_t count, int depth) {
     if (depth < RT_TREE_MEDIAN_DEPTH) {
-        Place best = {.cost = INFINITY};
+        Split best = {.cost = INFINITY};
         for (int axis = 0; axis < 3; axis++) try_axis(s, s->rows[axis] + begin, count, axis, &best);
         return best;
     }
-    return (Place){0, count / 2, rt_longest_axis(rt_refs_centers(s->rows[0] + begin, count))};
+    return (Split){0, count / 2, rt_longest_axis(rt_refs_centers(s->rows[0] + begin, count))};
 }
 
-/* Moves what goes to the left to the front, either side in the order that it has. */
-static void part(const Sweep *s, RtTreeRef *row, uint32_t count) {
+/* Partitions stably, left side first. */
+static void partition(const Sweep *s, RtTreeRef *row, uint32_t count) {
     uint32_t left = 0, right = 0;
     for (uint32_t i = 0; i < count; i++) {
         bool goes_right = s->right[row[i].id / 64] >> row[i].id % 64 & 1;
@@ -66,18 +66,18 @@ static void part(const Sweep *s, RtTreeRef *row, uint32_t count) {
     for (uint32_t i = 0; i < right; i++) row[left + i] = s->spare[i];
 }
 
-/* Parts the references of a node in all rows; gives how many go to the left. */
-static uint32_t divide(const Sweep *s, uint32_t begin, uint32_t count, int depth) {
-    Place place = find_place(s, begin, count, depth);
-    const RtTreeRef *row = s->rows[place.axis] + begin;
+/* Partitions the references of a node in all rows; returns the number that go left. */
+static uint32_t split_node(const Sweep *s, uint32_t begin, uint32_t count, int depth) {
+    Split split = find_split(s, begin, count, depth);
+    const RtTreeRef *row = s->rows[split.axis] + begin;
     for (uint32_t i = 0; i < count; i++) {
         uint64_t bit = UINT64_C(1) << row[i].id % 64, *word = &s->right[row[i].id / 64];
-        *word = i < place.left ? *word & ~bit : *word | bit;
+        *word = i < split.left ? *word & ~bit : *word | bit;
     }
     for (int axis = 0; axis < 3; axis++) {
-        if (axis != place.axis) part(s, s->rows[axis] + begin, count);
+        if (axis != split.axis) partition(s, s->rows[axis] + begin, count);
     }
-    return place.left;
+    return split.left;
 }
 
 static uint32_t build(const Sweep *s, uint32_t begin, uint32_t count, int depth) {
@@ -86,13 +86,13 @@ static uint32_t build(const Sweep *s, uint32_t begin, uint32_t count, int depth)
         rt_tree_set_leaf(s->tree, node, s->rows[0][begin].box, s->rows[0][begin].id);
         return node;
     }
-    uint32_t left = divide(s, begin, count, depth);
+    uint32_t left = split_node(s, begin, count, depth);
     uint32_t first = build(s, begin, left, depth + 1);
     rt_tree_set_union(s->tree, node, first, build(s, begin + left, count - left, depth + 1));
     return node;
 }
 
-/* The references in order along an axis, or NULL. */
+/* The references sorted along an axis, or NULL. */
 static RtTreeRef *make_row(const RtBox *boxes, uint32_t count, int axis) {
     RtKeyed *order = rt_order_axis(boxes, count, axis, 1);
     RtTreeRef *row = order ? rt_alloc(count, sizeof(RtTreeRef)) : NULL;

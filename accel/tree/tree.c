@@ -57,7 +57,7 @@ double rt_tree_cost(const RtTree *tree) {
 
 /* ---- depth ---- */
 
-/* Whether a leaf hangs more than `levels` below `node`. */
+/* Whether a leaf is more than `levels` below `node`. */
 static bool reaches_below(const RtTree *tree, uint32_t node, uint32_t levels) {
     if (rt_tree_is_leaf(tree, node)) return false;
     if (levels == 0) return true;
@@ -65,15 +65,15 @@ static bool reaches_below(const RtTree *tree, uint32_t node, uint32_t levels) {
     return reaches_below(tree, child[0], levels - 1) || reaches_below(tree, child[1], levels - 1);
 }
 
-/* A subtree taken apart. */
-typedef struct Parts {
+/* The nodes of a subtree that is rebuilt. */
+typedef struct Rebuild {
     RtTree *tree;
-    RtTreeRef *leaves;       /* [references] by the numbers of their nodes */
+    RtTreeRef *leaves;       /* [references] ids are nodes */
     uint32_t *unions, *todo; /* [references] nodes */
     uint32_t leaf_count, union_count;
-} Parts;
+} Rebuild;
 
-static void take_apart(Parts *parts, uint32_t top) {
+static void collect(Rebuild *parts, uint32_t top) {
     uint32_t stacked = 0;
     parts->leaf_count = parts->union_count = 0;
     parts->todo[stacked++] = top;
@@ -89,8 +89,8 @@ static void take_apart(Parts *parts, uint32_t top) {
     }
 }
 
-/* Puts refs[0..count) together again, halved by number over and over; gives the topmost node. */
-static uint32_t rebuild(Parts *parts, RtTreeRef *refs, uint32_t count) {
+/* Rebuilds refs[0..count) by medians; returns the root. */
+static uint32_t rebuild(Rebuild *parts, RtTreeRef *refs, uint32_t count) {
     if (count == 1) return refs[0].id;
     uint32_t left = rt_split_median(refs, count);
     uint32_t a = rebuild(parts, refs, left), b = rebuild(parts, refs + left, count - left);
@@ -99,8 +99,8 @@ static uint32_t rebuild(Parts *parts, RtTreeRef *refs, uint32_t count) {
     return node;
 }
 
-/* The node that takes the place of `node`, which hangs at `depth`. */
-static uint32_t limited(Parts *parts, uint32_t node, uint32_t depth) {
+/* Limits the subtree of `node`, which is at `depth`; returns its new root. */
+static uint32_t limited(Rebuild *parts, uint32_t node, uint32_t depth) {
     RtTree *tree = parts->tree;
     if (rt_tree_is_leaf(tree, node)) return node;
     if (depth < RT_TREE_MEDIAN_DEPTH) {
@@ -109,17 +109,17 @@ static uint32_t limited(Parts *parts, uint32_t node, uint32_t depth) {
         return node;
     }
     if (!reaches_below(tree, node, RT_TREE_MAX_DEPTH - RT_TREE_MEDIAN_DEPTH)) return node;
-    take_apart(parts, node);
+    collect(parts, node);
     return rebuild(parts, parts->leaves, parts->leaf_count);
 }
 
 RtStatus rt_tree_limit_depth(RtTree *tree, RtError *error) {
     if (!reaches_below(tree, tree->root, RT_TREE_MAX_DEPTH)) return RT_OK;
     uint32_t count = rt_tree_leaf_count(tree);
-    Parts parts = {.tree = tree,
-                   .leaves = rt_alloc(count, sizeof(RtTreeRef)),
-                   .unions = rt_alloc(count, sizeof(uint32_t)),
-                   .todo = rt_alloc(count, sizeof(uint32_t))};
+    Rebuild parts = {.tree = tree,
+                     .leaves = rt_alloc(count, sizeof(RtTreeRef)),
+                     .unions = rt_alloc(count, sizeof(uint32_t)),
+                     .todo = rt_alloc(count, sizeof(uint32_t))};
     bool enough = parts.leaves && parts.unions && parts.todo;
     if (enough) tree->root = limited(&parts, tree->root, 0);
     rt_free(parts.leaves);

@@ -39,8 +39,8 @@ typedef struct RtTree {
 RtStatus rt_tree_init(RtTree *tree, uint32_t most, RtError *error);
 void rt_tree_clear(RtTree *tree);
 
-/* A tree of `count` leaves without inner nodes: node i is object i with boxes[i]. It is complete if count
- * is 1. */
+/* A tree of `count` leaves without inner nodes: node i is object i with boxes[i]. It is complete if count is
+ * 1. */
 RtStatus rt_tree_init_leaves(RtTree *tree, const RtBox *boxes, uint32_t count, RtError *error);
 
 static inline bool rt_tree_is_leaf(const RtTree *tree, uint32_t node) {
@@ -109,8 +109,7 @@ RtStatus rt_tree_insertion(RtTree *tree, const RtBox *boxes, uint32_t count, con
 RtStatus rt_tree_topdown(RtTree *tree, const RtBox *boxes, uint32_t count, int bins, int threads,
                          RtError *error);
 
-/* Top-down by the surface area heuristic, with every position between centres tried (MacDonald & Booth 1990).
- */
+/* Top-down by the surface area heuristic, all positions between centres tried (MacDonald & Booth 1990). */
 RtStatus rt_tree_sweep(RtTree *tree, const RtBox *boxes, uint32_t count, RtError *error);
 
 typedef struct RtSpatial {

@@ -57,10 +57,22 @@ static void copy(const RtWideTree *self, RtHierarchy *to, uint32_t at, RtWideRef
     }
 }
 
+/* The root: a leaf that is the only child of the first node, or that node. */
+static RtWideRef root_of(const RtWideTree *self) {
+    const RtWideNode *root = rt_wide_node(self, 0);
+    return root->count == 1 ? root->child[0] : 0;
+}
+
+static RtBox root_box(const RtWideTree *self) {
+    const RtWideNode *root = rt_wide_node(self, 0);
+    RtBox box = RT_EMPTY_BOX;
+    for (uint32_t i = 0; i < root->count; i++) box = rt_box_union(box, child_box(root, i));
+    return box;
+}
+
 /* The same hierarchy in plain form, to be cleared; false where memory is short. */
 static bool flatten(const RtWideTree *self, RtHierarchy *to) {
-    const RtWideNode *root = rt_wide_node(self, 0);
-    RtWideRef top = root->count == 1 ? root->child[0] : 0;
+    RtWideRef top = root_of(self);
     Sizes sizes = {0, 0};
     measure(self, top, &sizes);
     *to = (RtHierarchy){.width = RT_WIDE,
@@ -74,10 +86,7 @@ static bool flatten(const RtWideTree *self, RtHierarchy *to) {
         rt_hierarchy_clear(to);
         return false;
     }
-    to->nodes[0].box = RT_EMPTY_BOX;
-    for (uint32_t i = 0; i < root->count; i++) {
-        to->nodes[0].box = rt_box_union(to->nodes[0].box, child_box(root, i));
-    }
+    to->nodes[0].box = root_box(self);
     copy(self, to, 0, top);
     return true;
 }
@@ -95,20 +104,19 @@ void rt_wide_describe(const RtWideTree *self, const RtGeometry *geometry, RtDesc
     out->predicted_cost = self->cost;
 }
 
-void rt_wide_each_box(const RtWideTree *self, RtBoxViewer viewer) {
-    RtHierarchy plain;
-    if (self->node_count == 0 || !flatten(self, &plain)) return;
-    rt_hierarchy_each_box(&plain, NULL, viewer);
-    rt_hierarchy_clear(&plain);
+static void show(const RtWideTree *self, RtWideRef ref, RtBox box, uint32_t depth, RtBoxViewer viewer) {
+    bool leaf = rt_wide_kind(ref) != RT_WIDE_NODE;
+    viewer.show(
+        viewer.context,
+        &(RtBoxView){.box = &box, .depth = depth, .leaf = leaf, .objects = leaf ? rt_wide_count(ref) : 0});
+    if (leaf) return;
+    const RtWideNode *node = rt_wide_node(self, ref);
+    for (uint32_t i = 0; i < node->count; i++)
+        show(self, node->child[i], child_box(node, i), depth + 1, viewer);
 }
 
-RtStatus rt_wide_each_leaf(const RtWideTree *self, RtLeafViewer viewer, RtError *error) {
-    RtHierarchy plain;
-    if (self->node_count == 0) return RT_OK;
-    if (!flatten(self, &plain)) return rt_fail_memory(error, "the leaves of a hierarchy", self->bytes);
-    rt_hierarchy_each_leaf(&plain, viewer);
-    rt_hierarchy_clear(&plain);
-    return RT_OK;
+void rt_wide_each_box(const RtWideTree *self, RtBoxViewer viewer) {
+    if (self->node_count > 0) show(self, root_of(self), root_box(self), 0, viewer);
 }
 
 /* ---- checking ---- */

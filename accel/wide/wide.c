@@ -144,10 +144,6 @@ static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
     rt_wide_each_box(((const RtWide *)accel)->nearest, viewer);
 }
 
-static RtStatus each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error) {
-    return rt_wide_each_leaf(((const RtWide *)accel)->nearest, viewer, error);
-}
-
 const RtAccelOps rt_wide_ops = {
     .name = "wide",
     .summary = "hierarchy of boxes eight wide, traced in vectors, many rays at once: the fastest",
@@ -162,6 +158,6 @@ const RtAccelOps rt_wide_ops = {
     .describe = describe,
     .validate = validate,
     .each_box = each_box,
-    .each_leaf = each_leaf,
+    .shows_lists = true,
     .available = available,
 };

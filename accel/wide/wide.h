@@ -122,7 +122,6 @@ void rt_wide_clear(RtWideTree *self);
 void rt_wide_describe(const RtWideTree *self, const RtGeometry *geometry, RtDescription *out);
 RtStatus rt_wide_validate(const RtWideTree *self, const RtGeometry *geometry, RtError *error);
 void rt_wide_each_box(const RtWideTree *self, RtBoxViewer viewer);
-RtStatus rt_wide_each_leaf(const RtWideTree *self, RtLeafViewer viewer, RtError *error);
 
 /* ---- the accelerator ---- */
 

@@ -183,14 +183,14 @@ size_t rt_pictures_list(const RtPictureOptions *o, const char **paths, size_t co
 
 /* Overlays for shadow rays that look rays up in cells. */
 static bool has_cells_of_lights(const RtAccel *layer) {
-    return layer->ops->look_up && layer->ops->kinds >> RT_RAY_SHADOW & 1;
+    return layer->ops->find_cell && layer->ops->kinds >> RT_RAY_SHADOW & 1;
 }
 
 RtStatus rt_pictures_check(const RtPictureOptions *o, const RtAccel *accel, RtError *error) {
     const RtAccel *layer;
     if (!o->structure) return RT_OK;
     RT_TRY(rt_structure_layer(accel, o->layer, &layer, error));
-    if (o->of_boxes && layer->ops->look_up)
+    if (o->of_boxes && layer->ops->find_cell)
         return rt_fail(
             error, RT_BAD_INPUT,
             "%s needs a layer that has boxes, such as bvh or grid, and the picture shows %s: leave it out, "
@@ -208,7 +208,7 @@ RtStatus rt_pictures_check(const RtPictureOptions *o, const RtAccel *accel, RtEr
 bool rt_pictures_need_frame(const RtPictureOptions *o, const RtAccel *accel) {
     RtError error;
     const RtAccel *layer;
-    return rt_structure_layer(accel, o->layer, &layer, &error) == RT_OK && !layer->ops->look_up;
+    return rt_structure_layer(accel, o->layer, &layer, &error) == RT_OK && !layer->ops->find_cell;
 }
 
 static RtStatus draw_cells(const RtPictureOptions *o, const RtAccel *accel, const RtAccel *layer,
@@ -229,7 +229,7 @@ RtStatus rt_pictures_structure(const RtPictureOptions *o, const RtAccel *accel, 
     const RtAccel *layer;
     RtStructureOptions boxes = o->boxes;
     RT_TRY(rt_structure_layer(accel, o->layer, &layer, error));
-    if (layer->ops->look_up) return draw_cells(o, accel, layer, error);
+    if (layer->ops->find_cell) return draw_cells(o, accel, layer, error);
     if (o->in_middle) boxes.at = (double)rt_box_center(accel->scene->geometry.box).at[boxes.axis];
     return rt_structure_draw(o->structure, layer, frame, &boxes, error);
 }

@@ -13,10 +13,11 @@ typedef struct Leaves {
     RtError *error;
 } Leaves;
 
-static void take_leaf(void *context, uint32_t objects, uint32_t depth) {
+static void take_leaf(void *context, const RtBoxView *view) {
     Leaves *leaves = context;
+    if (!view->leaf) return;
     const uint32_t values[RT_LEAF_QUANTITY_COUNT] = {
-        [RT_QUANTITY_leaf_size] = objects, [RT_QUANTITY_leaf_depth] = depth};
+        [RT_QUANTITY_leaf_size] = view->objects, [RT_QUANTITY_leaf_depth] = view->depth};
     for (int q = 0; q < RT_LEAF_QUANTITY_COUNT && leaves->status == RT_OK; q++)
         leaves->status = rt_occurrences_add(&leaves->values[q], values[q], leaves->error);
 }
@@ -24,9 +25,9 @@ static void take_leaf(void *context, uint32_t objects, uint32_t depth) {
 static RtStatus distribute_leaves(const RtAccel *accel, RtBuildResult *result, RtError *error) {
     const RtAccel *base = rt_accel_base(accel);
     Leaves leaves = {.error = error};
-    if (!base->ops->each_leaf) return RT_OK;
-    RtStatus status = base->ops->each_leaf(base, (RtLeafViewer){take_leaf, &leaves}, error);
-    if (status == RT_OK) status = leaves.status;
+    if (!base->ops->shows_lists) return RT_OK;
+    base->ops->each_box(base, (RtBoxViewer){take_leaf, &leaves});
+    RtStatus status = leaves.status;
     if (status == RT_OK && !result->leaves)
         result->leaves = rt_alloc(RT_LEAF_QUANTITY_COUNT, sizeof(RtDistribution));
     if (status == RT_OK && !result->leaves)

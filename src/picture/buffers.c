@@ -33,7 +33,7 @@ static RtStatus draw_samples(cairo_t *cairo, const RtAccel *layer, RtImage *imag
     uint64_t named = 0, undecided = 0, samples = (uint64_t)s->columns * s->rows;
     RtCellView cell;
     for (uint32_t i = 0; i < samples; i++) {
-        layer->ops->look_up(layer, &(RtRay){.source = i}, &cell);
+        layer->ops->find_cell(layer, &(RtRay){.source = i}, &cell);
         named += cell.object < RT_UNNAMED_OBJECT;
         undecided += cell.object == RT_UNNAMED_OBJECT;
     }
@@ -41,7 +41,7 @@ static RtStatus draw_samples(cairo_t *cairo, const RtAccel *layer, RtImage *imag
         for (uint32_t x = 0; x < s->width; x++) {
             RtFootprint f = rt_pixel_footprint(s, x, y);
             uint32_t sample = (f.row + f.span / 2) * s->columns + f.column + f.span / 2;
-            layer->ops->look_up(layer, &(RtRay){.source = sample}, &cell);
+            layer->ops->find_cell(layer, &(RtRay){.source = sample}, &cell);
             rt_image_set(image, x, y, color_of_sample(&cell, x, y));
         }
     }
@@ -129,8 +129,8 @@ static RtVec3 direction_of(const CubeMap *map, const Face *face, int x, int y) {
     return direction;
 }
 
-/* Looks up all directions; true if any has a cell. */
-static bool look_up_cells(CubeMap *map) {
+/* Looks up all directions; returns whether any has a cell. */
+static bool find_cells(CubeMap *map) {
     bool any = false;
     for (int i = 0; i < WIDTH * HEIGHT; i++) map->cells[i].number = NO_CELL;
     for (int i = 0; i < 6 * SIDE * SIDE; i++) {
@@ -140,7 +140,7 @@ static bool look_up_cells(CubeMap *map) {
                      .kind = RT_RAY_SHADOW,
                      .source = map->light};
         RtCellView *cell = &map->cells[(face->row * SIDE + y) * WIDTH + face->column * SIDE + x];
-        if (!map->layer->ops->look_up(map->layer, &ray, cell)) cell->number = NO_CELL;
+        if (!map->layer->ops->find_cell(map->layer, &ray, cell)) cell->number = NO_CELL;
         if (cell->number == NO_CELL) continue;
         map->scale.most = fmax(map->scale.most, cell->length);
         any = true;
@@ -222,12 +222,12 @@ static RtStatus draw_cube_map(CubeMap *map, const char *file, const RtRay *marke
     RtCanvas canvas;
     RtImage image;
     RtCellView cell = {.number = NO_CELL};
-    if (!look_up_cells(map))
+    if (!find_cells(map))
         return rt_fail(
             error, RT_NOT_AVAILABLE,
             "%s has no cells around light %u, and passes its rays on: choose a number, as in light:cells=64",
             map->layer->ops->name, map->light);
-    if (marked && !map->layer->ops->look_up(map->layer, marked, &cell)) cell.number = NO_CELL;
+    if (marked && !map->layer->ops->find_cell(map->layer, marked, &cell)) cell.number = NO_CELL;
     RT_TRY(rt_image_init(&image, WIDTH, HEIGHT, error));
     RtStatus status = rt_canvas_open(&canvas, file, WIDTH, HEIGHT + legend_height(LINES - 1, map->em),
                                      RT_BLACK, map->em, error);

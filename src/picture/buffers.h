@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pictures of overlays that look rays up in cells (RtAccelOps.look_up): the item buffer as an image of
+/* Pictures of overlays that look rays up in cells (RtAccelOps.find_cell): the item buffer as an image of
  * object ids, a light buffer as an unfolded cube map of list lengths. */
 #ifndef RT_PICTURE_BUFFERS_H
 #define RT_PICTURE_BUFFERS_H

@@ -34,12 +34,17 @@ typedef struct Drawing {
 
 /* ---- which boxes, in which colours ---- */
 
+/* Empty leaves are left out. */
+static bool is_empty_leaf(const Drawing *d, const RtBoxView *view) {
+    return d->layer->ops->shows_lists && view->leaf && view->objects == 0;
+}
+
 /* Is the box within the requested levels and slice? */
 static bool is_shown(const Drawing *d, const RtBoxView *view) {
     const RtStructureOptions *o = d->options;
     RtPoint corners[RT_OUTLINE_CORNERS];
     if (rt_box_is_empty(*view->box) || view->depth < o->first_level || view->depth > o->last_level ||
-        (o->leaves && !view->leaf))
+        (o->leaves && !view->leaf) || is_empty_leaf(d, view))
         return false;
     return !o->slice || rt_outline_section(view, d->plane, corners) > 0;
 }
@@ -51,7 +56,7 @@ static double size_of(const RtBox *box) {
 /* Counts a box, and notes levels and sizes. */
 static void count_box(void *context, const RtBoxView *view) {
     Drawing *d = context;
-    d->all++;
+    d->all += !is_empty_leaf(d, view);
     if (!is_shown(d, view)) return;
     if (d->drawn++ == 0) d->first = d->last = view->depth;
     if (view->depth < d->first) d->first = view->depth;
@@ -293,7 +298,7 @@ static void draw_legend(const Drawing *d) {
 /* ---- from outside ---- */
 
 static bool has_picture(const RtAccelOps *ops) {
-    return ops->each_box || ops->look_up;
+    return ops->each_box || ops->find_cell;
 }
 
 static RtStatus refuse(const RtAccelOps *ops, RtError *error) {

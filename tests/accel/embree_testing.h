@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What tests of accel/embree share: soups of all shapes, rays that graze boxes, and answers beside those of
+/* Shared by tests of accel/embree: soups of all shapes, rays that graze boxes, and answers next to those of
  * brute. */
 #ifndef RT_TESTS_EMBREE_TESTING_H
 #define RT_TESTS_EMBREE_TESTING_H
@@ -10,7 +10,7 @@
 
 #include <stdio.h>
 
-/* Tells why, where it is not: the tests are skipped then. */
+/* Prints why not; then the tests are skipped. */
 static inline bool embree_is_built_in(void) {
     const RtAccelOps *ops;
     RtError error = {RT_OK, ""};
@@ -19,8 +19,8 @@ static inline bool embree_is_built_in(void) {
     return false;
 }
 
-/* Whether this processor and this Embree have what the spec asks for: Embree 4 has no streams. Anything else
- * that is refused fails the test. */
+/* Whether this processor and this Embree support the spec: Embree 4 has no streams. Any other refusal fails
+ * the test. */
 static inline bool embree_has(const char *text) {
     RtSpec spec;
     RtError why = {RT_OK, ""};
@@ -121,6 +121,12 @@ typedef struct Rays {
     size_t count;
 } Rays;
 
+static inline void free_rays(Rays *r) {
+    rt_free(r->rays);
+}
+
+#define OWNED_RAYS OWNED(free_rays) Rays
+
 /* Rays through a target each, from `distance` scene sizes away at most, with dir of every length and with and
  * without bounds; kinds in runs, so that packets are coherent and not. */
 static inline Rays make_rays(const RtScene *scene, size_t count, float size, float distance) {
@@ -154,16 +160,12 @@ typedef struct Answers {
 
 static inline Answers ask(const RtScene *scene, const char *spec, Rays rays, bool counted) {
     Answers a = {rt_alloc(rays.count, sizeof(RtHit)), rt_alloc(rays.count, sizeof(bool)), {{0}}};
-    RtAccel *accel;
-    RtQuery query;
-    assert_ok(rt_accel_open(spec, scene, &accel, error));
-    assert_ok(accel->ops->validate(accel, error));
+    OWNED_ACCEL RtAccel *accel = open_valid(scene, spec);
+    OWNED_QUERY query = {0};
     assert_ok(rt_query_init(&query, accel, error));
     rt_nearest(&query, rays.rays, rays.count, a.hits, counted ? a.tallies : NULL);
     RtTally apart[RT_RAY_KIND_COUNT] = {{0}};
     rt_occluded(&query, rays.rays, rays.count, a.blocked, counted ? apart : NULL);
-    rt_query_clear(&query);
-    rt_accel_destroy(accel);
     return a;
 }
 
@@ -171,6 +173,8 @@ static inline void forget(Answers *a) {
     rt_free(a->hits);
     rt_free(a->blocked);
 }
+
+#define OWNED_ANSWERS OWNED(forget) Answers
 
 static inline void assert_same(const Answers *got, const Answers *right, Rays rays, const char *spec) {
     for (size_t i = 0; i < rays.count; i++) {
@@ -189,17 +193,15 @@ static inline void assert_same(const Answers *got, const Answers *right, Rays ra
     }
 }
 
-/* By those of the specs that can be had here. */
+/* Tests the specs that are available here. */
 static inline void compare_with_brute(const RtScene *scene, Rays rays, const char *const *specs,
                                       size_t count) {
-    Answers right = ask(scene, "brute", rays, false);
+    OWNED_ANSWERS right = ask(scene, "brute", rays, false);
     for (size_t i = 0; i < count; i++) {
         if (!embree_has(specs[i])) continue;
-        Answers got = ask(scene, specs[i], rays, i % 2 == 1);
+        OWNED_ANSWERS got = ask(scene, specs[i], rays, i % 2 == 1);
         assert_same(&got, &right, rays, specs[i]);
-        forget(&got);
     }
-    forget(&right);
 }
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What tests of divided trees share: scenes of long slivers, which are cut, and rays that would find out. */
+/* Shared by tests of trees with split references: scenes of long slivers, and rays that reveal lost parts. */
 #ifndef RT_TESTS_SLIVERS_TESTING_H
 #define RT_TESTS_SLIVERS_TESTING_H
 

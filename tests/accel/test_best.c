@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* rt_best_specs: names that stand for the fastest of several settings. */
-#include "testing.h"
+/* rt_best_specs: names for the fastest of several settings. */
+#include "accel_testing.h"
 
 #include "accel/accel.h"
 
@@ -9,7 +9,7 @@
 
 static char specs[RT_MAX_BEST][RT_MAX_SPEC_CHARS];
 
-/* How many combinations of choices there are in "a=1|2,b=3|4|5". */
+/* The number of combinations of choices in "a=1|2,b=3|4|5". */
 static size_t combinations(const char *settings) {
     size_t product = 1, choices = 1;
     for (const char *c = settings;; c++) {
@@ -22,7 +22,7 @@ static size_t combinations(const char *settings) {
 }
 
 RT_TEST(every_name_stands_for_different_specs_that_can_be_built) {
-    RtScene scene;
+    OWNED_SCENE scene;
     rt_scene_init(&scene);
     assert_ok(rt_scene_finish(&scene, error));
     for (size_t i = 0; i < rt_accel_count(); i++) {
@@ -43,11 +43,9 @@ RT_TEST(every_name_stands_for_different_specs_that_can_be_built) {
             }
         }
     }
-    rt_scene_clear(&scene);
 }
 
-/* Embree's, where it was built in: packets and both builds, none robust; and what one ray at a time leaves.
- */
+/* Embree's, if it is built in: packets and both builds, not robust; and the part with single rays. */
 RT_TEST(the_best_of_embree_is_of_all_queries_and_one_of_single_rays) {
     size_t best = 0, one = 0;
     RtError why;

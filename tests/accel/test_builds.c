@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Every accelerator, on any number of threads and at any scale: no array overflows, and the structure is that
- * of one thread. */
+/* Every accelerator, on any number of threads and at any scale: no array overflows, and the structure does
+ * not depend on threads. */
 #include "equivalence_testing.h"
 
 #include "accel_testing.h"
@@ -26,7 +26,7 @@ static void make_triangles(RtScene *scene, uint32_t count, float from, float siz
     assert_ok(rt_scene_finish(scene, error));
 }
 
-/* False where this machine cannot build it. */
+/* False if this machine cannot build it. */
 static bool describe(const char *spec, const RtScene *scene, int threads, RtDescription *out) {
     RtAccel *accel;
     RtError problem;
@@ -53,14 +53,13 @@ RT_TEST(few_objects_on_several_threads_make_the_structure_of_one_at_every_settin
     static const uint32_t counts[] = {1, 33, 200};
     static const int threads[][2] = {{7, 0}, {3, 0}, {16, 0}};
     for (size_t c = 0; c < sizeof counts / sizeof counts[0]; c++) {
-        RtScene scene;
+        OWNED_SCENE scene;
         char spec[RT_MAX_SPEC_CHARS];
         make_triangles(&scene, counts[c], 1, 0.05f);
         for (size_t i = 0; i < rt_accel_count(); i++) {
             for (size_t n = 0; rt_spread_spec(rt_accel_at(i), n, spec); n++)
                 assert_same_on(spec, &scene, threads[c]);
         }
-        rt_scene_clear(&scene);
     }
 }
 
@@ -75,10 +74,9 @@ RT_TEST(many_objects_on_many_threads_make_the_structure_of_one) {
         int threads[3];
     } cases[] = {{4097, 10, {65}}, {33000, 10, {255}}, {100000, 2, {128}}};
     for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
-        RtScene scene;
+        OWNED_SCENE scene;
         make_triangles(&scene, cases[c].objects, 1, 0.005f);
         for (size_t i = 0; i < cases[c].specs; i++) assert_same_on(specs[i], &scene, cases[c].threads);
-        rt_scene_clear(&scene);
     }
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/bvh from the inside: its invariants, broken on purpose, and its depth. */
+/* accel/bvh: invariants, each broken on purpose, and depth. */
 #include "accel_testing.h"
 #include "clock_testing.h"
 
@@ -17,13 +17,6 @@ static void make_row(RtScene *scene, uint32_t count, float apart) {
     assert_ok(rt_scene_finish(scene, error));
 }
 
-static RtBvh *make_bvh(const RtScene *scene, const char *spec) {
-    RtAccel *accel;
-    assert_ok(rt_accel_open(spec, scene, &accel, error));
-    assert_ok(accel->ops->validate(accel, error));
-    return (RtBvh *)accel;
-}
-
 static RtDescription described(const RtBvh *bvh) {
     RtDescription description;
     rt_accel_describe(&bvh->base, &description);
@@ -31,9 +24,9 @@ static RtDescription described(const RtBvh *bvh) {
 }
 
 RT_TEST(validate_names_each_invariant_that_is_broken) {
-    RtScene scene;
+    OWNED_SCENE scene;
     make_row(&scene, 16, 3);
-    RtBvh *bvh = make_bvh(&scene, "bvh:max_leaf_size=1");
+    OWNED_ACCEL RtBvh *bvh = open_valid(&scene, "bvh:max_leaf_size=1");
     RtHierarchy *hierarchy = &bvh->hierarchy;
 
     RtNode root = hierarchy->nodes[0];
@@ -44,7 +37,7 @@ RT_TEST(validate_names_each_invariant_that_is_broken) {
     hierarchy->nodes[0].first = hierarchy->node_count - 1;
     assert_broken(&bvh->base, "children that are not there");
     hierarchy->nodes[0] = root;
-    hierarchy->nodes[0].count = 3; /* the traversal knows pairs only */
+    hierarchy->nodes[0].count = 3; /* the traversal is binary */
     assert_broken(&bvh->base, "node 0 has 3 children, not 2 to 2");
     hierarchy->nodes[0] = root;
 
@@ -59,7 +52,7 @@ RT_TEST(validate_names_each_invariant_that_is_broken) {
     rt_scene_clear(&scene);
 
     make_row(&scene, 2, 0);
-    bvh = make_bvh(&scene, "bvh:max_leaf_size=2");
+    bvh = open_valid(&scene, "bvh:max_leaf_size=2");
     hierarchy = &bvh->hierarchy;
     uint32_t *ids = hierarchy->ids;
     ids[1] = ids[0];
@@ -72,15 +65,13 @@ RT_TEST(validate_names_each_invariant_that_is_broken) {
     hierarchy->nodes[0].first = 0;
     hierarchy->nodes[0].count = RT_NODE_LEAF | 1;
     assert_broken(&bvh->base, "is in 0 leaves");
-    rt_accel_destroy(&bvh->base);
-    rt_scene_clear(&scene);
 }
 
 /* Every inner node gets a leaf and the next inner node as children. */
 RT_TEST(validate_names_a_node_that_is_too_deep) {
-    RtScene scene;
+    OWNED_SCENE scene;
     make_row(&scene, RT_TREE_MAX_DEPTH + 3, 0);
-    RtBvh *bvh = make_bvh(&scene, "bvh:max_leaf_size=1");
+    OWNED_ACCEL RtBvh *bvh = open_valid(&scene, "bvh:max_leaf_size=1");
     RtNode *nodes = bvh->hierarchy.nodes;
     RtBox box = nodes[0].box;
     for (uint32_t i = 0; i + 1 < scene.geometry.object_count; i++) {
@@ -88,32 +79,28 @@ RT_TEST(validate_names_a_node_that_is_too_deep) {
         nodes[2 * i + 1] = (RtNode){.box = box, .first = i, .count = RT_NODE_LEAF | 1};
     }
     assert_broken(&bvh->base, "node 129 is too deep");
-    rt_accel_destroy(&bvh->base);
-    rt_scene_clear(&scene);
 }
 
 static const char *const builds[] = {"binned,bins=2", "sweep", "lbvh", "lbvh,bits=1", "ploc"};
 enum { BUILD_COUNT = sizeof builds / sizeof builds[0] };
 
 RT_TEST(coincident_objects_are_halved_within_the_depth_limit) {
-    RtScene scene;
+    OWNED_SCENE scene;
     make_row(&scene, 1000, 0);
     for (int b = 0; b < BUILD_COUNT; b++) {
         char spec[64];
         snprintf(spec, sizeof spec, "bvh:max_leaf_size=1,build=%s", builds[b]);
-        RtBvh *bvh = make_bvh(&scene, spec);
+        OWNED_ACCEL RtBvh *bvh = open_valid(&scene, spec);
         RtDescription description = described(bvh);
         assert_int_equal(description.leaves, 1000);
         assert_int_equal(description.depth, 10);
-        rt_accel_destroy(&bvh->base);
     }
-    rt_scene_clear(&scene);
 }
 
-/* Spheres at distances that grow by powers of 2: a split always cuts off the last few, the worst case in
+/* Spheres at distances that grow by powers of 2: each split cuts off only the last few, the worst case for
  * depth. */
 RT_TEST(a_chain_of_growing_distances_stays_within_the_depth_limit) {
-    RtScene scene;
+    OWNED_SCENE scene;
     begin_scene(&scene);
     float x = 1e-17f;
     for (int i = 0; i < 110; i++, x *= 2) {
@@ -125,19 +112,17 @@ RT_TEST(a_chain_of_growing_distances_stays_within_the_depth_limit) {
     for (int b = 0; b < BUILD_COUNT; b++) {
         char spec[64];
         snprintf(spec, sizeof spec, "bvh:max_leaf_size=1,build=%s", builds[b]);
-        RtBvh *bvh = make_bvh(&scene, spec);
+        OWNED_ACCEL RtBvh *bvh = open_valid(&scene, spec);
         RtDescription description = described(bvh);
-        if (b < 2 || b == 4) assert_true(description.depth > 34); /* or the test would show nothing */
+        if (b < 2 || b == 4) assert_true(description.depth > 34); /* otherwise the test proves nothing */
         assert_true(description.depth <= RT_TREE_MAX_DEPTH);
-        rt_accel_destroy(&bvh->base);
     }
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(the_predicted_cost_of_two_disjoint_spheres_is_the_sum_by_hand) {
-    RtScene scene;
+    OWNED_SCENE scene;
     make_row(&scene, 2, 8);
-    RtBvh *bvh = make_bvh(&scene, "bvh:max_leaf_size=1,traversal_cost=0.5");
+    OWNED_ACCEL RtBvh *bvh = open_valid(&scene, "bvh:max_leaf_size=1,traversal_cost=0.5");
     RtDescription description = described(bvh);
     /* Root 10 x 2 x 2: half area 44; each leaf 2 x 2 x 2: 12. 0.5 + 12 / 44 + 12 / 44. */
     assert_true(fabs(description.predicted_cost - (0.5 + 24.0 / 44.0)) < 1e-12);
@@ -145,14 +130,12 @@ RT_TEST(the_predicted_cost_of_two_disjoint_spheres_is_the_sum_by_hand) {
     assert_int_equal(description.leaves, 2);
     assert_int_equal(description.references, 2);
     assert_int_equal(description.depth, 1);
-    rt_accel_destroy(&bvh->base);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(a_build_stays_on_its_threads_and_does_not_depend_on_them) {
-    RtScene scene;
+    OWNED_SCENE scene;
     RtSpec spec;
-    RtAccel *first = NULL;
+    OWNED_ACCEL RtAccel *first = NULL;
     begin_scene(&scene);
     RtRandom random = rt_random(1, 1);
     for (int i = 0; i < 30000; i++) {
@@ -161,22 +144,20 @@ RT_TEST(a_build_stays_on_its_threads_and_does_not_depend_on_them) {
     assert_ok(rt_scene_finish(&scene, error));
     assert_ok(rt_spec_parse("bvh:build=lbvh,reinsertion=3", &spec, error));
     for (int threads = 1; threads <= 3; threads++) {
-        RtAccel *accel;
+        OWNED_ACCEL RtAccel *accel = NULL;
         Labour before = labour_so_far();
         assert_ok(rt_accel_build(&spec, &scene, threads, &accel, error));
         if (threads == 1) {
             Labour labour = labour_since(before);
             assert_true(labour.others < 0.05 * labour.own);
             first = accel;
+            accel = NULL;
             continue;
         }
         const RtHierarchy *a = &((const RtBvh *)first)->hierarchy, *b = &((const RtBvh *)accel)->hierarchy;
         assert_int_equal(a->node_count, b->node_count);
         assert_memory_equal(a->nodes, b->nodes, a->node_count * sizeof(RtNode));
-        rt_accel_destroy(accel);
     }
-    rt_accel_destroy(first);
-    rt_scene_clear(&scene);
 }
 
 RT_TESTS(bvh, NULL, NULL)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* bvh:build=spatial: what is cut, that nothing of it is lost, and rays that would find out. */
+/* bvh:build=spatial: which objects are cut, that no part is lost, and rays that would reveal it. */
 #include "slivers_testing.h"
 #include "tree_testing.h"
 
@@ -8,13 +8,6 @@
 #include "scenes/open.h"
 
 #include <stdlib.h>
-
-static RtBvh *make_bvh(const RtScene *scene, const char *spec) {
-    RtAccel *accel;
-    assert_ok(rt_accel_open(spec, scene, &accel, error));
-    assert_ok(accel->ops->validate(accel, error));
-    return (RtBvh *)accel;
-}
 
 /* In the plane z = 0: a sliver (object 0) along the diagonal of [0,16]^2, and four equal triangles in each of
  * the two other corners. To cut the sliver at any x costs 5 * 256 by the heuristic; whole, with one of the
@@ -32,19 +25,17 @@ static RtScene make_diagonal(void) {
 }
 
 RT_TEST(a_long_diagonal_triangle_is_in_two_leaves) {
-    RtScene scene = make_diagonal();
-    RtBvh *bvh = make_bvh(&scene, "bvh:build=spatial");
+    OWNED_SCENE scene = make_diagonal();
+    OWNED_ACCEL RtBvh *bvh = open_valid(&scene, "bvh:build=spatial");
     assert_true(bvh->hierarchy.split_refs);
     assert_int_equal(bvh->hierarchy.id_count, 10);
     uint32_t leaves = 0;
     for (uint32_t i = 0; i < bvh->hierarchy.id_count; i++) leaves += bvh->hierarchy.ids[i] == 0;
     assert_int_equal(leaves, 2);
-    rt_accel_destroy(&bvh->base);
-    rt_scene_clear(&scene);
 }
 
 static RtTally count_ray(const RtScene *scene, const char *spec, const RtRay *ray) {
-    RtBvh *bvh = make_bvh(scene, spec);
+    RtBvh *bvh = open_valid(scene, spec);
     RtQuery query;
     RtHit hit;
     RtTally tallies[RT_RAY_KIND_COUNT] = {0};
@@ -59,7 +50,7 @@ static RtTally count_ray(const RtScene *scene, const char *spec, const RtRay *ra
 /* A ray in the plane of the triangles, which it misses, along the diagonal: the root, both of its children,
  * and the two leaves with parts of the sliver, whose siblings in the corners it passes by. */
 RT_TEST(a_part_that_was_tested_before_is_not_tested_again) {
-    RtScene scene = make_diagonal();
+    OWNED_SCENE scene = make_diagonal();
     const RtRay ray = {{-1, -1, 0}, 0, {1, 1, 0}, INFINITY, RT_RAY_RANDOM, 0};
     RtTally on = count_ray(&scene, "bvh:build=spatial", &ray);
     RtTally off = count_ray(&scene, "bvh:build=spatial,mailbox=off", &ray);
@@ -71,13 +62,12 @@ RT_TEST(a_part_that_was_tested_before_is_not_tested_again) {
     assert_int_equal(on.steps, 5);
     assert_int_equal(on.leaf_steps, 2);
     assert_int_equal(off.steps, 5);
-    rt_scene_clear(&scene);
 }
 
 /* ---- scenes of slivers ---- */
 
 RT_TEST(the_budget_is_kept_and_used) {
-    RtScene scene = make_slivers(2000, 1, 1, 0);
+    OWNED_SCENE scene = make_slivers(2000, 1, 1, 0);
     RtDescription description;
     double before = INFINITY;
     const struct {
@@ -87,36 +77,31 @@ RT_TEST(the_budget_is_kept_and_used) {
                 {"bvh:build=spatial,max_leaf_size=1,budget=1.1", 2050, 2200},
                 {"bvh:build=spatial,max_leaf_size=1,budget=3", 2500, 6000}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        RtBvh *bvh = make_bvh(&scene, rows[i].spec);
+        OWNED_ACCEL RtBvh *bvh = open_valid(&scene, rows[i].spec);
         rt_accel_describe(&bvh->base, &description);
         assert_in_range(description.references, rows[i].least, rows[i].most);
         assert_true(description.predicted_cost < before);
         before = description.predicted_cost;
-        rt_accel_destroy(&bvh->base);
     }
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(without_budget_or_overlap_it_is_the_binned_tree) {
-    RtScene scene = make_slivers(500, 2, 1, 0);
-    RtBvh *binned = make_bvh(&scene, "bvh");
+    OWNED_SCENE scene = make_slivers(500, 2, 1, 0);
+    OWNED_ACCEL RtBvh *binned = open_valid(&scene, "bvh");
     const char *specs[] = {"bvh:build=spatial,budget=1", "bvh:build=spatial,alpha=1"};
     for (int i = 0; i < 2; i++) {
-        RtBvh *bvh = make_bvh(&scene, specs[i]);
+        OWNED_ACCEL RtBvh *bvh = open_valid(&scene, specs[i]);
         const RtHierarchy *a = &binned->hierarchy, *b = &bvh->hierarchy;
         assert_false(b->split_refs);
         assert_int_equal(a->node_count, b->node_count);
         assert_memory_equal(a->nodes, b->nodes, a->node_count * sizeof(RtNode));
         assert_memory_equal(a->ids, b->ids, a->id_count * sizeof(uint32_t));
-        rt_accel_destroy(&bvh->base);
     }
-    rt_accel_destroy(&binned->base);
-    rt_scene_clear(&scene);
 }
 
-RT_TEST(validate_misses_a_part_of_a_divided_object) {
-    RtScene scene = make_slivers(200, 3, 1, 0);
-    RtBvh *bvh = make_bvh(&scene, "bvh:build=spatial,max_leaf_size=4");
+RT_TEST(validate_misses_a_part_of_a_split_object) {
+    OWNED_SCENE scene = make_slivers(200, 3, 1, 0);
+    OWNED_ACCEL RtBvh *bvh = open_valid(&scene, "bvh:build=spatial,max_leaf_size=4");
     RtHierarchy *hierarchy = &bvh->hierarchy;
     assert_true(hierarchy->split_refs);
     uint32_t tried = 0;
@@ -135,8 +120,6 @@ RT_TEST(validate_misses_a_part_of_a_divided_object) {
         hierarchy->ids[node->first] = id;
     }
     assert_true(tried > 50);
-    rt_accel_destroy(&bvh->base);
-    rt_scene_clear(&scene);
 }
 
 /* ---- hostile rays ---- */
@@ -144,8 +127,8 @@ RT_TEST(validate_misses_a_part_of_a_divided_object) {
 enum { RAYS = 300 };
 
 static void assert_like_brute(const RtScene *scene, const char *spec, uint64_t seed) {
-    RtAccel *brute;
-    RtBvh *bvh = make_bvh(scene, spec);
+    OWNED_ACCEL RtAccel *brute = NULL;
+    OWNED_ACCEL RtBvh *bvh = open_valid(scene, spec);
     RtQuery query, truth;
     RtRandom random = rt_random(seed, 1);
     assert_ok(rt_accel_open("brute", scene, &brute, error));
@@ -168,8 +151,6 @@ static void assert_like_brute(const RtScene *scene, const char *spec, uint64_t s
     }
     rt_query_clear(&truth);
     rt_query_clear(&query);
-    rt_accel_destroy(brute);
-    rt_accel_destroy(&bvh->base);
 }
 
 RT_TEST(hostile_rays_hit_like_brute) {
@@ -178,9 +159,8 @@ RT_TEST(hostile_rays_hit_like_brute) {
                            "bvh:build=spatial,reinsertion=2,mailbox=off,budget=4"};
     const float scales[] = {1, 1, 1, 1e-20f, 1e16f, 0.01f}, offsets[] = {0, 1e6f, 1e5f, 0, 0, -3000};
     for (uint64_t round = 0; round < 18; round++) {
-        RtScene scene = make_slivers(160, round, scales[round % 6], offsets[round % 6]);
+        OWNED_SCENE scene = make_slivers(160, round, scales[round % 6], offsets[round % 6]);
         for (int s = 0; s < 3; s++) assert_like_brute(&scene, specs[s], round);
-        rt_scene_clear(&scene);
     }
 }
 
@@ -190,7 +170,7 @@ RT_TEST(degenerate_scenes_are_built) {
     const char *specs[] = {"random:n=0", "random:n=1,shape=triangle", "random:n=300,distribution=coincident",
                            "random:n=300,distribution=plane,shape=mixed", "random:n=300,distribution=line"};
     for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
-        RtScene scene;
+        OWNED_SCENE scene;
         if (i == 0) {
             begin_scene(&scene);
             assert_ok(rt_scene_finish(&scene, error));
@@ -198,14 +178,13 @@ RT_TEST(degenerate_scenes_are_built) {
             assert_ok(rt_scene_open(specs[i], &scene, error));
             assert_like_brute(&scene, "bvh:build=spatial,alpha=0,budget=4", i);
         }
-        rt_accel_destroy(&make_bvh(&scene, "bvh:build=spatial")->base);
-        rt_scene_clear(&scene);
+        rt_accel_destroy(open_valid(&scene, "bvh:build=spatial"));
     }
 }
 
-/* Enough of them for the top to be built by all threads; and for more than FEW to share a budget. */
+/* Enough objects for all threads to build the top, and for groups of more than SMALL references. */
 RT_TEST(the_tree_is_the_same_bit_for_bit_on_any_number_of_threads) {
-    RtScene scene = make_slivers(12000, 7, 1, 0);
+    OWNED_SCENE scene = make_slivers(12000, 7, 1, 0);
     RtSpatial how = {
         .bins = 16, .alpha = 1e-5, .budget = 1.5, .leaf = 8, .traversal = 1, .limit = UINT64_MAX};
     RtTree one, other;
@@ -220,11 +199,10 @@ RT_TEST(the_tree_is_the_same_bit_for_bit_on_any_number_of_threads) {
         rt_tree_clear(&other);
     }
     rt_tree_clear(&one);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(what_may_take_too_much_is_refused_with_what_would_fit) {
-    RtScene scene = make_slivers(1000, 5, 1, 0);
+    OWNED_SCENE scene = make_slivers(1000, 5, 1, 0);
     RtSpatial how = {.bins = 16, .alpha = 0, .budget = 4, .leaf = 8, .traversal = 1, .limit = 300000};
     RtTree tree;
     RtError refusal;
@@ -238,11 +216,10 @@ RT_TEST(what_may_take_too_much_is_refused_with_what_would_fit) {
     how.limit = 1000;
     assert_int_equal(rt_tree_spatial(&tree, &scene.geometry, &how, 1, &refusal), RT_BAD_INPUT);
     assert_non_null(strstr(refusal.message, "another build"));
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(every_allocation_may_fail) {
-    RtScene scene = make_slivers(100, 6, 1, 0);
+    OWNED_SCENE scene = make_slivers(100, 6, 1, 0);
     int64_t live = rt_alloc_live();
     RtStatus status = RT_NO_MEMORY;
     for (uint64_t n = 1; status != RT_OK; n++) {
@@ -257,7 +234,6 @@ RT_TEST(every_allocation_may_fail) {
         assert_int_equal(rt_alloc_live(), live);
         assert_in_range(n, 1, 30);
     }
-    rt_scene_clear(&scene);
 }
 
 RT_TESTS(bvh_spatial, NULL, assert_nothing_is_kept)

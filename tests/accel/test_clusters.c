@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/clusters: exactness of every kind of extent with every order and method, the shape of its nodes, and
- * each invariant broken on purpose. */
+/* accel/clusters: every kind of extent with every order and method is exact; the shape of nodes; invariants,
+ * each broken on purpose. */
 #include "accel_testing.h"
 #include "equivalence_testing.h"
 
@@ -13,8 +13,7 @@
 static const char *const methods[] = {"agglomerative", "ploc", "goldsmith-salmon", "rubin-whitted", "sah"};
 enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
 
-/* Every kind with every order and method, on wide nodes and full leaves: more than one parameter at a
- * time. */
+/* Every kind with every order and method, on wide nodes and full leaves: several parameters at a time. */
 RT_TEST(every_combination_answers_like_brute) {
     static const char *const shapes[] = {"width=2", "width=5,max_leaf_size=4", "width=16,max_leaf_size=32"};
     static const char *const kinds[] = {"box", "sphere", "obb", "slabs"};
@@ -43,15 +42,8 @@ static RtScene make_row(uint32_t count) {
     return scene;
 }
 
-static RtClusters *make_clusters(const RtScene *scene, const char *spec) {
-    RtAccel *accel;
-    assert_ok(rt_accel_open(spec, scene, &accel, error));
-    assert_ok(accel->ops->validate(accel, error));
-    return (RtClusters *)accel;
-}
-
 RT_TEST(widening_opens_the_largest_child_and_lowers_the_predicted_cost_by_its_visit) {
-    RtScene scene = make_row(6);
+    OWNED_SCENE scene = make_row(6);
     /* Medians: {0 1 2} and {3 4 5}, both of {a b} and {c}. Boxes of n spheres are 4 n - 2 long: half areas 92
      * for six, 44 for three, 28 for two, 12 for one. */
     static const struct {
@@ -66,32 +58,25 @@ RT_TEST(widening_opens_the_largest_child_and_lowers_the_predicted_cost_by_its_vi
         {"clusters:method=rubin-whitted,width=16,extent=sphere", 1, (92 + 6 * 12) / 92.0},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        RtClusters *self = make_clusters(&scene, rows[i].spec);
+        OWNED_ACCEL RtClusters *self = open_valid(&scene, rows[i].spec);
         RtDescription description;
         self->base.ops->describe(&self->base, &description);
         assert_int_equal(description.interior, rows[i].interior);
         assert_int_equal(description.leaves, 6);
         assert_int_equal(description.references, 6);
         assert_true(fabs(description.predicted_cost - rows[i].cost) < 1e-12);
-        rt_accel_destroy(&self->base);
     }
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(objects_share_a_leaf_where_that_costs_no_more) {
-    RtScene apart = make_row(2);
-    RtClusters *self = make_clusters(&apart, "clusters:max_leaf_size=2");
-    assert_int_equal(self->hierarchy.node_count, 3); /* 28 * 2 > 28 + 2 * 12 */
-    rt_accel_destroy(&self->base);
-    rt_scene_clear(&apart);
-    RtScene scene;
+    OWNED_SCENE apart = make_row(2), scene;
+    OWNED_ACCEL RtClusters *two = open_valid(&apart, "clusters:max_leaf_size=2");
+    assert_int_equal(two->hierarchy.node_count, 3); /* 28 * 2 > 28 + 2 * 12 */
     begin_scene(&scene);
     for (int i = 0; i < 2; i++) assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(1, 0, 0), 1, error));
     assert_ok(rt_scene_finish(&scene, error));
-    self = make_clusters(&scene, "clusters:max_leaf_size=2");
-    assert_int_equal(self->hierarchy.node_count, 1);
-    rt_accel_destroy(&self->base);
-    rt_scene_clear(&scene);
+    OWNED_ACCEL RtClusters *one = open_valid(&scene, "clusters:max_leaf_size=2");
+    assert_int_equal(one->hierarchy.node_count, 1);
 }
 
 static void count_box(void *context, const RtBoxView *view) {
@@ -101,20 +86,18 @@ static void count_box(void *context, const RtBoxView *view) {
 }
 
 RT_TEST(pictures_get_every_node_with_its_depth) {
-    RtScene scene = make_row(4);
-    RtClusters *self = make_clusters(&scene, "clusters");
+    OWNED_SCENE scene = make_row(4);
+    OWNED_ACCEL RtClusters *self = open_valid(&scene, "clusters");
     uint32_t at_depth[3] = {0};
     self->base.ops->each_box(&self->base, (RtBoxViewer){count_box, at_depth});
     assert_int_equal(at_depth[0], 1);
     assert_int_equal(at_depth[1], 2);
     assert_int_equal(at_depth[2], 4);
-    rt_accel_destroy(&self->base);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(groups_of_spheres_get_tight_extents) {
-    RtScene scene = make_row(2); /* a capsule 6 long, 2 thick */
-    RtClusters *self = make_clusters(&scene, "clusters:extent=sphere");
+    OWNED_SCENE scene = make_row(2); /* a capsule 6 long, 2 thick */
+    OWNED_ACCEL RtClusters *self = open_valid(&scene, "clusters:extent=sphere");
     assert_true(self->set.balls[0].radius >= 3 && self->set.balls[0].radius < 3.000001);
     rt_accel_destroy(&self->base);
     rt_scene_clear(&scene);
@@ -124,12 +107,10 @@ RT_TEST(groups_of_spheres_get_tight_extents) {
         assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(3 * (float)i, 4 * (float)i, 0), 1, error));
     }
     assert_ok(rt_scene_finish(&scene, error));
-    self = make_clusters(&scene, "clusters:extent=obb");
+    self = open_valid(&scene, "clusters:extent=obb");
     /* Along the diagonal: 37 x 2 x 2. */
     const double *half = self->set.oriented[0].half;
     assert_true(fabs(half[0] * half[1] * half[2] - 18.5) < 1e-6);
-    rt_accel_destroy(&self->base);
-    rt_scene_clear(&scene);
 }
 
 /* ---- broken on purpose ---- */
@@ -142,8 +123,8 @@ static uint32_t some_leaf(const RtClusters *self) {
 }
 
 RT_TEST(validate_names_each_invariant_of_the_tree_that_is_broken) {
-    RtScene scene = make_row(16);
-    RtClusters *self = make_clusters(&scene, "clusters:width=4");
+    OWNED_SCENE scene = make_row(16);
+    OWNED_ACCEL RtClusters *self = open_valid(&scene, "clusters:width=4");
     RtNode root = self->hierarchy.nodes[0], *leaf = &self->hierarchy.nodes[some_leaf(self)], kept = *leaf;
 
     self->hierarchy.nodes[0].box.hi.x -= 1;
@@ -173,23 +154,20 @@ RT_TEST(validate_names_each_invariant_of_the_tree_that_is_broken) {
     *leaf = kept;
     self->hierarchy.ids[leaf->first] = 99;
     assert_broken(&self->base, "holds no object");
-    rt_accel_destroy(&self->base);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep) {
-    RtScene scene = make_row(2);
+    enum { COUNT = 80 };
+    OWNED_SCENE scene = make_row(2), three = make_row(3), row = make_row(COUNT);
     for (uint32_t i = 0; i < 2; i++) scene.geometry.boxes[i] = scene.geometry.box;
-    RtClusters *self = make_clusters(&scene, "clusters");
+    OWNED_ACCEL RtClusters *self = open_valid(&scene, "clusters");
     self->hierarchy.ids[1] = self->hierarchy.ids[0];
     assert_broken(&self->base, "in 2 leaves");
     self->hierarchy.node_count = 1;
     assert_broken(&self->base, "children that are not there");
     rt_accel_destroy(&self->base);
-    rt_scene_clear(&scene);
 
-    RtScene three = make_row(3);
-    self = make_clusters(&three, "clusters:method=rubin-whitted,max_leaf_size=3");
+    self = open_valid(&three, "clusters:method=rubin-whitted,max_leaf_size=3");
     RtNode root = self->hierarchy.nodes[0];
     assert_int_equal(self->hierarchy.node_count, 5);
     self->hierarchy.nodes[0] = (RtNode){root.box, 0, RT_NODE_LEAF | 3};
@@ -202,12 +180,9 @@ RT_TEST(validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep) {
     self->hierarchy.nodes[1] = two;
     assert_broken(&self->base, "has two parents");
     rt_accel_destroy(&self->base);
-    rt_scene_clear(&three);
 
     /* A chain by hand: node 2 i has a leaf and the rest. */
-    enum { COUNT = 80 };
-    RtScene row = make_row(COUNT);
-    self = make_clusters(&row, "clusters");
+    self = open_valid(&row, "clusters");
     for (uint32_t i = 0; i < COUNT; i++) {
         self->hierarchy.ids[i] = i;
         uint32_t leaf = i + 1 < COUNT ? 2 * i + 1 : 2 * i;
@@ -215,25 +190,21 @@ RT_TEST(validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep) {
         self->hierarchy.nodes[leaf] = (RtNode){row.geometry.boxes[i], i, RT_NODE_LEAF | 1};
     }
     assert_broken(&self->base, "too deep");
-    rt_accel_destroy(&self->base);
-    rt_scene_clear(&row);
 }
 
 RT_TEST(validate_names_the_extent_that_does_not_hold_its_objects) {
-    RtScene scene = make_row(8);
-    RtClusters *self = make_clusters(&scene, "clusters:extent=sphere");
+    OWNED_SCENE scene = make_row(8);
+    OWNED_ACCEL RtClusters *self = open_valid(&scene, "clusters:extent=sphere");
     self->set.balls[0].radius *= 1 - 1e-4;
     assert_broken(&self->base, "clusters: the sphere 0 does not contain object");
     rt_accel_destroy(&self->base);
-    self = make_clusters(&scene, "clusters:extent=obb");
+    self = open_valid(&scene, "clusters:extent=obb");
     self->set.oriented[1].half[0] *= 0.99;
     assert_broken(&self->base, "clusters: the oriented box 1 does not contain object");
     rt_accel_destroy(&self->base);
-    self = make_clusters(&scene, "clusters:extent=slabs,slabs=13");
+    self = open_valid(&scene, "clusters:extent=slabs,slabs=13");
     self->set.slabs[2 * 13 + 12].lo += 0.01f;
     assert_broken(&self->base, "clusters: the set of slabs 2 does not contain object");
-    rt_accel_destroy(&self->base);
-    rt_scene_clear(&scene);
 }
 
 RT_TESTS(clusters, NULL, NULL)

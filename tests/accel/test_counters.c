@@ -22,233 +22,146 @@ static const RtHit answers[RAY_COUNT] = {{1, 0}, {INFINITY, RT_NO_OBJECT}, {INFI
 typedef struct Row {
     const char *spec;
     int ray;
-    bool occluded; /* which question is asked */
+    bool occluded; /* the query */
     RtTally expected;
 } Row;
 
-/* One ray that hits, having tested so many objects, every one of which was hit. */
-#define HITS(tests) .rays = 1, .hits = 1, .object_tests = (tests), .object_hits = (tests)
+/* The query. */
+#define NEAREST false
+#define ANY     true
+
+/* One ray that hits every object it tests; one that misses; what it visits. */
+#define HITS(tests)                    .rays = 1, .hits = 1, .object_tests = (tests), .object_hits = (tests)
+#define MISSES(tests)                  .rays = 1, .object_tests = (tests)
+#define VISITS(extents, nodes, leaves) .extent_tests = (extents), .steps = (nodes), .leaf_steps = (leaves)
 
 static const Row rows[] = {
     /* brute: every object is tested; occlusion ends with the first that is hit. */
-    {"brute", THROUGH, false, {HITS(2)}},
-    {"brute", THROUGH, true, {HITS(1)}},
-    {"brute", BETWEEN, false, {.rays = 1, .object_tests = 2}},
-    {"brute", BETWEEN, true, {.rays = 1, .object_tests = 2}},
-    {"brute", BESIDE, false, {.rays = 1, .object_tests = 2}},
+    {"brute", THROUGH, NEAREST, {HITS(2)}},
+    {"brute", THROUGH, ANY, {HITS(1)}},
+    {"brute", BETWEEN, NEAREST, {MISSES(2)}},
+    {"brute", BETWEEN, ANY, {MISSES(2)}},
+    {"brute", BESIDE, NEAREST, {MISSES(2)}},
 
-    /* ideal, which was told the answers: one test for a hit, none for a miss. */
-    {"ideal", THROUGH, false, {HITS(1)}},
-    {"ideal", THROUGH, true, {HITS(1)}},
-    {"ideal", BETWEEN, false, {.rays = 1}},
-    {"ideal", BESIDE, true, {.rays = 1}},
+    /* ideal, which recorded the answers: one test for a hit, none for a miss. */
+    {"ideal", THROUGH, NEAREST, {HITS(1)}},
+    {"ideal", THROUGH, ANY, {HITS(1)}},
+    {"ideal", BETWEEN, NEAREST, {MISSES(0)}},
+    {"ideal", BESIDE, ANY, {MISSES(0)}},
 
     /* item: whatever is not a primary ray is handed down untouched; test_item counts those that are not. */
-    {"item+brute", THROUGH, false, {HITS(2)}},
-    {"item+brute", BESIDE, true, {.rays = 1, .object_tests = 2}},
+    {"item+brute", THROUGH, NEAREST, {HITS(2)}},
+    {"item+brute", BESIDE, ANY, {MISSES(2)}},
 
     /* bvh: an extent test per box, the root's included; a step per node visited. With max_leaf_size=1 a root
      * and two leaves, of which leaf_steps counts the visited ones: THROUGH visits the root and the near leaf,
      * and drops the far one, which begins at t = 4. */
-    {"bvh:max_leaf_size=1", THROUGH, false, {HITS(1), .extent_tests = 3, .steps = 2, .leaf_steps = 1}},
-    {"bvh:max_leaf_size=1", THROUGH, true, {HITS(1), .extent_tests = 3, .steps = 2, .leaf_steps = 1}},
-    {"bvh:max_leaf_size=1",
-     BETWEEN,
-     false,
-     {.rays = 1, .object_tests = 2, .extent_tests = 3, .steps = 3, .leaf_steps = 2}},
-    {"bvh:max_leaf_size=1",
-     BETWEEN,
-     true,
-     {.rays = 1, .object_tests = 2, .extent_tests = 3, .steps = 3, .leaf_steps = 2}},
-    {"bvh:max_leaf_size=1", BESIDE, false, {.rays = 1, .extent_tests = 1}},
+    {"bvh:max_leaf_size=1", THROUGH, NEAREST, {HITS(1), VISITS(3, 2, 1)}},
+    {"bvh:max_leaf_size=1", THROUGH, ANY, {HITS(1), VISITS(3, 2, 1)}},
+    {"bvh:max_leaf_size=1", BETWEEN, NEAREST, {MISSES(2), VISITS(3, 3, 2)}},
+    {"bvh:max_leaf_size=1", BETWEEN, ANY, {MISSES(2), VISITS(3, 3, 2)}},
+    {"bvh:max_leaf_size=1", BESIDE, NEAREST, {MISSES(0), .extent_tests = 1}},
     /* A visit that costs ten object tests never pays here: the root is a leaf of two. */
-    {"bvh:traversal_cost=10", THROUGH, false, {HITS(2), .extent_tests = 1, .steps = 1, .leaf_steps = 1}},
-    {"bvh:traversal_cost=10", THROUGH, true, {HITS(1), .extent_tests = 1, .steps = 1, .leaf_steps = 1}},
-    /* However a root and two leaves are built. */
-    {"bvh:max_leaf_size=1,build=sweep",
-     THROUGH,
-     false,
-     {HITS(1), .extent_tests = 3, .steps = 2, .leaf_steps = 1}},
-    {"bvh:max_leaf_size=1,build=lbvh",
-     THROUGH,
-     false,
-     {HITS(1), .extent_tests = 3, .steps = 2, .leaf_steps = 1}},
-    {"bvh:max_leaf_size=1,build=spatial",
-     THROUGH,
-     false,
-     {HITS(1), .extent_tests = 3, .steps = 2, .leaf_steps = 1}},
-    {"bvh:max_leaf_size=1,build=ploc",
-     THROUGH,
-     false,
-     {HITS(1), .extent_tests = 3, .steps = 2, .leaf_steps = 1}},
+    {"bvh:traversal_cost=10", THROUGH, NEAREST, {HITS(2), VISITS(1, 1, 1)}},
+    {"bvh:traversal_cost=10", THROUGH, ANY, {HITS(1), VISITS(1, 1, 1)}},
+    /* Every build makes a root and two leaves. */
+    {"bvh:max_leaf_size=1,build=sweep", THROUGH, NEAREST, {HITS(1), VISITS(3, 2, 1)}},
+    {"bvh:max_leaf_size=1,build=lbvh", THROUGH, NEAREST, {HITS(1), VISITS(3, 2, 1)}},
+    {"bvh:max_leaf_size=1,build=spatial", THROUGH, NEAREST, {HITS(1), VISITS(3, 2, 1)}},
+    {"bvh:max_leaf_size=1,build=ploc", THROUGH, NEAREST, {HITS(1), VISITS(3, 2, 1)}},
 
     /* clusters: a step per node visited. A root and two leaves, as of bvh; with traversal_order=fixed an
      * extent is tested when its turn comes, so `occluded` has never asked for the second leaf's. BETWEEN
-     * enters the ball about both spheres, but neither's own; the slabs about both turn it away at once. */
-    {"clusters", THROUGH, false, {HITS(1), .extent_tests = 3, .steps = 2, .leaf_steps = 1}},
-    {"clusters:extent=sphere", THROUGH, false, {HITS(1), .extent_tests = 3, .steps = 2, .leaf_steps = 1}},
-    {"clusters:method=sah", THROUGH, true, {HITS(1), .extent_tests = 3, .steps = 2, .leaf_steps = 1}},
-    {"clusters:traversal_order=fixed",
-     THROUGH,
-     false,
-     {HITS(1), .extent_tests = 3, .steps = 2, .leaf_steps = 1}},
-    {"clusters:traversal_order=fixed",
-     THROUGH,
-     true,
-     {HITS(1), .extent_tests = 2, .steps = 2, .leaf_steps = 1}},
-    {"clusters:extent=box",
-     BETWEEN,
-     false,
-     {.rays = 1, .object_tests = 2, .extent_tests = 3, .steps = 3, .leaf_steps = 2}},
-    {"clusters:extent=sphere", BETWEEN, true, {.rays = 1, .extent_tests = 3, .steps = 1}},
-    {"clusters:traversal_order=fixed,extent=box",
-     BETWEEN,
-     false,
-     {.rays = 1, .object_tests = 2, .extent_tests = 3, .steps = 3, .leaf_steps = 2}},
+     * enters the ball about both spheres, but neither's own; the slabs about both reject it at once. */
+    {"clusters", THROUGH, NEAREST, {HITS(1), VISITS(3, 2, 1)}},
+    {"clusters:extent=sphere", THROUGH, NEAREST, {HITS(1), VISITS(3, 2, 1)}},
+    {"clusters:method=sah", THROUGH, ANY, {HITS(1), VISITS(3, 2, 1)}},
+    {"clusters:traversal_order=fixed", THROUGH, NEAREST, {HITS(1), VISITS(3, 2, 1)}},
+    {"clusters:traversal_order=fixed", THROUGH, ANY, {HITS(1), VISITS(2, 2, 1)}},
+    {"clusters:extent=box", BETWEEN, NEAREST, {MISSES(2), VISITS(3, 3, 2)}},
+    {"clusters:extent=sphere", BETWEEN, ANY, {MISSES(0), .extent_tests = 3, .steps = 1}},
+    {"clusters:traversal_order=fixed,extent=box", BETWEEN, NEAREST, {MISSES(2), VISITS(3, 3, 2)}},
     {"clusters:traversal_order=fixed,extent=sphere",
      BETWEEN,
-     true,
-     {.rays = 1, .extent_tests = 3, .steps = 1}},
-    {"clusters:extent=slabs,slabs=13", BETWEEN, false, {.rays = 1, .extent_tests = 1}},
-    {"clusters", BESIDE, false, {.rays = 1, .extent_tests = 1}},
+     ANY,
+     {MISSES(0), .extent_tests = 3, .steps = 1}},
+    {"clusters:extent=slabs,slabs=13", BETWEEN, NEAREST, {MISSES(0), .extent_tests = 1}},
+    {"clusters", BESIDE, NEAREST, {MISSES(0), .extent_tests = 1}},
 
     /* grid: an extent test for its box; a step per voxel. Three voxels along x, of width 4/3: sphere 0 in the
      * first, none in the second, sphere 1 in the third, which THROUGH does not reach. */
-    {"grid:resolution=3x1x1", THROUGH, false, {HITS(1), .extent_tests = 1, .steps = 1, .leaf_steps = 1}},
-    {"grid:resolution=3x1x1",
-     BETWEEN,
-     false,
-     {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 3, .leaf_steps = 3, .empty_steps = 1}},
-    {"grid:resolution=3x1x1",
-     BETWEEN,
-     true,
-     {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 3, .leaf_steps = 3, .empty_steps = 1}},
-    {"grid:resolution=3x1x1", BESIDE, false, {.rays = 1, .extent_tests = 1}},
+    {"grid:resolution=3x1x1", THROUGH, NEAREST, {HITS(1), VISITS(1, 1, 1)}},
+    {"grid:resolution=3x1x1", BETWEEN, NEAREST, {MISSES(2), VISITS(1, 3, 3), .empty_steps = 1}},
+    {"grid:resolution=3x1x1", BETWEEN, ANY, {MISSES(2), VISITS(1, 3, 3), .empty_steps = 1}},
+    {"grid:resolution=3x1x1", BESIDE, NEAREST, {MISSES(0), .extent_tests = 1}},
     /* Eight voxels of width 1/2. A voxel holds its lower planes, so sphere 0 is in three of them, up to the
      * one that only touches it at x = 1; sphere 1 is in two; three are empty. The mailbox saves the later
      * tests. */
     {"grid:resolution=8x1x1",
      BETWEEN,
-     false,
-     {.rays = 1,
-      .object_tests = 2,
-      .extent_tests = 1,
-      .steps = 8,
-      .leaf_steps = 8,
-      .empty_steps = 3,
-      .repeats_avoided = 3}},
-    {"grid:resolution=8x1x1,mailbox=off",
-     BETWEEN,
-     false,
-     {.rays = 1, .object_tests = 5, .extent_tests = 1, .steps = 8, .leaf_steps = 8, .empty_steps = 3}},
+     NEAREST,
+     {MISSES(2), VISITS(1, 8, 8), .empty_steps = 3, .repeats_avoided = 3}},
+    {"grid:resolution=8x1x1,mailbox=off", BETWEEN, NEAREST, {MISSES(5), VISITS(1, 8, 8), .empty_steps = 3}},
 
     /* Nested grids: a step for each grid, too. The one voxel holds both spheres and so a grid of 5 x 1 x 1,
      * voxels of width 4/5: sphere 0 in the first two, none in the third, sphere 1 in the last two. THROUGH
      * reaches the first only. */
-    {"grid:resolution=1x1x1,depth=2,nest=1,density=3",
-     THROUGH,
-     false,
-     {HITS(1), .extent_tests = 1, .steps = 3, .leaf_steps = 1}},
+    {"grid:resolution=1x1x1,depth=2,nest=1,density=3", THROUGH, NEAREST, {HITS(1), VISITS(1, 3, 1)}},
     {"grid:resolution=1x1x1,depth=2,nest=1,density=3",
      BETWEEN,
-     true,
-     {.rays = 1,
-      .object_tests = 2,
-      .extent_tests = 1,
-      .steps = 7,
-      .leaf_steps = 5,
-      .empty_steps = 1,
-      .repeats_avoided = 2}},
-    {"grid:resolution=1x1x1,depth=2,nest=1,density=3", BESIDE, true, {.rays = 1, .extent_tests = 1}},
+     ANY,
+     {MISSES(2), VISITS(1, 7, 5), .empty_steps = 1, .repeats_avoided = 2}},
+    {"grid:resolution=1x1x1,depth=2,nest=1,density=3", BESIDE, ANY, {MISSES(0), .extent_tests = 1}},
     /* Nothing has more than two objects: no grid is nested, and none counts a step. */
-    {"grid:resolution=1x1x1,depth=2,nest=2",
-     BETWEEN,
-     false,
-     {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 1, .leaf_steps = 1}},
+    {"grid:resolution=1x1x1,depth=2,nest=2", BETWEEN, NEAREST, {MISSES(2), VISITS(1, 1, 1)}},
     /* Two voxels that hold grids of 2 x 1 x 1. By the slack sphere 0 reaches up to x = 2.2 and sphere 1 down
      * to 1.8, so their four voxels list 1, 2, 2 and 1 of them; one mailbox serves all grids. */
     {"grid:resolution=2x1x1,depth=2,nest=1,density=1,slack=1.2",
      BETWEEN,
-     false,
-     {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 7, .leaf_steps = 4, .repeats_avoided = 4}},
+     NEAREST,
+     {MISSES(2), VISITS(1, 7, 4), .repeats_avoided = 4}},
     {"grid:resolution=2x1x1,depth=2,nest=1,density=1,slack=1.2,mailbox=off",
      BETWEEN,
-     false,
-     {.rays = 1, .object_tests = 6, .extent_tests = 1, .steps = 7, .leaf_steps = 4}},
+     NEAREST,
+     {MISSES(6), VISITS(1, 7, 4)}},
 
     /* octree: an extent test for the box of the root; a step per node visited. The root is cut at (2, 0.5,
      * 0.5) into eight leaves, four of which hold sphere 0, four sphere 1. THROUGH runs in two of the planes,
      * so beside the root it visits all four of sphere 0; those of sphere 1 begin beyond the hit. */
-    {"octree:traversal=parametric",
-     THROUGH,
-     false,
-     {HITS(1), .extent_tests = 1, .steps = 5, .leaf_steps = 4, .repeats_avoided = 3}},
-    {"octree:traversal=points",
-     THROUGH,
-     false,
-     {HITS(1), .extent_tests = 1, .steps = 5, .leaf_steps = 4, .repeats_avoided = 3}},
-    {"octree:traversal=neighbours,mailbox=off",
-     THROUGH,
-     false,
-     {HITS(4), .extent_tests = 1, .steps = 5, .leaf_steps = 4}},
-    {"octree:traversal=points", THROUGH, true, {HITS(1), .extent_tests = 1, .steps = 2, .leaf_steps = 1}},
+    {"octree:traversal=parametric", THROUGH, NEAREST, {HITS(1), VISITS(1, 5, 4), .repeats_avoided = 3}},
+    {"octree:traversal=points", THROUGH, NEAREST, {HITS(1), VISITS(1, 5, 4), .repeats_avoided = 3}},
+    {"octree:traversal=neighbours,mailbox=off", THROUGH, NEAREST, {HITS(4), VISITS(1, 5, 4)}},
+    {"octree:traversal=points", THROUGH, ANY, {HITS(1), VISITS(1, 2, 1)}},
     /* The root and two leaves; sought from the root, or from their common ancestor, the root counts twice.
      * Who goes by neighbours learns at the root that there is none behind the second: a third time. */
-    {"octree:traversal=parametric",
-     BETWEEN,
-     false,
-     {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 3, .leaf_steps = 2}},
-    {"octree:traversal=points",
-     BETWEEN,
-     true,
-     {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 4, .leaf_steps = 2}},
-    {"octree:traversal=neighbours",
-     BETWEEN,
-     false,
-     {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 5, .leaf_steps = 2}},
-    {"octree", BESIDE, false, {.rays = 1, .extent_tests = 1}},
+    {"octree:traversal=parametric", BETWEEN, NEAREST, {MISSES(2), VISITS(1, 3, 2)}},
+    {"octree:traversal=points", BETWEEN, ANY, {MISSES(2), VISITS(1, 4, 2)}},
+    {"octree:traversal=neighbours", BETWEEN, NEAREST, {MISSES(2), VISITS(1, 5, 2)}},
+    {"octree", BESIDE, NEAREST, {MISSES(0), .extent_tests = 1}},
 
     /* kd: an extent test for the cell of the root; a step per node visited. The root is cut at x = 1, sphere
      * 0 being the lower leaf; what is above is cut at x = 3 into an empty leaf and that of sphere 1. */
-    {"kd", THROUGH, false, {HITS(1), .extent_tests = 1, .steps = 2, .leaf_steps = 1}},
-    {"kd",
-     BETWEEN,
-     false,
-     {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 5, .leaf_steps = 3, .empty_steps = 1}},
-    {"kd:overlap=exact",
-     BETWEEN,
-     true,
-     {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 5, .leaf_steps = 3, .empty_steps = 1}},
-    {"kd:max_leaf_size=1",
-     BETWEEN,
-     false,
-     {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 3, .leaf_steps = 2}},
+    {"kd", THROUGH, NEAREST, {HITS(1), VISITS(1, 2, 1)}},
+    {"kd", BETWEEN, NEAREST, {MISSES(2), VISITS(1, 5, 3), .empty_steps = 1}},
+    {"kd:overlap=exact", BETWEEN, ANY, {MISSES(2), VISITS(1, 5, 3), .empty_steps = 1}},
+    {"kd:max_leaf_size=1", BETWEEN, NEAREST, {MISSES(2), VISITS(1, 3, 2)}},
     /* A visit that costs ten object tests saves nothing here: the root is a leaf of two, or its children are
      * leaves if one split need not. */
-    {"kd:traversal_cost=10,failures=0",
-     THROUGH,
-     false,
-     {HITS(2), .extent_tests = 1, .steps = 1, .leaf_steps = 1}},
-    {"kd:traversal_cost=10,failures=1",
-     BETWEEN,
-     true,
-     {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 3, .leaf_steps = 2}},
-    {"kd", BESIDE, false, {.rays = 1, .extent_tests = 1}},
+    {"kd:traversal_cost=10,failures=0", THROUGH, NEAREST, {HITS(2), VISITS(1, 1, 1)}},
+    {"kd:traversal_cost=10,failures=1", BETWEEN, ANY, {MISSES(2), VISITS(1, 3, 2)}},
+    {"kd", BESIDE, NEAREST, {MISSES(0), .extent_tests = 1}},
 
     /* extents: a step and an extent test per object, until the search is over; sphere 1 begins beyond the hit
      * on sphere 0. BETWEEN is inside the boxes, but 0.64 from the centres of the spheres; of slabs, the three
-     * of the axes are the box again, and the diagonals of a cube's faces turn the ray away. */
-    {"extents:kind=box", THROUGH, false, {HITS(1), .extent_tests = 2, .steps = 2}},
-    {"extents:kind=box", THROUGH, true, {HITS(1), .extent_tests = 1, .steps = 1}},
-    {"extents:kind=box", BETWEEN, false, {.rays = 1, .object_tests = 2, .extent_tests = 2, .steps = 2}},
-    {"extents:kind=obb", BETWEEN, false, {.rays = 1, .object_tests = 2, .extent_tests = 2, .steps = 2}},
-    {"extents:kind=sphere", BETWEEN, false, {.rays = 1, .extent_tests = 2, .steps = 2}},
-    {"extents:kind=slabs,slabs=3",
-     BETWEEN,
-     true,
-     {.rays = 1, .object_tests = 2, .extent_tests = 2, .steps = 2}},
-    {"extents:kind=slabs,slabs=13", BETWEEN, true, {.rays = 1, .extent_tests = 2, .steps = 2}},
-    {"extents:kind=box", BESIDE, false, {.rays = 1, .extent_tests = 2, .steps = 2}},
+     * of the axes are the box again, and the diagonals of a cube's faces reject the ray. */
+    {"extents:kind=box", THROUGH, NEAREST, {HITS(1), .extent_tests = 2, .steps = 2}},
+    {"extents:kind=box", THROUGH, ANY, {HITS(1), .extent_tests = 1, .steps = 1}},
+    {"extents:kind=box", BETWEEN, NEAREST, {MISSES(2), .extent_tests = 2, .steps = 2}},
+    {"extents:kind=obb", BETWEEN, NEAREST, {MISSES(2), .extent_tests = 2, .steps = 2}},
+    {"extents:kind=sphere", BETWEEN, NEAREST, {MISSES(0), .extent_tests = 2, .steps = 2}},
+    {"extents:kind=slabs,slabs=3", BETWEEN, ANY, {MISSES(2), .extent_tests = 2, .steps = 2}},
+    {"extents:kind=slabs,slabs=13", BETWEEN, ANY, {MISSES(0), .extent_tests = 2, .steps = 2}},
+    {"extents:kind=box", BESIDE, NEAREST, {MISSES(0), .extent_tests = 2, .steps = 2}},
 };
 
 static void make_scene(RtScene *scene) {
@@ -277,8 +190,8 @@ RT_TEST(counters_are_what_was_counted_by_hand) {
     make_scene(&scene);
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         const Row *row = &rows[i];
-        RtAccel *accel;
-        RtQuery query;
+        OWNED_ACCEL RtAccel *accel = NULL;
+        OWNED_QUERY query = {0};
         RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
         assert_ok(rt_accel_open(row->spec, &scene, &accel, error));
         assert_ok(rt_accel_learn(accel, rays, answers, RAY_COUNT, error));
@@ -294,17 +207,15 @@ RT_TEST(counters_are_what_was_counted_by_hand) {
         }
         wrong += differences(row, &tallies[RT_RAY_RANDOM]);
         for (int kind = 0; kind < RT_RAY_RANDOM; kind++) assert_int_equal(tallies[kind].rays, 0);
-        rt_query_clear(&query);
-        rt_accel_destroy(accel);
     }
     rt_scene_clear(&scene);
     assert_int_equal(wrong, 0);
 }
 
 RT_TEST(ideal_is_broken_by_answers_that_are_no_objects) {
-    RtScene scene;
+    OWNED_SCENE scene;
     make_scene(&scene);
-    RtAccel *accel;
+    OWNED_ACCEL RtAccel *accel = NULL;
     RtError problem = {RT_OK, ""};
     RtHit told[RAY_COUNT];
     for (size_t i = 0; i < RAY_COUNT; i++) told[i] = RT_MISS;
@@ -315,8 +226,6 @@ RT_TEST(ideal_is_broken_by_answers_that_are_no_objects) {
     assert_ok(rt_accel_learn(accel, rays, told, RAY_COUNT, error));
     assert_int_equal(rt_accel_validate(accel, &problem), RT_MISMATCH);
     assert_non_null(strstr(problem.message, "ideal: the answer of ray 1"));
-    rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
 }
 
 RT_TESTS(counters, NULL, assert_nothing_is_kept)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* CSG trees that take much room for their crossings: all of it is had before the first ray, and where it
- * cannot be had there is a status, never a miss. */
+/* CSG trees that need large buffers for crossings: they are allocated before the first ray, and a failure is
+ * a status, never a miss. */
 #include "csg_testing.h"
 #include "item_testing.h"
 
@@ -62,10 +62,10 @@ RT_TEST(the_room_for_hits_is_had_or_it_is_a_status) {
     rt_scene_clear(&row.scene);
 }
 
-/* Asks all four kernels, and for a normal, while not one allocation may be made. */
+/* Runs all four kernels, and computes a normal, while no allocation may succeed. */
 static void trace_without_memory(const char *spec, Row *row, const RtHit *expected) {
-    RtAccel *accel;
-    RtQuery query;
+    OWNED_ACCEL RtAccel *accel = NULL;
+    OWNED_QUERY query = {0};
     RtError unavailable;
     RtHit hits[2][RAYS];
     bool blocked[2][RAYS];
@@ -90,8 +90,6 @@ static void trace_without_memory(const char *spec, Row *row, const RtHit *expect
             assert_int_equal(blocked[counted][i], expected[i].object != RT_NO_OBJECT);
         }
     }
-    rt_query_clear(&query);
-    rt_accel_destroy(accel);
 }
 
 RT_TEST(nothing_is_allocated_while_tracing) {
@@ -113,10 +111,10 @@ RT_TEST(nothing_is_allocated_while_tracing) {
 
 /* ---- every allocation that fails ---- */
 
-/* Each gives what it does, after a failure nothing. */
+/* On failure nothing is left behind. */
 typedef RtStatus Work(const Row *row, RtError *error);
 
-/* Nothing but RT_NO_MEMORY until all memory is there; once it is short of `what`. */
+/* Every failure is RT_NO_MEMORY until all memory is there; one of them is short of `what`. */
 static void assert_every_shortage_is_a_status(Work *work, const Row *row, const char *what) {
     int64_t live = rt_alloc_live();
     bool named = false;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/embree: no objects, a structure outgrown, memory, and which Embree it is. Skipped without Embree. */
+/* accel/embree: an empty scene, a scene that outgrows its structure, memory, and the version. Skipped without
+ * Embree. */
 #include "embree_testing.h"
 
 #ifdef RT_WITH_EMBREE
@@ -9,38 +10,34 @@
 RT_TEST(an_empty_scene_is_hit_by_nothing) {
     static const char *const specs[] = {"embree", "embree:query=16", "embree:query=stream",
                                         "embree:mode=user", "embree:mode=user,query=8"};
-    RtScene scene;
+    OWNED_SCENE scene;
     rt_scene_init(&scene);
     assert_ok(rt_scene_finish(&scene, error));
     RtRay ray = {.dir = {1, 0, 0}, .tmax = INFINITY};
     compare_with_brute(&scene, (Rays){&ray, 1}, specs, sizeof specs / sizeof specs[0]);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(a_scene_that_outgrows_its_structure_is_noticed_in_user_mode) {
-    RtScene scene;
-    RtAccel *accel;
+    OWNED_SCENE scene;
+    OWNED_ACCEL RtAccel *accel = NULL;
     make_soup(&scene, 40, 1, 10);
     assert_ok(rt_accel_open("embree:mode=user", &scene, &accel, error));
     assert_ok(rt_accel_validate(accel, error));
     scene.geometry.box.hi.y += 1;
     assert_broken(accel, "bounds do not contain");
-    rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(building_ten_times_leaks_nothing) {
-    RtScene scene;
+    OWNED_SCENE scene;
     make_soup(&scene, 60, 1, 10);
     int64_t before = rt_alloc_live();
     for (int i = 0; i < 10; i++) {
-        RtAccel *accel;
+        OWNED_ACCEL RtAccel *accel = NULL;
         RtDescription description;
         assert_ok(rt_accel_open(i % 2 ? "embree" : "embree:mode=user", &scene, &accel, error));
         accel->ops->describe(accel, &description);
         assert_true(description.bytes > 1000 && description.bytes < 1000000);
         assert_int_equal(description.references, 60);
-        rt_accel_destroy(accel);
     }
     for (uint64_t nth = 1; nth <= 2; nth++) {
         RtAccel *accel;
@@ -50,14 +47,13 @@ RT_TEST(building_ten_times_leaks_nothing) {
     }
     rt_alloc_fail_at(0);
     assert_int_equal(rt_alloc_live(), before);
-    rt_scene_clear(&scene);
 }
 
 #ifdef RT_WITH_EMBREE
 
 RT_TEST(an_error_of_the_device_is_known_after_tracing) {
-    RtScene scene;
-    RtAccel *accel;
+    OWNED_SCENE scene;
+    OWNED_ACCEL RtAccel *accel = NULL;
     RtError failure;
     make_soup(&scene, 40, 1, 10);
     assert_ok(rt_accel_open("cache+embree", &scene, &accel, error));
@@ -66,27 +62,23 @@ RT_TEST(an_error_of_the_device_is_known_after_tracing) {
     rtcSetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION, 1);
     assert_int_equal(rt_accel_check(accel, &failure), RT_MISMATCH);
     assert_non_null(strstr(failure.message, "Embree reports error 2"));
-    rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
 }
 
-/* What its memory monitor has counted, and our indices of triangles where it has triangles. */
+/* The count of its memory monitor, and our indices of triangles if there are triangles. */
 RT_TEST(its_bytes_are_what_it_has_allocated_and_our_arrays) {
     static const char *const specs[] = {"embree", "embree:mode=user"};
-    RtScene scene;
+    OWNED_SCENE scene;
     make_soup(&scene, 60, 1, 10);
     assert_int_equal(scene.geometry.triangle_count, 12);
     for (int i = 0; i < 2; i++) {
-        RtAccel *accel;
+        OWNED_ACCEL RtAccel *accel = NULL;
         RtDescription description;
         assert_ok(rt_accel_open(specs[i], &scene, &accel, error));
         rt_accel_describe(accel, &description);
         uint64_t counted = (uint64_t)((const RtEmbree *)accel)->device.bytes;
         assert_true(counted > 1000);
         assert_int_equal(description.bytes, counted + (i == 0 ? 12 * 3 * sizeof(uint32_t) : 0));
-        rt_accel_destroy(accel);
     }
-    rt_scene_clear(&scene);
 }
 
 #endif

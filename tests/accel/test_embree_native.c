@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/embree, mode=native: as brute says but at edges, and what it says otherwise is a margin. Skipped
- * without Embree. */
+/* accel/embree, mode=native: agrees with brute except at edges, and a difference is a margin. Skipped without
+ * Embree. */
 #include "embree_testing.h"
 
 #include "scenes/open.h"
@@ -13,7 +13,7 @@ static void make_triangles(RtScene *scene, uint32_t count) {
     assert_ok(rt_scene_finish(scene, error));
 }
 
-/* Rays between random points, which go past edges and corners at ordinary distances; dir short and long. */
+/* Rays between random points, past edges and corners at ordinary distances; dir short and long. */
 static Rays make_plain_rays(size_t count, float size) {
     Rays r = {rt_alloc(count, sizeof(RtRay)), count};
     assert_non_null(r.rays);
@@ -27,19 +27,19 @@ static Rays make_plain_rays(size_t count, float size) {
     return r;
 }
 
-/* Between triangles lie edges, where native mode may see another object; hence 99.9 %. */
+/* Native mode may hit another object at edges; hence 99.9 %. */
 RT_TEST(native_mode_agrees_with_brute_on_triangles) {
     static const char *const specs[] = {
         "embree",           "embree:query=8",  "embree:query=16",     "embree:query=stream",
         "embree:robust=on", "embree:isa=sse2", "embree:quality=high", "embree:quality=low",
     };
-    RtScene scene;
+    OWNED_SCENE scene;
     make_triangles(&scene, 500);
-    Rays rays = make_plain_rays(20000, 1);
-    Answers right = ask(&scene, "brute", rays, false);
+    OWNED_RAYS rays = make_plain_rays(20000, 1);
+    OWNED_ANSWERS right = ask(&scene, "brute", rays, false);
     for (size_t s = 0; s < sizeof specs / sizeof specs[0]; s++) {
         if (!embree_has(specs[s])) continue;
-        Answers got = ask(&scene, specs[s], rays, s % 2 == 1);
+        OWNED_ANSWERS got = ask(&scene, specs[s], rays, s % 2 == 1);
         size_t agree = 0, hits = 0;
         for (size_t i = 0; i < rays.count; i++) {
             RtHit g = got.hits[i], r = right.hits[i];
@@ -51,17 +51,13 @@ RT_TEST(native_mode_agrees_with_brute_on_triangles) {
         assert_true(hits > rays.count / 4);
         if (agree < rays.count / 1000 * 999)
             fail_msg("%s: only %zu of %zu agree", specs[s], agree, rays.count);
-        forget(&got);
     }
-    forget(&right);
-    rt_free(rays.rays);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(native_mode_sees_every_shape) {
-    RtScene scene;
+    OWNED_SCENE scene;
     make_soup(&scene, 80, 1, 10);
-    Rays rays = make_plain_rays(20000, 10);
+    OWNED_RAYS rays = make_plain_rays(20000, 10);
     Answers right = ask(&scene, "brute", rays, false), got = ask(&scene, "embree", rays, false);
     size_t seen[RT_SHAPE_COUNT] = {0}, agreed[RT_SHAPE_COUNT] = {0};
     for (size_t i = 0; i < rays.count; i++) {
@@ -79,11 +75,9 @@ RT_TEST(native_mode_sees_every_shape) {
     }
     forget(&right);
     forget(&got);
-    rt_free(rays.rays);
-    rt_scene_clear(&scene);
 }
 
-/* Embree asserts what it assumes, and ends the process where that does not hold. */
+/* Embree asserts its assumptions, and aborts if one fails. */
 RT_TEST(native_mode_takes_every_valid_ray) {
     static const char *const specs[] = {"embree",
                                         "embree:query=8",
@@ -91,19 +85,16 @@ RT_TEST(native_mode_takes_every_valid_ray) {
                                         "embree:query=stream",
                                         "embree:query=8,robust=on",
                                         "embree:query=stream,isa=avx"};
-    RtScene scene;
+    OWNED_SCENE scene;
     make_soup(&scene, 60, 2, 10);
-    Rays rays = make_rays(&scene, 50000, 10, 3);
+    OWNED_RAYS rays = make_rays(&scene, 50000, 10, 3);
     for (size_t s = 0; s < sizeof specs / sizeof specs[0]; s++) {
         if (!embree_has(specs[s])) continue;
-        Answers got = ask(&scene, specs[s], rays, false);
+        OWNED_ANSWERS got = ask(&scene, specs[s], rays, false);
         for (size_t i = 0; i < rays.count; i++) {
             assert_true(got.hits[i].object == RT_NO_OBJECT ? isinf(got.hits[i].t) : isfinite(got.hits[i].t));
         }
-        forget(&got);
     }
-    rt_free(rays.rays);
-    rt_scene_clear(&scene);
 }
 
 /* ---- margins that verify found ---- */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/embree, mode=user: brute bit for bit, by every query, instruction set and quality, at every size.
- * Skipped without Embree. */
+/* accel/embree, mode=user: brute bit for bit, by every query, instruction set and quality, in scenes of every
+ * size. Skipped without Embree. */
 #include "embree_testing.h"
 
 RT_TEST(user_mode_is_brute_bit_for_bit_by_every_query) {
@@ -10,22 +10,20 @@ RT_TEST(user_mode_is_brute_bit_for_bit_by_every_query) {
         "embree:mode=user,query=16,robust=on", "embree:mode=user,query=16,robust=off",
         "embree:mode=user,query=stream",       "embree:mode=user,query=stream,robust=on",
     };
-    RtScene scene;
+    OWNED_SCENE scene;
     make_soup(&scene, 60, 2, 10);
-    Rays rays = make_rays(&scene, 100003, 10, 3);
+    OWNED_RAYS rays = make_rays(&scene, 100003, 10, 3);
     compare_with_brute(&scene, rays, specs, sizeof specs / sizeof specs[0]);
-    rt_free(rays.rays);
-    rt_scene_clear(&scene);
 }
 
-/* An ISA that the machine lacks is refused, and then there is nothing to compare. */
+/* An instruction set that the machine lacks is refused; then there is nothing to compare. */
 RT_TEST(user_mode_is_brute_by_every_isa_and_quality) {
     static const char *const isas[] = {"sse2", "sse4.2", "avx", "avx2", "avx512"};
     static const char *const qualities[] = {"low", "medium", "high"};
     static const char *const queries[] = {"1", "8", "16", "stream"};
-    RtScene scene;
+    OWNED_SCENE scene;
     make_soup(&scene, 40, 2, 1000);
-    Rays rays = make_rays(&scene, 5000, 1000, 20);
+    OWNED_RAYS rays = make_rays(&scene, 5000, 1000, 20);
     for (size_t i = 0; i < 60; i++) {
         char spec[RT_MAX_SPEC_CHARS];
         snprintf(spec, sizeof spec, "embree:mode=user,isa=%s,quality=%s,query=%s", isas[i % 5],
@@ -33,31 +31,27 @@ RT_TEST(user_mode_is_brute_by_every_isa_and_quality) {
         const char *const one[] = {spec};
         compare_with_brute(&scene, rays, one, 1);
     }
-    rt_free(rays.rays);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(user_mode_is_brute_in_scenes_of_every_size_and_from_far_away) {
     static const float sizes[] = {1e-12f, 1e-6f, 1e6f, 1e12f};
     static const char *const specs[] = {"embree:mode=user", "embree:mode=user,query=16"};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
-        RtScene scene;
+        OWNED_SCENE scene;
         make_soup(&scene, 40, 1, sizes[i]);
-        Rays rays = make_rays(&scene, 4000, sizes[i], i % 2 ? 3 : 1e5f);
+        OWNED_RAYS rays = make_rays(&scene, 4000, sizes[i], i % 2 ? 3 : 1e5f);
         compare_with_brute(&scene, rays, specs, 2);
-        rt_free(rays.rays);
-        rt_scene_clear(&scene);
     }
 }
 
-/* Every hit is asked for again with nothing but its t left of the interval, and from where it is. */
+/* Every hit is traced again with an interval that is only its t, and from its point. */
 RT_TEST(user_mode_finds_hits_at_the_very_ends_of_the_interval) {
     static const char *const specs[] = {"embree:mode=user", "embree:mode=user,query=8,robust=on",
                                         "embree:mode=user,query=16", "embree:mode=user,query=stream"};
-    RtScene scene;
+    OWNED_SCENE scene;
     make_soup(&scene, 60, 2, 10);
-    Rays rays = make_rays(&scene, 10000, 10, 3);
-    Answers hit = ask(&scene, "brute", rays, false);
+    OWNED_RAYS rays = make_rays(&scene, 10000, 10, 3);
+    OWNED_ANSWERS hit = ask(&scene, "brute", rays, false);
     for (size_t i = 0; i < rays.count; i++) {
         RtRay *ray = &rays.rays[i];
         if (hit.hits[i].object == RT_NO_OBJECT) continue;
@@ -69,9 +63,6 @@ RT_TEST(user_mode_finds_hits_at_the_very_ends_of_the_interval) {
         }
     }
     compare_with_brute(&scene, rays, specs, sizeof specs / sizeof specs[0]);
-    forget(&hit);
-    rt_free(rays.rays);
-    rt_scene_clear(&scene);
 }
 
 /* Directions so long that a step between two values of t is as large as an object, or as the scene. */
@@ -79,9 +70,9 @@ RT_TEST(user_mode_is_brute_where_t_is_denormal) {
     static const float sizes[] = {1e-9f, 1e-8f, 1e-7f};
     static const char *const specs[] = {"embree:mode=user", "embree:mode=user,query=16"};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
-        RtScene scene;
+        OWNED_SCENE scene;
         make_soup(&scene, 40, 1, sizes[i]);
-        Rays rays = make_rays(&scene, 4000, sizes[i], 3);
+        OWNED_RAYS rays = make_rays(&scene, 4000, sizes[i], 3);
         for (size_t k = 0; k < rays.count; k++) {
             RtRay *ray = &rays.rays[k];
             RtVec3d dir = rt_widen(ray->dir);
@@ -91,15 +82,13 @@ RT_TEST(user_mode_is_brute_where_t_is_denormal) {
             assert_true(rt_ray_is_valid(ray));
         }
         compare_with_brute(&scene, rays, specs, 2);
-        rt_free(rays.rays);
-        rt_scene_clear(&scene);
     }
 }
 
 RT_TEST(user_mode_counts_tests_where_it_is_asked_to) {
-    RtScene scene;
+    OWNED_SCENE scene;
     make_soup(&scene, 60, 1, 10);
-    Rays rays = make_rays(&scene, 100 * RT_RAY_KIND_COUNT, 10, 3);
+    OWNED_RAYS rays = make_rays(&scene, 100 * RT_RAY_KIND_COUNT, 10, 3);
     Answers brute = ask(&scene, "brute", rays, true), user = ask(&scene, "embree:mode=user", rays, true);
     for (size_t kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
         const RtTally *b = &brute.tallies[kind], *u = &user.tallies[kind];
@@ -110,8 +99,6 @@ RT_TEST(user_mode_counts_tests_where_it_is_asked_to) {
     }
     forget(&brute);
     forget(&user);
-    rt_free(rays.rays);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST_GROUP(embree_user) {

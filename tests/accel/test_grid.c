@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/grid/ from the inside: its invariants, broken on purpose, its rules of resolution, its limits. */
+/* accel/grid: invariants, each broken on purpose, rules of resolution, and limits. */
 #include "accel_testing.h"
 
 #include "accel/grid/grid.h"
@@ -8,25 +8,18 @@
 #include <stdio.h>
 #include <string.h>
 
-static RtGrid *make_grid(const RtScene *scene, const char *spec) {
-    RtAccel *accel = NULL;
-    assert_ok(rt_accel_open(spec, scene, &accel, error));
-    return (RtGrid *)accel;
-}
-
 static void assert_resolution(const RtScene *scene, const char *spec, uint32_t x, uint32_t y, uint32_t z) {
-    RtGrid *grid = make_grid(scene, spec);
+    OWNED_ACCEL RtGrid *grid = open_valid(scene, spec);
     const RtGridBlock *block = grid->levels[0].blocks;
     if (block->n[0] != x || block->n[1] != y || block->n[2] != z) {
         fail_msg("%s gave %ux%ux%u", spec, block->n[0], block->n[1], block->n[2]);
     }
     assert_ok(rt_grid_validate(&grid->base, error));
-    rt_grid_destroy(&grid->base);
 }
 
 /* A box of 8 x 4 x 2 with 64 spheres in it. */
 RT_TEST(the_rules_of_resolution_give_what_their_formulas_say) {
-    RtScene scene;
+    OWNED_SCENE scene;
     make_lattice(&scene, 8, 4, 2);
     assert_resolution(&scene, "grid:density=1", 8, 4, 2);
     assert_resolution(&scene, "grid:density=8", 16, 8, 4);
@@ -38,29 +31,26 @@ RT_TEST(the_rules_of_resolution_give_what_their_formulas_say) {
     assert_resolution(&scene, "grid:rule=regular,density=1.01", 5, 5, 5);
     assert_resolution(&scene, "grid:resolution=3x5x7", 3, 5, 7);
     assert_resolution(&scene, "grid:density=0.000001", 1, 1, 1);
-    rt_scene_clear(&scene);
 }
 
-/* The planes halfway are where spheres touch one another. A voxel holds its lower planes but not its upper
- * ones: along each axis the lower sphere is in both voxels, the upper one in its own alone. */
+/* Spheres touch at the planes halfway. A voxel contains its lower planes but not its upper ones: along each
+ * axis the lower sphere is in both voxels, the upper one only in its own. */
 RT_TEST(a_voxel_holds_its_lower_planes) {
-    RtScene scene;
+    OWNED_SCENE scene;
     make_lattice(&scene, 2, 2, 2);
-    RtGrid *grid = make_grid(&scene, "grid:resolution=2x2x2");
+    OWNED_ACCEL RtGrid *grid = open_valid(&scene, "grid:resolution=2x2x2");
     RtDescription description;
     rt_grid_describe(&grid->base, &description);
     assert_int_equal(description.leaves, 8);
     assert_int_equal(description.empty_leaves, 0);
     assert_int_equal(description.references, 27);
     assert_true(fabs(description.predicted_cost - 27.0 / 4.0) < 1e-6);
-    rt_grid_destroy(&grid->base);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(validate_names_each_invariant_that_is_broken) {
-    RtScene scene;
+    OWNED_SCENE scene;
     make_lattice(&scene, 4, 4, 4);
-    RtGrid *grid = make_grid(&scene, "grid:resolution=8x8x8");
+    OWNED_ACCEL RtGrid *grid = open_valid(&scene, "grid:resolution=8x8x8");
     RtGridLevel *level = &grid->levels[0];
     RtGridBlock *block = level->blocks;
     assert_ok(rt_grid_validate(&grid->base, error));
@@ -94,17 +84,14 @@ RT_TEST(validate_names_each_invariant_that_is_broken) {
     assert_broken(&grid->base, "not ascending ids");
     level->ids[last] = id;
 
-    /* The first object taken out of the first list. */
+    /* The first list without its first object. */
     memmove(level->ids, level->ids + 1, (level->first[512] - 1) * sizeof(uint32_t));
     for (uint32_t v = 1; v <= 512; v++) level->first[v]--;
     assert_broken(&grid->base, "voxels, but");
-
-    rt_grid_destroy(&grid->base);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(a_grid_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {
-    RtScene scene;
+    OWNED_SCENE scene;
     make_lattice(&scene, 2, 2, 2);
     RtAccel *accel;
     RtError refusal = {RT_OK, ""};
@@ -116,7 +103,7 @@ RT_TEST(a_grid_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {
                      RT_BAD_INPUT);
     assert_int_equal(rt_alloc_live(), live);
 
-    /* What is said to fit does, and one voxel more a side does not. */
+    /* The named resolution fits, and one more voxel a side does not. */
     static const char *const specs[] = {"density=1e6", "resolution=500x90x3", "overlap=exact,density=1e5"};
     for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
         enum { LIMIT = 100000 };
@@ -136,7 +123,6 @@ RT_TEST(a_grid_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {
         for (int a = 0; a < 3; a++) n[a] += n[a] == longest;
         assert_int_equal(build_within("grid", LIMIT, &scene, values, &accel, &refusal), RT_BAD_INPUT);
     }
-    rt_scene_clear(&scene);
 }
 
 RT_TESTS(grid, NULL, NULL)

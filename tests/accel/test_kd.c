@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/kd/ from the inside: splits worked out by hand, its invariants, broken on purpose, its limits. */
+/* accel/kd: splits computed by hand, invariants, each broken on purpose, and limits. */
 #include "accel_testing.h"
 #include "equivalence_testing.h"
 
@@ -7,21 +7,6 @@
 #include "scenes/open.h"
 
 #include <stdio.h>
-
-static RtKd *make_kd(const RtScene *scene, const char *spec) {
-    RtAccel *accel = NULL;
-    assert_ok(rt_accel_open(spec, scene, &accel, error));
-    assert_ok(rt_kd_validate(accel, error));
-    return (RtKd *)accel;
-}
-
-static RtDescription description_of(const RtScene *scene, const char *spec) {
-    RtDescription description;
-    RtKd *kd = make_kd(scene, spec);
-    rt_kd_describe(&kd->base, &description);
-    rt_kd_destroy(&kd->base);
-    return description;
-}
 
 static void assert_split(const RtKd *kd, uint32_t node, uint32_t axis, float plane) {
     assert_false(rt_kd_is_leaf(&kd->nodes[node]));
@@ -35,7 +20,7 @@ static void assert_lists(const RtKd *kd, uint32_t node, uint32_t length, uint32_
     if (length > 0) assert_int_equal(kd->ids[kd->nodes[node].first], first_id);
 }
 
-/* An upright square at height z. */
+/* A horizontal square at height z. */
 static void add_floor(RtScene *scene, float x, float y, float z, float size) {
     const RtVec3 v[4] = {{x, y, z}, {x + size, y, z}, {x + size, y + size, z}, {x, y + size, z}};
     assert_ok(rt_scene_add_polygon(scene, 0, v, 4, error));
@@ -45,13 +30,13 @@ static void add_floor(RtScene *scene, float x, float y, float z, float size) {
  * x = 1 or 3 costs 0.3 * 9 + 3 + 7 for 18; what lies above 1, of half area 7, is then cut at 3 for
  * (0.3 * 7 + 3) * 0.8 instead of 7. */
 RT_TEST(two_spheres_are_split_as_by_hand) {
-    RtScene scene;
+    OWNED_SCENE scene;
     RtDescription d;
     begin_scene(&scene);
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0.5f, 0.5f, 0.5f), 0.5f, error));
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(3.5f, 0.5f, 0.5f), 0.5f, error));
     assert_ok(rt_scene_finish(&scene, error));
-    RtKd *kd = make_kd(&scene, "kd:failures=0,traversal_cost=0.3,empty_bonus=0.2,max_leaf_size=0");
+    RtKd *kd = open_valid(&scene, "kd:failures=0,traversal_cost=0.3,empty_bonus=0.2,max_leaf_size=0");
     assert_split(kd, 0, 0, 1);
     assert_lists(kd, 1, 1, 0);
     assert_split(kd, 2, 0, 3);
@@ -68,21 +53,20 @@ RT_TEST(two_spheres_are_split_as_by_hand) {
     assert_true(fabs(d.predicted_steps - (9 + 7 + 3 + 5 + 3) / 9.0) < 1e-12);
     assert_true(fabs(d.predicted_cost - (6 + 0.3 * 16) / 9) < 1e-12);
 
-    assert_int_equal(description_of(&scene, "kd:traversal_cost=10,failures=0").leaves, 1);
-    assert_int_equal(description_of(&scene, "kd:traversal_cost=10,failures=1").leaves, 2);
-    assert_int_equal(description_of(&scene, "kd:max_depth=1").leaves, 2);
-    rt_scene_clear(&scene);
+    assert_int_equal(describe_spec(&scene, "kd:traversal_cost=10,failures=0").leaves, 1);
+    assert_int_equal(describe_spec(&scene, "kd:traversal_cost=10,failures=1").leaves, 2);
+    assert_int_equal(describe_spec(&scene, "kd:max_depth=1").leaves, 2);
 }
 
 /* A floor in the lowest face of the scene gets a cell without width, so that rays that do not come down to it
  * leave it alone; one in the middle goes into one of the cells it parts. */
 RT_TEST(polygons_in_a_plane_go_to_one_side_of_it) {
-    RtScene scene;
+    OWNED_SCENE scene;
     begin_scene(&scene);
     add_floor(&scene, 0, 0, 0, 10);
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(5, 5, 1.5f), 1, error));
     assert_ok(rt_scene_finish(&scene, error));
-    RtKd *kd = make_kd(&scene, "kd:failures=0,traversal_cost=0.3");
+    OWNED_ACCEL RtKd *kd = open_valid(&scene, "kd:failures=0,traversal_cost=0.3");
     assert_split(kd, 0, 2, 0);
     assert_lists(kd, 1, 1, 0);
     assert_int_equal(kd->id_count, 2);
@@ -92,58 +76,52 @@ RT_TEST(polygons_in_a_plane_go_to_one_side_of_it) {
     begin_scene(&scene);
     for (int z = 0; z < 3; z++) add_floor(&scene, 0, 0, (float)z, 10);
     assert_ok(rt_scene_finish(&scene, error));
-    kd = make_kd(&scene, "kd:traversal_cost=0");
+    kd = open_valid(&scene, "kd:traversal_cost=0");
     assert_int_equal(kd->id_count, 3);
-    rt_kd_destroy(&kd->base);
-    rt_scene_clear(&scene);
 }
 
 /* Tiles of a floor and nothing else: cells are cut across it, never along it. */
 RT_TEST(a_flat_scene_is_divided_within_its_plane) {
-    RtScene scene;
+    OWNED_SCENE scene;
     begin_scene(&scene);
     for (int i = 0; i < 64; i++) {
         add_floor(&scene, 2 * (float)(i % 8), (float)(i - i % 8) / 4, 5, 1);
     }
     assert_ok(rt_scene_finish(&scene, error));
-    RtKd *kd = make_kd(&scene, "kd");
+    OWNED_ACCEL RtKd *kd = open_valid(&scene, "kd");
     assert_int_equal(kd->id_count, 64);
     for (uint32_t i = 0; i < kd->node_count; i++) {
         assert_true(rt_kd_is_leaf(&kd->nodes[i]) ? rt_kd_length(&kd->nodes[i]) <= 1
                                                  : rt_kd_axis(&kd->nodes[i]) != 2);
     }
-    rt_kd_destroy(&kd->base);
-    rt_scene_clear(&scene);
 }
 
-/* Objects in one place cannot be parted: whatever is spent on it ends. */
+/* Coincident objects cannot be separated: building stops whatever the parameters allow. */
 RT_TEST(coincident_objects_stay_in_one_leaf) {
-    RtScene scene;
+    OWNED_SCENE scene;
     begin_scene(&scene);
     for (int i = 0; i < 30; i++) {
         assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
     }
     assert_ok(rt_scene_finish(&scene, error));
-    assert_int_equal(description_of(&scene, "kd:traversal_cost=0,failures=60,max_depth=60").leaves, 1);
-    RtDescription d = description_of(&scene, "kd:traversal_cost=0,margin=0.5");
+    assert_int_equal(describe_spec(&scene, "kd:traversal_cost=0,failures=60,max_depth=60").leaves, 1);
+    RtDescription d = describe_spec(&scene, "kd:traversal_cost=0,margin=0.5");
     assert_int_equal(d.references, 30);
     assert_int_equal(d.empty_leaves, 6); /* one at each face */
-    rt_scene_clear(&scene);
 }
 
-/* Ten parallel cylinders across the boxes of each other: only their surfaces can be parted. */
+/* Ten parallel cylinders whose boxes overlap: only their surfaces can be separated. */
 RT_TEST(slanted_objects_are_parted_by_their_surfaces) {
-    RtScene scene;
+    OWNED_SCENE scene;
     begin_scene(&scene);
     for (int i = 0; i < 10; i++) {
         RtVec3 foot = rt_vec3(0, (float)i, 0), head = rt_vec3(10, (float)(i + 10), 0);
         assert_ok(rt_scene_add_cone(&scene, 0, foot, 0.1f, head, 0.1f, error));
     }
     assert_ok(rt_scene_finish(&scene, error));
-    RtDescription box = description_of(&scene, "kd:max_depth=8");
-    RtDescription exact = description_of(&scene, "kd:max_depth=8,overlap=exact");
+    RtDescription box = describe_spec(&scene, "kd:max_depth=8");
+    RtDescription exact = describe_spec(&scene, "kd:max_depth=8,overlap=exact");
     assert_true(exact.predicted_tests < 0.5 * box.predicted_tests);
-    rt_scene_clear(&scene);
 }
 
 static uint32_t find_leaf(const RtKd *kd, uint32_t least) {
@@ -153,9 +131,9 @@ static uint32_t find_leaf(const RtKd *kd, uint32_t least) {
 }
 
 RT_TEST(validate_names_each_invariant_that_is_broken) {
-    RtScene scene;
+    OWNED_SCENE scene;
     make_lattice(&scene, 4, 4, 4);
-    RtKd *kd = make_kd(&scene, "kd:max_leaf_size=4,margin=0.1");
+    OWNED_ACCEL RtKd *kd = open_valid(&scene, "kd:max_leaf_size=4,margin=0.1");
     RtBox box = kd->box;
     kd->box.hi.z = 1;
     assert_broken(&kd->base, "root does not contain");
@@ -195,17 +173,6 @@ RT_TEST(validate_names_each_invariant_that_is_broken) {
     *root = (RtKdNode){.first = 0, .link = RT_KD_LEAF};
     assert_broken(&kd->base, "has no parent");
     *root = saved;
-    rt_kd_destroy(&kd->base);
-    rt_scene_clear(&scene);
-}
-
-static bool fits(const RtScene *scene, RtValue *values, long depth, uint64_t limit) {
-    RtAccel *accel = NULL;
-    RtError refusal;
-    values[RT_KD_MAX_DEPTH].i = depth;
-    bool built = build_within("kd", limit, scene, values, &accel, &refusal) == RT_OK;
-    if (built) rt_kd_destroy(accel);
-    return built;
 }
 
 RT_TEST(a_tree_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {
@@ -214,34 +181,22 @@ RT_TEST(a_tree_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {
                                         "traversal_cost=0,failures=60,overlap=exact,empty_bonus=1"};
     for (size_t i = 0; i < 9; i++) {
         const uint64_t limit = 1 << 15;
-        RtScene scene;
-        RtValue values[RT_KD_PARAM_COUNT];
-        RtAccel *accel = NULL;
-        RtError refusal = {RT_OK, ""};
-        double gib;
+        OWNED_SCENE scene;
+        RtValue values[RT_KD_PARAM_COUNT], *max_depth = &values[RT_KD_MAX_DEPTH];
         long depth;
         assert_ok(rt_scene_open(scenes[i % 3], &scene, error));
         assert_ok(rt_params_parse(rt_kd_params, RT_KD_PARAM_COUNT, specs[i / 3], "kd", values, error));
-        int64_t live = rt_alloc_live();
-        assert_int_equal(build_within("kd", limit, &scene, values, &accel, &refusal), RT_BAD_INPUT);
-        assert_int_equal(rt_alloc_live(), live);
-        const char *about = strstr(refusal.message, "about "), *remedy = strstr(refusal.message, ": max_");
-        assert_true(about && remedy);
-        assert_int_equal(sscanf(about, "about %lf GiB", &gib), 1);
-        assert_int_equal(sscanf(remedy, ": max_depth=%ld", &depth), 1);
-        assert_true(gib * 0x1p30 > (double)limit);
+        assert_true(refused_bytes("kd", limit, &scene, values, &depth) > (double)limit);
         assert_true(depth >= 3);
-        assert_true(fits(&scene, values, depth, limit));
-        assert_false(fits(&scene, values, depth + 6, limit));
-        rt_scene_clear(&scene);
+        assert_true(fits_within("kd", limit, &scene, values, max_depth, depth));
+        assert_false(fits_within("kd", limit, &scene, values, max_depth, depth + 6));
     }
 }
 
-/* Together what the spread of the conformance test leaves at its default. */
-/* Enough objects for subtrees to be set aside. */
+/* Enough objects for cells to be deferred. */
 RT_TEST(the_tree_is_the_same_bit_for_bit_on_any_number_of_threads) {
     const char *specs[] = {"kd", "kd:overlap=exact,max_leaf_size=4,failures=4"};
-    RtScene scene;
+    OWNED_SCENE scene;
     assert_ok(rt_scene_open("random:n=100000,shape=mixed,distribution=clustered", &scene, error));
     for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
         RtAccel *one, *other;
@@ -257,18 +212,17 @@ RT_TEST(the_tree_is_the_same_bit_for_bit_on_any_number_of_threads) {
         }
         rt_accel_destroy(one);
     }
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(several_threads_refuse_what_one_refuses_and_leave_nothing_behind) {
-    RtScene scene;
+    OWNED_SCENE scene;
     RtValue values[RT_KD_PARAM_COUNT];
     const RtAccelOps *ops;
     assert_ok(rt_accel_find("kd", &ops, error));
     assert_ok(rt_scene_open("random:n=70000", &scene, error));
     assert_ok(rt_params_parse(rt_kd_params, RT_KD_PARAM_COUNT, "", "kd", values, error));
     int64_t live = rt_alloc_live();
-    /* In the top, in a subtree, in no subtree alone. */
+    /* Exceeded in the top, in a subtree, only by the sum. */
     for (uint64_t limit = 1 << 12; limit <= 1 << 20; limit *= 16) {
         RtError refusals[2];
         for (int t = 0; t < 2; t++) {
@@ -289,9 +243,9 @@ RT_TEST(several_threads_refuse_what_one_refuses_and_leave_nothing_behind) {
         if (status == RT_OK) rt_accel_destroy(accel);
         assert_int_equal(rt_alloc_live(), live);
     }
-    rt_scene_clear(&scene);
 }
 
+/* Combinations of parameters, which the spread of the conformance test does not vary together. */
 RT_TEST(every_structure_answers_like_brute) {
     static const char *const specs[] = {"kd:overlap=exact,traversal_cost=0,failures=4",
                                         "kd:overlap=exact,max_leaf_size=3,margin=0.3,mailbox=off",

@@ -9,16 +9,17 @@ typedef struct Sums {
     uint64_t leaves, empty, references, depth;
 } Sums;
 
-static void add_leaf(void *context, uint32_t objects, uint32_t depth) {
+static void add_leaf(void *context, const RtBoxView *view) {
     Sums *sums = context;
+    if (!view->leaf) return;
     sums->leaves++;
-    sums->empty += objects == 0;
-    sums->references += objects;
-    if (depth > sums->depth) sums->depth = depth;
+    sums->empty += view->objects == 0;
+    sums->references += view->objects;
+    if (view->depth > sums->depth) sums->depth = view->depth;
 }
 
 static void check_leaves(const char *spec, const RtScene *scene) {
-    RtAccel *accel;
+    OWNED_ACCEL RtAccel *accel = NULL;
     RtDescription d;
     RtError problem;
     Sums sums = {0};
@@ -26,41 +27,38 @@ static void check_leaves(const char *spec, const RtScene *scene) {
     if (status == RT_NOT_AVAILABLE) return; /* an instruction set */
     if (status != RT_OK) fail_msg("%s: %s", spec, problem.message);
     rt_accel_describe(accel, &d);
-    assert_ok(accel->ops->each_leaf(accel, (RtLeafViewer){add_leaf, &sums}, error));
+    accel->ops->each_box(accel, (RtBoxViewer){add_leaf, &sums});
     if (sums.leaves != d.leaves || sums.empty != d.empty_leaves || sums.references != d.references ||
         sums.depth != d.depth) {
         fail_msg("%s: %d leaves, %d empty, %d references, depth %d, not %d, %d, %d, %d", spec,
                  (int)sums.leaves, (int)sums.empty, (int)sums.references, (int)sums.depth, (int)d.leaves,
                  (int)d.empty_leaves, (int)d.references, (int)d.depth);
     }
-    rt_accel_destroy(accel);
 }
 
 RT_TEST(the_leaves_shown_are_those_described_at_every_setting) {
     const char *const scenes[] = {"balls:size=1", "random:n=1", "random:n=100"};
     uint32_t shown = 0;
     for (size_t s = 0; s < 3; s++) {
-        RtScene scene;
+        OWNED_SCENE scene;
         assert_ok(rt_scene_open(scenes[s], &scene, error));
         for (size_t i = 0; i < rt_accel_count(); i++) {
             char spec[RT_MAX_SPEC_CHARS];
-            if (!rt_accel_at(i)->each_leaf) continue;
+            if (!rt_accel_at(i)->shows_lists) continue;
             shown++;
             for (size_t n = 0; rt_spread_spec(rt_accel_at(i), n, spec); n++) check_leaves(spec, &scene);
         }
-        rt_scene_clear(&scene);
     }
     assert_int_equal(shown, 3 * 6); /* bvh, clusters, grid, kd, octree, wide */
 }
 
 RT_TEST(a_structure_without_objects_shows_what_it_describes) {
-    RtScene scene;
+    OWNED_SCENE scene;
     begin_scene(&scene);
     assert_ok(rt_scene_finish(&scene, error));
     for (size_t i = 0; i < rt_accel_count(); i++) {
-        if (rt_accel_at(i)->each_leaf) check_leaves(rt_accel_at(i)->name, &scene);
+        if (rt_accel_at(i)->shows_lists) check_leaves(rt_accel_at(i)->name, &scene);
     }
-    rt_scene_clear(&scene);
 }
 
 RT_TESTS(leaves, NULL, assert_nothing_is_kept)

@@ -140,7 +140,7 @@ RT_TEST(cells_behind_the_first_67_million_are_found) {
     for (uint32_t i = 0; i < RAYS; i++) {
         rays[i] = shadow_ray(&scene, random_point(&random, 5), 0);
         cells[i].number = 0;
-        found += rt_light_look_up(accel, &rays[i], &cells[i]) && cells[i].length > 0;
+        found += rt_light_find_cell(accel, &rays[i], &cells[i]) && cells[i].length > 0;
     }
     assert_true(found > RAYS / 2);
     assert_ok(rt_query_init(&query, accel, error));
@@ -151,7 +151,7 @@ RT_TEST(cells_behind_the_first_67_million_are_found) {
     assert_memory_equal(blocked, again, sizeof blocked);
     assert_memory_equal(before, after, sizeof before);
     for (uint32_t i = 0; i < RAYS; i++) {
-        if (!rt_light_look_up(accel, &rays[i], &cell)) continue;
+        if (!rt_light_find_cell(accel, &rays[i], &cell)) continue;
         assert_int_equal(cell.number, cells[i].number + more);
         assert_int_equal(cell.object, cells[i].object);
     }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/grid/ with depth > 1: which voxels hold grids, the published structures, the invariants of nested
- * grids, broken on purpose, their limits, and what they gain. */
+/* accel/grid with depth > 1: which voxels contain grids, the published structures, invariants of nested
+ * grids, each broken on purpose, their limits, and their gain. */
 #include "accel_testing.h"
 
 #include "accel/grid/grid.h"
@@ -9,24 +9,9 @@
 
 #include <stdio.h>
 
-static RtGrid *make_grid(const RtScene *scene, const char *spec) {
-    RtAccel *accel = NULL;
-    assert_ok(rt_accel_open(spec, scene, &accel, error));
-    assert_ok(rt_accel_validate(accel, error));
-    return (RtGrid *)accel;
-}
-
-static RtDescription describe(const RtScene *scene, const char *spec) {
-    RtDescription description;
-    RtGrid *grid = make_grid(scene, spec);
-    rt_grid_describe(&grid->base, &description);
-    rt_grid_destroy(&grid->base);
-    return description;
-}
-
 static void assert_structure(const RtScene *scene, const char *spec, uint64_t interior, uint64_t leaves,
                              uint64_t empty, uint64_t references) {
-    RtDescription d = describe(scene, spec);
+    RtDescription d = describe_spec(scene, spec);
     if (d.interior == interior && d.leaves == leaves && d.empty_leaves == empty && d.references == references)
         return;
     fail_msg("%s: %llu interior, %llu leaves, %llu empty, %llu references", spec,
@@ -37,69 +22,63 @@ static void assert_structure(const RtScene *scene, const char *spec, uint64_t in
 /* 2 x 2 x 2 spheres that touch each other: of those that touch a plane only the lower ones are on both
  * sides. */
 RT_TEST(a_voxel_with_more_objects_than_nest_holds_a_grid) {
-    RtScene scene;
+    OWNED_SCENE scene;
     make_lattice(&scene, 2, 2, 2);
     assert_structure(&scene, "grid:resolution=1x1x1,depth=2,density=1,nest=8", 0, 1, 0, 8);
     assert_structure(&scene, "grid:resolution=1x1x1,depth=2,density=1,nest=7", 2, 8, 0, 27);
     /* The half that the plane between belongs to becomes 2 x 2 x 2, for its 4 spheres and the 4 that touch
      * it. */
     assert_structure(&scene, "grid:resolution=2x1x1,depth=2,density=1,nest=7,rule=regular", 2, 9, 0, 31);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(nesting_ends_at_the_depth_given_or_with_the_voxels_that_hold_too_many) {
-    RtScene scene;
+    OWNED_SCENE scene;
     assert_ok(rt_scene_open("random:n=300,distribution=clustered", &scene, error));
     for (uint32_t depth = 1; depth <= 4; depth++) {
         char spec[RT_MAX_SPEC_CHARS];
         snprintf(spec, sizeof spec, "grid:density=0.05,nest=2,depth=%u", depth);
-        assert_int_equal(describe(&scene, spec).depth, depth);
+        assert_int_equal(describe_spec(&scene, spec).depth, depth);
     }
-    assert_int_equal(describe(&scene, "grid:nest=300,depth=4").depth, 1);
-    rt_scene_clear(&scene);
+    assert_int_equal(describe_spec(&scene, "grid:nest=300,depth=4").depth, 1);
 }
 
-/* 40 objects with one and the same box. */
+/* 40 objects with the same box. */
 RT_TEST(nothing_is_nested_where_every_object_fills_the_voxel) {
-    RtScene scene;
+    OWNED_SCENE scene;
     begin_scene(&scene);
     for (int i = 0; i < 40; i++) {
         assert_ok(rt_scene_add_sphere(&scene, 0, (RtVec3){{1, 2, 3}}, 1, error));
     }
     assert_ok(rt_scene_finish(&scene, error));
     assert_structure(&scene, "grid:resolution=2x2x2,depth=8,nest=1", 0, 8, 0, 320);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(slack_and_flat_reach_as_far_as_they_say) {
-    RtScene scene;
+    OWNED_SCENE scene;
     make_lattice(&scene, 2, 1, 1); /* boxes -0.5..0.5 and 0.5..1.5 */
     assert_structure(&scene, "grid:resolution=4x1x1,slack=0.49", 0, 4, 0, 6);
     assert_structure(&scene, "grid:resolution=4x1x1,slack=0.51", 0, 4, 0, 8);
     rt_scene_clear(&scene);
     assert_ok(rt_scene_open("balls:size=1", &scene, error)); /* on a floor at z = -0.5 */
-    RtGrid *grid = make_grid(&scene, "grid:flat=0.25");
+    OWNED_ACCEL RtGrid *grid = open_valid(&scene, "grid:flat=0.25");
     assert_true(grid->box.lo.z == -0.75f && grid->box.hi.z == scene.geometry.box.hi.z);
     assert_true(grid->box.lo.x == scene.geometry.box.lo.x);
-    rt_grid_destroy(&grid->base);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(exact_overlap_lists_fewer_objects_on_every_level) {
-    RtScene scene;
+    OWNED_SCENE scene;
     assert_ok(rt_scene_open("tetra:size=4", &scene, error));
-    RtDescription box = describe(&scene, "grid:depth=3,density=1,nest=2");
-    RtDescription exact = describe(&scene, "grid:depth=3,density=1,nest=2,overlap=exact");
+    RtDescription box = describe_spec(&scene, "grid:depth=3,density=1,nest=2");
+    RtDescription exact = describe_spec(&scene, "grid:depth=3,density=1,nest=2,overlap=exact");
     assert_int_equal(box.depth, 3);
     assert_int_equal(exact.depth, 3);
     assert_true(exact.references < box.references / 2);
-    rt_scene_clear(&scene);
 }
 
 /* Havran & Sixta 1999, RTN 12(1), "Recursive Grid"; see accel/README.md for the other scenes. */
 RT_TEST(structures_of_tetra_and_lattice_are_the_published_ones) {
 #define AS_PUBLISHED ",density=1,nest=8,margin=0.001,flat=0.02,slack=0.01"
-    RtScene scene;
+    OWNED_SCENE scene;
     assert_ok(rt_scene_open("tetra", &scene, error));
     assert_structure(&scene, "grid:depth=2,rule=heterogeneous" AS_PUBLISHED, 1057, 31768, 14220, 117056);
     assert_structure(&scene, "grid:depth=3,rule=heterogeneous" AS_PUBLISHED, 1565, 40404, 14220, 218944);
@@ -109,13 +88,12 @@ RT_TEST(structures_of_tetra_and_lattice_are_the_published_ones) {
     assert_ok(rt_scene_open("lattice", &scene, error));
     assert_structure(&scene, "grid:depth=2,rule=regular" AS_PUBLISHED, 513, 22573, 0, 79525);
     assert_structure(&scene, "grid:depth=3,rule=regular" AS_PUBLISHED, 513, 22573, 0, 79525);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(validate_names_each_invariant_of_nested_grids_that_is_broken) {
-    RtScene scene;
+    OWNED_SCENE scene;
     make_lattice(&scene, 4, 4, 4);
-    RtGrid *grid = make_grid(&scene, "grid:resolution=2x2x2,depth=2,density=1,nest=7");
+    OWNED_ACCEL RtGrid *grid = open_valid(&scene, "grid:resolution=2x2x2,depth=2,density=1,nest=7");
     RtGridLevel *outer = &grid->levels[0], *inner = &grid->levels[1];
     RtGridBlock *last = &inner->blocks[7];
     assert_int_equal(inner->block_count, 8);
@@ -158,12 +136,10 @@ RT_TEST(validate_names_each_invariant_of_nested_grids_that_is_broken) {
     assert_broken(&grid->base, "voxels, but");
     inner->first[inner->voxel_count]++;
     assert_ok(rt_accel_validate(&grid->base, error));
-    rt_grid_destroy(&grid->base);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(nested_grids_beyond_the_limit_of_memory_are_refused_with_the_depth_that_fits) {
-    RtScene scene;
+    OWNED_SCENE scene;
     assert_ok(rt_scene_open("random:n=300,distribution=clustered", &scene, error));
     RtValue values[RT_GRID_PARAM_COUNT];
     RtAccel *accel;
@@ -186,7 +162,6 @@ RT_TEST(nested_grids_beyond_the_limit_of_memory_are_refused_with_the_depth_that_
         rt_grid_destroy(accel);
         values[RT_GRID_DEPTH].i = 8;
     }
-    rt_scene_clear(&scene);
 }
 
 static void count_box(void *context, const RtBoxView *view) {
@@ -198,23 +173,21 @@ static void count_box(void *context, const RtBoxView *view) {
 }
 
 RT_TEST(boxes_of_nested_grids_are_shown_a_level_deeper) {
-    RtScene scene;
+    OWNED_SCENE scene;
     make_lattice(&scene, 4, 4, 4);
-    RtGrid *grid = make_grid(&scene, "grid:resolution=2x2x2,depth=2,density=1");
+    OWNED_ACCEL RtGrid *grid = open_valid(&scene, "grid:resolution=2x2x2,depth=2,density=1");
     uint32_t boxes[3] = {0};
     rt_grid_each_box(&grid->base, (RtBoxViewer){count_box, boxes});
     assert_int_equal(boxes[0], 1);
     assert_int_equal(boxes[1], 8);
     assert_int_equal(boxes[2], grid->levels[1].voxel_count);
-    rt_grid_destroy(&grid->base);
-    rt_scene_clear(&scene);
 }
 
 static double tests_per_ray(const RtScene *scene, const char *spec) {
     const RtFrameOptions options = {.depth = 2, .counted = true};
     RtTally sum = {0};
     RtFrame frame;
-    RtGrid *grid = make_grid(scene, spec);
+    RtGrid *grid = open_valid(scene, spec);
     assert_ok(rt_frame_trace(&frame, &grid->base, &options, error));
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_tally_add(&sum, &frame.tallies[kind]);
     rt_frame_clear(&frame);
@@ -223,13 +196,12 @@ static double tests_per_ray(const RtScene *scene, const char *spec) {
 }
 
 RT_TEST(a_teapot_in_a_stadium_gains) {
-    RtScene scene;
+    OWNED_SCENE scene;
     assert_ok(rt_scene_open("stadium:size=6", &scene, error));
     assert_ok(rt_scene_sample(&scene, 64, 64, 1, false, error));
     double flat = tests_per_ray(&scene, "grid"), nested = tests_per_ray(&scene, "grid:depth=3");
     print_message("tests per ray: %.2f in one grid, %.2f in nested ones\n", flat, nested);
     assert_true(nested < flat / 4);
-    rt_scene_clear(&scene);
 }
 
 RT_TESTS(nested_grid, NULL, assert_nothing_is_kept)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/octree/ from the inside: its invariants, broken on purpose, what goes into which cell, its limits. */
+/* accel/octree: invariants, each broken on purpose, the cells of objects, and limits. */
 #include "accel_testing.h"
 #include "equivalence_testing.h"
 
@@ -19,75 +19,53 @@ static void make_row(RtScene *scene, const float *x, int count) {
     assert_ok(rt_scene_finish(scene, error));
 }
 
-static RtOctree *make_octree(const RtScene *scene, const char *spec) {
-    RtAccel *accel = NULL;
-    assert_ok(rt_accel_open(spec, scene, &accel, error));
-    return (RtOctree *)accel;
-}
-
-static RtDescription description_of(const RtScene *scene, const char *spec) {
-    RtDescription description;
-    RtOctree *tree = make_octree(scene, spec);
-    assert_ok(rt_octree_validate(&tree->base, error));
-    rt_octree_describe(&tree->base, &description);
-    rt_octree_destroy(&tree->base);
-    return description;
-}
-
 /* The planes of the root's split go halfway through the box, where all eight spheres touch one another's. */
 RT_TEST(objects_go_into_every_leaf_they_touch) {
-    RtScene scene;
+    OWNED_SCENE scene;
     make_lattice(&scene, 2, 2, 2);
-    RtDescription d = description_of(&scene, "octree:max_depth=1");
+    RtDescription d = describe_spec(&scene, "octree:max_depth=1");
     assert_int_equal(d.interior, 1);
     assert_int_equal(d.leaves, 8);
     assert_int_equal(d.references, 64);
     assert_true(fabs(d.predicted_cost - 64.0 / 4.0) < 1e-6);
-    d = description_of(&scene, "octree:max_depth=0");
+    d = describe_spec(&scene, "octree:max_depth=0");
     assert_int_equal(d.interior, 0);
     assert_int_equal(d.references, 8);
-    rt_scene_clear(&scene);
 }
 
 /* The mean of three spheres at 0, 1 and 9 is 10/3, where most of them are; the centre is 4.5. */
 RT_TEST(a_split_by_cost_is_nearer_to_the_objects) {
-    RtScene apart;
+    OWNED_SCENE apart;
     const float x[3] = {0, 1, 9};
     make_row(&apart, x, 3);
-    RtOctree *centre = make_octree(&apart, "octree:split=centre");
-    RtOctree *cost = make_octree(&apart, "octree:split=cost");
+    OWNED_ACCEL RtOctree *centre = open_valid(&apart, "octree:split=centre");
+    OWNED_ACCEL RtOctree *cost = open_valid(&apart, "octree:split=cost");
     assert_true(centre->nodes[0].split.x == 4.5f);
     assert_true(cost->nodes[0].split.x < 4.5f && cost->nodes[0].split.x >= 1);
     assert_ok(rt_octree_validate(&cost->base, error));
-    rt_octree_destroy(&centre->base);
-    rt_octree_destroy(&cost->base);
-    rt_scene_clear(&apart);
 }
 
-/* Thirty objects that fill the same box cannot be separated: no depth is spent on it. */
+/* Thirty objects with the same box cannot be separated, so no depth is spent on them. */
 RT_TEST(coincident_objects_stay_in_one_leaf) {
-    RtScene same;
+    OWNED_SCENE same;
     const float x[30] = {0};
     make_row(&same, x, 30);
-    assert_int_equal(description_of(&same, "octree:max_depth=20").leaves, 1);
-    assert_int_equal(description_of(&same, "octree:max_depth=3,margin=0.1").depth, 3);
-    assert_int_equal(description_of(&same, "octree:max_depth=2,cut_filled=on").leaves, 64);
-    rt_scene_clear(&same);
+    assert_int_equal(describe_spec(&same, "octree:max_depth=20").leaves, 1);
+    assert_int_equal(describe_spec(&same, "octree:max_depth=3,margin=0.1").depth, 3);
+    assert_int_equal(describe_spec(&same, "octree:max_depth=2,cut_filled=on").leaves, 64);
 }
 
 /* Spheres at -2 and 2, with boxes up to 1.75 away from the plane between. */
 RT_TEST(slack_grows_the_boxes_of_objects) {
-    RtScene apart;
+    OWNED_SCENE apart;
     const float x[2] = {-2, 2};
     make_row(&apart, x, 2);
-    assert_int_equal(description_of(&apart, "octree:max_depth=1").references, 8);
-    assert_int_equal(description_of(&apart, "octree:max_depth=1,slack=1.74").references, 8);
-    assert_int_equal(description_of(&apart, "octree:max_depth=1,slack=1.76").references, 16);
-    RtOctree *tree = make_octree(&apart, "octree:max_depth=1,slack=1.76");
+    assert_int_equal(describe_spec(&apart, "octree:max_depth=1").references, 8);
+    assert_int_equal(describe_spec(&apart, "octree:max_depth=1,slack=1.74").references, 8);
+    assert_int_equal(describe_spec(&apart, "octree:max_depth=1,slack=1.76").references, 16);
+    OWNED_ACCEL RtOctree *tree = open_valid(&apart, "octree:max_depth=1,slack=1.76");
     tree->slack = 0;
     assert_broken(&tree->base, "which it does not touch");
-    rt_octree_destroy(&tree->base);
-    rt_scene_clear(&apart);
 }
 
 /* The first leaf, from the root on, with `least` objects or more. */
@@ -98,9 +76,9 @@ static uint32_t find_leaf(const RtOctree *tree, uint32_t least) {
 }
 
 RT_TEST(validate_names_each_invariant_that_is_broken) {
-    RtScene scene;
+    OWNED_SCENE scene;
     make_lattice(&scene, 4, 4, 4);
-    RtOctree *tree = make_octree(&scene, "octree:max_depth=3,margin=0.1");
+    OWNED_ACCEL RtOctree *tree = open_valid(&scene, "octree:max_depth=3,margin=0.1");
     assert_ok(rt_octree_validate(&tree->base, error));
     RtOctreeNode *root = &tree->nodes[0], saved = *root, saved_child = tree->nodes[1];
     RtBox box = tree->boxes[0];
@@ -148,93 +126,69 @@ RT_TEST(validate_names_each_invariant_that_is_broken) {
     *last = id;
     leaf->count--;
     assert_broken(&tree->base, "leaves, but");
-
-    rt_octree_destroy(&tree->base);
-    rt_scene_clear(&scene);
 }
 
-/* Sees a build within `limit` bytes refused, and reads how many it would take and which depth would fit. */
-static double refuse(const RtScene *scene, const char *parameters, uint64_t limit, RtValue *values,
-                     long *depth) {
-    RtAccel *accel = NULL;
-    RtError refusal = {RT_OK, ""};
-    double gib;
+static void parse(const char *parameters, RtValue *values) {
     assert_ok(rt_params_parse(rt_octree_params, RT_OCTREE_PARAM_COUNT, parameters, "octree", values, error));
-    int64_t live = rt_alloc_live();
-    assert_int_equal(build_within("octree", limit, scene, values, &accel, &refusal), RT_BAD_INPUT);
-    assert_int_equal(rt_alloc_live(), live);
-    const char *about = strstr(refusal.message, "about "), *remedy = strstr(refusal.message, ": max_depth=");
-    assert_true(about && remedy);
-    assert_int_equal(sscanf(about, "about %lf GiB", &gib), 1);
-    assert_int_equal(sscanf(remedy, ": max_depth=%ld", depth), 1);
-    return gib * 0x1p30;
-}
-
-static bool fits(const RtScene *scene, RtValue *values, long depth, uint64_t limit) {
-    RtAccel *accel = NULL;
-    RtError refusal;
-    values[RT_OCTREE_MAX_DEPTH].i = depth;
-    bool built = build_within("octree", limit, scene, values, &accel, &refusal) == RT_OK;
-    if (built) rt_octree_destroy(accel);
-    return built;
 }
 
 RT_TEST(an_octree_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {
-    RtScene scene;
+    OWNED_SCENE scene;
     make_lattice(&scene, 2, 2, 2);
     RtValue values[RT_OCTREE_PARAM_COUNT];
     long depth;
     const uint64_t limit = 1 << 16;
-    assert_true(refuse(&scene, "max_depth=20,margin=0.01", limit, values, &depth) > (double)limit);
+    parse("max_depth=20,margin=0.01", values);
+    assert_true(refused_bytes("octree", limit, &scene, values, &depth) > (double)limit);
 
-    assert_true(fits(&scene, values, depth, limit));
-    assert_false(fits(&scene, values, depth + 1, limit));
-    rt_scene_clear(&scene);
+    assert_true(fits_within("octree", limit, &scene, values, &values[RT_OCTREE_MAX_DEPTH], depth));
+    assert_false(fits_within("octree", limit, &scene, values, &values[RT_OCTREE_MAX_DEPTH], depth + 1));
 }
 
-/* Who counts the bytes while they are taken stops at the first too many, and cannot know of so many more. */
+/* Counting bytes while building stops at the limit, and cannot predict so much more. */
 RT_TEST(far_too_deep_an_octree_is_refused_by_an_estimate) {
     static const char *const scenes[] = {"balls", "tetra", "random:n=20000,radius=1",
                                          "random:n=5000,distribution=stadium"};
     static const char *const specs[] = {"max_depth=20", "max_depth=20,split=cost",
                                         "max_depth=20,max_leaf_size=3,margin=0.01"};
     for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i++) {
-        RtScene scene;
+        OWNED_SCENE scene;
         assert_ok(rt_scene_open(scenes[i], &scene, error));
         for (size_t k = 0; k < sizeof specs / sizeof specs[0]; k++) {
             const uint64_t limit = UINT64_C(1) << 23;
             RtValue values[RT_OCTREE_PARAM_COUNT];
             long depth;
-            assert_true(refuse(&scene, specs[k], limit, values, &depth) > 1000.0 * (double)limit);
+            parse(specs[k], values);
+            assert_true(refused_bytes("octree", limit, &scene, values, &depth) > 1000.0 * (double)limit);
             assert_true(depth >= 4);
-            assert_true(fits(&scene, values, depth, limit));
-            assert_false(fits(&scene, values, depth + 2, limit));
+            assert_true(fits_within("octree", limit, &scene, values, &values[RT_OCTREE_MAX_DEPTH], depth));
+            assert_false(
+                fits_within("octree", limit, &scene, values, &values[RT_OCTREE_MAX_DEPTH], depth + 2));
         }
-        rt_scene_clear(&scene);
     }
 }
 
 RT_TEST(the_estimate_is_near_what_a_build_takes) {
     static const char *const specs[] = {"max_depth=9", "max_depth=8,split=cost",
                                         "max_depth=9,max_leaf_size=3"};
-    RtScene scene;
+    OWNED_SCENE scene;
     assert_ok(rt_scene_open("balls", &scene, error));
     for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
         RtValue values[RT_OCTREE_PARAM_COUNT];
         RtAccel *accel;
         RtDescription description;
         long depth;
-        double estimate = refuse(&scene, specs[i], 1 << 20, values, &depth);
+        parse(specs[i], values);
+        double estimate = refused_bytes("octree", 1 << 20, &scene, values, &depth);
         assert_ok(build_within("octree", 1 << 28, &scene, values, &accel, error));
         rt_octree_describe(accel, &description);
         rt_octree_destroy(accel);
         double ratio = estimate / (double)description.bytes;
         if (!(ratio > 0.75 && ratio < 1.33)) fail_msg("%s: %g of what is taken", specs[i], ratio);
     }
-    rt_scene_clear(&scene);
 }
 
-/* Every traversal together with what the spread of the conformance test leaves at its default. */
+/* Combinations that the spread of the conformance test does not contain. */
 RT_TEST(every_traversal_answers_like_brute_in_every_structure) {
     static const char *const traversals[] = {"points", "neighbours", "parametric"};
     static const char *const settings[] = {"split=cost,mailbox=off", "margin=0.3,max_leaf_size=3",

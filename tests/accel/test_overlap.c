@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* core/shape/overlap.h: which boxes the surface of an object meets, and grids that list objects by it. */
+/* core/shape/overlap.h: boxes that the surface of an object meets, and grids that list objects by surface. */
 #include "accel_testing.h"
 #include "equivalence_testing.h"
 
@@ -61,7 +61,7 @@ RT_TEST(a_slanted_cylinder_leaves_corners_of_its_box_free) {
     rt_geometry_clear(&g);
 }
 
-/* Asserts what the part of object 0 in a box is, to a few units of float32. */
+/* Asserts the part of object 0 in a box, to a few units of float32. */
 static void assert_part(const RtGeometry *g, RtBox box, RtBox expected) {
     RtBox part;
     assert_true(rt_object_part(g, 0, &box, margin, &part));
@@ -108,7 +108,7 @@ RT_TEST(parts_of_balls_and_cones_end_where_they_narrow) {
     rt_geometry_clear(&g);
 }
 
-/* The own box of the object is cut into eight by planes through a point of its surface: that is in the part
+/* The box of the object is cut into eight by planes through a point of its surface: the point is in the part
  * in each of them. */
 static void assert_parts_hold(const RtScene *scene, uint32_t id, RtVec3 point, double near) {
     RtBox own = scene->geometry.boxes[id], part;
@@ -124,12 +124,12 @@ static void assert_parts_hold(const RtScene *scene, uint32_t id, RtVec3 point, d
     }
 }
 
-/* Points that rays hit are points of surfaces: boxes about them are met, whatever the shape. */
+/* Points that rays hit are points of surfaces: boxes around them are met, for every shape. */
 RT_TEST(boxes_about_hits_are_met) {
     for (size_t family = 0; family < rt_family_count(); family++) {
-        RtScene scene;
-        RtAccel *brute;
-        RtQuery query;
+        OWNED_SCENE scene;
+        OWNED_ACCEL RtAccel *brute = NULL;
+        OWNED_QUERY query = {0};
         enum { RAYS = 500 };
         RtRay rays[RAYS];
         RtHit hits[RAYS];
@@ -150,33 +150,19 @@ RT_TEST(boxes_about_hits_are_met) {
             }
             assert_parts_hold(&scene, hits[i].object, p, near);
         }
-        rt_query_clear(&query);
-        rt_accel_destroy(brute);
-        rt_scene_clear(&scene);
     }
-}
-
-static RtDescription described(const RtScene *scene, const char *spec) {
-    RtAccel *grid;
-    RtDescription description;
-    assert_ok(rt_accel_open(spec, scene, &grid, error));
-    assert_ok(rt_accel_validate(grid, error));
-    rt_grid_describe(grid, &description);
-    rt_accel_destroy(grid);
-    return description;
 }
 
 /* One sphere in 4 x 4 x 4 voxels of half its radius: its box touches all of them, its surface all but the 8
  * in the middle, whose farthest points are at 0.87 of the radius, as are the nearest of the corners. */
 RT_TEST(a_grid_leaves_out_voxels_inside_a_sphere) {
-    RtScene scene;
+    OWNED_SCENE scene;
     begin_scene(&scene);
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
     assert_ok(rt_scene_finish(&scene, error));
-    assert_int_equal(described(&scene, "grid:resolution=4x4x4").references, 64);
-    assert_int_equal(described(&scene, "grid:resolution=4x4x4,overlap=exact").references, 56);
-    assert_int_equal(described(&scene, "grid:resolution=1x1x1,overlap=exact").references, 1);
-    rt_scene_clear(&scene);
+    assert_int_equal(describe_spec(&scene, "grid:resolution=4x4x4").references, 64);
+    assert_int_equal(describe_spec(&scene, "grid:resolution=4x4x4,overlap=exact").references, 56);
+    assert_int_equal(describe_spec(&scene, "grid:resolution=1x1x1,overlap=exact").references, 1);
 }
 
 /* Half a square, x >= y, that rises with x, and a ray past it: at org the line is beyond the slanted edge, by
@@ -187,23 +173,20 @@ RT_TEST(a_ray_with_the_shortest_of_directions_is_not_trusted_to_voxels) {
     static const char *const specs[] = {"brute", "grid:resolution=32x32x32,overlap=exact"};
     const RtVec3 v[3] = {{0, 0, 0.5f}, {1, 0, 1.5f}, {1, 1, 1.5f}};
     const RtRay ray = {.org = {0.3f, 0.35f, 0}, .dir = {0x1p-129f, 0, 0x1p-126f}, .tmax = INFINITY};
-    RtScene scene;
+    OWNED_SCENE scene;
     begin_scene(&scene);
     assert_ok(rt_scene_add_triangle(&scene, 0, v, NULL, error));
     assert_ok(rt_scene_finish(&scene, error));
     for (size_t i = 0; i < 2; i++) {
-        RtAccel *accel;
-        RtQuery query;
+        OWNED_ACCEL RtAccel *accel = NULL;
+        OWNED_QUERY query = {0};
         RtHit hit;
         assert_ok(rt_accel_open(specs[i], &scene, &accel, error));
         assert_ok(rt_query_init(&query, accel, error));
         rt_nearest(&query, &ray, 1, &hit, NULL);
         assert_int_equal(hit.object, 0);
         assert_true(hit.t > 0.9f * 0x1p126f && hit.t < 0.95f * 0x1p126f);
-        rt_query_clear(&query);
-        rt_accel_destroy(accel);
     }
-    rt_scene_clear(&scene);
 }
 
 RT_TESTS(overlap, NULL, NULL)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Overlays: specs with '+', the layers they build, what is counted where, and the shadow cache. */
+/* Overlays: specs with '+', their layers, the counts of each, and the shadow cache. */
 #include "accel_testing.h"
 
 #include "accel/accel.h"
@@ -109,18 +109,18 @@ RT_TEST(layers_are_described_together) {
 }
 
 RT_TEST(a_stack_is_only_as_exact_as_its_base) {
-    RtAccel *accel;
+    OWNED_ACCEL RtAccel *accel = NULL;
     assert_ok(rt_accel_open("cache+bvh", *state, &accel, error));
     assert_true(accel->exact && accel->counts);
     rt_accel_destroy(accel);
     if (rt_accel_open("cache+embree:mode=native", *state, &accel, NULL) == RT_NOT_AVAILABLE) return;
     assert_false(accel->exact || accel->counts);
-    rt_accel_destroy(accel);
 }
 
 /* ---- the shadow cache ---- */
 
-/* Shadow rays in this order, each with what cache+brute is to count for it. */
+/* Shadow rays in this order, each with the counts of cache+brute. */
+#define HIT .rays = 1, .hits = 1, .object_hits = 1
 RT_TEST(the_cache_counts_what_was_counted_by_hand) {
     const RtScene *scene = *state;
     const struct {
@@ -129,42 +129,22 @@ RT_TEST(the_cache_counts_what_was_counted_by_hand) {
         bool begin, blocked;
         RtTally expected;
     } rows[] = {
-        /* Nothing is remembered: brute's two tests, of which the first hits. */
-        {{{-1, 0.5f, 0.5f}},
-         0,
-         true,
-         true,
-         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .passed_on = 1}},
-        /* Sphere 0 is remembered, and blocks again: one test, nothing passed on. */
-        {{{-1, 0.4f, 0.5f}},
-         0,
-         false,
-         true,
-         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .steps = 1}},
-        /* From between the spheres: 0 is tested in vain, brute tests both and finds 1. */
-        {{{2, 0.5f, 0.5f}},
-         0,
-         false,
-         true,
-         {.rays = 1, .hits = 1, .object_tests = 3, .object_hits = 1, .steps = 1, .passed_on = 1}},
+        /* The cache is empty: brute's two tests, of which the first hits. */
+        {{{-1, 0.5f, 0.5f}}, 0, true, true, {HIT, .object_tests = 1, .passed_on = 1}},
+        /* Sphere 0 is cached and occludes again: one test, nothing passed on. */
+        {{{-1, 0.4f, 0.5f}}, 0, false, true, {HIT, .object_tests = 1, .steps = 1}},
+        /* From between the spheres: the cached one is tested in vain, brute tests both and finds 1. */
+        {{{2, 0.5f, 0.5f}}, 0, false, true, {HIT, .object_tests = 3, .steps = 1, .passed_on = 1}},
         /* The other light has an entry of its own, empty yet; nothing is in the way. */
         {{{2, 0.5f, 5}}, 1, false, false, {.rays = 1, .object_tests = 2, .passed_on = 1}},
-        /* Sphere 1 is remembered for the first light, in vain; what misses changes nothing: */
+        /* Sphere 1 is cached for the first light, in vain; a miss leaves the cache unchanged: */
         {{{6, 0.5f, 0.5f}}, 0, false, false, {.rays = 1, .object_tests = 3, .steps = 1, .passed_on = 1}},
-        {{{2, 0.5f, 0.5f}},
-         0,
-         false,
-         true,
-         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .steps = 1}},
-        /* After a new beginning nothing is remembered. */
-        {{{2, 0.5f, 0.5f}},
-         0,
-         true,
-         true,
-         {.rays = 1, .hits = 1, .object_tests = 2, .object_hits = 1, .passed_on = 1}},
+        {{{2, 0.5f, 0.5f}}, 0, false, true, {HIT, .object_tests = 1, .steps = 1}},
+        /* After rt_query_begin the cache is empty. */
+        {{{2, 0.5f, 0.5f}}, 0, true, true, {HIT, .object_tests = 2, .passed_on = 1}},
     };
-    RtAccel *accel;
-    RtQuery query;
+    OWNED_ACCEL RtAccel *accel = NULL;
+    OWNED_QUERY query = {0};
     assert_ok(rt_accel_open("cache+brute", scene, &accel, error));
     assert_ok(rt_query_init(&query, accel, error));
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
@@ -181,14 +161,12 @@ RT_TEST(the_cache_counts_what_was_counted_by_hand) {
                 fail_msg("row %zu, %s: %d, by hand %d", i, rt_tally_name(c), (int)got, (int)by_hand);
         }
     }
-    rt_query_clear(&query);
-    rt_accel_destroy(accel);
 }
 
 RT_TEST(rays_of_other_kinds_pass_an_overlay_uncounted) {
     const RtScene *scene = *state;
-    RtAccel *accel;
-    RtQuery query;
+    OWNED_ACCEL RtAccel *accel = NULL;
+    OWNED_QUERY query = {0};
     RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
     RtRay toward = shadow_ray(scene, rt_vec3(-1, 0.5f, 0.5f), 0), rays[3] = {toward, toward, toward};
     rays[1].kind = RT_RAY_DIFFUSE;
@@ -207,8 +185,6 @@ RT_TEST(rays_of_other_kinds_pass_an_overlay_uncounted) {
     assert_int_equal(hits[0].object, 0);
     assert_int_equal(tallies[RT_RAY_SHADOW].rays, 4);
     assert_int_equal(tallies[RT_RAY_SHADOW].passed_on, 2);
-    rt_query_clear(&query);
-    rt_accel_destroy(accel);
 }
 
 RT_TESTS(overlays, set_up, tear_down)

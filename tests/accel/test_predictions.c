@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Predictions of what a random line costs, held against random lines: over objects so small that hardly any
- * line meets one, nothing stops a line, as the predictions assume. */
-#include "testing.h"
+/* Predictions for random lines against random lines: over objects so small that hardly any line hits one, no
+ * hit ends a traversal, as the predictions assume. */
+#include "accel_testing.h"
 
 #include "rays/rayset.h"
 #include "scenes/open.h"
@@ -60,11 +60,11 @@ static const struct {
 
 RT_TEST(lines_take_the_tests_and_steps_that_were_predicted) {
     static RtRay rays[LINES];
-    RtScene scene;
+    OWNED_SCENE scene;
     assert_ok(rt_scene_open("random:n=500,radius=0.002", &scene, error));
     make_lines(&scene.geometry.box, rays);
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        RtAccel *accel;
+        OWNED_ACCEL RtAccel *accel = NULL;
         RtDescription d;
         assert_ok(rt_accel_open(rows[i].spec, &scene, &accel, error));
         rt_accel_describe(accel, &d);
@@ -76,9 +76,7 @@ RT_TEST(lines_take_the_tests_and_steps_that_were_predicted) {
         if (d.predicted_steps > 0) {
             assert_close(rows[i].spec, "steps", (double)tally.steps / LINES, d.predicted_steps);
         }
-        rt_accel_destroy(accel);
     }
-    rt_scene_clear(&scene);
 }
 
 RT_TESTS(predictions, NULL, NULL)

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/tree/reinsertion.c: what moves, what it gains, and that nothing else changes. */
+/* accel/tree/reinsertion.c: which subtrees move, the gain, and that nothing else changes. */
 #include "tree_testing.h"
 
 #include <string.h>
 
-/* A binned tree, and poor ones: medians, and chains in the order of ids. */
+/* A binned tree, and bad ones: medians, and chains in the order of ids. */
 enum { BINNED, MEDIANS, CHAIN, KINDS };
 
 static RtTree make_tree(const RtBox *boxes, uint32_t count, int kind) {
@@ -38,7 +38,7 @@ static void assert_same_references(const RtTree *tree, const RtBox *boxes) {
     rt_free(seen);
 }
 
-/* Boxes of unions hold their children and nothing else. */
+/* Boxes of inner nodes are tight. */
 static void assert_tight(const RtTree *tree) {
     for (uint32_t i = 0; i < tree->used; i++) {
         if (rt_tree_is_leaf(tree, i)) continue;
@@ -54,7 +54,7 @@ RT_TEST(pairs_that_were_parted_are_united) {
                             {{2, 0, 0}, {3, 1, 1}},
                             {{100, 0, 0}, {101, 1, 1}},
                             {{102, 0, 0}, {103, 1, 1}}};
-    RtTree tree;
+    OWNED_TREE tree;
     assert_ok(rt_tree_init_leaves(&tree, boxes, 4, error));
     uint32_t a = rt_tree_unite(&tree, 0, 2), b = rt_tree_unite(&tree, 1, 3);
     rt_tree_unite(&tree, a, b);
@@ -63,16 +63,15 @@ RT_TEST(pairs_that_were_parted_are_united) {
     assert_ok(rt_tree_reinsert(&tree, 10, 1, error));
     assert_true(rt_tree_cost(&tree) == 7 + 7 + 207); /* 3 x 1 x 1 twice */
     assert_same_references(&tree, boxes);
-    rt_tree_clear(&tree);
 }
 
 RT_TEST(a_round_never_costs_more_and_a_poor_tree_gets_good) {
     enum { COUNT = 2000 };
     for (uint64_t seed = 1; seed <= 3; seed++) {
-        RtBox *boxes = make_boxes(COUNT, seed);
+        OWNED_MEMORY RtBox *boxes = make_boxes(COUNT, seed);
         double good = 0;
         for (int kind = 0; kind < KINDS; kind++) {
-            RtTree tree = make_tree(boxes, COUNT, kind);
+            OWNED_TREE tree = make_tree(boxes, COUNT, kind);
             assert_ok(rt_tree_limit_depth(&tree, error));
             double first = rt_tree_cost(&tree), before = first;
             if (kind == BINNED) good = first;
@@ -86,26 +85,21 @@ RT_TEST(a_round_never_costs_more_and_a_poor_tree_gets_good) {
             }
             assert_true(before < first);
             assert_true(before <= good);
-            rt_tree_clear(&tree);
         }
-        rt_free(boxes);
     }
 }
 
 RT_TEST(the_tree_does_not_depend_on_threads) {
     enum { COUNT = 5000 };
-    RtBox *boxes = make_boxes(COUNT, 9);
-    RtTree first = make_tree(boxes, COUNT, MEDIANS);
+    OWNED_MEMORY RtBox *boxes = make_boxes(COUNT, 9);
+    OWNED_TREE first = make_tree(boxes, COUNT, MEDIANS);
     assert_ok(rt_tree_reinsert(&first, 3, 1, error));
     for (int threads = 2; threads <= 3; threads++) {
-        RtTree tree = make_tree(boxes, COUNT, MEDIANS);
+        OWNED_TREE tree = make_tree(boxes, COUNT, MEDIANS);
         assert_ok(rt_tree_reinsert(&tree, 3, threads, error));
         assert_int_equal(tree.root, first.root);
         assert_memory_equal(tree.nodes, first.nodes, tree.used * sizeof(RtTreeNode));
-        rt_tree_clear(&tree);
     }
-    rt_tree_clear(&first);
-    rt_free(boxes);
 }
 
 /* ---- against all moves there are ---- */
@@ -143,7 +137,7 @@ static double cost_after(const RtTree *tree, uint32_t node, uint32_t target) {
     uint32_t p = parent_of(tree, node);
     uint32_t sibling = tree->nodes[p].child[tree->nodes[p].child[0] == node ? 1 : 0];
     put_instead(&copy, parent_of(tree, p), p, sibling);
-    copy.nodes[p].child[0] = RT_TREE_LEAF; /* it is the parent of none for now */
+    copy.nodes[p].child[0] = RT_TREE_LEAF; /* it has no children for now */
     put_instead(&copy, parent_of(&copy, target), target, p);
     copy.nodes[p].child[0] = target;
     copy.nodes[p].child[1] = node;
@@ -156,8 +150,8 @@ static double cost_after(const RtTree *tree, uint32_t node, uint32_t target) {
 RT_TEST(where_it_ends_no_move_there_is_would_gain) {
     enum { COUNT = 14 };
     for (uint64_t seed = 1; seed <= 8; seed++) {
-        RtBox *boxes = make_boxes(COUNT, seed);
-        RtTree tree = make_tree(boxes, COUNT, seed % 2 ? CHAIN : MEDIANS);
+        OWNED_MEMORY RtBox *boxes = make_boxes(COUNT, seed);
+        OWNED_TREE tree = make_tree(boxes, COUNT, seed % 2 ? CHAIN : MEDIANS);
         assert_ok(rt_tree_reinsert(&tree, 1000, 0, error));
         double cost = rt_tree_cost(&tree);
         for (uint32_t node = 0; node < tree.used; node++) {
@@ -167,8 +161,6 @@ RT_TEST(where_it_ends_no_move_there_is_would_gain) {
                 assert_true(cost_after(&tree, node, target) > cost * (1 - 1e-9));
             }
         }
-        rt_tree_clear(&tree);
-        rt_free(boxes);
     }
 }
 
@@ -176,7 +168,7 @@ RT_TEST(where_it_ends_no_move_there_is_would_gain) {
 
 RT_TEST(what_cannot_gain_stays_as_it_is) {
     enum { COUNT = 300 };
-    RtBox *boxes = rt_alloc(COUNT, sizeof(RtBox)); /* all at one point, then all the unit cube */
+    OWNED_MEMORY RtBox *boxes = rt_alloc(COUNT, sizeof(RtBox)); /* all at one point, then all the unit cube */
     for (int pass = 0; pass < 2; pass++) {
         for (uint32_t count = 1; count <= COUNT; count = count < 3 ? count + 1 : count * 10) {
             RtTree tree = make_tree(boxes, count, MEDIANS), before = copy_of(&tree);
@@ -187,45 +179,40 @@ RT_TEST(what_cannot_gain_stays_as_it_is) {
         }
         for (int i = 0; i < COUNT; i++) boxes[i] = (RtBox){{0, 0, 0}, {1, 1, 1}};
     }
-    rt_free(boxes);
 }
 
 /* Boxes about one point: each holds all the smaller ones, and bounds do not prune. A chain would be the best
  * tree; moves along it would take the square of their number. */
 RT_TEST(nested_boxes_take_no_time_to_speak_of) {
     enum { COUNT = 20000 };
-    RtBox *boxes = rt_alloc(COUNT, sizeof(RtBox));
+    OWNED_MEMORY RtBox *boxes = rt_alloc(COUNT, sizeof(RtBox));
     for (int step = 1; step <= 7919; step += 7918) { /* in order, and mixed */
         for (int i = 0; i < COUNT; i++) {
             float r = (float)(i + 1);
             boxes[(i * step) % COUNT] = (RtBox){{-r, -r, -r}, {r, r, r}};
         }
-        RtTree tree = make_tree(boxes, COUNT, MEDIANS);
+        OWNED_TREE tree = make_tree(boxes, COUNT, MEDIANS);
         double before = rt_tree_cost(&tree);
         assert_ok(rt_tree_reinsert(&tree, 4, 0, error));
         assert_true(rt_tree_cost(&tree) <= before);
         assert_same_references(&tree, boxes);
         uint32_t depth = assert_tree(&tree);
         if (depth > COUNT / 4) fail_msg("the tree is %u deep", depth);
-        rt_tree_clear(&tree);
     }
-    rt_free(boxes);
 }
 
 RT_TEST(a_tree_that_is_too_deep_is_limited_first) {
     enum { COUNT = 1000 };
-    RtBox *boxes = make_boxes(COUNT, 3);
-    RtTree tree = make_tree(boxes, COUNT, CHAIN);
+    OWNED_MEMORY RtBox *boxes = make_boxes(COUNT, 3);
+    OWNED_TREE tree = make_tree(boxes, COUNT, CHAIN);
     assert_int_equal(assert_tree(&tree), COUNT - 1);
     assert_ok(rt_tree_reinsert(&tree, 1, 0, error));
     assert_true(assert_tree(&tree) < 2 * RT_TREE_MAX_DEPTH);
-    rt_tree_clear(&tree);
-    rt_free(boxes);
 }
 
 RT_TEST(every_allocation_may_fail) {
-    RtBox *boxes = make_boxes(100, 5);
-    RtTree tree = make_tree(boxes, 100, MEDIANS);
+    OWNED_MEMORY RtBox *boxes = make_boxes(100, 5);
+    OWNED_TREE tree = make_tree(boxes, 100, MEDIANS);
     int64_t live = rt_alloc_live();
     RtStatus status = RT_NO_MEMORY;
     for (uint64_t n = 1; status != RT_OK; n++) {
@@ -238,8 +225,6 @@ RT_TEST(every_allocation_may_fail) {
         assert_same_references(&tree, boxes);
         assert_in_range(n, 1, 10);
     }
-    rt_tree_clear(&tree);
-    rt_free(boxes);
 }
 
 RT_TESTS(reinsertion, NULL, NULL)

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/tree: orders along axes and by Morton codes, and the methods that rest on them, linear hierarchies
- * and sweeps. */
+/* accel/tree: orders along axes and by Morton codes, and the methods based on them: LBVH and sweep. */
 #include "tree_testing.h"
 
 #include "accel/tree/order.h"
@@ -51,7 +50,7 @@ RT_TEST(morton_codes_interleave_the_cells_of_centres) {
 RT_TEST(lbvh_halves_space_along_one_axis_after_another) {
     RtBox boxes[64];
     make_cells(boxes);
-    RtTree tree;
+    OWNED_TREE tree;
     assert_ok(rt_tree_lbvh(&tree, boxes, 64, 21, 1, error));
     assert_int_equal(assert_tree(&tree), 6);
     uint32_t node = tree.root;
@@ -66,7 +65,6 @@ RT_TEST(lbvh_halves_space_along_one_axis_after_another) {
             }
         }
     }
-    rt_tree_clear(&tree);
 }
 
 /* The least cost of a split by a plane between centres along an axis, of which none are equal. */
@@ -105,7 +103,7 @@ static double root_split_cost(const RtTree *tree) {
 RT_TEST(a_sweep_finds_the_cheapest_of_all_splits_and_so_do_as_many_bins_as_objects) {
     for (uint64_t seed = 1; seed <= 20; seed++) {
         for (uint32_t count = 16; count <= 200; count += 184) {
-            RtBox *boxes = make_boxes(count, seed);
+            OWNED_MEMORY RtBox *boxes = make_boxes(count, seed);
             RtTree binned, sweep;
             assert_ok(rt_tree_topdown(&binned, boxes, count, 16, 1, error));
             assert_ok(rt_tree_sweep(&sweep, boxes, count, error));
@@ -114,12 +112,11 @@ RT_TEST(a_sweep_finds_the_cheapest_of_all_splits_and_so_do_as_many_bins_as_objec
             assert_true(count == 16 ? root_split_cost(&binned) == least : root_split_cost(&binned) >= least);
             rt_tree_clear(&binned);
             rt_tree_clear(&sweep);
-            rt_free(boxes);
         }
     }
 }
 
-/* Boxes with all that is hard: a group far off, many in one place, and the zeros of either sign. */
+/* Hard boxes: a distant group, coincident boxes, zeros of either sign. */
 static RtBox *make_hard_boxes(uint32_t count) {
     RtBox *boxes = make_boxes(count, 3);
     for (uint32_t i = 0; i < count; i += 7) boxes[i] = boxes[i % 3];
@@ -143,19 +140,16 @@ static RtTree make_tree(const RtBox *boxes, uint32_t count, int method, int thre
 
 RT_TEST(a_tree_is_the_same_bit_for_bit_on_any_number_of_threads) {
     enum { COUNT = 50000, METHODS = 7 };
-    RtBox *boxes = make_hard_boxes(COUNT);
+    OWNED_MEMORY RtBox *boxes = make_hard_boxes(COUNT);
     for (int method = 0; method < METHODS; method++) {
-        RtTree one = make_tree(boxes, COUNT, method, 1);
+        OWNED_TREE one = make_tree(boxes, COUNT, method, 1);
         assert_tree(&one);
         for (int threads = 2; threads <= 5; threads++) {
-            RtTree other = make_tree(boxes, COUNT, method, threads);
+            OWNED_TREE other = make_tree(boxes, COUNT, method, threads);
             assert_int_equal(one.root, other.root);
             assert_memory_equal(one.nodes, other.nodes, one.used * sizeof(RtTreeNode));
-            rt_tree_clear(&other);
         }
-        rt_tree_clear(&one);
     }
-    rt_free(boxes);
 }
 
 RT_TESTS(tree_orders, NULL, NULL)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/tree: the methods against their definitions, and bounded depth. */
+/* accel/tree: methods against their definitions, and the depth limit. */
 #include "tree_testing.h"
 
 #include "accel/tree/neighbours.h"
@@ -28,8 +28,8 @@ static RtTree make_tree(const RtBox *boxes, uint32_t count, int method) {
 
 RT_TEST(the_nearest_neighbour_is_the_one_that_a_scan_finds) {
     enum { COUNT = 333 };
-    RtBox *boxes = make_boxes(COUNT, 1);
-    RtTree tree;
+    OWNED_MEMORY RtBox *boxes = make_boxes(COUNT, 1);
+    OWNED_TREE tree;
     RtNeighbours neighbours;
     bool gone[2 * COUNT] = {false};
     assert_ok(rt_tree_init_leaves(&tree, boxes, COUNT, error));
@@ -57,11 +57,9 @@ RT_TEST(the_nearest_neighbour_is_the_one_that_a_scan_finds) {
     double distance;
     assert_int_equal(rt_neighbours_nearest(&neighbours, tree.root, &distance), RT_NO_CLUSTER);
     rt_neighbours_clear(&neighbours);
-    rt_tree_clear(&tree);
-    rt_free(boxes);
 }
 
-/* The definition: of all pairs of all clusters the nearest, until one is left. */
+/* The definition: merges the nearest pair of all clusters until one is left. */
 static RtTree make_greedy_tree(const RtBox *boxes, uint32_t count) {
     RtTree tree;
     bool gone[1024] = {false};
@@ -86,10 +84,10 @@ static RtTree make_greedy_tree(const RtBox *boxes, uint32_t count) {
 RT_TEST(agglomeration_unites_the_nearest_pair_of_all) {
     enum { COUNT = 150 };
     for (uint64_t seed = 1; seed <= 5; seed++) {
-        RtBox *boxes = make_boxes(COUNT, seed);
+        OWNED_MEMORY RtBox *boxes = make_boxes(COUNT, seed);
         RtTree greedy = make_greedy_tree(boxes, COUNT), tree = make_tree(boxes, COUNT, 0);
         assert_tree(&tree);
-        /* The same unions, in another order. */
+        /* The same merges, in another order. */
         for (uint32_t i = COUNT; i < greedy.used; i++) {
             uint32_t j = COUNT;
             while (j < tree.used && memcmp(&tree.nodes[j].box, &greedy.nodes[i].box, sizeof(RtBox)) != 0) j++;
@@ -97,47 +95,42 @@ RT_TEST(agglomeration_unites_the_nearest_pair_of_all) {
         }
         rt_tree_clear(&greedy);
         rt_tree_clear(&tree);
-        rt_free(boxes);
     }
 }
 
 RT_TEST(clustering_beats_medians_and_more_neighbours_beat_fewer) {
     enum { COUNT = 3000 };
     for (uint64_t seed = 1; seed <= 3; seed++) {
-        RtBox *boxes = make_boxes(COUNT, seed);
+        OWNED_MEMORY RtBox *boxes = make_boxes(COUNT, seed);
         double cost[METHOD_COUNT];
         for (int m = 0; m < METHOD_COUNT; m++) {
-            RtTree tree = make_tree(boxes, COUNT, m);
+            OWNED_TREE tree = make_tree(boxes, COUNT, m);
             assert_tree(&tree);
             cost[m] = rt_tree_cost(&tree);
-            rt_tree_clear(&tree);
         }
         assert_true(cost[0] <= cost[1]); /* agglomerative, ploc */
         assert_true(cost[1] <= cost[3]); /* rubin-whitted */
         assert_true(cost[2] <= cost[3]); /* goldsmith-salmon */
         assert_true(cost[5] <= cost[4]); /* sweep, binned */
         assert_true(cost[4] <= cost[6]); /* lbvh */
-        rt_free(boxes);
     }
 }
 
 RT_TEST(more_orders_of_insertion_never_cost_more) {
     enum { COUNT = 500 };
-    RtBox *boxes = make_boxes(COUNT, 4);
+    OWNED_MEMORY RtBox *boxes = make_boxes(COUNT, 4);
     double before = INFINITY, first = 0;
     for (uint32_t tries = 1; tries <= 8; tries++) {
         const RtInsertionOrder order = {.random = true, .permutations = tries, .seed = 7};
-        RtTree tree;
+        OWNED_TREE tree;
         assert_ok(rt_tree_insertion(&tree, boxes, COUNT, &order, error));
         assert_tree(&tree);
         double cost = rt_tree_cost(&tree);
         assert_true(cost <= before);
         if (tries == 1) first = cost;
         before = cost;
-        rt_tree_clear(&tree);
     }
     assert_true(before < first);
-    rt_free(boxes);
 }
 
 RT_TEST(an_object_is_inserted_where_areas_grow_least) {
@@ -148,13 +141,12 @@ RT_TEST(an_object_is_inserted_where_areas_grow_least) {
                       {{102, 0, 0}, {103, 1, 1}},
                       {{103.5f, 0, 0}, {104, 1, 1}}};
     const RtInsertionOrder order = {.random = false, .permutations = 1};
-    RtTree tree;
+    OWNED_TREE tree;
     assert_ok(rt_tree_insertion(&tree, boxes, 5, &order, error));
     assert_int_equal(assert_tree(&tree), 3);
     const uint32_t *child = tree.nodes[8].child; /* the last union */
     assert_int_equal(child[0], 3);
     assert_int_equal(child[1], 4);
-    rt_tree_clear(&tree);
 }
 
 RT_TEST(medians_put_the_lesser_half_in_front) {
@@ -180,18 +172,16 @@ RT_TEST(medians_put_the_lesser_half_in_front) {
 
 RT_TEST(coincident_objects_stay_within_the_depth_limit) {
     enum { COUNT = 1000 };
-    RtBox *boxes = rt_alloc(COUNT, sizeof(RtBox));
+    OWNED_MEMORY RtBox *boxes = rt_alloc(COUNT, sizeof(RtBox));
     for (int i = 0; i < COUNT; i++) boxes[i] = (RtBox){{0, 0, 0}, {1, 1, 1}};
     for (int m = 0; m < METHOD_COUNT; m++) {
-        RtTree tree = make_tree(boxes, COUNT, m);
+        OWNED_TREE tree = make_tree(boxes, COUNT, m);
         uint32_t before = assert_tree(&tree);
-        if (m == 2) assert_true(before > RT_TREE_MAX_DEPTH); /* or the test would show less */
+        if (m == 2) assert_true(before > RT_TREE_MAX_DEPTH); /* otherwise the test proves less */
         if (m != 2) assert_in_range(before, 10, 12);
         assert_ok(rt_tree_limit_depth(&tree, error));
         assert_true(assert_tree(&tree) <= RT_TREE_MAX_DEPTH);
-        rt_tree_clear(&tree);
     }
-    rt_free(boxes);
 }
 
 /* Boxes at distances that grow by powers of 2, each so large that all smaller ones are nearer to one another:
@@ -202,25 +192,22 @@ RT_TEST(a_chain_of_growing_distances_is_cut_by_medians) {
     float x = 1e-17f;
     for (int i = 0; i < COUNT; i++, x *= 2) boxes[i] = (RtBox){{x, 0, 0}, {x * 1.25f, x / 8, x / 8}};
     for (int m = 0; m < METHOD_COUNT; m++) {
-        RtTree tree = make_tree(boxes, COUNT, m);
+        OWNED_TREE tree = make_tree(boxes, COUNT, m);
         uint32_t before = assert_tree(&tree);
         if (m < 2) assert_true(before > RT_TREE_MAX_DEPTH);
-        if (m == 1) assert_in_range(before, RT_TREE_MAX_DEPTH, 80); /* its patience is at an end */
+        if (m == 1) assert_in_range(before, RT_TREE_MAX_DEPTH, 80); /* beyond its PATIENCE */
         assert_ok(rt_tree_limit_depth(&tree, error));
         assert_true(assert_tree(&tree) <= RT_TREE_MAX_DEPTH);
-        rt_tree_clear(&tree);
     }
 }
 
 RT_TEST(what_is_shallow_enough_is_left_as_it_is) {
-    RtBox *boxes = make_boxes(500, 1);
-    RtTree tree = make_tree(boxes, 500, 0);
+    OWNED_MEMORY RtBox *boxes = make_boxes(500, 1);
+    OWNED_TREE tree = make_tree(boxes, 500, 0);
     RtTreeNode before[999];
     memcpy(before, tree.nodes, sizeof before);
     assert_ok(rt_tree_limit_depth(&tree, error));
     assert_memory_equal(before, tree.nodes, sizeof before);
-    rt_tree_clear(&tree);
-    rt_free(boxes);
 }
 
 RT_TESTS(trees, NULL, NULL)

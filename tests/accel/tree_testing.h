@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What tests of trees of references share: boxes to make them from, and whether they are trees. */
+/* Shared by tests of trees of references: boxes to build them from, and validation. */
 #ifndef RT_TESTS_TREE_TESTING_H
 #define RT_TESTS_TREE_TESTING_H
 
-#include "testing.h"
+#include "accel_testing.h"
 
 #include "accel/tree/tree.h"
 #include "core/base/memory.h"
 #include "core/base/random.h"
+
+#define OWNED_TREE OWNED(rt_tree_clear) RtTree
 
 /* `count` small boxes about a few centres. */
 static inline RtBox *make_boxes(uint32_t count, uint64_t seed) {
@@ -24,7 +26,7 @@ static inline RtBox *make_boxes(uint32_t count, uint64_t seed) {
     return boxes;
 }
 
-/* Marks the nodes from `at` down, checks boxes, and gives the height. */
+/* Marks the nodes from `at` down, checks boxes, and returns the height. */
 static inline uint32_t height_of(const RtTree *tree, uint32_t at, uint32_t *seen) {
     const RtTreeNode *node = &tree->nodes[at];
     seen[at]++;
@@ -38,7 +40,7 @@ static inline uint32_t height_of(const RtTree *tree, uint32_t at, uint32_t *seen
     return height;
 }
 
-/* Every node is in the tree once, every object a leaf; gives the height. */
+/* Every node is in the tree once, every object a leaf; returns the height. */
 static inline uint32_t assert_tree(const RtTree *tree) {
     uint32_t *seen = rt_alloc(tree->used, sizeof(uint32_t));
     assert_int_equal(tree->used, tree->capacity);

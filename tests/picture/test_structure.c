@@ -312,7 +312,7 @@ RT_TEST(a_shadow_ray_reads_the_cell_that_is_marked) {
         bool occluded, there;
         ray.dir = rt_sub(light, ray.org);
         rt_occluded(&query, &ray, 1, &occluded, tallies);
-        there = accel->ops->look_up(accel, &ray, &cell);
+        there = accel->ops->find_cell(accel, &ray, &cell);
         uint64_t steps = tallies[RT_RAY_SHADOW].steps;
         assert_true(steps <= (there ? cell.length : 0));
         if (there && !occluded && !cell.cut) assert_int_equal(steps, cell.length);

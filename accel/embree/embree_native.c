@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Native mode: the competitor, so what stands between our rays and Embree is to cost next to nothing. Rays
- * are put into packets four at a time, by transposing 4 x 4 words, with no arithmetic but what turns -0 and
- * tiny components of dir to 0; fields that are the same for all rays are written once a call; and object ids
- * that are consecutive are computed, not looked up. A chunk with a direction that is not ordinary (batch.h)
- * goes the long way.
+/* Native mode: the competitor, so converting rays and hits must cost almost nothing. Rays are written to
+ * packets four at a time, by transposing 4 x 4 words; the only arithmetic replaces -0 and tiny components of
+ * dir by 0. Fields that are the same for all rays are written once per call. Consecutive object ids are
+ * computed, not looked up. A chunk with a direction that is not ordinary (embree_batch.h) takes a slow path.
  *
- * Denormals are off from the first ray to the last, but where dir is measured in double. */
-#include "accel/embree/batch.h"
+ * Denormals are disabled from the first ray to the last, except where the slow path uses double. */
+#include "accel/embree/embree_batch.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -30,8 +29,8 @@ RT_KERNEL RtFloat4 without_tiny(RtFloat4 dir) {
     return (RtFloat4)((RtInt4)dir & (rt_abs(dir) >= RT_EMBREE_LEAST_DIR));
 }
 
-/* Four rays to lanes i, i + 1, ... of a packet, as if their directions were ordinary; -1 for each of which
- * that is true. */
+/* Writes four rays to lanes i, i + 1, ... of a packet as if their directions were ordinary. Returns -1 for
+ * each ray whose direction is. */
 RT_KERNEL RtInt4 put_four(RtEmbreeBatch *batch, unsigned lanes, size_t i, const RtRay *rays) {
     RtFloat4 org[4], dir[4];
     RtInt4 is_short = {-1, -1, -1, -1}, is_long = {0, 0, 0, 0};
@@ -61,7 +60,7 @@ RT_KERNEL bool put_one(RtEmbreeBatch *batch, size_t i, const RtRay *ray) {
     return rt_embree_is_ordinary(ray->dir);
 }
 
-/* Any ray, out of the way of the common case. */
+/* Rays of any direction: the slow path, out of line. */
 static __attribute__((noinline)) void put_any(RtEmbreeBatch *batch, unsigned lanes, const RtRay *rays,
                                               size_t first, size_t end) {
     for (size_t i = first; i < end; i++) {
@@ -71,7 +70,8 @@ static __attribute__((noinline)) void put_any(RtEmbreeBatch *batch, unsigned lan
     }
 }
 
-/* A chunk of rays; false, and put as well, where one of their directions is not ordinary. */
+/* Writes a chunk of rays; false if one of their directions is not ordinary, in which case all took the slow
+ * path. */
 RT_KERNEL bool put_chunk(RtEmbreeBatch *batch, unsigned lanes, const RtRay *rays, size_t count,
                          unsigned denormals) {
     bool ordinary = true;
@@ -94,8 +94,7 @@ RT_KERNEL bool put_chunk(RtEmbreeBatch *batch, unsigned lanes, const RtRay *rays
 
 /* ---- hits out ---- */
 
-/* Without a branch that hits and misses of incoherent rays would mispredict. A hit at infinity, where
- * Embree's products overflow, is none. */
+/* A hit at infinity, where Embree's products overflow, counts as a miss. */
 RT_KERNEL RtHit take_hit(const RtEmbree *self, RtEmbreeBatch *batch, unsigned lanes, size_t i,
                          double stretch) {
     uint32_t geometry = rt_embree_at(batch, lanes, i, RT_EMBREE_GEOMETRY)->u;
@@ -114,9 +113,9 @@ static __attribute__((noinline)) void take_any(const RtEmbree *self, RtEmbreeBat
     }
 }
 
-/* ---- the whole ---- */
+/* ---- queries ---- */
 
-/* Asks for the rays of the next chunk, so that they are there when this one has been traced. */
+/* Prefetches the rays of the next chunk while this one is traced. */
 RT_KERNEL void prefetch_rays(const RtRay *rays, size_t count) {
     for (size_t i = 0; i < count * sizeof(RtRay); i += RT_CACHE_LINE) {
         __builtin_prefetch((const char *)rays + i);
@@ -164,22 +163,7 @@ RT_KERNEL void answer(const RtEmbree *self, const RtScratch *scratch, const RtRa
     rt_embree_denormals_restore(denormals);
 }
 
-RT_KERNEL void answer_query(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays, size_t count,
-                            RtHit *hits, uint32_t *occluders) {
-    switch (self->query) {
-    case RT_EMBREE_ONE: answer(self, scratch, rays, count, hits, occluders, 1, false); break;
-    case RT_EMBREE_EIGHT: answer(self, scratch, rays, count, hits, occluders, 8, false); break;
-    case RT_EMBREE_SIXTEEN: answer(self, scratch, rays, count, hits, occluders, 16, false); break;
-    case RT_EMBREE_STREAM: answer(self, scratch, rays, count, hits, occluders, 1, true); break;
-    }
-}
-
-void rt_embree_native_nearest(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays, size_t count,
-                              RtHit *hits) {
-    answer_query(self, scratch, rays, count, hits, NULL);
-}
-
-void rt_embree_native_occlusion(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays,
-                                size_t count, uint32_t *occluders) {
-    answer_query(self, scratch, rays, count, NULL, occluders);
+void rt_embree_answer_native(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays, size_t count,
+                             RtHit *hits, uint32_t *occluders) {
+    RT_EMBREE_BY_QUERY(self->query, answer, self, scratch, rays, count, hits, occluders);
 }

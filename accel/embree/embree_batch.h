@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Rays in Embree's form: the scratch memory of a query, and what native and user mode do alike with it.
+/* Batches of rays in Embree's layout, the scratch memory of a query, shared by native and user mode.
  *
- * Rays are valid (rt_ray_is_valid), so what Embree's assertions forbid cannot occur but for directions above
- * 1.8e18; those, and directions so short that Embree would take them for others, are brought to an ordinary
- * length by a power of two, which changes t by the same power and no bit of its mantissa. */
+ * Rays are valid (rt_ray_is_valid), so they satisfy Embree's assertions, except that a direction may exceed
+ * 1.8e18. Such directions, and directions so short that Embree would change them, are scaled by a power of
+ * two, which scales t by the inverse power and changes no bit of its mantissa. */
 #ifndef RT_ACCEL_EMBREE_BATCH_H
 #define RT_ACCEL_EMBREE_BATCH_H
 
@@ -17,15 +17,15 @@
 #endif
 
 typedef struct RtEmbreeBatch {
-    _Alignas(RT_CACHE_LINE) struct RTCRayHit packets[RT_EMBREE_STREAM_RAYS]; /* or as packets of 8 or 16 */
-    int valid[RT_EMBREE_STREAM_RAYS];                                        /* -1 or 0, as Embree asks */
+    _Alignas(RT_CACHE_LINE) struct RTCRayHit packets[RT_EMBREE_STREAM_RAYS]; /* or packets of 8 or 16 */
+    int valid[RT_EMBREE_STREAM_RAYS];                                        /* -1: active, 0: inactive */
     RtEmbreeSearch searches[RT_EMBREE_STREAM_RAYS];
 } RtEmbreeBatch;
 
 _Static_assert(sizeof(struct RTCRayHit16) <= RT_EMBREE_PACKET_RAYS * sizeof(struct RTCRayHit),
                "a packet takes no more room than its rays");
 
-/* ---- denormals: Embree's documentation asks for them to be off; our own arithmetic needs them ---- */
+/* ---- denormals: Embree's documentation recommends to disable them; our own arithmetic needs them ---- */
 
 static inline unsigned rt_embree_denormals_off(void) {
 #if defined(__x86_64__)
@@ -47,11 +47,11 @@ static inline void rt_embree_denormals_restore(unsigned before) {
 
 /* ---- rays in ---- */
 
-/* Components of dir below this Embree takes for +RT_EMBREE_LEAST_DIR, and forgets to turn the sign of
- * negative ones: a stream may then lose hits. So they, and -0, go in as 0. */
+/* Embree replaces smaller components of dir by +RT_EMBREE_LEAST_DIR, even negative ones, so a stream may lose
+ * hits. Therefore they, and -0, are passed as 0. */
 #define RT_EMBREE_LEAST_DIR 1e-18f
 
-/* The longest component of an ordinary direction lies between these. */
+/* Bounds of the largest component of an ordinary direction. */
 #define RT_EMBREE_SHORT 0x1p-16f
 #define RT_EMBREE_LONG  0x1p16f
 
@@ -77,7 +77,7 @@ RT_KERNEL RtEmbreeWord *rt_embree_at(RtEmbreeBatch *batch, unsigned lanes, size_
     return rt_embree_word(packet, lanes, field, i % lanes);
 }
 
-/* All that is not of the ray itself. */
+/* The fields that are the same for all rays. */
 RT_KERNEL void rt_embree_put_constants(RtEmbreeBatch *batch, unsigned lanes, size_t i) {
     rt_embree_at(batch, lanes, i, RT_EMBREE_TIME)->f = 0;
     rt_embree_at(batch, lanes, i, RT_EMBREE_MASK)->u = UINT32_MAX;
@@ -99,35 +99,38 @@ RT_KERNEL void rt_embree_put_ray(RtEmbreeBatch *batch, unsigned lanes, size_t i,
     rt_embree_at(batch, lanes, i, RT_EMBREE_TFAR)->f = tfar;
 }
 
-/* ---- through Embree ---- */
+/* ---- tracing ---- */
 
-/* Primary and shadow rays come in tiles, so neighbours go the same way. */
+/* Primary and shadow rays come in tiles, so neighbours are coherent. */
 RT_KERNEL bool rt_embree_is_coherent(const RtRay *ray) {
     return ray->kind == RT_RAY_PRIMARY || ray->kind == RT_RAY_SHADOW;
 }
 
-/* The first `count` rays of the batch. */
+/* Traces the first `count` rays of the batch. */
 RT_KERNEL void rt_embree_trace(const RtEmbree *self, RtEmbreeBatch *batch, RtEmbreeContext *context,
                                bool coherent, size_t count, bool any, unsigned lanes, bool stream) {
     RtEmbreeWord *words = (RtEmbreeWord *)batch->packets;
     if (stream) {
-        if (any) {
-            rt_embree_occluded_stream(self->scene, context, words, (unsigned)count);
-        } else {
-            rt_embree_intersect_stream(self->scene, context, words, (unsigned)count);
-        }
+        rt_embree_trace_stream(self->scene, context, words, (unsigned)count, any);
         return;
     }
     for (size_t i = count; i % lanes != 0; i++) batch->valid[i] = 0;
     for (size_t i = 0; i < count; i += lanes, words += rt_embree_packet_words(lanes)) {
         const int *valid = &batch->valid[i];
         if (lanes == 1 && !*valid) continue;
-        if (any) {
-            rt_embree_occluded(self->scene, context, coherent, valid, words, lanes);
-        } else {
-            rt_embree_intersect(self->scene, context, coherent, valid, words, lanes);
-        }
+        rt_embree_trace_packet(self->scene, context, coherent, valid, words, lanes, any);
     }
 }
+
+/* Calls the inlined function answer(..., lanes, stream) with constants for each kind of query. */
+#define RT_EMBREE_BY_QUERY(query, answer, ...)                                                               \
+    do {                                                                                                     \
+        switch (query) {                                                                                     \
+        case RT_EMBREE_ONE: answer(__VA_ARGS__, 1, false); break;                                            \
+        case RT_EMBREE_EIGHT: answer(__VA_ARGS__, 8, false); break;                                          \
+        case RT_EMBREE_SIXTEEN: answer(__VA_ARGS__, 16, false); break;                                       \
+        case RT_EMBREE_STREAM: answer(__VA_ARGS__, 1, true); break;                                          \
+        }                                                                                                    \
+    } while (0)
 
 #endif

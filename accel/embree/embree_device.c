@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Embree's device: opened for one instruction set, with errors caught instead of printed and every byte it
- * allocates accounted for. Configuration files in the home or the program's folder are ignored, so that a
- * spec says all there is to say. */
+/* Embree's device: opened for one instruction set. It records errors instead of printing them, and counts the
+ * bytes that it allocates. It ignores configuration files in the home or the program's folder, so the spec
+ * alone determines its behaviour. */
 #include "accel/embree/embree.h"
 
 #include <stdatomic.h>
@@ -12,7 +12,7 @@ enum { ISA_DEFAULT, ISA_SSE2, ISA_SSE42, ISA_AVX, ISA_AVX2, ISA_AVX512, ISA_COUN
 
 static const char *const isa_names[ISA_COUNT] = {"default", "sse2", "sse4.2", "avx", "avx2", "avx512"};
 
-/* Off x86 only the default can be had. */
+/* Only the default is available on other processors than x86. */
 static bool processor_has(uint32_t isa) {
     switch (isa) {
     case ISA_DEFAULT: return true;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What Embree calls back for user geometry. A callback gets a primitive and a packet of N rays, of which
- * those with a non-zero `valid` are to be tested. */
+/* Embree's callbacks for user geometry. A callback gets a primitive and a packet of N rays, and tests the
+ * rays whose `valid` is not zero. */
 #include "accel/embree/embree.h"
 #include "accel/kernel.h"
 
@@ -18,7 +18,7 @@ void rt_embree_bounds(const struct RTCBoundsFunctionArguments *arguments) {
     };
 }
 
-/* ---- user mode: our rays, our hits; Embree's ray only learns how far there is still to look ---- */
+/* ---- user mode: our rays and hits; only tfar of Embree's ray is updated ---- */
 
 RT_KERNEL void search_lanes(const RtEmbreeSlot *slot, const void *context, uint32_t primitive,
                             const int *valid, RtEmbreeWord *rays, unsigned lanes, bool any, bool counted) {
@@ -69,7 +69,7 @@ void rt_embree_user_occluded(const struct RTCOccludedFunctionNArguments *argumen
     ((const RtEmbreeTrace *)(const void *)arguments->context)->occluded(arguments);
 }
 
-/* ---- native mode: Embree's rays, for the shapes it has no geometry of its own for ---- */
+/* ---- native mode: Embree's rays, for shapes that Embree lacks ---- */
 
 static bool lane_hit(const RtGeometry *geometry, uint32_t id, const void *context, RtEmbreeWord *rays,
                      unsigned lanes, unsigned i, float *t) {
@@ -85,35 +85,32 @@ static bool lane_hit(const RtGeometry *geometry, uint32_t id, const void *contex
     return rt_object_hit(geometry, id, &prepared, t, NULL);
 }
 
-void rt_embree_native_intersect(const struct RTCIntersectFunctionNArguments *arguments) {
-    const RtEmbreeSlot *slot = arguments->geometryUserPtr;
-    const RtGeometry *geometry = &slot->self->base.scene->geometry;
-    RtEmbreeWord *rays = (RtEmbreeWord *)arguments->rayhit;
-    unsigned lanes = arguments->N;
-    uint32_t id = slot->ids[arguments->primID];
+/* Sets tfar of the lanes that hit: to t, or with `any` to -inf. Without `any`, `instance` is also written as
+ * part of the hit. */
+RT_KERNEL void test_lanes(const RtEmbreeSlot *slot, const void *context, uint32_t geometry,
+                          uint32_t primitive, const int *valid, RtEmbreeWord *rays, unsigned lanes, bool any,
+                          uint32_t instance) {
     for (unsigned i = 0; i < lanes; i++) {
         float t;
-        if (!arguments->valid[i]) continue;
-        if (!lane_hit(geometry, id, arguments->context, rays, lanes, i, &t)) continue;
-        rt_embree_word(rays, lanes, RT_EMBREE_TFAR, i)->f = t;
+        if (!valid[i]) continue;
+        if (!lane_hit(&slot->self->base.scene->geometry, slot->ids[primitive], context, rays, lanes, i, &t))
+            continue;
+        rt_embree_word(rays, lanes, RT_EMBREE_TFAR, i)->f = any ? -INFINITY : t;
+        if (any) continue;
         for (unsigned field = RT_EMBREE_NG; field <= RT_EMBREE_V; field++)
             rt_embree_word(rays, lanes, field, i)->f = 0;
-        rt_embree_word(rays, lanes, RT_EMBREE_PRIMITIVE, i)->u = arguments->primID;
-        rt_embree_word(rays, lanes, RT_EMBREE_GEOMETRY, i)->u = arguments->geomID;
-        rt_embree_word(rays, lanes, RT_EMBREE_INSTANCE, i)->u = arguments->context->instID[0];
+        rt_embree_word(rays, lanes, RT_EMBREE_PRIMITIVE, i)->u = primitive;
+        rt_embree_word(rays, lanes, RT_EMBREE_GEOMETRY, i)->u = geometry;
+        rt_embree_word(rays, lanes, RT_EMBREE_INSTANCE, i)->u = instance;
     }
 }
 
-void rt_embree_native_occluded(const struct RTCOccludedFunctionNArguments *arguments) {
-    const RtEmbreeSlot *slot = arguments->geometryUserPtr;
-    const RtGeometry *geometry = &slot->self->base.scene->geometry;
-    RtEmbreeWord *rays = (RtEmbreeWord *)arguments->ray;
-    unsigned lanes = arguments->N;
-    uint32_t id = slot->ids[arguments->primID];
-    for (unsigned i = 0; i < lanes; i++) {
-        float t;
-        if (!arguments->valid[i]) continue;
-        if (!lane_hit(geometry, id, arguments->context, rays, lanes, i, &t)) continue;
-        rt_embree_word(rays, lanes, RT_EMBREE_TFAR, i)->f = -INFINITY;
-    }
+void rt_embree_native_intersect(const struct RTCIntersectFunctionNArguments *a) {
+    test_lanes(a->geometryUserPtr, a->context, a->geomID, a->primID, a->valid, (RtEmbreeWord *)a->rayhit,
+               a->N, false, a->context->instID[0]);
+}
+
+void rt_embree_native_occluded(const struct RTCOccludedFunctionNArguments *a) {
+    test_lanes(a->geometryUserPtr, a->context, a->geomID, a->primID, a->valid, (RtEmbreeWord *)a->ray, a->N,
+               true, 0);
 }

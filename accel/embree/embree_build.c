@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Building, describing and validating Embree's scene. */
+#include "accel/embree/embree.h"
+
+#include "core/base/memory.h"
+
+#include <stdatomic.h>
+#include <string.h>
+
+const RtParam rt_embree_params[RT_EMBREE_PARAM_COUNT] = {RT_EMBREE_PARAMS(RT_PARAM_ENTRY)};
+
+RtStatus rt_embree_available(const RtValue *values, RtError *error) {
+    if (values[RT_EMBREE_QUERY].choice == RT_EMBREE_STREAM && !RT_EMBREE_STREAMS) {
+        return rt_fail(error, RT_NOT_AVAILABLE,
+                       "accelerator embree: Embree 4 has no streams; choose query=1, 8 or 16");
+    }
+    return rt_embree_isa_check(values[RT_EMBREE_ISA].choice, error);
+}
+
+/* ---- build ---- */
+
+/* Sets what follows from the reach: at least four times the size of the scene, and twice the distance of the
+ * camera. */
+static void set_reach(RtEmbree *self) {
+    const RtScene *scene = self->base.scene;
+    const RtBox *box = &scene->geometry.box;
+    double size = 0, magnitude = 0;
+    for (int a = 0; a < 3; a++) {
+        size = fmax(size, (double)box->hi.at[a] - (double)box->lo.at[a]);
+        magnitude = fmax(magnitude, fmax(fabs((double)box->lo.at[a]), fabs((double)box->hi.at[a])));
+    }
+    double camera = (double)rt_thickness(scene->camera.from, box) * 0x1p20;
+    double reach = fmax(4 * size, 2 * camera);
+    self->max_thickness = rt_float_below(reach * 0x1p-20);
+    self->growth = rt_float_above(reach * 0x1p-19 + magnitude * 0x1p-21 + 0x1p-100);
+}
+
+static void attach(RtEmbree *self, RTCGeometry geometry, RtShape shape, const uint32_t *ids, uint32_t count) {
+    RtEmbreeSlot slot = {.self = self, .ids = ids, .first = ids[0], .consecutive = true};
+    for (uint32_t i = 0; i < count; i++) slot.consecutive &= ids[i] == slot.first + i;
+    self->slots[shape] = slot;
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(self->scene, geometry, shape);
+    rtcReleaseGeometry(geometry);
+}
+
+static void attach_user(RtEmbree *self, RtShape shape, const uint32_t *ids, uint32_t count) {
+    RTCGeometry geometry = rtcNewGeometry(self->device.device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, count);
+    rtcSetGeometryUserData(geometry, &self->slots[shape]);
+    rtcSetGeometryBoundsFunction(geometry, rt_embree_bounds, NULL);
+    rtcSetGeometryIntersectFunction(geometry,
+                                    self->user ? rt_embree_user_intersect : rt_embree_native_intersect);
+    rtcSetGeometryOccludedFunction(geometry,
+                                   self->user ? rt_embree_user_occluded : rt_embree_native_occluded);
+    attach(self, geometry, shape, ids, count);
+}
+
+/* Embree uses the scene's vertices. It reads 16 bytes of each, 4 beyond the end of the last one; a block of
+ * rt_alloc is padded enough. */
+static RtStatus attach_triangles(RtEmbree *self, enum RTCBuildQuality quality, RtError *error) {
+    const RtGeometry *g = &self->base.scene->geometry;
+    size_t count = (size_t)g->triangle_count * 3;
+    self->indices = rt_alloc(count, sizeof(uint32_t));
+    if (!self->indices) return rt_fail_memory(error, "Embree's list of vertices", count * sizeof(uint32_t));
+    for (size_t i = 0; i < count; i++) self->indices[i] = (uint32_t)i;
+    RTCGeometry geometry = rtcNewGeometry(self->device.device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetGeometryBuildQuality(geometry, quality);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, g->triangles, 0,
+                               sizeof(RtVec3), count);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, self->indices, 0,
+                               3 * sizeof(uint32_t), g->triangle_count);
+    attach(self, geometry, RT_SHAPE_TRIANGLE, g->triangle_ids, g->triangle_count);
+    return RT_OK;
+}
+
+_Static_assert(sizeof(RtSphere) == 4 * sizeof(float), "centre and radius, as Embree wants them");
+
+static void attach_spheres(RtEmbree *self, enum RTCBuildQuality quality) {
+    const RtGeometry *g = &self->base.scene->geometry;
+    RTCGeometry geometry = rtcNewGeometry(self->device.device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+    rtcSetGeometryBuildQuality(geometry, quality);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, g->spheres, 0,
+                               sizeof(RtSphere), g->sphere_count);
+    attach(self, geometry, RT_SHAPE_SPHERE, g->sphere_ids, g->sphere_count);
+}
+
+static RtStatus attach_all(RtEmbree *self, enum RTCBuildQuality quality, RtError *error) {
+    const RtGeometry *g = &self->base.scene->geometry;
+    bool own[RT_SHAPE_COUNT] = {false}; /* as Embree's own geometry */
+    if (!self->user) {
+        own[RT_SHAPE_TRIANGLE] = own[RT_SHAPE_SPHERE] = true;
+        if (g->triangle_count > 0) RT_TRY(attach_triangles(self, quality, error));
+        if (g->sphere_count > 0) attach_spheres(self, quality);
+    }
+#define ATTACH(CONSTANT, name, Type)                                                                         \
+    if (!own[RT_SHAPE_##CONSTANT] && g->name##_count > 0) {                                                  \
+        attach_user(self, RT_SHAPE_##CONSTANT, g->name##_ids, g->name##_count);                              \
+    }
+    RT_SHAPES(ATTACH)
+#undef ATTACH
+    return RT_OK;
+}
+
+static RtStatus build_into(RtEmbree *self, const RtBuild *what, RtError *error) {
+    const RtValue *values = what->values;
+    static const enum RTCBuildQuality qualities[] = {RTC_BUILD_QUALITY_LOW, RTC_BUILD_QUALITY_MEDIUM,
+                                                     RTC_BUILD_QUALITY_HIGH};
+    enum RTCBuildQuality quality = qualities[values[RT_EMBREE_QUALITY].choice];
+    RT_TRY(rt_embree_device_open(&self->device, values[RT_EMBREE_ISA].choice, what->threads, error));
+    set_reach(self);
+    self->scene = rtcNewScene(self->device.device);
+    rtcSetSceneFlags(self->scene,
+                     values[RT_EMBREE_ROBUST].flag ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+    rtcSetSceneBuildQuality(self->scene, quality);
+    RT_TRY(attach_all(self, quality, error));
+    rtcCommitScene(self->scene);
+    return rt_embree_device_check(&self->device, error);
+}
+
+void rt_embree_destroy(RtAccel *accel) {
+    RtEmbree *self = (RtEmbree *)accel;
+    if (self->scene) rtcReleaseScene(self->scene);
+    rt_embree_device_close(&self->device);
+    rt_free(self->indices);
+    rt_free(self);
+}
+
+RtStatus rt_embree_build(const RtBuild *what, RtAccel **out, RtError *error) {
+    const RtValue *values = what->values;
+    RtAccel *accel;
+    RT_TRY(rt_accel_new(what, sizeof(RtEmbree), &accel, error));
+    RtEmbree *self = (RtEmbree *)accel;
+    self->user = values[RT_EMBREE_MODE].choice == 1;
+    self->query = (RtEmbreeQueryKind)values[RT_EMBREE_QUERY].choice;
+    accel->exact = self->user;
+    accel->counts = false;
+    return rt_accel_built(accel, build_into(self, what, error), out);
+}
+
+/* ---- describe, validate ---- */
+
+RtStatus rt_embree_check(const RtAccel *accel, RtError *error) {
+    return rt_embree_device_check(&((const RtEmbree *)accel)->device, error);
+}
+
+/* Bytes: what Embree has allocated, and our list of indices, which it needs; not the vertices, which belong
+ * to the scene. */
+void rt_embree_describe(const RtAccel *accel, RtDescription *out) {
+    const RtEmbree *self = (const RtEmbree *)accel;
+    const RtGeometry *g = &accel->scene->geometry;
+    uint64_t indices = self->indices ? (uint64_t)g->triangle_count * 3 * sizeof(uint32_t) : 0;
+    *out = (RtDescription){.references = g->object_count,
+                           .bytes = (uint64_t)atomic_load(&self->device.bytes) + indices,
+                           RT_NO_PREDICTION};
+}
+
+RtStatus rt_embree_validate(const RtAccel *accel, RtError *error) {
+    const RtEmbree *self = (const RtEmbree *)accel;
+    RT_TRY(rt_embree_check(accel, error));
+    if (!self->user || accel->scene->geometry.object_count == 0) return RT_OK;
+    struct RTCBounds bounds;
+    rtcGetSceneBounds(self->scene, &bounds);
+    RtBox all = {{bounds.lower_x, bounds.lower_y, bounds.lower_z},
+                 {bounds.upper_x, bounds.upper_y, bounds.upper_z}};
+    if (rt_box_contains(all, accel->scene->geometry.box)) return RT_OK;
+    return rt_fail(error, RT_MISMATCH, "Embree's bounds do not contain the box of the scene");
+}
