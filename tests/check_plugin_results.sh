@@ -138,7 +138,7 @@ says_not 'has changed'
 ends 0 run based.yaml --plugin old/mine.so
 cp results/based/cells.jsonl before.jsonl
 ends 2 run based.yaml --plugin new/mine.so --renew
-says 'so is the baseline: start over .*--force'
+says 'so is the baseline: replace this run with --force'
 cmp -s before.jsonl results/based/cells.jsonl || complain 'a run that is refused changed the journal'
 
 # ---- shards ----

@@ -124,17 +124,17 @@ RT_KERNEL Planes cut(const Line *line, const RtVec3 *split, RtFloat4 near, RtFlo
 }
 
 /* The entry and exit of the ray for the eight children, by octant: [0] below the split along z, [1] above. */
-RT_KERNEL void span_children(const Planes *p, float tmin, float limit, RtFloat4 enter[2], RtFloat4 leave[2]) {
-    RtFloat4 near = __builtin_shufflevector(p->low_near, p->high_near, 0, 4, 1, 5);
-    RtFloat4 far = __builtin_shufflevector(p->low_far, p->high_far, 0, 4, 1, 5);
+RT_KERNEL void span_children(Planes p, float tmin, float limit, RtFloat4 enter[2], RtFloat4 leave[2]) {
+    RtFloat4 near = __builtin_shufflevector(p.low_near, p.high_near, 0, 4, 1, 5);
+    RtFloat4 far = __builtin_shufflevector(p.low_far, p.high_far, 0, 4, 1, 5);
     RtFloat4 from = rt_max(__builtin_shufflevector(near, near, 0, 1, 0, 1), rt_all4(tmin));
     RtFloat4 to = rt_min(__builtin_shufflevector(far, far, 0, 1, 0, 1), rt_all4(limit));
     from = rt_max(__builtin_shufflevector(near, near, 2, 2, 3, 3), from);
     to = rt_min(__builtin_shufflevector(far, far, 2, 2, 3, 3), to);
-    enter[0] = rt_max(__builtin_shufflevector(p->low_near, p->low_near, 2, 2, 2, 2), from);
-    enter[1] = rt_max(__builtin_shufflevector(p->high_near, p->high_near, 2, 2, 2, 2), from);
-    leave[0] = rt_min(__builtin_shufflevector(p->low_far, p->low_far, 2, 2, 2, 2), to);
-    leave[1] = rt_min(__builtin_shufflevector(p->high_far, p->high_far, 2, 2, 2, 2), to);
+    enter[0] = rt_max(__builtin_shufflevector(p.low_near, p.low_near, 2, 2, 2, 2), from);
+    enter[1] = rt_max(__builtin_shufflevector(p.high_near, p.high_near, 2, 2, 2, 2), from);
+    leave[0] = rt_min(__builtin_shufflevector(p.low_far, p.low_far, 2, 2, 2, 2), to);
+    leave[1] = rt_min(__builtin_shufflevector(p.high_far, p.high_far, 2, 2, 2, 2), to);
 }
 
 /* Pushes the children that the ray meets, the first on top, of those entered at once the last; returns their
@@ -142,7 +142,7 @@ RT_KERNEL void span_children(const Planes *p, float tmin, float limit, RtFloat4 
 RT_KERNEL uint32_t push_children(const Planes *planes, const RtOctreeNode *node, uint32_t depth,
                                  const RtPreparedRay *ray, float limit, Waiting *stack) {
     RtFloat4 enter[2], leave[2];
-    span_children(planes, ray->tmin, limit, enter, leave);
+    span_children(*planes, ray->tmin, limit, enter, leave);
     uint32_t children = rt_le_bits(enter[0], leave[0]) | rt_le_bits(enter[1], leave[1]) << 4;
     float enters[8];
     uint32_t pushed = 0;
