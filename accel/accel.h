@@ -127,7 +127,7 @@ typedef struct RtBoxSums {
     RtDescription *out;
     double inner, leaves, tests; /* half areas; of leaves also times the lengths of their lists */
 } RtBoxSums;
-void rt_box_sums_add(void *sums, const RtBoxView *view);
+void rt_box_sums_add(void *context, const RtBoxView *view);
 
 /* Sets the predictions: a random line through the root meets a box with the ratio of their areas. */
 void rt_box_sums_predict(const RtBoxSums *sums, const RtBox *root, double traversal_cost);

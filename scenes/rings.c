@@ -87,8 +87,8 @@ static void generate(RtSceneBuilder *b, const RtValue *values) {
     set_knot(knot);
     for (int64_t layer = 1; layer <= size; layer++) {
         for (int64_t i = 0; i < layer * layer; i++) {
-            RtVec3d center = {(double)(2 * (i % layer) - layer + 1), spread * (double)layer,
-                              (double)(2 * (i / layer) - layer + 1)};
+            const int64_t x = 2 * (i % layer) - layer + 1, z = 2 * (i / layer) - layer + 1;
+            RtVec3d center = {(double)x, spread * (double)layer, (double)z};
             add_knot(b, (const RtVec3d(*)[CORNERS])knot, center);
         }
     }

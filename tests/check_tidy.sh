@@ -16,4 +16,4 @@ options=(-p "$build" --quiet --extra-arg=-UNDEBUG --extra-arg=-Wno-ignored-optim
     options+=("--extra-arg=$option")
 done
 grep -o '"file": "[^"]*"' "$build/compile_commands.json" | cut -d '"' -f 4 | grep -v -e /tests/ -e /base/status.c | sort -u |
-    xargs -P "$(nproc)" -n 4 "$tool" "${options[@]}" 2>/dev/null
+    xargs -P "$(nproc)" -n 1 "$tool" "${options[@]}" 2>/dev/null

@@ -127,7 +127,7 @@ RT_KERNEL void test_shape(RtBatch *batch, const RtGeometry *g, Objects objects, 
         batch->active_count = kept;
     }
     for (uint32_t i = 0; counted && in_lanes && i < batch->active_count; i++) {
-        batch->rays[batch->active[i]].tally->object_tests += objects.count;
+        RT_COUNT(batch->rays[batch->active[i]].tally, object_tests, objects.count);
     }
 }
 

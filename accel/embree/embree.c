@@ -15,6 +15,8 @@
  * written once; after inlining, the kind of query and whether it counts are constants. */
 #include "accel/embree/embree_batch.h"
 
+#include <assert.h>
+
 /* The fastest setting depends on the scene and on the rays: packets for coherent rays, AVX2 on some machines
  * that have AVX-512. `robust` costs speed, so it is off. */
 static const RtBestOf bests[] = {
@@ -99,6 +101,7 @@ RT_KERNEL void answer(const RtEmbree *self, const RtScratch *scratch, const RtRa
 /* Counts rays and hits from the answers, which are either hits or occluders. */
 RT_KERNEL void count_answers(const RtRay *rays, size_t count, const RtHit *hits, const uint32_t *occluders,
                              RtTally *tallies) {
+    assert(hits || occluders);
     for (size_t i = 0; i < count; i++) {
         uint32_t object = hits ? hits[i].object : occluders[i];
         RT_COUNT(&tallies[rays[i].kind], rays, 1);

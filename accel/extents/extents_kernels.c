@@ -104,8 +104,8 @@ RT_KERNEL void test_all(RtBatch *batch, const RtGeometry *g, bool any, bool coun
     }
     for (uint32_t i = 0; counted && i < batch->active_count; i++) {
         RtTally *tally = batch->rays[batch->active[i]].tally;
-        tally->steps += g->object_count;
-        tally->extent_tests += g->object_count;
+        RT_COUNT(tally, steps, g->object_count);
+        RT_COUNT(tally, extent_tests, g->object_count);
     }
 }
 

@@ -164,9 +164,8 @@ void rt_item_end_tile(RtItemDrawing *drawing);
 
 /* ---- item_polygon.c ---- */
 
-/* Lane `lane` of facets is where a footprint says. */
-void rt_item_place_facet(const RtItemDrawing *drawing, const RtItemFootprint *footprint, RtItemFacets *facets,
-                         uint32_t lane);
+/* Sets lane `lane` of *f to the place and depth of a footprint. */
+void rt_item_place_facet(const RtItemDrawing *d, const RtItemFootprint *at, RtItemFacets *f, uint32_t lane);
 
 /* A flat convex polygon as a facet in lane 0, of *count edges; false for an object that is none, has too many
  * edges, or is seen too obliquely. `footprint` is its own. */

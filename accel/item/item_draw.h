@@ -11,7 +11,7 @@ RT_KERNEL RtFloats function(const float of[3][RT_ITEM_FACETS], uint32_t k, RtFlo
 }
 
 RT_KERNEL void update_least(RtItemTile *tile, uint32_t block) {
-    const float *lo = &tile->lo[block * RT_ITEM_BLOCK_SAMPLES];
+    const float *lo = &tile->lo[(size_t)block * RT_ITEM_BLOCK_SAMPLES];
     RtFloats least = rt_load(lo);
     for (int i = RT_LANES; i < RT_ITEM_BLOCK_SAMPLES; i += RT_LANES) least = rt_min(least, rt_load(lo + i));
     tile->least[block] = rt_least(least);
@@ -131,7 +131,8 @@ RT_KERNEL void draw_one(RtItemDrawing *d, const RtItemFacets *f, uint32_t k, uin
             for (int i = 0; i < RT_ITEM_BLOCK_SAMPLES; i += RT_LANES) {
                 uint32_t lanes = in >> i & ((1u << RT_LANES) - 1);
                 if (!lanes) continue;
-                RtFloats rows = rt_raster_rows((float)(y * RT_ITEM_BLOCK + i / RT_ITEM_BLOCK));
+                const int row = y * RT_ITEM_BLOCK + i / RT_ITEM_BLOCK;
+                RtFloats rows = rt_raster_rows((float)row);
                 draw_samples(d, block * RT_ITEM_BLOCK_SAMPLES + (uint32_t)i, f, k, edges, lanes, columns,
                              rows);
             }

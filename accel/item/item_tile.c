@@ -29,7 +29,7 @@ static uint32_t sample_at(uint32_t column, uint32_t row) {
 }
 
 static void update_least(RtItemTile *tile, uint32_t block) {
-    const float *lo = &tile->lo[block * RT_ITEM_BLOCK_SAMPLES];
+    const float *lo = &tile->lo[(size_t)block * RT_ITEM_BLOCK_SAMPLES];
     tile->least[block] = lo[0];
     for (uint32_t i = 1; i < RT_ITEM_BLOCK_SAMPLES; i++)
         tile->least[block] = rt_minf(lo[i], tile->least[block]);

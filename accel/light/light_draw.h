@@ -239,7 +239,8 @@ RT_KERNEL uint32_t parts_of(const RtLightOutline *outline, const RtLightCells *a
     uint32_t parts = parts_within(at, column, row);
     const RtFloats x = part_middles(rt_raster_columns(0)) + (float)column;
     for (uint32_t i = 0; i < CELL_PARTS; i += RT_LANES) {
-        RtFloats y = part_middles(rt_raster_rows((float)(i / RT_LIGHT_PART))) + (float)row;
+        const uint32_t first = i / RT_LIGHT_PART; /* row of parts */
+        RtFloats y = part_middles(rt_raster_rows((float)first)) + (float)row;
         uint32_t in = ~0u;
         for (uint32_t e = 0; e < outline->count; e++) {
             const float *line = outline->parts[e];

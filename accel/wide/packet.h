@@ -16,6 +16,8 @@
 
 #include "accel/wide/stream.h"
 
+#include <assert.h>
+
 enum {
     PACKET = 64,
     BEAM = 16,
@@ -253,9 +255,10 @@ RT_KERNEL void test_extreme_rays(Packet *p, const Query *q, bool any) {
     }
 }
 
-/* Makes a packet of up to PACKET rays of a class. */
+/* Makes a packet of up to PACKET rays of a class, which has some. */
 RT_KERNEL void init_packet(Packet *p, const Query *q, Sorter *s, uint32_t class, bool any) {
     uint32_t *list = s->list[class], count = s->count[class] < PACKET ? s->count[class] : PACKET;
+    assert(count > 0);
     p->count = count;
     for (uint32_t i = 0; i < count; i++) p->index[i] = list[i];
     const uint32_t beams = (count + BEAM - 1) / BEAM, end = beams * BEAM;

@@ -186,14 +186,14 @@ static void draw_face_names(const CubeMap *map) {
 
 static void draw_ring(const CubeMap *map, uint32_t number) {
     int count = 0;
-    double x_sum = 0, y_sum = 0;
+    int64_t x_sum = 0, y_sum = 0;
     for (int i = 0; i < WIDTH * HEIGHT; i++) {
         if (map->cells[i].number == number) x_sum += i % WIDTH, y_sum += i / WIDTH, count++;
     }
     for (int pass = 0; count > 0 && pass < 2; pass++) {
         rt_set_color(map->cairo, pass ? RT_WHITE : RT_BLACK, 1);
         cairo_set_line_width(map->cairo, pass ? 2 : 4);
-        rt_add_circle(map->cairo, (RtPoint){x_sum / count, y_sum / count}, sqrt(count) + 12);
+        rt_add_circle(map->cairo, (RtPoint){(double)x_sum / count, (double)y_sum / count}, sqrt(count) + 12);
         cairo_stroke(map->cairo);
     }
 }
@@ -254,10 +254,11 @@ static RtStatus draw_light_buffer(const char *file, const RtAccel *layer, uint32
     CubeMap map = {.layer = layer,
                    .light = light,
                    .up = rt_major_axis(scene->camera.up),
-                   .cells = rt_alloc(WIDTH * HEIGHT, sizeof(RtCellView)),
+                   .cells = rt_alloc((size_t)WIDTH * HEIGHT, sizeof(RtCellView)),
                    .scale = {.logarithmic = true},
                    .em = rt_font_size(WIDTH)};
-    if (!map.cells) return rt_fail_memory(error, "a picture of cells", WIDTH * HEIGHT * sizeof(RtCellView));
+    if (!map.cells)
+        return rt_fail_memory(error, "a picture of cells", (size_t)WIDTH * HEIGHT * sizeof(RtCellView));
     RtStatus status = draw_cube_map(&map, file, marked, error);
     rt_free(map.cells);
     return status;

@@ -502,7 +502,7 @@ RT_INLINE void rt_sets8_compress(uint64_t *at, uint32_t bits, const RtSets8 *set
 
 /* ---- tables ---- */
 
-/* table[index[i]] in lane i, index < 2^31; of words table[stride * index[i]], stride 1 or 2. */
+/* table[index[i]] in lane i, index < 2^31; of words table[(ptrdiff_t)stride * index[i]], stride 1 or 2. */
 RT_INLINE RtFloats rt_gather(const float *table, RtInts index) {
 #if RT_AVX512
     return _mm512_i32gather_ps((__m512i)index, table, 4);
@@ -521,7 +521,7 @@ RT_INLINE RtFloats rt_gather(const float *table, RtInts index) {
 #else
 RT_INLINE RtInts rt_gather_words(const uint32_t *table, RtInts index, int stride) {
     RtInts out;
-    for (int i = 0; i < RT_LANES; i++) out[i] = (int32_t)table[stride * index[i]];
+    for (int i = 0; i < RT_LANES; i++) out[i] = (int32_t)table[(ptrdiff_t)stride * index[i]];
     return out;
 }
 #endif
