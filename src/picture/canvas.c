@@ -345,3 +345,11 @@ void rt_draw_scale(cairo_t *cairo, double x, double y, double width, const RtSca
         put_mark(&bar, value);
     }
 }
+
+#if defined(__SANITIZE_ADDRESS__)
+/* fontconfig keeps its fonts until the process ends. */
+__attribute__((visibility("default"))) const char *__lsan_default_suppressions(void);
+const char *__lsan_default_suppressions(void) {
+    return "leak:libfontconfig\n";
+}
+#endif
