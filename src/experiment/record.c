@@ -90,8 +90,6 @@ const char *rt_record_text(RtRecordReader *reader, const json_t *json, const cha
 static void take_member(RtRecordReader *reader, const RtMember *m, void *to, const json_t *json) {
     const json_t *value = json_object_get(json, m->name);
     void *at = (char *)to + m->offset;
-    double *estimate[] = {&((RtEstimate *)at)->median, &((RtEstimate *)at)->low, &((RtEstimate *)at)->high,
-                          &((RtEstimate *)at)->least};
     const char *text;
     bool good;
     switch (m->form) {
@@ -116,10 +114,13 @@ static void take_member(RtRecordReader *reader, const RtMember *m, void *to, con
             rt_record_reject(reader, m->name, "a number");
         *(double *)at = json_is_number(value) ? json_number_value(value) : (double)NAN;
         return;
-    case RT_MEMBER_ESTIMATE:
+    case RT_MEMBER_ESTIMATE: {
+        RtEstimate *e = at;
+        double *const parts[] = {&e->median, &e->low, &e->high, &e->least};
         for (size_t i = 0; i < 4; i++)
-            *estimate[i] = rt_record_seconds(reader, json_array_get(value, i), m->name);
+            *parts[i] = rt_record_seconds(reader, json_array_get(value, i), m->name);
         return;
+    }
     case RT_MEMBER_OBJECT: rt_record_take(reader, m->object, to, value); return;
     }
 }
