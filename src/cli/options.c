@@ -88,7 +88,7 @@ const struct argp *rt_cli_argp(const RtSyntax *syntax) {
         count++;
     }
     options[count] = (struct argp_option){0};
-    argp = (struct argp){.options = options,
+    argp = (struct argp){.options = count > 0 ? options : NULL, /* glibc leaks an empty table */
                          .parser = parse_key,
                          .args_doc = syntax->arguments,
                          .doc = syntax->help,
