@@ -55,7 +55,7 @@ static void on_exit_called(int code, void *unused) {
     _exit(code);
 }
 
-/* Gives the thread a stack for signal handlers, because its own may have overflowed. */
+/* Sets up a stack for signal handlers of the thread, because its own may have overflowed. */
 static void *add_signal_stack(void) {
     stack_t stack;
     if (sigaltstack(NULL, &stack) == 0 && !(stack.ss_flags & SS_DISABLE)) return NULL; /* a sanitizer's */
