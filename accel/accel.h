@@ -78,8 +78,8 @@ typedef struct RtDescription {
 
 /* The memory that the kernels of a layer may write to. */
 typedef struct RtScratch {
-    void *own;        /* [scratch_bytes]; NULL if no layer needs any */
-    RtCrossing *room; /* buffer of hit functions (rt_hit_ray) */
+    void *own;             /* [scratch_bytes]; NULL if no layer needs any */
+    RtCrossing *crossings; /* buffer of hit functions (rt_hit_ray) */
 } RtScratch;
 
 /* The four kernels. rays[0..count) are valid (rt_ray_is_valid). scratch[0] belongs to the layer; those of the
@@ -221,8 +221,8 @@ struct RtAccelOps {
     RtStatus (*available)(const RtValue *values, RtError *error);
 
     /* Optional: writes the version of the underlying library and its instruction set, "3.13.5 avx512", to
-     * out[0..room); false, and "", if it is not available. */
-    bool (*library)(char *out, size_t room);
+     * out[0..size); false, and "", if it is not available. */
+    bool (*library)(char *out, size_t size);
 };
 
 /* For `build`: allocates `bytes` for the accelerator's own struct, zeroed except for the RtAccel that it
@@ -336,8 +336,8 @@ RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error);
 void rt_query_clear(RtQuery *query);
 
 /* The query's buffer of hit functions, for other calls of hit functions on the same thread. */
-static inline RtCrossing *rt_query_room(const RtQuery *query) {
-    return query->scratch[0].room;
+static inline RtCrossing *rt_query_crossings(const RtQuery *query) {
+    return query->scratch[0].crossings;
 }
 
 /* Forgets the state left by earlier rays (the last occluders of a shadow cache), so that later counts depend

@@ -73,7 +73,7 @@ RT_KERNEL void rt_batch_begin(RtBatch *batch, const RtGeometry *g, const RtScrat
                               const RtRay *rays, uint32_t count, RtTally *tallies) {
     for (uint32_t i = 0; i < count; i++) {
         RtActiveRay *a = &batch->rays[i];
-        rt_hit_ray(&a->ray, g, &rays[i], scratch->room);
+        rt_hit_ray(&a->ray, g, &rays[i], scratch->crossings);
         a->best = RT_MISS;
         a->tally = tallies ? &tallies[rays[i].kind] : NULL;
         batch->active[i] = i;

@@ -48,7 +48,7 @@ RT_KERNEL uint32_t find_occluder(const Cache *self, const RtScratch *scratch, co
     uint32_t *last = (uint32_t *)scratch->own + ray->source;
     if (*last != RT_NO_OBJECT) {
         RtPreparedRay prepared;
-        rt_hit_ray(&prepared, &scene->geometry, ray, scratch->room);
+        rt_hit_ray(&prepared, &scene->geometry, ray, scratch->crossings);
         RtHit hit = RT_MISS;
         RT_COUNT(tally, steps, 1);
         RT_OBSERVE(tally, .kind = RT_TRACED_STEP, .what = "object", .index = *last);

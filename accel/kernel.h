@@ -59,7 +59,7 @@ RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
     RT_KERNEL RtHit search_one(const RtAccel *accel, const RtScratch *scratch, const RtRay *ray, bool any,   \
                                RtTally *tally) {                                                             \
         RtPreparedRay prepared;                                                                              \
-        rt_hit_ray(&prepared, &accel->scene->geometry, ray, scratch->room);                                  \
+        rt_hit_ray(&prepared, &accel->scene->geometry, ray, scratch->crossings);                             \
         RtHit best = RT_MISS;                                                                                \
         search((const Type *)accel, scratch->own, &prepared, any, &best, tally);                             \
         RT_COUNT(tally, rays, 1);                                                                            \

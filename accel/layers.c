@@ -117,7 +117,7 @@ static RtStatus open_layers(RtQuery *query, RtError *error) {
 RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error) {
     *query = (RtQuery){.accel = accel};
     RtScratch scratch = {NULL, NULL};
-    RtStatus status = rt_hit_room(&accel->scene->geometry, &scratch.room, error);
+    RtStatus status = rt_crossings_alloc(&accel->scene->geometry, &scratch.crossings, error);
     if (status != RT_OK) {
         query->accel = NULL;
         return status;
@@ -125,7 +125,7 @@ RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error) {
     size_t bytes = 0;
     for (const RtAccel *layer = accel; layer; layer = layer->below) bytes += layer->scratch_room;
     if (bytes > 0 && !(scratch.own = rt_alloc(bytes, 1))) {
-        rt_free(scratch.room);
+        rt_free(scratch.crossings);
         query->accel = NULL;
         return rt_fail_memory(error, "the scratch memory of a query", bytes);
     }
@@ -142,7 +142,7 @@ RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error) {
 void rt_query_clear(RtQuery *query) {
     close_layers(query, NULL);
     rt_free(query->scratch[0].own);
-    rt_free(query->scratch[0].room);
+    rt_free(query->scratch[0].crossings);
     *query = (RtQuery){0};
 }
 

@@ -23,7 +23,7 @@ typedef struct Hits {
 
 static inline RtPreparedRay prepare(const RtRay *ray, const RtCsg *tree) {
     RtPreparedRay prepared = rt_ray_prepare(ray, &tree->box);
-    prepared.room = room_of_tests();
+    prepared.crossings = room_of_tests();
     return prepared;
 }
 

@@ -6,8 +6,8 @@
 #include "core/shape/csg.h"
 
 static inline RtCrossing *room_of_tests(void) {
-    static RtCrossing room[1 << 16];
-    return room;
+    static RtCrossing crossings[1 << 16];
+    return crossings;
 }
 
 #endif

@@ -46,11 +46,11 @@ RT_KERNEL bool is_in_reach(const RtEmbree *self, const RtRay *ray, double shrink
 
 /* Writes a ray to the batch; one out of reach is answered at once, and is inactive in the batch. */
 RT_KERNEL void put_search(const RtEmbree *self, RtEmbreeBatch *batch, unsigned lanes, size_t i,
-                          const RtRay *ray, RtCrossing *room, bool any, RtTally *tally) {
+                          const RtRay *ray, RtCrossing *crossings, bool any, RtTally *tally) {
     const RtGeometry *geometry = &self->base.scene->geometry;
     double stretch = rt_embree_stretch(ray->dir);
     RtEmbreeSearch *search = &batch->searches[i];
-    rt_hit_ray(&search->ray, geometry, ray, room);
+    rt_hit_ray(&search->ray, geometry, ray, crossings);
     search->shrink = 1 / stretch;
     search->best = RT_MISS;
     search->tally = tally;
@@ -80,11 +80,11 @@ RT_KERNEL void answer(const RtEmbree *self, const RtScratch *scratch, const RtRa
         size_t n = count - begin < chunk ? count - begin : chunk;
         for (size_t i = 0; i < n; i++) {
             RtTally *tally = tallies ? &tallies[ray[i].kind] : NULL;
-            put_search(self, batch, lanes, i, &ray[i], scratch->room, any, tally);
+            put_search(self, batch, lanes, i, &ray[i], scratch->crossings, any, tally);
         }
         RtEmbreeTrace trace;
         bool coherent = rt_embree_is_coherent(ray);
-        rt_embree_trace_init(&trace, coherent, tallies != NULL, batch->searches, scratch->room);
+        rt_embree_trace_init(&trace, coherent, tallies != NULL, batch->searches, scratch->crossings);
         rt_embree_trace(self, batch, &trace.context, coherent, n, any, lanes, stream);
         for (size_t i = 0; i < n; i++) {
             if (any) {

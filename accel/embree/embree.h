@@ -49,7 +49,7 @@ RtStatus rt_embree_device_check(const RtEmbreeDevice *device, RtError *error);
 void rt_embree_device_close(RtEmbreeDevice *device); /* may be zeroed */
 
 /* RtAccelOps.library: the version at run time, and the instruction set of isa=default on this machine. */
-bool rt_embree_library(char *out, size_t room);
+bool rt_embree_library(char *out, size_t size);
 
 /* ---- the accelerator ---- */
 
@@ -120,7 +120,7 @@ typedef struct RtEmbreeTrace {
     RTCIntersectFunctionN intersect;
     RTCOccludedFunctionN occluded;
     RtEmbreeSearch *searches; /* by ray id */
-    RtCrossing *room;         /* of hit functions */
+    RtCrossing *crossings;    /* of hit functions */
 } RtEmbreeTrace;
 
 /* The tfar for hits up to t: slightly larger. */
@@ -138,7 +138,7 @@ void rt_embree_native_occluded(const struct RTCOccludedFunctionNArguments *argum
 
 /* A context for one chunk of rays. */
 void rt_embree_trace_init(RtEmbreeTrace *trace, bool coherent, bool counted, RtEmbreeSearch *searches,
-                          RtCrossing *room);
+                          RtCrossing *crossings);
 
 /* embree_native.c. Native mode: answers to `hits`, or if that is NULL, to `occluders`. */
 void rt_embree_answer_native(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays, size_t count,

@@ -53,12 +53,12 @@ DEFINE_SEARCHES(counted, true)
 #undef DEFINE_SEARCHES
 
 void rt_embree_trace_init(RtEmbreeTrace *trace, bool coherent, bool counted, RtEmbreeSearch *searches,
-                          RtCrossing *room) {
+                          RtCrossing *crossings) {
     rt_embree_init_context(&trace->context, coherent);
     trace->intersect = counted ? intersect_counted : intersect_timed;
     trace->occluded = counted ? occluded_counted : occluded_timed;
     trace->searches = searches;
-    trace->room = room;
+    trace->crossings = crossings;
 }
 
 void rt_embree_user_intersect(const struct RTCIntersectFunctionNArguments *arguments) {
@@ -81,7 +81,7 @@ static bool lane_hit(const RtGeometry *geometry, uint32_t id, const void *contex
         ray.dir.at[a] = rt_embree_word(rays, lanes, RT_EMBREE_DIR + a, i)->f;
     }
     RtPreparedRay prepared;
-    rt_hit_ray(&prepared, geometry, &ray, trace->room);
+    rt_hit_ray(&prepared, geometry, &ray, trace->crossings);
     return rt_object_hit(geometry, id, &prepared, t, NULL);
 }
 

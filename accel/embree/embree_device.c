@@ -81,14 +81,14 @@ void rt_embree_device_close(RtEmbreeDevice *device) {
     device->device = NULL;
 }
 
-bool rt_embree_library(char *out, size_t room) {
-    if (room > 0) out[0] = '\0';
+bool rt_embree_library(char *out, size_t size) {
+    if (size > 0) out[0] = '\0';
     RtEmbreeDevice device;
     if (rt_embree_device_open(&device, ISA_DEFAULT, 0, NULL) != RT_OK) return false;
     long version = (long)rtcGetDeviceProperty(device.device, RTC_DEVICE_PROPERTY_VERSION);
     uint32_t isa = ISA_COUNT - 1;
     while (isa > ISA_DEFAULT && !processor_has(isa)) isa--;
-    snprintf(out, room, "%ld.%ld.%ld %s", version / 10000, version / 100 % 100, version % 100,
+    snprintf(out, size, "%ld.%ld.%ld %s", version / 10000, version / 100 % 100, version % 100,
              isa_names[isa]);
     rt_embree_device_close(&device);
     return true;

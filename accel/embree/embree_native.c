@@ -151,7 +151,7 @@ RT_KERNEL void answer(const RtEmbree *self, const RtScratch *scratch, const RtRa
     RtEmbreeBatch *batch = scratch->own;
     RtEmbreeTrace trace;
     if (count == 0) return;
-    rt_embree_trace_init(&trace, rt_embree_is_coherent(rays), false, NULL, scratch->room);
+    rt_embree_trace_init(&trace, rt_embree_is_coherent(rays), false, NULL, scratch->crossings);
     for (size_t i = 0; i < chunk && i < count; i++) rt_embree_put_constants(batch, lanes, i);
     unsigned denormals = rt_embree_denormals_off();
     for (size_t begin = 0; begin < count; begin += chunk) {

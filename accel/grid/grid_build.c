@@ -30,9 +30,9 @@ typedef struct Cut {
 /* Whether dividing a box can separate its objects: some object does not fill it, and float32 has a plane
  * inside it. */
 static bool divisible(const RtGrid *grid, const RtBox *box, const uint32_t *ids, uint32_t count) {
-    bool room = false;
-    for (int a = 0; a < 3; a++) room |= nextafterf(box->lo.at[a], INFINITY) < box->hi.at[a];
-    for (uint32_t i = 0; room && i < count; i++) {
+    bool has_plane = false;
+    for (int a = 0; a < 3; a++) has_plane |= nextafterf(box->lo.at[a], INFINITY) < box->hi.at[a];
+    for (uint32_t i = 0; has_plane && i < count; i++) {
         if (!rt_box_contains(rt_grid_object_box(grid, ids[i]), *box)) return true;
     }
     return false;

@@ -127,7 +127,7 @@ typedef struct RtItemDrawing {
     const RtItemBuffer *buffer;
     uint32_t column, row;   /* the tile's upper left sample */
     uint32_t columns, rows; /* of it that are in the image */
-    RtCrossing *room;       /* of hit functions */
+    RtCrossing *crossings;  /* of hit functions */
     RtTally tally;          /* of the hit functions asked */
     float nearest;          /* 1 / tmin: nothing is hit at a w above */
 } RtItemDrawing;

@@ -162,7 +162,7 @@ RT_KERNEL void answer_run(const RtAccel *accel, const RtScratch *scratch, const 
         } else {
             RtPreparedRay prepared;
             RtHit hit = RT_MISS;
-            rt_hit_ray(&prepared, g, ray, scratch->room);
+            rt_hit_ray(&prepared, g, ray, scratch->crossings);
             rt_test_object(g, id, &prepared, false, &hit, tally);
             answer(&run, i, hit, tallies);
         }

@@ -76,14 +76,14 @@ static RtStatus make_worker(const Builder *b, Worker **out, RtError *error) {
     worker->drawing.buffer = b->placing.buffer;
     worker->large = rt_alloc_unset(b->bins.large_count, sizeof(RtRef));
     if (!worker->large) return rt_fail_memory(error, "an item buffer", b->bins.large_count * sizeof(RtRef));
-    return rt_hit_room(rt_item_geometry(b->placing.buffer), &worker->drawing.room, error);
+    return rt_crossings_alloc(rt_item_geometry(b->placing.buffer), &worker->drawing.crossings, error);
 }
 
 static void free_worker(Worker *worker) {
     if (!worker) return;
     rt_free(worker->large);
     rt_free(worker->others);
-    rt_free(worker->drawing.room);
+    rt_free(worker->drawing.crossings);
     rt_free(worker);
 }
 

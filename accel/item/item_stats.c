@@ -29,7 +29,7 @@ void rt_item_describe(const RtAccel *accel, RtDescription *out) {
 }
 
 /* No object but the sample's own is hit before it, if that is hit at all. */
-static RtStatus check_sample(const RtItemBuffer *buffer, uint32_t column, uint32_t row, RtCrossing *room,
+static RtStatus check_sample(const RtItemBuffer *buffer, uint32_t column, uint32_t row, RtCrossing *crossings,
                              RtError *error) {
     const RtGeometry *g = rt_item_geometry(buffer);
     RtRay ray = rt_view_ray(&buffer->view, column, row);
@@ -37,7 +37,7 @@ static RtStatus check_sample(const RtItemBuffer *buffer, uint32_t column, uint32
     RtPreparedRay prepared;
     float own = INFINITY, t;
     if (named == RT_ITEM_UNDECIDED) return RT_OK;
-    rt_hit_ray(&prepared, g, &ray, room);
+    rt_hit_ray(&prepared, g, &ray, crossings);
     if (named != RT_NO_OBJECT && !rt_object_hit(g, named, &prepared, &own, NULL)) return RT_OK;
     for (uint32_t id = 0; id < g->object_count; id++) {
         if (id == named || !rt_object_hit(g, id, &prepared, &t, NULL)) continue;
@@ -60,12 +60,12 @@ RtStatus rt_item_validate(const RtAccel *accel, RtError *error) {
                        (uint32_t)(i % columns), (uint32_t)(i / columns), named, objects);
     }
     uint64_t every = (uint64_t)samples * objects / MOST_TESTS + 1;
-    RtCrossing *room;
-    RT_TRY(rt_hit_room(&accel->scene->geometry, &room, error));
+    RtCrossing *crossings;
+    RT_TRY(rt_crossings_alloc(&accel->scene->geometry, &crossings, error));
     RtStatus status = RT_OK;
     for (size_t i = 0; i < samples && status == RT_OK; i += every) {
-        status = check_sample(buffer, (uint32_t)(i % columns), (uint32_t)(i / columns), room, error);
+        status = check_sample(buffer, (uint32_t)(i % columns), (uint32_t)(i / columns), crossings, error);
     }
-    rt_free(room);
+    rt_free(crossings);
     return status;
 }

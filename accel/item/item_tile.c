@@ -69,7 +69,7 @@ static bool ask(RtItemDrawing *d, uint32_t sample, uint32_t id, Span *span) {
     const RtGeometry *g = rt_item_geometry(d->buffer);
     RtRay ray = rt_view_ray(&d->buffer->view, d->column + column_of(sample), d->row + row_of(sample));
     RtPreparedRay prepared;
-    rt_hit_ray(&prepared, g, &ray, d->room);
+    rt_hit_ray(&prepared, g, &ray, d->crossings);
     RtHit hit = RT_MISS;
     rt_test_object(g, id, &prepared, false, &hit, &d->tally);
     double w = 1 / fabs((double)hit.t); /* -0 is 0 */

@@ -30,9 +30,9 @@ static RtStatus make_axis(void *context, size_t axis, int thread, RtError *error
     Root *root = context;
     RtKdBuilder *b = root->builder;
     const RtGeometry *g = root->geometry;
-    uint64_t room = 4 * (uint64_t)g->object_count;
+    uint64_t needed = 4 * (uint64_t)g->object_count;
     (void)thread;
-    RT_TRY(rt_reserve(&b->events[axis], &b->event_capacity[axis], room, sizeof(RtKdEvent), error));
+    RT_TRY(rt_reserve(&b->events[axis], &b->event_capacity[axis], needed, sizeof(RtKdEvent), error));
     RtKdEvent *spare = rt_alloc_unset(2 * (size_t)g->object_count, sizeof(RtKdEvent));
     if (!spare)
         return rt_fail_memory(error, "sorting events", 2 * (size_t)g->object_count * sizeof(RtKdEvent));
@@ -45,12 +45,12 @@ static RtStatus make_axis(void *context, size_t axis, int thread, RtError *error
 /* The root's lists, with room to partition them. */
 static RtStatus make_root(RtKdBuilder *b, const RtGeometry *g, int threads, RtError *error) {
     Root root = {b, g, {.share = 1, .box = b->kd->box, .ids = {0, g->object_count}}};
-    uint64_t room = 2 * (uint64_t)g->object_count;
+    uint64_t needed = 2 * (uint64_t)g->object_count;
     RT_TRY(rt_reserve(&b->kd->nodes, &b->node_capacity, 1, sizeof(RtKdNode), error));
     b->kd->node_count = 1;
-    RT_TRY(rt_reserve(&b->ids, &b->id_capacity, room, sizeof(uint32_t), error));
+    RT_TRY(rt_reserve(&b->ids, &b->id_capacity, needed, sizeof(uint32_t), error));
     for (uint32_t i = 0; i < g->object_count; i++) b->ids[i] = i;
-    RT_TRY(rt_reserve(&b->spare, &b->spare_capacity, room, sizeof(RtKdEvent), error));
+    RT_TRY(rt_reserve(&b->spare, &b->spare_capacity, needed, sizeof(RtKdEvent), error));
     RT_TRY(rt_parallel_for(3, threads, make_axis, &root, error));
     b->pending[b->pending_count++] = root.cell;
     return RT_OK;

@@ -222,13 +222,13 @@ static RtStatus partition(RtKdBuilder *b, const RtKdCell *cell, const RtKdSplit 
         for (uint32_t c = 0; c < 2; c++) listed[c] += b->sides[ids[i]] >> (2 + c) & 1;
     }
     *above = listed[1] < listed[0];
-    uint64_t room = cell->ids.from + 2 * (uint64_t)cell->ids.count + 1;
-    RT_TRY(rt_reserve(&b->ids, &b->id_capacity, room, sizeof(uint32_t), error));
+    uint64_t needed = cell->ids.from + 2 * (uint64_t)cell->ids.count + 1;
+    RT_TRY(rt_reserve(&b->ids, &b->id_capacity, needed, sizeof(uint32_t), error));
     partition_ids(b, cell, children, *above);
     for (int a = 0; a < 3; a++) {
         const RtKdRun *run = &cell->events[a];
-        room = run->from + 2 * ((uint64_t)run->count + cut[0] + cut[1]) + 1;
-        RT_TRY(rt_reserve(&b->events[a], &b->event_capacity[a], room, sizeof(RtKdEvent), error));
+        needed = run->from + 2 * ((uint64_t)run->count + cut[0] + cut[1]) + 1;
+        RT_TRY(rt_reserve(&b->events[a], &b->event_capacity[a], needed, sizeof(RtKdEvent), error));
         partition_axis(b, cell, split, a, cut, children, *above);
     }
     return RT_OK;
@@ -238,10 +238,10 @@ static RtStatus partition(RtKdBuilder *b, const RtKdCell *cell, const RtKdSplit 
 
 static RtStatus make_leaf(RtKdBuilder *b, const RtKdCell *cell, RtError *error) {
     RtKd *kd = b->kd;
-    uint64_t room = (uint64_t)kd->id_count + cell->ids.count;
+    uint64_t needed = (uint64_t)kd->id_count + cell->ids.count;
     rt_kd_count_cell(b, cell, true);
     if (b->memory->estimate > 0) return RT_OK;
-    RT_TRY(rt_reserve(&kd->ids, &b->leaf_id_capacity, room, sizeof(uint32_t), error));
+    RT_TRY(rt_reserve(&kd->ids, &b->leaf_id_capacity, needed, sizeof(uint32_t), error));
     kd->nodes[cell->node] = (RtKdNode){.first = kd->id_count, .link = cell->ids.count << 2 | RT_KD_LEAF};
     if (cell->ids.count > 0)
         memcpy(kd->ids + kd->id_count, b->ids + cell->ids.from, cell->ids.count * sizeof(uint32_t));

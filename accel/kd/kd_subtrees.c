@@ -49,10 +49,10 @@ typedef struct Joined {
 /* ---- the top ---- */
 
 static RtStatus copy_lists(const RtKdBuilder *from, RtKdCell *cell, RtKdBuilder *to, RtError *error) {
-    uint64_t room = 2 * (uint64_t)cell->ids.count + 1;
-    RT_TRY(rt_reserve(&to->ids, &to->id_capacity, room, sizeof(uint32_t), error));
+    uint64_t needed = 2 * (uint64_t)cell->ids.count + 1;
+    RT_TRY(rt_reserve(&to->ids, &to->id_capacity, needed, sizeof(uint32_t), error));
     if (cell->ids.count > 0) memcpy(to->ids, from->ids + cell->ids.from, cell->ids.count * sizeof(uint32_t));
-    RT_TRY(rt_reserve(&to->spare, &to->spare_capacity, room, sizeof(RtKdEvent), error));
+    RT_TRY(rt_reserve(&to->spare, &to->spare_capacity, needed, sizeof(RtKdEvent), error));
     for (int a = 0; a < 3; a++) {
         uint32_t count = cell->events[a].count;
         RT_TRY(rt_reserve(&to->events[a], &to->event_capacity[a], 2 * (uint64_t)count + 1, sizeof(RtKdEvent),

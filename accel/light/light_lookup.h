@@ -139,7 +139,7 @@ RT_KERNEL uint32_t test_near(const RayBatch *batch, const RtLightCube *cube, uin
         uint32_t i = (uint32_t)__builtin_ctz(lanes);
         RtPreparedRay prepared;
         RtHit hit = RT_MISS;
-        rt_hit_ray(&prepared, g, &batch->rays[order[i]], batch->scratch->room);
+        rt_hit_ray(&prepared, g, &batch->rays[order[i]], batch->scratch->crossings);
         for (uint32_t k = 0; k < cube->near_count && hit.object == RT_NO_OBJECT; k++) {
             RT_COUNT(batch->tally, steps, 1);
             RT_OBSERVE(batch->tally, .kind = RT_TRACED_STEP, .what = "object", .index = cube->near[k]);

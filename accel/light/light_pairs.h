@@ -91,7 +91,7 @@ RT_KERNEL void test_others(const RayBatch *batch, uint32_t count) {
         }
         RtPreparedRay prepared;
         RtHit hit = RT_MISS;
-        rt_hit_ray(&prepared, g, ray, batch->scratch->room);
+        rt_hit_ray(&prepared, g, ray, batch->scratch->crossings);
         if (rt_test_object(g, id, &prepared, true, &hit, batch->tally)) batch->occluders[number] = id;
     }
 }

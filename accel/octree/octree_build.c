@@ -93,10 +93,10 @@ static RtVec3 choose_split(const Builder *b, const RtBox *cell, const uint32_t *
 
 bool rt_octree_divisible(const RtOctree *tree, const RtBox *boxes, const RtBox *cell, const uint32_t *ids,
                          uint32_t count) {
-    bool room = false;
-    for (int a = 0; a < 3; a++) room |= centre(cell->lo.at[a], cell->hi.at[a]) < cell->hi.at[a];
-    if (tree->cut_filled) return room;
-    for (uint32_t i = 0; room && i < count; i++) {
+    bool has_plane = false;
+    for (int a = 0; a < 3; a++) has_plane |= centre(cell->lo.at[a], cell->hi.at[a]) < cell->hi.at[a];
+    if (tree->cut_filled) return has_plane;
+    for (uint32_t i = 0; has_plane && i < count; i++) {
         if (!rt_box_contains(rt_octree_grown(tree, boxes[ids[i]]), *cell)) return true;
     }
     return false;

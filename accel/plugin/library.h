@@ -29,13 +29,13 @@ RtStatus rt_tables_check(const char *path, const RtTables *tables, RtError *erro
 /* Hash of the file's bytes (XXH3). */
 RtStatus rt_library_fingerprint(const char *path, uint64_t *fingerprint, RtError *error);
 
-/* To out[0..room). Returns the number of bytes written, or 0 if there is not enough room. */
-size_t rt_tables_pack(const RtTables *tables, char *out, size_t room);
+/* To out[0..size). Returns the number of bytes written, or 0 if there is not enough size. */
+size_t rt_tables_pack(const RtTables *tables, char *out, size_t size);
 
-/* From packed[0..room), which may hold anything and must stay as long as the tables. False if it was not
+/* From packed[0..size), which may hold anything and must stay as long as the tables. False if it was not
  * written by rt_tables_pack. The tables have no functions, except that `each_box` is not NULL where theirs
  * was not; it must not be called. Free the parameters with rt_tables_clear. */
-bool rt_tables_unpack(char *packed, size_t room, RtTables *tables);
+bool rt_tables_unpack(char *packed, size_t size, RtTables *tables);
 void rt_tables_clear(RtTables *tables);
 
 #endif

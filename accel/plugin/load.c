@@ -156,15 +156,15 @@ static void load_from(void *context, const char *path) {
     if (folder->status == RT_OK) folder->status = rt_plugin_load(path, folder->error);
 }
 
-/* Copies the first name of a list to path[0..room). Returns the rest of the list, or NULL if the name is too
+/* Copies the first name of a list to path[0..size). Returns the rest of the list, or NULL if the name is too
  * long. */
-static const char *take_path(const char *list, char *path, size_t room) {
+static const char *take_path(const char *list, char *path, size_t size) {
     size_t length = 0;
-    for (; *list && *list != ':' && length < room; list++) {
+    for (; *list && *list != ':' && length < size; list++) {
         if (*list == '\\' && (list[1] == ':' || list[1] == '\\')) list++;
         path[length++] = *list;
     }
-    if (length == room) return NULL;
+    if (length == size) return NULL;
     path[length] = '\0';
     return *list == ':' ? list + 1 : list;
 }

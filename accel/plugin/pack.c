@@ -70,8 +70,8 @@ static void pass_table(Cursor *c, raytally_accel_ops *table) {
         pass_param(c, (raytally_param *)&table->params[p]);
 }
 
-size_t rt_tables_pack(const RtTables *tables, char *out, size_t room) {
-    Cursor c = {out, out + room, false, true};
+size_t rt_tables_pack(const RtTables *tables, char *out, size_t size) {
+    Cursor c = {out, out + size, false, true};
     uint32_t count = tables->count;
     pass(&c, &count, sizeof count);
     for (uint32_t i = 0; i < count; i++) {
@@ -81,8 +81,8 @@ size_t rt_tables_pack(const RtTables *tables, char *out, size_t room) {
     return c.good ? (size_t)(c.at - out) : 0;
 }
 
-bool rt_tables_unpack(char *packed, size_t room, RtTables *tables) {
-    Cursor c = {packed, packed + room, true, true};
+bool rt_tables_unpack(char *packed, size_t size, RtTables *tables) {
+    Cursor c = {packed, packed + size, true, true};
     uint32_t count = 0;
     *tables = (RtTables){0};
     pass(&c, &count, sizeof count);

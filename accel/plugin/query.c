@@ -26,7 +26,7 @@ typedef struct PluginQuery {
     RtPluginNow now;
     RtPluginAccel *accel;
     const RtGeometry *geometry;
-    RtCrossing *room;
+    RtCrossing *crossings;
     void *memory; /* [accel->query_bytes] or NULL */
     bool counting;
     RtTally tallies[RT_RAY_KIND_COUNT]; /* of object tests, in a stream that is counted */
@@ -75,7 +75,7 @@ static void prepare(raytally_query *face, const raytally_ray *ray, raytally_prep
     PluginQuery *query = (PluginQuery *)face;
     RtPreparedRay *own = (RtPreparedRay *)out->own;
     query->now.ray = (const RtRay *)ray;
-    rt_hit_ray(own, query->geometry, (const RtRay *)ray, query->room);
+    rt_hit_ray(own, query->geometry, (const RtRay *)ray, query->crossings);
     out->tmin = own->tmin;
     out->tmax = own->tmax;
     memcpy(out->org, &own->org, 3 * sizeof(float));
@@ -131,11 +131,11 @@ static const raytally_host host = {RAYTALLY_ACCEL_ABI, sizeof(raytally_host), pr
 enum { GUARD = 64 * 1024, CANARY = 0xA5, CANARIES = 1024, MOST_ANSWERS = 4096, UNSET = 0xFE };
 
 static RtStatus map_guarded(RtGuarded *guarded, size_t bytes, RtError *error) {
-    size_t page = (size_t)sysconf(_SC_PAGESIZE), room = (bytes + page - 1) / page * page;
-    size_t mapped = room + 2 * (size_t)GUARD;
+    size_t page = (size_t)sysconf(_SC_PAGESIZE), crossings = (bytes + page - 1) / page * page;
+    size_t mapped = crossings + 2 * (size_t)GUARD;
     char *mapping = mmap(NULL, mapped, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (mapping != MAP_FAILED && mprotect(mapping + GUARD, room, PROT_READ | PROT_WRITE) == 0) {
-        *guarded = (RtGuarded){mapping, mapped, mapping + GUARD, mapping + GUARD + room};
+    if (mapping != MAP_FAILED && mprotect(mapping + GUARD, crossings, PROT_READ | PROT_WRITE) == 0) {
+        *guarded = (RtGuarded){mapping, mapped, mapping + GUARD, mapping + GUARD + crossings};
         return RT_OK;
     }
     if (mapping != MAP_FAILED) munmap(mapping, mapped);
@@ -224,7 +224,7 @@ static void *enter(PluginQuery *query, const RtScratch *scratch, const RtRay *ra
     char *answers = query->now.guarded[RT_GUARD_ANSWERS].end - count * size;
     lay_canaries(answers - CANARIES, answers);
     memset(answers, UNSET, count * size);
-    query->room = scratch->room;
+    query->crossings = scratch->crossings;
     query->now.ray = rays;
     now = &query->now;
     return answers;
@@ -275,7 +275,7 @@ static void test_occluders(PluginQuery *query, const RtRay *rays, size_t count, 
         RtPreparedRay ray;
         float t;
         if (occluders[i] == RT_NO_OBJECT) continue;
-        rt_hit_ray(&ray, query->geometry, &rays[i], query->room);
+        rt_hit_ray(&ray, query->geometry, &rays[i], query->crossings);
         if (rt_object_hit(query->geometry, occluders[i], &ray, &t, NULL)) continue;
         break_at_ray(query->accel, &rays[i], "it answered with an occluder that the ray does not hit",
                      occluders[i]);

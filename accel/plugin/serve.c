@@ -153,8 +153,8 @@ void rt_wire_show(RtQuery *query, void *message) {
 
 /* All boxes of the structure, from the request for the first until the last are sent. */
 static struct Shown {
-    WireBox *boxes; /* [room] */
-    uint32_t count, room;
+    WireBox *boxes; /* [size] */
+    uint32_t count, size;
     bool complete;
 } shown;
 
@@ -169,7 +169,7 @@ static void record(void *context, const RtBoxView *view) {
         return; /* an empty leaf */
     if (shown.complete)
         shown.complete =
-            rt_reserve(&shown.boxes, &shown.room, (uint64_t)shown.count + 1, sizeof(WireBox), NULL) == RT_OK;
+            rt_reserve(&shown.boxes, &shown.size, (uint64_t)shown.count + 1, sizeof(WireBox), NULL) == RT_OK;
     if (!shown.complete) return;
     shown.boxes[shown.count++] = (WireBox){*view->box, view->depth, view->leaf};
 }

@@ -29,16 +29,16 @@ static void fit_node(RtNeighbours *self, uint32_t node) {
     self->bounds[node] = bound;
 }
 
-/* Fills slots[first..first + room) by medians; count <= room. */
-static void fill_slots(RtNeighbours *self, RtTreeRef *refs, uint32_t count, uint32_t first, uint32_t room) {
+/* Fills slots[first..first + size) by medians; count <= size. */
+static void fill_slots(RtNeighbours *self, RtTreeRef *refs, uint32_t count, uint32_t first, uint32_t size) {
     if (count == 0) return;
     if (count == 1) {
         set_slot(self, first, refs[0].id);
         return;
     }
     uint32_t left = rt_split_median(refs, count);
-    fill_slots(self, refs, left, first, room / 2);
-    fill_slots(self, refs + left, count - left, first + room / 2, room / 2);
+    fill_slots(self, refs, left, first, size / 2);
+    fill_slots(self, refs + left, count - left, first + size / 2, size / 2);
 }
 
 RtStatus rt_neighbours_init(RtNeighbours *self, const RtTree *tree, RtError *error) {

@@ -155,11 +155,11 @@ static void make_sides(const Builder *b, const Group *group, const uint32_t coun
     RtTreeRef *refs = b->refs + group->first;
     double left = sum_of_areas(refs, counts[0]), both = left + sum_of_areas(refs + counts[0], counts[1]);
     uint32_t right = both > 0 ? (uint32_t)(spare * (1 - left / both)) : spare / 2;
-    uint32_t room = counts[0] + spare - right;
-    memmove(refs + room, refs + counts[0], counts[1] * sizeof(RtTreeRef));
+    uint32_t right_at = counts[0] + spare - right;
+    memmove(refs + right_at, refs + counts[0], counts[1] * sizeof(RtTreeRef));
     sides[0] = (Group){group->first, counts[0], spare - right, group->node + 1, group->depth + 1, false};
-    sides[1] =
-        (Group){group->first + room, counts[1], right, group->node + 2 * room, group->depth + 1, false};
+    sides[1] = (Group){group->first + right_at,    counts[1],        right,
+                       group->node + 2 * right_at, group->depth + 1, false};
 }
 
 /* Groups of at most so many references pass unused slots on; groups of the top are larger. */

@@ -79,7 +79,7 @@ RT_KERNEL void test_all(const RtGeometry *g, const RtPreparedRay *ray, bool any,
 RT_KERNEL bool init_ray(RayState *f, const RtWideTree *tree, const RtGeometry *g, const RtScratch *scratch,
                         const RtRay *ray, size_t index, bool any, RtTally *tally) {
     const RtPreparedRay *r = &f->ray;
-    rt_hit_ray(&f->ray, g, ray, scratch->room);
+    rt_hit_ray(&f->ray, g, ray, scratch->crossings);
     f->best = RT_MISS;
     f->index = index;
     f->tally = tally;

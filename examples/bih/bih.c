@@ -387,7 +387,7 @@ static const char *check_below(Check *check, Place place) {
     return broken;
 }
 
-static int validate(const void *self, char *message, size_t room) {
+static int validate(const void *self, char *message, size_t size) {
     const Bih *bih = (const Bih *)self;
     if (bih->node_count == 0) return 0;
     Check check = {bih, (uint8_t *)calloc(bih->id_count, 1), 0, 0};
@@ -396,7 +396,7 @@ static int validate(const void *self, char *message, size_t room) {
     if (!broken && check.listed < bih->id_count) broken = "an object is in no leaf";
     if (!broken && check.nodes < bih->node_count) broken = "a node has no parent";
     free(check.seen);
-    if (broken) snprintf(message, room, "%s", broken);
+    if (broken) snprintf(message, size, "%s", broken);
     return broken != NULL;
 }
 

@@ -209,8 +209,8 @@ typedef struct raytally_accel_ops {
     void (*begin)(const void *self, void *memory);
     /** Optional: writes statistics of the structure. */
     void (*describe)(const void *self, raytally_description *out);
-    /** Optional: 0, or 1 and a sentence in message[0..room) that names the first broken invariant. */
-    int (*validate)(const void *self, char *message, size_t room);
+    /** Optional: 0, or 1 and a sentence in message[0..size) that names the first broken invariant. */
+    int (*validate)(const void *self, char *message, size_t size);
     /** Optional: visits every box of the structure. It may be called several times and must visit them in the
      * same order. */
     void (*each_box)(const void *self, raytally_box_visitor *visit, void *context);

@@ -72,10 +72,10 @@ static char *write_name(const char *path, char *out) {
 
 /* Replaces the variable: its names may be relative, these are absolute. */
 static RtStatus tell_children(RtError *error) {
-    size_t count = rt_plugin_count(), room = 0;
-    for (size_t i = 0; i < count; i++) room += 2 * strlen(rt_plugin_at(i)->path) + 1;
-    char *list = rt_alloc(room, 1), *end = list;
-    if (!list) return rt_fail_memory(error, "names of plugins", room);
+    size_t count = rt_plugin_count(), size = 0;
+    for (size_t i = 0; i < count; i++) size += 2 * strlen(rt_plugin_at(i)->path) + 1;
+    char *list = rt_alloc(size, 1), *end = list;
+    if (!list) return rt_fail_memory(error, "names of plugins", size);
     for (size_t i = 0; i < count; i++) {
         end = write_name(rt_plugin_at(i)->path, end);
         *end++ = i + 1 < count ? ':' : '\0';
@@ -100,10 +100,10 @@ RtStatus rt_cli_load_plugins(int argc, char *const *argv, RtError *error) {
     return rt_plugin_count() > 0 ? tell_children(error) : RT_OK;
 }
 
-void rt_cli_plugin_arguments(char *out, size_t room) {
+void rt_cli_plugin_arguments(char *out, size_t size) {
     out[0] = '\0';
-    for (size_t i = 0, used = 0; i < given_count && used < room; i++)
-        used += (size_t)snprintf(out + used, room - used, " --plugin '%s'", given[i]);
+    for (size_t i = 0, used = 0; i < given_count && used < size; i++)
+        used += (size_t)snprintf(out + used, size - used, " --plugin '%s'", given[i]);
 }
 
 static void tell(void *context, const char *sentence) {

@@ -60,8 +60,8 @@ static RtStatus apply(Machine *m, RtCsgOp op, bool reversed, RtError *error) {
     List *low = &m->lists[m->depth - 2], *high = &m->lists[m->depth - 1];
     const List *left = reversed ? high : low, *right = reversed ? low : high;
     uint32_t end = high->first + high->count, count = 0, i = 0, k = 0;
-    uint64_t room = (uint64_t)end + left->count + right->count;
-    RT_TRY(rt_reserve(&m->roots, &m->capacity, room, sizeof(RtRoot), error));
+    uint64_t size = (uint64_t)end + left->count + right->count;
+    RT_TRY(rt_reserve(&m->roots, &m->capacity, size, sizeof(RtRoot), error));
     bool in_left = left->before, in_right = right->before;
     bool before = joined(op, in_left, in_right), inside = before;
     while (i < left->count || k < right->count) {

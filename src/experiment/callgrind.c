@@ -99,9 +99,9 @@ static RtStatus read_total(const RtCallgrind *callgrind, uint32_t n, uint64_t *t
     return found ? RT_OK : rt_fail(error, RT_NOT_AVAILABLE, "%s: callgrind wrote no sum of costs", path);
 }
 
-static void copy_text(char *out, size_t room, const json_t *line, const char *key) {
+static void copy_text(char *out, size_t size, const json_t *line, const char *key) {
     const char *text = json_string_value(json_object_get(line, key));
-    snprintf(out, room, "%s", text ? text : "");
+    snprintf(out, size, "%s", text ? text : "");
 }
 
 /* Takes one cell; the last of its passes counts. */

@@ -58,9 +58,9 @@ static RtStatus fail_ended(Worker *worker, RtError *error) {
 /* Takes one line of JSON, a new reference. The worker's messages go to stderr. */
 static RtStatus take_json(Worker *worker, json_t **document, RtError *error) {
     char *line = NULL;
-    size_t room = 0;
+    size_t size = 0;
     *document = NULL;
-    if (getline(&line, &room, worker->from) > 0) *document = json_loads(line, 0, NULL);
+    if (getline(&line, &size, worker->from) > 0) *document = json_loads(line, 0, NULL);
     free(line);
     return *document ? RT_OK : fail_ended(worker, error);
 }

@@ -28,11 +28,11 @@ static RtStatus read_size(const RtYaml *y, const RtYamlNode *n, uint32_t *width,
                         RT_MAX_IMAGE_SIDE);
 }
 
-/* A list of up to `room` texts; without a list *count stays unchanged. */
-static RtStatus read_labels(const RtYaml *y, const RtYamlNode *n, const char *key, uint32_t room,
+/* A list of up to `size` texts; without a list *count stays unchanged. */
+static RtStatus read_labels(const RtYaml *y, const RtYamlNode *n, const char *key, uint32_t size,
                             char (*labels)[RT_MAX_LABEL], uint32_t *count) {
     const RtYamlNode *list = rt_yaml_get(y, n, key);
-    RT_TRY(rt_yaml_list(y, list, NULL, 1, room, key));
+    RT_TRY(rt_yaml_list(y, list, NULL, 1, size, key));
     if (list) *count = 0;
     for (const RtYamlNode *e = rt_yaml_first(list); e != rt_yaml_end(list); e += e->size) {
         RT_TRY(rt_yaml_copy(y, e, NULL, RT_MAX_LABEL, labels[(*count)++]));

@@ -207,18 +207,18 @@ typedef struct Text {
 } Text;
 
 __attribute__((format(printf, 2, 3))) static void say(Text *text, const char *format, ...) {
-    const size_t room = RT_MAX_FRAME_SENTENCE - text->used;
+    const size_t size = RT_MAX_FRAME_SENTENCE - text->used;
     va_list args;
     va_start(args, format);
     /* clang-tidy 14 does not see va_start. NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized) */
-    const int length = vsnprintf(text->out + text->used, room, format, args);
+    const int length = vsnprintf(text->out + text->used, size, format, args);
     va_end(args);
-    if (length > 0) text->used += (size_t)length < room ? (size_t)length : room - 1;
+    if (length > 0) text->used += (size_t)length < size ? (size_t)length : size - 1;
 }
 
-static const char *figure(double value, char room[16]) {
-    rt_format_figure(value, room);
-    return room;
+static const char *figure(double value, char size[16]) {
+    rt_format_figure(value, size);
+    return size;
 }
 
 /* The compared candidate on top of `below` with the next smaller gain after `previous`; candidate_count

@@ -164,26 +164,26 @@ void rt_print_hardware(const RtResults *results, FILE *out) {
 /* ---- null runs ---- */
 
 void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
-    const size_t room = RT_MAX_SENTENCE;
+    const size_t size = RT_MAX_SENTENCE;
     uint32_t runs, straddling;
     rt_null_verdict(results, &runs, &straddling);
     out[0] = '\0';
     if (runs == 0) return;
-    int n = snprintf(out, room,
+    int n = snprintf(out, size,
                      "Null runs (%s against itself): %" PRIu32 " of %" PRIu32 " interval%s straddle%s 1",
                      results->experiment->candidates[results->experiment->baseline].label, straddling, runs,
                      rt_plural(runs), runs == 1 ? "s" : "");
     uint32_t misses = runs - straddling, rounds = results->experiment->rounds;
     double coverage = rt_interval_coverage(rounds), chance = 1 - coverage;
     if (misses == 0) {
-        n += snprintf(out + n, room - (size_t)n, ", as expected.");
+        n += snprintf(out + n, size - (size_t)n, ", as expected.");
     } else if (misses <= 1 + 2 * chance * runs) {
-        n += snprintf(out + n, room - (size_t)n, "; %.3g %% may miss it by chance.", 100 * chance);
+        n += snprintf(out + n, size - (size_t)n, "; %.3g %% may miss it by chance.", 100 * chance);
     } else {
-        n += snprintf(out + n, room - (size_t)n, ": the machine was busy; treat small differences as noise.");
+        n += snprintf(out + n, size - (size_t)n, ": the machine was busy; treat small differences as noise.");
     }
     if (rounds >= RT_FULL_ROUNDS) return;
-    snprintf(out + n, room - (size_t)n,
+    snprintf(out + n, size - (size_t)n,
              " Rounds: %" PRIu32 ", too few for 95 %%; an interval spans all measurements and holds the "
              "median with %.3g %%. Use %d or more.",
              rounds, 100 * coverage, RT_FULL_ROUNDS);

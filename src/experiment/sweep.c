@@ -41,11 +41,11 @@ bool rt_swept_logarithmic(const double *values, uint32_t count) {
     return quotient[1] / quotient[0] < step[1] / step[0];
 }
 
-void rt_swept_name(const RtSwept *swept, const char *but, char *out, size_t room) {
+void rt_swept_name(const RtSwept *swept, const char *but, char *out, size_t size) {
     for (uint32_t i = 0; i < swept->count; i++) {
         size_t used = strlen(out);
         if (but && strcmp(swept->keys[i], but) == 0) continue;
-        snprintf(out + used, room - used, ":%s=%s", swept->keys[i], swept->values[i]);
+        snprintf(out + used, size - used, ":%s=%s", swept->keys[i], swept->values[i]);
     }
 }
 
@@ -219,13 +219,13 @@ RtStatus rt_sweep_at(const RtSweep *sweep, uint32_t i, char *out, RtSwept *swept
                    RT_MAX_SPEC_CHARS - 1);
 }
 
-void rt_sweep_base(const RtSweep *sweep, char *out, size_t room) {
+void rt_sweep_base(const RtSweep *sweep, char *out, size_t size) {
     const char *text = sweep->text;
     size_t used = 0, from = 0, end = strlen(text);
     for (uint32_t p = 0; p <= sweep->param_count; p++) {
         const RtSweptParam *param = &sweep->params[p];
         size_t to = p < sweep->param_count ? param->start - 1 - strlen(param->key) : end;
-        for (; from < to && used + 1 < room; from++) out[used++] = text[from];
+        for (; from < to && used + 1 < size; from++) out[used++] = text[from];
         if (p == sweep->param_count) break;
         from = param->start + param->length;
         /* Drops the comma after the parameter, or else the separator before it. */

@@ -37,7 +37,7 @@ bool rt_swept_number(const char *value, double *number);
 bool rt_swept_logarithmic(const double *values, uint32_t count);
 
 /* Appends ":key=value" for every swept parameter except `but` (or NULL). */
-void rt_swept_name(const RtSwept *swept, const char *but, char *out, size_t room);
+void rt_swept_name(const RtSwept *swept, const char *but, char *out, size_t size);
 
 typedef struct RtSweptParam {
     char key[RT_MAX_NAME];
@@ -63,8 +63,8 @@ RtStatus rt_sweep_parse(const char *text, bool scene, const json_t *manifest, Rt
  * long. */
 RtStatus rt_sweep_at(const RtSweep *sweep, uint32_t i, char *out, RtSwept *swept, RtError *error);
 
-/* The text without the swept parameters, "grid:depth=2" of "grid:density=1..8*2,depth=2", to out[0..room),
+/* The text without the swept parameters, "grid:depth=2" of "grid:density=1..8*2,depth=2", to out[0..size),
  * truncated. */
-void rt_sweep_base(const RtSweep *sweep, char *out, size_t room);
+void rt_sweep_base(const RtSweep *sweep, char *out, size_t size);
 
 #endif

@@ -59,15 +59,15 @@ static RtStatus check_columns(const RtCsv *csv, RtError *error) {
 
 /* ---- rows ---- */
 
-static RtStatus copy_field(const RtCsv *csv, uint32_t r, const char *column, char *out, size_t room,
+static RtStatus copy_field(const RtCsv *csv, uint32_t r, const char *column, char *out, size_t size,
                            RtError *error) {
     const char *field = rt_csv_field(csv, r, rt_csv_find(csv, column));
-    if (strlen(field) < room) {
+    if (strlen(field) < size) {
         strcpy(out, field);
         return RT_OK;
     }
     return rt_fail_at(error, csv->path, csv->lines[r], 0, "%s: there is room for %zu characters", column,
-                      room - 1);
+                      size - 1);
 }
 
 static RtStatus take_figure(RtPublished *published, const RtCsv *csv, uint32_t r, uint32_t c,

@@ -24,10 +24,10 @@ typedef struct Bench {
     uint32_t count; /* objects sampled */
     uint32_t ids[SAMPLE];
     RtBox boxes[SAMPLE];
-    uint32_t met[SAMPLE]; /* extents that the last line hit, which a search would visit next */
-    PreparedRays lines;   /* through the scene */
-    PreparedRays chords;  /* that meet the box of their object */
-    RtCrossing *room;     /* of hit functions */
+    uint32_t met[SAMPLE];  /* extents that the last line hit, which a search would visit next */
+    PreparedRays lines;    /* through the scene */
+    PreparedRays chords;   /* that meet the box of their object */
+    RtCrossing *crossings; /* of hit functions */
 } Bench;
 
 /* The extents of one choice. */
@@ -75,10 +75,10 @@ static RtStatus run_objects(void *context, RtError *error) {
 
 /* ---- preparing ---- */
 
-static void add_ray(PreparedRays *to, const RtGeometry *geometry, const RtRay *ray, RtCrossing *room,
+static void add_ray(PreparedRays *to, const RtGeometry *geometry, const RtRay *ray, RtCrossing *crossings,
                     uint32_t id) {
     to->rays[to->count] = *ray;
-    rt_hit_ray(&to->prepared[to->count], geometry, &to->rays[to->count], room);
+    rt_hit_ray(&to->prepared[to->count], geometry, &to->rays[to->count], crossings);
     to->ids[to->count++] = id;
 }
 
@@ -100,11 +100,11 @@ static void fill_bench(Bench *bench, const RtPopulation *population, uint64_t se
         RtPreparedRay prepared = rt_ray_prepare(&ray, &geometry->box);
         float enter;
         bool met = rt_box_hit(&geometry->boxes[id], &prepared, prepared.tmax, &enter);
-        if (met) add_ray(&bench->chords, geometry, &ray, bench->room, id);
+        if (met) add_ray(&bench->chords, geometry, &ray, bench->crossings, id);
     }
     for (uint32_t k = 0; k < LINES; k++) {
         RtRay ray = rt_random_chord(&geometry->box, &random);
-        add_ray(&bench->lines, geometry, &ray, bench->room, RT_NO_OBJECT);
+        add_ray(&bench->lines, geometry, &ray, bench->crossings, RT_NO_OBJECT);
     }
 }
 
@@ -180,7 +180,7 @@ RtStatus rt_extent_cost_time(const RtPopulation *population, const RtExtentChoic
     if (!bench || !extents || !times.seconds) {
         status = rt_fail_memory(error, "timing extents", sizeof(Bench));
     }
-    if (status == RT_OK) status = rt_hit_room(population->geometry, &bench->room, error);
+    if (status == RT_OK) status = rt_crossings_alloc(population->geometry, &bench->crossings, error);
     if (status == RT_OK) fill_bench(bench, population, rounds->seed);
     for (size_t c = 0; status == RT_OK && c < count; c++) {
         status = fit_extents(&extents[c], bench, choices[c], error);
@@ -195,7 +195,7 @@ RtStatus rt_extent_cost_time(const RtPopulation *population, const RtExtentChoic
     for (size_t c = 0; extents && c < count; c++) rt_extent_set_clear(&extents[c].set);
     rt_free(times.seconds);
     rt_free(extents);
-    if (bench) rt_free(bench->room);
+    if (bench) rt_free(bench->crossings);
     rt_free(bench);
     return status;
 }

@@ -118,9 +118,9 @@ void rt_extents_table_print(const RtExtentsTable *table, FILE *out) {
             (unsigned long long)table->lines);
     for (size_t i = 0; i < table->shape_count; i++) {
         Row row = {table, i, 0};
-        char room[RT_MAX_FIELD];
+        char buffer[RT_MAX_FIELD];
         RtField object = estimate(&table->shapes[i].object, 1e-9);
-        const char *known = rt_field_show(RT_FORM_interval, &object, room);
+        const char *known = rt_field_show(RT_FORM_interval, &object, buffer);
         fprintf(out, "\n%s: %u; object test, ns: %s\n", shape_name(&table->shapes[i]),
                 table->shapes[i].objects, *known ? known : "unknown, none was hit");
         rt_table_text(&(RtTable){of_a_shape, 1, table->choice_count, choice_row, .context = &row}, out);

@@ -19,7 +19,7 @@
 #include <xxhash.h>
 
 /* The value of `key` in /proc/cpuinfo for the first processor, or "". */
-static void read_cpu(const char *key, char *out, size_t room) {
+static void read_cpu(const char *key, char *out, size_t size) {
     char line[512];
     out[0] = '\0';
     FILE *file = fopen("/proc/cpuinfo", "r");
@@ -27,16 +27,16 @@ static void read_cpu(const char *key, char *out, size_t room) {
         char *value = strchr(line, ':');
         if (strncmp(line, key, strlen(key)) != 0 || !value) continue;
         line[strcspn(line, "\n")] = '\0';
-        snprintf(out, room, "%s", value + 1 + strspn(value + 1, " \t"));
+        snprintf(out, size, "%s", value + 1 + strspn(value + 1, " \t"));
     }
     if (file) fclose(file);
 }
 
 /* The first line of a file of the kernel, or "". */
-static void read_line(const char *path, char *out, int room) {
+static void read_line(const char *path, char *out, int size) {
     out[0] = '\0';
     FILE *file = fopen(path, "r");
-    if (file && !fgets(out, room, file)) out[0] = '\0';
+    if (file && !fgets(out, size, file)) out[0] = '\0';
     if (file) fclose(file);
     out[strcspn(out, "\n")] = '\0';
 }

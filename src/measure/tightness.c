@@ -29,26 +29,26 @@ void rt_population_clear(RtPopulation *population) {
 
 /* ---- the extents of one object ---- */
 
-/* Room for one extent of any kind. */
-typedef struct Room {
+/* Fitted for one extent of any kind. */
+typedef struct Fitted {
     RtBall ball;
     RtOrientedBox oriented;
     RtSlab slabs[RT_MAX_SLABS];
-} Room;
+} Fitted;
 
-static RtExtentSet fit(const RtGeometry *geometry, uint32_t id, RtExtentChoice choice, Room *room) {
-    RtExtentSet set = {choice.kind, 1, choice.slabs, &room->ball, &room->oriented, room->slabs};
+static RtExtentSet fit(const RtGeometry *geometry, uint32_t id, RtExtentChoice choice, Fitted *fitted) {
+    RtExtentSet set = {choice.kind, 1, choice.slabs, &fitted->ball, &fitted->oriented, fitted->slabs};
     const RtGroup group = {geometry, &id, 1, geometry->boxes[id]};
     rt_extent_fit(&set, 0, &group);
     return set;
 }
 
 RtBall rt_sphere_about_extents(const RtGeometry *geometry, uint32_t id) {
-    Room room;
-    fit(geometry, id, (RtExtentChoice){RT_EXTENT_SPHERE, 0}, &room);
-    fit(geometry, id, (RtExtentChoice){RT_EXTENT_OBB, 0}, &room);
-    const RtBall *ball = &room.ball;
-    const RtOrientedBox *box = &room.oriented;
+    Fitted fitted;
+    fit(geometry, id, (RtExtentChoice){RT_EXTENT_SPHERE, 0}, &fitted);
+    fit(geometry, id, (RtExtentChoice){RT_EXTENT_OBB, 0}, &fitted);
+    const RtBall *ball = &fitted.ball;
+    const RtOrientedBox *box = &fitted.oriented;
     RtVec3d center = rt_widen(rt_box_center(geometry->boxes[id]));
     double of_box = rt_lengthd(rt_subd(rt_widen(geometry->boxes[id].hi), center));
     double of_ball = rt_lengthd(rt_subd(ball->center, center)) + ball->radius;
@@ -64,11 +64,11 @@ typedef struct Survey {
     const RtExtentChoice *choices;
     size_t count;
     uint64_t seed;
-    RtBall *spheres;   /* [population->count] */
-    Room *rooms;       /* [count] */
-    RtExtentSet *sets; /* [count] */
-    RtTightness *out;  /* [count] */
-    RtCrossing *room;  /* of hit functions */
+    RtBall *spheres;       /* [population->count] */
+    Fitted *fitted;        /* [count] */
+    RtExtentSet *sets;     /* [count] */
+    RtTightness *out;      /* [count] */
+    RtCrossing *crossings; /* of hit functions */
 } Survey;
 
 /* A random line through the sphere, as a ray that starts far behind it: extents may extend beyond the box of
@@ -85,12 +85,12 @@ static void count_lines(const Survey *survey, uint32_t index, uint64_t lines) {
     uint32_t id = survey->population->ids[index];
     RtRandom random = rt_random(survey->seed, id);
     for (size_t c = 0; c < survey->count; c++) {
-        survey->sets[c] = fit(geometry, id, survey->choices[c], &survey->rooms[c]);
+        survey->sets[c] = fit(geometry, id, survey->choices[c], &survey->fitted[c]);
     }
     for (uint64_t k = 0; k < lines; k++) {
         RtRay through = random_line(&survey->spheres[index], &random);
         RtPreparedRay ray;
-        rt_hit_ray(&ray, geometry, &through, survey->room);
+        rt_hit_ray(&ray, geometry, &through, survey->crossings);
         RtHit hit = RT_MISS;
         bool met = rt_test_object(geometry, id, &ray, true, &hit, NULL);
         for (size_t c = 0; c < survey->count; c++) {
@@ -142,10 +142,10 @@ RtStatus rt_tightness_count(const RtPopulation *population, const RtExtentChoice
     Survey survey = {population, choices, count, seed, NULL, NULL, NULL, out, NULL};
     for (size_t c = 0; c < count; c++) out[c] = (RtTightness){0};
     survey.spheres = rt_alloc(population->count, sizeof(RtBall));
-    survey.rooms = rt_alloc(count, sizeof(Room));
+    survey.fitted = rt_alloc(count, sizeof(Fitted));
     survey.sets = rt_alloc(count, sizeof(RtExtentSet));
-    RtStatus status = rt_hit_room(population->geometry, &survey.room, error);
-    if (status == RT_OK && survey.spheres && survey.rooms && survey.sets) {
+    RtStatus status = rt_crossings_alloc(population->geometry, &survey.crossings, error);
+    if (status == RT_OK && survey.spheres && survey.fitted && survey.sets) {
         double whole = deal_lines(&survey, lines);
         RtBall scene = rt_bounding_sphere(&population->geometry->box);
         double lines_of_scene = (double)lines * (scene.radius * scene.radius / whole);
@@ -157,8 +157,8 @@ RtStatus rt_tightness_count(const RtPopulation *population, const RtExtentChoice
         status = rt_fail_memory(error, "the tightness of extents", population->count * sizeof(RtBall));
     }
     rt_free(survey.spheres);
-    rt_free(survey.rooms);
+    rt_free(survey.fitted);
     rt_free(survey.sets);
-    rt_free(survey.room);
+    rt_free(survey.crossings);
     return status;
 }

@@ -40,10 +40,10 @@ void rt_rayset_seal(RtRaySet *set) {
 /* ---- diffuse rays ---- */
 
 /* The diffuse ray from the hit of `primary`, on the side that it came from. */
-static RtRay bounce(const Recorder *recorder, const RtRay *primary, RtCrossing *room) {
+static RtRay bounce(const Recorder *recorder, const RtRay *primary, RtCrossing *crossings) {
     uint32_t sample = primary->source;
     RtHit hit = {recorder->frame.depth[sample], recorder->frame.object[sample]};
-    RtSurface surface = rt_surface(recorder->scene, primary, hit, room);
+    RtSurface surface = rt_surface(recorder->scene, primary, hit, crossings);
     RtRandom random = rt_random(recorder->recording->seed, stream_of(RT_RAY_DIFFUSE, sample));
     return (RtRay){.org = rt_narrow(rt_add_scaledd(surface.point, surface.side, surface.offset)),
                    .dir = rt_narrow(rt_random_cosine(&random, surface.side)),
@@ -58,14 +58,14 @@ static RtStatus make_diffuse(Recorder *recorder, RtError *error) {
     RtRaySet *set = &recorder->sets[RT_RAY_DIFFUSE];
     RT_TRY(rt_rayset_init(set, RT_RAY_DIFFUSE, primary->count, error));
     set->count = 0;
-    RtCrossing *room;
-    RT_TRY(rt_hit_room(&recorder->scene->geometry, &room, error));
+    RtCrossing *crossings;
+    RT_TRY(rt_crossings_alloc(&recorder->scene->geometry, &crossings, error));
     for (uint64_t i = 0; i < primary->count; i++) {
         if (recorder->frame.object[primary->rays[i].source] == RT_NO_OBJECT) continue;
-        RtRay ray = bounce(recorder, &primary->rays[i], room);
+        RtRay ray = bounce(recorder, &primary->rays[i], crossings);
         if (rt_ray_is_valid(&ray)) set->rays[set->count++] = ray;
     }
-    rt_free(room);
+    rt_free(crossings);
     return RT_OK;
 }
 

@@ -171,7 +171,7 @@ static uint32_t find_surfaces(Worker *worker, const RtRay *rays, const Path *pat
             continue;
         }
         RtSurface *surface = &worker->surfaces[surface_count];
-        *surface = rt_surface(scene, &rays[i], worker->hits[i], rt_query_room(&worker->query));
+        *surface = rt_surface(scene, &rays[i], worker->hits[i], rt_query_crossings(&worker->query));
         worker->surface_paths[surface_count++] = paths[i];
         add_light(worker, paths[i], rt_ambient_light(scene, surface));
     }

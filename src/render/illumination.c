@@ -15,10 +15,10 @@ static double offset_of(const RtGeometry *g, uint32_t object, RtVec3d point, dou
     return 0x1p-21 * reach + 2 * own + fmin(scene, 0x1p-18 * reach);
 }
 
-RtSurface rt_surface(const RtScene *scene, const RtRay *ray, RtHit hit, RtCrossing *room) {
+RtSurface rt_surface(const RtScene *scene, const RtRay *ray, RtHit hit, RtCrossing *crossings) {
     const RtGeometry *g = &scene->geometry;
     RtVec3d point = rt_ray_point(ray, hit.t);
-    RtNormals normals = rt_object_normals(g, hit.object, ray, hit.t, room);
+    RtNormals normals = rt_object_normals(g, hit.object, ray, hit.t, crossings);
     uint32_t material = normals.solid == RT_NO_SOLID ? scene->material_of[hit.object]
                                                      : g->forest.set.solids[normals.solid].material;
     RtVec3d dir = rt_widen(ray->dir);

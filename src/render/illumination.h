@@ -40,8 +40,8 @@ typedef struct RtSurface {
     bool entering;    /* the ray came from outside, against the object's own geometric normal */
 } RtSurface;
 
-/* `hit` is a hit of `ray`, not a miss; `room` is of rt_hit_room. */
-RtSurface rt_surface(const RtScene *scene, const RtRay *ray, RtHit hit, RtCrossing *room);
+/* `hit` is a hit of `ray`, not a miss; `crossings` is of rt_crossings_alloc. */
+RtSurface rt_surface(const RtScene *scene, const RtRay *ray, RtHit hit, RtCrossing *crossings);
 
 /* The surface seen from outside: normals on the side of the object's own geometric normal. For programs
  * that light surfaces from outside whichever side a ray comes from, so that objects seen through glass are

@@ -159,7 +159,7 @@ RtStatus rt_answer_verdict(const RtQuery *query, const RtRay *ray, RtHit expecte
                            RtVerdict *verdict, RtError *error) {
     *verdict = memcmp(&expected, &got, sizeof got) == 0 ? RT_EQUAL : RT_WRONG;
     if (*verdict == RT_EQUAL || query->accel->exact) return RT_OK;
-    return rt_verdict_nearest(&query->accel->scene->geometry, ray, expected, got, rt_query_room(query),
+    return rt_verdict_nearest(&query->accel->scene->geometry, ray, expected, got, rt_query_crossings(query),
                               verdict, error);
 }
 
@@ -168,7 +168,7 @@ RtStatus rt_blocked_verdict(const RtQuery *query, const RtRay *ray, RtHit expect
     bool blocked = expected.object != RT_NO_OBJECT;
     *verdict = blocked == got ? RT_EQUAL : RT_WRONG;
     if (*verdict == RT_EQUAL || query->accel->exact) return RT_OK;
-    return rt_verdict_occluded(&query->accel->scene->geometry, ray, blocked, got, rt_query_room(query),
+    return rt_verdict_occluded(&query->accel->scene->geometry, ray, blocked, got, rt_query_crossings(query),
                                verdict, error);
 }
 
@@ -337,21 +337,21 @@ json_t *rt_equivalence_json(const RtEquivalence *result, const char *scene, cons
     return row;
 }
 
-static void format_hit(RtHit hit, char *out, size_t room) {
+static void format_hit(RtHit hit, char *out, size_t size) {
     if (hit.object == RT_NO_OBJECT) {
-        snprintf(out, room, "no hit");
+        snprintf(out, size, "no hit");
     } else {
-        snprintf(out, room, "object %u at t = %.9g", hit.object, (double)hit.t);
+        snprintf(out, size, "object %u at t = %.9g", hit.object, (double)hit.t);
     }
 }
 
-void rt_wrong_answer_format(const RtWrongAnswer *w, char *out, size_t room) {
+void rt_wrong_answer_format(const RtWrongAnswer *w, char *out, size_t size) {
     char expected[64], got[64], ray[RT_RAY_TEXT];
     format_hit(w->expected, expected, sizeof expected);
     format_hit(w->got, got, sizeof got);
     if (w->occluded) snprintf(got, sizeof got, "%s", w->blocked ? "blocked" : "not blocked");
     rt_ray_format(&w->ray, ray, sizeof ray);
-    snprintf(out, room, "ray %zu, %s, %s kernel, streams of %zu: %s: expected %s, got %s", w->index,
+    snprintf(out, size, "ray %zu, %s, %s kernel, streams of %zu: %s: expected %s, got %s", w->index,
              w->occluded ? "occluded" : "nearest", w->counted ? "counted" : "timed", w->stream, ray, expected,
              got);
 }

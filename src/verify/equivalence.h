@@ -72,7 +72,7 @@ void rt_wrong_answer_context(const RtReference *reference, const RtWrongAnswer *
 json_t *rt_equivalence_json(const RtEquivalence *result, const char *scene, const char *accel,
                             const char *against);
 
-/* Describes the query, the expected and the actual answer in one line, to out[0..room). */
-void rt_wrong_answer_format(const RtWrongAnswer *wrong, char *out, size_t room);
+/* Describes the query, the expected and the actual answer in one line, to out[0..size). */
+void rt_wrong_answer_format(const RtWrongAnswer *wrong, char *out, size_t size);
 
 #endif

@@ -22,7 +22,7 @@ static uint32_t below(Generator *m, uint32_t n) {
 }
 
 static RtVec3d point_of_object(Generator *m, RtWhere where, uint32_t *id) {
-    return rt_point_of_object(m->geometry, where, &m->random, rt_query_room(m->query), id);
+    return rt_point_of_object(m->geometry, where, &m->random, rt_query_crossings(m->query), id);
 }
 
 static RtRay ray_along(RtVec3d from, RtVec3d dir) {
@@ -114,7 +114,7 @@ static RtRay tangent(Generator *m) {
     RtVec3d dir = rt_random_direction(&m->random);
     if (id != RT_NO_OBJECT) {
         RtRay at = ray_along(p, dir);
-        RtVec3d normal = rt_object_normals(m->geometry, id, &at, 0, rt_query_room(m->query)).geometric;
+        RtVec3d normal = rt_object_normals(m->geometry, id, &at, 0, rt_query_crossings(m->query)).geometric;
         dir = rt_add_scaledd(dir, normal, -rt_dotd(dir, normal));
     }
     return ray_along(rt_add_scaledd(p, dir, -m->size), dir);
@@ -232,7 +232,7 @@ static RtRay grazing(Generator *m) {
     RtVec3d p = point_of_object(m, RT_ON_SURFACE, &id), dir = rt_random_direction(&m->random);
     if (id != RT_NO_OBJECT) {
         RtRay at = ray_along(p, dir);
-        RtVec3d normal = rt_object_normals(m->geometry, id, &at, 0, rt_query_room(m->query)).geometric;
+        RtVec3d normal = rt_object_normals(m->geometry, id, &at, 0, rt_query_crossings(m->query)).geometric;
         dir = rt_add_scaledd(dir, normal, -rt_dotd(dir, normal));
         double angle = angles[below(m, 7)];
         dir = rt_add_scaledd(rt_normalized(dir), normal, below(m, 2) ? angle : -angle);

@@ -52,12 +52,12 @@ static RtVec3d point_of_sphere(const RtSphere *sphere, RtWhere where, RtRandom *
 /* For a tree: a corner or an edge point of the box of one of its solids, or where a random line meets the
  * tree. */
 static RtVec3d point_of_csg(const RtGeometry *g, uint32_t id, RtWhere where, RtRandom *random,
-                            RtCrossing *room) {
+                            RtCrossing *crossings) {
     const RtCsg *tree = &g->csgs[rt_ref_index(g->objects[id])];
     if (where == RT_ON_SURFACE) {
         RtRay ray = rt_random_chord(&tree->box, random);
         RtPreparedRay prepared = rt_ray_prepare(&ray, &tree->box);
-        prepared.room = room;
+        prepared.crossings = crossings;
         float t;
         if (rt_object_hit(g, id, &prepared, &t, NULL)) return rt_ray_point(&ray, t);
     }
@@ -72,7 +72,7 @@ static RtVec3d point_of_csg(const RtGeometry *g, uint32_t id, RtWhere where, RtR
     return p;
 }
 
-RtVec3d rt_point_of_object(const RtGeometry *g, RtWhere where, RtRandom *random, RtCrossing *room,
+RtVec3d rt_point_of_object(const RtGeometry *g, RtWhere where, RtRandom *random, RtCrossing *crossings,
                            uint32_t *id) {
     *id = RT_NO_OBJECT;
     if (g->object_count == 0) return rt_point_in_scene(g, random);
@@ -86,7 +86,7 @@ RtVec3d rt_point_of_object(const RtGeometry *g, RtWhere where, RtRandom *random,
         return point_of_vertices(rt_polygon_vertices(g, index), polygon->count, where, random);
     }
     case RT_SHAPE_CONE: return point_of_cone(&g->cones[index], where != RT_ON_SURFACE, random);
-    case RT_SHAPE_CSG: return point_of_csg(g, *id, where, random, room);
+    case RT_SHAPE_CSG: return point_of_csg(g, *id, where, random, crossings);
     case RT_SHAPE_COUNT: break;
     }
     return rt_point_in_scene(g, random);

@@ -14,8 +14,9 @@ typedef enum RtWhere { RT_AT_VERTEX, RT_ON_EDGE, RT_ON_SURFACE } RtWhere;
 RtVec3d rt_point_in_box(const RtBox *box, RtRandom *random);
 RtVec3d rt_point_in_scene(const RtGeometry *geometry, RtRandom *random);
 
-/* A point of a random object, and its id (RT_NO_OBJECT if there is none); `room` comes from rt_hit_room. */
-RtVec3d rt_point_of_object(const RtGeometry *geometry, RtWhere where, RtRandom *random, RtCrossing *room,
+/* A point of a random object, and its id (RT_NO_OBJECT if there is none); `crossings` comes from
+ * rt_crossings_alloc. */
+RtVec3d rt_point_of_object(const RtGeometry *geometry, RtWhere where, RtRandom *random, RtCrossing *crossings,
                            uint32_t *id);
 
 /* The box of a random object, or of the scene. */

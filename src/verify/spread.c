@@ -28,10 +28,10 @@ static void add_values(const RtAccelOps *ops, const RtParam *param, const char *
 }
 
 /* The `n`th test value over all parameters that is not a default. */
-static bool try_value(const RtAccelOps *ops, size_t n, const RtParam **param, char *value, size_t room) {
+static bool try_value(const RtAccelOps *ops, size_t n, const RtParam **param, char *value, size_t size) {
     for (size_t i = 0; i < ops->param_count; i++) {
         *param = &ops->params[i];
-        for (size_t k = 0; rt_param_try(*param, k, value, room); k++) {
+        for (size_t k = 0; rt_param_try(*param, k, value, size); k++) {
             if (strcmp(value, (*param)->default_text) != 0 && n-- == 0) return true;
         }
     }

@@ -62,7 +62,7 @@ static RtVec3 straightened(RtVec3 dir) {
     return dir;
 }
 
-static void make_probes(Probes *p, const RtGeometry *g, const RtRay *ray, RtCrossing *room) {
+static void make_probes(Probes *p, const RtGeometry *g, const RtRay *ray, RtCrossing *crossings) {
     p->shift = SHIFT * largest_coordinate(g, ray);
     p->error = ERROR * largest_coordinate(g, ray);
     p->tolerance = tolerance_of(g, ray);
@@ -78,10 +78,10 @@ static void make_probes(Probes *p, const RtGeometry *g, const RtRay *ray, RtCros
         moved.org = rt_narrow(rt_add_scaledd(rt_widen(ray->org), to, p->shift));
         moved.tmin = (float)fmax(tmin - p->tolerance, 0);
         moved.tmax = (float)(tmax + p->tolerance);
-        rt_hit_ray(&p->wide[i], g, &moved, room);
+        rt_hit_ray(&p->wide[i], g, &moved, crossings);
         moved.tmin = (float)(tmin + p->tolerance);
         moved.tmax = (float)(tmax - p->tolerance);
-        rt_hit_ray(&p->narrow[i], g, &moved, room);
+        rt_hit_ray(&p->narrow[i], g, &moved, crossings);
     }
 }
 
@@ -99,7 +99,7 @@ static bool in_reach(const RtGeometry *g, uint32_t id, const Probes *p) {
 /* Does the ray hit the object's front, seen along its normal (0), or its back (1)? */
 static int side_met(const RtGeometry *g, uint32_t id, const RtPreparedRay *ray, float t) {
     RtRay again = {.org = ray->org, .tmin = ray->tmin, .dir = ray->dir, .tmax = ray->tmax};
-    return rt_dotd(rt_object_normals(g, id, &again, t, ray->room).geometric, rt_widen(ray->dir)) > 0;
+    return rt_dotd(rt_object_normals(g, id, &again, t, ray->crossings).geometric, rt_widen(ray->dir)) > 0;
 }
 
 /* Shapes that only our hit functions test: from the probes. */
@@ -215,9 +215,9 @@ static bool in_margin(const Margin *m, double t, double tolerance) {
 
 /* ---- verdicts ---- */
 
-static bool is_marginal(const RtGeometry *g, const RtRay *ray, RtHit answer, RtCrossing *room) {
+static bool is_marginal(const RtGeometry *g, const RtRay *ray, RtHit answer, RtCrossing *crossings) {
     Probes probes;
-    make_probes(&probes, g, ray, room);
+    make_probes(&probes, g, ray, crossings);
     double nearest_certain = HUGE_VAL;
     bool named = answer.object == RT_NO_OBJECT;
     for (uint32_t id = 0; id < g->object_count; id++) {
@@ -235,15 +235,15 @@ static RtStatus lack_memory(RtError *error) {
 
 /* Does the ray exactly meet both objects, at t's within the tolerance? Our hit function is quick and comes
  * first. */
-static RtStatus is_tie(const RtGeometry *g, const RtRay *ray, RtHit expected, RtHit answer, RtCrossing *room,
-                       bool *tie, RtError *error) {
+static RtStatus is_tie(const RtGeometry *g, const RtRay *ray, RtHit expected, RtHit answer,
+                       RtCrossing *crossings, bool *tie, RtError *error) {
     float t;
     int order;
     long double apart;
     double tolerance = tolerance_of(g, ray);
     *tie = false;
     RtPreparedRay prepared;
-    rt_hit_ray(&prepared, g, ray, room);
+    rt_hit_ray(&prepared, g, ray, crossings);
     if (!within((double)answer.t, (double)expected.t, tolerance)) return RT_OK;
     if (!rt_object_hit(g, answer.object, &prepared, &t, NULL)) return RT_OK;
     if (!within((double)t, (double)expected.t, tolerance)) return RT_OK;
@@ -260,7 +260,7 @@ RtStatus rt_verdict_side(const RtGeometry *geometry, const RtRay *ray, RtHit exp
 }
 
 RtStatus rt_verdict_nearest(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer,
-                            RtCrossing *room, RtVerdict *verdict, RtError *error) {
+                            RtCrossing *crossings, RtVerdict *verdict, RtError *error) {
     RtSide side;
     *verdict = RT_EQUAL;
     if (answer.object == RT_NO_OBJECT) {
@@ -271,19 +271,19 @@ RtStatus rt_verdict_nearest(const RtGeometry *geometry, const RtRay *ray, RtHit 
         *verdict = RT_WRONG;
         if (answer.object >= geometry->object_count) return RT_OK;
         if (expected.object != RT_NO_OBJECT) {
-            RT_TRY(is_tie(geometry, ray, expected, answer, room, &tie, error));
+            RT_TRY(is_tie(geometry, ray, expected, answer, crossings, &tie, error));
         }
         *verdict = RT_TIE;
         if (tie) return RT_OK;
     }
     RT_TRY(rt_verdict_side(geometry, ray, expected, answer, &side, error));
     bool right = side == RT_SIDE_GOT || side == RT_SIDE_BOTH;
-    *verdict = right || is_marginal(geometry, ray, answer, room) ? RT_MARGINAL : RT_WRONG;
+    *verdict = right || is_marginal(geometry, ray, answer, crossings) ? RT_MARGINAL : RT_WRONG;
     return RT_OK;
 }
 
 RtStatus rt_verdict_occluded(const RtGeometry *geometry, const RtRay *ray, bool expected, bool answer,
-                             RtCrossing *room, RtVerdict *verdict, RtError *error) {
+                             RtCrossing *crossings, RtVerdict *verdict, RtError *error) {
     *verdict = RT_EQUAL;
     if (answer == expected) return RT_OK;
     RtExactResult exact = rt_referee_occluded(geometry, ray);
@@ -291,7 +291,7 @@ RtStatus rt_verdict_occluded(const RtGeometry *geometry, const RtRay *ray, bool 
     *verdict = RT_MARGINAL;
     if (exact == (answer ? RT_HIT : RT_MISSED)) return RT_OK;
     Probes probes;
-    make_probes(&probes, geometry, ray, room);
+    make_probes(&probes, geometry, ray, crossings);
     bool possible = false, certain = false;
     for (uint32_t id = 0; id < geometry->object_count; id++) {
         Margin m = margin_of(geometry, id, ray, &probes);

@@ -41,9 +41,10 @@ const char *rt_verdict_name(RtVerdict verdict);
 
 /* All three fail with RT_NO_MEMORY if the referee lacks memory, without a result. */
 
-/* Judges the nearest hit `answer` of a valid ray; `expected` is brute's, `room` comes from rt_hit_room. */
+/* Judges the nearest hit `answer` of a valid ray; `expected` is brute's, `crossings` comes from
+ * rt_crossings_alloc. */
 RtStatus rt_verdict_nearest(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer,
-                            RtCrossing *room, RtVerdict *verdict, RtError *error);
+                            RtCrossing *crossings, RtVerdict *verdict, RtError *error);
 
 /* Which answer to `nearest` is exactly right, within that tolerance? */
 RtStatus rt_verdict_side(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer,
@@ -51,6 +52,6 @@ RtStatus rt_verdict_side(const RtGeometry *geometry, const RtRay *ray, RtHit exp
 
 /* Judges an answer to `occluded`: equal, marginal or wrong. */
 RtStatus rt_verdict_occluded(const RtGeometry *geometry, const RtRay *ray, bool expected, bool answer,
-                             RtCrossing *room, RtVerdict *verdict, RtError *error);
+                             RtCrossing *crossings, RtVerdict *verdict, RtError *error);
 
 #endif

@@ -48,17 +48,17 @@ RT_TEST(the_room_for_hits_is_had_or_it_is_a_status) {
     Row row;
     RtError failure;
     RtGeometry empty = {0};
-    RtCrossing *room = room_of_tests();
-    assert_ok(rt_hit_room(&empty, &room, error));
-    assert_null(room);
+    RtCrossing *crossings = room_of_tests();
+    assert_ok(rt_crossings_alloc(&empty, &crossings, error));
+    assert_null(crossings);
     make_row(&row);
     rt_alloc_fail_at(1);
-    assert_int_equal(rt_hit_room(&row.scene.geometry, &room, &failure), RT_NO_MEMORY);
-    assert_null(room);
+    assert_int_equal(rt_crossings_alloc(&row.scene.geometry, &crossings, &failure), RT_NO_MEMORY);
+    assert_null(crossings);
     /* So many that it is not known how many. */
     row.scene.geometry.csgs[0].most_crossings = UINT32_MAX;
-    assert_int_equal(rt_hit_room(&row.scene.geometry, &room, &failure), RT_NO_MEMORY);
-    assert_null(room);
+    assert_int_equal(rt_crossings_alloc(&row.scene.geometry, &crossings, &failure), RT_NO_MEMORY);
+    assert_null(crossings);
     rt_scene_clear(&row.scene);
 }
 
@@ -79,8 +79,8 @@ static void trace_without_memory(const char *spec, Row *row, const RtHit *expect
         rt_nearest(&query, row->rays, RAYS, hits[counted], counted ? tallies : NULL);
         rt_occluded(&query, row->rays, RAYS, blocked[counted], counted ? tallies : NULL);
     }
-    RtCrossing *room = rt_query_room(&query);
-    RtNormals normals = rt_object_normals(&row->scene.geometry, 0, &row->rays[0], expected[0].t, room);
+    RtCrossing *crossings = rt_query_crossings(&query);
+    RtNormals normals = rt_object_normals(&row->scene.geometry, 0, &row->rays[0], expected[0].t, crossings);
     assert_null(rt_alloc(1, 1)); /* the first one asked for */
     assert_true(normals.geometric.x == -1);
     for (int i = 0; i < RAYS; i++) {
@@ -180,16 +180,16 @@ static RtStatus judge(const Row *row, RtError *error) {
     const RtGeometry *g = &row->scene.geometry;
     const RtRay *ray = &row->rays[0];
     const RtHit hit = {49, 0};
-    RtCrossing *room = room_of_tests();
+    RtCrossing *crossings = room_of_tests();
     RtVerdict verdict;
     RtSide side;
-    RT_TRY(rt_verdict_nearest(g, ray, RT_MISS, hit, room, &verdict, error));
+    RT_TRY(rt_verdict_nearest(g, ray, RT_MISS, hit, crossings, &verdict, error));
     assert_int_equal(verdict, RT_MARGINAL);
-    RT_TRY(rt_verdict_nearest(g, ray, hit, RT_MISS, room, &verdict, error));
+    RT_TRY(rt_verdict_nearest(g, ray, hit, RT_MISS, crossings, &verdict, error));
     assert_int_equal(verdict, RT_WRONG);
     RT_TRY(rt_verdict_side(g, ray, RT_MISS, hit, &side, error));
     assert_int_equal(side, RT_SIDE_GOT);
-    RT_TRY(rt_verdict_occluded(g, ray, true, false, room, &verdict, error));
+    RT_TRY(rt_verdict_occluded(g, ray, true, false, crossings, &verdict, error));
     assert_int_equal(verdict, RT_WRONG);
     return RT_OK;
 }

@@ -35,13 +35,13 @@ static Asked begin_asking(const RtRay *rays, size_t count) {
 
 /* One ray, one object after the other. */
 static void by_definition(const RtGeometry *geometry, Asked *asked) {
-    RtCrossing *room;
-    assert_ok(rt_hit_room(geometry, &room, error));
+    RtCrossing *crossings;
+    assert_ok(rt_crossings_alloc(geometry, &crossings, error));
     for (size_t i = 0; i < asked->count; i++) {
         const RtRay *ray = &asked->rays[i];
         RtPreparedRay prepared;
         RtHit first = RT_MISS;
-        rt_hit_ray(&prepared, geometry, ray, room);
+        rt_hit_ray(&prepared, geometry, ray, crossings);
         asked->hits[i] = RT_MISS;
         rt_test_all(geometry, &prepared, false, &asked->hits[i], &asked->nearest[ray->kind]);
         rt_test_all(geometry, &prepared, true, &first, &asked->occluded[ray->kind]);
@@ -51,7 +51,7 @@ static void by_definition(const RtGeometry *geometry, Asked *asked) {
         asked->occluded[ray->kind].rays++;
         asked->occluded[ray->kind].hits += first.object != RT_NO_OBJECT;
     }
-    rt_free(room);
+    rt_free(crossings);
 }
 
 static void assert_same(const Asked *right, const Asked *got, bool counted, const char *who, size_t stream) {

@@ -191,7 +191,7 @@ RT_TEST(every_column_has_a_meaning_and_a_name_of_its_own) {
             assert_true(*row.column->meaning);
             for (size_t earlier = 0; earlier < k; earlier++) {
                 column_at(&other, earlier);
-                if (strcmp(name_of(&row).room, name_of(&other).room) == 0)
+                if (strcmp(name_of(&row).buffer, name_of(&other).buffer) == 0)
                     fail_msg("%s has two columns %s", sections[i].title, row.column->name);
             }
         }

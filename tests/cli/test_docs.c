@@ -20,10 +20,10 @@ typedef struct Text {
 __attribute__((format(printf, 2, 3))) static void append(Text *text, const char *format, ...) {
     va_list args;
     va_start(args, format);
-    size_t room = sizeof text->chars - text->length;
-    int n = vsnprintf(text->chars + text->length, room, format, args);
+    size_t size = sizeof text->chars - text->length;
+    int n = vsnprintf(text->chars + text->length, size, format, args);
     va_end(args);
-    assert_true(n >= 0 && (size_t)n < room);
+    assert_true(n >= 0 && (size_t)n < size);
     text->length += (size_t)n;
 }
 

@@ -19,9 +19,9 @@ static bool same_place(const RtGeometry *g, uint32_t id, const RtWideRay *line, 
     return off <= 0x1p-8 * size + 2 * rt_border_unit(g, id, line);
 }
 
-RtDecision rt_decision_of(const RtGeometry *geometry, uint32_t id, const RtRay *ray, RtCrossing *room) {
+RtDecision rt_decision_of(const RtGeometry *geometry, uint32_t id, const RtRay *ray, RtCrossing *crossings) {
     RtPreparedRay prepared;
-    rt_hit_ray(&prepared, geometry, ray, room);
+    rt_hit_ray(&prepared, geometry, ray, crossings);
     RtDecision decision = {.t = INFINITY};
     decision.hit = rt_object_hit(geometry, id, &prepared, &decision.t, NULL);
     return decision;

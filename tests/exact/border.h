@@ -19,8 +19,8 @@ typedef struct RtDecision {
 /* The unit for object `id`. */
 double rt_border_unit(const RtGeometry *geometry, uint32_t id, const RtWideRay *line);
 
-/* The result of our hit function; `room` comes from rt_hit_room. */
-RtDecision rt_decision_of(const RtGeometry *geometry, uint32_t id, const RtRay *ray, RtCrossing *room);
+/* The result of our hit function; `crossings` comes from rt_crossings_alloc. */
+RtDecision rt_decision_of(const RtGeometry *geometry, uint32_t id, const RtRay *ray, RtCrossing *crossings);
 
 /* Is it what exact arithmetic decides? A hit on an object that a line can meet more than once has to be the
  * same one: t and the exact t are no farther apart than 2^-8 of the size of the box and two units.

@@ -154,8 +154,8 @@ typedef struct Range {
     const RtGeometry *geometry;
     const Case *how;
     RtRandom random;
-    double distance;  /* of origins */
-    RtCrossing *room; /* of hit functions */
+    double distance;       /* of origins */
+    RtCrossing *crossings; /* of hit functions */
 } Range;
 
 /* The ray towards `target` along `dir`, unit, as near as float32 can. */
@@ -181,9 +181,9 @@ static RtRay ray_to_box(Range *r, uint32_t id) {
 /* Through a point of the surface that an ordinary ray hits, by an angle with it; one of 0 makes a tangent. */
 static RtRay ray_along_surface(Range *r, uint32_t id, double angle) {
     RtRay ray = ray_to_box(r, id);
-    RtDecision decision = rt_decision_of(r->geometry, id, &ray, r->room);
+    RtDecision decision = rt_decision_of(r->geometry, id, &ray, r->crossings);
     if (!decision.hit) return ray;
-    RtVec3d normal = rt_object_normals(r->geometry, id, &ray, decision.t, r->room).geometric;
+    RtVec3d normal = rt_object_normals(r->geometry, id, &ray, decision.t, r->crossings).geometric;
     RtVec3d tangent = rt_normalized(rt_crossd(normal, rt_random_direction(&r->random)));
     RtVec3 point = rt_narrow(rt_ray_point(&ray, decision.t));
     return ray_towards(r, point, rt_normalized(rt_add_scaledd(tangent, normal, angle)));
@@ -247,7 +247,7 @@ static int by_size(const void *a, const void *b) {
 static double off_surface(const Range *r, uint32_t id, const RtRay *ray, float t, double error) {
     const RtGeometry *g = r->geometry;
     RtWideRay line = rt_wide_ray(ray);
-    double rate = rt_dotd(rt_object_normals(g, id, ray, t, r->room).geometric, line.dir);
+    double rate = rt_dotd(rt_object_normals(g, id, ray, t, r->crossings).geometric, line.dir);
     return fabs(error * rate) / rt_border_unit(g, id, &line);
 }
 
@@ -255,7 +255,7 @@ static double off_surface(const Range *r, uint32_t id, const RtRay *ray, float t
 static RtStatus measure_ray(const Range *r, uint32_t id, const RtRay *ray, double *errors, RtPrecision *out,
                             RtError *error) {
     const RtGeometry *g = r->geometry;
-    RtDecision ours = rt_decision_of(g, id, ray, r->room);
+    RtDecision ours = rt_decision_of(g, id, ray, r->crossings);
     long double ulps;
     RtExactResult exact = rt_referee_error(g, id, ray, ours.hit ? ours.t : 0, &ulps);
     RtWideRay line = rt_wide_ray(ray);
@@ -295,7 +295,7 @@ RtStatus rt_precision_measure(RtSubject subject, size_t index, uint64_t rays, Rt
     range.distance = 3 * (double)scale;
     for (int i = 0; i < cases[index].distance; i++) range.distance *= 10;
     RtStatus status = add_objects(&geometry, subject, &range.random, scale, error);
-    if (status == RT_OK) status = rt_hit_room(&geometry, &range.room, error);
+    if (status == RT_OK) status = rt_crossings_alloc(&geometry, &range.crossings, error);
     for (uint64_t i = 0; i < rays && status == RT_OK; i++) {
         uint32_t id = (uint32_t)(i % geometry.object_count);
         RtRay ray = next_ray(&range, id);
@@ -307,7 +307,7 @@ RtStatus rt_precision_measure(RtSubject subject, size_t index, uint64_t rays, Rt
         out->most99 = errors[out->hits * 99 / 100];
         out->most = errors[out->hits - 1];
     }
-    rt_free(range.room);
+    rt_free(range.crossings);
     rt_geometry_clear(&geometry);
     rt_free(errors);
     return status;

@@ -30,9 +30,9 @@ static int measure(void **state) {
 
 /* ---- the table ---- */
 
-static void format_row(RtSubject subject, size_t i, char *out, size_t room) {
+static void format_row(RtSubject subject, size_t i, char *out, size_t size) {
     const RtPrecision *p = &measured[subject][i];
-    snprintf(out, room, "| %s | %s | %d | %.2f | %.2f | %.2f | %.2f | %d | %d | %d | %.3g |\n",
+    snprintf(out, size, "| %s | %s | %d | %.2f | %.2f | %.2f | %.2f | %d | %d | %d | %.3g |\n",
              rt_subject_name(subject), rt_precision_case_name(i), (int)p->hits, p->median, p->most99, p->most,
              p->off, (int)p->missed, (int)p->invented, (int)p->elsewhere, p->border);
 }

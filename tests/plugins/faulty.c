@@ -272,9 +272,9 @@ static void describe_debts(const void *self, raytally_description *out) {
     out->bytes = (uint64_t)-1;
 }
 
-static int validate_broken(const void *self, char *message, size_t room) {
+static int validate_broken(const void *self, char *message, size_t size) {
     (void)self;
-    snprintf(message, room, "node 3 is its own parent");
+    snprintf(message, size, "node 3 is its own parent");
     return 1;
 }
 

@@ -215,15 +215,15 @@ RT_TEST(an_interval_is_seen_not_to_hold_1_if_it_does_not) {
     static const double ends[] = {0.5,         0.98,     0.9951, 0.9994, 0.9996, 1 - 1e-7, 1 - 0x1p-53, 1,
                                   1 + 0x1p-52, 1 + 1e-7, 1.0004, 1.0031, 1.0049, 1.02,     2.5};
     enum { ENDS = sizeof ends / sizeof ends[0] };
-    char room[RT_MAX_FIELD];
+    char buffer[RT_MAX_FIELD];
     for (int i = 0; i < ENDS; i++) {
         const RtField end = rt_field_real(ends[i]);
-        assert_int_equal(strtod(rt_field_show(RT_FORM_end, &end, room), NULL) == 1, ends[i] == 1);
+        assert_int_equal(strtod(rt_field_show(RT_FORM_end, &end, buffer), NULL) == 1, ends[i] == 1);
         for (int k = i; k < ENDS; k++) {
             const RtField field = rt_field_interval(0.5 * (ends[i] + ends[k]), ends[i], ends[k]);
             const bool holds = ends[i] <= 1 && 1 <= ends[k];
             double value, low, high;
-            const char *text = rt_field_show(RT_FORM_interval, &field, room);
+            const char *text = rt_field_show(RT_FORM_interval, &field, buffer);
             assert_int_equal(sscanf(text, "%lf [%lf, %lf]", &value, &low, &high), 3);
             assert_int_equal(low <= 1 && 1 <= high, holds);
             assert_true(low <= value && value <= high);
@@ -232,8 +232,8 @@ RT_TEST(an_interval_is_seen_not_to_hold_1_if_it_does_not) {
     }
     const RtField usual = rt_field_interval(1.0134, 1.0061, 1.0279),
                   close = rt_field_interval(1.0041, 1.0031, 1.0279);
-    assert_string_equal(rt_field_show(RT_FORM_interval, &usual, room), "1.01 [1.01, 1.03]");
-    assert_string_equal(rt_field_show(RT_FORM_interval, &close, room), "1.004 [1.003, 1.028]");
+    assert_string_equal(rt_field_show(RT_FORM_interval, &usual, buffer), "1.01 [1.01, 1.03]");
+    assert_string_equal(rt_field_show(RT_FORM_interval, &close, buffer), "1.004 [1.003, 1.028]");
 }
 
 RT_TESTS(table, NULL, NULL)

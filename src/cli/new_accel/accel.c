@@ -92,11 +92,11 @@ static void describe(const void *self, raytally_description *out) {
 }
 
 /* STRUCTURE: its invariants, which hold for every scene. `verify` checks them before it traces rays. */
-static int validate(const void *self, char *message, size_t room) {
+static int validate(const void *self, char *message, size_t size) {
     const Structure *s = self;
     for (uint32_t i = 0; i < s->count; i++) {
         if (s->ids[i] < s->count) continue;
-        snprintf(message, room, "place %u of the list has object %u of %u", i, s->ids[i], s->count);
+        snprintf(message, size, "place %u of the list has object %u of %u", i, s->ids[i], s->count);
         return 1;
     }
     return 0;

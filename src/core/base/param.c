@@ -26,56 +26,56 @@ static bool equal(const char *word, const char *text, size_t length) {
 
 /* ---- values to text ---- */
 
-void rt_param_format(const RtParam *param, RtValue value, char *out, size_t room) {
+void rt_param_format(const RtParam *param, RtValue value, char *out, size_t size) {
     size_t length = 0;
     switch (param->type) {
-    case RT_PARAM_INT: snprintf(out, room, "%lld", (long long)value.i); break;
-    case RT_PARAM_FLOAT: snprintf(out, room, "%.9g", value.f); break;
-    case RT_PARAM_FLAG: snprintf(out, room, "%s", value.flag ? "on" : "off"); break;
+    case RT_PARAM_INT: snprintf(out, size, "%lld", (long long)value.i); break;
+    case RT_PARAM_FLOAT: snprintf(out, size, "%.9g", value.f); break;
+    case RT_PARAM_FLAG: snprintf(out, size, "%s", value.flag ? "on" : "off"); break;
     case RT_PARAM_CHOICE: {
         const char *choice = piece(param->choices, value.choice, &length);
-        snprintf(out, room, "%.*s", (int)length, choice);
+        snprintf(out, size, "%.*s", (int)length, choice);
         break;
     }
     case RT_PARAM_RESOLUTION:
         if (value.resolution[0] == 0) {
-            snprintf(out, room, "auto");
+            snprintf(out, size, "auto");
         } else {
-            snprintf(out, room, "%ux%ux%u", value.resolution[0], value.resolution[1], value.resolution[2]);
+            snprintf(out, size, "%ux%ux%u", value.resolution[0], value.resolution[1], value.resolution[2]);
         }
         break;
     }
 }
 
-void rt_params_format(const RtParam *table, size_t count, const RtValue *values, char *out, size_t room) {
+void rt_params_format(const RtParam *table, size_t count, const RtValue *values, char *out, size_t size) {
     out[0] = '\0';
     for (size_t i = 0; i < count; i++) {
         char value[RT_MAX_SPEC_CHARS];
         rt_param_format(&table[i], values[i], value, sizeof value);
         size_t used = strlen(out);
-        snprintf(out + used, room - used, "%s%s=%s", i ? "," : "", table[i].name, value);
+        snprintf(out + used, size - used, "%s%s=%s", i ? "," : "", table[i].name, value);
     }
 }
 
-void rt_param_range(const RtParam *param, char *out, size_t room) {
+void rt_param_range(const RtParam *param, char *out, size_t size) {
     switch (param->type) {
     case RT_PARAM_INT:
-    case RT_PARAM_FLOAT: snprintf(out, room, "%.9g..%.9g", param->lo, param->hi); break;
-    case RT_PARAM_FLAG: snprintf(out, room, "on|off"); break;
-    case RT_PARAM_CHOICE: snprintf(out, room, "%s", param->choices); break;
+    case RT_PARAM_FLOAT: snprintf(out, size, "%.9g..%.9g", param->lo, param->hi); break;
+    case RT_PARAM_FLAG: snprintf(out, size, "on|off"); break;
+    case RT_PARAM_CHOICE: snprintf(out, size, "%s", param->choices); break;
     case RT_PARAM_RESOLUTION:
-        snprintf(out, room, "auto or NXxNYxNZ, each %.9g..%.9g", param->lo, param->hi);
+        snprintf(out, size, "auto or NXxNYxNZ, each %.9g..%.9g", param->lo, param->hi);
         break;
     }
 }
 
-bool rt_param_try(const RtParam *param, size_t n, char *out, size_t room) {
+bool rt_param_try(const RtParam *param, size_t n, char *out, size_t size) {
     const char *list = param->type == RT_PARAM_FLAG && !param->test_values     ? "on|off"
                        : param->type == RT_PARAM_CHOICE && !param->test_values ? param->choices
                                                                                : param->test_values;
     size_t length;
     const char *text = piece(list, n, &length);
-    if (text) snprintf(out, room, "%.*s", (int)length, text);
+    if (text) snprintf(out, size, "%.*s", (int)length, text);
     return text != NULL;
 }
 

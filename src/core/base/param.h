@@ -65,16 +65,16 @@ typedef union RtValue {
 RtStatus rt_params_parse(const RtParam *table, size_t count, const char *text, const char *what,
                          RtValue *values, RtError *error);
 
-/* Writes every parameter with its value, "key=value,key=value", to out[0..room); "" for an empty table. */
-void rt_params_format(const RtParam *table, size_t count, const RtValue *values, char *out, size_t room);
+/* Writes every parameter with its value, "key=value,key=value", to out[0..size); "" for an empty table. */
+void rt_params_format(const RtParam *table, size_t count, const RtValue *values, char *out, size_t size);
 
 /* One value as text. */
-void rt_param_format(const RtParam *param, RtValue value, char *out, size_t room);
+void rt_param_format(const RtParam *param, RtValue value, char *out, size_t size);
 
 /* The range or the choices as text: "1..4096", "box|sphere", "on|off", "auto or NXxNYxNZ, each 1..512". */
-void rt_param_range(const RtParam *param, char *out, size_t room);
+void rt_param_range(const RtParam *param, char *out, size_t size);
 
 /* The `n`th test value as text, from `test_values` or all choices; false past the last. */
-bool rt_param_try(const RtParam *param, size_t n, char *out, size_t room);
+bool rt_param_try(const RtParam *param, size_t n, char *out, size_t size);
 
 #endif

@@ -223,14 +223,14 @@ void rt_process_end(RtProcess *process, int milliseconds) {
     rt_process_wait(process, -1, &end);
 }
 
-void rt_process_end_format(RtProcessEnd end, int reported, const char *detail, char *out, size_t room) {
+void rt_process_end_format(RtProcessEnd end, int reported, const char *detail, char *out, size_t size) {
     int number = reported ? reported : end.signal;
     const char *name = sigdescr_np(number);
     if (number) {
-        snprintf(out, room, "it crashed (%s%s)", name ? name : "an unknown signal", detail);
+        snprintf(out, size, "it crashed (%s%s)", name ? name : "an unknown signal", detail);
     } else if (end.code >= 0) {
-        snprintf(out, room, "it ended its process (exit code %d)", end.code);
+        snprintf(out, size, "it ended its process (exit code %d)", end.code);
     } else {
-        snprintf(out, room, "it ended its process");
+        snprintf(out, size, "it ended its process");
     }
 }

@@ -29,8 +29,8 @@ RtStatus rt_ray_kind_parse(const char *name, RtRayKind *kind, RtError *error) {
     return rt_fail(error, RT_BAD_INPUT, "there is no ray kind '%.40s'; the kinds are %s", name, list);
 }
 
-void rt_ray_format(const RtRay *ray, char *out, size_t room) {
-    snprintf(out, room, "org (%.9g, %.9g, %.9g) dir (%.9g, %.9g, %.9g) t in [%.9g, %.9g]", (double)ray->org.x,
+void rt_ray_format(const RtRay *ray, char *out, size_t size) {
+    snprintf(out, size, "org (%.9g, %.9g, %.9g) dir (%.9g, %.9g, %.9g) t in [%.9g, %.9g]", (double)ray->org.x,
              (double)ray->org.y, (double)ray->org.z, (double)ray->dir.x, (double)ray->dir.y,
              (double)ray->dir.z, (double)ray->tmin, (double)ray->tmax);
 }

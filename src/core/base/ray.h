@@ -78,7 +78,7 @@ typedef struct RtRay {
 
 /* "org (0, 0, 5) dir (0, 0, -1) t in [0, inf]", with nine digits, which read back to the same bits. */
 #define RT_RAY_TEXT 192
-void rt_ray_format(const RtRay *ray, char *out, size_t room);
+void rt_ray_format(const RtRay *ray, char *out, size_t size);
 
 #define RT_NO_OBJECT UINT32_MAX
 
@@ -96,8 +96,8 @@ typedef struct RtHit {
 
 /* A ray with everything that box and triangle tests need, computed once. Arrays are indexed by axis. */
 typedef struct RtPreparedRay {
-    const RtRay *original;   /* the ray itself */
-    struct RtCrossing *room; /* scratch memory of hit functions (rt_hit_ray); NULL: for box tests only */
+    const RtRay *original;        /* the ray itself */
+    struct RtCrossing *crossings; /* scratch memory of hit functions (rt_hit_ray); NULL: for box tests only */
     RtVec3 org, dir;
     float tmin, tmax; /* tmax is finite: a hit at infinity does not count */
     float inv[4];     /* 1 / dir, possibly infinite; x, y, z and a fourth lane for vectors, here and below */
@@ -155,10 +155,10 @@ static inline void rt_ray_thicken(RtPreparedRay *ray, const RtBox *around) {
 }
 
 /* Prepares *p. `scene_box` must contain every box that the ray will be tested against; it sets the
- * thickness. `room` is for hit functions; NULL if none will be called (rt_hit_ray in
+ * thickness. `crossings` is for hit functions; NULL if none will be called (rt_hit_ray in
  * core/shape/geometry.h). */
 static inline void rt_ray_prepare_in(RtPreparedRay *p, const RtRay *ray, const RtBox *scene_box,
-                                     struct RtCrossing *room) {
+                                     struct RtCrossing *crossings) {
     /* The loads rely on the layout of RtRay: org, tmin, dir, tmax. */
     RtFloat4 org = rt_loadu4(ray), dir = rt_loadu4((const char *)ray + offsetof(RtRay, dir)), inv = 1 / dir;
     RtInt4 sign = (RtInt4)dir & INT32_MIN, negative = sign < 0;
@@ -167,7 +167,7 @@ static inline void rt_ray_prepare_in(RtPreparedRay *p, const RtRay *ray, const R
     RtInt4 first = (RtInt4){0, 4, 8, 8} + (negative & 12), last = (RtInt4){12, 16, 20, 20} - (negative & 12);
     negative &= 1;
     p->original = ray;
-    p->room = room;
+    p->crossings = crossings;
     p->org = ray->org;
     p->dir = ray->dir;
     memcpy(p->inv, &inv, sizeof p->inv);

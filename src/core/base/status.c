@@ -44,14 +44,14 @@ RtStatus rt_fail_at(RtError *error, const char *file, size_t line, size_t column
     if (!error) return RT_BAD_INPUT;
     error->status = RT_BAD_INPUT;
     char *out = error->message;
-    size_t room = sizeof error->message;
-    int n = line == 0     ? snprintf(out, room, "%s: ", file)
-            : column == 0 ? snprintf(out, room, "%s:%zu: ", file, line)
-                          : snprintf(out, room, "%s:%zu:%zu: ", file, line, column);
-    if (n < 0 || (size_t)n >= room) return RT_BAD_INPUT;
+    size_t size = sizeof error->message;
+    int n = line == 0     ? snprintf(out, size, "%s: ", file)
+            : column == 0 ? snprintf(out, size, "%s:%zu: ", file, line)
+                          : snprintf(out, size, "%s:%zu:%zu: ", file, line, column);
+    if (n < 0 || (size_t)n >= size) return RT_BAD_INPUT;
     va_list args;
     va_start(args, format);
-    vsnprintf(out + n, room - (size_t)n, format, args);
+    vsnprintf(out + n, size - (size_t)n, format, args);
     va_end(args);
     clean(out);
     return RT_BAD_INPUT;

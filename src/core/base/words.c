@@ -42,11 +42,11 @@ void rt_suggest(const char *word, const char *const *names, size_t count, char o
     if (near) snprintf(out, RT_MAX_SUGGESTION, ": did you mean '%s'?", near);
 }
 
-void rt_join_names(const char *const *names, size_t count, char *out, size_t room) {
+void rt_join_names(const char *const *names, size_t count, char *out, size_t size) {
     out[0] = '\0';
     for (size_t i = 0; i < count; i++) {
         size_t used = strlen(out);
-        snprintf(out + used, room - used, "%s%s", i ? ", " : "", names[i]);
+        snprintf(out + used, size - used, "%s%s", i ? ", " : "", names[i]);
     }
 }
 

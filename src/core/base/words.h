@@ -20,8 +20,8 @@ const char *rt_nearest_name(const char *word, const char *const *names, size_t c
 /* ": did you mean 'NAME'?" with the nearest name, "" if none is near. */
 void rt_suggest(const char *word, const char *const *names, size_t count, char out[RT_MAX_SUGGESTION]);
 
-/* Writes "a, b, c" to out[0..room), truncated if it does not fit. */
-void rt_join_names(const char *const *names, size_t count, char *out, size_t room);
+/* Writes "a, b, c" to out[0..size), truncated if it does not fit. */
+void rt_join_names(const char *const *names, size_t count, char *out, size_t size);
 
 /* Prints `text` and a newline, wrapped at blanks to 80 characters. */
 void rt_print_wrapped(const char *text, FILE *out);

@@ -281,11 +281,11 @@ static RtStatus read_vertices(Reader *r, bool patch, uint32_t *count) {
         patch ? "a number of a vertex and its normal, x y z nx ny nz" : "a number of a vertex x y z";
     RT_TRY(read_count(r, "the number of vertices", 3, UINT32_MAX, count));
     size_t least = patch ? 12 : 6; /* bytes of the shortest vertex, with blanks */
-    size_t room = (size_t)(r->end - r->at) / least + 1;
-    if (*count > room) {
+    size_t size = (size_t)(r->end - r->at) / least + 1;
+    if (*count > size) {
         return rt_fail_at(r->error, r->path, r->statement, 0,
                           "the statement declares %u vertices, but the rest of the file holds at most %zu",
-                          *count, room);
+                          *count, size);
     }
     RT_TRY(rt_reserve(&r->vertices, &r->vertex_capacity, *count, sizeof(RtVec3), r->error));
     if (patch) {

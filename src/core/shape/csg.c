@@ -19,8 +19,8 @@ typedef struct Machine {
 } Machine;
 
 static inline void start(Machine *m, const RtCsg *tree, const RtPreparedRay *ray) {
-    assert(ray->room);
-    m->crossings = ray->room;
+    assert(ray->crossings);
+    m->crossings = ray->crossings;
     m->capacity = tree->most_crossings;
     m->depth = 0;
     m->starts[0] = m->starts[1] = 0; /* also the result of a program without instructions */

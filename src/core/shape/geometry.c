@@ -219,14 +219,14 @@ void rt_geometry_clear(RtGeometry *geometry) {
 
 /* ---- scratch memory of hit functions ---- */
 
-RtStatus rt_hit_room(const RtGeometry *geometry, RtCrossing **room, RtError *error) {
+RtStatus rt_crossings_alloc(const RtGeometry *geometry, RtCrossing **crossings, RtError *error) {
     uint32_t most = 0;
-    *room = NULL;
+    *crossings = NULL;
     for (uint32_t i = 0; i < geometry->csg_count; i++) {
         if (geometry->csgs[i].most_crossings > most) most = geometry->csgs[i].most_crossings;
     }
-    if (geometry->csg_count > 0 && most < UINT32_MAX) *room = rt_alloc(most, sizeof(RtCrossing));
-    if (geometry->csg_count == 0 || *room) return RT_OK;
+    if (geometry->csg_count > 0 && most < UINT32_MAX) *crossings = rt_alloc(most, sizeof(RtCrossing));
+    if (geometry->csg_count == 0 || *crossings) return RT_OK;
     return rt_fail_memory(error, "the crossings of a ray with a CSG tree", most * sizeof(RtCrossing));
 }
 
@@ -244,15 +244,15 @@ static RtVec3d interpolated_normal(const RtGeometry *g, uint32_t index, RtVec3d 
 }
 
 static RtNormals csg_normals(const RtGeometry *g, uint32_t index, const RtRay *ray, float t,
-                             RtCrossing *room) {
+                             RtCrossing *crossings) {
     RtPreparedRay prepared;
-    rt_hit_ray(&prepared, g, ray, room);
+    rt_hit_ray(&prepared, g, ray, crossings);
     RtCsgFacet facet = rt_csg_facet(&g->forest, &g->csgs[index], &prepared, t);
     return (RtNormals){facet.normal, facet.normal, facet.solid};
 }
 
 RtNormals rt_object_normals(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
-                            RtCrossing *room) {
+                            RtCrossing *crossings) {
     uint32_t index = rt_ref_index(geometry->objects[id]);
     RtVec3d point = rt_ray_point(ray, t), normal = {0, 0, 0};
     switch (rt_ref_shape(geometry->objects[id])) {
@@ -262,7 +262,7 @@ RtNormals rt_object_normals(const RtGeometry *geometry, uint32_t id, const RtRay
     case RT_SHAPE_TRIANGLE:
         normal = rt_triangle_normal(&geometry->triangles[index]);
         return (RtNormals){normal, interpolated_normal(geometry, index, point, normal), RT_NO_SOLID};
-    case RT_SHAPE_CSG: return csg_normals(geometry, index, ray, t, room);
+    case RT_SHAPE_CSG: return csg_normals(geometry, index, ray, t, crossings);
     case RT_SHAPE_COUNT: break;
     }
     return (RtNormals){normal, normal, RT_NO_SOLID};

@@ -123,27 +123,27 @@ void rt_geometry_clear(RtGeometry *geometry);
 #define RT_NO_SOLID UINT32_MAX
 
 /* Allocates the scratch memory of hit functions, for the crossings of a ray with the largest CSG tree;
- * *room becomes NULL if there is no tree. It serves one thread at a time; free it with rt_free. Allocate
+ * *crossings becomes NULL if there is no tree. It serves one thread at a time; free it with rt_free. Allocate
  * it before tracing, during which nothing is allocated. */
-RtStatus rt_hit_room(const RtGeometry *geometry, RtCrossing **room, RtError *error);
+RtStatus rt_crossings_alloc(const RtGeometry *geometry, RtCrossing **crossings, RtError *error);
 
-/* Prepares *prepared for box tests and for the hit functions of this geometry; `room` is borrowed.
+/* Prepares *prepared for box tests and for the hit functions of this geometry; `crossings` is borrowed.
  * Returning the struct by value makes traversals many per cent slower. */
 static inline void rt_hit_ray(RtPreparedRay *prepared, const RtGeometry *geometry, const RtRay *ray,
-                              RtCrossing *room) {
-    rt_ray_prepare_in(prepared, ray, &geometry->box, room);
+                              RtCrossing *crossings) {
+    rt_ray_prepare_in(prepared, ray, &geometry->box, crossings);
 }
 
 /* The surface of object `id` at `t`, one of the ray's hits: two unit normals, geometric (oriented by the
  * shape) and shading (interpolated if a triangle has vertex normals, otherwise the geometric one), and for
- * a CSG tree the solid that was hit (in geometry->forest), else RT_NO_SOLID. `room` comes from
- * rt_hit_room. */
+ * a CSG tree the solid that was hit (in geometry->forest), else RT_NO_SOLID. `crossings` comes from
+ * rt_crossings_alloc. */
 typedef struct RtNormals {
     RtVec3d geometric, shading;
     uint32_t solid;
 } RtNormals;
 RtNormals rt_object_normals(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
-                            RtCrossing *room);
+                            RtCrossing *crossings);
 
 /* Extents of object `id` besides geometry->boxes[id]: a ball, and the support function, which is the
  * largest dot product with `direction` (for slabs and oriented boxes). */

@@ -43,13 +43,13 @@ static bool take(Header *h, char c) {
 }
 
 /* A quoted string, with quotes of either kind, without escapes. */
-static bool take_text(Header *h, char *out, size_t room) {
+static bool take_text(Header *h, char *out, size_t size) {
     skip_blanks(h);
     char quote = *h->at;
     if (quote != '\'' && quote != '"') return false;
     const char *end = strchr(h->at + 1, quote);
-    size_t length = end ? (size_t)(end - h->at - 1) : room;
-    if (length >= room) return false;
+    size_t length = end ? (size_t)(end - h->at - 1) : size;
+    if (length >= size) return false;
     memcpy(out, h->at + 1, length);
     out[length] = '\0';
     h->at = end + 1;

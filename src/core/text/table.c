@@ -63,7 +63,7 @@ RtField rt_field_print(const char *format, ...) {
     va_list args;
     va_start(args, format);
     /* clang-tidy 14 does not see va_start. NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized) */
-    vsnprintf(field.room, sizeof field.room, format, args);
+    vsnprintf(field.buffer, sizeof field.buffer, format, args);
     va_end(args);
     return field;
 }
@@ -87,16 +87,16 @@ static bool reads_as_1(const char *text) {
     return strtod(text, NULL) == 1;
 }
 
-static void show_end(double value, char room[RT_MAX_FIELD]) {
+static void show_end(double value, char buffer[RT_MAX_FIELD]) {
     for (int digits = 6; digits <= 17; digits++) {
-        snprintf(room, RT_MAX_FIELD, "%.*g", digits, value);
-        if (value == 1 || !reads_as_1(room)) break;
+        snprintf(buffer, RT_MAX_FIELD, "%.*g", digits, value);
+        if (value == 1 || !reads_as_1(buffer)) break;
     }
 }
 
 /* As figures; if the interval does not contain 1, with enough decimals to show that its nearer end is not
  * 1. */
-static void show_interval(const RtField *field, char room[RT_MAX_FIELD]) {
+static void show_interval(const RtField *field, char buffer[RT_MAX_FIELD]) {
     char value[32], low[32], high[32];
     rt_format_figure(field->real, value);
     rt_format_figure(field->low, low);
@@ -108,40 +108,40 @@ static void show_interval(const RtField *field, char room[RT_MAX_FIELD]) {
         snprintf(low, sizeof low, "%.*f", decimals, field->low);
         snprintf(high, sizeof high, "%.*f", decimals, field->high);
     }
-    snprintf(room, RT_MAX_FIELD, isnan(field->low) ? "%s" : "%s [%s, %s]", value, low, high);
+    snprintf(buffer, RT_MAX_FIELD, isnan(field->low) ? "%s" : "%s [%s, %s]", value, low, high);
 }
 
-static void show_real(RtForm form, double value, char room[RT_MAX_FIELD]) {
+static void show_real(RtForm form, double value, char buffer[RT_MAX_FIELD]) {
     if (form == RT_FORM_end) {
-        show_end(value, room);
+        show_end(value, buffer);
     } else if (forms[form].format) {
-        snprintf(room, RT_MAX_FIELD, forms[form].format, value);
+        snprintf(buffer, RT_MAX_FIELD, forms[form].format, value);
     } else if (form == RT_FORM_amount && value > 0 && value < 0.00095) {
-        strcpy(room, "<0.001");
+        strcpy(buffer, "<0.001");
     } else {
-        rt_format_figure(value, room);
+        rt_format_figure(value, buffer);
     }
 }
 
-const char *rt_field_show(RtForm form, const RtField *field, char room[RT_MAX_FIELD]) {
-    room[0] = '\0';
+const char *rt_field_show(RtForm form, const RtField *field, char buffer[RT_MAX_FIELD]) {
+    buffer[0] = '\0';
     switch (field->is) {
     case RT_FIELD_MISSING: break;
-    case RT_FIELD_TEXT: return field->text ? field->text : field->room;
+    case RT_FIELD_TEXT: return field->text ? field->text : field->buffer;
     case RT_FIELD_FLAG: return field->integer ? "yes" : "no";
     case RT_FIELD_INTEGER:
-        snprintf(room, RT_MAX_FIELD, form == RT_FORM_hash ? "%016" PRIx64 : "%" PRIu64, field->integer);
+        snprintf(buffer, RT_MAX_FIELD, form == RT_FORM_hash ? "%016" PRIx64 : "%" PRIu64, field->integer);
         break;
-    case RT_FIELD_REAL: show_real(form, field->real, room); break;
+    case RT_FIELD_REAL: show_real(form, field->real, buffer); break;
     case RT_FIELD_INTERVAL:
-        if (isfinite(field->real)) show_interval(field, room);
+        if (isfinite(field->real)) show_interval(field, buffer);
         break;
     }
-    return room;
+    return buffer;
 }
 
 static json_t *field_json(RtForm form, const RtField *field) {
-    char room[RT_MAX_FIELD];
+    char buffer[RT_MAX_FIELD];
     switch (field->is) {
     case RT_FIELD_FLAG: return json_boolean(field->integer);
     case RT_FIELD_INTEGER:
@@ -154,7 +154,7 @@ static json_t *field_json(RtForm form, const RtField *field) {
     case RT_FIELD_MISSING: return json_null();
     case RT_FIELD_TEXT: break;
     }
-    return json_string(rt_field_show(form, field, room));
+    return json_string(rt_field_show(form, field, buffer));
 }
 
 /* ---- rows ---- */
@@ -177,8 +177,8 @@ static void take(RtTableLine *line, const RtTable *table, const void *row) {
     }
 }
 
-const char *rt_line_show(const RtTableLine *line, size_t i, char room[RT_MAX_FIELD]) {
-    return rt_field_show(line->columns[i]->form, &line->fields[i], room);
+const char *rt_line_show(const RtTableLine *line, size_t i, char buffer[RT_MAX_FIELD]) {
+    return rt_field_show(line->columns[i]->form, &line->fields[i], buffer);
 }
 
 static void write_row(RtTableWriter *w, const void *row) {
@@ -198,10 +198,10 @@ void rt_table_walk(RtTableWriter w) {
 /* ---- CSV ---- */
 
 static void put_csv(RtTableWriter *w, const RtTableLine *line, const void *row) {
-    char room[RT_MAX_FIELD];
+    char buffer[RT_MAX_FIELD];
     for (size_t i = 0; i < line->count; i++) {
         if (i) fputc(',', w->out);
-        rt_csv_put(w->out, row ? rt_line_show(line, i, room) : line->columns[i]->id);
+        rt_csv_put(w->out, row ? rt_line_show(line, i, buffer) : line->columns[i]->id);
     }
     fputc('\n', w->out);
 }
@@ -212,25 +212,26 @@ void rt_table_csv(const RtTable *table, FILE *out) {
 
 /* ---- text ---- */
 
-static const char *show_text(const RtTableLine *line, size_t i, const void *row, char room[RT_MAX_FIELD]) {
-    const char *text = row ? rt_line_show(line, i, room) : line->columns[i]->name;
+static const char *show_text(const RtTableLine *line, size_t i, const void *row, char buffer[RT_MAX_FIELD]) {
+    const char *text = row ? rt_line_show(line, i, buffer) : line->columns[i]->name;
     return *text ? text : "-";
 }
 
 static void widen(RtTableWriter *w, const RtTableLine *line, const void *row) {
-    char room[RT_MAX_FIELD];
+    char buffer[RT_MAX_FIELD];
     for (size_t i = 0; i < line->count; i++) {
-        int width = (int)strlen(show_text(line, i, row, room));
+        int width = (int)strlen(show_text(line, i, row, buffer));
         if (width > w->widths[i]) w->widths[i] = width;
     }
 }
 
 static void put_text(RtTableWriter *w, const RtTableLine *line, const void *row) {
-    char room[RT_MAX_FIELD];
+    char buffer[RT_MAX_FIELD];
     for (size_t i = 0; i < line->count; i++) {
         bool last = i + 1 == line->count, left = !rt_column_is_number(line->columns[i]);
         int width = left && last ? 0 : w->widths[i];
-        fprintf(w->out, left ? "%-*s%s" : "%*s%s", width, show_text(line, i, row, room), last ? "\n" : "  ");
+        fprintf(w->out, left ? "%-*s%s" : "%*s%s", width, show_text(line, i, row, buffer),
+                last ? "\n" : "  ");
     }
 }
 

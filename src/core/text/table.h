@@ -67,12 +67,12 @@ typedef struct RtField {
         RT_FIELD_REAL,
         RT_FIELD_INTERVAL
     } is;
-    const char *text; /* borrowed; NULL: it is in `room` */
+    const char *text; /* borrowed; NULL: it is in `buffer` */
     uint64_t integer; /* flags, too */
     double real, low, high;
     const char *note; /* borrowed; a tooltip in HTML; or NULL */
     bool missed;      /* marked in HTML as below expectation */
-    char room[RT_MAX_FIELD];
+    char buffer[RT_MAX_FIELD];
 } RtField;
 
 RtField rt_field_missing(void);
@@ -97,8 +97,8 @@ __attribute__((format(printf, 1, 2))) RtField rt_field_print(const char *format,
              : rt_field_integer, double                                                                      \
              : rt_field_real)(value)
 
-/* A field as text; "" if it is missing. In `room` or the field. */
-const char *rt_field_show(RtForm form, const RtField *field, char room[RT_MAX_FIELD]);
+/* A field as text; "" if it is missing. In `buffer` or the field. */
+const char *rt_field_show(RtForm form, const RtField *field, char buffer[RT_MAX_FIELD]);
 
 /* A number in about four characters: 0, 0.0034, 1.24, 12.4, 124, 69666; "-" for NAN. Needs 16 bytes. */
 void rt_format_figure(double value, char *out);

@@ -27,7 +27,7 @@ void rt_table_walk(RtTableWriter writer);
 /* True if the column's fields are numbers, which are right-aligned. */
 bool rt_column_is_number(const RtTableColumn *column);
 
-/* Field `i` as text; in `room` or the line. */
-const char *rt_line_show(const RtTableLine *line, size_t i, char room[RT_MAX_FIELD]);
+/* Field `i` as text; in `buffer` or the line. */
+const char *rt_line_show(const RtTableLine *line, size_t i, char buffer[RT_MAX_FIELD]);
 
 #endif

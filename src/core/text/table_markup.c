@@ -13,10 +13,10 @@ static RtStanding standing_of(const RtTableWriter *w, const void *row) {
 
 static void put_markdown(RtTableWriter *w, const RtTableLine *line, const void *row) {
     const bool bold = standing_of(w, row) != RT_STANDING_BEHIND;
-    char room[RT_MAX_FIELD];
+    char buffer[RT_MAX_FIELD];
     fputc('|', w->out);
     for (size_t i = 0; i < line->count; i++) {
-        const char *text = row ? rt_line_show(line, i, room) : line->columns[i]->name;
+        const char *text = row ? rt_line_show(line, i, buffer) : line->columns[i]->name;
         const char *mark = bold && i == 0 ? "**" : "";
         if (*text) fprintf(w->out, " %s", mark);
         for (const char *c = text; *c; c++) fprintf(w->out, *c == '|' ? "\\|" : "%c", *c);
@@ -58,7 +58,7 @@ static void put_tex_text(const char *text, FILE *out) {
 
 static void put_tex(RtTableWriter *w, const RtTableLine *line, const void *row) {
     const bool bold = standing_of(w, row) != RT_STANDING_BEHIND;
-    char room[RT_MAX_FIELD];
+    char buffer[RT_MAX_FIELD];
     if (!row) {
         fputs("\\resizebox{\\ifdim\\width>\\columnwidth\\columnwidth\\else\\width\\fi}{!}{%\n\\begin{tabular}"
               "{@{}",
@@ -68,7 +68,7 @@ static void put_tex(RtTableWriter *w, const RtTableLine *line, const void *row) 
         fputs("@{}}\n\\toprule\n", w->out);
     }
     for (size_t i = 0; i < line->count; i++) {
-        const char *text = row ? rt_line_show(line, i, room) : line->columns[i]->name;
+        const char *text = row ? rt_line_show(line, i, buffer) : line->columns[i]->name;
         fputs(i ? " & " : "", w->out);
         fputs(bold && i == 0 ? "\\textbf{" : "", w->out);
         if (*text)
@@ -148,8 +148,8 @@ static void put_header(const RtTableColumn *column, FILE *out) {
 }
 
 static void put_field(const RtTableColumn *column, const RtField *field, FILE *out) {
-    char room[RT_MAX_FIELD], value[32] = "";
-    const char *text = rt_field_show(column->form, field, room);
+    char buffer[RT_MAX_FIELD], value[32] = "";
+    const char *text = rt_field_show(column->form, field, buffer);
     fputs(field->missed ? "<td class=\"missed\"" : "<td", out);
     if (field->is == RT_FIELD_INTEGER) snprintf(value, sizeof value, "%" PRIu64, field->integer);
     if (field->is >= RT_FIELD_REAL && *text) snprintf(value, sizeof value, "%.9g", field->real);

@@ -111,10 +111,10 @@ RtStatus rt_yaml_u64(const RtYaml *yaml, const RtYamlNode *node, const char *key
 RtStatus rt_yaml_word(const RtYaml *yaml, const RtYamlNode *node, const char *key, const char *list,
                       uint32_t *index);
 
-/* A text of 1..most bytes that lives as long as `yaml`, or its null-terminated copy in out[0..room). */
+/* A text of 1..most bytes that lives as long as `yaml`, or its null-terminated copy in out[0..size). */
 RtStatus rt_yaml_text(const RtYaml *yaml, const RtYamlNode *node, const char *key, size_t most,
                       const char **text);
-RtStatus rt_yaml_copy(const RtYaml *yaml, const RtYamlNode *node, const char *key, size_t room, char *out);
+RtStatus rt_yaml_copy(const RtYaml *yaml, const RtYamlNode *node, const char *key, size_t size, char *out);
 
 /* ---- messages ---- */
 

@@ -248,9 +248,9 @@ RtStatus rt_yaml_text(const RtYaml *yaml, const RtYamlNode *node, const char *ke
     return rt_yaml_fail(yaml, node, "the text has %zu characters: expected 1..%zu", length, most);
 }
 
-RtStatus rt_yaml_copy(const RtYaml *yaml, const RtYamlNode *node, const char *key, size_t room, char *out) {
+RtStatus rt_yaml_copy(const RtYaml *yaml, const RtYamlNode *node, const char *key, size_t size, char *out) {
     const char *text = NULL;
-    RT_TRY(rt_yaml_text(yaml, node, key, room - 1, &text));
+    RT_TRY(rt_yaml_text(yaml, node, key, size - 1, &text));
     if (text) memcpy(out, text, strlen(text) + 1);
     return RT_OK;
 }
