@@ -25,7 +25,7 @@ static void note_box(void *context, const RtBoxView *view) {
 
 static Target aim_at(const RtScene *scene, uint64_t seed) {
     Target target = {.scene = scene, .random = rt_random(seed, 3), .size = 1};
-    RtWide *wide = make_wide(scene, 0, "build=spatial,alpha=0,budget=4,max_leaf_size=1");
+    RtWide *wide = make_wide(scene, BEST_SET, "build=spatial,alpha=0,budget=4,max_leaf_size=1");
     wide->isa.base.ops->each_box(&wide->isa.base, (RtBoxViewer){note_box, &target});
     rt_accel_destroy(&wide->isa.base);
     if (scene->geometry.object_count == 0) return target;
@@ -131,7 +131,7 @@ enum { SETTINGS = sizeof settings / sizeof settings[0], DIVIDED = 6 /* the last 
 /* Of the settings those from `first` on. */
 static void check(Bench *bench, int first) {
     char what[RT_MAX_SPEC_CHARS];
-    for (int isa = 0; isa < INSTRUCTION_SETS; isa++) {
+    for (int isa = FIRST_SET; isa < INSTRUCTION_SETS; isa++) {
         for (int s = first; s < SETTINGS; s++) {
             RtWide *wide = make_wide(&bench->scene, isa, settings[s]);
             if (!wide) continue;

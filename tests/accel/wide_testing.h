@@ -9,10 +9,11 @@
 
 #include <stdio.h>
 
-static const char *const instruction_sets[] = {"portable", "avx2", "avx512"};
+enum { BEST_SET, FIRST_SET };
+static const char *const instruction_sets[] = {"best", "portable", "avx2", "avx512"};
 enum { INSTRUCTION_SETS = sizeof instruction_sets / sizeof instruction_sets[0] };
 
-/* "wide:isa=...,SETTINGS", built and valid; NULL where this machine has no such instruction set. */
+/* "wide:isa=...,SETTINGS", built and valid; NULL if this machine or this build lacks the instruction set. */
 static inline RtWide *make_wide(const RtScene *scene, int isa, const char *settings) {
     char spec[RT_MAX_SPEC_CHARS];
     RtError error = {RT_OK, ""};
