@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* base/: files, tallies, parameters, memory, rounding, random numbers. */
+/* base/: files, tallies, parameters, memory, child processes, rounding, random numbers. */
 #include "testing.h"
 
 #include "core/base/box.h"
@@ -7,6 +7,7 @@
 #include "core/base/file.h"
 #include "core/base/memory.h"
 #include "core/base/param.h"
+#include "core/base/process.h"
 #include "core/base/random.h"
 #include "core/base/tally.h"
 
@@ -408,6 +409,24 @@ RT_TEST(quarter_turns_are_exact) {
     for (int quarter = -9; quarter <= 9; quarter++) {
         RtTurn turn = rt_turn(90.0 * quarter);
         assert_true(turn.cosine == cosines[quarter & 3] && turn.sine == cosines[(quarter - 1) & 3]);
+    }
+}
+
+RT_TEST(a_process_sees_the_end_of_its_input_while_others_run) {
+    char *const arguments[] = {(char *)"cat", NULL};
+    RtProcess processes[2];
+    RtProcessEnd end;
+    FILE *to[2], *from[2];
+    for (int i = 0; i < 2; i++) {
+        const RtCommand command = {.arguments = arguments, .to = &to[i], .from = &from[i]};
+        assert_ok(rt_process_spawn(&processes[i], &command, error));
+    }
+    for (int i = 0; i < 2; i++) {
+        fclose(to[i]);
+        fclose(from[i]);
+        bool ended = rt_process_wait(&processes[i], 60000, &end);
+        if (!ended) rt_process_end(&processes[i], 0);
+        assert_true(ended);
     }
 }
 

@@ -147,7 +147,8 @@ RtStatus rt_process_spawn(RtProcess *process, const RtCommand *command, RtError 
     int failed = spawn(process, command, ends[1]);
     if (command->to) {
         close(ends[1]);
-        *command->to = fdopen(dup(ends[0]), "w");
+        /* Another child that inherited this end would keep this child from seeing the end of its input. */
+        *command->to = fdopen(fcntl(ends[0], F_DUPFD_CLOEXEC, 0), "w");
         *command->from = fdopen(ends[0], "r");
     }
     if (failed) {
