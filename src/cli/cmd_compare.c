@@ -51,7 +51,8 @@ static const struct argp_option options[] = {
      "Report only differences beyond P % (default: 0 with --with; 5% for directories, which are single runs)",
      0},
     {"rounds", OPT_ROUNDS, "N", 0,
-     "With --with: at least N rounds; each starts both programs again (10; more if there are many cells)", 0},
+     "With --with: at least N rounds; each with both programs restarted (10; more if there are many cells)",
+     0},
     {"until", OPT_UNTIL, "P%", 0,
      "With --with: continue until all intervals are within P % of their medians, for at most 1000 rounds or "
      "--patience seconds",
@@ -224,19 +225,16 @@ const struct argp rt_compare_argp = {
     .options = options,
     .parser = parse_option,
     .args_doc = "BEFORE AFTER\nEXPERIMENT.yaml --with PROGRAM\nSCENE --accel SPEC --with PROGRAM",
-    .doc =
-        "Report what is faster, slower or no different after a change, and which counts changed: from two "
-        "result "
-        "directories, or by running this raytally and another one in turns on the same rays, which finds "
-        "much "
-        "smaller differences."
-        "\vRatios are of throughput: above 1 means faster now. All intervals hold together in 95 %, however "
-        "many cells there are. Directories are single runs at two times; --margin allows for what such runs "
-        "differ by anyway. Examples:\n"
-        "  raytally compare balls --accel bvh --accel grid --with ../old/build/release/raytally\n"
-        "  raytally compare experiments/first-look.yaml --quick --with ../old/build/release/raytally "
-        "--until 1%\n"
-        "  raytally compare results/last-month results/first-look --strict",
+    .doc = "Report what is faster, slower or no different after a change, and which counts changed: from two "
+           "result directories, or from this raytally and another one, alternating on the same rays, which "
+           "finds much smaller differences.\v"
+           "Ratios are of throughput: above 1 means faster now. All intervals hold simultaneously with 95 % "
+           "confidence, however many cells there are. Directories are single runs at different times; "
+           "--margin allows for their systematic difference. Examples:\n"
+           "  raytally compare balls --accel bvh --accel grid --with ../old/build/release/raytally\n"
+           "  raytally compare experiments/first-look.yaml --quick --with ../old/build/release/raytally "
+           "--until 1%\n"
+           "  raytally compare results/last-month results/first-look --strict",
     .children = children};
 
 int rt_command_compare(int argc, char **argv) {

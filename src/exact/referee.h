@@ -19,8 +19,8 @@
     X(BOTH, both, "both answers are right")                                                                  \
     X(EXPECTED, expected, "the expected answer alone is right")                                              \
     X(GOT, got, "the other answer alone is right")                                                           \
-    X(NEITHER, neither, "none is right")                                                                     \
-    X(UNDECIDED, undecided, "memory did not suffice to decide on a CSG tree that may be nearest")
+    X(NEITHER, neither, "neither is right")                                                                  \
+    X(UNDECIDED, undecided, "there was not enough memory to decide on a CSG tree that may be nearest")
 
 typedef enum RtSide {
 #define RT_SIDE_ENUM(CONSTANT, name, meaning) RT_SIDE_##CONSTANT,

@@ -100,7 +100,7 @@ static void print_strides(const RtResults *results, uint32_t t, bool timed, FILE
                                     candidate->label, candidate->ray_stride);
         if (timed) {
             snprintf(text + n, sizeof text - n,
-                     "  Its ratio compares with %s on those same rays, and so is not the quotient of the "
+                     "  Its ratio compares it with %s on the same rays, so it is not the quotient of the "
                      "throughputs above.",
                      rt_baseline_label(experiment));
         }

@@ -118,7 +118,8 @@ static RtStatus check_free(raytally_scene *scene, RtError *error) {
     unsigned count = atomic_load(&scene->accelerators);
     if (count == 0) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT,
-                   "the camera of a scene changes before accelerators are built over it: %u are", count);
+                   "the camera of a scene cannot change once accelerators are built over it: there are %u",
+                   count);
 }
 
 static bool is_place(RtVec3 p) {

@@ -316,7 +316,7 @@ static void put_head(FILE *out, const RtResults *results, const json_t *manifest
     rt_html_wrap(out, "<p class=\"lede\">", experiment->question, "</p>\n");
     put_answer(out, results, directory);
     put_claims(out, results);
-    rt_page_card(out, "Finding", *experiment->finding ? experiment->finding : "Not written yet.");
+    rt_page_card(out, "Finding", *experiment->finding ? experiment->finding : "No finding yet.");
     rt_page_card(out, "Prediction, written before the run", experiment->prediction);
     rt_page_provenance(out, manifest);
     put_links(out, directory);
