@@ -44,7 +44,7 @@ refuses() {
 }
 
 # This takes ten seconds, in parallel with the rest.
-(mkdir forever && cd forever && refuses 'does not survive loading: it takes more than 10 seconds' "$plugins/unloadable-FOREVER.so"
+(mkdir forever && cd forever && refuses 'loading it failed: it takes more than 10 seconds' "$plugins/unloadable-FOREVER.so"
     exit "$failures") &
 forever=$!
 
@@ -107,7 +107,7 @@ fault silent 'wrote no answer'
 fault beyond 'wrote or read past its answers'
 fault before 'wrote in front of its answers'
 fault rays 'counts [0-9]+ object_hits on some [a-z]+ rays, and [0-9]+ when' 'wrote to the rays that it was given while it was timed'
-fault box 'showed a box that is NULL' ''
+fault box 'one of its boxes is NULL' ''
 fault deep 'showed a box at depth 4294967295' ''
 fault show "$crash\) while it showed its boxes" ''
 fault debts 'description has the impossible number 18446744073709551615'
@@ -188,8 +188,8 @@ refuses "lacks its .*nearest" "$plugins/unloadable-FUNCTION.so"
 refuses "'unloadable' lacks its .params" "$plugins/unloadable-PARAMETERS.so"
 refuses "contradicts itself.*depth" "$plugins/unloadable-DEFAULT.so"
 refuses "parameter 'mode' of 'unloadable' has 71 choices; at most 64 are allowed" "$plugins/unloadable-CHOICES.so"
-refuses 'does not survive loading: it crashed \(Aborted\)' "$plugins/unloadable-CONSTRUCTOR.so"
-refuses 'does not survive loading: it crashed \(Aborted\)' "$plugins/unloadable-ENTRY.so"
+refuses 'loading it failed: it crashed \(Aborted\)' "$plugins/unloadable-CONSTRUCTOR.so"
+refuses 'loading it failed: it crashed \(Aborted\)' "$plugins/unloadable-ENTRY.so"
 wait $forever || failures=$((failures + 1))
 mkdir folder && cp "$plugins/faulty.so" folder/
 mkdir a:b 'c\d' && cp folder/faulty.so a:b/ && cp folder/faulty.so 'c\d/' && cp "$plugins/odd-LONGER.so" 'c\d/x:y.so'

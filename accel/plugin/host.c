@@ -23,7 +23,7 @@ static RtStatus refuse(const raytally_accel_ops *table, int result, const char *
         return rt_fail(error, RT_NO_MEMORY, "%s: memory is short%s%s", table->name, *message ? ": " : "",
                        message);
     if (result != RAYTALLY_BUILD_REFUSED)
-        return rt_fail(error, RT_BROKEN, "%s: its `build` returned %d, which is no result of a build",
+        return rt_fail(error, RT_BROKEN, "%s: its `build` returned %d, which is not a valid result",
                        table->name, result);
     return rt_fail(error, RT_BAD_INPUT, "%s: %s", table->name,
                    *message ? message : "it refuses this scene without giving a reason");
@@ -114,7 +114,7 @@ static void show_box(void *context, const raytally_box *theirs, uint32_t depth, 
     const Showing *showing = context;
     RtBox box;
     if (!theirs) {
-        rt_plugin_break(showing->accel, "it showed a box that is NULL");
+        rt_plugin_break(showing->accel, "one of its boxes is NULL");
         return;
     }
     memcpy(&box, theirs, sizeof box);

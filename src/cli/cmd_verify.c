@@ -167,7 +167,7 @@ static void print_row(Show *show, const json_t *row) {
             printf("    Reduced to %lld object%s. ", number(wrong, "objects_left"),
                    rt_plural((uint64_t)number(wrong, "objects_left")));
         } else {
-            printf("    The scene is not reduced: enough failures were. ");
+            printf("    The scene is not reduced: only the first failures are. ");
         }
         rt_cli_plugin_arguments(plugins, sizeof plugins);
         printf("To repeat: raytally verify --replay '%s'%s\n", text(wrong, "replay"), plugins);

@@ -166,7 +166,7 @@ static void extreme(const RtExperiment *experiment, const RtSweptKey *key, bool 
 static RtStatus read_at(Reader *r) {
     RtClaim *claim = r->claim;
     bool largest = take(r, "largest"), smallest = !largest && take(r, "smallest");
-    if (claim->place_count == RT_MAX_CLAIM_PLACES) return fail(r, "it has too many places");
+    if (claim->place_count == RT_MAX_CLAIM_PLACES) return fail(r, "it names too many places (`at`)");
     RtSweptKey *key = &claim->places[claim->place_count].key;
     char *value = claim->places[claim->place_count++].value;
     size_t length = strcspn(word(r), "=");

@@ -266,7 +266,8 @@ static void say_followers(Text *text, const RtResults *results, uint32_t t, uint
     say(text, "%s", any ? "." : "");
 }
 
-/* "Beside wide alone, item+wide is 1.12 times as fast, and light+wide 1.00 times." Without the winner. */
+/* "Compared with wide alone, item+wide is 1.12 times as fast, and light+wide 1.00 times." Without the winner.
+ */
 static void say_overlays(Text *text, const RtResults *results, uint32_t t, uint32_t winner) {
     const RtExperiment *experiment = results->experiment;
     const uint32_t none = experiment->candidate_count, told = below_of(results, t, winner);
@@ -275,7 +276,7 @@ static void say_overlays(Text *text, const RtResults *results, uint32_t t, uint3
         bool any = false;
         for (uint32_t c = told == below ? winner : none; (c = next_of(results, t, below, c)) != none;
              any = true) {
-            if (!any) say(text, " Beside %s alone,", rt_candidate_label(experiment, below));
+            if (!any) say(text, " Compared with %s alone,", rt_candidate_label(experiment, below));
             say(text, "%s %s %s%s times%s", any ? ", and" : "", rt_candidate_label(experiment, c),
                 any ? "" : "is ", figure(gain_of(results, t, c), number),
                 any                      ? ""
