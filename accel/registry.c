@@ -113,7 +113,7 @@ RtStatus rt_accel_find(const char *name, const RtAccelOps **out, RtError *error)
     char suggestion[RT_MAX_SUGGESTION];
     rt_suggest(name, names, count, suggestion);
     return rt_fail(error, RT_BAD_INPUT,
-                   "there is no accelerator '%s'%s%s `raytally accels` lists them; one of a plugin needs "
-                   "--plugin FILE.so",
+                   "there is no accelerator '%s'%s%s `raytally accels` lists them; an accelerator of a "
+                   "plugin needs --plugin FILE.so",
                    name, suggestion, *suggestion ? "" : ";");
 }

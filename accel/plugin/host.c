@@ -102,7 +102,7 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
     if (!self->table->validate || self->table->validate(self->self, message, sizeof message - 1) == 0)
         return RT_OK;
     return rt_fail(error, RT_MISMATCH, "%s: %s", self->table->name,
-                   *message ? message : "it is not valid, and gives no reason");
+                   *message ? message : "it is not valid and gives no reason");
 }
 
 typedef struct Showing {

@@ -17,8 +17,8 @@
 /* X(CONSTANT, name, meaning) */
 #define RT_SIDES(X)                                                                                          \
     X(BOTH, both, "both answers are right")                                                                  \
-    X(EXPECTED, expected, "the expected answer alone is right")                                              \
-    X(GOT, got, "the other answer alone is right")                                                           \
+    X(EXPECTED, expected, "only the expected answer is right")                                               \
+    X(GOT, got, "only the other answer is right")                                                            \
     X(NEITHER, neither, "neither is right")                                                                  \
     X(UNDECIDED, undecided, "there was not enough memory to decide on a CSG tree that may be nearest")
 
