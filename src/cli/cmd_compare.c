@@ -45,19 +45,20 @@ typedef struct Options {
 static const struct argp_option options[] = {
     {"with", OPT_WITH, "PROGRAM", 0,
      "Another raytally, such as ../old/build/release/raytally, as `before`; this one is `after`", 0},
-    {"accel", 'a', "SPEC", 0, "An accelerator, for a SCENE; once per accelerator. `all`: every one", 0},
+    {"accel", 'a', "SPEC", 0, "For a SCENE: an accelerator, or `all` of them; may be repeated", 0},
     {"strict", OPT_STRICT, 0, 0, "Exit code 1 if anything is slower", 0},
     {"margin", OPT_MARGIN, "P%", 0,
      "Report only differences beyond P % (default: 0 with --with; 5% for directories, which are single runs)",
      0},
     {"rounds", OPT_ROUNDS, "N", 0,
-     "With --with: at least N rounds; each starts both programs again (10; more if there are many cells)", 0},
+     "With --with: at least N rounds, each with both programs restarted (10; more if there are many cells)",
+     0},
     {"until", OPT_UNTIL, "P%", 0,
      "With --with: continue until all intervals are within P % of their medians, for at most 1000 rounds or "
      "--patience seconds",
      0},
-    {"patience", OPT_PATIENCE, "SECONDS", 0, "With --until: most seconds in all (600)", 0},
-    {"quick", OPT_QUICK, 0, 0, "The smaller variant of the EXPERIMENT", 0},
+    {"patience", OPT_PATIENCE, "SECONDS", 0, "With --until: at most this many seconds in total (600)", 0},
+    {"quick", OPT_QUICK, 0, 0, "Run the smaller variant of the EXPERIMENT", 0},
     {"threads", OPT_THREADS, "N", 0, "Threads, as in `raytally bench`", 0},
     {"json", OPT_JSON, 0, 0, "One JSON document on stdout instead of the table", 0},
     {"worker", OPT_WORKER, 0, OPTION_HIDDEN, NULL, 0}, /* experiment/worker.c */
@@ -224,19 +225,16 @@ const struct argp rt_compare_argp = {
     .options = options,
     .parser = parse_option,
     .args_doc = "BEFORE AFTER\nEXPERIMENT.yaml --with PROGRAM\nSCENE --accel SPEC --with PROGRAM",
-    .doc =
-        "Report what is faster, slower or no different after a change, and which counts changed: from two "
-        "result "
-        "directories, or by running this raytally and another one in turns on the same rays, which finds "
-        "much "
-        "smaller differences."
-        "\vRatios are of throughput: above 1 means faster now. All intervals hold together in 95 %, however "
-        "many cells there are. Directories are single runs at two times; --margin allows for what such runs "
-        "differ by anyway. Examples:\n"
-        "  raytally compare balls --accel bvh --accel grid --with ../old/build/release/raytally\n"
-        "  raytally compare experiments/first-look.yaml --quick --with ../old/build/release/raytally "
-        "--until 1%\n"
-        "  raytally compare results/last-month results/first-look --strict",
+    .doc = "Report what is faster, slower or no different after a change, and which counts changed: from two "
+           "result directories, or by alternating this raytally and another one on the same rays, which "
+           "finds much smaller differences.\v"
+           "Ratios are of throughput: above 1 means faster now. All intervals hold simultaneously with 95 % "
+           "confidence, however many cells there are. Directories are single runs at different times; "
+           "--margin allows for their systematic difference. Examples:\n"
+           "  raytally compare balls --accel bvh --accel grid --with ../old/build/release/raytally\n"
+           "  raytally compare experiments/first-look.yaml --quick --with ../old/build/release/raytally "
+           "--until 1%\n"
+           "  raytally compare results/last-month results/first-look --strict",
     .children = children};
 
 int rt_command_compare(int argc, char **argv) {
