@@ -8,6 +8,7 @@
 #include "experiment/compare.h"
 #include "experiment/manifest.h"
 #include "experiment/plugins_used.h"
+#include "experiment/worker.h"
 #include "report/result_directory.h"
 
 #include <argp.h>
@@ -60,7 +61,7 @@ static const struct argp_option options[] = {
     {"quick", OPT_QUICK, 0, 0, "The smaller variant of the EXPERIMENT", 0},
     {"threads", OPT_THREADS, "N", 0, "Threads, as in `raytally bench`", 0},
     {"json", OPT_JSON, 0, 0, "One JSON document on stdout instead of the table", 0},
-    {"worker", OPT_WORKER, 0, OPTION_HIDDEN, NULL, 0}, /* experiment/worker.c */
+    {"worker", OPT_WORKER, 0, OPTION_HIDDEN, NULL, 0}, /* experiment/worker.h */
     {0}};
 
 static void check(Options *o, struct argp_state *state) {
@@ -124,7 +125,7 @@ static RtStatus load(Options *o, RtError *error) {
 static RtStatus work(Options *o, RtError *error) {
     RtWorkloadOptions how = {.threads = o->threads, .timing = o->timing};
     RT_TRY(load(o, error));
-    return rt_worker_serve(o->recording.experiment, &how, stdin, stdout, error);
+    return rt_worker_serve(o->recording.experiment, &how, RT_WORKER_TIMES, error);
 }
 
 static void on_progress(void *context, uint32_t round, uint32_t rounds, const char *scene, const char *kind) {
@@ -140,20 +141,12 @@ static void on_notice(void *context, const char *message) {
 }
 
 /* A worker gets the same arguments, so it measures the same. */
-static RtStatus compare_programs(Options *o, int argc, char **argv, RtComparison *comparison,
-                                 RtError *error) {
+static RtStatus compare_programs(Options *o, char **argv, RtComparison *comparison, RtError *error) {
     bool terminal = isatty(STDERR_FILENO) == 1;
-    char compare[] = "compare", worker[] = "--worker", name[] = "raytally";
-    char **arguments = rt_alloc((size_t)argc + 3, sizeof(char *));
-    if (!arguments) return rt_fail_memory(error, "arguments", 0);
-    arguments[0] = name;
-    arguments[1] = compare;
-    arguments[2] = worker;
-    for (int i = 1; i < argc; i++) arguments[i + 2] = argv[i];
     RtStatus status = load(o, error); /* reports errors once */
     RtPrograms programs = {.before = o->with,
                            .after = "/proc/self/exe",
-                           .arguments = arguments,
+                           .arguments = argv + 1,
                            .rounds = o->rounds ? o->rounds : 10,
                            .until = o->until,
                            .patience = o->patience,
@@ -165,7 +158,6 @@ static RtStatus compare_programs(Options *o, int argc, char **argv, RtComparison
                            .notice = on_notice};
     if (status == RT_OK) status = rt_compare_programs(&programs, comparison, error);
     if (terminal) fputs("\r\033[K", stderr);
-    rt_free(arguments);
     return status;
 }
 
@@ -207,10 +199,10 @@ static RtStatus compare_directories(const Options *o, RtComparison *comparison, 
 
 /* ---- the command ---- */
 
-static RtStatus compare(Options *o, int argc, char **argv, bool *slower, RtError *error) {
+static RtStatus compare(Options *o, char **argv, bool *slower, RtError *error) {
     RtComparison comparison = {.margin = o->margin >= 0 ? o->margin : o->with ? 0 : MARGIN_OF_DIRECTORIES};
-    RtStatus status = o->with ? compare_programs(o, argc, argv, &comparison, error)
-                              : compare_directories(o, &comparison, error);
+    RtStatus status =
+        o->with ? compare_programs(o, argv, &comparison, error) : compare_directories(o, &comparison, error);
     if (status == RT_OK && o->json) rt_cli_print_json(rt_comparison_json(&comparison));
     if (status == RT_OK && !o->json) rt_comparison_print(&comparison, stdout);
     *slower = rt_comparison_count(&comparison, RT_CHANGE_SLOWER) > 0;
@@ -245,7 +237,7 @@ int rt_command_compare(int argc, char **argv) {
     Options o = {.timing = 1, .patience = 600, .margin = -1};
     if (rt_recording_init(&o.recording, &error) != RT_OK) return rt_cli_fail(&error);
     argp_parse(&rt_compare_argp, argc, argv, 0, 0, &o);
-    RtStatus status = o.worker ? work(&o, &error) : compare(&o, argc, argv, &slower, &error);
+    RtStatus status = o.worker ? work(&o, &error) : compare(&o, argv, &slower, &error);
     rt_recording_clear(&o.recording);
     if (status != RT_OK) return rt_cli_fail(&error);
     return slower && o.strict ? RT_EXIT_CHECK_FAILED : RT_EXIT_OK;

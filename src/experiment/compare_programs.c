@@ -1,26 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Two programs against each other: two workers (worker.c), started again for each round, that run in turns.
+/* Two programs against each other: two workers (worker.h), started again for each round, that run in turns.
  */
 #include "core/base/clock.h"
 #include "core/base/memory.h"
-#include "core/base/process.h"
 #include "core/base/random.h"
 #include "experiment/compare.h"
+#include "experiment/worker.h"
 
 #include <inttypes.h>
 #include <math.h>
-#include <signal.h>
-#include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { BEFORE, AFTER };
-
-typedef struct Worker {
-    const char *program; /* borrowed */
-    RtProcess process;
-    FILE *to, *from;
-} Worker;
 
 /* A cell of a section that both workers have. */
 typedef struct Pair {
@@ -37,7 +28,7 @@ typedef struct Run {
     RtRandom random;
     uint32_t round, rounds; /* the current one, and how many are expected */
     double start;
-    Worker workers[2];
+    RtWorker workers[2];
 } Run;
 
 static const char *text_of(const json_t *object, const char *key) {
@@ -45,71 +36,16 @@ static const char *text_of(const json_t *object, const char *key) {
     return text ? text : "";
 }
 
-/* ---- workers ---- */
-
-static RtStatus fail_ended(Worker *worker, RtError *error) {
-    RtProcessEnd end;
-    char how[160] = "it no longer answers";
-    if (rt_process_wait(&worker->process, 1000, &end)) rt_process_end_format(end, 0, "", how, sizeof how);
-    return rt_fail(error, RT_BAD_INPUT, "%s cannot be compared: %s; its messages are above", worker->program,
-                   how);
-}
-
-/* Takes one line of JSON, a new reference. The worker's messages go to stderr. */
-static RtStatus take_json(Worker *worker, json_t **document, RtError *error) {
-    char *line = NULL;
-    size_t size = 0;
-    *document = NULL;
-    if (getline(&line, &size, worker->from) > 0) *document = json_loads(line, 0, NULL);
-    free(line);
-    return *document ? RT_OK : fail_ended(worker, error);
-}
-
-/* Starts a worker; *build gets the line in which it introduces itself, a new reference. */
-static RtStatus start_worker(Worker *worker, const char *program, char *const *arguments, json_t **build,
-                             RtError *error) {
-    const RtCommand command = {
-        .program = program, .arguments = arguments, .to = &worker->to, .from = &worker->from};
-    RtError why;
-    worker->program = program;
-    signal(SIGPIPE, SIG_IGN); /* a worker that has ended sends no answer */
-    if (rt_process_spawn(&worker->process, &command, &why) != RT_OK)
-        return rt_fail(error, RT_BAD_INPUT, "%s", why.message);
-    if (take_json(worker, build, error) == RT_OK &&
-        json_integer_value(json_object_get(*build, "worker")) == 1)
-        return RT_OK;
-    json_decref(*build);
-    return rt_fail(
-        error, RT_BAD_INPUT,
-        "%s cannot be compared: it must be a raytally that has the command `compare`. For an older "
-        "one, compare result directories",
-        program);
-}
-
-/* Closes its input, which ends it. */
-static void end_worker(Worker *worker) {
-    enum { MILLISECONDS = 60000 }; /* to finish a run, and clear */
-    if (worker->to) fclose(worker->to);
-    if (worker->from) fclose(worker->from);
-    rt_process_end(&worker->process, MILLISECONDS);
-    *worker = (Worker){0};
-}
-
-__attribute__((format(printf, 3, 4))) static RtStatus ask(Worker *worker, RtError *error, const char *request,
-                                                          ...) {
-    va_list arguments;
-    va_start(arguments, request);
-    bool sent = vfprintf(worker->to, request, arguments) >= 0 && fflush(worker->to) == 0;
-    va_end(arguments);
-    return sent ? RT_OK : fail_ended(worker, error);
-}
-
 /* Seconds per ray of `repeats` runs of cell number `cell` of the section. */
-static RtStatus ask_time(Worker *worker, uint32_t cell, uint32_t repeats, double *seconds, RtError *error) {
-    char line[64];
-    RT_TRY(ask(worker, error, "time %" PRIu32 " %" PRIu32 "\n", cell, repeats));
-    *seconds = fgets(line, sizeof line, worker->from) ? strtod(line, NULL) : 0;
-    return *seconds > 0 ? RT_OK : fail_ended(worker, error);
+static RtStatus ask_time(RtWorker *worker, uint32_t cell, uint32_t repeats, double *seconds, RtError *error) {
+    json_t *answer;
+    RT_TRY(rt_worker_ask(worker, &answer, error, "time %" PRIu32 " %" PRIu32 "\n", cell, repeats));
+    *seconds = json_number_value(answer);
+    json_decref(answer);
+    return *seconds > 0
+               ? RT_OK
+               : rt_fail(error, RT_BAD_INPUT, "%s cannot be compared: it has no time for %" PRIu32 " runs",
+                         worker->program, repeats);
 }
 
 /* ---- a section: a scene and a kind of rays ---- */
@@ -234,11 +170,11 @@ static RtStatus compare_section(Run *run, const json_t *const sections[2], RtErr
     if (!pairs) return rt_fail_memory(error, "cells", count * sizeof(Pair));
     RtStatus status = find_pairs(run, sections, pairs, &count, error);
     for (int who = BEFORE; who <= AFTER && status == RT_OK && programs->pinned; who++) {
-        status = ask(&run->workers[who], error, "pin %" PRIu32 "\n", run->round);
+        status = rt_worker_ask(&run->workers[who], NULL, error, "pin %" PRIu32 "\n", run->round);
     }
     if (status == RT_OK) status = time_pairs(run, pairs, count, error);
     for (int who = BEFORE; who <= AFTER && status == RT_OK; who++) {
-        status = ask(&run->workers[who], error, "next\n");
+        status = rt_worker_ask(&run->workers[who], NULL, error, "next\n");
     }
     rt_free(pairs);
     return status;
@@ -250,7 +186,7 @@ static RtStatus compare_sections(Run *run, bool *more, RtError *error) {
     json_t *sections[2] = {NULL, NULL};
     RtStatus status = RT_OK;
     for (int who = BEFORE; who <= AFTER && status == RT_OK; who++) {
-        status = take_json(&run->workers[who], &sections[who], error);
+        status = rt_worker_take(&run->workers[who], &sections[who], error);
     }
     if (status == RT_OK) {
         bool done[2];
@@ -266,13 +202,24 @@ static RtStatus compare_sections(Run *run, bool *more, RtError *error) {
 }
 
 static RtStatus start(Run *run, int who, RtError *error) {
-    json_t *build;
-    const char *program = who == BEFORE ? run->programs->before : run->programs->after;
-    RT_TRY(start_worker(&run->workers[who], program, run->programs->arguments, &build, error));
-    if (who == AFTER) program = "this one";
-    char *out = who == BEFORE ? run->comparison->before : run->comparison->after;
-    snprintf(out, sizeof run->comparison->before, "%s (%s)", program, text_of(build, "build"));
-    json_decref(build);
+    static const char *const command[] = {"raytally", "compare", "--worker", NULL};
+    const bool after = who == AFTER;
+    RtWorker *worker = &run->workers[who];
+    json_t *hello = NULL;
+    worker->program = after ? run->programs->after : run->programs->before;
+    if (rt_worker_start(worker, command, run->programs->arguments, error) != RT_OK) return RT_BAD_INPUT;
+    if (rt_worker_take(worker, &hello, error) != RT_OK ||
+        json_integer_value(json_object_get(hello, "worker")) != 1) {
+        json_decref(hello);
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "%s cannot be compared: it must be a raytally that has the command `compare`. For an older "
+            "one, compare result directories",
+            worker->program);
+    }
+    snprintf(after ? run->comparison->after : run->comparison->before, sizeof run->comparison->before,
+             "%s (%s)", after ? "this one" : worker->program, text_of(hello, "build"));
+    json_decref(hello);
     return RT_OK;
 }
 
@@ -333,8 +280,8 @@ RtStatus rt_compare_programs(const RtPrograms *programs, RtComparison *compariso
     RtStatus status = RT_OK;
     do {
         status = run_round(&run, error);
-        end_worker(&run.workers[BEFORE]);
-        end_worker(&run.workers[AFTER]);
+        rt_worker_end(&run.workers[BEFORE]);
+        rt_worker_end(&run.workers[AFTER]);
         run.round++;
     } while (status == RT_OK && !is_enough(&run));
     return status;
