@@ -154,31 +154,36 @@ static bool wait_for(Remote *remote, uint32_t number, const char *doing, double 
 
 /* ---- requests ---- */
 
-/* Sends a message that lies in its lane. False if the accelerator is broken, or breaks now. */
-static bool request_in_place(Remote *remote, uint32_t number, bool begin, WireWork *work, size_t bytes,
-                             const char *doing) {
+typedef struct Request {
+    WireWork *work;
+    void *message; /* changes only if there is an answer; NULL: it lies in the lane */
+    size_t bytes;
+    const RtRay *rays; /* [ray_count] */
+    size_t ray_count;
+    bool begin;
+    const char *doing;
+} Request;
+
+/* False if the accelerator is broken, or breaks now. */
+static bool request(Remote *remote, uint32_t number, const Request *r) {
     Lane *lane = &remote->wire->lanes[number];
     if (remote->broken) return false;
-    lane->work = work;
-    lane->bytes = bytes;
-    lane->begin = begin;
+    if (r->message) memcpy(lane->message, r->message, r->bytes);
+    if (r->ray_count) memcpy(rt_wire_rays(lane->message, r->bytes), r->rays, r->ray_count * sizeof(RtRay));
+    lane->work = r->work;
+    lane->bytes = r->bytes;
+    lane->rays = r->ray_count;
+    lane->begin = r->begin;
     rt_futex_set(&lane->asked, ++remote->asked[number]);
-    return wait_for(remote, number, doing, remote->time_limit);
-}
-
-/* The same for a message that lies elsewhere; it changes only if there is an answer. */
-static bool request(Remote *remote, uint32_t number, bool begin, WireWork *work, void *message, size_t bytes,
-                    const char *doing) {
-    Lane *lane = &remote->wire->lanes[number];
-    if (bytes > 0) memcpy(lane->message, message, bytes);
-    if (!request_in_place(remote, number, begin, work, bytes, doing)) return false;
-    if (bytes > 0) memcpy(message, lane->message, bytes);
+    if (!wait_for(remote, number, r->doing, remote->time_limit)) return false;
+    if (r->message) memcpy(r->message, lane->message, r->bytes);
     return true;
 }
 
 static bool request_master(Remote *remote, WireWork *work, void *message, size_t bytes, const char *doing) {
     pthread_mutex_lock(&remote->master);
-    bool answered = request(remote, 0, false, work, message, bytes, doing);
+    bool answered =
+        request(remote, 0, &(Request){.work = work, .message = message, .bytes = bytes, .doing = doing});
     pthread_mutex_unlock(&remote->master);
     return answered;
 }
@@ -203,9 +208,15 @@ static RtStatus request_check(Remote *remote, WireWork *work, WireChecked *messa
     return forward(message->status, message->status == RT_BROKEN ? remote->name : "", &message->error, error);
 }
 
-void rt_remote_do(RtQuery *query, RtRemoteWork *work, void *message, size_t bytes) {
+void rt_remote_do(RtQuery *query, RtRemoteWork *work, const RtRay *rays, size_t count, void *message,
+                  size_t bytes) {
+    if (!rt_accel_is_remote(query->accel)) {
+        work(query, rays, message);
+        return;
+    }
     RemoteQuery *own = query->scratch[0].own;
-    request(of(query->accel), own->lane, own->begin, work, message, bytes, "it was traced");
+    request(of(query->accel), own->lane,
+            &(Request){work, message, bytes, rays, count, own->begin, "it was traced"});
     own->begin = false;
 }
 
@@ -323,7 +334,7 @@ static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) 
 
 static void close_query(const RtAccel *accel, void *scratch) {
     const RemoteQuery *query = scratch;
-    request(of(accel), query->lane, false, NULL, NULL, 0, "a query was closed");
+    request(of(accel), query->lane, &(Request){.doing = "a query was closed"});
     release_lane(of(accel), query->lane);
 }
 
@@ -340,14 +351,17 @@ static void trace_part(const RtAccel *accel, const RtScratch *scratch, const RtR
     Remote *remote = of(accel);
     RemoteQuery *query = scratch->own;
     WireRays *message = (WireRays *)remote->wire->lanes[query->lane].message;
-    const bool begin_first = query->begin;
     char doing[64];
     snprintf(doing, sizeof doing, "it answered a stream of %u ray%s", count, rt_plural(count));
     *message = (WireRays){.count = count, .any = any, .counted = tallies != NULL};
-    memcpy(rt_wire_rays(message, count), rays, count * sizeof *rays);
+    const Request traced = {.work = rt_wire_trace,
+                            .bytes = sizeof(WireRays) + count * sizeof(RtHit),
+                            .rays = rays,
+                            .ray_count = count,
+                            .begin = query->begin,
+                            .doing = doing};
     query->begin = false;
-    if (!request_in_place(remote, query->lane, begin_first, rt_wire_trace, rt_wire_rays_bytes(count),
-                          doing)) {
+    if (!request(remote, query->lane, &traced)) {
         for (uint32_t i = 0; i < count; i++) hits[i] = RT_MISS;
         return;
     }
@@ -365,33 +379,36 @@ static void trace_part(const RtAccel *accel, const RtScratch *scratch, const RtR
     }
 }
 
-static void trace_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                          RtHit *hits, RtTally *tallies) {
+/* One of `hits` and `occluders` is NULL. */
+static void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                  RtHit *hits, uint32_t *occluders, RtTally *tallies) {
+    RtHit some[WIRE_RAYS];
     for (size_t first = 0; first < count; first += WIRE_RAYS) {
         uint32_t n = (uint32_t)(count - first < WIRE_RAYS ? count - first : WIRE_RAYS);
-        trace_part(accel, scratch, rays + first, n, false, hits + first, tallies);
+        trace_part(accel, scratch, rays + first, n, !hits, hits ? hits + first : some, tallies);
+        for (uint32_t i = 0; i < n && occluders; i++) occluders[first + i] = some[i].object;
     }
 }
 
-static void trace_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+static void count_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                          RtHit *hits, RtTally *tallies) {
+    trace(accel, scratch, rays, count, hits, NULL, tallies);
+}
+
+static void count_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                            uint32_t *occluders, RtTally *tallies) {
-    RtHit hits[WIRE_RAYS];
-    for (size_t first = 0; first < count; first += WIRE_RAYS) {
-        uint32_t n = (uint32_t)(count - first < WIRE_RAYS ? count - first : WIRE_RAYS);
-        trace_part(accel, scratch, rays + first, n, true, hits, tallies);
-        for (uint32_t i = 0; i < n; i++) occluders[first + i] = hits[i].object;
-    }
+    trace(accel, scratch, rays, count, NULL, occluders, tallies);
 }
 
 /* The process times itself, so here a timed kernel is a counted one without tallies. */
 static void nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                     RtHit *hits) {
-    trace_nearest(accel, scratch, rays, count, hits, NULL);
+    trace(accel, scratch, rays, count, hits, NULL, NULL);
 }
 
 static void occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                      uint32_t *occluders) {
-    trace_occluded(accel, scratch, rays, count, occluders, NULL);
+    trace(accel, scratch, rays, count, NULL, occluders, NULL);
 }
 
 /* ---- the structure ---- */
@@ -445,8 +462,8 @@ static const RtAccelOps remote_ops = {
     .destroy = destroy,
     .nearest = nearest,
     .occluded = occluded,
-    .nearest_counted = trace_nearest,
-    .occluded_counted = trace_occluded,
+    .nearest_counted = count_nearest,
+    .occluded_counted = count_occluded,
     .scratch_bytes = scratch_bytes,
     .open = open_query,
     .close = close_query,
