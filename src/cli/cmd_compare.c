@@ -11,23 +11,9 @@
 #include "experiment/worker.h"
 #include "report/result_directory.h"
 
-#include <argp.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
-
-enum {
-    OPT_WITH = 256,
-    OPT_WORKER,
-    OPT_QUICK,
-    OPT_ROUNDS,
-    OPT_UNTIL,
-    OPT_PATIENCE,
-    OPT_MARGIN,
-    OPT_STRICT,
-    OPT_THREADS,
-    OPT_JSON
-};
 
 /* Runs of one build, one after the other, differ by less. */
 static const double MARGIN_OF_DIRECTORIES = 0.05;
@@ -40,31 +26,22 @@ typedef struct Options {
     bool worker, quick, strict, json;
     uint32_t rounds;
     double until, patience, margin; /* margin < 0: not given */
-    int threads, timing;
+    int threads;                    /* -1: one to time, all to count */
+    int timing;
 } Options;
 
-static const struct argp_option options[] = {
-    {"with", OPT_WITH, "PROGRAM", 0,
-     "Another raytally, such as ../old/build/release/raytally, as `before`; this one is `after`", 0},
-    {"accel", 'a', "SPEC", 0, "An accelerator, for a SCENE; once per accelerator. `all`: every one", 0},
-    {"strict", OPT_STRICT, 0, 0, "Exit code 1 if anything is slower", 0},
-    {"margin", OPT_MARGIN, "P%", 0,
-     "Report only differences beyond P % (default: 0 with --with; 5% for directories, which are single runs)",
-     0},
-    {"rounds", OPT_ROUNDS, "N", 0,
-     "With --with: at least N rounds; each starts both programs again (10; more if there are many cells)", 0},
-    {"until", OPT_UNTIL, "P%", 0,
-     "With --with: continue until all intervals are within P % of their medians, for at most 1000 rounds or "
-     "--patience seconds",
-     0},
-    {"patience", OPT_PATIENCE, "SECONDS", 0, "With --until: most seconds in all (600)", 0},
-    {"quick", OPT_QUICK, 0, 0, "The smaller variant of the EXPERIMENT", 0},
-    {"threads", OPT_THREADS, "N", 0, "Threads, as in `raytally bench`", 0},
-    {"json", OPT_JSON, 0, 0, "One JSON document on stdout instead of the table", 0},
-    {"worker", OPT_WORKER, 0, OPTION_HIDDEN, NULL, 0}, /* experiment/worker.h */
-    {0}};
+static void take_subject(void *options, const char *text, struct argp_state *state) {
+    Options *o = options;
+    if (o->subject_count == 2) argp_error(state, "'%s' is one too many", text);
+    o->subjects[o->subject_count++] = text;
+}
 
-static void check(Options *o, struct argp_state *state) {
+static void take_accel(void *options, const char *text, struct argp_state *state) {
+    rt_cli_add_accels(((Options *)options)->recording.experiment, text, state);
+}
+
+static void finish(void *options, struct argp_state *state) {
+    Options *o = options;
     RtExperiment *e = o->recording.experiment;
     const bool programs = o->with || o->worker;
     if (!programs && o->subject_count != 2)
@@ -77,38 +54,30 @@ static void check(Options *o, struct argp_state *state) {
                           "are compared as they are");
     if (programs && !e->candidate_count && (o->recording.frame || o->recording.kinds))
         argp_error(state, "an EXPERIMENT defines its rays; for a SCENE give --accel");
+    if (o->threads >= 0) o->timing = o->threads;
     rt_recording_finish(&o->recording, state);
 }
 
-static error_t parse_option(int key, char *argument, struct argp_state *state) {
-    Options *o = state->input;
-    switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &o->recording; return 0;
-    case 'a': rt_cli_add_accels(o->recording.experiment, argument, state); return 0;
-    case OPT_WITH: o->with = argument; return 0;
-    case OPT_WORKER: o->worker = true; return 0;
-    case OPT_QUICK: o->quick = true; return 0;
-    case OPT_STRICT: o->strict = true; return 0;
-    case OPT_JSON: o->json = true; return 0;
-    case OPT_MARGIN: o->margin = rt_cli_percent(state, "--margin", argument); return 0;
-    case OPT_UNTIL: o->until = rt_cli_percent(state, "--until", argument); return 0;
-    case OPT_PATIENCE:
-        o->patience = (double)rt_cli_integer(state, "--patience", argument, 1, 86400);
-        return 0;
-    case OPT_ROUNDS:
-        o->rounds = (uint32_t)rt_cli_integer(state, "--rounds", argument, 1, RT_MAX_ROUNDS);
-        return 0;
-    case OPT_THREADS:
-        o->threads = o->timing = (int)rt_cli_integer(state, "--threads", argument, 0, 1024);
-        return 0;
-    case ARGP_KEY_ARG:
-        if (o->subject_count == 2) argp_error(state, "'%s' is one too many", argument);
-        o->subjects[o->subject_count++] = argument;
-        return 0;
-    case ARGP_KEY_END: check(o, state); return 0;
-    default: return ARGP_ERR_UNKNOWN;
-    }
-}
+static const RtOption options[] = {
+    {"with", 0, "PROGRAM", RT_TO_TEXT(with),
+     "Another raytally, such as ../old/build/release/raytally, as `before`; this one is `after`"},
+    {"accel", 'a', "SPEC", RT_TO_TAKE(take_accel),
+     "An accelerator, for a SCENE; once per accelerator. `all`: every one"},
+    {"strict", 0, NULL, RT_TO_FLAG(strict), "Exit code 1 if anything is slower"},
+    {"margin", 0, "P%", RT_TO_PERCENT(margin),
+     "Report only differences beyond P % (default: 0 with --with; 5% for directories, which are single "
+     "runs)"},
+    {"rounds", 0, "N", RT_TO_INTEGER(rounds, 1, RT_MAX_ROUNDS),
+     "With --with: at least N rounds; each starts both programs again (10; more if there are many cells)"},
+    {"until", 0, "P%", RT_TO_PERCENT(until),
+     "With --with: continue until all intervals are within P % of their medians, for at most 1000 rounds or "
+     "--patience seconds"},
+    {"patience", 0, "SECONDS", RT_TO_SECONDS(patience, 1, 86400), "With --until: most seconds in all (600)"},
+    {"quick", 0, NULL, RT_TO_FLAG(quick), "The smaller variant of the EXPERIMENT"},
+    {"threads", 0, "N", RT_TO_INTEGER(threads, 0, 1024), "Threads, as in `raytally bench`"},
+    {"json", 0, NULL, RT_TO_FLAG(json), "One JSON document on stdout instead of the table"},
+    {"worker", 0, NULL, RT_TO_HIDDEN_FLAG(worker), NULL}, /* experiment/worker.h */
+    {0}};
 
 /* ---- two programs ---- */
 
@@ -123,7 +92,7 @@ static RtStatus load(Options *o, RtError *error) {
 }
 
 static RtStatus work(Options *o, RtError *error) {
-    RtWorkloadOptions how = {.threads = o->threads, .timing = o->timing};
+    RtWorkloadOptions how = {.threads = o->threads >= 0 ? o->threads : 0, .timing = o->timing};
     RT_TRY(load(o, error));
     return rt_worker_serve(o->recording.experiment, &how, RT_WORKER_TIMES, error);
 }
@@ -212,11 +181,14 @@ static RtStatus compare(Options *o, char **argv, bool *slower, RtError *error) {
 
 static const struct argp_child children[] = {
     {&rt_recording_argp, 0, NULL, 1}, {&rt_plugin_argp, 0, NULL, 0}, {0}};
-const struct argp rt_compare_argp = {
+const RtSyntax rt_compare_syntax = {
     .options = options,
-    .parser = parse_option,
-    .args_doc = "BEFORE AFTER\nEXPERIMENT.yaml --with PROGRAM\nSCENE --accel SPEC --with PROGRAM",
-    .doc =
+    .children = children,
+    .child = offsetof(Options, recording),
+    .arguments = "BEFORE AFTER\nEXPERIMENT.yaml --with PROGRAM\nSCENE --accel SPEC --with PROGRAM",
+    .argument = {.name = "BEFORE", .take = take_subject},
+    .finish = finish,
+    .help =
         "Report what is faster, slower or no different after a change, and which counts changed: from two "
         "result "
         "directories, or by running this raytally and another one in turns on the same rays, which finds "
@@ -228,15 +200,14 @@ const struct argp rt_compare_argp = {
         "  raytally compare balls --accel bvh --accel grid --with ../old/build/release/raytally\n"
         "  raytally compare experiments/first-look.yaml --quick --with ../old/build/release/raytally "
         "--until 1%\n"
-        "  raytally compare results/last-month results/first-look --strict",
-    .children = children};
+        "  raytally compare results/last-month results/first-look --strict"};
 
 int rt_command_compare(int argc, char **argv) {
     RtError error;
     bool slower = false;
-    Options o = {.timing = 1, .patience = 600, .margin = -1};
+    Options o = {.threads = -1, .timing = 1, .patience = 600, .margin = -1};
     if (rt_recording_init(&o.recording, &error) != RT_OK) return rt_cli_fail(&error);
-    argp_parse(&rt_compare_argp, argc, argv, 0, 0, &o);
+    rt_cli_parse(&rt_compare_syntax, argc, argv, &o);
     RtStatus status = o.worker ? work(&o, &error) : compare(&o, argv, &slower, &error);
     rt_recording_clear(&o.recording);
     if (status != RT_OK) return rt_cli_fail(&error);

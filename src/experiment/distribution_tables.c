@@ -103,17 +103,16 @@ RtTable rt_distribution_table(RtDistributionTable which, RtDistributionRow *row)
 
 /* ---- to read ---- */
 
-/* Plugins report no leaves (include/raytally/accel.h). */
+/* Plugins report only how many leaves there are (include/raytally/accel.h). */
 static void print_unknown_leaves(const RtResults *results, uint32_t t, FILE *out) {
     for (uint32_t c = 0; c < results->experiment->candidate_count; c++) {
-        const RtCandidate *candidate = &results->experiment->candidates[c];
         const RtBuildResult *build = rt_build_at(results, t, c);
         char text[RT_MAX_LABEL + 128];
-        if (!build->known || build->leaves || !rt_spec_is_remote(&candidate->parsed)) continue;
+        if (build->shape.leaves == 0 || build->leaves) continue;
         snprintf(
             text, sizeof text,
             "Leaf size and depth of %s are unknown: plugins report the number of leaves, not their contents.",
-            candidate->label);
+            rt_candidate_label(results->experiment, c));
         rt_print_wrapped(text, out);
     }
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A workload while it runs, and its steps, one file each: record, build, count, time, hardware counters. */
+/* A workload while it runs, and its longer steps, one file each: count, time, hardware counters. */
 #ifndef RT_EXPERIMENT_WORKLOAD_STATE_H
 #define RT_EXPERIMENT_WORKLOAD_STATE_H
 
@@ -48,12 +48,6 @@ RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKin
 RtStatus rt_workload_break(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtError *error);
 
 /* ---- the steps ---- */
-
-/* Records the rays; fills the workload's part of the results, or compares it with the previous run's. */
-RtStatus rt_workload_prepare(RtWorkloadState *workload, RtError *error);
-
-/* Builds all candidates, within the limits. */
-RtStatus rt_workload_build(RtWorkloadState *workload, RtError *error);
 
 /* Counts all candidates on their shares of the rays of one kind, and distributions if they are requested. */
 RtStatus rt_workload_count(RtWorkloadState *workload, RtRayKind kind, RtError *error);
