@@ -4,6 +4,7 @@
 #include "core/base/file.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
+#include "core/text/json.h"
 #include "experiment/result_tables.h"
 #include "experiment/worker.h"
 #include "measure/measure.h"
@@ -107,17 +108,12 @@ static RtStatus read_total(const RtCallgrind *callgrind, uint32_t n, uint64_t *t
     return found ? RT_OK : rt_fail(error, RT_NOT_AVAILABLE, "%s: callgrind wrote no sum of costs", path);
 }
 
-static void copy_text(char *out, size_t size, const json_t *json, const char *key) {
-    const char *text = json_string_value(json_object_get(json, key));
-    snprintf(out, size, "%s", text ? text : "");
-}
-
 /* Takes the answer about one cell; the last of its passes counts. */
 static RtStatus take_answer(RtCallgrind *callgrind, const json_t *answer, RtInstructions cell,
                             uint32_t *passes, RtError *error) {
     if (json_object_size(answer) == 0) return RT_OK; /* a setting that cannot be built under valgrind */
-    copy_text(cell.spec, sizeof cell.spec, answer, "spec");
-    copy_text(cell.why, sizeof cell.why, answer, "why");
+    snprintf(cell.spec, sizeof cell.spec, "%s", rt_json_text(answer, "spec", ""));
+    snprintf(cell.why, sizeof cell.why, "%s", rt_json_text(answer, "why", ""));
     cell.rays = (uint64_t)json_integer_value(json_object_get(answer, "rays"));
     *passes += (uint32_t)json_integer_value(json_object_get(answer, "passes"));
     if (!*cell.why) RT_TRY(read_total(callgrind, *passes, &cell.instructions, error));

@@ -4,6 +4,7 @@
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/random.h"
+#include "core/text/json.h"
 #include "experiment/compare.h"
 #include "experiment/worker.h"
 
@@ -31,11 +32,6 @@ typedef struct Run {
     RtWorker workers[2];
 } Run;
 
-static const char *text_of(const json_t *object, const char *key) {
-    const char *text = json_string_value(json_object_get(object, key));
-    return text ? text : "";
-}
-
 /* Seconds per ray of `repeats` runs of cell number `cell` of the section. */
 static RtStatus ask_time(RtWorker *worker, uint32_t cell, uint32_t repeats, double *seconds, RtError *error) {
     json_t *answer;
@@ -60,7 +56,7 @@ static const json_t *cell_of(const json_t *section, const char *accel, uint32_t 
     const json_t *cells = json_object_get(section, "cells");
     for (*number = 0; *number < json_array_size(cells); ++*number) {
         const json_t *cell = json_array_get(cells, *number);
-        if (strcmp(text_of(cell, "accel"), accel) == 0) return cell;
+        if (strcmp(rt_json_text(cell, "accel", ""), accel) == 0) return cell;
     }
     return NULL;
 }
@@ -69,8 +65,9 @@ static const json_t *cell_of(const json_t *section, const char *accel, uint32_t 
 static RtComparedCell *enter(Run *run, const json_t *const sections[2], const json_t *before,
                              const json_t *after) {
     const json_t *either = before ? before : after, *section = sections[before ? BEFORE : AFTER];
-    RtComparedCell *cell = rt_comparison_cell(run->comparison, text_of(section, "scene"),
-                                              text_of(either, "accel"), text_of(section, "kind"));
+    RtComparedCell *cell =
+        rt_comparison_cell(run->comparison, rt_json_text(section, "scene", ""),
+                           rt_json_text(either, "accel", ""), rt_json_text(section, "kind", ""));
     if (!cell) return NULL;
     if (!cell->ratios) cell->ratios = rt_alloc(RT_MAX_ROUNDS, sizeof(double));
     if (!cell->ratios) return NULL;
@@ -95,7 +92,7 @@ static RtStatus find_pairs(Run *run, const json_t *const sections[2], Pair *pair
         for (uint32_t i = 0; i < json_array_size(cells); i++) {
             Pair pair = {.number = {i, i}};
             const json_t *own = json_array_get(cells, i);
-            const json_t *other = cell_of(sections[!who], text_of(own, "accel"), &pair.number[!who]);
+            const json_t *other = cell_of(sections[!who], rt_json_text(own, "accel", ""), &pair.number[!who]);
             if (who == AFTER && other) continue; /* it was entered above */
             RtComparedCell *cell =
                 enter(run, sections, who == BEFORE ? own : other, who == BEFORE ? other : own);
@@ -145,10 +142,12 @@ static RtStatus time_pairs(Run *run, Pair *pairs, uint32_t count, RtError *error
 }
 
 static RtStatus check_alike(const Run *run, const json_t *const sections[2], RtError *error) {
-    const char *scene = text_of(sections[AFTER], "scene"), *kind = text_of(sections[AFTER], "kind");
-    bool same_place = strcmp(text_of(sections[BEFORE], "scene"), scene) == 0 &&
-                      strcmp(text_of(sections[BEFORE], "kind"), kind) == 0;
-    if (same_place && strcmp(text_of(sections[BEFORE], "hash"), text_of(sections[AFTER], "hash")) == 0)
+    const char *scene = rt_json_text(sections[AFTER], "scene", ""),
+               *kind = rt_json_text(sections[AFTER], "kind", "");
+    bool same_place = strcmp(rt_json_text(sections[BEFORE], "scene", ""), scene) == 0 &&
+                      strcmp(rt_json_text(sections[BEFORE], "kind", ""), kind) == 0;
+    if (same_place &&
+        strcmp(rt_json_text(sections[BEFORE], "hash", ""), rt_json_text(sections[AFTER], "hash", "")) == 0)
         return RT_OK;
     return rt_fail(
         error, RT_BAD_INPUT,
@@ -163,8 +162,9 @@ static RtStatus compare_section(Run *run, const json_t *const sections[2], RtErr
     uint32_t count = (uint32_t)json_array_size(json_object_get(sections[BEFORE], "cells"));
     RT_TRY(check_alike(run, sections, error));
     if (programs->progress) {
-        programs->progress(programs->context, run->round, run->rounds, text_of(sections[BEFORE], "scene"),
-                           text_of(sections[BEFORE], "kind"));
+        programs->progress(programs->context, run->round, run->rounds,
+                           rt_json_text(sections[BEFORE], "scene", ""),
+                           rt_json_text(sections[BEFORE], "kind", ""));
     }
     Pair *pairs = rt_alloc(count, sizeof(Pair));
     if (!pairs) return rt_fail_memory(error, "cells", count * sizeof(Pair));
@@ -218,7 +218,7 @@ static RtStatus start(Run *run, int who, RtError *error) {
             worker->program);
     }
     snprintf(after ? run->comparison->after : run->comparison->before, sizeof run->comparison->before,
-             "%s (%s)", after ? "this one" : worker->program, text_of(hello, "build"));
+             "%s (%s)", after ? "this one" : worker->program, rt_json_text(hello, "build", ""));
     json_decref(hello);
     return RT_OK;
 }

@@ -5,6 +5,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/words.h"
+#include "core/text/json.h"
 #include "experiment/claims.h"
 #include "experiment/distribution_tables.h"
 #include "experiment/frame_table.h"
@@ -333,15 +334,13 @@ static void put_plugins(FILE *out, const json_t *plugins) {
     json_t *plugin, *name;
     size_t i, n;
     json_array_foreach((json_t *)plugins, i, plugin) {
-        const char *file = json_string_value(json_object_get(plugin, "file"));
-        const char *hash = json_string_value(json_object_get(plugin, "hash"));
         fputs("<dt>plugin of", out);
         json_array_foreach(json_object_get(plugin, "accelerators"), n, name) {
             fputs(n ? ", " : " ", out);
             rt_html_put(out, json_is_string(name) ? json_string_value(name) : "");
         }
-        rt_html_wrap(out, "</dt><dd>", file ? file : "", ", hash ");
-        rt_html_wrap(out, "", hash ? hash : "unknown", "</dd>\n");
+        rt_html_wrap(out, "</dt><dd>", rt_json_text(plugin, "file", ""), ", hash ");
+        rt_html_wrap(out, "", rt_json_text(plugin, "hash", "unknown"), "</dd>\n");
     }
 }
 
