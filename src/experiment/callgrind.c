@@ -184,10 +184,6 @@ static double a_ray(const Row *r) {
     return *r->cell->why ? (double)NAN : (double)r->cell->instructions / (double)r->cell->rays;
 }
 
-static RtField why_of(const Row *r) {
-    return *r->cell->why ? rt_field_text(r->cell->why) : rt_field_missing();
-}
-
 static RtField isa_of(const Row *r) {
     const char *isa = strstr(r->cell->spec, "isa=");
     return isa ? rt_field_print("%.*s", (int)strcspn(isa + 4, ",+"), isa + 4) : rt_field_missing();
@@ -206,7 +202,7 @@ static RtField isa_of(const Row *r) {
     X(instructions, "instructions", integer, "", "instructions of all these rays, by callgrind: exact",      \
       *r->cell->why ? rt_field_missing() : rt_field_integer(r->cell->instructions))                          \
     X(instructions_per_ray, "instructions_per_ray", real6, "", "instructions per ray", a_ray(r))             \
-    X(why, "why", text, "", "why instructions are unknown; else empty", why_of(r))                           \
+    X(why, "why", text, "", "why instructions are unknown; else empty", *r->cell->why ? r->cell->why : NULL) \
     X(eye, "instr./ray", figure, "", "instructions per ray", a_ray(r))                                       \
     X(isa, "isa", text, "", "the instruction set, for accelerators that choose one", isa_of(r))
 

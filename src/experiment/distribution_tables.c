@@ -8,41 +8,24 @@
 
 typedef RtDistributionRow Row;
 
-/* ---- fields ---- */
-
-static bool is_over_rays(const Row *r) {
-    return r->quantity < RT_RAY_QUANTITY_COUNT;
-}
-
-static const char *kind_of(const Row *r) {
-    return is_over_rays(r) ? rt_experiment_kind_name(r->results->experiment, r->kind) : NULL;
-}
-
-static const char *spec_of(const Row *r) {
-    return rt_build_at(r->results, r->workload, r->candidate)->spec;
-}
-
-static double mean_of(const Row *r) {
-    return (double)r->distribution->sum / (double)r->distribution->count;
-}
-
-static double part_of(const Row *r) {
-    return (double)r->distribution->bins[r->bin] / (double)r->distribution->count;
-}
+/* ---- columns ---- */
 
 #define COLUMNS(X)                                                                                           \
     X(scene, "scene", text, "", "the scene's label in the experiment",                                       \
       r->results->experiment->workloads[r->workload].label)                                                  \
-    X(kind, "kind", text, "", "kind of the rays; empty: leaves of the structure", kind_of(r))                \
+    X(kind, "kind", text, "", "kind of the rays; empty: leaves of the structure",                            \
+      r->quantity < RT_RAY_QUANTITY_COUNT ? rt_experiment_kind_name(r->results->experiment, r->kind) : NULL) \
     X(accel, "accelerator", text, "", "the accelerator's label in the experiment",                           \
       rt_candidate_label(r->results->experiment, r->candidate))                                              \
     X(quantity, "quantity", text, "",                                                                        \
       "object_tests, extent_tests, steps: of a ray, each asked by itself; leaf_size, leaf_depth: objects "   \
       "in the list of a leaf or voxel, and its depth",                                                       \
       rt_quantity_name(r->quantity))                                                                         \
-    X(spec, "accel", text, "", "the accelerator with every effective parameter", spec_of(r))                 \
+    X(spec, "accel", text, "", "the accelerator with every effective parameter",                             \
+      rt_build_at(r->results, r->workload, r->candidate)->spec)                                              \
     X(count, "count", integer, "", "rays, or leaves", r->distribution->count)                                \
-    X(mean, "mean", real6, "", "mean of the quantity", mean_of(r))                                           \
+    X(mean, "mean", real6, "", "mean of the quantity",                                                       \
+      (double)r->distribution->sum / (double)r->distribution->count)                                         \
     X(median, "median", integer, "", "the least value that half of them do not exceed",                      \
       r->distribution->median)                                                                               \
     X(p90, "p90", integer, "", "the least that 90 % do not exceed", r->distribution->p90)                    \
@@ -52,7 +35,8 @@ static double part_of(const Row *r) {
     X(low, "low", integer, "", "least value of the bin", rt_histogram_low(r->bin))                           \
     X(end, "end", integer, "", "least value beyond the bin", rt_histogram_low(r->bin + 1))                   \
     X(values, "values", integer, "", "rays, or leaves, within it", r->distribution->bins[r->bin])            \
-    X(part, "part", real6, "", "as a part of all", part_of(r))
+    X(part, "part", real6, "", "as a part of all",                                                           \
+      (double)r->distribution->bins[r->bin] / (double)r->distribution->count)
 
 RT_TABLE_COLUMNS(columns, COLUMNS)
 

@@ -24,10 +24,6 @@ static RtField label_of(const Row *r) {
     return field;
 }
 
-static const char *kind_of(const Row *r) {
-    return rt_experiment_kind_name(r->results->experiment, r->kind);
-}
-
 /* A label too long to fit beside the figures is printed on a line before them. */
 static RtField short_label_of(const Row *r) {
     char label[RT_MAX_EYE_LABEL];
@@ -48,11 +44,6 @@ static RtField break_even_of(const Row *r) {
     double unit = 1;
     while (count / unit >= 1000) unit *= 10;
     return rt_field_print("faster %s %.0f", rays > 0 ? "from" : "up to", unit * round(count / unit));
-}
-
-static RtField baseline_of(const Row *r) {
-    if (!r->cell->timed) return rt_field_missing();
-    return rt_field_text(rt_candidate_label(r->results->experiment, r->cell->baseline));
 }
 
 void rt_result_eye_label(const RtResultRow *r, char out[RT_MAX_EYE_LABEL]) {
@@ -90,14 +81,6 @@ static uint32_t threads_of(const Row *r) {
     return (uint32_t)(r->which == RT_HARDWARE ? r->cell->hardware.threads : r->cell->threads);
 }
 
-static double running_of(const Row *r) {
-    return *r->cell->hardware.why ? (double)NAN : r->cell->hardware.counts.running;
-}
-
-static RtField why_of(const Row *r) {
-    return *r->cell->hardware.why ? rt_field_text(r->cell->hardware.why) : rt_field_missing();
-}
-
 static double each_ns(const Row *r, RtEach each) {
     return 1e9 * rt_cell_rounds(r->cell, each)[r->round];
 }
@@ -118,7 +101,7 @@ static double each_ns(const Row *r, RtEach each) {
     X(height, "height", integer, "pixels", "height of the frame", r->scene->height)                          \
     X(corners, "corners", flag, "", "samples at pixel corners, not centres", r->setup->corners)              \
     X(depth, "depth", integer, "", "levels of the ray tree, the primary ray being one", r->setup->depth)     \
-    X(kind, "kind", text, "", "kind of the rays", kind_of(r))                                                \
+    X(kind, "kind", text, "", "kind of the rays", rt_experiment_kind_name(r->results->experiment, r->kind))  \
     X(set_rays, "set_rays", integer, "", "rays in the set, after the limit", r->scene->rays[r->kind])        \
     X(set_hash, "set_hash", hash, "", "fingerprint of the set", r->scene->ray_fingerprints[r->kind])         \
     X(accel, "accelerator", text, "", "the accelerator's label in the experiment; (again): a null run",      \
@@ -144,7 +127,8 @@ static double each_ns(const Row *r, RtEach each) {
     X(wall_ns_high, "wall_ns_high", real6, "ns", "upper end of its interval", 1e9 * r->cell->wall.high)      \
     X(mrays_per_s, "mrays_per_s", real6, "million/s", "rays per second, by the median",                      \
       1e-6 / r->all.seconds.median)                                                                          \
-    X(baseline, "baseline", text, "", "the accelerator that the ratio refers to", baseline_of(r))            \
+    X(baseline, "baseline", text, "", "the accelerator that the ratio refers to",                            \
+      r->cell->timed ? rt_candidate_label(r->results->experiment, r->cell->baseline) : NULL)                 \
     X(ratio, "ratio", real6, "", "throughput over the baseline's, paired by round; median",                  \
       r->all.ratio.median)                                                                                   \
     X(ratio_low, "ratio_low", end, "", "lower end of its interval", r->all.ratio.low)                        \
@@ -168,8 +152,9 @@ static double each_ns(const Row *r, RtEach each) {
       EVENT(instructions) / EVENT(cycles))                                                                   \
     X(running, "running", real6, "",                                                                         \
       "least part of the time that an event was counted; below 1 events took turns, and counts are scaled",  \
-      running_of(r))                                                                                         \
-    X(why, "why", text, "", "why nothing could be counted; else empty", why_of(r))                           \
+      *r->cell->hardware.why ? (double)NAN : r->cell->hardware.counts.running)                               \
+    X(why, "why", text, "", "why nothing could be counted; else empty",                                      \
+      *r->cell->hardware.why ? r->cell->hardware.why : NULL)                                                 \
     X(host, "host", text, "", "the machine that measured", machine_of(r)->host)                              \
     X(cpu, "cpu", text, "", "its processor", machine_of(r)->cpu)                                             \
     X(tests_a_ray, "tests/ray", figure, "", "object tests per ray", r->all.object_tests)                     \
