@@ -301,7 +301,7 @@ static RtStatus bench(Options *o, RtError *error) {
                        experiment->workload_count);
     strcpy(experiment->name, "bench");
     RT_TRY(rt_experiment_check(experiment, where, error));
-    if (o->worker) return rt_worker_serve(experiment, &o->workload, RT_WORKER_COUNTS, error);
+    if (o->worker) return rt_worker_serve(experiment, NULL, error);
     RtResults results;
     RtCallgrind callgrind = {0};
     RtStatus status = rt_results_init(&results, experiment, error);

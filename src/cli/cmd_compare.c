@@ -94,7 +94,7 @@ static RtStatus load(Options *o, RtError *error) {
 static RtStatus work(Options *o, RtError *error) {
     RtWorkloadOptions how = {.threads = o->threads >= 0 ? o->threads : 0, .timing = o->timing};
     RT_TRY(load(o, error));
-    return rt_worker_serve(o->recording.experiment, &how, RT_WORKER_TIMES, error);
+    return rt_worker_serve(o->recording.experiment, &how, error);
 }
 
 static void on_progress(void *context, uint32_t round, uint32_t rounds, const char *scene, const char *kind) {

@@ -327,14 +327,12 @@ static RtStatus serve_counts(Server *server, RtError *error) {
 }
 
 /* Keeps what others print, a plugin say, out of the answers. */
-RtStatus rt_worker_serve(const RtExperiment *experiment, const RtWorkloadOptions *options, RtWorkerJob job,
-                         RtError *error) {
+RtStatus rt_worker_serve(const RtExperiment *experiment, const RtWorkloadOptions *times, RtError *error) {
     int answers = dup(STDOUT_FILENO);
     Server server = {.experiment = experiment, .out = answers >= 0 ? fdopen(answers, "w") : NULL};
     if (!server.out) return rt_fail(error, RT_IO, "stdout: %s", strerror(errno));
     dup2(STDERR_FILENO, STDOUT_FILENO);
-    RtStatus status =
-        job == RT_WORKER_TIMES ? serve_times(&server, options, error) : serve_counts(&server, error);
+    RtStatus status = times ? serve_times(&server, times, error) : serve_counts(&server, error);
     fclose(server.out);
     return status;
 }

@@ -48,11 +48,8 @@ void rt_worker_end(RtWorker *worker);
 
 /* ---- the worker ---- */
 
-typedef enum RtWorkerJob { RT_WORKER_TIMES, RT_WORKER_COUNTS } RtWorkerJob;
-
-/* Answers requests from stdin on stdout until everything is done or the input ends. `options` are of timing.
- * Everything else that is printed goes to stderr. */
-RtStatus rt_worker_serve(const RtExperiment *experiment, const RtWorkloadOptions *options, RtWorkerJob job,
-                         RtError *error);
+/* Answers requests from stdin on stdout until everything is done or the input ends. `times` says how to time;
+ * NULL: it counts. Everything else that is printed goes to stderr. */
+RtStatus rt_worker_serve(const RtExperiment *experiment, const RtWorkloadOptions *times, RtError *error);
 
 #endif

@@ -35,9 +35,17 @@ static inline const RtCandidate *rt_workload_setup(const RtWorkloadState *worklo
 }
 
 /* Notifies the observer. */
-RtStatus rt_workload_tell(const RtWorkloadState *workload, RtEventKind what, uint32_t candidate,
-                          RtRayKind kind, RtError *error);
-void rt_workload_notice(const RtWorkloadState *workload, const char *message);
+static inline RtStatus rt_workload_tell(const RtWorkloadState *workload, RtEventKind what, uint32_t candidate,
+                                        RtRayKind kind, RtError *error) {
+    const RtRunObserver *observer = &workload->options->observer;
+    const RtEvent event = {what, workload->index, candidate, kind};
+    return observer->event ? observer->event(observer->context, workload->results, &event, error) : RT_OK;
+}
+
+static inline void rt_workload_notice(const RtWorkloadState *workload, const char *message) {
+    const RtRunObserver *observer = &workload->options->observer;
+    if (observer->notice) observer->notice(observer->context, message);
+}
 
 /* Reports that candidate `c`, or a cell of it, exceeds the limit that `limit` names, or is broken. If it is
  * the baseline, the workload fails, and `limit` is cleared. */
