@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs missing packages, builds, and runs the tests with gcc and the faster ones under the address and undefined-behaviour
-# sanitizers. --all: every test, also with clang and under the thread sanitizer, with warnings as errors, as continuous
-# integration does. At the end it lists tests that no build could run, and their requirements.
+# Installs missing packages, builds, and runs the tests with gcc and, of shapes, scenes and accelerators, the faster ones under
+# the address and undefined-behaviour sanitizers, with kernels for this machine's instruction set. --all: every test and kernel,
+# also with clang and under the thread sanitizer, with warnings as errors, as continuous integration does. At the end it lists tests that no build could run, and their requirements.
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 passed=0 failed=0 reports=()
@@ -29,8 +29,8 @@ case "${1-}" in
     fetch_bunny
     build release -DRT_KERNELS=all
     run_tests release -LE slow
-    build debug -DRT_KERNELS=native
-    run_tests debug -LE 'tree|slow|long'
+    targets=memory_tests build debug -DRT_KERNELS=native
+    run_tests debug -L '^(accel|base|scene|scenes|shape|text)$' -LE 'slow|long'
     ;;
 --all)
     install_missing build optional data test check cluster pages
@@ -39,7 +39,7 @@ case "${1-}" in
     RT_RAYS=256 run_tests release
     build clang -DRT_WERROR=ON
     run_tests clang -LE 'tree|once'
-    build debug -DRT_KERNELS=all
+    build debug -DRT_KERNELS=native
     run_tests debug -LE 'tree|slow'
     targets=thread_tests build tsan
     run_tests tsan -L threads

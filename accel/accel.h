@@ -50,9 +50,9 @@ typedef struct RtAccel {
 /* Further quality metrics of hierarchies of boxes (Aila, Karras & Laine 2013; accel/tree/quality.c). NaN for
  * other structures. X(name, meaning). */
 #define RT_QUALITIES(X)                                                                                      \
-    X(end_point_overlap, "expected cost, at a point of the surface, of nodes that contain it but not its "   \
-                         "object; triangles only")                                                           \
-    X(leaf_count_variability, "standard deviation of the leaves that a random line meets")
+    X(end_point_overlap,                                                                                     \
+      "expected cost of the nodes that contain a point of the surface but not its object; triangles only")   \
+    X(leaf_count_variability, "standard deviation of the number of leaves that a random line hits")
 
 /* Statistics of a structure. Zero where a figure does not apply. */
 typedef struct RtDescription {

@@ -67,5 +67,5 @@ RtStatus rt_best_specs(const char *text, char specs[RT_MAX_BEST][RT_MAX_SPEC_CHA
     }
     return *count > 0 ? RT_OK
                       : rt_fail(error, RT_NOT_AVAILABLE,
-                                "this machine can run none of what '%.80s' stands for", text);
+                                "this machine can run none of the settings of '%.80s'", text);
 }

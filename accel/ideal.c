@@ -66,7 +66,8 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
     for (size_t i = 0; i < self->count; i++) {
         uint32_t id = self->objects[i];
         if (id == RT_NO_OBJECT || id < accel->scene->geometry.object_count) continue;
-        return rt_fail(error, RT_MISMATCH, "ideal: the answer of ray %zu, %u, is no object", i, id);
+        return rt_fail(error, RT_MISMATCH,
+                       "ideal: the recorded answer of ray %zu is object %u, which does not exist", i, id);
     }
     return RT_OK;
 }
@@ -75,7 +76,7 @@ const RtAccelOps rt_ideal_ops = {
     .name = "ideal",
     .summary =
         "recorded answers: one test for a ray that hits, none for one that misses; a lower bound on cost",
-    .paper = "none: a yardstick",
+    .paper = "none: a reference",
     .build = build,
     .destroy = destroy,
     RT_KERNEL_OPS,

@@ -57,7 +57,7 @@ static RtStatus available(RtIsa isa, RtError *error) {
     if (rt_isa_runs(isa)) return RT_OK;
     if (rt_isa_best() > machine_isa()) {
         return rt_fail(error, RT_NOT_AVAILABLE,
-                       "this build has kernels for %s alone, which this processor has not: configure it with "
+                       "this build has kernels only for %s, which this processor lacks: configure it with "
                        "-DRT_KERNELS=all",
                        rt_isa_name(rt_isa_best()));
     }

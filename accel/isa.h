@@ -80,7 +80,7 @@ size_t rt_isa_scratch_bytes(const RtAccel *accel);
 
 #define RT_ISA_PARAM                                                                                         \
     "isa", RT_CHOICE("best", "best|portable|avx2|avx512"),                                                   \
-        "instruction set; changes no answer and no count", "best: of this machine"
+        "instruction set; changes no answer and no count", "best: the widest of this machine"
 
 /* What a value of it asks for. */
 RtIsa rt_isa_asked(RtValue value);

@@ -18,7 +18,7 @@ typedef struct RtPlugin {
 
 /* Loads the library at `path` and registers its accelerators, unless it is loaded already. RT_BAD_INPUT, and
  * nothing is registered, if it is not a plugin or of another version, has an invalid table or a name that is
- * taken, or does not survive loading. */
+ * taken, or cannot be loaded. */
 RtStatus rt_plugin_load(const char *path, RtError *error);
 
 /* Loads every library in `list`: files and folders joined by ':'. Within a name, ':' is written '\:', and '\'

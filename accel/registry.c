@@ -52,8 +52,8 @@ size_t rt_accel_count(void) {
 RtStatus rt_accel_name_is_free(const char *name, RtError *error) {
     if (strspn(name, LETTERS) == 0 || name[strspn(name, LETTERS "0123456789_-")])
         return rt_fail(error, RT_BAD_INPUT,
-                       "'%.80s' cannot be the name of an accelerator: a letter, and then letters, digits, "
-                       "'_' and '-'",
+                       "'%.80s' cannot be the name of an accelerator: a name is a letter, then letters, "
+                       "digits, '_' and '-'",
                        name);
     if (strlen(name) >= RT_MAX_NAME)
         return rt_fail(error, RT_BAD_INPUT, "'%.80s' is too long for a name: at most %d letters", name,
@@ -62,7 +62,7 @@ RtStatus rt_accel_name_is_free(const char *name, RtError *error) {
         return rt_fail(error, RT_BAD_INPUT, "'all' means every accelerator: choose another name");
     for (size_t i = 0; i < count; i++) {
         if (strcmp(registry[i]->name, name) == 0)
-            return rt_fail(error, RT_BAD_INPUT, "there is an accelerator '%s' already: choose another name",
+            return rt_fail(error, RT_BAD_INPUT, "an accelerator '%s' already exists: choose another name",
                            name);
     }
     return RT_OK;
@@ -113,7 +113,7 @@ RtStatus rt_accel_find(const char *name, const RtAccelOps **out, RtError *error)
     char suggestion[RT_MAX_SUGGESTION];
     rt_suggest(name, names, count, suggestion);
     return rt_fail(error, RT_BAD_INPUT,
-                   "there is no accelerator '%s'%s%s `raytally accels` lists them; one of a plugin needs "
-                   "--plugin FILE.so",
+                   "there is no accelerator '%s'%s%s `raytally accels` lists them; an accelerator of a "
+                   "plugin needs --plugin FILE.so",
                    name, suggestion, *suggestion ? "" : ";");
 }

@@ -40,11 +40,10 @@ static RtStatus check_layers(const RtSpec *spec, const char *text, RtError *erro
     for (uint32_t i = 0; i + 1 < spec->layer_count; i++) {
         const char *name = spec->layers[i].ops->name;
         if (spec->layers[i].ops->kinds) continue;
-        return rt_fail(
-            error, RT_BAD_INPUT,
-            "'%.80s': %s answers every ray, so nothing can lie below it: what stands before a '+' is an "
-            "overlay; `raytally accels` says which are",
-            text, name);
+        return rt_fail(error, RT_BAD_INPUT,
+                       "'%.80s': %s is not an overlay, so it cannot stand before a '+'; `raytally accels` "
+                       "shows which are",
+                       text, name);
     }
     const RtAccelOps *last = spec->layers[spec->layer_count - 1].ops;
     if (!last->kinds) return RT_OK;

@@ -124,7 +124,7 @@ static void generate(RtSceneBuilder *b, const RtValue *values) {
 const RtBuiltin rt_builtin_city = {
     .name = "city",
     .summary = "blocks of houses and towers: faces along the axes that share planes; cylinders and spheres",
-    .source = "made to be hard on structures that cut space by planes",
+    .source = "made to be hard for structures that divide space by planes",
     RT_PARAMS_OF(params),
     .generate = generate,
 };

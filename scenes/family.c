@@ -318,8 +318,9 @@ static void generate(RtSceneBuilder *b, const RtValue *values) {
 
 const RtBuiltin rt_builtin_family = {
     .name = "family",
-    .summary = "small scenes that are hard on accelerators, an image of a thousand pixels each",
-    .source = "random, each kind from a stream of its own: what rays graze, touch, or cannot tell apart",
+    .summary = "small scenes that are hard for accelerators, each with an image of a thousand pixels",
+    .source = "random, each kind with its own random numbers: surfaces that rays graze, touch or cannot "
+              "distinguish",
     RT_PARAMS_OF(params),
     .object_count = object_count,
     .object_bytes = object_bytes,

@@ -216,7 +216,7 @@ static void generate(RtSceneBuilder *b, const RtValue *values) {
 
 const RtBuiltin rt_builtin_forest = {
     .name = "forest",
-    .summary = "n trees on hilly ground: a million small triangles that lie any way",
+    .summary = "n trees on hilly ground: a million small triangles in all orientations",
     .source = "made to measure how builders scale",
     RT_PARAMS_OF(params),
     .generate = generate,

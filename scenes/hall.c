@@ -304,7 +304,7 @@ static void generate(RtSceneBuilder *b, const RtValue *values) {
 const RtBuiltin rt_builtin_hall = {
     .name = "hall",
     .summary = "a closed interior: columns, vault, vases; long thin triangles and small ones close together",
-    .source = "made like the interiors that papers on hierarchies use",
+    .source = "modelled on the interiors in papers on hierarchies",
     RT_PARAMS_OF(params),
     .generate = generate,
 };

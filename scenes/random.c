@@ -16,16 +16,17 @@ enum { SPHERES, TRIANGLES, MIXED };
 #define PARAMS(X)                                                                                            \
     X(N, "n", RT_INT("1000", 0, RT_MAX_OBJECTS, "0|1|2|100|5000"), "objects", "small enough to see")         \
     X(DISTRIBUTION, "distribution", RT_CHOICE("uniform", "uniform|clustered|coincident|line|plane|stadium"), \
-      "where the objects are: coincident: all in one place and alike; line: in a row; plane: flat ones "     \
-      "coplanar; stadium: tiny ones about the origin, and every eighth huge",                                \
+      "placement of the objects; coincident: all equal and in one place; line: in a row; plane: flat "       \
+      "objects coplanar; stadium: tiny objects around the origin, every eighth huge",                        \
       "the usual case")                                                                                      \
     X(SHAPE, "shape", RT_CHOICE("sphere", "sphere|triangle|mixed"),                                          \
-      "what they are; mixed: spheres, polygons, triangles and cones in turn", "the simplest")                \
+      "their shape; mixed: spheres, polygons, triangles and cones in turn", "the simplest")                  \
     X(SEED, RT_BUILTIN_SEED)                                                                                 \
     X(RADIUS, "radius", RT_FLOAT("0.25", 1e-6, 1e3, "0.25|2"), "mean radius of an object, in mean spacings", \
       "few objects overlap")                                                                                 \
     X(SPREAD, "spread", RT_FLOAT("0.5", 0, 0.999, "0|0.9"),                                                  \
-      "radii differ from the mean by up to this part of it", "a ratio of 3 between largest and smallest")    \
+      "radii differ from the mean by up to this fraction of it",                                             \
+      "a ratio of 3 between largest and smallest")                                                           \
     X(CLUSTERS, "clusters", RT_INT("16", 1, 1e6, "16"), "number of clusters, for distribution=clustered",    \
       "enough to leave empty space")                                                                         \
     X(WIDTH, "width", RT_FLOAT("0.1", 1e-6, 1, "0.1"),                                                       \
@@ -150,7 +151,7 @@ static void generate(RtSceneBuilder *b, const RtValue *values) {
 
 const RtBuiltin rt_builtin_random = {
     .name = "random",
-    .summary = "n random objects, uniform, in clusters or in awkward places, in four materials",
+    .summary = "n random objects, uniform, clustered or degenerate, in four materials",
     .source = "made for tests",
     RT_PARAMS_OF(params),
     .object_count = object_count,

@@ -74,7 +74,7 @@ says 'my-accel:boxes=on +primary +1\.00 .*no difference +same'
 says_not 'plugin'
 ends 2 reproduce results/mine
 says "results/mine/manifest.json: 'my-accel' belonged to the plugin $work/old/mine.so \($hash\) then, and does not now"
-says 'one of a plugin needs --plugin FILE.so'
+says 'an accelerator of a plugin needs --plugin FILE.so'
 ends 2 run results/mine/manifest.json --out results/other
 says "'my-accel' belonged to the plugin .*mine.so.*no accelerator 'my-accel'"
 
@@ -102,7 +102,7 @@ change = json.load(sys.stdin)["plugins"]["my-accel"]
 sys.exit(change["before"]["hash"] == change["after"]["hash"] or len(change["after"]["hash"]) != 16)' ||
     complain 'compare --json does not name the plugin that has changed'
 ends 2 run mine.yaml --plugin new/mine.so --resume
-says "'my-accel' has changed: .*old/mine.so.* when this run was begun, .*new/mine.so.* now: .*--renew.*--force"
+says "'my-accel' has changed: .*old/mine.so.* when this run began, .*new/mine.so.* now: .*--renew.*--force"
 cmp -s before.jsonl results/mine/cells.jsonl || complain 'a run that is refused changed the journal'
 ends 0 run mine.yaml --plugin new/mine.so --renew --dry-run
 says '16 cells, 8 of them finished'
@@ -138,7 +138,7 @@ says_not 'has changed'
 ends 0 run based.yaml --plugin old/mine.so
 cp results/based/cells.jsonl before.jsonl
 ends 2 run based.yaml --plugin new/mine.so --renew
-says 'so is the baseline: replace this run with --force'
+says 'this changes the baseline: replace this run with --force'
 cmp -s before.jsonl results/based/cells.jsonl || complain 'a run that is refused changed the journal'
 
 # ---- shards ----
@@ -154,7 +154,7 @@ cmp -s results/mine/counts.csv results/merged/counts.csv || complain 'shards of 
 
 bench=(bench balls:size=1 --rays primary --size 16x16 --rounds 1 --accel bvh --accel my-accel)
 ends 2 "${bench[@]}"
-says "no accelerator 'my-accel'.* one of a plugin needs --plugin FILE.so"
+says "no accelerator 'my-accel'.* an accelerator of a plugin needs --plugin FILE.so"
 mkdir source
 RAYTALLY_PLUGINS=source ends 2 "${bench[@]}"
 says "RAYTALLY_PLUGINS: there is no \*\.so in source: .*source/build"

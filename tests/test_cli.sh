@@ -146,9 +146,9 @@ rm link.*
 refuses 'a NAME .* is missing.*new-accel --help' new-accel
 refuses 'one NAME at a time' new-accel mine yours
 for name in '' '../mine' 'a b' '3d' '-x' 'mine;' 'grid:density=4' ünicode; do
-    refuses "cannot be the name.*a letter, and then letters, digits, '_' and '-'" new-accel -- "$name"
+    refuses "cannot be the name.*a letter, then letters, digits, '_' and '-'" new-accel -- "$name"
 done
-refuses "there is an accelerator 'grid' already" new-accel grid
+refuses "an accelerator 'grid' already exists" new-accel grid
 refuses "'all' means every accelerator" new-accel all
 refuses 'too long for a name' new-accel "$(printf 'a%.0s' {1..100})"
 does new-accel my_grid-2
@@ -157,7 +157,7 @@ grep -rE 'my-accel|SPDX' my_grid-2 && complain "new-accel: leaves the name, or t
 for file in CMakeLists.txt README.md my_grid-2.c; do
     grep -q 'my_grid-2' "my_grid-2/$file" || complain "new-accel: $file does not know its name"
 done
-refuses 'my_grid-2 exists already' new-accel my_grid-2
+refuses 'my_grid-2 already exists' new-accel my_grid-2
 does new-accel mine --out some/where
 [ -f some/where/mine/mine.c ] || complain 'new-accel: --out does not make its folder'
 touch file

@@ -26,7 +26,7 @@
     X(PARAM_BINS, "bins", RT_INT("16", 2, RT_MAX_BINS, "2|5|64"),                                            \
       "build=binned, spatial: SAH bins along each axis", "Wald 2007")                                        \
     X(PARAM_BITS, "bits", RT_INT("21", 1, RT_MAX_MORTON_BITS, "1|10"),                                       \
-      "build=lbvh, ploc: bits of a Morton code along each axis", "the most that fit 64 bits")                \
+      "build=lbvh, ploc: bits of a Morton code along each axis", "the most that fit in 64 bits")             \
     X(PARAM_RADIUS, "radius", RT_INT("25", 1, 1024, "1|100"),                                                \
       "build=ploc: neighbours searched on either side", "Meister & Bittner 2018")                            \
     X(PARAM_ALPHA, "alpha", RT_FLOAT("1e-05", 0, 1, "0|0.01"),                                               \
@@ -37,12 +37,12 @@
       "build=spatial: most references per object, on average", "this program")                               \
     X(PARAM_MAILBOX, "mailbox", RT_FLAG("on"), "build=spatial: test an object at most once per ray",         \
       "Kirk & Arvo 1991")                                                                                    \
-    X(PARAM_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("8", 1, 1024, "1|2|64"), "most objects of a leaf",        \
+    X(PARAM_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("8", 1, 1024, "1|2|64"), "most objects in a leaf",        \
       "measured: larger is no better")                                                                       \
     X(PARAM_TRAVERSAL_COST, "traversal_cost", RT_FLOAT("1", 0, 1000, "0|0.1|10"),                            \
       "cost of visiting an inner node, in object tests", "MacDonald & Booth 1990")                           \
     X(PARAM_REINSERTION, "reinsertion", RT_INT("0", 0, 1000, "1|3"),                                         \
-      "most rounds in which subtrees move to where the tree costs less", "0: the tree as built")
+      "most rounds in which subtrees move to cheaper places", "0: the tree as built")
 
 enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};

@@ -34,10 +34,10 @@
       "most children of a node; the largest are replaced by their own children",                             \
       "clustering makes binary trees")                                                                       \
     X(PARAM_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("1", 1, 1024, "2|8|64"),                                  \
-      "most objects of a leaf; several share one where that costs no more by SAH",                           \
-      "an extent for every object")                                                                          \
+      "most objects in a leaf; objects share a leaf if that costs no more by SAH",                           \
+      "an extent around every object")                                                                       \
     X(PARAM_TRAVERSAL_ORDER, "traversal_order", RT_CHOICE("nearest", "fixed|nearest"),                       \
-      "children in stored order, or by where the ray enters them", "Kay & Kajiya 1986")                      \
+      "children visited in stored order, or in the order in which the ray enters them", "Kay & Kajiya 1986") \
     X(PARAM_RADIUS, "radius", RT_INT("25", 1, 1024, "1|100"),                                                \
       "method=ploc: neighbours searched on either side", "Meister & Bittner 2018")                           \
     X(PARAM_ORDER, "order", RT_CHOICE("random", "given|random"),                                             \

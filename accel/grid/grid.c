@@ -321,7 +321,7 @@ RT_DEFINE_KERNELS(RtGrid, search)
 
 const RtAccelOps rt_grid_ops = {
     .name = "grid",
-    .summary = "uniform grid: equal voxels with lists of objects, walked in order",
+    .summary = "uniform grid: equal voxels with lists of objects, visited in order",
     .paper = "Fujimoto, Tanaka & Iwata 1986, ARTS, CG&A 6(4); Amanatides & Woo 1987, A Fast Voxel Traversal "
              "Algorithm; Jevans & Wyvill 1989, Adaptive Voxel Subdivision for Ray Tracing, GI'89",
     RT_PARAMS_OF(rt_grid_params),

@@ -33,7 +33,7 @@
       "levels of grids; above 1, a voxel may contain a grid, by the rule",                                   \
       "1: a uniform grid; nested grids: Jevans & Wyvill 1989")                                               \
     X(RT_GRID_NEST, "nest", RT_INT("8", 1, 1e6, "1|30"),                                                     \
-      "depth > 1: most objects of a voxel without a nested grid, above the last level",                      \
+      "depth > 1: most objects of a voxel that gets no nested grid",                                         \
       "the only value that reproduces Havran & Sixta 1999")                                                  \
     X(RT_GRID_MARGIN, RT_MARGIN_PARAM("the grid"))                                                           \
     X(RT_GRID_FLAT, "flat", RT_FLOAT("0", 0, 1e9, "0.5"),                                                    \
@@ -44,7 +44,7 @@
       "0.01 reproduces the nested grids of Havran & Sixta 1999")                                             \
     X(RT_GRID_MAILBOX, RT_MAILBOX_PARAM)                                                                     \
     X(RT_GRID_OVERLAP, "overlap", RT_CHOICE("box", "box|exact"),                                             \
-      "a voxel lists the objects whose boxes, or whose surfaces, it meets",                                  \
+      "a voxel lists the objects whose boxes, or whose surfaces, overlap it",                                \
       "boxes: Havran & Sixta 1999; exact: Akenine-Möller 2001")
 
 enum { RT_GRID_PARAMS(RT_PARAM_INDEX) RT_GRID_PARAM_COUNT };

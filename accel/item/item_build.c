@@ -14,7 +14,7 @@
 
 const RtParam rt_item_params[RT_ITEM_PARAM_COUNT] = {
     {"settle", RT_FLAG("on"),
-     "ask hit functions while building, where the projection leaves a sample undecided",
+     "call hit functions while building, for samples that the projection leaves undecided",
      "this program; off is Weghorst, Hooper & Greenberg 1984"},
     {RT_ISA_PARAM},
 };

@@ -42,9 +42,10 @@ static RtStatus check_sample(const RtItemBuffer *buffer, uint32_t column, uint32
     for (uint32_t id = 0; id < g->object_count; id++) {
         if (id == named || !rt_object_hit(g, id, &prepared, &t, NULL)) continue;
         if (t > own || (t == own && id > named)) continue;
-        return rt_fail(error, RT_MISMATCH,
-                       "item: the ray of sample %u,%u meets object %u at %g, and %d, which it names, at %g",
-                       column, row, id, (double)t, (int)named, (double)own);
+        return rt_fail(
+            error, RT_MISMATCH,
+            "item: the ray of sample %u,%u hits object %u at %g, but the sample names object %d, at %g",
+            column, row, id, (double)t, (int)named, (double)own);
     }
     return RT_OK;
 }
@@ -56,7 +57,7 @@ RtStatus rt_item_validate(const RtAccel *accel, RtError *error) {
     for (size_t i = 0; i < samples; i++) {
         uint32_t named = buffer->samples[i];
         if (named >= RT_ITEM_UNDECIDED || named < objects) continue;
-        return rt_fail(error, RT_MISMATCH, "item: sample %u,%u names object %u, and there are %u",
+        return rt_fail(error, RT_MISMATCH, "item: sample %u,%u names object %u, but there are only %u",
                        (uint32_t)(i % columns), (uint32_t)(i / columns), named, objects);
     }
     uint64_t every = (uint64_t)samples * objects / MOST_TESTS + 1;

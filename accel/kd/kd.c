@@ -107,7 +107,7 @@ RT_DEFINE_KERNELS(RtKd, search)
 
 const RtAccelOps rt_kd_ops = {
     .name = "kd",
-    .summary = "cells split at the plane of the least expected cost, by the surface area heuristic",
+    .summary = "cells split at the plane of least expected cost, by the surface area heuristic",
     .paper =
         "Wald & Havran 2006, On building fast kd-trees for Ray Tracing, and on doing that in O(N log N), "
         "RT'06",

@@ -86,8 +86,8 @@ static RtStatus build_tree(RtKd *kd, const RtGeometry *g, uint64_t limit, int th
     RtKd empty = *kd;
     RtStatus status = RT_OK;
     if (g->object_count >= RT_KD_OBJECTS) {
-        return rt_fail(error, RT_BAD_INPUT, "a kd-tree holds fewer than %u objects, not %u", RT_KD_OBJECTS,
-                       g->object_count);
+        return rt_fail(error, RT_BAD_INPUT, "a kd-tree holds fewer than %u objects; this scene has %u",
+                       RT_KD_OBJECTS, g->object_count);
     }
     for (; status == RT_OK && !fits; several = false) {
         RtKdMemory memory = {.limit = limit};

@@ -71,7 +71,7 @@ static RtStatus check_inner(const Check *check, const RtKd *kd, const CellView *
     const RtKdNode *node = &kd->nodes[view->node];
     uint32_t child = rt_kd_child(node), axis = rt_kd_axis(node);
     if (child <= view->node || child >= kd->node_count - 1 || check->reached[child]) {
-        return rt_fail(check->error, RT_MISMATCH, "kd: the children of node %u are not where nodes are",
+        return rt_fail(check->error, RT_MISMATCH, "kd: the children of node %u lie outside the nodes",
                        view->node);
     }
     if (view->depth >= kd->max_depth) {
@@ -91,7 +91,7 @@ static RtStatus check_leaf(Check *check, const RtKd *kd, const CellView *view) {
     const RtKdNode *leaf = &kd->nodes[view->node];
     uint32_t length = rt_kd_length(leaf);
     if (leaf->first > kd->id_count || length > kd->id_count - leaf->first) {
-        return rt_fail(check->error, RT_MISMATCH, "kd: the list of leaf %u is not where lists are",
+        return rt_fail(check->error, RT_MISMATCH, "kd: the list of leaf %u lies outside the lists",
                        view->node);
     }
     const uint32_t *ids = kd->ids + leaf->first;
@@ -156,7 +156,7 @@ static RtStatus check_all(Check *check, const RtKd *kd) {
     }
     if (check->ids != kd->id_count) {
         return rt_fail(check->error, RT_MISMATCH,
-                       "kd: the lists of leaves hold %u ids, which is not where lists end, %u", check->ids,
+                       "kd: the lists of leaves hold %u ids, but the lists end at %u", check->ids,
                        kd->id_count);
     }
     for (uint32_t id = 0; id < g->object_count; id++) {

@@ -34,11 +34,12 @@
       "cells along the longer edge of the part of a face that sees the scene; 0: as fine as the objects",    \
       "this program; Haines & Greenberg 1986 use 20 to 200")                                                 \
     X(RT_LIGHT_FULL_OCCLUSION, "full_occlusion", RT_FLAG("on"),                                              \
-      "end a list where the whole cell is likely to be covered", "Haines & Greenberg 1986, of one object")   \
+      "end a list at the depth where objects probably cover the whole cell",                                 \
+      "Haines & Greenberg 1986, of one object")                                                              \
     X(RT_LIGHT_EXTENTS, "extents", RT_FLAG("on"),                                                            \
-      "skip what is not seen in the part of the cell, a sixteenth, that the ray is in", "this program")      \
+      "skip objects that are not seen in the ray's sixteenth of the cell", "this program")                   \
     X(RT_LIGHT_LONGEST, "longest", RT_INT("64", 1, 65534, "2"),                                              \
-      "entries of a list; what lies deeper is passed on", "measured")
+      "most entries of a list; rays that need deeper ones are passed on", "measured")
 
 enum { RT_LIGHT_PARAMS(RT_PARAM_INDEX) RT_LIGHT_PARAM_COUNT };
 extern const RtParam rt_light_params[RT_LIGHT_PARAM_COUNT];

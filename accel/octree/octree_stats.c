@@ -90,7 +90,7 @@ static RtStatus check_place(const Check *check, uint32_t index) {
     uint32_t parent = tree->nodes[index].parent;
     const RtOctreeNode *above = &tree->nodes[parent];
     if (parent >= index || !rt_octree_is_inner(above) || above->first != index - rt_octree_octant(index)) {
-        return rt_fail(check->error, RT_MISMATCH, "octree: node %u is no child of its parent", index);
+        return rt_fail(check->error, RT_MISMATCH, "octree: node %u is not a child of its parent", index);
     }
     RtBox cell = rt_octree_child_box(tree->boxes[parent], above->split, rt_octree_octant(index));
     if (!same_box(cell, tree->boxes[index])) {
@@ -109,7 +109,7 @@ static RtStatus check_inner(const Check *check, uint32_t index) {
     const RtOctreeNode *node = &tree->nodes[index];
     const RtBox *cell = &tree->boxes[index];
     if (node->first <= index || rt_octree_octant(node->first) != 0 || node->first > tree->node_count - 8) {
-        return rt_fail(check->error, RT_MISMATCH, "octree: the children of node %u are not where nodes are",
+        return rt_fail(check->error, RT_MISMATCH, "octree: the children of node %u lie outside the nodes",
                        index);
     }
     for (int a = 0; a < 3; a++) {
@@ -121,7 +121,7 @@ static RtStatus check_inner(const Check *check, uint32_t index) {
     for (uint32_t octant = 0; octant < 8; octant++) {
         const RtOctreeNode *child = &tree->nodes[node->first + octant];
         if (child->parent != index) {
-            return rt_fail(check->error, RT_MISMATCH, "octree: node %u is no child of its parent",
+            return rt_fail(check->error, RT_MISMATCH, "octree: node %u is not a child of its parent",
                            node->first + octant);
         }
         if ((node->count >> octant & 1) != (child->count == 0)) {
@@ -137,7 +137,7 @@ static RtStatus check_list(const Check *check, uint32_t index) {
     const RtOctreeNode *leaf = &tree->nodes[index];
     const RtGeometry *g = check->geometry;
     if (leaf->first > tree->id_count || leaf->count > tree->id_count - leaf->first) {
-        return rt_fail(check->error, RT_MISMATCH, "octree: the list of leaf %u is not where lists are",
+        return rt_fail(check->error, RT_MISMATCH, "octree: the list of leaf %u lies outside the lists",
                        index);
     }
     const uint32_t *ids = tree->ids + leaf->first;

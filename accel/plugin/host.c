@@ -23,7 +23,7 @@ static RtStatus refuse(const raytally_accel_ops *table, int result, const char *
         return rt_fail(error, RT_NO_MEMORY, "%s: memory is short%s%s", table->name, *message ? ": " : "",
                        message);
     if (result != RAYTALLY_BUILD_REFUSED)
-        return rt_fail(error, RT_BROKEN, "%s: its `build` returned %d, which is no result of a build",
+        return rt_fail(error, RT_BROKEN, "%s: its `build` returned %d, which is not a valid result",
                        table->name, result);
     return rt_fail(error, RT_BAD_INPUT, "%s: %s", table->name,
                    *message ? message : "it refuses this scene without giving a reason");
@@ -75,7 +75,7 @@ static void check_numbers(RtPluginAccel *accel, const raytally_description *d) {
     const uint64_t numbers[] = {d->interior, d->leaves, d->empty_leaves, d->references, d->depth, d->bytes};
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
         if (numbers[i] > UINT64_C(1) << 53)
-            rt_plugin_break(accel, "it describes itself by a number of %" PRIu64, numbers[i]);
+            rt_plugin_break(accel, "its description has the impossible number %" PRIu64, numbers[i]);
     }
 }
 
@@ -102,7 +102,7 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
     if (!self->table->validate || self->table->validate(self->self, message, sizeof message - 1) == 0)
         return RT_OK;
     return rt_fail(error, RT_MISMATCH, "%s: %s", self->table->name,
-                   *message ? message : "it is not valid, and gives no reason");
+                   *message ? message : "it is not valid and gives no reason");
 }
 
 typedef struct Showing {
@@ -114,7 +114,7 @@ static void show_box(void *context, const raytally_box *theirs, uint32_t depth, 
     const Showing *showing = context;
     RtBox box;
     if (!theirs) {
-        rt_plugin_break(showing->accel, "it showed a box that is NULL");
+        rt_plugin_break(showing->accel, "one of its boxes is NULL");
         return;
     }
     memcpy(&box, theirs, sizeof box);

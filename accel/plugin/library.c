@@ -30,7 +30,7 @@ RtStatus rt_library_fingerprint(const char *path, uint64_t *fingerprint, RtError
 static RtStatus take_table(const char *path, const raytally_accel_ops *theirs, RtTables *tables,
                            RtError *error) {
     if (theirs->abi == 0)
-        return rt_fail(error, RT_BAD_INPUT, "%s: `abi` is not set: it is RAYTALLY_ACCEL_ABI", path);
+        return rt_fail(error, RT_BAD_INPUT, "%s: `abi` is not set: set it to RAYTALLY_ACCEL_ABI", path);
     if (theirs->abi != RAYTALLY_ACCEL_ABI)
         return rt_fail(error, RT_BAD_INPUT,
                        "%s: it is made for version %u of the plugin interface, and this raytally has "
@@ -57,8 +57,8 @@ static RtStatus take_table(const char *path, const raytally_accel_ops *theirs, R
     WANT(occluded)
 #undef WANT
     if (table->param_count > RAYTALLY_MAX_PARAMS)
-        return rt_fail(error, RT_BAD_INPUT, "%s: '%s' has %u parameters; %d is the most", path, table->name,
-                       table->param_count, RAYTALLY_MAX_PARAMS);
+        return rt_fail(error, RT_BAD_INPUT, "%s: '%s' has %u parameters; at most %d are allowed", path,
+                       table->name, table->param_count, RAYTALLY_MAX_PARAMS);
     if (table->param_count > 0 && !table->params)
         return rt_fail(error, RT_BAD_INPUT, "%s: '%s' lacks its `params`", path, table->name);
     tables->count++;
@@ -73,10 +73,10 @@ RtStatus rt_library_open(const char *path, RtTables *tables, RtError *error) {
     void *symbol = dlsym(library, "raytally_plugin");
     memcpy(&get_table, &symbol, sizeof get_table);
     if (!get_table) {
-        return rt_fail(error, RT_BAD_INPUT,
-                       "%s: not a plugin: it has no function `raytally_plugin`; `raytally new-accel` writes "
-                       "an example that has",
-                       path);
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "%s: not a plugin: it has no function `raytally_plugin`; `raytally new-accel` writes an example",
+            path);
     }
     const raytally_accel_ops *last = NULL;
     for (const raytally_accel_ops *table; (table = get_table(tables->count)); last = table) {
@@ -184,8 +184,9 @@ static RtStatus check_params(const char *path, const raytally_accel_ops *table, 
                            table->name, wrong);
         if (table->params[i].type == RAYTALLY_CHOICE &&
             count_choices(table->params[i].choices) > RT_MAX_CHOICES)
-            return rt_fail(error, RT_BAD_INPUT, "%s: parameter '%s' of '%s' has %zu choices; %d is the most",
-                           path, table->params[i].name, table->name, count_choices(table->params[i].choices),
+            return rt_fail(error, RT_BAD_INPUT,
+                           "%s: parameter '%s' of '%s' has %zu choices; at most %d are allowed", path,
+                           table->params[i].name, table->name, count_choices(table->params[i].choices),
                            RT_MAX_CHOICES);
         for (uint32_t k = 0; k < i; k++) {
             if (strcmp(table->params[k].name, table->params[i].name) == 0)

@@ -69,7 +69,7 @@ static RtStatus run_trial(const char *path, Answer *answer, RtError *error) {
     } else {
         snprintf(what, sizeof what, "it takes more than %d seconds", MOST_SECONDS);
     }
-    return rt_fail(error, RT_BAD_INPUT, "%s: it does not survive loading: %s", path, what);
+    return rt_fail(error, RT_BAD_INPUT, "%s: loading it failed: %s", path, what);
 }
 
 /* Unpacks the tables and checks them again. Their text stays for as long as the program runs. */

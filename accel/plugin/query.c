@@ -100,8 +100,7 @@ RT_KERNEL int hits_of(const raytally_prepared *ray, const uint32_t *ids, uint32_
     bool over = false;
     for (uint32_t i = 0; i < count && !over; i++) {
         if (ids[i] >= geometry->object_count) {
-            break_at_ray(query->accel, own->original, "it asked for a test of an object that does not exist",
-                         ids[i]);
+            break_at_ray(query->accel, own->original, "it tested an object that does not exist", ids[i]);
             break;
         }
         over = rt_test_object(geometry, ids[i], own, any, &hit, tally);

@@ -306,8 +306,8 @@ static RtStatus check_limit(const RtSpatial *how, uint32_t count, RtError *error
     double fits = floor(most / REF_BYTES / count * 10) / 10;
     if (fits < 1)
         return rt_fail(error, RT_BAD_INPUT,
-                       "spatial splits of %u objects would take at least %.3g GiB, more than %.3g GiB: take "
-                       "another build",
+                       "spatial splits of %u objects would take at least %.3g GiB, more than %.3g GiB: "
+                       "choose another build",
                        count, (double)count * REF_BYTES / 0x1p30, most / 0x1p30);
     return rt_fail(
         error, RT_BAD_INPUT,

@@ -188,7 +188,7 @@ static RtStatus refuse(uint64_t bytes, uint64_t limit, RtError *error) {
     uint64_t most = limit < RT_WIDE_MAX_BYTES ? limit : RT_WIDE_MAX_BYTES;
     return rt_fail(
         error, RT_BAD_INPUT,
-        "wide would take %.0f MB for this scene, the most is %.0f MB: take a larger max_leaf_size or bvh",
+        "wide would take %.0f MB for this scene, more than %.0f MB: choose a larger max_leaf_size, or bvh",
         (double)bytes * 1e-6, (double)most * 1e-6);
 }
 

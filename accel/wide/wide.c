@@ -23,35 +23,37 @@ enum { MORTON_BITS = 21, PLOC_RADIUS = 25 };
 
 #define PARAMS(X)                                                                                            \
     X(PARAM_BUILD, "build", RT_CHOICE("binned", RT_TREE_METHODS),                                            \
-      "how the binary tree is made that is laid out eight wide, as for bvh", "Wald 2007")                    \
+      "builder of the binary tree, as for bvh; its nodes are then merged into nodes of eight", "Wald 2007")  \
     X(PARAM_BINS, "bins", RT_INT("16", 2, RT_MAX_BINS, "2|64"),                                              \
-      "build=binned, spatial: bins along each axis in which split positions are sought", "Wald 2007")        \
+      "build=binned, spatial: SAH bins along each axis", "Wald 2007")                                        \
     X(PARAM_ALPHA, "alpha", RT_FLOAT("1e-05", 0, 1, "0|0.01"),                                               \
-      "build=spatial: objects may be cut where groups overlap by more than this part of the root's area",    \
+      "build=spatial: spatial splits are tried where the sides overlap by more than this part of the "       \
+      "root's area",                                                                                         \
       "Stich et al. 2009")                                                                                   \
     X(PARAM_BUDGET, "budget", RT_FLOAT("2", 1, 16, "1|16"),                                                  \
       "build=spatial: most references per object, on average", "as for bvh")                                 \
     X(PARAM_WHOLE, "whole", RT_FLAG("off"),                                                                  \
-      "build=spatial: rays that ask for any hit have a second tree, binned, whose objects are whole",        \
-      "measured: cuts help nearest hits and may hurt occlusion")                                             \
+      "build=spatial: any-hit rays use a second tree, binned, which splits no objects",                      \
+      "measured: spatial splits help nearest-hit rays and may slow down any-hit rays")                       \
     X(PARAM_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("4", 1, RT_WIDE_MAX_LEAF, "1|8"),                         \
-      "most objects a leaf may hold; four triangles are tested at once", "measured")                         \
+      "most objects in a leaf; four triangles are tested at once", "measured")                               \
     X(PARAM_BLOCK_COST, "block_cost", RT_FLOAT("1", 0, 1000, "0|0.1|10"),                                    \
       "cost of testing four triangles, or one other object, in visits of a node", "measured")                \
     X(PARAM_REINSERTION, "reinsertion", RT_INT("0", 0, 1000, "1|3"),                                         \
-      "rounds in which subtrees of the binary tree move to where they cost less",                            \
-      "0: the tree as it is built")                                                                          \
+      "rounds in which subtrees of the binary tree move to cheaper places", "0: the tree as built")          \
     X(PARAM_IN_FLIGHT, "in_flight", RT_INT("32", 1, RT_WIDE_MAX_IN_FLIGHT, "1|3|64"),                        \
       "rays of a stream traced at once on a thread; 1: one after the other", "measured")                     \
-    X(PARAM_ORDER, "order", RT_FLAG("on"), "the nearest child first; off: the last", "this program")         \
-    X(PARAM_PREFETCH, "prefetch", RT_FLAG("on"), "fetch ahead what a ray goes on to", "measured")            \
+    X(PARAM_ORDER, "order", RT_FLAG("on"), "visit the nearest child first; off: the last one",               \
+      "this program")                                                                                        \
+    X(PARAM_PREFETCH, "prefetch", RT_FLAG("on"), "prefetch the node or leaf that a ray visits next",         \
+      "measured")                                                                                            \
     X(PARAM_PACKETS, "packets", RT_INT("8", 0, RT_WIDE_MAX_PACKETS, "0|1|16"),                               \
-      "packets, of up to 64 rays that visit nodes together, traced at once on a thread; 0: none",            \
+      "packets traced at once on a thread, each of up to 64 rays that visit nodes together; 0: none",        \
       "measured")                                                                                            \
     X(PARAM_SHARING, "sharing", RT_FLOAT("5", 0, 64, "0|8"),                                                 \
-      "rays that have to share a visit of a node, on average, or no packets are made; 0: always",            \
+      "packets are made only if this many rays share the visit of a node, on average; 0: always",            \
       "measured")                                                                                            \
-    X(PARAM_HUGE_PAGES, "huge_pages", RT_FLAG("on"), "ask the system for large pages", "measured")           \
+    X(PARAM_HUGE_PAGES, "huge_pages", RT_FLAG("on"), "request large pages from the system", "measured")      \
     X(PARAM_ISA, RT_ISA_PARAM)
 
 enum { PARAMS(RT_PARAM_INDEX) };
@@ -146,7 +148,7 @@ static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
 
 const RtAccelOps rt_wide_ops = {
     .name = "wide",
-    .summary = "hierarchy of boxes eight wide, traced in vectors, many rays at once: the fastest",
+    .summary = "hierarchy of boxes eight wide, SIMD traversal, many rays at once: the fastest",
     .paper = "Wald, Benthin & Boulos 2008, Getting Rid of Packets: Efficient SIMD Single-Ray Traversal using "
              "Multi-branching BVHs, RT'08",
     RT_PARAMS_OF(params),

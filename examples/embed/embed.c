@@ -79,7 +79,7 @@ static raytally_status time_both(const Work *work, raytally_error *error) {
 }
 
 /* Traces one ray, as a renderer would: each thread has a tracer of its own. */
-static raytally_status ask(const Work *work, raytally_error *error) {
+static raytally_status trace_one(const Work *work, raytally_error *error) {
     raytally_tracer *tracer;
     raytally_hit hit;
     raytally_status status = raytally_tracer_new(work->accels[0], &tracer, error);
@@ -111,7 +111,7 @@ int main(int argc, char **argv) {
         status = raytally_rays_record(work.accels[0], RAYTALLY_PRIMARY, NULL, &work.rays, &error);
     if (status == RAYTALLY_OK) status = count(&work, &error);
     if (status == RAYTALLY_OK) status = time_both(&work, &error);
-    if (status == RAYTALLY_OK) status = ask(&work, &error);
+    if (status == RAYTALLY_OK) status = trace_one(&work, &error);
     if (status == RAYTALLY_OK) status = raytally_render(work.accels[0], 0, 0, image, NULL, &error);
     if (status != RAYTALLY_OK) fprintf(stderr, "embed: %s\n", error.message);
     clear(&work);

@@ -166,7 +166,7 @@ RAYTALLY_API raytally_status raytally_spec_format(const char *spec, char out[RAY
  * then be used like the others. No other thread may call raytally at the same time. Accelerators of a plugin
  * run in a process of their own, a fork of the program, so load and build them before the program starts many
  * threads. RAYTALLY_BAD_INPUT, and nothing is loaded, if the file is not a plugin, is of another version, or
- * does not survive loading. */
+ * fails while it loads. */
 RAYTALLY_API raytally_status raytally_plugin_load(const char *path, raytally_error *error);
 
 /** Builds the accelerator that `spec` describes: `NAME[:KEY=VALUE[,KEY=VALUE]...]`, with overlays in front as

@@ -174,7 +174,7 @@ static const RtOption options[] = {
     {"json", 0, NULL, RT_TO_FLAG(json), "One JSON document on stdout instead of the table"},
     {"rays-from", 0, "FILE.npy", RT_TO_TAKE(take_rays_from),
      "Measure the rays of FILE instead of recorded ones: an array of float32 of shape (N, 8) as `raytally "
-     "rays` writes it. --rays says what they ask for: nearest, or occlusion (any hit)"},
+     "rays` writes it. --rays chooses the query: nearest, or occlusion (any hit)"},
     {0}};
 
 /* ---- the report ---- */

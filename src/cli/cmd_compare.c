@@ -62,18 +62,19 @@ static const RtOption options[] = {
     {"with", 0, "PROGRAM", RT_TO_TEXT(with),
      "Another raytally, such as ../old/build/release/raytally, as `before`; this one is `after`"},
     {"accel", 'a', "SPEC", RT_TO_TAKE(take_accel),
-     "An accelerator, for a SCENE; once per accelerator. `all`: every one"},
+     "For a SCENE: an accelerator, or `all` of them; may be repeated"},
     {"strict", 0, NULL, RT_TO_FLAG(strict), "Exit code 1 if anything is slower"},
     {"margin", 0, "P%", RT_TO_PERCENT(margin),
      "Report only differences beyond P % (default: 0 with --with; 5% for directories, which are single "
      "runs)"},
     {"rounds", 0, "N", RT_TO_INTEGER(rounds, 1, RT_MAX_ROUNDS),
-     "With --with: at least N rounds; each starts both programs again (10; more if there are many cells)"},
+     "With --with: at least N rounds, each with both programs restarted (10; more if there are many cells)"},
     {"until", 0, "P%", RT_TO_PERCENT(until),
      "With --with: continue until all intervals are within P % of their medians, for at most 1000 rounds or "
      "--patience seconds"},
-    {"patience", 0, "SECONDS", RT_TO_SECONDS(patience, 1, 86400), "With --until: most seconds in all (600)"},
-    {"quick", 0, NULL, RT_TO_FLAG(quick), "The smaller variant of the EXPERIMENT"},
+    {"patience", 0, "SECONDS", RT_TO_SECONDS(patience, 1, 86400),
+     "With --until: at most this many seconds in total (600)"},
+    {"quick", 0, NULL, RT_TO_FLAG(quick), "Run the smaller variant of the EXPERIMENT"},
     {"threads", 0, "N", RT_TO_INTEGER(threads, 0, 1024), "Threads, as in `raytally bench`"},
     {"json", 0, NULL, RT_TO_FLAG(json), "One JSON document on stdout instead of the table"},
     {"worker", 0, NULL, RT_TO_HIDDEN_FLAG(worker), NULL}, /* experiment/worker.h */
@@ -190,13 +191,11 @@ const RtSyntax rt_compare_syntax = {
     .finish = finish,
     .help =
         "Report what is faster, slower or no different after a change, and which counts changed: from two "
-        "result "
-        "directories, or by running this raytally and another one in turns on the same rays, which finds "
-        "much "
-        "smaller differences."
-        "\vRatios are of throughput: above 1 means faster now. All intervals hold together in 95 %, however "
-        "many cells there are. Directories are single runs at two times; --margin allows for what such runs "
-        "differ by anyway. Examples:\n"
+        "result directories, or by alternating this raytally and another one on the same rays, which "
+        "finds much smaller differences.\v"
+        "Ratios are of throughput: above 1 means faster now. All intervals hold simultaneously with 95 % "
+        "confidence, however many cells there are. Directories are single runs at different times; "
+        "--margin allows for their systematic difference. Examples:\n"
         "  raytally compare balls --accel bvh --accel grid --with ../old/build/release/raytally\n"
         "  raytally compare experiments/first-look.yaml --quick --with ../old/build/release/raytally "
         "--until 1%\n"

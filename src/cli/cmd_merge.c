@@ -23,7 +23,7 @@ static void take_directory(void *options, const char *text, struct argp_state *s
 }
 
 static void finish(void *options, struct argp_state *state) {
-    if (!((Options *)options)->out) argp_error(state, "say where to: -o DIR");
+    if (!((Options *)options)->out) argp_error(state, "the result directory is missing: -o DIR");
 }
 
 static const RtOption options[] = {

@@ -83,7 +83,7 @@ static void remove_folder(const char *folder, const char *name) {
 static RtStatus write_folder(const char *folder, const char *name, RtError *error) {
     if (mkdir(folder, 0777) != 0) {
         if (errno == EEXIST)
-            return rt_fail(error, RT_BAD_INPUT, "%s exists already: choose another name or another --out",
+            return rt_fail(error, RT_BAD_INPUT, "%s already exists: choose another name or another --out",
                            folder);
         return rt_fail(error, RT_IO, "%s: creating the folder failed: %s", folder, strerror(errno));
     }

@@ -18,11 +18,11 @@ typedef struct Options {
 
 static void finish(void *options, struct argp_state *state) {
     const Options *o = options;
-    if (!o->out) argp_error(state, "say where the rays go: -o FILE.npy");
+    if (!o->out) argp_error(state, "the output file is missing: -o FILE.npy");
     rt_recording_finish(&o->recording, state);
 }
 
-static const RtOption options[] = {{"out", 'o', "FILE.npy", RT_TO_TEXT(out), "The file of the rays"},
+static const RtOption options[] = {{"out", 'o', "FILE.npy", RT_TO_TEXT(out), "The file to write"},
                                    {"threads", 't', "N", RT_TO_INTEGER(threads, 0, 1024),
                                     "Threads, 0 for all processors (0); the rays do not depend on them"},
                                    {0}};
@@ -64,7 +64,7 @@ const RtSyntax rt_rays_syntax = {
     .finish = finish,
     .help = "Write the rays that `raytally bench` measures to a file for NumPy.\v"
             "Each row of the array, float32 of shape (N, 8), is a ray: origin x y z, tmin, direction x y z "
-            "(of any length: t is in units of it), tmax. `raytally bench --rays-from` and `raytally verify "
+            "(of any length; t is measured in it), tmax. `raytally bench --rays-from` and `raytally verify "
             "--rays-from` read such a file from any renderer. Example:\n"
             "  raytally rays balls --rays diffuse -o rays.npy\n"
             "  raytally bench balls --accel bvh --rays-from rays.npy --rays nearest --hits hits.npy\n"

@@ -85,7 +85,8 @@ static const RtOption options[] = {
     {"depth", 'd', "N", RT_TO_INTEGER(depth, 1, RT_MAX_DEPTH),
      "Levels of the ray tree, the primary ray being the first, 1..64 (default 5)"},
     {"threads", 't', "N", RT_TO_INTEGER(threads, 1, 1024), "Threads (default: all processors)"},
-    {"output", 'o', "FILE", RT_TO_TAKE(take_output), "The image, .png or .exr; may be given once for each"},
+    {"output", 'o', "FILE", RT_TO_TAKE(take_output),
+     "The image, .png or .exr; may be repeated, once for each format"},
     {"stats", 0, "FILE.json", RT_TO_PATH(stats, ".json"), "Counts by ray kind, times and sizes"},
     {"check", 0, NULL, RT_TO_FLAG(check),
      "Compare the answer to every ray, and the frame, with those of brute; exit code 1 if one differs. brute "
@@ -256,7 +257,7 @@ static void print_summary(const Run *run) {
     else if (total_rays(run) > 0)
         print_rays(run);
     else
-        printf(", not traced: the picture shows cells alone.");
+        printf(", not traced: the picture shows only cells.");
     const char *written[MOST_OUTPUTS];
     size_t count = list_outputs(o, written);
     for (size_t i = 0; i < count; i++) printf("%s%s", i ? ", " : " Wrote ", written[i]);
@@ -274,7 +275,7 @@ static RtStatus check_kind(const Run *run, const RtAccel *brute, const RtRaySet 
     rt_reference_clear(&reference);
     if (status != RT_OK) return status;
     if (!result.any_wrong && result.occluded_wrong == 0) {
-        printf("%s: all %llu %s rays answered like brute.\n", run->spec, (unsigned long long)set->count,
+        printf("%s: the hits of all %llu %s rays equal brute's.\n", run->spec, (unsigned long long)set->count,
                rt_ray_kind_name(set->kind));
         return RT_OK;
     }
@@ -303,7 +304,7 @@ static RtStatus check_frame(const Run *run, const RtAccel *brute, RtError *error
                        "%s: the frame differs from brute's in column %zu, row %zu of samples", run->spec,
                        i % got->sampling.columns, i / got->sampling.columns);
     }
-    printf("%s: the frame is brute's, bit for bit.\n", run->spec);
+    printf("%s: the frame equals brute's, bit for bit.\n", run->spec);
     return RT_OK;
 }
 

@@ -53,7 +53,7 @@ static void finish(void *options, struct argp_state *state) {
 
 static const RtOption options[] = {
     {"index", 'i', "FOLDER", RT_TO_TAKE(take_index),
-     "Write FOLDER/index.html over all result directories in it, as in `--index results`"},
+     "Write FOLDER/index.html, a page that lists all result directories in FOLDER, as in `--index results`"},
     {0}};
 static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
 const RtSyntax rt_report_syntax = {
@@ -62,8 +62,9 @@ const RtSyntax rt_report_syntax = {
     .arguments = "DIR\n--index FOLDER",
     .argument = RT_ARGUMENT("DIR", directory, NULL),
     .finish = finish,
-    .help = "Write DIR/report.html again, from what is in DIR, and tables.md and tables.tex beside it.\n"
-            "--index: FOLDER/index.html, a page over all result directories in FOLDER and its folders."};
+    .help =
+        "Write DIR/report.html again, from what is in DIR, and tables.md and tables.tex beside it.\n"
+        "--index: FOLDER/index.html, a page that lists all result directories in FOLDER and its subfolders."};
 
 int rt_command_report(int argc, char **argv) {
     Options o = {0};

@@ -14,8 +14,20 @@
 
 enum { MOST_CSV_BYTES = 1 << 28 };
 
-static RtStatus count_again(RtResults *results, RtError *error) {
-    RtWorkloadOptions options = {.timing = 1, .count_only = true};
+typedef struct Options {
+    const char *directory;
+    const char *scene; /* label of the only scene to count, or NULL */
+} Options;
+
+static RtStatus check_scene(const char *scene, const RtExperiment *experiment, RtError *error) {
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        if (!scene || rt_only_scene(&(RtOnly){.scene = scene}, experiment, t)) return RT_OK;
+    }
+    return rt_fail(error, RT_BAD_INPUT, "--only: the experiment has no scene with the label '%s'", scene);
+}
+
+static RtStatus count_again(RtResults *results, const char *scene, RtError *error) {
+    RtWorkloadOptions options = {.timing = 1, .count_only = true, .only.scene = scene};
     RtProgress progress = rt_progress_begin(&options);
     options.observer = rt_progress_observer(&progress);
     RtStatus status = RT_OK;
@@ -26,6 +38,12 @@ static RtStatus count_again(RtResults *results, RtError *error) {
     return status;
 }
 
+/* With its '\n', if there is one. */
+static size_t line_length(const char *line) {
+    size_t length = strcspn(line, "\n");
+    return length + (line[length] != '\0');
+}
+
 /* A note if the line is not followed by another. */
 static const char *end_of_line(const char *line) {
     return *line == '\0'                       ? "(nothing more)"
@@ -33,25 +51,29 @@ static const char *end_of_line(const char *line) {
                                                : "";
 }
 
-/* RT_MISMATCH with the first line that differs. */
-static RtStatus compare(const char *path, const char *kept, const char *counted, RtError *error) {
-    if (strcmp(kept, counted) == 0) return RT_OK;
-    size_t line = 1, start = 0; /* of the first line that differs */
-    for (size_t i = 0; kept[i] && kept[i] == counted[i]; i++) {
-        if (kept[i] != '\n') continue;
-        line++;
-        start = i + 1;
+/* Compares line by line; RT_MISMATCH with the first line that differs. If one scene alone was counted, only
+ * the header and the lines that begin as the counted ones do, with the scene's name, are compared. */
+static RtStatus compare(const char *path, const char *kept, const char *counted, bool one_scene,
+                        RtError *error) {
+    const char *first = counted + line_length(counted);
+    size_t name = !one_scene ? 0 : *first == '"' ? strcspn(first + 1, "\"") + 2 : strcspn(first, ",\n") + 1;
+    for (size_t line = 1; *kept || *counted; line++) {
+        size_t length = line_length(kept);
+        bool other = line > 1 && *kept && strncmp(kept, first, name) != 0;
+        if (!other && (length != line_length(counted) || memcmp(kept, counted, length) != 0)) {
+            return rt_fail(error, RT_MISMATCH,
+                           "%s:%zu: differs from the new counts:\n  there: %.*s%s\n  now:   %.*s%s", path,
+                           line, (int)strcspn(kept, "\n"), kept, end_of_line(kept),
+                           (int)strcspn(counted, "\n"), counted, end_of_line(counted));
+        }
+        kept += length;
+        if (!other) counted += length;
     }
-    kept += start;
-    counted += start;
-    return rt_fail(error, RT_MISMATCH,
-                   "%s:%zu: differs from the new counts:\n  there: %.*s%s\n  now:   %.*s%s", path, line,
-                   (int)strcspn(kept, "\n"), kept, end_of_line(kept), (int)strcspn(counted, "\n"), counted,
-                   end_of_line(counted));
+    return RT_OK;
 }
 
 static RtStatus compare_file(const char *directory, RtResultFile file, const RtResults *results,
-                             const RtPublished *published, RtError *error) {
+                             const RtPublished *published, const char *scene, RtError *error) {
     char path[RT_MAX_PATH], *kept = NULL, *counted = NULL;
     size_t size;
     RT_TRY(rt_path_join(directory, rt_result_files[file], path, error));
@@ -60,49 +82,54 @@ static RtStatus compare_file(const char *directory, RtResultFile file, const RtR
     rt_result_file_write(file, results, published, stream);
     RtStatus status = fclose(stream) == 0 ? RT_OK : rt_fail_memory(error, "the counts", 0);
     if (status == RT_OK) status = rt_file_read(path, MOST_CSV_BYTES, &kept, &size, error);
-    if (status == RT_OK) status = compare(path, kept, counted, error);
-    if (status == RT_OK) printf("Reproduced: %s, byte for byte\n", path);
+    if (status == RT_OK) status = compare(path, kept, counted, scene, error);
+    if (status == RT_OK)
+        printf("Reproduced: %s%s%s, byte for byte\n", scene ? scene : "", scene ? " in " : "", path);
     rt_free(kept);
     free(counted);
     return status;
 }
 
-static RtStatus compare_all(const char *directory, const RtResults *results, RtError *error) {
+/* Comparisons with published figures need all scenes. */
+static RtStatus compare_all(const char *directory, const RtResults *results, const char *scene,
+                            RtError *error) {
     RtPublished published;
     RtStatus status = rt_published_load(&published, results->experiment, error);
-    if (status == RT_OK) rt_published_compare(&published, results);
+    if (status == RT_OK && !scene) rt_published_compare(&published, results);
     for (int i = 0; status == RT_OK && i < RT_RESULT_FILE_COUNT; i++) {
         const RtFileSort sort = rt_result_file_sort(results->experiment, (RtResultFile)i);
-        if (sort == RT_FILE_COUNTED || sort == RT_FILE_COMPARED)
-            status = compare_file(directory, (RtResultFile)i, results, &published, error);
+        if (sort == RT_FILE_COUNTED || (sort == RT_FILE_COMPARED && !scene))
+            status = compare_file(directory, (RtResultFile)i, results, &published, scene, error);
     }
-    if (status == RT_OK) status = rt_published_check(&published, error);
+    if (status == RT_OK && !scene) status = rt_published_check(&published, error);
     rt_published_clear(&published);
     return status;
 }
 
 static RtStatus reproduce(const char *directory, RtResults *results, const void *options, RtError *error) {
-    (void)options;
+    const char *scene = ((const Options *)options)->scene;
     rt_cli_tell_plugins(directory, results->experiment);
     /* The copy in the directory does not find its scenes; the original does. */
     RtExperiment *original = rt_alloc(1, sizeof *original);
     if (!original) return rt_fail_memory(error, "an experiment", sizeof *original);
     RtStatus status = rt_manifest_experiment(directory, original, error);
     rt_results_clear(results);
+    if (status == RT_OK) status = check_scene(scene, original, error);
     if (status == RT_OK) status = rt_results_init(results, original, error);
-    if (status == RT_OK) status = count_again(results, error);
-    if (status == RT_OK) status = compare_all(directory, results, error);
+    if (status == RT_OK) status = count_again(results, scene, error);
+    if (status == RT_OK) status = compare_all(directory, results, scene, error);
     rt_results_clear(results);
     rt_free(original);
     return status;
 }
 
-typedef struct Options {
-    const char *directory;
-} Options;
-
+static const RtOption options[] = {
+    {"only", 0, "SCENE", RT_TO_TEXT(scene),
+     "Count and compare only the rows of one scene, by its label; published figures are left out"},
+    {0}};
 static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
 const RtSyntax rt_reproduce_syntax = {
+    .options = options,
     .children = children,
     .arguments = "DIR",
     .argument = RT_DIRECTORY_ARGUMENT,

@@ -140,7 +140,7 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, RtError *er
     rt_format_duration(forecast.left, duration);
     printf("%u cell%s, %u of them finished; the others take %s %s%s\n", forecast.cells,
            rt_plural(forecast.cells), forecast.finished, forecast.guessed ? "at least" : "about", duration,
-           forecast.guessed ? " (rounds by milliseconds: nothing is timed yet)" : "");
+           forecast.guessed ? " (estimated from rounds and milliseconds, since nothing is timed yet)" : "");
     return RT_OK;
 }
 

@@ -34,12 +34,12 @@ static void take_kind(void *options, const char *text, struct argp_state *state)
 }
 
 static void finish(void *options, struct argp_state *state) {
-    if (!((Options *)options)->aimed) argp_error(state, "say which ray: --pixel X,Y");
+    if (!((Options *)options)->aimed) argp_error(state, "the pixel is missing: --pixel X,Y");
 }
 
 static const RtOption options[] = {
     {"pixel", 'p', "X,Y", RT_TO_TAKE(take_pixel),
-     "The ray through the middle of this pixel, 0,0 being the upper left"},
+     "The ray through the middle of this pixel, 0,0 is the upper left"},
     {"accel", 'a', "SPEC", RT_TO_TEXT(accel), "Accelerator (default bvh); `raytally accels` lists them"},
     {"size", 's', "WxH", RT_TO_SIZE(size), "Size of the image in pixels (default: the scene's)"},
     {"rays", 'k', "KIND", RT_TO_TAKE(take_kind),
@@ -48,7 +48,7 @@ static const RtOption options[] = {
     {"light", 0, "N", RT_TO_INTEGER(light, 0, UINT32_MAX),
      "The light that the shadow ray goes to (default 0)"},
     {"svg", 0, "FILE.svg", RT_TO_PATH(svg, RT_CLI_PICTURES),
-     "Draw the path: a section through the ray, and what it met where"},
+     "Draw the path: a section through the scene along the ray, with each step and test"},
     {"rows", 0, "N", RT_TO_INTEGER(rows, 0, UINT32_MAX),
      "Print at most N rows, 0 for all (200); rows of hits are always printed"},
     {"json", 'j', NULL, RT_TO_FLAG(json), "One JSON document on stdout, with all rows"},
@@ -122,7 +122,7 @@ static void print_counts(const RtTally *t) {
         printf(" %llu %s,", (unsigned long long)rt_tally_get(t, i), rt_tally_name(i));
         any = true;
     }
-    puts(any ? " as the counted kernel says too" : " nothing is counted");
+    puts(any ? " equal to the counted kernel's" : " nothing is counted");
 }
 
 static void print_answer(const RtPath *path, const RtGeometry *g) {

@@ -53,7 +53,7 @@ static void finish(void *options, struct argp_state *state) {
             state,
             "--replay traces the ray in FILE and prints text: it takes no SCENE, --accel, --out or --json");
     if (o->rays_from && (o->quick || o->rays > 0 || o->replay || o->scene_count == 0))
-        argp_error(state, "--rays-from names all rays of one SCENE: name the SCENE, and leave out --rays, "
+        argp_error(state, "--rays-from replaces the rays of one SCENE: name the SCENE, and leave out --rays, "
                           "--quick and --replay");
     if (o->start != RT_START_FRESH && !o->folder)
         argp_error(state, "--resume and --force need the run's directory: --out DIR");
@@ -72,7 +72,7 @@ static const RtOption options[] = {
      "and rays that graze, start and end on surfaces, and run along axes, edges and faces"},
     {"rays-from", 0, "FILE.npy", RT_TO_TEXT(rays_from),
      "Trace the rays of FILE instead: an array of float32 of shape (N, 8), as `raytally rays` writes it. "
-     "Each ray asks for its nearest hit and for any hit"},
+     "Each ray is traced for its nearest hit and for any hit"},
     {"seed", 's', "S", RT_TO_INTEGER(seed, 0, INT64_MAX),
      "Seed of the random rays and of the families of scenes (default 1)"},
     {"threads", 't', "N", RT_TO_INTEGER(threads, 0, 1024), "Threads; 0, the default, is all processors"},
@@ -160,10 +160,10 @@ static void print_row(Show *show, const json_t *row) {
         if (json_is_null(json_object_get(wrong, "objects_left"))) {
             printf("    Traced again, the answer is right. ");
         } else if (json_is_true(json_object_get(wrong, "shrunk"))) {
-            printf("    It takes %lld object%s of the scene. ", number(wrong, "objects_left"),
+            printf("    Reduced to %lld object%s. ", number(wrong, "objects_left"),
                    rt_plural((uint64_t)number(wrong, "objects_left")));
         } else {
-            printf("    The scene is not shrunk: enough failures have been. ");
+            printf("    The scene is not reduced: only the first failures are. ");
         }
         rt_cli_plugin_arguments(plugins, sizeof plugins);
         printf("To repeat: raytally verify --replay '%s'%s\n", rt_json_text(wrong, "replay", ""), plugins);
@@ -232,12 +232,11 @@ static void print_total(const Options *o, const RtVerifySum *sums, uint32_t coun
 
 static void print_left_out(const Options *o) {
     if (!o->quick) return;
-    printf("This was the short check, with %" PRIu64 " ray%s per scene instead of %d", o->rays,
-           rt_plural(o->rays), MANY_RAYS);
+    printf("--quick used %" PRIu64 " ray%s per scene instead of %d", o->rays, rt_plural(o->rays), MANY_RAYS);
     if (o->choice.scenes_left_out > 0)
-        printf(", without %u larger scene%s", o->choice.scenes_left_out,
+        printf(", and left out %u larger scene%s", o->choice.scenes_left_out,
                rt_plural(o->choice.scenes_left_out));
-    puts(": leave --quick out to be sure");
+    puts(". Omit it for the full check.");
 }
 
 static RtStatus print_totals(const Options *o, const json_t *rows, RtError *error) {
@@ -304,7 +303,7 @@ static RtStatus replay(const Options *o, bool *failed, RtError *error) {
         RtAnswer answer;
         status = rt_replay_ask(&file, maker, shrunk, &answer, error);
         if (status == RT_OK) {
-            print_answer(shrunk ? "shrunk" : "scene", &file.failure, &answer);
+            print_answer(shrunk ? "reduced" : "scene", &file.failure, &answer);
             *failed |= answer.wrong;
             asked++;
         } else if ((shrunk ? status == RT_NOT_AVAILABLE && !file.shrunk_yaml : file.shrunk_yaml != NULL) &&
@@ -325,15 +324,15 @@ const RtSyntax rt_verify_syntax = {
     .arguments = "[SCENE...]\n--replay FILE",
     .argument = {.name = "SCENE", .take = take_scene},
     .finish = finish,
-    .help =
-        "Verify that accelerators answer every ray of each SCENE (default: some fifty small scenes that are "
-        "hard on accelerators) like brute: the same object and the same bits of t, timed and counted, singly "
-        "and in streams. SCENE may be `families`, generated scenes that are hard on accelerators, or one of "
-        "them, as in family:kind=slivers,seed=7 (`raytally scenes family` lists them).\v"
-        "Accelerators that compute in their own arithmetic (Embree's native mode) get verdicts: equal, tie, "
-        "marginal (explained by rounding) or wrong. raytally writes the first wrong answer of each row to a "
-        "file (in --out DIR, or in verify-failures/), with the scene shrunk to the objects that it takes; "
-        "--replay traces it again. Exit code 1 if anything is wrong."};
+    .help = "Verify that each accelerator hits the same object as brute, with the same bits of t, for every "
+            "ray of each SCENE, in the timed and the counted kernel, ray by ray and in streams. The default "
+            "is some fifty small scenes that are hard for accelerators. SCENE may be `families`, generated "
+            "scenes that are hard for accelerators, or one of them, as in family:kind=slivers,seed=7 "
+            "(`raytally scenes family` lists them).\v"
+            "Accelerators that compute in their own arithmetic (Embree's native mode) get verdicts: equal, "
+            "tie, marginal (explained by rounding) or wrong. raytally writes the first wrong answer of each "
+            "row to a file (in --out DIR, or in verify-failures/), with the scene reduced to the objects "
+            "that cause it; --replay traces it again. Exit code 1 if anything is wrong."};
 
 int rt_command_verify(int argc, char **argv) {
     static Options o;

@@ -45,11 +45,11 @@ static const struct argp_option options[] = {
     {"pixel", KEY_PIXEL, "X,Y", 0, "For light: mark the cell that the shadow ray of this pixel reads", 1},
     {0, 0, 0, 0, "Heatmaps, the cost of each pixel:", 2},
     {"heatmap", KEY_HEATMAP, "COUNTER FILE.png", 0,
-     "object_tests, extent_tests, steps, or any other counter; may be given once for each. Several --accel "
-     "are drawn side by side on one scale",
+     "object_tests, extent_tests, steps, or any other counter; may be repeated. Several --accel are drawn "
+     "side by side on one scale",
      2},
     {"heatmap-max", KEY_MAX, "VALUE", 0,
-     "The value of the brightest colour; larger values get it too (default: the maximum)", 2},
+     "Values from this on get the brightest colour (default: the maximum)", 2},
     {"heatmap-scale", KEY_SCALE, "linear|log", 0,
      "How values map to colours (default: log if the mean is below an eighth of the maximum)", 2},
     {"heatmap-rays", KEY_RAYS, "KIND", 0, "Count only primary, shadow, reflection or transmission rays", 2},
@@ -101,7 +101,10 @@ static void parse_slice(RtPictureOptions *o, struct argp_state *state, const cha
     if (text[0] && text[1] == '=') o->boxes.at = strtod(text + 2, &end);
     bool number = end && end > text + 2 && *end == 0 && isfinite(o->boxes.at);
     if (!text[0] || !axis || (!o->in_middle && !number))
-        argp_error(state, "--slice: invalid value '%s': expected an axis, and where, as in z or z=0.5", text);
+        argp_error(
+            state,
+            "--slice: invalid value '%s': expected an axis, or an axis and a position, as in z or z=0.5",
+            text);
     o->boxes.axis = (int)(axis - "xyz");
 }
 
@@ -191,17 +194,15 @@ RtStatus rt_pictures_check(const RtPictureOptions *o, const RtAccel *accel, RtEr
     if (!o->structure) return RT_OK;
     RT_TRY(rt_structure_layer(accel, o->layer, &layer, error));
     if (o->of_boxes && layer->ops->find_cell)
-        return rt_fail(
-            error, RT_BAD_INPUT,
-            "%s needs a layer that has boxes, such as bvh or grid, and the picture shows %s: leave it out, "
-            "or choose another --layer",
-            o->of_boxes, layer->ops->name);
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s needs a layer that has boxes, such as bvh or grid, but the picture shows %s: "
+                       "leave it out, or choose another --layer",
+                       o->of_boxes, layer->ops->name);
     if (o->of_light && !has_cells_of_lights(layer))
-        return rt_fail(
-            error, RT_BAD_INPUT,
-            "%s needs the cells around a light, which the layer light has, and the picture shows %s: "
-            "leave it out, or draw light, as in --accel light:cells=64+bvh",
-            o->of_light, layer->ops->name);
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s needs the cells around a light, which only the layer light has, but the picture "
+                       "shows %s: leave it out, or draw light, as in --accel light:cells=64+bvh",
+                       o->of_light, layer->ops->name);
     return RT_OK;
 }
 

@@ -20,7 +20,7 @@ static const struct argp_option options[] = {
     {"plugin", OPT_PLUGIN, "FILE.so", 0,
      "Load your own accelerators; may be repeated. $" VARIABLE
      " names more files and folders, joined by ':' (in a name, '\\:'). Each plugin runs in its own process; "
-     "raytally gives it up after $RAYTALLY_PLUGIN_SECONDS (60) without progress",
+     "raytally stops it after $RAYTALLY_PLUGIN_SECONDS (60) without progress",
      100},
     {0}};
 

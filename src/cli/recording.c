@@ -93,8 +93,9 @@ void rt_recording_finish(const RtRecordingOptions *o, struct argp_state *state) 
     if (given && o->frame)
         argp_error(state, "%s applies to recorded rays; --rays-from measures all rays of its file", o->frame);
     if (given && !o->kinds)
-        argp_error(state,
-                   "say what the rays of --rays-from ask for: --rays nearest, or --rays occlusion (any hit)");
+        argp_error(
+            state,
+            "choose the query for the rays of --rays-from: --rays nearest, or --rays occlusion (any hit)");
     if (o->kinds) {
         parse_kinds(e, o->kinds, state);
     } else if (one) {

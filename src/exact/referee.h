@@ -17,10 +17,10 @@
 /* X(CONSTANT, name, meaning) */
 #define RT_SIDES(X)                                                                                          \
     X(BOTH, both, "both answers are right")                                                                  \
-    X(EXPECTED, expected, "the expected answer alone is right")                                              \
-    X(GOT, got, "the other answer alone is right")                                                           \
-    X(NEITHER, neither, "none is right")                                                                     \
-    X(UNDECIDED, undecided, "memory did not suffice to decide on a CSG tree that may be nearest")
+    X(EXPECTED, expected, "only the expected answer is right")                                               \
+    X(GOT, got, "only the other answer is right")                                                            \
+    X(NEITHER, neither, "neither is right")                                                                  \
+    X(UNDECIDED, undecided, "there was not enough memory to decide on a CSG tree that may be nearest")
 
 typedef enum RtSide {
 #define RT_SIDE_ENUM(CONSTANT, name, meaning) RT_SIDE_##CONSTANT,

@@ -32,8 +32,8 @@ __attribute__((format(printf, 2, 3))) static RtStatus fail(const Reader *r, cons
     va_end(args);
     return rt_fail(
         r->error, RT_BAD_INPUT,
-        "%s; a claim is as 'object_tests of grid falls with density', 'ratio of time of grid to bvh "
-        "on balls > 5' or 'exponent of time of bvh in n < 0.5' (experiments/README.md)",
+        "%s; claims are written as in 'object_tests of grid falls with density', 'ratio of time of grid to "
+        "bvh on balls > 5' or 'exponent of time of bvh in n < 0.5' (experiments/README.md)",
         what);
 }
 
@@ -75,7 +75,7 @@ static RtStatus read_measure(Reader *r) {
     }
     rt_suggest(word(r), measures, MEASURES, suggestion);
     rt_join_names(measures, MEASURES, list, sizeof list);
-    return fail(r, "'%s' is no measure%s choose one of %s", word(r), *suggestion ? suggestion : ":", list);
+    return fail(r, "'%s' is not a measure%s choose one of %s", word(r), *suggestion ? suggestion : ":", list);
 }
 
 /* The number of candidates with that label or base; *last is one of them. */
@@ -103,7 +103,7 @@ static RtStatus read_other(Reader *r) {
     uint32_t count = count_accels(r->experiment, word(r), &r->claim->other);
     if (count == 0) return fail(r, "'%s' is not the label of one of the accelerators", word(r));
     if (count > 1) {
-        return fail(r, "'%s' names %u accelerators: name one of them, as '%s'", word(r), count,
+        return fail(r, "'%s' names %u accelerators: name one of them, as in '%s'", word(r), count,
                     r->experiment->candidates[r->claim->other].label);
     }
     r->at++;
@@ -134,7 +134,7 @@ static RtStatus find_key(const Reader *r, const char *name, size_t length, RtSwe
         *key = keys[k];
         found++;
     }
-    if (found == 0) return fail(r, "'%.*s' is no swept parameter", (int)length, name);
+    if (found == 0) return fail(r, "'%.*s' is not a swept parameter", (int)length, name);
     if (found == 1) return RT_OK;
     return fail(r, "scenes and accelerators both sweep '%.*s': write scene.%.*s or accel.%.*s", (int)length,
                 name, (int)length, name, (int)length, name);
@@ -142,7 +142,7 @@ static RtStatus find_key(const Reader *r, const char *name, size_t length, RtSwe
 
 static RtStatus read_axis(Reader *r) {
     RT_TRY(find_key(r, word(r), strlen(word(r)), &r->claim->key));
-    if (!r->claim->key.number) return fail(r, "the values of '%s' are no numbers", word(r));
+    if (!r->claim->key.number) return fail(r, "the values of '%s' are not numbers", word(r));
     r->at++;
     return RT_OK;
 }
@@ -166,7 +166,7 @@ static void extreme(const RtExperiment *experiment, const RtSweptKey *key, bool 
 static RtStatus read_at(Reader *r) {
     RtClaim *claim = r->claim;
     bool largest = take(r, "largest"), smallest = !largest && take(r, "smallest");
-    if (claim->place_count == RT_MAX_CLAIM_PLACES) return fail(r, "it has too many places");
+    if (claim->place_count == RT_MAX_CLAIM_PLACES) return fail(r, "it names too many places (`at`)");
     RtSweptKey *key = &claim->places[claim->place_count].key;
     char *value = claim->places[claim->place_count++].value;
     size_t length = strcspn(word(r), "=");
@@ -179,7 +179,7 @@ static RtStatus read_at(Reader *r) {
                                : "",
                     word(r));
     }
-    if ((largest || smallest) && !key->number) return fail(r, "the values of '%s' are no numbers", word(r));
+    if ((largest || smallest) && !key->number) return fail(r, "the values of '%s' are not numbers", word(r));
     if (largest || smallest)
         extreme(r->experiment, key, largest, value);
     else
@@ -191,7 +191,7 @@ static RtStatus read_at(Reader *r) {
             found |= text && strcmp(text, value) == 0;
         }
     }
-    if (!found) return fail(r, "'%s' is no value of '%.*s'", value, (int)length, word(r));
+    if (!found) return fail(r, "'%s' is not a value of '%.*s'", value, (int)length, word(r));
     r->at++;
     return RT_OK;
 }
@@ -246,7 +246,7 @@ static RtStatus read_comparison(Reader *r) {
     }
     r->claim->greater = i >= 2;
     r->claim->or_equal = i % 2 == 1;
-    if (!rt_swept_number(word(r), &r->claim->number)) return fail(r, "'%s' is no number", word(r));
+    if (!rt_swept_number(word(r), &r->claim->number)) return fail(r, "'%s' is not a number", word(r));
     r->at++;
     return RT_OK;
 }

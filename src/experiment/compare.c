@@ -195,7 +195,8 @@ static const void *tally_after(const void *row) {
     X(ns_before, "ns_before", real6, "ns", "time per ray before; median", TIMED(1e9 * r->cell->before))      \
     X(ns_after, "ns_after", real6, "ns", "time per ray after; median", TIMED(1e9 * r->cell->after))          \
     X(ratio, "ratio", real6, "", "throughput after over that before; median", TIMED(r->cell->ratio.median))  \
-    X(ratio_low, "ratio_low", end, "", "lower end of its interval; all intervals hold together in 95 %",     \
+    X(ratio_low, "ratio_low", end, "",                                                                       \
+      "lower end of its interval; all intervals hold simultaneously with 95 % confidence",                   \
       TIMED(r->cell->ratio.low))                                                                             \
     X(ratio_high, "ratio_high", end, "", "upper end of its interval", TIMED(r->cell->ratio.high))
 
@@ -277,12 +278,13 @@ void rt_comparison_print(const RtComparison *comparison, FILE *out) {
     if (comparison->timed == 0) return;
     fprintf(out,
             "Ratios are of throughput. All %" PRIu32
-            " intervals hold together in 95 %%; the widest is\n+-%.2g %%.",
+            " intervals hold simultaneously with 95 %% confidence;\nthe widest is +-%.2g %%.",
             comparison->timed, 100 * widest_of(comparison));
     if (comparison->rounds)
         fprintf(out, " %" PRIu32 " round%s in %.0f s.", comparison->rounds, rt_plural(comparison->rounds),
                 comparison->seconds);
-    if (comparison->margin > 0) fprintf(out, " Differences count beyond %.3g %%.", 100 * comparison->margin);
+    if (comparison->margin > 0)
+        fprintf(out, " Smaller differences than %.3g %% are not reported.", 100 * comparison->margin);
     fputc('\n', out);
 }
 

@@ -265,8 +265,9 @@ static bool is_enough(Run *run) {
     if (run->round < run->rounds) return false;
     if (programs->until <= 0 || width <= programs->until) return true;
     if (passed < programs->patience) return false;
-    snprintf(message, sizeof message, "after %u rounds in %.0f s intervals are within %.2g %%, not %.2g %%",
-             run->round, passed, 100 * width, 100 * programs->until);
+    snprintf(message, sizeof message,
+             "after %u rounds in %.0f s the intervals are within %.2g %%, not within %.2g %%", run->round,
+             passed, 100 * width, 100 * programs->until);
     if (programs->notice) programs->notice(programs->context, message);
     return true;
 }

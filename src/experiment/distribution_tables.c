@@ -18,24 +18,24 @@ typedef RtDistributionRow Row;
     X(accel, "accelerator", text, "", "the accelerator's label in the experiment",                           \
       rt_candidate_label(r->results->experiment, r->candidate))                                              \
     X(quantity, "quantity", text, "",                                                                        \
-      "object_tests, extent_tests, steps: of a ray, each asked by itself; leaf_size, leaf_depth: objects "   \
-      "in the list of a leaf or voxel, and its depth",                                                       \
+      "object_tests, extent_tests, steps: per ray, each traced alone; leaf_size, leaf_depth: objects in "    \
+      "the list of a leaf or voxel, and its depth",                                                          \
       rt_quantity_name(r->quantity))                                                                         \
     X(spec, "accel", text, "", "the accelerator with every effective parameter",                             \
       rt_build_at(r->results, r->workload, r->candidate)->spec)                                              \
     X(count, "count", integer, "", "rays, or leaves", r->distribution->count)                                \
     X(mean, "mean", real6, "", "mean of the quantity",                                                       \
       (double)r->distribution->sum / (double)r->distribution->count)                                         \
-    X(median, "median", integer, "", "the least value that half of them do not exceed",                      \
+    X(median, "median", integer, "", "the smallest value that half of them do not exceed",                   \
       r->distribution->median)                                                                               \
-    X(p90, "p90", integer, "", "the least that 90 % do not exceed", r->distribution->p90)                    \
-    X(p99, "p99", integer, "", "the least that 99 % do not exceed", r->distribution->p99)                    \
-    X(p999, "p999", integer, "", "the least that 99.9 % do not exceed", r->distribution->p999)               \
+    X(p90, "p90", integer, "", "the smallest that 90 % do not exceed", r->distribution->p90)                 \
+    X(p99, "p99", integer, "", "the smallest that 99 % do not exceed", r->distribution->p99)                 \
+    X(p999, "p999", integer, "", "the smallest that 99.9 % do not exceed", r->distribution->p999)            \
     X(max, "max", integer, "", "the largest value", r->distribution->most)                                   \
-    X(low, "low", integer, "", "least value of the bin", rt_histogram_low(r->bin))                           \
-    X(end, "end", integer, "", "least value beyond the bin", rt_histogram_low(r->bin + 1))                   \
+    X(low, "low", integer, "", "smallest value of the bin", rt_histogram_low(r->bin))                        \
+    X(end, "end", integer, "", "smallest value above the bin", rt_histogram_low(r->bin + 1))                 \
     X(values, "values", integer, "", "rays, or leaves, within it", r->distribution->bins[r->bin])            \
-    X(part, "part", real6, "", "as a part of all",                                                           \
+    X(part, "part", real6, "", "as a fraction of all",                                                       \
       (double)r->distribution->bins[r->bin] / (double)r->distribution->count)
 
 RT_TABLE_COLUMNS(columns, COLUMNS)

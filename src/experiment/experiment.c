@@ -32,9 +32,9 @@ RtStatus rt_given_kind_parse(const char *name, RtRayKind *kind, RtError *error) 
         *kind = given[i].kind;
         if (strcmp(given[i].name, name) == 0) return RT_OK;
     }
-    return rt_fail(error, RT_BAD_INPUT,
-                   "rays of a file ask for the nearest hit or for any hit: nearest or occlusion, not '%.40s'",
-                   name);
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "rays of a file are traced for the nearest hit (nearest) or any hit (occlusion), not '%.40s'", name);
 }
 
 const char *rt_experiment_kind_name(const RtExperiment *experiment, RtRayKind kind) {

@@ -120,7 +120,7 @@ static const char *below_label(const Row *r) {
       r->results->experiment->workloads[r->workload].label)                                                  \
     X(accel, "accelerator", text, "", "the accelerator's label in the experiment",                           \
       rt_candidate_label(r->results->experiment, r->candidate))                                              \
-    X(group, "group", text, "", "the group that the experiment puts it in",                                  \
+    X(group, "group", text, "", "its group in the experiment",                                               \
       r->results->experiment->candidates[r->candidate].group)                                                \
     X(rays, "rays", integer, "", "rays of the frame", r->cost[RT_FRAME_ALL].rays)                            \
     X(object_tests, "object_tests", real6, "", "object tests of the frame", r->cost[0].object_tests)         \
@@ -139,11 +139,12 @@ static const char *below_label(const Row *r) {
     X(shadow_faster, "shadow_faster", real6, "", "of the shadow rays", faster(r, RT_FRAME_SHADOW))           \
     X(secondary_faster, "secondary_faster", real6, "", "of reflection and transmission rays",                \
       faster(r, RT_FRAME_SECONDARY))                                                                         \
-    X(below, "below", text, "", "of an overlay: the accelerator below it, if that is measured too",          \
+    X(below, "below", text, "", "for an overlay: the accelerator below it, if that is measured too",         \
       below_label(r))                                                                                        \
-    X(gain, "gain", real6, "", "times_faster; of an overlay, than the accelerator below it", r->gain)        \
-    X(tests_gain, "tests_gain", real6, "", "the same of times_fewer", r->tests_gain)                         \
-    X(winner, "winner", flag, "", "whether it has the largest gain of the accelerators that are compared",   \
+    X(gain, "gain", real6, "", "times_faster; for an overlay, relative to the accelerator below it",         \
+      r->gain)                                                                                               \
+    X(tests_gain, "tests_gain", real6, "", "the same for times_fewer", r->tests_gain)                        \
+    X(winner, "winner", flag, "", "whether its gain is the largest of the compared accelerators",            \
       rt_field_flag(r->candidate == r->winner))                                                              \
     X(eye_label, "  accelerator", text, "", "> marks the one that helps most", label_of(r))                  \
     X(mega_tests, "Mtests", figure, "million", "object tests of the frame", 1e-6 * r->cost[0].object_tests)  \
@@ -265,7 +266,8 @@ static void say_followers(Text *text, const RtResults *results, uint32_t t, uint
     say(text, "%s", any ? "." : "");
 }
 
-/* "Beside wide alone, item+wide is 1.12 times as fast, and light+wide 1.00 times." Without the winner. */
+/* "Compared with wide alone, item+wide is 1.12 times as fast, and light+wide 1.00 times." Without the winner.
+ */
 static void say_overlays(Text *text, const RtResults *results, uint32_t t, uint32_t winner) {
     const RtExperiment *experiment = results->experiment;
     const uint32_t none = experiment->candidate_count, told = below_of(results, t, winner);
@@ -274,7 +276,7 @@ static void say_overlays(Text *text, const RtResults *results, uint32_t t, uint3
         bool any = false;
         for (uint32_t c = told == below ? winner : none; (c = next_of(results, t, below, c)) != none;
              any = true) {
-            if (!any) say(text, " Beside %s alone,", rt_candidate_label(experiment, below));
+            if (!any) say(text, " Compared with %s alone,", rt_candidate_label(experiment, below));
             say(text, "%s %s %s%s times%s", any ? ", and" : "", rt_candidate_label(experiment, c),
                 any ? "" : "is ", figure(gain_of(results, t, c), number),
                 any                      ? ""
@@ -341,12 +343,11 @@ void rt_frame_title(const RtResults *results, uint32_t workload, char out[RT_MAX
 /* ---- to read ---- */
 
 void rt_frame_legend(const RtExperiment *experiment, char out[RT_MAX_FRAME_SENTENCE]) {
-    snprintf(
-        out, RT_MAX_FRAME_SENTENCE,
-        "For a whole frame: object tests in millions, time and build time in ms, and how many times fewer "
-        "and faster than %s; then how many times faster for each kind of ray (second: reflection and "
-        "transmission). > helps most of %s.",
-        experiment->frame.without, experiment->frame.among);
+    snprintf(out, RT_MAX_FRAME_SENTENCE,
+             "A whole frame: object tests in millions, time and build time in ms; how many times fewer "
+             "tests, and how many times faster, than %s; then the same by kind of ray (second: reflection "
+             "and transmission). > helps most of %s.",
+             experiment->frame.without, experiment->frame.among);
 }
 
 static void print_rows(const RtResults *results, uint32_t workload, FILE *out) {

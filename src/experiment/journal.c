@@ -116,12 +116,11 @@ static RtStatus check_plugins(const char *path, const RtExperiment *experiment, 
         baseline |= rt_plugins_concern(changed, experiment, experiment->baseline + i);
     if (renew && !baseline) return RT_OK;
     const char *name = json_object_iter_key(json_object_iter((json_t *)changed));
-    rt_plugins_change_format(name, json_object_get(changed, name), "when this run was begun", "now",
-                             sentence);
+    rt_plugins_change_format(name, json_object_get(changed, name), "when this run began", "now", sentence);
     if (baseline)
         return rt_fail(
             error, RT_BAD_INPUT,
-            "%s: %s, and so is the baseline: replace this run with --force, or choose another --out", path,
+            "%s: %s; this changes the baseline: replace this run with --force, or choose another --out", path,
             sentence);
     return rt_fail(error, RT_BAD_INPUT,
                    "%s: %s: measure its cells again and keep all others with --renew, replace the run with "

@@ -100,7 +100,7 @@ static void print_strides(const RtResults *results, uint32_t t, bool timed, FILE
                                     candidate->label, candidate->ray_stride);
         if (timed) {
             snprintf(text + n, sizeof text - n,
-                     "  Its ratio compares with %s on those same rays, and so is not the quotient of the "
+                     "  Its ratio compares it with %s on the same rays, so it is not the quotient of the "
                      "throughputs above.",
                      rt_baseline_label(experiment));
         }
@@ -184,8 +184,8 @@ void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
     }
     if (rounds >= RT_FULL_ROUNDS) return;
     snprintf(out + n, size - (size_t)n,
-             " Rounds: %" PRIu32 ", too few for 95 %%; an interval spans all measurements and holds the "
-             "median with %.3g %%. Use %d or more.",
+             " Rounds: %" PRIu32 ", too few for 95 %%; an interval spans all measurements and contains the "
+             "median with %.3g %% confidence. Use %d or more.",
              rounds, 100 * coverage, RT_FULL_ROUNDS);
 }
 

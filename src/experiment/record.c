@@ -48,7 +48,7 @@ void rt_record_reject(RtRecordReader *reader, const char *key, const char *wante
     if (reader->status != RT_OK) return;
     reader->status = rt_fail_at(reader->error, reader->path, reader->line, 0,
                                 "'%s' is not %s: the journal is damaged, or from another version of "
-                                "raytally. Remove this line; --resume then measures it again",
+                                "raytally. Remove this line; --resume then measures its cells again",
                                 key, wanted);
 }
 

@@ -100,29 +100,29 @@ static double each_ns(const Row *r, RtEach each) {
     X(width, "width", integer, "pixels", "width of the frame whose rays are recorded", r->scene->width)      \
     X(height, "height", integer, "pixels", "height of the frame", r->scene->height)                          \
     X(corners, "corners", flag, "", "samples at pixel corners, not centres", r->setup->corners)              \
-    X(depth, "depth", integer, "", "levels of the ray tree, the primary ray being one", r->setup->depth)     \
+    X(depth, "depth", integer, "", "levels of the ray tree; the primary ray is the first", r->setup->depth)  \
     X(kind, "kind", text, "", "kind of the rays", rt_experiment_kind_name(r->results->experiment, r->kind))  \
     X(set_rays, "set_rays", integer, "", "rays in the set, after the limit", r->scene->rays[r->kind])        \
     X(set_hash, "set_hash", hash, "", "fingerprint of the set", r->scene->ray_fingerprints[r->kind])         \
     X(accel, "accelerator", text, "", "the accelerator's label in the experiment; (again): a null run",      \
       label_of(r))                                                                                           \
     X(spec, "accel", text, "", "the accelerator with every effective parameter", r->build->spec)             \
-    X(ray_stride, "ray_stride", integer, "", "k, where only each kth ray of the set is measured",            \
+    X(ray_stride, "ray_stride", integer, "", "k, if only every kth ray of the set is measured",              \
       ray_stride_of(r))                                                                                      \
     X(rays, "rays", integer, "", "rays measured", r->all.rays)                                               \
-    X(hits, "hits", integer, "", "of them, those that hit an object", r->cell->tally.hits)                   \
+    X(hits, "hits", integer, "", "those that hit an object", r->cell->tally.hits)                            \
     X(build_seconds, "build_seconds", real6, "s", "time to build; median of up to 3", r->build->seconds)     \
     X(bytes, "bytes", integer, "bytes", "memory of the structure's arrays", r->build->shape.bytes)           \
     X(threads, "threads", integer, "", "threads of the timing", threads_of(r))                               \
-    X(rounds, "rounds", integer, "", "how often it was timed", r->cell->rounds)                              \
-    X(coverage, "ratio_coverage", real6, "", "probability with which intervals hold the median",             \
+    X(rounds, "rounds", integer, "", "timing rounds", r->cell->rounds)                                       \
+    X(coverage, "ratio_coverage", real6, "", "probability that an interval contains the median",             \
       TIMED(rt_interval_coverage(r->cell->rounds)))                                                          \
-    X(ns, "ns", real6, "ns", "processor time per ray, by the clock on several threads; median",              \
+    X(ns, "ns", real6, "ns", "processor time per ray (wall time on several threads); median",                \
       1e9 * r->cell->seconds.median)                                                                         \
     X(ns_low, "ns_low", real6, "ns", "lower end of its interval", 1e9 * r->cell->seconds.low)                \
     X(ns_high, "ns_high", real6, "ns", "upper end of its interval", 1e9 * r->cell->seconds.high)             \
-    X(ns_min, "ns_min", real6, "ns", "the smallest such time", 1e9 * r->cell->seconds.least)                 \
-    X(wall_ns, "wall_ns", real6, "ns", "time per ray by the clock; median", 1e9 * r->cell->wall.median)      \
+    X(ns_min, "ns_min", real6, "ns", "smallest time", 1e9 * r->cell->seconds.least)                          \
+    X(wall_ns, "wall_ns", real6, "ns", "wall time per ray; median", 1e9 * r->cell->wall.median)              \
     X(wall_ns_low, "wall_ns_low", real6, "ns", "lower end of its interval", 1e9 * r->cell->wall.low)         \
     X(wall_ns_high, "wall_ns_high", real6, "ns", "upper end of its interval", 1e9 * r->cell->wall.high)      \
     X(mrays_per_s, "mrays_per_s", real6, "million/s", "rays per second, by the median",                      \
@@ -133,7 +133,7 @@ static double each_ns(const Row *r, RtEach each) {
       r->all.ratio.median)                                                                                   \
     X(ratio_low, "ratio_low", end, "", "lower end of its interval", r->all.ratio.low)                        \
     X(ratio_high, "ratio_high", end, "", "upper end of its interval", r->all.ratio.high)                     \
-    X(straddles_1, "straddles_1", flag, "", "whether 1 is between them, as it should be in a null run",      \
+    X(straddles_1, "straddles_1", flag, "", "whether the interval contains 1, as it should in a null run",   \
       rt_field_flag(rt_estimate_holds(&r->cell->ratio, 1)))                                                  \
     X(object_tests, "object_tests", integer, "", "object tests counted here; empty: not known",              \
       known(r->cell->tally.object_tests, r->all.object_tests))                                               \
@@ -141,7 +141,7 @@ static double each_ns(const Row *r, RtEach each) {
       known(r->cell->tally.extent_tests, r->all.extent_tests))                                               \
     X(steps, "steps", integer, "", "steps counted here; empty: not known",                                   \
       known(r->cell->tally.steps, r->all.steps))                                                             \
-    X(differ, "differ", integer, "", "answers unlike the baseline's; 0 if exact", r->cell->differ)           \
+    X(differ, "differ", integer, "", "answers that differ from the reference; 0 if exact", r->cell->differ)  \
     X(instructions, "instructions", real6, "", "instructions retired, per ray; median of 5 rounds",          \
       EVENT(instructions))                                                                                   \
     X(cycles, "cycles", real6, "", "processor cycles, per ray", EVENT(cycles))                               \
@@ -151,11 +151,12 @@ static double each_ns(const Row *r, RtEach each) {
     X(instructions_per_cycle, "instructions_per_cycle", real6, "", "instructions per cycle",                 \
       EVENT(instructions) / EVENT(cycles))                                                                   \
     X(running, "running", real6, "",                                                                         \
-      "least part of the time that an event was counted; below 1 events took turns, and counts are scaled",  \
+      "smallest fraction of the time in which an event was counted; below 1, events took turns and counts "  \
+      "are scaled",                                                                                          \
       *r->cell->hardware.why ? (double)NAN : r->cell->hardware.counts.running)                               \
     X(why, "why", text, "", "why nothing could be counted; else empty",                                      \
       *r->cell->hardware.why ? r->cell->hardware.why : NULL)                                                 \
-    X(host, "host", text, "", "the machine that measured", machine_of(r)->host)                              \
+    X(host, "host", text, "", "host of the measurement", machine_of(r)->host)                                \
     X(cpu, "cpu", text, "", "its processor", machine_of(r)->cpu)                                             \
     X(tests_a_ray, "tests/ray", figure, "", "object tests per ray", r->all.object_tests)                     \
     X(extents_a_ray, "ext./ray", figure, "", "extent tests per ray", r->all.extent_tests)                    \
@@ -163,7 +164,7 @@ static double each_ns(const Row *r, RtEach each) {
     X(ns_a_ray, "ns/ray", figure, "ns", "median time per ray", 1e9 * r->all.seconds.median)                  \
     X(ns_interval, "ns/ray", interval, "ns", "median time per ray, with its interval",                       \
       estimate(&r->all.seconds, 1e-9))                                                                       \
-    X(eye_label, "accelerator", text, "", "the label, where there is room", short_label_of(r))               \
+    X(eye_label, "accelerator", text, "", "the label, if there is room", short_label_of(r))                  \
     X(eye_tests, "tests", figure, "", "object tests per ray", r->all.object_tests)                           \
     X(eye_extents, "ext.", figure, "", "extent tests per ray", r->all.extent_tests)                          \
     X(eye_steps, "steps", figure, "", "steps per ray", r->all.steps)                                         \
@@ -172,7 +173,8 @@ static double each_ns(const Row *r, RtEach each) {
     X(build_ms, "build ms", amount, "ms", "time to build the structure", 1e3 * r->build->seconds)            \
     X(mb, "MB", amount, "MB", "memory of the structure", 1e-6 * (double)r->build->shape.bytes)               \
     X(break_even, "break-even (rays)", text, "rays",                                                         \
-      "for how many rays it takes less time than the baseline, both builds included", break_even_of(r))      \
+      "the number of rays for which it takes less time than the baseline, including both builds",            \
+      break_even_of(r))                                                                                      \
     X(min_ns, "min ns", figure, "ns", "smallest time per ray", 1e9 * r->all.seconds.least)                   \
     X(msteps_per_s, "msteps_per_s", real6, "million/s", "steps per second: mrays_per_s times steps per ray", \
       1e-6 * r->all.steps / r->all.seconds.median)                                                           \
@@ -183,14 +185,16 @@ static double each_ns(const Row *r, RtEach each) {
       SPREAD(object_tests)->median)                                                                          \
     X(tests_p99, "99 %", integer, "", "that 99 % do not exceed", SPREAD(object_tests)->p99)                  \
     X(tests_most, "most", integer, "", "of the ray that has most", SPREAD(object_tests)->most)               \
-    X(steps_median, "steps: 50 %", integer, "", "the same of steps", SPREAD(steps)->median)                  \
+    X(steps_median, "steps: 50 %", integer, "", "steps that half of the rays do not exceed",                 \
+      SPREAD(steps)->median)                                                                                 \
     X(steps_p99, "99 %", integer, "", "that 99 % do not exceed", SPREAD(steps)->p99)                         \
     X(steps_most, "most", integer, "", "of the ray that has most", SPREAD(steps)->most)                      \
     X(size_median, "leaf size: 50 %", integer, "", "objects that half of the leaves do not exceed",          \
       LEAVES(leaf_size)->median)                                                                             \
     X(size_p99, "99 %", integer, "", "that 99 % do not exceed", LEAVES(leaf_size)->p99)                      \
     X(size_most, "most", integer, "", "of the largest", LEAVES(leaf_size)->most)                             \
-    X(depth_median, "depth: 50 %", integer, "", "the same of depths", LEAVES(leaf_depth)->median)            \
+    X(depth_median, "depth: 50 %", integer, "", "depth that half of the leaves do not exceed",               \
+      LEAVES(leaf_depth)->median)                                                                            \
     X(depth_p99, "99 %", integer, "", "that 99 % do not exceed", LEAVES(leaf_depth)->p99)                    \
     X(depth_most, "most", integer, "", "of the deepest", LEAVES(leaf_depth)->most)                           \
     X(eye_instructions, "instr./ray", figure, "", "instructions", EVENT(instructions))                       \
@@ -199,11 +203,11 @@ static double each_ns(const Row *r, RtEach each) {
     X(eye_cache, "cache m.", figure, "", "cache misses per ray", EVENT(cache_misses))                        \
     X(eye_branch, "branch m.", figure, "", "mispredicted branches per ray", EVENT(branch_misses))            \
     X(round, "round", integer, "", "number of the round, from 1", r->round + 1)                              \
-    X(round_ns, "ns", real6, "ns", "processor time per ray in it, by the clock on several threads",          \
+    X(round_ns, "ns", real6, "ns", "processor time per ray in this round (wall time on several threads)",    \
       each_ns(r, RT_EACH_SECONDS))                                                                           \
-    X(round_wall_ns, "wall_ns", real6, "ns", "time per ray by the clock", each_ns(r, RT_EACH_WALL))          \
+    X(round_wall_ns, "wall_ns", real6, "ns", "wall time per ray", each_ns(r, RT_EACH_WALL))                  \
     X(round_baseline_ns, "baseline_ns", real6, "ns",                                                         \
-      "the baseline's in this round, on the same rays, as round_ns; over that, the ratio",                   \
+      "time per ray of the baseline in this round, on the same rays; divided by ns it is the ratio",         \
       each_ns(r, RT_EACH_BASELINE))
 
 RT_TABLE_COLUMNS(columns, COLUMNS)

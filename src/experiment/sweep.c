@@ -70,7 +70,7 @@ typedef struct Sweep {
 static RtStatus fail_range(const char *text, int length, RtError *error) {
     return rt_fail(
         error, RT_BAD_INPUT,
-        "'%.*s' is no range: write LOW..HIGH+STEP with a step above 0, or LOW..HIGH*FACTOR with a factor "
+        "'%.*s' is not a range: write LOW..HIGH+STEP with a step above 0, or LOW..HIGH*FACTOR with a factor "
         "above 1 and LOW above 0, LOW below HIGH, as in 1..9+2 or 1e2..1e7*10; a list is 1|4|16",
         length, text);
 }
@@ -78,14 +78,14 @@ static RtStatus fail_range(const char *text, int length, RtError *error) {
 static RtStatus add_value(SweptParam *param, const char *text, size_t length, RtError *error) {
     if (length == 0 || length >= RT_MAX_SWEPT_CHARS) {
         return rt_fail(error, RT_BAD_INPUT,
-                       "'%.*s' of %s is no value for a list: values have 1..%d characters", (int)length, text,
-                       param->key, RT_MAX_SWEPT_CHARS - 1);
+                       "'%.*s' of %s is not a value for a list: values have 1..%d characters", (int)length,
+                       text, param->key, RT_MAX_SWEPT_CHARS - 1);
     }
     for (uint32_t i = 0; i < param->count; i++) {
         if (strlen(param->values[i]) == length && strncmp(param->values[i], text, length) == 0) return RT_OK;
     }
     if (param->count == RT_MAX_SWEEP_VALUES) {
-        return rt_fail(error, RT_BAD_INPUT, "%s takes more than %d values: take a larger step or factor",
+        return rt_fail(error, RT_BAD_INPUT, "%s takes more than %d values: choose a larger step or factor",
                        param->key, RT_MAX_SWEEP_VALUES);
     }
     snprintf(param->values[param->count++], RT_MAX_SWEPT_CHARS, "%.*s", (int)length, text);
@@ -125,7 +125,7 @@ static RtStatus add_range(SweptParam *param, const char *text, size_t length, si
         snprintf(number, sizeof number, "%.9g", whole ? round(value) : value);
         RT_TRY(add_value(param, number, strlen(number), error));
     }
-    return rt_fail(error, RT_BAD_INPUT, "'%.*s' is more than %d values: take a larger step or factor",
+    return rt_fail(error, RT_BAD_INPUT, "'%.*s' is more than %d values: choose a larger step or factor",
                    (int)length, text, RT_MAX_SWEEP_VALUES);
 }
 

@@ -113,12 +113,12 @@ static RtStatus check_differ(const RtWorkloadState *workload, uint32_t candidate
     const RtWorkloadShare *share = &workload->shares[candidate];
     if (count->differ == 0) return RT_OK;
     return rt_fail(error, RT_MISMATCH,
-                   "%s on %s answers %llu of %llu %s rays unlike %s%s, the first of them ray %llu; "
-                   "`raytally verify` shows what is wrong",
+                   "%s on %s: the answers to %llu of %llu %s rays differ from those of %s%s, the first for "
+                   "ray %llu; `raytally verify` shows what is wrong",
                    rt_candidate_label(workload->experiment, candidate),
                    workload->experiment->workloads[workload->index].label, (unsigned long long)count->differ,
                    (unsigned long long)share->set.count, rt_experiment_kind_name(workload->experiment, kind),
-                   rt_accel_default(), count->timed_kernel ? " where nothing is counted" : "",
+                   rt_accel_default(), count->timed_kernel ? " in the timed kernel" : "",
                    (unsigned long long)count->first);
 }
 
@@ -132,10 +132,10 @@ static RtStatus check_answers(const RtWorkloadState *workload, uint32_t candidat
     RT_TRY(check_differ(workload, candidate, kind, count, error));
     if (count->tally.rays == share->set.count && count->tally.hits == hits) return RT_OK;
     return rt_fail(error, RT_MISMATCH,
-                   "%s on %s counts %llu %s rays with %llu hits, where there are %llu with %llu", accel,
-                   scene, (unsigned long long)count->tally.rays,
-                   rt_experiment_kind_name(workload->experiment, kind), (unsigned long long)count->tally.hits,
-                   (unsigned long long)share->set.count, (unsigned long long)hits);
+                   "%s on %s counts %llu %s rays with %llu hits, but there are %llu with %llu", accel, scene,
+                   (unsigned long long)count->tally.rays, rt_experiment_kind_name(workload->experiment, kind),
+                   (unsigned long long)count->tally.hits, (unsigned long long)share->set.count,
+                   (unsigned long long)hits);
 }
 
 static RtStatus count_cell(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtCell *cell,

@@ -140,9 +140,8 @@ static void report_width(const TimingRun *run) {
     double width = widest_of(run, &candidate);
     if (workload->options->until <= 0 || width <= workload->options->until) return;
     snprintf(message, sizeof message,
-             "%s rays on %s: after %u rounds in %.0f s intervals are within %.2g %%, not %.2g %%; the widest "
-             "is that of "
-             "%s",
+             "%s rays on %s: after %u rounds in %.0f s the intervals are within %.2g %%, not within %.2g %%; "
+             "the widest is that of %s",
              rt_experiment_kind_name(workload->experiment, run->kind),
              workload->experiment->workloads[workload->index].label, run->rounds,
              rt_wall_seconds() - run->start, 100 * width, 100 * workload->options->until,

@@ -40,8 +40,7 @@ static RtStatus count_taught(RtAccel *accel, const RtRaySet *set, const RtHit *h
     if (!accel->exact || count.differ == 0) return RT_OK;
     return rt_fail(error, RT_MISMATCH,
                    "%s: %" PRIu64
-                   " answers differ from those of the kernel that does not count, the first on "
-                   "ray %" PRIu64,
+                   " answers of the counted kernel differ from the timed one's, the first on ray %" PRIu64,
                    accel->ops->name, count.differ, count.first);
 }
 

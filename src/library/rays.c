@@ -11,7 +11,7 @@ enum { COHERENT_RUN = 256 };
 
 static RtStatus check_kind(enum raytally_ray_kind kind, RtError *error) {
     if ((unsigned)kind < RT_RAY_KIND_COUNT) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT, "there is no kind of rays of number %d", (int)kind);
+    return rt_fail(error, RT_BAD_INPUT, "no kind of rays has the number %d", (int)kind);
 }
 
 static RtStatus check_recording(const raytally_record_options *how, const RtAccel *accel, RtError *error) {

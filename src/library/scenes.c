@@ -117,8 +117,10 @@ void raytally_scene_size(const raytally_scene *scene, uint32_t *width, uint32_t 
 static RtStatus check_free(raytally_scene *scene, RtError *error) {
     unsigned count = atomic_load(&scene->accelerators);
     if (count == 0) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT,
-                   "the camera of a scene changes before accelerators are built over it: %u are", count);
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "the camera of a scene cannot change once accelerators are built over it: free them first (%u)",
+        count);
 }
 
 static bool is_place(RtVec3 p) {

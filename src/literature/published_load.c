@@ -66,7 +66,7 @@ static RtStatus copy_field(const RtCsv *csv, uint32_t r, const char *column, cha
         strcpy(out, field);
         return RT_OK;
     }
-    return rt_fail_at(error, csv->path, csv->lines[r], 0, "%s: there is room for %zu characters", column,
+    return rt_fail_at(error, csv->path, csv->lines[r], 0, "%s: at most %zu characters are allowed", column,
                       size - 1);
 }
 

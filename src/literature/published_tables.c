@@ -84,30 +84,33 @@ static RtField shown_figure(const void *row, const RtTableColumn *column) {
     X(scene, "scene", text, "", "the scene's label in the experiment",                                       \
       r->published->experiment->workloads[r->workload].label)                                                \
     X(source, "source", text, "", "who published it", r->row->source)                                        \
-    X(structure, "structure", text, "", "what the structure is called there", r->row->structure)             \
-    X(parameters, "parameters", text, "", "its parameters, as they are called there", r->row->parameters)    \
+    X(structure, "structure", text, "", "name of the structure there", r->row->structure)                    \
+    X(parameters, "parameters", text, "", "its parameters there", r->row->parameters)                        \
     X(accel, "accel", text, "", "label of the accelerator that is measured", r->accel)                       \
-    X(column, "column", text, "", "what the figure is about", rt_column_name(r->figure->column))             \
+    X(column, "column", text, "", "the measure of the figure", rt_column_name(r->figure->column))            \
     X(per, "per", text, "", "what object tests are divided by: ray, or hit (a ray that hits)", per_of(r))    \
     X(published, "published", real6, "", "the published figure", r->said)                                    \
     X(measured, "measured", real6, "", "what was measured here", measured_of(r))                             \
-    X(deviation, "deviation", percent, "%", "by how much more that is", r->figure->deviation)                \
-    X(tolerance, "tolerance", real9, "%", "how large a deviation may be",                                    \
-      tolerance_of(r, r->figure->column))                                                                    \
-    X(within, "within", flag, "", "whether it is no larger; empty: not judged", within_of(r))                \
-    X(reason, "reason", text, "", "why the figure is missed", reason_of(r->published, r->figure))            \
-    X(measure, "measure", text, "", "what is to be least, per ray of any kind", rt_measure_name(r->measure)) \
-    X(published_row, "best published row", text, "", "the row that has the least", name_of(r))               \
-    X(ours, "ours", real6, "", "what the one of ours needs that needs least", r->best->ours)                 \
-    X(extent_tests, "extent_tests", real6, "", "extent tests per ray that this one makes besides",           \
+    X(deviation, "deviation", percent, "%", "how much larger the measured figure is", r->figure->deviation)  \
+    X(tolerance, "tolerance", real9, "%", "largest allowed deviation", tolerance_of(r, r->figure->column))   \
+    X(within, "within", flag, "", "whether the deviation is within the tolerance; empty: not judged",        \
+      within_of(r))                                                                                          \
+    X(reason, "reason", text, "", "reason for a larger deviation", reason_of(r->published, r->figure))       \
+    X(measure, "measure", text, "", "the measure to minimise, per ray of any kind",                          \
+      rt_measure_name(r->measure))                                                                           \
+    X(published_row, "best published row", text, "", "the published row with the smallest value",            \
+      name_of(r))                                                                                            \
+    X(ours, "ours", real6, "", "the smallest value among our accelerators", r->best->ours)                   \
+    X(extent_tests, "extent_tests", real6, "", "extent tests per ray that this accelerator also makes",      \
       r->best->extent_tests)                                                                                 \
     X(ahead, "ahead", flag, "", "whether ours is less than what was published",                              \
       rt_field_flag(rt_best_is_ahead(r->best)))                                                              \
-    X(said4, "published", real4, "", "the least published figure", r->said)                                  \
-    X(our_accel, "ours", markup, "", "our accelerator that needs least", rt_field_print("`%s`", r->accel))   \
-    X(ours4, "measured", real4, "", "what it needs", ours_of(r))                                             \
-    X(extent_tests4, "extent tests", real4, "", "extent tests that it makes besides", r->best->extent_tests) \
-    X(judged, "column", text, "", "what figures are about, and how much they may deviate", judged_of(r))     \
+    X(said4, "published", real4, "", "the smallest published figure", r->said)                               \
+    X(our_accel, "ours", markup, "", "our accelerator with the smallest value",                              \
+      rt_field_print("`%s`", r->accel))                                                                      \
+    X(ours4, "measured", real4, "", "its value", ours_of(r))                                                 \
+    X(extent_tests4, "extent tests", real4, "", "extent tests that it also makes", r->best->extent_tests)    \
+    X(judged, "column", text, "", "the measure, and how much its figures may deviate", judged_of(r))         \
     X(figures, "figures", integer, "", "published figures", r->summary.figures)                              \
     X(inside, "within", integer, "", "those within the tolerance", r->summary.judged[RT_WITHIN])             \
     X(outside, "outside", integer, "", "those outside it", outside_of(r))                                    \

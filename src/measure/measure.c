@@ -133,9 +133,9 @@ static RtStatus check_counts(const RtAccel *accel, const RtTally *first, const R
     for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
         uint64_t was = rt_tally_get(first, i), is = rt_tally_get(second, i);
         if (was != is)
-            return rt_fail(error, RT_BROKEN, "%s: it counts %llu %s on some rays, and %llu when asked again",
-                           accel->ops->name, (unsigned long long)was, rt_tally_name(i),
-                           (unsigned long long)is);
+            return rt_fail(
+                error, RT_BROKEN, "%s: it counts %llu %s on some rays, and %llu when they are traced again",
+                accel->ops->name, (unsigned long long)was, rt_tally_name(i), (unsigned long long)is);
     }
     return RT_OK;
 }

@@ -187,7 +187,7 @@ static RtStatus spawn(const RtAccel *accel, RtRayKind kind, uint32_t light, RtRa
     RtSurface surface = rt_surface(scene, ray, hit, crossings);
     if (kind == RT_RAY_SHADOW) {
         if (light >= scene->light_count)
-            return rt_fail(error, RT_BAD_INPUT, "there is no light %u: the scene has %u, the first being 0",
+            return rt_fail(error, RT_BAD_INPUT, "there is no light %u: the scene has %u, numbered from 0",
                            light, scene->light_count);
         if (rt_shadow_ray(scene, &surface, light, ray, &arrives)) return RT_OK;
         return rt_fail(

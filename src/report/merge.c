@@ -61,7 +61,7 @@ static RtStatus check_alike(const Merge *merge, RtError *error) {
             const json_t *a = json_object_get(header_of(merge, 0), keys[k]);
             const json_t *b = json_object_get(header_of(merge, i), keys[k]);
             if (json_equal(a, b)) continue;
-            return rt_fail(error, RT_BAD_INPUT, "%s and %s are of different %s", merge->directories[0],
+            return rt_fail(error, RT_BAD_INPUT, "%s and %s have different %s", merge->directories[0],
                            merge->directories[i], what[k]);
         }
     }

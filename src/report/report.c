@@ -307,7 +307,7 @@ static void put_head(FILE *out, const RtResults *results, const json_t *manifest
     rt_html_wrap(out, "<p class=\"lede\">", experiment->question, "</p>\n");
     put_answer(out, results, directory);
     put_claims(out, results);
-    rt_page_card(out, "Finding", *experiment->finding ? experiment->finding : "Not written yet.");
+    rt_page_card(out, "Finding", *experiment->finding ? experiment->finding : "No finding yet.");
     rt_page_card(out, "Prediction, written before the run", experiment->prediction);
     rt_page_provenance(out, manifest);
     put_links(out, directory);
@@ -349,7 +349,7 @@ static void put_timing(FILE *out, const RtResults *results) {
     rt_interval_title(results->experiment, interval);
     fputs("Counting and timing are separate passes. Times are medians over rounds that run all accelerators "
           "in random order; ratios compare throughput with the baseline's, paired within a round. Intervals "
-          "are order statistics: they hold the median with a probability of at least  ",
+          "are order statistics: they contain the median with a probability of at least  ",
           out);
     fprintf(out, "%s. ", interval);
     rt_null_sentence(results, sentence);

@@ -206,7 +206,7 @@ static RtStatus open_text(const char *text, RtScene *scene, RtError *error) {
 }
 
 static RtStatus open_scene(const RtReplay *r, bool shrunk, RtScene *scene, RtError *error) {
-    if (shrunk && !r->shrunk_yaml) return rt_fail(error, RT_NOT_AVAILABLE, "the scene was not shrunk");
+    if (shrunk && !r->shrunk_yaml) return rt_fail(error, RT_NOT_AVAILABLE, "the scene was not reduced");
     if (shrunk) return open_text(r->shrunk_yaml, scene, error);
     RT_TRY(r->yaml ? open_text(r->yaml, scene, error) : rt_scene_open(r->scene_spec, scene, error));
     if (rt_scene_fingerprint(scene) == r->fingerprint) return RT_OK;

@@ -156,8 +156,7 @@ static RtStatus add_row(Run *run, json_t *row, RtError *error) {
 
 static void on_tried(void *context, uint32_t left, uint32_t tries) {
     char what[64];
-    snprintf(what, sizeof what, "shrinking a failure: %u object%s left, try %u", left, rt_plural(left),
-             tries);
+    snprintf(what, sizeof what, "reducing a scene: %u object%s left, try %u", left, rt_plural(left), tries);
     doing(context, what);
 }
 

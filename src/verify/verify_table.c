@@ -106,35 +106,36 @@ static const void *first_wrong_of(const void *row) {
 static const RtTableColumn members[] = {
     MEMBER("scene", text, "the scene"),
     MEMBER("accel", text, "the accelerator's spec"),
-    MEMBER("against", text, "whose answers are right: brute"),
-    MEMBER("rays", integer, "rays that it was asked"),
-    MEMBER("equal", integer, "answers to nearest that are those of brute"),
-    MEMBER("tie", integer, "those that name another object that is met there, too"),
+    MEMBER("against", text, "the reference: brute"),
+    MEMBER("rays", integer, "rays traced"),
+    MEMBER("equal", integer, "answers to nearest that equal brute's"),
+    MEMBER("tie", integer, "those that name another object that is also hit there"),
     MEMBER("marginal", integer, "those that are exactly right, or explained by rounding"),
     MEMBER("wrong", integer, "all others"),
     MEMBER("occluded_wrong", integer, "rays whose answer to occluded is wrong"),
     MEMBER("problem", text, "a broken structure, or too many marginal answers; empty: none"),
-    MEMBER("exact", flag, "whether it must give the bits of brute; if not, it gets verdicts"),
+    MEMBER("exact", flag, "whether its answers must equal brute's bit for bit; if not, they get verdicts"),
 };
 enum { OF_CSV = 10, AGAINST = 2 };
 
 #define SIDE(CONSTANT, name, meaning)                                                                        \
-    {"exactly_right_" #name, #name, "", "where they differ: " meaning, get_member, RT_FORM_integer, 0},
+    {"exactly_right_" #name, #name, "", "if they differ: " meaning, get_member, RT_FORM_integer, 0},
 static const RtTableColumn sides[] = {RT_SIDES(SIDE)};
 
 static const RtTableColumn first_wrong[] = {
-    MEMBER("replay", text, "file by which to ask for the first wrong answer again"),
-    MEMBER("objects_left", integer, "objects that it takes; empty: asked again, the answer is right"),
-    MEMBER("shrunk", flag, "whether others were left out, as is tried for an accelerator's first failure"),
+    MEMBER("replay", text, "replay file of the first wrong answer"),
+    MEMBER("objects_left", integer,
+           "objects left in the reduced scene; empty: traced again, the answer is right"),
+    MEMBER("shrunk", flag, "whether the scene was reduced; only an accelerator's first failure is"),
     MEMBER("index", integer, "number of the ray"),
-    MEMBER("says", text, "what was asked, expected and got, in one line"),
+    MEMBER("says", text, "the query, the expected and the actual answer, in one line"),
     MEMBER("query", text, "nearest or occluded"),
     MEMBER("kernel", text, "timed or counted"),
-    MEMBER("stream", integer, "how many rays were asked at once"),
+    MEMBER("stream", integer, "rays per query"),
     MEMBER("org", json, "origin of the ray: three numbers as text, which read back to the same bits"),
-    MEMBER("dir", json, "its direction, likewise"),
-    MEMBER("tmin", text, "t where it begins, as text"),
-    MEMBER("tmax", text, "t where it ends, as text"),
+    MEMBER("dir", json, "its direction, in the same form"),
+    MEMBER("tmin", text, "its tmin, as text"),
+    MEMBER("tmax", text, "its tmax, as text"),
     MEMBER("expected", json, "the answer of brute: object and t, or true or false"),
     MEMBER("got", json, "the answer of the accelerator"),
 };
@@ -209,27 +210,30 @@ static void write_markdown(const Sums *sums, FILE *out) {
     RtVerifySum total = rt_verify_total(sums->accels, sums->accel_count);
     fprintf(out, "# Verification\n\n%" PRIu64 " pair%s of a ray and an accelerator, ", total.pairs,
             rt_plural(total.pairs));
-    fputs("each asked `nearest` and `occluded`, timed and counted:\n", out);
+    fputs("each queried for `nearest` and `occluded`, timed and counted:\n", out);
     fprintf(out, "%" PRIu64 " answer%s to `nearest` %s wrong, %" PRIu64 " to `occluded`. ",
             total.verdicts[RT_WRONG], rt_plural(total.verdicts[RT_WRONG]),
             total.verdicts[RT_WRONG] == 1 ? "is" : "are", total.occluded_wrong);
     fprintf(out, "%u row%s, %u of which fail, %s in [verify.csv](verify.csv).\n", total.rows,
             rt_plural(total.rows), total.failed, total.rows == 1 ? "is" : "are");
     fputs(
-        "What was verified, with which seed and by which build, is in [manifest.json](manifest.json).\n\n"
-        "An answer of an exact accelerator is equal to that of `brute`, the same object and bits of t, or\n"
-        "wrong. One with a star has arithmetic of its own; its answers to `nearest` are equal, the same\n"
-        "object at nearly the same t; a tie, another object that is met there too; marginal, exactly right\n"
-        "or explained by rounding; or wrong. A row is a scene and an accelerator with certain parameters;\n"
-        "it fails where an answer is wrong or verify.csv names a problem. The first table sums up an\n"
-        "accelerator over all its parameters.\n",
+        "What was verified, with which seed and by which build, is in [manifest.json](manifest.json).\n"
+        "\n"
+        "An answer of an exact accelerator either equals that of `brute` (the same object and the same bits\n"
+        "of t) or is wrong. An accelerator with a star has its own arithmetic; an answer of it to `nearest`\n"
+        "is equal (the same object at nearly the same t), a tie (another object that is also hit there),\n"
+        "marginal (exactly right, or explained by rounding) or wrong. A row is a scene and an accelerator\n"
+        "with its parameters; it fails if an answer is wrong or verify.csv names a problem. The first table\n"
+        "adds up the rows of an accelerator over all its parameters.\n",
         out);
     write_sums(by_accel, sums->accels, sums->accel_count, sum_at, out);
     if (!total.exact) {
-        fputs("\n## Who is right\n\n"
-              "Answers to `nearest` that got the verdict marginal or wrong, by which of the two is right in "
-              "exact\n"
-              "arithmetic: `expected` is that of `brute` alone, `got` that of the accelerator alone.\n",
+        fputs("\n"
+              "## Who is right\n"
+              "\n"
+              "Answers to `nearest` with the verdict marginal or wrong, by which side is right in exact "
+              "arithmetic:\n"
+              "`expected` means only `brute`, `got` only the accelerator.\n",
               out);
         write_sums(by_side, sums->accels, sums->accel_count, inexact_at, out);
     }

@@ -222,9 +222,9 @@ RT_TEST(each_broken_invariant_is_named) {
     uint32_t *middle = &((RtItemBuffer *)accel)->samples[18 * 48 + 24], kept = *middle;
     assert_int_equal(kept, 1);
     *middle = 0;
-    assert_broken(accel, "meets object 1");
+    assert_broken(accel, "hits object 1");
     *middle = RT_NO_OBJECT;
-    assert_broken(accel, "meets object");
+    assert_broken(accel, "hits object");
     *middle = 2;
     assert_broken(accel, "names object 2");
     *middle = kept;

@@ -141,7 +141,7 @@ RT_TEST(validate_names_each_invariant_that_is_broken) {
 
     RtKdNode *root = &kd->nodes[0], saved = *root;
     root->link = (kd->node_count - 1) << 2;
-    assert_broken(&kd->base, "not where nodes are");
+    assert_broken(&kd->base, "outside the nodes");
     *root = saved;
     root->split = 100;
     assert_broken(&kd->base, "outside its cell");
@@ -154,14 +154,14 @@ RT_TEST(validate_names_each_invariant_that_is_broken) {
 
     RtKdNode *leaf = &kd->nodes[find_leaf(kd, 2)], kept = *leaf;
     leaf->first = kd->id_count - 1;
-    assert_broken(&kd->base, "not where lists are");
+    assert_broken(&kd->base, "outside the lists");
     *leaf = kept;
     uint32_t *ids = kd->ids + leaf->first, first = ids[0];
     ids[0] = ids[1];
     assert_broken(&kd->base, "not ascending ids");
     ids[0] = first;
     leaf->link -= 4;
-    assert_broken(&kd->base, "not where lists end");
+    assert_broken(&kd->base, "but the lists end");
     *leaf = kept;
     uint32_t last = ids[rt_kd_length(leaf) - 1];
     assert_true(last != 63);

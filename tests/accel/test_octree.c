@@ -88,7 +88,7 @@ RT_TEST(validate_names_each_invariant_that_is_broken) {
     tree->boxes[0] = box;
 
     root->first = tree->node_count - 7;
-    assert_broken(&tree->base, "not where nodes are");
+    assert_broken(&tree->base, "outside the nodes");
     *root = saved;
     root->split.y = 100;
     assert_broken(&tree->base, "outside its cell");
@@ -99,7 +99,7 @@ RT_TEST(validate_names_each_invariant_that_is_broken) {
     *root = saved;
 
     tree->nodes[1].parent = 9;
-    assert_broken(&tree->base, "no child of its parent");
+    assert_broken(&tree->base, "not a child of its parent");
     tree->nodes[1] = saved_child;
 
     box = tree->boxes[5];
@@ -116,7 +116,7 @@ RT_TEST(validate_names_each_invariant_that_is_broken) {
     RtOctreeNode *leaf = &tree->nodes[find_leaf(tree, 2)];
     saved = *leaf;
     leaf->first = tree->id_count - leaf->count + 1;
-    assert_broken(&tree->base, "not where lists are");
+    assert_broken(&tree->base, "outside the lists");
     *leaf = saved;
     uint32_t *last = &tree->ids[leaf->first + leaf->count - 1], id = *last;
     *last = 63;

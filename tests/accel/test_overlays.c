@@ -48,8 +48,8 @@ RT_TEST(a_wrong_plus_is_refused_with_a_remedy) {
     } wrong[] = {
         {"cache", "needs an accelerator below it: write cache+bvh"},
         {"cache+cache", "write cache+cache+bvh"},
-        {"grid+bvh", "grid answers every ray"},
-        {"cache+grid+bvh", "grid answers every ray"},
+        {"grid+bvh", "grid is not an overlay"},
+        {"cache+grid+bvh", "grid is not an overlay"},
         {"cache+", "'' is not the spec"},
         {"+bvh", "'+bvh' is not the spec"},
         {"cache++bvh", "'+bvh' is not the spec"},

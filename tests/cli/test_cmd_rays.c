@@ -230,7 +230,7 @@ RT_TEST(what_does_not_go_together_is_refused_and_leaves_no_file) {
         {"rays balls:size=1 -o y.npy --rays transmission", "has no transmission rays"},
         {"rays nope.nff -o y.npy", "there is no such file"},
         {"rays balls:size=1 --size 8x8 -o no/y.npy", "No such file"},
-        {"verify --accel bvh --rays-from x.npy", "all rays of one SCENE"},
+        {"verify --accel bvh --rays-from x.npy", "the rays of one SCENE"},
         {"verify balls:size=1 --rays 10 --rays-from x.npy", "leave out --rays"},
         {"verify balls:size=1 --quick --rays-from x.npy", "leave out --rays, --quick"}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {

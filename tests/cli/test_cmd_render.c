@@ -134,13 +134,13 @@ RT_TEST(every_heatmap_asked_for_is_written) {
 
 RT_TEST(a_check_compares_every_ray_with_brute) {
     assert_int_equal(render("balls:size=2 --size 64x64 --accel grid --check"), 0);
-    assert_says("all 4096 primary rays answered like brute");
-    assert_says("shadow rays answered like brute");
-    assert_says("reflection rays answered like brute");
-    assert_says("the frame is brute's, bit for bit");
+    assert_says("the hits of all 4096 primary rays equal brute's");
+    assert_says("shadow rays equal brute's");
+    assert_says("reflection rays equal brute's");
+    assert_says("the frame equals brute's, bit for bit");
     assert_int_equal(render("balls:size=2 --size 33x20 --corners --accel item+light+cache+octree --check"),
                      0);
-    assert_says("the frame is brute's, bit for bit");
+    assert_says("the frame equals brute's, bit for bit");
 }
 
 RT_TEST(work_of_the_build_is_reported_apart_from_tracing) {
@@ -163,7 +163,7 @@ RT_TEST(a_picture_of_cells_alone_takes_no_image_of_the_scene) {
         char arguments[512];
         snprintf(arguments, sizeof arguments, SMALL "--accel %s+bvh --structure " OUT ".png", layers[i]);
         assert_int_equal(render(arguments), 0);
-        assert_says("8 x 8 pixels, not traced: the picture shows cells alone");
+        assert_says("8 x 8 pixels, not traced: the picture shows only cells");
         snprintf(arguments, sizeof arguments,
                  SMALL "--accel %s+bvh --structure " OUT ".with.png -o " OUT ".image.png", layers[i]);
         assert_int_equal(render(arguments), 0);

@@ -128,12 +128,12 @@ RT_TEST(hard_scenes_are_verified_unasked_and_the_small_ones_with_quick) {
     json_decref(json);
     json_decref(quick);
     assert_int_equal(verify("--accel bvh --quick"), 0);
-    const char *last = strstr(text_of(OUT ".out"), "This was the short check, with 2000 rays");
+    const char *last = strstr(text_of(OUT ".out"), "--quick used 2000 rays");
     assert_non_null(last);
-    assert_non_null(strstr(last, "larger scenes: leave --quick out"));
+    assert_non_null(strstr(last, "larger scenes. Omit it for the full check."));
     assert_int_equal(verify("balls:size=1 --accel bvh"), 0);
     assert_non_null(strstr(text_of(OUT ".out"), "\n1 scene, 1 accelerator, 20000 rays, 20000 pairs"));
-    assert_null(strstr(text_of(OUT ".out"), "This was the short check"));
+    assert_null(strstr(text_of(OUT ".out"), "--quick used"));
 }
 
 RT_TEST(what_cannot_be_verified_is_refused_before_anything_is_printed) {
@@ -290,7 +290,7 @@ RT_TEST(a_replay_says_whether_the_answer_is_still_wrong) {
     write_replay(OUT ".json", "{\"yaml\": \"objects: [{sphere: {center: [0, 0, 0], radius: 1}}]\"}");
     assert_int_equal(verify("--replay '" OUT ".json'"), 0);
     assert_non_null(strstr(text_of(OUT ".err"), "has changed since"));
-    assert_non_null(strstr(text_of(OUT ".out"), "shrunk: right: ray 0, nearest, timed kernel"));
+    assert_non_null(strstr(text_of(OUT ".out"), "reduced: right: ray 0, nearest, timed kernel"));
     assert_non_null(strstr(text_of(OUT ".out"), "expected object 0 at t = 7, got object 0 at t = 7"));
 }
 

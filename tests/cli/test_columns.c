@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* docs/columns.md is what the columns of all tables say of themselves: the test says where the right one is.
- * And the files and documents that are there have these columns. */
+/* docs/columns.md is generated from the columns of all tables; the test says where the current page is. The
+ * committed files have these columns. */
 #include "testing.h"
 
 #include "core/base/file.h"
@@ -133,25 +133,18 @@ static void print_document(FILE *out) {
     static const RtColumnGroup groups[] = {RT_ALL(columns)};
     Section sections[SECTIONS];
     list(sections);
-    fputs(
-        "# Columns\n\n"
-        "What the columns of CSV files and the members of JSON documents are called, how they are written, "
-        "in\n"
-        "which unit, and what they mean. This page is made from the columns themselves: where it is another\n"
-        "one, `build/release/test_cli columns` fails and leaves the right one to be copied here. What is "
-        "not\n"
-        "known is empty in CSV and null in JSON. In JSON a name with a dot is that of a member of an "
-        "object;\n"
-        "yes is true, no is false, and an interval is an object of its three parts.\n"
-        "\n"
-        "Where an experiment sweeps parameters, `counts.csv`, `times.csv` and the rows of `bench --json` "
-        "have a "
-        "column more\n"
-        "for each of them, at the end: `scene.KEY` for a parameter of scenes, `accel.KEY` for one of "
-        "accelerators, as in\n"
-        "`accel.density`; empty where the row has no such parameter. All other columns are the same for "
-        "every experiment.\n",
-        out);
+    fputs("# Columns\n\n"
+          "The columns of all CSV files and the members of all JSON documents: name, form, unit and\n"
+          "meaning. The page is generated from the program's tables: if it is out of date,\n"
+          "`build/release/test_cli columns` fails and writes the current page, to be copied here. An\n"
+          "unknown value is empty in CSV and null in JSON. In JSON a dot in a name separates an object\n"
+          "from its member; yes is true, no is false, and an interval is an object of three numbers.\n"
+          "\n"
+          "If an experiment sweeps parameters, `counts.csv`, `times.csv` and the rows of `bench --json`\n"
+          "have one more column for each of them, at the end: `scene.KEY` for a parameter of scenes,\n"
+          "`accel.KEY` for one of accelerators, as in `accel.density`. It is empty if the row has no such\n"
+          "parameter. All other columns are the same for every experiment.\n",
+          out);
     for (size_t i = 0; i < SECTIONS; i++) {
         Row row = {.section = &sections[i]};
         const RtTable table = {RT_GROUPS(groups), .row_count = column_count(&sections[i].table),
@@ -173,7 +166,7 @@ RT_TEST(the_document_says_what_the_columns_say) {
         assert_non_null(right);
         fputs(text, right);
         fclose(right);
-        fail_msg("docs/columns.md is not what the columns say: copy " RT_BINARY_DIR "/columns.md to it");
+        fail_msg("docs/columns.md is out of date: copy " RT_BINARY_DIR "/columns.md to it");
     }
     free(text);
     rt_free(committed);

@@ -92,13 +92,13 @@ static void expect_sentence(uint32_t t, const char *sentence) {
 
 /* Frames take 4 ms, 0.136, 0.08, 0.011 and 0.02 ms. */
 FRAME_TEST(a_frame_weighs_each_kind_of_ray_by_its_set_and_an_overlay_gains_over_what_lies_below) {
-    expect_sentence(0,
-                    "On balls, clusters helps most of the six: 50.0 times as fast, with 200 times fewer "
-                    "object tests than brute. grid follows with 29.4 times. Beside wide alone, light+wide is "
-                    "1.82 times as fast. The fastest structure is light+wide: 364 times as fast as brute.");
+    expect_sentence(
+        0, "On balls, clusters helps most of the six: 50.0 times as fast, with 200 times fewer "
+           "object tests than brute. grid follows with 29.4 times. Compared with wide alone, light+wide is "
+           "1.82 times as fast. The fastest structure is light+wide: 364 times as fast as brute.");
     expect_sentence(
         1, "On tetra, grid helps most of the six: 100 times as fast, with 30.0 times fewer object "
-           "tests than brute. clusters follows with 50.0 times. Beside wide alone, light+wide is 1.00 "
+           "tests than brute. clusters follows with 50.0 times. Compared with wide alone, light+wide is 1.00 "
            "times as fast. The fastest structure is light+wide: 200 times as fast as brute.");
 }
 
@@ -114,7 +114,7 @@ FRAME_TEST(an_overlay_may_help_most) {
     for (uint32_t t = 0; t < 2; t++) set(t, WIDE, "wide:width=8", 4000, 4000, 6);
     expect_sentence(
         1, "On tetra, grid helps most of the six: 100 times as fast, with 30.0 times fewer object "
-           "tests than brute. clusters follows with 50.0 times. Beside wide alone, light+wide is 100 "
+           "tests than brute. clusters follows with 50.0 times. Compared with wide alone, light+wide is 100 "
            "times as fast. The fastest structure is light+wide: 200 times as fast as brute.");
     expect_sentence(0, "On balls, light+wide helps most of the six: 182 times as fast, with 3.00 times fewer "
                        "object tests than wide. Compared with brute, clusters comes with 50.0 times, grid "
@@ -127,7 +127,8 @@ FRAME_TEST(frames_whose_intervals_overlap_are_said_to_be_level) {
         rt_cell_at(&results, 1, CLUSTERS, (RtRayKind)k)->seconds.low = 0;
     expect_sentence(
         1, "On tetra, grid helps most of the six: 100 times as fast, with 30.0 times fewer object "
-           "tests than brute. clusters follows with 50.0 times (level: the intervals overlap). Beside wide "
+           "tests than brute. clusters follows with 50.0 times (level: the intervals overlap). Compared with "
+           "wide "
            "alone, light+wide is 1.00 times as fast. The fastest structure is light+wide: 200 times as "
            "fast as brute.");
 }
@@ -151,8 +152,9 @@ FRAME_TEST(an_overlay_whose_base_is_not_measured_has_no_gain_and_what_is_not_tim
 
 FRAME_TEST(where_nothing_is_timed_object_tests_decide) {
     e->count_only = true;
-    expect_sentence(1, "On tetra, clusters helps most of the six: 200 times fewer object tests than brute. "
-                       "grid follows with 30.0 times. Beside wide alone, light+wide is 3.00 times better.");
+    expect_sentence(
+        1, "On tetra, clusters helps most of the six: 200 times fewer object tests than brute. "
+           "grid follows with 30.0 times. Compared with wide alone, light+wide is 3.00 times better.");
 }
 
 FRAME_TEST(a_thinned_set_is_told_as_a_part_of_a_frame) {

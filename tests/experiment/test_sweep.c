@@ -81,14 +81,14 @@ RT_TEST(whole_numbers_of_results_are_told_by_their_manifest) {
 
 RT_TEST(what_is_no_range_is_refused_with_what_would_be) {
     const char *const cases[][2] = {
-        {"grid:density=1..9", "'1..9' is no range: write LOW..HIGH+STEP"},
-        {"grid:density=9..1+2", "is no range"},
-        {"grid:density=1..9+0", "is no range"},
-        {"grid:density=1..9*1", "is no range"},
+        {"grid:density=1..9", "'1..9' is not a range: write LOW..HIGH+STEP"},
+        {"grid:density=9..1+2", "is not a range"},
+        {"grid:density=1..9+0", "is not a range"},
+        {"grid:density=1..9*1", "is not a range"},
         {"grid:density=0..9*2", "LOW above 0"},
-        {"grid:density=1..x*2", "is no range"},
-        {"grid:density=1..inf*2", "is no range"},
-        {"grid:density=1|", "no value for a list"},
+        {"grid:density=1..x*2", "is not a range"},
+        {"grid:density=1..inf*2", "is not a range"},
+        {"grid:density=1|", "not a value for a list"},
         {"grid:density=1..1e9+1", "more than 256 values"},
         {"grid:density=1|2+grid:density=1|2", "sweeps density twice"},
         {"a:a=1|2,b=1|2,c=1|2,d=1|2,e=1|2", "more than 4 parameters"},

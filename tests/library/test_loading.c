@@ -24,7 +24,7 @@ RT_TEST(what_is_no_plugin_is_refused_with_and_without_room_for_a_message) {
         const char *path, *says;
     } none[] = {{"no/such/plugin.so", "no/such/plugin.so"},
                 {PLUGIN("unloadable-ABI"), "version"},
-                {PLUGIN("unloadable-CONSTRUCTOR"), "does not survive"}};
+                {PLUGIN("unloadable-CONSTRUCTOR"), "loading it failed"}};
     size_t before = raytally_accelerator_count();
     for (size_t i = 0; i < sizeof none / sizeof none[0]; i++) {
         raytally_error why;

@@ -119,6 +119,20 @@ RT_TEST_IN_PLACE(reproduce_compares_distributions_byte_for_byte) {
     assert_in_file(place, "message", "out/distributions.csv:1: differs");
 }
 
+RT_TEST_IN_PLACE(reproduce_of_one_scene_compares_its_rows_alone) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    char *counts = read_in(place, "out/counts.csv");
+    write_changed(place, "out/counts.csv", counts, "\nballs,", "\nballs,changed");
+    assert_int_equal(raytally(place, "reproduce out --only cloud"), 0);
+    assert_in_file(place, "output", "Reproduced: cloud in out/counts.csv");
+    assert_int_equal(raytally(place, "reproduce out --only balls"), 1);
+    assert_in_file(place, "message", "out/counts.csv:8: differs");
+    assert_int_equal(raytally(place, "reproduce out --only scattered"), 2);
+    assert_in_file(place, "message", "no scene with the label 'scattered'");
+    rt_free(counts);
+}
+
 RT_TEST_IN_PLACE(bench_shows_medians_percentiles_and_maxima) {
     const Place *place = *state;
     const char *const command = "bench random:n=50 --accel grid --accel wide --rays primary --size 16x16 "

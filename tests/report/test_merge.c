@@ -71,14 +71,14 @@ RT_TEST_IN_PLACE(what_does_not_make_a_whole_is_refused_and_nothing_is_written) {
     refused(place, "merge s1 s2 s4 -o all", "shard 3 of 4 is missing");
     refused(place, "merge s1 s2 s3 s4 s2 -o all", "shard 2 of 4 is given twice: s2 and s2");
     refused(place, "merge s1 s2 nowhere -o all", "nowhere is not the directory of a run");
-    refused(place, "merge s1 s2", "say where to: -o DIR");
+    refused(place, "merge s1 s2", "the result directory is missing: -o DIR");
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out whole"), 0);
     refused(place, "merge s1 whole -o all", "whole is not a shard");
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --shard 2/3 --out third"), 0);
-    refused(place, "merge s1 third -o all", "s1 and third are of different numbers of shards");
+    refused(place, "merge s1 third -o all", "s1 and third have different numbers of shards");
     write_changed(place, "small.yaml", sharded, "limit: 100", "limit: 99");
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --shard 2/4 --out other"), 0);
-    refused(place, "merge s1 other s3 s4 -o all", "s1 and other are of different experiments");
+    refused(place, "merge s1 other s3 s4 -o all", "s1 and other have different experiments");
     refused(place, "merge s1 s2 s3 s4 -o all", "small.yaml has changed since the shards were made");
     assert_int_equal(remove(path_in(place, "s3/manifest.json").text), 0);
     refused(place, "merge s1 s2 s3 s4 -o all", "s3 is not finished: finish it");
@@ -147,7 +147,7 @@ RT_TEST_IN_PLACE(another_program_of_uncommitted_sources_is_another_build) {
     int code = raytally(place, "merge s1 s2 s3 s4 -o all");
     assert_int_equal(code, uncommitted ? 2 : 0);
     if (!uncommitted) return;
-    assert_in_file(place, "message", "s1 and s2 are of different builds of raytally");
+    assert_in_file(place, "message", "s1 and s2 have different builds of raytally");
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --shard 2/4 --out s2 --resume"), 2);
     assert_in_file(place, "message", "another build began this run");
     refused(place, "merge s2 s2 -o all", "s2 was measured by another build of raytally");

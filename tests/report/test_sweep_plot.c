@@ -92,7 +92,7 @@ RT_TEST_IN_PLACE(a_bad_sweep_is_refused_with_its_line) {
     const struct {
         const char *from, *to, *says;
     } cases[] = {
-        {"1..16*2", "1..16", ":9:13: accelerators[1].accel: '1..16' is no range"},
+        {"1..16*2", "1..16", ":9:13: accelerators[1].accel: '1..16' is not a range"},
         {"1..16*2", "1|-4", ":9:"},
         {"1..16*2", "1..16*2|1..16+0.01", "more than 256 values"},
         {"grid:density", "grid:densty", "did you mean 'density'?"},
@@ -140,7 +140,7 @@ RT_TEST_IN_PLACE(bench_takes_sweeps_of_scenes_and_accelerators) {
     assert_in_file(place, "output", "random:n=10");
     assert_in_file(place, "output", "random:n=20");
     assert_int_equal(raytally(place, "bench balls --accel 'grid:density=1..4'"), 2);
-    assert_in_file(place, "message", "is no range");
+    assert_in_file(place, "message", "is not a range");
 }
 
 RT_TESTS(sweep_plot, NULL, NULL)

@@ -132,7 +132,7 @@ RT_TEST(an_existing_file_is_kept_unless_it_may_be_overwritten) {
     RtError problem;
     assert_ok(load_text("s 0 0 0 1\n", &scene, error));
     assert_int_equal(rt_scene_save(&scene, FILE_NAME, false, &problem), RT_BAD_INPUT);
-    assert_non_null(strstr(problem.message, "exists already"));
+    assert_non_null(strstr(problem.message, "already exists"));
     assert_int_equal(rt_scene_save(&scene, RT_BINARY_DIR "/x.nfff", true, &problem), RT_BAD_INPUT);
     assert_non_null(strstr(problem.message, "did you mean '.nff'?"));
     assert_int_not_equal(rt_scene_save(&scene, RT_BINARY_DIR "/no/such/folder/x.nff", true, &problem), RT_OK);

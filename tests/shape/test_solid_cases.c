@@ -184,12 +184,12 @@ RT_TEST(bad_solids_are_refused_and_leave_nothing) {
     expect(rt_solid_add_torus(&set, 1, &here, &at, &e), &e, "below 1");
     expect(rt_solid_add_torus(&set, (double)NAN, &here, &at, &e), &e, "below 1");
     expect(rt_solid_add_polyhedron(&set, planes, 0, &here, &at, &e), &e, "expected 1..");
-    expect(rt_solid_add_polyhedron(&set, planes, 2, &here, &at, &e), &e, "no inside");
+    expect(rt_solid_add_polyhedron(&set, planes, 2, &here, &at, &e), &e, "enclose nothing");
     expect(rt_solid_add_polyhedron(&set, planes, 3, &here, &at, &e), &e, "plane 2");
     planes[1].offset = 0;
-    expect(rt_solid_add_polyhedron(&set, planes, 2, &here, &at, &e), &e, "no inside");
+    expect(rt_solid_add_polyhedron(&set, planes, 2, &here, &at, &e), &e, "enclose nothing");
     RtPlane sheet[2] = {{{{1, 2, 2}}, 3}, {{{-1, -2, -2}}, -3 + 1e-13}};
-    expect(rt_solid_add_polyhedron(&set, sheet, 2, &here, &at, &e), &e, "no inside");
+    expect(rt_solid_add_polyhedron(&set, sheet, 2, &here, &at, &e), &e, "enclose nothing");
     expect(rt_solid_add_box(&set, one, zero, &at, &e), &e, "lo < hi");
     expect(rt_solid_add_half_space(&set, one, zero, &at, &e), &e, "normal not 0");
     expect(rt_solid_add_ellipsoid(&set, one, zero, &at, &e), &e, "above 0");

@@ -263,7 +263,7 @@ RT_TEST(what_rounding_makes_flat_is_refused) {
     assert_ok(rt_solid_add_cone(&set, 0.5, &none, &cone, error));
     assert_ok(rt_solid_add_mesh(&set, faces, 4, &none, &mesh, error));
     const uint32_t solids[3] = {box, cone, mesh}, planes = set.plane_count, triangles = set.triangle_count;
-    const char *const says[3] = {"no inside", "flat", "volume"};
+    const char *const says[3] = {"enclose nothing", "flat", "volume"};
     for (int i = 0; i < 3; i++) {
         RtError error;
         assert_int_equal(rt_solid_add_moved(&set, &set, solids[i], &far, &index, &error), RT_BAD_INPUT);

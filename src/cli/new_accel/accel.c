@@ -25,7 +25,7 @@ static const raytally_param params[PARAMS] = {
     [BOXES] = {.name = "boxes",
                .type = RAYTALLY_FLAG,
                .default_text = "on",
-               .meaning = "test an object only where the ray meets its box",
+               .meaning = "test an object only if the ray hits its box",
                .source = "a box costs less than most objects"},
 };
 

@@ -149,7 +149,7 @@ static bool parse_value(const RtParam *param, const char *text, RtValue *out) {
 
 static RtStatus fail_unknown(const RtParam *table, size_t count, const char *key, const char *what,
                              RtError *error) {
-    if (count == 0) return rt_fail(error, RT_BAD_INPUT, "%s has no parameters, and so no '%s'", what, key);
+    if (count == 0) return rt_fail(error, RT_BAD_INPUT, "%s has no parameters, so it has no '%s'", what, key);
     const char *names[RT_MAX_PARAMS];
     char list[512], suggestion[RT_MAX_SUGGESTION];
     for (size_t i = 0; i < count; i++) names[i] = table[i].name;

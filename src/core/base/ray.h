@@ -41,7 +41,7 @@
     X(TRANSMISSION, transmission, "refracted through a transparent surface")                                 \
     X(DIFFUSE, diffuse, "from a surface, cosine-distributed about the normal")                               \
     X(RANDOM, random, "a random chord of the scene's bounding sphere")                                       \
-    X(OCCLUSION, occlusion, "a diffuse ray that asks for any hit; answered by `occluded`")
+    X(OCCLUSION, occlusion, "a diffuse ray, traced for any hit; answered by `occluded`")
 
 typedef enum RtRayKind {
 #define RT_RAY_KIND_ENUM(CONSTANT, name, meaning) RT_RAY_##CONSTANT,

@@ -15,15 +15,16 @@
 #define RT_TALLY_COUNTERS(X)                                                                                 \
     X(rays, "rays traced")                                                                                   \
     X(hits, "rays that hit an object")                                                                       \
-    X(object_tests, "exact ray-object intersection routines entered; a SIMD lane holding an object is one")  \
+    X(object_tests,                                                                                          \
+      "calls of exact ray-object intersection routines; a SIMD lane that holds an object counts as one")     \
     X(object_hits, "object tests that found the object within [tmin, tmax]")                                 \
-    X(extent_tests, "ray-extent tests; a SIMD lane holding an extent is one")                                \
+    X(extent_tests, "ray-extent tests; a SIMD lane that holds an extent counts as one")                      \
     X(steps, "nodes, voxels or list entries visited by a traversal")                                         \
-    X(leaf_steps, "steps that were leaves or voxels, the empty ones included")                               \
-    X(empty_steps, "steps that met no object: empty leaves and voxels")                                      \
+    X(leaf_steps, "steps to leaves or voxels, including empty ones")                                         \
+    X(empty_steps, "steps to leaves or voxels without objects")                                              \
     X(csg_tests, "leaf solids tested inside CSG trees")                                                      \
     X(repeats_avoided, "object tests that a mailbox saved")                                                  \
-    X(passed_on, "rays of its own kind that an overlay handed to the accelerator below it")
+    X(passed_on, "rays of its own kind that an overlay passed to the accelerator below it")
 
 typedef struct RtTally {
 #define RT_TALLY_FIELD(name, meaning) uint64_t name;

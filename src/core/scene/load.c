@@ -131,7 +131,7 @@ RtStatus rt_scene_save(const RtScene *scene, const char *path, bool overwrite, R
     if (named == count) return fail_extension(path, "written", "", error);
     if (!overwrite && rt_file_exists(path)) {
         return rt_fail(error, RT_BAD_INPUT,
-                       "%s exists already: remove it, choose another name, or convert with --force", path);
+                       "%s already exists: remove it, choose another name, or convert with --force", path);
     }
     RtOutput output;
     RT_TRY(rt_output_open(&output, path, error));

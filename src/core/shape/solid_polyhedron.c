@@ -191,11 +191,10 @@ RtStatus rt_solid_check_inside(const RtPlane *planes, uint32_t count, RtError *e
     Edge edge;
     uint32_t i = 0, j = 0;
     if (is_slab(&shrunk, &lo, &hi) ? lo < hi : next_edge(&shrunk, &i, &j, &edge)) return RT_OK;
-    return rt_fail(
-        error, RT_BAD_INPUT,
-        "the %u planes of the polyhedron leave no inside: normals point outward, and the inside is "
-        "where normal . p <= offset",
-        count);
+    return rt_fail(error, RT_BAD_INPUT,
+                   "the %u planes of the polyhedron enclose nothing: normals point outward, and the inside "
+                   "is where normal . p <= offset",
+                   count);
 }
 
 /* Keeps a plane with a unit normal bit for bit, so that solids survive saving and loading. */
