@@ -12,11 +12,11 @@
  * may use, until "next", which goes on to the next kind of rays. The last line is {"done": true}. Older
  * programs speak this protocol, too: it changes only with the number of "worker".
  *
- * `bench --worker` builds what it is asked for. "count T KIND ACCEL FILE" traces the rays in FILE with the
- * accelerator of that label on workload number T, a few times in rt_callgrind_pass. The answer is {"passes",
- * "spec", "rays"}, or {"passes", "why"} if it failed; {} if this process has no such accelerator.
- * FILE holds the rays and then their hits, as in memory.
- * Accelerators of plugins are built in the worker's own process, which ends if one crashes. */
+ * `bench --worker` builds only the accelerators that requests name. "count T KIND ACCEL FILE" traces the rays
+ * in FILE, a few times in rt_callgrind_pass, with the accelerator of that label on workload number T. FILE
+ * holds the rays and then their hits, as in memory. The answer is {"passes", "spec", "rays"}, or {"passes",
+ * "why"} if it failed; {} if this process has no such accelerator. Accelerators of plugins are built in the
+ * worker's own process, which ends if one crashes. */
 #ifndef RT_EXPERIMENT_WORKER_H
 #define RT_EXPERIMENT_WORKER_H
 
