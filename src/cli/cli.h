@@ -26,8 +26,11 @@ typedef struct RtCommand {
 #define RT_COMMANDS(X)                                                                                       \
     X(accels)                                                                                                \
     X(scenes)                                                                                                \
-    X(info) X(render) X(trace) X(verify) X(bench) X(compare) X(rays) X(run) X(merge) X(plot) X(report)       \
-        X(reproduce) X(convert) X(new_accel)
+    X(info)                                                                                                  \
+    X(render)                                                                                                \
+    X(trace)                                                                                                 \
+    X(verify)                                                                                                \
+    X(bench) X(compare) X(rays) X(run) X(merge) X(plot) X(report) X(reproduce) X(convert) X(new_accel)
 #define RT_COMMAND(name)                                                                                     \
     int rt_command_##name(int argc, char **argv);                                                            \
     extern const RtSyntax rt_##name##_syntax;
