@@ -17,12 +17,14 @@ RtStatus rt_remote_build(const RtSpec *spec, const RtScene *scene, int threads, 
 
 bool rt_accel_is_remote(const RtAccel *accel);
 
-/* Runs `work` in the process of the query's accelerator, which is remote, with the query that is there. A
- * `message` of `bytes` <= RT_REMOTE_BYTES is copied there and back; it must not contain pointers to memory of
- * one process that the other reads. For a broken accelerator nothing runs, and the message is unchanged. */
-enum { RT_REMOTE_BYTES = 256 * 1024 };
-typedef void RtRemoteWork(RtQuery *query, void *message);
-void rt_remote_do(RtQuery *query, RtRemoteWork *work, void *message, size_t bytes);
+/* Runs `work` where the query's accelerator is: for a remote one in its process, with the query there, and
+ * with copies of rays[0..count) and of the `message`, which is copied back. The message, of `bytes`, must not
+ * contain pointers to memory of one process that the other reads; with the rays it has at most
+ * RT_REMOTE_BYTES. For a broken accelerator nothing runs, and the message is unchanged. */
+enum { RT_REMOTE_BYTES = 255 * 1024 };
+typedef void RtRemoteWork(RtQuery *query, const RtRay *rays, void *message);
+void rt_remote_do(RtQuery *query, RtRemoteWork *work, const RtRay *rays, size_t count, void *message,
+                  size_t bytes);
 
 /* Marks a remote accelerator as broken: `what` was found wrong with it while it did `doing`. */
 void rt_remote_break(const RtAccel *accel, const char *what, const char *doing);

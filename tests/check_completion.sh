@@ -54,7 +54,7 @@ offers_only 'raytally be' bench
 offers_only 'raytally help ver' verify
 offers 'raytally bench --' --accel --count-only --rays --until --help
 offers_only 'raytally bench --count' --count-only --counts
-offers_only 'raytally bench --callgrind-' # hidden
+offers_only 'raytally bench --worker' # hidden
 offers 'raytally bench balls --accel ' brute bvh grid octree item+ all
 offers 'raytally bench balls -a ' brute bvh
 offers_only 'raytally bench balls --accel gr' grid

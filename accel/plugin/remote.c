@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Remote accelerators in raytally's own process: sending requests, watching the process, and reporting how it
- * failed. See wire.h. */
+/* Remote accelerators in raytally's own process: an RtAccel that sends requests. See wire.h. */
 #include "accel/remote.h"
-#include "accel/plugin/host.h"
-#include "accel/plugin/wire.h"
-#include "core/base/process.h"
-#include "core/base/words.h"
-
-#include "core/base/clock.h"
+#include "accel/plugin/watch.h"
 #include "core/base/memory.h"
+#include "core/base/words.h"
 
 #include <fcntl.h>
 #include <math.h>
@@ -22,19 +17,11 @@
 typedef struct Remote {
     RtAccel base;
     RtAccelOps ops; /* remote_ops, with the name of the base */
-    char name[RT_MAX_SPEC_CHARS];
-    Wire *wire;
-    RtProcess process;
-    int pipe_end;      /* the process ends when this is closed */
-    double time_limit; /* seconds without progress after which the process counts as hung */
+    RtWatched child;
+    int pipe_end; /* the process ends when this is closed */
     RtDescription description;
-    pthread_mutex_t lock;   /* of the following members */
-    atomic_bool broken;     /* error says why */
-    bool ended;             /* the process has ended */
-    bool used[LANES];       /* by queries; lane 0 by none */
-    unsigned asked[LANES];  /* number of the last request on each lane */
+    bool used[LANES];       /* by queries, under child.lock; lane 0 by none */
     pthread_mutex_t master; /* of lane 0 */
-    RtError error;
 } Remote;
 
 typedef struct RemoteQuery {
@@ -61,124 +48,42 @@ static double time_limit_of_user(void) {
     return text && end != text && *end == '\0' && seconds > 0 && seconds < 1e6 ? seconds : 60;
 }
 
-/* ---- how it ended ---- */
-
-/* "NAME: WHAT while DOING, at the ray ...". Only the first failure is kept. */
-static void set_broken(Remote *remote, const char *what, const char *doing, bool ray) {
-    char text[RT_RAY_TEXT] = "";
-    if (ray && remote->wire->crash.has_ray) {
-        RtRay traced = remote->wire->crash.ray;
-        rt_ray_format(&traced, text, sizeof text);
-    }
-    if (remote->broken) return;
-    rt_fail(&remote->error, RT_BROKEN, "%s: %s while %s%s%s", remote->name, what, doing,
-            *text ? ", at the ray " : "", text);
-    remote->broken = true;
-}
-
 void rt_remote_break(const RtAccel *accel, const char *what, const char *doing) {
-    Remote *remote = of(accel);
-    pthread_mutex_lock(&remote->lock);
-    set_broken(remote, what, doing, false);
-    pthread_mutex_unlock(&remote->lock);
-}
-
-static void report_end(Remote *remote, RtProcessEnd end, const char *doing) {
-    static const char *const past[1 + RT_GUARD_COUNT] = {
-        "", ": it wrote or read past the memory of its query", ": it wrote or read past its answers"};
-    const uint32_t out_of = remote->wire->crash.out_of;
-    char what[160];
-    rt_process_end_format(end, remote->wire->crash.signal, out_of <= RT_GUARD_COUNT ? past[out_of] : "", what,
-                          sizeof what);
-    set_broken(remote, what, doing, true);
-}
-
-/* SIGXCPU makes a hung process record its ray. */
-static void end_hung(Remote *remote, const char *doing, double limit) {
-    char what[96];
-    remote->wire->crash.has_ray = false;
-    rt_process_signal(&remote->process, SIGXCPU);
-    rt_process_end(&remote->process, 1000);
-    snprintf(what, sizeof what, "it made no progress for %g s (RAYTALLY_PLUGIN_SECONDS)", limit);
-    set_broken(remote, what, doing, true);
-}
-
-/* Whether the plugin overwrote the words of a lane, whose values are always known. */
-static bool is_overwritten(const Remote *remote, uint32_t number, unsigned answered) {
-    const unsigned asked = remote->asked[number];
-    return remote->wire->lanes[number].asked != asked || (answered != asked && answered != asked - 1);
-}
-
-/* Ends a process that overwrote shared memory or hangs. Returns whether the accelerator is broken. */
-static bool check_process(Remote *remote, const char *doing, bool overwritten, double waited, double limit) {
-    pthread_mutex_lock(&remote->lock);
-    RtProcessEnd end;
-    if (!remote->ended) {
-        remote->ended = true;
-        if (overwritten) {
-            rt_process_end(&remote->process, 0);
-            set_broken(remote, "it overwrote memory that it shares with raytally", doing, false);
-        } else if (rt_process_wait(&remote->process, 0, &end)) {
-            report_end(remote, end, doing);
-        } else if (waited > limit) {
-            end_hung(remote, doing, limit);
-        } else {
-            remote->ended = false;
-        }
-    }
-    bool broken = remote->broken;
-    pthread_mutex_unlock(&remote->lock);
-    return broken;
-}
-
-/* Waits for the answer on a lane; false if none will come. Each pause counts for at most a second: both
- * processes may have been stopped. */
-static bool wait_for(Remote *remote, uint32_t number, const char *doing, double limit) {
-    const struct timespec some = {.tv_nsec = 50000000};
-    atomic_uint *answered = &remote->wire->lanes[number].answered;
-    unsigned long progress = remote->wire->progress;
-    double last = rt_wall_seconds(), waited = 0;
-    for (;;) {
-        unsigned value = atomic_load_explicit(answered, memory_order_acquire);
-        bool overwritten = is_overwritten(remote, number, value);
-        if (!overwritten && value == remote->asked[number]) return true;
-        if (!overwritten && rt_futex_wait(answered, value, &some) && atomic_load(answered) != value) continue;
-        unsigned long seen = remote->wire->progress;
-        double now = rt_wall_seconds();
-        waited = seen == progress ? waited + fmin(now - last, 1) : 0;
-        progress = seen;
-        last = now;
-        if (check_process(remote, doing, overwritten, waited, limit)) return false;
-    }
+    rt_watched_break(&of(accel)->child, what, doing);
 }
 
 /* ---- requests ---- */
 
-/* Sends a message that lies in its lane. False if the accelerator is broken, or breaks now. */
-static bool request_in_place(Remote *remote, uint32_t number, bool begin, WireWork *work, size_t bytes,
-                             const char *doing) {
-    Lane *lane = &remote->wire->lanes[number];
-    if (remote->broken) return false;
-    lane->work = work;
-    lane->bytes = bytes;
-    lane->begin = begin;
-    rt_futex_set(&lane->asked, ++remote->asked[number]);
-    return wait_for(remote, number, doing, remote->time_limit);
-}
+typedef struct Request {
+    WireWork *work;
+    void *message; /* changes only if there is an answer; NULL: it lies in the lane */
+    size_t bytes;
+    const RtRay *rays; /* [ray_count] */
+    size_t ray_count;
+    bool begin;
+    const char *doing;
+} Request;
 
-/* The same for a message that lies elsewhere; it changes only if there is an answer. */
-static bool request(Remote *remote, uint32_t number, bool begin, WireWork *work, void *message, size_t bytes,
-                    const char *doing) {
-    Lane *lane = &remote->wire->lanes[number];
-    if (bytes > 0) memcpy(lane->message, message, bytes);
-    if (!request_in_place(remote, number, begin, work, bytes, doing)) return false;
-    if (bytes > 0) memcpy(message, lane->message, bytes);
+/* False if the accelerator is broken, or breaks now. */
+static bool request(Remote *remote, uint32_t number, const Request *r) {
+    Lane *lane = &remote->child.wire->lanes[number];
+    if (remote->child.broken) return false;
+    if (r->message) memcpy(lane->message, r->message, r->bytes);
+    if (r->ray_count) memcpy(rt_wire_rays(lane->message, r->bytes), r->rays, r->ray_count * sizeof(RtRay));
+    lane->work = r->work;
+    lane->bytes = r->bytes;
+    lane->rays = r->ray_count;
+    lane->begin = r->begin;
+    rt_futex_set(&lane->asked, ++remote->child.asked[number]);
+    if (!rt_watched_wait(&remote->child, number, r->doing, remote->child.time_limit)) return false;
+    if (r->message) memcpy(r->message, lane->message, r->bytes);
     return true;
 }
 
 static bool request_master(Remote *remote, WireWork *work, void *message, size_t bytes, const char *doing) {
     pthread_mutex_lock(&remote->master);
-    bool answered = request(remote, 0, false, work, message, bytes, doing);
+    bool answered =
+        request(remote, 0, &(Request){.work = work, .message = message, .bytes = bytes, .doing = doing});
     pthread_mutex_unlock(&remote->master);
     return answered;
 }
@@ -191,7 +96,7 @@ static RtStatus forward(RtStatus status, const char *name, RtError *from, RtErro
 }
 
 static RtStatus fail_broken(const Remote *remote, RtError *error) {
-    if (error) *error = remote->error;
+    if (error) *error = remote->child.error;
     return RT_BROKEN;
 }
 
@@ -200,12 +105,19 @@ static RtStatus request_check(Remote *remote, WireWork *work, WireChecked *messa
                               RtError *error) {
     if (!request_master(remote, work, message, sizeof *message, doing)) return fail_broken(remote, error);
     if (message->status == RT_OK) return RT_OK;
-    return forward(message->status, message->status == RT_BROKEN ? remote->name : "", &message->error, error);
+    return forward(message->status, message->status == RT_BROKEN ? remote->child.name : "", &message->error,
+                   error);
 }
 
-void rt_remote_do(RtQuery *query, RtRemoteWork *work, void *message, size_t bytes) {
+void rt_remote_do(RtQuery *query, RtRemoteWork *work, const RtRay *rays, size_t count, void *message,
+                  size_t bytes) {
+    if (!rt_accel_is_remote(query->accel)) {
+        work(query, rays, message);
+        return;
+    }
     RemoteQuery *own = query->scratch[0].own;
-    request(of(query->accel), own->lane, own->begin, work, message, bytes, "it was traced");
+    request(of(query->accel), own->lane,
+            &(Request){work, message, bytes, rays, count, own->begin, "it was traced"});
     own->begin = false;
 }
 
@@ -216,12 +128,13 @@ static RtStatus start(Remote *remote, const RtSpec *spec, int threads, RtError *
     Wire *wire =
         mmap(NULL, sizeof(Wire), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (wire == MAP_FAILED) return rt_fail_memory(error, "memory shared with a plugin", sizeof(Wire));
-    remote->wire = wire;
-    remote->asked[0] = WIRE_BUILD;
+    remote->child.wire = wire;
+    remote->child.asked[0] = WIRE_BUILD;
     wire->lanes[0].asked = WIRE_BUILD;
     if (pipe2(ends, O_CLOEXEC) != 0) return rt_fail(error, RT_IO, "a pipe: %s", strerror(errno));
-    RtStatus status = rt_process_fork(&remote->process, ends[0], error);
-    if (status == RT_OK && remote->process.pid == 0) rt_wire_serve(wire, spec, remote->base.scene, threads);
+    RtStatus status = rt_process_fork(&remote->child.process, ends[0], error);
+    if (status == RT_OK && remote->child.process.pid == 0)
+        rt_wire_serve(wire, spec, remote->base.scene, threads);
     madvise(wire, sizeof(Wire), MADV_DONTFORK); /* other plugins must not have it */
     close(ends[0]);
     remote->pipe_end = ends[1];
@@ -233,8 +146,9 @@ static RtStatus take_built(Remote *remote, RtError *error) {
     WireBuilt built;
     snprintf(doing, sizeof doing, "it was built over %u object%s", remote->base.scene->geometry.object_count,
              rt_plural(remote->base.scene->geometry.object_count));
-    if (!wait_for(remote, 0, doing, 10 * remote->time_limit)) return fail_broken(remote, error);
-    memcpy(&built, remote->wire->lanes[0].message, sizeof built);
+    if (!rt_watched_wait(&remote->child, 0, doing, 10 * remote->child.time_limit))
+        return fail_broken(remote, error);
+    memcpy(&built, remote->child.wire->lanes[0].message, sizeof built);
     if (built.status != RT_OK) return forward(built.status, "", &built.error, error);
     remote->base.exact = built.exact != 0;
     remote->base.counts = built.counts != 0;
@@ -252,17 +166,17 @@ RtStatus rt_remote_build(const RtSpec *spec, const RtScene *scene, int threads, 
     *remote = (Remote){.base = {.ops = &remote->ops, .scene = scene, .scratch_room = RT_CACHE_LINE},
                        .ops = remote_ops,
                        .pipe_end = -1,
-                       .time_limit = time_limit_of_user()};
+                       .child.time_limit = time_limit_of_user()};
     remote->ops.name = spec->layers[spec->layer_count - 1].ops->name;
-    pthread_mutex_init(&remote->lock, NULL);
+    pthread_mutex_init(&remote->child.lock, NULL);
     pthread_mutex_init(&remote->master, NULL);
-    rt_spec_format(spec, remote->name);
+    rt_spec_format(spec, remote->child.name);
     RtStatus status = start(remote, spec, threads, error);
     if (status == RT_OK) status = take_built(remote, error);
     if (status == RT_OK) {
         *out = &remote->base;
     } else {
-        remote->broken = true;
+        remote->child.broken = true;
         destroy(&remote->base);
     }
     return status;
@@ -277,14 +191,15 @@ const char *rt_remote_exit_message(void) {
 /* A plugin may crash while it frees its memory. */
 static void destroy(RtAccel *accel) {
     Remote *remote = of(accel);
-    if (remote->process.pid > 0 && !remote->broken) {
+    if (remote->child.process.pid > 0 && !remote->child.broken) {
         request_master(remote, rt_wire_destroy, NULL, 0, "it was destroyed");
-        if (remote->broken) snprintf(exit_message, sizeof exit_message, "%s", remote->error.message);
+        if (remote->child.broken)
+            snprintf(exit_message, sizeof exit_message, "%s", remote->child.error.message);
     }
     if (remote->pipe_end >= 0) close(remote->pipe_end);
-    rt_process_end(&remote->process, 0);
-    if (remote->wire) munmap(remote->wire, sizeof(Wire));
-    pthread_mutex_destroy(&remote->lock);
+    rt_process_end(&remote->child.process, 0);
+    if (remote->child.wire) munmap(remote->child.wire, sizeof(Wire));
+    pthread_mutex_destroy(&remote->child.lock);
     pthread_mutex_destroy(&remote->master);
     rt_free(remote);
 }
@@ -297,33 +212,33 @@ static size_t scratch_bytes(const RtAccel *accel) {
 }
 
 static void release_lane(Remote *remote, uint32_t lane) {
-    pthread_mutex_lock(&remote->lock);
+    pthread_mutex_lock(&remote->child.lock);
     remote->used[lane] = false;
-    pthread_mutex_unlock(&remote->lock);
+    pthread_mutex_unlock(&remote->child.lock);
 }
 
 static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) {
     Remote *remote = of(accel);
     uint32_t lane = 1;
-    pthread_mutex_lock(&remote->lock);
+    pthread_mutex_lock(&remote->child.lock);
     while (lane < LANES && remote->used[lane]) lane++;
     if (lane < LANES) remote->used[lane] = true;
-    pthread_mutex_unlock(&remote->lock);
+    pthread_mutex_unlock(&remote->child.lock);
     if (lane == LANES)
-        return rt_fail(error, RT_BAD_INPUT, "%s: a plugin traces on at most %d threads", remote->name,
+        return rt_fail(error, RT_BAD_INPUT, "%s: a plugin traces on at most %d threads", remote->child.name,
                        LANES - 1);
     ((RemoteQuery *)scratch)->lane = lane;
-    WireChecked message = {.lane = lane, .done = remote->asked[lane]};
+    WireChecked message = {.lane = lane, .done = remote->child.asked[lane]};
     RtStatus status = request_check(remote, rt_wire_open, &message, "a query was opened", error);
     if (status == RT_OK) return RT_OK;
     release_lane(remote, lane);
-    if (status != RT_BROKEN) forward(RT_BROKEN, remote->name, &message.error, error);
+    if (status != RT_BROKEN) forward(RT_BROKEN, remote->child.name, &message.error, error);
     return RT_BROKEN;
 }
 
 static void close_query(const RtAccel *accel, void *scratch) {
     const RemoteQuery *query = scratch;
-    request(of(accel), query->lane, false, NULL, NULL, 0, "a query was closed");
+    request(of(accel), query->lane, &(Request){.doing = "a query was closed"});
     release_lane(of(accel), query->lane);
 }
 
@@ -339,15 +254,18 @@ static void trace_part(const RtAccel *accel, const RtScratch *scratch, const RtR
                        bool any, RtHit *hits, RtTally *tallies) {
     Remote *remote = of(accel);
     RemoteQuery *query = scratch->own;
-    WireRays *message = (WireRays *)remote->wire->lanes[query->lane].message;
-    const bool begin_first = query->begin;
+    WireRays *message = (WireRays *)remote->child.wire->lanes[query->lane].message;
     char doing[64];
     snprintf(doing, sizeof doing, "it answered a stream of %u ray%s", count, rt_plural(count));
     *message = (WireRays){.count = count, .any = any, .counted = tallies != NULL};
-    memcpy(rt_wire_rays(message, count), rays, count * sizeof *rays);
+    const Request traced = {.work = rt_wire_trace,
+                            .bytes = sizeof(WireRays) + count * sizeof(RtHit),
+                            .rays = rays,
+                            .ray_count = count,
+                            .begin = query->begin,
+                            .doing = doing};
     query->begin = false;
-    if (!request_in_place(remote, query->lane, begin_first, rt_wire_trace, rt_wire_rays_bytes(count),
-                          doing)) {
+    if (!request(remote, query->lane, &traced)) {
         for (uint32_t i = 0; i < count; i++) hits[i] = RT_MISS;
         return;
     }
@@ -365,33 +283,36 @@ static void trace_part(const RtAccel *accel, const RtScratch *scratch, const RtR
     }
 }
 
-static void trace_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                          RtHit *hits, RtTally *tallies) {
+/* One of `hits` and `occluders` is NULL. */
+static void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                  RtHit *hits, uint32_t *occluders, RtTally *tallies) {
+    RtHit some[WIRE_RAYS];
     for (size_t first = 0; first < count; first += WIRE_RAYS) {
         uint32_t n = (uint32_t)(count - first < WIRE_RAYS ? count - first : WIRE_RAYS);
-        trace_part(accel, scratch, rays + first, n, false, hits + first, tallies);
+        trace_part(accel, scratch, rays + first, n, !hits, hits ? hits + first : some, tallies);
+        for (uint32_t i = 0; i < n && occluders; i++) occluders[first + i] = some[i].object;
     }
 }
 
-static void trace_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+static void count_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                          RtHit *hits, RtTally *tallies) {
+    trace(accel, scratch, rays, count, hits, NULL, tallies);
+}
+
+static void count_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                            uint32_t *occluders, RtTally *tallies) {
-    RtHit hits[WIRE_RAYS];
-    for (size_t first = 0; first < count; first += WIRE_RAYS) {
-        uint32_t n = (uint32_t)(count - first < WIRE_RAYS ? count - first : WIRE_RAYS);
-        trace_part(accel, scratch, rays + first, n, true, hits, tallies);
-        for (uint32_t i = 0; i < n; i++) occluders[first + i] = hits[i].object;
-    }
+    trace(accel, scratch, rays, count, NULL, occluders, tallies);
 }
 
 /* The process times itself, so here a timed kernel is a counted one without tallies. */
 static void nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                     RtHit *hits) {
-    trace_nearest(accel, scratch, rays, count, hits, NULL);
+    trace(accel, scratch, rays, count, hits, NULL, NULL);
 }
 
 static void occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                      uint32_t *occluders) {
-    trace_occluded(accel, scratch, rays, count, occluders, NULL);
+    trace(accel, scratch, rays, count, NULL, occluders, NULL);
 }
 
 /* ---- the structure ---- */
@@ -431,7 +352,7 @@ static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
                         &(RtBoxView){.box = &shown->box, .depth = shown->depth, .leaf = shown->leaf != 0});
         }
         first += count;
-        more = count == WIRE_BOXES && !remote->broken && first < UINT32_MAX;
+        more = count == WIRE_BOXES && !remote->child.broken && first < UINT32_MAX;
         all = some->complete != 0;
     }
     if (!all) rt_remote_break(accel, "there is no memory for all its boxes", "it showed them");
@@ -445,8 +366,8 @@ static const RtAccelOps remote_ops = {
     .destroy = destroy,
     .nearest = nearest,
     .occluded = occluded,
-    .nearest_counted = trace_nearest,
-    .occluded_counted = trace_occluded,
+    .nearest_counted = count_nearest,
+    .occluded_counted = count_occluded,
     .scratch_bytes = scratch_bytes,
     .open = open_query,
     .close = close_query,

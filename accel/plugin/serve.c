@@ -122,20 +122,20 @@ static void wait_for_debugger(void) {
 
 /* ---- requests ---- */
 
-void rt_wire_validate(RtQuery *query, void *message) {
-    (void)query;
+void rt_wire_validate(RtQuery *query, const RtRay *rays, void *message) {
+    (void)query, (void)rays;
     WireChecked *checked = message;
     checked->status = rt_accel_validate(served.accel, &checked->error);
 }
 
-void rt_wire_check(RtQuery *query, void *message) {
-    (void)query;
+void rt_wire_check(RtQuery *query, const RtRay *rays, void *message) {
+    (void)query, (void)rays;
     WireChecked *checked = message;
     checked->status = rt_accel_check(served.accel, &checked->error);
 }
 
-void rt_wire_destroy(RtQuery *query, void *message) {
-    (void)query, (void)message;
+void rt_wire_destroy(RtQuery *query, const RtRay *rays, void *message) {
+    (void)query, (void)rays, (void)message;
     rt_accel_destroy(served.accel);
     served.accel = NULL;
 }
@@ -145,10 +145,10 @@ static void ignore(void *context, const RtBoxView *view) {
 }
 
 /* Shows all boxes to a viewer that ignores them: host.c checks them. */
-void rt_wire_show(RtQuery *query, void *message) {
+void rt_wire_show(RtQuery *query, const RtRay *rays, void *message) {
     const RtAccel *base = rt_accel_base(served.accel);
     if (base->ops->each_box) base->ops->each_box(base, (RtBoxViewer){ignore, NULL});
-    rt_wire_check(query, message);
+    rt_wire_check(query, rays, message);
 }
 
 /* All boxes of the structure, from the request for the first until the last are sent. */
@@ -174,8 +174,8 @@ static void record(void *context, const RtBoxView *view) {
     shown.boxes[shown.count++] = (WireBox){*view->box, view->depth, view->leaf};
 }
 
-void rt_wire_boxes(RtQuery *query, void *message) {
-    (void)query;
+void rt_wire_boxes(RtQuery *query, const RtRay *rays, void *message) {
+    (void)query, (void)rays;
     WireBoxes *to = message;
     const RtAccel *base = rt_accel_base(served.accel);
     if (to->first == 0) {
@@ -206,10 +206,9 @@ static void trace_occluded(RtQuery *query, WireRays *asked, const RtRay *rays) {
     }
 }
 
-void rt_wire_trace(RtQuery *query, void *message) {
+void rt_wire_trace(RtQuery *query, const RtRay *rays, void *message) {
     WireRays *asked = message;
     const RtAccelOps *ops = query->accel->ops;
-    const RtRay *rays = rt_wire_rays(asked, asked->count);
     if (asked->any) {
         trace_occluded(query, asked, rays);
     } else if (asked->counted) {
@@ -235,10 +234,12 @@ static void serve_lane(Lane *lane, unsigned done, RtQuery *query) {
         WireWork *work = lane->work;
         size_t bytes = lane->bytes;
         if (work) {
+            RtRay *rays = rt_wire_rays(message, bytes);
             memcpy(message, lane->message, bytes);
+            memcpy(rays, rt_wire_rays(lane->message, bytes), lane->rays * sizeof(RtRay));
             fesetenv(FE_DFL_ENV);
             if (query && lane->begin) rt_query_begin(query);
-            work(query, message);
+            work(query, rays, message);
             memcpy(lane->message, message, bytes);
         } else if (query) {
             rt_query_clear(query);
@@ -265,8 +266,8 @@ static void *serve_query(void *context) {
     return NULL;
 }
 
-void rt_wire_open(RtQuery *query, void *message) {
-    (void)query;
+void rt_wire_open(RtQuery *query, const RtRay *rays, void *message) {
+    (void)query, (void)rays;
     WireChecked *checked = message;
     pthread_t thread;
     pthread_attr_t detached;

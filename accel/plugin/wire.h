@@ -2,9 +2,9 @@
 /* The memory that raytally shares with the process of a remote accelerator.
  *
  * The process is a fork, so it has the scene, the code, and every function at the same address. A request is
- * therefore a function and a message: raytally writes both into a lane and sets `asked` to the number of the
- * request; in the process, the lane's thread runs the function on a copy of the message, writes the copy
- * back, and sets `answered` to the same number. Lane 0 belongs to the main thread of the process: it builds,
+ * therefore a function, a message and rays: raytally writes them into a lane and sets `asked` to the number
+ * of the request; in the process, the lane's thread runs the function on copies, writes the message back, and
+ * sets `answered` to the same number. Lane 0 belongs to the main thread of the process: it builds,
  * opens the other lanes, and destroys. Each other lane belongs to one RtQuery.
  *
  * Invariant: a plugin may write anything here at any time. raytally copies what it reads, checks the copy,
@@ -26,7 +26,7 @@
 #include <unistd.h>
 
 /* One more than the most threads. The memory of unused lanes is never touched. */
-enum { LANES = 1 + 1024, MESSAGE_BYTES = RT_REMOTE_BYTES };
+enum { LANES = 1 + 1024, MESSAGE_BYTES = RT_REMOTE_BYTES + 1024 };
 
 /* A request: called with the lane's query; lane 0 has none. */
 typedef RtRemoteWork WireWork;
@@ -34,10 +34,15 @@ typedef RtRemoteWork WireWork;
 typedef struct Lane {
     atomic_uint asked, answered; /* number of the last request, and of the last answer */
     WireWork *work;              /* NULL: closes the lane */
-    size_t bytes;                /* of the message */
+    size_t bytes, rays;          /* of the message, and the number of rays after it */
     bool begin;                  /* rt_query_begin comes first */
     _Alignas(64) char message[MESSAGE_BYTES];
 } Lane;
+
+/* The rays after a message of so many bytes. */
+static inline RtRay *rt_wire_rays(char *message, size_t bytes) {
+    return (RtRay *)(message + (bytes + sizeof(RtHit) - 1) / sizeof(RtHit) * sizeof(RtHit));
+}
 
 /* What the process recorded of its own end. */
 typedef struct Crash {
@@ -107,27 +112,18 @@ typedef struct WireBoxes {
 } WireBoxes;
 WireWork rt_wire_boxes;
 
-/* A stream of rays. The message also holds the answers, as hits: an occluder is a hit at tmin. */
+/* A stream of rays. The answers are hits: an occluder is a hit at tmin. */
 enum { WIRE_RAYS = 4096 };
 typedef struct WireRays {
     uint32_t count;
     bool any, counted;
     RtTally tallies[RT_RAY_KIND_COUNT]; /* out: to be added */
-    RtHit hits[];                       /* [count] out; then RtRay rays[count] */
+    RtHit hits[];                       /* [count] out */
 } WireRays;
-
-static inline RtRay *rt_wire_rays(WireRays *asked, uint32_t count) {
-    return (RtRay *)(asked->hits + count);
-}
-
-static inline size_t rt_wire_rays_bytes(uint32_t count) {
-    return sizeof(WireRays) + count * (sizeof(RtHit) + sizeof(RtRay));
-}
-
 WireWork rt_wire_trace;
 
 _Static_assert(sizeof(WireBoxes) <= MESSAGE_BYTES &&
-                   sizeof(WireRays) + WIRE_RAYS * (sizeof(RtHit) + sizeof(RtRay)) <= MESSAGE_BYTES,
+                   sizeof(WireRays) + WIRE_RAYS * (sizeof(RtHit) + sizeof(RtRay)) <= RT_REMOTE_BYTES,
                "messages fit a lane");
 
 #endif

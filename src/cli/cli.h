@@ -19,29 +19,22 @@ enum { RT_EXIT_OK = 0, RT_EXIT_CHECK_FAILED = 1, RT_EXIT_BAD_INPUT = 2 };
 typedef struct RtCommand {
     const char *name, *arguments, *summary;
     int (*run)(int argc, char **argv); /* argv[0] is "raytally NAME"; returns the exit code */
-    const RtSyntax *syntax;            /* or NULL */
-    const struct argp *argp;           /* without a syntax */
+    const RtSyntax *syntax;
 } RtCommand;
 
-/* X(name): the commands whose options are an RtSyntax. */
+/* X(name) */
 #define RT_COMMANDS(X)                                                                                       \
     X(accels)                                                                                                \
     X(scenes)                                                                                                \
     X(info)                                                                                                  \
     X(render)                                                                                                \
-    X(trace) X(verify) X(bench) X(rays) X(run) X(merge) X(plot) X(report) X(reproduce) X(convert) X(new_accel)
+    X(trace)                                                                                                 \
+    X(verify)                                                                                                \
+    X(bench) X(compare) X(rays) X(run) X(merge) X(plot) X(report) X(reproduce) X(convert) X(new_accel)
 #define RT_COMMAND(name)                                                                                     \
     int rt_command_##name(int argc, char **argv);                                                            \
     extern const RtSyntax rt_##name##_syntax;
 RT_COMMANDS(RT_COMMAND)
-
-int rt_command_compare(int argc, char **argv);
-extern const struct argp rt_compare_argp;
-
-/* The options of a command, as argp has them; valid until the next call. */
-static inline const struct argp *rt_cli_command_argp(const RtCommand *command) {
-    return command->syntax ? rt_cli_argp(command->syntax) : command->argp;
-}
 
 /* The command that completes all others, whose table main has; it prints a script for bash. */
 extern const RtSyntax rt_completion_syntax;

@@ -5,19 +5,17 @@
 #include "cli/plugins.h"
 #include "cli/progress.h"
 #include "cli/recording.h"
-#include "core/base/memory.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
 #include "experiment/callgrind.h"
 #include "experiment/distribution_tables.h"
 #include "experiment/result_tables.h"
+#include "experiment/worker.h"
 #include "measure/machine.h"
 #include "verify/spread.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 typedef struct Options {
     RtRecordingOptions recording;
@@ -27,7 +25,7 @@ typedef struct Options {
     uint32_t rounds;    /* 0: the default */
     int threads;        /* -1: one to time, all to build and count */
     uint64_t callgrind; /* rays of a kind at most; 0: it is not asked for */
-    const char *child;  /* of it: the folder that it serves */
+    bool worker;        /* it counts instructions for another one (experiment/worker.h) */
     char *const *argv;  /* all arguments, NULL behind the last */
 } Options;
 
@@ -164,7 +162,7 @@ static const RtOption options[] = {
      "available where --hardware is not. raytally builds each accelerator again under valgrind, which is "
      "many times slower, and traces N rays of each kind (4096). valgrind does not support AVX-512, so this "
      "runs without it"},
-    {"callgrind-child", 0, "DIR", RT_TO_HIDDEN(child), NULL}, /* experiment/callgrind.h */
+    {"worker", 0, NULL, RT_TO_HIDDEN_FLAG(worker), NULL}, /* experiment/worker.h */
     {"csv", 0, "FILE", RT_TO_TEXT(csv),
      "Also write a row per cell to FILE, in the columns of times.csv, or of counts.csv with --count-only"},
     {"hits", 0, "FILE.npy", RT_TO_TEXT(workload.hits),
@@ -178,40 +176,6 @@ static const RtOption options[] = {
      "Measure the rays of FILE instead of recorded ones: an array of float32 of shape (N, 8) as `raytally "
      "rays` writes it. --rays chooses the query: nearest, or occlusion (any hit)"},
     {0}};
-
-/* ---- instructions ---- */
-
-static RtStatus save_rays(void *context, uint32_t workload, const RtRaySet *set, const RtAccel *exact,
-                          RtError *error) {
-    return rt_callgrind_save_rays(context, workload, set, exact, error);
-}
-
-/* The child gets the same arguments, and so the same accelerators and scenes. */
-static RtStatus count_instructions(RtCallgrind *callgrind, char *const *argv, RtError *error) {
-    char command[] = "bench", child[RT_MAX_PATH + 32];
-    size_t count = 0;
-    snprintf(child, sizeof child, "--callgrind-child=%s", callgrind->folder);
-    while (argv[count]) count++;
-    char **arguments = rt_alloc(count + 2, sizeof(char *));
-    if (!arguments) return rt_fail_memory(error, "arguments", 0);
-    arguments[0] = command;
-    arguments[1] = child;
-    for (size_t i = 1; i < count; i++) arguments[i + 1] = argv[i];
-    RtStatus status = rt_callgrind_run(callgrind, arguments, error);
-    rt_free(arguments);
-    return status;
-}
-
-/* Keeps what a plugin prints out of the rows. */
-static RtStatus serve_callgrind(const Options *o, RtError *error) {
-    int rows = dup(STDOUT_FILENO);
-    FILE *out = rows >= 0 ? fdopen(rows, "w") : NULL;
-    if (!out) return rt_fail(error, RT_IO, "stdout: %s", strerror(errno));
-    dup2(STDERR_FILENO, STDOUT_FILENO);
-    RtStatus status = rt_callgrind_serve(o->recording.experiment, o->child, out, error);
-    fclose(out);
-    return status;
-}
 
 /* ---- the report ---- */
 
@@ -312,7 +276,7 @@ static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, 
     if (o->callgrind) {
         RT_TRY(rt_callgrind_check(error));
         RT_TRY(rt_callgrind_init(callgrind, experiment, o->callgrind, error));
-        o->workload.rays = save_rays;
+        o->workload.rays = rt_callgrind_save_rays;
         o->workload.rays_context = callgrind;
     }
     RtProgress progress = rt_progress_begin(&o->workload);
@@ -323,8 +287,7 @@ static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, 
     if (status == RT_OK && o->callgrind)
         o->workload.observer.notice(&progress, "counting instructions under valgrind, which takes a while");
     rt_progress_end(&progress);
-    if (status == RT_OK && o->callgrind) status = rt_callgrind_save_broken(callgrind, results, error);
-    if (status == RT_OK && o->callgrind) status = count_instructions(callgrind, o->argv, error);
+    if (status == RT_OK && o->callgrind) status = rt_callgrind_run(callgrind, results, o->argv + 1, error);
     return status;
 }
 
@@ -338,7 +301,7 @@ static RtStatus bench(Options *o, RtError *error) {
                        experiment->workload_count);
     strcpy(experiment->name, "bench");
     RT_TRY(rt_experiment_check(experiment, where, error));
-    if (o->child) return serve_callgrind(o, error);
+    if (o->worker) return rt_worker_serve(experiment, NULL, error);
     RtResults results;
     RtCallgrind callgrind = {0};
     RtStatus status = rt_results_init(&results, experiment, error);

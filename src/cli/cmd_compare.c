@@ -8,25 +8,12 @@
 #include "experiment/compare.h"
 #include "experiment/manifest.h"
 #include "experiment/plugins_used.h"
+#include "experiment/worker.h"
 #include "report/result_directory.h"
 
-#include <argp.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
-
-enum {
-    OPT_WITH = 256,
-    OPT_WORKER,
-    OPT_QUICK,
-    OPT_ROUNDS,
-    OPT_UNTIL,
-    OPT_PATIENCE,
-    OPT_MARGIN,
-    OPT_STRICT,
-    OPT_THREADS,
-    OPT_JSON
-};
 
 /* Runs of one build, one after the other, differ by less. */
 static const double MARGIN_OF_DIRECTORIES = 0.05;
@@ -39,32 +26,22 @@ typedef struct Options {
     bool worker, quick, strict, json;
     uint32_t rounds;
     double until, patience, margin; /* margin < 0: not given */
-    int threads, timing;
+    int threads;                    /* -1: one to time, all to count */
+    int timing;
 } Options;
 
-static const struct argp_option options[] = {
-    {"with", OPT_WITH, "PROGRAM", 0,
-     "Another raytally, such as ../old/build/release/raytally, as `before`; this one is `after`", 0},
-    {"accel", 'a', "SPEC", 0, "For a SCENE: an accelerator, or `all` of them; may be repeated", 0},
-    {"strict", OPT_STRICT, 0, 0, "Exit code 1 if anything is slower", 0},
-    {"margin", OPT_MARGIN, "P%", 0,
-     "Report only differences beyond P % (default: 0 with --with; 5% for directories, which are single runs)",
-     0},
-    {"rounds", OPT_ROUNDS, "N", 0,
-     "With --with: at least N rounds, each with both programs restarted (10; more if there are many cells)",
-     0},
-    {"until", OPT_UNTIL, "P%", 0,
-     "With --with: continue until all intervals are within P % of their medians, for at most 1000 rounds or "
-     "--patience seconds",
-     0},
-    {"patience", OPT_PATIENCE, "SECONDS", 0, "With --until: at most this many seconds in total (600)", 0},
-    {"quick", OPT_QUICK, 0, 0, "Run the smaller variant of the EXPERIMENT", 0},
-    {"threads", OPT_THREADS, "N", 0, "Threads, as in `raytally bench`", 0},
-    {"json", OPT_JSON, 0, 0, "One JSON document on stdout instead of the table", 0},
-    {"worker", OPT_WORKER, 0, OPTION_HIDDEN, NULL, 0}, /* experiment/worker.c */
-    {0}};
+static void take_subject(void *options, const char *text, struct argp_state *state) {
+    Options *o = options;
+    if (o->subject_count == 2) argp_error(state, "'%s' is one too many", text);
+    o->subjects[o->subject_count++] = text;
+}
 
-static void check(Options *o, struct argp_state *state) {
+static void take_accel(void *options, const char *text, struct argp_state *state) {
+    rt_cli_add_accels(((Options *)options)->recording.experiment, text, state);
+}
+
+static void finish(void *options, struct argp_state *state) {
+    Options *o = options;
     RtExperiment *e = o->recording.experiment;
     const bool programs = o->with || o->worker;
     if (!programs && o->subject_count != 2)
@@ -77,38 +54,31 @@ static void check(Options *o, struct argp_state *state) {
                           "are compared as they are");
     if (programs && !e->candidate_count && (o->recording.frame || o->recording.kinds))
         argp_error(state, "an EXPERIMENT defines its rays; for a SCENE give --accel");
+    if (o->threads >= 0) o->timing = o->threads;
     rt_recording_finish(&o->recording, state);
 }
 
-static error_t parse_option(int key, char *argument, struct argp_state *state) {
-    Options *o = state->input;
-    switch (key) {
-    case ARGP_KEY_INIT: state->child_inputs[0] = &o->recording; return 0;
-    case 'a': rt_cli_add_accels(o->recording.experiment, argument, state); return 0;
-    case OPT_WITH: o->with = argument; return 0;
-    case OPT_WORKER: o->worker = true; return 0;
-    case OPT_QUICK: o->quick = true; return 0;
-    case OPT_STRICT: o->strict = true; return 0;
-    case OPT_JSON: o->json = true; return 0;
-    case OPT_MARGIN: o->margin = rt_cli_percent(state, "--margin", argument); return 0;
-    case OPT_UNTIL: o->until = rt_cli_percent(state, "--until", argument); return 0;
-    case OPT_PATIENCE:
-        o->patience = (double)rt_cli_integer(state, "--patience", argument, 1, 86400);
-        return 0;
-    case OPT_ROUNDS:
-        o->rounds = (uint32_t)rt_cli_integer(state, "--rounds", argument, 1, RT_MAX_ROUNDS);
-        return 0;
-    case OPT_THREADS:
-        o->threads = o->timing = (int)rt_cli_integer(state, "--threads", argument, 0, 1024);
-        return 0;
-    case ARGP_KEY_ARG:
-        if (o->subject_count == 2) argp_error(state, "'%s' is one too many", argument);
-        o->subjects[o->subject_count++] = argument;
-        return 0;
-    case ARGP_KEY_END: check(o, state); return 0;
-    default: return ARGP_ERR_UNKNOWN;
-    }
-}
+static const RtOption options[] = {
+    {"with", 0, "PROGRAM", RT_TO_TEXT(with),
+     "Another raytally, such as ../old/build/release/raytally, as `before`; this one is `after`"},
+    {"accel", 'a', "SPEC", RT_TO_TAKE(take_accel),
+     "For a SCENE: an accelerator, or `all` of them; may be repeated"},
+    {"strict", 0, NULL, RT_TO_FLAG(strict), "Exit code 1 if anything is slower"},
+    {"margin", 0, "P%", RT_TO_PERCENT(margin),
+     "Report only differences beyond P % (default: 0 with --with; 5% for directories, which are single "
+     "runs)"},
+    {"rounds", 0, "N", RT_TO_INTEGER(rounds, 1, RT_MAX_ROUNDS),
+     "With --with: at least N rounds, each with both programs restarted (10; more if there are many cells)"},
+    {"until", 0, "P%", RT_TO_PERCENT(until),
+     "With --with: continue until all intervals are within P % of their medians, for at most 1000 rounds or "
+     "--patience seconds"},
+    {"patience", 0, "SECONDS", RT_TO_SECONDS(patience, 1, 86400),
+     "With --until: at most this many seconds in total (600)"},
+    {"quick", 0, NULL, RT_TO_FLAG(quick), "Run the smaller variant of the EXPERIMENT"},
+    {"threads", 0, "N", RT_TO_INTEGER(threads, 0, 1024), "Threads, as in `raytally bench`"},
+    {"json", 0, NULL, RT_TO_FLAG(json), "One JSON document on stdout instead of the table"},
+    {"worker", 0, NULL, RT_TO_HIDDEN_FLAG(worker), NULL}, /* experiment/worker.h */
+    {0}};
 
 /* ---- two programs ---- */
 
@@ -123,9 +93,9 @@ static RtStatus load(Options *o, RtError *error) {
 }
 
 static RtStatus work(Options *o, RtError *error) {
-    RtWorkloadOptions how = {.threads = o->threads, .timing = o->timing};
+    RtWorkloadOptions how = {.threads = o->threads >= 0 ? o->threads : 0, .timing = o->timing};
     RT_TRY(load(o, error));
-    return rt_worker_serve(o->recording.experiment, &how, stdin, stdout, error);
+    return rt_worker_serve(o->recording.experiment, &how, error);
 }
 
 static void on_progress(void *context, uint32_t round, uint32_t rounds, const char *scene, const char *kind) {
@@ -141,20 +111,12 @@ static void on_notice(void *context, const char *message) {
 }
 
 /* A worker gets the same arguments, so it measures the same. */
-static RtStatus compare_programs(Options *o, int argc, char **argv, RtComparison *comparison,
-                                 RtError *error) {
+static RtStatus compare_programs(Options *o, char **argv, RtComparison *comparison, RtError *error) {
     bool terminal = isatty(STDERR_FILENO) == 1;
-    char compare[] = "compare", worker[] = "--worker", name[] = "raytally";
-    char **arguments = rt_alloc((size_t)argc + 3, sizeof(char *));
-    if (!arguments) return rt_fail_memory(error, "arguments", 0);
-    arguments[0] = name;
-    arguments[1] = compare;
-    arguments[2] = worker;
-    for (int i = 1; i < argc; i++) arguments[i + 2] = argv[i];
     RtStatus status = load(o, error); /* reports errors once */
     RtPrograms programs = {.before = o->with,
                            .after = "/proc/self/exe",
-                           .arguments = arguments,
+                           .arguments = argv + 1,
                            .rounds = o->rounds ? o->rounds : 10,
                            .until = o->until,
                            .patience = o->patience,
@@ -166,7 +128,6 @@ static RtStatus compare_programs(Options *o, int argc, char **argv, RtComparison
                            .notice = on_notice};
     if (status == RT_OK) status = rt_compare_programs(&programs, comparison, error);
     if (terminal) fputs("\r\033[K", stderr);
-    rt_free(arguments);
     return status;
 }
 
@@ -208,10 +169,10 @@ static RtStatus compare_directories(const Options *o, RtComparison *comparison, 
 
 /* ---- the command ---- */
 
-static RtStatus compare(Options *o, int argc, char **argv, bool *slower, RtError *error) {
+static RtStatus compare(Options *o, char **argv, bool *slower, RtError *error) {
     RtComparison comparison = {.margin = o->margin >= 0 ? o->margin : o->with ? 0 : MARGIN_OF_DIRECTORIES};
-    RtStatus status = o->with ? compare_programs(o, argc, argv, &comparison, error)
-                              : compare_directories(o, &comparison, error);
+    RtStatus status =
+        o->with ? compare_programs(o, argv, &comparison, error) : compare_directories(o, &comparison, error);
     if (status == RT_OK && o->json) rt_cli_print_json(rt_comparison_json(&comparison));
     if (status == RT_OK && !o->json) rt_comparison_print(&comparison, stdout);
     *slower = rt_comparison_count(&comparison, RT_CHANGE_SLOWER) > 0;
@@ -221,29 +182,32 @@ static RtStatus compare(Options *o, int argc, char **argv, bool *slower, RtError
 
 static const struct argp_child children[] = {
     {&rt_recording_argp, 0, NULL, 1}, {&rt_plugin_argp, 0, NULL, 0}, {0}};
-const struct argp rt_compare_argp = {
+const RtSyntax rt_compare_syntax = {
     .options = options,
-    .parser = parse_option,
-    .args_doc = "BEFORE AFTER\nEXPERIMENT.yaml --with PROGRAM\nSCENE --accel SPEC --with PROGRAM",
-    .doc = "Report what is faster, slower or no different after a change, and which counts changed: from two "
-           "result directories, or by alternating this raytally and another one on the same rays, which "
-           "finds much smaller differences.\v"
-           "Ratios are of throughput: above 1 means faster now. All intervals hold simultaneously with 95 % "
-           "confidence, however many cells there are. Directories are single runs at different times; "
-           "--margin allows for their systematic difference. Examples:\n"
-           "  raytally compare balls --accel bvh --accel grid --with ../old/build/release/raytally\n"
-           "  raytally compare experiments/first-look.yaml --quick --with ../old/build/release/raytally "
-           "--until 1%\n"
-           "  raytally compare results/last-month results/first-look --strict",
-    .children = children};
+    .children = children,
+    .child = offsetof(Options, recording),
+    .arguments = "BEFORE AFTER\nEXPERIMENT.yaml --with PROGRAM\nSCENE --accel SPEC --with PROGRAM",
+    .argument = {.name = "BEFORE", .take = take_subject},
+    .finish = finish,
+    .help =
+        "Report what is faster, slower or no different after a change, and which counts changed: from two "
+        "result directories, or by alternating this raytally and another one on the same rays, which "
+        "finds much smaller differences.\v"
+        "Ratios are of throughput: above 1 means faster now. All intervals hold simultaneously with 95 % "
+        "confidence, however many cells there are. Directories are single runs at different times; "
+        "--margin allows for their systematic difference. Examples:\n"
+        "  raytally compare balls --accel bvh --accel grid --with ../old/build/release/raytally\n"
+        "  raytally compare experiments/first-look.yaml --quick --with ../old/build/release/raytally "
+        "--until 1%\n"
+        "  raytally compare results/last-month results/first-look --strict"};
 
 int rt_command_compare(int argc, char **argv) {
     RtError error;
     bool slower = false;
-    Options o = {.timing = 1, .patience = 600, .margin = -1};
+    Options o = {.threads = -1, .timing = 1, .patience = 600, .margin = -1};
     if (rt_recording_init(&o.recording, &error) != RT_OK) return rt_cli_fail(&error);
-    argp_parse(&rt_compare_argp, argc, argv, 0, 0, &o);
-    RtStatus status = o.worker ? work(&o, &error) : compare(&o, argc, argv, &slower, &error);
+    rt_cli_parse(&rt_compare_syntax, argc, argv, &o);
+    RtStatus status = o.worker ? work(&o, &error) : compare(&o, argv, &slower, &error);
     rt_recording_clear(&o.recording);
     if (status != RT_OK) return rt_cli_fail(&error);
     return slower && o.strict ? RT_EXIT_CHECK_FAILED : RT_EXIT_OK;

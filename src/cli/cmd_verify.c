@@ -7,6 +7,7 @@
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
+#include "core/text/json.h"
 #include "measure/ray_file.h"
 #include "verify/replay.h"
 #include "verify/verify_table.h"
@@ -145,11 +146,6 @@ static void print_header(Show *show) {
     rt_table_line(&columns, show->widths, NULL, stdout);
 }
 
-static const char *text(const json_t *object, const char *key) {
-    const char *value = json_string_value(json_object_get(object, key));
-    return value ? value : "";
-}
-
 static long long number(const json_t *row, const char *key) {
     return (long long)json_integer_value(json_object_get(row, key));
 }
@@ -160,7 +156,7 @@ static void print_row(Show *show, const json_t *row) {
     print_header(show);
     rt_table_line(&columns, show->widths, row, stdout);
     if (!json_is_null(wrong)) {
-        printf("    WRONG: %s\n", text(wrong, "says"));
+        printf("    WRONG: %s\n", rt_json_text(wrong, "says", ""));
         if (json_is_null(json_object_get(wrong, "objects_left"))) {
             printf("    Traced again, the answer is right. ");
         } else if (json_is_true(json_object_get(wrong, "shrunk"))) {
@@ -170,7 +166,7 @@ static void print_row(Show *show, const json_t *row) {
             printf("    The scene is not reduced: only the first failures are. ");
         }
         rt_cli_plugin_arguments(plugins, sizeof plugins);
-        printf("To repeat: raytally verify --replay '%s'%s\n", text(wrong, "replay"), plugins);
+        printf("To repeat: raytally verify --replay '%s'%s\n", rt_json_text(wrong, "replay", ""), plugins);
     }
     fflush(stdout);
 }
@@ -180,8 +176,8 @@ static void on_row(void *context, const json_t *row) {
     clear_progress(show);
     if (!show->options->json) print_row(show, row);
     if (!json_is_null(json_object_get(row, "problem"))) {
-        fprintf(stderr, "raytally: %s on %s: %s\n", text(row, "accel"), text(row, "scene"),
-                text(row, "problem"));
+        fprintf(stderr, "raytally: %s on %s: %s\n", rt_json_text(row, "accel", ""),
+                rt_json_text(row, "scene", ""), rt_json_text(row, "problem", ""));
     }
     show->failed |= rt_verify_row_fails(row);
 }

@@ -44,7 +44,7 @@ static void print_commands(const RtCommand *commands, int count) {
         const RtCommand *command = &commands[i];
         begin("options", command->name);
         fputs("--help --usage", stdout);
-        print_options(rt_cli_command_argp(command));
+        print_options(rt_cli_argp(command->syntax));
         end();
         begin("argument", command->name);
         fputs(command->arguments, stdout);

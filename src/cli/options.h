@@ -37,8 +37,8 @@ typedef struct RtOptionValue {
     { .form = RT_OPTION_FLAG, .offset = offsetof(Options, field) }
 #define RT_TO_TEXT(field)                                                                                    \
     { .form = RT_OPTION_TEXT, .offset = offsetof(Options, field) }
-#define RT_TO_HIDDEN(field)                                                                                  \
-    { .form = RT_OPTION_TEXT, .offset = offsetof(Options, field), .flags = OPTION_HIDDEN }
+#define RT_TO_HIDDEN_FLAG(field)                                                                             \
+    { .form = RT_OPTION_FLAG, .offset = offsetof(Options, field), .flags = OPTION_HIDDEN }
 #define RT_TO_INTEGER(field, from, to)                                                                       \
     {                                                                                                        \
         .form = RT_OPTION_INTEGER, .offset = offsetof(Options, field), .size = sizeof((Options *)0)->field,  \

@@ -3,12 +3,12 @@
 
 #include "core/base/file.h"
 #include "core/base/memory.h"
-#include "core/base/process.h"
 #include "core/base/words.h"
-#include "core/text/json_lines.h"
+#include "core/text/json.h"
 #include "experiment/result_tables.h"
+#include "experiment/worker.h"
+#include "measure/measure.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
@@ -45,50 +45,59 @@ void rt_callgrind_clear(RtCallgrind *callgrind) {
     *callgrind = (RtCallgrind){0};
 }
 
-static RtStatus path_of(const RtCallgrind *callgrind, const char *name, char *path, RtError *error) {
-    return rt_path_join(callgrind->folder, name, path, error);
-}
-
-/* ---- the child ---- */
-
-static RtStatus run_valgrind(char *const *arguments, const char *out, const char *log, RtProcessEnd *end,
-                             RtError *error) {
-    const RtCommand command = {.arguments = arguments, .out = out, .log = log};
-    RtStatus status = rt_process_run(&command, end, error);
-    if (status != RT_NOT_AVAILABLE) return status;
-    return rt_fail(error, status,
-                   "valgrind is not installed: the package of that name (`apt install valgrind`) counts the "
-                   "instructions of a ray where the processor's own counters are not available");
-}
-
 RtStatus rt_callgrind_check(RtError *error) {
     char valgrind[] = "valgrind", version[] = "--version", *arguments[] = {valgrind, version, NULL};
+    const RtProcessCommand command = {.arguments = arguments, .out = "/dev/null", .log = "/dev/null"};
     RtProcessEnd end;
-    RT_TRY(run_valgrind(arguments, "/dev/null", "/dev/null", &end, error));
+    RtStatus status = rt_process_run(&command, &end, error);
+    if (status == RT_NOT_AVAILABLE)
+        return rt_fail(error, status,
+                       "valgrind is not installed: the package of that name (`apt install valgrind`) counts "
+                       "the instructions of a ray where the processor's own counters are not available");
+    RT_TRY(status);
     return end.code == 0 ? RT_OK : rt_fail(error, RT_NOT_AVAILABLE, "`valgrind --version` fails");
 }
 
-/* The end of the child's messages. */
-static RtStatus fail_child(const char *log, RtError *error) {
-    enum { MOST_BYTES = 1 << 24, MOST_SHOWN = 600 };
-    char *text = NULL;
-    size_t size = 0;
-    RT_TRY(rt_file_read(log, MOST_BYTES, &text, &size, error));
-    while (size > 0 && isspace((unsigned char)text[size - 1])) text[--size] = '\0';
-    rt_fail(error, RT_NOT_AVAILABLE, "valgrind, or raytally in it, failed:\n%s",
-            size > MOST_SHOWN ? text + size - MOST_SHOWN : text);
-    rt_free(text);
-    return RT_NOT_AVAILABLE;
+/* ---- rays for the worker ---- */
+
+static RtStatus rays_path(const RtCallgrind *callgrind, uint32_t workload, RtRayKind kind, char *path,
+                          RtError *error) {
+    char name[64];
+    snprintf(name, sizeof name, "%" PRIu32 "-%s.rays", workload, rt_ray_kind_name(kind));
+    return rt_path_join(callgrind->folder, name, path, error);
 }
 
-/* ---- its results ---- */
+RtStatus rt_callgrind_save_rays(void *context, uint32_t workload, const RtRaySet *set, const RtAccel *accel,
+                                RtError *error) {
+    enum { RUN = 64 }; /* neighbours, so that packets are coherent */
+    const RtCallgrind *callgrind = context;
+    char path[RT_MAX_PATH];
+    RtRaySet some;
+    RtOutput output;
+    RT_TRY(rays_path(callgrind, workload, set->kind, path, error));
+    RT_TRY(rt_rayset_limit(set, callgrind->most, RUN, &some, error));
+    RtHit *hits = rt_alloc(some.count, sizeof(RtHit));
+    RtStatus status = hits ? rt_measure_answers(accel, &some, 1, hits, error)
+                           : rt_fail_memory(error, "answers", some.count * sizeof(RtHit));
+    if (status == RT_OK) status = rt_output_open(&output, path, error);
+    if (status == RT_OK) {
+        fwrite(some.rays, sizeof(RtRay), some.count, output.file);
+        fwrite(hits, sizeof(RtHit), some.count, output.file);
+        status = rt_output_commit(&output, error);
+    }
+    rt_free(hits);
+    rt_rayset_clear(&some);
+    return status;
+}
+
+/* ---- counting ---- */
 
 /* Reads the sum of costs from file number `n` of callgrind, from 1. */
 static RtStatus read_total(const RtCallgrind *callgrind, uint32_t n, uint64_t *total, RtError *error) {
     char path[RT_MAX_PATH], name[32], *text;
     size_t size;
     snprintf(name, sizeof name, "out.%" PRIu32, n);
-    RT_TRY(path_of(callgrind, name, path, error));
+    RT_TRY(rt_path_join(callgrind->folder, name, path, error));
     if (!rt_file_exists(path))
         return rt_fail(error, RT_NOT_AVAILABLE,
                        "callgrind counted nothing: is the program stripped of its symbols?");
@@ -99,94 +108,72 @@ static RtStatus read_total(const RtCallgrind *callgrind, uint32_t n, uint64_t *t
     return found ? RT_OK : rt_fail(error, RT_NOT_AVAILABLE, "%s: callgrind wrote no sum of costs", path);
 }
 
-static void copy_text(char *out, size_t size, const json_t *line, const char *key) {
-    const char *text = json_string_value(json_object_get(line, key));
-    snprintf(out, size, "%s", text ? text : "");
-}
-
-/* Takes one cell; the last of its passes counts. */
-static RtStatus take_line(RtCallgrind *callgrind, const json_t *line, uint32_t *passes, RtError *error) {
-    const RtExperiment *e = callgrind->experiment;
-    char scene[RT_MAX_LABEL], accel[RT_MAX_LABEL], kind[RT_MAX_LABEL];
-    RtInstructions *cell = &callgrind->cells[callgrind->count];
-    copy_text(scene, sizeof scene, line, "scene");
-    copy_text(accel, sizeof accel, line, "accel");
-    copy_text(kind, sizeof kind, line, "kind");
-    copy_text(cell->spec, sizeof cell->spec, line, "spec");
-    copy_text(cell->why, sizeof cell->why, line, "why");
-    cell->workload = rt_workload_find(e, scene);
-    cell->rays = (uint64_t)json_integer_value(json_object_get(line, "rays"));
-    if (cell->workload == e->workload_count || rt_ray_kind_parse(kind, &cell->kind, NULL) != RT_OK)
-        return rt_fail(error, RT_BAD_INPUT, "raytally under valgrind printed an unknown row");
-    cell->candidate = rt_candidate_find(e, accel, cell->workload);
-    *passes += (uint32_t)json_integer_value(json_object_get(line, "passes"));
-    if (!*cell->why) {
-        RT_TRY(read_total(callgrind, *passes, &cell->instructions, error));
-    }
-    callgrind->count +=
-        cell->candidate < e->candidate_count; /* else a setting that only the child could build */
+/* Takes the answer about one cell; the last of its passes counts. */
+static RtStatus take_answer(RtCallgrind *callgrind, const json_t *answer, RtInstructions cell,
+                            uint32_t *passes, RtError *error) {
+    if (json_object_size(answer) == 0) return RT_OK; /* a setting that cannot be built under valgrind */
+    snprintf(cell.spec, sizeof cell.spec, "%s", rt_json_text(answer, "spec", ""));
+    snprintf(cell.why, sizeof cell.why, "%s", rt_json_text(answer, "why", ""));
+    cell.rays = (uint64_t)json_integer_value(json_object_get(answer, "rays"));
+    *passes += (uint32_t)json_integer_value(json_object_get(answer, "passes"));
+    if (!*cell.why) RT_TRY(read_total(callgrind, *passes, &cell.instructions, error));
+    callgrind->cells[callgrind->count++] = cell;
     return RT_OK;
 }
 
-static RtStatus take_lines(RtCallgrind *callgrind, const char *path, RtError *error) {
-    json_t *lines;
-    uint32_t passes = 0;
-    RT_TRY(rt_json_lines_load(path, &lines, error));
-    callgrind->cells = rt_alloc(json_array_size(lines), sizeof(RtInstructions));
-    RtStatus status = callgrind->cells ? RT_OK : rt_fail_memory(error, "counts of instructions", 0);
-    for (size_t i = 0; i < json_array_size(lines) && status == RT_OK; i++)
-        status = take_line(callgrind, json_array_get(lines, i), &passes, error);
-    json_decref(lines);
-    return status;
-}
-
-RtStatus rt_callgrind_save_broken(const RtCallgrind *callgrind, const RtResults *results, RtError *error) {
+/* An accelerator that broke is not built again: it would end the worker. */
+static RtStatus count_cell(RtCallgrind *callgrind, RtWorker *worker, const RtResults *results,
+                           const RtCellCursor *at, uint32_t *passes, RtError *error) {
     const RtExperiment *e = callgrind->experiment;
-    const uint32_t count = e->workload_count * e->candidate_count * e->kind_count;
+    const RtBuildResult *build = rt_build_at(results, at->workload, at->candidate);
+    RtInstructions cell = {.workload = at->workload, .candidate = at->candidate, .kind = at->kind};
     char path[RT_MAX_PATH];
-    RT_TRY(path_of(callgrind, RT_CALLGRIND_BROKEN, path, error));
-    json_t *lines = json_array();
-    for (uint32_t i = 0; i < count; i++) {
-        const uint32_t t = i / e->kind_count / e->candidate_count, c = i / e->kind_count % e->candidate_count;
-        const RtRayKind kind = e->kinds[i % e->kind_count];
-        const RtBuildResult *build = rt_build_at(results, t, c);
-        const RtCell *cell = rt_cell_at(results, t, c, kind);
-        if (!build->broken && !cell->broken) continue;
-        json_array_append_new(lines,
-                              json_pack("{s:s, s:s, s:s, s:s}", "scene", e->workloads[t].label, "accel",
-                                        e->candidates[c].label, "kind", rt_ray_kind_name(kind), "why",
-                                        build->broken ? build->limit : cell->limit));
+    json_t *answer;
+    RT_TRY(rays_path(callgrind, at->workload, at->kind, path, error));
+    if (!rt_candidate_runs(e, at->candidate, at->workload) || !rt_file_exists(path)) return RT_OK;
+    if (build->broken || at->cell->broken) {
+        snprintf(cell.why, sizeof cell.why, "%.*s", RT_MAX_WHY - 1,
+                 build->broken ? build->limit : at->cell->limit);
+        callgrind->cells[callgrind->count++] = cell;
+        return RT_OK;
     }
-    RtStatus status = json_array_size(lines) ? rt_json_lines_save(path, lines, error) : RT_OK;
-    json_decref(lines);
+    RT_TRY(rt_worker_ask(worker, &answer, error, "count %" PRIu32 " %s %s %s\n", at->workload,
+                         rt_ray_kind_name(at->kind), e->candidates[at->candidate].label, path));
+    RtStatus status = take_answer(callgrind, answer, cell, passes, error);
+    json_decref(answer);
     return status;
 }
 
-RtStatus rt_callgrind_run(RtCallgrind *callgrind, char *const *arguments, RtError *error) {
-    char program[RT_MAX_PATH], rows[RT_MAX_PATH], log[RT_MAX_PATH], out[RT_MAX_PATH];
-    char out_file[RT_MAX_PATH + 32], valgrind[] = "valgrind", tool[] = "--tool=callgrind";
-    char off[] = "--collect-atstart=no", toggle[] = "--toggle-collect=rt_callgrind_pass";
-    char dump[] = "--dump-after=rt_callgrind_pass";
-    char *const options[] = {valgrind, tool, off, toggle, dump, out_file, program};
-    const size_t option_count = sizeof options / sizeof options[0];
-    size_t count = 0;
-    RtProcessEnd end;
+RtStatus rt_callgrind_run(RtCallgrind *callgrind, const RtResults *results, char *const *arguments,
+                          RtError *error) {
+    const RtExperiment *e = callgrind->experiment;
+    const size_t cells = (size_t)e->workload_count * e->candidate_count * e->kind_count;
+    char program[RT_MAX_PATH], log[RT_MAX_PATH], out[RT_MAX_PATH], out_file[RT_MAX_PATH + 32];
+    const char *const command[] = {"valgrind",
+                                   "--tool=callgrind",
+                                   "--collect-atstart=no",
+                                   "--toggle-collect=rt_callgrind_pass",
+                                   "--dump-after=rt_callgrind_pass",
+                                   out_file,
+                                   program,
+                                   "bench",
+                                   "--worker",
+                                   NULL};
+    uint32_t passes = 0;
+    RtWorker worker = {.log = log};
     ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
     if (length < 0) return rt_fail(error, RT_IO, "/proc/self/exe: %s", strerror(errno));
     program[length] = '\0';
-    RT_TRY(path_of(callgrind, "rows", rows, error));
-    RT_TRY(path_of(callgrind, "log", log, error));
-    RT_TRY(path_of(callgrind, "out", out, error));
+    RT_TRY(rt_path_join(callgrind->folder, "log", log, error));
+    RT_TRY(rt_path_join(callgrind->folder, "out", out, error));
     snprintf(out_file, sizeof out_file, "--callgrind-out-file=%s", out);
-    while (arguments[count]) count++;
-    char **all = rt_alloc(option_count + count + 1, sizeof(char *));
-    if (!all) return rt_fail_memory(error, "arguments", count * sizeof(char *));
-    memcpy(all, options, sizeof options);
-    memcpy(all + option_count, arguments, count * sizeof(char *));
-    RtStatus status = run_valgrind(all, rows, log, &end, error);
-    rt_free(all);
-    RT_TRY(status);
-    return end.code == 0 ? take_lines(callgrind, rows, error) : fail_child(log, error);
+    callgrind->cells = rt_alloc(cells, sizeof(RtInstructions));
+    if (!callgrind->cells) return rt_fail_memory(error, "counts of instructions", 0);
+    RtStatus status = rt_worker_start(&worker, command, arguments, error);
+    for (RtCellCursor at = {0}; status == RT_OK && rt_results_next(results, &at);)
+        status = count_cell(callgrind, &worker, results, &at, &passes, error);
+    rt_worker_end(&worker);
+    return status;
 }
 
 /* ---- tables ---- */
@@ -195,10 +182,6 @@ typedef RtInstructionsRow Row;
 
 static double a_ray(const Row *r) {
     return *r->cell->why ? (double)NAN : (double)r->cell->instructions / (double)r->cell->rays;
-}
-
-static RtField why_of(const Row *r) {
-    return *r->cell->why ? rt_field_text(r->cell->why) : rt_field_missing();
 }
 
 static RtField isa_of(const Row *r) {
@@ -219,7 +202,7 @@ static RtField isa_of(const Row *r) {
     X(instructions, "instructions", integer, "", "instructions of all these rays, by callgrind: exact",      \
       *r->cell->why ? rt_field_missing() : rt_field_integer(r->cell->instructions))                          \
     X(instructions_per_ray, "instructions_per_ray", real6, "", "instructions per ray", a_ray(r))             \
-    X(why, "why", text, "", "why instructions are unknown; else empty", why_of(r))                           \
+    X(why, "why", text, "", "why instructions are unknown; else empty", *r->cell->why ? r->cell->why : NULL) \
     X(eye, "instr./ray", figure, "", "instructions per ray", a_ray(r))                                       \
     X(isa, "isa", text, "", "the instruction set, for accelerators that choose one", isa_of(r))
 

@@ -171,11 +171,6 @@ static RtField interval_of(const Row *r) {
     return rt_field_interval(r->cell->ratio.median, r->cell->ratio.low, r->cell->ratio.high);
 }
 
-static RtField counts_of(const Row *r) {
-    if (!r->cell->counted) return rt_field_missing();
-    return rt_field_text(counts_changed(r->cell) ? "changed" : "same");
-}
-
 static const void *tally_before(const void *row) {
     const Row *r = row;
     return r->cell->counted ? &r->cell->counts_before : NULL;
@@ -193,7 +188,9 @@ static const void *tally_after(const void *row) {
     X(interval, "ratio", interval, "", "throughput after over that before", interval_of(r))                  \
     X(change, "time", text, "", "faster, slower, or why that is unknown", change_names[r->cell->change])     \
     X(counts, "counts", text, "", "same or changed; null: unknown, or dependent on the machine",             \
-      counts_of(r))                                                                                          \
+      !r->cell->counted         ? NULL                                                                       \
+      : counts_changed(r->cell) ? "changed"                                                                  \
+                                : "same")                                                                    \
     X(rays, "rays", integer, "", "rays measured", r->cell->rays)                                             \
     X(ns_before, "ns_before", real6, "ns", "time per ray before; median", TIMED(1e9 * r->cell->before))      \
     X(ns_after, "ns_after", real6, "ns", "time per ray after; median", TIMED(1e9 * r->cell->after))          \

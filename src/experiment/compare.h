@@ -80,7 +80,7 @@ RtStatus rt_compare_results(const RtResults *before, const RtResults *after, RtC
 
 typedef struct RtPrograms {
     const char *before, *after; /* paths of programs: another, and this one */
-    char *const *arguments;     /* of either, NULL behind the last: which make it a worker (worker.c) */
+    char *const *arguments;     /* of either, NULL behind the last, after those of a worker (worker.h) */
     uint32_t rounds;            /* at least; more if the number of cells requires them */
     double until, patience;     /* as in RtWorkloadOptions; patience is of all */
     double least;               /* least seconds of a turn */
@@ -92,11 +92,6 @@ typedef struct RtPrograms {
 } RtPrograms;
 
 RtStatus rt_compare_programs(const RtPrograms *programs, RtComparison *comparison, RtError *error);
-
-/* The worker's side (worker.c): answers requests from `in` on `out` until everything is timed or the input
- * ends. */
-RtStatus rt_worker_serve(const RtExperiment *experiment, const RtWorkloadOptions *options, FILE *in,
-                         FILE *out, RtError *error);
 
 /* ---- results ---- */
 

@@ -1,26 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Two programs against each other: two workers (worker.c), started again for each round, that run in turns.
+/* Two programs against each other: two workers (worker.h), started again for each round, that run in turns.
  */
 #include "core/base/clock.h"
 #include "core/base/memory.h"
-#include "core/base/process.h"
 #include "core/base/random.h"
+#include "core/text/json.h"
 #include "experiment/compare.h"
+#include "experiment/worker.h"
 
 #include <inttypes.h>
 #include <math.h>
-#include <signal.h>
-#include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { BEFORE, AFTER };
-
-typedef struct Worker {
-    const char *program; /* borrowed */
-    RtProcess process;
-    FILE *to, *from;
-} Worker;
 
 /* A cell of a section that both workers have. */
 typedef struct Pair {
@@ -37,79 +29,19 @@ typedef struct Run {
     RtRandom random;
     uint32_t round, rounds; /* the current one, and how many are expected */
     double start;
-    Worker workers[2];
+    RtWorker workers[2];
 } Run;
 
-static const char *text_of(const json_t *object, const char *key) {
-    const char *text = json_string_value(json_object_get(object, key));
-    return text ? text : "";
-}
-
-/* ---- workers ---- */
-
-static RtStatus fail_ended(Worker *worker, RtError *error) {
-    RtProcessEnd end;
-    char how[160] = "it no longer answers";
-    if (rt_process_wait(&worker->process, 1000, &end)) rt_process_end_format(end, 0, "", how, sizeof how);
-    return rt_fail(error, RT_BAD_INPUT, "%s cannot be compared: %s; its messages are above", worker->program,
-                   how);
-}
-
-/* Takes one line of JSON, a new reference. The worker's messages go to stderr. */
-static RtStatus take_json(Worker *worker, json_t **document, RtError *error) {
-    char *line = NULL;
-    size_t size = 0;
-    *document = NULL;
-    if (getline(&line, &size, worker->from) > 0) *document = json_loads(line, 0, NULL);
-    free(line);
-    return *document ? RT_OK : fail_ended(worker, error);
-}
-
-/* Starts a worker; *build gets the line in which it introduces itself, a new reference. */
-static RtStatus start_worker(Worker *worker, const char *program, char *const *arguments, json_t **build,
-                             RtError *error) {
-    const RtCommand command = {
-        .program = program, .arguments = arguments, .to = &worker->to, .from = &worker->from};
-    RtError why;
-    worker->program = program;
-    signal(SIGPIPE, SIG_IGN); /* a worker that has ended sends no answer */
-    if (rt_process_spawn(&worker->process, &command, &why) != RT_OK)
-        return rt_fail(error, RT_BAD_INPUT, "%s", why.message);
-    if (take_json(worker, build, error) == RT_OK &&
-        json_integer_value(json_object_get(*build, "worker")) == 1)
-        return RT_OK;
-    json_decref(*build);
-    return rt_fail(
-        error, RT_BAD_INPUT,
-        "%s cannot be compared: it must be a raytally that has the command `compare`. For an older "
-        "one, compare result directories",
-        program);
-}
-
-/* Closes its input, which ends it. */
-static void end_worker(Worker *worker) {
-    enum { MILLISECONDS = 60000 }; /* to finish a run, and clear */
-    if (worker->to) fclose(worker->to);
-    if (worker->from) fclose(worker->from);
-    rt_process_end(&worker->process, MILLISECONDS);
-    *worker = (Worker){0};
-}
-
-__attribute__((format(printf, 3, 4))) static RtStatus ask(Worker *worker, RtError *error, const char *request,
-                                                          ...) {
-    va_list arguments;
-    va_start(arguments, request);
-    bool sent = vfprintf(worker->to, request, arguments) >= 0 && fflush(worker->to) == 0;
-    va_end(arguments);
-    return sent ? RT_OK : fail_ended(worker, error);
-}
-
 /* Seconds per ray of `repeats` runs of cell number `cell` of the section. */
-static RtStatus ask_time(Worker *worker, uint32_t cell, uint32_t repeats, double *seconds, RtError *error) {
-    char line[64];
-    RT_TRY(ask(worker, error, "time %" PRIu32 " %" PRIu32 "\n", cell, repeats));
-    *seconds = fgets(line, sizeof line, worker->from) ? strtod(line, NULL) : 0;
-    return *seconds > 0 ? RT_OK : fail_ended(worker, error);
+static RtStatus ask_time(RtWorker *worker, uint32_t cell, uint32_t repeats, double *seconds, RtError *error) {
+    json_t *answer;
+    RT_TRY(rt_worker_ask(worker, &answer, error, "time %" PRIu32 " %" PRIu32 "\n", cell, repeats));
+    *seconds = json_number_value(answer);
+    json_decref(answer);
+    return *seconds > 0
+               ? RT_OK
+               : rt_fail(error, RT_BAD_INPUT, "%s cannot be compared: it has no time for %" PRIu32 " runs",
+                         worker->program, repeats);
 }
 
 /* ---- a section: a scene and a kind of rays ---- */
@@ -124,7 +56,7 @@ static const json_t *cell_of(const json_t *section, const char *accel, uint32_t 
     const json_t *cells = json_object_get(section, "cells");
     for (*number = 0; *number < json_array_size(cells); ++*number) {
         const json_t *cell = json_array_get(cells, *number);
-        if (strcmp(text_of(cell, "accel"), accel) == 0) return cell;
+        if (strcmp(rt_json_text(cell, "accel", ""), accel) == 0) return cell;
     }
     return NULL;
 }
@@ -133,8 +65,9 @@ static const json_t *cell_of(const json_t *section, const char *accel, uint32_t 
 static RtComparedCell *enter(Run *run, const json_t *const sections[2], const json_t *before,
                              const json_t *after) {
     const json_t *either = before ? before : after, *section = sections[before ? BEFORE : AFTER];
-    RtComparedCell *cell = rt_comparison_cell(run->comparison, text_of(section, "scene"),
-                                              text_of(either, "accel"), text_of(section, "kind"));
+    RtComparedCell *cell =
+        rt_comparison_cell(run->comparison, rt_json_text(section, "scene", ""),
+                           rt_json_text(either, "accel", ""), rt_json_text(section, "kind", ""));
     if (!cell) return NULL;
     if (!cell->ratios) cell->ratios = rt_alloc(RT_MAX_ROUNDS, sizeof(double));
     if (!cell->ratios) return NULL;
@@ -159,7 +92,7 @@ static RtStatus find_pairs(Run *run, const json_t *const sections[2], Pair *pair
         for (uint32_t i = 0; i < json_array_size(cells); i++) {
             Pair pair = {.number = {i, i}};
             const json_t *own = json_array_get(cells, i);
-            const json_t *other = cell_of(sections[!who], text_of(own, "accel"), &pair.number[!who]);
+            const json_t *other = cell_of(sections[!who], rt_json_text(own, "accel", ""), &pair.number[!who]);
             if (who == AFTER && other) continue; /* it was entered above */
             RtComparedCell *cell =
                 enter(run, sections, who == BEFORE ? own : other, who == BEFORE ? other : own);
@@ -209,10 +142,12 @@ static RtStatus time_pairs(Run *run, Pair *pairs, uint32_t count, RtError *error
 }
 
 static RtStatus check_alike(const Run *run, const json_t *const sections[2], RtError *error) {
-    const char *scene = text_of(sections[AFTER], "scene"), *kind = text_of(sections[AFTER], "kind");
-    bool same_place = strcmp(text_of(sections[BEFORE], "scene"), scene) == 0 &&
-                      strcmp(text_of(sections[BEFORE], "kind"), kind) == 0;
-    if (same_place && strcmp(text_of(sections[BEFORE], "hash"), text_of(sections[AFTER], "hash")) == 0)
+    const char *scene = rt_json_text(sections[AFTER], "scene", ""),
+               *kind = rt_json_text(sections[AFTER], "kind", "");
+    bool same_place = strcmp(rt_json_text(sections[BEFORE], "scene", ""), scene) == 0 &&
+                      strcmp(rt_json_text(sections[BEFORE], "kind", ""), kind) == 0;
+    if (same_place &&
+        strcmp(rt_json_text(sections[BEFORE], "hash", ""), rt_json_text(sections[AFTER], "hash", "")) == 0)
         return RT_OK;
     return rt_fail(
         error, RT_BAD_INPUT,
@@ -227,18 +162,19 @@ static RtStatus compare_section(Run *run, const json_t *const sections[2], RtErr
     uint32_t count = (uint32_t)json_array_size(json_object_get(sections[BEFORE], "cells"));
     RT_TRY(check_alike(run, sections, error));
     if (programs->progress) {
-        programs->progress(programs->context, run->round, run->rounds, text_of(sections[BEFORE], "scene"),
-                           text_of(sections[BEFORE], "kind"));
+        programs->progress(programs->context, run->round, run->rounds,
+                           rt_json_text(sections[BEFORE], "scene", ""),
+                           rt_json_text(sections[BEFORE], "kind", ""));
     }
     Pair *pairs = rt_alloc(count, sizeof(Pair));
     if (!pairs) return rt_fail_memory(error, "cells", count * sizeof(Pair));
     RtStatus status = find_pairs(run, sections, pairs, &count, error);
     for (int who = BEFORE; who <= AFTER && status == RT_OK && programs->pinned; who++) {
-        status = ask(&run->workers[who], error, "pin %" PRIu32 "\n", run->round);
+        status = rt_worker_ask(&run->workers[who], NULL, error, "pin %" PRIu32 "\n", run->round);
     }
     if (status == RT_OK) status = time_pairs(run, pairs, count, error);
     for (int who = BEFORE; who <= AFTER && status == RT_OK; who++) {
-        status = ask(&run->workers[who], error, "next\n");
+        status = rt_worker_ask(&run->workers[who], NULL, error, "next\n");
     }
     rt_free(pairs);
     return status;
@@ -250,7 +186,7 @@ static RtStatus compare_sections(Run *run, bool *more, RtError *error) {
     json_t *sections[2] = {NULL, NULL};
     RtStatus status = RT_OK;
     for (int who = BEFORE; who <= AFTER && status == RT_OK; who++) {
-        status = take_json(&run->workers[who], &sections[who], error);
+        status = rt_worker_take(&run->workers[who], &sections[who], error);
     }
     if (status == RT_OK) {
         bool done[2];
@@ -266,13 +202,24 @@ static RtStatus compare_sections(Run *run, bool *more, RtError *error) {
 }
 
 static RtStatus start(Run *run, int who, RtError *error) {
-    json_t *build;
-    const char *program = who == BEFORE ? run->programs->before : run->programs->after;
-    RT_TRY(start_worker(&run->workers[who], program, run->programs->arguments, &build, error));
-    if (who == AFTER) program = "this one";
-    char *out = who == BEFORE ? run->comparison->before : run->comparison->after;
-    snprintf(out, sizeof run->comparison->before, "%s (%s)", program, text_of(build, "build"));
-    json_decref(build);
+    static const char *const command[] = {"raytally", "compare", "--worker", NULL};
+    const bool after = who == AFTER;
+    RtWorker *worker = &run->workers[who];
+    json_t *hello = NULL;
+    worker->program = after ? run->programs->after : run->programs->before;
+    if (rt_worker_start(worker, command, run->programs->arguments, error) != RT_OK) return RT_BAD_INPUT;
+    if (rt_worker_take(worker, &hello, error) != RT_OK ||
+        json_integer_value(json_object_get(hello, "worker")) != 1) {
+        json_decref(hello);
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "%s cannot be compared: it must be a raytally that has the command `compare`. For an older "
+            "one, compare result directories",
+            worker->program);
+    }
+    snprintf(after ? run->comparison->after : run->comparison->before, sizeof run->comparison->before,
+             "%s (%s)", after ? "this one" : worker->program, rt_json_text(hello, "build", ""));
+    json_decref(hello);
     return RT_OK;
 }
 
@@ -334,8 +281,8 @@ RtStatus rt_compare_programs(const RtPrograms *programs, RtComparison *compariso
     RtStatus status = RT_OK;
     do {
         status = run_round(&run, error);
-        end_worker(&run.workers[BEFORE]);
-        end_worker(&run.workers[AFTER]);
+        rt_worker_end(&run.workers[BEFORE]);
+        rt_worker_end(&run.workers[AFTER]);
         run.round++;
     } while (status == RT_OK && !is_enough(&run));
     return status;

@@ -8,41 +8,24 @@
 
 typedef RtDistributionRow Row;
 
-/* ---- fields ---- */
-
-static bool is_over_rays(const Row *r) {
-    return r->quantity < RT_RAY_QUANTITY_COUNT;
-}
-
-static const char *kind_of(const Row *r) {
-    return is_over_rays(r) ? rt_experiment_kind_name(r->results->experiment, r->kind) : NULL;
-}
-
-static const char *spec_of(const Row *r) {
-    return rt_build_at(r->results, r->workload, r->candidate)->spec;
-}
-
-static double mean_of(const Row *r) {
-    return (double)r->distribution->sum / (double)r->distribution->count;
-}
-
-static double part_of(const Row *r) {
-    return (double)r->distribution->bins[r->bin] / (double)r->distribution->count;
-}
+/* ---- columns ---- */
 
 #define COLUMNS(X)                                                                                           \
     X(scene, "scene", text, "", "the scene's label in the experiment",                                       \
       r->results->experiment->workloads[r->workload].label)                                                  \
-    X(kind, "kind", text, "", "kind of the rays; empty: leaves of the structure", kind_of(r))                \
+    X(kind, "kind", text, "", "kind of the rays; empty: leaves of the structure",                            \
+      r->quantity < RT_RAY_QUANTITY_COUNT ? rt_experiment_kind_name(r->results->experiment, r->kind) : NULL) \
     X(accel, "accelerator", text, "", "the accelerator's label in the experiment",                           \
       rt_candidate_label(r->results->experiment, r->candidate))                                              \
     X(quantity, "quantity", text, "",                                                                        \
       "object_tests, extent_tests, steps: per ray, each traced alone; leaf_size, leaf_depth: objects in "    \
       "the list of a leaf or voxel, and its depth",                                                          \
       rt_quantity_name(r->quantity))                                                                         \
-    X(spec, "accel", text, "", "the accelerator with every effective parameter", spec_of(r))                 \
+    X(spec, "accel", text, "", "the accelerator with every effective parameter",                             \
+      rt_build_at(r->results, r->workload, r->candidate)->spec)                                              \
     X(count, "count", integer, "", "rays, or leaves", r->distribution->count)                                \
-    X(mean, "mean", real6, "", "mean of the quantity", mean_of(r))                                           \
+    X(mean, "mean", real6, "", "mean of the quantity",                                                       \
+      (double)r->distribution->sum / (double)r->distribution->count)                                         \
     X(median, "median", integer, "", "the smallest value that half of them do not exceed",                   \
       r->distribution->median)                                                                               \
     X(p90, "p90", integer, "", "the smallest that 90 % do not exceed", r->distribution->p90)                 \
@@ -52,7 +35,8 @@ static double part_of(const Row *r) {
     X(low, "low", integer, "", "smallest value of the bin", rt_histogram_low(r->bin))                        \
     X(end, "end", integer, "", "smallest value above the bin", rt_histogram_low(r->bin + 1))                 \
     X(values, "values", integer, "", "rays, or leaves, within it", r->distribution->bins[r->bin])            \
-    X(part, "part", real6, "", "as a fraction of all", part_of(r))
+    X(part, "part", real6, "", "as a fraction of all",                                                       \
+      (double)r->distribution->bins[r->bin] / (double)r->distribution->count)
 
 RT_TABLE_COLUMNS(columns, COLUMNS)
 
@@ -103,17 +87,16 @@ RtTable rt_distribution_table(RtDistributionTable which, RtDistributionRow *row)
 
 /* ---- to read ---- */
 
-/* Plugins report no leaves (include/raytally/accel.h). */
+/* Plugins report only how many leaves there are (include/raytally/accel.h). */
 static void print_unknown_leaves(const RtResults *results, uint32_t t, FILE *out) {
     for (uint32_t c = 0; c < results->experiment->candidate_count; c++) {
-        const RtCandidate *candidate = &results->experiment->candidates[c];
         const RtBuildResult *build = rt_build_at(results, t, c);
         char text[RT_MAX_LABEL + 128];
-        if (!build->known || build->leaves || !rt_spec_is_remote(&candidate->parsed)) continue;
+        if (build->shape.leaves == 0 || build->leaves) continue;
         snprintf(
             text, sizeof text,
             "Leaf size and depth of %s are unknown: plugins report the number of leaves, not their contents.",
-            candidate->label);
+            rt_candidate_label(results->experiment, c));
         rt_print_wrapped(text, out);
     }
 }

@@ -96,19 +96,10 @@ static RtStatus append_best(RtExperiment *experiment, const char *label, RtError
     return RT_OK;
 }
 
-RtStatus rt_candidate_parse(RtCandidate *candidate, RtError *error) {
-    RtSpec spec;
-    if (candidate->parsed.layer_count > 0) return RT_OK;
-    RT_TRY(rt_spec_parse(candidate->spec, &spec, error));
-    candidate->parsed = spec;
-    return RT_OK;
-}
-
 /* The first that is not a plugin's: without a working baseline nothing could be compared. */
-static uint32_t default_baseline(RtExperiment *experiment) {
+static uint32_t default_baseline(const RtExperiment *experiment) {
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        RtCandidate *candidate = &experiment->candidates[c];
-        if (rt_candidate_parse(candidate, NULL) != RT_OK || !rt_spec_is_remote(&candidate->parsed)) return c;
+        if (!rt_spec_text_is_remote(experiment->candidates[c].spec)) return c;
     }
     return 0;
 }
@@ -188,7 +179,8 @@ static RtStatus check_spec(RtExperiment *experiment, uint32_t i, RtError *error)
     RtCandidate *candidate = &experiment->candidates[i];
     RtError why = {RT_OK, ""};
     candidate->missing = experiment->manifest && rt_manifest_is_missing(experiment->manifest, i);
-    if (experiment->manifest || rt_candidate_parse(candidate, &why) == RT_OK) return RT_OK;
+    if (experiment->manifest || rt_spec_parse(candidate->spec, &candidate->parsed, &why) == RT_OK)
+        return RT_OK;
     candidate->missing = why.status == RT_NOT_AVAILABLE;
     return candidate->missing ? RT_OK : rt_fail(error, why.status, "%s", why.message);
 }

@@ -6,7 +6,6 @@
 
 #include "accel/accel.h"
 #include "core/base/file.h"
-#include "experiment/sweep.h"
 #include "measure/statistics.h"
 #include "rays/rayset.h"
 
@@ -19,6 +18,30 @@
 #define RT_MAX_PLOTS      8
 #define RT_MAX_CLAIMS     64
 #define RT_MAX_CLAIM      256
+
+/* ---- sweeps (sweep.c) ---- */
+
+#define RT_MAX_SWEPT        4   /* parameters of one spec */
+#define RT_MAX_SWEEP_VALUES 256 /* of one parameter */
+#define RT_MAX_SWEPT_CHARS  32  /* of a value */
+
+/* The swept parameters of one spec, and their values. */
+typedef struct RtSwept {
+    uint32_t count; /* 0: nothing is swept */
+    char keys[RT_MAX_SWEPT][RT_MAX_NAME];
+    char values[RT_MAX_SWEPT][RT_MAX_SWEPT_CHARS];
+} RtSwept;
+
+/* The value as a number; false if it is a word. */
+bool rt_swept_number(const char *value, double *number);
+
+/* Whether the increasing values[0..count) are spaced more evenly on a logarithmic than on a linear axis. */
+bool rt_swept_logarithmic(const double *values, uint32_t count);
+
+/* Appends ":key=value" for every swept parameter except `but` (or NULL). */
+void rt_swept_name(const RtSwept *swept, const char *but, char *out, size_t size);
+
+/* ---- an experiment ---- */
 
 /* One scene of an experiment. Labels are unique, without blanks and quotes: names in CSV and plots. */
 typedef struct RtWorkload {
@@ -44,7 +67,7 @@ typedef struct RtCandidate {
     uint32_t entry;
     char group[RT_MAX_LABEL];     /* its heading in the table of frames, or "" */
     char spec[RT_MAX_SPEC_CHARS]; /* as written */
-    RtSpec parsed;                /* no layers until rt_candidate_parse */
+    RtSpec parsed;                /* by rt_experiment_check, if this build has it */
     uint64_t ray_stride;          /* k: measured on every kth ray of a set, for slow accelerators; >= 1 */
     uint32_t left_out;            /* bit t: it is not measured on workloads[t] */
     bool missing;                 /* this build lacks it: skipped with a notice */
@@ -155,9 +178,6 @@ bool rt_candidate_runs(const RtExperiment *experiment, uint32_t c, uint32_t t);
  * candidate that is not a plugin's. */
 RtStatus rt_experiment_set_baseline(RtExperiment *experiment, const char *label, RtError *error);
 
-/* Parses the candidate's spec, once. rt_experiment_check does so for all that this build has. */
-RtStatus rt_candidate_parse(RtCandidate *candidate, RtError *error);
-
 /* Whether candidate `c` belongs to the baseline. */
 bool rt_candidate_is_baseline(const RtExperiment *experiment, uint32_t c);
 
@@ -174,7 +194,7 @@ uint32_t rt_workload_find(const RtExperiment *experiment, const char *label);
 /* The name of a script in the result directory: without its folders. Names are unique. */
 const char *rt_plot_name(const RtExperiment *experiment, uint32_t plot);
 
-/* Appends one workload like `like` for each scene of the sweep `spec` (experiment/sweep.h). Sets spec, path,
+/* Appends one workload like `like` for each scene of the sweep `spec` (sweep.c). Sets spec, path,
  * file, swept, and the label: that of `like`, with ":key=value" in a sweep; without one, the file's name
  * without folder and extension, or the built-in's spec, with _ for characters that labels may not have. A dot
  * or a slash before the first colon makes `spec` a file, relative to `folder`. */

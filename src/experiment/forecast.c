@@ -35,7 +35,7 @@ static double mean(double sum, double count, double other) {
     return count > 0 ? sum / count : other;
 }
 
-/* rt_workload_build repeats cheap builds. */
+/* workload.c repeats cheap builds. */
 static double build_seconds(double once) {
     return fmin(RT_MOST_BUILDS * once, RT_CHEAP_BUILD + once);
 }

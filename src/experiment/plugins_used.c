@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "experiment/plugins_used.h"
+#include "core/text/json.h"
 
 #include "measure/machine.h"
 
@@ -75,25 +76,22 @@ bool rt_plugins_concern(const json_t *object, const RtExperiment *experiment, ui
 
 /* ---- sentences ---- */
 
-static const char *text_of(const json_t *plugin, const char *key) {
-    const char *text = json_string_value(json_object_get(plugin, key));
-    return text ? text : "unknown";
-}
-
 void rt_plugins_change_format(const char *name, const json_t *change, const char *before, const char *after,
                               char out[RT_MAX_PLUGIN_CHANGE]) {
     const json_t *then = json_object_get(change, "before"), *now = json_object_get(change, "after");
     if (json_is_object(then) && json_is_object(now))
         snprintf(out, RT_MAX_PLUGIN_CHANGE,
                  "the plugin of '%s' has changed: %.200s (%.16s) %s, %.200s (%.16s) %s", name,
-                 text_of(then, "file"), text_of(then, "hash"), before, text_of(now, "file"),
-                 text_of(now, "hash"), after);
+                 rt_json_text(then, "file", "unknown"), rt_json_text(then, "hash", "unknown"), before,
+                 rt_json_text(now, "file", "unknown"), rt_json_text(now, "hash", "unknown"), after);
     else if (json_is_object(then))
         snprintf(out, RT_MAX_PLUGIN_CHANGE, "'%s' belonged to the plugin %.400s (%.16s) %s, and does not %s",
-                 name, text_of(then, "file"), text_of(then, "hash"), before, after);
+                 name, rt_json_text(then, "file", "unknown"), rt_json_text(then, "hash", "unknown"), before,
+                 after);
     else
         snprintf(out, RT_MAX_PLUGIN_CHANGE, "'%s' belongs to the plugin %.400s (%.16s) %s, and did not %s",
-                 name, text_of(now, "file"), text_of(now, "hash"), after, before);
+                 name, rt_json_text(now, "file", "unknown"), rt_json_text(now, "hash", "unknown"), after,
+                 before);
 }
 
 void rt_plugins_tell_changes(const RtExperiment *experiment, const json_t *manifest,

@@ -24,10 +24,6 @@ static RtField label_of(const Row *r) {
     return field;
 }
 
-static const char *kind_of(const Row *r) {
-    return rt_experiment_kind_name(r->results->experiment, r->kind);
-}
-
 /* A label too long to fit beside the figures is printed on a line before them. */
 static RtField short_label_of(const Row *r) {
     char label[RT_MAX_EYE_LABEL];
@@ -48,11 +44,6 @@ static RtField break_even_of(const Row *r) {
     double unit = 1;
     while (count / unit >= 1000) unit *= 10;
     return rt_field_print("faster %s %.0f", rays > 0 ? "from" : "up to", unit * round(count / unit));
-}
-
-static RtField baseline_of(const Row *r) {
-    if (!r->cell->timed) return rt_field_missing();
-    return rt_field_text(rt_candidate_label(r->results->experiment, r->cell->baseline));
 }
 
 void rt_result_eye_label(const RtResultRow *r, char out[RT_MAX_EYE_LABEL]) {
@@ -90,14 +81,6 @@ static uint32_t threads_of(const Row *r) {
     return (uint32_t)(r->which == RT_HARDWARE ? r->cell->hardware.threads : r->cell->threads);
 }
 
-static double running_of(const Row *r) {
-    return *r->cell->hardware.why ? (double)NAN : r->cell->hardware.counts.running;
-}
-
-static RtField why_of(const Row *r) {
-    return *r->cell->hardware.why ? rt_field_text(r->cell->hardware.why) : rt_field_missing();
-}
-
 static double each_ns(const Row *r, RtEach each) {
     return 1e9 * rt_cell_rounds(r->cell, each)[r->round];
 }
@@ -118,7 +101,7 @@ static double each_ns(const Row *r, RtEach each) {
     X(height, "height", integer, "pixels", "height of the frame", r->scene->height)                          \
     X(corners, "corners", flag, "", "samples at pixel corners, not centres", r->setup->corners)              \
     X(depth, "depth", integer, "", "levels of the ray tree; the primary ray is the first", r->setup->depth)  \
-    X(kind, "kind", text, "", "kind of the rays", kind_of(r))                                                \
+    X(kind, "kind", text, "", "kind of the rays", rt_experiment_kind_name(r->results->experiment, r->kind))  \
     X(set_rays, "set_rays", integer, "", "rays in the set, after the limit", r->scene->rays[r->kind])        \
     X(set_hash, "set_hash", hash, "", "fingerprint of the set", r->scene->ray_fingerprints[r->kind])         \
     X(accel, "accelerator", text, "", "the accelerator's label in the experiment; (again): a null run",      \
@@ -144,7 +127,8 @@ static double each_ns(const Row *r, RtEach each) {
     X(wall_ns_high, "wall_ns_high", real6, "ns", "upper end of its interval", 1e9 * r->cell->wall.high)      \
     X(mrays_per_s, "mrays_per_s", real6, "million/s", "rays per second, by the median",                      \
       1e-6 / r->all.seconds.median)                                                                          \
-    X(baseline, "baseline", text, "", "the accelerator that the ratio refers to", baseline_of(r))            \
+    X(baseline, "baseline", text, "", "the accelerator that the ratio refers to",                            \
+      r->cell->timed ? rt_candidate_label(r->results->experiment, r->cell->baseline) : NULL)                 \
     X(ratio, "ratio", real6, "", "throughput over the baseline's, paired by round; median",                  \
       r->all.ratio.median)                                                                                   \
     X(ratio_low, "ratio_low", end, "", "lower end of its interval", r->all.ratio.low)                        \
@@ -169,8 +153,9 @@ static double each_ns(const Row *r, RtEach each) {
     X(running, "running", real6, "",                                                                         \
       "smallest fraction of the time in which an event was counted; below 1, events took turns and counts "  \
       "are scaled",                                                                                          \
-      running_of(r))                                                                                         \
-    X(why, "why", text, "", "why nothing could be counted; else empty", why_of(r))                           \
+      *r->cell->hardware.why ? (double)NAN : r->cell->hardware.counts.running)                               \
+    X(why, "why", text, "", "why nothing could be counted; else empty",                                      \
+      *r->cell->hardware.why ? r->cell->hardware.why : NULL)                                                 \
     X(host, "host", text, "", "host of the measurement", machine_of(r)->host)                                \
     X(cpu, "cpu", text, "", "its processor", machine_of(r)->cpu)                                             \
     X(tests_a_ray, "tests/ray", figure, "", "object tests per ray", r->all.object_tests)                     \
@@ -227,88 +212,60 @@ static double each_ns(const Row *r, RtEach each) {
 
 RT_TABLE_COLUMNS(columns, COLUMNS)
 
-static const RtColumnGroup counts[] = {
-    RT_FROM_TO(columns, scene, rays),
-    {NULL, rt_tally_columns + 1, RT_TALLY_COUNTER_COUNT - 1, tally_of},
-    {NULL, rt_structure_columns, RT_SHAPE_COLUMNS, structure_of},
-    RT_ONE(columns, bytes),
-    {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COLUMNS, structure_of},
+/* ---- tables ---- */
+
+#define FROM_TO(first, last) RT_FROM_TO(columns, first, last)
+#define ONE(id)              RT_ONE(columns, id)
+
+/* X(TABLE, which rows it has, its columns...) */
+#define TABLES(X)                                                                                            \
+    X(COUNTS, counted && r->build->counts, FROM_TO(scene, rays),                                             \
+      {NULL, rt_tally_columns + 1, RT_TALLY_COUNTER_COUNT - 1, tally_of},                                    \
+      {NULL, rt_structure_columns, RT_SHAPE_COLUMNS, structure_of}, ONE(bytes),                              \
+      {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COLUMNS, structure_of})                  \
+    X(TIMES, timed, FROM_TO(scene, rays), FROM_TO(threads, ratio_high), FROM_TO(build_seconds, bytes),       \
+      FROM_TO(object_tests, differ),                                                                         \
+      {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COLUMNS, structure_of},                  \
+      FROM_TO(host, cpu))                                                                                    \
+    X(ROUNDS, timed && r->cell->each && r->round < r->cell->rounds, ONE(scene), ONE(kind), ONE(accel),       \
+      ONE(baseline), FROM_TO(round, round_baseline_ns))                                                      \
+    X(HARDWARE, r->cell->hardware.known, ONE(scene), ONE(kind), FROM_TO(accel, spec), ONE(rays),             \
+      ONE(threads), FROM_TO(instructions, cpu))                                                              \
+    X(BENCH, counted && !null, ONE(scene_spec), FROM_TO(accel, ray_stride), ONE(kind), FROM_TO(rays, bytes), \
+      {"structure", rt_structure_columns, RT_STRUCTURE_COLUMNS, structure_of},                               \
+      {"structure.build", rt_tally_columns, RT_TALLY_COUNTER_COUNT, build_of},                               \
+      {"counts", rt_tally_columns, RT_TALLY_COUNTER_COUNT, known_tally_of}, FROM_TO(threads, mrays_per_s),   \
+      FROM_TO(msteps_per_s, mtests_per_s), FROM_TO(baseline, ratio_high))                                    \
+    X(NULL_RUNS, (timed && null), ONE(scene_spec), ONE(kind), FROM_TO(accel, spec), ONE(rays),               \
+      FROM_TO(build_seconds, straddles_1))                                                                   \
+    X(CELLS, (counted || timed) && !is_lost(r, r->cell), FROM_TO(eye_label, interval))                       \
+    X(STRUCTURES, (first && is_shown(r)), ONE(eye_label), FROM_TO(build_ms, break_even))                     \
+    X(COUNTED_CELLS, counted, FROM_TO(eye_label, eye_steps))                                                 \
+    X(COUNTED_STRUCTURES, (first && is_shown(r)), ONE(eye_label), ONE(mb),                                   \
+      {NULL, rt_structure_columns, RT_SHAPE_COLUMNS, structure_of})                                          \
+    X(SPREADS, r->cell->distributions && !isnan(r->all.object_tests), ONE(eye_label),                        \
+      FROM_TO(tests_median, steps_most))                                                                     \
+    X(LEAF_SPREADS, first && r->build->leaves, ONE(eye_label), FROM_TO(size_median, depth_most))             \
+    X(HARDWARE_CELLS, r->cell->hardware.known && !*r->cell->hardware.why, ONE(eye_label),                    \
+      FROM_TO(eye_instructions, eye_branch))                                                                 \
+    X(CELLS_PAPER, (counted || timed) && !null && !is_lost(r, r->cell), ONE(accel),                          \
+      FROM_TO(eye_tests, interval))                                                                          \
+    X(COUNTED_PAPER, counted && !null, ONE(accel), FROM_TO(eye_tests, eye_steps))                            \
+    X(CELLS_MORE, counted || timed, ONE(accel), ONE(kind), ONE(rays), FROM_TO(tests_a_ray, steps_a_ray),     \
+      ONE(ns_interval), FROM_TO(mrays, interval), ONE(min_ns), ONE(differ))                                  \
+    X(TOTALS, first && r->build->known, ONE(accel), ONE(rays), FROM_TO(tests_a_ray, ns_a_ray),               \
+      FROM_TO(interval, break_even))                                                                         \
+    X(TOTALS_MORE, first && r->build->known, ONE(accel), ONE(rays), FROM_TO(tests_a_ray, steps_a_ray),       \
+      ONE(ns_interval), FROM_TO(interval, break_even))
+
+static const RtTable tables[] = {
+#define GROUPS(...) ((const RtColumnGroup[]){__VA_ARGS__})
+#define TABLE(id, rows, ...)                                                                                 \
+    [RT_##id] = {.groups = GROUPS(__VA_ARGS__),                                                              \
+                 .group_count = sizeof(GROUPS(__VA_ARGS__)) / sizeof(RtColumnGroup)},
+    TABLES(TABLE)
+#undef TABLE
 };
-
-static const RtColumnGroup times[] = {
-    RT_FROM_TO(columns, scene, rays),
-    RT_FROM_TO(columns, threads, ratio_high),
-    RT_FROM_TO(columns, build_seconds, bytes),
-    RT_FROM_TO(columns, object_tests, differ),
-    {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COLUMNS, structure_of},
-    RT_FROM_TO(columns, host, cpu),
-};
-
-static const RtColumnGroup each_round[] = {RT_ONE(columns, scene), RT_ONE(columns, kind),
-                                           RT_ONE(columns, accel), RT_ONE(columns, baseline),
-                                           RT_FROM_TO(columns, round, round_baseline_ns)};
-
-static const RtColumnGroup hardware[] = {
-    RT_ONE(columns, scene), RT_ONE(columns, kind),    RT_FROM_TO(columns, accel, spec),
-    RT_ONE(columns, rays),  RT_ONE(columns, threads), RT_FROM_TO(columns, instructions, cpu)};
-
-static const RtColumnGroup bench[] = {
-    RT_ONE(columns, scene_spec),
-    RT_FROM_TO(columns, accel, ray_stride),
-    RT_ONE(columns, kind),
-    RT_FROM_TO(columns, rays, bytes),
-    {"structure", rt_structure_columns, RT_STRUCTURE_COLUMNS, structure_of},
-    {"structure.build", rt_tally_columns, RT_TALLY_COUNTER_COUNT, build_of},
-    {"counts", rt_tally_columns, RT_TALLY_COUNTER_COUNT, known_tally_of},
-    RT_FROM_TO(columns, threads, mrays_per_s),
-    RT_FROM_TO(columns, msteps_per_s, mtests_per_s),
-    RT_FROM_TO(columns, baseline, ratio_high),
-};
-
-static const RtColumnGroup null_runs[] = {RT_ONE(columns, scene_spec), RT_ONE(columns, kind),
-                                          RT_FROM_TO(columns, accel, spec), RT_ONE(columns, rays),
-                                          RT_FROM_TO(columns, build_seconds, straddles_1)};
-
-static const RtColumnGroup for_the_eye[] = {RT_FROM_TO(columns, eye_label, interval)};
-
-static const RtColumnGroup for_papers[] = {RT_ONE(columns, accel), RT_FROM_TO(columns, eye_tests, interval)};
-
-static const RtColumnGroup counted_for_papers[] = {RT_ONE(columns, accel),
-                                                   RT_FROM_TO(columns, eye_tests, eye_steps)};
-
-static const RtColumnGroup structures[] = {RT_ONE(columns, eye_label),
-                                           RT_FROM_TO(columns, build_ms, break_even)};
-
-static const RtColumnGroup counted_cells[] = {RT_FROM_TO(columns, eye_label, eye_steps)};
-
-static const RtColumnGroup counted_structures[] = {
-    RT_ONE(columns, eye_label),
-    RT_ONE(columns, mb),
-    {NULL, rt_structure_columns, RT_SHAPE_COLUMNS, structure_of},
-};
-
-static const RtColumnGroup cells[] = {
-    RT_ONE(columns, accel),       RT_ONE(columns, kind),
-    RT_ONE(columns, rays),        RT_FROM_TO(columns, tests_a_ray, steps_a_ray),
-    RT_ONE(columns, ns_interval), RT_FROM_TO(columns, mrays, interval),
-    RT_ONE(columns, min_ns),      RT_ONE(columns, differ)};
-
-static const RtColumnGroup totals[] = {RT_ONE(columns, accel), RT_ONE(columns, rays),
-                                       RT_FROM_TO(columns, tests_a_ray, ns_a_ray),
-                                       RT_FROM_TO(columns, interval, break_even)};
-
-static const RtColumnGroup spreads[] = {RT_ONE(columns, eye_label),
-                                        RT_FROM_TO(columns, tests_median, steps_most)};
-
-static const RtColumnGroup leaf_spreads[] = {RT_ONE(columns, eye_label),
-                                             RT_FROM_TO(columns, size_median, depth_most)};
-
-static const RtColumnGroup hardware_cells[] = {RT_ONE(columns, eye_label),
-                                               RT_FROM_TO(columns, eye_instructions, eye_branch)};
-
-static const RtColumnGroup totals_more[] = {
-    RT_ONE(columns, accel), RT_ONE(columns, rays), RT_FROM_TO(columns, tests_a_ray, steps_a_ray),
-    RT_ONE(columns, ns_interval), RT_FROM_TO(columns, interval, break_even)};
 
 /* ---- rows ---- */
 
@@ -362,62 +319,12 @@ static const void *row_at(void *context, size_t i) {
     const bool null = r->candidate == e->candidate_count, first = i < e->candidate_count;
     const bool counted = r->cell->counted, timed = r->cell->timed;
     r->all = rt_results_cost(r->results, r->workload, r->candidate, is_total(r) ? RT_ALL_RAYS : r->kind);
-    const bool there[RT_RESULT_TABLE_COUNT] = {
-        [RT_COUNTS] = counted && r->build->counts,
-        [RT_TIMES] = timed,
-        [RT_ROUNDS] = timed && r->cell->each && r->round < r->cell->rounds,
-        [RT_HARDWARE] = r->cell->hardware.known,
-        [RT_BENCH] = counted && !null,
-        [RT_NULL_RUNS] = timed && null,
-        [RT_CELLS] = (counted || timed) && !is_lost(r, r->cell),
-        [RT_CELLS_PAPER] = (counted || timed) && !null && !is_lost(r, r->cell),
-        [RT_COUNTED_PAPER] = counted && !null,
-        [RT_STRUCTURES] = first && is_shown(r),
-        [RT_COUNTED_CELLS] = counted,
-        [RT_COUNTED_STRUCTURES] = first && is_shown(r),
-        [RT_CELLS_MORE] = counted || timed,
-        [RT_TOTALS] = first && r->build->known,
-        [RT_SPREADS] = r->cell->distributions && !isnan(r->all.object_tests),
-        [RT_LEAF_SPREADS] = first && r->build->leaves,
-        [RT_HARDWARE_CELLS] = r->cell->hardware.known && !*r->cell->hardware.why,
-        [RT_TOTALS_MORE] = first && r->build->known,
+    const bool there[] = {
+#define ROWS(id, rows, ...) [RT_##id] = rows,
+        TABLES(ROWS)
+#undef ROWS
     };
     return there[r->which] ? r : NULL;
-}
-
-/* ---- the best ---- */
-
-static bool takes_part(const RtExperiment *experiment, uint32_t candidate) {
-    return candidate < experiment->candidate_count &&
-           strcmp(experiment->candidates[candidate].spec, rt_accel_yardstick()) != 0;
-}
-
-static bool is_timed(const RtResults *results, uint32_t t) {
-    for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
-        if (at.workload == t && at.cell->timed) return true;
-    }
-    return false;
-}
-
-/* Time, or object tests, which have no interval. */
-static RtEstimate weigh(const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind, bool timed) {
-    const RtCost cost = rt_results_cost(results, t, c, kind);
-    const double tests = cost.object_tests;
-    return timed ? cost.seconds : (RtEstimate){tests, tests, tests, tests};
-}
-
-RtStanding rt_standing(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
-    const RtExperiment *experiment = results->experiment;
-    if (!takes_part(experiment, candidate)) return RT_STANDING_BEHIND;
-    const bool timed = is_timed(results, workload);
-    const RtEstimate own = weigh(results, workload, candidate, kind, timed);
-    RtEstimate best = {INFINITY, INFINITY, INFINITY, INFINITY};
-    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        const RtEstimate other = weigh(results, workload, c, kind, timed);
-        if (takes_part(experiment, c) && other.median < best.median) best = other;
-    }
-    if (own.median == best.median) return RT_STANDING_BEST; /* not of NAN */
-    return own.low <= best.high ? RT_STANDING_LEVEL : RT_STANDING_BEHIND;
 }
 
 static RtStanding standing_of(const void *row) {
@@ -459,26 +366,6 @@ static void add_swept(RtTable *table, Row *row) {
 }
 
 RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
-    static const RtTable tables[RT_RESULT_TABLE_COUNT] = {
-        [RT_COUNTS] = {RT_GROUPS(counts)},
-        [RT_TIMES] = {RT_GROUPS(times)},
-        [RT_ROUNDS] = {RT_GROUPS(each_round)},
-        [RT_HARDWARE] = {RT_GROUPS(hardware)},
-        [RT_BENCH] = {RT_GROUPS(bench)},
-        [RT_NULL_RUNS] = {RT_GROUPS(null_runs)},
-        [RT_CELLS] = {RT_GROUPS(for_the_eye)},
-        [RT_STRUCTURES] = {RT_GROUPS(structures)},
-        [RT_COUNTED_CELLS] = {RT_GROUPS(counted_cells)},
-        [RT_COUNTED_STRUCTURES] = {RT_GROUPS(counted_structures)},
-        [RT_SPREADS] = {RT_GROUPS(spreads)},
-        [RT_LEAF_SPREADS] = {RT_GROUPS(leaf_spreads)},
-        [RT_HARDWARE_CELLS] = {RT_GROUPS(hardware_cells)},
-        [RT_CELLS_PAPER] = {RT_GROUPS(for_papers)},
-        [RT_COUNTED_PAPER] = {RT_GROUPS(counted_for_papers)},
-        [RT_CELLS_MORE] = {RT_GROUPS(cells)},
-        [RT_TOTALS] = {RT_GROUPS(totals)},
-        [RT_TOTALS_MORE] = {RT_GROUPS(totals_more)},
-    };
     const RtExperiment *e = row->results->experiment;
     const size_t workloads = is_by_workload(which) ? e->workload_count : 1;
     RtTable table = tables[which];

@@ -65,12 +65,6 @@ typedef struct RtResultRow {
  * table of one workload. */
 RtTable rt_result_table(RtResultTable which, RtResultRow *row);
 
-/* Compares a candidate with all others of the workload, for one kind of rays or RT_ALL_RAYS: by time if
- * anything was timed, else by object tests per ray. The best has the smallest median; an interval that
- * overlaps with the interval of the best is level with it. Null runs and the yardstick (rt_accel_yardstick)
- * are not compared. */
-RtStanding rt_standing(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind);
-
 /* The label of a row in tables to read, with a star if it is measured on a part of the rays. A label of more
  * than RT_EYE_WIDTH characters is printed on its own line. */
 #define RT_EYE_WIDTH     24

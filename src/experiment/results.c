@@ -209,3 +209,38 @@ double rt_results_break_even(const RtResults *results, uint32_t workload, uint32
     if (more <= 0 && each >= 0) return 0;
     return more * each > 0 ? copysign(more / each, each) : (double)INFINITY;
 }
+
+/* ---- the best ---- */
+
+static bool takes_part(const RtExperiment *experiment, uint32_t candidate) {
+    return candidate < experiment->candidate_count &&
+           strcmp(experiment->candidates[candidate].spec, rt_accel_yardstick()) != 0;
+}
+
+static bool is_timed(const RtResults *results, uint32_t t) {
+    for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
+        if (at.workload == t && at.cell->timed) return true;
+    }
+    return false;
+}
+
+/* Time, or object tests, which have no interval. */
+static RtEstimate weigh(const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind, bool timed) {
+    const RtCost cost = rt_results_cost(results, t, c, kind);
+    const double tests = cost.object_tests;
+    return timed ? cost.seconds : (RtEstimate){tests, tests, tests, tests};
+}
+
+RtStanding rt_standing(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
+    const RtExperiment *experiment = results->experiment;
+    if (!takes_part(experiment, candidate)) return RT_STANDING_BEHIND;
+    const bool timed = is_timed(results, workload);
+    const RtEstimate own = weigh(results, workload, candidate, kind, timed);
+    RtEstimate best = {INFINITY, INFINITY, INFINITY, INFINITY};
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        const RtEstimate other = weigh(results, workload, c, kind, timed);
+        if (takes_part(experiment, c) && other.median < best.median) best = other;
+    }
+    if (own.median == best.median) return RT_STANDING_BEST; /* not of NAN */
+    return own.low <= best.high ? RT_STANDING_LEVEL : RT_STANDING_BEHIND;
+}

@@ -5,6 +5,7 @@
 #ifndef RT_EXPERIMENT_RESULTS_H
 #define RT_EXPERIMENT_RESULTS_H
 
+#include "core/text/table.h"
 #include "experiment/experiment.h"
 #include "measure/distribution.h"
 #include "measure/hardware.h"
@@ -140,5 +141,11 @@ RtCost rt_results_cost(const RtResults *results, uint32_t workload, uint32_t can
  * any number; n: n rays or more; -n: n rays or fewer; INFINITY: none; NAN: unknown, or the baseline itself.
  * Assumes builds on as many threads as the timing. */
 double rt_results_break_even(const RtResults *results, uint32_t workload, uint32_t candidate);
+
+/* Compares a candidate with all others of the workload, for one kind of rays or RT_ALL_RAYS: by time if
+ * anything was timed, else by object tests per ray. The best has the smallest median; an interval that
+ * overlaps with the interval of the best is level with it. Null runs and the yardstick (rt_accel_yardstick)
+ * are not compared. */
+RtStanding rt_standing(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind);
 
 #endif

@@ -1,6 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "experiment/sweep.h"
-
+/* Sweeps: one spec of a scene or an accelerator that expands to several, one for each value of a parameter.
+ *
+ *     grid:density=1|4|16              a list
+ *     grid:density=1..9+2              from 1 to 9 in steps of 2
+ *     random:n=1e2..1e7*10             from 100 to 10,000,000, each ten times the previous
+ *     grid:density=1..16*4,depth=1|2   all combinations; the last parameter changes fastest
+ *
+ * A list may hold ranges, "0.5|1..16*2", and words, "bvh:build=binned|sweep". For a parameter that is a whole
+ * number, values are rounded and duplicates dropped. The characters are unambiguous: no other value has two
+ * dots or a bar, and a '+' before a digit never separates accelerators. */
+#include "experiment/experiment.h"
 #include "experiment/manifest_experiment.h"
 #include "scenes/builtin.h"
 
@@ -11,13 +20,6 @@
 #include <string.h>
 
 /* ---- what was swept ---- */
-
-const char *rt_swept_value(const RtSwept *swept, const char *key) {
-    for (uint32_t i = 0; i < swept->count; i++) {
-        if (strcmp(swept->keys[i], key) == 0) return swept->values[i];
-    }
-    return NULL;
-}
 
 bool rt_swept_number(const char *value, double *number) {
     char *end;
@@ -51,6 +53,20 @@ void rt_swept_name(const RtSwept *swept, const char *but, char *out, size_t size
 
 /* ---- values ---- */
 
+typedef struct SweptParam {
+    char key[RT_MAX_NAME];
+    size_t start, length; /* of the value in the text */
+    uint32_t count;
+    char values[RT_MAX_SWEEP_VALUES][RT_MAX_SWEPT_CHARS];
+} SweptParam;
+
+typedef struct Sweep {
+    const char *text; /* borrowed */
+    uint32_t count;   /* of specs; 1 if nothing is swept */
+    uint32_t param_count;
+    SweptParam params[RT_MAX_SWEPT];
+} Sweep;
+
 static RtStatus fail_range(const char *text, int length, RtError *error) {
     return rt_fail(
         error, RT_BAD_INPUT,
@@ -59,7 +75,7 @@ static RtStatus fail_range(const char *text, int length, RtError *error) {
         length, text);
 }
 
-static RtStatus add_value(RtSweptParam *param, const char *text, size_t length, RtError *error) {
+static RtStatus add_value(SweptParam *param, const char *text, size_t length, RtError *error) {
     if (length == 0 || length >= RT_MAX_SWEPT_CHARS) {
         return rt_fail(error, RT_BAD_INPUT,
                        "'%.*s' of %s is not a value for a list: values have 1..%d characters", (int)length,
@@ -93,7 +109,7 @@ static size_t find_step(const char *text, size_t length) {
 }
 
 /* Multiplies instead of adding, to avoid accumulated errors; nine digits hide the rest. */
-static RtStatus add_range(RtSweptParam *param, const char *text, size_t length, size_t dots, bool whole,
+static RtStatus add_range(SweptParam *param, const char *text, size_t length, size_t dots, bool whole,
                           RtError *error) {
     const char *above = text + dots + 2;
     size_t rest = length - dots - 2, at = find_step(above, rest);
@@ -119,8 +135,7 @@ static size_t find_dots(const char *text, size_t length) {
     return at + 1 < length ? at : length;
 }
 
-static RtStatus read_values(const char *text, size_t length, bool whole, RtSweptParam *param,
-                            RtError *error) {
+static RtStatus read_values(const char *text, size_t length, bool whole, SweptParam *param, RtError *error) {
     for (size_t start = 0, part; start <= length; start += part + 1) {
         const char *bar = memchr(text + start, '|', length - start);
         part = bar ? (size_t)(bar - text) - start : length - start;
@@ -152,7 +167,7 @@ static bool ends_layer(const char *c, bool scene) {
 }
 
 /* Reads the value at `start`, after the '=' of a parameter of `layer`. */
-static RtStatus read_param(RtSweep *sweep, const char *layer, size_t start, size_t length, bool scene,
+static RtStatus read_param(Sweep *sweep, const char *layer, size_t start, size_t length, bool scene,
                            const json_t *manifest, RtError *error) {
     const char *text = sweep->text, *value = text + start;
     if (!memchr(value, '|', length) && find_dots(value, length) == length) return RT_OK;
@@ -162,7 +177,7 @@ static RtStatus read_param(RtSweep *sweep, const char *layer, size_t start, size
     if (sweep->param_count == RT_MAX_SWEPT) {
         return rt_fail(error, RT_BAD_INPUT, "'%.80s' sweeps more than %d parameters", text, RT_MAX_SWEPT);
     }
-    RtSweptParam *param = &sweep->params[sweep->param_count];
+    SweptParam *param = &sweep->params[sweep->param_count];
     param->start = start;
     param->length = length;
     param->count = 0;
@@ -181,8 +196,11 @@ static RtStatus read_param(RtSweep *sweep, const char *layer, size_t start, size
                    UINT16_MAX);
 }
 
-RtStatus rt_sweep_parse(const char *text, bool scene, const json_t *manifest, RtSweep *sweep,
-                        RtError *error) {
+/* Reads `text`, a spec of a built-in scene (`scene`) or of an accelerator; files are never swept. Does not
+ * check the resulting specs. `manifest` says which parameters are whole numbers for accelerators that this
+ * build may lack (experiment/manifest_experiment.h); or NULL. */
+static RtStatus parse_sweep(const char *text, bool scene, const json_t *manifest, Sweep *sweep,
+                            RtError *error) {
     const char *layer = text;
     sweep->text = text;
     sweep->count = 1;
@@ -198,14 +216,15 @@ RtStatus rt_sweep_parse(const char *text, bool scene, const json_t *manifest, Rt
     return RT_OK;
 }
 
-RtStatus rt_sweep_at(const RtSweep *sweep, uint32_t i, char *out, RtSwept *swept, RtError *error) {
+/* Spec number `i` < count to out[0..RT_MAX_SPEC_CHARS), with its swept values. */
+static RtStatus spec_at(const Sweep *sweep, uint32_t i, char *out, RtSwept *swept, RtError *error) {
     uint32_t index[RT_MAX_SWEPT];
     size_t from = 0, used = 0;
     for (uint32_t p = sweep->param_count; p-- > 0; i /= sweep->params[p].count)
         index[p] = i % sweep->params[p].count;
     swept->count = sweep->param_count;
     for (uint32_t p = 0; p < sweep->param_count && used < RT_MAX_SPEC_CHARS; p++) {
-        const RtSweptParam *param = &sweep->params[p];
+        const SweptParam *param = &sweep->params[p];
         strcpy(swept->keys[p], param->key);
         strcpy(swept->values[p], param->values[index[p]]);
         used += (size_t)snprintf(out + used, RT_MAX_SPEC_CHARS - used, "%.*s%s", (int)(param->start - from),
@@ -219,11 +238,13 @@ RtStatus rt_sweep_at(const RtSweep *sweep, uint32_t i, char *out, RtSwept *swept
                    RT_MAX_SPEC_CHARS - 1);
 }
 
-void rt_sweep_base(const RtSweep *sweep, char *out, size_t size) {
+/* The text without the swept parameters, "grid:depth=2" of "grid:density=1..8*2,depth=2", to out[0..size),
+ * truncated. */
+static void base_of(const Sweep *sweep, char *out, size_t size) {
     const char *text = sweep->text;
     size_t used = 0, from = 0, end = strlen(text);
     for (uint32_t p = 0; p <= sweep->param_count; p++) {
-        const RtSweptParam *param = &sweep->params[p];
+        const SweptParam *param = &sweep->params[p];
         size_t to = p < sweep->param_count ? param->start - 1 - strlen(param->key) : end;
         for (; from < to && used + 1 < size; from++) out[used++] = text[from];
         if (p == sweep->param_count) break;
@@ -235,4 +256,143 @@ void rt_sweep_base(const RtSweep *sweep, char *out, size_t size) {
             used--;
     }
     out[used] = '\0';
+}
+
+/* ---- labels ---- */
+
+bool rt_may_label(char c) {
+    return isgraph((unsigned char)c) && !strchr("\"'`/\\$&<>@^{}", c);
+}
+
+/* Appends the swept values to the common label. */
+static RtStatus label_one(char label[RT_MAX_LABEL], const char *base, const RtSwept *swept, RtError *error) {
+    char whole[RT_MAX_LABEL + RT_MAX_SWEPT * (RT_MAX_NAME + RT_MAX_SWEPT_CHARS + 2)];
+    snprintf(whole, sizeof whole, "%s", base);
+    rt_swept_name(swept, NULL, whole, sizeof whole);
+    if (strlen(whole) >= RT_MAX_LABEL) {
+        return rt_fail(error, RT_BAD_INPUT, "'%s' is longer than %d characters: give a short `label`", whole,
+                       RT_MAX_LABEL - 1);
+    }
+    strcpy(label, whole);
+    return RT_OK;
+}
+
+/* ---- scenes ---- */
+
+/* The file's name without folder and extension, or the built-in's spec. */
+static void name_scene(const char *spec, bool file, char label[RT_MAX_LABEL]) {
+    const char *slash = file ? strrchr(spec, '/') : NULL, *start = slash ? slash + 1 : spec;
+    size_t length = file ? strcspn(start, ".") : strlen(start);
+    snprintf(label, RT_MAX_LABEL, "%.*s", (int)length, start);
+    for (char *c = label; *c; c++) {
+        if (!rt_may_label(*c)) *c = '_';
+    }
+}
+
+static RtStatus add_scene(RtExperiment *experiment, const RtWorkload *like, const Sweep *sweep, uint32_t i,
+                          const char *folder, RtError *error) {
+    char spec[RT_MAX_SPEC_CHARS], base[RT_MAX_SCENE_NAME];
+    if (experiment->workload_count == RT_MAX_WORKLOADS) {
+        return rt_fail(error, RT_BAD_INPUT, "there are more than %d scenes: sweep fewer values",
+                       RT_MAX_WORKLOADS);
+    }
+    RtWorkload *workload = &experiment->workloads[experiment->workload_count++];
+    *workload = *like;
+    RT_TRY(spec_at(sweep, i, spec, &workload->swept, error));
+    if (strlen(spec) >= sizeof workload->spec) {
+        return rt_fail(error, RT_BAD_INPUT, "%.40s...: a scene has at most %zu characters", spec,
+                       sizeof workload->spec - 1);
+    }
+    strcpy(workload->spec, spec);
+    workload->file = strcspn(spec, "./") < strcspn(spec, ":");
+    RT_TRY(rt_path_join(workload->file ? folder : "", spec, workload->path, error));
+    base_of(sweep, base, sizeof base);
+    if (*like->label) {
+        strcpy(workload->base, like->label);
+        return label_one(workload->label, like->label, &workload->swept, error);
+    }
+    name_scene(base, workload->file, workload->base);
+    name_scene(spec, workload->file, workload->label);
+    return RT_OK;
+}
+
+RtStatus rt_experiment_add_scenes(RtExperiment *experiment, const RtWorkload *like, const char *spec,
+                                  const char *folder, RtError *error) {
+    Sweep sweep;
+    RT_TRY(parse_sweep(spec, true, NULL, &sweep, error));
+    for (uint32_t i = 0; i < sweep.count; i++) RT_TRY(add_scene(experiment, like, &sweep, i, folder, error));
+    return RT_OK;
+}
+
+/* ---- accelerators ---- */
+
+/* Truncated specs may make equal labels. */
+static bool is_taken(const RtExperiment *experiment, const RtCandidate *candidate) {
+    const RtCandidate *other = experiment->candidates;
+    while (strcmp(other->label, candidate->label) != 0) other++;
+    return other != candidate;
+}
+
+static RtStatus add_accel(RtExperiment *experiment, const RtCandidate *like, const Sweep *sweep, uint32_t i,
+                          RtError *error) {
+    if (experiment->candidate_count == RT_MAX_CANDIDATES) {
+        return rt_fail(error, RT_BAD_INPUT, "there are more than %d accelerators: sweep fewer values",
+                       RT_MAX_CANDIDATES);
+    }
+    char spec[RT_MAX_SPEC_CHARS];
+    RtCandidate *candidate = &experiment->candidates[experiment->candidate_count++];
+    *candidate = *like;
+    RT_TRY(spec_at(sweep, i, spec, &candidate->swept, error));
+    strcpy(candidate->spec, spec);
+    if (*like->label) {
+        strcpy(candidate->base, like->label);
+        return label_one(candidate->label, like->label, &candidate->swept, error);
+    }
+    base_of(sweep, candidate->base, RT_MAX_LABEL);
+    snprintf(candidate->label, RT_MAX_LABEL, "%.*s", RT_MAX_LABEL - 1, spec);
+    if (strlen(spec) >= RT_MAX_LABEL && is_taken(experiment, candidate))
+        snprintf(candidate->label, RT_MAX_LABEL, "%.*s...%u", RT_MAX_LABEL - 8, spec,
+                 experiment->candidate_count);
+    return RT_OK;
+}
+
+RtStatus rt_experiment_add_accels(RtExperiment *experiment, const RtCandidate *like, RtError *error) {
+    Sweep sweep;
+    RT_TRY(parse_sweep(like->spec, false, experiment->manifest, &sweep, error));
+    for (uint32_t i = 0; i < sweep.count; i++) RT_TRY(add_accel(experiment, like, &sweep, i, error));
+    return RT_OK;
+}
+
+/* ---- swept parameters ---- */
+
+static uint32_t add_keys(const RtSwept *swept, bool scene, RtSweptKey *keys, uint32_t count) {
+    for (uint32_t i = 0; i < swept->count; i++) {
+        uint32_t k = 0;
+        double number;
+        while (k < count && (keys[k].scene != scene || strcmp(keys[k].key, swept->keys[i]) != 0)) k++;
+        if (k == RT_MAX_SWEPT_KEYS) continue;
+        if (k == count) keys[count++] = (RtSweptKey){swept->keys[i], scene, true};
+        keys[k].number &= rt_swept_number(swept->values[i], &number);
+    }
+    return count;
+}
+
+uint32_t rt_experiment_swept(const RtExperiment *experiment, RtSweptKey keys[RT_MAX_SWEPT_KEYS]) {
+    uint32_t count = 0;
+    for (uint32_t t = 0; t < experiment->workload_count; t++)
+        count = add_keys(&experiment->workloads[t].swept, true, keys, count);
+    for (uint32_t c = 0; c < experiment->candidate_count; c++)
+        count = add_keys(&experiment->candidates[c].swept, false, keys, count);
+    return count;
+}
+
+const char *rt_swept_of(const RtExperiment *experiment, const RtSweptKey *key, uint32_t workload,
+                        uint32_t candidate) {
+    uint32_t c = candidate < experiment->candidate_count ? candidate : experiment->baseline;
+    const RtSwept *swept =
+        key->scene ? &experiment->workloads[workload].swept : &experiment->candidates[c].swept;
+    for (uint32_t i = 0; i < swept->count; i++) {
+        if (strcmp(swept->keys[i], key->key) == 0) return swept->values[i];
+    }
+    return NULL;
 }

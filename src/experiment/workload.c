@@ -3,7 +3,9 @@
 #include "core/base/memory.h"
 #include "experiment/workload_state.h"
 #include "measure/ray_file.h"
+#include "scenes/open.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* ---- what is unknown ---- */
@@ -36,7 +38,198 @@ static bool workload_is_done(const RtWorkloadState *workload) {
     return true;
 }
 
-/* ---- the steps ---- */
+/* ---- the scene ---- */
+
+RtStatus rt_workload_open_scene(const RtWorkload *workload, RtScene *scene, RtError *error) {
+    *scene = (RtScene){0};
+    if (!workload->file || rt_file_exists(workload->path)) return rt_scene_open(workload->path, scene, error);
+    if (rt_file_is_dead_link(workload->path, error)) return RT_BAD_INPUT;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "%s: there is no such file; `scenes/fetch.sh` fetches the public meshes", workload->path);
+}
+
+RtStatus rt_workload_open(RtResults *results, uint32_t index, const RtWorkloadOptions *options,
+                          RtScene *scene, RtError *error) {
+    const RtWorkload *setup = &results->experiment->workloads[index];
+    const RtRunObserver *observer = &options->observer;
+    char message[RT_MAX_PATH + 128];
+    *scene = (RtScene){0};
+    if (!setup->optional || !setup->file || rt_file_exists(setup->path))
+        return rt_workload_open_scene(setup, scene, error);
+    snprintf(message, sizeof message,
+             "%s is missing, so '%s' is skipped; `scenes/fetch.sh` fetches the public meshes", setup->path,
+             setup->label);
+    if (observer->notice) observer->notice(observer->context, message);
+    results->workloads[index].skipped = true;
+    return RT_OK;
+}
+
+/* ---- the rays ---- */
+
+/* Keeps at most `limit` rays of each kind that the experiment asks for. */
+static RtStatus keep_sets(const RtExperiment *experiment, const RtRaySet *recorded, RtRaySet *sets,
+                          RtError *error) {
+    for (uint32_t k = 0; k < experiment->kind_count; k++) {
+        RtRayKind kind = experiment->kinds[k];
+        RT_TRY(rt_rayset_limit(&recorded[kind], experiment->limit, experiment->coherent_run, &sets[kind],
+                               error));
+    }
+    return RT_OK;
+}
+
+RtStatus rt_workload_record(const RtExperiment *experiment, uint32_t index, int threads, RtScene *scene,
+                            RtAccel **reference, RtRaySet *sets, RtError *error) {
+    const RtWorkload *setup = &experiment->workloads[index];
+    RtRecording recording = {.depth = setup->depth,
+                             .seed = experiment->seed,
+                             .random = experiment->limit,
+                             .threads = threads,
+                             .light_from_outside = setup->light_from_outside};
+    RtRaySet recorded[RT_RAY_KIND_COUNT] = {0};
+    RT_TRY(rt_scene_sample(scene, setup->width, setup->height, 1, setup->corners, error));
+    RT_TRY(rt_accel_open_on(rt_accel_default(), scene, threads, reference, error));
+    if (*experiment->rays_from) {
+        RtRayKind kind = experiment->kinds[0];
+        return rt_rays_load(experiment->rays_from, kind, &sets[kind], error);
+    }
+    RtStatus status = rt_rayset_record(recorded, *reference, &recording, error);
+    if (status == RT_OK) status = keep_sets(experiment, recorded, sets, error);
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&recorded[k]);
+    return status;
+}
+
+/* Records the rays; fills the workload's part of the results, or compares it with the previous run's. */
+static RtStatus prepare(RtWorkloadState *workload, RtError *error) {
+    RT_TRY(rt_workload_record(workload->experiment, workload->index, workload->options->threads,
+                              workload->scene, &workload->reference, workload->sets, error));
+    RtWorkloadResult *result = &workload->results->workloads[workload->index];
+    RtWorkloadResult now = {.known = true,
+                            .objects = workload->scene->geometry.object_count,
+                            .width = workload->scene->sampling.width,
+                            .height = workload->scene->sampling.height,
+                            .scene = rt_scene_fingerprint(workload->scene)};
+    bool same = now.scene == result->scene;
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        now.rays[k] = workload->sets[k].count;
+        now.ray_fingerprints[k] = workload->sets[k].fingerprint;
+        same &= now.ray_fingerprints[k] == result->ray_fingerprints[k];
+    }
+    if (result->known && !same) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "'%s' has changed since this run was interrupted: start over with --force",
+                       workload->experiment->workloads[workload->index].label);
+    }
+    if (result->known) return RT_OK;
+    *result = now;
+    return rt_workload_tell(workload, RT_EVENT_WORKLOAD, 0, RT_RAY_PRIMARY, error);
+}
+
+/* ---- leaves ---- */
+
+typedef struct Leaves {
+    RtOccurrences values[RT_LEAF_QUANTITY_COUNT];
+    RtStatus status;
+    RtError *error;
+} Leaves;
+
+static void take_leaf(void *context, const RtBoxView *view) {
+    Leaves *leaves = context;
+    if (!view->leaf) return;
+    const uint32_t values[RT_LEAF_QUANTITY_COUNT] = {
+        [RT_QUANTITY_leaf_size] = view->objects, [RT_QUANTITY_leaf_depth] = view->depth};
+    for (int q = 0; q < RT_LEAF_QUANTITY_COUNT && leaves->status == RT_OK; q++)
+        leaves->status = rt_occurrences_add(&leaves->values[q], values[q], leaves->error);
+}
+
+static RtStatus distribute_leaves(const RtAccel *accel, RtBuildResult *result, RtError *error) {
+    const RtAccel *base = rt_accel_base(accel);
+    Leaves leaves = {.error = error};
+    if (!base->ops->shows_lists) return RT_OK;
+    base->ops->each_box(base, (RtBoxViewer){take_leaf, &leaves});
+    RtStatus status = leaves.status;
+    if (status == RT_OK && !result->leaves)
+        result->leaves = rt_alloc(RT_LEAF_QUANTITY_COUNT, sizeof(RtDistribution));
+    if (status == RT_OK && !result->leaves)
+        status = rt_fail_memory(error, "distributions", RT_LEAF_QUANTITY_COUNT * sizeof(RtDistribution));
+    for (int q = 0; q < RT_LEAF_QUANTITY_COUNT; q++) {
+        if (status == RT_OK) result->leaves[q] = rt_distribution_of(&leaves.values[q]);
+        rt_occurrences_clear(&leaves.values[q]);
+    }
+    return status;
+}
+
+/* ---- structures ---- */
+
+/* Builds one candidate up to RT_MOST_BUILDS times and keeps the last; *median gets the median seconds. */
+static RtStatus build_one(RtWorkloadState *workload, const RtSpec *spec, RtAccel **out, double *median,
+                          RtError *error) {
+    double seconds[RT_MOST_BUILDS], sum = 0;
+    uint32_t builds = 0;
+    *out = NULL;
+    do {
+        rt_accel_destroy(*out);
+        *out = NULL;
+        RT_TRY(rt_accel_build(spec, workload->scene, workload->options->threads, out, error));
+        seconds[builds] = (*out)->build_seconds;
+        sum += seconds[builds++];
+    } while (builds < RT_MOST_BUILDS && sum < RT_CHEAP_BUILD);
+    *median = rt_median(seconds, builds);
+    return RT_OK;
+}
+
+/* Builds a candidate within the limits. If it exceeds one, it is destroyed, and result->limit names the
+ * limit. */
+static RtStatus build_within(RtWorkloadState *workload, uint32_t c, const RtSpec *spec, double *seconds,
+                             RtError *error) {
+    const RtExperiment *experiment = workload->experiment;
+    RtBuildResult *result = rt_build_at(workload->results, workload->index, c);
+    rt_memory_limit(1000000 * experiment->limit_megabytes);
+    RtStatus status = build_one(workload, spec, &workload->built[c], seconds, error);
+    rt_memory_limit(0);
+    bool too_large = status == RT_NO_MEMORY && experiment->limit_megabytes;
+    /* If a plugin rejects the scene, or takes all memory, only its own results are lost. */
+    bool broken = status == RT_BROKEN || (status != RT_OK && !too_large && rt_spec_is_remote(spec));
+    if (status != RT_OK && !broken && !too_large) return status;
+    if (broken) {
+        snprintf(result->limit, RT_MAX_LIMIT, "%.511s", error->message);
+        result->broken = true;
+        return rt_workload_leave_out(workload, c, RT_EVENT_BROKEN_BUILD, RT_RAY_PRIMARY, result->limit,
+                                     error);
+    }
+    if (too_large) {
+        snprintf(result->limit, RT_MAX_LIMIT, "its structure takes more than %llu MB",
+                 (unsigned long long)experiment->limit_megabytes);
+    } else if (experiment->limit_seconds > 0 && *seconds > experiment->limit_seconds) {
+        snprintf(result->limit, RT_MAX_LIMIT, "building takes %.3g s, more than %g s", *seconds,
+                 experiment->limit_seconds);
+    } else {
+        return RT_OK;
+    }
+    rt_accel_destroy(workload->built[c]);
+    workload->built[c] = NULL;
+    return rt_workload_leave_out(workload, c, RT_EVENT_TOO_LARGE, RT_RAY_PRIMARY, result->limit, error);
+}
+
+static RtStatus build_all(RtWorkloadState *workload, RtError *error) {
+    for (uint32_t c = 0; c < workload->count; c++) {
+        const RtSpec *spec = &rt_workload_setup(workload, c)->parsed;
+        double seconds = 0;
+        RtBuildResult *result = rt_build_at(workload->results, workload->index, c);
+        if (!rt_workload_runs(workload, c)) continue;
+        RT_TRY(build_within(workload, c, spec, &seconds, error));
+        if (!workload->built[c] || result->known) continue;
+        const RtAccel *accel = workload->built[c];
+        *result = (RtBuildResult){.known = true, .exact = accel->exact, .counts = accel->counts};
+        result->seconds = seconds;
+        rt_spec_format(spec, result->spec);
+        rt_accel_describe(accel, &result->shape);
+        if (workload->distributions) RT_TRY(distribute_leaves(accel, result, error));
+        RT_TRY(rt_workload_tell(workload, RT_EVENT_BUILD, c, RT_RAY_PRIMARY, error));
+    }
+    return RT_OK;
+}
+
+/* ---- a kind of rays ---- */
 
 /* Saves the hit and cost of each ray, if that is requested: for one candidate and one kind of rays. */
 static RtStatus save_rows(const RtWorkloadState *workload, RtRayKind kind, RtError *error) {
@@ -93,8 +286,8 @@ static RtStatus measure_kind(RtWorkloadState *workload, RtRayKind kind, RtError 
 }
 
 static RtStatus measure(RtWorkloadState *workload, RtError *error) {
-    RT_TRY(rt_workload_prepare(workload, error));
-    RT_TRY(rt_workload_build(workload, error));
+    RT_TRY(prepare(workload, error));
+    RT_TRY(build_all(workload, error));
     for (uint32_t k = 0; k < workload->experiment->kind_count; k++) {
         RT_TRY(measure_kind(workload, workload->experiment->kinds[k], error));
     }

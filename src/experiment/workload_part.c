@@ -36,18 +36,6 @@ bool rt_workload_runs(const RtWorkloadState *workload, uint32_t c) {
 
 /* ---- reports ---- */
 
-RtStatus rt_workload_tell(const RtWorkloadState *workload, RtEventKind what, uint32_t candidate,
-                          RtRayKind kind, RtError *error) {
-    const RtRunObserver *observer = &workload->options->observer;
-    const RtEvent event = {what, workload->index, candidate, kind};
-    return observer->event ? observer->event(observer->context, workload->results, &event, error) : RT_OK;
-}
-
-void rt_workload_notice(const RtWorkloadState *workload, const char *message) {
-    const RtRunObserver *observer = &workload->options->observer;
-    if (observer->notice) observer->notice(observer->context, message);
-}
-
 RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKind what, RtRayKind kind,
                                char *limit, RtError *error) {
     const RtExperiment *experiment = workload->experiment;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A workload while it runs, and its steps, one file each: record, build, count, time, hardware counters. */
+/* A workload while it runs, and its longer steps, one file each: count, time, hardware counters. */
 #ifndef RT_EXPERIMENT_WORKLOAD_STATE_H
 #define RT_EXPERIMENT_WORKLOAD_STATE_H
 
@@ -35,9 +35,17 @@ static inline const RtCandidate *rt_workload_setup(const RtWorkloadState *worklo
 }
 
 /* Notifies the observer. */
-RtStatus rt_workload_tell(const RtWorkloadState *workload, RtEventKind what, uint32_t candidate,
-                          RtRayKind kind, RtError *error);
-void rt_workload_notice(const RtWorkloadState *workload, const char *message);
+static inline RtStatus rt_workload_tell(const RtWorkloadState *workload, RtEventKind what, uint32_t candidate,
+                                        RtRayKind kind, RtError *error) {
+    const RtRunObserver *observer = &workload->options->observer;
+    const RtEvent event = {what, workload->index, candidate, kind};
+    return observer->event ? observer->event(observer->context, workload->results, &event, error) : RT_OK;
+}
+
+static inline void rt_workload_notice(const RtWorkloadState *workload, const char *message) {
+    const RtRunObserver *observer = &workload->options->observer;
+    if (observer->notice) observer->notice(observer->context, message);
+}
 
 /* Reports that candidate `c`, or a cell of it, exceeds the limit that `limit` names, or is broken. If it is
  * the baseline, the workload fails, and `limit` is cleared. */
@@ -48,12 +56,6 @@ RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKin
 RtStatus rt_workload_break(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtError *error);
 
 /* ---- the steps ---- */
-
-/* Records the rays; fills the workload's part of the results, or compares it with the previous run's. */
-RtStatus rt_workload_prepare(RtWorkloadState *workload, RtError *error);
-
-/* Builds all candidates, within the limits. */
-RtStatus rt_workload_build(RtWorkloadState *workload, RtError *error);
 
 /* Counts all candidates on their shares of the rays of one kind, and distributions if they are requested. */
 RtStatus rt_workload_count(RtWorkloadState *workload, RtRayKind kind, RtError *error);

@@ -74,7 +74,8 @@ static RtStatus trace_chunk(void *context, size_t item, int thread, RtError *err
 }
 
 /* Chunk by chunk also on a single thread: counts may depend on where chunks begin. */
-static RtStatus run_pass(Pass *pass, RtError *error) {
+static RtStatus run_pass(void *context, RtError *error) {
+    Pass *pass = context;
     size_t chunks = (pass->set->count + CHUNK - 1) / CHUNK;
     if (pass->threads == 1) {
         for (size_t chunk = 0; chunk < chunks; chunk++) RT_TRY(trace_chunk(pass, chunk, 0, error));
@@ -218,10 +219,6 @@ void rt_rows_clear(RtRows *rows) {
 
 /* ---- timing ---- */
 
-static RtStatus run_runner(void *context, RtError *error) {
-    return run_pass(context, error);
-}
-
 /* Traces blocks of rays whose places follow the golden ratio, so that even few blocks are spread over the
  * set; also touches the memory of the answers. */
 static RtStatus warm_runner(void *context, double seconds, double *part, RtError *error) {
@@ -244,7 +241,7 @@ static RtStatus warm_runner(void *context, double seconds, double *part, RtError
 
 RtStatus rt_runner_open_local(RtRunner *runner, const RtTimed *timed, int threads, RtError *error) {
     Pass *pass = rt_alloc(1, sizeof(Pass));
-    *runner = (RtRunner){.run = run_runner,
+    *runner = (RtRunner){.run = run_pass,
                          .warm = warm_runner,
                          .context = pass,
                          .work = (double)timed->set->count,

@@ -22,7 +22,6 @@ typedef struct Counterpart {
     XXH64_hash_t rays; /* hash of the rays when they were complete */
 } Counterpart;
 
-enum { RAYS_A_MESSAGE = 4096 };
 typedef struct Message {
     Counterpart *counterpart;
     RtStatus status;
@@ -32,13 +31,8 @@ typedef struct Message {
     int threads;
     uint32_t repeats;
     double seconds, wall;
-    uint64_t first; /* of rays[0..some) in the set */
-    uint32_t some;
-    RtRay rays[RAYS_A_MESSAGE];
+    uint64_t first, some; /* rays of the set: first..first + some - 1 */
 } Message;
-
-/* A message without its rays. */
-enum { HEAD = offsetof(Message, rays) };
 
 /* ---- in the accelerator's process ---- */
 
@@ -46,21 +40,22 @@ static XXH64_hash_t hash_rays(const RtRaySet *set) {
     return XXH3_64bits(set->rays, set->count * sizeof(RtRay));
 }
 
-static void create(RtQuery *query, void *message) {
-    (void)query;
+static void create(RtQuery *query, const RtRay *rays, void *message) {
+    (void)query, (void)rays;
     Message *m = message;
     m->counterpart = rt_alloc(1, sizeof(Counterpart));
     m->status = m->counterpart ? rt_rayset_init(&m->counterpart->set, m->kind, m->count, &m->error)
                                : rt_fail_memory(&m->error, "a runner", sizeof(Counterpart));
 }
 
-static void take_rays(RtQuery *query, void *message) {
+static void take_rays(RtQuery *query, const RtRay *rays, void *message) {
     (void)query;
     Message *m = message;
-    memcpy(m->counterpart->set.rays + m->first, m->rays, m->some * sizeof(RtRay));
+    memcpy(m->counterpart->set.rays + m->first, rays, m->some * sizeof(RtRay));
 }
 
-static void open_counterpart(RtQuery *query, void *message) {
+static void open_counterpart(RtQuery *query, const RtRay *rays, void *message) {
+    (void)rays;
     Message *m = message;
     RtTimed timed = {.accel = query->accel, .set = &m->counterpart->set};
     m->counterpart->rays = hash_rays(&m->counterpart->set);
@@ -68,16 +63,16 @@ static void open_counterpart(RtQuery *query, void *message) {
 }
 
 /* The accelerator could change the rays, so they are checked. */
-static void time_counterpart(RtQuery *query, void *message) {
-    (void)query;
+static void time_counterpart(RtQuery *query, const RtRay *rays, void *message) {
+    (void)query, (void)rays;
     Message *m = message;
     m->status = rt_runner_time(&m->counterpart->runner, m->repeats, &m->seconds, &m->wall, &m->error);
     if (m->status == RT_OK && hash_rays(&m->counterpart->set) != m->counterpart->rays)
         m->status = rt_fail(&m->error, RT_BROKEN, "it wrote to the rays that it was given");
 }
 
-static void destroy(RtQuery *query, void *message) {
-    (void)query;
+static void destroy(RtQuery *query, const RtRay *rays, void *message) {
+    (void)query, (void)rays;
     Message *m = message;
     if (!m->counterpart) return;
     rt_runner_close_local(&m->counterpart->runner);
@@ -89,10 +84,11 @@ static void destroy(RtQuery *query, void *message) {
 /* ---- in this process ---- */
 
 /* Runs `work` there. Returns its failure, or RT_BROKEN if the accelerator is broken. */
-static RtStatus request(Remote *remote, RtRemoteWork *work, Message *message, size_t bytes, RtError *error) {
+static RtStatus request(Remote *remote, RtRemoteWork *work, const RtRay *rays, Message *message,
+                        RtError *error) {
     message->counterpart = remote->counterpart;
     message->status = RT_OK;
-    rt_remote_do(&remote->query, work, message, bytes);
+    rt_remote_do(&remote->query, work, rays, rays ? message->some : 0, message, sizeof *message);
     remote->counterpart = message->counterpart;
     message->error.message[sizeof message->error.message - 1] = '\0';
     if (message->status > RT_OK && message->status <= RT_IO && message->status != RT_BROKEN)
@@ -108,9 +104,8 @@ static bool is_duration(double seconds) {
 
 static RtStatus time_remote(void *context, uint32_t repeats, double *seconds, double *wall, RtError *error) {
     Remote *remote = context;
-    Message message; /* its rays stay unset */
-    message.repeats = repeats;
-    RT_TRY(request(remote, time_counterpart, &message, HEAD, error));
+    Message message = {.repeats = repeats};
+    RT_TRY(request(remote, time_counterpart, NULL, &message, error));
     *seconds = message.seconds;
     *wall = message.wall;
     if (is_duration(*seconds) && is_duration(*wall)) return RT_OK;
@@ -123,28 +118,23 @@ static RtStatus run_remote(void *context, RtError *error) {
     return time_remote(context, 1, &seconds, &wall, error);
 }
 
-static RtStatus open_remote(Remote *remote, const RtTimed *timed, int threads, Message *message,
-                            RtError *error) {
+static RtStatus open_remote(Remote *remote, const RtTimed *timed, int threads, RtError *error) {
+    enum { RAYS_A_MESSAGE = 4096 };
     const RtRaySet *set = timed->set;
+    Message message = {.kind = set->kind, .count = set->count, .threads = threads};
     RT_TRY(rt_query_init(&remote->query, timed->accel, error));
-    message->kind = set->kind;
-    message->count = set->count;
-    message->threads = threads;
-    RT_TRY(request(remote, create, message, HEAD, error));
-    for (uint64_t first = 0; first < set->count; first += RAYS_A_MESSAGE) {
-        uint64_t left = set->count - first, some = left < RAYS_A_MESSAGE ? left : RAYS_A_MESSAGE;
-        message->first = first;
-        message->some = (uint32_t)some;
-        memcpy(message->rays, set->rays + first, some * sizeof(RtRay));
-        RT_TRY(request(remote, take_rays, message, HEAD + some * sizeof(RtRay), error));
+    RT_TRY(request(remote, create, NULL, &message, error));
+    for (message.first = 0; message.first < set->count; message.first += message.some) {
+        uint64_t left = set->count - message.first;
+        message.some = left < RAYS_A_MESSAGE ? left : RAYS_A_MESSAGE;
+        RT_TRY(request(remote, take_rays, set->rays + message.first, &message, error));
     }
-    return request(remote, open_counterpart, message, HEAD, error);
+    return request(remote, open_counterpart, NULL, &message, error);
 }
 
 RtStatus rt_runner_open(RtRunner *runner, const RtTimed *timed, int threads, RtError *error) {
     if (!rt_accel_is_remote(timed->accel)) return rt_runner_open_local(runner, timed, threads, error);
     Remote *remote = rt_alloc(1, sizeof(Remote));
-    Message *message = rt_alloc(1, sizeof(Message));
     *runner = (RtRunner){.run = run_remote,
                          .time = time_remote,
                          .context = remote,
@@ -153,21 +143,19 @@ RtStatus rt_runner_open(RtRunner *runner, const RtTimed *timed, int threads, RtE
                          .seconds = timed->seconds,
                          .wall = timed->wall,
                          .broken = timed->broken};
-    RtStatus status = remote && message ? open_remote(remote, timed, threads, message, error)
-                                        : rt_fail_memory(error, "a runner", sizeof(Message));
-    rt_free(message);
-    return status;
+    return remote ? open_remote(remote, timed, threads, error)
+                  : rt_fail_memory(error, "a runner", sizeof(Remote));
 }
 
 void rt_runner_close(RtRunner *runner) {
     Remote *remote = runner->context;
-    Message message;
+    Message message = {0};
     if (!runner->time) {
         rt_runner_close_local(runner);
         return;
     }
     if (remote && remote->query.accel) {
-        request(remote, destroy, &message, HEAD, NULL);
+        request(remote, destroy, NULL, &message, NULL);
         rt_query_clear(&remote->query);
     }
     rt_free(remote);

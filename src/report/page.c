@@ -2,6 +2,7 @@
 #include "report/page.h"
 
 #include "core/base/words.h"
+#include "core/text/json.h"
 #include "core/text/table.h"
 #include "experiment/claims.h"
 #include "page_css.h"
@@ -86,24 +87,20 @@ void rt_page_verdict(FILE *out, const RtResults *results) {
     fputs("</span>\n", out);
 }
 
-static const char *text_at(const json_t *object, const char *key) {
-    const char *text = json_string_value(json_object_get(object, key));
-    return text ? text : "unknown";
-}
-
 void rt_page_provenance(FILE *out, const json_t *manifest) {
     const json_t *machine = json_object_get(manifest, "machine");
     const json_t *clock = json_object_get(machine, "clock_mhz");
-    rt_html_wrap(out, "<p class=\"meta\">", text_at(manifest, "date"), " &middot; ");
-    rt_html_put(out, text_at(machine, "cpu"));
+    rt_html_wrap(out, "<p class=\"meta\">", rt_json_text(manifest, "date", "unknown"), " &middot; ");
+    rt_html_put(out, rt_json_text(machine, "cpu", "unknown"));
     if (json_is_number(clock)) {
         fprintf(out, " &middot; clock %.2f GHz", 1e-3 * json_number_value(clock));
     } else {
         fputs(" &middot; clock unknown", out);
     }
-    rt_html_wrap(out, " &middot; governor ", text_at(machine, "governor"), " &middot; raytally ");
-    rt_html_wrap(out, "", text_at(machine, "version"), " (");
-    rt_html_put(out, text_at(machine, "commit"));
+    rt_html_wrap(out, " &middot; governor ", rt_json_text(machine, "governor", "unknown"),
+                 " &middot; raytally ");
+    rt_html_wrap(out, "", rt_json_text(machine, "version", "unknown"), " (");
+    rt_html_put(out, rt_json_text(machine, "commit", "unknown"));
     fprintf(out, "%s)%s</p>\n", json_is_true(json_object_get(machine, "dirty")) ? ", with changes" : "",
             json_is_true(json_object_get(manifest, "quick")) ? " &middot; <strong>quick variant</strong>"
                                                              : "");

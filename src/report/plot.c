@@ -126,7 +126,7 @@ static RtStatus fail_drawing(char **arguments, const char *directory, RtError *e
 
 /* Runs gnuplot in `directory` with the scripts as arguments, its messages going to plots/gnuplot.log. */
 static RtStatus run_gnuplot(char **arguments, const char *directory, RtError *error) {
-    const RtCommand command = {
+    const RtProcessCommand command = {
         .arguments = arguments, .directory = directory, .out = "/dev/null", .log = "plots/gnuplot.log"};
     RtProcessEnd end;
     RtStatus status = rt_process_run(&command, &end, error);

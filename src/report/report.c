@@ -5,6 +5,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/words.h"
+#include "core/text/json.h"
 #include "experiment/claims.h"
 #include "experiment/distribution_tables.h"
 #include "experiment/frame_table.h"
@@ -50,13 +51,6 @@ static bool is_beside(const char *directory, const char *name) {
     return rt_path_join(directory, name, path, NULL) == RT_OK && rt_file_exists(path);
 }
 
-static void put_link(FILE *out, const char *directory, const char *name) {
-    if (!is_beside(directory, name)) return;
-    fputs("<a", out);
-    rt_page_href(out, name);
-    fprintf(out, ">%s</a> ", name);
-}
-
 static void put_links(FILE *out, const char *directory) {
     fputs("<nav class=\"here\" aria-label=\"Sections\"><a href=\"#plots\">Plots</a> <a "
           "href=\"#scenes\">Scenes</a> "
@@ -64,7 +58,10 @@ static void put_links(FILE *out, const char *directory) {
           "<nav class=\"here\" aria-label=\"Files\"><span class=\"meta\">Data:</span> ",
           out);
     for (int i = RT_FILE_MANIFEST; i < RT_RESULT_FILE_COUNT; i++) {
-        if (i != RT_FILE_REPORT) put_link(out, directory, rt_result_files[i]);
+        if (i == RT_FILE_REPORT || !is_beside(directory, rt_result_files[i])) continue;
+        fputs("<a", out);
+        rt_page_href(out, rt_result_files[i]);
+        fprintf(out, ">%s</a> ", rt_result_files[i]);
     }
     fputs("</nav>\n", out);
 }
@@ -176,26 +173,22 @@ static void put_plots(FILE *out, const RtExperiment *experiment, const char *dir
 
 /* ---- scenes and tables ---- */
 
-static void put_picture(FILE *out, const char *path, const char *label) {
-    char *data;
-    size_t size;
-    if (rt_file_read(path, MOST_FILE_BYTES, &data, &size, NULL) != RT_OK) return;
-    rt_html_wrap(out, "<img alt=\"Picture of the scene ", label, "\" src=\"");
-    rt_page_data_url(out, "image/png", data, size);
-    fputs("\">", out);
-    rt_free(data);
-}
-
 static void put_scenes(FILE *out, const RtResults *results, const char *directory) {
     fputs("<h2 id=\"scenes\">Scenes</h2>\n<div class=\"scenes\">", out);
     for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
         const RtWorkload *setup = &results->experiment->workloads[t];
         const RtWorkloadResult *workload = &results->workloads[t];
-        char name[RT_MAX_LABEL + 16], path[RT_MAX_PATH];
+        char name[RT_MAX_LABEL + 16], path[RT_MAX_PATH], *picture;
+        size_t size;
         snprintf(name, sizeof name, "images/%s.png", setup->label);
         if (!workload->known || rt_path_join(directory, name, path, NULL) != RT_OK) continue;
         fputs("<figure>", out);
-        put_picture(out, path, setup->label);
+        if (rt_file_read(path, MOST_FILE_BYTES, &picture, &size, NULL) == RT_OK) {
+            rt_html_wrap(out, "<img alt=\"Picture of the scene ", setup->label, "\" src=\"");
+            rt_page_data_url(out, "image/png", picture, size);
+            fputs("\">", out);
+            rt_free(picture);
+        }
         rt_html_wrap(out, "<figcaption><strong>", setup->label, "");
         fprintf(out,
                 "</strong>: %" PRIu32 " object%s; rays of a frame of %" PRIu32 " &times; %" PRIu32
@@ -287,9 +280,7 @@ static void put_answer(FILE *out, const RtResults *results, const char *director
     fputs("<section class=\"card\" id=\"answer\"><h2>Answer</h2>", out);
     for (uint32_t t = 0; t < experiment->workload_count; t++) {
         rt_frame_sentence(results, t, text);
-        fputs(*text ? "<p>" : "", out);
-        rt_html_put(out, text);
-        fputs(*text ? "</p>\n" : "", out);
+        if (*text) rt_html_wrap(out, "<p>", text, "</p>\n");
     }
     fputs("</section>\n", out);
     if (is_beside(directory, RT_FRAME_PLOT) && rt_path_join(directory, RT_FRAME_PLOT, path, NULL) == RT_OK)
@@ -343,15 +334,13 @@ static void put_plugins(FILE *out, const json_t *plugins) {
     json_t *plugin, *name;
     size_t i, n;
     json_array_foreach((json_t *)plugins, i, plugin) {
-        const char *file = json_string_value(json_object_get(plugin, "file"));
-        const char *hash = json_string_value(json_object_get(plugin, "hash"));
         fputs("<dt>plugin of", out);
         json_array_foreach(json_object_get(plugin, "accelerators"), n, name) {
             fputs(n ? ", " : " ", out);
             rt_html_put(out, json_is_string(name) ? json_string_value(name) : "");
         }
-        rt_html_wrap(out, "</dt><dd>", file ? file : "", ", hash ");
-        rt_html_wrap(out, "", hash ? hash : "unknown", "</dd>\n");
+        rt_html_wrap(out, "</dt><dd>", rt_json_text(plugin, "file", ""), ", hash ");
+        rt_html_wrap(out, "", rt_json_text(plugin, "hash", "unknown"), "</dd>\n");
     }
 }
 

@@ -28,18 +28,16 @@ typedef struct Plan {
     bool recount; /* count twice and compare */
 } Plan;
 
-/* The answers to a chunk in all modes, in one block with its rays, for a remote accelerator. */
+/* The answers to a chunk in all modes, in one block, for a remote accelerator. */
 typedef struct Answers {
     Plan plan;
     RtTally tallies[RT_RAY_KIND_COUNT];
     RtTally recounts[2][RT_RAY_KIND_COUNT];
     RtHit hits[PASSES * KERNELS][CHUNK];
     bool blocked[PASSES * KERNELS][CHUNK];
-    RtRay rays[CHUNK]; /* for remote accelerators only; others get the reference's rays, which some
-                        * recognise by address */
 } Answers;
 
-_Static_assert(sizeof(Answers) <= RT_REMOTE_BYTES, "it fits");
+_Static_assert(sizeof(Answers) + CHUNK * sizeof(RtRay) <= RT_REMOTE_BYTES, "it fits");
 
 /* One thread's memory. It has its own copy of the plan, because a plugin's process may have overwritten
  * the one in `answers`. */
@@ -57,7 +55,7 @@ typedef struct Job {
     Worker *workers;      /* [threads] */
     RtHit *hits;          /* the reference's answers, when computing them */
     RtEquivalence *parts; /* [chunks] parts of the result, when checking */
-    RtError recounted;    /* RT_BROKEN if a plugin counted chunk 0 differently twice */
+    RtError recounted;    /* RT_BROKEN if chunk 0 was counted differently twice */
 } Job;
 
 /* Both kernels, in streams of one length; for an exact accelerator, whose answers must not depend on it,
@@ -97,7 +95,7 @@ static size_t chunk_count(const Job *job, size_t chunk) {
 
 /* ---- the reference ---- */
 
-static RtStatus answer_chunk(void *context, size_t chunk, int thread, RtError *error) {
+static RtStatus refer_chunk(void *context, size_t chunk, int thread, RtError *error) {
     (void)error;
     Job *job = context;
     rt_nearest(&job->workers[thread].query, job->reference->rays + chunk * CHUNK, chunk_count(job, chunk),
@@ -111,7 +109,7 @@ RtStatus rt_reference_init(RtReference *reference, const RtAccel *oracle, const 
         .scene = oracle->scene, .rays = rays, .count = count, .hits = rt_alloc(count, sizeof(RtHit))};
     if (!reference->hits) return rt_fail_memory(error, "reference answers", count * sizeof(RtHit));
     Job job = {.reference = reference, .accel = oracle, .threads = threads, .hits = reference->hits};
-    RtStatus status = run(&job, answer_chunk, error);
+    RtStatus status = run(&job, refer_chunk, error);
     if (status != RT_OK) rt_reference_clear(reference);
     return status;
 }
@@ -148,11 +146,12 @@ static void recount(RtQuery *query, const Plan *plan, const RtRay *rays, Answers
     }
 }
 
-static void answer_remotely(RtQuery *query, void *message) {
+/* Where the accelerator is. */
+static void answer_chunk(RtQuery *query, const RtRay *rays, void *message) {
     Answers *answers = message;
     const Plan plan = answers->plan;
-    if (plan.recount) recount(query, &plan, answers->rays, answers);
-    answer(query, &plan, answers->rays, answers);
+    if (plan.recount) recount(query, &plan, rays, answers);
+    answer(query, &plan, rays, answers);
 }
 
 RtStatus rt_answer_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, RtHit got,
@@ -252,16 +251,11 @@ static RtStatus check_chunk(void *context, size_t chunk, int thread, RtError *er
     Answers *answers = &worker->answers;
     choose_modes(worker, chunk);
     worker->plan.count = chunk_count(job, chunk);
-    const RtRay *rays = job->reference->rays + chunk * CHUNK;
-    if (rt_accel_is_remote(job->accel)) {
-        worker->plan.recount = chunk == 0;
-        answers->plan = worker->plan;
-        memcpy(answers->rays, rays, worker->plan.count * sizeof(RtRay));
-        rt_remote_do(&worker->query, answer_remotely, answers, sizeof *answers);
-        if (worker->plan.recount) compare_recounts(job, answers);
-    } else {
-        answer(&worker->query, &worker->plan, rays, answers);
-    }
+    worker->plan.recount = chunk == 0;
+    answers->plan = worker->plan;
+    rt_remote_do(&worker->query, answer_chunk, job->reference->rays + chunk * CHUNK, worker->plan.count,
+                 answers, sizeof *answers);
+    if (worker->plan.recount) compare_recounts(job, answers);
     for (size_t i = 0; i < worker->plan.count; i++) RT_TRY(judge(job, worker, chunk, i, error));
     return RT_OK;
 }

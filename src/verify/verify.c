@@ -131,8 +131,7 @@ static RtStatus begin(Run *run, RtError *error) {
 }
 
 static bool is_text(const json_t *row, const char *key, const char *text) {
-    const char *value = json_string_value(json_object_get(row, key));
-    return value && strcmp(value, text) == 0;
+    return strcmp(rt_json_text(row, key, ""), text) == 0;
 }
 
 /* The row of an earlier run, borrowed, or NULL. The journal has its rows in the order of the requests, so

@@ -418,7 +418,7 @@ RT_TEST(a_process_sees_the_end_of_its_input_while_others_run) {
     RtProcessEnd end;
     FILE *to[2], *from[2];
     for (int i = 0; i < 2; i++) {
-        const RtCommand command = {.arguments = arguments, .to = &to[i], .from = &from[i]};
+        const RtProcessCommand command = {.arguments = arguments, .to = &to[i], .from = &from[i]};
         assert_ok(rt_process_spawn(&processes[i], &command, error));
     }
     for (int i = 0; i < 2; i++) {

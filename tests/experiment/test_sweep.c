@@ -11,16 +11,21 @@
 /* All that `text` stands for, with blanks between; or what is wrong with it. */
 static const char *expand_by_manifest(const char *text, bool scene, const json_t *manifest) {
     static char all[8192];
-    static RtSweep sweep;
+    static RtExperiment e;
     RtError error = {RT_OK, ""};
+    const RtWorkload workload = {.depth = 1};
+    RtCandidate candidate = {.ray_stride = 1};
+    rt_experiment_init(&e);
+    e.manifest = manifest;
+    strcpy(candidate.spec, text);
+    RtStatus status = scene ? rt_experiment_add_scenes(&e, &workload, text, "", &error)
+                            : rt_experiment_add_accels(&e, &candidate, &error);
+    if (status != RT_OK) return strcpy(all, error.message);
     all[0] = '\0';
-    if (rt_sweep_parse(text, scene, manifest, &sweep, &error) != RT_OK) return strcpy(all, error.message);
-    for (uint32_t i = 0; i < sweep.count; i++) {
-        char spec[RT_MAX_SPEC_CHARS];
-        RtSwept swept;
-        if (rt_sweep_at(&sweep, i, spec, &swept, &error) != RT_OK) return strcpy(all, error.message);
+    for (uint32_t i = 0; i < e.workload_count + e.candidate_count; i++) {
         size_t used = strlen(all);
-        snprintf(all + used, sizeof all - used, "%s%s", i ? " " : "", spec);
+        snprintf(all + used, sizeof all - used, "%s%s", i ? " " : "",
+                 scene ? e.workloads[i].spec : e.candidates[i].spec);
     }
     return all;
 }

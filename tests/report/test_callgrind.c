@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* bench --callgrind: instructions per ray by valgrind, in a child that is this program. */
+/* bench --callgrind: instructions per ray by valgrind, in a worker that is this program. */
 #include "experiment_testing.h"
 
 #include "core/text/json.h"
@@ -104,7 +104,7 @@ RT_TEST_VALGRIND(an_instruction_set_that_valgrind_does_not_know_is_replaced_and_
     json_decref(rows);
 }
 
-/* Plugins are built in the child's own process; one that breaks is not built there. */
+/* Plugins are built in the worker's own process; one that breaks is not built there. */
 RT_TEST_VALGRIND(instructions_of_a_plugin_are_counted_and_a_broken_one_is_named) {
     assert_int_equal(raytally(place, "bench random:n=50 --count-only --threads 1 --json --callgrind=64 "
                                      "--rays primary,shadow --size 16x16 --plugin " RT_BINARY_DIR
@@ -123,8 +123,8 @@ RT_TEST_VALGRIND(instructions_of_a_plugin_are_counted_and_a_broken_one_is_named)
     rt_free(text);
 }
 
-/* The child gets at most so many rays, and no file stays behind. */
-RT_TEST_VALGRIND(the_child_gets_a_few_rays_and_leaves_nothing_behind) {
+/* The worker gets at most so many rays, and no file stays behind. */
+RT_TEST_VALGRIND(the_worker_gets_a_few_rays_and_leaves_nothing_behind) {
     glob_t found;
     assert_int_equal(setenv("TMPDIR", place->folder, 1), 0);
     json_t *rows = instructions_of(place, "random:n=50 --accel bvh --rays primary --size 64x64");

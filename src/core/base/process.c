@@ -116,7 +116,7 @@ RtStatus rt_process_fork(RtProcess *process, int keep, RtError *error) {
 /* ---- other programs ---- */
 
 /* `talk`: its end of a connection to its stdin and from its stdout, or -1. */
-static int spawn(RtProcess *process, const RtCommand *command, int talk) {
+static int spawn(RtProcess *process, const RtProcessCommand *command, int talk) {
     enum { WRITE = O_WRONLY | O_CREAT | O_TRUNC, MODE = 0666 };
     posix_spawn_file_actions_t actions;
     if (posix_spawn_file_actions_init(&actions) != 0) return ENOMEM;
@@ -137,7 +137,7 @@ static int spawn(RtProcess *process, const RtCommand *command, int talk) {
     return failed;
 }
 
-RtStatus rt_process_spawn(RtProcess *process, const RtCommand *command, RtError *error) {
+RtStatus rt_process_spawn(RtProcess *process, const RtProcessCommand *command, RtError *error) {
     int ends[2] = {-1, -1};
     *process = (RtProcess){.descriptor = -1};
     if (command->to && socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
@@ -161,7 +161,7 @@ RtStatus rt_process_spawn(RtProcess *process, const RtCommand *command, RtError 
     return rt_fail_memory(error, "a connection to a process", 0);
 }
 
-RtStatus rt_process_run(const RtCommand *command, RtProcessEnd *end, RtError *error) {
+RtStatus rt_process_run(const RtProcessCommand *command, RtProcessEnd *end, RtError *error) {
     RtProcess process;
     RT_TRY(rt_process_spawn(&process, command, error));
     rt_process_wait(&process, -1, end);

@@ -31,19 +31,19 @@ typedef struct RtProcessEnd {
 
 /* A program to run. Files are relative to `directory`; a stream without file or pipe is inherited, except
  * stdin, which is empty. */
-typedef struct RtCommand {
+typedef struct RtProcessCommand {
     char *const *arguments; /* NULL behind the last; [0] is the program, searched for in $PATH ... */
     const char *program;    /* ... unless this is its path */
     const char *directory;  /* to run it in; NULL: the current one */
     const char *out, *log;  /* files that stdout and stderr are written to, or NULL */
     FILE **to, **from; /* both or none: get a connection to its stdin and from its stdout. The caller's */
-} RtCommand;
+} RtProcessCommand;
 
 /* Starts a program. RT_NOT_AVAILABLE if there is no such program, else RT_IO. */
-RtStatus rt_process_spawn(RtProcess *process, const RtCommand *command, RtError *error);
+RtStatus rt_process_spawn(RtProcess *process, const RtProcessCommand *command, RtError *error);
 
 /* Runs a program to its end. RT_OK, whatever *end is, if it could be started. */
-RtStatus rt_process_run(const RtCommand *command, RtProcessEnd *end, RtError *error);
+RtStatus rt_process_run(const RtProcessCommand *command, RtProcessEnd *end, RtError *error);
 
 /* Forks: *process is the child or, in the child, has pid 0. The child has none of raytally's files open
  * except stderr, which also becomes its stdout, and the descriptor `keep` (-1: none), which becomes

@@ -29,6 +29,11 @@ json_t *rt_json_now(void) {
     return json_string(date);
 }
 
+const char *rt_json_text(const json_t *object, const char *key, const char *otherwise) {
+    const char *text = json_string_value(json_object_get(object, key));
+    return text ? text : otherwise;
+}
+
 RtStatus rt_json_save(const char *path, json_t *document, RtError *error) {
     RtOutput output;
     if (!document) return rt_fail_memory(error, path, 0);

@@ -22,6 +22,9 @@ json_t *rt_json_ratio_end(double value);
 /* The current date and time, UTC: "2001-04-30T12:00:00Z". */
 json_t *rt_json_now(void);
 
+/* The text of a member, borrowed; `otherwise` if there is none. */
+const char *rt_json_text(const json_t *object, const char *key, const char *otherwise);
+
 /* Writes `document`, indented, to `path`, completely or not at all. NULL counts as short memory. Takes the
  * reference. */
 RtStatus rt_json_save(const char *path, json_t *document, RtError *error);
