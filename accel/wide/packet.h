@@ -28,13 +28,13 @@ enum {
     MOST_PAIRS = BEAM + PACKET * RT_WIDE_MAX_LEAF + BEAM
 };
 
-/* Each end of a beam: x, y, z of the origin of the first to enter and of the last to leave, and the least and
- * the most reciprocal. */
+/* The bounds of a beam: the origins of the first ray to enter a box and of the last to leave it, and the
+ * least and the greatest reciprocals. */
 typedef struct Beam {
-    float first[3], tmin; /* the least tmin */
-    float last[3], limit; /* the most limit */
+    float first[3], tmin; /* the least */
+    float last[3], limit; /* the greatest */
     float inv_least[3], inv_most[3];
-    bool tight; /* it is one */
+    bool tight; /* the rays are close enough to be tested as one */
 } Beam;
 
 typedef struct Packet {
@@ -42,8 +42,8 @@ typedef struct Packet {
     float dir[3][PACKET], inv[3][PACKET], org_near[3][PACKET], org_far[3][PACKET];
     float tmin[PACKET], tmax[PACKET], shear_x[PACKET], shear_y[PACKET];
     float limit[PACKET];                /* the best t so far, or tmax */
-    uint32_t pair_ray[MOST_PAIRS];      /* [pair_count] that wait to be tested in full, */
-    uint32_t pair_triangle[MOST_PAIRS]; /* and where in the arena their coordinates begin, in floats */
+    uint32_t pair_ray[MOST_PAIRS];      /* [pair_count] pairs that passed the prefilter: the ray, */
+    uint32_t pair_triangle[MOST_PAIRS]; /* and the triangle's offset in the arena, in floats */
     /* Each ray, prepared for the prefilter: the origin by kx, ky and kz, nothing; the shear, the ray's
      * number, nothing. The entry behind the last passes no triangle. */
     float prefilter[PACKET + 1][8];
@@ -63,10 +63,10 @@ typedef struct Packet {
     bool negative[3], prefilter_ready;
 } Packet;
 
-/* The rays of each class that wait for a packet of their own; and those of the query not yet sorted. */
+/* The rays of each class that wait for a packet, and the rays of the query not yet sorted. */
 typedef struct Sorter {
     size_t next, end;
-    uint32_t class; /* then: the first that may still have rays */
+    uint32_t class; /* when all are sorted: the first that may still have rays */
     uint32_t count[CLASSES], list[CLASSES][PACKET + BEAM];
 } Sorter;
 
@@ -75,7 +75,7 @@ RT_KERNEL size_t first_of(uint32_t beam) {
     return (size_t)beam * BEAM;
 }
 
-/* The first of a set of rays; PACKET where there is none. */
+/* The first of a set of rays; PACKET if the set is empty. */
 RT_KERNEL uint32_t first_ray(uint64_t rays) {
 #if defined(__BMI__)
     return (uint32_t)_tzcnt_u64(rays);
@@ -118,8 +118,8 @@ RT_KERNEL void begin_sorting(Sorter *s, size_t first, size_t count) {
     s->class = 0;
 }
 
-/* Sorts until a class fills a packet, or all are sorted: then the class, or any that has rays; CLASSES where
- * none has. */
+/* Sorts until a class fills a packet, and returns it. When all rays are sorted, returns any class that has
+ * rays, or CLASSES. */
 RT_KERNEL uint32_t sort_rays(Sorter *s, const RtRay *rays) {
     while (s->next < s->end) {
         uint32_t class = CLASSES, i = (uint32_t)s->next, many = 1;
@@ -140,9 +140,9 @@ RT_KERNEL uint32_t sort_rays(Sorter *s, const RtRay *rays) {
 
 /* ---- preparing ---- */
 
-/* Rays [first, first + RT_LANES) of the packet, thickened as rt_ray_prepare_in does or, where objects are
- * divided, rt_surface_thicken. */
-RT_KERNEL void prepare_lanes(Packet *p, const RtGeometry *g, uint32_t first, bool divided) {
+/* Prepares rays [first, first + RT_LANES) of the packet, thickened as by rt_ray_prepare_in or, for split
+ * references, by rt_surface_thicken. */
+RT_KERNEL void prepare_lanes(Packet *p, const RtGeometry *g, uint32_t first, bool split_refs) {
     RtFloats farthest = rt_all(0);
     for (int a = 0; a < 3; a++) {
         RtFloats org = rt_load(&p->org[a][first]);
@@ -150,7 +150,7 @@ RT_KERNEL void prepare_lanes(Packet *p, const RtGeometry *g, uint32_t first, boo
         farthest = rt_max(rt_abs(g->box.hi.at[a] - org), farthest);
     }
     RtFloats thickness = farthest * 0x1p-20f;
-    if (divided) thickness = 2 * thickness + 0x1p-80f;
+    if (split_refs) thickness = 2 * thickness + 0x1p-80f;
     for (int a = 0; a < 3; a++) {
         RtFloats org = rt_load(&p->org[a][first]), shift = thickness + rt_abs(org) * 0x1p-23f;
         RtFloats above = org + shift, below = org - shift;
@@ -179,7 +179,7 @@ RT_KERNEL RtFloat4 least_of_each(const RtFloats v[4]) {
 
 RT_KERNEL void bound_beam(Packet *p, uint32_t b) {
     Beam *beam = &p->beam[b];
-    RtFloats ends[5][4]; /* of `first`, `last`, the least, the most and y: what is to be the least */
+    RtFloats ends[5][4]; /* minimized: first, last, inverses and shears; greatest values negated */
     for (int k = 0; k < 20; k++) ends[k / 4][k % 4] = rt_all(INFINITY);
     for (size_t i = first_of(b); i < first_of(b) + BEAM; i += RT_LANES) {
         RtFloats x = rt_load(&p->shear_x[i]), y = rt_load(&p->shear_y[i]);
@@ -255,7 +255,7 @@ RT_KERNEL void test_extreme_rays(Packet *p, const Query *q, bool any) {
     }
 }
 
-/* Makes a packet of up to PACKET rays of a class, which has some. */
+/* Makes a packet of up to PACKET rays of a class, which is not empty. */
 RT_KERNEL void init_packet(Packet *p, const Query *q, Sorter *s, uint32_t class, bool any) {
     uint32_t *list = s->list[class], count = s->count[class] < PACKET ? s->count[class] : PACKET;
     assert(count > 0);
@@ -290,14 +290,14 @@ RT_KERNEL void init_packet(Packet *p, const Query *q, Sorter *s, uint32_t class,
         rt_store(&p->tmin[i], org[3]);
         rt_store(&p->tmax[i], dir[3]);
     }
-    for (uint32_t i = 0; i < end; i += RT_LANES) prepare_lanes(p, q->geometry, i, q->tree->divided);
+    for (uint32_t i = 0; i < end; i += RT_LANES) prepare_lanes(p, q->geometry, i, q->tree->split_refs);
     for (uint32_t b = 0; b < beams; b++) bound_beam(p, b);
     p->prefilter_ready = false;
     for (uint32_t i = 0; i < count; i++) p->best[i] = RT_MISS;
     p->open = ~UINT64_C(0) >> (PACKET - count);
     p->prepared = 0;
     p->pair_count = p->top = p->next = 0;
-    if (q->tree->divided) test_extreme_rays(p, q, any);
+    if (q->tree->split_refs) test_extreme_rays(p, q, any);
     p->going = p->open;
 }
 

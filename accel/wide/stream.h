@@ -86,7 +86,7 @@ RT_KERNEL void trace_one_by_one(const Query *q, size_t first, size_t count, bool
 /* ---- many at once ---- */
 
 typedef struct RayQueues {
-    size_t next, end; /* of the query's rays: the first not started, and the end */
+    size_t next, end; /* rays of the query that have not started */
     uint32_t in_flight;
     uint32_t count[4]; /* rays in the queue of each RtWideKind */
     RayState *list[4][RT_WIDE_MAX_IN_FLIGHT];
@@ -135,7 +135,7 @@ RT_KERNEL void visit_nodes(const Query *q, RayQueues *t, bool any, bool counted,
 
 /* The triangles of a leaf that pass the prefilter for a ray. */
 typedef struct Candidates {
-    RayState *flight;
+    RayState *state;
     uint32_t mask;
 } Candidates;
 
@@ -207,7 +207,7 @@ RT_KERNEL void trace_many(const Query *q, size_t first, size_t count, bool any, 
         while (t.count[RT_WIDE_NODE] > t.in_flight / 4) visit_nodes(q, &t, any, counted, ahead);
         uint32_t n = prefilter_leaves(q, &t, candidates, counted, ahead);
         for (uint32_t i = 0; i < n; i++) {
-            RayState *f = candidates[i].flight;
+            RayState *f = candidates[i].state;
             const RtWideTriangles *blocks = rt_wide_leaf_at(q->tree, f->next);
             bool over = test_triangles(blocks, candidates[i].mask, &f->axes, &f->ray, any, &f->best,
                                        counted ? f->tally : NULL);

@@ -21,7 +21,7 @@ typedef struct Scratch {
     RateEstimate estimates[RT_RAY_KIND_COUNT];
 } Scratch;
 
-/* Functions of their own, so that each is compiled once. */
+/* Each is compiled once, not inlined into its callers. */
 #define DEFINE_STREAMS(question, any)                                                                        \
     static __attribute__((noinline)) void stream_##question##_timed(const Query *q, size_t first,            \
                                                                     size_t count) {                          \
@@ -63,7 +63,7 @@ RT_KERNEL size_t trace_as_packets(const Query *q, size_t count, bool any) {
         estimate->trial -= count;
         return 0;
     }
-    /* A trial begins with hope, which a single window does not end. */
+    /* A trial starts with an estimate that one poor window does not end. */
     if (estimate->alone || estimate->sharing == 0) estimate->sharing = 1.5f * worth;
     estimate->alone = false;
     while (i < count && !estimate->alone) {
