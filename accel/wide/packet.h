@@ -63,9 +63,9 @@ typedef struct Packet {
     bool negative[3], prefilter_ready;
 } Packet;
 
-/* The rays of each class that wait for a packet, and the rays of the query not yet sorted. */
+/* The rays of each class that wait for a packet, and how many more are sorted. */
 typedef struct Sorter {
-    size_t next, end;
+    int32_t left;   /* rays that may still be sorted */
     uint32_t class; /* when all are sorted: the first that may still have rays */
     uint32_t count[CLASSES], list[CLASSES][PACKET + BEAM];
 } Sorter;
@@ -96,41 +96,46 @@ RT_KERNEL uint32_t class_of(const RtRay *ray) {
     return class;
 }
 
-/* The class of BEAM rays; CLASSES if they differ. */
-RT_KERNEL uint32_t class_of_all(const RtRay *rays) {
-    const uint32_t class = class_of(rays), axis = class / 8;
-    const RtFloat4 dir = rt_loadu4((const char *)rays + offsetof(RtRay, dir));
+/* The class of the BEAM rays `index`; CLASSES if they differ. */
+RT_KERNEL uint32_t class_of_all(const RtRay *rays, const uint32_t *index) {
+    const RtRay *one = &rays[index[0]];
+    const uint32_t class = class_of(one), axis = class / 8;
+    const RtFloat4 dir = rt_loadu4((const char *)one + offsetof(RtRay, dir));
     RtInt4 signs = {0}, larger = {0};
     for (int i = 0; i < BEAM; i++) {
-        RtFloat4 own = rt_loadu4((const char *)&rays[i] + offsetof(RtRay, dir));
+        const RtRay *ray = &rays[index[i]];
+        RtFloat4 own = rt_loadu4((const char *)ray + offsetof(RtRay, dir));
         signs |= (RtInt4)own ^ (RtInt4)dir;
-        larger |= rt_abs(own) >= fabsf(rays[i].dir.at[axis]);
+        larger |= rt_abs(own) >= fabsf(ray->dir.at[axis]);
     }
     larger[axis] = 0;
     RtInt4 differ = (signs < 0) | larger;
     return differ[0] | differ[1] | differ[2] ? CLASSES : class;
 }
 
-RT_KERNEL void begin_sorting(Sorter *s, size_t first, size_t count) {
+RT_KERNEL void begin_sorting(Sorter *s, int32_t count) {
     memset(s->count, 0, sizeof s->count);
-    s->next = first;
-    s->end = first + count;
+    s->left = count;
     s->class = 0;
 }
 
 /* Sorts until a class fills a packet, and returns it. When all rays are sorted, returns any class that has
  * rays, or CLASSES. */
-RT_KERNEL uint32_t sort_rays(Sorter *s, const RtRay *rays) {
-    while (s->next < s->end) {
-        uint32_t class = CLASSES, i = (uint32_t)s->next, many = 1;
-        if (i % BEAM == 0 && s->end - i >= BEAM) class = class_of_all(&rays[i]);
+RT_KERNEL uint32_t sort_rays(Sorter *s, const Query *q) {
+    RaySource *from = q->source;
+    while (s->left > 0 && more_rays(q)) {
+        const uint32_t *index = &from->index[from->taken];
+        uint32_t class = CLASSES, many = 1;
+        if (from->taken % BEAM == 0 && from->count - from->taken >= BEAM)
+            class = class_of_all(q->rays, index);
         if (class == CLASSES)
-            class = class_of(&rays[i]);
+            class = class_of(&q->rays[*index]);
         else
             many = BEAM;
         uint32_t *to = &s->list[class][s->count[class]];
-        for (uint32_t k = 0; k < many; k++) to[k] = i + k;
-        s->next += many;
+        for (uint32_t k = 0; k < many; k++) to[k] = index[k];
+        from->taken += many;
+        s->left -= (int32_t)many;
         s->count[class] += many;
         if (s->count[class] >= PACKET) return class;
     }
@@ -143,17 +148,11 @@ RT_KERNEL uint32_t sort_rays(Sorter *s, const RtRay *rays) {
 /* Prepares rays [first, first + RT_LANES) of the packet, thickened as by rt_ray_prepare_in or, for split
  * references, by rt_surface_thicken. */
 RT_KERNEL void prepare_lanes(Packet *p, const RtGeometry *g, uint32_t first, bool split_refs) {
-    RtFloats farthest = rt_all(0);
+    RtFloats org[3];
+    for (int a = 0; a < 3; a++) org[a] = rt_load(&p->org[a][first]);
+    const RtFloats thickness = thickness_of(org, g, split_refs);
     for (int a = 0; a < 3; a++) {
-        RtFloats org = rt_load(&p->org[a][first]);
-        farthest = rt_max(rt_abs(g->box.lo.at[a] - org), farthest);
-        farthest = rt_max(rt_abs(g->box.hi.at[a] - org), farthest);
-    }
-    RtFloats thickness = farthest * 0x1p-20f;
-    if (split_refs) thickness = 2 * thickness + 0x1p-80f;
-    for (int a = 0; a < 3; a++) {
-        RtFloats org = rt_load(&p->org[a][first]), shift = thickness + rt_abs(org) * 0x1p-23f;
-        RtFloats above = org + shift, below = org - shift;
+        RtFloats shift = shift_of(thickness, org[a]), above = org[a] + shift, below = org[a] - shift;
         rt_store(&p->org_near[a][first], p->negative[a] ? below : above);
         rt_store(&p->org_far[a][first], p->negative[a] ? above : below);
         rt_store(&p->inv[a][first], 1 / rt_load(&p->dir[a][first]));
@@ -244,9 +243,8 @@ RT_KERNEL const RtPreparedRay *prepared(Packet *p, const Query *q, uint32_t i) {
 RT_KERNEL void test_extreme_rays(Packet *p, const Query *q, bool any) {
     uint64_t odd = 0;
     for (uint32_t i = 0; i < PACKET; i += RT_LANES) {
-        RtFloats longest = rt_abs(rt_load(&p->dir[p->kz][i]));
-        RtInts near = (longest >= 0x1p-64f) & (longest <= 0x1p64f); /* rt_surface_is_near */
-        odd |= (uint64_t)rt_bits(~near) << i;
+        const RtFloats dir[3] = {rt_load(&p->dir[0][i]), rt_load(&p->dir[1][i]), rt_load(&p->dir[2][i])};
+        odd |= (uint64_t)rt_bits(~surface_is_near(dir)) << i;
     }
     for (odd &= p->open; odd; odd &= odd - 1) {
         uint32_t i = first_ray(odd);

@@ -141,15 +141,14 @@ RT_KERNEL void finish_packet(Packet *p, const Query *q, bool any) {
     }
 }
 
-/* Traces rays[first..first + count) of a query, few enough for the numbers of a Sorter. */
-RT_KERNEL Shared trace_packets(const Query *q, Packet *packets, Sorter *sorter, size_t first, size_t count,
-                               bool any) {
+/* Traces the next rays of a query, about `count`. */
+RT_KERNEL Shared trace_packets(const Query *q, Packet *packets, Sorter *sorter, int32_t count, bool any) {
     Shared shared = {0};
     Packet *active[RT_WIDE_MAX_PACKETS];
     uint32_t n = 0, class;
-    begin_sorting(sorter, first, count);
+    begin_sorting(sorter, count);
     for (; n < q->self->packets; n++) {
-        class = sort_rays(sorter, q->rays);
+        class = sort_rays(sorter, q);
         if (class == CLASSES) break;
         active[n] = &packets[n];
         init_packet(active[n], q, sorter, class, any);
@@ -163,7 +162,7 @@ RT_KERNEL Shared trace_packets(const Query *q, Packet *packets, Sorter *sorter, 
                 continue;
             }
             finish_packet(p, q, any);
-            class = sort_rays(sorter, q->rays);
+            class = sort_rays(sorter, q);
             if (class == CLASSES) continue;
             init_packet(p, q, sorter, class, any);
             kept++;
