@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* From a plan (plan.h) to nodes of eight children, and their leaves.
+/* Lays out nodes of eight children and their leaves by a plan (plan.h).
  *
- * In the arena a node is followed by its leaves, side by side, and these by what is below its inner children,
- * one after the other. Every subtree has its place before any is there, so subtrees are placed by whichever
- * thread comes first, and the arena is that of one thread. */
+ * In the arena a node is followed by its leaves, and these by the subtrees of its inner children. The offset
+ * of every subtree is known in advance. So threads place subtrees in any order, and the arena is the same as
+ * by one thread. */
 #include "accel/wide/plan.h"
 
 #include "core/base/memory.h"
@@ -11,21 +11,21 @@
 
 #include <assert.h>
 
-/* Subtrees that take no more than such a part of the arena are placed by one thread each. */
+/* A subtree that takes at most this fraction (1 / SHARES) of the arena is placed by one thread. */
 enum { SHARES = 256 };
 
-/* More references do not fit into an arena, be they of triangles; the units of as many fit into 32 bits. */
+/* No arena holds more references, and their units fit into 32 bits. */
 enum { MAX_REFERENCES = RT_MAX_OBJECTS };
 static_assert(MAX_REFERENCES * (uint64_t)(RT_WIDE_NODE_UNITS + RT_WIDE_BLOCK_UNITS) <= UINT32_MAX,
               "units are counted in 32 bits");
 static_assert(MAX_REFERENCES * sizeof(RtWideTriangles) / RT_WIDE_BLOCK >= RT_WIDE_MAX_BYTES,
-              "as MAX_REFERENCES says");
+              "no arena holds more");
 
-/* A subtree that is to be placed: the node of the binary tree, and where its own will be. */
+/* A subtree to be placed: the node of the binary tree, and its offset in the arena. */
 typedef struct Task {
     uint32_t index, at;
-    uint32_t nodes; /* then: that were made */
-    double cost;    /* and what they cost, times the area of the root */
+    uint32_t nodes; /* result: nodes made */
+    double cost;    /* result: their cost, times the area of the root */
 } Task;
 
 typedef struct Layout {
@@ -33,10 +33,10 @@ typedef struct Layout {
     RtWidePlan plan;
     Task *tasks; /* [task_count] */
     uint32_t task_count, task_capacity;
-    uint32_t task_units; /* of a task at most */
+    uint32_t task_units; /* largest subtree that is a task */
 } Layout;
 
-/* Leaves wait until what is in them has come from memory. */
+/* Leaves are filled some time after their triangles are prefetched. */
 enum { WAITING = 16 };
 
 typedef struct Leaf {
@@ -44,14 +44,14 @@ typedef struct Leaf {
     bool triangles;
 } Leaf;
 
-/* One thread's. */
+/* The state of one thread. */
 typedef struct Placer {
     Layout *layout;
-    Leaf leaves[WAITING]; /* in turns: the last `waiting` before `turn` */
+    Leaf leaves[WAITING]; /* a ring: the last `waiting` before `turn` */
     uint32_t turn, waiting;
     uint32_t nodes; /* made */
-    double cost;    /* of these: visits of nodes and tests of blocks, times area */
-    bool top;       /* what is small is left as a task */
+    double cost;    /* of their visits and of tests of blocks, times area */
+    bool top;       /* small subtrees become tasks */
     RtStatus status;
     RtError *error;
 } Placer;
@@ -88,7 +88,7 @@ static void fill_waiting(Placer *placer, uint32_t most) {
         fill_leaf(placer->layout, &placer->leaves[(placer->turn - placer->waiting) % WAITING]);
 }
 
-/* Makes a leaf at *at, which goes on to where it ends. */
+/* Makes a leaf at *at and advances *at to its end. */
 static RtWideRef place_leaf(Placer *placer, uint32_t index, uint32_t *at) {
     const Layout *layout = placer->layout;
     fill_waiting(placer, WAITING - 1);
@@ -118,7 +118,7 @@ static void put_box(RtWideNode *node, uint32_t lane, RtBox box) {
 
 static void place_node(Placer *placer, uint32_t at, uint32_t index);
 
-/* What is below an inner child: now, or later by another thread. */
+/* Places the subtree of an inner child, or makes it a task. */
 static void place_below(Placer *placer, uint32_t at, uint32_t index) {
     Layout *layout = placer->layout;
     if (!placer->top || layout->plan.choices[index].units > layout->task_units) {
@@ -182,7 +182,7 @@ static RtStatus place_all(Layout *layout, RtError *error) {
     return RT_OK;
 }
 
-/* ---- all of it ---- */
+/* ---- the whole tree ---- */
 
 static RtStatus refuse(uint64_t bytes, uint64_t limit, RtError *error) {
     uint64_t most = limit < RT_WIDE_MAX_BYTES ? limit : RT_WIDE_MAX_BYTES;
@@ -197,7 +197,7 @@ static RtStatus lay_out(Layout *layout, RtTree *tree, const RtGeometry *geometry
     RtWideTree *self = layout->self;
     RT_TRY(rt_wide_plan_init(&layout->plan, tree, geometry, how, error));
     self->bytes = (uint64_t)layout->plan.units * RT_WIDE_UNIT;
-    self->divided = tree->split_refs;
+    self->split_refs = tree->split_refs;
     if (self->bytes > how->limit || self->bytes > RT_WIDE_MAX_BYTES)
         return refuse(self->bytes, how->limit, error);
     self->arena = how->huge_pages ? rt_alloc_unset(self->bytes, 1) : rt_alloc(self->bytes, 1);

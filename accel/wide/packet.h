@@ -28,13 +28,13 @@ enum {
     MOST_PAIRS = BEAM + PACKET * RT_WIDE_MAX_LEAF + BEAM
 };
 
-/* Each end of a beam: x, y, z of the origin of the first to enter and of the last to leave, and the least and
- * the most reciprocal. */
+/* The bounds of a beam: the origins of the first ray to enter a box and of the last to leave it, and the
+ * least and the greatest reciprocals. */
 typedef struct Beam {
-    float first[3], tmin; /* the least tmin */
-    float last[3], limit; /* the most limit */
+    float first[3], tmin; /* the least */
+    float last[3], limit; /* the greatest */
     float inv_least[3], inv_most[3];
-    bool tight; /* it is one */
+    bool tight; /* the rays are close enough to be tested as one */
 } Beam;
 
 typedef struct Packet {
@@ -42,8 +42,8 @@ typedef struct Packet {
     float dir[3][PACKET], inv[3][PACKET], org_near[3][PACKET], org_far[3][PACKET];
     float tmin[PACKET], tmax[PACKET], shear_x[PACKET], shear_y[PACKET];
     float limit[PACKET];                /* the best t so far, or tmax */
-    uint32_t pair_ray[MOST_PAIRS];      /* [pair_count] that wait to be tested in full, */
-    uint32_t pair_triangle[MOST_PAIRS]; /* and where in the arena their coordinates begin, in floats */
+    uint32_t pair_ray[MOST_PAIRS];      /* [pair_count] pairs that passed the prefilter: the ray, */
+    uint32_t pair_triangle[MOST_PAIRS]; /* and the triangle's offset in the arena, in floats */
     /* Each ray, prepared for the prefilter: the origin by kx, ky and kz, nothing; the shear, the ray's
      * number, nothing. The entry behind the last passes no triangle. */
     float prefilter[PACKET + 1][8];
@@ -63,10 +63,10 @@ typedef struct Packet {
     bool negative[3], prefilter_ready;
 } Packet;
 
-/* The rays of each class that wait for a packet of their own; and those of the query not yet sorted. */
+/* The rays of each class that wait for a packet, and how many more are sorted. */
 typedef struct Sorter {
-    size_t next, end;
-    uint32_t class; /* then: the first that may still have rays */
+    int32_t left;   /* rays that may still be sorted */
+    uint32_t class; /* when all are sorted: the first that may still have rays */
     uint32_t count[CLASSES], list[CLASSES][PACKET + BEAM];
 } Sorter;
 
@@ -75,7 +75,7 @@ RT_KERNEL size_t first_of(uint32_t beam) {
     return (size_t)beam * BEAM;
 }
 
-/* The first of a set of rays; PACKET where there is none. */
+/* The first of a set of rays; PACKET if the set is empty. */
 RT_KERNEL uint32_t first_ray(uint64_t rays) {
 #if defined(__BMI__)
     return (uint32_t)_tzcnt_u64(rays);
@@ -96,41 +96,46 @@ RT_KERNEL uint32_t class_of(const RtRay *ray) {
     return class;
 }
 
-/* The class of BEAM rays; CLASSES if they differ. */
-RT_KERNEL uint32_t class_of_all(const RtRay *rays) {
-    const uint32_t class = class_of(rays), axis = class / 8;
-    const RtFloat4 dir = rt_loadu4((const char *)rays + offsetof(RtRay, dir));
+/* The class of the BEAM rays `index`; CLASSES if they differ. */
+RT_KERNEL uint32_t class_of_all(const RtRay *rays, const uint32_t *index) {
+    const RtRay *one = &rays[index[0]];
+    const uint32_t class = class_of(one), axis = class / 8;
+    const RtFloat4 dir = rt_loadu4((const char *)one + offsetof(RtRay, dir));
     RtInt4 signs = {0}, larger = {0};
     for (int i = 0; i < BEAM; i++) {
-        RtFloat4 own = rt_loadu4((const char *)&rays[i] + offsetof(RtRay, dir));
+        const RtRay *ray = &rays[index[i]];
+        RtFloat4 own = rt_loadu4((const char *)ray + offsetof(RtRay, dir));
         signs |= (RtInt4)own ^ (RtInt4)dir;
-        larger |= rt_abs(own) >= fabsf(rays[i].dir.at[axis]);
+        larger |= rt_abs(own) >= fabsf(ray->dir.at[axis]);
     }
     larger[axis] = 0;
     RtInt4 differ = (signs < 0) | larger;
     return differ[0] | differ[1] | differ[2] ? CLASSES : class;
 }
 
-RT_KERNEL void begin_sorting(Sorter *s, size_t first, size_t count) {
+RT_KERNEL void begin_sorting(Sorter *s, int32_t count) {
     memset(s->count, 0, sizeof s->count);
-    s->next = first;
-    s->end = first + count;
+    s->left = count;
     s->class = 0;
 }
 
-/* Sorts until a class fills a packet, or all are sorted: then the class, or any that has rays; CLASSES where
- * none has. */
-RT_KERNEL uint32_t sort_rays(Sorter *s, const RtRay *rays) {
-    while (s->next < s->end) {
-        uint32_t class = CLASSES, i = (uint32_t)s->next, many = 1;
-        if (i % BEAM == 0 && s->end - i >= BEAM) class = class_of_all(&rays[i]);
+/* Sorts until a class fills a packet, and returns it. When all rays are sorted, returns any class that has
+ * rays, or CLASSES. */
+RT_KERNEL uint32_t sort_rays(Sorter *s, const Query *q) {
+    RaySource *from = q->source;
+    while (s->left > 0 && more_rays(q)) {
+        const uint32_t *index = &from->index[from->taken];
+        uint32_t class = CLASSES, many = 1;
+        if (from->taken % BEAM == 0 && from->count - from->taken >= BEAM)
+            class = class_of_all(q->rays, index);
         if (class == CLASSES)
-            class = class_of(&rays[i]);
+            class = class_of(&q->rays[*index]);
         else
             many = BEAM;
         uint32_t *to = &s->list[class][s->count[class]];
-        for (uint32_t k = 0; k < many; k++) to[k] = i + k;
-        s->next += many;
+        for (uint32_t k = 0; k < many; k++) to[k] = index[k];
+        from->taken += many;
+        s->left -= (int32_t)many;
         s->count[class] += many;
         if (s->count[class] >= PACKET) return class;
     }
@@ -140,20 +145,14 @@ RT_KERNEL uint32_t sort_rays(Sorter *s, const RtRay *rays) {
 
 /* ---- preparing ---- */
 
-/* Rays [first, first + RT_LANES) of the packet, thickened as rt_ray_prepare_in does or, where objects are
- * divided, rt_surface_thicken. */
-RT_KERNEL void prepare_lanes(Packet *p, const RtGeometry *g, uint32_t first, bool divided) {
-    RtFloats farthest = rt_all(0);
+/* Prepares rays [first, first + RT_LANES) of the packet, thickened as by rt_ray_prepare_in or, for split
+ * references, by rt_surface_thicken. */
+RT_KERNEL void prepare_lanes(Packet *p, const RtGeometry *g, uint32_t first, bool split_refs) {
+    RtFloats org[3];
+    for (int a = 0; a < 3; a++) org[a] = rt_load(&p->org[a][first]);
+    const RtFloats thickness = thickness_of(org, g, split_refs);
     for (int a = 0; a < 3; a++) {
-        RtFloats org = rt_load(&p->org[a][first]);
-        farthest = rt_max(rt_abs(g->box.lo.at[a] - org), farthest);
-        farthest = rt_max(rt_abs(g->box.hi.at[a] - org), farthest);
-    }
-    RtFloats thickness = farthest * 0x1p-20f;
-    if (divided) thickness = 2 * thickness + 0x1p-80f;
-    for (int a = 0; a < 3; a++) {
-        RtFloats org = rt_load(&p->org[a][first]), shift = thickness + rt_abs(org) * 0x1p-23f;
-        RtFloats above = org + shift, below = org - shift;
+        RtFloats shift = shift_of(thickness, org[a]), above = org[a] + shift, below = org[a] - shift;
         rt_store(&p->org_near[a][first], p->negative[a] ? below : above);
         rt_store(&p->org_far[a][first], p->negative[a] ? above : below);
         rt_store(&p->inv[a][first], 1 / rt_load(&p->dir[a][first]));
@@ -179,7 +178,7 @@ RT_KERNEL RtFloat4 least_of_each(const RtFloats v[4]) {
 
 RT_KERNEL void bound_beam(Packet *p, uint32_t b) {
     Beam *beam = &p->beam[b];
-    RtFloats ends[5][4]; /* of `first`, `last`, the least, the most and y: what is to be the least */
+    RtFloats ends[5][4]; /* minimized: first, last, inverses and shears; greatest values negated */
     for (int k = 0; k < 20; k++) ends[k / 4][k % 4] = rt_all(INFINITY);
     for (size_t i = first_of(b); i < first_of(b) + BEAM; i += RT_LANES) {
         RtFloats x = rt_load(&p->shear_x[i]), y = rt_load(&p->shear_y[i]);
@@ -244,9 +243,8 @@ RT_KERNEL const RtPreparedRay *prepared(Packet *p, const Query *q, uint32_t i) {
 RT_KERNEL void test_extreme_rays(Packet *p, const Query *q, bool any) {
     uint64_t odd = 0;
     for (uint32_t i = 0; i < PACKET; i += RT_LANES) {
-        RtFloats longest = rt_abs(rt_load(&p->dir[p->kz][i]));
-        RtInts near = (longest >= 0x1p-64f) & (longest <= 0x1p64f); /* rt_surface_is_near */
-        odd |= (uint64_t)rt_bits(~near) << i;
+        const RtFloats dir[3] = {rt_load(&p->dir[0][i]), rt_load(&p->dir[1][i]), rt_load(&p->dir[2][i])};
+        odd |= (uint64_t)rt_bits(~surface_is_near(dir)) << i;
     }
     for (odd &= p->open; odd; odd &= odd - 1) {
         uint32_t i = first_ray(odd);
@@ -255,7 +253,7 @@ RT_KERNEL void test_extreme_rays(Packet *p, const Query *q, bool any) {
     }
 }
 
-/* Makes a packet of up to PACKET rays of a class, which has some. */
+/* Makes a packet of up to PACKET rays of a class, which is not empty. */
 RT_KERNEL void init_packet(Packet *p, const Query *q, Sorter *s, uint32_t class, bool any) {
     uint32_t *list = s->list[class], count = s->count[class] < PACKET ? s->count[class] : PACKET;
     assert(count > 0);
@@ -290,14 +288,14 @@ RT_KERNEL void init_packet(Packet *p, const Query *q, Sorter *s, uint32_t class,
         rt_store(&p->tmin[i], org[3]);
         rt_store(&p->tmax[i], dir[3]);
     }
-    for (uint32_t i = 0; i < end; i += RT_LANES) prepare_lanes(p, q->geometry, i, q->tree->divided);
+    for (uint32_t i = 0; i < end; i += RT_LANES) prepare_lanes(p, q->geometry, i, q->tree->split_refs);
     for (uint32_t b = 0; b < beams; b++) bound_beam(p, b);
     p->prefilter_ready = false;
     for (uint32_t i = 0; i < count; i++) p->best[i] = RT_MISS;
     p->open = ~UINT64_C(0) >> (PACKET - count);
     p->prepared = 0;
     p->pair_count = p->top = p->next = 0;
-    if (q->tree->divided) test_extreme_rays(p, q, any);
+    if (q->tree->split_refs) test_extreme_rays(p, q, any);
     p->going = p->open;
 }
 

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a packet does at a leaf. RT_GROUPS rays at a time are tested with four triangles, RT_LANES pairs in a
- * vector; what passes waits until there are RT_LANES pairs to be tested in full, by the operations of
- * rt_triangle_hit. Their rays continue meanwhile. */
+/* A packet's visit of a leaf. The prefilter tests RT_GROUPS rays with four triangles, RT_LANES pairs in a
+ * vector. Pairs that pass are collected until there are RT_LANES of them, and tested in full by the
+ * operations of rt_triangle_hit. Their rays continue meanwhile. */
 #ifndef RT_ACCEL_WIDE_PACKET_LEAF_H
 #define RT_ACCEL_WIDE_PACKET_LEAF_H
 
 #include "accel/wide/packet.h"
 
-/* ---- triangles, roughly ---- */
+/* ---- the prefilter of triangles ---- */
 
-/* Where a block has what belongs to a coordinate of a triangle, in floats from the first. */
+/* The offset in a block of a coordinate of its first triangle, in floats. */
 RT_KERNEL size_t place_of(int vertex, uint32_t axis) {
     return ((size_t)vertex * 3 + axis) * RT_WIDE_BLOCK;
 }
@@ -51,7 +51,7 @@ RT_KERNEL void prefilter_rays(Packet *p, const RtWideTriangles *block, uint32_t 
 /* With at least so many rays of a beam, a block is tested triangle by triangle. */
 enum { MANY_RAYS = 6 };
 
-/* The same as sieve_rays for rays of beam b, with `count` triangles. */
+/* The same as prefilter_rays for rays of beam b, with `count` triangles. */
 RT_KERNEL void prefilter_beam(Packet *p, const RtWideTriangles *block, uint32_t at, uint32_t count,
                               uint32_t b, uint32_t rays) {
     for (uint32_t k = 0; k < count; k++) {
@@ -75,9 +75,9 @@ RT_KERNEL void prefilter_beam(Packet *p, const RtWideTriangles *block, uint32_t 
     }
 }
 
-/* ---- triangles, in full ---- */
+/* ---- the full test ---- */
 
-/* rt_triangle_hit of RT_LANES pairs: those that hit, and t of each. */
+/* rt_triangle_hit of RT_LANES pairs: returns those that hit, and t of each. */
 static __attribute__((noinline)) uint32_t hit_pairs(const Packet *p, const float *arena, const uint32_t *ray,
                                                     const uint32_t *triangle, float t[RT_LANES]) {
     const RtInts rays = rt_load_ints(ray), triangles = rt_load_ints(triangle);
@@ -106,7 +106,7 @@ static __attribute__((noinline)) uint32_t hit_pairs(const Packet *p, const float
     return hit;
 }
 
-/* What a ray has found, where it may be its answer. */
+/* Records a hit that may be the ray's answer. */
 RT_KERNEL void take_hit(Packet *p, uint32_t ray, RtHit hit, bool any) {
     if (rt_hit_before(hit.t, hit.object, p->best[ray])) p->best[ray] = hit;
     p->limit[ray] = rt_minf(p->best[ray].t, p->limit[ray]);
@@ -126,7 +126,7 @@ RT_KERNEL uint32_t id_of(const float *triangle) {
     return id;
 }
 
-/* Tests the pairs found last, RT_LANES at a time, while there are at least `least`. */
+/* Tests the last pairs, RT_LANES at a time, until fewer than `least` are left. */
 RT_KERNEL void test_pairs(Packet *p, const RtWideTree *tree, uint32_t least, bool any) {
     const float *arena = (const float *)(const void *)tree->arena;
     while (p->pair_count >= least) {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The traversal of packets. At a node those rays of a packet that are there are tested one
- * after the other, against all its children at once, and each child gets the set of rays that meet it: the
- * node is read once for all, and what remains of a visit is shared by them. A beam that meets few of the
- * children is tested in place of its rays. This is the stream tracing of Wald, Gribble, Boulos & Kensler 2007
+/* The traversal of packets. At a node the active rays of a packet are tested one after the other, each
+ * against all children at once, and each child gets the set of rays that meet it. So the rays share the loads
+ * of the node and the work on the stack. A beam that meets few of the children is tested in place of its
+ * rays. This is the stream tracing of Wald, Gribble, Boulos & Kensler 2007
  * ("SIMD Ray Stream Tracing"), with sets as bits in place of lists.
  *
  * A single packet would wait for each node to come from memory. So several are interleaved: while one waits
@@ -12,13 +12,13 @@
 
 #include "accel/wide/packet_leaf.h"
 
-/* A beam is tested in place of at least so many of its rays; and that counts if it meets at most so many of
- * the children, or its rays would visit too much that they miss. */
+/* A beam is tested in place of its rays if at least so many are active. The result is used if it meets at
+ * most so many children; otherwise its rays would visit too many children that they miss. */
 enum { BEAM_LEAST_RAYS = 8, BEAM_MOST_CHILDREN = 3 };
 
-/* Measures how much was shared. */
+/* How much the rays share their visits. */
 typedef struct Shared {
-    uint64_t visits, rays; /* of nodes, and the rays there */
+    uint64_t visits, rays; /* of nodes, and the active rays summed over them */
 } Shared;
 
 /* ---- nodes ---- */
@@ -49,7 +49,7 @@ RT_KERNEL void test_ray(ChildSets *met, const Planes *planes, const Packet *p, u
     add_rays(met, one_ray(i), near, far);
 }
 
-/* False where the rays are to be tested one by one. */
+/* False if the rays must be tested one by one. */
 RT_KERNEL bool test_beam(ChildSets *met, const Planes *planes, const Beam *beam, uint64_t rays) {
     RtFloat8 near = rt_all8(beam->tmin), far = rt_all8(beam->limit);
     for (uint32_t a = 0; a < 3; a++) {
@@ -104,7 +104,7 @@ RT_KERNEL uint64_t rays_before(const Packet *p, uint64_t rays, float enter) {
     return rays & open;
 }
 
-/* Pops the stack down to an entry that some ray must still visit; false if there is none. */
+/* Pops the stack down to an entry that a ray must still visit; false if there is none. */
 RT_KERNEL bool pop_stack(Packet *p, bool any) {
     while (p->top > 0) {
         uint64_t rays = p->rays[--p->top];
@@ -141,15 +141,14 @@ RT_KERNEL void finish_packet(Packet *p, const Query *q, bool any) {
     }
 }
 
-/* Traces rays[first..first + count) of a query, few enough for the numbers of a Sorter. */
-RT_KERNEL Shared trace_packets(const Query *q, Packet *packets, Sorter *sorter, size_t first, size_t count,
-                               bool any) {
+/* Traces the next rays of a query, about `count`. */
+RT_KERNEL Shared trace_packets(const Query *q, Packet *packets, Sorter *sorter, int32_t count, bool any) {
     Shared shared = {0};
     Packet *active[RT_WIDE_MAX_PACKETS];
     uint32_t n = 0, class;
-    begin_sorting(sorter, first, count);
+    begin_sorting(sorter, count);
     for (; n < q->self->packets; n++) {
-        class = sort_rays(sorter, q->rays);
+        class = sort_rays(sorter, q);
         if (class == CLASSES) break;
         active[n] = &packets[n];
         init_packet(active[n], q, sorter, class, any);
@@ -163,7 +162,7 @@ RT_KERNEL Shared trace_packets(const Query *q, Packet *packets, Sorter *sorter, 
                 continue;
             }
             finish_packet(p, q, any);
-            class = sort_rays(sorter, q->rays);
+            class = sort_rays(sorter, q);
             if (class == CLASSES) continue;
             init_packet(p, q, sorter, class, any);
             kept++;

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Planning nodes of eight children.
  *
- * Which subtrees become leaves, and which nodes are opened into their parents, is decided together, for the
- * least expected cost (Ylitie, Karras & Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through
- * Compressed Wide BVHs", section 2.3): let cost(n, k) be what the least costly forest of at most k subtrees
- * costs that holds what is below n. Then
+ * Leaves, and nodes that merge into their parents, are chosen together for the least expected cost (Ylitie,
+ * Karras & Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs",
+ * section 2.3): let cost(n, k) be the least cost of a forest of at most k subtrees with everything below n.
+ * Then
  *
  *     cost(n, 1) = min(leaf(n), area(n) + split(n, 8)),
  *     cost(n, k) = min(cost(n, k - 1), split(n, k)),
  *     split(n, k) = min over i of cost(left, i) + cost(right, k - i),
  *
- * and the choices that were made lead from the root down. How much room each forest takes is found together
- * with its cost, so that every subtree has its place before any is there. */
+ * and the choices are followed from the root down. The space of each forest is computed together with its
+ * cost, so the offset of every subtree is known before any is laid out. */
 #include "accel/wide/plan.h"
 
 #include "accel/tree/reduction.h"
@@ -20,18 +20,17 @@
 #include <math.h>
 #include <string.h>
 
-/* What a lane without a triangle costs, of a block. A block costs the same however full it is, so the least
- * cost alone would leave 2.8 triangles in a block of four where 3.0 cost as many steps: the dragon takes 75.6
- * bytes a triangle at 0, 73.1 at 0.05, 71.7 at 0.1 and 71.1 at 0.2, with 13.2 steps of a diffuse ray at each
- * and 3 % more triangles in the blocks at 0.1. A part of the area at hand, it does not know how large the
- * scene is around. */
+/* The cost of an empty lane, relative to a block. A full block costs no more than a sparse one, so without
+ * this penalty blocks hold 2.8 triangles where 3.0 need as many steps. The dragon takes 75.6 bytes a triangle
+ * at 0, 73.1 at 0.05, 71.7 at 0.1 and 71.1 at 0.2, with 13.2 steps of a diffuse ray at each and 3 % more
+ * triangles in the blocks at 0.1. */
 #define EMPTY_LANE 0.1f
 
-/* What a subtree holds, and what it costs, and takes, as a forest of at most k + 1 subtrees. */
+/* A subtree's contents, and its cost and space as a forest of at most k + 1 subtrees. */
 typedef struct Weight {
     float cost[RT_WIDE];
     uint32_t units[RT_WIDE];
-    float surface; /* of the objects, roughly: surface_of */
+    float surface; /* of the objects, estimated by surface_of */
     uint32_t references;
     uint32_t shapes; /* bits 1 << RtShape */
 } Weight;
@@ -40,7 +39,7 @@ static uint32_t blocks_of(uint32_t count) {
     return (count + RT_WIDE_BLOCK - 1) / RT_WIDE_BLOCK;
 }
 
-/* ---- what is best ---- */
+/* ---- costs ---- */
 
 void rt_wide_collect(const RtTree *tree, uint32_t index, uint32_t *ids, uint32_t *count) {
     const uint32_t *child = tree->nodes[index].child;
@@ -69,24 +68,24 @@ static float area_of(const RtWidePlan *self, uint32_t index) {
     return (float)(rt_box_half_area(self->tree->nodes[index].box) * self->scale);
 }
 
-/* A power of two that makes the area of the root 1 to 2: a sum of areas overflows float32 in no scene, and
- * what is chosen does not depend on the unit of length. */
+/* A power of two that makes the area of the root 1 to 2. So sums of areas do not overflow float32, and the
+ * choices do not depend on the unit of length. */
 static double scale_for(const RtTree *tree) {
     double area = rt_box_half_area(tree->nodes[tree->root].box);
     return area > 0 ? ldexp(1, -ilogb(area)) : 1;
 }
 
-/* The area of a triangle that has a box, if it is as large as it may be; half the surface of what fills a box
- * is not far from that. */
+/* The largest area of a triangle with this box. It is close to half the surface of a solid that fills the
+ * box. */
 static float surface_of(const RtWidePlan *self, const RtBox *box) {
     RtVec3 d = rt_sub(box->hi, box->lo);
     double xy = (double)d.x * (double)d.y, yz = (double)d.y * (double)d.z, zx = (double)d.z * (double)d.x;
     return (float)(0.5 * sqrt(xy * xy + yz * yz + zx * zx) * self->scale);
 }
 
-/* A line through a box of half area `area` hits surface / area objects on average, so at least one with a
- * chance near surface / (surface + area); cost / area is what asking takes. */
-static float promise_of(float surface, float area, float cost) {
+/* A line through a box of half area `area` hits surface / area objects on average, so at least one with
+ * probability near surface / (surface + area), at an expected cost of cost / area. */
+static float priority_of(float surface, float area, float cost) {
     return area > 0 && cost > 0 ? surface / (surface + area) * (area / cost) : 0;
 }
 
@@ -102,7 +101,7 @@ static void weigh_reference(const RtWidePlan *self, uint32_t index, Weight *own)
     }
 }
 
-/* split[k], left[k]: the least cost of k + 1 subtrees, of which so many are left. */
+/* split[k], left[k]: the least cost of k + 1 subtrees, and how many of them the left child gets. */
 static void split_costs(const Weight *sides[2], float split[RT_WIDE], int32_t left[RT_WIDE]) {
     float right[2 * RT_WIDE]; /* from RT_WIDE on */
     int most = sides[0]->references < RT_WIDE ? (int)sides[0]->references : RT_WIDE - 1;
@@ -122,7 +121,7 @@ static void split_costs(const Weight *sides[2], float split[RT_WIDE], int32_t le
     }
 }
 
-/* Where a subtree of few enough references costs no more as a leaf, it is one. */
+/* Makes a leaf of a small subtree if that costs no more. */
 static void consider_leaf(const RtWidePlan *self, uint32_t index, float area, Weight *own,
                           RtWideChoice *chosen) {
     uint32_t count = own->references;
@@ -140,7 +139,7 @@ static void consider_leaf(const RtWidePlan *self, uint32_t index, float area, We
     chosen->choice[0] = RT_WIDE_LEAF;
 }
 
-/* Of two references, which are most of all pairs, by what the general case comes to. */
+/* weigh_both for two references, the most frequent case: the same result, sooner. */
 static void weigh_pair(const RtWidePlan *self, uint32_t index, const Weight *sides[2], Weight *own) {
     RtWideChoice *chosen = &self->choices[index];
     float area = area_of(self, index), split = sides[0]->cost[0] + sides[1]->cost[0];
@@ -157,7 +156,7 @@ static void weigh_pair(const RtWidePlan *self, uint32_t index, const Weight *sid
     }
     chosen->choice[1] = two ? 1 : RT_WIDE_FEWER;
     chosen->units = own->units[0];
-    chosen->promise = promise_of(own->surface, area, own->cost[0]);
+    chosen->priority = priority_of(own->surface, area, own->cost[0]);
 }
 
 static void weigh_both(const RtWidePlan *self, uint32_t index, const Weight *sides[2], Weight *own) {
@@ -186,7 +185,7 @@ static void weigh_both(const RtWidePlan *self, uint32_t index, const Weight *sid
         chosen->choice[k] = fewer ? RT_WIDE_FEWER : (uint8_t)left[k];
     }
     chosen->units = own->units[0];
-    chosen->promise = promise_of(own->surface, area, own->cost[0]);
+    chosen->priority = priority_of(own->surface, area, own->cost[0]);
 }
 
 static bool weigh(const RtWidePlan *self, uint32_t index, uint32_t levels, Weight *own) {
@@ -236,7 +235,7 @@ void rt_wide_plan_clear(RtWidePlan *self) {
     self->choices = NULL;
 }
 
-/* ---- what was chosen ---- */
+/* ---- following the choices ---- */
 
 /* The roots of the forest of at most `most` subtrees below `index`, appended to children[0..*count). */
 static void open_children(const RtWidePlan *self, uint32_t index, uint32_t most, uint32_t *children,
@@ -254,24 +253,24 @@ static void open_children(const RtWidePlan *self, uint32_t index, uint32_t most,
     open_children(self, child[1], most - left, children, count);
 }
 
-static float promise_of_child(const RtWidePlan *self, uint32_t index) {
-    if (!rt_tree_is_leaf(self->tree, index)) return self->choices[index].promise;
+static float priority_of_child(const RtWidePlan *self, uint32_t index) {
+    if (!rt_tree_is_leaf(self->tree, index)) return self->choices[index].priority;
     Weight own;
     weigh_reference(self, index, &own);
-    return promise_of(own.surface, area_of(self, index), own.cost[0]);
+    return priority_of(own.surface, area_of(self, index), own.cost[0]);
 }
 
-static void sort_by_promise(const RtWidePlan *self, uint32_t *children, uint32_t count) {
-    float promise[RT_WIDE];
+static void sort_by_priority(const RtWidePlan *self, uint32_t *children, uint32_t count) {
+    float priority[RT_WIDE];
     for (uint32_t i = 0; i < count; i++) {
         uint32_t child = children[i], j = i;
-        float own = promise_of_child(self, child);
-        for (; j > 0 && own < promise[j - 1]; j--) {
+        float own = priority_of_child(self, child);
+        for (; j > 0 && own < priority[j - 1]; j--) {
             children[j] = children[j - 1];
-            promise[j] = promise[j - 1];
+            priority[j] = priority[j - 1];
         }
         children[j] = child;
-        promise[j] = own;
+        priority[j] = own;
     }
 }
 
@@ -285,6 +284,6 @@ uint32_t rt_wide_children_of(const RtWidePlan *self, uint32_t index, uint32_t ch
     uint32_t left = self->choices[index].choice[0];
     open_children(self, child[0], left, children, &count);
     open_children(self, child[1], RT_WIDE - left, children, &count);
-    sort_by_promise(self, children, count);
+    sort_by_priority(self, children, count);
     return count;
 }

@@ -84,7 +84,7 @@ RT_KERNEL bool init_ray(RayState *f, const RtWideTree *tree, const RtGeometry *g
     f->index = index;
     f->tally = tally;
     if (tree->node_count == 0) return false;
-    if (tree->divided) {
+    if (tree->split_refs) {
         if (!rt_surface_is_near(&f->ray)) {
             test_all(g, &f->ray, any, &f->best, tally);
             return false;
@@ -136,28 +136,22 @@ RT_KERNEL uint32_t hit_children(const RtWideNode *node, const RayState *f, RtFlo
 
 /* A node has no box of its own; the boxes of its children are tested together. */
 RT_COLD static void observe_node(const RtWideNode *node, RtWideRef ref, uint32_t mask) {
-    RtBox child[RT_WIDE], all = RT_EMPTY_BOX;
-    for (uint32_t i = 0; i < node->count; i++) {
-        for (size_t a = 0; a < 3; a++) {
-            child[i].lo.at[a] = node->plane[2 * a][i];
-            child[i].hi.at[a] = node->plane[2 * a + 1][i];
-        }
-        all = rt_box_union(all, child[i]);
-    }
+    RtBox all = rt_wide_children_box(node);
     rt_observe(
         &(RtTraced){.kind = RT_TRACED_STEP, .what = "node at", .index = rt_wide_place(ref), .box = &all});
     for (uint32_t i = 0; i < node->count; i++) {
         bool leaf = rt_wide_kind(node->child[i]) != RT_WIDE_NODE;
+        RtBox box = rt_wide_child_box(node, i);
         rt_observe(&(RtTraced){.kind = RT_TRACED_EXTENT_TEST,
                                .what = leaf ? "leaf at" : "node at",
                                .index = rt_wide_place(node->child[i]),
-                               .box = &child[i],
+                               .box = &box,
                                .met = mask >> i & 1});
     }
 }
 
 /* The lane of a mask with the least entry, ignoring its last three bits; any lane if the mask is empty.
- * Entries are at least 0, so their bits are in their order. */
+ * Entries are at least 0, so they compare like their bits. */
 RT_KERNEL uint32_t least_lane(uint32_t mask, RtInt8 enter) {
     const RtInt8 lanes = {0, 1, 2, 3, 4, 5, 6, 7};
     RtFloat8 key = (RtFloat8)rt_select_bits8(mask, (enter & ~7) | lanes, rt_all_ints8(INT32_MAX));
@@ -217,7 +211,7 @@ RT_KERNEL uint32_t prefilter_leaf(const RtWideTriangles *blocks, RtWideRef ref, 
     return mask;
 }
 
-/* The last of rt_triangle_hit for one triangle of a block. */
+/* The last step of rt_triangle_hit for one triangle of a block. */
 RT_KERNEL bool admit(const float *triangle, const RtPreparedRay *ray, float *t) {
     RtFloat4 a = rt_triangle_vertex(triangle, RT_WIDE_BLOCK);
     RtFloat4 b = rt_triangle_vertex(triangle + VERTEX, RT_WIDE_BLOCK);
@@ -264,7 +258,7 @@ RT_KERNEL bool test_objects(const RtWideTree *tree, const RtGeometry *g, RtWideR
     return false;
 }
 
-/* The objects of triangles are tested there and then, in lanes. */
+/* The triangles of a leaf are tested at once, in lanes. */
 RT_COLD static void observe_leaf(const RtWideTree *tree, const RtGeometry *g, RtWideRef ref) {
     RtBox box = RT_EMPTY_BOX;
     bool triangles = rt_wide_kind(ref) == RT_WIDE_TRIANGLES;

@@ -1,28 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Looking at wide hierarchies: they are copied into the plain form of accel/tree/hierarchy.h, which can be
- * described, drawn and checked; what only this form has is checked here. */
+/* Describes, draws and checks wide hierarchies. Most of it is done on a copy in the plain form of
+ * accel/tree/hierarchy.h; this file checks what only the wide form has. */
 #include "accel/wide/wide.h"
 
 #include "core/base/memory.h"
 
 /* ---- the plain form ---- */
 
-static RtBox child_box(const RtWideNode *node, uint32_t lane) {
-    RtBox box;
-    for (size_t a = 0; a < 3; a++) {
-        box.lo.at[a] = node->plane[2 * a][lane];
-        box.hi.at[a] = node->plane[2 * a + 1][lane];
-    }
-    return box;
-}
-
-static uint32_t id_at(const RtWideTree *self, RtWideRef ref, uint32_t i) {
-    if (rt_wide_kind(ref) == RT_WIDE_OBJECTS) return ((const RtWideList *)rt_wide_leaf_at(self, ref))->id[i];
-    const RtWideTriangles *blocks = rt_wide_leaf_at(self, ref);
-    return blocks[i / RT_WIDE_BLOCK].id[i % RT_WIDE_BLOCK];
-}
-
-/* What is below a reference, counted. */
+/* The size of a subtree. */
 typedef struct Sizes {
     uint32_t nodes, ids;
 } Sizes;
@@ -37,13 +22,13 @@ static void measure(const RtWideTree *self, RtWideRef ref, Sizes *sum) {
     for (uint32_t i = 0; i < node->count; i++) measure(self, node->child[i], sum);
 }
 
-/* Copies what `ref` is to node `at`, whose box is set. */
+/* Copies a subtree to node `at`, whose box is set. */
 static void copy(const RtWideTree *self, RtHierarchy *to, uint32_t at, RtWideRef ref) {
     if (rt_wide_kind(ref) != RT_WIDE_NODE) {
         uint32_t count = rt_wide_count(ref);
         to->nodes[at].first = to->id_count;
         to->nodes[at].count = RT_NODE_LEAF | count;
-        for (uint32_t i = 0; i < count; i++) to->ids[to->id_count++] = id_at(self, ref, i);
+        for (uint32_t i = 0; i < count; i++) to->ids[to->id_count++] = rt_wide_leaf_object(self, ref, i);
         return;
     }
     const RtWideNode *node = rt_wide_node(self, ref);
@@ -52,25 +37,22 @@ static void copy(const RtWideTree *self, RtHierarchy *to, uint32_t at, RtWideRef
     to->nodes[at].count = node->count;
     to->node_count += node->count;
     for (uint32_t i = 0; i < node->count; i++) {
-        to->nodes[first + i].box = child_box(node, i);
+        to->nodes[first + i].box = rt_wide_child_box(node, i);
         copy(self, to, first + i, node->child[i]);
     }
 }
 
-/* The root: a leaf that is the only child of the first node, or that node. */
+/* The root in plain form: the first node, or the leaf that is its only child. */
 static RtWideRef root_of(const RtWideTree *self) {
     const RtWideNode *root = rt_wide_node(self, 0);
     return root->count == 1 ? root->child[0] : 0;
 }
 
 static RtBox root_box(const RtWideTree *self) {
-    const RtWideNode *root = rt_wide_node(self, 0);
-    RtBox box = RT_EMPTY_BOX;
-    for (uint32_t i = 0; i < root->count; i++) box = rt_box_union(box, child_box(root, i));
-    return box;
+    return rt_wide_children_box(rt_wide_node(self, 0));
 }
 
-/* The same hierarchy in plain form, to be cleared; false where memory is short. */
+/* The same hierarchy in plain form, which the caller clears; false if memory is short. */
 static bool flatten(const RtWideTree *self, RtHierarchy *to) {
     RtWideRef top = root_of(self);
     Sizes sizes = {0, 0};
@@ -78,7 +60,7 @@ static bool flatten(const RtWideTree *self, RtHierarchy *to) {
     *to = (RtHierarchy){.width = RT_WIDE,
                         .leaf_limit = RT_WIDE_MAX_LEAF,
                         .traversal_cost = 1,
-                        .split_refs = self->divided,
+                        .split_refs = self->split_refs,
                         .nodes = rt_alloc(sizes.nodes, sizeof(RtNode)),
                         .ids = rt_alloc(sizes.ids, sizeof(uint32_t)),
                         .node_count = 1};
@@ -93,7 +75,7 @@ static bool flatten(const RtWideTree *self, RtHierarchy *to) {
 
 /* ---- for the table of operations ---- */
 
-/* The qualities are those of the plain hierarchy, whose leaves cost a test an object. */
+/* The quality figures are those of the plain hierarchy, whose leaves cost one test per object. */
 void rt_wide_describe(const RtWideTree *self, const RtGeometry *geometry, RtDescription *out) {
     RtHierarchy plain;
     *out = (RtDescription){.bytes = self->bytes, RT_NO_PREDICTION};
@@ -112,7 +94,7 @@ static void show(const RtWideTree *self, RtWideRef ref, RtBox box, uint32_t dept
     if (leaf) return;
     const RtWideNode *node = rt_wide_node(self, ref);
     for (uint32_t i = 0; i < node->count; i++)
-        show(self, node->child[i], child_box(node, i), depth + 1, viewer);
+        show(self, node->child[i], rt_wide_child_box(node, i), depth + 1, viewer);
 }
 
 void rt_wide_each_box(const RtWideTree *self, RtBoxViewer viewer) {
@@ -128,7 +110,7 @@ typedef struct Check {
     uint32_t nodes;
 } Check;
 
-/* That a leaf is in the arena, and the coordinates of its triangles those of the scene. */
+/* Checks that a leaf is in the arena, and that its triangles have the coordinates of the scene's. */
 static RtStatus check_leaf(const Check *check, RtWideRef ref) {
     const RtGeometry *g = check->geometry;
     uint32_t count = rt_wide_count(ref), at = rt_wide_place(ref);
@@ -138,7 +120,7 @@ static RtStatus check_leaf(const Check *check, RtWideRef ref) {
     if (rt_wide_kind(ref) == RT_WIDE_FINISHED || at + bytes > check->self->bytes)
         return rt_fail(check->error, RT_MISMATCH, "wide: a leaf at %u is not in the arena", at);
     for (uint32_t i = count; !triangles && i < RT_WIDE_MAX_LEAF; i++) {
-        if (id_at(check->self, ref, i) == RT_NO_OBJECT) continue;
+        if (rt_wide_leaf_object(check->self, ref, i) == RT_NO_OBJECT) continue;
         return rt_fail(check->error, RT_MISMATCH, "wide: the leaf at %u holds more than its objects", at);
     }
     const RtWideTriangles *block = rt_wide_leaf_at(check->self, ref);

@@ -12,19 +12,8 @@
 #ifndef RT_ACCEL_WIDE_STREAM_H
 #define RT_ACCEL_WIDE_STREAM_H
 
+#include "accel/wide/ray_source.h"
 #include "accel/wide/ray_state.h"
-
-/* A stream of rays, and where the answers go. */
-typedef struct Query {
-    const RtWide *self;
-    const RtWideTree *tree;
-    const RtGeometry *geometry;
-    const RtScratch *scratch;
-    const RtRay *rays;
-    RtHit *hits;         /* of `nearest` */
-    uint32_t *occluders; /* of `occluded` */
-    RtTally *tallies;    /* of the counted kernels */
-} Query;
 
 /* Writes the answer of a ray. */
 RT_KERNEL void finish_ray(const Query *q, const RayState *f, bool any, bool counted) {
@@ -73,9 +62,9 @@ RT_KERNEL void trace_one(const Query *q, RayState *f, bool any, bool counted) {
     } while (ref != RT_WIDE_DONE);
 }
 
-RT_KERNEL void trace_one_by_one(const Query *q, size_t first, size_t count, bool any, bool counted) {
+RT_KERNEL void trace_one_by_one(const Query *q, size_t count, bool any, bool counted) {
     RayState *f = q->scratch->own;
-    for (size_t i = first; i < first + count; i++) {
+    for (size_t i = 0; i < count; i++) {
         RtTally *tally = counted ? &q->tallies[q->rays[i].kind] : NULL;
         if (init_ray(f, q->tree, q->geometry, q->scratch, &q->rays[i], i, any, tally))
             trace_one(q, f, any, counted);
@@ -86,7 +75,6 @@ RT_KERNEL void trace_one_by_one(const Query *q, size_t first, size_t count, bool
 /* ---- many at once ---- */
 
 typedef struct RayQueues {
-    size_t next, end; /* of the query's rays: the first not started, and the end */
     uint32_t in_flight;
     uint32_t count[4]; /* rays in the queue of each RtWideKind */
     RayState *list[4][RT_WIDE_MAX_IN_FLIGHT];
@@ -135,7 +123,7 @@ RT_KERNEL void visit_nodes(const Query *q, RayQueues *t, bool any, bool counted,
 
 /* The triangles of a leaf that pass the prefilter for a ray. */
 typedef struct Candidates {
-    RayState *flight;
+    RayState *state;
     uint32_t mask;
 } Candidates;
 
@@ -185,8 +173,8 @@ RT_KERNEL void visit_objects(const Query *q, RayQueues *t, bool any, bool counte
 
 /* Starts rays until one is in flight, or none are left. */
 RT_KERNEL void start_next_ray(const Query *q, RayQueues *t, RayState *f, bool any, bool counted, bool ahead) {
-    while (t->next < t->end) {
-        size_t i = t->next++;
+    while (more_rays(q)) {
+        size_t i = q->source->index[q->source->taken++];
         RtTally *tally = counted ? &q->tallies[q->rays[i].kind] : NULL;
         if (init_ray(f, q->tree, q->geometry, q->scratch, &q->rays[i], i, any, tally)) {
             t->in_flight++;
@@ -197,17 +185,17 @@ RT_KERNEL void start_next_ray(const Query *q, RayQueues *t, RayState *f, bool an
     }
 }
 
-RT_KERNEL void trace_many(const Query *q, size_t first, size_t count, bool any, bool counted) {
+RT_KERNEL void trace_many(const Query *q, bool any, bool counted) {
     const bool ahead = q->self->prefetch;
     Candidates candidates[RT_WIDE_MAX_IN_FLIGHT];
     RayState *states = q->scratch->own;
-    RayQueues t = {.next = first, .end = first + count};
+    RayQueues t = {0};
     for (uint32_t i = 0; i < q->self->in_flight; i++) start_next_ray(q, &t, &states[i], any, counted, ahead);
     while (t.in_flight > 0) {
         while (t.count[RT_WIDE_NODE] > t.in_flight / 4) visit_nodes(q, &t, any, counted, ahead);
         uint32_t n = prefilter_leaves(q, &t, candidates, counted, ahead);
         for (uint32_t i = 0; i < n; i++) {
-            RayState *f = candidates[i].flight;
+            RayState *f = candidates[i].state;
             const RtWideTriangles *blocks = rt_wide_leaf_at(q->tree, f->next);
             bool over = test_triangles(blocks, candidates[i].mask, &f->axes, &f->ray, any, &f->best,
                                        counted ? f->tally : NULL);

@@ -3,22 +3,22 @@
  *
  * Papers: Wald, Benthin & Boulos 2008, "Getting Rid of Packets: Efficient SIMD Single-Ray Traversal using
  * Multi-branching BVHs" (nodes of many children, tested at once); and those named in plan.h, plan.c,
- * stream.h and packet.h. The layout and its invariants are in wide.h. A tree of references is made by the
+ * stream.h and packet.h. The layout and its invariants are in wide.h. The tree of references is built by the
  * methods of accel/tree/tree.h, as for `bvh`.
  *
- * Exact, because boxes are tested by the operations of rt_box_hit and hits found by those of rt_triangle_hit,
+ * Exact, because boxes are tested by the operations of rt_box_hit, and triangles by those of rt_triangle_hit,
  * lane by lane. A child that a beam's interval misses is missed by each of its rays (packet.h). The order of
  * visits changes no answer.
  *
- * Counting: an extent test per child of a node visited; a step per node and per leaf; an object test per
- * triangle of a leaf, which are tested at once. Counts are those of rays alone, the same for all instruction
- * sets and any number of rays in flight. */
+ * Counting: an extent test per child of a visited node, a step per node and per leaf, an object test per
+ * triangle of a leaf. Rays are counted as if traced alone, with the same counts for all instruction sets and
+ * any number of rays in flight. */
 #include "accel/wide/wide.h"
 #include "accel/tree/tree_build.h"
 
 #include "core/base/memory.h"
 
-/* What `bvh` has as parameters. */
+/* Parameters of `bvh` that are constants here. */
 enum { MORTON_BITS = 21, PLOC_RADIUS = 25 };
 
 #define PARAMS(X)                                                                                            \
@@ -126,9 +126,9 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     return rt_accel_built(accel, fill_trees(self, what, error), out);
 }
 
-/* ---- looking at it ---- */
+/* ---- describe and validate ---- */
 
-/* Of two trees that for nearest hits, but for the bytes, which are of both. */
+/* Describes the tree for nearest hits; `bytes` counts both trees. */
 static void describe(const RtAccel *accel, RtDescription *out) {
     const RtWide *self = (const RtWide *)accel;
     rt_wide_describe(self->nearest, &accel->scene->geometry, out);

@@ -3,15 +3,15 @@
  * floats.
  *
  * Nodes and leaves lie in one arena, a node before what is below it. A node holds the boxes of its children
- * plane by plane, so that one subtraction and one multiplication take a ray to one plane of all eight. A leaf
- * of triangles holds them in blocks of four, vertex by vertex and axis by axis; a leaf that holds anything
- * else is a list of ids.
+ * plane by plane, so one subtraction and one multiplication intersect a ray with one plane of all eight. A
+ * leaf of triangles holds them in blocks of four, vertex by vertex and axis by axis; any other leaf is a list
+ * of ids.
  *
- * Invariants: the box of a child contains the boxes of all below it (of divided objects, of the parts that
- * are below it); children come first in a node, and the lanes after them have an empty box, which no ray
- * meets; a leaf holds 1..RT_WIDE_MAX_LEAF objects, those of a block first, and the lanes after them are no
- * triangles. The root is a node, if there is any object; it may have a single child then, which is a leaf. No
- * leaf is deeper than RT_TREE_MAX_DEPTH. */
+ * Invariants: the box of a child contains the boxes of all references below it (of a split reference, its
+ * part of the object). Children come first in a node; the lanes after them have an empty box, which no ray
+ * meets. A leaf holds 1..RT_WIDE_MAX_LEAF objects, first in their blocks; the lanes after them hold no
+ * triangle. A scene with objects has a root, which is a node; its only child may be a leaf. No leaf is deeper
+ * than RT_TREE_MAX_DEPTH. */
 #ifndef RT_ACCEL_WIDE_WIDE_H
 #define RT_ACCEL_WIDE_WIDE_H
 
@@ -24,17 +24,17 @@ enum {
     RT_WIDE_BLOCK = 4,          /* triangles of a block at most */
     RT_WIDE_MAX_LEAF = 8,       /* objects of a leaf at most */
     RT_WIDE_MAX_IN_FLIGHT = 64, /* rays that are traced at once at most */
-    RT_WIDE_MAX_PACKETS = 16    /* packets of them */
+    RT_WIDE_MAX_PACKETS = 16    /* packets that are traced at once at most */
 };
 
-/* A child: where it is in the arena, in bytes, a multiple of 32; and in the bits that leaves free what it is
- * and, of a leaf, its number of objects less one. The root is the node at 0. */
+/* A child: its offset in the arena in bytes, a multiple of 32. The low bits hold its kind and, for a leaf,
+ * the number of objects less one. The root is the node at 0. */
 typedef uint32_t RtWideRef;
 typedef enum RtWideKind {
     RT_WIDE_NODE,
-    RT_WIDE_TRIANGLES, /* blocks of them */
-    RT_WIDE_OBJECTS,   /* a list of anything */
-    RT_WIDE_FINISHED   /* no place: the ray has finished */
+    RT_WIDE_TRIANGLES, /* a leaf of blocks */
+    RT_WIDE_OBJECTS,   /* a leaf that is a list */
+    RT_WIDE_FINISHED   /* no child: the ray has finished */
 } RtWideKind;
 
 #define RT_WIDE_UNIT      32
@@ -49,7 +49,7 @@ static inline RtWideKind rt_wide_kind(RtWideRef ref) {
     return (RtWideKind)(ref & 3);
 }
 
-/* Where a node or a leaf begins. */
+/* The offset of a node or a leaf. */
 static inline uint32_t rt_wide_place(RtWideRef ref) {
     return ref & ~(uint32_t)(RT_WIDE_UNIT - 1);
 }
@@ -68,24 +68,24 @@ typedef struct RtWideNode {
 
 typedef struct RtWideTriangles {
     float v[3][3]
-           [RT_WIDE_BLOCK]; /* by vertex and axis; NaN in lanes without a triangle, which no test lets pass */
+           [RT_WIDE_BLOCK]; /* by vertex and axis; NaN in lanes without a triangle, which fails every test */
     uint32_t id[RT_WIDE_BLOCK]; /* RT_NO_OBJECT there */
 } RtWideTriangles;
 
 typedef struct RtWideList {
-    uint32_t id[RT_WIDE_MAX_LEAF]; /* RT_NO_OBJECT behind the last */
+    uint32_t id[RT_WIDE_MAX_LEAF]; /* RT_NO_OBJECT after the last */
 } RtWideList;
 
 _Static_assert(sizeof(RtWideNode) == 256, "a node is four cache lines");
 _Static_assert(sizeof(RtWideTriangles) % RT_WIDE_UNIT == 0 && sizeof(RtWideList) % RT_WIDE_UNIT == 0,
-               "what follows a leaf has a place");
+               "a leaf ends at a multiple of the unit");
 
 typedef struct RtWideTree {
     char *arena;         /* [bytes] */
-    uint64_t bytes;      /* 0 of no objects */
-    uint32_t node_count; /* 0 of no objects */
-    bool divided;        /* objects may be in several leaves; rays need be thick (accel/surface.h) */
-    double cost;         /* expected, in visits of nodes, of a random line through the root's box */
+    uint64_t bytes;      /* 0 without objects */
+    uint32_t node_count; /* 0 without objects */
+    bool split_refs;     /* objects may be in several leaves; rays are thickened (accel/surface.h) */
+    double cost;         /* expected, in visits of nodes, for a random line through the root's box */
 } RtWideTree;
 
 static inline const RtWideNode *rt_wide_node(const RtWideTree *tree, RtWideRef ref) {
@@ -104,16 +104,32 @@ static inline uint32_t rt_wide_leaf_object(const RtWideTree *tree, RtWideRef ref
     return blocks[i / RT_WIDE_BLOCK].id[i % RT_WIDE_BLOCK];
 }
 
+static inline RtBox rt_wide_child_box(const RtWideNode *node, uint32_t lane) {
+    RtBox box;
+    for (size_t a = 0; a < 3; a++) {
+        box.lo.at[a] = node->plane[2 * a][lane];
+        box.hi.at[a] = node->plane[2 * a + 1][lane];
+    }
+    return box;
+}
+
+/* The union of the boxes of a node's children. */
+static inline RtBox rt_wide_children_box(const RtWideNode *node) {
+    RtBox box = RT_EMPTY_BOX;
+    for (uint32_t i = 0; i < node->count; i++) box = rt_box_union(box, rt_wide_child_box(node, i));
+    return box;
+}
+
 /* How a tree is laid out. */
 typedef struct RtWideLayout {
     uint32_t leaf_limit; /* objects of a leaf at most */
-    double block_cost;   /* of testing a block, or an object of a list, in visits of nodes */
+    double block_cost;   /* of testing a block, or an object of a list, relative to visiting a node */
     bool huge_pages;
     int threads;
     uint64_t limit; /* bytes */
 } RtWideLayout;
 
-/* Lays out a complete tree, which is limited in depth for it. On failure nothing is left behind. */
+/* Lays out a complete tree, whose depth it limits. On failure *self is empty. */
 RtStatus rt_wide_lay_out(RtWideTree *self, RtTree *tree, const RtGeometry *geometry, const RtWideLayout *how,
                          RtError *error);
 void rt_wide_clear(RtWideTree *self);
@@ -129,11 +145,11 @@ RT_DECLARE_KERNELS(wide);
 
 typedef struct RtWide {
     RtIsaAccel isa;
-    RtWideTree trees[2];                  /* the second only where any-hit rays have one of their own */
-    const RtWideTree *nearest, *occluded; /* of them */
+    RtWideTree trees[2];                  /* the second is for any-hit rays, if they have their own */
+    const RtWideTree *nearest, *occluded; /* point to these */
     uint32_t in_flight;                   /* rays traced at once; 1: one after the other */
     uint32_t packets;                     /* packets traced at once; 0: none */
-    float sharing; /* rays that share a visit of a node, on average, for which packets pay */
+    float sharing; /* packets pay if at least so many rays share a visit of a node, on average */
     bool order, prefetch;
 } RtWide;
 

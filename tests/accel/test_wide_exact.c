@@ -126,7 +126,7 @@ static const char *const settings[] = {"",
                                        "build=spatial,alpha=0,sharing=0",
                                        "build=spatial,alpha=0,budget=16,max_leaf_size=1,sharing=0",
                                        "build=spatial,alpha=0,in_flight=1"};
-enum { SETTINGS = sizeof settings / sizeof settings[0], DIVIDED = 6 /* the last */ };
+enum { SETTINGS = sizeof settings / sizeof settings[0], SPLIT = 6 /* the last */ };
 
 /* Of the settings those from `first` on. */
 static void check(Bench *bench, int first) {
@@ -202,7 +202,7 @@ RT_TEST(scenes_of_no_object_and_of_one_are_answered_as_by_brute) {
     free(bench);
 }
 
-/* The wider ray of divided trees is what this asks for, in streams and in packets. */
+/* Needs the thicker rays of trees with split references, in streams and in packets. */
 RT_TEST(rays_along_the_planes_that_cut_objects_are_answered_as_by_brute) {
     const char *specs[] = {"random:n=300,shape=triangle", "family:kind=slivers,seed=1",
                            "family:kind=slivers,seed=5", "family:kind=slivers-scaled,seed=3",
@@ -211,28 +211,28 @@ RT_TEST(rays_along_the_planes_that_cut_objects_are_answered_as_by_brute) {
     for (int i = 0; i < 5; i++) {
         assert_ok(rt_scene_open(specs[i], &bench->scene, error));
         set_up(bench, (uint64_t)i, along_planes);
-        check(bench, SETTINGS - DIVIDED);
+        check(bench, SETTINGS - SPLIT);
         rt_scene_clear(&bench->scene);
     }
     free(bench);
 }
 
-RT_TEST(rays_too_short_for_the_boxes_of_divided_objects_are_answered_as_by_brute) {
+RT_TEST(rays_too_short_for_the_boxes_of_split_references_are_answered_as_by_brute) {
     Bench *bench = calloc(1, sizeof *bench);
     assert_ok(rt_scene_open("random:n=400,shape=triangle,radius=0.4", &bench->scene, error));
     set_up(bench, 1, short_along_an_axis);
-    check(bench, SETTINGS - DIVIDED);
+    check(bench, SETTINGS - SPLIT);
     rt_scene_clear(&bench->scene);
     free(bench);
 }
 
-RT_TEST(hostile_rays_hit_divided_slivers_as_by_brute) {
+RT_TEST(hostile_rays_hit_split_slivers_as_by_brute) {
     const float scales[] = {1, 1, 1, 1e-20f, 1e16f, 0.01f}, offsets[] = {0, 1e6f, 1e5f, 0, 0, -3000};
     Bench *bench = calloc(1, sizeof *bench);
     for (int i = 0; i < 6; i++) {
         bench->scene = make_slivers(160, (uint64_t)i, scales[i], offsets[i]);
         set_up(bench, (uint64_t)i, at_slivers);
-        check(bench, SETTINGS - DIVIDED);
+        check(bench, SETTINGS - SPLIT);
         rt_scene_clear(&bench->scene);
     }
     free(bench);
