@@ -225,7 +225,7 @@ RT_TEST(ideal_is_broken_by_answers_that_are_no_objects) {
     told[1].object = scene.geometry.object_count;
     assert_ok(rt_accel_learn(accel, rays, told, RAY_COUNT, error));
     assert_int_equal(rt_accel_validate(accel, &problem), RT_MISMATCH);
-    assert_non_null(strstr(problem.message, "ideal: the answer of ray 1"));
+    assert_non_null(strstr(problem.message, "ideal: the recorded answer of ray 1"));
 }
 
 RT_TESTS(counters, NULL, assert_nothing_is_kept)
