@@ -17,7 +17,10 @@
  * it cannot decide with certainty, to the accelerator below it, which may be an overlay, too. At the bottom
  * is a base, which answers every ray. rt_accel_build stacks the layers and returns the topmost. A ray counts
  * in `rays` and `hits` once, in the layer that answers it, and in `passed_on` in each overlay that should
- * have. */
+ * have.
+ *
+ * Specs are parsed in spec.c and find their accelerators in registry.c; layers.c stacks layers and answers
+ * queries; plugin/ runs plugins in processes of their own. */
 #ifndef RT_ACCEL_ACCEL_H
 #define RT_ACCEL_ACCEL_H
 
@@ -33,7 +36,7 @@ typedef struct RtAccel {
     const RtAccelOps *ops; /* set by rt_accel_build */
     const RtScene *scene;  /* borrowed */
     struct RtAccel *below; /* owned; NULL for a base. Set by rt_accel_build */
-    size_t scratch_room;   /* bytes of its scratch memory in a query. Set by rt_accel_build */
+    size_t scratch_stride; /* bytes of its scratch memory in a query. Set by rt_accel_build */
     bool exact;            /* its hits equal brute's bit for bit; false: judged by verdicts */
     bool counts;           /* its counts are the same on every machine, so counts.csv has them */
     double build_seconds;  /* wall seconds to build it and all layers below. Set by rt_accel_build */

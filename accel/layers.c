@@ -8,7 +8,7 @@
 /* Puts `accel`, just built, on top of `below`, which may be NULL. */
 static void stack(RtAccel *accel, RtAccel *below) {
     size_t bytes = accel->ops->scratch_bytes ? accel->ops->scratch_bytes(accel) : 0;
-    accel->scratch_room = (bytes + RT_CACHE_LINE - 1) / RT_CACHE_LINE * RT_CACHE_LINE;
+    accel->scratch_stride = (bytes + RT_CACHE_LINE - 1) / RT_CACHE_LINE * RT_CACHE_LINE;
     accel->below = below;
     if (!below) return;
     accel->exact = accel->exact && below->exact;
@@ -123,7 +123,7 @@ RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error) {
         return status;
     }
     size_t bytes = 0;
-    for (const RtAccel *layer = accel; layer; layer = layer->below) bytes += layer->scratch_room;
+    for (const RtAccel *layer = accel; layer; layer = layer->below) bytes += layer->scratch_stride;
     if (bytes > 0 && !(scratch.own = rt_alloc(bytes, 1))) {
         rt_free(scratch.crossings);
         query->accel = NULL;
@@ -132,7 +132,7 @@ RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error) {
     uint32_t layers = 0;
     for (const RtAccel *layer = accel; layer; layer = layer->below) {
         query->scratch[layers++] = scratch;
-        if (scratch.own) scratch.own = (char *)scratch.own + layer->scratch_room;
+        if (scratch.own) scratch.own = (char *)scratch.own + layer->scratch_stride;
     }
     RT_TRY(open_layers(query, error));
     if (bytes > 0) rt_query_begin(query);

@@ -9,11 +9,13 @@
 
 #include "accel/accel.h"
 
+enum { RT_MAX_PLUGIN_ACCELS = 64 }; /* that all plugins may register */
+
 typedef struct RtPlugin {
     char path[4096];      /* absolute */
     uint64_t fingerprint; /* hash of its bytes (XXH3) */
     uint32_t count;
-    const char *names[64]; /* [count] of its accelerators */
+    const char *names[RT_MAX_PLUGIN_ACCELS]; /* [count] of its accelerators */
 } RtPlugin;
 
 /* Loads the library at `path` and registers its accelerators, unless it is loaded already. RT_BAD_INPUT, and

@@ -34,12 +34,11 @@ ACCELERATORS(DECLARE)
 EMBREE_ACCELERATORS(DECLARE)
 #undef DECLARE
 
-enum { MOST_PLUGINS = 64 }; /* of plugins */
-
 #define ENTRY(ops) &ops,
 #define ONE(ops)   +1
 enum { BUILT_IN = 0 ACCELERATORS(ONE) EMBREE_ACCELERATORS(ONE) };
-static const RtAccelOps *registry[BUILT_IN + MOST_PLUGINS] = {ACCELERATORS(ENTRY) EMBREE_ACCELERATORS(ENTRY)};
+static const RtAccelOps *registry[BUILT_IN + RT_MAX_PLUGIN_ACCELS] = {ACCELERATORS(ENTRY)
+                                                                          EMBREE_ACCELERATORS(ENTRY)};
 static size_t count = BUILT_IN;
 
 size_t rt_accel_count(void) {
@@ -69,8 +68,8 @@ RtStatus rt_accel_name_is_free(const char *name, RtError *error) {
 }
 
 RtStatus rt_accel_has_room(size_t more, RtError *error) {
-    if (more <= BUILT_IN + MOST_PLUGINS - count) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT, "more than %d accelerators of plugins", MOST_PLUGINS);
+    if (more <= BUILT_IN + RT_MAX_PLUGIN_ACCELS - count) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "more than %d accelerators of plugins", RT_MAX_PLUGIN_ACCELS);
 }
 
 RtStatus rt_accel_register(const RtAccelOps *ops, RtError *error) {
@@ -97,7 +96,7 @@ const char *rt_accel_yardstick(void) {
 }
 
 RtStatus rt_accel_find(const char *name, const RtAccelOps **out, RtError *error) {
-    const char *names[BUILT_IN + MOST_PLUGINS];
+    const char *names[BUILT_IN + RT_MAX_PLUGIN_ACCELS];
     for (size_t i = 0; i < count; i++) {
         names[i] = registry[i]->name;
         if (strcmp(names[i], name) != 0) continue;

@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
 # A room may include itself and those before it.
-rooms="base text shape scene scenes accel render picture rays measure exact verify experiment literature report library cli tests"
+rooms="base text shape scene scenes accel render picture rays measure exact verify library experiment literature report cli tests"
 
 includes_upward() {
     # shellcheck disable=SC2016 # the dollars are awk's
@@ -24,7 +24,8 @@ includes_upward() {
 }
 
 # An accelerator defines rt_NAME_ops in one file, accel/NAME.c or one in its own folder. "NAME", "NAME:KEY=VALUE" and
-# "OVERLAY+NAME" open it. Some parameters and columns have the same names; they count only if they are opened.
+# "OVERLAY+NAME" open it. Some parameters and columns have the same names: those words
+# count only if they are opened; add to them below if a new accelerator has the name of a parameter or column.
 knows_accelerators() {
     local home name names= spec opens='rt_(accel_open|accel_find|spec_parse)\('
     while IFS=: read -r home name; do
@@ -32,11 +33,11 @@ knows_accelerators() {
         case $home in accel/*/*) home=${home%/*}/ ;; *) home=$home: ;; esac
         grep -rnw "rt_${name}_ops" src accel scenes tests --include='*.[ch]' | grep -v -e '^accel/registry.c:' -e "^$home" || true
         names+="|$name"
-    done < <(grep -r 'rt_[a-z]*_ops = {' accel --include='*.c')
+    done < <(grep -rE 'rt_[a-z0-9_]*_ops = \{' accel --include='*.c')
     grep -rnE '#[ \t]*include[ \t]*"accel/[^"]*/' src scenes || true
     spec='"([a-z][^" ]*\+)?'"(${names#|})"'([:+][^" ]*)?"'
     grep -rnE "$spec" src --include='*.[ch]' | grep -vE -e ':( \*|.*/\*.*"[a-z])' |
-        grep -vE -e '"(cache|clusters|extents|item|light)(:[^" ]*)?"' || true
+        grep -vE -e '"(cache|clusters|extents|item|light|slabs)(:[^" ]*)?"' || true
     grep -rnE "$opens$spec" src --include='*.[ch]' || true
 }
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Sets of rays of the embedding interface: recorded, or copied from the caller. */
 #include "core/base/memory.h"
-#include "experiment/experiment.h"
 #include "library/library.h"
 
 #include <string.h>

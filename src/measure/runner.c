@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Runners of accelerators, local and remote, and timing accelerators against each other. A remote runner has
- * a counterpart in the accelerator's process, which holds the rays. */
+ * a counterpart in the accelerator's process; the counterpart holds the rays. */
 #include "measure/measure.h"
 
 #include "accel/remote.h"
