@@ -138,7 +138,7 @@ static __attribute__((noinline)) void filter_block(const Query *q, RaySource *s)
     if (!s->pause) return;
     if (!tests)
         --*s->pause;
-    else if ((count - s->count) * RT_LANES < 2 * count) /* testing a ray takes 1 / RT_LANES */
+    else if ((count - s->count) * RT_LANES < 3 * count) /* testing a ray takes 1 / RT_LANES */
         *s->pause = FILTER_PAUSE;
 }
 

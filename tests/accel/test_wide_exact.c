@@ -257,4 +257,66 @@ RT_TEST(triangles_without_area_and_copies_of_triangles_are_answered_as_by_brute)
     free(bench);
 }
 
+/* Rays that miss all children of the root, so that the filter stays open, between rays that graze faces and
+ * edges of objects' boxes by a few ulps, along an axis or not, or start inside. Then rays that all meet the
+ * scene, which close the filter. */
+static void graze_boxes(const RtScene *scene, RtRay *rays, int count, bool closes) {
+    const RtGeometry *g = &scene->geometry;
+    RtRandom random = rt_random(closes ? 7 : 8, 1);
+    RtVec3 middle = rt_box_center(g->box);
+    for (int i = 0; i < count; i++) {
+        const RtBox *box = &g->boxes[rt_random_below(&random, g->object_count)];
+        RtVec3 to, org = rt_random_point(&random, 30);
+        for (int a = 0; a < 3; a++) {
+            float at = (rt_random_below(&random, 2) ? box->hi : box->lo).at[a];
+            for (uint32_t k = rt_random_below(&random, 7); k > 0; k--)
+                at = nextafterf(at, k % 2 ? INFINITY : -INFINITY);
+            to.at[a] = at * (1 + ((float)rt_random_below(&random, 65) - 32) * 0x1p-24f);
+        }
+        if (i % 8 == 1) org = middle;
+        if (i % 8 == 2 || i % 8 == 3) org.at[i / 8 % 3] = to.at[i / 8 % 3]; /* in the plane of a face */
+        if (i % 8 == 3) org.at[(i / 8 + 1) % 3] = to.at[(i / 8 + 1) % 3];   /* along an axis */
+        RtVec3 dir = rt_sub(to, org);
+        if (i % 8 > 3 && !closes) dir = rt_sub(org, middle); /* leaves */
+        if (dir.x == 0 && dir.y == 0 && dir.z == 0) dir.x = 1;
+        rays[i] = (RtRay){.org = org, .dir = dir, .tmax = i % 3 ? INFINITY : 1};
+    }
+}
+
+RT_TEST(rays_that_graze_the_children_of_the_root_are_answered_as_by_brute_in_streams_of_1_to_300) {
+    enum { COUNT = 4096, LONGEST = 300 };
+    static RtRay rays[COUNT];
+    static RtHit truth[COUNT], hits[LONGEST];
+    static bool blocked[LONGEST];
+    const char *const specs[] = {"family:kind=axis-aligned,seed=1", "random:n=60,shape=triangle"};
+    const char *const ways[] = {"", "packets=0", "sharing=0", "build=spatial,alpha=0,budget=4"};
+    for (int run = 0; run < 4; run++) {
+        RtScene scene;
+        RtAccel *brute;
+        RtQuery query;
+        assert_ok(rt_scene_open(specs[run / 2], &scene, error));
+        graze_boxes(&scene, rays, COUNT, run % 2);
+        assert_ok(rt_accel_open("brute", &scene, &brute, error));
+        assert_ok(rt_query_init(&query, brute, error));
+        rt_nearest(&query, rays, COUNT, truth, NULL);
+        rt_query_clear(&query);
+        rt_accel_destroy(brute);
+        for (int k = 0; k < 4 * INSTRUCTION_SETS; k++) {
+            RtWide *wide = make_wide(&scene, k / 4, ways[k % 4]);
+            if (!wide) continue;
+            assert_ok(rt_query_init(&query, &wide->isa.base, error));
+            for (size_t n = 1, first = 0; n <= LONGEST; n++, first = (first + n) % (COUNT - LONGEST)) {
+                rt_nearest(&query, rays + first, n, hits, NULL);
+                rt_occluded(&query, rays + first, n, blocked, NULL);
+                assert_memory_equal(hits, truth + first, n * sizeof *hits);
+                for (size_t i = 0; i < n; i++)
+                    assert_int_equal(blocked[i], truth[first + i].object != RT_NO_OBJECT);
+            }
+            rt_query_clear(&query);
+            rt_accel_destroy(&wide->isa.base);
+        }
+        rt_scene_clear(&scene);
+    }
+}
+
 RT_TESTS(wide_exact, NULL, assert_nothing_is_kept)
