@@ -36,11 +36,11 @@ case "${1-}" in
     install_missing build optional data test check cluster pages
     fetch_bunny
     build release -DRT_KERNELS=all -DRT_WERROR=ON
-    RT_RAYS=256 run_tests release
+    run_tests release
     build clang -DRT_WERROR=ON
     run_tests clang -LE 'tree|once'
     build debug -DRT_KERNELS=native
-    run_tests debug -LE 'tree|slow'
+    RT_RAYS=16 run_tests debug -LE 'tree|slow'
     targets=thread_tests build tsan
     run_tests tsan -L threads
     ;;

@@ -67,7 +67,7 @@ static RtStatus rays_path(const RtCallgrind *callgrind, uint32_t workload, RtRay
     return rt_path_join(callgrind->folder, name, path, error);
 }
 
-RtStatus rt_callgrind_save_rays(void *context, uint32_t workload, const RtRaySet *set, const RtAccel *accel,
+RtStatus rt_callgrind_save_rays(void *context, uint32_t workload, const RtRaySet *set, const RtAccel *exact,
                                 RtError *error) {
     enum { RUN = 64 }; /* neighbours, so that packets are coherent */
     const RtCallgrind *callgrind = context;
@@ -77,7 +77,7 @@ RtStatus rt_callgrind_save_rays(void *context, uint32_t workload, const RtRaySet
     RT_TRY(rays_path(callgrind, workload, set->kind, path, error));
     RT_TRY(rt_rayset_limit(set, callgrind->most, RUN, &some, error));
     RtHit *hits = rt_alloc(some.count, sizeof(RtHit));
-    RtStatus status = hits ? rt_measure_answers(accel, &some, 1, hits, error)
+    RtStatus status = hits ? rt_measure_answers(exact, &some, 1, hits, error)
                            : rt_fail_memory(error, "answers", some.count * sizeof(RtHit));
     if (status == RT_OK) status = rt_output_open(&output, path, error);
     if (status == RT_OK) {
