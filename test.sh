@@ -28,7 +28,7 @@ case "${1-}" in
     install_missing build optional data test
     fetch_bunny
     build release -DRT_KERNELS=all
-    run_tests release -LE slow
+    run_tests release -LE slow -E '^(builds|frames|wide_exact)$'
     targets=memory_tests build debug -DRT_KERNELS=native
     run_tests debug -L '^(accel|base|scene|scenes|shape|text)$' -LE 'slow|long'
     ;;
