@@ -3,7 +3,7 @@
 #ifndef RT_TESTS_CSG_TESTING_H
 #define RT_TESTS_CSG_TESTING_H
 
-#include "room_testing.h"
+#include "crossings_testing.h"
 #include "testing.h"
 
 #include "rays/rayset.h"
@@ -23,7 +23,7 @@ typedef struct Hits {
 
 static inline RtPreparedRay prepare(const RtRay *ray, const RtCsg *tree) {
     RtPreparedRay prepared = rt_ray_prepare(ray, &tree->box);
-    prepared.crossings = room_of_tests();
+    prepared.crossings = crossings_of_tests();
     return prepared;
 }
 

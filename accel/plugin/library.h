@@ -29,7 +29,7 @@ RtStatus rt_tables_check(const char *path, const RtTables *tables, RtError *erro
 /* Hash of the file's bytes (XXH3). */
 RtStatus rt_library_fingerprint(const char *path, uint64_t *fingerprint, RtError *error);
 
-/* To out[0..size). Returns the number of bytes written, or 0 if there is not enough size. */
+/* To out[0..size). Returns the number of bytes written, or 0 if they do not fit. */
 size_t rt_tables_pack(const RtTables *tables, char *out, size_t size);
 
 /* From packed[0..size), which may hold anything and must stay as long as the tables. False if it was not

@@ -130,11 +130,11 @@ static const raytally_host host = {RAYTALLY_ACCEL_ABI, sizeof(raytally_host), pr
 enum { GUARD = 64 * 1024, CANARY = 0xA5, CANARIES = 1024, MOST_ANSWERS = 4096, UNSET = 0xFE };
 
 static RtStatus map_guarded(RtGuarded *guarded, size_t bytes, RtError *error) {
-    size_t page = (size_t)sysconf(_SC_PAGESIZE), crossings = (bytes + page - 1) / page * page;
-    size_t mapped = crossings + 2 * (size_t)GUARD;
+    size_t page = (size_t)sysconf(_SC_PAGESIZE), pages = (bytes + page - 1) / page * page;
+    size_t mapped = pages + 2 * (size_t)GUARD;
     char *mapping = mmap(NULL, mapped, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (mapping != MAP_FAILED && mprotect(mapping + GUARD, crossings, PROT_READ | PROT_WRITE) == 0) {
-        *guarded = (RtGuarded){mapping, mapped, mapping + GUARD, mapping + GUARD + crossings};
+    if (mapping != MAP_FAILED && mprotect(mapping + GUARD, pages, PROT_READ | PROT_WRITE) == 0) {
+        *guarded = (RtGuarded){mapping, mapped, mapping + GUARD, mapping + GUARD + pages};
         return RT_OK;
     }
     if (mapping != MAP_FAILED) munmap(mapping, mapped);

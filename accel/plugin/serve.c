@@ -153,8 +153,8 @@ void rt_wire_show(RtQuery *query, const RtRay *rays, void *message) {
 
 /* All boxes of the structure, from the request for the first until the last are sent. */
 static struct Shown {
-    WireBox *boxes; /* [size] */
-    uint32_t count, size;
+    WireBox *boxes; /* [capacity] */
+    uint32_t count, capacity;
     bool complete;
 } shown;
 
@@ -168,8 +168,8 @@ static void record(void *context, const RtBoxView *view) {
     if (rt_accel_base(served.accel)->ops->shows_lists && view->leaf && view->objects == 0)
         return; /* an empty leaf */
     if (shown.complete)
-        shown.complete =
-            rt_reserve(&shown.boxes, &shown.size, (uint64_t)shown.count + 1, sizeof(WireBox), NULL) == RT_OK;
+        shown.complete = rt_reserve(&shown.boxes, &shown.capacity, (uint64_t)shown.count + 1, sizeof(WireBox),
+                                    NULL) == RT_OK;
     if (!shown.complete) return;
     shown.boxes[shown.count++] = (WireBox){*view->box, view->depth, view->leaf};
 }

@@ -38,7 +38,7 @@ static void make_row(Row *row) {
 
 static bool meets(const RtScene *scene, const RtRay *ray, float *t) {
     RtPreparedRay prepared;
-    rt_hit_ray(&prepared, &scene->geometry, ray, room_of_tests());
+    rt_hit_ray(&prepared, &scene->geometry, ray, crossings_of_tests());
     return rt_object_hit(&scene->geometry, 0, &prepared, t, NULL);
 }
 
@@ -48,7 +48,7 @@ RT_TEST(the_room_for_hits_is_had_or_it_is_a_status) {
     Row row;
     RtError failure;
     RtGeometry empty = {0};
-    RtCrossing *crossings = room_of_tests();
+    RtCrossing *crossings = crossings_of_tests();
     assert_ok(rt_crossings_alloc(&empty, &crossings, error));
     assert_null(crossings);
     make_row(&row);
@@ -180,7 +180,7 @@ static RtStatus judge(const Row *row, RtError *error) {
     const RtGeometry *g = &row->scene.geometry;
     const RtRay *ray = &row->rays[0];
     const RtHit hit = {49, 0};
-    RtCrossing *crossings = room_of_tests();
+    RtCrossing *crossings = crossings_of_tests();
     RtVerdict verdict;
     RtSide side;
     RT_TRY(rt_verdict_nearest(g, ray, RT_MISS, hit, crossings, &verdict, error));

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Trees in exact arithmetic: tori, their tangents and ties; and every ray at the trees of the families is
  * decided as by our hit functions, except within rounding of a decision boundary. */
+#include "crossings_testing.h"
 #include "equivalence_testing.h"
-#include "room_testing.h"
 #include "solids_testing.h"
 
 #include "exact/border.h"
@@ -195,7 +195,7 @@ static void judge(const RtGeometry *g, const RtRay *ray, int *hits) {
     RtWideRay line = rt_wide_ray(ray);
     if (ray->tmin == ray->tmax || has_few_digits(g, &line)) return;
     for (uint32_t id = 0; id < g->object_count; id++) {
-        RtDecision ours = rt_decision_of(g, id, ray, room_of_tests());
+        RtDecision ours = rt_decision_of(g, id, ray, crossings_of_tests());
         if (!ours.hit && id != ruling.object) continue;
         if (rt_decision_check(g, id, &line, ours) == RT_HIT) continue;
         double border = rt_border_distance(g, id, ray, ours);

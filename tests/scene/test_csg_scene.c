@@ -35,7 +35,7 @@ static void make_bubble(RtScene *scene) {
 }
 
 static RtSurface surface_at(const RtScene *scene, const RtRay *ray, float t) {
-    return rt_surface(scene, ray, (RtHit){t, 0}, room_of_tests());
+    return rt_surface(scene, ray, (RtHit){t, 0}, crossings_of_tests());
 }
 
 /* A random tree as the only object. */

@@ -3,7 +3,7 @@
 #ifndef RT_TESTS_SHAPE_TESTING_H
 #define RT_TESTS_SHAPE_TESTING_H
 
-#include "room_testing.h"
+#include "crossings_testing.h"
 #include "testing.h"
 
 #include "core/shape/geometry.h"
@@ -14,7 +14,7 @@ static inline RtRay make_ray(RtVec3 org, RtVec3 dir) {
 
 static inline bool hit(const RtGeometry *g, uint32_t id, const RtRay *ray, float *t) {
     RtPreparedRay prepared;
-    rt_hit_ray(&prepared, g, ray, room_of_tests());
+    rt_hit_ray(&prepared, g, ray, crossings_of_tests());
     return rt_object_hit(g, id, &prepared, t, NULL);
 }
 
