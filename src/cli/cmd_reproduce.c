@@ -16,15 +16,8 @@ enum { MOST_CSV_BYTES = 1 << 28 };
 
 typedef struct Options {
     const char *directory;
-    const char *scene; /* label of the only scene to count, or NULL */
+    const char *scene; /* label of the only scene to count, or of a sweep of scenes; NULL: all */
 } Options;
-
-static RtStatus check_scene(const char *scene, const RtExperiment *experiment, RtError *error) {
-    for (uint32_t t = 0; t < experiment->workload_count; t++) {
-        if (!scene || rt_only_scene(&(RtOnly){.scene = scene}, experiment, t)) return RT_OK;
-    }
-    return rt_fail(error, RT_BAD_INPUT, "--only: the experiment has no scene with the label '%s'", scene);
-}
 
 static RtStatus count_again(RtResults *results, const char *scene, RtError *error) {
     RtWorkloadOptions options = {.timing = 1, .count_only = true, .only.scene = scene};
@@ -51,23 +44,30 @@ static const char *end_of_line(const char *line) {
                                                : "";
 }
 
-/* Compares line by line; RT_MISMATCH with the first line that differs. If one scene alone was counted, only
- * the header and the lines that begin as the counted ones do, with the scene's name, are compared. */
-static RtStatus compare(const char *path, const char *kept, const char *counted, bool one_scene,
-                        RtError *error) {
-    const char *first = counted + line_length(counted);
-    size_t name = !one_scene ? 0 : *first == '"' ? strcspn(first + 1, "\"") + 2 : strcspn(first, ",\n") + 1;
+/* Whether a table has a row that begins with the same field, the scene. */
+static bool has_scene_of(const char *table, const char *row) {
+    const size_t field = *row == '"' ? strcspn(row + 1, "\"") + 2 : strcspn(row, ",\n");
+    for (; *table; table += line_length(table)) {
+        if (strncmp(table, row, field + 1) == 0) return true;
+    }
+    return false;
+}
+
+/* Compares line by line; RT_MISMATCH with the first line that differs. If only `some` scenes were counted,
+ * rows of the others are skipped. */
+static RtStatus compare(const char *path, const char *kept, const char *counted, bool some, RtError *error) {
+    const char *const table = counted;
     for (size_t line = 1; *kept || *counted; line++) {
         size_t length = line_length(kept);
-        bool other = line > 1 && *kept && strncmp(kept, first, name) != 0;
-        if (!other && (length != line_length(counted) || memcmp(kept, counted, length) != 0)) {
+        bool skipped = some && *kept && !has_scene_of(table, kept);
+        if (!skipped && (length != line_length(counted) || memcmp(kept, counted, length) != 0)) {
             return rt_fail(error, RT_MISMATCH,
                            "%s:%zu: differs from the new counts:\n  there: %.*s%s\n  now:   %.*s%s", path,
                            line, (int)strcspn(kept, "\n"), kept, end_of_line(kept),
                            (int)strcspn(counted, "\n"), counted, end_of_line(counted));
         }
         kept += length;
-        if (!other) counted += length;
+        if (!skipped) counted += length;
     }
     return RT_OK;
 }
@@ -114,7 +114,7 @@ static RtStatus reproduce(const char *directory, RtResults *results, const void 
     if (!original) return rt_fail_memory(error, "an experiment", sizeof *original);
     RtStatus status = rt_manifest_experiment(directory, original, error);
     rt_results_clear(results);
-    if (status == RT_OK) status = check_scene(scene, original, error);
+    if (status == RT_OK) status = rt_only_check(&(RtOnly){.scene = scene}, original, error);
     if (status == RT_OK) status = rt_results_init(results, original, error);
     if (status == RT_OK) status = count_again(results, scene, error);
     if (status == RT_OK) status = compare_all(directory, results, scene, error);
@@ -123,10 +123,11 @@ static RtStatus reproduce(const char *directory, RtResults *results, const void 
     return status;
 }
 
-static const RtOption options[] = {
-    {"only", 0, "SCENE", RT_TO_TEXT(scene),
-     "Count and compare only the rows of one scene, by its label; published figures are left out"},
-    {0}};
+static const RtOption options[] = {{"only", 0, "SCENE", RT_TO_TEXT(scene),
+                                    "Count and compare only the rows of one scene, or of a sweep of scenes, "
+                                    "by its label; published figures are "
+                                    "left out"},
+                                   {0}};
 static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
 const RtSyntax rt_reproduce_syntax = {
     .options = options,

@@ -80,24 +80,8 @@ static const RtOption options[] = {
 
 /* ---- before ---- */
 
-static RtStatus check_only(const RtExperiment *e, const RtOnly *only, RtError *error) {
-    bool scene = !only->scene, accel = !only->accel, kind = !only->kind;
-    for (uint32_t t = 0; t < e->workload_count; t++)
-        scene |= rt_only_scene(&(RtOnly){.scene = only->scene}, e, t);
-    for (uint32_t c = 0; c < e->candidate_count; c++) {
-        bool called = strcmp(only->accel ? only->accel : "", e->candidates[c].label) == 0;
-        accel |= called || (!rt_candidate_is_baseline(e, c) && rt_only_accel(only, e, c));
-    }
-    for (uint32_t k = 0; k < e->kind_count; k++) kind |= rt_only_kind(only, e->kinds[k]);
-    if (!scene || !accel || !kind) {
-        return rt_fail(error, RT_BAD_INPUT, "--only: '%s' is not the label of one of the %s",
-                       !scene   ? only->scene
-                       : !accel ? only->accel
-                                : only->kind,
-                       !scene   ? "scenes"
-                       : !accel ? "accelerators"
-                                : "kinds of rays");
-    }
+static RtStatus check_part(const RtExperiment *e, const RtOnly *only, RtError *error) {
+    RT_TRY(rt_only_check(only, e, error));
     if (only->shards <= e->workload_count) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT, "--shard: %u scene%s: too few for %u shards", e->workload_count,
                    rt_plural(e->workload_count), only->shards);
@@ -192,7 +176,7 @@ static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
     char directory[RT_MAX_PATH];
     RtResults results;
     RT_TRY(load(o, experiment, error));
-    RT_TRY(check_only(experiment, &o->only, error));
+    RT_TRY(check_part(experiment, &o->only, error));
     if (o->until > 0 && experiment->rounds < RT_FULL_ROUNDS) experiment->rounds = RT_FULL_ROUNDS;
     if (o->only.shards)
         snprintf(directory, sizeof directory, "results/%s-%u-of-%u", experiment->name, o->only.shard,

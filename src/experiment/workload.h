@@ -49,6 +49,10 @@ typedef struct RtOnly {
 bool rt_only_scene(const RtOnly *only, const RtExperiment *experiment, uint32_t workload);
 bool rt_only_accel(const RtOnly *only, const RtExperiment *experiment, uint32_t candidate);
 bool rt_only_kind(const RtOnly *only, RtRayKind kind);
+
+/* RT_BAD_INPUT if a label is none of the experiment's. The message begins with "--only". */
+RtStatus rt_only_check(const RtOnly *only, const RtExperiment *experiment, RtError *error);
+
 struct RtWorkloadState; /* experiment/workload_state.h */
 
 typedef struct RtWorkloadOptions {

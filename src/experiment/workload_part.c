@@ -28,6 +28,25 @@ bool rt_only_kind(const RtOnly *only, RtRayKind kind) {
     return !only->kind || strcmp(only->kind, rt_ray_kind_name(kind)) == 0;
 }
 
+RtStatus rt_only_check(const RtOnly *only, const RtExperiment *e, RtError *error) {
+    bool scene = !only->scene, accel = !only->accel, kind = !only->kind;
+    for (uint32_t t = 0; t < e->workload_count; t++)
+        scene |= rt_only_scene(&(RtOnly){.scene = only->scene}, e, t);
+    for (uint32_t c = 0; c < e->candidate_count; c++) {
+        bool called = strcmp(only->accel ? only->accel : "", e->candidates[c].label) == 0;
+        accel |= called || (!rt_candidate_is_baseline(e, c) && rt_only_accel(only, e, c));
+    }
+    for (uint32_t k = 0; k < e->kind_count; k++) kind |= rt_only_kind(only, e->kinds[k]);
+    if (scene && accel && kind) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "--only: '%s' is not the label of one of the %s",
+                   !scene   ? only->scene
+                   : !accel ? only->accel
+                            : only->kind,
+                   !scene   ? "scenes"
+                   : !accel ? "accelerators"
+                            : "kinds of rays");
+}
+
 bool rt_workload_runs(const RtWorkloadState *workload, uint32_t c) {
     return rt_candidate_runs(workload->experiment, c, workload->index) &&
            rt_only_accel(&workload->options->only, workload->experiment, c) &&

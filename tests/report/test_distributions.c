@@ -129,7 +129,21 @@ RT_TEST_IN_PLACE(reproduce_of_one_scene_compares_its_rows_alone) {
     assert_int_equal(raytally(place, "reproduce out --only balls"), 1);
     assert_in_file(place, "message", "out/counts.csv:8: differs");
     assert_int_equal(raytally(place, "reproduce out --only scattered"), 2);
-    assert_in_file(place, "message", "no scene with the label 'scattered'");
+    assert_in_file(place, "message", "'scattered' is not the label of one of the scenes");
+    rt_free(counts);
+}
+
+RT_TEST_IN_PLACE(reproduce_of_a_sweep_of_scenes_compares_the_rows_of_each) {
+    const Place *place = *state;
+    write_changed(place, "small.yaml", spread, "n=50\"", "n=50..100*2\"");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    char *counts = read_in(place, "out/counts.csv");
+    write_changed(place, "out/counts.csv", counts, "\nballs,", "\nballs,changed");
+    assert_int_equal(raytally(place, "reproduce out --only cloud"), 0);
+    assert_int_equal(raytally(place, "reproduce out --only cloud:n=100"), 0);
+    write_changed(place, "out/counts.csv", counts, "\ncloud:n=100,", "\ncloud:n=100,changed");
+    assert_int_equal(raytally(place, "reproduce out --only cloud:n=50"), 0);
+    assert_int_equal(raytally(place, "reproduce out --only cloud"), 1);
     rt_free(counts);
 }
 
