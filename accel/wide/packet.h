@@ -242,10 +242,8 @@ RT_KERNEL const RtPreparedRay *prepared(Packet *p, const Query *q, uint32_t i) {
 /* Tests rays that are too extreme for the boxes of split references against all objects. */
 RT_KERNEL void test_extreme_rays(Packet *p, const Query *q, bool any) {
     uint64_t odd = 0;
-    for (uint32_t i = 0; i < PACKET; i += RT_LANES) {
-        const RtFloats dir[3] = {rt_load(&p->dir[0][i]), rt_load(&p->dir[1][i]), rt_load(&p->dir[2][i])};
-        odd |= (uint64_t)rt_bits(~surface_is_near(dir)) << i;
-    }
+    for (uint32_t i = 0; i < PACKET; i += RT_LANES)
+        odd |= (uint64_t)rt_bits(~surface_is_near(rt_load(&p->dir[p->kz][i]))) << i;
     for (odd &= p->open; odd; odd &= odd - 1) {
         uint32_t i = first_ray(odd);
         test_all(q->geometry, prepared(p, q, i), any, &p->best[i], NULL);

@@ -58,9 +58,9 @@ RT_KERNEL RtFloats shift_of(RtFloats thickness, RtFloats org) {
     return thickness + rt_abs(org) * 0x1p-23f;
 }
 
-/* rt_surface_is_near */
-RT_KERNEL RtInts surface_is_near(const RtFloats dir[3]) {
-    RtFloats longest = rt_max(rt_max(rt_abs(dir[0]), rt_abs(dir[1])), rt_abs(dir[2]));
+/* rt_surface_is_near by the longest component of a direction. */
+RT_KERNEL RtInts surface_is_near(RtFloats longest) {
+    longest = rt_abs(longest);
     return (longest >= 0x1p-64f) & (longest <= 0x1p64f);
 }
 
@@ -96,7 +96,8 @@ RT_KERNEL uint32_t meet_root(const Query *q, const RtRay rays[RT_LANES]) {
     rt_load_columns(at_dir, dir);
     RayLanes r = {.tmin = org[3], .tmax = rt_min(dir[3], rt_all(FLT_MAX))};
     const RtFloats thickness = thickness_of(org, q->geometry, q->tree->split_refs);
-    RtInts met = ~surface_is_near(dir); /* or special */
+    const RtFloats longest = rt_max(rt_max(rt_abs(dir[0]), rt_abs(dir[1])), rt_abs(dir[2]));
+    RtInts met = ~surface_is_near(longest); /* or special */
     for (int a = 0; a < 3; a++) {
         RtFloats shift = shift_of(thickness, org[a]);
         r.above[a] = org[a] + shift;
