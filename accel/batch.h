@@ -10,6 +10,7 @@
 
 #include "accel/kernel.h"
 #include "accel/sphere_prefilter.h"
+#include "core/base/simd_across.h"
 
 enum {
     RT_BATCH = 128,                                   /* rays */

@@ -13,7 +13,7 @@
 #define RT_ACCEL_WATERTIGHT_H
 
 #include "accel/kernel.h"
-#include "core/base/simd.h"
+#include "core/base/simd_across.h"
 
 /* RtSheared: vertices, x and y along kx and ky of the ray, z along kz. RtShear: the same of each ray's
  * origin, and its shear. */

@@ -6,6 +6,7 @@
  *
  * Denormals are disabled from the first ray to the last, except where the slow path uses double. */
 #include "accel/embree/embree_batch.h"
+#include "core/base/simd_across.h"
 
 #include <stddef.h>
 #include <string.h>

@@ -32,7 +32,7 @@
 #include "accel/accel.h"
 #include "accel/isa.h"
 #include "accel/raster/bins.h"
-#include "core/base/simd.h"
+#include "core/base/simd_across.h"
 
 enum { RT_ITEM_SETTLE, RT_ITEM_ISA, RT_ITEM_PARAM_COUNT };
 extern const RtParam rt_item_params[RT_ITEM_PARAM_COUNT];

@@ -4,6 +4,7 @@
 #define RT_ACCEL_LIGHT_LIGHT_LOOKUP_H
 
 #include "accel/light/light_project.h"
+#include "core/base/simd_across.h"
 
 #include <string.h>
 

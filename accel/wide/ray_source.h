@@ -15,6 +15,7 @@
 
 #include "accel/kernel.h"
 #include "accel/wide/wide.h"
+#include "core/base/simd_across.h"
 
 enum {
     FILTER_BLOCK = 256, /* rays that are filtered together */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "core/base/simd.h"
+#include "core/base/simd_across.h"
 
 /* Lanes i, i + 1, ... of the bits, given those from i + 1 on. */
 #define LANE(later, bits, i) ((uint64_t)(later) << 8 * ((bits) >> (i)&1) | (uint64_t)(i) * ((bits) >> (i)&1))
