@@ -254,7 +254,7 @@ const RtSyntax rt_trace_syntax = {
         "A row shows what was visited or tested, the interval of t in which the ray is inside its box (if it "
         "has one), whether the ray met the extent or hit the object, and the t of the nearest hit so far. An "
         "extent that the ray enters behind that hit counts as missed. A step is a visit to a node, voxel, "
-        "sample or list entry; accel/README.md explains the other words and what each accelerator counts. "
+        "sample or list entry; docs/accelerators/README.md explains the other words. "
         "The rows come from the counted kernel itself; raytally checks that they add up to its tally.\n"
         "\n"
         "The upper part of the drawing is a section along the ray and one axis of the scene; it shows a box "
