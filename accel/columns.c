@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* Each list of columns is an X-macro: a row of it becomes a getter and an RtTableColumn. */
 #include "accel/columns.h"
 
 /* ---- tallies ---- */

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* The widest instruction set that this processor has and this program was built with. RT_ONLY_ISA: a build
+ * for one. */
 #include "accel/isa.h"
 
 typedef enum Choice { BEST, PORTABLE, AVX2, AVX512 } Choice; /* of RT_ISA_PARAM */

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-# libraytally.so and libraytally.a, of all rooms that are declared so far, and what is installed with them: headers,
+# libraytally.so and libraytally.a, of all libraries that are declared so far, and what is installed with them: headers,
 # raytally.pc, and a CMake package. The number of the shared library is that of the binary interface.
 file(STRINGS include/raytally/raytally.h abi REGEX "^#define RAYTALLY_ABI_VERSION [0-9]+$")
 string(REGEX REPLACE ".* " "" abi "${abi}")
-get_property(rooms DIRECTORY PROPERTY raytally_rooms)
+get_property(libraries DIRECTORY PROPERTY raytally_libraries)
 get_property(components DIRECTORY PROPERTY raytally_components)
 list(REMOVE_DUPLICATES components)
-list(TRANSFORM rooms REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>" OUTPUT_VARIABLE objects)
+list(TRANSFORM libraries REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>" OUTPUT_VARIABLE objects)
 
 add_library(raytally_shared SHARED ${objects})
 set_target_properties(raytally_shared PROPERTIES OUTPUT_NAME raytally EXPORT_NAME raytally SOVERSION ${abi} LINKER_LANGUAGE C)

@@ -14,24 +14,24 @@ commands() {
     awk '/^```sh$/ { on = 1; next } /^```/ { on = 0 } on' "$1" | grep -E '^raytally (render|trace|run) ' || true
 }
 
-room=$(mktemp -d)
-trap 'rm -rf "$room"' EXIT
-mkdir "$room/bin"
-ln -s "$program" "$room/bin/raytally"
-for tree in docs experiments scenes; do ln -s "$root/$tree" "$room/$tree"; done
-export PATH="$room/bin:$PATH"
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+mkdir "$work/bin"
+ln -s "$program" "$work/bin/raytally"
+for tree in docs experiments scenes; do ln -s "$root/$tree" "$work/$tree"; done
+export PATH="$work/bin:$PATH"
 
 status=0
 for page in "${pages[@]}"; do
     while read -r line; do
-        (cd "$room" && eval "$line" >log 2>&1) || {
+        (cd "$work" && eval "$line" >log 2>&1) || {
             echo "$page: fails: $line"
-            cat "$room/log"
+            cat "$work/log"
             status=1
         }
     done < <(commands "$page")
     while read -r name; do
-        for made in "$room/$name" "$room/${name%.svg}/plots/$name" "$room/${name%.svg}"/plots/01-*.svg; do
+        for made in "$work/$name" "$work/${name%.svg}/plots/$name" "$work/${name%.svg}"/plots/01-*.svg; do
             [ -e "$made" ] && break
         done
         if [ -e "$made" ]; then

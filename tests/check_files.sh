@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_files.sh [TREE]: every .c file of the tree is built: CMakeLists.txt lists it, or for tests/ROOM/test_NAME.c lists
-# NAME in raytally_tests(ROOM ...). Every source states its licence. Prints the files that fail; exit code 1 if
+# check_files.sh [TREE]: every .c file of the tree is built: CMakeLists.txt lists it, or for tests/DIRECTORY/test_NAME.c lists
+# NAME in raytally_tests(DIRECTORY ...). Every source states its licence. Prints the files that fail; exit code 1 if
 # there is one.
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
@@ -12,8 +12,8 @@ while read -r path; do
     pattern="(^|[[:space:](])${path//./\\.}([[:space:])]|\$)"
     case $path in
     tests/*/test_*)
-        name=${path##*/test_} room=${path#tests/} room=${room%%/*}
-        pattern="raytally_tests\\($room[[:space:]]+([^)]*[[:space:]])?${name%.c}([[:space:])])"
+        name=${path##*/test_} directory=${path#tests/} directory=${directory%%/*}
+        pattern="raytally_tests\\($directory[[:space:]]+([^)]*[[:space:]])?${name%.c}([[:space:])])"
         ;;
     esac
     grep -qE "$pattern" <<<"$list" || {

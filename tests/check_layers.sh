@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_layers.sh [TREE]: no file includes a header of a room above its own (linking only sees symbols). Only
+# check_layers.sh [TREE]: no file includes a header of a directory above its own (linking only sees symbols). Only
 # the registry and an accelerator's own file or folder know that accelerator: they alone name its operations, include from its
 # folder or, outside accel/, open it by its name. Tests may include and open. Prints each violation; exit code 1 if there is one.
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
-# A room may include itself and those before it.
+# A directory may include itself and those before it.
 rooms="base text shape scene scenes accel render picture rays measure exact verify library experiment literature report cli tests"
 
 includes_upward() {
@@ -37,7 +37,7 @@ knows_accelerators() {
     grep -rnE '#[ \t]*include[ \t]*"accel/[^"]*/' src scenes || true
     spec='"([a-z][^" ]*\+)?'"(${names#|})"'([:+][^" ]*)?"'
     grep -rnE "$spec" src --include='*.[ch]' | grep -vE -e ':( \*|.*/\*.*"[a-z])' |
-        grep -vE -e '"(cache|clusters|extents|item|light|slabs)(:[^" ]*)?"' || true
+        grep -vE -e '"(cache|clusters|extents|item|light)(:[^" ]*)?"' || true
     grep -rnE "$opens$spec" src --include='*.[ch]' || true
 }
 

@@ -25,7 +25,7 @@
 
 /* ---- tests ----
  *
- * RT_TEST(its_name_is_a_sentence) { ... } in tests/ROOM/test_NAME.c is a test, and RT_TESTS(NAME, setup,
+ * RT_TEST(its_name_is_a_sentence) { ... } in tests/DIRECTORY/test_NAME.c is a test, and RT_TESTS(NAME, setup,
  * teardown) at the end of the file makes a group of all of them, in their order, for tests/main.c to run.
  * What is set up for the group, or for one test by RT_TEST_WITH, is *state. */
 

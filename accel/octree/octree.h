@@ -26,10 +26,10 @@
     X(RT_OCTREE_MARGIN, RT_MARGIN_PARAM("the root"))                                                         \
     X(RT_OCTREE_SLACK, "slack", RT_FLOAT("0", 0, 1e6, "0.01|100"),                                           \
       "a cell also lists objects within this distance, in scene units",                                      \
-      "0 suffices; Havran 1999 lists more (README)")                                                         \
+      "0 suffices; Havran 1999 lists more")                                                                  \
     X(RT_OCTREE_FLAT, "flat", RT_FLOAT("0", 0, 1e6, "0.01"),                                                 \
       "thickness added on both sides of objects that are flat along an axis, in scene units",                \
-      "0 suffices; Havran 1999 thickens them (README)")                                                      \
+      "0 suffices; Havran 1999 thickens them")                                                               \
     X(RT_OCTREE_CUT_FILLED, "cut_filled", RT_FLAG("off"),                                                    \
       "also divide cells that are filled by the boxes of all their objects",                                 \
       "off: it separates nothing; Havran 1999 does")                                                         \

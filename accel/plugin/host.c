@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* Building, describing, validating and destroying a plugin's structure; query.c has its queries. The plugin's
+ * numbers are checked before use, and failures take its message. */
 #include "accel/plugin/host.h"
 
 #include "accel/plugin/wire.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* Reading the tables of a library of any version, and packing them for another process. */
 #include "accel/plugin/library.h"
 
 #include "core/base/file.h"

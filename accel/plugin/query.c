@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* Queries of a plugin's accelerator. Each has a mapping of its own: the answers and the plugin's memory, both
+ * between guard pages. Each answer is checked before anything else reads it. */
 #include "accel/plugin/host.h"
 
 #include "accel/kernel.h"

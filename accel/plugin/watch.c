@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* The first failure is kept; later ones follow from it. */
 #include "accel/plugin/watch.h"
 
 #include "accel/plugin/host.h"

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* A search climbs from the slot of the query to the root and searches the other side of each node on the way,
+ * the nearer child first. */
 #include "accel/tree/neighbours.h"
 
 #include "accel/tree/sah_split.h"

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* Parts are numbered in the order of a depth-first walk. The top is reduced in the same order, so its pending
+ * values form a stack, two for each level. */
 #include "accel/tree/reduction.h"
 
 #include "core/base/memory.h"

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* A bin is guessed by one multiplication, then corrected by comparisons with the planes, so rounding puts no
+ * part on the wrong side. */
 #include "accel/tree/spatial_bins.h"
 
 #include "core/shape/overlap.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* Dispatch to the builder of each method. The default, binned SAH, is the one without a case of its own. */
 #include "accel/tree/tree_build.h"
 
 static RtStatus make(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options, int threads,

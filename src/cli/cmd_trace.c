@@ -86,7 +86,7 @@ static void print_row(const RtPathRow *row, uint32_t number, const RtGeometry *g
     else if (row->kind == RT_TRACED_OBJECT_TEST && row->met)
         printf("  hit at %-11.6g", (double)row->t);
     else
-        printf("  %-18s", row->met ? "met" : "missed");
+        printf("  %-18s", row->met ? "hit" : "missed");
     print_t((double)row->nearest);
     putchar('\n');
 }
@@ -252,9 +252,9 @@ const RtSyntax rt_trace_syntax = {
     .help =
         "Follow one ray through an accelerator: each step, extent test and object test, in order.\v"
         "A row shows what was visited or tested, the interval of t in which the ray is inside its box (if it "
-        "has one), whether the ray met the extent or hit the object, and the t of the nearest hit so far. An "
+        "has one), whether the ray hit the extent or the object, and the t of the nearest hit so far. An "
         "extent that the ray enters behind that hit counts as missed. A step is a visit to a node, voxel, "
-        "sample or list entry; accel/README.md explains the other words and what each accelerator counts. "
+        "sample or list entry; docs/accelerators/README.md explains the other words. "
         "The rows come from the counted kernel itself; raytally checks that they add up to its tally.\n"
         "\n"
         "The upper part of the drawing is a section along the ray and one axis of the scene; it shows a box "

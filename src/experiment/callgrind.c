@@ -9,6 +9,7 @@
 #include "experiment/worker.h"
 #include "measure/measure.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
@@ -144,6 +145,20 @@ static RtStatus count_cell(RtCallgrind *callgrind, RtWorker *worker, const RtRes
     return status;
 }
 
+/* With the end of its messages. */
+static RtStatus fail_ended(const RtWorker *worker, const char *how, RtError *error) {
+    enum { MOST_BYTES = 1 << 24, MOST_SHOWN = 600 };
+    char *text;
+    size_t size;
+    (void)how;
+    RT_TRY(rt_file_read(worker->log, MOST_BYTES, &text, &size, error));
+    while (size > 0 && isspace((unsigned char)text[size - 1])) text[--size] = '\0';
+    rt_fail(error, RT_NOT_AVAILABLE, "valgrind, or raytally in it, failed:\n%s",
+            size > MOST_SHOWN ? text + size - MOST_SHOWN : text);
+    rt_free(text);
+    return RT_NOT_AVAILABLE;
+}
+
 RtStatus rt_callgrind_run(RtCallgrind *callgrind, const RtResults *results, char *const *arguments,
                           RtError *error) {
     const RtExperiment *e = callgrind->experiment;
@@ -160,7 +175,7 @@ RtStatus rt_callgrind_run(RtCallgrind *callgrind, const RtResults *results, char
                                    "--worker",
                                    NULL};
     uint32_t passes = 0;
-    RtWorker worker = {.log = log};
+    RtWorker worker = {.log = log, .fail = fail_ended};
     ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
     if (length < 0) return rt_fail(error, RT_IO, "/proc/self/exe: %s", strerror(errno));
     program[length] = '\0';

@@ -11,7 +11,6 @@
 #include "measure/machine.h"
 #include "measure/rounds.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <sched.h>
@@ -42,22 +41,11 @@ RtStatus rt_worker_start(RtWorker *worker, const char *const *command, char *con
     return status;
 }
 
-/* With the end of its messages if they are in a file. */
 static RtStatus fail_ended(RtWorker *worker, RtError *error) {
-    enum { MOST_BYTES = 1 << 24, MOST_SHOWN = 600 };
     RtProcessEnd end;
-    char how[160] = "it no longer answers", *text = NULL;
-    size_t size = 0;
+    char how[160] = "it no longer answers";
     if (rt_process_wait(&worker->process, 1000, &end)) rt_process_end_format(end, 0, "", how, sizeof how);
-    if (!worker->log)
-        return rt_fail(error, RT_BAD_INPUT, "%s cannot be compared: %s; its messages are above",
-                       worker->program, how);
-    RT_TRY(rt_file_read(worker->log, MOST_BYTES, &text, &size, error));
-    while (size > 0 && isspace((unsigned char)text[size - 1])) text[--size] = '\0';
-    rt_fail(error, RT_NOT_AVAILABLE, "valgrind, or raytally in it, failed:\n%s",
-            size > MOST_SHOWN ? text + size - MOST_SHOWN : text);
-    rt_free(text);
-    return RT_NOT_AVAILABLE;
+    return worker->fail(worker, how, error);
 }
 
 RtStatus rt_worker_take(RtWorker *worker, json_t **line, RtError *error) {

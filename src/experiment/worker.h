@@ -25,18 +25,21 @@
 
 /* ---- the program that starts it ---- */
 
-typedef struct RtWorker {
+typedef struct RtWorker RtWorker;
+struct RtWorker {
     const char *program; /* path of the program; NULL: it is searched for in $PATH */
     const char *log;     /* the file of its messages; NULL: stderr */
+    /* Reports that the worker answers no longer; `how` it ended. */
+    RtStatus (*fail)(const RtWorker *worker, const char *how, RtError *error);
     RtProcess process;
     FILE *to, *from;
-} RtWorker;
+};
 
 /* Runs `command` (NULL behind the last word) followed by `arguments`. */
 RtStatus rt_worker_start(RtWorker *worker, const char *const *command, char *const *arguments,
                          RtError *error);
 
-/* Takes the next line, a new reference. If there is none, the message says how the worker ended. */
+/* Takes the next line, a new reference. If there is none, `fail` reports it. */
 RtStatus rt_worker_take(RtWorker *worker, json_t **line, RtError *error);
 
 /* Sends a request, as of printf; then takes the answer, unless `answer` is NULL. */

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* A ray set is cut into chunks of CHUNK rays, which threads take in turn. A chunk begins with rt_query_begin,
+ * so counts do not depend on the number of threads. */
 #include "measure/measure.h"
 
 #include "accel/remote.h"

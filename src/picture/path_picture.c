@@ -269,7 +269,7 @@ static void draw_row(const Drawing *d, uint32_t i, double y) {
         snprintf(of, sizeof of, " by %s", row->what);
     else if (row->what)
         snprintf(of, sizeof of, ", %s %u", row->what, row->index);
-    const char *result = !tests ? "" : !row->met ? ": missed" : object ? ": hit" : ": met";
+    const char *result = !tests ? "" : row->met ? ": hit" : ": missed";
     snprintf(text, sizeof text, "%u  %s%s%s", i + 1, rt_path_row_name(row), of, result);
     draw_text(d, MARGIN, y + ROW - 3, RT_BLACK, text);
     draw_bar(d, i, y);
@@ -341,7 +341,7 @@ static void draw_legend(const Drawing *d) {
     static const struct {
         Style style;
         const char *text;
-    } keys[] = {{{{{59, 82, 139}}, 1, 0, false}, "extent met, or inner node"},
+    } keys[] = {{{{{59, 82, 139}}, 1, 0, false}, "extent hit, or inner node"},
                 {{{{153, 153, 153}}, 1, 0, true}, "extent missed"},
                 {{{{33, 145, 140}}, 1, 0.4, false}, "step, leaf"},
                 {{{{85, 85, 85}}, 1, 0.1, false}, "object tested"},

@@ -75,7 +75,7 @@ RT_TEST(exact_overlap_lists_fewer_objects_on_every_level) {
     assert_true(exact.references < box.references / 2);
 }
 
-/* Havran & Sixta 1999, RTN 12(1), "Recursive Grid"; see accel/README.md for the other scenes. */
+/* Havran & Sixta 1999, RTN 12(1), "Recursive Grid"; see docs/accelerators/grid.md for the other scenes. */
 RT_TEST(structures_of_tetra_and_lattice_are_the_published_ones) {
 #define AS_PUBLISHED ",density=1,nest=8,margin=0.001,flat=0.02,slack=0.01"
     OWNED_SCENE scene;

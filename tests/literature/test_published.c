@@ -3,7 +3,8 @@
  * through the corners of pixels, 5 levels deep, no mailbox: Havran & Sixta 1999 (grids, RTN 12(1)) and Havran
  * 1999 (octrees, RTN 12(2)). Cells are to be the published ones exactly, references, too, or within 3 %,
  * tests and steps per ray within 3 %. The column of tests is over all rays in the article on grids; the one
- * on octrees fits only if its sums were divided by the rays that hit something (accel/README.md). */
+ * on octrees fits only if its sums were divided by the rays that hit something (docs/accelerators/octree.md).
+ */
 #include "testing.h"
 
 #include "render/frame.h"
