@@ -67,9 +67,9 @@ RT_TEST(a_ray_is_no_longer_in_an_own_box_than_in_one_around_it) {
     }
 }
 
-/* Point 3 of accel/surface.h proves 14; 14.75 is tried, so that 15/16 of the thickness fails. The ray's own
- * point is p; the box touches a point that is 14 units from it along each axis. With the 2 roundings of a
- * crossing that uses up the thickness, so 15/16 of it is too little. */
+/* Point 3 of accel/surface.h proves 14 units; rounding the product back to t leaves a little more. The box
+ * touches a point that is 14.75 units from the ray's along each axis: with 15/16 of the thickness this fails.
+ */
 RT_TEST(a_ray_is_in_every_box_with_a_point_within_14_units_of_its_own) {
     RtRandom random = rt_random(14, 0);
     for (int i = 0; i < 200000; i++) {
