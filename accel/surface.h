@@ -7,20 +7,24 @@
  *
  * 1. At t the thick ray is in every closed cell that contains q. On each axis a cell has two planes. If q and
  * p have the same coordinate, the ray reaches the near plane at or before t and the far plane at or after t
- * even without thickness, and the thickness, 16 half-ulps of the distance, exceeds the 4 roundings of a
+ * even without thickness, and the thickness, 16 half-ulps of the distance, exceeds the 2 roundings of a
  * crossing. If p lies outside the box, the same is true of the plane that separates p from q; and of the
  * other plane because rt_box_admit guarantees that t is between the crossings of the box, between which that
  * plane does not lie.
  *
- * 2. q is within `margin` of the surface along each axis: p is, and no point of the surface, all of which lie
- * in the box, is farther from q than from p. Let D be the largest distance along one axis from the origin to
- * a point of the scene. A triangle is hit as if its vertices, moved to the origin and sheared in float32,
- * were displaced by up to 8 * 2^-24 D (core/shape/triangle.h; the rest of that test is in double). Polygons
- * and spheres are tested in double, with an error below 2^-44 D. (The error of a sphere is divided by its
- * radius, whose square is subtracted.) So are cones; but near the apex an error of 2^-50 D^2 in the square of
- * the radius is 2^-25 D. Rounding t moves the point by 2^-24 D, and rt_box_admit moves it by at most 4 *
- * 2^-24 D: the hit itself is inside the thick box, and the crossing that bounds it has 4 roundings. The total
- * is less than 16 * 2^-24 D.
+ * 2. p is within 7 units of a point s of the surface, along each axis. Let D be the largest distance along
+ * one axis from the origin to a point of the scene; a unit is 2^-24 D. Rounding t moves p by a unit. Before
+ * that:
+ * - Triangles: the weights, computed in double, define s. Along the major axis the vertices z' are rounded
+ *   once. A sheared vertex x - shear * z' is off by 1 (x), 3 (shear, product) and 2 units (difference), 6 in
+ *   all; the rest is in double (core/shape/triangle.h).
+ * - Polygons and spheres are computed in double, and off by less than a unit. (The error of a sphere is
+ * divided by its radius, whose square is subtracted. Coordinates are at most 2^24 times as large as D.)
+ * - Cones: in double, but near the apex the error is a root. Let C be the largest distance of the cone from
+ * the middle of its axis, at most 2.12 D. The roundings add up to less than 150 * 2^-53 C^2 in the square of
+ *   the radius (times the square of the slope, if that is above 1, and then s is above or below p): 5 units.
+ * rt_box_admit does not move t: by 3, with D for the object's box, that box contains s.
+ * q is as near to s as p is, because s is in the box. CSG trees are not in this sum.
  *
  * So no hit is lost if some cell that contains q lists the object, and the traversal visits all cells that
  * the ray is in at t. For an origin in `domain`, the scene's box grown by 8 times its longest side, D is at
@@ -28,17 +32,20 @@
  * arithmetic of core/shape/overlap.h. Rays from farther away are tested against every object; so are rays
  * whose dir is so long or so short that float32 runs out of exponents.
  *
- * Instead of enlarging cells, one can thicken the ray (rt_surface_thicken), wherever its origin is. Let s be
- * the point of the surface near p. Then at t the ray is in every box that contains s: enter(box) <= t <=
- * leave(box). The thickness is 32 * 2^-24 D. 16 of these move the line to s, on each axis; the others exceed
- * the 3 roundings of a crossing, (plane - org') * inv, each at most 2^-24 |plane - org'|; rt_shift4
- * compensates that of org'. */
+ * 3. Trees of split references need no margin, wherever the origin is: at t the ray is in every box of the
+ * scene that contains a point s within 14 units of p, enter(box) <= t <= leave(box). The near plane is at
+ * most s, and org' is 16 units ahead of org; rt_shift4 compensates the rounding of that. So (plane - org') /
+ * dir is at least 2 units of distance before t. plane - org' and 1 / dir are rounded, by a unit each;
+ * rounding the product cannot take it past t, a float32. The far plane likewise. Half of the 14 units
+ * suffice, by 2. CSG trees are cut like their boxes, so that q is in some part, and 1 applies. Scenes smaller
+ * than RT_SURFACE_LEAST_SIDE, where t may be denormal, are not cut. */
 #ifndef RT_ACCEL_SURFACE_H
 #define RT_ACCEL_SURFACE_H
 
 #include "accel/kernel.h"
 
-#define RT_SURFACE_SIDES 8
+#define RT_SURFACE_SIDES      8
+#define RT_SURFACE_LEAST_SIDE 0x1p-50
 
 typedef struct RtSurfaceRays {
     RtBox domain;  /* of the origins of rays that cells of surfaces serve */
@@ -61,12 +68,6 @@ static inline RtSurfaceRays rt_surface_rays(const RtBox *scene, const RtBox *str
 RT_KERNEL bool rt_surface_is_near(const RtPreparedRay *ray) {
     float longest = fabsf(ray->dir.at[ray->kz]);
     return longest >= 0x1p-64f && longest <= 0x1p64f;
-}
-
-/* Thickens a ray so that at the t of a hit it is in every box of the scene that contains the point of the
- * surface near the hit. */
-RT_KERNEL void rt_surface_thicken(RtPreparedRay *ray, const RtBox *scene) {
-    rt_ray_set_thickness(ray, 2 * rt_thickness(ray->org, scene) + 0x1p-80f);
 }
 
 /* Whether cells that list surfaces serve this ray. */

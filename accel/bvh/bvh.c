@@ -149,8 +149,8 @@ RT_KERNEL void walk(const RtBvh *self, RtMailbox *mailbox, const RtPreparedRay *
     }
 }
 
-/* With split references, test the leaf that contains the surface near the hit: with a thickened ray, or among
- * all objects if hits are not near surfaces (accel/surface.h, accel/tree/spatial.c). */
+/* With split references a ray meets the leaf that contains the surface near the hit; if hits are not near
+ * surfaces, it is tested against all objects (accel/surface.h, accel/tree/spatial.c). */
 RT_KERNEL void search(const RtBvh *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
                       RtTally *tally) {
     const RtGeometry *g = &self->base.scene->geometry;
@@ -158,10 +158,8 @@ RT_KERNEL void search(const RtBvh *self, void *scratch, const RtPreparedRay *ray
         walk(self, NULL, ray, any, best, tally);
     } else if (rt_surface_is_near(ray)) {
         RtMailbox *mailbox = self->mailbox ? scratch : NULL;
-        RtPreparedRay thick = *ray;
-        rt_surface_thicken(&thick, &g->box);
         rt_mailbox_next_ray(mailbox, g);
-        walk(self, mailbox, &thick, any, best, tally);
+        walk(self, mailbox, ray, any, best, tally);
     } else {
         rt_test_all(g, ray, any, best, tally);
     }

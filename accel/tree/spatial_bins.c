@@ -24,6 +24,8 @@ bool rt_ref_part(const RtSpatialGroup *group, const RtTreeRef *ref, int axis, fl
     RtBox box = ref->box;
     box.lo.at[axis] = rt_maxf(lo, box.lo.at[axis]);
     box.hi.at[axis] = rt_minf(hi, box.hi.at[axis]);
+    *part = box;
+    if (rt_ref_shape(group->geometry->objects[ref->id]) == RT_SHAPE_CSG) return !rt_box_is_empty(box);
     return rt_object_part(group->geometry, ref->id, &box, group->margin, part);
 }
 

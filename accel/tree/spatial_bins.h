@@ -39,8 +39,8 @@ typedef struct RtSpatialGroup {
  * the lower plane. */
 RtSpatialSplit rt_spatial_bins_split(const RtSpatialGroup *group, int count);
 
-/* Clips a reference to `lo`..`hi` along `axis`: *part contains all of its surface there. False if there is
- * none. */
+/* Clips a reference to `lo`..`hi` along `axis`: *part contains all of its surface there, or all of a CSG
+ * tree's box (accel/surface.h). False if there is none. */
 bool rt_ref_part(const RtSpatialGroup *group, const RtTreeRef *ref, int axis, float lo, float hi,
                  RtBox *part);
 

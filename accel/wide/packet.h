@@ -145,12 +145,11 @@ RT_KERNEL uint32_t sort_rays(Sorter *s, const Query *q) {
 
 /* ---- preparing ---- */
 
-/* Prepares rays [first, first + RT_LANES) of the packet, thickened as by rt_ray_prepare_in or, for split
- * references, by rt_surface_thicken. */
-RT_KERNEL void prepare_lanes(Packet *p, const RtGeometry *g, uint32_t first, bool split_refs) {
+/* Prepares rays [first, first + RT_LANES) of the packet, thickened as by rt_ray_prepare_in. */
+RT_KERNEL void prepare_lanes(Packet *p, const RtGeometry *g, uint32_t first) {
     RtFloats org[3];
     for (int a = 0; a < 3; a++) org[a] = rt_load(&p->org[a][first]);
-    const RtFloats thickness = thickness_of(org, g, split_refs);
+    const RtFloats thickness = thickness_of(org, g);
     for (int a = 0; a < 3; a++) {
         RtFloats shift = shift_of(thickness, org[a]), above = org[a] + shift, below = org[a] - shift;
         rt_store(&p->org_near[a][first], p->negative[a] ? below : above);
@@ -286,7 +285,7 @@ RT_KERNEL void init_packet(Packet *p, const Query *q, Sorter *s, uint32_t class,
         rt_store(&p->tmin[i], org[3]);
         rt_store(&p->tmax[i], dir[3]);
     }
-    for (uint32_t i = 0; i < end; i += RT_LANES) prepare_lanes(p, q->geometry, i, q->tree->split_refs);
+    for (uint32_t i = 0; i < end; i += RT_LANES) prepare_lanes(p, q->geometry, i);
     for (uint32_t b = 0; b < beams; b++) bound_beam(p, b);
     p->prefilter_ready = false;
     for (uint32_t i = 0; i < count; i++) p->best[i] = RT_MISS;

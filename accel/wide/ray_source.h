@@ -44,15 +44,14 @@ typedef struct Query {
 
 /* ---- lanes of rays ---- */
 
-/* The thickness by rt_ray_prepare_in or, for split references, by rt_surface_thicken. */
-RT_KERNEL RtFloats thickness_of(const RtFloats org[3], const RtGeometry *g, bool split_refs) {
+/* The thickness by rt_ray_prepare_in. */
+RT_KERNEL RtFloats thickness_of(const RtFloats org[3], const RtGeometry *g) {
     RtFloats farthest = rt_all(0);
     for (int a = 0; a < 3; a++) {
         farthest = rt_max(rt_abs(g->box.lo.at[a] - org[a]), farthest);
         farthest = rt_max(rt_abs(g->box.hi.at[a] - org[a]), farthest);
     }
-    RtFloats thickness = farthest * 0x1p-20f;
-    return split_refs ? 2 * thickness + 0x1p-80f : thickness;
+    return farthest * 0x1p-20f;
 }
 
 RT_KERNEL RtFloats shift_of(RtFloats thickness, RtFloats org) {
@@ -96,7 +95,7 @@ RT_KERNEL uint32_t meet_root(const Query *q, const RtRay rays[RT_LANES]) {
     rt_load_columns(at_org, org);
     rt_load_columns(at_dir, dir);
     RayLanes r = {.tmin = org[3], .tmax = rt_min(dir[3], rt_all(FLT_MAX))};
-    const RtFloats thickness = thickness_of(org, q->geometry, q->tree->split_refs);
+    const RtFloats thickness = thickness_of(org, q->geometry);
     const RtFloats longest = rt_max(rt_max(rt_abs(dir[0]), rt_abs(dir[1])), rt_abs(dir[2]));
     RtInts met = ~surface_is_near(longest); /* or special */
     for (int a = 0; a < 3; a++) {

@@ -84,12 +84,9 @@ RT_KERNEL bool init_ray(RayState *f, const RtWideTree *tree, const RtGeometry *g
     f->index = index;
     f->tally = tally;
     if (tree->node_count == 0) return false;
-    if (tree->split_refs) {
-        if (!rt_surface_is_near(&f->ray)) {
-            test_all(g, &f->ray, any, &f->best, tally);
-            return false;
-        }
-        rt_surface_thicken(&f->ray, &g->box);
+    if (tree->split_refs && !rt_surface_is_near(&f->ray)) {
+        test_all(g, &f->ray, any, &f->best, tally);
+        return false;
     }
     f->limit = r->tmax;
     for (uint32_t a = 0; a < 3; a++) {

@@ -84,7 +84,7 @@ typedef struct RtWideTree {
     char *arena;         /* [bytes] */
     uint64_t bytes;      /* 0 without objects */
     uint32_t node_count; /* 0 without objects */
-    bool split_refs;     /* objects may be in several leaves; rays are thickened (accel/surface.h) */
+    bool split_refs;     /* objects may be in several leaves (accel/surface.h) */
     double cost;         /* expected, in visits of nodes, for a random line through the root's box */
 } RtWideTree;
 

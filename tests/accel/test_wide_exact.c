@@ -202,7 +202,7 @@ RT_TEST(scenes_of_no_object_and_of_one_are_answered_as_by_brute) {
     free(bench);
 }
 
-/* Needs the thicker rays of trees with split references, in streams and in packets. */
+/* Needs the thickness of rays, in streams and in packets. */
 RT_TEST(rays_along_the_planes_that_cut_objects_are_answered_as_by_brute) {
     const char *specs[] = {"random:n=300,shape=triangle", "family:kind=slivers,seed=1",
                            "family:kind=slivers,seed=5", "family:kind=slivers-scaled,seed=3",

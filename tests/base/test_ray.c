@@ -67,4 +67,42 @@ RT_TEST(a_ray_is_no_longer_in_an_own_box_than_in_one_around_it) {
     }
 }
 
+/* Point 3 of accel/surface.h proves 14 units; rounding the product back to t leaves a little more. The box
+ * touches a point that is 14.75 units from the ray's along each axis: with 15/16 of the thickness this fails.
+ */
+RT_TEST(a_ray_is_in_every_box_with_a_point_within_14_units_of_its_own) {
+    RtRandom random = rt_random(14, 0);
+    for (int i = 0; i < 200000; i++) {
+        RtRay ray = {.org = rt_random_point(&random, i % 4 ? 0x1p-20f : 0x1p10f), .tmax = INFINITY};
+        ray.dir = rt_random_point(&random, 1);
+        if (i % 3 == 0) ray.dir.at[i % 9 / 3] *= 0x1p-20f;
+        float longest = fabsf(ray.dir.at[rt_major_axis(ray.dir)]);
+        float t = rt_random_between(&random, 1, 2) / longest * (i % 8 ? 1 : rt_random_unit(&random));
+        RtVec3d p = rt_ray_point(&ray, t);
+        float half = t * longest + 0x1p-12f;
+        RtBox scene = {rt_sub(ray.org, rt_vec3(half, half, half)),
+                       rt_add(ray.org, rt_vec3(half, half, half))};
+        RtBox box = scene;
+        double unit = 0;
+        for (int k = 0; k < 6; k++) {
+            float side = k < 3 ? scene.lo.at[k] : scene.hi.at[k - 3];
+            unit = fmax(unit, 0x1p-24 * fabs((double)side - (double)ray.org.at[k % 3]));
+        }
+        for (int a = 0; a < 3; a++) {
+            bool above = rt_random_below(&random, 2);
+            double s = p.at[a] + (above ? 14.75 : -14.75) * unit;
+            s = fmin(fmax(s, (double)scene.lo.at[a]), (double)scene.hi.at[a]);
+            if (above)
+                box.lo.at[a] = rt_maxf(rt_float_below(s), scene.lo.at[a]);
+            else
+                box.hi.at[a] = rt_minf(rt_float_above(s), scene.hi.at[a]);
+        }
+        RtPreparedRay prepared = rt_ray_prepare(&ray, &scene);
+        float enter = -INFINITY, leave = INFINITY;
+        rt_box_cut(&box, &prepared, &enter, &leave);
+        if (!(enter <= t && t <= leave))
+            fail_msg("ray %d: t = %.9g is not in [%.9g, %.9g]", i, (double)t, (double)enter, (double)leave);
+    }
+}
+
 RT_TESTS(ray, NULL, NULL)

@@ -141,17 +141,13 @@ static inline RtFloat4 rt_shift4(float thickness, RtFloat4 org, RtInt4 sign) {
     return (RtFloat4)((RtInt4)shift ^ sign);
 }
 
-static inline void rt_ray_set_thickness(RtPreparedRay *ray, float thickness) {
+/* Sets the thickness for boxes inside `around`. */
+static inline void rt_ray_thicken(RtPreparedRay *ray, const RtBox *around) {
     RtFloat4 org = rt_loadu4(&ray->org); /* and what follows, here and below */
-    RtFloat4 shift = rt_shift4(thickness, org, (RtInt4)rt_loadu4(&ray->dir) & INT32_MIN);
+    RtFloat4 shift = rt_shift4(rt_thickness(ray->org, around), org, (RtInt4)rt_loadu4(&ray->dir) & INT32_MIN);
     RtFloat4 near = org + shift, far = org - shift;
     memcpy(ray->org_near, &near, sizeof ray->org_near);
     memcpy(ray->org_far, &far, sizeof ray->org_far);
-}
-
-/* Sets the thickness for boxes inside `around`. */
-static inline void rt_ray_thicken(RtPreparedRay *ray, const RtBox *around) {
-    rt_ray_set_thickness(ray, rt_thickness(ray->org, around));
 }
 
 /* Prepares *p. `scene_box` must contain every box that the ray will be tested against; it sets the
