@@ -166,15 +166,21 @@ RT_KERNEL uint32_t choose_child(uint32_t mask, RtFloat8 enter, bool ordered) {
     return ordered ? least_lane(mask, (RtInt8)enter) : 31 - (uint32_t)__builtin_clz(mask | 1);
 }
 
+/* Pushes the children of a mask; the caller raises the top. */
+RT_KERNEL void push(RayState *f, uint32_t top, const RtWideNode *node, uint32_t mask, RtFloat8 enter,
+                    bool any) {
+    RtOrder8 order = rt_order8(mask);
+    if (!any) rt_store(&f->enter[top], rt_compress8(order, (RtInt8)enter));
+    rt_store(&f->stack[top], rt_compress8(order, rt_load_ints8(node->child)));
+}
+
 /* Returns one child of the mask and pushes the others; if there is none, pops the stack. Without a branch,
  * because it would be unpredictable. */
 RT_KERNEL RtWideRef descend(RayState *f, const RtWideNode *node, uint32_t mask, RtFloat8 enter, bool ordered,
                             bool any) {
     uint32_t top = f->top, lane = choose_child(mask, enter, ordered), others = mask & ~(1u << lane);
     RtWideRef popped = f->stack[top - 1], child = node->child[lane];
-    RtOrder8 order = rt_order8(others);
-    if (!any) rt_store(&f->enter[top], rt_compress8(order, (RtInt8)enter));
-    rt_store(&f->stack[top], rt_compress8(order, rt_load_ints8(node->child)));
+    push(f, top, node, others, enter, any);
     f->top = top + (uint32_t)__builtin_popcount(others) - (mask == 0);
     return mask == 0 ? popped : child;
 }
