@@ -1,5 +1,26 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The state of one ray in a wide hierarchy, and its visits of nodes and leaves. */
+/* The state of one ray in a wide hierarchy, and its visits of nodes and leaves.
+ *
+ * rt_triangle_hit ends with rt_admit4, which clamps t to the interval [near, far] of the triangle's own thick
+ * box. Hits at |t| >= Axes.sure omit it: near <= t <= far holds there, so only tmin <= t <= tmax is left.
+ * Proof. Let e = 2^-24; d = dir, z = kz, x another axis; o = org; D the largest distance along one axis from
+ * o to a plane of the box; t > 0. Float32 is relatively exact to e throughout, because 2^-64 <= |d_z| <= 2^64
+ * and t |d_z| >= 2^-60 (both within a rounding), so t >= 2^-125 and D >= 2^-61.
+ *
+ * 1. Let P be the vertices, relative to o, averaged by the edge functions in double. They have one sign, so P
+ * is in the box. Each has a relative error of 2^-53, so the sheared x average to 0 within 2^-51 D. A sheared
+ * x is off by 7 e D: e D of v - o, 4 e D of the product, since |d_x| <= |d_z|, and 2 e D of the difference.
+ * So |P_x - P_z d_x / d_z| <= 7 e D. Rounding z and t gives |t d_z - P_z| <= 2 e D. Thus |t d_x - P_x| <= 9 e
+ * D, up to 2^-40 D here and below for products of errors.
+ * 2. Let d_x have no sign bit; otherwise mirror. The shifted origins are at least 16 e D (1 - 4 e) from o,
+ * because rt_shift4 compensates their rounding. Let N = lo - (o + shift), so N <= P_x - 16 e D <= t d_x - 7 e
+ * D. If N <= 0, the crossing is at most 0 < t, or NaN, which is ignored. If N > 0, then d_x > 7 e D / t > e
+ * |d_z| >= 2^-88, so 1 / d_x is accurate. N and 1 / d_x have one rounding each, so their product is at most t
+ * (1 + 2 e) - 7 e D / d_x < t, since t d_x <= D (1 + 3 e). Rounding is monotone and t a float32 number: the
+ * crossing is at most t.
+ * 3. Let M = hi - (o - shift) >= t d_x + 7 e D. Two roundings take at most 2 e of it, so the crossing is at
+ * least t, or infinite.
+ * 4. If t < 0, negate t and dir: near and far become -far and -near, bit for bit. */
 #ifndef RT_ACCEL_WIDE_RAY_STATE_H
 #define RT_ACCEL_WIDE_RAY_STATE_H
 
@@ -17,6 +38,7 @@ enum { RT_WIDE_STACK = RT_TREE_MAX_DEPTH * (RT_WIDE - 1) + 2 * RT_WIDE };
 typedef struct Axes {
     uint32_t x, y, z;
     float org_x, org_y, org_z, shear_x, shear_y;
+    float sure; /* hits at this |t| or more are within the triangle's own thick box (see above) */
 } Axes;
 
 typedef struct RayState {
@@ -101,7 +123,8 @@ RT_KERNEL bool init_ray(RayState *f, const RtWideTree *tree, const RtGeometry *g
                      r->org.at[r->ky],
                      r->org.at[r->kz],
                      r->shear_x,
-                     r->shear_y};
+                     r->shear_y,
+                     rt_surface_is_near(r) ? 0x1p-60f * fabsf(r->inv[r->kz]) : INFINITY};
     f->enter[0] = -INFINITY;
     f->stack[0] = RT_WIDE_DONE;
     f->top = 1;
@@ -163,15 +186,21 @@ RT_KERNEL uint32_t choose_child(uint32_t mask, RtFloat8 enter, bool ordered) {
     return ordered ? least_lane(mask, (RtInt8)enter) : 31 - (uint32_t)__builtin_clz(mask | 1);
 }
 
+/* Pushes the children of a mask; the caller raises the top. */
+RT_KERNEL void push(RayState *f, uint32_t top, const RtWideNode *node, uint32_t mask, RtFloat8 enter,
+                    bool any) {
+    RtOrder8 order = rt_order8(mask);
+    if (!any) rt_store(&f->enter[top], rt_compress8(order, (RtInt8)enter));
+    rt_store(&f->stack[top], rt_compress8(order, rt_load_ints8(node->child)));
+}
+
 /* Returns one child of the mask and pushes the others; if there is none, pops the stack. Without a branch,
  * because it would be unpredictable. */
 RT_KERNEL RtWideRef descend(RayState *f, const RtWideNode *node, uint32_t mask, RtFloat8 enter, bool ordered,
                             bool any) {
     uint32_t top = f->top, lane = choose_child(mask, enter, ordered), others = mask & ~(1u << lane);
     RtWideRef popped = f->stack[top - 1], child = node->child[lane];
-    RtOrder8 order = rt_order8(others);
-    if (!any) rt_store(&f->enter[top], rt_compress8(order, (RtInt8)enter));
-    rt_store(&f->stack[top], rt_compress8(order, rt_load_ints8(node->child)));
+    push(f, top, node, others, enter, any);
     f->top = top + (uint32_t)__builtin_popcount(others) - (mask == 0);
     return mask == 0 ? popped : child;
 }
@@ -209,7 +238,8 @@ RT_KERNEL uint32_t prefilter_leaf(const RtWideTriangles *blocks, RtWideRef ref, 
 }
 
 /* The last step of rt_triangle_hit for one triangle of a block. */
-RT_KERNEL bool admit(const float *triangle, const RtPreparedRay *ray, float *t) {
+RT_KERNEL bool admit(const float *triangle, const Axes *axes, const RtPreparedRay *ray, float *t) {
+    if (fabsf(*t) >= axes->sure) return *t >= ray->tmin && *t <= ray->tmax;
     RtFloat4 a = rt_triangle_vertex(triangle, RT_WIDE_BLOCK);
     RtFloat4 b = rt_triangle_vertex(triangle + VERTEX, RT_WIDE_BLOCK);
     RtFloat4 c = rt_triangle_vertex(triangle + (size_t)2 * VERTEX, RT_WIDE_BLOCK);
@@ -226,7 +256,7 @@ RT_KERNEL bool test_block(const RtWideTriangles *block, uint32_t mask, const Axe
     rt_store(at, t);
     for (; mask; mask &= mask - 1) {
         uint32_t lane = (uint32_t)__builtin_ctz(mask);
-        if (!admit(&block->v[0][0][lane], ray, &at[lane])) continue;
+        if (!admit(&block->v[0][0][lane], axes, ray, &at[lane])) continue;
         RT_COUNT(tally, object_hits, 1);
         RT_OBSERVE(tally, .kind = RT_TRACED_OBJECT_HIT, .index = block->id[lane], .t = at[lane]);
         if (rt_hit_before(at[lane], block->id[lane], *best)) *best = (RtHit){at[lane], block->id[lane]};

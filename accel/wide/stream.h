@@ -28,37 +28,53 @@ RT_KERNEL void finish_ray(const Query *q, const RayState *f, bool any, bool coun
 
 /* ---- one ray after the other ---- */
 
+/* Pops the stack until an entry is not entered beyond the best hit; the bottom is entered at -infinity. */
+RT_KERNEL RtWideRef pop(const RayState *f, uint32_t *top, bool any) {
+    do {
+        --*top;
+    } while (!any && f->enter[*top] > f->limit);
+    return f->stack[*top];
+}
+
+/* With one ray nothing overlaps a chain of dependent operations. Branches on the number of children hit cut
+ * it, and an entry beyond the best hit is dropped when it is popped, not after each hit. */
 RT_KERNEL void trace_one(const Query *q, RayState *f, bool any, bool counted) {
-    const RtWideTree *tree = q->tree;
+    const RtWideTree tree = *q->tree;
     RtTally *tally = counted ? f->tally : NULL;
     const bool ordered = !any && q->self->order, ahead = q->self->prefetch;
+    uint32_t top = 1;
     RtWideRef ref = 0;
     do {
         if (rt_wide_kind(ref) == RT_WIDE_NODE) {
-            const RtWideNode *node = rt_wide_node(tree, ref);
+            const RtWideNode *node = rt_wide_node(&tree, ref);
             RtFloat8 enter;
             uint32_t mask = hit_children(node, f, &enter);
             RT_COUNT(tally, steps, 1);
             RT_COUNT(tally, extent_tests, node->count);
             if (RT_OBSERVED(tally)) observe_node(node, ref, mask);
-            if ((mask & (mask - 1)) == 0 && mask != 0) {
+            if (mask == 0) {
+                ref = pop(f, &top, any);
+            } else if ((mask & (mask - 1)) == 0) {
                 ref = node->child[__builtin_ctz(mask)];
             } else {
-                ref = descend(f, node, mask, enter, ordered, any);
-                if (mask && ahead) prefetch(tree, f->stack[f->top - 1]);
+                uint32_t lane = choose_child(mask, enter, ordered), others = mask & ~(1u << lane);
+                ref = node->child[lane];
+                push(f, top, node, others, enter, any);
+                top += (uint32_t)__builtin_popcount(others);
+                if (ahead) prefetch(&tree, f->stack[top - 1]);
             }
             continue;
         }
-        count_leaf(tally, tree, q->geometry, ref);
+        count_leaf(tally, &tree, q->geometry, ref);
         if (rt_wide_kind(ref) == RT_WIDE_TRIANGLES) {
-            const RtWideTriangles *blocks = rt_wide_leaf_at(tree, ref);
+            const RtWideTriangles *blocks = rt_wide_leaf_at(&tree, ref);
             uint32_t mask = prefilter_leaf(blocks, ref, &f->axes);
             if (test_triangles(blocks, mask, &f->axes, &f->ray, any, &f->best, tally)) return;
-        } else if (test_objects(tree, q->geometry, ref, &f->ray, any, &f->best, tally)) {
+        } else if (test_objects(&tree, q->geometry, ref, &f->ray, any, &f->best, tally)) {
             return;
         }
-        if (!any) cull_stack(f);
-        ref = f->stack[--f->top];
+        if (!any) f->limit = rt_minf(f->best.t, f->limit);
+        ref = pop(f, &top, any);
     } while (ref != RT_WIDE_DONE);
 }
 
