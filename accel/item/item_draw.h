@@ -17,9 +17,10 @@ RT_KERNEL void update_least(RtItemTile *tile, uint32_t block) {
     tile->least[block] = rt_least(least);
 }
 
-/* Draws facet k at the samples first..first+RT_LANES-1 that are in `lanes`, where it may be nearest. */
-RT_KERNEL void draw_samples(RtItemDrawing *d, uint32_t first, const RtItemFacets *f, uint32_t k,
-                            uint32_t edges, uint32_t lanes, RtFloats column, RtFloats row) {
+/* Draws facet k at the samples first..first+RT_LANES-1 that are in `lanes`, where it may be nearest. Returns
+ * the samples of which the block's least w does not know yet. */
+RT_KERNEL uint32_t draw_samples(RtItemDrawing *d, uint32_t first, const RtItemFacets *f, uint32_t k,
+                                uint32_t edges, uint32_t lanes, RtFloats column, RtFloats row) {
     RtItemTile *tile = &d->tile;
     float *tile_lo = &tile->lo[first], *tile_hi = &tile->hi[first];
     RtFloats w = function(f->depth, k, column, row), size = rt_abs(w), half = w * 0.5f;
@@ -30,7 +31,7 @@ RT_KERNEL void draw_samples(RtItemDrawing *d, uint32_t first, const RtItemFacets
     RtFloats hi = rt_select(known, w + error, rt_all(f->most[k]));
     uint32_t behind = rt_lt_bits(error, -half);
     uint32_t front = lanes & ~behind & rt_le_bits(rt_load(tile_lo), hi);
-    if (!front) return;
+    if (!front) return 0;
 
     RtFloats margin = f->edge_error[1][k] * hi + f->edge_error[0][k], outside = -margin;
     uint32_t inside = rt_bits(known);
@@ -40,7 +41,7 @@ RT_KERNEL void draw_samples(RtItemDrawing *d, uint32_t first, const RtItemFacets
         inside &= rt_lt_bits(margin, edge);
     }
     front &= rt_le_bits(lo, rt_all(d->nearest));
-    if (!front) return;
+    if (!front) return 0;
     inside &= rt_le_bits(hi * (1 + 0x1p-18f), rt_all(d->nearest));
     uint32_t clear = front & inside & rt_lt_bits(rt_load(tile_hi), lo);
     if (clear) {
@@ -48,10 +49,9 @@ RT_KERNEL void draw_samples(RtItemDrawing *d, uint32_t first, const RtItemFacets
         rt_store_lanes(tile_hi, clear, (RtInts)hi);
         rt_store_lanes(&tile->t[first], clear, (RtInts)rt_all(-1));
         rt_store_lanes(&tile->id[first], clear, rt_all_ints((int32_t)f->id[k]));
-        update_least(tile, first / RT_ITEM_BLOCK_SAMPLES);
     }
     front &= ~clear;
-    if (!front) return;
+    if (!front) return clear;
     float los[RT_LANES], his[RT_LANES];
     rt_store(los, lo);
     rt_store(his, hi);
@@ -59,42 +59,22 @@ RT_KERNEL void draw_samples(RtItemDrawing *d, uint32_t first, const RtItemFacets
         uint32_t lane = (uint32_t)__builtin_ctz(front);
         rt_item_resolve(d, first + lane, f->id[k], los[lane], his[lane], inside >> lane & 1);
     }
-}
-
-/* The facets of triangles that may hold a sample: all that are seen at more than two columns or rows, and the
- * others if one of their samples is inside all edges. */
-RT_KERNEL uint32_t holding_samples(const RtItemFacets *f, const Bounds *b, const RtFloats corner[2]) {
-    RtFloats outside = -(rt_load(f->edge_error[0]) + rt_load(f->edge_error[1]) * rt_load(f->most)), start[2];
-    uint32_t some = 0, wide[2];
-    for (int a = 0; a < 2; a++) {
-        start[a] = b->lo[a] - corner[a];
-        RtFloats more = b->hi[a] - b->lo[a];
-        wide[a] = rt_bits(more >= 1);
-        some |= ~rt_bits(more <= 1);
-    }
-    for (int i = 0; i < 4; i++) {
-        RtFloats column = i & 1 ? start[0] + 1 : start[0], row = i & 2 ? start[1] + 1 : start[1];
-        uint32_t in = (i & 1 ? wide[0] : ~0u) & (i & 2 ? wide[1] : ~0u);
-        for (int e = 0; e < 3; e++) {
-            RtFloats edge =
-                rt_load(f->edge[e][0]) + rt_load(f->edge[e][1]) * column + rt_load(f->edge[e][2]) * row;
-            in &= ~rt_lt_bits(edge, outside);
-        }
-        some |= in;
-    }
-    return some;
+    return clear;
 }
 
 /* From so many blocks on, blocks are tested against the edges first. */
-enum { MANY_BLOCKS = 4 };
+enum { MANY_BLOCKS = 4, AHEAD = 24 };
 
-/* Bit i: facet k may be seen in block i. An edge is largest in a block at the corner on its inner side. */
-RT_KERNEL uint64_t blocks_of(const RtItemDrawing *d, const RtItemFacets *f, uint32_t k, uint32_t edges) {
+/* Bit i: facet k may be seen in block i of some rows of blocks. An edge is largest in a block at the corner
+ * on its inner side. */
+RT_KERNEL uint64_t blocks_of(const RtItemDrawing *d, const RtItemFacets *f, uint32_t k, uint32_t edges,
+                             uint32_t first_row, uint32_t last_row) {
     const float last = RT_ITEM_BLOCK - 1;
     const RtFloats outside = rt_all(-(f->edge_error[0][k] + f->edge_error[1][k] * f->most[k]));
     uint64_t open = 0;
-    for (int i = 0; i < RT_ITEM_BLOCKS; i += RT_LANES) {
-        RtInts block = rt_lane_numbers() + i;
+    for (uint32_t i = first_row * RT_ITEM_ACROSS / RT_LANES * RT_LANES; i < (last_row + 1) * RT_ITEM_ACROSS;
+         i += RT_LANES) {
+        RtInts block = rt_lane_numbers() + (int32_t)i;
         RtFloats column = rt_to_floats(block % RT_ITEM_ACROSS * RT_ITEM_BLOCK);
         RtFloats row = rt_to_floats(block / RT_ITEM_ACROSS * RT_ITEM_BLOCK);
         uint32_t in = rt_le_bits(rt_load(&d->tile.least[i]), rt_all(f->most[k]));
@@ -108,35 +88,31 @@ RT_KERNEL uint64_t blocks_of(const RtItemDrawing *d, const RtItemFacets *f, uint
 }
 
 RT_KERNEL void draw_one(RtItemDrawing *d, const RtItemFacets *f, uint32_t k, uint32_t edges) {
-    int32_t lo[2], hi[2], first[2], last[2];
+    uint32_t in[2], first[2], last[2]; /* samples, a bit each, and blocks */
     for (int a = 0; a < 2; a++) {
-        lo[a] = f->lo[a][k] > 0 ? f->lo[a][k] : 0;
-        hi[a] = f->hi[a][k] < RT_ITEM_TILE - 1 ? f->hi[a][k] : RT_ITEM_TILE - 1;
-        first[a] = lo[a] / RT_ITEM_BLOCK;
-        last[a] = hi[a] / RT_ITEM_BLOCK;
+        uint32_t lo = (uint32_t)f->lo[a][k], hi = (uint32_t)f->hi[a][k];
+        in[a] = ~0u << lo & ~0u >> (RT_ITEM_TILE - 1 - hi);
+        first[a] = lo / RT_ITEM_BLOCK;
+        last[a] = hi / RT_ITEM_BLOCK;
     }
-    int32_t blocks = (last[0] - first[0] + 1) * (last[1] - first[1] + 1);
-    uint64_t open = blocks < MANY_BLOCKS ? ~UINT64_C(0) : blocks_of(d, f, k, edges);
-    for (int32_t y = first[1]; y <= last[1]; y++) {
-        uint32_t in_rows = 0xffff;
-        if (y == first[1]) in_rows &= 0xffffu << 4 * (lo[1] % RT_ITEM_BLOCK);
-        if (y == last[1]) in_rows &= 0xffffu >> 4 * (RT_ITEM_BLOCK - 1 - hi[1] % RT_ITEM_BLOCK);
-        for (int32_t x = first[0]; x <= last[0]; x++) {
-            uint32_t block = (uint32_t)(y * RT_ITEM_ACROSS + x), in = 15;
-            if (!(open >> block & 1) || f->most[k] < d->tile.least[block]) continue;
-            if (x == first[0]) in &= 15u << lo[0] % RT_ITEM_BLOCK;
-            if (x == last[0]) in &= 15u >> (RT_ITEM_BLOCK - 1 - hi[0] % RT_ITEM_BLOCK);
-            RtFloats columns = rt_raster_columns((float)(x * RT_ITEM_BLOCK));
-            in = in_rows & in * 0x1111;
-            for (int i = 0; i < RT_ITEM_BLOCK_SAMPLES; i += RT_LANES) {
-                uint32_t lanes = in >> i & ((1u << RT_LANES) - 1);
-                if (!lanes) continue;
-                const int row = y * RT_ITEM_BLOCK + i / RT_ITEM_BLOCK;
-                RtFloats rows = rt_raster_rows((float)row);
-                draw_samples(d, block * RT_ITEM_BLOCK_SAMPLES + (uint32_t)i, f, k, edges, lanes, columns,
-                             rows);
-            }
+    uint64_t open =
+        (0xffu << first[0] & 0xffu >> (RT_ITEM_ACROSS - 1 - last[0])) * UINT64_C(0x0101010101010101);
+    open &= ~UINT64_C(0) << 8 * first[1] & ~UINT64_C(0) >> 8 * (RT_ITEM_ACROSS - 1 - last[1]);
+    if (__builtin_popcountll(open) >= MANY_BLOCKS) open &= blocks_of(d, f, k, edges, first[1], last[1]);
+    for (; open; open &= open - 1) {
+        uint32_t block = (uint32_t)__builtin_ctzll(open), x = block % RT_ITEM_ACROSS,
+                 y = block / RT_ITEM_ACROSS;
+        if (f->most[k] < d->tile.least[block]) continue;
+        uint32_t column = x * RT_ITEM_BLOCK, row = y * RT_ITEM_BLOCK, some = in[1] >> row & 15, changed = 0;
+        some = ((some | some << 3 | some << 6 | some << 9) & 0x1111) * 15 & (in[0] >> column & 15) * 0x1111;
+        RtFloats columns = rt_raster_columns((float)column);
+        for (uint32_t i = 0; i < RT_ITEM_BLOCK_SAMPLES; i += RT_LANES) {
+            uint32_t lanes = some >> i & ((1u << RT_LANES) - 1);
+            if (!lanes) continue;
+            RtFloats rows = rt_raster_rows((float)(row + i / RT_ITEM_BLOCK));
+            changed |= draw_samples(d, block * RT_ITEM_BLOCK_SAMPLES + i, f, k, edges, lanes, columns, rows);
         }
+        if (changed) update_least(&d->tile, block);
     }
 }
 
@@ -156,16 +132,13 @@ RT_KERNEL void draw_triangles(RtItemDrawing *d, const LaneProjection *projection
     rt_raster_gather(g, triangles, count, v);
     bound(projection, v, &b);
     uint32_t there = rt_raster_first_lanes(count), by_box = ~b.known & there;
-    there &= by_box | rt_le_bits(rt_all(farthest(&d->tile)), b.most);
-    if (!there) return;
     make_half(d, v, 0, f);
     if (there >> RT_HALF) make_half(d, v, 1, f);
     for (int a = 0; a < 2; a++) {
-        rt_store(f->lo[a], rt_to_ints(b.lo[a] - corner[a]));
-        rt_store(f->hi[a], rt_to_ints(b.hi[a] - corner[a]));
+        rt_store(f->lo[a], rt_to_ints(rt_max(b.lo[a] - corner[a], rt_all(0))));
+        rt_store(f->hi[a], rt_to_ints(rt_min(b.hi[a] - corner[a], rt_all(RT_ITEM_TILE - 1))));
     }
     rt_store(f->most, b.most);
-    there &= by_box | holding_samples(f, &b, corner);
     for (; by_box; by_box &= by_box - 1) {
         uint32_t k = (uint32_t)__builtin_ctz(by_box);
         RtItemFootprint footprint;
@@ -179,17 +152,57 @@ RT_KERNEL void draw_triangles(RtItemDrawing *d, const LaneProjection *projection
     }
 }
 
+/* Writes the triangles that may be seen beside what is drawn to `to`, which has room for RT_LANES; returns
+ * how many they are. */
+RT_KERNEL uint32_t not_hidden(const RtItemDrawing *d, const LaneProjection *projection,
+                              const uint32_t *triangles, uint32_t count, uint32_t *to) {
+    const RtFloats corner[2] = {rt_all((float)d->column), rt_all((float)d->row)};
+    const RtFloats zero = rt_all(0), last = rt_all(RT_ITEM_TILE - 1);
+    RtFloats v[3][3];
+    RtInts lo[2], hi[2];
+    Bounds b;
+    rt_raster_gather(rt_item_geometry(d->buffer), triangles, count, v);
+    bound(projection, v, &b);
+    for (int a = 0; a < 2; a++) {
+        lo[a] = rt_to_ints(rt_max(b.lo[a] - corner[a], zero)) / RT_ITEM_BLOCK;
+        hi[a] = rt_to_ints(rt_min(b.hi[a] - corner[a], last)) / RT_ITEM_BLOCK;
+    }
+    RtFloats least = rt_all(INFINITY);
+    for (int i = 0; i < 4; i++) {
+        RtInts block = (i & 2 ? hi[1] : lo[1]) * RT_ITEM_ACROSS + (i & 1 ? hi[0] : lo[0]);
+        least = rt_min(least, rt_gather(d->tile.least, block & (RT_ITEM_BLOCKS - 1)));
+    }
+    uint32_t few = rt_bits((hi[0] - lo[0] < 2) & (hi[1] - lo[1] < 2));
+    uint32_t hidden = (few & rt_lt_bits(b.most, least)) | rt_lt_bits(b.most, rt_all(farthest(&d->tile)));
+    uint32_t seen = rt_raster_first_lanes(count) & ~(hidden & b.known);
+    rt_compress_store(to, seen, rt_load_ints(triangles));
+    return (uint32_t)__builtin_popcount(seen);
+}
+
 static void draw(RtItemDrawing *d, const RtRef *objects, size_t count) {
+    const RtTriangle *triangles = rt_item_geometry(d->buffer)->triangles;
     RtItemFacets facets;
     LaneProjection projection;
+    RtRef seen[2 * RT_LANES] = {0};
+    uint32_t seen_count = 0;
     make_lane_projection(&projection, d->buffer);
     for (size_t i = 0; i < count;) {
-        RtRef triangles[RT_LANES];
-        uint32_t some = 0;
-        for (; i < count && some < RT_LANES; i++) {
-            if (rt_raster_is_triangle(objects[i])) triangles[some++] = objects[i];
+        RtRef some[RT_LANES];
+        uint32_t some_count = 0;
+        for (; i < count && some_count < RT_LANES; i++) {
+            if (!rt_raster_is_triangle(objects[i])) continue;
+            const RtTriangle *ahead = &triangles[rt_ref_index(objects[i + AHEAD < count ? i + AHEAD : i])];
+            __builtin_prefetch(ahead);
+            __builtin_prefetch(&ahead->v[2].z);
+            some[some_count++] = objects[i];
         }
-        if (some > 0) draw_triangles(d, &projection, triangles, some, &facets);
+        if (some_count > 0) seen_count += not_hidden(d, &projection, some, some_count, seen + seen_count);
+        while (seen_count >= RT_LANES || (i >= count && seen_count > 0)) {
+            uint32_t drawn = seen_count < RT_LANES ? seen_count : RT_LANES;
+            draw_triangles(d, &projection, seen, drawn, &facets);
+            rt_store(seen, rt_load_ints(seen + RT_LANES));
+            seen_count -= drawn;
+        }
     }
 }
 

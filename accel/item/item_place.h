@@ -45,15 +45,16 @@ RT_KERNEL RtFloats dot_floats(const RtFloats a[3], const RtFloats b[3]) {
  * moves it by less than 2^-18 of it. */
 typedef struct Bounds {
     RtFloats lo[2], hi[2], most;
-    uint32_t known, behind; /* the eye: never seen */
+    RtFloats at[3][2], pad[2]; /* where vertices are seen, and how far from their hull a hit may be */
+    uint32_t known, behind;    /* the eye: never seen */
 } Bounds;
 
 RT_KERNEL void bound(const LaneProjection *l, RtFloats v[3][3], Bounds *b) {
     const RtFloats zero = rt_all(0), most = rt_all(INFINITY), least = rt_all(-INFINITY);
     RtFloats oblique = zero;
-    *b = (Bounds){{most, most}, {least, least}, least, ~0u, ~0u};
+    *b = (Bounds){.lo = {most, most}, .hi = {least, least}, .most = least, .known = ~0u, .behind = ~0u};
     for (int i = 0; i < 3; i++) {
-        RtFloats q[3], at[2];
+        RtFloats q[3], *at = b->at[i];
         for (int a = 0; a < 3; a++) q[a] = v[i][a] - l->eye[a];
         RtFloats depth = dot_floats(l->depth, q), w = 1 / depth;
         RtFloats size = rt_abs(q[0]) + rt_abs(q[1]) + rt_abs(q[2]);
@@ -72,10 +73,34 @@ RT_KERNEL void bound(const LaneProjection *l, RtFloats v[3][3], Bounds *b) {
     b->most = b->most * (1 + oblique * l->nearer);
     RtFloats part = (0x1p-17f + oblique * 0x1p-20f) * oblique;
     for (int a = 0; a < 2; a++) {
-        RtFloats pad = l->reach[a] * part;
-        b->lo[a] = rt_max(rt_ceil(b->lo[a] - pad), zero);
-        b->hi[a] = rt_min(rt_floor(b->hi[a] + pad), l->last[a]);
+        b->pad[a] = l->reach[a] * part;
+        b->lo[a] = rt_max(rt_ceil(b->lo[a] - b->pad[a]), zero);
+        b->hi[a] = rt_min(rt_floor(b->hi[a] + b->pad[a]), l->last[a]);
     }
+}
+
+/* The triangles that may hold a sample: those seen at more than two columns or rows, and of the others those
+ * whose hull, as far as a hit may be from it, holds one. Edges are rounded by less than a tenth of `margin`.
+ * A triangle turned the wrong way by rounding is as thin as that. */
+RT_KERNEL uint32_t holding_samples(const Bounds *b) {
+    RtFloats along[3][2], margin[3];
+    uint32_t some = rt_bits((b->hi[0] - b->lo[0] > 1) | (b->hi[1] - b->lo[1] > 1));
+    for (int i = 0; i < 3; i++) {
+        for (int a = 0; a < 2; a++) along[i][a] = b->at[(i + 1) % 3][a] - b->at[i][a];
+        margin[i] = (rt_abs(along[i][0]) * b->pad[1] + rt_abs(along[i][1]) * b->pad[0]) * -1.25f;
+    }
+    RtFloats area = along[0][0] * along[1][1] - along[0][1] * along[1][0];
+    RtFloats turn = rt_select(area < 0, rt_all(-1), rt_all(1));
+    for (int k = 0; k < 4; k++) {
+        RtFloats column = k & 1 ? b->hi[0] : b->lo[0], row = k & 2 ? b->hi[1] : b->lo[1];
+        uint32_t out = 0;
+        for (int i = 0; i < 3; i++) {
+            RtFloats edge = along[i][0] * (row - b->at[i][1]) - along[i][1] * (column - b->at[i][0]);
+            out |= rt_lt_bits(edge * turn, margin[i]);
+        }
+        some |= ~out;
+    }
+    return some;
 }
 
 RT_KERNEL RtInts classes_of(const Bounds *b, const float *nearer) {
@@ -103,6 +128,7 @@ static uint32_t place(const void *view, uint32_t first, uint32_t count, RtTileRa
             rt_store(lo[a], rt_to_ints(b.lo[a]));
             rt_store(hi[a], rt_to_ints(b.hi[a]));
         }
+        if (seen) seen &= holding_samples(&b);
         if (seen) rt_store(class, classes_of(&b, placing->nearer));
         for (; seen; seen &= seen - 1) {
             uint32_t k = (uint32_t)__builtin_ctz(seen);

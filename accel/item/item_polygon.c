@@ -87,8 +87,9 @@ static bool put_depth(const RtItemDrawing *d, RtVec3d normal, double height, dou
 void rt_item_place_facet(const RtItemDrawing *d, const RtItemFootprint *at, RtItemFacets *f, uint32_t lane) {
     const uint32_t corner[2] = {d->column, d->row};
     for (int a = 0; a < 2; a++) {
-        f->lo[a][lane] = (int32_t)at->lo[a] - (int32_t)corner[a];
-        f->hi[a][lane] = (int32_t)at->hi[a] - (int32_t)corner[a];
+        f->lo[a][lane] = at->lo[a] > corner[a] ? (int32_t)(at->lo[a] - corner[a]) : 0;
+        f->hi[a][lane] =
+            (int32_t)(at->hi[a] - corner[a] < RT_ITEM_TILE ? at->hi[a] - corner[a] : RT_ITEM_TILE - 1);
     }
     f->most[lane] = rt_float_above(1 / (double)at->near);
     if (!(f->edge_error[1][lane] * f->most[lane] < 0x1p-4f)) f->most[lane] = INFINITY;

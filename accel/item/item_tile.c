@@ -7,6 +7,8 @@
 #include "accel/item/item.h"
 #include "accel/kernel.h"
 
+#include <string.h>
+
 /* The ray of a sample hits an object, if at all, at lo <= 1 / t <= hi. */
 typedef struct Span {
     float lo, hi;
@@ -153,15 +155,17 @@ void rt_item_draw_object(RtItemDrawing *d, uint32_t id) {
 
 /* Where the nearest object is not known for certain, none is named. */
 void rt_item_end_tile(RtItemDrawing *d) {
-    const RtItemTile *tile = &d->tile;
+    RtItemTile *tile = &d->tile;
     const size_t columns = d->buffer->view.sampling.columns;
+    uint32_t *corner = d->buffer->samples + d->row * columns + d->column;
+    for (uint32_t i = 0; i < RT_ITEM_TILE_SAMPLES; i++) {
+        bool open = (tile->other[i] >= 0) & (tile->other[i] >= tile->lo[i]);
+        tile->id[i] = open ? RT_ITEM_UNDECIDED : tile->id[i];
+    }
     for (uint32_t row = 0; row < d->rows; row++) {
-        uint32_t *to = d->buffer->samples + (d->row + row) * columns + d->column;
-        for (uint32_t column = 0; column < d->columns; column++) {
-            uint32_t sample = sample_at(column, row);
-            float other = tile->other[sample];
-            bool open = other >= 0 && other >= tile->lo[sample];
-            to[column] = open ? RT_ITEM_UNDECIDED : tile->id[sample];
+        for (uint32_t column = 0; column < d->columns; column += RT_ITEM_BLOCK) {
+            uint32_t some = lesser(d->columns - column, RT_ITEM_BLOCK);
+            memcpy(&corner[row * columns + column], &tile->id[sample_at(column, row)], some * sizeof *corner);
         }
     }
 }
