@@ -77,10 +77,11 @@ RT_KERNEL bool test_chunk(const RtBatch *batch, const RtGeometry *g, RtActiveRay
     Line line;
     uint32_t reported = first;
     make_line(&line, &a->ray);
-    for (uint32_t i = 0; i < count; i += RT_LANES) {
-        const RtBlock *block = &batch->chunk[i / RT_LANES];
+    const RtBlock *block = batch->chunk;
+    const RtSphereLine sphere_line = a->line;
+    for (uint32_t i = 0; i < count; i += RT_LANES, block++) {
         uint32_t passed = objects->shape == RT_SHAPE_SPHERE
-                              ? rt_sphere_prefilter(block->row[0], RT_LANES, &a->line)
+                              ? rt_sphere_prefilter(block->row[0], RT_LANES, &sphere_line)
                               : prefilter_triangles(block, &line);
         for (; passed; passed &= passed - 1) {
             uint32_t index = first + i + (uint32_t)__builtin_ctz(passed), id = objects->ids[index];

@@ -109,7 +109,8 @@ RT_KERNEL void draw_one(RtItemDrawing *d, const RtItemFacets *f, uint32_t k, uin
         for (uint32_t i = 0; i < RT_ITEM_BLOCK_SAMPLES; i += RT_LANES) {
             uint32_t lanes = some >> i & ((1u << RT_LANES) - 1);
             if (!lanes) continue;
-            RtFloats rows = rt_raster_rows((float)(row + i / RT_ITEM_BLOCK));
+            uint32_t first_row = row + i / RT_ITEM_BLOCK;
+            RtFloats rows = rt_raster_rows((float)first_row);
             changed |= draw_samples(d, block * RT_ITEM_BLOCK_SAMPLES + i, f, k, edges, lanes, columns, rows);
         }
         if (changed) update_least(&d->tile, block);
