@@ -12,19 +12,17 @@
  * other plane because rt_box_admit guarantees that t is between the crossings of the box, between which that
  * plane does not lie.
  *
- * 2. p is within 7 units of a point s of the surface, along each axis. Let D be the largest distance along
- * one axis from the origin to a point of the scene; a unit is 2^-24 D. Rounding t moves p by a unit. Before
- * that:
- * - Triangles: the weights, computed in double, define s. Along the major axis the vertices z' are rounded
- *   once. A sheared vertex x - shear * z' is off by 1 (x), 3 (shear, product) and 2 units (difference), 6 in
- *   all; the rest is in double (core/shape/triangle.h).
- * - Polygons and spheres are computed in double, and off by less than a unit. (The error of a sphere is
- * divided by its radius, whose square is subtracted. Coordinates are at most 2^24 times as large as D.)
+ * 2. p is within 9 units of a point s of the surface, along each axis. Let D be the largest distance along
+ * one axis from the origin to a point of the scene; a unit is 2^-24 D.
+ * - Triangles: 9 units, by accel/wide/ray_state.h, 1, which includes the rounding of t.
+ * - Others: that moves p by a unit. Before it, polygons and spheres, in double, are off by less than a unit.
+ *   (The error of a sphere is divided by its radius, whose square is subtracted. Coordinates are at most 2^24
+ *   times as large as D.)
  * - Cones: in double, but near the apex the error is a root. Let C be the largest distance of the cone from
- * the middle of its axis, at most 2.12 D. The roundings add up to less than 150 * 2^-53 C^2 in the square of
- *   the radius (times the square of the slope, if that is above 1, and then s is above or below p): 5 units.
- * rt_box_admit does not move t: by 3, with D for the object's box, that box contains s.
- * q is as near to s as p is, because s is in the box. CSG trees are not in this sum.
+ *   the middle of its axis, at most 2.12 D. The roundings add up to less than 150 * 2^-53 C^2 in the square
+ *   of the radius (times the square of the slope, if that is above 1, and then s is above or below p): 5
+ * units. rt_box_admit does not move t: by 3, with D for the object's box, that box contains s. q is as near
+ * to s as p is, because s is in the box. CSG trees are not in this sum.
  *
  * So no hit is lost if some cell that contains q lists the object, and the traversal visits all cells that
  * the ray is in at t. For an origin in `domain`, the scene's box grown by 8 times its longest side, D is at
@@ -36,7 +34,7 @@
  * scene that contains a point s within 14 units of p, enter(box) <= t <= leave(box). The near plane is at
  * most s, and org' is 16 units ahead of org; rt_shift4 compensates the rounding of that. So (plane - org') /
  * dir is at least 2 units of distance before t. plane - org' and 1 / dir are rounded, by a unit each;
- * rounding the product cannot take it past t, a float32. The far plane likewise. Half of the 14 units
+ * rounding the product cannot take it past t, a float32. The far plane likewise. 9 of the 14 units
  * suffice, by 2. CSG trees are cut like their boxes, so that q is in some part, and 1 applies. Scenes smaller
  * than RT_SURFACE_LEAST_SIDE, where t may be denormal, are not cut. */
 #ifndef RT_ACCEL_SURFACE_H

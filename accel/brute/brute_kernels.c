@@ -74,15 +74,15 @@ RT_COLD static uint32_t observe_tests(const RtGeometry *g, const Objects *object
 /* Tests objects first..first+count-1, which are the chunk; true when the search is over. */
 RT_KERNEL bool test_chunk(const RtBatch *batch, const RtGeometry *g, RtActiveRay *a, const Objects *objects,
                           uint32_t first, uint32_t count, bool any, RtTally *tally) {
+    const bool spheres = objects->shape == RT_SHAPE_SPHERE;
+    const RtBlock *block = batch->chunk;
+    const RtSphereLine sphere_line = spheres ? a->line : (RtSphereLine){0};
     Line line;
     uint32_t reported = first;
     make_line(&line, &a->ray);
-    const RtBlock *block = batch->chunk;
-    const RtSphereLine sphere_line = a->line;
     for (uint32_t i = 0; i < count; i += RT_LANES, block++) {
-        uint32_t passed = objects->shape == RT_SHAPE_SPHERE
-                              ? rt_sphere_prefilter(block->row[0], RT_LANES, &sphere_line)
-                              : prefilter_triangles(block, &line);
+        uint32_t passed = spheres ? rt_sphere_prefilter(block->row[0], RT_LANES, &sphere_line)
+                                  : prefilter_triangles(block, &line);
         for (; passed; passed &= passed - 1) {
             uint32_t index = first + i + (uint32_t)__builtin_ctz(passed), id = objects->ids[index];
             float t;

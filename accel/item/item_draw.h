@@ -62,8 +62,10 @@ RT_KERNEL uint32_t draw_samples(RtItemDrawing *d, uint32_t first, const RtItemFa
     return clear;
 }
 
-/* From so many blocks on, blocks are tested against the edges first. */
-enum { MANY_BLOCKS = 4, AHEAD = 24 };
+enum {
+    MANY_BLOCKS = 4, /* from so many on, blocks are tested against the edges first */
+    AHEAD = 24       /* objects from a triangle to the one that is prefetched meanwhile */
+};
 
 /* Bit i: facet k may be seen in block i of some rows of blocks. An edge is largest in a block at the corner
  * on its inner side. */

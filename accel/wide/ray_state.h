@@ -106,7 +106,8 @@ RT_KERNEL bool init_ray(RayState *f, const RtWideTree *tree, const RtGeometry *g
     f->index = index;
     f->tally = tally;
     if (tree->node_count == 0) return false;
-    if (tree->split_refs && !rt_surface_is_near(&f->ray)) {
+    const bool is_near = rt_surface_is_near(r);
+    if (tree->split_refs && !is_near) {
         test_all(g, &f->ray, any, &f->best, tally);
         return false;
     }
@@ -124,7 +125,7 @@ RT_KERNEL bool init_ray(RayState *f, const RtWideTree *tree, const RtGeometry *g
                      r->org.at[r->kz],
                      r->shear_x,
                      r->shear_y,
-                     rt_surface_is_near(r) ? 0x1p-60f * fabsf(r->inv[r->kz]) : INFINITY};
+                     is_near ? 0x1p-60f * fabsf(r->inv[r->kz]) : INFINITY};
     f->enter[0] = -INFINITY;
     f->stack[0] = RT_WIDE_DONE;
     f->top = 1;

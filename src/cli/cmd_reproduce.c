@@ -125,8 +125,7 @@ static RtStatus reproduce(const char *directory, RtResults *results, const void 
 
 static const RtOption options[] = {{"only", 0, "SCENE", RT_TO_TEXT(scene),
                                     "Count and compare only the rows of one scene, or of a sweep of scenes, "
-                                    "by its label; published figures are "
-                                    "left out"},
+                                    "by its label; published figures are left out"},
                                    {0}};
 static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
 const RtSyntax rt_reproduce_syntax = {
