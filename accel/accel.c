@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What accelerators share: the struct that each begins with, and sums over boxes. */
-#include "accel/accel.h"
+/* What accelerators share: the struct that each begins with, the test of all objects, and sums over boxes. */
+#include "accel/kernel.h"
 
 #include "core/base/memory.h"
 
@@ -18,6 +18,31 @@ RtStatus rt_accel_built(RtAccel *accel, RtStatus status, RtAccel **out) {
     else
         accel->ops->destroy(accel);
     return status;
+}
+
+RT_KERNEL bool test_all(const RtGeometry *geometry, const RtPreparedRay *ray, bool any, RtHit *best,
+                        RtTally *tally) {
+#define LIST(CONSTANT, name, Type) {geometry->name##_ids, geometry->name##_count},
+    const struct {
+        const uint32_t *ids;
+        uint32_t count;
+    } lists[] = {RT_SHAPES(LIST)};
+#undef LIST
+    for (size_t shape = 0; shape < RT_SHAPE_COUNT; shape++) {
+        for (uint32_t i = 0; i < lists[shape].count; i++) {
+            if (rt_test_object(geometry, lists[shape].ids[i], ray, any, best, tally)) return true;
+        }
+    }
+    return false;
+}
+
+bool rt_test_all_timed(const RtGeometry *geometry, const RtPreparedRay *ray, bool any, RtHit *best) {
+    return test_all(geometry, ray, any, best, NULL);
+}
+
+bool rt_test_all_counted(const RtGeometry *geometry, const RtPreparedRay *ray, bool any, RtHit *best,
+                         RtTally *tally) {
+    return test_all(geometry, ray, any, best, tally);
 }
 
 void rt_box_sums_add(void *context, const RtBoxView *view) {

@@ -32,16 +32,16 @@ RT_KERNEL bool rt_test_object(const RtGeometry *geometry, uint32_t id, const RtP
     return any;
 }
 
-/* Tests every object, shape by shape, each in ascending order of ids. This defines the right answer. */
+/* Tests every object, shape by shape, each in ascending order of ids. This defines the right answer. Compiled
+ * once, in accel.c: most structures come here for few rays. Returns true if the search is over. */
+bool rt_test_all_timed(const RtGeometry *geometry, const RtPreparedRay *ray, bool any, RtHit *best);
+bool rt_test_all_counted(const RtGeometry *geometry, const RtPreparedRay *ray, bool any, RtHit *best,
+                         RtTally *tally);
+
 RT_KERNEL bool rt_test_all(const RtGeometry *geometry, const RtPreparedRay *ray, bool any, RtHit *best,
                            RtTally *tally) {
-#define LOOP(CONSTANT, name, Type)                                                                           \
-    for (uint32_t i = 0; i < geometry->name##_count; i++) {                                                  \
-        if (rt_test_object(geometry, geometry->name##_ids[i], ray, any, best, tally)) return true;           \
-    }
-    RT_SHAPES(LOOP)
-#undef LOOP
-    return false;
+    return tally ? rt_test_all_counted(geometry, ray, any, best, tally)
+                 : rt_test_all_timed(geometry, ray, any, best);
 }
 
 /* The largest t at which a hit is still of interest: the best t so far, or tmax if there is none. */

@@ -27,17 +27,6 @@ static const RtBestOf bests[] = {
 
 /* ---- rays in ---- */
 
-/* Out of line, once with and once without a tally. */
-static __attribute__((noinline)) void test_all_timed(const RtGeometry *geometry, RtEmbreeSearch *search,
-                                                     bool any) {
-    rt_test_all(geometry, &search->ray, any, &search->best, NULL);
-}
-
-static __attribute__((noinline)) void test_all_counted(const RtGeometry *geometry, RtEmbreeSearch *search,
-                                                       bool any) {
-    rt_test_all(geometry, &search->ray, any, &search->best, search->tally);
-}
-
 /* Whether Embree proposes all objects that this ray hits (embree.h). |dir| is at most 2^17 * shrink. */
 RT_KERNEL bool is_in_reach(const RtEmbree *self, const RtRay *ray, double shrink) {
     return rt_thickness(ray->org, &self->base.scene->geometry.box) <= self->max_thickness &&
@@ -58,11 +47,7 @@ RT_KERNEL void put_search(const RtEmbree *self, RtEmbreeBatch *batch, unsigned l
     rt_embree_put_constants(batch, lanes, i);
     rt_embree_put_ray(batch, lanes, i, ray, stretch, tnear, rt_embree_limit(ray->tmax, search->shrink));
     if (is_in_reach(self, ray, search->shrink)) return;
-    if (tally) {
-        test_all_counted(geometry, search, any);
-    } else {
-        test_all_timed(geometry, search, any);
-    }
+    rt_test_all(geometry, &search->ray, any, &search->best, tally);
     batch->valid[i] = 0;
     rt_embree_at(batch, lanes, i, RT_EMBREE_TFAR)->f = -INFINITY;
 }

@@ -245,7 +245,7 @@ RT_KERNEL void test_extreme_rays(Packet *p, const Query *q, bool any) {
         odd |= (uint64_t)rt_bits(~surface_is_near(rt_load(&p->dir[p->kz][i]))) << i;
     for (odd &= p->open; odd; odd &= odd - 1) {
         uint32_t i = first_ray(odd);
-        test_all(q->geometry, prepared(p, q, i), any, &p->best[i], NULL);
+        rt_test_all(q->geometry, prepared(p, q, i), any, &p->best[i], NULL);
         p->open &= ~one_ray(i);
     }
 }

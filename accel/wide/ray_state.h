@@ -78,24 +78,6 @@ RT_KERNEL bool test_object(const RtGeometry *g, uint32_t id, const RtPreparedRay
     return tally ? object_counted(g, id, ray, any, best, tally) : object_timed(g, id, ray, any, best);
 }
 
-static __attribute__((noinline)) void all_timed(const RtGeometry *g, const RtPreparedRay *ray, bool any,
-                                                RtHit *best) {
-    rt_test_all(g, ray, any, best, NULL);
-}
-
-static __attribute__((noinline)) void all_counted(const RtGeometry *g, const RtPreparedRay *ray, bool any,
-                                                  RtHit *best, RtTally *tally) {
-    rt_test_all(g, ray, any, best, tally);
-}
-
-RT_KERNEL void test_all(const RtGeometry *g, const RtPreparedRay *ray, bool any, RtHit *best,
-                        RtTally *tally) {
-    if (tally)
-        all_counted(g, ray, any, best, tally);
-    else
-        all_timed(g, ray, any, best);
-}
-
 /* Prepares a ray for the root. False if it is answered already: the tree is empty, or the ray is too extreme
  * for the boxes of split references and was tested against all objects. */
 RT_KERNEL bool init_ray(RayState *f, const RtWideTree *tree, const RtGeometry *g, const RtScratch *scratch,
@@ -108,7 +90,7 @@ RT_KERNEL bool init_ray(RayState *f, const RtWideTree *tree, const RtGeometry *g
     if (tree->node_count == 0) return false;
     const bool is_near = rt_surface_is_near(r);
     if (tree->split_refs && !is_near) {
-        test_all(g, &f->ray, any, &f->best, tally);
+        rt_test_all(g, &f->ray, any, &f->best, tally);
         return false;
     }
     f->limit = r->tmax;
