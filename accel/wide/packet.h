@@ -177,7 +177,7 @@ RT_KERNEL RtFloat4 least_of_each(const RtFloats v[4]) {
 
 RT_KERNEL void bound_beam(Packet *p, uint32_t b) {
     Beam *beam = &p->beam[b];
-    RtFloats ends[5][4]; /* minimized: first, last, inverses and shears; greatest values negated */
+    RtFloats ends[5][4]; /* minimised: first, last, inverses and shears; greatest values negated */
     for (int k = 0; k < 20; k++) ends[k / 4][k % 4] = rt_all(INFINITY);
     for (size_t i = first_of(b); i < first_of(b) + BEAM; i += RT_LANES) {
         RtFloats x = rt_load(&p->shear_x[i]), y = rt_load(&p->shear_y[i]);

@@ -60,7 +60,7 @@ static inline bool rt_wide_becomes_leaf(const RtWidePlan *self, uint32_t index) 
 /* Writes the children of a subtree that becomes a node, and returns their number. A root that is a leaf is
  * its own only child. Children are sorted by ascending priority: the probability that a random line through a
  * child's box hits an object, divided by the expected cost. Any-hit rays visit the last child first, which
- * minimizes the expected cost. (Nah & Manocha 2014, "SATO: Surface Area Traversal Order for Shadow Ray
+ * minimises the expected cost. (Nah & Manocha 2014, "SATO: Surface Area Traversal Order for Shadow Ray
  * Tracing".) */
 uint32_t rt_wide_children_of(const RtWidePlan *self, uint32_t index, uint32_t children[RT_WIDE]);
 
