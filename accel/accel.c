@@ -7,7 +7,11 @@
 RtStatus rt_accel_new(const RtBuild *what, size_t bytes, RtAccel **out, RtError *error) {
     RtAccel *accel = rt_alloc(1, bytes);
     if (!accel) return rt_fail_memory(error, what->ops->name, bytes);
-    *accel = (RtAccel){.ops = what->ops, .scene = what->scene, .exact = true, .counts = true};
+    *accel = (RtAccel){.ops = what->ops,
+                       .scene = what->scene,
+                       .below = what->below,
+                       .exact = !what->below || what->below->exact,
+                       .counts = !what->below || what->below->counts};
     *out = accel;
     return RT_OK;
 }

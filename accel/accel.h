@@ -33,10 +33,9 @@ typedef struct RtAccelOps RtAccelOps;
 
 /* The first member of every accelerator's own struct. */
 typedef struct RtAccel {
-    const RtAccelOps *ops; /* set by rt_accel_build */
+    const RtAccelOps *ops;
     const RtScene *scene;  /* borrowed */
-    struct RtAccel *below; /* owned; NULL for a base. Set by rt_accel_build */
-    size_t scratch_stride; /* bytes of its scratch memory in a query. Set by rt_accel_build */
+    struct RtAccel *below; /* owned; NULL for a base */
     bool exact;            /* its hits equal brute's bit for bit; false: judged by verdicts */
     bool counts;           /* its counts are the same on every machine, so counts.csv has them */
     double build_seconds;  /* wall seconds to build it and all layers below. Set by rt_accel_build */
@@ -140,6 +139,7 @@ typedef struct RtBuild {
     const RtAccelOps *ops; /* of the accelerator itself */
     const RtScene *scene;  /* finished; it may be empty */
     const RtValue *values; /* [param_count], in range */
+    RtAccel *below;        /* what an overlay lies on; NULL for a base */
     int threads;           /* 0 = all processors; does not change the structure */
     uint64_t limit;        /* a structure of more bytes, as its `build` estimates them, is refused */
 } RtBuild;
@@ -175,7 +175,7 @@ struct RtAccelOps {
     size_t best_count;
 
     /* On failure nothing is left behind. The caller owns *out and frees it by `destroy`, which does not
-     * destroy the layer below. An overlay does not know what it will lie on. */
+     * destroy the layer below. An overlay may trace rays in the layer below while it is built. */
     RtStatus (*build)(const RtBuild *build, RtAccel **out, RtError *error);
     void (*destroy)(RtAccel *accel);
 
@@ -229,7 +229,7 @@ struct RtAccelOps {
 };
 
 /* For `build`: allocates `bytes` for the accelerator's own struct, zeroed except for the RtAccel that it
- * begins with, which is exact and counts. Free *out with rt_free. */
+ * begins with, which is exact and counts if the layer below does. Free *out with rt_free. */
 RtStatus rt_accel_new(const RtBuild *what, size_t bytes, RtAccel **out, RtError *error);
 
 /* The end of `build`: sets *out to the accelerator, or destroys it if `status` is a failure. Returns

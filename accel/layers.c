@@ -5,16 +5,6 @@
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 
-/* Puts `accel`, just built, on top of `below`, which may be NULL. */
-static void stack(RtAccel *accel, RtAccel *below) {
-    size_t bytes = accel->ops->scratch_bytes ? accel->ops->scratch_bytes(accel) : 0;
-    accel->scratch_stride = (bytes + RT_CACHE_LINE - 1) / RT_CACHE_LINE * RT_CACHE_LINE;
-    accel->below = below;
-    if (!below) return;
-    accel->exact = accel->exact && below->exact;
-    accel->counts = accel->counts && below->counts;
-}
-
 RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
                              RtError *error) {
     RtAccel *top = NULL;
@@ -23,14 +13,13 @@ RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threa
     RT_TRY(rt_spec_available(spec, error));
     for (uint32_t i = spec->layer_count; i-- > 0;) {
         RtAccel *accel = NULL;
-        const RtBuild what = {spec->layers[i].ops, scene, spec->layers[i].values, threads,
+        const RtBuild what = {spec->layers[i].ops, scene, spec->layers[i].values, top, threads,
                               RT_ACCEL_MAX_BYTES};
         RtStatus status = what.ops->build(&what, &accel, error);
         if (status != RT_OK) {
             rt_accel_destroy(top);
             return status;
         }
-        stack(accel, top);
         accel->build_seconds = rt_wall_seconds() - start;
         top = accel;
     }
@@ -100,6 +89,12 @@ static void close_layers(const RtQuery *query, const RtAccel *end) {
     }
 }
 
+/* Bytes of the scratch memory of a layer: whole cache lines. */
+static size_t scratch_stride(const RtAccel *layer) {
+    size_t bytes = layer->ops->scratch_bytes ? layer->ops->scratch_bytes(layer) : 0;
+    return (bytes + RT_CACHE_LINE - 1) / RT_CACHE_LINE * RT_CACHE_LINE;
+}
+
 /* On failure nothing is left of the query. */
 static RtStatus open_layers(RtQuery *query, RtError *error) {
     const RtScratch *scratch = query->scratch;
@@ -123,7 +118,7 @@ RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error) {
         return status;
     }
     size_t bytes = 0;
-    for (const RtAccel *layer = accel; layer; layer = layer->below) bytes += layer->scratch_stride;
+    for (const RtAccel *layer = accel; layer; layer = layer->below) bytes += scratch_stride(layer);
     if (bytes > 0 && !(scratch.own = rt_alloc(bytes, 1))) {
         rt_free(scratch.crossings);
         query->accel = NULL;
@@ -132,7 +127,7 @@ RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error) {
     uint32_t layers = 0;
     for (const RtAccel *layer = accel; layer; layer = layer->below) {
         query->scratch[layers++] = scratch;
-        if (scratch.own) scratch.own = (char *)scratch.own + layer->scratch_stride;
+        if (scratch.own) scratch.own = (char *)scratch.own + scratch_stride(layer);
     }
     RT_TRY(open_layers(query, error));
     if (bytes > 0) rt_query_begin(query);

@@ -250,7 +250,20 @@ extern const RtLightRaster rt_light_raster_portable, rt_light_raster_avx2, rt_li
 /* Makes the lists of all lights, each tile's of no more than `most` entries. */
 RtStatus rt_light_make_lists(RtLightBuffer *buffer, uint32_t most, int threads, RtError *error);
 
+/* ---- light_choice.c ---- */
+
+typedef struct RtLightProbes RtLightProbes;
+
+/* Before lists are made: chooses the lights that may serve. Those of `cells` all do. *probes: for the second
+ * choice, to be freed with rt_free; NULL if there is none. */
+RtStatus rt_light_choose(RtLightBuffer *buffer, RtLightProbes **probes, RtError *error);
+
+/* After lists are made: drops the lists of lights that cost more with than without them. */
+RtStatus rt_light_choose_again(RtLightBuffer *buffer, RtLightProbes *probes, RtError *error);
+
 /* ---- light_build.c, light_stats.c ---- */
+void rt_light_drop(RtLightCube *cube); /* frees its lists; it no longer serves */
+uint64_t rt_light_bytes(const RtLightCube *cube);
 RtStatus rt_light_build(const RtBuild *what, RtAccel **out, RtError *error);
 void rt_light_destroy(RtAccel *accel);
 bool rt_light_find_cell(const RtAccel *accel, const RtRay *ray, RtCellView *cell);

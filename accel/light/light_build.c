@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Building a light buffer: margins, grids and their resolution, near lists; then the lists, light by light
- * (light_lists.c). */
+/* Building a light buffer: margins; the lights that pay (light_choice.c); grids and their resolution, near
+ * lists; then the lists, light by light (light_lists.c). */
 #include "accel/light/light.h"
 
 #include "core/base/memory.h"
@@ -184,34 +184,52 @@ static RtStatus make_near_list(RtLightBuffer *buffer, uint32_t light, RtError *e
 
 /* ---- build and destroy ---- */
 
-/* Unless cells are asked for, a light serves only scenes of more objects: among fewer, the accelerator below
- * answers rays in less time than it takes to find their cells and look at the entry that is their own object.
- */
-enum { FEW_OBJECTS = 12000 };
-
 static RtStatus make_lights(RtLightBuffer *buffer, const RtBuild *what, RtError *error) {
+    const uint32_t lights = buffer->isa.base.scene->light_count;
     double cells = 0, limit = (double)what->limit;
-    if (buffer->cells == 0 && what->scene->geometry.object_count < FEW_OBJECTS) return RT_OK;
     RT_TRY(choose_grids(buffer, limit, &cells, error));
     double entries = (limit - cells * (double)sizeof(uint32_t)) / sizeof(RtLightEntry), tiles = 1;
-    for (uint32_t i = 0; i < buffer->isa.base.scene->light_count; i++) tiles += buffer->cubes[i].tile_count;
+    for (uint32_t i = 0; i < lights; i++) tiles += buffer->cubes[i].tile_count;
     uint32_t most_of_tile = (uint32_t)(fmin(entries, 0x1p30) / tiles);
-    for (uint32_t i = 0; i < buffer->isa.base.scene->light_count; i++)
-        RT_TRY(make_near_list(buffer, i, error));
-    RT_TRY(rt_light_make_lists(buffer, most_of_tile, what->threads, error));
-    buffer->serves = buffer->isa.base.scene->light_count > 0;
-    for (uint32_t i = 0; i < buffer->isa.base.scene->light_count; i++) buffer->cubes[i].serves = true;
-    return RT_OK;
+    for (uint32_t i = 0; i < lights; i++) {
+        if (buffer->cubes[i].serves) RT_TRY(make_near_list(buffer, i, error));
+    }
+    return rt_light_make_lists(buffer, most_of_tile, what->threads, error);
+}
+
+static bool some_serve(const RtLightBuffer *buffer) {
+    bool some = false;
+    for (uint32_t i = 0; i < buffer->isa.base.scene->light_count; i++) some |= buffer->cubes[i].serves;
+    return some;
+}
+
+static RtStatus fill(RtLightBuffer *buffer, const RtBuild *what, RtError *error) {
+    RtLightProbes *probes = NULL;
+    RtStatus status = make_cubes(buffer, error);
+    if (status == RT_OK) status = rt_light_choose(buffer, &probes, error);
+    buffer->serves = some_serve(buffer);
+    if (status == RT_OK && buffer->serves) status = make_lights(buffer, what, error);
+    if (status == RT_OK) status = rt_light_choose_again(buffer, probes, error);
+    buffer->serves = some_serve(buffer);
+    rt_free(probes);
+    return status;
+}
+
+void rt_light_drop(RtLightCube *cube) {
+    rt_free(cube->tiles);
+    rt_free(cube->first);
+    rt_free(cube->entries);
+    rt_free(cube->near);
+    cube->tiles = cube->first = cube->near = NULL;
+    cube->entries = NULL;
+    cube->near_count = 0;
+    cube->serves = false;
 }
 
 void rt_light_destroy(RtAccel *accel) {
     RtLightBuffer *buffer = (RtLightBuffer *)accel;
-    for (uint32_t i = 0; buffer->cubes && i < accel->scene->light_count; i++) {
-        rt_free(buffer->cubes[i].tiles);
-        rt_free(buffer->cubes[i].first);
-        rt_free(buffer->cubes[i].entries);
-        rt_free(buffer->cubes[i].near);
-    }
+    for (uint32_t i = 0; buffer->cubes && i < accel->scene->light_count; i++)
+        rt_light_drop(&buffer->cubes[i]);
     rt_free(buffer->cubes);
     rt_free(buffer);
 }
@@ -228,7 +246,5 @@ RtStatus rt_light_build(const RtBuild *what, RtAccel **out, RtError *error) {
     RtIsa isa = rt_isa_best();
     buffer->isa.kernels = RT_KERNELS_FOR(light, isa);
     buffer->raster = RT_KERNELS_FOR(light_raster, isa);
-    RtStatus status = make_cubes(buffer, error);
-    if (status == RT_OK) status = make_lights(buffer, what, error);
-    return rt_accel_built(accel, status, out);
+    return rt_accel_built(accel, fill(buffer, what, error), out);
 }

@@ -406,8 +406,9 @@ RtStatus rt_light_make_lists(RtLightBuffer *buffer, uint32_t most, int threads, 
     int count = rt_thread_count(threads);
     Worker *workers = rt_alloc((size_t)count, sizeof *workers);
     RtStatus status = workers ? RT_OK : rt_fail_memory(error, "a light buffer", sizeof *workers);
-    for (uint32_t i = 0; status == RT_OK && i < buffer->isa.base.scene->light_count; i++)
-        status = make_light(buffer, i, most, workers, count, error);
+    for (uint32_t i = 0; status == RT_OK && i < buffer->isa.base.scene->light_count; i++) {
+        if (buffer->cubes[i].serves) status = make_light(buffer, i, most, workers, count, error);
+    }
     for (int i = 0; workers && i < count; i++) {
         RtLightDraft *draft = &workers[i].draft;
         rt_free(draft->cell);

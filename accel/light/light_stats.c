@@ -28,18 +28,23 @@ bool rt_light_find_cell(const RtAccel *accel, const RtRay *ray, RtCellView *cell
     return true;
 }
 
+uint64_t rt_light_bytes(const RtLightCube *cube) {
+    uint64_t bytes = sizeof *cube + cube->near_count * sizeof(uint32_t);
+    if (!cube->serves) return bytes;
+    return bytes + (cube->cell_count + (size_t)1 + cube->tile_count) * sizeof(uint32_t) +
+           cube->first[cube->cell_count] * sizeof(RtLightEntry);
+}
+
 void rt_light_describe(const RtAccel *accel, RtDescription *out) {
     const RtLightBuffer *buffer = (const RtLightBuffer *)accel;
     *out = (RtDescription){RT_NO_PREDICTION};
     for (uint32_t light = 0; light < accel->scene->light_count; light++) {
         const RtLightCube *cube = &buffer->cubes[light];
-        out->bytes += sizeof *cube + cube->near_count * sizeof(uint32_t);
+        out->bytes += rt_light_bytes(cube);
         out->references += cube->near_count;
         if (!cube->serves) continue;
         out->leaves += cube->cell_count;
         out->references += cube->first[cube->cell_count];
-        out->bytes += (cube->cell_count + (size_t)1 + cube->tile_count) * sizeof(uint32_t) +
-                      cube->first[cube->cell_count] * sizeof(RtLightEntry);
         for (uint32_t i = 0; i < cube->cell_count; i++)
             out->empty_leaves += cube->first[i] == cube->first[i + 1];
     }

@@ -163,7 +163,7 @@ RtStatus rt_remote_build(const RtSpec *spec, const RtScene *scene, int threads, 
     Remote *remote = rt_alloc(1, sizeof(Remote));
     *out = NULL;
     if (!remote) return rt_fail_memory(error, "an accelerator", sizeof(Remote));
-    *remote = (Remote){.base = {.ops = &remote->ops, .scene = scene, .scratch_stride = RT_CACHE_LINE},
+    *remote = (Remote){.base = {.ops = &remote->ops, .scene = scene},
                        .ops = remote_ops,
                        .pipe_end = -1,
                        .child.time_limit = time_limit_of_user()};

@@ -227,7 +227,7 @@ RT_TEST(several_threads_refuse_what_one_refuses_and_leave_nothing_behind) {
         RtError refusals[2];
         for (int t = 0; t < 2; t++) {
             RtAccel *accel = NULL;
-            RtBuild what = {ops, &scene, values, t + 1, limit};
+            RtBuild what = {ops, &scene, values, NULL, t + 1, limit};
             assert_int_equal(rt_kd_build(&what, &accel, &refusals[t]), RT_BAD_INPUT);
             assert_int_equal(rt_alloc_live(), live);
         }

@@ -97,7 +97,7 @@ RT_TEST(it_counts_what_was_counted_by_hand) {
         {"light:cells=64+brute", foreign, true, passed},
         {"light:cells=64+brute", longer, true, passed},
         {"light:cells=64+brute", askew, true, passed},
-        /* So is one from outside the domain, and any in a scene of few objects unless cells are asked for. */
+        /* So is one from outside the domain, and any in a scene so small that no light serves. */
         {"light:cells=64+brute", away, true, passed},
         {"light+brute", below, true, passed},
     };
@@ -131,6 +131,44 @@ RT_TEST(lists_do_not_depend_on_threads) {
         check_same_lists((RtLightBuffer *)one, (RtLightBuffer *)three);
         rt_accel_destroy(one);
         rt_accel_destroy(three);
+        rt_scene_clear(&scene);
+    }
+}
+
+/* ---- lights that pay ---- */
+
+typedef struct Choice {
+    const char *scene, *spec;
+    bool serves;
+} Choice;
+
+RT_TEST(a_light_serves_where_its_rays_cost_more_below_than_in_lists) {
+    const Choice choices[] = {
+        {"random:n=5000", "light+wide", true},
+        {"random:n=5000", "light+brute", true},
+        {"lattice", "light+wide", true},
+        /* Large flat surfaces: rays leave wide after a step or two. */
+        {"gears", "light+wide", false},
+        {"tree", "light+wide", false},
+        {"city:size=5", "light+wide", false},
+        /* Rays are costly in wide, and no cheaper in lists: known only when they are made. */
+        {"shells:size=3", "light+wide", false},
+        {"random:n=0", "light+wide", false},
+        {"random:n=3", "light+brute", false},
+        /* Lists that are asked for are made. */
+        {"gears", "light:cells=7+wide", true},
+    };
+    for (size_t i = 0; i < sizeof choices / sizeof choices[0]; i++) {
+        RtScene scene;
+        RtAccel *accel;
+        assert_ok(rt_builtin_open(choices[i].scene, &scene, error));
+        assert_ok(rt_accel_open(choices[i].spec, &scene, &accel, error));
+        const RtLightBuffer *buffer = (const RtLightBuffer *)accel;
+        if (buffer->serves != choices[i].serves)
+            fail_msg("%s on %s: serves is %d", choices[i].spec, choices[i].scene, buffer->serves);
+        for (uint32_t light = 0; light < scene.light_count; light++)
+            assert_int_equal(buffer->cubes[light].serves, buffer->cubes[light].first != NULL);
+        rt_accel_destroy(accel);
         rt_scene_clear(&scene);
     }
 }
