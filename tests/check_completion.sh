@@ -30,10 +30,11 @@ complete_line() {
 
 # offers LINE WORD...: these words, among others
 offers() {
-    local word
+    local word all
     complete_line "$1"
+    printf -v all '\n%s' "${COMPREPLY[@]}"
     for word in "${@:2}"; do
-        grep -qxF -e "$word" <<<"$(printf '%s\n' "${COMPREPLY[@]}")" || {
+        [[ $all$'\n' == *$'\n'"$word"$'\n'* ]] || {
             echo "'$1' is not completed by '$word' but by '${COMPREPLY[*]}'"
             failures=$((failures + 1))
         }
@@ -120,9 +121,8 @@ done
 
 # Every option that --help lists, except argp's own.
 for command in $("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\) .*/\1/p'); do
-    for option in $("$program" "$command" --help | grep -oE '^ {2,6}(-., )?--[a-z-]+' | grep -o -e '--.*'); do
-        offers "raytally $command --" "$option"
-    done
+    # shellcheck disable=SC2046 # options are words
+    offers "raytally $command --" $("$program" "$command" --help | grep -oE '^ {2,6}(-., )?--[a-z-]+' | grep -o -e '--.*')
 done
 
 [ $failures = 0 ]

@@ -5,8 +5,9 @@
 set -uo pipefail
 program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
+mkdir "$work/here" && cd "$work/here" || exit 1
 failures=0
+shopt -s globstar dotglob nullglob
 
 complain() {
     printf '%s\n' "$*" >&2
@@ -17,23 +18,21 @@ complain() {
 refuses() {
     local pattern=$1 code=0 before after message
     shift
-    before=$(find . | sort)
-    timeout 60 "$program" "$@" >stdout 2>stderr </dev/null || code=$?
-    message=$(tr '\n' ' ' <stderr)
-    [ -s stdout ] && complain "raytally $*: writes to stdout"
-    rm stdout stderr
-    after=$(find . | sort)
+    before=(**)
+    timeout 60 "$program" "$@" >../stdout 2>../stderr </dev/null || code=$?
+    message=$(<../stderr) message=${message//$'\n'/ }
+    [ -s ../stdout ] && complain "raytally $*: writes to stdout"
+    after=(**)
     [ "$code" = 2 ] || complain "raytally $*: exit code $code, not 2: $message"
     [[ $message =~ $pattern ]] || complain "raytally $*: the message does not say '$pattern': $message"
-    [ "$before" = "$after" ] || complain "raytally $*: leaves files: $(comm -13 <(echo "$before") <(echo "$after") | xargs)"
+    [ "${before[*]}" = "${after[*]}" ] || complain "raytally $*: leaves files: before ${before[*]}, after ${after[*]}"
 }
 
 # does ARGUMENT...: exit code 0
 does() {
     local code=0
-    timeout 60 "$program" "$@" >stdout 2>stderr </dev/null || code=$?
-    [ "$code" = 0 ] || complain "raytally $*: exit code $code: $(cat stderr)"
-    rm stdout stderr
+    timeout 60 "$program" "$@" >../stdout 2>../stderr </dev/null || code=$?
+    [ "$code" = 0 ] || complain "raytally $*: exit code $code: $(cat ../stderr)"
 }
 
 # nff NAME LINE...: a scene of a camera, a material and these lines, the first being line 9
