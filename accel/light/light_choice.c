@@ -14,7 +14,8 @@
  * the bytes of an object in the structure below. */
 static const double STEP = 4.3, TEST = 3, LOOKUP = 10, MISSES = 10, CACHE_BYTES = 4e6, BYTES_BELOW = 70;
 
-/* Lists are made for lights whose rays cost at least so much below, and kept if rays cost less by MARGIN in them. */
+/* Lists are made for lights whose rays cost at least so much below, and kept if in them rays cost less by
+ * this factor. */
 static const double WORTH_TRYING = 30, MARGIN = 1.2;
 
 enum { EDGE = 32, PROBES = EDGE * EDGE, CHUNK = 64, FEW_PROBES = 64, FEW_OBJECTS = 12000 };
