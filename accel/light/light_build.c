@@ -203,16 +203,15 @@ static bool some_serve(const RtLightBuffer *buffer) {
     return some;
 }
 
-static RtStatus fill(RtLightBuffer *buffer, const RtBuild *what, RtError *error) {
-    RtLightProbes *probes = NULL;
-    RtStatus status = make_cubes(buffer, error);
-    if (status == RT_OK) status = rt_light_choose(buffer, &probes, error);
+/* *probes is to be freed. */
+static RtStatus fill(RtLightBuffer *buffer, const RtBuild *what, RtLightProbes **probes, RtError *error) {
+    RT_TRY(make_cubes(buffer, error));
+    RT_TRY(rt_light_choose(buffer, probes, error));
+    if (!(buffer->serves = some_serve(buffer))) return RT_OK;
+    RT_TRY(make_lights(buffer, what, error));
+    RT_TRY(rt_light_choose_again(buffer, *probes, error));
     buffer->serves = some_serve(buffer);
-    if (status == RT_OK && buffer->serves) status = make_lights(buffer, what, error);
-    if (status == RT_OK) status = rt_light_choose_again(buffer, probes, error);
-    buffer->serves = some_serve(buffer);
-    rt_free(probes);
-    return status;
+    return RT_OK;
 }
 
 void rt_light_drop(RtLightCube *cube) {
@@ -246,5 +245,8 @@ RtStatus rt_light_build(const RtBuild *what, RtAccel **out, RtError *error) {
     RtIsa isa = rt_isa_best();
     buffer->isa.kernels = RT_KERNELS_FOR(light, isa);
     buffer->raster = RT_KERNELS_FOR(light_raster, isa);
-    return rt_accel_built(accel, fill(buffer, what, error), out);
+    RtLightProbes *probes = NULL;
+    RtStatus status = fill(buffer, what, &probes, error);
+    rt_free(probes);
+    return rt_accel_built(accel, status, out);
 }

@@ -33,7 +33,8 @@ struct RtLightProbes {
     RtRay rays[PROBES];
     Probe probes[PROBES];
     uint32_t count;
-    RtTally last, all;   /* of the last call of trace, of all calls */
+    RtTally last;        /* of the last call of trace */
+    RtTally *build;      /* of all calls: the build_tally */
     double cost_below[]; /* [lights] of a ray, in the layer below, ns */
 };
 
@@ -62,7 +63,7 @@ static RtStatus trace(RtLightProbes *p, const RtAccel *accel, uint32_t count, Rt
         rt_tally_add(tally, &tallies[p->rays[i].kind]);
     }
     rt_query_clear(&query);
-    rt_tally_add(&p->all, tally);
+    rt_tally_add(p->build, tally);
     return RT_OK;
 }
 
@@ -163,6 +164,7 @@ RtStatus rt_light_choose(RtLightBuffer *buffer, RtLightProbes **out, RtError *er
     RtLightProbes *p = *out = rt_alloc(1, bytes);
     if (!p) return rt_fail_memory(error, "the probes of a light buffer", bytes);
     p->scene = scene;
+    p->build = &buffer->isa.base.build_tally;
     RT_TRY(look(p, error));
     RT_TRY(find_surfaces(p, below, error));
     if (p->count < FEW_PROBES) {
@@ -178,15 +180,14 @@ RtStatus rt_light_choose(RtLightBuffer *buffer, RtLightProbes **out, RtError *er
 
 RtStatus rt_light_choose_again(RtLightBuffer *buffer, RtLightProbes *p, RtError *error) {
     double bytes = 0;
-    for (uint32_t i = 0; p && i < p->scene->light_count; i++)
-        bytes += (double)rt_light_bytes(&buffer->cubes[i]);
-    for (uint32_t i = 0; p && i < p->scene->light_count; i++) {
+    if (!p) return RT_OK;
+    for (uint32_t i = 0; i < p->scene->light_count; i++) bytes += (double)rt_light_bytes(&buffer->cubes[i]);
+    for (uint32_t i = 0; i < p->scene->light_count; i++) {
         double ns;
         RtLightCube *cube = &buffer->cubes[i];
         if (!cube->serves) continue;
         RT_TRY(cost(p, &buffer->isa.base, i, bytes, &ns, error));
         if (MARGIN * (LOOKUP + ns) > p->cost_below[i]) rt_light_drop(cube);
     }
-    if (p) rt_tally_add(&buffer->isa.base.build_tally, &p->all);
     return RT_OK;
 }
