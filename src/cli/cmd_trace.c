@@ -6,12 +6,10 @@
 #include "cli/plugins.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
-#include "core/text/table.h"
 #include "picture/path_picture.h"
 #include "scenes/open.h"
 
 #include <stdio.h>
-#include <string.h>
 
 typedef struct Options {
     const char *scene, *accel, *svg;

@@ -5,7 +5,6 @@
 
 #include <assert.h>
 #include <stdio.h>
-#include <string.h>
 
 enum { MOST_OPTIONS = 32, FIRST_KEY = 256 };
 

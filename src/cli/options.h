@@ -6,7 +6,6 @@
 #define RT_CLI_OPTIONS_H
 
 #include <argp.h>
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 

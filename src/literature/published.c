@@ -3,7 +3,6 @@
 
 #include <fnmatch.h>
 #include <math.h>
-#include <string.h>
 
 void rt_published_row_name(const RtPublishedRow *row, char *out) {
     const char *name = row->of_rays || !*row->structure ? row->source : row->structure;

@@ -21,8 +21,6 @@
 
 #include "experiment/results.h"
 
-#include <stdio.h>
-
 #define RT_MAX_FIGURE   16 /* characters */
 #define RT_MAX_REASON   512
 #define RT_NOT_MEASURED UINT32_MAX

@@ -12,7 +12,6 @@
 #include <ctype.h>
 #include <errno.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { MOST_ARGUMENTS = RT_MAX_PLOTS + 4 };
 

@@ -17,7 +17,6 @@
 #include "report/paper_tables.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
