@@ -180,12 +180,12 @@ static RtStatus compare(Options *o, char **argv, bool *slower, RtError *error) {
     return status;
 }
 
-static const struct argp_child children[] = {
-    {&rt_recording_argp, 0, NULL, 1}, {&rt_plugin_argp, 0, NULL, 0}, {0}};
 const RtSyntax rt_compare_syntax = {
     .options = options,
-    .children = children,
-    .child = offsetof(Options, recording),
+    .shared = rt_recording_options,
+    .shared_at = offsetof(Options, recording),
+    .shared_group = 1,
+    .plugins = true,
     .arguments = "BEFORE AFTER\nEXPERIMENT.yaml --with PROGRAM\nSCENE --accel SPEC --with PROGRAM",
     .argument = {.name = "BEFORE", .take = take_subject},
     .finish = finish,

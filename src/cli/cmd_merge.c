@@ -37,10 +37,9 @@ static void on_notice(void *context, const char *message) {
     fprintf(stderr, "raytally: %s\n", message);
 }
 
-static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
 const RtSyntax rt_merge_syntax = {
     .options = options,
-    .children = children,
+    .plugins = true,
     .arguments = "DIR...",
     .argument = {.name = "DIR",
                  .missing = "the directories of the shards are missing, as in results/NAME-*-of-4",

@@ -335,11 +335,10 @@ static const char help[] =
     "  raytally render balls --accel grid --accel kd --heatmap object_tests tests.png "
     "--heatmap-difference\n"
     "`raytally trace` follows a single ray. docs/columns.md explains the counters.";
-static const struct argp_child children[] = {
-    {&rt_picture_argp, 0, NULL, 0}, {&rt_plugin_argp, 0, NULL, 0}, {0}};
 const RtSyntax rt_render_syntax = {.options = options,
-                                   .children = children,
-                                   .child = offsetof(Options, pictures),
+                                   .shared = rt_picture_options,
+                                   .shared_at = offsetof(Options, pictures),
+                                   .plugins = true,
                                    .arguments = "SCENE",
                                    .argument = RT_SCENE_ARGUMENT,
                                    .finish = finish,

@@ -55,10 +55,9 @@ static const RtOption options[] = {
     {"index", 'i', "FOLDER", RT_TO_TAKE(take_index),
      "Write FOLDER/index.html, a page that lists all result directories in FOLDER, as in `--index results`"},
     {0}};
-static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
 const RtSyntax rt_report_syntax = {
     .options = options,
-    .children = children,
+    .plugins = true,
     .arguments = "DIR\n--index FOLDER",
     .argument = RT_ARGUMENT("DIR", directory, NULL),
     .finish = finish,

@@ -240,10 +240,9 @@ static RtStatus run(const Options *o, RtError *error) {
     return status;
 }
 
-static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
 const RtSyntax rt_trace_syntax = {
     .options = options,
-    .children = children,
+    .plugins = true,
     .arguments = "SCENE",
     .argument = RT_SCENE_ARGUMENT,
     .finish = finish,

@@ -47,13 +47,6 @@ static int run_unknown(const char *name) {
     return RT_EXIT_BAD_INPUT;
 }
 
-/* Whether the command takes --plugin. */
-static bool takes_plugins(const struct argp *argp) {
-    const struct argp_child *child = argp->children;
-    while (child && child->argp && child->argp != &rt_plugin_argp && !takes_plugins(child->argp)) child++;
-    return child && child->argp;
-}
-
 static const RtCommand *find_command(const char *name) {
     for (int i = 0; i < COMMAND_COUNT; i++) {
         if (strcmp(commands[i].name, name) == 0) return &commands[i];
@@ -69,7 +62,7 @@ static int run_command(int argc, char **argv) {
     snprintf(title, sizeof title, "raytally %s", command->name);
     argv[0] = title;
     RtError error;
-    if (takes_plugins(rt_cli_argp(command->syntax)) && rt_cli_load_plugins(argc, argv, &error) != RT_OK)
+    if (command->syntax->plugins && rt_cli_load_plugins(argc, argv, &error) != RT_OK)
         return rt_cli_fail(&error);
     int code = command->run(argc, argv);
     if (rt_remote_exit_message()) {
