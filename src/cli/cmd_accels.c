@@ -2,7 +2,6 @@
 /* raytally accels: the table of accelerators. */
 #include "accel/accel.h"
 #include "cli/cli.h"
-#include "cli/plugins.h"
 
 #include <stdio.h>
 

@@ -2,7 +2,6 @@
 /* raytally bench: counts and times accelerators on the rays of one scene, as an experiment without a
  * directory. */
 #include "cli/cli.h"
-#include "cli/plugins.h"
 #include "cli/progress.h"
 #include "cli/recording.h"
 #include "core/base/words.h"

@@ -2,7 +2,6 @@
 /* raytally compare: what a change made faster or slower, and which counts it changed; from two result
  * directories, or two programs that run in turns. */
 #include "cli/cli.h"
-#include "cli/plugins.h"
 #include "cli/recording.h"
 #include "core/base/memory.h"
 #include "experiment/compare.h"

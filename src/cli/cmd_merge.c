@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally merge: joins the shards of an experiment. */
 #include "cli/cli.h"
-#include "cli/plugins.h"
 #include "core/base/memory.h"
 #include "experiment/result_tables.h"
 #include "report/merge.h"

@@ -2,7 +2,6 @@
 /* raytally plot: draws the plots of a result directory again. */
 #include "cli/cli.h"
 #include "cli/directory.h"
-#include "cli/plugins.h"
 #include "report/plot.h"
 #include "report/scripts.h"
 

@@ -4,7 +4,6 @@
 #include "accel/columns.h"
 #include "cli/cli.h"
 #include "cli/pictures.h"
-#include "cli/plugins.h"
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"

@@ -2,7 +2,6 @@
 /* raytally report: writes the report of a result directory again, or the index of several. */
 #include "cli/cli.h"
 #include "cli/directory.h"
-#include "cli/plugins.h"
 #include "core/base/words.h"
 #include "experiment/manifest.h"
 #include "report/index.h"

@@ -3,7 +3,6 @@
 #include "accel/columns.h"
 #include "accel/remote.h"
 #include "cli/cli.h"
-#include "cli/plugins.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
 #include "picture/path_picture.h"

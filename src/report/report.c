@@ -83,10 +83,9 @@ static void take_caption(Caption *caption, const char *script) {
             ours = strncmp(text, caption->name, length) == 0 && text[length] == ':';
             text += ours ? length + 1 + strspn(text + length + 1, " ") : 0;
         }
-        const size_t used = strlen(caption->text);
         if (ours)
-            snprintf(caption->text + used, sizeof caption->text - used, "%s%.*s", used ? " " : "",
-                     (int)strcspn(text, "\n"), text);
+            rt_append_text(caption->text, sizeof caption->text, "%s%.*s", *caption->text ? " " : "",
+                           (int)strcspn(text, "\n"), text);
     }
 }
 
