@@ -179,18 +179,10 @@ static RtStatus write_heatmaps(const Run *run, RtError *error) {
 
 static RtStatus write_images(const Run *run, RtError *error) {
     const Options *o = run->options;
-    RtImage image = {0};
-    RtStatus status = RT_OK;
     if (o->exr) RT_TRY(rt_exr_write(&run->counted, o->exr, error));
-    if (o->png) {
-        status = rt_image_from_frame(&image, &run->timed, error);
-        if (status == RT_OK) status = rt_png_write(&image, o->png, error);
-        rt_image_clear(&image);
-    }
-    if (status == RT_OK && o->pictures.structure)
-        status = rt_pictures_structure(&o->pictures, run->accel, &run->timed, error);
-    if (status == RT_OK && rt_pictures_any_heatmap(&o->pictures)) status = write_heatmaps(run, error);
-    return status;
+    if (o->png) RT_TRY(rt_png_write(&run->timed, o->png, error));
+    if (o->pictures.structure) RT_TRY(rt_pictures_structure(&o->pictures, run->accel, &run->timed, error));
+    return rt_pictures_any_heatmap(&o->pictures) ? write_heatmaps(run, error) : RT_OK;
 }
 
 static uint64_t total_rays(const Run *run) {

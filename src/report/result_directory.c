@@ -223,14 +223,11 @@ static RtStatus draw_scene(RtScene *scene, const RtWorkloadResult *workload, int
                            RtError *error) {
     RtAccel *accel;
     RtFrame frame = {0};
-    RtImage image = {0};
     RtFrameOptions options = {.depth = RT_DEFAULT_DEPTH, .threads = threads};
     RT_TRY(rt_scene_sample(scene, workload->width, workload->height, 2, false, error));
     RT_TRY(rt_accel_open_on(rt_accel_default(), scene, threads, &accel, error));
     RtStatus status = rt_frame_trace(&frame, accel, &options, error);
-    if (status == RT_OK) status = rt_image_from_frame(&image, &frame, error);
-    if (status == RT_OK) status = rt_png_write(&image, path, error);
-    rt_image_clear(&image);
+    if (status == RT_OK) status = rt_png_write(&frame, path, error);
     rt_frame_clear(&frame);
     rt_accel_destroy(accel);
     return status;
