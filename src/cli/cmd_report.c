@@ -3,7 +3,6 @@
 #include "cli/cli.h"
 #include "cli/directory.h"
 #include "core/base/words.h"
-#include "experiment/manifest.h"
 #include "report/index.h"
 #include "report/report.h"
 
@@ -11,16 +10,13 @@
 
 static RtStatus report(const char *directory, RtResults *results, const void *options, RtError *error) {
     (void)options;
-    json_t *manifest;
     RtPublished published;
-    RT_TRY(rt_manifest_read(directory, &manifest, error));
     RtStatus status = rt_published_load(&published, results->experiment, error);
     if (status == RT_OK) {
         rt_published_compare(&published, results);
-        status = rt_report_write(results, &published, manifest, directory, error);
+        status = rt_report_write(results, &published, directory, error);
     }
     rt_published_clear(&published);
-    json_decref(manifest);
     if (status == RT_OK) printf("Report: %s/report.html\n", directory);
     return status;
 }

@@ -295,15 +295,6 @@ static RtStatus write_manifest(const Run *run, RtError *error) {
     return rt_manifest_write(run->results, &run->options->workload, run->options->directory, error);
 }
 
-static RtStatus write_report(const Run *run, RtError *error) {
-    const char *directory = run->options->directory;
-    json_t *manifest;
-    RT_TRY(rt_manifest_read(directory, &manifest, error));
-    RtStatus status = rt_report_write(run->results, &run->published, manifest, directory, error);
-    json_decref(manifest);
-    return status;
-}
-
 static RtStatus finish(Run *run, RtError *error) {
     /* rt_merge writes the files made from all shards. */
     if (run->options->workload.only.shards) return write_manifest(run, error);
@@ -314,7 +305,7 @@ static RtStatus finish(Run *run, RtError *error) {
     /* The report is written even if drawing failed. */
     RtError drawing = {RT_OK, ""};
     RtStatus drawn = rt_plots_draw(run->results, run->options->directory, &drawing);
-    RT_TRY(write_report(run, error));
+    RT_TRY(rt_report_write(run->results, &run->published, run->options->directory, error));
     RtStatus checked = rt_published_check(&run->published, error);
     if (drawn == RT_OK) return checked;
     if (drawn == RT_NOT_AVAILABLE || checked != RT_OK) {
