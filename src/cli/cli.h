@@ -72,9 +72,6 @@ int64_t rt_cli_integer(struct argp_state *state, const char *option, const char 
  * false if there are none, or the number is larger. */
 bool rt_cli_digits(const char **text, uint32_t *number);
 
-/* "1%", more than 0 and at most 100 %, as a fraction: 0.01. */
-double rt_cli_percent(struct argp_state *state, const char *option, const char *text);
-
 /* Options of several commands. */
 #define RT_PATIENCE 60 /* seconds */
 #define RT_UNTIL_OPTIONS(until, patience)                                                                    \

@@ -6,6 +6,8 @@
 
 #include <assert.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 enum { MOST_OPTIONS = 32, FIRST_KEY = 256 };
 
@@ -16,6 +18,15 @@ typedef struct Parse {
     char *options;
     struct Parse *shared;
 } Parse;
+
+/* "1%", more than 0 and at most 100 %, as a fraction: 0.01. */
+static double percent_of(struct argp_state *state, const char *option, const char *text) {
+    char *end;
+    double percent = strtod(text, &end);
+    if (end == text || strcmp(end, "%") != 0 || !(percent > 0 && percent <= 100))
+        argp_error(state, "%s: invalid value '%s': expected a percentage, as in 1%%", option, text);
+    return percent / 100;
+}
 
 static void take_option(const RtOption *o, char *options, const char *text, struct argp_state *state) {
     const RtOptionValue *value = &o->value;
@@ -34,7 +45,7 @@ static void take_option(const RtOption *o, char *options, const char *text, stru
             *(uint64_t *)at = (uint64_t)number;
         return;
     case RT_OPTION_SECONDS: *(double *)at = (double)number; return;
-    case RT_OPTION_PERCENT: *(double *)at = rt_cli_percent(state, name, text); return;
+    case RT_OPTION_PERCENT: *(double *)at = percent_of(state, name, text); return;
     case RT_OPTION_SET: *(int *)at = (int)number; return;
     case RT_OPTION_SIZE: rt_cli_size(state, text, (uint32_t *)at, (uint32_t *)at + 1); return;
     case RT_OPTION_PATH: rt_cli_set_path(state, name, (const char **)at, text, value->endings); return;

@@ -9,6 +9,7 @@
 #include "core/base/words.h"
 #include "core/text/json_lines.h"
 #include "experiment/journal.h"
+#include "experiment/journal_lines.h"
 #include "experiment/manifest.h"
 #include "render/image.h"
 #include "report/plot.h"
@@ -204,7 +205,7 @@ static RtStatus on_event(void *context, const RtResults *results, const RtEvent 
     Run *run = context;
     const RtRunObserver *observer = &run->options->workload.observer;
     if (!run->measured) RT_TRY(unfinish(run, error));
-    RT_TRY(rt_journal_append(&run->journal, results, event, error));
+    RT_TRY(rt_json_lines_write(&run->journal, rt_journal_line(results, event), error));
     return observer->event ? observer->event(observer->context, results, event, error) : RT_OK;
 }
 
