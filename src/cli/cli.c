@@ -76,14 +76,6 @@ bool rt_cli_digits(const char **text, uint32_t *number) {
     return true;
 }
 
-double rt_cli_percent(struct argp_state *state, const char *option, const char *text) {
-    char *end;
-    double percent = strtod(text, &end);
-    if (end == text || strcmp(end, "%") != 0 || !(percent > 0 && percent <= 100))
-        argp_error(state, "%s: invalid value '%s': expected a percentage, as in 1%%", option, text);
-    return percent / 100;
-}
-
 void rt_cli_size(struct argp_state *state, const char *text, uint32_t *width, uint32_t *height) {
     if (rt_image_size_parse(text, width, height)) return;
     argp_error(state, "--size: invalid value '%s': expected WIDTHxHEIGHT, each 1..%d, as in 640x480", text,

@@ -22,22 +22,31 @@ typedef struct RtCommand {
     const RtSyntax *syntax;
 } RtCommand;
 
-/* X(name) */
+/* X(identifier, name, arguments, summary) */
 #define RT_COMMANDS(X)                                                                                       \
-    X(accels)                                                                                                \
-    X(scenes)                                                                                                \
-    X(info)                                                                                                  \
-    X(render)                                                                                                \
-    X(trace)                                                                                                 \
-    X(verify)                                                                                                \
-    X(bench) X(compare) X(rays) X(run) X(merge) X(plot) X(report) X(reproduce) X(convert) X(new_accel)
-#define RT_COMMAND(name)                                                                                     \
-    int rt_command_##name(int argc, char **argv);                                                            \
-    extern const RtSyntax rt_##name##_syntax;
+    X(accels, "accels", "[NAME]", "list the accelerators and their parameters")                              \
+    X(scenes, "scenes", "[NAME]", "list the built-in scenes and their parameters")                           \
+    X(info, "info", "SCENE", "objects by shape, bounds, materials, lights, camera of a scene")               \
+    X(render, "render", "SCENE", "an image of a scene, heatmaps of its cost, pictures of structures")        \
+    X(trace, "trace", "SCENE", "one ray's path through an accelerator, step by step")                        \
+    X(verify, "verify", "[SCENE...]", "check that every hit equals brute's")                                 \
+    X(bench, "bench", "SCENE", "count and time accelerators on the rays of one scene")                       \
+    X(compare, "compare", "BEFORE AFTER", "compare two results, or two programs that alternate")             \
+    X(rays, "rays", "SCENE", "write rays of a scene for NumPy; bench and verify read such files")            \
+    X(run, "run", "EXPERIMENT", "run an experiment: CSV files, plots, report")                               \
+    X(merge, "merge", "DIR...", "join the shards of an experiment (run --shard)")                            \
+    X(plot, "plot", "DIR", "draw the plots of a result directory again")                                     \
+    X(report, "report", "DIR", "write the report of a result directory again, or an index")                  \
+    X(reproduce, "reproduce", "DIR", "count again and compare with DIR/counts.csv, byte for byte")           \
+    X(convert, "convert", "IN OUT", "write a scene in another format")                                       \
+    X(new_accel, "new-accel", "NAME", "make a folder with a working plugin to start from")                   \
+    X(completion, "completion", "SHELL", "print a completion script for bash")
+#define RT_COMMAND(id, name, arguments, summary)                                                             \
+    int rt_command_##id(int argc, char **argv);                                                              \
+    extern const RtSyntax rt_##id##_syntax;
 RT_COMMANDS(RT_COMMAND)
 
-/* The command that completes all others, whose table main has; it prints a script for bash. */
-extern const RtSyntax rt_completion_syntax;
+/* The script that completes all commands; main has their table. */
 void rt_completion_print(const RtCommand *commands, int count);
 
 /* Prints "raytally: MESSAGE" to stderr and returns the exit code of the status. */
@@ -62,9 +71,6 @@ int64_t rt_cli_integer(struct argp_state *state, const char *option, const char 
 /* For parsers of several numbers: reads the digits at *text, up to UINT32_MAX, and moves *text past them;
  * false if there are none, or the number is larger. */
 bool rt_cli_digits(const char **text, uint32_t *number);
-
-/* "1%", more than 0 and at most 100 %, as a fraction: 0.01. */
-double rt_cli_percent(struct argp_state *state, const char *option, const char *text);
 
 /* Options of several commands. */
 #define RT_PATIENCE 60 /* seconds */

@@ -2,7 +2,6 @@
 /* raytally accels: the table of accelerators. */
 #include "accel/accel.h"
 #include "cli/cli.h"
-#include "cli/plugins.h"
 
 #include <stdio.h>
 
@@ -40,9 +39,8 @@ static json_t *accelerator_json(const RtAccelOps *ops) {
                      rt_cli_params_json(ops->params, ops->param_count), "best_of", bests);
 }
 
-static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
 const RtSyntax rt_accels_syntax = {.options = rt_list_options,
-                                   .children = children,
+                                   .plugins = true,
                                    .arguments = "[NAME]",
                                    .argument = RT_LIST_ARGUMENT,
                                    .help = "List the accelerators, or explain the one called NAME: its "

@@ -2,7 +2,6 @@
 /* raytally bench: counts and times accelerators on the rays of one scene, as an experiment without a
  * directory. */
 #include "cli/cli.h"
-#include "cli/plugins.h"
 #include "cli/progress.h"
 #include "cli/recording.h"
 #include "core/base/words.h"
@@ -313,12 +312,12 @@ static RtStatus bench(Options *o, RtError *error) {
     return status;
 }
 
-static const struct argp_child children[] = {
-    {&rt_recording_argp, 0, NULL, 1}, {&rt_plugin_argp, 0, NULL, 0}, {0}};
 const RtSyntax rt_bench_syntax = {
     .options = options,
-    .children = children,
-    .child = offsetof(Options, recording),
+    .shared = rt_recording_options,
+    .shared_at = offsetof(Options, recording),
+    .shared_group = 1,
+    .plugins = true,
     .arguments = "SCENE",
     .argument = RT_SCENE_ARGUMENT,
     .finish = finish,

@@ -2,7 +2,6 @@
 /* raytally compare: what a change made faster or slower, and which counts it changed; from two result
  * directories, or two programs that run in turns. */
 #include "cli/cli.h"
-#include "cli/plugins.h"
 #include "cli/recording.h"
 #include "core/base/memory.h"
 #include "experiment/compare.h"
@@ -180,12 +179,12 @@ static RtStatus compare(Options *o, char **argv, bool *slower, RtError *error) {
     return status;
 }
 
-static const struct argp_child children[] = {
-    {&rt_recording_argp, 0, NULL, 1}, {&rt_plugin_argp, 0, NULL, 0}, {0}};
 const RtSyntax rt_compare_syntax = {
     .options = options,
-    .children = children,
-    .child = offsetof(Options, recording),
+    .shared = rt_recording_options,
+    .shared_at = offsetof(Options, recording),
+    .shared_group = 1,
+    .plugins = true,
     .arguments = "BEFORE AFTER\nEXPERIMENT.yaml --with PROGRAM\nSCENE --accel SPEC --with PROGRAM",
     .argument = {.name = "BEFORE", .take = take_subject},
     .finish = finish,

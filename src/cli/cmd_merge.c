@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally merge: joins the shards of an experiment. */
 #include "cli/cli.h"
-#include "cli/plugins.h"
 #include "core/base/memory.h"
 #include "experiment/result_tables.h"
 #include "report/merge.h"
@@ -37,10 +36,9 @@ static void on_notice(void *context, const char *message) {
     fprintf(stderr, "raytally: %s\n", message);
 }
 
-static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
 const RtSyntax rt_merge_syntax = {
     .options = options,
-    .children = children,
+    .plugins = true,
     .arguments = "DIR...",
     .argument = {.name = "DIR",
                  .missing = "the directories of the shards are missing, as in results/NAME-*-of-4",

@@ -2,7 +2,6 @@
 /* raytally plot: draws the plots of a result directory again. */
 #include "cli/cli.h"
 #include "cli/directory.h"
-#include "cli/plugins.h"
 #include "report/plot.h"
 #include "report/scripts.h"
 
@@ -24,10 +23,9 @@ static RtStatus draw(const char *directory, RtResults *results, const void *opti
 }
 
 static const RtOption options[] = {RT_TRUST_OPTION, {0}};
-static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
 const RtSyntax rt_plot_syntax = {
     .options = options,
-    .children = children,
+    .plugins = true,
     .arguments = "DIR",
     .argument = RT_DIRECTORY_ARGUMENT,
     .help = "Draw the plots of a result directory again, from its CSV files and the scripts in DIR/plots. A "

@@ -8,7 +8,6 @@
 
 #include <inttypes.h>
 #include <stdio.h>
-#include <string.h>
 
 typedef struct Options {
     RtRecordingOptions recording;
@@ -54,11 +53,10 @@ static RtStatus record(const Options *o, RtError *error) {
     return status;
 }
 
-static const struct argp_child children[] = {{&rt_recording_argp, 0, NULL, 0}, {0}};
 const RtSyntax rt_rays_syntax = {
     .options = options,
-    .children = children,
-    .child = offsetof(Options, recording),
+    .shared = rt_recording_options,
+    .shared_at = offsetof(Options, recording),
     .arguments = "SCENE",
     .argument = RT_SCENE_ARGUMENT,
     .finish = finish,

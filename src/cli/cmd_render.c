@@ -4,7 +4,6 @@
 #include "accel/columns.h"
 #include "cli/cli.h"
 #include "cli/pictures.h"
-#include "cli/plugins.h"
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
@@ -180,18 +179,10 @@ static RtStatus write_heatmaps(const Run *run, RtError *error) {
 
 static RtStatus write_images(const Run *run, RtError *error) {
     const Options *o = run->options;
-    RtImage image = {0};
-    RtStatus status = RT_OK;
     if (o->exr) RT_TRY(rt_exr_write(&run->counted, o->exr, error));
-    if (o->png) {
-        status = rt_image_from_frame(&image, &run->timed, error);
-        if (status == RT_OK) status = rt_png_write(&image, o->png, error);
-        rt_image_clear(&image);
-    }
-    if (status == RT_OK && o->pictures.structure)
-        status = rt_pictures_structure(&o->pictures, run->accel, &run->timed, error);
-    if (status == RT_OK && rt_pictures_any_heatmap(&o->pictures)) status = write_heatmaps(run, error);
-    return status;
+    if (o->png) RT_TRY(rt_png_write(&run->timed, o->png, error));
+    if (o->pictures.structure) RT_TRY(rt_pictures_structure(&o->pictures, run->accel, &run->timed, error));
+    return rt_pictures_any_heatmap(&o->pictures) ? write_heatmaps(run, error) : RT_OK;
 }
 
 static uint64_t total_rays(const Run *run) {
@@ -335,11 +326,10 @@ static const char help[] =
     "  raytally render balls --accel grid --accel kd --heatmap object_tests tests.png "
     "--heatmap-difference\n"
     "`raytally trace` follows a single ray. docs/columns.md explains the counters.";
-static const struct argp_child children[] = {
-    {&rt_picture_argp, 0, NULL, 0}, {&rt_plugin_argp, 0, NULL, 0}, {0}};
 const RtSyntax rt_render_syntax = {.options = options,
-                                   .children = children,
-                                   .child = offsetof(Options, pictures),
+                                   .shared = rt_picture_options,
+                                   .shared_at = offsetof(Options, pictures),
+                                   .plugins = true,
                                    .arguments = "SCENE",
                                    .argument = RT_SCENE_ARGUMENT,
                                    .finish = finish,

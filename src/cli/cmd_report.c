@@ -2,9 +2,7 @@
 /* raytally report: writes the report of a result directory again, or the index of several. */
 #include "cli/cli.h"
 #include "cli/directory.h"
-#include "cli/plugins.h"
 #include "core/base/words.h"
-#include "experiment/manifest.h"
 #include "report/index.h"
 #include "report/report.h"
 
@@ -12,16 +10,13 @@
 
 static RtStatus report(const char *directory, RtResults *results, const void *options, RtError *error) {
     (void)options;
-    json_t *manifest;
     RtPublished published;
-    RT_TRY(rt_manifest_read(directory, &manifest, error));
     RtStatus status = rt_published_load(&published, results->experiment, error);
     if (status == RT_OK) {
         rt_published_compare(&published, results);
-        status = rt_report_write(results, &published, manifest, directory, error);
+        status = rt_report_write(results, &published, directory, error);
     }
     rt_published_clear(&published);
-    json_decref(manifest);
     if (status == RT_OK) printf("Report: %s/report.html\n", directory);
     return status;
 }
@@ -55,10 +50,9 @@ static const RtOption options[] = {
     {"index", 'i', "FOLDER", RT_TO_TAKE(take_index),
      "Write FOLDER/index.html, a page that lists all result directories in FOLDER, as in `--index results`"},
     {0}};
-static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
 const RtSyntax rt_report_syntax = {
     .options = options,
-    .children = children,
+    .plugins = true,
     .arguments = "DIR\n--index FOLDER",
     .argument = RT_ARGUMENT("DIR", directory, NULL),
     .finish = finish,

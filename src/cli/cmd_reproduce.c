@@ -127,10 +127,9 @@ static const RtOption options[] = {{"only", 0, "SCENE", RT_TO_TEXT(scene),
                                     "Count and compare only the rows of one scene, or of a sweep of scenes, "
                                     "by its label; published figures are left out"},
                                    {0}};
-static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
 const RtSyntax rt_reproduce_syntax = {
     .options = options,
-    .children = children,
+    .plugins = true,
     .arguments = "DIR",
     .argument = RT_DIRECTORY_ARGUMENT,
     .help = "Count everything in a result directory again and compare it with DIR/counts.csv, byte for byte, "

@@ -202,10 +202,9 @@ static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
     return status;
 }
 
-static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
 const RtSyntax rt_run_syntax = {
     .options = options,
-    .children = children,
+    .plugins = true,
     .arguments = "EXPERIMENT.yaml|DIR/manifest.json",
     .argument =
         RT_ARGUMENT("EXPERIMENT", path, "an EXPERIMENT is missing, as in experiments/first-look.yaml"),

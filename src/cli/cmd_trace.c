@@ -3,15 +3,12 @@
 #include "accel/columns.h"
 #include "accel/remote.h"
 #include "cli/cli.h"
-#include "cli/plugins.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
-#include "core/text/table.h"
 #include "picture/path_picture.h"
 #include "scenes/open.h"
 
 #include <stdio.h>
-#include <string.h>
 
 typedef struct Options {
     const char *scene, *accel, *svg;
@@ -242,10 +239,9 @@ static RtStatus run(const Options *o, RtError *error) {
     return status;
 }
 
-static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
 const RtSyntax rt_trace_syntax = {
     .options = options,
-    .children = children,
+    .plugins = true,
     .arguments = "SCENE",
     .argument = RT_SCENE_ARGUMENT,
     .finish = finish,

@@ -317,10 +317,9 @@ static RtStatus replay(const Options *o, bool *failed, RtError *error) {
     return rt_fail(error, RT_BAD_INPUT, "%s: the ray cannot be traced again", o->replay);
 }
 
-static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
 const RtSyntax rt_verify_syntax = {
     .options = options,
-    .children = children,
+    .plugins = true,
     .arguments = "[SCENE...]\n--replay FILE",
     .argument = {.name = "SCENE", .take = take_scene},
     .finish = finish,

@@ -6,7 +6,6 @@
 #include "cli/cli.h"
 #include "completion_bash.h"
 #include "core/base/ray.h"
-#include "core/text/table.h"
 #include "scenes/builtin.h"
 
 #include <stdio.h>

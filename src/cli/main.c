@@ -8,41 +8,15 @@
 #include <stdio.h>
 #include <string.h>
 
-static int run_completion(int argc, char **argv);
-
 static const RtCommand commands[] = {
-    {"accels", "[NAME]", "list the accelerators and their parameters", rt_command_accels, &rt_accels_syntax},
-    {"scenes", "[NAME]", "list the built-in scenes and their parameters", rt_command_scenes,
-     &rt_scenes_syntax},
-    {"info", "SCENE", "objects by shape, bounds, materials, lights, camera of a scene", rt_command_info,
-     &rt_info_syntax},
-    {"render", "SCENE", "an image of a scene, heatmaps of its cost, pictures of structures",
-     rt_command_render, &rt_render_syntax},
-    {"trace", "SCENE", "one ray's path through an accelerator, step by step", rt_command_trace,
-     &rt_trace_syntax},
-    {"verify", "[SCENE...]", "check that every hit equals brute's", rt_command_verify, &rt_verify_syntax},
-    {"bench", "SCENE", "count and time accelerators on the rays of one scene", rt_command_bench,
-     &rt_bench_syntax},
-    {"compare", "BEFORE AFTER", "compare two results, or two programs that alternate", rt_command_compare,
-     &rt_compare_syntax},
-    {"rays", "SCENE", "write rays of a scene for NumPy; bench and verify read such files", rt_command_rays,
-     &rt_rays_syntax},
-    {"run", "EXPERIMENT", "run an experiment: CSV files, plots, report", rt_command_run, &rt_run_syntax},
-    {"merge", "DIR...", "join the shards of an experiment (run --shard)", rt_command_merge, &rt_merge_syntax},
-    {"plot", "DIR", "draw the plots of a result directory again", rt_command_plot, &rt_plot_syntax},
-    {"report", "DIR", "write the report of a result directory again, or an index", rt_command_report,
-     &rt_report_syntax},
-    {"reproduce", "DIR", "count again and compare with DIR/counts.csv, byte for byte", rt_command_reproduce,
-     &rt_reproduce_syntax},
-    {"convert", "IN OUT", "write a scene in another format", rt_command_convert, &rt_convert_syntax},
-    {"new-accel", "NAME", "make a folder with a working plugin to start from", rt_command_new_accel,
-     &rt_new_accel_syntax},
-    {"completion", "SHELL", "print a completion script for bash", run_completion, &rt_completion_syntax},
+#define COMMAND(id, name, arguments, summary) {name, arguments, summary, rt_command_##id, &rt_##id##_syntax},
+    RT_COMMANDS(COMMAND)
+#undef COMMAND
 };
 
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
-static int run_completion(int argc, char **argv) {
+int rt_command_completion(int argc, char **argv) {
     rt_cli_parse(&rt_completion_syntax, argc, argv, NULL);
     rt_completion_print(commands, COMMAND_COUNT);
     return RT_EXIT_OK;
@@ -73,13 +47,6 @@ static int run_unknown(const char *name) {
     return RT_EXIT_BAD_INPUT;
 }
 
-/* Whether the command takes --plugin. */
-static bool takes_plugins(const struct argp *argp) {
-    const struct argp_child *child = argp->children;
-    while (child && child->argp && child->argp != &rt_plugin_argp && !takes_plugins(child->argp)) child++;
-    return child && child->argp;
-}
-
 static const RtCommand *find_command(const char *name) {
     for (int i = 0; i < COMMAND_COUNT; i++) {
         if (strcmp(commands[i].name, name) == 0) return &commands[i];
@@ -95,7 +62,7 @@ static int run_command(int argc, char **argv) {
     snprintf(title, sizeof title, "raytally %s", command->name);
     argv[0] = title;
     RtError error;
-    if (takes_plugins(rt_cli_argp(command->syntax)) && rt_cli_load_plugins(argc, argv, &error) != RT_OK)
+    if (command->syntax->plugins && rt_cli_load_plugins(argc, argv, &error) != RT_OK)
         return rt_cli_fail(&error);
     int code = command->run(argc, argv);
     if (rt_remote_exit_message()) {

@@ -2,23 +2,37 @@
 #include "cli/options.h"
 
 #include "cli/cli.h"
+#include "cli/plugins.h"
 
 #include <assert.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_OPTIONS = 32, FIRST_KEY = 256 };
 
-/* The input of the parser. */
+/* The input of a parser: of a command, or of its shared options. */
 typedef struct Parse {
     const RtSyntax *syntax;
+    const RtOption *list;
     char *options;
+    struct Parse *shared;
 } Parse;
+
+/* "1%", more than 0 and at most 100 %, as a fraction: 0.01. */
+static double percent_of(struct argp_state *state, const char *option, const char *text) {
+    char *end;
+    double percent = strtod(text, &end);
+    if (end == text || strcmp(end, "%") != 0 || !(percent > 0 && percent <= 100))
+        argp_error(state, "%s: invalid value '%s': expected a percentage, as in 1%%", option, text);
+    return percent / 100;
+}
 
 static void take_option(const RtOption *o, char *options, const char *text, struct argp_state *state) {
     const RtOptionValue *value = &o->value;
     char *at = options + value->offset, name[40];
     snprintf(name, sizeof name, "--%s", o->name);
+    if (value->mark) *(const char **)(options + value->mark) = o->name;
     const bool whole = value->form == RT_OPTION_INTEGER || value->form == RT_OPTION_SECONDS;
     const int64_t number = whole ? rt_cli_integer(state, name, text, value->low, value->high) : value->low;
     switch (value->form) {
@@ -31,7 +45,7 @@ static void take_option(const RtOption *o, char *options, const char *text, stru
             *(uint64_t *)at = (uint64_t)number;
         return;
     case RT_OPTION_SECONDS: *(double *)at = (double)number; return;
-    case RT_OPTION_PERCENT: *(double *)at = rt_cli_percent(state, name, text); return;
+    case RT_OPTION_PERCENT: *(double *)at = percent_of(state, name, text); return;
     case RT_OPTION_SET: *(int *)at = (int)number; return;
     case RT_OPTION_SIZE: rt_cli_size(state, text, (uint32_t *)at, (uint32_t *)at + 1); return;
     case RT_OPTION_PATH: rt_cli_set_path(state, name, (const char **)at, text, value->endings); return;
@@ -50,12 +64,32 @@ static void take_argument(const Parse *parse, const char *text, struct argp_stat
     *slot = text;
 }
 
+/* Whether the table has an entry `i`, given that it has all before. */
+static bool is_option(const RtOption *list, int i) {
+    return list && (list[i].name || list[i].help);
+}
+
+/* argp's key of an entry; 0 for a title. */
+static int key_of(const RtOption *list, int i) {
+    return !list[i].name ? 0 : list[i].letter ? list[i].letter : FIRST_KEY + i;
+}
+
+static error_t take_key(int key, char *text, struct argp_state *state) {
+    const Parse *parse = state->input;
+    for (int i = 0; is_option(parse->list, i); i++) {
+        if (!parse->list[i].name || key != key_of(parse->list, i)) continue;
+        take_option(&parse->list[i], parse->options, text, state);
+        return 0;
+    }
+    return ARGP_ERR_UNKNOWN;
+}
+
 static error_t parse_key(int key, char *text, struct argp_state *state) {
     const Parse *parse = state->input;
     const RtSyntax *syntax = parse->syntax;
     switch (key) {
     case ARGP_KEY_INIT:
-        if (syntax->children) state->child_inputs[0] = parse->options + syntax->child;
+        if (syntax->shared) state->child_inputs[0] = parse->shared;
         return 0;
     case ARGP_KEY_ARG:
         if (!syntax->argument.name) return ARGP_ERR_UNKNOWN;
@@ -66,37 +100,42 @@ static error_t parse_key(int key, char *text, struct argp_state *state) {
             argp_error(state, "%s", syntax->argument.missing);
         if (syntax->finish) syntax->finish(parse->options, state);
         return 0;
-    default: break;
+    default: return take_key(key, text, state);
     }
-    for (int i = 0; syntax->options && syntax->options[i].name; i++) {
-        const RtOption *o = &syntax->options[i];
-        if (key != FIRST_KEY + i && key != o->letter) continue;
-        take_option(o, parse->options, text, state);
-        return 0;
+}
+
+/* The table as argp has it; NULL if it is empty, which glibc would leak. */
+static struct argp_option *convert(const RtOption *list, struct argp_option out[MOST_OPTIONS + 1]) {
+    int count = 0;
+    for (; is_option(list, count); count++) {
+        const RtOption *o = &list[count];
+        assert(count < MOST_OPTIONS);
+        out[count] =
+            (struct argp_option){o->name, key_of(list, count), o->operand, o->value.flags, o->help, 0};
     }
-    return ARGP_ERR_UNKNOWN;
+    out[count] = (struct argp_option){0};
+    return count > 0 ? out : NULL;
 }
 
 const struct argp *rt_cli_argp(const RtSyntax *syntax) {
-    static struct argp_option options[MOST_OPTIONS + 1];
-    static struct argp argp;
+    static struct argp_option own[MOST_OPTIONS + 1], shared[MOST_OPTIONS + 1];
+    static struct argp_child children[3];
+    static struct argp argp, child;
     int count = 0;
-    for (const RtOption *o = syntax->options; o && o->name; o++) {
-        assert(count < MOST_OPTIONS);
-        options[count] = (struct argp_option){
-            o->name, o->letter ? o->letter : FIRST_KEY + count, o->operand, o->value.flags, o->help, 0};
-        count++;
-    }
-    options[count] = (struct argp_option){0};
-    argp = (struct argp){.options = count > 0 ? options : NULL, /* glibc leaks an empty table */
+    child = (struct argp){.options = convert(syntax->shared, shared), .parser = take_key};
+    if (syntax->shared) children[count++] = (struct argp_child){&child, 0, NULL, syntax->shared_group};
+    if (syntax->plugins) children[count++] = (struct argp_child){&rt_plugin_argp, 0, NULL, 0};
+    children[count] = (struct argp_child){0};
+    argp = (struct argp){.options = convert(syntax->options, own),
                          .parser = parse_key,
                          .args_doc = syntax->arguments,
                          .doc = syntax->help,
-                         .children = syntax->children};
+                         .children = children};
     return &argp;
 }
 
 void rt_cli_parse(const RtSyntax *syntax, int argc, char **argv, void *options) {
-    Parse parse = {syntax, options};
+    Parse shared = {NULL, syntax->shared, (char *)options + syntax->shared_at, NULL};
+    Parse parse = {syntax, syntax->options, options, &shared};
     argp_parse(rt_cli_argp(syntax), argc, argv, 0, 0, &parse);
 }

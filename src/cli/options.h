@@ -30,20 +30,28 @@ typedef struct RtOptionValue {
     int64_t low, high;
     RtTakeOption *take;
     const char *endings;
-    int flags; /* argp's */
+    size_t mark; /* of a const char * that gets the option's name; 0: none does */
+    int flags;   /* argp's */
 } RtOptionValue;
 
+/* Parts of RT_MARKING. */
+#define RT_SETS_FLAG(field) .form = RT_OPTION_FLAG, .offset = offsetof(Options, field)
+#define RT_SETS_INTEGER(field, from, to)                                                                     \
+    .form = RT_OPTION_INTEGER, .offset = offsetof(Options, field), .size = sizeof((Options *)0)->field,      \
+    .low = (from), .high = (to)
+#define RT_CALLS(function) .form = RT_OPTION_TAKE, .take = (function)
+/* A value whose option leaves its name in `field`. */
+#define RT_MARKING(field, ...)                                                                               \
+    { .mark = offsetof(Options, field), __VA_ARGS__ }
+
 #define RT_TO_FLAG(field)                                                                                    \
-    { .form = RT_OPTION_FLAG, .offset = offsetof(Options, field) }
+    { RT_SETS_FLAG(field) }
+#define RT_TO_HIDDEN_FLAG(field)                                                                             \
+    { RT_SETS_FLAG(field), .flags = OPTION_HIDDEN }
 #define RT_TO_TEXT(field)                                                                                    \
     { .form = RT_OPTION_TEXT, .offset = offsetof(Options, field) }
-#define RT_TO_HIDDEN_FLAG(field)                                                                             \
-    { .form = RT_OPTION_FLAG, .offset = offsetof(Options, field), .flags = OPTION_HIDDEN }
 #define RT_TO_INTEGER(field, from, to)                                                                       \
-    {                                                                                                        \
-        .form = RT_OPTION_INTEGER, .offset = offsetof(Options, field), .size = sizeof((Options *)0)->field,  \
-        .low = (from), .high = (to)                                                                          \
-    }
+    { RT_SETS_INTEGER(field, from, to) }
 #define RT_TO_SECONDS(field, from, to)                                                                       \
     { .form = RT_OPTION_SECONDS, .offset = offsetof(Options, field), .low = (from), .high = (to) }
 #define RT_TO_PERCENT(field)                                                                                 \
@@ -55,12 +63,12 @@ typedef struct RtOptionValue {
 #define RT_TO_PATH(field, ends)                                                                              \
     { .form = RT_OPTION_PATH, .offset = offsetof(Options, field), .endings = (ends) }
 #define RT_TO_TAKE(function)                                                                                 \
-    { .form = RT_OPTION_TAKE, .take = (function) }
+    { RT_CALLS(function) }
 #define RT_TO_TAKE_OPTIONAL(function) /* `text` may be NULL */                                               \
-    { .form = RT_OPTION_TAKE, .take = (function), .flags = OPTION_ARG_OPTIONAL }
+    { RT_CALLS(function), .flags = OPTION_ARG_OPTIONAL }
 
 typedef struct RtOption {
-    const char *name;
+    const char *name;    /* NULL: `help` is the title of the options that follow */
     int letter;          /* of the short option, or 0 */
     const char *operand; /* what --help calls the value; NULL: it takes none */
     RtOptionValue value;
@@ -81,10 +89,12 @@ typedef struct RtArgument {
     RT_ARGUMENT("SCENE", scene, "a SCENE is missing: a file, or a built-in as `raytally scenes` lists")
 
 typedef struct RtSyntax {
-    const RtOption *options;           /* the last has no name; NULL: none */
-    const struct argp_child *children; /* more options; or NULL */
-    size_t child;                      /* offset of the input of the first child */
-    const char *arguments, *help;      /* args_doc and doc of argp */
+    const RtOption *options;      /* the last has no name and no help; NULL: none */
+    const RtOption *shared;       /* options of several commands, or NULL */
+    size_t shared_at;             /* offset of their own Options */
+    int shared_group;             /* argp's, in --help */
+    bool plugins;                 /* it takes --plugin */
+    const char *arguments, *help; /* args_doc and doc of argp */
     RtArgument argument;
     void (*finish)(void *options, struct argp_state *state); /* checks all values together; or NULL */
 } RtSyntax;

@@ -11,52 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    KEY_HEATMAP = 512,
-    KEY_STRUCTURE,
-    KEY_LAYER,
-    KEY_LEVEL,
-    KEY_LEAVES,
-    KEY_SLICE,
-    KEY_LIGHT,
-    KEY_PIXEL,
-    KEY_MAX,
-    KEY_SCALE,
-    KEY_RAYS,
-    KEY_DIFFERENCE
-};
-
-static const struct argp_option options[] = {
-    {0, 0, 0, 0, "Pictures of a structure:", 1},
-    {"structure", KEY_STRUCTURE, "FILE.png", 0,
-     "Draw the accelerator's boxes over the image; for item the objects in its samples, for light the "
-     "lengths of its lists on an unfolded cube",
-     1},
-    {"layer", KEY_LAYER, "NAME", 0,
-     "For overlays: the layer to draw (default: the topmost that can be drawn)", 1},
-    {"level", KEY_LEVEL, "A[..B]", 0,
-     "Draw only the boxes of this level, or of these levels; the root is level 0", 1},
-    {"leaves", KEY_LEAVES, 0, 0, "Draw only leaves: boxes that list objects", 1},
-    {"slice", KEY_SLICE, "AXIS[=AT]", 0,
-     "Draw the section at x, y or z = AT (default: the middle of the scene), with the boxes and objects that "
-     "it cuts",
-     1},
-    {"light", KEY_LIGHT, "N", 0, "For light: the light whose cells are drawn (default 0)", 1},
-    {"pixel", KEY_PIXEL, "X,Y", 0, "For light: mark the cell that the shadow ray of this pixel reads", 1},
-    {0, 0, 0, 0, "Heatmaps, the cost of each pixel:", 2},
-    {"heatmap", KEY_HEATMAP, "COUNTER FILE.png", 0,
-     "object_tests, extent_tests, steps, or any other counter; may be repeated. Several --accel are drawn "
-     "side by side on one scale",
-     2},
-    {"heatmap-max", KEY_MAX, "VALUE", 0,
-     "Values from this on get the brightest colour (default: the maximum)", 2},
-    {"heatmap-scale", KEY_SCALE, "linear|log", 0,
-     "How values map to colours (default: log if the mean is below an eighth of the maximum)", 2},
-    {"heatmap-rays", KEY_RAYS, "KIND", 0, "Count only primary, shadow, reflection or transmission rays", 2},
-    {"heatmap-difference", KEY_DIFFERENCE, 0, 0,
-     "For two --accel: also draw the first minus the second, red where the first costs more", 2},
-    {0}};
-
 static size_t counter_by_name(struct argp_state *state, const char *name) {
     const char *names[RT_TALLY_COUNTER_COUNT];
     for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
@@ -71,7 +25,8 @@ static size_t counter_by_name(struct argp_state *state, const char *name) {
     return 0;
 }
 
-static void parse_heatmap(RtPictureOptions *o, struct argp_state *state, const char *counter) {
+static void take_heatmap(void *options, const char *counter, struct argp_state *state) {
+    RtPictureOptions *o = options;
     const char **slot = &o->heatmaps[counter_by_name(state, counter)];
     if (state->next >= state->argc) argp_error(state, "--heatmap: a FILE.png is needed after the counter");
     char option[64];
@@ -80,7 +35,8 @@ static void parse_heatmap(RtPictureOptions *o, struct argp_state *state, const c
 }
 
 /* "3" or "2..5" */
-static void parse_level(RtStructureOptions *boxes, struct argp_state *state, const char *text) {
+static void take_level(void *options, const char *text, struct argp_state *state) {
+    RtStructureOptions *boxes = &((RtPictureOptions *)options)->boxes;
     const char *at = text;
     bool good = rt_cli_digits(&at, &boxes->first_level);
     boxes->last_level = boxes->first_level;
@@ -93,7 +49,8 @@ static void parse_level(RtStructureOptions *boxes, struct argp_state *state, con
 }
 
 /* "y" or "y=0.5" */
-static void parse_slice(RtPictureOptions *o, struct argp_state *state, const char *text) {
+static void take_slice(void *options, const char *text, struct argp_state *state) {
+    RtPictureOptions *o = options;
     const char *axis = strchr("xyz", text[0]);
     char *end = NULL;
     o->boxes.slice = true;
@@ -108,60 +65,76 @@ static void parse_slice(RtPictureOptions *o, struct argp_state *state, const cha
     o->boxes.axis = (int)(axis - "xyz");
 }
 
-static void parse_rays(RtPictureOptions *o, struct argp_state *state, const char *text) {
+static void take_rays(void *options, const char *text, struct argp_state *state) {
+    RtPictureOptions *o = options;
     RtRayKind kind = rt_cli_image_ray_kind(state, "--heatmap-rays", text);
     o->kinds = 1u << kind;
     o->heat.rays = rt_ray_kind_name(kind);
 }
 
-static void parse_max(RtPictureOptions *o, struct argp_state *state, const char *text) {
+static void take_max(void *options, const char *text, struct argp_state *state) {
+    RtPictureOptions *o = options;
     char *end;
     o->heat.most = strtod(text, &end);
     if (end == text || *end || !(o->heat.most > 0) || !isfinite(o->heat.most))
         argp_error(state, "--heatmap-max: invalid value '%s': expected a number above 0", text);
 }
 
-static void parse_scale(RtPictureOptions *o, struct argp_state *state, const char *text) {
+static void take_scale(void *options, const char *text, struct argp_state *state) {
+    RtPictureOptions *o = options;
     bool linear = strcmp(text, "linear") == 0;
     if (!linear && strcmp(text, "log") != 0)
         argp_error(state, "--heatmap-scale: invalid value '%s': expected linear or log", text);
     o->heat.scale = linear ? RT_HEATMAP_LINEAR : RT_HEATMAP_LOG;
 }
 
-static error_t parse_option(int key, char *argument, struct argp_state *state) {
-    RtPictureOptions *o = state->input;
-    switch (key) {
-    case KEY_STRUCTURE:
-        rt_cli_set_path(state, "--structure", &o->structure, argument, RT_CLI_PICTURES);
-        return 0;
-    case KEY_HEATMAP: parse_heatmap(o, state, argument); return 0;
-    case KEY_LAYER: o->layer = argument; return 0;
-    case KEY_LEVEL: parse_level(&o->boxes, state, argument), o->of_boxes = "--level"; return 0;
-    case KEY_LEAVES: o->boxes.leaves = true, o->of_boxes = "--leaves"; return 0;
-    case KEY_SLICE: parse_slice(o, state, argument), o->of_boxes = "--slice"; return 0;
-    case KEY_LIGHT:
-        o->light = (uint32_t)rt_cli_integer(state, "--light", argument, 0, UINT32_MAX),
-        o->of_light = "--light";
-        return 0;
-    case KEY_PIXEL:
-        rt_cli_pixel(state, argument, &o->x, &o->y), o->aimed = true, o->of_light = "--pixel";
-        return 0;
-    case KEY_MAX: parse_max(o, state, argument), o->thermal = "--heatmap-max"; return 0;
-    case KEY_SCALE: parse_scale(o, state, argument), o->thermal = "--heatmap-scale"; return 0;
-    case KEY_RAYS: parse_rays(o, state, argument), o->thermal = "--heatmap-rays"; return 0;
-    case KEY_DIFFERENCE: o->heat.difference = true, o->thermal = "--heatmap-difference"; return 0;
-    default: return ARGP_ERR_UNKNOWN;
-    }
+static void take_pixel(void *options, const char *text, struct argp_state *state) {
+    RtPictureOptions *o = options;
+    rt_cli_pixel(state, text, &o->x, &o->y);
+    o->aimed = true;
 }
 
-const struct argp rt_picture_argp = {.options = options, .parser = parse_option};
+#define Options RtPictureOptions
+const RtOption rt_picture_options[] = {
+    {NULL, 0, NULL, {0}, "Pictures of a structure:"},
+    {"structure", 0, "FILE.png", RT_TO_PATH(structure, RT_CLI_PICTURES),
+     "Draw the accelerator's boxes over the image; for item the objects in its samples, for light the "
+     "lengths of its lists on an unfolded cube"},
+    {"layer", 0, "NAME", RT_TO_TEXT(layer),
+     "For overlays: the layer to draw (default: the topmost that can be drawn)"},
+    {"level", 0, "A[..B]", RT_MARKING(of_boxes, RT_CALLS(take_level)),
+     "Draw only the boxes of this level, or of these levels; the root is level 0"},
+    {"leaves", 0, NULL, RT_MARKING(of_boxes, RT_SETS_FLAG(boxes.leaves)),
+     "Draw only leaves: boxes that list objects"},
+    {"slice", 0, "AXIS[=AT]", RT_MARKING(of_boxes, RT_CALLS(take_slice)),
+     "Draw the section at x, y or z = AT (default: the middle of the scene), with the boxes and objects that "
+     "it cuts"},
+    {"light", 0, "N", RT_MARKING(of_light, RT_SETS_INTEGER(light, 0, UINT32_MAX)),
+     "For light: the light whose cells are drawn (default 0)"},
+    {"pixel", 0, "X,Y", RT_MARKING(of_light, RT_CALLS(take_pixel)),
+     "For light: mark the cell that the shadow ray of this pixel reads"},
+    {NULL, 0, NULL, {0}, "Heatmaps, the cost of each pixel:"},
+    {"heatmap", 0, "COUNTER FILE.png", RT_TO_TAKE(take_heatmap),
+     "object_tests, extent_tests, steps, or any other counter; may be repeated. Several --accel are drawn "
+     "side by side on one scale"},
+    {"heatmap-max", 0, "VALUE", RT_MARKING(thermal, RT_CALLS(take_max)),
+     "Values from this on get the brightest colour (default: the maximum)"},
+    {"heatmap-scale", 0, "linear|log", RT_MARKING(thermal, RT_CALLS(take_scale)),
+     "How values map to colours (default: log if the mean is below an eighth of the maximum)"},
+    {"heatmap-rays", 0, "KIND", RT_MARKING(thermal, RT_CALLS(take_rays)),
+     "Count only primary, shadow, reflection or transmission rays"},
+    {"heatmap-difference", 0, NULL, RT_MARKING(thermal, RT_SETS_FLAG(heat.difference)),
+     "For two --accel: also draw the first minus the second, red where the first costs more"},
+    {0}};
+#undef Options
 
 void rt_pictures_finish(RtPictureOptions *o, uint32_t accels, struct argp_state *state) {
     bool heats = rt_pictures_any_heatmap(o);
-    const char *structural = o->layer ? "--layer" : o->of_boxes ? o->of_boxes : o->of_light;
+    const char *structural = o->layer ? "layer" : o->of_boxes ? o->of_boxes : o->of_light;
     if (structural && !o->structure)
-        argp_error(state, "%s needs a picture of a structure: --structure FILE.png", structural);
-    if (o->thermal && !heats) argp_error(state, "%s needs a heatmap: --heatmap COUNTER FILE.png", o->thermal);
+        argp_error(state, "--%s needs a picture of a structure: --structure FILE.png", structural);
+    if (o->thermal && !heats)
+        argp_error(state, "--%s needs a heatmap: --heatmap COUNTER FILE.png", o->thermal);
     if (o->heat.difference && accels != 2)
         argp_error(state, "--heatmap-difference needs two accelerators: give --accel twice");
     if (accels > 1 && !heats)
@@ -195,12 +168,12 @@ RtStatus rt_pictures_check(const RtPictureOptions *o, const RtAccel *accel, RtEr
     RT_TRY(rt_structure_layer(accel, o->layer, &layer, error));
     if (o->of_boxes && layer->ops->find_cell)
         return rt_fail(error, RT_BAD_INPUT,
-                       "%s needs a layer that has boxes, such as bvh or grid, but the picture shows %s: "
+                       "--%s needs a layer that has boxes, such as bvh or grid, but the picture shows %s: "
                        "leave it out, or choose another --layer",
                        o->of_boxes, layer->ops->name);
     if (o->of_light && !has_cells_of_lights(layer))
         return rt_fail(error, RT_BAD_INPUT,
-                       "%s needs the cells around a light, which only the layer light has, but the picture "
+                       "--%s needs the cells around a light, which only the layer light has, but the picture "
                        "shows %s: leave it out, or draw light, as in --accel light:cells=64+bvh",
                        o->of_light, layer->ops->name);
     return RT_OK;

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Options of `render` for pictures of structures and heatmaps. A child parser of argp. */
+/* Options of `render` for pictures of structures and heatmaps. */
 #ifndef RT_CLI_PICTURES_H
 #define RT_CLI_PICTURES_H
 
+#include "cli/options.h"
 #include "picture/heatmap.h"
 #include "picture/structure.h"
 
-#include <argp.h>
-
-/* The input of the parser: zero, except `boxes` RT_ALL_LEVELS. */
+/* Zero before parsing, except `boxes` RT_ALL_LEVELS. */
 typedef struct RtPictureOptions {
     const char *structure, *layer;                /* a path or NULL; a name or NULL */
     const char *heatmaps[RT_TALLY_COUNTER_COUNT]; /* paths, by counter */
@@ -18,14 +17,14 @@ typedef struct RtPictureOptions {
     uint32_t kinds;       /* of rays, bits; 0: all */
     uint32_t light, x, y; /* of an overlay for shadow rays; the pixel of the marked ray */
     bool aimed;           /* a pixel was given */
-    /* The last given option, or NULL, that needs a picture of boxes, a picture of a light's cells, or
-     * --heatmap. */
+    /* The name of the last given option, or NULL, that needs a picture of boxes, a picture of a light's
+     * cells, or --heatmap. */
     const char *of_boxes, *of_light, *thermal;
 } RtPictureOptions;
 
-extern const struct argp rt_picture_argp;
+extern const RtOption rt_picture_options[];
 
-/* The parent, which has `accels` accelerators, calls this at ARGP_KEY_END. */
+/* `finish` of the command, which has `accels` accelerators, calls this. */
 void rt_pictures_finish(RtPictureOptions *o, uint32_t accels, struct argp_state *state);
 
 bool rt_pictures_any_heatmap(const RtPictureOptions *o);

@@ -4,6 +4,7 @@
 #include "accel/plugin.h"
 #include "core/base/file.h"
 #include "core/base/memory.h"
+#include "core/base/words.h"
 #include "experiment/manifest.h"
 #include "experiment/plugins_used.h"
 
@@ -102,8 +103,7 @@ RtStatus rt_cli_load_plugins(int argc, char *const *argv, RtError *error) {
 
 void rt_cli_plugin_arguments(char *out, size_t size) {
     out[0] = '\0';
-    for (size_t i = 0, used = 0; i < given_count && used < size; i++)
-        used += (size_t)snprintf(out + used, size - used, " --plugin '%s'", given[i]);
+    for (size_t i = 0; i < given_count; i++) rt_append_text(out, size, " --plugin '%s'", given[i]);
 }
 
 static void tell(void *context, const char *sentence) {

@@ -7,8 +7,6 @@
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -37,7 +35,8 @@ void rt_format_duration(double seconds, char out[RT_MAX_DURATION]) {
         snprintf(out, RT_MAX_DURATION, "%d h %d min", minutes / 60, minutes % 60);
 }
 
-double rt_progress_left(const RtProgress *progress, double now) {
+/* Seconds left, from the forecast and the speed so far; NAN if unknown. */
+static double left_of(const RtProgress *progress, double now) {
     double left = rt_forecast_left(&progress->forecast, progress->before, progress->asked - progress->start);
     return isnan(left) ? left : fmax(left - (now - progress->asked), 0);
 }
@@ -46,7 +45,7 @@ double rt_progress_left(const RtProgress *progress, double now) {
 
 static void show(RtProgress *progress) {
     const RtForecast *f = &progress->forecast;
-    double now = rt_wall_seconds(), left = rt_progress_left(progress, now);
+    double now = rt_wall_seconds(), left = left_of(progress, now);
     char duration[RT_MAX_DURATION], rest[RT_MAX_DURATION + 16] = "";
     rt_format_duration(left, duration);
     if (!isnan(left)) snprintf(rest, sizeof rest, ", about %s left", duration);

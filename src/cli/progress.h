@@ -36,9 +36,6 @@ void rt_progress_watch(RtProgress *progress, const char *directory, const char *
 /* The observer of a workload; each notice gets its own line. */
 RtRunObserver rt_progress_observer(RtProgress *progress);
 
-/* Seconds left, from the forecast and the speed so far; NAN if unknown. */
-double rt_progress_left(const RtProgress *progress, double now);
-
 /* "3 h 20 min", "5 min", "40 s"; room for RT_MAX_DURATION. */
 #define RT_MAX_DURATION 32
 void rt_format_duration(double seconds, char out[RT_MAX_DURATION]);

@@ -1,28 +1,27 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Options of commands that record rays: which, how many, of what frame. A child parser of argp. */
+/* Options of commands that record rays: which, how many, of what frame. */
 #ifndef RT_CLI_RECORDING_H
 #define RT_CLI_RECORDING_H
 
+#include "cli/options.h"
 #include "experiment/experiment.h"
 
-#include <argp.h>
-
-/* The input of the parser. */
 typedef struct RtRecordingOptions {
-    RtExperiment *experiment; /* owned; the caller adds its scenes */
-    RtWorkload like;          /* for rt_experiment_add_scenes */
-    bool one_kind;            /* only one kind of rays, by default primary */
-    const char *kinds;        /* as given, or NULL */
-    const char *frame;        /* the last given option that needs recorded rays, or NULL */
+    RtExperiment *experiment;           /* owned; the caller adds its scenes */
+    RtWorkload like;                    /* for rt_experiment_add_scenes */
+    uint64_t limit, coherent_run, seed; /* of the experiment */
+    bool one_kind;                      /* only one kind of rays, by default primary */
+    const char *kinds;                  /* as given, or NULL */
+    const char *frame;                  /* name of the last given option that needs recorded rays, or NULL */
 } RtRecordingOptions;
 
-extern const struct argp rt_recording_argp;
+extern const RtOption rt_recording_options[];
 
-/* Makes the experiment, without scenes, and `like`, with the defaults of `bench`. RT_NO_MEMORY. */
+/* Makes the experiment, without scenes, and sets the defaults of `bench`. RT_NO_MEMORY. */
 RtStatus rt_recording_init(RtRecordingOptions *o, RtError *error);
 void rt_recording_clear(RtRecordingOptions *o);
 
-/* The parent calls this at ARGP_KEY_END: the kinds of rays depend on --rays-from. */
+/* Fills in the experiment. The command's `finish` calls this: the kinds of rays depend on --rays-from. */
 void rt_recording_finish(const RtRecordingOptions *o, struct argp_state *state);
 
 /* Adds the accelerators of --accel, or every one for `all`; ends the process by argp_error if there is an

@@ -4,6 +4,7 @@
 
 #include "core/base/elementary.h"
 #include "core/base/memory.h"
+#include "core/base/words.h"
 #include "core/text/table.h"
 
 #include <assert.h>
@@ -133,16 +134,7 @@ static int by_x(const void *a, const void *b) {
 
 /* ---- verdicts ---- */
 
-static void put(RtClaimResult *result, const char *text) {
-    size_t used = strlen(result->figures);
-    snprintf(result->figures + used, sizeof result->figures - used, "%s", text);
-}
-
-static void put_figure(RtClaimResult *result, double value) {
-    char text[16];
-    rt_format_figure(value, text);
-    put(result, text);
-}
+#define PUT(result, ...) rt_append_text((result)->figures, RT_MAX_CLAIM_FIGURES, __VA_ARGS__)
 
 static double in_units(const RtClaim *claim, double value) {
     bool time =
@@ -151,28 +143,20 @@ static double in_units(const RtClaim *claim, double value) {
 }
 
 static void put_bounded(RtClaimResult *result, const RtClaim *claim, const Bounded *b) {
-    if (!isfinite(b->value)) {
-        put(result, "unknown");
-        return;
-    }
-    put_figure(result, in_units(claim, b->value));
-    if (b->low == b->high) return;
-    put(result, " [");
-    put_figure(result, in_units(claim, b->low));
-    put(result, ", ");
-    put_figure(result, in_units(claim, b->high));
-    put(result, "]");
+    char value[16], low[16], high[16];
+    rt_format_figure(in_units(claim, b->value), value);
+    rt_format_figure(in_units(claim, b->low), low);
+    rt_format_figure(in_units(claim, b->high), high);
+    PUT(result, "%s", isfinite(b->value) ? value : "unknown");
+    if (isfinite(b->value) && b->low != b->high) PUT(result, " [%s, %s]", low, high);
 }
 
 static void put_place(RtClaimResult *result, const RtExperiment *experiment, const Point *point, bool line) {
     assert(point);
     const RtCandidate *candidate = &experiment->candidates[point->candidate];
     const RtWorkload *workload = &experiment->workloads[point->workload];
-    put(result, " (");
-    put(result, line ? candidate->base : candidate->label);
-    put(result, " on ");
-    put(result, line ? workload->base : workload->label);
-    put(result, ")");
+    PUT(result, " (%s on %s)", line ? candidate->base : candidate->label,
+        line ? workload->base : workload->label);
 }
 
 static bool compares(const RtClaim *claim, double value) {
@@ -232,13 +216,10 @@ static RtClaimVerdict step_of(const RtClaim *claim, const Bounded *from, const B
 }
 
 static void put_step(RtClaimResult *result, const RtClaim *claim, const Point *from, const Point *to) {
-    char text[96];
     put_bounded(result, claim, &from->y);
-    snprintf(text, sizeof text, " at %s=%.9g, ", claim->key.key, from->x);
-    put(result, text);
+    PUT(result, " at %s=%.9g, ", claim->key.key, from->x);
     put_bounded(result, claim, &to->y);
-    snprintf(text, sizeof text, " at %s=%.9g", claim->key.key, to->x);
-    put(result, text);
+    PUT(result, " at %s=%.9g", claim->key.key, to->x);
 }
 
 /* Judges by the first step with the worst verdict; if all hold, shows the first value and the last. */
@@ -328,10 +309,8 @@ void rt_claim_judge(const RtResults *results, uint32_t i, RtClaimResult *result)
         judge_values(experiment, &claim, points, drop_unknown(points, count), result);
     }
     if (known > 0 && known < count) {
-        char text[64];
         if (result->verdict == RT_CLAIM_HOLDS) result->verdict = RT_CLAIM_UNDECIDED;
-        snprintf(text, sizeof text, "; %" PRIu32 " of %" PRIu32 " values are unknown", count - known, count);
-        put(result, text);
+        PUT(result, "; %" PRIu32 " of %" PRIu32 " values are unknown", count - known, count);
     }
     rt_free(points);
 }

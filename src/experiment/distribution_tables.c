@@ -4,8 +4,6 @@
 #include "core/base/words.h"
 #include "experiment/result_tables.h"
 
-#include <math.h>
-
 typedef RtDistributionRow Row;
 
 /* ---- columns ---- */

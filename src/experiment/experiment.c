@@ -106,7 +106,7 @@ static uint32_t default_baseline(const RtExperiment *experiment) {
 
 RtStatus rt_experiment_set_baseline(RtExperiment *experiment, const char *label, RtError *error) {
     uint32_t c = 0;
-    if (!label && experiment->manifest) label = rt_manifest_baseline(experiment->manifest);
+    if (!label) label = json_string_value(json_object_get(experiment->manifest, "baseline"));
     if (!label) {
         experiment->baseline = default_baseline(experiment);
         return RT_OK;

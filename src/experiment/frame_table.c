@@ -6,7 +6,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdarg.h>
 #include <string.h>
 
 /* ---- costs ---- */
@@ -202,20 +201,7 @@ RtTable rt_frame_table(RtFrameRow *row) {
 
 /* ---- in words ---- */
 
-typedef struct Text {
-    char *out;
-    size_t used;
-} Text;
-
-__attribute__((format(printf, 2, 3))) static void say(Text *text, const char *format, ...) {
-    const size_t size = RT_MAX_FRAME_SENTENCE - text->used;
-    va_list args;
-    va_start(args, format);
-    /* clang-tidy 14 does not see va_start. NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized) */
-    const int length = vsnprintf(text->out + text->used, size, format, args);
-    va_end(args);
-    if (length > 0) text->used += (size_t)length < size ? (size_t)length : size - 1;
-}
+#define SAY(out, ...) rt_append_text(out, RT_MAX_FRAME_SENTENCE, __VA_ARGS__)
 
 static const char *figure(double value, char size[16]) {
     rt_format_figure(value, size);
@@ -248,27 +234,27 @@ static bool is_level(const RtResults *results, uint32_t t, uint32_t winner, uint
 
 /* "octree follows with 230 times, grid with 122." All that are no overlays, without the winner. A winning
  * overlay has another base. */
-static void say_followers(Text *text, const RtResults *results, uint32_t t, uint32_t winner) {
+static void say_followers(char *out, const RtResults *results, uint32_t t, uint32_t winner) {
     const RtExperiment *experiment = results->experiment;
     const uint32_t none = experiment->candidate_count;
     const bool overlay = below_of(results, t, winner) != none;
     char number[16];
     bool any = false;
     for (uint32_t c = overlay ? none : winner; (c = next_of(results, t, none, c)) != none; any = true) {
-        if (!any && overlay) say(text, " Compared with %s,", experiment->frame.without);
-        say(text, "%s %s %s%s%s%s", any ? "," : "", rt_candidate_label(experiment, c),
+        if (!any && overlay) SAY(out, " Compared with %s,", experiment->frame.without);
+        SAY(out, "%s %s %s%s%s%s", any ? "," : "", rt_candidate_label(experiment, c),
             any       ? "with "
             : overlay ? "comes with "
                       : "follows with ",
             figure(gain_of(results, t, c), number), any ? "" : " times",
             !overlay && is_level(results, t, winner, c) ? " (level: the intervals overlap)" : "");
     }
-    say(text, "%s", any ? "." : "");
+    SAY(out, "%s", any ? "." : "");
 }
 
 /* "Compared with wide alone, item+wide is 1.12 times as fast, and light+wide 1.00 times." Without the winner.
  */
-static void say_overlays(Text *text, const RtResults *results, uint32_t t, uint32_t winner) {
+static void say_overlays(char *out, const RtResults *results, uint32_t t, uint32_t winner) {
     const RtExperiment *experiment = results->experiment;
     const uint32_t none = experiment->candidate_count, told = below_of(results, t, winner);
     for (uint32_t below = 0; below < none; below++) {
@@ -276,19 +262,19 @@ static void say_overlays(Text *text, const RtResults *results, uint32_t t, uint3
         bool any = false;
         for (uint32_t c = told == below ? winner : none; (c = next_of(results, t, below, c)) != none;
              any = true) {
-            if (!any) say(text, " Compared with %s alone,", rt_candidate_label(experiment, below));
-            say(text, "%s %s %s%s times%s", any ? ", and" : "", rt_candidate_label(experiment, c),
+            if (!any) SAY(out, " Compared with %s alone,", rt_candidate_label(experiment, below));
+            SAY(out, "%s %s %s%s times%s", any ? ", and" : "", rt_candidate_label(experiment, c),
                 any ? "" : "is ", figure(gain_of(results, t, c), number),
                 any                      ? ""
                 : experiment->count_only ? " better"
                                          : " as fast");
         }
-        say(text, "%s", any ? "." : "");
+        SAY(out, "%s", any ? "." : "");
     }
 }
 
 /* The fastest of all except the yardstick. */
-static void say_fastest(Text *text, const RtResults *results, uint32_t t, const RtFrameCost *without) {
+static void say_fastest(char *out, const RtResults *results, uint32_t t, const RtFrameCost *without) {
     const RtExperiment *experiment = results->experiment;
     uint32_t best = experiment->candidate_count;
     double least = INFINITY;
@@ -301,14 +287,13 @@ static void say_fastest(Text *text, const RtResults *results, uint32_t t, const 
         best = c;
     }
     if (best == experiment->candidate_count) return;
-    say(text, " The fastest structure is %s: %s times as fast as %s.", rt_candidate_label(experiment, best),
+    SAY(out, " The fastest structure is %s: %s times as fast as %s.", rt_candidate_label(experiment, best),
         figure(without->seconds / least, number), experiment->frame.without);
 }
 
 void rt_frame_sentence(const RtResults *results, uint32_t workload, char out[RT_MAX_FRAME_SENTENCE]) {
     const RtExperiment *experiment = results->experiment;
     const uint32_t winner = winner_of(results, workload), below = below_of(results, workload, winner);
-    Text text = {out, 0};
     char number[16], tests[16];
     out[0] = '\0';
     if (winner == experiment->candidate_count) return;
@@ -318,24 +303,24 @@ void rt_frame_sentence(const RtResults *results, uint32_t workload, char out[RT_
     const RtFrameCost other = overlay ? cost_of(results, workload, below, RT_FRAME_ALL) : without;
     const double gain = gain_of(results, workload, winner);
     const char *than = overlay ? rt_candidate_label(experiment, below) : experiment->frame.without;
-    say(&text, "On %s, %s helps most of %s: ", experiment->workloads[workload].label,
+    SAY(out, "On %s, %s helps most of %s: ", experiment->workloads[workload].label,
         rt_candidate_label(experiment, winner), experiment->frame.among);
-    if (!experiment->count_only) say(&text, "%s times as fast, with ", figure(gain, number));
-    say(&text, "%s times fewer object tests than %s.", figure(other.object_tests / cost.object_tests, tests),
+    if (!experiment->count_only) SAY(out, "%s times as fast, with ", figure(gain, number));
+    SAY(out, "%s times fewer object tests than %s.", figure(other.object_tests / cost.object_tests, tests),
         than);
-    say_followers(&text, results, workload, winner);
-    say_overlays(&text, results, workload, winner);
-    if (!experiment->count_only) say_fastest(&text, results, workload, &without);
+    say_followers(out, results, workload, winner);
+    say_overlays(out, results, workload, winner);
+    if (!experiment->count_only) say_fastest(out, results, workload, &without);
 }
 
 void rt_frame_title(const RtResults *results, uint32_t workload, char out[RT_MAX_FRAME_SENTENCE]) {
     const RtWorkloadResult *w = &results->workloads[workload];
     const RtWorkload *setup = &results->experiment->workloads[workload];
     const uint64_t samples = (uint64_t)(w->width + setup->corners) * (w->height + setup->corners);
-    Text text = {out, 0};
-    say(&text, "%" PRIu32 " object%s, %s frame of %" PRIu32 "x%" PRIu32 ": ", w->objects,
-        rt_plural(w->objects), w->rays[RT_RAY_PRIMARY] == samples ? "a" : "a part of a", w->width, w->height);
-    say(&text, "%" PRIu64 " primary, %" PRIu64 " shadow and %" PRIu64 " secondary rays",
+    out[0] = '\0';
+    SAY(out, "%" PRIu32 " object%s, %s frame of %" PRIu32 "x%" PRIu32 ": ", w->objects, rt_plural(w->objects),
+        w->rays[RT_RAY_PRIMARY] == samples ? "a" : "a part of a", w->width, w->height);
+    SAY(out, "%" PRIu64 " primary, %" PRIu64 " shadow and %" PRIu64 " secondary rays",
         w->rays[RT_RAY_PRIMARY], w->rays[RT_RAY_SHADOW],
         w->rays[RT_RAY_REFLECTION] + w->rays[RT_RAY_TRANSMISSION]);
 }

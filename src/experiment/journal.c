@@ -65,11 +65,6 @@ RtStatus rt_journal_add(RtOutputs *outputs, const char *path, const RtExperiment
     return status;
 }
 
-RtStatus rt_journal_append(RtJsonLines *journal, const RtResults *results, const RtEvent *event,
-                           RtError *error) {
-    return rt_json_lines_write(journal, rt_journal_line(results, event), error);
-}
-
 /* ---- reading ---- */
 
 static RtStatus check_experiment(const char *path, const json_t *header, const RtExperiment *experiment,

@@ -20,10 +20,6 @@ RtStatus rt_journal_open(RtJsonLines *journal, const char *path, const RtExperim
 RtStatus rt_journal_add(RtOutputs *outputs, const char *path, const RtExperiment *experiment,
                         const RtOnly *only, const json_t *lines, RtError *error);
 
-/* Appends the result of an event. */
-RtStatus rt_journal_append(RtJsonLines *journal, const RtResults *results, const RtEvent *event,
-                           RtError *error);
-
 /* Fills `results` from the journal at `path`. Rejects a journal of another experiment; with `only`, to resume
  * it, also of another build, another shard, or another build of a plugin that the experiment uses. With
  * `renew` a changed plugin only loses its own lines, unless it is the baseline. A journal whose results are

@@ -5,7 +5,6 @@
 #include "experiment/plugins_used.h"
 
 #include <math.h>
-#include <string.h>
 
 /* ---- members ---- */
 

@@ -6,10 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *rt_manifest_baseline(const json_t *manifest) {
-    return json_string_value(json_object_get(manifest, "baseline"));
-}
-
 static const json_t *entry_at(const json_t *manifest, size_t i) {
     return json_array_get(json_object_get(manifest, "accelerators"), i);
 }

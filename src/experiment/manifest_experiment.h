@@ -9,9 +9,6 @@
 
 #include <jansson.h>
 
-/* The label of the baseline, or NULL. */
-const char *rt_manifest_baseline(const json_t *manifest);
-
 /* Copies spec and label of accelerator number `i` to *candidate; false if there is none. */
 bool rt_manifest_candidate(const json_t *manifest, uint32_t i, RtCandidate *candidate);
 

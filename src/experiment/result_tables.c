@@ -4,7 +4,6 @@
 #include "accel/columns.h"
 
 #include <assert.h>
-#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 

@@ -9,6 +9,7 @@
  * A list may hold ranges, "0.5|1..16*2", and words, "bvh:build=binned|sweep". For a parameter that is a whole
  * number, values are rounded and duplicates dropped. The characters are unambiguous: no other value has two
  * dots or a bar, and a '+' before a digit never separates accelerators. */
+#include "core/base/words.h"
 #include "experiment/experiment.h"
 #include "experiment/manifest_experiment.h"
 #include "scenes/builtin.h"
@@ -45,9 +46,8 @@ bool rt_swept_logarithmic(const double *values, uint32_t count) {
 
 void rt_swept_name(const RtSwept *swept, const char *but, char *out, size_t size) {
     for (uint32_t i = 0; i < swept->count; i++) {
-        size_t used = strlen(out);
         if (but && strcmp(swept->keys[i], but) == 0) continue;
-        snprintf(out + used, size - used, ":%s=%s", swept->keys[i], swept->values[i]);
+        rt_append_text(out, size, ":%s=%s", swept->keys[i], swept->values[i]);
     }
 }
 

@@ -6,7 +6,6 @@
 #include "scenes/open.h"
 
 #include <stdio.h>
-#include <string.h>
 
 /* ---- what is unknown ---- */
 

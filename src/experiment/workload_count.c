@@ -2,6 +2,7 @@
 /* Counting: each candidate gets a share of the rays of one kind. Those that would exceed a limit are
  * excluded; the others are counted, their answers are compared with the expected ones, and distributions are
  * computed. */
+#include "accel/remote.h"
 #include "core/base/memory.h"
 #include "experiment/workload_state.h"
 
@@ -202,10 +203,12 @@ typedef RtStatus Step(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtC
 /* A plugin that is broken, or gives wrong answers, is excluded; other candidates are unaffected. */
 static RtStatus each_cell(RtWorkloadState *workload, RtRayKind kind, Step *step, RtError *error) {
     for (uint32_t c = 0; c < workload->experiment->candidate_count; c++) {
-        if (!workload->accels[c]) continue;
+        const RtAccel *accel = workload->accels[c];
+        if (!accel) continue;
         RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
-        RtStatus status = rt_measure_status(workload->accels[c], step(workload, c, kind, cell, error));
-        if (status == RT_BROKEN) status = rt_workload_break(workload, c, kind, error);
+        RtStatus status = step(workload, c, kind, cell, error);
+        const bool wrong = status == RT_MISMATCH && rt_accel_is_remote(accel);
+        if (status == RT_BROKEN || wrong) status = rt_workload_break(workload, c, kind, error);
         RT_TRY(status);
     }
     return RT_OK;

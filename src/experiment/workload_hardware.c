@@ -8,7 +8,6 @@
 #include "measure/machine.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { ROUNDS = 5 }; /* of which medians are taken; the counts differ little */
 

@@ -5,7 +5,6 @@
 #include "measure/measure.h"
 
 #include <inttypes.h>
-#include <math.h>
 
 /* ---- counting ---- */
 

@@ -14,14 +14,6 @@ static void copy_pixels(const RtFrame *frame, float *rgb) {
     }
 }
 
-static RtStatus write_png(const RtFrame *frame, const char *path, RtError *error) {
-    RtImage image = {0};
-    RtStatus status = rt_image_from_frame(&image, frame, error);
-    if (status == RT_OK) status = rt_png_write(&image, path, error);
-    rt_image_clear(&image);
-    return status;
-}
-
 raytally_status raytally_render(const raytally_accelerator *accelerator, uint32_t depth, int threads,
                                 const char *png, float *rgb, raytally_error *error) {
     RtFrame frame = {0};
@@ -29,7 +21,7 @@ raytally_status raytally_render(const raytally_accelerator *accelerator, uint32_
     RT_C_LOCALE;
     RtStatus status = rt_threads_check(threads, rt_error_of(error));
     if (status == RT_OK) status = rt_frame_trace(&frame, accelerator->accel, &options, rt_error_of(error));
-    if (status == RT_OK && png) status = write_png(&frame, png, rt_error_of(error));
+    if (status == RT_OK && png) status = rt_png_write(&frame, png, rt_error_of(error));
     if (status == RT_OK && rgb) copy_pixels(&frame, rgb);
     rt_frame_clear(&frame);
     return (raytally_status)status;

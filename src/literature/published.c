@@ -3,7 +3,6 @@
 
 #include <fnmatch.h>
 #include <math.h>
-#include <string.h>
 
 void rt_published_row_name(const RtPublishedRow *row, char *out) {
     const char *name = row->of_rays || !*row->structure ? row->source : row->structure;
@@ -26,28 +25,6 @@ const RtFigure *rt_published_figure(const RtPublished *published, const RtPublis
         if (published->figures[i].column == column) return &published->figures[i];
     }
     return NULL;
-}
-
-RtColumnSummary rt_column_summary(const RtPublished *published, RtColumn column) {
-    RtColumnSummary summary = {0};
-    for (uint32_t i = 0; i < published->figure_count; i++) {
-        if (published->figures[i].column != column) continue;
-        summary.figures++;
-        summary.judged[published->figures[i].judgement]++;
-    }
-    return summary;
-}
-
-bool rt_published_columns(const RtPublished *published, uint32_t workload, bool of_rays,
-                          bool shown[RT_COLUMN_COUNT]) {
-    bool any = false;
-    for (int c = 0; c < RT_COLUMN_COUNT; c++) shown[c] = false;
-    for (uint32_t i = 0; i < published->figure_count; i++) {
-        const RtFigure *figure = &published->figures[i];
-        const RtPublishedRow *row = &published->rows[figure->row];
-        if (row->workload == workload && row->of_rays == of_rays) any = shown[figure->column] = true;
-    }
-    return any;
 }
 
 /* ---- measured figures ---- */

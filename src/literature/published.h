@@ -21,8 +21,6 @@
 
 #include "experiment/results.h"
 
-#include <stdio.h>
-
 #define RT_MAX_FIGURE   16 /* characters */
 #define RT_MAX_REASON   512
 #define RT_NOT_MEASURED UINT32_MAX
@@ -89,20 +87,8 @@ void rt_published_compare(RtPublished *published, const RtResults *results);
  * reason that no figure needs, or the first scene on which ours are not better. */
 RtStatus rt_published_check(const RtPublished *published, RtError *error);
 
-/* The number of figures of a column, by judgement. */
-typedef struct RtColumnSummary {
-    uint32_t figures;
-    uint32_t judged[3]; /* by RtJudgement */
-} RtColumnSummary;
-
-RtColumnSummary rt_column_summary(const RtPublished *published, RtColumn column);
-
 /* The row's figure in that column, or NULL. */
 const RtFigure *rt_published_figure(const RtPublished *published, const RtPublishedRow *row, RtColumn column);
-
-/* The columns in the rows of a workload that are, or are not, of rays; false if there are none. */
-bool rt_published_columns(const RtPublished *published, uint32_t workload, bool of_rays,
-                          bool shown[RT_COLUMN_COUNT]);
 
 const char *rt_column_name(RtColumn column);
 const char *rt_measure_name(RtMeasure measure);

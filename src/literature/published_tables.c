@@ -3,6 +3,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <string.h>
 
 typedef RtPublishedCursor Row;
 
@@ -54,7 +55,7 @@ static RtField judged_of(const Row *r) {
 }
 
 static RtField outside_of(const Row *r) {
-    RtField field = rt_field_integer(r->summary.judged[RT_OUTSIDE]);
+    RtField field = rt_field_integer(r->judged[RT_OUTSIDE]);
     field.missed = field.integer > 0;
     return field;
 }
@@ -111,10 +112,10 @@ static RtField shown_figure(const void *row, const RtTableColumn *column) {
     X(ours4, "measured", real4, "", "its value", ours_of(r))                                                 \
     X(extent_tests4, "extent tests", real4, "", "extent tests that it also makes", r->best->extent_tests)    \
     X(judged, "column", text, "", "the measure, and how much its figures may deviate", judged_of(r))         \
-    X(figures, "figures", integer, "", "published figures", r->summary.figures)                              \
-    X(inside, "within", integer, "", "those within the tolerance", r->summary.judged[RT_WITHIN])             \
+    X(figures, "figures", integer, "", "published figures", r->figures)                                      \
+    X(inside, "within", integer, "", "those within the tolerance", r->judged[RT_WITHIN])                     \
     X(outside, "outside", integer, "", "those outside it", outside_of(r))                                    \
-    X(unjudged, "not judged", integer, "", "those that are only shown", r->summary.judged[RT_UNJUDGED])      \
+    X(unjudged, "not judged", integer, "", "those that are only shown", r->judged[RT_UNJUDGED])              \
     X(row_name, "row", text, "", "as it was published", name_of(r))
 
 RT_TABLE_COLUMNS(columns, COLUMNS)
@@ -162,8 +163,15 @@ static const void *best_eye_row(void *context, size_t i) {
 static const void *summary_row(void *context, size_t i) {
     Row *r = context;
     r->column = (RtColumn)i;
-    r->summary = rt_column_summary(r->published, r->column);
-    return r->summary.figures ? r : NULL;
+    r->figures = 0;
+    memset(r->judged, 0, sizeof r->judged);
+    for (uint32_t f = 0; f < r->published->figure_count; f++) {
+        const RtFigure *figure = &r->published->figures[f];
+        if (figure->column != r->column) continue;
+        r->figures++;
+        r->judged[figure->judgement]++;
+    }
+    return r->figures ? r : NULL;
 }
 
 static const void *workload_row(void *context, size_t i) {
@@ -174,10 +182,14 @@ static const void *workload_row(void *context, size_t i) {
 
 /* The name of the row, and the columns that any row of the workload has. */
 static void show_columns(Row *r) {
-    bool shown[RT_COLUMN_COUNT];
+    bool shown[RT_COLUMN_COUNT] = {false};
     size_t count = 0;
     r->shown[count++] = columns[AT_row_name];
-    rt_published_columns(r->published, r->workload, r->of_rays, shown);
+    for (uint32_t i = 0; i < r->published->figure_count; i++) {
+        const RtFigure *figure = &r->published->figures[i];
+        const RtPublishedRow *row = &r->published->rows[figure->row];
+        shown[figure->column] |= row->workload == r->workload && row->of_rays == r->of_rays;
+    }
     for (int c = 0; c < RT_COLUMN_COUNT; c++) {
         const char *name = rt_column_name((RtColumn)c), *meaning = "published; measured (deviation)";
         if (shown[c])

@@ -27,7 +27,7 @@ typedef struct RtPublishedCursor {
     RtMeasure measure;
     const RtBest *best;
     RtColumn column;
-    RtColumnSummary summary;
+    uint32_t figures, judged[3];              /* of the column; those of each RtJudgement */
     const char *accel;                        /* label of the measured accelerator, or NULL */
     RtField said;                             /* the published figure */
     RtTableColumn shown[1 + RT_COLUMN_COUNT]; /* the columns of RT_ROWS... */

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "measure/hardware.h"
 
-#include <assert.h>
 #include <errno.h>
 #include <linux/perf_event.h>
 #include <math.h>
@@ -17,14 +16,6 @@ const RtHardwareEvent rt_hardware_events[RT_HARDWARE_COUNT] = {
     [RT_HARDWARE_cache_misses] = {PERF_TYPE_HARDWARE, PERF_COUNT_HW_CACHE_MISSES},
     [RT_HARDWARE_branch_misses] = {PERF_TYPE_HARDWARE, PERF_COUNT_HW_BRANCH_MISSES},
 };
-
-const char *rt_hardware_name(size_t i) {
-#define NAME(name, meaning) #name,
-    static const char *const names[] = {RT_HARDWARE_EVENTS(NAME)};
-#undef NAME
-    assert(i < RT_HARDWARE_COUNT);
-    return names[i];
-}
 
 /* ---- opening ---- */
 

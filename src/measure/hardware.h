@@ -8,7 +8,6 @@
 
 #include "core/base/status.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 /* X(name, meaning) */
@@ -30,8 +29,6 @@ typedef struct RtHardwareEvent {
 
 /* The events of these names. Tests use others. */
 extern const RtHardwareEvent rt_hardware_events[RT_HARDWARE_COUNT];
-
-const char *rt_hardware_name(size_t i);
 
 typedef struct RtHardware {
     int files[RT_HARDWARE_COUNT]; /* -1: not available */

@@ -4,11 +4,11 @@
 #include "accel/plugin.h"
 #include "build_info.h"
 #include "core/base/parallel.h"
+#include "core/base/words.h"
 #include "core/text/json.h"
 
 #include <fcntl.h>
 #include <inttypes.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -139,12 +139,10 @@ const char *rt_build_alone(void) {
 
 const char *rt_build_identity(void) {
     static char identity[4096];
-    int used = snprintf(identity, sizeof identity, "%s", rt_build_alone());
-    for (size_t i = 0; i < rt_plugin_count() && used < (int)sizeof identity; i++) {
-        const RtPlugin *plugin = rt_plugin_at(i);
-        used += snprintf(identity + used, sizeof identity - (size_t)used, ", plugin of %s %016" PRIx64,
-                         plugin->names[0], plugin->fingerprint);
-    }
+    snprintf(identity, sizeof identity, "%s", rt_build_alone());
+    for (size_t i = 0; i < rt_plugin_count(); i++)
+        rt_append_text(identity, sizeof identity, ", plugin of %s %016" PRIx64, rt_plugin_at(i)->names[0],
+                       rt_plugin_at(i)->fingerprint);
     return identity;
 }
 

@@ -158,10 +158,6 @@ RtStatus rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit
     return RT_OK;
 }
 
-RtStatus rt_measure_status(const RtAccel *accel, RtStatus status) {
-    return status == RT_MISMATCH && rt_accel_is_remote(accel) ? RT_BROKEN : status;
-}
-
 /* ---- ray by ray ---- */
 
 typedef struct RowsPass {

@@ -28,10 +28,6 @@ typedef struct RtCount {
 RtStatus rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit *expected, int threads,
                           RtCount *count, RtError *error);
 
-/* The status of a measurement that ended with `status`: wrong answers of a remote accelerator are RT_BROKEN,
- * because they concern only its own results. */
-RtStatus rt_measure_status(const RtAccel *accel, RtStatus status);
-
 /* What each ray of a set hit and cost, row by row. */
 typedef struct RtRows {
     uint64_t count;

@@ -22,11 +22,6 @@ bool rt_previous_results_has(const char *name) {
     return i < RT_RESULT_FILE_COUNT;
 }
 
-static bool has(const char *directory, const char *name) {
-    char path[RT_MAX_PATH];
-    return rt_path_join(directory, name, path, NULL) == RT_OK && rt_file_exists(path);
-}
-
 /* The journal of results that are being removed. */
 static const char given_up[] = "{\"given_up\": true}\n";
 
@@ -42,7 +37,7 @@ static bool is_given_up(const char *directory, const char *journal) {
 
 static const char *find_result(const char *directory) {
     for (int i = 0; i < RESULTS; i++) {
-        if (has(directory, rt_result_files[i])) return rt_result_files[i];
+        if (rt_file_exists_in(directory, rt_result_files[i])) return rt_result_files[i];
     }
     return NULL;
 }
@@ -50,8 +45,8 @@ static const char *find_result(const char *directory) {
 RtStatus rt_previous_results_look(const char *directory, const char *journal, RtStart start, bool *goes_on,
                                   RtError *error) {
     const char *result = find_result(directory);
-    bool whole = has(directory, journal), removed = is_given_up(directory, journal);
-    bool finished = has(directory, RT_MANIFEST) && !removed;
+    bool whole = rt_file_exists_in(directory, journal), removed = is_given_up(directory, journal);
+    bool finished = rt_file_exists_in(directory, RT_MANIFEST) && !removed;
     *goes_on = whole && !removed && start == RT_START_RESUME;
     if (!result || *goes_on || start == RT_START_ANEW) return RT_OK;
     if (removed && start == RT_START_RESUME) return RT_OK;

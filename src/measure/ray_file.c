@@ -2,7 +2,6 @@
 #include "measure/ray_file.h"
 
 #include "core/base/file.h"
-#include "core/base/memory.h"
 #include "core/text/npy.h"
 
 #include <inttypes.h>

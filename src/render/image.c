@@ -65,7 +65,7 @@ RtStatus rt_image_from_frame(RtImage *image, const RtFrame *frame, RtError *erro
 }
 
 /* libpng's simplified interface, which uses no longjmp. */
-RtStatus rt_png_write(const RtImage *image, const char *path, RtError *error) {
+static RtStatus write_png(const RtImage *image, const char *path, RtError *error) {
     RtOutput output;
     RT_TRY(rt_output_open(&output, path, error));
     png_image png = {.version = PNG_IMAGE_VERSION,
@@ -77,4 +77,12 @@ RtStatus rt_png_write(const RtImage *image, const char *path, RtError *error) {
         return rt_fail(error, RT_IO, "%s: writing the PNG failed: %s", path, png.message);
     }
     return rt_output_commit(&output, error);
+}
+
+RtStatus rt_png_write(const RtFrame *frame, const char *path, RtError *error) {
+    RtImage image;
+    RT_TRY(rt_image_from_frame(&image, frame, error));
+    RtStatus status = write_png(&image, path, error);
+    rt_image_clear(&image);
+    return status;
 }

@@ -31,8 +31,8 @@ double rt_frame_cost(const RtFrame *frame, size_t counter, uint32_t x, uint32_t 
 /* The frame as an image: mean colours, clipped to 0..1. */
 RtStatus rt_image_from_frame(RtImage *image, const RtFrame *frame, RtError *error);
 
-/* 8 bits a channel, sRGB. */
-RtStatus rt_png_write(const RtImage *image, const char *path, RtError *error);
+/* That image: 8 bits a channel, sRGB. */
+RtStatus rt_png_write(const RtFrame *frame, const char *path, RtError *error);
 
 /* One part, scan lines, 32 bits a channel:
  *   R G B                             linear mean, FLOAT

@@ -38,17 +38,14 @@ static void put_paragraph(FILE *out, const char *title, const char *text) {
 
 /* `name`: of the directory, seen from the page. */
 static void put_title(const Index *index, const char *directory, const char *name, const char *title) {
-    char report[RT_MAX_PATH], link[RT_MAX_PATH];
-    const bool there = rt_path_join(directory, "report.html", report, NULL) == RT_OK &&
-                       rt_file_exists(report) && rt_path_join(name, "report.html", link, NULL) == RT_OK;
+    char report[RT_MAX_PATH];
     fputs("<section class=\"card\"><h2>", index->out);
-    if (there) {
-        fputs("<a", index->out);
-        rt_page_href(index->out, link);
-        fputc('>', index->out);
-    }
-    rt_html_put(index->out, title);
-    fputs(there ? "</a></h2>\n" : "</h2>\n", index->out);
+    if (rt_file_exists_in(directory, "report.html") &&
+        rt_path_join(name, "report.html", report, NULL) == RT_OK)
+        rt_page_link(index->out, report, title);
+    else
+        rt_html_put(index->out, title);
+    fputs("</h2>\n", index->out);
 }
 
 static void put_experiment(Index *index, const char *directory, const char *name) {
@@ -80,9 +77,7 @@ static void put_experiment(Index *index, const char *directory, const char *name
 
 /* Whether a folder holds an experiment.yaml and a manifest. */
 static bool is_result(const char *directory) {
-    char path[RT_MAX_PATH], manifest[RT_MAX_PATH];
-    return rt_path_join(directory, "experiment.yaml", path, NULL) == RT_OK && rt_file_exists(path) &&
-           rt_path_join(directory, RT_MANIFEST, manifest, NULL) == RT_OK && rt_file_exists(manifest);
+    return rt_file_exists_in(directory, "experiment.yaml") && rt_file_exists_in(directory, RT_MANIFEST);
 }
 
 /* ., .. and hidden folders. */

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "report/merge.h"
 
-#include "core/text/json.h"
 #include "experiment/journal.h"
 #include "experiment/manifest.h"
 #include "experiment/plugins_used.h"

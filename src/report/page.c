@@ -50,12 +50,12 @@ void rt_page_data_url(FILE *out, const char *type, const void *data, size_t size
     }
 }
 
-void rt_page_href(FILE *out, const char *file) {
-    fputs(" href=\"", out);
+void rt_page_link(FILE *out, const char *file, const char *text) {
+    fputs("<a href=\"", out);
     for (const char *c = file; *c; c++) {
         fprintf(out, isalnum((unsigned char)*c) || strchr("-_.~/", *c) ? "%c" : "%%%02X", (unsigned char)*c);
     }
-    fputc('"', out);
+    rt_html_wrap(out, "\">", text, "</a>");
 }
 
 /* ---- text ---- */

@@ -28,7 +28,7 @@ void rt_page_verdict(FILE *out, const RtResults *results);
 /* A line with date and machine, from the manifest. */
 void rt_page_provenance(FILE *out, const json_t *manifest);
 
-/* ` href="FILE"` of a link to a file beside the page, escaped. */
-void rt_page_href(FILE *out, const char *file);
+/* A link to a file beside the page. */
+void rt_page_link(FILE *out, const char *file, const char *text);
 
 #endif

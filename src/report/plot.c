@@ -3,6 +3,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/process.h"
+#include "core/base/words.h"
 #include "histograms_gp.h"
 #include "report/color.h"
 #include "report/page.h"
@@ -12,7 +13,6 @@
 #include <ctype.h>
 #include <errno.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { MOST_ARGUMENTS = RT_MAX_PLOTS + 4 };
 
@@ -110,10 +110,8 @@ static RtStatus fail_drawing(char **arguments, const char *directory, RtError *e
     char path[RT_MAX_PATH], scripts[MOST_SHOWN] = "", *log = NULL;
     size_t size = 0;
     RT_TRY(rt_path_join(directory, "plots/gnuplot.log", path, error));
-    for (char **script = arguments + 1; *script; script++) {
-        size_t used = strlen(scripts);
-        snprintf(scripts + used, sizeof scripts - used, " %s", *script);
-    }
+    for (char **script = arguments + 1; *script; script++)
+        rt_append_text(scripts, sizeof scripts, " %s", *script);
     RT_TRY(rt_file_read(path, MOST_BYTES, &log, &size, error));
     while (size > 0 && isspace((unsigned char)log[size - 1])) log[--size] = '\0';
     const char *last = size > MOST_SHOWN ? log + size - MOST_SHOWN : log;

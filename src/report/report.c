@@ -9,6 +9,7 @@
 #include "experiment/claims.h"
 #include "experiment/distribution_tables.h"
 #include "experiment/frame_table.h"
+#include "experiment/manifest.h"
 #include "experiment/result_tables.h"
 #include "literature/published_tables.h"
 #include "measure/previous_results.h"
@@ -17,7 +18,6 @@
 #include "report/paper_tables.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -46,11 +46,6 @@ static void put_claims(FILE *out, const RtResults *results) {
     fputs("</ul></section>\n", out);
 }
 
-static bool is_beside(const char *directory, const char *name) {
-    char path[RT_MAX_PATH];
-    return rt_path_join(directory, name, path, NULL) == RT_OK && rt_file_exists(path);
-}
-
 static void put_links(FILE *out, const char *directory) {
     fputs("<nav class=\"here\" aria-label=\"Sections\"><a href=\"#plots\">Plots</a> <a "
           "href=\"#scenes\">Scenes</a> "
@@ -58,10 +53,9 @@ static void put_links(FILE *out, const char *directory) {
           "<nav class=\"here\" aria-label=\"Files\"><span class=\"meta\">Data:</span> ",
           out);
     for (int i = RT_FILE_MANIFEST; i < RT_RESULT_FILE_COUNT; i++) {
-        if (i == RT_FILE_REPORT || !is_beside(directory, rt_result_files[i])) continue;
-        fputs("<a", out);
-        rt_page_href(out, rt_result_files[i]);
-        fprintf(out, ">%s</a> ", rt_result_files[i]);
+        if (i == RT_FILE_REPORT || !rt_file_exists_in(directory, rt_result_files[i])) continue;
+        rt_page_link(out, rt_result_files[i], rt_result_files[i]);
+        fputc(' ', out);
     }
     fputs("</nav>\n", out);
 }
@@ -84,10 +78,9 @@ static void take_caption(Caption *caption, const char *script) {
             ours = strncmp(text, caption->name, length) == 0 && text[length] == ':';
             text += ours ? length + 1 + strspn(text + length + 1, " ") : 0;
         }
-        const size_t used = strlen(caption->text);
         if (ours)
-            snprintf(caption->text + used, sizeof caption->text - used, "%s%.*s", used ? " " : "",
-                     (int)strcspn(text, "\n"), text);
+            rt_append_text(caption->text, sizeof caption->text, "%s%.*s", *caption->text ? " " : "",
+                           (int)strcspn(text, "\n"), text);
     }
 }
 
@@ -154,10 +147,9 @@ static void put_plot(void *context, const char *path) {
     put_svg(plots->out, svg, size, &caption);
     rt_free(svg);
     rt_html_wrap(plots->out, "<figcaption>", *caption.text ? caption.text : name, "");
-    if (is_beside(plots->directory, pdf)) {
-        fputs(" <a", plots->out);
-        rt_page_href(plots->out, pdf);
-        fputs(">PDF</a>", plots->out);
+    if (rt_file_exists_in(plots->directory, pdf)) {
+        fputc(' ', plots->out);
+        rt_page_link(plots->out, pdf, "PDF");
     }
     fputs("</figcaption></figure>\n", plots->out);
 }
@@ -283,7 +275,8 @@ static void put_answer(FILE *out, const RtResults *results, const char *director
         if (*text) rt_html_wrap(out, "<p>", text, "</p>\n");
     }
     fputs("</section>\n", out);
-    if (is_beside(directory, RT_FRAME_PLOT) && rt_path_join(directory, RT_FRAME_PLOT, path, NULL) == RT_OK)
+    if (rt_file_exists_in(directory, RT_FRAME_PLOT) &&
+        rt_path_join(directory, RT_FRAME_PLOT, path, NULL) == RT_OK)
         put_plot(&(Plots){out, directory, NULL}, path);
     for (uint32_t t = 0; t < experiment->workload_count; t++) {
         RtFrameRow row = {.results = results, .one = true, .workload = t};
@@ -381,17 +374,28 @@ static void put_method(FILE *out, const RtResults *results, const json_t *manife
     fputs("</dl></details>\n", out);
 }
 
-RtStatus rt_report_write(const RtResults *results, const RtPublished *published, const json_t *manifest,
-                         const char *directory, RtError *error) {
+static void put_page(FILE *out, const RtResults *results, const RtPublished *published,
+                     const json_t *manifest, const char *directory) {
+    put_head(out, results, manifest, directory);
+    put_plots(out, results->experiment, directory);
+    rt_published_page(published, true, out);
+    put_scenes(out, results, directory);
+    put_tables(out, results);
+    put_method(out, results, manifest);
+    rt_page_end(out);
+}
+
+RtStatus rt_report_write(const RtResults *results, const RtPublished *published, const char *directory,
+                         RtError *error) {
+    json_t *manifest;
     RtOutput output;
-    RT_TRY(rt_paper_tables_write(results, directory, error));
-    RT_TRY(rt_output_open_in(&output, directory, "report.html", error));
-    put_head(output.file, results, manifest, directory);
-    put_plots(output.file, results->experiment, directory);
-    rt_published_page(published, true, output.file);
-    put_scenes(output.file, results, directory);
-    put_tables(output.file, results);
-    put_method(output.file, results, manifest);
-    rt_page_end(output.file);
-    return rt_output_commit(&output, error);
+    RT_TRY(rt_manifest_read(directory, &manifest, error));
+    RtStatus status = rt_paper_tables_write(results, directory, error);
+    if (status == RT_OK) status = rt_output_open_in(&output, directory, "report.html", error);
+    if (status == RT_OK) {
+        put_page(output.file, results, published, manifest, directory);
+        status = rt_output_commit(&output, error);
+    }
+    json_decref(manifest);
+    return status;
 }

@@ -5,11 +5,9 @@
 
 #include "literature/published.h"
 
-#include <jansson.h>
-
 /* Writes `directory`/report.html from the results, what was compared with published figures (perhaps
  * nothing), the manifest, and the plots and images that are there. */
-RtStatus rt_report_write(const RtResults *results, const RtPublished *published, const json_t *manifest,
-                         const char *directory, RtError *error);
+RtStatus rt_report_write(const RtResults *results, const RtPublished *published, const char *directory,
+                         RtError *error);
 
 #endif

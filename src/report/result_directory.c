@@ -9,6 +9,7 @@
 #include "core/base/words.h"
 #include "core/text/json_lines.h"
 #include "experiment/journal.h"
+#include "experiment/journal_lines.h"
 #include "experiment/manifest.h"
 #include "render/image.h"
 #include "report/plot.h"
@@ -204,7 +205,7 @@ static RtStatus on_event(void *context, const RtResults *results, const RtEvent 
     Run *run = context;
     const RtRunObserver *observer = &run->options->workload.observer;
     if (!run->measured) RT_TRY(unfinish(run, error));
-    RT_TRY(rt_journal_append(&run->journal, results, event, error));
+    RT_TRY(rt_json_lines_write(&run->journal, rt_journal_line(results, event), error));
     return observer->event ? observer->event(observer->context, results, event, error) : RT_OK;
 }
 
@@ -223,14 +224,11 @@ static RtStatus draw_scene(RtScene *scene, const RtWorkloadResult *workload, int
                            RtError *error) {
     RtAccel *accel;
     RtFrame frame = {0};
-    RtImage image = {0};
     RtFrameOptions options = {.depth = RT_DEFAULT_DEPTH, .threads = threads};
     RT_TRY(rt_scene_sample(scene, workload->width, workload->height, 2, false, error));
     RT_TRY(rt_accel_open_on(rt_accel_default(), scene, threads, &accel, error));
     RtStatus status = rt_frame_trace(&frame, accel, &options, error);
-    if (status == RT_OK) status = rt_image_from_frame(&image, &frame, error);
-    if (status == RT_OK) status = rt_png_write(&image, path, error);
-    rt_image_clear(&image);
+    if (status == RT_OK) status = rt_png_write(&frame, path, error);
     rt_frame_clear(&frame);
     rt_accel_destroy(accel);
     return status;
@@ -298,15 +296,6 @@ static RtStatus write_manifest(const Run *run, RtError *error) {
     return rt_manifest_write(run->results, &run->options->workload, run->options->directory, error);
 }
 
-static RtStatus write_report(const Run *run, RtError *error) {
-    const char *directory = run->options->directory;
-    json_t *manifest;
-    RT_TRY(rt_manifest_read(directory, &manifest, error));
-    RtStatus status = rt_report_write(run->results, &run->published, manifest, directory, error);
-    json_decref(manifest);
-    return status;
-}
-
 static RtStatus finish(Run *run, RtError *error) {
     /* rt_merge writes the files made from all shards. */
     if (run->options->workload.only.shards) return write_manifest(run, error);
@@ -317,7 +306,7 @@ static RtStatus finish(Run *run, RtError *error) {
     /* The report is written even if drawing failed. */
     RtError drawing = {RT_OK, ""};
     RtStatus drawn = rt_plots_draw(run->results, run->options->directory, &drawing);
-    RT_TRY(write_report(run, error));
+    RT_TRY(rt_report_write(run->results, &run->published, run->options->directory, error));
     RtStatus checked = rt_published_check(&run->published, error);
     if (drawn == RT_OK) return checked;
     if (drawn == RT_NOT_AVAILABLE || checked != RT_OK) {

@@ -9,7 +9,6 @@
 #define RT_VERIFY_RAY_FAMILIES_H
 
 #include "accel/accel.h"
-#include "core/base/random.h"
 
 /* Rays in a bundle; a bundle starts at a multiple of this number. */
 enum { RT_RAY_BUNDLE = 256 };

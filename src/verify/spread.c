@@ -1,30 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "verify/spread.h"
 
+#include "core/base/words.h"
+
 #include <stdio.h>
 #include <string.h>
 
-/* Appends ":text" to a layer that ends at out[used], or ",text" if it already has parameters. Returns the
- * new end. */
-static size_t add_text(char *out, size_t used, const char *text, size_t chars, bool first) {
-    int added = snprintf(out + used, RT_MAX_SPEC_CHARS - used, "%c%.*s", first ? ':' : ',', (int)chars, text);
-    return used + (size_t)added;
-}
-
 /* Appends the trial's values except that of `param`, then param=value. */
 static void add_values(const RtAccelOps *ops, const RtParam *param, const char *value, char *out) {
-    char own[RT_MAX_SPEC_CHARS];
-    size_t used = strlen(out), name = strlen(param->name);
-    bool first = true;
+    const size_t name = strlen(param->name);
+    char separator = ':';
     const char *each = ops->trial ? strchr(ops->trial, ':') : NULL;
     for (; each; each = strchr(each, ',')) {
         each++;
         if (strncmp(each, param->name, name) == 0 && each[name] == '=') continue;
-        used = add_text(out, used, each, strcspn(each, ","), first);
-        first = false;
+        rt_append_text(out, RT_MAX_SPEC_CHARS, "%c%.*s", separator, (int)strcspn(each, ","), each);
+        separator = ',';
     }
-    int chars = snprintf(own, sizeof own, "%s=%s", param->name, value);
-    add_text(out, used, own, (size_t)chars, first);
+    rt_append_text(out, RT_MAX_SPEC_CHARS, "%c%s=%s", separator, param->name, value);
 }
 
 /* The `n`th test value over all parameters that is not a default. */
@@ -47,8 +40,7 @@ bool rt_spread_spec(const RtAccelOps *ops, size_t n, char *out) {
         if (!try_value(ops, n - whole, &param, value, sizeof value)) return false;
         add_values(ops, param, value, out);
     }
-    size_t used = strlen(out);
-    if (ops->kinds) snprintf(out + used, RT_MAX_SPEC_CHARS - used, "+%s", rt_accel_default());
+    if (ops->kinds) rt_append_text(out, RT_MAX_SPEC_CHARS, "+%s", rt_accel_default());
     return true;
 }
 
@@ -56,13 +48,11 @@ bool rt_trial_spec(const char *spec, char *out) {
     RtSpec parsed;
     RtError error;
     bool any = false;
-    size_t used = 0;
+    out[0] = '\0';
     if (strchr(spec, ':') || rt_spec_parse(spec, &parsed, &error) != RT_OK) return false;
     for (uint32_t i = 0; i < parsed.layer_count; i++) {
         const RtAccelOps *ops = parsed.layers[i].ops;
-        int added = snprintf(out + used, RT_MAX_SPEC_CHARS - used, "%s%s", i ? "+" : "",
-                             ops->trial ? ops->trial : ops->name);
-        used += (size_t)added;
+        rt_append_text(out, RT_MAX_SPEC_CHARS, "%s%s", i ? "+" : "", ops->trial ? ops->trial : ops->name);
         any |= ops->trial != NULL;
     }
     return any;

@@ -196,6 +196,11 @@ bool rt_file_exists(const char *path) {
     return access(path, R_OK) == 0;
 }
 
+bool rt_file_exists_in(const char *folder, const char *name) {
+    char path[RT_MAX_PATH];
+    return rt_path_join(folder, name, path, NULL) == RT_OK && rt_file_exists(path);
+}
+
 bool rt_file_is_dead_link(const char *path, RtError *error) {
     char target[RT_MAX_PATH];
     struct stat info;

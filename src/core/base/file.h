@@ -65,6 +65,7 @@ RtStatus rt_file_open(const char *path, FILE **file, RtError *error);
 RtStatus rt_file_read(const char *path, size_t limit, char **data, size_t *size, RtError *error);
 
 bool rt_file_exists(const char *path);
+bool rt_file_exists_in(const char *folder, const char *name);
 
 /* True, with a message, if `path` is a symbolic link whose target does not exist. */
 bool rt_file_is_dead_link(const char *path, RtError *error);

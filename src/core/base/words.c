@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "core/base/words.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -44,10 +45,16 @@ void rt_suggest(const char *word, const char *const *names, size_t count, char o
 
 void rt_join_names(const char *const *names, size_t count, char *out, size_t size) {
     out[0] = '\0';
-    for (size_t i = 0; i < count; i++) {
-        size_t used = strlen(out);
-        snprintf(out + used, size - used, "%s%s", i ? ", " : "", names[i]);
-    }
+    for (size_t i = 0; i < count; i++) rt_append_text(out, size, "%s%s", i ? ", " : "", names[i]);
+}
+
+void rt_append_text(char *out, size_t size, const char *format, ...) {
+    const size_t used = strlen(out);
+    va_list args;
+    va_start(args, format);
+    /* clang-tidy 14 does not see va_start. NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized) */
+    vsnprintf(out + used, size - used, format, args);
+    va_end(args);
 }
 
 void rt_print_wrapped(const char *text, FILE *out) {

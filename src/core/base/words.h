@@ -23,6 +23,9 @@ void rt_suggest(const char *word, const char *const *names, size_t count, char o
 /* Writes "a, b, c" to out[0..size), truncated if it does not fit. */
 void rt_join_names(const char *const *names, size_t count, char *out, size_t size);
 
+/* Appends to the text in out[0..size), truncated if it does not fit. */
+__attribute__((format(printf, 3, 4))) void rt_append_text(char *out, size_t size, const char *format, ...);
+
 /* Prints `text` and a newline, wrapped at blanks to 80 characters. */
 void rt_print_wrapped(const char *text, FILE *out);
 

@@ -3,7 +3,6 @@
 #include "core/text/table_line.h"
 
 #include <inttypes.h>
-#include <string.h>
 
 static RtStanding standing_of(const RtTableWriter *w, const void *row) {
     return row && w->table->standing ? w->table->standing(row) : RT_STANDING_BEHIND;

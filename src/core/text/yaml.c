@@ -6,6 +6,7 @@
 
 #include "core/base/file.h"
 #include "core/base/memory.h"
+#include "core/base/words.h"
 
 #include <stdarg.h>
 #include <string.h>
@@ -17,17 +18,17 @@ enum { MAX_CHARS = 512 };
 
 /* "objects[3].sphere.radius"; for a key, the path of its mapping. */
 static void write_path(const RtYaml *yaml, const RtYamlNode *target, char out[MAX_CHARS]) {
-    size_t used = 0;
     out[0] = '\0';
-    for (const RtYamlNode *node = yaml->nodes; node != target && used < MAX_CHARS;) {
+    for (const RtYamlNode *node = yaml->nodes; node != target;) {
         const RtYamlNode *child = node + 1;
         uint32_t i = 0;
         for (; (uint32_t)(target - child) >= child->size; child += child->size) i++;
         bool mapping = node->kind == RT_YAML_MAPPING;
         if (mapping && i % 2 == 0) return;
-        used += (size_t)(mapping ? snprintf(out + used, MAX_CHARS - used, "%s%.40s", used ? "." : "",
-                                            rt_yaml_text_of(yaml, child - 1))
-                                 : snprintf(out + used, MAX_CHARS - used, "[%u]", i));
+        if (mapping)
+            rt_append_text(out, MAX_CHARS, "%s%.40s", *out ? "." : "", rt_yaml_text_of(yaml, child - 1));
+        else
+            rt_append_text(out, MAX_CHARS, "[%u]", i);
         node = child;
     }
 }

@@ -226,10 +226,8 @@ RtStatus rt_yaml_word(const RtYaml *yaml, const RtYamlNode *node, const char *ke
     char expected[MAX_CHARS] = "", suggestion[RT_MAX_SUGGESTION];
     Words words;
     split(list, &words);
-    for (uint32_t i = 0; i < words.count; i++) {
-        size_t used = strlen(expected);
-        snprintf(expected + used, sizeof expected - used, "%s%s", i ? " or " : "", words.names[i]);
-    }
+    for (uint32_t i = 0; i < words.count; i++)
+        rt_append_text(expected, sizeof expected, "%s%s", i ? " or " : "", words.names[i]);
     if (node->kind != RT_YAML_SCALAR) return fail_unexpected(yaml, node, expected);
     *index = find_word(&words, rt_yaml_text_of(yaml, node));
     if (*index < words.count) return RT_OK;
