@@ -3,7 +3,8 @@
 # check_plugins.sh: a faulty plugin damages only its own results. For each fault of tests/plugins/faulty.c, `verify` and `bench`
 # report it and end with 1, and the results of another accelerator beside it are complete, JSON included. A library that cannot
 # be loaded is rejected with exit code 2 and a sentence. A fresh `raytally new-accel` and the plugins of examples/ are built
-# against an installed raytally, verified and measured. Uses $RT_PROGRAM, in its build folder, and python3.
+# against an installed raytally, verified and measured (those in C++ if there is a compiler for it). Uses $RT_PROGRAM, in its build
+# folder, and python3.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 2
 root=$PWD
@@ -233,6 +234,7 @@ works mine
 for example in "$root"/examples/*/CMakeLists.txt; do
     case $example in
     *'*'* | */header-only/*) ;; # no match, or it needs a library that the user must get
+    *-cpp/*) ! command -v c++ >/dev/null || works "${example%/*}" ;;
     *) works "${example%/*}" ;;
     esac
 done
