@@ -284,7 +284,7 @@ static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, 
     for (uint32_t t = 0; status == RT_OK && t < experiment->workload_count; t++)
         status = rt_workload_run(results, t, &o->workload, error);
     if (status == RT_OK && o->callgrind)
-        o->workload.observer.notice(&progress, "counting instructions under valgrind, which takes a while");
+        rt_notify(&o->workload.observer, "counting instructions under valgrind, which takes a while");
     rt_progress_end(&progress);
     if (status == RT_OK && o->callgrind) status = rt_callgrind_run(callgrind, results, o->argv + 1, error);
     return status;
