@@ -323,9 +323,8 @@ const RtSyntax rt_bench_syntax = {
 int rt_command_bench(int argc, char **argv) {
     Options o = {.threads = -1, .workload = {.timing = 1, .patience = RT_PATIENCE}, .argv = argv};
     RtError error;
-    if (rt_recording_init(&o.recording, &error) != RT_OK) return rt_cli_fail(&error);
+    rt_recording_init(&o.recording);
     rt_cli_parse(&rt_bench_syntax, argc, argv, &o);
     RtStatus status = bench(&o, &error);
-    rt_recording_clear(&o.recording);
     return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
 }

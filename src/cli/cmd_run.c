@@ -3,7 +3,6 @@
 #include "cli/cli.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
-#include "core/base/memory.h"
 #include "core/base/words.h"
 #include "experiment/claims.h"
 #include "experiment/journal.h"
@@ -221,9 +220,7 @@ int rt_command_run(int argc, char **argv) {
     Options o = {.threads = -1, .patience = RT_PATIENCE};
     rt_cli_parse(&rt_run_syntax, argc, argv, &o);
     RtError error;
-    RtExperiment *experiment = rt_alloc(1, sizeof *experiment);
-    RtStatus status = experiment ? run(&o, experiment, &error)
-                                 : rt_fail_memory(&error, "an experiment", sizeof *experiment);
-    rt_free(experiment);
+    static RtExperiment experiment;
+    RtStatus status = run(&o, &experiment, &error);
     return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
 }
