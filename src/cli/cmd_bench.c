@@ -202,16 +202,8 @@ static json_t *scene_json(const RtResults *results, uint32_t workload) {
                      "scene_hash", rt_json_hex(scene->scene), "recorded", rays);
 }
 
-static json_t *distributions_json(const RtResults *results, RtDistributionTable which) {
-    RtDistributionRow row = {.results = results};
-    RtTable table = rt_distribution_table(which, &row);
-    return rt_table_json(&table);
-}
-
-static json_t *instructions_json(const RtCallgrind *callgrind) {
-    RtInstructionsRow row = {.callgrind = callgrind};
-    RtTable table = rt_instructions_table(&row);
-    return rt_table_json(&table);
+static void add_table(json_t *all, const char *name, RtTable table) {
+    json_object_set_new(all, name, rt_table_json(&table));
 }
 
 static void print_json(const RtResults *results, const RtCallgrind *callgrind) {
@@ -225,16 +217,15 @@ static void print_json(const RtResults *results, const RtCallgrind *callgrind) {
     json_t *all = json_pack("{s:o, s:o, s:I, s:I, s:s, s:o, s:o}", "machine", rt_machine_json(), "scenes",
                             scenes, "seed", (json_int_t)e->seed, "rounds", (json_int_t)e->rounds, "baseline",
                             rt_baseline_label(e), "rows", rows, "null_runs", nulls);
+    RtDistributionRow distribution = {.results = results};
+    RtResultRow cell = {.results = results};
+    RtInstructionsRow instructions = {.callgrind = callgrind};
     if (e->distributions) {
-        json_object_set_new(all, "distributions", distributions_json(results, RT_DISTRIBUTIONS));
-        json_object_set_new(all, "histograms", distributions_json(results, RT_HISTOGRAMS));
+        add_table(all, "distributions", rt_distribution_table(RT_DISTRIBUTIONS, &distribution));
+        add_table(all, "histograms", rt_distribution_table(RT_HISTOGRAMS, &distribution));
     }
-    if (e->hardware) {
-        RtResultRow row = {.results = results};
-        RtTable table = rt_result_table(RT_HARDWARE, &row);
-        json_object_set_new(all, "hardware", rt_table_json(&table));
-    }
-    if (callgrind->count) json_object_set_new(all, "instructions", instructions_json(callgrind));
+    if (e->hardware) add_table(all, "hardware", rt_result_table(RT_HARDWARE, &cell));
+    if (callgrind->count) add_table(all, "instructions", rt_instructions_table(&instructions));
     rt_cli_print_json(all);
 }
 
@@ -284,7 +275,7 @@ static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, 
     for (uint32_t t = 0; status == RT_OK && t < experiment->workload_count; t++)
         status = rt_workload_run(results, t, &o->workload, error);
     if (status == RT_OK && o->callgrind)
-        o->workload.observer.notice(&progress, "counting instructions under valgrind, which takes a while");
+        rt_notify(&o->workload.observer, "counting instructions under valgrind, which takes a while");
     rt_progress_end(&progress);
     if (status == RT_OK && o->callgrind) status = rt_callgrind_run(callgrind, results, o->argv + 1, error);
     return status;
@@ -332,9 +323,8 @@ const RtSyntax rt_bench_syntax = {
 int rt_command_bench(int argc, char **argv) {
     Options o = {.threads = -1, .workload = {.timing = 1, .patience = RT_PATIENCE}, .argv = argv};
     RtError error;
-    if (rt_recording_init(&o.recording, &error) != RT_OK) return rt_cli_fail(&error);
+    rt_recording_init(&o.recording);
     rt_cli_parse(&rt_bench_syntax, argc, argv, &o);
     RtStatus status = bench(&o, &error);
-    rt_recording_clear(&o.recording);
     return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
 }

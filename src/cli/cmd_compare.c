@@ -3,7 +3,6 @@
  * directories, or two programs that run in turns. */
 #include "cli/cli.h"
 #include "cli/recording.h"
-#include "core/base/memory.h"
 #include "experiment/compare.h"
 #include "experiment/manifest.h"
 #include "experiment/plugins_used.h"
@@ -157,12 +156,10 @@ static RtStatus load_both(const Options *o, RtExperiment *experiments, RtResults
 }
 
 static RtStatus compare_directories(const Options *o, RtComparison *comparison, RtError *error) {
-    RtExperiment *experiments = rt_alloc(2, sizeof(RtExperiment));
+    static RtExperiment experiments[2];
     RtResults results[2] = {0};
-    if (!experiments) return rt_fail_memory(error, "experiments", 2 * sizeof(RtExperiment));
     RtStatus status = load_both(o, experiments, results, comparison, error);
     for (int i = 0; i < 2; i++) rt_results_clear(&results[i]);
-    rt_free(experiments);
     return status;
 }
 
@@ -204,10 +201,9 @@ int rt_command_compare(int argc, char **argv) {
     RtError error;
     bool slower = false;
     Options o = {.threads = -1, .timing = 1, .patience = 600, .margin = -1};
-    if (rt_recording_init(&o.recording, &error) != RT_OK) return rt_cli_fail(&error);
+    rt_recording_init(&o.recording);
     rt_cli_parse(&rt_compare_syntax, argc, argv, &o);
     RtStatus status = o.worker ? work(&o, &error) : compare(&o, argv, &slower, &error);
-    rt_recording_clear(&o.recording);
     if (status != RT_OK) return rt_cli_fail(&error);
     return slower && o.strict ? RT_EXIT_CHECK_FAILED : RT_EXIT_OK;
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally merge: joins the shards of an experiment. */
 #include "cli/cli.h"
-#include "core/base/memory.h"
 #include "experiment/result_tables.h"
 #include "report/merge.h"
 
@@ -58,15 +57,13 @@ int rt_command_merge(int argc, char **argv) {
     RtError error;
     RtResults results = {0};
     const RtRunObserver observer = {.notice = on_notice};
-    RtExperiment *experiment = rt_alloc(1, sizeof *experiment);
-    RtStatus status = experiment ? rt_merge(o.directories, o.count, o.out, o.start, o.trust, experiment,
-                                            &results, &observer, &error)
-                                 : rt_fail_memory(&error, "an experiment", sizeof *experiment);
+    static RtExperiment experiment;
+    RtStatus status =
+        rt_merge(o.directories, o.count, o.out, o.start, o.trust, &experiment, &results, &observer, &error);
     if (status == RT_OK) {
         rt_print_summary(&results, stdout);
         printf("\nReport: %s/report.html\n", o.out);
     }
     rt_results_clear(&results);
-    rt_free(experiment);
     return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
 }

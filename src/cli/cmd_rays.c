@@ -71,9 +71,8 @@ const RtSyntax rt_rays_syntax = {
 int rt_command_rays(int argc, char **argv) {
     RtError error;
     Options o = {.recording = {.one_kind = true}};
-    if (rt_recording_init(&o.recording, &error) != RT_OK) return rt_cli_fail(&error);
+    rt_recording_init(&o.recording);
     rt_cli_parse(&rt_rays_syntax, argc, argv, &o);
     RtStatus status = record(&o, &error);
-    rt_recording_clear(&o.recording);
     return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
 }

@@ -5,7 +5,6 @@
 #include "cli/cli.h"
 #include "cli/pictures.h"
 #include "core/base/clock.h"
-#include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
@@ -338,23 +337,17 @@ const RtSyntax rt_render_syntax = {.options = options,
 int rt_command_render(int argc, char **argv) {
     Options o = {.samples = 1, .depth = RT_DEFAULT_DEPTH, .pictures = {.boxes = RT_ALL_LEVELS}};
     rt_cli_parse(&rt_render_syntax, argc, argv, &o);
-    RtError error = {RT_OK, ""};
-    Run *run = rt_alloc(1, sizeof(Run));
-    if (!run) {
-        rt_fail_memory(&error, "the run", sizeof(Run));
-        return rt_cli_fail(&error);
-    }
-    run->options = &o;
-    RtStatus status = prepare(run, &error);
-    if (status == RT_OK) status = trace_frames(run, &error);
-    if (status == RT_OK) status = write_images(run, &error);
-    if (status == RT_OK) status = write_stats(run, &error);
-    if (status == RT_OK) print_summary(run);
-    if (status == RT_OK) status = check_rays(run, &error);
-    rt_frame_clear(&run->timed);
-    rt_frame_clear(&run->counted);
-    rt_accel_destroy(run->accel);
-    rt_scene_clear(&run->scene);
-    rt_free(run);
+    RtError error;
+    Run run = {.options = &o};
+    RtStatus status = prepare(&run, &error);
+    if (status == RT_OK) status = trace_frames(&run, &error);
+    if (status == RT_OK) status = write_images(&run, &error);
+    if (status == RT_OK) status = write_stats(&run, &error);
+    if (status == RT_OK) print_summary(&run);
+    if (status == RT_OK) status = check_rays(&run, &error);
+    rt_frame_clear(&run.timed);
+    rt_frame_clear(&run.counted);
+    rt_accel_destroy(run.accel);
+    rt_scene_clear(&run.scene);
     return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
 }

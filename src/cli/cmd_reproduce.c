@@ -110,16 +110,14 @@ static RtStatus reproduce(const char *directory, RtResults *results, const void 
     const char *scene = ((const Options *)options)->scene;
     rt_cli_tell_plugins(directory, results->experiment);
     /* The copy in the directory does not find its scenes; the original does. */
-    RtExperiment *original = rt_alloc(1, sizeof *original);
-    if (!original) return rt_fail_memory(error, "an experiment", sizeof *original);
-    RtStatus status = rt_manifest_experiment(directory, original, error);
+    static RtExperiment original;
+    RtStatus status = rt_manifest_experiment(directory, &original, error);
     rt_results_clear(results);
-    if (status == RT_OK) status = rt_only_check(&(RtOnly){.scene = scene}, original, error);
-    if (status == RT_OK) status = rt_results_init(results, original, error);
+    if (status == RT_OK) status = rt_only_check(&(RtOnly){.scene = scene}, &original, error);
+    if (status == RT_OK) status = rt_results_init(results, &original, error);
     if (status == RT_OK) status = count_again(results, scene, error);
     if (status == RT_OK) status = compare_all(directory, results, scene, error);
     rt_results_clear(results);
-    rt_free(original);
     return status;
 }
 

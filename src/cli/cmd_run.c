@@ -3,7 +3,6 @@
 #include "cli/cli.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
-#include "core/base/memory.h"
 #include "core/base/words.h"
 #include "experiment/claims.h"
 #include "experiment/journal.h"
@@ -130,14 +129,12 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, RtError *er
 
 /* The command that continues the run. */
 static void go_on(const Options *o, const RtExperiment *e, const char *directory, char *out, size_t size) {
-    char threads[32] = "", shard[32] = "", until[64] = "", plugins[1024];
-    if (o->threads >= 0) snprintf(threads, sizeof threads, " --threads %d", o->threads);
-    if (o->only.shards) snprintf(shard, sizeof shard, " --shard %u/%u", o->only.shard, o->only.shards);
-    if (o->until > 0)
-        snprintf(until, sizeof until, " --until %g%% --patience %g", 100 * o->until, o->patience);
-    rt_cli_plugin_arguments(plugins, sizeof plugins);
-    snprintf(out, size, "raytally run %s --out %s%s%s%s%s%s%s --resume", e->path, directory,
-             e->quick ? " --quick" : "", threads, shard, until, plugins, o->trust ? " --trust" : "");
+    snprintf(out, size, "raytally run %s --out %s%s", e->path, directory, e->quick ? " --quick" : "");
+    if (o->threads >= 0) rt_append_text(out, size, " --threads %d", o->threads);
+    if (o->only.shards) rt_append_text(out, size, " --shard %u/%u", o->only.shard, o->only.shards);
+    if (o->until > 0) rt_append_text(out, size, " --until %g%% --patience %g", 100 * o->until, o->patience);
+    rt_cli_plugin_arguments(out, size);
+    rt_append_text(out, size, "%s --resume", o->trust ? " --trust" : "");
 }
 
 static RtStatus measure(const Options *o, RtResults *results, RtRunOptions *how, RtError *error) {
@@ -221,9 +218,7 @@ int rt_command_run(int argc, char **argv) {
     Options o = {.threads = -1, .patience = RT_PATIENCE};
     rt_cli_parse(&rt_run_syntax, argc, argv, &o);
     RtError error;
-    RtExperiment *experiment = rt_alloc(1, sizeof *experiment);
-    RtStatus status = experiment ? run(&o, experiment, &error)
-                                 : rt_fail_memory(&error, "an experiment", sizeof *experiment);
-    rt_free(experiment);
+    static RtExperiment experiment;
+    RtStatus status = run(&o, &experiment, &error);
     return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
 }

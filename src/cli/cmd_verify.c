@@ -151,7 +151,7 @@ static long long number(const json_t *row, const char *key) {
 }
 
 static void print_row(Show *show, const json_t *row) {
-    char plugins[1024];
+    char plugins[1024] = "";
     const json_t *wrong = json_object_get(row, "first_wrong");
     print_header(show);
     rt_table_line(&columns, show->widths, row, stdout);

@@ -25,20 +25,14 @@ static const struct argp_option options[] = {
      100},
     {0}};
 
-static void pass_over(void *context, const char *path) {
-    (void)context;
-    (void)path;
-}
-
 /* Finds folders of sources given instead of their build folders. */
 static void note_empty_folders(const char *list) {
     for (const char *part = list; *part; part += strcspn(part, ":"), part += *part == ':') {
         char path[RT_MAX_PATH];
         struct stat is;
         snprintf(path, sizeof path, "%.*s", (int)strcspn(part, ":"), part);
-        if (stat(path, &is) != 0 || !S_ISDIR(is.st_mode) ||
-            rt_directory_each(path, ".so", pass_over, NULL) > 0)
-            continue;
+        if (stat(path, &is) != 0 || !S_ISDIR(is.st_mode)) continue;
+        if (rt_directory_each(path, ".so", NULL, NULL) > 0) continue;
         fprintf(stderr,
                 "raytally: $" VARIABLE ": there is no *.so in %s: name the folder that the plugin was built "
                 "in, as in %s/build\n",
@@ -102,7 +96,6 @@ RtStatus rt_cli_load_plugins(int argc, char *const *argv, RtError *error) {
 }
 
 void rt_cli_plugin_arguments(char *out, size_t size) {
-    out[0] = '\0';
     for (size_t i = 0; i < given_count; i++) rt_append_text(out, size, " --plugin '%s'", given[i]);
 }
 

@@ -14,7 +14,7 @@ extern const struct argp rt_plugin_argp;
  * they may name accelerators of plugins. Then sets the environment for child processes. */
 RtStatus rt_cli_load_plugins(int argc, char *const *argv, RtError *error);
 
-/* " --plugin 'FILE'" for each given plugin, to out[0..size), for commands shown to the user. */
+/* Appends " --plugin 'FILE'" for each given plugin to out[0..size), for commands shown to the user. */
 void rt_cli_plugin_arguments(char *out, size_t size);
 
 /* Says on stderr which accelerators of the experiment come from other plugins than in the manifest of

@@ -2,7 +2,6 @@
 #include "cli/recording.h"
 
 #include "cli/cli.h"
-#include "core/base/memory.h"
 #include "render/frame.h"
 
 #include <stdio.h>
@@ -34,19 +33,14 @@ const RtOption rt_recording_options[] = {
     {0}};
 #undef Options
 
-RtStatus rt_recording_init(RtRecordingOptions *o, RtError *error) {
-    o->experiment = rt_alloc(1, sizeof(RtExperiment));
-    if (!o->experiment) return rt_fail_memory(error, "an experiment", sizeof(RtExperiment));
-    rt_experiment_init(o->experiment);
-    o->limit = o->experiment->limit;
+void rt_recording_init(RtRecordingOptions *o) {
+    static RtExperiment experiment;
+    rt_experiment_init(&experiment);
+    o->experiment = &experiment;
+    o->limit = experiment.limit;
     o->coherent_run = 256;
-    o->seed = o->experiment->seed;
+    o->seed = experiment.seed;
     o->like.depth = RT_DEFAULT_DEPTH;
-    return RT_OK;
-}
-
-void rt_recording_clear(RtRecordingOptions *o) {
-    rt_free(o->experiment);
 }
 
 static void parse_kinds(RtExperiment *experiment, const char *text, struct argp_state *state) {

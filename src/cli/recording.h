@@ -7,7 +7,7 @@
 #include "experiment/experiment.h"
 
 typedef struct RtRecordingOptions {
-    RtExperiment *experiment;           /* owned; the caller adds its scenes */
+    RtExperiment *experiment;           /* the one of the process; the caller adds its scenes */
     RtWorkload like;                    /* for rt_experiment_add_scenes */
     uint64_t limit, coherent_run, seed; /* of the experiment */
     bool one_kind;                      /* only one kind of rays, by default primary */
@@ -17,9 +17,8 @@ typedef struct RtRecordingOptions {
 
 extern const RtOption rt_recording_options[];
 
-/* Makes the experiment, without scenes, and sets the defaults of `bench`. RT_NO_MEMORY. */
-RtStatus rt_recording_init(RtRecordingOptions *o, RtError *error);
-void rt_recording_clear(RtRecordingOptions *o);
+/* Sets the defaults of `bench`; no scenes. Call it once in a process. */
+void rt_recording_init(RtRecordingOptions *o);
 
 /* Fills in the experiment. The command's `finish` calls this: the kinds of rays depend on --rays-from. */
 void rt_recording_finish(const RtRecordingOptions *o, struct argp_state *state);

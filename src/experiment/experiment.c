@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "experiment/experiment.h"
 
-#include "experiment/manifest_experiment.h"
+#include "experiment/manifest.h"
 #include "measure/previous_results.h"
 
 #include <string.h>
@@ -274,13 +274,6 @@ static RtStatus check_swept(const RtExperiment *experiment, const RtSwept *swept
     return RT_OK;
 }
 
-/* Without timing no rays are traced for hardware counters. */
-static RtStatus check_hardware(const RtExperiment *experiment, RtError *error) {
-    if (!experiment->hardware || !experiment->count_only) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT,
-                   "hardware counters need timed rays, and `count_only` times nothing: leave one out");
-}
-
 static bool has_kind(const RtExperiment *experiment, RtRayKind kind) {
     for (uint32_t k = 0; k < experiment->kind_count; k++) {
         if (experiment->kinds[k] == kind) return true;
@@ -343,7 +336,9 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
         RT_TRY(check_plot(experiment, i, error));
     }
     strcpy(where, "hardware");
-    RT_TRY(check_hardware(experiment, error));
+    if (experiment->hardware && experiment->count_only) /* then no rays are traced for the counters */
+        return rt_fail(error, RT_BAD_INPUT,
+                       "hardware counters need timed rays, and `count_only` times nothing: leave one out");
     strcpy(where, "name");
     if (*experiment->name == '.') {
         return rt_fail(error, RT_BAD_INPUT,

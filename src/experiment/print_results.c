@@ -96,14 +96,13 @@ static void print_strides(const RtResults *results, uint32_t t, bool timed, FILE
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
         const RtCandidate *candidate = &experiment->candidates[c];
         if (candidate->ray_stride == 1 || !rt_candidate_runs(experiment, c, t)) continue;
-        size_t n = (size_t)snprintf(text, sizeof text, "* %s is measured on one in %" PRIu64 " rays.",
-                                    candidate->label, candidate->ray_stride);
-        if (timed) {
-            snprintf(text + n, sizeof text - n,
-                     "  Its ratio compares it with %s on the same rays, so it is not the quotient of the "
-                     "throughputs above.",
-                     rt_baseline_label(experiment));
-        }
+        snprintf(text, sizeof text, "* %s is measured on one in %" PRIu64 " rays.", candidate->label,
+                 candidate->ray_stride);
+        if (timed)
+            rt_append_text(text, sizeof text,
+                           "  Its ratio compares it with %s on the same rays, so it is not the quotient of "
+                           "the throughputs above.",
+                           rt_baseline_label(experiment));
         rt_print_wrapped(text, out);
     }
 }
@@ -164,29 +163,28 @@ void rt_print_hardware(const RtResults *results, FILE *out) {
 /* ---- null runs ---- */
 
 void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
-    const size_t size = RT_MAX_SENTENCE;
+    const RtExperiment *experiment = results->experiment;
     uint32_t runs, straddling;
     rt_null_verdict(results, &runs, &straddling);
     out[0] = '\0';
     if (runs == 0) return;
-    int n = snprintf(out, size,
-                     "Null runs (%s against itself): %" PRIu32 " of %" PRIu32 " interval%s straddle%s 1",
-                     results->experiment->candidates[results->experiment->baseline].label, straddling, runs,
-                     rt_plural(runs), runs == 1 ? "s" : "");
-    uint32_t misses = runs - straddling, rounds = results->experiment->rounds;
+    snprintf(out, RT_MAX_SENTENCE,
+             "Null runs (%s against itself): %" PRIu32 " of %" PRIu32 " interval%s straddle%s 1",
+             experiment->candidates[experiment->baseline].label, straddling, runs, rt_plural(runs),
+             runs == 1 ? "s" : "");
+    uint32_t misses = runs - straddling, rounds = experiment->rounds;
     double coverage = rt_interval_coverage(rounds), chance = 1 - coverage;
-    if (misses == 0) {
-        n += snprintf(out + n, size - (size_t)n, ", as expected.");
-    } else if (misses <= 1 + 2 * chance * runs) {
-        n += snprintf(out + n, size - (size_t)n, "; %.3g %% may miss it by chance.", 100 * chance);
-    } else {
-        n += snprintf(out + n, size - (size_t)n, ": the machine was busy; treat small differences as noise.");
-    }
+    if (misses == 0)
+        rt_append_text(out, RT_MAX_SENTENCE, ", as expected.");
+    else if (misses <= 1 + 2 * chance * runs)
+        rt_append_text(out, RT_MAX_SENTENCE, "; %.3g %% may miss it by chance.", 100 * chance);
+    else
+        rt_append_text(out, RT_MAX_SENTENCE, ": the machine was busy; treat small differences as noise.");
     if (rounds >= RT_FULL_ROUNDS) return;
-    snprintf(out + n, size - (size_t)n,
-             " Rounds: %" PRIu32 ", too few for 95 %%; an interval spans all measurements and contains the "
-             "median with %.3g %% confidence. Use %d or more.",
-             rounds, 100 * coverage, RT_FULL_ROUNDS);
+    rt_append_text(out, RT_MAX_SENTENCE,
+                   " Rounds: %" PRIu32 ", too few for 95 %%; an interval spans all measurements and contains "
+                   "the median with %.3g %% confidence. Use %d or more.",
+                   rounds, 100 * coverage, RT_FULL_ROUNDS);
 }
 
 /* ---- the end of a run ---- */

@@ -50,15 +50,12 @@ RtStatus rt_workload_open_scene(const RtWorkload *workload, RtScene *scene, RtEr
 RtStatus rt_workload_open(RtResults *results, uint32_t index, const RtWorkloadOptions *options,
                           RtScene *scene, RtError *error) {
     const RtWorkload *setup = &results->experiment->workloads[index];
-    const RtRunObserver *observer = &options->observer;
-    char message[RT_MAX_PATH + 128];
     *scene = (RtScene){0};
     if (!setup->optional || !setup->file || rt_file_exists(setup->path))
         return rt_workload_open_scene(setup, scene, error);
-    snprintf(message, sizeof message,
-             "%s is missing, so '%s' is skipped; `scenes/fetch.sh` fetches the public meshes", setup->path,
-             setup->label);
-    if (observer->notice) observer->notice(observer->context, message);
+    rt_notify(&options->observer,
+              "%s is missing, so '%s' is skipped; `scenes/fetch.sh` fetches the public meshes", setup->path,
+              setup->label);
     results->workloads[index].skipped = true;
     return RT_OK;
 }

@@ -39,6 +39,9 @@ typedef struct RtRunObserver {
     void (*notice)(void *context, const char *message);
 } RtRunObserver;
 
+/* Gives the observer a notice, as of printf. */
+__attribute__((format(printf, 2, 3))) void rt_notify(const RtRunObserver *observer, const char *format, ...);
+
 /* A part of an experiment: a scene, an accelerator, a kind of rays, each by its label, or the common part of
  * the labels of a sweep; NULL for all. The baseline is always measured, too. */
 typedef struct RtOnly {

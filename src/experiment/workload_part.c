@@ -2,6 +2,7 @@
 /* The part of an experiment that is measured, and reports of what is excluded. */
 #include "experiment/workload_state.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -55,6 +56,16 @@ bool rt_workload_runs(const RtWorkloadState *workload, uint32_t c) {
 
 /* ---- reports ---- */
 
+void rt_notify(const RtRunObserver *observer, const char *format, ...) {
+    char message[RT_MAX_PATH + 1024];
+    va_list args;
+    va_start(args, format);
+    /* clang-tidy 14 does not see va_start. NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized) */
+    vsnprintf(message, sizeof message, format, args);
+    va_end(args);
+    if (observer->notice) observer->notice(observer->context, message);
+}
+
 RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKind what, RtRayKind kind,
                                char *limit, RtError *error) {
     const RtExperiment *experiment = workload->experiment;
@@ -67,12 +78,9 @@ RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKin
         *limit = '\0';
         return status;
     }
-    if (broken) {
-        char message[RT_MAX_LIMIT + 2 * RT_MAX_SPEC_CHARS];
-        snprintf(message, sizeof message, "%s on %s: %s", rt_candidate_label(experiment, c),
-                 experiment->workloads[workload->index].label, limit);
-        rt_workload_notice(workload, message);
-    }
+    if (broken)
+        rt_notify(&workload->options->observer, "%s on %s: %s", rt_candidate_label(experiment, c),
+                  experiment->workloads[workload->index].label, limit);
     return rt_workload_tell(workload, what, c, kind, error);
 }
 

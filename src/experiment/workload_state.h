@@ -42,11 +42,6 @@ static inline RtStatus rt_workload_tell(const RtWorkloadState *workload, RtEvent
     return observer->event ? observer->event(observer->context, workload->results, &event, error) : RT_OK;
 }
 
-static inline void rt_workload_notice(const RtWorkloadState *workload, const char *message) {
-    const RtRunObserver *observer = &workload->options->observer;
-    if (observer->notice) observer->notice(observer->context, message);
-}
-
 /* Reports that candidate `c`, or a cell of it, exceeds the limit that `limit` names, or is broken. If it is
  * the baseline, the workload fails, and `limit` is cleared. */
 RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKind what, RtRayKind kind,

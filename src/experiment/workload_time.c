@@ -135,18 +135,16 @@ static bool is_enough(void *context, uint32_t rounds) {
 /* Reports intervals that did not become narrow enough. */
 static void report_width(const TimingRun *run) {
     const RtWorkloadState *workload = run->workload;
-    char message[RT_MAX_LABEL * 3 + 160];
     uint32_t candidate;
     double width = widest_of(run, &candidate);
     if (workload->options->until <= 0 || width <= workload->options->until) return;
-    snprintf(message, sizeof message,
-             "%s rays on %s: after %u rounds in %.0f s the intervals are within %.2g %%, not within %.2g %%; "
-             "the widest is that of %s",
-             rt_experiment_kind_name(workload->experiment, run->kind),
-             workload->experiment->workloads[workload->index].label, run->rounds,
-             rt_wall_seconds() - run->start, 100 * width, 100 * workload->options->until,
-             rt_candidate_label(workload->experiment, candidate));
-    rt_workload_notice(workload, message);
+    rt_notify(
+        &workload->options->observer,
+        "%s rays on %s: after %u rounds in %.0f s the intervals are within %.2g %%, not within %.2g %%; "
+        "the widest is that of %s",
+        rt_experiment_kind_name(workload->experiment, run->kind),
+        workload->experiment->workloads[workload->index].label, run->rounds, rt_wall_seconds() - run->start,
+        100 * width, 100 * workload->options->until, rt_candidate_label(workload->experiment, candidate));
 }
 
 /* ---- timing ---- */

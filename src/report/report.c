@@ -288,10 +288,9 @@ static void put_answer(FILE *out, const RtResults *results, const char *director
         table.color = frame_dot_of;
         rt_table_html(&table, out);
     }
-    fputs("<p class=\"meta\">", out);
     rt_frame_legend(experiment, text);
-    rt_html_put(out, text);
-    rt_html_wrap(out, " ", experiment->frame.note, "</p>\n");
+    rt_html_wrap(out, "<p class=\"meta\">", text, " ");
+    rt_html_wrap(out, "", experiment->frame.note, "</p>\n");
 }
 
 static void put_head(FILE *out, const RtResults *results, const json_t *manifest, const char *directory) {

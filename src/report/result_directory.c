@@ -36,11 +36,6 @@ static RtStatus path_in(const Run *run, const char *name, char *path, RtError *e
     return rt_path_join(run->options->directory, name, path, error);
 }
 
-static void notify(const Run *run, const char *message) {
-    const RtRunObserver *observer = &run->options->workload.observer;
-    if (observer->notice) observer->notice(observer->context, message);
-}
-
 /* ---- before ---- */
 
 /* Locks the directory and checks its contents, once it exists. */
@@ -184,11 +179,9 @@ static RtStatus open_journal(Run *run, RtError *error) {
 
 static void name_missing(const Run *run) {
     for (uint32_t c = 0; c < run->experiment->candidate_count; c++) {
-        char message[RT_MAX_LABEL + 64];
         if (!run->experiment->candidates[c].missing) continue;
-        snprintf(message, sizeof message, "'%s' is skipped: this build does not have it",
-                 run->experiment->candidates[c].label);
-        notify(run, message);
+        rt_notify(&run->options->workload.observer, "'%s' is skipped: this build does not have it",
+                  run->experiment->candidates[c].label);
     }
 }
 
@@ -210,7 +203,8 @@ static RtStatus on_event(void *context, const RtResults *results, const RtEvent 
 }
 
 static void on_notice(void *context, const char *message) {
-    notify(context, message);
+    const Run *run = context;
+    rt_notify(&run->options->workload.observer, "%s", message);
 }
 
 /* The tables made from cells, after each workload. */
@@ -254,18 +248,14 @@ static void close_scene(Run *run, uint32_t t) {
 
 /* Says what was done if nothing was measured. */
 static void tell_end(const Run *run) {
-    char message[128];
-    uint32_t scenes;
+    const RtRunObserver *observer = &run->options->workload.observer;
+    uint32_t scenes, shards = run->options->joined;
     uint64_t cells = rt_results_size(run->results, &scenes);
-    if (run->options->joined) {
-        snprintf(message, sizeof message,
-                 "joined %" PRIu32 " shard%s: %" PRIu64 " cell%s of %" PRIu32 " scene%s",
-                 run->options->joined, rt_plural(run->options->joined), cells, rt_plural(cells), scenes,
-                 rt_plural(scenes));
-        notify(run, message);
-    } else {
-        notify(run, "nothing was left to measure: this run is finished. --force starts it over");
-    }
+    if (shards)
+        rt_notify(observer, "joined %" PRIu32 " shard%s: %" PRIu64 " cell%s of %" PRIu32 " scene%s", shards,
+                  rt_plural(shards), cells, rt_plural(cells), scenes, rt_plural(scenes));
+    else
+        rt_notify(observer, "nothing was left to measure: this run is finished. --force starts it over");
 }
 
 static RtStatus measure(Run *run, RtError *error) {
@@ -310,7 +300,7 @@ static RtStatus finish(Run *run, RtError *error) {
     RtStatus checked = rt_published_check(&run->published, error);
     if (drawn == RT_OK) return checked;
     if (drawn == RT_NOT_AVAILABLE || checked != RT_OK) {
-        notify(run, drawing.message);
+        rt_notify(&run->options->workload.observer, "%s", drawing.message);
         return checked;
     }
     if (error) *error = drawing;
@@ -325,7 +315,8 @@ RtStatus rt_run_experiment(RtResults *results, const RtRunOptions *options, RtEr
     if (status == RT_OK && is_complete(&run)) {
         status = finish(&run, error);
     } else if (status == RT_OK) {
-        notify(&run, "a part was measured; --resume without --only measures the rest");
+        rt_notify(&options->workload.observer,
+                  "a part was measured; --resume without --only measures the rest");
     }
     rt_json_lines_close(&run.journal);
     for (uint32_t t = 0; t < RT_MAX_WORKLOADS; t++) rt_scene_clear(&run.scenes[t]);

@@ -65,12 +65,8 @@ static double place_of(Figure *figure, const char *value) {
 
 static void name_line(const Figure *figure, uint32_t c, char name[NAME_CHARS]) {
     const RtCandidate *candidate = &figure->results->experiment->candidates[c];
-    if (figure->key.scene) {
-        snprintf(name, NAME_CHARS, "%s", candidate->label);
-        return;
-    }
-    snprintf(name, NAME_CHARS, "%s", candidate->base);
-    rt_swept_name(&candidate->swept, figure->key.key, name, NAME_CHARS);
+    snprintf(name, NAME_CHARS, "%s", figure->key.scene ? candidate->label : candidate->base);
+    if (!figure->key.scene) rt_swept_name(&candidate->swept, figure->key.key, name, NAME_CHARS);
 }
 
 static uint32_t line_of(Figure *figure, uint32_t c, bool flat) {
@@ -340,30 +336,23 @@ static RtStatus write_script(Figure *figure, const char *directory, RtError *err
     return rt_output_commit(&output, error);
 }
 
-static RtStatus write_style(const char *path, RtError *error) {
+static RtStatus write_style(const char *directory, RtError *error) {
     RtOutput output;
-    RT_TRY(rt_output_open(&output, path, error));
+    RT_TRY(rt_output_open_in(&output, directory, "plots/style.gp", error));
     rt_page_lines(output.file, style_gp);
     return rt_output_commit(&output, error);
 }
 
 RtStatus rt_sweep_plots_write(const RtResults *results, const char *directory, RtError *error) {
-    const RtExperiment *experiment = results->experiment;
-    char path[RT_MAX_PATH];
-    size_t candidates = experiment->candidate_count;
-    size_t points = 2 * candidates * experiment->workload_count;
-    RT_TRY(rt_path_join(directory, "plots/style.gp", path, error));
-    RT_TRY(write_style(path, error));
-    Figure *figure = rt_alloc(1, sizeof *figure);
-    if (!figure) return rt_fail_memory(error, "plots", sizeof *figure);
-    figure->results = results;
-    figure->lines = rt_alloc(candidates, sizeof(Line));
-    figure->points = rt_alloc(points, sizeof(Point));
-    RtStatus status = figure->lines && figure->points
-                          ? write_script(figure, directory, error)
-                          : rt_fail_memory(error, "plots", points * sizeof(Point));
-    rt_free(figure->lines);
-    rt_free(figure->points);
-    rt_free(figure);
+    const size_t candidates = results->experiment->candidate_count;
+    const size_t points = 2 * candidates * results->experiment->workload_count;
+    RT_TRY(write_style(directory, error));
+    Figure figure = {.results = results,
+                     .lines = rt_alloc(candidates, sizeof(Line)),
+                     .points = rt_alloc(points, sizeof(Point))};
+    RtStatus status = figure.lines && figure.points ? write_script(&figure, directory, error)
+                                                    : rt_fail_memory(error, "plots", points * sizeof(Point));
+    rt_free(figure.lines);
+    rt_free(figure.points);
     return status;
 }

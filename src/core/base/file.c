@@ -244,7 +244,7 @@ size_t rt_directory_each(const char *folder, const char *suffix,
         char path[RT_MAX_PATH];
         const char *name = entries[i]->d_name;
         if (ends_in(name, suffix) && rt_path_join(folder, name, path, NULL) == RT_OK) {
-            visit(context, path);
+            if (visit) visit(context, path);
             visited++;
         }
         free(entries[i]);

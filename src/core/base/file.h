@@ -73,8 +73,8 @@ bool rt_file_is_dead_link(const char *path, RtError *error);
 /* Creates the directory and missing parents. */
 RtStatus rt_directory_create(const char *path, RtError *error);
 
-/* Calls visit(context, path) for every file of the folder whose name ends in `suffix`, sorted by name.
- * Returns their number, 0 if the folder cannot be read. */
+/* Calls visit(context, path), unless it is NULL, for every file of the folder whose name ends in `suffix`,
+ * sorted by name. Returns their number, 0 if the folder cannot be read. */
 size_t rt_directory_each(const char *folder, const char *suffix,
                          void (*visit)(void *context, const char *path), void *context);
 

@@ -133,17 +133,14 @@ void rt_html_markup(FILE *out, const char *text) {
 /* ` NAME="TEXT"` */
 static void put_attribute(FILE *out, const char *name, const char *text) {
     fprintf(out, " %s=\"", name);
-    rt_html_put(out, text);
-    fputc('"', out);
+    rt_html_wrap(out, "", text, "\"");
 }
 
 static void put_header(const RtTableColumn *column, FILE *out) {
     fputs(is_sortable(column) ? "<th scope=\"col\" class=\"number\"" : "<th scope=\"col\"", out);
     put_attribute(out, "data-id", column->id);
     put_attribute(out, "title", column->meaning);
-    fputc('>', out);
-    rt_html_put(out, column->name);
-    fputs("</th>", out);
+    rt_html_wrap(out, ">", column->name, "</th>");
 }
 
 static void put_field(const RtTableColumn *column, const RtField *field, FILE *out) {
@@ -187,11 +184,7 @@ void rt_table_html(const RtTable *table, FILE *out) {
     fputs("<div class=\"wide\" tabindex=\"0\" role=\"region\"", out);
     put_attribute(out, "aria-label", table->caption ? table->caption : "table");
     fputs("><table>", out);
-    if (table->caption) {
-        fputs("<caption>", out);
-        rt_html_put(out, table->caption);
-        fputs("</caption>", out);
-    }
+    if (table->caption) rt_html_wrap(out, "<caption>", table->caption, "</caption>");
     rt_table_walk((RtTableWriter){.table = table, .put = put_html, .out = out});
     fputs("</tbody></table></div>\n", out);
 }

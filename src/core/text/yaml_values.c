@@ -177,19 +177,17 @@ RtStatus rt_yaml_rows(const RtYaml *yaml, const RtYamlNode *node, const char *ke
     *count = 0;
     RT_TRY(rt_yaml_list(yaml, list, NULL, least, UINT32_MAX, "lists of numbers"));
     if (!list) return RT_OK;
-    float *row = rt_alloc(list->count, width * sizeof *row);
-    if (!row)
-        return rt_fail_memory(yaml->error, "lists of numbers", (size_t)list->count * width * sizeof *row);
-    *rows = row;
-    *count = list->count;
+    float *all = rt_alloc(list->count, width * sizeof *all), *row = all;
+    if (!all)
+        return rt_fail_memory(yaml->error, "lists of numbers", (size_t)list->count * width * sizeof *all);
     for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size, row += width) {
         RtStatus status = read_numbers(yaml, n, width, row, NULL);
         if (status == RT_OK) continue;
-        rt_free(*rows);
-        *rows = NULL;
-        *count = 0;
+        rt_free(all);
         return status;
     }
+    *rows = all;
+    *count = list->count;
     return RT_OK;
 }
 
