@@ -29,7 +29,7 @@
     X(RT_GRID_RESOLUTION, "resolution",                                                                      \
       RT_RESOLUTION("auto", 1, RT_GRID_MAX_RESOLUTION, "1x1x1|2x3x5|64x1x64"),                               \
       "voxels along x, y, z of the outermost grid; auto: by the rule", "this program")                       \
-    X(RT_GRID_DEPTH, "depth", RT_INT("1", 1, RT_GRID_MAX_LEVELS, "2"),                                     \
+    X(RT_GRID_DEPTH, "depth", RT_INT("1", 1, RT_GRID_MAX_LEVELS, "2"),                                       \
       "levels of grids; above 1, a voxel may contain a grid, by the rule",                                   \
       "1: a uniform grid; nested grids: Jevans & Wyvill 1989")                                               \
     X(RT_GRID_NEST, "nest", RT_INT("8", 1, 1e6, "1|30"),                                                     \
