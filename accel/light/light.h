@@ -250,6 +250,9 @@ extern const RtLightRaster rt_light_raster_portable, rt_light_raster_avx2, rt_li
 /* Makes the lists of all lights, each tile's of no more than `most` entries. */
 RtStatus rt_light_make_lists(RtLightBuffer *buffer, uint32_t most, int threads, RtError *error);
 
+/* Frees the lists of a light, which no longer serves. */
+void rt_light_drop(RtLightCube *cube);
+
 /* ---- light_choice.c ---- */
 
 typedef struct RtLightProbes RtLightProbes;
@@ -262,7 +265,6 @@ RtStatus rt_light_choose(RtLightBuffer *buffer, RtLightProbes **probes, RtError 
 RtStatus rt_light_choose_again(RtLightBuffer *buffer, RtLightProbes *probes, RtError *error);
 
 /* ---- light_build.c, light_stats.c ---- */
-void rt_light_drop(RtLightCube *cube); /* frees its lists; it no longer serves */
 uint64_t rt_light_bytes(const RtLightCube *cube);
 RtStatus rt_light_build(const RtBuild *what, RtAccel **out, RtError *error);
 void rt_light_destroy(RtAccel *accel);

@@ -214,17 +214,6 @@ static RtStatus fill(RtLightBuffer *buffer, const RtBuild *what, RtLightProbes *
     return RT_OK;
 }
 
-void rt_light_drop(RtLightCube *cube) {
-    rt_free(cube->tiles);
-    rt_free(cube->first);
-    rt_free(cube->entries);
-    rt_free(cube->near);
-    cube->tiles = cube->first = cube->near = NULL;
-    cube->entries = NULL;
-    cube->near_count = 0;
-    cube->serves = false;
-}
-
 void rt_light_destroy(RtAccel *accel) {
     RtLightBuffer *buffer = (RtLightBuffer *)accel;
     for (uint32_t i = 0; buffer->cubes && i < accel->scene->light_count; i++)

@@ -420,3 +420,14 @@ RtStatus rt_light_make_lists(RtLightBuffer *buffer, uint32_t most, int threads, 
     rt_free(workers);
     return status;
 }
+
+void rt_light_drop(RtLightCube *cube) {
+    rt_free(cube->tiles);
+    rt_free(cube->first);
+    rt_free(cube->entries);
+    rt_free(cube->near);
+    cube->tiles = cube->first = cube->near = NULL;
+    cube->entries = NULL;
+    cube->near_count = 0;
+    cube->serves = false;
+}
