@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "experiment/experiment.h"
 
-#include "experiment/manifest.h"
+#include "experiment/manifest_experiment.h"
 #include "measure/previous_results.h"
 
 #include <string.h>

@@ -148,7 +148,7 @@ typedef struct RtExperiment {
     char path[RT_MAX_PATH];      /* of the YAML, or "" */
     char folder[RT_MAX_PATH];    /* of the YAML */
     /* Only while loading: the manifest of the results to read, or NULL. It replaces the registry of
-     * accelerators (experiment/manifest.h). */
+     * accelerators (experiment/manifest_experiment.h). */
     const json_t *manifest;
     uint64_t fingerprint; /* of the YAML's bytes without finding and expect, which affect no result */
 } RtExperiment;

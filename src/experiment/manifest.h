@@ -19,18 +19,4 @@ RtStatus rt_manifest_read(const char *directory, json_t **manifest, RtError *err
  */
 RtStatus rt_manifest_experiment(const char *directory, RtExperiment *experiment, RtError *error);
 
-/* ---- its accelerators ---- */
-
-/* For commands that only read results: this build may lack them, or have others (a plugin that is not loaded
- * or has changed; a library's settings on another machine). */
-
-/* Copies spec and label of accelerator number `i` to *candidate; false if there is none. */
-bool rt_manifest_candidate(const json_t *manifest, uint32_t i, RtCandidate *candidate);
-
-/* Whether the build that ran it lacked accelerator number `i`. */
-bool rt_manifest_is_missing(const json_t *manifest, uint32_t i);
-
-/* Whether parameter `key` of the accelerator `owner` has only whole numbers in the manifest. */
-bool rt_manifest_is_whole(const json_t *manifest, const char *owner, const char *key);
-
 #endif

@@ -11,7 +11,7 @@
  * dots or a bar, and a '+' before a digit never separates accelerators. */
 #include "core/base/words.h"
 #include "experiment/experiment.h"
-#include "experiment/manifest.h"
+#include "experiment/manifest_experiment.h"
 #include "scenes/builtin.h"
 
 #include <ctype.h>
@@ -198,7 +198,7 @@ static RtStatus read_param(Sweep *sweep, const char *layer, size_t start, size_t
 
 /* Reads `text`, a spec of a built-in scene (`scene`) or of an accelerator; files are never swept. Does not
  * check the resulting specs. `manifest` says which parameters are whole numbers for accelerators that this
- * build may lack (experiment/manifest.h); or NULL. */
+ * build may lack (experiment/manifest_experiment.h); or NULL. */
 static RtStatus parse_sweep(const char *text, bool scene, const json_t *manifest, Sweep *sweep,
                             RtError *error) {
     const char *layer = text;
