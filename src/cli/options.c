@@ -74,6 +74,7 @@ static int key_of(const RtOption *list, int i) {
     return !list[i].name ? 0 : list[i].letter ? list[i].letter : FIRST_KEY + i;
 }
 
+/* The parser of one table. */
 static error_t take_key(int key, char *text, struct argp_state *state) {
     const Parse *parse = state->input;
     for (int i = 0; is_option(parse->list, i); i++) {
