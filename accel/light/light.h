@@ -257,12 +257,12 @@ void rt_light_drop(RtLightCube *cube);
 
 typedef struct RtLightProbes RtLightProbes;
 
-/* Before lists are made: chooses the lights that may serve. Those of `cells` all do. *probes: for the second
- * choice, to be freed with rt_free; NULL if there is none. */
-RtStatus rt_light_choose(RtLightBuffer *buffer, RtLightProbes **probes, RtError *error);
+/* Before lists are made: chooses the lights that may serve. Those of `cells` all do. *out: probes for the
+ * second choice, to be freed with rt_free; NULL if there is none. */
+RtStatus rt_light_choose(RtLightBuffer *buffer, RtLightProbes **out, RtError *error);
 
 /* After lists are made: drops the lists of lights that cost more with than without them. */
-RtStatus rt_light_choose_again(RtLightBuffer *buffer, RtLightProbes *probes, RtError *error);
+RtStatus rt_light_choose_again(RtLightBuffer *buffer, RtLightProbes *p, RtError *error);
 
 /* ---- light_build.c, light_stats.c ---- */
 uint64_t rt_light_bytes(const RtLightCube *cube);

@@ -126,7 +126,10 @@ static RtStatus find_surfaces(RtLightProbes *p, const RtAccel *below, RtError *e
 /* The cost of a ray's cache misses in a structure of so many bytes. */
 static double cost_of_misses(double bytes) {
     double ns = 0;
-    for (; bytes > CACHE_BYTES; bytes /= 2) ns += MISSES * fmin(bytes / CACHE_BYTES - 1, 1);
+    while (bytes > CACHE_BYTES) {
+        ns += MISSES * fmin(bytes / CACHE_BYTES - 1, 1);
+        bytes /= 2;
+    }
     return ns;
 }
 
