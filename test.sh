@@ -41,7 +41,7 @@ case "${1-}" in
     build clang -DRT_WERROR=ON
     run_tests clang -LE 'tree|once|slow' -E '^(builds|conformance|frames)$'
     build debug -DRT_KERNELS=native
-    RT_RAYS=16 run_tests debug -LE 'tree|slow' -E '^(check_counts|frames)$' # golden counts are of all kernels
+    RT_RAYS=16 run_tests debug -LE 'tree|slow' -E '^(check_counts|frames|path)$' # golden counts are of all kernels
     targets=thread_tests build tsan
     run_tests tsan -L threads
     ;;
