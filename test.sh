@@ -12,8 +12,8 @@ run_tests() {
     local preset=$1 report=$PWD/build/$1/tests.xml status=0 tests good unrun
     shift
     say "testing build/$preset"
-    # One more at a time than there are processors: several tests wait for a browser, a timer or a child.
     rm -f "$report"
+    # One more at a time than there are processors: several tests wait for a browser, a timer or a child.
     ctest --preset "$preset" -j $(($(nproc) + 1)) --no-tests=error --timeout 900 --output-junit "$report" \
         --test-output-size-passed 1000000 "$@" || status=1
     count() { grep -c "$1" "$report" 2>/dev/null || true; }

@@ -3,7 +3,6 @@
 #include "accel/accel.h"
 
 #include "core/base/clock.h"
-#include "core/base/memory.h"
 
 RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
                              RtError *error) {

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The timed kernels hold no counting code. Counters are 64-bit words in memory, and counting adds to them; so
 # no function of the library called ..._timed may add to a 64-bit word in memory, except on its own
-# stack (which SIMD code addresses by %rbp). Nor may it call one called ..._counted, which stands for an addition.
+# stack (which SIMD code addresses by %rbp). Nor may it call one called ..._counted, which counts as an addition.
 # The functions called ..._counted must: the counted kernels of each file show that this script would detect it. Nor may a
 # timed kernel test for an observer (core/base/observe.h): it may not name rt_trace_observer, as counted kernels do. A file
 # without timed kernels (isa.c, which passes rays on to the kernels of an instruction set) must count nothing.

@@ -39,7 +39,7 @@ typedef struct RtRunObserver {
     void (*notice)(void *context, const char *message);
 } RtRunObserver;
 
-/* Gives the observer a notice, as of printf. */
+/* Formats a notice like printf, and passes it to the observer. */
 __attribute__((format(printf, 2, 3))) void rt_notify(const RtRunObserver *observer, const char *format, ...);
 
 /* A part of an experiment: a scene, an accelerator, a kind of rays, each by its label, or the common part of

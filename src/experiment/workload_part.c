@@ -59,11 +59,12 @@ bool rt_workload_runs(const RtWorkloadState *workload, uint32_t c) {
 void rt_notify(const RtRunObserver *observer, const char *format, ...) {
     char message[RT_MAX_PATH + 1024];
     va_list args;
+    if (!observer->notice) return;
     va_start(args, format);
     /* clang-tidy 14 does not see va_start. NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized) */
     vsnprintf(message, sizeof message, format, args);
     va_end(args);
-    if (observer->notice) observer->notice(observer->context, message);
+    observer->notice(observer->context, message);
 }
 
 RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKind what, RtRayKind kind,
