@@ -332,11 +332,14 @@ RtStatus rt_claims_check(const RtResults *results, RtError *error) {
 
 void rt_claims_print(const RtResults *results, FILE *out) {
     const RtExperiment *experiment = results->experiment;
+    bool open = false;
     if (experiment->claim_count) fputs("\nClaims:\n", out);
     for (uint32_t i = 0; i < experiment->claim_count; i++) {
         RtClaimResult result;
         rt_claim_judge(results, i, &result);
         fprintf(out, "  %-13s  %s\n  %-13s  %s\n", rt_claim_verdict_name(result.verdict),
                 experiment->claims[i], "", result.figures);
+        open |= result.verdict == RT_CLAIM_UNDECIDED;
     }
+    if (open) fputs("  undecided: the interval includes the bound, or a value is missing\n", out);
 }

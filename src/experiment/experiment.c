@@ -291,7 +291,7 @@ static RtStatus check_frame(const RtExperiment *experiment, RtError *error) {
                        frame->without, experiment->workloads[t].label);
     }
     for (uint32_t c = 0; c < experiment->candidate_count; c++)
-        grouped |= strncmp(experiment->candidates[c].group, frame->among, strlen(frame->among)) == 0;
+        grouped |= strcmp(experiment->candidates[c].group, frame->among) == 0;
     if (!grouped)
         return rt_fail(error, RT_BAD_INPUT, "among: '%s' is not the group of an accelerator", frame->among);
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {

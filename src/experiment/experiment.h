@@ -105,7 +105,7 @@ typedef struct RtPublishedSetup {
 /* The table of the costs of a whole frame (experiment/frame_table.h). */
 typedef struct RtFrameSetup {
     char without[RT_MAX_LABEL]; /* the candidate without a structure; "": no such table */
-    char among[RT_MAX_LABEL];   /* prefix of the groups whose best is marked */
+    char among[RT_MAX_LABEL];   /* the group whose fastest is marked */
     char note[RT_MAX_TEXT];     /* a note for readers of the table, or "" */
 } RtFrameSetup;
 

@@ -50,49 +50,67 @@ static uint32_t below_of(const RtResults *results, uint32_t workload, uint32_t c
     return c;
 }
 
-static double tests_of(const RtFrameCost *cost) {
-    return cost->object_tests;
+typedef double Measure(const RtResults *results, uint32_t workload, uint32_t candidate);
+
+static double tests_of(const RtResults *results, uint32_t workload, uint32_t candidate) {
+    return cost_of(results, workload, candidate, RT_FRAME_ALL).object_tests;
 }
 
-static double seconds_of(const RtFrameCost *cost) {
-    return cost->seconds;
+static double seconds_of(const RtResults *results, uint32_t workload, uint32_t candidate) {
+    return cost_of(results, workload, candidate, RT_FRAME_ALL).seconds;
 }
 
-static double factor_of(const RtResults *results, uint32_t workload, uint32_t candidate,
-                        double (*of)(const RtFrameCost *cost)) {
+static double build_of(const RtResults *results, uint32_t workload, uint32_t candidate) {
+    return rt_build_at(results, workload, candidate)->seconds;
+}
+
+static double seconds_with_build(const RtResults *results, uint32_t workload, uint32_t candidate) {
+    return seconds_of(results, workload, candidate) + build_of(results, workload, candidate);
+}
+
+static bool is_overlay(const RtExperiment *experiment, uint32_t candidate) {
+    return strchr(experiment->candidates[candidate].spec, '+') != NULL;
+}
+
+static double factor_of(const RtResults *results, uint32_t workload, uint32_t candidate, Measure *of) {
     const RtExperiment *experiment = results->experiment;
-    const bool overlay = strchr(experiment->candidates[candidate].spec, '+') != NULL;
     uint32_t base = below_of(results, workload, candidate);
-    if (base == experiment->candidate_count && overlay) return (double)NAN;
+    if (base == experiment->candidate_count && is_overlay(experiment, candidate)) return (double)NAN;
     if (base == experiment->candidate_count) base = without_of(experiment, workload);
-    const RtFrameCost own = cost_of(results, workload, candidate, RT_FRAME_ALL);
-    const RtFrameCost other = cost_of(results, workload, base, RT_FRAME_ALL);
-    return of(&other) / of(&own);
+    return of(results, workload, base) / of(results, workload, candidate);
 }
 
-/* By time, or by object tests if nothing was timed. */
-static double gain_of(const RtResults *results, uint32_t workload, uint32_t candidate) {
-    return factor_of(results, workload, candidate, results->experiment->count_only ? tests_of : seconds_of);
+/* Time, or object tests if nothing was timed. */
+static Measure *decisive(const RtExperiment *experiment) {
+    return experiment->count_only ? tests_of : seconds_of;
 }
 
-static bool is_compared(const RtExperiment *experiment, uint32_t candidate) {
-    const RtCandidate *c = &experiment->candidates[candidate];
-    const char *among = experiment->frame.among;
-    return strncmp(c->group, among, strlen(among)) == 0 && strcmp(c->spec, rt_accel_yardstick()) != 0;
+/* Of the compared accelerators, or of all, the one with the next greater measure after `previous`;
+ * candidate_count before the first and after the last. The yardstick is left out. */
+static uint32_t next_of(const RtResults *results, uint32_t workload, Measure *of, bool all,
+                        uint32_t previous) {
+    const RtExperiment *experiment = results->experiment;
+    const uint32_t none = experiment->candidate_count;
+    const double before = previous == none ? -INFINITY : of(results, workload, previous);
+    double least = INFINITY;
+    uint32_t best = none;
+    for (uint32_t c = 0; c < none; c++) {
+        const RtCandidate *candidate = &experiment->candidates[c];
+        const bool compared =
+            all || (strcmp(candidate->group, experiment->frame.among) == 0 && !is_overlay(experiment, c));
+        const double own = of(results, workload, c);
+        const bool after = own > before || (own == before && c > previous);
+        if (!compared || strcmp(candidate->spec, rt_accel_yardstick()) == 0) continue;
+        if (!rt_candidate_runs(experiment, c, workload) || !after || !(own < least)) continue;
+        least = own;
+        best = c;
+    }
+    return best;
 }
 
 static uint32_t winner_of(const RtResults *results, uint32_t workload) {
     const RtExperiment *experiment = results->experiment;
-    uint32_t best = experiment->candidate_count;
-    double most = 0;
-    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        if (!is_compared(experiment, c) || !rt_candidate_runs(experiment, c, workload)) continue;
-        const double gain = gain_of(results, workload, c);
-        if (!(gain > most)) continue;
-        most = gain;
-        best = c;
-    }
-    return best;
+    return next_of(results, workload, decisive(experiment), false, experiment->candidate_count);
 }
 
 /* ---- the table ---- */
@@ -145,7 +163,7 @@ static const char *below_label(const Row *r) {
     X(tests_gain, "tests_gain", real6, "", "the same for times_fewer", r->tests_gain)                        \
     X(winner, "winner", flag, "", "whether its gain is the largest of the compared accelerators",            \
       rt_field_flag(r->candidate == r->winner))                                                              \
-    X(eye_label, "  accelerator", text, "", "> marks the one that helps most", label_of(r))                  \
+    X(eye_label, "  accelerator", text, "", "> marks the fastest of those compared", label_of(r))            \
     X(mega_tests, "Mtests", figure, "million", "object tests of the frame", 1e-6 * r->cost[0].object_tests)  \
     X(fewer, "fewer", figure, "", "times fewer object tests than without a structure",                       \
       r->without[0].object_tests / r->cost[0].object_tests)                                                  \
@@ -208,109 +226,99 @@ static const char *figure(double value, char size[16]) {
     return size;
 }
 
-/* The compared candidate on top of `below` with the next smaller gain after `previous`; candidate_count
- * before the first and after the last. */
-static uint32_t next_of(const RtResults *results, uint32_t t, uint32_t below, uint32_t previous) {
-    const uint32_t none = results->experiment->candidate_count;
-    const double least = previous == none ? 0 : gain_of(results, t, previous);
-    double most = 0;
-    uint32_t best = none;
-    for (uint32_t c = 0; c < none; c++) {
-        if (!is_compared(results->experiment, c) || !rt_candidate_runs(results->experiment, c, t)) continue;
-        const double gain = gain_of(results, t, c);
-        const bool after = previous == none || gain < least || (gain == least && c > previous);
-        if (below_of(results, t, c) != below || !after || !(gain > most)) continue;
-        most = gain;
-        best = c;
-    }
-    return best;
-}
-
 /* Whether the intervals of two timed frames overlap. */
-static bool is_level(const RtResults *results, uint32_t t, uint32_t winner, uint32_t other) {
-    const double low = cost_of(results, t, other, RT_FRAME_ALL).low;
-    return !results->experiment->count_only && low <= cost_of(results, t, winner, RT_FRAME_ALL).high;
+static bool is_level(const RtResults *results, uint32_t t, uint32_t one, uint32_t other) {
+    const RtFrameCost a = cost_of(results, t, one, RT_FRAME_ALL),
+                      b = cost_of(results, t, other, RT_FRAME_ALL);
+    return !results->experiment->count_only && a.low <= b.high && b.low <= a.high;
 }
 
-/* "octree follows with 230 times, grid with 122." All that are no overlays, without the winner. A winning
- * overlay has another base. */
+/* "octree follows with 230 times, grid with 122 (level with octree)." */
 static void say_followers(char *out, const RtResults *results, uint32_t t, uint32_t winner) {
     const RtExperiment *experiment = results->experiment;
+    Measure *of = decisive(experiment);
+    char number[16];
+    uint32_t last = winner;
+    for (uint32_t c; (c = next_of(results, t, of, false, last)) < experiment->candidate_count; last = c) {
+        SAY(out, last == winner ? " %s follows with %s times" : ", %s with %s",
+            rt_candidate_label(experiment, c), figure(factor_of(results, t, c, of), number));
+        if (is_level(results, t, last, c)) SAY(out, " (level with %s)", rt_candidate_label(experiment, last));
+    }
+    SAY(out, "%s", last == winner ? "" : ".");
+}
+
+/* What the winner's time leaves out: who makes fewer object tests, and who is faster if each is built for one
+ * frame. */
+static void say_others(char *out, const RtResults *results, uint32_t t, uint32_t winner) {
+    const RtExperiment *experiment = results->experiment;
     const uint32_t none = experiment->candidate_count;
-    const bool overlay = below_of(results, t, winner) != none;
+    const uint32_t fewest = next_of(results, t, tests_of, false, none);
+    const uint32_t first = next_of(results, t, seconds_with_build, false, none);
+    char number[16], other[16];
+    if (fewest != none && tests_of(results, t, fewest) < tests_of(results, t, winner))
+        SAY(out, " %s makes the fewest object tests: %s times fewer than %s.",
+            rt_candidate_label(experiment, fewest), figure(factor_of(results, t, fewest, tests_of), number),
+            experiment->frame.without);
+    if (cost_of(results, t, first, RT_FRAME_ALL).high + build_of(results, t, first) <
+        cost_of(results, t, winner, RT_FRAME_ALL).low + build_of(results, t, winner))
+        SAY(out, " With the builds added, %s is the fastest for one frame: %s ms, %s %s ms.",
+            rt_candidate_label(experiment, first),
+            figure(1e3 * seconds_with_build(results, t, first), number),
+            rt_candidate_label(experiment, winner),
+            figure(1e3 * seconds_with_build(results, t, winner), other));
+}
+
+/* "item+wide is 1.12 times as fast as wide alone." */
+static void say_overlays(char *out, const RtResults *results, uint32_t t) {
+    const RtExperiment *experiment = results->experiment;
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        const uint32_t below = below_of(results, t, c);
+        const double gain = factor_of(results, t, c, decisive(experiment));
+        char number[16];
+        if (below == experiment->candidate_count || isnan(gain)) continue;
+        SAY(out,
+            experiment->count_only ? " %s makes %s times fewer object tests than %s alone%s."
+                                   : " %s is %s times as fast as %s alone%s.",
+            rt_candidate_label(experiment, c), figure(gain, number), rt_candidate_label(experiment, below),
+            is_level(results, t, c, below) ? " (level)" : "");
+    }
+}
+
+/* The fastest of all, and which are level with it. */
+static void say_fastest(char *out, const RtResults *results, uint32_t t) {
+    const RtExperiment *experiment = results->experiment;
+    const uint32_t none = experiment->candidate_count, best = next_of(results, t, seconds_of, true, none);
+    const uint32_t without = without_of(experiment, t);
     char number[16];
     bool any = false;
-    for (uint32_t c = overlay ? none : winner; (c = next_of(results, t, none, c)) != none; any = true) {
-        if (!any && overlay) SAY(out, " Compared with %s,", experiment->frame.without);
-        SAY(out, "%s %s %s%s%s%s", any ? "," : "", rt_candidate_label(experiment, c),
-            any       ? "with "
-            : overlay ? "comes with "
-                      : "follows with ",
-            figure(gain_of(results, t, c), number), any ? "" : " times",
-            !overlay && is_level(results, t, winner, c) ? " (level: the intervals overlap)" : "");
+    SAY(out, " The fastest of all is %s: %s times as fast as %s", rt_candidate_label(experiment, best),
+        figure(seconds_of(results, t, without) / seconds_of(results, t, best), number),
+        experiment->frame.without);
+    for (uint32_t c = best; (c = next_of(results, t, seconds_of, true, c)) != none;) {
+        if (!is_level(results, t, best, c)) continue;
+        SAY(out, "%s %s", any ? "," : " (level with", rt_candidate_label(experiment, c));
+        any = true;
     }
-    SAY(out, "%s", any ? "." : "");
-}
-
-/* "Compared with wide alone, item+wide is 1.12 times as fast, and light+wide 1.00 times." Without the winner.
- */
-static void say_overlays(char *out, const RtResults *results, uint32_t t, uint32_t winner) {
-    const RtExperiment *experiment = results->experiment;
-    const uint32_t none = experiment->candidate_count, told = below_of(results, t, winner);
-    for (uint32_t below = 0; below < none; below++) {
-        char number[16];
-        bool any = false;
-        for (uint32_t c = told == below ? winner : none; (c = next_of(results, t, below, c)) != none;
-             any = true) {
-            if (!any) SAY(out, " Compared with %s alone,", rt_candidate_label(experiment, below));
-            SAY(out, "%s %s %s%s times%s", any ? ", and" : "", rt_candidate_label(experiment, c),
-                any ? "" : "is ", figure(gain_of(results, t, c), number),
-                any                      ? ""
-                : experiment->count_only ? " better"
-                                         : " as fast");
-        }
-        SAY(out, "%s", any ? "." : "");
-    }
-}
-
-/* The fastest of all except the yardstick. */
-static void say_fastest(char *out, const RtResults *results, uint32_t t, const RtFrameCost *without) {
-    const RtExperiment *experiment = results->experiment;
-    uint32_t best = experiment->candidate_count;
-    double least = INFINITY;
-    char number[16];
-    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        const RtFrameCost cost = cost_of(results, t, c, RT_FRAME_ALL);
-        if (strcmp(experiment->candidates[c].spec, rt_accel_yardstick()) == 0) continue;
-        if (!rt_candidate_runs(experiment, c, t) || !(cost.seconds < least)) continue;
-        least = cost.seconds;
-        best = c;
-    }
-    if (best == experiment->candidate_count) return;
-    SAY(out, " The fastest structure is %s: %s times as fast as %s.", rt_candidate_label(experiment, best),
-        figure(without->seconds / least, number), experiment->frame.without);
+    SAY(out, any ? ")." : ".");
 }
 
 void rt_frame_sentence(const RtResults *results, uint32_t workload, char out[RT_MAX_FRAME_SENTENCE]) {
     const RtExperiment *experiment = results->experiment;
-    const uint32_t winner = winner_of(results, workload), below = below_of(results, workload, winner);
-    char number[16], tests[16];
+    const uint32_t winner = winner_of(results, workload);
+    const bool timed = !experiment->count_only;
+    char number[16];
     out[0] = '\0';
     if (winner == experiment->candidate_count) return;
-    const bool overlay = below != experiment->candidate_count;
-    const RtFrameCost cost = cost_of(results, workload, winner, RT_FRAME_ALL);
-    const RtFrameCost without = cost_of(results, workload, without_of(experiment, workload), RT_FRAME_ALL);
-    const RtFrameCost other = overlay ? cost_of(results, workload, below, RT_FRAME_ALL) : without;
-    const double gain = gain_of(results, workload, winner);
-    const char *than = overlay ? rt_candidate_label(experiment, below) : experiment->frame.without;
-    SAY(out, "On %s, %s helps most of %s: ", experiment->workloads[workload].label,
-        rt_candidate_label(experiment, winner), experiment->frame.among);
-    if (!experiment->count_only) SAY(out, "%s times as fast, with ", figure(gain, number));
-    SAY(out, "%s times fewer object tests than %s.", figure(other.object_tests / cost.object_tests, tests),
-        than);
+    SAY(out, "On %s, %s is the %s of %s: ", experiment->workloads[workload].label,
+        rt_candidate_label(experiment, winner), timed ? "fastest" : "best", experiment->frame.among);
+    if (timed)
+        SAY(out, "%s times as fast, with ", figure(factor_of(results, workload, winner, seconds_of), number));
+    SAY(out, "%s times fewer object tests than %s.",
+        figure(factor_of(results, workload, winner, tests_of), number), experiment->frame.without);
     say_followers(out, results, workload, winner);
-    say_overlays(out, results, workload, winner);
-    if (!experiment->count_only) say_fastest(out, results, workload, &without);
+    if (timed) say_others(out, results, workload, winner);
+    say_overlays(out, results, workload);
+    if (timed) say_fastest(out, results, workload);
 }
 
 void rt_frame_title(const RtResults *results, uint32_t workload, char out[RT_MAX_FRAME_SENTENCE]) {
@@ -328,11 +336,13 @@ void rt_frame_title(const RtResults *results, uint32_t workload, char out[RT_MAX
 /* ---- to read ---- */
 
 void rt_frame_legend(const RtExperiment *experiment, char out[RT_MAX_FRAME_SENTENCE]) {
-    snprintf(out, RT_MAX_FRAME_SENTENCE,
-             "A whole frame: object tests in millions, time and build time in ms; how many times fewer "
-             "tests, and how many times faster, than %s; then the same by kind of ray (second: reflection "
-             "and transmission). > helps most of %s.",
-             experiment->frame.without, experiment->frame.among);
+    snprintf(
+        out, RT_MAX_FRAME_SENTENCE,
+        "Mtests: object tests of a whole frame, in millions; ms: time to trace it on one thread; build: ms "
+        "to build, on all processors (--threads changes both). fewer, faster: how many times, than %s; "
+        "primary, shadow, second (reflection and transmission): how many times faster. -: no such rays, "
+        "or not counted. >: the fastest of %s. level: the intervals overlap.",
+        experiment->frame.without, experiment->frame.among);
 }
 
 static void print_rows(const RtResults *results, uint32_t workload, FILE *out) {

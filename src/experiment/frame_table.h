@@ -37,16 +37,16 @@ typedef struct RtFrameRow {
     uint32_t candidate;
     RtFrameCost cost[RT_FRAME_PARTS], without[RT_FRAME_PARTS];
     double gain, tests_gain; /* in time, and in object tests */
-    uint32_t winner; /* the compared candidate with the largest gain, in object tests if nothing was timed;
-                        candidate_count: none */
+    uint32_t winner; /* the fastest of the group, without overlays; of the fewest object tests if nothing was
+                        timed; candidate_count: none */
 } RtFrameRow;
 
 /* `row` belongs to the table and must outlive it. The caller fills in its results, `one`, and then its
  * workload. The winner is marked as the best. */
 RtTable rt_frame_table(RtFrameRow *row);
 
-/* Which of the compared accelerators helped most on a workload, by how much, and how the others compare:
- * sentences, or "" if unknown. */
+/* Which accelerator of the group is the fastest on a workload, by how much, and how the others and the
+ * overlays compare; those whose intervals overlap are level: sentences, or "" if unknown. */
 #define RT_MAX_FRAME_SENTENCE 1024
 void rt_frame_sentence(const RtResults *results, uint32_t workload, char out[RT_MAX_FRAME_SENTENCE]);
 

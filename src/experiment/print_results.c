@@ -169,7 +169,7 @@ void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
     out[0] = '\0';
     if (runs == 0) return;
     snprintf(out, RT_MAX_SENTENCE,
-             "Null runs (%s against itself): %" PRIu32 " of %" PRIu32 " interval%s straddle%s 1",
+             "Null runs: %s timed against itself, %" PRIu32 " of %" PRIu32 " interval%s include%s 1",
              experiment->candidates[experiment->baseline].label, straddling, runs, rt_plural(runs),
              runs == 1 ? "s" : "");
     uint32_t misses = runs - straddling, rounds = experiment->rounds;
@@ -197,16 +197,16 @@ void rt_print_summary(const RtResults *results, FILE *out) {
         rt_print_frames(results, out);
     else
         rt_print_results(results, RT_TOTALS, out);
-    if (experiment->hardware) rt_print_hardware(results, out);
-    rt_print_limits(results, out);
-    rt_claims_print(results, out);
-    rt_null_sentence(results, text);
-    fputc('\n', out);
-    if (*text) rt_print_wrapped(text, out);
     for (uint32_t t = 0; frames && t < experiment->workload_count; t++) {
         rt_frame_sentence(results, t, text);
         if (!*text) continue;
         fputc('\n', out);
         rt_print_wrapped(text, out);
     }
+    if (experiment->hardware) rt_print_hardware(results, out);
+    rt_print_limits(results, out);
+    rt_claims_print(results, out);
+    rt_null_sentence(results, text);
+    fputc('\n', out);
+    if (*text) rt_print_wrapped(text, out);
 }

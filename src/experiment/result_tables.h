@@ -81,12 +81,12 @@ void rt_print_hardware(const RtResults *results, FILE *out);
 /* Prints a blank line, the names of the columns, and the rows of one workload. */
 void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workload, FILE *out);
 
-/* What a run ends with: the frames' costs, or the totals if the experiment has no frames; hardware counters;
- * limits; claims; null runs; and for frames the accelerator that helped most. */
+/* What a run ends with: the frames' costs and what follows from them, or the totals if the experiment has no
+ * frames; hardware counters; limits; claims; null runs. */
 void rt_print_summary(const RtResults *results, FILE *out);
 
-/* "12 of 12 null runs straddle 1.", or a warning if fewer do; and the coverage of the intervals if rounds are
- * too few. "" if nothing was timed. */
+/* "... 12 of 12 intervals include 1, ...", or a warning if fewer do; and the coverage of the intervals if
+ * rounds are too few. "" if nothing was timed. */
 #define RT_MAX_SENTENCE 384
 void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]);
 

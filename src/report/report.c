@@ -263,8 +263,7 @@ static void put_tables(FILE *out, const RtResults *results) {
 
 /* ---- the answer ---- */
 
-/* For an experiment with frames: the accelerator that helped most on each scene, as sentences, plot and
- * tables. */
+/* For an experiment with frames: the fastest accelerators on each scene, as sentences, plot and tables. */
 static void put_answer(FILE *out, const RtResults *results, const char *directory) {
     const RtExperiment *experiment = results->experiment;
     char path[RT_MAX_PATH], text[RT_MAX_FRAME_SENTENCE], caption[RT_MAX_FRAME_SENTENCE + RT_MAX_LABEL];
