@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # first-look: the table of frames as bars, one column of panels per scene.
 #: frame: Speedup and reduction in object tests of each accelerator for a whole frame over no structure, on logarithmic axes.
-#:   The columns at the right are milliseconds per frame, milliseconds to build, and millions of object tests. Blue: the lecture's
-#:   six; orange: the one that helps most. item and light are overlays over wide: the pale part of a bar is the share of wide
-#:   alone. ideal is the lower bound for any accelerator.
+#:   The columns at the right are milliseconds to trace a frame and to build, and millions of object tests. Blue: the classic ones;
+#:   orange: the best of the four structures. item and light are buffers over wide: the pale part of a bar is what wide alone
+#:   reaches, the figure in brackets the gain over it. ideal bounds object tests, not time.
 #: by-kind: Speedup over no structure, for each ray kind.
 #:   Logarithmic axes; secondary rays are reflected and transmitted ones. The item buffer answers only primary rays, the light
 #:   buffer only shadow rays.
@@ -21,15 +21,14 @@ do for [a = 1:n_accels] {
 }
 number(name) = sum [a = 1:n_accels] (word(accels, a) eq name ? a : 0)
 row_of(name) = number(name) ? row[number(name)] : NaN
-paint(group, winner) = winner eq "yes" ? 0xd55e00 : strstrt(group, among) == 1 ? 0x56b4e9 : 0x9a9a9a
+paint(best) = best ? 0xd55e00 : strcol("group") eq among || strcol("below") ne "" ? 0x56b4e9 : 0x9a9a9a
 here(s) = strcol("scene") eq word(scenes, s)
 figure_of(s, column_name) = here(s) ? column(column_name) : NaN
 at(s) = here(s) ? row_of(strcol("accel")) : NaN
 least_of(a, b) = a < b ? a : b
 most_of(a, b) = a > b ? a : b
-bold(winner, text) = winner eq "yes" ? "{/:Bold ".text."}" : text
 
-left = 164.0; gap = 14.0; line = 17.0; head = 44.0; foot = 30.0; top = 16.0
+left = 130.0; gap = 14.0; line = 17.0; head = 44.0; foot = 30.0; top = 34.0
 panel_height = line * rows
 panel_width = (960 - left) / n_scenes
 
@@ -38,24 +37,31 @@ names = "do for [a = 1:n_accels] { set label 100 + a word(accels, a) at graph -0
 do for [i = 1:words(headings) / 2] { set label 200 + i word(groups, int(word(headings, 2 * i - 1))) at screen 6.0 / 960, first int(word(headings, 2 * i)) \
 left font ',11' textcolor rgb soft }"
 
-legend = "set label 11 among at screen 0.52, screen 1 - 18.0 / height left font ',12' textcolor rgb '#3a9fd8'; \
-set label 12 '{/:Bold the one that helps most}' at screen 0.635, screen 1 - 18.0 / height left font ',12' textcolor rgb '#d55e00'; \
-set label 13 'pale: wide alone' at screen 0.995, screen 1 - 18.0 / height right font ',12' textcolor rgb soft"
+legend = "set label 11 'the six classic accelerators' at screen 6.0 / 960, screen 1 - 12.0 / height left font ',12' textcolor rgb '#3a9fd8'; \
+set label 12 '{/:Bold the best of the four structures}' at screen 0.22, screen 1 - 12.0 / height left font ',12' textcolor rgb '#d55e00'; \
+set label 13 'pale: what wide alone reaches; in brackets: gain over wide' at screen 0.995, screen 1 - 12.0 / height right font ',12' textcolor rgb soft"
 
 # ---- a whole frame: speedup, and reduction in object tests ----
 
 n_metrics = 2
 array metric[2] = ["times_faster", "times_fewer"]
 array gain[2] = ["gain", "tests_gain"]
-array spare[2] = [2.7, 1.5]
+# Pixels of the columns at the right, and of a figure behind a bar.
+array columns[2] = [90, 44]; figure_width = 70
 whole(s, m) = figure_of(s, metric[m])
 below(s, m) = figure_of(s, metric[m]) / column(gain[m])
 array title[2] = ["A whole frame: how many times faster than ".without.", log scale", "How many times fewer object tests than ".without.", log scale"]
-array least[2]; array most[2]
+array least[2]; array most[2]; array best[2 * n_scenes]
 do for [m = 1:n_metrics] {
   stats "frame.csv" using (column(metric[m])) nooutput
-  least[m] = STATS_min; most[m] = STATS_max
+  least[m] = least_of(1, STATS_min); most[m] = STATS_max
+  do for [s = 1:n_scenes] {
+    stats "frame.csv" using (here(s) && strcol("group") eq among ? column(metric[m]) : NaN) nooutput
+    best[2 * s - 2 + m] = STATS_max
+  }
 }
+is_best(s, m) = strcol("group") eq among && column(metric[m]) == best[2 * s - 2 + m]
+label(s, m) = figure(whole(s, m)).(strcol("below") ne "" ? " (".figure(column(gain[m])).")" : "")
 block = head + panel_height + foot
 height = top + n_metrics * block
 eval canvas("frame", 960, height)
@@ -65,12 +71,13 @@ set format x "10^{%T}"
 set yrange [rows + 0.7 : 0.3]
 unset ytics
 set grid xtics noytics
-set xtics scale 0.4 offset 0, 0.4 font ",11"
+set border 1
+set xtics scale 0.4 offset 0, 0.4 font ",10"
 do for [m = 1:n_metrics] {
-  highest = most[m]; lowest = least[m] < 0.5 ? least[m] : 0.5
-  # Space for the figure after a bar, and for the columns at the right.
-  set xrange [lowest : highest * (highest / lowest) ** spare[m]]
-  set xtics 1, 100, highest
+  lowest = least[m]
+  last = lowest * (most[m] / lowest) ** ((panel_width - gap) / (panel_width - gap - columns[m] - figure_width))
+  set xrange [lowest : last]
+  set xtics 1, 10, 10 ** ceil(log10(most[m]))
   do for [s = 1:n_scenes] {
     unset label
     set lmargin at screen (left + (s - 1) * panel_width) / 960
@@ -83,20 +90,18 @@ do for [m = 1:n_metrics] {
       if (m == 1) { eval legend }
     }
     set label 2 word(scenes, s) at graph 0, graph 1 left offset 0, 0.7 font ",14" textcolor rgb ink
-    set label 3 (m == 1 ? "ms" : "") at graph 0.82, graph 1 right offset 0, 0.7 font ",11" textcolor rgb soft
+    set label 3 (m == 1 ? "ms" : "") at graph 0.79, graph 1 right offset 0, 0.7 font ",11" textcolor rgb soft
     set label 4 (m == 1 ? "build ms" : "million tests") at graph 1, graph 1 right offset 0, 0.7 font ",11" textcolor rgb soft
-    last = highest * (highest / lowest) ** spare[m]
     # The gain of the accelerator below an overlay, then that of the overlay: logarithms add.
     plot "frame.csv" using (least_of(1, below(s, m))):(at(s)):(least_of(1, below(s, m))):(most_of(1, below(s, m))):(at(s) - 0.36):(at(s) + 0.36) \
            with boxxyerror linecolor rgb faint, \
          "" using (least_of(whole(s, m), below(s, m))):(at(s)):(least_of(whole(s, m), below(s, m))):(most_of(whole(s, m), below(s, m))): \
-           (at(s) - 0.36):(at(s) + 0.36):(paint(strcol("group"), m == 1 ? strcol("winner") : "no")) with boxxyerror linecolor rgb variable, \
-         "" using (most_of(1, most_of(whole(s, m), below(s, m)))):(at(s)):(here(s) ? bold(m == 1 ? strcol("winner") : "no", figure(whole(s, m)). \
-           " ×".(m == 1 && strcol("winner") eq "yes" ? " helps most" : strcol("below") ne "" ? " (".strcol("below")." × ".figure(column(gain[m])).")" : "")) : "") \
+           (at(s) - 0.36):(at(s) + 0.36):(paint(is_best(s, m))) with boxxyerror linecolor rgb variable, \
+         "" using (most_of(1, most_of(whole(s, m), below(s, m)))):(at(s)):(here(s) ? is_best(s, m) ? "{/:Bold ".label(s, m)."}" : label(s, m) : "") \
            with labels left offset 0.4, 0 font ",11" textcolor rgb ink, \
          "" using (here(s) ? last : NaN):(at(s)):(here(s) ? figure(m == 1 ? column("build_ms") : 1e-6 * column("object_tests")) : "") \
            with labels right font ",11" textcolor rgb soft, \
-         "" using (here(s) && m == 1 ? lowest * (last / lowest) ** 0.82 : NaN):(at(s)):(here(s) ? figure(column("ms")) : "") \
+         "" using (here(s) && m == 1 ? lowest * (last / lowest) ** 0.79 : NaN):(at(s)):(here(s) ? figure(column("ms")) : "") \
            with labels right font ",11" textcolor rgb soft
   }
 }
