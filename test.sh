@@ -39,9 +39,9 @@ case "${1-}" in
     build release -DRT_KERNELS=all -DRT_WERROR=ON
     run_tests release
     build clang -DRT_WERROR=ON
-    run_tests clang -LE 'tree|once|slow' -E '^(builds|conformance|frames)$'
+    run_tests clang -LE 'tree|once|slow' -E '^(builds|compare|conformance|frames|merge|result_directory|test_cli)$'
     build debug -DRT_KERNELS=native
-    RT_RAYS=16 run_tests debug -LE 'tree|slow' -E '^(check_counts|frames|path)$' # golden counts are of all kernels
+    RT_RAYS=16 run_tests debug -LE 'tree|once|slow' -E '^(check_counts|frames|path)$' # golden counts are of all kernels
     targets=thread_tests build tsan
     run_tests tsan -L threads
     ;;

@@ -6,26 +6,26 @@
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
 
-status=0
-list=$(tr '\n' ' ' <CMakeLists.txt)
-while read -r path; do
-    pattern="(^|[[:space:](])${path//./\\.}([[:space:])]|\$)"
-    case $path in
-    tests/*/test_*)
-        name=${path##*/test_} directory=${path#tests/} directory=${directory%%/*}
-        pattern="raytally_tests\\($directory[[:space:]]+([^)]*[[:space:]])?${name%.c}([[:space:])])"
-        ;;
-    esac
-    grep -qE "$pattern" <<<"$list" || {
-        echo "$path: not in CMakeLists.txt"
-        status=1
-    }
-done < <(find src accel scenes tests -name '*.c' | sort)
-while read -r path; do
-    head -n 2 "$path" | grep -q 'SPDX-License-Identifier: Apache-2.0' || {
-        echo "$path: no SPDX line"
-        status=1
-    }
-done < <(find . -name build -prune -o \( -name '*.[ch]' -o -name '*.sh' -o -name '*.gp' -o -name '*.cmake' -o -name CMakeLists.txt \) -print |
-    grep -v '^\./results/' | sort)
-exit $status
+unlisted() {
+    find src accel scenes tests -name '*.c' | sort | awk '
+        FNR == NR {
+            gsub(/[()]/, " & ")
+            for (i = 1; i <= NF; i++) {
+                if ($i == ")") tests = ""
+                else if ($(i - 1) == "(" && $(i - 2) == "raytally_tests") tests = "tests/" $i "/test_"
+                else listed[tests ? tests $i ".c" : $i]
+            }
+            next
+        }
+        !($0 in listed) { print $0 ": not in CMakeLists.txt" }' CMakeLists.txt -
+}
+
+unlicensed() {
+    find . -name build -prune -o \( -name '*.[ch]' -o -name '*.sh' -o -name '*.gp' -o -name '*.cmake' -o -name CMakeLists.txt \) -print |
+        grep -v '^\./results/' | sort | xargs awk '
+            FNR <= 2 && /SPDX-License-Identifier: Apache-2.0/ { states[FILENAME] }
+            END { for (i = 1; i < ARGC; i++) if (!(ARGV[i] in states)) print ARGV[i] ": no SPDX line" }'
+}
+
+failed=$(unlisted && unlicensed)
+[ -z "$failed" ] || { echo "$failed" && exit 1; }

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # check_verify.sh [RAYS]: every accelerator traces RAYS hard rays on each family of scenes, more than five million
-# in all, without a wrong answer; wrong ones are left in verify-failures/ to be replayed. Takes some three
+# in all, without a wrong answer; wrong ones are left in verify-failures/ to be replayed. Takes some two
 # minutes on two cores: once, with the release build, is enough. Uses $RT_PROGRAM.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 program=${RT_PROGRAM:-build/release/raytally}
-rays=${1:-160000}
+rays=${1:-125000}
 table=$(mktemp) && trap 'rm -f "$table"' EXIT
 
 "$program" verify families --rays "$rays" --json >"$table" || {
