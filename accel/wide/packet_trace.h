@@ -2,7 +2,8 @@
 /* The traversal of packets. At a node the active rays of a packet are tested one after the other, each
  * against all children at once, and each child gets the set of rays that meet it. So the rays share the loads
  * of the node and the work on the stack. A beam that meets few of the children is tested in place of its
- * rays. This is the stream tracing of Wald, Gribble, Boulos & Kensler 2007
+ * rays; rays for any hit, which need no order, are then tested in lanes, against those children alone. This
+ * is the stream tracing of Wald, Gribble, Boulos & Kensler 2007
  * ("SIMD Ray Stream Tracing"), with sets as bits in place of lists.
  *
  * A single packet would wait for each node to come from memory. So several are interleaved: while one waits
@@ -12,8 +13,8 @@
 
 #include "accel/wide/packet_leaf.h"
 
-/* A beam is tested in place of its rays if at least so many are active. The result is used if it meets at
- * most so many children; otherwise its rays would visit too many children that they miss. */
+/* A beam is tested in place of its rays if at least so many are active. For nearest hits the result is used
+ * if it meets at most so many children; otherwise its rays would visit too many children that they miss. */
 enum { BEAM_LEAST_RAYS = 8, BEAM_MOST_CHILDREN = 3 };
 
 /* How much the rays share their visits. */
@@ -34,8 +35,7 @@ typedef struct ChildSets {
     RtFloat8 first;
 } ChildSets;
 
-RT_KERNEL void add_rays(ChildSets *met, uint64_t rays, RtFloat8 near, RtFloat8 far) {
-    RtMask8 mask = rt_le_mask8(near, far);
+RT_KERNEL void add_rays(ChildSets *met, uint64_t rays, RtFloat8 near, RtMask8 mask) {
     rt_sets8_add(&met->rays, mask, rays);
     met->first = rt_select_mask8(mask, rt_min(near, met->first), met->first);
 }
@@ -46,20 +46,66 @@ RT_KERNEL void test_ray(ChildSets *met, const Planes *planes, const Packet *p, u
         near = rt_max((planes->enter[a] - p->org_near[a][i]) * p->inv[a][i], near);
         far = rt_min((planes->leave[a] - p->org_far[a][i]) * p->inv[a][i], far);
     }
-    add_rays(met, one_ray(i), near, far);
+    add_rays(met, one_ray(i), near, rt_le_mask8(near, far));
 }
 
-/* False if the rays must be tested one by one. */
-RT_KERNEL bool test_beam(ChildSets *met, const Planes *planes, const Beam *beam, uint64_t rays) {
-    RtFloat8 near = rt_all8(beam->tmin), far = rt_all8(beam->limit);
+/* The children that rays of a beam may hit; *near: where the first of them may enter each. */
+RT_KERNEL RtMask8 test_beam(const Planes *planes, const Beam *beam, RtFloat8 *near) {
+    RtFloat8 far = rt_all8(beam->limit);
+    *near = rt_all8(beam->tmin);
     for (uint32_t a = 0; a < 3; a++) {
         float least = beam->inv_least[a], most = beam->inv_most[a];
         RtFloat8 enter = planes->enter[a] - beam->first[a], leave = planes->leave[a] - beam->last[a];
-        near = rt_max(rt_min(enter * least, enter * most), near);
+        *near = rt_max(rt_min(enter * least, enter * most), *near);
         far = rt_min(rt_max(leave * least, leave * most), far);
     }
-    if (__builtin_popcount(rt_le_bits(near, far)) > BEAM_MOST_CHILDREN) return false;
-    add_rays(met, rays, near, far);
+    return rt_le_mask8(*near, far);
+}
+
+RT_KERNEL RtFloats plane_of(const RtWideNode *node, uint32_t offset, uint32_t child) {
+    float plane;
+    memcpy(&plane, (const char *)node + offset + child * sizeof plane, sizeof plane);
+    return rt_all(plane);
+}
+
+/* Rays of beam b against one child after the other, RT_LANES rays at a time. */
+RT_KERNEL void test_lanes(RtSets8 *met, const Packet *p, const RtWideNode *node, uint32_t b, uint64_t rays,
+                          uint32_t children) {
+    for (; children; children &= children - 1) {
+        const uint32_t child = (uint32_t)__builtin_ctz(children);
+        uint64_t hit = 0;
+        for (size_t i = first_of(b); i < first_of(b) + BEAM; i += RT_LANES) {
+            RtFloats near = rt_load(&p->tmin[i]), far = rt_load(&p->limit[i]);
+            for (uint32_t a = 0; a < 3; a++) {
+                const RtFloats inv = rt_load(&p->inv[a][i]);
+                RtFloats enter = plane_of(node, p->near[a], child) - rt_load(&p->org_near[a][i]);
+                RtFloats leave = plane_of(node, p->far[a], child) - rt_load(&p->org_far[a][i]);
+                near = rt_max(enter * inv, near);
+                far = rt_min(leave * inv, far);
+            }
+            hit |= (uint64_t)rt_le_bits(near, far) << i;
+        }
+        rt_sets8_add(met, rt_one_mask8(child), hit & rays);
+    }
+}
+
+/* Tests rays of beam b together. False if they must be tested one by one. */
+RT_KERNEL bool test_together(ChildSets *met, const Planes *planes, const Packet *p, const RtWideNode *node,
+                             uint32_t b, uint64_t rays, bool any) {
+    const Beam *beam = &p->beam[b];
+    if (!any && !beam->tight) return false;
+    const uint32_t active = (uint32_t)__builtin_popcountll(rays);
+    if (active < BEAM_LEAST_RAYS) return false;
+    RtFloat8 near;
+    RtMask8 mask = test_beam(planes, beam, &near);
+    if (!any) {
+        if (__builtin_popcount(rt_mask8_bits(mask)) > BEAM_MOST_CHILDREN) return false;
+        add_rays(met, rays, near, mask);
+        return true;
+    }
+    const uint32_t children = beam->tight ? rt_mask8_bits(mask) : (1u << node->count) - 1;
+    if ((uint32_t)__builtin_popcount(children) * (BEAM / RT_LANES) >= active) return false;
+    test_lanes(&met->rays, p, node, b, rays, children);
     return true;
 }
 
@@ -74,8 +120,7 @@ RT_KERNEL bool visit_node(Packet *p, const RtWideNode *node, uint64_t rays, bool
     uint64_t alone = rays;
     for (uint32_t b = 0; b < BEAMS; b++) {
         uint64_t some = rays & UINT64_C(0xffff) << b * BEAM;
-        if (!p->beam[b].tight || __builtin_popcountll(some) < BEAM_LEAST_RAYS) continue;
-        if (test_beam(&met, &sides, &p->beam[b], some)) alone &= ~some;
+        if (test_together(&met, &sides, p, node, b, some, any)) alone &= ~some;
     }
     for (; alone; alone &= alone - 1) test_ray(&met, &sides, p, first_ray(alone));
 

@@ -53,7 +53,8 @@ RT_INLINE void rt_compress_store(uint32_t *at, uint32_t bits, RtInts a) {
 
 /* ---- eight lanes whose mask stays as the machine makes it, and eight sets of up to sixty-four ---- */
 
-/* rt_le_mask8: where a <= b; rt_select_mask8(mask, a, b): a there, else b.
+/* rt_le_mask8: where a <= b; rt_mask8_bits: the same as bits; rt_one_mask8: lane i alone;
+ * rt_select_mask8(mask, a, b): a there, else b;
  * rt_sets8_add: adds members to the sets of a mask; rt_sets8_bits: bit i: set i is not empty;
  * rt_sets8_compress: the sets of some bits, in order, to at[0..8). */
 #if RT_AVX512
@@ -61,6 +62,12 @@ typedef __mmask8 RtMask8;
 typedef RtLong8 RtSets8;
 RT_INLINE RtMask8 rt_le_mask8(RtFloat8 a, RtFloat8 b) {
     return _mm256_cmp_ps_mask(a, b, _CMP_LE_OQ);
+}
+RT_INLINE uint32_t rt_mask8_bits(RtMask8 mask) {
+    return mask;
+}
+RT_INLINE RtMask8 rt_one_mask8(uint32_t i) {
+    return (RtMask8)(1u << i);
 }
 RT_INLINE RtFloat8 rt_select_mask8(RtMask8 mask, RtFloat8 a, RtFloat8 b) {
     return _mm256_mask_mov_ps(b, mask, a);
@@ -82,6 +89,12 @@ typedef struct RtSets8 {
 } RtSets8;
 RT_INLINE RtMask8 rt_le_mask8(RtFloat8 a, RtFloat8 b) {
     return a <= b;
+}
+RT_INLINE uint32_t rt_mask8_bits(RtMask8 mask) {
+    return rt_bits_int8(mask);
+}
+RT_INLINE RtMask8 rt_one_mask8(uint32_t i) {
+    return (RtInt8){0, 1, 2, 3, 4, 5, 6, 7} == (int32_t)i;
 }
 RT_INLINE RtFloat8 rt_select_mask8(RtMask8 mask, RtFloat8 a, RtFloat8 b) {
     return rt_select(mask, a, b);
