@@ -19,7 +19,8 @@
     X(RT_OCTREE_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("1", 1, 1e6, "2|1000000"),                            \
       "a cell with at most this many objects is not divided", "Havran 1999, RTN 12(2)")                      \
     X(RT_OCTREE_MAX_DEPTH, "max_depth", RT_INT("-1", -1, RT_OCTREE_DEPTH_LIMIT, "0|4|6"),                    \
-      "largest depth of a leaf, the root's being 0; -1: two more than that of one cell per object",          \
+      "largest depth of a leaf, the root's being 0; -1: two levels deeper than a full tree with a leaf per " \
+      "object",                                                                                              \
       "the best depths of Havran 1999: 5 to 7 for 8000 objects")                                             \
     X(RT_OCTREE_SPLIT, "split", RT_CHOICE("centre", "centre|cost"),                                          \
       "split planes: through the centre, or the cheapest of eleven per axis", "Glassner 1984")               \

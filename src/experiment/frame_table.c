@@ -153,14 +153,16 @@ static const char *below_label(const Row *r) {
       1e3 * rt_build_at(r->results, r->workload, r->candidate)->seconds)                                     \
     X(primary_faster, "primary_faster", real6, "", "times_faster of the primary rays alone",                 \
       faster(r, RT_FRAME_PRIMARY))                                                                           \
-    X(shadow_faster, "shadow_faster", real6, "", "of the shadow rays", faster(r, RT_FRAME_SHADOW))           \
-    X(secondary_faster, "secondary_faster", real6, "", "of reflection and transmission rays",                \
-      faster(r, RT_FRAME_SECONDARY))                                                                         \
+    X(shadow_faster, "shadow_faster", real6, "", "times_faster of the shadow rays alone",                    \
+      faster(r, RT_FRAME_SHADOW))                                                                            \
+    X(secondary_faster, "secondary_faster", real6, "",                                                       \
+      "times_faster of reflection and transmission rays alone", faster(r, RT_FRAME_SECONDARY))               \
     X(below, "below", text, "", "for an overlay: the accelerator below it, if that is measured too",         \
       below_label(r))                                                                                        \
     X(gain, "gain", real6, "", "times_faster; for an overlay, relative to the accelerator below it",         \
       r->gain)                                                                                               \
-    X(tests_gain, "tests_gain", real6, "", "the same for times_fewer", r->tests_gain)                        \
+    X(tests_gain, "tests_gain", real6, "",                                                                   \
+      "times_fewer; for an overlay, relative to the accelerator below it", r->tests_gain)                    \
     X(winner, "winner", flag, "", "whether its gain is the largest of the compared accelerators",            \
       rt_field_flag(r->candidate == r->winner))                                                              \
     X(eye_label, "  accelerator", text, "", "> marks the fastest of those compared", label_of(r))            \
