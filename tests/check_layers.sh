@@ -41,5 +41,7 @@ knows_accelerators() {
     grep -rnE "$opens$spec" src --include='*.[ch]' || true
 }
 
-wrong=$(includes_upward && knows_accelerators)
-[ -z "$wrong" ] || { echo "$wrong" && exit 1; }
+upward=$(includes_upward) known=$(knows_accelerators)
+[ -z "$upward" ] || printf 'includes a header of a directory above its own (the order: %s):\n%s\n' "$rooms" "$upward"
+[ -z "$known" ] || printf 'names an accelerator (if it is another word here, add it to knows_accelerators in %s):\n%s\n' "$0" "$known"
+[ -z "$upward$known" ]

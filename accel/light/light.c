@@ -9,8 +9,8 @@
  * Every object is opaque: shadow rays are blocked by whatever they meet, transmission or not (rt_shadow_ray
  * in render/illumination.c and its caller attenuate nothing). So any shape that fills a cell can cover it.
  *
- * Exact: every object is tested by its own hit function, or the same in lanes (accel/pairs.h); lists hold
- * more than needed rather than less (footprint.c). Passed on are also rays that are not exactly what a shadow
+ * Exact: every object is tested by its own hit function, or the same in lanes (light_pairs.h); lists hold
+ * more than needed rather than less (light_footprint.c). Passed on are also rays that are not exactly what a shadow
  * ray is: from inside the domain, dir = light - origin, tmax at most 1. */
 #include "accel/light/light.h"
 

@@ -54,11 +54,11 @@ typedef struct RtCellHardware {
 
 typedef struct RtCell {
     bool counted, timed;
-    /* The limit that it would exceed, or how it is `broken`: it is not measured; else "". */
+    /* Why it is not measured: the limit that it would exceed, or how it is `broken`; else "". */
     char limit[RT_MAX_LIMIT];
     bool broken;                   /* a plugin's fault */
     RtTally tally;                 /* tally.rays: of the thinned set */
-    uint64_t differ;               /* answers unlike the baseline's; 0 for exact accelerators */
+    uint64_t differ;               /* answers that differ from the reference's; 0 for exact accelerators */
     RtDistribution *distributions; /* [RT_RAY_QUANTITY_COUNT] owned; NULL: not asked for */
     uint32_t rounds;
     int threads;        /* of the timing */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* experiment/workload_hardware.c and hardware_table.h: what the machine did for the rays of cells. Where a
+/* experiment/workload_hardware.c: what the machine did for the rays of cells. Where a
  * test asks for it the linker's wrappers count rays in the place of the processor's events, so that what is
  * expected depends on no machine, its load or its kernel. */
 #include "testing.h"

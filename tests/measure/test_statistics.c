@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* experiments/statistics: the median, its interval, and ratios paired within a round. */
+/* measure/statistics.h: the median, its interval, and ratios paired within a round. */
 #include "testing.h"
 
 #include "measure/statistics.h"

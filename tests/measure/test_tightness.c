@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* experiments/tightness: known ratios of projected areas are found, within their intervals. By Cauchy the
+/* measure/tightness.h: known ratios of projected areas are found, within their intervals. By Cauchy the
  * mean projected area of a convex body is a quarter of its surface; of a flat one half its area. */
 #include "testing.h"
 
