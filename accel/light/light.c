@@ -10,8 +10,8 @@
  * in render/illumination.c and its caller attenuate nothing). So any shape that fills a cell can cover it.
  *
  * Exact: every object is tested by its own hit function, or the same in lanes (light_pairs.h); lists hold
- * more than needed rather than less (light_footprint.c). Passed on are also rays that are not exactly what a shadow
- * ray is: from inside the domain, dir = light - origin, tmax at most 1. */
+ * more than needed rather than less (light_footprint.c). Passed on are also rays that are not exactly what a
+ * shadow ray is: from inside the domain, dir = light - origin, tmax at most 1. */
 #include "accel/light/light.h"
 
 const RtAccelOps rt_light_ops = {

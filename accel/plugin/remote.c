@@ -20,12 +20,12 @@ typedef struct Remote {
     RtWatched child;
     int pipe_end; /* the process ends when this is closed */
     RtDescription description;
-    bool used[LANES];       /* by queries, under child.lock; lane 0 by none */
-    pthread_mutex_t master; /* of lane 0 */
+    bool used[CHANNELS];    /* by queries, under child.lock; channel 0 by none */
+    pthread_mutex_t master; /* of channel 0 */
 } Remote;
 
 typedef struct RemoteQuery {
-    uint32_t lane;
+    uint32_t channel;
     bool begin; /* rt_query_begin was called since the last request */
 } RemoteQuery;
 
@@ -56,7 +56,7 @@ void rt_remote_break(const RtAccel *accel, const char *what, const char *doing) 
 
 typedef struct Request {
     WireWork *work;
-    void *message; /* changes only if there is an answer; NULL: it lies in the lane */
+    void *message; /* changes only if there is an answer; NULL: it lies in the channel */
     size_t bytes;
     const RtRay *rays; /* [ray_count] */
     size_t ray_count;
@@ -66,17 +66,17 @@ typedef struct Request {
 
 /* False if the accelerator is broken, or breaks now. */
 static bool request(Remote *remote, uint32_t number, const Request *r) {
-    Lane *lane = &remote->child.wire->lanes[number];
+    Channel *channel = &remote->child.wire->channels[number];
     if (remote->child.broken) return false;
-    if (r->message) memcpy(lane->message, r->message, r->bytes);
-    if (r->ray_count) memcpy(rt_wire_rays(lane->message, r->bytes), r->rays, r->ray_count * sizeof(RtRay));
-    lane->work = r->work;
-    lane->bytes = r->bytes;
-    lane->rays = r->ray_count;
-    lane->begin = r->begin;
-    rt_futex_set(&lane->asked, ++remote->child.asked[number]);
+    if (r->message) memcpy(channel->message, r->message, r->bytes);
+    if (r->ray_count) memcpy(rt_wire_rays(channel->message, r->bytes), r->rays, r->ray_count * sizeof(RtRay));
+    channel->work = r->work;
+    channel->bytes = r->bytes;
+    channel->rays = r->ray_count;
+    channel->begin = r->begin;
+    rt_futex_set(&channel->asked, ++remote->child.asked[number]);
     if (!rt_watched_wait(&remote->child, number, r->doing, remote->child.time_limit)) return false;
-    if (r->message) memcpy(r->message, lane->message, r->bytes);
+    if (r->message) memcpy(r->message, channel->message, r->bytes);
     return true;
 }
 
@@ -100,7 +100,7 @@ static RtStatus fail_broken(const Remote *remote, RtError *error) {
     return RT_BROKEN;
 }
 
-/* A request to lane 0 whose message is a WireChecked. */
+/* A request to channel 0 whose message is a WireChecked. */
 static RtStatus request_check(Remote *remote, WireWork *work, WireChecked *message, const char *doing,
                               RtError *error) {
     if (!request_master(remote, work, message, sizeof *message, doing)) return fail_broken(remote, error);
@@ -116,7 +116,7 @@ void rt_remote_do(RtQuery *query, RtRemoteWork *work, const RtRay *rays, size_t 
         return;
     }
     RemoteQuery *own = query->scratch[0].own;
-    request(of(query->accel), own->lane,
+    request(of(query->accel), own->channel,
             &(Request){work, message, bytes, rays, count, own->begin, "it was traced"});
     own->begin = false;
 }
@@ -130,7 +130,7 @@ static RtStatus start(Remote *remote, const RtSpec *spec, int threads, RtError *
     if (wire == MAP_FAILED) return rt_fail_memory(error, "memory shared with a plugin", sizeof(Wire));
     remote->child.wire = wire;
     remote->child.asked[0] = WIRE_BUILD;
-    wire->lanes[0].asked = WIRE_BUILD;
+    wire->channels[0].asked = WIRE_BUILD;
     if (pipe2(ends, O_CLOEXEC) != 0) return rt_fail(error, RT_IO, "a pipe: %s", strerror(errno));
     RtStatus status = rt_process_fork(&remote->child.process, ends[0], error);
     if (status == RT_OK && remote->child.process.pid == 0)
@@ -148,7 +148,7 @@ static RtStatus take_built(Remote *remote, RtError *error) {
              rt_plural(remote->base.scene->geometry.object_count));
     if (!rt_watched_wait(&remote->child, 0, doing, 10 * remote->child.time_limit))
         return fail_broken(remote, error);
-    memcpy(&built, remote->child.wire->lanes[0].message, sizeof built);
+    memcpy(&built, remote->child.wire->channels[0].message, sizeof built);
     if (built.status != RT_OK) return forward(built.status, "", &built.error, error);
     remote->base.exact = built.exact != 0;
     remote->base.counts = built.counts != 0;
@@ -211,35 +211,35 @@ static size_t scratch_bytes(const RtAccel *accel) {
     return sizeof(RemoteQuery);
 }
 
-static void release_lane(Remote *remote, uint32_t lane) {
+static void release_channel(Remote *remote, uint32_t channel) {
     pthread_mutex_lock(&remote->child.lock);
-    remote->used[lane] = false;
+    remote->used[channel] = false;
     pthread_mutex_unlock(&remote->child.lock);
 }
 
 static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) {
     Remote *remote = of(accel);
-    uint32_t lane = 1;
+    uint32_t channel = 1;
     pthread_mutex_lock(&remote->child.lock);
-    while (lane < LANES && remote->used[lane]) lane++;
-    if (lane < LANES) remote->used[lane] = true;
+    while (channel < CHANNELS && remote->used[channel]) channel++;
+    if (channel < CHANNELS) remote->used[channel] = true;
     pthread_mutex_unlock(&remote->child.lock);
-    if (lane == LANES)
+    if (channel == CHANNELS)
         return rt_fail(error, RT_BAD_INPUT, "%s: a plugin traces on at most %d threads", remote->child.name,
-                       LANES - 1);
-    ((RemoteQuery *)scratch)->lane = lane;
-    WireChecked message = {.lane = lane, .done = remote->child.asked[lane]};
+                       CHANNELS - 1);
+    ((RemoteQuery *)scratch)->channel = channel;
+    WireChecked message = {.channel = channel, .done = remote->child.asked[channel]};
     RtStatus status = request_check(remote, rt_wire_open, &message, "a query was opened", error);
     if (status == RT_OK) return RT_OK;
-    release_lane(remote, lane);
+    release_channel(remote, channel);
     if (status != RT_BROKEN) forward(RT_BROKEN, remote->child.name, &message.error, error);
     return RT_BROKEN;
 }
 
 static void close_query(const RtAccel *accel, void *scratch) {
     const RemoteQuery *query = scratch;
-    request(of(accel), query->lane, &(Request){.doing = "a query was closed"});
-    release_lane(of(accel), query->lane);
+    request(of(accel), query->channel, &(Request){.doing = "a query was closed"});
+    release_channel(of(accel), query->channel);
 }
 
 static void begin(const RtAccel *accel, void *scratch) {
@@ -254,7 +254,7 @@ static void trace_part(const RtAccel *accel, const RtScratch *scratch, const RtR
                        bool any, RtHit *hits, RtTally *tallies) {
     Remote *remote = of(accel);
     RemoteQuery *query = scratch->own;
-    WireRays *message = (WireRays *)remote->child.wire->lanes[query->lane].message;
+    WireRays *message = (WireRays *)remote->child.wire->channels[query->channel].message;
     char doing[64];
     snprintf(doing, sizeof doing, "it answered a stream of %u ray%s", count, rt_plural(count));
     *message = (WireRays){.count = count, .any = any, .counted = tallies != NULL};
@@ -265,7 +265,7 @@ static void trace_part(const RtAccel *accel, const RtScratch *scratch, const RtR
                             .begin = query->begin,
                             .doing = doing};
     query->begin = false;
-    if (!request(remote, query->lane, &traced)) {
+    if (!request(remote, query->channel, &traced)) {
         for (uint32_t i = 0; i < count; i++) hits[i] = RT_MISS;
         return;
     }

@@ -218,41 +218,41 @@ void rt_wire_trace(RtQuery *query, const RtRay *rays, void *message) {
     }
 }
 
-/* ---- lanes ---- */
+/* ---- channels ---- */
 
-/* Answers requests one after the other, on copies in this process's own memory, until the lane is closed
- * (then the query is cleared) or the accelerator is destroyed (lane 0). `done` is the number of the last
+/* Answers requests one after the other, on copies in this process's own memory, until the channel is closed
+ * (then the query is cleared) or the accelerator is destroyed (channel 0). `done` is the number of the last
  * request answered before. A plugin may have changed the rounding mode or flushed denormals, which hit
  * functions must not see. */
-static void serve_lane(Lane *lane, unsigned done, RtQuery *query) {
+static void serve_channel(Channel *channel, unsigned done, RtQuery *query) {
     char *message = rt_alloc_unset(MESSAGE_BYTES, 1);
     if (!message) _exit(EXIT_FAILURE);
     for (bool more = true; more;) {
         unsigned asked;
-        while ((asked = atomic_load_explicit(&lane->asked, memory_order_acquire)) != done + 1)
-            rt_futex_wait(&lane->asked, asked, NULL);
-        WireWork *work = lane->work;
-        size_t bytes = lane->bytes;
+        while ((asked = atomic_load_explicit(&channel->asked, memory_order_acquire)) != done + 1)
+            rt_futex_wait(&channel->asked, asked, NULL);
+        WireWork *work = channel->work;
+        size_t bytes = channel->bytes;
         if (work) {
             RtRay *rays = rt_wire_rays(message, bytes);
-            memcpy(message, lane->message, bytes);
-            memcpy(rays, rt_wire_rays(lane->message, bytes), lane->rays * sizeof(RtRay));
+            memcpy(message, channel->message, bytes);
+            memcpy(rays, rt_wire_rays(channel->message, bytes), channel->rays * sizeof(RtRay));
             fesetenv(FE_DFL_ENV);
-            if (query && lane->begin) rt_query_begin(query);
+            if (query && channel->begin) rt_query_begin(query);
             work(query, rays, message);
-            memcpy(lane->message, message, bytes);
+            memcpy(channel->message, message, bytes);
         } else if (query) {
             rt_query_clear(query);
         }
         more = work && served.accel;
         rt_remote_progress();
-        rt_futex_set(&lane->answered, ++done);
+        rt_futex_set(&channel->answered, ++done);
     }
     rt_free(message);
 }
 
 typedef struct Opening {
-    Lane *lane;
+    Channel *channel;
     unsigned done;
     RtQuery query;
 } Opening;
@@ -261,7 +261,7 @@ static void *serve_query(void *context) {
     Opening opening = *(Opening *)context;
     free(context);
     void *stack = add_signal_stack();
-    serve_lane(opening.lane, opening.done, &opening.query);
+    serve_channel(opening.channel, opening.done, &opening.query);
     remove_signal_stack(stack);
     return NULL;
 }
@@ -278,7 +278,7 @@ void rt_wire_open(RtQuery *query, const RtRay *rays, void *message) {
         free(opening);
         return;
     }
-    opening->lane = &served.wire->lanes[checked->lane];
+    opening->channel = &served.wire->channels[checked->channel];
     opening->done = checked->done;
     pthread_attr_init(&detached);
     pthread_attr_setdetachstate(&detached, PTHREAD_CREATE_DETACHED);
@@ -302,8 +302,8 @@ static void build(const RtSpec *spec, const RtScene *scene, int threads) {
         built.seconds = served.accel->build_seconds;
         rt_accel_describe(served.accel, &built.description);
     }
-    memcpy(served.wire->lanes[0].message, &built, sizeof built);
-    rt_futex_set(&served.wire->lanes[0].answered, WIRE_BUILD);
+    memcpy(served.wire->channels[0].message, &built, sizeof built);
+    rt_futex_set(&served.wire->channels[0].answered, WIRE_BUILD);
 }
 
 void rt_wire_serve(Wire *wire, const RtSpec *spec, const RtScene *scene, int threads) {
@@ -318,6 +318,6 @@ void rt_wire_serve(Wire *wire, const RtSpec *spec, const RtScene *scene, int thr
         _exit(EXIT_FAILURE); /* it would outlive raytally */
     wait_for_debugger();
     build(spec, scene, threads);
-    if (served.accel) serve_lane(&wire->lanes[0], WIRE_BUILD, NULL);
+    if (served.accel) serve_channel(&wire->channels[0], WIRE_BUILD, NULL);
     _exit(EXIT_SUCCESS);
 }

@@ -48,10 +48,10 @@ static void end_hung(RtWatched *child, const char *doing, double limit) {
     set_broken(child, what, doing, true);
 }
 
-/* Whether the plugin overwrote the words of a lane, whose values are always known. */
+/* Whether the plugin overwrote the words of a channel, whose values are always known. */
 static bool is_overwritten(const RtWatched *child, uint32_t number, unsigned answered) {
     const unsigned asked = child->asked[number];
-    return child->wire->lanes[number].asked != asked || (answered != asked && answered != asked - 1);
+    return child->wire->channels[number].asked != asked || (answered != asked && answered != asked - 1);
 }
 
 /* Ends a process that overwrote shared memory or hangs. Returns whether the accelerator is broken. */
@@ -80,7 +80,7 @@ static bool check_process(RtWatched *child, const char *doing, bool overwritten,
 /* Each pause counts for at most a second: both processes may have been stopped. */
 bool rt_watched_wait(RtWatched *child, uint32_t number, const char *doing, double limit) {
     const struct timespec some = {.tv_nsec = 50000000};
-    atomic_uint *answered = &child->wire->lanes[number].answered;
+    atomic_uint *answered = &child->wire->channels[number].answered;
     unsigned long progress = child->wire->progress;
     double last = rt_wall_seconds(), waited = 0;
     for (;;) {

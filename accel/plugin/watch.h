@@ -12,10 +12,10 @@ typedef struct RtWatched {
     char name[RT_MAX_SPEC_CHARS]; /* for messages */
     Wire *wire;
     RtProcess process;
-    double time_limit;     /* seconds without progress after which it counts as hung */
-    unsigned asked[LANES]; /* number of the last request on each lane */
-    pthread_mutex_t lock;  /* of the following members */
-    atomic_bool broken;    /* error says why */
+    double time_limit;        /* seconds without progress after which it counts as hung */
+    unsigned asked[CHANNELS]; /* number of the last request on each channel */
+    pthread_mutex_t lock;     /* of the following members */
+    atomic_bool broken;       /* error says why */
     bool ended;
     RtError error;
 } RtWatched;
@@ -23,8 +23,8 @@ typedef struct RtWatched {
 /* Marks it as broken: `what` was found wrong while it did `doing`. Only the first failure is kept. */
 void rt_watched_break(RtWatched *child, const char *what, const char *doing);
 
-/* Waits for the answer to the last request on a lane. False if none will come, because the process ended,
+/* Waits for the answer to the last request on a channel. False if none will come, because the process ended,
  * overwrote shared memory, or made no progress for `limit` seconds: then it is broken, and has ended. */
-bool rt_watched_wait(RtWatched *child, uint32_t lane, const char *doing, double limit);
+bool rt_watched_wait(RtWatched *child, uint32_t channel, const char *doing, double limit);
 
 #endif

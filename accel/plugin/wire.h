@@ -2,13 +2,13 @@
 /* The memory that raytally shares with the process of a remote accelerator.
  *
  * The process is a fork, so it has the scene, the code, and every function at the same address. A request is
- * therefore a function, a message and rays: raytally writes them into a lane and sets `asked` to the number
- * of the request; in the process, the lane's thread runs the function on copies, writes the message back, and
- * sets `answered` to the same number. Lane 0 belongs to the main thread of the process: it builds,
- * opens the other lanes, and destroys. Each other lane belongs to one RtQuery.
+ * therefore a function, a message and rays: raytally writes them into a channel and sets `asked` to the
+ * number of the request; in the process, the channel's thread runs the function on copies, writes the message
+ * back, and sets `answered` to the same number. Channel 0 belongs to the main thread of the process: it
+ * builds, opens the other channels, and destroys. Each other channel belongs to one RtQuery.
  *
  * Invariant: a plugin may write anything here at any time. raytally copies what it reads, checks the copy,
- * and reads no bool, size or address from here; what it must know of a lane it keeps in its own memory.
+ * and reads no bool, size or address from here; what it must know of a channel it keeps in its own memory.
  *
  * Threads wait on words of this memory by futexes, not semaphores: an overwritten futex is only a number
  * nobody waits for, whereas the C library aborts on an invalid semaphore. */
@@ -25,19 +25,19 @@
 #include <time.h>
 #include <unistd.h>
 
-/* One more than the most threads. The memory of unused lanes is never touched. */
-enum { LANES = 1 + 1024, MESSAGE_BYTES = RT_REMOTE_BYTES + 1024 };
+/* One more than the most threads. The memory of unused channels is never touched. */
+enum { CHANNELS = 1 + 1024, MESSAGE_BYTES = RT_REMOTE_BYTES + 1024 };
 
-/* A request: called with the lane's query; lane 0 has none. */
+/* A request: called with the channel's query; channel 0 has none. */
 typedef RtRemoteWork WireWork;
 
-typedef struct Lane {
+typedef struct Channel {
     atomic_uint asked, answered; /* number of the last request, and of the last answer */
-    WireWork *work;              /* NULL: closes the lane */
+    WireWork *work;              /* NULL: closes the channel */
     size_t bytes, rays;          /* of the message, and the number of rays after it */
     bool begin;                  /* rt_query_begin comes first */
     _Alignas(64) char message[MESSAGE_BYTES];
-} Lane;
+} Channel;
 
 /* The rays after a message of so many bytes. */
 static inline RtRay *rt_wire_rays(char *message, size_t bytes) {
@@ -55,7 +55,7 @@ typedef struct Crash {
 typedef struct Wire {
     atomic_ulong progress; /* grows while work makes progress */
     Crash crash;
-    Lane lanes[LANES];
+    Channel channels[CHANNELS];
 } Wire;
 
 /* Sleeps while *word is `value`, for at most `most` (NULL: without limit). True if the word may have changed;
@@ -74,7 +74,7 @@ static inline void rt_futex_set(atomic_uint *word, unsigned value) {
  * is a pipe that reads as ended once raytally has ended. */
 _Noreturn void rt_wire_serve(Wire *wire, const RtSpec *spec, const RtScene *scene, int threads);
 
-/* Messages of lane 0. Its first request, to build, has none. */
+/* Messages of channel 0. Its first request, to build, has none. */
 enum { WIRE_BUILD = 1 };
 typedef struct WireBuilt {
     RtStatus status;
@@ -85,7 +85,7 @@ typedef struct WireBuilt {
 } WireBuilt;
 
 typedef struct WireChecked {
-    uint32_t lane, done; /* for rt_wire_open: a lane, and the number of its last request */
+    uint32_t channel, done; /* for rt_wire_open: a channel, and the number of its last request */
     RtStatus status;
     RtError error;
 } WireChecked;
@@ -124,6 +124,6 @@ WireWork rt_wire_trace;
 
 _Static_assert(sizeof(WireBoxes) <= MESSAGE_BYTES &&
                    sizeof(WireRays) + WIRE_RAYS * (sizeof(RtHit) + sizeof(RtRay)) <= RT_REMOTE_BYTES,
-               "messages fit a lane");
+               "messages fit a channel");
 
 #endif

@@ -40,10 +40,10 @@ static void pass_clear(Pass *pass) {
 static RtStatus pass_init(Pass *pass, const RtAccel *accel, const RtRaySet *set, int threads, bool counted,
                           RtError *error) {
     *pass = (Pass){.set = set, .threads = rt_thread_count(threads)};
-    size_t count = set->count, answer = rt_ray_kind_is_occlusion(set->kind) ? sizeof(bool) : sizeof(RtHit);
+    size_t count = set->count, answer = rt_ray_kind_is_any_hit(set->kind) ? sizeof(bool) : sizeof(RtHit);
     pass->queries = rt_alloc((size_t)pass->threads, sizeof *pass->queries);
     if (counted) pass->tallies = rt_alloc((size_t)pass->threads, sizeof *pass->tallies);
-    if (rt_ray_kind_is_occlusion(set->kind)) {
+    if (rt_ray_kind_is_any_hit(set->kind)) {
         pass->blocked = rt_alloc_unset(count, answer);
     } else {
         pass->hits = rt_alloc_unset(count, answer);

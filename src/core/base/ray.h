@@ -51,7 +51,7 @@ typedef enum RtRayKind {
 } RtRayKind;
 
 /* Rays that test for any hit instead of the nearest: `occluded` answers them. */
-static inline bool rt_ray_kind_is_occlusion(RtRayKind kind) {
+static inline bool rt_ray_kind_is_any_hit(RtRayKind kind) {
     return kind == RT_RAY_SHADOW || kind == RT_RAY_OCCLUSION;
 }
 
