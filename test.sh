@@ -13,8 +13,8 @@ run_tests() {
     shift
     say "testing build/$preset"
     rm -f "$report"
-    # One more at a time than there are processors: several tests wait for a browser, a timer or a child.
-    ctest --preset "$preset" -j $(($(nproc) + 1)) --no-tests=error --timeout 900 --output-junit "$report" \
+    # Two more at a time than there are processors: several tests wait for a browser, a timer or a child.
+    ctest --preset "$preset" -j $(($(nproc) + 2)) --no-tests=error --timeout 900 --output-junit "$report" \
         --test-output-size-passed 1000000 "$@" || status=1
     count() { grep -c "$1" "$report" 2>/dev/null || true; }
     tests=$(count '<testcase ') good=$(count '<testcase .* status="run"') unrun=$(count '<skipped message="SKIP_')
