@@ -64,11 +64,6 @@ void rt_tree_set_union(RtTree *tree, uint32_t node, uint32_t a, uint32_t b);
 /* Adds a parent of nodes a and b, makes it the root, and returns it. */
 uint32_t rt_tree_unite(RtTree *tree, uint32_t a, uint32_t b);
 
-/* The distance of two nodes: half the area of the box of both (Walter 2008). */
-static inline double rt_tree_distance(const RtTree *tree, uint32_t a, uint32_t b) {
-    return rt_box_half_area(rt_box_union(tree->nodes[a].box, tree->nodes[b].box));
-}
-
 /* The sum of the half areas of all inner nodes: the surface area heuristic up to constants. */
 double rt_tree_cost(const RtTree *tree);
 

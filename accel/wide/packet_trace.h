@@ -97,13 +97,14 @@ RT_KERNEL bool test_together(ChildSets *met, const Planes *planes, const Packet 
     const uint32_t active = (uint32_t)__builtin_popcountll(rays);
     if (active < BEAM_LEAST_RAYS) return false;
     RtFloat8 near;
-    RtMask8 mask = test_beam(planes, beam, &near);
     if (!any) {
+        const RtMask8 mask = test_beam(planes, beam, &near);
         if (__builtin_popcount(rt_mask8_bits(mask)) > BEAM_MOST_CHILDREN) return false;
         add_rays(met, rays, near, mask);
         return true;
     }
-    const uint32_t children = beam->tight ? rt_mask8_bits(mask) : (1u << node->count) - 1;
+    const uint32_t children =
+        beam->tight ? rt_mask8_bits(test_beam(planes, beam, &near)) : (1u << node->count) - 1;
     if ((uint32_t)__builtin_popcount(children) * (BEAM / RT_LANES) >= active) return false;
     test_lanes(&met->rays, p, node, b, rays, children);
     return true;

@@ -163,7 +163,7 @@ static const char *below_label(const Row *r) {
       r->gain)                                                                                               \
     X(tests_gain, "tests_gain", real6, "",                                                                   \
       "times_fewer; for an overlay, relative to the accelerator below it", r->tests_gain)                    \
-    X(winner, "winner", flag, "", "whether its gain is the largest of the compared accelerators",            \
+    X(winner, "winner", flag, "", "whether it is marked as the fastest of the compared group",               \
       rt_field_flag(r->candidate == r->winner))                                                              \
     X(eye_label, "  accelerator", text, "", "> marks the fastest of those compared", label_of(r))            \
     X(mega_tests, "Mtests", figure, "million", "object tests of the frame", 1e-6 * r->cost[0].object_tests)  \
