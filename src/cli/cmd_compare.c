@@ -6,8 +6,8 @@
 #include "experiment/compare.h"
 #include "experiment/manifest.h"
 #include "experiment/plugins_used.h"
+#include "experiment/result_directory.h"
 #include "experiment/worker.h"
-#include "report/result_directory.h"
 
 #include <stdio.h>
 #include <string.h>

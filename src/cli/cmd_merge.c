@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally merge: joins the shards of an experiment. */
 #include "cli/cli.h"
+#include "experiment/merge.h"
 #include "experiment/result_tables.h"
-#include "report/merge.h"
+#include "report/run_report.h"
 
 #include <stdio.h>
 
@@ -56,10 +57,13 @@ int rt_command_merge(int argc, char **argv) {
     rt_cli_parse(&rt_merge_syntax, argc, argv, &o);
     RtError error;
     RtResults results = {0};
-    const RtRunObserver observer = {.notice = on_notice};
+    const RtRunOptions how = {.directory = o.out,
+                              .start = o.start,
+                              .scripts = o.trust ? RT_SCRIPTS_ALL : RT_SCRIPTS_SHIPPED,
+                              .report = &rt_run_report,
+                              .workload.observer.notice = on_notice};
     static RtExperiment experiment;
-    RtStatus status =
-        rt_merge(o.directories, o.count, o.out, o.start, o.trust, &experiment, &results, &observer, &error);
+    RtStatus status = rt_merge(o.directories, o.count, &how, &experiment, &results, &error);
     if (status == RT_OK) {
         rt_print_summary(&results, stdout);
         printf("\nReport: %s/report.html\n", o.out);

@@ -2,8 +2,8 @@
 /* raytally plot: draws the plots of a result directory again. */
 #include "cli/cli.h"
 #include "cli/directory.h"
+#include "experiment/scripts.h"
 #include "report/plot.h"
-#include "report/scripts.h"
 
 #include <stdio.h>
 

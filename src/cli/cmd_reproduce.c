@@ -6,7 +6,8 @@
 #include "cli/progress.h"
 #include "core/base/memory.h"
 #include "experiment/manifest.h"
-#include "report/result_files.h"
+#include "experiment/result_csv.h"
+#include "literature/published_tables.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -79,7 +80,10 @@ static RtStatus compare_file(const char *directory, RtResultFile file, const RtR
     RT_TRY(rt_path_join(directory, rt_result_files[file], path, error));
     FILE *stream = open_memstream(&counted, &size);
     if (!stream) return rt_fail_memory(error, "the counts", 0);
-    rt_result_file_write(file, results, published, stream);
+    if (rt_result_file_sort(results->experiment, file) == RT_FILE_COMPARED)
+        rt_published_file_write(file, published, stream);
+    else
+        rt_result_csv_write(file, results, stream);
     RtStatus status = fclose(stream) == 0 ? RT_OK : rt_fail_memory(error, "the counts", 0);
     if (status == RT_OK) status = rt_file_read(path, MOST_CSV_BYTES, &kept, &size, error);
     if (status == RT_OK) status = compare(path, kept, counted, scene, error);
@@ -96,10 +100,10 @@ static RtStatus compare_all(const char *directory, const RtResults *results, con
     RtPublished published;
     RtStatus status = rt_published_load(&published, results->experiment, error);
     if (status == RT_OK && !scene) rt_published_compare(&published, results);
-    for (int i = 0; status == RT_OK && i < RT_RESULT_FILE_COUNT; i++) {
-        const RtFileSort sort = rt_result_file_sort(results->experiment, (RtResultFile)i);
+    for (RtResultFile file = 0; status == RT_OK && file < RT_RESULT_FILE_COUNT; file++) {
+        const RtFileSort sort = rt_result_file_sort(results->experiment, file);
         if (sort == RT_FILE_COUNTED || (sort == RT_FILE_COMPARED && !scene))
-            status = compare_file(directory, (RtResultFile)i, results, &published, scene, error);
+            status = compare_file(directory, file, results, &published, scene, error);
     }
     if (status == RT_OK && !scene) status = rt_published_check(&published, error);
     rt_published_clear(&published);

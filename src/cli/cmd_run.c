@@ -7,8 +7,9 @@
 #include "experiment/claims.h"
 #include "experiment/journal.h"
 #include "experiment/manifest.h"
+#include "experiment/result_directory.h"
 #include "experiment/result_tables.h"
-#include "report/result_directory.h"
+#include "report/run_report.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -187,6 +188,7 @@ static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
         .scripts = o->trust   ? RT_SCRIPTS_ALL
                    : o->found ? RT_SCRIPTS_SHIPPED
                               : RT_SCRIPTS_OWN,
+        .report = &rt_run_report,
         .workload = {.threads = o->threads < 0 ? 0 : o->threads,
                      .timing = o->threads < 0 ? 1 : o->threads,
                      .only = o->only,

@@ -3,7 +3,7 @@
 #ifndef RT_CLI_DIRECTORY_H
 #define RT_CLI_DIRECTORY_H
 
-#include "report/result_directory.h"
+#include "experiment/result_directory.h"
 
 #define RT_DIRECTORY_ARGUMENT                                                                                \
     RT_ARGUMENT("DIR", directory, "a result DIR is missing, as in results/first-look")

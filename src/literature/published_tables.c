@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "literature/published_tables.h"
 
+#include "experiment/result_csv.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
@@ -299,4 +301,26 @@ void rt_published_page(const RtPublished *published, bool html, FILE *out) {
     put_table(&page, 0, RT_BEST_FOR_THE_EYE);
     for (uint32_t t = 0; t < experiment->workload_count; t++) put_workload(&page, t);
     put_reasons(&page);
+}
+
+/* ---- files ---- */
+
+void rt_published_file_write(RtResultFile file, const RtPublished *published, FILE *out) {
+    RtPublishedCursor cursor = {.published = published};
+    RtTable table = rt_published_table(file == RT_FILE_BEST ? RT_BEST : RT_FIGURES, &cursor);
+    if (file == RT_FILE_PUBLISHED_PAGE)
+        rt_published_page(published, false, out);
+    else
+        rt_table_csv(&table, out);
+}
+
+RtStatus rt_published_files_write(const RtPublished *published, const char *directory, RtError *error) {
+    for (RtResultFile file = 0; file < RT_RESULT_FILE_COUNT; file++) {
+        RtOutput output;
+        if (rt_result_file_sort(published->experiment, file) != RT_FILE_COMPARED) continue;
+        RT_TRY(rt_output_open_in(&output, directory, rt_result_files[file], error));
+        rt_published_file_write(file, published, output.file);
+        RT_TRY(rt_output_commit(&output, error));
+    }
+    return RT_OK;
 }

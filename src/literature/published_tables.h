@@ -6,6 +6,7 @@
 
 #include "core/text/table.h"
 #include "literature/published.h"
+#include "measure/previous_results.h"
 
 typedef enum RtPublishedTable {
     RT_FIGURES,          /* published.csv: a row per figure */
@@ -41,5 +42,9 @@ RtTable rt_published_table(RtPublishedTable which, RtPublishedCursor *cursor);
 /* All tables to read, with all reasons: published.md, or a part of report.html, empty if nothing was
  * compared. In HTML a figure outside its tolerance shows its reason as a tooltip. */
 void rt_published_page(const RtPublished *published, bool html, FILE *out);
+
+/* A file of RT_FILE_COMPARED (experiment/result_csv.h); and all of them, if anything was compared. */
+void rt_published_file_write(RtResultFile file, const RtPublished *published, FILE *out);
+RtStatus rt_published_files_write(const RtPublished *published, const char *directory, RtError *error);
 
 #endif

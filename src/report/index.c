@@ -4,8 +4,8 @@
 #include "core/base/memory.h"
 #include "core/text/table.h"
 #include "experiment/manifest.h"
+#include "experiment/result_directory.h"
 #include "report/page.h"
-#include "report/result_directory.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -5,7 +5,7 @@
  * after DIR/plots/names.gp, which defines `experiment`, and the lists of words `scenes`, `accels`, `colors`
  * (one for each accelerator, the same in every figure) and `kinds` in the CSV files. Scripts run in DIR and
  * write plots/NAME.svg.tmp; these files are renamed when all are done. `raytally plot DIR` runs edited copies
- * again. report/scripts.h decides which scripts may run. */
+ * again. experiment/scripts.h decides which scripts may run. */
 #ifndef RT_REPORT_PLOT_H
 #define RT_REPORT_PLOT_H
 

@@ -3,14 +3,16 @@
 #include "published_testing.h"
 
 #include "core/text/csv.h"
-#include "report/result_directory.h"
+#include "report/run_report.h"
 
 /* Runs the experiment with these rows and reasons into DIR/out, and gives what the check says. */
 static RtStatus run(const Place *place, const char *rows, const char *reasons, bool quick, RtError *error) {
     RtResults results;
     Path out = path_in(place, "out");
-    const RtRunOptions options = {
-        .directory = out.text, .start = RT_START_ANEW, .workload = {.threads = 1, .timing = 1}};
+    const RtRunOptions options = {.directory = out.text,
+                                  .start = RT_START_ANEW,
+                                  .report = &rt_run_report,
+                                  .workload = {.threads = 1, .timing = 1}};
     write_figures(place, rows);
     write_reasons(place, reasons);
     RT_TRY(load_small(place, quick, error));

@@ -3,7 +3,7 @@
 #include "experiment_testing.h"
 
 #include "experiment/compare.h"
-#include "report/result_directory.h"
+#include "experiment/result_directory.h"
 
 static const char experiment_yaml[] = "name: small\n"
                                       "question: Which is cheaper?\n"

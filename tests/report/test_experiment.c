@@ -7,7 +7,7 @@
 #include "core/text/csv.h"
 #include "core/text/json.h"
 #include "experiment/result_tables.h"
-#include "report/result_directory.h"
+#include "report/run_report.h"
 
 #include <math.h>
 #include <unistd.h>
@@ -43,6 +43,7 @@ static RtStatus run(const Place *place, const char *directory, RtStart start, in
     RT_TRY(rt_results_init(&results, place->experiment, error));
     RtRunOptions options = {.directory = path.text,
                             .start = start,
+                            .report = &rt_run_report,
                             .workload = {.threads = threads, .timing = 1, .observer = observer}};
     RtStatus status = rt_run_experiment(&results, &options, error);
     rt_results_clear(&results);

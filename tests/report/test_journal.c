@@ -2,7 +2,7 @@
 /* Reading the journal of a run, which somebody else may have written. */
 #include "experiment_testing.h"
 
-#include "report/result_directory.h"
+#include "experiment/result_directory.h"
 
 static const char small_experiment[] = "name: small\n"
                                        "question: What does it say?\n"

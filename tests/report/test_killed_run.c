@@ -5,8 +5,8 @@
  * Linked so that calls of the functions wrapped below come here. */
 #include "small_run_testing.h"
 
-#include "report/merge.h"
-#include "report/result_directory.h"
+#include "experiment/merge.h"
+#include "report/run_report.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -21,7 +21,10 @@ static RtStatus run_shard(const Place *place, const char *directory, uint32_t sh
     Path path = path_in(place, directory);
     RT_TRY(load_small(place, false, error));
     RT_TRY(rt_results_init(&results, place->experiment, error));
-    RtRunOptions options = {.directory = path.text, .start = start, .workload = {.threads = 1, .timing = 1}};
+    RtRunOptions options = {.directory = path.text,
+                            .start = start,
+                            .report = &rt_run_report,
+                            .workload = {.threads = 1, .timing = 1}};
     if (shard) options.workload.only = (RtOnly){.shard = shard, .shards = 2};
     RtStatus status = rt_run_experiment(&results, &options, error);
     rt_results_clear(&results);
@@ -34,12 +37,11 @@ static RtStatus run(const Place *place, const char *directory, RtStart start, Rt
 
 /* The shards in s1 and s2. */
 static RtStatus merge(const Place *place, const char *directory, RtStart start, RtError *error) {
-    const RtRunObserver nobody = {0};
     RtResults results;
     Path shards[] = {path_in(place, "s1"), path_in(place, "s2")}, out = path_in(place, directory);
     const char *const directories[] = {shards[0].text, shards[1].text};
-    RtStatus status =
-        rt_merge(directories, 2, out.text, start, false, place->experiment, &results, &nobody, error);
+    const RtRunOptions options = {.directory = out.text, .start = start, .report = &rt_run_report};
+    RtStatus status = rt_merge(directories, 2, &options, place->experiment, &results, error);
     rt_results_clear(&results);
     return status;
 }

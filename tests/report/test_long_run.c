@@ -4,8 +4,8 @@
 
 #include "core/base/clock.h"
 #include "experiment/forecast.h"
+#include "experiment/result_directory.h"
 #include "experiment/result_tables.h"
-#include "report/result_directory.h"
 
 #include <fcntl.h>
 #include <math.h>

@@ -5,7 +5,7 @@
 #include "small_run_testing.h"
 
 #include "core/base/lock.h"
-#include "report/result_directory.h"
+#include "experiment/result_directory.h"
 #include "scenes/open.h"
 
 #include <signal.h>

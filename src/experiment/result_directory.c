@@ -2,7 +2,7 @@
 /* A run in order: open_run looks at the directory and opens the scenes, begin makes the directory and removes
  * the results of a previous run, measure begins the journal and fills the results, finish writes the files
  * made from all of them. */
-#include "report/result_directory.h"
+#include "experiment/result_directory.h"
 
 #include "core/base/lock.h"
 #include "core/base/parallel.h"
@@ -11,10 +11,8 @@
 #include "experiment/journal.h"
 #include "experiment/journal_lines.h"
 #include "experiment/manifest.h"
+#include "experiment/result_csv.h"
 #include "render/image.h"
-#include "report/plot.h"
-#include "report/report.h"
-#include "report/result_files.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -29,7 +27,6 @@ typedef struct Run {
     RtScene scenes[RT_MAX_WORKLOADS]; /* each until its last workload is over */
     bool opened[RT_MAX_WORKLOADS];
     RtJsonLines journal;
-    RtPublished published; /* figures of the literature */
 } Run;
 
 static RtStatus path_in(const Run *run, const char *name, char *path, RtError *error) {
@@ -158,7 +155,7 @@ static RtStatus replace_previous(Run *run, RtError *error) {
 }
 
 static RtStatus begin(Run *run, RtError *error) {
-    RT_TRY(rt_published_load(&run->published, run->experiment, error));
+    if (run->options->report) RT_TRY(run->options->report->check(run->experiment, error));
     RT_TRY(rt_scripts_find(run->experiment, error));
     RT_TRY(rt_scripts_check(run->experiment, run->options->directory, run->resumed, run->options->scripts,
                             error));
@@ -205,13 +202,6 @@ static RtStatus on_event(void *context, const RtResults *results, const RtEvent 
 static void on_notice(void *context, const char *message) {
     const Run *run = context;
     rt_notify(&run->options->workload.observer, "%s", message);
-}
-
-/* The tables made from cells, after each workload. */
-static RtStatus write_tables(const Run *run, RtError *error) {
-    const char *directory = run->options->directory;
-    RT_TRY(rt_result_files_write(RT_FILE_COUNTED, run->results, NULL, directory, error));
-    return rt_result_files_write(RT_FILE_MEASURED, run->results, NULL, directory, error);
 }
 
 static RtStatus draw_scene(RtScene *scene, const RtWorkloadResult *workload, int threads, const char *path,
@@ -267,7 +257,7 @@ static RtStatus measure(Run *run, RtError *error) {
         RtScene *scene = &run->scenes[slot_of(run->experiment, t)];
         if (!rt_only_scene(&options.only, run->experiment, t)) continue;
         RT_TRY(rt_workload_measure(run->results, t, &options, scene, error));
-        RT_TRY(write_tables(run, error));
+        RT_TRY(rt_result_csvs_write(run->results, run->options->directory, error));
         RT_TRY(write_image(run, t, error));
         close_scene(run, t);
     }
@@ -286,25 +276,12 @@ static RtStatus write_manifest(const Run *run, RtError *error) {
     return rt_manifest_write(run->results, &run->options->workload, run->options->directory, error);
 }
 
-static RtStatus finish(Run *run, RtError *error) {
-    /* rt_merge writes the files made from all shards. */
-    if (run->options->workload.only.shards) return write_manifest(run, error);
-    rt_published_compare(&run->published, run->results);
-    RT_TRY(rt_result_files_write(RT_FILE_COMPARED, run->results, &run->published, run->options->directory,
-                                 error));
+static RtStatus finish(const Run *run, RtError *error) {
+    const RtRunOptions *options = run->options;
     RT_TRY(write_manifest(run, error));
-    /* The report is written even if drawing failed. */
-    RtError drawing = {RT_OK, ""};
-    RtStatus drawn = rt_plots_draw(run->results, run->options->directory, &drawing);
-    RT_TRY(rt_report_write(run->results, &run->published, run->options->directory, error));
-    RtStatus checked = rt_published_check(&run->published, error);
-    if (drawn == RT_OK) return checked;
-    if (drawn == RT_NOT_AVAILABLE || checked != RT_OK) {
-        rt_notify(&run->options->workload.observer, "%s", drawing.message);
-        return checked;
-    }
-    if (error) *error = drawing;
-    return drawn;
+    /* rt_merge has the report written of all shards. */
+    if (!options->report || options->workload.only.shards) return RT_OK;
+    return options->report->write(run->results, options->directory, &options->workload.observer, error);
 }
 
 RtStatus rt_run_experiment(RtResults *results, const RtRunOptions *options, RtError *error) {
@@ -321,7 +298,6 @@ RtStatus rt_run_experiment(RtResults *results, const RtRunOptions *options, RtEr
     rt_json_lines_close(&run.journal);
     for (uint32_t t = 0; t < RT_MAX_WORKLOADS; t++) rt_scene_clear(&run.scenes[t]);
     rt_lock_release(&run.lock);
-    rt_published_clear(&run.published);
     return status;
 }
 

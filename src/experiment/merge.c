@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "report/merge.h"
+#include "experiment/merge.h"
 
 #include "experiment/journal.h"
 #include "experiment/manifest.h"
 #include "experiment/plugins_used.h"
 #include "measure/machine.h"
-#include "report/scripts.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -16,7 +15,7 @@
 typedef struct Merge {
     const char *const *directories;
     uint32_t count;
-    const char *out;
+    const RtRunOptions *options;
     json_t *journals[RT_MAX_SHARDS];
 } Merge;
 
@@ -155,7 +154,7 @@ static RtStatus add_journal(const Merge *merge, const RtExperiment *experiment, 
                             RtError *error) {
     static const RtOnly all = {0};
     char path[RT_MAX_PATH];
-    RT_TRY(rt_path_join(merge->out, RT_RUN_JOURNAL, path, error));
+    RT_TRY(rt_path_join(merge->options->directory, RT_RUN_JOURNAL, path, error));
     json_t *lines = json_array();
     for (uint32_t i = 0; i < merge->count; i++) {
         for (size_t line = 1; line < json_array_size(merge->journals[i]); line++) {
@@ -184,7 +183,7 @@ static void copy_image(void *context, const char *path) {
 }
 
 static RtStatus copy_images(const Merge *merge, RtOutputs *files, RtError *error) {
-    Copies copies = {merge->out, files, RT_OK, error};
+    Copies copies = {merge->options->directory, files, RT_OK, error};
     for (uint32_t i = 0; i < merge->count && copies.status == RT_OK; i++) {
         char images[RT_MAX_PATH];
         RT_TRY(rt_path_join(merge->directories[i], "images", images, error));
@@ -199,34 +198,31 @@ static RtStatus add_files(const Merge *merge, const RtExperiment *experiment, Rt
     static const char *const folders[] = {"plots", "images"};
     for (int i = 0; i < 2; i++) {
         char path[RT_MAX_PATH];
-        RT_TRY(rt_path_join(merge->out, folders[i], path, error));
+        RT_TRY(rt_path_join(merge->options->directory, folders[i], path, error));
         RT_TRY(rt_directory_create(path, error));
     }
     RT_TRY(copy_images(merge, files, error));
-    RT_TRY(rt_scripts_copy(experiment, merge->out, false, files, error));
+    RT_TRY(rt_scripts_copy(experiment, merge->options->directory, false, files, error));
     return add_journal(merge, experiment, files, error);
 }
 
 /* Everything is on the disk before any previous result is removed. */
-static RtStatus take_directory(const Merge *merge, const RtExperiment *experiment, RtStart start,
-                               RtError *error) {
+static RtStatus take_directory(const Merge *merge, const RtExperiment *experiment, RtError *error) {
+    const RtRunOptions *options = merge->options;
     RtOutputs files = {0};
     bool goes_on;
-    RT_TRY(rt_previous_results_look(merge->out, RT_RUN_JOURNAL, start, &goes_on, error));
+    RT_TRY(rt_previous_results_look(options->directory, RT_RUN_JOURNAL, options->start, &goes_on, error));
     RtStatus status = add_files(merge, experiment, &files, error);
-    if (status == RT_OK) status = rt_previous_results_remove(merge->out, RT_RUN_JOURNAL, error);
+    if (status == RT_OK) status = rt_previous_results_remove(options->directory, RT_RUN_JOURNAL, error);
     if (status == RT_OK) status = rt_outputs_commit(&files, error);
     rt_outputs_clear(&files);
     return status;
 }
 
-static RtStatus merge_all(Merge *merge, RtStart start, bool trust, RtExperiment *experiment,
-                          RtResults *results, const RtRunObserver *observer, RtError *error) {
-    RtRunOptions options = {.directory = merge->out,
-                            .start = RT_START_RESUME,
-                            .scripts = trust ? RT_SCRIPTS_ALL : RT_SCRIPTS_SHIPPED,
-                            .joined = merge->count,
-                            .workload = {.observer = *observer}};
+static RtStatus merge_all(Merge *merge, RtExperiment *experiment, RtResults *results, RtError *error) {
+    RtRunOptions options = *merge->options;
+    options.start = RT_START_RESUME;
+    options.joined = merge->count;
     RT_TRY(load_journals(merge, error));
     RT_TRY(check_alike(merge, error));
     RT_TRY(check_whole(merge, error));
@@ -234,17 +230,16 @@ static RtStatus merge_all(Merge *merge, RtStart start, bool trust, RtExperiment 
     RT_TRY(load_experiment(merge, experiment, error));
     RT_TRY(check_plugins(merge, experiment, error));
     RT_TRY(rt_results_init(results, experiment, error));
-    RT_TRY(rt_scripts_check(experiment, merge->out, false, options.scripts, error));
-    RT_TRY(take_directory(merge, experiment, start, error));
+    RT_TRY(rt_scripts_check(experiment, options.directory, false, options.scripts, error));
+    RT_TRY(take_directory(merge, experiment, error));
     return rt_run_experiment(results, &options, error);
 }
 
-RtStatus rt_merge(const char *const *directories, uint32_t count, const char *out, RtStart start, bool trust,
-                  RtExperiment *experiment, RtResults *results, const RtRunObserver *observer,
-                  RtError *error) {
-    Merge merge = {.directories = directories, .count = count, .out = out};
+RtStatus rt_merge(const char *const *directories, uint32_t count, const RtRunOptions *options,
+                  RtExperiment *experiment, RtResults *results, RtError *error) {
+    Merge merge = {.directories = directories, .count = count, .options = options};
     *results = (RtResults){0};
-    RtStatus status = merge_all(&merge, start, trust, experiment, results, observer, error);
+    RtStatus status = merge_all(&merge, experiment, results, error);
     for (uint32_t i = 0; i < count; i++) json_decref(merge.journals[i]);
     return status;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "report/scripts.h"
+#include "experiment/scripts.h"
 
 #include "core/base/memory.h"
 #include "shipped_scripts.h"

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "report/result_files.h"
+#include "experiment/result_csv.h"
 
 #include "experiment/distribution_tables.h"
 #include "experiment/frame_table.h"
 #include "experiment/result_tables.h"
-#include "literature/published_tables.h"
 
 RtFileSort rt_result_file_sort(const RtExperiment *e, RtResultFile file) {
     const bool timed = !e->count_only;
@@ -23,12 +22,10 @@ RtFileSort rt_result_file_sort(const RtExperiment *e, RtResultFile file) {
     }
 }
 
-void rt_result_file_write(RtResultFile file, const RtResults *results, const RtPublished *published,
-                          FILE *out) {
+void rt_result_csv_write(RtResultFile file, const RtResults *results, FILE *out) {
     RtResultRow row = {.results = results};
     RtDistributionRow distribution = {.results = results};
     RtFrameRow frame = {.results = results};
-    RtPublishedCursor cursor = {.published = published};
     RtTable table = {0};
     switch (file) {
     case RT_FILE_COUNTS: table = rt_result_table(RT_COUNTS, &row); break;
@@ -38,21 +35,18 @@ void rt_result_file_write(RtResultFile file, const RtResults *results, const RtP
     case RT_FILE_DISTRIBUTIONS: table = rt_distribution_table(RT_DISTRIBUTIONS, &distribution); break;
     case RT_FILE_HISTOGRAMS: table = rt_distribution_table(RT_HISTOGRAMS, &distribution); break;
     case RT_FILE_FRAME: table = rt_frame_table(&frame); break;
-    case RT_FILE_PUBLISHED: table = rt_published_table(RT_FIGURES, &cursor); break;
-    case RT_FILE_BEST: table = rt_published_table(RT_BEST, &cursor); break;
-    case RT_FILE_PUBLISHED_PAGE: rt_published_page(published, false, out); return;
     default: return;
     }
     rt_table_csv(&table, out);
 }
 
-RtStatus rt_result_files_write(RtFileSort sort, const RtResults *results, const RtPublished *published,
-                               const char *directory, RtError *error) {
-    for (int i = 0; i < RT_RESULT_FILE_COUNT; i++) {
+RtStatus rt_result_csvs_write(const RtResults *results, const char *directory, RtError *error) {
+    for (RtResultFile file = 0; file < RT_RESULT_FILE_COUNT; file++) {
+        const RtFileSort sort = rt_result_file_sort(results->experiment, file);
         RtOutput output;
-        if (rt_result_file_sort(results->experiment, (RtResultFile)i) != sort) continue;
-        RT_TRY(rt_output_open_in(&output, directory, rt_result_files[i], error));
-        rt_result_file_write((RtResultFile)i, results, published, output.file);
+        if (sort != RT_FILE_MEASURED && sort != RT_FILE_COUNTED) continue;
+        RT_TRY(rt_output_open_in(&output, directory, rt_result_files[file], error));
+        rt_result_csv_write(file, results, output.file);
         RT_TRY(rt_output_commit(&output, error));
     }
     return RT_OK;

@@ -5,8 +5,8 @@
  * gnuplot has no sandbox: a script may run any command. So raytally only runs scripts that it ships
  * (experiments/NAME.gp, compared by their bytes), and those beside an experiment that the user runs, but not
  * those of somebody else's result directory. */
-#ifndef RT_REPORT_SCRIPTS_H
-#define RT_REPORT_SCRIPTS_H
+#ifndef RT_EXPERIMENT_SCRIPTS_H
+#define RT_EXPERIMENT_SCRIPTS_H
 
 #include "core/base/file.h"
 #include "experiment/experiment.h"

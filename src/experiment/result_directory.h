@@ -17,12 +17,21 @@
  *   plots/           the scripts and their plots
  *   tables.md, tables.tex, report.html
  *                    the results to read */
-#ifndef RT_REPORT_RESULT_DIRECTORY_H
-#define RT_REPORT_RESULT_DIRECTORY_H
+#ifndef RT_EXPERIMENT_RESULT_DIRECTORY_H
+#define RT_EXPERIMENT_RESULT_DIRECTORY_H
 
+#include "experiment/scripts.h"
 #include "experiment/workload.h"
 #include "measure/previous_results.h"
-#include "report/scripts.h"
+
+/* What else is made from the results of a finished run: report/run_report.h. */
+typedef struct RtRunReport {
+    /* Checks its input, before anything of a previous run is removed. */
+    RtStatus (*check)(const RtExperiment *experiment, RtError *error);
+    /* Writes it into the directory, which is locked and has its manifest. */
+    RtStatus (*write)(const RtResults *results, const char *directory, const RtRunObserver *observer,
+                      RtError *error);
+} RtRunReport;
 
 typedef struct RtRunOptions {
     const char *directory; /* created if missing */
@@ -30,6 +39,7 @@ typedef struct RtRunOptions {
     bool renew;            /* when resuming, measure cells of changed plugins again */
     uint32_t joined;       /* number of shards that the resumed journal was joined from; else 0 */
     RtScripts scripts;
+    const RtRunReport *report;  /* or NULL */
     RtWorkloadOptions workload; /* its observer is called after the journal */
 } RtRunOptions;
 
@@ -37,10 +47,7 @@ typedef struct RtRunOptions {
  *
  * The directory is locked meanwhile. Every check is made, and every scene opened, before anything of a
  * previous run is removed. Whenever the process ends, either the previous run is whole or this one can be
- * resumed.
- *
- * Without gnuplot there is a notice, and a report without plots. RT_MISMATCH, with everything written, if
- * gnuplot fails, or if rt_published_check fails. */
+ * resumed. */
 RtStatus rt_run_experiment(RtResults *results, const RtRunOptions *options, RtError *error);
 
 /* Loads experiment and results of a result directory; this build may lack its accelerators. Initialises
