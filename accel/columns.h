@@ -13,12 +13,12 @@ extern const RtTableColumn rt_tally_columns[RT_TALLY_COUNTER_COUNT];
 /* All counters by name. Returns a new reference, or NULL if out of memory. */
 json_t *rt_json_tally(const RtTally *tally);
 
-/* The fields of an RtDescription except its bytes: RT_SHAPE_COLUMNS, then predictions, then qualities. */
+/* The fields of an RtDescription except its bytes: RT_STRUCTURE_COUNTS, then predictions, then qualities. */
 #define RT_PLUS_ONE(name, meaning) +1
 enum {
-    RT_SHAPE_COLUMNS = 5,
+    RT_STRUCTURE_COUNTS = 5,
     RT_PREDICTION_COLUMNS = 0 RT_PREDICTIONS(RT_PLUS_ONE) RT_QUALITIES(RT_PLUS_ONE),
-    RT_STRUCTURE_COLUMNS = RT_SHAPE_COLUMNS + RT_PREDICTION_COLUMNS
+    RT_STRUCTURE_COLUMNS = RT_STRUCTURE_COUNTS + RT_PREDICTION_COLUMNS
 };
 #undef RT_PLUS_ONE
 extern const RtTableColumn rt_structure_columns[RT_STRUCTURE_COLUMNS];

@@ -91,11 +91,11 @@ static RtStatus check_part(const RtExperiment *e, const RtOnly *only, RtError *e
 static void print_cell(const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind) {
     const RtExperiment *e = results->experiment;
     const RtCell *cell = rt_cell_at(results, t, c, kind);
-    const char *limit = *cell->limit ? cell->limit : rt_build_at(results, t, c)->limit;
+    const char *left_out = *cell->left_out ? cell->left_out : rt_build_at(results, t, c)->left_out;
     bool finished = cell->counted && (cell->timed || e->count_only);
     if (results->workloads[t].known && !results->workloads[t].rays[kind]) return;
     printf("%-24s %-28s %-12s %s\n", e->workloads[t].label, rt_candidate_label(e, c), rt_ray_kind_name(kind),
-           *limit     ? limit
+           *left_out  ? left_out
            : finished ? "finished"
                       : "");
 }

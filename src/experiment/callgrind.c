@@ -134,7 +134,7 @@ static RtStatus count_cell(RtCallgrind *callgrind, RtWorker *worker, const RtRes
     if (!rt_candidate_runs(e, at->candidate, at->workload) || !rt_file_exists(path)) return RT_OK;
     if (build->broken || at->cell->broken) {
         snprintf(cell.why, sizeof cell.why, "%.*s", RT_MAX_WHY - 1,
-                 build->broken ? build->limit : at->cell->limit);
+                 build->broken ? build->left_out : at->cell->left_out);
         callgrind->cells[callgrind->count++] = cell;
         return RT_OK;
     }

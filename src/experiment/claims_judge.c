@@ -47,7 +47,7 @@ static Bounded value_at(const RtResults *results, const RtClaim *claim, uint32_t
     const double counts[] = {0, cost.object_tests, cost.extent_tests, cost.steps};
     if (claim->measure >= RT_CLAIM_BUILD_TIME && !build->known) return UNKNOWN;
     if (claim->measure == RT_CLAIM_BUILD_TIME) return exactly(build->seconds);
-    if (claim->measure == RT_CLAIM_BYTES) return exactly((double)build->shape.bytes);
+    if (claim->measure == RT_CLAIM_BYTES) return exactly((double)build->structure.bytes);
     if (!cost.whole) return UNKNOWN;
     return claim->measure == RT_CLAIM_TIME ? of_estimate(&cost.seconds) : exactly(counts[claim->measure]);
 }

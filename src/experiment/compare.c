@@ -81,7 +81,7 @@ static RtStatus compare_cell(const RtResults *before, uint32_t t, uint32_t c, co
                     rt_build_at(after, t2, c2)->counts;
     cell->counts_before = one->tally;
     cell->counts = other->tally;
-    if (!one->each || !other->each || one->threads != other->threads) return RT_OK;
+    if (!one->round_times || !other->round_times || one->threads != other->threads) return RT_OK;
     cell->timed = true;
     cell->before = one->seconds.median;
     cell->after = other->seconds.median;
@@ -110,9 +110,9 @@ static RtStatus estimate_cell(RtComparedCell *cell, const RtResults *before, con
     uint32_t t2 = rt_workload_find(after->experiment, cell->scene);
     const RtCell *one = rt_cell_at(before, t, rt_candidate_find(before->experiment, cell->accel, t), kind);
     const RtCell *other = rt_cell_at(after, t2, rt_candidate_find(after->experiment, cell->accel, t2), kind);
-    return rt_estimate_unpaired(rt_cell_rounds(one, RT_EACH_SECONDS), one->rounds,
-                                rt_cell_rounds(other, RT_EACH_SECONDS), other->rounds, coverage, &cell->ratio,
-                                error);
+    return rt_estimate_unpaired(rt_cell_round_times(one, RT_ROUND_SECONDS), one->rounds,
+                                rt_cell_round_times(other, RT_ROUND_SECONDS), other->rounds, coverage,
+                                &cell->ratio, error);
 }
 
 RtStatus rt_compare_results(const RtResults *before, const RtResults *after, RtComparison *comparison,

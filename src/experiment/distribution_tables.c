@@ -90,7 +90,7 @@ static void print_unknown_leaves(const RtResults *results, uint32_t t, FILE *out
     for (uint32_t c = 0; c < results->experiment->candidate_count; c++) {
         const RtBuildResult *build = rt_build_at(results, t, c);
         char text[RT_MAX_LABEL + 128];
-        if (build->shape.leaves == 0 || build->leaves) continue;
+        if (build->structure.leaves == 0 || build->leaves) continue;
         snprintf(
             text, sizeof text,
             "Leaf size and depth of %s are unknown: plugins report the number of leaves, not their contents.",
@@ -104,8 +104,8 @@ void rt_print_distributions(const RtResults *results, FILE *out) {
         if (!results->workloads[t].known) continue;
         fprintf(out, "\n%s, distributions of counts:\n", results->experiment->workloads[t].label);
         rt_print_wrapped("Medians, 99th percentiles and maxima over the rays, or the leaves.", out);
-        rt_print_rows(results, RT_SPREADS, t, out);
-        rt_print_rows(results, RT_LEAF_SPREADS, t, out);
+        rt_print_rows(results, RT_PERCENTILES, t, out);
+        rt_print_rows(results, RT_LEAF_PERCENTILES, t, out);
         print_unknown_leaves(results, t, out);
     }
 }

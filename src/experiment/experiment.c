@@ -2,7 +2,7 @@
 #include "experiment/experiment.h"
 
 #include "experiment/manifest_experiment.h"
-#include "measure/previous_results.h"
+#include "measure/result_files.h"
 
 #include <string.h>
 
@@ -133,14 +133,14 @@ const char *rt_baseline_label(const RtExperiment *experiment) {
 
 bool rt_candidate_runs(const RtExperiment *experiment, uint32_t c, uint32_t t) {
     if (c == experiment->candidate_count) return true;
-    return !experiment->candidates[c].missing && !(experiment->candidates[c].left_out >> t & 1);
+    return !experiment->candidates[c].missing && !(experiment->candidates[c].excluded >> t & 1);
 }
 
 uint32_t rt_candidate_find(const RtExperiment *experiment, const char *label, uint32_t t) {
     if (strcmp(label, experiment->again) == 0) return experiment->candidate_count;
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
         const RtCandidate *candidate = &experiment->candidates[c];
-        if (strcmp(candidate->label, label) == 0 && !(candidate->left_out >> t & 1)) return c;
+        if (strcmp(candidate->label, label) == 0 && !(candidate->excluded >> t & 1)) return c;
     }
     return experiment->candidate_count + 1;
 }
@@ -191,7 +191,7 @@ static RtStatus check_candidate(RtExperiment *experiment, uint32_t i, RtError *e
     const uint32_t all = (uint32_t)((UINT64_C(1) << experiment->workload_count) - 1);
     for (uint32_t k = 0; k < i; k++) {
         const RtCandidate *other = &experiment->candidates[k];
-        bool meet = ~(candidate->left_out | other->left_out) & all;
+        bool meet = ~(candidate->excluded | other->excluded) & all;
         if (meet && strcmp(candidate->label, other->label) == 0) return fail_twice(candidate->label, error);
     }
     return check_label(candidate->label, error);
@@ -212,7 +212,7 @@ static RtStatus check_baseline(const RtExperiment *experiment, RtError *error) {
         return rt_fail(error, RT_NOT_AVAILABLE, "the baseline '%s' is not in this build: choose another",
                        baseline->label);
     }
-    if (baseline->ray_stride == 1 && !baseline->left_out) return RT_OK;
+    if (baseline->ray_stride == 1 && !baseline->excluded) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT,
                    "the baseline '%s' must be measured on every ray of every scene: choose another, or "
                    "remove its `ray_stride` and `scenes`",
@@ -221,7 +221,7 @@ static RtStatus check_baseline(const RtExperiment *experiment, RtError *error) {
 
 /* The files are copied into the result directory under the same names. */
 static RtStatus check_beside(const char *name, RtError *error) {
-    if (rt_previous_results_has(name)) {
+    if (rt_is_result_file(name)) {
         return rt_fail(error, RT_BAD_INPUT,
                        "the result directory has its own file '%s': rename this one, or put it into a folder "
                        "beside the experiment",

@@ -69,12 +69,12 @@ typedef struct RtCandidate {
     char spec[RT_MAX_SPEC_CHARS]; /* as written */
     RtSpec parsed;                /* by rt_experiment_check, if this build has it */
     uint64_t ray_stride;          /* k: measured on every kth ray of a set, for slow accelerators; >= 1 */
-    uint32_t left_out;            /* bit t: it is not measured on workloads[t] */
+    uint32_t excluded;            /* bit t: it is not measured on workloads[t] */
     bool missing;                 /* this build lacks it: skipped with a notice */
     bool ours;                    /* must need less than every published row */
 } RtCandidate;
 
-_Static_assert(RT_MAX_WORKLOADS <= 32, "a bit of left_out for every workload");
+_Static_assert(RT_MAX_WORKLOADS <= 32, "a bit of excluded for every workload");
 
 /* The columns of published tables. Of structures: as in RtDescription. Per ray, over all kinds of the
  * experiment: as in RtTally. Of rays: their number, and the number that hit; secondary rays are reflection

@@ -92,7 +92,7 @@ static RtStatus read_scenes(const RtYaml *y, const RtYamlNode *list, const RtExp
         }
         if (!found) return rt_yaml_fail(y, n, "'%s' is not the label of one of the scenes", label);
     }
-    candidate->left_out = list ? ~on : 0;
+    candidate->excluded = list ? ~on : 0;
     return RT_OK;
 }
 

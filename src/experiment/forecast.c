@@ -79,14 +79,14 @@ RtForecast rt_forecast(const RtResults *results, const RtWorkloadOptions *option
         for (uint32_t t = 0; t < e->workload_count; t++) {
             const RtBuildResult *build = rt_build_at(results, t, c);
             if (results->workloads[t].skipped || !rt_only_scene(&options->only, e, t)) continue;
-            if (*build->limit || !rt_candidate_runs(e, c, t) || !rt_only_accel(&options->only, e, c))
+            if (*build->left_out || !rt_candidate_runs(e, c, t) || !rt_only_accel(&options->only, e, c))
                 continue;
             double once = mean(rates.build, rates.builds, mean(f.all.build, f.all.builds, 0));
             add(&f, build->known, build_seconds(build->known ? build->seconds : once));
             for (uint32_t k = 0; k < e->kind_count; k++) {
                 RtRayKind kind = e->kinds[k];
                 bool none = results->workloads[t].known && !results->workloads[t].rays[kind];
-                if (none || *rt_cell_at(results, t, c, kind)->limit || !rt_only_kind(&options->only, kind))
+                if (none || *rt_cell_at(results, t, c, kind)->left_out || !rt_only_kind(&options->only, kind))
                     continue;
                 add_cell(&f, &rates, t, c, kind);
             }

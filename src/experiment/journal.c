@@ -127,7 +127,7 @@ static RtStatus take_lines(const char *path, RtResults *results, const json_t *l
                            bool renew, RtError *error) {
     const RtExperiment *experiment = results->experiment;
     const json_t *header = json_array_get(lines, 0);
-    if (json_is_true(json_object_get(header, "given_up"))) return RT_OK; /* rt_previous_results_remove */
+    if (json_is_true(json_object_get(header, "given_up"))) return RT_OK; /* rt_result_files_remove */
     RT_TRY(check_experiment(path, header, experiment, error));
     if (only) RT_TRY(check_build(path, header, only, error));
     json_t *used = only ? rt_plugins_used(experiment) : NULL;

@@ -23,7 +23,7 @@ RtStatus rt_journal_add(RtOutputs *outputs, const char *path, const RtExperiment
 /* Fills `results` from the journal at `path`. Rejects a journal of another experiment; with `only`, to resume
  * it, also of another build, another shard, or another build of a plugin that the experiment uses. With
  * `renew` a changed plugin only loses its own lines, unless it is the baseline. A journal whose results are
- * given up (previous_results.h) is empty. */
+ * given up (measure/result_files.h) is empty. */
 RtStatus rt_journal_load(const char *path, RtResults *results, const RtOnly *only, bool renew,
                          RtError *error);
 

@@ -26,23 +26,23 @@ static const RtMember workload_members[] = {
     RT_MEMBER(RtWorkloadResult, U32, "height", height), RT_MEMBER(RtWorkloadResult, HASH, "hash", scene),
     RT_MEMBER_OF("sets", &sets)};
 
-#define COST_OF_BUILD(name, meaning) RT_MEMBER(RtBuildResult, COUNT, #name, shape.build.name),
+#define COST_OF_BUILD(name, meaning) RT_MEMBER(RtBuildResult, COUNT, #name, structure.build.name),
 static const RtMember build_tally_members[] = {RT_TALLY_COUNTERS(COST_OF_BUILD)};
 static const RtRecord build_tally = RT_RECORD(build_tally_members);
 
-#define EXPECTED(name, meaning) RT_MEMBER(RtBuildResult, NUMBER, #name, shape.name),
-static const RtMember build_members[] = {RT_MEMBER(RtBuildResult, COUNT, "interior", shape.interior),
-                                         RT_MEMBER(RtBuildResult, COUNT, "leaves", shape.leaves),
-                                         RT_MEMBER(RtBuildResult, COUNT, "empty_leaves", shape.empty_leaves),
-                                         RT_MEMBER(RtBuildResult, COUNT, "references", shape.references),
-                                         RT_MEMBER(RtBuildResult, COUNT, "depth", shape.depth),
-                                         RT_PREDICTIONS(EXPECTED) RT_QUALITIES(EXPECTED)
-                                             RT_MEMBER_OF("build", &build_tally),
-                                         RT_MEMBER(RtBuildResult, TEXT, "spec", spec),
-                                         RT_MEMBER(RtBuildResult, FLAG, "exact", exact),
-                                         RT_MEMBER(RtBuildResult, FLAG, "counts", counts),
-                                         RT_MEMBER(RtBuildResult, SECONDS, "seconds", seconds),
-                                         RT_MEMBER(RtBuildResult, COUNT, "bytes", shape.bytes)};
+#define EXPECTED(name, meaning) RT_MEMBER(RtBuildResult, NUMBER, #name, structure.name),
+static const RtMember build_members[] = {
+    RT_MEMBER(RtBuildResult, COUNT, "interior", structure.interior),
+    RT_MEMBER(RtBuildResult, COUNT, "leaves", structure.leaves),
+    RT_MEMBER(RtBuildResult, COUNT, "empty_leaves", structure.empty_leaves),
+    RT_MEMBER(RtBuildResult, COUNT, "references", structure.references),
+    RT_MEMBER(RtBuildResult, COUNT, "depth", structure.depth),
+    RT_PREDICTIONS(EXPECTED) RT_QUALITIES(EXPECTED) RT_MEMBER_OF("build", &build_tally),
+    RT_MEMBER(RtBuildResult, TEXT, "spec", spec),
+    RT_MEMBER(RtBuildResult, FLAG, "exact", exact),
+    RT_MEMBER(RtBuildResult, FLAG, "counts", counts),
+    RT_MEMBER(RtBuildResult, SECONDS, "seconds", seconds),
+    RT_MEMBER(RtBuildResult, COUNT, "bytes", structure.bytes)};
 
 #define COUNTER(name, meaning) RT_MEMBER(RtCell, COUNT, #name, tally.name),
 static const RtMember count_members[] = {RT_TALLY_COUNTERS(COUNTER)
@@ -66,7 +66,8 @@ static const RtMember machine_members[] = {RT_MEMBER(RtMachine, TEXT, "host", ho
 static const RtRecord of_machine = RT_RECORD(machine_members);
 
 /* The lists of the times of each round. */
-static const char *const each_names[RT_EACH_COUNT] = {"each_seconds", "each_wall", "each_baseline"};
+static const char *const round_time_names[RT_ROUND_TIME_COUNT] = {"each_seconds", "each_wall",
+                                                                  "each_baseline"};
 
 /* ---- parts ---- */
 
@@ -89,10 +90,10 @@ static const struct Part {
 
 /* ---- writing ---- */
 
-static json_t *rounds_json(const RtCell *cell, RtEach each) {
+static json_t *rounds_json(const RtCell *cell, RtRoundTime which) {
     json_t *list = json_array();
     for (uint32_t r = 0; r < cell->rounds; r++)
-        json_array_append_new(list, json_real(rt_cell_rounds(cell, each)[r]));
+        json_array_append_new(list, json_real(rt_cell_round_times(cell, which)[r]));
     return list;
 }
 
@@ -113,8 +114,8 @@ static json_t *time_json(const RtResults *results, const RtCell *cell) {
     json =
         rt_json_add(json, "baseline", json_string(rt_candidate_label(results->experiment, cell->baseline)));
     json = add_machine(json, results, cell->machine);
-    for (int i = 0; i < RT_EACH_COUNT && cell->each; i++)
-        json = rt_json_add(json, each_names[i], rounds_json(cell, (RtEach)i));
+    for (int i = 0; i < RT_ROUND_TIME_COUNT && cell->round_times; i++)
+        json = rt_json_add(json, round_time_names[i], rounds_json(cell, (RtRoundTime)i));
     return json;
 }
 
@@ -137,9 +138,9 @@ static json_t *part_json(const RtResults *results, const RtEvent *event) {
     case RT_EVENT_TIME: return time_json(results, cell);
     case RT_EVENT_HARDWARE: return hardware_json(results, *cell);
     case RT_EVENT_TOO_LARGE:
-    case RT_EVENT_BROKEN_BUILD: return json_string(build->limit);
+    case RT_EVENT_BROKEN_BUILD: return json_string(build->left_out);
     case RT_EVENT_TOO_LONG:
-    case RT_EVENT_BROKEN: return json_string(cell->limit);
+    case RT_EVENT_BROKEN: return json_string(cell->left_out);
     }
     return NULL;
 }
@@ -175,20 +176,20 @@ static void take_distributions(RtRecordReader *reader, RtDistribution **out, siz
 /* Journals of older versions have no times of rounds. */
 static void take_rounds(RtRecordReader *reader, RtCell *cell, const json_t *json) {
     bool any = false;
-    rt_free(cell->each); /* of an earlier line, which may have had another number of rounds */
-    cell->each = NULL;
-    for (int i = 0; i < RT_EACH_COUNT; i++) any |= json_object_get(json, each_names[i]) != NULL;
-    for (int i = 0; i < RT_EACH_COUNT && any; i++) {
-        if (json_array_size(json_object_get(json, each_names[i])) != cell->rounds)
-            rt_record_reject(reader, each_names[i], "a list of as many times as there were rounds");
+    rt_free(cell->round_times); /* of an earlier line, which may have had another number of rounds */
+    cell->round_times = NULL;
+    for (int i = 0; i < RT_ROUND_TIME_COUNT; i++) any |= json_object_get(json, round_time_names[i]) != NULL;
+    for (int i = 0; i < RT_ROUND_TIME_COUNT && any; i++) {
+        if (json_array_size(json_object_get(json, round_time_names[i])) != cell->rounds)
+            rt_record_reject(reader, round_time_names[i], "a list of as many times as there were rounds");
     }
     if (!any || reader->status != RT_OK) return;
-    reader->status = rt_cell_make_rounds(cell, reader->error);
-    for (int i = 0; i < RT_EACH_COUNT && cell->each; i++) {
-        const json_t *list = json_object_get(json, each_names[i]);
+    reader->status = rt_cell_make_round_times(cell, reader->error);
+    for (int i = 0; i < RT_ROUND_TIME_COUNT && cell->round_times; i++) {
+        const json_t *list = json_object_get(json, round_time_names[i]);
         for (uint32_t r = 0; r < cell->rounds; r++)
-            rt_cell_rounds(cell, (RtEach)i)[r] =
-                rt_record_seconds(reader, json_array_get(list, r), each_names[i]);
+            rt_cell_round_times(cell, (RtRoundTime)i)[r] =
+                rt_record_seconds(reader, json_array_get(list, r), round_time_names[i]);
     }
 }
 
@@ -207,13 +208,13 @@ static void take_baseline(RtRecordReader *reader, const RtExperiment *experiment
     cell->baseline = c < experiment->candidate_count ? c : experiment->baseline;
 }
 
-static void take_limit(RtRecordReader *reader, const json_t *line, const char *key, char *limit,
-                       bool *broken) {
+static void take_left_out(RtRecordReader *reader, const json_t *line, const char *key, char *left_out,
+                          bool *broken) {
     const char *text = rt_record_text(reader, line, key);
     if (!text) return;
     const json_t *flag = json_object_get(line, "broken");
     if (flag && !json_is_boolean(flag)) rt_record_reject(reader, "broken", "true or false");
-    snprintf(limit, RT_MAX_LIMIT, "%s", text);
+    snprintf(left_out, RT_MAX_LEFT_OUT, "%s", text);
     *broken = json_is_true(flag);
 }
 
@@ -237,7 +238,7 @@ static void take_build(RtRecordReader *reader, const json_t *line, RtBuildResult
     build->known |= built != NULL;
     take_distributions(reader, &build->leaves, RT_RAY_QUANTITY_COUNT, RT_LEAF_QUANTITY_COUNT,
                        json_object_get(built, "distributions"));
-    take_limit(reader, line, "too_large", build->limit, &build->broken);
+    take_left_out(reader, line, "too_large", build->left_out, &build->broken);
 }
 
 static void take_cell(RtRecordReader *reader, const json_t *line, RtResults *results, uint32_t workload,
@@ -245,7 +246,7 @@ static void take_cell(RtRecordReader *reader, const json_t *line, RtResults *res
     cell->counted |= take_part(reader, line, RT_EVENT_COUNT, cell) != NULL;
     take_distributions(reader, &cell->distributions, 0, RT_RAY_QUANTITY_COUNT,
                        json_object_get(line, "distributed"));
-    take_limit(reader, line, "too_long", cell->limit, &cell->broken);
+    take_left_out(reader, line, "too_long", cell->left_out, &cell->broken);
     const json_t *hardware = take_part(reader, line, RT_EVENT_HARDWARE, cell);
     cell->hardware.known |= hardware != NULL;
     if (hardware) cell->hardware.machine = take_machine(reader, results, hardware);

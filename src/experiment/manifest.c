@@ -33,7 +33,7 @@ static json_t *candidates_json(const RtExperiment *experiment) {
         const RtCandidate *candidate = &experiment->candidates[c];
         json_t *scenes = json_array();
         for (uint32_t t = 0; t < experiment->workload_count; t++) {
-            if (candidate->left_out >> t & 1) continue;
+            if (candidate->excluded >> t & 1) continue;
             json_array_append_new(scenes, json_string(experiment->workloads[t].label));
         }
         json_array_append_new(list,

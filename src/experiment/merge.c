@@ -211,9 +211,9 @@ static RtStatus take_directory(const Merge *merge, const RtExperiment *experimen
     const RtRunOptions *options = merge->options;
     RtOutputs files = {0};
     bool goes_on;
-    RT_TRY(rt_previous_results_look(options->directory, RT_RUN_JOURNAL, options->start, &goes_on, error));
+    RT_TRY(rt_result_files_look(options->directory, RT_RUN_JOURNAL, options->start, &goes_on, error));
     RtStatus status = add_files(merge, experiment, &files, error);
-    if (status == RT_OK) status = rt_previous_results_remove(options->directory, RT_RUN_JOURNAL, error);
+    if (status == RT_OK) status = rt_result_files_remove(options->directory, RT_RUN_JOURNAL, error);
     if (status == RT_OK) status = rt_outputs_commit(&files, error);
     rt_outputs_clear(&files);
     return status;

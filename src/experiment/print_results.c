@@ -35,7 +35,7 @@ void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workl
     RtResultRow row = {.results = results, .workload = workload};
     const RtTable table = rt_result_table(which, &row);
     int widths[RT_MAX_TABLE_COLUMNS];
-    bool by_kind = which == RT_CELLS || which == RT_COUNTED_CELLS || which == RT_SPREADS ||
+    bool by_kind = which == RT_CELLS || which == RT_COUNTED_CELLS || which == RT_PERCENTILES ||
                    which == RT_HARDWARE_CELLS,
          any = false;
     RtRayKind kind = RT_RAY_PRIMARY;
@@ -204,7 +204,7 @@ void rt_print_summary(const RtResults *results, FILE *out) {
         rt_print_wrapped(text, out);
     }
     if (experiment->hardware) rt_print_hardware(results, out);
-    rt_print_limits(results, out);
+    rt_print_left_out(results, out);
     rt_claims_print(results, out);
     rt_null_sentence(results, text);
     fputc('\n', out);

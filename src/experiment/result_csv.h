@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The CSV files of a result directory that are made from its cells (measure/previous_results.h lists all
+/* The CSV files of a result directory that are made from its cells (measure/result_files.h lists all
  * files). */
 #ifndef RT_EXPERIMENT_RESULT_CSV_H
 #define RT_EXPERIMENT_RESULT_CSV_H
 
 #include "experiment/results.h"
-#include "measure/previous_results.h"
+#include "measure/result_files.h"
 
 /* When a file is written, and whether its bytes are reproducible. */
 typedef enum RtFileSort {

@@ -46,7 +46,7 @@ static RtStatus take_directory(Run *run, RtError *error) {
     if (options->start != RT_START_ANEW && rt_file_exists(path)) {
         RT_TRY(rt_journal_load(path, run->results, &options->workload.only, options->renew, error));
     }
-    return rt_previous_results_look(options->directory, RT_RUN_JOURNAL, options->start, &run->resumed, error);
+    return rt_result_files_look(options->directory, RT_RUN_JOURNAL, options->start, &run->resumed, error);
 }
 
 static bool is_complete(const Run *run) {
@@ -148,7 +148,7 @@ static RtStatus replace_previous(Run *run, RtError *error) {
     RtOutputs copies = {0};
     RtStatus status = copy_experiment(run, &copies, error);
     if (status == RT_OK && !run->resumed)
-        status = rt_previous_results_remove(run->options->directory, RT_RUN_JOURNAL, error);
+        status = rt_result_files_remove(run->options->directory, RT_RUN_JOURNAL, error);
     if (status == RT_OK) status = rt_outputs_commit(&copies, error);
     rt_outputs_clear(&copies);
     return status;

@@ -22,7 +22,7 @@
 
 #include "experiment/scripts.h"
 #include "experiment/workload.h"
-#include "measure/previous_results.h"
+#include "measure/result_files.h"
 
 /* What else is made from the results of a finished run: report/run_report.h. */
 typedef struct RtRunReport {

@@ -60,15 +60,15 @@ static const void *tally_of(const void *row) {
 }
 
 static const void *known_tally_of(const void *row) {
-    return isnan(((const Row *)row)->all.object_tests) ? NULL : tally_of(row);
+    return isnan(((const Row *)row)->cost.object_tests) ? NULL : tally_of(row);
 }
 
 static const void *structure_of(const void *row) {
-    return &((const Row *)row)->build->shape;
+    return &((const Row *)row)->build->structure;
 }
 
 static const void *build_of(const void *row) {
-    return &((const Row *)row)->build->shape.build;
+    return &((const Row *)row)->build->structure.build;
 }
 
 /* Hardware counters have their own rounds, and so their own machine and threads. */
@@ -80,16 +80,16 @@ static uint32_t threads_of(const Row *r) {
     return (uint32_t)(r->which == RT_HARDWARE ? r->cell->hardware.threads : r->cell->threads);
 }
 
-static double each_ns(const Row *r, RtEach each) {
-    return 1e9 * rt_cell_rounds(r->cell, each)[r->round];
+static double ns_of_round(const Row *r, RtRoundTime which) {
+    return 1e9 * rt_cell_round_times(r->cell, which)[r->round];
 }
 
 /* ---- columns ---- */
 
-#define SPREAD(quantity) (&r->cell->distributions[RT_QUANTITY_##quantity])
-#define LEAVES(quantity) (&r->build->leaves[RT_QUANTITY_##quantity])
-#define EVENT(name)      (r->cell->hardware.counts.of[RT_HARDWARE_##name])
-#define TIMED(figure)    (r->cell->timed ? (figure) : (double)NAN)
+#define OVER_RAYS(quantity)   (&r->cell->distributions[RT_QUANTITY_##quantity])
+#define OVER_LEAVES(quantity) (&r->build->leaves[RT_QUANTITY_##quantity])
+#define EVENT(name)           (r->cell->hardware.counts.of[RT_HARDWARE_##name])
+#define TIMED(figure)         (r->cell->timed ? (figure) : (double)NAN)
 
 #define COLUMNS(X)                                                                                           \
     X(scene, "scene", text, "", "the scene's label in the experiment", r->setup->label)                      \
@@ -108,10 +108,10 @@ static double each_ns(const Row *r, RtEach each) {
     X(spec, "accel", text, "", "the accelerator with every effective parameter", r->build->spec)             \
     X(ray_stride, "ray_stride", integer, "", "k, if only every kth ray of the set is measured",              \
       ray_stride_of(r))                                                                                      \
-    X(rays, "rays", integer, "", "rays measured", r->all.rays)                                               \
+    X(rays, "rays", integer, "", "rays measured", r->cost.rays)                                              \
     X(hits, "hits", integer, "", "those that hit an object", r->cell->tally.hits)                            \
     X(build_seconds, "build_seconds", real6, "s", "time to build; median of up to 3", r->build->seconds)     \
-    X(bytes, "bytes", integer, "bytes", "memory of the structure's arrays", r->build->shape.bytes)           \
+    X(bytes, "bytes", integer, "bytes", "memory of the structure's arrays", r->build->structure.bytes)       \
     X(threads, "threads", integer, "", "threads of the timing", threads_of(r))                               \
     X(rounds, "rounds", integer, "", "timing rounds", r->cell->rounds)                                       \
     X(coverage, "ratio_coverage", real6, "", "probability that an interval contains the median",             \
@@ -125,21 +125,21 @@ static double each_ns(const Row *r, RtEach each) {
     X(wall_ns_low, "wall_ns_low", real6, "ns", "lower end of its interval", 1e9 * r->cell->wall.low)         \
     X(wall_ns_high, "wall_ns_high", real6, "ns", "upper end of its interval", 1e9 * r->cell->wall.high)      \
     X(mrays_per_s, "mrays_per_s", real6, "million/s", "rays per second, by the median",                      \
-      1e-6 / r->all.seconds.median)                                                                          \
+      1e-6 / r->cost.seconds.median)                                                                         \
     X(baseline, "baseline", text, "", "the accelerator that the ratio refers to",                            \
       r->cell->timed ? rt_candidate_label(r->results->experiment, r->cell->baseline) : NULL)                 \
     X(ratio, "ratio", real6, "", "throughput over the baseline's, paired by round; median",                  \
-      r->all.ratio.median)                                                                                   \
-    X(ratio_low, "ratio_low", end, "", "lower end of its interval", r->all.ratio.low)                        \
-    X(ratio_high, "ratio_high", end, "", "upper end of its interval", r->all.ratio.high)                     \
+      r->cost.ratio.median)                                                                                  \
+    X(ratio_low, "ratio_low", end, "", "lower end of its interval", r->cost.ratio.low)                       \
+    X(ratio_high, "ratio_high", end, "", "upper end of its interval", r->cost.ratio.high)                    \
     X(straddles_1, "straddles_1", flag, "", "whether the interval contains 1, as it should in a null run",   \
       rt_field_flag(rt_estimate_holds(&r->cell->ratio, 1)))                                                  \
     X(object_tests, "object_tests", integer, "", "object tests counted here; empty: not known",              \
-      known(r->cell->tally.object_tests, r->all.object_tests))                                               \
+      known(r->cell->tally.object_tests, r->cost.object_tests))                                              \
     X(extent_tests, "extent_tests", integer, "", "extent tests counted here; empty: not known",              \
-      known(r->cell->tally.extent_tests, r->all.extent_tests))                                               \
+      known(r->cell->tally.extent_tests, r->cost.extent_tests))                                              \
     X(steps, "steps", integer, "", "steps counted here; empty: not known",                                   \
-      known(r->cell->tally.steps, r->all.steps))                                                             \
+      known(r->cell->tally.steps, r->cost.steps))                                                            \
     X(differ, "differ", integer, "", "answers that differ from the reference; 0 if exact", r->cell->differ)  \
     X(instructions, "instructions", real6, "", "instructions retired, per ray; median of 5 rounds",          \
       EVENT(instructions))                                                                                   \
@@ -157,45 +157,45 @@ static double each_ns(const Row *r, RtEach each) {
       *r->cell->hardware.why ? r->cell->hardware.why : NULL)                                                 \
     X(host, "host", text, "", "host of the measurement", machine_of(r)->host)                                \
     X(cpu, "cpu", text, "", "its processor", machine_of(r)->cpu)                                             \
-    X(tests_a_ray, "tests/ray", figure, "", "object tests per ray", r->all.object_tests)                     \
-    X(extents_a_ray, "ext./ray", figure, "", "extent tests per ray", r->all.extent_tests)                    \
-    X(steps_a_ray, "steps/ray", figure, "", "steps per ray", r->all.steps)                                   \
-    X(ns_a_ray, "ns/ray", figure, "ns", "median time per ray", 1e9 * r->all.seconds.median)                  \
+    X(tests_a_ray, "tests/ray", figure, "", "object tests per ray", r->cost.object_tests)                    \
+    X(extents_a_ray, "ext./ray", figure, "", "extent tests per ray", r->cost.extent_tests)                   \
+    X(steps_a_ray, "steps/ray", figure, "", "steps per ray", r->cost.steps)                                  \
+    X(ns_a_ray, "ns/ray", figure, "ns", "median time per ray", 1e9 * r->cost.seconds.median)                 \
     X(ns_interval, "ns/ray", interval, "ns", "median time per ray, with its interval",                       \
-      estimate(&r->all.seconds, 1e-9))                                                                       \
+      estimate(&r->cost.seconds, 1e-9))                                                                      \
     X(eye_label, "accelerator", text, "", "the label, if there is room", short_label_of(r))                  \
-    X(eye_tests, "tests", figure, "", "object tests per ray", r->all.object_tests)                           \
-    X(eye_extents, "ext.", figure, "", "extent tests per ray", r->all.extent_tests)                          \
-    X(eye_steps, "steps", figure, "", "steps per ray", r->all.steps)                                         \
-    X(mrays, "Mrays/s", figure, "million/s", "throughput", 1e-6 / r->all.seconds.median)                     \
-    X(interval, "ratio", interval, "", "throughput over the baseline's", estimate(&r->all.ratio, 1))         \
+    X(eye_tests, "tests", figure, "", "object tests per ray", r->cost.object_tests)                          \
+    X(eye_extents, "ext.", figure, "", "extent tests per ray", r->cost.extent_tests)                         \
+    X(eye_steps, "steps", figure, "", "steps per ray", r->cost.steps)                                        \
+    X(mrays, "Mrays/s", figure, "million/s", "throughput", 1e-6 / r->cost.seconds.median)                    \
+    X(interval, "ratio", interval, "", "throughput over the baseline's", estimate(&r->cost.ratio, 1))        \
     X(build_ms, "build ms", amount, "ms", "time to build the structure", 1e3 * r->build->seconds)            \
-    X(mb, "MB", amount, "MB", "memory of the structure", 1e-6 * (double)r->build->shape.bytes)               \
+    X(mb, "MB", amount, "MB", "memory of the structure", 1e-6 * (double)r->build->structure.bytes)           \
     X(break_even, "break-even (rays)", text, "rays",                                                         \
       "the number of rays for which it takes less time than the baseline, including both builds",            \
       break_even_of(r))                                                                                      \
-    X(min_ns, "min ns", figure, "ns", "smallest time per ray", 1e9 * r->all.seconds.least)                   \
+    X(min_ns, "min ns", figure, "ns", "smallest time per ray", 1e9 * r->cost.seconds.least)                  \
     X(msteps_per_s, "msteps_per_s", real6, "million/s", "steps per second: mrays_per_s times steps per ray", \
-      1e-6 * r->all.steps / r->all.seconds.median)                                                           \
+      1e-6 * r->cost.steps / r->cost.seconds.median)                                                         \
     X(mtests_per_s, "mtests_per_s", real6, "million/s",                                                      \
       "object tests per second: mrays_per_s times object tests per ray",                                     \
-      1e-6 * r->all.object_tests / r->all.seconds.median)                                                    \
+      1e-6 * r->cost.object_tests / r->cost.seconds.median)                                                  \
     X(tests_median, "tests: 50 %", integer, "", "object tests that half of the rays do not exceed",          \
-      SPREAD(object_tests)->median)                                                                          \
-    X(tests_p99, "99 %", integer, "", "that 99 % do not exceed", SPREAD(object_tests)->p99)                  \
-    X(tests_most, "most", integer, "", "of the ray that has most", SPREAD(object_tests)->most)               \
+      OVER_RAYS(object_tests)->median)                                                                       \
+    X(tests_p99, "99 %", integer, "", "that 99 % do not exceed", OVER_RAYS(object_tests)->p99)               \
+    X(tests_most, "most", integer, "", "of the ray that has most", OVER_RAYS(object_tests)->most)            \
     X(steps_median, "steps: 50 %", integer, "", "steps that half of the rays do not exceed",                 \
-      SPREAD(steps)->median)                                                                                 \
-    X(steps_p99, "99 %", integer, "", "that 99 % do not exceed", SPREAD(steps)->p99)                         \
-    X(steps_most, "most", integer, "", "of the ray that has most", SPREAD(steps)->most)                      \
+      OVER_RAYS(steps)->median)                                                                              \
+    X(steps_p99, "99 %", integer, "", "that 99 % do not exceed", OVER_RAYS(steps)->p99)                      \
+    X(steps_most, "most", integer, "", "of the ray that has most", OVER_RAYS(steps)->most)                   \
     X(size_median, "leaf size: 50 %", integer, "", "objects that half of the leaves do not exceed",          \
-      LEAVES(leaf_size)->median)                                                                             \
-    X(size_p99, "99 %", integer, "", "that 99 % do not exceed", LEAVES(leaf_size)->p99)                      \
-    X(size_most, "most", integer, "", "of the largest", LEAVES(leaf_size)->most)                             \
+      OVER_LEAVES(leaf_size)->median)                                                                        \
+    X(size_p99, "99 %", integer, "", "that 99 % do not exceed", OVER_LEAVES(leaf_size)->p99)                 \
+    X(size_most, "most", integer, "", "of the largest", OVER_LEAVES(leaf_size)->most)                        \
     X(depth_median, "depth: 50 %", integer, "", "depth that half of the leaves do not exceed",               \
-      LEAVES(leaf_depth)->median)                                                                            \
-    X(depth_p99, "99 %", integer, "", "that 99 % do not exceed", LEAVES(leaf_depth)->p99)                    \
-    X(depth_most, "most", integer, "", "of the deepest", LEAVES(leaf_depth)->most)                           \
+      OVER_LEAVES(leaf_depth)->median)                                                                       \
+    X(depth_p99, "99 %", integer, "", "that 99 % do not exceed", OVER_LEAVES(leaf_depth)->p99)               \
+    X(depth_most, "most", integer, "", "of the deepest", OVER_LEAVES(leaf_depth)->most)                      \
     X(eye_instructions, "instr./ray", figure, "", "instructions", EVENT(instructions))                       \
     X(eye_cycles, "cycles/ray", figure, "", "cycles", EVENT(cycles))                                         \
     X(eye_ipc, "instr./cycle", figure, "", "instructions per cycle", EVENT(instructions) / EVENT(cycles))    \
@@ -203,11 +203,11 @@ static double each_ns(const Row *r, RtEach each) {
     X(eye_branch, "branch m.", figure, "", "mispredicted branches per ray", EVENT(branch_misses))            \
     X(round, "round", integer, "", "number of the round, from 1", r->round + 1)                              \
     X(round_ns, "ns", real6, "ns", "processor time per ray in this round (wall time on several threads)",    \
-      each_ns(r, RT_EACH_SECONDS))                                                                           \
-    X(round_wall_ns, "wall_ns", real6, "ns", "wall time per ray", each_ns(r, RT_EACH_WALL))                  \
+      ns_of_round(r, RT_ROUND_SECONDS))                                                                      \
+    X(round_wall_ns, "wall_ns", real6, "ns", "wall time per ray", ns_of_round(r, RT_ROUND_WALL))             \
     X(round_baseline_ns, "baseline_ns", real6, "ns",                                                         \
       "time per ray of the baseline in this round, on the same rays; divided by ns it is the ratio",         \
-      each_ns(r, RT_EACH_BASELINE))
+      ns_of_round(r, RT_ROUND_BASELINE))
 
 RT_TABLE_COLUMNS(columns, COLUMNS)
 
@@ -220,14 +220,14 @@ RT_TABLE_COLUMNS(columns, COLUMNS)
 #define TABLES(X)                                                                                            \
     X(COUNTS, counted && r->build->counts, FROM_TO(scene, rays),                                             \
       {NULL, rt_tally_columns + 1, RT_TALLY_COUNTER_COUNT - 1, tally_of},                                    \
-      {NULL, rt_structure_columns, RT_SHAPE_COLUMNS, structure_of}, ONE(bytes),                              \
-      {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COLUMNS, structure_of})                  \
+      {NULL, rt_structure_columns, RT_STRUCTURE_COUNTS, structure_of}, ONE(bytes),                           \
+      {NULL, rt_structure_columns + RT_STRUCTURE_COUNTS, RT_PREDICTION_COLUMNS, structure_of})               \
     X(TIMES, timed, FROM_TO(scene, rays), FROM_TO(threads, ratio_high), FROM_TO(build_seconds, bytes),       \
       FROM_TO(object_tests, differ),                                                                         \
-      {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COLUMNS, structure_of},                  \
+      {NULL, rt_structure_columns + RT_STRUCTURE_COUNTS, RT_PREDICTION_COLUMNS, structure_of},               \
       FROM_TO(host, cpu))                                                                                    \
-    X(ROUNDS, timed && r->cell->each && r->round < r->cell->rounds, ONE(scene), ONE(kind), ONE(accel),       \
-      ONE(baseline), FROM_TO(round, round_baseline_ns))                                                      \
+    X(ROUNDS, timed && r->cell->round_times && r->round < r->cell->rounds, ONE(scene), ONE(kind),            \
+      ONE(accel), ONE(baseline), FROM_TO(round, round_baseline_ns))                                          \
     X(HARDWARE, r->cell->hardware.known, ONE(scene), ONE(kind), FROM_TO(accel, spec), ONE(rays),             \
       ONE(threads), FROM_TO(instructions, cpu))                                                              \
     X(BENCH, counted && !null, ONE(scene_spec), FROM_TO(accel, ray_stride), ONE(kind), FROM_TO(rays, bytes), \
@@ -241,10 +241,10 @@ RT_TABLE_COLUMNS(columns, COLUMNS)
     X(STRUCTURES, (first && is_shown(r)), ONE(eye_label), FROM_TO(build_ms, break_even))                     \
     X(COUNTED_CELLS, counted, FROM_TO(eye_label, eye_steps))                                                 \
     X(COUNTED_STRUCTURES, (first && is_shown(r)), ONE(eye_label), ONE(mb),                                   \
-      {NULL, rt_structure_columns, RT_SHAPE_COLUMNS, structure_of})                                          \
-    X(SPREADS, r->cell->distributions && !isnan(r->all.object_tests), ONE(eye_label),                        \
+      {NULL, rt_structure_columns, RT_STRUCTURE_COUNTS, structure_of})                                       \
+    X(PERCENTILES, r->cell->distributions && !isnan(r->cost.object_tests), ONE(eye_label),                   \
       FROM_TO(tests_median, steps_most))                                                                     \
-    X(LEAF_SPREADS, first && r->build->leaves, ONE(eye_label), FROM_TO(size_median, depth_most))             \
+    X(LEAF_PERCENTILES, first && r->build->leaves, ONE(eye_label), FROM_TO(size_median, depth_most))         \
     X(HARDWARE_CELLS, r->cell->hardware.known && !*r->cell->hardware.why, ONE(eye_label),                    \
       FROM_TO(eye_instructions, eye_branch))                                                                 \
     X(CELLS_PAPER, (counted || timed) && !null && !is_lost(r, r->cell), ONE(accel),                          \
@@ -317,7 +317,7 @@ static const void *row_at(void *context, size_t i) {
     const RtExperiment *e = r->results->experiment;
     const bool null = r->candidate == e->candidate_count, first = i < e->candidate_count;
     const bool counted = r->cell->counted, timed = r->cell->timed;
-    r->all = rt_results_cost(r->results, r->workload, r->candidate, is_total(r) ? RT_ALL_RAYS : r->kind);
+    r->cost = rt_results_cost(r->results, r->workload, r->candidate, is_total(r) ? RT_ALL_RAYS : r->kind);
     const bool there[] = {
 #define ROWS(id, rows, ...) [RT_##id] = rows,
         TABLES(ROWS)

@@ -26,10 +26,10 @@ typedef enum RtResultTable {
     RT_STRUCTURES,    /* to read: build time, memory and break-even of each accelerator */
     RT_COUNTED_CELLS, /* both without times: sizes of structures instead */
     RT_COUNTED_STRUCTURES,
-    RT_SPREADS, /* to read: one workload by accelerator and ray kind: medians, 99th percentiles and maxima of
-                   object tests and steps */
-    RT_LEAF_SPREADS,   /* to read: the same of sizes and depths of leaves, by accelerator */
-    RT_HARDWARE_CELLS, /* to read: one workload by accelerator and ray kind: hardware counters */
+    RT_PERCENTILES, /* to read: one workload by accelerator and ray kind: medians, 99th percentiles and maxima
+                   of object tests and steps */
+    RT_LEAF_PERCENTILES, /* to read: the same of sizes and depths of leaves, by accelerator */
+    RT_HARDWARE_CELLS,   /* to read: one workload by accelerator and ray kind: hardware counters */
     /* The following mark the best. */
     RT_CELLS_PAPER,   /* as RT_CELLS, with whole labels and without null runs */
     RT_COUNTED_PAPER, /* the same without times */
@@ -53,7 +53,7 @@ typedef struct RtResultRow {
     const RtWorkloadResult *scene;
     const RtBuildResult *build;
     const RtCell *cell;
-    RtCost all; /* of the cell; of all kinds of rays for RT_TOTALS... */
+    RtCost cost; /* of the cell; of all kinds of rays for RT_TOTALS... */
     uint32_t swept_count;
     RtSweptKey swept[RT_MAX_SWEPT_KEYS];                  /* the swept parameters */
     char swept_names[RT_MAX_SWEPT_KEYS][RT_MAX_NAME + 8]; /* and their columns */
@@ -82,7 +82,7 @@ void rt_print_hardware(const RtResults *results, FILE *out);
 void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workload, FILE *out);
 
 /* What a run ends with: the frames' costs and what follows from them, or the totals if the experiment has no
- * frames; hardware counters; limits; claims; null runs. */
+ * frames; hardware counters; what was left out; claims; null runs. */
 void rt_print_summary(const RtResults *results, FILE *out);
 
 /* "... 12 of 12 intervals include 1, ...", or a warning if fewer do; and the coverage of the intervals if

@@ -22,7 +22,7 @@ void rt_results_clear(RtResults *results) {
     const RtExperiment *e = results->experiment;
     size_t builds = e ? e->workload_count * (e->candidate_count + (size_t)1) : 0;
     for (size_t i = 0; results->cells && i < builds * RT_RAY_KIND_COUNT; i++) {
-        rt_free(results->cells[i].each);
+        rt_free(results->cells[i].round_times);
         rt_free(results->cells[i].distributions);
     }
     for (size_t i = 0; results->builds && i < builds; i++) rt_free(results->builds[i].leaves);
@@ -56,14 +56,15 @@ RtCell *rt_cell_at(const RtResults *results, uint32_t workload, uint32_t candida
     return &results->cells[build_index(results, workload, candidate) * RT_RAY_KIND_COUNT + (size_t)kind];
 }
 
-RtStatus rt_cell_make_rounds(RtCell *cell, RtError *error) {
-    rt_free(cell->each);
-    cell->each = rt_alloc((size_t)RT_EACH_COUNT * cell->rounds, sizeof(double));
-    return cell->each ? RT_OK : rt_fail_memory(error, "the times of rounds", cell->rounds * sizeof(double));
+RtStatus rt_cell_make_round_times(RtCell *cell, RtError *error) {
+    rt_free(cell->round_times);
+    cell->round_times = rt_alloc((size_t)RT_ROUND_TIME_COUNT * cell->rounds, sizeof(double));
+    return cell->round_times ? RT_OK
+                             : rt_fail_memory(error, "the times of rounds", cell->rounds * sizeof(double));
 }
 
-double *rt_cell_rounds(const RtCell *cell, RtEach each) {
-    return cell->each + (size_t)each * cell->rounds;
+double *rt_cell_round_times(const RtCell *cell, RtRoundTime which) {
+    return cell->round_times + (size_t)which * cell->rounds;
 }
 
 const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidate) {
@@ -115,16 +116,16 @@ RtStatus rt_results_check_broken(const RtResults *results, RtError *error) {
     return RT_OK;
 }
 
-void rt_print_limits(const RtResults *results, FILE *out) {
+void rt_print_left_out(const RtResults *results, FILE *out) {
     const RtExperiment *e = results->experiment;
     for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
         const char *scene = e->workloads[at.workload].label, *accel = e->candidates[at.candidate].label;
         const RtBuildResult *build = rt_build_at(results, at.workload, at.candidate);
-        if (*build->limit && at.kind == e->kinds[0])
-            fprintf(out, "Left out: %s on %s: %s\n", accel, scene, build->limit);
-        if (*at.cell->limit)
+        if (*build->left_out && at.kind == e->kinds[0])
+            fprintf(out, "Left out: %s on %s: %s\n", accel, scene, build->left_out);
+        if (*at.cell->left_out)
             fprintf(out, "Left out: %s on %s, %s rays: %s\n", accel, scene, rt_ray_kind_name(at.kind),
-                    at.cell->limit);
+                    at.cell->left_out);
     }
 }
 
@@ -204,10 +205,10 @@ double rt_results_break_even(const RtResults *results, uint32_t workload, uint32
         weights += weight;
         build = fmin(build, rt_build_at(results, workload, cell->baseline)->seconds);
     }
-    double more = rt_build_at(results, workload, candidate)->seconds - build, each = saved / weights;
-    if (isnan(each)) return (double)NAN;
-    if (more <= 0 && each >= 0) return 0;
-    return more * each > 0 ? copysign(more / each, each) : (double)INFINITY;
+    double more = rt_build_at(results, workload, candidate)->seconds - build, a_ray = saved / weights;
+    if (isnan(a_ray)) return (double)NAN;
+    if (more <= 0 && a_ray >= 0) return 0;
+    return more * a_ray > 0 ? copysign(more / a_ray, a_ray) : (double)INFINITY;
 }
 
 /* ---- the best ---- */

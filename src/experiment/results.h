@@ -14,7 +14,7 @@
 
 #include <stdio.h>
 
-#define RT_MAX_LIMIT 512
+#define RT_MAX_LEFT_OUT 512
 
 typedef struct RtWorkloadResult {
     bool known;   /* the scene was opened and its rays recorded */
@@ -30,17 +30,23 @@ typedef struct RtBuildResult {
     bool known, exact, counts;    /* as in RtAccel */
     char spec[RT_MAX_SPEC_CHARS]; /* every effective parameter */
     double seconds;               /* median of up to three builds */
-    /* The limit that it exceeded, or how it is `broken`: no cell of it is measured; else "". */
-    char limit[RT_MAX_LIMIT];
+    /* Why no cell of it is measured: the limit that it exceeded, or the message of a `broken` plugin; or "".
+     */
+    char left_out[RT_MAX_LEFT_OUT];
     bool broken; /* a plugin's fault */
-    RtDescription shape;
+    RtDescription structure;
     RtDistribution
         *leaves; /* [RT_LEAF_QUANTITY_COUNT] owned, of the base; NULL: not asked for, or it has none */
 } RtBuildResult;
 
 /* Times of each round in seconds per ray: by the clock of the comparison, by the wall clock, and the
  * baseline's on the same rays by the clock of the comparison. */
-typedef enum RtEach { RT_EACH_SECONDS, RT_EACH_WALL, RT_EACH_BASELINE, RT_EACH_COUNT } RtEach;
+typedef enum RtRoundTime {
+    RT_ROUND_SECONDS,
+    RT_ROUND_WALL,
+    RT_ROUND_BASELINE,
+    RT_ROUND_TIME_COUNT
+} RtRoundTime;
 
 /* Hardware counters of a cell. */
 #define RT_MAX_WHY 192
@@ -54,20 +60,20 @@ typedef struct RtCellHardware {
 
 typedef struct RtCell {
     bool counted, timed;
-    /* Why it is not measured: the limit that it would exceed, or how it is `broken`; else "". */
-    char limit[RT_MAX_LIMIT];
+    /* Why it is not measured: the limit that it would exceed, or the message of a `broken` plugin; or "". */
+    char left_out[RT_MAX_LEFT_OUT];
     bool broken;                   /* a plugin's fault */
     RtTally tally;                 /* tally.rays: of the thinned set */
     uint64_t differ;               /* answers that differ from the reference's; 0 for exact accelerators */
     RtDistribution *distributions; /* [RT_RAY_QUANTITY_COUNT] owned; NULL: not asked for */
     uint32_t rounds;
-    int threads;        /* of the timing */
-    uint32_t machine;   /* that timed it, in RtResults.machines */
-    RtEstimate seconds; /* per ray: processor time on one thread, wall time on several */
-    RtEstimate wall;    /* per ray, by the wall clock */
-    RtEstimate ratio;   /* of throughput to the baseline's on the same rays, paired by round */
-    double *each;       /* [RT_EACH_COUNT][rounds] owned: every round's time; NULL: not kept */
-    uint32_t baseline;  /* its candidate: of several the fastest on these rays */
+    int threads;         /* of the timing */
+    uint32_t machine;    /* that timed it, in RtResults.machines */
+    RtEstimate seconds;  /* per ray: processor time on one thread, wall time on several */
+    RtEstimate wall;     /* per ray, by the wall clock */
+    RtEstimate ratio;    /* of throughput to the baseline's on the same rays, paired by round */
+    double *round_times; /* [RT_ROUND_TIME_COUNT][rounds] owned; NULL: not kept */
+    uint32_t baseline;   /* its candidate: of several the fastest on these rays */
     RtCellHardware hardware;
 } RtCell;
 
@@ -92,8 +98,8 @@ RtBuildResult *rt_build_at(const RtResults *results, uint32_t workload, uint32_t
 RtCell *rt_cell_at(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind);
 
 /* Allocates the times of the cell's `rounds` rounds; returns one kind of them, [rounds]. */
-RtStatus rt_cell_make_rounds(RtCell *cell, RtError *error);
-double *rt_cell_rounds(const RtCell *cell, RtEach each);
+RtStatus rt_cell_make_round_times(RtCell *cell, RtError *error);
+double *rt_cell_round_times(const RtCell *cell, RtRoundTime which);
 
 /* The candidate's label; for the null run the baseline's and " (again)". */
 const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidate);
@@ -116,8 +122,8 @@ void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddl
 /* RT_BROKEN with the first plugin that broke, if any did. */
 RtStatus rt_results_check_broken(const RtResults *results, RtError *error);
 
-/* Prints a line for each exceeded limit, with the cells that were left out. */
-void rt_print_limits(const RtResults *results, FILE *out);
+/* Prints a line for each structure and each cell that was left out, with the reason. */
+void rt_print_left_out(const RtResults *results, FILE *out);
 
 /* Whether any candidate was measured on the workload's rays of that kind. */
 bool rt_results_has_kind(const RtResults *results, uint32_t workload, RtRayKind kind);

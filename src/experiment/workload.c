@@ -13,7 +13,7 @@ static bool kind_is_done(const RtWorkloadState *workload, RtRayKind kind) {
     for (uint32_t c = 0; c < workload->count; c++) {
         const RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
         bool null = c == workload->experiment->candidate_count;
-        if (!rt_workload_runs(workload, c) || *cell->limit) continue;
+        if (!rt_workload_runs(workload, c) || *cell->left_out) continue;
         if ((!cell->counted && !null) || (!cell->timed && !workload->count_only)) return false;
         if (workload->hardware && !cell->hardware.known && !null) return false;
         if (workload->distributions && !cell->distributions && !null) return false;
@@ -173,7 +173,7 @@ static RtStatus build_one(RtWorkloadState *workload, const RtSpec *spec, RtAccel
     return RT_OK;
 }
 
-/* Builds a candidate within the limits. If it exceeds one, it is destroyed, and result->limit names the
+/* Builds a candidate within the limits. If it exceeds one, it is destroyed, and result->left_out names the
  * limit. */
 static RtStatus build_within(RtWorkloadState *workload, uint32_t c, const RtSpec *spec, double *seconds,
                              RtError *error) {
@@ -187,23 +187,23 @@ static RtStatus build_within(RtWorkloadState *workload, uint32_t c, const RtSpec
     bool broken = status == RT_BROKEN || (status != RT_OK && !too_large && rt_spec_is_remote(spec));
     if (status != RT_OK && !broken && !too_large) return status;
     if (broken) {
-        snprintf(result->limit, RT_MAX_LIMIT, "%.511s", error->message);
+        snprintf(result->left_out, RT_MAX_LEFT_OUT, "%.511s", error->message);
         result->broken = true;
-        return rt_workload_leave_out(workload, c, RT_EVENT_BROKEN_BUILD, RT_RAY_PRIMARY, result->limit,
+        return rt_workload_leave_out(workload, c, RT_EVENT_BROKEN_BUILD, RT_RAY_PRIMARY, result->left_out,
                                      error);
     }
     if (too_large) {
-        snprintf(result->limit, RT_MAX_LIMIT, "its structure takes more than %llu MB",
+        snprintf(result->left_out, RT_MAX_LEFT_OUT, "its structure takes more than %llu MB",
                  (unsigned long long)experiment->limit_megabytes);
     } else if (experiment->limit_seconds > 0 && *seconds > experiment->limit_seconds) {
-        snprintf(result->limit, RT_MAX_LIMIT, "building takes %.3g s, more than %g s", *seconds,
+        snprintf(result->left_out, RT_MAX_LEFT_OUT, "building takes %.3g s, more than %g s", *seconds,
                  experiment->limit_seconds);
     } else {
         return RT_OK;
     }
     rt_accel_destroy(workload->built[c]);
     workload->built[c] = NULL;
-    return rt_workload_leave_out(workload, c, RT_EVENT_TOO_LARGE, RT_RAY_PRIMARY, result->limit, error);
+    return rt_workload_leave_out(workload, c, RT_EVENT_TOO_LARGE, RT_RAY_PRIMARY, result->left_out, error);
 }
 
 static RtStatus build_all(RtWorkloadState *workload, RtError *error) {
@@ -218,7 +218,7 @@ static RtStatus build_all(RtWorkloadState *workload, RtError *error) {
         *result = (RtBuildResult){.known = true, .exact = accel->exact, .counts = accel->counts};
         result->seconds = seconds;
         rt_spec_format(spec, result->spec);
-        rt_accel_describe(accel, &result->shape);
+        rt_accel_describe(accel, &result->structure);
         if (workload->distributions) RT_TRY(distribute_leaves(accel, result, error));
         RT_TRY(rt_workload_tell(workload, RT_EVENT_BUILD, c, RT_RAY_PRIMARY, error));
     }
@@ -255,7 +255,7 @@ static RtStatus choose_accels(RtWorkloadState *workload, RtRayKind kind, RtError
     for (uint32_t c = 0; c < workload->count; c++) {
         const RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
         RtStatus status = rebuild_broken(workload, c, error);
-        workload->accels[c] = status != RT_OK || *cell->limit ? NULL : workload->built[c];
+        workload->accels[c] = status != RT_OK || *cell->left_out ? NULL : workload->built[c];
         if (status != RT_OK) RT_TRY(rt_workload_break(workload, c, kind, error));
     }
     return RT_OK;

@@ -51,7 +51,7 @@ RtStatus rt_only_check(const RtOnly *only, const RtExperiment *e, RtError *error
 bool rt_workload_runs(const RtWorkloadState *workload, uint32_t c) {
     return rt_candidate_runs(workload->experiment, c, workload->index) &&
            rt_only_accel(&workload->options->only, workload->experiment, c) &&
-           !*rt_build_at(workload->results, workload->index, c)->limit;
+           !*rt_build_at(workload->results, workload->index, c)->left_out;
 }
 
 /* ---- reports ---- */
@@ -87,8 +87,8 @@ RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKin
 
 RtStatus rt_workload_break(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtError *error) {
     RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
-    snprintf(cell->limit, RT_MAX_LIMIT, "%.511s", error->message);
+    snprintf(cell->left_out, RT_MAX_LEFT_OUT, "%.511s", error->message);
     cell->broken = true;
     workload->accels[c] = NULL;
-    return rt_workload_leave_out(workload, c, RT_EVENT_BROKEN, kind, cell->limit, error);
+    return rt_workload_leave_out(workload, c, RT_EVENT_BROKEN, kind, cell->left_out, error);
 }

@@ -170,10 +170,10 @@ static RtStatus keep_times(RtWorkloadState *workload, RtRayKind kind, const Timi
         const RtTimed *own = &run->timed[run->place[c]];
         const RtTimed *baseline = &run->timed[run->baseline_entry[c] + best];
         cell->rounds = rounds;
-        RT_TRY(rt_cell_make_rounds(cell, error));
-        memcpy(rt_cell_rounds(cell, RT_EACH_SECONDS), own->seconds, rounds * sizeof(double));
-        memcpy(rt_cell_rounds(cell, RT_EACH_WALL), own->wall, rounds * sizeof(double));
-        memcpy(rt_cell_rounds(cell, RT_EACH_BASELINE), baseline->seconds, rounds * sizeof(double));
+        RT_TRY(rt_cell_make_round_times(cell, error));
+        memcpy(rt_cell_round_times(cell, RT_ROUND_SECONDS), own->seconds, rounds * sizeof(double));
+        memcpy(rt_cell_round_times(cell, RT_ROUND_WALL), own->wall, rounds * sizeof(double));
+        memcpy(rt_cell_round_times(cell, RT_ROUND_BASELINE), baseline->seconds, rounds * sizeof(double));
         cell->timed = true;
         cell->threads = rt_thread_count(workload->options->timing);
         cell->machine = machine;

@@ -60,14 +60,14 @@ static double count_rays(const RtResults *results, uint32_t workload, RtColumn c
 }
 
 static double measure_row(const RtResults *results, const RtPublishedRow *row, RtColumn column) {
-    const RtDescription *shape = &rt_build_at(results, row->workload, row->candidate)->shape;
+    const RtDescription *structure = &rt_build_at(results, row->workload, row->candidate)->structure;
     RtTally tally = tally_of(results, row->workload, row->candidate);
     double rays = (double)tally.rays; /* 0: figures per ray are NAN */
     switch (column) {
-    case RT_COLUMN_interior: return (double)shape->interior;
-    case RT_COLUMN_leaves: return (double)shape->leaves;
-    case RT_COLUMN_empty_leaves: return (double)shape->empty_leaves;
-    case RT_COLUMN_references: return (double)shape->references;
+    case RT_COLUMN_interior: return (double)structure->interior;
+    case RT_COLUMN_leaves: return (double)structure->leaves;
+    case RT_COLUMN_empty_leaves: return (double)structure->empty_leaves;
+    case RT_COLUMN_references: return (double)structure->references;
     case RT_COLUMN_object_tests:
         return (double)tally.object_tests / (row->per_hit ? (double)tally.hits : rays);
     case RT_COLUMN_steps: return (double)tally.steps / rays;

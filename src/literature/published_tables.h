@@ -6,7 +6,7 @@
 
 #include "core/text/table.h"
 #include "literature/published.h"
-#include "measure/previous_results.h"
+#include "measure/result_files.h"
 
 typedef enum RtPublishedTable {
     RT_FIGURES,          /* published.csv: a row per figure */

@@ -12,7 +12,7 @@
 #include "experiment/manifest.h"
 #include "experiment/result_tables.h"
 #include "literature/published_tables.h"
-#include "measure/previous_results.h"
+#include "measure/result_files.h"
 #include "report/color.h"
 #include "report/page.h"
 #include "report/paper_tables.h"
@@ -364,7 +364,7 @@ static void put_method(FILE *out, const RtResults *results, const json_t *manife
         rt_html_wrap(out, "", rt_tally_meaning(i), "</dd>\n");
     }
     fputs("</dl></details>\n<pre class=\"meta\">", out);
-    rt_print_limits(results, out);
+    rt_print_left_out(results, out);
     fputs("</pre>\n<details open><summary>Manifest</summary><dl>", out);
     put_members(out, manifest);
     put_members(out, json_object_get(manifest, "machine"));

@@ -105,14 +105,14 @@ static RtStatus take_folder(Run *run, bool *resumed, RtError *error) {
     const char *folder = run->verify->folder;
     if (!folder || rt_lock_is_held(&run->lock)) return RT_OK;
     RT_TRY(rt_lock_take(&run->lock, folder, error));
-    return rt_previous_results_look(folder, RT_VERIFY_JOURNAL, run->verify->start, resumed, error);
+    return rt_result_files_look(folder, RT_VERIFY_JOURNAL, run->verify->start, resumed, error);
 }
 
 static RtStatus open_journal(Run *run, bool resumed, RtError *error) {
     char path[RT_MAX_PATH];
     RT_TRY(rt_path_join(run->verify->folder, RT_VERIFY_JOURNAL, path, error));
     if (resumed) RT_TRY(load_known(run, path, error));
-    if (!resumed) RT_TRY(rt_previous_results_remove(run->verify->folder, RT_VERIFY_JOURNAL, error));
+    if (!resumed) RT_TRY(rt_result_files_remove(run->verify->folder, RT_VERIFY_JOURNAL, error));
     return rt_json_lines_open(&run->journal, path, resumed ? NULL : run->header, error);
 }
 

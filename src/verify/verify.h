@@ -9,7 +9,7 @@
 #ifndef RT_VERIFY_VERIFY_H
 #define RT_VERIFY_VERIFY_H
 
-#include "measure/previous_results.h"
+#include "measure/result_files.h"
 #include "verify/failure.h"
 #include "verify/verify_rays.h"
 

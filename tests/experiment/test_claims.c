@@ -150,7 +150,7 @@ RT_TEST(a_kind_of_rays_that_one_side_lacks_leaves_a_claim_about_all_kinds_undeci
     expect(RT_CLAIM_FALSE, ahead, "5.20");
     expect(RT_CLAIM_FALSE, faster, "5.25");
     assert_int_equal(rt_standing(&results, 0, 0, RT_RAY_KIND_COUNT), RT_STANDING_BEST);
-    *dear = (RtCell){.limit = "it would take about 3 s, more than 1 s"};
+    *dear = (RtCell){.left_out = "it would take about 3 s, more than 1 s"};
     expect(RT_CLAIM_UNDECIDED, ahead, "no measurements");
     expect(RT_CLAIM_UNDECIDED, faster, "no measurements");
     expect(RT_CLAIM_HOLDS,

@@ -149,9 +149,9 @@ RT_TEST(sums_over_rays_are_the_counts_and_leaves_are_those_of_the_structure) {
         }
         assert_true(!build->leaves == (c == 0)); /* brute has none */
         if (!build->leaves) continue;
-        assert_int_equal(build->leaves[RT_QUANTITY_leaf_size].count, build->shape.leaves);
-        assert_int_equal(build->leaves[RT_QUANTITY_leaf_size].sum, build->shape.references);
-        assert_int_equal(build->leaves[RT_QUANTITY_leaf_depth].most, build->shape.depth);
+        assert_int_equal(build->leaves[RT_QUANTITY_leaf_size].count, build->structure.leaves);
+        assert_int_equal(build->leaves[RT_QUANTITY_leaf_size].sum, build->structure.references);
+        assert_int_equal(build->leaves[RT_QUANTITY_leaf_depth].most, build->structure.depth);
     }
     rt_results_clear(&results);
     rt_free(e);

@@ -387,7 +387,7 @@ static uint32_t rounds_until(double until, double patience, char says[256]) {
     const RtCell *null = rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
     uint32_t rounds = null->rounds;
     assert_true((rt_estimate_width(&null->ratio) <= until) == (says[0] == '\0'));
-    assert_non_null(null->each);
+    assert_non_null(null->round_times);
     rt_results_clear(&results);
     rt_free(e);
     return rounds;

@@ -40,7 +40,7 @@ static void load_sides(const Place *place, Sides *sides) {
             for (uint32_t k = 0; k < 2; k++) {
                 RtCell *cell = rt_cell_at(&sides->results[i], 0, c, sides->experiments[i].kinds[k]);
                 assert_int_equal(cell->rounds, 12);
-                double *seconds = rt_cell_rounds(cell, RT_EACH_SECONDS);
+                double *seconds = rt_cell_round_times(cell, RT_ROUND_SECONDS);
                 for (uint32_t r = 0; r < 12; r++)
                     seconds[r] = 1e-7 * (1 + 0.001 * (double)((5 * r + 3 * (uint32_t)i) % 12));
             }
@@ -60,7 +60,7 @@ static RtCell *after_cell(const Sides *sides, uint32_t candidate, RtRayKind kind
 
 static void scale(const Sides *sides, uint32_t candidate, RtRayKind kind, double factor) {
     RtCell *cell = after_cell(sides, candidate, kind);
-    for (uint32_t r = 0; r < cell->rounds; r++) rt_cell_rounds(cell, RT_EACH_SECONDS)[r] *= factor;
+    for (uint32_t r = 0; r < cell->rounds; r++) rt_cell_round_times(cell, RT_ROUND_SECONDS)[r] *= factor;
 }
 
 static const RtComparedCell *compared(Sides *sides, const char *accel, const char *kind) {
@@ -118,8 +118,8 @@ RT_TEST_IN_PLACE(cells_that_do_not_compare_say_why) {
     Sides sides;
     load_sides(*state, &sides);
     sides.results[1].workloads[0].ray_fingerprints[RT_RAY_RANDOM]++;
-    rt_free(after_cell(&sides, 0, RT_RAY_PRIMARY)->each);
-    after_cell(&sides, 0, RT_RAY_PRIMARY)->each = NULL;
+    rt_free(after_cell(&sides, 0, RT_RAY_PRIMARY)->round_times);
+    after_cell(&sides, 0, RT_RAY_PRIMARY)->round_times = NULL;
     strcpy(sides.experiments[1].candidates[1].label, "grid2");
     assert_ok(rt_compare_results(&sides.results[0], &sides.results[1], &sides.comparison, error));
     assert_int_equal(compared(&sides, "bvh", "primary")->change, RT_CHANGE_NOT_TIMED);

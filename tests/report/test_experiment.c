@@ -73,8 +73,8 @@ RT_TEST_IN_PLACE(the_work_of_a_build_is_in_the_journal) {
     write_changed(place, "small.yaml", small_experiment, "accel: ideal", "accel: item+bvh");
     assert_ok(run(place, "out", false, 1, nobody, error));
     assert_ok(rt_run_load(path_in(place, "out").text, place->experiment, &results, error));
-    assert_int_equal(rt_build_at(&results, 0, 1)->shape.build.object_tests, 0);
-    assert_true(rt_build_at(&results, 0, 3)->shape.build.object_tests > 0);
+    assert_int_equal(rt_build_at(&results, 0, 1)->structure.build.object_tests, 0);
+    assert_true(rt_build_at(&results, 0, 3)->structure.build.object_tests > 0);
     rt_results_clear(&results);
 }
 

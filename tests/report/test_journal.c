@@ -44,7 +44,7 @@ RT_TEST_IN_PLACE(a_journal_without_the_times_of_rounds_is_read) {
     for (char *at = written; (at = strstr(at, "\"each_")) != NULL;) memcpy(at, "\"EACH_", 6);
     assert_ok(read_journal(place, written, &results, error));
     const RtCell *cell = rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
-    assert_true(cell->timed && cell->rounds == 3 && !cell->each);
+    assert_true(cell->timed && cell->rounds == 3 && !cell->round_times);
     rt_results_clear(&results);
 }
 
@@ -60,7 +60,7 @@ RT_TEST_IN_PLACE(a_line_of_more_rounds_without_their_times_takes_the_place_of_on
     for (char *at = again; (at = strstr(at, "\"rounds\":3")) != NULL;) memcpy(at, "\"rounds\":9", 10);
     assert_ok(read_journal(place, both, &results, error));
     const RtCell *cell = rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
-    assert_true(cell->timed && cell->rounds == 9 && !cell->each);
+    assert_true(cell->timed && cell->rounds == 9 && !cell->round_times);
     rt_results_clear(&results);
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "measure/previous_results.h"
+#include "measure/result_files.h"
 
 #include "core/base/file.h"
 #include "core/base/memory.h"
@@ -16,7 +16,7 @@ const char *const rt_result_files[RT_RESULT_FILE_COUNT] = {
 /* Files that are removed: all except the last, the copy of the experiment. */
 enum { RESULTS = RT_FILE_EXPERIMENT };
 
-bool rt_previous_results_has(const char *name) {
+bool rt_is_result_file(const char *name) {
     int i = 0;
     while (i < RT_RESULT_FILE_COUNT && strcmp(name, rt_result_files[i]) != 0) i++;
     return i < RT_RESULT_FILE_COUNT;
@@ -42,8 +42,8 @@ static const char *find_result(const char *directory) {
     return NULL;
 }
 
-RtStatus rt_previous_results_look(const char *directory, const char *journal, RtStart start, bool *goes_on,
-                                  RtError *error) {
+RtStatus rt_result_files_look(const char *directory, const char *journal, RtStart start, bool *goes_on,
+                              RtError *error) {
     const char *result = find_result(directory);
     bool whole = rt_file_exists_in(directory, journal), removed = is_given_up(directory, journal);
     bool finished = rt_file_exists_in(directory, RT_MANIFEST) && !removed;
@@ -75,7 +75,7 @@ static void remove_each(const char *directory, const char *folder, const char *s
         rt_directory_each(path, suffix, remove_file, NULL);
 }
 
-RtStatus rt_previous_results_remove(const char *directory, const char *journal, RtError *error) {
+RtStatus rt_result_files_remove(const char *directory, const char *journal, RtError *error) {
     char path[RT_MAX_PATH];
     if (!find_result(directory)) return RT_OK;
     RT_TRY(rt_path_join(directory, journal, path, error));

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The files of a result directory, and how results of a previous run are treated: nothing is overwritten
  * unless the user asks for it. */
-#ifndef RT_MEASURE_PREVIOUS_RESULTS_H
-#define RT_MEASURE_PREVIOUS_RESULTS_H
+#ifndef RT_MEASURE_RESULT_FILES_H
+#define RT_MEASURE_RESULT_FILES_H
 
 #include "core/base/status.h"
 
@@ -52,17 +52,17 @@ extern const char *const rt_result_files[RT_RESULT_FILE_COUNT];
 #define RT_MANIFEST       "manifest.json"
 
 /* Whether `name` is a file of result directories. */
-bool rt_previous_results_has(const char *name);
+bool rt_is_result_file(const char *name);
 
 /* *goes_on gets whether the start continues a journal. Rejects results that must not be touched: any by a
  * fresh start, and those without a journal by one that resumes, unless they were given up. */
-RtStatus rt_previous_results_look(const char *directory, const char *journal, RtStart start, bool *goes_on,
-                                  RtError *error);
+RtStatus rt_result_files_look(const char *directory, const char *journal, RtStart start, bool *goes_on,
+                              RtError *error);
 
 /* Removes all results in the directory: tables, manifest, report, pictures, plots, and the journal of the
  * other kind. Scripts, replay files and everything else stay. First, one line that marks the results as given
  * up replaces the journal in one step: if the process ends at any time, either nothing was removed, or a
  * start that resumes begins anew. */
-RtStatus rt_previous_results_remove(const char *directory, const char *journal, RtError *error);
+RtStatus rt_result_files_remove(const char *directory, const char *journal, RtError *error);
 
 #endif
