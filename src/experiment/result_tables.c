@@ -216,68 +216,76 @@ RT_TABLE_COLUMNS(columns, COLUMNS)
 #define FROM_TO(first, last) RT_FROM_TO(columns, first, last)
 #define ONE(id)              RT_ONE(columns, id)
 
-/* X(TABLE, which rows it has, its columns...) */
+/* What tables are and have. */
+enum {
+    ALL_SCENES = 1, /* by workload, then accelerator with the null run last, then kind; else one workload, by
+                       kind, then accelerator */
+    ALL_KINDS = 2,  /* a row is of all kinds of rays together */
+    SWEPT = 4,      /* a column for each swept parameter */
+    BEST = 8        /* marks of the best */
+};
+
+/* X(TABLE, what it is and has, which rows it has, its columns...) */
 #define TABLES(X)                                                                                            \
-    X(COUNTS, counted && r->build->counts, FROM_TO(scene, rays),                                             \
+    X(COUNTS, ALL_SCENES | SWEPT, counted && r->build->counts, FROM_TO(scene, rays),                         \
       {NULL, rt_tally_columns + 1, RT_TALLY_COUNTER_COUNT - 1, tally_of},                                    \
       {NULL, rt_structure_columns, RT_STRUCTURE_COUNTS, structure_of}, ONE(bytes),                           \
       {NULL, rt_structure_columns + RT_STRUCTURE_COUNTS, RT_PREDICTION_COLUMNS, structure_of})               \
-    X(TIMES, timed, FROM_TO(scene, rays), FROM_TO(threads, ratio_high), FROM_TO(build_seconds, bytes),       \
-      FROM_TO(object_tests, differ),                                                                         \
+    X(TIMES, ALL_SCENES | SWEPT, timed, FROM_TO(scene, rays), FROM_TO(threads, ratio_high),                  \
+      FROM_TO(build_seconds, bytes), FROM_TO(object_tests, differ),                                          \
       {NULL, rt_structure_columns + RT_STRUCTURE_COUNTS, RT_PREDICTION_COLUMNS, structure_of},               \
       FROM_TO(host, cpu))                                                                                    \
-    X(ROUNDS, timed && r->cell->round_times && r->round < r->cell->rounds, ONE(scene), ONE(kind),            \
-      ONE(accel), ONE(baseline), FROM_TO(round, round_baseline_ns))                                          \
-    X(HARDWARE, r->cell->hardware.known, ONE(scene), ONE(kind), FROM_TO(accel, spec), ONE(rays),             \
+    X(ROUNDS, ALL_SCENES | SWEPT, timed && r->cell->round_times && r->round < r->cell->rounds, ONE(scene),   \
+      ONE(kind), ONE(accel), ONE(baseline), FROM_TO(round, round_baseline_ns))                               \
+    X(HARDWARE, ALL_SCENES, r->cell->hardware.known, ONE(scene), ONE(kind), FROM_TO(accel, spec), ONE(rays), \
       ONE(threads), FROM_TO(instructions, cpu))                                                              \
-    X(BENCH, counted && !null, ONE(scene_spec), FROM_TO(accel, ray_stride), ONE(kind), FROM_TO(rays, bytes), \
-      {"structure", rt_structure_columns, RT_STRUCTURE_COLUMNS, structure_of},                               \
+    X(BENCH, SWEPT, counted && !null, ONE(scene_spec), FROM_TO(accel, ray_stride), ONE(kind),                \
+      FROM_TO(rays, bytes), {"structure", rt_structure_columns, RT_STRUCTURE_COLUMNS, structure_of},         \
       {"structure.build", rt_tally_columns, RT_TALLY_COUNTER_COUNT, build_of},                               \
       {"counts", rt_tally_columns, RT_TALLY_COUNTER_COUNT, known_tally_of}, FROM_TO(threads, mrays_per_s),   \
       FROM_TO(msteps_per_s, mtests_per_s), FROM_TO(baseline, ratio_high))                                    \
-    X(NULL_RUNS, (timed && null), ONE(scene_spec), ONE(kind), FROM_TO(accel, spec), ONE(rays),               \
+    X(NULL_RUNS, 0, (timed && null), ONE(scene_spec), ONE(kind), FROM_TO(accel, spec), ONE(rays),            \
       FROM_TO(build_seconds, straddles_1))                                                                   \
-    X(CELLS, (counted || timed) && !is_lost(r, r->cell), FROM_TO(eye_label, interval))                       \
-    X(STRUCTURES, (first && is_shown(r)), ONE(eye_label), FROM_TO(build_ms, break_even))                     \
-    X(COUNTED_CELLS, counted, FROM_TO(eye_label, eye_steps))                                                 \
-    X(COUNTED_STRUCTURES, (first && is_shown(r)), ONE(eye_label), ONE(mb),                                   \
+    X(CELLS, 0, (counted || timed) && !is_lost(r, r->cell), FROM_TO(eye_label, interval))                    \
+    X(STRUCTURES, 0, (first && is_shown(r)), ONE(eye_label), FROM_TO(build_ms, break_even))                  \
+    X(COUNTED_CELLS, 0, counted, FROM_TO(eye_label, eye_steps))                                              \
+    X(COUNTED_STRUCTURES, 0, (first && is_shown(r)), ONE(eye_label), ONE(mb),                                \
       {NULL, rt_structure_columns, RT_STRUCTURE_COUNTS, structure_of})                                       \
-    X(PERCENTILES, r->cell->distributions && !isnan(r->cost.object_tests), ONE(eye_label),                   \
+    X(PERCENTILES, 0, r->cell->distributions && !isnan(r->cost.object_tests), ONE(eye_label),                \
       FROM_TO(tests_median, steps_most))                                                                     \
-    X(LEAF_PERCENTILES, first && r->build->leaves, ONE(eye_label), FROM_TO(size_median, depth_most))         \
-    X(HARDWARE_CELLS, r->cell->hardware.known && !*r->cell->hardware.why, ONE(eye_label),                    \
+    X(LEAF_PERCENTILES, 0, first && r->build->leaves, ONE(eye_label), FROM_TO(size_median, depth_most))      \
+    X(HARDWARE_CELLS, 0, r->cell->hardware.known && !*r->cell->hardware.why, ONE(eye_label),                 \
       FROM_TO(eye_instructions, eye_branch))                                                                 \
-    X(CELLS_PAPER, (counted || timed) && !null && !is_lost(r, r->cell), ONE(accel),                          \
+    X(CELLS_PAPER, BEST, (counted || timed) && !null && !is_lost(r, r->cell), ONE(accel),                    \
       FROM_TO(eye_tests, interval))                                                                          \
-    X(COUNTED_PAPER, counted && !null, ONE(accel), FROM_TO(eye_tests, eye_steps))                            \
-    X(CELLS_MORE, counted || timed, ONE(accel), ONE(kind), ONE(rays), FROM_TO(tests_a_ray, steps_a_ray),     \
-      ONE(ns_interval), FROM_TO(mrays, interval), ONE(min_ns), ONE(differ))                                  \
-    X(TOTALS, first && r->build->known, ONE(accel), ONE(rays), FROM_TO(tests_a_ray, ns_a_ray),               \
-      FROM_TO(interval, break_even))                                                                         \
-    X(TOTALS_MORE, first && r->build->known, ONE(accel), ONE(rays), FROM_TO(tests_a_ray, steps_a_ray),       \
-      ONE(ns_interval), FROM_TO(interval, break_even))
+    X(COUNTED_PAPER, BEST, counted && !null, ONE(accel), FROM_TO(eye_tests, eye_steps))                      \
+    X(CELLS_MORE, BEST, counted || timed, ONE(accel), ONE(kind), ONE(rays),                                  \
+      FROM_TO(tests_a_ray, steps_a_ray), ONE(ns_interval), FROM_TO(mrays, interval), ONE(min_ns),            \
+      ONE(differ))                                                                                           \
+    X(TOTALS, ALL_KINDS | BEST, first && r->build->known, ONE(accel), ONE(rays),                             \
+      FROM_TO(tests_a_ray, ns_a_ray), FROM_TO(interval, break_even))                                         \
+    X(TOTALS_MORE, ALL_KINDS | BEST, first && r->build->known, ONE(accel), ONE(rays),                        \
+      FROM_TO(tests_a_ray, steps_a_ray), ONE(ns_interval), FROM_TO(interval, break_even))
 
-static const RtTable tables[] = {
+static const struct {
+    int has;
+    RtTable table;
+} tables[] = {
 #define GROUPS(...) ((const RtColumnGroup[]){__VA_ARGS__})
-#define TABLE(id, rows, ...)                                                                                 \
-    [RT_##id] = {.groups = GROUPS(__VA_ARGS__),                                                              \
-                 .group_count = sizeof(GROUPS(__VA_ARGS__)) / sizeof(RtColumnGroup)},
+#define TABLE(id, has, rows, ...)                                                                            \
+    [RT_##id] = {has,                                                                                        \
+                 {.groups = GROUPS(__VA_ARGS__),                                                             \
+                  .group_count = sizeof(GROUPS(__VA_ARGS__)) / sizeof(RtColumnGroup)}},
     TABLES(TABLE)
 #undef TABLE
 };
 
 /* ---- rows ---- */
 
-/* Tables of all workloads: by workload, then accelerator with the null run last, then kind. Tables for the
- * terminal and bench: one workload, by kind, then accelerator. */
-static bool is_by_workload(RtResultTable which) {
-    return which <= RT_HARDWARE;
-}
-
 static void find(Row *r, size_t i) {
     const RtExperiment *e = r->results->experiment;
     const size_t kinds = e->kind_count, candidates = e->candidate_count + 1;
-    bool by_workload = is_by_workload(r->which);
+    const bool by_workload = tables[r->which].has & ALL_SCENES;
     if (r->which == RT_ROUNDS) {
         r->round = (uint32_t)(i % RT_MAX_ROUNDS);
         i /= RT_MAX_ROUNDS;
@@ -307,8 +315,9 @@ static bool is_shown(const Row *r) {
     return false;
 }
 
-static bool is_total(const Row *r) {
-    return r->which == RT_TOTALS || r->which == RT_TOTALS_MORE;
+/* The kinds of rays that the costs of a row are of. */
+static RtRayKind kinds_of(const Row *r) {
+    return tables[r->which].has & ALL_KINDS ? RT_ALL_RAYS : r->kind;
 }
 
 static const void *row_at(void *context, size_t i) {
@@ -317,9 +326,9 @@ static const void *row_at(void *context, size_t i) {
     const RtExperiment *e = r->results->experiment;
     const bool null = r->candidate == e->candidate_count, first = i < e->candidate_count;
     const bool counted = r->cell->counted, timed = r->cell->timed;
-    r->cost = rt_results_cost(r->results, r->workload, r->candidate, is_total(r) ? RT_ALL_RAYS : r->kind);
+    r->cost = rt_results_cost(r->results, r->workload, r->candidate, kinds_of(r));
     const bool there[] = {
-#define ROWS(id, rows, ...) [RT_##id] = rows,
+#define ROWS(id, has, rows, ...) [RT_##id] = rows,
         TABLES(ROWS)
 #undef ROWS
     };
@@ -328,7 +337,7 @@ static const void *row_at(void *context, size_t i) {
 
 static RtStanding standing_of(const void *row) {
     const Row *r = row;
-    return rt_standing(r->results, r->workload, r->candidate, is_total(r) ? RT_ALL_RAYS : r->kind);
+    return rt_standing(r->results, r->workload, r->candidate, kinds_of(r));
 }
 
 /* ---- swept parameters ---- */
@@ -366,14 +375,15 @@ static void add_swept(RtTable *table, Row *row) {
 
 RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
     const RtExperiment *e = row->results->experiment;
-    const size_t workloads = is_by_workload(which) ? e->workload_count : 1;
-    RtTable table = tables[which];
+    const int has = tables[which].has;
+    const size_t workloads = has & ALL_SCENES ? e->workload_count : 1;
+    RtTable table = tables[which].table;
     table.row_count = workloads * (e->candidate_count + 1) * e->kind_count;
     if (which == RT_ROUNDS) table.row_count *= RT_MAX_ROUNDS;
     table.row = row_at;
     table.context = row;
-    table.standing = which >= RT_CELLS_PAPER ? standing_of : NULL;
+    table.standing = has & BEST ? standing_of : NULL;
     row->which = which;
-    if (which <= RT_BENCH && which != RT_HARDWARE) add_swept(&table, row);
+    if (has & SWEPT) add_swept(&table, row);
     return table;
 }
