@@ -29,7 +29,7 @@ case "${1-}" in
     install_missing build optional data test
     fetch_bunny
     build release -DRT_KERNELS=all
-    run_tests release -LE slow -E '^(builds|frames|wide_exact)$'
+    run_tests release -LE 'slow|more'
     targets=memory_tests build debug -DRT_KERNELS=native
     run_tests debug -L '^(accel|base|scene|scenes|shape|text)$' -LE 'slow|long'
     ;;
@@ -39,9 +39,9 @@ case "${1-}" in
     build release -DRT_KERNELS=all -DRT_WERROR=ON
     run_tests release
     build clang -DRT_WERROR=ON
-    run_tests clang -LE 'tree|once|slow' -E '^(builds|compare|conformance|frames|merge|result_directory|test_cli)$'
+    run_tests clang -LE 'tree|once|slow|gcc'
     build debug -DRT_KERNELS=native
-    RT_RAYS=16 run_tests debug -LE 'tree|once|slow' -E '^(check_counts|frames|path)$' # golden counts are of all kernels
+    RT_RAYS=16 run_tests debug -LE 'tree|once|slow|plain'
     targets=thread_tests build tsan
     run_tests tsan -L threads
     ;;
