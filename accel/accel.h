@@ -242,6 +242,9 @@ RtStatus rt_accel_built(RtAccel *accel, RtStatus status, RtAccel **out);
 size_t rt_accel_count(void);
 const RtAccelOps *rt_accel_at(size_t i);
 
+/* The colour in plots, 0xrrggbb, of the topmost accelerator of a spec. Those of plugins share one. */
+uint32_t rt_accel_color(const char *spec);
+
 /* RT_BAD_INPUT if `name` is an accelerator's, or "all", or not a name. */
 RtStatus rt_accel_name_is_free(const char *name, RtError *error);
 

@@ -8,37 +8,37 @@
 
 #include <string.h>
 
-/* X(ops) */
+/* X(name, colour in plots). The colours of brute to octree, and black, are those of Okabe & Ito (2008), told
+ * apart by colour-blind readers too; the others differ from them in lightness. */
 #define ACCELERATORS(X)                                                                                      \
-    X(rt_brute_ops)                                                                                          \
-    X(rt_bvh_ops)                                                                                            \
-    X(rt_wide_ops)                                                                                           \
-    X(rt_clusters_ops)                                                                                       \
-    X(rt_extents_ops)                                                                                        \
-    X(rt_grid_ops)                                                                                           \
-    X(rt_octree_ops)                                                                                         \
-    X(rt_kd_ops)                                                                                             \
-    X(rt_ideal_ops)                                                                                          \
-    X(rt_item_ops)                                                                                           \
-    X(rt_cache_ops)                                                                                          \
-    X(rt_light_ops)
+    X(brute, 0x7f7f7f)                                                                                       \
+    X(bvh, 0xd55e00)                                                                                         \
+    X(wide, 0x0072b2)                                                                                        \
+    X(clusters, 0xcc79a7)                                                                                    \
+    X(extents, 0xe69f00)                                                                                     \
+    X(grid, 0x009e73)                                                                                        \
+    X(octree, 0x56b4e9)                                                                                      \
+    X(kd, 0x5b4a9f)                                                                                          \
+    X(ideal, 0x222222)                                                                                       \
+    X(item, 0xa6761d)                                                                                        \
+    X(cache, 0x66a61e)                                                                                       \
+    X(light, 0xb2182b)
+#define EMBREE(X) X(embree, 0x7b3294)
 
 #ifdef RT_WITH_EMBREE
-#define EMBREE_ACCELERATORS(X) X(rt_embree_ops)
+#define BUILT_IN_ACCELERATORS(X) ACCELERATORS(X) EMBREE(X)
 #else
-#define EMBREE_ACCELERATORS(X)
+#define BUILT_IN_ACCELERATORS(X) ACCELERATORS(X)
 #endif
 
-#define DECLARE(ops) extern const RtAccelOps ops;
-ACCELERATORS(DECLARE)
-EMBREE_ACCELERATORS(DECLARE)
+#define DECLARE(name, color) extern const RtAccelOps rt_##name##_ops;
+BUILT_IN_ACCELERATORS(DECLARE)
 #undef DECLARE
 
-#define ENTRY(ops) &ops,
-#define ONE(ops)   +1
-enum { BUILT_IN = 0 ACCELERATORS(ONE) EMBREE_ACCELERATORS(ONE) };
-static const RtAccelOps *registry[BUILT_IN + RT_MAX_PLUGIN_ACCELS] = {ACCELERATORS(ENTRY)
-                                                                          EMBREE_ACCELERATORS(ENTRY)};
+#define ENTRY(name, color) &rt_##name##_ops,
+#define ONE(name, color)   +1
+enum { BUILT_IN = 0 BUILT_IN_ACCELERATORS(ONE) };
+static const RtAccelOps *registry[BUILT_IN + RT_MAX_PLUGIN_ACCELS] = {BUILT_IN_ACCELERATORS(ENTRY)};
 static size_t count = BUILT_IN;
 
 size_t rt_accel_count(void) {
@@ -81,6 +81,20 @@ RtStatus rt_accel_register(const RtAccelOps *ops, RtError *error) {
 
 const RtAccelOps *rt_accel_at(size_t i) {
     return registry[i];
+}
+
+uint32_t rt_accel_color(const char *spec) {
+    enum { OF_PLUGINS = 0x17becf };
+#define COLOR(name, color) {#name, color},
+    static const struct {
+        const char *name;
+        uint32_t color;
+    } colors[] = {ACCELERATORS(COLOR) EMBREE(COLOR)};
+    const size_t top = strcspn(spec, ":+");
+    for (size_t i = 0; i < sizeof colors / sizeof colors[0]; i++) {
+        if (strlen(colors[i].name) == top && strncmp(colors[i].name, spec, top) == 0) return colors[i].color;
+    }
+    return OF_PLUGINS;
 }
 
 const char *rt_accel_default(void) {

@@ -5,19 +5,14 @@
 
 #include "experiment/experiment.h"
 
-/* The colour belongs to the topmost accelerator of the spec; further candidates with the same one get darker
- * and lighter shades. Marker and dash follow the order in the experiment, for grey print: no two of 50
- * candidates share both. */
-typedef struct RtLook {
-    char color[8]; /* "#rrggbb" */
-    int marker;    /* gnuplot's pointtype */
-    int dash;      /* gnuplot's dashtype, 1..5 */
-} RtLook;
+/* "#rrggbb" of a candidate: that of the topmost accelerator of its spec; further candidates with the same one
+ * get darker and lighter shades. The null run is grey. */
+#define RT_COLOR_CHARS 8
+void rt_candidate_color(const RtExperiment *experiment, uint32_t candidate, char color[RT_COLOR_CHARS]);
 
-/* `candidate` may be the null run, which is grey. */
-RtLook rt_candidate_look(const RtExperiment *experiment, uint32_t candidate);
-
-/* The look of line `i` of a plot of other lines. */
-RtLook rt_look(uint32_t i);
+/* gnuplot's pointtype, and its dashtype, 1..5, of line `i`, or of candidate `i` in the order of the
+ * experiment: for grey print no two of 50 share both. */
+int rt_plot_marker(uint32_t i);
+int rt_plot_dash(uint32_t i);
 
 #endif

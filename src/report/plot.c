@@ -64,10 +64,11 @@ static RtStatus write_names(const RtResults *results, const char *directory, con
     for (int i = 0; i < 3; i++) {
         fprintf(out, "\"\n%s = \"", lists[i]);
         for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-            const RtLook look = rt_candidate_look(experiment, c);
+            char color[RT_COLOR_CHARS];
+            rt_candidate_color(experiment, c, color);
             if (!has_rows(results, c)) continue;
-            if (i == 0) fprintf(out, "%s ", look.color);
-            if (i > 0) fprintf(out, "%d ", i == 1 ? look.marker : look.dash);
+            if (i == 0) fprintf(out, "%s ", color);
+            if (i > 0) fprintf(out, "%d ", i == 1 ? rt_plot_marker(c) : rt_plot_dash(c));
         }
     }
     fprintf(out, "\"\ngroups = \"");

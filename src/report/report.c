@@ -192,8 +192,8 @@ static void put_scenes(FILE *out, const RtResults *results, const char *director
 }
 
 static const char *dot_of_candidate(const RtExperiment *experiment, uint32_t candidate) {
-    static char color[sizeof((RtLook *)0)->color]; /* until the next row */
-    strcpy(color, rt_candidate_look(experiment, candidate).color);
+    static char color[RT_COLOR_CHARS]; /* until the next row */
+    rt_candidate_color(experiment, candidate, color);
     return color;
 }
 

@@ -171,13 +171,13 @@ static void put_styles(const Figure *figure, FILE *out) {
     const RtExperiment *experiment = figure->results->experiment;
     for (uint32_t line = 0; line < figure->line_count; line++) {
         const Line *l = &figure->lines[line];
-        const RtLook look = rt_look(line);
+        char color[RT_COLOR_CHARS];
+        rt_candidate_color(experiment, l->candidate, color);
         fprintf(out,
                 "set style line %u linecolor rgb \"%s\" dashtype %d pointtype %d pointsize %s linewidth 1.6 "
                 "pointinterval %u\n",
-                line + 1, rt_candidate_look(experiment, l->candidate).color,
-                l->flat ? 2 + (int)(line % 4) : look.dash, l->flat ? 0 : look.marker,
-                l->flat ? "0.1" : "0.55", 1 + figure->value_count / 16);
+                line + 1, color, l->flat ? 2 + (int)(line % 4) : rt_plot_dash(line),
+                l->flat ? 0 : rt_plot_marker(line), l->flat ? "0.1" : "0.55", 1 + figure->value_count / 16);
     }
 }
 

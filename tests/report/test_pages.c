@@ -257,32 +257,40 @@ static void take_accelerators(RtExperiment *experiment, const char *const *specs
         snprintf(experiment->candidates[c].spec, RT_MAX_SPEC_CHARS, "%s", specs[c]);
 }
 
+typedef struct Color {
+    char text[RT_COLOR_CHARS];
+} Color;
+
+static Color color_of(const RtExperiment *experiment, uint32_t candidate) {
+    Color color;
+    rt_candidate_color(experiment, candidate, color.text);
+    return color;
+}
+
 RT_TEST_IN_PLACE(an_accelerator_has_its_colour_in_every_experiment) {
     const Place *place = *state;
     const char *const one[] = {"brute", "bvh", "grid:density=4"}, *const other[] = {"grid", "wide",
                                                                                     "bvh:bins=8+brute"};
     RtExperiment *experiment = place->experiment;
     take_accelerators(experiment, one, 3);
-    const RtLook bvh = rt_candidate_look(experiment, 1), grid = rt_candidate_look(experiment, 2);
+    const Color bvh = color_of(experiment, 1), grid = color_of(experiment, 2);
     take_accelerators(experiment, other, 3);
-    assert_string_equal(rt_candidate_look(experiment, 0).color, grid.color);
-    assert_string_equal(rt_candidate_look(experiment, 2).color, bvh.color);
-    assert_string_not_equal(grid.color, bvh.color);
+    assert_string_equal(color_of(experiment, 0).text, grid.text);
+    assert_string_equal(color_of(experiment, 2).text, bvh.text);
+    assert_string_not_equal(grid.text, bvh.text);
 }
 
 RT_TEST_IN_PLACE(of_fifty_accelerators_no_two_have_a_colour_and_in_grey_print_marker_or_dash_differ) {
     const Place *place = *state;
     RtExperiment *experiment = place->experiment;
     const char *specs[50];
-    for (int c = 0; c < 50; c++) specs[c] = c % 5 == 0 ? "bvh" : "grid:density=2";
+    for (int c = 0; c < 50; c++) specs[c] = c % 5 == 0 ? "bvh" : c % 5 == 1 ? "mine" : "grid:density=2";
     take_accelerators(experiment, specs, 50);
     for (uint32_t a = 0; a < 50; a++) {
-        const RtLook look = rt_candidate_look(experiment, a), line = rt_look(a);
+        const Color color = color_of(experiment, a);
         for (uint32_t b = 0; b < a; b++) {
-            const RtLook before = rt_candidate_look(experiment, b);
-            assert_string_not_equal(look.color, before.color);
-            assert_string_not_equal(line.color, rt_look(b).color);
-            assert_true(look.marker != before.marker || look.dash != before.dash);
+            assert_string_not_equal(color.text, color_of(experiment, b).text);
+            assert_true(rt_plot_marker(a) != rt_plot_marker(b) || rt_plot_dash(a) != rt_plot_dash(b));
         }
     }
 }
