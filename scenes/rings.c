@@ -74,21 +74,21 @@ static void add_wall(RtSceneBuilder *b, RtVec3d eye, double y) {
 
 static void generate(RtSceneBuilder *b, const RtValue *values) {
     const int64_t size = values[0].i;
-    const double spread = 1 / rt_turn(22.5).sine; /* from layer to layer: the pyramid fills the view */
-    const RtVec3d eye = {-1, -spread, 0.5};
-    const RtVec3d lights[3] = {{3, -spread, 3}, {-4, -spread, 1}, {2, -spread, -4}};
+    const double spacing = 1 / rt_turn(22.5).sine; /* from layer to layer: the pyramid fills the view */
+    const RtVec3d eye = {-1, -spacing, 0.5};
+    const RtVec3d lights[3] = {{3, -spacing, 3}, {-4, -spacing, 1}, {2, -spacing, -4}};
     rt_spd_lights(b, lights, 3);
     b->scene->camera.from = rt_narrow(eye);
     b->scene->camera.at = rt_narrow(rt_vec3d(eye.x, eye.y + 1, eye.z));
     b->scene->camera.near = 1;
     add_materials(b);
-    add_wall(b, eye, spread * (double)(size + 1));
+    add_wall(b, eye, spacing * (double)(size + 1));
     Knot knot;
     set_knot(knot);
     for (int64_t layer = 1; layer <= size; layer++) {
         for (int64_t i = 0; i < layer * layer; i++) {
             const int64_t x = 2 * (i % layer) - layer + 1, z = 2 * (i / layer) - layer + 1;
-            RtVec3d center = {(double)x, spread * (double)layer, (double)z};
+            RtVec3d center = {(double)x, spacing * (double)layer, (double)z};
             add_knot(b, (const RtVec3d(*)[CORNERS])knot, center);
         }
     }

@@ -55,10 +55,10 @@ typedef struct Axis {
 /* The walk through one block. */
 typedef struct Walk {
     Axis axes[3];
-    uint32_t voxel;  /* in the last current intervals of the three axes */
-    uint32_t spread; /* number of current intervals, minus three */
-    int entered;     /* the axis crossed last; any before the first crossing */
-    float t;         /* when that was */
+    uint32_t voxel; /* in the last current intervals of the three axes */
+    uint32_t extra; /* current intervals beyond one on each axis */
+    int entered;    /* the axis crossed last; any before the first crossing */
+    float t;        /* when that was */
 } Walk;
 
 RT_KERNEL float near_crossing(const Axis *axis, uint32_t i) {
@@ -102,14 +102,14 @@ RT_KERNEL Axis start_axis(const RtGridBlock *block, const RtPreparedRay *ray, in
 RT_KERNEL void begin_walk(Walk *walk, const RtGridBlock *block, const RtPreparedRay *ray, float t) {
     uint32_t stride = 1;
     walk->voxel = block->voxel;
-    walk->spread = 0;
+    walk->extra = 0;
     walk->entered = 0;
     walk->t = t;
     for (int a = 0; a < 3; a++) {
         Axis *axis = &walk->axes[a];
         *axis = start_axis(block, ray, a, stride, t);
         walk->voxel += stride * (ray->negative[a] ? axis->n - 1 - axis->hi : axis->hi);
-        walk->spread += axis->hi - axis->lo;
+        walk->extra += axis->hi - axis->lo;
         stride *= axis->n;
     }
 }
@@ -119,7 +119,7 @@ RT_KERNEL bool retire_axis(Walk *walk, Axis *axis, float t) {
     while (axis->leave < t) {
         if (axis->lo == axis->hi) return false;
         axis->lo++;
-        walk->spread--;
+        walk->extra--;
         axis->leave = far_crossing(axis, axis->lo);
     }
     return true;
@@ -151,7 +151,7 @@ RT_KERNEL bool next_moment(Walk *walk, float limit) {
     if (walk->t > limit || !retire(walk, walk->t)) return false;
     walk->entered = next;
     walk->voxel += axis->stride;
-    walk->spread++;
+    walk->extra++;
     axis->hi++;
     update_enter(axis);
     return true;
@@ -212,7 +212,7 @@ RT_KERNEL bool next_voxel(const Walk *walk, Moment *moment, uint32_t *voxel) {
  * and usually the other two axes have one. */
 RT_KERNEL bool several_voxels(const Walk *walk) {
     const Axis *entered = &walk->axes[walk->entered];
-    return walk->spread > entered->hi - entered->lo;
+    return walk->extra > entered->hi - entered->lo;
 }
 
 /* ---- one level ---- */

@@ -38,7 +38,7 @@ typedef struct Answer {
     char packed[4 << 20]; /* [bytes] the tables, if error.status is RT_OK */
 } Answer;
 
-static _Noreturn void answer_trial(const char *path, Answer *answer) {
+static _Noreturn void answer_as_child(const char *path, Answer *answer) {
     RtTables tables;
     RtError failure = {RT_OK, ""};
     alarm(MOST_SECONDS + 1); /* if raytally has ended */
@@ -55,14 +55,14 @@ static _Noreturn void answer_trial(const char *path, Answer *answer) {
 }
 
 /* Loads the library in a process of its own, which may crash; *answer gets the result. */
-static RtStatus run_trial(const char *path, Answer *answer, RtError *error) {
+static RtStatus try_loading(const char *path, Answer *answer, RtError *error) {
     char what[160];
-    RtProcess trial;
+    RtProcess child;
     RtProcessEnd end;
-    RT_TRY(rt_process_fork(&trial, -1, error));
-    if (trial.pid == 0) answer_trial(path, answer);
-    bool ended = rt_process_wait(&trial, 1000 * MOST_SECONDS, &end);
-    rt_process_end(&trial, 0);
+    RT_TRY(rt_process_fork(&child, -1, error));
+    if (child.pid == 0) answer_as_child(path, answer);
+    bool ended = rt_process_wait(&child, 1000 * MOST_SECONDS, &end);
+    rt_process_end(&child, 0);
     if (ended && answer->given) return RT_OK;
     if (ended) {
         rt_process_end_format(end, 0, "", what, sizeof what);
@@ -93,7 +93,7 @@ static RtStatus try_tables(const char *path, RtTables *tables, RtError *error) {
     Answer *answer =
         mmap(NULL, sizeof(Answer), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (answer == MAP_FAILED) return rt_fail_memory(error, "the tables of a plugin", sizeof(Answer));
-    RtStatus status = run_trial(path, answer, error);
+    RtStatus status = try_loading(path, answer, error);
     if (status == RT_OK) status = read_answer(path, answer, tables, error);
     munmap(answer, sizeof(Answer));
     return status;

@@ -10,7 +10,7 @@
 typedef struct RateEstimate {
     float sharing;  /* rays per visit of a node, a moving average; 0: no packets traced yet */
     bool alone;     /* packets did not pay */
-    uint64_t trial; /* rays until packets are tried again */
+    uint64_t retry; /* rays until packets are tried again */
     uint32_t pause; /* of the filter (RaySource) */
 } RateEstimate;
 
@@ -25,7 +25,7 @@ typedef struct Scratch {
 
 enum {
     WINDOW = 4096,      /* rays that are sorted together */
-    TRIAL = 256 * 1024, /* rays traced alone between two trials of packets */
+    RETRY = 256 * 1024, /* rays traced alone before packets are tried again */
 };
 
 /* Each is compiled once, not inlined into its callers. */
@@ -56,11 +56,11 @@ DEFINE_STREAMS(occluded, true)
 /* Traces packets while they pay; `count`: rays of the query. */
 RT_KERNEL void trace_as_packets(const Query *q, RateEstimate *estimate, size_t count, bool any) {
     const float worth = q->self->sharing * (any ? WORTH_ANY : WORTH_NEAREST);
-    if (estimate->alone && estimate->trial > count) {
-        estimate->trial -= count;
+    if (estimate->alone && estimate->retry > count) {
+        estimate->retry -= count;
         return;
     }
-    /* A trial starts with an estimate that one poor window does not end. */
+    /* Packets begin with an estimate that one poor window does not end. */
     if (estimate->alone || estimate->sharing == 0) estimate->sharing = 1.5f * worth;
     estimate->alone = false;
     while (!estimate->alone && more_rays(q)) {
@@ -68,7 +68,7 @@ RT_KERNEL void trace_as_packets(const Query *q, RateEstimate *estimate, size_t c
         float sharing = (float)shared.rays / (float)(shared.visits + 1);
         estimate->sharing += 0.25f * (sharing - estimate->sharing);
         estimate->alone = estimate->sharing < worth;
-        estimate->trial = TRIAL;
+        estimate->retry = RETRY;
     }
 }
 

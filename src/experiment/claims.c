@@ -78,12 +78,12 @@ static RtStatus read_measure(Reader *r) {
     return fail(r, "'%s' is not a measure%s choose one of %s", word(r), *suggestion ? suggestion : ":", list);
 }
 
-/* The number of candidates with that label or base; *last is one of them. */
+/* The number of candidates with that label or stem; *last is one of them. */
 static uint32_t count_accels(const RtExperiment *experiment, const char *name, uint32_t *last) {
     uint32_t count = 0;
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
         const RtCandidate *candidate = &experiment->candidates[c];
-        if (strcmp(candidate->label, name) != 0 && strcmp(candidate->base, name) != 0) continue;
+        if (strcmp(candidate->label, name) != 0 && strcmp(candidate->stem, name) != 0) continue;
         *last = c;
         count++;
     }
@@ -114,7 +114,7 @@ static RtStatus read_scene(Reader *r) {
     bool found = false;
     for (uint32_t t = 0; t < r->experiment->workload_count; t++) {
         const RtWorkload *workload = &r->experiment->workloads[t];
-        found |= strcmp(workload->label, word(r)) == 0 || strcmp(workload->base, word(r)) == 0;
+        found |= strcmp(workload->label, word(r)) == 0 || strcmp(workload->stem, word(r)) == 0;
     }
     if (!found) return fail(r, "'%s' is not the label of one of the scenes", word(r));
     snprintf(r->claim->scene, RT_MAX_LABEL, "%s", r->words[r->at++]);

@@ -81,10 +81,10 @@ static bool is_about(const RtExperiment *experiment, const RtClaim *claim, uint3
     const RtCandidate *candidate = &experiment->candidates[c];
     const RtWorkload *workload = &experiment->workloads[t];
     if (!rt_candidate_runs(experiment, c, t)) return false;
-    if (strcmp(candidate->label, claim->accel) != 0 && strcmp(candidate->base, claim->accel) != 0)
+    if (strcmp(candidate->label, claim->accel) != 0 && strcmp(candidate->stem, claim->accel) != 0)
         return false;
     if (*claim->scene && strcmp(workload->label, claim->scene) != 0 &&
-        strcmp(workload->base, claim->scene) != 0)
+        strcmp(workload->stem, claim->scene) != 0)
         return false;
     for (uint32_t p = 0; p < claim->place_count; p++) {
         const char *value = rt_swept_of(experiment, &claim->places[p].key, t, c);
@@ -101,7 +101,7 @@ static bool same_line(const RtExperiment *experiment, const RtClaim *claim, cons
     for (int i = 0; i < 2; i++) {
         const RtCandidate *candidate = &experiment->candidates[points[i]->candidate];
         const RtWorkload *workload = &experiment->workloads[points[i]->workload];
-        snprintf(names[i], sizeof names[i], "%s %s", candidate->base, workload->base);
+        snprintf(names[i], sizeof names[i], "%s %s", candidate->stem, workload->stem);
         rt_swept_name(&candidate->swept, claim->key.scene ? NULL : claim->key.key, names[i], sizeof names[i]);
         rt_swept_name(&workload->swept, claim->key.scene ? claim->key.key : NULL, names[i], sizeof names[i]);
     }
@@ -155,8 +155,8 @@ static void put_place(RtClaimResult *result, const RtExperiment *experiment, con
     assert(point);
     const RtCandidate *candidate = &experiment->candidates[point->candidate];
     const RtWorkload *workload = &experiment->workloads[point->workload];
-    PUT(result, " (%s on %s)", line ? candidate->base : candidate->label,
-        line ? workload->base : workload->label);
+    PUT(result, " (%s on %s)", line ? candidate->stem : candidate->label,
+        line ? workload->stem : workload->label);
 }
 
 static bool compares(const RtClaim *claim, double value) {

@@ -67,7 +67,7 @@ static void append_from_manifest(RtExperiment *experiment, const char *label) {
     uint32_t first = experiment->candidate_count;
     while (experiment->candidate_count < RT_MAX_CANDIDATES &&
            rt_manifest_candidate(experiment->manifest, experiment->candidate_count, &candidate)) {
-        memcpy(candidate.base, candidate.label, sizeof candidate.base);
+        memcpy(candidate.stem, candidate.label, sizeof candidate.stem);
         experiment->candidates[experiment->candidate_count++] = candidate;
     }
     snprintf(experiment->best, sizeof experiment->best, "%s", label);
@@ -91,7 +91,7 @@ static RtStatus append_best(RtExperiment *experiment, const char *label, RtError
         *candidate = (RtCandidate){.ray_stride = 1};
         memcpy(candidate->spec, specs[i], sizeof candidate->spec);
         label_setting(specs[i], candidate->label);
-        memcpy(candidate->base, candidate->label, sizeof candidate->base);
+        memcpy(candidate->stem, candidate->label, sizeof candidate->stem);
     }
     return RT_OK;
 }

@@ -46,7 +46,7 @@ void rt_swept_name(const RtSwept *swept, const char *but, char *out, size_t size
 /* One scene of an experiment. Labels are unique, without blanks and quotes: names in CSV and plots. */
 typedef struct RtWorkload {
     char label[RT_MAX_LABEL];
-    char base[RT_MAX_LABEL];      /* the common part of the labels of one sweep; else the label */
+    char stem[RT_MAX_LABEL];      /* the common part of the labels of one sweep; else the label */
     RtSwept swept;                /* of the scene's parameters */
     uint32_t entry;               /* of the list in the YAML; a sweep makes several workloads */
     char spec[RT_MAX_SCENE_NAME]; /* as written */
@@ -62,7 +62,7 @@ typedef struct RtWorkload {
 /* One accelerator of an experiment. No two on the same scene have the same label. */
 typedef struct RtCandidate {
     char label[RT_MAX_LABEL];
-    char base[RT_MAX_LABEL]; /* as of a workload */
+    char stem[RT_MAX_LABEL]; /* as of a workload */
     RtSwept swept;
     uint32_t entry;
     char group[RT_MAX_LABEL];     /* its heading in the table of frames, or "" */

@@ -86,7 +86,7 @@ static RtStatus read_scenes(const RtYaml *y, const RtYamlNode *list, const RtExp
         bool found = false;
         for (uint32_t t = 0; t < experiment->workload_count; t++) {
             const RtWorkload *workload = &experiment->workloads[t];
-            if (strcmp(workload->label, label) != 0 && strcmp(workload->base, label) != 0) continue;
+            if (strcmp(workload->label, label) != 0 && strcmp(workload->stem, label) != 0) continue;
             on |= UINT32_C(1) << t;
             found = true;
         }

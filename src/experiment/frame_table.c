@@ -74,10 +74,10 @@ static bool is_overlay(const RtExperiment *experiment, uint32_t candidate) {
 
 static double factor_of(const RtResults *results, uint32_t workload, uint32_t candidate, Measure *of) {
     const RtExperiment *experiment = results->experiment;
-    uint32_t base = below_of(results, workload, candidate);
-    if (base == experiment->candidate_count && is_overlay(experiment, candidate)) return (double)NAN;
-    if (base == experiment->candidate_count) base = without_of(experiment, workload);
-    return of(results, workload, base) / of(results, workload, candidate);
+    uint32_t below = below_of(results, workload, candidate);
+    if (below == experiment->candidate_count && is_overlay(experiment, candidate)) return (double)NAN;
+    if (below == experiment->candidate_count) below = without_of(experiment, workload);
+    return of(results, workload, below) / of(results, workload, candidate);
 }
 
 /* Time, or object tests if nothing was timed. */

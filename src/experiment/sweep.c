@@ -29,7 +29,7 @@ bool rt_swept_number(const char *value, double *number) {
            isfinite(*number);
 }
 
-/* Compares the spread of the quotients with that of the steps. Two values: a factor above four. */
+/* Compares how much the quotients differ with how much the steps do. Two values: a factor above four. */
 bool rt_swept_logarithmic(const double *values, uint32_t count) {
     double quotient[2] = {INFINITY, 0}, step[2] = {INFINITY, 0};
     if (count < 2 || values[0] <= 0) return false;
@@ -240,7 +240,7 @@ static RtStatus spec_at(const Sweep *sweep, uint32_t i, char *out, RtSwept *swep
 
 /* The text without the swept parameters, "grid:depth=2" of "grid:density=1..8*2,depth=2", to out[0..size),
  * truncated. */
-static void base_of(const Sweep *sweep, char *out, size_t size) {
+static void stem_of(const Sweep *sweep, char *out, size_t size) {
     const char *text = sweep->text;
     size_t used = 0, from = 0, end = strlen(text);
     for (uint32_t p = 0; p <= sweep->param_count; p++) {
@@ -265,9 +265,9 @@ bool rt_may_label(char c) {
 }
 
 /* Appends the swept values to the common label. */
-static RtStatus label_one(char label[RT_MAX_LABEL], const char *base, const RtSwept *swept, RtError *error) {
+static RtStatus label_one(char label[RT_MAX_LABEL], const char *stem, const RtSwept *swept, RtError *error) {
     char whole[RT_MAX_LABEL + RT_MAX_SWEPT * (RT_MAX_NAME + RT_MAX_SWEPT_CHARS + 2)];
-    snprintf(whole, sizeof whole, "%s", base);
+    snprintf(whole, sizeof whole, "%s", stem);
     rt_swept_name(swept, NULL, whole, sizeof whole);
     if (strlen(whole) >= RT_MAX_LABEL) {
         return rt_fail(error, RT_BAD_INPUT, "'%s' is longer than %d characters: give a short `label`", whole,
@@ -291,7 +291,7 @@ static void name_scene(const char *spec, bool file, char label[RT_MAX_LABEL]) {
 
 static RtStatus add_scene(RtExperiment *experiment, const RtWorkload *like, const Sweep *sweep, uint32_t i,
                           const char *folder, RtError *error) {
-    char spec[RT_MAX_SPEC_CHARS], base[RT_MAX_SCENE_NAME];
+    char spec[RT_MAX_SPEC_CHARS], stem[RT_MAX_SCENE_NAME];
     if (experiment->workload_count == RT_MAX_WORKLOADS) {
         return rt_fail(error, RT_BAD_INPUT, "there are more than %d scenes: sweep fewer values",
                        RT_MAX_WORKLOADS);
@@ -306,12 +306,12 @@ static RtStatus add_scene(RtExperiment *experiment, const RtWorkload *like, cons
     strcpy(workload->spec, spec);
     workload->file = strcspn(spec, "./") < strcspn(spec, ":");
     RT_TRY(rt_path_join(workload->file ? folder : "", spec, workload->path, error));
-    base_of(sweep, base, sizeof base);
+    stem_of(sweep, stem, sizeof stem);
     if (*like->label) {
-        strcpy(workload->base, like->label);
+        strcpy(workload->stem, like->label);
         return label_one(workload->label, like->label, &workload->swept, error);
     }
-    name_scene(base, workload->file, workload->base);
+    name_scene(stem, workload->file, workload->stem);
     name_scene(spec, workload->file, workload->label);
     return RT_OK;
 }
@@ -345,10 +345,10 @@ static RtStatus add_accel(RtExperiment *experiment, const RtCandidate *like, con
     RT_TRY(spec_at(sweep, i, spec, &candidate->swept, error));
     strcpy(candidate->spec, spec);
     if (*like->label) {
-        strcpy(candidate->base, like->label);
+        strcpy(candidate->stem, like->label);
         return label_one(candidate->label, like->label, &candidate->swept, error);
     }
-    base_of(sweep, candidate->base, RT_MAX_LABEL);
+    stem_of(sweep, candidate->stem, RT_MAX_LABEL);
     snprintf(candidate->label, RT_MAX_LABEL, "%.*s", RT_MAX_LABEL - 1, spec);
     if (strlen(spec) >= RT_MAX_LABEL && is_taken(experiment, candidate))
         snprintf(candidate->label, RT_MAX_LABEL, "%.*s...%u", RT_MAX_LABEL - 8, spec,

@@ -65,7 +65,7 @@ static double place_of(Figure *figure, const char *value) {
 
 static void name_line(const Figure *figure, uint32_t c, char name[NAME_CHARS]) {
     const RtCandidate *candidate = &figure->results->experiment->candidates[c];
-    snprintf(name, NAME_CHARS, "%s", figure->key.scene ? candidate->label : candidate->base);
+    snprintf(name, NAME_CHARS, "%s", figure->key.scene ? candidate->label : candidate->stem);
     if (!figure->key.scene) rt_swept_name(&candidate->swept, figure->key.key, name, NAME_CHARS);
 }
 
@@ -88,7 +88,7 @@ static double cost_of(const Figure *figure, const RtCost *cost) {
 static void name_group(const RtExperiment *experiment, const RtSweptKey *key, uint32_t t,
                        char name[NAME_CHARS]) {
     const RtWorkload *workload = &experiment->workloads[t];
-    snprintf(name, NAME_CHARS, "%s", key->scene ? workload->base : workload->label);
+    snprintf(name, NAME_CHARS, "%s", key->scene ? workload->stem : workload->label);
     if (key->scene) rt_swept_name(&workload->swept, key->key, name, NAME_CHARS);
 }
 

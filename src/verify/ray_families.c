@@ -310,18 +310,18 @@ static RtRay through_sample(Generator *m) {
 /* One of a bundle of nearly equal rays: with a common origin, side by side, or both. In some bundles the
  * two largest components of dir are nearly equal. */
 static RtRay in_bundle(Generator *m) {
-    static const double spreads[] = {1e-7, 1e-4, 1e-2, 0.05};
+    static const double sizes[] = {1e-7, 1e-4, 1e-2, 0.05};
     RtRandom own = m->random;
     m->random = m->shared;
     RtRay lead = below(m, 2) ? chord(m) : at_vertex(m);
     RtVec3d from = rt_widen(lead.org), dir = rt_normalized(rt_widen(lead.dir));
-    double spread = spreads[below(m, 4)];
+    double jitter = sizes[below(m, 4)];
     uint32_t how = below(m, 3);
     int major = rt_major_axis(lead.dir), other = (major + 1) % 3;
     bool diagonal = below(m, 4) == 0;
     m->random = own;
-    if (how != 0) from = rt_add_scaledd(from, rt_random_direction(&m->random), spread * m->size);
-    if (how != 1) dir = rt_add_scaledd(dir, rt_random_direction(&m->random), spread / 2);
+    if (how != 0) from = rt_add_scaledd(from, rt_random_direction(&m->random), jitter * m->size);
+    if (how != 1) dir = rt_add_scaledd(dir, rt_random_direction(&m->random), jitter / 2);
     if (diagonal) dir.at[other] = copysign(dir.at[major] * (below(m, 2) ? 1 : 1 + 1e-6), dir.at[other]);
     return ray_along(from, dir);
 }

@@ -128,11 +128,11 @@ RT_TEST(what_is_swept_has_a_label_a_base_and_a_column) {
     assert_int_equal(e->workload_count, 2);
     assert_int_equal(e->candidate_count, 4);
     assert_string_equal(e->workloads[1].label, "random:n=20");
-    assert_string_equal(e->workloads[1].base, "random");
+    assert_string_equal(e->workloads[1].stem, "random");
     assert_string_equal(e->candidates[1].label, "oct:margin=0.1");
-    assert_string_equal(e->candidates[1].base, "oct");
+    assert_string_equal(e->candidates[1].stem, "oct");
     assert_string_equal(e->candidates[2].label, "grid:margin=0,nest=4");
-    assert_string_equal(e->candidates[2].base, "grid:nest=4");
+    assert_string_equal(e->candidates[2].stem, "grid:nest=4");
     assert_int_equal(rt_experiment_swept(e, keys), 2);
     assert_true(keys[0].scene && keys[0].number && !keys[1].scene);
     assert_string_equal(rt_swept_of(e, &keys[0], 1, 0), "20");
