@@ -35,7 +35,6 @@ typedef enum RtResultTable {
     RT_CELLS_MORE,       /* cells with more columns, and all rows */
     RT_TOTALS,           /* one workload by accelerator, all kinds together */
     RT_TOTALS_MORE,      /* these with the intervals of their times */
-    RT_RESULT_TABLE_COUNT
 } RtResultTable;
 
 #define RT_MAX_RESULT_GROUPS 16
