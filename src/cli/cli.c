@@ -6,12 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-int rt_cli_fail(const RtError *error) {
-    fprintf(stderr, "raytally: %s\n", error->message);
-    bool failed = error->status == RT_MISMATCH || error->status == RT_BROKEN;
-    return failed ? RT_EXIT_CHECK_FAILED : RT_EXIT_BAD_INPUT;
-}
-
 RtStatus rt_cli_check_json_name(const char *name, RtError *error) {
     json_t *text = json_string_nocheck(name), *checked = json_string(name);
     bool good = checked || !text; /* without either, memory is short, which others report */

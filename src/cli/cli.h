@@ -18,7 +18,9 @@ enum { RT_EXIT_OK = 0, RT_EXIT_CHECK_FAILED = 1, RT_EXIT_BAD_INPUT = 2 };
 
 typedef struct RtCommand {
     const char *name, *arguments, *summary;
-    int (*run)(int argc, char **argv); /* argv[0] is "raytally NAME"; returns the exit code */
+    /* argv[0] is "raytally NAME". The exit code depends on the status. An empty message is not printed: the
+     * command has said what failed. */
+    RtStatus (*run)(int argc, char **argv, RtError *error);
     const RtSyntax *syntax;
 } RtCommand;
 
@@ -42,15 +44,12 @@ typedef struct RtCommand {
     X(new_accel, "new-accel", "NAME", "make a folder with a working plugin to start from")                   \
     X(completion, "completion", "SHELL", "print a completion script for bash")
 #define RT_COMMAND(id, name, arguments, summary)                                                             \
-    int rt_command_##id(int argc, char **argv);                                                              \
+    RtStatus rt_command_##id(int argc, char **argv, RtError *error);                                         \
     extern const RtSyntax rt_##id##_syntax;
 RT_COMMANDS(RT_COMMAND)
 
 /* The script that completes all commands; main has their table. */
 void rt_completion_print(const RtCommand *commands, int count);
-
-/* Prints "raytally: MESSAGE" to stderr and returns the exit code of the status. */
-int rt_cli_fail(const RtError *error);
 
 /* RT_BAD_INPUT if the file name `name` is not UTF-8, and so cannot be in a JSON document. Call it first:
  * json_pack would only return NULL. */

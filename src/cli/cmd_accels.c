@@ -46,12 +46,11 @@ const RtSyntax rt_accels_syntax = {.options = rt_list_options,
                                    .help = "List the accelerators, or explain the one called NAME: its "
                                            "parameters with defaults and ranges, and the paper it follows."};
 
-int rt_command_accels(int argc, char **argv) {
+RtStatus rt_command_accels(int argc, char **argv, RtError *error) {
     RtListOptions o = {0};
     rt_cli_parse(&rt_accels_syntax, argc, argv, &o);
-    RtError error;
     const RtAccelOps *only = NULL;
-    if (o.name && rt_accel_find(o.name, &only, &error) != RT_OK) return rt_cli_fail(&error);
+    if (o.name) RT_TRY(rt_accel_find(o.name, &only, error));
     json_t *list = json_array();
     for (size_t i = 0; i < rt_accel_count(); i++) {
         const RtAccelOps *ops = rt_accel_at(i);
@@ -66,5 +65,5 @@ int rt_command_accels(int argc, char **argv) {
         &o, "accelerators", list,
         "An accelerator is written NAME[:KEY=VALUE[,KEY=VALUE]...], as in grid:density=4; overlays\n"
         "come before it, as in OVERLAY+grid:density=4.");
-    return RT_EXIT_OK;
+    return RT_OK;
 }

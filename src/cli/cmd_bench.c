@@ -320,11 +320,9 @@ const RtSyntax rt_bench_syntax = {
             "  raytally bench 'balls:size=2|3' --accel bvh --accel 'grid:density=1..16*4'\n"
             "  raytally bench balls --accel bvh --rays-from rays.npy --rays nearest --hits hits.npy"};
 
-int rt_command_bench(int argc, char **argv) {
+RtStatus rt_command_bench(int argc, char **argv, RtError *error) {
     Options o = {.threads = -1, .workload = {.timing = 1, .patience = RT_PATIENCE}, .argv = argv};
-    RtError error;
     rt_recording_init(&o.recording);
     rt_cli_parse(&rt_bench_syntax, argc, argv, &o);
-    RtStatus status = bench(&o, &error);
-    return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
+    return bench(&o, error);
 }

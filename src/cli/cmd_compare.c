@@ -165,13 +165,16 @@ static RtStatus compare_directories(const Options *o, RtComparison *comparison, 
 
 /* ---- the command ---- */
 
-static RtStatus compare(Options *o, char **argv, bool *slower, RtError *error) {
+static RtStatus compare(Options *o, char **argv, RtError *error) {
     RtComparison comparison = {.margin = o->margin >= 0 ? o->margin : o->with ? 0 : MARGIN_OF_DIRECTORIES};
     RtStatus status =
         o->with ? compare_programs(o, argv, &comparison, error) : compare_directories(o, &comparison, error);
     if (status == RT_OK && o->json) rt_cli_print_json(rt_comparison_json(&comparison));
     if (status == RT_OK && !o->json) rt_comparison_print(&comparison, stdout);
-    *slower = rt_comparison_count(&comparison, RT_CHANGE_SLOWER) > 0;
+    if (status == RT_OK && o->strict && rt_comparison_count(&comparison, RT_CHANGE_SLOWER) > 0) {
+        *error = (RtError){RT_MISMATCH, ""};
+        status = RT_MISMATCH;
+    }
     rt_comparison_clear(&comparison);
     return status;
 }
@@ -197,13 +200,9 @@ const RtSyntax rt_compare_syntax = {
         "--until 1%\n"
         "  raytally compare results/last-month results/first-look --strict"};
 
-int rt_command_compare(int argc, char **argv) {
-    RtError error;
-    bool slower = false;
+RtStatus rt_command_compare(int argc, char **argv, RtError *error) {
     Options o = {.threads = -1, .timing = 1, .patience = 600, .margin = -1};
     rt_recording_init(&o.recording);
     rt_cli_parse(&rt_compare_syntax, argc, argv, &o);
-    RtStatus status = o.worker ? work(&o, &error) : compare(&o, argv, &slower, &error);
-    if (status != RT_OK) return rt_cli_fail(&error);
-    return slower && o.strict ? RT_EXIT_CHECK_FAILED : RT_EXIT_OK;
+    return o.worker ? work(&o, error) : compare(&o, argv, error);
 }

@@ -31,13 +31,12 @@ const RtSyntax rt_convert_syntax = {.options = options,
                                             "  raytally convert balls:size=2 balls.yaml\n"
                                             "  raytally convert bunny.obj bunny.ply"};
 
-int rt_command_convert(int argc, char **argv) {
+RtStatus rt_command_convert(int argc, char **argv, RtError *error) {
     Options o = {0};
-    rt_cli_parse(&rt_convert_syntax, argc, argv, &o);
-    RtError error;
     RtScene scene;
-    if (rt_scene_open(o.in, &scene, &error) != RT_OK) return rt_cli_fail(&error);
-    RtStatus status = rt_scene_save(&scene, o.out, o.force, &error);
+    rt_cli_parse(&rt_convert_syntax, argc, argv, &o);
+    RT_TRY(rt_scene_open(o.in, &scene, error));
+    RtStatus status = rt_scene_save(&scene, o.out, o.force, error);
     rt_scene_clear(&scene);
-    return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
+    return status;
 }

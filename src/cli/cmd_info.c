@@ -174,14 +174,13 @@ const RtSyntax rt_info_syntax = {.options = options,
                                      "the camera, memory, and a fingerprint of everything that affects an "
                                      "answer. SCENE is a file or a built-in such as balls:size=5."};
 
-int rt_command_info(int argc, char **argv) {
+RtStatus rt_command_info(int argc, char **argv, RtError *error) {
     Options o = {.rays = 100000, .seed = 1};
     RtScene scene;
-    RtError error;
     rt_cli_parse(&rt_info_syntax, argc, argv, &o);
-    if (o.json && rt_cli_check_json_name(o.scene, &error) != RT_OK) return rt_cli_fail(&error);
-    if (rt_scene_open(o.scene, &scene, &error) != RT_OK) return rt_cli_fail(&error);
-    RtStatus status = show(&scene, &o, &error);
+    if (o.json) RT_TRY(rt_cli_check_json_name(o.scene, error));
+    RT_TRY(rt_scene_open(o.scene, &scene, error));
+    RtStatus status = show(&scene, &o, error);
     rt_scene_clear(&scene);
-    return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
+    return status;
 }

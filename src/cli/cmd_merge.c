@@ -52,10 +52,9 @@ const RtSyntax rt_merge_syntax = {
         "--threads. Use the same build, and start it where the shards were started. Example:\n"
         "  raytally merge results/first-look-*-of-3 -o results/first-look"};
 
-int rt_command_merge(int argc, char **argv) {
+RtStatus rt_command_merge(int argc, char **argv, RtError *error) {
     Options o = {.start = RT_START_FRESH};
     rt_cli_parse(&rt_merge_syntax, argc, argv, &o);
-    RtError error;
     RtResults results = {0};
     const RtRunOptions how = {.directory = o.out,
                               .start = o.start,
@@ -63,11 +62,11 @@ int rt_command_merge(int argc, char **argv) {
                               .report = &rt_run_report,
                               .workload.observer.notice = on_notice};
     static RtExperiment experiment;
-    RtStatus status = rt_merge(o.directories, o.count, &how, &experiment, &results, &error);
+    RtStatus status = rt_merge(o.directories, o.count, &how, &experiment, &results, error);
     if (status == RT_OK) {
         rt_print_summary(&results, stdout);
         printf("\nReport: %s/report.html\n", o.out);
     }
     rt_results_clear(&results);
-    return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
+    return status;
 }

@@ -96,16 +96,14 @@ static RtStatus write_folder(const char *folder, const char *name, RtError *erro
 
 /* ---- the command ---- */
 
-int rt_command_new_accel(int argc, char **argv) {
+RtStatus rt_command_new_accel(int argc, char **argv, RtError *error) {
     Options o = {.out = ""};
     rt_cli_parse(&rt_new_accel_syntax, argc, argv, &o);
-    RtError error;
     char folder[RT_MAX_PATH];
-    RtStatus status = rt_accel_name_is_free(o.name, &error);
-    if (status == RT_OK) status = rt_path_join(o.out, o.name, folder, &error);
-    if (status == RT_OK && *o.out) status = rt_directory_create(o.out, &error);
-    if (status == RT_OK) status = write_folder(folder, o.name, &error);
-    if (status != RT_OK) return rt_cli_fail(&error);
+    RT_TRY(rt_accel_name_is_free(o.name, error));
+    RT_TRY(rt_path_join(o.out, o.name, folder, error));
+    if (*o.out) RT_TRY(rt_directory_create(o.out, error));
+    RT_TRY(write_folder(folder, o.name, error));
     printf("%s: a working accelerator. Next steps:\n\n"
            "  cd %s\n"
            "  cmake -B build && cmake --build build\n"
@@ -113,5 +111,5 @@ int rt_command_new_accel(int argc, char **argv) {
            "  raytally bench balls:size=3 --plugin build/%s.so --accel %s --accel bvh\n\n"
            "%s.c shows where your structure goes; README.md explains the rest.\n",
            folder, folder, o.name, o.name, o.name);
-    return RT_EXIT_OK;
+    return RT_OK;
 }

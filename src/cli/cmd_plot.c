@@ -32,8 +32,8 @@ const RtSyntax rt_plot_syntax = {
             "script that raytally does not ship, your own or a changed one, needs --trust: a gnuplot script "
             "can run any command. Exit code 1 if gnuplot fails; without gnuplot there is a note."};
 
-int rt_command_plot(int argc, char **argv) {
+RtStatus rt_command_plot(int argc, char **argv, RtError *error) {
     Options o = {0};
     rt_cli_parse(&rt_plot_syntax, argc, argv, &o);
-    return rt_cli_directory_work(o.directory, true, draw, &o);
+    return rt_cli_directory_work(o.directory, true, draw, &o, error);
 }

@@ -68,11 +68,9 @@ const RtSyntax rt_rays_syntax = {
             "  raytally bench balls --accel bvh --rays-from rays.npy --rays nearest --hits hits.npy\n"
             "  python3 -c \"import numpy; print(numpy.load('hits.npy')['object'])\""};
 
-int rt_command_rays(int argc, char **argv) {
-    RtError error;
+RtStatus rt_command_rays(int argc, char **argv, RtError *error) {
     Options o = {.recording = {.one_kind = true}};
     rt_recording_init(&o.recording);
     rt_cli_parse(&rt_rays_syntax, argc, argv, &o);
-    RtStatus status = record(&o, &error);
-    return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
+    return record(&o, error);
 }

@@ -334,20 +334,19 @@ const RtSyntax rt_render_syntax = {.options = options,
                                    .finish = finish,
                                    .help = help};
 
-int rt_command_render(int argc, char **argv) {
+RtStatus rt_command_render(int argc, char **argv, RtError *error) {
     Options o = {.samples = 1, .depth = RT_DEFAULT_DEPTH, .pictures = {.boxes = RT_ALL_LEVELS}};
     rt_cli_parse(&rt_render_syntax, argc, argv, &o);
-    RtError error;
     Run run = {.options = &o};
-    RtStatus status = prepare(&run, &error);
-    if (status == RT_OK) status = trace_frames(&run, &error);
-    if (status == RT_OK) status = write_images(&run, &error);
-    if (status == RT_OK) status = write_stats(&run, &error);
+    RtStatus status = prepare(&run, error);
+    if (status == RT_OK) status = trace_frames(&run, error);
+    if (status == RT_OK) status = write_images(&run, error);
+    if (status == RT_OK) status = write_stats(&run, error);
     if (status == RT_OK) print_summary(&run);
-    if (status == RT_OK) status = check_rays(&run, &error);
+    if (status == RT_OK) status = check_rays(&run, error);
     rt_frame_clear(&run.timed);
     rt_frame_clear(&run.counted);
     rt_accel_destroy(run.accel);
     rt_scene_clear(&run.scene);
-    return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
+    return status;
 }

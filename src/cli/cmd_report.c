@@ -25,12 +25,11 @@ typedef struct Options {
     const char *directory, *folder;
 } Options;
 
-static int write_index(const char *folder) {
-    RtError error;
+static RtStatus write_index(const char *folder, RtError *error) {
     size_t count;
-    if (rt_index_write(folder, &count, &error) != RT_OK) return rt_cli_fail(&error);
+    RT_TRY(rt_index_write(folder, &count, error));
     printf("Index: %s/index.html, of %zu experiment%s\n", folder, count, rt_plural(count));
-    return RT_EXIT_OK;
+    return RT_OK;
 }
 
 static void take_index(void *options, const char *text, struct argp_state *state) {
@@ -60,8 +59,9 @@ const RtSyntax rt_report_syntax = {
         "Write DIR/report.html again, from what is in DIR, and tables.md and tables.tex beside it.\n"
         "--index: FOLDER/index.html, a page that lists all result directories in FOLDER and its subfolders."};
 
-int rt_command_report(int argc, char **argv) {
+RtStatus rt_command_report(int argc, char **argv, RtError *error) {
     Options o = {0};
     rt_cli_parse(&rt_report_syntax, argc, argv, &o);
-    return o.folder ? write_index(o.folder) : rt_cli_directory_work(o.directory, true, report, &o);
+    if (o.folder) return write_index(o.folder, error);
+    return rt_cli_directory_work(o.directory, true, report, &o, error);
 }

@@ -137,8 +137,8 @@ const RtSyntax rt_reproduce_syntax = {
     .help = "Count everything in a result directory again and compare it with DIR/counts.csv, byte for byte, "
             "and with published figures if the experiment names any. Start it where the experiment was run."};
 
-int rt_command_reproduce(int argc, char **argv) {
+RtStatus rt_command_reproduce(int argc, char **argv, RtError *error) {
     Options o = {0};
     rt_cli_parse(&rt_reproduce_syntax, argc, argv, &o);
-    return rt_cli_directory_work(o.directory, false, reproduce, &o);
+    return rt_cli_directory_work(o.directory, false, reproduce, &o, error);
 }

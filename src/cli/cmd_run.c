@@ -216,11 +216,9 @@ const RtSyntax rt_run_syntax = {
             "note), a published figure is outside its tolerance, or with --strict a claim does not hold. "
             "experiments/README.md describes how to write an experiment."};
 
-int rt_command_run(int argc, char **argv) {
+RtStatus rt_command_run(int argc, char **argv, RtError *error) {
     Options o = {.threads = -1, .patience = RT_PATIENCE};
     rt_cli_parse(&rt_run_syntax, argc, argv, &o);
-    RtError error;
     static RtExperiment experiment;
-    RtStatus status = run(&o, &experiment, &error);
-    return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
+    return run(&o, &experiment, error);
 }

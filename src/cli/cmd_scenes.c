@@ -22,12 +22,11 @@ const RtSyntax rt_scenes_syntax = {.options = rt_list_options,
                                    .help = "List the built-in scenes, or explain the one called NAME: its "
                                            "parameters with defaults and ranges, and where it comes from."};
 
-int rt_command_scenes(int argc, char **argv) {
+RtStatus rt_command_scenes(int argc, char **argv, RtError *error) {
     RtListOptions o = {0};
     rt_cli_parse(&rt_scenes_syntax, argc, argv, &o);
-    RtError error;
     const RtBuiltin *only = NULL;
-    if (o.name && rt_builtin_named(o.name, &only, &error) != RT_OK) return rt_cli_fail(&error);
+    if (o.name) RT_TRY(rt_builtin_named(o.name, &only, error));
     json_t *list = json_array();
     for (size_t i = 0; i < rt_builtin_count(); i++) {
         if (only && rt_builtin_at(i) != only) continue;
@@ -39,5 +38,5 @@ int rt_command_scenes(int argc, char **argv) {
     }
     rt_list_finish(&o, "scenes", list,
                    "A built-in scene is written NAME[:KEY=VALUE[,KEY=VALUE]...], as in balls:size=5.");
-    return RT_EXIT_OK;
+    return RT_OK;
 }

@@ -261,9 +261,8 @@ const RtSyntax rt_trace_syntax = {
         "  raytally trace balls --pixel 256,400 --accel light:cells=40+octree --rays shadow --light 1\n"
         "embree shows no steps, because it counts none; with mode=user it shows object tests."};
 
-int rt_command_trace(int argc, char **argv) {
-    RtError error;
+RtStatus rt_command_trace(int argc, char **argv, RtError *error) {
     Options o = {.accel = rt_accel_default(), .rows = DEFAULT_ROWS};
     rt_cli_parse(&rt_trace_syntax, argc, argv, &o);
-    return run(&o, &error) == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
+    return run(&o, error);
 }

@@ -333,15 +333,15 @@ const RtSyntax rt_verify_syntax = {
             "row to a file (in --out DIR, or in verify-failures/), with the scene reduced to the objects "
             "that cause it; --replay traces it again. Exit code 1 if anything is wrong."};
 
-int rt_command_verify(int argc, char **argv) {
+RtStatus rt_command_verify(int argc, char **argv, RtError *error) {
     static Options o;
     o = (Options){.seed = 1};
     rt_cli_parse(&rt_verify_syntax, argc, argv, &o);
-    RtError error;
     bool failed = false;
-    RtStatus status = o.replay ? replay(&o, &failed, &error) : choose(&o, &error);
-    if (status == RT_OK && !o.replay) status = verify(&o, &failed, &error);
+    RtStatus status = o.replay ? replay(&o, &failed, error) : choose(&o, error);
+    if (status == RT_OK && !o.replay) status = verify(&o, &failed, error);
     rt_rayset_clear(&o.given);
-    if (status != RT_OK) return rt_cli_fail(&error);
-    return failed ? RT_EXIT_CHECK_FAILED : RT_EXIT_OK;
+    if (status != RT_OK || !failed) return status;
+    *error = (RtError){RT_MISMATCH, ""};
+    return RT_MISMATCH;
 }

@@ -1,18 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/directory.h"
 
-#include "cli/cli.h"
 #include "core/base/lock.h"
 
-int rt_cli_directory_work(const char *directory, bool writes, RtDirectoryWork *work, const void *options) {
-    RtError error;
+RtStatus rt_cli_directory_work(const char *directory, bool writes, RtDirectoryWork *work, const void *options,
+                               RtError *error) {
     RtLock lock = RT_NO_LOCK;
     RtResults results = {0};
     static RtExperiment experiment;
-    RtStatus status = writes ? rt_lock_take(&lock, directory, &error) : RT_OK;
-    if (status == RT_OK) status = rt_run_load(directory, &experiment, &results, &error);
-    if (status == RT_OK) status = work(directory, &results, options, &error);
+    RtStatus status = writes ? rt_lock_take(&lock, directory, error) : RT_OK;
+    if (status == RT_OK) status = rt_run_load(directory, &experiment, &results, error);
+    if (status == RT_OK) status = work(directory, &results, options, error);
     rt_lock_release(&lock);
     rt_results_clear(&results);
-    return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
+    return status;
 }

@@ -12,8 +12,8 @@
 typedef RtStatus RtDirectoryWork(const char *directory, RtResults *results, const void *options,
                                  RtError *error);
 
-/* Loads the directory and works on it; returns the exit code. A command that writes into the directory locks
- * it. */
-int rt_cli_directory_work(const char *directory, bool writes, RtDirectoryWork *work, const void *options);
+/* Loads the directory and works on it. A command that writes into the directory locks it. */
+RtStatus rt_cli_directory_work(const char *directory, bool writes, RtDirectoryWork *work, const void *options,
+                               RtError *error);
 
 #endif

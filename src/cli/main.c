@@ -16,10 +16,11 @@ static const RtCommand commands[] = {
 
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
-int rt_command_completion(int argc, char **argv) {
+RtStatus rt_command_completion(int argc, char **argv, RtError *error) {
+    (void)error;
     rt_cli_parse(&rt_completion_syntax, argc, argv, NULL);
     rt_completion_print(commands, COMMAND_COUNT);
-    return RT_EXIT_OK;
+    return RT_OK;
 }
 
 static void print_usage(FILE *to) {
@@ -54,6 +55,13 @@ static const RtCommand *find_command(const char *name) {
     return NULL;
 }
 
+/* Prints the message, and returns the exit code. */
+static int fail(const RtError *error) {
+    if (*error->message) fprintf(stderr, "raytally: %s\n", error->message);
+    bool failed = error->status == RT_MISMATCH || error->status == RT_BROKEN;
+    return failed ? RT_EXIT_CHECK_FAILED : RT_EXIT_BAD_INPUT;
+}
+
 /* argv[0] is the command's name. */
 static int run_command(int argc, char **argv) {
     const RtCommand *command = find_command(argv[0]);
@@ -62,9 +70,9 @@ static int run_command(int argc, char **argv) {
     snprintf(title, sizeof title, "raytally %s", command->name);
     argv[0] = title;
     RtError error;
-    if (command->syntax->plugins && rt_cli_load_plugins(argc, argv, &error) != RT_OK)
-        return rt_cli_fail(&error);
-    int code = command->run(argc, argv);
+    RtStatus status = command->syntax->plugins ? rt_cli_load_plugins(argc, argv, &error) : RT_OK;
+    if (status == RT_OK) status = command->run(argc, argv, &error);
+    int code = status == RT_OK ? RT_EXIT_OK : fail(&error);
     if (rt_remote_exit_message()) {
         fprintf(stderr, "raytally: %s\n", rt_remote_exit_message());
         if (code == RT_EXIT_OK) code = RT_EXIT_CHECK_FAILED;
