@@ -6,8 +6,6 @@
 #include "experiment/plugins_used.h"
 #include "measure/machine.h"
 
-#include <inttypes.h>
-#include <stdio.h>
 #include <string.h>
 
 /* ---- the shards ---- */
@@ -132,19 +130,10 @@ static RtStatus check_whole(const Merge *merge, RtError *error) {
 
 /* Loads the experiment, which must not have changed. */
 static RtStatus load_experiment(const Merge *merge, RtExperiment *experiment, RtError *error) {
-    char path[RT_MAX_PATH];
-    json_t *manifest;
-    uint64_t hash = 0;
-    RT_TRY(rt_manifest_read(merge->directories[0], &manifest, error));
-    const char *file = json_string_value(json_object_get(manifest, "file"));
-    snprintf(path, sizeof path, "%s", file ? file : "");
-    json_decref(manifest);
-    const char *text = json_string_value(json_object_get(header_of(merge, 0), "hash"));
-    if (!text || sscanf(text, "%" SCNx64, &hash) != 1) hash = 0;
-    bool quick = json_is_true(json_object_get(header_of(merge, 0), "quick"));
-    RT_TRY(rt_experiment_load(experiment, path, quick, error));
-    if (experiment->fingerprint == hash) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT, "%s has changed since the shards were made from it", path);
+    RtStatus status = rt_manifest_experiment(merge->directories[0], experiment, error);
+    if (status != RT_MISMATCH) return status;
+    return rt_fail(error, RT_BAD_INPUT, "%s has changed since the shards were made from it",
+                   experiment->path);
 }
 
 /* ---- the joined directory ---- */
@@ -167,29 +156,17 @@ static RtStatus add_journal(const Merge *merge, const RtExperiment *experiment, 
     return status;
 }
 
-typedef struct Copies {
-    const char *out;
-    RtOutputs *files;
-    RtStatus status;
-    RtError *error;
-} Copies;
-
-static void copy_image(void *context, const char *path) {
-    Copies *copies = context;
-    char to[RT_MAX_PATH], name[RT_MAX_PATH];
-    snprintf(name, sizeof name, "images/%s", strrchr(path, '/') + 1);
-    if (copies->status == RT_OK) copies->status = rt_path_join(copies->out, name, to, copies->error);
-    if (copies->status == RT_OK) copies->status = rt_outputs_copy(copies->files, path, to, copies->error);
-}
-
-static RtStatus copy_images(const Merge *merge, RtOutputs *files, RtError *error) {
-    Copies copies = {merge->options->directory, files, RT_OK, error};
-    for (uint32_t i = 0; i < merge->count && copies.status == RT_OK; i++) {
-        char images[RT_MAX_PATH];
-        RT_TRY(rt_path_join(merge->directories[i], "images", images, error));
-        rt_directory_each(images, ".png", copy_image, &copies);
+static RtStatus copy_images(const Merge *merge, const RtExperiment *experiment, RtOutputs *files,
+                            RtError *error) {
+    for (uint32_t i = 0; i < merge->count; i++) {
+        for (uint32_t t = 0; t < experiment->workload_count; t++) {
+            char from[RT_MAX_PATH], to[RT_MAX_PATH];
+            RT_TRY(rt_run_image_path(merge->directories[i], experiment, t, from, error));
+            RT_TRY(rt_run_image_path(merge->options->directory, experiment, t, to, error));
+            if (rt_file_exists(from)) RT_TRY(rt_outputs_copy(files, from, to, error));
+        }
     }
-    return copies.status;
+    return RT_OK;
 }
 
 /* All files that are not made from the journal; the journal last. */
@@ -201,7 +178,7 @@ static RtStatus add_files(const Merge *merge, const RtExperiment *experiment, Rt
         RT_TRY(rt_path_join(merge->options->directory, folders[i], path, error));
         RT_TRY(rt_directory_create(path, error));
     }
-    RT_TRY(copy_images(merge, files, error));
+    RT_TRY(copy_images(merge, experiment, files, error));
     RT_TRY(rt_scripts_copy(experiment, merge->options->directory, false, files, error));
     return add_journal(merge, experiment, files, error);
 }

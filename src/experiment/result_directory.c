@@ -65,10 +65,11 @@ static uint32_t slot_of(const RtExperiment *experiment, uint32_t t) {
     return slot;
 }
 
-static RtStatus image_path(const Run *run, uint32_t t, char *path, RtError *error) {
+RtStatus rt_run_image_path(const char *directory, const RtExperiment *experiment, uint32_t workload,
+                           char *path, RtError *error) {
     char name[RT_MAX_LABEL + 16];
-    snprintf(name, sizeof name, "images/%s.png", run->experiment->workloads[t].label);
-    return path_in(run, name, path, error);
+    snprintf(name, sizeof name, "images/%s.png", experiment->workloads[workload].label);
+    return rt_path_join(directory, name, path, error);
 }
 
 static RtStatus open_scenes(Run *run, RtError *error) {
@@ -76,7 +77,7 @@ static RtStatus open_scenes(Run *run, RtError *error) {
         uint32_t slot = slot_of(run->experiment, t);
         char image[RT_MAX_PATH];
         if (!rt_only_scene(&run->options->workload.only, run->experiment, t)) continue;
-        RT_TRY(image_path(run, t, image, error));
+        RT_TRY(rt_run_image_path(run->options->directory, run->experiment, t, image, error));
         bool drawn = run->resumed && rt_file_exists(image);
         if (run->opened[slot] || (drawn && rt_workload_is_done(run->results, t, &run->options->workload)))
             continue;
@@ -221,7 +222,7 @@ static RtStatus draw_scene(RtScene *scene, const RtWorkloadResult *workload, int
 /* The picture of a workload's scene, unless it exists. */
 static RtStatus write_image(Run *run, uint32_t t, RtError *error) {
     char path[RT_MAX_PATH];
-    RT_TRY(image_path(run, t, path, error));
+    RT_TRY(rt_run_image_path(run->options->directory, run->experiment, t, path, error));
     if (run->results->workloads[t].skipped || (run->resumed && rt_file_exists(path))) return RT_OK;
     return draw_scene(&run->scenes[slot_of(run->experiment, t)], &run->results->workloads[t],
                       run->options->workload.threads, path, error);

@@ -50,6 +50,10 @@ typedef struct RtRunOptions {
  * resumed. */
 RtStatus rt_run_experiment(RtResults *results, const RtRunOptions *options, RtError *error);
 
+/* The picture of a workload's scene in a result directory. */
+RtStatus rt_run_image_path(const char *directory, const RtExperiment *experiment, uint32_t workload,
+                           char *path, RtError *error);
+
 /* Loads experiment and results of a result directory; this build may lack its accelerators. Initialises
  * `results`: rt_results_clear. */
 RtStatus rt_run_load(const char *directory, RtExperiment *experiment, RtResults *results, RtError *error);

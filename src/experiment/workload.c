@@ -5,8 +5,6 @@
 #include "measure/ray_file.h"
 #include "scenes/open.h"
 
-#include <stdio.h>
-
 /* ---- what is unknown ---- */
 
 static bool kind_is_done(const RtWorkloadState *workload, RtRayKind kind) {
@@ -173,37 +171,31 @@ static RtStatus build_one(RtWorkloadState *workload, const RtSpec *spec, RtAccel
     return RT_OK;
 }
 
-/* Builds a candidate within the limits. If it exceeds one, it is destroyed, and result->left_out names the
- * limit. */
+/* Builds a candidate within the limits. If it exceeds one, it is destroyed and left out. */
 static RtStatus build_within(RtWorkloadState *workload, uint32_t c, const RtSpec *spec, double *seconds,
                              RtError *error) {
     const RtExperiment *experiment = workload->experiment;
-    RtBuildResult *result = rt_build_at(workload->results, workload->index, c);
+    const RtRayKind any = RT_RAY_PRIMARY;
     rt_memory_limit(1000000 * experiment->limit_megabytes);
     RtStatus status = build_one(workload, spec, &workload->built[c], seconds, error);
     rt_memory_limit(0);
-    bool too_large = status == RT_NO_MEMORY && experiment->limit_megabytes;
+    const bool too_large = status == RT_NO_MEMORY && experiment->limit_megabytes;
+    const bool too_slow = experiment->limit_seconds > 0 && *seconds > experiment->limit_seconds;
     /* If a plugin rejects the scene, or takes all memory, only its own results are lost. */
-    bool broken = status == RT_BROKEN || (status != RT_OK && !too_large && rt_spec_is_remote(spec));
-    if (status != RT_OK && !broken && !too_large) return status;
-    if (broken) {
-        snprintf(result->left_out, RT_MAX_LEFT_OUT, "%.511s", error->message);
-        result->broken = true;
-        return rt_workload_leave_out(workload, c, RT_EVENT_BROKEN_BUILD, RT_RAY_PRIMARY, result->left_out,
-                                     error);
-    }
-    if (too_large) {
-        snprintf(result->left_out, RT_MAX_LEFT_OUT, "its structure takes more than %llu MB",
-                 (unsigned long long)experiment->limit_megabytes);
-    } else if (experiment->limit_seconds > 0 && *seconds > experiment->limit_seconds) {
-        snprintf(result->left_out, RT_MAX_LEFT_OUT, "building takes %.3g s, more than %g s", *seconds,
-                 experiment->limit_seconds);
-    } else {
-        return RT_OK;
-    }
+    const bool broken = status == RT_BROKEN || (status != RT_OK && !too_large && rt_spec_is_remote(spec));
+    if (broken)
+        return rt_workload_leave_out(workload, c, RT_EVENT_BROKEN_BUILD, any, error, "%s", error->message);
+    if (status != RT_OK && !too_large) return status;
+    if (!too_large && !too_slow) return RT_OK;
     rt_accel_destroy(workload->built[c]);
     workload->built[c] = NULL;
-    return rt_workload_leave_out(workload, c, RT_EVENT_TOO_LARGE, RT_RAY_PRIMARY, result->left_out, error);
+    if (too_large)
+        return rt_workload_leave_out(workload, c, RT_EVENT_TOO_LARGE, any, error,
+                                     "its structure takes more than %llu MB",
+                                     (unsigned long long)experiment->limit_megabytes);
+    return rt_workload_leave_out(workload, c, RT_EVENT_TOO_LARGE, any, error,
+                                 "building takes %.3g s, more than %g s", *seconds,
+                                 experiment->limit_seconds);
 }
 
 static RtStatus build_all(RtWorkloadState *workload, RtError *error) {

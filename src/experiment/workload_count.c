@@ -6,7 +6,6 @@
 #include "core/base/memory.h"
 #include "experiment/workload_state.h"
 
-#include <stdio.h>
 #include <string.h>
 
 enum { PROBE_RAYS = 256 }; /* at most */
@@ -99,10 +98,10 @@ static RtStatus check_seconds(RtWorkloadState *workload, uint32_t c, RtRayKind k
     RT_TRY(rt_measure_count(workload->accels[c], part, workload->probe.expected, 1, &count, error));
     double seconds = count.seconds / (double)part->count * all * passes;
     if (seconds <= experiment->limit_seconds) return RT_OK;
-    snprintf(cell->left_out, RT_MAX_LEFT_OUT, "it would take about %.2g s, more than %g s", seconds,
-             experiment->limit_seconds);
     workload->accels[c] = NULL;
-    return rt_workload_leave_out(workload, c, RT_EVENT_TOO_LONG, kind, cell->left_out, error);
+    return rt_workload_leave_out(workload, c, RT_EVENT_TOO_LONG, kind, error,
+                                 "it would take about %.2g s, more than %g s", seconds,
+                                 experiment->limit_seconds);
 }
 
 /* ---- answers ---- */

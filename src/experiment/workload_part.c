@@ -68,27 +68,34 @@ void rt_notify(const RtRunObserver *observer, const char *format, ...) {
 }
 
 RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKind what, RtRayKind kind,
-                               char *limit, RtError *error) {
+                               RtError *error, const char *why, ...) {
     const RtExperiment *experiment = workload->experiment;
-    bool broken = what == RT_EVENT_BROKEN || what == RT_EVENT_BROKEN_BUILD;
-    if (c == experiment->candidate_count || rt_candidate_is_baseline(experiment, c)) {
-        RtStatus status = broken ? RT_BROKEN : RT_BAD_INPUT;
-        rt_fail(error, status, "the baseline '%s' %s on '%s': %s", rt_candidate_label(experiment, c),
-                broken ? "is broken" : "exceeds a limit", experiment->workloads[workload->index].label,
-                limit);
-        *limit = '\0';
-        return status;
+    const char *label = rt_candidate_label(experiment, c);
+    const char *scene = experiment->workloads[workload->index].label;
+    const bool broken = what == RT_EVENT_BROKEN || what == RT_EVENT_BROKEN_BUILD;
+    char text[RT_MAX_LEFT_OUT];
+    va_list args;
+    va_start(args, why);
+    /* clang-tidy 14 does not see va_start. NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized) */
+    vsnprintf(text, sizeof text, why, args);
+    va_end(args);
+    if (c == experiment->candidate_count || rt_candidate_is_baseline(experiment, c))
+        return rt_fail(error, broken ? RT_BROKEN : RT_BAD_INPUT, "the baseline '%s' %s on '%s': %s", label,
+                       broken ? "is broken" : "exceeds a limit", scene, text);
+    if (what == RT_EVENT_TOO_LARGE || what == RT_EVENT_BROKEN_BUILD) {
+        RtBuildResult *build = rt_build_at(workload->results, workload->index, c);
+        strcpy(build->left_out, text);
+        build->broken = broken;
+    } else {
+        RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
+        strcpy(cell->left_out, text);
+        cell->broken = broken;
     }
-    if (broken)
-        rt_notify(&workload->options->observer, "%s on %s: %s", rt_candidate_label(experiment, c),
-                  experiment->workloads[workload->index].label, limit);
+    if (broken) rt_notify(&workload->options->observer, "%s on %s: %s", label, scene, text);
     return rt_workload_tell(workload, what, c, kind, error);
 }
 
 RtStatus rt_workload_break(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtError *error) {
-    RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
-    snprintf(cell->left_out, RT_MAX_LEFT_OUT, "%.511s", error->message);
-    cell->broken = true;
     workload->accels[c] = NULL;
-    return rt_workload_leave_out(workload, c, RT_EVENT_BROKEN, kind, cell->left_out, error);
+    return rt_workload_leave_out(workload, c, RT_EVENT_BROKEN, kind, error, "%s", error->message);
 }

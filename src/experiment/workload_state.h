@@ -42,10 +42,12 @@ static inline RtStatus rt_workload_tell(const RtWorkloadState *workload, RtEvent
     return observer->event ? observer->event(observer->context, workload->results, &event, error) : RT_OK;
 }
 
-/* Reports that candidate `c`, or a cell of it, exceeds the limit that `limit` names, or is broken. If it is
- * the baseline, the workload fails, and `limit` is cleared. */
-RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKind what, RtRayKind kind,
-                               char *limit, RtError *error);
+/* Leaves candidate `c`, or its cell of that kind of rays, out of the results: `what` says which of both, and
+ * whether it is broken. `why`, as of printf, is kept there and reported. If it is the baseline, the workload
+ * fails instead. */
+__attribute__((format(printf, 6, 7))) RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c,
+                                                                     RtEventKind what, RtRayKind kind,
+                                                                     RtError *error, const char *why, ...);
 
 /* Excludes the candidate on rays of that kind as broken, for the reason in *error. */
 RtStatus rt_workload_break(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtError *error);

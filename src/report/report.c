@@ -10,6 +10,7 @@
 #include "experiment/distribution_tables.h"
 #include "experiment/frame_table.h"
 #include "experiment/manifest.h"
+#include "experiment/result_directory.h"
 #include "experiment/result_tables.h"
 #include "literature/published_tables.h"
 #include "measure/result_files.h"
@@ -170,10 +171,10 @@ static void put_scenes(FILE *out, const RtResults *results, const char *director
     for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
         const RtWorkload *setup = &results->experiment->workloads[t];
         const RtWorkloadResult *workload = &results->workloads[t];
-        char name[RT_MAX_LABEL + 16], path[RT_MAX_PATH], *picture;
+        char path[RT_MAX_PATH], *picture;
         size_t size;
-        snprintf(name, sizeof name, "images/%s.png", setup->label);
-        if (!workload->known || rt_path_join(directory, name, path, NULL) != RT_OK) continue;
+        if (!workload->known || rt_run_image_path(directory, results->experiment, t, path, NULL) != RT_OK)
+            continue;
         fputs("<figure>", out);
         if (rt_file_read(path, MOST_FILE_BYTES, &picture, &size, NULL) == RT_OK) {
             rt_html_wrap(out, "<img alt=\"Picture of the scene ", setup->label, "\" src=\"");
