@@ -262,18 +262,15 @@ static RtStatus report(const Options *o, const RtResults *results, const RtCallg
 
 /* All but the report. */
 static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, RtError *error) {
-    const RtExperiment *experiment = o->recording.experiment;
     if (o->callgrind) {
         RT_TRY(rt_callgrind_check(error));
-        RT_TRY(rt_callgrind_init(callgrind, experiment, o->callgrind, error));
+        RT_TRY(rt_callgrind_init(callgrind, results->experiment, o->callgrind, error));
         o->workload.rays = rt_callgrind_save_rays;
         o->workload.rays_context = callgrind;
     }
     RtProgress progress = rt_progress_begin(&o->workload);
     o->workload.observer = rt_progress_observer(&progress);
-    RtStatus status = RT_OK;
-    for (uint32_t t = 0; status == RT_OK && t < experiment->workload_count; t++)
-        status = rt_workload_run(results, t, &o->workload, error);
+    RtStatus status = rt_workloads_run(results, &o->workload, error);
     if (status == RT_OK && o->callgrind)
         rt_notify(&o->workload.observer, "counting instructions under valgrind, which takes a while");
     rt_progress_end(&progress);

@@ -24,10 +24,7 @@ static RtStatus count_again(RtResults *results, const char *scene, RtError *erro
     RtWorkloadOptions options = {.timing = 1, .count_only = true, .only.scene = scene};
     RtProgress progress = rt_progress_begin(&options);
     options.observer = rt_progress_observer(&progress);
-    RtStatus status = RT_OK;
-    for (uint32_t t = 0; status == RT_OK && t < results->experiment->workload_count; t++) {
-        status = rt_workload_run(results, t, &options, error);
-    }
+    RtStatus status = rt_workloads_run(results, &options, error);
     rt_progress_end(&progress);
     return status;
 }

@@ -181,15 +181,13 @@ static RtStatus serve_kind(void *context, RtWorkloadState *workload, RtRayKind k
 }
 
 static RtStatus serve_times(Server *server, const RtWorkloadOptions *options, RtError *error) {
-    const RtExperiment *e = server->experiment;
     RtWorkloadOptions how = *options;
     RtResults results;
     how.timer = serve_kind;
     how.timer_context = server;
     say(server, json_pack("{s:i, s:s}", "worker", 1, "build", rt_build_identity()));
-    RtStatus status = rt_results_init(&results, e, error);
-    for (uint32_t t = 0; t < e->workload_count && status == RT_OK; t++)
-        status = rt_workload_run(&results, t, &how, error);
+    RtStatus status = rt_results_init(&results, server->experiment, error);
+    if (status == RT_OK) status = rt_workloads_run(&results, &how, error);
     if (status == RT_OK) say(server, json_pack("{s:b}", "done", 1));
     rt_results_clear(&results);
     return server->closed ? RT_OK : status;

@@ -318,12 +318,14 @@ RtStatus rt_workload_measure(RtResults *results, uint32_t index, const RtWorkloa
     return status;
 }
 
-RtStatus rt_workload_run(RtResults *results, uint32_t index, const RtWorkloadOptions *options,
-                         RtError *error) {
-    RtScene scene;
-    if (rt_workload_is_done(results, index, options)) return RT_OK;
-    RT_TRY(rt_workload_open(results, index, options, &scene, error));
-    RtStatus status = rt_workload_measure(results, index, options, &scene, error);
-    rt_scene_clear(&scene);
-    return status;
+RtStatus rt_workloads_run(RtResults *results, const RtWorkloadOptions *options, RtError *error) {
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        RtScene scene;
+        if (rt_workload_is_done(results, t, options)) continue;
+        RT_TRY(rt_workload_open(results, t, options, &scene, error));
+        RtStatus status = rt_workload_measure(results, t, options, &scene, error);
+        rt_scene_clear(&scene);
+        RT_TRY(status);
+    }
+    return RT_OK;
 }

@@ -103,8 +103,7 @@ RtStatus rt_workload_open(RtResults *results, uint32_t index, const RtWorkloadOp
 RtStatus rt_workload_measure(RtResults *results, uint32_t index, const RtWorkloadOptions *options,
                              RtScene *scene, RtError *error);
 
-/* Both, unless it is done. */
-RtStatus rt_workload_run(RtResults *results, uint32_t index, const RtWorkloadOptions *options,
-                         RtError *error);
+/* Opens and measures each workload that is not done. */
+RtStatus rt_workloads_run(RtResults *results, const RtWorkloadOptions *options, RtError *error);
 
 #endif

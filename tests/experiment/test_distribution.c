@@ -125,7 +125,7 @@ static void count_cloud(RtExperiment *e, RtResults *results, const char *const *
     assert_ok(rt_experiment_add_scenes(e, &scene, "random:n=300", "", error));
     assert_ok(rt_experiment_check(e, where, error));
     assert_ok(rt_results_init(results, e, error));
-    assert_ok(rt_workload_run(results, 0, &options, error));
+    assert_ok(rt_workloads_run(results, &options, error));
 }
 
 static const char *const counted[] = {"brute", "grid", "octree", "kd", "clusters", "cache+bvh", "bvh"};

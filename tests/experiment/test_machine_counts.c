@@ -86,7 +86,7 @@ static void measure(RtExperiment *e, RtResults *results, const RtHardwareEvent *
     assert_ok(rt_experiment_add_scenes(e, &scene, "random:n=1000", "", error));
     assert_ok(rt_experiment_check(e, where, error));
     assert_ok(rt_results_init(results, e, error));
-    assert_ok(rt_workload_run(results, 0, &options, error));
+    assert_ok(rt_workloads_run(results, &options, error));
 }
 
 static char *text_of(const RtResults *results, bool csv) {

@@ -118,7 +118,7 @@ static RtCell time_thinned(const char *spec) {
     RtExperiment *e = experiment_of("thinned", candidates);
     add_scene(e, "random:n=300", 8);
     assert_ok(rt_results_init(&results, e, error));
-    assert_ok(rt_workload_run(&results, 0, &options, error));
+    assert_ok(rt_workloads_run(&results, &options, error));
     RtCell cell = *rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
     assert_true(fabs(rt_results_cost(&results, 0, 1, RT_ALL_RAYS).ratio.median / cell.ratio.median - 1) <
                 1e-9);
@@ -198,7 +198,7 @@ RT_TEST(a_time_is_foretold_from_rays_of_all_parts_of_the_image) {
     add_scene(e, "balls:size=1", 64);
     assert_ok(rt_results_init(&results, e, error));
     first_count = first_parts = 0;
-    assert_ok(rt_workload_run(&results, 0, &options, error));
+    assert_ok(rt_workloads_run(&results, &options, error));
     assert_in_range(first_count, 128, 256);
     assert_int_equal(first_parts, 0xff);
     const RtTally *tally = &rt_cell_at(&results, 0, 0, RT_RAY_PRIMARY)->tally;
@@ -260,7 +260,7 @@ RT_TEST(ratios_to_a_best_of_several_refer_to_the_fastest_of_them) {
     bool most = false;
     for (int attempt = 0; attempt < 5 && !most; attempt++) {
         assert_ok(rt_results_init(&results, e, error));
-        assert_ok(rt_workload_run(&results, 0, &options, error));
+        assert_ok(rt_workloads_run(&results, &options, error));
         assert_one_is_baseline(&results, RT_RAY_PRIMARY);
         assert_one_is_baseline(&results, RT_RAY_SHADOW);
         most = most_are_slower(&results, RT_RAY_PRIMARY) && most_are_slower(&results, RT_RAY_SHADOW);
@@ -381,7 +381,7 @@ static uint32_t rounds_until(double until, double patience, char says[256]) {
     add_scene(e, "random:n=300", 16);
     assert_ok(rt_results_init(&results, e, error));
     wall_ticks = true;
-    RtStatus status = rt_workload_run(&results, 0, &options, NULL);
+    RtStatus status = rt_workloads_run(&results, &options, NULL);
     wall_ticks = false;
     assert_int_equal(status, RT_OK);
     const RtCell *null = rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
