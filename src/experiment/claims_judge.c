@@ -13,18 +13,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct Bounded {
-    double value, low, high;
-} Bounded;
-
 /* A value of the claim's measure, and its cell. */
 typedef struct Point {
     uint32_t workload, candidate;
     double x; /* of the parameter of an exponent or a trend */
-    Bounded y;
+    RtEstimate y;
 } Point;
 
-static const Bounded UNKNOWN = {NAN, NAN, NAN};
+static const RtEstimate UNKNOWN = {NAN, NAN, NAN, NAN};
 
 const char *rt_claim_verdict_name(RtClaimVerdict verdict) {
     static const char *const names[] = {"holds", "undecided", "does not hold"};
@@ -33,15 +29,11 @@ const char *rt_claim_verdict_name(RtClaimVerdict verdict) {
 
 /* ---- values ---- */
 
-static Bounded exactly(double value) {
-    return (Bounded){value, value, value};
+static RtEstimate exactly(double value) {
+    return (RtEstimate){value, value, value, value};
 }
 
-static Bounded of_estimate(const RtEstimate *e) {
-    return (Bounded){e->median, e->low, e->high};
-}
-
-static Bounded value_at(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c) {
+static RtEstimate value_at(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c) {
     const RtBuildResult *build = rt_build_at(results, t, c);
     const RtCost cost = rt_results_cost(results, t, c, claim->kind);
     const double counts[] = {0, cost.object_tests, cost.extent_tests, cost.steps};
@@ -49,11 +41,11 @@ static Bounded value_at(const RtResults *results, const RtClaim *claim, uint32_t
     if (claim->measure == RT_CLAIM_BUILD_TIME) return exactly(build->seconds);
     if (claim->measure == RT_CLAIM_BYTES) return exactly((double)build->structure.bytes);
     if (!cost.whole) return UNKNOWN;
-    return claim->measure == RT_CLAIM_TIME ? of_estimate(&cost.seconds) : exactly(counts[claim->measure]);
+    return claim->measure == RT_CLAIM_TIME ? cost.seconds : exactly(counts[claim->measure]);
 }
 
 /* The time of `c` over that of `other`, from ratios of throughput paired by round. */
-static bool paired(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c, Bounded *out) {
+static bool paired(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c, RtEstimate *out) {
     const RtExperiment *experiment = results->experiment;
     const bool all = claim->kind == RT_ALL_RAYS;
     RtRayKind kind = all ? experiment->kinds[0] : claim->kind;
@@ -61,18 +53,20 @@ static bool paired(const RtResults *results, const RtClaim *claim, uint32_t t, u
     const RtCell *own = rt_cell_at(results, t, c, kind), *other = rt_cell_at(results, t, claim->other, kind);
     if (!own->timed || !other->timed) return false;
     if (own->baseline == claim->other) {
-        *out = (Bounded){1 / own->ratio.median, 1 / own->ratio.high, 1 / own->ratio.low};
+        *out = (RtEstimate){
+            .median = 1 / own->ratio.median, .low = 1 / own->ratio.high, .high = 1 / own->ratio.low};
         return true;
     }
-    *out = of_estimate(&other->ratio);
+    *out = other->ratio;
     return other->baseline == c;
 }
 
-static Bounded ratio_at(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c) {
-    Bounded ratio;
+static RtEstimate ratio_at(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c) {
+    RtEstimate ratio;
     if (paired(results, claim, t, c, &ratio)) return ratio;
-    Bounded over = value_at(results, claim, t, c), under = value_at(results, claim, t, claim->other);
-    return (Bounded){over.value / under.value, over.low / under.high, over.high / under.low};
+    RtEstimate over = value_at(results, claim, t, c), under = value_at(results, claim, t, claim->other);
+    return (RtEstimate){
+        .median = over.median / under.median, .low = over.low / under.high, .high = over.high / under.low};
 }
 
 /* ---- the cells of a claim ---- */
@@ -142,13 +136,13 @@ static double in_units(const RtClaim *claim, double value) {
     return time ? 1e9 * value : value;
 }
 
-static void put_bounded(RtClaimResult *result, const RtClaim *claim, const Bounded *b) {
+static void put_estimate(RtClaimResult *result, const RtClaim *claim, const RtEstimate *b) {
     char value[16], low[16], high[16];
-    rt_format_figure(in_units(claim, b->value), value);
+    rt_format_figure(in_units(claim, b->median), value);
     rt_format_figure(in_units(claim, b->low), low);
     rt_format_figure(in_units(claim, b->high), high);
-    PUT(result, "%s", isfinite(b->value) ? value : "unknown");
-    if (isfinite(b->value) && b->low != b->high) PUT(result, " [%s, %s]", low, high);
+    PUT(result, "%s", isfinite(b->median) ? value : "unknown");
+    if (isfinite(b->median) && b->low != b->high) PUT(result, " [%s, %s]", low, high);
 }
 
 static void put_place(RtClaimResult *result, const RtExperiment *experiment, const Point *point, bool line) {
@@ -164,7 +158,7 @@ static bool compares(const RtClaim *claim, double value) {
     return claim->greater ? value > claim->number : value < claim->number;
 }
 
-static RtClaimVerdict compare(const RtClaim *claim, const Bounded *b) {
+static RtClaimVerdict compare(const RtClaim *claim, const RtEstimate *b) {
     bool low = compares(claim, in_units(claim, b->low)), high = compares(claim, in_units(claim, b->high));
     return low && high ? RT_CLAIM_HOLDS : low || high ? RT_CLAIM_UNDECIDED : RT_CLAIM_FALSE;
 }
@@ -173,22 +167,22 @@ static RtClaimVerdict compare(const RtClaim *claim, const Bounded *b) {
 typedef struct Worst {
     RtClaimVerdict verdict;
     const Point *point; /* or NULL */
-    Bounded figure;
+    RtEstimate figure;
 } Worst;
 
-static void take(const RtClaim *claim, const Point *point, const Bounded *figure, Worst *worst) {
-    RtClaimVerdict verdict = isfinite(figure->value) ? compare(claim, figure) : RT_CLAIM_UNDECIDED;
-    bool further = worst->point && (claim->greater ? figure->value < worst->figure.value
-                                                   : figure->value > worst->figure.value);
+static void take(const RtClaim *claim, const Point *point, const RtEstimate *figure, Worst *worst) {
+    RtClaimVerdict verdict = isfinite(figure->median) ? compare(claim, figure) : RT_CLAIM_UNDECIDED;
+    bool further = worst->point && (claim->greater ? figure->median < worst->figure.median
+                                                   : figure->median > worst->figure.median);
     if (worst->point && verdict <= worst->verdict && !(verdict == worst->verdict && further)) return;
     *worst = (Worst){verdict, point, *figure};
 }
 
 /* Least-squares slope of log y over log x; points[0..count) is one line. Unknown if any point is: the others
  * may have another slope. */
-static Bounded exponent_of(const Point *points, uint32_t count) {
+static RtEstimate exponent_of(const Point *points, uint32_t count) {
     double mean = 0, squares = 0;
-    Bounded slope = {0, 0, 0};
+    RtEstimate slope = {0};
     for (uint32_t i = 0; i < count; i++) {
         if (!(points[i].x > 0 && points[i].y.low > 0)) return UNKNOWN;
         mean += rt_log(points[i].x) / count;
@@ -198,9 +192,9 @@ static Bounded exponent_of(const Point *points, uint32_t count) {
         squares += d * d;
     }
     for (uint32_t i = 0; i < count; i++) {
-        const Bounded *y = &points[i].y;
+        const RtEstimate *y = &points[i].y;
         double d = (rt_log(points[i].x) - mean) / squares;
-        slope.value += d * rt_log(y->value);
+        slope.median += d * rt_log(y->median);
         slope.low += d * rt_log(d > 0 ? y->low : y->high);
         slope.high += d * rt_log(d > 0 ? y->high : y->low);
     }
@@ -208,7 +202,7 @@ static Bounded exponent_of(const Point *points, uint32_t count) {
 }
 
 /* The verdict on one step of a trend. */
-static RtClaimVerdict step_of(const RtClaim *claim, const Bounded *from, const Bounded *to) {
+static RtClaimVerdict step_of(const RtClaim *claim, const RtEstimate *from, const RtEstimate *to) {
     double least = claim->rises ? to->low - from->high : from->low - to->high;
     double most = claim->rises ? to->high - from->low : from->high - to->low;
     if (claim->strictly ? least > 0 : least >= 0) return RT_CLAIM_HOLDS;
@@ -216,9 +210,9 @@ static RtClaimVerdict step_of(const RtClaim *claim, const Bounded *from, const B
 }
 
 static void put_step(RtClaimResult *result, const RtClaim *claim, const Point *from, const Point *to) {
-    put_bounded(result, claim, &from->y);
+    put_estimate(result, claim, &from->y);
     PUT(result, " at %s=%.9g, ", claim->key.key, from->x);
-    put_bounded(result, claim, &to->y);
+    put_estimate(result, claim, &to->y);
     PUT(result, " at %s=%.9g", claim->key.key, to->x);
 }
 
@@ -259,14 +253,14 @@ static void judge_lines(const RtExperiment *experiment, const RtClaim *claim, Po
         if (claim->form == RT_CLAIM_TREND) {
             judge_trend(experiment, claim, points + first, end - first, result);
         } else {
-            Bounded slope = exponent_of(points + first, end - first);
+            RtEstimate slope = exponent_of(points + first, end - first);
             take(claim, &points[first], &slope, &worst);
         }
     }
     if (!any) *result = (RtClaimResult){RT_CLAIM_UNDECIDED, "fewer than two values were measured"};
     if (!worst.point) return;
     result->verdict = worst.verdict;
-    put_bounded(result, claim, &worst.figure);
+    put_estimate(result, claim, &worst.figure);
     put_place(result, experiment, worst.point, true);
 }
 
@@ -275,7 +269,7 @@ static void judge_values(const RtExperiment *experiment, const RtClaim *claim, c
     Worst worst = {RT_CLAIM_HOLDS, NULL, UNKNOWN};
     for (uint32_t i = 0; i < count; i++) take(claim, &points[i], &points[i].y, &worst);
     result->verdict = worst.verdict;
-    put_bounded(result, claim, &worst.figure);
+    put_estimate(result, claim, &worst.figure);
     put_place(result, experiment, worst.point, false);
 }
 
@@ -283,7 +277,7 @@ static void judge_values(const RtExperiment *experiment, const RtClaim *claim, c
 static uint32_t drop_unknown(Point *points, uint32_t count) {
     uint32_t known = 0;
     for (uint32_t i = 0; i < count; i++) {
-        if (isfinite(points[i].y.value)) points[known++] = points[i];
+        if (isfinite(points[i].y.median)) points[known++] = points[i];
     }
     return known;
 }
@@ -298,7 +292,7 @@ void rt_claim_judge(const RtResults *results, uint32_t i, RtClaimResult *result)
         rt_alloc((size_t)experiment->workload_count * experiment->candidate_count, sizeof *points);
     RtStatus status = rt_claim_parse(experiment, experiment->claims[i], &claim, &error);
     if (points && status == RT_OK) count = gather(results, &claim, points);
-    for (uint32_t k = 0; k < count; k++) known += isfinite(points[k].y.value) ? 1 : 0;
+    for (uint32_t k = 0; k < count; k++) known += isfinite(points[k].y.median) ? 1 : 0;
     if (known == 0) {
         *result = (RtClaimResult){RT_CLAIM_UNDECIDED, "no measurements for this claim"};
     } else if (claim.form == RT_CLAIM_EXPONENT) {
