@@ -91,6 +91,12 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
 #define EVENT(name)           (r->cell->hardware.counts.of[RT_HARDWARE_##name])
 #define TIMED(figure)         (r->cell->timed ? (figure) : (double)NAN)
 
+/* What a distribution shows. */
+#define VALUES(X, id, title, half, most_of, of)                                                              \
+    X(id##_median, title ": 50 %", integer, "", half, (of)->median)                                          \
+    X(id##_p99, "99 %", integer, "", "that 99 % do not exceed", (of)->p99)                                   \
+    X(id##_most, "most", integer, "", most_of, (of)->most)
+
 #define COLUMNS(X)                                                                                           \
     X(scene, "scene", text, "", "the scene's label in the experiment", r->setup->label)                      \
     X(scene_spec, "scene", text, "", "the scene as it is opened: a file, or a built-in", r->setup->spec)     \
@@ -180,22 +186,14 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
     X(mtests_per_s, "mtests_per_s", real6, "million/s",                                                      \
       "object tests per second: mrays_per_s times object tests per ray",                                     \
       1e-6 * r->cost.object_tests / r->cost.seconds.median)                                                  \
-    X(tests_median, "tests: 50 %", integer, "", "object tests that half of the rays do not exceed",          \
-      OVER_RAYS(object_tests)->median)                                                                       \
-    X(tests_p99, "99 %", integer, "", "that 99 % do not exceed", OVER_RAYS(object_tests)->p99)               \
-    X(tests_most, "most", integer, "", "of the ray that has most", OVER_RAYS(object_tests)->most)            \
-    X(steps_median, "steps: 50 %", integer, "", "steps that half of the rays do not exceed",                 \
-      OVER_RAYS(steps)->median)                                                                              \
-    X(steps_p99, "99 %", integer, "", "that 99 % do not exceed", OVER_RAYS(steps)->p99)                      \
-    X(steps_most, "most", integer, "", "of the ray that has most", OVER_RAYS(steps)->most)                   \
-    X(size_median, "leaf size: 50 %", integer, "", "objects that half of the leaves do not exceed",          \
-      OVER_LEAVES(leaf_size)->median)                                                                        \
-    X(size_p99, "99 %", integer, "", "that 99 % do not exceed", OVER_LEAVES(leaf_size)->p99)                 \
-    X(size_most, "most", integer, "", "of the largest", OVER_LEAVES(leaf_size)->most)                        \
-    X(depth_median, "depth: 50 %", integer, "", "depth that half of the leaves do not exceed",               \
-      OVER_LEAVES(leaf_depth)->median)                                                                       \
-    X(depth_p99, "99 %", integer, "", "that 99 % do not exceed", OVER_LEAVES(leaf_depth)->p99)               \
-    X(depth_most, "most", integer, "", "of the deepest", OVER_LEAVES(leaf_depth)->most)                      \
+    VALUES(X, tests, "tests", "object tests that half of the rays do not exceed",                            \
+           "of the ray that has most", OVER_RAYS(object_tests))                                              \
+    VALUES(X, steps, "steps", "steps that half of the rays do not exceed", "of the ray that has most",       \
+           OVER_RAYS(steps))                                                                                 \
+    VALUES(X, size, "leaf size", "objects that half of the leaves do not exceed", "of the largest",          \
+           OVER_LEAVES(leaf_size))                                                                           \
+    VALUES(X, depth, "depth", "depth that half of the leaves do not exceed", "of the deepest",               \
+           OVER_LEAVES(leaf_depth))                                                                          \
     X(eye_instructions, "instr./ray", figure, "", "instructions", EVENT(instructions))                       \
     X(eye_cycles, "cycles/ray", figure, "", "cycles", EVENT(cycles))                                         \
     X(eye_ipc, "instr./cycle", figure, "", "instructions per cycle", EVENT(instructions) / EVENT(cycles))    \
