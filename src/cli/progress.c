@@ -116,14 +116,20 @@ static void leave(const RtProgress *progress, int number) {
     _exit(128 + number);
 }
 
-static void *watch(void *context) {
-    RtProgress *progress = context;
-    const struct timespec second = {.tv_sec = 1};
+/* Those that the thread takes; SIGUSR2 wakes it. */
+static sigset_t signals_taken(void) {
     sigset_t signals;
     sigemptyset(&signals);
     sigaddset(&signals, SIGINT);
     sigaddset(&signals, SIGTERM);
     sigaddset(&signals, SIGUSR2);
+    return signals;
+}
+
+static void *watch(void *context) {
+    RtProgress *progress = context;
+    const struct timespec second = {.tv_sec = 1};
+    const sigset_t signals = signals_taken();
     for (;;) {
         int number = sigtimedwait(&signals, NULL, &second);
         pthread_mutex_lock(&progress->lock);
@@ -137,11 +143,7 @@ static void *watch(void *context) {
 }
 
 static void block(int how) {
-    sigset_t signals;
-    sigemptyset(&signals);
-    sigaddset(&signals, SIGINT);
-    sigaddset(&signals, SIGTERM);
-    sigaddset(&signals, SIGUSR2);
+    const sigset_t signals = signals_taken();
     pthread_sigmask(how, &signals, NULL);
 }
 
@@ -159,7 +161,7 @@ void rt_progress_end(RtProgress *progress) {
         pthread_mutex_lock(&progress->lock);
         progress->ended = true;
         pthread_mutex_unlock(&progress->lock);
-        pthread_kill(progress->watcher, SIGUSR2); /* wakes it at once */
+        pthread_kill(progress->watcher, SIGUSR2);
         pthread_join(progress->watcher, NULL);
         pthread_mutex_destroy(&progress->lock);
         block(SIG_UNBLOCK);

@@ -198,14 +198,11 @@ static RtStatus read_at(Reader *r) {
 
 static RtStatus read_kind(Reader *r) {
     RtClaim *claim = r->claim;
-    bool asked = false;
     if (claim->measure >= RT_CLAIM_BUILD_TIME)
         return fail(r, "%s does not depend on the kind of rays", measures[claim->measure]);
-    if (rt_ray_kind_parse(word(r), &claim->kind, NULL) == RT_OK) {
-        for (uint32_t k = 0; k < r->experiment->kind_count; k++)
-            asked |= r->experiment->kinds[k] == claim->kind;
-    }
-    if (!asked) return fail(r, "this experiment has no '%s' rays", word(r));
+    if (rt_ray_kind_parse(word(r), &claim->kind, NULL) != RT_OK ||
+        !rt_experiment_has_kind(r->experiment, claim->kind))
+        return fail(r, "this experiment has no '%s' rays", word(r));
     r->at++;
     return need(r, "rays");
 }

@@ -44,6 +44,13 @@ const char *rt_experiment_kind_name(const RtExperiment *experiment, RtRayKind ki
     return rt_ray_kind_name(kind);
 }
 
+bool rt_experiment_has_kind(const RtExperiment *experiment, RtRayKind kind) {
+    for (uint32_t k = 0; k < experiment->kind_count; k++) {
+        if (experiment->kinds[k] == kind) return true;
+    }
+    return false;
+}
+
 /* ---- the baseline ---- */
 
 /* "embree-16-high-avx512" of "embree:query=16,quality=high,isa=avx512": short, and without commas, which
@@ -274,13 +281,6 @@ static RtStatus check_swept(const RtExperiment *experiment, const RtSwept *swept
     return RT_OK;
 }
 
-static bool has_kind(const RtExperiment *experiment, RtRayKind kind) {
-    for (uint32_t k = 0; k < experiment->kind_count; k++) {
-        if (experiment->kinds[k] == kind) return true;
-    }
-    return false;
-}
-
 static RtStatus check_frame(const RtExperiment *experiment, RtError *error) {
     const RtFrameSetup *frame = &experiment->frame;
     bool grouped = false;
@@ -296,7 +296,7 @@ static RtStatus check_frame(const RtExperiment *experiment, RtError *error) {
         return rt_fail(error, RT_BAD_INPUT, "among: '%s' is not the group of an accelerator", frame->among);
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
         const RtRayKind kind = (RtRayKind)k;
-        if (!rt_ray_kind_is_of_frame(kind) || has_kind(experiment, kind)) continue;
+        if (!rt_ray_kind_is_of_frame(kind) || rt_experiment_has_kind(experiment, kind)) continue;
         return rt_fail(error, RT_BAD_INPUT, "a frame also has %s rays: add that kind under `rays`",
                        rt_ray_kind_name(kind));
     }

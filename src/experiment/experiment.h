@@ -170,6 +170,9 @@ RtStatus rt_experiment_load_from_manifest(RtExperiment *experiment, const char *
 RtStatus rt_given_kind_parse(const char *name, RtRayKind *kind, RtError *error);
 const char *rt_experiment_kind_name(const RtExperiment *experiment, RtRayKind kind);
 
+/* Whether rays of that kind are asked for. */
+bool rt_experiment_has_kind(const RtExperiment *experiment, RtRayKind kind);
+
 /* Whether candidate `c`, which may be the null run (candidate_count), is measured on workload `t`. */
 bool rt_candidate_runs(const RtExperiment *experiment, uint32_t c, uint32_t t);
 

@@ -14,6 +14,7 @@ typedef struct Index {
     FILE *out;
     const char *folder;
     RtExperiment *experiment;
+    bool inner; /* in one of its folders */
     size_t count;
 } Index;
 
@@ -86,18 +87,15 @@ static bool is_hidden(const char *path) {
     return (slash ? slash[1] : path[0]) == '.';
 }
 
-static void visit_inner(void *context, const char *path) {
-    Index *index = context;
-    if (!is_hidden(path) && is_result(path)) put_experiment(index, path, path + strlen(index->folder) + 1);
-}
-
 static void visit(void *context, const char *path) {
     Index *index = context;
     if (is_hidden(path)) return;
     if (is_result(path)) {
         put_experiment(index, path, path + strlen(index->folder) + 1);
-    } else {
-        rt_directory_each(path, "", visit_inner, index);
+    } else if (!index->inner) {
+        index->inner = true;
+        rt_directory_each(path, "", visit, index);
+        index->inner = false;
     }
 }
 
