@@ -7,7 +7,7 @@
 
 #include "core/base/file.h"
 #include "core/base/memory.h"
-#include "experiment/experiment.h"
+#include "experiment/result_directory.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -65,6 +65,21 @@ static inline RtStatus load_small(const Place *place, bool quick, RtError *error
     return rt_experiment_load(place->experiment, path_in(place, "small.yaml").text, quick, error);
 }
 
+/* Runs small.yaml into a directory of the place, timed on one thread, and counted on one by default. */
+static inline RtStatus run_small(const Place *place, const char *directory, bool quick, RtRunOptions how,
+                                 RtError *error) {
+    RtResults results;
+    Path path = path_in(place, directory);
+    RT_TRY(load_small(place, quick, error));
+    RT_TRY(rt_results_init(&results, place->experiment, error));
+    how.directory = path.text;
+    how.workload.timing = 1;
+    if (!how.workload.threads) how.workload.threads = 1;
+    RtStatus status = rt_run_experiment(&results, &how, error);
+    rt_results_clear(&results);
+    return status;
+}
+
 /* For rt_free. */
 static inline char *read_in(const Place *place, const char *name) {
     char *text = NULL;
@@ -83,6 +98,12 @@ static inline void assert_not_in_file(const Place *place, const char *name, cons
     char *text = read_in(place, name);
     if (strstr(text, part)) fail_msg("%s has '%s':\n%s", name, part, text);
     rt_free(text);
+}
+
+static inline void assert_same_file(const Place *place, const char *name, const char *before) {
+    char *now = read_in(place, name);
+    assert_string_equal(now, before);
+    rt_free(now);
 }
 
 static inline void assert_refused(RtStatus status, RtStatus expected, const RtError *error,

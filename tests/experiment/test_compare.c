@@ -3,7 +3,6 @@
 #include "experiment_testing.h"
 
 #include "experiment/compare.h"
-#include "experiment/result_directory.h"
 
 static const char experiment_yaml[] = "name: small\n"
                                       "question: Which is cheaper?\n"
@@ -23,15 +22,9 @@ typedef struct Sides {
 
 /* The same run as both sides, with times that spread by a percent in an order that differs. */
 static void load_sides(const Place *place, Sides *sides) {
-    RtResults made;
     Path out = path_in(place, "out");
     write_in(place, "small.yaml", experiment_yaml);
-    assert_ok(load_small(place, false, error));
-    assert_ok(rt_results_init(&made, place->experiment, error));
-    RtRunOptions options = {
-        .directory = out.text, .start = RT_START_ANEW, .workload = {.threads = 1, .timing = 1}};
-    assert_ok(rt_run_experiment(&made, &options, error));
-    rt_results_clear(&made);
+    assert_ok(run_small(place, "out", false, (RtRunOptions){.start = RT_START_ANEW}, error));
     *sides = (Sides){.experiments = rt_alloc(2, sizeof(RtExperiment))};
     assert_non_null(sides->experiments);
     for (int i = 0; i < 2; i++) {

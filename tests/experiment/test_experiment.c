@@ -37,17 +37,9 @@ static int make_small(void **state) {
 /* Runs the experiment into `directory`; the observer may stop it. */
 static RtStatus run(const Place *place, const char *directory, RtStart start, int threads,
                     RtRunObserver observer, RtError *error) {
-    RtResults results;
-    Path path = path_in(place, directory);
-    RT_TRY(load_small(place, false, error));
-    RT_TRY(rt_results_init(&results, place->experiment, error));
-    RtRunOptions options = {.directory = path.text,
-                            .start = start,
-                            .report = &rt_run_report,
-                            .workload = {.threads = threads, .timing = 1, .observer = observer}};
-    RtStatus status = rt_run_experiment(&results, &options, error);
-    rt_results_clear(&results);
-    return status;
+    const RtRunOptions how = {
+        .start = start, .report = &rt_run_report, .workload = {.threads = threads, .observer = observer}};
+    return run_small(place, directory, false, how, error);
 }
 
 static const RtRunObserver nobody = {NULL, NULL, NULL};

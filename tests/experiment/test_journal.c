@@ -2,8 +2,6 @@
 /* Reading the journal of a run, which somebody else may have written. */
 #include "experiment_testing.h"
 
-#include "experiment/result_directory.h"
-
 static const char small_experiment[] = "name: small\n"
                                        "question: What does it say?\n"
                                        "prediction: What was measured.\n"

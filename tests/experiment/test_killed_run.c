@@ -17,18 +17,9 @@
 
 static RtStatus run_shard(const Place *place, const char *directory, uint32_t shard, RtStart start,
                           RtError *error) {
-    RtResults results;
-    Path path = path_in(place, directory);
-    RT_TRY(load_small(place, false, error));
-    RT_TRY(rt_results_init(&results, place->experiment, error));
-    RtRunOptions options = {.directory = path.text,
-                            .start = start,
-                            .report = &rt_run_report,
-                            .workload = {.threads = 1, .timing = 1}};
-    if (shard) options.workload.only = (RtOnly){.shard = shard, .shards = 2};
-    RtStatus status = rt_run_experiment(&results, &options, error);
-    rt_results_clear(&results);
-    return status;
+    RtRunOptions how = {.start = start, .report = &rt_run_report};
+    if (shard) how.workload.only = (RtOnly){.shard = shard, .shards = 2};
+    return run_small(place, directory, false, how, error);
 }
 
 static RtStatus run(const Place *place, const char *directory, RtStart start, RtError *error) {
@@ -44,12 +35,6 @@ static RtStatus merge(const Place *place, const char *directory, RtStart start, 
     RtStatus status = rt_merge(directories, 2, &options, place->experiment, &results, error);
     rt_results_clear(&results);
     return status;
-}
-
-static void assert_same_file(const Place *place, const char *name, const char *before) {
-    char *now = read_in(place, name);
-    assert_string_equal(now, before);
-    rt_free(now);
 }
 
 /* ---- calls that come here ---- */

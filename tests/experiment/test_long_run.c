@@ -4,7 +4,6 @@
 
 #include "core/base/clock.h"
 #include "experiment/forecast.h"
-#include "experiment/result_directory.h"
 #include "experiment/result_tables.h"
 
 #include <fcntl.h>
@@ -56,11 +55,10 @@ static void wait_seconds(double seconds) {
     nanosleep(&time, NULL);
 }
 
-static void assert_same_file(const Place *place, const char *a, const char *b) {
-    char *texts[] = {read_in(place, a), read_in(place, b)};
-    assert_string_equal(texts[0], texts[1]);
-    rt_free(texts[0]);
-    rt_free(texts[1]);
+static void assert_equal_files(const Place *place, const char *a, const char *b) {
+    char *text = read_in(place, b);
+    assert_same_file(place, a, text);
+    rt_free(text);
 }
 
 /* Whole lines: the last may have been cut off. */
@@ -102,13 +100,13 @@ RT_TEST_IN_PLACE(a_run_that_is_killed_again_and_again_ends_as_one_that_was_not) 
             killed++;
         } else {
             assert_int_equal(WEXITSTATUS(how), 0);
-            assert_same_file(place, "whole/counts.csv", "out/counts.csv");
+            assert_equal_files(place, "whole/counts.csv", "out/counts.csv");
             assert_int_equal(rename(path_in(place, "out").text, numbered(place, ended++).text), 0);
             before = 0;
         }
     }
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --resume"), 0);
-    assert_same_file(place, "whole/counts.csv", "out/counts.csv");
+    assert_equal_files(place, "whole/counts.csv", "out/counts.csv");
     assert_int_equal(raytally(place, "reproduce out"), 0);
 }
 
@@ -154,7 +152,7 @@ RT_TEST_IN_PLACE(a_part_is_measured_and_then_the_rest) {
     rt_free(counts);
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out"), 2);
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --resume"), 0);
-    assert_same_file(place, "whole/counts.csv", "out/counts.csv");
+    assert_equal_files(place, "whole/counts.csv", "out/counts.csv");
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --resume --dry-run"), 0);
     assert_in_file(place, "output", "56 cells, all of them finished\n");
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --only nowhere --resume"), 2);
@@ -241,8 +239,7 @@ RT_TEST_IN_PLACE(the_time_that_is_left_is_foretold_from_a_tenth_on) {
     assert_ok(rt_results_init(&results, place->experiment, error));
     watch.options.observer = (RtRunObserver){&watch, look, NULL};
     watch.start = rt_wall_seconds();
-    for (uint32_t t = 0; t < place->experiment->workload_count; t++)
-        assert_ok(rt_workload_run(&results, t, &watch.options, error));
+    assert_ok(rt_workloads_run(&results, &watch.options, error));
     double whole = rt_wall_seconds() - watch.start;
     uint32_t right = 0, all = 0;
     for (uint32_t i = 0; i < watch.count; i++) {

@@ -5,7 +5,6 @@
 #include "small_run_testing.h"
 
 #include "core/base/lock.h"
-#include "experiment/result_directory.h"
 #include "scenes/open.h"
 
 #include <signal.h>
@@ -14,20 +13,7 @@
 #include <unistd.h>
 
 static RtStatus run(const Place *place, const char *directory, RtStart start, RtError *error) {
-    RtResults results;
-    Path path = path_in(place, directory);
-    RT_TRY(load_small(place, false, error));
-    RT_TRY(rt_results_init(&results, place->experiment, error));
-    RtRunOptions options = {.directory = path.text, .start = start, .workload = {.threads = 1, .timing = 1}};
-    RtStatus status = rt_run_experiment(&results, &options, error);
-    rt_results_clear(&results);
-    return status;
-}
-
-static void assert_same_file(const Place *place, const char *name, const char *before) {
-    char *now = read_in(place, name);
-    assert_string_equal(now, before);
-    rt_free(now);
+    return run_small(place, directory, false, (RtRunOptions){.start = start}, error);
 }
 
 /* raytally must have ended with this exit code and have said this on standard error. */

@@ -7,19 +7,10 @@
 
 /* Runs the experiment with these rows and reasons into DIR/out, and gives what the check says. */
 static RtStatus run(const Place *place, const char *rows, const char *reasons, bool quick, RtError *error) {
-    RtResults results;
-    Path out = path_in(place, "out");
-    const RtRunOptions options = {.directory = out.text,
-                                  .start = RT_START_ANEW,
-                                  .report = &rt_run_report,
-                                  .workload = {.threads = 1, .timing = 1}};
+    const RtRunOptions how = {.start = RT_START_ANEW, .report = &rt_run_report};
     write_figures(place, rows);
     write_reasons(place, reasons);
-    RT_TRY(load_small(place, quick, error));
-    RT_TRY(rt_results_init(&results, place->experiment, error));
-    RtStatus status = rt_run_experiment(&results, &options, error);
-    rt_results_clear(&results);
-    return status;
+    return run_small(place, "out", quick, how, error);
 }
 
 static void assert_agrees(const Place *place, const char *rows, const char *reasons) {
