@@ -50,6 +50,13 @@ static inline void write_in(const Place *place, const char *name, const char *te
     assert_ok(rt_file_write(path_in(place, name).text, text, strlen(text), error));
 }
 
+/* Set-up with the experiment in small.yaml. */
+static inline int make_place_with(void **state, const char *experiment) {
+    if (make_place(state) != 0) return -1;
+    write_in(*state, "small.yaml", experiment);
+    return 0;
+}
+
 /* The text with `to` in the place of `from`. */
 static inline void write_changed(const Place *place, const char *name, const char *text, const char *from,
                                  const char *to) {

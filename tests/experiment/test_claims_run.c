@@ -18,9 +18,7 @@ static const char claiming[] = "name: small\n"
                                "  - object_tests of bvh > 1000\n";
 
 static int make_claiming(void **state) {
-    if (make_place(state) != 0) return -1;
-    write_in(*state, "small.yaml", claiming);
-    return 0;
+    return make_place_with(state, claiming);
 }
 
 #define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_claiming, remove_place)

@@ -22,9 +22,7 @@ static const char spread[] = "name: small\n"
                              "count_only: yes\n";
 
 static int make_spread(void **state) {
-    if (make_place(state) != 0) return -1;
-    write_in(*state, "small.yaml", spread);
-    return 0;
+    return make_place_with(state, spread);
 }
 
 #define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_spread, remove_place)

@@ -29,9 +29,7 @@ static const char small_experiment[] = "name: small\n"
                                        "milliseconds: 1\n";
 
 static int make_small(void **state) {
-    if (make_place(state) != 0) return -1;
-    write_in(*state, "small.yaml", small_experiment);
-    return 0;
+    return make_place_with(state, small_experiment);
 }
 
 /* Runs the experiment into `directory`; the observer may stop it. */

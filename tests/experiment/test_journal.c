@@ -17,8 +17,7 @@ static const char small_experiment[] = "name: small\n"
 static char written[1 << 16]; /* the journal of out/, as the run left it */
 
 static int make_run(void **state) {
-    if (make_place(state) != 0) return -1;
-    write_in(*state, "small.yaml", small_experiment);
+    if (make_place_with(state, small_experiment) != 0) return -1;
     assert_ok(load_small(*state, false, error));
     if (raytally(*state, "run small.yaml --out out") != 0) return -1;
     char *text = read_in(*state, "out/cells.jsonl");

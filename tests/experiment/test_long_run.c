@@ -30,9 +30,7 @@ static const char long_experiment[] = "name: small\n"
                                       "milliseconds: 3\n";
 
 static int make_long(void **state) {
-    if (make_place(state) != 0) return -1;
-    write_in(*state, "small.yaml", long_experiment);
-    return 0;
+    return make_place_with(state, long_experiment);
 }
 
 #define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_long, remove_place)

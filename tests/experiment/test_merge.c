@@ -22,8 +22,7 @@ static const char sharded[] = "name: small\n"
                               "expect: [object_tests of grid falls with density on cloud]\n";
 
 static int make_sharded(void **state) {
-    if (make_place(state) != 0) return -1;
-    write_in(*state, "small.yaml", sharded);
+    if (make_place_with(state, sharded) != 0) return -1;
     for (int i = 1; i <= 4; i++) {
         char command[128];
         snprintf(command, sizeof command, "run small.yaml --threads 1 --shard %d/4 --out s%d", i, i);

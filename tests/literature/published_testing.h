@@ -47,8 +47,7 @@ static inline void change_experiment(const Place *place, const char *from, const
 }
 
 static inline int make_published(void **state) {
-    if (make_place(state) != 0) return -1;
-    write_in(*state, "small.yaml", experiment_text);
+    if (make_place_with(state, experiment_text) != 0) return -1;
     write_reasons(*state, "");
     return 0;
 }

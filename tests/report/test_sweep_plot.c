@@ -22,9 +22,7 @@ static const char swept[] = "name: small\n"
                             "milliseconds: 0\n";
 
 static int make_swept(void **state) {
-    if (make_place(state) != 0) return -1;
-    write_in(*state, "small.yaml", swept);
-    return 0;
+    return make_place_with(state, swept);
 }
 
 #define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_swept, remove_place)
