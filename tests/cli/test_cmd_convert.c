@@ -1,19 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally convert, as a user runs it: what it keeps, what it refuses. */
+#include "command_testing.h"
 #include "scene_testing.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #define OUT RT_BINARY_DIR "/test_cmd_convert"
 
 static int convert(const char *arguments) {
-    char command[1024];
-    snprintf(command, sizeof command, "%s convert %s 2>/dev/null", RT_PROGRAM, arguments);
-    int result = system(command);
-    return WIFEXITED(result) ? WEXITSTATUS(result) : -1;
+    return raytally_to("2>/dev/null", "convert %s", arguments);
 }
 
 RT_TEST(convert_keeps_the_scene_and_the_files_that_are_there) {

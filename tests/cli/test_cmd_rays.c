@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally rays, and what takes its files: bench and verify --rays-from, bench --hits and --counts. */
-#include "testing.h"
+#include "command_testing.h"
 
 #include "core/base/file.h"
 #include "core/base/memory.h"
@@ -8,25 +8,11 @@
 
 #include <jansson.h>
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/wait.h>
 
 #define OUT  RT_BINARY_DIR "/test_cmd_rays"
 #define RAYS OUT ".npy"
 
-__attribute__((format(printf, 1, 2))) static int run(const char *format, ...) {
-    char command[4096];
-    int used = snprintf(command, sizeof command, "'%s' ", RT_PROGRAM);
-    va_list args;
-    va_start(args, format);
-    used += vsnprintf(command + used, sizeof command - (size_t)used, format, args);
-    va_end(args);
-    snprintf(command + used, sizeof command - (size_t)used, " > '%s.out' 2> '%s.err'", OUT, OUT);
-    int status = system(command);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
+#define run(...) raytally_to("> '" OUT ".out' 2> '" OUT ".err'", __VA_ARGS__)
 
 typedef struct Bytes {
     char *data;

@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally render, as a user runs it: what it writes, what it refuses, and the rays of the Standard
  * Procedural Databases. */
-#include "testing.h"
+#include "command_testing.h"
 
 #include "core/base/file.h"
 
 #include <jansson.h>
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #define OUT   RT_BINARY_DIR "/test_cmd_render"
@@ -19,18 +15,11 @@
 
 /* Runs `raytally render ARGUMENTS`, output and messages to OUT.txt; gives the exit code. */
 static int render(const char *arguments) {
-    char command[2048];
-    snprintf(command, sizeof command, "'%s' render %s > '%s.txt' 2>&1", RT_PROGRAM, arguments, OUT);
-    int status = system(command);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return raytally_to("> '" OUT ".txt' 2>&1", "render %s", arguments);
 }
 
 static void assert_says(const char *what) {
-    static char text[65536];
-    FILE *file = fopen(OUT ".txt", "r");
-    assert_non_null(file);
-    text[fread(text, 1, sizeof text - 1, file)] = '\0';
-    fclose(file);
+    const char *text = text_of(OUT ".txt");
     if (!strstr(text, what)) fail_msg("'%s' is not in: %s", what, text);
 }
 

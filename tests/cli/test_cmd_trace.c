@@ -1,35 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally trace, as a user runs it. */
-#include "testing.h"
+#include "command_testing.h"
 
 #include "core/base/file.h"
 #include "core/base/tally.h"
 
 #include <jansson.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #define OUT RT_BINARY_DIR "/test_cmd_trace"
 
 /* Runs `raytally trace ARGUMENTS`, output to OUT.txt, messages to OUT.err; gives the exit code. */
 static int trace(const char *arguments) {
-    char command[2048];
-    snprintf(command, sizeof command, "'%s' trace %s > '%s.txt' 2> '%s.err'", RT_PROGRAM, arguments, OUT,
-             OUT);
-    int status = system(command);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return raytally_to("> '" OUT ".txt' 2> '" OUT ".err'", "trace %s", arguments);
 }
 
 static bool says(const char *path, const char *what) {
-    static char text[1 << 18];
-    FILE *file = fopen(path, "r");
-    assert_non_null(file);
-    text[fread(text, 1, sizeof text - 1, file)] = '\0';
-    fclose(file);
-    return strstr(text, what) != NULL;
+    return strstr(text_of(path), what) != NULL;
 }
 
 static json_t *path_of(const char *arguments) {

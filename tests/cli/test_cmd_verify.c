@@ -1,31 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally verify, as a user runs it: the document it prints, the exit codes, what it refuses. */
-#include "testing.h"
+#include "command_testing.h"
 
 #include <jansson.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/wait.h>
 
 #define OUT RT_BINARY_DIR "/test_cmd_verify"
 
 /* Runs `raytally verify ARGUMENTS`, output to OUT.out and messages to OUT.err; gives the exit code. */
 static int verify(const char *arguments) {
-    char command[2048];
-    snprintf(command, sizeof command, "'%s' verify %s > '%s.out' 2> '%s.err'", RT_PROGRAM, arguments, OUT,
-             OUT);
-    int status = system(command);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-static const char *text_of(const char *path) {
-    static char text[65536];
-    FILE *file = fopen(path, "r");
-    assert_non_null(file);
-    text[fread(text, 1, sizeof text - 1, file)] = '\0';
-    fclose(file);
-    return text;
+    return raytally_to("> '" OUT ".out' 2> '" OUT ".err'", "verify %s", arguments);
 }
 
 static json_t *document(const char *arguments) {
