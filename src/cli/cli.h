@@ -81,9 +81,9 @@ bool rt_cli_digits(const char **text, uint32_t *number);
         "patience", 0, "SECONDS", RT_TO_SECONDS(patience, 1, 86400),                                         \
             "With --until: the longest time for one kind of rays on one scene (60)"                          \
     }
-#define RT_TRUST_OPTION                                                                                      \
+#define RT_TRUST_OPTION(scripts)                                                                             \
     {                                                                                                        \
-        "trust", 0, NULL, RT_TO_FLAG(trust),                                                                 \
+        "trust", 0, NULL, RT_TO_SET(scripts, RT_SCRIPTS_ALL),                                                \
             "Also run gnuplot scripts of a result directory that raytally does not ship. A script can run "  \
             "any command: read it first"                                                                     \
     }

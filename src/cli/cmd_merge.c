@@ -10,9 +10,7 @@
 typedef struct Options {
     const char *directories[RT_MAX_SHARDS];
     uint32_t count;
-    const char *out;
-    RtStart start;
-    bool trust;
+    RtRunOptions how;
 } Options;
 
 static void take_directory(void *options, const char *text, struct argp_state *state) {
@@ -22,13 +20,13 @@ static void take_directory(void *options, const char *text, struct argp_state *s
 }
 
 static void finish(void *options, struct argp_state *state) {
-    if (!((Options *)options)->out) argp_error(state, "the result directory is missing: -o DIR");
+    if (!((Options *)options)->how.directory) argp_error(state, "the result directory is missing: -o DIR");
 }
 
 static const RtOption options[] = {
-    {"out", 'o', "DIR", RT_TO_TEXT(out), "The result directory to write"},
-    {"force", 0, NULL, RT_TO_SET(start, RT_START_ANEW), "Replace it: the results in DIR are lost"},
-    RT_TRUST_OPTION,
+    {"out", 'o', "DIR", RT_TO_TEXT(how.directory), "The result directory to write"},
+    {"force", 0, NULL, RT_TO_SET(how.start, RT_START_ANEW), "Replace it: the results in DIR are lost"},
+    RT_TRUST_OPTION(how.scripts),
     {0}};
 
 static void on_notice(void *context, const char *message) {
@@ -53,19 +51,14 @@ const RtSyntax rt_merge_syntax = {
         "  raytally merge results/first-look-*-of-3 -o results/first-look"};
 
 RtStatus rt_command_merge(int argc, char **argv, RtError *error) {
-    Options o = {.start = RT_START_FRESH};
+    Options o = {.how = {.report = &rt_run_report, .workload.observer.notice = on_notice}};
     rt_cli_parse(&rt_merge_syntax, argc, argv, &o);
     RtResults results = {0};
-    const RtRunOptions how = {.directory = o.out,
-                              .start = o.start,
-                              .scripts = o.trust ? RT_SCRIPTS_ALL : RT_SCRIPTS_SHIPPED,
-                              .report = &rt_run_report,
-                              .workload.observer.notice = on_notice};
     static RtExperiment experiment;
-    RtStatus status = rt_merge(o.directories, o.count, &how, &experiment, &results, error);
+    RtStatus status = rt_merge(o.directories, o.count, &o.how, &experiment, &results, error);
     if (status == RT_OK) {
         rt_print_summary(&results, stdout);
-        printf("\nReport: %s/report.html\n", o.out);
+        printf("\nReport: %s/report.html\n", o.how.directory);
     }
     rt_results_clear(&results);
     return status;

@@ -9,12 +9,12 @@
 
 typedef struct Options {
     const char *directory;
-    bool trust;
+    RtScripts allowed;
 } Options;
 
 static RtStatus draw(const char *directory, RtResults *results, const void *options, RtError *error) {
-    const RtScripts allowed = ((const Options *)options)->trust ? RT_SCRIPTS_ALL : RT_SCRIPTS_SHIPPED;
-    RT_TRY(rt_scripts_check(results->experiment, directory, true, allowed, error));
+    const Options *o = options;
+    RT_TRY(rt_scripts_check(results->experiment, directory, true, o->allowed, error));
     RtStatus status = rt_plots_draw(results, directory, error);
     if (status == RT_OK) printf("Plots: %s/plots\n", directory);
     if (status != RT_NOT_AVAILABLE) return status;
@@ -22,7 +22,7 @@ static RtStatus draw(const char *directory, RtResults *results, const void *opti
     return RT_OK;
 }
 
-static const RtOption options[] = {RT_TRUST_OPTION, {0}};
+static const RtOption options[] = {RT_TRUST_OPTION(allowed), {0}};
 const RtSyntax rt_plot_syntax = {
     .options = options,
     .plugins = true,

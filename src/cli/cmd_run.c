@@ -15,14 +15,12 @@
 #include <string.h>
 
 typedef struct Options {
-    const char *path, *out;
-    RtStart start;
-    bool renew, quick, strict, dry, trust;
+    const char *path;
+    RtRunOptions how;
+    bool quick, strict, dry;
     bool found; /* the experiment comes from a manifest */
     char only_text[3 * RT_MAX_LABEL];
-    RtOnly only;
     int threads; /* -1: one to time, all to build and count */
-    double until, patience;
 } Options;
 
 static void take_only(void *options, const char *text, struct argp_state *state) {
@@ -32,39 +30,41 @@ static void take_only(void *options, const char *text, struct argp_state *state)
     char *accel = strchr(o->only_text, '/'), *kind = accel ? strchr(accel + 1, '/') : NULL;
     if (accel) *accel++ = '\0';
     if (kind) *kind++ = '\0';
-    o->only.scene = o->only_text;
-    o->only.accel = accel;
-    o->only.kind = kind;
+    RtOnly *only = &o->how.workload.only;
+    only->scene = o->only_text;
+    only->accel = accel;
+    only->kind = kind;
 }
 
 static void take_shard(void *options, const char *text, struct argp_state *state) {
-    Options *o = options;
+    RtOnly *only = &((Options *)options)->how.workload.only;
     unsigned shard, shards;
     int end = 0;
     bool fine = sscanf(text, "%3u/%3u%n", &shard, &shards, &end) == 2 && !text[end];
     if (!fine || shard < 1 || shard > shards)
         argp_error(state, "--shard: invalid value '%s': expected I/N, 1 <= I <= N, as in 2/4", text);
-    o->only.shard = shard;
-    o->only.shards = shards;
+    only->shard = shard;
+    only->shards = shards;
 }
 
 static void take_renew(void *options, const char *text, struct argp_state *state) {
     (void)text, (void)state;
-    ((Options *)options)->start = RT_START_RESUME;
-    ((Options *)options)->renew = true;
+    RtRunOptions *how = &((Options *)options)->how;
+    how->start = RT_START_RESUME;
+    how->renew = true;
 }
 
 static const RtOption options[] = {
-    {"out", 'o', "DIR", RT_TO_TEXT(out), "The result directory (results/NAME)"},
-    {"resume", 0, NULL, RT_TO_SET(start, RT_START_RESUME),
+    {"out", 'o', "DIR", RT_TO_TEXT(how.directory), "The result directory (results/NAME)"},
+    {"resume", 0, NULL, RT_TO_SET(how.start, RT_START_RESUME),
      "Continue an interrupted run: its measurements stay. For a finished run, write tables and plots again"},
     {"renew", 0, NULL, RT_TO_TAKE(take_renew),
      "As --resume, after a plugin has changed: measure its cells again, keep all others"},
-    {"force", 0, NULL, RT_TO_SET(start, RT_START_ANEW),
+    {"force", 0, NULL, RT_TO_SET(how.start, RT_START_ANEW),
      "Start over: the results in DIR are lost. The last of --resume and --force counts"},
-    RT_TRUST_OPTION,
+    RT_TRUST_OPTION(how.scripts),
     {"threads", 't', "N", RT_TO_INTEGER(threads, 0, 1024), RT_THREADS_HELP},
-    RT_UNTIL_OPTIONS(until, patience),
+    RT_UNTIL_OPTIONS(how.workload.until, how.workload.patience),
     {"quick", 0, NULL, RT_TO_FLAG(quick), "The smaller variant that the YAML describes under `quick`"},
     {"strict", 0, NULL, RT_TO_FLAG(strict),
      "Exit code 1 if a claim of the experiment (`expect`) does not hold"},
@@ -129,26 +129,30 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, RtError *er
 }
 
 /* The command that continues the run. */
-static void go_on(const Options *o, const RtExperiment *e, const char *directory, char *out, size_t size) {
-    snprintf(out, size, "raytally run %s --out %s%s", e->path, directory, e->quick ? " --quick" : "");
+static void go_on(const Options *o, const RtExperiment *e, char *out, size_t size) {
+    const RtWorkloadOptions *how = &o->how.workload;
+    snprintf(out, size, "raytally run %s --out %s%s", e->path, o->how.directory, e->quick ? " --quick" : "");
     if (o->threads >= 0) rt_append_text(out, size, " --threads %d", o->threads);
-    if (o->only.shards) rt_append_text(out, size, " --shard %u/%u", o->only.shard, o->only.shards);
-    if (o->until > 0) rt_append_text(out, size, " --until %g%% --patience %g", 100 * o->until, o->patience);
+    if (how->only.shards) rt_append_text(out, size, " --shard %u/%u", how->only.shard, how->only.shards);
+    if (how->until > 0)
+        rt_append_text(out, size, " --until %g%% --patience %g", 100 * how->until, how->patience);
     rt_cli_plugin_arguments(out, size);
-    rt_append_text(out, size, "%s --resume", o->trust ? " --trust" : "");
+    rt_append_text(out, size, "%s --resume", o->how.scripts == RT_SCRIPTS_ALL ? " --trust" : "");
 }
 
-static RtStatus measure(const Options *o, RtResults *results, RtRunOptions *how, RtError *error) {
+static RtStatus measure(Options *o, RtResults *results, RtError *error) {
+    RtRunOptions *how = &o->how;
     char command[RT_MAX_PATH + 1280];
     RtProgress progress = rt_progress_begin(&how->workload);
-    go_on(o, results->experiment, how->directory, command, sizeof command);
+    go_on(o, results->experiment, command, sizeof command);
     rt_progress_watch(&progress, how->directory, command);
     how->workload.observer = rt_progress_observer(&progress);
     RtStatus status = rt_run_experiment(results, how, error);
     rt_progress_end(&progress);
     if (status != RT_OK) return status;
     rt_print_summary(results, stdout);
-    if (!o->only.scene && !o->only.shards) printf("\nReport: %s/report.html\n", how->directory);
+    if (!how->workload.only.scene && !how->workload.only.shards)
+        printf("\nReport: %s/report.html\n", how->directory);
     RT_TRY(rt_results_check_broken(results, error));
     return o->strict ? rt_claims_check(results, error) : RT_OK;
 }
@@ -171,32 +175,20 @@ static RtStatus load(Options *o, RtExperiment *experiment, RtError *error) {
 }
 
 static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
+    RtRunOptions *how = &o->how;
+    const RtOnly *only = &how->workload.only;
     char directory[RT_MAX_PATH];
     RtResults results;
     RT_TRY(load(o, experiment, error));
-    RT_TRY(check_part(experiment, &o->only, error));
-    if (o->until > 0 && experiment->rounds < RT_FULL_ROUNDS) experiment->rounds = RT_FULL_ROUNDS;
-    if (o->only.shards)
-        snprintf(directory, sizeof directory, "results/%s-%u-of-%u", experiment->name, o->only.shard,
-                 o->only.shards);
-    else
-        snprintf(directory, sizeof directory, "results/%s", experiment->name);
-    RtRunOptions how = {
-        .directory = o->out ? o->out : directory,
-        .start = o->start,
-        .renew = o->renew,
-        .scripts = o->trust   ? RT_SCRIPTS_ALL
-                   : o->found ? RT_SCRIPTS_SHIPPED
-                              : RT_SCRIPTS_OWN,
-        .report = &rt_run_report,
-        .workload = {.threads = o->threads < 0 ? 0 : o->threads,
-                     .timing = o->threads < 0 ? 1 : o->threads,
-                     .only = o->only,
-                     .until = o->until,
-                     .patience = o->patience},
-    };
+    RT_TRY(check_part(experiment, only, error));
+    if (how->workload.until > 0 && experiment->rounds < RT_FULL_ROUNDS) experiment->rounds = RT_FULL_ROUNDS;
+    snprintf(directory, sizeof directory, "results/%s", experiment->name);
+    if (only->shards) rt_append_text(directory, sizeof directory, "-%u-of-%u", only->shard, only->shards);
+    if (!how->directory) how->directory = directory;
+    if (o->threads >= 0) how->workload.threads = how->workload.timing = o->threads;
+    if (!o->found && how->scripts == RT_SCRIPTS_SHIPPED) how->scripts = RT_SCRIPTS_OWN;
     RtStatus status = rt_results_init(&results, experiment, error);
-    if (status == RT_OK) status = o->dry ? dry_run(&results, &how, error) : measure(o, &results, &how, error);
+    if (status == RT_OK) status = o->dry ? dry_run(&results, how, error) : measure(o, &results, error);
     rt_results_clear(&results);
     return status;
 }
@@ -217,7 +209,8 @@ const RtSyntax rt_run_syntax = {
             "experiments/README.md describes how to write an experiment."};
 
 RtStatus rt_command_run(int argc, char **argv, RtError *error) {
-    Options o = {.threads = -1, .patience = RT_PATIENCE};
+    Options o = {.threads = -1,
+                 .how = {.report = &rt_run_report, .workload = {.timing = 1, .patience = RT_PATIENCE}}};
     rt_cli_parse(&rt_run_syntax, argc, argv, &o);
     static RtExperiment experiment;
     return run(&o, &experiment, error);

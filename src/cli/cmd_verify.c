@@ -24,10 +24,8 @@ typedef struct Options {
     const char *scenes[RT_VERIFY_MAX_SCENES], *accels[RT_VERIFY_MAX_SPECS]; /* as given */
     uint32_t scene_count, accel_count;
     bool spread, quick, json;
-    RtStart start;
-    int threads;
-    uint64_t rays, seed; /* rays 0: the default */
-    const char *folder, *replay, *rays_from;
+    RtVerify work; /* work.rays.count 0: the default */
+    const char *replay, *rays_from;
     RtRaySet given; /* those of rays_from */
     RtVerifyChoice choice;
 } Options;
@@ -48,14 +46,14 @@ static void take_scene(void *options, const char *text, struct argp_state *state
 
 static void finish(void *options, struct argp_state *state) {
     const Options *o = options;
-    if (o->replay && (o->scene_count > 0 || o->accel_count > 0 || o->folder || o->json))
+    if (o->replay && (o->scene_count > 0 || o->accel_count > 0 || o->work.folder || o->json))
         argp_error(
             state,
             "--replay traces the ray in FILE and prints text: it takes no SCENE, --accel, --out or --json");
-    if (o->rays_from && (o->quick || o->rays > 0 || o->replay || o->scene_count == 0))
+    if (o->rays_from && (o->quick || o->work.rays.count > 0 || o->replay || o->scene_count == 0))
         argp_error(state, "--rays-from replaces the rays of one SCENE: name the SCENE, and leave out --rays, "
                           "--quick and --replay");
-    if (o->start != RT_START_FRESH && !o->folder)
+    if (o->work.start != RT_START_FRESH && !o->work.folder)
         argp_error(state, "--resume and --force need the run's directory: --out DIR");
 }
 
@@ -67,20 +65,21 @@ static const RtOption options[] = {
     {"quick", 0, NULL, RT_TO_FLAG(quick),
      "A short check of a few seconds: 2000 rays, and without a SCENE only scenes of up to 100 objects; the "
      "last line says what it left out"},
-    {"rays", 'n', "N", RT_TO_INTEGER(rays, 1, 20000000),
+    {"rays", 'n', "N", RT_TO_INTEGER(work.rays.count, 1, 20000000),
      "Rays for each scene and accelerator (default 20000): a tenth from the camera; the others are chords "
      "and rays that graze, start and end on surfaces, and run along axes, edges and faces"},
     {"rays-from", 0, "FILE.npy", RT_TO_TEXT(rays_from),
      "Trace the rays of FILE instead: an array of float32 of shape (N, 8), as `raytally rays` writes it. "
      "Each ray is traced for its nearest hit and for any hit"},
-    {"seed", 's', "S", RT_TO_INTEGER(seed, 0, INT64_MAX),
+    {"seed", 's', "S", RT_TO_INTEGER(work.rays.seed, 0, INT64_MAX),
      "Seed of the random rays and of the families of scenes (default 1)"},
-    {"threads", 't', "N", RT_TO_INTEGER(threads, 0, 1024), "Threads; 0, the default, is all processors"},
-    {"out", 'o', "DIR", RT_TO_TEXT(folder),
+    {"threads", 't', "N", RT_TO_INTEGER(work.rays.threads, 0, 1024),
+     "Threads; 0, the default, is all processors"},
+    {"out", 'o', "DIR", RT_TO_TEXT(work.folder),
      "Write rows to DIR as they are found, tables of them (verify.csv, verify.md), and replay files of wrong "
      "answers"},
-    {"resume", 0, NULL, RT_TO_SET(start, RT_START_RESUME), "Continue the interrupted run in --out DIR"},
-    {"force", 0, NULL, RT_TO_SET(start, RT_START_ANEW),
+    {"resume", 0, NULL, RT_TO_SET(work.start, RT_START_RESUME), "Continue the interrupted run in --out DIR"},
+    {"force", 0, NULL, RT_TO_SET(work.start, RT_START_ANEW),
      "Start over: the results in --out DIR are lost. The last of --resume and --force counts"},
     {"replay", 0, "FILE", RT_TO_TEXT(replay),
      "Trace the ray of a wrong answer again: exit code 1 if the answer is still wrong, 2 if the ray cannot "
@@ -90,13 +89,19 @@ static const RtOption options[] = {
 
 static RtStatus choose(Options *o, RtError *error) {
     RtVerifyChoice *choice = &o->choice;
+    RtVerifyRays *rays = &o->work.rays;
     if (o->accel_count == 0) o->accels[o->accel_count++] = "all";
-    if (o->rays == 0) o->rays = o->quick ? QUICK_RAYS : MANY_RAYS;
-    RT_TRY(rt_verify_choose_scenes(choice, o->scenes, o->scene_count, o->seed, o->quick, error));
+    if (rays->count == 0) rays->count = o->quick ? QUICK_RAYS : MANY_RAYS;
+    RT_TRY(rt_verify_choose_scenes(choice, o->scenes, o->scene_count, rays->seed, o->quick, error));
     RT_TRY(rt_verify_choose_specs(choice, o->accels, o->accel_count, o->spread, error));
+    o->work.scenes = choice->scenes;
+    o->work.scene_count = choice->scene_count;
+    o->work.specs = choice->specs;
+    o->work.spec_count = choice->spec_count;
     if (!o->rays_from) return RT_OK;
     RT_TRY(rt_rays_load(o->rays_from, RT_RAY_RANDOM, &o->given, error));
-    o->rays = o->given.count;
+    rays->given = &o->given;
+    rays->count = o->given.count;
     return RT_OK;
 }
 
@@ -218,7 +223,7 @@ static void print_total(const Options *o, const RtVerifySum *sums, uint32_t coun
     RtVerifySum total = rt_verify_total(sums, count);
     print_count(o->choice.scene_count, "scene");
     print_count(o->choice.spec_count, "accelerator");
-    print_count(o->rays, "ray");
+    print_count(o->work.rays.count, "ray");
     printf("%" PRIu64 " pair%s of a ray and an accelerator: ", total.pairs, rt_plural(total.pairs));
     if (total.failed == 0) {
         fputs("nothing wrong", stdout);
@@ -232,7 +237,8 @@ static void print_total(const Options *o, const RtVerifySum *sums, uint32_t coun
 
 static void print_left_out(const Options *o) {
     if (!o->quick) return;
-    printf("--quick used %" PRIu64 " ray%s per scene instead of %d", o->rays, rt_plural(o->rays), MANY_RAYS);
+    printf("--quick used %" PRIu64 " ray%s per scene instead of %d", o->work.rays.count,
+           rt_plural(o->work.rays.count), MANY_RAYS);
     if (o->choice.scenes_left_out > 0)
         printf(", and left out %u larger scene%s", o->choice.scenes_left_out,
                rt_plural(o->choice.scenes_left_out));
@@ -255,18 +261,11 @@ static RtStatus print_totals(const Options *o, const json_t *rows, RtError *erro
 static RtStatus verify(const Options *o, bool *failed, RtError *error) {
     Show show = {.options = o, .terminal = isatty(STDERR_FILENO) == 1, .start = rt_wall_seconds()};
     RtVerifyObserver observer = {on_doing, on_row, on_notice, &show};
-    RtVerify work = {.scenes = o->choice.scenes,
-                     .scene_count = o->choice.scene_count,
-                     .specs = o->choice.specs,
-                     .spec_count = o->choice.spec_count,
-                     .rays = {o->rays, o->seed, o->threads, o->rays_from ? &o->given : NULL},
-                     .folder = o->folder,
-                     .start = o->start};
     json_t *rows;
-    RtStatus status = rt_verify_run(&work, &observer, &rows, error);
+    RtStatus status = rt_verify_run(&o->work, &observer, &rows, error);
     clear_progress(&show);
     if (status == RT_OK && o->json) {
-        rt_cli_print_json(json_pack("{s:I, s:O}", "seed", (json_int_t)o->seed, "rows", rows));
+        rt_cli_print_json(json_pack("{s:I, s:O}", "seed", (json_int_t)o->work.rays.seed, "rows", rows));
     }
     if (status == RT_OK && !o->json) status = print_totals(o, rows, error);
     json_decref(rows);
@@ -296,7 +295,7 @@ static RtStatus replay(const Options *o, bool *failed, RtError *error) {
     RtStatus status = RT_OK;
     RT_TRY(rt_replay_load(&file, o->replay, error));
     RtAccelBuilder maker = rt_accel_builder_of_spec(file.accel_spec);
-    maker.threads = o->threads;
+    maker.threads = o->work.rays.threads;
     printf("%s on %s\n", file.accel_spec, file.scene_spec);
     uint32_t asked = 0;
     for (int shrunk = 0; shrunk < 2 && status == RT_OK; shrunk++) {
@@ -335,7 +334,7 @@ const RtSyntax rt_verify_syntax = {
 
 RtStatus rt_command_verify(int argc, char **argv, RtError *error) {
     static Options o;
-    o = (Options){.seed = 1};
+    o = (Options){.work.rays.seed = 1};
     rt_cli_parse(&rt_verify_syntax, argc, argv, &o);
     bool failed = false;
     RtStatus status = o.replay ? replay(&o, &failed, error) : choose(&o, error);
