@@ -42,7 +42,7 @@ case "${1-}" in
     run_tests clang -LE 'tree|once|slow|gcc'
     build debug -DRT_KERNELS=native
     RT_RAYS=16 run_tests debug -LE 'tree|once|slow|plain'
-    targets=thread_tests build tsan
+    targets=thread_tests build tsan -DRT_KERNELS=native
     run_tests tsan -L threads
     ;;
 *) die "usage: ./test.sh [--all]" ;;

@@ -101,7 +101,7 @@ RT_TEST(scenes_as_large_and_as_small_as_may_be_are_answered_like_brute) {
     for (size_t s = 0; s < sizeof scales / sizeof scales[0]; s++) {
         FamilyBench bench;
         char spec[RT_MAX_SPEC_CHARS];
-        make_triangles(&bench.scene, 2000, 0, scales[s]);
+        make_triangles(&bench.scene, RT_SHARE(2000, 300), 0, scales[s]);
         set_up_rays(&bench, 1, 4);
         for (size_t i = 0; i < rt_accel_count(); i++) {
             for (size_t n = 0; rt_spread_spec(rt_accel_at(i), n, spec); n++) {

@@ -168,7 +168,7 @@ RT_TEST_IN_PLACE(what_was_not_timed_in_every_round_is_not_compared) {
     write_other(place, "echo >>runs\n[ \"$(wc -l <runs)\" != 2 ] || set -- \"${@/grid/octree}\"", "\"$@\"");
     assert_int_equal(raytally(place,
                               "compare balls:size=1 --accel bvh --accel grid --rays random --limit 100 "
-                              "--rounds 6 --with ./other"),
+                              "--rounds 3 --with ./other"),
                      0);
     assert_in_file(place, "output", "not timed");
     assert_in_file(place, "output", "only before");

@@ -109,7 +109,7 @@ RT_TEST(distributions_come_back_from_json_as_they_were) {
 /* A cloud and these accelerators, with distributions, counted. */
 static void count_cloud(RtExperiment *e, RtResults *results, const char *const *specs, uint32_t count,
                         int threads) {
-    const RtWorkload scene = {.depth = 2, .width = 64, .height = 64};
+    const RtWorkload scene = {.depth = 2, .width = RT_SHARE(64, 24), .height = RT_SHARE(64, 24)};
     const RtWorkloadOptions options = {.threads = threads, .timing = 1, .count_only = true};
     char where[RT_MAX_LABEL];
     rt_experiment_init(e);

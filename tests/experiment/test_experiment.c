@@ -50,7 +50,8 @@ RT_TEST_IN_PLACE(a_run_on_one_thread_starts_no_other) {
     write_changed(
         place, "small.yaml", small_experiment,
         "n=50\", label: cloud, size: 16x16, depth: 2}\naccelerators:\n  - {accel: brute, ray_stride: 7}",
-        "n=20000\", size: 192x192}\naccelerators:\n  - {accel: \"bvh:reinsertion=2\"}");
+        RT_SHARE("n=20000\", size: 192x192}\naccelerators:\n  - {accel: \"bvh:reinsertion=2\"}",
+                 "n=5000\", size: 64x64}\naccelerators:\n  - {accel: \"bvh:reinsertion=2\"}"));
     Labour before = labour_so_far();
     assert_ok(run(place, "out", false, 1, nobody, error));
     Labour labour = labour_since(before);

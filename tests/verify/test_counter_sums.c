@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-enum { RAYS = 3000, PIECE = 500 };
+enum { RAYS = RT_SHARE(3000, 600), PIECE = RAYS / 6 };
 
 typedef struct Stage {
     RtScene scene;
