@@ -167,8 +167,7 @@ bool rt_workload_is_called(const RtWorkload *workload, const char *name) {
 }
 
 const char *rt_plot_name(const RtExperiment *experiment, uint32_t plot) {
-    const char *path = experiment->plots[plot], *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
+    return basename(experiment->plots[plot]);
 }
 
 /* ---- checks ---- */

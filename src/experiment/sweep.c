@@ -283,7 +283,7 @@ static RtStatus label_one(const char *given, const RtSwept *swept, char stem[RT_
 
 /* The file's name without folder and extension, or the built-in's spec. */
 static void name_scene(const char *spec, bool file, char label[RT_MAX_LABEL]) {
-    const char *slash = file ? strrchr(spec, '/') : NULL, *start = slash ? slash + 1 : spec;
+    const char *start = file ? basename(spec) : spec;
     size_t length = file ? strcspn(start, ".") : strlen(start);
     snprintf(label, RT_MAX_LABEL, "%.*s", (int)length, start);
     for (char *c = label; *c; c++) {
