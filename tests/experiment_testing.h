@@ -113,6 +113,12 @@ static inline void assert_same_file(const Place *place, const char *name, const 
     rt_free(now);
 }
 
+static inline void assert_equal_files(const Place *place, const char *a, const char *b) {
+    char *text = read_in(place, b);
+    assert_same_file(place, a, text);
+    rt_free(text);
+}
+
 static inline void assert_refused(RtStatus status, RtStatus expected, const RtError *error,
                                   const char *says) {
     if (status != expected || !strstr(error->message, says)) {
@@ -127,6 +133,22 @@ static inline int raytally(const Place *place, const char *arguments) {
     snprintf(command, sizeof command, "cd '%s' && '%s' %s >output 2>message", place->folder, RT_PROGRAM,
              arguments);
     return WEXITSTATUS(system(command));
+}
+
+/* raytally must have ended with this exit code and have said this on standard error. */
+static inline void assert_ended(const Place *place, const char *arguments, int ended, int code,
+                                const char *says) {
+    char *message = read_in(place, "message");
+    if (ended != code || !strstr(message, says)) {
+        fail_msg("raytally %s: exit code %d, expected %d with '%s': %s", arguments, ended, code, says,
+                 message);
+    }
+    rt_free(message);
+}
+
+/* Runs `raytally ARGUMENTS`, which must end so. */
+static inline void assert_ends(const Place *place, const char *arguments, int code, const char *says) {
+    assert_ended(place, arguments, raytally(place, arguments), code, says);
 }
 
 #endif

@@ -82,8 +82,7 @@ static RtStatus read_measure(Reader *r) {
 static uint32_t count_accels(const RtExperiment *experiment, const char *name, uint32_t *last) {
     uint32_t count = 0;
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        const RtCandidate *candidate = &experiment->candidates[c];
-        if (strcmp(candidate->label, name) != 0 && strcmp(candidate->stem, name) != 0) continue;
+        if (!rt_candidate_is_called(&experiment->candidates[c], name)) continue;
         *last = c;
         count++;
     }
@@ -112,10 +111,8 @@ static RtStatus read_other(Reader *r) {
 
 static RtStatus read_scene(Reader *r) {
     bool found = false;
-    for (uint32_t t = 0; t < r->experiment->workload_count; t++) {
-        const RtWorkload *workload = &r->experiment->workloads[t];
-        found |= strcmp(workload->label, word(r)) == 0 || strcmp(workload->stem, word(r)) == 0;
-    }
+    for (uint32_t t = 0; t < r->experiment->workload_count; t++)
+        found |= rt_workload_is_called(&r->experiment->workloads[t], word(r));
     if (!found) return fail(r, "'%s' is not the label of one of the scenes", word(r));
     snprintf(r->claim->scene, RT_MAX_LABEL, "%s", r->words[r->at++]);
     return RT_OK;

@@ -72,14 +72,9 @@ static RtEstimate ratio_at(const RtResults *results, const RtClaim *claim, uint3
 /* ---- the cells of a claim ---- */
 
 static bool is_about(const RtExperiment *experiment, const RtClaim *claim, uint32_t t, uint32_t c) {
-    const RtCandidate *candidate = &experiment->candidates[c];
-    const RtWorkload *workload = &experiment->workloads[t];
     if (!rt_candidate_runs(experiment, c, t)) return false;
-    if (strcmp(candidate->label, claim->accel) != 0 && strcmp(candidate->stem, claim->accel) != 0)
-        return false;
-    if (*claim->scene && strcmp(workload->label, claim->scene) != 0 &&
-        strcmp(workload->stem, claim->scene) != 0)
-        return false;
+    if (!rt_candidate_is_called(&experiment->candidates[c], claim->accel)) return false;
+    if (*claim->scene && !rt_workload_is_called(&experiment->workloads[t], claim->scene)) return false;
     for (uint32_t p = 0; p < claim->place_count; p++) {
         const char *value = rt_swept_of(experiment, &claim->places[p].key, t, c);
         if (!value || strcmp(value, claim->places[p].value) != 0) return false;

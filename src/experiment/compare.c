@@ -83,6 +83,8 @@ static RtStatus compare_cell(const RtResults *before, uint32_t t, uint32_t c, co
     cell->counts = other->tally;
     if (!one->round_times || !other->round_times || one->threads != other->threads) return RT_OK;
     cell->timed = true;
+    cell->cells[0] = one;
+    cell->cells[1] = other;
     cell->before = one->seconds.median;
     cell->after = other->seconds.median;
     return RT_OK;
@@ -101,20 +103,6 @@ static RtStatus compare_all(const RtResults *before, const RtResults *after, boo
     return RT_OK;
 }
 
-/* The interval of a cell; its coverage depends on the number of cells. */
-static RtStatus estimate_cell(RtComparedCell *cell, const RtResults *before, const RtResults *after,
-                              double coverage, RtError *error) {
-    RtRayKind kind = RT_RAY_PRIMARY;
-    RT_TRY(rt_ray_kind_parse(cell->kind, &kind, error));
-    uint32_t t = rt_workload_find(before->experiment, cell->scene);
-    uint32_t t2 = rt_workload_find(after->experiment, cell->scene);
-    const RtCell *one = rt_cell_at(before, t, rt_candidate_find(before->experiment, cell->accel, t), kind);
-    const RtCell *other = rt_cell_at(after, t2, rt_candidate_find(after->experiment, cell->accel, t2), kind);
-    return rt_estimate_unpaired(rt_cell_round_times(one, RT_ROUND_SECONDS), one->rounds,
-                                rt_cell_round_times(other, RT_ROUND_SECONDS), other->rounds, coverage,
-                                &cell->ratio, error);
-}
-
 RtStatus rt_compare_results(const RtResults *before, const RtResults *after, RtComparison *comparison,
                             RtError *error) {
     uint32_t timed = 0;
@@ -122,8 +110,12 @@ RtStatus rt_compare_results(const RtResults *before, const RtResults *after, RtC
     RT_TRY(compare_all(after, before, true, comparison, error));
     for (uint32_t i = 0; i < comparison->count; i++) timed += comparison->cells[i].timed;
     for (uint32_t i = 0; i < comparison->count; i++) {
-        if (!comparison->cells[i].timed) continue;
-        RT_TRY(estimate_cell(&comparison->cells[i], before, after, rt_coverage_of_each(timed), error));
+        RtComparedCell *cell = &comparison->cells[i];
+        const RtCell *one = cell->cells[0], *other = cell->cells[1];
+        if (!cell->timed) continue;
+        RT_TRY(rt_estimate_unpaired(rt_cell_round_times(one, RT_ROUND_SECONDS), one->rounds,
+                                    rt_cell_round_times(other, RT_ROUND_SECONDS), other->rounds,
+                                    rt_coverage_of_each(timed), &cell->ratio, error));
     }
     rt_comparison_judge(comparison);
     return RT_OK;
@@ -218,8 +210,7 @@ static const void *row_at(void *context, size_t i) {
 }
 
 RtTable rt_comparison_table(RtComparedRow *row, bool all) {
-    static const RtTable eye = {RT_GROUPS(for_the_eye)}, full = {RT_GROUPS(in_full)};
-    RtTable table = all ? full : eye;
+    RtTable table = all ? (RtTable){RT_GROUPS(in_full)} : (RtTable){RT_GROUPS(for_the_eye)};
     table.row_count = row->comparison->count;
     table.row = row_at;
     table.context = row;

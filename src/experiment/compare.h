@@ -51,6 +51,7 @@ typedef struct RtComparedCell {
     double before, after;          /* seconds a ray: median */
     bool counted;                  /* both of these are known, and independent of the machine */
     RtTally counts_before, counts; /* of the cell */
+    const RtCell *cells[2];        /* before, after; borrowed: of two directories, if it is timed */
     double *ratios;                /* [RT_MAX_ROUNDS] owned: of each round of two programs; or NULL */
     uint32_t rounds;               /* of these; fewer if a limit excluded the cell from some */
 } RtComparedCell;

@@ -158,9 +158,16 @@ uint32_t rt_workload_find(const RtExperiment *experiment, const char *label) {
     return t;
 }
 
+bool rt_candidate_is_called(const RtCandidate *candidate, const char *name) {
+    return strcmp(candidate->label, name) == 0 || strcmp(candidate->stem, name) == 0;
+}
+
+bool rt_workload_is_called(const RtWorkload *workload, const char *name) {
+    return strcmp(workload->label, name) == 0 || strcmp(workload->stem, name) == 0;
+}
+
 const char *rt_plot_name(const RtExperiment *experiment, uint32_t plot) {
-    const char *path = experiment->plots[plot], *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
+    return basename(experiment->plots[plot]);
 }
 
 /* ---- checks ---- */

@@ -194,6 +194,10 @@ uint32_t rt_candidate_find(const RtExperiment *experiment, const char *label, ui
 /* The workload with that label; workload_count if there is none. */
 uint32_t rt_workload_find(const RtExperiment *experiment, const char *label);
 
+/* Whether `name` is its label, or its stem, which all of a sweep have. */
+bool rt_candidate_is_called(const RtCandidate *candidate, const char *name);
+bool rt_workload_is_called(const RtWorkload *workload, const char *name);
+
 /* The name of a script in the result directory: without its folders. Names are unique. */
 const char *rt_plot_name(const RtExperiment *experiment, uint32_t plot);
 

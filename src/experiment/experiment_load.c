@@ -85,8 +85,7 @@ static RtStatus read_scenes(const RtYaml *y, const RtYamlNode *list, const RtExp
         RT_TRY(rt_yaml_text(y, n, NULL, RT_MAX_LABEL - 1, &label));
         bool found = false;
         for (uint32_t t = 0; t < experiment->workload_count; t++) {
-            const RtWorkload *workload = &experiment->workloads[t];
-            if (strcmp(workload->label, label) != 0 && strcmp(workload->stem, label) != 0) continue;
+            if (!rt_workload_is_called(&experiment->workloads[t], label)) continue;
             on |= UINT32_C(1) << t;
             found = true;
         }

@@ -69,14 +69,13 @@ RtStatus rt_journal_add(RtOutputs *outputs, const char *path, const RtExperiment
 
 static RtStatus check_experiment(const char *path, const json_t *header, const RtExperiment *experiment,
                                  RtError *error) {
-    const char *name = json_string_value(json_object_get(header, "experiment"));
     bool quick = json_is_true(json_object_get(header, "quick"));
     bool good;
     if (rt_json_parse_hex(json_object_get(header, "hash"), &good) != experiment->fingerprint || !good) {
         return rt_fail(error, RT_BAD_INPUT,
                        "%s: this is a run of another experiment, or of another version of it ('%s'): replace "
                        "it with --force, or choose another --out",
-                       path, name ? name : "");
+                       path, rt_json_text(header, "experiment", ""));
     }
     if (quick == experiment->quick) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT,
@@ -85,7 +84,7 @@ static RtStatus check_experiment(const char *path, const json_t *header, const R
 }
 
 static RtStatus check_build(const char *path, const json_t *header, const RtOnly *only, RtError *error) {
-    const char *build = json_string_value(json_object_get(header, "build"));
+    const char *build = rt_json_text(header, "build", "unknown");
     json_int_t shard = json_integer_value(json_object_get(header, "shard")),
                shards = json_integer_value(json_object_get(header, "shards"));
     if (shard != only->shard || shards != only->shards) {
@@ -94,11 +93,11 @@ static RtStatus check_build(const char *path, const json_t *header, const RtOnly
                        "another --out",
                        path, (int)shard, (int)shards);
     }
-    if (build && strcmp(build, rt_build_alone()) == 0) return RT_OK;
+    if (strcmp(build, rt_build_alone()) == 0) return RT_OK;
     return rt_fail(
         error, RT_BAD_INPUT,
         "%s: another build began this run (%s; this is %s): replace it with --force, or choose another --out",
-        path, build ? build : "unknown", rt_build_alone());
+        path, build, rt_build_alone());
 }
 
 /* A changed baseline invalidates the whole run. */

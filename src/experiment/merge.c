@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "experiment/merge.h"
 
+#include "core/base/words.h"
+#include "core/text/json.h"
 #include "experiment/journal.h"
 #include "experiment/manifest.h"
 #include "experiment/plugins_used.h"
@@ -61,11 +63,11 @@ static RtStatus check_alike(const Merge *merge, RtError *error) {
                            merge->directories[i], what[k]);
         }
     }
-    const char *build = json_string_value(json_object_get(header_of(merge, 0), "build"));
-    if (build && strcmp(build, rt_build_alone()) == 0) return RT_OK;
+    const char *build = rt_json_text(header_of(merge, 0), "build", "unknown");
+    if (strcmp(build, rt_build_alone()) == 0) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT,
                    "%s was measured by another build of raytally (%s; this is %s): merge with that one",
-                   merge->directories[0], build ? build : "unknown", rt_build_alone());
+                   merge->directories[0], build, rt_build_alone());
 }
 
 /* The number of threads that timed the shards, 1 if nothing was timed. It must be the same for all: times on
@@ -82,7 +84,7 @@ static RtStatus check_threads(const Merge *merge, int *threads, RtError *error) 
                 return rt_fail(error, RT_BAD_INPUT,
                                "%s was timed on %d thread%s, and %s on %d: their times are not comparable. "
                                "Run one of them again with the --threads of the other, and --force",
-                               merge->directories[first], *threads, *threads == 1 ? "" : "s",
+                               merge->directories[first], *threads, rt_plural((uint64_t)*threads),
                                merge->directories[i], here);
             }
             first = i;

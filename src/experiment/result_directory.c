@@ -95,8 +95,8 @@ static RtStatus check_threads(const Run *run, RtError *error) {
         return rt_fail(error, RT_BAD_INPUT,
                        "%s was timed on %d thread%s so far, and this command would use %d: resume with "
                        "--threads %d, or start over with --force",
-                       run->options->directory, at.cell->threads, at.cell->threads == 1 ? "" : "s", threads,
-                       at.cell->threads);
+                       run->options->directory, at.cell->threads, rt_plural((uint64_t)at.cell->threads),
+                       threads, at.cell->threads);
     }
     return RT_OK;
 }

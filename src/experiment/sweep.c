@@ -264,10 +264,12 @@ bool rt_may_label(char c) {
     return isgraph((unsigned char)c) && !strchr("\"'`/\\$&<>@^{}", c);
 }
 
-/* Appends the swept values to the common label. */
-static RtStatus label_one(char label[RT_MAX_LABEL], const char *stem, const RtSwept *swept, RtError *error) {
+/* Appends the swept values to the given label, their stem. */
+static RtStatus label_one(const char *given, const RtSwept *swept, char stem[RT_MAX_LABEL],
+                          char label[RT_MAX_LABEL], RtError *error) {
     char whole[RT_MAX_LABEL + RT_MAX_SWEPT * (RT_MAX_NAME + RT_MAX_SWEPT_CHARS + 2)];
-    snprintf(whole, sizeof whole, "%s", stem);
+    strcpy(stem, given);
+    snprintf(whole, sizeof whole, "%s", given);
     rt_swept_name(swept, NULL, whole, sizeof whole);
     if (strlen(whole) >= RT_MAX_LABEL) {
         return rt_fail(error, RT_BAD_INPUT, "'%s' is longer than %d characters: give a short `label`", whole,
@@ -281,7 +283,7 @@ static RtStatus label_one(char label[RT_MAX_LABEL], const char *stem, const RtSw
 
 /* The file's name without folder and extension, or the built-in's spec. */
 static void name_scene(const char *spec, bool file, char label[RT_MAX_LABEL]) {
-    const char *slash = file ? strrchr(spec, '/') : NULL, *start = slash ? slash + 1 : spec;
+    const char *start = file ? basename(spec) : spec;
     size_t length = file ? strcspn(start, ".") : strlen(start);
     snprintf(label, RT_MAX_LABEL, "%.*s", (int)length, start);
     for (char *c = label; *c; c++) {
@@ -307,10 +309,7 @@ static RtStatus add_scene(RtExperiment *experiment, const RtWorkload *like, cons
     workload->file = strcspn(spec, "./") < strcspn(spec, ":");
     RT_TRY(rt_path_join(workload->file ? folder : "", spec, workload->path, error));
     stem_of(sweep, stem, sizeof stem);
-    if (*like->label) {
-        strcpy(workload->stem, like->label);
-        return label_one(workload->label, like->label, &workload->swept, error);
-    }
+    if (*like->label) return label_one(like->label, &workload->swept, workload->stem, workload->label, error);
     name_scene(stem, workload->file, workload->stem);
     name_scene(spec, workload->file, workload->label);
     return RT_OK;
@@ -344,10 +343,8 @@ static RtStatus add_accel(RtExperiment *experiment, const RtCandidate *like, con
     *candidate = *like;
     RT_TRY(spec_at(sweep, i, spec, &candidate->swept, error));
     strcpy(candidate->spec, spec);
-    if (*like->label) {
-        strcpy(candidate->stem, like->label);
-        return label_one(candidate->label, like->label, &candidate->swept, error);
-    }
+    if (*like->label)
+        return label_one(like->label, &candidate->swept, candidate->stem, candidate->label, error);
     stem_of(sweep, candidate->stem, RT_MAX_LABEL);
     snprintf(candidate->label, RT_MAX_LABEL, "%.*s", RT_MAX_LABEL - 1, spec);
     if (strlen(spec) >= RT_MAX_LABEL && is_taken(experiment, candidate))

@@ -8,21 +8,15 @@
 
 /* ---- parts ---- */
 
-static bool matches(const char *name, const char *label, const char *stem) {
-    return !name || strcmp(name, label) == 0 || strcmp(name, stem) == 0;
-}
-
 bool rt_only_scene(const RtOnly *only, const RtExperiment *experiment, uint32_t workload) {
-    const RtWorkload *setup = &experiment->workloads[workload];
     if (only->shards && workload % only->shards != only->shard - 1) return false;
-    return matches(only->scene, setup->label, setup->stem);
+    return !only->scene || rt_workload_is_called(&experiment->workloads[workload], only->scene);
 }
 
 bool rt_only_accel(const RtOnly *only, const RtExperiment *experiment, uint32_t candidate) {
-    const RtCandidate *setup = &experiment->candidates[candidate];
     if (candidate == experiment->candidate_count || rt_candidate_is_baseline(experiment, candidate))
         return true;
-    return matches(only->accel, setup->label, setup->stem);
+    return !only->accel || rt_candidate_is_called(&experiment->candidates[candidate], only->accel);
 }
 
 bool rt_only_kind(const RtOnly *only, RtRayKind kind) {

@@ -83,8 +83,7 @@ static bool is_result(const char *directory) {
 
 /* ., .. and hidden folders. */
 static bool is_hidden(const char *path) {
-    const char *slash = strrchr(path, '/');
-    return (slash ? slash[1] : path[0]) == '.';
+    return basename(path)[0] == '.';
 }
 
 static void visit(void *context, const char *path) {

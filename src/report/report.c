@@ -135,7 +135,7 @@ static void put_svg(FILE *out, const char *svg, size_t size, const Caption *capt
 
 static void put_plot(void *context, const char *path) {
     const Plots *plots = context;
-    const char *slash = strrchr(path, '/'), *file = slash ? slash + 1 : path;
+    const char *file = basename(path);
     if (plots->shown && strcmp(file, plots->shown) == 0) return;
     char name[RT_MAX_PATH], folder[RT_MAX_PATH], pdf[RT_MAX_PATH + 16], *svg;
     size_t size;
@@ -156,7 +156,7 @@ static void put_plot(void *context, const char *path) {
 }
 
 static void put_plots(FILE *out, const RtExperiment *experiment, const char *directory) {
-    Plots context = {out, directory, *experiment->frame.without ? strrchr(RT_FRAME_PLOT, '/') + 1 : NULL};
+    Plots context = {out, directory, *experiment->frame.without ? basename(RT_FRAME_PLOT) : NULL};
     char plots[RT_MAX_PATH];
     fputs("<h2 id=\"plots\">Plots</h2>\n", out);
     if (rt_path_join(directory, "plots", plots, NULL) != RT_OK) return;

@@ -31,10 +31,10 @@ typedef struct Figure {
     RtSweptKey key;
     bool timed;
     uint32_t line_count, point_count, value_count;
-    Line *lines;                                              /* [candidate_count] */
-    Point *points;                                            /* [workload_count * candidate_count] */
-    char words[RT_MAX_SWEEP_VALUES][RT_MAX_SWEPT_CHARS];      /* values that are no numbers */
-    double values[RT_MAX_SWEEP_VALUES + RT_MAX_SWEEP_VALUES]; /* increasing */
+    Line *lines;                                         /* [candidate_count] */
+    Point *points;                                       /* [workload_count * candidate_count] */
+    char words[RT_MAX_SWEEP_VALUES][RT_MAX_SWEPT_CHARS]; /* values that are no numbers */
+    double values[RT_MAX_SWEEP_VALUES];                  /* increasing */
 } Figure;
 
 bool rt_sweep_plots_needed(const RtExperiment *experiment) {

@@ -27,13 +27,6 @@ static int make_spread(void **state) {
 
 #define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_spread, remove_place)
 
-static void assert_same(const Place *place, const char *one, const char *other) {
-    char *a = read_in(place, one), *b = read_in(place, other);
-    assert_string_equal(a, b);
-    rt_free(a);
-    rt_free(b);
-}
-
 static uint64_t integer_at(const RtCsv *csv, uint32_t row, const char *name) {
     return strtoull(rt_csv_field(csv, row, rt_csv_find(csv, name)), NULL, 10);
 }
@@ -88,8 +81,8 @@ RT_TEST_IN_PLACE(distributions_are_the_same_bytes_on_two_threads_in_parts_and_in
         char distributions[64], histograms[64];
         snprintf(distributions, sizeof distributions, "%s/distributions.csv", others[i]);
         snprintf(histograms, sizeof histograms, "%s/histograms.csv", others[i]);
-        assert_same(place, "one/distributions.csv", distributions);
-        assert_same(place, "one/histograms.csv", histograms);
+        assert_equal_files(place, "one/distributions.csv", distributions);
+        assert_equal_files(place, "one/histograms.csv", histograms);
     }
 }
 
@@ -98,13 +91,10 @@ RT_TEST_IN_PLACE(a_finished_run_with_distributions_that_is_resumed_measures_noth
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
     char *before = read_in(place, "out/cells.jsonl"), *table = read_in(place, "out/distributions.csv");
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 0);
-    char *after = read_in(place, "out/cells.jsonl"), *again = read_in(place, "out/distributions.csv");
-    assert_string_equal(before, after);
-    assert_string_equal(table, again);
+    assert_same_file(place, "out/cells.jsonl", before);
+    assert_same_file(place, "out/distributions.csv", table);
     rt_free(before);
-    rt_free(after);
     rt_free(table);
-    rt_free(again);
 }
 
 RT_TEST_IN_PLACE(reproduce_compares_distributions_byte_for_byte) {
@@ -113,8 +103,7 @@ RT_TEST_IN_PLACE(reproduce_compares_distributions_byte_for_byte) {
     assert_int_equal(raytally(place, "reproduce out"), 0);
     assert_in_file(place, "output", "out/histograms.csv, byte for byte");
     write_in(place, "out/distributions.csv", "other\n");
-    assert_int_equal(raytally(place, "reproduce out"), 1);
-    assert_in_file(place, "message", "out/distributions.csv:1: differs");
+    assert_ends(place, "reproduce out", 1, "out/distributions.csv:1: differs");
 }
 
 RT_TEST_IN_PLACE(reproduce_of_one_scene_compares_its_rows_alone) {
@@ -124,10 +113,9 @@ RT_TEST_IN_PLACE(reproduce_of_one_scene_compares_its_rows_alone) {
     write_changed(place, "out/counts.csv", counts, "\nballs,", "\nballs,changed");
     assert_int_equal(raytally(place, "reproduce out --only cloud"), 0);
     assert_in_file(place, "output", "Reproduced: cloud in out/counts.csv");
-    assert_int_equal(raytally(place, "reproduce out --only balls"), 1);
-    assert_in_file(place, "message", "out/counts.csv:8: differs");
-    assert_int_equal(raytally(place, "reproduce out --only scattered"), 2);
-    assert_in_file(place, "message", "'scattered' is not the label of one of the scenes");
+    assert_ends(place, "reproduce out --only balls", 1, "out/counts.csv:8: differs");
+    assert_ends(place, "reproduce out --only scattered", 2,
+                "'scattered' is not the label of one of the scenes");
     rt_free(counts);
 }
 
@@ -172,10 +160,8 @@ RT_TEST_IN_PLACE(a_run_that_asks_for_hardware_counters_has_a_row_for_each_cell_w
     char *first = read_in(place, "out/hardware.csv");
     assert_int_equal(remove(path.text), 0);
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 0);
-    char *again = read_in(place, "out/hardware.csv");
-    assert_string_equal(first, again);
+    assert_same_file(place, "out/hardware.csv", first);
     rt_free(first);
-    rt_free(again);
     assert_ok(rt_csv_read(&csv, path.text, error));
     assert_int_equal(csv.rows, 2 * 2 * 3);
     for (uint32_t row = 0; row < csv.rows; row++) {
@@ -192,8 +178,7 @@ RT_TEST_IN_PLACE(hardware_counters_where_nothing_is_timed_are_refused) {
     write_changed(place, "small.yaml", spread, "distributions: yes", "hardware: yes");
     assert_refused(load_small(place, false, &error), RT_BAD_INPUT, &error,
                    ":13:11: hardware: hardware counters");
-    assert_int_equal(raytally(place, "bench balls --accel bvh --hardware --count-only"), 2);
-    assert_in_file(place, "message", "--count-only times nothing");
+    assert_ends(place, "bench balls --accel bvh --hardware --count-only", 2, "--count-only times nothing");
 }
 
 RT_TESTS(distributions, NULL, NULL)

@@ -53,12 +53,6 @@ static void wait_seconds(double seconds) {
     nanosleep(&time, NULL);
 }
 
-static void assert_equal_files(const Place *place, const char *a, const char *b) {
-    char *text = read_in(place, b);
-    assert_same_file(place, a, text);
-    rt_free(text);
-}
-
 /* Whole lines: the last may have been cut off. */
 static size_t journal_lines(const Place *place) {
     if (!rt_file_exists(path_in(place, "out/cells.jsonl").text)) return 0;
@@ -165,8 +159,8 @@ RT_TEST_IN_PLACE(what_goes_beyond_a_limit_is_left_out_and_recorded) {
     write_changed(place, "small.yaml", text, "n=200|400\"", "n=200|30000\"");
     rt_free(text);
     /* bvh, the baseline, takes 2 MB of 30000 spheres. */
-    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out"), 2);
-    assert_in_file(place, "message", "the baseline 'bvh' exceeds a limit on 'cloud:n=30000'");
+    assert_ends(place, "run small.yaml --threads 1 --out out", 2,
+                "the baseline 'bvh' exceeds a limit on 'cloud:n=30000'");
     text = read_in(place, "small.yaml");
     write_changed(place, "small.yaml", text, "rays: [", "baseline: brute\nrays: [");
     rt_free(text);
@@ -177,19 +171,17 @@ RT_TEST_IN_PLACE(what_goes_beyond_a_limit_is_left_out_and_recorded) {
     assert_in_file(place, "output", "Left out: bvh on cloud:n=30000: its structure takes more than 1 MB");
     assert_in_file(place, "out/cells.jsonl", "too_large");
     assert_in_file(place, "out/report.html", "its structure takes more than 1 MB");
-    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --resume"), 0);
-    assert_in_file(place, "message", "nothing was left to measure");
+    assert_ends(place, "run small.yaml --threads 1 --out out --resume", 0, "nothing was left to measure");
     assert_in_file(place, "output", "Left out: bvh on cloud:n=30000");
 }
 
 RT_TEST_IN_PLACE(a_cell_that_would_take_too_long_is_not_begun) {
     const Place *place = *state;
     write_changed(place, "small.yaml", long_experiment, "limit: 300", "limits: {seconds: 1e-6}\nlimit: 300");
-    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out"), 2);
-    assert_in_file(place, "message", "the baseline 'bvh' exceeds a limit");
+    assert_ends(place, "run small.yaml --threads 1 --out out", 2, "the baseline 'bvh' exceeds a limit");
     write_changed(place, "small.yaml", long_experiment, "limit: 300", "limits: {seconds: 0}\nlimit: 300");
-    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --force"), 2);
-    assert_in_file(place, "message", "limits.seconds: invalid value '0': expected more than 0");
+    assert_ends(place, "run small.yaml --threads 1 --out out --force", 2,
+                "limits.seconds: invalid value '0': expected more than 0");
     write_changed(place, "small.yaml", long_experiment, "n=200|400\", label: cloud, size: 24x24",
                   "n=200|100000\", label: cloud, size: 100x100");
     char *text = read_in(place, "small.yaml");

@@ -34,8 +34,7 @@ static int make_sharded(void **state) {
 #define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_sharded, remove_place)
 
 static void refused(const Place *place, const char *arguments, const char *says) {
-    assert_int_equal(raytally(place, arguments), 2);
-    assert_in_file(place, "message", says);
+    assert_ends(place, arguments, 2, says);
     assert_false(rt_file_exists(path_in(place, "all").text));
 }
 
@@ -47,10 +46,7 @@ RT_TEST_IN_PLACE(four_shards_make_the_counts_of_one_run) {
     assert_in_file(place, "output", "holds          object_tests of grid falls with density on cloud");
     assert_in_file(place, "message", "joined 4 shards: 30 cells of 5 scenes");
     assert_not_in_file(place, "message", "nothing was left to measure");
-    char *one = read_in(place, "one/counts.csv"), *all = read_in(place, "all/counts.csv");
-    assert_string_equal(one, all);
-    rt_free(one);
-    rt_free(all);
+    assert_equal_files(place, "one/counts.csv", "all/counts.csv");
     assert_true(rt_file_exists(path_in(place, "all/manifest.json").text));
     assert_true(rt_file_exists(path_in(place, "all/images/cloud:n=200.png").text));
     assert_in_file(place, "all/report.html", "cloud:n=200");
@@ -93,8 +89,8 @@ RT_TEST_IN_PLACE(a_merge_that_fails_loses_nothing_of_earlier_results) {
     Path picture = path_in(place, "s4/images/cloud:n=100.png");
     assert_int_equal(remove(picture.text), 0);
     assert_int_equal(mkdir(picture.text, 0777), 0);
-    assert_int_equal(raytally(place, "merge s1 s2 s3 s4 -o all --force"), 2);
-    assert_in_file(place, "message", "s4/images/cloud:n=100.png: this is not a file");
+    assert_ends(place, "merge s1 s2 s3 s4 -o all --force", 2,
+                "s4/images/cloud:n=100.png: this is not a file");
     for (int i = 0; i < 4; i++) {
         assert_same_file(place, kept[i], before[i]);
         rt_free(before[i]);
@@ -104,10 +100,10 @@ RT_TEST_IN_PLACE(a_merge_that_fails_loses_nothing_of_earlier_results) {
 
 RT_TEST_IN_PLACE(a_shard_is_gone_on_with_as_the_shard_that_it_is) {
     const Place *place = *state;
-    assert_int_equal(raytally(place, "run small.yaml --threads 1 --shard 3/4 --out s2 --resume"), 2);
-    assert_in_file(place, "message", "this is a run with another --shard (2/4)");
-    assert_int_equal(raytally(place, "run small.yaml --threads 1 --shard 2/4 --out s2 --resume"), 0);
-    assert_in_file(place, "message", "nothing was left to measure");
+    assert_ends(place, "run small.yaml --threads 1 --shard 3/4 --out s2 --resume", 2,
+                "this is a run with another --shard (2/4)");
+    assert_ends(place, "run small.yaml --threads 1 --shard 2/4 --out s2 --resume", 0,
+                "nothing was left to measure");
 }
 
 /* Times on one thread are processor time, those on two are wall time. */
@@ -117,8 +113,8 @@ RT_TEST_IN_PLACE(cells_timed_on_other_numbers_of_threads_are_not_mixed) {
     refused(place, "merge s1 s2 two s4 -o all",
             "s1 was timed on 1 thread, and two on 2: their times are not comparable. Run one of them again");
     assert_int_equal(raytally(place, "run small.yaml --threads 2 --out part --only cloud:n=50"), 0);
-    assert_int_equal(raytally(place, "run small.yaml --out part --resume"), 2);
-    assert_in_file(place, "message", "part was timed on 2 threads so far, and this command would use 1");
+    assert_ends(place, "run small.yaml --out part --resume", 2,
+                "part was timed on 2 threads so far, and this command would use 1");
     assert_int_equal(raytally(place, "run small.yaml --threads 2 --out part --resume"), 0);
     assert_int_equal(raytally(place, "run small.yaml --out part --resume"), 0); /* nothing is left to time */
 }
@@ -147,8 +143,8 @@ RT_TEST_IN_PLACE(another_program_of_uncommitted_sources_is_another_build) {
     assert_int_equal(code, uncommitted ? 2 : 0);
     if (!uncommitted) return;
     assert_in_file(place, "message", "s1 and s2 have different builds of raytally");
-    assert_int_equal(raytally(place, "run small.yaml --threads 1 --shard 2/4 --out s2 --resume"), 2);
-    assert_in_file(place, "message", "another build began this run");
+    assert_ends(place, "run small.yaml --threads 1 --shard 2/4 --out s2 --resume", 2,
+                "another build began this run");
     refused(place, "merge s2 s2 -o all", "s2 was measured by another build of raytally");
 }
 

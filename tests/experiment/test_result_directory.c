@@ -16,20 +16,6 @@ static RtStatus run(const Place *place, const char *directory, RtStart start, Rt
     return run_small(place, directory, false, (RtRunOptions){.start = start}, error);
 }
 
-/* raytally must have ended with this exit code and have said this on standard error. */
-static void assert_ended(const Place *place, const char *arguments, int ended, int code, const char *says) {
-    char *message = read_in(place, "message");
-    if (ended != code || !strstr(message, says)) {
-        fail_msg("raytally %s: exit code %d, expected %d with '%s': %s", arguments, ended, code, says,
-                 message);
-    }
-    rt_free(message);
-}
-
-static void assert_ends(const Place *place, const char *arguments, int code, const char *says) {
-    assert_ended(place, arguments, raytally(place, arguments), code, says);
-}
-
 /* ---- calls that come here ---- */
 
 RtStatus __real_rt_scene_open(const char *spec, RtScene *scene, RtError *error);

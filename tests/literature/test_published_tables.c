@@ -105,12 +105,10 @@ RT_TEST_IN_PLACE(reproduce_compares_published_figures_and_checks_them) {
     assert_int_equal(raytally(place, "run small.yaml --out out --resume"), 0);
 
     write_figures(place, "balls,s,Loop,,all,ray,,11.1,\n");
-    assert_int_equal(raytally(place, "reproduce out"), 1);
-    assert_in_file(place, "message", "published.csv:2: differs");
+    assert_ends(place, "reproduce out", 1, "published.csv:2: differs");
 
     write_figures(place, "balls,s,Loop,,all,ray,,21.0,\n");
-    assert_int_equal(raytally(place, "run small.yaml --out out --force"), 1);
-    assert_in_file(place, "message", "without a reason");
+    assert_ends(place, "run small.yaml --out out --force", 1, "without a reason");
     assert_int_equal(raytally(place, "reproduce out"), 1);
     write_figures(place, "balls,s,Loop,,any,ray,,21.0,\n");
     assert_int_equal(raytally(place, "run small.yaml --out out --force"), 2);
@@ -126,11 +124,9 @@ RT_TEST_IN_PLACE(a_candidate_is_counted_on_its_scenes_alone_and_one_label_serves
     assert_non_null(strstr(counts, ",cells,\"grid:rule=cubic,density=4,resolution=2x2x2"));
     assert_null(strstr(journal, "\"null\"")); /* nothing is timed */
     assert_int_equal(raytally(place, "run small.yaml --out out --resume"), 0);
-    char *again = read_in(place, "out/cells.jsonl");
-    assert_string_equal(journal, again);
+    assert_same_file(place, "out/cells.jsonl", journal);
     rt_free(counts);
     rt_free(journal);
-    rt_free(again);
     assert_false(rt_file_exists(path_in(place, "out/times.csv").text));
 }
 

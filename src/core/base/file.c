@@ -25,7 +25,7 @@ static RtStatus fail_io(RtError *error, const char *doing, const char *path) {
 static RtStatus create_temporary(RtOutput *output, RtError *error) {
     /* File names have at most 255 bytes: cut long ones to leave room for the suffix. */
     const size_t most = 255 - strlen(".0123456789abcdef" TEMPORARY_END);
-    const char *slash = strrchr(output->path, '/'), *name = slash ? slash + 1 : output->path;
+    const char *name = basename(output->path);
     const int kept = (int)(name - output->path) + (int)strnlen(name, most);
     uint64_t number = 0;
     int descriptor = -1;

@@ -40,8 +40,8 @@ enum { FORMAT_COUNT = sizeof formats / sizeof formats[0], MAX_WRITTEN = FORMAT_C
 
 /* The text after the last dot of the last path component, or "". */
 static const char *extension_of(const char *path) {
-    const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
-    return dot && (!slash || dot > slash) ? dot + 1 : "";
+    const char *dot = strrchr(basename(path), '.');
+    return dot ? dot + 1 : "";
 }
 
 /* Index of our own format with that extension, or -1. */
@@ -82,9 +82,10 @@ static RtStatus fail_extension(const char *path, const char *doing, const char *
 
 /* Suggests the file with the nearest name in the same folder. */
 static RtStatus fail_missing(const char *path, RtError *error) {
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    const char *name = basename(path);
+    const bool in_folder = name > path;
     char folder[RT_MAX_PATH], best[256] = "";
-    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path + 1) : 2, slash ? path : "./");
+    snprintf(folder, sizeof folder, "%.*s", in_folder ? (int)(name - path) : 2, in_folder ? path : "./");
     DIR *dir = opendir(folder);
     if (!dir) return rt_fail(error, RT_BAD_INPUT, "%s: there is no such file, nor a folder %s", path, folder);
     for (struct dirent *entry; (entry = readdir(dir));) {
@@ -95,7 +96,7 @@ static RtStatus fail_missing(const char *path, RtError *error) {
     }
     closedir(dir);
     return rt_fail(error, RT_BAD_INPUT, "%s: there is no such file%s%s%s%s", path,
-                   best[0] ? ": did you mean '" : "", best[0] && slash ? folder : "", best,
+                   best[0] ? ": did you mean '" : "", best[0] && in_folder ? folder : "", best,
                    best[0] ? "'?" : "");
 }
 
