@@ -6,6 +6,7 @@
 /* Sums over the known cells of one candidate, to estimate the others. */
 typedef struct RateEstimate {
     double seconds, rays; /* to trace them */
+    double operations;    /* per ray, a sum as the others */
     double build, builds;
 } RateEstimate;
 
@@ -16,6 +17,12 @@ typedef struct Forecast {
     RateEstimate all;
     RtForecast sums;
 } Forecast;
+
+/* Tests and steps per ray of a counted cell. */
+static double operations_of(const RtCell *cell) {
+    const RtTally *t = &cell->tally;
+    return t->rays ? (double)(t->object_tests + t->extent_tests + t->steps) / (double)t->rays : 0;
+}
 
 static void learn(RateEstimate *rates, const RtResults *results, uint32_t t, uint32_t c) {
     const RtBuildResult *build = rt_build_at(results, t, c);
@@ -28,6 +35,7 @@ static void learn(RateEstimate *rates, const RtResults *results, uint32_t t, uin
         if (!cell->timed) continue;
         rates->seconds += cell->wall.median;
         rates->rays++;
+        rates->operations += operations_of(cell);
     }
 }
 
@@ -53,9 +61,15 @@ static void add_cell(Forecast *f, const RateEstimate *rates, uint32_t t, uint32_
     const RtWorkloadResult *workload = &f->results->workloads[t];
     uint64_t stride = c < e->candidate_count ? e->candidates[c].ray_stride : 1;
     bool null = c == e->candidate_count;
+    const RtWorkload *setup = &e->workloads[t];
     double rays = (double)(workload->known ? workload->rays[kind] : e->limit) / (double)stride;
+    /* A frame that is not recorded yet: one ray of a kind per pixel. */
+    if (!workload->known && setup->width)
+        rays = fmin(rays, (double)setup->width * setup->height / (double)stride);
+    /* A candidate that was not timed yet: as much time per test and step as the others take. */
     double ray = cell->timed ? cell->wall.median
-                             : mean(rates->seconds, rates->rays, mean(f->all.seconds, f->all.rays, 0));
+                             : mean(rates->seconds, rates->rays,
+                                    operations_of(cell) * mean(f->all.seconds, f->all.operations, 0));
     if (!null) {
         f->sums.cells++;
         f->sums.finished += cell->counted && (cell->timed || f->count_only);

@@ -175,7 +175,7 @@ static const char *below_label(const Row *r) {
       1e3 * rt_build_at(r->results, r->workload, r->candidate)->seconds)                                     \
     X(primary, "primary", figure, "", "times faster for primary rays", faster(r, RT_FRAME_PRIMARY))          \
     X(shadow, "shadow", figure, "", "times faster for shadow rays", faster(r, RT_FRAME_SHADOW))              \
-    X(secondary, "second", figure, "", "times faster for reflection and transmission rays",                  \
+    X(secondary, "bounce", figure, "", "times faster for reflection and transmission rays",                  \
       faster(r, RT_FRAME_SECONDARY))
 
 RT_TABLE_COLUMNS(columns, COLUMNS)
@@ -263,8 +263,8 @@ static void say_others(char *out, const RtResults *results, uint32_t t, uint32_t
             experiment->frame.without);
     if (cost_of(results, t, first, RT_FRAME_ALL).high + build_of(results, t, first) <
         cost_of(results, t, winner, RT_FRAME_ALL).low + build_of(results, t, winner))
-        SAY(out, " With the builds added, %s is the fastest for one frame: %s ms, %s %s ms.",
-            rt_candidate_label(experiment, first),
+        SAY(out, " If each is built for one frame, %s is the fastest of %s: %s ms, %s %s ms.",
+            rt_candidate_label(experiment, first), experiment->frame.among,
             figure(1e3 * seconds_with_build(results, t, first), number),
             rt_candidate_label(experiment, winner),
             figure(1e3 * seconds_with_build(results, t, winner), other));
@@ -342,8 +342,8 @@ void rt_frame_legend(const RtExperiment *experiment, char out[RT_MAX_FRAME_SENTE
         out, RT_MAX_FRAME_SENTENCE,
         "Mtests: object tests of a whole frame, in millions; ms: time to trace it on one thread; build: ms "
         "to build, on all processors (--threads changes both). fewer, faster: how many times, than %s; "
-        "primary, shadow, second (reflection and transmission): how many times faster. -: no such rays, "
-        "or not counted. >: the fastest of %s. level: the intervals overlap.",
+        "primary, shadow, bounce (reflection and transmission): how many times faster. -: no such rays, "
+        "or not counted. >: the fastest of %s. level: the difference is within the intervals of measurement.",
         experiment->frame.without, experiment->frame.among);
 }
 

@@ -141,8 +141,9 @@ FRAME_TEST(frames_whose_intervals_overlap_are_level_whichever_is_compared_with_w
 
 /* On tetra grid takes 0.008 ms and clusters 0.016 ms. */
 FRAME_TEST(a_build_that_makes_another_the_fastest_for_one_frame_is_told_unless_they_are_level) {
-    static const char told[] = "With the builds added, clusters is the fastest for one frame: 2.02 ms, grid "
-                               "2.03 ms.";
+    static const char told[] =
+        "If each is built for one frame, clusters is the fastest of the six: 2.02 ms, grid "
+        "2.03 ms.";
     assert_false(says(1, "builds"));
     rt_build_at(&results, 1, GRID)->seconds = 0.00202;
     assert_true(says(1, told));

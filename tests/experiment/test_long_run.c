@@ -246,4 +246,26 @@ RT_TEST_IN_PLACE(the_time_that_is_left_is_foretold_from_a_tenth_on) {
     rt_results_clear(&results);
 }
 
+/* bvh takes 1 s for 10000 steps; grid is counted alone. */
+RT_TEST_IN_PLACE(what_was_not_timed_yet_is_foretold_by_its_tests_and_steps) {
+    const Place *place = *state;
+    const RtWorkloadOptions options = {.threads = 1, .timing = 1};
+    RtResults results;
+    assert_ok(load_small(place, false, error));
+    assert_ok(rt_results_init(&results, place->experiment, error));
+    results.workloads[0].known = true;
+    results.workloads[0].rays[RT_RAY_PRIMARY] = 1000;
+    RtCell *bvh = rt_cell_at(&results, 0, 0, RT_RAY_PRIMARY),
+           *grid = rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
+    bvh->counted = bvh->timed = grid->counted = true;
+    bvh->wall.median = 1e-3;
+    bvh->tally = (RtTally){.rays = 1000, .steps = 10000};
+    grid->tally = (RtTally){.rays = 1000, .steps = 20000, .object_tests = 10000};
+    double once = rt_forecast(&results, &options).left;
+    grid->tally.steps += 300000;
+    double eleven_times = rt_forecast(&results, &options).left;
+    assert_true(fabs(eleven_times - once - 4 * 30) < 0.01); /* a warm-up and three rounds */
+    rt_results_clear(&results);
+}
+
 RT_TESTS(long_run, NULL, NULL)
