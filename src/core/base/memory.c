@@ -23,8 +23,10 @@ static bool fails_on_purpose(void) {
 /* Blocks of LARGE_BLOCK bytes or more use pages of this size. */
 enum { LARGE_PAGE = 1 << 21, LARGE_BLOCK = 2 * LARGE_PAGE };
 
-/* Allocates on a boundary; *padded becomes the size, rounded up to the next boundary. */
-static void *allocate(size_t count, size_t size, size_t boundary, size_t *padded) {
+/* *padded becomes the size, rounded up to the next cache line or page. */
+static void *allocate(size_t count, size_t size, size_t *padded) {
+    const bool large = size != 0 && count >= LARGE_BLOCK / size;
+    const size_t boundary = large ? LARGE_PAGE : RT_CACHE_LINE;
     if (size != 0 && count > (SIZE_MAX - boundary) / size) return NULL;
     if (fails_on_purpose()) return NULL;
     *padded = (count * size + boundary) / boundary * boundary;
@@ -35,22 +37,20 @@ static void *allocate(size_t count, size_t size, size_t boundary, size_t *padded
     if (!block) return NULL;
     atomic_fetch_add(&live_blocks, 1);
     atomic_fetch_add(&live_bytes, (int64_t)malloc_usable_size(block));
+    if (large) madvise(block, *padded, MADV_HUGEPAGE); /* a hint: it may fail */
     return block;
 }
 
 void *rt_alloc(size_t count, size_t size) {
     size_t padded;
-    void *block = allocate(count, size, RT_CACHE_LINE, &padded);
+    void *block = allocate(count, size, &padded);
     if (block) memset(block, 0, padded);
     return block;
 }
 
 void *rt_alloc_unset(size_t count, size_t size) {
     size_t padded;
-    bool large = size != 0 && count >= LARGE_BLOCK / size;
-    void *block = allocate(count, size, large ? LARGE_PAGE : RT_CACHE_LINE, &padded);
-    if (block && large) madvise(block, padded, MADV_HUGEPAGE); /* a hint: it may fail */
-    return block;
+    return allocate(count, size, &padded);
 }
 
 void rt_free(void *block) {

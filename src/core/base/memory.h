@@ -12,11 +12,11 @@
 #define RT_CACHE_LINE 64
 
 /* Allocates `count` elements of `size` bytes, set to zero; NULL if count * size overflows or memory is
- * short. A count of 0 returns a valid block. Free with rt_free. */
+ * short. A count of 0 returns a valid block. Large blocks use large pages where the system has them. Free
+ * with rt_free. */
 void *rt_alloc(size_t count, size_t size);
 
-/* The same without initialisation: for large arrays, so that the threads which fill them touch them first.
- * Large blocks use large pages where the system has them. */
+/* The same without initialisation: for large arrays, so that the threads which fill them touch them first. */
 void *rt_alloc_unset(size_t count, size_t size);
 
 /* Frees a block of rt_alloc or rt_alloc_unset; NULL is allowed. */
