@@ -2,11 +2,6 @@
 /* rt_best_specs: names for the fastest of several settings. */
 #include "accel_testing.h"
 
-#include "accel/accel.h"
-
-#include <stdio.h>
-#include <string.h>
-
 static char specs[RT_MAX_BEST][RT_MAX_SPEC_CHARS];
 
 /* The number of combinations of choices in "a=1|2,b=3|4|5". */

@@ -16,10 +16,10 @@ typedef struct Row {
     RtRay rays[RAYS];
 } Row;
 
-static void make_row(Row *row) {
+static void make_balls(Row *row) {
     RtScene *scene = &row->scene;
     RtCsgBuilder b = {0};
-    begin_scene(scene);
+    *scene = begin_scene();
     RtCsgTerm balls = ball(&b, rt_vec3(0, 0, 0), 1, 0);
     for (int i = 1; i < BALLS; i++) balls = join(&b, balls, ball(&b, rt_vec3(3 * (float)i, 0, 0), 1, 0));
     assert_ok(rt_scene_add_csg(scene, &b, balls, true, error));
@@ -51,7 +51,7 @@ RT_TEST(the_room_for_hits_is_had_or_it_is_a_status) {
     RtCrossing *crossings = crossings_of_tests();
     assert_ok(rt_crossings_alloc(&empty, &crossings, error));
     assert_null(crossings);
-    make_row(&row);
+    make_balls(&row);
     rt_alloc_fail_at(1);
     assert_int_equal(rt_crossings_alloc(&row.scene.geometry, &crossings, &failure), RT_NO_MEMORY);
     assert_null(crossings);
@@ -95,7 +95,7 @@ static void trace_without_memory(const char *spec, Row *row, const RtHit *expect
 RT_TEST(nothing_is_allocated_while_tracing) {
     Row row;
     RtHit expected[RAYS];
-    make_row(&row);
+    make_balls(&row);
     for (int i = 0; i < RAYS; i++) {
         expected[i] = RT_MISS;
         if (meets(&row.scene, &row.rays[i], &expected[i].t)) expected[i].object = 0;
@@ -138,9 +138,7 @@ static RtStatus trace_frame(const Row *row, RtError *error) {
     RtFrameOptions options = {.depth = 1, .threads = 1};
     RT_TRY(rt_accel_open("brute", &row->scene, &brute, error));
     RtStatus status = rt_frame_trace(&frame, brute, &options, error);
-    for (size_t i = 0; status == RT_OK && i < (size_t)RAYS * RAYS; i++) {
-        assert_int_equal(frame.object[i], 0);
-    }
+    for (size_t i = 0; status == RT_OK && i < (size_t)RAYS * RAYS; i++) assert_int_equal(frame.object[i], 0);
     if (status == RT_OK) rt_frame_clear(&frame);
     rt_accel_destroy(brute);
     return status;
@@ -166,13 +164,7 @@ static RtStatus ask(const Row *row, RtError *error) {
 }
 
 static RtStatus stack_of_overlays(const Row *row, RtError *error) {
-    RtAccel *accel;
-    RtQuery query;
-    RT_TRY(rt_accel_open("cache+light+bvh", &row->scene, &accel, error));
-    RtStatus status = rt_query_init(&query, accel, error);
-    rt_query_clear(&query);
-    rt_accel_destroy(accel);
-    return status;
+    return try_accel(&row->scene, "cache+light+bvh", error);
 }
 
 /* Of answers that are not brute's, by the referee: the one is right, the other wrong. */
@@ -204,7 +196,7 @@ static RtStatus measure_precision(const Row *row, RtError *error) {
 
 RT_TEST(no_shortage_of_memory_becomes_a_verdict) {
     Row row;
-    make_row(&row);
+    make_balls(&row);
     assert_every_shortage_is_a_status(judge, &row, "exact arithmetic");
     assert_every_shortage_is_a_status(measure_precision, &row, "exact arithmetic");
     rt_scene_clear(&row.scene);
@@ -213,7 +205,7 @@ RT_TEST(no_shortage_of_memory_becomes_a_verdict) {
 RT_TEST(no_shortage_of_memory_becomes_a_miss) {
     static const char crossings[] = "the crossings of a ray";
     Row row;
-    make_row(&row);
+    make_balls(&row);
     assert_every_shortage_is_a_status(trace_frame, &row, crossings);
     assert_every_shortage_is_a_status(build_item, &row, crossings);
     assert_every_shortage_is_a_status(ask, &row, crossings);

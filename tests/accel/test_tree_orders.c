@@ -60,9 +60,7 @@ RT_TEST(lbvh_halves_space_along_one_axis_after_another) {
         const uint32_t *child = tree.nodes[node].child;
         for (int s = 0; s < 2; s++) {
             RtVec3 half = rt_box_size(tree.nodes[child[s]].box);
-            for (int a = 0; a < 3; a++) {
-                assert_true(half.at[a] == (a == axis ? size.at[a] / 2 : size.at[a]));
-            }
+            for (int a = 0; a < 3; a++) assert_true(half.at[a] == (a == axis ? size.at[a] / 2 : size.at[a]));
         }
     }
 }

@@ -32,7 +32,7 @@ static void check(RtGeometry *g, const Case *cases, size_t count) {
 #define CHECK(g, cases) check(g, cases, sizeof cases / sizeof *(cases))
 
 RT_TEST(the_lecture_ray_meets_the_unit_sphere_at_9_and_11) {
-    RtGeometry g = {0};
+    OWNED_GEOMETRY g = {0};
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 1, error));
     assert_ok(rt_geometry_finish(&g, error));
     RtRay ray = make_ray(rt_vec3(0, 0, 10), rt_vec3(0, 0, -1));
@@ -44,7 +44,6 @@ RT_TEST(the_lecture_ray_meets_the_unit_sphere_at_9_and_11) {
     assert_true(t == 11.0f);
     ray.tmin = 11.5f;
     assert_false(hit(&g, 0, &ray, &t));
-    rt_geometry_clear(&g);
 }
 
 RT_TEST(a_sphere_is_hit_from_outside_and_inside_and_touched) {
@@ -177,7 +176,7 @@ static void assert_vector(RtVec3d a, double x, double y, double z) {
 }
 
 RT_TEST(normals_point_outward_or_by_the_right_hand_rule) {
-    RtGeometry g = {0};
+    OWNED_GEOMETRY g = {0};
     static const RtVec3 square[] = {{{0, 0, 5}}, {{0, 2, 5}}, {{2, 2, 5}}, {{2, 0, 5}}};
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(1, 0, 0), 2, error));
     assert_ok(rt_geometry_add_polygon(&g, square, 4, error));
@@ -194,11 +193,10 @@ RT_TEST(normals_point_outward_or_by_the_right_hand_rule) {
      * down. */
     assert_vector(normals_at(&g, 4, rt_vec3d(3.5, 0, 2)).geometric, 0.8, 0, 0.6);
     assert_vector(normals_at(&g, 5, rt_vec3d(0, -3.5, 2)).geometric, 0, -0.8, -0.6);
-    rt_geometry_clear(&g);
 }
 
 RT_TEST(vertex_normals_are_interpolated_for_shading_only) {
-    RtGeometry g = {0};
+    OWNED_GEOMETRY g = {0};
     const RtVec3 vertices[3] = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}};
     const RtVec3 normals[3] = {{{0, 0, 7}}, {{3, 0, 0}}, {{0, 0.5f, 0}}};
     assert_ok(rt_geometry_add_triangle(&g, vertices, NULL, error));
@@ -209,7 +207,6 @@ RT_TEST(vertex_normals_are_interpolated_for_shading_only) {
     assert_vector(normals_at(&g, 1, rt_vec3d(1, 0, 0)).shading, 1, 0, 0);
     assert_vector(normals_at(&g, 1, rt_vec3d(0.5, 0.5, 0)).shading, sqrt(0.5), sqrt(0.5), 0);
     assert_vector(normals_at(&g, 1, rt_vec3d(0.5, 0.5, 0)).geometric, 0, 0, 1);
-    rt_geometry_clear(&g);
 }
 
 /* ---- refusals ---- */
@@ -228,7 +225,7 @@ static void assert_refused(const RtGeometry *g, RtStatus status, const RtError *
     } while (0)
 
 RT_TEST(degenerate_objects_are_refused_with_the_reason) {
-    RtGeometry g = {0};
+    OWNED_GEOMETRY g = {0};
     const RtVec3 o = {{0, 0, 0}}, z = {{0, 0, 1}}, nan = {{NAN, 0, 0}}, huge = {{0, 6e17f, 0}};
     const RtVec3 line[] = {{{0, 0, 0}}, {{1, 1, 1}}, {{2, 2, 2}}, {{5, 5, 5}}};
     const RtVec3 warped[] = {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0.1f}}, {{0, 1, 0}}};
@@ -252,7 +249,6 @@ RT_TEST(degenerate_objects_are_refused_with_the_reason) {
     REFUSE("the same point", rt_geometry_add_cone(&g, z, 1, z, 1, error));
     REFUSE("not a finite number", rt_geometry_add_cone(&g, o, 1, nan, 1, error));
     REFUSE("a radius of nan", rt_geometry_add_cone(&g, o, 1, z, NAN, error));
-    rt_geometry_clear(&g);
 }
 
 RT_TESTS(shape, NULL, NULL)

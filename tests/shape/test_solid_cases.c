@@ -43,11 +43,10 @@ RT_TEST(a_box_has_no_skin) {
         {"touching a corner", {{2, 0, 1}}, {{-1, 1, 0}}, {NAN}},
         {"beside it", {{5, 1.5f, 0}}, {{-1, 0, 0}}, {NAN}},
     };
-    RtSolidSet set = {0};
+    OWNED_SOLIDS set = {0};
     uint32_t box;
     assert_ok(rt_solid_add_box(&set, rt_vec3(-1, -1, -1), rt_vec3(1, 1, 1), &box, error));
     CHECK(&set, box, cases);
-    rt_solid_set_clear(&set);
 }
 
 RT_TEST(a_half_space_has_no_end) {
@@ -58,11 +57,10 @@ RT_TEST(a_half_space_has_no_end) {
         {"along it, outside", {{0, 0, 2}}, {{1, 0, 0}}, {NAN}},
         {"in its plane", {{0, 0, 1}}, {{1, 0, 0}}, {NAN}},
     };
-    RtSolidSet set = {0};
+    OWNED_SOLIDS set = {0};
     uint32_t half;
     assert_ok(rt_solid_add_half_space(&set, rt_vec3(7, 8, 1), rt_vec3(0, 0, 3), &half, error));
     CHECK(&set, half, cases);
-    rt_solid_set_clear(&set);
 }
 
 RT_TEST(a_sphere_that_is_touched_is_not_crossed) {
@@ -73,11 +71,10 @@ RT_TEST(a_sphere_that_is_touched_is_not_crossed) {
         {"touched", {{3, 2, 10}}, {{0, 0, -1}}, {NAN}},
         {"missed", {{3.5f, 2, 10}}, {{0, 0, -1}}, {NAN}},
     };
-    RtSolidSet set = {0};
+    OWNED_SOLIDS set = {0};
     uint32_t sphere;
     assert_ok(rt_solid_add_ellipsoid(&set, rt_vec3(1, 2, 3), rt_vec3(2, 2, 2), &sphere, error));
     CHECK(&set, sphere, cases);
-    rt_solid_set_clear(&set);
 }
 
 /* Apex at (0, 0, 4), base of radius 2 at z = 0. */
@@ -97,13 +94,12 @@ RT_TEST(a_full_cone_ends_in_its_apex) {
         {"in the plane of its base", {{-5, 0, 0}}, {{1, 0, 0}}, {NAN}},
         {"touching the rim of its base", {{-2, -5, 0}}, {{0, 1, 0}}, {NAN}},
     };
-    RtSolidSet set = {0};
+    OWNED_SOLIDS set = {0};
     uint32_t up, down;
     assert_ok(rt_solid_add_frustum(&set, rt_vec3(0, 0, 0), 2, rt_vec3(0, 0, 4), 0, &up, error));
     assert_ok(rt_solid_add_frustum(&set, rt_vec3(0, 0, 4), 0, rt_vec3(0, 0, 0), 2, &down, error));
     CHECK(&set, up, cases);
     CHECK(&set, down, cases);
-    rt_solid_set_clear(&set);
 }
 
 RT_TEST(a_cylinder_is_entered_by_cap_or_side) {
@@ -117,7 +113,7 @@ RT_TEST(a_cylinder_is_entered_by_cap_or_side) {
         {"touching its side", {{-1, 2, -3}}, {{1, 0, 1}}, {NAN}},
         {"outside, parallel to the axis", {{-3, 3, 1}}, {{1, 0, 0}}, {NAN}},
     };
-    RtSolidSet set = {0};
+    OWNED_SOLIDS set = {0};
     uint32_t cylinder;
     assert_ok(rt_solid_add_frustum(&set, rt_vec3(0, 0, 0), 2, rt_vec3(4, 0, 0), 2, &cylinder, error));
     CHECK(&set, cylinder, cases);
@@ -125,7 +121,6 @@ RT_TEST(a_cylinder_is_entered_by_cap_or_side) {
     List list = cross(&set, cylinder, &ray);
     assert_int_equal(list.at[0].face, 1);
     assert_int_equal(list.at[1].face, 0);
-    rt_solid_set_clear(&set);
 }
 
 /* Circle of radius 2 in the plane z = 1, tube of radius 1. */
@@ -142,7 +137,7 @@ RT_TEST(a_torus_has_a_hole) {
         {"touched at the hole", {{0, 1, 5}}, {{0, 0, -1}}, {NAN}},
         {"missed", {{-5, 0, 2.5f}}, {{1, 0, 0}}, {NAN}},
     };
-    RtSolidSet set = {0};
+    OWNED_SOLIDS set = {0};
     uint32_t torus;
     assert_ok(rt_solid_add_ring(&set, rt_vec3(0, 0, 1), rt_vec3(0, 0, 7), 2, 1, &torus, error));
     CHECK(&set, torus, cases);
@@ -153,7 +148,6 @@ RT_TEST(a_torus_has_a_hole) {
     assert_int_equal(list.count, 2);
     assert_float_equal(list.at[0].t, 8 - sqrtf(8), 1e-6f);
     assert_float_equal(list.at[1].t, 8 + sqrtf(8), 1e-6f);
-    rt_solid_set_clear(&set);
 }
 
 /* ---- refusals ---- */
@@ -164,7 +158,7 @@ static void expect(RtStatus status, const RtError *error, const char *words) {
 }
 
 RT_TEST(bad_solids_are_refused_and_leave_nothing) {
-    RtSolidSet set = {0};
+    OWNED_SOLIDS set = {0};
     RtError e;
     uint32_t at;
     RtTransform here = rt_transform_identity(), flat = here, endless = here, far = here;
@@ -210,7 +204,6 @@ RT_TEST(bad_solids_are_refused_and_leave_nothing) {
     triangles[3].v[0].y = NAN;
     expect(rt_solid_add_mesh(&set, triangles, count, &here, &at, &e), &e, "triangle 3");
     assert_int_equal(set.solid_count + set.plane_count + set.triangle_count, 0);
-    rt_solid_set_clear(&set);
 }
 
 static RtStatus add_one_of_each(RtSolidSet *set, uint32_t i, uint32_t *at, RtError *error) {
