@@ -100,9 +100,8 @@ static void find_touched(const RtGridBlock *block, int axis, float lo, float hi,
 
 RtGridRange rt_grid_touched(const RtGridBlock *block, const RtBox *box) {
     RtGridRange range;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; a++)
         find_touched(block, a, box->lo.at[a], box->hi.at[a], &range.from[a], &range.to[a]);
-    }
     return range;
 }
 
@@ -185,11 +184,10 @@ RtStatus rt_grid_check_limit(const RtGrid *grid, const uint32_t n[3], const uint
     while (fits + 1 < excess) {
         uint32_t middle = (fits + excess) / 2;
         clamp_each(n, middle, smaller);
-        if (rt_grid_estimate(grid, &grid->box, smaller, ids, count) <= most) {
+        if (rt_grid_estimate(grid, &grid->box, smaller, ids, count) <= most)
             fits = middle;
-        } else {
+        else
             excess = middle;
-        }
     }
     clamp_each(n, fits, smaller);
     return rt_fail(error, RT_BAD_INPUT,

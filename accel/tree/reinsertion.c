@@ -100,9 +100,8 @@ static void search_below(Search *s, uint32_t node, double gained, bool itself) {
         /* The child that grows less is searched first. */
         const uint32_t *child = nodes[at.node].child;
         double growth[2];
-        for (int c = 0; c < 2; c++) {
+        for (int c = 0; c < 2; c++)
             growth[c] = rt_box_half_area(box_with(s->o, child[c], s->box)) - area_of(s->o, child[c]);
-        }
         int first = growth[1] < growth[0];
         stack[kept++] = (Kept){child[1 - first], left};
         stack[kept++] = (Kept){child[first], left};
@@ -255,9 +254,8 @@ RtStatus rt_tree_reinsert(RtTree *tree, uint32_t rounds, int threads, RtError *e
             if (!rt_tree_is_leaf(tree, i)) o.parent[child[0]] = o.parent[child[1]] = i;
         }
     }
-    for (uint32_t i = 0; status == RT_OK && made > 0 && i < rounds; i++) {
+    for (uint32_t i = 0; status == RT_OK && made > 0 && i < rounds; i++)
         status = run_round(&o, threads, &made, error);
-    }
     rt_free(o.parent);
     rt_free(o.mark);
     rt_free(o.moves);

@@ -101,9 +101,8 @@ static inline double rt_box_longest_side(RtBox a) {
 
 static inline double rt_box_largest_coordinate(RtBox a) {
     double largest = 0;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++)
         largest = fmax(largest, fmax(fabs((double)a.lo.at[i]), fabs((double)a.hi.at[i])));
-    }
     return largest;
 }
 
