@@ -82,10 +82,6 @@ typedef struct Check {
 
 #define BROKEN(check, ...) rt_fail((check)->error, RT_MISMATCH, "octree: " __VA_ARGS__)
 
-static bool same_box(RtBox a, RtBox b) {
-    return rt_box_contains(a, b) && rt_box_contains(b, a);
-}
-
 /* A node other than the root: its parent, its cell, its depth. */
 static RtStatus check_place(const Check *check, uint32_t index) {
     const RtOctree *tree = check->tree;
@@ -94,7 +90,7 @@ static RtStatus check_place(const Check *check, uint32_t index) {
     if (parent >= index || !rt_octree_is_inner(above) || above->first != index - rt_octree_octant(index))
         return BROKEN(check, "node %u is not a child of its parent", index);
     RtBox cell = rt_octree_child_box(tree->boxes[parent], above->split, rt_octree_octant(index));
-    if (!same_box(cell, tree->boxes[index]))
+    if (!rt_box_equals(cell, tree->boxes[index]))
         return BROKEN(check, "the cell of node %u is not cut from its parent's", index);
     if (depth_of(tree, index) > tree->max_depth)
         return BROKEN(check, "node %u is deeper than %u", index, tree->max_depth);

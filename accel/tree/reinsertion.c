@@ -187,17 +187,13 @@ static void replace_child(Optimizer *o, uint32_t parent, uint32_t from, uint32_t
     child[child[0] == from ? 0 : 1] = to;
 }
 
-static bool equal_boxes(RtBox a, RtBox b) {
-    return rt_box_contains(a, b) && rt_box_contains(b, a);
-}
-
 /* Refits the boxes of `node` and its ancestors. */
 static void refit(Optimizer *o, uint32_t node) {
     for (; node != NONE; node = o->parent[node]) {
         RtBox before = o->tree->nodes[node].box;
         const uint32_t *child = o->tree->nodes[node].child;
         rt_tree_set_union(o->tree, node, child[0], child[1]);
-        if (equal_boxes(before, o->tree->nodes[node].box)) return;
+        if (rt_box_equals(before, o->tree->nodes[node].box)) return;
     }
 }
 

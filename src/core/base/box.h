@@ -66,6 +66,10 @@ static inline bool rt_box_contains(RtBox outer, RtBox inner) {
            outer.hi.x >= inner.hi.x && outer.hi.y >= inner.hi.y && outer.hi.z >= inner.hi.z;
 }
 
+static inline bool rt_box_equals(RtBox a, RtBox b) {
+    return rt_box_contains(a, b) && rt_box_contains(b, a);
+}
+
 static inline RtVec3 rt_box_size(RtBox a) {
     return rt_sub(a.hi, a.lo);
 }
