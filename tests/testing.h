@@ -13,6 +13,7 @@
 #include <glob.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -97,6 +98,17 @@ static inline void rt_test_add(int line, struct CMUnitTest test) {
         RtError *error = &rt_ok_error;                                                                       \
         if ((expr) != RT_OK) fail_msg("%s: %s", #expr, rt_ok_error.message);                                 \
     } while (0)
+
+/* For calls that must fail: with this status, and a message that contains `phrase`. */
+#define assert_fails_with(expr, status, phrase)                                                              \
+    do {                                                                                                     \
+        RtError rt_failed = {RT_OK, ""};                                                                     \
+        RtError *error = &rt_failed;                                                                         \
+        if ((expr) != (status) || !strstr(rt_failed.message, phrase))                                        \
+            fail_msg("%s: '%s' is not " #status " with '%s'", #expr, rt_failed.message, phrase);             \
+    } while (0)
+
+#define assert_bad_input(expr, phrase) assert_fails_with(expr, RT_BAD_INPUT, phrase)
 
 /* Tries `call`, which gives a status, with the first allocation failing, then the second, and so on until
  * none does; then `undo` undoes it. Every failure is RT_NO_MEMORY, and nothing is left behind. */

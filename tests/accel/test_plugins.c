@@ -70,9 +70,7 @@ static void break_by_tracing(const Stage *stage, RtQuery *query) {
 }
 
 static void assert_it_broke(const RtAccel *accel, const char *says) {
-    RtError why;
-    assert_int_equal(rt_accel_check(accel, &why), RT_BROKEN);
-    assert_non_null(strstr(why.message, says));
+    assert_fails_with(rt_accel_check(accel, error), RT_BROKEN, says);
 }
 
 RT_TEST(one_that_is_loaded_twice_is_there_once) {
@@ -170,15 +168,13 @@ RT_TEST(one_that_writes_to_shared_memory_damages_no_other) {
     OWNED(close_stage) Stage stage;
     RtAccel *faulty;
     RtCount count;
-    RtError why;
     open_stage(&stage, "bvh_copy", 100);
-    assert_int_equal(rt_accel_open("faulty-scribble", &stage.scene, &faulty, &why), RT_BROKEN);
-    assert_non_null(strstr(why.message, "it overwrote memory that it shares with raytally while it was bu"));
+    assert_fails_with(rt_accel_open("faulty-scribble", &stage.scene, &faulty, error), RT_BROKEN,
+                      "it overwrote memory that it shares with raytally while it was bu");
     count_on(&stage, stage.accel, 1);
     assert_ok(rt_accel_open("faulty-scribbled", &stage.scene, &faulty, error));
-    assert_int_equal(rt_measure_count(faulty, &stage.set, stage.expected, 1, &count, &why), RT_BROKEN);
-    assert_non_null(
-        strstr(why.message, "it overwrote memory that it shares with raytally while it answered"));
+    assert_fails_with(rt_measure_count(faulty, &stage.set, stage.expected, 1, &count, error), RT_BROKEN,
+                      "it overwrote memory that it shares with raytally while it answered");
     count_on(&stage, stage.accel, 1);
     rt_accel_destroy(faulty);
 }
@@ -200,8 +196,8 @@ RT_TEST(one_that_does_not_survive_its_build_leaves_nothing_behind) {
     load_all();
     OWNED_SCENE scene = open_scene("random:n=300,shape=mixed");
     int64_t live = rt_alloc_live();
-    assert_int_equal(rt_accel_open("faulty-crash-build", &scene, &accel, &why), RT_BROKEN);
-    assert_non_null(strstr(why.message, "while it was built over 300 objects"));
+    assert_fails_with(rt_accel_open("faulty-crash-build", &scene, &accel, error), RT_BROKEN,
+                      "while it was built over 300 objects");
     assert_int_equal(rt_accel_open("cache+faulty-refused", &scene, &accel, &why), RT_BAD_INPUT);
     assert_int_equal(rt_alloc_live(), live);
 }
@@ -249,7 +245,6 @@ static void wait_for_all(int number) {
 static void crash_where_children_are(void (*handled)(int)) {
     Stage stage;
     RtQuery query;
-    RtError why;
     open_stage(&stage, "bvh", 1);
     rt_accel_destroy(stage.accel);
     void (*before)(int) = signal(SIGCHLD, handled);
@@ -257,8 +252,7 @@ static void crash_where_children_are(void (*handled)(int)) {
     assert_ok(rt_accel_open("faulty-abort", &stage.scene, &stage.accel, error));
     break_by_tracing(&stage, &query);
     assert_it_broke(stage.accel, "it crashed (Aborted) while it answered a stream of 1 ray, at the ray");
-    assert_int_equal(rt_plugin_load(PLUGINS "unloadable-CONSTRUCTOR.so", &why), RT_BAD_INPUT);
-    assert_non_null(strstr(why.message, "loading it failed: it "));
+    assert_bad_input(rt_plugin_load(PLUGINS "unloadable-CONSTRUCTOR.so", error), "loading it failed: it ");
     assert_true(rt_wall_seconds() - began < 1.5); /* less than it may hang */
     rt_query_clear(&query);
     rt_accel_destroy(stage.accel);

@@ -47,12 +47,10 @@ static void expect(const char *formula, const char *meaning) {
 }
 
 static void expect_complaint(const char *formula, const char *complaint) {
-    RtError error;
     OWNED_BUILDER builder = {0};
     RtCsgTerm term;
     fill(&builder);
-    assert_int_equal(rt_formula_read(formula, &builder, look_up, &builder, &term, &error), RT_BAD_INPUT);
-    if (!strstr(error.message, complaint)) fail_msg("'%s' is not in '%s'", complaint, error.message);
+    assert_bad_input(rt_formula_read(formula, &builder, look_up, &builder, &term, error), complaint);
 }
 
 RT_TEST(operators_are_taken_from_the_left) {

@@ -137,10 +137,7 @@ RT_TEST(wrong_names_are_refused_with_what_would_be_right) {
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         RtScene scene;
-        RtError problem;
-        assert_int_equal(rt_scene_open(cases[i].spec, &scene, &problem), RT_BAD_INPUT);
-        if (!strstr(problem.message, cases[i].says))
-            fail_msg("'%s' gave: %s", cases[i].spec, problem.message);
+        assert_bad_input(rt_scene_open(cases[i].spec, &scene, error), cases[i].says);
         assert_int_equal(scene.geometry.object_count, 0);
     }
 }
@@ -162,13 +159,11 @@ RT_TEST(too_large_a_scene_is_refused_with_the_size_that_fits) {
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const RtBuiltin *builtin = rt_builtin_find(cases[i].name);
         RtValue values[RT_MAX_PARAMS];
-        RtError problem;
         assert_ok(rt_params_parse(builtin->params, builtin->param_count, NULL, "it", values, error));
         values[0].i = cases[i].value;
         uint64_t each = builtin->object_bytes ? builtin->object_bytes(values) : RT_BUILTIN_OBJECT_BYTES;
         uint64_t bytes = cases[i].objects * each;
-        assert_int_equal(rt_builtin_check_memory(builtin, values, bytes, &problem), RT_BAD_INPUT);
-        if (!strstr(problem.message, cases[i].says)) fail_msg("%s gave: %s", cases[i].name, problem.message);
+        assert_bad_input(rt_builtin_check_memory(builtin, values, bytes, error), cases[i].says);
     }
 }
 
