@@ -122,30 +122,25 @@ static const char *const settings[] = {"",
                                        "build=spatial,alpha=0,in_flight=1"};
 enum { SETTINGS = sizeof settings / sizeof settings[0], SPLIT = 6 /* the last */ };
 
-/* Of the settings those from `first` on. */
-static void check(Bench *bench, int first) {
-    char what[RT_MAX_SPEC_CHARS];
+/* Takes the scene. Of `only` alone, at the settings that split references; NULL: of everything, at all. */
+static void check(RtScene scene, uint64_t seed, Bundle *only) {
+    static Bench bench;
+    bench.scene = scene;
+    set_up(&bench, seed, only);
     for (int isa = FIRST_SET; isa < INSTRUCTION_SETS; isa++) {
-        for (int s = first; s < SETTINGS; s++) {
-            OWNED_ACCEL RtWide *wide = make_wide(&bench->scene, isa, settings[s]);
+        for (int s = only ? SETTINGS - SPLIT : 0; s < SETTINGS; s++) {
+            char what[RT_MAX_SPEC_CHARS];
+            OWNED_ACCEL RtWide *wide = make_wide(&bench.scene, isa, settings[s]);
             if (!wide) continue;
             snprintf(what, sizeof what, "wide:isa=%s,%s", instruction_sets[isa], settings[s]);
-            assert_like_brute(bench, wide, what);
+            assert_like_brute(&bench, wide, what);
         }
     }
-}
-
-static void check_all(Bench *bench, uint64_t seed) {
-    set_up(bench, seed, NULL);
-    check(bench, 0);
-    rt_scene_clear(&bench->scene);
+    rt_scene_clear(&bench.scene);
 }
 
 static void check_scene(const char *spec) {
-    Bench *bench = calloc(1, sizeof *bench);
-    assert_ok(rt_scene_open(spec, &bench->scene, error));
-    check_all(bench, 1);
-    free(bench);
+    check(open_scene(spec), 1, NULL);
 }
 
 /* ---- scenes ---- */
@@ -184,15 +179,12 @@ RT_TEST(csg_trees_are_hit_as_by_brute) {
 }
 
 RT_TEST(scenes_of_no_object_and_of_one_are_answered_as_by_brute) {
-    Bench *bench = calloc(1, sizeof *bench);
-    bench->scene = begin_scene();
-    assert_ok(rt_scene_finish(&bench->scene, error));
-    check_all(bench, 1);
-    bench->scene = begin_scene();
-    add_triangle(&bench->scene, rt_vec3(0, 0, 1), rt_vec3(1, 0.25f, 1), rt_vec3(0.5f, 1, 2));
-    assert_ok(rt_scene_finish(&bench->scene, error));
-    check_all(bench, 2);
-    free(bench);
+    RtScene none = begin_scene(), one = begin_scene();
+    assert_ok(rt_scene_finish(&none, error));
+    check(none, 1, NULL);
+    add_triangle(&one, rt_vec3(0, 0, 1), rt_vec3(1, 0.25f, 1), rt_vec3(0.5f, 1, 2));
+    assert_ok(rt_scene_finish(&one, error));
+    check(one, 2, NULL);
 }
 
 /* Needs the thickness of rays, in streams and in packets. */
@@ -200,42 +192,23 @@ RT_TEST(rays_along_the_planes_that_cut_objects_are_answered_as_by_brute) {
     const char *specs[] = {"random:n=300,shape=triangle", "family:kind=slivers,seed=1",
                            "family:kind=slivers,seed=5", "family:kind=slivers-scaled,seed=3",
                            "family:kind=mesh-far,seed=1"};
-    Bench *bench = calloc(1, sizeof *bench);
-    for (int i = 0; i < 5; i++) {
-        assert_ok(rt_scene_open(specs[i], &bench->scene, error));
-        set_up(bench, (uint64_t)i, along_planes);
-        check(bench, SETTINGS - SPLIT);
-        rt_scene_clear(&bench->scene);
-    }
-    free(bench);
+    for (int i = 0; i < 5; i++) check(open_scene(specs[i]), (uint64_t)i, along_planes);
 }
 
 RT_TEST(rays_too_short_for_the_boxes_of_split_references_are_answered_as_by_brute) {
-    Bench *bench = calloc(1, sizeof *bench);
-    assert_ok(rt_scene_open("random:n=400,shape=triangle,radius=0.4", &bench->scene, error));
-    set_up(bench, 1, short_along_an_axis);
-    check(bench, SETTINGS - SPLIT);
-    rt_scene_clear(&bench->scene);
-    free(bench);
+    check(open_scene("random:n=400,shape=triangle,radius=0.4"), 1, short_along_an_axis);
 }
 
 RT_TEST(hostile_rays_hit_split_slivers_as_by_brute) {
     const float scales[] = {1, 1, 1, 1e-20f, 1e16f, 0.01f}, offsets[] = {0, 1e6f, 1e5f, 0, 0, -3000};
-    Bench *bench = calloc(1, sizeof *bench);
-    for (int i = 0; i < 6; i++) {
-        bench->scene = make_slivers(160, (uint64_t)i, scales[i], offsets[i]);
-        set_up(bench, (uint64_t)i, at_slivers);
-        check(bench, SETTINGS - SPLIT);
-        rt_scene_clear(&bench->scene);
-    }
-    free(bench);
+    for (int i = 0; i < 6; i++)
+        check(make_slivers(160, (uint64_t)i, scales[i], offsets[i]), (uint64_t)i, at_slivers);
 }
 
 /* Copies of triangles, in planes of boxes, and others that are lines and points. */
 RT_TEST(triangles_without_area_and_copies_of_triangles_are_answered_as_by_brute) {
-    Bench *bench = calloc(1, sizeof *bench);
+    RtScene scene = begin_scene();
     RtRandom random = rt_random(9, 9);
-    bench->scene = begin_scene();
     for (int i = 0; i < 120; i++) {
         RtVec3 a = rt_random_point(&random, 1), b = rt_random_point(&random, 1),
                c = rt_random_point(&random, 1);
@@ -243,11 +216,10 @@ RT_TEST(triangles_without_area_and_copies_of_triangles_are_answered_as_by_brute)
         if (i % 4 == 1) c = b;
         if (i % 4 == 2) c = rt_add(a, rt_scale(rt_sub(b, a), 0.5f));
         if (i % 16 == 3) c = b = a;
-        for (int copy = 0; copy <= i % 3; copy++) add_triangle(&bench->scene, a, b, c);
+        for (int copy = 0; copy <= i % 3; copy++) add_triangle(&scene, a, b, c);
     }
-    assert_ok(rt_scene_finish(&bench->scene, error));
-    check_all(bench, 3);
-    free(bench);
+    assert_ok(rt_scene_finish(&scene, error));
+    check(scene, 3, NULL);
 }
 
 /* Rays that miss all children of the root, so that the filter stays open, between rays that graze faces and
