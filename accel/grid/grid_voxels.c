@@ -98,7 +98,8 @@ static void find_touched(const RtGridBlock *block, int axis, float lo, float hi,
     *last = i;
 }
 
-RtGridRange rt_grid_touched(const RtGridBlock *block, const RtBox *box) {
+/* The range of voxels that a box overlaps, which must meet the block's. */
+static RtGridRange find_range(const RtGridBlock *block, const RtBox *box) {
     RtGridRange range;
     for (int a = 0; a < 3; a++)
         find_touched(block, a, box->lo.at[a], box->hi.at[a], &range.from[a], &range.to[a]);
@@ -125,7 +126,7 @@ enum { MAX_RANGES = 40 };
 void rt_grid_each_range(const RtGrid *grid, const RtGridBlock *block, uint32_t id,
                         void (*visit)(void *context, const RtGridRange *range), void *context) {
     RtBox object = rt_grid_object_box(grid, id);
-    RtGridRange stack[MAX_RANGES], range = rt_grid_touched(block, &object);
+    RtGridRange stack[MAX_RANGES], range = find_range(block, &object);
     uint32_t stacked = 0;
     if (!grid->surfaces) {
         visit(context, &range);

@@ -198,6 +198,7 @@ RT_TEST(faces_in_one_plane_are_met_at_the_same_bits) {
         }
     }
 }
+
 /* Their offsets are float32, so that a sum and what it rounds to are one plane. */
 RT_TEST(faces_along_an_axis_are_where_float32_has_them) {
     OWNED_SOLIDS set = {0};
