@@ -90,10 +90,9 @@ static void by_kernels(const RtKernels *kernels, const RtQuery *query, Asked *as
 static void assert_kernels_are_right(const RtKernels *kernels, const RtQuery *query, const Asked *right,
                                      const char *who, size_t stream) {
     for (int counted = 0; counted < 2; counted++) {
-        Asked got = begin_asking(right->rays, right->count);
+        OWNED(clear) Asked got = begin_asking(right->rays, right->count);
         by_kernels(kernels, query, &got, stream, counted);
         assert_same(right, &got, counted, who, stream);
-        clear(&got);
     }
 }
 
@@ -105,58 +104,41 @@ static const RtKernels *extents_kernels(RtIsa isa) {
     return RT_KERNELS_FOR(extents, isa);
 }
 
-typedef struct Opened {
-    RtAccel *accel;
-    RtQuery query;
-    const RtKernels *kernels;
-} Opened;
-
-static Opened open_spec(const char *spec, const RtScene *scene) {
-    Opened opened;
-    assert_ok(rt_accel_open(spec, scene, &opened.accel, error));
-    assert_ok(rt_query_init(&opened.query, opened.accel, error));
-    opened.kernels = ((const RtIsaAccel *)opened.accel)->kernels;
-    return opened;
-}
-
-static void close_spec(Opened *opened) {
-    rt_query_clear(&opened->query);
-    rt_accel_destroy(opened->accel);
+static const RtKernels *kernels_of(const RtQuery *query) {
+    return ((const RtIsaAccel *)query->accel)->kernels;
 }
 
 /* `spec`, which is in lanes, by the kernels of every instruction set. */
 static void assert_lanes_are_right(const char *spec, const RtKernels *(*kernels)(RtIsa), const RtScene *scene,
                                    const Asked *right) {
     const size_t streams[] = {1, 5, 128, right->count};
-    Opened lanes = open_spec(spec, scene);
+    OWNED_ACCEL RtAccel *lanes = open_accel(scene, spec);
+    OWNED_QUERY query = open_query(lanes);
     char who[RT_MAX_SPEC_CHARS];
-    assert_ptr_equal(lanes.kernels, kernels(rt_isa_best()));
+    assert_ptr_equal(kernels_of(&query), kernels(rt_isa_best()));
     for (RtIsa isa = RT_ISA_PORTABLE; isa <= RT_ISA_AVX512; isa++) {
         if (!rt_isa_runs(isa)) continue;
         snprintf(who, sizeof who, "%s by instruction set %d", spec, isa);
         for (size_t s = 0; s < sizeof streams / sizeof streams[0]; s++)
-            assert_kernels_are_right(kernels(isa), &lanes.query, right, who, streams[s]);
+            assert_kernels_are_right(kernels(isa), &query, right, who, streams[s]);
     }
-    close_spec(&lanes);
 }
 
 static void assert_brute_is_the_definition(const RtScene *scene, const RtRay *rays, size_t count) {
-    Asked right = begin_asking(rays, count);
-    Opened one = open_spec("brute:lanes=1", scene);
+    OWNED(clear) Asked right = begin_asking(rays, count);
+    OWNED_ACCEL RtAccel *one = open_accel(scene, "brute:lanes=1");
+    OWNED_QUERY query = open_query(one);
     by_definition(&scene->geometry, &right);
-    assert_kernels_are_right(one.kernels, &one.query, &right, "brute:lanes=1", count);
+    assert_kernels_are_right(kernels_of(&query), &query, &right, "brute:lanes=1", count);
     assert_lanes_are_right("brute", brute_kernels, scene, &right);
-    close_spec(&one);
-    clear(&right);
 }
 
 static void assert_boxes_in_lanes_are_boxes(const RtScene *scene, const RtRay *rays, size_t count) {
-    Asked right = begin_asking(rays, count);
-    Opened one = open_spec("extents:lanes=1", scene);
-    by_kernels(one.kernels, &one.query, &right, count, true);
+    OWNED(clear) Asked right = begin_asking(rays, count);
+    OWNED_ACCEL RtAccel *one = open_accel(scene, "extents:lanes=1");
+    OWNED_QUERY query = open_query(one);
+    by_kernels(kernels_of(&query), &query, &right, count, true);
     assert_lanes_are_right("extents", extents_kernels, scene, &right);
-    close_spec(&one);
-    clear(&right);
 }
 
 static void assert_lanes_change_nothing(const RtScene *scene, const RtRay *rays, size_t count) {

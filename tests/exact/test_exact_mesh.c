@@ -61,7 +61,7 @@ static RtRay lattice_ray(RtRandom *random) {
 
 /* Writes the roots to out[0..MOST); returns their number. */
 static uint32_t places_of(const RtSolidSet *set, uint32_t index, const RtRay *ray, long double *out) {
-    RtExactArena arena = {0};
+    OWNED(rt_exact_arena_clear) RtExactArena arena = {0};
     RtRational *places;
     uint32_t count;
     RtWideRay wide = rt_wide_ray(ray);
@@ -70,7 +70,6 @@ static uint32_t places_of(const RtSolidSet *set, uint32_t index, const RtRay *ra
     assert_true(count <= MOST && count % 2 == 0);
     for (uint32_t i = 0; i < count; i++) out[i] = rt_exact_value(places[i]);
     rt_free(places);
-    rt_exact_arena_clear(&arena);
     return count;
 }
 

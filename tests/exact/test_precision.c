@@ -143,7 +143,7 @@ static double off_plane(RtExactArena *arena, const RtVec3 v[3], const RtRay *ray
  * anywhere between its ends; but nothing is uncertain about where its plane is. */
 RT_TEST(t_of_a_needle_is_that_of_its_plane) {
     RtRandom random = rt_random(11, 0);
-    RtExactArena arena = {0};
+    OWNED(rt_exact_arena_clear) RtExactArena arena = {0};
     int hits = 0;
     for (int i = 0; i < 20000; i++) {
         RtVec3 v[3];
@@ -167,7 +167,6 @@ RT_TEST(t_of_a_needle_is_that_of_its_plane) {
             if (!(off <= most)) fail_msg("needle %d: t = %g is %g off its plane", i, (double)t, off);
         }
     }
-    rt_exact_arena_clear(&arena);
     assert_true(hits > 1000);
 }
 

@@ -18,7 +18,7 @@ RT_TEST(surds_are_ordered_like_their_values_and_ties_are_found) {
     enum { MOST = 7 * 7 * 10 };
     static RtSurd all[MOST];
     static long double values[MOST];
-    RtExactArena arena = {0};
+    OWNED(rt_exact_arena_clear) RtExactArena arena = {0};
     int count = 0, ties = 0;
     for (int p = -3; p <= 3; p++) {
         for (int q = -3; q <= 3; q++) {
@@ -41,12 +41,11 @@ RT_TEST(surds_are_ordered_like_their_values_and_ties_are_found) {
         }
     }
     assert_true(ties > 1000);
-    rt_exact_arena_clear(&arena);
 }
 
 /* With x^2 - 2 y^2 = 1 (Pell) x - y sqrt(2) is 1 / (x + y sqrt(2)): nearly all digits cancel. */
 RT_TEST(a_surd_that_cancels_keeps_all_its_digits) {
-    RtExactArena arena = {0};
+    OWNED(rt_exact_arena_clear) RtExactArena arena = {0};
     double x = 3, y = 2;
     while (x < 0x1p50) {
         RtSurd small = surd(&arena, x, -y, 2);
@@ -58,18 +57,16 @@ RT_TEST(a_surd_that_cancels_keeps_all_its_digits) {
         y = 2 * x + 3 * y;
         x = next;
     }
-    rt_exact_arena_clear(&arena);
 }
 
 RT_TEST(rationals_of_any_size_become_the_nearest_long_double) {
-    RtExactArena arena = {0};
+    OWNED(rt_exact_arena_clear) RtExactArena arena = {0};
     RtRational third = rt_exact_div(&arena, rt_exact_of(&arena, 1), rt_exact_of(&arena, -3));
     assert_true(fabsl(rt_exact_value(third) + 1 / 3.0L) <= 0x1p-64L);
     const double sizes[] = {0x1p-149, 0x1p-1074, 1, 0x1.fffffffffffffp1023};
     for (int i = 0; i < 4; i++) assert_true(rt_exact_value(rt_exact_of(&arena, sizes[i])) == sizes[i]);
     RtRational tiny = rt_exact_mul(&arena, rt_exact_of(&arena, 0x1p-1000), rt_exact_of(&arena, 0x1p-1000));
     assert_true(rt_exact_value(tiny) == 0x1p-2000L);
-    rt_exact_arena_clear(&arena);
 }
 
 /* ---- one object ---- */

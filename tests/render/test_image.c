@@ -45,7 +45,7 @@ static RtFrame trace(const char *spec, uint32_t width, uint32_t height, uint32_t
 
 RT_TEST(a_png_reads_back_as_the_image) {
     OWNED_FRAME frame = trace("brute", 40, 30, 1, false);
-    RtImage image;
+    OWNED(rt_image_clear) RtImage image;
     assert_ok(rt_image_from_frame(&image, &frame, error));
     assert_ok(rt_png_write(&frame, PNG_FILE, error));
     png_image png = {.version = PNG_IMAGE_VERSION};
@@ -61,18 +61,16 @@ RT_TEST(a_png_reads_back_as_the_image) {
     assert_memory_equal(pixels + 3 * (15 * 40 + 20), red, 3);
     unlink(PNG_FILE);
     assert_not_written(PNG_FILE);
-    rt_image_clear(&image);
 }
 
 RT_TEST(linear_halves_are_written_as_srgb_188) {
     RtVec3 color[3] = {{0.5f, 0, 2}, {0, 1, -1}, {0.001f, NAN, 0.25f}};
     RtFrame frame = {.color = color};
     assert_ok(rt_sampling_init(&frame.sampling, 3, 1, 1, false, error));
-    RtImage image;
+    OWNED(rt_image_clear) RtImage image;
     assert_ok(rt_image_from_frame(&image, &frame, error));
     const uint8_t expected[9] = {188, 0, 255, 0, 255, 0, 3, 0, 137};
     assert_memory_equal(image.rgb, expected, 9);
-    rt_image_clear(&image);
 }
 
 /* Also next to where the byte changes, be the power off by some 1e-12. */
@@ -87,19 +85,18 @@ RT_TEST(every_byte_of_srgb_begins_where_it_should) {
         color[i] = rt_vec3(nextafterf(above, 0), above, nextafterf(above, 1));
     }
     assert_ok(rt_sampling_init(&frame.sampling, 255, 1, 1, false, error));
-    RtImage image;
+    OWNED(rt_image_clear) RtImage image;
     assert_ok(rt_image_from_frame(&image, &frame, error));
     for (int i = 0; i < 255; i++) {
         const uint8_t expected[3] = {(uint8_t)i, (uint8_t)(i + 1), (uint8_t)(i + 1)};
         assert_memory_equal(image.rgb + 3 * i, expected, 3);
     }
-    rt_image_clear(&image);
 }
 
 /* A change of shading changes these, too. */
 RT_TEST(a_picture_of_mirrors_and_glass_has_the_same_bits_everywhere) {
     OWNED_FRAME frame;
-    RtImage image;
+    OWNED(rt_image_clear) RtImage image;
     RtFrameOptions options = {.depth = 5};
     OWNED_SCENE scene = open_scene(RT_SOURCE_DIR "/scenes/lecture.yaml");
     assert_ok(rt_scene_sample(&scene, 96, 64, 1, false, error));
@@ -108,7 +105,6 @@ RT_TEST(a_picture_of_mirrors_and_glass_has_the_same_bits_everywhere) {
     assert_ok(rt_image_from_frame(&image, &frame, error));
     assert_int_equal(XXH3_64bits(frame.color, sizeof *frame.color * 96 * 64), UINT64_C(0x970bed9dfa2e0bd0));
     assert_int_equal(XXH3_64bits(image.rgb, (size_t)3 * 96 * 64), UINT64_C(0x421a2f9d9d632117));
-    rt_image_clear(&image);
 }
 
 RT_TEST(a_pixel_is_the_mean_of_its_samples_or_of_its_corners) {
