@@ -32,17 +32,15 @@ static RtWideTree lay_out(const RtScene *scene, RtTree *tree, const RtWideLayout
 static void assert_same_on_any_threads(const RtScene *scene, RtTree *tree, uint32_t leaf_limit) {
     RtWideLayout how = plain;
     how.leaf_limit = leaf_limit;
-    RtWideTree one = lay_out(scene, tree, &how);
+    OWNED(rt_wide_clear) RtWideTree one = lay_out(scene, tree, &how);
     for (how.threads = 2; how.threads <= 5; how.threads++) {
         how.huge_pages = how.threads % 2 == 0;
-        RtWideTree other = lay_out(scene, tree, &how);
+        OWNED(rt_wide_clear) RtWideTree other = lay_out(scene, tree, &how);
         assert_int_equal(one.bytes, other.bytes);
         assert_int_equal(one.node_count, other.node_count);
         assert_true(one.cost == other.cost);
         assert_memory_equal(one.arena, other.arena, one.bytes);
-        rt_wide_clear(&other);
     }
-    rt_wide_clear(&one);
     rt_tree_clear(tree);
 }
 
@@ -69,7 +67,7 @@ RT_TEST(a_leaf_is_next_to_its_node_or_another_leaf) {
     OWNED_SCENE scene = open_scene("random:n=5000,shape=mixed");
     OWNED_TREE tree;
     assert_ok(rt_tree_topdown(&tree, scene.geometry.boxes, scene.geometry.object_count, 16, 1, error));
-    RtWideTree wide = lay_out(&scene, &tree, &plain);
+    OWNED(rt_wide_clear) RtWideTree wide = lay_out(&scene, &tree, &plain);
     const RtWideNode *root = rt_wide_node(&wide, 0);
     uint64_t end = sizeof(RtWideNode);
     for (int leaves = 1; leaves >= 0; leaves--) {
@@ -80,7 +78,6 @@ RT_TEST(a_leaf_is_next_to_its_node_or_another_leaf) {
         }
     }
     assert_int_equal(end, wide.bytes);
-    rt_wide_clear(&wide);
 }
 
 /* Four triangles in a row, with gaps, share a block: halves of them have a little less area, and empty lanes.
@@ -95,11 +92,10 @@ RT_TEST(a_block_is_filled_where_halves_have_hardly_less_area) {
     }
     assert_ok(rt_scene_finish(&scene, error));
     assert_ok(rt_tree_topdown(&tree, scene.geometry.boxes, 16, 0, 1, error));
-    RtWideTree wide = lay_out(&scene, &tree, &plain);
+    OWNED(rt_wide_clear) RtWideTree wide = lay_out(&scene, &tree, &plain);
     assert_int_equal(wide.node_count, 1);
     assert_int_equal(wide.bytes, sizeof(RtWideNode) + 4 * sizeof(RtWideTriangles));
     assert_true(fabs(wide.cost - (1 + 4 * 4.3 / 17.5)) < 1e-5);
-    rt_wide_clear(&wide);
 }
 
 RT_TEST(one_object_is_a_leaf_below_a_root_and_what_takes_too_much_is_refused) {
