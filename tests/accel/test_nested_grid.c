@@ -48,11 +48,10 @@ RT_TEST(slack_and_flat_reach_as_far_as_they_say) {
     OWNED_SCENE scene = make_lattice(2, 1, 1); /* boxes -0.5..0.5 and 0.5..1.5 */
     assert_structure(&scene, "grid:resolution=4x1x1,slack=0.49", 0, 4, 0, 6);
     assert_structure(&scene, "grid:resolution=4x1x1,slack=0.51", 0, 4, 0, 8);
-    rt_scene_clear(&scene);
-    assert_ok(rt_scene_open("balls:size=1", &scene, error)); /* on a floor at z = -0.5 */
-    OWNED_ACCEL RtGrid *grid = open_valid(&scene, "grid:flat=0.25");
-    assert_true(grid->box.lo.z == -0.75f && grid->box.hi.z == scene.geometry.box.hi.z);
-    assert_true(grid->box.lo.x == scene.geometry.box.lo.x);
+    OWNED_SCENE balls = open_scene("balls:size=1"); /* on a floor at z = -0.5 */
+    OWNED_ACCEL RtGrid *grid = open_valid(&balls, "grid:flat=0.25");
+    assert_true(grid->box.lo.z == -0.75f && grid->box.hi.z == balls.geometry.box.hi.z);
+    assert_true(grid->box.lo.x == balls.geometry.box.lo.x);
 }
 
 RT_TEST(exact_overlap_lists_fewer_objects_on_every_level) {
@@ -67,16 +66,13 @@ RT_TEST(exact_overlap_lists_fewer_objects_on_every_level) {
 /* Havran & Sixta 1999, RTN 12(1), "Recursive Grid"; see docs/accelerators/grid.md for the other scenes. */
 RT_TEST(structures_of_tetra_and_lattice_are_the_published_ones) {
 #define AS_PUBLISHED ",density=1,nest=8,margin=0.001,flat=0.02,slack=0.01"
-    OWNED_SCENE scene;
-    assert_ok(rt_scene_open("tetra", &scene, error));
-    assert_structure(&scene, "grid:depth=2,rule=heterogeneous" AS_PUBLISHED, 1057, 31768, 14220, 117056);
-    assert_structure(&scene, "grid:depth=3,rule=heterogeneous" AS_PUBLISHED, 1565, 40404, 14220, 218944);
-    assert_structure(&scene, "grid:depth=2,rule=regular" AS_PUBLISHED, 1057, 41024, 16160, 181488);
-    assert_structure(&scene, "grid:depth=3,rule=regular" AS_PUBLISHED, 3105, 94272, 21036, 477408);
-    rt_scene_clear(&scene);
-    assert_ok(rt_scene_open("lattice", &scene, error));
-    assert_structure(&scene, "grid:depth=2,rule=regular" AS_PUBLISHED, 513, 22573, 0, 79525);
-    assert_structure(&scene, "grid:depth=3,rule=regular" AS_PUBLISHED, 513, 22573, 0, 79525);
+    OWNED_SCENE tetra = open_scene("tetra"), lattice = open_scene("lattice");
+    assert_structure(&tetra, "grid:depth=2,rule=heterogeneous" AS_PUBLISHED, 1057, 31768, 14220, 117056);
+    assert_structure(&tetra, "grid:depth=3,rule=heterogeneous" AS_PUBLISHED, 1565, 40404, 14220, 218944);
+    assert_structure(&tetra, "grid:depth=2,rule=regular" AS_PUBLISHED, 1057, 41024, 16160, 181488);
+    assert_structure(&tetra, "grid:depth=3,rule=regular" AS_PUBLISHED, 3105, 94272, 21036, 477408);
+    assert_structure(&lattice, "grid:depth=2,rule=regular" AS_PUBLISHED, 513, 22573, 0, 79525);
+    assert_structure(&lattice, "grid:depth=3,rule=regular" AS_PUBLISHED, 513, 22573, 0, 79525);
 }
 
 RT_TEST(validate_names_each_invariant_of_nested_grids_that_is_broken) {

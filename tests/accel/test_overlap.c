@@ -74,34 +74,30 @@ static void assert_part(const RtGeometry *g, RtBox box, RtBox expected) {
 RT_TEST(parts_of_a_triangle_and_of_a_concave_polygon_are_clipped) {
     const RtVec3 v[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 1}};
     const RtVec3 l[6] = {{0, 0, 0}, {4, 0, 0}, {4, 1, 0}, {1, 1, 0}, {1, 4, 0}, {0, 4, 0}};
-    RtGeometry g = {0};
-    assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
-    assert_ok(rt_geometry_finish(&g, error));
-    assert_part(&g, (RtBox){{0.75f, 0, 0}, {1, 1, 1}}, (RtBox){{0.75f, 0, 0}, {1, 0.25f, 0.25f}});
-    assert_part(&g, (RtBox){{0, 0.5f, 0}, {1, 1, 1}}, (RtBox){{0, 0.5f, 0.5f}, {0.5f, 1, 1}});
+    OWNED_GEOMETRY triangle = {0}, concave = {0};
+    assert_ok(rt_geometry_add_triangle(&triangle, v, NULL, error));
+    assert_ok(rt_geometry_finish(&triangle, error));
+    assert_part(&triangle, (RtBox){{0.75f, 0, 0}, {1, 1, 1}}, (RtBox){{0.75f, 0, 0}, {1, 0.25f, 0.25f}});
+    assert_part(&triangle, (RtBox){{0, 0.5f, 0}, {1, 1, 1}}, (RtBox){{0, 0.5f, 0.5f}, {0.5f, 1, 1}});
     RtBox beyond = cube(0.9f, 0.9f, 0.9f, 0.1f), part;
-    assert_false(rt_object_part(&g, 0, &beyond, margin, &part));
-    rt_geometry_clear(&g);
-    assert_ok(rt_geometry_add_polygon(&g, l, 6, error));
-    assert_ok(rt_geometry_finish(&g, error));
-    assert_part(&g, (RtBox){{0, 2, -1}, {4, 4, 1}}, (RtBox){{0, 2, 0}, {1, 4, 0}});
-    assert_part(&g, (RtBox){{0.5f, 0, -1}, {4, 4, 1}}, (RtBox){{0.5f, 0, 0}, {4, 4, 0}});
-    rt_geometry_clear(&g);
+    assert_false(rt_object_part(&triangle, 0, &beyond, margin, &part));
+    assert_ok(rt_geometry_add_polygon(&concave, l, 6, error));
+    assert_ok(rt_geometry_finish(&concave, error));
+    assert_part(&concave, (RtBox){{0, 2, -1}, {4, 4, 1}}, (RtBox){{0, 2, 0}, {1, 4, 0}});
+    assert_part(&concave, (RtBox){{0.5f, 0, -1}, {4, 4, 1}}, (RtBox){{0.5f, 0, 0}, {4, 4, 0}});
 }
 
 RT_TEST(parts_of_balls_and_cones_end_where_they_narrow) {
-    RtGeometry g = {0};
+    OWNED_GEOMETRY ball = {0}, cone = {0};
     RtBox inside = cube(0, 0, 0, 0.5f), part;
-    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 1, error));
-    assert_ok(rt_geometry_finish(&g, error));
-    assert_part(&g, (RtBox){{0.8f, -1, -1}, {1, 1, 1}}, (RtBox){{0.8f, -0.6f, -0.6f}, {1, 0.6f, 0.6f}});
-    assert_false(rt_object_part(&g, 0, &inside, margin, &part));
-    rt_geometry_clear(&g);
-    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 1, rt_vec3(0, 0, 4), 0, error));
-    assert_ok(rt_geometry_finish(&g, error));
-    assert_part(&g, (RtBox){{-1, -1, 2}, {1, 1, 3}}, (RtBox){{-0.5f, -0.5f, 2}, {0.5f, 0.5f, 3}});
-    assert_part(&g, (RtBox){{0.75f, -1, 0}, {1, 1, 4}}, (RtBox){{0.75f, -1, 0}, {1, 1, 1}});
-    rt_geometry_clear(&g);
+    assert_ok(rt_geometry_add_sphere(&ball, rt_vec3(0, 0, 0), 1, error));
+    assert_ok(rt_geometry_finish(&ball, error));
+    assert_part(&ball, (RtBox){{0.8f, -1, -1}, {1, 1, 1}}, (RtBox){{0.8f, -0.6f, -0.6f}, {1, 0.6f, 0.6f}});
+    assert_false(rt_object_part(&ball, 0, &inside, margin, &part));
+    assert_ok(rt_geometry_add_cone(&cone, rt_vec3(0, 0, 0), 1, rt_vec3(0, 0, 4), 0, error));
+    assert_ok(rt_geometry_finish(&cone, error));
+    assert_part(&cone, (RtBox){{-1, -1, 2}, {1, 1, 3}}, (RtBox){{-0.5f, -0.5f, 2}, {0.5f, 0.5f, 3}});
+    assert_part(&cone, (RtBox){{0.75f, -1, 0}, {1, 1, 4}}, (RtBox){{0.75f, -1, 0}, {1, 1, 1}});
 }
 
 /* The box of the object is cut into eight by planes through a point of its surface: the point is in the part

@@ -37,14 +37,12 @@ RT_TEST(an_object_between_point_and_light_takes_the_light_away) {
     assert_ok(rt_scene_add_light(&scene, rt_vec3(4, 0, 4), rt_vec3(1, 1, 1), error));
     assert_ok(rt_scene_finish(&scene, error));
     RtFrameOptions options = options_for(&scene, 1, 1, false);
-    RtFrame frame = trace(&scene, &options);
-    assert_true(frame.color[0].x == 0);
-    rt_frame_clear(&frame);
+    OWNED_FRAME dark = trace(&scene, &options);
+    assert_true(dark.color[0].x == 0);
     /* An object behind the light takes nothing. */
     scene.lights[0].position = rt_vec3(1, 0, 1);
-    frame = trace(&scene, &options);
-    assert_near(frame.color[0].x, sqrt(0.5), 1e-5);
-    rt_frame_clear(&frame);
+    OWNED_FRAME lit = trace(&scene, &options);
+    assert_near(lit.color[0].x, sqrt(0.5), 1e-5);
 }
 
 RT_TEST(shadow_rays_go_to_lights_on_the_viewers_side_alone) {

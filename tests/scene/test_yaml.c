@@ -48,7 +48,7 @@ RT_TEST(a_material_called_default_is_the_default) {
 }
 
 RT_TEST(a_built_in_moved_and_moved_back_is_itself) {
-    RtScene plain, s;
+    OWNED_SCENE plain, s;
     assert_ok(rt_builtin_open("balls:size=2", &plain, error));
     assert_ok(load_text("objects:\n"
                         "  - builtin:\n"
@@ -65,8 +65,6 @@ RT_TEST(a_built_in_moved_and_moved_back_is_itself) {
     assert_true(a->sphere_count > 0);
     for (uint32_t i = 0; i < a->sphere_count; i++)
         assert_memory_equal(&a->spheres[i], &b->spheres[i], sizeof(RtSphere));
-    rt_scene_clear(&plain);
-    rt_scene_clear(&s);
 }
 
 /* ---- the documentation, and scenes that come along ---- */

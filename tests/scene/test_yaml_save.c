@@ -70,7 +70,7 @@ RT_TEST(names_of_any_printable_text_survive_saving) {
     static const char *const names[] = {"it's", "''", "a: b # c",    "- [x]", "\"",
                                         "\\n",  " ",  "gl\xc3\xa4s", "*a"};
     enum { COUNT = sizeof names / sizeof names[0] };
-    RtScene scene, again;
+    OWNED_SCENE scene, again;
     rt_scene_init(&scene);
     for (uint32_t i = 0; i < COUNT; i++) {
         RtMaterial material = rt_default_material();
@@ -83,8 +83,6 @@ RT_TEST(names_of_any_printable_text_survive_saving) {
     save_to(&scene, RT_TEST_FOLDER "/again.yaml");
     assert_ok(load(RT_TEST_FOLDER "/again.yaml", &again, error));
     for (uint32_t i = 0; i < COUNT; i++) assert_string_equal(again.materials[i].name, names[i]);
-    rt_scene_clear(&scene);
-    rt_scene_clear(&again);
 }
 
 RT_TEST(names_that_cannot_be_written_are_replaced_by_numbers) {

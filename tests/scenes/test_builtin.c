@@ -39,28 +39,23 @@ static RtVec3 extent_of(const RtScene *scene, uint32_t first, uint32_t count) {
 }
 
 RT_TEST(random_objects_are_where_their_distribution_says) {
-    RtScene scene = open_scene("random:n=16,distribution=coincident");
-    for (uint32_t i = 1; i < 16; i++)
-        assert_memory_equal(&scene.geometry.spheres[i], &scene.geometry.spheres[0], sizeof(RtSphere));
-    rt_scene_clear(&scene);
+    OWNED_SCENE coincident = open_scene("random:n=16,distribution=coincident");
+    const RtSphere *spheres = coincident.geometry.spheres;
+    for (uint32_t i = 1; i < 16; i++) assert_memory_equal(&spheres[i], &spheres[0], sizeof(RtSphere));
 
-    scene = open_scene("random:n=32,distribution=line,radius=0.1");
-    RtVec3 extent = extent_of(&scene, 0, 32);
+    OWNED_SCENE line = open_scene("random:n=32,distribution=line,radius=0.1");
+    RtVec3 extent = extent_of(&line, 0, 32);
     assert_true(extent.x > 1.9f && extent.y < 0.02f && extent.z < 0.02f);
-    rt_scene_clear(&scene);
 
-    scene = open_scene("random:n=32,distribution=plane,shape=triangle");
-    assert_true(extent_of(&scene, 0, 32).z == 0);
-    rt_scene_clear(&scene);
-    scene = open_scene("random:n=32,distribution=plane,shape=mixed");
-    for (uint32_t i = 0; i < scene.geometry.polygon_vertex_count; i++)
-        assert_true(scene.geometry.polygon_vertices[i].z == 0.5f);
-    rt_scene_clear(&scene);
+    OWNED_SCENE plane = open_scene("random:n=32,distribution=plane,shape=triangle");
+    assert_true(extent_of(&plane, 0, 32).z == 0);
+    OWNED_SCENE mixed = open_scene("random:n=32,distribution=plane,shape=mixed");
+    for (uint32_t i = 0; i < mixed.geometry.polygon_vertex_count; i++)
+        assert_true(mixed.geometry.polygon_vertices[i].z == 0.5f);
 
-    scene = open_scene("random:n=32,distribution=stadium");
-    RtVec3 huge = extent_of(&scene, 8, 1), tiny = extent_of(&scene, 9, 7);
+    OWNED_SCENE stadium = open_scene("random:n=32,distribution=stadium");
+    RtVec3 huge = extent_of(&stadium, 8, 1), tiny = extent_of(&stadium, 9, 7);
     assert_true(huge.x > 0.1f && tiny.x < 0.01f && tiny.x > 0);
-    rt_scene_clear(&scene);
 }
 
 /* Two triangles, of which number `with` has vertex normals. */
