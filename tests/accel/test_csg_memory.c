@@ -50,17 +50,18 @@ static bool meets(const RtScene *scene, const RtRay *ray, float *t) {
 
 RT_TEST(the_room_for_hits_is_had_or_it_is_a_status) {
     OWNED(clear_row) Row row = make_balls();
-    RtError failure;
     RtGeometry empty = {0};
     RtCrossing *crossings = crossings_of_tests();
     assert_ok(rt_crossings_alloc(&empty, &crossings, error));
     assert_null(crossings);
     rt_alloc_fail_at(1);
-    assert_int_equal(rt_crossings_alloc(&row.scene.geometry, &crossings, &failure), RT_NO_MEMORY);
+    assert_fails_with(rt_crossings_alloc(&row.scene.geometry, &crossings, error), RT_NO_MEMORY,
+                      "the crossings of a ray");
     assert_null(crossings);
     /* So many that it is not known how many. */
     row.scene.geometry.csgs[0].most_crossings = UINT32_MAX;
-    assert_int_equal(rt_crossings_alloc(&row.scene.geometry, &crossings, &failure), RT_NO_MEMORY);
+    assert_fails_with(rt_crossings_alloc(&row.scene.geometry, &crossings, error), RT_NO_MEMORY,
+                      "the crossings of a ray");
     assert_null(crossings);
 }
 

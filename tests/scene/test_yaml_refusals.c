@@ -195,13 +195,12 @@ RT_TEST(the_column_is_that_of_the_value) {
 
 RT_TEST(files_that_are_none_are_refused) {
     RtScene scene;
-    RtError problem;
     assert_bad_input(load(RT_TEST_FOLDER "/missing.yaml", &scene, error), "missing.yaml: cannot be opened");
     assert_bad_input(load(RT_TEST_FOLDER, &scene, error), "not a file");
-    assert_int_equal(load("/dev/zero", &scene, &problem), RT_BAD_INPUT);
+    assert_bad_input(load("/dev/zero", &scene, error), "/dev/zero");
     char zeros[4096] = "";
     write_bytes(RT_TEST_FOLDER "/zeros.yaml", zeros, sizeof zeros);
-    assert_int_equal(load(RT_TEST_FOLDER "/zeros.yaml", &scene, &problem), RT_BAD_INPUT);
+    assert_bad_input(load(RT_TEST_FOLDER "/zeros.yaml", &scene, error), "zeros.yaml");
 }
 
 RT_TEST(deep_nesting_is_refused_without_descending) {
