@@ -38,10 +38,9 @@ static const RtBestOf *find(const RtAccelOps *ops, const char *name) {
 
 static RtStatus fail_unknown(const RtAccelOps *ops, const char *text, RtError *error) {
     char names[128] = "";
-    for (size_t i = 0, used = 0; i < ops->best_count && used < sizeof names; i++) {
+    for (size_t i = 0, used = 0; i < ops->best_count && used < sizeof names; i++)
         used += (size_t)snprintf(names + used, sizeof names - used, "%s%s:%s", i > 0 ? ", " : "", ops->name,
                                  ops->bests[i].name);
-    }
     return rt_fail(
         error, RT_BAD_INPUT,
         "'%.80s' is neither a spec, NAME:KEY=VALUE, nor one of the names that stand for the fastest "

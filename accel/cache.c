@@ -52,9 +52,8 @@ RT_KERNEL uint32_t find_occluder(const Cache *self, const RtScratch *scratch, co
         RtHit hit = RT_MISS;
         RT_COUNT(tally, steps, 1);
         RT_OBSERVE(tally, .kind = RT_TRACED_STEP, .what = "object", .index = *last);
-        if (rt_test_object(&scene->geometry, *last, &prepared, true, &hit, tally)) {
+        if (rt_test_object(&scene->geometry, *last, &prepared, true, &hit, tally))
             return rt_answer_occluded(*last, tally);
-        }
     }
     uint32_t occluder = rt_pass_on_occluded(&self->base, scratch, ray, tallies);
     if (occluder < scene->geometry.object_count) *last = occluder;

@@ -222,9 +222,8 @@ static RtSlab fit_slab(const RtGroup *group, RtVec3d normal) {
 void rt_extent_fit(RtExtentSet *set, uint32_t index, const RtGroup *group) {
     if (set->kind == RT_EXTENT_SPHERE) set->balls[index] = fit_ball(group);
     if (set->kind == RT_EXTENT_OBB) set->oriented[index] = fit_oriented_box(group);
-    for (uint32_t i = 0; set->kind == RT_EXTENT_SLABS && i < set->slabs_each; i++) {
+    for (uint32_t i = 0; set->kind == RT_EXTENT_SLABS && i < set->slabs_each; i++)
         set->slabs[(size_t)index * set->slabs_each + i] = fit_slab(group, rt_slab_normals[i]);
-    }
 }
 
 double rt_extent_half_area(const RtExtentSet *set, uint32_t index, const RtBox *box) {
@@ -257,9 +256,8 @@ static double extent_support(const Check *check, RtVec3d direction) {
     double sum = 0;
     if (set->kind == RT_EXTENT_BOX) {
         const RtBox *own = &check->group->box;
-        for (int a = 0; a < 3; a++) {
+        for (int a = 0; a < 3; a++)
             sum += direction.at[a] * (double)(direction.at[a] < 0 ? own->lo.at[a] : own->hi.at[a]);
-        }
         return sum;
     }
     if (set->kind == RT_EXTENT_SPHERE) {
@@ -290,9 +288,7 @@ static RtStatus check_reach(const Check *check, RtVec3d direction, double reach)
 static RtStatus check_along(const Check *check, RtVec3d direction) {
     double slack = 0.25 * inflation(&check->group->box);
     const RtVec3d both[2] = {direction, opposite(direction)};
-    for (int i = 0; i < 2; i++) {
-        RT_TRY(check_reach(check, both[i], extent_support(check, both[i]) + slack));
-    }
+    for (int i = 0; i < 2; i++) RT_TRY(check_reach(check, both[i], extent_support(check, both[i]) + slack));
     return RT_OK;
 }
 
@@ -310,11 +306,10 @@ static RtStatus check_axes(const Check *check) {
     for (int a = 0; a < 3; a++) {
         int b = a == 2 ? 0 : a + 1;
         bool unit = fabs(rt_dotd(axes[a], axes[a]) - 1) <= 0x1p-48;
-        if (!unit || !(fabs(rt_dotd(axes[a], axes[b])) <= 0x1p-48)) {
+        if (!unit || !(fabs(rt_dotd(axes[a], axes[b])) <= 0x1p-48))
             return rt_fail(check->error, RT_MISMATCH,
                            "%s: the axes of the oriented box %u are not orthonormal", check->owner,
                            check->index);
-        }
         RT_TRY(check_along(check, axes[a]));
     }
     return RT_OK;
@@ -326,8 +321,7 @@ RtStatus rt_extent_check(const RtExtentSet *set, uint32_t index, const RtGroup *
     if (set->kind == RT_EXTENT_SLABS) return check_slabs(&check);
     /* Along other directions support functions may be less tight than the extent's own faces together. */
     if (set->kind == RT_EXTENT_OBB) return check_axes(&check);
-    for (uint32_t i = 0; i < (set->kind == RT_EXTENT_BOX ? 3 : RT_MAX_SLABS); i++) {
+    for (uint32_t i = 0; i < (set->kind == RT_EXTENT_BOX ? 3 : RT_MAX_SLABS); i++)
         RT_TRY(check_along(&check, rt_slab_normals[i]));
-    }
     return RT_OK;
 }

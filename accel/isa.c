@@ -57,15 +57,13 @@ const char *rt_isa_name(RtIsa isa) {
 
 static RtStatus available(RtIsa isa, RtError *error) {
     if (rt_isa_runs(isa)) return RT_OK;
-    if (rt_isa_best() > machine_isa()) {
+    if (rt_isa_best() > machine_isa())
         return rt_fail(error, RT_NOT_AVAILABLE,
                        "this build has kernels only for %s, which this processor lacks: configure it with "
                        "-DRT_KERNELS=all",
                        rt_isa_name(rt_isa_best()));
-    }
-    if (isa > machine_isa()) {
+    if (isa > machine_isa())
         return rt_fail(error, RT_NOT_AVAILABLE, "this processor has no %s: leave isa out", rt_isa_name(isa));
-    }
     return rt_fail(error, RT_NOT_AVAILABLE,
                    "this build has no kernels for %s: configure it with -DRT_KERNELS=all", rt_isa_name(isa));
 }

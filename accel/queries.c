@@ -73,11 +73,10 @@ void rt_query_begin(RtQuery *query) {
 
 void rt_nearest(RtQuery *query, const RtRay *rays, size_t count, RtHit *hits, RtTally *tallies) {
     const RtAccelOps *ops = query->accel->ops;
-    if (tallies) {
+    if (tallies)
         ops->nearest_counted(query->accel, query->scratch, rays, count, hits, tallies);
-    } else {
+    else
         ops->nearest(query->accel, query->scratch, rays, count, hits);
-    }
 }
 
 void rt_occluded(RtQuery *query, const RtRay *rays, size_t count, bool *blocked, RtTally *tallies) {
@@ -86,11 +85,10 @@ void rt_occluded(RtQuery *query, const RtRay *rays, size_t count, bool *blocked,
     uint32_t occluders[STREAM];
     for (size_t first = 0; first < count; first += STREAM) {
         size_t n = count - first < STREAM ? count - first : STREAM;
-        if (tallies) {
+        if (tallies)
             ops->occluded_counted(query->accel, query->scratch, rays + first, n, occluders, tallies);
-        } else {
+        else
             ops->occluded(query->accel, query->scratch, rays + first, n, occluders);
-        }
         for (size_t i = 0; i < n; i++) blocked[first + i] = occluders[i] != RT_NO_OBJECT;
     }
 }

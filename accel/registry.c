@@ -118,10 +118,9 @@ RtStatus rt_accel_find(const char *name, const RtAccelOps **out, RtError *error)
         return RT_OK;
     }
 #ifndef RT_WITH_EMBREE
-    if (strcmp(name, "embree") == 0) {
+    if (strcmp(name, "embree") == 0)
         return rt_fail(error, RT_NOT_AVAILABLE,
                        "this raytally was built without Embree: install its package and build again");
-    }
 #endif
     char suggestion[RT_MAX_SUGGESTION];
     rt_suggest(name, names, count, suggestion);

@@ -10,22 +10,20 @@
  * 1e+06. */
 static size_t layer_length(const char *text) {
     size_t length = strcspn(text, "+");
-    while (text[length] == '+' && text[length + 1] >= '0' && text[length + 1] <= '9') {
+    while (text[length] == '+' && text[length + 1] >= '0' && text[length + 1] <= '9')
         length += 1 + strcspn(text + length + 1, "+");
-    }
     return length;
 }
 
 static RtStatus parse_layer(const char *text, size_t chars, RtSpecLayer *layer, RtError *error) {
     char copy[RT_MAX_SPEC_CHARS], what[RT_MAX_NAME + 16];
     size_t name_chars = strcspn(text, ":+");
-    if (name_chars == 0 || name_chars >= RT_MAX_NAME || chars >= sizeof copy) {
+    if (name_chars == 0 || name_chars >= RT_MAX_NAME || chars >= sizeof copy)
         return rt_fail(
             error, RT_BAD_INPUT,
             "'%.80s' is not the spec of an accelerator: write NAME[:KEY=VALUE,...], overlays before it as "
             "in OVERLAY+NAME",
             text);
-    }
     memcpy(copy, text, chars);
     copy[chars] = '\0';
     char *params = strchr(copy, ':');
@@ -57,10 +55,9 @@ RtStatus rt_spec_parse(const char *text, RtSpec *spec, RtError *error) {
     spec->layer_count = 0;
     for (;;) {
         size_t chars = layer_length(rest);
-        if (spec->layer_count == RT_MAX_LAYERS) {
+        if (spec->layer_count == RT_MAX_LAYERS)
             return rt_fail(error, RT_BAD_INPUT, "'%.80s': more than %d accelerators stacked", text,
                            RT_MAX_LAYERS);
-        }
         RT_TRY(parse_layer(rest, chars, &spec->layers[spec->layer_count++], error));
         if (rest[chars] == '\0') return check_layers(spec, text, error);
         rest += chars + 1;

@@ -28,9 +28,8 @@ static void set_offsets(RtVec3d offsets[CHILDREN]) {
     const RtVec3d axis = {d, -d, 0}, z = {0, 0, 1};
     const RtTurn tilt = {.cosine = sqrt(1.0 / 3), .sine = sqrt(2.0 / 3)};
     const RtTurn thirds[3] = {{1, 0}, {-0.5, sqrt(0.75)}, {-0.5, -sqrt(0.75)}};
-    for (int i = 0; i < CHILDREN; i++) {
+    for (int i = 0; i < CHILDREN; i++)
         offsets[i] = rt_spd_rotate(rt_spd_rotate(trio[i % 3], axis, tilt), z, thirds[i / 3]);
-    }
 }
 
 static void add_flake(RtSceneBuilder *b, const RtVec3d offsets[CHILDREN], RtVec3d center, double radius,

@@ -92,6 +92,9 @@ void rt_build_box(RtSceneBuilder *b, RtVec3d lo, RtVec3d hi, unsigned sides);
 void rt_build_prism(RtSceneBuilder *b, RtVec3d from, double from_radius, RtVec3d to, double to_radius,
                     uint32_t sides);
 
+/* A point of a mesh: column <= columns, row <= rows. */
+typedef RtVec3d RtGridPoint(const void *of, uint32_t column, uint32_t row);
+
 /* A curved mesh of columns x rows cells, two triangles each. Seen from the front, columns go right and rows
  * go up. */
 typedef struct RtGridMesh {
@@ -99,7 +102,7 @@ typedef struct RtGridMesh {
     bool wrapped;               /* the columns wrap around */
     bool first_pole, last_pole; /* row 0, row `rows` is a single point, so it has no triangles along it */
     bool smooth;                /* vertex normals: means over the adjacent triangles */
-    RtVec3d (*point)(const void *of, uint32_t column, uint32_t row); /* column <= columns, row <= rows */
+    RtGridPoint *point;
     const void *of;
 } RtGridMesh;
 

@@ -75,11 +75,10 @@ RtStatus rt_builtin_check_memory(const RtBuiltin *builtin, const RtValue *values
     int64_t fitting = (int64_t)size->lo, too_large = values[0].i;
     while (fitting + 1 < too_large) { /* bisection: the count grows with the value */
         tried[0].i = fitting + (too_large - fitting) / 2;
-        if (fits(builtin, tried, bytes)) {
+        if (fits(builtin, tried, bytes))
             fitting = tried[0].i;
-        } else {
+        else
             too_large = tried[0].i;
-        }
     }
     uint64_t objects = rt_builtin_object_count(builtin, values);
     return rt_fail(error, RT_BAD_INPUT,

@@ -90,9 +90,7 @@ static void add_block(RtSceneBuilder *b, uint64_t seed, int64_t i, int64_t j, in
     rt_build_origin(b, rt_vec3d(corner.x, corner.y, 0), 0);
     b->material = RT_CITY_PAVING;
     rt_build_box(b, rt_vec3d(0, 0, 0), rt_vec3d(block, block, kerb), RT_SIDES_STANDING);
-    for (int quarters = 0; quarters < 4; quarters++) {
-        add_street(b, &random, corner, quarters);
-    }
+    for (int quarters = 0; quarters < 4; quarters++) add_street(b, &random, corner, quarters);
     if (rt_random_below(&random, 8) != 0) {
         add_lots(b, &random, corner, downtown);
     } else {

@@ -199,11 +199,10 @@ static void add_house(const RtCityLot *lot) {
     rt_build_box(b, rt_vec3d(1, -0.05, 0.4), rt_vec3d(w - 1, 0, 2.6), RT_SIDE_FRONT);
     add_windows(b, 0.5, w - 0.5, storey, storeys - 1, bays);
     b->material = wall;
-    if (choose(lot->random, 2)) {
+    if (choose(lot->random, 2))
         add_flat_roof(lot, height);
-    } else {
+    else
         add_gable(lot, height);
-    }
 }
 
 /* A shaft about the middle of the lot from `foot` up, a band of windows to each storey and side. */
@@ -241,11 +240,10 @@ static void add_tower(const RtCityLot *lot) {
         half *= 0.78;
     }
     stand(lot, lot->width / 2, lot->depth / 2, height, 0);
-    if (choose(lot->random, 2)) {
+    if (choose(lot->random, 2))
         add_mast(lot->b);
-    } else {
+    else
         add_tank(lot->b);
-    }
 }
 
 /* A cylinder with a ring of glass to each storey under a dome. */
@@ -269,11 +267,10 @@ static void add_round_tower(const RtCityLot *lot) {
 
 void rt_city_building(const RtCityLot *lot) {
     double die = between(lot, 0, 1);
-    if (die < 0.06 + 0.7 * lot->downtown) {
+    if (die < 0.06 + 0.7 * lot->downtown)
         add_tower(lot);
-    } else if (die < 0.1 + 0.8 * lot->downtown) {
+    else if (die < 0.1 + 0.8 * lot->downtown)
         add_round_tower(lot);
-    } else {
+    else
         add_house(lot);
-    }
 }

@@ -125,11 +125,10 @@ static void add_needle(Family *f, RtPlacement at, uint32_t i) {
     RtVec3d from = at.center, to = rt_add_scaledd(at.center, rt_random_in_cube(&f->random), at.size);
     from.at[i % 3] = -1;
     to.at[i % 3] = 1;
-    if (i / 3 % 2) {
+    if (i / 3 % 2)
         rt_build_cone(f->b, from, at.size / 64, to, at.size / 64);
-    } else {
+    else
         rt_build_triangle(f->b, from, to, rt_add_scaledd(to, rt_random_in_cube(&f->random), at.size / 32));
-    }
 }
 
 static void add_mixed(Family *f, RtPlacement at, uint32_t i) {

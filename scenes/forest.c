@@ -124,9 +124,8 @@ static void add_branch(Tree *tree, RtVec3d base, RtVec3d direction, double lengt
     RtVec3d tip = rt_add_scaledd(base, direction, length);
     tree->b->material = tree->bark;
     rt_build_prism(tree->b, base, radius, tip, 0.5 * radius, sides[level]);
-    for (uint32_t i = 0; level == LEVELS && i < TWIG_LEAVES; i++) {
+    for (uint32_t i = 0; level == LEVELS && i < TWIG_LEAVES; i++)
         add_leaf(tree, rt_add_scaledd(base, direction, length * between(tree, 0.2, 1.1)));
-    }
     for (uint32_t i = 0; level < LEVELS && i < FORKS; i++) {
         double along = level == 0 ? 0.55 + 0.15 * i : 0.4 + 0.2 * i;
         RtVec3d out = rt_normalized(rt_crossd(direction, rt_random_direction(&tree->random)));
@@ -163,9 +162,8 @@ static void add_conifer(Tree *tree, RtVec3d foot, double height) {
     RtVec3d top = {foot.x, foot.y, foot.z + height};
     tree->b->material = tree->bark;
     rt_build_prism(tree->b, foot, 0.02 * height, top, 0, 6);
-    for (uint32_t i = 0; i < WHORLS * BOUGHS; i++) {
+    for (uint32_t i = 0; i < WHORLS * BOUGHS; i++)
         add_bough(tree, foot, height, 0.16 + 0.82 * i / (WHORLS * BOUGHS));
-    }
 }
 
 static void add_tree(RtSceneBuilder *b, const Ground *ground, uint64_t i) {

@@ -85,7 +85,8 @@ typedef struct Panel {
 } Panel;
 
 /* The position of column and row in the rectangle, and its height: x, y, z. */
-static RtVec3d panel_point(const Panel *panel, uint32_t column, uint32_t row) {
+static RtVec3d panel_point(const void *of, uint32_t column, uint32_t row) {
+    const Panel *panel = of;
     uint32_t edge = column / panel->steps;
     double along = 2.0 * (column % panel->steps) / panel->steps - 1, left = panel->levels[row][0];
     const RtVec3d border[4] = {{along, -1, 0}, {1, along, 0}, {-along, 1, 0}, {-1, -along, 0}};
@@ -95,8 +96,13 @@ static RtVec3d panel_point(const Panel *panel, uint32_t column, uint32_t row) {
                     center[1] + left * p.y * (panel->hi[1] - center[1]), panel->levels[row][1]);
 }
 
-static RtVec3d tile_point(const void *of, uint32_t column, uint32_t row) {
-    return panel_point(of, column, row);
+static void add_panel(RtSceneBuilder *b, const Panel *panel, uint32_t rows, RtGridPoint *point) {
+    rt_build_grid_mesh(b, &(RtGridMesh){.columns = 4 * panel->steps,
+                                        .rows = rows,
+                                        .wrapped = true,
+                                        .last_pole = true,
+                                        .point = point,
+                                        .of = panel});
 }
 
 static void add_floor(RtSceneBuilder *b) {
@@ -109,12 +115,7 @@ static void add_floor(RtSceneBuilder *b) {
                                  .steps = 1,
                                  .levels = levels};
             b->material = (i + j) % 2 ? DARK_MARBLE : LIGHT_MARBLE;
-            rt_build_grid_mesh(b, &(RtGridMesh){.columns = 4,
-                                                .rows = 2,
-                                                .wrapped = true,
-                                                .last_pole = true,
-                                                .point = tile_point,
-                                                .of = &panel});
+            add_panel(b, &panel, 2, panel_point);
         }
     }
 }
@@ -132,12 +133,7 @@ static void add_boss(RtSceneBuilder *b, double degrees, double y) {
     const Panel panel = {
         .lo = {degrees - 1.8, y - 0.17}, .hi = {degrees + 1.8, y + 0.17}, .steps = 2, .levels = levels};
     b->material = GOLD;
-    rt_build_grid_mesh(b, &(RtGridMesh){.columns = 8,
-                                        .rows = 3,
-                                        .wrapped = true,
-                                        .last_pole = true,
-                                        .point = coffer_point,
-                                        .of = &panel});
+    add_panel(b, &panel, 3, coffer_point);
 }
 
 static void add_coffers(RtSceneBuilder *b, uint32_t size) {
@@ -151,12 +147,7 @@ static void add_coffers(RtSceneBuilder *b, uint32_t size) {
                                  .steps = (size + 3) / 4,
                                  .levels = levels};
             b->material = COFFERS;
-            rt_build_grid_mesh(b, &(RtGridMesh){.columns = 4 * panel.steps,
-                                                .rows = 6,
-                                                .wrapped = true,
-                                                .last_pole = true,
-                                                .point = coffer_point,
-                                                .of = &panel});
+            add_panel(b, &panel, 6, coffer_point);
             add_boss(b, (i + 0.5) * width, front_y + (j + 0.5) * length);
         }
     }

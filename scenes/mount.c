@@ -56,10 +56,9 @@ static RtVec3d place(const Mount *mount, Corner corner) {
 
 /* The square between corners in counter-clockwise order, the first being the lower left; `half` its side. */
 static void add_level(const Mount *mount, const Corner corners[4], double half, uint32_t levels) {
-    for (int i = 0; levels == 0 && i < 4; i += 2) {
+    for (int i = 0; levels == 0 && i < 4; i += 2)
         rt_build_triangle(mount->b, place(mount, corners[i]), place(mount, corners[i + 1]),
                           place(mount, corners[(i + 2) % 4]));
-    }
     if (levels == 0) return;
     const double root2 = 1.4142136,
                  roughness = half * sqrt(1.2599210498948731648 - 1); /* the cube root of 2 */

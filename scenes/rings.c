@@ -35,9 +35,8 @@ static void set_knot(Knot knot) {
         RtTurn turn = rt_turn(72.0 * i);
         knot[0][i] = rt_scaled(rt_vec3d(turn.cosine, turn.sine, 0), 1 / (1 + RADIUS));
         RtVec3d tilted = rt_spd_rotate(knot[0][i], x, tilt);
-        for (int ring = 1; ring < RINGS; ring++) {
+        for (int ring = 1; ring < RINGS; ring++)
             knot[ring][i] = rt_spd_rotate(tilted, z, rt_turn(72.0 * ring - 36));
-        }
     }
 }
 

@@ -11,9 +11,8 @@ enum { COLLAPSED = 8 };
 /* Between a at i = 0 and b at i = n. */
 static RtVec3d mix(RtVec3d a, RtVec3d b, uint32_t i, uint32_t n) {
     RtVec3d p;
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++)
         p.at[k] = a.at[k] == b.at[k] ? a.at[k] : ((n - i) * a.at[k] + i * b.at[k]) / n;
-    }
     return p;
 }
 

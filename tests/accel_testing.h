@@ -3,7 +3,7 @@
 #ifndef RT_TESTS_ACCEL_TESTING_H
 #define RT_TESTS_ACCEL_TESTING_H
 
-#include "testing.h"
+#include "scene_testing.h"
 
 #include "accel/accel.h"
 #include "core/base/memory.h"
@@ -11,9 +11,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Owned variables clear themselves at the end of their scope, the last declared first. */
-#define OWNED(clear) __attribute__((cleanup(clear)))
-#define OWNED_SCENE  OWNED(rt_scene_clear) RtScene
 #define OWNED_QUERY  OWNED(rt_query_clear) RtQuery
 #define OWNED_ACCEL  OWNED(destroy_owned)
 #define OWNED_MEMORY OWNED(free_owned)
@@ -27,12 +24,24 @@ static inline void free_owned(void *pointer) {
     rt_free(*(void **)pointer);
 }
 
-/* Builds a spec and asserts that the structure is valid; the struct of the topmost layer. */
-static inline void *open_valid(const RtScene *scene, const char *spec) {
+/* Builds a spec; the struct of the topmost layer. */
+static inline void *open_accel(const RtScene *scene, const char *spec) {
     RtAccel *accel;
     assert_ok(rt_accel_open(spec, scene, &accel, error));
+    return accel;
+}
+
+/* The same, and asserts that the structure is valid. */
+static inline void *open_valid(const RtScene *scene, const char *spec) {
+    RtAccel *accel = open_accel(scene, spec);
     assert_ok(rt_accel_validate(accel, error));
     return accel;
+}
+
+static inline RtQuery open_query(const RtAccel *accel) {
+    RtQuery query;
+    assert_ok(rt_query_init(&query, accel, error));
+    return query;
 }
 
 static inline RtDescription describe_spec(const RtScene *scene, const char *spec) {
@@ -42,12 +51,33 @@ static inline RtDescription describe_spec(const RtScene *scene, const char *spec
     return description;
 }
 
+/* Builds and validates it, and allocates for rays; leaves nothing behind. */
+static inline RtStatus try_accel(const RtScene *scene, const char *spec, RtError *error) {
+    RtAccel *accel;
+    RtQuery query;
+    RT_TRY(rt_accel_open(spec, scene, &accel, error));
+    RtStatus status = rt_accel_validate(accel, error);
+    if (status == RT_OK) status = rt_query_init(&query, accel, error);
+    if (status == RT_OK) rt_query_clear(&query);
+    rt_accel_destroy(accel);
+    return status;
+}
+
 /* Asserts that validate of this layer refuses it with a message that contains `phrase`. */
 static inline void assert_broken(const RtAccel *accel, const char *phrase) {
     RtError error = {RT_OK, ""};
     assert_int_equal(accel->ops->validate(accel, &error), RT_MISMATCH);
     if (!strstr(error.message, phrase)) fail_msg("'%s' does not say '%s'", error.message, phrase);
 }
+
+/* The same while `member` of its structure is `wrong`. */
+#define assert_broken_by(accel, member, wrong, phrase)                                                       \
+    do {                                                                                                     \
+        __typeof__(member) rt_right = (member);                                                              \
+        (member) = (wrong);                                                                                  \
+        assert_broken(accel, phrase);                                                                        \
+        (member) = rt_right;                                                                                 \
+    } while (0)
 
 /* Builds one layer, which is refused above `limit` bytes. */
 static inline RtStatus build_within(const char *name, uint64_t limit, const RtScene *scene,
@@ -84,25 +114,37 @@ static inline bool fits_within(const char *name, uint64_t limit, const RtScene *
 }
 
 /* A scene without objects, and a grey material, which is number 0. */
-static inline void begin_scene(RtScene *scene) {
+static inline RtScene begin_scene(void) {
+    RtScene scene;
     uint32_t material;
     RtMaterial grey = rt_default_material();
-    rt_scene_init(scene);
-    assert_ok(rt_scene_add_material(scene, &grey, &material, error));
+    rt_scene_init(&scene);
+    assert_ok(rt_scene_add_material(&scene, &grey, &material, error));
+    return scene;
 }
 
 /* Unit cubes' worth of spheres of radius 1/2 on an nx x ny x nz lattice of spacing 1. */
-static inline void make_lattice(RtScene *scene, int nx, int ny, int nz) {
-    begin_scene(scene);
+static inline RtScene make_lattice(int nx, int ny, int nz) {
+    RtScene scene = begin_scene();
     for (int x = 0; x < nx; x++) {
         for (int y = 0; y < ny; y++) {
             for (int z = 0; z < nz; z++) {
                 RtVec3 center = {{(float)x, (float)y, (float)z}};
-                assert_ok(rt_scene_add_sphere(scene, 0, center, 0.5f, error));
+                assert_ok(rt_scene_add_sphere(&scene, 0, center, 0.5f, error));
             }
         }
     }
-    assert_ok(rt_scene_finish(scene, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    return scene;
+}
+
+/* `count` unit spheres in a row along x, `apart` from centre to centre. */
+static inline RtScene make_row(uint32_t count, float apart) {
+    RtScene scene = begin_scene();
+    for (uint32_t i = 0; i < count; i++)
+        assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(apart * (float)i, 0, 0), 1, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    return scene;
 }
 
 /* From a point to a light of the scene, as shading sends it. */

@@ -137,9 +137,4 @@ static inline RtCsgFacet facet_at(const RtCsgForest *forest, const RtCsg *tree, 
     return rt_csg_facet(forest, tree, &prepared, t);
 }
 
-static inline void clear(RtCsgForest *forest, RtCsgBuilder *builder) {
-    rt_csg_forest_clear(forest);
-    rt_csg_builder_clear(builder);
-}
-
 #endif

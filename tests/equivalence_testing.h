@@ -4,12 +4,9 @@
 #ifndef RT_TESTS_EQUIVALENCE_TESTING_H
 #define RT_TESTS_EQUIVALENCE_TESTING_H
 
-#include "testing.h"
+#include "accel_testing.h"
 
-#include "accel/accel.h"
-#include "core/base/memory.h"
 #include "scenes/family.h"
-#include "scenes/open.h"
 #include "verify/equivalence.h"
 #include "verify/ray_families.h"
 
@@ -23,10 +20,10 @@ static inline size_t scene_family(const char *name) {
 }
 
 /* Scene number `seed` of a family. */
-static inline void open_family(size_t family, uint64_t seed, RtScene *scene) {
+static inline RtScene open_family(size_t family, uint64_t seed) {
     char spec[RT_MAX_SPEC_CHARS];
     rt_family_spec(family, seed, spec);
-    assert_ok(rt_scene_open(spec, scene, error));
+    return open_scene(spec);
 }
 
 typedef struct FamilyBench {
@@ -38,22 +35,20 @@ typedef struct FamilyBench {
 
 /* `rays` of each family of rays, over the scene that is there. */
 static inline void set_up_rays(FamilyBench *bench, uint64_t seed, size_t rays) {
-    RtQuery query;
     size_t families = rt_ray_family_count();
-    assert_ok(rt_accel_open("brute", &bench->scene, &bench->brute, error));
-    assert_ok(rt_query_init(&query, bench->brute, error));
+    bench->brute = open_accel(&bench->scene, "brute");
+    OWNED_QUERY query = open_query(bench->brute);
     bench->rays = rt_alloc(families * rays, sizeof(RtRay));
     assert_non_null(bench->rays);
     for (size_t f = 0; f < families; f++) {
         rt_ray_family_fill(f, &query, seed, 0, rays, bench->rays + f * rays);
     }
-    rt_query_clear(&query);
     assert_ok(rt_reference_init(&bench->reference, bench->brute, bench->rays, families * rays, 0, error));
 }
 
 /* The same over a scene of a family. */
 static inline void set_up_family(FamilyBench *bench, size_t scene_family, uint64_t seed, size_t rays) {
-    open_family(scene_family, seed, &bench->scene);
+    bench->scene = open_family(scene_family, seed);
     set_up_rays(bench, seed, rays);
 }
 
@@ -64,20 +59,19 @@ static inline void tear_down_family(FamilyBench *bench) {
     rt_scene_clear(&bench->scene);
 }
 
+#define OWNED_BENCH OWNED(tear_down_family) FamilyBench
+
 /* Asserts that the accelerator of this spec is valid and returns the answers of the reference, bit for
  * bit. */
 static inline void assert_gives(const RtReference *reference, const char *spec) {
-    RtAccel *accel;
     RtEquivalence result = {0};
-    assert_ok(rt_accel_open(spec, reference->scene, &accel, error));
-    assert_ok(rt_accel_validate(accel, error));
+    OWNED_ACCEL RtAccel *accel = open_valid(reference->scene, spec);
     assert_ok(rt_equivalence_check(reference, accel, 0, &result, error));
     if (result.any_wrong) {
         char text[512];
         rt_wrong_answer_format(&result.first_wrong, text, sizeof text);
         fail_msg("%s on %s: %s", spec, reference->scene->name, text);
     }
-    rt_accel_destroy(accel);
 }
 
 static inline void assert_answers_like_brute(const FamilyBench *bench, const char *spec) {

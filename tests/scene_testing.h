@@ -22,31 +22,17 @@ typedef struct ShapeCounts {
 /* Each scene has as many objects of each shape as its row says. */
 static inline void assert_shape_counts(const ShapeCounts *rows, size_t count) {
     for (size_t i = 0; i < count; i++) {
-        RtScene scene = open_scene(rows[i].spec);
+        OWNED_SCENE scene = open_scene(rows[i].spec);
         assert_int_equal(scene.geometry.sphere_count, rows[i].spheres);
         assert_int_equal(scene.geometry.polygon_count, rows[i].polygons);
         assert_int_equal(scene.geometry.triangle_count, rows[i].triangles);
         assert_int_equal(scene.geometry.cone_count, rows[i].cones);
-        rt_scene_clear(&scene);
     }
 }
 
-/* Opens a scene again and again, and lets the first allocation fail, the second, ... until none does. */
 static inline void assert_failed_allocations_are_reported(const char *spec) {
-    int64_t before = rt_alloc_live();
-    RtStatus status = RT_NO_MEMORY;
-    for (uint64_t n = 1; status != RT_OK; n++) {
-        RtScene scene;
-        RtError problem;
-        rt_alloc_fail_at(n);
-        status = rt_scene_open(spec, &scene, &problem);
-        rt_alloc_fail_at(0);
-        if (status == RT_OK)
-            rt_scene_clear(&scene);
-        else
-            assert_int_equal(status, RT_NO_MEMORY);
-        assert_int_equal(rt_alloc_live(), before);
-    }
+    RtScene scene;
+    assert_fails_cleanly(rt_scene_open(spec, &scene, error), rt_scene_clear(&scene));
 }
 
 #endif

@@ -4,10 +4,10 @@
 #ifndef RT_TESTS_SOLIDS_TESTING_H
 #define RT_TESTS_SOLIDS_TESTING_H
 
+#include "random_testing.h"
 #include "testing.h"
 
 #include "core/base/memory.h"
-#include "core/base/random.h"
 #include "core/shape/solid.h"
 
 #include <float.h>

@@ -13,6 +13,7 @@
 #include <glob.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -82,6 +83,15 @@ static inline void rt_test_add(int line, struct CMUnitTest test) {
         skip();                                                                                              \
     } while (0)
 
+/* Owned variables clear themselves at the end of their scope, the last declared first. */
+#define OWNED(clear)   __attribute__((cleanup(clear)))
+#define OWNED_GEOMETRY OWNED(rt_geometry_clear) RtGeometry
+#define OWNED_SCENE    OWNED(rt_scene_clear) RtScene
+#define OWNED_FRAME    OWNED(rt_frame_clear) RtFrame
+#define OWNED_SOLIDS   OWNED(rt_solid_set_clear) RtSolidSet
+#define OWNED_BUILDER  OWNED(rt_csg_builder_clear) RtCsgBuilder
+#define OWNED_FOREST   OWNED(rt_csg_forest_clear) RtCsgForest
+
 /* Exit code of a test executable that ctest reports as skipped. */
 #define RT_TEST_SKIPPED 77
 
@@ -91,6 +101,38 @@ static inline void rt_test_add(int line, struct CMUnitTest test) {
         RtError rt_ok_error = {RT_OK, ""};                                                                   \
         RtError *error = &rt_ok_error;                                                                       \
         if ((expr) != RT_OK) fail_msg("%s: %s", #expr, rt_ok_error.message);                                 \
+    } while (0)
+
+/* For calls that must fail: with this status, and a message that contains `phrase`. */
+#define assert_fails_with(expr, status, phrase)                                                              \
+    do {                                                                                                     \
+        RtError rt_failed = {RT_OK, ""};                                                                     \
+        RtError *error = &rt_failed;                                                                         \
+        if ((expr) != (status) || !strstr(rt_failed.message, phrase))                                        \
+            fail_msg("%s: '%s' is not " #status " with '%s'", #expr, rt_failed.message, phrase);             \
+    } while (0)
+
+#define assert_bad_input(expr, phrase) assert_fails_with(expr, RT_BAD_INPUT, phrase)
+
+/* Tries `call`, which gives a status, with the first allocation failing, then the second, and so on until
+ * none does; then `undo` undoes it. Every failure is RT_NO_MEMORY, and nothing is left behind. */
+#define assert_fails_cleanly(call, undo)                                                                     \
+    do {                                                                                                     \
+        RtStatus rt_tried = RT_NO_MEMORY;                                                                    \
+        int64_t rt_live = rt_alloc_live();                                                                   \
+        for (uint64_t rt_n = 1; rt_tried != RT_OK; rt_n++) {                                                 \
+            RtError rt_failure = {RT_OK, ""};                                                                \
+            RtError *error = &rt_failure;                                                                    \
+            rt_alloc_fail_at(rt_n);                                                                          \
+            rt_tried = (call);                                                                               \
+            rt_alloc_fail_at(0);                                                                             \
+            if (rt_tried == RT_OK)                                                                           \
+                undo;                                                                                        \
+            else if (rt_tried != RT_NO_MEMORY)                                                               \
+                fail_msg("allocation %d: %s", (int)rt_n, rt_failure.message);                                \
+            assert_int_equal(rt_alloc_live(), rt_live);                                                      \
+            assert_in_range(rt_n, 1, 10000);                                                                 \
+        }                                                                                                    \
     } while (0)
 
 /* Neither the file `path` is there nor a temporary file that was to become it (rt_output_open). */

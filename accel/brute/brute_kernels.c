@@ -127,9 +127,8 @@ RT_KERNEL void test_shape(RtBatch *batch, const RtGeometry *g, Objects objects, 
         }
         batch->active_count = kept;
     }
-    for (uint32_t i = 0; counted && in_lanes && i < batch->active_count; i++) {
+    for (uint32_t i = 0; counted && in_lanes && i < batch->active_count; i++)
         RT_COUNT(batch->rays[batch->active[i]].tally, object_tests, objects.count);
-    }
 }
 
 RT_KERNEL void test_all(RtBatch *batch, const RtGeometry *g, bool any, bool counted) {

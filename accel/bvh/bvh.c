@@ -90,13 +90,12 @@ typedef struct Waiting {
 } Waiting;
 
 RT_COLD static void observe_children(const RtNode *nodes, uint32_t first, bool left, bool right) {
-    for (uint32_t i = first; i < first + 2; i++) {
+    for (uint32_t i = first; i < first + 2; i++)
         rt_observe(&(RtTraced){.kind = RT_TRACED_EXTENT_TEST,
                                .what = "node",
                                .index = i,
                                .box = &nodes[i].box,
                                .met = i == first ? left : right});
-    }
 }
 
 RT_KERNEL void walk(const RtBvh *self, RtMailbox *mailbox, const RtPreparedRay *ray, bool any, RtHit *best,

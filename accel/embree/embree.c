@@ -72,11 +72,10 @@ RT_KERNEL void answer(const RtEmbree *self, const RtScratch *scratch, const RtRa
         rt_embree_trace_init(&trace, coherent, tallies != NULL, batch->searches, scratch->crossings);
         rt_embree_trace(self, batch, &trace.context, coherent, n, any, lanes, stream);
         for (size_t i = 0; i < n; i++) {
-            if (any) {
+            if (any)
                 occluders[begin + i] = batch->searches[i].best.object;
-            } else {
+            else
                 hits[begin + i] = batch->searches[i].best;
-            }
         }
     }
 }
@@ -98,11 +97,10 @@ RT_KERNEL void answer_all(const RtAccel *accel, const RtScratch *scratch, const 
                           RtHit *hits, uint32_t *occluders, RtTally *tallies, bool any, bool counted) {
     const RtEmbree *self = (const RtEmbree *)accel;
     (void)any;
-    if (self->user) {
+    if (self->user)
         RT_EMBREE_BY_QUERY(self->query, answer, self, scratch, rays, count, hits, occluders, tallies);
-    } else {
+    else
         rt_embree_answer_native(self, scratch, rays, count, hits, occluders);
-    }
     if (counted) count_answers(rays, count, hits, occluders, tallies);
 }
 

@@ -101,11 +101,10 @@ static inline void rt_embree_trace_packet(RTCScene scene, RtEmbreeContext *conte
 static inline void rt_embree_trace_stream(RTCScene scene, RtEmbreeContext *context, RtEmbreeWord *packets,
                                           unsigned count, bool any) {
 #if RT_EMBREE_STREAMS
-    if (any) {
+    if (any)
         rtcOccluded1M(scene, context, (struct RTCRay *)packets, count, sizeof(struct RTCRayHit));
-    } else {
+    else
         rtcIntersect1M(scene, context, (struct RTCRayHit *)packets, count, sizeof(struct RTCRayHit));
-    }
 #else
     (void)scene, (void)context, (void)packets, (void)count, (void)any;
 #endif

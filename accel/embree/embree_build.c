@@ -10,10 +10,9 @@
 const RtParam rt_embree_params[RT_EMBREE_PARAM_COUNT] = {RT_EMBREE_PARAMS(RT_PARAM_ENTRY)};
 
 RtStatus rt_embree_available(const RtValue *values, RtError *error) {
-    if (values[RT_EMBREE_QUERY].choice == RT_EMBREE_STREAM && !RT_EMBREE_STREAMS) {
+    if (values[RT_EMBREE_QUERY].choice == RT_EMBREE_STREAM && !RT_EMBREE_STREAMS)
         return rt_fail(error, RT_NOT_AVAILABLE,
                        "accelerator embree: Embree 4 has no streams; choose query=1, 8 or 16");
-    }
     return rt_embree_isa_check(values[RT_EMBREE_ISA].choice, error);
 }
 

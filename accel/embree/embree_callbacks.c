@@ -31,11 +31,10 @@ RT_KERNEL void search_lanes(const RtEmbreeSlot *slot, const void *context, uint3
         float *tfar = &rt_embree_word(rays, lanes, RT_EMBREE_TFAR, i)->f;
         bool over =
             rt_test_object(geometry, id, &search->ray, any, &search->best, counted ? search->tally : NULL);
-        if (over) {
+        if (over)
             *tfar = -INFINITY;
-        } else if (search->best.object == id) {
+        else if (search->best.object == id)
             *tfar = rt_embree_limit(search->best.t, search->shrink);
-        }
     }
 }
 

@@ -61,9 +61,8 @@ RtStatus rt_embree_isa_check(uint32_t isa, RtError *error) {
 RtStatus rt_embree_device_open(RtEmbreeDevice *device, uint32_t isa, int threads, RtError *error) {
     char config[64];
     int length = snprintf(config, sizeof config, "ignore_config_files=1,threads=%d", threads);
-    if (isa != ISA_DEFAULT) {
+    if (isa != ISA_DEFAULT)
         snprintf(config + length, sizeof config - (size_t)length, ",isa=%s", isa_names[isa]);
-    }
     *device = (RtEmbreeDevice){.device = rtcNewDevice(config)};
     if (!device->device) return fail((int)rtcGetDeviceError(NULL), "no device can be opened", error);
     rtcSetDeviceErrorFunction(device->device, note_error, device);

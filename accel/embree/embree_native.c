@@ -109,18 +109,16 @@ RT_KERNEL RtHit take_hit(const RtEmbree *self, RtEmbreeBatch *batch, unsigned la
 
 static __attribute__((noinline)) void take_any(const RtEmbree *self, RtEmbreeBatch *batch, unsigned lanes,
                                                const RtRay *rays, size_t count, RtHit *hits) {
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; i++)
         hits[i] = take_hit(self, batch, lanes, i, rt_embree_stretch(rays[i].dir));
-    }
 }
 
 /* ---- queries ---- */
 
 /* Prefetches the rays of the next chunk while this one is traced. */
 RT_KERNEL void prefetch_rays(const RtRay *rays, size_t count) {
-    for (size_t i = 0; i < count * sizeof(RtRay); i += RT_CACHE_LINE) {
+    for (size_t i = 0; i < count * sizeof(RtRay); i += RT_CACHE_LINE)
         __builtin_prefetch((const char *)rays + i);
-    }
 }
 
 RT_KERNEL void answer_chunk(const RtEmbree *self, RtEmbreeBatch *batch, RtEmbreeContext *context,
@@ -128,9 +126,8 @@ RT_KERNEL void answer_chunk(const RtEmbree *self, RtEmbreeBatch *batch, RtEmbree
                             bool stream, unsigned denormals) {
     const bool any = !hits;
     bool ordinary = put_chunk(batch, lanes, rays, count, denormals);
-    for (size_t i = 0; !any && i < count; i++) {
+    for (size_t i = 0; !any && i < count; i++)
         rt_embree_at(batch, lanes, i, RT_EMBREE_GEOMETRY)->u = RTC_INVALID_GEOMETRY_ID;
-    }
     rt_embree_trace(self, batch, context, rt_embree_is_coherent(rays), count, any, lanes, stream);
     if (any) {
         for (size_t i = 0; i < count; i++) {

@@ -91,9 +91,8 @@ static void describe(const RtAccel *accel, RtDescription *out) {
     const RtExtents *self = (const RtExtents *)accel;
     uint32_t count = accel->scene->geometry.object_count;
     double sum = 0, whole = rt_box_half_area(accel->scene->geometry.box);
-    for (uint32_t id = 0; id < count; id++) {
+    for (uint32_t id = 0; id < count; id++)
         sum += rt_extent_half_area(&self->set, id, &accel->scene->geometry.boxes[id]);
-    }
     *out = (RtDescription){.references = count,
                            .bytes = rt_extent_set_bytes(&self->set),
                            .predicted_steps = count,

@@ -309,12 +309,11 @@ RT_KERNEL void search(const RtGrid *self, void *scratch, const RtPreparedRay *ra
     }
     RtMailbox *mailbox = self->mailbox ? scratch : NULL;
     rt_mailbox_next_ray(mailbox, &self->base.scene->geometry);
-    if (self->depth == 1) {
+    if (self->depth == 1)
         walk_flat(self, mailbox, t, ray, any, best, tally);
-    } else {
+    else
         *best = tally ? nested_counted(self, mailbox, t, ray, any, tally)
                       : nested_timed(self, mailbox, t, ray, any);
-    }
 }
 
 RT_DEFINE_KERNELS(RtGrid, search)

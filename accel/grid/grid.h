@@ -99,9 +99,7 @@ typedef struct RtGridRange {
 /* The box of an object, grown by the slack. */
 RtBox rt_grid_object_box(const RtGrid *grid, uint32_t id);
 
-/* The box of a range, and the range of voxels that a box overlaps, which must meet the block's. */
 RtBox rt_grid_range_box(const RtGridBlock *block, const RtGridRange *range);
-RtGridRange rt_grid_touched(const RtGridBlock *block, const RtBox *box);
 
 /* With overlap=exact: whether a voxel with this box, which the object's box touches, lists the object. */
 bool rt_grid_surface_meets(const RtGrid *grid, const RtOutline *outline, const RtBox *box);

@@ -97,16 +97,14 @@ static RtStatus cut_level(const Builder *builder, uint32_t depth) {
     RtGrid *grid = builder->grid;
     Cut cut = {builder, &grid->levels[depth - 1], &grid->levels[depth], 0, 0};
     cut.from->inner = rt_alloc(cut.from->voxel_count, sizeof(uint32_t));
-    if (!cut.from->inner) {
+    if (!cut.from->inner)
         return rt_fail_memory(builder->error, "nested grids", cut.from->voxel_count * sizeof(uint32_t));
-    }
     for (uint32_t level = 0; level < depth; level++)
         cut.bytes += (double)rt_grid_level_bytes(&grid->levels[level]);
-    if (rt_grid_each_voxel(cut.from, choose_voxel, &cut) != RT_OK) {
+    if (rt_grid_each_voxel(cut.from, choose_voxel, &cut) != RT_OK)
         return rt_fail(builder->error, RT_BAD_INPUT,
                        "%u levels of grids may take more than %.3g GiB: depth=%u would fit", depth + 1,
                        (double)builder->limit / 0x1p30, depth);
-    }
     RT_TRY(allocate_blocks(cut.to, cut.planes, builder->error));
     cut.planes = 0;
     return rt_grid_each_voxel(cut.from, cut_voxel, &cut);

@@ -106,9 +106,8 @@ static RtStatus fail_voxel(const Check *check, const RtGridVoxel *voxel, const c
 /* A voxel with a nested block, which must be the next one and have the same box. */
 static RtStatus check_nested(Check *check, const RtGridVoxel *voxel, uint32_t inner) {
     const RtGridLevel *next = voxel->level + 1;
-    if (inner != check->nested++ || inner >= next->block_count) {
+    if (inner != check->nested++ || inner >= next->block_count)
         return fail_voxel(check, voxel, "does not hold the next grid of its level");
-    }
     const RtGridBlock *block = &next->blocks[inner];
     for (int a = 0; a < 3; a++) {
         if (block->planes[a][0] == voxel->box.lo.at[a] &&
@@ -125,15 +124,13 @@ static RtStatus check_voxel(void *context, const RtGridVoxel *voxel) {
     const RtGridLevel *level = voxel->level;
     uint32_t from = level->first[voxel->number], to = level->first[voxel->number + 1];
     uint32_t inner = rt_grid_inner(level, voxel->number);
-    if (from > to || to > level->first[level->voxel_count] || (from < to && inner != RT_GRID_LEAF)) {
+    if (from > to || to > level->first[level->voxel_count] || (from < to && inner != RT_GRID_LEAF))
         return fail_voxel(check, voxel, "has a list that is broken");
-    }
     if (inner != RT_GRID_LEAF) return check_nested(check, voxel, inner);
     for (uint32_t i = from; i < to; i++) {
         uint32_t id = level->ids[i];
-        if (id >= grid->base.scene->geometry.object_count || (i > from && level->ids[i - 1] >= id)) {
+        if (id >= grid->base.scene->geometry.object_count || (i > from && level->ids[i - 1] >= id))
             return fail_voxel(check, voxel, "has a list that is not ascending ids");
-        }
         RtBox object = rt_grid_object_box(grid, id);
         bool apart = rt_box_is_empty(rt_box_common(voxel->box, object));
         if (grid->surfaces) apart |= !rt_grid_surface_meets(grid, &check->outlines[id], &voxel->box);
@@ -148,9 +145,8 @@ static RtStatus check_level(Check *check, const RtGridLevel *level) {
     uint32_t voxels = 0;
     for (uint32_t b = 0; b < level->block_count; b++) {
         const RtGridBlock *block = &level->blocks[b];
-        if (block->voxel != voxels) {
+        if (block->voxel != voxels)
             return rt_fail(check->error, RT_MISMATCH, "grid: the voxels of grid %u are misnumbered", b);
-        }
         voxels += block->n[0] * block->n[1] * block->n[2];
         for (int a = 0; a < 3; a++) {
             for (uint32_t i = 0; i < block->n[a]; i++) {
@@ -230,9 +226,8 @@ RtStatus rt_grid_validate(const RtAccel *accel, RtError *error) {
             continue;
         return rt_fail(error, RT_MISMATCH, "grid: the planes of axis %d do not enclose its box", a);
     }
-    if (!rt_box_contains(grid->box, g->box)) {
+    if (!rt_box_contains(grid->box, g->box))
         return rt_fail(error, RT_MISMATCH, "grid: its box does not contain the scene");
-    }
     size_t n = g->object_count;
     Check check = {grid, rt_alloc(n, sizeof(uint64_t)), rt_alloc(n, sizeof(RtOutline)), 0, error};
     RtStatus status =

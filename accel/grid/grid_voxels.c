@@ -98,11 +98,11 @@ static void find_touched(const RtGridBlock *block, int axis, float lo, float hi,
     *last = i;
 }
 
-RtGridRange rt_grid_touched(const RtGridBlock *block, const RtBox *box) {
+/* The range of voxels that a box overlaps, which must meet the block's. */
+static RtGridRange find_range(const RtGridBlock *block, const RtBox *box) {
     RtGridRange range;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; a++)
         find_touched(block, a, box->lo.at[a], box->hi.at[a], &range.from[a], &range.to[a]);
-    }
     return range;
 }
 
@@ -126,7 +126,7 @@ enum { MAX_RANGES = 40 };
 void rt_grid_each_range(const RtGrid *grid, const RtGridBlock *block, uint32_t id,
                         void (*visit)(void *context, const RtGridRange *range), void *context) {
     RtBox object = rt_grid_object_box(grid, id);
-    RtGridRange stack[MAX_RANGES], range = rt_grid_touched(block, &object);
+    RtGridRange stack[MAX_RANGES], range = find_range(block, &object);
     uint32_t stacked = 0;
     if (!grid->surfaces) {
         visit(context, &range);
@@ -185,11 +185,10 @@ RtStatus rt_grid_check_limit(const RtGrid *grid, const uint32_t n[3], const uint
     while (fits + 1 < excess) {
         uint32_t middle = (fits + excess) / 2;
         clamp_each(n, middle, smaller);
-        if (rt_grid_estimate(grid, &grid->box, smaller, ids, count) <= most) {
+        if (rt_grid_estimate(grid, &grid->box, smaller, ids, count) <= most)
             fits = middle;
-        } else {
+        else
             excess = middle;
-        }
     }
     clamp_each(n, fits, smaller);
     return rt_fail(error, RT_BAD_INPUT,

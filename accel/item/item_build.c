@@ -174,12 +174,11 @@ static RtStatus refuse_size(const RtItemBuffer *buffer, RtError *error) {
     if (bytes + rest <= most) return RT_OK;
     double part = sqrt((most - rest) / bytes);
     char remedy[96];
-    if (part * s->samples >= 1 && s->samples > 1) {
+    if (part * s->samples >= 1 && s->samples > 1)
         snprintf(remedy, sizeof remedy, "%.0f samples along the side of a pixel", floor(part * s->samples));
-    } else {
+    else
         snprintf(remedy, sizeof remedy, "an image of %.0f x %.0f pixels", fmax(floor(part * s->width) - 1, 1),
                  fmax(floor(part * s->height) - 1, 1));
-    }
     return rt_fail(
         error, RT_BAD_INPUT,
         "an item buffer of %u x %u samples takes %.1f GiB to build, more than %.0f GiB: %s would fit",

@@ -64,9 +64,8 @@ RtStatus rt_item_validate(const RtAccel *accel, RtError *error) {
     RtCrossing *crossings;
     RT_TRY(rt_crossings_alloc(&accel->scene->geometry, &crossings, error));
     RtStatus status = RT_OK;
-    for (size_t i = 0; i < samples && status == RT_OK; i += every) {
+    for (size_t i = 0; i < samples && status == RT_OK; i += every)
         status = check_sample(buffer, (uint32_t)(i % columns), (uint32_t)(i / columns), crossings, error);
-    }
     rt_free(crossings);
     return status;
 }

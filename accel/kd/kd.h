@@ -84,11 +84,10 @@ static inline uint32_t rt_kd_length(const RtKdNode *node) {
 
 /* The lower (0) or upper (1) half of a cell that a plane divides. */
 static inline RtBox rt_kd_half(RtBox cell, uint32_t axis, float split, uint32_t upper) {
-    if (upper) {
+    if (upper)
         cell.lo.at[axis] = split;
-    } else {
+    else
         cell.hi.at[axis] = split;
-    }
     return cell;
 }
 

@@ -85,10 +85,9 @@ static RtStatus build_tree(RtKd *kd, const RtGeometry *g, uint64_t limit, int th
     bool several = shares > SHARES && most >= SMALL, fits = false;
     RtKd empty = *kd;
     RtStatus status = RT_OK;
-    if (g->object_count >= RT_KD_OBJECTS) {
+    if (g->object_count >= RT_KD_OBJECTS)
         return rt_fail(error, RT_BAD_INPUT, "a kd-tree holds fewer than %u objects; this scene has %u",
                        RT_KD_OBJECTS, g->object_count);
-    }
     for (; status == RT_OK && !fits; several = false) {
         RtKdMemory memory = {.limit = limit};
         RtKdBuilder builder = {.kd = kd, .memory = &memory, .sides = rt_alloc(g->object_count, 1)};

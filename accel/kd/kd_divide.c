@@ -118,13 +118,12 @@ static void classify(const RtKdBuilder *b, const RtKdCell *cell, const RtKdSplit
         RtKdEvent event = events[i];
         uint32_t type = rt_kd_event_type(event);
         uint8_t *side = &b->sides[rt_kd_event_object(event)];
-        if (event.plane < split->plane) {
+        if (event.plane < split->plane)
             set_unless(side, LOWER, type == RT_KD_START);
-        } else if (event.plane > split->plane) {
+        else if (event.plane > split->plane)
             set_unless(side, UPPER, type == RT_KD_END);
-        } else {
+        else
             *side = type == RT_KD_END ? LOWER : type == RT_KD_START ? UPPER : flat;
-        }
     }
 }
 

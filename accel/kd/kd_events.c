@@ -76,11 +76,10 @@ uint32_t rt_kd_make_events(const uint32_t *ids, const RtBox *parts, uint32_t cou
         float lo = parts[i].lo.at[axis], hi = parts[i].hi.at[axis];
         if (lo < hi && lo > first) out[n++] = event_at(lo, RT_KD_START, ids[i]);
     }
-    if (n <= SMALL) {
+    if (n <= SMALL)
         sort_by_insertion(out, n);
-    } else {
+    else
         sort_by_radix(out, spare, n);
-    }
     return n;
 }
 

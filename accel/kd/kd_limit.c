@@ -35,7 +35,6 @@ void rt_kd_count_cell(RtKdBuilder *b, const RtKdCell *cell, bool leaf) {
     double estimate;
     bytes_down_to(memory, b->kd->max_depth, &estimate);
     if (memory->estimate == 0) memory->estimate = estimate;
-    while (b->kd->max_depth > 0 && (memory->bytes > memory->limit || estimate > (double)memory->limit)) {
+    while (b->kd->max_depth > 0 && (memory->bytes > memory->limit || estimate > (double)memory->limit))
         memory->bytes = bytes_down_to(memory, --b->kd->max_depth, &estimate);
-    }
 }

@@ -67,21 +67,17 @@ typedef struct Check {
     uint32_t ids;     /* entries in the lists so far */
 } Check;
 
+#define BROKEN(check, ...) rt_fail((check)->error, RT_MISMATCH, "kd: " __VA_ARGS__)
+
 static RtStatus check_inner(const Check *check, const RtKd *kd, const CellView *view) {
     const RtKdNode *node = &kd->nodes[view->node];
     uint32_t child = rt_kd_child(node), axis = rt_kd_axis(node);
-    if (child <= view->node || child >= kd->node_count - 1 || check->reached[child]) {
-        return rt_fail(check->error, RT_MISMATCH, "kd: the children of node %u lie outside the nodes",
-                       view->node);
-    }
-    if (view->depth >= kd->max_depth) {
-        return rt_fail(check->error, RT_MISMATCH, "kd: the children of node %u are deeper than %u",
-                       view->node, kd->max_depth);
-    }
-    if (!(node->split >= view->cell.lo.at[axis] && node->split <= view->cell.hi.at[axis])) {
-        return rt_fail(check->error, RT_MISMATCH, "kd: the split of node %u lies outside its cell",
-                       view->node);
-    }
+    if (child <= view->node || child >= kd->node_count - 1 || check->reached[child])
+        return BROKEN(check, "the children of node %u lie outside the nodes", view->node);
+    if (view->depth >= kd->max_depth)
+        return BROKEN(check, "the children of node %u are deeper than %u", view->node, kd->max_depth);
+    if (!(node->split >= view->cell.lo.at[axis] && node->split <= view->cell.hi.at[axis]))
+        return BROKEN(check, "the split of node %u lies outside its cell", view->node);
     check->reached[child] = check->reached[child + 1] = 1;
     return RT_OK;
 }
@@ -90,16 +86,12 @@ static RtStatus check_leaf(Check *check, const RtKd *kd, const CellView *view) {
     const RtGeometry *g = &kd->base.scene->geometry;
     const RtKdNode *leaf = &kd->nodes[view->node];
     uint32_t length = rt_kd_length(leaf);
-    if (leaf->first > kd->id_count || length > kd->id_count - leaf->first) {
-        return rt_fail(check->error, RT_MISMATCH, "kd: the list of leaf %u lies outside the lists",
-                       view->node);
-    }
+    if (leaf->first > kd->id_count || length > kd->id_count - leaf->first)
+        return BROKEN(check, "the list of leaf %u lies outside the lists", view->node);
     const uint32_t *ids = kd->ids + leaf->first;
     for (uint32_t i = 0; i < length; i++) {
-        if (ids[i] >= g->object_count || (i > 0 && ids[i - 1] >= ids[i])) {
-            return rt_fail(check->error, RT_MISMATCH, "kd: the list of leaf %u is not ascending ids",
-                           view->node);
-        }
+        if (ids[i] >= g->object_count || (i > 0 && ids[i - 1] >= ids[i]))
+            return BROKEN(check, "the list of leaf %u is not ascending ids", view->node);
         check->listed[ids[i]]++;
     }
     check->ids += length;
@@ -116,11 +108,10 @@ static bool lists(const RtKd *kd, const RtKdNode *leaf, uint32_t id) {
     while (from < to) {
         uint32_t middle = from + (to - from) / 2;
         if (kd->ids[middle] == id) return true;
-        if (kd->ids[middle] < id) {
+        if (kd->ids[middle] < id)
             from = middle + 1;
-        } else {
+        else
             to = middle;
-        }
     }
     return false;
 }
@@ -152,20 +143,17 @@ static RtStatus check_all(Check *check, const RtKd *kd) {
     RT_TRY(each_node(kd, check_node, check));
     for (uint32_t i = 1; i < kd->node_count; i++) {
         if (check->reached[i]) continue;
-        return rt_fail(check->error, RT_MISMATCH, "kd: node %u has no parent", i);
+        return BROKEN(check, "node %u has no parent", i);
     }
-    if (check->ids != kd->id_count) {
-        return rt_fail(check->error, RT_MISMATCH,
-                       "kd: the lists of leaves hold %u ids, but the lists end at %u", check->ids,
-                       kd->id_count);
-    }
+    if (check->ids != kd->id_count)
+        return BROKEN(check, "the lists of leaves hold %u ids, but the lists end at %u", check->ids,
+                      kd->id_count);
     for (uint32_t id = 0; id < g->object_count; id++) {
         uint64_t leaves = 0;
         bool found = listed_below(kd, 0, kd->box, id, g->boxes[id], &leaves);
         if (found && leaves == check->listed[id]) continue;
-        return rt_fail(check->error, RT_MISMATCH,
-                       "kd: %llu leaves list object %u, not just those it has a part in",
-                       (unsigned long long)check->listed[id], id);
+        return BROKEN(check, "%llu leaves list object %u, not just those it has a part in",
+                      (unsigned long long)check->listed[id], id);
     }
     return RT_OK;
 }
@@ -174,9 +162,8 @@ RtStatus rt_kd_validate(const RtAccel *accel, RtError *error) {
     const RtKd *kd = (const RtKd *)accel;
     const RtGeometry *g = &accel->scene->geometry;
     if (kd->node_count == 0) return RT_OK;
-    if (!rt_box_contains(kd->box, g->box)) {
+    if (!rt_box_contains(kd->box, g->box))
         return rt_fail(error, RT_MISMATCH, "kd: its root does not contain the scene");
-    }
     Check check = {.error = error,
                    .listed = rt_alloc(g->object_count, sizeof(uint64_t)),
                    .reached = rt_alloc(kd->node_count, 1)};

@@ -205,9 +205,8 @@ static void cover_outline(const RtLightOutline *outline, const RtLightCells *at,
         for (int column = at->lo[0]; column <= last; column += RT_LANES) {
             RtFloats x = counted_from((float)column);
             uint32_t in = rt_raster_first_lanes((uint32_t)(last - column + 1));
-            for (uint32_t e = 0; e < outline->edges; e++) {
+            for (uint32_t e = 0; e < outline->edges; e++)
                 in &= rt_le_bits(rt_all(0), line_at(outline->inside[e], x, (float)row));
-            }
             float depth[RT_LANES];
             rt_store(depth, 1 / line_at(outline->face, x, (float)row));
             for (; in; in &= in - 1) {
@@ -260,9 +259,8 @@ static void draw_outline(const RtLightTile *tile, const RtLightOutline *outline,
         for (int column = at->lo[0]; column <= at->hi[0]; column += RT_LANES) {
             RtFloats middle = counted_from((float)column + 0.5f);
             uint32_t in = rt_raster_first_lanes((uint32_t)(at->hi[0] - column + 1));
-            for (uint32_t e = 0; e < outline->count; e++) {
+            for (uint32_t e = 0; e < outline->count; e++)
                 in &= rt_le_bits(rt_all(0), line_at(outline->parts[e], middle, (float)row + 0.5f));
-            }
             if (!in) continue;
             RtFloats slope = rt_max(line_at(outline->slope, middle, (float)row + 0.5f), flattest);
             RtFloats near = rt_max((1 - 0x1p-20f) / slope, nearest);

@@ -136,11 +136,10 @@ static RtStatus take_footprint(const RtLightTile *tile, RtRef object, bool cover
     if (!cover) RT_TRY(make_room(draft, RT_LIGHT_TILE_CELLS, error));
     if (is_flat(object)) {
         rt_light_outline(tile, id, &from, &outline);
-        if (cover) {
+        if (cover)
             raster->cover_outline(&outline, &at, draft);
-        } else {
+        else
             raster->draw_outline(tile, &outline, &from, &at, object, draft);
-        }
     } else if (cover) {
         cover_curved(tile, id, &at, draft);
     } else {
@@ -222,10 +221,9 @@ static RtStatus sort_candidates(Worker *worker, uint32_t cells, RtError *error) 
     for (uint32_t i = 0; i < draft->count; i++) end[draft->cell[i] + 2]++;
     for (uint32_t i = 2; i < cells + 2; i++) end[i] += end[i - 1];
     for (uint32_t run = 0, i = 0; run < draft->run_count; run++) {
-        for (uint32_t last = i + draft->runs[run].key; i < last; i++) {
+        for (uint32_t last = i + draft->runs[run].key; i < last; i++)
             worker->sorted[end[draft->cell[i] + 1]++] =
                 (RtLightEntry){draft->key[i], draft->runs[run].object};
-        }
     }
     for (uint32_t i = 0; i < cells; i++) sort_list(worker->sorted + end[i], end[i + 1] - end[i]);
     return RT_OK;

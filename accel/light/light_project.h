@@ -132,14 +132,13 @@ static uint32_t place(const void *view, uint32_t first, uint32_t count, RtTileRa
             }
             for (; seen; seen &= seen - 1) {
                 uint32_t i = (uint32_t)__builtin_ctz(seen), id = g->triangle_ids[first + i];
-                if (p.drawn >> i & 1) {
+                if (p.drawn >> i & 1)
                     to[placed++] = (RtTileRange){.object = rt_ref(RT_SHAPE_TRIANGLE, first + i),
                                                  .lo = {(uint16_t)lo[0][i], (uint16_t)lo[1][i]},
                                                  .hi = {(uint16_t)hi[0][i], (uint16_t)hi[1][i]},
                                                  .layer = (uint16_t)face};
-                } else if (!rt_light_is_near(&faces[face], id)) {
+                else if (!rt_light_is_near(&faces[face], id))
                     placed += rt_light_place(&faces[face], id, &to[placed]);
-                }
             }
         }
     }

@@ -58,18 +58,16 @@ static uint32_t depth_of(uint32_t key) {
 
 static RtStatus check_order(const RtLightCube *cube, uint32_t light, uint32_t objects, RtError *error) {
     for (uint32_t cell = 0; cell < cube->cell_count; cell++) {
-        if (cube->first[cell] > cube->first[cell + 1]) {
+        if (cube->first[cell] > cube->first[cell + 1])
             return rt_fail(error, RT_MISMATCH, "light: list %u of light %u ends before it begins", cell,
                            light);
-        }
         for (uint32_t i = cube->first[cell]; i < cube->first[cell + 1]; i++) {
             const RtLightEntry *entry = &cube->entries[i];
             bool last = i + 1 == cube->first[cell + 1], good = depth_of(entry->key) < RT_LIGHT_DEPTHS;
-            if (entry->object == RT_LIGHT_BEYOND) {
+            if (entry->object == RT_LIGHT_BEYOND)
                 good = good && last && (entry->key & RT_LIGHT_PARTS) == RT_LIGHT_PARTS;
-            } else {
+            else
                 good = good && rt_ref_index(entry->object) < objects;
-            }
             if (good && !last) good = depth_of(entry->key) <= depth_of(entry[1].key);
             if (good) continue;
             return rt_fail(error, RT_MISMATCH, "light: list %u of light %u is not in order", cell, light);

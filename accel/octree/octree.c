@@ -223,9 +223,8 @@ RT_KERNEL float far_plane(const RtPreparedRay *ray, const RtBox *box, int axis) 
 RT_KERNEL Cell make_cell(const RtOctree *self, const RtPreparedRay *ray, uint32_t index, float t) {
     Cell cell = {.node = index, .leave = INFINITY};
     bool climbs = self->traversal == RT_OCTREE_NEIGHBOURS; /* it finds out at the root that it leaves */
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; a++)
         cell.leave = rt_minf(far_crossing(ray, a, far_plane(ray, &self->boxes[index], a)), cell.leave);
-    }
     for (int a = 0; a < 3; a++) {
         float plane = far_plane(ray, &self->boxes[index], a), next = near_crossing(ray, a, plane);
         bool outward = plane == far_plane(ray, &self->boxes[0], a);
@@ -271,9 +270,8 @@ RT_KERNEL bool enter_leaves(const RtOctree *self, RtMailbox *mailbox, const Cros
             observe_node(self, index, *count == MAX_CELLS || is_current(cells, *count, index));
         if (rt_octree_is_inner(node)) {
             uint32_t children = children_at(ray, node, at);
-            for (; children; children &= children - 1) {
+            for (; children; children &= children - 1)
                 stack[stacked++] = node->first + (uint32_t)__builtin_ctz(children);
-            }
         } else if (!is_current(cells, *count, index)) {
             if (*count == MAX_CELLS) {
                 ++*count;
@@ -329,9 +327,8 @@ RT_KERNEL bool walk(const RtOctree *self, RtMailbox *mailbox, float enter, const
     uint32_t count = 0;
     Crossing at = {.t = enter, .axis = -1, .start = 0};
     for (;;) {
-        if (at.start != NOWHERE && enter_leaves(self, mailbox, &at, cells, &count, ray, any, best, tally)) {
+        if (at.start != NOWHERE && enter_leaves(self, mailbox, &at, cells, &count, ray, any, best, tally))
             return count <= MAX_CELLS;
-        }
         at = next_crossing(self, ray, cells, count);
         if (at.t > rt_limit(ray, best)) return true;
         for (uint32_t i = count; i-- > 0;) {

@@ -130,11 +130,10 @@ static inline uint32_t rt_octree_sides(const RtBox *cell, RtVec3 split, const Rt
 /* The cell of the child at `octant` among eight. */
 static inline RtBox rt_octree_child_box(RtBox cell, RtVec3 split, uint32_t octant) {
     for (int a = 0; a < 3; a++) {
-        if (octant >> a & 1) {
+        if (octant >> a & 1)
             cell.lo.at[a] = split.at[a];
-        } else {
+        else
             cell.hi.at[a] = split.at[a];
-        }
     }
     return cell;
 }

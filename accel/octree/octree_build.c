@@ -84,10 +84,9 @@ static float cheapest(const Builder *b, const RtBox *cell, int axis, const uint3
 
 static RtVec3 choose_split(const Builder *b, const RtBox *cell, const uint32_t *ids, uint32_t count) {
     RtVec3 split;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; a++)
         split.at[a] = b->tree->split == RT_OCTREE_COST ? cheapest(b, cell, a, ids, count)
                                                        : centre(cell->lo.at[a], cell->hi.at[a]);
-    }
     return split;
 }
 
@@ -321,9 +320,8 @@ static RtStatus check_limit(const Builder *b, uint32_t from, uint32_t to, RtErro
 
     /* A deeper tree is no smaller, and nearer levels are known better. */
     double least = 0;
-    for (uint32_t depth = fits + 1; depth <= max_depth; depth++) {
+    for (uint32_t depth = fits + 1; depth <= max_depth; depth++)
         least = fmax(least, bytes + bound(&estimate, depth, -CERTAIN));
-    }
     if (least <= limit) return RT_OK;
     while (bytes + bound(&estimate, fits + 1, CERTAIN) <= limit) fits++;
     return refuse(b, bytes + bound(&estimate, max_depth, 0), fits, error);
@@ -343,11 +341,10 @@ static RtStatus build_level(Builder *b, uint32_t from, uint32_t to, RtError *err
     for (uint32_t index = from; index < to; index++) {
         uint32_t count = tree->nodes[index].count;
         const uint32_t *ids = b->list + tree->nodes[index].first;
-        if (divides(b, &tree->boxes[index], ids, count)) {
+        if (divides(b, &tree->boxes[index], ids, count))
             RT_TRY(divide(b, index, ids, count, error));
-        } else {
+        else
             RT_TRY(make_leaf(b, index, ids, count, error));
-        }
     }
     return RT_OK;
 }
@@ -355,9 +352,7 @@ static RtStatus build_level(Builder *b, uint32_t from, uint32_t to, RtError *err
 static RtStatus build_levels(Builder *b, RtBox root, uint32_t object_count, RtError *error) {
     RtOctree *tree = b->tree;
     b->list = rt_alloc(object_count, sizeof(uint32_t));
-    if (!b->list) {
-        return rt_fail_memory(error, "building an octree", object_count * sizeof(uint32_t));
-    }
+    if (!b->list) return rt_fail_memory(error, "building an octree", object_count * sizeof(uint32_t));
     for (uint32_t i = 0; i < object_count; i++) b->list[i] = i;
     RT_TRY(begin(b, root, object_count, error));
     for (uint32_t from = 0, to = 1; from < to; from = to, to = tree->node_count) {
@@ -395,9 +390,8 @@ RtStatus rt_octree_build(const RtBuild *what, RtAccel **out, RtError *error) {
     RtStatus status = RT_OK;
     if (g->object_count > 0) {
         RtBox root = g->box;
-        for (uint32_t i = 0; i < g->object_count; i++) {
+        for (uint32_t i = 0; i < g->object_count; i++)
             root = rt_box_union(root, rt_octree_grown(tree, g->boxes[i]));
-        }
         root = rt_box_widened(root, values[RT_OCTREE_MARGIN].f);
         status = build_levels(&builder, root, g->object_count, error);
     }

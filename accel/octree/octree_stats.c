@@ -80,27 +80,20 @@ typedef struct Check {
     uint64_t *listed; /* [object_count] leaves that list each object */
 } Check;
 
-static bool same_box(RtBox a, RtBox b) {
-    return rt_box_contains(a, b) && rt_box_contains(b, a);
-}
+#define BROKEN(check, ...) rt_fail((check)->error, RT_MISMATCH, "octree: " __VA_ARGS__)
 
 /* A node other than the root: its parent, its cell, its depth. */
 static RtStatus check_place(const Check *check, uint32_t index) {
     const RtOctree *tree = check->tree;
     uint32_t parent = tree->nodes[index].parent;
     const RtOctreeNode *above = &tree->nodes[parent];
-    if (parent >= index || !rt_octree_is_inner(above) || above->first != index - rt_octree_octant(index)) {
-        return rt_fail(check->error, RT_MISMATCH, "octree: node %u is not a child of its parent", index);
-    }
+    if (parent >= index || !rt_octree_is_inner(above) || above->first != index - rt_octree_octant(index))
+        return BROKEN(check, "node %u is not a child of its parent", index);
     RtBox cell = rt_octree_child_box(tree->boxes[parent], above->split, rt_octree_octant(index));
-    if (!same_box(cell, tree->boxes[index])) {
-        return rt_fail(check->error, RT_MISMATCH, "octree: the cell of node %u is not cut from its parent's",
-                       index);
-    }
-    if (depth_of(tree, index) > tree->max_depth) {
-        return rt_fail(check->error, RT_MISMATCH, "octree: node %u is deeper than %u", index,
-                       tree->max_depth);
-    }
+    if (!rt_box_equals(cell, tree->boxes[index]))
+        return BROKEN(check, "the cell of node %u is not cut from its parent's", index);
+    if (depth_of(tree, index) > tree->max_depth)
+        return BROKEN(check, "node %u is deeper than %u", index, tree->max_depth);
     return RT_OK;
 }
 
@@ -108,26 +101,19 @@ static RtStatus check_inner(const Check *check, uint32_t index) {
     const RtOctree *tree = check->tree;
     const RtOctreeNode *node = &tree->nodes[index];
     const RtBox *cell = &tree->boxes[index];
-    if (node->first <= index || rt_octree_octant(node->first) != 0 || node->first > tree->node_count - 8) {
-        return rt_fail(check->error, RT_MISMATCH, "octree: the children of node %u lie outside the nodes",
-                       index);
-    }
+    if (node->first <= index || rt_octree_octant(node->first) != 0 || node->first > tree->node_count - 8)
+        return BROKEN(check, "the children of node %u lie outside the nodes", index);
     for (int a = 0; a < 3; a++) {
         float split = node->split.at[a];
         if ((split > cell->lo.at[a] && split < cell->hi.at[a]) || split == cell->hi.at[a]) continue;
-        return rt_fail(check->error, RT_MISMATCH, "octree: the split of node %u lies outside its cell",
-                       index);
+        return BROKEN(check, "the split of node %u lies outside its cell", index);
     }
     for (uint32_t octant = 0; octant < 8; octant++) {
         const RtOctreeNode *child = &tree->nodes[node->first + octant];
-        if (child->parent != index) {
-            return rt_fail(check->error, RT_MISMATCH, "octree: node %u is not a child of its parent",
-                           node->first + octant);
-        }
-        if ((node->count >> octant & 1) != (child->count == 0)) {
-            return rt_fail(check->error, RT_MISMATCH, "octree: node %u is not as empty as its parent says",
-                           node->first + octant);
-        }
+        if (child->parent != index)
+            return BROKEN(check, "node %u is not a child of its parent", node->first + octant);
+        if ((node->count >> octant & 1) != (child->count == 0))
+            return BROKEN(check, "node %u is not as empty as its parent says", node->first + octant);
     }
     return RT_OK;
 }
@@ -136,28 +122,20 @@ static RtStatus check_list(const Check *check, uint32_t index) {
     const RtOctree *tree = check->tree;
     const RtOctreeNode *leaf = &tree->nodes[index];
     const RtGeometry *g = check->geometry;
-    if (leaf->first > tree->id_count || leaf->count > tree->id_count - leaf->first) {
-        return rt_fail(check->error, RT_MISMATCH, "octree: the list of leaf %u lies outside the lists",
-                       index);
-    }
+    if (leaf->first > tree->id_count || leaf->count > tree->id_count - leaf->first)
+        return BROKEN(check, "the list of leaf %u lies outside the lists", index);
     const uint32_t *ids = tree->ids + leaf->first;
     for (uint32_t i = 0; i < leaf->count; i++) {
-        if (ids[i] >= g->object_count || (i > 0 && ids[i - 1] >= ids[i])) {
-            return rt_fail(check->error, RT_MISMATCH, "octree: the list of leaf %u is not ascending ids",
-                           index);
-        }
+        if (ids[i] >= g->object_count || (i > 0 && ids[i - 1] >= ids[i]))
+            return BROKEN(check, "the list of leaf %u is not ascending ids", index);
         RtBox object = rt_octree_grown(tree, g->boxes[ids[i]]);
-        if (rt_box_is_empty(rt_box_common(tree->boxes[index], object))) {
-            return rt_fail(check->error, RT_MISMATCH,
-                           "octree: leaf %u lists object %u, which it does not touch", index, ids[i]);
-        }
+        if (rt_box_is_empty(rt_box_common(tree->boxes[index], object)))
+            return BROKEN(check, "leaf %u lists object %u, which it does not touch", index, ids[i]);
         check->listed[ids[i]]++;
     }
     if (leaf->count > tree->max_leaf_size && depth_of(tree, index) < tree->max_depth &&
-        rt_octree_divisible(tree, g->boxes, &tree->boxes[index], ids, leaf->count)) {
-        return rt_fail(check->error, RT_MISMATCH, "octree: leaf %u holds %u objects and could be divided",
-                       index, leaf->count);
-    }
+        rt_octree_divisible(tree, g->boxes, &tree->boxes[index], ids, leaf->count))
+        return BROKEN(check, "leaf %u holds %u objects and could be divided", index, leaf->count);
     return RT_OK;
 }
 
@@ -167,9 +145,8 @@ static uint64_t leaves_touched(const RtOctree *tree, uint32_t index, const RtBox
     if (!rt_octree_is_inner(node)) return 1;
     uint32_t children = rt_octree_sides(&tree->boxes[index], node->split, object);
     uint64_t touched = 0;
-    for (uint32_t octant = 0; octant < 8; octant++) {
+    for (uint32_t octant = 0; octant < 8; octant++)
         if (children >> octant & 1) touched += leaves_touched(tree, node->first + octant, object);
-    }
     return touched;
 }
 
@@ -184,9 +161,8 @@ static RtStatus check_all(const Check *check) {
         RtBox object = rt_octree_grown(tree, check->geometry->boxes[id]);
         uint64_t touched = leaves_touched(tree, 0, &object);
         if (check->listed[id] == touched) continue;
-        return rt_fail(check->error, RT_MISMATCH,
-                       "octree: object %u belongs to %llu leaves, but %llu list it", id,
-                       (unsigned long long)touched, (unsigned long long)check->listed[id]);
+        return BROKEN(check, "object %u belongs to %llu leaves, but %llu list it", id,
+                      (unsigned long long)touched, (unsigned long long)check->listed[id]);
     }
     return RT_OK;
 }
@@ -195,13 +171,11 @@ RtStatus rt_octree_validate(const RtAccel *accel, RtError *error) {
     const RtOctree *tree = (const RtOctree *)accel;
     const RtGeometry *g = &accel->scene->geometry;
     if (tree->node_count == 0) return RT_OK;
-    if (!rt_box_contains(tree->boxes[0], g->box)) {
+    if (!rt_box_contains(tree->boxes[0], g->box))
         return rt_fail(error, RT_MISMATCH, "octree: its root does not contain the scene");
-    }
     Check check = {tree, g, error, rt_alloc(g->object_count, sizeof(uint64_t))};
-    if (!check.listed) {
+    if (!check.listed)
         return rt_fail_memory(error, "validating an octree", g->object_count * sizeof(uint64_t));
-    }
     RtStatus status = check_all(&check);
     rt_free(check.listed);
     return status;

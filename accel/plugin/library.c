@@ -73,12 +73,11 @@ RtStatus rt_library_open(const char *path, RtTables *tables, RtError *error) {
     raytally_plugin_function *get_table;
     void *symbol = dlsym(library, "raytally_plugin");
     memcpy(&get_table, &symbol, sizeof get_table);
-    if (!get_table) {
+    if (!get_table)
         return rt_fail(
             error, RT_BAD_INPUT,
             "%s: not a plugin: it has no function `raytally_plugin`; `raytally new-accel` writes an example",
             path);
-    }
     const raytally_accel_ops *last = NULL;
     for (const raytally_accel_ops *table; (table = get_table(tables->count)); last = table) {
         if (table == last)
@@ -260,11 +259,10 @@ static void pass_text(Cursor *c, const char **text) {
     pass(c, &length, sizeof length);
     c->good = c->good && (length == NO_TEXT || (size_t)(c->end - c->at) > length);
     if (!c->good || length == NO_TEXT) return;
-    if (c->reading) {
+    if (c->reading)
         *text = c->at;
-    } else {
+    else
         memcpy(c->at, *text, (size_t)length + 1);
-    }
     c->at += (size_t)length + 1;
     c->good = c->at[-1] == '\0';
 }

@@ -64,11 +64,10 @@ static RtStatus try_loading(const char *path, Answer *answer, RtError *error) {
     bool ended = rt_process_wait(&child, 1000 * MOST_SECONDS, &end);
     rt_process_end(&child, 0);
     if (ended && answer->given) return RT_OK;
-    if (ended) {
+    if (ended)
         rt_process_end_format(end, 0, "", what, sizeof what);
-    } else {
+    else
         snprintf(what, sizeof what, "it takes more than %d seconds", MOST_SECONDS);
-    }
     return rt_fail(error, RT_BAD_INPUT, "%s: loading it failed: %s", path, what);
 }
 

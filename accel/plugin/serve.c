@@ -194,11 +194,10 @@ void rt_wire_boxes(RtQuery *query, const RtRay *rays, void *message) {
 static void trace_occluded(RtQuery *query, WireRays *asked, const RtRay *rays) {
     const RtAccelOps *ops = query->accel->ops;
     uint32_t *occluders = (uint32_t *)asked->hits;
-    if (asked->counted) {
+    if (asked->counted)
         ops->occluded_counted(query->accel, query->scratch, rays, asked->count, occluders, asked->tallies);
-    } else {
+    else
         ops->occluded(query->accel, query->scratch, rays, asked->count, occluders);
-    }
     for (uint32_t i = asked->count; i-- > 0;) {
         uint32_t occluder;
         memcpy(&occluder, (const char *)asked->hits + i * sizeof occluder, sizeof occluder);
@@ -209,13 +208,12 @@ static void trace_occluded(RtQuery *query, WireRays *asked, const RtRay *rays) {
 void rt_wire_trace(RtQuery *query, const RtRay *rays, void *message) {
     WireRays *asked = message;
     const RtAccelOps *ops = query->accel->ops;
-    if (asked->any) {
+    if (asked->any)
         trace_occluded(query, asked, rays);
-    } else if (asked->counted) {
+    else if (asked->counted)
         ops->nearest_counted(query->accel, query->scratch, rays, asked->count, asked->hits, asked->tallies);
-    } else {
+    else
         ops->nearest(query->accel, query->scratch, rays, asked->count, asked->hits);
-    }
 }
 
 /* ---- channels ---- */

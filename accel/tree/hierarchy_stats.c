@@ -41,53 +41,47 @@ typedef struct Check {
     uint32_t ended;   /* where the ids of the leaves so far end */
 } Check;
 
+#define BROKEN(check, what, ...) rt_fail((check)->error, RT_MISMATCH, "%s: " what, (check)->name, __VA_ARGS__)
+
 static RtStatus check_leaf(Check *check, uint32_t index) {
     const RtHierarchy *self = check->self;
     const RtNode *node = &self->nodes[index];
     uint64_t end = (uint64_t)node->first + rt_node_fanout(node);
     for (uint64_t i = node->first; i < end; i++) {
         uint32_t id = i < self->id_count ? self->ids[i] : RT_NO_OBJECT;
-        if (id >= check->geometry->object_count)
-            return rt_fail(check->error, RT_MISMATCH, "%s: leaf %u holds no object", check->name, index);
+        if (id >= check->geometry->object_count) return BROKEN(check, "leaf %u holds no object", index);
         check->seen[id]++;
         for (uint64_t j = node->first; j < i && self->split_refs; j++) {
             if (self->ids[j] != id) continue;
-            return rt_fail(check->error, RT_MISMATCH, "%s: object %u is in leaf %u twice", check->name, id,
-                           index);
+            return BROKEN(check, "object %u is in leaf %u twice", id, index);
         }
         if (self->split_refs || rt_box_contains(node->box, check->geometry->boxes[id])) continue;
-        return rt_fail(check->error, RT_MISMATCH, "%s: leaf %u does not contain its object %u", check->name,
-                       index, id);
+        return BROKEN(check, "leaf %u does not contain its object %u", index, id);
     }
     if (node->first != check->ended)
-        return rt_fail(check->error, RT_MISMATCH, "%s: the ids of leaf %u begin at %u, not at %u",
-                       check->name, index, node->first, check->ended);
+        return BROKEN(check, "the ids of leaf %u begin at %u, not at %u", index, node->first, check->ended);
     check->ended += rt_node_fanout(node);
     return RT_OK;
 }
 
 static RtStatus check_node(Check *check, uint32_t index, uint32_t depth) {
     const RtHierarchy *self = check->self;
-    const char *name = check->name;
     const RtNode *node = &self->nodes[index];
     uint32_t fanout = rt_node_fanout(node), first = node->first;
     bool leaf = rt_node_is_leaf(node);
-    if (depth > RT_TREE_MAX_DEPTH)
-        return rt_fail(check->error, RT_MISMATCH, "%s: node %u is too deep", name, index);
-    if (++check->reached > self->node_count)
-        return rt_fail(check->error, RT_MISMATCH, "%s: node %u has two parents", name, index);
+    if (depth > RT_TREE_MAX_DEPTH) return BROKEN(check, "node %u is too deep", index);
+    if (++check->reached > self->node_count) return BROKEN(check, "node %u has two parents", index);
     uint32_t least = leaf ? 1 : 2, most = leaf ? self->leaf_limit : self->width;
     if (fanout < least || fanout > most)
-        return rt_fail(check->error, RT_MISMATCH, "%s: node %u has %u %s, not %u to %u", name, index, fanout,
-                       leaf ? "objects" : "children", least, most);
+        return BROKEN(check, "node %u has %u %s, not %u to %u", index, fanout, leaf ? "objects" : "children",
+                      least, most);
     if (leaf) return check_leaf(check, index);
     if (first <= index || (uint64_t)first + fanout > self->node_count)
-        return rt_fail(check->error, RT_MISMATCH, "%s: node %u has children that are not there", name, index);
+        return BROKEN(check, "node %u has children that are not there", index);
     for (uint32_t child = first; child < first + fanout; child++) {
         RT_TRY(check_node(check, child, depth + 1));
         if (rt_box_contains(node->box, self->nodes[child].box)) continue;
-        return rt_fail(check->error, RT_MISMATCH, "%s: node %u does not contain its child %u", name, index,
-                       child);
+        return BROKEN(check, "node %u does not contain its child %u", index, child);
     }
     return RT_OK;
 }
@@ -97,12 +91,10 @@ static RtStatus check_all(Check *check) {
     RT_TRY(check_node(check, 0, 0));
     for (uint32_t id = 0; id < check->geometry->object_count; id++) {
         if (check->seen[id] == 1 || (check->self->split_refs && check->seen[id] > 1)) continue;
-        return rt_fail(check->error, RT_MISMATCH, "%s: object %u is in %u leaves, not in one", check->name,
-                       id, check->seen[id]);
+        return BROKEN(check, "object %u is in %u leaves, not in one", id, check->seen[id]);
     }
     if (check->reached == node_count) return RT_OK;
-    return rt_fail(check->error, RT_MISMATCH, "%s: %u of %u nodes are in the tree", check->name,
-                   check->reached, node_count);
+    return BROKEN(check, "%u of %u nodes are in the tree", check->reached, node_count);
 }
 
 RtStatus rt_hierarchy_validate(const RtHierarchy *self, const RtGeometry *geometry, const char *name,

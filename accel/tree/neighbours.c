@@ -19,9 +19,8 @@ static void set_slot(RtNeighbours *self, uint32_t slot, uint32_t cluster) {
     self->slot_of[cluster] = slot;
     bound->lo = box->lo;
     bound->hi = box->hi;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; a++)
         bound->size.at[a] = rt_float_below((double)box->hi.at[a] - (double)box->lo.at[a]);
-    }
 }
 
 static void fit_node(RtNeighbours *self, uint32_t node) {
@@ -125,8 +124,7 @@ uint32_t rt_neighbours_nearest(const RtNeighbours *self, uint32_t cluster, doubl
     const RtBox *box = &self->tree->nodes[cluster].box;
     uint32_t best = RT_NO_CLUSTER;
     *distance = INFINITY;
-    for (uint32_t node = self->capacity + self->slot_of[cluster]; node > 1; node /= 2) {
+    for (uint32_t node = self->capacity + self->slot_of[cluster]; node > 1; node /= 2)
         search_below(self, node ^ 1, box, &best, distance);
-    }
     return best;
 }

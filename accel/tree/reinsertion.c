@@ -100,9 +100,8 @@ static void search_below(Search *s, uint32_t node, double gained, bool itself) {
         /* The child that grows less is searched first. */
         const uint32_t *child = nodes[at.node].child;
         double growth[2];
-        for (int c = 0; c < 2; c++) {
+        for (int c = 0; c < 2; c++)
             growth[c] = rt_box_half_area(box_with(s->o, child[c], s->box)) - area_of(s->o, child[c]);
-        }
         int first = growth[1] < growth[0];
         stack[kept++] = (Kept){child[1 - first], left};
         stack[kept++] = (Kept){child[first], left};
@@ -188,17 +187,13 @@ static void replace_child(Optimizer *o, uint32_t parent, uint32_t from, uint32_t
     child[child[0] == from ? 0 : 1] = to;
 }
 
-static bool equal_boxes(RtBox a, RtBox b) {
-    return rt_box_contains(a, b) && rt_box_contains(b, a);
-}
-
 /* Refits the boxes of `node` and its ancestors. */
 static void refit(Optimizer *o, uint32_t node) {
     for (; node != NONE; node = o->parent[node]) {
         RtBox before = o->tree->nodes[node].box;
         const uint32_t *child = o->tree->nodes[node].child;
         rt_tree_set_union(o->tree, node, child[0], child[1]);
-        if (equal_boxes(before, o->tree->nodes[node].box)) return;
+        if (rt_box_equals(before, o->tree->nodes[node].box)) return;
     }
 }
 
@@ -255,9 +250,8 @@ RtStatus rt_tree_reinsert(RtTree *tree, uint32_t rounds, int threads, RtError *e
             if (!rt_tree_is_leaf(tree, i)) o.parent[child[0]] = o.parent[child[1]] = i;
         }
     }
-    for (uint32_t i = 0; status == RT_OK && made > 0 && i < rounds; i++) {
+    for (uint32_t i = 0; status == RT_OK && made > 0 && i < rounds; i++)
         status = run_round(&o, threads, &made, error);
-    }
     rt_free(o.parent);
     rt_free(o.mark);
     rt_free(o.moves);

@@ -110,6 +110,8 @@ typedef struct Check {
     uint32_t nodes;
 } Check;
 
+#define BROKEN(check, ...) rt_fail((check)->error, RT_MISMATCH, "wide: " __VA_ARGS__)
+
 /* Checks that a leaf is in the arena, and that its triangles have the coordinates of the scene's. */
 static RtStatus check_leaf(const Check *check, RtWideRef ref) {
     const RtGeometry *g = check->geometry;
@@ -118,24 +120,21 @@ static RtStatus check_leaf(const Check *check, RtWideRef ref) {
     bool triangles = rt_wide_kind(ref) == RT_WIDE_TRIANGLES;
     uint64_t bytes = triangles ? blocks * sizeof(RtWideTriangles) : sizeof(RtWideList);
     if (rt_wide_kind(ref) == RT_WIDE_FINISHED || at + bytes > check->self->bytes)
-        return rt_fail(check->error, RT_MISMATCH, "wide: a leaf at %u is not in the arena", at);
+        return BROKEN(check, "a leaf at %u is not in the arena", at);
     for (uint32_t i = count; !triangles && i < RT_WIDE_MAX_LEAF; i++) {
         if (rt_wide_leaf_object(check->self, ref, i) == RT_NO_OBJECT) continue;
-        return rt_fail(check->error, RT_MISMATCH, "wide: the leaf at %u holds more than its objects", at);
+        return BROKEN(check, "the leaf at %u holds more than its objects", at);
     }
     const RtWideTriangles *block = rt_wide_leaf_at(check->self, ref);
     for (uint32_t i = 0; triangles && i < blocks * RT_WIDE_BLOCK; i++, block += i % RT_WIDE_BLOCK == 0) {
         uint32_t lane = i % RT_WIDE_BLOCK, id = block->id[lane];
         bool there = i < count && id < g->object_count && rt_ref_shape(g->objects[id]) == RT_SHAPE_TRIANGLE;
-        if (there != (i < count))
-            return rt_fail(check->error, RT_MISMATCH, "wide: the leaf at %u holds no triangle in lane %u", at,
-                           i);
+        if (there != (i < count)) return BROKEN(check, "the leaf at %u holds no triangle in lane %u", at, i);
         for (int k = 0; k < 9; k++) {
             float x = block->v[k / 3][k % 3][lane];
             if (there ? x == g->triangles[rt_ref_index(g->objects[id])].v[k / 3].at[k % 3] : isnan(x))
                 continue;
-            return rt_fail(check->error, RT_MISMATCH, "wide: lane %u of the leaf at %u is another triangle",
-                           i, at);
+            return BROKEN(check, "lane %u of the leaf at %u is another triangle", i, at);
         }
     }
     return RT_OK;
@@ -143,27 +142,23 @@ static RtStatus check_leaf(const Check *check, RtWideRef ref) {
 
 static RtStatus check_node(Check *check, RtWideRef ref, uint32_t depth) {
     const RtWideTree *self = check->self;
-    if (depth > RT_TREE_MAX_DEPTH)
-        return rt_fail(check->error, RT_MISMATCH, "wide: node %u is too deep", ref);
+    if (depth > RT_TREE_MAX_DEPTH) return BROKEN(check, "node %u is too deep", ref);
     if (ref % RT_WIDE_UNIT != 0 || ref + sizeof(RtWideNode) > self->bytes)
-        return rt_fail(check->error, RT_MISMATCH, "wide: a node at %u is not in the arena", ref);
+        return BROKEN(check, "a node at %u is not in the arena", ref);
     const RtWideNode *node = rt_wide_node(self, ref);
-    if (++check->nodes > self->node_count)
-        return rt_fail(check->error, RT_MISMATCH, "wide: node %u has two parents", ref);
+    if (++check->nodes > self->node_count) return BROKEN(check, "node %u has two parents", ref);
     bool lone = ref == 0 && rt_wide_kind(node->child[0]) != RT_WIDE_NODE; /* a root may hold a single leaf */
     if (node->count < (lone ? 1 : 2) || node->count > RT_WIDE)
-        return rt_fail(check->error, RT_MISMATCH, "wide: node %u has %u children", ref, node->count);
+        return BROKEN(check, "node %u has %u children", ref, node->count);
     for (uint32_t i = node->count; i < RT_WIDE; i++) {
         for (size_t a = 0; a < 3; a++) {
             if (node->plane[2 * a][i] == INFINITY && node->plane[2 * a + 1][i] == -INFINITY) continue;
-            return rt_fail(check->error, RT_MISMATCH, "wide: lane %u of node %u has a box and no child", i,
-                           ref);
+            return BROKEN(check, "lane %u of node %u has a box and no child", i, ref);
         }
     }
     for (uint32_t i = 0; i < node->count; i++) {
         bool inner = rt_wide_kind(node->child[i]) == RT_WIDE_NODE;
-        if (inner && node->child[i] <= ref)
-            return rt_fail(check->error, RT_MISMATCH, "wide: node %u has a child before it", ref);
+        if (inner && node->child[i] <= ref) return BROKEN(check, "node %u has a child before it", ref);
         RT_TRY(inner ? check_node(check, node->child[i], depth + 1) : check_leaf(check, node->child[i]));
     }
     return RT_OK;

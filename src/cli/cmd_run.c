@@ -17,6 +17,7 @@
 typedef struct Options {
     const char *path;
     RtRunOptions how;
+    char directory[RT_MAX_PATH]; /* results/NAME: how.directory, unless --out names another */
     bool quick, strict, dry;
     bool found; /* the experiment comes from a manifest */
     char only_text[3 * RT_MAX_LABEL];
@@ -177,14 +178,14 @@ static RtStatus load(Options *o, RtExperiment *experiment, RtError *error) {
 static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
     RtRunOptions *how = &o->how;
     const RtOnly *only = &how->workload.only;
-    char directory[RT_MAX_PATH];
     RtResults results;
     RT_TRY(load(o, experiment, error));
     RT_TRY(check_part(experiment, only, error));
     if (how->workload.until > 0 && experiment->rounds < RT_FULL_ROUNDS) experiment->rounds = RT_FULL_ROUNDS;
-    snprintf(directory, sizeof directory, "results/%s", experiment->name);
-    if (only->shards) rt_append_text(directory, sizeof directory, "-%u-of-%u", only->shard, only->shards);
-    if (!how->directory) how->directory = directory;
+    snprintf(o->directory, sizeof o->directory, "results/%s", experiment->name);
+    if (only->shards)
+        rt_append_text(o->directory, sizeof o->directory, "-%u-of-%u", only->shard, only->shards);
+    if (!how->directory) how->directory = o->directory;
     if (o->threads >= 0) how->workload.threads = how->workload.timing = o->threads;
     if (!o->found && how->scripts == RT_SCRIPTS_SHIPPED) how->scripts = RT_SCRIPTS_OWN;
     RtStatus status = rt_results_init(&results, experiment, error);

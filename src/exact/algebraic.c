@@ -82,11 +82,10 @@ static RtRational width_of(RtExactArena *arena, const RtAlgebraic *a) {
 /* x * 2^by */
 static RtRational scaled(RtExactArena *arena, RtRational x, long by) {
     mpq_ptr out = rt_exact_arena_number(arena);
-    if (by >= 0) {
+    if (by >= 0)
         mpq_mul_2exp(out, x, (mp_bitcnt_t)by);
-    } else {
+    else
         mpq_div_2exp(out, x, (mp_bitcnt_t)-by);
-    }
     return out;
 }
 
@@ -220,11 +219,10 @@ int rt_polynomial_roots(RtExactArena *arena, const RtPolynomial *p, RtAlgebraic 
 /* A root of (t - p)^2 - q^2 d on the side of p given by q's sign, nearer to p than |q| (d + 1). */
 static RtAlgebraic algebraic_of_surd(RtExactArena *arena, const RtSurd *surd) {
     RtRational one = rt_exact_of(arena, 1);
-    if (rt_exact_sign(surd->q) == 0 || rt_exact_sign(surd->d) == 0) {
+    if (rt_exact_sign(surd->q) == 0 || rt_exact_sign(surd->d) == 0)
         return (RtAlgebraic){{1, {rt_exact_neg(arena, surd->p), one}},
                              rt_exact_sub(arena, surd->p, one),
                              rt_exact_add(arena, surd->p, one)};
-    }
     RtRational q = surd->q, p = surd->p;
     RtRational square = rt_exact_mul(arena, rt_exact_mul(arena, q, q), surd->d);
     RtRational far = rt_exact_add(arena, p, rt_exact_mul(arena, q, rt_exact_add(arena, surd->d, one)));

@@ -64,16 +64,14 @@ long double rt_exact_value(RtRational a) {
     mpz_init_set(bottom, mpq_denref(a));
     mpz_abs(top, mpq_numref(a));
     long up = 64 + (long)mpz_sizeinbase(bottom, 2) - (long)mpz_sizeinbase(top, 2);
-    if (up >= 0) {
+    if (up >= 0)
         mpz_mul_2exp(top, top, (mp_bitcnt_t)up);
-    } else {
+    else
         mpz_mul_2exp(bottom, bottom, (mp_bitcnt_t)-up);
-    }
     mpz_tdiv_q(top, top, bottom);
     long double value = 0;
-    for (size_t limb = mpz_size(top); limb-- > 0;) {
+    for (size_t limb = mpz_size(top); limb-- > 0;)
         value = ldexpl(value, GMP_NUMB_BITS) + (long double)mpz_getlimbn(top, (mp_size_t)limb);
-    }
     mpz_clear(top);
     mpz_clear(bottom);
     value = ldexpl(value, (int)-up);
@@ -92,9 +90,7 @@ RtExactVec rt_exact_vec_sub(RtExactArena *arena, RtExactVec a, RtExactVec b) {
 
 RtExactVec rt_exact_vec_add_scaled(RtExactArena *arena, RtExactVec a, RtExactVec b, RtRational scale) {
     RtExactVec out;
-    for (int i = 0; i < 3; i++) {
-        out.at[i] = rt_exact_add(arena, a.at[i], rt_exact_mul(arena, b.at[i], scale));
-    }
+    for (int i = 0; i < 3; i++) out.at[i] = rt_exact_add(arena, a.at[i], rt_exact_mul(arena, b.at[i], scale));
     return out;
 }
 

@@ -236,9 +236,8 @@ static RtStatus run(Machine *m, const RtCsgForest *forest, const RtCsg *tree, Rt
     const RtCsgInstruction *program = forest->instructions + tree->first;
     for (uint32_t i = 0; i < tree->count; i++) {
         if (program[i].code == RT_CSG_PUSH) RT_TRY(push_solid(m, &forest->set, program[i].operand, error));
-        if (program[i].code == RT_CSG_APPLY) {
+        if (program[i].code == RT_CSG_APPLY)
             RT_TRY(apply(m, (RtCsgOp)program[i].operand, program[i].reversed, error));
-        }
     }
     return RT_OK;
 }

@@ -90,14 +90,12 @@ static Pixel make_pixel(const RtFrame *frame, uint32_t x, uint32_t y) {
 static exr_result_t write_header(exr_context_t context, const RtFrame *frame) {
     int part;
     exr_result_t result = exr_add_part(context, "", EXR_STORAGE_SCANLINE, &part);
-    if (result == EXR_ERR_SUCCESS) {
+    if (result == EXR_ERR_SUCCESS)
         result = exr_initialize_required_attr_simple(context, part, (int32_t)frame->sampling.width,
                                                      (int32_t)frame->sampling.height, EXR_COMPRESSION_ZIP);
-    }
-    for (int c = 0; c < channel_count(frame) && result == EXR_ERR_SUCCESS; c++) {
+    for (int c = 0; c < channel_count(frame) && result == EXR_ERR_SUCCESS; c++)
         result =
             exr_add_channel(context, part, channels[c].name, channels[c].type, EXR_PERCEPTUALLY_LINEAR, 1, 1);
-    }
     return result == EXR_ERR_SUCCESS ? exr_write_header(context) : result;
 }
 

@@ -150,9 +150,8 @@ static RtStatus trace_shadows(Worker *worker, uint32_t surface_count, RtError *e
             uint32_t n = worker->shadow_count;
             RtSurface surface = worker->surfaces[i];
             if (outward) surface = rt_surface_outward(&surface);
-            if (!rt_shadow_ray(scene, &surface, light, &worker->shadow_rays[n], &worker->shadow_lights[n])) {
+            if (!rt_shadow_ray(scene, &surface, light, &worker->shadow_rays[n], &worker->shadow_lights[n]))
                 continue;
-            }
             worker->shadow_paths[n] = worker->surface_paths[i];
             if (++worker->shadow_count == STREAM) RT_TRY(flush_shadows(worker, error));
         }
@@ -184,9 +183,8 @@ static void spawn(Worker *worker, uint32_t surface_count, Level *below) {
         float factors[RT_MAX_SPAWN];
         Path from = worker->surface_paths[i];
         uint32_t spawned = rt_spawn_rays(&worker->surfaces[i], below->rays + below->count, factors);
-        for (uint32_t k = 0; k < spawned; k++) {
+        for (uint32_t k = 0; k < spawned; k++)
             below->paths[below->count++] = (Path){from.sample, from.factor * factors[k]};
-        }
     }
 }
 
@@ -261,12 +259,11 @@ static RtStatus init_worker(Worker *worker, Job *job, const RtAccel *accel, RtEr
 
 static RtStatus init_frame(RtFrame *frame, const RtSampling *sampling, bool counted, RtError *error) {
     size_t samples = (size_t)sampling->columns * sampling->rows;
-    if (samples > RT_MAX_FRAME_SAMPLES) {
+    if (samples > RT_MAX_FRAME_SAMPLES)
         return rt_fail(error, RT_BAD_INPUT,
                        "a frame of %u x %u samples: at most %u samples fit; take a smaller image or fewer "
                        "samples per pixel",
                        sampling->columns, sampling->rows, RT_MAX_FRAME_SAMPLES);
-    }
     frame->sampling = *sampling;
     frame->color = rt_alloc(samples, sizeof(RtVec3));
     frame->object = rt_alloc(samples, sizeof(uint32_t));
@@ -331,9 +328,8 @@ static RtStatus run(Job *job, const RtAccel *accel, RtError *error) {
     job->workers = rt_alloc((size_t)threads, sizeof(Worker));
     if (!job->workers) return rt_fail_memory(error, "workers", (size_t)threads * sizeof(Worker));
     RtStatus status = RT_OK;
-    for (int i = 0; i < threads && status == RT_OK; i++) {
+    for (int i = 0; i < threads && status == RT_OK; i++)
         status = init_worker(&job->workers[i], job, accel, error);
-    }
     double start = rt_wall_seconds();
     if (status == RT_OK) status = rt_parallel_for(job->tile_count, threads, trace_tile, job, error);
     job->frame->seconds = rt_wall_seconds() - start;
@@ -352,10 +348,9 @@ static RtStatus run(Job *job, const RtAccel *accel, RtError *error) {
 
 RtStatus rt_frame_trace(RtFrame *frame, const RtAccel *accel, const RtFrameOptions *options, RtError *error) {
     *frame = (RtFrame){0};
-    if (options->depth < 1 || options->depth > RT_MAX_DEPTH) {
+    if (options->depth < 1 || options->depth > RT_MAX_DEPTH)
         return rt_fail(error, RT_BAD_INPUT, "a ray tree of %u levels: expected 1..%d", options->depth,
                        RT_MAX_DEPTH);
-    }
     Job job = {.frame = frame, .options = options, .scene = accel->scene};
     const RtSampling *sampling = &accel->scene->sampling;
     RT_TRY(rt_view_init(&job.view, &accel->scene->camera, *sampling, error));

@@ -75,9 +75,7 @@ bool rt_shadow_ray(const RtScene *scene, const RtSurface *surface, uint32_t inde
     const RtMaterial *m = surface->material;
     double r_dot_v = rt_dotd(mirrored(to_light, surface->normal), surface->arriving);
     double highlight = 0;
-    if (m->specular > 0 && r_dot_v > 0) {
-        highlight = (double)m->specular * rt_power(r_dot_v, (double)m->shine);
-    }
+    if (m->specular > 0 && r_dot_v > 0) highlight = (double)m->specular * rt_power(r_dot_v, (double)m->shine);
     RtVec3 matte = rt_scale(m->color, (float)((double)m->diffuse * n_dot_l));
     RtVec3 glossy = {(float)highlight, (float)highlight, (float)highlight};
     *light = rt_mul(source->intensity, rt_add(matte, glossy));

@@ -31,9 +31,8 @@ static void walk_square(Walk *walk, uint32_t column, uint32_t row, uint32_t side
         return;
     }
     side /= 2;
-    for (uint32_t quarter = 0; quarter < 4; quarter++) {
+    for (uint32_t quarter = 0; quarter < 4; quarter++)
         walk_square(walk, column + (quarter & 1) * side, row + (quarter >> 1) * side, side);
-    }
 }
 
 void rt_tiles_in_order(const RtSampling *sampling, RtSample *tiles) {

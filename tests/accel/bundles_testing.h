@@ -4,9 +4,9 @@
 #ifndef RT_TESTS_BUNDLES_TESTING_H
 #define RT_TESTS_BUNDLES_TESTING_H
 
+#include "random_testing.h"
 #include "slivers_testing.h"
 
-#include "core/base/random.h"
 #include "core/scene/scene.h"
 
 #include <math.h>
@@ -37,9 +37,8 @@ static inline RtVec3 point_on(Target *target, uint32_t id) {
     if (g->object_count == 0) return rt_random_point(random, 1);
     RtVec3 p;
     const RtBox *own = &g->boxes[id];
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; a++)
         p.at[a] = own->lo.at[a] + (own->hi.at[a] - own->lo.at[a]) * rt_random_unit(random);
-    }
     if (rt_ref_shape(g->objects[id]) != RT_SHAPE_TRIANGLE) return p;
     const RtVec3 *v = g->triangles[rt_ref_index(g->objects[id])].v;
     uint32_t pick = rt_random_below(random, 4);

@@ -5,6 +5,7 @@
 #define RT_TESTS_EMBREE_TESTING_H
 
 #include "accel_testing.h"
+#include "random_testing.h"
 
 #include "scenes/random_tree.h"
 
@@ -55,38 +56,38 @@ static inline void add_polygon(RtScene *scene, RtRandom *random, float size, flo
 static inline void add_csg(RtScene *scene, RtRandom *random, RtVec3 center, float radius) {
     RtTransform move = rt_transform_identity();
     RtTreeRecipe recipe = {1 + rt_random_below(random, 8), false};
-    RtCsgBuilder trees = {0};
+    OWNED_BUILDER trees = {0};
     RtCsgTerm root;
     assert_ok(rt_transform_scale(&move, rt_vec3(radius, radius, radius), error));
     assert_ok(rt_transform_translate(&move, center, error));
     assert_ok(rt_random_tree(&trees, random, &recipe, 1, &root, error));
     assert_ok(rt_csg_move(&trees, root, &move, &root, error));
     assert_ok(rt_scene_add_csg(scene, &trees, root, true, error));
-    rt_csg_builder_clear(&trees);
 }
 
 /* `copies` times the same soup of all shapes: every hit of a second copy is a tie. */
-static inline void make_soup(RtScene *scene, uint32_t count, uint32_t copies, float size) {
-    begin_scene(scene);
+static inline RtScene make_soup(uint32_t count, uint32_t copies, float size) {
+    RtScene scene = begin_scene();
     for (uint32_t copy = 0; copy < copies; copy++) {
         RtRandom random = rt_random(7, 1);
         for (uint32_t i = 0; i < count; i++) {
             float edge = size * 0.2f, radius = size * rt_random_between(&random, 0.01f, 0.1f);
             RtVec3 center = rt_random_point(&random, size);
             switch (i % 5) {
-            case 0: assert_ok(rt_scene_add_sphere(scene, 0, center, radius, error)); break;
-            case 1: add_polygon(scene, &random, size, edge, i % 8 == 1); break;
-            case 2: add_triangle(scene, &random, size, edge); break;
+            case 0: assert_ok(rt_scene_add_sphere(&scene, 0, center, radius, error)); break;
+            case 1: add_polygon(&scene, &random, size, edge, i % 8 == 1); break;
+            case 2: add_triangle(&scene, &random, size, edge); break;
             case 3: {
                 RtVec3 apex = rt_add(center, rt_random_point(&random, edge));
-                assert_ok(rt_scene_add_cone(scene, 0, center, radius, apex, radius * 0.5f, error));
+                assert_ok(rt_scene_add_cone(&scene, 0, center, radius, apex, radius * 0.5f, error));
                 break;
             }
-            default: add_csg(scene, &random, center, radius);
+            default: add_csg(&scene, &random, center, radius);
             }
         }
     }
-    assert_ok(rt_scene_finish(scene, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    return scene;
 }
 
 /* Of four directions one is parallel to an axis and one to a coordinate plane, or nearly. */
@@ -161,8 +162,7 @@ typedef struct Answers {
 static inline Answers ask(const RtScene *scene, const char *spec, Rays rays, bool counted) {
     Answers a = {rt_alloc(rays.count, sizeof(RtHit)), rt_alloc(rays.count, sizeof(bool)), {{0}}};
     OWNED_ACCEL RtAccel *accel = open_valid(scene, spec);
-    OWNED_QUERY query = {0};
-    assert_ok(rt_query_init(&query, accel, error));
+    OWNED_QUERY query = open_query(accel);
     rt_nearest(&query, rays.rays, rays.count, a.hits, counted ? a.tallies : NULL);
     RtTally apart[RT_RAY_KIND_COUNT] = {{0}};
     rt_occluded(&query, rays.rays, rays.count, a.blocked, counted ? apart : NULL);

@@ -8,10 +8,11 @@
 #include "accel/item/item.h"
 #include "render/frame.h"
 
-static inline void begin_view(RtScene *scene) {
-    begin_scene(scene);
-    scene->camera.width = 48;
-    scene->camera.height = 36;
+static inline RtScene begin_view(void) {
+    RtScene scene = begin_scene();
+    scene.camera.width = 48;
+    scene.camera.height = 36;
+    return scene;
 }
 
 /* From `from` towards `at`. */
@@ -21,13 +22,10 @@ static inline void look(RtScene *scene, RtVec3 from, RtVec3 at) {
 }
 
 static inline RtFrame trace(const char *spec, const RtScene *scene, bool counted) {
-    RtAccel *accel;
     RtFrame frame;
     RtFrameOptions options = {.depth = 1, .threads = 2, .counted = counted};
-    assert_ok(rt_accel_open(spec, scene, &accel, error));
-    assert_ok(rt_accel_validate(accel, error));
+    OWNED_ACCEL RtAccel *accel = open_valid(scene, spec);
     assert_ok(rt_frame_trace(&frame, accel, &options, error));
-    rt_accel_destroy(accel);
     return frame;
 }
 
@@ -35,20 +33,18 @@ static inline RtFrame trace(const char *spec, const RtScene *scene, bool counted
  * Gives the share of rays that item answers when it settles. */
 static inline double decided_share(const RtScene *scene) {
     static const char *const specs[] = {"item:settle=off+brute", "item+brute"};
-    RtFrame right = trace("brute", scene, false);
+    OWNED_FRAME right = trace("brute", scene, false);
     size_t samples = (size_t)right.sampling.columns * right.sampling.rows;
     double share = 0;
     for (int i = 0; i < 2; i++) {
-        RtFrame frame = trace(specs[i], scene, true);
+        OWNED_FRAME frame = trace(specs[i], scene, true);
         const RtTally *tally = &frame.tallies[RT_RAY_PRIMARY];
         assert_memory_equal(frame.object, right.object, samples * sizeof *frame.object);
         assert_memory_equal(frame.depth, right.depth, samples * sizeof *frame.depth);
         assert_memory_equal(frame.color, right.color, samples * sizeof *frame.color);
         assert_int_equal(tally->steps, tally->rays);
         share = 1 - (double)tally->passed_on / (double)tally->rays;
-        rt_frame_clear(&frame);
     }
-    rt_frame_clear(&right);
     return share;
 }
 

@@ -20,22 +20,20 @@ static inline RtVec3 point_in(RtRandom *random, float scale, float offset) {
 
 /* `count` objects: long slivers in all directions, with spheres, cones and thin polygons among them. */
 static inline RtScene make_slivers(uint32_t count, uint64_t seed, float scale, float offset) {
-    RtScene scene;
-    begin_scene(&scene);
+    RtScene scene = begin_scene();
     RtRandom random = rt_random(seed, 0);
     for (uint32_t i = 0; i < count; i++) {
         RtVec3 a = point_in(&random, scale, offset), b = point_in(&random, scale, offset), c = b;
         for (int k = 0; k < 3; k++) c.at[k] += scale * rt_random_between(&random, -0.01f, 0.01f);
         const RtVec3 corners[4] = {a, b, c, {{a.x + c.x - b.x, a.y + c.y - b.y, a.z + c.z - b.z}}};
         RtError ignored; /* a polygon may have turned out not to be planar */
-        if (i % 8 == 7) {
+        if (i % 8 == 7)
             assert_ok(
                 rt_scene_add_sphere(&scene, 0, a, scale * rt_random_between(&random, 0.01f, 0.4f), error));
-        } else if (i % 8 == 6) {
+        else if (i % 8 == 6)
             assert_ok(rt_scene_add_cone(&scene, 0, a, scale * 0.01f, b, 0, error));
-        } else if (i % 8 > 3 || rt_scene_add_polygon(&scene, 0, corners, 4, &ignored) != RT_OK) {
+        else if (i % 8 > 3 || rt_scene_add_polygon(&scene, 0, corners, 4, &ignored) != RT_OK)
             add_triangle(&scene, a, b, c);
-        }
     }
     assert_ok(rt_scene_finish(&scene, error));
     return scene;

@@ -11,19 +11,20 @@
 /* ---- threads ---- */
 
 /* Triangles in a cube, and a light inside it. */
-static void make_triangles(RtScene *scene, uint32_t count, float from, float size) {
+static RtScene make_triangles(uint32_t count, float from, float size) {
     RtRandom random = rt_random(1, count);
-    begin_scene(scene);
+    RtScene scene = begin_scene();
     for (uint32_t i = 0; i < count; i++) {
         RtVec3 v[3];
         for (int a = 0; a < 3; a++) {
             float at = from * (2 * rt_random_unit(&random) - 1);
             for (int k = 0; k < 3; k++) v[k].at[a] = at + size * (2 * rt_random_unit(&random) - 1);
         }
-        assert_ok(rt_scene_add_triangle(scene, 0, v, NULL, error));
+        assert_ok(rt_scene_add_triangle(&scene, 0, v, NULL, error));
     }
-    assert_ok(rt_scene_add_light(scene, rt_vec3(0, 0, 0), rt_vec3(1, 1, 1), error));
-    assert_ok(rt_scene_finish(scene, error));
+    assert_ok(rt_scene_add_light(&scene, rt_vec3(0, 0, 0), rt_vec3(1, 1, 1), error));
+    assert_ok(rt_scene_finish(&scene, error));
+    return scene;
 }
 
 /* False if this machine cannot build it. */
@@ -53,9 +54,8 @@ RT_TEST(few_objects_on_several_threads_make_the_structure_of_one_at_every_settin
     static const uint32_t counts[] = {1, 33, 200};
     static const int threads[][2] = {{7, 0}, {3, 0}, {16, 0}};
     for (size_t c = 0; c < sizeof counts / sizeof counts[0]; c++) {
-        OWNED_SCENE scene;
         char spec[RT_MAX_SPEC_CHARS];
-        make_triangles(&scene, counts[c], 1, 0.05f);
+        OWNED_SCENE scene = make_triangles(counts[c], 1, 0.05f);
         for (size_t i = 0; i < rt_accel_count(); i++) {
             for (size_t n = 0; rt_spread_spec(rt_accel_at(i), n, spec); n++)
                 assert_same_on(spec, &scene, threads[c]);
@@ -74,8 +74,7 @@ RT_TEST(many_objects_on_many_threads_make_the_structure_of_one) {
         int threads[3];
     } cases[] = {{4097, 10, {65}}, {33000, 10, {255}}, {100000, 2, {128}}};
     for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
-        OWNED_SCENE scene;
-        make_triangles(&scene, cases[c].objects, 1, 0.005f);
+        OWNED_SCENE scene = make_triangles(cases[c].objects, 1, 0.005f);
         for (size_t i = 0; i < cases[c].specs; i++) assert_same_on(specs[i], &scene, cases[c].threads);
     }
 }
@@ -99,9 +98,9 @@ static bool is_exact(const char *spec, const RtScene *scene) {
 RT_TEST(scenes_as_large_and_as_small_as_may_be_are_answered_like_brute) {
     static const float scales[] = {4.9e17f, 1e-18f};
     for (size_t s = 0; s < sizeof scales / sizeof scales[0]; s++) {
-        FamilyBench bench;
+        OWNED_BENCH bench;
         char spec[RT_MAX_SPEC_CHARS];
-        make_triangles(&bench.scene, RT_SHARE(2000, 300), 0, scales[s]);
+        bench.scene = make_triangles(RT_SHARE(2000, 300), 0, scales[s]);
         set_up_rays(&bench, 1, 4);
         for (size_t i = 0; i < rt_accel_count(); i++) {
             for (size_t n = 0; rt_spread_spec(rt_accel_at(i), n, spec); n++) {
@@ -109,7 +108,6 @@ RT_TEST(scenes_as_large_and_as_small_as_may_be_are_answered_like_brute) {
                 if (is_exact(spec, &bench.scene)) assert_gives(&bench.reference, spec);
             }
         }
-        tear_down_family(&bench);
     }
 }
 

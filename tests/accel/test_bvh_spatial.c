@@ -5,7 +5,6 @@
 
 #include "accel/bvh/bvh.h"
 #include "core/base/random.h"
-#include "scenes/open.h"
 
 #include <stdlib.h>
 
@@ -13,8 +12,7 @@
  * the two other corners. To cut the sliver at any x costs 5 * 256 by the heuristic; whole, with one of the
  * corners, 5 * 256 + 4. */
 static RtScene make_diagonal(void) {
-    RtScene scene;
-    begin_scene(&scene);
+    RtScene scene = begin_scene();
     add_triangle(&scene, rt_vec3(0, 0, 0), rt_vec3(16, 16, 0), rt_vec3(16, 15.9f, 0));
     for (int i = 0; i < 4; i++) {
         add_triangle(&scene, rt_vec3(0, 15, 0), rt_vec3(1, 15, 0), rt_vec3(0, 16, 0));
@@ -35,15 +33,12 @@ RT_TEST(a_long_diagonal_triangle_is_in_two_leaves) {
 }
 
 static RtTally count_ray(const RtScene *scene, const char *spec, const RtRay *ray) {
-    RtBvh *bvh = open_valid(scene, spec);
-    RtQuery query;
+    OWNED_ACCEL RtAccel *bvh = open_valid(scene, spec);
+    OWNED_QUERY query = open_query(bvh);
     RtHit hit;
     RtTally tallies[RT_RAY_KIND_COUNT] = {0};
-    assert_ok(rt_query_init(&query, &bvh->base, error));
     rt_nearest(&query, ray, 1, &hit, tallies);
     assert_int_equal(hit.object, RT_NO_OBJECT);
-    rt_query_clear(&query);
-    rt_accel_destroy(&bvh->base);
     return tallies[ray->kind];
 }
 
@@ -106,18 +101,15 @@ RT_TEST(validate_misses_a_part_of_a_split_object) {
     assert_true(hierarchy->split_refs);
     uint32_t tried = 0;
     for (uint32_t i = 0; i < hierarchy->node_count; i++) {
-        RtNode *node = &hierarchy->nodes[i], kept = *node;
+        RtNode *node = &hierarchy->nodes[i];
         if (!rt_node_is_leaf(node)) continue;
         int axis = (int)(i % 3);
-        node->box.hi.at[axis] -= 0.5f * (node->box.hi.at[axis] - node->box.lo.at[axis]);
-        assert_broken(&bvh->base, "part of object");
-        *node = kept;
+        float *hi = &node->box.hi.at[axis];
+        assert_broken_by(&bvh->base, *hi, *hi - 0.5f * (*hi - node->box.lo.at[axis]), "part of object");
         tried++;
         if (rt_node_fanout(node) < 2) continue;
-        uint32_t id = hierarchy->ids[node->first];
-        hierarchy->ids[node->first] = hierarchy->ids[node->first + 1];
-        assert_broken(&bvh->base, "twice");
-        hierarchy->ids[node->first] = id;
+        uint32_t *ids = hierarchy->ids + node->first;
+        assert_broken_by(&bvh->base, ids[0], ids[1], "twice");
     }
     assert_true(tried > 50);
 }
@@ -127,13 +119,10 @@ RT_TEST(validate_misses_a_part_of_a_split_object) {
 enum { RAYS = 300 };
 
 static void assert_like_brute(const RtScene *scene, const char *spec, uint64_t seed) {
-    OWNED_ACCEL RtAccel *brute = NULL;
     OWNED_ACCEL RtBvh *bvh = open_valid(scene, spec);
-    RtQuery query, truth;
+    OWNED_ACCEL RtAccel *brute = open_accel(scene, "brute");
+    OWNED_QUERY query = open_query(&bvh->base), truth = open_query(brute);
     RtRandom random = rt_random(seed, 1);
-    assert_ok(rt_accel_open("brute", scene, &brute, error));
-    assert_ok(rt_query_init(&query, &bvh->base, error));
-    assert_ok(rt_query_init(&truth, brute, error));
     for (int i = 0; i < RAYS; i++) {
         RtRay ray;
         RtHit hit, expected;
@@ -149,8 +138,6 @@ static void assert_like_brute(const RtScene *scene, const char *spec, uint64_t s
         assert_memory_equal(&hit.t, &expected.t, sizeof hit.t);
         assert_int_equal(blocked, is_blocked);
     }
-    rt_query_clear(&truth);
-    rt_query_clear(&query);
 }
 
 RT_TEST(hostile_rays_hit_like_brute) {
@@ -170,14 +157,8 @@ RT_TEST(degenerate_scenes_are_built) {
     const char *specs[] = {"random:n=0", "random:n=1,shape=triangle", "random:n=300,distribution=coincident",
                            "random:n=300,distribution=plane,shape=mixed", "random:n=300,distribution=line"};
     for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
-        OWNED_SCENE scene;
-        if (i == 0) {
-            begin_scene(&scene);
-            assert_ok(rt_scene_finish(&scene, error));
-        } else {
-            assert_ok(rt_scene_open(specs[i], &scene, error));
-            assert_like_brute(&scene, "bvh:build=spatial,alpha=0,budget=4", i);
-        }
+        OWNED_SCENE scene = open_scene(specs[i]);
+        if (i > 0) assert_like_brute(&scene, "bvh:build=spatial,alpha=0,budget=4", i);
         rt_accel_destroy(open_valid(&scene, "bvh:build=spatial"));
     }
 }
@@ -214,26 +195,12 @@ RT_TEST(what_may_take_too_much_is_refused_with_what_would_fit) {
     assert_ok(rt_tree_spatial(&tree, &scene.geometry, &how, 1, error));
     rt_tree_clear(&tree);
     how.limit = 1000;
-    assert_int_equal(rt_tree_spatial(&tree, &scene.geometry, &how, 1, &refusal), RT_BAD_INPUT);
-    assert_non_null(strstr(refusal.message, "another build"));
+    assert_bad_input(rt_tree_spatial(&tree, &scene.geometry, &how, 1, error), "another build");
 }
 
 RT_TEST(every_allocation_may_fail) {
     OWNED_SCENE scene = make_slivers(100, 6, 1, 0);
-    int64_t live = rt_alloc_live();
-    RtStatus status = RT_NO_MEMORY;
-    for (uint64_t n = 1; status != RT_OK; n++) {
-        RtAccel *accel = NULL;
-        RtError failure = {RT_OK, ""};
-        rt_alloc_fail_at(n);
-        status = rt_accel_open("bvh:build=spatial,reinsertion=1", &scene, &accel, &failure);
-        if (status == RT_OK) status = rt_accel_validate(accel, &failure);
-        rt_alloc_fail_at(0);
-        if (status != RT_OK) assert_int_equal(status, RT_NO_MEMORY);
-        rt_accel_destroy(accel);
-        assert_int_equal(rt_alloc_live(), live);
-        assert_in_range(n, 1, 30);
-    }
+    assert_fails_cleanly(try_accel(&scene, "bvh:build=spatial,reinsertion=1", error), (void)0);
 }
 
 RT_TESTS(bvh_spatial, NULL, assert_nothing_is_kept)

@@ -5,10 +5,6 @@
 #include "equivalence_testing.h"
 
 #include "accel/clusters/clusters.h"
-#include "core/base/memory.h"
-
-#include <stdio.h>
-#include <string.h>
 
 static const char *const methods[] = {"agglomerative", "ploc", "goldsmith-salmon", "rubin-whitted", "sah"};
 enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
@@ -19,7 +15,7 @@ RT_TEST(every_combination_answers_like_brute) {
     static const char *const kinds[] = {"box", "sphere", "obb", "slabs"};
     static const char *const families[] = {"mixed", "duplicates", "huge-beside-tiny", "mixed-far"};
     for (size_t f = 0; f < 4; f++) {
-        FamilyBench bench;
+        OWNED_BENCH bench;
         set_up_family(&bench, scene_family(families[f]), 3, 64);
         for (size_t i = 0; i < 4 * 2 * 3 * METHOD_COUNT; i++) {
             char spec[RT_MAX_SPEC_CHARS];
@@ -27,23 +23,11 @@ RT_TEST(every_combination_answers_like_brute) {
                      i / 4 % 2 ? "fixed" : "nearest", shapes[i / 8 % 3], methods[i / 24]);
             assert_answers_like_brute(&bench, spec);
         }
-        tear_down_family(&bench);
     }
-}
-
-/* Unit spheres at x = 0, 4, 8, ...: two a pair, four a group. */
-static RtScene make_row(uint32_t count) {
-    RtScene scene;
-    begin_scene(&scene);
-    for (uint32_t i = 0; i < count; i++) {
-        assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(4 * (float)i, 0, 0), 1, error));
-    }
-    assert_ok(rt_scene_finish(&scene, error));
-    return scene;
 }
 
 RT_TEST(widening_opens_the_largest_child_and_lowers_the_predicted_cost_by_its_visit) {
-    OWNED_SCENE scene = make_row(6);
+    OWNED_SCENE scene = make_row(6, 4);
     /* Medians: {0 1 2} and {3 4 5}, both of {a b} and {c}. Boxes of n spheres are 4 n - 2 long: half areas 92
      * for six, 44 for three, 28 for two, 12 for one. */
     static const struct {
@@ -58,9 +42,7 @@ RT_TEST(widening_opens_the_largest_child_and_lowers_the_predicted_cost_by_its_vi
         {"clusters:method=rubin-whitted,width=16,extent=sphere", 1, (92 + 6 * 12) / 92.0},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        OWNED_ACCEL RtClusters *self = open_valid(&scene, rows[i].spec);
-        RtDescription description;
-        self->base.ops->describe(&self->base, &description);
+        RtDescription description = describe_spec(&scene, rows[i].spec);
         assert_int_equal(description.interior, rows[i].interior);
         assert_int_equal(description.leaves, 6);
         assert_int_equal(description.references, 6);
@@ -69,13 +51,10 @@ RT_TEST(widening_opens_the_largest_child_and_lowers_the_predicted_cost_by_its_vi
 }
 
 RT_TEST(objects_share_a_leaf_where_that_costs_no_more) {
-    OWNED_SCENE apart = make_row(2), scene;
+    OWNED_SCENE apart = make_row(2, 4), same = make_row(2, 0);
     OWNED_ACCEL RtClusters *two = open_valid(&apart, "clusters:max_leaf_size=2");
     assert_int_equal(two->hierarchy.node_count, 3); /* 28 * 2 > 28 + 2 * 12 */
-    begin_scene(&scene);
-    for (int i = 0; i < 2; i++) assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(1, 0, 0), 1, error));
-    assert_ok(rt_scene_finish(&scene, error));
-    OWNED_ACCEL RtClusters *one = open_valid(&scene, "clusters:max_leaf_size=2");
+    OWNED_ACCEL RtClusters *one = open_valid(&same, "clusters:max_leaf_size=2");
     assert_int_equal(one->hierarchy.node_count, 1);
 }
 
@@ -86,7 +65,7 @@ static void count_box(void *context, const RtBoxView *view) {
 }
 
 RT_TEST(pictures_get_every_node_with_its_depth) {
-    OWNED_SCENE scene = make_row(4);
+    OWNED_SCENE scene = make_row(4, 4);
     OWNED_ACCEL RtClusters *self = open_valid(&scene, "clusters");
     uint32_t at_depth[3] = {0};
     self->base.ops->each_box(&self->base, (RtBoxViewer){count_box, at_depth});
@@ -96,16 +75,15 @@ RT_TEST(pictures_get_every_node_with_its_depth) {
 }
 
 RT_TEST(groups_of_spheres_get_tight_extents) {
-    OWNED_SCENE scene = make_row(2); /* a capsule 6 long, 2 thick */
+    OWNED_SCENE scene = make_row(2, 4); /* a capsule 6 long, 2 thick */
     OWNED_ACCEL RtClusters *self = open_valid(&scene, "clusters:extent=sphere");
     assert_true(self->set.balls[0].radius >= 3 && self->set.balls[0].radius < 3.000001);
     rt_accel_destroy(&self->base);
     rt_scene_clear(&scene);
 
-    begin_scene(&scene);
-    for (int i = 0; i < 8; i++) {
+    scene = begin_scene();
+    for (int i = 0; i < 8; i++)
         assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(3 * (float)i, 4 * (float)i, 0), 1, error));
-    }
     assert_ok(rt_scene_finish(&scene, error));
     self = open_valid(&scene, "clusters:extent=obb");
     /* Along the diagonal: 37 x 2 x 2. */
@@ -123,42 +101,26 @@ static uint32_t some_leaf(const RtClusters *self) {
 }
 
 RT_TEST(validate_names_each_invariant_of_the_tree_that_is_broken) {
-    OWNED_SCENE scene = make_row(16);
+    OWNED_SCENE scene = make_row(16, 4);
     OWNED_ACCEL RtClusters *self = open_valid(&scene, "clusters:width=4");
-    RtNode root = self->hierarchy.nodes[0], *leaf = &self->hierarchy.nodes[some_leaf(self)], kept = *leaf;
-
-    self->hierarchy.nodes[0].box.hi.x -= 1;
-    assert_broken(&self->base, "node 0 does not contain its child");
-    self->hierarchy.nodes[0] = root;
-    self->hierarchy.nodes[0].count = 5;
-    assert_broken(&self->base, "node 0 has 5 children, not 2 to 4");
-    self->hierarchy.nodes[0].count = 1;
-    assert_broken(&self->base, "node 0 has 1 children, not 2 to 4");
-    self->hierarchy.nodes[0] = root;
-    self->hierarchy.nodes[0].first = 0;
-    assert_broken(&self->base, "node 0 has children that are not there");
-    self->hierarchy.nodes[0].first = self->hierarchy.node_count - 1;
-    assert_broken(&self->base, "node 0 has children that are not there");
-    self->hierarchy.nodes[0] = root;
-
-    leaf->box.lo.y = 0;
-    assert_broken(&self->base, "does not contain its object");
-    *leaf = kept;
-    leaf->count = RT_NODE_LEAF | 2;
-    assert_broken(&self->base, "has 2 objects, not 1 to 1");
-    leaf->count = RT_NODE_LEAF;
-    assert_broken(&self->base, "has 0 objects");
-    *leaf = kept;
-    leaf->first = 16;
-    assert_broken(&self->base, "holds no object");
-    *leaf = kept;
-    self->hierarchy.ids[leaf->first] = 99;
-    assert_broken(&self->base, "holds no object");
+    const RtAccel *accel = &self->base;
+    RtHierarchy *hierarchy = &self->hierarchy;
+    RtNode *root = hierarchy->nodes, *leaf = &root[some_leaf(self)];
+    assert_broken_by(accel, root->box.hi.x, root->box.hi.x - 1, "node 0 does not contain its child");
+    assert_broken_by(accel, root->count, 5, "node 0 has 5 children, not 2 to 4");
+    assert_broken_by(accel, root->count, 1, "node 0 has 1 children, not 2 to 4");
+    assert_broken_by(accel, root->first, 0, "node 0 has children that are not there");
+    assert_broken_by(accel, root->first, hierarchy->node_count - 1, "node 0 has children that are not there");
+    assert_broken_by(accel, leaf->box.lo.y, 0, "does not contain its object");
+    assert_broken_by(accel, leaf->count, RT_NODE_LEAF | 2, "has 2 objects, not 1 to 1");
+    assert_broken_by(accel, leaf->count, RT_NODE_LEAF, "has 0 objects");
+    assert_broken_by(accel, leaf->first, 16, "holds no object");
+    assert_broken_by(accel, hierarchy->ids[leaf->first], 99, "holds no object");
 }
 
 RT_TEST(validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep) {
     enum { COUNT = 80 };
-    OWNED_SCENE scene = make_row(2), three = make_row(3), row = make_row(COUNT);
+    OWNED_SCENE scene = make_row(2, 4), three = make_row(3, 4), row = make_row(COUNT, 4);
     for (uint32_t i = 0; i < 2; i++) scene.geometry.boxes[i] = scene.geometry.box;
     OWNED_ACCEL RtClusters *self = open_valid(&scene, "clusters");
     self->hierarchy.ids[1] = self->hierarchy.ids[0];
@@ -170,9 +132,8 @@ RT_TEST(validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep) {
     self = open_valid(&three, "clusters:method=rubin-whitted,max_leaf_size=3");
     RtNode root = self->hierarchy.nodes[0];
     assert_int_equal(self->hierarchy.node_count, 5);
-    self->hierarchy.nodes[0] = (RtNode){root.box, 0, RT_NODE_LEAF | 3};
-    assert_broken(&self->base, "1 of 5 nodes are in the tree");
-    self->hierarchy.nodes[0] = root;
+    assert_broken_by(&self->base, self->hierarchy.nodes[0], ((RtNode){root.box, 0, RT_NODE_LEAF | 3}),
+                     "1 of 5 nodes are in the tree");
     RtNode two = self->hierarchy.nodes[1], one = self->hierarchy.nodes[2];
     self->hierarchy.nodes[1] = one;
     self->hierarchy.nodes[2] = two;
@@ -193,18 +154,16 @@ RT_TEST(validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep) {
 }
 
 RT_TEST(validate_names_the_extent_that_does_not_hold_its_objects) {
-    OWNED_SCENE scene = make_row(8);
-    OWNED_ACCEL RtClusters *self = open_valid(&scene, "clusters:extent=sphere");
-    self->set.balls[0].radius *= 1 - 1e-4;
-    assert_broken(&self->base, "clusters: the sphere 0 does not contain object");
-    rt_accel_destroy(&self->base);
-    self = open_valid(&scene, "clusters:extent=obb");
-    self->set.oriented[1].half[0] *= 0.99;
-    assert_broken(&self->base, "clusters: the oriented box 1 does not contain object");
-    rt_accel_destroy(&self->base);
-    self = open_valid(&scene, "clusters:extent=slabs,slabs=13");
-    self->set.slabs[2 * 13 + 12].lo += 0.01f;
-    assert_broken(&self->base, "clusters: the set of slabs 2 does not contain object");
+    OWNED_SCENE scene = make_row(8, 4);
+    OWNED_ACCEL RtClusters *spheres = open_valid(&scene, "clusters:extent=sphere");
+    spheres->set.balls[0].radius *= 1 - 1e-4;
+    assert_broken(&spheres->base, "clusters: the sphere 0 does not contain object");
+    OWNED_ACCEL RtClusters *boxes = open_valid(&scene, "clusters:extent=obb");
+    boxes->set.oriented[1].half[0] *= 0.99;
+    assert_broken(&boxes->base, "clusters: the oriented box 1 does not contain object");
+    OWNED_ACCEL RtClusters *slabs = open_valid(&scene, "clusters:extent=slabs,slabs=13");
+    slabs->set.slabs[2 * 13 + 12].lo += 0.01f;
+    assert_broken(&slabs->base, "clusters: the set of slabs 2 does not contain object");
 }
 
 RT_TESTS(clusters, NULL, NULL)

@@ -165,7 +165,7 @@ static const Row rows[] = {
 };
 
 static void make_scene(RtScene *scene) {
-    begin_scene(scene);
+    *scene = begin_scene();
     assert_ok(rt_scene_add_sphere(scene, 0, rt_vec3(0.5f, 0.5f, 0.5f), 0.5f, error));
     assert_ok(rt_scene_add_sphere(scene, 0, rt_vec3(3.5f, 0.5f, 0.5f), 0.5f, error));
     assert_ok(rt_scene_finish(scene, error));
@@ -190,12 +190,10 @@ RT_TEST(counters_are_what_was_counted_by_hand) {
     make_scene(&scene);
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         const Row *row = &rows[i];
-        OWNED_ACCEL RtAccel *accel = NULL;
-        OWNED_QUERY query = {0};
         RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
-        assert_ok(rt_accel_open(row->spec, &scene, &accel, error));
+        OWNED_ACCEL RtAccel *accel = open_accel(&scene, row->spec);
         assert_ok(rt_accel_learn(accel, rays, answers, RAY_COUNT, error));
-        assert_ok(rt_query_init(&query, accel, error));
+        OWNED_QUERY query = open_query(accel);
         RtHit hit;
         bool blocked;
         if (row->occluded) {
@@ -215,17 +213,14 @@ RT_TEST(counters_are_what_was_counted_by_hand) {
 RT_TEST(ideal_is_broken_by_answers_that_are_no_objects) {
     OWNED_SCENE scene;
     make_scene(&scene);
-    OWNED_ACCEL RtAccel *accel = NULL;
-    RtError problem = {RT_OK, ""};
     RtHit told[RAY_COUNT];
     for (size_t i = 0; i < RAY_COUNT; i++) told[i] = RT_MISS;
-    assert_ok(rt_accel_open("cache+ideal", &scene, &accel, error));
+    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "cache+ideal");
     assert_ok(rt_accel_learn(accel, rays, told, RAY_COUNT, error));
     assert_ok(rt_accel_validate(accel, error));
     told[1].object = scene.geometry.object_count;
     assert_ok(rt_accel_learn(accel, rays, told, RAY_COUNT, error));
-    assert_int_equal(rt_accel_validate(accel, &problem), RT_MISMATCH);
-    assert_non_null(strstr(problem.message, "ideal: the recorded answer of ray 1"));
+    assert_fails_with(rt_accel_validate(accel, error), RT_MISMATCH, "ideal: the recorded answer of ray 1");
 }
 
 RT_TESTS(counters, NULL, assert_nothing_is_kept)

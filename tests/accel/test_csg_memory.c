@@ -16,14 +16,17 @@ typedef struct Row {
     RtRay rays[RAYS];
 } Row;
 
-static void make_row(Row *row) {
-    RtScene *scene = &row->scene;
-    RtCsgBuilder b = {0};
-    begin_scene(scene);
+static void clear_row(Row *row) {
+    rt_scene_clear(&row->scene);
+}
+
+static Row make_balls(void) {
+    Row row = {.scene = begin_scene()};
+    RtScene *scene = &row.scene;
+    OWNED_BUILDER b = {0};
     RtCsgTerm balls = ball(&b, rt_vec3(0, 0, 0), 1, 0);
     for (int i = 1; i < BALLS; i++) balls = join(&b, balls, ball(&b, rt_vec3(3 * (float)i, 0, 0), 1, 0));
     assert_ok(rt_scene_add_csg(scene, &b, balls, true, error));
-    rt_csg_builder_clear(&b);
     assert_ok(rt_scene_add_light(scene, rt_vec3(0, 0, 9), rt_vec3(1, 1, 1), error));
     look(scene, rt_vec3(-50, 0, 0), rt_vec3(0, 0, 0));
     scene->camera.fov = 1;
@@ -31,9 +34,10 @@ static void make_row(Row *row) {
     assert_ok(rt_scene_finish(scene, error));
     assert_int_equal(scene->geometry.csgs[0].most_crossings, 4 * BALLS);
     for (int i = 0; i < RAYS; i++) {
-        row->rays[i] = ray_along(rt_vec3(-50, 0, 0.25f * (float)i), along_x);
-        row->rays[i].kind = RT_RAY_RANDOM;
+        row.rays[i] = ray_along(rt_vec3(-50, 0, 0.25f * (float)i), along_x);
+        row.rays[i].kind = RT_RAY_RANDOM;
     }
+    return row;
 }
 
 static bool meets(const RtScene *scene, const RtRay *ray, float *t) {
@@ -45,21 +49,20 @@ static bool meets(const RtScene *scene, const RtRay *ray, float *t) {
 /* ---- room ---- */
 
 RT_TEST(the_room_for_hits_is_had_or_it_is_a_status) {
-    Row row;
-    RtError failure;
+    OWNED(clear_row) Row row = make_balls();
     RtGeometry empty = {0};
     RtCrossing *crossings = crossings_of_tests();
     assert_ok(rt_crossings_alloc(&empty, &crossings, error));
     assert_null(crossings);
-    make_row(&row);
     rt_alloc_fail_at(1);
-    assert_int_equal(rt_crossings_alloc(&row.scene.geometry, &crossings, &failure), RT_NO_MEMORY);
+    assert_fails_with(rt_crossings_alloc(&row.scene.geometry, &crossings, error), RT_NO_MEMORY,
+                      "the crossings of a ray");
     assert_null(crossings);
     /* So many that it is not known how many. */
     row.scene.geometry.csgs[0].most_crossings = UINT32_MAX;
-    assert_int_equal(rt_crossings_alloc(&row.scene.geometry, &crossings, &failure), RT_NO_MEMORY);
+    assert_fails_with(rt_crossings_alloc(&row.scene.geometry, &crossings, error), RT_NO_MEMORY,
+                      "the crossings of a ray");
     assert_null(crossings);
-    rt_scene_clear(&row.scene);
 }
 
 /* Runs all four kernels, and computes a normal, while no allocation may succeed. */
@@ -93,9 +96,8 @@ static void trace_without_memory(const char *spec, Row *row, const RtHit *expect
 }
 
 RT_TEST(nothing_is_allocated_while_tracing) {
-    Row row;
+    OWNED(clear_row) Row row = make_balls();
     RtHit expected[RAYS];
-    make_row(&row);
     for (int i = 0; i < RAYS; i++) {
         expected[i] = RT_MISS;
         if (meets(&row.scene, &row.rays[i], &expected[i].t)) expected[i].object = 0;
@@ -106,7 +108,6 @@ RT_TEST(nothing_is_allocated_while_tracing) {
         assert_true(rt_spread_spec(rt_accel_at(i), 0, spec));
         trace_without_memory(spec, &row, expected);
     }
-    rt_scene_clear(&row.scene);
 }
 
 /* ---- every allocation that fails ---- */
@@ -138,9 +139,7 @@ static RtStatus trace_frame(const Row *row, RtError *error) {
     RtFrameOptions options = {.depth = 1, .threads = 1};
     RT_TRY(rt_accel_open("brute", &row->scene, &brute, error));
     RtStatus status = rt_frame_trace(&frame, brute, &options, error);
-    for (size_t i = 0; status == RT_OK && i < (size_t)RAYS * RAYS; i++) {
-        assert_int_equal(frame.object[i], 0);
-    }
+    for (size_t i = 0; status == RT_OK && i < (size_t)RAYS * RAYS; i++) assert_int_equal(frame.object[i], 0);
     if (status == RT_OK) rt_frame_clear(&frame);
     rt_accel_destroy(brute);
     return status;
@@ -166,13 +165,7 @@ static RtStatus ask(const Row *row, RtError *error) {
 }
 
 static RtStatus stack_of_overlays(const Row *row, RtError *error) {
-    RtAccel *accel;
-    RtQuery query;
-    RT_TRY(rt_accel_open("cache+light+bvh", &row->scene, &accel, error));
-    RtStatus status = rt_query_init(&query, accel, error);
-    rt_query_clear(&query);
-    rt_accel_destroy(accel);
-    return status;
+    return try_accel(&row->scene, "cache+light+bvh", error);
 }
 
 /* Of answers that are not brute's, by the referee: the one is right, the other wrong. */
@@ -203,22 +196,18 @@ static RtStatus measure_precision(const Row *row, RtError *error) {
 }
 
 RT_TEST(no_shortage_of_memory_becomes_a_verdict) {
-    Row row;
-    make_row(&row);
+    OWNED(clear_row) Row row = make_balls();
     assert_every_shortage_is_a_status(judge, &row, "exact arithmetic");
     assert_every_shortage_is_a_status(measure_precision, &row, "exact arithmetic");
-    rt_scene_clear(&row.scene);
 }
 
 RT_TEST(no_shortage_of_memory_becomes_a_miss) {
     static const char crossings[] = "the crossings of a ray";
-    Row row;
-    make_row(&row);
+    OWNED(clear_row) Row row = make_balls();
     assert_every_shortage_is_a_status(trace_frame, &row, crossings);
     assert_every_shortage_is_a_status(build_item, &row, crossings);
     assert_every_shortage_is_a_status(ask, &row, crossings);
     assert_every_shortage_is_a_status(stack_of_overlays, &row, crossings);
-    rt_scene_clear(&row.scene);
 }
 
 RT_TESTS(csg_memory, NULL, assert_nothing_is_kept)

@@ -18,32 +18,26 @@ RT_TEST(an_empty_scene_is_hit_by_nothing) {
 }
 
 RT_TEST(a_scene_that_outgrows_its_structure_is_noticed_in_user_mode) {
-    OWNED_SCENE scene;
-    OWNED_ACCEL RtAccel *accel = NULL;
-    make_soup(&scene, 40, 1, 10);
-    assert_ok(rt_accel_open("embree:mode=user", &scene, &accel, error));
-    assert_ok(rt_accel_validate(accel, error));
+    OWNED_SCENE scene = make_soup(40, 1, 10);
+    OWNED_ACCEL RtAccel *accel = open_valid(&scene, "embree:mode=user");
     scene.geometry.box.hi.y += 1;
     assert_broken(accel, "bounds do not contain");
 }
 
 RT_TEST(building_ten_times_leaks_nothing) {
-    OWNED_SCENE scene;
-    make_soup(&scene, 60, 1, 10);
+    OWNED_SCENE scene = make_soup(60, 1, 10);
     int64_t before = rt_alloc_live();
     for (int i = 0; i < 10; i++) {
-        OWNED_ACCEL RtAccel *accel = NULL;
         RtDescription description;
-        assert_ok(rt_accel_open(i % 2 ? "embree" : "embree:mode=user", &scene, &accel, error));
+        OWNED_ACCEL RtAccel *accel = open_accel(&scene, i % 2 ? "embree" : "embree:mode=user");
         accel->ops->describe(accel, &description);
         assert_true(description.bytes > 1000 && description.bytes < 1000000);
         assert_int_equal(description.references, 60);
     }
     for (uint64_t nth = 1; nth <= 2; nth++) {
         RtAccel *accel;
-        RtError error;
         rt_alloc_fail_at(nth);
-        assert_int_equal(rt_accel_open("embree", &scene, &accel, &error), RT_NO_MEMORY);
+        assert_fails_with(rt_accel_open("embree", &scene, &accel, error), RT_NO_MEMORY, "out of memory");
     }
     rt_alloc_fail_at(0);
     assert_int_equal(rt_alloc_live(), before);
@@ -52,28 +46,22 @@ RT_TEST(building_ten_times_leaks_nothing) {
 #ifdef RT_WITH_EMBREE
 
 RT_TEST(an_error_of_the_device_is_known_after_tracing) {
-    OWNED_SCENE scene;
-    OWNED_ACCEL RtAccel *accel = NULL;
-    RtError failure;
-    make_soup(&scene, 40, 1, 10);
-    assert_ok(rt_accel_open("cache+embree", &scene, &accel, error));
+    OWNED_SCENE scene = make_soup(40, 1, 10);
+    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "cache+embree");
     assert_ok(rt_accel_check(accel, error));
     RTCDevice device = ((const RtEmbree *)accel->below)->device.device;
     rtcSetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION, 1);
-    assert_int_equal(rt_accel_check(accel, &failure), RT_MISMATCH);
-    assert_non_null(strstr(failure.message, "Embree reports error 2"));
+    assert_fails_with(rt_accel_check(accel, error), RT_MISMATCH, "Embree reports error 2");
 }
 
 /* The count of its memory monitor, and our indices of triangles if there are triangles. */
 RT_TEST(its_bytes_are_what_it_has_allocated_and_our_arrays) {
     static const char *const specs[] = {"embree", "embree:mode=user"};
-    OWNED_SCENE scene;
-    make_soup(&scene, 60, 1, 10);
+    OWNED_SCENE scene = make_soup(60, 1, 10);
     assert_int_equal(scene.geometry.triangle_count, 12);
     for (int i = 0; i < 2; i++) {
-        OWNED_ACCEL RtAccel *accel = NULL;
         RtDescription description;
-        assert_ok(rt_accel_open(specs[i], &scene, &accel, error));
+        OWNED_ACCEL RtAccel *accel = open_accel(&scene, specs[i]);
         rt_accel_describe(accel, &description);
         uint64_t counted = (uint64_t)((const RtEmbree *)accel)->device.bytes;
         assert_true(counted > 1000);

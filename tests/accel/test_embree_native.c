@@ -6,11 +6,12 @@
 #include "scenes/open.h"
 #include "verify/failure.h"
 
-static void make_triangles(RtScene *scene, uint32_t count) {
+static RtScene make_triangles(uint32_t count) {
     RtRandom random = rt_random(7, 2);
-    begin_scene(scene);
-    for (uint32_t i = 0; i < count; i++) add_triangle(scene, &random, 1, 0.3f);
-    assert_ok(rt_scene_finish(scene, error));
+    RtScene scene = begin_scene();
+    for (uint32_t i = 0; i < count; i++) add_triangle(&scene, &random, 1, 0.3f);
+    assert_ok(rt_scene_finish(&scene, error));
+    return scene;
 }
 
 /* Rays between random points, past edges and corners at ordinary distances; dir short and long. */
@@ -33,8 +34,7 @@ RT_TEST(native_mode_agrees_with_brute_on_triangles) {
         "embree",           "embree:query=8",  "embree:query=16",     "embree:query=stream",
         "embree:robust=on", "embree:isa=sse2", "embree:quality=high", "embree:quality=low",
     };
-    OWNED_SCENE scene;
-    make_triangles(&scene, 500);
+    OWNED_SCENE scene = make_triangles(500);
     OWNED_RAYS rays = make_plain_rays(20000, 1);
     OWNED_ANSWERS right = ask(&scene, "brute", rays, false);
     for (size_t s = 0; s < sizeof specs / sizeof specs[0]; s++) {
@@ -55,8 +55,7 @@ RT_TEST(native_mode_agrees_with_brute_on_triangles) {
 }
 
 RT_TEST(native_mode_sees_every_shape) {
-    OWNED_SCENE scene;
-    make_soup(&scene, 80, 1, 10);
+    OWNED_SCENE scene = make_soup(80, 1, 10);
     OWNED_RAYS rays = make_plain_rays(20000, 10);
     Answers right = ask(&scene, "brute", rays, false), got = ask(&scene, "embree", rays, false);
     size_t seen[RT_SHAPE_COUNT] = {0}, agreed[RT_SHAPE_COUNT] = {0};
@@ -69,9 +68,8 @@ RT_TEST(native_mode_sees_every_shape) {
     }
     for (size_t s = 0; s < RT_SHAPE_COUNT; s++) {
         assert_true(seen[s] > 100);
-        if ((double)agreed[s] < 0.999 * (double)seen[s]) {
+        if ((double)agreed[s] < 0.999 * (double)seen[s])
             fail_msg("%s: only %zu of %zu agree", rt_shape_name((RtShape)s), agreed[s], seen[s]);
-        }
     }
     forget(&right);
     forget(&got);
@@ -85,15 +83,13 @@ RT_TEST(native_mode_takes_every_valid_ray) {
                                         "embree:query=stream",
                                         "embree:query=8,robust=on",
                                         "embree:query=stream,isa=avx"};
-    OWNED_SCENE scene;
-    make_soup(&scene, 60, 2, 10);
+    OWNED_SCENE scene = make_soup(60, 2, 10);
     OWNED_RAYS rays = make_rays(&scene, 50000, 10, 3);
     for (size_t s = 0; s < sizeof specs / sizeof specs[0]; s++) {
         if (!embree_has(specs[s])) continue;
         OWNED_ANSWERS got = ask(&scene, specs[s], rays, false);
-        for (size_t i = 0; i < rays.count; i++) {
+        for (size_t i = 0; i < rays.count; i++)
             assert_true(got.hits[i].object == RT_NO_OBJECT ? isinf(got.hits[i].t) : isfinite(got.hits[i].t));
-        }
     }
 }
 

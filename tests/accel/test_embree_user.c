@@ -10,8 +10,7 @@ RT_TEST(user_mode_is_brute_bit_for_bit_by_every_query) {
         "embree:mode=user,query=16,robust=on", "embree:mode=user,query=16,robust=off",
         "embree:mode=user,query=stream",       "embree:mode=user,query=stream,robust=on",
     };
-    OWNED_SCENE scene;
-    make_soup(&scene, 60, 2, 10);
+    OWNED_SCENE scene = make_soup(60, 2, 10);
     OWNED_RAYS rays = make_rays(&scene, 100003, 10, 3);
     compare_with_brute(&scene, rays, specs, sizeof specs / sizeof specs[0]);
 }
@@ -21,8 +20,7 @@ RT_TEST(user_mode_is_brute_by_every_isa_and_quality) {
     static const char *const isas[] = {"sse2", "sse4.2", "avx", "avx2", "avx512"};
     static const char *const qualities[] = {"low", "medium", "high"};
     static const char *const queries[] = {"1", "8", "16", "stream"};
-    OWNED_SCENE scene;
-    make_soup(&scene, 40, 2, 1000);
+    OWNED_SCENE scene = make_soup(40, 2, 1000);
     OWNED_RAYS rays = make_rays(&scene, 5000, 1000, 20);
     for (size_t i = 0; i < 60; i++) {
         char spec[RT_MAX_SPEC_CHARS];
@@ -37,8 +35,7 @@ RT_TEST(user_mode_is_brute_in_scenes_of_every_size_and_from_far_away) {
     static const float sizes[] = {1e-12f, 1e-6f, 1e6f, 1e12f};
     static const char *const specs[] = {"embree:mode=user", "embree:mode=user,query=16"};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
-        OWNED_SCENE scene;
-        make_soup(&scene, 40, 1, sizes[i]);
+        OWNED_SCENE scene = make_soup(40, 1, sizes[i]);
         OWNED_RAYS rays = make_rays(&scene, 4000, sizes[i], i % 2 ? 3 : 1e5f);
         compare_with_brute(&scene, rays, specs, 2);
     }
@@ -48,8 +45,7 @@ RT_TEST(user_mode_is_brute_in_scenes_of_every_size_and_from_far_away) {
 RT_TEST(user_mode_finds_hits_at_the_very_ends_of_the_interval) {
     static const char *const specs[] = {"embree:mode=user", "embree:mode=user,query=8,robust=on",
                                         "embree:mode=user,query=16", "embree:mode=user,query=stream"};
-    OWNED_SCENE scene;
-    make_soup(&scene, 60, 2, 10);
+    OWNED_SCENE scene = make_soup(60, 2, 10);
     OWNED_RAYS rays = make_rays(&scene, 10000, 10, 3);
     OWNED_ANSWERS hit = ask(&scene, "brute", rays, false);
     for (size_t i = 0; i < rays.count; i++) {
@@ -70,8 +66,7 @@ RT_TEST(user_mode_is_brute_where_t_is_denormal) {
     static const float sizes[] = {1e-9f, 1e-8f, 1e-7f};
     static const char *const specs[] = {"embree:mode=user", "embree:mode=user,query=16"};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
-        OWNED_SCENE scene;
-        make_soup(&scene, 40, 1, sizes[i]);
+        OWNED_SCENE scene = make_soup(40, 1, sizes[i]);
         OWNED_RAYS rays = make_rays(&scene, 4000, sizes[i], 3);
         for (size_t k = 0; k < rays.count; k++) {
             RtRay *ray = &rays.rays[k];
@@ -86,8 +81,7 @@ RT_TEST(user_mode_is_brute_where_t_is_denormal) {
 }
 
 RT_TEST(user_mode_counts_tests_where_it_is_asked_to) {
-    OWNED_SCENE scene;
-    make_soup(&scene, 60, 1, 10);
+    OWNED_SCENE scene = make_soup(60, 1, 10);
     OWNED_RAYS rays = make_rays(&scene, 100 * RT_RAY_KIND_COUNT, 10, 3);
     Answers brute = ask(&scene, "brute", rays, true), user = ask(&scene, "embree:mode=user", rays, true);
     for (size_t kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {

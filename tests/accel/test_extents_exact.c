@@ -2,8 +2,7 @@
 /* accel/extents: exact for every kind of extent where hits are least certain. */
 #include "equivalence_testing.h"
 #include "extents_testing.h"
-
-#include "core/base/random.h"
+#include "random_testing.h"
 
 /* ---- a soup of everything that is hard ---- */
 
@@ -42,9 +41,8 @@ static void add_cones(RtScene *scene, RtRandom *random, RtVec3 center) {
 }
 
 static RtScene make_soup(uint64_t seed, float shift) {
-    RtScene scene;
     RtRandom random = rt_random(seed, 0);
-    begin_scene(&scene);
+    RtScene scene = begin_scene();
     for (int i = 0; i < 6; i++) {
         RtVec3 center = rt_add(rt_random_point(&random, 1), rt_vec3(shift, 0, -shift));
         RtRandom again = random;
@@ -74,9 +72,8 @@ static RtVec3 delicate_point(const RtGeometry *geometry, uint32_t id, RtRandom *
     if (bits & 8) return corner;
     if (bits & 16) return rt_box_center(*box);
     if (rt_ref_shape(ref) == RT_SHAPE_TRIANGLE) return geometry->triangles[index].v[bits % 3];
-    if (rt_ref_shape(ref) == RT_SHAPE_POLYGON) {
+    if (rt_ref_shape(ref) == RT_SHAPE_POLYGON)
         return geometry->polygon_vertices[geometry->polygons[index].first + bits % 5];
-    }
     RtVec3d direction = rt_random_direction(random);
     if (rt_ref_shape(ref) == RT_SHAPE_SPHERE) {
         const RtSphere *sphere = &geometry->spheres[index];
@@ -123,25 +120,22 @@ static RtRay make_ray(const RtGeometry *geometry, RtRandom *random) {
 enum { RAYS = 6000 };
 
 static void compare_with_brute(const RtScene *scene, const RtRay *rays) {
-    RtAccel *brute;
     RtReference reference;
-    assert_ok(rt_accel_open("brute", scene, &brute, error));
+    OWNED_ACCEL RtAccel *brute = open_accel(scene, "brute");
     assert_ok(rt_reference_init(&reference, brute, rays, RAYS, 0, error));
     for (int s = 0; s < SPEC_COUNT; s++) assert_gives(&reference, specs[s]);
     rt_reference_clear(&reference);
-    rt_accel_destroy(brute);
 }
 
 static void check_soup(uint64_t seed, float shift) {
     static RtRay rays[RAYS];
-    RtScene scene = make_soup(seed, shift);
+    OWNED_SCENE scene = make_soup(seed, shift);
     RtRandom random = rt_random(seed, 1);
     for (int i = 0; i < RAYS; i++) {
         rays[i] = make_ray(&scene.geometry, &random);
         assert_true(rt_ray_is_valid(&rays[i]));
     }
     compare_with_brute(&scene, rays);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(every_kind_answers_like_brute_on_soups_of_all_shapes) {
@@ -164,8 +158,7 @@ static RtVec3 least_point(RtRandom *random) {
 RT_TEST(every_kind_answers_like_brute_among_the_least_numbers) {
     static RtRay rays[RAYS];
     RtRandom random = rt_random(5, 0);
-    RtScene scene;
-    begin_scene(&scene);
+    OWNED_SCENE scene = begin_scene();
     for (int i = 0; i < 40; i++) {
         RtVec3 v[3];
         for (int k = 0; k < 3; k++) v[k] = least_point(&random);
@@ -178,30 +171,24 @@ RT_TEST(every_kind_answers_like_brute_among_the_least_numbers) {
     }
     strcpy(scene.name, "the least numbers");
     compare_with_brute(&scene, rays);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(a_scene_without_objects_is_missed) {
-    RtScene scene;
+    OWNED_SCENE scene;
     rt_scene_init(&scene);
     assert_ok(rt_scene_finish(&scene, error));
     RtRay ray = {.dir = {{0, 0, 1}}, .tmax = INFINITY};
     for (int s = 0; s < SPEC_COUNT; s++) {
-        RtAccel *accel;
-        RtQuery query;
         RtHit hit;
         RtDescription description;
-        assert_ok(rt_accel_open(specs[s], &scene, &accel, error));
+        OWNED_ACCEL RtAccel *accel = open_accel(&scene, specs[s]);
         assert_ok(accel->ops->validate(accel, error));
         accel->ops->describe(accel, &description);
         assert_int_equal(description.references, 0);
-        assert_ok(rt_query_init(&query, accel, error));
+        OWNED_QUERY query = open_query(accel);
         rt_nearest(&query, &ray, 1, &hit, NULL);
         assert_int_equal(hit.object, RT_NO_OBJECT);
-        rt_query_clear(&query);
-        rt_accel_destroy(accel);
     }
-    rt_scene_clear(&scene);
 }
 
 RT_TESTS(extents_exact, NULL, NULL)

@@ -3,24 +3,18 @@
 #include "accel_testing.h"
 
 #include "accel/grid/grid.h"
-#include "core/base/memory.h"
-
-#include <stdio.h>
-#include <string.h>
 
 static void assert_resolution(const RtScene *scene, const char *spec, uint32_t x, uint32_t y, uint32_t z) {
     OWNED_ACCEL RtGrid *grid = open_valid(scene, spec);
     const RtGridBlock *block = grid->levels[0].blocks;
-    if (block->n[0] != x || block->n[1] != y || block->n[2] != z) {
+    if (block->n[0] != x || block->n[1] != y || block->n[2] != z)
         fail_msg("%s gave %ux%ux%u", spec, block->n[0], block->n[1], block->n[2]);
-    }
     assert_ok(rt_grid_validate(&grid->base, error));
 }
 
 /* A box of 8 x 4 x 2 with 64 spheres in it. */
 RT_TEST(the_rules_of_resolution_give_what_their_formulas_say) {
-    OWNED_SCENE scene;
-    make_lattice(&scene, 8, 4, 2);
+    OWNED_SCENE scene = make_lattice(8, 4, 2);
     assert_resolution(&scene, "grid:density=1", 8, 4, 2);
     assert_resolution(&scene, "grid:density=8", 16, 8, 4);
     assert_resolution(&scene, "grid:rule=woo,density=1", 4, 2, 1); /* 4 = cbrt(64) along the longest side */
@@ -36,8 +30,7 @@ RT_TEST(the_rules_of_resolution_give_what_their_formulas_say) {
 /* Spheres touch at the planes halfway. A voxel contains its lower planes but not its upper ones: along each
  * axis the lower sphere is in both voxels, the upper one only in its own. */
 RT_TEST(a_voxel_holds_its_lower_planes) {
-    OWNED_SCENE scene;
-    make_lattice(&scene, 2, 2, 2);
+    OWNED_SCENE scene = make_lattice(2, 2, 2);
     OWNED_ACCEL RtGrid *grid = open_valid(&scene, "grid:resolution=2x2x2");
     RtDescription description;
     rt_grid_describe(&grid->base, &description);
@@ -48,56 +41,33 @@ RT_TEST(a_voxel_holds_its_lower_planes) {
 }
 
 RT_TEST(validate_names_each_invariant_that_is_broken) {
-    OWNED_SCENE scene;
-    make_lattice(&scene, 4, 4, 4);
+    OWNED_SCENE scene = make_lattice(4, 4, 4);
     OWNED_ACCEL RtGrid *grid = open_valid(&scene, "grid:resolution=8x8x8");
     RtGridLevel *level = &grid->levels[0];
-    RtGridBlock *block = level->blocks;
-    assert_ok(rt_grid_validate(&grid->base, error));
-
-    float plane = block->planes[1][3];
-    block->planes[1][3] = 100;
-    assert_broken(&grid->base, "lies behind");
-    block->planes[1][3] = plane;
-    float ends[2] = {block->planes[2][0], block->planes[2][8]};
-    block->planes[2][0] += 1e-3f;
-    assert_broken(&grid->base, "planes of axis 2 do not enclose its box");
-    block->planes[2][0] = ends[0];
-    block->planes[2][8] -= 1e-3f;
-    assert_broken(&grid->base, "planes of axis 2 do not enclose its box");
-    block->planes[2][8] = ends[1];
-
-    RtBox box = grid->box;
-    grid->box.hi.z -= 1;
-    assert_broken(&grid->base, "does not contain the scene");
-    grid->box = box;
-
-    uint32_t first = level->first[10];
-    level->first[10] = 0;
-    assert_broken(&grid->base, "is broken");
-    level->first[10] = first;
-
-    uint32_t last = level->first[11] - 1, id = level->ids[last];
-    level->ids[last] = 63;
-    assert_broken(&grid->base, "which it does not touch");
-    level->ids[last] = 64;
-    assert_broken(&grid->base, "not ascending ids");
-    level->ids[last] = id;
+    float *y = level->blocks->planes[1], *z = level->blocks->planes[2];
+    const RtAccel *accel = &grid->base;
+    assert_broken_by(accel, y[3], 100, "lies behind");
+    assert_broken_by(accel, z[0], z[0] + 1e-3f, "planes of axis 2 do not enclose its box");
+    assert_broken_by(accel, z[8], z[8] - 1e-3f, "planes of axis 2 do not enclose its box");
+    assert_broken_by(accel, grid->box.hi.z, grid->box.hi.z - 1, "does not contain the scene");
+    assert_broken_by(accel, level->first[10], 0, "is broken");
+    uint32_t *last = &level->ids[level->first[11] - 1];
+    assert_broken_by(accel, *last, 63, "which it does not touch");
+    assert_broken_by(accel, *last, 64, "not ascending ids");
+    assert_ok(rt_grid_validate(accel, error));
 
     /* The first list without its first object. */
     memmove(level->ids, level->ids + 1, (level->first[512] - 1) * sizeof(uint32_t));
     for (uint32_t v = 1; v <= 512; v++) level->first[v]--;
-    assert_broken(&grid->base, "voxels, but");
+    assert_broken(accel, "voxels, but");
 }
 
 RT_TEST(a_grid_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {
-    OWNED_SCENE scene;
-    make_lattice(&scene, 2, 2, 2);
+    OWNED_SCENE scene = make_lattice(2, 2, 2);
     RtAccel *accel;
     RtError refusal = {RT_OK, ""};
     int64_t live = rt_alloc_live();
-    assert_int_equal(rt_accel_open("grid:resolution=2000x2000x2000", &scene, &accel, &refusal), RT_BAD_INPUT);
-    assert_non_null(strstr(refusal.message, "would fit"));
+    assert_bad_input(rt_accel_open("grid:resolution=2000x2000x2000", &scene, &accel, error), "would fit");
     assert_int_equal(rt_alloc_live(), live);
     assert_int_equal(rt_accel_open("grid:density=1e6,resolution=4096x4096x4096", &scene, &accel, &refusal),
                      RT_BAD_INPUT);

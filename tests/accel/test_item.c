@@ -3,48 +3,38 @@
 #include "item_testing.h"
 
 #include "scenes/builtin.h"
-#include "scenes/open.h"
 
 #include <math.h>
-#include <string.h>
 
 /* ---- what is decided ---- */
 
 static void check_decided(const RtScene *scene, const char *name, const char *how) {
-    RtAccel *accel;
-    RtFrame frame;
+    OWNED_FRAME frame;
     RtFrameOptions options = {.depth = 1, .counted = true};
-    assert_ok(rt_accel_open("item+bvh", scene, &accel, error));
+    OWNED_ACCEL RtAccel *accel = open_accel(scene, "item+bvh");
     assert_ok(rt_frame_trace(&frame, accel, &options, error));
     const RtTally *tally = &frame.tallies[RT_RAY_PRIMARY];
     double share = 1 - (double)tally->passed_on / (double)tally->rays;
     if (!(share >= 0.97)) fail_msg("%s %s: %.2f %% are decided", name, how, 100 * share);
-    rt_frame_clear(&frame);
-    rt_accel_destroy(accel);
 }
 
 RT_TEST(nearly_all_primary_rays_of_every_builtin_scene_are_decided) {
     for (size_t i = 0; i < rt_builtin_count(); i += RT_SHARE(1, 5)) {
-        RtScene scene;
         const char *name = rt_builtin_at(i)->name;
-        assert_ok(rt_scene_open(name, &scene, error));
+        OWNED_SCENE scene = open_scene(name);
         check_decided(&scene, name, "at pixel centres");
         assert_ok(rt_scene_sample(&scene, 0, 0, 1, true, error));
         check_decided(&scene, name, "at pixel corners");
-        rt_scene_clear(&scene);
     }
 }
 
 RT_TEST(a_decided_ray_makes_at_most_one_object_test) {
-    RtScene scene;
-    RtAccel *accel;
-    RtQuery query;
     RtView view;
-    assert_ok(rt_scene_open("random:n=300,shape=mixed", &scene, error));
+    OWNED_SCENE scene = open_scene("random:n=300,shape=mixed");
     assert_ok(rt_scene_sample(&scene, 64, 48, 1, false, error));
     assert_ok(rt_view_init(&view, &scene.camera, scene.sampling, error));
-    assert_ok(rt_accel_open("item+bvh", &scene, &accel, error));
-    assert_ok(rt_query_init(&query, accel, error));
+    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "item+bvh");
+    OWNED_QUERY query = open_query(accel);
     uint32_t nothing = 0, seen = 0;
     for (uint32_t i = 0; i < 64 * 48; i++) {
         RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
@@ -59,9 +49,6 @@ RT_TEST(a_decided_ray_makes_at_most_one_object_test) {
         seen += hit.object != RT_NO_OBJECT;
     }
     assert_true(nothing > 100 && seen > 100);
-    rt_query_clear(&query);
-    rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(every_way_to_sample_an_image_is_answered_like_brute) {
@@ -70,21 +57,18 @@ RT_TEST(every_way_to_sample_an_image_is_answered_like_brute) {
         bool corners;
     } ways[] = {{1, 1, 1, false},  {1, 1, 1, true},    {1, 40, 2, false},
                 {40, 1, 3, false}, {17, 23, 4, false}, {33, 20, 1, true}};
-    RtScene scene;
-    assert_ok(rt_scene_open("random:n=100,shape=mixed", &scene, error));
+    OWNED_SCENE scene = open_scene("random:n=100,shape=mixed");
     for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
         assert_ok(
             rt_scene_sample(&scene, ways[i].width, ways[i].height, ways[i].samples, ways[i].corners, error));
         assert_true(decided_share(&scene) >= 0.97);
     }
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(a_scene_without_objects_is_nothing_everywhere) {
-    RtScene scene;
     RtDescription d;
     RtAccel *accel;
-    begin_view(&scene);
+    RtScene scene = begin_view();
     assert_ok(rt_scene_finish(&scene, error));
     assert_ok(rt_accel_open("item+brute", &scene, &accel, error));
     rt_accel_describe(accel, &d);
@@ -98,38 +82,31 @@ RT_TEST(a_scene_without_objects_is_nothing_everywhere) {
 /* One ball: whoever settles asks for it once for each sample that it may be in, and finds it where it is. */
 RT_TEST(what_is_asked_while_building_is_tallied_apart) {
     static const char *const specs[] = {"item:settle=off+brute", "item+brute", "cache+item+brute"};
-    RtScene scene;
-    begin_view(&scene);
+    OWNED_SCENE scene = begin_view();
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
     assert_ok(rt_scene_finish(&scene, error));
     for (int i = 0; i < 3; i++) {
         RtDescription d;
-        RtAccel *accel;
-        assert_ok(rt_accel_open(specs[i], &scene, &accel, error));
+        OWNED_ACCEL RtAccel *accel = open_accel(&scene, specs[i]);
         rt_accel_describe(accel, &d);
         uint64_t named = d.references - 1; /* the other reference is brute's */
         assert_int_equal(named > 0, i > 0);
         assert_int_equal(d.build.object_hits, named);
         assert_true(d.build.object_tests >= d.build.object_hits && d.build.object_tests < 48 * 36);
         assert_int_equal(d.build.rays, 0);
-        rt_accel_destroy(accel);
     }
-    rt_scene_clear(&scene);
 }
 
 /* ---- what is passed on ---- */
 
 RT_TEST(rays_that_are_not_of_a_sample_are_passed_on) {
-    RtScene scene;
-    RtAccel *accel;
-    RtQuery query;
     RtView view;
-    begin_view(&scene);
+    OWNED_SCENE scene = begin_view();
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
     assert_ok(rt_scene_finish(&scene, error));
     assert_ok(rt_view_init(&view, &scene.camera, scene.sampling, error));
-    assert_ok(rt_accel_open("item+brute", &scene, &accel, error));
-    assert_ok(rt_query_init(&query, accel, error));
+    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "item+brute");
+    OWNED_QUERY query = open_query(accel);
     enum { RAYS = 9 };
     RtRay own = rt_view_ray(&view, 24, 18), rays[RAYS];
     for (int i = 0; i < RAYS; i++) rays[i] = own;
@@ -162,29 +139,20 @@ RT_TEST(rays_that_are_not_of_a_sample_are_passed_on) {
     assert_int_equal(tallies[RT_RAY_PRIMARY].passed_on, 7);
     assert_int_equal(tallies[RT_RAY_PRIMARY].rays, 8);
     assert_int_equal(tallies[RT_RAY_REFLECTION].rays, 1);
-    rt_query_clear(&query);
-    rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(a_frame_of_another_sampling_is_passed_on_whole_and_right) {
-    RtScene scene;
-    RtAccel *accel;
-    RtFrame frame;
+    OWNED_FRAME frame;
     RtFrameOptions options = {.depth = 1, .threads = 1, .counted = true};
-    begin_view(&scene);
+    OWNED_SCENE scene = begin_view();
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
     assert_ok(rt_scene_finish(&scene, error));
-    assert_ok(rt_accel_open("item+brute", &scene, &accel, error));
+    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "item+brute");
     assert_ok(rt_scene_sample(&scene, 31, 19, 1, false, error));
-    RtFrame right = trace("brute", &scene, false);
+    OWNED_FRAME right = trace("brute", &scene, false);
     assert_ok(rt_frame_trace(&frame, accel, &options, error));
     assert_int_equal(frame.tallies[RT_RAY_PRIMARY].passed_on, 31 * 19);
     assert_memory_equal(frame.depth, right.depth, sizeof(float) * 31 * 19);
-    rt_frame_clear(&frame);
-    rt_frame_clear(&right);
-    rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
 }
 
 /* ---- limits, and invariants broken ---- */
@@ -196,41 +164,28 @@ RT_TEST(too_many_samples_are_refused_with_a_number_that_fits) {
     } sizes[] = {{32768, 32768, 1, "an image of 3275"},
                  {32768, 32768, 64, "an image of"},
                  {2048, 2048, 64, "15 samples along the side"}};
-    RtScene scene;
-    begin_view(&scene);
+    OWNED_SCENE scene = begin_view();
     assert_ok(rt_scene_finish(&scene, error));
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         RtAccel *accel;
         assert_ok(rt_scene_sample(&scene, sizes[i].width, sizes[i].height, sizes[i].samples, false, error));
-        RtError error = {RT_OK, ""};
-        assert_int_equal(rt_accel_open("item+brute", &scene, &accel, &error), RT_BAD_INPUT);
-        if (!strstr(error.message, sizes[i].says)) fail_msg("%s", error.message);
+        assert_bad_input(rt_accel_open("item+brute", &scene, &accel, error), sizes[i].says);
     }
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(each_broken_invariant_is_named) {
-    RtScene scene;
-    RtAccel *accel;
-    begin_view(&scene);
+    OWNED_SCENE scene = begin_view();
     look(&scene, rt_vec3(0, -8, 0), rt_vec3(0, 0, 0));
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 4, 0), 1, error));
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
     assert_ok(rt_scene_finish(&scene, error));
-    assert_ok(rt_accel_open("item+brute", &scene, &accel, error));
+    OWNED_ACCEL RtAccel *accel = open_valid(&scene, "item+brute");
+    uint32_t *middle = &((RtItemBuffer *)accel)->samples[18 * 48 + 24];
+    assert_int_equal(*middle, 1);
+    assert_broken_by(accel, *middle, 0, "hits object 1");
+    assert_broken_by(accel, *middle, RT_NO_OBJECT, "hits object");
+    assert_broken_by(accel, *middle, 2, "names object 2");
     assert_ok(rt_accel_validate(accel, error));
-    uint32_t *middle = &((RtItemBuffer *)accel)->samples[18 * 48 + 24], kept = *middle;
-    assert_int_equal(kept, 1);
-    *middle = 0;
-    assert_broken(accel, "hits object 1");
-    *middle = RT_NO_OBJECT;
-    assert_broken(accel, "hits object");
-    *middle = 2;
-    assert_broken(accel, "names object 2");
-    *middle = kept;
-    assert_ok(rt_accel_validate(accel, error));
-    rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
 }
 
 RT_TESTS(item, NULL, assert_nothing_is_kept)

@@ -10,8 +10,7 @@
 RT_TEST(polygons_through_the_plane_of_the_eye_are_drawn_right) {
     const RtVec3 floor[4] = {{{-50, -50, 0}}, {{50, -50, 0}}, {{50, 50, 0}}, {{-50, 50, 0}}};
     const RtVec3 wall[3] = {{{2, -30, -1}}, {{2, 30, -1}}, {{2, 5, 9}}};
-    RtScene scene;
-    begin_view(&scene);
+    RtScene scene = begin_view();
     look(&scene, rt_vec3(0, 0, 1.5f), rt_vec3(0.2f, 4, 1));
     scene.camera.fov = 100;
     assert_ok(rt_scene_add_polygon(&scene, 0, floor, 4, error));
@@ -24,8 +23,7 @@ RT_TEST(polygons_through_the_plane_of_the_eye_are_drawn_right) {
 RT_TEST(objects_all_around_the_eye_are_drawn_right) {
     RtRandom random = rt_random(11, 0);
     for (int k = 0; k < 24; k++) {
-        RtScene scene;
-        begin_view(&scene);
+        RtScene scene = begin_view();
         scene.camera.fov = k % 3 == 0 ? 170 : k % 3 == 1 ? 60 : 179.9999f;
         scene.camera.near = k % 4 == 0 ? 0.25f : 0;
         scene.camera.up = rt_vec3(0.1f, 0.3f, 1);
@@ -33,10 +31,9 @@ RT_TEST(objects_all_around_the_eye_are_drawn_right) {
         look(&scene, eye, rt_narrow(rt_addd(rt_widen(eye), rt_random_direction(&random))));
         for (int i = 0; i < 60; i++) {
             RtVec3 p[4];
-            for (int j = 0; j < 4; j++) {
+            for (int j = 0; j < 4; j++)
                 p[j] =
                     rt_narrow(rt_addd(rt_widen(eye), rt_scaled(rt_random_direction(&random), 0.1 * (i + 1))));
-            }
             if (i % 3 == 0) assert_ok(rt_scene_add_triangle(&scene, 0, p, NULL, error));
             if (i % 3 == 1) assert_ok(rt_scene_add_sphere(&scene, 0, p[0], 0.02f * (float)(i + 1), error));
             if (i % 6 == 2) assert_ok(rt_scene_add_cone(&scene, 0, p[0], 0.1f, p[1], 0.3f, error));
@@ -47,8 +44,7 @@ RT_TEST(objects_all_around_the_eye_are_drawn_right) {
 }
 
 RT_TEST(an_eye_inside_a_sphere_sees_its_inside) {
-    RtScene scene;
-    begin_view(&scene);
+    RtScene scene = begin_view();
     look(&scene, rt_vec3(0.5f, 0, 0), rt_vec3(-1, 0.25f, 0.5f));
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 2, error));
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(-1, 0, 0), 0.5f, error));
@@ -59,8 +55,7 @@ RT_TEST(an_eye_in_the_plane_of_a_polygon_or_at_its_corner_is_no_trouble) {
     const RtVec3 square[4] = {{{-1, -1, 0}}, {{1, -1, 0}}, {{1, 1, 0}}, {{-1, 1, 0}}};
     const RtVec3 eyes[] = {{{0, -4, 0}}, {{0, 0, 0}}, {{-1, -1, 0}}, {{0, -4, 1e-6f}}, {{0, 0, 1e-5f}}};
     for (size_t i = 0; i < sizeof eyes / sizeof eyes[0]; i++) {
-        RtScene scene;
-        begin_view(&scene);
+        RtScene scene = begin_view();
         look(&scene, eyes[i], rt_vec3(0.125f, 0.25f, i == 4 ? -0.5f : 0));
         assert_ok(rt_scene_add_polygon(&scene, 0, square, 4, error));
         assert_ok(rt_scene_add_triangle(&scene, 0, square, NULL, error));
@@ -73,8 +68,7 @@ RT_TEST(an_eye_in_the_plane_of_a_polygon_or_at_its_corner_is_no_trouble) {
  * undecided is no nearer than it says, for the floor, no longer named, is one of the others. */
 RT_TEST(an_undecided_sample_says_from_where_on_all_objects_are) {
     const RtVec3 floor[4] = {{{-50, -50, 0}}, {{50, -50, 0}}, {{50, 50, 0}}, {{-50, 50, 0}}};
-    RtScene scene;
-    begin_view(&scene);
+    RtScene scene = begin_view();
     look(&scene, rt_vec3(0, 0, 0x1p-10f), rt_vec3(0, 8, 0x1p-10f));
     scene.camera.fov = 0.1f;
     assert_ok(rt_scene_add_polygon(&scene, 0, floor, 4, error));
@@ -85,22 +79,20 @@ RT_TEST(an_undecided_sample_says_from_where_on_all_objects_are) {
 /* 5 x 5 samples of a picture 2 wide at distance 1: one every 0.4, the middle one on the axis. */
 RT_TEST(an_object_smaller_than_a_sample_is_seen_on_one_and_not_between) {
     for (int on = 0; on < 2; on++) {
-        RtScene scene;
         float x = on ? 0 : 0.2f;
         const RtVec3 triangle[3] = {{{x - 1e-4f, 1, -1e-4f}}, {{x + 1e-4f, 1, -1e-4f}}, {{x, 1, 1e-4f}}};
-        begin_view(&scene);
+        RtScene scene = begin_view();
         scene.camera.width = scene.camera.height = 5;
         scene.camera.fov = 90;
         look(&scene, rt_vec3(0, 0, 0), rt_vec3(0, 1, 0));
         assert_ok(rt_scene_add_triangle(&scene, 0, triangle, NULL, error));
         assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(-0.8f + x, 2, 0), 1e-4f, error));
         assert_ok(rt_scene_finish(&scene, error));
-        RtFrame frame = trace("item+brute", &scene, true);
+        OWNED_FRAME frame = trace("item+brute", &scene, true);
         assert_int_equal(frame.tallies[RT_RAY_PRIMARY].passed_on, 0);
         assert_int_equal(frame.tallies[RT_RAY_PRIMARY].hits, on ? 2 : 0);
         assert_int_equal(frame.object[12], on ? 0 : RT_NO_OBJECT);
         assert_int_equal(frame.object[11], on ? 1 : RT_NO_OBJECT);
-        rt_frame_clear(&frame);
         check_finished(&scene, 1);
     }
 }
@@ -108,8 +100,7 @@ RT_TEST(an_object_smaller_than_a_sample_is_seen_on_one_and_not_between) {
 /* The same square several times, last ids in front by 0 to 4 ulps of its depth. */
 RT_TEST(coincident_and_nearly_coplanar_polygons_are_told_apart) {
     for (int ulps = 0; ulps <= 4; ulps++) {
-        RtScene scene;
-        begin_view(&scene);
+        RtScene scene = begin_view();
         look(&scene, rt_vec3(0.3f, -7, 0.2f), rt_vec3(0, 0, 0));
         float y = 1;
         for (int i = 0; i < 4; i++) {
@@ -123,8 +114,7 @@ RT_TEST(coincident_and_nearly_coplanar_polygons_are_told_apart) {
 }
 
 RT_TEST(touching_and_coincident_spheres_are_told_apart) {
-    RtScene scene;
-    begin_view(&scene);
+    RtScene scene = begin_view();
     look(&scene, rt_vec3(0, -8, 0), rt_vec3(0, 0, 0));
     for (int i = 0; i < 3; i++) {
         assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(1, (float)i, 0), 1, error));
@@ -138,8 +128,7 @@ RT_TEST(the_near_plane_hides_what_is_before_it) {
     const RtVec3 pane[4] = {{{-3, 1, -3}}, {{3, 1, -3}}, {{3, 1, 3}}, {{-3, 1, 3}}};
     const float planes[] = {0.5f, 0x1.fffffep-1f, 1, 0x1.000002p+0f, 4.25f, 5, 100};
     for (size_t i = 0; i < sizeof planes / sizeof planes[0]; i++) {
-        RtScene scene;
-        begin_view(&scene);
+        RtScene scene = begin_view();
         look(&scene, rt_vec3(0, 0, 0), rt_vec3(0, 1, 0));
         scene.camera.near = planes[i];
         assert_ok(rt_scene_add_polygon(&scene, 0, pane, 4, error));
@@ -157,8 +146,7 @@ RT_TEST(concave_polygons_are_not_taken_for_convex_ones) {
         star[i] = rt_vec3((float)cos(angle), -1, (float)sin(angle));
     }
     for (int side = -1; side <= 1; side += 2) {
-        RtScene scene;
-        begin_view(&scene);
+        RtScene scene = begin_view();
         look(&scene, rt_vec3(0.5f, 6 * (float)side, 0.25f), rt_vec3(0, 0, 0));
         assert_ok(rt_scene_add_polygon(&scene, 0, notched, 5, error));
         assert_ok(rt_scene_add_polygon(&scene, 0, star, 5, error));
@@ -172,9 +160,8 @@ static void check_rounding(float reach, float below) {
     RtRandom random = rt_random(17, 0);
     uint32_t beyond = 0;
     for (uint32_t row = 0; row < 36; row++) {
-        RtScene scene;
         RtView view;
-        begin_view(&scene);
+        RtScene scene = begin_view();
         look(&scene, rt_vec3(0, 0, 0), rt_vec3(0, 1, 0));
         scene.camera.fov = 150;
         assert_ok(rt_sampling_init(&scene.sampling, 48, 36, 1, false, error));
@@ -184,9 +171,8 @@ static void check_rounding(float reach, float below) {
         const RtVec3 triangle[3] = {{{-far, 1, z}}, {{far, 1, z}}, {{0, 1, z - 100}}};
         assert_ok(rt_scene_add_triangle(&scene, 0, triangle, NULL, error));
         assert_ok(rt_scene_finish(&scene, error));
-        RtFrame frame = trace("brute", &scene, false);
+        OWNED_FRAME frame = trace("brute", &scene, false);
         for (uint32_t i = row * 48; i < (row + 1) * 48; i++) beyond += frame.object[i] == 0;
-        rt_frame_clear(&frame);
         check_finished(&scene, 1);
     }
     if (beyond <= 20) fail_msg("%u rays hit by rounding alone", beyond);
@@ -200,9 +186,8 @@ RT_TEST(what_is_hit_by_rounding_alone_is_drawn_as_hit) {
 RT_TEST(scenes_far_off_tiny_or_huge_are_drawn_right) {
     const float sizes[] = {1e-30f, 1e-3f, 1, 1e15f}, places[] = {0, 0, 1e4f, 0};
     for (int k = 0; k < 4; k++) {
-        RtScene scene;
         RtRandom random = rt_random(3, (uint64_t)k);
-        begin_view(&scene);
+        RtScene scene = begin_view();
         for (int i = 0; i < 80; i++) {
             RtVec3 p[3];
             for (int j = 0; j < 3; j++) {

@@ -4,9 +4,6 @@
 #include "equivalence_testing.h"
 
 #include "accel/kd/kd.h"
-#include "scenes/open.h"
-
-#include <stdio.h>
 
 static void assert_split(const RtKd *kd, uint32_t node, uint32_t axis, float plane) {
     assert_false(rt_kd_is_leaf(&kd->nodes[node]));
@@ -30,9 +27,8 @@ static void add_floor(RtScene *scene, float x, float y, float z, float size) {
  * x = 1 or 3 costs 0.3 * 9 + 3 + 7 for 18; what lies above 1, of half area 7, is then cut at 3 for
  * (0.3 * 7 + 3) * 0.8 instead of 7. */
 RT_TEST(two_spheres_are_split_as_by_hand) {
-    OWNED_SCENE scene;
     RtDescription d;
-    begin_scene(&scene);
+    OWNED_SCENE scene = begin_scene();
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0.5f, 0.5f, 0.5f), 0.5f, error));
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(3.5f, 0.5f, 0.5f), 0.5f, error));
     assert_ok(rt_scene_finish(&scene, error));
@@ -61,8 +57,7 @@ RT_TEST(two_spheres_are_split_as_by_hand) {
 /* A floor in the lowest face of the scene gets a cell without width, so that rays that do not come down to it
  * leave it alone; one in the middle goes into one of the cells it parts. */
 RT_TEST(polygons_in_a_plane_go_to_one_side_of_it) {
-    OWNED_SCENE scene;
-    begin_scene(&scene);
+    OWNED_SCENE scene = begin_scene();
     add_floor(&scene, 0, 0, 0, 10);
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(5, 5, 1.5f), 1, error));
     assert_ok(rt_scene_finish(&scene, error));
@@ -73,7 +68,7 @@ RT_TEST(polygons_in_a_plane_go_to_one_side_of_it) {
     rt_kd_destroy(&kd->base);
     rt_scene_clear(&scene);
 
-    begin_scene(&scene);
+    scene = begin_scene();
     for (int z = 0; z < 3; z++) add_floor(&scene, 0, 0, (float)z, 10);
     assert_ok(rt_scene_finish(&scene, error));
     kd = open_valid(&scene, "kd:traversal_cost=0");
@@ -82,28 +77,19 @@ RT_TEST(polygons_in_a_plane_go_to_one_side_of_it) {
 
 /* Tiles of a floor and nothing else: cells are cut across it, never along it. */
 RT_TEST(a_flat_scene_is_divided_within_its_plane) {
-    OWNED_SCENE scene;
-    begin_scene(&scene);
-    for (int i = 0; i < 64; i++) {
-        add_floor(&scene, 2 * (float)(i % 8), (float)(i - i % 8) / 4, 5, 1);
-    }
+    OWNED_SCENE scene = begin_scene();
+    for (int i = 0; i < 64; i++) add_floor(&scene, 2 * (float)(i % 8), (float)(i - i % 8) / 4, 5, 1);
     assert_ok(rt_scene_finish(&scene, error));
     OWNED_ACCEL RtKd *kd = open_valid(&scene, "kd");
     assert_int_equal(kd->id_count, 64);
-    for (uint32_t i = 0; i < kd->node_count; i++) {
+    for (uint32_t i = 0; i < kd->node_count; i++)
         assert_true(rt_kd_is_leaf(&kd->nodes[i]) ? rt_kd_length(&kd->nodes[i]) <= 1
                                                  : rt_kd_axis(&kd->nodes[i]) != 2);
-    }
 }
 
 /* Coincident objects cannot be separated: building stops whatever the parameters allow. */
 RT_TEST(coincident_objects_stay_in_one_leaf) {
-    OWNED_SCENE scene;
-    begin_scene(&scene);
-    for (int i = 0; i < 30; i++) {
-        assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
-    }
-    assert_ok(rt_scene_finish(&scene, error));
+    OWNED_SCENE scene = make_row(30, 0);
     assert_int_equal(describe_spec(&scene, "kd:traversal_cost=0,failures=60,max_depth=60").leaves, 1);
     RtDescription d = describe_spec(&scene, "kd:traversal_cost=0,margin=0.5");
     assert_int_equal(d.references, 30);
@@ -112,8 +98,7 @@ RT_TEST(coincident_objects_stay_in_one_leaf) {
 
 /* Ten parallel cylinders whose boxes overlap: only their surfaces can be separated. */
 RT_TEST(slanted_objects_are_parted_by_their_surfaces) {
-    OWNED_SCENE scene;
-    begin_scene(&scene);
+    OWNED_SCENE scene = begin_scene();
     for (int i = 0; i < 10; i++) {
         RtVec3 foot = rt_vec3(0, (float)i, 0), head = rt_vec3(10, (float)(i + 10), 0);
         assert_ok(rt_scene_add_cone(&scene, 0, foot, 0.1f, head, 0.1f, error));
@@ -131,48 +116,22 @@ static uint32_t find_leaf(const RtKd *kd, uint32_t least) {
 }
 
 RT_TEST(validate_names_each_invariant_that_is_broken) {
-    OWNED_SCENE scene;
-    make_lattice(&scene, 4, 4, 4);
+    OWNED_SCENE scene = make_lattice(4, 4, 4);
     OWNED_ACCEL RtKd *kd = open_valid(&scene, "kd:max_leaf_size=4,margin=0.1");
-    RtBox box = kd->box;
-    kd->box.hi.z = 1;
-    assert_broken(&kd->base, "root does not contain");
-    kd->box = box;
-
-    RtKdNode *root = &kd->nodes[0], saved = *root;
-    root->link = (kd->node_count - 1) << 2;
-    assert_broken(&kd->base, "outside the nodes");
-    *root = saved;
-    root->split = 100;
-    assert_broken(&kd->base, "outside its cell");
-    *root = saved;
-
-    uint32_t depth = kd->max_depth;
-    kd->max_depth = 2;
-    assert_broken(&kd->base, "deeper than 2");
-    kd->max_depth = depth;
-
-    RtKdNode *leaf = &kd->nodes[find_leaf(kd, 2)], kept = *leaf;
-    leaf->first = kd->id_count - 1;
-    assert_broken(&kd->base, "outside the lists");
-    *leaf = kept;
-    uint32_t *ids = kd->ids + leaf->first, first = ids[0];
-    ids[0] = ids[1];
-    assert_broken(&kd->base, "not ascending ids");
-    ids[0] = first;
-    leaf->link -= 4;
-    assert_broken(&kd->base, "but the lists end");
-    *leaf = kept;
-    uint32_t last = ids[rt_kd_length(leaf) - 1];
-    assert_true(last != 63);
-    ids[rt_kd_length(leaf) - 1] = 63;
-    assert_broken(&kd->base, "not just those it has a part in");
-    ids[rt_kd_length(leaf) - 1] = last;
-
-    assert_ok(rt_kd_validate(&kd->base, error));
-    *root = (RtKdNode){.first = 0, .link = RT_KD_LEAF};
-    assert_broken(&kd->base, "has no parent");
-    *root = saved;
+    const RtAccel *accel = &kd->base;
+    RtKdNode *root = &kd->nodes[0], *leaf = &kd->nodes[find_leaf(kd, 2)];
+    assert_broken_by(accel, kd->box.hi.z, 1, "root does not contain");
+    assert_broken_by(accel, root->link, (kd->node_count - 1) << 2, "outside the nodes");
+    assert_broken_by(accel, root->split, 100, "outside its cell");
+    assert_broken_by(accel, kd->max_depth, 2, "deeper than 2");
+    assert_broken_by(accel, leaf->first, kd->id_count - 1, "outside the lists");
+    uint32_t *ids = kd->ids + leaf->first, *last = &ids[rt_kd_length(leaf) - 1];
+    assert_broken_by(accel, ids[0], ids[1], "not ascending ids");
+    assert_broken_by(accel, leaf->link, leaf->link - 4, "but the lists end");
+    assert_true(*last != 63);
+    assert_broken_by(accel, *last, 63, "not just those it has a part in");
+    assert_broken_by(accel, *root, ((RtKdNode){.first = 0, .link = RT_KD_LEAF}), "has no parent");
+    assert_ok(rt_kd_validate(accel, error));
 }
 
 RT_TEST(a_tree_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {
@@ -181,10 +140,9 @@ RT_TEST(a_tree_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {
                                         "traversal_cost=0,failures=60,overlap=exact,empty_bonus=1"};
     for (size_t i = 0; i < 9; i++) {
         const uint64_t limit = 1 << 15;
-        OWNED_SCENE scene;
         RtValue values[RT_KD_PARAM_COUNT], *max_depth = &values[RT_KD_MAX_DEPTH];
         long depth;
-        assert_ok(rt_scene_open(scenes[i % 3], &scene, error));
+        OWNED_SCENE scene = open_scene(scenes[i % 3]);
         assert_ok(rt_params_parse(rt_kd_params, RT_KD_PARAM_COUNT, specs[i / 3], "kd", values, error));
         assert_true(refused_bytes("kd", limit, &scene, values, &depth) > (double)limit);
         assert_true(depth >= 3);
@@ -196,8 +154,7 @@ RT_TEST(a_tree_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {
 /* Enough objects for cells to be deferred. */
 RT_TEST(the_tree_is_the_same_bit_for_bit_on_any_number_of_threads) {
     const char *specs[] = {"kd", "kd:overlap=exact,max_leaf_size=4,failures=4"};
-    OWNED_SCENE scene;
-    assert_ok(rt_scene_open("random:n=100000,shape=mixed,distribution=clustered", &scene, error));
+    OWNED_SCENE scene = open_scene("random:n=100000,shape=mixed,distribution=clustered");
     for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
         RtAccel *one, *other;
         assert_ok(rt_accel_open_on(specs[i], &scene, 1, &one, error));
@@ -215,11 +172,10 @@ RT_TEST(the_tree_is_the_same_bit_for_bit_on_any_number_of_threads) {
 }
 
 RT_TEST(several_threads_refuse_what_one_refuses_and_leave_nothing_behind) {
-    OWNED_SCENE scene;
     RtValue values[RT_KD_PARAM_COUNT];
     const RtAccelOps *ops;
     assert_ok(rt_accel_find("kd", &ops, error));
-    assert_ok(rt_scene_open("random:n=70000", &scene, error));
+    OWNED_SCENE scene = open_scene("random:n=70000");
     assert_ok(rt_params_parse(rt_kd_params, RT_KD_PARAM_COUNT, "", "kd", values, error));
     int64_t live = rt_alloc_live();
     /* Exceeded in the top, in a subtree, only by the sum. */
@@ -252,12 +208,10 @@ RT_TEST(every_structure_answers_like_brute) {
                                         "kd:traversal_cost=0,failures=9,empty_bonus=1",
                                         "kd:overlap=exact,max_depth=4,failures=60"};
     for (size_t s = 0; s < rt_family_count(); s++) {
-        FamilyBench bench;
+        OWNED_BENCH bench;
         set_up_family(&bench, s, 7, 32);
-        for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
+        for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++)
             assert_answers_like_brute(&bench, specs[i]);
-        }
-        tear_down_family(&bench);
     }
 }
 

@@ -3,13 +3,13 @@
  * instruction set that this machine has: the hits and the occluders bit for bit, and the counts, whatever the
  * length of a stream. Of `brute` that is what rt_test_all does. */
 #include "equivalence_testing.h"
+#include "random_testing.h"
 
 #include "accel/brute/brute.h"
 #include "accel/extents/extents.h"
 #include "accel/kernel.h"
 #include "accel/sphere_prefilter.h"
 #include "accel_testing.h"
-#include "core/base/random.h"
 
 /* What is asked, and what is answered, timed and counted. */
 typedef struct Asked {
@@ -90,10 +90,9 @@ static void by_kernels(const RtKernels *kernels, const RtQuery *query, Asked *as
 static void assert_kernels_are_right(const RtKernels *kernels, const RtQuery *query, const Asked *right,
                                      const char *who, size_t stream) {
     for (int counted = 0; counted < 2; counted++) {
-        Asked got = begin_asking(right->rays, right->count);
+        OWNED(clear) Asked got = begin_asking(right->rays, right->count);
         by_kernels(kernels, query, &got, stream, counted);
         assert_same(right, &got, counted, who, stream);
-        clear(&got);
     }
 }
 
@@ -105,58 +104,41 @@ static const RtKernels *extents_kernels(RtIsa isa) {
     return RT_KERNELS_FOR(extents, isa);
 }
 
-typedef struct Opened {
-    RtAccel *accel;
-    RtQuery query;
-    const RtKernels *kernels;
-} Opened;
-
-static Opened open_spec(const char *spec, const RtScene *scene) {
-    Opened opened;
-    assert_ok(rt_accel_open(spec, scene, &opened.accel, error));
-    assert_ok(rt_query_init(&opened.query, opened.accel, error));
-    opened.kernels = ((const RtIsaAccel *)opened.accel)->kernels;
-    return opened;
-}
-
-static void close_spec(Opened *opened) {
-    rt_query_clear(&opened->query);
-    rt_accel_destroy(opened->accel);
+static const RtKernels *kernels_of(const RtQuery *query) {
+    return ((const RtIsaAccel *)query->accel)->kernels;
 }
 
 /* `spec`, which is in lanes, by the kernels of every instruction set. */
 static void assert_lanes_are_right(const char *spec, const RtKernels *(*kernels)(RtIsa), const RtScene *scene,
                                    const Asked *right) {
     const size_t streams[] = {1, 5, 128, right->count};
-    Opened lanes = open_spec(spec, scene);
+    OWNED_ACCEL RtAccel *lanes = open_accel(scene, spec);
+    OWNED_QUERY query = open_query(lanes);
     char who[RT_MAX_SPEC_CHARS];
-    assert_ptr_equal(lanes.kernels, kernels(rt_isa_best()));
+    assert_ptr_equal(kernels_of(&query), kernels(rt_isa_best()));
     for (RtIsa isa = RT_ISA_PORTABLE; isa <= RT_ISA_AVX512; isa++) {
         if (!rt_isa_runs(isa)) continue;
         snprintf(who, sizeof who, "%s by instruction set %d", spec, isa);
         for (size_t s = 0; s < sizeof streams / sizeof streams[0]; s++)
-            assert_kernels_are_right(kernels(isa), &lanes.query, right, who, streams[s]);
+            assert_kernels_are_right(kernels(isa), &query, right, who, streams[s]);
     }
-    close_spec(&lanes);
 }
 
 static void assert_brute_is_the_definition(const RtScene *scene, const RtRay *rays, size_t count) {
-    Asked right = begin_asking(rays, count);
-    Opened one = open_spec("brute:lanes=1", scene);
+    OWNED(clear) Asked right = begin_asking(rays, count);
+    OWNED_ACCEL RtAccel *one = open_accel(scene, "brute:lanes=1");
+    OWNED_QUERY query = open_query(one);
     by_definition(&scene->geometry, &right);
-    assert_kernels_are_right(one.kernels, &one.query, &right, "brute:lanes=1", count);
+    assert_kernels_are_right(kernels_of(&query), &query, &right, "brute:lanes=1", count);
     assert_lanes_are_right("brute", brute_kernels, scene, &right);
-    close_spec(&one);
-    clear(&right);
 }
 
 static void assert_boxes_in_lanes_are_boxes(const RtScene *scene, const RtRay *rays, size_t count) {
-    Asked right = begin_asking(rays, count);
-    Opened one = open_spec("extents:lanes=1", scene);
-    by_kernels(one.kernels, &one.query, &right, count, true);
+    OWNED(clear) Asked right = begin_asking(rays, count);
+    OWNED_ACCEL RtAccel *one = open_accel(scene, "extents:lanes=1");
+    OWNED_QUERY query = open_query(one);
+    by_kernels(kernels_of(&query), &query, &right, count, true);
     assert_lanes_are_right("extents", extents_kernels, scene, &right);
-    close_spec(&one);
-    clear(&right);
 }
 
 static void assert_lanes_change_nothing(const RtScene *scene, const RtRay *rays, size_t count) {
@@ -167,26 +149,19 @@ static void assert_lanes_change_nothing(const RtScene *scene, const RtRay *rays,
 /* By rays of every family. */
 static void assert_lanes_change_nothing_in(const RtScene *scene, uint64_t seed, size_t rays) {
     size_t families = rt_ray_family_count();
-    RtAccel *bvh;
-    RtQuery query;
-    RtRay *all = rt_alloc(families * rays, sizeof(RtRay));
+    OWNED_MEMORY RtRay *all = rt_alloc(families * rays, sizeof(RtRay));
+    OWNED_ACCEL RtAccel *bvh = open_accel(scene, "bvh");
+    OWNED_QUERY query = open_query(bvh);
     assert_non_null(all);
-    assert_ok(rt_accel_open("bvh", scene, &bvh, error));
-    assert_ok(rt_query_init(&query, bvh, error));
     for (size_t f = 0; f < families; f++) rt_ray_family_fill(f, &query, seed, 0, rays, all + f * rays);
-    rt_query_clear(&query);
-    rt_accel_destroy(bvh);
     assert_lanes_change_nothing(scene, all, families * rays);
-    rt_free(all);
 }
 
 RT_TEST(every_family_of_scenes_is_answered_and_counted_in_lanes_as_without) {
     for (size_t family = 0; family < rt_family_count(); family++) {
         for (uint64_t seed = 1; seed <= 3; seed++) {
-            RtScene scene;
-            open_family(family, seed, &scene);
+            OWNED_SCENE scene = open_family(family, seed);
             assert_lanes_change_nothing_in(&scene, seed, 40);
-            rt_scene_clear(&scene);
         }
     }
 }
@@ -205,10 +180,8 @@ RT_TEST(every_shape_and_every_remainder_of_lanes_is_answered_and_counted_as_with
                            "mount:size=4",
                            "teapot:size=3"};
     for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
-        RtScene scene;
-        assert_ok(rt_scene_open(specs[i], &scene, error));
+        OWNED_SCENE scene = open_scene(specs[i]);
         assert_lanes_change_nothing_in(&scene, i, 60);
-        rt_scene_clear(&scene);
     }
 }
 
@@ -267,12 +240,10 @@ static void add_touched(RtScene *scene, RtRandom *random, const RtRay *ray, floa
 RT_TEST(objects_of_every_magnitude_that_rays_touch_are_answered_in_lanes_as_without) {
     const float sizes[] = {1, 1e-30f, 1e-22f, 1e-12f, 1e6f, 1e16f, 4e17f};
     enum { RAYS = 500 };
-    RtRay *rays = rt_alloc(RAYS, sizeof(RtRay));
-    assert_non_null(rays);
+    static RtRay rays[RAYS];
     for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++) {
         RtRandom random = rt_random(s, 7);
-        RtScene scene;
-        begin_scene(&scene);
+        OWNED_SCENE scene = begin_scene();
         for (int i = 0; i < RAYS; i++) {
             rays[i] = far_ray(&random, sizes[s]);
             add_touched(&scene, &random, &rays[i], sizes[s]);
@@ -280,9 +251,7 @@ RT_TEST(objects_of_every_magnitude_that_rays_touch_are_answered_in_lanes_as_with
         assert_ok(rt_scene_finish(&scene, error));
         assert_true(scene.geometry.triangle_count > RAYS / 4);
         assert_lanes_change_nothing(&scene, rays, RAYS);
-        rt_scene_clear(&scene);
     }
-    rt_free(rays);
 }
 
 /* ---- accel/sphere_prefilter.h ---- */

@@ -2,7 +2,6 @@
 /* The leaves that structures show are those that they describe. */
 #include "accel_testing.h"
 
-#include "scenes/open.h"
 #include "verify/spread.h"
 
 typedef struct Sums {
@@ -40,8 +39,7 @@ RT_TEST(the_leaves_shown_are_those_described_at_every_setting) {
     const char *const scenes[] = {"balls:size=1", "random:n=1", "random:n=100"};
     uint32_t shown = 0;
     for (size_t s = 0; s < 3; s++) {
-        OWNED_SCENE scene;
-        assert_ok(rt_scene_open(scenes[s], &scene, error));
+        OWNED_SCENE scene = open_scene(scenes[s]);
         for (size_t i = 0; i < rt_accel_count(); i++) {
             char spec[RT_MAX_SPEC_CHARS];
             if (!rt_accel_at(i)->shows_lists) continue;
@@ -53,8 +51,7 @@ RT_TEST(the_leaves_shown_are_those_described_at_every_setting) {
 }
 
 RT_TEST(a_structure_without_objects_shows_what_it_describes) {
-    OWNED_SCENE scene;
-    begin_scene(&scene);
+    OWNED_SCENE scene = begin_scene();
     assert_ok(rt_scene_finish(&scene, error));
     for (size_t i = 0; i < rt_accel_count(); i++) {
         if (rt_accel_at(i)->shows_lists) check_leaves(rt_accel_at(i)->name, &scene);

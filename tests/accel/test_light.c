@@ -2,7 +2,6 @@
 /* The light buffer: what it counts, counted by hand, and what its cells remember. */
 #include "light_testing.h"
 
-#include "core/base/memory.h"
 #include "scenes/builtin.h"
 
 /* ---- counted by hand ---- */
@@ -23,17 +22,13 @@ static void check_tally(size_t row, const RtTally *tally, const RtTally *expecte
 
 static void check_rows(const RtScene *scene, const Row *rows, size_t count) {
     for (size_t i = 0; i < count; i++) {
-        RtAccel *accel;
-        RtQuery query;
         RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
         bool blocked;
-        assert_ok(rt_accel_open(rows[i].spec, scene, &accel, error));
-        assert_ok(rt_query_init(&query, accel, error));
+        OWNED_ACCEL RtAccel *accel = open_accel(scene, rows[i].spec);
+        OWNED_QUERY query = open_query(accel);
         rt_occluded(&query, &rows[i].ray, 1, &blocked, tallies);
         if (blocked != rows[i].blocked) fail_msg("row %zu: blocked is %d", i, blocked);
         check_tally(i, &tallies[RT_RAY_SHADOW], &rows[i].expected);
-        rt_query_clear(&query);
-        rt_accel_destroy(accel);
     }
 }
 
@@ -44,8 +39,7 @@ static void check_rows(const RtScene *scene, const Row *rows, size_t count) {
     }
 
 RT_TEST(it_counts_what_was_counted_by_hand) {
-    RtScene scene;
-    make_screen(&scene);
+    OWNED_SCENE scene = make_screen();
     RtRay above = shadow_ray(&scene, rt_vec3(0.5f, 0.5f, 6), 0);    /* under the sphere, above the screen */
     RtRay below = shadow_ray(&scene, rt_vec3(0.5f, 0.5f, 3), 0);    /* under both */
     RtRay high = shadow_ray(&scene, rt_vec3(0.5f, 0.5f, 9.02f), 0); /* above both */
@@ -102,7 +96,6 @@ RT_TEST(it_counts_what_was_counted_by_hand) {
         {"light+brute", below, true, passed},
     };
     check_rows(&scene, rows, sizeof rows / sizeof rows[0]);
-    rt_scene_clear(&scene);
 }
 
 /* ---- the same on all machines ---- */
@@ -122,7 +115,7 @@ static const char *const large_scenes[] = {"hall:size=2", "city:size=5"};
 
 RT_TEST(lists_do_not_depend_on_threads) {
     for (size_t i = 0; i < sizeof large_scenes / sizeof large_scenes[0]; i++) {
-        RtScene scene;
+        OWNED_SCENE scene;
         RtAccel *one, *three;
         assert_ok(rt_builtin_open(large_scenes[i], &scene, error));
         assert_ok(rt_accel_open_on("light+brute", &scene, 1, &one, error));
@@ -131,7 +124,6 @@ RT_TEST(lists_do_not_depend_on_threads) {
         check_same_lists((RtLightBuffer *)one, (RtLightBuffer *)three);
         rt_accel_destroy(one);
         rt_accel_destroy(three);
-        rt_scene_clear(&scene);
     }
 }
 
@@ -159,17 +151,14 @@ RT_TEST(a_light_serves_where_its_rays_cost_more_below_than_in_lists) {
         {"gears", "light:cells=7+wide", true},
     };
     for (size_t i = 0; i < sizeof choices / sizeof choices[0]; i++) {
-        RtScene scene;
-        RtAccel *accel;
+        OWNED_SCENE scene;
         assert_ok(rt_builtin_open(choices[i].scene, &scene, error));
-        assert_ok(rt_accel_open(choices[i].spec, &scene, &accel, error));
+        OWNED_ACCEL RtAccel *accel = open_accel(&scene, choices[i].spec);
         const RtLightBuffer *buffer = (const RtLightBuffer *)accel;
         if (buffer->serves != choices[i].serves)
             fail_msg("%s on %s: serves is %d", choices[i].spec, choices[i].scene, buffer->serves);
         for (uint32_t light = 0; light < scene.light_count; light++)
             assert_int_equal(buffer->cubes[light].serves, buffer->cubes[light].first != NULL);
-        rt_accel_destroy(accel);
-        rt_scene_clear(&scene);
     }
 }
 
@@ -177,22 +166,19 @@ enum { MANY = 4000 };
 
 static void answer(RtAccel *accel, const RtRay *rays, bool *blocked, RtTally *tally) {
     RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
-    RtQuery query;
-    assert_ok(rt_query_init(&query, accel, error));
+    OWNED_QUERY query = open_query(accel);
     rt_occluded(&query, rays, MANY, blocked, tallies);
     *tally = tallies[RT_RAY_SHADOW];
-    rt_query_clear(&query);
 }
 
 RT_TEST(every_instruction_set_makes_the_same_lists_and_counts) {
     static RtRay rays[MANY];
     static bool expected[MANY], blocked[MANY];
     for (size_t i = 0; i < sizeof large_scenes / sizeof large_scenes[0]; i++) {
-        RtScene scene;
-        RtAccel *accel;
+        OWNED_SCENE scene;
         RtTally by_best, tally;
         assert_ok(rt_builtin_open(large_scenes[i], &scene, error));
-        assert_ok(rt_accel_open("light+brute", &scene, &accel, error));
+        OWNED_ACCEL RtAccel *accel = open_accel(&scene, "light+brute");
         RtLightBuffer *best = (RtLightBuffer *)accel;
         RtRandom random = rt_random(9, 0);
         for (uint32_t k = 0; k < MANY; k++) {
@@ -226,8 +212,6 @@ RT_TEST(every_instruction_set_makes_the_same_lists_and_counts) {
             }
             rt_free(other.cubes);
         }
-        rt_accel_destroy(accel);
-        rt_scene_clear(&scene);
     }
 }
 

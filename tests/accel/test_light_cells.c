@@ -3,14 +3,8 @@
 #include "light_testing.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* ---- lists and covers ---- */
-
-static const RtLightBuffer *open_buffer(const char *spec, const RtScene *scene, RtAccel **accel) {
-    assert_ok(rt_accel_open(spec, scene, accel, error));
-    return (const RtLightBuffer *)*accel;
-}
 
 /* A list of the face that looks down, -z, from the first light: its cells are in one tile. */
 typedef struct List {
@@ -36,11 +30,9 @@ static float depth_of(const RtLightBuffer *buffer, const RtLightEntry *entry) {
 }
 
 RT_TEST(full_occlusion_ends_lists_at_what_covers_a_cell) {
-    RtScene scene;
-    RtAccel *on, *off;
-    make_screen(&scene);
-    const RtLightBuffer *cut = open_buffer("light:cells=16+brute", &scene, &on);
-    const RtLightBuffer *whole = open_buffer("light:cells=16,full_occlusion=off+brute", &scene, &off);
+    OWNED_SCENE scene = make_screen();
+    OWNED_ACCEL RtLightBuffer *cut = open_valid(&scene, "light:cells=16+brute");
+    OWNED_ACCEL RtLightBuffer *whole = open_valid(&scene, "light:cells=16,full_occlusion=off+brute");
     /* The middle of the face is under the sphere, the cell at u = w = 0.7 beside it, over the
      * screen. */
     List middle = list_at(cut, 8, 8), all = list_at(whole, 8, 8), beside = list_at(cut, 13, 13);
@@ -55,61 +47,44 @@ RT_TEST(full_occlusion_ends_lists_at_what_covers_a_cell) {
     assert_false(beside.cut);
     /* Where the screen ends nothing is seen: its rim is at u = 0.8. */
     for (uint32_t i = 0; i < 16; i++) assert_int_equal(list_at(cut, i, 15).count, 0);
-    assert_ok(rt_accel_validate(on, error));
-    assert_ok(rt_accel_validate(off, error));
-    rt_accel_destroy(on);
-    rt_accel_destroy(off);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(a_list_is_cut_where_it_would_be_too_long) {
-    RtScene scene;
-    RtAccel *accel;
-    make_screen(&scene);
-    const RtLightBuffer *buffer =
-        open_buffer("light:cells=16,full_occlusion=off,longest=2+brute", &scene, &accel);
+    OWNED_SCENE scene = make_screen();
+    OWNED_ACCEL RtLightBuffer *buffer =
+        open_valid(&scene, "light:cells=16,full_occlusion=off,longest=2+brute");
     List list = list_at(buffer, 8, 8);
     assert_int_equal(list.count, 3);
     assert_true(list.cut);
     assert_true(depth_of(buffer, &list.at[2]) > 8.9f); /* of the sphere that is missing */
-    assert_ok(rt_accel_validate(accel, error));
-    rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(nothing_is_cut_behind_the_notch_of_a_concave_polygon) {
     /* A square with a notch down to its middle, and one behind it. */
     const RtVec3 notched[5] = {{{-8, -8, 5}}, {{8, -8, 5}}, {{8, 8, 5}}, {{0, 0, 5}}, {{-8, 8, 5}}};
     const RtVec3 behind[4] = {{{-8, -8, 0}}, {{8, -8, 0}}, {{8, 8, 0}}, {{-8, 8, 0}}};
-    RtScene scene;
-    RtAccel *accel;
-    begin_scene(&scene);
+    OWNED_SCENE scene = begin_scene();
     assert_ok(rt_scene_add_polygon(&scene, 0, notched, 5, error));
     assert_ok(rt_scene_add_polygon(&scene, 0, behind, 4, error));
     assert_ok(rt_scene_add_light(&scene, rt_vec3(0, 0, 10), rt_vec3(1, 1, 1), error));
     assert_ok(rt_scene_finish(&scene, error));
-    const RtLightBuffer *buffer = open_buffer("light:cells=16+brute", &scene, &accel);
+    OWNED_ACCEL RtLightBuffer *buffer = open_accel(&scene, "light:cells=16+brute");
     List notch = list_at(buffer, 8, 12);
     assert_false(notch.cut);
     assert_int_equal(notch.at[notch.count - 1].object, scene.geometry.objects[1]);
-    rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
 }
 
 /* A slanted edge: what is beyond it in the cell is told from the cell's parts. */
 RT_TEST(a_key_says_which_parts_of_the_cell_an_object_is_seen_in) {
     const RtVec3 corner[3] = {{{-5, -5, 5}}, {{5, -5, 5}}, {{-5, 5, 5}}};
-    RtScene scene;
-    RtAccel *accel;
-    begin_scene(&scene);
+    OWNED_SCENE scene = begin_scene();
     assert_ok(rt_scene_add_triangle(&scene, 0, corner, NULL, error));
     assert_ok(rt_scene_add_light(&scene, rt_vec3(0, 0, 10), rt_vec3(1, 1, 1), error));
     assert_ok(rt_scene_finish(&scene, error));
-    List list = list_at(open_buffer("light:cells=1+brute", &scene, &accel), 0, 0);
+    OWNED_ACCEL RtLightBuffer *buffer = open_accel(&scene, "light:cells=1+brute");
+    List list = list_at(buffer, 0, 0);
     assert_int_equal(list.count, 1);
     assert_int_equal(list.at[0].key & RT_LIGHT_PARTS, 0x37ff); /* on the diagonal, and up to it */
-    rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
 }
 
 /* ---- limits and invariants ---- */
@@ -127,26 +102,23 @@ static void number_cells_from(RtLightCube *cube, uint32_t more) {
 
 RT_TEST(cells_behind_the_first_67_million_are_found) {
     enum { RAYS = 500 };
-    RtScene scene;
-    RtAccel *accel;
-    RtQuery query;
     RtCellView cells[RAYS], cell;
     RtRay rays[RAYS];
     bool blocked[RAYS], again[RAYS];
     uint32_t more = UINT32_C(1) << 26, found = 0;
     RtRandom random = rt_random(3, 0);
-    make_awkward(&scene, 0);
-    RtLightBuffer *buffer = (RtLightBuffer *)open_buffer("light:cells=64+brute", &scene, &accel);
+    OWNED_SCENE scene = make_awkward(0);
+    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "light:cells=64+brute");
     for (uint32_t i = 0; i < RAYS; i++) {
         rays[i] = shadow_ray(&scene, random_point(&random, 5), 0);
         cells[i].number = 0;
         found += rt_light_find_cell(accel, &rays[i], &cells[i]) && cells[i].length > 0;
     }
     assert_true(found > RAYS / 2);
-    assert_ok(rt_query_init(&query, accel, error));
+    OWNED_QUERY query = open_query(accel);
     RtTally before[RT_RAY_KIND_COUNT] = {{0}}, after[RT_RAY_KIND_COUNT] = {{0}};
     rt_occluded(&query, rays, RAYS, blocked, before);
-    number_cells_from(&buffer->cubes[0], more);
+    number_cells_from(&((RtLightBuffer *)accel)->cubes[0], more);
     rt_occluded(&query, rays, RAYS, again, after);
     assert_memory_equal(blocked, again, sizeof blocked);
     assert_memory_equal(before, after, sizeof before);
@@ -155,9 +127,6 @@ RT_TEST(cells_behind_the_first_67_million_are_found) {
         assert_int_equal(cell.number, cells[i].number + more);
         assert_int_equal(cell.object, cells[i].object);
     }
-    rt_query_clear(&query);
-    rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
 }
 
 static unsigned number_that_fits(const RtError *error) {
@@ -167,15 +136,13 @@ static unsigned number_that_fits(const RtError *error) {
 }
 
 RT_TEST(too_many_cells_are_refused_with_a_number_that_fits) {
-    RtScene scene;
+    OWNED_SCENE scene = make_awkward(0);
     RtAccel *accel;
     RtError error = {RT_OK, ""};
-    make_awkward(&scene, 0);
     assert_int_equal(rt_accel_open("light:cells=4096+bvh", &scene, &accel, &error), RT_BAD_INPUT);
     /* 8 lights x 6 faces x 20 bytes a cell in 4 GiB: 2115 if all faces saw the scene all over, less than a
      * tile more. */
     assert_in_range(number_that_fits(&error), 2080, 4095);
-    rt_scene_clear(&scene);
 }
 
 static bool starts_with_a_triangle(const RtLightCube *cube, uint32_t cell) {
@@ -186,14 +153,10 @@ static bool starts_with_a_triangle(const RtLightCube *cube, uint32_t cell) {
 }
 
 RT_TEST(each_broken_invariant_is_named) {
-    RtScene scene;
-    RtAccel *accel;
-    make_awkward(&scene, 0);
-    assert_ok(rt_accel_open("light:cells=64,full_occlusion=off+brute", &scene, &accel, error));
+    OWNED_SCENE scene = make_awkward(0);
+    OWNED_ACCEL RtAccel *accel = open_valid(&scene, "light:cells=64,full_occlusion=off+brute");
     RtLightBuffer *buffer = (RtLightBuffer *)accel;
-    RtLightCube *cube = &buffer->cubes[4];
-    assert_ok(rt_accel_validate(accel, error));
-
+    RtLightCube *cube = &buffer->cubes[4], *first = &buffer->cubes[0];
     uint32_t cell = 0; /* with a triangle in most of it, and something deeper */
     while (!starts_with_a_triangle(cube, cell)) cell++;
     RtLightEntry *list = &cube->entries[cube->first[cell]], kept = list[0];
@@ -203,32 +166,14 @@ RT_TEST(each_broken_invariant_is_named) {
     list[1] = list[0];
     assert_broken(accel, "lacks object");
     list[0] = kept;
-    list[0].key = list[1].key;
-    assert_broken(accel, "lacks object");
-    list[0] = kept;
-    list[0].key &= ~RT_LIGHT_PARTS;
-    assert_broken(accel, "lacks object");
-    list[0] = kept;
-    list[0].object = RT_LIGHT_BEYOND;
-    assert_broken(accel, "is not in order");
-    list[0] = kept;
+    assert_broken_by(accel, list[0].key, list[1].key, "lacks object");
+    assert_broken_by(accel, list[0].key, list[0].key & ~RT_LIGHT_PARTS, "lacks object");
+    assert_broken_by(accel, list[0].object, RT_LIGHT_BEYOND, "is not in order");
+    assert_broken_by(accel, cube->first[cell + 1], cube->first[cell] - 1, "ends before it begins");
 
-    uint32_t end = cube->first[cell + 1];
-    cube->first[cell + 1] = cube->first[cell] - 1;
-    assert_broken(accel, "ends before it begins");
-    cube->first[cell + 1] = end;
-
-    cube = &buffer->cubes[0];
-    assert_true(cube->near_count > 0); /* the first light is inside a sphere */
-    cube->near[0] ^= 1;
-    assert_broken(accel, "near list of light 0");
-    cube->near[0] ^= 1;
-    cube->near_count -= 1;
-    assert_broken(accel, "near list of light 0");
-    cube->near_count += 1;
-    assert_ok(rt_accel_validate(accel, error));
-    rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
+    assert_true(first->near_count > 0); /* the first light is inside a sphere */
+    assert_broken_by(accel, first->near[0], first->near[0] ^ 1, "near list of light 0");
+    assert_broken_by(accel, first->near_count, first->near_count - 1, "near list of light 0");
 }
 
 RT_TESTS(light_cells, NULL, assert_nothing_is_kept)

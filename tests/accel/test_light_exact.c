@@ -3,26 +3,17 @@
  * rays along edges and corners of cells; and it is no worse for it. */
 #include "light_testing.h"
 
-#include "core/base/memory.h"
-
-#include <string.h>
-
 /* Asks `spec` about the rays; fails where brute says otherwise. Gives what was counted. */
 static RtTally check_like_brute(const char *spec, const RtScene *scene, const RtRay *rays, size_t count) {
     RtTally tallies[RT_RAY_KIND_COUNT] = {{0}}, of_brute[RT_RAY_KIND_COUNT] = {{0}};
     const char *specs[2] = {"brute", spec};
     bool *blocked[2];
     for (int i = 0; i < 2; i++) {
-        RtAccel *accel;
-        RtQuery query;
         blocked[i] = rt_alloc(count, sizeof(bool));
         assert_non_null(blocked[i]);
-        assert_ok(rt_accel_open(specs[i], scene, &accel, error));
-        assert_ok(rt_accel_validate(accel, error));
-        assert_ok(rt_query_init(&query, accel, error));
+        OWNED_ACCEL RtAccel *accel = open_valid(scene, specs[i]);
+        OWNED_QUERY query = open_query(accel);
         rt_occluded(&query, rays, count, blocked[i], i ? tallies : of_brute);
-        rt_query_clear(&query);
-        rt_accel_destroy(accel);
     }
     for (size_t k = 0; k < count; k++) {
         if (blocked[0][k] != blocked[1][k]) fail_msg("%s: ray %zu", spec, k);
@@ -59,15 +50,13 @@ RT_TEST(lights_in_awkward_places_are_answered_like_brute) {
                            "light:cells=16,full_occlusion=off+bvh", "cache+light+bvh"};
     const float places[] = {0, 1000};
     for (size_t p = 0; p < 2; p++) {
-        RtScene scene;
-        make_awkward(&scene, places[p]);
+        OWNED_SCENE scene = make_awkward(places[p]);
         make_awkward_rays(&scene, rays, places[p]);
         for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
             RtTally tally = check_like_brute(specs[i], &scene, rays, AWKWARD_RAYS);
             assert_int_equal(tally.rays, AWKWARD_RAYS);
             assert_true(tally.passed_on < AWKWARD_RAYS / 2 || strstr(specs[i], "cache"));
         }
-        rt_scene_clear(&scene);
     }
 }
 
@@ -83,13 +72,11 @@ static void check_far_off(float size, float in, const char *spec) {
     const RtVec3 light = {{0.1f, 0.2f, 0.3f}};
     const float a = size - in, b = -size + 3 * in;
     const RtVec3 corners[3] = {{{a, b, -1}}, {{b, a, -1}}, {{a, a, -1}}};
-    RtScene scene;
-    begin_scene(&scene);
+    OWNED_SCENE scene = begin_scene();
     RtVec3 triangle[3] = {rt_add(light, corners[0]), rt_add(light, corners[1]), rt_add(light, corners[2])};
     assert_ok(rt_scene_add_triangle(&scene, 0, triangle, NULL, error));
-    for (int i = -1; i <= 1; i += 2) {
+    for (int i = -1; i <= 1; i += 2)
         assert_ok(rt_scene_add_sphere(&scene, 0, moved(rt_vec3(0, 0, 0), 2000.0f * (float)i), 1, error));
-    }
     assert_ok(rt_scene_add_light(&scene, light, rt_vec3(1, 1, 1), error));
     assert_ok(rt_scene_finish(&scene, error));
     RtRandom random = rt_random(7, 0);
@@ -106,7 +93,6 @@ static void check_far_off(float size, float in, const char *spec) {
     }
     RtTally tally = check_like_brute(spec, &scene, rays, COUNT);
     assert_true(tally.object_tests > COUNT / 20 && tally.passed_on == 0);
-    rt_scene_clear(&scene);
 }
 
 /* Cells of which a 64th, by which all grow, is more than the error, and less. */
@@ -124,23 +110,20 @@ RT_TEST(a_partial_occluder_hides_nothing_beside_it) {
     static RtRay rays[COUNT];
     const char *specs[] = {"light:cells=1+brute", "light:cells=3+brute", "light:cells=16+brute",
                            "light:cells=61,longest=3+brute"};
-    RtScene scene;
-    begin_scene(&scene);
+    OWNED_SCENE scene = begin_scene();
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0.3f, 0.2f, 8), 1, error));
     assert_ok(rt_scene_add_cone(&scene, 0, rt_vec3(-2, -2, 6), 0.5f, rt_vec3(2, -2, 6), 0.5f, error));
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, -8), 8, error));
     assert_ok(rt_scene_add_light(&scene, rt_vec3(0, 0, 10), rt_vec3(1, 1, 1), error));
     assert_ok(rt_scene_finish(&scene, error));
     RtRandom random = rt_random(8, 0);
-    for (size_t i = 0; i < COUNT; i++) {
+    for (size_t i = 0; i < COUNT; i++)
         rays[i] = shadow_ray(&scene, rt_add(random_point(&random, 4), rt_vec3(0, 0, 4)), 0);
-    }
     for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
         RtTally tally = check_like_brute(specs[i], &scene, rays, COUNT);
         assert_int_equal(tally.passed_on, 0);
         assert_in_range(tally.hits, COUNT / 20, COUNT - COUNT / 20);
     }
-    rt_scene_clear(&scene);
 }
 
 /* Directions exactly along edges and corners of cells and of the cube, to three lights and to none. */
@@ -149,8 +132,7 @@ RT_TEST(directions_along_edges_and_corners_are_answered_like_brute) {
     static RtRay rays[COUNT];
     const RtVec3 places[3] = {{{0, 0, 0}}, {{4, 4, 4}}, {{-1, 2, 0.5f}}};
     for (int lights = 3; lights >= 0; lights -= 3) {
-        RtScene scene;
-        begin_scene(&scene);
+        OWNED_SCENE scene = begin_scene();
         for (int i = 0; i < 27; i++) {
             RtVec3 at = rt_vec3((float)(i % 3 * 2 - 2), (float)(i / 3 % 3 * 2 - 2), (float)(i / 9 * 2 - 2));
             assert_ok(rt_scene_add_sphere(&scene, 0, at, 0.25f + 0.125f * (float)(i % 2), error));
@@ -158,9 +140,8 @@ RT_TEST(directions_along_edges_and_corners_are_answered_like_brute) {
         assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 3.75f), 0.25f, error));
         const RtVec3 square[4] = {{{-4, -4, -4}}, {{4, -4, -4}}, {{4, 4, -4}}, {{-4, 4, -4}}};
         assert_ok(rt_scene_add_polygon(&scene, 0, square, 4, error));
-        for (int i = 0; i < lights; i++) {
+        for (int i = 0; i < lights; i++)
             assert_ok(rt_scene_add_light(&scene, places[i], rt_vec3(1, 1, 1), error));
-        }
         assert_ok(rt_scene_finish(&scene, error));
         size_t count = 0;
         for (int i = 0; i < COUNT; i++) {
@@ -176,7 +157,6 @@ RT_TEST(directions_along_edges_and_corners_are_answered_like_brute) {
         check_like_brute("light:cells=4+brute", &scene, rays, count);
         check_like_brute("light:cells=8,extents=off+brute", &scene, rays, count);
         check_like_brute("light:cells=9+brute", &scene, rays, count);
-        rt_scene_clear(&scene);
     }
 }
 
@@ -185,8 +165,7 @@ RT_TEST(a_receiver_that_faces_the_light_is_not_tested) {
     const RtVec3 corners[6] = {{{-1, -1, -1}}, {{1, -1, 1}}, {{1, 0, 1}},
                                {{-1, 0, -1}},  {{1, 1, 1}},  {{-1, 1, -1}}};
     const RtVec3 beside[4] = {corners[3], corners[2], corners[4], corners[5]};
-    RtScene scene;
-    begin_scene(&scene);
+    OWNED_SCENE scene = begin_scene();
     assert_ok(rt_scene_add_polygon(&scene, 0, corners, 4, error));
     assert_ok(rt_scene_add_polygon(&scene, 0, beside, 4, error));
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(3, 0, -3), 1, error));
@@ -205,7 +184,6 @@ RT_TEST(a_receiver_that_faces_the_light_is_not_tested) {
     tally = check_like_brute(spec, &scene, &top, 1);
     assert_int_equal(tally.steps, 1);
     assert_int_equal(tally.object_tests, 0);
-    rt_scene_clear(&scene);
 }
 
 RT_TESTS(light_exact, NULL, assert_nothing_is_kept)

@@ -4,25 +4,19 @@
 #include "equivalence_testing.h"
 
 #include "accel/octree/octree.h"
-#include "core/base/memory.h"
-#include "scenes/open.h"
-
-#include <stdio.h>
-#include <string.h>
 
 /* Spheres of radius 1/4 along the x axis. */
-static void make_row(RtScene *scene, const float *x, int count) {
-    begin_scene(scene);
-    for (int i = 0; i < count; i++) {
-        assert_ok(rt_scene_add_sphere(scene, 0, rt_vec3(x[i], 0, 0), 0.25f, error));
-    }
-    assert_ok(rt_scene_finish(scene, error));
+static RtScene make_spheres_at(const float *x, int count) {
+    RtScene scene = begin_scene();
+    for (int i = 0; i < count; i++)
+        assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(x[i], 0, 0), 0.25f, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    return scene;
 }
 
 /* The planes of the root's split go halfway through the box, where all eight spheres touch one another's. */
 RT_TEST(objects_go_into_every_leaf_they_touch) {
-    OWNED_SCENE scene;
-    make_lattice(&scene, 2, 2, 2);
+    OWNED_SCENE scene = make_lattice(2, 2, 2);
     RtDescription d = describe_spec(&scene, "octree:max_depth=1");
     assert_int_equal(d.interior, 1);
     assert_int_equal(d.leaves, 8);
@@ -35,9 +29,7 @@ RT_TEST(objects_go_into_every_leaf_they_touch) {
 
 /* The mean of three spheres at 0, 1 and 9 is 10/3, where most of them are; the centre is 4.5. */
 RT_TEST(a_split_by_cost_is_nearer_to_the_objects) {
-    OWNED_SCENE apart;
-    const float x[3] = {0, 1, 9};
-    make_row(&apart, x, 3);
+    OWNED_SCENE apart = make_spheres_at((const float[]){0, 1, 9}, 3);
     OWNED_ACCEL RtOctree *centre = open_valid(&apart, "octree:split=centre");
     OWNED_ACCEL RtOctree *cost = open_valid(&apart, "octree:split=cost");
     assert_true(centre->nodes[0].split.x == 4.5f);
@@ -47,9 +39,7 @@ RT_TEST(a_split_by_cost_is_nearer_to_the_objects) {
 
 /* Thirty objects with the same box cannot be separated, so no depth is spent on them. */
 RT_TEST(coincident_objects_stay_in_one_leaf) {
-    OWNED_SCENE same;
-    const float x[30] = {0};
-    make_row(&same, x, 30);
+    OWNED_SCENE same = make_row(30, 0);
     assert_int_equal(describe_spec(&same, "octree:max_depth=20").leaves, 1);
     assert_int_equal(describe_spec(&same, "octree:max_depth=3,margin=0.1").depth, 3);
     assert_int_equal(describe_spec(&same, "octree:max_depth=2,cut_filled=on").leaves, 64);
@@ -57,15 +47,12 @@ RT_TEST(coincident_objects_stay_in_one_leaf) {
 
 /* Spheres at -2 and 2, with boxes up to 1.75 away from the plane between. */
 RT_TEST(slack_grows_the_boxes_of_objects) {
-    OWNED_SCENE apart;
-    const float x[2] = {-2, 2};
-    make_row(&apart, x, 2);
+    OWNED_SCENE apart = make_spheres_at((const float[]){-2, 2}, 2);
     assert_int_equal(describe_spec(&apart, "octree:max_depth=1").references, 8);
     assert_int_equal(describe_spec(&apart, "octree:max_depth=1,slack=1.74").references, 8);
     assert_int_equal(describe_spec(&apart, "octree:max_depth=1,slack=1.76").references, 16);
     OWNED_ACCEL RtOctree *tree = open_valid(&apart, "octree:max_depth=1,slack=1.76");
-    tree->slack = 0;
-    assert_broken(&tree->base, "which it does not touch");
+    assert_broken_by(&tree->base, tree->slack, 0, "which it does not touch");
 }
 
 /* The first leaf, from the root on, with `least` objects or more. */
@@ -76,56 +63,24 @@ static uint32_t find_leaf(const RtOctree *tree, uint32_t least) {
 }
 
 RT_TEST(validate_names_each_invariant_that_is_broken) {
-    OWNED_SCENE scene;
-    make_lattice(&scene, 4, 4, 4);
+    OWNED_SCENE scene = make_lattice(4, 4, 4);
     OWNED_ACCEL RtOctree *tree = open_valid(&scene, "octree:max_depth=3,margin=0.1");
-    assert_ok(rt_octree_validate(&tree->base, error));
-    RtOctreeNode *root = &tree->nodes[0], saved = *root, saved_child = tree->nodes[1];
-    RtBox box = tree->boxes[0];
-
-    tree->boxes[0].hi.z = 1;
-    assert_broken(&tree->base, "root does not contain");
-    tree->boxes[0] = box;
-
-    root->first = tree->node_count - 7;
-    assert_broken(&tree->base, "outside the nodes");
-    *root = saved;
-    root->split.y = 100;
-    assert_broken(&tree->base, "outside its cell");
-    *root = saved;
-
-    root->count ^= 1;
-    assert_broken(&tree->base, "not as empty as its parent says");
-    *root = saved;
-
-    tree->nodes[1].parent = 9;
-    assert_broken(&tree->base, "not a child of its parent");
-    tree->nodes[1] = saved_child;
-
-    box = tree->boxes[5];
-    tree->boxes[5].lo.x -= 1;
-    assert_broken(&tree->base, "not cut from its parent's");
-    tree->boxes[5] = box;
-
-    tree->max_depth = 2;
-    assert_broken(&tree->base, "deeper than 2");
-    tree->max_depth = 20;
-    assert_broken(&tree->base, "could be divided");
-    tree->max_depth = 3;
-
-    RtOctreeNode *leaf = &tree->nodes[find_leaf(tree, 2)];
-    saved = *leaf;
-    leaf->first = tree->id_count - leaf->count + 1;
-    assert_broken(&tree->base, "outside the lists");
-    *leaf = saved;
-    uint32_t *last = &tree->ids[leaf->first + leaf->count - 1], id = *last;
-    *last = 63;
-    assert_broken(&tree->base, "which it does not touch");
-    *last = 64;
-    assert_broken(&tree->base, "not ascending ids");
-    *last = id;
-    leaf->count--;
-    assert_broken(&tree->base, "leaves, but");
+    const RtAccel *accel = &tree->base;
+    RtOctreeNode *root = &tree->nodes[0], *leaf = &tree->nodes[find_leaf(tree, 2)];
+    assert_broken_by(accel, tree->boxes[0].hi.z, 1, "root does not contain");
+    assert_broken_by(accel, root->first, tree->node_count - 7, "outside the nodes");
+    assert_broken_by(accel, root->split.y, 100, "outside its cell");
+    assert_broken_by(accel, root->count, root->count ^ 1, "not as empty as its parent says");
+    assert_broken_by(accel, tree->nodes[1].parent, 9, "not a child of its parent");
+    assert_broken_by(accel, tree->boxes[5].lo.x, tree->boxes[5].lo.x - 1, "not cut from its parent's");
+    assert_broken_by(accel, tree->max_depth, 2, "deeper than 2");
+    assert_broken_by(accel, tree->max_depth, 20, "could be divided");
+    assert_broken_by(accel, leaf->first, tree->id_count - leaf->count + 1, "outside the lists");
+    uint32_t *last = &tree->ids[leaf->first + leaf->count - 1];
+    assert_broken_by(accel, *last, 63, "which it does not touch");
+    assert_broken_by(accel, *last, 64, "not ascending ids");
+    assert_broken_by(accel, leaf->count, leaf->count - 1, "leaves, but");
+    assert_ok(rt_octree_validate(accel, error));
 }
 
 static void parse(const char *parameters, RtValue *values) {
@@ -133,8 +88,7 @@ static void parse(const char *parameters, RtValue *values) {
 }
 
 RT_TEST(an_octree_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {
-    OWNED_SCENE scene;
-    make_lattice(&scene, 2, 2, 2);
+    OWNED_SCENE scene = make_lattice(2, 2, 2);
     RtValue values[RT_OCTREE_PARAM_COUNT];
     long depth;
     const uint64_t limit = 1 << 16;
@@ -152,8 +106,7 @@ RT_TEST(far_too_deep_an_octree_is_refused_by_an_estimate) {
     static const char *const specs[] = {"max_depth=20", "max_depth=20,split=cost",
                                         "max_depth=20,max_leaf_size=3,margin=0.01"};
     for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i++) {
-        OWNED_SCENE scene;
-        assert_ok(rt_scene_open(scenes[i], &scene, error));
+        OWNED_SCENE scene = open_scene(scenes[i]);
         for (size_t k = 0; k < sizeof specs / sizeof specs[0]; k++) {
             const uint64_t limit = UINT64_C(1) << 23;
             RtValue values[RT_OCTREE_PARAM_COUNT];
@@ -171,8 +124,7 @@ RT_TEST(far_too_deep_an_octree_is_refused_by_an_estimate) {
 RT_TEST(the_estimate_is_near_what_a_build_takes) {
     static const char *const specs[] = {"max_depth=9", "max_depth=8,split=cost",
                                         "max_depth=9,max_leaf_size=3"};
-    OWNED_SCENE scene;
-    assert_ok(rt_scene_open("balls", &scene, error));
+    OWNED_SCENE scene = open_scene("balls");
     for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
         RtValue values[RT_OCTREE_PARAM_COUNT];
         RtAccel *accel;
@@ -194,14 +146,13 @@ RT_TEST(every_traversal_answers_like_brute_in_every_structure) {
     static const char *const settings[] = {"split=cost,mailbox=off", "margin=0.3,max_leaf_size=3",
                                            "max_depth=0", "max_depth=6,mailbox=off"};
     for (size_t s = 0; s < rt_family_count(); s++) {
-        FamilyBench bench;
+        OWNED_BENCH bench;
         set_up_family(&bench, s, 7, 32);
         for (size_t i = 0; i < 12; i++) {
             char spec[RT_MAX_SPEC_CHARS];
             snprintf(spec, sizeof spec, "octree:traversal=%s,%s", traversals[i % 3], settings[i / 3]);
             assert_answers_like_brute(&bench, spec);
         }
-        tear_down_family(&bench);
     }
 }
 

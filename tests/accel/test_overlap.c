@@ -19,19 +19,18 @@ static bool meets(const RtGeometry *g, RtBox box) {
 }
 
 RT_TEST(a_box_inside_a_sphere_or_off_its_corner_is_not_met) {
-    RtGeometry g = {0};
+    OWNED_GEOMETRY g = {0};
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 1, error));
     assert_ok(rt_geometry_finish(&g, error));
     assert_false(meets(&g, cube(0, 0, 0, 0.5f)));
     assert_true(meets(&g, cube(0, 0, 0, 0.6f))); /* its corners stick out */
     assert_true(meets(&g, cube(1, 0, 0, 0.1f)));
     assert_false(meets(&g, cube(0.9f, 0.9f, 0.9f, 0.1f))); /* inside the sphere's box */
-    rt_geometry_clear(&g);
 }
 
 RT_TEST(a_box_in_the_box_of_a_triangle_is_met_by_plane_and_edges) {
     const RtVec3 v[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 1}};
-    RtGeometry g = {0};
+    OWNED_GEOMETRY g = {0};
     assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
     assert_ok(rt_geometry_finish(&g, error));
     assert_true(meets(&g, cube(0.25f, 0.25f, 0.25f, 0.01f)));
@@ -39,26 +38,23 @@ RT_TEST(a_box_in_the_box_of_a_triangle_is_met_by_plane_and_edges) {
     assert_false(meets(&g, cube(0.8f, 0.8f, 0.8f, 0.2f)));   /* beyond the slanted edge */
     RtBox above = cube(0.25f, 0.25f, 0.5f, 0.1f);
     assert_true(rt_object_meets_box(&g, 0, &above, 0.1));
-    rt_geometry_clear(&g);
 }
 
 RT_TEST(a_slanted_polygon_is_met_like_a_triangle) {
     const RtVec3 v[4] = {{0, 0, 0}, {1, 0, 1}, {1, 1, 1}, {0, 1, 0}};
-    RtGeometry g = {0};
+    OWNED_GEOMETRY g = {0};
     assert_ok(rt_geometry_add_polygon(&g, v, 4, error));
     assert_ok(rt_geometry_finish(&g, error));
     assert_true(meets(&g, cube(0.5f, 0.5f, 0.5f, 0.01f)));
     assert_false(meets(&g, cube(0.25f, 0.5f, 0.75f, 0.2f)));
-    rt_geometry_clear(&g);
 }
 
 RT_TEST(a_slanted_cylinder_leaves_corners_of_its_box_free) {
-    RtGeometry g = {0};
+    OWNED_GEOMETRY g = {0};
     assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 0.1f, rt_vec3(10, 10, 0), 0.1f, error));
     assert_ok(rt_geometry_finish(&g, error));
     assert_true(meets(&g, cube(5, 5, 0.1f, 0.01f)));
     assert_false(meets(&g, cube(1, 9, 0, 0.5f)));
-    rt_geometry_clear(&g);
 }
 
 /* Asserts the part of object 0 in a box, to a few units of float32. */
@@ -78,34 +74,30 @@ static void assert_part(const RtGeometry *g, RtBox box, RtBox expected) {
 RT_TEST(parts_of_a_triangle_and_of_a_concave_polygon_are_clipped) {
     const RtVec3 v[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 1}};
     const RtVec3 l[6] = {{0, 0, 0}, {4, 0, 0}, {4, 1, 0}, {1, 1, 0}, {1, 4, 0}, {0, 4, 0}};
-    RtGeometry g = {0};
-    assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
-    assert_ok(rt_geometry_finish(&g, error));
-    assert_part(&g, (RtBox){{0.75f, 0, 0}, {1, 1, 1}}, (RtBox){{0.75f, 0, 0}, {1, 0.25f, 0.25f}});
-    assert_part(&g, (RtBox){{0, 0.5f, 0}, {1, 1, 1}}, (RtBox){{0, 0.5f, 0.5f}, {0.5f, 1, 1}});
+    OWNED_GEOMETRY triangle = {0}, concave = {0};
+    assert_ok(rt_geometry_add_triangle(&triangle, v, NULL, error));
+    assert_ok(rt_geometry_finish(&triangle, error));
+    assert_part(&triangle, (RtBox){{0.75f, 0, 0}, {1, 1, 1}}, (RtBox){{0.75f, 0, 0}, {1, 0.25f, 0.25f}});
+    assert_part(&triangle, (RtBox){{0, 0.5f, 0}, {1, 1, 1}}, (RtBox){{0, 0.5f, 0.5f}, {0.5f, 1, 1}});
     RtBox beyond = cube(0.9f, 0.9f, 0.9f, 0.1f), part;
-    assert_false(rt_object_part(&g, 0, &beyond, margin, &part));
-    rt_geometry_clear(&g);
-    assert_ok(rt_geometry_add_polygon(&g, l, 6, error));
-    assert_ok(rt_geometry_finish(&g, error));
-    assert_part(&g, (RtBox){{0, 2, -1}, {4, 4, 1}}, (RtBox){{0, 2, 0}, {1, 4, 0}});
-    assert_part(&g, (RtBox){{0.5f, 0, -1}, {4, 4, 1}}, (RtBox){{0.5f, 0, 0}, {4, 4, 0}});
-    rt_geometry_clear(&g);
+    assert_false(rt_object_part(&triangle, 0, &beyond, margin, &part));
+    assert_ok(rt_geometry_add_polygon(&concave, l, 6, error));
+    assert_ok(rt_geometry_finish(&concave, error));
+    assert_part(&concave, (RtBox){{0, 2, -1}, {4, 4, 1}}, (RtBox){{0, 2, 0}, {1, 4, 0}});
+    assert_part(&concave, (RtBox){{0.5f, 0, -1}, {4, 4, 1}}, (RtBox){{0.5f, 0, 0}, {4, 4, 0}});
 }
 
 RT_TEST(parts_of_balls_and_cones_end_where_they_narrow) {
-    RtGeometry g = {0};
+    OWNED_GEOMETRY ball = {0}, cone = {0};
     RtBox inside = cube(0, 0, 0, 0.5f), part;
-    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 1, error));
-    assert_ok(rt_geometry_finish(&g, error));
-    assert_part(&g, (RtBox){{0.8f, -1, -1}, {1, 1, 1}}, (RtBox){{0.8f, -0.6f, -0.6f}, {1, 0.6f, 0.6f}});
-    assert_false(rt_object_part(&g, 0, &inside, margin, &part));
-    rt_geometry_clear(&g);
-    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 1, rt_vec3(0, 0, 4), 0, error));
-    assert_ok(rt_geometry_finish(&g, error));
-    assert_part(&g, (RtBox){{-1, -1, 2}, {1, 1, 3}}, (RtBox){{-0.5f, -0.5f, 2}, {0.5f, 0.5f, 3}});
-    assert_part(&g, (RtBox){{0.75f, -1, 0}, {1, 1, 4}}, (RtBox){{0.75f, -1, 0}, {1, 1, 1}});
-    rt_geometry_clear(&g);
+    assert_ok(rt_geometry_add_sphere(&ball, rt_vec3(0, 0, 0), 1, error));
+    assert_ok(rt_geometry_finish(&ball, error));
+    assert_part(&ball, (RtBox){{0.8f, -1, -1}, {1, 1, 1}}, (RtBox){{0.8f, -0.6f, -0.6f}, {1, 0.6f, 0.6f}});
+    assert_false(rt_object_part(&ball, 0, &inside, margin, &part));
+    assert_ok(rt_geometry_add_cone(&cone, rt_vec3(0, 0, 0), 1, rt_vec3(0, 0, 4), 0, error));
+    assert_ok(rt_geometry_finish(&cone, error));
+    assert_part(&cone, (RtBox){{-1, -1, 2}, {1, 1, 3}}, (RtBox){{-0.5f, -0.5f, 2}, {0.5f, 0.5f, 3}});
+    assert_part(&cone, (RtBox){{0.75f, -1, 0}, {1, 1, 4}}, (RtBox){{0.75f, -1, 0}, {1, 1, 1}});
 }
 
 /* The box of the object is cut into eight by planes through a point of its surface: the point is in the part
@@ -127,15 +119,12 @@ static void assert_parts_hold(const RtScene *scene, uint32_t id, RtVec3 point, d
 /* Points that rays hit are points of surfaces: boxes around them are met, for every shape. */
 RT_TEST(boxes_about_hits_are_met) {
     for (size_t family = 0; family < rt_family_count(); family++) {
-        OWNED_SCENE scene;
-        OWNED_ACCEL RtAccel *brute = NULL;
-        OWNED_QUERY query = {0};
         enum { RAYS = 500 };
         RtRay rays[RAYS];
         RtHit hits[RAYS];
-        open_family(family, 1, &scene);
-        assert_ok(rt_accel_open("brute", &scene, &brute, error));
-        assert_ok(rt_query_init(&query, brute, error));
+        OWNED_SCENE scene = open_family(family, 1);
+        OWNED_ACCEL RtAccel *brute = open_accel(&scene, "brute");
+        OWNED_QUERY query = open_query(brute);
         rt_ray_family_fill(0, &query, 7, 0, RAYS, rays);
         rt_nearest(&query, rays, RAYS, hits, NULL);
         for (size_t i = 0; i < RAYS && scene.geometry.object_count > 0; i++) {
@@ -145,9 +134,8 @@ RT_TEST(boxes_about_hits_are_met) {
             RtVec3 size = rt_box_size(scene.geometry.box);
             double far = fabs((double)p.x) + fabs((double)p.y) + fabs((double)p.z);
             double near = 0x1p-16 * rt_lengthd(rt_widen(size)) + 0x1p-22 * far;
-            if (!rt_object_meets_box(&scene.geometry, hits[i].object, &point, near)) {
+            if (!rt_object_meets_box(&scene.geometry, hits[i].object, &point, near))
                 fail_msg("%s: ray %zu hits object %u where it is not", scene.name, i, hits[i].object);
-            }
             assert_parts_hold(&scene, hits[i].object, p, near);
         }
     }
@@ -156,8 +144,7 @@ RT_TEST(boxes_about_hits_are_met) {
 /* One sphere in 4 x 4 x 4 voxels of half its radius: its box touches all of them, its surface all but the 8
  * in the middle, whose farthest points are at 0.87 of the radius, as are the nearest of the corners. */
 RT_TEST(a_grid_leaves_out_voxels_inside_a_sphere) {
-    OWNED_SCENE scene;
-    begin_scene(&scene);
+    OWNED_SCENE scene = begin_scene();
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
     assert_ok(rt_scene_finish(&scene, error));
     assert_int_equal(describe_spec(&scene, "grid:resolution=4x4x4").references, 64);
@@ -173,16 +160,13 @@ RT_TEST(a_ray_with_the_shortest_of_directions_is_not_trusted_to_voxels) {
     static const char *const specs[] = {"brute", "grid:resolution=32x32x32,overlap=exact"};
     const RtVec3 v[3] = {{0, 0, 0.5f}, {1, 0, 1.5f}, {1, 1, 1.5f}};
     const RtRay ray = {.org = {0.3f, 0.35f, 0}, .dir = {0x1p-129f, 0, 0x1p-126f}, .tmax = INFINITY};
-    OWNED_SCENE scene;
-    begin_scene(&scene);
+    OWNED_SCENE scene = begin_scene();
     assert_ok(rt_scene_add_triangle(&scene, 0, v, NULL, error));
     assert_ok(rt_scene_finish(&scene, error));
     for (size_t i = 0; i < 2; i++) {
-        OWNED_ACCEL RtAccel *accel = NULL;
-        OWNED_QUERY query = {0};
         RtHit hit;
-        assert_ok(rt_accel_open(specs[i], &scene, &accel, error));
-        assert_ok(rt_query_init(&query, accel, error));
+        OWNED_ACCEL RtAccel *accel = open_accel(&scene, specs[i]);
+        OWNED_QUERY query = open_query(accel);
         rt_nearest(&query, &ray, 1, &hit, NULL);
         assert_int_equal(hit.object, 0);
         assert_true(hit.t > 0.9f * 0x1p126f && hit.t < 0.95f * 0x1p126f);

@@ -2,16 +2,11 @@
 /* Overlays: specs with '+', their layers, the counts of each, and the shadow cache. */
 #include "accel_testing.h"
 
-#include "accel/accel.h"
-#include "core/base/memory.h"
-
-#include <string.h>
-
 /* Two unit-diameter spheres, 0 about (0.5, 0.5, 0.5) and 1 about (3.5, 0.5, 0.5), and two lights at x = 8:
  * one behind both spheres, seen along +x, one above them. */
 static int set_up(void **state) {
     static RtScene scene;
-    begin_scene(&scene);
+    scene = begin_scene();
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0.5f, 0.5f, 0.5f), 0.5f, error));
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(3.5f, 0.5f, 0.5f), 0.5f, error));
     assert_ok(rt_scene_add_light(&scene, rt_vec3(8, 0.5f, 0.5f), rt_vec3(1, 1, 1), error));
@@ -59,9 +54,7 @@ RT_TEST(a_wrong_plus_is_refused_with_a_remedy) {
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         RtSpec spec;
-        RtError error = {RT_OK, ""};
-        assert_int_equal(rt_spec_parse(wrong[i].spec, &spec, &error), RT_BAD_INPUT);
-        if (!strstr(error.message, wrong[i].says)) fail_msg("%s: %s", wrong[i].spec, error.message);
+        assert_bad_input(rt_spec_parse(wrong[i].spec, &spec, error), wrong[i].says);
     }
 }
 
@@ -143,10 +136,8 @@ RT_TEST(the_cache_counts_what_was_counted_by_hand) {
         /* After rt_query_begin the cache is empty. */
         {{{2, 0.5f, 0.5f}}, 0, true, true, {HIT, .object_tests = 2, .passed_on = 1}},
     };
-    OWNED_ACCEL RtAccel *accel = NULL;
-    OWNED_QUERY query = {0};
-    assert_ok(rt_accel_open("cache+brute", scene, &accel, error));
-    assert_ok(rt_query_init(&query, accel, error));
+    OWNED_ACCEL RtAccel *accel = open_accel(scene, "cache+brute");
+    OWNED_QUERY query = open_query(accel);
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         RtRay ray = shadow_ray(scene, rows[i].from, rows[i].light);
         RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
@@ -165,16 +156,14 @@ RT_TEST(the_cache_counts_what_was_counted_by_hand) {
 
 RT_TEST(rays_of_other_kinds_pass_an_overlay_uncounted) {
     const RtScene *scene = *state;
-    OWNED_ACCEL RtAccel *accel = NULL;
-    OWNED_QUERY query = {0};
     RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
     RtRay toward = shadow_ray(scene, rt_vec3(-1, 0.5f, 0.5f), 0), rays[3] = {toward, toward, toward};
     rays[1].kind = RT_RAY_DIFFUSE;
     rays[2].source = 7; /* there is no such light */
     bool blocked[3];
     RtHit hits[3];
-    assert_ok(rt_accel_open("cache+brute", scene, &accel, error));
-    assert_ok(rt_query_init(&query, accel, error));
+    OWNED_ACCEL RtAccel *accel = open_accel(scene, "cache+brute");
+    OWNED_QUERY query = open_query(accel);
     rt_occluded(&query, rays, 3, blocked, tallies);
     assert_true(blocked[0] && blocked[1] && blocked[2]);
     assert_int_equal(tallies[RT_RAY_DIFFUSE].rays, 1);

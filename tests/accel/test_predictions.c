@@ -4,7 +4,6 @@
 #include "accel_testing.h"
 
 #include "rays/rayset.h"
-#include "scenes/open.h"
 
 enum { LINES = 20000 };
 
@@ -22,10 +21,8 @@ static void make_lines(const RtBox *box, RtRay rays[LINES]) {
 static RtTally count(const RtAccel *accel, const RtRay *rays) {
     static RtHit hits[LINES];
     RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
-    RtQuery query;
-    assert_ok(rt_query_init(&query, accel, error));
+    OWNED_QUERY query = open_query(accel);
     rt_nearest(&query, rays, LINES, hits, tallies);
-    rt_query_clear(&query);
     return tallies[RT_RAY_RANDOM];
 }
 
@@ -60,22 +57,18 @@ static const struct {
 
 RT_TEST(lines_take_the_tests_and_steps_that_were_predicted) {
     static RtRay rays[LINES];
-    OWNED_SCENE scene;
-    assert_ok(rt_scene_open("random:n=500,radius=0.002", &scene, error));
+    OWNED_SCENE scene = open_scene("random:n=500,radius=0.002");
     make_lines(&scene.geometry.box, rays);
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        OWNED_ACCEL RtAccel *accel = NULL;
         RtDescription d;
-        assert_ok(rt_accel_open(rows[i].spec, &scene, &accel, error));
+        OWNED_ACCEL RtAccel *accel = open_accel(&scene, rows[i].spec);
         rt_accel_describe(accel, &d);
         RtTally tally = count(accel, rays);
         assert_true(tally.hits < LINES / 1000);
-        if (rows[i].tests) {
+        if (rows[i].tests)
             assert_close(rows[i].spec, "tests", (double)tally.object_tests / LINES, d.predicted_tests);
-        }
-        if (d.predicted_steps > 0) {
+        if (d.predicted_steps > 0)
             assert_close(rows[i].spec, "steps", (double)tally.steps / LINES, d.predicted_steps);
-        }
     }
 }
 

@@ -15,8 +15,7 @@ static void add_triangle(RtScene *scene, float x) {
 
 /* Two of them. */
 static RtScene make_pair(float x0, float x1) {
-    RtScene scene;
-    begin_scene(&scene);
+    RtScene scene = begin_scene();
     add_triangle(&scene, x0);
     add_triangle(&scene, x1);
     assert_ok(rt_scene_finish(&scene, error));
@@ -43,8 +42,7 @@ RT_TEST(overlap_is_the_cost_of_leaves_that_hold_a_point_of_another_object) {
 /* Of four in one place, halved twice, a point is in one inner node that is not above its object, and in three
  * leaves. */
 RT_TEST(an_inner_node_overlaps_at_its_own_cost) {
-    OWNED_SCENE scene;
-    begin_scene(&scene);
+    OWNED_SCENE scene = begin_scene();
     for (int i = 0; i < 4; i++) add_triangle(&scene, 0);
     assert_ok(rt_scene_finish(&scene, error));
     double overlap = describe_spec(&scene, "bvh:max_leaf_size=1,traversal_cost=7").end_point_overlap;
@@ -62,11 +60,7 @@ RT_TEST(leaves_met_vary_as_the_areas_of_two_cubes_say) {
 }
 
 RT_TEST(what_is_no_triangle_has_no_overlap_and_what_is_no_hierarchy_no_quality) {
-    OWNED_SCENE scene;
-    begin_scene(&scene);
-    for (int i = 0; i < 2; i++)
-        assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(9 * (float)i, 0, 0), 1, error));
-    assert_ok(rt_scene_finish(&scene, error));
+    OWNED_SCENE scene = make_row(2, 9);
     RtDescription description = describe_spec(&scene, "bvh:max_leaf_size=1");
     assert_true(isnan(description.end_point_overlap));
     assert_true(description.leaf_count_variability > 0);

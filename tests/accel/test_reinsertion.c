@@ -2,8 +2,6 @@
 /* accel/tree/reinsertion.c: which subtrees move, the gain, and that nothing else changes. */
 #include "tree_testing.h"
 
-#include <string.h>
-
 /* A binned tree, and bad ones: medians, and chains in the order of ids. */
 enum { BINNED, MEDIANS, CHAIN, KINDS };
 
@@ -133,7 +131,7 @@ static RtBox refit(RtTree *tree, uint32_t node) {
 
 /* The cost after moving `node` beside `target`. */
 static double cost_after(const RtTree *tree, uint32_t node, uint32_t target) {
-    RtTree copy = copy_of(tree);
+    OWNED_TREE copy = copy_of(tree);
     uint32_t p = parent_of(tree, node);
     uint32_t sibling = tree->nodes[p].child[tree->nodes[p].child[0] == node ? 1 : 0];
     put_instead(&copy, parent_of(tree, p), p, sibling);
@@ -142,9 +140,7 @@ static double cost_after(const RtTree *tree, uint32_t node, uint32_t target) {
     copy.nodes[p].child[0] = target;
     copy.nodes[p].child[1] = node;
     refit(&copy, copy.root);
-    double cost = rt_tree_cost(&copy);
-    rt_tree_clear(&copy);
-    return cost;
+    return rt_tree_cost(&copy);
 }
 
 RT_TEST(where_it_ends_no_move_there_is_would_gain) {
@@ -171,11 +167,9 @@ RT_TEST(what_cannot_gain_stays_as_it_is) {
     OWNED_MEMORY RtBox *boxes = rt_alloc(COUNT, sizeof(RtBox)); /* all at one point, then all the unit cube */
     for (int pass = 0; pass < 2; pass++) {
         for (uint32_t count = 1; count <= COUNT; count = count < 3 ? count + 1 : count * 10) {
-            RtTree tree = make_tree(boxes, count, MEDIANS), before = copy_of(&tree);
+            OWNED_TREE tree = make_tree(boxes, count, MEDIANS), before = copy_of(&tree);
             assert_ok(rt_tree_reinsert(&tree, 5, 0, error));
             assert_memory_equal(tree.nodes, before.nodes, tree.used * sizeof(RtTreeNode));
-            rt_tree_clear(&tree);
-            rt_tree_clear(&before);
         }
         for (int i = 0; i < COUNT; i++) boxes[i] = (RtBox){{0, 0, 0}, {1, 1, 1}};
     }

@@ -14,9 +14,8 @@ RT_TEST(an_axis_is_sorted_by_centres_and_ids) {
             boxes[i] = (RtBox){{0, 0, 0}, {0, 0, 0}};
             boxes[i].lo.at[axis] = boxes[i].hi.at[axis] = centers[i];
         }
-        RtKeyed *order = rt_order_axis(boxes, COUNT, axis, 1);
+        OWNED_MEMORY RtKeyed *order = rt_order_axis(boxes, COUNT, axis, 1);
         for (uint32_t i = 0; i < COUNT; i++) assert_int_equal(order[i].id, expected[i]);
-        rt_free(order);
     }
 }
 
@@ -31,20 +30,18 @@ static void make_cells(RtBox *boxes) {
 RT_TEST(morton_codes_interleave_the_cells_of_centres) {
     RtBox boxes[64];
     make_cells(boxes);
-    RtKeyed *order = rt_order_morton(boxes, 64, 2, 1);
+    OWNED_MEMORY RtKeyed *order = rt_order_morton(boxes, 64, 2, 1);
     for (uint32_t i = 0; i < 64; i++) {
         uint32_t id = order[i].id, code = 0;
         for (uint32_t bit = 0; bit < 6; bit++) code |= (id >> (bit % 3 * 2 + bit / 3) & 1) << bit;
         assert_int_equal(order[i].key, code);
         assert_int_equal(code, i);
     }
-    rt_free(order);
-    order = rt_order_morton(boxes, 64, 1, 1); /* eight a cell, by id */
+    OWNED_MEMORY RtKeyed *coarse = rt_order_morton(boxes, 64, 1, 1); /* eight a cell, by id */
     for (uint32_t i = 1; i < 64; i++) {
-        assert_int_equal(order[i].key, i / 8);
-        if (i % 8) assert_true(order[i].id > order[i - 1].id);
+        assert_int_equal(coarse[i].key, i / 8);
+        if (i % 8) assert_true(coarse[i].id > coarse[i - 1].id);
     }
-    rt_free(order);
 }
 
 RT_TEST(lbvh_halves_space_along_one_axis_after_another) {
@@ -60,9 +57,7 @@ RT_TEST(lbvh_halves_space_along_one_axis_after_another) {
         const uint32_t *child = tree.nodes[node].child;
         for (int s = 0; s < 2; s++) {
             RtVec3 half = rt_box_size(tree.nodes[child[s]].box);
-            for (int a = 0; a < 3; a++) {
-                assert_true(half.at[a] == (a == axis ? size.at[a] / 2 : size.at[a]));
-            }
+            for (int a = 0; a < 3; a++) assert_true(half.at[a] == (a == axis ? size.at[a] / 2 : size.at[a]));
         }
     }
 }

@@ -5,8 +5,6 @@
 #include "accel/tree/neighbours.h"
 #include "accel/tree/sah_split.h"
 
-#include <string.h>
-
 enum { METHOD_COUNT = 7 }; /* of make_tree */
 
 /* ---- trees of boxes ---- */
@@ -90,7 +88,7 @@ RT_TEST(agglomeration_unites_the_nearest_pair_of_all) {
     enum { COUNT = 150 };
     for (uint64_t seed = 1; seed <= 5; seed++) {
         OWNED_MEMORY RtBox *boxes = make_boxes(COUNT, seed);
-        RtTree greedy = make_greedy_tree(boxes, COUNT), tree = make_tree(boxes, COUNT, 0);
+        OWNED_TREE greedy = make_greedy_tree(boxes, COUNT), tree = make_tree(boxes, COUNT, 0);
         assert_tree(&tree);
         /* The same merges, in another order. */
         for (uint32_t i = COUNT; i < greedy.used; i++) {
@@ -98,8 +96,6 @@ RT_TEST(agglomeration_unites_the_nearest_pair_of_all) {
             while (j < tree.used && memcmp(&tree.nodes[j].box, &greedy.nodes[i].box, sizeof(RtBox)) != 0) j++;
             assert_true(j < tree.used);
         }
-        rt_tree_clear(&greedy);
-        rt_tree_clear(&tree);
     }
 }
 

@@ -11,7 +11,6 @@
 #include "scenes/build.h"
 #include "scenes/open.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 
 enum { RAYS = 400000, CHUNK = 4096, SAMPLE_TESTS = 4000000, LEVELS = 2, SECTORS = 24 };
@@ -131,7 +130,7 @@ enum { BODIES = sizeof bodies / sizeof *bodies };
 static void set_up(Body *body, size_t index) {
     *body = (Body){.scale = bodies[index].scale, .shift = bodies[index].shift};
     if (bodies[index].make) {
-        begin_scene(&body->scene);
+        body->scene = begin_scene();
         bodies[index].make(body);
         assert_ok(rt_scene_finish(&body->scene, error));
         return;
@@ -222,16 +221,12 @@ static void trace(Leaks *leaks, const char *name, const RtRay *rays, size_t coun
 static void check_sample(Leaks *leaks, const RtScene *scene, const RtRay rays[CHUNK]) {
     static RtHit ours[CHUNK], right[CHUNK];
     size_t count = SAMPLE_TESTS / scene->geometry.object_count;
-    RtAccel *brute;
-    RtQuery query;
     if (count > CHUNK) count = CHUNK;
-    assert_ok(rt_accel_open("brute", scene, &brute, error));
-    assert_ok(rt_query_init(&query, brute, error));
+    OWNED_ACCEL RtAccel *brute = open_accel(scene, "brute");
+    OWNED_QUERY query = open_query(brute);
     rt_nearest(&query, rays, count, right, NULL);
     rt_nearest(&leaks->queries[BVH], rays, count, ours, NULL);
     assert_memory_equal(ours, right, count * sizeof(RtHit));
-    rt_query_clear(&query);
-    rt_accel_destroy(brute);
 }
 
 RT_TEST(no_ray_at_an_edge_or_vertex_leaks_from_a_closed_mesh) {
@@ -255,10 +250,9 @@ RT_TEST(no_ray_at_an_edge_or_vertex_leaks_from_a_closed_mesh) {
             if (left > 0) fill_rays(&body, &random, rays);
         }
         for (int i = 0; i < TRACERS; i++) {
-            if (leaks.accels[i]) {
+            if (leaks.accels[i])
                 printf("%s, %s: %ju lost\n", bodies[b].name, specs[i],
                        (uintmax_t)(leaks.lost[i] - before[i]));
-            }
         }
         close_tracers(&leaks);
         rt_scene_clear(&body.scene);
@@ -292,7 +286,7 @@ static RtGeometry make_cube_of_polygons(void) {
 
 /* From the centre, towards the middle of every face, edge and corner: the rays that meet them exactly. */
 RT_TEST(symmetric_rays_do_not_leak_from_a_cube_of_polygons) {
-    RtGeometry g = make_cube_of_polygons();
+    OWNED_GEOMETRY g = make_cube_of_polygons();
     for (int code = 0; code < 27; code++) {
         RtVec3 dir = {(float)(code % 3 - 1), (float)(code / 3 % 3 - 1), (float)(code / 9 - 1)};
         RtRay ray = {.dir = dir, .tmin = 0, .tmax = INFINITY};
@@ -308,7 +302,6 @@ RT_TEST(symmetric_rays_do_not_leak_from_a_cube_of_polygons) {
         }
         assert_int_equal(hits, faces);
     }
-    rt_geometry_clear(&g);
 }
 
 RT_TESTS(watertight, NULL, NULL)

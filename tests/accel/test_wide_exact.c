@@ -36,11 +36,9 @@ static Target aim_at(const RtScene *scene, uint64_t seed) {
 
 static void set_up(Bench *bench, uint64_t seed, Bundle *only) {
     Target target = aim_at(&bench->scene, seed);
-    RtAccel *brute;
-    RtQuery query;
     make_rays(&target, bench->rays, only);
-    assert_ok(rt_accel_open("brute", &bench->scene, &brute, error));
-    assert_ok(rt_query_init(&query, brute, error));
+    OWNED_ACCEL RtAccel *brute = open_accel(&bench->scene, "brute");
+    OWNED_QUERY query = open_query(brute);
     rt_nearest(&query, bench->rays, RAYS, bench->truth, NULL);
     for (int i = 0; i < RAYS; i++) {
         RtRay *ray = &bench->rays[RAYS + i];
@@ -48,8 +46,6 @@ static void set_up(Bench *bench, uint64_t seed, Bundle *only) {
         if (bench->truth[i].object != RT_NO_OBJECT) ray->tmin = ray->tmax = bench->truth[i].t;
     }
     rt_nearest(&query, bench->rays + RAYS, RAYS, bench->truth + RAYS, NULL);
-    rt_query_clear(&query);
-    rt_accel_destroy(brute);
 }
 
 /* The rays again, the `cut`th way to cut them: in lengths that are no packets' in turn, in packets, in what
@@ -86,9 +82,8 @@ static void compare(const Bench *bench, const char *what, int cut) {
 
 /* No allocation but that of the query: one that were made while tracing would fail. */
 static void assert_like_brute(Bench *bench, const RtWide *wide, const char *what) {
-    RtQuery query;
     RtTally tallies[RT_RAY_KIND_COUNT] = {0};
-    assert_ok(rt_query_init(&query, &wide->isa.base, error));
+    OWNED_QUERY query = open_query(&wide->isa.base);
     for (int cut = 0; cut < 4; cut++) {
         rt_alloc_fail_at(1);
         trace_all(&query, bench, cut, NULL);
@@ -99,7 +94,6 @@ static void assert_like_brute(Bench *bench, const RtWide *wide, const char *what
         compare(bench, what, cut + 10);
     }
     rt_alloc_fail_at(0);
-    rt_query_clear(&query);
 }
 
 static const char *const settings[] = {"",
@@ -128,31 +122,25 @@ static const char *const settings[] = {"",
                                        "build=spatial,alpha=0,in_flight=1"};
 enum { SETTINGS = sizeof settings / sizeof settings[0], SPLIT = 6 /* the last */ };
 
-/* Of the settings those from `first` on. */
-static void check(Bench *bench, int first) {
-    char what[RT_MAX_SPEC_CHARS];
+/* Takes the scene. Of `only` alone, at the settings that split references; NULL: of everything, at all. */
+static void check(RtScene scene, uint64_t seed, Bundle *only) {
+    static Bench bench;
+    bench.scene = scene;
+    set_up(&bench, seed, only);
     for (int isa = FIRST_SET; isa < INSTRUCTION_SETS; isa++) {
-        for (int s = first; s < SETTINGS; s++) {
-            RtWide *wide = make_wide(&bench->scene, isa, settings[s]);
+        for (int s = only ? SETTINGS - SPLIT : 0; s < SETTINGS; s++) {
+            char what[RT_MAX_SPEC_CHARS];
+            OWNED_ACCEL RtWide *wide = make_wide(&bench.scene, isa, settings[s]);
             if (!wide) continue;
             snprintf(what, sizeof what, "wide:isa=%s,%s", instruction_sets[isa], settings[s]);
-            assert_like_brute(bench, wide, what);
-            rt_accel_destroy(&wide->isa.base);
+            assert_like_brute(&bench, wide, what);
         }
     }
-}
-
-static void check_all(Bench *bench, uint64_t seed) {
-    set_up(bench, seed, NULL);
-    check(bench, 0);
-    rt_scene_clear(&bench->scene);
+    rt_scene_clear(&bench.scene);
 }
 
 static void check_scene(const char *spec) {
-    Bench *bench = calloc(1, sizeof *bench);
-    assert_ok(rt_scene_open(spec, &bench->scene, error));
-    check_all(bench, 1);
-    free(bench);
+    check(open_scene(spec), 1, NULL);
 }
 
 /* ---- scenes ---- */
@@ -191,15 +179,12 @@ RT_TEST(csg_trees_are_hit_as_by_brute) {
 }
 
 RT_TEST(scenes_of_no_object_and_of_one_are_answered_as_by_brute) {
-    Bench *bench = calloc(1, sizeof *bench);
-    begin_scene(&bench->scene);
-    assert_ok(rt_scene_finish(&bench->scene, error));
-    check_all(bench, 1);
-    begin_scene(&bench->scene);
-    add_triangle(&bench->scene, rt_vec3(0, 0, 1), rt_vec3(1, 0.25f, 1), rt_vec3(0.5f, 1, 2));
-    assert_ok(rt_scene_finish(&bench->scene, error));
-    check_all(bench, 2);
-    free(bench);
+    RtScene none = begin_scene(), one = begin_scene();
+    assert_ok(rt_scene_finish(&none, error));
+    check(none, 1, NULL);
+    add_triangle(&one, rt_vec3(0, 0, 1), rt_vec3(1, 0.25f, 1), rt_vec3(0.5f, 1, 2));
+    assert_ok(rt_scene_finish(&one, error));
+    check(one, 2, NULL);
 }
 
 /* Needs the thickness of rays, in streams and in packets. */
@@ -207,42 +192,23 @@ RT_TEST(rays_along_the_planes_that_cut_objects_are_answered_as_by_brute) {
     const char *specs[] = {"random:n=300,shape=triangle", "family:kind=slivers,seed=1",
                            "family:kind=slivers,seed=5", "family:kind=slivers-scaled,seed=3",
                            "family:kind=mesh-far,seed=1"};
-    Bench *bench = calloc(1, sizeof *bench);
-    for (int i = 0; i < 5; i++) {
-        assert_ok(rt_scene_open(specs[i], &bench->scene, error));
-        set_up(bench, (uint64_t)i, along_planes);
-        check(bench, SETTINGS - SPLIT);
-        rt_scene_clear(&bench->scene);
-    }
-    free(bench);
+    for (int i = 0; i < 5; i++) check(open_scene(specs[i]), (uint64_t)i, along_planes);
 }
 
 RT_TEST(rays_too_short_for_the_boxes_of_split_references_are_answered_as_by_brute) {
-    Bench *bench = calloc(1, sizeof *bench);
-    assert_ok(rt_scene_open("random:n=400,shape=triangle,radius=0.4", &bench->scene, error));
-    set_up(bench, 1, short_along_an_axis);
-    check(bench, SETTINGS - SPLIT);
-    rt_scene_clear(&bench->scene);
-    free(bench);
+    check(open_scene("random:n=400,shape=triangle,radius=0.4"), 1, short_along_an_axis);
 }
 
 RT_TEST(hostile_rays_hit_split_slivers_as_by_brute) {
     const float scales[] = {1, 1, 1, 1e-20f, 1e16f, 0.01f}, offsets[] = {0, 1e6f, 1e5f, 0, 0, -3000};
-    Bench *bench = calloc(1, sizeof *bench);
-    for (int i = 0; i < 6; i++) {
-        bench->scene = make_slivers(160, (uint64_t)i, scales[i], offsets[i]);
-        set_up(bench, (uint64_t)i, at_slivers);
-        check(bench, SETTINGS - SPLIT);
-        rt_scene_clear(&bench->scene);
-    }
-    free(bench);
+    for (int i = 0; i < 6; i++)
+        check(make_slivers(160, (uint64_t)i, scales[i], offsets[i]), (uint64_t)i, at_slivers);
 }
 
 /* Copies of triangles, in planes of boxes, and others that are lines and points. */
 RT_TEST(triangles_without_area_and_copies_of_triangles_are_answered_as_by_brute) {
-    Bench *bench = calloc(1, sizeof *bench);
+    RtScene scene = begin_scene();
     RtRandom random = rt_random(9, 9);
-    begin_scene(&bench->scene);
     for (int i = 0; i < 120; i++) {
         RtVec3 a = rt_random_point(&random, 1), b = rt_random_point(&random, 1),
                c = rt_random_point(&random, 1);
@@ -250,11 +216,10 @@ RT_TEST(triangles_without_area_and_copies_of_triangles_are_answered_as_by_brute)
         if (i % 4 == 1) c = b;
         if (i % 4 == 2) c = rt_add(a, rt_scale(rt_sub(b, a), 0.5f));
         if (i % 16 == 3) c = b = a;
-        for (int copy = 0; copy <= i % 3; copy++) add_triangle(&bench->scene, a, b, c);
+        for (int copy = 0; copy <= i % 3; copy++) add_triangle(&scene, a, b, c);
     }
-    assert_ok(rt_scene_finish(&bench->scene, error));
-    check_all(bench, 3);
-    free(bench);
+    assert_ok(rt_scene_finish(&scene, error));
+    check(scene, 3, NULL);
 }
 
 /* Rays that miss all children of the root, so that the filter stays open, between rays that graze faces and
@@ -291,20 +256,15 @@ RT_TEST(rays_that_graze_the_children_of_the_root_are_answered_as_by_brute_in_str
     const char *const specs[] = {"family:kind=axis-aligned,seed=1", "random:n=60,shape=triangle"};
     const char *const ways[] = {"", "packets=0", "sharing=0", "build=spatial,alpha=0,budget=4"};
     for (int run = 0; run < 4; run++) {
-        RtScene scene;
-        RtAccel *brute;
-        RtQuery query;
-        assert_ok(rt_scene_open(specs[run / 2], &scene, error));
+        OWNED_SCENE scene = open_scene(specs[run / 2]);
+        OWNED_ACCEL RtAccel *brute = open_accel(&scene, "brute");
+        OWNED_QUERY right = open_query(brute);
         graze_boxes(&scene, rays, COUNT, run % 2);
-        assert_ok(rt_accel_open("brute", &scene, &brute, error));
-        assert_ok(rt_query_init(&query, brute, error));
-        rt_nearest(&query, rays, COUNT, truth, NULL);
-        rt_query_clear(&query);
-        rt_accel_destroy(brute);
+        rt_nearest(&right, rays, COUNT, truth, NULL);
         for (int k = 0; k < 4 * INSTRUCTION_SETS; k++) {
-            RtWide *wide = make_wide(&scene, k / 4, ways[k % 4]);
+            OWNED_ACCEL RtWide *wide = make_wide(&scene, k / 4, ways[k % 4]);
             if (!wide) continue;
-            assert_ok(rt_query_init(&query, &wide->isa.base, error));
+            OWNED_QUERY query = open_query(&wide->isa.base);
             for (size_t n = 1, first = 0; n <= LONGEST; n++, first = (first + n) % (COUNT - LONGEST)) {
                 rt_nearest(&query, rays + first, n, hits, NULL);
                 rt_occluded(&query, rays + first, n, blocked, NULL);
@@ -312,10 +272,7 @@ RT_TEST(rays_that_graze_the_children_of_the_root_are_answered_as_by_brute_in_str
                 for (size_t i = 0; i < n; i++)
                     assert_int_equal(blocked[i], truth[first + i].object != RT_NO_OBJECT);
             }
-            rt_query_clear(&query);
-            rt_accel_destroy(&wide->isa.base);
         }
-        rt_scene_clear(&scene);
     }
 }
 

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The layout of `wide`: one arena for any number of threads, the room that was foreseen, and blocks that are
  * no emptier than they need be. */
-#include "accel_testing.h"
-#include "scene_testing.h"
 #include "tree_testing.h"
 
 #include "accel/wide/wide.h"
@@ -34,17 +32,15 @@ static RtWideTree lay_out(const RtScene *scene, RtTree *tree, const RtWideLayout
 static void assert_same_on_any_threads(const RtScene *scene, RtTree *tree, uint32_t leaf_limit) {
     RtWideLayout how = plain;
     how.leaf_limit = leaf_limit;
-    RtWideTree one = lay_out(scene, tree, &how);
+    OWNED(rt_wide_clear) RtWideTree one = lay_out(scene, tree, &how);
     for (how.threads = 2; how.threads <= 5; how.threads++) {
         how.huge_pages = how.threads % 2 == 0;
-        RtWideTree other = lay_out(scene, tree, &how);
+        OWNED(rt_wide_clear) RtWideTree other = lay_out(scene, tree, &how);
         assert_int_equal(one.bytes, other.bytes);
         assert_int_equal(one.node_count, other.node_count);
         assert_true(one.cost == other.cost);
         assert_memory_equal(one.arena, other.arena, one.bytes);
-        rt_wide_clear(&other);
     }
-    rt_wide_clear(&one);
     rt_tree_clear(tree);
 }
 
@@ -52,7 +48,7 @@ RT_TEST(the_arena_is_the_same_byte_for_byte_on_any_number_of_threads) {
     static const char *const scenes[] = {"random:n=20000,shape=triangle,radius=3",
                                          "random:n=20000,shape=mixed"};
     for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i++) {
-        RtScene scene = open_scene(scenes[i]);
+        OWNED_SCENE scene = open_scene(scenes[i]);
         const RtGeometry *g = &scene.geometry;
         RtSpatial how = {
             .bins = 16, .alpha = 1e-5, .budget = 1.5, .leaf = 1, .traversal = 1, .limit = UINT64_MAX};
@@ -64,15 +60,14 @@ RT_TEST(the_arena_is_the_same_byte_for_byte_on_any_number_of_threads) {
         assert_ok(rt_tree_spatial(&tree, g, &how, 1, error));
         assert_true(tree.split_refs);
         assert_same_on_any_threads(&scene, &tree, 8);
-        rt_scene_clear(&scene);
     }
 }
 
 RT_TEST(a_leaf_is_next_to_its_node_or_another_leaf) {
-    RtScene scene = open_scene("random:n=5000,shape=mixed");
-    RtTree tree;
+    OWNED_SCENE scene = open_scene("random:n=5000,shape=mixed");
+    OWNED_TREE tree;
     assert_ok(rt_tree_topdown(&tree, scene.geometry.boxes, scene.geometry.object_count, 16, 1, error));
-    RtWideTree wide = lay_out(&scene, &tree, &plain);
+    OWNED(rt_wide_clear) RtWideTree wide = lay_out(&scene, &tree, &plain);
     const RtWideNode *root = rt_wide_node(&wide, 0);
     uint64_t end = sizeof(RtWideNode);
     for (int leaves = 1; leaves >= 0; leaves--) {
@@ -83,17 +78,13 @@ RT_TEST(a_leaf_is_next_to_its_node_or_another_leaf) {
         }
     }
     assert_int_equal(end, wide.bytes);
-    rt_wide_clear(&wide);
-    rt_tree_clear(&tree);
-    rt_scene_clear(&scene);
 }
 
 /* Four triangles in a row, with gaps, share a block: halves of them have a little less area, and empty lanes.
  */
 RT_TEST(a_block_is_filled_where_halves_have_hardly_less_area) {
-    RtScene scene;
-    RtTree tree;
-    begin_scene(&scene);
+    OWNED_TREE tree;
+    OWNED_SCENE scene = begin_scene();
     for (int i = 0; i < 16; i++) {
         float x = 1.1f * (float)i;
         const RtVec3 vertices[3] = {{x, 0, 0}, {x + 1, 0, 0}, {x, 1, 0}};
@@ -101,18 +92,15 @@ RT_TEST(a_block_is_filled_where_halves_have_hardly_less_area) {
     }
     assert_ok(rt_scene_finish(&scene, error));
     assert_ok(rt_tree_topdown(&tree, scene.geometry.boxes, 16, 0, 1, error));
-    RtWideTree wide = lay_out(&scene, &tree, &plain);
+    OWNED(rt_wide_clear) RtWideTree wide = lay_out(&scene, &tree, &plain);
     assert_int_equal(wide.node_count, 1);
     assert_int_equal(wide.bytes, sizeof(RtWideNode) + 4 * sizeof(RtWideTriangles));
     assert_true(fabs(wide.cost - (1 + 4 * 4.3 / 17.5)) < 1e-5);
-    rt_wide_clear(&wide);
-    rt_tree_clear(&tree);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(one_object_is_a_leaf_below_a_root_and_what_takes_too_much_is_refused) {
-    RtScene scene = open_scene("random:n=1,shape=triangle");
-    RtTree tree;
+    OWNED_SCENE scene = open_scene("random:n=1,shape=triangle");
+    OWNED_TREE tree;
     RtWideLayout how = plain;
     assert_ok(rt_tree_topdown(&tree, scene.geometry.boxes, 1, 16, 1, error));
     RtWideTree wide = lay_out(&scene, &tree, &plain);
@@ -124,13 +112,11 @@ RT_TEST(one_object_is_a_leaf_below_a_root_and_what_takes_too_much_is_refused) {
     assert_int_equal(rt_wide_lay_out(&wide, &tree, &scene.geometry, &how, &refusal), RT_BAD_INPUT);
     assert_null(wide.arena);
     assert_true(wide.bytes == 0);
-    rt_tree_clear(&tree);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(every_allocation_may_fail_and_leaves_nothing) {
-    RtScene scene = open_scene("random:n=3000,shape=triangle");
-    RtTree tree;
+    OWNED_SCENE scene = open_scene("random:n=3000,shape=triangle");
+    OWNED_TREE tree;
     assert_ok(rt_tree_topdown(&tree, scene.geometry.boxes, scene.geometry.object_count, 16, 1, error));
     int64_t live = rt_alloc_live();
     RtStatus status = RT_NO_MEMORY;
@@ -144,8 +130,6 @@ RT_TEST(every_allocation_may_fail_and_leaves_nothing) {
         rt_wide_clear(&wide);
         assert_int_equal(rt_alloc_live(), live);
     }
-    rt_tree_clear(&tree);
-    rt_scene_clear(&scene);
 }
 
 RT_TESTS(wide_layout, NULL, NULL)

@@ -3,8 +3,9 @@
 #ifndef RT_TESTS_RAY_TESTING_H
 #define RT_TESTS_RAY_TESTING_H
 
-#include "core/base/random.h"
 #include "core/base/ray.h"
+
+#include "random_testing.h"
 
 #include <string.h>
 

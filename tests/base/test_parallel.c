@@ -70,9 +70,8 @@ RT_TEST(memory_that_cannot_be_had_is_a_status) {
     Count count = {.threads = 2, .fails_from = ITEMS};
     int64_t live = rt_alloc_live();
     for (uint64_t n = 1; n <= 1; n++) {
-        RtError error;
         rt_alloc_fail_at(n);
-        assert_int_equal(rt_parallel_for(ITEMS, 2, visit, &count, &error), RT_NO_MEMORY);
+        assert_fails_with(rt_parallel_for(ITEMS, 2, visit, &count, error), RT_NO_MEMORY, "worker threads");
     }
     rt_alloc_fail_at(0);
     assert_int_equal(rt_alloc_live(), live);
@@ -150,9 +149,8 @@ RT_TEST(memory_that_tasks_cannot_have_is_a_status) {
     int64_t live = rt_alloc_live();
     for (uint64_t n = 1; n <= 5; n++) {
         Count count = {.fails_from = ITEMS};
-        RtError error;
         rt_alloc_fail_at(n);
-        assert_int_equal(halve_all(&count, 2, &error), RT_NO_MEMORY);
+        assert_fails_with(halve_all(&count, 2, error), RT_NO_MEMORY, "out of memory");
     }
     rt_alloc_fail_at(0);
     assert_int_equal(rt_alloc_live(), live);

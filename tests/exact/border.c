@@ -51,9 +51,8 @@ static double distance_from_edge(const RtWideRay *line, RtVec3d dir, RtVec3 a, R
 static double distance_from_edges(const RtWideRay *line, const RtVec3 *vertices, uint32_t count) {
     double least = HUGE_VAL;
     RtVec3d dir = rt_normalized(line->dir);
-    for (uint32_t i = 0; i < count; i++) {
+    for (uint32_t i = 0; i < count; i++)
         least = fmin(least, distance_from_edge(line, dir, vertices[i], vertices[(i + 1) % count]));
-    }
     return least;
 }
 

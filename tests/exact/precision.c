@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "exact/precision.h"
 
+#include "random_testing.h"
+
 #include "core/base/memory.h"
-#include "core/base/random.h"
 #include "exact/border.h"
 
 #include <stdlib.h>
@@ -210,9 +211,8 @@ static RtRay ray_to_border(Range *r, uint32_t id) {
     uint32_t index = rt_ref_index(g->objects[id]);
     RtShape shape = rt_ref_shape(g->objects[id]);
     RtVec3d dir = rt_random_direction(&r->random);
-    if (shape == RT_SHAPE_TRIANGLE) {
+    if (shape == RT_SHAPE_TRIANGLE)
         return ray_towards(r, point_on_edge(&r->random, g->triangles[index].v, 3), dir);
-    }
     if (shape == RT_SHAPE_POLYGON) {
         const RtPolygon *p = &g->polygons[index];
         return ray_towards(r, point_on_edge(&r->random, g->polygon_vertices + p->first, p->count), dir);
@@ -223,9 +223,8 @@ static RtRay ray_to_border(Range *r, uint32_t id) {
         RtVec3d on = rt_add_scaledd(rt_widen(c->base), out, (double)c->base_radius);
         return ray_towards(r, rt_narrow(on), dir);
     }
-    if (r->subject == RT_SUBJECT_MESH) {
+    if (r->subject == RT_SUBJECT_MESH)
         return ray_towards(r, point_on_edge(&r->random, random_facet(r, &g->csgs[index])->v, 3), dir);
-    }
     return ray_along_surface(r, id, 0);
 }
 
@@ -260,9 +259,8 @@ static RtStatus measure_ray(const Range *r, uint32_t id, const RtRay *ray, doubl
     RtExactResult exact = rt_referee_error(g, id, ray, ours.hit ? ours.t : 0, &ulps);
     RtWideRay line = rt_wide_ray(ray);
     RtExactResult same = rt_decision_check(g, id, &line, ours);
-    if (exact == RT_UNDECIDED || same == RT_UNDECIDED) {
+    if (exact == RT_UNDECIDED || same == RT_UNDECIDED)
         return rt_fail_memory(error, "exact arithmetic on a CSG tree", 0);
-    }
     if (same == RT_HIT) {
         if (exact != RT_HIT) return RT_OK;
         double size = (double)(ulps * rt_float_ulp((long double)ours.t));
@@ -270,13 +268,12 @@ static RtStatus measure_ray(const Range *r, uint32_t id, const RtRay *ray, doubl
         errors[out->hits++] = (double)fabsl(ulps);
         return RT_OK;
     }
-    if (!ours.hit) {
+    if (!ours.hit)
         out->missed++;
-    } else if (exact == RT_MISSED) {
+    else if (exact == RT_MISSED)
         out->invented++;
-    } else {
+    else
         out->elsewhere++;
-    }
     out->border = fmax(out->border, rt_border_distance(g, id, ray, ours));
     return RT_OK;
 }

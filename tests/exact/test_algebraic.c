@@ -49,7 +49,7 @@ static bool is_at(RtExactArena *s, const RtAlgebraic *root, RtRational t) {
 /* Up to four rational roots, some of them alike, of any size and nearness; the lead of either sign. */
 RT_TEST(roots_are_found_at_known_places_and_multiple_ones_once) {
     RtRandom random = rt_random(31, 0);
-    RtExactArena s = {0};
+    OWNED(rt_exact_arena_clear) RtExactArena s = {0};
     int doubles = 0;
     for (int round = 0; round < 2000; round++) {
         double known[4];
@@ -86,22 +86,20 @@ RT_TEST(roots_are_found_at_known_places_and_multiple_ones_once) {
         rt_exact_arena_rewind(&s, 0);
     }
     assert_true(doubles > 300);
-    rt_exact_arena_clear(&s);
 }
 
 RT_TEST(a_polynomial_without_real_roots_has_none) {
-    RtExactArena s = {0};
+    OWNED(rt_exact_arena_clear) RtExactArena s = {0};
     RtAlgebraic roots[RT_MAX_DEGREE];
     RtPolynomial p = with_squares(&s, -1, -2), square = with_squares(&s, -2, -2), one = constant(p.at[4]);
     assert_int_equal(rt_polynomial_roots(&s, &p, roots), 0);
     assert_int_equal(rt_polynomial_roots(&s, &square, roots), 0);
     assert_int_equal(rt_polynomial_roots(&s, &one, roots), 0);
-    rt_exact_arena_clear(&s);
 }
 
 /* t^4 - 10 t^2 + 1 is that of sqrt(2) + sqrt(3), and has no factors. */
 RT_TEST(values_have_all_digits_of_a_long_double) {
-    RtExactArena s = {0};
+    OWNED(rt_exact_arena_clear) RtExactArena s = {0};
     RtAlgebraic roots[RT_MAX_DEGREE];
     RtRational zero = rt_exact_of(&s, 0);
     RtPolynomial p = {4, {rt_exact_of(&s, 1), zero, rt_exact_of(&s, -10), zero, rt_exact_of(&s, 1)}};
@@ -114,7 +112,6 @@ RT_TEST(values_have_all_digits_of_a_long_double) {
     assert_int_equal(rt_polynomial_roots(&s, &p, roots), 4);
     long double off = rt_algebraic_value(&s, &roots[2], rt_exact_of(&s, 0x1p-20));
     assert_true(fabsl(off - 0x1p-101L) <= 0x1p-160L);
-    rt_exact_arena_clear(&s);
 }
 
 /* ---- equal and nearly so ---- */
@@ -122,7 +119,7 @@ RT_TEST(values_have_all_digits_of_a_long_double) {
 /* sqrt(2) as a root of polynomials of degree 4 that share it, with and without the other factor, and as a
  * surd. */
 RT_TEST(equal_roots_of_different_polynomials_are_a_tie) {
-    RtExactArena s = {0};
+    OWNED(rt_exact_arena_clear) RtExactArena s = {0};
     RtAlgebraic a[RT_MAX_DEGREE], b[RT_MAX_DEGREE];
     RtPolynomial p = with_squares(&s, 2, 3), q = with_squares(&s, 1.5, 2);
     assert_int_equal(rt_polynomial_roots(&s, &p, a), 4);
@@ -141,12 +138,11 @@ RT_TEST(equal_roots_of_different_polynomials_are_a_tie) {
         assert_int_equal(rt_root_compare(&s, &place, &root), 0);
         assert_int_equal(rt_root_compare(&s, &root, &place), 0);
     }
-    rt_exact_arena_clear(&s);
 }
 
 /* t^2 (t^2 - 2) - 2^-n is 0 next to sqrt(2): 2^-n / (4 sqrt(2)) above it, however large n is. */
 RT_TEST(roots_2_to_the_minus_200_apart_are_told_apart) {
-    RtExactArena s = {0};
+    OWNED(rt_exact_arena_clear) RtExactArena s = {0};
     for (int n = 50; n <= 400; n += 50) {
         RtAlgebraic a[RT_MAX_DEGREE], b[RT_MAX_DEGREE];
         RtPolynomial p = with_squares(&s, 0, 2), q = p;
@@ -161,12 +157,11 @@ RT_TEST(roots_2_to_the_minus_200_apart_are_told_apart) {
         assert_int_equal(rt_root_compare(&s, &root, &above), -1);
         assert_int_equal(rt_root_compare(&s, &above, &root), 1);
     }
-    rt_exact_arena_clear(&s);
 }
 
 /* Two roots of one polynomial, 2^-n apart, and a third far away. */
 RT_TEST(near_roots_of_one_polynomial_are_parted) {
-    RtExactArena s = {0};
+    OWNED(rt_exact_arena_clear) RtExactArena s = {0};
     for (int n = 10; n <= 500; n += 70) {
         RtRational third = rt_exact_div(&s, rt_exact_of(&s, 1), rt_exact_of(&s, 3));
         RtRational known[3] = {third, rt_exact_add(&s, third, rt_exact_of(&s, ldexp(1, -n))),
@@ -182,7 +177,6 @@ RT_TEST(near_roots_of_one_polynomial_are_parted) {
         long double apart = rt_algebraic_value(&s, &roots[1], third), expected = ldexpl(1, -n);
         assert_true(fabsl(apart - expected) <= 0x1p-60L * expected);
     }
-    rt_exact_arena_clear(&s);
 }
 
 RT_TESTS(algebraic, NULL, NULL)

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Hit functions against the referee: ours differ from exact arithmetic only if a ray passes an edge within
  * the rounding of float32; broken ones do so elsewhere. docs/precision.md has the counts for all shapes. */
+#include "random_testing.h"
 #include "testing.h"
 
-#include "core/base/random.h"
 #include "exact/border.h"
 #include "verify/verdict.h"
 
@@ -50,7 +50,7 @@ static Wrongs wrongs_of(HitFunction *decide, float size, int rays) {
     for (int i = 0; i < rays; i++) {
         RtVec3 v[3];
         for (int k = 0; k < 3; k++) v[k] = rt_scale(rt_random_point(&random, 1), size);
-        RtGeometry g = {0};
+        OWNED_GEOMETRY g = {0};
         assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
         assert_ok(rt_geometry_finish(&g, error));
         RtRay ray = ray_at_triangle(&random, v, i);
@@ -60,7 +60,6 @@ static Wrongs wrongs_of(HitFunction *decide, float size, int rays) {
             wrongs.wrong++;
             wrongs.far += rt_border_distance(&g, 0, &ray, decision) > 2;
         }
-        rt_geometry_clear(&g);
     }
     return wrongs;
 }
@@ -84,7 +83,7 @@ RT_TEST(the_referee_decides_against_us_too) {
     for (int i = 1; i < 2000; i += 2) {
         RtVec3 v[3];
         for (int k = 0; k < 3; k++) v[k] = rt_random_point(&random, 1);
-        RtGeometry g = {0};
+        OWNED_GEOMETRY g = {0};
         assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
         assert_ok(rt_geometry_finish(&g, error));
         RtRay ray = ray_at_triangle(&random, v, i);
@@ -104,7 +103,6 @@ RT_TEST(the_referee_decides_against_us_too) {
             assert_ok(rt_verdict_occluded(&g, &ray, decision.hit, !decision.hit, NULL, &verdict, error));
             assert_int_equal(verdict, RT_MARGINAL);
         }
-        rt_geometry_clear(&g);
     }
     assert_true(against > 100);
 }

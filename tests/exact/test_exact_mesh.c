@@ -61,7 +61,7 @@ static RtRay lattice_ray(RtRandom *random) {
 
 /* Writes the roots to out[0..MOST); returns their number. */
 static uint32_t places_of(const RtSolidSet *set, uint32_t index, const RtRay *ray, long double *out) {
-    RtExactArena arena = {0};
+    OWNED(rt_exact_arena_clear) RtExactArena arena = {0};
     RtRational *places;
     uint32_t count;
     RtWideRay wide = rt_wide_ray(ray);
@@ -70,7 +70,6 @@ static uint32_t places_of(const RtSolidSet *set, uint32_t index, const RtRay *ra
     assert_true(count <= MOST && count % 2 == 0);
     for (uint32_t i = 0; i < count; i++) out[i] = rt_exact_value(places[i]);
     rt_free(places);
-    rt_exact_arena_clear(&arena);
     return count;
 }
 
@@ -78,7 +77,7 @@ RT_TEST(lines_at_vertices_edges_and_faces_are_decided_like_the_hit_function) {
     RtRandom random = rt_random(21, 0);
     int found = 0;
     for (int mesh = 0; mesh < 40; mesh++) {
-        RtSolidSet set = {0};
+        OWNED_SOLIDS set = {0};
         uint32_t index = add_boxes(&set, &random);
         for (int i = 0; i < 200; i++) {
             RtRay ray = lattice_ray(&random);
@@ -90,7 +89,6 @@ RT_TEST(lines_at_vertices_edges_and_faces_are_decided_like_the_hit_function) {
             for (uint32_t k = 0; k < count; k++) assert_true(exact[k] == (long double)list.at[k].t);
             found += (int)count;
         }
-        rt_solid_set_clear(&set);
     }
     assert_true(found > 10000);
 }
@@ -105,7 +103,7 @@ RT_TEST(a_line_in_a_face_passes_beside_it_up_along_x_and_down_along_y) {
         bool inside;
     } lines[] = {{-1, 0, true},   {1, 0, false}, {0, -1, false}, {0, 1, true},
                  {-1, -1, false}, {-1, 1, true}, {1, -1, false}, {1, 1, false}};
-    RtSolidSet set = {0};
+    OWNED_SOLIDS set = {0};
     RtTriangle triangles[12];
     uint32_t index = add_mesh(&set, triangles, cube_mesh(triangles));
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
@@ -118,7 +116,6 @@ RT_TEST(a_line_in_a_face_passes_beside_it_up_along_x_and_down_along_y) {
             if (count == 2) assert_true(exact[0] == 9 && exact[1] == 11);
         }
     }
-    rt_solid_set_clear(&set);
 }
 
 /* ---- depth ---- */
@@ -129,20 +126,18 @@ RT_TEST(a_mesh_that_overlaps_itself_is_inside_where_more_is_entered_than_left) {
         float lo, hi;
         bool turned;
     } slabs[] = {{0, 4, false}, {2, 6, false}, {1, 3, true}, {5, 7, true}};
-    RtSolidSet set = {0};
+    OWNED_SOLIDS set = {0};
     RtTriangle triangles[48];
     uint32_t count = 0;
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 4; i++)
         count += put_box(rt_vec3(slabs[i].lo, -1, -1), rt_vec3(slabs[i].hi, 1, 1), slabs[i].turned,
                          triangles + count);
-    }
     uint32_t index = add_mesh(&set, triangles, count);
     RtRay ray = make_ray(rt_vec3(-1, 0.25f, 0.5f), rt_vec3(1, 0, 0));
     static const long double expected[4] = {1, 2, 3, 6};
     long double exact[MOST];
     assert_int_equal(places_of(&set, index, &ray, exact), 4);
     for (int i = 0; i < 4; i++) assert_true(exact[i] == expected[i]);
-    rt_solid_set_clear(&set);
 }
 
 /* ---- inside or not ---- */
@@ -161,7 +156,7 @@ RT_TEST(all_lines_through_a_point_agree_whether_it_is_inside) {
     RtRandom random = rt_random(22, 0);
     int inside = 0, points = 0;
     for (int mesh = 0; mesh < 30; mesh++) {
-        RtSolidSet set = {0};
+        OWNED_SOLIDS set = {0};
         uint32_t index = add_boxes(&set, &random);
         for (int i = 0; i < 40; i++, points++) {
             RtRay ray = {.tmax = INFINITY, .kind = RT_RAY_RANDOM};
@@ -178,7 +173,6 @@ RT_TEST(all_lines_through_a_point_agree_whether_it_is_inside) {
             if (ayes != 0 && ayes != 5) fail_msg("mesh %d, point %d: %d of 5 lines", mesh, i, ayes);
             inside += ayes == 5;
         }
-        rt_solid_set_clear(&set);
     }
     assert_true(inside > points / 5 && inside < points);
 }
@@ -200,8 +194,8 @@ static void add_difference(RtGeometry *g, RtCsgBuilder *b, RtCsgTerm left, RtCsg
 /* A cube as a mesh without the same cube as a box is nothing, and the other way round; lines through edges
  * and vertices included. A ball in the cube, taken away, is met behind the mesh's front. */
 RT_TEST(a_cube_without_the_mesh_of_a_cube_is_empty) {
-    RtGeometry g = {0};
-    RtCsgBuilder b = {0};
+    OWNED_GEOMETRY g = {0};
+    OWNED_BUILDER b = {0};
     RtTriangle triangles[12];
     uint32_t solid;
     RtCsgTerm mesh = term_of(&b, add_mesh(&b.set, triangles, cube_mesh(triangles)));
@@ -228,8 +222,6 @@ RT_TEST(a_cube_without_the_mesh_of_a_cube_is_empty) {
     RtWideRay down = {rt_vec3d(0, 0, 10), rt_vec3d(0, 0, -1), 9.25, HUGE_VAL};
     assert_int_equal(rt_referee_hit(&g, 2, &down, &t), RT_HIT);
     assert_true(t == 9.5L);
-    rt_csg_builder_clear(&b);
-    rt_geometry_clear(&g);
 }
 
 RT_TESTS(exact_mesh, NULL, NULL)

@@ -70,8 +70,8 @@ static void assert_places(const RtGeometry *g, uint32_t id, RtRay ray, int count
 }
 
 RT_TEST(a_ring_is_met_at_four_places_and_touched_at_none) {
-    RtGeometry g = {0};
-    RtCsgBuilder b = {0};
+    OWNED_GEOMETRY g = {0};
+    OWNED_BUILDER b = {0};
     make_rings(&g, &b);
     RtVec3 x = rt_vec3(1, 0, 0), y = rt_vec3(0, 1, 0);
     assert_places(&g, 0, make_ray(rt_vec3(-9, 0, 0), x), 4, (long double[]){4, 6, 12, 14});
@@ -90,15 +90,13 @@ RT_TEST(a_ring_is_met_at_four_places_and_touched_at_none) {
     near = (RtWideRay){rt_vec3d(3 - 0x1p-50, -9, 0), rt_widen(y), 6, HUGE_VAL};
     assert_int_equal(rt_referee_hit(&g, 0, &near, &t), RT_HIT);
     assert_true(t < 9 && t > 8.9999L);
-    rt_csg_builder_clear(&b);
-    rt_geometry_clear(&g);
 }
 
 /* At height 1/2 the tubes are met at 4 -+ sqrt(3/4), which is no number of theirs: those of two rings, by
  * different polynomials, and the ball's, a surd. */
 RT_TEST(equal_places_of_rings_and_balls_are_a_tie) {
-    RtGeometry g = {0};
-    RtCsgBuilder b = {0};
+    OWNED_GEOMETRY g = {0};
+    OWNED_BUILDER b = {0};
     make_rings(&g, &b);
     RtRay ray = make_ray(rt_vec3(0, 0, 0.5f), rt_vec3(1, 0, 0));
     for (uint32_t other = 1; other <= 3; other += 2) {
@@ -122,8 +120,6 @@ RT_TEST(equal_places_of_rings_and_balls_are_a_tie) {
     assert_int_equal(rt_referee_hit(&g, 0, &line, &full), RT_HIT);
     assert_int_equal(rt_referee_error(&g, 0, &ray, (float)full, &ulps), RT_HIT);
     assert_true(fabsl(ulps) <= 0.5L && ulps != 0);
-    rt_csg_builder_clear(&b);
-    rt_geometry_clear(&g);
 }
 
 /* ---- by membership of points ---- */
@@ -143,8 +139,8 @@ RT_TEST(a_line_is_outside_of_a_torus_up_to_the_first_place_and_inside_behind_it)
         Model model = {.name = "torus", .inside = in_torus, .place = place};
         model.ratio = rt_random_betweend(&random, 0.01, 0.99);
         invert(&place, model.back);
-        RtGeometry g = {0};
-        RtCsgBuilder b = {0};
+        OWNED_GEOMETRY g = {0};
+        OWNED_BUILDER b = {0};
         RtCsgTerm term;
         assert_ok(rt_solid_add_torus(&b.set, model.ratio, &place, &model.index, error));
         assert_ok(rt_csg_solid(&b, model.index, 0, &term, error));
@@ -162,8 +158,6 @@ RT_TEST(a_line_is_outside_of_a_torus_up_to_the_first_place_and_inside_behind_it)
         }
         if (sooner < -0x1p-36L) fail_msg("torus %d: %Lg inside before %Lg", i, -sooner, t);
         if (hit && fabsl(value_at(&model, &ray, t)) > 0x1p-50L) fail_msg("torus %d: not met at %Lg", i, t);
-        rt_csg_builder_clear(&b);
-        rt_geometry_clear(&g);
     }
     assert_true(hits > 100);
 }
@@ -208,28 +202,22 @@ RT_TEST(no_ray_at_the_families_of_trees_is_undecided_and_differences_are_at_bord
     int hits = 0, rays = 0;
     for (size_t family = 0; family < rt_family_count(); family++) {
         for (uint64_t seed = 1; seed <= 3 && is_of_trees(family); seed++) {
-            RtScene scene;
-            RtAccel *brute;
-            RtQuery query;
-            open_family(family, seed, &scene);
-            assert_ok(rt_accel_open("brute", &scene, &brute, error));
-            assert_ok(rt_query_init(&query, brute, error));
+            OWNED_SCENE scene = open_family(family, seed);
+            OWNED_ACCEL RtAccel *brute = open_accel(&scene, "brute");
+            OWNED_QUERY query = open_query(brute);
             for (size_t aim = 0; aim < rt_ray_family_count(); aim++, rays += EACH) {
                 RtRay some[EACH];
                 rt_ray_family_fill(aim, &query, seed, 0, EACH, some);
                 for (int i = 0; i < EACH; i++) judge(&scene.geometry, &some[i], &hits);
             }
-            rt_query_clear(&query);
-            rt_accel_destroy(brute);
-            rt_scene_clear(&scene);
         }
     }
     assert_true(hits > rays / 5);
 }
 
 RT_TEST(a_tree_is_undecided_where_memory_is_short_and_only_there) {
-    RtGeometry g = {0};
-    RtCsgBuilder b = {0};
+    OWNED_GEOMETRY g = {0};
+    OWNED_BUILDER b = {0};
     make_rings(&g, &b);
     RtRay ray = make_ray(rt_vec3(0, 0, 0.5f), rt_vec3(1, 0, 0));
     int64_t before = rt_alloc_live();
@@ -242,8 +230,6 @@ RT_TEST(a_tree_is_undecided_where_memory_is_short_and_only_there) {
         assert_int_equal(rt_alloc_live(), before);
     }
     assert_true(short_of > 1 && finding == RT_HIT);
-    rt_csg_builder_clear(&b);
-    rt_geometry_clear(&g);
 }
 
 RT_TESTS(exact_trees, NULL, NULL)

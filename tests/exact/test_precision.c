@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The precision of our hit functions against exact arithmetic. Prints the table of docs/precision.md and
  * checks that the page contains it. */
+#include "random_testing.h"
 #include "testing.h"
 
 #include "core/base/file.h"
 #include "core/base/memory.h"
-#include "core/base/random.h"
 #include "exact/exact.h"
 #include "exact/precision.h"
 
@@ -21,9 +21,8 @@ static int measure(void **state) {
     (void)state;
     assert_int_equal(rt_precision_case_count(), MOST_CASES);
     for (int subject = 0; subject < RT_SUBJECT_COUNT; subject++) {
-        for (size_t i = 0; i < MOST_CASES; i++) {
+        for (size_t i = 0; i < MOST_CASES; i++)
             assert_ok(rt_precision_measure((RtSubject)subject, i, RAYS, &measured[subject][i], error));
-        }
     }
     return 0;
 }
@@ -144,7 +143,7 @@ static double off_plane(RtExactArena *arena, const RtVec3 v[3], const RtRay *ray
  * anywhere between its ends; but nothing is uncertain about where its plane is. */
 RT_TEST(t_of_a_needle_is_that_of_its_plane) {
     RtRandom random = rt_random(11, 0);
-    RtExactArena arena = {0};
+    OWNED(rt_exact_arena_clear) RtExactArena arena = {0};
     int hits = 0;
     for (int i = 0; i < 20000; i++) {
         RtVec3 v[3];
@@ -155,7 +154,7 @@ RT_TEST(t_of_a_needle_is_that_of_its_plane) {
         RtVec3 target = rt_add(v[0], rt_scale(rt_sub(v[1], v[0]), along));
         RtRay ray = {.org = rt_scale(rt_random_point(&random, 1), 3), .tmin = 0, .tmax = INFINITY};
         ray.dir = rt_sub(target, ray.org);
-        RtGeometry g = {0};
+        OWNED_GEOMETRY g = {0};
         assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
         assert_ok(rt_geometry_finish(&g, error));
         RtPreparedRay prepared;
@@ -167,9 +166,7 @@ RT_TEST(t_of_a_needle_is_that_of_its_plane) {
             double most = 16 * 0x1p-4 * (double)rt_thickness(ray.org, &g.box);
             if (!(off <= most)) fail_msg("needle %d: t = %g is %g off its plane", i, (double)t, off);
         }
-        rt_geometry_clear(&g);
     }
-    rt_exact_arena_clear(&arena);
     assert_true(hits > 1000);
 }
 

@@ -18,7 +18,7 @@ RT_TEST(surds_are_ordered_like_their_values_and_ties_are_found) {
     enum { MOST = 7 * 7 * 10 };
     static RtSurd all[MOST];
     static long double values[MOST];
-    RtExactArena arena = {0};
+    OWNED(rt_exact_arena_clear) RtExactArena arena = {0};
     int count = 0, ties = 0;
     for (int p = -3; p <= 3; p++) {
         for (int q = -3; q <= 3; q++) {
@@ -35,19 +35,17 @@ RT_TEST(surds_are_ordered_like_their_values_and_ties_are_found) {
         for (int b = 0; b < count; b++) {
             long double apart = values[a] - values[b];
             int expected = apart > 1e-6L ? 1 : apart < -1e-6L ? -1 : 0;
-            if (rt_surd_compare(&arena, &all[a], &all[b]) != expected) {
+            if (rt_surd_compare(&arena, &all[a], &all[b]) != expected)
                 fail_msg("%Lg and %Lg", values[a], values[b]);
-            }
             ties += a != b && expected == 0;
         }
     }
     assert_true(ties > 1000);
-    rt_exact_arena_clear(&arena);
 }
 
 /* With x^2 - 2 y^2 = 1 (Pell) x - y sqrt(2) is 1 / (x + y sqrt(2)): nearly all digits cancel. */
 RT_TEST(a_surd_that_cancels_keeps_all_its_digits) {
-    RtExactArena arena = {0};
+    OWNED(rt_exact_arena_clear) RtExactArena arena = {0};
     double x = 3, y = 2;
     while (x < 0x1p50) {
         RtSurd small = surd(&arena, x, -y, 2);
@@ -59,18 +57,16 @@ RT_TEST(a_surd_that_cancels_keeps_all_its_digits) {
         y = 2 * x + 3 * y;
         x = next;
     }
-    rt_exact_arena_clear(&arena);
 }
 
 RT_TEST(rationals_of_any_size_become_the_nearest_long_double) {
-    RtExactArena arena = {0};
+    OWNED(rt_exact_arena_clear) RtExactArena arena = {0};
     RtRational third = rt_exact_div(&arena, rt_exact_of(&arena, 1), rt_exact_of(&arena, -3));
     assert_true(fabsl(rt_exact_value(third) + 1 / 3.0L) <= 0x1p-64L);
     const double sizes[] = {0x1p-149, 0x1p-1074, 1, 0x1.fffffffffffffp1023};
     for (int i = 0; i < 4; i++) assert_true(rt_exact_value(rt_exact_of(&arena, sizes[i])) == sizes[i]);
     RtRational tiny = rt_exact_mul(&arena, rt_exact_of(&arena, 0x1p-1000), rt_exact_of(&arena, 0x1p-1000));
     assert_true(rt_exact_value(tiny) == 0x1p-2000L);
-    rt_exact_arena_clear(&arena);
 }
 
 /* ---- one object ---- */
@@ -94,7 +90,7 @@ static long double first_t_within(const RtGeometry *g, uint32_t id, RtRay ray, f
 }
 
 RT_TEST(the_unit_sphere_is_met_at_9_and_11) {
-    RtGeometry g = {0};
+    OWNED_GEOMETRY g = {0};
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 1, error));
     assert_ok(rt_geometry_finish(&g, error));
     RtRay ray = ray_from(0, 0, 10, 0, 0, -1);
@@ -102,12 +98,11 @@ RT_TEST(the_unit_sphere_is_met_at_9_and_11) {
     assert_true(first_t_within(&g, 0, ray, 9, 9) == 9);
     assert_true(first_t_within(&g, 0, ray, nextafterf(9, 10), INFINITY) == 11);
     assert_true(first_t_within(&g, 0, ray, nextafterf(9, 10), nextafterf(11, 10)) == HUGE_VALL);
-    rt_geometry_clear(&g);
 }
 
 /* 3-4-5: the distance of the line from the centre is 5, not nearly 5. */
 RT_TEST(a_sphere_is_touched_in_one_point_exactly) {
-    RtGeometry g = {0};
+    OWNED_GEOMETRY g = {0};
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(1, 1, 0), 5, error));
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(1, 1, 0), nextafterf(5, 4), error));
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(1, 1, 0), nextafterf(5, 6), error));
@@ -116,12 +111,11 @@ RT_TEST(a_sphere_is_touched_in_one_point_exactly) {
     assert_true(first_t(&g, 0, &ray) == 5);
     assert_true(first_t(&g, 1, &ray) == HUGE_VALL);
     assert_true(first_t(&g, 2, &ray) < 5 && first_t(&g, 2, &ray) > 4.99L);
-    rt_geometry_clear(&g);
 }
 
 /* Corners (0, 0), (4, 0), (0, 4) at z = 0; the edge between the last two is x + y = 4. */
 RT_TEST(edges_and_vertices_belong_to_triangles_and_polygons) {
-    RtGeometry g = {0};
+    OWNED_GEOMETRY g = {0};
     const RtVec3 v[4] = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 0}}; /* with the last: concave */
     const RtVec3 needle[3] = {{0, 0, 0}, {1, 1, 0}, {3, 3, 0}};
     assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
@@ -148,25 +142,23 @@ RT_TEST(edges_and_vertices_belong_to_triangles_and_polygons) {
     RtRay along = ray_from(-1, 1, 0, 1, 0, 0), through_needle = ray_from(1, 1, 1, 0, 0, -1);
     for (uint32_t id = 0; id < 3; id++) assert_true(first_t(&g, id, &along) == HUGE_VALL);
     assert_true(first_t(&g, 3, &through_needle) == HUGE_VALL);
-    rt_geometry_clear(&g);
 }
 
 /* The vertices are those of a square but for one ulp: they lie in no plane. The hit is in the plane that is
  * as far above two of them as below the others, a quarter of an ulp. */
 RT_TEST(a_polygon_that_is_not_planar_has_one_plane_all_the_same) {
     float one = 1, above = nextafterf(1, 2);
-    RtGeometry g = {0};
+    OWNED_GEOMETRY g = {0};
     const RtVec3 v[4] = {{0, 0, one}, {1, 0, one}, {1, 1, above}, {0, 1, one}};
     assert_ok(rt_geometry_add_polygon(&g, v, 4, error));
     assert_ok(rt_geometry_finish(&g, error));
     RtRay middle = ray_from(0.5f, 0.5f, 2, 0, 0, -1);
     assert_true(first_t(&g, 0, &middle) == 1 - 0x1p-25L);
-    rt_geometry_clear(&g);
 }
 
 /* A cylinder of radius 5 about x: met at 3-4-5; a full cone with its tip at the origin, at 45 degrees. */
 RT_TEST(circles_and_the_tip_belong_to_cones) {
-    RtGeometry g = {0};
+    OWNED_GEOMETRY g = {0};
     assert_ok(rt_geometry_add_cone(&g, rt_vec3(-2, 0, 0), 5, rt_vec3(2, 0, 0), 5, error));
     assert_ok(rt_geometry_add_cone(&g, rt_vec3(2, 0, 0), 2, rt_vec3(0, 0, 0), 0, error));
     assert_ok(rt_geometry_finish(&g, error));
@@ -182,7 +174,6 @@ RT_TEST(circles_and_the_tip_belong_to_cones) {
     RtRay axis = ray_from(-1, 0, 0, 1, 0, 0), across = ray_from(-1, 1, 0, 1, 0, 0);
     assert_true(first_t(&g, 1, &axis) == 1);
     assert_true(first_t(&g, 1, &across) == 2);
-    rt_geometry_clear(&g);
 }
 
 /* ---- order ---- */
@@ -197,7 +188,7 @@ static int order_of(const RtGeometry *g, uint32_t a, uint32_t b, const RtRay *ra
 
 /* The ray meets the sphere at z = 4 (3-4-5), where a triangle lies, and others an ulp before and behind. */
 RT_TEST(a_sphere_and_a_triangle_tie_where_they_meet_at_a_rational_t) {
-    RtGeometry g = {0};
+    OWNED_GEOMETRY g = {0};
     const float heights[3] = {4, nextafterf(4, 5), nextafterf(4, 3)};
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 5, error));
     for (int i = 0; i < 3; i++) {
@@ -213,12 +204,11 @@ RT_TEST(a_sphere_and_a_triangle_tie_where_they_meet_at_a_rational_t) {
     RtExactAnswer ruling = rt_referee_nearest(&g, &ray);
     assert_int_equal(ruling.object, 2);
     assert_int_equal(ruling.tied, 1);
-    rt_geometry_clear(&g);
 }
 
 /* Three spheres and a cylinder are met at t = 10 - sqrt(3), which is no number that any of them stores. */
 RT_TEST(equal_roots_of_different_objects_are_a_tie) {
-    RtGeometry g = {0};
+    OWNED_GEOMETRY g = {0};
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 2, error));
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(4, 2, 0), 4, error));
     assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, -5, 0), 2, rt_vec3(0, 7, 0), 2, error));
@@ -236,13 +226,12 @@ RT_TEST(equal_roots_of_different_objects_are_a_tie) {
     ray.tmax = 8;
     assert_int_equal(rt_referee_nearest(&g, &ray).result, RT_MISSED);
     assert_int_equal(rt_referee_occluded(&g, &ray), RT_MISSED);
-    rt_geometry_clear(&g);
 }
 
 /* ---- numbers at the ends of float32 ---- */
 
 RT_TEST(huge_and_denormal_numbers_are_as_exact_as_others) {
-    RtGeometry g = {0};
+    OWNED_GEOMETRY g = {0};
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 0x1p-140f, error));
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0x1p58f, 0), 0x1p57f, error));
     assert_ok(rt_geometry_finish(&g, error));
@@ -255,7 +244,6 @@ RT_TEST(huge_and_denormal_numbers_are_as_exact_as_others) {
     far.dir.z = -0x1p-100f; /* t = 2^157 is beyond the largest float32 */
     assert_true(first_t(&g, 1, &far) == HUGE_VALL);
     assert_int_equal(rt_referee_nearest(&g, &far).result, RT_MISSED);
-    rt_geometry_clear(&g);
 }
 
 /* ---- trees ---- */
@@ -286,8 +274,8 @@ static void add_tree(RtGeometry *g, RtCsgBuilder *b, RtCsgOp op, RtCsgTerm left,
 }
 
 RT_TEST(trees_are_met_where_their_inside_begins_and_ends) {
-    RtGeometry g = {0};
-    RtCsgBuilder b = {0};
+    OWNED_GEOMETRY g = {0};
+    OWNED_BUILDER b = {0};
     RtCsgTerm ball = ball_term(&b, 0, 5), touching = ball_term(&b, 10, 5), cube = box_term(&b, -1, 9);
     RtCsgTerm wall = box_term(&b, 1, nextafterf(1, 2)), room = box_term(&b, 0, 3);
     uint32_t solid;
@@ -315,15 +303,13 @@ RT_TEST(trees_are_met_where_their_inside_begins_and_ends) {
     assert_true(first_t_within(&g, 5, x, 9, INFINITY) == 16);
     RtRay down = ray_from(4, 0, 8, 0, 0, -1); /* the cone's radius is 2.5 there */
     assert_true(fabsl(first_t(&g, 5, &down) - 5.5L) <= 0x1p-50L);
-    rt_csg_builder_clear(&b);
-    rt_geometry_clear(&g);
 }
 
 /* ---- judging ---- */
 
 /* 0: a wall at z = 0; 1: one an ulp behind; 2: one at z = -1. */
 RT_TEST(the_referee_says_who_is_right) {
-    RtGeometry g = {0};
+    OWNED_GEOMETRY g = {0};
     const float heights[3] = {0, -0x1p-24f, -1};
     for (int i = 0; i < 3; i++) {
         const RtVec3 v[3] = {{-9, -9, heights[i]}, {9, -9, heights[i]}, {0, 9, heights[i]}};
@@ -353,7 +339,6 @@ RT_TEST(the_referee_says_who_is_right) {
     assert_int_equal(rt_referee_error(&g, 0, &ray, nextafterf(1, 0), &ulps), RT_HIT);
     assert_true(ulps == -0.5L);
     assert_int_equal(rt_referee_error(&g, 0, &aside, 1, &ulps), RT_MISSED);
-    rt_geometry_clear(&g);
 }
 
 RT_TESTS(referee, NULL, NULL)

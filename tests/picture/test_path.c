@@ -86,7 +86,7 @@ RT_TEST(what_happens_to_a_ray_adds_up_to_its_tally_for_every_accelerator_at_ever
 static RtPath path_along_the_row(const char *spec, float up, RtScene *scene, RtAccel **accel) {
     RtPath path;
     RtRay ray = {.org = {{-3, up, up}}, .dir = {{1, 0, 0}}, .tmax = INFINITY};
-    make_lattice(scene, 3, 1, 1);
+    *scene = make_lattice(3, 1, 1);
     assert_ok(rt_accel_open(spec, scene, accel, error));
     assert_ok(rt_path_trace(&path, *accel, &ray, error));
     return path;
@@ -185,8 +185,7 @@ RT_TEST(a_circle_of_any_size_passes_the_middle_of_the_picture_at_its_distance) {
 }
 
 RT_TEST(an_axis_has_few_ticks_also_where_the_rows_are_far_away_and_of_no_length) {
-    RtScene scene;
-    make_lattice(&scene, 1, 1, 1);
+    RtScene scene = make_lattice(1, 1, 1);
     for (double far = 1; far < 1e30; far *= 10) {
         RtPathRow row = {.kind = RT_TRACED_STEP,
                          .boxed = true,

@@ -15,7 +15,7 @@ enum { SIDE = 200 };
 
 /* A sphere of radius 1 at the origin, and small ones far apart in a plane; a camera at z = 10. */
 static void open_scene(RtScene *scene) {
-    start_scene(scene, rt_default_material());
+    *scene = start_scene(rt_default_material());
     scene->camera.fov = 45;
     assert_ok(rt_scene_add_sphere(scene, 0, rt_vec3(0, 0, 0), 1, error));
     for (int i = 0; i < 4; i++) {
@@ -223,11 +223,10 @@ RT_TEST(a_section_shows_the_boxes_and_outlines_of_what_the_plane_cuts) {
 }
 
 RT_TEST(a_wall_that_is_far_larger_than_a_section_is_outlined_where_it_is) {
-    RtScene scene;
     RtImage image = {0};
     RtVec3 wall[4] = {
         {{-1000, -1499.5f, -9}}, {{1000, 1500.5f, -9}}, {{1000, 1500.5f, 9}}, {{-1000, -1499.5f, 9}}};
-    start_scene(&scene, rt_default_material());
+    RtScene scene = start_scene(rt_default_material());
     scene.camera.fov = 45;
     assert_ok(rt_scene_add_polygon(&scene, 0, wall, 4, error));
     assert_ok(rt_scene_finish(&scene, error));

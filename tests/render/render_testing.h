@@ -12,13 +12,15 @@
 #define assert_near(a, b, within) assert_true(fabs((double)(a) - (double)(b)) <= (within))
 
 /* A scene with one material of index 0, a black background, and a camera on the z axis looking down. */
-static inline void start_scene(RtScene *scene, RtMaterial material) {
+static inline RtScene start_scene(RtMaterial material) {
+    RtScene scene;
     uint32_t index;
-    rt_scene_init(scene);
-    assert_ok(rt_scene_add_material(scene, &material, &index, error));
-    scene->background = rt_vec3(0, 0, 0);
-    scene->camera =
+    rt_scene_init(&scene);
+    assert_ok(rt_scene_add_material(&scene, &material, &index, error));
+    scene.background = rt_vec3(0, 0, 0);
+    scene.camera =
         (RtCamera){.from = {0, 0, 10}, .at = {0, 0, 0}, .up = {0, 1, 0}, .fov = 40, .width = 1, .height = 1};
+    return scene;
 }
 
 static inline void add_square(RtScene *scene, float half, float z) {

@@ -2,14 +2,10 @@
 /* Frames: every registered accelerator, at every test value of each parameter, and stacked overlays,
  * render the same frame as brute: the same bits of colour, object and depth in every sample, with timed
  * and counted kernels, on one thread and on three; and the same counts on both. */
-#include "testing.h"
+#include "accel_testing.h"
 
-#include "core/base/memory.h"
 #include "render/frame.h"
-#include "scenes/open.h"
 #include "verify/spread.h"
-
-#include <string.h>
 
 /* A scene and how it is sampled: between them, all shapes, all kinds of rays, and every way to sample. */
 typedef struct Shot {
@@ -86,59 +82,38 @@ static bool same_counts(const RtFrame *a, const RtFrame *b, const char *what) {
 
 /* Compares the frames of one spec with `expected`; false, and a message, if one differs. */
 static bool makes_the_frame(const char *spec, const RtScene *scene, const RtFrame *expected) {
-    RtAccel *accel;
+    OWNED_ACCEL RtAccel *accel = NULL;
     RtError failure = {RT_OK, ""};
     RtStatus status = rt_accel_open(spec, scene, &accel, &failure);
     if (status == RT_NOT_AVAILABLE) return true;
     if (status != RT_OK) fail_msg("%s: %s", spec, failure.message);
-    bool good = true;
-    if (accel->exact) {
-        RtFrame timed = trace(accel, false, 3), counted = trace(accel, true, 1),
-                threaded = trace(accel, true, 3);
-        good = same_picture(&timed, expected, spec) && same_picture(&counted, expected, spec) &&
-               same_picture(&threaded, expected, spec) && same_counts(&counted, &threaded, spec);
-        rt_frame_clear(&timed);
-        rt_frame_clear(&counted);
-        rt_frame_clear(&threaded);
-    }
-    rt_accel_destroy(accel);
-    return good;
+    if (!accel->exact) return true;
+    OWNED_FRAME timed = trace(accel, false, 3), counted = trace(accel, true, 1);
+    OWNED_FRAME threaded = trace(accel, true, 3);
+    return same_picture(&timed, expected, spec) && same_picture(&counted, expected, spec) &&
+           same_picture(&threaded, expected, spec) && same_counts(&counted, &threaded, spec);
 }
 
 static void every_accelerator_makes_the_frame_of_brute(void **state) {
     const Shot *shot = *state;
-    RtScene scene;
-    RtAccel *brute;
     char spec[RT_MAX_SPEC_CHARS];
     size_t failures = 0;
-    assert_ok(rt_scene_open(shot->scene, &scene, error));
+    OWNED_SCENE scene = open_scene(shot->scene);
     assert_ok(rt_scene_sample(&scene, shot->width, shot->height, shot->samples, shot->corners, error));
-    assert_ok(rt_accel_open("brute", &scene, &brute, error));
-    RtFrame expected = trace(brute, false, 1);
+    OWNED_ACCEL RtAccel *brute = open_accel(&scene, "brute");
+    OWNED_FRAME expected = trace(brute, false, 1);
     for (size_t i = 0; i < rt_accel_count(); i++) {
-        for (size_t n = 0; rt_spread_spec(rt_accel_at(i), n, spec); n++) {
+        for (size_t n = 0; rt_spread_spec(rt_accel_at(i), n, spec); n++)
             failures += !makes_the_frame(spec, &scene, &expected);
-        }
     }
-    for (size_t i = 0; i < STACK_COUNT; i++) {
-        failures += !makes_the_frame(stacks[i], &scene, &expected);
-    }
-    rt_frame_clear(&expected);
-    rt_accel_destroy(brute);
-    rt_scene_clear(&scene);
+    for (size_t i = 0; i < STACK_COUNT; i++) failures += !makes_the_frame(stacks[i], &scene, &expected);
     assert_int_equal(failures, 0);
-}
-
-static int tear_down(void **state) {
-    (void)state;
-    return rt_alloc_live() == 0 ? 0 : -1;
 }
 
 RT_TEST_GROUP(frames) {
     struct CMUnitTest tests[SHOT_COUNT];
-    for (size_t i = 0; i < SHOT_COUNT; i++) {
+    for (size_t i = 0; i < SHOT_COUNT; i++)
         tests[i] = (struct CMUnitTest){shots[i].name, every_accelerator_makes_the_frame_of_brute, NULL,
-                                       tear_down, (void *)&shots[i]};
-    }
+                                       assert_nothing_is_kept, (void *)&shots[i]};
     return cmocka_run_group_tests_name("every accelerator makes the frame of brute", tests, NULL, NULL);
 }

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* render/illumination.h: secondary rays start far enough off their surface to miss it and its box, and no
  * farther. */
+#include "accel_testing.h"
 #include "render_testing.h"
 
 /* Counts of a frame that sees one object of size `s`, moved to `away`, under a light beside the camera. */
 static RtTally shadow_tally_of_one_object(int shape, float s, float away) {
-    RtScene scene;
-    start_scene(&scene, (RtMaterial){.color = {1, 1, 1}, .diffuse = 1, .ior = 1});
+    OWNED_SCENE scene = start_scene((RtMaterial){.color = {1, 1, 1}, .diffuse = 1, .ior = 1});
     RtVec3 to = {away, away, away};
     RtVec3 corners[3] = {{-30 * s, -20 * s, s}, {30 * s, -20 * s, -s}, {0, 40 * s, 0}};
     RtVec3 floor[4] = {
@@ -23,10 +23,8 @@ static RtTally shadow_tally_of_one_object(int shape, float s, float away) {
     assert_ok(rt_scene_finish(&scene, error));
     RtFrameOptions options = options_for(&scene, 64, 64, false);
     options.counted = true;
-    RtFrame frame = trace(&scene, &options);
+    OWNED_FRAME frame = trace(&scene, &options);
     RtTally tally = frame.tallies[RT_RAY_SHADOW];
-    rt_frame_clear(&frame);
-    rt_scene_clear(&scene);
     return tally;
 }
 
@@ -47,9 +45,8 @@ RT_TEST(nothing_shadows_itself) {
 /* A floor's box is flat, and box tests take it for thicker than it is; a shadow ray must start above that. */
 RT_TEST(a_shadow_ray_off_a_floor_leaves_the_box_of_the_floor_behind) {
     for (int half = 1; half < 100000; half *= 7) {
-        RtScene scene;
         float size = (float)half;
-        start_scene(&scene, (RtMaterial){.color = {1, 1, 1}, .diffuse = 1, .ior = 1});
+        OWNED_SCENE scene = start_scene((RtMaterial){.color = {1, 1, 1}, .diffuse = 1, .ior = 1});
         add_square(&scene, size, 0.3f);
         assert_ok(rt_scene_add_light(&scene, rt_vec3(0, 0, 3 * size), rt_vec3(1, 1, 1), error));
         assert_ok(rt_scene_finish(&scene, error));
@@ -63,17 +60,15 @@ RT_TEST(a_shadow_ray_off_a_floor_leaves_the_box_of_the_floor_behind) {
             RtPreparedRay prepared = rt_ray_prepare(&ray, &scene.geometry.box);
             assert_false(rt_box_hit(&scene.geometry.boxes[0], &prepared, 1, &enter));
         }
-        rt_scene_clear(&scene);
     }
 }
 
 /* So does one off a small facet of a larger scene, whose thickness is what a structure tests boxes with. */
 RT_TEST(a_shadow_ray_off_a_facet_leaves_its_box_behind_in_a_larger_scene) {
-    RtScene scene;
     RtVec3 facet[3] = {{10, 10, 1}, {10.1f, 10, 1}, {10, 10.1f, 1}}, light;
     RtRay ray;
     float enter;
-    start_scene(&scene, (RtMaterial){.color = {1, 1, 1}, .diffuse = 1, .ior = 1});
+    OWNED_SCENE scene = start_scene((RtMaterial){.color = {1, 1, 1}, .diffuse = 1, .ior = 1});
     assert_ok(rt_scene_add_polygon(&scene, 0, facet, 3, error));
     add_square(&scene, 12, 0);
     assert_ok(rt_scene_add_light(&scene, rt_vec3(0, 0, 40), rt_vec3(1, 1, 1), error));
@@ -82,17 +77,14 @@ RT_TEST(a_shadow_ray_off_a_facet_leaves_its_box_behind_in_a_larger_scene) {
     assert_true(rt_shadow_ray(&scene, &surface, 0, &ray, &light));
     RtPreparedRay prepared = rt_ray_prepare(&ray, &scene.geometry.box);
     assert_false(rt_box_hit(&scene.geometry.boxes[0], &prepared, 1, &enter));
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(offsets_stay_fine_far_from_zero) {
-    RtScene scene;
-    start_scene(&scene, (RtMaterial){.color = {1, 1, 1}, .diffuse = 1, .ior = 1});
+    OWNED_SCENE scene = start_scene((RtMaterial){.color = {1, 1, 1}, .diffuse = 1, .ior = 1});
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(1e5f, 0, 0), 1, error));
     assert_ok(rt_scene_finish(&scene, error));
     RtSurface surface = surface_of(&scene, rt_vec3(1e5f, 0, 10), rt_vec3(0, 0, -1), 9);
     assert_true(surface.offset > 0.0078 && surface.offset < 0.05); /* an ulp of 1e5 is 0.0078 */
-    rt_scene_clear(&scene);
 }
 
 RT_TESTS(offsets, NULL, NULL)

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* render/frame.h: the depth of rays, counts, progress, and failures; the same bytes on any number of
  * threads. */
+#include "accel_testing.h"
 #include "render_testing.h"
 
-#include "core/base/memory.h"
-
 RT_TEST(two_mirrors_return_a_ray_as_often_as_the_depth_allows) {
-    RtScene scene;
-    start_scene(&scene, (RtMaterial){.color = {1, 1, 1}, .ambient = 1, .reflection = 0.5f, .ior = 1});
+    OWNED_SCENE scene =
+        start_scene((RtMaterial){.color = {1, 1, 1}, .ambient = 1, .reflection = 0.5f, .ior = 1});
     add_square(&scene, 1000, 0);
     add_square(&scene, 1000, 20);
     assert_ok(rt_scene_finish(&scene, error));
@@ -16,19 +15,17 @@ RT_TEST(two_mirrors_return_a_ray_as_often_as_the_depth_allows) {
         RtFrameOptions options = options_for(&scene, 1, 1, false);
         options.depth = depths[i];
         options.counted = true;
-        RtFrame frame = trace(&scene, &options);
+        OWNED_FRAME frame = trace(&scene, &options);
         assert_int_equal(frame.tallies[RT_RAY_PRIMARY].rays, 1);
         assert_int_equal(frame.tallies[RT_RAY_REFLECTION].rays, depths[i] - 1);
         /* 1 + 1/2 + 1/4 + ... */
         assert_near(frame.color[0].x, 2 - pow(0.5, depths[i] - 1), 1e-5);
-        rt_frame_clear(&frame);
     }
-    rt_scene_clear(&scene);
 }
 
 /* Mirrors, glass and matte, of every shape, over a floor, under two lights. */
-static void busy_scene(RtScene *scene) {
-    start_scene(scene, rt_default_material());
+static RtScene busy_scene(void) {
+    RtScene scene = start_scene(rt_default_material());
     RtMaterial others[2] = {
         {.color = {1, 0.5f, 0.2f},
          .diffuse = 0.5f,
@@ -38,26 +35,27 @@ static void busy_scene(RtScene *scene) {
          .ior = 1},
         {.color = {1, 1, 1}, .diffuse = 0.1f, .reflection = 0.1f, .transmission = 0.9f, .ior = 1.5f}};
     uint32_t mirror, clear;
-    assert_ok(rt_scene_add_material(scene, &others[0], &mirror, error));
-    assert_ok(rt_scene_add_material(scene, &others[1], &clear, error));
-    add_square(scene, 6, -1);
+    assert_ok(rt_scene_add_material(&scene, &others[0], &mirror, error));
+    assert_ok(rt_scene_add_material(&scene, &others[1], &clear, error));
+    add_square(&scene, 6, -1);
     for (int i = 0; i < 5; i++) {
         float x = (float)i - 2;
-        assert_ok(rt_scene_add_sphere(scene, mirror, rt_vec3(x, x * x / 4, 0), 0.45f, error));
-        assert_ok(rt_scene_add_sphere(scene, clear, rt_vec3(x, -1 + x * x / 4, 1), 0.4f, error));
+        assert_ok(rt_scene_add_sphere(&scene, mirror, rt_vec3(x, x * x / 4, 0), 0.45f, error));
+        assert_ok(rt_scene_add_sphere(&scene, clear, rt_vec3(x, -1 + x * x / 4, 1), 0.4f, error));
     }
     for (int i = 0; i < 3; i++) { /* panes over the left half: rays multiply */
         float z = 2 + (float)i;
         RtVec3 pane[4] = {{-6, -6, z}, {0, -6, z}, {0, 6, z}, {-6, 6, z}};
-        assert_ok(rt_scene_add_polygon(scene, clear, pane, 4, error));
+        assert_ok(rt_scene_add_polygon(&scene, clear, pane, 4, error));
     }
     RtVec3 corners[3] = {{-2, 2, 0}, {2, 2, 0}, {0, 2.5f, 2}},
            normals[3] = {{0, -1, 1}, {0, -1, 1}, {0, -1, 0}};
-    assert_ok(rt_scene_add_triangle(scene, mirror, corners, normals, error));
-    assert_ok(rt_scene_add_cone(scene, 0, rt_vec3(-2, -2, -1), 0.5f, rt_vec3(-2, -2, 1), 0.2f, error));
-    assert_ok(rt_scene_add_light(scene, rt_vec3(3, 4, 8), rt_vec3(0.6f, 0.6f, 0.6f), error));
-    assert_ok(rt_scene_add_light(scene, rt_vec3(-5, 0, 4), rt_vec3(0.5f, 0.4f, 0.4f), error));
-    assert_ok(rt_scene_finish(scene, error));
+    assert_ok(rt_scene_add_triangle(&scene, mirror, corners, normals, error));
+    assert_ok(rt_scene_add_cone(&scene, 0, rt_vec3(-2, -2, -1), 0.5f, rt_vec3(-2, -2, 1), 0.2f, error));
+    assert_ok(rt_scene_add_light(&scene, rt_vec3(3, 4, 8), rt_vec3(0.6f, 0.6f, 0.6f), error));
+    assert_ok(rt_scene_add_light(&scene, rt_vec3(-5, 0, 4), rt_vec3(0.5f, 0.4f, 0.4f), error));
+    assert_ok(rt_scene_finish(&scene, error));
+    return scene;
 }
 
 static void assert_same_frames(const RtFrame *a, const RtFrame *b) {
@@ -71,32 +69,27 @@ static void assert_same_frames(const RtFrame *a, const RtFrame *b) {
 }
 
 RT_TEST(a_frame_is_the_same_bytes_on_any_number_of_threads_counted_or_timed) {
-    RtScene scene;
-    busy_scene(&scene);
+    OWNED_SCENE scene = busy_scene();
     RtFrameOptions options = options_for(&scene, 70, 41, false);
     options.depth = 7; /* streams above 1024 rays are cut */
     options.counted = true;
-    RtFrame one = trace(&scene, &options);
+    OWNED_FRAME one = trace(&scene, &options);
     assert_true(one.tallies[RT_RAY_TRANSMISSION].rays > 2 * one.tallies[RT_RAY_PRIMARY].rays);
     for (int threads = 1; threads <= 3; threads++) {
         for (int counted = 0; counted < 2; counted++) {
             options.threads = threads;
             options.counted = counted == 1;
-            RtFrame other = trace(&scene, &options);
+            OWNED_FRAME other = trace(&scene, &options);
             assert_same_frames(&one, &other);
-            rt_frame_clear(&other);
         }
     }
-    rt_frame_clear(&one);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(what_the_samples_cost_adds_up_to_the_tallies_by_kind) {
-    RtScene scene;
-    busy_scene(&scene);
+    OWNED_SCENE scene = busy_scene();
     RtFrameOptions options = options_for(&scene, 20, 20, false);
     options.counted = true;
-    RtFrame frame = trace(&scene, &options);
+    OWNED_FRAME frame = trace(&scene, &options);
     RtTally by_sample = {0}, by_kind = {0};
     for (size_t i = 0; i < 400; i++) rt_tally_add(&by_sample, &frame.cost[i]);
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_tally_add(&by_kind, &frame.tallies[kind]);
@@ -105,31 +98,25 @@ RT_TEST(what_the_samples_cost_adds_up_to_the_tallies_by_kind) {
     const RtTally *primary = &frame.tallies[RT_RAY_PRIMARY];
     assert_int_equal(primary->rays, 400);
     assert_int_equal(primary->object_tests, primary->rays * scene.geometry.object_count);
-    rt_frame_clear(&frame);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(corner_sampling_traces_one_more_ray_than_pixels_a_side) {
-    RtScene scene;
-    busy_scene(&scene);
+    OWNED_SCENE scene = busy_scene();
     RtFrameOptions options = options_for(&scene, 32, 16, true);
     options.counted = true;
     options.depth = 1;
-    RtFrame frame = trace(&scene, &options);
+    OWNED_FRAME frame = trace(&scene, &options);
     assert_int_equal(frame.tallies[RT_RAY_PRIMARY].rays, 33 * 17);
-    rt_frame_clear(&frame);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(a_frame_keeps_every_ray_that_is_counted) {
-    RtScene scene;
     uint64_t invalid = 0, others = 0;
-    busy_scene(&scene);
+    OWNED_SCENE scene = busy_scene();
     RtFrameOptions options = options_for(&scene, 40, 40, false);
     options.counted = true;
     options.threads = 2;
     options.keep_rays = true;
-    RtFrame frame = trace(&scene, &options);
+    OWNED_FRAME frame = trace(&scene, &options);
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
         assert_int_equal(frame.ray_count[kind], frame.tallies[kind].rays);
         for (uint64_t i = 0; i < frame.ray_count[kind]; i++) {
@@ -139,15 +126,11 @@ RT_TEST(a_frame_keeps_every_ray_that_is_counted) {
     }
     assert_int_equal(invalid + others, 0);
     assert_true(frame.ray_count[RT_RAY_SHADOW] > 0 && frame.ray_count[RT_RAY_REFLECTION] > 0);
-    rt_frame_clear(&frame);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(a_frame_without_memory_is_a_status_and_leaks_nothing) {
-    RtScene scene;
-    busy_scene(&scene);
-    RtAccel *accel;
-    assert_ok(rt_accel_open("brute", &scene, &accel, error));
+    OWNED_SCENE scene = busy_scene();
+    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "brute");
     RtFrameOptions options = options_for(&scene, 4, 4, false);
     options.counted = true;
     options.keep_rays = true;
@@ -164,8 +147,6 @@ RT_TEST(a_frame_without_memory_is_a_status_and_leaks_nothing) {
         assert_true(status == RT_OK || status == RT_NO_MEMORY);
     }
     assert_true(n > 10);
-    rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
 }
 
 RT_TESTS(render, NULL, NULL)

@@ -41,9 +41,8 @@ static uint32_t walk(const RtSampling *s) {
 
 RT_TEST(every_sample_comes_once_and_whole_blocks_come_first) {
     const uint32_t whole[] = {0, 256, 3 * 2 * 256, 18 * 256, 0, 104 * 72};
-    for (size_t i = 0; i < sizeof samplings / sizeof samplings[0]; i++) {
+    for (size_t i = 0; i < sizeof samplings / sizeof samplings[0]; i++)
         assert_int_equal(walk(&samplings[i]), whole[i]);
-    }
 }
 
 /* Morton codes: column and row take turns, from the lowest bit on. */

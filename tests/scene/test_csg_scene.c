@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* CSG trees as objects of a scene: materials of solids, refraction within a tree, copies of scenes, the
  * fingerprint, counting, and lack of memory while one is added. */
+#include "accel_testing.h"
 #include "csg_testing.h"
 
-#include "core/base/memory.h"
 #include "core/scene/append.h"
 #include "render/illumination.h"
 
@@ -19,19 +19,17 @@ static uint32_t add_glass(RtScene *scene, const char *name, float ior) {
     return index;
 }
 
-static void add_tree(RtScene *scene, RtCsgBuilder *builder, RtCsgTerm root) {
-    assert_ok(rt_scene_add_csg(scene, builder, root, true, error));
-    rt_csg_builder_clear(builder);
-}
-
 /* A glass cube from -2 to 2 with a bubble of radius 1 in its middle, whose wall is of another material. */
-static void make_bubble(RtScene *scene) {
-    RtCsgBuilder b = {0};
-    rt_scene_init(scene);
-    uint32_t glass = add_glass(scene, "glass", 1.5f), wall = add_glass(scene, "wall", 1.25f);
+static RtScene make_bubble(void) {
+    RtScene scene;
+    OWNED_BUILDER b = {0};
+    rt_scene_init(&scene);
+    uint32_t glass = add_glass(&scene, "glass", 1.5f), wall = add_glass(&scene, "wall", 1.25f);
     RtCsgTerm cube = box(&b, rt_vec3(-2, -2, -2), rt_vec3(2, 2, 2), glass);
-    add_tree(scene, &b, cut(&b, cube, ball(&b, rt_vec3(0, 0, 0), 1, wall)));
-    assert_ok(rt_scene_finish(scene, error));
+    RtCsgTerm tree = cut(&b, cube, ball(&b, rt_vec3(0, 0, 0), 1, wall));
+    assert_ok(rt_scene_add_csg(&scene, &b, tree, true, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    return scene;
 }
 
 static RtSurface surface_at(const RtScene *scene, const RtRay *ray, float t) {
@@ -39,22 +37,22 @@ static RtSurface surface_at(const RtScene *scene, const RtRay *ray, float t) {
 }
 
 /* A random tree as the only object. */
-static void make_random(RtScene *scene, uint64_t seed, bool extents) {
+static RtScene make_random(uint64_t seed, bool extents) {
+    RtScene scene;
     RtRandom random = rt_random(31, seed);
-    RtCsgBuilder b = {0};
-    rt_scene_init(scene);
-    for (int i = 0; i < 4; i++) add_glass(scene, (const char *[]){"a", "b", "c", "d"}[i], 1);
+    OWNED_BUILDER b = {0};
+    rt_scene_init(&scene);
+    for (int i = 0; i < 4; i++) add_glass(&scene, (const char *[]){"a", "b", "c", "d"}[i], 1);
     RtCsgTerm root = random_term(&b, &random, 20, seed % 2);
-    assert_ok(rt_scene_add_csg(scene, &b, root, extents, error));
-    rt_csg_builder_clear(&b);
-    assert_ok(rt_scene_finish(scene, error));
+    assert_ok(rt_scene_add_csg(&scene, &b, root, extents, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    return scene;
 }
 
 /* ---- materials and refraction ---- */
 
 RT_TEST(a_surface_has_the_material_of_its_solid) {
-    RtScene scene;
-    make_bubble(&scene);
+    OWNED_SCENE scene = make_bubble();
     RtRay ray = ray_along(rt_vec3(-4, 0, 0), along_x);
     const char *const names[4] = {"glass", "wall", "wall", "glass"};
     for (int i = 0; i < 4; i++) {
@@ -64,14 +62,12 @@ RT_TEST(a_surface_has_the_material_of_its_solid) {
         assert_true(surface.side.x == -1);
     }
     assert_int_equal(scene.material_of[0], 0);
-    rt_scene_clear(&scene);
 }
 
 /* Snell's law: out of the glass and into the bubble the ray bends away from the normal of the bubble's
  * wall. */
 RT_TEST(light_is_refracted_out_of_the_tree_where_a_bubble_begins) {
-    RtScene scene;
-    make_bubble(&scene);
+    OWNED_SCENE scene = make_bubble();
     RtRay ray = ray_along(rt_vec3(-4, 0.5f, 0), along_x), rays[RT_MAX_SPAWN];
     float factors[RT_MAX_SPAWN], t = (float)(4 - sqrt(0.75));
     RtSurface surface = surface_at(&scene, &ray, t);
@@ -80,7 +76,6 @@ RT_TEST(light_is_refracted_out_of_the_tree_where_a_bubble_begins) {
     assert_int_equal(rays[0].kind, RT_RAY_TRANSMISSION);
     RtVec3d out = rt_normalized(rt_widen(rays[0].dir)), across = rt_crossd(out, surface.side);
     assert_true(fabs(rt_lengthd(across) - 0.5 * 1.25) < 1e-6);
-    rt_scene_clear(&scene);
 }
 
 /* ---- copies ---- */
@@ -91,8 +86,7 @@ RT_TEST(a_tree_may_be_appended_under_any_transform) {
     assert_ok(rt_transform_scale(&uneven, rt_vec3(2, 1, 0.5f), error));
     RtRandom random = rt_random(32, 0);
     for (uint64_t seed = 0; seed < 20; seed++) {
-        RtScene from, to;
-        make_random(&from, seed, true);
+        OWNED_SCENE from = make_random(seed, true), to;
         rt_scene_init(&to);
         add_glass(&to, "other", 1);
         assert_ok(rt_scene_append(&to, &from, &uneven, error));
@@ -106,7 +100,7 @@ RT_TEST(a_tree_may_be_appended_under_any_transform) {
             assert_int_equal(g->forest.set.solids[g->csgs[1].first_solid + i].material, material);
         }
         RtCsg moved;
-        RtCsgForest forest = {0};
+        OWNED_FOREST forest = {0};
         assert_ok(rt_csg_copy(&forest, &from.geometry.forest, from.geometry.csgs, &uneven, &moved, error));
         for (uint32_t i = 0; i < 200; i++) {
             RtRay ray = random_ray(&random, i);
@@ -116,18 +110,13 @@ RT_TEST(a_tree_may_be_appended_under_any_transform) {
             wanted = hits_of(&from.geometry.forest, from.geometry.csgs, &ray);
             assert_true(same_hits(&second, &wanted));
         }
-        rt_csg_forest_clear(&forest);
-        rt_scene_clear(&to);
-        rt_scene_clear(&from);
     }
 }
 
 /* ---- the fingerprint ---- */
 
 RT_TEST(the_fingerprint_sees_trees_but_not_their_extents) {
-    RtScene scene, plain;
-    make_random(&scene, 3, true);
-    make_random(&plain, 3, false);
+    OWNED_SCENE scene = make_random(3, true), plain = make_random(3, false);
     uint64_t before = rt_scene_fingerprint(&scene);
     assert_true(before == rt_scene_fingerprint(&plain));
     RtCsgForest *forest = &scene.geometry.forest;
@@ -145,28 +134,21 @@ RT_TEST(the_fingerprint_sees_trees_but_not_their_extents) {
     assert_int_equal(forest->instructions[last].code, RT_CSG_APPLY);
     forest->instructions[last].operand = (forest->instructions[last].operand + 1) % 3;
     assert_true(before != rt_scene_fingerprint(&scene));
-    rt_scene_clear(&plain);
-    rt_scene_clear(&scene);
 }
 
 /* ---- counting ---- */
 
 static RtTally counted(const RtScene *scene, RtRay ray) {
-    RtAccel *brute;
-    RtQuery query;
     RtHit hit;
     RtTally tallies[RT_RAY_KIND_COUNT] = {0};
-    assert_ok(rt_accel_open("brute", scene, &brute, error));
-    assert_ok(rt_query_init(&query, brute, error));
+    OWNED_ACCEL RtAccel *brute = open_accel(scene, "brute");
+    OWNED_QUERY query = open_query(brute);
     rt_nearest(&query, &ray, 1, &hit, tallies);
-    rt_query_clear(&query);
-    rt_accel_destroy(brute);
     return tallies[ray.kind];
 }
 
 RT_TEST(solids_and_boxes_are_counted_as_they_are_tested) {
-    RtScene scene;
-    make_bubble(&scene);
+    OWNED_SCENE scene = make_bubble();
     /* Through both; past the box of the ball; past the tree. */
     const RtVec3 origins[3] = {{-4, 0, 0}, {-4, 1.5f, 0}, {-4, 3, 0}};
     const uint64_t solids[3] = {2, 1, 0}, boxes[3] = {2, 2, 0};
@@ -176,41 +158,38 @@ RT_TEST(solids_and_boxes_are_counted_as_they_are_tested) {
         assert_int_equal(tally.csg_tests, solids[i]);
         assert_int_equal(tally.extent_tests, boxes[i]);
     }
-    rt_scene_clear(&scene);
 }
 
 /* Two clusters of four balls each: the ray meets the box of one of them. */
 RT_TEST(a_node_that_is_missed_costs_one_test) {
-    RtScene scene;
-    RtCsgBuilder b = {0};
+    OWNED_SCENE scene;
+    OWNED_BUILDER b = {0};
     RtCsgTerm clusters[2];
     rt_scene_init(&scene);
     add_glass(&scene, "glass", 1);
     for (int c = 0; c < 2; c++) {
         clusters[c] = ball(&b, rt_vec3(0, 20 * (float)c, 0), 1, 0);
-        for (int i = 1; i < 4; i++) {
+        for (int i = 1; i < 4; i++)
             clusters[c] = join(&b, clusters[c], ball(&b, rt_vec3(3 * (float)i, 20 * (float)c, 0), 1, 0));
-        }
     }
-    add_tree(&scene, &b, join(&b, clusters[0], clusters[1]));
+    assert_ok(rt_scene_add_csg(&scene, &b, join(&b, clusters[0], clusters[1]), true, error));
     assert_ok(rt_scene_finish(&scene, error));
     RtTally tally = counted(&scene, ray_along(rt_vec3(0, 0, -5), rt_vec3(0, 0, 1)));
     assert_int_equal(tally.csg_tests, 1);
     /* Both clusters; in the first, which is met, what its three left balls have in common; and its balls. */
     assert_true(tally.extent_tests <= 2 + 1 + 4);
-    rt_scene_clear(&scene);
 }
 
 /* ---- memory ---- */
 
 RT_TEST(adding_a_tree_fails_cleanly_at_every_allocation) {
     RtRandom random = rt_random(33, 0);
-    RtCsgBuilder b = {0};
+    OWNED_BUILDER b = {0};
     RtCsgTerm root = random_term(&b, &random, 10, true);
     RtStatus status = RT_NO_MEMORY;
     int64_t live = rt_alloc_live();
     for (uint64_t n = 1; status != RT_OK && n < 1000; n++) {
-        RtScene scene;
+        OWNED_SCENE scene;
         rt_scene_init(&scene);
         for (int i = 0; i < 4; i++) add_glass(&scene, "glass", 1);
         rt_alloc_fail_at(n);
@@ -221,11 +200,9 @@ RT_TEST(adding_a_tree_fails_cleanly_at_every_allocation) {
             assert_int_equal(scene.geometry.object_count, 0);
             assert_int_equal(scene.geometry.forest.instruction_count, 0);
         }
-        rt_scene_clear(&scene);
     }
     assert_int_equal(status, RT_OK);
     assert_true(rt_alloc_live() == live);
-    rt_csg_builder_clear(&b);
 }
 
 RT_TESTS(csg_scene, NULL, NULL)

@@ -37,24 +37,20 @@ static void fill(RtCsgBuilder *builder) {
 }
 
 static void expect(const char *formula, const char *meaning) {
-    RtCsgBuilder builder = {0};
+    OWNED_BUILDER builder = {0};
     RtCsgTerm term;
     char text[256] = "";
     fill(&builder);
     assert_ok(rt_formula_read(formula, &builder, look_up, &builder, &term, error));
     print(&builder, term, text);
     assert_string_equal(text, meaning);
-    rt_csg_builder_clear(&builder);
 }
 
 static void expect_complaint(const char *formula, const char *complaint) {
-    RtError error;
-    RtCsgBuilder builder = {0};
+    OWNED_BUILDER builder = {0};
     RtCsgTerm term;
     fill(&builder);
-    assert_int_equal(rt_formula_read(formula, &builder, look_up, &builder, &term, &error), RT_BAD_INPUT);
-    if (!strstr(error.message, complaint)) fail_msg("'%s' is not in '%s'", complaint, error.message);
-    rt_csg_builder_clear(&builder);
+    assert_bad_input(rt_formula_read(formula, &builder, look_up, &builder, &term, error), complaint);
 }
 
 RT_TEST(operators_are_taken_from_the_left) {
@@ -90,7 +86,7 @@ RT_TEST(mistakes_are_placed_at_their_character) {
 
 RT_TEST(formulas_nest_as_deeply_as_memory_allows) {
     enum { DEPTH = 100000 };
-    RtCsgBuilder builder = {0};
+    OWNED_BUILDER builder = {0};
     RtCsgTerm term;
     char *formula = test_malloc(4 * DEPTH + 2);
     for (int i = 0; i < DEPTH; i++) memcpy(formula + 3 * i, "a-(", 3);
@@ -101,7 +97,6 @@ RT_TEST(formulas_nest_as_deeply_as_memory_allows) {
     assert_ok(rt_formula_read(formula, &builder, look_up, &builder, &term, error));
     assert_int_equal(builder.nodes[term].size, DEPTH + 1);
     test_free(formula);
-    rt_csg_builder_clear(&builder);
 }
 
 RT_TEST(names_are_letters_digits_and_underscores) {

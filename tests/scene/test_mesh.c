@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Meshes through Assimp: what is kept, where it is placed, what is rejected. */
-#include "testing.h"
+#include "scene_testing.h"
 
 #include "core/base/file.h"
-#include "core/base/memory.h"
 #include "core/scene/load.h"
 #include "core/scene/mesh.h"
-#include "scenes/open.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -21,7 +19,7 @@ static RtStatus load_text(const char *path, const char *text, RtScene *scene, Rt
 }
 
 RT_TEST(triangles_keep_the_order_of_the_file_and_have_no_normals_of_their_own) {
-    RtScene scene;
+    OWNED_SCENE scene;
     assert_ok(load_text(OBJ_NAME,
                         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 1 0\n"
                         "f 1 2 3\nf 1 2 4\nf 1 1 1\nf 1 2 5 3\n",
@@ -34,22 +32,20 @@ RT_TEST(triangles_keep_the_order_of_the_file_and_have_no_normals_of_their_own) {
     assert_true(g->triangles[2].v[2].x == 0);
     assert_true(scene.camera.up.y == 1);
     assert_int_equal(scene.light_count, 1);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(vertex_normals_of_the_file_are_kept) {
-    RtScene scene;
+    OWNED_SCENE scene;
     assert_ok(load_text(OBJ_NAME,
                         "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 2\nvn 0 1 0\nvn 1 0 0\nf 1//1 2//2 3//3\n", &scene,
                         error));
     assert_int_equal(scene.geometry.vertex_normal_count, 1);
     const RtVec3 *n = scene.geometry.vertex_normals[0].n;
     assert_true(n[0].z == 1 && n[1].y == 1 && n[2].x == 1);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(a_mesh_goes_where_its_transform_puts_it) {
-    RtScene scene;
+    OWNED_SCENE scene;
     uint32_t material;
     RtMaterial standard = rt_default_material();
     RtTransform transform = rt_transform_identity();
@@ -61,7 +57,6 @@ RT_TEST(a_mesh_goes_where_its_transform_puts_it) {
     assert_ok(rt_mesh_append(&scene, OBJ_NAME, material, &transform, error));
     const RtVec3 *v = scene.geometry.triangles[0].v;
     assert_true(v[0].z == 5 && v[1].x == 2 && v[2].y == 2);
-    rt_scene_clear(&scene);
 }
 
 /* One triangle in an embedded buffer; two nodes use it, the second with a matrix that mirrors x and moves
@@ -76,35 +71,30 @@ static const char two_nodes[] =
     "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}";
 
 RT_TEST(the_matrices_of_nodes_are_applied_and_mirrors_keep_the_outside_out) {
-    RtScene scene;
+    OWNED_SCENE scene;
     assert_ok(load_text(RT_BINARY_DIR "/test_mesh_scene.gltf", two_nodes, &scene, error));
     assert_int_equal(scene.geometry.triangle_count, 2);
     RtBox box = scene.geometry.box;
     assert_true(box.lo.x == -1 && box.hi.x == 1 && box.lo.z == 0 && box.hi.z == 7);
     for (int i = 0; i < 2; i++) assert_true(rt_triangle_normal(&scene.geometry.triangles[i]).z == 1);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(binary_formats_bring_triangles_back_bit_for_bit) {
     static const char *const names[] = {RT_BINARY_DIR "/test_mesh.ply", RT_BINARY_DIR "/test_mesh.stl",
                                         RT_BINARY_DIR "/test_mesh.glb"};
-    RtScene scene, again;
-    assert_ok(rt_scene_open("random:n=300,shape=triangle", &scene, error));
+    OWNED_SCENE scene = open_scene("random:n=300,shape=triangle");
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         assert_ok(rt_scene_save(&scene, names[i], true, error));
-        assert_ok(rt_scene_open(names[i], &again, error));
+        OWNED_SCENE again = open_scene(names[i]);
         assert_int_equal(again.geometry.triangle_count, 300);
         assert_memory_equal(again.geometry.triangles, scene.geometry.triangles, 300 * sizeof(RtTriangle));
-        rt_scene_clear(&again);
     }
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(obj_comes_back_within_the_rounding_of_its_reader) {
-    RtScene scene, again;
-    assert_ok(rt_scene_open("random:n=300,shape=triangle", &scene, error));
+    OWNED_SCENE scene = open_scene("random:n=300,shape=triangle");
     assert_ok(rt_scene_save(&scene, OBJ_NAME, true, error));
-    assert_ok(rt_scene_open(OBJ_NAME, &again, error));
+    OWNED_SCENE again = open_scene(OBJ_NAME);
     assert_int_equal(again.geometry.triangle_count, 300);
     assert_int_equal(again.geometry.vertex_normal_count, 0);
     for (int i = 0; i < 300; i++) {
@@ -113,19 +103,13 @@ RT_TEST(obj_comes_back_within_the_rounding_of_its_reader) {
             for (int axis = 0; axis < 3; axis++) assert_true(fabsf(a.at[axis] - b.at[axis]) <= 2e-7f);
         }
     }
-    rt_scene_clear(&scene);
-    rt_scene_clear(&again);
 }
 
 RT_TEST(a_scene_with_other_shapes_is_not_written_as_a_mesh) {
-    RtScene scene;
-    RtError problem;
 #define REFUSED RT_BINARY_DIR "/test_mesh_refused.ply"
-    assert_ok(rt_scene_open("balls:size=1", &scene, error));
-    assert_int_equal(rt_scene_save(&scene, REFUSED, true, &problem), RT_BAD_INPUT);
-    assert_non_null(strstr(problem.message, "sphere: 10"));
+    OWNED_SCENE scene = open_scene("balls:size=1");
+    assert_bad_input(rt_scene_save(&scene, REFUSED, true, error), "sphere: 10");
     assert_not_written(REFUSED);
-    rt_scene_clear(&scene);
 }
 
 #define PLY(faces)                                                                                           \
@@ -153,18 +137,15 @@ RT_TEST(bad_meshes_are_refused_with_what_is_wrong) {
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         RtScene scene;
         RtError problem;
-        if (load_text(cases[i].path, cases[i].text, &scene, &problem) != RT_BAD_INPUT) {
+        if (load_text(cases[i].path, cases[i].text, &scene, &problem) != RT_BAD_INPUT)
             fail_msg("'%s' was not refused", cases[i].text);
-        }
         if (strncmp(problem.message, cases[i].path, strlen(cases[i].path)) != 0 ||
             !strstr(problem.message, cases[i].says)) {
             fail_msg("'%s' gave: %s", cases[i].text, problem.message);
         }
     }
     RtScene scene = {0};
-    RtError problem;
-    assert_int_equal(rt_mesh_append(&scene, "no_such.obj", 0, NULL, &problem), RT_BAD_INPUT);
-    assert_non_null(strstr(problem.message, "No such file"));
+    assert_bad_input(rt_mesh_append(&scene, "no_such.obj", 0, NULL, error), "No such file");
 }
 
 RT_TEST(assimp_says_nothing_on_the_terminal) {
@@ -195,41 +176,20 @@ RT_TEST(assimp_says_nothing_on_the_terminal) {
 }
 
 RT_TEST(every_failed_allocation_is_reported_and_leaves_nothing) {
-    int64_t before = rt_alloc_live();
-    RtScene scene, again;
-    RtError problem;
-    RtStatus status = RT_NO_MEMORY;
     assert_ok(rt_file_write(OBJ_NAME, "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n", 51, error));
-    for (uint64_t n = 1; status != RT_OK; n++) {
-        rt_alloc_fail_at(n);
-        status = rt_scene_open(OBJ_NAME, &scene, &problem);
-        rt_alloc_fail_at(0);
-        assert_true(status == RT_OK || status == RT_NO_MEMORY);
-        if (status != RT_OK) assert_int_equal(rt_alloc_live(), before);
-    }
-    status = RT_NO_MEMORY;
-    for (uint64_t n = 1; status != RT_OK; n++) {
-        rt_alloc_fail_at(n);
-        status = rt_scene_save(&scene, RT_BINARY_DIR "/test_mesh.ply", true, &problem);
-        rt_alloc_fail_at(0);
-        assert_true(status == RT_OK || status == RT_NO_MEMORY);
-    }
-    assert_ok(rt_scene_open(RT_BINARY_DIR "/test_mesh.ply", &again, error));
+    assert_failed_allocations_are_reported(OBJ_NAME);
+    OWNED_SCENE scene = open_scene(OBJ_NAME);
+    assert_fails_cleanly(rt_scene_save(&scene, RT_BINARY_DIR "/test_mesh.ply", true, error), (void)0);
+    OWNED_SCENE again = open_scene(RT_BINARY_DIR "/test_mesh.ply");
     assert_int_equal(again.geometry.vertex_normal_count, 1);
-    rt_scene_clear(&again);
-    rt_scene_clear(&scene);
-    assert_int_equal(rt_alloc_live(), before);
 }
 
 RT_TEST(the_bunny_has_69666_triangles_all_with_area) {
     if (!rt_file_exists(BUNNY)) RT_SKIP(BUNNY " (glmark2-data)");
-    RtScene scene;
-    assert_ok(rt_scene_open(BUNNY, &scene, error));
+    OWNED_SCENE scene = open_scene(BUNNY);
     assert_int_equal(scene.geometry.triangle_count, 69666);
-    for (uint32_t i = 0; i < 69666; i++) {
+    for (uint32_t i = 0; i < 69666; i++)
         assert_true(rt_lengthd(rt_triangle_normal(&scene.geometry.triangles[i])) > 0);
-    }
-    rt_scene_clear(&scene);
 }
 
 RT_TESTS(mesh, NULL, NULL)

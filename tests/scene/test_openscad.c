@@ -6,12 +6,11 @@
  * A mesh with flat facets lies up to `error` inside of what is round. So a ray is compared with a bundle of
  * rays around it, as far away as that: what we hit must lie between the nearest and the farthest that the
  * bundle hits. */
-#include "accel/accel.h"
-#include "core/base/random.h"
+#include "accel_testing.h"
 #include "crossings_testing.h"
+
+#include "core/base/random.h"
 #include "rays/rayset.h"
-#include "scenes/open.h"
-#include "testing.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -80,16 +79,12 @@ static void compare_ray(const RtScene *scene, const Model *model, RtQuery *mesh,
 
 static void compare(const Model *model) {
     char command[256], path[64];
-    RtScene scene, mesh;
-    RtAccel *accel;
-    RtQuery query;
     snprintf(path, sizeof path, "test_openscad_%s.stl", model->name);
     snprintf(command, sizeof command, "openscad -q -o %s tests/openscad/%s.scad", path, model->name);
     assert_int_equal(system(command), 0);
-    assert_ok(rt_scene_open(model->scene, &scene, error));
-    assert_ok(rt_scene_open(path, &mesh, error));
-    assert_ok(rt_accel_open("embree", &mesh, &accel, error));
-    assert_ok(rt_query_init(&query, accel, error));
+    OWNED_SCENE scene = open_scene(model->scene), mesh = open_scene(path);
+    OWNED_ACCEL RtAccel *accel = open_accel(&mesh, "embree");
+    OWNED_QUERY query = open_query(accel);
     Compared sum = {0};
     RtRandom random = rt_random(1, model->object);
     for (int i = 0; i < RAYS; i++) {
@@ -99,10 +94,6 @@ static void compare(const Model *model) {
     print_message("%s: %d rays, %llu hits, %llu within twice the error of the mesh, %llu wrong\n",
                   model->name, RAYS, (unsigned long long)sum.hits, (unsigned long long)sum.alike,
                   (unsigned long long)sum.wrong);
-    rt_query_clear(&query);
-    rt_accel_destroy(accel);
-    rt_scene_clear(&mesh);
-    rt_scene_clear(&scene);
     remove(path);
     assert_true(sum.hits > RAYS / 10);
     assert_true(sum.alike > RAYS * 97 / 100);

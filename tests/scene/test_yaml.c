@@ -10,7 +10,7 @@
 /* ---- what a file says ---- */
 
 RT_TEST(a_scene_is_what_its_file_says) {
-    RtScene s;
+    OWNED_SCENE s;
     assert_ok(load_text(everything, &s, error));
     const RtGeometry *g = &s.geometry;
     assert_true(s.camera.from.y == -10 && s.camera.fov == 30 && s.camera.near == 0.5f);
@@ -28,30 +28,27 @@ RT_TEST(a_scene_is_what_its_file_says) {
     assert_int_equal(g->cone_count, 2);
     assert_true(g->cones[1].base_radius == g->cones[1].apex_radius);
     assert_true(g->triangles[2].v[2].y == 4 && g->triangles[2].v[2].z == 5);
-    rt_scene_clear(&s);
 }
 
 RT_TEST(what_is_left_out_has_defaults) {
-    RtScene s;
+    OWNED_SCENE s;
     assert_ok(load_text("objects:\n  - sphere: {center: [1, 2, 3], radius: 1}\n", &s, error));
     assert_int_equal(s.light_count, 1);
     assert_int_equal(s.material_count, 1);
     assert_true(s.camera.at.x == 1 && s.camera.at.z == 3 && s.camera.fov == 45);
-    rt_scene_clear(&s);
 }
 
 RT_TEST(a_material_called_default_is_the_default) {
-    RtScene s;
+    OWNED_SCENE s;
     assert_ok(load_text("materials: [{name: default, color: [0, 1, 0]}]\n"
                         "objects: [sphere: {center: [1, 2, 3], radius: 1}]\n",
                         &s, error));
     assert_int_equal(s.material_count, 1);
     assert_true(s.materials[0].color.y == 1);
-    rt_scene_clear(&s);
 }
 
 RT_TEST(a_built_in_moved_and_moved_back_is_itself) {
-    RtScene plain, s;
+    OWNED_SCENE plain, s;
     assert_ok(rt_builtin_open("balls:size=2", &plain, error));
     assert_ok(load_text("objects:\n"
                         "  - builtin:\n"
@@ -66,11 +63,8 @@ RT_TEST(a_built_in_moved_and_moved_back_is_itself) {
     assert_int_equal(a->object_count, b->object_count);
     assert_memory_equal(a->objects, b->objects, a->object_count * sizeof *a->objects);
     assert_true(a->sphere_count > 0);
-    for (uint32_t i = 0; i < a->sphere_count; i++) {
+    for (uint32_t i = 0; i < a->sphere_count; i++)
         assert_memory_equal(&a->spheres[i], &b->spheres[i], sizeof(RtSphere));
-    }
-    rt_scene_clear(&plain);
-    rt_scene_clear(&s);
 }
 
 /* ---- the documentation, and scenes that come along ---- */
@@ -88,10 +82,9 @@ RT_TEST(every_example_of_the_documentation_loads) {
         } else if (inside && strcmp(line, "```\n") == 0) {
             inside = false;
             count++;
-            RtScene scene;
+            OWNED_SCENE scene;
             RtError error;
             if (load_text(text, &scene, &error) != RT_OK) fail_msg("%s\n%s", error.message, text);
-            rt_scene_clear(&scene);
         } else if (inside) {
             assert_true(strlen(text) + strlen(line) < sizeof text);
             strcat(text, line);
@@ -105,9 +98,8 @@ RT_TEST(every_scene_that_comes_along_loads) {
     glob_t found;
     assert_int_equal(glob("scenes/*.yaml", 0, NULL, &found), 0);
     for (size_t i = 0; i < found.gl_pathc; i++) {
-        RtScene scene;
+        OWNED_SCENE scene;
         assert_ok(load(found.gl_pathv[i], &scene, error));
-        rt_scene_clear(&scene);
     }
     assert_true(found.gl_pathc >= 3);
     globfree(&found);

@@ -4,9 +4,8 @@
 #ifndef RT_TESTS_YAML_TESTING_H
 #define RT_TESTS_YAML_TESTING_H
 
-#include "testing.h"
+#include "scene_testing.h"
 
-#include "core/base/memory.h"
 #include "core/scene/append.h"
 #include "core/scene/yaml.h"
 #include "scenes/builtin.h"

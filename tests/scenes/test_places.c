@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* scenes/: the built-in scenes of places (a teapot on a board, in a stadium, a hall, a forest, a city) and
  * their parts. */
-#include "scene_testing.h"
+#include "accel_testing.h"
 
-#include "accel/accel.h"
 #include "scenes/builtin.h"
 
 #include <stdio.h>
@@ -40,9 +39,8 @@ RT_TEST(a_count_before_making_is_the_count_made) {
         RtValue values[RT_MAX_PARAMS];
         assert_ok(rt_params_parse(builtin->params, builtin->param_count, colon ? colon + 1 : NULL, "it",
                                   values, error));
-        RtScene scene = open_scene(specs[i]);
+        OWNED_SCENE scene = open_scene(specs[i]);
         assert_int_equal(rt_builtin_object_count(builtin, values), scene.geometry.object_count);
-        rt_scene_clear(&scene);
     }
 }
 
@@ -95,19 +93,17 @@ RT_TEST(a_teapot_is_open_at_its_rims_alone) {
     for (uint32_t n = 2; n <= 12; n += 5) {
         char spec[32];
         snprintf(spec, sizeof spec, "teapot:size=%u", n);
-        RtScene scene = open_scene(spec);
+        OWNED_SCENE scene = open_scene(spec);
         assert_int_equal(open_edges(&scene.geometry, 0, scene.geometry.triangle_count), 16 * n);
-        rt_scene_clear(&scene);
     }
 }
 
 RT_TEST(a_teapot_stands_on_its_board_and_its_normals_point_out) {
-    RtScene scene = open_scene("teapot");
+    OWNED_SCENE scene = open_scene("teapot");
     RtBox box = scene.geometry.box;
     assert_true(box.lo.x == -4 && box.lo.y == -4 && box.lo.z == 0);
     assert_true(box.hi.x == 4 && box.hi.y == 4 && box.hi.z == 3.15f);
     normals_point_where_the_triangles_do(&scene.geometry);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(a_stadium_is_ratio_times_as_long_as_its_teapot) {
@@ -115,31 +111,27 @@ RT_TEST(a_stadium_is_ratio_times_as_long_as_its_teapot) {
     for (size_t i = 0; i < sizeof ratios / sizeof ratios[0]; i++) {
         char spec[64];
         snprintf(spec, sizeof spec, "stadium:size=4,ratio=%g", ratios[i]);
-        RtScene scene = open_scene(spec);
+        OWNED_SCENE scene = open_scene(spec);
         const RtGeometry *g = &scene.geometry;
         RtBox teapot = RT_EMPTY_BOX, tiers = RT_EMPTY_BOX;
-        for (uint32_t k = 0; k < g->triangle_count; k++) {
+        for (uint32_t k = 0; k < g->triangle_count; k++)
             teapot = rt_box_union(teapot, g->boxes[g->triangle_ids[k]]);
-        }
         for (uint32_t k = 1; k < g->polygon_count; k++) { /* polygon 0 is the ground */
             tiers = rt_box_union(tiers, g->boxes[g->polygon_ids[k]]);
         }
         RtVec3 small = rt_box_size(teapot), large = rt_box_size(tiers);
         double ratio = (double)large.x / (double)rt_maxf(small.x, small.y);
         assert_true(ratio > 0.9 * ratios[i] && ratio < 1.0 * ratios[i]);
-        rt_scene_clear(&scene);
     }
 }
 
 /* The corners of a square of `side` pixels: (side + 1)^2 primary rays. */
 static uint64_t count_misses(RtScene *scene, uint32_t side) {
-    RtAccel *accel;
-    RtQuery query;
     RtView view;
     assert_ok(rt_scene_sample(scene, side, side, 1, true, error));
     assert_ok(rt_view_init(&view, &scene->camera, scene->sampling, error));
-    assert_ok(rt_accel_open("bvh", scene, &accel, error));
-    assert_ok(rt_query_init(&query, accel, error));
+    OWNED_ACCEL RtAccel *accel = open_accel(scene, "bvh");
+    OWNED_QUERY query = open_query(accel);
     uint64_t misses = 0;
     for (uint32_t row = 0; row <= side; row++) {
         for (uint32_t column = 0; column <= side; column++) {
@@ -149,8 +141,6 @@ static uint64_t count_misses(RtScene *scene, uint32_t side) {
             misses += hit.object == RT_NO_OBJECT;
         }
     }
-    rt_query_clear(&query);
-    rt_accel_destroy(accel);
     return misses;
 }
 
@@ -160,9 +150,8 @@ RT_TEST(a_hall_is_closed_so_that_every_primary_ray_hits) {
     assert_int_equal(open_edges(&scene.geometry, 0, 39 * 22), 0);
     assert_int_equal(count_misses(&scene, 512), 0);
     RtVec3 eye = scene.camera.from;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; a++)
         assert_true(eye.at[a] > scene.geometry.box.lo.at[a] && eye.at[a] < scene.geometry.box.hi.at[a]);
-    }
     assert_int_equal(scene.light_count, 4);
     rt_scene_clear(&scene);
     scene = open_scene("hall:size=1");
@@ -181,17 +170,14 @@ RT_TEST(places_are_the_same_bit_for_bit_everywhere) {
         {"city", UINT64_C(0xf33a5ba9ddfe6869)},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        RtScene scene = open_scene(cases[i].spec);
+        OWNED_SCENE scene = open_scene(cases[i].spec);
         assert_int_equal(rt_scene_fingerprint(&scene), cases[i].fingerprint);
-        rt_scene_clear(&scene);
     }
 }
 
 static void assert_same(const char *one, const char *other, bool same) {
-    RtScene a = open_scene(one), b = open_scene(other);
+    OWNED_SCENE a = open_scene(one), b = open_scene(other);
     assert_true((rt_scene_fingerprint(&a) == rt_scene_fingerprint(&b)) == same);
-    rt_scene_clear(&a);
-    rt_scene_clear(&b);
 }
 
 RT_TEST(random_places_depend_on_the_seed_alone) {
@@ -206,7 +192,7 @@ RT_TEST(a_forest_grows_from_a_thousand_triangles_to_any_number) {
     for (uint32_t n = 1; n <= 1000; n *= 10) {
         char spec[32];
         snprintf(spec, sizeof spec, "forest:n=%u", n);
-        RtScene scene = open_scene(spec);
+        OWNED_SCENE scene = open_scene(spec);
         uint32_t edge = (uint32_t)ceil(sqrt(n)) + 6, ground = 2 * (2 * edge) * (2 * edge);
         uint32_t trees = scene.geometry.triangle_count - ground;
         assert_true(trees >= 986 * n && trees <= 1036 * n && (trees - 986 * n) % 50 == 0);
@@ -215,7 +201,6 @@ RT_TEST(a_forest_grows_from_a_thousand_triangles_to_any_number) {
             RtVec3d a = rt_widen(v[0]);
             assert_true(rt_lengthd(rt_crossd(rt_subd(rt_widen(v[1]), a), rt_subd(rt_widen(v[2]), a))) > 0);
         }
-        rt_scene_clear(&scene);
     }
 }
 
@@ -243,12 +228,11 @@ static void count_in_planes(const RtGeometry *g, int axis, uint32_t others, uint
 }
 
 RT_TEST(three_of_four_faces_of_a_city_share_their_plane_with_more_than_ten_others) {
-    RtScene scene = open_scene("city");
+    OWNED_SCENE scene = open_scene("city");
     uint32_t flat = 0, share = 0;
     for (int axis = 0; axis < 3; axis++) count_in_planes(&scene.geometry, axis, 10, &flat, &share);
     assert_true(flat > scene.geometry.polygon_count * 9 / 10);
     assert_true(share > flat * 3 / 4);
-    rt_scene_clear(&scene);
 }
 
 /* ---- forms ---- */
@@ -268,7 +252,7 @@ RT_TEST(points_on_the_circle_are_exact_where_they_can_be) {
 }
 
 RT_TEST(a_box_faces_outwards) {
-    RtScene scene;
+    OWNED_SCENE scene;
     rt_scene_init(&scene);
     RtSceneBuilder b = {.scene = &scene};
     rt_build_material(&b, rt_default_material());
@@ -285,12 +269,11 @@ RT_TEST(a_box_faces_outwards) {
     }
     assert_int_equal(open_edges(&scene.geometry, 0, 12), 0);
     rt_free(b.points);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(a_lathe_with_ends_on_the_axis_is_closed_and_faces_outwards) {
     static const RtVec3d profile[] = {{0, 0, 0}, {2, 0, 0.4}, {1, 0, 2}, {0, 0, 3}};
-    RtScene scene;
+    OWNED_SCENE scene;
     rt_scene_init(&scene);
     RtSceneBuilder b = {.scene = &scene};
     rt_build_material(&b, rt_default_material());
@@ -304,7 +287,6 @@ RT_TEST(a_lathe_with_ends_on_the_axis_is_closed_and_faces_outwards) {
     assert_ok(rt_scene_finish(&scene, error));
     assert_true(scene.geometry.box.lo.z == 7 && scene.geometry.box.hi.z == 10);
     rt_free(b.points);
-    rt_scene_clear(&scene);
 }
 
 RT_TESTS(places, NULL, NULL)

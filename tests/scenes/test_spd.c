@@ -157,9 +157,8 @@ RT_TEST(their_objects_lie_where_the_databases_have_them) {
         {"tree", 8190, "-0.306913 0.537715 3.13626 0.00122741"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        RtScene scene = open_scene(cases[i].spec);
+        OWNED_SCENE scene = open_scene(cases[i].spec);
         assert_string_equal(print_object(&scene, cases[i].id).text, cases[i].printed);
-        rt_scene_clear(&scene);
     }
 }
 
@@ -179,7 +178,7 @@ RT_TEST(they_print_as_when_they_were_compared_with_the_databases) {
     };
     XXH3_state_t memory, *hash = &memory;
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        RtScene scene = open_scene(cases[i].spec);
+        OWNED_SCENE scene = open_scene(cases[i].spec);
         XXH3_64bits_reset(hash);
         for (uint32_t id = 0; id < scene.geometry.object_count; id++) {
             Line line = print_object(&scene, id);
@@ -187,7 +186,6 @@ RT_TEST(they_print_as_when_they_were_compared_with_the_databases) {
         }
         uint64_t digest = XXH3_64bits_digest(hash);
         if (digest != cases[i].hash) fail_msg("%s: 0x%016llx", cases[i].spec, (unsigned long long)digest);
-        rt_scene_clear(&scene);
     }
 }
 
@@ -216,7 +214,7 @@ RT_TEST(they_are_seen_and_lit_as_the_databases_say) {
         {"tree", "4.5 0.4 2 0 0 1.5 0 0 1", 45, 1, 7, "-5 5 50", "-10 -60 30", "-50 -50 0 50 50 3.13749"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        RtScene scene = open_scene(cases[i].spec);
+        OWNED_SCENE scene = open_scene(cases[i].spec);
         const RtVec3 view[3] = {scene.camera.from, scene.camera.at, scene.camera.up};
         assert_points(view, 3, cases[i].from_at_up);
         assert_true(scene.camera.fov == cases[i].fov && scene.camera.near == cases[i].near);
@@ -227,7 +225,6 @@ RT_TEST(they_are_seen_and_lit_as_the_databases_say) {
                     (float)(sqrt((double)cases[i].lights) / (2 * (double)cases[i].lights)));
         const RtVec3 box[2] = {scene.geometry.box.lo, scene.geometry.box.hi};
         assert_points(box, 2, cases[i].box);
-        rt_scene_clear(&scene);
     }
 }
 
@@ -260,20 +257,19 @@ RT_TEST(their_materials_are_those_of_the_databases) {
         {"tree", 1, "0.55 0.4 0.2 1 0 100000 0 1 0"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        RtScene scene = open_scene(cases[i].spec);
+        OWNED_SCENE scene = open_scene(cases[i].spec);
         const RtMaterial *m = &scene.materials[scene.material_of[cases[i].id]];
         const float numbers[] = {m->diffuse, m->specular, m->shine, m->transmission, m->ior, m->reflection};
         Line line = {.used = 0};
         print_points(&line, &m->color, 1);
         for (size_t k = 0; k < sizeof numbers / sizeof numbers[0]; k++) print_number(&line, numbers[k]);
         assert_string_equal(line.text, cases[i].printed);
-        rt_scene_clear(&scene);
     }
 }
 
 /* Each face has the corners of the other, moved down, and the rectangles between them join both. */
 RT_TEST(gears_are_closed) {
-    RtScene scene = open_scene("gears");
+    OWNED_SCENE scene = open_scene("gears");
     const RtGeometry *g = &scene.geometry;
     for (uint32_t first = 1; first < g->polygon_count; first += 146) {
         const RtVec3 *upper = g->polygon_vertices + g->polygons[first].first;
@@ -288,7 +284,6 @@ RT_TEST(gears_are_closed) {
             assert_memory_equal(&side[1], &below, sizeof(RtVec3));
         }
     }
-    rt_scene_clear(&scene);
 }
 
 RT_TESTS(spd, NULL, NULL)

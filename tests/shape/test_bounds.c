@@ -109,23 +109,20 @@ static void check_point(const RtGeometry *g, uint32_t id, RtVec3d p, double slac
         if (!inside) fail_msg("the box of object %u, a %s, does not hold a point of it", id, shape);
     }
     RtBall ball = rt_object_ball(g, id);
-    if (rt_lengthd(rt_subd(p, ball.center)) > ball.radius + slack) {
+    if (rt_lengthd(rt_subd(p, ball.center)) > ball.radius + slack)
         fail_msg("the ball of object %u, a %s, does not hold a point of it", id, shape);
-    }
     RtVec3d direction = rt_random_direction(random);
-    if (rt_dotd(p, direction) > rt_object_support(g, id, direction) + slack) {
+    if (rt_dotd(p, direction) > rt_object_support(g, id, direction) + slack)
         fail_msg("the support of object %u, a %s, does not reach a point of it", id, shape);
-    }
 }
 
 static void check_objects(float shift) {
     RtRandom random = rt_random(5, (uint64_t)shift);
-    RtGeometry g = make_objects(&random, shift);
+    OWNED_GEOMETRY g = make_objects(&random, shift);
     double slack = 0x1p-48 * (double)(shift + 4);
     for (uint32_t id = 0; id < g.object_count; id++) {
         for (int i = 0; i < POINTS; i++) check_point(&g, id, surface_point(&g, id, &random), slack, &random);
     }
-    rt_geometry_clear(&g);
 }
 
 RT_TEST(extents_hold_a_thousand_points_of_every_surface) {
@@ -139,7 +136,7 @@ RT_TEST(extents_hold_them_far_from_the_zero_of_coordinates) {
 /* Tight enough: along an axis the box ends where the support does, up to the rounding of float32. */
 RT_TEST(boxes_touch_their_objects) {
     RtRandom random = rt_random(6, 0);
-    RtGeometry g = make_objects(&random, 0);
+    OWNED_GEOMETRY g = make_objects(&random, 0);
     for (uint32_t id = 0; id < g.object_count; id++) {
         for (int a = 0; a < 3; a++) {
             RtVec3d up = {a == 0, a == 1, a == 2};
@@ -149,7 +146,6 @@ RT_TEST(boxes_touch_their_objects) {
         }
         assert_true(rt_box_contains(g.box, g.boxes[id]));
     }
-    rt_geometry_clear(&g);
 }
 
 /* ---- the smallest balls ---- */
@@ -220,7 +216,7 @@ static void add_planar_polygon(RtGeometry *g, RtRandom *random) {
 
 RT_TEST(balls_are_the_smallest_there_are) {
     RtRandom random = rt_random(7, 0);
-    RtGeometry g = make_objects(&random, 0), planar = {0};
+    OWNED_GEOMETRY g = make_objects(&random, 0), planar = {0};
     for (int i = 0; i < 100; i++) add_planar_polygon(&planar, &random);
     assert_ok(rt_geometry_finish(&planar, error));
     for (uint32_t id = 0; id < planar.object_count; id++) check_smallest(&planar, id, 1e-6, &random);
@@ -229,35 +225,30 @@ RT_TEST(balls_are_the_smallest_there_are) {
         bool sampled = rt_ref_shape(g.objects[id]) == RT_SHAPE_CONE;
         check_smallest(&g, id, warped ? 1e-2 : sampled ? 1e-5 : 1e-6, &random);
     }
-    rt_geometry_clear(&planar);
-    rt_geometry_clear(&g);
 }
 
 RT_TEST(the_ball_of_a_polygon_of_many_vertices_is_that_of_its_circle) {
     RtVec3 circle[MOST_POINTS];
-    for (int i = 0; i < MOST_POINTS; i++) {
+    for (int i = 0; i < MOST_POINTS; i++)
         circle[i] = rt_vec3((float)cos(i * 6.283185307179586 / MOST_POINTS),
                             (float)sin(i * 6.283185307179586 / MOST_POINTS), 0);
-    }
     RtBall ball = rt_ball_of_points(circle, MOST_POINTS);
     assert_true(fabs(ball.radius - 1) < 1e-6 && rt_lengthd(ball.center) < 1e-6);
 }
 
 RT_TEST(the_box_of_a_polygon_in_a_coordinate_plane_is_flat_and_exact) {
-    RtGeometry g = {0};
+    OWNED_GEOMETRY g = {0};
     RtVec3 heptagon[7];
-    for (int i = 0; i < 7; i++) {
+    for (int i = 0; i < 7; i++)
         heptagon[i] = rt_vec3(0.1f, (float)cos(i * 6.2831853 / 7), (float)sin(i * 6.2831853 / 7));
-    }
     assert_ok(rt_geometry_add_polygon(&g, heptagon, 7, error));
     assert_ok(rt_geometry_finish(&g, error));
     assert_true(g.boxes[0].lo.x == 0.1f && g.boxes[0].hi.x == 0.1f && g.boxes[0].hi.y == 1);
-    rt_geometry_clear(&g);
 }
 
 RT_TEST(frames_are_orthonormal) {
     RtRandom random = rt_random(8, 0);
-    RtGeometry g = make_objects(&random, 0);
+    OWNED_GEOMETRY g = make_objects(&random, 0);
     for (uint32_t id = 0; id < g.object_count; id++) {
         RtVec3d axes[3];
         rt_object_frame(&g, id, axes);
@@ -266,7 +257,6 @@ RT_TEST(frames_are_orthonormal) {
             assert_true(fabs(rt_dotd(axes[a], axes[(a + 1) % 3])) < 1e-14);
         }
     }
-    rt_geometry_clear(&g);
 }
 
 RT_TESTS(bounds, NULL, NULL)

@@ -4,10 +4,9 @@
  * half-spaces, solid angles. Along random rays, points are taken on either side of every hit and midway
  * between hits; the rays must agree with them. RAYTALLY_CSG_RAYS sets the number of rays. */
 #include "csg_testing.h"
+#include "scene_testing.h"
 
-#include "core/base/memory.h"
 #include "core/scene/formula.h"
-#include "scenes/open.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -223,7 +222,8 @@ RT_TEST(rays_are_right_about_points) {
             RtRay ray = random_ray(&random, i);
             check_ray(&m, &ray, &score);
         }
-        clear(&m.forest, &m.builder);
+        rt_csg_forest_clear(&m.forest);
+        rt_csg_builder_clear(&m.builder);
     }
     report("random trees", &score);
 }
@@ -263,15 +263,12 @@ RT_TEST(rays_are_right_about_the_trees_of_scenes) {
                            "csg-field:n=27"};
     RtRandom random = rt_random(22, 0);
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        RtScene scene;
-        assert_ok(rt_scene_open(names[i], &scene, error));
+        OWNED_SCENE scene = open_scene(names[i]);
         Score score = {0};
         const RtGeometry *g = &scene.geometry;
-        for (uint32_t k = 0; k < g->csg_count; k++) {
+        for (uint32_t k = 0; k < g->csg_count; k++)
             check_tree(&g->forest, &g->csgs[k], rays_asked() / 4 / g->csg_count, &random, &score);
-        }
         report(names[i], &score);
-        rt_scene_clear(&scene);
     }
 }
 

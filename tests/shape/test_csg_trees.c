@@ -12,8 +12,8 @@ RT_TEST(tests_of_inner_nodes_change_no_bit) {
     RtRandom random = rt_random(5, 0);
     RtTally with = {0}, without = {0};
     for (uint32_t round = 0; round < 200; round++) {
-        RtCsgBuilder b = {0};
-        RtCsgForest forest = {0};
+        OWNED_BUILDER b = {0};
+        OWNED_FOREST forest = {0};
         RtCsgTerm root = random_term(&b, &random, RT_MAX_RANDOM_TREE, round % 2);
         RtCsg tested, plain;
         assert_ok(rt_csg_compile(&forest, &b, root, true, &tested, error));
@@ -31,7 +31,6 @@ RT_TEST(tests_of_inner_nodes_change_no_bit) {
             RtCsgFacet c = rt_csg_facet(&forest, &plain, &prepared, t);
             assert_int_equal(a.solid - tested.first_solid, c.solid - plain.first_solid);
         }
-        clear(&forest, &b);
     }
     assert_true(with.csg_tests <= without.csg_tests && with.extent_tests < without.extent_tests);
 }
@@ -39,8 +38,8 @@ RT_TEST(tests_of_inner_nodes_change_no_bit) {
 RT_TEST(a_tree_lies_within_its_extents) {
     RtRandom random = rt_random(6, 0);
     for (uint32_t round = 0; round < 100; round++) {
-        RtCsgBuilder b = {0};
-        RtCsgForest forest = {0};
+        OWNED_BUILDER b = {0};
+        OWNED_FOREST forest = {0};
         RtCsg tree = compile(&forest, &b, random_term(&b, &random, 12, round % 2));
         RtBall about = rt_csg_ball(&forest, &tree);
         RtVec3d direction = rt_random_direction(&random);
@@ -54,7 +53,6 @@ RT_TEST(a_tree_lies_within_its_extents) {
                 assert_true(rt_dotd(p, direction) <= reach + 1e-5);
             }
         }
-        clear(&forest, &b);
     }
 }
 
@@ -64,8 +62,8 @@ RT_TEST(a_tree_without_inside_reaches_into_its_box) {
     RtRandom random = rt_random(9, 0);
     static const float apart[2] = {1.3f, 3};
     for (uint32_t i = 0; i < 2; i++) {
-        RtCsgBuilder b = {0};
-        RtCsgForest forest = {0};
+        OWNED_BUILDER b = {0};
+        OWNED_FOREST forest = {0};
         RtCsgTerm other = ball(&b, rt_vec3(apart[i], apart[i], 0), 0.5f, 0);
         RtCsg tree = compile(&forest, &b, meet(&b, ball(&b, rt_vec3(0, 0, 0), 1, 0), other));
         for (uint32_t k = 0; k < 100; k++) {
@@ -78,7 +76,6 @@ RT_TEST(a_tree_without_inside_reaches_into_its_box) {
             }
             assert_true(least <= reach && reach <= most);
         }
-        clear(&forest, &b);
     }
 }
 
@@ -90,23 +87,22 @@ RT_TEST(the_inner_move_comes_first) {
     assert_ok(rt_transform_rotate(&turn, rt_vec3(0, 0, 1), 90, error));
     assert_ok(rt_transform_translate(&shift, rt_vec3(8, 0, 0), error));
     for (int joined = 0; joined < 2; joined++) {
-        RtCsgBuilder b = {0};
-        RtCsgForest forest = {0};
+        OWNED_BUILDER b = {0};
+        OWNED_FOREST forest = {0};
         RtCsgTerm term = ball(&b, rt_vec3(4, 0, 0), 1, 0);
         assert_ok(rt_csg_move(&b, term, &turn, &term, error));
         if (joined) term = join(&b, term, ball(&b, rt_vec3(0, -10, 0), 1, 0));
         assert_ok(rt_csg_move(&b, term, &shift, &term, error));
         RtCsg tree = compile(&forest, &b, term);
         assert_hits(&forest, &tree, ray_along(rt_vec3(0, 4, 0), along_x), 2, (float[]){7, 9});
-        clear(&forest, &b);
     }
 }
 
 RT_TEST(a_tree_moved_by_powers_of_two_is_met_at_the_same_bits) {
     RtRandom random = rt_random(7, 0);
     for (uint32_t round = 0; round < 60; round++) {
-        RtCsgBuilder b = {0};
-        RtCsgForest forest = {0};
+        OWNED_BUILDER b = {0};
+        OWNED_FOREST forest = {0};
         RtCsgTerm root = random_boxes(&b, &random, 8), moved;
         RtTransform move = rt_transform_identity();
         RtVec3 by = {16, -8, 4};
@@ -119,7 +115,6 @@ RT_TEST(a_tree_moved_by_powers_of_two_is_met_at_the_same_bits) {
             Hits expected = hits_of(&forest, &here, &ray), found = hits_of(&forest, &there, &same);
             if (!same_hits(&expected, &found)) fail_msg("round %u, ray %u", round, i);
         }
-        clear(&forest, &b);
     }
 }
 
@@ -128,8 +123,8 @@ RT_TEST(moving_the_tree_and_moving_the_ray_agree) {
     RtRandom random = rt_random(8, 0);
     size_t hits = 0, agreed = 0;
     for (uint32_t round = 0; round < 100; round++) {
-        RtCsgBuilder b = {0};
-        RtCsgForest forest = {0};
+        OWNED_BUILDER b = {0};
+        OWNED_FOREST forest = {0};
         RtCsgTerm root = random_term(&b, &random, 10, false);
         RtTransform move = rt_transform_identity();
         RtVec3 axis = rt_narrow(rt_random_direction(&random));
@@ -150,7 +145,6 @@ RT_TEST(moving_the_tree_and_moving_the_ray_agree) {
                 agreed += near;
             }
         }
-        clear(&forest, &b);
     }
     /* A ray by an edge may meet it or not. */
     if (agreed < hits - hits / 500) fail_msg("%zu of %zu hits agree", agreed, hits);
@@ -160,8 +154,8 @@ RT_TEST(moving_the_tree_and_moving_the_ray_agree) {
 RT_TEST(a_copied_tree_is_the_same_tree) {
     RtRandom random = rt_random(9, 0);
     for (uint32_t round = 0; round < 50; round++) {
-        RtCsgBuilder b = {0};
-        RtCsgForest forest = {0}, other = {0};
+        OWNED_BUILDER b = {0};
+        OWNED_FOREST forest = {0}, other = {0};
         RtCsg tree = compile(&forest, &b, random_term(&b, &random, 30, round % 2)), copy;
         assert_ok(rt_csg_copy(&other, &forest, &tree, NULL, &copy, error));
         assert_int_equal(copy.count, tree.count);
@@ -176,8 +170,6 @@ RT_TEST(a_copied_tree_is_the_same_tree) {
             Hits expected = hits_of(&forest, &tree, &ray), found = hits_of(&other, &copy, &ray);
             assert_true(same_hits(&expected, &found));
         }
-        rt_csg_forest_clear(&other);
-        clear(&forest, &b);
     }
 }
 
@@ -194,24 +186,22 @@ static RtCsgTerm deep_tree(RtCsgBuilder *b, DeepShape shape, RtCsgOp op) {
     for (uint32_t i = 0; i < DEEP; i++) terms[i] = ball(b, rt_vec3((float)i, 0, 0), 1, 0);
     if (shape == BALANCED) {
         for (uint32_t count = DEEP; count > 1; count = (count + 1) / 2) {
-            for (uint32_t i = 0; i < count / 2; i++) {
+            for (uint32_t i = 0; i < count / 2; i++)
                 terms[i] = combine(b, op, terms[2 * i], terms[2 * i + 1]);
-            }
             if (count % 2) terms[count / 2] = terms[count - 1];
         }
         return terms[0];
     }
     RtCsgTerm term = terms[shape == LEFT_DEEP ? 0 : DEEP - 1];
-    for (uint32_t i = 1; i < DEEP; i++) {
+    for (uint32_t i = 1; i < DEEP; i++)
         term =
             shape == LEFT_DEEP ? combine(b, op, term, terms[i]) : combine(b, op, terms[DEEP - 1 - i], term);
-    }
     return term;
 }
 
 static void check_deep(DeepShape shape, RtCsgOp op) {
-    RtCsgBuilder b = {0};
-    RtCsgForest forest = {0};
+    OWNED_BUILDER b = {0};
+    OWNED_FOREST forest = {0};
     RtCsg tree = compile(&forest, &b, deep_tree(&b, shape, op));
     assert_true(rt_csg_forest_bytes(&forest) < (uint64_t)DEEP * 2000);
     assert_int_equal(tree.most_crossings, 4 * DEEP);
@@ -227,7 +217,6 @@ static void check_deep(DeepShape shape, RtCsgOp op) {
     ray = ray_along(rt_vec3(-3, 0, 0.75f), along_x);
     hits = hits_of(&forest, &tree, &ray);
     assert_int_equal(hits.count, op == RT_CSG_INTERSECTION ? 0 : 2);
-    clear(&forest, &b);
 }
 
 static void a_tree_of_depth_10000_takes_little_memory_and_little_stack(void **state) {
@@ -279,7 +268,8 @@ RT_TEST(compiling_fails_cleanly_at_every_allocation) {
     }
     assert_int_equal(status, RT_OK);
     assert_true(n > 5);
-    clear(&forest, &b);
+    rt_csg_forest_clear(&forest);
+    rt_csg_builder_clear(&b);
     assert_int_equal(rt_alloc_live(), 0);
 }
 

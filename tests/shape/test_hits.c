@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* shape/: the guarantees of all hit functions: closed intervals of t, exact scaling by powers of two, and
  * no hits beyond an object, however flat. */
+#include "random_testing.h"
 #include "shape_testing.h"
-
-#include "core/base/random.h"
 
 /* One object of each kind, about the origin, 2^exponent in size; 0.75 and the like survive the scaling. */
 static RtGeometry one_of_each(int exponent) {
@@ -36,7 +35,7 @@ static RtRay random_ray(RtRandom *random) {
 enum { RAYS = 4000 };
 
 RT_TEST(both_ends_of_the_interval_of_t_belong_to_it) {
-    RtGeometry g = one_of_each(0);
+    OWNED_GEOMETRY g = one_of_each(0);
     RtRandom random = rt_random(1, 0);
     int hits = 0;
     for (int i = 0; i < RAYS; i++) {
@@ -53,11 +52,10 @@ RT_TEST(both_ends_of_the_interval_of_t_belong_to_it) {
         assert_true(!hit(&g, id, &ray, &again) || again > t);
     }
     assert_true(hits > RAYS / 8);
-    rt_geometry_clear(&g);
 }
 
 RT_TEST(a_direction_twice_as_long_halves_t_to_the_bit) {
-    RtGeometry g = one_of_each(0);
+    OWNED_GEOMETRY g = one_of_each(0);
     RtRandom random = rt_random(2, 0);
     for (int i = 0; i < RAYS; i++) {
         RtRay ray = random_ray(&random), longer = ray;
@@ -70,14 +68,13 @@ RT_TEST(a_direction_twice_as_long_halves_t_to_the_bit) {
         longer.dir = rt_scale(ray.dir, 3);
         if (met && hit(&g, id, &longer, &third)) assert_true(fabsf(third * 3 - t) <= 1e-4f);
     }
-    rt_geometry_clear(&g);
 }
 
 RT_TEST(a_scene_scaled_by_a_power_of_two_scales_t_to_the_bit) {
     static const int exponents[] = {-40, -17, 1, 23, 40};
-    RtGeometry unit = one_of_each(0);
+    OWNED_GEOMETRY unit = one_of_each(0);
     for (int e = 0; e < 5; e++) {
-        RtGeometry g = one_of_each(exponents[e]);
+        OWNED_GEOMETRY g = one_of_each(exponents[e]);
         RtRandom random = rt_random(3, 0);
         for (int i = 0; i < RAYS; i++) {
             RtRay ray = random_ray(&random), scaled = ray;
@@ -87,9 +84,7 @@ RT_TEST(a_scene_scaled_by_a_power_of_two_scales_t_to_the_bit) {
             assert_int_equal(hit(&unit, id, &ray, &t), hit(&g, id, &scaled, &t_scaled));
             assert_true(t_scaled == ldexpf(t, exponents[e]));
         }
-        rt_geometry_clear(&g);
     }
-    rt_geometry_clear(&unit);
 }
 
 /* Nearly a disc with a hole, tilted: what is hit must not depend on heights that have lost their digits. */
@@ -97,7 +92,7 @@ RT_TEST(a_flat_cone_is_hit_between_its_circles_only) {
     RtRandom random = rt_random(4, 0);
     int hits = 0;
     for (int i = 0; i < RAYS; i++) {
-        RtGeometry g = {0};
+        OWNED_GEOMETRY g = {0};
         RtVec3 apex = rt_narrow(rt_scaled(rt_random_direction(&random), ldexp(1, -20 - i % 40)));
         assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 0.75f, apex, 0.25f, error));
         assert_ok(rt_geometry_finish(&g, error));
@@ -108,7 +103,6 @@ RT_TEST(a_flat_cone_is_hit_between_its_circles_only) {
             assert_true(from_center > 0.2499 && from_center < 0.7501);
             hits++;
         }
-        rt_geometry_clear(&g);
     }
     assert_true(hits > RAYS / 20);
 }

@@ -23,7 +23,7 @@ RT_TEST(random_lines_are_inside_where_their_points_are) {
     static const double distances[] = {0, 2, 1e3, 1e5, 1e7};
     RtRandom random = rt_random(1, 0);
     RtTransform place = rt_transform_identity();
-    RtSolidSet set = {0};
+    OWNED_SOLIDS set = {0};
     Model models[MODELS];
     add_models(&set, &place, models);
     for (int i = 0; i < MODELS; i++) {
@@ -35,7 +35,6 @@ RT_TEST(random_lines_are_inside_where_their_points_are) {
                 fail_msg("only %u lines met the %s from %g", met, models[i].name, distances[d]);
         }
     }
-    rt_solid_set_clear(&set);
 }
 
 RT_TEST(so_they_are_where_solids_are_turned_stretched_and_moved) {
@@ -49,11 +48,10 @@ RT_TEST(so_they_are_where_solids_are_turned_stretched_and_moved) {
         double degrees = 360 * (double)rt_random_unit(&random);
         assert_ok(rt_transform_rotate(&place, rt_narrow(rt_random_direction(&random)), degrees, error));
         assert_ok(rt_transform_translate(&place, rt_random_point(&random, 3 * size), error));
-        RtSolidSet set = {0};
+        OWNED_SOLIDS set = {0};
         Model models[MODELS];
         add_models(&set, &place, models);
         for (int i = 0; i < MODELS; i++) check_random_lines(&set, &models[i], &random, 5, 100);
-        rt_solid_set_clear(&set);
     }
 }
 
@@ -92,14 +90,13 @@ RT_TEST(crossings_are_the_float32_nearest_to_the_truth) {
     for (int turned = 0; turned < 2; turned++) {
         RtTransform place = rt_transform_identity();
         if (turned) assert_ok(rt_transform_rotate(&place, rt_vec3(1, 2, 3), 30, error));
-        RtSolidSet set = {0};
+        OWNED_SOLIDS set = {0};
         Model models[MODELS];
         add_models(&set, &place, models);
         for (int i = 0; i < MODELS; i++) {
             bool rounded = models[i].rounding > 0x1p-50; /* its vertices, when turned */
             if (!turned || !rounded) check_accuracy(&set, &models[i], &random);
         }
-        rt_solid_set_clear(&set);
     }
 }
 
@@ -141,16 +138,15 @@ RT_TEST(extents_hold_every_crossing) {
         assert_ok(rt_transform_scale(&place, factors, error));
         assert_ok(rt_transform_rotate(&place, rt_narrow(rt_random_direction(&random)), 77, error));
         assert_ok(rt_transform_translate(&place, rt_random_point(&random, 10), error));
-        RtSolidSet set = {0};
+        OWNED_SOLIDS set = {0};
         Model models[MODELS];
         add_models(&set, &place, models);
         for (int i = 0; i < MODELS; i++) check_extents(&set, &models[i], &random);
-        rt_solid_set_clear(&set);
     }
 }
 
 RT_TEST(extents_are_tight_where_they_can_be_known) {
-    RtSolidSet set = {0};
+    OWNED_SOLIDS set = {0};
     uint32_t at;
     RtVec3d aslant = {{3, 0, 4}};
     assert_ok(rt_solid_add_ellipsoid(&set, rt_vec3(1, 2, 3), rt_vec3(2, 2, 2), &at, error));
@@ -171,11 +167,10 @@ RT_TEST(extents_are_tight_where_they_can_be_known) {
     assert_ok(rt_solid_add_box(&set, rt_vec3(-1, -2, -2), rt_vec3(1, 2, 2), &at, error));
     assert_near(rt_solid_ball(&set, at).radius, 3, 1e-8);
     assert_near(rt_solid_support(&set, at, aslant), 11, 1e-8);
-    rt_solid_set_clear(&set);
 }
 
 RT_TEST(what_has_no_end_has_extents_without_end) {
-    RtSolidSet set = {0};
+    OWNED_SOLIDS set = {0};
     uint32_t half, oblique, slab, wedge;
     RtTransform here = rt_transform_identity();
     RtPlane slab_planes[2] = {{{{0, 1, 0}}, 3}, {{{0, -1, 0}}, -2}},
@@ -197,7 +192,6 @@ RT_TEST(what_has_no_end_has_extents_without_end) {
     assert_true(isinf(rt_solid_support(&set, oblique, rt_vec3d(-1, -1, -1))));
     assert_near(rt_solid_support(&set, wedge, rt_vec3d(1, 2, 0)), 13, 1e-9);
     assert_true(isinf(rt_solid_support(&set, wedge, rt_vec3d(1, 2, 0.1))));
-    rt_solid_set_clear(&set);
 }
 
 /* ---- normals ---- */
@@ -209,7 +203,7 @@ RT_TEST(normals_point_out) {
     assert_ok(rt_transform_scale(&place, rt_vec3(1, 2, 3), error));
     assert_ok(rt_transform_rotate(&place, rt_vec3(1, 2, 3), 50, error));
     assert_ok(rt_transform_translate(&place, rt_vec3(5, 6, 7), error));
-    RtSolidSet set = {0};
+    OWNED_SOLIDS set = {0};
     Model models[MODELS];
     add_models(&set, &place, models);
     for (int i = 0; i < MODELS; i++) {
@@ -234,7 +228,6 @@ RT_TEST(normals_point_out) {
         }
         if (wrong * 50 > asked || asked == 0) fail_msg("%s: %u of %u normals", models[i].name, wrong, asked);
     }
-    rt_solid_set_clear(&set);
 }
 
 RT_TESTS(solids, NULL, NULL)

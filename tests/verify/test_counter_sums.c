@@ -29,7 +29,7 @@ typedef struct Count {
 
 static int set_up(void **state) {
     static Stage stage;
-    open_family(scene_family("mixed"), 1, &stage.scene);
+    stage.scene = open_family(scene_family("mixed"), 1);
     assert_ok(rt_accel_open("brute", &stage.scene, &stage.brute, error));
     RtQuery query;
     assert_ok(rt_query_init(&query, stage.brute, error));

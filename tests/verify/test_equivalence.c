@@ -75,7 +75,7 @@ typedef struct Stage {
 
 static int set_up(void **state) {
     static Stage stage;
-    open_family(scene_family("uniform"), 3, &stage.scene);
+    stage.scene = open_family(scene_family("uniform"), 3);
     assert_ok(rt_accel_open("brute", &stage.scene, &stage.brute, error));
     assert_ok(rt_query_init(&stage.liar.truth, stage.brute, error));
     rt_ray_family_fill(0, &stage.liar.truth, 3, 0, RAYS, rays);

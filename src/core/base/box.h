@@ -66,6 +66,10 @@ static inline bool rt_box_contains(RtBox outer, RtBox inner) {
            outer.hi.x >= inner.hi.x && outer.hi.y >= inner.hi.y && outer.hi.z >= inner.hi.z;
 }
 
+static inline bool rt_box_equals(RtBox a, RtBox b) {
+    return rt_box_contains(a, b) && rt_box_contains(b, a);
+}
+
 static inline RtVec3 rt_box_size(RtBox a) {
     return rt_sub(a.hi, a.lo);
 }
@@ -101,9 +105,8 @@ static inline double rt_box_longest_side(RtBox a) {
 
 static inline double rt_box_largest_coordinate(RtBox a) {
     double largest = 0;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++)
         largest = fmax(largest, fmax(fabs((double)a.lo.at[i]), fabs((double)a.hi.at[i])));
-    }
     return largest;
 }
 

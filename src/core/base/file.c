@@ -51,10 +51,9 @@ RtStatus rt_output_open(RtOutput *output, const char *path, RtError *error) {
     if (strlen(path) >= RT_MAX_PATH)
         return rt_fail(error, RT_BAD_INPUT, "%.80s...: the path is too long", path);
     struct stat info;
-    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) {
+    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
         return rt_fail(error, RT_IO, "%s is a %s: give the name of a file", path,
                        S_ISDIR(info.st_mode) ? "folder" : "device or pipe, which a file would replace");
-    }
     strcpy(output->path, path);
     return create_temporary(output, error);
 }
@@ -154,10 +153,9 @@ static RtStatus read_all(FILE *file, const char *path, size_t limit, char **data
                          RtError *error) {
     struct stat info;
     if (fstat(fileno(file), &info) != 0) return fail_io(error, "reading", path);
-    if ((uint64_t)info.st_size > limit) {
+    if ((uint64_t)info.st_size > limit)
         return rt_fail(error, RT_BAD_INPUT, "%s: %lld bytes are too many: the limit is %zu", path,
                        (long long)info.st_size, limit);
-    }
     char *buffer = rt_alloc((size_t)info.st_size + 1, 1);
     if (!buffer) return rt_fail_memory(error, path, (size_t)info.st_size + 1);
     *size = fread(buffer, 1, (size_t)info.st_size, file);

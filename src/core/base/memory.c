@@ -66,9 +66,8 @@ void rt_memory_limit(uint64_t bytes) {
 
 RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error) {
     if (needed <= *capacity) return RT_OK;
-    if (needed > UINT32_MAX) {
+    if (needed > UINT32_MAX)
         return rt_fail(error, RT_BAD_INPUT, "more than %u elements are needed: split the scene", UINT32_MAX);
-    }
     uint64_t grown = (uint64_t)*capacity * 2;
     if (grown < needed) grown = needed;
     if (grown < 16) grown = 16;

@@ -38,11 +38,10 @@ void rt_param_format(const RtParam *param, RtValue value, char *out, size_t size
         break;
     }
     case RT_PARAM_RESOLUTION:
-        if (value.resolution[0] == 0) {
+        if (value.resolution[0] == 0)
             snprintf(out, size, "auto");
-        } else {
+        else
             snprintf(out, size, "%ux%ux%u", value.resolution[0], value.resolution[1], value.resolution[2]);
-        }
         break;
     }
 }
@@ -175,9 +174,7 @@ static void suggest_choice(const RtParam *param, const char *text, char suggesti
 static RtStatus parse_setting(const RtParam *table, size_t count, char *setting, const char *what,
                               bool *given, RtValue *values, RtError *error) {
     char *equals = strchr(setting, '=');
-    if (!equals) {
-        return rt_fail(error, RT_BAD_INPUT, "%s: '%s' is not of the form key=value", what, setting);
-    }
+    if (!equals) return rt_fail(error, RT_BAD_INPUT, "%s: '%s' is not of the form key=value", what, setting);
     *equals = '\0';
     const char *key = setting, *text = equals + 1;
     for (size_t i = 0; i < count; i++) {
@@ -207,10 +204,9 @@ RtStatus rt_params_parse(const RtParam *table, size_t count, const char *text, c
     }
     if (!text || !*text) return RT_OK;
     char copy[RT_MAX_SPEC_CHARS];
-    if (strlen(text) >= sizeof copy) {
+    if (strlen(text) >= sizeof copy)
         return rt_fail(error, RT_BAD_INPUT, "%s: the parameters are longer than %zu characters", what,
                        sizeof copy - 1);
-    }
     strcpy(copy, text);
     for (char *setting = copy, *next; setting; setting = next) {
         next = strchr(setting, ',');

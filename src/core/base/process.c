@@ -172,11 +172,10 @@ RtStatus rt_process_run(const RtProcessCommand *command, RtProcessEnd *end, RtEr
 
 void rt_process_signal(const RtProcess *process, int number) {
     if (process->pid <= 0) return;
-    if (process->descriptor >= 0) {
+    if (process->descriptor >= 0)
         syscall(SYS_pidfd_send_signal, process->descriptor, number, NULL, 0);
-    } else {
+    else
         kill(process->pid, number);
-    }
 }
 
 static bool has_ended(const RtProcess *process, RtProcessEnd *end) {
@@ -227,11 +226,10 @@ void rt_process_end(RtProcess *process, int milliseconds) {
 void rt_process_end_format(RtProcessEnd end, int reported, const char *detail, char *out, size_t size) {
     int number = reported ? reported : end.signal;
     const char *name = sigdescr_np(number);
-    if (number) {
+    if (number)
         snprintf(out, size, "it crashed (%s%s)", name ? name : "an unknown signal", detail);
-    } else if (end.code >= 0) {
+    else if (end.code >= 0)
         snprintf(out, size, "it ended its process (exit code %d)", end.code);
-    } else {
+    else
         snprintf(out, size, "it ended its process");
-    }
 }

@@ -40,13 +40,6 @@ static inline double rt_random_betweend(RtRandom *random, double lo, double hi) 
     return lo + (hi - lo) * (double)rt_random_unit(random);
 }
 
-/* Uniform in the cube of points with coordinates in [-size, size). */
-static inline RtVec3 rt_random_point(RtRandom *random, float size) {
-    RtVec3 p;
-    for (int a = 0; a < 3; a++) p.at[a] = rt_random_between(random, -size, size);
-    return p;
-}
-
 /* Uniform in the cube of points with coordinates in [-1, 1). */
 static inline RtVec3d rt_random_in_cube(RtRandom *random) {
     RtVec3d p;

@@ -11,10 +11,9 @@ RtTransform rt_transform_compose(const RtTransform *first, const RtTransform *se
     RtTransform both;
     for (int row = 0; row < 3; row++) {
         const double *s = second->m[row];
-        for (int column = 0; column < 4; column++) {
+        for (int column = 0; column < 4; column++)
             both.m[row][column] = s[0] * first->m[0][column] + s[1] * first->m[1][column] +
                                   s[2] * first->m[2][column] + (column == 3 ? s[3] : 0);
-        }
     }
     return both;
 }
@@ -27,11 +26,10 @@ static RtStatus check_finite(RtVec3 v, const char *what, RtError *error) {
 
 RtStatus rt_transform_scale(RtTransform *transform, RtVec3 factors, RtError *error) {
     RT_TRY(check_finite(factors, "the scale", error));
-    if (!(factors.x > 0 && factors.y > 0 && factors.z > 0)) {
+    if (!(factors.x > 0 && factors.y > 0 && factors.z > 0))
         return rt_fail(error, RT_BAD_INPUT,
                        "the scale is (%g, %g, %g): every factor must be above 0 (mirrors are not supported)",
                        (double)factors.x, (double)factors.y, (double)factors.z);
-    }
     RtTransform step = rt_transform_identity();
     for (int a = 0; a < 3; a++) step.m[a][a] = (double)factors.at[a];
     *transform = rt_transform_compose(transform, &step);
@@ -41,21 +39,18 @@ RtStatus rt_transform_scale(RtTransform *transform, RtVec3 factors, RtError *err
 /* Rodrigues' formula. */
 RtStatus rt_transform_rotate(RtTransform *transform, RtVec3 axis, double degrees, RtError *error) {
     RT_TRY(check_finite(axis, "the axis of the rotation", error));
-    if (!isfinite(degrees)) {
+    if (!isfinite(degrees))
         return rt_fail(error, RT_BAD_INPUT, "the angle of the rotation is not finite: %g degrees", degrees);
-    }
     RtVec3d u = rt_normalized(rt_widen(axis));
-    if (rt_lengthd(u) == 0) {
+    if (rt_lengthd(u) == 0)
         return rt_fail(error, RT_BAD_INPUT,
                        "the axis of the rotation has length 0: give a direction, as in [0, 0, 1]");
-    }
     RtTurn turn = rt_turn(fmod(degrees, 360));
     double c = turn.cosine, s = turn.sine;
     RtTransform step = rt_transform_identity();
     for (int row = 0; row < 3; row++) {
-        for (int column = 0; column < 3; column++) {
+        for (int column = 0; column < 3; column++)
             step.m[row][column] = (1 - c) * u.at[row] * u.at[column] + (row == column ? c : 0);
-        }
     }
     for (int a = 0; a < 3; a++) {
         int b = (a + 1) % 3, next = (a + 2) % 3;

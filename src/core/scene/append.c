@@ -77,11 +77,10 @@ static RtStatus append_materials(const Append *a) {
     for (uint32_t i = 0; i < a->from->material_count; i++) {
         const RtMaterial *material = &a->from->materials[i];
         uint32_t known = rt_scene_find_material(a->to, material->name);
-        if (known != UINT32_MAX && memcmp(&a->to->materials[known], material, sizeof *material) == 0) {
+        if (known != UINT32_MAX && memcmp(&a->to->materials[known], material, sizeof *material) == 0)
             a->materials[i] = known;
-        } else {
+        else
             RT_TRY(rt_scene_add_material(a->to, material, &a->materials[i], a->error));
-        }
     }
     return RT_OK;
 }
@@ -89,9 +88,8 @@ static RtStatus append_materials(const Append *a) {
 static RtStatus append_all(const Append *a) {
     const RtGeometry *g = &a->from->geometry;
     RT_TRY(append_materials(a));
-    for (uint32_t i = 0; i < g->polygon_vertex_count; i++) {
+    for (uint32_t i = 0; i < g->polygon_vertex_count; i++)
         a->vertices[i] = move_point(a, g->polygon_vertices[i]);
-    }
     for (uint32_t i = 0; i < a->count; i++) RT_TRY(append_object(a, a->ids ? a->ids[i] : i));
     return RT_OK;
 }
@@ -125,9 +123,8 @@ static RtStatus fill_subset(RtScene *to, const RtScene *from, const uint32_t *id
     to->ambient = from->ambient;
     to->background = from->background;
     to->camera = from->camera;
-    for (uint32_t i = 0; i < from->light_count; i++) {
+    for (uint32_t i = 0; i < from->light_count; i++)
         RT_TRY(rt_scene_add_light(to, from->lights[i].position, from->lights[i].intensity, error));
-    }
     RT_TRY(append(to, from, ids, count, NULL, error));
     RT_TRY(rt_scene_finish(to, error));
     to->sampling = from->sampling;

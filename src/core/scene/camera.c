@@ -17,17 +17,14 @@ bool rt_image_size_parse(const char *text, uint32_t *width, uint32_t *height) {
 
 RtStatus rt_sampling_init(RtSampling *sampling, uint32_t width, uint32_t height, uint32_t samples,
                           bool corners, RtError *error) {
-    if (width < 1 || height < 1 || width > RT_MAX_IMAGE_SIDE || height > RT_MAX_IMAGE_SIDE) {
+    if (width < 1 || height < 1 || width > RT_MAX_IMAGE_SIDE || height > RT_MAX_IMAGE_SIDE)
         return rt_fail(error, RT_BAD_INPUT, "an image of %u x %u pixels: expected 1..%d on each side", width,
                        height, RT_MAX_IMAGE_SIDE);
-    }
-    if (samples < 1 || samples > 64) {
+    if (samples < 1 || samples > 64)
         return rt_fail(error, RT_BAD_INPUT, "%u samples along the side of a pixel: expected 1..64", samples);
-    }
-    if (corners && samples > 1) {
+    if (corners && samples > 1)
         return rt_fail(error, RT_BAD_INPUT,
                        "pixel corners have one sample each: omit the number of samples or the corners");
-    }
     *sampling = (RtSampling){.width = width,
                              .height = height,
                              .samples = samples,
@@ -38,26 +35,22 @@ RtStatus rt_sampling_init(RtSampling *sampling, uint32_t width, uint32_t height,
 }
 
 RtStatus rt_view_init(RtView *view, const RtCamera *camera, RtSampling sampling, RtError *error) {
-    if (!(camera->fov > 0 && camera->fov < 180)) {
+    if (!(camera->fov > 0 && camera->fov < 180))
         return rt_fail(error, RT_BAD_INPUT,
                        "the camera's fov is %g degrees: expected a value above 0 and below 180",
                        (double)camera->fov);
-    }
-    if (!(camera->near >= 0)) {
+    if (!(camera->near >= 0))
         return rt_fail(error, RT_BAD_INPUT, "the camera's near plane is at %g: expected at least 0",
                        (double)camera->near);
-    }
     RtVec3d axis = rt_subd(rt_widen(camera->at), rt_widen(camera->from));
-    if (rt_lengthd(axis) == 0) {
+    if (rt_lengthd(axis) == 0)
         return rt_fail(error, RT_BAD_INPUT,
                        "the camera has no direction: `from` and `at` are the same point");
-    }
     RtVec3d forward = rt_normalized(axis);
     RtVec3d right = rt_crossd(forward, rt_normalized(rt_widen(camera->up)));
-    if (!(rt_lengthd(right) > 1e-6)) {
+    if (!(rt_lengthd(right) > 1e-6))
         return rt_fail(error, RT_BAD_INPUT,
                        "the camera's `up` is zero or along its line of sight: choose another");
-    }
     right = rt_normalized(right);
     RtVec3d down = rt_crossd(forward, right);
     RtTurn half = rt_turn((double)camera->fov / 2);

@@ -79,9 +79,8 @@ static RtStatus read_operand(Parser *p, bool *done) {
         p->at++;
         return push_operator(p, OPEN);
     }
-    if (length == 0) {
+    if (length == 0)
         return fail(p, *here == '\0' ? "it ends where a name or '(' is expected" : "expected a name or '('");
-    }
     if (length >= RT_FORMULA_MAX_NAME) return fail(p, "this name is too long");
     char name[RT_FORMULA_MAX_NAME];
     memcpy(name, here, length);
@@ -104,9 +103,8 @@ static RtStatus read_operator(Parser *p, bool *operand_next) {
         p->at++;
         return RT_OK;
     }
-    if (c != '|' && c != '&' && c != '-') {
+    if (c != '|' && c != '&' && c != '-')
         return fail(p, "expected | (union), & (intersection), - (difference) or ')'");
-    }
     RT_TRY(reduce(p, rank(c)));
     p->at++;
     *operand_next = true;
@@ -227,11 +225,10 @@ static RtStatus write_all(Writer *w) {
     RT_TRY(push(w, grow(w), 0));
     while (w->pending_count > 0) {
         Pending next = w->pending[--w->pending_count];
-        if (next.branch == NOTHING) {
+        if (next.branch == NOTHING)
             RT_TRY(put(w, (char[]){next.character, '\0'}));
-        } else {
+        else
             RT_TRY(write_branch(w, &w->branches[next.branch]));
-        }
     }
     return RT_OK;
 }

@@ -108,18 +108,16 @@ RtStatus rt_scene_load(const char *path, RtSceneOpener *open_named, RtScene *sce
     *scene = (RtScene){0};
     struct stat found;
     bool exists = stat(path, &found) == 0;
-    if (exists && S_ISDIR(found.st_mode)) {
+    if (exists && S_ISDIR(found.st_mode))
         return rt_fail(error, RT_BAD_INPUT, "%s is a folder: give the name of a file in it", path);
-    }
     Load *load = find_loader(extension_of(path));
     if (!load) return fail_extension(path, "read", ", and the other mesh formats of Assimp", error);
     if (!exists) return rt_file_is_dead_link(path, error) ? RT_BAD_INPUT : fail_missing(path, error);
     rt_scene_init(scene);
     snprintf(scene->name, sizeof scene->name, "%.*s", (int)sizeof scene->name - 1, path);
     RtStatus status = load(path, open_named, scene, error);
-    if (status == RT_OK && scene->geometry.object_count == 0) {
+    if (status == RT_OK && scene->geometry.object_count == 0)
         status = rt_fail_at(error, path, 0, 0, "the scene is empty: it needs at least one object");
-    }
     if (status == RT_OK) status = rt_scene_finish(scene, error);
     if (status != RT_OK) rt_scene_clear(scene);
     return status;
@@ -130,10 +128,9 @@ RtStatus rt_scene_save(const RtScene *scene, const char *path, bool overwrite, R
     size_t count = list_written(names), named = 0;
     while (named < count && strcasecmp(names[named], extension) != 0) named++;
     if (named == count) return fail_extension(path, "written", "", error);
-    if (!overwrite && rt_file_exists(path)) {
+    if (!overwrite && rt_file_exists(path))
         return rt_fail(error, RT_BAD_INPUT,
                        "%s already exists: remove it, choose another name, or convert with --force", path);
-    }
     RtOutput output;
     RT_TRY(rt_output_open(&output, path, error));
     RtStatus status = named < FORMAT_COUNT ? formats[named].save(scene, output.file, error)

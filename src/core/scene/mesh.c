@@ -46,11 +46,10 @@ static RtVec3 vector_at(const struct aiVector3D *vectors, unsigned i) {
 static RtStatus check_faces(const struct aiMesh *mesh, const char *path, RtError *error) {
     for (unsigned face = 0; face < mesh->mNumFaces; face++) {
         const struct aiFace *f = &mesh->mFaces[face];
-        if (f->mNumIndices == 0) {
+        if (f->mNumIndices == 0)
             return rt_fail_at(error, path, 0, 0,
                               "face %u of mesh '%.60s' (counted from 0) has no vertices: the file is damaged",
                               face, mesh->mName.data);
-        }
         for (unsigned i = 0; i < f->mNumIndices; i++) {
             if (f->mIndices[i] < mesh->mNumVertices) continue;
             return rt_fail_at(error, path, 0, 0,
@@ -106,9 +105,8 @@ static RtStatus add_mesh(const Reader *r, const struct aiMesh *mesh, const RtTra
 
 static RtStatus add_node(const Reader *r, const struct aiNode *node, const RtTransform *above) {
     RtTransform own = transform_of(&node->mTransformation), transform = rt_transform_compose(&own, above);
-    for (unsigned i = 0; i < node->mNumMeshes; i++) {
+    for (unsigned i = 0; i < node->mNumMeshes; i++)
         RT_TRY(add_mesh(r, r->file->mMeshes[node->mMeshes[i]], &transform));
-    }
     for (unsigned i = 0; i < node->mNumChildren; i++) RT_TRY(add_node(r, node->mChildren[i], &transform));
     return RT_OK;
 }
@@ -129,12 +127,11 @@ static RtStatus check_header(FILE *file, const char *path, RtError *error) {
             continue;
         }
         sscanf(line, ply ? "element %*s %llu" : "%llu", &count);
-        if (bytes >= 0 && count > (unsigned long long)bytes) {
+        if (bytes >= 0 && count > (unsigned long long)bytes)
             return rt_fail_at(error, path, number, 0,
                               "the header declares %llu elements, but the file has only %ld bytes: it is "
                               "truncated or damaged",
                               count, bytes);
-        }
         end = !ply || strncmp(line, "end_header", 10) == 0;
     }
     return RT_OK;
@@ -175,10 +172,9 @@ RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, con
     Reader reader = {path, file, scene, material, error};
     uint32_t before = scene->geometry.object_count;
     if (file->mRootNode) status = add_node(&reader, file->mRootNode, transform ? transform : &identity);
-    if (status == RT_OK && scene->geometry.object_count == before) {
+    if (status == RT_OK && scene->geometry.object_count == before)
         status =
             rt_fail_at(error, path, 0, 0, "there is no triangle in this file: a mesh needs at least one");
-    }
     aiReleaseImport(file);
     return status;
 }
@@ -225,9 +221,8 @@ static struct aiVector3D to_ai(RtVec3 v) {
 static void fill_normals(const RtGeometry *g, uint32_t triangle, struct aiVector3D normals[3]) {
     uint32_t entry = g->triangle_normals[triangle];
     RtVec3 geometric = rt_narrow(rt_triangle_normal(&g->triangles[triangle]));
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++)
         normals[k] = to_ai(entry == RT_NO_NORMALS ? geometric : g->vertex_normals[entry].n[k]);
-    }
 }
 
 static RtStatus make_arrays(const RtGeometry *g, Arrays *arrays, RtError *error) {
@@ -237,9 +232,8 @@ static RtStatus make_arrays(const RtGeometry *g, Arrays *arrays, RtError *error)
     arrays->faces = rt_alloc(count, sizeof *arrays->faces);
     arrays->indices = rt_alloc(corners, sizeof *arrays->indices);
     if (with_normals) arrays->normals = rt_alloc(corners, sizeof *arrays->normals);
-    if (!arrays->vertices || !arrays->faces || !arrays->indices || (with_normals && !arrays->normals)) {
+    if (!arrays->vertices || !arrays->faces || !arrays->indices || (with_normals && !arrays->normals))
         return rt_fail_memory(error, "the mesh to be written", corners * sizeof *arrays->vertices);
-    }
     for (uint32_t i = 0; i < count; i++) {
         arrays->faces[i] = (struct aiFace){3, arrays->indices + 3 * (size_t)i};
         for (size_t k = 0; k < 3; k++) {
@@ -276,14 +270,12 @@ static RtStatus export_arrays(const Arrays *arrays, uint32_t triangles, const ch
 }
 
 static RtStatus save_assimp(const RtGeometry *g, const char *format, FILE *file, RtError *error) {
-    if (g->triangle_count == 0) {
+    if (g->triangle_count == 0)
         return rt_fail(error, RT_BAD_INPUT,
                        "this format needs at least one triangle, and the scene has none: "
                        "write .yaml, .nff or .obj");
-    }
-    if (g->triangle_count > UINT32_MAX / 3) {
+    if (g->triangle_count > UINT32_MAX / 3)
         return rt_fail(error, RT_BAD_INPUT, "%u triangles are too many for one mesh", g->triangle_count);
-    }
     Arrays arrays = {0};
     RtStatus status = make_arrays(g, &arrays, error);
     if (status == RT_OK) status = export_arrays(&arrays, g->triangle_count, format, file, error);
@@ -327,9 +319,8 @@ static RtStatus check_shapes(const RtGeometry *g, const char *extension, RtError
 RtStatus rt_mesh_save(const RtScene *scene, const char *extension, FILE *file, RtError *error) {
     int writer = 0;
     while (writer < WRITER_COUNT && strcasecmp(writers[writer].extension, extension) != 0) writer++;
-    if (writer == WRITER_COUNT) {
+    if (writer == WRITER_COUNT)
         return rt_fail(error, RT_BAD_INPUT, "meshes cannot be written as .%.40s", extension);
-    }
     RT_TRY(check_shapes(&scene->geometry, extension, error));
     if (writers[writer].format) return save_assimp(&scene->geometry, writers[writer].format, file, error);
     save_obj(&scene->geometry, file);

@@ -63,9 +63,8 @@ static const char *show(Token token, char out[48]) {
     if (token.length == 0) return "the end of the file";
     size_t n = token.length < 32 ? token.length : 32;
     out[0] = '\'';
-    for (size_t i = 0; i < n; i++) {
+    for (size_t i = 0; i < n; i++)
         out[i + 1] = (char)(isprint((unsigned char)token.text[i]) ? token.text[i] : '?');
-    }
     strcpy(out + 1 + n, n < token.length ? "...'" : "'");
     return out;
 }
@@ -128,11 +127,10 @@ static RtStatus read_count(Reader *r, const char *what, double lo, double hi, ui
     double number;
     Token token = peek(r);
     RT_TRY(read_double(r, what, &number));
-    if (number < lo || number > hi || number != floor(number)) {
+    if (number < lo || number > hi || number != floor(number))
         return rt_fail_at(r->error, r->path, token.line, 0,
                           "%s: invalid value '%.15g': expected a whole number %.15g..%.15g", what, number, lo,
                           hi);
-    }
     *out = (uint32_t)number;
     return RT_OK;
 }
@@ -183,10 +181,9 @@ static RtStatus read_camera(Reader *r) {
         snprintf(wanted, sizeof wanted, "'%s' of the camera (v: from, at, up, angle)", words[i]);
         if (!given[i]) return fail_inside(r, peek(r), wanted);
     }
-    if (camera->near < 0) {
+    if (camera->near < 0)
         return rt_fail_at(r->error, r->path, r->statement, 0, "hither is %g: expected at least 0",
                           (double)camera->near);
-    }
     return check_camera(r, camera);
 }
 
@@ -194,12 +191,11 @@ static RtStatus read_light(Reader *r) {
     RtVec3 position, color = {0, 0, 0};
     RT_TRY(read_vector(r, "l x y z, the position of a light", &position));
     bool plain = !number_follows(r);
-    if (plain) {
+    if (plain)
         RT_TRY(rt_append(&r->plain, &r->plain_count, &r->plain_capacity, &r->scene->light_count,
                          sizeof(uint32_t), r->error));
-    } else {
+    else
         RT_TRY(read_vector(r, "l x y z r g b, the colour of a light", &color));
-    }
     return located(r, rt_scene_add_light(r->scene, position, color, r->error));
 }
 
@@ -282,15 +278,12 @@ static RtStatus read_vertices(Reader *r, bool patch, uint32_t *count) {
     RT_TRY(read_count(r, "the number of vertices", 3, UINT32_MAX, count));
     size_t least = patch ? 12 : 6; /* bytes of the shortest vertex, with blanks */
     size_t size = (size_t)(r->end - r->at) / least + 1;
-    if (*count > size) {
+    if (*count > size)
         return rt_fail_at(r->error, r->path, r->statement, 0,
                           "the statement declares %u vertices, but the rest of the file holds at most %zu",
                           *count, size);
-    }
     RT_TRY(rt_reserve(&r->vertices, &r->vertex_capacity, *count, sizeof(RtVec3), r->error));
-    if (patch) {
-        RT_TRY(rt_reserve(&r->normals, &r->normal_capacity, *count, sizeof(RtVec3), r->error));
-    }
+    if (patch) RT_TRY(rt_reserve(&r->normals, &r->normal_capacity, *count, sizeof(RtVec3), r->error));
     for (uint32_t i = 0; i < *count; i++) {
         RT_TRY(read_vector(r, what, &r->vertices[i]));
         if (patch) RT_TRY(read_vector(r, what, &r->normals[i]));
@@ -301,14 +294,12 @@ static RtStatus read_vertices(Reader *r, bool patch, uint32_t *count) {
 static RtStatus read_polygon(Reader *r) {
     uint32_t count;
     RT_TRY(read_vertices(r, false, &count));
-    if (count > 3) {
+    if (count > 3)
         return located(r, rt_scene_add_polygon(r->scene, r->material, r->vertices, count, r->error));
-    }
     RtTriangle triangle = {{r->vertices[0], r->vertices[1], r->vertices[2]}};
-    if (rt_lengthd(rt_triangle_normal(&triangle)) == 0) {
+    if (rt_lengthd(rt_triangle_normal(&triangle)) == 0)
         return rt_fail_at(r->error, r->path, r->statement, 0,
                           "the polygon has no area: its vertices lie on a line or in a point; remove it");
-    }
     return located(r, rt_scene_add_triangle(r->scene, r->material, r->vertices, NULL, r->error));
 }
 
@@ -325,13 +316,12 @@ static RtStatus read_patch(Reader *r) {
     RtVec3d whole = {0, 0, 0};
     for (uint32_t i = 1; i + 1 < count; i++) whole = rt_addd(whole, twice_area(v, i));
     for (uint32_t i = 1; i + 1 < count; i++) {
-        if (rt_dotd(whole, twice_area(v, i)) < 0) {
+        if (rt_dotd(whole, twice_area(v, i)) < 0)
             return rt_fail_at(
                 r->error, r->path, r->statement, 0,
                 "the patch is concave: vertex %u cannot be seen from the first; split the patch "
                 "into triangles",
                 i + 2);
-        }
     }
     for (uint32_t i = 1; i + 1 < count; i++) {
         const RtVec3 vertices[3] = {v[0], v[i], v[i + 1]}, normals[3] = {n[0], n[i], n[i + 1]};
@@ -345,10 +335,9 @@ static RtStatus read_patch(Reader *r) {
 static RtStatus read_background(Reader *r) {
     RtVec3 color;
     RT_TRY(read_vector(r, "a number of b r g b", &color));
-    if (color.x < 0 || color.y < 0 || color.z < 0) {
+    if (color.x < 0 || color.y < 0 || color.z < 0)
         return rt_fail_at(r->error, r->path, r->statement, 0,
                           "the background has a negative colour: expected at least 0 for each of r g b");
-    }
     r->scene->background = color;
     return RT_OK;
 }
@@ -371,15 +360,13 @@ static RtStatus read_statement(Reader *r) {
 
 static RtStatus read_file(Reader *r) {
     const char *zero = memchr(r->at, '\0', (size_t)(r->end - r->at));
-    if (zero) {
+    if (zero)
         return rt_fail_at(r->error, r->path, 0, 0,
                           "byte %zu is 0: this is a binary file, NFF is text; convert it first",
                           (size_t)(zero - r->at));
-    }
     while (peek(r).length > 0) RT_TRY(read_statement(r));
-    for (uint32_t i = 0; i < r->plain_count; i++) {
+    for (uint32_t i = 0; i < r->plain_count; i++)
         r->scene->lights[r->plain[i]].intensity = rt_nff_light_intensity(r->scene->light_count);
-    }
     return RT_OK;
 }
 

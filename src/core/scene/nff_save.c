@@ -47,9 +47,8 @@ static void save_material(const RtMaterial *material, FILE *file) {
 static void save_polygon(const RtGeometry *g, uint32_t index, FILE *file) {
     const RtPolygon *polygon = &g->polygons[index];
     fprintf(file, "p %u", polygon->count);
-    for (uint32_t i = 0; i < polygon->count; i++) {
+    for (uint32_t i = 0; i < polygon->count; i++)
         put_vector(file, "\n", g->polygon_vertices[polygon->first + i]);
-    }
 }
 
 static void save_triangle(const RtGeometry *g, uint32_t index, FILE *file) {
@@ -87,15 +86,13 @@ static void save_object(const RtGeometry *g, RtRef ref, FILE *file) {
 }
 
 RtStatus rt_nff_save(const RtScene *scene, FILE *file, RtError *error) {
-    if (scene->geometry.csg_count > 0) {
+    if (scene->geometry.csg_count > 0)
         return rt_fail(error, RT_BAD_INPUT, "NFF has no CSG trees, and in this scene there are %u",
                        scene->geometry.csg_count);
-    }
     save_header(scene, file);
     for (uint32_t id = 0; id < scene->geometry.object_count; id++) {
-        if (id == 0 || scene->material_of[id] != scene->material_of[id - 1]) {
+        if (id == 0 || scene->material_of[id] != scene->material_of[id - 1])
             save_material(&scene->materials[scene->material_of[id]], file);
-        }
         save_object(&scene->geometry, scene->geometry.objects[id], file);
         if (ferror(file)) return rt_fail(error, RT_IO, "NFF could not be written: %s", strerror(errno));
     }

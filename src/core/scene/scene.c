@@ -61,16 +61,13 @@ uint32_t rt_scene_find_material(const RtScene *scene, const char *name) {
 }
 
 RtStatus rt_scene_add_light(RtScene *scene, RtVec3 position, RtVec3 intensity, RtError *error) {
-    if (!rt_finite(position) || !rt_finite(intensity)) {
+    if (!rt_finite(position) || !rt_finite(intensity))
         return rt_fail(error, RT_BAD_INPUT, "a light's position or intensity is not finite");
-    }
-    if (rt_maxf(fabsf(position.x), rt_maxf(fabsf(position.y), fabsf(position.z))) > RT_MAX_COORDINATE) {
+    if (rt_maxf(fabsf(position.x), rt_maxf(fabsf(position.y), fabsf(position.z))) > RT_MAX_COORDINATE)
         return rt_fail(error, RT_BAD_INPUT, "a light is farther than %g from the origin: move it nearer",
                        (double)RT_MAX_COORDINATE);
-    }
-    if (intensity.x < 0 || intensity.y < 0 || intensity.z < 0) {
+    if (intensity.x < 0 || intensity.y < 0 || intensity.z < 0)
         return rt_fail(error, RT_BAD_INPUT, "a light's intensity is negative");
-    }
     const RtLight light = {position, intensity};
     return rt_append(&scene->lights, &scene->light_count, &scene->light_capacity, &light, sizeof light,
                      error);
@@ -126,9 +123,8 @@ RtStatus rt_scene_add_csg(RtScene *scene, const RtCsgBuilder *builder, RtCsgTerm
 void rt_scene_paint_csg(RtScene *scene, uint32_t material) {
     const RtGeometry *g = &scene->geometry;
     const RtCsg *tree = &g->csgs[g->csg_count - 1];
-    for (uint32_t i = 0; i < tree->solid_count; i++) {
+    for (uint32_t i = 0; i < tree->solid_count; i++)
         g->forest.set.solids[tree->first_solid + i].material = material;
-    }
     set_csg_material(scene);
 }
 

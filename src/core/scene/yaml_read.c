@@ -29,9 +29,8 @@ static RtStatus add_materials(RtYamlReader *r, const RtYamlNode *list) {
     assert(r->scene->material_count == 0);
     RT_TRY(rt_yaml_read_names(r, list, "name color? " RT_YAML_COEFFICIENTS(OPTIONAL_KEY), RT_MAX_NAME - 1,
                               "materials", &r->materials));
-    for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
+    for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size)
         RT_TRY(add_material(r, n));
-    }
     return RT_OK;
 }
 
@@ -63,9 +62,8 @@ static RtStatus add_polygon(RtYamlReader *r, const RtYamlNode *n) {
 
 static RtStatus read_points(const RtYaml *y, const RtYamlNode *list, RtVec3 points[3]) {
     RT_TRY(rt_yaml_list(y, list, NULL, 3, 3, "lists of numbers, as in [1, 2, 3]"));
-    for (const RtYamlNode *p = rt_yaml_first(list); p != rt_yaml_end(list); p += p->size) {
+    for (const RtYamlNode *p = rt_yaml_first(list); p != rt_yaml_end(list); p += p->size)
         RT_TRY(rt_yaml_point(y, p, NULL, points++));
-    }
     return RT_OK;
 }
 
@@ -150,10 +148,9 @@ static RtStatus check_camera(const RtCamera *camera, bool placed, const char **k
     RtSampling sampling;
     RT_TRY(rt_sampling_init(&sampling, camera->width, camera->height, 1, false, error));
     *key = is_far(camera->from) ? "from" : "at";
-    if (is_far(camera->from) || is_far(camera->at)) {
+    if (is_far(camera->from) || is_far(camera->at))
         return rt_fail(error, RT_BAD_INPUT, "the camera is farther than %g from the origin: move it nearer",
                        (double)RT_MAX_COORDINATE);
-    }
     RtCamera tried = *camera;
     if (!placed) tried.at.at[(rt_major_axis(camera->up) + 1) % 3] = 1;
     RtVec3 gap = rt_sub(tried.at, tried.from);
@@ -170,11 +167,10 @@ static RtStatus set_camera(RtYamlReader *r, const RtYamlNode *n) {
     RtCamera *camera = &r->scene->camera;
     RT_TRY(rt_yaml_keys(y, n, "from? at? up? fov? near? size?"));
     bool placed = rt_yaml_get(y, n, "from");
-    if (placed != !!rt_yaml_get(y, n, "at")) {
+    if (placed != !!rt_yaml_get(y, n, "at"))
         return rt_yaml_fail(y, n,
                             "`from` and `at` belong together: give both, or neither for a camera that sees "
                             "the whole scene");
-    }
     RT_TRY(rt_yaml_point(y, n, "from", &camera->from));
     RT_TRY(rt_yaml_point(y, n, "at", &camera->at));
     RT_TRY(rt_yaml_point(y, n, "up", &camera->up));
@@ -226,9 +222,8 @@ static RtStatus build(RtYamlReader *r) {
     RT_TRY(add_materials(r, rt_yaml_get(y, root, "materials")));
     RT_TRY(rt_yaml_add_solids(r, rt_yaml_get(y, root, "solids")));
     RT_TRY(rt_yaml_list(y, objects, NULL, 1, UINT32_MAX, "objects"));
-    for (const RtYamlNode *n = rt_yaml_first(objects); n != rt_yaml_end(objects); n += n->size) {
+    for (const RtYamlNode *n = rt_yaml_first(objects); n != rt_yaml_end(objects); n += n->size)
         RT_TRY(add_object(r, n));
-    }
     return RT_OK;
 }
 

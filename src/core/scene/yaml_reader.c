@@ -50,10 +50,9 @@ RtStatus rt_yaml_find_material(RtYamlReader *r, const RtYamlNode *object, uint32
     const char *name = "default";
     RT_TRY(rt_yaml_text(&r->yaml, object, "material", RT_MAX_NAME - 1, &name));
     const RtYamlNamed *found = rt_yaml_find_name(&r->materials, name);
-    if (node && !found) {
+    if (node && !found)
         return rt_yaml_fail(&r->yaml, node, "there is no material '%s': add it to the list of materials",
                             name);
-    }
     if (!found && r->standard == UINT32_MAX) {
         RtMaterial material = rt_default_material();
         RT_TRY(rt_scene_add_material(r->scene, &material, &r->standard, r->error));
@@ -93,9 +92,8 @@ RtStatus rt_yaml_read_transform(RtYamlReader *r, const RtYamlNode *object, RtTra
     const RtYamlNode *steps = rt_yaml_get(&r->yaml, object, "transform");
     *transform = rt_transform_identity();
     RT_TRY(rt_yaml_list(&r->yaml, steps, NULL, 0, UINT32_MAX, "steps"));
-    for (const RtYamlNode *n = rt_yaml_first(steps); n != rt_yaml_end(steps); n += n->size) {
+    for (const RtYamlNode *n = rt_yaml_first(steps); n != rt_yaml_end(steps); n += n->size)
         RT_TRY(add_step(r, n, transform));
-    }
     *given = rt_yaml_count(steps) ? transform : NULL;
     return RT_OK;
 }

@@ -17,10 +17,9 @@ static RtStatus add_sphere(RtYamlReader *r, const RtYamlNode *n, uint32_t *index
     RT_TRY(rt_yaml_keys(y, n, "center radius material?"));
     RT_TRY(rt_yaml_point(y, n, "center", &center));
     RT_TRY(rt_yaml_float(y, n, "radius", &radius));
-    if (!(radius > 0)) {
+    if (!(radius > 0))
         return rt_yaml_fail(y, rt_yaml_get(y, n, "radius"),
                             "a sphere needs a radius above 0, this one has %g", (double)radius);
-    }
     RtVec3 radii = rt_vec3(radius, radius, radius);
     return rt_yaml_place(y, rt_solid_add_ellipsoid(&r->builder.set, center, radii, index, r->error), n,
                          "center");
@@ -172,14 +171,12 @@ static RtStatus look_up(void *context, const char *name, RtCsgTerm *term, RtErro
         *term = r->terms[found->index];
         return RT_OK;
     }
-    if (found && found->index == r->solids_known) {
+    if (found && found->index == r->solids_known)
         return rt_fail(error, RT_BAD_INPUT,
                        "the solid '%s' cannot contain itself: give the part another name", name);
-    }
-    if (found) {
+    if (found)
         return rt_fail(error, RT_BAD_INPUT,
                        "the solid '%s' comes after this formula, which can use only earlier solids", name);
-    }
     const char *names[64];
     uint32_t count = 0;
     for (uint32_t i = 0; i < r->solids.count && count < 64; i++) {
@@ -230,12 +227,11 @@ static RtStatus add_kind(RtYamlReader *r, const RtYamlNode *entry, RtCsgTerm *te
 static RtStatus add_solid(RtYamlReader *r, const RtYamlNode *entry, RtCsgTerm *term) {
     const char *name = "";
     RT_TRY(rt_yaml_text(&r->yaml, entry, "name", RT_FORMULA_MAX_NAME - 1, &name));
-    if (!rt_formula_is_name(name)) {
+    if (!rt_formula_is_name(name))
         return rt_yaml_fail(&r->yaml, rt_yaml_get(&r->yaml, entry, "name"),
                             "'%s' is not a valid name in a formula: a name is a letter or _, then letters, "
                             "digits and _",
                             name);
-    }
     RT_TRY(add_kind(r, entry, term));
     return move(r, entry, term);
 }

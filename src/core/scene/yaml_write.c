@@ -74,11 +74,10 @@ static void quote(const char *name, char out[2 * RT_MAX_NAME + 2]) {
 
 static void material_name(Writer *w, const char *key, uint32_t index) {
     char name[2 * RT_MAX_NAME + 2];
-    if (w->numbered) {
+    if (w->numbered)
         snprintf(name, sizeof name, "'m%u'", index);
-    } else {
+    else
         quote(w->scene->materials[index].name, name);
-    }
     fprintf(w->out, "%s%s", key, name);
 }
 
@@ -162,9 +161,8 @@ static RtStatus write_shape(Writer *w, RtShape shape, uint32_t index, RtError *e
         break;
     case RT_SHAPE_TRIANGLE:
         points_key(w, "vertices: ", g->triangles[index].v, 3);
-        if (g->triangle_normals && g->triangle_normals[index] != RT_NO_NORMALS) {
+        if (g->triangle_normals && g->triangle_normals[index] != RT_NO_NORMALS)
             points_key(w, ", normals: ", g->vertex_normals[g->triangle_normals[index]].n, 3);
-        }
         break;
     case RT_SHAPE_CONE:
         point_key(w, "base: ", g->cones[index].base);

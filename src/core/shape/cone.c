@@ -3,16 +3,14 @@
 
 RtStatus rt_cone_init(RtCone *cone, RtVec3 base, float base_radius, RtVec3 apex, float apex_radius,
                       RtError *error) {
-    if (!(base_radius >= 0) || !(apex_radius >= 0) || (base_radius == 0 && apex_radius == 0)) {
+    if (!(base_radius >= 0) || !(apex_radius >= 0) || (base_radius == 0 && apex_radius == 0))
         return rt_fail(error, RT_BAD_INPUT,
                        "a cone needs radii of at least 0, one of them above 0; these are %g and %g",
                        (double)base_radius, (double)apex_radius);
-    }
     RtVec3d axis = rt_subd(rt_widen(apex), rt_widen(base));
     double height = rt_lengthd(axis);
-    if (!(height > 0)) {
+    if (!(height > 0))
         return rt_fail(error, RT_BAD_INPUT, "the two ends of the cone are the same point: move one of them");
-    }
     *cone = (RtCone){.base = base,
                      .apex = apex,
                      .base_radius = base_radius,

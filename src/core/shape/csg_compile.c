@@ -36,11 +36,10 @@ RtStatus rt_csg_combine(RtCsgBuilder *builder, RtCsgOp op, RtCsgTerm left, RtCsg
                         RtError *error) {
     assert(left < builder->node_count && right < builder->node_count);
     uint32_t size = builder->nodes[left].size + builder->nodes[right].size;
-    if (size > RT_CSG_MAX_SOLIDS) {
+    if (size > RT_CSG_MAX_SOLIDS)
         return rt_fail(error, RT_BAD_INPUT,
                        "a tree of %u solids, counting each use of a named part: the limit is %u", size,
                        RT_CSG_MAX_SOLIDS);
-    }
     RtCsgNode node = {.kind = RT_CSG_COMBINE, .op = op, .left = left, .right = right, .size = size};
     return add_node(builder, &node, out, error);
 }
@@ -247,9 +246,8 @@ static RtStatus advance(Compiler *p, bool extents) {
         if (extents) RT_TRY(emit_test(p, frame));
         return push_frame(p, part->right_first ? part->right : left, frame->box, frame->tested_area);
     case 1:
-        if (node->op == RT_CSG_INTERSECTION || (node->op == RT_CSG_DIFFERENCE && !part->right_first)) {
+        if (node->op == RT_CSG_INTERSECTION || (node->op == RT_CSG_DIFFERENCE && !part->right_first))
             RT_TRY(emit(p, (RtCsgInstruction){.code = RT_CSG_SKIP_IF_EMPTY}, &frame->skip));
-        }
         return push_frame(p, part->right_first ? left : part->right, frame->box, frame->tested_area);
     default: break;
     }

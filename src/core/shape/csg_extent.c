@@ -8,9 +8,8 @@
 /* The largest dot product of `direction` with a point of the box. */
 static double box_support(RtBox box, RtVec3d direction) {
     double sum = 0;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; a++)
         sum += (double)(direction.at[a] < 0 ? box.lo : box.hi).at[a] * direction.at[a];
-    }
     return sum;
 }
 
@@ -45,11 +44,10 @@ static Extent extent_of(const RtCsgForest *forest, const RtCsg *tree, bool balls
         RtCsgInstruction instruction = forest->instructions[tree->first + i];
         if (instruction.code == RT_CSG_PUSH) {
             Extent *top = &stack[depth++];
-            if (balls) {
+            if (balls)
                 top->ball = rt_solid_ball(&forest->set, instruction.operand);
-            } else {
+            else
                 top->support = rt_solid_support(&forest->set, instruction.operand, direction);
-            }
         } else if (instruction.code == RT_CSG_APPLY) {
             Extent top = stack[--depth], lower = stack[depth - 1];
             stack[depth - 1] = combined((RtCsgOp)instruction.operand, instruction.reversed ? top : lower,

@@ -19,15 +19,13 @@ const char *rt_shape_name(RtShape shape) {
 /* ---- adding objects ---- */
 
 static RtStatus check_point(RtVec3 p, RtError *error) {
-    if (!rt_finite(p)) {
+    if (!rt_finite(p))
         return rt_fail(error, RT_BAD_INPUT, "a coordinate is not a finite number: (%g, %g, %g)", (double)p.x,
                        (double)p.y, (double)p.z);
-    }
     float most = rt_maxf(fabsf(p.x), rt_maxf(fabsf(p.y), fabsf(p.z)));
-    if (most > RT_MAX_COORDINATE) {
+    if (most > RT_MAX_COORDINATE)
         return rt_fail(error, RT_BAD_INPUT, "a coordinate of %g exceeds %g: scale the scene down",
                        (double)most, (double)RT_MAX_COORDINATE);
-    }
     return RT_OK;
 }
 
@@ -39,9 +37,8 @@ static RtStatus check_radius(float radius, RtError *error) {
 
 /* Makes space for one more entry in the table of objects. */
 static RtStatus reserve_object(RtGeometry *g, RtError *error) {
-    if (g->object_count >= RT_MAX_OBJECTS) {
+    if (g->object_count >= RT_MAX_OBJECTS)
         return rt_fail(error, RT_BAD_INPUT, "a scene holds at most %u objects", RT_MAX_OBJECTS);
-    }
     return rt_reserve(&g->objects, &g->object_capacity, (uint64_t)g->object_count + 1, sizeof(RtRef), error);
 }
 
@@ -67,10 +64,9 @@ RT_SHAPES(DEFINE_APPEND)
 RtStatus rt_geometry_add_sphere(RtGeometry *geometry, RtVec3 center, float radius, RtError *error) {
     RT_TRY(check_point(center, error));
     RT_TRY(check_radius(radius, error));
-    if (!(radius > 0)) {
+    if (!(radius > 0))
         return rt_fail(error, RT_BAD_INPUT, "a sphere needs a radius above 0, this one has %g",
                        (double)radius);
-    }
     return append_sphere(geometry, &(RtSphere){center, radius}, error);
 }
 
@@ -136,19 +132,16 @@ RtStatus rt_geometry_add_triangle(RtGeometry *geometry, const RtVec3 vertices[3]
     uint32_t index = geometry->triangle_count;
     RtVertexNormals unit = {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
     for (int i = 0; normals && i < 3; i++) {
-        if (!rt_finite(normals[i]) || rt_lengthd(rt_widen(normals[i])) == 0) {
+        if (!rt_finite(normals[i]) || rt_lengthd(rt_widen(normals[i])) == 0)
             return rt_fail(error, RT_BAD_INPUT, "vertex normal %d is zero or not finite: (%g, %g, %g)", i,
                            (double)normals[i].x, (double)normals[i].y, (double)normals[i].z);
-        }
         unit.n[i] = unit_normal(normals[i]);
     }
-    if (normals || geometry->triangle_normals) {
+    if (normals || geometry->triangle_normals)
         RT_TRY(reserve_triangle_normals(geometry, (uint64_t)index + 1, error));
-    }
-    if (normals) {
+    if (normals)
         RT_TRY(rt_reserve(&geometry->vertex_normals, &geometry->vertex_normal_capacity,
                           (uint64_t)geometry->vertex_normal_count + 1, sizeof(RtVertexNormals), error));
-    }
     RT_TRY(append_triangle(geometry, &triangle, error));
     if (normals) {
         geometry->triangle_normals[index] = geometry->vertex_normal_count;
@@ -176,9 +169,8 @@ static RtBox object_box(const RtGeometry *g, RtRef ref) {
 RtStatus rt_geometry_finish(RtGeometry *geometry, RtError *error) {
     assert(!geometry->boxes);
     geometry->boxes = rt_alloc(geometry->object_count, sizeof(RtBox));
-    if (!geometry->boxes) {
+    if (!geometry->boxes)
         return rt_fail_memory(error, "the boxes of the objects", geometry->object_count * sizeof(RtBox));
-    }
     geometry->box = RT_EMPTY_BOX;
     for (uint32_t id = 0; id < geometry->object_count; id++) {
         geometry->boxes[id] = object_box(geometry, geometry->objects[id]);

@@ -198,9 +198,8 @@ static bool chain_part(const Block *block, RtVec3d *points, uint32_t count, Boun
 static bool sphere_part(const RtSphere *sphere, const Block *block, Bounds *bounds) {
     double square = (double)sphere->radius * (double)sphere->radius * (1 + 0x1p-40), apart[3];
     if (!sphere_meets(sphere, block)) return false;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; a++)
         apart[a] = fmax(fabs((double)sphere->center.at[a] - block->center.at[a]) - block->half.at[a], 0);
-    }
     for (int a = 0; a < 3; a++) {
         double b = apart[(a + 1) % 3], c = apart[(a + 2) % 3];
         double reach = sqrt(fmax(square - b * b - c * c, 0)), center = (double)sphere->center.at[a];

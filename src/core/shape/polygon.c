@@ -24,23 +24,21 @@ RtStatus rt_polygon_init(RtPolygon *polygon, const RtVec3 *vertices, uint32_t fi
     RtVec3d center = rt_add_scaledd(first_vertex, offset, 1.0 / count);
     double size = rt_lengthd(rt_widen(rt_box_size(box)));
     double area = rt_lengthd(sum) / 2;
-    if (!(area > 1e-12 * size * size)) {
+    if (!(area > 1e-12 * size * size))
         return rt_fail(error, RT_BAD_INPUT,
                        "the polygon has no area: its vertices lie on a line or in a point; remove it");
-    }
     RtVec3d normal = rt_normalized(sum);
     double warp = 0;
     for (uint32_t i = 0; i < count; i++) {
         double off = fabs(rt_dotd(normal, rt_subd(rt_widen(vertices[i]), center)));
         if (off > warp) warp = off; /* gcc 12 for ARM fails to compile fmax here, and below */
     }
-    if (warp > RT_POLYGON_MAX_WARP * size) {
+    if (warp > RT_POLYGON_MAX_WARP * size)
         return rt_fail(
             error, RT_BAD_INPUT,
             "the polygon is not planar: a vertex is %.3g off the plane of the others; split it into "
             "triangles",
             warp);
-    }
     int dropped = rt_major_axis(rt_narrow(normal));
     *polygon = (RtPolygon){.normal = normal,
                            .center = center,

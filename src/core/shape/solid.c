@@ -112,11 +112,10 @@ RtStatus rt_solid_add_moved(RtSolidSet *set, const RtSolidSet *source, uint32_t 
                             uint32_t *index, RtError *error) {
     RtSolid solid = source->solids[from];
     if (move) RT_TRY(rt_solid_check_transform(move, error));
-    if (solid.kind == RT_SOLID_MESH) {
+    if (solid.kind == RT_SOLID_MESH)
         RT_TRY(move_triangles(set, source, &solid, move, error));
-    } else {
+    else
         RT_TRY(move_planes(set, source, &solid, move, error));
-    }
     if (move) RT_TRY(settle(set, &solid, move, error));
     if (solid.kind == RT_SOLID_MESH) RT_TRY(rt_solid_mesh_boxes(set, &solid, error));
     return rt_solid_finish(set, &solid, kinds[solid.kind].support, index, error);

@@ -34,11 +34,10 @@ static bool within_side(double ratio, const RtSolidLine *line, RtSpan *span) {
         return r + dr * (roots[0] / 2 + roots[1] / 2) > 0;
     }
     int count = rt_quadratic_roots(a, half_b, c, fmax(discriminant, 0), roots);
-    if (dr > 0) {
+    if (dr > 0)
         span->open = roots[count - 1];
-    } else {
+    else
         span->close = roots[0];
-    }
     return true;
 }
 
@@ -120,10 +119,9 @@ void rt_solid_cone_to_caps(const RtSolidSet *set, RtSolid *solid) {
 
 RtStatus rt_solid_add_cone(RtSolidSet *set, double ratio, const RtTransform *to_world, uint32_t *index,
                            RtError *error) {
-    if (!(ratio >= 0 && ratio <= 1)) {
+    if (!(ratio >= 0 && ratio <= 1))
         return rt_fail(error, RT_BAD_INPUT, "the ratio of a cone's radii is %g: expected 0..1; swap its ends",
                        ratio);
-    }
     RT_TRY(rt_solid_check_transform(to_world, error));
     RtSolid solid = {.kind = RT_SOLID_CONE,
                      .first = set->plane_count,
@@ -142,17 +140,15 @@ RtStatus rt_solid_add_cone(RtSolidSet *set, double ratio, const RtTransform *to_
 
 RtStatus rt_solid_add_frustum(RtSolidSet *set, RtVec3 base, float base_radius, RtVec3 apex, float apex_radius,
                               uint32_t *index, RtError *error) {
-    if (!(base_radius >= 0) || !(apex_radius >= 0) || !(base_radius + apex_radius > 0)) {
+    if (!(base_radius >= 0) || !(apex_radius >= 0) || !(base_radius + apex_radius > 0))
         return rt_fail(error, RT_BAD_INPUT,
                        "a cone needs radii of at least 0, one of them above 0; these are %g and %g",
                        (double)base_radius, (double)apex_radius);
-    }
     if (apex_radius > base_radius)
         return rt_solid_add_frustum(set, apex, apex_radius, base, base_radius, index, error);
     RtVec3d axis = rt_subd(rt_widen(apex), rt_widen(base));
-    if (!(rt_lengthd(axis) > 0)) {
+    if (!(rt_lengthd(axis) > 0))
         return rt_fail(error, RT_BAD_INPUT, "the two ends of the cone are the same point: move one of them");
-    }
     RtTransform to_world =
         rt_solid_transform_about(rt_widen(base), axis, (double)base_radius, rt_lengthd(axis));
     return rt_solid_add_cone(set, (double)apex_radius / (double)base_radius, &to_world, index, error);

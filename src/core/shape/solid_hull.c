@@ -118,11 +118,10 @@ static uint32_t find_faces(const Cloud *cloud, RtPlane *planes, uint32_t capacit
 
 RtStatus rt_solid_add_hull(RtSolidSet *set, const RtVec3 *vertices, uint32_t count, uint32_t *index,
                            RtError *error) {
-    if (count < 4 || count > RT_SOLID_MAX_VERTICES) {
+    if (count < 4 || count > RT_SOLID_MAX_VERTICES)
         return rt_fail(error, RT_BAD_INPUT,
                        "a convex polyhedron of %u vertices: expected 4..%d; use a mesh for more", count,
                        RT_SOLID_MAX_VERTICES);
-    }
     for (uint32_t i = 0; i < count; i++) {
         if (rt_finite(vertices[i])) continue;
         return rt_fail(error, RT_BAD_INPUT, "vertex %u of the polyhedron is not finite", i);

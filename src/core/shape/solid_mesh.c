@@ -329,10 +329,9 @@ static RtStatus check_and_order(RtTriangle *triangles, uint32_t count, RtError *
 
 RtStatus rt_solid_add_mesh(RtSolidSet *set, const RtTriangle *triangles, uint32_t count,
                            const RtTransform *to_world, uint32_t *index, RtError *error) {
-    if (count < 4) {
+    if (count < 4)
         return rt_fail(error, RT_BAD_INPUT, "a closed mesh needs at least 4 triangles, this one has %u",
                        count);
-    }
     RT_TRY(rt_solid_check_transform(to_world, error));
     RT_TRY(rt_reserve(&set->triangles, &set->triangle_capacity, (uint64_t)set->triangle_count + count,
                       sizeof(RtTriangle), error));
@@ -340,10 +339,9 @@ RtStatus rt_solid_add_mesh(RtSolidSet *set, const RtTriangle *triangles, uint32_
     for (uint32_t i = 0; i < count; i++) {
         for (int v = 0; v < 3; v++) {
             own[i].v[v] = rt_transform_point(to_world, triangles[i].v[v]);
-            if (!rt_finite(own[i].v[v])) {
+            if (!rt_finite(own[i].v[v]))
                 return rt_fail(error, RT_BAD_INPUT, "vertex %d of triangle %u of the mesh is not finite", v,
                                i);
-            }
         }
     }
     RT_TRY(check_and_order(own, count, error));

@@ -33,14 +33,12 @@ RtStatus rt_solid_check_transform(const RtTransform *to_world, RtError *error) {
     RtVec3d x = rt_transform_column(to_world, 0), y = rt_transform_column(to_world, 1),
             z = rt_transform_column(to_world, 2), by = rt_transform_column(to_world, 3);
     double volume = rt_dotd(x, rt_crossd(y, z)), most = rt_lengthd(x) * rt_lengthd(y) * rt_lengthd(z);
-    if (!isfinite(most) || !isfinite(rt_lengthd(by))) {
+    if (!isfinite(most) || !isfinite(rt_lengthd(by)))
         return rt_fail(error, RT_BAD_INPUT, "the transform of a solid is not finite");
-    }
-    if (!(volume > 0x1p-40 * most)) {
+    if (!(volume > 0x1p-40 * most))
         return rt_fail(error, RT_BAD_INPUT,
                        "a solid would be flat or turned inside out: its axes must have a length and not lie "
                        "in one plane");
-    }
     return RT_OK;
 }
 

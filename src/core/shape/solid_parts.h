@@ -80,11 +80,10 @@ static inline uint32_t rt_span_put(const RtSpan *span, uint32_t solid, float nea
     float open = (float)rt_clampd(span->open, (double)near, (double)far);
     float close = (float)rt_clampd(span->close, (double)near, (double)far);
     if (!(open < close)) return count;
-    if (count > 0 && out[count - 1].t == open) {
+    if (count > 0 && out[count - 1].t == open)
         count--;
-    } else {
+    else
         out[count++] = (RtCrossing){open, solid, span->open_face};
-    }
     out[count++] = (RtCrossing){close, solid, span->close_face};
     return count;
 }

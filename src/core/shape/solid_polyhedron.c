@@ -102,11 +102,10 @@ static bool is_slab(const Faces *faces, double *lo, double *hi) {
         double offset = plane->offset + faces->grow;
         RtVec3d across = rt_crossd(normal, plane->normal);
         if (rt_dotd(across, across) > NOISE * NOISE) return false;
-        if (rt_dotd(normal, plane->normal) > 0) {
+        if (rt_dotd(normal, plane->normal) > 0)
             *hi = fmin(*hi, offset);
-        } else {
+        else
             *lo = fmax(*lo, -offset);
-        }
     }
     return true;
 }
@@ -207,10 +206,9 @@ static RtPlane unit_plane(const RtPlane *plane) {
 
 RtStatus rt_solid_add_polyhedron(RtSolidSet *set, const RtPlane *planes, uint32_t count,
                                  const RtTransform *to_world, uint32_t *index, RtError *error) {
-    if (count == 0 || count > RT_SOLID_MAX_FACES) {
+    if (count == 0 || count > RT_SOLID_MAX_FACES)
         return rt_fail(error, RT_BAD_INPUT, "a polyhedron of %u planes: expected 1..%d", count,
                        RT_SOLID_MAX_FACES);
-    }
     RT_TRY(rt_solid_check_transform(to_world, error));
     RT_TRY(rt_reserve(&set->planes, &set->plane_capacity, (uint64_t)set->plane_count + count, sizeof(RtPlane),
                       error));
@@ -221,11 +219,10 @@ RtStatus rt_solid_add_polyhedron(RtSolidSet *set, const RtPlane *planes, uint32_
         RT_TRY(check_plane(&planes[i], i, error));
         RtPlane standing = unit_plane(&planes[i]);
         own[i] = stays ? standing : rt_plane_moved(&standing, to_world);
-        if (!(fabs(own[i].offset) <= (double)RT_MAX_COORDINATE)) {
+        if (!(fabs(own[i].offset) <= (double)RT_MAX_COORDINATE))
             return rt_fail(error, RT_BAD_INPUT,
                            "plane %u of the polyhedron is %g from the origin: at most %g", i,
                            fabs(own[i].offset), (double)RT_MAX_COORDINATE);
-        }
     }
     RT_TRY(rt_solid_check_inside(own, count, error));
     RtSolid solid = {.kind = RT_SOLID_POLYHEDRON,
@@ -239,10 +236,9 @@ RtStatus rt_solid_add_box(RtSolidSet *set, RtVec3 lo, RtVec3 hi, uint32_t *index
     RtTransform here = rt_transform_identity();
     RtPlane planes[3][2] = {0};
     for (int a = 0; a < 3; a++) {
-        if (!(lo.at[a] < hi.at[a])) {
+        if (!(lo.at[a] < hi.at[a]))
             return rt_fail(error, RT_BAD_INPUT, "a box needs lo < hi on each axis; on %c they are %g and %g",
                            "xyz"[a], (double)lo.at[a], (double)hi.at[a]);
-        }
         planes[a][0].normal.at[a] = -1, planes[a][0].offset = -(double)lo.at[a];
         planes[a][1].normal.at[a] = 1, planes[a][1].offset = (double)hi.at[a];
     }
@@ -252,10 +248,9 @@ RtStatus rt_solid_add_box(RtSolidSet *set, RtVec3 lo, RtVec3 hi, uint32_t *index
 RtStatus rt_solid_add_half_space(RtSolidSet *set, RtVec3 point, RtVec3 normal, uint32_t *index,
                                  RtError *error) {
     RtTransform here = rt_transform_identity();
-    if (!rt_finite(point) || !rt_finite(normal) || rt_lengthd(rt_widen(normal)) == 0) {
+    if (!rt_finite(point) || !rt_finite(normal) || rt_lengthd(rt_widen(normal)) == 0)
         return rt_fail(error, RT_BAD_INPUT,
                        "a half-space needs a point and a normal of finite numbers, the normal not 0");
-    }
     RtPlane plane = rt_plane_through(rt_widen(point), rt_widen(normal));
     return rt_solid_add_polyhedron(set, &plane, 1, &here, index, error);
 }

@@ -41,10 +41,9 @@ RtStatus rt_solid_add_sphere(RtSolidSet *set, const RtTransform *to_world, uint3
 
 RtStatus rt_solid_add_ellipsoid(RtSolidSet *set, RtVec3 center, RtVec3 radii, uint32_t *index,
                                 RtError *error) {
-    if (!(radii.x > 0 && radii.y > 0 && radii.z > 0)) {
+    if (!(radii.x > 0 && radii.y > 0 && radii.z > 0))
         return rt_fail(error, RT_BAD_INPUT, "the radii of an ellipsoid must be above 0; these are %g, %g, %g",
                        (double)radii.x, (double)radii.y, (double)radii.z);
-    }
     RtTransform to_world = rt_transform_identity();
     RT_TRY(rt_transform_scale(&to_world, radii, error));
     RT_TRY(rt_transform_translate(&to_world, center, error));

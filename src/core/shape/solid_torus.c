@@ -48,11 +48,10 @@ static double change_between(const Curve *curve, double lo, double hi, bool from
     double s = lo / 2 + hi / 2, step = hi - lo;
     while (lo < s && s < hi) {
         Value v = curve->at(curve, s);
-        if ((v.y < 0) == from_below) {
+        if ((v.y < 0) == from_below)
             lo = s;
-        } else {
+        else
             hi = s;
-        }
         double next = s - v.y / v.slope;
         if (next == s) break;
         if (!(lo < next && next < hi && fabs(next - s) < step / 2)) next = lo / 2 + hi / 2;
@@ -140,29 +139,26 @@ RtBall rt_solid_torus_ball(const RtSolidSet *set, const RtSolid *solid) {
 
 RtStatus rt_solid_add_torus(RtSolidSet *set, double ratio, const RtTransform *to_world, uint32_t *index,
                             RtError *error) {
-    if (!(ratio > 0 && ratio < 1)) {
+    if (!(ratio > 0 && ratio < 1))
         return rt_fail(
             error, RT_BAD_INPUT,
             "the tube of a torus is %g times as wide as its circle: expected a value above 0 and below 1",
             ratio);
-    }
     RtSolid solid = {.kind = RT_SOLID_TORUS, .ratio = ratio, .to_world = *to_world};
     return rt_solid_finish(set, &solid, rt_solid_torus_support, index, error);
 }
 
 RtStatus rt_solid_add_ring(RtSolidSet *set, RtVec3 center, RtVec3 axis, float major, float minor,
                            uint32_t *index, RtError *error) {
-    if (!(minor > 0 && minor < major)) {
+    if (!(minor > 0 && minor < major))
         return rt_fail(
             error, RT_BAD_INPUT,
             "a torus needs 0 < minor < major, the radii of its tube and of the circle in it; these "
             "are %g and %g",
             (double)minor, (double)major);
-    }
-    if (rt_lengthd(rt_widen(axis)) == 0) {
+    if (rt_lengthd(rt_widen(axis)) == 0)
         return rt_fail(error, RT_BAD_INPUT,
                        "the axis of the torus has length 0: give a direction, as in [0, 0, 1]");
-    }
     RtTransform to_world =
         rt_solid_transform_about(rt_widen(center), rt_widen(axis), (double)major, (double)major);
     return rt_solid_add_torus(set, (double)minor / (double)major, &to_world, index, error);
