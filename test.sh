@@ -36,13 +36,13 @@ case "${1-}" in
 --all)
     install_missing build optional data test check cluster pages
     fetch_bunny
-    build release -DRT_KERNELS=all -DRT_WERROR=ON
+    build release -DRT_KERNELS=all -DRT_WERROR=ON -DRT_DEBUG_INFO=-g0
     run_tests release
-    build clang -DRT_WERROR=ON
+    build clang -DRT_WERROR=ON -DRT_DEBUG_INFO=-g0
     run_tests clang -LE 'tree|once|slow|gcc'
-    build debug -DRT_KERNELS=native
+    build debug -DRT_KERNELS=native -DRT_DEBUG_INFO=-g1 # lines, for reports of errors
     RT_RAYS=16 run_tests debug -LE 'tree|once|slow|plain'
-    targets=thread_tests build tsan -DRT_KERNELS=native
+    targets=thread_tests build tsan -DRT_KERNELS=native -DRT_DEBUG_INFO=-g1
     run_tests tsan -L threads
     ;;
 *) die "usage: ./test.sh [--all]" ;;

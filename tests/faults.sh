@@ -62,7 +62,7 @@ copy_tree() { # COPY
 configure() { # COPY
     local launcher=()
     if command -v ccache >/dev/null; then launcher=(-DCMAKE_C_COMPILER_LAUNCHER=ccache); fi
-    cmake -S "$1" -B "$1/build" -G Ninja -DRT_KERNELS=native -DCMAKE_BUILD_TYPE=Release "-DCMAKE_C_FLAGS_RELEASE=-O1 -DNDEBUG" "${launcher[@]}"
+    cmake -S "$1" -B "$1/build" -G Ninja -DRT_KERNELS=native -DRT_DEBUG_INFO=-g0 -DCMAKE_BUILD_TYPE=Release "-DCMAKE_C_FLAGS_RELEASE=-O1 -DNDEBUG" "${launcher[@]}"
 }
 
 build() { # COPY
