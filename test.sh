@@ -36,7 +36,7 @@ case "${1-}" in
 --all)
     install_missing build optional data test check cluster pages
     fetch_bunny
-    build release -DRT_KERNELS=all -DRT_WERROR=ON -DRT_DEBUG_INFO=-g0
+    build release -DRT_KERNELS=all -DRT_WERROR=ON
     run_tests release
     build clang -DRT_WERROR=ON -DRT_DEBUG_INFO=-g0
     run_tests clang -LE 'tree|once|slow|gcc'
