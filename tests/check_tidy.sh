@@ -17,5 +17,7 @@ options=(-p "$build" --quiet --extra-arg=-UNDEBUG --extra-arg=-Wno-ignored-optim
 done
 files=$(grep -o '"file": "[^"]*"' "$build/compile_commands.json" | cut -d '"' -f 4 | grep -v -e /tests/ -e /base/status.c | sort -u)
 # In its second file clang-tidy 14 takes every va_list for uninitialised: those have a process each.
-xargs grep -l va_list <<<"$files" | xargs -P "$(nproc)" -n 1 "$tool" "${options[@]}" 2>/dev/null
-xargs grep -L va_list <<<"$files" | xargs -P "$(nproc)" -n 5 "$tool" "${options[@]}" 2>/dev/null
+status=0
+xargs grep -l va_list <<<"$files" | xargs -P "$(nproc)" -n 1 "$tool" "${options[@]}" 2>/dev/null || status=1
+xargs grep -L va_list <<<"$files" | xargs -P "$(nproc)" -n 5 "$tool" "${options[@]}" 2>/dev/null || status=1
+exit $status

@@ -62,10 +62,11 @@ static void add_cell(Forecast *f, const RateEstimate *rates, uint32_t t, uint32_
     uint64_t stride = c < e->candidate_count ? e->candidates[c].ray_stride : 1;
     bool null = c == e->candidate_count;
     const RtWorkload *setup = &e->workloads[t];
-    double rays = (double)(workload->known ? workload->rays[kind] : e->limit) / (double)stride;
+    double rays = (double)(workload->known ? workload->rays[kind] : e->limit);
     /* A frame that is not recorded yet: one ray of a kind per pixel. */
-    if (!workload->known && setup->width)
-        rays = fmin(rays, (double)setup->width * setup->height / (double)stride);
+    if (!workload->known && setup->width && rt_ray_kind_is_of_frame(kind))
+        rays = fmin(rays, (double)setup->width * setup->height);
+    rays /= (double)stride;
     /* A candidate that was not timed yet: as much time per test and step as the others take. */
     double ray = cell->timed ? cell->wall.median
                              : mean(rates->seconds, rates->rays,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Forecast of the time that an experiment still needs: the number of times that each cell is timed, and the
- * times of the same accelerator on other rays. */
+ * times of the same accelerator on other rays; before it was timed at all, its tests and steps. */
 #ifndef RT_EXPERIMENT_FORECAST_H
 #define RT_EXPERIMENT_FORECAST_H
 
