@@ -13,12 +13,7 @@
 
 /* As many rays as a packet holds, and how many bundles of each sort there are. A sanitizer looks at what is
  * read and written, which is the same in each round. */
-enum { BUNDLE = 64 };
-#if defined(__SANITIZE_ADDRESS__)
-enum { ROUNDS = 1 };
-#else
-enum { ROUNDS = 3 };
-#endif
+enum { BUNDLE = 64, ROUNDS = RT_SHARE(3, 1) };
 
 /* What rays are aimed at: a scene, and the boxes that a structure has of it. */
 typedef struct Target {
