@@ -62,15 +62,15 @@ static inline RtSurfaceRays rt_surface_rays(const RtBox *scene, const RtBox *str
     return served;
 }
 
-/* Whether float32 has enough exponents for this ray, so that its hits are near surfaces. */
-RT_KERNEL bool rt_surface_is_near(const RtPreparedRay *ray) {
-    float longest = fabsf(ray->dir.at[ray->kz]);
-    return longest >= 0x1p-64f && longest <= 0x1p64f;
+/* Whether float32 has enough exponents for a ray whose longest component of dir is this, so that its hits are
+ * near surfaces. */
+RT_KERNEL bool rt_surface_is_near(float longest) {
+    return fabsf(longest) >= 0x1p-64f && fabsf(longest) <= 0x1p64f;
 }
 
 /* Whether cells that list surfaces serve this ray. */
 RT_KERNEL bool rt_surface_serves(const RtSurfaceRays *served, const RtPreparedRay *ray) {
-    bool inside = rt_surface_is_near(ray);
+    bool inside = rt_surface_is_near(ray->dir.at[ray->kz]);
     for (int a = 0; a < 3; a++) {
         float org = ray->org.at[a];
         inside &= org >= served->domain.lo.at[a] && org <= served->domain.hi.at[a];

@@ -2,7 +2,7 @@
 /* The state of one ray in a wide hierarchy, and its visits of nodes and leaves.
  *
  * rt_triangle_hit ends with rt_admit4, which clamps t to the interval [near, far] of the triangle's own thick
- * box. Hits at |t| >= Axes.sure omit it: near <= t <= far holds there, so only tmin <= t <= tmax is left.
+ * box. Hits at |t| >= RayState.sure omit it: near <= t <= far holds there, so only tmin <= t <= tmax is left.
  * Proof. Let e = 2^-24; d = dir, z = kz, x another axis; o = org; D the largest distance along one axis from
  * o to a plane of the box; t > 0. Float32 is relatively exact to e throughout, because 2^-64 <= |d_z| <= 2^64
  * and t |d_z| >= 2^-60 (both within a rounding), so t >= 2^-125 and D >= 2^-61.
@@ -24,39 +24,37 @@
 #ifndef RT_ACCEL_WIDE_RAY_STATE_H
 #define RT_ACCEL_WIDE_RAY_STATE_H
 
-#include "accel/kernel.h"
 #include "accel/surface.h"
 #include "accel/watertight.h"
-#include "accel/wide/wide.h"
+#include "accel/wide/ray_source.h"
 #include "core/base/memory.h"
 
 /* A vector of eight may be written above the top. */
 enum { RT_WIDE_STACK = RT_TREE_MAX_DEPTH * (RT_WIDE - 1) + 2 * RT_WIDE };
 
-/* A ray, prepared for the prefilter: for kx, ky and kz the offset of a vertex's coordinate in a block, in
- * bytes, and the origin; and the shear. */
-typedef struct Axes {
-    uint32_t x, y, z;
-    float org_x, org_y, org_z, shear_x, shear_y;
-    float sure; /* hits at this |t| or more are within the triangle's own thick box (see above) */
-} Axes;
+/* Bytes from a plane of a node to the next, and from a coordinate of a block to the next. */
+enum { PLANE = RT_WIDE * sizeof(float), COORDINATE = RT_WIDE_BLOCK * sizeof(float) };
 
 typedef struct RayState {
-    _Alignas(RT_CACHE_LINE) RtPreparedRay ray;
-    float limit;              /* the best t so far, or tmax */
+    /* Arrays of four have an element more than axes, for vectors. */
+    _Alignas(RT_CACHE_LINE) float inv[4], org_near[4], org_far[4]; /* as in RtPreparedRay */
+    uint32_t near[4], far[4]; /* for each axis the offsets in a node of the planes crossed first and last */
+    float tmin, limit;        /* limit: the best t so far, or tmax */
     RtWideRef next;           /* what it visits next */
     uint32_t top;             /* entries of the stack */
-    uint32_t near[3], far[3]; /* for each axis the offsets in a node of the planes crossed first and last */
-    Axes axes;
+    uint32_t at[3];           /* for kx, ky and kz the offset in a block of a vertex's coordinate, */
+    float org[3];             /* and the origin */
+    float shear_x, shear_y, major; /* major: dir along kz */
+    float sure; /* triangles hit at this |t| or more are hit within their own thick boxes (see above) */
+    float tmax;
     RtHit best;
     size_t index;               /* in the stream */
     RtTally *tally;             /* NULL in the timed kernels */
     float enter[RT_WIDE_STACK]; /* the stack, its top last; at the bottom RT_WIDE_DONE */
     RtWideRef stack[RT_WIDE_STACK];
+    RtPreparedRay ray; /* for hit functions, if it is `prepared` */
+    bool prepared;
 } RayState;
-
-/* Bytes from a plane of a node to the next, and from a coordinate of a block to the next. */
-enum { PLANE = RT_WIDE * sizeof(float), COORDINATE = RT_WIDE_BLOCK * sizeof(float) };
 
 /* Floats from a vertex of a triangle in a block to the next. */
 enum { VERTEX = 3 * RT_WIDE_BLOCK };
@@ -78,36 +76,50 @@ RT_KERNEL bool test_object(const RtGeometry *g, uint32_t id, const RtPreparedRay
     return tally ? object_counted(g, id, ray, any, best, tally) : object_timed(g, id, ray, any, best);
 }
 
+/* The ray of a state, prepared for hit functions. */
+RT_KERNEL const RtPreparedRay *prepare(RayState *f, const Query *q) {
+    if (!f->prepared) rt_hit_ray(&f->ray, q->geometry, &q->rays[f->index], q->scratch->crossings);
+    f->prepared = true;
+    return &f->ray;
+}
+
 /* Prepares a ray for the root. False if it is answered already: the tree is empty, or the ray is too extreme
  * for the boxes of split references and was tested against all objects. */
-RT_KERNEL bool init_ray(RayState *f, const RtWideTree *tree, const RtGeometry *g, const RtScratch *scratch,
-                        const RtRay *ray, size_t index, bool any, RtTally *tally) {
-    const RtPreparedRay *r = &f->ray;
-    rt_hit_ray(&f->ray, g, ray, scratch->crossings);
+RT_KERNEL bool init_ray(RayState *f, const Query *q, size_t index, bool any, RtTally *tally) {
+    const RtRay *ray = &q->rays[index];
+    /* The loads rely on the layout of RtRay: org, tmin, dir, tmax. */
+    const RtFloat4 org = rt_loadu4(ray), dir = rt_loadu4((const char *)ray + offsetof(RtRay, dir));
+    const RtFloat4 inv = 1 / dir;
+    const RtThickOrigins thick = rt_thick_origins(org, dir, &q->geometry->box);
     f->best = RT_MISS;
     f->index = index;
     f->tally = tally;
-    if (tree->node_count == 0) return false;
-    const bool is_near = rt_surface_is_near(r);
-    if (tree->split_refs && !is_near) {
-        rt_test_all(g, &f->ray, any, &f->best, tally);
+    f->prepared = false;
+    if (q->tree->node_count == 0) return false;
+    const int kz = rt_major_axis(ray->dir), kx = rt_next_axis(kz), ky = rt_next_axis(kx);
+    const bool is_near = rt_surface_is_near(ray->dir.at[kz]);
+    if (q->tree->split_refs && !is_near) {
+        rt_test_all(q->geometry, prepare(f, q), any, &f->best, tally);
         return false;
     }
-    f->limit = r->tmax;
-    for (uint32_t a = 0; a < 3; a++) {
-        uint32_t lo = 2 * a * PLANE, hi = lo + PLANE;
-        f->near[a] = r->negative[a] ? hi : lo;
-        f->far[a] = r->negative[a] ? lo : hi;
+    const RtInt4 lo = {0, 2 * PLANE, 4 * PLANE}, down = ((RtInt4)dir < 0) & PLANE;
+    const RtInt4 near = lo + down, far = lo + PLANE - down;
+    memcpy(f->inv, &inv, sizeof f->inv);
+    memcpy(f->org_near, &thick.near, sizeof f->org_near);
+    memcpy(f->org_far, &thick.far, sizeof f->org_far);
+    memcpy(f->near, &near, sizeof f->near);
+    memcpy(f->far, &far, sizeof f->far);
+    f->tmin = ray->tmin;
+    f->limit = f->tmax = rt_minf(ray->tmax, FLT_MAX);
+    const int k[3] = {kx, ky, kz};
+    for (int i = 0; i < 3; i++) {
+        f->at[i] = (uint32_t)k[i] * COORDINATE;
+        f->org[i] = ray->org.at[k[i]];
     }
-    f->axes = (Axes){(uint32_t)r->kx * COORDINATE,
-                     (uint32_t)r->ky * COORDINATE,
-                     (uint32_t)r->kz * COORDINATE,
-                     r->org.at[r->kx],
-                     r->org.at[r->ky],
-                     r->org.at[r->kz],
-                     r->shear_x,
-                     r->shear_y,
-                     is_near ? 0x1p-60f * fabsf(r->inv[r->kz]) : INFINITY};
+    f->shear_x = ray->dir.at[kx] * f->inv[kz];
+    f->shear_y = ray->dir.at[ky] * f->inv[kz];
+    f->major = ray->dir.at[kz];
+    f->sure = is_near ? 0x1p-60f * fabsf(f->inv[kz]) : INFINITY;
     f->enter[0] = -INFINITY;
     f->stack[0] = RT_WIDE_DONE;
     f->top = 1;
@@ -127,11 +139,10 @@ RT_KERNEL RtFloat8 planes(const RtWideNode *node, uint32_t offset) {
 
 /* The mask of children that the ray hits, by rt_box_hit in eight lanes; *enter: where it enters each. */
 RT_KERNEL uint32_t hit_children(const RtWideNode *node, const RayState *f, RtFloat8 *enter) {
-    const RtPreparedRay *r = &f->ray;
-    RtFloat8 near = rt_all8(r->tmin), far = rt_all8(f->limit);
+    RtFloat8 near = rt_all8(f->tmin), far = rt_all8(f->limit);
     for (uint32_t a = 0; a < 3; a++) {
-        near = rt_max((planes(node, f->near[a]) - r->org_near[a]) * r->inv[a], near);
-        far = rt_min((planes(node, f->far[a]) - r->org_far[a]) * r->inv[a], far);
+        near = rt_max((planes(node, f->near[a]) - f->org_near[a]) * f->inv[a], near);
+        far = rt_min((planes(node, f->far[a]) - f->org_far[a]) * f->inv[a], far);
     }
     *enter = near;
     return rt_le_bits(near, far);
@@ -194,76 +205,77 @@ RT_KERNEL RtFloat4 coordinate(const RtWideTriangles *block, int vertex, uint32_t
     return rt_load4((const char *)block->v[vertex] + offset);
 }
 
-RT_KERNEL RtSheared4 shear(const RtWideTriangles *block, const Axes *axes) {
-    const RtShear4 ray = {rt_all4(axes->org_x), rt_all4(axes->org_y), rt_all4(axes->org_z),
-                          rt_all4(axes->shear_x), rt_all4(axes->shear_y)};
+RT_KERNEL RtSheared4 shear(const RtWideTriangles *block, const RayState *f) {
+    const RtShear4 ray = {rt_all4(f->org[0]), rt_all4(f->org[1]), rt_all4(f->org[2]), rt_all4(f->shear_x),
+                          rt_all4(f->shear_y)};
+    const uint32_t *at = f->at;
     RtSheared4 s;
     for (int i = 0; i < 3; i++) {
-        s.x[i] = coordinate(block, i, axes->x);
-        s.y[i] = coordinate(block, i, axes->y);
-        s.z[i] = coordinate(block, i, axes->z);
+        s.x[i] = coordinate(block, i, at[0]);
+        s.y[i] = coordinate(block, i, at[1]);
+        s.z[i] = coordinate(block, i, at[2]);
     }
     rt_shear4(&ray, &s);
     return s;
 }
 
 /* Bit i: triangle i of a block passes the edge-function prefilter. */
-RT_KERNEL uint32_t prefilter_block(const RtWideTriangles *block, const Axes *axes) {
-    const RtSheared4 s = shear(block, axes);
+RT_KERNEL uint32_t prefilter_block(const RtWideTriangles *block, const RayState *f) {
+    const RtSheared4 s = shear(block, f);
     return rt_edge_prefilter4(&s);
 }
 
 /* The same of a leaf: bit i is triangle i of it. */
-RT_KERNEL uint32_t prefilter_leaf(const RtWideTriangles *blocks, RtWideRef ref, const Axes *axes) {
-    uint32_t mask = prefilter_block(&blocks[0], axes);
-    if (rt_wide_count(ref) > RT_WIDE_BLOCK) mask |= prefilter_block(&blocks[1], axes) << RT_WIDE_BLOCK;
+RT_KERNEL uint32_t prefilter_leaf(const RtWideTriangles *blocks, RtWideRef ref, const RayState *f) {
+    uint32_t mask = prefilter_block(&blocks[0], f);
+    if (rt_wide_count(ref) > RT_WIDE_BLOCK) mask |= prefilter_block(&blocks[1], f) << RT_WIDE_BLOCK;
     return mask;
 }
 
 /* The last step of rt_triangle_hit for one triangle of a block. */
-RT_KERNEL bool admit(const float *triangle, const Axes *axes, const RtPreparedRay *ray, float *t) {
-    if (fabsf(*t) >= axes->sure) return *t >= ray->tmin && *t <= ray->tmax;
+RT_KERNEL bool admit(const float *triangle, RayState *f, const Query *q, float *t) {
+    if (fabsf(*t) >= f->sure) return *t >= f->tmin && *t <= f->tmax;
     RtFloat4 a = rt_triangle_vertex(triangle, RT_WIDE_BLOCK);
     RtFloat4 b = rt_triangle_vertex(triangle + VERTEX, RT_WIDE_BLOCK);
     RtFloat4 c = rt_triangle_vertex(triangle + (size_t)2 * VERTEX, RT_WIDE_BLOCK);
-    return rt_admit4(rt_min(rt_min(a, b), c), rt_max(rt_max(a, b), c), ray, t);
+    return rt_admit4(rt_min(rt_min(a, b), c), rt_max(rt_max(a, b), c), prepare(f, q), t);
 }
 
 /* Tests the triangles `mask` of a block in full; true if the search is over. */
-RT_KERNEL bool test_block(const RtWideTriangles *block, uint32_t mask, const Axes *axes,
-                          const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
+RT_KERNEL bool test_block(const RtWideTriangles *block, uint32_t mask, RayState *f, const Query *q, bool any,
+                          RtTally *tally) {
     float at[RT_WIDE_BLOCK];
     RtFloat4 t;
-    const RtSheared4 s = shear(block, axes);
-    mask &= rt_cross4(&s, rt_all4(ray->dir.at[ray->kz]), &t);
+    const RtSheared4 s = shear(block, f);
+    mask &= rt_cross4(&s, rt_all4(f->major), &t);
     rt_store(at, t);
     for (; mask; mask &= mask - 1) {
         uint32_t lane = (uint32_t)__builtin_ctz(mask);
-        if (!admit(&block->v[0][0][lane], axes, ray, &at[lane])) continue;
+        if (!admit(&block->v[0][0][lane], f, q, &at[lane])) continue;
         RT_COUNT(tally, object_hits, 1);
         RT_OBSERVE(tally, .kind = RT_TRACED_OBJECT_HIT, .index = block->id[lane], .t = at[lane]);
-        if (rt_hit_before(at[lane], block->id[lane], *best)) *best = (RtHit){at[lane], block->id[lane]};
+        if (rt_hit_before(at[lane], block->id[lane], f->best)) f->best = (RtHit){at[lane], block->id[lane]};
         if (any) return true;
     }
     return false;
 }
 
 /* The same of a leaf. */
-RT_KERNEL bool test_triangles(const RtWideTriangles *blocks, uint32_t mask, const Axes *axes,
-                              const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
+RT_KERNEL bool test_triangles(const RtWideTriangles *blocks, uint32_t mask, RayState *f, const Query *q,
+                              bool any, RtTally *tally) {
     for (; mask; mask >>= RT_WIDE_BLOCK, blocks++) {
         uint32_t some = mask & ((1u << RT_WIDE_BLOCK) - 1);
-        if (some && test_block(blocks, some, axes, ray, any, best, tally)) return true;
+        if (some && test_block(blocks, some, f, q, any, tally)) return true;
     }
     return false;
 }
 
 /* Tests the objects of another leaf; true if the search is over. */
-RT_KERNEL bool test_objects(const RtWideTree *tree, const RtGeometry *g, RtWideRef ref,
-                            const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
-    const RtWideList *list = rt_wide_leaf_at(tree, ref);
+RT_KERNEL bool test_objects(const Query *q, RtWideRef ref, const RtPreparedRay *ray, bool any, RtHit *best,
+                            RtTally *tally) {
+    const RtWideList *list = rt_wide_leaf_at(q->tree, ref);
     for (uint32_t i = 0; i < rt_wide_count(ref); i++) {
-        if (test_object(g, list->id[i], ray, any, best, tally)) return true;
+        if (test_object(q->geometry, list->id[i], ray, any, best, tally)) return true;
     }
     return false;
 }
@@ -292,7 +304,7 @@ RT_KERNEL void count_leaf(RtTally *tally, const RtWideTree *tree, const RtGeomet
 /* After a leaf: drops the stack entries that are entered beyond the best hit, so entries need no test when
  * they are popped. */
 RT_KERNEL void cull_stack(RayState *f) {
-    float limit = rt_minf(f->best.t, f->ray.tmax);
+    float limit = rt_minf(f->best.t, f->tmax);
     if (!(limit < f->limit)) return;
     f->limit = limit;
     uint32_t kept = 1, top = f->top;

@@ -12,7 +12,6 @@
 #ifndef RT_ACCEL_WIDE_STREAM_H
 #define RT_ACCEL_WIDE_STREAM_H
 
-#include "accel/wide/ray_source.h"
 #include "accel/wide/ray_state.h"
 
 /* Writes the answer of a ray. */
@@ -68,9 +67,9 @@ RT_KERNEL void trace_one(const Query *q, RayState *f, bool any, bool counted) {
         count_leaf(tally, &tree, q->geometry, ref);
         if (rt_wide_kind(ref) == RT_WIDE_TRIANGLES) {
             const RtWideTriangles *blocks = rt_wide_leaf_at(&tree, ref);
-            uint32_t mask = prefilter_leaf(blocks, ref, &f->axes);
-            if (test_triangles(blocks, mask, &f->axes, &f->ray, any, &f->best, tally)) return;
-        } else if (test_objects(&tree, q->geometry, ref, &f->ray, any, &f->best, tally)) {
+            uint32_t mask = prefilter_leaf(blocks, ref, f);
+            if (test_triangles(blocks, mask, f, q, any, tally)) return;
+        } else if (test_objects(q, ref, prepare(f, q), any, &f->best, tally)) {
             return;
         }
         if (!any) f->limit = rt_minf(f->best.t, f->limit);
@@ -82,8 +81,7 @@ RT_KERNEL void trace_one_by_one(const Query *q, size_t count, bool any, bool cou
     RayState *f = q->scratch->own;
     for (size_t i = 0; i < count; i++) {
         RtTally *tally = counted ? &q->tallies[q->rays[i].kind] : NULL;
-        if (init_ray(f, q->tree, q->geometry, q->scratch, &q->rays[i], i, any, tally))
-            trace_one(q, f, any, counted);
+        if (init_ray(f, q, i, any, tally)) trace_one(q, f, any, counted);
         finish_ray(q, f, any, counted);
     }
 }
@@ -152,7 +150,7 @@ RT_KERNEL uint32_t prefilter_leaves(const Query *q, RayQueues *t, Candidates *fo
     for (uint32_t i = 0; i < n; i++) {
         RayState *f = t->list[RT_WIDE_TRIANGLES][i];
         if (counted) count_leaf(f->tally, &tree, q->geometry, f->next);
-        masks[i] = prefilter_leaf(rt_wide_leaf_at(&tree, f->next), f->next, &f->axes);
+        masks[i] = prefilter_leaf(rt_wide_leaf_at(&tree, f->next), f->next, f);
     }
     for (uint32_t i = 0; i < n; i++) {
         RayState *f = t->list[RT_WIDE_TRIANGLES][i];
@@ -182,8 +180,7 @@ RT_KERNEL void visit_objects(const Query *q, RayQueues *t, bool any, bool counte
         RayState *f = t->list[RT_WIDE_OBJECTS][i];
         RtTally *tally = counted ? f->tally : NULL;
         count_leaf(tally, q->tree, q->geometry, f->next);
-        finish_leaf(q, t, f, test_objects(q->tree, q->geometry, f->next, &f->ray, any, &f->best, tally), any,
-                    ahead);
+        finish_leaf(q, t, f, test_objects(q, f->next, prepare(f, q), any, &f->best, tally), any, ahead);
     }
 }
 
@@ -192,7 +189,7 @@ RT_KERNEL void start_next_ray(const Query *q, RayQueues *t, RayState *f, bool an
     while (more_rays(q)) {
         size_t i = q->source->index[q->source->taken++];
         RtTally *tally = counted ? &q->tallies[q->rays[i].kind] : NULL;
-        if (init_ray(f, q->tree, q->geometry, q->scratch, &q->rays[i], i, any, tally)) {
+        if (init_ray(f, q, i, any, tally)) {
             t->in_flight++;
             enqueue(t, q->tree, f, 0, 1, ahead);
             return;
@@ -213,8 +210,7 @@ RT_KERNEL void trace_many(const Query *q, bool any, bool counted) {
         for (uint32_t i = 0; i < n; i++) {
             RayState *f = candidates[i].state;
             const RtWideTriangles *blocks = rt_wide_leaf_at(q->tree, f->next);
-            bool over = test_triangles(blocks, candidates[i].mask, &f->axes, &f->ray, any, &f->best,
-                                       counted ? f->tally : NULL);
+            bool over = test_triangles(blocks, candidates[i].mask, f, q, any, counted ? f->tally : NULL);
             finish_leaf(q, &t, f, over, any, ahead);
         }
         if (t.count[RT_WIDE_OBJECTS]) visit_objects(q, &t, any, counted, ahead);
