@@ -8,8 +8,8 @@ chosen(s, a, k) = strcol("scene") eq word(scenes, s) && strcol("accel") eq word(
 height(a, k) = n_accels - a + 0.14 * (0.5 * (n_kinds + 1) - k)
 
 set logscale x
-set xrange [0.12 : 1.8]
-set xtics ("⅛" 0.125, "¼" 0.25, "½" 0.5, "1" 1, "1.5" 1.5)
+set xrange [0.035 : 1.8]
+set xtics ("1/16" 0.0625, "⅛" 0.125, "¼" 0.25, "½" 0.5, "1" 1, "1.5" 1.5)
 set yrange [-0.5 : n_accels - 1.5]
 set grid xtics ytics
 set bars small

@@ -6,4 +6,7 @@ accels = "wide no-packets packets-always one-packet-at-a-time 4-rays-in-flight o
 colors = "#0072b2 #003f62 #3992c3 #00588a #1d82bb #004c76 #56a2cc #00659e #0e7ab6 #00456c #489ac8 #005f94 #2b8abf #005280 #64aad0 "
 markers = "7 5 9 11 13 6 4 8 10 12 7 5 9 11 13 "
 dashes = "1 1 1 1 1 1 1 1 1 1 2 2 2 2 2 "
+groups = "\"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" "
+without = ""
+among = ""
 kinds = "primary shadow diffuse occlusion random "
