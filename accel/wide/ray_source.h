@@ -114,10 +114,8 @@ RT_KERNEL uint32_t meet_root(const Query *q, const RtRay rays[RT_LANES]) {
 /* Answers a block of rays with a miss until they are traced. */
 RT_KERNEL void miss_all(const Query *q, size_t first, uint32_t count) {
     for (uint32_t i = 0; i < count; i++) {
-        if (q->hits)
-            q->hits[first + i] = RT_MISS;
-        else
-            q->occluders[first + i] = RT_NO_OBJECT;
+        if (q->hits) q->hits[first + i] = RT_MISS;
+        if (q->occluders) q->occluders[first + i] = RT_NO_OBJECT;
     }
 }
 

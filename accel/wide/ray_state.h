@@ -37,7 +37,8 @@ enum { PLANE = RT_WIDE * sizeof(float), COORDINATE = RT_WIDE_BLOCK * sizeof(floa
 
 typedef struct RayState {
     /* Arrays of four have an element more than axes, for vectors. */
-    _Alignas(RT_CACHE_LINE) float inv[4], org_near[4], org_far[4]; /* as in RtPreparedRay */
+    _Alignas(RT_CACHE_LINE) float inv[4]; /* this, and what follows, as in RtPreparedRay */
+    float org_near[4], org_far[4];
     uint32_t near[4], far[4]; /* for each axis the offsets in a node of the planes crossed first and last */
     float tmin, limit;        /* limit: the best t so far, or tmax */
     RtWideRef next;           /* what it visits next */
@@ -47,14 +48,18 @@ typedef struct RayState {
     float shear_x, shear_y, major; /* major: dir along kz */
     float sure; /* triangles hit at this |t| or more are hit within their own thick boxes (see above) */
     float tmax;
+    bool prepared; /* `ray` is */
     RtHit best;
     size_t index;               /* in the stream */
     RtTally *tally;             /* NULL in the timed kernels */
     float enter[RT_WIDE_STACK]; /* the stack, its top last; at the bottom RT_WIDE_DONE */
     RtWideRef stack[RT_WIDE_STACK];
-    RtPreparedRay ray; /* for hit functions, if it is `prepared` */
-    bool prepared;
+    RtPreparedRay ray; /* for hit functions */
+    char apart[RT_CACHE_LINE];
 } RayState;
+
+/* States in an array would compete for the same lines of the cache. */
+_Static_assert(sizeof(RayState) % 4096 >= RT_CACHE_LINE, "states do not lie pages apart");
 
 /* Floats from a vertex of a triangle in a block to the next. */
 enum { VERTEX = 3 * RT_WIDE_BLOCK };

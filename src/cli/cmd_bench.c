@@ -168,8 +168,7 @@ static const RtOption options[] = {
      "Also write each ray's hit for NumPy, a row per ray: t and object (inf and -1 for a miss); for shadow "
      "and occlusion rays whether the ray is blocked. Takes one --accel and one kind of --rays"},
     {"counts", 0, "FILE.npy", RT_TO_TEXT(workload.counts),
-     "Also write each ray's cost for NumPy, a row per ray and a field per counter. Each ray is traced alone: "
-     "for accelerators whose rays share visits (wide) the rows sum to more than the table shows"},
+     "Also write each ray's cost for NumPy, a row per ray and a field per counter"},
     {"json", 0, NULL, RT_TO_FLAG(json), "One JSON document on stdout instead of the table"},
     {"rays-from", 0, "FILE.npy", RT_TO_TAKE(take_rays_from),
      "Measure the rays of FILE instead of recorded ones: an array of float32 of shape (N, 8) as `raytally "
