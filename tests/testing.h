@@ -16,7 +16,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#if !defined(RT_SANITIZED) /* 1 in the presets of CMakePresets.json that have a sanitizer */
+#if !defined(RT_SANITIZED) /* CMakeLists.txt: 1 with a sanitizer */
 #define RT_SANITIZED 0
 #endif
 

@@ -95,7 +95,6 @@ RT_KERNEL bool init_ray(RayState *f, const Query *q, size_t index, bool any, RtT
     /* The loads rely on the layout of RtRay: org, tmin, dir, tmax. */
     const RtFloat4 org = rt_loadu4(ray), dir = rt_loadu4((const char *)ray + offsetof(RtRay, dir));
     const RtFloat4 inv = 1 / dir;
-    const RtThickOrigins thick = rt_thick_origins(org, dir, &q->geometry->box);
     f->best = RT_MISS;
     f->index = index;
     f->tally = tally;
@@ -110,8 +109,7 @@ RT_KERNEL bool init_ray(RayState *f, const Query *q, size_t index, bool any, RtT
     const RtInt4 lo = {0, 2 * PLANE, 4 * PLANE}, down = ((RtInt4)dir < 0) & PLANE;
     const RtInt4 near = lo + down, far = lo + PLANE - down;
     memcpy(f->inv, &inv, sizeof f->inv);
-    memcpy(f->org_near, &thick.near, sizeof f->org_near);
-    memcpy(f->org_far, &thick.far, sizeof f->org_far);
+    rt_thick_origins(org, dir, &q->geometry->box, f->org_near, f->org_far);
     memcpy(f->near, &near, sizeof f->near);
     memcpy(f->far, &far, sizeof f->far);
     f->tmin = ray->tmin;

@@ -346,7 +346,7 @@ void rt_draw_scale(cairo_t *cairo, double x, double y, double width, const RtSca
     }
 }
 
-#if defined(RT_SANITIZED) /* by CMakePresets.json */
+#if defined(RT_SANITIZED)
 /* fontconfig keeps its fonts until the process ends. */
 __attribute__((visibility("default"))) const char *__lsan_default_suppressions(void);
 const char *__lsan_default_suppressions(void) {

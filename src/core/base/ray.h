@@ -141,22 +141,19 @@ static inline RtFloat4 rt_shift4(float thickness, RtFloat4 org, RtInt4 sign) {
     return (RtFloat4)((RtInt4)shift ^ sign);
 }
 
-/* Origins moved by the thickness for boxes inside `around`. */
-typedef struct RtThickOrigins {
-    RtFloat4 near, far;
-} RtThickOrigins;
-
-static inline RtThickOrigins rt_thick_origins(RtFloat4 org, RtFloat4 dir, const RtBox *around) {
+/* Moves an origin by the thickness for boxes inside `around`: near and far, as in RtPreparedRay. */
+static inline void rt_thick_origins(RtFloat4 org, RtFloat4 dir, const RtBox *around, float near[4],
+                                    float far[4]) {
     float thickness = rt_thickness4(rt_box_lo4(around), rt_box_hi4(around), org);
     RtFloat4 shift = rt_shift4(thickness, org, (RtInt4)dir & INT32_MIN);
-    return (RtThickOrigins){org + shift, org - shift};
+    RtFloat4 ahead = org + shift, back = org - shift;
+    memcpy(near, &ahead, sizeof ahead);
+    memcpy(far, &back, sizeof back);
 }
 
 /* Sets the thickness for boxes inside `around`. */
 static inline void rt_ray_thicken(RtPreparedRay *ray, const RtBox *around) {
-    RtThickOrigins thick = rt_thick_origins(rt_loadu4(&ray->org), rt_loadu4(&ray->dir), around);
-    memcpy(ray->org_near, &thick.near, sizeof ray->org_near);
-    memcpy(ray->org_far, &thick.far, sizeof ray->org_far);
+    rt_thick_origins(rt_loadu4(&ray->org), rt_loadu4(&ray->dir), around, ray->org_near, ray->org_far);
 }
 
 /* Prepares *p. `scene_box` must contain every box that the ray will be tested against; it sets the
@@ -167,7 +164,6 @@ static inline void rt_ray_prepare_in(RtPreparedRay *p, const RtRay *ray, const R
     /* The loads rely on the layout of RtRay: org, tmin, dir, tmax. */
     RtFloat4 org = rt_loadu4(ray), dir = rt_loadu4((const char *)ray + offsetof(RtRay, dir)), inv = 1 / dir;
     RtInt4 negative = (RtInt4)dir < 0;
-    RtThickOrigins thick = rt_thick_origins(org, dir, scene_box);
     RtInt4 first = (RtInt4){0, 4, 8, 8} + (negative & 12), last = (RtInt4){12, 16, 20, 20} - (negative & 12);
     negative &= 1;
     p->original = ray;
@@ -175,8 +171,7 @@ static inline void rt_ray_prepare_in(RtPreparedRay *p, const RtRay *ray, const R
     p->org = ray->org;
     p->dir = ray->dir;
     memcpy(p->inv, &inv, sizeof p->inv);
-    memcpy(p->org_near, &thick.near, sizeof p->org_near);
-    memcpy(p->org_far, &thick.far, sizeof p->org_far);
+    rt_thick_origins(org, dir, scene_box, p->org_near, p->org_far);
     memcpy(p->negative, &negative, sizeof p->negative);
     memcpy(p->first, &first, sizeof p->first);
     memcpy(p->last, &last, sizeof p->last);
