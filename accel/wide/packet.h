@@ -121,7 +121,7 @@ RT_KERNEL void begin_sorting(Sorter *s, int32_t count) {
 
 /* Sorts until a class fills a packet, and returns it. When all rays are sorted, returns any class that has
  * rays, or CLASSES. */
-RT_KERNEL uint32_t sort_rays(Sorter *s, const Query *q) {
+static __attribute__((noinline)) uint32_t sort_rays(Sorter *s, const Query *q) {
     RaySource *from = q->source;
     while (s->left > 0 && more_rays(q)) {
         const uint32_t *index = &from->index[from->taken];
@@ -251,7 +251,7 @@ RT_KERNEL void test_extreme_rays(Packet *p, const Query *q, bool any) {
 }
 
 /* Makes a packet of up to PACKET rays of a class, which is not empty. */
-RT_KERNEL void init_packet(Packet *p, const Query *q, Sorter *s, uint32_t class, bool any) {
+static __attribute__((noinline)) void init_packet(Packet *p, const Query *q, Sorter *s, uint32_t class, bool any) {
     uint32_t *list = s->list[class], count = s->count[class] < PACKET ? s->count[class] : PACKET;
     assert(count > 0);
     p->count = count;

@@ -14,11 +14,11 @@ RT_KERNEL size_t place_of(int vertex, uint32_t axis) {
     return ((size_t)vertex * 3 + axis) * RT_WIDE_BLOCK;
 }
 
-/* Appends the pairs of `passed`. */
-RT_KERNEL void add_pairs(Packet *p, uint32_t passed, RtInts rays, RtInts triangles) {
-    rt_compress_store(&p->pair_ray[p->pair_count], passed, rays);
-    rt_compress_store(&p->pair_triangle[p->pair_count], passed, triangles);
-    p->pair_count += (uint32_t)__builtin_popcount(passed);
+/* Appends the pairs of `passed` behind `count` others; returns how many there are then. */
+RT_KERNEL uint32_t add_pairs(Packet *p, uint32_t count, uint32_t passed, RtInts rays, RtInts triangles) {
+    rt_compress_store(&p->pair_ray[count], passed, rays);
+    rt_compress_store(&p->pair_triangle[count], passed, triangles);
+    return count + (uint32_t)__builtin_popcount(passed);
 }
 
 /* Adds to the pairs of rays with triangles of a block, which lies `at` floats from the arena's start, those
@@ -31,6 +31,7 @@ RT_KERNEL void prefilter_rays(Packet *p, const RtWideTriangles *block, uint32_t 
         corners.y[i] = rt_repeat4(coordinate(block, i, p->ky * COORDINATE));
         corners.z[i] = rt_repeat4(coordinate(block, i, p->kz * COORDINATE));
     }
+    uint32_t pairs = p->pair_count;
     prepare_prefilter(p);
     do {
         const float *at_place[RT_GROUPS], *at_shear[RT_GROUPS];
@@ -44,8 +45,9 @@ RT_KERNEL void prefilter_rays(Packet *p, const RtWideTriangles *block, uint32_t 
                              rt_spread4(more, 0), rt_spread4(more, 1)};
         RtSheared s = corners;
         rt_shear(&ray, &s);
-        add_pairs(p, rt_edge_prefilter(&s), (RtInts)rt_spread4(more, 2), triangles);
+        pairs = add_pairs(p, pairs, rt_edge_prefilter(&s), (RtInts)rt_spread4(more, 2), triangles);
     } while (rays);
+    p->pair_count = pairs;
 }
 
 /* With at least so many rays of a beam, a block is tested triangle by triangle. */
@@ -54,25 +56,27 @@ enum { MANY_RAYS = 6 };
 /* The same as prefilter_rays for rays of beam b, with `count` triangles. */
 RT_KERNEL void prefilter_beam(Packet *p, const RtWideTriangles *block, uint32_t at, uint32_t count,
                               uint32_t b, uint32_t rays) {
-    for (uint32_t k = 0; k < count; k++) {
-        const float *triangle = &block->v[0][0][k];
-        RtSheared corners;
-        for (int i = 0; i < 3; i++) {
-            corners.x[i] = rt_all(triangle[place_of(i, p->kx)]);
-            corners.y[i] = rt_all(triangle[place_of(i, p->ky)]);
-            corners.z[i] = rt_all(triangle[place_of(i, p->kz)]);
-        }
-        for (uint32_t lane = 0; lane < BEAM; lane += RT_LANES) {
-            size_t first = first_of(b) + lane;
-            const RtShear ray = {rt_load(&p->org[p->kx][first]), rt_load(&p->org[p->ky][first]),
-                                 rt_load(&p->org[p->kz][first]), rt_load(&p->shear_x[first]),
-                                 rt_load(&p->shear_y[first])};
-            RtSheared s = corners;
+    uint32_t pairs = p->pair_count;
+    for (uint32_t lane = 0; lane < BEAM; lane += RT_LANES) {
+        const size_t first = first_of(b) + lane;
+        const RtInts numbers = rt_lane_numbers() + (int32_t)first;
+        const RtShear ray = {rt_load(&p->org[p->kx][first]), rt_load(&p->org[p->ky][first]),
+                             rt_load(&p->org[p->kz][first]), rt_load(&p->shear_x[first]),
+                             rt_load(&p->shear_y[first])};
+        for (uint32_t k = 0; k < count; k++) {
+            const float *triangle = &block->v[0][0][k];
+            RtSheared s;
+            for (int i = 0; i < 3; i++) {
+                s.x[i] = rt_all(triangle[place_of(i, p->kx)]);
+                s.y[i] = rt_all(triangle[place_of(i, p->ky)]);
+                s.z[i] = rt_all(triangle[place_of(i, p->kz)]);
+            }
             rt_shear(&ray, &s);
-            add_pairs(p, rays >> lane & rt_edge_prefilter(&s), rt_lane_numbers() + (int32_t)first,
-                      rt_all_ints((int32_t)(at + k)));
+            pairs = add_pairs(p, pairs, rays >> lane & rt_edge_prefilter(&s), numbers,
+                              rt_all_ints((int32_t)(at + k)));
         }
     }
+    p->pair_count = pairs;
 }
 
 /* ---- the full test ---- */

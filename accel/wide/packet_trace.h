@@ -105,7 +105,7 @@ RT_KERNEL bool test_together(ChildSets *met, const Planes *planes, const Packet 
     }
     const uint32_t children =
         beam->tight ? rt_mask8_bits(test_beam(planes, beam, &near)) : (1u << node->count) - 1;
-    if ((uint32_t)__builtin_popcount(children) * (BEAM / RT_LANES) >= active) return false;
+    if ((uint32_t)__builtin_popcount(children) * 2 * (BEAM / RT_LANES) >= active) return false;
     test_lanes(&met->rays, p, node, b, rays, children);
     return true;
 }
