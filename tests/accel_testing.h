@@ -31,6 +31,16 @@ static inline void *open_accel(const RtScene *scene, const char *spec) {
     return accel;
 }
 
+/* The same; NULL if this machine or this build cannot build it. */
+static inline void *open_available(const RtScene *scene, const char *spec, int threads) {
+    RtAccel *accel = NULL;
+    RtError problem;
+    RtStatus status = rt_accel_open_on(spec, scene, threads, &accel, &problem);
+    if (status != RT_OK && status != RT_NOT_AVAILABLE)
+        fail_msg("%s on %d threads: %s", spec, threads, problem.message);
+    return accel;
+}
+
 /* The same, and asserts that the structure is valid. */
 static inline void *open_valid(const RtScene *scene, const char *spec) {
     RtAccel *accel = open_accel(scene, spec);
