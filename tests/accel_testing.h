@@ -164,10 +164,4 @@ static inline RtRay shadow_ray(const RtScene *scene, RtVec3 from, uint32_t light
                    .source = light};
 }
 
-/* For groups of tests that leave nothing behind. */
-static inline int assert_nothing_is_kept(void **state) {
-    (void)state;
-    return rt_alloc_live() == 0 ? 0 : -1;
-}
-
 #endif

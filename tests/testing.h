@@ -10,6 +10,8 @@
 
 #include <cmocka.h>
 
+#include "core/base/memory.h"
+
 #include <glob.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -71,6 +73,12 @@ static inline void rt_test_add(int line, struct CMUnitTest test) {
     RT_TEST_GROUP(name) {                                                                                    \
         return RT_RUN_TESTS(#name, setup, teardown);                                                         \
     }
+
+/* The teardown of a group that leaves nothing behind. */
+static inline int assert_nothing_is_kept(void **state) {
+    (void)state;
+    return rt_alloc_live() == 0 ? 0 : -1;
+}
 
 /* Ends a test that cannot be done here, which ./test.sh lists with what would bring it in. */
 #define RT_SKIP(needs)                                                                                       \

@@ -346,9 +346,4 @@ RT_TEST(the_cells_around_a_light_are_drawn_and_a_light_without_cells_is_refused)
     rt_scene_clear(&scene);
 }
 
-static int nothing_is_kept(void **state) {
-    (void)state;
-    return rt_alloc_live() == 0 ? 0 : -1;
-}
-
-RT_TESTS(structure, NULL, nothing_is_kept)
+RT_TESTS(structure, NULL, assert_nothing_is_kept)

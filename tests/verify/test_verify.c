@@ -384,9 +384,4 @@ RT_TEST(rows_add_up_over_the_parameters_of_an_accelerator) {
     json_decref(rows);
 }
 
-static int nothing_is_kept(void **state) {
-    (void)state;
-    return rt_alloc_live() == 0 ? 0 : -1;
-}
-
-RT_TESTS(verify, NULL, nothing_is_kept)
+RT_TESTS(verify, NULL, assert_nothing_is_kept)
