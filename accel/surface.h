@@ -44,6 +44,8 @@
 
 #define RT_SURFACE_SIDES      8
 #define RT_SURFACE_LEAST_SIDE 0x1p-50
+#define RT_SURFACE_LEAST_DIR  0x1p-64f
+#define RT_SURFACE_MOST_DIR   0x1p64f
 
 typedef struct RtSurfaceRays {
     RtBox domain;  /* of the origins of rays that cells of surfaces serve */
@@ -65,7 +67,7 @@ static inline RtSurfaceRays rt_surface_rays(const RtBox *scene, const RtBox *str
 /* Whether float32 has enough exponents for a ray whose longest component of dir is this, so that its hits are
  * near surfaces. */
 RT_KERNEL bool rt_surface_is_near(float longest) {
-    return fabsf(longest) >= 0x1p-64f && fabsf(longest) <= 0x1p64f;
+    return fabsf(longest) >= RT_SURFACE_LEAST_DIR && fabsf(longest) <= RT_SURFACE_MOST_DIR;
 }
 
 /* Whether cells that list surfaces serve this ray. */

@@ -31,6 +31,16 @@ static inline void *open_accel(const RtScene *scene, const char *spec) {
     return accel;
 }
 
+/* The same; NULL if this machine or this build cannot build it. */
+static inline void *open_available(const RtScene *scene, const char *spec, int threads) {
+    RtAccel *accel = NULL;
+    RtError problem;
+    RtStatus status = rt_accel_open_on(spec, scene, threads, &accel, &problem);
+    if (status != RT_OK && status != RT_NOT_AVAILABLE)
+        fail_msg("%s on %d threads: %s", spec, threads, problem.message);
+    return accel;
+}
+
 /* The same, and asserts that the structure is valid. */
 static inline void *open_valid(const RtScene *scene, const char *spec) {
     RtAccel *accel = open_accel(scene, spec);
@@ -65,9 +75,7 @@ static inline RtStatus try_accel(const RtScene *scene, const char *spec, RtError
 
 /* Asserts that validate of this layer refuses it with a message that contains `phrase`. */
 static inline void assert_broken(const RtAccel *accel, const char *phrase) {
-    RtError error = {RT_OK, ""};
-    assert_int_equal(accel->ops->validate(accel, &error), RT_MISMATCH);
-    if (!strstr(error.message, phrase)) fail_msg("'%s' does not say '%s'", error.message, phrase);
+    assert_fails_with(accel->ops->validate(accel, error), RT_MISMATCH, phrase);
 }
 
 /* The same while `member` of its structure is `wrong`. */
@@ -154,12 +162,6 @@ static inline RtRay shadow_ray(const RtScene *scene, RtVec3 from, uint32_t light
                    .tmax = 1,
                    .kind = RT_RAY_SHADOW,
                    .source = light};
-}
-
-/* For groups of tests that leave nothing behind. */
-static inline int assert_nothing_is_kept(void **state) {
-    (void)state;
-    return rt_alloc_live() == 0 ? 0 : -1;
 }
 
 #endif

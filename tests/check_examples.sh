@@ -5,15 +5,8 @@
 # one origin for both kinds of planes. examples/header-only explains how to get what it needs, and is built and verified if
 # $BVH_DIR is a copy of madmann91/bvh.
 set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/testing.sh"
 cd "$(dirname "$0")/.."
-program=${RT_PROGRAM:-build/release/raytally}
-work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
-status=0
-
-complain() {
-    echo "$*" >&2
-    status=1
-}
 
 # builds COMPILER STANDARD SOURCE NAME [OPTION...]: to $work/NAME.so; false without this compiler
 builds() {
@@ -80,4 +73,4 @@ if command -v cmake >/dev/null; then
     cmake -S examples/header-only -B "$work/build" >"$work/log" 2>&1 && complain "header-only is made without BVH_DIR"
     grep -q 'git clone https://' "$work/log" || complain "header-only does not say how to get what it needs: $(cat "$work/log")"
 fi
-exit "$status"
+conclude

@@ -14,20 +14,14 @@
 # Links into the tree must exist. Prints all failures, and how many blocks were run, compared and skipped; exit
 # code 1 if anything failed.
 set -uo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/testing.sh"
 here=$PWD
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 2
 root=$PWD
-program=$(cd "$here" && realpath "${RT_PROGRAM:-$root/build/release/raytally}")
 [ -x "$program" ] || { echo "check_guide: no program $program" >&2 && exit 2; }
-work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 mkdir "$work/bin" && ln -s "$program" "$work/bin/raytally"
 export PATH=$work/bin:$PATH
-slow=no patience=300 failures=0 ran=0 compared=0 left_slow=0 lacking=()
-
-complain() {
-    printf '%s\n' "$*" >&2
-    failures=$((failures + 1))
-}
+slow=no patience=300 ran=0 compared=0 left_slow=0 lacking=()
 
 # available X: for needs=X
 available() {

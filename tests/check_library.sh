@@ -6,18 +6,13 @@
 # counts what the program counts, also after the prefix was moved; doxygen finds a description of every declaration. Skipped
 # (77) without cmake, pkg-config or nm; checks whose tools are missing are reported and skipped.
 set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/testing.sh"
 cd "$(dirname "$0")/.."
-build=$(cd "$(dirname "${RT_PROGRAM:-build/release/raytally}")" && pwd)
+build=$(dirname "$program")
 for tool in cmake pkg-config nm; do
     command -v "$tool" >/dev/null || { echo "skipped: the installed library; needs $tool" && exit 77; }
 done
-work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
-prefix=$work/first status=0
-
-complain() {
-    echo "$*" >&2
-    status=1
-}
+prefix=$work/first
 
 # quietly WHAT COMMAND...: if it fails, prints WHAT and its output
 quietly() {
@@ -139,4 +134,4 @@ if command -v doxygen >/dev/null; then
 else
     echo "check_library: doxygen is not installed: what it says of the headers is not checked" >&2
 fi
-exit $status
+conclude

@@ -3,16 +3,9 @@
 # check_man.sh: cmake/man_pages.sh makes a manual page for raytally and one for each command, with its options, and neither man
 # nor mandoc (if available) reports a problem. Uses $RT_PROGRAM. Skipped (77) without help2man.
 set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/testing.sh"
 cd "$(dirname "$0")/.."
-program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
 command -v help2man >/dev/null || { echo 'skipped: manual pages; needs help2man' && exit 77; }
-work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
-status=0
-
-complain() {
-    echo "$*" >&2
-    status=1
-}
 
 mkdir "$work/bin" && ln -s "$program" "$work/bin/raytally"
 cmake/man_pages.sh "$work/bin/raytally" "$work/man"
@@ -32,4 +25,4 @@ for command in '' $("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\
         [ -z "$faults" ] || complain "$name: mandoc says: $faults"
     fi
 done
-exit $status
+conclude

@@ -4,36 +4,11 @@
 # it. A run resumes with other plugins loaded; if its own plugin has changed (here by a byte after the library), both builds are
 # named, and --renew measures only its cells again. Uses $RT_PROGRAM, in its build folder, and python3.
 set -uo pipefail
-program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
+. "$(dirname "${BASH_SOURCE[0]}")/testing.sh"
 plugins=$(dirname "$program")/plugins
 command -v python3 >/dev/null || { echo 'skipped: results of plugins; needs python3' && exit 77; }
-work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 2
 unset RAYTALLY_PLUGINS
-failures=0
-
-complain() {
-    printf '%s\n' "$*" >&2
-    failures=$((failures + 1))
-}
-
-# ends CODE ARGUMENT...: runs raytally, and checks its exit code; its output goes to `said`, and on one line to `line`
-ends() {
-    local wanted=$1 code=0
-    shift
-    timeout 120 "$program" "$@" >said 2>&1 </dev/null || code=$?
-    [ "$code" = "$wanted" ] || complain "raytally $*: exit code $code, not $wanted: $(cat said)"
-    tr '\n' ' ' <said >line
-    last=$*
-}
-
-# says PATTERN, says_not PATTERN: an extended regular expression
-says() {
-    [[ $(cat line) =~ $1 ]] || complain "raytally $last: does not say '$1': $(cat said)"
-}
-says_not() {
-    [[ ! $(cat line) =~ $1 ]] || complain "raytally $last: says '$1': $(cat said)"
-}
 
 # The default baseline is the first accelerator that is not a plugin's; the results must name it.
 cat >mine.yaml <<'END_OF_YAML'
@@ -163,4 +138,4 @@ says_not 'there is no \*\.so'
 says 'Leaf size and depth of my-accel are unknown'
 says_not 'Leaf size and depth of bvh'
 
-[ "$failures" = 0 ] || { echo "$failures complaints" >&2 && exit 1; }
+conclude

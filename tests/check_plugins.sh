@@ -6,42 +6,21 @@
 # against an installed raytally, verified and measured (those in C++ if there is a compiler for it). Uses $RT_PROGRAM, in its build
 # folder, and python3.
 set -uo pipefail
-cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 2
-root=$PWD
-program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
+. "$(dirname "${BASH_SOURCE[0]}")/testing.sh"
+root=$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")
 build=$(dirname "$program") plugins=$(dirname "$program")/plugins
 for tool in cmake python3; do
     command -v $tool >/dev/null || { echo "skipped: plugins, faulty and right; needs $tool" && exit 77; }
 done
-work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 2
 unset RAYTALLY_PLUGINS
-failures=0
-
-complain() {
-    printf '%s\n' "$*" >&2
-    failures=$((failures + 1))
-}
-
-# ends CODE FILE ARGUMENT...: runs raytally, and checks its exit code; stdout goes to FILE, stderr to `said`
-ends() {
-    local wanted=$1 file=$2 code=0
-    shift 2
-    RAYTALLY_PLUGIN_SECONDS=${patience-1} timeout 60 "$program" "$@" >"$file" 2>said </dev/null || code=$?
-    [ "$code" = "$wanted" ] || complain "raytally $*: exit code $code, not $wanted: $(cat said)"
-}
-
-# says PATTERN FILE...: an extended regular expression, in any of the files
-says() {
-    [[ $(tr '\n' ' ' <"$2"; tr '\n' ' ' <said) =~ $1 ]] || complain "$2 does not say '$1': $(cat said)
-$(grep -E 'problem|"says"' "$2")"
-}
+export RAYTALLY_PLUGIN_SECONDS=1
 
 # refuses PATTERN FILE: nothing on stdout, exit code 2, and a message that says what to do
 refuses() {
-    ends 2 printed accels --plugin "$2"
+    ends 2 accels --plugin "$2"
     [ ! -s printed ] || complain "raytally accels --plugin $2: writes to stdout"
-    says "$1" printed
+    says "$1"
 }
 
 # This takes ten seconds, in parallel with the rest.
@@ -53,15 +32,18 @@ forever=$!
 
 verify=(verify balls:size=1 --rays 600 --threads 2 --json)
 bench=(bench balls:size=1 --rays 'primary,shadow' --size 16x16 --depth 2 --rounds 1 --json)
-ends 0 alone.json "${bench[@]}" --accel kd
+ends 0 "${bench[@]}" --accel kd
+mv printed alone.json
 
 # fault NAME VERIFIED [MEASURED]: the reports of `verify` and `bench` (default: the same). Empty: no report, and exit code 0.
 fault() {
     local name=faulty-$1 verified=$2 measured=${3-$2}
-    ends $((${#verified} > 0)) "verify-$1.json" "${verify[@]}" --plugin "$plugins/faulty.so" --accel "$name" --accel kd
-    [ -z "$verified" ] || says "$name.*$verified" "verify-$1.json"
-    ends $((${#measured} > 0)) "bench-$1.json" "${bench[@]}" --plugin "$plugins/faulty.so" --accel kd --accel "$name"
-    [ -z "$measured" ] || says "$name.*$measured" "bench-$1.json"
+    ends $((${#verified} > 0)) "${verify[@]}" --plugin "$plugins/faulty.so" --accel "$name" --accel kd
+    [ -z "$verified" ] || says "$name.*$verified"
+    mv printed "verify-$1.json"
+    ends $((${#measured} > 0)) "${bench[@]}" --plugin "$plugins/faulty.so" --accel kd --accel "$name"
+    [ -z "$measured" ] || says "$name.*$measured"
+    mv printed "bench-$1.json"
 }
 
 at_ray='at the ray org \([-0-9., e]+\) dir \([-0-9., e]+\)'
@@ -115,11 +97,12 @@ fault debts 'description has the impossible number 18446744073709551615'
 fault mumble '[?]{40}'
 fault loop-nearest "no progress for 1 s .*$at_ray"
 fault loop-timed "no progress for 1 s .*$at_ray"
-patience=0.2 # a build may take ten times as long
+RAYTALLY_PLUGIN_SECONDS=0.2 # a build may take ten times as long
 fault loop-build 'no progress for 2 s .* while it was built'
-unset patience
+RAYTALLY_PLUGIN_SECONDS=1
 fault greedy 'memory is short'
-ends 0 bench-invasive.json "${bench[@]}" --plugin "$plugins/odd-INVASIVE.so" --accel kd
+ends 0 "${bench[@]}" --plugin "$plugins/odd-INVASIVE.so" --accel kd
+mv printed bench-invasive.json
 
 python3 - <<'END' || failures=$((failures + 1))
 import glob, json, sys
@@ -164,14 +147,14 @@ rays: [primary, shadow]
 rounds: 1
 milliseconds: 1
 END
-ends 1 printed run faulty.yaml --plugin "$plugins/faulty.so"
-says "faulty-crash-rare on .*$crash" printed
-says 'faulty-refused on .*beneath it' printed
+ends 1 run faulty.yaml --plugin "$plugins/faulty.so"
+says "faulty-crash-rare on .*$crash"
+says 'faulty-refused on .*beneath it'
 [ "$(grep -c ',kd,' results/faulty/counts.csv)" = 2 ] || complain "an experiment lacks rows of kd: $(cat results/faulty/counts.csv)"
 [ -s results/faulty/report.html ] || complain 'an experiment with a faulty plugin has no report'
-ends 1 printed run faulty.yaml --plugin "$plugins/faulty.so" --resume
-ends 0 printed reproduce results/faulty --plugin "$plugins/faulty.so"
-ends 0 printed report results/faulty --plugin "$plugins/faulty.so"
+ends 1 run faulty.yaml --plugin "$plugins/faulty.so" --resume
+ends 0 reproduce results/faulty --plugin "$plugins/faulty.so"
+ends 0 report results/faulty --plugin "$plugins/faulty.so"
 
 # ---- libraries that cannot be loaded ----
 
@@ -199,7 +182,7 @@ for list in folder "$plugins/faulty.so:$plugins/new-accel.so" 'a\:b' 'c\d/faulty
     grep -q '^faulty-not' printed || complain "RAYTALLY_PLUGINS=$list: not loaded"
 done
 # Processes that raytally starts get the same plugins.
-ends 0 printed compare balls:size=1 --plugin 'a:b/faulty.so' --accel faulty-not --with "$program" --rays primary --size 8x8 --limit 64 \
+ends 0 compare balls:size=1 --plugin 'a:b/faulty.so' --accel faulty-not --with "$program" --rays primary --size 8x8 --limit 64 \
     --until 90% --patience 1
 
 # ---- correct plugins, built against an installation ----
@@ -216,9 +199,9 @@ works() {
         { complain "$1 cannot be built: $(tail -n 20 log)" && return; }
     for library in "built-$name"/*.so; do
         for accel in $(comm -13 <(names) <(names --plugin "$library")); do
-            ends 0 printed verify --quick --plugin "$library" --accel "$accel"
-            ends 0 printed bench balls:size=2 --rays primary --size 16x16 --rounds 1 --plugin "$library" --accel bvh --accel "$accel"
-            says "$accel" printed
+            ends 0 verify --quick --plugin "$library" --accel "$accel"
+            ends 0 bench balls:size=2 --rays primary --size 16x16 --rounds 1 --plugin "$library" --accel bvh --accel "$accel"
+            says "$accel"
         done
     done
 }
@@ -239,4 +222,4 @@ for example in "$root"/examples/*/CMakeLists.txt; do
     esac
 done
 
-[ "$failures" = 0 ] || { echo "$failures complaints" >&2 && exit 1; }
+conclude

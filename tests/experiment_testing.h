@@ -119,13 +119,6 @@ static inline void assert_equal_files(const Place *place, const char *a, const c
     rt_free(text);
 }
 
-static inline void assert_refused(RtStatus status, RtStatus expected, const RtError *error,
-                                  const char *says) {
-    if (status != expected || !strstr(error->message, says)) {
-        fail_msg("status %d, expected %d with '%s': %s", status, expected, says, error->message);
-    }
-}
-
 /* Runs `raytally ARGUMENTS` in the folder, with what it says in the files output and message; its exit
  * code. */
 static inline int raytally(const Place *place, const char *arguments) {

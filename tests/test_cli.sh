@@ -3,18 +3,11 @@
 # The command line on bad input: exit code 2, nothing on stdout, a message that says where the mistake is, what it is and what
 # would be right, and no file left behind. Uses $RT_PROGRAM.
 set -uo pipefail
-program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
-work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
+. "$(dirname "${BASH_SOURCE[0]}")/testing.sh"
 mkdir "$work/here" && cd "$work/here" || exit 1
-failures=0
 # What a process still holds when it refuses its input is no leak, and the search takes half of AddressSanitizer's time here.
 export ASAN_OPTIONS=detect_leaks=0
 shopt -s globstar dotglob nullglob
-
-complain() {
-    printf '%s\n' "$*" >&2
-    failures=$((failures + 1))
-}
 
 # refuses PATTERN ARGUMENT...: the message must match the extended regular expression
 refuses() {
@@ -28,13 +21,6 @@ refuses() {
     [ "$code" = 2 ] || complain "raytally $*: exit code $code, not 2: $message"
     [[ $message =~ $pattern ]] || complain "raytally $*: the message does not say '$pattern': $message"
     [ "${before[*]}" = "${after[*]}" ] || complain "raytally $*: leaves files: before ${before[*]}, after ${after[*]}"
-}
-
-# does ARGUMENT...: exit code 0
-does() {
-    local code=0
-    timeout 60 "$program" "$@" >../stdout 2>../stderr </dev/null || code=$?
-    [ "$code" = 0 ] || complain "raytally $*: exit code $code: $(cat ../stderr)"
 }
 
 # nff NAME LINE...: a scene of a camera, a material and these lines, the first being line 9
@@ -53,9 +39,9 @@ yaml() {
 
 # ---- commands and options ----
 
-does --help
-does --version
-does accels --json
+ends 0 --help
+ends 0 --version
+ends 0 accels --json
 refuses 'Usage: raytally COMMAND'
 refuses "no command 'rendr': did you mean 'render'.*--help" rendr
 refuses "no command 'bnch': did you mean 'bench'.*--help" help bnch
@@ -66,7 +52,7 @@ refuses "no accelerator 'grd': did you mean 'grid'.*raytally accels" accels grd
 [ $? = 2 ] && grep -q 'standard output' stderr || complain "raytally accels: a full disk goes unnoticed"
 rm stderr
 for command in $("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\) .*/\1/p'); do
-    does "$command" --help
+    ends 0 "$command" --help
     cmp -s <("$program" "$command" --help) <("$program" help "$command") ||
         complain "raytally help $command: says something other than raytally $command --help"
     refuses "unrecognized option '--bogus'.*$command --help" "$command" --bogus
@@ -75,21 +61,21 @@ for command in render info convert; do
     refuses "raytally $command: .*raytally $command" $command
 done
 refuses 'one SCENE at a time' info balls balls
-does info balls:size=1 --extents --rays 1000
-does info balls:size=1 --extents=all --rays 1000 --json
+ends 0 info balls:size=1 --extents --rays 1000
+ends 0 info balls:size=1 --extents=all --rays 1000 --json
 refuses "extents: invalid value 'some'.*--extents=all" info balls --extents=some
 
 # a scene without objects, and one with one
 none=random:n=0
-does info $none --extents --rays 10
+ends 0 info $none --extents --rays 10
 "$program" info $none --json | python3 -c 'import json, sys; sys.exit(json.load(sys.stdin)["bounds"] is not None)' ||
     complain "raytally info $none --json: its bounds are not null"
-does bench $none --accel wide --accel brute --rounds 1 --size 4x4
-does render $none --accel bvh --size 4x4 -o none.png --structure boxes.png --stats none.json --check
-does verify $none --accel kd --rays 10 --json
-does rays $none --size 4x4 -o none.npy
-does trace $none --pixel 0,0 --accel octree
-does convert $none none.obj
+ends 0 bench $none --accel wide --accel brute --rounds 1 --size 4x4
+ends 0 render $none --accel bvh --size 4x4 -o none.png --structure boxes.png --stats none.json --check
+ends 0 verify $none --accel kd --rays 10 --json
+ends 0 rays $none --size 4x4 -o none.npy
+ends 0 trace $none --pixel 0,0 --accel octree
+ends 0 convert $none none.obj
 for file in none.ply none.stl none.glb; do
     refuses 'the scene has none: write' convert $none $file
 done
@@ -152,14 +138,14 @@ done
 refuses "an accelerator 'grid' already exists" new-accel grid
 refuses "'all' means every accelerator" new-accel all
 refuses 'too long for a name' new-accel "$(printf 'a%.0s' {1..100})"
-does new-accel my_grid-2
+ends 0 new-accel my_grid-2
 [ "$(ls my_grid-2)" = $'CMakeLists.txt\nREADME.md\nmy_grid-2.c' ] || complain "new-accel: makes $(ls my_grid-2)"
 grep -rE 'my-accel|SPDX' my_grid-2 && complain "new-accel: leaves the name, or the licence, of its templates"
 for file in CMakeLists.txt README.md my_grid-2.c; do
     grep -q 'my_grid-2' "my_grid-2/$file" || complain "new-accel: $file does not know its name"
 done
 refuses 'my_grid-2 already exists' new-accel my_grid-2
-does new-accel mine --out some/where
+ends 0 new-accel mine --out some/where
 [ -f some/where/mine/mine.c ] || complain 'new-accel: --out does not make its folder'
 touch file
 refuses 'file: this is not a directory' new-accel mine --out file
@@ -285,19 +271,19 @@ refuses 'primary.*twice' $bench --accel bvh --rays primary,primary
 refuses 'rounds.*1\.\.1000' $bench --accel bvh --rounds 1000000000
 refuses "until: invalid value '1'.*1%" $bench --accel bvh --until 1
 refuses 'patience.*1\.\.' $bench --accel bvh --until 1% --patience 0
-does $bench --accel bvh --until 100%
+ends 0 $bench --accel bvh --until 100%
 refuses 'limit.*1\.\.' $bench --accel bvh --limit 0
 refuses 'rounds.*1\.\.1000' $bench --accel bvh --rounds 0
 refuses 'coherent-run.*1\.\.' $bench --accel bvh --coherent-run 0
 refuses 'depth.*1\.\.64' $bench --accel bvh --depth 0
 refuses 'ray-stride.*1\.\.' $bench --accel bvh --ray-stride 0
 refuses 'depth.*1\.\.64' render balls:size=1 --depth 0 -o x.png
-does $bench --accel bvh --seed 0 --count-only
+ends 0 $bench --accel bvh --seed 0 --count-only
 refuses '--ray-stride comes after' $bench --ray-stride 2 --accel bvh
 refuses 'missing/x\.csv.*No such file' $bench --accel bvh --csv missing/x.csv
-does $bench --accel all --json
-does $bench --accel brute --ray-stride 3 --accel bvh --baseline bvh --count-only
-does $bench --accel bvh --rays diffuse,occlusion
+ends 0 $bench --accel all --json
+ends 0 $bench --accel brute --ray-stride 3 --accel bvh --baseline bvh --count-only
+ends 0 $bench --accel bvh --rays diffuse,occlusion
 # Times per second are times per ray, multiplied by rays per second.
 timeout 60 "$program" $bench --accel kd --accel grid --rays primary,shadow --json >seconds.json
 awk -F '[":, ]+' '
@@ -357,34 +343,34 @@ for command in plot report reproduce; do
     refuses 'DIR is missing' $command
     refuses 'nowhere is not a finished result directory' $command nowhere
 done
-does info family:kind=slivers,seed=7
-does render family:kind=csg,seed=7 --size 8x8 -o family.png
-does convert family:kind=shared,seed=7 family.yaml
+ends 0 info family:kind=slivers,seed=7
+ends 0 render family:kind=csg,seed=7 --size 8x8 -o family.png
+ends 0 convert family:kind=shared,seed=7 family.yaml
 refuses "no built-in scene 'famly': did you mean 'family'" scenes famly
 refuses 'empty|one-sphere' info family:kind=
-does verify tetra:size=1 --accel bvh --rays 10 --out verified
+ends 0 verify tetra:size=1 --accel bvh --rays 10 --out verified
 mkdir 'a folder'
 printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'f 1 2 3' | tee 'my scene.obj' 'a folder/Größe & Co.obj' >/dev/null
 for scene in 'my scene.obj' 'a folder/Größe & Co.obj'; do
-    does info "$scene"
-    does render "$scene" --size 8x8 -o blank.png
-    does bench "$scene" --accel bvh --size 8x8 --count-only --csv blank.csv
-    does verify "$scene" --accel bvh --rays 10 --out "${scene%.obj} verified"
-    does convert "$scene" "${scene%.obj}.yaml"
+    ends 0 info "$scene"
+    ends 0 render "$scene" --size 8x8 -o blank.png
+    ends 0 bench "$scene" --accel bvh --size 8x8 --count-only --csv blank.csv
+    ends 0 verify "$scene" --accel bvh --rays 10 --out "${scene%.obj} verified"
+    ends 0 convert "$scene" "${scene%.obj}.yaml"
     yaml blank 'name: blank' 'question: b' 'prediction: c' "scenes: [{scene: '$scene'}]" 'accelerators: [{accel: bvh}]' \
         'count_only: true'
-    does run blank.yaml --force
-    does reproduce results/blank
+    ends 0 run blank.yaml --force
+    ends 0 reproduce results/blank
 done
 refuses 'verified is not the result directory of an experiment' report verified
 
 # ---- correct input passes: the same scenes without their mistake ----
 
 nff right 's 0 0 0 1' 'p 3' '0 0 0' '1 0 0' '1 1 0' 'c' '0 0 0 1' '0 0 1 1'
-does render right.nff -o x.png
+ends 0 render right.nff -o x.png
 [ -s x.png ] || complain "raytally render right.nff -o x.png: makes no picture"
 yaml right 'objects:' '  - sphere: {center: [0, 0, 0], radius: 1}'
-does render right.yaml --size 8x8 -o y.png
+ends 0 render right.yaml --size 8x8 -o y.png
 
 mkdir damaged && echo '{' >damaged/manifest.json
 refuses 'damaged/manifest\.json:2: .*run the experiment again' reproduce damaged
@@ -393,10 +379,10 @@ yaml small 'name: small' 'question: b' 'prediction: c' 'scenes: [{scene: "balls:
     'accelerators: [{accel: bvh}, {accel: brute}]' 'limit: 50' 'rounds: 2' 'milliseconds: 1'
 : >occupied
 refuses 'occupied.*(directory|folder)' run small.yaml --out occupied
-does run small.yaml
-does run small.yaml --resume
-does reproduce results/small
-does run results/small/manifest.json --out again
+ends 0 run small.yaml
+ends 0 run small.yaml --resume
+ends 0 reproduce results/small
+ends 0 run results/small/manifest.json --out again
 cmp -s results/small/counts.csv again/counts.csv || complain "raytally run DIR/manifest.json: does not count the same"
 refuses "quick: .*manifest.json says" run results/small/manifest.json --quick --out again
 cp small.yaml kept.yaml && sed -i 's/limit: 50/limit: 40/' small.yaml
@@ -425,4 +411,4 @@ differs "$lines" '\(nothing more\)' "$last"
 head -c -1 counted >results/small/counts.csv
 differs "$lines" "$last \(without an end of line\)" "$last"
 
-[ "$failures" = 0 ] || { echo "$failures complaints" >&2 && exit 1; }
+conclude

@@ -10,6 +10,8 @@
 
 #include <cmocka.h>
 
+#include "core/base/memory.h"
+
 #include <glob.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -72,6 +74,12 @@ static inline void rt_test_add(int line, struct CMUnitTest test) {
         return RT_RUN_TESTS(#name, setup, teardown);                                                         \
     }
 
+/* The teardown of a group that leaves nothing behind. */
+static inline int assert_nothing_is_kept(void **state) {
+    (void)state;
+    return rt_alloc_live() == 0 ? 0 : -1;
+}
+
 /* Ends a test that cannot be done here, which ./test.sh lists with what would bring it in. */
 #define RT_SKIP(needs)                                                                                       \
     do {                                                                                                     \
@@ -99,16 +107,21 @@ static inline void rt_test_add(int line, struct CMUnitTest test) {
         if ((expr) != RT_OK) fail_msg("%s: %s", #expr, rt_ok_error.message);                                 \
     } while (0)
 
-/* For calls that must fail: with this status, and a message that contains `phrase`. */
-#define assert_fails_with(expr, status, phrase)                                                              \
+/* For calls that must fail: with this status, and a message that begins with `place` and contains `phrase`.
+ */
+#define assert_fails_at(expr, status, place, phrase)                                                         \
     do {                                                                                                     \
         RtError rt_failed = {RT_OK, ""};                                                                     \
         RtError *error = &rt_failed;                                                                         \
-        if ((expr) != (status) || !strstr(rt_failed.message, phrase))                                        \
-            fail_msg("%s: '%s' is not " #status " with '%s'", #expr, rt_failed.message, phrase);             \
+        if ((expr) != (status) || strncmp(rt_failed.message, place, strlen(place)) != 0 ||                   \
+            !strstr(rt_failed.message, phrase))                                                              \
+            fail_msg("%s: '%s' is not " #status " at '%s' with '%s'", #expr, rt_failed.message, place,       \
+                     phrase);                                                                                \
     } while (0)
 
-#define assert_bad_input(expr, phrase) assert_fails_with(expr, RT_BAD_INPUT, phrase)
+#define assert_fails_with(expr, status, phrase)  assert_fails_at(expr, status, "", phrase)
+#define assert_bad_input_at(expr, place, phrase) assert_fails_at(expr, RT_BAD_INPUT, place, phrase)
+#define assert_bad_input(expr, phrase)           assert_fails_at(expr, RT_BAD_INPUT, "", phrase)
 
 /* Tries `call`, which gives a status, with the first allocation failing, then the second, and so on until
  * none does; then `undo` undoes it. Every failure is RT_NO_MEMORY, and nothing is left behind. */

@@ -231,7 +231,7 @@ RT_KERNEL void prepare_prefilter(Packet *p) {
 }
 
 /* Ray i, prepared for hit functions. */
-RT_KERNEL const RtPreparedRay *prepared(Packet *p, const Query *q, uint32_t i) {
+RT_KERNEL const RtPreparedRay *packet_ray(Packet *p, const Query *q, uint32_t i) {
     if (!(p->prepared & one_ray(i)))
         rt_hit_ray(&p->ray[i], q->geometry, &q->rays[p->index[i]], q->scratch->crossings);
     p->prepared |= one_ray(i);
@@ -245,7 +245,7 @@ RT_KERNEL void test_extreme_rays(Packet *p, const Query *q, bool any) {
         odd |= (uint64_t)rt_bits(~surface_is_near(rt_load(&p->dir[p->kz][i]))) << i;
     for (odd &= p->open; odd; odd &= odd - 1) {
         uint32_t i = first_ray(odd);
-        rt_test_all(q->geometry, prepared(p, q, i), any, &p->best[i], NULL);
+        rt_test_all(q->geometry, packet_ray(p, q, i), any, &p->best[i], NULL);
         p->open &= ~one_ray(i);
     }
 }

@@ -157,7 +157,7 @@ RT_KERNEL void visit_list(Packet *p, const Query *q, RtWideRef ref, uint64_t ray
     for (; rays; rays &= rays - 1) {
         uint32_t i = first_ray(rays);
         RtHit best = p->best[i];
-        test_objects(q, ref, prepared(p, q, i), any, &best, NULL);
+        test_objects(q, ref, packet_ray(p, q, i), any, &best, NULL);
         if (best.object != p->best[i].object) take_hit(p, i, best, any);
     }
 }

@@ -58,10 +58,10 @@ RT_KERNEL RtFloats shift_of(RtFloats thickness, RtFloats org) {
     return thickness + rt_abs(org) * 0x1p-23f;
 }
 
-/* rt_surface_is_near by the longest component of a direction. */
+/* rt_surface_is_near of rays in lanes. */
 RT_KERNEL RtInts surface_is_near(RtFloats longest) {
     longest = rt_abs(longest);
-    return (longest >= 0x1p-64f) & (longest <= 0x1p64f);
+    return (longest >= RT_SURFACE_LEAST_DIR) & (longest <= RT_SURFACE_MOST_DIR);
 }
 
 /* ---- the filter ---- */

@@ -82,7 +82,7 @@ RT_KERNEL bool test_object(const RtGeometry *g, uint32_t id, const RtPreparedRay
 }
 
 /* The ray of a state, prepared for hit functions. */
-RT_KERNEL const RtPreparedRay *prepare(RayState *f, const Query *q) {
+RT_KERNEL const RtPreparedRay *state_ray(RayState *f, const Query *q) {
     if (!f->prepared) rt_hit_ray(&f->ray, q->geometry, &q->rays[f->index], q->scratch->crossings);
     f->prepared = true;
     return &f->ray;
@@ -103,7 +103,7 @@ RT_KERNEL bool init_ray(RayState *f, const Query *q, size_t index, bool any, RtT
     const int kz = rt_major_axis(ray->dir), kx = rt_next_axis(kz), ky = rt_next_axis(kx);
     const bool is_near = rt_surface_is_near(ray->dir.at[kz]);
     if (q->tree->split_refs && !is_near) {
-        rt_test_all(q->geometry, prepare(f, q), any, &f->best, tally);
+        rt_test_all(q->geometry, state_ray(f, q), any, &f->best, tally);
         return false;
     }
     const RtInt4 lo = {0, 2 * PLANE, 4 * PLANE}, down = ((RtInt4)dir < 0) & PLANE;
@@ -241,7 +241,7 @@ RT_KERNEL bool admit(const float *triangle, RayState *f, const Query *q, float *
     RtFloat4 a = rt_triangle_vertex(triangle, RT_WIDE_BLOCK);
     RtFloat4 b = rt_triangle_vertex(triangle + VERTEX, RT_WIDE_BLOCK);
     RtFloat4 c = rt_triangle_vertex(triangle + (size_t)2 * VERTEX, RT_WIDE_BLOCK);
-    return rt_admit4(rt_min(rt_min(a, b), c), rt_max(rt_max(a, b), c), prepare(f, q), t);
+    return rt_admit4(rt_min(rt_min(a, b), c), rt_max(rt_max(a, b), c), state_ray(f, q), t);
 }
 
 /* Tests the triangles `mask` of a block in full; true if the search is over. */

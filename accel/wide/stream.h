@@ -69,7 +69,7 @@ RT_KERNEL void trace_one(const Query *q, RayState *f, bool any, bool counted) {
             const RtWideTriangles *blocks = rt_wide_leaf_at(&tree, ref);
             uint32_t mask = prefilter_leaf(blocks, ref, f);
             if (test_triangles(blocks, mask, f, q, any, tally)) return;
-        } else if (test_objects(q, ref, prepare(f, q), any, &f->best, tally)) {
+        } else if (test_objects(q, ref, state_ray(f, q), any, &f->best, tally)) {
             return;
         }
         if (!any) f->limit = rt_minf(f->best.t, f->limit);
@@ -180,7 +180,7 @@ RT_KERNEL void visit_objects(const Query *q, RayQueues *t, bool any, bool counte
         RayState *f = t->list[RT_WIDE_OBJECTS][i];
         RtTally *tally = counted ? f->tally : NULL;
         count_leaf(tally, q->tree, q->geometry, f->next);
-        finish_leaf(q, t, f, test_objects(q, f->next, prepare(f, q), any, &f->best, tally), any, ahead);
+        finish_leaf(q, t, f, test_objects(q, f->next, state_ray(f, q), any, &f->best, tally), any, ahead);
     }
 }
 

@@ -151,22 +151,18 @@ static void print_header(Show *show) {
     rt_table_line(&columns, show->widths, NULL, stdout);
 }
 
-static long long number(const json_t *row, const char *key) {
-    return (long long)json_integer_value(json_object_get(row, key));
-}
-
 static void print_row(Show *show, const json_t *row) {
     char plugins[1024] = "";
-    const json_t *wrong = json_object_get(row, "first_wrong");
+    const json_t *wrong = json_object_get(row, "first_wrong"), *left = json_object_get(wrong, "objects_left");
     print_header(show);
     rt_table_line(&columns, show->widths, row, stdout);
     if (!json_is_null(wrong)) {
         printf("    WRONG: %s\n", rt_json_text(wrong, "says", ""));
-        if (json_is_null(json_object_get(wrong, "objects_left"))) {
+        if (json_is_null(left)) {
             printf("    Traced again, the answer is right. ");
         } else if (json_is_true(json_object_get(wrong, "shrunk"))) {
-            printf("    Reduced to %lld object%s. ", number(wrong, "objects_left"),
-                   rt_plural((uint64_t)number(wrong, "objects_left")));
+            printf("    Reduced to %lld object%s. ", (long long)json_integer_value(left),
+                   rt_plural((uint64_t)json_integer_value(left)));
         } else {
             printf("    The scene is not reduced: only the first failures are. ");
         }

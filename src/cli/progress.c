@@ -65,16 +65,15 @@ static void describe(RtProgress *progress, const RtResults *results, const RtEve
                                        [RT_EVENT_TIME] = "timed",
                                        [RT_EVENT_DISTRIBUTION] = "distributed",
                                        [RT_EVENT_HARDWARE] = "hardware counters",
-                                       [RT_EVENT_TOO_LARGE] = "left out",
-                                       [RT_EVENT_TOO_LONG] = "left out",
-                                       [RT_EVENT_BROKEN_BUILD] = "is broken",
-                                       [RT_EVENT_BROKEN] = "is broken"};
+                                       [RT_EVENT_NO_BUILD] = "left out",
+                                       [RT_EVENT_NO_CELL] = "left out"};
     const RtExperiment *experiment = results->experiment;
     bool scene = event->what == RT_EVENT_WORKLOAD, build = event->what == RT_EVENT_BUILD;
     snprintf(progress->doing, sizeof progress->doing, "%s%s%s%s%s: %s",
              experiment->workloads[event->workload].label, scene ? "" : " ",
              scene ? "" : rt_candidate_label(experiment, event->candidate), scene || build ? "" : " ",
-             scene || build ? "" : rt_experiment_kind_name(experiment, event->kind), what[event->what]);
+             scene || build ? "" : rt_experiment_kind_name(experiment, event->kind),
+             rt_event_is_broken(results, event) ? "is broken" : what[event->what]);
 }
 
 static RtStatus on_event(void *context, const RtResults *results, const RtEvent *event, RtError *error) {

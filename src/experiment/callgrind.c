@@ -32,14 +32,9 @@ RtStatus rt_callgrind_init(RtCallgrind *callgrind, const RtExperiment *experimen
     return status;
 }
 
-static void remove_file(void *context, const char *path) {
-    (void)context;
-    remove(path);
-}
-
 void rt_callgrind_clear(RtCallgrind *callgrind) {
     if (*callgrind->folder) {
-        rt_directory_each(callgrind->folder, "", remove_file, NULL);
+        rt_directory_remove_files(callgrind->folder, "");
         rmdir(callgrind->folder);
     }
     rt_free(callgrind->cells);

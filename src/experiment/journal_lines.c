@@ -83,10 +83,8 @@ static const struct Part {
              [RT_EVENT_DISTRIBUTION] = {"distributed", OF_CELL, {NULL, 0}},
              [RT_EVENT_TIME] = {"timed", OF_CELL, RT_RECORD(time_members)},
              [RT_EVENT_HARDWARE] = {"hardware", OF_CELL, RT_RECORD(hardware_members)},
-             [RT_EVENT_TOO_LARGE] = {"too_large", OF_BUILD, {NULL, 0}},
-             [RT_EVENT_TOO_LONG] = {"too_long", OF_CELL, {NULL, 0}},
-             [RT_EVENT_BROKEN_BUILD] = {"too_large", OF_BUILD, {NULL, 0}},
-             [RT_EVENT_BROKEN] = {"too_long", OF_CELL, {NULL, 0}}};
+             [RT_EVENT_NO_BUILD] = {"too_large", OF_BUILD, {NULL, 0}},
+             [RT_EVENT_NO_CELL] = {"too_long", OF_CELL, {NULL, 0}}};
 
 /* ---- writing ---- */
 
@@ -137,10 +135,8 @@ static json_t *part_json(const RtResults *results, const RtEvent *event) {
     case RT_EVENT_DISTRIBUTION: return rt_distributions_json(cell->distributions, 0, RT_RAY_QUANTITY_COUNT);
     case RT_EVENT_TIME: return time_json(results, cell);
     case RT_EVENT_HARDWARE: return hardware_json(results, *cell);
-    case RT_EVENT_TOO_LARGE:
-    case RT_EVENT_BROKEN_BUILD: return json_string(build->left_out);
-    case RT_EVENT_TOO_LONG:
-    case RT_EVENT_BROKEN: return json_string(cell->left_out);
+    case RT_EVENT_NO_BUILD: return json_string(build->left_out);
+    case RT_EVENT_NO_CELL: return json_string(cell->left_out);
     }
     return NULL;
 }
@@ -153,9 +149,8 @@ json_t *rt_journal_line(const RtResults *results, const RtEvent *event) {
     if (place >= OF_BUILD) line = rt_json_add(line, "accel", json_string(accel));
     if (place == OF_CELL) line = rt_json_add(line, "kind", json_string(rt_ray_kind_name(event->kind)));
     line = rt_json_add(line, parts[event->what].key, part_json(results, event));
-    if (event->what < RT_EVENT_TOO_LARGE) return line;
-    const bool broken = event->what == RT_EVENT_BROKEN_BUILD || event->what == RT_EVENT_BROKEN;
-    return rt_json_add(line, "broken", json_boolean(broken));
+    const bool left_out = event->what == RT_EVENT_NO_BUILD || event->what == RT_EVENT_NO_CELL;
+    return left_out ? rt_json_add(line, "broken", json_boolean(rt_event_is_broken(results, event))) : line;
 }
 
 /* ---- reading ---- */

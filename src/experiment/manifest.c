@@ -5,6 +5,7 @@
 #include "core/text/json.h"
 #include "experiment/journal_lines.h"
 #include "measure/machine.h"
+#include "measure/result_files.h"
 
 static json_t *scenes_json(const RtResults *results) {
     const RtExperiment *experiment = results->experiment;
@@ -61,7 +62,7 @@ static json_t *manifest_json(const RtResults *results, const RtWorkloadOptions *
 RtStatus rt_manifest_write(const RtResults *results, const RtWorkloadOptions *options, const char *directory,
                            RtError *error) {
     char path[RT_MAX_PATH];
-    RT_TRY(rt_path_join(directory, "manifest.json", path, error));
+    RT_TRY(rt_path_join(directory, RT_MANIFEST, path, error));
     return rt_json_save(path, manifest_json(results, options), error);
 }
 
@@ -69,7 +70,7 @@ RtStatus rt_manifest_read(const char *directory, json_t **manifest, RtError *err
     char path[RT_MAX_PATH];
     json_error_t fault;
     *manifest = NULL;
-    RT_TRY(rt_path_join(directory, "manifest.json", path, error));
+    RT_TRY(rt_path_join(directory, RT_MANIFEST, path, error));
     if (!rt_file_exists(path)) {
         return rt_fail(error, RT_BAD_INPUT,
                        "%s is not a finished result directory: it has no manifest.json; `raytally run "

@@ -15,7 +15,6 @@
 typedef struct Merge {
     const char *const *directories;
     uint32_t count;
-    const RtRunOptions *options;
     json_t *journals[RT_MAX_SHARDS];
 } Merge;
 
@@ -141,11 +140,11 @@ static RtStatus load_experiment(const Merge *merge, RtExperiment *experiment, Rt
 /* ---- the joined directory ---- */
 
 /* All lines, shard by shard, after a header without a shard. */
-static RtStatus add_journal(const Merge *merge, const RtExperiment *experiment, RtOutputs *files,
-                            RtError *error) {
+static RtStatus add_journal(const Merge *merge, const RtExperiment *experiment, const char *directory,
+                            RtOutputs *files, RtError *error) {
     static const RtOnly all = {0};
     char path[RT_MAX_PATH];
-    RT_TRY(rt_path_join(merge->options->directory, RT_RUN_JOURNAL, path, error));
+    RT_TRY(rt_path_join(directory, RT_RUN_JOURNAL, path, error));
     json_t *lines = json_array();
     for (uint32_t i = 0; i < merge->count; i++) {
         for (size_t line = 1; line < json_array_size(merge->journals[i]); line++) {
@@ -158,50 +157,25 @@ static RtStatus add_journal(const Merge *merge, const RtExperiment *experiment, 
     return status;
 }
 
-static RtStatus copy_images(const Merge *merge, const RtExperiment *experiment, RtOutputs *files,
-                            RtError *error) {
+/* For RtRunJoin. */
+static RtStatus add_files(const void *context, const RtExperiment *experiment, const char *directory,
+                          RtOutputs *files, RtError *error) {
+    const Merge *merge = context;
     for (uint32_t i = 0; i < merge->count; i++) {
         for (uint32_t t = 0; t < experiment->workload_count; t++) {
             char from[RT_MAX_PATH], to[RT_MAX_PATH];
             RT_TRY(rt_run_image_path(merge->directories[i], experiment, t, from, error));
-            RT_TRY(rt_run_image_path(merge->options->directory, experiment, t, to, error));
+            RT_TRY(rt_run_image_path(directory, experiment, t, to, error));
             if (rt_file_exists(from)) RT_TRY(rt_outputs_copy(files, from, to, error));
         }
     }
-    return RT_OK;
+    return add_journal(merge, experiment, directory, files, error);
 }
 
-/* All files that are not made from the journal; the journal last. */
-static RtStatus add_files(const Merge *merge, const RtExperiment *experiment, RtOutputs *files,
+static RtStatus merge_all(Merge *merge, RtRunOptions options, RtExperiment *experiment, RtResults *results,
                           RtError *error) {
-    static const char *const folders[] = {"plots", "images"};
-    for (int i = 0; i < 2; i++) {
-        char path[RT_MAX_PATH];
-        RT_TRY(rt_path_join(merge->options->directory, folders[i], path, error));
-        RT_TRY(rt_directory_create(path, error));
-    }
-    RT_TRY(copy_images(merge, experiment, files, error));
-    RT_TRY(rt_scripts_copy(experiment, merge->options->directory, false, files, error));
-    return add_journal(merge, experiment, files, error);
-}
-
-/* Everything is on the disk before any previous result is removed. */
-static RtStatus take_directory(const Merge *merge, const RtExperiment *experiment, RtError *error) {
-    const RtRunOptions *options = merge->options;
-    RtOutputs files = {0};
-    bool goes_on;
-    RT_TRY(rt_result_files_look(options->directory, RT_RUN_JOURNAL, options->start, &goes_on, error));
-    RtStatus status = add_files(merge, experiment, &files, error);
-    if (status == RT_OK) status = rt_result_files_remove(options->directory, RT_RUN_JOURNAL, error);
-    if (status == RT_OK) status = rt_outputs_commit(&files, error);
-    rt_outputs_clear(&files);
-    return status;
-}
-
-static RtStatus merge_all(Merge *merge, RtExperiment *experiment, RtResults *results, RtError *error) {
-    RtRunOptions options = *merge->options;
-    options.start = RT_START_RESUME;
-    options.joined = merge->count;
+    const RtRunJoin join = {.shards = merge->count, .context = merge, .add = add_files};
+    options.join = &join;
     RT_TRY(load_journals(merge, error));
     RT_TRY(check_alike(merge, error));
     RT_TRY(check_whole(merge, error));
@@ -209,16 +183,14 @@ static RtStatus merge_all(Merge *merge, RtExperiment *experiment, RtResults *res
     RT_TRY(load_experiment(merge, experiment, error));
     RT_TRY(check_plugins(merge, experiment, error));
     RT_TRY(rt_results_init(results, experiment, error));
-    RT_TRY(rt_scripts_check(experiment, options.directory, false, options.scripts, error));
-    RT_TRY(take_directory(merge, experiment, error));
     return rt_run_experiment(results, &options, error);
 }
 
 RtStatus rt_merge(const char *const *directories, uint32_t count, const RtRunOptions *options,
                   RtExperiment *experiment, RtResults *results, RtError *error) {
-    Merge merge = {.directories = directories, .count = count, .options = options};
+    Merge merge = {.directories = directories, .count = count};
     *results = (RtResults){0};
-    RtStatus status = merge_all(&merge, experiment, results, error);
+    RtStatus status = merge_all(&merge, *options, experiment, results, error);
     for (uint32_t i = 0; i < count; i++) json_decref(merge.journals[i]);
     return status;
 }

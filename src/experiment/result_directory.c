@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A run in order: open_run looks at the directory and opens the scenes, begin makes the directory and removes
- * the results of a previous run, measure begins the journal and fills the results, finish writes the files
- * made from all of them. */
+/* A run in order: begin looks at the directory, opens the scenes, and removes the results of a previous run;
+ * measure begins the journal and fills the results; finish writes the files made from all of them. */
 #include "experiment/result_directory.h"
 
 #include "core/base/lock.h"
@@ -101,12 +100,6 @@ static RtStatus check_threads(const Run *run, RtError *error) {
     return RT_OK;
 }
 
-static RtStatus open_run(Run *run, RtError *error) {
-    RT_TRY(take_directory(run, error));
-    RT_TRY(open_scenes(run, error));
-    return run->resumed && !is_complete(run) ? check_threads(run, error) : RT_OK;
-}
-
 static const char *const folders[] = {"", "plots", "images"};
 
 static RtStatus make_directory(Run *run, RtError *error) {
@@ -133,21 +126,24 @@ static RtStatus copy_table(const Run *run, const char *name, RtOutputs *copies, 
     return rt_outputs_copy(copies, from, to, error);
 }
 
-static RtStatus copy_experiment(const Run *run, RtOutputs *copies, RtError *error) {
+static RtStatus copy_files(const Run *run, RtOutputs *copies, RtError *error) {
     const RtPublishedSetup *published = &run->experiment->published;
+    const char *directory = run->options->directory;
+    const RtRunJoin *join = run->options->join;
     char path[RT_MAX_PATH];
     RT_TRY(path_in(run, rt_result_files[RT_FILE_EXPERIMENT], path, error));
     RT_TRY(rt_outputs_copy(copies, run->experiment->path, path, error));
     for (uint32_t i = 0; i < published->table_count; i++)
         RT_TRY(copy_table(run, published->tables[i], copies, error));
     if (*published->reasons) RT_TRY(copy_table(run, published->reasons, copies, error));
-    return rt_scripts_copy(run->experiment, run->options->directory, run->resumed, copies, error);
+    RT_TRY(rt_scripts_copy(run->experiment, directory, run->resumed, copies, error));
+    return join ? join->add(join->context, run->experiment, directory, copies, error) : RT_OK;
 }
 
 /* Writes the copies, removes the previous results, and then renames the copies. */
 static RtStatus replace_previous(Run *run, RtError *error) {
     RtOutputs copies = {0};
-    RtStatus status = copy_experiment(run, &copies, error);
+    RtStatus status = copy_files(run, &copies, error);
     if (status == RT_OK && !run->resumed)
         status = rt_result_files_remove(run->options->directory, RT_RUN_JOURNAL, error);
     if (status == RT_OK) status = rt_outputs_commit(&copies, error);
@@ -155,13 +151,31 @@ static RtStatus replace_previous(Run *run, RtError *error) {
     return status;
 }
 
-static RtStatus begin(Run *run, RtError *error) {
+static RtStatus prepare_directory(Run *run, RtError *error) {
     if (run->options->report) RT_TRY(run->options->report->check(run->experiment, error));
     RT_TRY(rt_scripts_find(run->experiment, error));
     RT_TRY(rt_scripts_check(run->experiment, run->options->directory, run->resumed, run->options->scripts,
                             error));
     RT_TRY(make_directory(run, error));
     return replace_previous(run, error);
+}
+
+/* Writes the journal of the joined shards, which is then resumed. */
+static RtStatus join_shards(Run *run, RtError *error) {
+    char path[RT_MAX_PATH];
+    RT_TRY(prepare_directory(run, error));
+    RT_TRY(path_in(run, RT_RUN_JOURNAL, path, error));
+    run->resumed = true;
+    return rt_journal_load(path, run->results, &run->options->workload.only, false, error);
+}
+
+static RtStatus begin(Run *run, RtError *error) {
+    const RtRunJoin *join = run->options->join;
+    RT_TRY(take_directory(run, error));
+    if (join) RT_TRY(join_shards(run, error));
+    RT_TRY(open_scenes(run, error));
+    if (run->resumed && !is_complete(run)) RT_TRY(check_threads(run, error));
+    return join ? RT_OK : prepare_directory(run, error);
 }
 
 /* ---- measuring ---- */
@@ -240,7 +254,7 @@ static void close_scene(Run *run, uint32_t t) {
 /* Says what was done if nothing was measured. */
 static void tell_end(const Run *run) {
     const RtRunObserver *observer = &run->options->workload.observer;
-    uint32_t scenes, shards = run->options->joined;
+    uint32_t scenes, shards = run->options->join ? run->options->join->shards : 0;
     uint64_t cells = rt_results_size(run->results, &scenes);
     if (shards)
         rt_notify(observer, "joined %" PRIu32 " shard%s: %" PRIu64 " cell%s of %" PRIu32 " scene%s", shards,
@@ -287,8 +301,7 @@ static RtStatus finish(const Run *run, RtError *error) {
 
 RtStatus rt_run_experiment(RtResults *results, const RtRunOptions *options, RtError *error) {
     Run run = {.results = results, .experiment = results->experiment, .options = options, .lock = RT_NO_LOCK};
-    RtStatus status = open_run(&run, error);
-    if (status == RT_OK) status = begin(&run, error);
+    RtStatus status = begin(&run, error);
     if (status == RT_OK) status = measure(&run, error);
     if (status == RT_OK && is_complete(&run)) {
         status = finish(&run, error);

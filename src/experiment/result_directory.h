@@ -33,12 +33,21 @@ typedef struct RtRunReport {
                       RtError *error);
 } RtRunReport;
 
+/* Results that were measured in shards, and are joined in a directory: experiment/merge.h. */
+typedef struct RtRunJoin {
+    uint32_t shards;
+    const void *context;
+    /* Adds their journal and pictures to the files of the directory. */
+    RtStatus (*add)(const void *context, const RtExperiment *experiment, const char *directory,
+                    RtOutputs *files, RtError *error);
+} RtRunJoin;
+
 typedef struct RtRunOptions {
     const char *directory; /* created if missing */
     RtStart start;         /* what happens to the results of a previous run */
     bool renew;            /* when resuming, measure cells of changed plugins again */
-    uint32_t joined;       /* number of shards that the resumed journal was joined from; else 0 */
     RtScripts scripts;
+    const RtRunJoin *join;      /* or NULL; with it, `start` does not resume */
     const RtRunReport *report;  /* or NULL */
     RtWorkloadOptions workload; /* its observer is called after the journal */
 } RtRunOptions;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The results of an experiment: dense arrays over workload x candidate x ray kind, filled cell by cell. The
  * candidate after the last is the null run: the baseline (the first of several) built and measured a second
- * time. Its ratio to itself must straddle 1. */
+ * time. The interval of its ratio to itself should contain 1. */
 #ifndef RT_EXPERIMENT_RESULTS_H
 #define RT_EXPERIMENT_RESULTS_H
 

@@ -184,16 +184,16 @@ static RtStatus build_within(RtWorkloadState *workload, uint32_t c, const RtSpec
     /* If a plugin rejects the scene, or takes all memory, only its own results are lost. */
     const bool broken = status == RT_BROKEN || (status != RT_OK && !too_large && rt_spec_is_remote(spec));
     if (broken)
-        return rt_workload_leave_out(workload, c, RT_EVENT_BROKEN_BUILD, any, error, "%s", error->message);
+        return rt_workload_leave_out(workload, c, RT_EVENT_NO_BUILD, any, true, error, "%s", error->message);
     if (status != RT_OK && !too_large) return status;
     if (!too_large && !too_slow) return RT_OK;
     rt_accel_destroy(workload->built[c]);
     workload->built[c] = NULL;
     if (too_large)
-        return rt_workload_leave_out(workload, c, RT_EVENT_TOO_LARGE, any, error,
+        return rt_workload_leave_out(workload, c, RT_EVENT_NO_BUILD, any, false, error,
                                      "its structure takes more than %llu MB",
                                      (unsigned long long)experiment->limit_megabytes);
-    return rt_workload_leave_out(workload, c, RT_EVENT_TOO_LARGE, any, error,
+    return rt_workload_leave_out(workload, c, RT_EVENT_NO_BUILD, any, false, error,
                                  "building takes %.3g s, more than %g s", *seconds,
                                  experiment->limit_seconds);
 }

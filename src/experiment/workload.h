@@ -18,10 +18,8 @@ typedef enum RtEventKind {
     RT_EVENT_DISTRIBUTION, /* the cell has its distributions */
     RT_EVENT_TIME,         /* the cell is timed */
     RT_EVENT_HARDWARE,     /* the cell has hardware counts, or the reason why not */
-    RT_EVENT_TOO_LARGE,    /* the structure of `candidate` exceeded a limit */
-    RT_EVENT_TOO_LONG,     /* the cell would exceed a limit */
-    RT_EVENT_BROKEN_BUILD, /* `candidate`, of a plugin, broke during its build */
-    RT_EVENT_BROKEN        /* it broke on the rays of the cell, or gave wrong answers */
+    RT_EVENT_NO_BUILD,     /* `candidate` is left out: its structure exceeded a limit, or it broke */
+    RT_EVENT_NO_CELL /* the cell is left out: it would exceed a limit, or `candidate` broke on its rays */
 } RtEventKind;
 
 /* The part of the results that was just filled. */
@@ -30,6 +28,9 @@ typedef struct RtEvent {
     uint32_t workload, candidate;
     RtRayKind kind;
 } RtEvent;
+
+/* Whether the candidate or the cell is left out because it broke. */
+bool rt_event_is_broken(const RtResults *results, const RtEvent *event);
 
 /* Callbacks, called on the thread that runs the workload; each may be NULL. A status other than RT_OK ends
  * the workload with that status. */

@@ -61,12 +61,18 @@ void rt_notify(const RtRunObserver *observer, const char *format, ...) {
     observer->notice(observer->context, message);
 }
 
+bool rt_event_is_broken(const RtResults *results, const RtEvent *event) {
+    if (event->what == RT_EVENT_NO_BUILD)
+        return rt_build_at(results, event->workload, event->candidate)->broken;
+    return event->what == RT_EVENT_NO_CELL &&
+           rt_cell_at(results, event->workload, event->candidate, event->kind)->broken;
+}
+
 RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKind what, RtRayKind kind,
-                               RtError *error, const char *why, ...) {
+                               bool broken, RtError *error, const char *why, ...) {
     const RtExperiment *experiment = workload->experiment;
     const char *label = rt_candidate_label(experiment, c);
     const char *scene = experiment->workloads[workload->index].label;
-    const bool broken = what == RT_EVENT_BROKEN || what == RT_EVENT_BROKEN_BUILD;
     char text[RT_MAX_LEFT_OUT];
     va_list args;
     va_start(args, why);
@@ -76,7 +82,7 @@ RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKin
     if (c == experiment->candidate_count || rt_candidate_is_baseline(experiment, c))
         return rt_fail(error, broken ? RT_BROKEN : RT_BAD_INPUT, "the baseline '%s' %s on '%s': %s", label,
                        broken ? "is broken" : "exceeds a limit", scene, text);
-    if (what == RT_EVENT_TOO_LARGE || what == RT_EVENT_BROKEN_BUILD) {
+    if (what == RT_EVENT_NO_BUILD) {
         RtBuildResult *build = rt_build_at(workload->results, workload->index, c);
         strcpy(build->left_out, text);
         build->broken = broken;
@@ -91,5 +97,5 @@ RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKin
 
 RtStatus rt_workload_break(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtError *error) {
     workload->accels[c] = NULL;
-    return rt_workload_leave_out(workload, c, RT_EVENT_BROKEN, kind, error, "%s", error->message);
+    return rt_workload_leave_out(workload, c, RT_EVENT_NO_CELL, kind, true, error, "%s", error->message);
 }

@@ -42,12 +42,13 @@ static inline RtStatus rt_workload_tell(const RtWorkloadState *workload, RtEvent
     return observer->event ? observer->event(observer->context, workload->results, &event, error) : RT_OK;
 }
 
-/* Leaves candidate `c`, or its cell of that kind of rays, out of the results: `what` says which of both, and
- * whether it is broken. `why`, as of printf, is kept there and reported. If it is the baseline, the workload
- * fails instead. */
-__attribute__((format(printf, 6, 7))) RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c,
+/* Leaves candidate `c` (RT_EVENT_NO_BUILD), or its cell of that kind of rays (RT_EVENT_NO_CELL), out of the
+ * results, because it is broken or exceeds a limit. `why`, as of printf, is kept there and reported. If it is
+ * the baseline, the workload fails instead. */
+__attribute__((format(printf, 7, 8))) RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c,
                                                                      RtEventKind what, RtRayKind kind,
-                                                                     RtError *error, const char *why, ...);
+                                                                     bool broken, RtError *error,
+                                                                     const char *why, ...);
 
 /* Excludes the candidate on rays of that kind as broken, for the reason in *error. */
 RtStatus rt_workload_break(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtError *error);

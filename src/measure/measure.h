@@ -36,8 +36,8 @@ typedef struct RtRows {
     RtTally *tallies; /* [count] owned */
 } RtRows;
 
-/* Answers of the timed kernel to streams, and counts of each ray traced by itself. The counts sum to those of
- * rt_measure_count unless rays of a stream share work. Clear with rt_rows_clear, also after a failure. */
+/* Answers of the timed kernel to streams, and counts of each ray traced by itself, which sum to those of
+ * rt_measure_count. Clear with rt_rows_clear, also after a failure. */
 RtStatus rt_measure_rows(const RtAccel *accel, const RtRaySet *set, int threads, RtRows *rows,
                          RtError *error);
 void rt_rows_clear(RtRows *rows);

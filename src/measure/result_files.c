@@ -64,15 +64,9 @@ RtStatus rt_result_files_look(const char *directory, const char *journal, RtStar
                    directory, result, journal);
 }
 
-static void remove_file(void *context, const char *path) {
-    (void)context;
-    remove(path);
-}
-
 static void remove_each(const char *directory, const char *folder, const char *suffix) {
     char path[RT_MAX_PATH];
-    if (rt_path_join(directory, folder, path, NULL) == RT_OK)
-        rt_directory_each(path, suffix, remove_file, NULL);
+    if (rt_path_join(directory, folder, path, NULL) == RT_OK) rt_directory_remove_files(path, suffix);
 }
 
 RtStatus rt_result_files_remove(const char *directory, const char *journal, RtError *error) {

@@ -107,16 +107,22 @@ static RtRay at_edge(Generator *m) {
     return ray_through(m, point_of_object(m, RT_ON_EDGE, &id));
 }
 
+/* A random direction along the surface of an object at p, and its normal there; without an object just a
+ * direction, and 0. */
+static RtVec3d direction_along(Generator *m, uint32_t id, RtVec3d p, RtVec3d *normal) {
+    RtVec3d dir = rt_random_direction(&m->random);
+    *normal = rt_vec3d(0, 0, 0);
+    if (id == RT_NO_OBJECT) return dir;
+    RtRay at = ray_along(p, dir);
+    *normal = rt_object_normals(m->geometry, id, &at, 0, rt_query_crossings(m->query)).geometric;
+    return rt_add_scaledd(dir, *normal, -rt_dotd(dir, *normal));
+}
+
 /* Touches an object: in the plane of a flat one, along the silhouette of a round one. */
 static RtRay tangent(Generator *m) {
     uint32_t id;
-    RtVec3d p = point_of_object(m, below(m, 2) ? RT_ON_SURFACE : RT_AT_VERTEX, &id);
-    RtVec3d dir = rt_random_direction(&m->random);
-    if (id != RT_NO_OBJECT) {
-        RtRay at = ray_along(p, dir);
-        RtVec3d normal = rt_object_normals(m->geometry, id, &at, 0, rt_query_crossings(m->query)).geometric;
-        dir = rt_add_scaledd(dir, normal, -rt_dotd(dir, normal));
-    }
+    RtVec3d normal, p = point_of_object(m, below(m, 2) ? RT_ON_SURFACE : RT_AT_VERTEX, &id);
+    RtVec3d dir = direction_along(m, id, p, &normal);
     return ray_along(rt_add_scaledd(p, dir, -m->size), dir);
 }
 
@@ -229,11 +235,8 @@ static RtRay along_edge(Generator *m) {
 static RtRay grazing(Generator *m) {
     static const double angles[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
     uint32_t id;
-    RtVec3d p = point_of_object(m, RT_ON_SURFACE, &id), dir = rt_random_direction(&m->random);
+    RtVec3d normal, p = point_of_object(m, RT_ON_SURFACE, &id), dir = direction_along(m, id, p, &normal);
     if (id != RT_NO_OBJECT) {
-        RtRay at = ray_along(p, dir);
-        RtVec3d normal = rt_object_normals(m->geometry, id, &at, 0, rt_query_crossings(m->query)).geometric;
-        dir = rt_add_scaledd(dir, normal, -rt_dotd(dir, normal));
         double angle = angles[below(m, 7)];
         dir = rt_add_scaledd(rt_normalized(dir), normal, below(m, 2) ? angle : -angle);
     }

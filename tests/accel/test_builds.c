@@ -29,14 +29,9 @@ static RtScene make_triangles(uint32_t count, float from, float size) {
 
 /* False if this machine cannot build it. */
 static bool describe(const char *spec, const RtScene *scene, int threads, RtDescription *out) {
-    RtAccel *accel;
-    RtError problem;
-    RtStatus status = rt_accel_open_on(spec, scene, threads, &accel, &problem);
-    if (status == RT_NOT_AVAILABLE) return false;
-    if (status != RT_OK) fail_msg("%s on %d threads: %s", spec, threads, problem.message);
-    rt_accel_describe(accel, out);
-    rt_accel_destroy(accel);
-    return true;
+    OWNED_ACCEL RtAccel *accel = open_available(scene, spec, threads);
+    if (accel) rt_accel_describe(accel, out);
+    return accel;
 }
 
 /* The structure is the same on each number of threads, up to a 0. */
@@ -83,15 +78,8 @@ RT_TEST(many_objects_on_many_threads_make_the_structure_of_one) {
 
 /* Whether it answers like brute at every scale, and can be built here. */
 static bool is_exact(const char *spec, const RtScene *scene) {
-    RtAccel *accel;
-    RtError problem;
-    RtStatus status = rt_accel_open(spec, scene, &accel, &problem);
-    if (status == RT_NOT_AVAILABLE) return false;
-    if (status != RT_OK)
-        fail_msg("%s on coordinates of %g: %s", spec, (double)scene->geometry.box.hi.x, problem.message);
-    bool exact = accel->exact;
-    rt_accel_destroy(accel);
-    return exact;
+    OWNED_ACCEL RtAccel *accel = open_available(scene, spec, 0);
+    return accel && accel->exact;
 }
 
 /* Triangles as large as the scene: sums of their areas are the largest there are. */

@@ -18,13 +18,10 @@ static void add_leaf(void *context, const RtBoxView *view) {
 }
 
 static void check_leaves(const char *spec, const RtScene *scene) {
-    OWNED_ACCEL RtAccel *accel = NULL;
+    OWNED_ACCEL RtAccel *accel = open_available(scene, spec, 1);
     RtDescription d;
-    RtError problem;
     Sums sums = {0};
-    RtStatus status = rt_accel_open_on(spec, scene, 1, &accel, &problem);
-    if (status == RT_NOT_AVAILABLE) return; /* an instruction set */
-    if (status != RT_OK) fail_msg("%s: %s", spec, problem.message);
+    if (!accel) return; /* an instruction set */
     rt_accel_describe(accel, &d);
     accel->ops->each_box(accel, (RtBoxViewer){add_leaf, &sums});
     if (sums.leaves != d.leaves || sums.empty != d.empty_leaves || sums.references != d.references ||

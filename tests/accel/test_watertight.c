@@ -71,18 +71,22 @@ static void make_icosphere(Body *body) {
     set_inside(body, rt_vec3d(0, 0, 0), rt_vec3d(0, 0, 0), 0.9);
 }
 
+/* The corners of face `face` of six of the cube from -1 to 1, in turn. */
+static void square_of(int face, RtVec3 v[4]) {
+    int a = face / 2;
+    for (int i = 0; i < 4; i++) {
+        v[i].at[a] = face % 2 ? 1 : -1;
+        v[i].at[(a + 1) % 3] = i == 0 || i == 3 ? -1 : 1;
+        v[i].at[(a + 2) % 3] = i < 2 ? -1 : 1;
+    }
+}
+
 static void make_cube(Body *body) {
-    for (int a = 0; a < 3; a++) {
-        for (double side = -1; side <= 1; side += 2) {
-            RtVec3d v[4];
-            for (int i = 0; i < 4; i++) {
-                v[i].at[a] = side;
-                v[i].at[(a + 1) % 3] = i == 0 || i == 3 ? -1 : 1;
-                v[i].at[(a + 2) % 3] = i < 2 ? -1 : 1;
-            }
-            add_triangle(body, v[0], v[1], v[2]);
-            add_triangle(body, v[0], v[2], v[3]);
-        }
+    for (int face = 0; face < 6; face++) {
+        RtVec3 v[4];
+        square_of(face, v);
+        add_triangle(body, rt_widen(v[0]), rt_widen(v[1]), rt_widen(v[2]));
+        add_triangle(body, rt_widen(v[0]), rt_widen(v[2]), rt_widen(v[3]));
     }
     set_inside(body, rt_vec3d(0, 0, 0), rt_vec3d(0, 0, 0), 0.9);
 }
@@ -269,16 +273,10 @@ RT_TEST(no_ray_at_an_edge_or_vertex_leaks_from_a_closed_mesh) {
 
 static RtGeometry make_cube_of_polygons(void) {
     RtGeometry g = {0};
-    for (int a = 0; a < 3; a++) {
-        for (float side = -1; side <= 1; side += 2) {
-            RtVec3 v[4];
-            for (int i = 0; i < 4; i++) {
-                v[i].at[a] = side;
-                v[i].at[(a + 1) % 3] = i == 0 || i == 3 ? -1 : 1;
-                v[i].at[(a + 2) % 3] = i < 2 ? -1 : 1;
-            }
-            assert_ok(rt_geometry_add_polygon(&g, v, 4, error));
-        }
+    for (int face = 0; face < 6; face++) {
+        RtVec3 v[4];
+        square_of(face, v);
+        assert_ok(rt_geometry_add_polygon(&g, v, 4, error));
     }
     assert_ok(rt_geometry_finish(&g, error));
     return g;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The layout of `wide`: one arena for any number of threads, the room that was foreseen, and blocks that are
- * no emptier than they need be. */
+/* The layout of `wide`: the room that was foreseen, and blocks that are no emptier than they need be. */
 #include "tree_testing.h"
 
 #include "accel/wide/wide.h"
@@ -26,41 +25,6 @@ static RtWideTree lay_out(const RtScene *scene, RtTree *tree, const RtWideLayout
     assert_ok(rt_wide_validate(&wide, &scene->geometry, error));
     assert_int_equal(bytes_below(&wide, 0), wide.bytes);
     return wide;
-}
-
-/* Large enough for many subtrees to be placed by threads; memory is not as another layout left it. */
-static void assert_same_on_any_threads(const RtScene *scene, RtTree *tree, uint32_t leaf_limit) {
-    RtWideLayout how = plain;
-    how.leaf_limit = leaf_limit;
-    OWNED(rt_wide_clear) RtWideTree one = lay_out(scene, tree, &how);
-    for (how.threads = 2; how.threads <= 5; how.threads++) {
-        how.huge_pages = how.threads % 2 == 0;
-        OWNED(rt_wide_clear) RtWideTree other = lay_out(scene, tree, &how);
-        assert_int_equal(one.bytes, other.bytes);
-        assert_int_equal(one.node_count, other.node_count);
-        assert_true(one.cost == other.cost);
-        assert_memory_equal(one.arena, other.arena, one.bytes);
-    }
-    rt_tree_clear(tree);
-}
-
-RT_TEST(the_arena_is_the_same_byte_for_byte_on_any_number_of_threads) {
-    static const char *const scenes[] = {"random:n=20000,shape=triangle,radius=3",
-                                         "random:n=20000,shape=mixed"};
-    for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i++) {
-        OWNED_SCENE scene = open_scene(scenes[i]);
-        const RtGeometry *g = &scene.geometry;
-        RtSpatial how = {
-            .bins = 16, .alpha = 1e-5, .budget = 1.5, .leaf = 1, .traversal = 1, .limit = UINT64_MAX};
-        RtTree tree;
-        assert_ok(rt_tree_topdown(&tree, g->boxes, g->object_count, 16, 1, error));
-        assert_same_on_any_threads(&scene, &tree, 4);
-        assert_ok(rt_tree_ploc(&tree, g->boxes, g->object_count, 21, 25, 1, error));
-        assert_same_on_any_threads(&scene, &tree, 8);
-        assert_ok(rt_tree_spatial(&tree, g, &how, 1, error));
-        assert_true(tree.split_refs);
-        assert_same_on_any_threads(&scene, &tree, 8);
-    }
 }
 
 RT_TEST(a_leaf_is_next_to_its_node_or_another_leaf) {
@@ -112,24 +76,6 @@ RT_TEST(one_object_is_a_leaf_below_a_root_and_what_takes_too_much_is_refused) {
     assert_int_equal(rt_wide_lay_out(&wide, &tree, &scene.geometry, &how, &refusal), RT_BAD_INPUT);
     assert_null(wide.arena);
     assert_true(wide.bytes == 0);
-}
-
-RT_TEST(every_allocation_may_fail_and_leaves_nothing) {
-    OWNED_SCENE scene = open_scene("random:n=3000,shape=triangle");
-    OWNED_TREE tree;
-    assert_ok(rt_tree_topdown(&tree, scene.geometry.boxes, scene.geometry.object_count, 16, 1, error));
-    int64_t live = rt_alloc_live();
-    RtStatus status = RT_NO_MEMORY;
-    for (uint64_t n = 1; status != RT_OK; n++) {
-        RtWideTree wide;
-        RtError problem;
-        rt_alloc_fail_at(n);
-        status = rt_wide_lay_out(&wide, &tree, &scene.geometry, &plain, &problem);
-        rt_alloc_fail_at(0);
-        assert_true(status == RT_OK ? n > 3 : status == RT_NO_MEMORY);
-        rt_wide_clear(&wide);
-        assert_int_equal(rt_alloc_live(), live);
-    }
 }
 
 RT_TESTS(wide_layout, NULL, NULL)

@@ -186,15 +186,20 @@ static int order_of(const RtGeometry *g, uint32_t a, uint32_t b, const RtRay *ra
     return order;
 }
 
+/* Three triangles across the axis of z, at these heights. */
+static void add_walls(RtGeometry *g, const float heights[3]) {
+    for (int i = 0; i < 3; i++) {
+        const RtVec3 v[3] = {{-9, -9, heights[i]}, {9, -9, heights[i]}, {0, 9, heights[i]}};
+        assert_ok(rt_geometry_add_triangle(g, v, NULL, error));
+    }
+}
+
 /* The ray meets the sphere at z = 4 (3-4-5), where a triangle lies, and others an ulp before and behind. */
 RT_TEST(a_sphere_and_a_triangle_tie_where_they_meet_at_a_rational_t) {
     OWNED_GEOMETRY g = {0};
     const float heights[3] = {4, nextafterf(4, 5), nextafterf(4, 3)};
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 5, error));
-    for (int i = 0; i < 3; i++) {
-        const RtVec3 v[3] = {{-9, -9, heights[i]}, {9, -9, heights[i]}, {0, 9, heights[i]}};
-        assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
-    }
+    add_walls(&g, heights);
     assert_ok(rt_geometry_finish(&g, error));
     RtRay ray = ray_from(3, 0, 7, 0, 0, -3);
     assert_int_equal(order_of(&g, 0, 1, &ray), 0);
@@ -311,10 +316,7 @@ RT_TEST(trees_are_met_where_their_inside_begins_and_ends) {
 RT_TEST(the_referee_says_who_is_right) {
     OWNED_GEOMETRY g = {0};
     const float heights[3] = {0, -0x1p-24f, -1};
-    for (int i = 0; i < 3; i++) {
-        const RtVec3 v[3] = {{-9, -9, heights[i]}, {9, -9, heights[i]}, {0, 9, heights[i]}};
-        assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
-    }
+    add_walls(&g, heights);
     assert_ok(rt_geometry_finish(&g, error));
     RtRay ray = ray_from(0, 0, 1, 0, 0, -1), aside = ray_from(20, 0, 1, 0, 0, -1);
     const struct {

@@ -37,10 +37,9 @@ RT_TEST_IN_PLACE(a_false_claim_is_said_to_be_and_is_exit_code_1_if_strict) {
 
 RT_TEST_IN_PLACE(a_bad_claim_is_refused_with_its_line_when_the_yaml_is_read) {
     const Place *place = *state;
-    RtError error = {RT_OK, ""};
     write_changed(place, "small.yaml", claiming, "bvh > 1000", "bhv > 1000");
-    assert_refused(
-        load_small(place, false, &error), RT_BAD_INPUT, &error,
+    assert_bad_input(
+        load_small(place, false, error),
         ":14:5: expect[1]: 'bhv' is not the label of one of the accelerators; claims are written as in");
 }
 

@@ -176,9 +176,4 @@ RT_TEST(distributions_are_the_same_on_any_number_of_threads) {
     rt_free(e);
 }
 
-static int nothing_is_kept(void **state) {
-    (void)state;
-    return rt_alloc_live() == 0 ? 0 : -1;
-}
-
-RT_TESTS(distribution, NULL, nothing_is_kept)
+RT_TESTS(distribution, NULL, assert_nothing_is_kept)

@@ -186,10 +186,8 @@ FRAME_TEST(a_thinned_set_is_told_as_a_part_of_a_frame) {
 
 static void refused(const char *why) {
     char where[RT_MAX_LABEL];
-    RtError error = {RT_OK, ""};
-    assert_int_equal(rt_experiment_check(e, where, &error), RT_BAD_INPUT);
+    assert_bad_input(rt_experiment_check(e, where, error), why);
     assert_string_equal(where, "frame");
-    if (!strstr(error.message, why)) fail_msg("%s", error.message);
 }
 
 FRAME_TEST(a_frame_needs_its_accelerator_its_group_and_its_kinds_of_rays) {

@@ -2,6 +2,7 @@
 /* Shards of one experiment, joined. */
 #include "experiment_testing.h"
 
+#include "core/base/lock.h"
 #include "core/text/csv.h"
 
 #include <sys/stat.h>
@@ -96,6 +97,18 @@ RT_TEST_IN_PLACE(a_merge_that_fails_loses_nothing_of_earlier_results) {
         rt_free(before[i]);
     }
     assert_true(rt_file_exists(path_in(place, "all/images/cloud:n=200.png").text));
+}
+
+RT_TEST_IN_PLACE(a_merge_into_the_directory_of_another_run_is_refused_and_removes_nothing) {
+    const Place *place = *state;
+    RtLock lock = RT_NO_LOCK;
+    assert_int_equal(raytally(place, "merge s1 s2 s3 s4 -o all"), 0);
+    char *before = read_in(place, "all/counts.csv");
+    assert_ok(rt_lock_take(&lock, path_in(place, "all").text, error));
+    assert_ends(place, "merge s1 s2 s3 s4 -o all --force", 2, "is writing");
+    assert_same_file(place, "all/counts.csv", before);
+    rt_lock_release(&lock);
+    rt_free(before);
 }
 
 RT_TEST_IN_PLACE(a_shard_is_gone_on_with_as_the_shard_that_it_is) {

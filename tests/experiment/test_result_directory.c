@@ -142,14 +142,13 @@ RT_TEST_IN_PLACE(a_second_process_is_refused_with_the_number_of_the_first) {
                                    "report out"};
     char holder[64];
     RtLock lock;
-    RtError refused;
     assert_ends(place, "run small.yaml --out out", 0, "");
     assert_ok(rt_lock_take(&lock, path_in(place, "out").text, error));
     assert_true(rt_lock_is_held(&lock));
     snprintf(holder, sizeof holder, "out: process %d is writing", (int)getpid());
     for (size_t i = 0; i < sizeof writing / sizeof writing[0]; i++) assert_ends(place, writing[i], 2, holder);
     assert_ends(place, "reproduce out", 0, "");
-    assert_refused(run(place, "out", RT_START_ANEW, &refused), RT_BAD_INPUT, &refused, "is writing");
+    assert_bad_input(run(place, "out", RT_START_ANEW, error), "is writing");
     rt_lock_release(&lock);
     for (size_t i = 0; i < sizeof writing / sizeof writing[0]; i += 3) assert_ends(place, writing[i], 0, "");
 }
@@ -192,18 +191,16 @@ RT_TEST_IN_PLACE(two_scripts_of_one_name_are_refused_with_their_line) {
                                  "[x.gp,\n  ..]"};
     for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
         char plots[64];
-        RtError error = {RT_OK, ""};
         snprintf(plots, sizeof plots, "limit: 100\nplots: %s\n", lists[i]);
         write_changed(place, "small.yaml", small_experiment, "limit: 100\n", plots);
-        assert_refused(load_small(place, false, &error), RT_BAD_INPUT, &error, "small.yaml:13:3:");
+        assert_bad_input(load_small(place, false, error), "small.yaml:13:3:");
     }
 }
 
 RT_TEST_IN_PLACE(an_experiment_that_is_named_like_a_folder_above_is_refused) {
     const Place *place = *state;
-    RtError error = {RT_OK, ""};
     write_changed(place, "small.yaml", small_experiment, "name: small", "name: ..");
-    assert_refused(load_small(place, false, &error), RT_BAD_INPUT, &error, "small.yaml:1:");
+    assert_bad_input(load_small(place, false, error), "small.yaml:1:");
 }
 
 /* A gnuplot of our own, in the folder bin of the place. */

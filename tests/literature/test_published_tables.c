@@ -44,12 +44,10 @@ RT_TEST_IN_PLACE(what_a_published_table_or_a_reason_says_wrongly_is_told_with_it
          "reasons.csv:2: the reason is missing"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        RtError error = {RT_OK, ""};
         write_figures(place, "");
         write_reasons(place, "");
         write_in(place, cases[i].file, cases[i].text);
-        RtStatus status = load(place, &error);
-        assert_refused(status, RT_BAD_INPUT, &error, cases[i].says);
+        assert_bad_input(load(place, error), cases[i].says);
     }
 }
 
@@ -68,11 +66,9 @@ RT_TEST_IN_PLACE(what_the_experiment_says_wrongly_about_published_figures_is_tol
         {"count_only: yes", "baseline: all", ":17:"}, /* not on every scene */
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        RtError error = {RT_OK, ""};
         change_experiment(place, cases[i][0], cases[i][1]);
         write_figures(place, "");
-        RtStatus status = load(place, &error);
-        assert_refused(status, RT_BAD_INPUT, &error, cases[i][2]);
+        assert_bad_input(load(place, error), cases[i][2]);
     }
 }
 
@@ -80,16 +76,7 @@ RT_TEST_IN_PLACE(a_published_table_that_does_not_fit_into_memory_is_refused) {
     const Place *place = *state;
     write_figures(place, "balls,s,t,u,all,ray,,11,\n");
     write_reasons(place, "*,*,*,*,why\n");
-    int64_t live = rt_alloc_live();
-    for (uint64_t n = 1, failed = 1; failed; n++) {
-        RtError error = {RT_OK, ""};
-        rt_alloc_fail_at(n);
-        RtStatus status = load(place, &error);
-        rt_alloc_fail_at(0);
-        failed = status != RT_OK;
-        if (failed) assert_refused(status, RT_NO_MEMORY, &error, "");
-        assert_int_equal(rt_alloc_live(), live);
-    }
+    assert_fails_cleanly(load(place, error), (void)0);
 }
 
 /* ---- directories ---- */

@@ -82,12 +82,8 @@ static bool same_counts(const RtFrame *a, const RtFrame *b, const char *what) {
 
 /* Compares the frames of one spec with `expected`; false, and a message, if one differs. */
 static bool makes_the_frame(const char *spec, const RtScene *scene, const RtFrame *expected) {
-    OWNED_ACCEL RtAccel *accel = NULL;
-    RtError failure = {RT_OK, ""};
-    RtStatus status = rt_accel_open(spec, scene, &accel, &failure);
-    if (status == RT_NOT_AVAILABLE) return true;
-    if (status != RT_OK) fail_msg("%s: %s", spec, failure.message);
-    if (!accel->exact) return true;
+    OWNED_ACCEL RtAccel *accel = open_available(scene, spec, 0);
+    if (!accel || !accel->exact) return true;
     OWNED_FRAME timed = trace(accel, false, 3), counted = trace(accel, true, 1);
     OWNED_FRAME threaded = trace(accel, true, 3);
     return same_picture(&timed, expected, spec) && same_picture(&counted, expected, spec) &&

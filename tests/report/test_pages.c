@@ -37,6 +37,16 @@ static void write_small(const Place *place, const char *members) {
 
 /* ---- the report ---- */
 
+/* The page has these parts in this order; the text from the last one on. */
+static const char *assert_in_order(const char *page, const char *const *parts, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        const char *found = strstr(page, parts[i]);
+        if (!found) fail_msg("the report lacks '%s' after what stands before it", parts[i]);
+        if (found) page = found;
+    }
+    return page;
+}
+
 RT_TEST_IN_PLACE(the_report_has_verdict_finding_and_prediction_first_then_plots_then_tables) {
     const Place *place = *state;
     const char *const parts[] = {"Which is &lt;cheaper&gt;?",
@@ -52,12 +62,7 @@ RT_TEST_IN_PLACE(the_report_has_verdict_finding_and_prediction_first_then_plots_
                                  "<script>"};
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
     char *page = read_in(place, "out/report.html");
-    const char *at = page;
-    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
-        const char *found = strstr(at, parts[i]);
-        if (!found) fail_msg("the report lacks '%s' after what stands before it", parts[i]);
-        if (found) at = found;
-    }
+    assert_in_order(page, parts, sizeof parts / sizeof parts[0]);
     rt_free(page);
 }
 
@@ -89,13 +94,8 @@ RT_TEST_IN_PLACE(a_report_of_frames_opens_with_the_fastest_and_its_plot) {
     assert_non_null(answer);
     assert_non_null(strstr(answer, "Null runs: ")); /* after it */
     rt_free(screen);
-    const char *at = page;
-    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
-        const char *found = strstr(at, parts[i]);
-        if (!found) fail_msg("the report lacks '%s' after what stands before it", parts[i]);
-        if (found) at = found;
-    }
-    assert_null(strstr(at, "Plot: A frame")); /* once */
+    const char *last = assert_in_order(page, parts, sizeof parts / sizeof parts[0]);
+    assert_null(strstr(last, "Plot: A frame")); /* once */
     rt_free(page);
 }
 

@@ -100,8 +100,7 @@ RT_TEST_IN_PLACE(a_bad_sweep_is_refused_with_its_line) {
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         write_changed(place, "small.yaml", swept, cases[i].from, cases[i].to);
-        RtError error = {RT_OK, ""};
-        assert_refused(load_small(place, false, &error), RT_BAD_INPUT, &error, cases[i].says);
+        assert_bad_input(load_small(place, false, error), cases[i].says);
     }
 }
 
@@ -109,14 +108,13 @@ RT_TEST_IN_PLACE(a_bad_sweep_is_refused_with_its_line) {
  * backquotes in the script that is written of them. */
 RT_TEST_IN_PLACE(a_swept_value_that_gnuplot_would_run_is_refused_also_in_results_that_are_read) {
     const Place *place = *state;
-    RtError error = {RT_OK, ""};
     json_t *manifest = json_object();
     write_changed(place, "small.yaml", swept, "grid:density=1..16*2",
                   "grid:mailbox=on,resolution=auto,empty_steps_stay=on,rule=woo|`harm`");
-    RtStatus status = rt_experiment_load_from_manifest(place->experiment, path_in(place, "small.yaml").text,
-                                                       manifest, &error);
+    assert_bad_input(rt_experiment_load_from_manifest(place->experiment, path_in(place, "small.yaml").text,
+                                                      manifest, error),
+                     "'`harm`' cannot name");
     json_decref(manifest);
-    assert_refused(status, RT_BAD_INPUT, &error, "'`harm`' cannot name");
 }
 
 RT_TEST_IN_PLACE(bench_takes_sweeps_of_scenes_and_accelerators) {

@@ -136,13 +136,8 @@ RT_TEST(bad_meshes_are_refused_with_what_is_wrong) {
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         RtScene scene;
-        RtError problem;
-        if (load_text(cases[i].path, cases[i].text, &scene, &problem) != RT_BAD_INPUT)
-            fail_msg("'%s' was not refused", cases[i].text);
-        if (strncmp(problem.message, cases[i].path, strlen(cases[i].path)) != 0 ||
-            !strstr(problem.message, cases[i].says)) {
-            fail_msg("'%s' gave: %s", cases[i].text, problem.message);
-        }
+        assert_bad_input_at(load_text(cases[i].path, cases[i].text, &scene, error), cases[i].path,
+                            cases[i].says);
     }
     RtScene scene = {0};
     assert_bad_input(rt_mesh_append(&scene, "no_such.obj", 0, NULL, error), "No such file");

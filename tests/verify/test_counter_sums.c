@@ -110,12 +110,9 @@ RT_TEST(counts_do_not_depend_on_threads_or_streams) {
     for (size_t i = 0; i < rt_accel_count(); i++) {
         char spec[RT_MAX_SPEC_CHARS];
         for (size_t n = 0; rt_spread_spec(rt_accel_at(i), n, spec); n++) {
-            RtAccel *accel;
-            RtError error;
-            RtStatus status = rt_accel_open(spec, &stage->scene, &accel, &error);
-            if (status == RT_NOT_AVAILABLE) continue;
-            assert_int_equal(status, RT_OK);
-            assert_int_equal(rt_accel_learn(accel, stage->rays, stage->hits, RAYS, &error), RT_OK);
+            OWNED_ACCEL RtAccel *accel = open_available(&stage->scene, spec, 0);
+            if (!accel) continue;
+            assert_ok(rt_accel_learn(accel, stage->rays, stage->hits, RAYS, error));
             static Count first, other;
             first = (Count){.stage = stage, .accel = accel, .stream = 1};
             count_all(&first, 1);
@@ -130,7 +127,6 @@ RT_TEST(counts_do_not_depend_on_threads_or_streams) {
                              ways[w].stream);
                 }
             }
-            rt_accel_destroy(accel);
         }
     }
 }

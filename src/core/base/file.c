@@ -251,6 +251,15 @@ size_t rt_directory_each(const char *folder, const char *suffix,
     return visited;
 }
 
+static void remove_file(void *context, const char *path) {
+    (void)context;
+    remove(path);
+}
+
+void rt_directory_remove_files(const char *folder, const char *suffix) {
+    rt_directory_each(folder, suffix, remove_file, NULL);
+}
+
 RtStatus rt_path_join(const char *folder, const char *name, char *out, RtError *error) {
     bool alone = name[0] == '/' || folder[0] == '\0';
     int length =

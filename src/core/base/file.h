@@ -78,6 +78,9 @@ RtStatus rt_directory_create(const char *path, RtError *error);
 size_t rt_directory_each(const char *folder, const char *suffix,
                          void (*visit)(void *context, const char *path), void *context);
 
+/* Removes them. */
+void rt_directory_remove_files(const char *folder, const char *suffix);
+
 /* Writes "FOLDER/name" to out[0..RT_MAX_PATH); just the name if it is absolute or the folder is empty.
  * Rejects a path that is too long. */
 RtStatus rt_path_join(const char *folder, const char *name, char *out, RtError *error);
