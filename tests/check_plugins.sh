@@ -104,6 +104,7 @@ fault uncounted 'its object_tests for [a-z]+ rays add up to 0, and were [0-9]+'
 fault twice 'its object_tests for [a-z]+ rays add up to [0-9]+, and were [0-9]+'
 fault backwards 'counted [0-9]+ steps for [a-z]+ rays, more than possible'
 fault occluder 'an occluder that the ray does not hit, 0 '
+fault unnamed 'an object that does not exist, 4294967294 '
 fault silent 'wrote no answer'
 fault beyond 'wrote or read past its answers'
 fault before 'wrote in front of its answers'
@@ -119,6 +120,21 @@ patience=0.2 # a build may take ten times as long
 fault loop-build 'no progress for 2 s .* while it was built'
 unset patience
 fault greedy 'memory is short'
+fault older ''
+
+# Answers of its own hit functions may differ, but they must be answers.
+fault own-object 'an object that does not exist, 1[0-9] \(the scene has 11 objects\)'
+fault own-nan 't = nan, which is not on the ray'
+fault own-endless 't = inf, which is not on the ray'
+fault own-early 't = 0, which is not on the ray'
+fault own-occluder 'an object that does not exist, 11 \(the scene has 11 objects\)'
+fault own-moody 'counts [0-9]+ extent_tests on some [a-z]+ rays, and [0-9]+ when' \
+    'counts [0-9]+ extent_tests on some rays, and [0-9]+ when they are traced again'
+fault own-farther ''
+fault own-uncounted ''
+fault own-unnamed ''
+fault own-wrong 'expected .* got ' ''
+fault own-lazy 'timed kernel.* expected .* got no hit' ''
 ends 0 bench-invasive.json "${bench[@]}" --plugin "$plugins/odd-INVASIVE.so" --accel kd
 
 python3 - <<'END' || failures=$((failures + 1))
@@ -138,7 +154,14 @@ for name in sorted(glob.glob("bench-*.json")):
     if of_kd(load(name)) != alone:
         print(f"{name}: the measurements of kd differ from those without the plugin")
         failed = True
-right = ("verify-not.json", "verify-print.json")
+# An accelerator with its own hit functions is timed, and its rows say how many answers differ.
+for name, differs in {"older": 0, "own-unnamed": 0, "own-uncounted": 0, "own-farther": 1, "own-wrong": 1, "own-lazy": 1}.items():
+    rows = [row for row in load(f"bench-{name}.json")["rows"] if row["accelerator"] == f"faulty-{name}"]
+    if len(rows) != 2 or any(row["ns"] <= 0 for row in rows) or (rows[0]["differ"] > 0) != differs:
+        print(f"bench-{name}.json: not timed, or answers that differ are counted wrongly: {rows}")
+        failed = True
+right = ("verify-not.json", "verify-print.json", "verify-older.json", "verify-own-farther.json", "verify-own-uncounted.json",
+         "verify-own-unnamed.json")
 for name in sorted(glob.glob("verify-*.json")):
     rows = [row for row in load(name)["rows"] if row["accel"] == "kd" or name in right]
     if len(rows) != 1 + (name in right) or any(row["rays"] != 600 or row["equal"] != 600 or row["problem"] for row in rows):
@@ -188,6 +211,7 @@ refuses "it has two accelerators 'unloadable': choose another name" "$plugins/un
 refuses "lacks its .*nearest" "$plugins/unloadable-FUNCTION.so"
 refuses "'unloadable' lacks its .params" "$plugins/unloadable-PARAMETERS.so"
 refuses "contradicts itself.*depth" "$plugins/unloadable-DEFAULT.so"
+refuses "'unloadable' sets flags that this raytally does not know \(0x8000000000000000\)" "$plugins/unloadable-FLAGS.so"
 refuses "parameter 'mode' of 'unloadable' has 71 choices; at most 64 are allowed" "$plugins/unloadable-CHOICES.so"
 refuses 'loading it failed: it crashed \(Aborted\)' "$plugins/unloadable-CONSTRUCTOR.so"
 refuses 'loading it failed: it crashed \(Aborted\)' "$plugins/unloadable-ENTRY.so"
