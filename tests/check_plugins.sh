@@ -196,6 +196,26 @@ ends 1 printed run faulty.yaml --plugin "$plugins/faulty.so" --resume
 ends 0 printed reproduce results/faulty --plugin "$plugins/faulty.so"
 ends 0 printed report results/faulty --plugin "$plugins/faulty.so"
 
+# ---- instructions by callgrind ----
+
+# counted NAME: its count of instructions in counted.json, or why there is none
+counted() {
+    python3 -c 'import json, sys
+for row in json.load(open("counted.json"))["instructions"]:
+    if row["accelerator"] == sys.argv[1]: print(row.get("instructions") or "none:", row.get("why") or "")' "$1"
+}
+
+if command -v valgrind >/dev/null; then
+    ends 0 counted.json bench balls:size=1 --rays primary --size 8x8 --depth 1 --count-only --callgrind --json \
+        --plugin "$plugins/faulty.so" --accel faulty-not --accel faulty-illegal --accel faulty-print --accel faulty-own-wrong
+    incapable='none: this build has kernels only for avx512' # then none has instructions
+    [[ $(counted faulty-illegal) =~ ^('none: it has instructions that valgrind lacks, such as AVX-512'|$incapable) ]] ||
+        complain "faulty-illegal: $(counted faulty-illegal)"
+    for name in faulty-not faulty-print faulty-own-wrong; do
+        [[ $(counted $name) =~ ^([1-9]|$incapable) ]] || complain "$name: instructions: $(counted $name)"
+    done
+fi
+
 # ---- libraries that cannot be loaded ----
 
 refuses 'nowhere.so: no such plugin' nowhere.so

@@ -115,7 +115,8 @@ static void print_differing(const RtResults *results, uint32_t t, FILE *out) {
         const RtBuildResult *build = rt_build_at(results, t, c);
         const char *before = ":";
         if (!build->known || build->exact) continue;
-        snprintf(text, sizeof text, "%s has its own arithmetic. Answers with other bits than the reference",
+        snprintf(text, sizeof text,
+                 "%s uses its own arithmetic. Answers that differ from the reference in any bit",
                  experiment->candidates[c].label);
         for (uint32_t k = 0; k < experiment->kind_count; k++) {
             const RtCell *cell = rt_cell_at(results, t, c, experiment->kinds[k]);

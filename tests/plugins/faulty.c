@@ -171,6 +171,14 @@ SEARCH(scribbled, scribble();)
 SEARCH(divide, zero = 7 / zero;)
 SEARCH(overflow, zero = recurse(&zero) & 0;)
 SEARCH(freed_twice, free_twice();)
+
+/* Valgrind loads a library of its own first. */
+static int is_in_valgrind(void) {
+    const char *loaded = getenv("LD_PRELOAD");
+    return loaded && strstr(loaded, "vgpreload");
+}
+SEARCH(illegal, if (is_in_valgrind()) raise(SIGILL);)
+
 SEARCH(print, if (is_rare(ray->ray)) print_line("{ faulty-print is asked");)
 
 /* Writing outside its own memory, which has MEMORY bytes. */
@@ -363,6 +371,7 @@ static raytally_accel_ops tables[] = {
     {.name = "faulty-deep", .summary = "shows a box at a depth that is none", .each_box = show_deep},
     {.name = "faulty-show", .summary = "crashes when it shows its boxes", .each_box = show_crash},
     {.name = "faulty-mumble", .summary = "refuses every scene in no language", .build = build_mumble},
+    {.name = "faulty-illegal", .summary = "has an instruction that valgrind does not know", KERNELS(illegal)},
     {.name = "faulty-older",
      .summary = "is in order, and has a table of the first version, which ends before these flags",
      .size = offsetof(raytally_accel_ops, flags),
