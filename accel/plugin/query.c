@@ -19,9 +19,8 @@ _Static_assert(sizeof(raytally_ray) == sizeof(RtRay) && offsetof(raytally_ray, d
                    offsetof(raytally_ray, source) == offsetof(RtRay, source) &&
                    (int)RAYTALLY_RAY_KINDS == (int)RT_RAY_KIND_COUNT,
                "rays");
-_Static_assert(sizeof(raytally_hit) == sizeof(RtHit) && RAYTALLY_NO_OBJECT == RT_NO_OBJECT &&
-                   RAYTALLY_UNNAMED_OBJECT == RT_UNNAMED_OBJECT,
-               "hits");
+_Static_assert(sizeof(raytally_hit) == sizeof(RtHit) && RAYTALLY_NO_OBJECT == RT_NO_OBJECT, "hits");
+_Static_assert((uint64_t)RAYTALLY_UNNAMED_OBJECT == RT_UNNAMED_OBJECT, "occluders");
 _Static_assert(sizeof(raytally_box) == sizeof(RtBox), "boxes");
 _Static_assert(sizeof(RtPreparedRay) <= sizeof(((raytally_prepared *)0)->own), "a prepared ray fits");
 

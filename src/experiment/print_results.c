@@ -151,6 +151,7 @@ void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) 
             print_cells(results, t, out);
         } else {
             rt_table_text(&table, out);
+            print_differing(results, t, out);
         }
     }
 }
