@@ -9,7 +9,7 @@
 
 #include "accel/accel.h"
 
-enum { RT_MAX_PLUGIN_ACCELS = 64 }; /* that all plugins may register */
+enum { RT_MAX_PLUGIN_ACCELS = 96 }; /* that all plugins may register */
 
 typedef struct RtPlugin {
     char path[4096];      /* absolute */

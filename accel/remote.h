@@ -20,14 +20,28 @@ bool rt_accel_is_remote(const RtAccel *accel);
 /* Runs `work` where the query's accelerator is: for a remote one in its process, with the query there, and
  * with copies of rays[0..count) and of the `message`, which is copied back. The message, of `bytes`, must not
  * contain pointers to memory of one process that the other reads; with the rays it has at most
- * RT_REMOTE_BYTES. For a broken accelerator nothing runs, and the message is unchanged. */
+ * RT_REMOTE_BYTES. False for a broken accelerator: nothing runs, and the message is unchanged. */
 enum { RT_REMOTE_BYTES = 255 * 1024 };
 typedef void RtRemoteWork(RtQuery *query, const RtRay *rays, void *message);
-void rt_remote_do(RtQuery *query, RtRemoteWork *work, const RtRay *rays, size_t count, void *message,
+bool rt_remote_do(RtQuery *query, RtRemoteWork *work, const RtRay *rays, size_t count, void *message,
                   size_t bytes);
 
 /* Marks a remote accelerator as broken: `what` was found wrong with it while it did `doing`. */
 void rt_remote_break(const RtAccel *accel, const char *what, const char *doing);
+
+/* Answers of a plugin are not trusted: whether `hit` is a miss, or an object of the scene at a finite t on
+ * the ray. */
+static inline bool rt_hit_is_possible(const RtAccel *accel, const RtRay *ray, RtHit hit) {
+    if (hit.object == RT_NO_OBJECT) return hit.t == INFINITY;
+    return hit.object < accel->scene->geometry.object_count && hit.t >= ray->tmin && hit.t <= ray->tmax &&
+           hit.t < INFINITY;
+}
+
+/* The same of an occluder. An exact accelerator must name it. */
+static inline bool rt_occluder_is_possible(const RtAccel *accel, uint32_t occluder) {
+    return occluder == RT_NO_OBJECT || occluder < accel->scene->geometry.object_count ||
+           (occluder == RT_UNNAMED_OBJECT && !accel->exact);
+}
 
 /* Reports progress; long work calls it regularly. A process without progress for 60 seconds, or for
  * RAYTALLY_PLUGIN_SECONDS, counts as hung; a build has ten times as long. With RAYTALLY_PLUGIN_WAIT set there

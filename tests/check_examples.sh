@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # check_examples.sh: the plugins of examples/ and tests/plugins/bvh_copy.c, built against the public headers alone with every
 # available compiler, without a warning: verify finds no wrong hit; bvh_copy counts what bvh counts; verify detects a bih with
-# one origin for both kinds of planes. examples/header-only explains how to get what it needs, and is built and verified if
-# $BVH_DIR is a copy of madmann91/bvh.
+# one origin for both kinds of planes. examples/header-only and examples/peers explain how to get what they need; the first is built
+# and verified if $BVH_DIR is a copy of madmann91/bvh, the second if $PEERS is the folder that its fetch.sh fills; the plugin in
+# the README of peers is built with a library that tests all triangles.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/testing.sh"
 cd "$(dirname "$0")/.."
@@ -68,9 +69,35 @@ if builds "${CC:-cc}" c99 "$work/bih.c" bih; then
     grep -q '[1-9][0-9]* wrong' <<<"$said" || complain "bih without the thickness of rays is not found out: $said"
 fi
 
-# ---- without the library that the user must get ----
+# ---- libraries as they are ----
+# judged NAME: no answer on scenes of triangles is wrong
+judged() {
+    local said
+    said=$("$program" verify tetra:size=3 random:n=300,shape=triangle --rays 2000 --plugin "$work/$1.so" --accel "$1" \
+        --out "$work/out" --force 2>&1 | tail -n 1 || true)
+    [[ $said = '2 scenes, 1 accelerator, 2000 rays, 4000 pairs of a ray and an accelerator: nothing wrong' ]] || complain "$1: $said"
+}
+
+# peer NAME INCLUDES: as its CMakeLists.txt builds it, if the library is there
+peer() {
+    local flags=(-O3 -march=native -Wno-maybe-uninitialized -isystem "${PEERS-}/$1/$2") # the warnings of its library
+    [ -n "${PEERS-}" ] && [ -d "$PEERS/$1/$2" ] || { echo "check_examples: no $1 in \$PEERS: its plugin is not built" >&2 && return; }
+    if builds g++ c++20 "examples/peers/$1.cpp" "$1" "${flags[@]}"; then judged "$1"; fi
+}
+
+sed -n '/^```cpp$/,/^```$/p' examples/peers/README.md | sed '/^```/d' >"$work/mine.cpp"
+if builds g++ c++20 "$work/mine.cpp" mine -I examples/peers -I tests/plugins; then judged mine; fi
+peer fastbvh include
+peer madmann91 src
+peer nanort .
+peer tinybvh .
+peer visionaray include
+
+# ---- without the libraries that the user must get ----
 if command -v cmake >/dev/null; then
     cmake -S examples/header-only -B "$work/build" >"$work/log" 2>&1 && complain "header-only is made without BVH_DIR"
     grep -q 'git clone https://' "$work/log" || complain "header-only does not say how to get what it needs: $(cat "$work/log")"
+    cmake -S examples/peers -B "$work/build-peers" >"$work/log" 2>&1 && complain "peers is made without PEERS"
+    grep -q 'fetch.sh' "$work/log" || complain "peers does not say how to get what it needs: $(cat "$work/log")"
 fi
 conclude

@@ -86,6 +86,7 @@ fault uncounted 'its object_tests for [a-z]+ rays add up to 0, and were [0-9]+'
 fault twice 'its object_tests for [a-z]+ rays add up to [0-9]+, and were [0-9]+'
 fault backwards 'counted [0-9]+ steps for [a-z]+ rays, more than possible'
 fault occluder 'an occluder that the ray does not hit, 0 '
+fault unnamed 'an object that does not exist, 4294967294 '
 fault silent 'wrote no answer'
 fault beyond 'wrote or read past its answers'
 fault before 'wrote in front of its answers'
@@ -101,6 +102,21 @@ RAYTALLY_PLUGIN_SECONDS=0.2 # a build may take ten times as long
 fault loop-build 'no progress for 2 s .* while it was built'
 RAYTALLY_PLUGIN_SECONDS=1
 fault greedy 'memory is short'
+fault older ''
+
+# Answers of its own hit functions may differ, but they must be answers.
+fault own-object 'an object that does not exist, 1[0-9] \(the scene has 11 objects\)'
+fault own-nan 't = nan, which is not on the ray'
+fault own-endless 't = inf, which is not on the ray'
+fault own-early 't = 0, which is not on the ray'
+fault own-occluder 'an object that does not exist, 11 \(the scene has 11 objects\)'
+fault own-moody 'counts [0-9]+ extent_tests on some [a-z]+ rays, and [0-9]+ when' \
+    'counts [0-9]+ extent_tests on some rays, and [0-9]+ when they are traced again'
+fault own-farther ''
+fault own-uncounted ''
+fault own-unnamed ''
+fault own-wrong 'expected .* got ' ''
+fault own-lazy 'timed kernel.* expected .* got no hit' ''
 ends 0 "${bench[@]}" --plugin "$plugins/odd-INVASIVE.so" --accel kd
 mv printed bench-invasive.json
 
@@ -121,7 +137,14 @@ for name in sorted(glob.glob("bench-*.json")):
     if of_kd(load(name)) != alone:
         print(f"{name}: the measurements of kd differ from those without the plugin")
         failed = True
-right = ("verify-not.json", "verify-print.json")
+# An accelerator with its own hit functions is timed, and its rows say how many answers differ.
+for name, differs in {"older": 0, "own-unnamed": 0, "own-uncounted": 0, "own-farther": 1, "own-wrong": 1, "own-lazy": 1}.items():
+    rows = [row for row in load(f"bench-{name}.json")["rows"] if row["accelerator"] == f"faulty-{name}"]
+    if len(rows) != 2 or any(row["ns"] <= 0 for row in rows) or (rows[0]["differ"] > 0) != differs:
+        print(f"bench-{name}.json: not timed, or answers that differ are counted wrongly: {rows}")
+        failed = True
+right = ("verify-not.json", "verify-print.json", "verify-older.json", "verify-own-farther.json", "verify-own-uncounted.json",
+         "verify-own-unnamed.json")
 for name in sorted(glob.glob("verify-*.json")):
     rows = [row for row in load(name)["rows"] if row["accel"] == "kd" or name in right]
     if len(rows) != 1 + (name in right) or any(row["rays"] != 600 or row["equal"] != 600 or row["problem"] for row in rows):
@@ -156,6 +179,27 @@ ends 1 run faulty.yaml --plugin "$plugins/faulty.so" --resume
 ends 0 reproduce results/faulty --plugin "$plugins/faulty.so"
 ends 0 report results/faulty --plugin "$plugins/faulty.so"
 
+# ---- instructions by callgrind ----
+
+# counted NAME: its count of instructions in counted.json, or why there is none
+counted() {
+    python3 -c 'import json, sys
+for row in json.load(open("counted.json"))["instructions"]:
+    if row["accelerator"] == sys.argv[1]: print(row.get("instructions") or "none:", row.get("why") or "")' "$1"
+}
+
+if command -v valgrind >/dev/null; then
+    ends 0 bench balls:size=1 --rays primary --size 8x8 --depth 1 --count-only --callgrind --json \
+        --plugin "$plugins/faulty.so" --accel faulty-not --accel faulty-illegal --accel faulty-print --accel faulty-own-wrong
+    mv printed counted.json
+    incapable='none: this build has kernels only for avx512' # then none has instructions
+    [[ $(counted faulty-illegal) =~ ^('none: it has instructions that valgrind lacks, such as AVX-512'|$incapable) ]] ||
+        complain "faulty-illegal: $(counted faulty-illegal)"
+    for name in faulty-not faulty-print faulty-own-wrong; do
+        [[ $(counted $name) =~ ^([1-9]|$incapable) ]] || complain "$name: instructions: $(counted $name)"
+    done
+fi
+
 # ---- libraries that cannot be loaded ----
 
 refuses 'nowhere.so: no such plugin' nowhere.so
@@ -171,6 +215,7 @@ refuses "it has two accelerators 'unloadable': choose another name" "$plugins/un
 refuses "lacks its .*nearest" "$plugins/unloadable-FUNCTION.so"
 refuses "'unloadable' lacks its .params" "$plugins/unloadable-PARAMETERS.so"
 refuses "contradicts itself.*depth" "$plugins/unloadable-DEFAULT.so"
+refuses "'unloadable' sets flags that this raytally does not know \(0x8000000000000000\)" "$plugins/unloadable-FLAGS.so"
 refuses "parameter 'mode' of 'unloadable' has 71 choices; at most 64 are allowed" "$plugins/unloadable-CHOICES.so"
 refuses 'loading it failed: it crashed \(Aborted\)' "$plugins/unloadable-CONSTRUCTOR.so"
 refuses 'loading it failed: it crashed \(Aborted\)' "$plugins/unloadable-ENTRY.so"
@@ -216,7 +261,7 @@ works mine
 (cmake --build built-mine --target check) >log 2>&1 || complain "the test of new-accel fails: $(tail -n 20 log)"
 for example in "$root"/examples/*/CMakeLists.txt; do
     case $example in
-    *'*'* | */header-only/*) ;; # no match, or it needs a library that the user must get
+    *'*'* | */header-only/* | */peers/*) ;; # no match, or it needs a library that the user must get
     *-cpp/*) ! command -v c++ >/dev/null || works "${example%/*}" ;;
     *) works "${example%/*}" ;;
     esac

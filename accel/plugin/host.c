@@ -12,11 +12,16 @@
 
 /* ---- the structure ---- */
 
+static void free_accel(RtPluginAccel *self) {
+    rt_free(self->other_objects);
+    rt_free(self);
+}
+
 static void destroy(RtAccel *accel) {
     RtPluginAccel *self = (RtPluginAccel *)accel;
     self->table->destroy(self->self);
     pthread_mutex_destroy(&self->lock);
-    rt_free(self);
+    free_accel(self);
 }
 
 /* Reports that `build` failed, with the plugin's message if it wrote one. */
@@ -44,6 +49,32 @@ static void copy_values(const RtBuild *what, raytally_value *values) {
     }
 }
 
+/* The arrays of triangles and spheres are the scene's own. */
+_Static_assert(sizeof(RtTriangle) == 9 * sizeof(float) && sizeof(RtSphere) == 4 * sizeof(float) &&
+                   offsetof(RtSphere, radius) == 3 * sizeof(float),
+               "triangles and spheres are arrays of floats");
+
+static RtStatus add_geometry(RtPluginAccel *self, const RtGeometry *geometry, raytally_build_input *input,
+                             RtError *error) {
+    input->triangles = (const float *)geometry->triangles;
+    input->triangle_objects = geometry->triangle_ids;
+    input->triangle_count = geometry->triangle_count;
+    input->spheres = (const float *)geometry->spheres;
+    input->sphere_objects = geometry->sphere_ids;
+    input->sphere_count = geometry->sphere_count;
+    const uint32_t others = geometry->object_count - geometry->triangle_count - geometry->sphere_count;
+    if (others == 0) return RT_OK;
+    self->other_objects = rt_alloc_unset(others, sizeof(uint32_t));
+    if (!self->other_objects) return rt_fail_memory(error, "a list of objects", others * sizeof(uint32_t));
+    for (uint32_t id = 0; id < geometry->object_count; id++) {
+        const RtShape shape = rt_ref_shape(geometry->objects[id]);
+        if (shape != RT_SHAPE_TRIANGLE && shape != RT_SHAPE_SPHERE)
+            self->other_objects[input->other_count++] = id;
+    }
+    input->other_objects = self->other_objects;
+    return RT_OK;
+}
+
 static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     const raytally_accel_ops *table = &((const RtPluginOps *)what->ops)->table;
     const RtGeometry *geometry = &what->scene->geometry;
@@ -61,12 +92,18 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     memcpy(&input.box, &geometry->box, sizeof input.box);
     RT_TRY(rt_accel_new(what, sizeof(RtPluginAccel), out, error));
     RtPluginAccel *self = (RtPluginAccel *)*out;
-    int result = table->build(&input, &self->self);
-    if (result != RAYTALLY_BUILD_OK) {
-        rt_free(self);
-        return refuse(table, result, message, error);
+    RtStatus status = add_geometry(self, geometry, &input, error);
+    if (status == RT_OK) {
+        int result = table->build(&input, &self->self);
+        if (result != RAYTALLY_BUILD_OK) status = refuse(table, result, message, error);
+    }
+    if (status != RT_OK) {
+        free_accel(self);
+        return status;
     }
     self->table = table;
+    self->base.exact = !(table->flags & RAYTALLY_OWN_HITS);
+    self->base.counts = !(table->flags & RAYTALLY_NO_COUNTS);
     self->query_bytes = table->query_bytes ? table->query_bytes(self->self) : 0;
     pthread_mutex_init(&self->lock, NULL);
     return RT_OK;

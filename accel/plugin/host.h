@@ -3,7 +3,8 @@
  *
  * Queries check every answer of the plugin before anything else reads it: the object exists, and t is on the
  * ray. Answers and the plugin's memory for a query lie between guard pages, and known bytes (canaries) fill
- * the rest of their pages. Object tests are counted here, whatever the plugin does with its counters. */
+ * the rest of their pages. Object tests are counted here, whatever the plugin does with its counters, unless
+ * it has hit functions of its own. */
 #ifndef RT_ACCEL_PLUGIN_HOST_H
 #define RT_ACCEL_PLUGIN_HOST_H
 
@@ -31,6 +32,7 @@ typedef struct RtPluginAccel {
     RtAccel base;
     const raytally_accel_ops *table;
     void *self;
+    uint32_t *other_objects; /* the list of raytally_build_input */
     size_t query_bytes;
     atomic_bool broken; /* `error` says why */
     pthread_mutex_t lock;

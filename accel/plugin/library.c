@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 
 #include <dlfcn.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -14,7 +15,8 @@
 
 /* The table of the first version; later ones have more members, which are optional. */
 enum { LEAST_BYTES = offsetof(raytally_accel_ops, each_box) + sizeof(((raytally_accel_ops *)0)->each_box) };
-_Static_assert(sizeof(raytally_accel_ops) == LEAST_BYTES, "nothing after the last member");
+
+#define KNOWN_FLAGS ((uint64_t)(RAYTALLY_OWN_HITS | RAYTALLY_NO_COUNTS))
 
 RtStatus rt_library_fingerprint(const char *path, uint64_t *fingerprint, RtError *error) {
     char *data;
@@ -57,6 +59,11 @@ static RtStatus take_table(const char *path, const raytally_accel_ops *theirs, R
     WANT(nearest)
     WANT(occluded)
 #undef WANT
+    if (table->flags & ~KNOWN_FLAGS)
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: '%s' sets flags that this raytally does not know (%#" PRIx64
+                       "): a later version is needed",
+                       path, table->name, table->flags & ~KNOWN_FLAGS);
     if (table->param_count > RAYTALLY_MAX_PARAMS)
         return rt_fail(error, RT_BAD_INPUT, "%s: '%s' has %u parameters; at most %d are allowed", path,
                        table->name, table->param_count, RAYTALLY_MAX_PARAMS);

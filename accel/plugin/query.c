@@ -4,6 +4,7 @@
 #include "accel/plugin/host.h"
 
 #include "accel/kernel.h"
+#include "accel/remote.h"
 #include "core/base/memory.h"
 
 #include <inttypes.h>
@@ -19,6 +20,7 @@ _Static_assert(sizeof(raytally_ray) == sizeof(RtRay) && offsetof(raytally_ray, d
                    (int)RAYTALLY_RAY_KINDS == (int)RT_RAY_KIND_COUNT,
                "rays");
 _Static_assert(sizeof(raytally_hit) == sizeof(RtHit) && RAYTALLY_NO_OBJECT == RT_NO_OBJECT, "hits");
+_Static_assert((uint64_t)RAYTALLY_UNNAMED_OBJECT == RT_UNNAMED_OBJECT, "occluders");
 _Static_assert(sizeof(raytally_box) == sizeof(RtBox), "boxes");
 _Static_assert(sizeof(RtPreparedRay) <= sizeof(((raytally_prepared *)0)->own), "a prepared ray fits");
 
@@ -256,8 +258,7 @@ static void check_hits(PluginQuery *query, const RtRay *rays, size_t count, RtHi
     const uint32_t objects = accel->base.scene->geometry.object_count;
     for (size_t i = 0; i < count; i++) {
         RtHit hit = hits[i];
-        bool miss = hit.object == RT_NO_OBJECT && hit.t == INFINITY;
-        if (miss || (hit.object < objects && hit.t >= rays[i].tmin && hit.t <= rays[i].tmax)) continue;
+        if (rt_hit_is_possible(&accel->base, &rays[i], hit)) continue;
         hits[i] = RT_MISS;
         if (hit.object < objects || hit.object == RT_NO_OBJECT) {
             char text[RT_RAY_TEXT];
@@ -285,17 +286,17 @@ static void test_occluders(PluginQuery *query, const RtRay *rays, size_t count, 
 
 static void check_occluders(PluginQuery *query, const RtRay *rays, size_t count, uint32_t *occluders) {
     RtPluginAccel *accel = query->accel;
-    const uint32_t objects = accel->base.scene->geometry.object_count;
     for (size_t i = 0; i < count; i++) {
-        if (occluders[i] < objects || occluders[i] == RT_NO_OBJECT) continue;
+        if (rt_occluder_is_possible(&accel->base, occluders[i])) continue;
         break_at_object(accel, &rays[i], occluders[i]);
         occluders[i] = RT_NO_OBJECT;
     }
-    if (query->counting) test_occluders(query, rays, count, occluders);
+    if (query->counting && accel->base.exact) test_occluders(query, rays, count, occluders);
 }
 
-/* Counters that the plugin counts, and those that object_hits counts. Rays and hits are counted here; a
- * plugin is never an overlay, which passes rays on. X(CONSTANT, name) */
+/* Counters that the plugin counts, and those that object_hits counts, which a plugin with its own hit
+ * functions adds to. Rays and hits are counted here; a plugin is never an overlay, which passes rays on.
+ * X(CONSTANT, name) */
 #define OWN_COUNTERS(X)                                                                                      \
     X(EXTENT_TESTS, extent_tests)                                                                            \
     X(STEPS, steps)                                                                                          \
@@ -317,6 +318,7 @@ _Static_assert(2 OWN_COUNTERS(ONE) OBJECT_COUNTERS(ONE) + 1 == RT_TALLY_COUNTER_
 /* Adds the counts of a stream of so many rays. */
 static void add_counters(PluginQuery *query, const raytally_counters *counted, size_t rays,
                          RtTally *tallies) {
+    const bool checked = query->accel->base.exact && query->accel->base.counts;
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
         const uint64_t *at = counted[kind].at;
         const RtTally *right = &query->tallies[kind];
@@ -327,8 +329,8 @@ static void add_counters(PluginQuery *query, const raytally_counters *counted, s
         rt_plugin_break(query->accel, "it counted %" PRIu64 " " #name " for %s rays, more than possible",    \
                         at[RAYTALLY_##CONSTANT], rt_ray_kind_name((RtRayKind)kind));
 #define ADD_RIGHT(CONSTANT, name)                                                                            \
-    tallies[kind].name += right->name;                                                                       \
-    if (at[RAYTALLY_##CONSTANT] != right->name)                                                              \
+    ADD_OWN(CONSTANT, name)                                                                                  \
+    if (checked && at[RAYTALLY_##CONSTANT] != right->name)                                                   \
         rt_plugin_break(query->accel,                                                                        \
                         "its " #name " for %s rays add up to %" PRIu64 ", and were %" PRIu64                 \
                         ": raytally_object_hits counts them, in the counters passed to it",                  \
@@ -360,14 +362,14 @@ static void add_counters(PluginQuery *query, const raytally_counters *counted, s
     }                                                                                                        \
     static void count_##question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,          \
                                  size_t count, Answer *answers, RtTally *tallies) {                          \
-        (void)accel;                                                                                         \
         PluginQuery *query = scratch->own;                                                                   \
         for (size_t first = 0; first < count; first += MOST_ANSWERS) {                                       \
             size_t n = count - first < MOST_ANSWERS ? count - first : MOST_ANSWERS;                          \
             raytally_counters counters[RAYTALLY_RAY_KINDS] = {0};                                            \
             query->counting = true;                                                                          \
             memset(query->tallies, 0, sizeof query->tallies);                                                \
-            question##_some(query, scratch, rays + first, n, answers + first, counters);                     \
+            question##_some(query, scratch, rays + first, n, answers + first,                                \
+                            accel->counts ? counters : NULL);                                                \
             query->counting = false;                                                                         \
             add_counters(query, counters, n, tallies);                                                       \
         }                                                                                                    \

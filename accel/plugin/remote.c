@@ -109,16 +109,17 @@ static RtStatus request_check(Remote *remote, WireWork *work, WireChecked *messa
                    error);
 }
 
-void rt_remote_do(RtQuery *query, RtRemoteWork *work, const RtRay *rays, size_t count, void *message,
+bool rt_remote_do(RtQuery *query, RtRemoteWork *work, const RtRay *rays, size_t count, void *message,
                   size_t bytes) {
     if (!rt_accel_is_remote(query->accel)) {
         work(query, rays, message);
-        return;
+        return true;
     }
     RemoteQuery *own = query->scratch[0].own;
-    request(of(query->accel), own->channel,
-            &(Request){work, message, bytes, rays, count, own->begin, "it was traced"});
+    bool answered = request(of(query->accel), own->channel,
+                            &(Request){work, message, bytes, rays, count, own->begin, "it was traced"});
     own->begin = false;
+    return answered;
 }
 
 /* ---- building ---- */
@@ -273,12 +274,10 @@ static void trace_part(const RtAccel *accel, const RtScratch *scratch, const RtR
         rt_tally_add(&tallies[kind], &message->tallies[kind]);
     memcpy(hits, message->hits, count * sizeof *hits);
     for (uint32_t i = 0; i < count; i++) {
-        const RtHit hit = hits[i];
-        if (hit.object < accel->scene->geometry.object_count && hit.t >= rays[i].tmin &&
-            hit.t <= rays[i].tmax)
+        if (any ? rt_occluder_is_possible(accel, hits[i].object)
+                : rt_hit_is_possible(accel, &rays[i], hits[i]))
             continue;
-        if (hit.object != RT_NO_OBJECT)
-            rt_remote_break(accel, "it overwrote its answers", "it answered a stream");
+        rt_remote_break(accel, "it overwrote its answers", "it answered a stream");
         hits[i] = RT_MISS;
     }
 }

@@ -323,6 +323,7 @@ const raytally_accel_ops ops = {
     [](const void *self, raytally_description *out) { of(self).describe(*out); },
     validate,
     [](const void *self, raytally_box_visitor *show, void *viewer) { of(self).each_box(show, viewer); },
+    0, // flags: exact, and counted
 };
 
 } // namespace

@@ -142,7 +142,7 @@ const raytally_accel_ops ops = {
     "Wald 2007, On fast Construction of SAH-based Bounding Volume Hierarchies, RT'07", &quality, 1, build,
     [](void *self) { delete static_cast<Madmann *>(self); }, search_nearest, search_occluded,
     [](const void *self) { return (of(self).depth + 1) * sizeof(Node::Index); }, nullptr, // + 1 for the root
-    describe, nullptr, each_box};
+    describe, nullptr, each_box, 0}; // no flags: exact, and counted
 
 } // namespace
 

@@ -5,7 +5,7 @@
  * for them, as for its own. A plugin is compiled against these headers alone and linked with nothing: it
  * calls raytally through the table of functions in its query (raytally_host).
  *
- * The contract, which `raytally verify` checks:
+ * The contract, which `raytally verify` checks (RAYTALLY_OWN_HITS relaxes the first two rules):
  *  - the nearest hit is the least (t, object) of all hits, bit for bit: of two objects at the same t, the one
  *    with the lower number. raytally_object_hits tests objects and keeps that order; prune only by
  *    raytally_box_hit (box.h);
@@ -124,18 +124,33 @@ enum raytally_build_result {
     RAYTALLY_BUILD_NO_MEMORY = 2 /**< Out of memory, or the structure would exceed the limit. */
 };
 
-/** Input of `build`, valid during the call. */
+/** Input of `build`, valid during the call. All arrays are borrowed and outlive the structure; boxes, which
+ * every accelerator gets, suffice unless it has its own hit functions (::RAYTALLY_OWN_HITS). */
 typedef struct raytally_build_input {
-    uint32_t size;         /**< Of this struct, in bytes: later versions may add members at the end. */
-    uint32_t object_count; /**< Objects of the scene, numbered from 0; possibly none. */
-    const raytally_box
-        *boxes;       /**< [object_count] the box of each object. Borrowed; outlives the structure. */
-    raytally_box box; /**< Around all objects. */
+    uint32_t size;                /**< Of this struct, in bytes: later versions may add members at the end. */
+    uint32_t object_count;        /**< Objects of the scene, numbered from 0; possibly none. */
+    const raytally_box *boxes;    /**< [object_count] the box of each object. */
+    raytally_box box;             /**< Around all objects. */
     const raytally_value *values; /**< [param_count] in the order of the table, each within its range. */
     int32_t threads;              /**< To build with, at least 1; must not change the structure. */
     uint64_t byte_limit;          /**< A structure that needs more must fail: RAYTALLY_BUILD_NO_MEMORY. */
     char *message;                /**< [message_room] out: why it failed, a sentence for the user. */
     size_t message_room;          /**< In bytes. */
+
+    /* The geometry of each object: in one of three lists, each ascending by object. Arrays of no entries may
+     * be NULL. */
+
+    const float *triangles; /**< [9 * triangle_count] three vertices x, y, z. Aligned to 64 bytes; 4 bytes
+                               beyond the last may be read, so a vertex can be loaded as 16 bytes. */
+    const uint32_t *triangle_objects; /**< [triangle_count] the object that each triangle is. */
+    const float *spheres;             /**< [4 * sphere_count] centre x, y, z and radius; aligned likewise. */
+    const uint32_t *sphere_objects;   /**< [sphere_count] the object that each sphere is. */
+    const uint32_t *other_objects;    /**< [other_count] polygons, cones and CSG trees, which only
+                                         raytally_object_hits can test. */
+    uint32_t triangle_count;          /**< Triangles, those without area included, which are never hit. */
+    uint32_t sphere_count;            /**< Spheres. */
+    uint32_t other_count;             /**< All other objects. */
+    uint32_t reserved;                /**< 0. */
 } raytally_build_input;
 
 /** Statistics of a structure. Numbers are 0 and predictions NaN unless `describe` sets them. */
@@ -172,11 +187,25 @@ typedef void raytally_nearest_kernel(const void *self, void *memory, raytally_qu
                                      const raytally_ray *rays, size_t count, raytally_hit *hits,
                                      raytally_counters *counters);
 
+/** An occluder without a name: something lies on the ray. Only with ::RAYTALLY_OWN_HITS. */
+#define RAYTALLY_UNNAMED_OBJECT (UINT32_MAX - 1)
+
 /** Whether anything lies on each ray. As ::raytally_nearest_kernel, except that an answer is any object on
- * the ray, or RAYTALLY_NO_OBJECT. */
+ * the ray, or RAYTALLY_NO_OBJECT; with ::RAYTALLY_OWN_HITS also RAYTALLY_UNNAMED_OBJECT. */
 typedef void raytally_occluded_kernel(const void *self, void *memory, raytally_query *query,
                                       const raytally_ray *rays, size_t count, uint32_t *occluders,
                                       raytally_counters *counters);
+
+/** Properties of an accelerator, to be combined by |. */
+enum raytally_accel_flag {
+    /** It answers by its own hit functions, as a library does that is measured as it is. `verify` then judges
+     * each answer (equal, tie, marginal or wrong) instead of comparing bits; `bench` and `run` time it
+     * whatever it answers, and report how many answers differ. An answer must still name an existing object
+     * at a t with tmin <= t <= tmax, or be a miss. Object tests are counted as its own code counts them. */
+    RAYTALLY_OWN_HITS = 1,
+    /** It counts nothing: `counters` is always NULL, and its rows have times but no counts. */
+    RAYTALLY_NO_COUNTS = 2
+};
 
 /** One accelerator. Optional members may be NULL.
  *
@@ -214,6 +243,8 @@ typedef struct raytally_accel_ops {
     /** Optional: visits every box of the structure. It may be called several times and must visit them in the
      * same order. */
     void (*each_box)(const void *self, raytally_box_visitor *visit, void *context);
+
+    uint64_t flags; /**< Of ::raytally_accel_flag; 0: it answers by raytally_object_hits, and counts. */
 } raytally_accel_ops;
 
 /** The function that a plugin exports under the name `raytally_plugin`: returns its table number `index`,

@@ -13,6 +13,7 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -117,10 +118,61 @@ static RtStatus take_answer(RtCallgrind *callgrind, const json_t *answer, RtInst
     return RT_OK;
 }
 
+/* With the end of its messages. */
+static RtStatus fail_ended(const RtWorker *worker, const char *how, RtError *error) {
+    enum { MOST_BYTES = 1 << 24, MOST_SHOWN = 600 };
+    char *text;
+    size_t size;
+    RT_TRY(rt_file_read(worker->log, MOST_BYTES, &text, &size, error));
+    while (size > 0 && isspace((unsigned char)text[size - 1])) text[--size] = '\0';
+    rt_fail(error, RT_NOT_AVAILABLE, "valgrind, or raytally in it, failed: %s\n%s", how,
+            size > MOST_SHOWN ? text + size - MOST_SHOWN : text);
+    rt_free(text);
+    return RT_NOT_AVAILABLE;
+}
+
+/* A run of the worker, and what starts it again. */
+typedef struct Session {
+    RtCallgrind *callgrind;
+    char *const *arguments;
+    char program[RT_MAX_PATH], log[RT_MAX_PATH], out_file[RT_MAX_PATH + 32];
+    RtWorker worker;
+    uint32_t passes; /* of this worker so far */
+} Session;
+
+static RtStatus start(Session *session, RtError *error) {
+    const char *const command[] = {"valgrind",
+                                   "--tool=callgrind",
+                                   "--collect-atstart=no",
+                                   "--toggle-collect=rt_callgrind_pass",
+                                   "--dump-after=rt_callgrind_pass",
+                                   session->out_file,
+                                   session->program,
+                                   "bench",
+                                   "--worker",
+                                   NULL};
+    session->passes = 0;
+    session->worker = (RtWorker){.log = session->log, .fail = fail_ended};
+    return rt_worker_start(&session->worker, command, session->arguments, error);
+}
+
+/* A plugin has ended the worker, in whose process it runs: only its own cell is lost. */
+static RtStatus go_on_without(Session *session, RtInstructions cell, const RtError *failure, RtError *error) {
+    const bool illegal = strstr(failure->message, strsignal(SIGILL)) != NULL;
+    snprintf(cell.why, sizeof cell.why, "%s",
+             illegal ? "it has instructions that valgrind lacks, such as AVX-512: compile it without them"
+                     : "it crashed under valgrind");
+    session->callgrind->cells[session->callgrind->count++] = cell;
+    rt_worker_end(&session->worker);
+    return start(session, error);
+}
+
 /* An accelerator that broke is not built again: it would end the worker. */
-static RtStatus count_cell(RtCallgrind *callgrind, RtWorker *worker, const RtResults *results,
-                           const RtCellCursor *at, uint32_t *passes, RtError *error) {
+static RtStatus count_cell(Session *session, const RtResults *results, const RtCellCursor *at,
+                           RtError *error) {
+    RtCallgrind *callgrind = session->callgrind;
     const RtExperiment *e = callgrind->experiment;
+    const RtCandidate *candidate = &e->candidates[at->candidate];
     const RtBuildResult *build = rt_build_at(results, at->workload, at->candidate);
     RtInstructions cell = {.workload = at->workload, .candidate = at->candidate, .kind = at->kind};
     char path[RT_MAX_PATH];
@@ -133,56 +185,35 @@ static RtStatus count_cell(RtCallgrind *callgrind, RtWorker *worker, const RtRes
         callgrind->cells[callgrind->count++] = cell;
         return RT_OK;
     }
-    RT_TRY(rt_worker_ask(worker, &answer, error, "count %" PRIu32 " %s %s %s\n", at->workload,
-                         rt_ray_kind_name(at->kind), e->candidates[at->candidate].label, path));
-    RtStatus status = take_answer(callgrind, answer, cell, passes, error);
+    RtError failure;
+    RtStatus status = rt_worker_ask(&session->worker, &answer, &failure, "count %" PRIu32 " %s %s %s\n",
+                                    at->workload, rt_ray_kind_name(at->kind), candidate->label, path);
+    if (status != RT_OK && rt_spec_is_remote(&candidate->parsed))
+        return go_on_without(session, cell, &failure, error);
+    if (status != RT_OK) return rt_fail(error, status, "%s", failure.message);
+    status = take_answer(callgrind, answer, cell, &session->passes, error);
     json_decref(answer);
     return status;
-}
-
-/* With the end of its messages. */
-static RtStatus fail_ended(const RtWorker *worker, const char *how, RtError *error) {
-    enum { MOST_BYTES = 1 << 24, MOST_SHOWN = 600 };
-    char *text;
-    size_t size;
-    (void)how;
-    RT_TRY(rt_file_read(worker->log, MOST_BYTES, &text, &size, error));
-    while (size > 0 && isspace((unsigned char)text[size - 1])) text[--size] = '\0';
-    rt_fail(error, RT_NOT_AVAILABLE, "valgrind, or raytally in it, failed:\n%s",
-            size > MOST_SHOWN ? text + size - MOST_SHOWN : text);
-    rt_free(text);
-    return RT_NOT_AVAILABLE;
 }
 
 RtStatus rt_callgrind_run(RtCallgrind *callgrind, const RtResults *results, char *const *arguments,
                           RtError *error) {
     const RtExperiment *e = callgrind->experiment;
     const size_t cells = (size_t)e->workload_count * e->candidate_count * e->kind_count;
-    char program[RT_MAX_PATH], log[RT_MAX_PATH], out[RT_MAX_PATH], out_file[RT_MAX_PATH + 32];
-    const char *const command[] = {"valgrind",
-                                   "--tool=callgrind",
-                                   "--collect-atstart=no",
-                                   "--toggle-collect=rt_callgrind_pass",
-                                   "--dump-after=rt_callgrind_pass",
-                                   out_file,
-                                   program,
-                                   "bench",
-                                   "--worker",
-                                   NULL};
-    uint32_t passes = 0;
-    RtWorker worker = {.log = log, .fail = fail_ended};
-    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    char out[RT_MAX_PATH];
+    Session session = {.callgrind = callgrind, .arguments = arguments};
+    ssize_t length = readlink("/proc/self/exe", session.program, sizeof session.program - 1);
     if (length < 0) return rt_fail(error, RT_IO, "/proc/self/exe: %s", strerror(errno));
-    program[length] = '\0';
-    RT_TRY(rt_path_join(callgrind->folder, "log", log, error));
+    session.program[length] = '\0';
+    RT_TRY(rt_path_join(callgrind->folder, "log", session.log, error));
     RT_TRY(rt_path_join(callgrind->folder, "out", out, error));
-    snprintf(out_file, sizeof out_file, "--callgrind-out-file=%s", out);
+    snprintf(session.out_file, sizeof session.out_file, "--callgrind-out-file=%s", out);
     callgrind->cells = rt_alloc(cells, sizeof(RtInstructions));
     if (!callgrind->cells) return rt_fail_memory(error, "counts of instructions", 0);
-    RtStatus status = rt_worker_start(&worker, command, arguments, error);
+    RtStatus status = start(&session, error);
     for (RtCellCursor at = {0}; status == RT_OK && rt_results_next(results, &at);)
-        status = count_cell(callgrind, &worker, results, &at, &passes, error);
-    rt_worker_end(&worker);
+        status = count_cell(&session, results, &at, error);
+    rt_worker_end(&session.worker);
     return status;
 }
 

@@ -46,7 +46,7 @@ RtStatus rt_callgrind_save_rays(void *context, uint32_t workload, const RtRaySet
                                 RtError *error);
 
 /* Runs the worker with the arguments of `bench` (NULL behind the last), and counts each cell that has rays.
- * An accelerator that broke in `results` has no count. */
+ * An accelerator that broke in `results` has no count, nor has a plugin that crashes under valgrind. */
 RtStatus rt_callgrind_run(RtCallgrind *callgrind, const RtResults *results, char *const *arguments,
                           RtError *error);
 

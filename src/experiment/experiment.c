@@ -188,6 +188,14 @@ static RtStatus fail_twice(const char *label, RtError *error) {
                    label);
 }
 
+/* Whether a spec begins with an accelerator that neither we nor a loaded plugin have. */
+static bool is_unknown(const char *spec) {
+    const RtAccelOps *ops;
+    char name[RT_MAX_NAME];
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(spec, ":+"), spec);
+    return rt_accel_find(name, &ops, NULL) != RT_OK;
+}
+
 /* Marks a candidate that this build lacks; for loaded results, that the build that made them lacked. */
 static RtStatus check_spec(RtExperiment *experiment, uint32_t i, RtError *error) {
     RtCandidate *candidate = &experiment->candidates[i];
@@ -195,7 +203,8 @@ static RtStatus check_spec(RtExperiment *experiment, uint32_t i, RtError *error)
     candidate->missing = experiment->manifest && rt_manifest_is_missing(experiment->manifest, i);
     if (experiment->manifest || rt_spec_parse(candidate->spec, &candidate->parsed, &why) == RT_OK)
         return RT_OK;
-    candidate->missing = why.status == RT_NOT_AVAILABLE;
+    candidate->missing =
+        why.status == RT_NOT_AVAILABLE || (candidate->optional && is_unknown(candidate->spec));
     return candidate->missing ? RT_OK : rt_fail(error, why.status, "%s", why.message);
 }
 

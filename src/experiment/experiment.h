@@ -70,6 +70,7 @@ typedef struct RtCandidate {
     RtSpec parsed;                /* by rt_experiment_check, if this build has it */
     uint64_t ray_stride;          /* k: measured on every kth ray of a set, for slow accelerators; >= 1 */
     uint32_t excluded;            /* bit t: it is not measured on workloads[t] */
+    bool optional;                /* an unknown accelerator, of a plugin not loaded, is missing, no error */
     bool missing;                 /* this build lacks it: skipped with a notice */
     bool ours;                    /* must need less than every published row */
 } RtCandidate;

@@ -109,12 +109,13 @@ static RtStatus read_group(const RtYaml *y, const RtYamlNode *n, const char *key
 static RtStatus read_candidates(const RtYaml *y, const RtYamlNode *n, uint32_t entry,
                                 RtExperiment *experiment, RtError *error) {
     RtCandidate like = {.entry = entry, .ray_stride = 1};
-    RT_TRY(rt_yaml_keys(y, n, "accel label? group? ray_stride? scenes?"));
+    RT_TRY(rt_yaml_keys(y, n, "accel label? group? ray_stride? scenes? optional?"));
     RT_TRY(read_group(y, n, "group", like.group));
     RT_TRY(rt_yaml_copy(y, n, "accel", RT_MAX_SPEC_CHARS, like.spec));
     RT_TRY(rt_yaml_copy(y, n, "label", RT_MAX_LABEL, like.label));
     RT_TRY(rt_yaml_u64(y, n, "ray_stride", 1, RT_MAX_RAYS_A_KIND, &like.ray_stride));
     RT_TRY(read_scenes(y, rt_yaml_get(y, n, "scenes"), experiment, &like));
+    RT_TRY(read_flag(y, n, "optional", &like.optional));
     return rt_yaml_place(y, rt_experiment_add_accels(experiment, &like, error), n, "accel");
 }
 

@@ -107,6 +107,29 @@ static void print_strides(const RtResults *results, uint32_t t, bool timed, FILE
     }
 }
 
+/* What answers by its own arithmetic: how many answers are not the reference's. */
+static void print_differing(const RtResults *results, uint32_t t, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    char text[RT_MAX_SENTENCE];
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        const RtBuildResult *build = rt_build_at(results, t, c);
+        const char *before = ":";
+        if (!build->known || build->exact) continue;
+        snprintf(text, sizeof text,
+                 "%s uses its own arithmetic. Answers that differ from the reference in any bit",
+                 experiment->candidates[c].label);
+        for (uint32_t k = 0; k < experiment->kind_count; k++) {
+            const RtCell *cell = rt_cell_at(results, t, c, experiment->kinds[k]);
+            if (!cell->counted) continue;
+            rt_append_text(text, sizeof text, "%s %" PRIu64 " of %" PRIu64 " %s", before, cell->differ,
+                           cell->tally.rays, rt_experiment_kind_name(experiment, experiment->kinds[k]));
+            before = ",";
+        }
+        rt_append_text(text, sizeof text, " rays; `raytally verify` judges them.");
+        if (*before == ',') rt_print_wrapped(text, out);
+    }
+}
+
 static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
     uint32_t least = 0, most = rounds_of(results, t, &least);
     const bool timed = most > 0;
@@ -114,6 +137,7 @@ static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
     if (timed) print_ratios(results, least, most, out);
     rt_print_rows(results, timed ? RT_CELLS : RT_COUNTED_CELLS, t, out);
     print_strides(results, t, timed, out);
+    print_differing(results, t, out);
     rt_print_rows(results, timed ? RT_STRUCTURES : RT_COUNTED_STRUCTURES, t, out);
 }
 
@@ -127,6 +151,7 @@ void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) 
             print_cells(results, t, out);
         } else {
             rt_table_text(&table, out);
+            print_differing(results, t, out);
         }
     }
 }

@@ -192,7 +192,8 @@ static RtStatus open_journal(Run *run, RtError *error) {
 static void name_missing(const Run *run) {
     for (uint32_t c = 0; c < run->experiment->candidate_count; c++) {
         if (!run->experiment->candidates[c].missing) continue;
-        rt_notify(&run->options->workload.observer, "'%s' is skipped: this build does not have it",
+        rt_notify(&run->options->workload.observer,
+                  "'%s' is skipped: neither this build nor a loaded plugin has it",
                   run->experiment->candidates[c].label);
     }
 }

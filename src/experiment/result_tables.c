@@ -240,8 +240,8 @@ enum {
     X(BENCH, SWEPT, counted && !null, ONE(scene_spec), FROM_TO(accel, ray_stride), ONE(kind),                \
       FROM_TO(rays, bytes), {"structure", rt_structure_columns, RT_STRUCTURE_COLUMNS, structure_of},         \
       {"structure.build", rt_tally_columns, RT_TALLY_COUNTER_COUNT, build_of},                               \
-      {"counts", rt_tally_columns, RT_TALLY_COUNTER_COUNT, known_tally_of}, FROM_TO(threads, mrays_per_s),   \
-      FROM_TO(msteps_per_s, mtests_per_s), FROM_TO(baseline, ratio_high))                                    \
+      {"counts", rt_tally_columns, RT_TALLY_COUNTER_COUNT, known_tally_of}, ONE(differ),                     \
+      FROM_TO(threads, mrays_per_s), FROM_TO(msteps_per_s, mtests_per_s), FROM_TO(baseline, ratio_high))     \
     X(NULL_RUNS, 0, (timed && null), ONE(scene_spec), ONE(kind), FROM_TO(accel, spec), ONE(rays),            \
       FROM_TO(build_seconds, straddles_1))                                                                   \
     X(CELLS, 0, (counted || timed) && !is_lost(r, r->cell), FROM_TO(eye_label, interval))                    \

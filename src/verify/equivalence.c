@@ -245,6 +245,17 @@ static void compare_recounts(Job *job, const Answers *answers) {
     }
 }
 
+/* The plugin's process has checked its hits, but may have overwritten them since. */
+static bool hits_are_possible(const RtAccel *accel, const Plan *plan, const RtRay *rays,
+                              const Answers *answers) {
+    for (int w = 0; w < plan->mode_count; w++) {
+        for (size_t i = 0; i < plan->count; i++) {
+            if (!rt_hit_is_possible(accel, &rays[i], answers->hits[w][i])) return false;
+        }
+    }
+    return true;
+}
+
 static RtStatus check_chunk(void *context, size_t chunk, int thread, RtError *error) {
     Job *job = context;
     Worker *worker = &job->workers[thread];
@@ -253,8 +264,13 @@ static RtStatus check_chunk(void *context, size_t chunk, int thread, RtError *er
     worker->plan.count = chunk_count(job, chunk);
     worker->plan.recount = chunk == 0;
     answers->plan = worker->plan;
-    rt_remote_do(&worker->query, answer_chunk, job->reference->rays + chunk * CHUNK, worker->plan.count,
-                 answers, sizeof *answers);
+    const RtRay *rays = job->reference->rays + chunk * CHUNK;
+    if (!rt_remote_do(&worker->query, answer_chunk, rays, worker->plan.count, answers, sizeof *answers))
+        return RT_OK; /* rt_accel_check reports it */
+    if (rt_accel_is_remote(job->accel) && !hits_are_possible(job->accel, &worker->plan, rays, answers)) {
+        rt_remote_break(job->accel, "it overwrote its answers", "it was traced");
+        return RT_OK;
+    }
     if (worker->plan.recount) compare_recounts(job, answers);
     for (size_t i = 0; i < worker->plan.count; i++) RT_TRY(judge(job, worker, chunk, i, error));
     return RT_OK;

@@ -20,7 +20,8 @@
 
 static void load_all(void) {
     setenv("RAYTALLY_PLUGIN_SECONDS", "2", 1);
-    assert_ok(rt_plugin_load_all(PLUGINS "new-accel.so:" PLUGINS "bvh_copy.so:" PLUGINS "faulty.so", error));
+    assert_ok(rt_plugin_load_all(
+        PLUGINS "new-accel.so:" PLUGINS "bvh_copy.so:" PLUGINS "faulty.so:" PLUGINS "own_hits.so", error));
 }
 
 /* An accelerator of a plugin over a scene, and random chords with their right answers. */
@@ -104,6 +105,60 @@ RT_TEST(counts_are_the_same_on_any_number_of_threads) {
     assert_memory_equal(&once.tally, &again.tally, sizeof once.tally);
     assert_int_equal(once.tally.rays, stage.set.count);
     assert_true(once.tally.object_tests > 0 && once.tally.steps > 0);
+}
+
+/* ---- hit functions of their own ---- */
+
+/* The verdicts on rays of every family through a scene, by a new accelerator *accel. */
+static RtEquivalence verdicts_on(const char *scene, const char *spec, FamilyBench *bench, RtAccel **accel) {
+    RtEquivalence result;
+    load_all();
+    assert_ok(rt_scene_open(scene, &bench->scene, error));
+    set_up_rays(bench, 5, 300);
+    *accel = open_accel(&bench->scene, spec);
+    assert_ok(rt_equivalence_check(&bench->reference, *accel, 2, &result, error));
+    return result;
+}
+
+RT_TEST(one_with_its_own_hit_functions_gets_the_geometry_and_is_judged_by_verdicts) {
+    static const char *const scenes[] = {"random:n=200,shape=mixed", "random:n=200,shape=triangle",
+                                         "random:n=200", "random:n=0", "csg-field:n=30"};
+    for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i++) {
+        OWNED_BENCH bench;
+        OWNED_ACCEL RtAccel *accel;
+        RtEquivalence result = verdicts_on(scenes[i], "own-hits", &bench, &accel);
+        assert_true(!accel->exact && accel->counts);
+        assert_int_equal(result.verdicts[RT_WRONG] + result.occluded_wrong, 0);
+        assert_true(result.rays > 0 && result.verdicts[RT_EQUAL] > result.rays / 2);
+    }
+}
+
+RT_TEST(answers_with_other_bits_are_counted_and_so_are_its_own_object_tests) {
+    OWNED(close_stage) Stage stage;
+    RtCount count;
+    open_stage(&stage, "own-hits", 1000);
+    assert_ok(rt_measure_count(stage.accel, &stage.set, stage.expected, 2, &count, error));
+    assert_true(count.differ > 0 && count.differ < count.tally.hits);
+    assert_int_equal(count.tally.object_tests, 1000 * stage.scene.geometry.object_count);
+}
+
+RT_TEST(one_without_counts_gets_no_counters_and_need_not_name_occluders_below_a_cache_either) {
+    static const char *const specs[] = {"own-unnamed", "cache+own-unnamed"};
+    for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
+        OWNED_BENCH bench;
+        OWNED_ACCEL RtAccel *accel;
+        RtEquivalence result = verdicts_on("balls:size=1", specs[i], &bench, &accel);
+        assert_true(!accel->exact && !accel->counts);
+        assert_int_equal(result.verdicts[RT_WRONG] + result.occluded_wrong, 0);
+    }
+}
+
+RT_TEST(the_answers_that_differ_are_those_of_the_timed_kernel_if_it_is_worse) {
+    OWNED(close_stage) Stage stage;
+    RtCount count;
+    open_stage(&stage, "faulty-own-lazy", 1000);
+    assert_ok(rt_measure_count(stage.accel, &stage.set, stage.expected, 1, &count, error));
+    assert_true(count.timed_kernel && count.differ == count.tally.hits);
 }
 
 static void count_box(void *context, const RtBoxView *view) {
@@ -218,7 +273,7 @@ RT_TEST(loading_needs_no_error) {
 RT_TEST(a_rejected_library_registers_nothing) {
     static const char *const kinds[] = {"EMPTY", "ABI",      "SIZE",       "NAME",    "TAKEN",
                                         "TWICE", "FUNCTION", "PARAMETERS", "DEFAULT", "CONSTRUCTOR",
-                                        "ENTRY", "MANY",     "CHOICES"};
+                                        "ENTRY", "MANY",     "CHOICES",    "FLAGS"};
     const RtAccelOps *found;
     load_all();
     size_t plugins = rt_plugin_count(), accelerators = rt_accel_count();

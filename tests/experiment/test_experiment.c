@@ -354,6 +354,26 @@ RT_TEST_IN_PLACE(a_missing_scene_is_an_error_unless_it_is_optional) {
     assert_ok(run(place, "skipped", RT_START_FRESH, 1, nobody, error));
 }
 
+RT_TEST_IN_PLACE(an_accelerator_of_a_missing_plugin_is_an_error_unless_it_is_optional) {
+    const Place *place = *state;
+    const struct {
+        const char *accel, *directory, *said;
+    } tried[] = {{"\"nobodys:depth=3\"", "unknown", "no accelerator 'nobodys'"},
+                 {"\"nobodys:depth=3\", optional: yes", "optional", NULL},
+                 {"\"grid:depht=3\", optional: yes", "misspelt", "depht"}};
+    for (int i = 0; i < 3; i++) {
+        RtError error = {RT_OK, ""};
+        write_changed(place, "small.yaml", small_experiment, "ideal", tried[i].accel);
+        RtStatus status = run(place, tried[i].directory, RT_START_FRESH, 1, nobody, &error);
+        assert_int_equal(status, tried[i].said ? RT_BAD_INPUT : RT_OK);
+        if (tried[i].said) assert_non_null(strstr(error.message, tried[i].said));
+    }
+    char *counts = read_in(place, "optional/counts.csv");
+    assert_null(strstr(counts, "nobodys"));
+    assert_non_null(strstr(counts, "grid"));
+    rt_free(counts);
+}
+
 /* ---- tables ---- */
 
 /* The null run's interval begins just above 1: in every table, and in the verdict. */

@@ -171,6 +171,14 @@ SEARCH(scribbled, scribble();)
 SEARCH(divide, zero = 7 / zero;)
 SEARCH(overflow, zero = recurse(&zero) & 0;)
 SEARCH(freed_twice, free_twice();)
+
+/* Valgrind loads a library of its own first. */
+static int is_in_valgrind(void) {
+    const char *loaded = getenv("LD_PRELOAD");
+    return loaded && strstr(loaded, "vgpreload");
+}
+SEARCH(illegal, if (is_in_valgrind()) raise(SIGILL);)
+
 SEARCH(print, if (is_rare(ray->ray)) print_line("{ faulty-print is asked");)
 
 /* Writing outside its own memory, which has MEMORY bytes. */
@@ -192,6 +200,9 @@ SEARCH(no_such_object, if (best->object != RAYTALLY_NO_OBJECT) best->object = li
 SEARCH(not_a_number, if (best->object != RAYTALLY_NO_OBJECT) best->t = NAN;)
 SEARCH(farther, if (isinf(ray->ray->tmax)) best->t = nextafterf(best->t, INFINITY);)
 
+SEARCH(endless, if (best->object != RAYTALLY_NO_OBJECT && isinf(ray->ray->tmax)) best->t = INFINITY;)
+SEARCH(early, if (best->object != RAYTALLY_NO_OBJECT && ray->ray->tmin > 0) best->t = 0;)
+
 /* A plain mistake: its list ends one too early. */
 SEARCH_ALONE(forgetful,
              raytally_object_hits(ray, list->ids, list->count ? list->count - 1 : 0, any, best, counters);)
@@ -210,11 +221,16 @@ SEARCH(counted_twice, RAYTALLY_COUNT(counters, RAYTALLY_OBJECT_TESTS, list->coun
 SEARCH(backwards, RAYTALLY_COUNT(counters, RAYTALLY_STEPS, -1000000);)
 
 /* Invalid answers, and writing beside them. */
-static void occluded_by_first(const void *self, void *memory, raytally_query *query, const raytally_ray *rays,
-                              size_t count, uint32_t *occluders, raytally_counters *counters) {
-    search_occluded(self, memory, query, rays, count, occluders, counters);
-    for (size_t i = 0; i < count; i++) occluders[i] = occluders[i] == RAYTALLY_NO_OBJECT ? occluders[i] : 0;
-}
+#define OCCLUDED_BY(name, object)                                                                            \
+    static void name(const void *self, void *memory, raytally_query *query, const raytally_ray *rays,        \
+                     size_t count, uint32_t *occluders, raytally_counters *counters) {                       \
+        search_occluded(self, memory, query, rays, count, occluders, counters);                              \
+        for (size_t i = 0; i < count; i++)                                                                   \
+            occluders[i] = occluders[i] == RAYTALLY_NO_OBJECT ? occluders[i] : (object);                     \
+    }
+OCCLUDED_BY(occluded_by_first, 0)
+OCCLUDED_BY(occluded_by_some, RAYTALLY_UNNAMED_OBJECT)
+OCCLUDED_BY(occluded_by_none_such, ((const List *)self)->count)
 
 /* The kernel NAME, which answers all rays but `left`, and then does something else. */
 #define NEAREST(name, left, ...)                                                                             \
@@ -282,6 +298,13 @@ static int validate_broken(const void *self, char *message, size_t size) {
 
 #define KERNELS(name) .nearest = name##_nearest, .occluded = name##_occluded
 
+/* One that answers by hit functions of its own, or says so. */
+#define OWN(what, does, ...)                                                                                 \
+    {                                                                                                        \
+        .name = "faulty-own-" what, .summary = "has its own hit functions, and " does,                       \
+        .flags = RAYTALLY_OWN_HITS, __VA_ARGS__                                                              \
+    }
+
 /* Members that are not set get the correct functions. */
 static raytally_accel_ops tables[] = {
     {.name = "faulty-not", .summary = "is in order"},
@@ -338,6 +361,7 @@ static raytally_accel_ops tables[] = {
     {.name = "faulty-twice", .summary = "counts object tests that are counted", KERNELS(counted_twice)},
     {.name = "faulty-backwards", .summary = "counts below zero", KERNELS(backwards)},
     {.name = "faulty-occluder", .summary = "names any occluder", .occluded = occluded_by_first},
+    {.name = "faulty-unnamed", .summary = "names no occluder", .occluded = occluded_by_some},
     {.name = "faulty-silent", .summary = "leaves the last ray unanswered", .nearest = all_but_one},
     {.name = "faulty-beyond", .summary = "writes an answer too many", .nearest = one_too_many},
     {.name = "faulty-before", .summary = "writes in front of its answers", .nearest = one_too_early},
@@ -347,6 +371,22 @@ static raytally_accel_ops tables[] = {
     {.name = "faulty-deep", .summary = "shows a box at a depth that is none", .each_box = show_deep},
     {.name = "faulty-show", .summary = "crashes when it shows its boxes", .each_box = show_crash},
     {.name = "faulty-mumble", .summary = "refuses every scene in no language", .build = build_mumble},
+    {.name = "faulty-illegal", .summary = "has an instruction that valgrind does not know", KERNELS(illegal)},
+    {.name = "faulty-older",
+     .summary = "is in order, and has a table of the first version, which ends before these flags",
+     .size = offsetof(raytally_accel_ops, flags),
+     .flags = RAYTALLY_OWN_HITS | RAYTALLY_NO_COUNTS},
+    OWN("object", "answers with an object that does not exist", KERNELS(no_such_object)),
+    OWN("nan", "answers with a t that is no number", KERNELS(not_a_number)),
+    OWN("endless", "answers with a t at infinity", KERNELS(endless)),
+    OWN("early", "answers with a t before the ray", KERNELS(early)),
+    OWN("occluder", "answers with an occluder that does not exist", .occluded = occluded_by_none_such),
+    OWN("moody", "counts otherwise each time", KERNELS(moody)),
+    OWN("farther", "answers with a t a little too large", KERNELS(farther)),
+    OWN("uncounted", "keeps its counters to itself", KERNELS(uncounted)),
+    OWN("unnamed", "names no occluder", .occluded = occluded_by_some),
+    OWN("wrong", "forgets the last object", KERNELS(forgetful)),
+    OWN("lazy", "finds nothing where nothing is counted", KERNELS(lazy)),
     {.name = "faulty-print", .summary = "prints, but is right", .build = build_print, KERNELS(print)},
 };
 
@@ -354,7 +394,7 @@ RAYTALLY_PLUGIN {
     if (index >= sizeof tables / sizeof tables[0]) return NULL;
     raytally_accel_ops *table = &tables[index];
     table->abi = RAYTALLY_ACCEL_ABI;
-    table->size = sizeof *table;
+    if (table->size == 0) table->size = sizeof *table;
     table->paper = "none";
     if (!table->build) table->build = build;
     if (!table->destroy) table->destroy = destroy;

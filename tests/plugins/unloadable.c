@@ -22,7 +22,8 @@ enum {
     ENTRY,       /* crashes when its tables are read */
     FOREVER,     /* never finishes loading, and ignores SIGALRM */
     CHOICES,     /* has a parameter with too many choices */
-    MANY         /* has too many tables */
+    MANY,        /* has too many tables */
+    FLAGS        /* sets a flag that does not exist */
 };
 
 #define TEN(x) x "0|" x "1|" x "2|" x "3|" x "4|" x "5|" x "6|" x "7|" x "8|" x "9|"
@@ -72,6 +73,7 @@ static const raytally_accel_ops ops = {
     .destroy = destroy,
     .nearest = KIND == FUNCTION ? NULL : search_nearest,
     .occluded = search_occluded,
+    .flags = KIND == FLAGS ? RAYTALLY_OWN_HITS | UINT64_C(1) << 63 : 0,
 };
 
 static const raytally_accel_ops *one_of_many(uint32_t index) {
