@@ -251,7 +251,8 @@ RT_KERNEL void test_extreme_rays(Packet *p, const Query *q, bool any) {
 }
 
 /* Makes a packet of up to PACKET rays of a class, which is not empty. */
-static __attribute__((noinline)) void init_packet(Packet *p, const Query *q, Sorter *s, uint32_t class, bool any) {
+static __attribute__((noinline)) void init_packet(Packet *p, const Query *q, Sorter *s, uint32_t class,
+                                                  bool any) {
     uint32_t *list = s->list[class], count = s->count[class] < PACKET ? s->count[class] : PACKET;
     assert(count > 0);
     p->count = count;
