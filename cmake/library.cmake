@@ -42,7 +42,7 @@ install(DIRECTORY include/raytally DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES
 include(CMakePackageConfigHelpers)
 configure_package_config_file(cmake/raytally-config.cmake.in raytally-config.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/raytally)
-write_basic_package_version_file(raytally-config-version.cmake COMPATIBILITY SameMinorVersion)
+write_basic_package_version_file(raytally-config-version.cmake COMPATIBILITY SameMajorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/raytally-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/raytally-config-version.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/raytally)
 file(RELATIVE_PATH up ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
