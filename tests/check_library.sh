@@ -24,6 +24,13 @@ quietly() {
     return 1
 }
 
+# ---- without tests ----
+if command -v ninja >/dev/null; then
+    quietly "cmake -DBUILD_TESTING=OFF fails" cmake --preset release -B "$work/untested" -DBUILD_TESTING=OFF || true
+    grep -q '"file".*/src/library/' "$work/untested/compile_commands.json" || complain "without tests, the library is not built"
+    grep '"file".*/tests/' "$work/untested/compile_commands.json" && complain "without tests, these are built"
+fi
+
 # ---- installed files ----
 quietly "cmake --install fails" cmake --install "$build" --prefix "$prefix"
 libraries=$(dirname "$(find "$prefix" -name libraytally.so)")
