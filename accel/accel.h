@@ -251,6 +251,10 @@ RtStatus rt_accel_name_is_free(const char *name, RtError *error);
 /* Appends an accelerator of a plugin; borrows `ops`. RT_BAD_INPUT if its name is not free. */
 RtStatus rt_accel_register(const RtAccelOps *ops, RtError *error);
 
+/* How users load a plugin, for the message of rt_accel_find: a function of the library, or an option, once a
+ * program has set it. */
+extern const char *rt_accel_plugin_hint;
+
 /* Finds one by name; if there is none, RT_BAD_INPUT and a message that suggests the nearest name. */
 RtStatus rt_accel_find(const char *name, const RtAccelOps **out, RtError *error);
 

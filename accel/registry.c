@@ -109,6 +109,8 @@ const char *rt_accel_yardstick(void) {
     return "ideal";
 }
 
+const char *rt_accel_plugin_hint = "raytally_plugin_load";
+
 RtStatus rt_accel_find(const char *name, const RtAccelOps **out, RtError *error) {
     const char *names[BUILT_IN + RT_MAX_PLUGIN_ACCELS];
     for (size_t i = 0; i < count; i++) {
@@ -126,6 +128,6 @@ RtStatus rt_accel_find(const char *name, const RtAccelOps **out, RtError *error)
     rt_suggest(name, names, count, suggestion);
     return rt_fail(error, RT_BAD_INPUT,
                    "there is no accelerator '%s'%s%s `raytally accels` lists them; an accelerator of a "
-                   "plugin needs --plugin FILE.so",
-                   name, suggestion, *suggestion ? "" : ";");
+                   "plugin needs %s",
+                   name, suggestion, *suggestion ? "" : ";", rt_accel_plugin_hint);
 }

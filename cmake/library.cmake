@@ -42,9 +42,16 @@ install(DIRECTORY include/raytally DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES
 include(CMakePackageConfigHelpers)
 configure_package_config_file(cmake/raytally-config.cmake.in raytally-config.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/raytally)
-write_basic_package_version_file(raytally-config-version.cmake COMPATIBILITY SameMinorVersion)
+write_basic_package_version_file(raytally-config-version.cmake COMPATIBILITY SameMajorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/raytally-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/raytally-config-version.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/raytally)
+# What libraytally.a needs is named by its flags: by Requires.private, programs that link the shared library would need it too.
+pkg_check_modules(STATIC assimp gmp jansson libpng libxxhash OpenEXR yaml-0.1)
+set(private ${STATIC_STATIC_LDFLAGS} -lm -pthread)
+if(RT_WITH_EMBREE)
+  list(PREPEND private -lembree${embree_VERSION_MAJOR})
+endif()
+list(JOIN private " " private)
 file(RELATIVE_PATH up ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
 configure_file(cmake/raytally.pc.in raytally.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/raytally.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

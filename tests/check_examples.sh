@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # check_examples.sh: the plugins of examples/ and tests/plugins/bvh_copy.c, built against the public headers alone with every
-# available compiler, without a warning: verify finds no wrong hit; bvh_copy counts what bvh counts; verify detects a bih with
-# one origin for both kinds of planes. examples/header-only and examples/peers explain how to get what they need; the first is built
-# and verified if $BVH_DIR is a copy of madmann91/bvh, the second if $PEERS is the folder that its fetch.sh fills; the plugin in
-# the README of peers is built with a library that tests all triangles.
+# available compiler, and the one in Rust if there is rustc, without a warning: verify finds no wrong hit; bvh_copy counts what bvh
+# counts; verify detects a bih with one origin for both kinds of planes. examples/header-only and examples/peers explain how to get
+# what they need; the first is built and verified if $BVH_DIR is a copy of madmann91/bvh, the second if $PEERS is the folder that
+# its fetch.sh fills; the plugin in the README of peers is built with a library that tests all triangles.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/testing.sh"
 cd "$(dirname "$0")/.."
@@ -54,6 +54,17 @@ for compiler in g++ clang++; do
         right madmann
     fi
 done
+
+if command -v rustc >/dev/null; then
+    if rustc --edition 2021 --crate-type cdylib -O -C panic=abort -D warnings examples/slabs-rust/slabs.rs \
+        -o "$work/slabs-rust.so" 2>"$work/log"; then
+        right slabs-rust
+    else
+        complain "rustc does not build examples/slabs-rust: $(cat "$work/log")"
+    fi
+else
+    echo "check_examples: no rustc: examples/slabs-rust is not built" >&2
+fi
 
 # ---- a copy of bvh behaves like bvh ----
 if [ -e "$work/bvh_copy.so" ]; then # and the same structure: two rows of each table are equal

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # check_library.sh: raytally as installed. Installs the build beside $RT_PROGRAM into a scratch prefix and checks: each header
 # compiles as C99, C17 and C++17 without a warning with every available compiler, and so do all of them in one file; both
-# libraries export raytally_* and nothing else; examples/embed builds with the CMake package and with pkg-config, runs, and
-# counts what the program counts, also after the prefix was moved; doxygen finds a description of every declaration. Skipped
+# libraries export raytally_* and nothing else; examples/embed builds with the CMake package and with pkg-config, shared and
+# static, runs, and counts what the program counts, also after the prefix was moved; doxygen finds a description of every declaration. Skipped
 # (77) without cmake, pkg-config or nm; checks whose tools are missing are reported and skipped.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/testing.sh"
@@ -23,6 +23,13 @@ quietly() {
     cat "$work/log" >&2
     return 1
 }
+
+# ---- without tests ----
+if command -v ninja >/dev/null; then
+    quietly "cmake -DBUILD_TESTING=OFF fails" cmake --preset release -B "$work/untested" -DBUILD_TESTING=OFF || true
+    grep -q '"file".*/src/library/' "$work/untested/compile_commands.json" || complain "without tests, the library is not built"
+    grep '"file".*/tests/' "$work/untested/compile_commands.json" && complain "without tests, these are built"
+fi
 
 # ---- installed files ----
 quietly "cmake --install fails" cmake --install "$build" --prefix "$prefix"
@@ -80,6 +87,11 @@ runs() {
     [ "$(head -c 4 "$work/embed.png" | tail -c 3)" = PNG ] || complain "${1##*/} writes no PNG"
 }
 
+# linked HOW FLAGS...: builds examples/embed with them, to $work/embed-pc
+linked() {
+    quietly "the example does not build by $1" "${CC:-cc}" -std=c99 examples/embed/embed.c "${@:2}" -o "$work/embed-pc"
+}
+
 # embed: builds with the installation in $prefix
 embed() {
     local libraries build=$work/embed-${prefix##*/} flags
@@ -91,8 +103,10 @@ embed() {
     if [ -x "$build/embed_static" ]; then runs "$build/embed_static"; else complain "there is no raytally::static"; fi
     flags=$(PKG_CONFIG_PATH=$libraries/pkgconfig pkg-config --cflags --libs raytally) || { complain "no raytally.pc" && return; }
     # shellcheck disable=SC2086 # they are several
-    quietly "the example does not build by pkg-config" "${CC:-cc}" -std=c99 examples/embed/embed.c $flags -o "$work/embed-pc" || return 0
-    runs "$work/embed-pc" "$libraries"
+    if linked "pkg-config" $flags; then runs "$work/embed-pc" "$libraries"; fi
+    flags=$(PKG_CONFIG_PATH=$libraries/pkgconfig pkg-config --static --cflags --libs raytally)
+    # shellcheck disable=SC2086 # as above; and the program finds no libraytally.so
+    if linked "pkg-config --static" ${flags/-lraytally/-l:libraytally.a}; then runs "$work/embed-pc"; fi
 }
 embed
 mv "$prefix" "$work/second" && prefix=$work/second

@@ -28,7 +28,8 @@
 extern "C" {
 #endif
 
-/** The version of this interface. Plugins of another version are rejected. */
+/** The version of this interface. Plugins of another version are rejected. docs/interface.md says what a
+ * plugin of version 1 may rely on, and what may grow. */
 #define RAYTALLY_ACCEL_ABI 1
 
 /* ---- parameters ---- */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file
  * Boxes, prepared rays, and the one box test that exactness depends on. It is frozen: within a major version
- * these operations give the same bits.
+ * these operations give the same bits (docs/interface.md).
  *
  * Why a traversal that uses it is exact. Hit functions compute in rounded arithmetic, so a ray may hit an
  * object that it misses by a few ulps. A prepared ray is therefore thick: it moves the planes of a box

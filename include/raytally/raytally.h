@@ -27,7 +27,7 @@
  * **Versions.** Structs of options begin with their size, so programs built with older and newer headers
  * work. Members that a program does not have get their defaults; a member that it sets and this library does
  * not know is RAYTALLY_NOT_AVAILABLE. Structs of results have room for new members, which are 0; arrays of
- * counters must have RAYTALLY_MAX_RAY_KINDS elements. */
+ * counters must have RAYTALLY_MAX_RAY_KINDS elements. docs/interface.md says what a program may rely on. */
 #ifndef RAYTALLY_RAYTALLY_H
 #define RAYTALLY_RAYTALLY_H
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file
  * Plain types shared by raytally, programs that embed it, and plugins: rays, hits and counters. Their layout
- * is part of the binary interface and does not change within a major version. */
+ * is part of the binary interface, which docs/interface.md defines, and does not change within a major
+ * version. */
 #ifndef RAYTALLY_TYPES_H
 #define RAYTALLY_TYPES_H
 

@@ -84,6 +84,7 @@ RtStatus rt_cli_load_plugins(int argc, char *const *argv, RtError *error) {
     static const char option[] = "--plugin";
     const size_t length = sizeof option - 1;
     const char *list = getenv(VARIABLE);
+    rt_accel_plugin_hint = "--plugin FILE.so";
     if (list) RT_TRY(rt_plugin_load_all(list, error));
     if (list) note_empty_folders(list);
     for (int i = 1; i < argc; i++) {

@@ -19,6 +19,14 @@ RT_TEST(a_plugin_is_loaded_with_and_without_room_for_a_message) {
     assert_string_equal(said.message, "as it was");
 }
 
+RT_TEST(an_accelerator_that_no_loaded_plugin_has_needs_a_function_of_the_library_and_no_option) {
+    char spec[RAYTALLY_SPEC_CHARS];
+    raytally_error why;
+    assert_int_equal(raytally_spec_format("own_hits", spec, &why), RAYTALLY_BAD_INPUT);
+    assert_says(why, "an accelerator of a plugin needs raytally_plugin_load");
+    assert_null(strstr(why.message, "--"));
+}
+
 RT_TEST(what_is_no_plugin_is_refused_with_and_without_room_for_a_message) {
     static const struct {
         const char *path, *says;
