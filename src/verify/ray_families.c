@@ -166,6 +166,24 @@ static RtRay ends_at_hit(Generator *m) {
     return ray;
 }
 
+/* Starts clearly behind hits that its line has, often behind the last, and may end clearly before the next.
+ */
+static RtRay past_hits(Generator *m) {
+    static const float steps[] = {0x1p-10f, 0x1p-6f, 0x1p-3f, 0.5f};
+    RtRay ray = below(m, 2) ? chord(m) : at_vertex(m);
+    for (uint32_t left = 1 + below(m, 8); left > 0 && rt_ray_is_valid(&ray); left--) {
+        RtHit hit;
+        rt_nearest(m->query, &ray, 1, &hit, NULL);
+        if (hit.object == RT_NO_OBJECT) return ray;
+        const float step = steps[below(m, sizeof steps / sizeof steps[0])];
+        if (left == 1 && below(m, 2))
+            ray.tmax = hit.t * (1 - step);
+        else
+            ray.tmin = hit.t * (1 + step);
+    }
+    return ray;
+}
+
 /* A random direction, or one along an axis or diagonal, with components 0 or +-1. */
 static RtVec3d free_direction(Generator *m) {
     if (below(m, 2)) return rt_random_direction(&m->random);
@@ -353,6 +371,7 @@ static const struct {
     {"grazing", grazing},
     {"denormal", denormal},
     {"in-bundle", in_bundle},
+    {"past-hits", past_hits},
 };
 
 size_t rt_ray_family_count(void) {

@@ -19,7 +19,8 @@
     X(PRUNED_TIE, "pruned ties", "a box entered at the best t is skipped: >= instead of >")                  \
     X(DEPTH_BUFFER, "z-buffer nearest", "the nearest by depth of 24 bits, not by t")                         \
     X(PARTIAL_OCCLUDER, "partial occluder", "what lies behind an object is culled, though it leaks past it") \
-    X(ABSOLUTE_EPSILON, "absolute epsilon", "Moeller and Trumbore's determinant below 1e-6 is parallel")
+    X(ABSOLUTE_EPSILON, "absolute epsilon", "Moeller and Trumbore's determinant below 1e-6 is parallel")     \
+    X(IGNORED_START, "ignored start", "any hit from t = 0 on, not from tmin; judged by verdicts")
 
 typedef enum MutantKind {
 #define MUTANT_ENUM(CONSTANT, name, what) CONSTANT,
@@ -213,6 +214,14 @@ static void search_triangles(const Mutant *m, const RtPreparedRay *ray, bool any
     }
 }
 
+/* ---- intervals ---- */
+
+static void search_all(const Mutant *m, const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
+    RtPreparedRay whole = *ray;
+    if (any && m->recipe.broken) whole.tmin = 0;
+    rt_test_all(&m->base.scene->geometry, &whole, any, best, tally);
+}
+
 /* ---- the accelerator ---- */
 
 static void search(const Mutant *m, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
@@ -225,6 +234,7 @@ static void search(const Mutant *m, void *scratch, const RtPreparedRay *ray, boo
     case DEPTH_BUFFER: search_depths(m, ray, any, best, tally); break;
     case PARTIAL_OCCLUDER: search_light(m, ray, any, best, tally); break;
     case ABSOLUTE_EPSILON: search_triangles(m, ray, any, best, tally); break;
+    case IGNORED_START: search_all(m, ray, any, best, tally); break;
     case MUTANT_COUNT: break;
     }
 }
@@ -247,7 +257,9 @@ static RtStatus build_mutant(const void *context, const RtScene *scene, int thre
                              RtError *error) {
     (void)threads;
     RT_TRY(rt_accel_new(&(RtBuild){.ops = &mutant_ops, .scene = scene}, sizeof(Mutant), out, error));
-    ((Mutant *)*out)->recipe = *(const MutantRecipe *)context;
+    Mutant *mutant = (Mutant *)*out;
+    mutant->recipe = *(const MutantRecipe *)context;
+    mutant->base.exact = mutant->recipe.kind != IGNORED_START;
     return RT_OK;
 }
 
