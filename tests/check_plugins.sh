@@ -55,6 +55,7 @@ fault crash-build "$crash\) while it was built over 11 objects"
 fault crash-nearest "$crash\) .*$at_ray"
 fault crash-timed "$crash\) .*$at_ray"
 fault crash-rare "$crash\) .*$at_ray"
+fault crash-together "$crash\) .*, after it prepared the ray org .*; no ray of the stream fails alone"
 fault crash-destroy "$crash\) while it was destroyed"
 fault crash-describe "$crash\) while"
 fault abort "crashed \(Aborted\) .*$at_ray"
@@ -112,6 +113,7 @@ fault own-early 't = 0, which is not on the ray'
 fault own-occluder 'an object that does not exist, 11 \(the scene has 11 objects\)'
 fault own-moody 'counts [0-9]+ extent_tests on some [a-z]+ rays, and [0-9]+ when' \
     'counts [0-9]+ extent_tests on some rays, and [0-9]+ when they are traced again'
+fault own-unprepared "$crash\) .*$at_ray"
 fault own-farther ''
 fault own-uncounted ''
 fault own-unnamed ''

@@ -30,15 +30,24 @@ void rt_remote_progress(void) {
 
 /* ---- how it ends ---- */
 
-/* Records the signal and the ray, using only what is safe in a signal handler. */
+/* Copies the stream. The plugin may have overwritten what the query is doing. */
+static void record_stream(Crash *crash, const RtPluginNow *now) {
+    const size_t count = now->count < WIRE_RAYS ? now->count : WIRE_RAYS;
+    const size_t ray = (size_t)(now->ray - now->stream);
+    memcpy(crash->rays, now->stream, count * sizeof(RtRay));
+    crash->ray = ray < count ? (uint32_t)ray : 0;
+    crash->any = now->any;
+    crash->counted = now->counted;
+    crash->count = (uint32_t)count;
+}
+
+/* Records the signal and the rays, using only what is safe in a signal handler. */
 static void on_signal(int number, siginfo_t *info, void *unused) {
     (void)unused;
     Crash *crash = &served.wire->crash;
     const RtPluginNow *now = number == SIGXCPU ? rt_plugin_busy() : rt_plugin_now();
-    const RtRay *ray = now ? now->ray : NULL;
-    if (ray) {
-        crash->ray = *ray;
-        crash->has_ray = 1;
+    if (now && now->ray) {
+        record_stream(crash, now);
         const char *at = number == SIGSEGV || number == SIGBUS ? info->si_addr : NULL;
         for (uint32_t i = 0; at && i < RT_GUARD_COUNT; i++) {
             const RtGuarded *guarded = &now->guarded[i];
@@ -214,6 +223,20 @@ void rt_wire_trace(RtQuery *query, const RtRay *rays, void *message) {
         ops->nearest_counted(query->accel, query->scratch, rays, asked->count, asked->hits, asked->tallies);
     else
         ops->nearest(query->accel, query->scratch, rays, asked->count, asked->hits);
+}
+
+void rt_wire_trace_alone(RtQuery *query, const RtRay *rays, void *message) {
+    const WireAlone *stream = message;
+    for (uint32_t i = 0; i < stream->count; i++) {
+        RtTally tallies[RT_RAY_KIND_COUNT] = {0};
+        RtHit hit;
+        bool blocked;
+        served.wire->crash.alone = i;
+        if (stream->any)
+            rt_occluded(query, &rays[i], 1, &blocked, stream->counted ? tallies : NULL);
+        else
+            rt_nearest(query, &rays[i], 1, &hit, stream->counted ? tallies : NULL);
+    }
 }
 
 /* ---- channels ---- */

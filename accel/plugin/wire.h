@@ -44,12 +44,18 @@ static inline RtRay *rt_wire_rays(char *message, size_t bytes) {
     return (RtRay *)(message + (bytes + sizeof(RtHit) - 1) / sizeof(RtHit) * sizeof(RtHit));
 }
 
+enum { WIRE_RAYS = 4096 }; /* of a stream, at most */
+
 /* What the process recorded of its own end. */
 typedef struct Crash {
     atomic_int signal; /* 0: nothing */
-    uint32_t has_ray;  /* 0 or 1 */
     uint32_t out_of;   /* 1 + the guard pages that were hit (RT_GUARD_QUERY, ..); 0: none */
-    RtRay ray;         /* that was being traced */
+    /* The stream that was being traced. */
+    uint32_t count;        /* 0: none */
+    uint32_t ray;          /* index of the last one prepared; 0: perhaps none was prepared */
+    uint32_t any, counted; /* which kernel; 0 or 1 */
+    uint32_t alone;        /* index of the last ray that rt_wire_trace_alone began */
+    RtRay rays[WIRE_RAYS]; /* [count] */
 } Crash;
 
 typedef struct Wire {
@@ -113,7 +119,6 @@ typedef struct WireBoxes {
 WireWork rt_wire_boxes;
 
 /* A stream of rays. The answers are hits: an occluder is a hit at tmin. */
-enum { WIRE_RAYS = 4096 };
 typedef struct WireRays {
     uint32_t count;
     bool any, counted;
@@ -121,6 +126,12 @@ typedef struct WireRays {
     RtHit hits[];                       /* [count] out */
 } WireRays;
 WireWork rt_wire_trace;
+
+/* Traces each ray of a stream in a call of its own, to find the one that fails. */
+typedef struct WireAlone {
+    uint32_t count, any, counted; /* as in Crash */
+} WireAlone;
+WireWork rt_wire_trace_alone;
 
 _Static_assert(sizeof(WireBoxes) <= MESSAGE_BYTES &&
                    sizeof(WireRays) + WIRE_RAYS * (sizeof(RtHit) + sizeof(RtRay)) <= RT_REMOTE_BYTES,

@@ -246,9 +246,21 @@ static void shorten(raytally_ray *rays, size_t count, const raytally_hit *hits) 
 
 NEAREST(all_but_one, 1, )
 NEAREST(crash_alone, 0, if (count == 1) crash();)
+NEAREST(crash_together, 0, if (count > 1) crash();)
 NEAREST(one_too_many, 0, hits[count] = hits[count - 1];)
 NEAREST(one_too_early, 0, *(hits - 1) = hits[0];)
 NEAREST(shorten_rays, 0, shorten((raytally_ray *)(uintptr_t)rays, count, hits);)
+
+/* Never calls raytally_prepare, finds nothing, and crashes at one ray of 256. */
+static void unprepared_nearest(const void *self, void *memory, raytally_query *query,
+                               const raytally_ray *rays, size_t count, raytally_hit *hits,
+                               raytally_counters *counters) {
+    (void)self, (void)memory, (void)query, (void)counters;
+    for (size_t i = 0; i < count; i++) {
+        if (is_rare(&rays[i])) crash();
+        hits[i] = (raytally_hit){INFINITY, RAYTALLY_NO_OBJECT};
+    }
+}
 
 /* ---- other functions ---- */
 
@@ -323,6 +335,9 @@ static raytally_accel_ops tables[] = {
     {.name = "faulty-crash-alone",
      .summary = "crashes when asked for a ray by itself",
      .nearest = crash_alone},
+    {.name = "faulty-crash-together",
+     .summary = "crashes when asked for more than a ray",
+     .nearest = crash_together},
     {.name = "faulty-scribble", .summary = "writes to shared memory as it builds", .build = build_scribble},
     {.name = "faulty-scribbled", .summary = "writes to shared memory at each ray", KERNELS(scribbled)},
     {.name = "faulty-kill", .summary = "kills its parent", .build = build_kill},
@@ -376,6 +391,7 @@ static raytally_accel_ops tables[] = {
      .summary = "is in order, and has a table of the first version, which ends before these flags",
      .size = offsetof(raytally_accel_ops, flags),
      .flags = RAYTALLY_OWN_HITS | RAYTALLY_NO_COUNTS},
+    OWN("unprepared", "crashes at a ray of 256", .nearest = unprepared_nearest),
     OWN("object", "answers with an object that does not exist", KERNELS(no_such_object)),
     OWN("nan", "answers with a t that is no number", KERNELS(not_a_number)),
     OWN("endless", "answers with a t at infinity", KERNELS(endless)),
