@@ -63,8 +63,9 @@ fault exit 'ended its process \(exit code 0\)'
 fault killed 'crashed \(Killed\)'
 fault scribble 'overwrote memory that it shares with raytally while it was built'
 fault kill ''
+fault descriptor ''
+fault trace ''
 fault close ''
-fault daemon ''
 fault divide "crashed \(Floating point exception\) .*$at_ray"
 fault recursion "$crash\) .*$at_ray"
 fault free "crashed \(Aborted\) .*$at_ray"
@@ -155,6 +156,24 @@ for name in sorted(glob.glob("verify-*.json")):
 sys.exit(failed or len(alone) != 2)
 END
 
+# ---- what affects no answer ----
+
+# notices NAME [PATTERN]: bench and verify end with 0 and say so; no pattern: they say nothing
+notices() {
+    ends 0 verify balls:size=1 --rays 100 --threads 1 --plugin "$plugins/faulty.so" --accel "faulty-$1"
+    [ -z "${2-}" ] && [ -s said ] && complain "verify --accel faulty-$1 says $(cat said)"
+    says "${2-}"
+    ends 0 "${bench[@]}" --plugin "$plugins/faulty.so" --accel kd --accel "faulty-$1"
+    [ -z "${2-}" ] && [ -s said ] && complain "bench --accel faulty-$1 says $(cat said)"
+    says "${2-}"
+}
+notices not
+notices pool
+notices leak 'faulty-leak: its process holds 4[12][0-9] MB of memory once it is built, and its .describe. says 0 MB'
+notices leaking 'faulty-leaking: its process holds 4[12][0-9] MB more memory after tracing'
+notices thread 'faulty-thread: it left 1 thread behind, which still used processor time'
+notices daemon 'faulty-daemon: it left 1 process behind \(raytally\), which raytally ended'
+
 # ---- an experiment ----
 
 cat >faulty.yaml <<'END'
@@ -180,6 +199,12 @@ says 'faulty-refused on .*beneath it'
 ends 1 run faulty.yaml --plugin "$plugins/faulty.so" --resume
 ends 0 reproduce results/faulty --plugin "$plugins/faulty.so"
 ends 0 report results/faulty --plugin "$plugins/faulty.so"
+
+# A limit in an experiment holds for plugins, whether or not they keep to it.
+sed '/refused/d; s/crash-rare/leak/; s/^rounds/limits: {megabytes: 100}\n&/' faulty.yaml >limited.yaml
+ends 0 run limited.yaml --plugin "$plugins/faulty.so" --out limited
+says 'faulty-leak on balls:size=1: its structure takes more than 100 MB'
+[ "$(grep -c ',kd,' limited/counts.csv)" = 2 ] || complain "an experiment with a limit lacks rows of kd"
 
 # ---- instructions by callgrind ----
 

@@ -135,6 +135,7 @@ static RtStatus start(Remote *remote, RtError *error) {
     remote->child.asked[0] = WIRE_BUILD;
     wire->channels[0].asked = WIRE_BUILD;
     if (pipe2(ends, O_CLOEXEC) != 0) return rt_fail(error, RT_IO, "a pipe: %s", strerror(errno));
+    rt_usage_begin(&remote->child.usage, remote->ops.name);
     RtStatus status = rt_process_fork(&remote->child.process, ends[0], error);
     if (status == RT_OK && remote->child.process.pid == 0)
         rt_wire_serve(wire, &remote->spec, remote->base.scene, remote->threads);
@@ -157,6 +158,7 @@ static RtStatus take_built(Remote *remote, double limit, RtError *error) {
     remote->base.build_seconds = built.seconds;
     remote->base.build_tally = built.description.build;
     remote->description = built.description;
+    rt_usage_built(&remote->child.usage, &remote->child.process, built.description.bytes);
     return RT_OK;
 }
 
@@ -231,12 +233,19 @@ const char *rt_remote_exit_message(void) {
 static void destroy(RtAccel *accel) {
     Remote *remote = of(accel);
     if (remote->child.process.pid > 0 && !remote->child.broken) {
-        request_master(remote, rt_wire_destroy, NULL, 0, "it was destroyed");
+        rt_usage_traced(&remote->child.usage, &remote->child.process);
+        if (request_master(remote, rt_wire_destroy, NULL, 0, "it was destroyed"))
+            rt_usage_destroyed(&remote->child.usage, &remote->child.process);
         if (remote->child.broken)
             snprintf(exit_message, sizeof exit_message, "%s", remote->child.error.message);
     }
+    if (remote->child.process.pid > 0) {
+        RtProcessEnd end;
+        rt_process_signal(&remote->child.process, SIGKILL);
+        rt_process_wait(&remote->child.process, -1, &end);
+        rt_usage_ended(&remote->child.usage, &end);
+    }
     if (remote->pipe_end >= 0) close(remote->pipe_end);
-    rt_process_end(&remote->child.process, 0);
     if (remote->child.wire) munmap(remote->child.wire, sizeof(Wire));
     pthread_mutex_destroy(&remote->child.lock);
     pthread_mutex_destroy(&remote->master);

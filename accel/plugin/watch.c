@@ -51,6 +51,7 @@ static void report_end(RtWatched *child, RtProcessEnd end, const char *doing) {
     char what[160], where[RT_PLACE_TEXT];
     rt_process_end_format(end, child->wire->crash.signal, out_of <= RT_GUARD_COUNT ? past[out_of] : "", what,
                           sizeof what);
+    rt_usage_ended(&child->usage, &end);
     format_place(child, false, where, sizeof where);
     set_broken(child, what, doing, where);
 }

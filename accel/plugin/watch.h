@@ -3,6 +3,7 @@
 #ifndef RT_ACCEL_PLUGIN_WATCH_H
 #define RT_ACCEL_PLUGIN_WATCH_H
 
+#include "accel/plugin/usage.h"
 #include "accel/plugin/wire.h"
 #include "core/base/process.h"
 
@@ -20,6 +21,7 @@ struct RtWatched {
     char name[RT_MAX_SPEC_CHARS]; /* for messages */
     Wire *wire;
     RtProcess process;
+    RtUsage usage;
     double time_limit;        /* seconds without progress after which it counts as hung */
     unsigned asked[CHANNELS]; /* number of the last request on each channel */
     RtFindRay *find_ray;      /* called with the lock held; NULL: not searched */

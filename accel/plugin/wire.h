@@ -76,8 +76,8 @@ static inline void rt_futex_set(atomic_uint *word, unsigned value) {
     syscall(SYS_futex, word, FUTEX_WAKE, INT_MAX, NULL, NULL, 0);
 }
 
-/* The process: builds `spec` over `scene`, answers requests, and ends with the accelerator. RT_PROCESS_KEPT
- * is a pipe that reads as ended once raytally has ended. */
+/* The process: builds `spec` over `scene`, answers requests until the accelerator is destroyed, and waits to
+ * be ended. RT_PROCESS_KEPT is a pipe that reads as ended once raytally has ended. */
 _Noreturn void rt_wire_serve(Wire *wire, const RtSpec *spec, const RtScene *scene, int threads);
 
 /* Messages of channel 0. Its first request, to build, has none. */
@@ -97,7 +97,7 @@ typedef struct WireChecked {
 } WireChecked;
 
 WireWork rt_wire_validate, rt_wire_show, rt_wire_check, rt_wire_open; /* message: WireChecked */
-WireWork rt_wire_destroy;                                             /* no message; the process ends */
+WireWork rt_wire_destroy;                                             /* no message; the last request */
 
 /* Boxes number first, first + 1, ... of the structure, as many as fit; called in order from 0. */
 enum { WIRE_BOXES = 4096, WIRE_DEPTH = 10000 };

@@ -3,13 +3,17 @@
  * tests/check_plugins.sh tests what raytally reports of each. */
 #include <raytally/accel.h>
 
+#include <fcntl.h>
 #include <math.h>
+#include <pthread.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/ptrace.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 /* ---- correct functions ---- */
@@ -99,6 +103,16 @@ static int take_memory(void) {
     }
     return 1;
 }
+
+/* Takes memory, writes to it, and forgets it. */
+static void *volatile lost;
+static int leak(void) {
+    enum { BYTES = 400 << 20 };
+    lost = malloc(BYTES);
+    if (lost) memset(lost, 1, BYTES);
+    return lost != NULL;
+}
+BUILD(build_leak, if (!leak()) return RAYTALLY_BUILD_NO_MEMORY;)
 BUILD(build_memory, if (!take_memory()) return RAYTALLY_BUILD_NO_MEMORY;)
 
 static void print_line(const char *line) {
@@ -128,8 +142,34 @@ static void start_daemon(void) {
     _exit(0);
 }
 
+/* Kills its parent by a descriptor instead of a process id. */
+static void kill_by_descriptor(void) {
+    char path[64];
+    snprintf(path, sizeof path, "/proc/%d", (int)getppid());
+    syscall(SYS_pidfd_send_signal, open(path, O_RDONLY | O_DIRECTORY), SIGKILL, NULL, 0);
+}
+
+static void start_thread(void *(*run)(void *)) {
+    pthread_t thread;
+    pthread_create(&thread, NULL, run, NULL);
+}
+
+static void *run_for_ever(void *unused) {
+    loop();
+    return unused;
+}
+
+static void *sleep_for_ever(void *unused) {
+    while (zero == 0) pause();
+    return unused;
+}
+
 BUILD(build_scribble, scribble();)
 BUILD(build_kill, kill(getppid(), SIGKILL);)
+BUILD(build_descriptor, kill_by_descriptor();)
+BUILD(build_trace, ptrace(PTRACE_ATTACH, getppid(), NULL, NULL);)
+BUILD(build_thread, start_thread(run_for_ever);)
+BUILD(build_pool, start_thread(sleep_for_ever);)
 BUILD(build_close, for (int descriptor = 0; descriptor < 64; descriptor++) close(descriptor);)
 BUILD(build_daemon, start_daemon();)
 
@@ -177,6 +217,10 @@ static int is_in_valgrind(void) {
     const char *loaded = getenv("LD_PRELOAD");
     return loaded && strstr(loaded, "vgpreload");
 }
+/* At the first ray. */
+static atomic_flag leaked = ATOMIC_FLAG_INIT;
+SEARCH(leaking, if (!atomic_flag_test_and_set(&leaked)) leak();)
+
 SEARCH(illegal, if (is_in_valgrind()) raise(SIGILL);)
 
 SEARCH(print, if (is_rare(ray->ray)) print_line("{ faulty-print is asked");)
@@ -341,6 +385,12 @@ static raytally_accel_ops tables[] = {
     {.name = "faulty-scribble", .summary = "writes to shared memory as it builds", .build = build_scribble},
     {.name = "faulty-scribbled", .summary = "writes to shared memory at each ray", KERNELS(scribbled)},
     {.name = "faulty-kill", .summary = "kills its parent", .build = build_kill},
+    {.name = "faulty-descriptor", .summary = "kills its parent otherwise", .build = build_descriptor},
+    {.name = "faulty-trace", .summary = "traces its parent", .build = build_trace},
+    {.name = "faulty-thread", .summary = "leaves a thread that runs", .build = build_thread},
+    {.name = "faulty-pool", .summary = "leaves a thread that sleeps", .build = build_pool},
+    {.name = "faulty-leak", .summary = "loses memory as it builds", .build = build_leak},
+    {.name = "faulty-leaking", .summary = "loses memory as it traces", KERNELS(leaking)},
     {.name = "faulty-close", .summary = "closes every file", .build = build_close},
     {.name = "faulty-daemon", .summary = "leaves a process behind", .build = build_daemon},
     {.name = "faulty-divide", .summary = "divides by zero", KERNELS(divide)},
