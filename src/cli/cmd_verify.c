@@ -176,9 +176,11 @@ static void on_row(void *context, const json_t *row) {
     Show *show = context;
     clear_progress(show);
     if (!show->options->json) print_row(show, row);
-    if (!json_is_null(json_object_get(row, "problem"))) {
-        fprintf(stderr, "raytally: %s on %s: %s\n", rt_json_text(row, "accel", ""),
-                rt_json_text(row, "scene", ""), rt_json_text(row, "problem", ""));
+    const bool refused = !json_is_null(json_object_get(row, "refused"));
+    if (refused || !json_is_null(json_object_get(row, "problem"))) {
+        fprintf(stderr, "raytally: %s on %s: %s%s\n", rt_json_text(row, "accel", ""),
+                rt_json_text(row, "scene", ""), refused ? "refused: " : "",
+                rt_json_text(row, refused ? "refused" : "problem", ""));
     }
     show->failed |= rt_verify_row_fails(row);
 }
@@ -228,6 +230,7 @@ static void print_total(const Options *o, const RtVerifySum *sums, uint32_t coun
         if (total.occluded_wrong > 0) printf(", %" PRIu64 " occluded wrong", total.occluded_wrong);
         print_failed(sums, count);
     }
+    if (total.refused > 0) printf("; %u row%s refused", total.refused, rt_plural(total.refused));
     putchar('\n');
 }
 

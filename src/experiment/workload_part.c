@@ -81,7 +81,7 @@ RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKin
     va_end(args);
     if (c == experiment->candidate_count || rt_candidate_is_baseline(experiment, c))
         return rt_fail(error, broken ? RT_BROKEN : RT_BAD_INPUT, "the baseline '%s' %s on '%s': %s", label,
-                       broken ? "is broken" : "exceeds a limit", scene, text);
+                       broken ? "is broken" : "is left out", scene, text);
     if (what == RT_EVENT_NO_BUILD) {
         RtBuildResult *build = rt_build_at(workload->results, workload->index, c);
         strcpy(build->left_out, text);
@@ -91,7 +91,7 @@ RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKin
         strcpy(cell->left_out, text);
         cell->broken = broken;
     }
-    if (broken) rt_notify(&workload->options->observer, "%s on %s: %s", label, scene, text);
+    rt_notify(&workload->options->observer, "%s on %s: %s%s", label, scene, broken ? "" : "left out: ", text);
     return rt_workload_tell(workload, what, c, kind, error);
 }
 

@@ -237,19 +237,22 @@ static RtStatus check(Run *run, const RtVerifyScene *scene, RtAccel *accel, cons
     json_t *row = rt_equivalence_json(&result, scene->name, spec->spec, rt_accel_truth());
     json_object_set_new(row, "exact", json_boolean(accel->exact));
     json_object_set_new(row, "problem", problem_json(run, &result, broken));
+    json_object_set_new(row, "refused", json_null());
     status = result.any_wrong ? keep_failure(run, scene, spec, &result.first_wrong, row, error) : RT_OK;
     if (status == RT_OK) return add_row(run, row, error);
     json_decref(row);
     return status;
 }
 
-/* A plugin's accelerator broke before it answered all rays: a row without rays, with the reason. */
-static RtStatus add_broken(Run *run, const RtVerifyScene *scene, const RtVerifySpec *spec, const char *why,
-                           RtError *error) {
+/* A plugin's accelerator broke before it answered all rays, or refuses the scene (`refused`): a row without
+ * rays, with the reason. */
+static RtStatus add_unanswered(Run *run, const RtVerifyScene *scene, const RtVerifySpec *spec, bool refused,
+                               const char *why, RtError *error) {
     const RtEquivalence nothing = {0};
     json_t *row = rt_equivalence_json(&nothing, scene->name, spec->spec, rt_accel_truth());
     json_object_set_new(row, "exact", json_true());
-    json_object_set_new(row, "problem", json_string(why));
+    json_object_set_new(row, "problem", refused ? json_null() : json_string(why));
+    json_object_set_new(row, "refused", refused ? json_string(why) : json_null());
     return add_row(run, row, error);
 }
 
@@ -264,12 +267,13 @@ static RtStatus verify_spec(Run *run, const RtVerifyScene *scene, const RtVerify
         run->observer->notice(run->observer->context, notice);
         return RT_OK;
     }
-    const bool refused = status != RT_OK && rt_spec_text_is_remote(spec->spec); /* for itself alone */
+    const bool unbuilt = status != RT_OK && rt_spec_text_is_remote(spec->spec); /* for itself alone */
+    const bool refused = status == RT_BAD_INPUT && unbuilt;
     if (status == RT_OK) status = check(run, scene, accel, spec, error);
     rt_accel_destroy(accel);
-    if (status != RT_BROKEN && !refused) return status;
-    const RtError broken = *error;
-    return add_broken(run, scene, spec, broken.message, error);
+    if (status != RT_BROKEN && !unbuilt) return status;
+    const RtError why = *error;
+    return add_unanswered(run, scene, spec, refused, why.message, error);
 }
 
 /* ---- a scene ---- */

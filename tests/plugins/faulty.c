@@ -107,7 +107,7 @@ static int take_memory(void) {
 /* Takes memory, writes to it, and forgets it. */
 static void *volatile lost;
 static int leak(void) {
-    enum { BYTES = 400 << 20 };
+    enum { BYTES = 300 << 20 };
     lost = malloc(BYTES);
     if (lost) memset(lost, 1, BYTES);
     return lost != NULL;
