@@ -99,3 +99,12 @@ RtStatus rt_workload_break(RtWorkloadState *workload, uint32_t c, RtRayKind kind
     workload->accels[c] = NULL;
     return rt_workload_leave_out(workload, c, RT_EVENT_NO_CELL, kind, true, error, "%s", error->message);
 }
+
+RtStatus rt_workload_exclude_broken(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
+    for (uint32_t c = 0; c < workload->count; c++) {
+        const RtAccel *accel = workload->accels[c];
+        if (!accel || rt_accel_check(accel, error) == RT_OK) continue;
+        RT_TRY(rt_workload_break(workload, c, kind, error));
+    }
+    return RT_OK;
+}

@@ -186,8 +186,13 @@ static void time_broken(const Stage *stage) {
     double seconds[2][ROUNDS], wall[2][ROUNDS];
     bool broken[2] = {false, false};
     uint32_t done = 0;
-    RtTimed timed[2] = {{stage->accel, &stage->set, seconds[0], wall[0], &broken[0]},
-                        {stage->bvh, &stage->set, seconds[1], wall[1], &broken[1]}};
+    RtTimed timed[2];
+    for (int i = 0; i < 2; i++)
+        timed[i] = (RtTimed){.accel = i == 0 ? stage->accel : stage->bvh,
+                             .set = &stage->set,
+                             .seconds = seconds[i],
+                             .wall = wall[i],
+                             .broken = &broken[i]};
     RtTiming timing = {.rounds = {.rounds = ROUNDS, .most = ROUNDS, .seed = 1}, .threads = 1};
     assert_ok(rt_measure_time(timed, 2, &timing, &done, error));
     assert_int_equal(done, ROUNDS);
