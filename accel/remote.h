@@ -51,4 +51,8 @@ void rt_remote_progress(void);
 /* Why the last accelerator that the calling thread destroyed did not survive it, or NULL. */
 const char *rt_remote_exit_message(void);
 
+/* What raytally noticed of remote accelerators that affects no answer: sentence number `i` about memory that
+ * they do not describe, and threads and processes that they left behind; NULL after the last. */
+const char *rt_remote_notice(size_t i);
+
 #endif

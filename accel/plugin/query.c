@@ -228,6 +228,10 @@ static void *enter(PluginQuery *query, const RtScratch *scratch, const RtRay *ra
     lay_canaries(answers - CANARIES, answers);
     memset(answers, UNSET, count * size);
     query->crossings = scratch->crossings;
+    query->now.stream = rays;
+    query->now.count = count;
+    query->now.any = size != sizeof(RtHit);
+    query->now.counted = query->counting;
     query->now.ray = rays;
     now = &query->now;
     return answers;

@@ -18,6 +18,8 @@ typedef struct Remote {
     RtAccel base;
     RtAccelOps ops; /* remote_ops, with the name of the base */
     RtWatched child;
+    RtSpec spec;
+    int threads;  /* to build with */
     int pipe_end; /* the process ends when this is closed */
     RtDescription description;
     bool used[CHANNELS];    /* by queries, under child.lock; channel 0 by none */
@@ -124,7 +126,7 @@ bool rt_remote_do(RtQuery *query, RtRemoteWork *work, const RtRay *rays, size_t 
 
 /* ---- building ---- */
 
-static RtStatus start(Remote *remote, const RtSpec *spec, int threads, RtError *error) {
+static RtStatus start(Remote *remote, RtError *error) {
     int ends[2];
     Wire *wire =
         mmap(NULL, sizeof(Wire), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
@@ -133,22 +135,22 @@ static RtStatus start(Remote *remote, const RtSpec *spec, int threads, RtError *
     remote->child.asked[0] = WIRE_BUILD;
     wire->channels[0].asked = WIRE_BUILD;
     if (pipe2(ends, O_CLOEXEC) != 0) return rt_fail(error, RT_IO, "a pipe: %s", strerror(errno));
+    rt_usage_begin(&remote->child.usage, remote->ops.name);
     RtStatus status = rt_process_fork(&remote->child.process, ends[0], error);
     if (status == RT_OK && remote->child.process.pid == 0)
-        rt_wire_serve(wire, spec, remote->base.scene, threads);
+        rt_wire_serve(wire, &remote->spec, remote->base.scene, remote->threads);
     madvise(wire, sizeof(Wire), MADV_DONTFORK); /* other plugins must not have it */
     close(ends[0]);
     remote->pipe_end = ends[1];
     return status;
 }
 
-static RtStatus take_built(Remote *remote, RtError *error) {
+static RtStatus take_built(Remote *remote, double limit, RtError *error) {
     char doing[96];
     WireBuilt built;
     snprintf(doing, sizeof doing, "it was built over %u object%s", remote->base.scene->geometry.object_count,
              rt_plural(remote->base.scene->geometry.object_count));
-    if (!rt_watched_wait(&remote->child, 0, doing, 10 * remote->child.time_limit))
-        return fail_broken(remote, error);
+    if (!rt_watched_wait(&remote->child, 0, doing, limit)) return fail_broken(remote, error);
     memcpy(&built, remote->child.wire->channels[0].message, sizeof built);
     if (built.status != RT_OK) return forward(built.status, "", &built.error, error);
     remote->base.exact = built.exact != 0;
@@ -156,24 +158,28 @@ static RtStatus take_built(Remote *remote, RtError *error) {
     remote->base.build_seconds = built.seconds;
     remote->base.build_tally = built.description.build;
     remote->description = built.description;
+    rt_usage_built(&remote->child.usage, &remote->child.process, built.description.bytes);
     return RT_OK;
 }
 
-RtStatus rt_remote_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
-                         RtError *error) {
+/* Gives up after `limit` seconds without progress. */
+static RtStatus build(const RtSpec *spec, const RtScene *scene, int threads, double limit, RtAccel **out,
+                      RtError *error) {
     Remote *remote = rt_alloc(1, sizeof(Remote));
     *out = NULL;
     if (!remote) return rt_fail_memory(error, "an accelerator", sizeof(Remote));
     *remote = (Remote){.base = {.ops = &remote->ops, .scene = scene},
                        .ops = remote_ops,
+                       .spec = *spec,
+                       .threads = threads,
                        .pipe_end = -1,
                        .child.time_limit = time_limit_of_user()};
     remote->ops.name = spec->layers[spec->layer_count - 1].ops->name;
     pthread_mutex_init(&remote->child.lock, NULL);
     pthread_mutex_init(&remote->master, NULL);
     rt_spec_format(spec, remote->child.name);
-    RtStatus status = start(remote, spec, threads, error);
-    if (status == RT_OK) status = take_built(remote, error);
+    RtStatus status = start(remote, error);
+    if (status == RT_OK) status = take_built(remote, limit, error);
     if (status == RT_OK) {
         *out = &remote->base;
     } else {
@@ -181,6 +187,40 @@ RtStatus rt_remote_build(const RtSpec *spec, const RtScene *scene, int threads, 
         destroy(&remote->base);
     }
     return status;
+}
+
+/* In a fresh process, of the plugin alone, without overlays above it: traces each ray by itself, until the
+ * process fails. The search takes at most the time limit to build, and MOST_SECONDS to trace. */
+static uint32_t find_ray(const RtWatched *child) {
+    enum { MOST_SECONDS = 10 };
+    const Remote *remote = (const Remote *)((const char *)child - offsetof(Remote, child));
+    const Crash *crash = &child->wire->crash;
+    const WireAlone stream = {.count = crash->count, .any = crash->any, .counted = crash->counted};
+    RtSpec spec = {.layer_count = 1, .layers = {remote->spec.layers[remote->spec.layer_count - 1]}};
+    RtAccel *accel;
+    RtQuery query;
+    uint32_t found = RT_FAILS_SOMEHOW;
+    if (isinf(child->time_limit) || stream.count > WIRE_RAYS ||
+        build(&spec, remote->base.scene, remote->threads, child->time_limit, &accel, NULL) != RT_OK)
+        return found;
+    RtWatched *fresh = &of(accel)->child;
+    fresh->time_limit = fmin(fresh->time_limit, MOST_SECONDS);
+    if (rt_query_init(&query, accel, NULL) == RT_OK) {
+        WireAlone message = stream;
+        bool survived =
+            rt_remote_do(&query, rt_wire_trace_alone, crash->rays, stream.count, &message, sizeof message);
+        found = survived ? RT_FAILS_TOGETHER : fresh->wire->crash.alone;
+        rt_query_clear(&query);
+    }
+    rt_accel_destroy(accel);
+    return found;
+}
+
+RtStatus rt_remote_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
+                         RtError *error) {
+    RT_TRY(build(spec, scene, threads, 10 * time_limit_of_user(), out, error));
+    of(*out)->child.find_ray = find_ray;
+    return RT_OK;
 }
 
 static _Thread_local char exit_message[sizeof(((RtError *)0)->message)];
@@ -193,12 +233,19 @@ const char *rt_remote_exit_message(void) {
 static void destroy(RtAccel *accel) {
     Remote *remote = of(accel);
     if (remote->child.process.pid > 0 && !remote->child.broken) {
-        request_master(remote, rt_wire_destroy, NULL, 0, "it was destroyed");
+        rt_usage_traced(&remote->child.usage, &remote->child.process);
+        if (request_master(remote, rt_wire_destroy, NULL, 0, "it was destroyed"))
+            rt_usage_destroyed(&remote->child.usage, &remote->child.process);
         if (remote->child.broken)
             snprintf(exit_message, sizeof exit_message, "%s", remote->child.error.message);
     }
+    if (remote->child.process.pid > 0) {
+        RtProcessEnd end;
+        rt_process_signal(&remote->child.process, SIGKILL);
+        rt_process_wait(&remote->child.process, -1, &end);
+        rt_usage_ended(&remote->child.usage, &end);
+    }
     if (remote->pipe_end >= 0) close(remote->pipe_end);
-    rt_process_end(&remote->child.process, 0);
     if (remote->child.wire) munmap(remote->child.wire, sizeof(Wire));
     pthread_mutex_destroy(&remote->child.lock);
     pthread_mutex_destroy(&remote->master);

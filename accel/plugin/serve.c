@@ -6,6 +6,7 @@
 #include "core/base/process.h"
 
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 
 #include <fenv.h>
 #include <locale.h>
@@ -30,15 +31,24 @@ void rt_remote_progress(void) {
 
 /* ---- how it ends ---- */
 
-/* Records the signal and the ray, using only what is safe in a signal handler. */
+/* Copies the stream. The plugin may have overwritten what the query is doing. */
+static void record_stream(Crash *crash, const RtPluginNow *now) {
+    const size_t count = now->count < WIRE_RAYS ? now->count : WIRE_RAYS;
+    const size_t ray = (size_t)(now->ray - now->stream);
+    memcpy(crash->rays, now->stream, count * sizeof(RtRay));
+    crash->ray = ray < count ? (uint32_t)ray : 0;
+    crash->any = now->any;
+    crash->counted = now->counted;
+    crash->count = (uint32_t)count;
+}
+
+/* Records the signal and the rays, using only what is safe in a signal handler. */
 static void on_signal(int number, siginfo_t *info, void *unused) {
     (void)unused;
     Crash *crash = &served.wire->crash;
     const RtPluginNow *now = number == SIGXCPU ? rt_plugin_busy() : rt_plugin_now();
-    const RtRay *ray = now ? now->ray : NULL;
-    if (ray) {
-        crash->ray = *ray;
-        crash->has_ray = 1;
+    if (now && now->ray) {
+        record_stream(crash, now);
         const char *at = number == SIGSEGV || number == SIGBUS ? info->si_addr : NULL;
         for (uint32_t i = 0; at && i < RT_GUARD_COUNT; i++) {
             const RtGuarded *guarded = &now->guarded[i];
@@ -93,15 +103,38 @@ static void *watch_raytally(void *unused) {
     _exit(EXIT_FAILURE);
 }
 
-/* Limits what the plugin can allocate, by the limit of a structure. */
-static void limit_memory(void) {
+/* Bytes that count for RLIMIT_DATA; 0 if they are unknown. */
+static rlim_t data_bytes(void) {
     unsigned long pages = 0;
     FILE *file = fopen("/proc/self/statm", "r");
-    bool known = file && fscanf(file, "%*u %*u %*u %*u %*u %lu", &pages) == 1;
+    if (file && fscanf(file, "%*u %*u %*u %*u %*u %lu", &pages) != 1) pages = 0;
     if (file) fclose(file);
-    rlim_t bytes = (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE) + 2 * (rlim_t)RT_ACCEL_MAX_BYTES;
-    if (known) setrlimit(RLIMIT_DATA, &(struct rlimit){bytes, bytes});
+    return (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE);
+}
+
+/* Limits what the plugin can allocate, by the limit of a structure. */
+static void limit_memory(void) {
+    const rlim_t used = data_bytes(), bytes = used + 2 * (rlim_t)RT_ACCEL_MAX_BYTES;
+    if (used) setrlimit(RLIMIT_DATA, &(struct rlimit){bytes, bytes});
     setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
+}
+
+/* While it builds, by the limit of the user (rt_memory_limit), if there is one; SLACK is for arenas. */
+static void limit_build(int threads) {
+    enum { STACK = 8 << 20, SLACK = 64 << 20 };
+    struct rlimit limit;
+    const rlim_t used = data_bytes(), left = (rlim_t)rt_memory_left();
+    if (!used || left >= (rlim_t)RT_ACCEL_MAX_BYTES || getrlimit(RLIMIT_DATA, &limit) != 0) return;
+    limit.rlim_cur = used + left + (rlim_t)rt_thread_count(threads) * STACK + SLACK;
+    setrlimit(RLIMIT_DATA, &limit);
+}
+
+static void end_limit_of_build(void) {
+    struct rlimit limit;
+    rt_memory_limit(0);
+    if (getrlimit(RLIMIT_DATA, &limit) != 0) return;
+    limit.rlim_cur = limit.rlim_max;
+    setrlimit(RLIMIT_DATA, &limit);
 }
 
 static bool is_debugged(void) {
@@ -216,6 +249,20 @@ void rt_wire_trace(RtQuery *query, const RtRay *rays, void *message) {
         ops->nearest(query->accel, query->scratch, rays, asked->count, asked->hits);
 }
 
+void rt_wire_trace_alone(RtQuery *query, const RtRay *rays, void *message) {
+    const WireAlone *stream = message;
+    for (uint32_t i = 0; i < stream->count; i++) {
+        RtTally tallies[RT_RAY_KIND_COUNT] = {0};
+        RtHit hit;
+        bool blocked;
+        served.wire->crash.alone = i;
+        if (stream->any)
+            rt_occluded(query, &rays[i], 1, &blocked, stream->counted ? tallies : NULL);
+        else
+            rt_nearest(query, &rays[i], 1, &hit, stream->counted ? tallies : NULL);
+    }
+}
+
 /* ---- channels ---- */
 
 /* Answers requests one after the other, on copies in this process's own memory, until the channel is closed
@@ -292,8 +339,10 @@ void rt_wire_open(RtQuery *query, const RtRay *rays, void *message) {
 
 static void build(const RtSpec *spec, const RtScene *scene, int threads) {
     WireBuilt built = {.status = rt_plugin_enter(spec, &built.error)};
+    limit_build(threads);
     if (built.status == RT_OK)
         built.status = rt_accel_build_here(spec, scene, threads, &served.accel, &built.error);
+    end_limit_of_build();
     if (built.status == RT_OK) {
         built.exact = served.accel->exact;
         built.counts = served.accel->counts;
@@ -317,5 +366,5 @@ void rt_wire_serve(Wire *wire, const RtSpec *spec, const RtScene *scene, int thr
     wait_for_debugger();
     build(spec, scene, threads);
     if (served.accel) serve_channel(&wire->channels[0], WIRE_BUILD, NULL);
-    _exit(EXIT_SUCCESS);
+    for (;;) pause(); /* until raytally has looked at what is left */
 }

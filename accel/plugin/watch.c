@@ -9,22 +9,38 @@
 #include <signal.h>
 #include <stdio.h>
 
-/* "NAME: WHAT while DOING, at the ray ...". Only the first failure is kept. */
-static void set_broken(RtWatched *child, const char *what, const char *doing, bool ray) {
-    char text[RT_RAY_TEXT] = "";
-    if (ray && child->wire->crash.has_ray) {
-        RtRay traced = child->wire->crash.ray;
-        rt_ray_format(&traced, text, sizeof text);
-    }
+enum { RT_PLACE_TEXT = RT_RAY_TEXT + 96 };
+
+/* Writes ", at the ray ...", or of which stream, to out[0..size). A hung process has shown the ray if it
+ * prepared any; one that crashed may have been at another ray than the last that it prepared. */
+static void format_place(const RtWatched *child, bool hung, char *out, size_t size) {
+    char text[RT_RAY_TEXT];
+    const Crash *crash = &child->wire->crash;
+    const uint32_t count = crash->count, last = crash->ray;
+    *out = '\0';
+    if (count == 0 || count > WIRE_RAYS || last >= count) return;
+    const bool known = count == 1 || (hung && last > 0);
+    const uint32_t found = known ? last : child->find_ray ? child->find_ray(child) : RT_FAILS_SOMEHOW;
+    const RtRay ray = crash->rays[found < count ? found : last];
+    rt_ray_format(&ray, text, sizeof text);
+    if (found < count)
+        snprintf(out, size, ", at the ray %s", text);
+    else
+        snprintf(out, size, "%s %s%s",
+                 last > 0 ? ", after it prepared the ray" : "; the stream begins with the ray", text,
+                 found == RT_FAILS_TOGETHER ? "; no ray of the stream fails alone" : "");
+}
+
+/* "NAME: WHAT while DOING, WHERE". Only the first failure is kept. */
+static void set_broken(RtWatched *child, const char *what, const char *doing, const char *where) {
     if (child->broken) return;
-    rt_fail(&child->error, RT_BROKEN, "%s: %s while %s%s%s", child->name, what, doing,
-            *text ? ", at the ray " : "", text);
+    rt_fail(&child->error, RT_BROKEN, "%s: %s while %s%s", child->name, what, doing, where);
     child->broken = true;
 }
 
 void rt_watched_break(RtWatched *child, const char *what, const char *doing) {
     pthread_mutex_lock(&child->lock);
-    set_broken(child, what, doing, false);
+    set_broken(child, what, doing, "");
     pthread_mutex_unlock(&child->lock);
 }
 
@@ -32,20 +48,23 @@ static void report_end(RtWatched *child, RtProcessEnd end, const char *doing) {
     static const char *const past[1 + RT_GUARD_COUNT] = {
         "", ": it wrote or read past the memory of its query", ": it wrote or read past its answers"};
     const uint32_t out_of = child->wire->crash.out_of;
-    char what[160];
+    char what[160], where[RT_PLACE_TEXT];
     rt_process_end_format(end, child->wire->crash.signal, out_of <= RT_GUARD_COUNT ? past[out_of] : "", what,
                           sizeof what);
-    set_broken(child, what, doing, true);
+    rt_usage_ended(&child->usage, &end);
+    format_place(child, false, where, sizeof where);
+    set_broken(child, what, doing, where);
 }
 
 /* SIGXCPU makes a hung process record its ray. */
 static void end_hung(RtWatched *child, const char *doing, double limit) {
-    char what[96];
-    child->wire->crash.has_ray = false;
+    char what[96], where[RT_PLACE_TEXT];
+    child->wire->crash.count = 0;
     rt_process_signal(&child->process, SIGXCPU);
     rt_process_end(&child->process, 1000);
     snprintf(what, sizeof what, "it made no progress for %g s (RAYTALLY_PLUGIN_SECONDS)", limit);
-    set_broken(child, what, doing, true);
+    format_place(child, true, where, sizeof where);
+    set_broken(child, what, doing, where);
 }
 
 /* Whether the plugin overwrote the words of a channel, whose values are always known. */
@@ -63,7 +82,7 @@ static bool check_process(RtWatched *child, const char *doing, bool overwritten,
         child->ended = true;
         if (overwritten) {
             rt_process_end(&child->process, 0);
-            set_broken(child, "it overwrote memory that it shares with raytally", doing, false);
+            set_broken(child, "it overwrote memory that it shares with raytally", doing, "");
         } else if (rt_process_wait(&child->process, 0, &end)) {
             report_end(child, end, doing);
         } else if (waited > limit) {

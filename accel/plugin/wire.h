@@ -44,12 +44,18 @@ static inline RtRay *rt_wire_rays(char *message, size_t bytes) {
     return (RtRay *)(message + (bytes + sizeof(RtHit) - 1) / sizeof(RtHit) * sizeof(RtHit));
 }
 
+enum { WIRE_RAYS = 4096 }; /* of a stream, at most */
+
 /* What the process recorded of its own end. */
 typedef struct Crash {
     atomic_int signal; /* 0: nothing */
-    uint32_t has_ray;  /* 0 or 1 */
     uint32_t out_of;   /* 1 + the guard pages that were hit (RT_GUARD_QUERY, ..); 0: none */
-    RtRay ray;         /* that was being traced */
+    /* The stream that was being traced. */
+    uint32_t count;        /* 0: none */
+    uint32_t ray;          /* index of the last one prepared; 0: perhaps none was prepared */
+    uint32_t any, counted; /* which kernel; 0 or 1 */
+    uint32_t alone;        /* index of the last ray that rt_wire_trace_alone began */
+    RtRay rays[WIRE_RAYS]; /* [count] */
 } Crash;
 
 typedef struct Wire {
@@ -70,8 +76,8 @@ static inline void rt_futex_set(atomic_uint *word, unsigned value) {
     syscall(SYS_futex, word, FUTEX_WAKE, INT_MAX, NULL, NULL, 0);
 }
 
-/* The process: builds `spec` over `scene`, answers requests, and ends with the accelerator. RT_PROCESS_KEPT
- * is a pipe that reads as ended once raytally has ended. */
+/* The process: builds `spec` over `scene`, answers requests until the accelerator is destroyed, and waits to
+ * be ended. RT_PROCESS_KEPT is a pipe that reads as ended once raytally has ended. */
 _Noreturn void rt_wire_serve(Wire *wire, const RtSpec *spec, const RtScene *scene, int threads);
 
 /* Messages of channel 0. Its first request, to build, has none. */
@@ -91,7 +97,7 @@ typedef struct WireChecked {
 } WireChecked;
 
 WireWork rt_wire_validate, rt_wire_show, rt_wire_check, rt_wire_open; /* message: WireChecked */
-WireWork rt_wire_destroy;                                             /* no message; the process ends */
+WireWork rt_wire_destroy;                                             /* no message; the last request */
 
 /* Boxes number first, first + 1, ... of the structure, as many as fit; called in order from 0. */
 enum { WIRE_BOXES = 4096, WIRE_DEPTH = 10000 };
@@ -113,7 +119,6 @@ typedef struct WireBoxes {
 WireWork rt_wire_boxes;
 
 /* A stream of rays. The answers are hits: an occluder is a hit at tmin. */
-enum { WIRE_RAYS = 4096 };
 typedef struct WireRays {
     uint32_t count;
     bool any, counted;
@@ -121,6 +126,12 @@ typedef struct WireRays {
     RtHit hits[];                       /* [count] out */
 } WireRays;
 WireWork rt_wire_trace;
+
+/* Traces each ray of a stream in a call of its own, to find the one that fails. */
+typedef struct WireAlone {
+    uint32_t count, any, counted; /* as in Crash */
+} WireAlone;
+WireWork rt_wire_trace_alone;
 
 _Static_assert(sizeof(WireBoxes) <= MESSAGE_BYTES &&
                    sizeof(WireRays) + WIRE_RAYS * (sizeof(RtHit) + sizeof(RtRay)) <= RT_REMOTE_BYTES,

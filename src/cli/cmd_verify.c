@@ -44,6 +44,13 @@ static void take_scene(void *options, const char *text, struct argp_state *state
     o->scenes[o->scene_count++] = text;
 }
 
+static void take_shrink(void *options, const char *text, struct argp_state *state) {
+    RtVerify *work = &((Options *)options)->work;
+    work->shrink = strcmp(text, "all") == 0
+                       ? RT_SHRINK_ALL
+                       : (uint32_t)rt_cli_integer(state, "--shrink", text, 1, RT_SHRINK_ALL - 1);
+}
+
 static void finish(void *options, struct argp_state *state) {
     const Options *o = options;
     if (o->replay && (o->scene_count > 0 || o->accel_count > 0 || o->work.folder || o->json))
@@ -84,6 +91,9 @@ static const RtOption options[] = {
     {"replay", 0, "FILE", RT_TO_TEXT(replay),
      "Trace the ray of a wrong answer again: exit code 1 if the answer is still wrong, 2 if the ray cannot "
      "be traced"},
+    {"shrink", 0, "N", RT_TO_TAKE(take_shrink),
+     "Reduce the scenes of the first N failures of each accelerator, or of `all`, which takes some seconds "
+     "for each (default 1, and at most 8 of all accelerators)"},
     {"json", 'j', NULL, RT_TO_FLAG(json), "One JSON document on stdout"},
     {0}};
 
@@ -164,7 +174,7 @@ static void print_row(Show *show, const json_t *row) {
             printf("    Reduced to %lld object%s. ", (long long)json_integer_value(left),
                    rt_plural((uint64_t)json_integer_value(left)));
         } else {
-            printf("    The scene is not reduced: only the first failures are. ");
+            printf("    The scene is not reduced: only the first failures are (--shrink). ");
         }
         rt_cli_plugin_arguments(plugins, sizeof plugins);
         printf("To repeat: raytally verify --replay '%s'%s\n", rt_json_text(wrong, "replay", ""), plugins);
@@ -176,9 +186,11 @@ static void on_row(void *context, const json_t *row) {
     Show *show = context;
     clear_progress(show);
     if (!show->options->json) print_row(show, row);
-    if (!json_is_null(json_object_get(row, "problem"))) {
-        fprintf(stderr, "raytally: %s on %s: %s\n", rt_json_text(row, "accel", ""),
-                rt_json_text(row, "scene", ""), rt_json_text(row, "problem", ""));
+    const bool refused = !json_is_null(json_object_get(row, "refused"));
+    if (refused || !json_is_null(json_object_get(row, "problem"))) {
+        fprintf(stderr, "raytally: %s on %s: %s%s\n", rt_json_text(row, "accel", ""),
+                rt_json_text(row, "scene", ""), refused ? "refused: " : "",
+                rt_json_text(row, refused ? "refused" : "problem", ""));
     }
     show->failed |= rt_verify_row_fails(row);
 }
@@ -228,6 +240,7 @@ static void print_total(const Options *o, const RtVerifySum *sums, uint32_t coun
         if (total.occluded_wrong > 0) printf(", %" PRIu64 " occluded wrong", total.occluded_wrong);
         print_failed(sums, count);
     }
+    if (total.refused > 0) printf("; %u row%s refused", total.refused, rt_plural(total.refused));
     putchar('\n');
 }
 

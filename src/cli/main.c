@@ -77,6 +77,7 @@ static int run_command(int argc, char **argv) {
         fprintf(stderr, "raytally: %s\n", rt_remote_exit_message());
         if (code == RT_EXIT_OK) code = RT_EXIT_CHECK_FAILED;
     }
+    for (size_t i = 0; rt_remote_notice(i); i++) fprintf(stderr, "raytally: %s\n", rt_remote_notice(i));
     if (fflush(stdout) == 0 && !ferror(stdout)) return code;
     fprintf(stderr, "raytally: writing to standard output failed: is the disk full?\n");
     return RT_EXIT_BAD_INPUT;

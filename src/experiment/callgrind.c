@@ -167,7 +167,7 @@ static RtStatus go_on_without(Session *session, RtInstructions cell, const RtErr
     return start(session, error);
 }
 
-/* An accelerator that broke is not built again: it would end the worker. */
+/* An accelerator that is left out is not built again: it may have broken, and would end the worker. */
 static RtStatus count_cell(Session *session, const RtResults *results, const RtCellCursor *at,
                            RtError *error) {
     RtCallgrind *callgrind = session->callgrind;
@@ -179,9 +179,9 @@ static RtStatus count_cell(Session *session, const RtResults *results, const RtC
     json_t *answer;
     RT_TRY(rays_path(callgrind, at->workload, at->kind, path, error));
     if (!rt_candidate_runs(e, at->candidate, at->workload) || !rt_file_exists(path)) return RT_OK;
-    if (build->broken || at->cell->broken) {
+    if (*build->left_out || *at->cell->left_out) {
         snprintf(cell.why, sizeof cell.why, "%.*s", RT_MAX_WHY - 1,
-                 build->broken ? build->left_out : at->cell->left_out);
+                 *build->left_out ? build->left_out : at->cell->left_out);
         callgrind->cells[callgrind->count++] = cell;
         return RT_OK;
     }

@@ -181,10 +181,12 @@ static RtStatus build_within(RtWorkloadState *workload, uint32_t c, const RtSpec
     rt_memory_limit(0);
     const bool too_large = status == RT_NO_MEMORY && experiment->limit_megabytes;
     const bool too_slow = experiment->limit_seconds > 0 && *seconds > experiment->limit_seconds;
-    /* If a plugin rejects the scene, or takes all memory, only its own results are lost. */
-    const bool broken = status == RT_BROKEN || (status != RT_OK && !too_large && rt_spec_is_remote(spec));
-    if (broken)
-        return rt_workload_leave_out(workload, c, RT_EVENT_NO_BUILD, any, true, error, "%s", error->message);
+    /* If a plugin refuses the scene, or takes all memory, only its own results are lost. */
+    const bool remote = rt_spec_is_remote(spec), refused = status == RT_BAD_INPUT && remote;
+    const bool broken = status == RT_BROKEN || (status != RT_OK && !too_large && !refused && remote);
+    if (broken || refused)
+        return rt_workload_leave_out(workload, c, RT_EVENT_NO_BUILD, any, broken, error, "%s",
+                                     error->message);
     if (status != RT_OK && !too_large) return status;
     if (!too_large && !too_slow) return RT_OK;
     rt_accel_destroy(workload->built[c]);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Hardware counters of the rays of a workload: separate interleaved rounds after the timed ones, so that
  * counting changes no time. */
-#include "accel/remote.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "experiment/workload_state.h"
@@ -15,29 +14,44 @@ typedef struct TimingRun {
     const RtHardware *hardware;
     RtRunner *runners;        /* [count] */
     RtHardwareCounts *counts; /* [count][ROUNDS] per ray */
+    bool *broken;             /* [count] */
     uint32_t count;
 } TimingRun;
 
 static RtStatus run_counted(const TimingRun *run, uint32_t i, int round, RtError *error) {
     const RtRunner *runner = &run->runners[i];
-    RtStatus status = RT_OK;
-    RtHardwareStart start = rt_hardware_start(run->hardware);
-    for (uint32_t k = 0; k < runner->repeats && status == RT_OK; k++)
-        status = runner->run(runner->context, error);
     RtHardwareCounts *counts = &run->counts[(size_t)i * ROUNDS + (size_t)round];
-    *counts = rt_hardware_stop(run->hardware, &start);
+    RtStatus status = RT_OK;
+    if (runner->count) {
+        status = runner->count(runner->context, runner->repeats, counts, error);
+    } else {
+        RtHardwareStart start = rt_hardware_start(run->hardware);
+        for (uint32_t k = 0; k < runner->repeats && status == RT_OK; k++)
+            status = runner->run(runner->context, error);
+        *counts = rt_hardware_stop(run->hardware, &start);
+    }
     for (int e = 0; e < RT_HARDWARE_COUNT; e++) counts->of[e] /= runner->repeats * runner->work;
     return status;
 }
 
-static RtStatus run_rounds(const TimingRun *run, double least, RtError *error) {
+/* A plugin that breaks is skipped from then on. */
+static RtStatus skip_broken(TimingRun *run, uint32_t i, RtStatus status) {
+    run->broken[i] |= status == RT_BROKEN;
+    return status == RT_BROKEN ? RT_OK : status;
+}
+
+static RtStatus run_rounds(TimingRun *run, double least, RtError *error) {
     for (uint32_t i = 0; i < run->count; i++) {
-        double seconds, wall;
-        RT_TRY(rt_runner_time(&run->runners[i], 1, &seconds, &wall, error)); /* also warms up */
+        double seconds = 1, wall;
+        if (run->broken[i]) continue;
+        RtStatus status = rt_runner_time(&run->runners[i], 1, &seconds, &wall, error); /* also warms up */
+        RT_TRY(skip_broken(run, i, status));
         run->runners[i].repeats = rt_runner_repeats(seconds, least);
     }
     for (int round = 0; round < ROUNDS; round++) {
-        for (uint32_t i = 0; i < run->count; i++) RT_TRY(run_counted(run, i, round, error));
+        for (uint32_t i = 0; i < run->count; i++) {
+            if (!run->broken[i]) RT_TRY(skip_broken(run, i, run_counted(run, i, round, error)));
+        }
     }
     return RT_OK;
 }
@@ -54,54 +68,53 @@ static RtHardwareCounts median_of(const RtHardwareCounts counts[ROUNDS]) {
     return median;
 }
 
-/* Counters do not see other processes, in which remote accelerators run. */
-static bool is_countable(const RtWorkloadState *workload, uint32_t c) {
-    return workload->accels[c] && !rt_accel_is_remote(workload->accels[c]);
-}
-
-static RtStatus count_all(RtWorkloadState *workload, RtRayKind kind, TimingRun *run, RtError *error) {
+/* The counters of a remote accelerator are those of its own process. */
+static RtStatus count_all(RtWorkloadState *workload, RtRayKind kind, TimingRun *run,
+                          const RtHardwareEvent *events, RtError *error) {
     const uint32_t candidates = workload->experiment->candidate_count;
     RtStatus status = RT_OK;
     for (uint32_t c = 0; c < candidates && status == RT_OK; c++) {
-        RtTimed timed = {.accel = workload->accels[c], .set = &workload->shares[c].set};
-        if (!is_countable(workload, c)) continue;
-        status = rt_runner_open(&run->runners[run->count++], &timed, workload->options->timing, error);
+        RtTimed timed = {.accel = workload->accels[c], .set = &workload->shares[c].set, .events = events};
+        if (!timed.accel) continue;
+        const uint32_t i = run->count++;
+        status = rt_runner_open(&run->runners[i], &timed, workload->options->timing, error);
+        status = skip_broken(run, i, status);
     }
     if (status == RT_OK) status = run_rounds(run, 1e-3 * workload->experiment->milliseconds, error);
     for (uint32_t c = 0, i = 0; c < candidates && status == RT_OK; c++) {
-        if (!is_countable(workload, c)) continue;
+        if (!workload->accels[c]) continue;
         RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
         cell->hardware.counts = median_of(&run->counts[(size_t)ROUNDS * i++]);
     }
     for (uint32_t i = 0; i < run->count; i++) rt_runner_close(&run->runners[i]);
-    return status;
+    return status == RT_OK ? rt_workload_exclude_broken(workload, kind, error) : status;
 }
 
 /* Counts, or records the reason why nothing can be counted. */
 static RtStatus count_or_say_why(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
     const uint32_t candidates = workload->experiment->candidate_count;
-    const RtHardwareEvent *events = workload->options->events;
+    const RtHardwareEvent *events =
+        workload->options->events ? workload->options->events : rt_hardware_events;
     RtHardware hardware;
     RtError why = {RT_OK, ""};
-    bool available = rt_hardware_open(&hardware, events ? events : rt_hardware_events, &why) == RT_OK;
+    bool available = rt_hardware_open(&hardware, events, &why) == RT_OK;
     TimingRun run = {.hardware = &hardware,
                      .runners = rt_alloc(candidates, sizeof(RtRunner)),
-                     .counts = rt_alloc((size_t)ROUNDS * candidates, sizeof(RtHardwareCounts))};
+                     .counts = rt_alloc((size_t)ROUNDS * candidates, sizeof(RtHardwareCounts)),
+                     .broken = rt_alloc(candidates, sizeof(bool))};
     RtStatus status = RT_OK;
-    if (!run.runners || !run.counts) {
+    if (!run.runners || !run.counts || !run.broken) {
         status = rt_fail_memory(error, "hardware counters", candidates * sizeof(RtRunner));
     } else if (available) {
-        status = count_all(workload, kind, &run, error);
+        status = count_all(workload, kind, &run, events, error);
     }
     rt_hardware_close(&hardware);
     rt_free(run.runners);
     rt_free(run.counts);
-    for (uint32_t c = 0; c < candidates && status == RT_OK; c++) {
+    rt_free(run.broken);
+    for (uint32_t c = 0; c < candidates && status == RT_OK && !available; c++) {
         RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
-        bool remote = workload->accels[c] && !is_countable(workload, c);
-        if (available && !remote) continue;
-        snprintf(cell->hardware.why, sizeof cell->hardware.why, "%.*s", RT_MAX_WHY - 1,
-                 remote ? "a plugin runs in a process of its own, which is not counted" : why.message);
+        snprintf(cell->hardware.why, sizeof cell->hardware.why, "%.*s", RT_MAX_WHY - 1, why.message);
         for (int e = 0; e < RT_HARDWARE_COUNT; e++) cell->hardware.counts.of[e] = (double)NAN;
     }
     return status;

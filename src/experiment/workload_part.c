@@ -81,7 +81,7 @@ RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKin
     va_end(args);
     if (c == experiment->candidate_count || rt_candidate_is_baseline(experiment, c))
         return rt_fail(error, broken ? RT_BROKEN : RT_BAD_INPUT, "the baseline '%s' %s on '%s': %s", label,
-                       broken ? "is broken" : "exceeds a limit", scene, text);
+                       broken ? "is broken" : "is left out", scene, text);
     if (what == RT_EVENT_NO_BUILD) {
         RtBuildResult *build = rt_build_at(workload->results, workload->index, c);
         strcpy(build->left_out, text);
@@ -91,11 +91,20 @@ RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKin
         strcpy(cell->left_out, text);
         cell->broken = broken;
     }
-    if (broken) rt_notify(&workload->options->observer, "%s on %s: %s", label, scene, text);
+    rt_notify(&workload->options->observer, "%s on %s: %s%s", label, scene, broken ? "" : "left out: ", text);
     return rt_workload_tell(workload, what, c, kind, error);
 }
 
 RtStatus rt_workload_break(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtError *error) {
     workload->accels[c] = NULL;
     return rt_workload_leave_out(workload, c, RT_EVENT_NO_CELL, kind, true, error, "%s", error->message);
+}
+
+RtStatus rt_workload_exclude_broken(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
+    for (uint32_t c = 0; c < workload->count; c++) {
+        const RtAccel *accel = workload->accels[c];
+        if (!accel || rt_accel_check(accel, error) == RT_OK) continue;
+        RT_TRY(rt_workload_break(workload, c, kind, error));
+    }
+    return RT_OK;
 }

@@ -43,8 +43,8 @@ static inline RtStatus rt_workload_tell(const RtWorkloadState *workload, RtEvent
 }
 
 /* Leaves candidate `c` (RT_EVENT_NO_BUILD), or its cell of that kind of rays (RT_EVENT_NO_CELL), out of the
- * results, because it is broken or exceeds a limit. `why`, as of printf, is kept there and reported. If it is
- * the baseline, the workload fails instead. */
+ * results, because it is broken, exceeds a limit or refuses the scene. `why`, as of printf, is kept there and
+ * reported. If it is the baseline, the workload fails instead. */
 __attribute__((format(printf, 7, 8))) RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c,
                                                                      RtEventKind what, RtRayKind kind,
                                                                      bool broken, RtError *error,
@@ -52,6 +52,9 @@ __attribute__((format(printf, 7, 8))) RtStatus rt_workload_leave_out(RtWorkloadS
 
 /* Excludes the candidate on rays of that kind as broken, for the reason in *error. */
 RtStatus rt_workload_break(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtError *error);
+
+/* Excludes candidates that broke on any rays; the baseline may have broken on another's share. */
+RtStatus rt_workload_exclude_broken(RtWorkloadState *workload, RtRayKind kind, RtError *error);
 
 /* ---- the steps ---- */
 

@@ -27,7 +27,11 @@ typedef struct TimingRun {
 
 static uint32_t enter(TimingRun *run, const RtAccel *accel, const RtRaySet *set) {
     double *place = run->seconds + 2 * (size_t)run->count * run->most;
-    run->timed[run->count] = (RtTimed){accel, set, place, place + run->most, &run->broken[run->count]};
+    run->timed[run->count] = (RtTimed){.accel = accel,
+                                       .set = set,
+                                       .seconds = place,
+                                       .wall = place + run->most,
+                                       .broken = &run->broken[run->count]};
     return run->count++;
 }
 
@@ -149,16 +153,6 @@ static void report_width(const TimingRun *run) {
 
 /* ---- timing ---- */
 
-/* Excludes accelerators that broke on any rays; the baseline may have broken on another's share. */
-static RtStatus exclude_broken(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
-    for (uint32_t c = 0; c < workload->count; c++) {
-        const RtAccel *accel = workload->accels[c];
-        if (!accel || rt_accel_check(accel, error) == RT_OK) continue;
-        RT_TRY(rt_workload_break(workload, c, kind, error));
-    }
-    return RT_OK;
-}
-
 /* Copies the times to the cells. */
 static RtStatus keep_times(RtWorkloadState *workload, RtRayKind kind, const TimingRun *run, RtError *error) {
     const RtMachine here = rt_machine_here();
@@ -199,7 +193,7 @@ RtStatus rt_workload_time(RtWorkloadState *workload, RtRayKind kind, RtError *er
                                   .context = &run},
                        .threads = workload->options->timing};
     if (status == RT_OK) status = rt_measure_time(run.timed, run.count, &timing, &run.rounds, error);
-    if (status == RT_OK) status = exclude_broken(workload, kind, error);
+    if (status == RT_OK) status = rt_workload_exclude_broken(workload, kind, error);
     if (status == RT_OK) report_width(&run);
     if (status == RT_OK) status = keep_times(workload, kind, &run, error);
     timing_run_clear(&run);

@@ -125,7 +125,10 @@ static RtStatus timing_run_init(TimingRun *run, const raytally_time_options *how
         return rt_fail_memory(error, "times", run->count * doubles * sizeof(double));
     for (size_t i = 0; i < run->count; i++) {
         double *place = run->seconds + doubles * i;
-        run->timed[i] = (RtTimed){run->accelerators[i]->accel, run->set, place, place + how->rounds, NULL};
+        run->timed[i] = (RtTimed){.accel = run->accelerators[i]->accel,
+                                  .set = run->set,
+                                  .seconds = place,
+                                  .wall = place + how->rounds};
     }
     return RT_OK;
 }

@@ -19,7 +19,7 @@
 
 #define FAILURES "verify-failures" /* default folder */
 
-/* If everything fails, the same fault is not shrunk again and again. */
+/* If everything fails, the same fault is not shrunk again and again, unless that is asked for. */
 enum { MOST_SHRUNK = 8 };
 
 typedef struct Run {
@@ -70,9 +70,9 @@ static json_t *header_json(const Run *run) {
         json_array_append_new(specs, json_string(v->specs[i].spec));
     }
     json_t *given = v->rays.given ? rt_json_hex(v->rays.given->fingerprint) : json_null();
-    return json_pack("{s:s, s:o, s:o, s:o, s:I, s:o, s:I}", "build", rt_build_identity(), "scenes", scenes,
-                     "fingerprints", fingerprints, "accels", specs, "rays", (json_int_t)v->rays.count,
-                     "rays_hash", given, "seed", (json_int_t)v->rays.seed);
+    return json_pack("{s:s, s:o, s:o, s:o, s:I, s:o, s:I, s:I}", "build", rt_build_identity(), "scenes",
+                     scenes, "fingerprints", fingerprints, "accels", specs, "rays", (json_int_t)v->rays.count,
+                     "rays_hash", given, "seed", (json_int_t)v->rays.seed, "shrink", (json_int_t)v->shrink);
 }
 
 /* Records what was verified, and with what, in the folder's manifest.json. */
@@ -172,17 +172,20 @@ static RtStatus replay_path(const Run *run, const char *scene, const char *spec,
     return rt_path_join(folder, name, path, error);
 }
 
-/* The budget for shrinking a failure: half that of the one before, so that all take some seconds. 0 if one
- * of this accelerator, or enough of all, have been shrunk. It depends on the rows alone, so that resumed
+/* The budget for shrinking a failure: by default half that of the one before, so that all take some seconds.
+ * 0 if enough of this accelerator, or of all, have been shrunk. It depends on the rows alone, so that resumed
  * runs agree. */
 static uint64_t shrink_budget(const Run *run, const char *spec) {
-    size_t i, shrunk = 0;
+    const uint32_t most = run->verify->shrink > 0 ? run->verify->shrink : 1;
+    size_t i, shrunk = 0, of_spec = 0;
     json_t *row;
     json_array_foreach(run->rows, i, row) {
         if (!json_is_true(json_object_get(json_object_get(row, "first_wrong"), "shrunk"))) continue;
-        if (is_text(row, "accel", spec)) return 0;
+        of_spec += is_text(row, "accel", spec);
         shrunk++;
     }
+    if (of_spec >= most) return 0;
+    if (most > 1) return RT_SHRINK_BUDGET;
     return shrunk < MOST_SHRUNK ? RT_SHRINK_BUDGET >> shrunk : 0;
 }
 
@@ -237,19 +240,22 @@ static RtStatus check(Run *run, const RtVerifyScene *scene, RtAccel *accel, cons
     json_t *row = rt_equivalence_json(&result, scene->name, spec->spec, rt_accel_truth());
     json_object_set_new(row, "exact", json_boolean(accel->exact));
     json_object_set_new(row, "problem", problem_json(run, &result, broken));
+    json_object_set_new(row, "refused", json_null());
     status = result.any_wrong ? keep_failure(run, scene, spec, &result.first_wrong, row, error) : RT_OK;
     if (status == RT_OK) return add_row(run, row, error);
     json_decref(row);
     return status;
 }
 
-/* A plugin's accelerator broke before it answered all rays: a row without rays, with the reason. */
-static RtStatus add_broken(Run *run, const RtVerifyScene *scene, const RtVerifySpec *spec, const char *why,
-                           RtError *error) {
+/* A plugin's accelerator broke before it answered all rays, or refuses the scene (`refused`): a row without
+ * rays, with the reason. */
+static RtStatus add_unanswered(Run *run, const RtVerifyScene *scene, const RtVerifySpec *spec, bool refused,
+                               const char *why, RtError *error) {
     const RtEquivalence nothing = {0};
     json_t *row = rt_equivalence_json(&nothing, scene->name, spec->spec, rt_accel_truth());
     json_object_set_new(row, "exact", json_true());
-    json_object_set_new(row, "problem", json_string(why));
+    json_object_set_new(row, "problem", refused ? json_null() : json_string(why));
+    json_object_set_new(row, "refused", refused ? json_string(why) : json_null());
     return add_row(run, row, error);
 }
 
@@ -264,12 +270,13 @@ static RtStatus verify_spec(Run *run, const RtVerifyScene *scene, const RtVerify
         run->observer->notice(run->observer->context, notice);
         return RT_OK;
     }
-    const bool refused = status != RT_OK && rt_spec_text_is_remote(spec->spec); /* for itself alone */
+    const bool unbuilt = status != RT_OK && rt_spec_text_is_remote(spec->spec); /* for itself alone */
+    const bool refused = status == RT_BAD_INPUT && unbuilt;
     if (status == RT_OK) status = check(run, scene, accel, spec, error);
     rt_accel_destroy(accel);
-    if (status != RT_BROKEN && !refused) return status;
-    const RtError broken = *error;
-    return add_broken(run, scene, spec, broken.message, error);
+    if (status != RT_BROKEN && !unbuilt) return status;
+    const RtError why = *error;
+    return add_unanswered(run, scene, spec, refused, why.message, error);
 }
 
 /* ---- a scene ---- */

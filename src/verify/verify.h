@@ -3,9 +3,10 @@
  *
  * A row is a scene and a spec, with the numbers of equal, tied, marginal and wrong answers; its first
  * wrong answer is kept in a replay file (verify/replay.h). The first failure of a spec is shrunk to a few
- * objects, up to eight failures in all, each with half the budget of the one before. Rows are appended to
- * a journal, from which an interrupted run resumes, and finally to the tables of verify_table.h: the same
- * bytes for the same seed, for any number of threads and interruptions. */
+ * objects, up to eight failures in all, each with half the budget of the one before; if more than one is
+ * asked for (RtVerify.shrink), each has the whole budget. Rows are appended to a journal, from which an
+ * interrupted run resumes, and finally to the tables of verify_table.h: the same bytes for the same seed, for
+ * any number of threads and interruptions. */
 #ifndef RT_VERIFY_VERIFY_H
 #define RT_VERIFY_VERIFY_H
 
@@ -21,12 +22,15 @@ typedef struct RtVerifySpec {
     RtAccelBuilder builder; /* how it is built; if zero, from the spec */
 } RtVerifySpec;
 
+#define RT_SHRINK_ALL UINT32_MAX
+
 typedef struct RtVerify {
     const char *const *scenes; /* [scene_count] for rt_scene_open */
     uint32_t scene_count;
     const RtVerifySpec *specs; /* [spec_count] */
     uint32_t spec_count;
     RtVerifyRays rays; /* for each row */
+    uint32_t shrink;   /* the most failures of a spec to shrink, RT_SHRINK_ALL: each; 0: the default, 1 */
     /* For journal, tables, manifest and replay files; NULL: only replay files, in verify-failures. */
     const char *folder;
     RtStart start; /* what to do with existing results */

@@ -40,6 +40,7 @@ static void add(RtVerifySum *sum, const json_t *row) {
     const json_t *sides = json_object_get(row, "exactly_right");
     sum->rows++;
     sum->failed += rt_verify_row_fails(row);
+    sum->refused += !json_is_null(json_object_get(row, "refused"));
     sum->pairs += number(row, "rays");
     for (int v = 0; v < RT_VERDICT_COUNT; v++) {
         sum->verdicts[v] += number(row, rt_verdict_name((RtVerdict)v));
@@ -77,6 +78,7 @@ RtVerifySum rt_verify_total(const RtVerifySum *sums, uint32_t count) {
         total.exact &= sums[i].exact;
         total.rows += sums[i].rows;
         total.failed += sums[i].failed;
+        total.refused += sums[i].refused;
         total.pairs += sums[i].pairs;
         for (int v = 0; v < RT_VERDICT_COUNT; v++) total.verdicts[v] += sums[i].verdicts[v];
         total.occluded_wrong += sums[i].occluded_wrong;
@@ -114,6 +116,7 @@ static const RtTableColumn members[] = {
     MEMBER("wrong", integer, "all other answers"),
     MEMBER("occluded_wrong", integer, "rays whose answer to occluded is wrong"),
     MEMBER("problem", text, "a broken structure, or too many marginal answers; empty: none"),
+    MEMBER("refused", text, "why a plugin refuses the scene, which then has no rays; empty: it does not"),
     MEMBER("exact", flag, "whether its answers must equal brute's bit for bit; if not, they get verdicts"),
 };
 enum { OF_CSV = 10, AGAINST = 2 };
@@ -126,7 +129,8 @@ static const RtTableColumn first_wrong[] = {
     MEMBER("replay", text, "replay file of the first wrong answer"),
     MEMBER("objects_left", integer,
            "objects left in the reduced scene; empty: traced again, the answer is right"),
-    MEMBER("shrunk", flag, "whether the scene was reduced; only an accelerator's first failure is"),
+    MEMBER("shrunk", flag,
+           "whether the scene was reduced; by default only an accelerator's first failure is"),
     MEMBER("index", integer, "number of the ray"),
     MEMBER("says", text, "the query, the expected and the actual answer, in one line"),
     MEMBER("query", text, "nearest or occluded"),

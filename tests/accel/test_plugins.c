@@ -64,7 +64,7 @@ static RtCount count_on(const Stage *stage, const RtAccel *accel, int threads) {
 
 /* Traces all rays of the stage by its accelerator, which breaks, and every ray misses. */
 static void break_by_tracing(const Stage *stage, RtQuery *query) {
-    RtHit hits[200];
+    RtHit hits[2000];
     assert_ok(rt_query_init(query, stage->accel, error));
     rt_nearest(query, stage->set.rays, stage->set.count, hits, NULL);
     for (uint64_t i = 0; i < stage->set.count; i++) assert_int_equal(hits[i].object, RT_NO_OBJECT);
@@ -186,8 +186,13 @@ static void time_broken(const Stage *stage) {
     double seconds[2][ROUNDS], wall[2][ROUNDS];
     bool broken[2] = {false, false};
     uint32_t done = 0;
-    RtTimed timed[2] = {{stage->accel, &stage->set, seconds[0], wall[0], &broken[0]},
-                        {stage->bvh, &stage->set, seconds[1], wall[1], &broken[1]}};
+    RtTimed timed[2];
+    for (int i = 0; i < 2; i++)
+        timed[i] = (RtTimed){.accel = i == 0 ? stage->accel : stage->bvh,
+                             .set = &stage->set,
+                             .seconds = seconds[i],
+                             .wall = wall[i],
+                             .broken = &broken[i]};
     RtTiming timing = {.rounds = {.rounds = ROUNDS, .most = ROUNDS, .seed = 1}, .threads = 1};
     assert_ok(rt_measure_time(timed, 2, &timing, &done, error));
     assert_int_equal(done, ROUNDS);
@@ -241,6 +246,37 @@ RT_TEST(a_broken_one_misses_everything_says_why_and_takes_no_more_queries) {
     break_by_tracing(&stage, &query);
     assert_it_broke(stage.accel, "(Aborted) while it answered a stream of 200 rays, at the ray org");
     assert_fails_with(rt_query_init(&another, stage.accel, error), RT_BROKEN, "Aborted");
+    rt_query_clear(&query);
+}
+
+/* As tests/plugins/faulty.c chooses a ray of 256. */
+static bool is_rare(const RtRay *ray) {
+    uint32_t bits;
+    memcpy(&bits, &ray->dir.y, sizeof bits);
+    return bits * 2654435761U >> 24 == 7;
+}
+
+RT_TEST(a_crash_names_the_ray_also_of_one_that_prepares_none) {
+    OWNED(close_stage) Stage stage;
+    RtQuery query;
+    char text[RT_RAY_TEXT], at[RT_RAY_TEXT + 16];
+    uint64_t rare = 0;
+    open_stage(&stage, "faulty-own-unprepared", 2000);
+    while (!is_rare(&stage.set.rays[rare])) rare++;
+    assert_true(rare > 0);
+    rt_ray_format(&stage.set.rays[rare], text, sizeof text);
+    snprintf(at, sizeof at, ", at the ray %s", text);
+    break_by_tracing(&stage, &query);
+    assert_it_broke(stage.accel, at);
+    rt_query_clear(&query);
+}
+
+RT_TEST(a_crash_at_no_ray_alone_says_so) {
+    OWNED(close_stage) Stage stage;
+    RtQuery query;
+    open_stage(&stage, "faulty-crash-together", 200);
+    break_by_tracing(&stage, &query);
+    assert_it_broke(stage.accel, "no ray of the stream fails alone");
     rt_query_clear(&query);
 }
 

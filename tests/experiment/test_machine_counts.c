@@ -4,6 +4,7 @@
  * expected depends on no machine, its load or its kernel. */
 #include "testing.h"
 
+#include "accel/plugin.h"
 #include "core/base/memory.h"
 #include "experiment/result_tables.h"
 #include "experiment/workload.h"
@@ -67,22 +68,24 @@ void __wrap_rt_occluded(RtQuery *query, const RtRay *rays, size_t count, bool *b
 
 /* ---- cells ---- */
 
-/* A cloud on which brute takes each third ray. */
+/* A cloud on which brute takes each third ray. The plugin counts in its own process. */
 static void measure(RtExperiment *e, RtResults *results, const RtHardwareEvent *events, int threads,
                     bool count_only) {
     const RtWorkload scene = {.depth = 2, .width = 64, .height = 64};
     const RtWorkloadOptions options = {
         .threads = 1, .timing = threads, .count_only = count_only, .events = events};
     char where[RT_MAX_LABEL];
+    assert_ok(rt_plugin_load(RT_BINARY_DIR "/plugins/bvh_copy.so", error));
     rt_experiment_init(e);
     strcpy(e->name, "machine");
     e->hardware = true;
     e->rounds = 6;
     e->milliseconds = 5;
     e->kind_count = 2; /* primary, shadow */
-    e->candidate_count = 2;
+    e->candidate_count = 3;
     e->candidates[0] = (RtCandidate){.spec = "bvh", .label = "bvh", .ray_stride = 1};
     e->candidates[1] = (RtCandidate){.spec = "brute", .label = "brute", .ray_stride = 3};
+    e->candidates[2] = (RtCandidate){.spec = "bvh_copy", .label = "plugin", .ray_stride = 1};
     assert_ok(rt_experiment_add_scenes(e, &scene, "random:n=1000", "", error));
     assert_ok(rt_experiment_check(e, where, error));
     assert_ok(rt_results_init(results, e, error));
@@ -111,7 +114,7 @@ RT_TEST(counts_are_per_ray_of_the_work_that_is_timed) {
         counting_rays = true;
         measure(e, &results, NULL, threads, false);
         counting_rays = false;
-        for (uint32_t i = 0; i < 4; i++) {
+        for (uint32_t i = 0; i < 6; i++) {
             const RtCell *cell = rt_cell_at(&results, 0, i / 2, i % 2 ? RT_RAY_SHADOW : RT_RAY_PRIMARY);
             const RtCellHardware *hardware = &cell->hardware;
             assert_true(hardware->known && !*hardware->why && hardware->threads == threads);

@@ -3,13 +3,17 @@
  * tests/check_plugins.sh tests what raytally reports of each. */
 #include <raytally/accel.h>
 
+#include <fcntl.h>
 #include <math.h>
+#include <pthread.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/ptrace.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 /* ---- correct functions ---- */
@@ -99,6 +103,16 @@ static int take_memory(void) {
     }
     return 1;
 }
+
+/* Takes memory, writes to it, and forgets it. */
+static void *volatile lost;
+static int leak(void) {
+    enum { BYTES = 300 << 20 };
+    lost = malloc(BYTES);
+    if (lost) memset(lost, 1, BYTES);
+    return lost != NULL;
+}
+BUILD(build_leak, if (!leak()) return RAYTALLY_BUILD_NO_MEMORY;)
 BUILD(build_memory, if (!take_memory()) return RAYTALLY_BUILD_NO_MEMORY;)
 
 static void print_line(const char *line) {
@@ -128,8 +142,34 @@ static void start_daemon(void) {
     _exit(0);
 }
 
+/* Kills its parent by a descriptor instead of a process id. */
+static void kill_by_descriptor(void) {
+    char path[64];
+    snprintf(path, sizeof path, "/proc/%d", (int)getppid());
+    syscall(SYS_pidfd_send_signal, open(path, O_RDONLY | O_DIRECTORY), SIGKILL, NULL, 0);
+}
+
+static void start_thread(void *(*run)(void *)) {
+    pthread_t thread;
+    pthread_create(&thread, NULL, run, NULL);
+}
+
+static void *run_for_ever(void *unused) {
+    loop();
+    return unused;
+}
+
+static void *sleep_for_ever(void *unused) {
+    while (zero == 0) pause();
+    return unused;
+}
+
 BUILD(build_scribble, scribble();)
 BUILD(build_kill, kill(getppid(), SIGKILL);)
+BUILD(build_descriptor, kill_by_descriptor();)
+BUILD(build_trace, ptrace(PTRACE_ATTACH, getppid(), NULL, NULL);)
+BUILD(build_thread, start_thread(run_for_ever);)
+BUILD(build_pool, start_thread(sleep_for_ever);)
 BUILD(build_close, for (int descriptor = 0; descriptor < 64; descriptor++) close(descriptor);)
 BUILD(build_daemon, start_daemon();)
 
@@ -177,6 +217,10 @@ static int is_in_valgrind(void) {
     const char *loaded = getenv("LD_PRELOAD");
     return loaded && strstr(loaded, "vgpreload");
 }
+/* At the first ray. */
+static atomic_flag leaked = ATOMIC_FLAG_INIT;
+SEARCH(leaking, if (!atomic_flag_test_and_set(&leaked)) leak();)
+
 SEARCH(illegal, if (is_in_valgrind()) raise(SIGILL);)
 
 SEARCH(print, if (is_rare(ray->ray)) print_line("{ faulty-print is asked");)
@@ -246,9 +290,21 @@ static void shorten(raytally_ray *rays, size_t count, const raytally_hit *hits) 
 
 NEAREST(all_but_one, 1, )
 NEAREST(crash_alone, 0, if (count == 1) crash();)
+NEAREST(crash_together, 0, if (count > 1) crash();)
 NEAREST(one_too_many, 0, hits[count] = hits[count - 1];)
 NEAREST(one_too_early, 0, *(hits - 1) = hits[0];)
 NEAREST(shorten_rays, 0, shorten((raytally_ray *)(uintptr_t)rays, count, hits);)
+
+/* Never calls raytally_prepare, finds nothing, and crashes at one ray of 256. */
+static void unprepared_nearest(const void *self, void *memory, raytally_query *query,
+                               const raytally_ray *rays, size_t count, raytally_hit *hits,
+                               raytally_counters *counters) {
+    (void)self, (void)memory, (void)query, (void)counters;
+    for (size_t i = 0; i < count; i++) {
+        if (is_rare(&rays[i])) crash();
+        hits[i] = (raytally_hit){INFINITY, RAYTALLY_NO_OBJECT};
+    }
+}
 
 /* ---- other functions ---- */
 
@@ -323,9 +379,18 @@ static raytally_accel_ops tables[] = {
     {.name = "faulty-crash-alone",
      .summary = "crashes when asked for a ray by itself",
      .nearest = crash_alone},
+    {.name = "faulty-crash-together",
+     .summary = "crashes when asked for more than a ray",
+     .nearest = crash_together},
     {.name = "faulty-scribble", .summary = "writes to shared memory as it builds", .build = build_scribble},
     {.name = "faulty-scribbled", .summary = "writes to shared memory at each ray", KERNELS(scribbled)},
     {.name = "faulty-kill", .summary = "kills its parent", .build = build_kill},
+    {.name = "faulty-descriptor", .summary = "kills its parent otherwise", .build = build_descriptor},
+    {.name = "faulty-trace", .summary = "traces its parent", .build = build_trace},
+    {.name = "faulty-thread", .summary = "leaves a thread that runs", .build = build_thread},
+    {.name = "faulty-pool", .summary = "leaves a thread that sleeps", .build = build_pool},
+    {.name = "faulty-leak", .summary = "loses memory as it builds", .build = build_leak},
+    {.name = "faulty-leaking", .summary = "loses memory as it traces", KERNELS(leaking)},
     {.name = "faulty-close", .summary = "closes every file", .build = build_close},
     {.name = "faulty-daemon", .summary = "leaves a process behind", .build = build_daemon},
     {.name = "faulty-divide", .summary = "divides by zero", KERNELS(divide)},
@@ -376,6 +441,7 @@ static raytally_accel_ops tables[] = {
      .summary = "is in order, and has a table of the first version, which ends before these flags",
      .size = offsetof(raytally_accel_ops, flags),
      .flags = RAYTALLY_OWN_HITS | RAYTALLY_NO_COUNTS},
+    OWN("unprepared", "crashes at a ray of 256", .nearest = unprepared_nearest),
     OWN("object", "answers with an object that does not exist", KERNELS(no_such_object)),
     OWN("nan", "answers with a t that is no number", KERNELS(not_a_number)),
     OWN("endless", "answers with a t at infinity", KERNELS(endless)),

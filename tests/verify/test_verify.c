@@ -65,6 +65,8 @@ static json_t *verify(const char *folder, int threads, RtStart start) {
     return rows;
 }
 
+static uint32_t shrink; /* RtVerify.shrink of verify_spec */
+
 /* Verifies one spec on `count` scenes; the rows are the caller's. */
 static json_t *verify_spec(const RtVerifySpec *spec, const char *const *names, uint32_t count, uint64_t rays,
                            int threads, const char *folder) {
@@ -73,6 +75,7 @@ static json_t *verify_spec(const RtVerifySpec *spec, const char *const *names, u
                      .specs = spec,
                      .spec_count = 1,
                      .rays = {rays, 1, threads, NULL},
+                     .shrink = shrink,
                      .folder = folder,
                      .start = RT_START_ANEW};
     json_t *rows;
@@ -212,6 +215,24 @@ RT_TEST(an_accelerator_has_one_failure_shrunk) {
         rt_replay_clear(&replay);
     }
     json_decref(rows);
+}
+
+RT_TEST(an_accelerator_has_as_many_failures_shrunk_as_are_asked_for) {
+    static const char *const three[] = {"family:kind=plane,seed=1", "family:kind=axis-aligned,seed=1",
+                                        "family:kind=axis-aligned,seed=2"};
+    static const uint32_t wanted[] = {2, RT_SHRINK_ALL};
+    const RtVerifySpec spec = {"unpadded", true, {build_mutant, &unpadded, 0}};
+    for (size_t w = 0; w < 2; w++) {
+        shrink = wanted[w];
+        json_t *rows = verify_spec(&spec, three, 3, 6000, 0, OUT "/s");
+        for (uint32_t i = 0; i < 3; i++) {
+            const json_t *wrong = json_object_get(json_array_get(rows, i), "first_wrong");
+            assert_true(json_is_true(json_object_get(wrong, "shrunk")) == (i < wanted[w]));
+            assert_true((json_integer_value(json_object_get(wrong, "objects_left")) <= 3) == (i < wanted[w]));
+        }
+        json_decref(rows);
+    }
+    shrink = 0;
 }
 
 /* Loses the last ray of every stream that is not too short. */

@@ -64,6 +64,11 @@ void rt_memory_limit(uint64_t bytes) {
     atomic_store(&most_bytes, bytes ? atomic_load(&live_bytes) + (int64_t)bytes : INT64_MAX);
 }
 
+uint64_t rt_memory_left(void) {
+    const int64_t most = atomic_load(&most_bytes), live = atomic_load(&live_bytes);
+    return most == INT64_MAX ? UINT64_MAX : live < most ? (uint64_t)(most - live) : 0;
+}
+
 RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error) {
     if (needed <= *capacity) return RT_OK;
     if (needed > UINT32_MAX)

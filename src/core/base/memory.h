@@ -39,6 +39,9 @@ uint64_t rt_memory_size(void);
  * not count. */
 void rt_memory_limit(uint64_t bytes);
 
+/* Bytes that may still be allocated; UINT64_MAX without a limit. */
+uint64_t rt_memory_left(void);
+
 /* For tests: the allocation `n` calls from now fails (1 = the next); 0 switches this off. */
 void rt_alloc_fail_at(uint64_t n);
 

@@ -3,6 +3,7 @@
 
 #include "core/base/clock.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <linux/filter.h>
@@ -45,10 +46,12 @@ static void close_inherited(int keep) {
 }
 
 /* The kernel refuses (EPERM) system calls that would end or stop raytally: signals to it, to its process
- * group and to all processes. A kernel without seccomp refuses nothing. */
+ * group, to all processes, and by descriptor; and those that leave the child's own process group. A kernel
+ * without seccomp refuses nothing. */
 static void protect(pid_t raytally, pid_t group) {
     if (group == 0)
         group = raytally; /* its leader is outside of this process namespace: it has no number here */
+    enum { ALWAYS = -1 };
     const struct {
         long call;
         int argument;
@@ -61,21 +64,25 @@ static void protect(pid_t raytally, pid_t group) {
                    {SYS_rt_sigqueueinfo, 0, raytally},
                    {SYS_rt_tgsigqueueinfo, 0, raytally},
                    {SYS_pidfd_open, 0, raytally},
+                   {SYS_pidfd_send_signal, ALWAYS, 0},
                    {SYS_prlimit64, 0, raytally},
                    {SYS_ptrace, 1, raytally},
                    {SYS_process_vm_writev, 0, raytally},
-                   {SYS_setpgid, 1, group}};
+                   {SYS_setpgid, ALWAYS, 0},
+                   {SYS_setsid, ALWAYS, 0}};
     const size_t rules = sizeof refused / sizeof refused[0];
     enum { A_RULE = 5 };
     struct sock_filter filter[sizeof refused / sizeof refused[0] * A_RULE + 1];
     const size_t low = __BYTE_ORDER == __BIG_ENDIAN ? 4 : 0; /* half of an argument */
     for (size_t i = 0; i < rules; i++) {
-        const size_t argument = offsetof(struct seccomp_data, args) + 8 * (size_t)refused[i].argument + low;
+        const bool always = refused[i].argument == ALWAYS; /* every argument is at least 0 */
+        const size_t number = always ? 0 : (size_t)refused[i].argument;
+        const size_t argument = offsetof(struct seccomp_data, args) + 8 * number + low;
         const struct sock_filter rule[A_RULE] = {
             BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr)),
             BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)refused[i].call, 0, 3),
             BPF_STMT(BPF_LD | BPF_W | BPF_ABS, (uint32_t)argument),
-            BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)refused[i].value, 0, 1),
+            BPF_JUMP(BPF_JMP | (always ? BPF_JGE : BPF_JEQ) | BPF_K, (uint32_t)refused[i].value, 0, 1),
             BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EPERM)};
         memcpy(filter + i * A_RULE, rule, sizeof rule);
     }
@@ -195,6 +202,35 @@ static bool has_ended(const RtProcess *process, RtProcessEnd *end) {
     return true;
 }
 
+/* Whether /proc/PID/stat shows a process of the group that is no zombie; then its program goes to name[16].
+ */
+static bool is_of_group(const char *pid, pid_t group, char *name) {
+    char path[64], line[512] = "", state;
+    int of;
+    snprintf(path, sizeof path, "/proc/%.10s/stat", pid);
+    FILE *file = fopen(path, "re");
+    if (file && !fgets(line, sizeof line, file)) *line = '\0';
+    if (file) fclose(file);
+    const char *program = strchr(line, '('), *end = strrchr(line, ')');
+    if (!program || !end || sscanf(end + 1, " %c %*d %d", &state, &of) != 2 || of != group || state == 'Z')
+        return false;
+    snprintf(name, 16, "%.*s", (int)(end - program - 1), program + 1);
+    return true;
+}
+
+/* Counts and kills what a process that has ended leaves behind. */
+static void end_group(pid_t group, RtProcessEnd *end) {
+    const struct dirent *entry;
+    if (kill(-group, 0) != 0) return;
+    DIR *all = opendir("/proc");
+    while (all && (entry = readdir(all))) {
+        if (*entry->d_name >= '1' && *entry->d_name <= '9')
+            end->left += is_of_group(entry->d_name, group, end->left_name);
+    }
+    if (all) closedir(all);
+    kill(-group, SIGKILL);
+}
+
 /* Until it has ended, or for so many milliseconds. */
 static void pause_for(const RtProcess *process, int milliseconds) {
     struct pollfd ended = {.fd = process->descriptor, .events = POLLIN};
@@ -203,14 +239,14 @@ static void pause_for(const RtProcess *process, int milliseconds) {
 
 bool rt_process_wait(RtProcess *process, int milliseconds, RtProcessEnd *end) {
     const double until = milliseconds < 0 ? INFINITY : rt_wall_seconds() + milliseconds / 1000.0;
-    *end = (RtProcessEnd){0, -1};
+    *end = (RtProcessEnd){.code = -1};
     if (process->pid <= 0) return true;
     while (!has_ended(process, end)) {
         double left = until - rt_wall_seconds();
         if (left <= 0) return false;
         pause_for(process, (int)(fmin(left, 60) * 1000) + 1);
     }
-    if (process->group) kill(-process->pid, SIGKILL); /* what it started, if that still runs */
+    if (process->group) end_group(process->pid, end);
     if (process->descriptor >= 0) close(process->descriptor);
     *process = (RtProcess){0};
     return true;

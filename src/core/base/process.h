@@ -13,6 +13,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <sys/types.h>
 
@@ -25,8 +26,10 @@ typedef struct RtProcess {
 
 /* How a process ended. */
 typedef struct RtProcessEnd {
-    int signal; /* that killed it, or 0 */
-    int code;   /* exit code; -1: unknown, because other code waited for it */
+    int signal;         /* that killed it, or 0 */
+    int code;           /* exit code; -1: unknown, because other code waited for it */
+    uint32_t left;      /* processes of its group that still ran then, and were killed */
+    char left_name[16]; /* the program of one of them */
 } RtProcessEnd;
 
 /* A program to run. Files are relative to `directory`; a stream without file or pipe is inherited, except
@@ -47,8 +50,8 @@ RtStatus rt_process_run(const RtProcessCommand *command, RtProcessEnd *end, RtEr
 
 /* Forks: *process is the child or, in the child, has pid 0. The child has none of raytally's files open
  * except stderr, which also becomes its stdout, and the descriptor `keep` (-1: none), which becomes
- * RT_PROCESS_KEPT. It cannot send raytally signals, and everything it starts ends with it. RT_IO if it cannot
- * be started. */
+ * RT_PROCESS_KEPT. It cannot send raytally signals, and everything it starts ends with it, because nothing
+ * can leave its process group. RT_IO if it cannot be started. */
 enum { RT_PROCESS_KEPT = 3 };
 RtStatus rt_process_fork(RtProcess *process, int keep, RtError *error);
 
