@@ -166,8 +166,7 @@ static RtRay ends_at_hit(Generator *m) {
     return ray;
 }
 
-/* Starts clearly behind hits that its line has, often behind the last, and may end clearly before the next.
- */
+/* Starts clearly behind some hits of its line, often the last; may end clearly before the next. */
 static RtRay past_hits(Generator *m) {
     static const float steps[] = {0x1p-10f, 0x1p-6f, 0x1p-3f, 0.5f};
     RtRay ray = below(m, 2) ? chord(m) : at_vertex(m);
