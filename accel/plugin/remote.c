@@ -196,7 +196,9 @@ static uint32_t find_ray(const RtWatched *child) {
     const Remote *remote = (const Remote *)((const char *)child - offsetof(Remote, child));
     const Crash *crash = &child->wire->crash;
     const WireAlone stream = {.count = crash->count, .any = crash->any, .counted = crash->counted};
-    RtSpec spec = {.layer_count = 1, .layers = {remote->spec.layers[remote->spec.layer_count - 1]}};
+    RtSpec spec = remote->spec;
+    spec.layers[0] = spec.layers[spec.layer_count - 1];
+    spec.layer_count = 1;
     RtAccel *accel;
     RtQuery query;
     uint32_t found = RT_FAILS_SOMEHOW;

@@ -5,7 +5,6 @@
 #include "core/base/words.h"
 
 #include <dirent.h>
-#include <inttypes.h>
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -111,24 +110,20 @@ void rt_usage_traced(const RtUsage *usage, const RtProcess *process) {
 
 /* ---- threads and processes ---- */
 
-static void sleep_some(void) {
-    nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
-}
-
-/* The number of threads of a process; *nanoseconds gets the processor time of those that still run. */
-static uint32_t look_at_threads(pid_t pid, uint64_t *nanoseconds) {
-    char path[64];
+/* The number of threads of a process; *running gets how many of them do not sleep. */
+static uint32_t count_threads(pid_t pid, uint32_t *running) {
+    char path[64], line[512];
     uint32_t count = 0;
     const struct dirent *entry;
-    *nanoseconds = 0;
+    *running = 0;
     snprintf(path, sizeof path, "/proc/%d/task", (int)pid);
     DIR *threads = opendir(path);
     while (threads && (entry = readdir(threads))) {
-        uint64_t own = 0;
         if (*entry->d_name == '.') continue;
-        snprintf(path, sizeof path, "/proc/%d/task/%.10s/schedstat", (int)pid, entry->d_name);
+        snprintf(path, sizeof path, "/proc/%d/task/%.10s/stat", (int)pid, entry->d_name);
         FILE *file = fopen(path, "re");
-        if (file && fscanf(file, "%" SCNu64, &own) == 1) *nanoseconds += own;
+        const char *name_end = file && fgets(line, sizeof line, file) ? strrchr(line, ')') : NULL;
+        *running += name_end && strncmp(name_end, ") R", 3) == 0;
         if (file) fclose(file);
         count++;
     }
@@ -137,20 +132,20 @@ static uint32_t look_at_threads(pid_t pid, uint64_t *nanoseconds) {
 }
 
 /* Threads that sleep, such as those of a pool, disturb nothing, and are not reported. raytally's own two
- * threads sleep; those of queries may be ending. */
+ * threads sleep; those of queries may still be ending. */
 void rt_usage_destroyed(const RtUsage *usage, const RtProcess *process) {
-    enum { OWN_THREADS = 2 };
-    uint64_t before, after;
-    if (look_at_threads(process->pid, &before) <= OWN_THREADS) return;
-    sleep_some();
-    if (look_at_threads(process->pid, &before) <= OWN_THREADS) return;
-    sleep_some();
-    const uint32_t count = look_at_threads(process->pid, &after);
-    if (count <= OWN_THREADS || after <= before) return;
-    note(usage, THREADS,
-         "it left %u thread%s behind, which still used processor time after `destroy`, and may have slowed "
-         "down what was measured; raytally ended %s",
-         count - OWN_THREADS, rt_plural(count - OWN_THREADS), count - OWN_THREADS == 1 ? "it" : "them");
+    enum { OWN_THREADS = 2, PAUSES = 3 };
+    uint32_t least = UINT32_MAX, running;
+    for (int i = 0; i < PAUSES && least > 0; i++) {
+        if (count_threads(process->pid, &running) <= OWN_THREADS) return;
+        if (running < least) least = running;
+        nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
+    }
+    if (least > 0)
+        note(usage, THREADS,
+             "it left %u thread%s behind, still running after `destroy`, which may have slowed down what was "
+             "measured; raytally ended %s",
+             least, rt_plural(least), least == 1 ? "it" : "them");
 }
 
 void rt_usage_ended(const RtUsage *usage, const RtProcessEnd *end) {

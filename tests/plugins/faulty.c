@@ -108,9 +108,9 @@ static int take_memory(void) {
 static void *volatile lost;
 static int leak(void) {
     enum { BYTES = 300 << 20 };
-    lost = malloc(BYTES);
-    if (lost) memset(lost, 1, BYTES);
-    return lost != NULL;
+    lost = mmap(NULL, BYTES, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (lost != MAP_FAILED) memset(lost, 1, BYTES);
+    return lost != MAP_FAILED;
 }
 BUILD(build_leak, if (!leak()) return RAYTALLY_BUILD_NO_MEMORY;)
 BUILD(build_memory, if (!take_memory()) return RAYTALLY_BUILD_NO_MEMORY;)
