@@ -311,7 +311,9 @@ const RtSyntax rt_bench_syntax = {
     .help = "Count and time accelerators on the rays of one scene, and compare them.\v"
             "SCENE is a file or a built-in, as in balls:size=3, or several: random:n=1e2..1e5*10 (quote what "
             "your shell would interpret: | and *). Every accelerator traces the same rays and must return "
-            "the same answers; otherwise the exit code is 1. Example:\n"
+            "the same answers, or the exit code is 1; those with hit functions of their own (Embree's native "
+            "mode, libraries as plugins) are measured whatever they answer, and what differs is counted. "
+            "Example:\n"
             "  raytally bench balls --accel bvh --accel grid --accel brute --ray-stride 100\n"
             "  raytally bench 'balls:size=2|3' --accel bvh --accel 'grid:density=1..16*4'\n"
             "  raytally bench balls --accel bvh --rays-from rays.npy --rays nearest --hits hits.npy"};

@@ -26,6 +26,7 @@ typedef struct Options {
 
 static void take_only(void *options, const char *text, struct argp_state *state) {
     Options *o = options;
+    if (o->only_text[0]) argp_error(state, "--only: only one part; run the next with --resume --only");
     if (strlen(text) >= sizeof o->only_text) argp_error(state, "--only: '%s' is too long", text);
     strcpy(o->only_text, text);
     char *accel = strchr(o->only_text, '/'), *kind = accel ? strchr(accel + 1, '/') : NULL;

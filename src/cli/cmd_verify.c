@@ -336,7 +336,8 @@ const RtSyntax rt_verify_syntax = {
             "is some fifty small scenes that are hard for accelerators. SCENE may be `families`, generated "
             "scenes that are hard for accelerators, or one of them, as in family:kind=slivers,seed=7 "
             "(`raytally scenes family` lists them).\v"
-            "Accelerators that compute in their own arithmetic (Embree's native mode) get verdicts: equal, "
+            "Accelerators with hit functions of their own (Embree's native mode, libraries as plugins) get "
+            "verdicts: equal, "
             "tie, marginal (explained by rounding) or wrong. raytally writes the first wrong answer of each "
             "row to a file (in --out DIR, or in verify-failures/), with the scene reduced to the objects "
             "that cause it; --replay traces it again. Exit code 1 if anything is wrong."};

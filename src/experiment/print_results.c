@@ -107,26 +107,52 @@ static void print_strides(const RtResults *results, uint32_t t, bool timed, FILE
     }
 }
 
-/* What answers by its own arithmetic: how many answers are not the reference's. */
+/* The accelerator of candidate c, if its answers there are of its own arithmetic; else NULL. */
+static const RtAccelOps *inexact_ops(const RtResults *results, uint32_t t, uint32_t c) {
+    const RtBuildResult *build = rt_build_at(results, t, c);
+    const RtSpec *spec = &results->experiment->candidates[c].parsed;
+    return build->known && !build->exact ? spec->layers[spec->layer_count - 1].ops : NULL;
+}
+
+/* Appends how many answers of rays of kind k differ from the reference's, the least and the most over all
+ * settings of an accelerator; false if none was counted. */
+static bool append_differing(const RtResults *results, uint32_t t, uint32_t k, const RtAccelOps *ops,
+                             const char *before, char *text) {
+    const RtExperiment *experiment = results->experiment;
+    uint64_t least = UINT64_MAX, most = 0, rays = 0;
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        const RtCell *cell = rt_cell_at(results, t, c, experiment->kinds[k]);
+        if (inexact_ops(results, t, c) != ops || !cell->counted) continue;
+        if (cell->differ < least) least = cell->differ;
+        if (cell->differ > most) most = cell->differ;
+        rays = cell->tally.rays;
+    }
+    if (rays == 0) return false;
+    rt_append_text(text, RT_MAX_SENTENCE, "%s %" PRIu64, before, least);
+    if (most > least) rt_append_text(text, RT_MAX_SENTENCE, " to %" PRIu64, most);
+    rt_append_text(text, RT_MAX_SENTENCE, " of %" PRIu64 " %s", rays,
+                   rt_experiment_kind_name(experiment, experiment->kinds[k]));
+    return true;
+}
+
+/* A sentence for each accelerator with its own arithmetic, whatever the number of its settings. */
 static void print_differing(const RtResults *results, uint32_t t, FILE *out) {
     const RtExperiment *experiment = results->experiment;
     char text[RT_MAX_SENTENCE];
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        const RtBuildResult *build = rt_build_at(results, t, c);
-        const char *before = ":";
-        if (!build->known || build->exact) continue;
-        snprintf(text, sizeof text,
-                 "%s uses its own arithmetic. Answers that differ from the reference in any bit",
-                 experiment->candidates[c].label);
-        for (uint32_t k = 0; k < experiment->kind_count; k++) {
-            const RtCell *cell = rt_cell_at(results, t, c, experiment->kinds[k]);
-            if (!cell->counted) continue;
-            rt_append_text(text, sizeof text, "%s %" PRIu64 " of %" PRIu64 " %s", before, cell->differ,
-                           cell->tally.rays, rt_experiment_kind_name(experiment, experiment->kinds[k]));
-            before = ",";
-        }
-        rt_append_text(text, sizeof text, " rays; `raytally verify` judges them.");
-        if (*before == ',') rt_print_wrapped(text, out);
+        const RtAccelOps *ops = inexact_ops(results, t, c);
+        bool told = !ops, any = false;
+        for (uint32_t earlier = 0; earlier < c; earlier++) told |= inexact_ops(results, t, earlier) == ops;
+        if (told) continue;
+        snprintf(
+            text, sizeof text,
+            "%s uses its own arithmetic. Answers that differ from the reference, if only in the last bits "
+            "of t",
+            ops->name);
+        for (uint32_t k = 0; k < experiment->kind_count; k++)
+            any |= append_differing(results, t, k, ops, any ? "," : ":", text);
+        rt_append_text(text, sizeof text, " rays; `raytally verify --accel %s` judges them.", ops->name);
+        if (any) rt_print_wrapped(text, out);
     }
 }
 

@@ -308,7 +308,8 @@ RtStatus rt_run_experiment(RtResults *results, const RtRunOptions *options, RtEr
         status = finish(&run, error);
     } else if (status == RT_OK) {
         rt_notify(&options->workload.observer,
-                  "a part was measured; --resume without --only measures the rest");
+                  "a part was measured, which has no report; --resume without --only measures the rest and "
+                  "writes it");
     }
     rt_json_lines_close(&run.journal);
     for (uint32_t t = 0; t < RT_MAX_WORKLOADS; t++) rt_scene_clear(&run.scenes[t]);

@@ -55,7 +55,7 @@ RtStatus rt_result_files_look(const char *directory, const char *journal, RtStar
             error, RT_BAD_INPUT,
             "%s holds a run that %s: %s with --resume, start over and lose it with --force, or give "
             "another --out",
-            directory, finished ? "is finished" : "was interrupted",
+            directory, finished ? "is finished" : "is not finished",
             finished ? "write its tables again" : "go on");
     }
     return rt_fail(error, RT_BAD_INPUT,

@@ -205,7 +205,7 @@ RT_TEST(rows_that_are_there_are_not_begun_anew_unasked) {
     assert_string_equal(text_of(OUT ".out"), "");
     assert_int_equal(remove(OUT ".kept/manifest.json"), 0);
     assert_int_equal(verify(arguments), 2);
-    assert_non_null(strstr(text_of(OUT ".err"), "was interrupted: go on with --resume"));
+    assert_non_null(strstr(text_of(OUT ".err"), "is not finished: go on with --resume"));
     /* A scene that cannot be opened is found before anything is lost. */
     snprintf(other, sizeof other, "nothing.nff %s --force", arguments);
     assert_int_equal(verify(other), 2);

@@ -49,7 +49,7 @@ RT_TEST_IN_PLACE(results_are_refused_unless_they_are_gone_on_with_or_begun_anew)
     assert_same_file(place, "results/small/cells.jsonl", journal);
     assert_same_file(place, "results/small/manifest.json", page);
     assert_int_equal(remove(path_in(place, "results/small/manifest.json").text), 0);
-    assert_ends(place, "run small.yaml", 2, "was interrupted: go on with --resume");
+    assert_ends(place, "run small.yaml", 2, "is not finished: go on with --resume");
     assert_same_file(place, "results/small/cells.jsonl", journal);
     assert_ends(place, "run other.yaml --resume --force", 0, "");
     assert_ends(place, "run other.yaml --force --resume", 0, "nothing was left to measure");
