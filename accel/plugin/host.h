@@ -61,7 +61,7 @@ typedef struct RtGuarded {
 enum { RT_GUARD_QUERY, RT_GUARD_ANSWERS, RT_GUARD_COUNT };
 
 typedef struct RtPluginNow {
-    const RtRay *volatile ray;         /* the last one prepared; NULL: the query is idle */
+    raytally_query face;               /* the plugin's; its ray is NULL while the query is idle */
     RtGuarded guarded[RT_GUARD_COUNT]; /* the plugin's memory, and the answers */
 } RtPluginNow;
 

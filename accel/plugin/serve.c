@@ -35,7 +35,7 @@ static void on_signal(int number, siginfo_t *info, void *unused) {
     (void)unused;
     Crash *crash = &served.wire->crash;
     const RtPluginNow *now = number == SIGXCPU ? rt_plugin_busy() : rt_plugin_now();
-    const RtRay *ray = now ? now->ray : NULL;
+    const RtRay *ray = now ? (const RtRay *)now->face.ray : NULL;
     if (ray) {
         crash->ray = *ray;
         crash->has_ray = 1;

@@ -175,7 +175,7 @@ static bool lies_behind(const RtGeometry *g, uint32_t id, RtVec3 light, unsigned
 
 static void search_light(const Mutant *m, const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
     const RtScene *scene = m->base.scene;
-    const RtRay *asked = ray->original;
+    const RtRay *asked = (const RtRay *)ray->ray;
     bool known = any && asked->kind == RT_RAY_SHADOW && asked->source < scene->light_count && ray->tmax <= 1;
     RtVec3 light = known ? scene->lights[asked->source].position : rt_vec3(0, 0, 0);
     RtVec3 to = rt_sub(light, ray->org);
