@@ -32,10 +32,9 @@ void rt_remote_break(const RtAccel *accel, const char *what, const char *doing);
 /* Answers of a plugin are not trusted: whether `hit` is a miss, or an object of the scene at a finite t on
  * the ray. */
 static inline bool rt_hit_is_possible(const RtAccel *accel, const RtRay *ray, RtHit hit) {
-    /* Without branches: whether a ray hits is unpredictable. */
-    bool miss = (hit.object == RT_NO_OBJECT) & (hit.t == INFINITY);
-    bool exists = hit.object < accel->scene->geometry.object_count;
-    return miss | (exists & (hit.t >= ray->tmin) & (hit.t <= ray->tmax) & (hit.t < INFINITY));
+    if (hit.object == RT_NO_OBJECT) return hit.t == INFINITY;
+    return hit.object < accel->scene->geometry.object_count && hit.t >= ray->tmin && hit.t <= ray->tmax &&
+           hit.t < INFINITY;
 }
 
 /* The same of an occluder. An exact accelerator must name it. */

@@ -249,9 +249,38 @@ static void break_at_object(RtPluginAccel *accel, const RtRay *ray, uint32_t obj
                  object);
 }
 
-static void check_hits(PluginQuery *query, const RtRay *rays, size_t count, RtHit *hits) {
+/* Copies the answers; returns whether all are possible. Four at a time, because the plugin is charged for
+ * it. */
+static bool copy_hits(const RtAccel *accel, const RtRay *rays, size_t count, const RtHit *theirs,
+                      RtHit *hits) {
+    const RtInt4 objects = rt_all_ints4((int32_t)accel->scene->geometry.object_count);
+    RtInt4 possible = rt_all_ints4(-1);
+    size_t i = 0;
+    for (; i + 4 <= count; i += 4) {
+        const RtRay *four = &rays[i];
+        RtFloat4 tmin = {four[0].tmin, four[1].tmin, four[2].tmin, four[3].tmin};
+        RtFloat4 tmax = {four[0].tmax, four[1].tmax, four[2].tmax, four[3].tmax};
+        RtFloat4 a = rt_loadu4(&theirs[i]), b = rt_loadu4(&theirs[i + 2]);
+        rt_store(&hits[i], a);
+        rt_store(&hits[i + 2], b);
+        RtFloat4 t = __builtin_shufflevector(a, b, 0, 2, 4, 6);
+        RtInt4 object = (RtInt4)__builtin_shufflevector(a, b, 1, 3, 5, 7);
+        RtInt4 miss = (object == (int32_t)RT_NO_OBJECT) & (t == INFINITY);
+        RtInt4 exists = (object >= 0) & (object < objects);
+        possible &= miss | (exists & (t >= tmin) & (t <= tmax) & (t < INFINITY));
+    }
+    bool all = rt_bits(possible) == 15;
+    for (; i < count; i++) {
+        hits[i] = theirs[i];
+        all &= rt_hit_is_possible(accel, &rays[i], hits[i]);
+    }
+    return all;
+}
+
+static void take_hits(PluginQuery *query, const RtRay *rays, size_t count, const RtHit *theirs, RtHit *hits) {
     RtPluginAccel *accel = query->accel;
     const uint32_t objects = accel->base.scene->geometry.object_count;
+    if (copy_hits(&accel->base, rays, count, theirs, hits)) return;
     for (size_t i = 0; i < count; i++) {
         RtHit hit = hits[i];
         if (rt_hit_is_possible(&accel->base, &rays[i], hit)) continue;
@@ -280,9 +309,15 @@ static void test_occluders(PluginQuery *query, const RtRay *rays, size_t count, 
     }
 }
 
-static void check_occluders(PluginQuery *query, const RtRay *rays, size_t count, uint32_t *occluders) {
+static void take_occluders(PluginQuery *query, const RtRay *rays, size_t count, const uint32_t *theirs,
+                           uint32_t *occluders) {
     RtPluginAccel *accel = query->accel;
+    bool all = true;
     for (size_t i = 0; i < count; i++) {
+        occluders[i] = theirs[i];
+        all &= rt_occluder_is_possible(&accel->base, theirs[i]);
+    }
+    for (size_t i = 0; i < count && !all; i++) {
         if (rt_occluder_is_possible(&accel->base, occluders[i])) continue;
         break_at_object(accel, &rays[i], occluders[i]);
         occluders[i] = RT_NO_OBJECT;
@@ -337,7 +372,7 @@ static void add_counters(PluginQuery *query, const raytally_counters *counted, s
 }
 
 /* The two kernels of a question. Answers have the type Answer, which the plugin calls Theirs. */
-#define DEFINE_KERNELS(question, Answer, Theirs, check, is_hit)                                              \
+#define DEFINE_KERNELS(question, Answer, Theirs, take, is_hit)                                               \
     static void question##_some(PluginQuery *query, const RtScratch *scratch, const RtRay *rays,             \
                                 size_t count, Answer *answers, raytally_counters *counters) {                \
         RtPluginAccel *accel = query->accel;                                                                 \
@@ -345,8 +380,7 @@ static void add_counters(PluginQuery *query, const raytally_counters *counted, s
         accel->table->question(accel->self, query->memory, &query->now.face, (const raytally_ray *)rays, count,  \
                                (Theirs *)theirs, counters);                                                  \
         leave(query, (const char *)theirs);                                                                  \
-        check(query, rays, count, theirs);                                                                   \
-        memcpy(answers, theirs, count * sizeof(Answer));                                                     \
+        take(query, rays, count, theirs, answers);                                                           \
     }                                                                                                        \
     static void time_##question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,           \
                                 size_t count, Answer *answers) {                                             \
@@ -374,8 +408,8 @@ static void add_counters(PluginQuery *query, const raytally_counters *counted, s
             tallies[rays[i].kind].hits += (is_hit);                                                          \
         }                                                                                                    \
     }
-DEFINE_KERNELS(nearest, RtHit, raytally_hit, check_hits, answers[i].object != RT_NO_OBJECT)
-DEFINE_KERNELS(occluded, uint32_t, uint32_t, check_occluders, answers[i] != RT_NO_OBJECT)
+DEFINE_KERNELS(nearest, RtHit, raytally_hit, take_hits, answers[i].object != RT_NO_OBJECT)
+DEFINE_KERNELS(occluded, uint32_t, uint32_t, take_occluders, answers[i] != RT_NO_OBJECT)
 
 static RtStatus check(const RtAccel *accel, RtError *error) {
     const RtPluginAccel *self = rt_plugin_of(accel);
