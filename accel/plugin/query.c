@@ -92,7 +92,8 @@ RT_KERNEL int hits_of(const raytally_prepared *ray, const uint32_t *ids, uint32_
     bool over = false;
     for (uint32_t i = 0; i < count && !over; i++) {
         if (ids[i] >= geometry->object_count) {
-            break_at_ray(query->accel, (const RtRay *)ray->ray, "it tested an object that does not exist", ids[i]);
+            break_at_ray(query->accel, (const RtRay *)ray->ray, "it tested an object that does not exist",
+                         ids[i]);
             break;
         }
         over = rt_test_object(geometry, ids[i], ray, any, &hit, tally);
@@ -115,7 +116,8 @@ static int object_hits(const raytally_prepared *ray, const uint32_t *ids, uint32
     return over;
 }
 
-static const raytally_host host = {RAYTALLY_ACCEL_ABI, sizeof(raytally_host), prepare, object_hits, other_hit};
+static const raytally_host host = {RAYTALLY_ACCEL_ABI, sizeof(raytally_host), prepare, object_hits,
+                                   other_hit};
 
 /* ---- memory between guard pages ---- */
 
@@ -377,8 +379,8 @@ static void add_counters(PluginQuery *query, const raytally_counters *counted, s
                                 size_t count, Answer *answers, raytally_counters *counters) {                \
         RtPluginAccel *accel = query->accel;                                                                 \
         Answer *theirs = enter(query, scratch, rays, count, sizeof(Answer));                                 \
-        accel->table->question(accel->self, query->memory, &query->now.face, (const raytally_ray *)rays, count,  \
-                               (Theirs *)theirs, counters);                                                  \
+        accel->table->question(accel->self, query->memory, &query->now.face, (const raytally_ray *)rays,     \
+                               count, (Theirs *)theirs, counters);                                           \
         leave(query, (const char *)theirs);                                                                  \
         take(query, rays, count, theirs, answers);                                                           \
     }                                                                                                        \

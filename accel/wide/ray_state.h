@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The state of one ray in a wide hierarchy, and its visits of nodes and leaves.
  *
- * rt_triangle_hit ends with raytally_admit4, which clamps t to the interval [near, far] of the triangle's own thick
- * box. Hits at |t| >= RayState.sure omit it: near <= t <= far holds there, so only tmin <= t <= tmax is left.
- * Proof. Let e = 2^-24; d = dir, z = kz, x another axis; o = org; D the largest distance along one axis from
- * o to a plane of the box; t > 0. Float32 is relatively exact to e throughout, because 2^-64 <= |d_z| <= 2^64
- * and t |d_z| >= 2^-60 (both within a rounding), so t >= 2^-125 and D >= 2^-61.
+ * rt_triangle_hit ends with raytally_admit4, which clamps t to the interval [near, far] of the triangle's own
+ * thick box. Hits at |t| >= RayState.sure omit it: near <= t <= far holds there, so only tmin <= t <= tmax is
+ * left. Proof. Let e = 2^-24; d = dir, z = kz, x another axis; o = org; D the largest distance along one axis
+ * from o to a plane of the box; t > 0. Float32 is relatively exact to e throughout, because 2^-64 <= |d_z| <=
+ * 2^64 and t |d_z| >= 2^-60 (both within a rounding), so t >= 2^-125 and D >= 2^-61.
  *
  * 1. Let P be the vertices, relative to o, averaged by the edge functions in double. They have one sign, so P
  * is in the box. Each has a relative error of 2^-53, so the sheared x average to 0 within 2^-51 D. A sheared
@@ -13,11 +13,11 @@
  * So |P_x - P_z d_x / d_z| <= 7 e D. Rounding z and t gives |t d_z - P_z| <= 2 e D. Thus |t d_x - P_x| <= 9 e
  * D, up to 2^-40 D here and below for products of errors.
  * 2. Let d_x have no sign bit; otherwise mirror. The shifted origins are at least 16 e D (1 - 4 e) from o,
- * because raytally_shift4 compensates their rounding. Let N = lo - (o + shift), so N <= P_x - 16 e D <= t d_x - 7 e
- * D. If N <= 0, the crossing is at most 0 < t, or NaN, which is ignored. If N > 0, then d_x > 7 e D / t > e
- * |d_z| >= 2^-88, so 1 / d_x is accurate. N and 1 / d_x have one rounding each, so their product is at most t
- * (1 + 2 e) - 7 e D / d_x < t, since t d_x <= D (1 + 3 e). Rounding is monotone and t a float32 number: the
- * crossing is at most t.
+ * because raytally_shift4 compensates their rounding. Let N = lo - (o + shift), so N <= P_x - 16 e D <= t d_x
+ * - 7 e D. If N <= 0, the crossing is at most 0 < t, or NaN, which is ignored. If N > 0, then d_x > 7 e D / t
+ * > e |d_z| >= 2^-88, so 1 / d_x is accurate. N and 1 / d_x have one rounding each, so their product is at
+ * most t (1 + 2 e) - 7 e D / d_x < t, since t d_x <= D (1 + 3 e). Rounding is monotone and t a float32
+ * number: the crossing is at most t.
  * 3. Let M = hi - (o - shift) >= t d_x + 7 e D. Two roundings take at most 2 e of it, so the crossing is at
  * least t, or infinite.
  * 4. If t < 0, negate t and dir: near and far become -far and -near, bit for bit. */

@@ -85,10 +85,10 @@ typedef struct raytally_host {
 
 /** The state of one thread's rays. Plugins use only its first member; the functions below use the others. */
 struct raytally_query {
-    const raytally_host *host;          /**< Functions of raytally. */
-    const raytally_ray *volatile ray;   /**< The last one prepared, for reports of crashes. */
-    void *crossings;                    /**< For raytally_prepared. */
-    const raytally_box *boxes;          /**< As in raytally_build_input, as are triangles and spheres. */
+    const raytally_host *host;        /**< Functions of raytally. */
+    const raytally_ray *volatile ray; /**< The last one prepared, for reports of crashes. */
+    void *crossings;                  /**< For raytally_prepared. */
+    const raytally_box *boxes;        /**< As in raytally_build_input, as are triangles and spheres. */
     const float *triangles, *spheres;
     const uint32_t *objects; /**< [object_count] shape << RAYTALLY_INDEX_BITS | index in its array. */
     uint32_t object_count;   /**< 0 while raytally counts: it then makes all object tests itself. */
@@ -123,8 +123,8 @@ RAYTALLY_INLINE int raytally_object_hit(const raytally_prepared *ray, uint32_t i
 }
 
 /** Tests objects: calls the exact hit function of each and keeps the best hit, the least (t, object). Counts
- * RAYTALLY_OBJECT_TESTS, RAYTALLY_OBJECT_HITS and RAYTALLY_CSG_TESTS. Where nothing is counted, triangles and
- * spheres are tested inline.
+ * RAYTALLY_OBJECT_TESTS, RAYTALLY_OBJECT_HITS and RAYTALLY_CSG_TESTS. In streams that are counted, raytally
+ * makes the tests and checks the counts; otherwise triangles and spheres are tested inline (hit.h).
  * @param ray       from raytally_prepare
  * @param ids       [count] numbers of objects, each below raytally_build_input.object_count
  * @param count     number of objects, possibly 0

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file
- * Boxes, prepared rays, and the one box test that exactness depends on. It is frozen: within a major version
- * these operations give the same bits.
+ * Boxes, prepared rays, and the one box test that exactness depends on, which raytally's own accelerators
+ * use, too. It is frozen: within a major version these operations give the same bits.
  *
  * Why a traversal that uses it is exact. Hit functions compute in rounded arithmetic, so a ray may hit an
  * object that it misses by a few ulps. A prepared ray is therefore thick: it moves the planes of a box
@@ -39,8 +39,9 @@ extern "C" {
 /** For functions that must be inlined. */
 #define RAYTALLY_INLINE static inline __attribute__((always_inline))
 
-/** Rounds a product before it is added to anything. Costs nothing. */
-#if defined(__x86_64__) && defined(__FMA__)
+/** Keeps the compiler from fusing a product with a sum (-ffp-contract), which would give other bits. No
+ * instruction. */
+#if defined(__x86_64__) && (defined(__FMA__) || defined(__FMA4__))
 #define RAYTALLY_ROUND(product) __asm__("" : "+x"(product))
 #elif defined(__aarch64__)
 #define RAYTALLY_ROUND(product) __asm__("" : "+w"(product))
@@ -120,7 +121,7 @@ RAYTALLY_INLINE raytally_float4 raytally_abs4(raytally_float4 a) {
     return (raytally_float4)((raytally_int4)a & 0x7FFFFFFF);
 }
 
-/** A product, which the compiler must not fuse with a sum (-ffp-contract): that would give other bits. */
+/** A product that is not fused with a sum. */
 RAYTALLY_INLINE raytally_float4 raytally_rounded4(raytally_float4 product) {
     RAYTALLY_ROUND(product);
     return product;
@@ -200,7 +201,6 @@ RAYTALLY_INLINE void raytally_prepare_in(raytally_prepared *out, const raytally_
                                          const raytally_box *around) {
     /* The loads rely on the layout of raytally_ray: org, tmin, dir, tmax. */
     const raytally_float4 org = raytally_load4(ray->org), dir = raytally_load4(ray->dir), inv = 1.0f / dir;
-    const raytally_float4 size = raytally_abs4(dir);
     const raytally_int4 below = (raytally_int4)dir < 0, negative = below & 1;
     const raytally_int4 from_lo = {0, 4, 8, 8}, from_hi = {12, 16, 20, 20};
     const raytally_int4 first = from_lo + (below & 12), last = from_hi - (below & 12);
@@ -215,12 +215,15 @@ RAYTALLY_INLINE void raytally_prepare_in(raytally_prepared *out, const raytally_
     memcpy(out->last, &last, sizeof last);
     out->ray = ray;
     /* The lower axis wins a tie. Without branches, which could not be predicted. */
-    const int z = (size[2] > size[0]) & (size[2] > size[1]);
-    out->kz = 2 * z | ((size[1] > size[0]) & !z);
-    out->kx = 9 >> 2 * out->kz & 3;
-    out->ky = 9 >> 2 * out->kx & 3;
-    out->shear_x = out->dir[out->kx] * out->inv[out->kz];
-    out->shear_y = out->dir[out->ky] * out->inv[out->kz];
+    const float x = __builtin_fabsf(out->dir[0]), y = __builtin_fabsf(out->dir[1]);
+    const float z = __builtin_fabsf(out->dir[2]);
+    const int is_z = (z > x) & (z > y), kz = 2 * is_z | ((y > x) & !is_z);
+    const int kx = 9 >> 2 * kz & 3, ky = 9 >> 2 * kx & 3; /* 1, 2, 0 for 0, 1, 2 */
+    out->kx = kx;
+    out->ky = ky;
+    out->kz = kz;
+    out->shear_x = out->dir[kx] * out->inv[kz];
+    out->shear_y = out->dir[ky] * out->inv[kz];
 }
 
 #ifdef __cplusplus

@@ -2,8 +2,10 @@
 /** @file
  * The exact hit functions of triangles and spheres, which raytally's own accelerators use, too. They are
  * frozen like the box test (box.h): the same ray and object give the same bits of t, whatever was found
- * before, with any compiler and any instruction set. accel.h calls them in raytally_object_hits; a plugin
- * that keeps triangles or spheres in its own order may call them itself. */
+ * before, with any compiler and any instruction set. raytally_object_hits (accel.h) calls them. A plugin that
+ * keeps triangles or spheres in an order of its own may call them itself where nothing is counted; where
+ * `counters` is not NULL, it must call raytally_object_hits, since raytally compares the counts with the
+ * tests that it makes itself. They need gcc 12, clang, or a later version. */
 #ifndef RAYTALLY_HIT_H
 #define RAYTALLY_HIT_H
 
@@ -13,7 +15,7 @@
 extern "C" {
 #endif
 
-/** A product, which the compiler must not fuse with a sum. */
+/** A product that is not fused with a sum. */
 RAYTALLY_INLINE double raytally_rounded(double product) {
     RAYTALLY_ROUND(product);
     return product;

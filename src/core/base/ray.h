@@ -12,7 +12,8 @@
  *
  * at no cost, by using one origin for near planes and another for far planes (Woop, Benthin & Wald 2013,
  * "Watertight Ray/Triangle Intersection", section 3.4). The origin moves along each axis by a further 2^-23
- * |org| (raytally_shift4), since otherwise rounding would swallow the thickness far from the coordinate origin.
+ * |org| (raytally_shift4), since otherwise rounding would swallow the thickness far from the coordinate
+ * origin.
  *
  * Why pruning is exact. The crossings (plane - org') * inv are monotone in the plane, in float32 as in the
  * real numbers, and the thickness grows with the box. So for b inside B, with the thickness of B or of
@@ -142,7 +143,6 @@ static inline void rt_ray_thicken(RtPreparedRay *ray, const RtBox *around) {
 static inline void rt_ray_prepare_in(RtPreparedRay *p, const RtRay *ray, const RtBox *scene_box,
                                      struct RtCrossing *crossings) {
     raytally_prepare_in(p, (const raytally_ray *)ray, rt_public_box(scene_box));
-    p->query = NULL;
     p->crossings = crossings;
 }
 

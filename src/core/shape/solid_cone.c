@@ -28,7 +28,8 @@ static bool within_side(double ratio, const RtSolidLine *line, RtSpan *span) {
 
     double roots[2], discriminant = half_b * half_b - a * c;
     if (a > 0) {
-        if (!(discriminant > 0) || raytally_quadratic_roots(a, half_b, c, discriminant, roots) < 2) return false;
+        if (!(discriminant > 0) || raytally_quadratic_roots(a, half_b, c, discriminant, roots) < 2)
+            return false;
         span->open = roots[0], span->close = roots[1];
         return r + dr * (roots[0] / 2 + roots[1] / 2) > 0;
     }
