@@ -139,8 +139,12 @@ RAYTALLY_INLINE int raytally_object_hits(const raytally_prepared *ray, const uin
     for (uint32_t i = 0; i < count; i++) {
         const uint32_t id = ids[i];
         float t;
-        if (id >= query->object_count) /* raytally counts, or reports an object that does not exist */
-            return query->host->object_hits(ray, ids + i, count - i, any, best, counters);
+        if (id >= query->object_count) { /* raytally counts, or reports an object that does not exist */
+            raytally_hit kept = *best;   /* so that *best may stay in registers */
+            const int over = query->host->object_hits(ray, ids + i, count - i, any, &kept, counters);
+            *best = kept;
+            return over;
+        }
         if (!raytally_object_hit(ray, id, &t)) continue;
         if (t < best->t || (t == best->t && id < best->object)) {
             best->t = t;

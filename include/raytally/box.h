@@ -215,15 +215,13 @@ RAYTALLY_INLINE void raytally_prepare_in(raytally_prepared *out, const raytally_
     memcpy(out->last, &last, sizeof last);
     out->ray = ray;
     /* The lower axis wins a tie. Without branches, which could not be predicted. */
-    const float x = __builtin_fabsf(out->dir[0]), y = __builtin_fabsf(out->dir[1]);
-    const float z = __builtin_fabsf(out->dir[2]);
-    const int is_z = (z > x) & (z > y), kz = 2 * is_z | ((y > x) & !is_z);
-    const int kx = 9 >> 2 * kz & 3, ky = 9 >> 2 * kx & 3; /* 1, 2, 0 for 0, 1, 2 */
-    out->kx = kx;
-    out->ky = ky;
-    out->kz = kz;
-    out->shear_x = out->dir[kx] * out->inv[kz];
-    out->shear_y = out->dir[ky] * out->inv[kz];
+    const raytally_float4 size = raytally_abs4(dir);
+    const int z = (size[2] > size[0]) & (size[2] > size[1]);
+    out->kz = 2 * z | ((size[1] > size[0]) & !z);
+    out->kx = 9 >> 2 * out->kz & 3;
+    out->ky = 9 >> 2 * out->kx & 3;
+    out->shear_x = out->dir[out->kx] * out->inv[out->kz];
+    out->shear_y = out->dir[out->ky] * out->inv[out->kz];
 }
 
 #ifdef __cplusplus

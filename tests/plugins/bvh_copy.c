@@ -11,6 +11,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <sys/mman.h>
 
 enum { BINS = 16, MAX_LEAF = 8, MEDIAN_DEPTH = 34, MAX_DEPTH = 64 };
 
@@ -227,13 +228,23 @@ static void destroy(void *self) {
     free(bvh);
 }
 
+/* As raytally allocates: a large array lies in huge pages if the system has them, so rays miss fewer pages.
+ */
+static void *allocate(size_t bytes) {
+    const size_t huge = (size_t)1 << 21, boundary = bytes >= 2 * huge ? huge : 64;
+    const size_t padded = (bytes + boundary - 1) / boundary * boundary;
+    void *block = aligned_alloc(boundary, padded);
+    if (block && boundary == huge) madvise(block, padded, MADV_HUGEPAGE);
+    return block;
+}
+
 static int fill(Bvh *bvh, const raytally_build_input *what, Ref *refs, TreeNode *tree) {
     const uint32_t count = what->object_count;
     if (!refs || !tree) return RAYTALLY_BUILD_NO_MEMORY;
     for (uint32_t i = 0; i < count; i++) refs[i] = (Ref){what->boxes[i], i};
     const Weight whole = divide(tree, refs, count, 0);
-    bvh->nodes = (Node *)aligned_alloc(64, (whole.nodes * sizeof(Node) + 63) / 64 * 64);
-    bvh->ids = (uint32_t *)malloc(count * sizeof(uint32_t));
+    bvh->nodes = (Node *)allocate(whole.nodes * sizeof(Node));
+    bvh->ids = (uint32_t *)allocate(count * sizeof(uint32_t));
     if (!bvh->nodes || !bvh->ids) return RAYTALLY_BUILD_NO_MEMORY;
     Taken taken = {1, 0};
     place(bvh, 0, tree, &taken);
