@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* bvh_copy: the built-in `bvh` as a plugin. `bench --accel bvh_copy --baseline bvh` shows the cost of the
- * plugin interface.
+ * plugin interface (docs/guide/own-accelerator.md).
  *
  * The tree is that of accel/bvh with its default parameters: built from the top by the surface area
  * heuristic, in 16 bins along every axis, or at every place between centres if there are no more objects than
  * bins; then, from the bottom up, subtrees of up to 8 objects become leaves if that costs no more. Layout and
  * traversal are those of accel/bvh: nodes of 32 bytes, siblings side by side, both children's boxes tested,
  * the nearer child first. */
+#define _DEFAULT_SOURCE /* madvise */
 #include <raytally/accel.h>
 
 #include <math.h>
