@@ -120,8 +120,8 @@ static inline double rt_line_pad(RtVec3d org, const RtBox *scene_box) {
 static inline RtLine rt_line(const RtExtentSet *set, RtExtentKind kind, const RtBox *scene_box,
                              const RtPreparedRay *ray) {
     RtLine line;
-    line.org = rt_widen(ray->org);
-    line.dir = rt_widen(ray->dir);
+    line.org = rt_widen(rt_vec3_load(ray->org));
+    line.dir = rt_widen(rt_vec3_load(ray->dir));
     line.pad = rt_line_pad(line.org, scene_box);
     if (kind == RT_EXTENT_SPHERE) line.dir_squared = rt_dotd(line.dir, line.dir);
     for (uint32_t i = 0; kind == RT_EXTENT_SLABS && i < set->slabs_each; i++) {

@@ -43,7 +43,7 @@ RT_KERNEL void search(const Ideal *self, void *scratch, const RtPreparedRay *ray
                       RtTally *tally) {
     (void)scratch;
     const RtGeometry *g = &self->base.scene->geometry;
-    uintptr_t offset = (uintptr_t)ray->original - (uintptr_t)self->rays;
+    uintptr_t offset = (uintptr_t)ray->ray - (uintptr_t)self->rays;
     if (offset >= self->count * sizeof(RtRay)) {
         rt_test_all(g, ray, any, best, tally);
         return;

@@ -39,8 +39,8 @@ static inline bool rt_hit_is_possible(const RtAccel *accel, const RtRay *ray, Rt
 
 /* The same of an occluder. An exact accelerator must name it. */
 static inline bool rt_occluder_is_possible(const RtAccel *accel, uint32_t occluder) {
-    return occluder == RT_NO_OBJECT || occluder < accel->scene->geometry.object_count ||
-           (occluder == RT_UNNAMED_OBJECT && !accel->exact);
+    return (occluder == RT_NO_OBJECT) | (occluder < accel->scene->geometry.object_count) |
+           ((occluder == RT_UNNAMED_OBJECT) & !accel->exact);
 }
 
 /* Reports progress; long work calls it regularly. A process without progress for 60 seconds, or for

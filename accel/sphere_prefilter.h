@@ -26,7 +26,7 @@ typedef struct RtSphereLine {
 } RtSphereLine;
 
 static inline RtSphereLine rt_sphere_line(const RtPreparedRay *ray) {
-    return (RtSphereLine){ray->org, rt_narrow(rt_normalized(rt_widen(ray->dir)))};
+    return (RtSphereLine){rt_vec3_load(ray->org), rt_narrow(rt_normalized(rt_widen(rt_vec3_load(ray->dir))))};
 }
 
 /* Bit i: the ray may hit sphere i, 0 <= i < RT_LANES. Its centre is spheres[i], spheres[stride + i] and

@@ -32,8 +32,8 @@
  *
  * 3. Trees of split references need no margin, wherever the origin is: at t the ray is in every box of the
  * scene that contains a point s within 14 units of p, enter(box) <= t <= leave(box). The near plane is at
- * most s, and org' is 16 units ahead of org; rt_shift4 compensates the rounding of that. So (plane - org') /
- * dir is at least 2 units of distance before t. plane - org' and 1 / dir are rounded, by a unit each;
+ * most s, and org' is 16 units ahead of org; raytally_shift4 compensates the rounding of that. So (plane -
+ * org') / dir is at least 2 units of distance before t. plane - org' and 1 / dir are rounded, by a unit each;
  * rounding the product cannot take it past t, a float32. The far plane likewise. 9 of the 14 units
  * suffice, by 2. CSG trees are cut like their boxes, so that q is in some part, and 1 applies. Scenes smaller
  * than RT_SURFACE_LEAST_SIDE, where t may be denormal, are not cut. */
@@ -72,9 +72,9 @@ RT_KERNEL bool rt_surface_is_near(float longest) {
 
 /* Whether cells that list surfaces serve this ray. */
 RT_KERNEL bool rt_surface_serves(const RtSurfaceRays *served, const RtPreparedRay *ray) {
-    bool inside = rt_surface_is_near(ray->dir.at[ray->kz]);
+    bool inside = rt_surface_is_near(ray->dir[ray->kz]);
     for (int a = 0; a < 3; a++) {
-        float org = ray->org.at[a];
+        float org = ray->org[a];
         inside &= org >= served->domain.lo.at[a] && org <= served->domain.hi.at[a];
     }
     return inside;

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # check_examples.sh: the plugins of examples/ and tests/plugins/bvh_copy.c, built against the public headers alone with every
-# available compiler, and the one in Rust if there is rustc, without a warning: verify finds no wrong hit; bvh_copy counts what bvh
-# counts; verify detects a bih with one origin for both kinds of planes. examples/header-only and examples/peers explain how to get
-# what they need; the first is built and verified if $BVH_DIR is a copy of madmann91/bvh, the second if $PEERS is the folder that
-# its fetch.sh fills; the plugin in the README of peers is built with a library that tests all triangles.
+# available compiler, and the one in Rust if there is rustc, without a warning: verify finds no wrong hit, whether products are fused
+# or not; bvh_copy counts what bvh counts; verify detects a bih with one origin for both kinds of planes. examples/header-only and
+# examples/peers explain how to get what they need; the first is built and verified if $BVH_DIR is a copy of madmann91/bvh, the second
+# if $PEERS is the folder that its fetch.sh fills; the plugin in the README of peers is built with a library that tests all triangles.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/testing.sh"
 cd "$(dirname "$0")/.."
@@ -42,6 +42,8 @@ refused() {
 
 for compiler in gcc clang; do
     if builds "$compiler" c99 examples/bih/bih.c bih; then right bih; fi
+    # Fused products, if the processor has them, would change the bits of hits.
+    if builds "$compiler" gnu17 tests/plugins/bvh_copy.c bvh_copy -O3 -march=native -ffp-contract=fast; then right bvh_copy; fi
     if builds "$compiler" c17 tests/plugins/bvh_copy.c bvh_copy; then right bvh_copy; fi
     refused "$compiler" c99 -ffast-math
     refused "$compiler" c99 -ffinite-math-only

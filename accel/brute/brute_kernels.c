@@ -31,9 +31,9 @@ RT_KERNEL void make_line(Line *line, const RtPreparedRay *ray) {
     line->x = ray->kx;
     line->y = ray->ky;
     line->z = ray->kz;
-    line->lanes.org_x = rt_all(ray->org.at[ray->kx]);
-    line->lanes.org_y = rt_all(ray->org.at[ray->ky]);
-    line->lanes.org_z = rt_all(ray->org.at[ray->kz]);
+    line->lanes.org_x = rt_all(ray->org[ray->kx]);
+    line->lanes.org_y = rt_all(ray->org[ray->ky]);
+    line->lanes.org_z = rt_all(ray->org[ray->kz]);
     line->lanes.shear_x = rt_all(ray->shear_x);
     line->lanes.shear_y = rt_all(ray->shear_y);
 }

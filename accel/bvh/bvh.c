@@ -155,7 +155,7 @@ RT_KERNEL void search(const RtBvh *self, void *scratch, const RtPreparedRay *ray
     const RtGeometry *g = &self->base.scene->geometry;
     if (!self->hierarchy.split_refs) {
         walk(self, NULL, ray, any, best, tally);
-    } else if (rt_surface_is_near(ray->dir.at[ray->kz])) {
+    } else if (rt_surface_is_near(ray->dir[ray->kz])) {
         RtMailbox *mailbox = self->mailbox ? scratch : NULL;
         rt_mailbox_next_ray(mailbox, g);
         walk(self, mailbox, ray, any, best, tally);

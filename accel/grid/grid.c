@@ -87,7 +87,7 @@ RT_KERNEL Axis start_axis(const RtGridBlock *block, const RtPreparedRay *ray, in
                  .near_org = ray->org_near[a],
                  .far_org = ray->org_far[a],
                  .inv = ray->inv[a]};
-    float at = (ray->org.at[a] + t * ray->dir.at[a] - planes[0]) / (planes[n] - planes[0]) * (float)n;
+    float at = (ray->org[a] + t * ray->dir[a] - planes[0]) / (planes[n] - planes[0]) * (float)n;
     uint32_t guess = at > 0 ? (uint32_t)rt_minf(at, (float)(n - 1)) : 0;
     axis.lo = mirrored ? n - 1 - guess : guess;
     while (axis.lo > 0 && !(far_crossing(&axis, axis.lo - 1) < t)) axis.lo--;

@@ -61,8 +61,8 @@ typedef struct RtGuarded {
 enum { RT_GUARD_QUERY, RT_GUARD_ANSWERS, RT_GUARD_COUNT };
 
 typedef struct RtPluginNow {
-    const RtRay *volatile ray; /* the last one prepared, or the first; NULL: the query is idle */
-    const RtRay *stream;       /* [count] that the plugin's kernel was called with */
+    raytally_query face; /* the plugin's; its ray is the last prepared, or the first; NULL: idle */
+    const RtRay *stream; /* [count] that the plugin's kernel was called with */
     size_t count;
     bool any, counted;                 /* which kernel */
     RtGuarded guarded[RT_GUARD_COUNT]; /* the plugin's memory, and the answers */

@@ -22,15 +22,16 @@ _Static_assert(sizeof(raytally_ray) == sizeof(RtRay) && offsetof(raytally_ray, d
 _Static_assert(sizeof(raytally_hit) == sizeof(RtHit) && RAYTALLY_NO_OBJECT == RT_NO_OBJECT, "hits");
 _Static_assert((uint64_t)RAYTALLY_UNNAMED_OBJECT == RT_UNNAMED_OBJECT, "occluders");
 _Static_assert(sizeof(raytally_box) == sizeof(RtBox), "boxes");
-_Static_assert(sizeof(RtPreparedRay) <= sizeof(((raytally_prepared *)0)->own), "a prepared ray fits");
+_Static_assert((int)RAYTALLY_SHAPE_SPHERE == (int)RT_SHAPE_SPHERE &&
+                   (int)RAYTALLY_SHAPE_TRIANGLE == (int)RT_SHAPE_TRIANGLE &&
+                   (int)RAYTALLY_INDEX_BITS == (int)RT_REF_INDEX_BITS,
+               "references to objects");
 
-/* The plugin sees only the first member. */
+/* The plugin sees only the first member of the first. */
 typedef struct PluginQuery {
-    raytally_query face;
     RtPluginNow now;
     RtPluginAccel *accel;
     const RtGeometry *geometry;
-    RtCrossing *crossings;
     void *memory; /* [accel->query_bytes] or NULL */
     bool counting;
     RtTally tallies[RT_RAY_KIND_COUNT]; /* of object tests, in a stream that is counted */
@@ -49,7 +50,7 @@ const RtPluginNow *rt_plugin_now(void) {
 const RtPluginNow *rt_plugin_busy(void) {
     for (int i = 0; i < MOST_QUERIES; i++) {
         const PluginQuery *query = atomic_load(&open_queries[i]);
-        if (query && query->now.ray) return &query->now;
+        if (query && query->now.face.ray) return &query->now;
     }
     return NULL;
 }
@@ -75,39 +76,27 @@ static void break_at_ray(RtPluginAccel *accel, const RtRay *ray, const char *wha
 
 /* ---- what the plugin calls ---- */
 
-static void prepare(raytally_query *face, const raytally_ray *ray, raytally_prepared *out) {
-    PluginQuery *query = (PluginQuery *)face;
-    RtPreparedRay *own = (RtPreparedRay *)out->own;
-    query->now.ray = (const RtRay *)ray;
-    rt_hit_ray(own, query->geometry, (const RtRay *)ray, query->crossings);
-    out->tmin = own->tmin;
-    out->tmax = own->tmax;
-    memcpy(out->org, &own->org, 3 * sizeof(float));
-    memcpy(out->dir, &own->dir, 3 * sizeof(float));
-    out->org[3] = out->dir[3] = 0;
-    memcpy(out->inv, own->inv, sizeof out->inv);
-    memcpy(out->org_near, own->org_near, sizeof out->org_near);
-    memcpy(out->org_far, own->org_far, sizeof out->org_far);
-    memcpy(out->negative, own->negative, sizeof out->negative);
-    memcpy(out->first, own->first, sizeof out->first);
-    memcpy(out->last, own->last, sizeof out->last);
-    out->ray = ray;
-    out->query = face;
+static void prepare(raytally_query *query, const raytally_ray *ray, raytally_prepared *out) {
+    raytally_prepare(query, ray, out);
+}
+
+static int other_hit(const raytally_prepared *ray, uint32_t id, float *t) {
+    return rt_rarer_hit(((PluginQuery *)ray->query)->geometry, id, ray, t, NULL);
 }
 
 RT_KERNEL int hits_of(const raytally_prepared *ray, const uint32_t *ids, uint32_t count, bool any,
                       raytally_hit *best, RtTally *tally) {
     PluginQuery *query = (PluginQuery *)ray->query;
     const RtGeometry *geometry = query->geometry;
-    const RtPreparedRay *own = (const RtPreparedRay *)ray->own;
     RtHit hit = {best->t, best->object};
     bool over = false;
     for (uint32_t i = 0; i < count && !over; i++) {
         if (ids[i] >= geometry->object_count) {
-            break_at_ray(query->accel, own->original, "it tested an object that does not exist", ids[i]);
+            break_at_ray(query->accel, (const RtRay *)ray->ray, "it tested an object that does not exist",
+                         ids[i]);
             break;
         }
-        over = rt_test_object(geometry, ids[i], own, any, &hit, tally);
+        over = rt_test_object(geometry, ids[i], ray, any, &hit, tally);
     }
     *best = (raytally_hit){hit.t, hit.object};
     return over;
@@ -127,7 +116,8 @@ static int object_hits(const raytally_prepared *ray, const uint32_t *ids, uint32
     return over;
 }
 
-static const raytally_host host = {RAYTALLY_ACCEL_ABI, sizeof(raytally_host), prepare, object_hits};
+static const raytally_host host = {RAYTALLY_ACCEL_ABI, sizeof(raytally_host), prepare, object_hits,
+                                   other_hit};
 
 /* ---- memory between guard pages ---- */
 
@@ -190,8 +180,15 @@ static RtStatus map_memory(PluginQuery *query, RtError *error) {
 
 static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) {
     PluginQuery *query = scratch;
-    *query = (PluginQuery){
-        .face.host = &host, .accel = (RtPluginAccel *)accel, .geometry = &accel->scene->geometry};
+    const RtGeometry *geometry = &accel->scene->geometry;
+    *query = (PluginQuery){.now.face = {.host = &host,
+                                        .boxes = rt_public_box(geometry->boxes),
+                                        .triangles = (const float *)geometry->triangles,
+                                        .spheres = (const float *)geometry->spheres,
+                                        .objects = geometry->objects},
+                           .accel = (RtPluginAccel *)accel,
+                           .geometry = geometry};
+    memcpy(&query->now.face.box, &geometry->box, sizeof geometry->box);
     RtStatus status = map_memory(query, error);
     if (status != RT_OK) {
         unmap_guarded(query);
@@ -227,19 +224,20 @@ static void *enter(PluginQuery *query, const RtScratch *scratch, const RtRay *ra
     char *answers = query->now.guarded[RT_GUARD_ANSWERS].end - count * size;
     lay_canaries(answers - CANARIES, answers);
     memset(answers, UNSET, count * size);
-    query->crossings = scratch->crossings;
     query->now.stream = rays;
     query->now.count = count;
     query->now.any = size != sizeof(RtHit);
     query->now.counted = query->counting;
-    query->now.ray = rays;
+    query->now.face.crossings = scratch->crossings;
+    query->now.face.object_count = query->counting ? 0 : query->geometry->object_count;
+    query->now.face.ray = (const raytally_ray *)rays;
     now = &query->now;
     return answers;
 }
 
 /* After a stream. */
 static void leave(PluginQuery *query, const char *answers) {
-    query->now.ray = NULL;
+    query->now.face.ray = NULL;
     now = NULL;
     if (!canaries_are_intact(answers - CANARIES, answers))
         rt_plugin_break(query->accel, "it wrote in front of its answers");
@@ -257,9 +255,38 @@ static void break_at_object(RtPluginAccel *accel, const RtRay *ray, uint32_t obj
                  object);
 }
 
-static void check_hits(PluginQuery *query, const RtRay *rays, size_t count, RtHit *hits) {
+/* Copies the answers; returns whether all are possible. Four at a time, because the plugin is charged for
+ * it. */
+static bool copy_hits(const RtAccel *accel, const RtRay *rays, size_t count, const RtHit *theirs,
+                      RtHit *hits) {
+    const RtInt4 objects = rt_all_ints4((int32_t)accel->scene->geometry.object_count);
+    RtInt4 possible = rt_all_ints4(-1);
+    size_t i = 0;
+    for (; i + 4 <= count; i += 4) {
+        const RtRay *four = &rays[i];
+        RtFloat4 tmin = {four[0].tmin, four[1].tmin, four[2].tmin, four[3].tmin};
+        RtFloat4 tmax = {four[0].tmax, four[1].tmax, four[2].tmax, four[3].tmax};
+        RtFloat4 a = rt_loadu4(&theirs[i]), b = rt_loadu4(&theirs[i + 2]);
+        rt_store(&hits[i], a);
+        rt_store(&hits[i + 2], b);
+        RtFloat4 t = __builtin_shufflevector(a, b, 0, 2, 4, 6);
+        RtInt4 object = (RtInt4)__builtin_shufflevector(a, b, 1, 3, 5, 7);
+        RtInt4 miss = (object == (int32_t)RT_NO_OBJECT) & (t == INFINITY);
+        RtInt4 exists = (object >= 0) & (object < objects);
+        possible &= miss | (exists & (t >= tmin) & (t <= tmax) & (t < INFINITY));
+    }
+    bool all = rt_bits(possible) == 15;
+    for (; i < count; i++) {
+        hits[i] = theirs[i];
+        all &= rt_hit_is_possible(accel, &rays[i], hits[i]);
+    }
+    return all;
+}
+
+static void take_hits(PluginQuery *query, const RtRay *rays, size_t count, const RtHit *theirs, RtHit *hits) {
     RtPluginAccel *accel = query->accel;
     const uint32_t objects = accel->base.scene->geometry.object_count;
+    if (copy_hits(&accel->base, rays, count, theirs, hits)) return;
     for (size_t i = 0; i < count; i++) {
         RtHit hit = hits[i];
         if (rt_hit_is_possible(&accel->base, &rays[i], hit)) continue;
@@ -281,16 +308,22 @@ static void test_occluders(PluginQuery *query, const RtRay *rays, size_t count, 
         RtPreparedRay ray;
         float t;
         if (occluders[i] == RT_NO_OBJECT) continue;
-        rt_hit_ray(&ray, query->geometry, &rays[i], query->crossings);
+        rt_hit_ray(&ray, query->geometry, &rays[i], query->now.face.crossings);
         if (rt_object_hit(query->geometry, occluders[i], &ray, &t, NULL)) continue;
         break_at_ray(query->accel, &rays[i], "it answered with an occluder that the ray does not hit",
                      occluders[i]);
     }
 }
 
-static void check_occluders(PluginQuery *query, const RtRay *rays, size_t count, uint32_t *occluders) {
+static void take_occluders(PluginQuery *query, const RtRay *rays, size_t count, const uint32_t *theirs,
+                           uint32_t *occluders) {
     RtPluginAccel *accel = query->accel;
+    bool all = true;
     for (size_t i = 0; i < count; i++) {
+        occluders[i] = theirs[i];
+        all &= rt_occluder_is_possible(&accel->base, theirs[i]);
+    }
+    for (size_t i = 0; i < count && !all; i++) {
         if (rt_occluder_is_possible(&accel->base, occluders[i])) continue;
         break_at_object(accel, &rays[i], occluders[i]);
         occluders[i] = RT_NO_OBJECT;
@@ -345,16 +378,15 @@ static void add_counters(PluginQuery *query, const raytally_counters *counted, s
 }
 
 /* The two kernels of a question. Answers have the type Answer, which the plugin calls Theirs. */
-#define DEFINE_KERNELS(question, Answer, Theirs, check, is_hit)                                              \
+#define DEFINE_KERNELS(question, Answer, Theirs, take, is_hit)                                               \
     static void question##_some(PluginQuery *query, const RtScratch *scratch, const RtRay *rays,             \
                                 size_t count, Answer *answers, raytally_counters *counters) {                \
         RtPluginAccel *accel = query->accel;                                                                 \
         Answer *theirs = enter(query, scratch, rays, count, sizeof(Answer));                                 \
-        accel->table->question(accel->self, query->memory, &query->face, (const raytally_ray *)rays, count,  \
-                               (Theirs *)theirs, counters);                                                  \
+        accel->table->question(accel->self, query->memory, &query->now.face, (const raytally_ray *)rays,     \
+                               count, (Theirs *)theirs, counters);                                           \
         leave(query, (const char *)theirs);                                                                  \
-        check(query, rays, count, theirs);                                                                   \
-        memcpy(answers, theirs, count * sizeof(Answer));                                                     \
+        take(query, rays, count, theirs, answers);                                                           \
     }                                                                                                        \
     static void time_##question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,           \
                                 size_t count, Answer *answers) {                                             \
@@ -382,8 +414,8 @@ static void add_counters(PluginQuery *query, const raytally_counters *counted, s
             tallies[rays[i].kind].hits += (is_hit);                                                          \
         }                                                                                                    \
     }
-DEFINE_KERNELS(nearest, RtHit, raytally_hit, check_hits, answers[i].object != RT_NO_OBJECT)
-DEFINE_KERNELS(occluded, uint32_t, uint32_t, check_occluders, answers[i] != RT_NO_OBJECT)
+DEFINE_KERNELS(nearest, RtHit, raytally_hit, take_hits, answers[i].object != RT_NO_OBJECT)
+DEFINE_KERNELS(occluded, uint32_t, uint32_t, take_occluders, answers[i] != RT_NO_OBJECT)
 
 static RtStatus check(const RtAccel *accel, RtError *error) {
     const RtPluginAccel *self = rt_plugin_of(accel);

@@ -34,7 +34,7 @@ void rt_remote_progress(void) {
 /* Copies the stream. The plugin may have overwritten what the query is doing. */
 static void record_stream(Crash *crash, const RtPluginNow *now) {
     const size_t count = now->count < WIRE_RAYS ? now->count : WIRE_RAYS;
-    const size_t ray = (size_t)(now->ray - now->stream);
+    const size_t ray = (size_t)((const RtRay *)now->face.ray - now->stream);
     memcpy(crash->rays, now->stream, count * sizeof(RtRay));
     crash->ray = ray < count ? (uint32_t)ray : 0;
     crash->any = now->any;
@@ -47,7 +47,7 @@ static void on_signal(int number, siginfo_t *info, void *unused) {
     (void)unused;
     Crash *crash = &served.wire->crash;
     const RtPluginNow *now = number == SIGXCPU ? rt_plugin_busy() : rt_plugin_now();
-    if (now && now->ray) {
+    if (now && now->face.ray) {
         record_stream(crash, now);
         const char *at = number == SIGSEGV || number == SIGBUS ? info->si_addr : NULL;
         for (uint32_t i = 0; at && i < RT_GUARD_COUNT; i++) {

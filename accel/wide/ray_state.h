@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The state of one ray in a wide hierarchy, and its visits of nodes and leaves.
  *
- * rt_triangle_hit ends with rt_admit4, which clamps t to the interval [near, far] of the triangle's own thick
- * box. Hits at |t| >= RayState.sure omit it: near <= t <= far holds there, so only tmin <= t <= tmax is left.
- * Proof. Let e = 2^-24; d = dir, z = kz, x another axis; o = org; D the largest distance along one axis from
- * o to a plane of the box; t > 0. Float32 is relatively exact to e throughout, because 2^-64 <= |d_z| <= 2^64
- * and t |d_z| >= 2^-60 (both within a rounding), so t >= 2^-125 and D >= 2^-61.
+ * rt_triangle_hit ends with raytally_admit4, which clamps t to the interval [near, far] of the triangle's own
+ * thick box. Hits at |t| >= RayState.sure omit it: near <= t <= far holds there, so only tmin <= t <= tmax is
+ * left. Proof. Let e = 2^-24; d = dir, z = kz, x another axis; o = org; D the largest distance along one axis
+ * from o to a plane of the box; t > 0. Float32 is relatively exact to e throughout, because 2^-64 <= |d_z| <=
+ * 2^64 and t |d_z| >= 2^-60 (both within a rounding), so t >= 2^-125 and D >= 2^-61.
  *
  * 1. Let P be the vertices, relative to o, averaged by the edge functions in double. They have one sign, so P
  * is in the box. Each has a relative error of 2^-53, so the sheared x average to 0 within 2^-51 D. A sheared
@@ -13,11 +13,11 @@
  * So |P_x - P_z d_x / d_z| <= 7 e D. Rounding z and t gives |t d_z - P_z| <= 2 e D. Thus |t d_x - P_x| <= 9 e
  * D, up to 2^-40 D here and below for products of errors.
  * 2. Let d_x have no sign bit; otherwise mirror. The shifted origins are at least 16 e D (1 - 4 e) from o,
- * because rt_shift4 compensates their rounding. Let N = lo - (o + shift), so N <= P_x - 16 e D <= t d_x - 7 e
- * D. If N <= 0, the crossing is at most 0 < t, or NaN, which is ignored. If N > 0, then d_x > 7 e D / t > e
- * |d_z| >= 2^-88, so 1 / d_x is accurate. N and 1 / d_x have one rounding each, so their product is at most t
- * (1 + 2 e) - 7 e D / d_x < t, since t d_x <= D (1 + 3 e). Rounding is monotone and t a float32 number: the
- * crossing is at most t.
+ * because raytally_shift4 compensates their rounding. Let N = lo - (o + shift), so N <= P_x - 16 e D <= t d_x
+ * - 7 e D. If N <= 0, the crossing is at most 0 < t, or NaN, which is ignored. If N > 0, then d_x > 7 e D / t
+ * > e |d_z| >= 2^-88, so 1 / d_x is accurate. N and 1 / d_x have one rounding each, so their product is at
+ * most t (1 + 2 e) - 7 e D / d_x < t, since t d_x <= D (1 + 3 e). Rounding is monotone and t a float32
+ * number: the crossing is at most t.
  * 3. Let M = hi - (o - shift) >= t d_x + 7 e D. Two roundings take at most 2 e of it, so the crossing is at
  * least t, or infinite.
  * 4. If t < 0, negate t and dir: near and far become -far and -near, bit for bit. */
@@ -109,7 +109,7 @@ RT_KERNEL bool init_ray(RayState *f, const Query *q, size_t index, bool any, RtT
     const RtInt4 lo = {0, 2 * PLANE, 4 * PLANE}, down = ((RtInt4)dir < 0) & PLANE;
     const RtInt4 near = lo + down, far = lo + PLANE - down;
     memcpy(f->inv, &inv, sizeof f->inv);
-    rt_thick_origins(org, dir, &q->geometry->box, f->org_near, f->org_far);
+    raytally_thicken(org, dir, rt_public_box(&q->geometry->box), f->org_near, f->org_far);
     memcpy(f->near, &near, sizeof f->near);
     memcpy(f->far, &far, sizeof f->far);
     f->tmin = ray->tmin;
@@ -238,10 +238,10 @@ RT_KERNEL uint32_t prefilter_leaf(const RtWideTriangles *blocks, RtWideRef ref, 
 /* The last step of rt_triangle_hit for one triangle of a block. */
 RT_KERNEL bool admit(const float *triangle, RayState *f, const Query *q, float *t) {
     if (fabsf(*t) >= f->sure) return *t >= f->tmin && *t <= f->tmax;
-    RtFloat4 a = rt_triangle_vertex(triangle, RT_WIDE_BLOCK);
-    RtFloat4 b = rt_triangle_vertex(triangle + VERTEX, RT_WIDE_BLOCK);
-    RtFloat4 c = rt_triangle_vertex(triangle + (size_t)2 * VERTEX, RT_WIDE_BLOCK);
-    return rt_admit4(rt_min(rt_min(a, b), c), rt_max(rt_max(a, b), c), state_ray(f, q), t);
+    RtFloat4 a = raytally_triangle_vertex(triangle, RT_WIDE_BLOCK);
+    RtFloat4 b = raytally_triangle_vertex(triangle + VERTEX, RT_WIDE_BLOCK);
+    RtFloat4 c = raytally_triangle_vertex(triangle + (size_t)2 * VERTEX, RT_WIDE_BLOCK);
+    return raytally_admit4(rt_min(rt_min(a, b), c), rt_max(rt_max(a, b), c), state_ray(f, q), t);
 }
 
 /* Tests the triangles `mask` of a block in full; true if the search is over. */

@@ -21,7 +21,7 @@
 #ifndef RAYTALLY_ACCEL_H
 #define RAYTALLY_ACCEL_H
 
-#include "raytally/box.h"
+#include "raytally/hit.h"
 #include "raytally/types.h"
 
 #ifdef __cplusplus
@@ -80,12 +80,24 @@ typedef struct raytally_host {
     /** See raytally_object_hits. */
     int (*object_hits)(const raytally_prepared *ray, const uint32_t *ids, uint32_t count, int any,
                        raytally_hit *best, raytally_counters *counters);
+    /** The hit function of an object that is neither a triangle nor a sphere: 1 and *t, or 0. */
+    int (*other_hit)(const raytally_prepared *ray, uint32_t id, float *t);
 } raytally_host;
 
-/** The state of one thread's rays. Plugins use only the members declared here. */
+/** The state of one thread's rays. Plugins use only its first member; the functions below use the others. */
 struct raytally_query {
-    const raytally_host *host; /**< Functions of raytally. */
+    const raytally_host *host;        /**< Functions of raytally. */
+    const raytally_ray *volatile ray; /**< The last one prepared, for reports of crashes. */
+    void *crossings;                  /**< For raytally_prepared. */
+    const raytally_box *boxes;        /**< As in raytally_build_input, as are triangles and spheres. */
+    const float *triangles, *spheres;
+    const uint32_t *objects; /**< [object_count] shape << RAYTALLY_INDEX_BITS | index in its array. */
+    uint32_t object_count;   /**< 0 while raytally counts: it then makes all object tests itself. */
+    raytally_box box;        /**< Around all objects. */
 };
+
+/** The shapes in raytally_query.objects that are tested here. */
+enum { RAYTALLY_SHAPE_SPHERE = 0, RAYTALLY_SHAPE_TRIANGLE = 2, RAYTALLY_INDEX_BITS = 28 };
 
 /** Prepares a ray for tests of boxes and objects: reciprocals, signs, thickness.
  * @param query  the argument of the kernel
@@ -93,11 +105,27 @@ struct raytally_query {
  * @param out    the prepared ray */
 RAYTALLY_INLINE void raytally_prepare(raytally_query *query, const raytally_ray *ray,
                                       raytally_prepared *out) {
-    query->host->prepare(query, ray, out);
+    query->ray = ray;
+    raytally_prepare_in(out, ray, &query->box);
+    out->query = query;
+    out->crossings = query->crossings;
+}
+
+/** The exact hit function of one object, which must exist: 1 and *t, or 0. */
+RAYTALLY_INLINE int raytally_object_hit(const raytally_prepared *ray, uint32_t id, float *t) {
+    const raytally_query *query = ray->query;
+    const uint32_t shape = query->objects[id] >> RAYTALLY_INDEX_BITS;
+    const size_t index = query->objects[id] & ((UINT32_C(1) << RAYTALLY_INDEX_BITS) - 1);
+    if (shape == RAYTALLY_SHAPE_TRIANGLE)
+        return raytally_triangle_hit(query->triangles + 9 * index, 3, 1, ray, t);
+    if (shape == RAYTALLY_SHAPE_SPHERE)
+        return raytally_sphere_hit(query->spheres + 4 * index, &query->boxes[id], ray, t);
+    return query->host->other_hit(ray, id, t);
 }
 
 /** Tests objects: calls the exact hit function of each and keeps the best hit, the least (t, object). Counts
- * RAYTALLY_OBJECT_TESTS, RAYTALLY_OBJECT_HITS and RAYTALLY_CSG_TESTS.
+ * RAYTALLY_OBJECT_TESTS, RAYTALLY_OBJECT_HITS and RAYTALLY_CSG_TESTS. In streams that are counted, raytally
+ * makes the tests and checks the counts; otherwise triangles and spheres are tested inline (hit.h).
  * @param ray       from raytally_prepare
  * @param ids       [count] numbers of objects, each below raytally_build_input.object_count
  * @param count     number of objects, possibly 0
@@ -107,7 +135,25 @@ RAYTALLY_INLINE void raytally_prepare(raytally_query *query, const raytally_ray 
  * @return 1 if the search is over, because `any` is set and there is a hit; else 0 */
 RAYTALLY_INLINE int raytally_object_hits(const raytally_prepared *ray, const uint32_t *ids, uint32_t count,
                                          int any, raytally_hit *best, raytally_counters *counters) {
-    return ray->query->host->object_hits(ray, ids, count, any, best, counters);
+    const raytally_query *query = ray->query;
+    if (counters) return query->host->object_hits(ray, ids, count, any, best, counters);
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t id = ids[i];
+        float t;
+        if (id >= query->object_count) { /* raytally counts, or reports an object that does not exist */
+            raytally_hit kept = *best;   /* so that *best may stay in registers */
+            const int over = query->host->object_hits(ray, ids + i, count - i, any, &kept, counters);
+            *best = kept;
+            return over;
+        }
+        if (!raytally_object_hit(ray, id, &t)) continue;
+        if (t < best->t || (t == best->t && id < best->object)) {
+            best->t = t;
+            best->object = id;
+        }
+        if (any) return 1;
+    }
+    return 0;
 }
 
 /** Adds `n` to one of ::raytally_counter. With a constant NULL it compiles to nothing. */

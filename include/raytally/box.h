@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /** @file
- * Boxes, prepared rays, and the one box test that exactness depends on. It is frozen: within a major version
- * these operations give the same bits (docs/interface.md).
+ * Boxes, prepared rays, and the one box test that exactness depends on, which raytally's own accelerators
+ * use, too. It is frozen: within a major version these operations give the same bits (docs/interface.md).
  *
  * Why a traversal that uses it is exact. Hit functions compute in rounded arithmetic, so a ray may hit an
  * object that it misses by a few ulps. A prepared ray is therefore thick: it moves the planes of a box
@@ -21,8 +21,12 @@
 
 #include "raytally/types.h"
 
+#include <float.h>
 #include <stddef.h>
 #include <string.h>
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
 
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
 #error "raytally's box test needs NaN and infinities: compile without -ffast-math and -ffinite-math-only"
@@ -34,6 +38,18 @@ extern "C" {
 
 /** For functions that must be inlined. */
 #define RAYTALLY_INLINE static inline __attribute__((always_inline))
+
+/** Keeps the compiler from fusing a product with a sum (-ffp-contract), which would give other bits. No
+ * instruction. */
+#if defined(__x86_64__) && (defined(__FMA__) || defined(__FMA4__))
+#define RAYTALLY_ROUND(product) __asm__("" : "+x"(product))
+#elif defined(__aarch64__)
+#define RAYTALLY_ROUND(product) __asm__("" : "+w"(product))
+#elif defined(__FP_FAST_FMA) || defined(__FP_FAST_FMAF)
+#define RAYTALLY_ROUND(product) __asm__("" : "+m"(product))
+#else
+#define RAYTALLY_ROUND(product) ((void)0)
+#endif
 
 /** An axis-aligned box, closed: its faces belong to it. The box of an empty scene has lo = INFINITY and
  * hi = -INFINITY. */
@@ -59,8 +75,70 @@ typedef struct raytally_prepared {
     uint32_t last[4];        /**< ... and of the side that is crossed last. */
     const raytally_ray *ray; /**< The original, which must outlive this. */
     struct raytally_query *query; /**< Its query. */
-    uint64_t own[40];             /**< Private to raytally. */
+    void *crossings;              /**< Private to raytally. */
+    int32_t kx, ky, kz;     /**< kz: the axis of the largest |dir|; kx, ky: the next ones, in a cycle. */
+    float shear_x, shear_y; /**< dir[kx] / dir[kz] and dir[ky] / dir[kz], by inv. */
 } raytally_prepared;
+
+/* ---- vectors ----
+ *
+ * Four lanes of gcc and clang, for the functions of this file and of hit.h. */
+
+typedef float raytally_float4 __attribute__((vector_size(16)));
+typedef int32_t raytally_int4 __attribute__((vector_size(16)));
+
+/** Loads from anywhere. */
+RAYTALLY_INLINE raytally_float4 raytally_load4(const void *at) {
+    raytally_float4 lanes;
+    memcpy(&lanes, at, sizeof lanes);
+    return lanes;
+}
+
+/** a where the mask is -1, b where it is 0. */
+RAYTALLY_INLINE raytally_float4 raytally_select4(raytally_int4 mask, raytally_float4 a, raytally_float4 b) {
+    return (raytally_float4)((mask & (raytally_int4)a) | (~mask & (raytally_int4)b));
+}
+
+/** a < b ? a : b in each lane: b if one is NaN. */
+RAYTALLY_INLINE raytally_float4 raytally_min4(raytally_float4 a, raytally_float4 b) {
+#ifdef __SSE2__
+    return _mm_min_ps(a, b);
+#else
+    return raytally_select4(a < b, a, b);
+#endif
+}
+
+/** a > b ? a : b in each lane: b if one is NaN. */
+RAYTALLY_INLINE raytally_float4 raytally_max4(raytally_float4 a, raytally_float4 b) {
+#ifdef __SSE2__
+    return _mm_max_ps(a, b);
+#else
+    return raytally_select4(a > b, a, b);
+#endif
+}
+
+RAYTALLY_INLINE raytally_float4 raytally_abs4(raytally_float4 a) {
+    return (raytally_float4)((raytally_int4)a & 0x7FFFFFFF);
+}
+
+/** A product that is not fused with a sum. */
+RAYTALLY_INLINE raytally_float4 raytally_rounded4(raytally_float4 product) {
+    RAYTALLY_ROUND(product);
+    return product;
+}
+
+/* ---- boxes ---- */
+
+/** The least coordinates of a box; the fourth lane may hold anything. */
+RAYTALLY_INLINE raytally_float4 raytally_box_lo4(const raytally_box *box) {
+    return raytally_load4(box);
+}
+
+/** The largest. */
+RAYTALLY_INLINE raytally_float4 raytally_box_hi4(const raytally_box *box) {
+    const raytally_float4 end = raytally_load4((const char *)box + sizeof *box - sizeof(raytally_float4));
+    return __builtin_shufflevector(end, end, 1, 2, 3, 3);
+}
 
 /** The side of a box at a byte offset (raytally_prepared.first). */
 RAYTALLY_INLINE float raytally_box_side(const raytally_box *box, uint32_t place) {
@@ -92,6 +170,58 @@ RAYTALLY_INLINE int raytally_box_hit(const raytally_box *box, const raytally_pre
 /** The end of the search: t of the best hit so far, or the ray's tmax if there is none. */
 RAYTALLY_INLINE float raytally_tmax(const raytally_prepared *ray, const raytally_hit *best) {
     return best->t < ray->tmax ? best->t : ray->tmax;
+}
+
+/** The thickness of a ray for a box lo..hi: 2^-20 of the farthest coordinate from its origin. */
+RAYTALLY_INLINE float raytally_thickness4(raytally_float4 lo, raytally_float4 hi, raytally_float4 org) {
+    const raytally_float4 far = raytally_max4(raytally_abs4(lo - org), raytally_abs4(hi - org)); /* not NaN */
+    const float most = far[1] > far[0] ? far[1] : far[0];
+    return (far[2] > most ? far[2] : most) * 9.5367431640625e-07f;
+}
+
+/** How far an origin moves along each axis for a thickness: by 2^-23 |org| more, against the ray's direction,
+ * whose sign bits are `sign`. */
+RAYTALLY_INLINE raytally_float4 raytally_shift4(float thickness, raytally_float4 org, raytally_int4 sign) {
+    const raytally_float4 shift = thickness + raytally_rounded4(raytally_abs4(org) * 1.1920928955078125e-07f);
+    return (raytally_float4)((raytally_int4)shift ^ sign);
+}
+
+/** Moves an origin by the thickness for boxes inside `around`: raytally_prepared.org_near and org_far. */
+RAYTALLY_INLINE void raytally_thicken(raytally_float4 org, raytally_float4 dir, const raytally_box *around,
+                                      float near[4], float far[4]) {
+    const float thickness = raytally_thickness4(raytally_box_lo4(around), raytally_box_hi4(around), org);
+    const raytally_float4 shift = raytally_shift4(thickness, org, (raytally_int4)dir & INT32_MIN);
+    const raytally_float4 ahead = org + shift, back = org - shift;
+    memcpy(near, &ahead, sizeof ahead);
+    memcpy(far, &back, sizeof back);
+}
+
+/** Prepares a ray for boxes inside `around`. Does not set `query` and `crossings`. */
+RAYTALLY_INLINE void raytally_prepare_in(raytally_prepared *out, const raytally_ray *ray,
+                                         const raytally_box *around) {
+    /* The loads rely on the layout of raytally_ray: org, tmin, dir, tmax. */
+    const raytally_float4 org = raytally_load4(ray->org), dir = raytally_load4(ray->dir), inv = 1.0f / dir;
+    const raytally_int4 below = (raytally_int4)dir < 0, negative = below & 1;
+    const raytally_int4 from_lo = {0, 4, 8, 8}, from_hi = {12, 16, 20, 20};
+    const raytally_int4 first = from_lo + (below & 12), last = from_hi - (below & 12);
+    out->tmin = org[3];
+    out->tmax = dir[3] < FLT_MAX ? dir[3] : FLT_MAX;
+    memcpy(out->org, &org, sizeof org);
+    memcpy(out->dir, &dir, sizeof dir);
+    memcpy(out->inv, &inv, sizeof inv);
+    raytally_thicken(org, dir, around, out->org_near, out->org_far);
+    memcpy(out->negative, &negative, sizeof negative);
+    memcpy(out->first, &first, sizeof first);
+    memcpy(out->last, &last, sizeof last);
+    out->ray = ray;
+    /* The lower axis wins a tie. Without branches, which could not be predicted. */
+    const raytally_float4 size = raytally_abs4(dir);
+    const int z = (size[2] > size[0]) & (size[2] > size[1]);
+    out->kz = 2 * z | ((size[1] > size[0]) & !z);
+    out->kx = 9 >> 2 * out->kz & 3;
+    out->ky = 9 >> 2 * out->kx & 3;
+    out->shear_x = out->dir[out->kx] * out->inv[out->kz];
+    out->shear_y = out->dir[out->ky] * out->inv[out->kz];
 }
 
 #ifdef __cplusplus

@@ -17,7 +17,7 @@
  *   offset = 2^-21 * reach + 2 * own + min(scene, 2^-18 * reach).
  *
  * The first term bounds the rounding of the point and of t (a few 2^-24), and the shift of boxes beyond their
- * thickness (rt_shift4). The others account for the thickness of box tests: a ray that starts above it
+ * thickness (raytally_shift4). The others account for the thickness of box tests: a ray that starts above it
  * leaves the flat box of a floor behind and does not test the floor again. The second term is the object's
  * own thickness, doubled because a hit may lie as much to the side. The third is that of a structure, which
  * is the scene's, limited by the size of the point: in a scene of size 10^6 with details of size 1 it would

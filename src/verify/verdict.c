@@ -98,8 +98,9 @@ static bool in_reach(const RtGeometry *g, uint32_t id, const Probes *p) {
 
 /* Does the ray hit the object's front, seen along its normal (0), or its back (1)? */
 static int side_met(const RtGeometry *g, uint32_t id, const RtPreparedRay *ray, float t) {
-    RtRay again = {.org = ray->org, .tmin = ray->tmin, .dir = ray->dir, .tmax = ray->tmax};
-    return rt_dotd(rt_object_normals(g, id, &again, t, ray->crossings).geometric, rt_widen(ray->dir)) > 0;
+    RtVec3 org = rt_vec3_load(ray->org), dir = rt_vec3_load(ray->dir);
+    RtRay again = {.org = org, .tmin = ray->tmin, .dir = dir, .tmax = ray->tmax};
+    return rt_dotd(rt_object_normals(g, id, &again, t, ray->crossings).geometric, rt_widen(dir)) > 0;
 }
 
 /* Shapes that only our hit functions test: from the probes. */

@@ -261,7 +261,8 @@ RT_TEST(objects_of_every_magnitude_that_rays_touch_are_answered_in_lanes_as_with
 static void check_lane(const RtSphere *sphere, const RtPreparedRay *ray, bool passed, uint32_t *hits,
                        uint32_t *misses) {
     RtBox box = rt_sphere_box(sphere);
-    RtVec3d o = rt_subd(rt_widen(sphere->center), rt_widen(ray->org)), u = rt_normalized(rt_widen(ray->dir));
+    RtVec3d org = rt_widen(rt_vec3_load(ray->org)), dir = rt_widen(rt_vec3_load(ray->dir));
+    RtVec3d o = rt_subd(rt_widen(sphere->center), org), u = rt_normalized(dir);
     double distance = rt_lengthd(rt_crossd(o, u));
     float t;
     bool hit = rt_sphere_hit(sphere, &box, ray, &t);

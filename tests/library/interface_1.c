@@ -72,7 +72,7 @@ FIXED(raytally_box, 24);
 MEMBER(raytally_box, lo, 0, float[3]);
 MEMBER(raytally_box, hi, 12, float[3]);
 
-FIXED(raytally_prepared, 472);
+FIXED(raytally_prepared, 184);
 MEMBER(raytally_prepared, tmin, 0, float);
 MEMBER(raytally_prepared, tmax, 4, float);
 MEMBER(raytally_prepared, org, 8, float[4]);
@@ -85,10 +85,45 @@ MEMBER(raytally_prepared, first, 104, uint32_t[4]);
 MEMBER(raytally_prepared, last, 120, uint32_t[4]);
 MEMBER(raytally_prepared, ray, 136, const raytally_ray *);
 MEMBER(raytally_prepared, query, 144, struct raytally_query *);
+MEMBER(raytally_prepared, crossings, 152, void *);
+MEMBER(raytally_prepared, kx, 160, int32_t);
+MEMBER(raytally_prepared, ky, 164, int32_t);
+MEMBER(raytally_prepared, kz, 168, int32_t);
+MEMBER(raytally_prepared, shear_x, 172, float);
+MEMBER(raytally_prepared, shear_y, 176, float);
 
 FUNCTION(raytally_box_side, float(const raytally_box *, uint32_t));
 FUNCTION(raytally_box_hit, int(const raytally_box *, const raytally_prepared *, float, float *));
 FUNCTION(raytally_tmax, float(const raytally_prepared *, const raytally_hit *));
+FIXED(raytally_float4, 16);
+FIXED(raytally_int4, 16);
+FUNCTION(raytally_load4, raytally_float4(const void *));
+FUNCTION(raytally_select4, raytally_float4(raytally_int4, raytally_float4, raytally_float4));
+FUNCTION(raytally_min4, raytally_float4(raytally_float4, raytally_float4));
+FUNCTION(raytally_max4, raytally_float4(raytally_float4, raytally_float4));
+FUNCTION(raytally_abs4, raytally_float4(raytally_float4));
+FUNCTION(raytally_rounded4, raytally_float4(raytally_float4));
+FUNCTION(raytally_box_lo4, raytally_float4(const raytally_box *));
+FUNCTION(raytally_box_hi4, raytally_float4(const raytally_box *));
+FUNCTION(raytally_thickness4, float(raytally_float4, raytally_float4, raytally_float4));
+FUNCTION(raytally_shift4, raytally_float4(float, raytally_float4, raytally_int4));
+FUNCTION(raytally_thicken, void(raytally_float4, raytally_float4, const raytally_box *, float *, float *));
+FUNCTION(raytally_prepare_in, void(raytally_prepared *, const raytally_ray *, const raytally_box *));
+
+/* ---- hit.h ---- */
+
+FUNCTION(raytally_rounded, double(double));
+FUNCTION(raytally_root, double(double));
+FUNCTION(raytally_bits4, uint32_t(raytally_int4));
+FUNCTION(raytally_own_span4,
+         void(raytally_float4, raytally_float4, const raytally_prepared *, float *, float *));
+FUNCTION(raytally_admit4, int(raytally_float4, raytally_float4, const raytally_prepared *, float *));
+FUNCTION(raytally_triangle_along, raytally_float4(const float *, size_t, size_t));
+FUNCTION(raytally_triangle_vertex, raytally_float4(const float *, size_t));
+FUNCTION(raytally_triangle_hit, int(const float *, size_t, size_t, const raytally_prepared *, float *));
+FUNCTION(raytally_quadratic_roots, int(double, double, double, double, double *));
+FUNCTION(raytally_dot, double(const double *, const double *));
+FUNCTION(raytally_sphere_hit, int(const float *, const raytally_box *, const raytally_prepared *, float *));
 
 /* ---- accel.h ---- */
 
@@ -126,9 +161,21 @@ MEMBER(raytally_host, prepare, 8, void (*)(raytally_query *, const raytally_ray 
 MEMBER(raytally_host, object_hits, 16,
        int (*)(const raytally_prepared *, const uint32_t *, uint32_t, int, raytally_hit *,
                raytally_counters *));
+MEMBER(raytally_host, other_hit, 24, int (*)(const raytally_prepared *, uint32_t, float *));
 
 GROWS(raytally_query, 8);
 MEMBER(raytally_query, host, 0, const raytally_host *);
+MEMBER(raytally_query, ray, 8, const raytally_ray *volatile);
+MEMBER(raytally_query, crossings, 16, void *);
+MEMBER(raytally_query, boxes, 24, const raytally_box *);
+MEMBER(raytally_query, triangles, 32, const float *);
+MEMBER(raytally_query, spheres, 40, const float *);
+MEMBER(raytally_query, objects, 48, const uint32_t *);
+MEMBER(raytally_query, object_count, 56, uint32_t);
+MEMBER(raytally_query, box, 60, raytally_box);
+VALUE(RAYTALLY_SHAPE_SPHERE, 0);
+VALUE(RAYTALLY_SHAPE_TRIANGLE, 2);
+VALUE(RAYTALLY_INDEX_BITS, 28);
 
 /* raytally_build_result */
 VALUE(RAYTALLY_BUILD_OK, 0);
@@ -188,6 +235,7 @@ MEMBER(raytally_accel_ops, validate, 104, int (*)(const void *, char *, size_t))
 MEMBER(raytally_accel_ops, each_box, 112, void (*)(const void *, raytally_box_visitor *, void *));
 MEMBER(raytally_accel_ops, flags, 120, uint64_t);
 
+FUNCTION(raytally_object_hit, int(const raytally_prepared *, uint32_t, float *));
 FUNCTION(raytally_prepare, void(raytally_query *, const raytally_ray *, raytally_prepared *));
 FUNCTION(raytally_object_hits, int(const raytally_prepared *, const uint32_t *, uint32_t, int, raytally_hit *,
                                    raytally_counters *));

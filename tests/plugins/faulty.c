@@ -192,6 +192,10 @@ BUILD(build_null, *self = NULL; if (zero == 0) return RAYTALLY_BUILD_OK;)
 
 SEARCH_ALONE(none, )
 
+/* As plugins did that were compiled when raytally_prepare and raytally_object_hits only called raytally. */
+SEARCH_ALONE(by_calls, raytally_prepared own; ray->query->host->prepare(ray->query, ray->ray, &own);
+             ray->query->host->object_hits(&own, list->ids, list->count, any, best, counters);)
+
 /* One ray of 256. */
 static int is_rare(const raytally_ray *ray) {
     uint32_t bits;
@@ -438,7 +442,8 @@ static raytally_accel_ops tables[] = {
     {.name = "faulty-mumble", .summary = "refuses every scene in no language", .build = build_mumble},
     {.name = "faulty-illegal", .summary = "has an instruction that valgrind does not know", KERNELS(illegal)},
     {.name = "faulty-older",
-     .summary = "is in order, and has a table of the first version, which ends before these flags",
+     .summary = "is in order, and of the first version: its table ends before these flags, it tests by calls",
+     KERNELS(by_calls),
      .size = offsetof(raytally_accel_ops, flags),
      .flags = RAYTALLY_OWN_HITS | RAYTALLY_NO_COUNTS},
     OWN("unprepared", "crashes at a ray of 256", .nearest = unprepared_nearest),

@@ -85,7 +85,7 @@ RT_TEST(triangles_are_hit_as_number_by_number_wherever_they_lie) {
                 k % LANES == lane ? triangle.v[k / LANES / 3].at[k / LANES % 3] : NAN;
         bool hit = hit_by_hand(&triangle, &ray, &by_hand);
         assert_int_equal(rt_triangle_hit(&triangle, &p, &t), hit);
-        assert_int_equal(rt_triangle_hit_strided(&block[0][0][lane], (size_t)3 * LANES, LANES, &p, &strided),
+        assert_int_equal(raytally_triangle_hit(&block[0][0][lane], (size_t)3 * LANES, LANES, &p, &strided),
                          hit);
         if (!hit) continue;
         assert_true(same_bits(t, by_hand) && same_bits(strided, by_hand));

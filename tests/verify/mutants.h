@@ -46,8 +46,8 @@ static bool box_is_skipped(const Mutant *m, const RtBox *box, const RtPreparedRa
     float enter;
     if (kind == UNPADDED_BOX && m->recipe.broken) {
         RtPreparedRay bare = *ray;
-        memcpy(bare.org_near, ray->org.at, sizeof bare.org_near);
-        memcpy(bare.org_far, ray->org.at, sizeof bare.org_far);
+        memcpy(bare.org_near, ray->org, sizeof bare.org_near);
+        memcpy(bare.org_far, ray->org, sizeof bare.org_far);
         return !rt_box_hit(box, &bare, limit, &enter);
     }
     if (!rt_box_hit(box, ray, limit, &enter)) return true;
@@ -118,7 +118,7 @@ static void search_grid(const Mutant *m, const RtPreparedRay *ray, bool any, RtH
 
 static void search_depths(const Mutant *m, const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
     const RtGeometry *g = &m->base.scene->geometry;
-    double least = HUGE_VAL, unit = (double)rt_thickness(ray->org, &g->box) * 0x1p20 * 0x1p-24;
+    double least = HUGE_VAL, unit = (double)rt_thickness(rt_vec3_load(ray->org), &g->box) * 0x1p20 * 0x1p-24;
     if (any || !m->recipe.broken) {
         rt_test_all(g, ray, any, best, tally);
         return;
@@ -126,7 +126,7 @@ static void search_depths(const Mutant *m, const RtPreparedRay *ray, bool any, R
     for (uint32_t id = 0; id < g->object_count; id++) {
         float t;
         if (!rt_object_hit(g, id, ray, &t, tally)) continue;
-        double depth = floor((double)t * fabs((double)ray->dir.at[ray->kz]) / unit);
+        double depth = floor((double)t * fabs((double)ray->dir[ray->kz]) / unit);
         if (depth >= least) continue;
         least = depth;
         *best = (RtHit){t, id};
@@ -176,15 +176,15 @@ static bool lies_behind(const RtGeometry *g, uint32_t id, RtVec3 light, unsigned
 
 static void search_light(const Mutant *m, const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
     const RtScene *scene = m->base.scene;
-    const RtRay *asked = ray->original;
+    const RtRay *asked = (const RtRay *)ray->ray;
     bool known = any && asked->kind == RT_RAY_SHADOW && asked->source < scene->light_count && ray->tmax <= 1;
     RtVec3 light = known ? scene->lights[asked->source].position : rt_vec3(0, 0, 0);
-    RtVec3 to = rt_sub(light, ray->org);
-    if (!known || memcmp(&to, &ray->dir, sizeof to) != 0) {
+    RtVec3 org = rt_vec3_load(ray->org), to = rt_sub(light, org);
+    if (!known || memcmp(&to, ray->dir, sizeof to) != 0) {
         rt_test_all(&scene->geometry, ray, any, best, tally);
         return;
     }
-    const RtBox origin = {ray->org, ray->org};
+    const RtBox origin = {org, org};
     unsigned cells = octants_of(&origin, light);
     for (uint32_t id = 0; id < scene->geometry.object_count; id++) {
         unsigned shared = octants_of(&scene->geometry.boxes[id], light) & cells;
@@ -199,7 +199,7 @@ static void search_light(const Mutant *m, const RtPreparedRay *ray, bool any, Rt
 static double determinant(const RtTriangle *triangle, const RtPreparedRay *ray) {
     RtVec3d a = rt_widen(triangle->v[0]);
     RtVec3d u = rt_subd(rt_widen(triangle->v[1]), a), v = rt_subd(rt_widen(triangle->v[2]), a);
-    return rt_dotd(u, rt_crossd(rt_widen(ray->dir), v));
+    return rt_dotd(u, rt_crossd(rt_widen(rt_vec3_load(ray->dir)), v));
 }
 
 static void search_triangles(const Mutant *m, const RtPreparedRay *ray, bool any, RtHit *best,

@@ -12,7 +12,8 @@
  *
  * at no cost, by using one origin for near planes and another for far planes (Woop, Benthin & Wald 2013,
  * "Watertight Ray/Triangle Intersection", section 3.4). The origin moves along each axis by a further 2^-23
- * |org| (rt_shift4), since otherwise rounding would swallow the thickness far from the coordinate origin.
+ * |org| (raytally_shift4), since otherwise rounding would swallow the thickness far from the coordinate
+ * origin.
  *
  * Why pruning is exact. The crossings (plane - org') * inv are monotone in the plane, in float32 as in the
  * real numbers, and the thickness grows with the box. So for b inside B, with the thickness of B or of
@@ -28,6 +29,8 @@
 
 #include "core/base/box4.h"
 #include "core/base/status.h"
+
+#include <raytally/hit.h>
 
 #include <float.h>
 #include <stddef.h>
@@ -94,19 +97,12 @@ typedef struct RtHit {
  * double, and Embree, which drops anything above 1.8e18, sees all that we see. */
 #define RT_MAX_COORDINATE 5e17f
 
-/* A ray with everything that box and triangle tests need, computed once. Arrays are indexed by axis. */
-typedef struct RtPreparedRay {
-    const RtRay *original;        /* the ray itself */
-    struct RtCrossing *crossings; /* scratch memory of hit functions (rt_hit_ray); NULL: for box tests only */
-    RtVec3 org, dir;
-    float tmin, tmax; /* tmax is finite: a hit at infinity does not count */
-    float inv[4];     /* 1 / dir, possibly infinite; x, y, z and a fourth lane for vectors, here and below */
-    float org_near[4], org_far[4]; /* origins moved by the thickness */
-    uint32_t negative[4];          /* 1 where dir has its sign bit set, -0 included */
-    uint32_t first[4], last[4]; /* byte offsets in a box of the sides crossed first and last (rt_box_side) */
-    int kx, ky, kz;             /* kz: the axis of largest |dir|; kx, ky the others, right-handed */
-    float shear_x, shear_y;     /* dir[kx] / dir[kz], dir[ky] / dir[kz] */
-} RtPreparedRay;
+struct RtCrossing;
+
+/* A ray with everything that box and hit tests need, computed once. It is that of the plugin interface, so
+ * that plugins test boxes and objects by the same code. `crossings` is scratch memory of hit functions
+ * (rt_hit_ray), an array of RtCrossing; NULL: for box tests only. */
+typedef raytally_prepared RtPreparedRay;
 
 static inline bool rt_ray_is_valid(const RtRay *ray) {
     return rt_finite(ray->org) && rt_finite(ray->dir) && fabsf(ray->org.x) <= RT_MAX_COORDINATE &&
@@ -125,35 +121,20 @@ static inline bool rt_hit_before(float t, uint32_t object, RtHit best) {
     return t < best.t || (t == best.t && object < best.object);
 }
 
-static inline float rt_thickness4(RtFloat4 lo, RtFloat4 hi, RtFloat4 org) {
-    RtFloat4 far = rt_max(rt_abs(lo - org), rt_abs(hi - org)); /* not NaN */
-    return rt_maxf(far[2], rt_maxf(far[1], far[0])) * 0x1p-20f;
-}
-
 static inline float rt_thickness(RtVec3 org, const RtBox *box) {
-    return rt_thickness4(rt_box_lo4(box), rt_box_hi4(box), (RtFloat4){org.x, org.y, org.z, org.z});
+    return raytally_thickness4(rt_box_lo4(box), rt_box_hi4(box), (RtFloat4){org.x, org.y, org.z, org.z});
 }
 
-/* How far an origin moves along each axis for a thickness, against the ray's direction, whose sign bits
- * are `sign`. */
-static inline RtFloat4 rt_shift4(float thickness, RtFloat4 org, RtInt4 sign) {
-    RtFloat4 shift = thickness + rt_abs(org) * 0x1p-23f;
-    return (RtFloat4)((RtInt4)shift ^ sign);
-}
-
-/* Moves an origin by the thickness for boxes inside `around`: near and far, as in RtPreparedRay. */
-static inline void rt_thick_origins(RtFloat4 org, RtFloat4 dir, const RtBox *around, float near[4],
-                                    float far[4]) {
-    float thickness = rt_thickness4(rt_box_lo4(around), rt_box_hi4(around), org);
-    RtFloat4 shift = rt_shift4(thickness, org, (RtInt4)dir & INT32_MIN);
-    RtFloat4 ahead = org + shift, back = org - shift;
-    memcpy(near, &ahead, sizeof ahead);
-    memcpy(far, &back, sizeof back);
+/* The functions of the interface take boxes and rays of its own types, which have the same layout, and load
+ * them whatever their type. */
+static inline const raytally_box *rt_public_box(const RtBox *box) {
+    return (const raytally_box *)box;
 }
 
 /* Sets the thickness for boxes inside `around`. */
 static inline void rt_ray_thicken(RtPreparedRay *ray, const RtBox *around) {
-    rt_thick_origins(rt_loadu4(&ray->org), rt_loadu4(&ray->dir), around, ray->org_near, ray->org_far);
+    raytally_thicken(rt_loadu4(ray->org), rt_loadu4(ray->dir), rt_public_box(around), ray->org_near,
+                     ray->org_far);
 }
 
 /* Prepares *p. `scene_box` must contain every box that the ray will be tested against; it sets the
@@ -161,27 +142,8 @@ static inline void rt_ray_thicken(RtPreparedRay *ray, const RtBox *around) {
  * core/shape/geometry.h). */
 static inline void rt_ray_prepare_in(RtPreparedRay *p, const RtRay *ray, const RtBox *scene_box,
                                      struct RtCrossing *crossings) {
-    /* The loads rely on the layout of RtRay: org, tmin, dir, tmax. */
-    RtFloat4 org = rt_loadu4(ray), dir = rt_loadu4((const char *)ray + offsetof(RtRay, dir)), inv = 1 / dir;
-    RtInt4 negative = (RtInt4)dir < 0;
-    RtInt4 first = (RtInt4){0, 4, 8, 8} + (negative & 12), last = (RtInt4){12, 16, 20, 20} - (negative & 12);
-    negative &= 1;
-    p->original = ray;
+    raytally_prepare_in(p, (const raytally_ray *)ray, rt_public_box(scene_box));
     p->crossings = crossings;
-    p->org = ray->org;
-    p->dir = ray->dir;
-    memcpy(p->inv, &inv, sizeof p->inv);
-    rt_thick_origins(org, dir, scene_box, p->org_near, p->org_far);
-    memcpy(p->negative, &negative, sizeof p->negative);
-    memcpy(p->first, &first, sizeof p->first);
-    memcpy(p->last, &last, sizeof p->last);
-    p->tmin = ray->tmin;
-    p->tmax = rt_minf(ray->tmax, FLT_MAX);
-    p->kz = rt_major_axis(ray->dir);
-    p->kx = rt_next_axis(p->kz);
-    p->ky = rt_next_axis(p->kx);
-    p->shear_x = p->dir.at[p->kx] * p->inv[p->kz];
-    p->shear_y = p->dir.at[p->ky] * p->inv[p->kz];
 }
 
 /* The same for box tests only. */
@@ -194,9 +156,7 @@ static inline RtPreparedRay rt_ray_prepare(const RtRay *ray, const RtBox *scene_
 /* The side of a box at a byte offset. The side that a ray crosses first is looked up instead of branched
  * on: with rays in all directions that branch would be unpredictable. */
 static inline float rt_box_side(const RtBox *box, uint32_t place) {
-    float at;
-    memcpy(&at, (const char *)box + place, sizeof at);
-    return at;
+    return raytally_box_side(rt_public_box(box), place);
 }
 
 /* The slab test (Kay & Kajiya 1986): clips [*near, *far] to the interval in which the thick ray is within
@@ -213,47 +173,16 @@ static inline void rt_box_cut(const RtBox *box, const RtPreparedRay *ray, float 
 
 /* True if the thick ray meets the box for some t in [ray->tmin, tmax]; *enter is the first such t. */
 static inline bool rt_box_hit(const RtBox *box, const RtPreparedRay *ray, float tmax, float *enter) {
-    float near = ray->tmin, far = tmax;
-    rt_box_cut(box, ray, &near, &far);
-    *enter = near;
-    return near <= far;
+    return raytally_box_hit(rt_public_box(box), ray, tmax, enter);
 }
 
-/* The interval [*near, *far] of t in which the ray is within an object's box lo..hi, with the thickness of
- * that box alone; empty if *near > *far. */
-static inline void rt_own_span4(RtFloat4 lo, RtFloat4 hi, const RtPreparedRay *ray, float *near, float *far) {
-    RtFloat4 org = rt_loadu4(&ray->org), inv = rt_loadu4(ray->inv); /* and what follows org */
-    RtInt4 sign = (RtInt4)rt_loadu4(&ray->dir) & INT32_MIN, negative = sign < 0;
-    RtFloat4 shift = rt_shift4(rt_thickness4(lo, hi, org), org, sign);
-    RtFloat4 first = (rt_select(negative, hi, lo) - (org + shift)) * inv;
-    RtFloat4 second = (rt_select(negative, lo, hi) - (org - shift)) * inv;
-    *near = -INFINITY, *far = INFINITY;
-    for (int a = 0; a < 3; a++) {
-        *near = rt_maxf(first[a], *near);
-        *far = rt_minf(second[a], *far);
-    }
-}
-
-/* Decides whether a candidate t is a hit on an object with box lo..hi: the thick ray must meet the box, t
- * is clamped to [enter, leave] (a change within rounding), and must then lie in [tmin, tmax]. NaN is
- * rejected. */
-static inline bool rt_admit4(RtFloat4 lo, RtFloat4 hi, const RtPreparedRay *ray, float *t) {
-    float near, far;
-    rt_own_span4(lo, hi, ray, &near, &far);
-    if (!(near <= far)) return false;
-    float clamped = *t < near ? near : *t > far ? far : *t;
-    if (!(clamped >= ray->tmin && clamped <= ray->tmax)) return false;
-    *t = clamped;
-    return true;
-}
-
-/* The same for a box in memory. */
+/* raytally_own_span4 and raytally_admit4 (hit.h) for a box in memory. */
 static inline void rt_box_own_span(const RtBox *own, const RtPreparedRay *ray, float *near, float *far) {
-    rt_own_span4(rt_box_lo4(own), rt_box_hi4(own), ray, near, far);
+    raytally_own_span4(rt_box_lo4(own), rt_box_hi4(own), ray, near, far);
 }
 
 static inline bool rt_box_admit(const RtBox *own, const RtPreparedRay *ray, float *t) {
-    return rt_admit4(rt_box_lo4(own), rt_box_hi4(own), ray, t);
+    return raytally_admit4(rt_box_lo4(own), rt_box_hi4(own), ray, t);
 }
 
 #endif

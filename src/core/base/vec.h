@@ -27,6 +27,10 @@ static inline RtVec3 rt_vec3(float x, float y, float z) {
     return (RtVec3){x, y, z};
 }
 
+static inline RtVec3 rt_vec3_load(const float at[3]) {
+    return (RtVec3){at[0], at[1], at[2]};
+}
+
 static inline RtVec3d rt_vec3d(double x, double y, double z) {
     return (RtVec3d){x, y, z};
 }

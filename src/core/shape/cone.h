@@ -11,7 +11,6 @@
 #include "core/base/ray.h"
 #include "core/base/status.h"
 #include "core/shape/ball.h"
-#include "core/shape/quadratic.h"
 
 typedef struct RtCone {
     RtVec3 base, apex; /* centres of the circles */
@@ -47,8 +46,8 @@ static inline bool rt_cone_between_radii(const RtCone *cone, RtVec3d across, RtV
 
 /* The first t in [tmin, tmax] at which the ray meets the side. */
 static inline bool rt_cone_hit(const RtCone *cone, const RtBox *own, const RtPreparedRay *ray, float *t) {
-    RtVec3d org = rt_widen(ray->org);
-    RtVec3d dir = rt_widen(ray->dir);
+    RtVec3d org = rt_widen(rt_vec3_load(ray->org));
+    RtVec3d dir = rt_widen(rt_vec3_load(ray->dir));
     RtVec3d from_middle = rt_subd(org, cone->middle);
     double closest = -rt_dotd(from_middle, dir) / rt_dotd(dir, dir);
     RtVec3d near = rt_add_scaledd(from_middle, dir, closest);
@@ -63,7 +62,7 @@ static inline bool rt_cone_hit(const RtCone *cone, const RtBox *own, const RtPre
     double half_b = rt_dotd(across, d_across) - radius * d_radius;
     double c = rt_dotd(across, across) - radius * radius;
     double roots[2];
-    int count = rt_quadratic_roots(a, half_b, c, half_b * half_b - a * c, roots);
+    int count = raytally_quadratic_roots(a, half_b, c, half_b * half_b - a * c, roots);
     for (int i = 0; i < count; i++) {
         double s = s0 + roots[i] * ds;
         if (!(fabs(s) <= half)) continue;

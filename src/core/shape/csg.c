@@ -141,7 +141,7 @@ INLINE void run(Machine *m, const RtCsgForest *forest, const RtCsg *tree, const 
 }
 
 static inline RtSolidRay solid_ray(const RtCsg *tree, const RtPreparedRay *ray) {
-    RtSolidRay solid = {rt_widen(ray->org), rt_widen(ray->dir), *ray};
+    RtSolidRay solid = {rt_widen(rt_vec3_load(ray->org)), rt_widen(rt_vec3_load(ray->dir)), *ray};
     rt_ray_thicken(&solid.thick, &tree->reach);
     return solid;
 }
@@ -176,7 +176,8 @@ bool rt_csg_hit(const RtCsgForest *forest, const RtCsg *tree, const RtPreparedRa
 /* ---- facets ---- */
 
 static RtCsgFacet facet_of(const RtCsgForest *forest, const RtPreparedRay *ray, const RtCrossing *crossing) {
-    RtVec3d point = rt_add_scaledd(rt_widen(ray->org), rt_widen(ray->dir), (double)crossing->t);
+    RtVec3d point = rt_add_scaledd(rt_widen(rt_vec3_load(ray->org)), rt_widen(rt_vec3_load(ray->dir)),
+                                   (double)crossing->t);
     RtVec3d normal = rt_solid_normal(&forest->set, crossing->solid, crossing->face, point);
     bool inward = forest->set.solids[crossing->solid].subtracted;
     return (RtCsgFacet){inward ? rt_scaled(normal, -1) : normal, crossing->solid};

@@ -62,8 +62,8 @@ static inline bool rt_polygon_inside(const RtPolygon *polygon, const RtVec3 *ver
 /* The t in [tmin, tmax] at which the ray meets the polygon; a ray in its plane misses it. */
 static inline bool rt_polygon_hit(const RtPolygon *polygon, const RtVec3 *vertices, const RtBox *own,
                                   const RtPreparedRay *ray, float *t) {
-    RtVec3d org = rt_widen(ray->org);
-    RtVec3d dir = rt_widen(ray->dir);
+    RtVec3d org = rt_widen(rt_vec3_load(ray->org));
+    RtVec3d dir = rt_widen(rt_vec3_load(ray->dir));
     double approach = rt_dotd(polygon->normal, dir);
     if (approach == 0) return false;
     double at = rt_dotd(polygon->normal, rt_subd(polygon->center, org)) / approach;

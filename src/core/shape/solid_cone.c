@@ -11,7 +11,6 @@
  * closely as double allows. So the transform describes what is between the caps, for extents and for the
  * referee, too. */
 #include "core/base/memory.h"
-#include "core/shape/quadratic.h"
 #include "core/shape/solid_parts.h"
 
 enum { SIDE, BASE, APEX };
@@ -29,11 +28,12 @@ static bool within_side(double ratio, const RtSolidLine *line, RtSpan *span) {
 
     double roots[2], discriminant = half_b * half_b - a * c;
     if (a > 0) {
-        if (!(discriminant > 0) || rt_quadratic_roots(a, half_b, c, discriminant, roots) < 2) return false;
+        if (!(discriminant > 0) || raytally_quadratic_roots(a, half_b, c, discriminant, roots) < 2)
+            return false;
         span->open = roots[0], span->close = roots[1];
         return r + dr * (roots[0] / 2 + roots[1] / 2) > 0;
     }
-    int count = rt_quadratic_roots(a, half_b, c, fmax(discriminant, 0), roots);
+    int count = raytally_quadratic_roots(a, half_b, c, fmax(discriminant, 0), roots);
     if (dr > 0)
         span->open = roots[count - 1];
     else

@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Spheres: centre and radius > 0; the surface, hit from outside and from inside.
- *
- * The hit is computed in double about the point of the ray nearest to the centre (Haines, Günther &
- * Akenine-Möller 2019, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems ch. 7): the
- * half chord is sqrt(r^2 - |l|^2), with l the vector from the centre to that point, which loses no
- * precision for distant origins. */
+/* Spheres: centre and radius > 0; the surface, hit from outside and from inside. raytally/hit.h has the hit
+ * function. */
 #ifndef RT_SHAPE_SPHERE_H
 #define RT_SHAPE_SPHERE_H
 
 #include "core/base/ray.h"
 #include "core/shape/ball.h"
-#include "core/shape/quadratic.h"
 
 typedef struct RtSphere {
     RtVec3 center;
@@ -32,22 +27,7 @@ RtVec3d rt_sphere_normal(const RtSphere *sphere, RtVec3d point);
 /* The first t in [tmin, tmax] at which the ray meets the sphere. */
 static inline bool rt_sphere_hit(const RtSphere *sphere, const RtBox *own, const RtPreparedRay *ray,
                                  float *t) {
-    RtVec3d org = rt_subd(rt_widen(ray->org), rt_widen(sphere->center));
-    RtVec3d dir = rt_widen(ray->dir);
-    double radius = (double)sphere->radius;
-    double dd = rt_dotd(dir, dir), od = rt_dotd(org, dir);
-    double closest = -od / dd;
-    RtVec3d l = rt_add_scaledd(org, dir, closest);
-    double half_chord_squared = radius * radius - rt_dotd(l, l);
-    if (!(half_chord_squared >= 0)) return false;
-    double roots[2];
-    int count =
-        rt_quadratic_roots(dd, od, rt_dotd(org, org) - radius * radius, half_chord_squared * dd, roots);
-    for (int i = 0; i < count; i++) {
-        *t = (float)roots[i];
-        if (rt_box_admit(own, ray, t)) return true;
-    }
-    return false;
+    return raytally_sphere_hit((const float *)sphere, rt_public_box(own), ray, t);
 }
 
 #endif
