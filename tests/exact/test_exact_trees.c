@@ -212,7 +212,7 @@ RT_TEST(no_ray_at_the_families_of_trees_is_undecided_and_differences_are_at_bord
             }
         }
     }
-    assert_true(hits > rays / 5);
+    assert_true(hits > rays / 6); /* rays of past-hits are meant to miss */
 }
 
 RT_TEST(a_tree_is_undecided_where_memory_is_short_and_only_there) {
