@@ -84,7 +84,7 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     copy_values(what, values);
     raytally_build_input input = {.size = sizeof input,
                                   .object_count = geometry->object_count,
-                                  .boxes = (const raytally_box *)geometry->boxes,
+                                  .boxes = rt_public_box(geometry->boxes),
                                   .values = values,
                                   .threads = rt_thread_count(what->threads),
                                   .byte_limit = what->limit < left ? what->limit : left,

@@ -255,8 +255,7 @@ static void break_at_object(RtPluginAccel *accel, const RtRay *ray, uint32_t obj
                  object);
 }
 
-/* Copies the answers; returns whether all are possible. Four at a time, because the plugin is charged for
- * it. */
+/* Copies the answers; returns whether all are possible. Four at a time: the plugin is charged for it. */
 static bool copy_hits(const RtAccel *accel, const RtRay *rays, size_t count, const RtHit *theirs,
                       RtHit *hits) {
     const RtInt4 objects = rt_all_ints4((int32_t)accel->scene->geometry.object_count);

@@ -120,7 +120,8 @@ RT_KERNEL void begin_sorting(Sorter *s, int32_t count) {
 }
 
 /* Sorts until a class fills a packet, and returns it. When all rays are sorted, returns any class that has
- * rays, or CLASSES. */
+ * rays, or CLASSES. Not inlined, as init_packet: they run once a packet, and the loop of visits stays small.
+ */
 static __attribute__((noinline)) uint32_t sort_rays(Sorter *s, const Query *q) {
     RaySource *from = q->source;
     while (s->left > 0 && more_rays(q)) {

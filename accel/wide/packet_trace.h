@@ -17,6 +17,9 @@
  * if it meets at most so many children; otherwise its rays would visit too many children that they miss. */
 enum { BEAM_LEAST_RAYS = 8, BEAM_MOST_CHILDREN = 3 };
 
+/* The cost of testing a vector of rays with one child, in tests of one ray with all children: measured. */
+enum { LANES_COST = 2 };
+
 /* How much the rays share their visits. */
 typedef struct Shared {
     uint64_t visits, rays; /* of nodes, and the active rays summed over them */
@@ -105,7 +108,7 @@ RT_KERNEL bool test_together(ChildSets *met, const Planes *planes, const Packet 
     }
     const uint32_t children =
         beam->tight ? rt_mask8_bits(test_beam(planes, beam, &near)) : (1u << node->count) - 1;
-    if ((uint32_t)__builtin_popcount(children) * 2 * (BEAM / RT_LANES) >= active) return false;
+    if ((uint32_t)__builtin_popcount(children) * LANES_COST * (BEAM / RT_LANES) >= active) return false;
     test_lanes(&met->rays, p, node, b, rays, children);
     return true;
 }

@@ -76,15 +76,20 @@ typedef struct raytally_prepared {
     const raytally_ray *ray; /**< The original, which must outlive this. */
     struct raytally_query *query; /**< Its query. */
     void *crossings;              /**< Private to raytally. */
-    int32_t kx, ky, kz;     /**< kz: the axis of the largest |dir|; kx, ky: the next ones, in a cycle. */
-    float shear_x, shear_y; /**< dir[kx] / dir[kz] and dir[ky] / dir[kz], by inv. */
+    int32_t kx;                   /**< The axis after kz, in a cycle. */
+    int32_t ky;                   /**< The axis before kz. */
+    int32_t kz;                   /**< The axis of the largest |dir|. */
+    float shear_x;                /**< dir[kx] / dir[kz], by inv. */
+    float shear_y;                /**< dir[ky] / dir[kz], by inv. */
 } raytally_prepared;
 
 /* ---- vectors ----
  *
  * Four lanes of gcc and clang, for the functions of this file and of hit.h. */
 
+/** Four numbers. */
 typedef float raytally_float4 __attribute__((vector_size(16)));
+/** Four integers, or a mask: -1 where it holds, 0 where not. */
 typedef int32_t raytally_int4 __attribute__((vector_size(16)));
 
 /** Loads from anywhere. */

@@ -24,7 +24,8 @@ RAYTALLY_INLINE double raytally_rounded(double product) {
 /** The square root of a number that is not negative. */
 RAYTALLY_INLINE double raytally_root(double a) {
 #ifdef __SSE2__
-    const __m128d lanes = _mm_set_sd(a); /* sqrt would have to set errno */
+    /* sqrt would have to set errno; valgrind lacks the instruction that _mm_set_sd can be. */
+    const __m128d lanes = _mm_set1_pd(a);
     return _mm_cvtsd_f64(_mm_sqrt_sd(lanes, lanes));
 #else
     return __builtin_sqrt(a);

@@ -331,16 +331,16 @@ const RtSyntax rt_verify_syntax = {
     .arguments = "[SCENE...]\n--replay FILE",
     .argument = {.name = "SCENE", .take = take_scene},
     .finish = finish,
-    .help = "Verify that each accelerator hits the same object as brute, with the same bits of t, for every "
-            "ray of each SCENE, in the timed and the counted kernel, ray by ray and in streams. The default "
-            "is some fifty small scenes that are hard for accelerators. SCENE may be `families`, generated "
-            "scenes that are hard for accelerators, or one of them, as in family:kind=slivers,seed=7 "
-            "(`raytally scenes family` lists them).\v"
-            "Accelerators with hit functions of their own (Embree's native mode, libraries as plugins) get "
-            "verdicts: equal, "
-            "tie, marginal (explained by rounding) or wrong. raytally writes the first wrong answer of each "
-            "row to a file (in --out DIR, or in verify-failures/), with the scene reduced to the objects "
-            "that cause it; --replay traces it again. Exit code 1 if anything is wrong."};
+    .help =
+        "Verify that each accelerator hits the same object as brute, with the same bits of t, for every "
+        "ray of each SCENE, in the timed and the counted kernel, ray by ray and in streams. The default "
+        "is some fifty small scenes that are hard for accelerators. SCENE may be `families`, generated "
+        "scenes that are hard for accelerators, or one of them, as in family:kind=slivers,seed=7 "
+        "(`raytally scenes family` lists them).\v"
+        "Accelerators with hit functions of their own (Embree's native mode, libraries as plugins) get "
+        "verdicts: equal, tie, marginal (explained by rounding) or wrong. raytally writes the first wrong "
+        "answer of each row to a file (in --out DIR, or in verify-failures/), with the scene reduced to "
+        "the objects that cause it; --replay traces it again. Exit code 1 if anything is wrong."};
 
 RtStatus rt_command_verify(int argc, char **argv, RtError *error) {
     static Options o;

@@ -157,11 +157,11 @@ static RtStatus start(Session *session, RtError *error) {
 }
 
 /* A plugin has ended the worker, in whose process it runs: only its own cell is lost. */
-static RtStatus go_on_without(Session *session, RtInstructions cell, const RtError *failure, RtError *error) {
-    const bool illegal = strstr(failure->message, strsignal(SIGILL)) != NULL;
+static RtStatus go_on_without(Session *session, RtInstructions cell, RtError *error) {
     snprintf(cell.why, sizeof cell.why, "%s",
-             illegal ? "it has instructions that valgrind lacks, such as AVX-512: compile it without them"
-                     : "it crashed under valgrind");
+             session->worker.end.signal == SIGILL
+                 ? "it has instructions that valgrind lacks, such as AVX-512: compile it without them"
+                 : "it crashed under valgrind");
     session->callgrind->cells[session->callgrind->count++] = cell;
     rt_worker_end(&session->worker);
     return start(session, error);
@@ -188,8 +188,7 @@ static RtStatus count_cell(Session *session, const RtResults *results, const RtC
     RtError failure;
     RtStatus status = rt_worker_ask(&session->worker, &answer, &failure, "count %" PRIu32 " %s %s %s\n",
                                     at->workload, rt_ray_kind_name(at->kind), candidate->label, path);
-    if (status != RT_OK && rt_spec_is_remote(&candidate->parsed))
-        return go_on_without(session, cell, &failure, error);
+    if (status != RT_OK && rt_spec_is_remote(&candidate->parsed)) return go_on_without(session, cell, error);
     if (status != RT_OK) return rt_fail(error, status, "%s", failure.message);
     status = take_answer(callgrind, answer, cell, &session->passes, error);
     json_decref(answer);

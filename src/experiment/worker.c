@@ -42,9 +42,9 @@ RtStatus rt_worker_start(RtWorker *worker, const char *const *command, char *con
 }
 
 static RtStatus fail_ended(RtWorker *worker, RtError *error) {
-    RtProcessEnd end;
     char how[160] = "it no longer answers";
-    if (rt_process_wait(&worker->process, 1000, &end)) rt_process_end_format(end, 0, "", how, sizeof how);
+    if (rt_process_wait(&worker->process, 1000, &worker->end))
+        rt_process_end_format(worker->end, 0, "", how, sizeof how);
     return worker->fail(worker, how, error);
 }
 

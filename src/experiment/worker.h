@@ -32,6 +32,7 @@ struct RtWorker {
     /* Reports that the worker answers no longer; `how` it ended. */
     RtStatus (*fail)(const RtWorker *worker, const char *how, RtError *error);
     RtProcess process;
+    RtProcessEnd end; /* once `fail` is called, how it ended, if it has */
     FILE *to, *from;
 };
 

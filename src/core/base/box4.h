@@ -8,20 +8,27 @@
 #include "core/base/box.h"
 #include "core/base/simd.h"
 
+#include <raytally/box.h>
+
 #include <string.h>
 
 typedef struct RtBox4 {
     RtFloat4 lo, hi;
 } RtBox4;
 
+/* The functions of the interface take boxes of its own type, which has the same layout, and load them
+ * whatever their type. */
+static inline const raytally_box *rt_public_box(const RtBox *box) {
+    return (const raytally_box *)box;
+}
+
 /* The corners of a box. */
 static inline RtFloat4 rt_box_lo4(const RtBox *box) {
-    return rt_loadu4(box);
+    return raytally_box_lo4(rt_public_box(box));
 }
 
 static inline RtFloat4 rt_box_hi4(const RtBox *box) {
-    RtFloat4 end = rt_loadu4((const char *)box + sizeof *box - sizeof(RtFloat4));
-    return __builtin_shufflevector(end, end, 1, 2, 3, 3);
+    return raytally_box_hi4(rt_public_box(box));
 }
 
 static inline RtBox4 rt_box4_empty(void) {

@@ -202,8 +202,7 @@ static bool has_ended(const RtProcess *process, RtProcessEnd *end) {
     return true;
 }
 
-/* Whether /proc/PID/stat shows a process of the group that is no zombie; then its program goes to name[16].
- */
+/* Whether /proc/PID/stat shows a process of the group that is no zombie; its program goes to name[16]. */
 static bool is_of_group(const char *pid, pid_t group, char *name) {
     char path[64], line[512] = "", state;
     int of;

@@ -125,12 +125,6 @@ static inline float rt_thickness(RtVec3 org, const RtBox *box) {
     return raytally_thickness4(rt_box_lo4(box), rt_box_hi4(box), (RtFloat4){org.x, org.y, org.z, org.z});
 }
 
-/* The functions of the interface take boxes and rays of its own types, which have the same layout, and load
- * them whatever their type. */
-static inline const raytally_box *rt_public_box(const RtBox *box) {
-    return (const raytally_box *)box;
-}
-
 /* Sets the thickness for boxes inside `around`. */
 static inline void rt_ray_thicken(RtPreparedRay *ray, const RtBox *around) {
     raytally_thicken(rt_loadu4(ray->org), rt_loadu4(ray->dir), rt_public_box(around), ray->org_near,

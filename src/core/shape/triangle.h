@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Triangles: three vertices; both sides, edges and vertices can be hit. raytally/hit.h has the hit function.
- */
+/* Triangles: three vertices; both sides, edges and vertices can be hit. The hit function is in
+ * raytally/hit.h. */
 #ifndef RT_SHAPE_TRIANGLE_H
 #define RT_SHAPE_TRIANGLE_H
 
