@@ -41,7 +41,7 @@ enum { WAITING = 16 };
 
 typedef struct Leaf {
     uint32_t ids[RT_WIDE_MAX_LEAF], count, at;
-    bool triangles;
+    RtWideKind kind;
 } Leaf;
 
 /* The state of one thread. */
@@ -71,16 +71,20 @@ static void fill_block(const Layout *layout, RtWideTriangles *block, const uint3
 }
 
 static void fill_leaf(const Layout *layout, const Leaf *leaf) {
+    const RtGeometry *g = layout->plan.geometry;
     void *place = layout->self->arena + leaf->at;
-    RtWideList *list = place;
     RtWideTriangles *blocks = place;
-    if (!leaf->triangles) {
+    RtWideSphere *sphere = place;
+    RtWideList *list = place;
+    if (leaf->kind == RT_WIDE_TRIANGLES) {
+        for (uint32_t i = 0; i < leaf->count; i += RT_WIDE_BLOCK)
+            fill_block(layout, blocks++, leaf->ids + i, leaf->count - i);
+    } else if (leaf->kind == RT_WIDE_SPHERES && leaf->count == 1) {
+        *sphere = (RtWideSphere){g->spheres[rt_ref_index(g->objects[leaf->ids[0]])], leaf->ids[0], {0}};
+    } else {
         for (uint32_t i = 0; i < RT_WIDE_MAX_LEAF; i++)
             list->id[i] = i < leaf->count ? leaf->ids[i] : RT_NO_OBJECT;
-        return;
     }
-    for (uint32_t i = 0; i < leaf->count; i += RT_WIDE_BLOCK)
-        fill_block(layout, blocks++, leaf->ids + i, leaf->count - i);
 }
 
 static void fill_waiting(Placer *placer, uint32_t most) {
@@ -98,18 +102,18 @@ static RtWideRef place_leaf(Placer *placer, uint32_t index, uint32_t *at) {
     leaf->count = 0;
     rt_wide_collect(layout->plan.tree, index, leaf->ids, &leaf->count);
     for (uint32_t i = 0; i < leaf->count; i++) shapes |= 1u << rt_wide_shape_of(&layout->plan, leaf->ids[i]);
-    leaf->triangles = shapes == 1u << RT_SHAPE_TRIANGLE;
-    for (uint32_t i = 0; i < leaf->count && leaf->triangles; i++) {
+    RtWideLeafSize size = rt_wide_leaf_size(leaf->count, shapes);
+    leaf->kind = size.kind;
+    for (uint32_t i = 0; i < leaf->count && leaf->kind == RT_WIDE_TRIANGLES; i++) {
         const RtTriangle *triangle = triangle_of(layout, leaf->ids[i]);
         __builtin_prefetch(triangle);
         __builtin_prefetch((const char *)(triangle + 1) - 1);
     }
     leaf->at = *at;
-    RtWideLeafSize size = rt_wide_leaf_size(leaf->count, shapes);
     placer->cost +=
         rt_box_half_area(layout->plan.tree->nodes[index].box) * layout->plan.how->block_cost * size.tests;
     *at += size.units * RT_WIDE_UNIT;
-    return rt_wide_leaf(leaf->triangles ? RT_WIDE_TRIANGLES : RT_WIDE_OBJECTS, leaf->at, leaf->count);
+    return rt_wide_leaf(leaf->kind, leaf->at, leaf->count);
 }
 
 static void put_box(RtWideNode *node, uint32_t lane, RtBox box) {

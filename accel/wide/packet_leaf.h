@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A packet's visit of a leaf. The prefilter tests RT_GROUPS rays with four triangles, RT_LANES pairs in a
  * vector. Pairs that pass are collected until there are RT_LANES of them, and tested in full by the
- * operations of rt_triangle_hit. Their rays continue meanwhile. */
+ * operations of rt_triangle_hit. Their rays continue meanwhile. Leaves of spheres are tested at once. */
 #ifndef RT_ACCEL_WIDE_PACKET_LEAF_H
 #define RT_ACCEL_WIDE_PACKET_LEAF_H
 
@@ -50,7 +50,7 @@ RT_KERNEL void prefilter_rays(Packet *p, const RtWideTriangles *block, uint32_t 
     p->pair_count = pairs;
 }
 
-/* With at least so many rays of a beam, a block is tested triangle by triangle. */
+/* With at least so many rays of a beam, a block is tested triangle by triangle, and spheres are filtered. */
 enum { MANY_RAYS = 6 };
 
 /* The same as prefilter_rays for rays of beam b, with `count` triangles. */
@@ -162,6 +162,49 @@ RT_KERNEL void visit_list(Packet *p, const Query *q, RtWideRef ref, uint64_t ray
     }
 }
 
+/* Of the rays first..first+3, those whose lines meet a sphere. */
+RT_KERNEL uint32_t meet_sphere(const Packet *p, const RtSphere *sphere, size_t first) {
+    RtFloat4 org[3], dir[3], ball[4] = {[3] = rt_all4(sphere->radius)};
+    Chords chords;
+    for (int a = 0; a < 3; a++) {
+        org[a] = rt_load4(&p->org[a][first]);
+        dir[a] = rt_load4(&p->dir[a][first]);
+        ball[a] = rt_all4(sphere->center.at[a]);
+    }
+    find_chords(org, dir, ball, &chords);
+    return chords.met;
+}
+
+/* Those of the rays that may hit a sphere: beams with many rays are filtered, which takes no transposition.
+ */
+RT_KERNEL uint64_t filter_rays(const Packet *p, const RtSphere *sphere, uint64_t rays) {
+    for (uint32_t b = 0; b < BEAMS; b++) {
+        uint32_t some = (uint32_t)(rays >> b * BEAM) & ((1u << BEAM) - 1), met = 0;
+        if (__builtin_popcount(some) < MANY_RAYS) continue;
+        for (uint32_t i = 0; i < BEAM; i += PAIRS) met |= meet_sphere(p, sphere, first_of(b) + i) << i;
+        rays &= ~((uint64_t)(some & ~met) << b * BEAM);
+    }
+    return rays;
+}
+
+RT_KERNEL void visit_sphere_leaf(Packet *p, const Query *q, RtWideRef ref, uint64_t rays, bool any) {
+    SpherePair pairs[PACKET * RT_WIDE_MAX_LEAF];
+    uint32_t ray[PACKET * RT_WIDE_MAX_LEAF], count = 0;
+    float t[PACKET * RT_WIDE_MAX_LEAF];
+    for (uint32_t i = 0; i < rt_wide_count(ref); i++) {
+        SpherePair pair = sphere_pair(q, NULL, ref, i);
+        for (uint64_t left = filter_rays(p, pair.sphere, rays); left; left &= left - 1) {
+            ray[count] = first_ray(left);
+            pair.ray = &q->rays[p->index[ray[count]]];
+            pairs[count++] = pair;
+        }
+    }
+    hit_sphere_pairs(q->geometry, pairs, count, t);
+    for (uint32_t i = 0; i < count; i++) {
+        if (!isnan(t[i])) take_hit(p, ray[i], (RtHit){t[i], pairs[i].id}, any);
+    }
+}
+
 RT_KERNEL void visit_block(Packet *p, const RtWideTree *tree, const RtWideTriangles *block, uint32_t count,
                            uint64_t rays) {
     uint32_t at = (uint32_t)((const char *)block - tree->arena) / sizeof(float);
@@ -175,8 +218,12 @@ RT_KERNEL void visit_block(Packet *p, const RtWideTree *tree, const RtWideTriang
 }
 
 RT_KERNEL void visit_leaf(Packet *p, const Query *q, RtWideRef ref, uint64_t rays, bool any) {
-    if (rt_wide_kind(ref) != RT_WIDE_TRIANGLES) {
+    if (rt_wide_kind(ref) == RT_WIDE_OBJECTS) {
         visit_list(p, q, ref, rays, any);
+        return;
+    }
+    if (rt_wide_kind(ref) == RT_WIDE_SPHERES) {
+        visit_sphere_leaf(p, q, ref, rays, any);
         return;
     }
     const RtWideTriangles *block = rt_wide_leaf_at(q->tree, ref);

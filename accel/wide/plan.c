@@ -55,9 +55,11 @@ void rt_wide_collect(const RtTree *tree, uint32_t index, uint32_t *ids, uint32_t
 
 RtWideLeafSize rt_wide_leaf_size(uint32_t count, uint32_t shapes) {
     uint32_t blocks = blocks_of(count);
-    bool triangles = shapes == 1u << RT_SHAPE_TRIANGLE;
-    return triangles ? (RtWideLeafSize){blocks, blocks * RT_WIDE_BLOCK_UNITS, blocks * RT_WIDE_BLOCK - count}
-                     : (RtWideLeafSize){count, sizeof(RtWideList) / RT_WIDE_UNIT, 0};
+    if (shapes == 1u << RT_SHAPE_TRIANGLE)
+        return (RtWideLeafSize){RT_WIDE_TRIANGLES, blocks, blocks * RT_WIDE_BLOCK_UNITS,
+                                blocks * RT_WIDE_BLOCK - count};
+    RtWideKind kind = shapes == 1u << RT_SHAPE_SPHERE ? RT_WIDE_SPHERES : RT_WIDE_OBJECTS;
+    return (RtWideLeafSize){kind, count, sizeof(RtWideList) / RT_WIDE_UNIT, 0};
 }
 
 static float leaf_cost(const RtWidePlan *self, float area, RtWideLeafSize size) {

@@ -38,9 +38,10 @@ RtStatus rt_wide_plan_init(RtWidePlan *self, RtTree *tree, const RtGeometry *geo
                            const RtWideLayout *how, RtError *error);
 void rt_wide_plan_clear(RtWidePlan *self);
 
-/* A leaf of `count` objects of these shapes (bits 1 << RtShape): its tests, its units of the arena, and its
- * empty lanes. */
+/* A leaf of `count` objects of these shapes (bits 1 << RtShape): its kind, its tests, its units of the arena,
+ * and its empty lanes. */
 typedef struct RtWideLeafSize {
+    RtWideKind kind;
     uint32_t tests, units, empty;
 } RtWideLeafSize;
 

@@ -24,9 +24,7 @@
 #ifndef RT_ACCEL_WIDE_RAY_STATE_H
 #define RT_ACCEL_WIDE_RAY_STATE_H
 
-#include "accel/surface.h"
-#include "accel/watertight.h"
-#include "accel/wide/ray_source.h"
+#include "accel/wide/sphere_pairs.h"
 #include "core/base/memory.h"
 
 /* A vector of eight may be written above the top. */
@@ -279,6 +277,27 @@ RT_KERNEL bool test_objects(const Query *q, RtWideRef ref, const RtPreparedRay *
     const RtWideList *list = rt_wide_leaf_at(q->tree, ref);
     for (uint32_t i = 0; i < rt_wide_count(ref); i++) {
         if (test_object(q->geometry, list->id[i], ray, any, best, tally)) return true;
+    }
+    return false;
+}
+
+/* Records the test of a sphere; t: NaN if it is not hit. True if the search is over. */
+RT_KERNEL bool take_sphere(const Query *q, RayState *f, uint32_t id, float t, bool any, RtTally *tally) {
+    RT_COUNT(tally, object_tests, 1);
+    RT_OBSERVE(tally, .kind = RT_TRACED_OBJECT_TEST, .index = id, .box = &q->geometry->boxes[id]);
+    if (isnan(t)) return false;
+    RT_COUNT(tally, object_hits, 1);
+    RT_OBSERVE(tally, .kind = RT_TRACED_OBJECT_HIT, .index = id, .t = t);
+    if (rt_hit_before(t, id, f->best)) f->best = (RtHit){t, id};
+    return any;
+}
+
+/* Tests the spheres of a leaf; true if the search is over. */
+static __attribute__((noinline)) bool test_spheres(const Query *q, RtWideRef ref, RayState *f, bool any,
+                                                   RtTally *tally) {
+    for (uint32_t i = 0, count = rt_wide_count(ref); i < count; i++) {
+        const SpherePair pair = sphere_pair(q, &q->rays[f->index], ref, i);
+        if (take_sphere(q, f, pair.id, hit_pair(q->geometry, &pair, f->sure), any, tally)) return true;
     }
     return false;
 }

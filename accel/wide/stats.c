@@ -112,23 +112,43 @@ typedef struct Check {
 
 #define BROKEN(check, ...) rt_fail((check)->error, RT_MISMATCH, "wide: " __VA_ARGS__)
 
-/* Checks that a leaf is in the arena, and that its triangles have the coordinates of the scene's. */
+static bool is_shape(const RtGeometry *g, uint32_t id, RtShape shape) {
+    return id < g->object_count && rt_ref_shape(g->objects[id]) == shape;
+}
+
+/* Checks a leaf of spheres. */
+static RtStatus check_spheres(const Check *check, RtWideRef ref) {
+    const RtGeometry *g = check->geometry;
+    const RtWideSphere *only = rt_wide_leaf_at(check->self, ref);
+    for (uint32_t i = 0; i < rt_wide_count(ref); i++) {
+        if (is_shape(g, rt_wide_leaf_object(check->self, ref, i), RT_SHAPE_SPHERE)) continue;
+        return BROKEN(check, "the leaf at %u holds an object that is no sphere", rt_wide_place(ref));
+    }
+    if (rt_wide_is_sphere(ref) &&
+        memcmp(&only->sphere, &g->spheres[rt_ref_index(g->objects[only->id])], sizeof(RtSphere)) != 0)
+        return BROKEN(check, "the leaf at %u is another sphere", rt_wide_place(ref));
+    return RT_OK;
+}
+
+/* Checks that a leaf is in the arena, and that its triangles and spheres have the coordinates of the scene's.
+ */
 static RtStatus check_leaf(const Check *check, RtWideRef ref) {
     const RtGeometry *g = check->geometry;
     uint32_t count = rt_wide_count(ref), at = rt_wide_place(ref);
     uint32_t blocks = (count + RT_WIDE_BLOCK - 1) / RT_WIDE_BLOCK;
     bool triangles = rt_wide_kind(ref) == RT_WIDE_TRIANGLES;
     uint64_t bytes = triangles ? blocks * sizeof(RtWideTriangles) : sizeof(RtWideList);
-    if (rt_wide_kind(ref) == RT_WIDE_FINISHED || at + bytes > check->self->bytes)
+    if (ref == RT_WIDE_DONE || at + bytes > check->self->bytes)
         return BROKEN(check, "a leaf at %u is not in the arena", at);
-    for (uint32_t i = count; !triangles && i < RT_WIDE_MAX_LEAF; i++) {
+    if (rt_wide_kind(ref) == RT_WIDE_SPHERES) RT_TRY(check_spheres(check, ref));
+    for (uint32_t i = count; !triangles && !rt_wide_is_sphere(ref) && i < RT_WIDE_MAX_LEAF; i++) {
         if (rt_wide_leaf_object(check->self, ref, i) == RT_NO_OBJECT) continue;
         return BROKEN(check, "the leaf at %u holds more than its objects", at);
     }
     const RtWideTriangles *block = rt_wide_leaf_at(check->self, ref);
     for (uint32_t i = 0; triangles && i < blocks * RT_WIDE_BLOCK; i++, block += i % RT_WIDE_BLOCK == 0) {
         uint32_t lane = i % RT_WIDE_BLOCK, id = block->id[lane];
-        bool there = i < count && id < g->object_count && rt_ref_shape(g->objects[id]) == RT_SHAPE_TRIANGLE;
+        bool there = i < count && is_shape(g, id, RT_SHAPE_TRIANGLE);
         if (there != (i < count)) return BROKEN(check, "the leaf at %u holds no triangle in lane %u", at, i);
         for (int k = 0; k < 9; k++) {
             float x = block->v[k / 3][k % 3][lane];

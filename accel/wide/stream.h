@@ -2,11 +2,11 @@
 /* Rays traced independently: one after the other, or many interleaved on one thread.
  *
  * A single ray waits for memory and for long chains of dependent arithmetic. So many rays are in flight, in
- * queues by what each visits next: a node, a leaf of triangles, another leaf, or nothing. Each queue is
- * processed by a loop with one short body: the processor overlaps several rays, and no branch depends on the
- * path of a ray. What a ray visits next is prefetched when it is enqueued. Wald, Gribble, Boulos & Kensler
- * 2007 ("SIMD Ray Stream Tracing") process rays in lists; their lists share a node, these queues only share
- * the kind of work.
+ * queues by what each visits next: a node, a leaf of triangles, one of spheres, another leaf or nothing. Each
+ * queue is processed by a loop with one short body: the processor overlaps several rays, and no branch
+ * depends on the path of a ray. What a ray visits next is prefetched when it is enqueued. Wald, Gribble,
+ * Boulos & Kensler 2007 ("SIMD Ray Stream Tracing") process rays in lists; their lists share a node, these
+ * queues only share the kind of work.
  *
  * A ray takes the same path either way, so the counts are equal. */
 #ifndef RT_ACCEL_WIDE_STREAM_H
@@ -69,6 +69,8 @@ RT_KERNEL void trace_one(const Query *q, RayState *f, bool any, bool counted) {
             const RtWideTriangles *blocks = rt_wide_leaf_at(&tree, ref);
             uint32_t mask = prefilter_leaf(blocks, ref, f);
             if (test_triangles(blocks, mask, f, q, any, tally)) return;
+        } else if (rt_wide_kind(ref) == RT_WIDE_SPHERES) {
+            if (test_spheres(q, ref, f, any, tally)) return;
         } else if (test_objects(q, ref, state_ray(f, q), any, &f->best, tally)) {
             return;
         }
@@ -173,14 +175,27 @@ RT_KERNEL void finish_leaf(const Query *q, RayQueues *t, RayState *f, bool over,
     enqueue(t, q->tree, f, next, 1, ahead);
 }
 
-/* Tests the other leaves. */
-RT_KERNEL void visit_objects(const Query *q, RayQueues *t, bool any, bool counted, bool ahead) {
-    uint32_t n = take_queue(t, RT_WIDE_OBJECTS);
+/* Tests all queued leaves of spheres. */
+RT_KERNEL void visit_spheres(const Query *q, RayQueues *t, bool any, bool counted, bool ahead) {
+    SpherePair pairs[RT_WIDE_MAX_IN_FLIGHT * RT_WIDE_MAX_LEAF];
+    float at[RT_WIDE_MAX_IN_FLIGHT * RT_WIDE_MAX_LEAF];
+    uint32_t n = take_queue(t, RT_WIDE_SPHERES), count = 0, first = 0;
     for (uint32_t i = 0; i < n; i++) {
-        RayState *f = t->list[RT_WIDE_OBJECTS][i];
+        const RayState *f = t->list[RT_WIDE_SPHERES][i];
+        for (uint32_t k = 0; k < rt_wide_count(f->next); k++)
+            pairs[count++] = sphere_pair(q, &q->rays[f->index], f->next, k);
+    }
+    hit_sphere_pairs(q->geometry, pairs, count, at);
+    for (uint32_t i = 0; i < n; i++) {
+        RayState *f = t->list[RT_WIDE_SPHERES][i];
         RtTally *tally = counted ? f->tally : NULL;
+        const uint32_t end = first + rt_wide_count(f->next);
+        bool over = false;
         count_leaf(tally, q->tree, q->geometry, f->next);
-        finish_leaf(q, t, f, test_objects(q, f->next, state_ray(f, q), any, &f->best, tally), any, ahead);
+        for (uint32_t k = first; k < end && !over; k++)
+            over = take_sphere(q, f, pairs[k].id, at[k], any, tally);
+        finish_leaf(q, t, f, over, any, ahead);
+        first = end;
     }
 }
 
@@ -195,6 +210,23 @@ RT_KERNEL void start_next_ray(const Query *q, RayQueues *t, RayState *f, bool an
             return;
         }
         finish_ray(q, f, any, counted);
+    }
+}
+
+/* Tests the other leaves, and starts other rays in place of those that have finished. */
+RT_KERNEL void visit_others(const Query *q, RayQueues *t, bool any, bool counted, bool ahead) {
+    uint32_t n = take_queue(t, RT_WIDE_OBJECTS);
+    for (uint32_t i = 0; i < n; i++) {
+        RayState *f = t->list[RT_WIDE_OBJECTS][i];
+        RtTally *tally = counted ? f->tally : NULL;
+        if (f->next == RT_WIDE_DONE) {
+            t->in_flight--;
+            finish_ray(q, f, any, counted);
+            start_next_ray(q, t, f, any, counted, ahead);
+            continue;
+        }
+        count_leaf(tally, q->tree, q->geometry, f->next);
+        finish_leaf(q, t, f, test_objects(q, f->next, state_ray(f, q), any, &f->best, tally), any, ahead);
     }
 }
 
@@ -213,14 +245,8 @@ RT_KERNEL void trace_many(const Query *q, bool any, bool counted) {
             bool over = test_triangles(blocks, candidates[i].mask, f, q, any, counted ? f->tally : NULL);
             finish_leaf(q, &t, f, over, any, ahead);
         }
-        if (t.count[RT_WIDE_OBJECTS]) visit_objects(q, &t, any, counted, ahead);
-        n = take_queue(&t, RT_WIDE_FINISHED);
-        t.in_flight -= n;
-        for (uint32_t i = 0; i < n; i++) {
-            RayState *f = t.list[RT_WIDE_FINISHED][i];
-            finish_ray(q, f, any, counted);
-            start_next_ray(q, &t, f, any, counted, ahead);
-        }
+        if (t.count[RT_WIDE_SPHERES]) visit_spheres(q, &t, any, counted, ahead);
+        visit_others(q, &t, any, counted, ahead);
     }
 }
 

@@ -6,9 +6,9 @@
  * stream.h and packet.h. The layout and its invariants are in wide.h. The tree of references is built by the
  * methods of accel/tree/tree.h, as for `bvh`.
  *
- * Exact, because boxes are tested by the operations of rt_box_hit, and triangles by those of rt_triangle_hit,
- * lane by lane. A child that a beam's interval misses is missed by each of its rays (packet.h). The order of
- * visits changes no answer.
+ * Exact, because boxes are tested by the operations of rt_box_hit, triangles and spheres by those of
+ * rt_triangle_hit and rt_sphere_hit, lane by lane. A child that a beam's interval misses is missed by each of
+ * its rays (packet.h). The order of visits changes no answer.
  *
  * Counting: an extent test per child of a visited node, a step per node and per leaf, an object test per
  * triangle of a leaf. Rays are counted as if traced alone, with the same counts for all instruction sets and

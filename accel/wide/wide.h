@@ -4,8 +4,8 @@
  *
  * Nodes and leaves lie in one arena, a node before what is below it. A node holds the boxes of its children
  * plane by plane, so one subtraction and one multiplication intersect a ray with one plane of all eight. A
- * leaf of triangles holds them in blocks of four, vertex by vertex and axis by axis; any other leaf is a list
- * of ids.
+ * leaf of triangles holds them in blocks of four, vertex by vertex and axis by axis; a leaf of one sphere
+ * holds the sphere; any other leaf is a list of ids.
  *
  * Invariants: the box of a child contains the boxes of all references below it (of a split reference, its
  * part of the object). Children come first in a node; the lanes after them have an empty box, which no ray
@@ -33,12 +33,12 @@ typedef uint32_t RtWideRef;
 typedef enum RtWideKind {
     RT_WIDE_NODE,
     RT_WIDE_TRIANGLES, /* a leaf of blocks */
-    RT_WIDE_OBJECTS,   /* a leaf that is a list */
-    RT_WIDE_FINISHED   /* no child: the ray has finished */
+    RT_WIDE_SPHERES,   /* a leaf of one sphere, or a list of spheres */
+    RT_WIDE_OBJECTS    /* any other list */
 } RtWideKind;
 
 #define RT_WIDE_UNIT      32
-#define RT_WIDE_DONE      ((RtWideRef)RT_WIDE_FINISHED)
+#define RT_WIDE_DONE      ((RtWideRef)RT_WIDE_OBJECTS) /* no child: the ray has finished; at 0 is the root */
 #define RT_WIDE_MAX_BYTES UINT64_C(0xffffff00)
 
 static inline RtWideRef rt_wide_leaf(RtWideKind kind, uint32_t at, uint32_t count) {
@@ -72,12 +72,18 @@ typedef struct RtWideTriangles {
     uint32_t id[RT_WIDE_BLOCK]; /* RT_NO_OBJECT there */
 } RtWideTriangles;
 
+typedef struct RtWideSphere {
+    RtSphere sphere;
+    uint32_t id, unused[3];
+} RtWideSphere;
+
 typedef struct RtWideList {
     uint32_t id[RT_WIDE_MAX_LEAF]; /* RT_NO_OBJECT after the last */
 } RtWideList;
 
 _Static_assert(sizeof(RtWideNode) == 256, "a node is four cache lines");
-_Static_assert(sizeof(RtWideTriangles) % RT_WIDE_UNIT == 0 && sizeof(RtWideList) % RT_WIDE_UNIT == 0,
+_Static_assert(sizeof(RtWideTriangles) % RT_WIDE_UNIT == 0 && sizeof(RtWideList) % RT_WIDE_UNIT == 0 &&
+                   sizeof(RtWideSphere) == sizeof(RtWideList),
                "a leaf ends at a multiple of the unit");
 
 typedef struct RtWideTree {
@@ -92,16 +98,22 @@ static inline const RtWideNode *rt_wide_node(const RtWideTree *tree, RtWideRef r
     return (const RtWideNode *)(const void *)(tree->arena + ref);
 }
 
-/* The first block, or the list, of a leaf. */
+/* Whether a leaf is one sphere. */
+static inline bool rt_wide_is_sphere(RtWideRef ref) {
+    return rt_wide_kind(ref) == RT_WIDE_SPHERES && rt_wide_count(ref) == 1;
+}
+
+/* The first block, the sphere or the list of a leaf. */
 static inline const void *rt_wide_leaf_at(const RtWideTree *tree, RtWideRef ref) {
     return tree->arena + rt_wide_place(ref);
 }
 
 /* Object `i` of a leaf. */
 static inline uint32_t rt_wide_leaf_object(const RtWideTree *tree, RtWideRef ref, uint32_t i) {
-    if (rt_wide_kind(ref) == RT_WIDE_OBJECTS) return ((const RtWideList *)rt_wide_leaf_at(tree, ref))->id[i];
-    const RtWideTriangles *blocks = rt_wide_leaf_at(tree, ref);
-    return blocks[i / RT_WIDE_BLOCK].id[i % RT_WIDE_BLOCK];
+    const void *at = rt_wide_leaf_at(tree, ref);
+    const RtWideTriangles *blocks = at;
+    if (rt_wide_kind(ref) == RT_WIDE_TRIANGLES) return blocks[i / RT_WIDE_BLOCK].id[i % RT_WIDE_BLOCK];
+    return rt_wide_is_sphere(ref) ? ((const RtWideSphere *)at)->id : ((const RtWideList *)at)->id[i];
 }
 
 static inline RtBox rt_wide_child_box(const RtWideNode *node, uint32_t lane) {

@@ -177,26 +177,35 @@ RAYTALLY_INLINE double raytally_dot(const double a[3], const double b[3]) {
     return raytally_rounded(a[0] * b[0]) + raytally_rounded(a[1] * b[1]) + raytally_rounded(a[2] * b[2]);
 }
 
-/** Whether the ray hits a sphere for some t in [tmin, tmax].
+/** The t at which the line of a ray meets a sphere, in ascending order.
  * @param sphere  centre x, y, z and radius, as in raytally_build_input.spheres
+ * @return their number: 0, 1 or 2 */
+RAYTALLY_INLINE int raytally_sphere_roots(const float sphere[4], const float ray_org[3],
+                                          const float ray_dir[3], double roots[2]) {
+    const double radius = (double)sphere[3], radius_squared = raytally_rounded(radius * radius);
+    double org[3], dir[3], l[3];
+    for (int a = 0; a < 3; a++) {
+        org[a] = (double)ray_org[a] - (double)sphere[a];
+        dir[a] = (double)ray_dir[a];
+    }
+    const double dd = raytally_dot(dir, dir), od = raytally_dot(org, dir), closest = -od / dd;
+    for (int a = 0; a < 3; a++) l[a] = org[a] + raytally_rounded(closest * dir[a]);
+    const double half_chord_squared = radius_squared - raytally_dot(l, l);
+    if (!(half_chord_squared >= 0)) return 0;
+    return raytally_quadratic_roots(dd, od, raytally_dot(org, org) - radius_squared, half_chord_squared * dd,
+                                    roots);
+}
+
+/** Whether the ray hits a sphere for some t in [tmin, tmax].
+ * @param sphere  as above
  * @param own     its box, as in raytally_build_input.boxes
  * @param ray     from raytally_prepare
  * @param t       out: the first such t, if it is a hit
  * @return 1 or 0 */
 RAYTALLY_INLINE int raytally_sphere_hit(const float sphere[4], const raytally_box *own,
                                         const raytally_prepared *ray, float *t) {
-    const double radius = (double)sphere[3], radius_squared = raytally_rounded(radius * radius);
-    double org[3], dir[3], l[3], roots[2];
-    for (int a = 0; a < 3; a++) {
-        org[a] = (double)ray->org[a] - (double)sphere[a];
-        dir[a] = (double)ray->dir[a];
-    }
-    const double dd = raytally_dot(dir, dir), od = raytally_dot(org, dir), closest = -od / dd;
-    for (int a = 0; a < 3; a++) l[a] = org[a] + raytally_rounded(closest * dir[a]);
-    const double half_chord_squared = radius_squared - raytally_dot(l, l);
-    if (!(half_chord_squared >= 0)) return 0;
-    const int count = raytally_quadratic_roots(dd, od, raytally_dot(org, org) - radius_squared,
-                                               half_chord_squared * dd, roots);
+    double roots[2];
+    const int count = raytally_sphere_roots(sphere, ray->org, ray->dir, roots);
     for (int i = 0; i < count; i++) {
         *t = (float)roots[i];
         if (raytally_admit4(raytally_box_lo4(own), raytally_box_hi4(own), ray, t)) return 1;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* accel/brute and accel/extents: what they do in lanes is what they do one record after the other, by every
  * instruction set that this machine has: the hits and the occluders bit for bit, and the counts, whatever the
- * length of a stream. Of `brute` that is what rt_test_all does. */
+ * length of a stream. Of `brute` that is what rt_test_all does. And accel/wide: spheres that it tests in
+ * pairs with rays are hit as by rt_sphere_hit. */
 #include "equivalence_testing.h"
 #include "random_testing.h"
 
@@ -252,6 +253,93 @@ RT_TEST(objects_of_every_magnitude_that_rays_touch_are_answered_in_lanes_as_with
         assert_true(scene.geometry.triangle_count > RAYS / 4);
         assert_lanes_change_nothing(&scene, rays, RAYS);
     }
+}
+
+/* ---- accel/wide/sphere_pairs.h ---- */
+
+enum { TOUCHING = 500, TURNS = 6 };
+
+/* Spheres that rays touch, and such rays: as they are, from within a sphere, and beginning or ending at what
+ * they hit, or a little after or before it. */
+static void make_touching(RtScene *scene, float size, RtRay *rays, RtHit *hits) {
+    RtRandom random = rt_random((uint64_t)(size < 1), 9);
+    RtError refusal; /* beyond the largest coordinate: there are others */
+    for (int i = 0; i < TOUCHING; i++) {
+        RtRay *ray = &rays[i];
+        do *ray = far_ray(&random, size);
+        while (fabsf(ray->org.x) > size * 0x1p20f);
+        RtSphere sphere = touched_sphere(&random, ray, size);
+        (void)rt_scene_add_sphere(scene, 0, sphere.center, sphere.radius, &refusal);
+        if (i % 4 == 0) ray->org = rt_add(sphere.center, rt_random_point(&random, 0.5f * sphere.radius));
+        if (!rt_ray_is_valid(ray)) *ray = far_ray(&random, size);
+    }
+    assert_ok(rt_scene_finish(scene, error));
+    OWNED_ACCEL RtAccel *brute = open_accel(scene, "brute:lanes=1");
+    OWNED_QUERY query = open_query(brute);
+    rt_nearest(&query, rays, TOUCHING, hits, NULL);
+    for (int i = TOUCHING; i < TURNS * TOUCHING; i++) {
+        float t = hits[i % TOUCHING].t;
+        rays[i] = rays[i % TOUCHING];
+        if (!isfinite(t)) continue;
+        if (i / TOUCHING == 1) rays[i].tmin = rays[i].tmax = t;
+        if (i / TOUCHING == 2) rays[i].tmin = t;
+        if (i / TOUCHING == 3) rays[i].tmin = nextafterf(t, INFINITY);
+        if (i / TOUCHING == 4) rays[i].tmax = nextafterf(t, 0);
+        if (i / TOUCHING == 5) rays[i].tmin = t * (1 + 0x1p-12f);
+        if (!rt_ray_is_valid(&rays[i])) rays[i] = rays[i % TOUCHING];
+    }
+    rt_nearest(&query, rays, TURNS * TOUCHING, hits, NULL);
+}
+
+/* `wide` in all its ways answers like brute. */
+static void assert_wide_hits(const RtScene *scene, const RtRay *rays, size_t count, const RtHit *right) {
+    const char *const sets[] = {"portable", "avx2", "avx512"};
+    const char *const ways[] = {"packets=0", "sharing=0", "in_flight=1", "max_leaf_size=8,block_cost=0",
+                                "max_leaf_size=8,block_cost=0,sharing=0"};
+    static RtHit hits[TURNS * TOUCHING];
+    static bool blocked[TURNS * TOUCHING];
+    for (size_t k = 0; k < 15; k++) {
+        char spec[RT_MAX_SPEC_CHARS];
+        snprintf(spec, sizeof spec, "wide:isa=%s,%s", sets[k / 5], ways[k % 5]);
+        OWNED_ACCEL RtAccel *wide = open_available(scene, spec, 0);
+        if (!wide) continue;
+        OWNED_QUERY query = open_query(wide);
+        rt_nearest(&query, rays, count, hits, NULL);
+        rt_occluded(&query, rays, count, blocked, NULL);
+        for (size_t i = 0; i < count; i++) {
+            if (memcmp(&hits[i], &right[i], sizeof *hits) == 0 && blocked[i] == isfinite(right[i].t))
+                continue;
+            fail_msg("%s: ray %zu hits %u at %a, blocked %d, not %u at %a", spec, i, hits[i].object,
+                     (double)hits[i].t, blocked[i], right[i].object, (double)right[i].t);
+        }
+    }
+}
+
+RT_TEST(spheres_of_every_magnitude_that_rays_touch_are_hit_by_wide_as_by_brute) {
+    const float sizes[] = {1, 1e-30f, 1e-22f, 1e-18f, 1e-12f, 1e6f, 1e11f};
+    static RtRay rays[TURNS * TOUCHING];
+    static RtHit right[TURNS * TOUCHING];
+    for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++) {
+        OWNED_SCENE scene = begin_scene();
+        make_touching(&scene, sizes[s], rays, right);
+        assert_wide_hits(&scene, rays, TURNS * TOUCHING, right);
+    }
+}
+
+/* By hand: the ray touches the sphere at t, its two roots are one, and org is so close to the sphere that
+ * their product is lost to rounding. */
+RT_TEST(a_ray_that_begins_just_before_it_touches_a_sphere_hits_it_there) {
+    RtRay rays[40];
+    RtHit right[40];
+    OWNED_SCENE scene = begin_scene();
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    for (int i = 0; i < 40; i++) {
+        float t = ldexpf(1.3f, -10 - i);
+        rays[i] = (RtRay){{.x = -t, .y = 1}, 0, {.x = 1}, INFINITY, RT_RAY_RANDOM, 0};
+        right[i] = (RtHit){t, 0};
+    }
+    assert_wide_hits(&scene, rays, 40, right);
 }
 
 /* ---- accel/sphere_prefilter.h ---- */

@@ -104,7 +104,21 @@ RT_TEST(validate_names_what_is_wrong_with_a_leaf_of_triangles) {
     assert_broken_by(accel, *leaf, rt_wide_leaf(RT_WIDE_TRIANGLES, place, 4), "is in 0 leaves");
     assert_broken_by(accel, *leaf, rt_wide_leaf(RT_WIDE_TRIANGLES, place + RT_WIDE_UNIT, 5),
                      "is not in the arena");
-    assert_broken_by(accel, *leaf, rt_wide_leaf(RT_WIDE_FINISHED, place, 5), "is not in the arena");
+    assert_broken_by(accel, *leaf, rt_wide_leaf(RT_WIDE_SPHERES, place, 5), "that is no sphere");
+}
+
+RT_TEST(validate_names_what_is_wrong_with_a_leaf_of_one_sphere) {
+    OWNED_SCENE scene = make_row(3, 0);
+    OWNED_ACCEL RtWide *wide = make_wide(&scene, BEST_SET, "max_leaf_size=1");
+    const RtAccel *accel = &wide->isa.base;
+    RtWideRef *leaf = &node_at(wide, 0)->child[0];
+    assert_int_equal(rt_wide_kind(*leaf), RT_WIDE_SPHERES);
+    assert_int_equal(rt_wide_count(*leaf), 1);
+    uint32_t place = rt_wide_place(*leaf);
+    RtWideSphere *only = (void *)(wide->trees[0].arena + place);
+    assert_broken_by(accel, only->id, 3, "that is no sphere");
+    assert_broken_by(accel, only->sphere.radius, only->sphere.radius * 2, "is another sphere");
+    assert_broken_by(accel, *leaf, rt_wide_leaf(RT_WIDE_OBJECTS, place, 1), "wide: ");
 }
 
 RT_TEST(validate_names_what_is_wrong_with_a_list) {
@@ -113,11 +127,12 @@ RT_TEST(validate_names_what_is_wrong_with_a_list) {
     const RtAccel *accel = &wide->isa.base;
     RtWideNode *root = node_at(wide, 0);
     RtWideRef *leaf = &root->child[0];
-    assert_int_equal(rt_wide_kind(*leaf), RT_WIDE_OBJECTS);
+    assert_int_equal(rt_wide_kind(*leaf), RT_WIDE_SPHERES);
     uint32_t place = rt_wide_place(*leaf), *ids = ((RtWideList *)(void *)(wide->trees[0].arena + place))->id;
     assert_broken_by(accel, ids[1], ids[0], "is in 2 leaves");
-    assert_broken_by(accel, ids[1], 3, "holds no object");
+    assert_broken_by(accel, ids[1], 3, "that is no sphere");
     assert_broken_by(accel, ids[7], 0, "holds more than its objects");
+    assert_broken_by(accel, *leaf, rt_wide_leaf(RT_WIDE_SPHERES, place, 2), "holds more than its objects");
     assert_broken_by(accel, *leaf, rt_wide_leaf(RT_WIDE_OBJECTS, place, 2), "holds more than its objects");
     assert_broken_by(accel, *leaf, rt_wide_leaf(RT_WIDE_TRIANGLES, place, 3),
                      "wide: "); /* spheres are none */

@@ -165,6 +165,11 @@ RT_TEST(spheres_of_which_some_are_the_same_are_hit_as_by_brute) {
     check_scene("family:kind=duplicates,seed=1");
 }
 
+RT_TEST(spheres_alone_and_in_lists_are_hit_as_by_brute) {
+    check_scene("random:n=300,shape=sphere,distribution=clustered");
+    check_scene("shells:size=2");
+}
+
 RT_TEST(mixed_objects_are_hit_as_by_brute) {
     check_scene("family:kind=mixed,seed=4");
 }

@@ -11,7 +11,7 @@ static const RtWideLayout plain = {
 static uint64_t bytes_below(const RtWideTree *wide, RtWideRef ref) {
     uint32_t blocks = (rt_wide_count(ref) + RT_WIDE_BLOCK - 1) / RT_WIDE_BLOCK;
     if (rt_wide_kind(ref) == RT_WIDE_TRIANGLES) return blocks * sizeof(RtWideTriangles);
-    if (rt_wide_kind(ref) == RT_WIDE_OBJECTS) return sizeof(RtWideList);
+    if (rt_wide_kind(ref) != RT_WIDE_NODE) return sizeof(RtWideList);
     const RtWideNode *node = rt_wide_node(wide, ref);
     uint64_t sum = sizeof(RtWideNode);
     for (uint32_t i = 0; i < node->count; i++) sum += bytes_below(wide, node->child[i]);

@@ -123,6 +123,7 @@ FUNCTION(raytally_triangle_vertex, raytally_float4(const float *, size_t));
 FUNCTION(raytally_triangle_hit, int(const float *, size_t, size_t, const raytally_prepared *, float *));
 FUNCTION(raytally_quadratic_roots, int(double, double, double, double, double *));
 FUNCTION(raytally_dot, double(const double *, const double *));
+FUNCTION(raytally_sphere_roots, int(const float *, const float *, const float *, double *));
 FUNCTION(raytally_sphere_hit, int(const float *, const raytally_box *, const raytally_prepared *, float *));
 
 /* ---- accel.h ---- */

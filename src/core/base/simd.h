@@ -226,6 +226,28 @@ RT_INLINE uint32_t rt_bits_int16(RtInt16 mask) {
 }
 #endif
 
+/* ---- square roots of doubles ---- */
+
+#if defined(__SSE2__)
+RT_INLINE RtDouble2 rt_sqrt_double2(RtDouble2 a) {
+    return _mm_sqrt_pd(a);
+}
+#else
+RT_INLINE RtDouble2 rt_sqrt_double2(RtDouble2 a) {
+    return (RtDouble2){sqrt(a[0]), sqrt(a[1])};
+}
+#endif
+#if defined(__AVX2__)
+RT_INLINE RtDouble4 rt_sqrt_double4(RtDouble4 a) {
+    return _mm256_sqrt_pd(a);
+}
+#endif
+#if RT_AVX512
+RT_INLINE RtDouble8 rt_sqrt_double8(RtDouble8 a) {
+    return _mm512_sqrt_pd(a);
+}
+#endif
+
 /* ---- comparisons to bits ---- */
 
 #define RT_DEFINE_COMPARISON(name, op, type, Type, sign, Sign)                                               \
@@ -332,6 +354,7 @@ typedef RT_OF_HALF(RtLong) RtLongs;
 #define RT_BY_DOUBLES(f) RT_BY_DOUBLE_WIDTH(RtDouble, f##_double)
 
 #define rt_store(at, a) _Generic((a), RT_BY_FLOATS(rt_store), RT_BY_INTS(rt_store))(at, a)
+#define rt_sqrt(a)      _Generic((a), RT_BY_DOUBLES(rt_sqrt))(a)
 #define rt_abs(a)       _Generic((a), RT_BY_FLOATS(rt_abs), RT_BY_DOUBLES(rt_abs))(a)
 #define rt_min(a, b)    _Generic((a), RT_BY_FLOATS(rt_min), RT_BY_INTS(rt_min), RT_BY_DOUBLES(rt_min))(a, b)
 #define rt_max(a, b)    _Generic((a), RT_BY_FLOATS(rt_max), RT_BY_INTS(rt_max), RT_BY_DOUBLES(rt_max))(a, b)
