@@ -159,6 +159,8 @@ typedef struct RtBestOf {
     const char *meaning; /* one line */
 } RtBestOf;
 
+#define RT_ALL_RAY_KINDS ((1u << RT_RAY_KIND_COUNT) - 1)
+
 /* The operations of an accelerator: a const table in its own file. Optional members may be NULL. */
 struct RtAccelOps {
     const char *name;    /* as in a spec */
@@ -166,7 +168,8 @@ struct RtAccelOps {
     const char *paper;   /* author, year, title, venue */
     const RtParam *params;
     size_t param_count;
-    uint32_t kinds; /* of an overlay: the rays it answers, bits 1 << RtRayKind; 0: a base, for all rays */
+    uint32_t kinds; /* of an overlay: the rays it answers, bits 1 << RtRayKind; 0: a base, for all rays. Which
+                       rays a plugin's answers is unknown: RT_ALL_RAY_KINDS */
     bool remote;    /* a plugin's, which is built in a process of its own (accel/remote.h) */
     /* Optional: a spec, "light:cells=100", that is verified in addition to the default. For accelerators that
      * do not use their own structure over few objects or rays by default. */

@@ -103,8 +103,8 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
         return status;
     }
     self->table = table;
-    self->base.exact = !(table->flags & RAYTALLY_OWN_HITS);
-    self->base.counts = !(table->flags & RAYTALLY_NO_COUNTS);
+    self->base.exact &= !(table->flags & RAYTALLY_OWN_HITS);
+    self->base.counts &= !(table->flags & RAYTALLY_NO_COUNTS);
     self->query_bytes = table->query_bytes ? table->query_bytes(self->self) : 0;
     pthread_mutex_init(&self->lock, NULL);
     return RT_OK;
@@ -190,6 +190,7 @@ void rt_plugin_ops_init(RtPluginOps *ops, const raytally_accel_ops *table) {
                             .paper = table->paper,
                             .params = ops->params,
                             .param_count = table->param_count,
+                            .kinds = table->flags & RAYTALLY_OVERLAY ? RT_ALL_RAY_KINDS : 0,
                             .remote = true,
                             .build = build,
                             .destroy = destroy,

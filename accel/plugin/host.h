@@ -65,6 +65,7 @@ typedef struct RtPluginNow {
     const RtRay *stream; /* [count] that the plugin's kernel was called with */
     size_t count;
     bool any, counted;                 /* which kernel */
+    uint32_t layers;                   /* of the stack: this one and those below it */
     RtGuarded guarded[RT_GUARD_COUNT]; /* the plugin's memory, and the answers */
 } RtPluginNow;
 

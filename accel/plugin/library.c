@@ -16,7 +16,7 @@
 /* The table of the first version; later ones have more members, which are optional. */
 enum { LEAST_BYTES = offsetof(raytally_accel_ops, each_box) + sizeof(((raytally_accel_ops *)0)->each_box) };
 
-#define KNOWN_FLAGS ((uint64_t)(RAYTALLY_OWN_HITS | RAYTALLY_NO_COUNTS))
+#define KNOWN_FLAGS ((uint64_t)(RAYTALLY_OWN_HITS | RAYTALLY_NO_COUNTS | RAYTALLY_OVERLAY))
 
 RtStatus rt_library_fingerprint(const char *path, uint64_t *fingerprint, RtError *error) {
     char *data;
@@ -293,6 +293,7 @@ static void pass_table(Cursor *c, raytally_accel_ops *table) {
     pass_text(c, &table->summary);
     pass_text(c, &table->paper);
     pass(c, &shows, sizeof shows);
+    pass(c, &table->flags, sizeof table->flags);
     pass(c, &table->param_count, sizeof table->param_count);
     if (c->reading) {
         c->good = c->good && table->param_count <= RAYTALLY_MAX_PARAMS;

@@ -32,9 +32,11 @@ typedef struct PluginQuery {
     RtPluginNow now;
     RtPluginAccel *accel;
     const RtGeometry *geometry;
-    void *memory; /* [accel->query_bytes] or NULL */
+    void *memory;             /* [accel->query_bytes] or NULL */
+    const RtScratch *scratch; /* of this layer and those below */
     bool counting;
-    RtTally tallies[RT_RAY_KIND_COUNT]; /* of object tests, in a stream that is counted */
+    /* In a stream that is counted: of object tests, and of the layers below. */
+    RtTally tallies[RT_RAY_KIND_COUNT], below[RT_RAY_KIND_COUNT];
 } PluginQuery;
 
 /* ---- reports ---- */
@@ -116,8 +118,48 @@ static int object_hits(const raytally_prepared *ray, const uint32_t *ids, uint32
     return over;
 }
 
-static const raytally_host host = {RAYTALLY_ACCEL_ABI, sizeof(raytally_host), prepare, object_hits,
-                                   other_hit};
+/* The rays may be the plugin's own. They are checked only in counted streams, because it takes time. */
+static bool can_pass_on(PluginQuery *query, const RtRay *rays, size_t count) {
+    char text[RT_RAY_TEXT];
+    if (!query->accel->base.below) {
+        rt_plugin_break(query->accel, "it passes rays on, but its `flags` lack RAYTALLY_OVERLAY");
+        return false;
+    }
+    for (size_t i = 0; i < count && query->counting; i++) {
+        if (rt_ray_is_valid(&rays[i]) && rays[i].kind < RT_RAY_KIND_COUNT) continue;
+        rt_ray_format(&rays[i], text, sizeof text);
+        rt_plugin_break(query->accel, "it passed on a ray that is not valid, of kind %u, %s", rays[i].kind,
+                        text);
+        return false;
+    }
+    return true;
+}
+
+/* Traces a stream in the layer below, which may be a plugin's, too. */
+#define DEFINE_BELOW(question, Answer, Theirs, miss)                                                         \
+    static void question##_below(raytally_query *face, const raytally_ray *rays, size_t count,               \
+                                 Theirs *answers) {                                                          \
+        PluginQuery *query = (PluginQuery *)face;                                                            \
+        const RtRay *stream = (const RtRay *)rays;                                                           \
+        Answer *out = (Answer *)answers;                                                                     \
+        if (can_pass_on(query, stream, count)) {                                                             \
+            rt_hand_down_##question(&query->accel->base, query->scratch, stream, count, out,                 \
+                                    query->counting ? query->below : NULL);                                  \
+        } else {                                                                                             \
+            for (size_t i = 0; i < count; i++) out[i] = miss;                                                \
+        }                                                                                                    \
+        now = &query->now;                                                                                   \
+    }
+DEFINE_BELOW(nearest, RtHit, raytally_hit, RT_MISS)
+DEFINE_BELOW(occluded, uint32_t, uint32_t, RT_NO_OBJECT)
+
+static const raytally_host host = {.abi = RAYTALLY_ACCEL_ABI,
+                                   .size = sizeof(raytally_host),
+                                   .prepare = prepare,
+                                   .object_hits = object_hits,
+                                   .other_hit = other_hit,
+                                   .nearest_below = nearest_below,
+                                   .occluded_below = occluded_below};
 
 /* ---- memory between guard pages ---- */
 
@@ -189,6 +231,7 @@ static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) 
                            .accel = (RtPluginAccel *)accel,
                            .geometry = geometry};
     memcpy(&query->now.face.box, &geometry->box, sizeof geometry->box);
+    for (const RtAccel *layer = accel; layer; layer = layer->below) query->now.layers++;
     RtStatus status = map_memory(query, error);
     if (status != RT_OK) {
         unmap_guarded(query);
@@ -229,6 +272,7 @@ static void *enter(PluginQuery *query, const RtScratch *scratch, const RtRay *ra
     query->now.any = size != sizeof(RtHit);
     query->now.counted = query->counting;
     query->now.face.crossings = scratch->crossings;
+    query->scratch = scratch;
     query->now.face.object_count = query->counting ? 0 : query->geometry->object_count;
     query->now.face.ray = (const raytally_ray *)rays;
     now = &query->now;
@@ -331,30 +375,30 @@ static void take_occluders(PluginQuery *query, const RtRay *rays, size_t count, 
 }
 
 /* Counters that the plugin counts, and those that object_hits counts, which a plugin with its own hit
- * functions adds to. Rays and hits are counted here; a plugin is never an overlay, which passes rays on.
- * X(CONSTANT, name) */
+ * functions adds to. Rays and hits are counted here. X(CONSTANT, name) */
 #define OWN_COUNTERS(X)                                                                                      \
     X(EXTENT_TESTS, extent_tests)                                                                            \
     X(STEPS, steps)                                                                                          \
     X(LEAF_STEPS, leaf_steps)                                                                                \
     X(EMPTY_STEPS, empty_steps)                                                                              \
-    X(REPEATS_AVOIDED, repeats_avoided)
+    X(REPEATS_AVOIDED, repeats_avoided)                                                                      \
+    X(PASSED_ON, passed_on)
 #define OBJECT_COUNTERS(X)                                                                                   \
     X(OBJECT_TESTS, object_tests)                                                                            \
     X(OBJECT_HITS, object_hits)                                                                              \
     X(CSG_TESTS, csg_tests)
 
 #define ONE(CONSTANT, name) +1
-_Static_assert(2 OWN_COUNTERS(ONE) OBJECT_COUNTERS(ONE) + 1 == RT_TALLY_COUNTER_COUNT,
+_Static_assert(2 OWN_COUNTERS(ONE) OBJECT_COUNTERS(ONE) == RT_TALLY_COUNTER_COUNT,
                "a counter is a plugin's, or counted here");
 
 /* No ray costs this much: the plugin counted below zero, or copied unset memory. */
 #define MOST_A_RAY (UINT64_C(1) << 32)
 
-/* Adds the counts of a stream of so many rays. */
+/* Adds the counts of a stream of so many rays, and of the layers below, where rays and hits count again. */
 static void add_counters(PluginQuery *query, const raytally_counters *counted, size_t rays,
                          RtTally *tallies) {
-    const bool checked = query->accel->base.exact && query->accel->base.counts;
+    const bool checked = !(query->accel->table->flags & RAYTALLY_OWN_HITS) && query->accel->base.counts;
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
         const uint64_t *at = counted[kind].at;
         const RtTally *right = &query->tallies[kind];
@@ -373,6 +417,8 @@ static void add_counters(PluginQuery *query, const raytally_counters *counted, s
                         rt_ray_kind_name((RtRayKind)kind), at[RAYTALLY_##CONSTANT], right->name);
         OWN_COUNTERS(ADD_OWN)
         OBJECT_COUNTERS(ADD_RIGHT)
+        query->below[kind].rays = query->below[kind].hits = 0;
+        rt_tally_add(&tallies[kind], &query->below[kind]);
     }
 }
 
@@ -403,6 +449,7 @@ static void add_counters(PluginQuery *query, const raytally_counters *counted, s
             raytally_counters counters[RAYTALLY_RAY_KINDS] = {0};                                            \
             query->counting = true;                                                                          \
             memset(query->tallies, 0, sizeof query->tallies);                                                \
+            memset(query->below, 0, sizeof query->below);                                                    \
             question##_some(query, scratch, rays + first, n, answers + first,                                \
                             accel->counts ? counters : NULL);                                                \
             query->counting = false;                                                                         \

@@ -16,7 +16,7 @@
 
 typedef struct Remote {
     RtAccel base;
-    RtAccelOps ops; /* remote_ops, with the name of the base */
+    RtAccelOps ops; /* remote_ops, with the name of the topmost plugin */
     RtWatched child;
     RtSpec spec;
     int threads;  /* to build with */
@@ -174,7 +174,9 @@ static RtStatus build(const RtSpec *spec, const RtScene *scene, int threads, dou
                        .threads = threads,
                        .pipe_end = -1,
                        .child.time_limit = time_limit_of_user()};
-    remote->ops.name = spec->layers[spec->layer_count - 1].ops->name;
+    const RtSpecLayer *plugin = spec->layers;
+    while (!plugin->ops->remote) plugin++;
+    remote->ops.name = plugin->ops->name;
     pthread_mutex_init(&remote->child.lock, NULL);
     pthread_mutex_init(&remote->master, NULL);
     rt_spec_format(spec, remote->child.name);
@@ -189,20 +191,21 @@ static RtStatus build(const RtSpec *spec, const RtScene *scene, int threads, dou
     return status;
 }
 
-/* In a fresh process, of the plugin alone, without overlays above it: traces each ray by itself, until the
- * process fails. The search takes at most the time limit to build, and MOST_SECONDS to trace. */
+/* In a fresh process, without the overlays above the plugin: traces each ray by itself, until the process
+ * fails. The search takes at most the time limit to build, and MOST_SECONDS to trace. */
 static uint32_t find_ray(const RtWatched *child) {
     enum { MOST_SECONDS = 10 };
     const Remote *remote = (const Remote *)((const char *)child - offsetof(Remote, child));
     const Crash *crash = &child->wire->crash;
     const WireAlone stream = {.count = crash->count, .any = crash->any, .counted = crash->counted};
-    RtSpec spec = remote->spec;
-    spec.layers[0] = spec.layers[spec.layer_count - 1];
-    spec.layer_count = 1;
+    const uint32_t layers = crash->layers, all = remote->spec.layer_count;
+    RtSpec spec = {.layer_count = layers};
     RtAccel *accel;
     RtQuery query;
     uint32_t found = RT_FAILS_SOMEHOW;
-    if (isinf(child->time_limit) || stream.count > WIRE_RAYS ||
+    if (isinf(child->time_limit) || stream.count > WIRE_RAYS || layers == 0 || layers > all) return found;
+    memcpy(spec.layers, remote->spec.layers + (all - layers), layers * sizeof *spec.layers);
+    if (!spec.layers[0].ops->remote ||
         build(&spec, remote->base.scene, remote->threads, child->time_limit, &accel, NULL) != RT_OK)
         return found;
     RtWatched *fresh = &of(accel)->child;

@@ -39,6 +39,7 @@ static void record_stream(Crash *crash, const RtPluginNow *now) {
     crash->ray = ray < count ? (uint32_t)ray : 0;
     crash->any = now->any;
     crash->counted = now->counted;
+    crash->layers = now->layers;
     crash->count = (uint32_t)count;
 }
 

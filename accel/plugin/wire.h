@@ -54,6 +54,7 @@ typedef struct Crash {
     uint32_t count;        /* 0: none */
     uint32_t ray;          /* index of the last one prepared; 0: perhaps none was prepared */
     uint32_t any, counted; /* which kernel; 0 or 1 */
+    uint32_t layers;       /* of the stack, from the bottom to the plugin */
     uint32_t alone;        /* index of the last ray that rt_wire_trace_alone began */
     RtRay rays[WIRE_RAYS]; /* [count] */
 } Crash;

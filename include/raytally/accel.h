@@ -82,6 +82,11 @@ typedef struct raytally_host {
                        raytally_hit *best, raytally_counters *counters);
     /** The hit function of an object that is neither a triangle nor a sphere: 1 and *t, or 0. */
     int (*other_hit)(const raytally_prepared *ray, uint32_t id, float *t);
+    /** See raytally_nearest_below. */
+    void (*nearest_below)(raytally_query *query, const raytally_ray *rays, size_t count, raytally_hit *hits);
+    /** See raytally_occluded_below. */
+    void (*occluded_below)(raytally_query *query, const raytally_ray *rays, size_t count,
+                           uint32_t *occluders);
 } raytally_host;
 
 /** The state of one thread's rays. Plugins use only its first member; the functions below use the others. */
@@ -155,6 +160,24 @@ RAYTALLY_INLINE int raytally_object_hits(const raytally_prepared *ray, const uin
         if (any) return 1;
     }
     return 0;
+}
+
+/** Nearest hits in the accelerator below an overlay (::RAYTALLY_OVERLAY). In streams that are counted,
+ * raytally counts what that does; the overlay counts only what it does itself.
+ * @param query  the argument of the kernel
+ * @param rays   [count] of the kernel's rays, or other valid rays
+ * @param count  number of rays, possibly 0; long streams take less time
+ * @param hits   [count] out */
+RAYTALLY_INLINE void raytally_nearest_below(raytally_query *query, const raytally_ray *rays, size_t count,
+                                            raytally_hit *hits) {
+    query->host->nearest_below(query, rays, count, hits);
+}
+
+/** The same for occluders: each is an object on the ray, RAYTALLY_NO_OBJECT, or RAYTALLY_UNNAMED_OBJECT if
+ * the accelerator below does not name it. */
+RAYTALLY_INLINE void raytally_occluded_below(raytally_query *query, const raytally_ray *rays, size_t count,
+                                             uint32_t *occluders) {
+    query->host->occluded_below(query, rays, count, occluders);
 }
 
 /** Adds `n` to one of ::raytally_counter. With a constant NULL it compiles to nothing. */
@@ -235,7 +258,8 @@ typedef void raytally_nearest_kernel(const void *self, void *memory, raytally_qu
                                      const raytally_ray *rays, size_t count, raytally_hit *hits,
                                      raytally_counters *counters);
 
-/** An occluder without a name: something lies on the ray. Only with ::RAYTALLY_OWN_HITS. */
+/** An occluder without a name: something lies on the ray. Only with ::RAYTALLY_OWN_HITS, or above an
+ * accelerator that has it. */
 #define RAYTALLY_UNNAMED_OBJECT (UINT32_MAX - 1)
 
 /** Whether anything lies on each ray. As ::raytally_nearest_kernel, except that an answer is any object on
@@ -252,7 +276,11 @@ enum raytally_accel_flag {
      * at a t with tmin <= t <= tmax, or be a miss. Object tests are counted as its own code counts them. */
     RAYTALLY_OWN_HITS = 1,
     /** It counts nothing: `counters` is always NULL, and its rows have times but no counts. */
-    RAYTALLY_NO_COUNTS = 2
+    RAYTALLY_NO_COUNTS = 2,
+    /** It is an overlay, written before a '+': it answers some rays, and passes the others on to the
+     * accelerator below by raytally_nearest_below and raytally_occluded_below. In RAYTALLY_PASSED_ON it
+     * counts those that it is made for and cannot answer. */
+    RAYTALLY_OVERLAY = 4
 };
 
 /** One accelerator. Optional members may be NULL.

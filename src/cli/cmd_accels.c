@@ -8,8 +8,9 @@
 static void print_accelerator(const RtAccelOps *ops) {
     printf("%s: %s\n  %s\n", ops->name, ops->summary, ops->paper);
     if (ops->kinds) {
-        fputs("  an overlay, OVERLAY+ACCELERATOR: answers only rays of kind", stdout);
-        for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
+        fputs("  an overlay, OVERLAY+ACCELERATOR", stdout);
+        if (ops->kinds != RT_ALL_RAY_KINDS) fputs(": answers only rays of kind", stdout);
+        for (int kind = 0; kind < RT_RAY_KIND_COUNT && ops->kinds != RT_ALL_RAY_KINDS; kind++) {
             if (ops->kinds >> kind & 1) printf(" %s", rt_ray_kind_name((RtRayKind)kind));
         }
         putchar('\n');
