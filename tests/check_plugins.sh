@@ -39,10 +39,10 @@ mv printed alone.json
 fault() {
     local name=faulty-$1 verified=$2 measured=${3-$2}
     ends $((${#verified} > 0)) "${verify[@]}" --plugin "$plugins/faulty.so" --accel "$name" --accel kd
-    [ -z "$verified" ] || says "$name.*$verified"
+    [ -z "$verified" ] || says "${name//+/.}.*$verified"
     mv printed "verify-$1.json"
     ends $((${#measured} > 0)) "${bench[@]}" --plugin "$plugins/faulty.so" --accel kd --accel "$name"
-    [ -z "$measured" ] || says "$name.*$measured"
+    [ -z "$measured" ] || says "${name//+/.}.*$measured"
     mv printed "bench-$1.json"
 }
 
@@ -103,6 +103,15 @@ fault loop-build 'no progress for 2 s .* while it was built'
 RAYTALLY_PLUGIN_SECONDS=1
 fault greedy 'memory is short'
 fault older ''
+
+# Overlays: the fault is named whichever layer has it, and its ray is found without the layers above.
+fault over+kd ''
+fault over-crash+bvh "$crash\) .*, at the ray org"
+fault over+faulty-crash-rare "$crash\) .*, at the ray org"
+fault over+faulty-over-crash+kd "$crash\) .*, at the ray org"
+fault over-nan+bvh 'it passed on a ray that is not valid, of kind [0-6], org .* dir \(.*nan'
+fault over-kind+bvh 'it passed on a ray that is not valid, of kind 77, org'
+fault base 'it passes rays on, but its .flags. lack RAYTALLY_OVERLAY'
 
 # Answers of its own hit functions may differ, but they must be answers.
 fault own-object 'an object that does not exist, 1[0-9] \(the scene has 11 objects\)'
@@ -263,6 +272,11 @@ refuses "'unloadable' sets flags that this raytally does not know \(0x8000000000
 refuses "parameter 'mode' of 'unloadable' has 71 choices; at most 64 are allowed" "$plugins/unloadable-CHOICES.so"
 refuses 'loading it failed: it crashed \(Aborted\)' "$plugins/unloadable-CONSTRUCTOR.so"
 refuses 'loading it failed: it crashed \(Aborted\)' "$plugins/unloadable-ENTRY.so"
+for spec in faulty-not+bvh:'faulty-not is not an overlay, so it cannot stand before' \
+    faulty-over:'faulty-over is an overlay and needs an accelerator below it: write faulty-over.bvh'; do
+    ends 2 verify balls:size=1 --rays 10 --plugin "$plugins/faulty.so" --accel "${spec%%:*}"
+    says "${spec#*:}"
+done
 wait $forever || failures=$((failures + 1))
 mkdir folder && cp "$plugins/faulty.so" folder/
 mkdir a:b 'c\d' && cp folder/faulty.so a:b/ && cp folder/faulty.so 'c\d/' && cp "$plugins/odd-LONGER.so" 'c\d/x:y.so'
@@ -288,9 +302,10 @@ works() {
         { complain "$1 cannot be built: $(tail -n 20 log)" && return; }
     for library in "built-$name"/*.so; do
         for accel in $(comm -13 <(names) <(names --plugin "$library")); do
+            ! "$program" accels "$accel" --json --plugin "$library" | grep -q '"overlay": true' || accel=$accel+bvh
             ends 0 verify --quick --plugin "$library" --accel "$accel"
             ends 0 bench balls:size=2 --rays primary --size 16x16 --rounds 1 --plugin "$library" --accel bvh --accel "$accel"
-            says "$accel"
+            says "${accel//+/.}"
         done
     done
 }

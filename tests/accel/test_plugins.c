@@ -20,8 +20,9 @@
 
 static void load_all(void) {
     setenv("RAYTALLY_PLUGIN_SECONDS", "2", 1);
-    assert_ok(rt_plugin_load_all(
-        PLUGINS "new-accel.so:" PLUGINS "bvh_copy.so:" PLUGINS "faulty.so:" PLUGINS "own_hits.so", error));
+    assert_ok(rt_plugin_load_all(PLUGINS "new-accel.so:" PLUGINS "bvh_copy.so:" PLUGINS "faulty.so:" PLUGINS
+                                         "own_hits.so:" PLUGINS "shadow-cache.so",
+                                 error));
 }
 
 /* An accelerator of a plugin over a scene, and random chords with their right answers. */
@@ -83,7 +84,9 @@ RT_TEST(one_that_is_loaded_twice_is_there_once) {
 }
 
 RT_TEST(answers_are_those_of_brute_in_streams_of_every_length_on_several_threads) {
-    static const char *const specs[] = {"my-accel", "my-accel:boxes=off", "bvh_copy", "cache+bvh_copy"};
+    static const char *const specs[] = {
+        "my-accel",       "my-accel:boxes=off", "bvh_copy",
+        "cache+bvh_copy", "shadow-cache+wide",  "shadow-cache:lights=1+light+shadow-cache+bvh_copy"};
     OWNED_BENCH bench;
     load_all();
     bench.scene = open_family(scene_family("slivers"), 3);
@@ -105,6 +108,57 @@ RT_TEST(counts_are_the_same_on_any_number_of_threads) {
     assert_memory_equal(&once.tally, &again.tally, sizeof once.tally);
     assert_int_equal(once.tally.rays, stage.set.count);
     assert_true(once.tally.object_tests > 0 && once.tally.steps > 0);
+}
+
+/* ---- overlays ---- */
+
+/* Whether the rays are blocked, and the counts, in streams of several kinds of rays. */
+static void trace_streams(const char *spec, const Stage *stage, bool *blocked, RtTally *tallies) {
+    enum { STREAM = 37 };
+    RtQuery query;
+    OWNED_ACCEL RtAccel *accel = open_accel(&stage->scene, spec);
+    assert_ok(rt_query_init(&query, accel, error));
+    for (uint64_t i = 0; i < stage->set.count; i += STREAM) {
+        const uint64_t left = stage->set.count - i;
+        rt_occluded(&query, stage->set.rays + i, left < STREAM ? left : STREAM, blocked + i, tallies);
+    }
+    rt_query_clear(&query);
+    assert_ok(rt_accel_check(accel, error));
+}
+
+RT_TEST(an_overlay_counts_what_the_built_in_one_counts_over_any_layer) {
+    enum { RAYS = 2000 };
+    static const char *const pairs[][2] = {{"cache+bvh", "shadow-cache+bvh"},
+                                           {"cache+bvh", "shadow-cache+bvh_copy"},
+                                           {"cache+cache+grid", "shadow-cache+cache+grid"},
+                                           {"cache+cache+bvh", "shadow-cache+shadow-cache+bvh_copy"}};
+    OWNED(close_stage) Stage stage;
+    open_stage(&stage, "shadow-cache+bvh", RAYS);
+    for (uint32_t i = 0; i < RAYS; i++) {
+        stage.set.rays[i].kind = i % 3 ? RT_RAY_SHADOW : RT_RAY_DIFFUSE;
+        stage.set.rays[i].source = i % stage.scene.light_count;
+    }
+    for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
+        RtTally built_in[RT_RAY_KIND_COUNT] = {0}, own[RT_RAY_KIND_COUNT] = {0};
+        bool right[RAYS], blocked[RAYS];
+        trace_streams(pairs[i][0], &stage, right, built_in);
+        trace_streams(pairs[i][1], &stage, blocked, own);
+        assert_memory_equal(right, blocked, sizeof right);
+        assert_memory_equal(built_in, own, sizeof own);
+        assert_true(own[RT_RAY_SHADOW].passed_on > 0 && own[RT_RAY_DIFFUSE].passed_on == 0);
+    }
+}
+
+RT_TEST(an_overlay_is_described_with_the_layers_below) {
+    OWNED(close_stage) Stage stage;
+    RtDescription alone, both;
+    open_stage(&stage, "shadow-cache+bvh", 1);
+    rt_accel_describe(stage.bvh, &alone);
+    rt_accel_describe(stage.accel, &both);
+    assert_true(stage.accel->exact && stage.accel->counts);
+    assert_int_equal(both.bytes, alone.bytes);
+    assert_int_equal(both.leaves, alone.leaves);
+    assert_true(both.predicted_cost == alone.predicted_cost);
 }
 
 /* ---- hit functions of their own ---- */
@@ -143,7 +197,7 @@ RT_TEST(answers_with_other_bits_are_counted_and_so_are_its_own_object_tests) {
 }
 
 RT_TEST(one_without_counts_gets_no_counters_and_need_not_name_occluders_below_a_cache_either) {
-    static const char *const specs[] = {"own-unnamed", "cache+own-unnamed"};
+    static const char *const specs[] = {"own-unnamed", "cache+own-unnamed", "shadow-cache+own-unnamed"};
     for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
         OWNED_BENCH bench;
         OWNED_ACCEL RtAccel *accel;

@@ -310,6 +310,24 @@ static void unprepared_nearest(const void *self, void *memory, raytally_query *q
     }
 }
 
+/* The kernels NAME of an overlay, which does something to each ray and passes it on; occluders are found by
+ * the plugin itself. */
+#define OVERLAY(name, ...)                                                                                   \
+    static void name##_nearest(const void *self, void *memory, raytally_query *query,                        \
+                               const raytally_ray *rays, size_t count, raytally_hit *hits,                   \
+                               raytally_counters *counters) {                                                \
+        (void)self, (void)memory, (void)counters;                                                            \
+        for (size_t i = 0; i < count; i++) {                                                                 \
+            raytally_ray ray = rays[i];                                                                      \
+            __VA_ARGS__                                                                                      \
+            raytally_nearest_below(query, &ray, 1, &hits[i]);                                                \
+        }                                                                                                    \
+    }
+OVERLAY(pass_on, )
+OVERLAY(pass_on_crash, if (is_rare(&ray)) crash();)
+OVERLAY(pass_on_nan, ray.dir[1] = NAN;)
+OVERLAY(pass_on_kind, ray.kind = 77;)
+
 /* ---- other functions ---- */
 
 static void show_none(const void *self, raytally_box_visitor *visit, void *context) {
@@ -363,6 +381,13 @@ static int validate_broken(const void *self, char *message, size_t size) {
     {                                                                                                        \
         .name = "faulty-own-" what, .summary = "has its own hit functions, and " does,                       \
         .flags = RAYTALLY_OWN_HITS, __VA_ARGS__                                                              \
+    }
+
+/* An overlay. */
+#define OVER(what, does, kernel)                                                                             \
+    {                                                                                                        \
+        .name = "faulty-over" what, .summary = "is an overlay, and " does, .nearest = kernel,                \
+        .flags = RAYTALLY_OVERLAY                                                                            \
     }
 
 /* Members that are not set get the correct functions. */
@@ -458,6 +483,11 @@ static raytally_accel_ops tables[] = {
     OWN("unnamed", "names no occluder", .occluded = occluded_by_some),
     OWN("wrong", "forgets the last object", KERNELS(forgetful)),
     OWN("lazy", "finds nothing where nothing is counted", KERNELS(lazy)),
+    OVER("", "in order", pass_on_nearest),
+    OVER("-crash", "crashes at a ray of 256", pass_on_crash_nearest),
+    OVER("-nan", "passes on rays that are not valid", pass_on_nan_nearest),
+    OVER("-kind", "passes on rays of no kind", pass_on_kind_nearest),
+    {.name = "faulty-base", .summary = "passes rays on, and is no overlay", .nearest = pass_on_nearest},
     {.name = "faulty-print", .summary = "prints, but is right", .build = build_print, KERNELS(print)},
 };
 
