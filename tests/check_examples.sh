@@ -18,17 +18,17 @@ builds() {
     return 1
 }
 
-# verified NAME: the last line of verify
+# verified NAME [SPEC]: the last line of verify
 verified() {
     "$program" verify balls:size=2 tetra:size=3 random:n=0 random:n=1 random:n=40,shape=mixed,distribution=coincident \
-        family:kind=axis-aligned --rays 5000 --plugin "$work/$1.so" --accel "$1" --spread --out "$work/out" --force 2>&1 |
+        family:kind=axis-aligned --rays 5000 --plugin "$work/$1.so" --accel "${2-$1}" --spread --out "$work/out" --force 2>&1 |
         tail -n 1 || true
 }
 
-# right NAME: all rays of all scenes were traced, without a wrong answer
+# right NAME [SPEC]: all rays of all scenes were traced, without a wrong answer
 right() {
     local said form='^6 scenes, ([1-9][0-9]*) accelerators?, 5000 rays, ([0-9]+) pairs of a ray and an accelerator: nothing wrong$'
-    said=$(verified "$1")
+    said=$(verified "$@")
     [[ $said =~ $form && ${BASH_REMATCH[2]} = $((6 * 5000 * BASH_REMATCH[1])) ]] || complain "$1: $said"
 }
 
@@ -42,6 +42,7 @@ refused() {
 
 for compiler in gcc clang; do
     if builds "$compiler" c99 examples/bih/bih.c bih; then right bih; fi
+    if builds "$compiler" c99 examples/shadow-cache/shadow_cache.c shadow-cache; then right shadow-cache shadow-cache+bvh; fi
     # Fused products, if the processor has them, would change the bits of hits.
     if builds "$compiler" gnu17 tests/plugins/bvh_copy.c bvh_copy -O3 -march=native -ffp-contract=fast; then right bvh_copy; fi
     if builds "$compiler" c17 tests/plugins/bvh_copy.c bvh_copy; then right bvh_copy; fi

@@ -163,6 +163,10 @@ MEMBER(raytally_host, object_hits, 16,
        int (*)(const raytally_prepared *, const uint32_t *, uint32_t, int, raytally_hit *,
                raytally_counters *));
 MEMBER(raytally_host, other_hit, 24, int (*)(const raytally_prepared *, uint32_t, float *));
+MEMBER(raytally_host, nearest_below, 32,
+       void (*)(raytally_query *, const raytally_ray *, size_t, raytally_hit *));
+MEMBER(raytally_host, occluded_below, 40,
+       void (*)(raytally_query *, const raytally_ray *, size_t, uint32_t *));
 
 GROWS(raytally_query, 8);
 MEMBER(raytally_query, host, 0, const raytally_host *);
@@ -216,6 +220,7 @@ MEMBER(raytally_description, predicted_steps, 64, double);
 /* raytally_accel_flag */
 VALUE(RAYTALLY_OWN_HITS, 1);
 VALUE(RAYTALLY_NO_COUNTS, 2);
+VALUE(RAYTALLY_OVERLAY, 4);
 
 GROWS(raytally_accel_ops, 128);
 MEMBER(raytally_accel_ops, abi, 0, uint32_t);
@@ -240,6 +245,8 @@ FUNCTION(raytally_object_hit, int(const raytally_prepared *, uint32_t, float *))
 FUNCTION(raytally_prepare, void(raytally_query *, const raytally_ray *, raytally_prepared *));
 FUNCTION(raytally_object_hits, int(const raytally_prepared *, const uint32_t *, uint32_t, int, raytally_hit *,
                                    raytally_counters *));
+FUNCTION(raytally_nearest_below, void(raytally_query *, const raytally_ray *, size_t, raytally_hit *));
+FUNCTION(raytally_occluded_below, void(raytally_query *, const raytally_ray *, size_t, uint32_t *));
 
 CALLBACK(raytally_box_visitor, void (*)(void *, const raytally_box *, uint32_t, int));
 CALLBACK(raytally_nearest_kernel, void (*)(const void *, void *, raytally_query *, const raytally_ray *,
