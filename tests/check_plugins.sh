@@ -232,6 +232,21 @@ ends 0 run limited.yaml --plugin "$plugins/faulty.so" --out limited
 says 'faulty-leak on balls:size=1: its structure takes more than 100 MB'
 [ "$(grep -c ',kd,' limited/counts.csv)" = 2 ] || complain "an experiment with a limit lacks rows of kd"
 
+# ---- the path of a ray ----
+
+for spec in crash-nearest:"$crash" loop-nearest:'no progress' scribbled:'overwrote memory' backwards:'more than possible' \
+    uncounted:'its object_tests for'; do
+    ends 1 trace balls:size=1 --pixel 256,256 --plugin "$plugins/faulty.so" --accel "faulty-${spec%%:*}"
+    says "${spec#*:}"
+done
+ends 2 trace balls:size=1 --pixel 256,256 --plugin "$plugins/faulty.so" --accel faulty-own-unnamed
+says 'cannot follow a ray through a plugin that has hit functions of its own'
+ends 0 trace balls:size=1 --pixel 256,256 --plugin "$plugins/bvh_copy.so" --accel bvh_copy --svg path.svg
+tail -n +2 printed >path-copy
+"$program" trace balls:size=1 --pixel 256,256 --accel bvh | tail -n +2 >path-bvh
+diff <(sed '/^wrote/d' path-copy) path-bvh || complain 'the path of a ray through bvh_copy is not that through bvh'
+[ -s path.svg ] || complain 'the path of a ray through bvh_copy is not drawn'
+
 # ---- instructions by callgrind ----
 
 # counted NAME: its count of instructions in counted.json, or why there is none
@@ -325,5 +340,13 @@ for example in "$root"/examples/*/CMakeLists.txt; do
     *) works "${example%/*}" ;;
     esac
 done
+
+# What a plugin counts and does not show has no box, and whether the box is hit is unknown.
+ends 0 trace balls:size=1 --pixel 256,256 --plugin built-bih/bih.so --accel bih --json
+python3 -c 'import json
+rows = json.load(open("printed"))["rows"]
+extents = [row for row in rows if row["event"] == "extent test"]
+assert extents and all(row["met"] is None and row["of"] is None and "box" not in row for row in extents), rows' ||
+    complain 'trace --json says something of extent tests that bih does not show'
 
 conclude

@@ -49,6 +49,22 @@ __attribute__((format(printf, 2, 3))) void rt_plugin_break(RtPluginAccel *accel,
 /* Sets the kernels, what opens and closes queries, and `check`. */
 void rt_plugin_query_ops(RtAccelOps *ops);
 
+/* ---- the events of a ray that is traced for an observer ---- */
+
+typedef struct RtPluginEvents {
+    const char *name;                  /* of the accelerator */
+    const raytally_counters *counters; /* of the ray's kind, which the plugin counts in; NULL: none */
+    raytally_counters shown;           /* so many of them became events */
+    RtHit best;                        /* so far */
+} RtPluginEvents;
+
+/* Reports what the plugin counted since the last event. */
+void rt_plugin_catch_up(RtPluginEvents *events);
+
+/* raytally_show. */
+void rt_plugin_show(RtPluginEvents *events, const raytally_prepared *ray, uint32_t counter, uint32_t number,
+                    const raytally_box *box);
+
 /* ---- what a query is doing, for reports of crashes ---- */
 
 /* Memory between guard pages; `mapping` includes them. */

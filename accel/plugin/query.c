@@ -37,6 +37,7 @@ typedef struct PluginQuery {
     bool counting;
     /* In a stream that is counted: of object tests, and of the layers below. */
     RtTally tallies[RT_RAY_KIND_COUNT], below[RT_RAY_KIND_COUNT];
+    RtPluginEvents events;
 } PluginQuery;
 
 /* ---- reports ---- */
@@ -109,7 +110,9 @@ static int object_hits(const raytally_prepared *ray, const uint32_t *ids, uint32
     PluginQuery *query = (PluginQuery *)ray->query;
     if (!query->counting) return hits_of(ray, ids, count, any, best, NULL);
     RtTally tally = {0};
+    rt_plugin_catch_up(&query->events);
     int over = hits_of(ray, ids, count, any, best, &tally);
+    query->events.best = (RtHit){best->t, best->object};
     rt_tally_add(&query->tallies[ray->ray->kind], &tally);
     if (!counters) return over;
     counters->at[RAYTALLY_OBJECT_TESTS] += tally.object_tests;
@@ -142,6 +145,7 @@ static bool can_pass_on(PluginQuery *query, const RtRay *rays, size_t count) {
         PluginQuery *query = (PluginQuery *)face;                                                            \
         const RtRay *stream = (const RtRay *)rays;                                                           \
         Answer *out = (Answer *)answers;                                                                     \
+        rt_plugin_catch_up(&query->events);                                                                  \
         if (can_pass_on(query, stream, count)) {                                                             \
             rt_hand_down_##question(&query->accel->base, query->scratch, stream, count, out,                 \
                                     query->counting ? query->below : NULL);                                  \
@@ -153,13 +157,16 @@ static bool can_pass_on(PluginQuery *query, const RtRay *rays, size_t count) {
 DEFINE_BELOW(nearest, RtHit, raytally_hit, RT_MISS)
 DEFINE_BELOW(occluded, uint32_t, uint32_t, RT_NO_OBJECT)
 
-static const raytally_host host = {.abi = RAYTALLY_ACCEL_ABI,
-                                   .size = sizeof(raytally_host),
-                                   .prepare = prepare,
-                                   .object_hits = object_hits,
-                                   .other_hit = other_hit,
-                                   .nearest_below = nearest_below,
-                                   .occluded_below = occluded_below};
+static void show(const raytally_prepared *ray, uint32_t counter, uint32_t number, const raytally_box *box) {
+    rt_plugin_show(&((PluginQuery *)ray->query)->events, ray, counter, number, box);
+}
+
+#define HOST(show_or_null)                                                                                   \
+    {                                                                                                        \
+        RAYTALLY_ACCEL_ABI, sizeof(raytally_host), prepare, object_hits, other_hit, nearest_below,           \
+            occluded_below, show_or_null                                                                     \
+    }
+static const raytally_host host = HOST(NULL), observed_host = HOST(show);
 
 /* ---- memory between guard pages ---- */
 
@@ -223,8 +230,7 @@ static RtStatus map_memory(PluginQuery *query, RtError *error) {
 static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) {
     PluginQuery *query = scratch;
     const RtGeometry *geometry = &accel->scene->geometry;
-    *query = (PluginQuery){.now.face = {.host = &host,
-                                        .boxes = rt_public_box(geometry->boxes),
+    *query = (PluginQuery){.now.face = {.boxes = rt_public_box(geometry->boxes),
                                         .triangles = (const float *)geometry->triangles,
                                         .spheres = (const float *)geometry->spheres,
                                         .objects = geometry->objects},
@@ -271,6 +277,7 @@ static void *enter(PluginQuery *query, const RtScratch *scratch, const RtRay *ra
     query->now.count = count;
     query->now.any = size != sizeof(RtHit);
     query->now.counted = query->counting;
+    query->now.face.host = query->counting && rt_trace_observer ? &observed_host : &host;
     query->now.face.crossings = scratch->crossings;
     query->scratch = scratch;
     query->now.face.object_count = query->counting ? 0 : query->geometry->object_count;
@@ -450,9 +457,13 @@ static void add_counters(PluginQuery *query, const raytally_counters *counted, s
             query->counting = true;                                                                          \
             memset(query->tallies, 0, sizeof query->tallies);                                                \
             memset(query->below, 0, sizeof query->below);                                                    \
+            query->events = (RtPluginEvents){.name = accel->ops->name,                                       \
+                                             .counters = accel->counts ? &counters[rays[first].kind] : NULL, \
+                                             .best = RT_MISS};                                               \
             question##_some(query, scratch, rays + first, n, answers + first,                                \
                             accel->counts ? counters : NULL);                                                \
             query->counting = false;                                                                         \
+            rt_plugin_catch_up(&query->events);                                                              \
             add_counters(query, counters, n, tallies);                                                       \
         }                                                                                                    \
         for (size_t i = 0; i < count; i++) {                                                                 \

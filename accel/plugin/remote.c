@@ -3,6 +3,7 @@
 #include "accel/remote.h"
 #include "accel/plugin/watch.h"
 #include "core/base/memory.h"
+#include "core/base/observe.h"
 #include "core/base/words.h"
 
 #include <fcntl.h>
@@ -334,6 +335,29 @@ static void trace_part(const RtAccel *accel, const RtScratch *scratch, const RtR
     }
 }
 
+/* Traces a ray again for its events, as often as it takes to send them, to the observer of this thread. */
+static void observe(const RtAccel *accel, const RtScratch *scratch, const RtRay *ray, bool any) {
+    Remote *remote = of(accel);
+    const RemoteQuery *query = scratch->own;
+    WireEvents *message = (WireEvents *)remote->child.wire->channels[query->channel].message;
+    uint32_t count = WIRE_EVENTS;
+    for (uint64_t first = 0; count == WIRE_EVENTS && first < UINT32_MAX; first += count) {
+        message->first = first;
+        message->any = any;
+        if (!request(remote, query->channel,
+                     &(Request){.work = rt_wire_events,
+                                .bytes = sizeof(WireEvents),
+                                .rays = ray,
+                                .ray_count = 1,
+                                .begin = true,
+                                .doing = "it traced a ray step by step"}))
+            return;
+        count = message->count;
+        count = count < WIRE_EVENTS ? count : WIRE_EVENTS;
+        for (uint32_t i = 0; i < count; i++) rt_wire_observe(&message->events[i]);
+    }
+}
+
 /* One of `hits` and `occluders` is NULL. */
 static void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                   RtHit *hits, uint32_t *occluders, RtTally *tallies) {
@@ -343,6 +367,7 @@ static void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *r
         trace_part(accel, scratch, rays + first, n, !hits, hits ? hits + first : some, tallies);
         for (uint32_t i = 0; i < n && occluders; i++) occluders[first + i] = some[i].object;
     }
+    for (size_t i = 0; i < count && RT_OBSERVED(tallies); i++) observe(accel, scratch, &rays[i], !hits);
 }
 
 static void count_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,

@@ -16,6 +16,7 @@
 #define RT_ACCEL_PLUGIN_WIRE_H
 
 #include "accel/remote.h"
+#include "core/shape/ball.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -128,6 +129,27 @@ typedef struct WireRays {
 } WireRays;
 WireWork rt_wire_trace;
 
+/* Traces a ray for its events number first, first + 1, ..., as many as fit (core/base/observe.h). */
+enum { WIRE_EVENTS = 1024 };
+typedef struct WireEvent {
+    uint32_t kind, index;
+    float t;
+    uint32_t leaf, empty, met, boxed, round; /* 0 or 1 */
+    RtBox box;                               /* if boxed */
+    RtBall ball;                             /* if round */
+    char what[RT_MAX_NAME];                  /* "": nothing */
+} WireEvent;
+
+typedef struct WireEvents {
+    uint64_t first, seen; /* seen: all events of the ray, out */
+    uint32_t any, count;  /* count: out; fewer than WIRE_EVENTS: these are the last */
+    WireEvent events[WIRE_EVENTS];
+} WireEvents;
+WireWork rt_wire_events;
+
+/* Reports an event that was sent, whatever it holds, to the observer of this thread. */
+void rt_wire_observe(const WireEvent *sent);
+
 /* Traces each ray of a stream in a call of its own, to find the one that fails. */
 typedef struct WireAlone {
     uint32_t count, any, counted; /* as in Crash */
@@ -135,6 +157,7 @@ typedef struct WireAlone {
 WireWork rt_wire_trace_alone;
 
 _Static_assert(sizeof(WireBoxes) <= MESSAGE_BYTES &&
+                   sizeof(WireEvents) + 2 * sizeof(RtRay) <= MESSAGE_BYTES &&
                    sizeof(WireRays) + WIRE_RAYS * (sizeof(RtHit) + sizeof(RtRay)) <= RT_REMOTE_BYTES,
                "messages fit a channel");
 

@@ -87,6 +87,8 @@ typedef struct raytally_host {
     /** See raytally_occluded_below. */
     void (*occluded_below)(raytally_query *query, const raytally_ray *rays, size_t count,
                            uint32_t *occluders);
+    /** See raytally_show. NULL unless `raytally trace` follows the ray. */
+    void (*show)(const raytally_prepared *ray, uint32_t counter, uint32_t number, const raytally_box *box);
 } raytally_host;
 
 /** The state of one thread's rays. Plugins use only its first member; the functions below use the others. */
@@ -185,6 +187,21 @@ RAYTALLY_INLINE void raytally_occluded_below(raytally_query *query, const raytal
     do {                                                                                                     \
         if (counters) (counters)->at[counter] += (uint64_t)(n);                                              \
     } while (0)
+
+/** Optional: shows a step or an extent test, which has been counted, to `raytally trace`. Without it the
+ * ray's path says only how many there were between object tests. With constant NULL counters it compiles to
+ * nothing.
+ * @param ray       from raytally_prepare
+ * @param counter   RAYTALLY_STEPS or RAYTALLY_EXTENT_TESTS
+ * @param number    of the node or voxel
+ * @param box       its box; of a step possibly NULL
+ * @param counters  of the ray's kind, or NULL */
+RAYTALLY_INLINE void raytally_show(const raytally_prepared *ray, uint32_t counter, uint32_t number,
+                                   const raytally_box *box, const raytally_counters *counters) {
+    if (!counters) return;
+    const raytally_host *host = ray->query->host;
+    if (host->size > offsetof(raytally_host, show) && host->show) host->show(ray, counter, number, box);
+}
 
 /* ---- functions that a plugin provides ---- */
 

@@ -66,19 +66,18 @@ static const char *shape_of(const RtGeometry *g, uint32_t id) {
 }
 
 static void print_row(const RtPathRow *row, uint32_t number, const RtGeometry *g) {
-    char of[64] = "";
+    char of[RT_MAX_NAME + 16] = "";
     if (row->kind == RT_TRACED_OBJECT_TEST)
         snprintf(of, sizeof of, "object %u, %s", row->index, shape_of(g, row->index));
     else if (row->kind == RT_TRACED_PASSED_ON)
         snprintf(of, sizeof of, "by %s", row->what);
-    else if (row->what)
+    else if (*row->what)
         snprintf(of, sizeof of, "%s %u", row->what, row->index);
-    bool answers = row->kind == RT_TRACED_EXTENT_TEST || row->kind == RT_TRACED_OBJECT_TEST;
     bool is_in = row->boxed && row->enter <= row->leave;
     printf("%5u  %-14s  %-24s", number, rt_path_row_name(row), of);
     print_t(is_in ? row->enter : (double)INFINITY);
     print_t(is_in ? row->leave : (double)INFINITY);
-    if (!answers)
+    if (!rt_path_row_answers(row))
         printf("  %-18s", "");
     else if (row->kind == RT_TRACED_OBJECT_TEST && row->met)
         printf("  hit at %-11.6g", (double)row->t);
@@ -154,9 +153,11 @@ static void print_path(const RtPath *path, const Options *o, const char *title, 
 static json_t *row_json(const RtPathRow *row) {
     bool is_in = row->boxed && row->enter <= row->leave;
     json_t *json = json_pack(
-        "{s:s, s:s?, s:I, s:b, s:o, s:o, s:o, s:o}", "event", rt_path_row_name(row), "of", row->what, "index",
-        (json_int_t)row->index, "met", (int)row->met, "enter",
-        rt_json_number(is_in ? row->enter : (double)NAN), "leave",
+        "{s:s, s:s?, s:I, s:o, s:o, s:o, s:o, s:o}", "event", rt_path_row_name(row), "of",
+        *row->what ? row->what : NULL, "index", (json_int_t)row->index, "met",
+        row->kind == RT_TRACED_EXTENT_TEST && !rt_path_row_answers(row) ? json_null()
+                                                                        : json_boolean(row->met),
+        "enter", rt_json_number(is_in ? row->enter : (double)NAN), "leave",
         rt_json_number(is_in ? row->leave : (double)NAN), "t",
         rt_json_number(row->kind == RT_TRACED_OBJECT_TEST && row->met ? (double)row->t : (double)NAN),
         "nearest", rt_json_number((double)row->nearest));
@@ -228,11 +229,12 @@ static RtStatus run(const Options *o, RtError *error) {
     RtStatus status = rt_scene_sample(&scene, o->size[0], o->size[1], 1, false, error);
     if (status == RT_OK) status = rt_cli_check_pixel(&scene.sampling, o->x, o->y, error);
     if (status == RT_OK) status = rt_accel_build(&spec, &scene, 0, &accel, error);
-    if (status == RT_OK && rt_accel_is_remote(accel))
-        status = rt_fail(error, RT_BAD_INPUT,
-                         "%s: a plugin runs in its own process, so raytally cannot follow a ray through it; "
-                         "`raytally render --heatmap` shows what its rays cost",
-                         text);
+    if (status == RT_OK && rt_accel_is_remote(accel) && !(accel->exact && accel->counts))
+        status =
+            rt_fail(error, RT_BAD_INPUT,
+                    "%s: raytally cannot follow a ray through a plugin that has hit functions of its own "
+                    "or counts nothing",
+                    text);
     if (status == RT_OK) status = trace(o, &scene, accel, text, error);
     rt_accel_destroy(accel);
     rt_scene_clear(&scene);
@@ -259,7 +261,9 @@ const RtSyntax rt_trace_syntax = {
         "  raytally trace balls --pixel 256,256\n"
         "  raytally trace balls --pixel 256,256 --accel grid:density=1 --svg path.svg\n"
         "  raytally trace balls --pixel 256,400 --accel light:cells=40+octree --rays shadow --light 1\n"
-        "embree shows no steps, because it counts none; with mode=user it shows object tests."};
+        "embree shows no steps, because it counts none; with mode=user it shows object tests. A plugin shows "
+        "its "
+        "steps and extent tests by raytally_show (raytally/accel.h); without that they have no boxes."};
 
 RtStatus rt_command_trace(int argc, char **argv, RtError *error) {
     Options o = {.accel = rt_accel_default(), .rows = DEFAULT_ROWS};

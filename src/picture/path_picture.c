@@ -263,13 +263,13 @@ static void draw_bar(const Drawing *d, uint32_t i, double y) {
 
 static void draw_row(const Drawing *d, uint32_t i, double y) {
     const RtPathRow *row = &d->path->rows[i];
-    bool object = row->kind == RT_TRACED_OBJECT_TEST, tests = object || row->kind == RT_TRACED_EXTENT_TEST;
+    bool object = row->kind == RT_TRACED_OBJECT_TEST;
     char of[128] = "", text[256];
     if (row->kind == RT_TRACED_PASSED_ON)
         snprintf(of, sizeof of, " by %s", row->what);
-    else if (row->what)
+    else if (*row->what)
         snprintf(of, sizeof of, ", %s %u", row->what, row->index);
-    const char *result = !tests ? "" : row->met ? ": hit" : ": missed";
+    const char *result = !rt_path_row_answers(row) ? "" : row->met ? ": hit" : ": missed";
     snprintf(text, sizeof text, "%u  %s%s%s", i + 1, rt_path_row_name(row), of, result);
     draw_text(d, MARGIN, y + ROW - 3, RT_BLACK, text);
     draw_bar(d, i, y);

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "render/path.h"
 
+#include "accel/remote.h"
 #include "core/base/memory.h"
 #include "render/illumination.h"
 
-#include <string.h>
+#include <stdio.h>
 
 /* ---- recording ---- */
 
@@ -66,7 +67,6 @@ static void record(void *context, const RtTraced *event) {
     if (recorder->status != RT_OK) return;
     RtPathRow *row = &path->rows[path->count++];
     *row = (RtPathRow){.kind = event->kind,
-                       .what = event->what,
                        .index = event->index,
                        .leaf = event->leaf,
                        .empty = event->empty,
@@ -74,7 +74,9 @@ static void record(void *context, const RtTraced *event) {
                        .boxed = event->box && !rt_box_is_empty(*event->box),
                        .enter = INFINITY,
                        .leave = -INFINITY};
-    if (event->kind == RT_TRACED_OBJECT_TEST || event->kind == RT_TRACED_REPEAT_AVOIDED) row->what = "object";
+    const bool object = event->kind == RT_TRACED_OBJECT_TEST ||
+                        (event->kind == RT_TRACED_REPEAT_AVOIDED && event->index != RT_NO_OBJECT);
+    snprintf(row->what, sizeof row->what, "%s", object ? "object" : event->what ? event->what : "");
     if (!event->box || !row->boxed) return;
     row->box = *event->box;
     find_span(&path->ray, row);
@@ -112,9 +114,13 @@ static void ask(const RtQuery *query, const RtRay *ray, RtPath *path, RtTally *t
         accel->ops->nearest_counted(accel, query->scratch, ray, 1, &path->hit, tallies);
 }
 
-static RtStatus compare(RtPath *path, const RtTally *counted, RtError *error) {
+static RtStatus compare(RtPath *path, const RtTally *counted, bool remote, RtError *error) {
     path->tally.rays = counted->rays;
     path->tally.hits = counted->hits;
+    if (remote) { /* a plugin may count a leaf after it has left it */
+        path->tally.leaf_steps = counted->leaf_steps;
+        path->tally.empty_steps = counted->empty_steps;
+    }
     for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
         uint64_t seen = rt_tally_get(&path->tally, i), right = rt_tally_get(counted, i);
         if (seen == right) continue;
@@ -139,8 +145,8 @@ RtStatus rt_path_trace(RtPath *path, RtAccel *accel, const RtRay *ray, RtError *
         status = recorder.status;
     }
     rt_query_clear(&query);
-    if (status == RT_OK) status = compare(path, &tallies[ray->kind], error);
     if (status == RT_OK) status = rt_accel_check(accel, error);
+    if (status == RT_OK) status = compare(path, &tallies[ray->kind], rt_accel_is_remote(accel), error);
     if (status == RT_OK) find_nearest(path);
     if (status != RT_OK) rt_path_clear(path);
     return status;
@@ -150,6 +156,10 @@ void rt_path_clear(RtPath *path) {
     rt_free(path->rows);
     path->rows = NULL;
     path->count = path->capacity = 0;
+}
+
+bool rt_path_row_answers(const RtPathRow *row) {
+    return row->kind == RT_TRACED_OBJECT_TEST || (row->kind == RT_TRACED_EXTENT_TEST && *row->what);
 }
 
 const char *rt_path_row_name(const RtPathRow *row) {

@@ -9,11 +9,11 @@
 
 /* A row of the path. An object test and its hit are one row. */
 typedef struct RtPathRow {
-    RtTracedKind kind; /* never RT_TRACED_OBJECT_HIT */
-    const char *what;  /* as in RtTraced; "object" for object tests */
-    uint32_t index;    /* as in RtTraced */
-    bool leaf, empty;  /* of a step */
-    bool met;          /* extent test: something may be found there; object test: it is hit, at `t` */
+    RtTracedKind kind;      /* never RT_TRACED_OBJECT_HIT */
+    char what[RT_MAX_NAME]; /* as in RtTraced; "object" for object tests; "": nothing */
+    uint32_t index;         /* as in RtTraced */
+    bool leaf, empty;       /* of a step */
+    bool met;               /* extent test: something may be found there; object test: it is hit, at `t` */
     float t;
     bool boxed; /* there is a box, and the exact ray is in it from `enter` to `leave`, or misses it if
                  * enter > leave */
@@ -35,10 +35,14 @@ typedef struct RtPath {
 } RtPath;
 
 /* Traces a valid ray with a counted kernel: `occluded` for a shadow ray, else `nearest`. An accelerator
- * that learns (rt_accel_learn) learns the ray's own hit first. RT_MISMATCH if the events do not add up to
+ * that learns (rt_accel_learn) learns the ray's own hit first. A remote accelerator must be exact and count;
+ * which of its steps were leaves may be unknown. RT_MISMATCH if the events do not add up to
  * the kernel's counts, which would be a bug in this program. */
 RtStatus rt_path_trace(RtPath *path, RtAccel *accel, const RtRay *ray, RtError *error);
 void rt_path_clear(RtPath *path);
+
+/* Whether `met` is known: not of other events, nor of an extent test that a plugin did not show. */
+bool rt_path_row_answers(const RtPathRow *row);
 
 /* "step", "leaf", "extent test", ... */
 const char *rt_path_row_name(const RtPathRow *row);

@@ -9,6 +9,7 @@
 #include "accel/remote.h"
 #include "core/base/clock.h"
 #include "measure/measure.h"
+#include "render/path.h"
 
 #include <errno.h>
 #include <float.h>
@@ -159,6 +160,82 @@ RT_TEST(an_overlay_is_described_with_the_layers_below) {
     assert_int_equal(both.bytes, alone.bytes);
     assert_int_equal(both.leaves, alone.leaves);
     assert_true(both.predicted_cost == alone.predicted_cost);
+}
+
+/* ---- the path of a ray ---- */
+
+static RtPath path_of(const Stage *stage, const char *spec, const RtRay *ray) {
+    RtPath path;
+    RtTally counted[RT_RAY_KIND_COUNT] = {0};
+    RtHit hit;
+    bool blocked;
+    RtQuery query;
+    OWNED_ACCEL RtAccel *accel = open_accel(&stage->scene, spec);
+    assert_ok(rt_path_trace(&path, accel, ray, error));
+    assert_ok(rt_query_init(&query, accel, error));
+    if (path.any)
+        rt_occluded(&query, ray, 1, &blocked, counted);
+    else
+        rt_nearest(&query, ray, 1, &hit, counted);
+    assert_memory_equal(&path.tally, &counted[ray->kind], sizeof path.tally);
+    rt_query_clear(&query);
+    return path;
+}
+
+static void assert_same_path(const Stage *stage, const char *spec, const char *other, const RtRay *ray) {
+    RtPath path = path_of(stage, spec, ray), same = path_of(stage, other, ray);
+    assert_int_equal(path.count, same.count);
+    assert_memory_equal(&path.hit, &same.hit, sizeof path.hit);
+    for (uint32_t i = 0; i < path.count; i++) {
+        const RtPathRow *a = &path.rows[i], *b = &same.rows[i];
+        assert_true(a->kind == b->kind && a->index == b->index && a->leaf == b->leaf && a->met == b->met &&
+                    a->t == b->t && a->boxed == b->boxed && a->enter == b->enter && a->leave == b->leave);
+        assert_string_equal(a->what, b->what);
+    }
+    rt_path_clear(&path);
+    rt_path_clear(&same);
+}
+
+RT_TEST(its_path_is_that_of_the_built_in_one_that_it_copies_alone_and_in_a_stack) {
+    static const char *const pairs[][2] = {
+        {"bvh", "bvh_copy"}, {"cache+bvh", "cache+bvh_copy"}, {"grid", "faulty-over+grid"}};
+    OWNED(close_stage) Stage stage;
+    open_stage(&stage, "bvh", 20);
+    for (uint32_t i = 0; i < 20; i++) {
+        RtRay ray = stage.set.rays[i];
+        for (size_t p = 0; p < sizeof pairs / sizeof pairs[0]; p++) {
+            ray.kind = RT_RAY_DIFFUSE;
+            assert_same_path(&stage, pairs[p][0], pairs[p][1], &ray);
+            ray.kind = RT_RAY_SHADOW;
+            if (p < 2) assert_same_path(&stage, pairs[p][0], pairs[p][1], &ray);
+        }
+    }
+}
+
+RT_TEST(a_path_of_more_events_than_a_message_holds_is_whole) {
+    OWNED(close_stage) Stage stage;
+    load_all();
+    open_stage(&stage, "bvh", 1);
+    rt_scene_clear(&stage.scene);
+    assert_ok(rt_scene_open("random:n=3000", &stage.scene, error));
+    assert_same_path(&stage, "brute", "faulty-over+brute", stage.set.rays);
+}
+
+RT_TEST(what_it_does_not_show_is_in_its_path_without_a_name_and_what_it_passes_on_with_its_own) {
+    OWNED(close_stage) Stage stage;
+    open_stage(&stage, "bvh", 1);
+    RtPath path = path_of(&stage, "faulty-shows", stage.set.rays);
+    assert_int_equal(path.count, 600); /* a step and a test of each object */
+    for (uint32_t i = 0; i < path.count; i++) {
+        assert_int_equal(path.rows[i].kind, i < 300 ? RT_TRACED_STEP : RT_TRACED_OBJECT_TEST);
+        assert_true(i >= 300 || (!path.rows[i].boxed && !*path.rows[i].what));
+    }
+    rt_path_clear(&path);
+    stage.set.rays[0].kind = RT_RAY_SHADOW;
+    path = path_of(&stage, "shadow-cache+bvh", stage.set.rays);
+    assert_int_equal(path.rows[0].kind, RT_TRACED_PASSED_ON);
+    assert_string_equal(path.rows[0].what, "shadow-cache");
+    rt_path_clear(&path);
 }
 
 /* ---- hit functions of their own ---- */

@@ -167,6 +167,8 @@ MEMBER(raytally_host, nearest_below, 32,
        void (*)(raytally_query *, const raytally_ray *, size_t, raytally_hit *));
 MEMBER(raytally_host, occluded_below, 40,
        void (*)(raytally_query *, const raytally_ray *, size_t, uint32_t *));
+MEMBER(raytally_host, show, 48,
+       void (*)(const raytally_prepared *, uint32_t, uint32_t, const raytally_box *));
 
 GROWS(raytally_query, 8);
 MEMBER(raytally_query, host, 0, const raytally_host *);
@@ -245,6 +247,8 @@ FUNCTION(raytally_object_hit, int(const raytally_prepared *, uint32_t, float *))
 FUNCTION(raytally_prepare, void(raytally_query *, const raytally_ray *, raytally_prepared *));
 FUNCTION(raytally_object_hits, int(const raytally_prepared *, const uint32_t *, uint32_t, int, raytally_hit *,
                                    raytally_counters *));
+FUNCTION(raytally_show, void(const raytally_prepared *, uint32_t, uint32_t, const raytally_box *,
+                             const raytally_counters *));
 FUNCTION(raytally_nearest_below, void(raytally_query *, const raytally_ray *, size_t, raytally_hit *));
 FUNCTION(raytally_occluded_below, void(raytally_query *, const raytally_ray *, size_t, uint32_t *));
 

@@ -286,15 +286,20 @@ RAYTALLY_INLINE void search(const Bvh *bvh, void *memory, const raytally_prepare
     (void)memory;
     if (bvh->node_count == 0) return;
     RAYTALLY_COUNT(counters, RAYTALLY_EXTENT_TESTS, 1);
+    raytally_show(ray, RAYTALLY_EXTENT_TESTS, 0, &nodes[0].box, counters);
     if (!raytally_box_hit(&nodes[0].box, ray, ray->tmax, &enter[0])) return;
     for (;;) {
         RAYTALLY_COUNT(counters, RAYTALLY_STEPS, 1);
+        RAYTALLY_COUNT(counters, RAYTALLY_LEAF_STEPS, (node->count & LEAF) != 0);
+        raytally_show(ray, RAYTALLY_STEPS, (uint32_t)(node - nodes), &node->box, counters);
         if (!(node->count & LEAF)) {
             const Node *children = nodes + node->first;
             const float limit = raytally_tmax(ray, best);
             const int left = raytally_box_hit(&children[0].box, ray, limit, &enter[0]);
             const int right = raytally_box_hit(&children[1].box, ray, limit, &enter[1]);
             RAYTALLY_COUNT(counters, RAYTALLY_EXTENT_TESTS, 2);
+            for (uint32_t i = 0; i < 2; i++)
+                raytally_show(ray, RAYTALLY_EXTENT_TESTS, node->first + i, &children[i].box, counters);
             if (left && (!right || enter[0] <= enter[1])) {
                 if (right) *top++ = (Waiting){&children[1], enter[1]};
                 node = &children[0];
@@ -306,7 +311,6 @@ RAYTALLY_INLINE void search(const Bvh *bvh, void *memory, const raytally_prepare
                 continue;
             }
         } else {
-            RAYTALLY_COUNT(counters, RAYTALLY_LEAF_STEPS, 1);
             if (raytally_object_hits(ray, bvh->ids + node->first, node->count & ~LEAF, any, best, counters))
                 return;
         }

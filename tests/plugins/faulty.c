@@ -262,6 +262,11 @@ SEARCH(moody, RAYTALLY_COUNT(counters, RAYTALLY_EXTENT_TESTS, atomic_fetch_add(&
 /* Right only if rays are counted. */
 SEARCH_ALONE(lazy, if (counters) search(list, memory, ray, any, best, counters);)
 
+/* Shows a step that it has not counted, and one of no counter: neither is an event. */
+SEARCH_ALONE(shows, raytally_show(ray, RAYTALLY_STEPS, 7, list->boxes, counters);
+             raytally_show(ray, RAYTALLY_COUNTERS, 7, NULL, counters);
+             search(list, memory, ray, any, best, counters);)
+
 /* Wrong counts. */
 SEARCH_ALONE(uncounted, RAYTALLY_COUNT(counters, RAYTALLY_STEPS, 1);
              raytally_object_hits(ray, list->ids, list->count, any, best, NULL);)
@@ -464,6 +469,7 @@ static raytally_accel_ops tables[] = {
     {.name = "faulty-box", .summary = "shows a box that is none", .each_box = show_none},
     {.name = "faulty-deep", .summary = "shows a box at a depth that is none", .each_box = show_deep},
     {.name = "faulty-show", .summary = "crashes when it shows its boxes", .each_box = show_crash},
+    {.name = "faulty-shows", .summary = "shows a step that it has not counted", KERNELS(shows)},
     {.name = "faulty-mumble", .summary = "refuses every scene in no language", .build = build_mumble},
     {.name = "faulty-illegal", .summary = "has an instruction that valgrind does not know", KERNELS(illegal)},
     {.name = "faulty-older",

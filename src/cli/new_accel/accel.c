@@ -61,8 +61,8 @@ static int build(const raytally_build_input *from, void **self) {
  * object tests; of several hits at the same t it keeps the object with the lower number. Skip a box only if
  * raytally_box_hit returns 0 for raytally_tmax, the best hit so far. With any = 1, any hit is sufficient.
  *
- * Count other events where they happen. When rays are timed, `counters` is a constant NULL, and
- * RAYTALLY_COUNT compiles to nothing. */
+ * Count other events where they happen, and show those that have a box to `raytally trace`. When rays are
+ * timed, `counters` is a constant NULL, and RAYTALLY_COUNT and raytally_show compile to nothing. */
 RAYTALLY_INLINE void search(const Structure *s, void *memory, const raytally_prepared *ray, int any,
                             raytally_hit *best, raytally_counters *counters) {
     (void)memory; /* of the query, if the table below has query_bytes */
@@ -72,6 +72,7 @@ RAYTALLY_INLINE void search(const Structure *s, void *memory, const raytally_pre
         RAYTALLY_COUNT(counters, RAYTALLY_STEPS, 1);
         if (s->test_boxes) {
             RAYTALLY_COUNT(counters, RAYTALLY_EXTENT_TESTS, 1);
+            raytally_show(ray, RAYTALLY_EXTENT_TESTS, i, &s->boxes[*id], counters);
             if (!raytally_box_hit(&s->boxes[*id], ray, raytally_tmax(ray, best), &enter)) continue;
         }
         if (raytally_object_hits(ray, id, 1, any, best, counters)) return;

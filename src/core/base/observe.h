@@ -27,7 +27,7 @@ typedef enum RtTracedKind {
 /* One event. Members without meaning for its kind are zero. */
 typedef struct RtTraced {
     RtTracedKind kind;
-    const char *what; /* what `index` numbers: "node", "voxel", ...; a static string or NULL */
+    const char *what; /* what `index` numbers: "node", "voxel", ...; or NULL; valid during the call */
     uint32_t index;
     const RtBox *box; /* its box or NULL; valid during the call */
     const struct RtBall
