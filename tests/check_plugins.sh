@@ -108,6 +108,7 @@ fault older ''
 fault over+kd ''
 fault over-crash+bvh "$crash\) .*, at the ray org"
 fault over+faulty-crash-rare "$crash\) .*, at the ray org"
+fault over-crash+faulty-not "$crash\) .*, at the ray org"
 fault over+faulty-over-crash+kd "$crash\) .*, at the ray org"
 fault over-nan+bvh 'it passed on a ray that is not valid, of kind [0-6], org .* dir \(.*nan'
 fault over-kind+bvh 'it passed on a ray that is not valid, of kind 77, org'

@@ -164,13 +164,12 @@ RT_TEST(an_overlay_is_described_with_the_layers_below) {
 
 /* ---- the path of a ray ---- */
 
-static RtPath path_of(const Stage *stage, const char *spec, const RtRay *ray) {
+static RtPath path_of(RtAccel *accel, const RtRay *ray) {
     RtPath path;
     RtTally counted[RT_RAY_KIND_COUNT] = {0};
     RtHit hit;
     bool blocked;
     RtQuery query;
-    OWNED_ACCEL RtAccel *accel = open_accel(&stage->scene, spec);
     assert_ok(rt_path_trace(&path, accel, ray, error));
     assert_ok(rt_query_init(&query, accel, error));
     if (path.any)
@@ -182,8 +181,8 @@ static RtPath path_of(const Stage *stage, const char *spec, const RtRay *ray) {
     return path;
 }
 
-static void assert_same_path(const Stage *stage, const char *spec, const char *other, const RtRay *ray) {
-    RtPath path = path_of(stage, spec, ray), same = path_of(stage, other, ray);
+static void assert_same_path(RtAccel *accel, RtAccel *other, const RtRay *ray) {
+    RtPath path = path_of(accel, ray), same = path_of(other, ray);
     assert_int_equal(path.count, same.count);
     assert_memory_equal(&path.hit, &same.hit, sizeof path.hit);
     for (uint32_t i = 0; i < path.count; i++) {
@@ -200,31 +199,31 @@ RT_TEST(its_path_is_that_of_the_built_in_one_that_it_copies_alone_and_in_a_stack
     static const char *const pairs[][2] = {
         {"bvh", "bvh_copy"}, {"cache+bvh", "cache+bvh_copy"}, {"grid", "faulty-over+grid"}};
     OWNED(close_stage) Stage stage;
-    open_stage(&stage, "bvh", 20);
-    for (uint32_t i = 0; i < 20; i++) {
-        RtRay ray = stage.set.rays[i];
-        for (size_t p = 0; p < sizeof pairs / sizeof pairs[0]; p++) {
-            ray.kind = RT_RAY_DIFFUSE;
-            assert_same_path(&stage, pairs[p][0], pairs[p][1], &ray);
-            ray.kind = RT_RAY_SHADOW;
-            if (p < 2) assert_same_path(&stage, pairs[p][0], pairs[p][1], &ray);
+    open_stage(&stage, "bvh", 300);
+    for (size_t p = 0; p < sizeof pairs / sizeof pairs[0]; p++) {
+        OWNED_ACCEL RtAccel *accel = open_accel(&stage.scene, pairs[p][0]);
+        OWNED_ACCEL RtAccel *other = open_accel(&stage.scene, pairs[p][1]);
+        for (uint32_t i = 0; i < stage.set.count; i++) {
+            RtRay ray = stage.set.rays[i];
+            ray.kind = i % 4 || p == 2 ? RT_RAY_DIFFUSE : RT_RAY_SHADOW;
+            assert_same_path(accel, other, &ray);
         }
     }
 }
 
 RT_TEST(a_path_of_more_events_than_a_message_holds_is_whole) {
     OWNED(close_stage) Stage stage;
-    load_all();
     open_stage(&stage, "bvh", 1);
-    rt_scene_clear(&stage.scene);
-    assert_ok(rt_scene_open("random:n=3000", &stage.scene, error));
-    assert_same_path(&stage, "brute", "faulty-over+brute", stage.set.rays);
+    OWNED_SCENE scene = open_scene("random:n=3000");
+    OWNED_ACCEL RtAccel *brute = open_accel(&scene, "brute");
+    OWNED_ACCEL RtAccel *over = open_accel(&scene, "faulty-over+brute");
+    assert_same_path(brute, over, stage.set.rays);
 }
 
 RT_TEST(what_it_does_not_show_is_in_its_path_without_a_name_and_what_it_passes_on_with_its_own) {
     OWNED(close_stage) Stage stage;
-    open_stage(&stage, "bvh", 1);
-    RtPath path = path_of(&stage, "faulty-shows", stage.set.rays);
+    open_stage(&stage, "faulty-shows", 1);
+    RtPath path = path_of(stage.accel, stage.set.rays);
     assert_int_equal(path.count, 600); /* a step and a test of each object */
     for (uint32_t i = 0; i < path.count; i++) {
         assert_int_equal(path.rows[i].kind, i < 300 ? RT_TRACED_STEP : RT_TRACED_OBJECT_TEST);
@@ -232,7 +231,8 @@ RT_TEST(what_it_does_not_show_is_in_its_path_without_a_name_and_what_it_passes_o
     }
     rt_path_clear(&path);
     stage.set.rays[0].kind = RT_RAY_SHADOW;
-    path = path_of(&stage, "shadow-cache+bvh", stage.set.rays);
+    OWNED_ACCEL RtAccel *cache = open_accel(&stage.scene, "shadow-cache+bvh");
+    path = path_of(cache, stage.set.rays);
     assert_int_equal(path.rows[0].kind, RT_TRACED_PASSED_ON);
     assert_string_equal(path.rows[0].what, "shadow-cache");
     rt_path_clear(&path);

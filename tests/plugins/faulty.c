@@ -315,23 +315,24 @@ static void unprepared_nearest(const void *self, void *memory, raytally_query *q
     }
 }
 
-/* The kernels NAME of an overlay, which does something to each ray and passes it on; occluders are found by
- * the plugin itself. */
-#define OVERLAY(name, ...)                                                                                   \
+/* The kernel NAME_nearest of an overlay, which does something to each ray, passes it on, and does something
+ * else. */
+#define OVERLAY(name, before, after)                                                                         \
     static void name##_nearest(const void *self, void *memory, raytally_query *query,                        \
                                const raytally_ray *rays, size_t count, raytally_hit *hits,                   \
                                raytally_counters *counters) {                                                \
         (void)self, (void)memory, (void)counters;                                                            \
         for (size_t i = 0; i < count; i++) {                                                                 \
             raytally_ray ray = rays[i];                                                                      \
-            __VA_ARGS__                                                                                      \
+            before;                                                                                          \
             raytally_nearest_below(query, &ray, 1, &hits[i]);                                                \
+            after;                                                                                           \
         }                                                                                                    \
     }
-OVERLAY(pass_on, )
-OVERLAY(pass_on_crash, if (is_rare(&ray)) crash();)
-OVERLAY(pass_on_nan, ray.dir[1] = NAN;)
-OVERLAY(pass_on_kind, ray.kind = 77;)
+OVERLAY(pass_on, , )
+OVERLAY(pass_on_crash, , if (is_rare(&ray)) crash())
+OVERLAY(pass_on_nan, ray.dir[1] = NAN, )
+OVERLAY(pass_on_kind, ray.kind = 77, )
 
 /* ---- other functions ---- */
 
