@@ -63,7 +63,7 @@ void rt_plugin_catch_up(RtPluginEvents *events);
 
 /* raytally_show. */
 void rt_plugin_show(RtPluginEvents *events, const raytally_prepared *ray, uint32_t counter, uint32_t number,
-                    const raytally_box *box);
+                    const raytally_box *theirs);
 
 /* ---- what a query is doing, for reports of crashes ---- */
 
