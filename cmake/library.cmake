@@ -38,6 +38,9 @@ install(TARGETS raytally_headers EXPORT raytally-headers)
 install(EXPORT raytally-headers NAMESPACE raytally:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/raytally)
 install(DIRECTORY include/raytally DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
 
+# What builds against it.
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} USE_SOURCE_PERMISSIONS)
+
 # Both find what is installed from where they lie themselves, so that all of it may be moved.
 include(CMakePackageConfigHelpers)
 configure_package_config_file(cmake/raytally-config.cmake.in raytally-config.cmake

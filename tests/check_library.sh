@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # check_library.sh: raytally as installed. Installs the build beside $RT_PROGRAM into a scratch prefix and checks: each header
 # compiles as C99, C17 and C++17 without a warning with every available compiler, and so do all of them in one file; both
-# libraries export raytally_* and nothing else; examples/embed builds with the CMake package and with pkg-config, shared and
+# libraries export raytally_* and nothing else; examples/embed, as installed, builds with the CMake package and with pkg-config, shared and
 # static, runs, and counts what the program counts, also after the prefix was moved; doxygen finds a description of every declaration. Skipped
 # (77) without cmake, pkg-config or nm; checks whose tools are missing are reported and skipped.
 set -euo pipefail
@@ -34,7 +34,7 @@ fi
 # ---- installed files ----
 quietly "cmake --install fails" cmake --install "$build" --prefix "$prefix"
 libraries=$(dirname "$(find "$prefix" -name libraytally.so)")
-for file in bin/raytally include/raytally/raytally.h include/raytally/types.h; do
+for file in bin/raytally include/raytally/raytally.h include/raytally/types.h share/doc/raytally/examples/peers/fetch.sh; do
     [ -s "$prefix/$file" ] || complain "$file is not installed"
 done
 
@@ -89,14 +89,14 @@ runs() {
 
 # linked HOW FLAGS...: builds examples/embed with them, to $work/embed-pc
 linked() {
-    quietly "the example does not build by $1" "${CC:-cc}" -std=c99 examples/embed/embed.c "${@:2}" -o "$work/embed-pc"
+    quietly "the example does not build by $1" "${CC:-cc}" -std=c99 "$prefix/share/doc/raytally/examples/embed/embed.c" "${@:2}" -o "$work/embed-pc"
 }
 
 # embed: builds with the installation in $prefix
 embed() {
     local libraries build=$work/embed-${prefix##*/} flags
     libraries=$(dirname "$(find "$prefix" -name libraytally.so)")
-    quietly "find_package fails" cmake -S examples/embed -B "$build" -DCMAKE_PREFIX_PATH="$prefix" \
+    quietly "find_package fails" cmake -S "$prefix/share/doc/raytally/examples/embed" -B "$build" -DCMAKE_PREFIX_PATH="$prefix" \
         -DCMAKE_C_FLAGS="-std=c99 -Wall -Wextra -Wpedantic -Werror" || return 0
     quietly "the example does not build by its CMake package" cmake --build "$build" || return 0
     runs "$build/embed"

@@ -230,8 +230,24 @@ assert [bool(row["refused"]) for row in rows] == [True, False] and not any(row["
 # A limit in an experiment holds for plugins, whether or not they keep to it.
 sed '/refused/d; s/crash-rare/leak/; s/^rounds/limits: {megabytes: 100}\n&/' faulty.yaml >limited.yaml
 ends 0 run limited.yaml --plugin "$plugins/faulty.so" --out limited
-says 'faulty-leak on balls:size=1: its structure takes more than 100 MB'
+says 'left out: faulty-leak: its process used [1-3][0-9]{2}(\.[0-9])? MB of memory, more than 100 MB \(--memory\), while it was built over 11'
 [ "$(grep -c ',kd,' limited/counts.csv)" = 2 ] || complain "an experiment with a limit lacks rows of kd"
+
+# --memory is that limit, at any time: a plugin that exceeds it after its build is broken.
+memory='its process used [1-3][0-9]{2}(\.[0-9])? MB of memory, more than 100 MB \(--memory\), while'
+ends 0 "${bench[@]}" --plugin "$plugins/faulty.so" --accel kd --accel faulty-leak --memory 100M
+says "left out: faulty-leak: $memory it was built"
+ends 1 "${bench[@]}" --plugin "$plugins/faulty.so" --accel kd --accel faulty-leaking --memory 100M
+says "faulty-leaking: $memory it answered a stream"
+ends 0 verify balls:size=1 --rays 100 --plugin "$plugins/faulty.so" --accel faulty-leak --accel kd --memory 100M
+says "refused: faulty-leak: $memory it was built"
+ends 1 verify balls:size=1 --rays 100 --plugin "$plugins/faulty.so" --accel faulty-leaking --accel kd --memory 100M
+says "faulty-leaking: $memory it was traced"
+sed '/refused/d; s/crash-rare/leak/' faulty.yaml >unlimited.yaml
+ends 0 run unlimited.yaml --plugin "$plugins/faulty.so" --out unlimited --memory 100M
+says "left out: faulty-leak: $memory it was built"
+ends 0 run unlimited.yaml --plugin "$plugins/faulty.so" --out unlimited --force --memory 1G
+says 'faulty-leak: its process holds 3[0-9][0-9] MB'
 
 # ---- the path of a ray ----
 

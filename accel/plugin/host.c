@@ -78,7 +78,7 @@ static RtStatus add_geometry(RtPluginAccel *self, const RtGeometry *geometry, ra
 static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     const raytally_accel_ops *table = &((const RtPluginOps *)what->ops)->table;
     const RtGeometry *geometry = &what->scene->geometry;
-    const uint64_t left = rt_memory_left();
+    const uint64_t most = rt_memory_current_limit();
     raytally_value values[RAYTALLY_MAX_PARAMS] = {0};
     char message[900] = "";
     copy_values(what, values);
@@ -87,7 +87,7 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
                                   .boxes = rt_public_box(geometry->boxes),
                                   .values = values,
                                   .threads = rt_thread_count(what->threads),
-                                  .byte_limit = what->limit < left ? what->limit : left,
+                                  .byte_limit = most < UINT64_MAX ? most : what->limit,
                                   .message = message,
                                   .message_room = sizeof message - 1};
     memcpy(&input.box, &geometry->box, sizeof input.box);

@@ -100,7 +100,7 @@ static RtStatus forward(RtStatus status, const char *name, RtError *from, RtErro
 
 static RtStatus fail_broken(const Remote *remote, RtError *error) {
     if (error) *error = remote->child.error;
-    return RT_BROKEN;
+    return remote->child.error.status;
 }
 
 /* A request to channel 0 whose message is a WireChecked. */

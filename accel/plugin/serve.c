@@ -6,7 +6,6 @@
 #include "core/base/process.h"
 
 #include "core/base/memory.h"
-#include "core/base/parallel.h"
 
 #include <fenv.h>
 #include <locale.h>
@@ -113,29 +112,13 @@ static rlim_t data_bytes(void) {
     return (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE);
 }
 
-/* Limits what the plugin can allocate, by the limit of a structure. */
+/* Limits what the plugin can allocate, in case that it is faster than raytally, which watches it. */
 static void limit_memory(void) {
-    const rlim_t used = data_bytes(), bytes = used + 2 * (rlim_t)RT_ACCEL_MAX_BYTES;
+    const uint64_t limit = rt_memory_current_limit();
+    const bool larger = limit > RT_ACCEL_MAX_BYTES && limit < UINT64_MAX;
+    const rlim_t used = data_bytes(), bytes = used + 2 * (rlim_t)(larger ? limit : RT_ACCEL_MAX_BYTES);
     if (used) setrlimit(RLIMIT_DATA, &(struct rlimit){bytes, bytes});
     setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
-}
-
-/* While it builds, by the limit of the user (rt_memory_limit), if there is one; SLACK is for arenas. */
-static void limit_build(int threads) {
-    enum { STACK = 8 << 20, SLACK = 64 << 20 };
-    struct rlimit limit;
-    const rlim_t used = data_bytes(), left = (rlim_t)rt_memory_left();
-    if (!used || left >= (rlim_t)RT_ACCEL_MAX_BYTES || getrlimit(RLIMIT_DATA, &limit) != 0) return;
-    limit.rlim_cur = used + left + (rlim_t)rt_thread_count(threads) * STACK + SLACK;
-    setrlimit(RLIMIT_DATA, &limit);
-}
-
-static void end_limit_of_build(void) {
-    struct rlimit limit;
-    rt_memory_limit(0);
-    if (getrlimit(RLIMIT_DATA, &limit) != 0) return;
-    limit.rlim_cur = limit.rlim_max;
-    setrlimit(RLIMIT_DATA, &limit);
 }
 
 static bool is_debugged(void) {
@@ -340,10 +323,9 @@ void rt_wire_open(RtQuery *query, const RtRay *rays, void *message) {
 
 static void build(const RtSpec *spec, const RtScene *scene, int threads) {
     WireBuilt built = {.status = rt_plugin_enter(spec, &built.error)};
-    limit_build(threads);
     if (built.status == RT_OK)
         built.status = rt_accel_build_here(spec, scene, threads, &served.accel, &built.error);
-    end_limit_of_build();
+    rt_memory_limit(0);
     if (built.status == RT_OK) {
         built.exact = served.accel->exact;
         built.counts = served.accel->counts;

@@ -2,6 +2,7 @@
 #include "accel/plugin/usage.h"
 
 #include "accel/remote.h"
+#include "core/base/memory.h"
 #include "core/base/words.h"
 
 #include <dirent.h>
@@ -81,24 +82,35 @@ static double megabytes(uint64_t bytes) {
 
 /* The process begins with a copy of raytally's memory. */
 void rt_usage_begin(RtUsage *usage, const char *name) {
-    *usage = (RtUsage){.before = read_status(getpid(), "RssAnon")};
+    *usage = (RtUsage){.before = read_status(getpid(), "RssAnon"), .limit = rt_memory_current_limit()};
     snprintf(usage->name, sizeof usage->name, "%s", name);
+}
+
+static uint64_t peak(const RtUsage *usage, const RtProcess *process) {
+    const uint64_t libraries = read_status(process->pid, "RssFile");
+    return more_than(read_status(process->pid, "VmHWM"), usage->before + libraries);
+}
+
+bool rt_usage_exceeds_limit(const RtUsage *usage, const RtProcess *process, uint64_t *most) {
+    if (usage->limit == UINT64_MAX) return false;
+    *most = peak(usage, process);
+    return *most > usage->limit;
 }
 
 /* Limits are wide: arenas of the C library, and large pages for the stacks of threads, are memory, too. */
 void rt_usage_built(RtUsage *usage, const RtProcess *process, uint64_t bytes) {
     usage->built = read_status(process->pid, "RssAnon");
     const uint64_t held = more_than(usage->built, usage->before);
-    const uint64_t peak = more_than(read_status(process->pid, "VmHWM"), usage->before);
+    const uint64_t most = peak(usage, process);
     if (held > 256 * MEGABYTE + 4 * bytes)
         note(
             usage, HELD,
             "its process holds %.0f MB of memory once it is built, and its `describe` says %.3g MB: the rest "
             "is not described, or never freed",
             megabytes(held), megabytes(bytes));
-    else if (peak > 1024 * MEGABYTE + 16 * bytes)
+    else if (most > 1024 * MEGABYTE + 16 * bytes)
         note(usage, PEAK, "its build takes up to %.0f MB of memory, for a structure of %.3g MB",
-             megabytes(peak), megabytes(bytes));
+             megabytes(most), megabytes(bytes));
 }
 
 void rt_usage_traced(const RtUsage *usage, const RtProcess *process) {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What the process of a remote accelerator uses and leaves behind, seen from raytally's process by /proc:
  * memory far beyond what the structure describes, and threads and processes that still run when it is
- * destroyed. Each becomes a notice (rt_remote_notice), one of a kind for each accelerator. Without /proc
- * there are none. */
+ * destroyed. Each becomes a notice (rt_remote_notice), one of a kind for each accelerator. And whether its
+ * memory exceeds a limit. Without /proc there are no notices and no limit. */
 #ifndef RT_ACCEL_PLUGIN_USAGE_H
 #define RT_ACCEL_PLUGIN_USAGE_H
 
@@ -13,10 +13,14 @@
 typedef struct RtUsage {
     char name[64];          /* of the accelerator */
     uint64_t before, built; /* bytes of memory that the process holds, at the fork and once it was built */
+    uint64_t limit;         /* the most bytes that it may hold beyond `before`; UINT64_MAX: any */
 } RtUsage;
 
-/* Before the process is forked. */
+/* Before the process is forked; the limit is that of rt_memory_limit. */
 void rt_usage_begin(RtUsage *usage, const char *name);
+
+/* Whether it has ever held more than the limit; *most gets the most that it held beyond `before`. */
+bool rt_usage_exceeds_limit(const RtUsage *usage, const RtProcess *process, uint64_t *most);
 
 /* Once a structure of so many bytes is built. */
 void rt_usage_built(RtUsage *usage, const RtProcess *process, uint64_t bytes);

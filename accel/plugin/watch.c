@@ -73,11 +73,23 @@ static bool is_overwritten(const RtWatched *child, uint32_t number, unsigned ans
     return child->wire->channels[number].asked != asked || (answered != asked && answered != asked - 1);
 }
 
-/* Ends a process that overwrote shared memory or hangs. Returns whether the accelerator is broken. */
+/* Whether a structure exceeds the limit as it is built is no fault; later it is. */
+static void end_large(RtWatched *child, const char *doing, uint64_t bytes) {
+    char what[128];
+    rt_process_end(&child->process, 0);
+    snprintf(what, sizeof what, "its process used %.4g MB of memory, more than %.4g MB (--memory),",
+             1e-6 * (double)bytes, 1e-6 * (double)child->usage.limit);
+    set_broken(child, what, doing, "");
+    if (child->asked[0] == WIRE_BUILD) child->error.status = RT_BAD_INPUT;
+}
+
+/* Ends a process that overwrote shared memory, holds too much memory or hangs. Returns whether the
+ * accelerator is broken. */
 static bool check_process(RtWatched *child, const char *doing, bool overwritten, double waited,
                           double limit) {
     pthread_mutex_lock(&child->lock);
     RtProcessEnd end;
+    uint64_t bytes;
     if (!child->ended) {
         child->ended = true;
         if (overwritten) {
@@ -85,6 +97,8 @@ static bool check_process(RtWatched *child, const char *doing, bool overwritten,
             set_broken(child, "it overwrote memory that it shares with raytally", doing, "");
         } else if (rt_process_wait(&child->process, 0, &end)) {
             report_end(child, end, doing);
+        } else if (rt_usage_exceeds_limit(&child->usage, &child->process, &bytes)) {
+            end_large(child, doing, bytes);
         } else if (waited > limit) {
             end_hung(child, doing, limit);
         } else {
@@ -96,6 +110,11 @@ static bool check_process(RtWatched *child, const char *doing, bool overwritten,
     return broken;
 }
 
+/* A plugin may take memory in many short requests, too. */
+static bool is_checked(const RtWatched *child, uint32_t number) {
+    return child->usage.limit < UINT64_MAX && (number == 0 || child->asked[number] % 64 == 1);
+}
+
 /* Each pause counts for at most a second: both processes may have been stopped. */
 bool rt_watched_wait(RtWatched *child, uint32_t number, const char *doing, double limit) {
     const struct timespec some = {.tv_nsec = 50000000};
@@ -105,7 +124,8 @@ bool rt_watched_wait(RtWatched *child, uint32_t number, const char *doing, doubl
     for (;;) {
         unsigned value = atomic_load_explicit(answered, memory_order_acquire);
         bool overwritten = is_overwritten(child, number, value);
-        if (!overwritten && value == child->asked[number]) return true;
+        if (!overwritten && value == child->asked[number])
+            return !is_checked(child, number) || !check_process(child, doing, false, 0, limit);
         if (!overwritten && rt_futex_wait(answered, value, &some) && atomic_load(answered) != value) continue;
         unsigned long seen = child->wire->progress;
         double now = rt_wall_seconds();

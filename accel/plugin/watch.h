@@ -28,14 +28,15 @@ struct RtWatched {
     pthread_mutex_t lock;     /* of the following members */
     atomic_bool broken;       /* error says why */
     bool ended;
-    RtError error;
+    RtError error; /* its status is RT_BROKEN; RT_BAD_INPUT if the structure exceeds the limit of memory */
 };
 
 /* Marks it as broken: `what` was found wrong while it did `doing`. Only the first failure is kept. */
 void rt_watched_break(RtWatched *child, const char *what, const char *doing);
 
 /* Waits for the answer to the last request on a channel. False if none will come, because the process ended,
- * overwrote shared memory, or made no progress for `limit` seconds: then it is broken, and has ended. */
+ * overwrote shared memory, exceeded its limit of memory, or made no progress for `limit` seconds: then it is
+ * broken, and has ended. */
 bool rt_watched_wait(RtWatched *child, uint32_t channel, const char *doing, double limit);
 
 #endif

@@ -81,6 +81,14 @@ bool rt_cli_digits(const char **text, uint32_t *number);
         "patience", 0, "SECONDS", RT_TO_SECONDS(patience, 1, 86400),                                         \
             "With --until: the longest time for one kind of rays on one scene (60)"                          \
     }
+#define RT_MEMORY_OPTION(memory)                                                                             \
+    {                                                                                                        \
+        "memory", 0, "BYTES", RT_TO_BYTES(memory),                                                           \
+            "Most memory for each accelerator, as in 512M or 4G (powers of 1000): what a built-in one "      \
+            "allocates while it is built, and what the process of a plugin holds at any time. One that "     \
+            "needs more to be built is left out, which is no failure; a plugin that exceeds it later is "    \
+            "broken (exit code 1)"                                                                           \
+    }
 #define RT_TRUST_OPTION(scripts)                                                                             \
     {                                                                                                        \
         "trust", 0, NULL, RT_TO_SET(scripts, RT_SCRIPTS_ALL),                                                \

@@ -22,6 +22,7 @@ typedef struct Options {
     RtWorkloadOptions workload;
     bool json, hardware, distributions;
     uint32_t rounds;    /* 0: the default */
+    uint64_t memory;    /* bytes for each accelerator; 0: no limit */
     int threads;        /* -1: one to time, all to build and count */
     uint64_t callgrind; /* rays of a kind at most; 0: it is not asked for */
     bool worker;        /* it counts instructions for another one (experiment/worker.h) */
@@ -124,6 +125,7 @@ static void finish(void *options, struct argp_state *state) {
     if (o->rounds) e->rounds = o->rounds;
     if (o->threads >= 0) o->workload.threads = o->workload.timing = o->threads;
     if (o->workload.until > 0 && e->rounds < RT_FULL_ROUNDS) e->rounds = RT_FULL_ROUNDS;
+    e->limit_bytes = o->memory;
     e->hardware = o->hardware;
     e->distributions = o->distributions;
     if (o->hardware && o->workload.count_only)
@@ -146,6 +148,7 @@ static const RtOption options[] = {
      "Timing rounds, each in a new random order (10); intervals of 95 % need 6 or more"},
     RT_UNTIL_OPTIONS(workload.until, workload.patience),
     {"threads", 0, "N", RT_TO_INTEGER(threads, 0, 1024), RT_THREADS_HELP},
+    RT_MEMORY_OPTION(memory),
     {"count-only", 0, NULL, RT_TO_FLAG(workload.count_only), "Count, do not time"},
     {"distribution", 0, NULL, RT_TO_FLAG(distributions),
      "Also show distributions: object tests and steps over the rays, each ray traced alone, and objects and "

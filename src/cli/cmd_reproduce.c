@@ -20,8 +20,12 @@ typedef struct Options {
     const char *scene; /* label of the only scene to count, or of a sweep of scenes; NULL: all */
 } Options;
 
+static RtOnly only_scene(const char *scene) {
+    return (RtOnly){.parts[0].scene = scene, .part_count = 1};
+}
+
 static RtStatus count_again(RtResults *results, const char *scene, RtError *error) {
-    RtWorkloadOptions options = {.timing = 1, .count_only = true, .only.scene = scene};
+    RtWorkloadOptions options = {.timing = 1, .count_only = true, .only = only_scene(scene)};
     RtProgress progress = rt_progress_begin(&options);
     options.observer = rt_progress_observer(&progress);
     RtStatus status = rt_workloads_run(results, &options, error);
@@ -114,7 +118,8 @@ static RtStatus reproduce(const char *directory, RtResults *results, const void 
     static RtExperiment original;
     RtStatus status = rt_manifest_experiment(directory, &original, error);
     rt_results_clear(results);
-    if (status == RT_OK) status = rt_only_check(&(RtOnly){.scene = scene}, &original, error);
+    const RtOnly only = only_scene(scene);
+    if (status == RT_OK) status = rt_only_check(&only, &original, error);
     if (status == RT_OK) status = rt_results_init(results, &original, error);
     if (status == RT_OK) status = count_again(results, scene, error);
     if (status == RT_OK) status = compare_all(directory, results, scene, error);

@@ -11,6 +11,7 @@
 #include "experiment/result_tables.h"
 #include "report/run_report.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -19,23 +20,23 @@ typedef struct Options {
     RtRunOptions how;
     char directory[RT_MAX_PATH]; /* results/NAME: how.directory, unless --out names another */
     bool quick, strict, dry;
-    bool found; /* the experiment comes from a manifest */
-    char only_text[3 * RT_MAX_LABEL];
-    int threads; /* -1: one to time, all to build and count */
+    bool found;                                 /* the experiment comes from a manifest */
+    char parts[RT_MAX_PARTS][3 * RT_MAX_LABEL]; /* texts of how.workload.only */
+    uint64_t memory;                            /* bytes for each accelerator; 0: the experiment's limit */
+    int threads;                                /* -1: one to time, all to build and count */
 } Options;
 
 static void take_only(void *options, const char *text, struct argp_state *state) {
     Options *o = options;
-    if (o->only_text[0]) argp_error(state, "--only: only one part; run the next with --resume --only");
-    if (strlen(text) >= sizeof o->only_text) argp_error(state, "--only: '%s' is too long", text);
-    strcpy(o->only_text, text);
-    char *accel = strchr(o->only_text, '/'), *kind = accel ? strchr(accel + 1, '/') : NULL;
+    RtOnly *only = &o->how.workload.only;
+    char *scene = o->parts[only->part_count];
+    if (only->part_count == RT_MAX_PARTS) argp_error(state, "--only: more than %d parts", RT_MAX_PARTS);
+    if (strlen(text) >= sizeof o->parts[0]) argp_error(state, "--only: '%s' is too long", text);
+    strcpy(scene, text);
+    char *accel = strchr(scene, '/'), *kind = accel ? strchr(accel + 1, '/') : NULL;
     if (accel) *accel++ = '\0';
     if (kind) *kind++ = '\0';
-    RtOnly *only = &o->how.workload.only;
-    only->scene = o->only_text;
-    only->accel = accel;
-    only->kind = kind;
+    only->parts[only->part_count++] = (RtPart){scene, accel, kind};
 }
 
 static void take_shard(void *options, const char *text, struct argp_state *state) {
@@ -66,6 +67,7 @@ static const RtOption options[] = {
      "Start over: the results in DIR are lost. The last of --resume and --force counts"},
     RT_TRUST_OPTION(how.scripts),
     {"threads", 't', "N", RT_TO_INTEGER(threads, 0, 1024), RT_THREADS_HELP},
+    RT_MEMORY_OPTION(memory),
     RT_UNTIL_OPTIONS(how.workload.until, how.workload.patience),
     {"quick", 0, NULL, RT_TO_FLAG(quick), "The smaller variant that the YAML describes under `quick`"},
     {"strict", 0, NULL, RT_TO_FLAG(strict),
@@ -73,8 +75,8 @@ static const RtOption options[] = {
     {"dry-run", 0, NULL, RT_TO_FLAG(dry),
      "Measure nothing: list the cells, which of them are finished, and the time that the others will take"},
     {"only", 0, "SCENE[/ACCEL[/KIND]]", RT_TO_TAKE(take_only),
-     "Measure only the baseline and one scene, one accelerator on it, or one kind of rays; by labels. "
-     "--resume without --only measures the rest"},
+     "Measure only the baseline and one scene, one accelerator on it, or one kind of rays; by labels; may be "
+     "repeated. --resume without --only measures the rest"},
     {"shard", 0, "I/N", RT_TO_TAKE(take_shard),
      "Measure every Nth scene from the Ith on with all accelerators (into results/NAME-I-of-N), to share a "
      "run among N machines. `raytally merge` joins the directories"},
@@ -112,9 +114,8 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, RtError *er
         RT_TRY(rt_journal_load(path, results, only, how->renew, error));
     for (uint32_t t = 0; t < e->workload_count; t++) {
         for (uint32_t c = 0; c < e->candidate_count; c++) {
-            bool there = rt_only_scene(only, e, t) && rt_only_accel(only, e, c) && rt_candidate_runs(e, c, t);
-            for (uint32_t k = 0; there && k < e->kind_count; k++) {
-                if (rt_only_kind(only, e->kinds[k])) print_cell(results, t, c, e->kinds[k]);
+            for (uint32_t k = 0; rt_candidate_runs(e, c, t) && k < e->kind_count; k++) {
+                if (rt_only_cell(only, e, t, c, e->kinds[k])) print_cell(results, t, c, e->kinds[k]);
             }
         }
     }
@@ -135,6 +136,7 @@ static void go_on(const Options *o, const RtExperiment *e, char *out, size_t siz
     const RtWorkloadOptions *how = &o->how.workload;
     snprintf(out, size, "raytally run %s --out %s%s", e->path, o->how.directory, e->quick ? " --quick" : "");
     if (o->threads >= 0) rt_append_text(out, size, " --threads %d", o->threads);
+    if (o->memory) rt_append_text(out, size, " --memory %" PRIu64, o->memory);
     if (how->only.shards) rt_append_text(out, size, " --shard %u/%u", how->only.shard, how->only.shards);
     if (how->until > 0)
         rt_append_text(out, size, " --until %g%% --patience %g", 100 * how->until, how->patience);
@@ -153,7 +155,7 @@ static RtStatus measure(Options *o, RtResults *results, RtError *error) {
     rt_progress_end(&progress);
     if (status != RT_OK) return status;
     rt_print_summary(results, stdout);
-    if (!how->workload.only.scene && !how->workload.only.shards)
+    if (!how->workload.only.part_count && !how->workload.only.shards)
         printf("\nReport: %s/report.html\n", how->directory);
     RT_TRY(rt_results_check_broken(results, error));
     return o->strict ? rt_claims_check(results, error) : RT_OK;
@@ -183,6 +185,7 @@ static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
     RT_TRY(load(o, experiment, error));
     RT_TRY(check_part(experiment, only, error));
     if (how->workload.until > 0 && experiment->rounds < RT_FULL_ROUNDS) experiment->rounds = RT_FULL_ROUNDS;
+    if (o->memory) experiment->limit_bytes = o->memory;
     snprintf(o->directory, sizeof o->directory, "results/%s", experiment->name);
     if (only->shards)
         rt_append_text(o->directory, sizeof o->directory, "-%u-of-%u", only->shard, only->shards);

@@ -82,6 +82,7 @@ static const RtOption options[] = {
      "Seed of the random rays and of the families of scenes (default 1)"},
     {"threads", 't', "N", RT_TO_INTEGER(work.rays.threads, 0, 1024),
      "Threads; 0, the default, is all processors"},
+    RT_MEMORY_OPTION(work.memory),
     {"out", 'o', "DIR", RT_TO_TEXT(work.folder),
      "Write rows to DIR as they are found, tables of them (verify.csv, verify.md), and replay files of wrong "
      "answers"},
@@ -334,9 +335,9 @@ const RtSyntax rt_verify_syntax = {
     .help =
         "Verify that each accelerator hits the same object as brute, with the same bits of t, for every "
         "ray of each SCENE, in the timed and the counted kernel, ray by ray and in streams. The default "
-        "is some fifty small scenes that are hard for accelerators. SCENE may be `families`, generated "
-        "scenes that are hard for accelerators, or one of them, as in family:kind=slivers,seed=7 "
-        "(`raytally scenes family` lists them).\v"
+        "is some fifty small scenes that are hard for accelerators. SCENE may be `triangles`, the default "
+        "scenes of triangles alone; `families`, generated scenes that are hard for accelerators; or one of "
+        "these, as in family:kind=slivers,seed=7 (`raytally scenes family` lists them).\v"
         "Accelerators with hit functions of their own (Embree's native mode, libraries as plugins) get "
         "verdicts: equal, tie, marginal (explained by rounding) or wrong. raytally writes the first wrong "
         "answer of each row to a file (in --out DIR, or in verify-failures/), with the scene reduced to "

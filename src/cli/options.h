@@ -22,6 +22,7 @@ typedef struct RtOptionValue {
         RT_OPTION_SECONDS, /* double: a whole number, low..high */
         RT_OPTION_PERCENT, /* double: "1%" is 0.01 */
         RT_OPTION_SET,     /* int, or an enum: `low` */
+        RT_OPTION_BYTES,   /* uint64_t: "512M" is 512 * 10^6; at least 1 */
         RT_OPTION_SIZE,    /* uint32_t[2]: WIDTHxHEIGHT */
         RT_OPTION_PATH,    /* const char *: a file name that ends in one of `endings` */
         RT_OPTION_TAKE     /* as `take` reads it */
@@ -56,6 +57,8 @@ typedef struct RtOptionValue {
     { .form = RT_OPTION_SECONDS, .offset = offsetof(Options, field), .low = (from), .high = (to) }
 #define RT_TO_PERCENT(field)                                                                                 \
     { .form = RT_OPTION_PERCENT, .offset = offsetof(Options, field) }
+#define RT_TO_BYTES(field)                                                                                   \
+    { .form = RT_OPTION_BYTES, .offset = offsetof(Options, field) }
 #define RT_TO_SET(field, value)                                                                              \
     { .form = RT_OPTION_SET, .offset = offsetof(Options, field), .low = (value) }
 #define RT_TO_SIZE(field)                                                                                    \

@@ -3,6 +3,7 @@
 
 #include "scenes/builtin.h"
 #include "scenes/family.h"
+#include "scenes/open.h"
 #include "verify/spread.h"
 
 #include <stdio.h>
@@ -44,6 +45,28 @@ static RtStatus add_families(RtVerifyChoice *choice, uint64_t seed, RtError *err
     return RT_OK;
 }
 
+static RtStatus add_default(RtVerifyChoice *choice, uint64_t seed, RtError *error) {
+    for (size_t i = 0; i < sizeof default_scenes / sizeof default_scenes[0]; i++) {
+        RT_TRY(add_scene(choice, default_scenes[i], error));
+    }
+    return add_families(choice, seed, error);
+}
+
+/* The default scenes that have no other shapes. */
+static RtStatus add_triangles(RtVerifyChoice *choice, uint64_t seed, RtError *error) {
+    uint32_t kept = choice->scene_count;
+    RT_TRY(add_default(choice, seed, error));
+    for (uint32_t i = kept; i < choice->scene_count; i++) {
+        RtScene scene;
+        RT_TRY(rt_scene_open(choice->scenes[i], &scene, error));
+        const RtGeometry *g = &scene.geometry;
+        if (g->triangle_count == g->object_count) choice->scenes[kept++] = choice->scenes[i];
+        rt_scene_clear(&scene);
+    }
+    choice->scene_count = kept;
+    return RT_OK;
+}
+
 /* Sorts built-in scenes by number of objects; with `quick` drops the large ones. */
 static RtStatus sort_scenes(RtVerifyChoice *choice, bool quick, RtError *error) {
     uint64_t objects[RT_VERIFY_MAX_SCENES];
@@ -69,14 +92,15 @@ static RtStatus sort_scenes(RtVerifyChoice *choice, bool quick, RtError *error) 
 RtStatus rt_verify_choose_scenes(RtVerifyChoice *choice, const char *const *given, uint32_t count,
                                  uint64_t seed, bool quick, RtError *error) {
     for (uint32_t i = 0; i < count; i++) {
-        bool all = strcmp(given[i], RT_VERIFY_FAMILIES) == 0;
-        RT_TRY(all ? add_families(choice, seed, error) : add_scene(choice, given[i], error));
+        if (strcmp(given[i], RT_VERIFY_FAMILIES) == 0)
+            RT_TRY(add_families(choice, seed, error));
+        else if (strcmp(given[i], RT_VERIFY_TRIANGLES) == 0)
+            RT_TRY(add_triangles(choice, seed, error));
+        else
+            RT_TRY(add_scene(choice, given[i], error));
     }
     if (count > 0) return RT_OK;
-    for (size_t i = 0; i < sizeof default_scenes / sizeof default_scenes[0]; i++) {
-        RT_TRY(add_scene(choice, default_scenes[i], error));
-    }
-    RT_TRY(add_families(choice, seed, error));
+    RT_TRY(add_default(choice, seed, error));
     return sort_scenes(choice, quick, error);
 }
 

@@ -8,7 +8,8 @@
 #define RT_VERIFY_MAX_SCENES 256
 #define RT_VERIFY_MAX_SPECS  512
 
-#define RT_VERIFY_FAMILIES "families" /* as a scene: all families of scenes */
+#define RT_VERIFY_FAMILIES  "families"  /* as a scene: all families of scenes */
+#define RT_VERIFY_TRIANGLES "triangles" /* as a scene: the default ones without other shapes */
 
 typedef struct RtVerifyChoice {
     const char *scenes[RT_VERIFY_MAX_SCENES]; /* given, or in `families` */
@@ -19,8 +20,9 @@ typedef struct RtVerifyChoice {
     char families[RT_VERIFY_MAX_SCENES][RT_MAX_SPEC_CHARS];
 } RtVerifyChoice;
 
-/* The scenes given[0..count), borrowed; `families` means all families, with `seed`. Without any: scenes that
- * are hard on accelerators, by number of objects; with `quick` only small ones. */
+/* The scenes given[0..count), borrowed; `families` means all families, with `seed`, and `triangles` the
+ * default scenes of triangles alone. Without any, the default: scenes that are hard on accelerators, by
+ * number of objects; with `quick` only small ones. */
 RtStatus rt_verify_choose_scenes(RtVerifyChoice *choice, const char *const *given, uint32_t count,
                                  uint64_t seed, bool quick, RtError *error);
 

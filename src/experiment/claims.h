@@ -22,7 +22,8 @@
  * build time has no interval.
  *
  * A cell has no value for all kinds of rays together if one of them was not measured. A claim about cells
- * without a value is undecided, unless the others disprove it. An exponent needs all values of its line. */
+ * without a value is undecided, unless the others disprove it. If none of its cells was measured, as where a
+ * plugin is missing, its verdict is "no measurements". An exponent needs all values of its line. */
 #ifndef RT_EXPERIMENT_CLAIMS_H
 #define RT_EXPERIMENT_CLAIMS_H
 
@@ -62,7 +63,13 @@ typedef struct RtClaim {
 /* Parses `text`, or says what is wrong. The claim borrows from the experiment. */
 RtStatus rt_claim_parse(const RtExperiment *experiment, const char *text, RtClaim *claim, RtError *error);
 
-typedef enum RtClaimVerdict { RT_CLAIM_HOLDS, RT_CLAIM_UNDECIDED, RT_CLAIM_FALSE } RtClaimVerdict;
+typedef enum RtClaimVerdict {
+    RT_CLAIM_HOLDS,
+    RT_CLAIM_UNDECIDED,
+    RT_CLAIM_FALSE,
+    RT_CLAIM_UNMEASURED, /* no cell that it is about was measured */
+    RT_CLAIM_VERDICT_COUNT
+} RtClaimVerdict;
 
 #define RT_MAX_CLAIM_FIGURES 256
 typedef struct RtClaimResult {
@@ -71,10 +78,10 @@ typedef struct RtClaimResult {
                                          */
 } RtClaimResult;
 
-/* "holds", "does not hold", "undecided". */
+/* "holds", "does not hold", "undecided", "no measurements". */
 const char *rt_claim_verdict_name(RtClaimVerdict verdict);
 
-/* Judges claim number `i` of the experiment; an invalid claim, or one without measurements, is undecided. */
+/* Judges claim number `i` of the experiment; an invalid one has no measurements. */
 void rt_claim_judge(const RtResults *results, uint32_t i, RtClaimResult *result);
 
 /* RT_MISMATCH with the number of claims that do not hold, if there are any. */

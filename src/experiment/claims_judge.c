@@ -23,7 +23,7 @@ typedef struct Point {
 static const RtEstimate UNKNOWN = {NAN, NAN, NAN, NAN};
 
 const char *rt_claim_verdict_name(RtClaimVerdict verdict) {
-    static const char *const names[] = {"holds", "undecided", "does not hold"};
+    static const char *const names[] = {"holds", "undecided", "does not hold", "no measurements"};
     return names[verdict];
 }
 
@@ -268,6 +268,27 @@ static void judge_values(const RtExperiment *experiment, const RtClaim *claim, c
     put_place(result, experiment, worst.point, false);
 }
 
+/* Whether anything that the claim could be about was measured. */
+static bool is_measured(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c) {
+    if (claim->measure >= RT_CLAIM_BUILD_TIME) return rt_build_at(results, t, c)->known;
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        const bool asked = claim->kind == RT_ALL_RAYS || claim->kind == (RtRayKind)k;
+        if (asked && rt_cell_at(results, t, c, (RtRayKind)k)->counted) return true;
+    }
+    return false;
+}
+
+static bool any_is_measured(const RtResults *results, const RtClaim *claim, const Point *points,
+                            uint32_t count) {
+    for (uint32_t i = 0; i < count; i++) {
+        const Point *p = &points[i];
+        if (is_measured(results, claim, p->workload, p->candidate) &&
+            (claim->form != RT_CLAIM_RATIO || is_measured(results, claim, p->workload, claim->other)))
+            return true;
+    }
+    return false;
+}
+
 /* Drops the points without a value; returns the number left. */
 static uint32_t drop_unknown(Point *points, uint32_t count) {
     uint32_t known = 0;
@@ -288,8 +309,10 @@ void rt_claim_judge(const RtResults *results, uint32_t i, RtClaimResult *result)
     RtStatus status = rt_claim_parse(experiment, experiment->claims[i], &claim, &error);
     if (points && status == RT_OK) count = gather(results, &claim, points);
     for (uint32_t k = 0; k < count; k++) known += isfinite(points[k].y.median) ? 1 : 0;
-    if (known == 0) {
-        *result = (RtClaimResult){RT_CLAIM_UNDECIDED, "no measurements for this claim"};
+    if (!any_is_measured(results, &claim, points, count)) {
+        *result = (RtClaimResult){RT_CLAIM_UNMEASURED, "nothing that this claim is about was measured"};
+    } else if (known == 0) {
+        *result = (RtClaimResult){RT_CLAIM_UNDECIDED, "no measurements of all kinds of rays"};
     } else if (claim.form == RT_CLAIM_EXPONENT) {
         judge_lines(experiment, &claim, points, count, result);
     } else if (claim.form == RT_CLAIM_TREND) {
@@ -326,7 +349,7 @@ void rt_claims_print(const RtResults *results, FILE *out) {
     for (uint32_t i = 0; i < experiment->claim_count; i++) {
         RtClaimResult result;
         rt_claim_judge(results, i, &result);
-        fprintf(out, "  %-13s  %s\n  %-13s  %s\n", rt_claim_verdict_name(result.verdict),
+        fprintf(out, "  %-15s  %s\n  %-15s  %s\n", rt_claim_verdict_name(result.verdict),
                 experiment->claims[i], "", result.figures);
         open |= result.verdict == RT_CLAIM_UNDECIDED;
     }

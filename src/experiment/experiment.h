@@ -133,8 +133,8 @@ typedef struct RtExperiment {
     uint32_t rounds;       /* 1..RT_MAX_ROUNDS */
     uint32_t milliseconds; /* a short set is repeated within a round until it takes this long; 0: once */
     uint64_t seed;
-    double limit_seconds;     /* longer cells are left out; 0: no limit */
-    uint64_t limit_megabytes; /* larger structures, also while built, are left out; 0: no limit */
+    double limit_seconds; /* longer cells are left out; 0: no limit */
+    uint64_t limit_bytes; /* larger structures, also while built, are left out; 0: no limit */
     char plots[RT_MAX_PLOTS]
               [RT_MAX_LABEL]; /* gnuplot scripts relative to the YAML, run in this order in one process */
     uint32_t plot_count;

@@ -51,7 +51,9 @@ static RtStatus read_scale(const RtYaml *y, const RtYamlNode *n, uint64_t *limit
 static RtStatus read_limits(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment) {
     RT_TRY(rt_yaml_keys(y, n, "seconds? megabytes?"));
     RT_TRY(rt_yaml_double(y, n, "seconds", &experiment->limit_seconds));
-    RT_TRY(rt_yaml_u64(y, n, "megabytes", 1, 1000000000, &experiment->limit_megabytes));
+    uint64_t megabytes = 0;
+    RT_TRY(rt_yaml_u64(y, n, "megabytes", 1, 1000000000, &megabytes));
+    experiment->limit_bytes = 1000000 * megabytes;
     if (!rt_yaml_get(y, n, "seconds") || experiment->limit_seconds > 0) return RT_OK;
     return rt_yaml_fail(y, rt_yaml_get(y, n, "seconds"), "invalid value '%g': expected more than 0",
                         experiment->limit_seconds);

@@ -14,7 +14,7 @@ typedef struct Forecast {
     const RtResults *results;
     const RtExperiment *experiment;
     bool count_only;
-    RateEstimate all;
+    RateEstimate all, baseline;
     RtForecast sums;
 } Forecast;
 
@@ -67,10 +67,12 @@ static void add_cell(Forecast *f, const RateEstimate *rates, uint32_t t, uint32_
     if (!workload->known && setup->width && rt_ray_kind_is_of_frame(kind))
         rays = fmin(rays, (double)setup->width * setup->height);
     rays /= (double)stride;
-    /* A candidate that was not timed yet: as much time per test and step as the others take. */
-    double ray = cell->timed ? cell->wall.median
-                             : mean(rates->seconds, rates->rays,
-                                    operations_of(cell) * mean(f->all.seconds, f->all.operations, 0));
+    /* A candidate that was not timed yet: as much time per test and step as the others take, if they are
+     * counted; else as much as the baseline. */
+    const double operations = operations_of(cell);
+    const double other = operations > 0 ? operations * mean(f->all.seconds, f->all.operations, 0)
+                                        : mean(f->baseline.seconds, f->baseline.rays, 0);
+    double ray = cell->timed ? cell->wall.median : mean(rates->seconds, rates->rays, other);
     if (!null) {
         f->sums.cells++;
         f->sums.finished += cell->counted && (cell->timed || f->count_only);
@@ -87,21 +89,24 @@ RtForecast rt_forecast(const RtResults *results, const RtWorkloadOptions *option
     Forecast f = {.results = results, .experiment = e, .count_only = options->count_only || e->count_only};
     for (uint32_t t = 0; t < e->workload_count; t++) {
         for (uint32_t c = 0; c <= e->candidate_count; c++) learn(&f.all, results, t, c);
+        learn(&f.baseline, results, t, e->baseline);
     }
     for (uint32_t c = 0; c < e->candidate_count + !f.count_only; c++) {
         RateEstimate rates = {0};
         for (uint32_t t = 0; t < e->workload_count; t++) learn(&rates, results, t, c);
         for (uint32_t t = 0; t < e->workload_count; t++) {
             const RtBuildResult *build = rt_build_at(results, t, c);
-            if (results->workloads[t].skipped || !rt_only_scene(&options->only, e, t)) continue;
-            if (*build->left_out || !rt_candidate_runs(e, c, t) || !rt_only_accel(&options->only, e, c))
+            if (results->workloads[t].skipped) continue;
+            if (*build->left_out || !rt_candidate_runs(e, c, t) ||
+                !rt_only_cell(&options->only, e, t, c, RT_ALL_RAYS))
                 continue;
             double once = mean(rates.build, rates.builds, mean(f.all.build, f.all.builds, 0));
             add(&f, build->known, build_seconds(build->known ? build->seconds : once));
             for (uint32_t k = 0; k < e->kind_count; k++) {
                 RtRayKind kind = e->kinds[k];
                 bool none = results->workloads[t].known && !results->workloads[t].rays[kind];
-                if (none || *rt_cell_at(results, t, c, kind)->left_out || !rt_only_kind(&options->only, kind))
+                if (none || *rt_cell_at(results, t, c, kind)->left_out ||
+                    !rt_only_cell(&options->only, e, t, c, kind))
                     continue;
                 add_cell(&f, &rates, t, c, kind);
             }

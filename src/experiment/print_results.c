@@ -220,9 +220,10 @@ void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
     out[0] = '\0';
     if (runs == 0) return;
     snprintf(out, RT_MAX_SENTENCE,
-             "Null runs: %s timed against itself, %" PRIu32 " of %" PRIu32 " interval%s include%s 1",
-             experiment->candidates[experiment->baseline].label, straddling, runs, rt_plural(runs),
-             runs == 1 ? "s" : "");
+             "Null runs: %s is %s measured a second time, to show the noise; %" PRIu32 " of %" PRIu32
+             " interval%s include%s 1",
+             experiment->again, experiment->candidates[experiment->baseline].label, straddling, runs,
+             rt_plural(runs), runs == 1 ? "s" : "");
     uint32_t misses = runs - straddling, rounds = experiment->rounds;
     double coverage = rt_interval_coverage(rounds), chance = 1 - coverage;
     if (misses == 0)

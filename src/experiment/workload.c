@@ -7,11 +7,15 @@
 
 /* ---- what is unknown ---- */
 
+static bool is_asked(const RtWorkloadState *workload, uint32_t c, RtRayKind kind) {
+    return rt_only_cell(&workload->options->only, workload->experiment, workload->index, c, kind);
+}
+
 static bool kind_is_done(const RtWorkloadState *workload, RtRayKind kind) {
     for (uint32_t c = 0; c < workload->count; c++) {
         const RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
         bool null = c == workload->experiment->candidate_count;
-        if (!rt_workload_runs(workload, c) || *cell->left_out) continue;
+        if (!is_asked(workload, c, kind) || !rt_workload_runs(workload, c) || *cell->left_out) continue;
         if ((!cell->counted && !null) || (!cell->timed && !workload->count_only)) return false;
         if (workload->hardware && !cell->hardware.known && !null) return false;
         if (workload->distributions && !cell->distributions && !null) return false;
@@ -29,7 +33,6 @@ static bool workload_is_done(const RtWorkloadState *workload) {
     }
     for (uint32_t k = 0; k < workload->experiment->kind_count; k++) {
         RtRayKind kind = workload->experiment->kinds[k];
-        if (!rt_only_kind(&workload->options->only, kind)) continue;
         if (result->rays[kind] && !kind_is_done(workload, kind)) return false;
     }
     return true;
@@ -154,6 +157,13 @@ static RtStatus distribute_leaves(const RtAccel *accel, RtBuildResult *result, R
 
 /* ---- structures ---- */
 
+static RtStatus build_limited(const RtWorkloadState *workload, const RtSpec *spec, RtAccel **out,
+                              RtError *error) {
+    rt_memory_limit(workload->experiment->limit_bytes);
+    return rt_memory_unlimit(rt_accel_build(spec, workload->scene, workload->options->threads, out, error),
+                             error);
+}
+
 /* Builds one candidate up to RT_MOST_BUILDS times and keeps the last; *median gets the median seconds. */
 static RtStatus build_one(RtWorkloadState *workload, const RtSpec *spec, RtAccel **out, double *median,
                           RtError *error) {
@@ -163,7 +173,7 @@ static RtStatus build_one(RtWorkloadState *workload, const RtSpec *spec, RtAccel
     do {
         rt_accel_destroy(*out);
         *out = NULL;
-        RT_TRY(rt_accel_build(spec, workload->scene, workload->options->threads, out, error));
+        RT_TRY(build_limited(workload, spec, out, error));
         seconds[builds] = (*out)->build_seconds;
         sum += seconds[builds++];
     } while (builds < RT_MOST_BUILDS && sum < RT_CHEAP_BUILD);
@@ -176,25 +186,18 @@ static RtStatus build_within(RtWorkloadState *workload, uint32_t c, const RtSpec
                              RtError *error) {
     const RtExperiment *experiment = workload->experiment;
     const RtRayKind any = RT_RAY_PRIMARY;
-    rt_memory_limit(1000000 * experiment->limit_megabytes);
     RtStatus status = build_one(workload, spec, &workload->built[c], seconds, error);
-    rt_memory_limit(0);
-    const bool too_large = status == RT_NO_MEMORY && experiment->limit_megabytes;
+    const bool too_large = status == RT_NO_MEMORY && experiment->limit_bytes;
     const bool too_slow = experiment->limit_seconds > 0 && *seconds > experiment->limit_seconds;
     /* If a plugin refuses the scene, or takes all memory, only its own results are lost. */
-    const bool remote = rt_spec_is_remote(spec), refused = status == RT_BAD_INPUT && remote;
-    const bool broken = status == RT_BROKEN || (status != RT_OK && !too_large && !refused && remote);
+    const bool remote = rt_spec_is_remote(spec), refused = too_large || (status == RT_BAD_INPUT && remote);
+    const bool broken = status == RT_BROKEN || (status != RT_OK && !refused && remote);
     if (broken || refused)
         return rt_workload_leave_out(workload, c, RT_EVENT_NO_BUILD, any, broken, error, "%s",
                                      error->message);
-    if (status != RT_OK && !too_large) return status;
-    if (!too_large && !too_slow) return RT_OK;
+    if (status != RT_OK || !too_slow) return status;
     rt_accel_destroy(workload->built[c]);
     workload->built[c] = NULL;
-    if (too_large)
-        return rt_workload_leave_out(workload, c, RT_EVENT_NO_BUILD, any, false, error,
-                                     "its structure takes more than %llu MB",
-                                     (unsigned long long)experiment->limit_megabytes);
     return rt_workload_leave_out(workload, c, RT_EVENT_NO_BUILD, any, false, error,
                                  "building takes %.3g s, more than %g s", *seconds,
                                  experiment->limit_seconds);
@@ -240,8 +243,7 @@ static RtStatus rebuild_broken(RtWorkloadState *workload, uint32_t c, RtError *e
     if (!accel || rt_accel_check(accel, NULL) == RT_OK) return RT_OK;
     rt_accel_destroy(accel);
     workload->built[c] = NULL;
-    return rt_accel_build(&rt_workload_setup(workload, c)->parsed, workload->scene,
-                          workload->options->threads, &workload->built[c], error);
+    return build_limited(workload, &rt_workload_setup(workload, c)->parsed, &workload->built[c], error);
 }
 
 /* Selects accelerators that are not known to exceed a limit, or to break. */
@@ -249,7 +251,8 @@ static RtStatus choose_accels(RtWorkloadState *workload, RtRayKind kind, RtError
     for (uint32_t c = 0; c < workload->count; c++) {
         const RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
         RtStatus status = rebuild_broken(workload, c, error);
-        workload->accels[c] = status != RT_OK || *cell->left_out ? NULL : workload->built[c];
+        const bool traces = status == RT_OK && !*cell->left_out && is_asked(workload, c, kind);
+        workload->accels[c] = traces ? workload->built[c] : NULL;
         if (status != RT_OK) RT_TRY(rt_workload_break(workload, c, kind, error));
     }
     return RT_OK;
@@ -257,7 +260,6 @@ static RtStatus choose_accels(RtWorkloadState *workload, RtRayKind kind, RtError
 
 static RtStatus measure_kind(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
     if (workload->sets[kind].count == 0 || kind_is_done(workload, kind)) return RT_OK;
-    if (!rt_only_kind(&workload->options->only, kind)) return RT_OK;
     RT_TRY(choose_accels(workload, kind, error));
     RtStatus status = rt_workload_count(workload, kind, error);
     if (status == RT_OK) status = save_rows(workload, kind, error);

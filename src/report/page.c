@@ -68,14 +68,18 @@ void rt_page_card(FILE *out, const char *title, const char *text) {
 
 void rt_page_verdict(FILE *out, const RtResults *results) {
     const uint32_t claims = results->experiment->claim_count;
-    uint32_t counts[RT_CLAIM_FALSE + 1] = {0};
+    uint32_t counts[RT_CLAIM_VERDICT_COUNT] = {0};
     for (uint32_t i = 0; i < claims; i++) {
         RtClaimResult result;
         rt_claim_judge(results, i, &result);
         counts[result.verdict]++;
     }
     const uint32_t wrong = counts[RT_CLAIM_FALSE], open = counts[RT_CLAIM_UNDECIDED];
-    fprintf(out, "<span class=\"verdict %s\">", wrong ? "false" : open || !claims ? "open" : "holds");
+    const uint32_t unmeasured = counts[RT_CLAIM_UNMEASURED];
+    fprintf(out, "<span class=\"verdict %s\">",
+            wrong                           ? "false"
+            : open || unmeasured || !claims ? "open"
+                                            : "holds");
     if (!claims) {
         fputs("not judged", out);
     } else {
@@ -84,6 +88,7 @@ void rt_page_verdict(FILE *out, const RtResults *results) {
     }
     if (wrong) fprintf(out, ", %" PRIu32 " do%s not", wrong, wrong == 1 ? "es" : "");
     if (open) fprintf(out, ", %" PRIu32 " undecided", open);
+    if (unmeasured) fprintf(out, ", %" PRIu32 " without measurements", unmeasured);
     fputs("</span>\n", out);
 }
 

@@ -28,8 +28,10 @@ enum { MOST_FILE_BYTES = 1 << 26, MAX_CAPTION = 1024 };
 
 /* The verdict comes before the prediction. */
 static void put_claims(FILE *out, const RtResults *results) {
-    static const char *const classes[] = {
-        [RT_CLAIM_HOLDS] = "holds", [RT_CLAIM_UNDECIDED] = "open", [RT_CLAIM_FALSE] = "false"};
+    static const char *const classes[] = {[RT_CLAIM_HOLDS] = "holds",
+                                          [RT_CLAIM_UNDECIDED] = "open",
+                                          [RT_CLAIM_FALSE] = "false",
+                                          [RT_CLAIM_UNMEASURED] = "open"};
     const RtExperiment *experiment = results->experiment;
     fputs("<section class=\"card\" id=\"verdict\"><h2>Verdict</h2><p>", out);
     rt_page_verdict(out, results);

@@ -30,6 +30,7 @@ typedef struct RtVerify {
     const RtVerifySpec *specs; /* [spec_count] */
     uint32_t spec_count;
     RtVerifyRays rays; /* for each row */
+    uint64_t memory;   /* bytes for each accelerator (rt_memory_limit); 0: no limit */
     uint32_t shrink;   /* the most failures of a spec to shrink, RT_SHRINK_ALL: each; 0: the default, 1 */
     /* For journal, tables, manifest and replay files; NULL: only replay files, in verify-failures. */
     const char *folder;

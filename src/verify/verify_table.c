@@ -116,7 +116,9 @@ static const RtTableColumn members[] = {
     MEMBER("wrong", integer, "all other answers"),
     MEMBER("occluded_wrong", integer, "rays whose answer to occluded is wrong"),
     MEMBER("problem", text, "a broken structure, or too many marginal answers; empty: none"),
-    MEMBER("refused", text, "why a plugin refuses the scene, which then has no rays; empty: it does not"),
+    MEMBER(
+        "refused", text,
+        "why a plugin refuses the scene, or that the accelerator exceeds --memory; the row then has no rays"),
     MEMBER("exact", flag, "whether its answers must equal brute's bit for bit; if not, they get verdicts"),
 };
 enum { OF_CSV = 10, AGAINST = 2 };

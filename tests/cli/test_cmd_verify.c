@@ -132,6 +132,8 @@ RT_TEST(what_cannot_be_verified_is_refused_before_anything_is_printed) {
         {"--rays 0", "whole number 1.."},
         {"--rays 1e6", "whole number"},
         {"--threads -1", "whole number"},
+        {"--memory 0", "as in 512M or 4G"},
+        {"--memory 4Gi", "as in 512M or 4G"},
         {"--wrong", "unrecognized option"},
         {"--families", "unrecognized option"},
         {"--resume", "--out DIR"},
@@ -163,6 +165,32 @@ RT_TEST(scenes_of_families_have_the_seed_of_the_rays) {
     const char *last = json_string_value(json_object_get(json_array_get(rows, count - 1), "scene"));
     assert_string_equal(first, "family:kind=empty,seed=3");
     assert_string_equal(last, "family:kind=soup,seed=9");
+    json_decref(json);
+}
+
+RT_TEST(triangles_are_the_default_scenes_without_other_shapes) {
+    json_t *json = document("triangles --accel bvh --rays 40 --json");
+    const json_t *rows = json_object_get(json, "rows");
+    static const char *const others[] = {"balls", "shape=mixed", "=two", "csg", "spheres"};
+    bool tetra = false, slivers = false;
+    for (size_t i = 0; i < json_array_size(rows); i++) {
+        const char *scene = json_string_value(json_object_get(json_array_get(rows, i), "scene"));
+        for (size_t k = 0; k < sizeof others / sizeof others[0]; k++) assert_null(strstr(scene, others[k]));
+        tetra |= strcmp(scene, "tetra:size=3") == 0;
+        slivers |= strcmp(scene, "family:kind=slivers,seed=1") == 0;
+    }
+    assert_true(tetra && slivers && json_array_size(rows) > 8);
+    json_decref(json);
+}
+
+RT_TEST(what_needs_more_memory_than_is_allowed_is_refused_and_the_others_are_verified) {
+    assert_int_equal(verify("random:n=20000 --accel kd --accel brute --rays 40 --memory 1M --json"), 0);
+    assert_non_null(strstr(text_of(OUT ".err"), "refused: it needs more than 1 MB of memory (--memory): "));
+    json_t *json = json_load_file(OUT ".out", 0, NULL);
+    const json_t *rows = json_object_get(json, "rows");
+    assert_int_equal(json_array_size(rows), 2);
+    assert_int_equal(number(json_array_get(rows, 0), "rays"), 0);
+    assert_int_equal(number(json_array_get(rows, 1), "equal"), 40);
     json_decref(json);
 }
 

@@ -131,7 +131,8 @@ RT_TEST(a_trend_is_from_each_value_to_the_next) {
 RT_TEST(what_was_not_measured_decides_nothing) {
     set_all();
     *rt_cell_at(&results, 0, 0, RT_RAY_PRIMARY) = *rt_cell_at(&results, 0, 0, RT_RAY_SHADOW) = (RtCell){0};
-    expect(RT_CLAIM_UNDECIDED, "object_tests of bvh on random:n=10 < 5", "no measurements");
+    expect(RT_CLAIM_UNMEASURED, "object_tests of bvh on random:n=10 < 5", "nothing that this claim is about");
+    expect(RT_CLAIM_UNMEASURED, "ratio of time of grid:density=1 to bvh on random:n=10 > 9", "");
     expect(RT_CLAIM_UNDECIDED, "object_tests of bvh < 5", "1 of 4 values are unknown");
     expect(RT_CLAIM_FALSE, "object_tests of bvh > 5", "1 of 4 values are unknown");
 }
@@ -151,8 +152,8 @@ RT_TEST(a_kind_of_rays_that_one_side_lacks_leaves_a_claim_about_all_kinds_undeci
     expect(RT_CLAIM_FALSE, faster, "5.25");
     assert_int_equal(rt_standing(&results, 0, 0, RT_RAY_KIND_COUNT), RT_STANDING_BEST);
     *dear = (RtCell){.left_out = "it would take about 3 s, more than 1 s"};
-    expect(RT_CLAIM_UNDECIDED, ahead, "no measurements");
-    expect(RT_CLAIM_UNDECIDED, faster, "no measurements");
+    expect(RT_CLAIM_UNDECIDED, ahead, "no measurements of all kinds");
+    expect(RT_CLAIM_UNDECIDED, faster, "no measurements of all kinds");
     expect(RT_CLAIM_HOLDS,
            "ratio of object_tests of grid:density=1 to bvh on random:n=10 for primary rays < 1", "0.40");
     assert_true(isnan(rt_results_cost(&results, 0, 1, RT_ALL_RAYS).seconds.median));
@@ -169,7 +170,7 @@ RT_TEST(totals_of_a_kind_that_all_were_measured_on_compare_and_a_claim_waits_for
     const RtCost total = rt_results_cost(&results, 0, 0, RT_ALL_RAYS);
     assert_true(total.object_tests == 2);
     assert_false(total.whole);
-    expect(RT_CLAIM_UNDECIDED, "object_tests of bvh on random:n=10 < 5", "no measurements");
+    expect(RT_CLAIM_UNDECIDED, "object_tests of bvh on random:n=10 < 5", "no measurements of all kinds");
 }
 
 /* Over 10 and 100 alone time would grow as n^0.301, over 10 and 1000 as n^1. */

@@ -26,13 +26,25 @@ static int make_claiming(void **state) {
 RT_TEST_IN_PLACE(a_false_claim_is_said_to_be_and_is_exit_code_1_if_strict) {
     const Place *place = *state;
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
-    assert_in_file(place, "output", "holds          object_tests of grid falls with density");
-    assert_in_file(place, "output", "does not hold  object_tests of bvh > 1000");
+    assert_in_file(place, "output", "holds            object_tests of grid falls with density");
+    assert_in_file(place, "output", "does not hold    object_tests of bvh > 1000");
     assert_in_file(place, "out/report.html", "does not hold");
     assert_ends(place, "run small.yaml --out out --threads 1 --resume --strict", 1,
                 "1 of 2 claims do not hold, the first: object_tests of bvh > 1000");
     write_changed(place, "small.yaml", claiming, "bvh > 1000", "bvh < 1000");
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume --strict"), 0);
+}
+
+RT_TEST_IN_PLACE(a_claim_about_a_missing_plugin_has_no_measurements_and_is_no_failure) {
+    const Place *place = *state;
+    write_changed(place, "missing.yaml", claiming, "bvh > 1000", "nobodys > 1000");
+    char *text = read_in(place, "missing.yaml");
+    write_changed(place, "small.yaml", text, "{accel: bvh}\n",
+                  "{accel: bvh}\n  - {accel: nobodys, optional: yes}\n");
+    rt_free(text);
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --strict"), 0);
+    assert_in_file(place, "output", "no measurements  object_tests of nobodys > 1000");
+    assert_in_file(place, "out/report.html", "1 of 2 claims hold, 1 without measurements");
 }
 
 RT_TEST_IN_PLACE(a_bad_claim_is_refused_with_its_line_when_the_yaml_is_read) {

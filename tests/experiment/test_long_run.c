@@ -168,11 +168,51 @@ RT_TEST_IN_PLACE(what_goes_beyond_a_limit_is_left_out_and_recorded) {
     write_changed(place, "small.yaml", text, ", ray_stride: 10", "");
     rt_free(text);
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --force"), 0);
-    assert_in_file(place, "output", "Left out: bvh on cloud:n=30000: its structure takes more than 1 MB");
+    assert_in_file(place, "output", "Left out: bvh on cloud:n=30000: it needs more than 1 MB of memory");
     assert_in_file(place, "out/cells.jsonl", "too_large");
-    assert_in_file(place, "out/report.html", "its structure takes more than 1 MB");
+    assert_in_file(place, "out/report.html", "it needs more than 1 MB of memory");
     assert_ends(place, "run small.yaml --threads 1 --out out --resume", 0, "nothing was left to measure");
     assert_in_file(place, "output", "Left out: bvh on cloud:n=30000");
+    /* The option takes the place of the limit in the YAML. */
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --force --memory 1G"), 0);
+    char *lines = read_in(place, "out/cells.jsonl");
+    assert_non_null(strstr(lines, "\"scene\":\"cloud:n=30000\",\"accel\":\"bvh\",\"kind\":\"primary\""));
+    rt_free(lines);
+    assert_ends(place, "run small.yaml --threads 1 --out out --memory 1Q", 2, "as in 512M or 4G");
+}
+
+static bool in_journal(const char *journal, const char *scene, const char *accel, const char *kind) {
+    char cell[160];
+    snprintf(cell, sizeof cell, "\"scene\":\"%s\",\"accel\":\"%s\",\"kind\":\"%s\"", scene, accel, kind);
+    return strstr(journal, cell) != NULL;
+}
+
+/* bvh is the baseline. */
+RT_TEST_IN_PLACE(several_parts_are_measured_together) {
+    static const char *const scenes[] = {"balls", "cloud:n=200", "cloud:n=400"},
+                             *const accels[] = {"bvh", "grid:density=1", "brute"},
+                             *const kinds[] = {"primary", "diffuse"};
+    const Place *place = *state;
+    const char *parts =
+        "--only cloud:n=200/grid/primary --only cloud:n=200/brute/diffuse --only cloud:n=400/grid";
+    char command[256];
+    snprintf(command, sizeof command, "run small.yaml --threads 1 --out out %s", parts);
+    assert_int_equal(raytally(place, command), 0);
+    char *journal = read_in(place, "out/cells.jsonl");
+    for (int s = 0; s < 3; s++) {
+        for (int a = 0; a < 3; a++) {
+            for (int k = 0; k < 2; k++) {
+                const bool asked = s == 0 ? false : a == 0 ? true : s == 1 ? k == (a == 2) : a == 1;
+                assert_int_equal(in_journal(journal, scenes[s], accels[a], kinds[k]), asked);
+            }
+        }
+    }
+    rt_free(journal);
+    snprintf(command, sizeof command, "run small.yaml --threads 1 --out out --resume --dry-run %s", parts);
+    assert_int_equal(raytally(place, command), 0);
+    assert_in_file(place, "output", "all of them finished\n");
+    assert_ends(place, "run small.yaml --out out --only cloud --only nowhere --resume", 2,
+                "'nowhere' is not the label");
 }
 
 RT_TEST_IN_PLACE(a_cell_that_would_take_too_long_is_not_begun) {
@@ -265,6 +305,11 @@ RT_TEST_IN_PLACE(what_was_not_timed_yet_is_foretold_by_its_tests_and_steps) {
     grid->tally.steps += 300000;
     double eleven_times = rt_forecast(&results, &options).left;
     assert_true(fabs(eleven_times - once - 4 * 30) < 0.01); /* a warm-up and three rounds */
+    /* What was not even counted, or counts nothing, is taken for as fast as bvh, the baseline. */
+    *grid = (RtCell){0};
+    once = rt_forecast(&results, &options).left;
+    strcpy(grid->left_out, "for comparison");
+    assert_true(fabs(once - rt_forecast(&results, &options).left - 5 * 1) < 0.01); /* counting, too */
     rt_results_clear(&results);
 }
 

@@ -156,7 +156,7 @@ RT_TEST_IN_PLACE(a_kind_of_rays_that_an_accelerator_lacks_leaves_its_means_out_o
     char command[1024];
     write_small(place, "expect: [ratio of object_tests of grid to bvh < 1000]");
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
-    assert_in_file(place, "output", "holds          ratio of object_tests");
+    assert_in_file(place, "output", "holds            ratio of object_tests");
     snprintf(
         command, sizeof command,
         "cd '%s/out' && sed -i '/\"accel\":\"grid\",\"kind\":\"random\"/d' cells.jsonl && echo "
@@ -165,7 +165,7 @@ RT_TEST_IN_PLACE(a_kind_of_rays_that_an_accelerator_lacks_leaves_its_means_out_o
         place->folder);
     assert_int_equal(system(command), 0);
     assert_ends(place, "run small.yaml --out out --threads 1 --resume", 0, "nothing was left to measure");
-    assert_in_file(place, "output", "undecided      ratio of object_tests");
+    assert_in_file(place, "output", "undecided        ratio of object_tests");
     assert_in_file(place, "output",
                    "\n  undecided: the interval includes the bound, or a value is missing\n");
     assert_in_file(place, "out/report.html", "are unknown if one of the kinds was left out");

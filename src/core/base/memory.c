@@ -12,6 +12,8 @@
 static _Atomic uint64_t fail_countdown;
 static _Atomic int64_t live_blocks, live_bytes, most_bytes = INT64_MAX;
 
+static uint64_t limit_bytes = UINT64_MAX; /* as rt_memory_limit was given it */
+
 static bool fails_on_purpose(void) {
     uint64_t left = atomic_load(&fail_countdown);
     while (left > 0) {
@@ -61,12 +63,21 @@ void rt_free(void *block) {
 }
 
 void rt_memory_limit(uint64_t bytes) {
+    limit_bytes = bytes ? bytes : UINT64_MAX;
     atomic_store(&most_bytes, bytes ? atomic_load(&live_bytes) + (int64_t)bytes : INT64_MAX);
 }
 
-uint64_t rt_memory_left(void) {
-    const int64_t most = atomic_load(&most_bytes), live = atomic_load(&live_bytes);
-    return most == INT64_MAX ? UINT64_MAX : live < most ? (uint64_t)(most - live) : 0;
+RtStatus rt_memory_unlimit(RtStatus status, RtError *error) {
+    const uint64_t limit = limit_bytes;
+    rt_memory_limit(0);
+    if (status != RT_NO_MEMORY || limit == UINT64_MAX || !error) return status;
+    const RtError why = *error;
+    return rt_fail(error, status, "it needs more than %.4g MB of memory (--memory): %s", 1e-6 * (double)limit,
+                   why.message);
+}
+
+uint64_t rt_memory_current_limit(void) {
+    return limit_bytes;
 }
 
 RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error) {

@@ -39,8 +39,11 @@ uint64_t rt_memory_size(void);
  * not count. */
 void rt_memory_limit(uint64_t bytes);
 
-/* Bytes that may still be allocated; UINT64_MAX without a limit. */
-uint64_t rt_memory_left(void);
+/* Removes the limit and returns `status`; in front of the message of RT_NO_MEMORY it puts the limit. */
+RtStatus rt_memory_unlimit(RtStatus status, RtError *error);
+
+/* The limit as it was given; UINT64_MAX without one. */
+uint64_t rt_memory_current_limit(void);
 
 /* For tests: the allocation `n` calls from now fails (1 = the next); 0 switches this off. */
 void rt_alloc_fail_at(uint64_t n);
