@@ -24,7 +24,8 @@
       "binned SAH with spatial splits",                                                                      \
       "Wald 2007")                                                                                           \
     X(PARAM_BINS, "bins", RT_INT("16", 2, RT_MAX_BINS, "2|5|64"),                                            \
-      "build=binned, spatial: SAH bins along each axis", "Wald 2007")                                        \
+      "build=binned, spatial: SAH bins along each axis; for less than 1024 objects, 16 at most",             \
+      "Wald 2007")                                                                                           \
     X(PARAM_BITS, "bits", RT_INT("21", 1, RT_MAX_MORTON_BITS, "1|10"),                                       \
       "build=lbvh, ploc: bits of a Morton code along each axis", "the most that fit in 64 bits")             \
     X(PARAM_RADIUS, "radius", RT_INT("25", 1, 1024, "1|100"),                                                \
@@ -65,7 +66,8 @@ static RtTreeOptions options_of(const RtBuild *what) {
                                        .leaf = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
                                        .traversal = values[PARAM_TRAVERSAL_COST].f,
                                        .limit = what->limit},
-                           .reinsertion = (uint32_t)values[PARAM_REINSERTION].i};
+                           .reinsertion = (uint32_t)values[PARAM_REINSERTION].i,
+                           .batch = 1};
 }
 
 static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {

@@ -190,9 +190,10 @@ static uint32_t split_small(RtTreeRef *refs, uint32_t count, RtBox4 centers_of[2
 }
 
 uint32_t rt_split_binned(RtTreeRef *refs, uint32_t count, int bins, RtBox4 centers, RtBox4 centers_of[2]) {
-    if (count <= (uint32_t)bins) return split_small(refs, count, centers_of);
+    const uint32_t own_bins = rt_bin_count(bins, count);
+    if (count <= own_bins) return split_small(refs, count, centers_of);
     RtBins b;
-    rt_bins_init(&b, (uint32_t)bins, centers);
+    rt_bins_init(&b, own_bins, centers);
     rt_bins_add(&b, refs, count);
     RtSplit split = rt_bins_split(&b, count);
     if (!(split.cost < INFINITY)) return 0;

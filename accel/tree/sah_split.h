@@ -93,9 +93,15 @@ void rt_small_group_partition(RtSmallGroup *self, uint32_t begin, uint32_t count
 
 /* ---- whole groups ---- */
 
-/* Moves the left side of the cheapest split in 2..RT_MAX_BINS bins to the front and returns its size; both
+/* The bins for a group of `count` references, where large groups have `bins`. Small groups gain little from
+ * many, and most of the time is theirs. */
+static inline uint32_t rt_bin_count(int bins, uint32_t count) {
+    return count < 1024 && bins > 16 ? 16 : (uint32_t)bins;
+}
+
+/* Moves the left side of the cheapest split in bins (rt_bin_count) to the front and returns its size; both
  * sides get some. `centers` is the box of the centres; those of the sides go to centers_of[2]. A group of at
- * most `bins` references is split as a small group. Returns 0 where no plane separates the centres. */
+ * most so many references is split as a small group. Returns 0 where no plane separates the centres. */
 uint32_t rt_split_binned(RtTreeRef *refs, uint32_t count, int bins, RtBox4 centers, RtBox4 centers_of[2]);
 
 /* Moves the lower half of refs[0..count) to the front and returns its size, (count + 1) / 2: by centres along

@@ -77,7 +77,7 @@ static RtBox4 build_small(const RtSubtreeBuilder *b, RtSmallGroup *small, uint32
 RtBox4 rt_subtree_build(const RtSubtreeBuilder *b, RtRefGroup group) {
     if (group.count == 1) return set_leaf(b, group.node, group.refs);
     if (b->bins == 0 || group.depth >= RT_TREE_MEDIAN_DEPTH) return build_at_median(b, &group);
-    if (group.count <= (uint32_t)b->bins) {
+    if (group.count <= rt_bin_count(b->bins, group.count)) {
         RtSmallGroup small;
         rt_small_group_init(&small, group.refs, group.count);
         return build_small(b, &small, 0, group.count, group.node, group.depth);

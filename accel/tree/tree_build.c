@@ -23,7 +23,7 @@ static RtStatus make(RtTree *tree, const RtGeometry *geometry, const RtTreeOptio
 RtStatus rt_tree_build(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options, int threads,
                        RtError *error) {
     RT_TRY(make(tree, geometry, options, threads, error));
-    RtStatus status = rt_tree_reinsert(tree, options->reinsertion, threads, error);
+    RtStatus status = rt_tree_reinsert(tree, options->reinsertion, options->batch, threads, error);
     if (status != RT_OK) rt_tree_clear(tree);
     return status;
 }

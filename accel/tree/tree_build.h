@@ -26,6 +26,7 @@ typedef struct RtTreeOptions {
     RtSpatial spatial; /* spatial; its bins also apply to binned */
     RtInsertionOrder insertion;
     uint32_t reinsertion; /* most rounds */
+    double batch;         /* of reinsertion: part of the nodes */
 } RtTreeOptions;
 
 /* Builds a complete tree of all objects, at least 1; the same on any number of `threads` (0 = all

@@ -24,8 +24,8 @@ enum { MORTON_BITS = 21, PLOC_RADIUS = 25 };
 #define PARAMS(X)                                                                                            \
     X(PARAM_BUILD, "build", RT_CHOICE("binned", RT_TREE_METHODS),                                            \
       "builder of the binary tree, as for bvh; its nodes are then merged into nodes of eight", "Wald 2007")  \
-    X(PARAM_BINS, "bins", RT_INT("16", 2, RT_MAX_BINS, "2|64"),                                              \
-      "build=binned, spatial: SAH bins along each axis", "Wald 2007")                                        \
+    X(PARAM_BINS, "bins", RT_INT("64", 2, RT_MAX_BINS, "2|16"),                                              \
+      "build=binned, spatial: SAH bins along each axis; for less than 1024 objects, 16 at most", "measured") \
     X(PARAM_ALPHA, "alpha", RT_FLOAT("1e-05", 0, 1, "0|0.01"),                                               \
       "build=spatial: spatial splits are tried where the sides overlap by more than this part of the "       \
       "root's area",                                                                                         \
@@ -39,8 +39,12 @@ enum { MORTON_BITS = 21, PLOC_RADIUS = 25 };
       "most objects in a leaf; four triangles are tested at once", "measured")                               \
     X(PARAM_BLOCK_COST, "block_cost", RT_FLOAT("1", 0, 1000, "0|0.1|10"),                                    \
       "cost of testing four triangles, or one other object, in visits of a node", "measured")                \
-    X(PARAM_REINSERTION, "reinsertion", RT_INT("0", 0, 1000, "1|3"),                                         \
-      "rounds in which subtrees of the binary tree move to cheaper places", "0: the tree as built")          \
+    X(PARAM_REINSERTION, "reinsertion", RT_INT("2", 0, 1000, "0|1"),                                         \
+      "rounds in which subtrees of the binary tree move to cheaper places; 0: the tree as built",            \
+      "measured")                                                                                            \
+    X(PARAM_BATCH, "batch", RT_FLOAT("0.01", 1e-6, 1, "0.001|1"),                                            \
+      "reinsertion: part of the nodes, those with the largest boxes, that may move in a round",              \
+      "Bittner et al. 2013")                                                                                 \
     X(PARAM_IN_FLIGHT, "in_flight", RT_INT("32", 1, RT_WIDE_MAX_IN_FLIGHT, "1|3|64"),                        \
       "rays of a stream traced at once on a thread; 1: one after the other", "measured")                     \
     X(PARAM_ORDER, "order", RT_FLAG("on"), "visit the nearest child first; off: the last one",               \
@@ -78,7 +82,8 @@ static RtTreeOptions options_of(const RtBuild *what, RtTreeMethod method) {
                                        .leaf = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
                                        .traversal = 1,
                                        .limit = what->limit},
-                           .reinsertion = (uint32_t)values[PARAM_REINSERTION].i};
+                           .reinsertion = (uint32_t)values[PARAM_REINSERTION].i,
+                           .batch = values[PARAM_BATCH].f};
 }
 
 static RtStatus fill(RtWideTree *self, const RtBuild *what, RtTreeMethod method, RtError *error) {

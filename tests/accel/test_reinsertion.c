@@ -58,9 +58,38 @@ RT_TEST(pairs_that_were_parted_are_united) {
     rt_tree_unite(&tree, a, b);
     /* Half areas: 101 and 101 long, 203 each, and the root of 103: 207. */
     assert_true(rt_tree_cost(&tree) == 203 + 203 + 207);
-    assert_ok(rt_tree_reinsert(&tree, 10, 1, error));
+    assert_ok(rt_tree_reinsert(&tree, 10, 1, 1, error));
     assert_true(rt_tree_cost(&tree) == 7 + 7 + 207); /* 3 x 1 x 1 twice */
     assert_same_references(&tree, boxes);
+}
+
+/* Two cubes at the origin and two far away, scaled and moved along z, paired crosswise. Returns their root.
+ */
+static uint32_t add_crosswise(RtTree *tree, uint32_t first) {
+    uint32_t a = rt_tree_unite(tree, first, first + 2), b = rt_tree_unite(tree, first + 1, first + 3);
+    return rt_tree_unite(tree, a, b);
+}
+
+RT_TEST(a_batch_moves_the_subtrees_with_the_largest_boxes_alone) {
+    RtBox boxes[8];
+    for (int i = 0; i < 8; i++) {
+        float size = i < 4 ? 1 : 0x1p-10f, x = i % 4 < 2 ? (float)(i % 4) * 2 : (float)(i % 4) * 2 + 96;
+        boxes[i] = (RtBox){{x * size, 0, 200 * size}, {(x + 1) * size, size, 201 * size}};
+    }
+    OWNED_TREE tree;
+    assert_ok(rt_tree_init_leaves(&tree, boxes, 8, error));
+    uint32_t large = add_crosswise(&tree, 0), small = add_crosswise(&tree, 4);
+    rt_tree_unite(&tree, large, small);
+    const RtTree before = copy_of(&tree);
+    assert_ok(rt_tree_reinsert(&tree, 10, 0.5, 1, error)); /* the root, and `large` with all below */
+    for (uint32_t i = small - 2; i <= small; i++)
+        assert_memory_equal(&tree.nodes[i], &before.nodes[i], sizeof(RtTreeNode));
+    assert_true(rt_tree_cost(&tree) < rt_tree_cost(&before) - 300);
+    assert_same_references(&tree, boxes);
+    double half = rt_tree_cost(&tree);
+    assert_ok(rt_tree_reinsert(&tree, 10, 1, 1, error));
+    assert_true(rt_tree_cost(&tree) < half);
+    rt_free(before.nodes);
 }
 
 RT_TEST(a_round_never_costs_more_and_a_poor_tree_gets_good) {
@@ -74,7 +103,7 @@ RT_TEST(a_round_never_costs_more_and_a_poor_tree_gets_good) {
             double first = rt_tree_cost(&tree), before = first;
             if (kind == BINNED) good = first;
             for (int round = 0; round < 6; round++) {
-                assert_ok(rt_tree_reinsert(&tree, 1, 0, error));
+                assert_ok(rt_tree_reinsert(&tree, 1, round % 2 ? 0.1 : 1, 0, error));
                 double cost = rt_tree_cost(&tree);
                 assert_true(cost <= before);
                 assert_same_references(&tree, boxes);
@@ -91,10 +120,10 @@ RT_TEST(the_tree_does_not_depend_on_threads) {
     enum { COUNT = 5000 };
     OWNED_MEMORY RtBox *boxes = make_boxes(COUNT, 9);
     OWNED_TREE first = make_tree(boxes, COUNT, MEDIANS);
-    assert_ok(rt_tree_reinsert(&first, 3, 1, error));
+    assert_ok(rt_tree_reinsert(&first, 3, 1, 1, error));
     for (int threads = 2; threads <= 3; threads++) {
         OWNED_TREE tree = make_tree(boxes, COUNT, MEDIANS);
-        assert_ok(rt_tree_reinsert(&tree, 3, threads, error));
+        assert_ok(rt_tree_reinsert(&tree, 3, 1, threads, error));
         assert_int_equal(tree.root, first.root);
         assert_memory_equal(tree.nodes, first.nodes, tree.used * sizeof(RtTreeNode));
     }
@@ -148,7 +177,7 @@ RT_TEST(where_it_ends_no_move_there_is_would_gain) {
     for (uint64_t seed = 1; seed <= 8; seed++) {
         OWNED_MEMORY RtBox *boxes = make_boxes(COUNT, seed);
         OWNED_TREE tree = make_tree(boxes, COUNT, seed % 2 ? CHAIN : MEDIANS);
-        assert_ok(rt_tree_reinsert(&tree, 1000, 0, error));
+        assert_ok(rt_tree_reinsert(&tree, 1000, 1, 0, error));
         double cost = rt_tree_cost(&tree);
         for (uint32_t node = 0; node < tree.used; node++) {
             uint32_t p = parent_of(&tree, node);
@@ -168,7 +197,7 @@ RT_TEST(what_cannot_gain_stays_as_it_is) {
     for (int pass = 0; pass < 2; pass++) {
         for (uint32_t count = 1; count <= COUNT; count = count < 3 ? count + 1 : count * 10) {
             OWNED_TREE tree = make_tree(boxes, count, MEDIANS), before = copy_of(&tree);
-            assert_ok(rt_tree_reinsert(&tree, 5, 0, error));
+            assert_ok(rt_tree_reinsert(&tree, 5, 1, 0, error));
             assert_memory_equal(tree.nodes, before.nodes, tree.used * sizeof(RtTreeNode));
         }
         for (int i = 0; i < COUNT; i++) boxes[i] = (RtBox){{0, 0, 0}, {1, 1, 1}};
@@ -187,7 +216,7 @@ RT_TEST(nested_boxes_take_no_time_to_speak_of) {
         }
         OWNED_TREE tree = make_tree(boxes, COUNT, MEDIANS);
         double before = rt_tree_cost(&tree);
-        assert_ok(rt_tree_reinsert(&tree, 4, 0, error));
+        assert_ok(rt_tree_reinsert(&tree, 4, 1, 0, error));
         assert_true(rt_tree_cost(&tree) <= before);
         assert_same_references(&tree, boxes);
         uint32_t depth = assert_tree(&tree);
@@ -200,7 +229,7 @@ RT_TEST(a_tree_that_is_too_deep_is_limited_first) {
     OWNED_MEMORY RtBox *boxes = make_boxes(COUNT, 3);
     OWNED_TREE tree = make_tree(boxes, COUNT, CHAIN);
     assert_int_equal(assert_tree(&tree), COUNT - 1);
-    assert_ok(rt_tree_reinsert(&tree, 1, 0, error));
+    assert_ok(rt_tree_reinsert(&tree, 1, 1, 0, error));
     assert_true(assert_tree(&tree) < 2 * RT_TREE_MAX_DEPTH);
 }
 
@@ -212,7 +241,7 @@ RT_TEST(every_allocation_may_fail) {
     for (uint64_t n = 1; status != RT_OK; n++) {
         RtError failure = {RT_OK, ""};
         rt_alloc_fail_at(n);
-        status = rt_tree_reinsert(&tree, 2, 1, &failure);
+        status = rt_tree_reinsert(&tree, 2, 1, 1, &failure);
         rt_alloc_fail_at(0);
         if (status != RT_OK) assert_int_equal(status, RT_NO_MEMORY);
         assert_int_equal(rt_alloc_live(), live);
