@@ -24,7 +24,7 @@
       "binned SAH with spatial splits",                                                                      \
       "Wald 2007")                                                                                           \
     X(PARAM_BINS, "bins", RT_INT("16", 2, RT_MAX_BINS, "2|5|64"),                                            \
-      "build=binned, spatial: SAH bins along each axis; for less than 1024 objects, 16 at most",             \
+      "build=binned, spatial: SAH bins along each axis; for fewer than 1024 objects, 16 at most",            \
       "Wald 2007")                                                                                           \
     X(PARAM_BITS, "bits", RT_INT("21", 1, RT_MAX_MORTON_BITS, "1|10"),                                       \
       "build=lbvh, ploc: bits of a Morton code along each axis", "the most that fit in 64 bits")             \

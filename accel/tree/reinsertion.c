@@ -286,7 +286,7 @@ RtStatus rt_tree_reinsert(RtTree *tree, uint32_t rounds, double batch, int threa
                    .most = most};
     RtStatus status = RT_OK;
     if (!o.parent || !o.mark || !o.moves) {
-        status = rt_fail_memory(error, "reinsertion", used * 2 * sizeof(uint32_t) + most * sizeof(Move));
+        status = rt_fail_memory(error, "reinsertion", used * (2 * sizeof(uint32_t)) + most * sizeof(Move));
     } else {
         o.parent[tree->root] = NONE;
         for (uint32_t i = 0; i < used; i++) {

@@ -25,7 +25,8 @@ enum { MORTON_BITS = 21, PLOC_RADIUS = 25 };
     X(PARAM_BUILD, "build", RT_CHOICE("binned", RT_TREE_METHODS),                                            \
       "builder of the binary tree, as for bvh; its nodes are then merged into nodes of eight", "Wald 2007")  \
     X(PARAM_BINS, "bins", RT_INT("64", 2, RT_MAX_BINS, "2|16"),                                              \
-      "build=binned, spatial: SAH bins along each axis; for less than 1024 objects, 16 at most", "measured") \
+      "build=binned, spatial: SAH bins along each axis; for fewer than 1024 objects, 16 at most",            \
+      "measured")                                                                                            \
     X(PARAM_ALPHA, "alpha", RT_FLOAT("1e-05", 0, 1, "0|0.01"),                                               \
       "build=spatial: spatial splits are tried where the sides overlap by more than this part of the "       \
       "root's area",                                                                                         \
