@@ -13,9 +13,9 @@
  * on threads. This replaces the paper's locks, under which moves rely on the gain they had before the others.
  * Boxes are refitted at once, from both ends of the move.
  *
- * A round may search for a part of the nodes only: those with the largest boxes, where most of the cost is.
- * They are the top of the tree, because no box is larger than its parent's. The papers choose by another
- * measure of inefficiency, or in a cycle. */
+ * Or only the top of the tree is optimised, the nodes with the largest boxes, where most of the cost is: no
+ * box is larger than its parent's. It is copied, so that nothing below it is read. The papers choose nodes by
+ * another measure of inefficiency, or in a cycle. */
 #include "accel/tree/tree.h"
 
 #include "core/base/memory.h"
@@ -24,7 +24,6 @@
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define NONE UINT32_MAX
 
@@ -51,10 +50,8 @@ typedef struct Optimizer {
     RtTree *tree;
     uint32_t *parent; /* [used], NONE for the root */
     uint32_t *mark;   /* [used] the last move whose N was below this node */
-    Move *moves;      /* [most] of the nodes of the round; then those with a gain */
-    uint32_t most;    /* nodes of a round */
-    uint32_t count;   /* nodes of this one */
-    uint32_t marked;  /* moves tried */
+    Move *moves;      /* [used] by node; then those with a gain */
+    uint32_t marked;  /* moves tried in this round */
 } Optimizer;
 
 static double area_of(const Optimizer *o, uint32_t node) {
@@ -68,40 +65,6 @@ static RtBox box_with(const Optimizer *o, uint32_t node, RtBox box) {
 static uint32_t sibling(const Optimizer *o, uint32_t node) {
     const uint32_t *child = o->tree->nodes[o->parent[node]].child;
     return child[0] == node ? child[1] : child[0];
-}
-
-/* ---- the nodes of a round ---- */
-
-/* Chooses the nodes with an area of `least` or more, top down, and sets *next to the largest area below;
- * false if there are more than `most`. */
-static bool choose_above(Optimizer *o, double least, double *next) {
-    o->moves[0].node = o->tree->root;
-    o->count = 1;
-    *next = -1;
-    for (uint32_t i = 0; i < o->count; i++) {
-        const uint32_t node = o->moves[i].node, *child = o->tree->nodes[node].child;
-        for (int c = 0; c < 2 && !rt_tree_is_leaf(o->tree, node); c++) {
-            double area = area_of(o, child[c]);
-            if (area < least) {
-                *next = fmax(*next, area);
-            } else if (o->count < o->most) {
-                o->moves[o->count++].node = child[c];
-            } else {
-                return false;
-            }
-        }
-    }
-    return true;
-}
-
-/* Chooses the nodes with the largest areas, nearly `most`. */
-static void choose(Optimizer *o) {
-    double least = o->most == o->tree->used ? 0 : area_of(o, o->tree->root), chosen = least, next;
-    while (choose_above(o, least, &next) && next >= 0) {
-        chosen = least;
-        least = 0.75 * next;
-    }
-    choose_above(o, chosen, &next);
 }
 
 /* ---- where a node would best be ---- */
@@ -177,9 +140,8 @@ static Move find_move(const Optimizer *o, uint32_t node) {
 
 static void find_moves(void *context, size_t item) {
     const Optimizer *o = context;
-    uint32_t from = (uint32_t)item * CHUNK;
-    for (uint32_t i = from; i < o->count && i - from < CHUNK; i++)
-        o->moves[i] = find_move(o, o->moves[i].node);
+    uint32_t from = (uint32_t)item * CHUNK, used = o->tree->used;
+    for (uint32_t i = from; i < used && i - from < CHUNK; i++) o->moves[i] = find_move(o, i);
 }
 
 /* ---- the moves ---- */
@@ -258,13 +220,14 @@ static int by_gain(const void *a, const void *b) {
 
 /* Sets *made to the number of moves. */
 static RtStatus run_round(Optimizer *o, int threads, uint32_t *made, RtError *error) {
-    uint32_t found = 0;
-    choose(o);
-    RT_TRY(rt_parallel_each((o->count + CHUNK - 1) / CHUNK, threads, find_moves, o, error));
-    for (uint32_t i = 0; i < o->count; i++) {
+    uint32_t used = o->tree->used, found = 0;
+    RT_TRY(rt_parallel_each((used + CHUNK - 1) / CHUNK, threads, find_moves, o, error));
+    for (uint32_t i = 0; i < used; i++) {
+        o->mark[i] = 0;
         if (o->moves[i].target != NONE) o->moves[found++] = o->moves[i];
     }
     qsort(o->moves, found, sizeof *o->moves, by_gain);
+    o->marked = 0;
     *made = 0;
     for (uint32_t i = 0; i < found; i++) {
         if (!still_gains(o, &o->moves[i])) continue;
@@ -274,19 +237,14 @@ static RtStatus run_round(Optimizer *o, int threads, uint32_t *made, RtError *er
     return RT_OK;
 }
 
-RtStatus rt_tree_reinsert(RtTree *tree, uint32_t rounds, double batch, int threads, RtError *error) {
-    const uint32_t used = tree->used, most = (uint32_t)ceil(batch * used);
-    uint32_t made = 1;
-    if (rounds == 0) return RT_OK;
+static RtStatus reinsert_all(RtTree *tree, uint32_t rounds, int threads, RtError *error) {
+    uint32_t used = tree->used, made = 1;
     RT_TRY(rt_tree_limit_depth(tree, error));
-    Optimizer o = {.tree = tree,
-                   .parent = rt_alloc(used, sizeof(uint32_t)),
-                   .mark = rt_alloc(used, sizeof(uint32_t)),
-                   .moves = rt_alloc(most, sizeof(Move)),
-                   .most = most};
+    Optimizer o = {tree, rt_alloc(used, sizeof(uint32_t)), rt_alloc(used, sizeof(uint32_t)),
+                   rt_alloc(used, sizeof(Move)), 0};
     RtStatus status = RT_OK;
     if (!o.parent || !o.mark || !o.moves) {
-        status = rt_fail_memory(error, "reinsertion", used * (2 * sizeof(uint32_t)) + most * sizeof(Move));
+        status = rt_fail_memory(error, "reinsertion", used * (2 * sizeof(uint32_t) + sizeof(Move)));
     } else {
         o.parent[tree->root] = NONE;
         for (uint32_t i = 0; i < used; i++) {
@@ -299,5 +257,83 @@ RtStatus rt_tree_reinsert(RtTree *tree, uint32_t rounds, double batch, int threa
     rt_free(o.parent);
     rt_free(o.mark);
     rt_free(o.moves);
+    return status;
+}
+
+/* ---- the top of a tree ---- */
+
+/* Some nodes of a tree, from the root down, as a tree of its own. Each of its leaves is a subtree. */
+typedef struct Top {
+    RtTree tree;
+    uint32_t *nodes; /* [tree.capacity] in the whole tree */
+} Top;
+
+/* Copies the nodes with an area of `least` or more, and their children. Sets *next to the largest area of a
+ * leaf that is a subtree, or -1; false if there is not enough room. */
+static bool copy_top(Top *top, const RtTree *whole, double least, double *next) {
+    top->nodes[0] = whole->root;
+    top->tree.used = 1;
+    *next = -1;
+    for (uint32_t i = 0; i < top->tree.used; i++) {
+        const RtTreeNode *node = &whole->nodes[top->nodes[i]];
+        const double area = rt_box_half_area(node->box);
+        rt_tree_set_leaf(&top->tree, i, node->box, top->nodes[i]);
+        if (rt_tree_is_leaf(whole, top->nodes[i])) continue;
+        if (area < least) {
+            *next = fmax(*next, area);
+            continue;
+        }
+        if (top->tree.used + 2 > top->tree.capacity) return false;
+        for (int c = 0; c < 2; c++) {
+            const uint32_t child = rt_tree_take(&top->tree);
+            top->tree.nodes[i].child[c] = child;
+            top->nodes[child] = node->child[c];
+        }
+    }
+    return true;
+}
+
+/* Fills the top nearly to its capacity. */
+static void fill_top(Top *top, const RtTree *whole) {
+    double least = rt_box_half_area(whole->nodes[whole->root].box), next, fits = INFINITY;
+    while (copy_top(top, whole, least, &next)) {
+        if (next < 0) return;
+        fits = least;
+        least = 0.75 * next;
+    }
+    copy_top(top, whole, fits, &next);
+}
+
+static uint32_t node_in_whole(const Top *top, uint32_t node) {
+    return rt_tree_is_leaf(&top->tree, node) ? top->tree.nodes[node].child[1] : top->nodes[node];
+}
+
+static void put_back(const Top *top, RtTree *whole) {
+    whole->root = node_in_whole(top, top->tree.root);
+    for (uint32_t i = 0; i < top->tree.used; i++) {
+        const RtTreeNode *node = &top->tree.nodes[i];
+        if (rt_tree_is_leaf(&top->tree, i)) continue;
+        whole->nodes[top->nodes[i]] =
+            (RtTreeNode){node->box, {node_in_whole(top, node->child[0]), node_in_whole(top, node->child[1])}};
+    }
+}
+
+RtStatus rt_tree_reinsert(RtTree *tree, uint32_t rounds, double batch, int threads, RtError *error) {
+    const uint32_t leaves = (uint32_t)ceil(batch * rt_tree_leaf_count(tree));
+    if (rounds == 0) return RT_OK;
+    if (leaves == rt_tree_leaf_count(tree)) return reinsert_all(tree, rounds, threads, error);
+    Top top;
+    RT_TRY(rt_tree_init(&top.tree, leaves, error));
+    top.nodes = rt_alloc_unset(top.tree.capacity, sizeof(uint32_t));
+    RtStatus status = RT_OK;
+    if (top.nodes) {
+        fill_top(&top, tree);
+        status = reinsert_all(&top.tree, rounds, threads, error);
+        if (status == RT_OK) put_back(&top, tree);
+    } else {
+        status = rt_fail_memory(error, "reinsertion", top.tree.capacity * sizeof(uint32_t));
+    }
+    rt_free(top.nodes);
+    rt_tree_clear(&top.tree);
     return status;
 }

@@ -96,9 +96,9 @@ struct raytally_query {
     const raytally_host *host;        /**< Functions of raytally. */
     const raytally_ray *volatile ray; /**< The last one prepared, for reports of crashes. */
     void *crossings;                  /**< For raytally_prepared. */
-    const raytally_box *boxes;        /**< As in raytally_build_input, */
-    const float *triangles;           /**< as are these */
-    const float *spheres;             /**< and these. */
+    const raytally_box *boxes;        /**< As in raytally_build_input. */
+    const float *triangles;           /**< The same. */
+    const float *spheres;             /**< The same. */
     const uint32_t *objects; /**< [object_count] shape << RAYTALLY_INDEX_BITS | index in its array. */
     uint32_t object_count;   /**< 0 while raytally counts: it then makes all object tests itself. */
     raytally_box box;        /**< Around all objects. */

@@ -81,7 +81,7 @@ RT_TEST(a_batch_moves_the_subtrees_with_the_largest_boxes_alone) {
     uint32_t large = add_crosswise(&tree, 0), small = add_crosswise(&tree, 4);
     rt_tree_unite(&tree, large, small);
     const RtTree before = copy_of(&tree);
-    assert_ok(rt_tree_reinsert(&tree, 10, 0.5, 1, error)); /* the root, and `large` with all below */
+    assert_ok(rt_tree_reinsert(&tree, 10, 0.625, 1, error)); /* nine nodes: all but those below `small` */
     for (uint32_t i = small - 2; i <= small; i++)
         assert_memory_equal(&tree.nodes[i], &before.nodes[i], sizeof(RtTreeNode));
     assert_true(rt_tree_cost(&tree) < rt_tree_cost(&before) - 300);
@@ -241,7 +241,7 @@ RT_TEST(every_allocation_may_fail) {
     for (uint64_t n = 1; status != RT_OK; n++) {
         RtError failure = {RT_OK, ""};
         rt_alloc_fail_at(n);
-        status = rt_tree_reinsert(&tree, 2, 1, 1, &failure);
+        status = rt_tree_reinsert(&tree, 2, 0.5, 1, &failure);
         rt_alloc_fail_at(0);
         if (status != RT_OK) assert_int_equal(status, RT_NO_MEMORY);
         assert_int_equal(rt_alloc_live(), live);
