@@ -32,6 +32,18 @@ RT_KERNEL bool rt_test_object(const RtGeometry *geometry, uint32_t id, const RtP
     return any;
 }
 
+/* The same for a test that was made, with this t, or NaN if the object is not hit. */
+RT_KERNEL bool rt_take_test(const RtGeometry *geometry, uint32_t id, float t, bool any, RtHit *best,
+                            RtTally *tally) {
+    RT_COUNT(tally, object_tests, 1);
+    RT_OBSERVE(tally, .kind = RT_TRACED_OBJECT_TEST, .index = id, .box = &geometry->boxes[id]);
+    if (isnan(t)) return false;
+    RT_COUNT(tally, object_hits, 1);
+    RT_OBSERVE(tally, .kind = RT_TRACED_OBJECT_HIT, .index = id, .t = t);
+    if (rt_hit_before(t, id, *best)) *best = (RtHit){t, id};
+    return any;
+}
+
 /* Tests every object, shape by shape, each in ascending order of ids. This defines the right answer. Compiled
  * once, in accel.c: most structures come here for few rays. Returns true if the search is over. */
 bool rt_test_all_timed(const RtGeometry *geometry, const RtPreparedRay *ray, bool any, RtHit *best);

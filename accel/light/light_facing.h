@@ -23,8 +23,8 @@ RT_KERNEL bool rt_light_has_facing_test(RtRef object) {
 
 /* The object is one that has sides, the ray's tmin at least 0 and tmax at most 1. True only if it is not
  * hit. */
-RT_KERNEL bool rt_light_leaves(const RtGeometry *geometry, uint32_t id, const RtRay *ray) {
-    uint32_t index = rt_ref_index(geometry->objects[id]);
+RT_KERNEL bool rt_light_leaves(const RtGeometry *geometry, RtRef object, uint32_t id, const RtRay *ray) {
+    uint32_t index = rt_ref_index(object);
     const RtBox *box = &geometry->boxes[id];
     RtVec3d org = rt_widen(ray->org), dir = rt_widen(ray->dir);
     double far = 0;
@@ -32,7 +32,7 @@ RT_KERNEL bool rt_light_leaves(const RtGeometry *geometry, uint32_t id, const Rt
         far = fmax(far, fabs((double)box->lo.at[a] - org.at[a]));
         far = fmax(far, fabs((double)box->hi.at[a] - org.at[a]));
     }
-    if (rt_ref_shape(geometry->objects[id]) == RT_SHAPE_SPHERE) {
+    if (rt_ref_shape(object) == RT_SHAPE_SPHERE) {
         const RtSphere *sphere = &geometry->spheres[index];
         RtVec3d from = rt_subd(org, rt_widen(sphere->center));
         double reach = (double)sphere->radius * (1 + 0x1p-40) + 0x1.cp-19 * far;

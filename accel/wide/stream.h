@@ -193,7 +193,7 @@ RT_KERNEL void visit_spheres(const Query *q, RayQueues *t, bool any, bool counte
         bool over = false;
         count_leaf(tally, q->tree, q->geometry, f->next);
         for (uint32_t k = first; k < end && !over; k++)
-            over = take_sphere(q, f, pairs[k].id, at[k], any, tally);
+            over = rt_take_test(q->geometry, pairs[k].id, at[k], any, &f->best, tally);
         finish_leaf(q, t, f, over, any, ahead);
         first = end;
     }

@@ -255,7 +255,7 @@ RT_TEST(objects_of_every_magnitude_that_rays_touch_are_answered_in_lanes_as_with
     }
 }
 
-/* ---- accel/wide/sphere_pairs.h ---- */
+/* ---- accel/sphere_pairs.h ---- */
 
 enum { TOUCHING = 500, TURNS = 6 };
 

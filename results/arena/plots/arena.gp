@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# arena: throughput over that of Embree's best, a row per accelerator, a panel per ray kind.
+# arena, arena-streams: throughput over that of Embree's best, a row per accelerator, a panel per ray kind.
 #: 1-arena: Throughput over that of Embree's best, on a logarithmic scale, one panel per ray kind, a row per accelerator.
 #:   Medians with intervals, one marker per scene; right of 1 it is faster than Embree's best.
 

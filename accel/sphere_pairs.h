@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pairs of a ray and a sphere, of many rays and leaves: raytally_sphere_hit (raytally/hit.h) of four at once,
- * by the same operations in double. One ray alone tests its spheres one by one: a branch that is foreseen
- * costs less than a chain of four divisions.
+/* Pairs of a ray and a sphere, of many rays and lists: raytally_sphere_hit (raytally/hit.h) of four at once,
+ * by the same operations in double.
  *
  * A hit at a sure t (defined below) needs no rt_box_admit: if tmin <= t <= tmax, the result is the same, for
- * the reason given in ray_state.h. The proof there needs a point P of the box near t dir: |t d_x - P_x| <= 7
- * e D for each axis x, and 2 e D along the longest. Let s be the root in double of which t is the rounding.
- * Then 1.1 e D is enough, because org + s dir is within 2^-29 D of the ball, and t = s within e.
+ * the reason given in wide/ray_state.h. The proof there needs a point P of the box near t dir: |t d_x - P_x|
+ * <= 7 e D for each axis x, and 2 e D along the longest. Let s be the root in double of which t is the
+ * rounding. Then 1.1 e D is enough, because org + s dir is within 2^-29 D of the ball, and t = s within e.
  *
  * 1. Let o be org from the centre, so |o| and the radius r are at most sqrt(3) D. The computed l is within
  * 2^-48 D of the true one. So l and half_chord_squared = h^2 are, exactly, those of a ball that differs from
@@ -17,12 +16,13 @@
  * 3 r, and a step of w along the ray leaves the ball by at most (2 h w + w^2) / 2r. Here h w <= 2^-44 D^2,
  * and h >= 2^-27 r, as the square root of a difference of doubles below r^2 that is not 0, so w < 2^-15 D:
  * together less than 2^-29 D. */
-#ifndef RT_ACCEL_WIDE_SPHERE_PAIRS_H
-#define RT_ACCEL_WIDE_SPHERE_PAIRS_H
+#ifndef RT_ACCEL_SPHERE_PAIRS_H
+#define RT_ACCEL_SPHERE_PAIRS_H
 
+#include "accel/kernel.h"
 #include "accel/surface.h"
 #include "accel/watertight.h"
-#include "accel/wide/ray_source.h"
+#include "core/base/simd_across.h"
 
 enum { PAIRS = 4 }; /* that are tested at once */
 
@@ -32,15 +32,6 @@ typedef struct SpherePair {
     uint32_t id; /* of the sphere */
 } SpherePair;
 
-/* A ray with sphere `i` of a leaf. */
-RT_KERNEL SpherePair sphere_pair(const Query *q, const RtRay *ray, RtWideRef ref, uint32_t i) {
-    const RtGeometry *g = q->geometry;
-    const RtWideSphere *only = rt_wide_leaf_at(q->tree, ref);
-    const RtWideList *list = rt_wide_leaf_at(q->tree, ref);
-    if (rt_wide_count(ref) == 1) return (SpherePair){ray, &only->sphere, only->id};
-    return (SpherePair){ray, &g->spheres[rt_ref_index(g->objects[list->id[i]])], list->id[i]};
-}
-
 /* The t of rt_sphere_hit, or NaN. */
 static __attribute__((noinline, cold)) float hit_unsure_pair(const RtGeometry *g, const SpherePair *pair) {
     RtPreparedRay ray;
@@ -48,23 +39,6 @@ static __attribute__((noinline, cold)) float hit_unsure_pair(const RtGeometry *g
     rt_hit_ray(&ray, g, pair->ray, NULL);
     return rt_sphere_hit(pair->sphere, &g->boxes[pair->id], &ray, &t) ? t : NAN;
 }
-
-/* ---- one pair ---- */
-
-/* The same. |t| is sure from `sure` on. */
-static __attribute__((noinline)) float hit_pair(const RtGeometry *g, const SpherePair *pair, float sure) {
-    const RtRay *ray = pair->ray;
-    double roots[2];
-    int count = raytally_sphere_roots((const float *)pair->sphere, ray->org.at, ray->dir.at, roots);
-    for (int i = 0; i < count; i++) {
-        float t = (float)roots[i];
-        if (!(fabsf(t) >= sure)) return hit_unsure_pair(g, pair);
-        if (t >= ray->tmin && t <= rt_minf(ray->tmax, FLT_MAX)) return t;
-    }
-    return NAN;
-}
-
-/* ---- four pairs ---- */
 
 /* Four doubles, in parts. */
 #if RT_LANES == 4
