@@ -18,30 +18,32 @@
 
 #define RT_KERNEL static inline __attribute__((always_inline))
 
-/* One object test: calls the hit function and keeps the better hit. Returns true if the search is over: the
- * query asks for any hit, and this is one. */
+RT_KERNEL void rt_count_test(const RtGeometry *geometry, uint32_t id, RtTally *tally) {
+    RT_COUNT(tally, object_tests, 1);
+    RT_OBSERVE(tally, .kind = RT_TRACED_OBJECT_TEST, .index = id, .box = &geometry->boxes[id]);
+}
+
+/* Keeps the better hit. Returns true if the search is over: the query asks for any hit, and this is one. */
+RT_KERNEL bool rt_take_hit(RtHit hit, bool any, RtHit *best, RtTally *tally) {
+    RT_COUNT(tally, object_hits, 1);
+    RT_OBSERVE(tally, .kind = RT_TRACED_OBJECT_HIT, .index = hit.object, .t = hit.t);
+    if (rt_hit_before(hit.t, hit.object, *best)) *best = hit;
+    return any;
+}
+
+/* One object test, by the hit function. Returns as rt_take_hit. */
 RT_KERNEL bool rt_test_object(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray, bool any,
                               RtHit *best, RtTally *tally) {
     float t;
-    RT_COUNT(tally, object_tests, 1);
-    RT_OBSERVE(tally, .kind = RT_TRACED_OBJECT_TEST, .index = id, .box = &geometry->boxes[id]);
-    if (!rt_object_hit(geometry, id, ray, &t, tally)) return false;
-    RT_COUNT(tally, object_hits, 1);
-    RT_OBSERVE(tally, .kind = RT_TRACED_OBJECT_HIT, .index = id, .t = t);
-    if (rt_hit_before(t, id, *best)) *best = (RtHit){t, id};
-    return any;
+    rt_count_test(geometry, id, tally);
+    return rt_object_hit(geometry, id, ray, &t, tally) && rt_take_hit((RtHit){t, id}, any, best, tally);
 }
 
 /* The same for a test that was made, with this t, or NaN if the object is not hit. */
 RT_KERNEL bool rt_take_test(const RtGeometry *geometry, uint32_t id, float t, bool any, RtHit *best,
                             RtTally *tally) {
-    RT_COUNT(tally, object_tests, 1);
-    RT_OBSERVE(tally, .kind = RT_TRACED_OBJECT_TEST, .index = id, .box = &geometry->boxes[id]);
-    if (isnan(t)) return false;
-    RT_COUNT(tally, object_hits, 1);
-    RT_OBSERVE(tally, .kind = RT_TRACED_OBJECT_HIT, .index = id, .t = t);
-    if (rt_hit_before(t, id, *best)) *best = (RtHit){t, id};
-    return any;
+    rt_count_test(geometry, id, tally);
+    return !isnan(t) && rt_take_hit((RtHit){t, id}, any, best, tally);
 }
 
 /* Tests every object, shape by shape, each in ascending order of ids. This defines the right answer. Compiled

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pairs of a ray to a light and an object of its list: triangles and spheres in lanes, other shapes one by
- * one.
- */
+/* Pairs of a ray to a light and an object of its list: triangles and spheres in lanes, others one by one. */
 #ifndef RT_ACCEL_LIGHT_LIGHT_PAIRS_H
 #define RT_ACCEL_LIGHT_LIGHT_PAIRS_H
 

@@ -131,6 +131,7 @@ static bool split_group(const Builder *b, Group *group, uint32_t counts[2]) {
     RtBox4 common = {rt_max(sides.box[0].lo, sides.box[1].lo), rt_min(sides.box[0].hi, sides.box[1].hi)};
     RtSpatialGroup spatial = {b->geometry, refs, count, group->spare, box, b->margin};
     RtSpatialSplit plane = {.sides.cost = INFINITY};
+    /* Cutting takes most of the time, so there are never more bins than for small groups. */
     if (area_of(common) > b->least_overlap)
         plane = rt_spatial_bins_split(&spatial, (int)rt_bin_count(b->how.bins, 0));
     double least = fmin(sides.cost, plane.sides.cost);

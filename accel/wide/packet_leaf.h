@@ -175,8 +175,7 @@ RT_KERNEL uint32_t meet_sphere(const Packet *p, const RtSphere *sphere, size_t f
     return chords.met;
 }
 
-/* Those of the rays that may hit a sphere: beams with many rays are filtered, which takes no transposition.
- */
+/* Those of the rays that may hit a sphere. Beams with many rays are filtered: they need no transposition. */
 RT_KERNEL uint64_t filter_rays(const Packet *p, const RtSphere *sphere, uint64_t rays) {
     for (uint32_t b = 0; b < BEAMS; b++) {
         uint32_t some = (uint32_t)(rays >> b * BEAM) & ((1u << BEAM) - 1), met = 0;

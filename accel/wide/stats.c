@@ -130,8 +130,7 @@ static RtStatus check_spheres(const Check *check, RtWideRef ref) {
     return RT_OK;
 }
 
-/* Checks that a leaf is in the arena, and that its triangles and spheres have the coordinates of the scene's.
- */
+/* Checks that a leaf is in the arena, and that its triangles and spheres are those of the scene. */
 static RtStatus check_leaf(const Check *check, RtWideRef ref) {
     const RtGeometry *g = check->geometry;
     uint32_t count = rt_wide_count(ref), at = rt_wide_place(ref);

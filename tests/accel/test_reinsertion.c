@@ -63,8 +63,7 @@ RT_TEST(pairs_that_were_parted_are_united) {
     assert_same_references(&tree, boxes);
 }
 
-/* Two cubes at the origin and two far away, scaled and moved along z, paired crosswise. Returns their root.
- */
+/* Pairs two cubes at the origin and two far away crosswise; returns the root. */
 static uint32_t add_crosswise(RtTree *tree, uint32_t first) {
     uint32_t a = rt_tree_unite(tree, first, first + 2), b = rt_tree_unite(tree, first + 1, first + 3);
     return rt_tree_unite(tree, a, b);
