@@ -51,6 +51,21 @@ bool rt_experiment_has_kind(const RtExperiment *experiment, RtRayKind kind) {
     return false;
 }
 
+/* ---- papers ---- */
+
+const char *rt_paper_verdict_name(RtPaperVerdict verdict) {
+    static const char *const names[] = {[RT_PAPER_UNJUDGED] = "not judged",
+                                        [RT_PAPER_CONFIRMED] = "confirmed",
+                                        [RT_PAPER_IN_PART] = "in part",
+                                        [RT_PAPER_NOT_CONFIRMED] = "not confirmed",
+                                        [RT_PAPER_TRUE_OF_ITS_MACHINE] = "true of its machine"};
+    return names[verdict];
+}
+
+bool rt_paper_is_seen(const RtPaper *paper) {
+    return strcmp(paper->page, "unseen") != 0;
+}
+
 /* ---- the baseline ---- */
 
 /* "embree-16-high-avx512" of "embree:query=16,quality=high,isa=avx512": short, and without commas, which

@@ -18,6 +18,7 @@
 #define RT_MAX_PLOTS      8
 #define RT_MAX_CLAIMS     64
 #define RT_MAX_CLAIM      256
+#define RT_MAX_PAPERS     16
 
 /* ---- sweeps (sweep.c) ---- */
 
@@ -110,8 +111,29 @@ typedef struct RtFrameSetup {
     char note[RT_MAX_TEXT];     /* a note for readers of the table, or "" */
 } RtFrameSetup;
 
+typedef enum RtPaperVerdict {
+    RT_PAPER_UNJUDGED, /* none is given yet */
+    RT_PAPER_CONFIRMED,
+    RT_PAPER_IN_PART,
+    RT_PAPER_NOT_CONFIRMED,
+    RT_PAPER_TRUE_OF_ITS_MACHINE,
+    RT_PAPER_VERDICT_COUNT
+} RtPaperVerdict;
+
+/* A sentence of the literature that an experiment tests. */
+typedef struct RtPaper {
+    char citation[RT_MAX_TEXT];
+    char page[RT_MAX_LABEL]; /* or "unseen": the paper was not at hand, and `quote` states its claim in other
+                                words (rt_paper_is_seen) */
+    char quote[RT_MAX_TEXT]; /* word for word, without quotation marks */
+    RtPaperVerdict verdict;
+} RtPaper;
+
 typedef struct RtExperiment {
     char name[RT_MAX_LABEL];
+    char section[RT_MAX_LABEL]; /* its heading in an index, or "" */
+    RtPaper papers[RT_MAX_PAPERS];
+    uint32_t paper_count;
     char question[RT_MAX_TEXT], prediction[RT_MAX_TEXT];
     char finding[RT_MAX_TEXT];                /* the conclusion, or "" */
     char claims[RT_MAX_CLAIMS][RT_MAX_CLAIM]; /* experiment/claims.h */
@@ -152,7 +174,8 @@ typedef struct RtExperiment {
     /* Only while loading: the manifest of the results to read, or NULL. It replaces the registry of
      * accelerators (experiment/manifest_experiment.h). */
     const json_t *manifest;
-    uint64_t fingerprint; /* of the YAML's bytes without finding and expect, which affect no result */
+    uint64_t fingerprint; /* of the YAML's bytes without the keys that affect no result: section, paper,
+                             expect, finding */
 } RtExperiment;
 
 /* No scenes, no candidates, all ray kinds except occlusion (it repeats diffuse), and the defaults: limit
@@ -171,6 +194,12 @@ RtStatus rt_experiment_load_from_manifest(RtExperiment *experiment, const char *
 /* Rays of a file ask for the nearest hit or for any hit; tables show these names instead of kinds. */
 RtStatus rt_given_kind_parse(const char *name, RtRayKind *kind, RtError *error);
 const char *rt_experiment_kind_name(const RtExperiment *experiment, RtRayKind kind);
+
+/* "confirmed", "in part", "not confirmed", "true of its machine"; "not judged" before the run. */
+const char *rt_paper_verdict_name(RtPaperVerdict verdict);
+
+/* Whether its quotation is that of the paper. */
+bool rt_paper_is_seen(const RtPaper *paper);
 
 /* Whether rays of that kind are asked for. */
 bool rt_experiment_has_kind(const RtExperiment *experiment, RtRayKind kind);

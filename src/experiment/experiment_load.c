@@ -234,6 +234,37 @@ static RtStatus read_claims(const RtYaml *y, const RtYamlNode *list, RtExperimen
     return RT_OK;
 }
 
+static RtStatus read_paper_verdict(const RtYaml *y, const RtYamlNode *n, RtPaperVerdict *verdict) {
+    const char *text = NULL;
+    RT_TRY(rt_yaml_text(y, n, "verdict", RT_MAX_LABEL, &text));
+    if (!text) return RT_OK;
+    for (*verdict = RT_PAPER_CONFIRMED; *verdict < RT_PAPER_VERDICT_COUNT; (*verdict)++) {
+        if (strcmp(text, rt_paper_verdict_name(*verdict)) == 0) return RT_OK;
+    }
+    return rt_yaml_fail(y, rt_yaml_get(y, n, "verdict"),
+                        "invalid value '%s': expected confirmed, in part, not confirmed, or true of its "
+                        "machine; before the run, leave it out",
+                        text);
+}
+
+static RtStatus read_paper(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment) {
+    RtPaper *paper = &experiment->papers[experiment->paper_count++];
+    RT_TRY(rt_yaml_keys(y, n, "citation page quote verdict?"));
+    RT_TRY(rt_yaml_copy(y, n, "citation", RT_MAX_TEXT, paper->citation));
+    RT_TRY(rt_yaml_copy(y, n, "page", RT_MAX_LABEL, paper->page));
+    RT_TRY(rt_yaml_copy(y, n, "quote", RT_MAX_TEXT, paper->quote));
+    return read_paper_verdict(y, n, &paper->verdict);
+}
+
+/* One mapping, or a list of them. */
+static RtStatus read_papers(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment) {
+    if (!n || n->kind == RT_YAML_MAPPING) return n ? read_paper(y, n, experiment) : RT_OK;
+    RT_TRY(rt_yaml_list(y, n, NULL, 1, RT_MAX_PAPERS, "mappings with citation, page and quote"));
+    for (const RtYamlNode *e = rt_yaml_first(n); e != rt_yaml_end(n); e += e->size)
+        RT_TRY(read_paper(y, e, experiment));
+    return RT_OK;
+}
+
 /* Adds the line to a failure of rt_experiment_check: `where` is "name", or "scenes[3]". */
 static RtStatus place(const RtYaml *y, RtStatus status, const char *where) {
     char key[RT_MAX_LABEL];
@@ -249,12 +280,12 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
     const RtYamlNode *n = y->nodes;
     RT_TRY(rt_yaml_keys(
         y, n,
-        "name question prediction scenes accelerators baseline? rays? limit? coherent_run? rounds? "
-        "milliseconds? seed? count_only? render? hardware? distributions? published? frame? quick? plots? "
-        "expect? "
-        "finding? "
-        "limits?"));
+        "name section? paper? question prediction scenes accelerators baseline? rays? limit? coherent_run? "
+        "rounds? milliseconds? seed? count_only? render? hardware? distributions? published? frame? quick? "
+        "plots? expect? finding? limits?"));
     RT_TRY(rt_yaml_copy(y, n, "name", RT_MAX_LABEL, experiment->name));
+    RT_TRY(rt_yaml_copy(y, n, "section", RT_MAX_LABEL, experiment->section));
+    RT_TRY(read_papers(y, rt_yaml_get(y, n, "paper"), experiment));
     RT_TRY(rt_yaml_copy(y, n, "question", RT_MAX_TEXT, experiment->question));
     RT_TRY(rt_yaml_copy(y, n, "prediction", RT_MAX_TEXT, experiment->prediction));
     RT_TRY(rt_yaml_copy(y, n, "finding", RT_MAX_TEXT, experiment->finding));
@@ -289,8 +320,16 @@ static size_t begin_of(const char *text, size_t length, uint32_t line) {
     return at;
 }
 
-/* The hash of the text without the lines of `finding` and `expect`, which may be edited after the run. They
- * count if they share a line with another key. */
+/* The keys that affect no result, and may be edited after the run. */
+static bool is_editable(const char *key) {
+    static const char *const keys[] = {"section", "paper", "expect", "finding"};
+    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
+        if (strcmp(key, keys[i]) == 0) return true;
+    }
+    return false;
+}
+
+/* The hash of the text without the lines of editable keys. They count if they share a line with another. */
 static uint64_t fingerprint_of(const RtYaml *y, const char *text, size_t length) {
     XXH3_state_t *state = XXH3_createState();
     size_t from = 0;
@@ -300,11 +339,10 @@ static uint64_t fingerprint_of(const RtYaml *y, const char *text, size_t length)
     for (const RtYamlNode *key = rt_yaml_first(y->nodes); key != end;) {
         const RtYamlNode *next = key + key->size;
         next += next->size;
-        const char *name = rt_yaml_text_of(y, key);
         size_t begin = begin_of(text, length, key->line);
         size_t behind = next == end ? length : begin_of(text, length, next->line);
         bool apart = key->column == 1 && behind > begin;
-        if (apart && (strcmp(name, "finding") == 0 || strcmp(name, "expect") == 0)) {
+        if (apart && is_editable(rt_yaml_text_of(y, key))) {
             XXH3_64bits_update(state, text + from, begin - from);
             from = behind;
         }

@@ -92,6 +92,32 @@ void rt_page_verdict(FILE *out, const RtResults *results) {
     fputs("</span>\n", out);
 }
 
+void rt_page_paper_verdict(FILE *out, const RtPaper *paper) {
+    static const char *const classes[] = {[RT_PAPER_UNJUDGED] = "open",
+                                          [RT_PAPER_CONFIRMED] = "holds",
+                                          [RT_PAPER_IN_PART] = "open",
+                                          [RT_PAPER_NOT_CONFIRMED] = "false",
+                                          [RT_PAPER_TRUE_OF_ITS_MACHINE] = "open"};
+    fprintf(out, "<span class=\"verdict %s\">%s</span>", classes[paper->verdict],
+            rt_paper_verdict_name(paper->verdict));
+}
+
+void rt_page_papers(FILE *out, const RtExperiment *experiment) {
+    if (!experiment->paper_count) return;
+    fputs("<section class=\"card\" id=\"papers\"><h2>From the literature</h2>\n", out);
+    for (uint32_t i = 0; i < experiment->paper_count; i++) {
+        const RtPaper *paper = &experiment->papers[i];
+        const bool seen = rt_paper_is_seen(paper);
+        rt_html_wrap(out, seen ? "<blockquote><p>&ldquo;" : "<blockquote><p>", paper->quote,
+                     seen ? "&rdquo;" : "");
+        rt_html_wrap(out, "</p><footer class=\"meta\">", paper->citation, seen ? ", page " : "");
+        rt_html_wrap(out, "", seen ? paper->page : ". In our words: the text was not at hand.", "</footer> ");
+        rt_page_paper_verdict(out, paper);
+        fputs("</blockquote>\n", out);
+    }
+    fputs("</section>\n", out);
+}
+
 void rt_page_provenance(FILE *out, const json_t *manifest) {
     const json_t *machine = json_object_get(manifest, "machine");
     const json_t *clock = json_object_get(machine, "clock_mhz");

@@ -25,6 +25,13 @@ void rt_page_card(FILE *out, const char *title, const char *text);
 /* "3 of 4 claims hold, 1 does not", in the colour of the worst verdict; or that there are no claims. */
 void rt_page_verdict(FILE *out, const RtResults *results);
 
+/* The sentences of the literature that the experiment tests, each with source and verdict, in a card; nothing
+ * if there are none. */
+void rt_page_papers(FILE *out, const RtExperiment *experiment);
+
+/* The verdict on such a sentence, coloured. */
+void rt_page_paper_verdict(FILE *out, const RtPaper *paper);
+
 /* A line with date and machine, from the manifest. */
 void rt_page_provenance(FILE *out, const json_t *manifest);
 

@@ -302,6 +302,7 @@ static void put_head(FILE *out, const RtResults *results, const json_t *manifest
     rt_page_begin(out, experiment->name);
     rt_html_wrap(out, "<p class=\"lede\">", experiment->question, "</p>\n");
     put_answer(out, results, directory);
+    rt_page_papers(out, experiment);
     put_claims(out, results);
     rt_page_card(out, "Finding", *experiment->finding ? experiment->finding : "No finding yet.");
     rt_page_card(out, "Prediction, written before the run", experiment->prediction);

@@ -112,8 +112,8 @@ RT_TEST(every_accelerator_has_a_page_with_its_parameters_as_they_are) {
 
 /* Extent tests stand beside object tests. */
 RT_TEST(pictures_show_what_is_said_of_them) {
-    char *picture = read_document("results/havran-1999/plots/3-best.svg");
-    char *page = read_document("results/havran-1999/best.csv");
+    char *picture = read_document("results/reference/havran-1999/plots/3-best.svg");
+    char *page = read_document("results/reference/havran-1999/best.csv");
     assert_non_null(
         strstr(page, "\nballs,object_tests,Octree93-A depth=7,6.59771,item+light+bvh,1.12005,8.81136,"));
     assert_non_null(strstr(picture, "1.1 + 8.8  item+light+bvh"));

@@ -71,4 +71,56 @@ RT_TEST_IN_PLACE(a_finding_is_added_to_a_run_that_is_there_and_nothing_else_is) 
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 2);
 }
 
+static const char quoting[] =
+    "section: papers\n"
+    "paper:\n"
+    "  - {citation: \"A & B, 1988\", page: 19, quote: Four <is> best., verdict: true of its machine}\n"
+    "  - {citation: \"C, 1989\", page: unseen, quote: Five is better.}\n"
+    "rays: [primary]\n";
+
+RT_TEST_IN_PLACE(the_report_quotes_the_papers_with_page_and_verdict_and_marks_what_was_not_seen) {
+    const Place *place = *state;
+    write_changed(place, "small.yaml", claiming, "rays: [primary]\n", quoting);
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_in_file(place, "out/report.html",
+                   "<p>&ldquo;Four &lt;is&gt; best.&rdquo;</p><footer class=\"meta\">A &amp; B, 1988, page "
+                   "19</footer> <span class=\"verdict open\">true of its machine</span>");
+    assert_in_file(place, "out/report.html",
+                   "<p>Five is better.</p><footer class=\"meta\">C, 1989. In our words: the text was not at "
+                   "hand.</footer> <span class=\"verdict open\">not judged</span>");
+}
+
+RT_TEST_IN_PLACE(section_and_paper_may_change_after_a_run) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    write_changed(place, "small.yaml", claiming, "rays: [primary]\n", quoting);
+    assert_ends(place, "run small.yaml --out out --threads 1 --resume", 0, "nothing was left to measure");
+    assert_in_file(place, "out/report.html", "From the literature");
+    assert_in_file(place, "out/experiment.yaml", "section: papers");
+    assert_int_equal(raytally(place, "reproduce out"), 0);
+}
+
+RT_TEST_IN_PLACE(a_bad_paper_is_refused_with_its_line) {
+    static const struct {
+        const char *key, *message;
+    } cases[] = {
+        {"paper: {citation: C, page: 1, quote: Q, verdict: partly}\n",
+         ":12:50: paper.verdict: invalid value 'partly': expected confirmed, in part, not confirmed, or "
+         "true"},
+        {"paper: {citation: C, page: 1}\n", ":12:1: paper: 'quote' is missing"},
+        {"paper: [{citation: C, page: 1, quote: Q, verdit: in part}]\n",
+         ":12:42: paper[0]: unknown key 'verdit'"},
+        {"paper: Glassner\n",
+         ":12:8: paper: invalid value 'Glassner': expected a list of mappings with citation"},
+        {"section: []\n", ":12:1: section: "},
+    };
+    const Place *place = *state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char with[256];
+        snprintf(with, sizeof with, "%sexpect:\n", cases[i].key);
+        write_changed(place, "small.yaml", claiming, "expect:\n", with);
+        assert_bad_input(load_small(place, false, error), cases[i].message);
+    }
+}
+
 RT_TESTS(claims_run, NULL, NULL)
