@@ -34,9 +34,10 @@
  * that is no power law has no precise exponent.
  *
  * A crossover is where the ratio of the two curves is 1, interpolated in the logarithms; its interval is the
- * range around it in which the interval of the ratio contains 1. Every crossover is printed, and a claim is
- * about all of them. It does not hold if the curves do not cross within the measured range, and is undecided
- * if they may cross, or if the values that it names lie beyond that range.
+ * range around it in which the interval of the ratio contains 1. It is certain if the interval excludes 1 on
+ * both sides. Every crossover is printed, and a claim must hold for all that are certain; those that are not
+ * can only make it undecided. It is undecided, too, if no crossover is certain: curves that do not cross
+ * within the measured values may cross beyond them.
  *
  * A cell has no value for all kinds of rays together if one of them was not measured. A claim about cells
  * without a value is undecided, unless the others disprove it. If none of its cells was measured, as where a

@@ -84,24 +84,17 @@ static void judge_crossover(const RtClaim *claim, Figure *figure) {
     const uint32_t found = rt_claim_crossovers(points, figure->count, crossovers, MOST_CROSSOVERS);
     const uint32_t count = found < MOST_CROSSOVERS ? found : MOST_CROSSOVERS;
     RtClaimVerdict certain = RT_CLAIM_HOLDS, possible = RT_CLAIM_HOLDS;
-    bool any = false, one_may = false;
+    bool any = false;
     for (uint32_t i = 0; i < count; i++) {
         const RtClaimVerdict verdict = compare(claim, crossovers[i].low, crossovers[i].high);
         any |= is_certain(&crossovers[i]);
-        one_may |= verdict != RT_CLAIM_FALSE;
         if (is_certain(&crossovers[i]))
             certain = worse(certain, verdict);
-        else
-            possible = worse(possible, verdict);
+        else if (verdict != RT_CLAIM_HOLDS)
+            possible = RT_CLAIM_UNDECIDED;
     }
-    if (any) {
-        figure->verdict = worse(certain, possible == RT_CLAIM_HOLDS ? RT_CLAIM_HOLDS : RT_CLAIM_UNDECIDED);
-    } else if (found > 0) {
-        figure->verdict = one_may ? RT_CLAIM_UNDECIDED : RT_CLAIM_FALSE;
-    } else {
-        const bool beyond = compare(claim, points[0].x, points[figure->count - 1].x) == RT_CLAIM_FALSE;
-        figure->verdict = beyond ? RT_CLAIM_UNDECIDED : RT_CLAIM_FALSE;
-    }
+    /* Curves that do not cross here may do so beyond. */
+    figure->verdict = any ? worse(certain, possible) : RT_CLAIM_UNDECIDED;
 }
 
 static void judge_figure(const RtClaim *claim, Figure *figure) {
@@ -124,6 +117,14 @@ static void judge_figure(const RtClaim *claim, Figure *figure) {
 /* ---- texts ---- */
 
 #define PUT(result, ...) rt_append_text((result)->figures, RT_MAX_CLAIM_FIGURES, __VA_ARGS__)
+
+static const char *unit_of(RtClaimMeasure measure) {
+    static const char *const units[] = {[RT_CLAIM_TIME] = " ns",
+                                        [RT_CLAIM_BUILD_TIME] = " s",
+                                        [RT_CLAIM_BYTES] = " bytes",
+                                        [RT_CLAIM_BREAK_EVEN] = " rays"};
+    return units[measure] ? units[measure] : "";
+}
 
 static void put_number(RtClaimResult *result, const RtClaim *claim, double value) {
     char text[16];
@@ -199,15 +200,23 @@ static void put_crossover(RtClaimResult *result, const RtClaim *claim, const Fig
     RtCrossover crossovers[MOST_CROSSOVERS];
     const RtClaimPoint *first = figure->points, *last = first + figure->count - 1;
     const uint32_t found = rt_claim_crossovers(first, figure->count, crossovers, MOST_CROSSOVERS);
-    if (found > 1) PUT(result, "%" PRIu32 " crossovers: ", found);
+    uint32_t certain = 0;
+    for (uint32_t i = 0; i < found && i < MOST_CROSSOVERS; i++) certain += is_certain(&crossovers[i]);
+    if (certain > 1) PUT(result, "%" PRIu32 " crossovers: ", certain);
     PUT(result, "%s", claim->accel);
     for (uint32_t i = 0; i < found && i < MOST_CROSSOVERS; i++) {
-        const char *how = !is_certain(&crossovers[i]) ? "may cross"
-                          : crossovers[i].after > 0   ? "is above"
-                                                      : "is below";
-        PUT(result, "%s %s %s %s ", i ? "," : "", how, claim->other,
-            is_certain(&crossovers[i]) ? "from" : "at");
-        put_one_crossover(result, claim, figure, &crossovers[i]);
+        const RtCrossover *crossover = &crossovers[i];
+        const bool is = is_certain(crossover), begins = !is && i == 0 && crossover->before != 0;
+        const int side = is ? crossover->after : crossover->before;
+        PUT(result, "%s", i > 0 ? "," : "");
+        if (is || begins) PUT(result, " is %s %s", side > 0 ? "above" : "below", claim->other);
+        if (is)
+            PUT(result, " from ");
+        else if (begins)
+            PUT(result, " and may cross it at ");
+        else
+            PUT(result, " may cross %s at ", claim->other);
+        put_one_crossover(result, claim, figure, crossover);
     }
     if (found > 0) return;
     PUT(result, " is %s %s from %s=%.9g to %.9g", first->y.median > 1 ? "above" : "below", claim->other,
@@ -222,6 +231,8 @@ static void put_figure(RtClaimResult *result, const RtExperiment *experiment, co
         put_crossover(result, claim, figure);
     else
         put_estimate(result, claim, &figure->value);
+    if (claim->readout && claim->form == RT_CLAIM_VALUE && isfinite(figure->value.median))
+        PUT(result, "%s", unit_of(claim->measure));
     if (figure->error > 0) {
         PUT(result, ", standard error ");
         put_number(result, claim, figure->error);
@@ -377,5 +388,8 @@ void rt_claims_print(const RtResults *results, FILE *out) {
                 experiment->claims[i], "", result.figures);
         open |= result.verdict == RT_CLAIM_UNDECIDED;
     }
-    if (open) fputs("  undecided: the interval includes the bound, or a value is missing\n", out);
+    if (open)
+        fputs(
+            "  undecided: the interval includes the bound, a value is missing, or no crossover is certain\n",
+            out);
 }

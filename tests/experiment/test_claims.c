@@ -98,7 +98,7 @@ RT_TEST(totals_of_a_kind_that_all_were_measured_on_compare_and_a_claim_waits_for
 
 RT_TEST(a_quantity_without_a_bound_is_a_figure_and_no_claim) {
     set_all();
-    expect(RT_CLAIM_FIGURE, "time of bvh on random:n=10", "102 [100, 104] (bvh on random:n=10)");
+    expect(RT_CLAIM_FIGURE, "time of bvh on random:n=10", "102 [100, 104] ns (bvh on random:n=10)");
     expect(RT_CLAIM_FIGURE, "object_tests of bvh on random",
            "2.00 (bvh on random:n=10); 2.10 (bvh on random:n=100); 2.20 (bvh on random:n=1000)");
     expect(RT_CLAIM_FIGURE, "object_tests of grid",
@@ -158,9 +158,9 @@ RT_TEST(a_baseline_of_several_settings_stands_for_the_fastest_on_each_kind_of_ra
     rt_cell_at(&results, 0, 0, RT_RAY_PRIMARY)->ratio = (RtEstimate){0.4, 0.39, 0.41, 0.3};
     expect(RT_CLAIM_HOLDS, strcat(strcpy(claim, ratio), " > 1.9"), "2.00 (bvh on random:n=10)");
     expect(RT_CLAIM_FIGURE, strcat(strcpy(claim, ratio), " for primary rays"), "2.50 [2.44, 2.56]");
-    expect(RT_CLAIM_FIGURE, "time of grid:best on random:n=10", "50.0 (grid:best on random:n=10)");
+    expect(RT_CLAIM_FIGURE, "time of grid:best on random:n=10", "50.0 ns (grid:best on random:n=10)");
     expect(RT_CLAIM_FIGURE, "object_tests of grid:best on random:n=10", "4.15 (grid:best");
-    expect(RT_CLAIM_FIGURE, "time of all on random:n=10", "100 (bvh on random:n=10)");
+    expect(RT_CLAIM_FIGURE, "time of all on random:n=10", "100 ns (bvh on random:n=10)");
     RtClaim parsed;
     assert_bad_input(rt_claim_parse(e, "bytes of grid:best < 9", &parsed, error),
                      "each with its own bytes: name one");
