@@ -104,6 +104,11 @@ static void take_ray_stride(void *options, const char *text, struct argp_state *
     }
 }
 
+static void take_milliseconds(void *options, const char *text, struct argp_state *state) {
+    ((Options *)options)->recording.experiment->milliseconds =
+        (uint32_t)rt_cli_integer(state, "--milliseconds", text, 0, RT_MAX_MILLISECONDS);
+}
+
 static void take_callgrind(void *options, const char *text, struct argp_state *state) {
     Options *o = options;
     o->callgrind =
@@ -144,6 +149,8 @@ static const RtOption options[] = {
     {"baseline", 0, "SPEC", RT_TO_TEXT(baseline),
      "The accelerator that ratios refer to (default: the first that is not a plugin). NAME:best is the "
      "fastest of several settings for each kind of rays, as in embree:best (`raytally accels NAME`)"},
+    {"milliseconds", 0, "N", RT_TO_TAKE(take_milliseconds),
+     "Repeat a short set of rays within a round until it takes so long (20); 0: run it once"},
     {"rounds", 0, "N", RT_TO_INTEGER(rounds, 1, RT_MAX_ROUNDS),
      "Timing rounds, each in a new random order (10); intervals of 95 % need 6 or more"},
     RT_UNTIL_OPTIONS(workload.until, workload.patience),

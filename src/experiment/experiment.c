@@ -9,7 +9,7 @@
 void rt_experiment_init(RtExperiment *experiment) {
     memset(experiment, 0, sizeof *experiment);
     experiment->limit = 100000;
-    experiment->coherent_run = 1;
+    experiment->coherent_run = RT_COHERENT_RUN;
     experiment->rounds = 10;
     experiment->milliseconds = 20;
     experiment->seed = 1;

@@ -19,6 +19,8 @@
 #define RT_MAX_CLAIMS     64
 #define RT_MAX_CLAIM      256
 
+#define RT_MAX_MILLISECONDS 60000 /* of a round of one cell */
+
 /* ---- sweeps (sweep.c) ---- */
 
 #define RT_MAX_SWEPT        4   /* parameters of one spec */
@@ -155,7 +157,7 @@ typedef struct RtExperiment {
 } RtExperiment;
 
 /* No scenes, no candidates, all ray kinds except occlusion (it repeats diffuse), and the defaults: limit
- * 100000, coherent runs of 1, 10 rounds, 20 milliseconds. */
+ * 100000, coherent runs of RT_COHERENT_RUN, 10 rounds, 20 milliseconds. */
 void rt_experiment_init(RtExperiment *experiment);
 
 /* Reads the YAML at `path`. Reports any error (unknown keys, invalid specs, duplicate labels, a baseline that
