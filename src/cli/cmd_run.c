@@ -197,7 +197,8 @@ static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
     RT_TRY(check_part(experiment, only, error));
     if (how->workload.until > 0 && experiment->rounds < RT_FULL_ROUNDS) experiment->rounds = RT_FULL_ROUNDS;
     if (o->memory) experiment->limit_bytes = o->memory;
-    snprintf(o->directory, sizeof o->directory, "results/%s", experiment->name);
+    strcpy(o->directory, "results/");
+    rt_file_name(experiment->name, o->directory + strlen(o->directory), RT_MAX_LABEL + 1);
     if (only->shards)
         rt_append_text(o->directory, sizeof o->directory, "-%u-of-%u", only->shard, only->shards);
     if (!how->directory) how->directory = o->directory;
