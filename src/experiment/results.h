@@ -78,6 +78,7 @@ typedef struct RtCell {
     uint64_t differ;               /* answers that differ from the reference's; 0 for exact accelerators */
     RtDistribution *distributions; /* [RT_RAY_QUANTITY_COUNT] owned; NULL: not asked for */
     uint32_t rounds;
+    double repeats;      /* passes over the rays in a round; NAN: unknown, as in older journals */
     int threads;         /* of the timing */
     uint32_t machine;    /* that timed it, in RtResults.machines */
     RtEstimate seconds;  /* per ray: processor time on one thread, wall time on several */
@@ -132,6 +133,13 @@ typedef struct RtCellCursor {
     RtCell *cell;
 } RtCellCursor;
 bool rt_results_next(const RtResults *results, RtCellCursor *at);
+
+/* Fewer rays than this, repeated more often than that within a round, take less time than they would among
+ * the rays of a frame: branch predictors and caches have learnt them. A ray depends on tens of branches and
+ * reads tens of cache lines; predictors and second-level caches hold some ten thousand. experiments/README.md
+ * shows the effect. */
+#define RT_LEARNT_RAYS    1024
+#define RT_LEARNT_REPEATS 4
 
 /* The number of measured cells, and of their scenes. */
 uint64_t rt_results_size(const RtResults *results, uint32_t *scenes);
