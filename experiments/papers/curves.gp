@@ -17,7 +17,8 @@ do for [a = 1:words(accels)] {
   x = swept(word(accels, a))
   if (x == x) { set xtics add (sprintf("%g", x) x) }
 }
-stats "times.csv" using (swept(strcol("accel")) > 0 && column("object_tests") > 0 ? column("object_tests") / column("rays") : NaN) nooutput
+tests(i) = column("object_tests") / column("rays")
+stats "times.csv" using (swept(strcol("accel")) > 0 && column("object_tests") > 0 ? tests(0) : NaN) nooutput
 least = STATS_min / 1.3; most = STATS_max * 1.3
 stats "times.csv" using (swept(strcol("accel")) > 0 ? 1 / column("ratio") : NaN) nooutput
 fastest = STATS_min > 0.6 ? 0.45 : STATS_min / 1.3; slowest = STATS_max < 1.7 ? 2.2 : STATS_max * 1.3
@@ -30,9 +31,10 @@ set grid xtics ytics
 do for [k = 1:n_kinds] {
   if (k == 1) { set ylabel "object tests per ray" textcolor rgb ink } else { unset ylabel }
   set title word(kinds, k) font ",13" textcolor rgb ink
-  if (k == n_kinds) { set key at screen 0.99, screen 0.93 right top vertical samplen 1.5 font ",11" noenhanced textcolor rgb ink } else { unset key }
+  if (k < n_kinds) { unset key }
+  else { set key at screen 0.99, screen 0.93 right top vertical samplen 1.5 font ",11" noenhanced textcolor rgb ink }
   set yrange [least : most]
-  plot for [s = 1:n_scenes] "times.csv" using (row(s, k)):(column("object_tests") / column("rays")) with linespoints linewidth 1.5 \
+  plot for [s = 1:n_scenes] "times.csv" using (row(s, k)):(tests(0)) with linespoints linewidth 1.5 \
          dashtype dashed(s) pointtype mark(s) pointsize 0.6 linecolor rgb hue(s) title word(scenes, s)
 }
 unset key
@@ -41,8 +43,9 @@ do for [k = 1:n_kinds] {
   if (k == 1) { set ylabel "time, the baseline's being 1" textcolor rgb ink } else { unset ylabel }
   set yrange [fastest : slowest]
   plot 1 with lines linewidth 0.7 linecolor rgb soft, \
-       for [s = 1:n_scenes] "times.csv" using (row(s, k)):(1 / column("ratio")):(1 / column("ratio_high")):(1 / column("ratio_low")) \
-         with yerrorlines linewidth 1.5 dashtype dashed(s) pointtype mark(s) pointsize 0.6 linecolor rgb hue(s)
+       for [s = 1:n_scenes] "times.csv" using (row(s, k)):(1 / column("ratio")): \
+         (1 / column("ratio_high")):(1 / column("ratio_low")) with yerrorlines linewidth 1.5 dashtype dashed(s) \
+         pointtype mark(s) pointsize 0.6 linecolor rgb hue(s)
 }
 unset multiplot
 unset output
