@@ -11,19 +11,21 @@ n_shown = words(shown)
 row(name) = sum [i = 1:n_shown] (word(shown, i) eq name ? n_shown + 1 - i : 0)
 shift(s) = 0.7 / n_scenes * (0.5 * (n_scenes + 1) - s)
 
-# A row per scene and accelerator. Only `spec` has commas within quotes, so columns behind it are counted from the end.
-table = "< awk -F, -v first='".first."' '\
-NR == 1 { for (i = 1; i <= NF; i++) { at[$i] = i; back[$i] = NF - i } print \"scene,accel,predicted_cost,object_tests,steps\"; next } \
-{ key = $at[\"scene\"] SUBSEP $at[\"accel\"]; if (!(key in rays)) order[++n] = key; rays[key] += $(NF - back[\"rays\"]); \
-cost[key] = $(NF - back[\"predicted_cost\"]); tests[key] += $(NF - back[\"object_tests\"]); steps[key] += $(NF - back[\"steps\"]) } \
-function over(a, b) { return a == \"\" || b + 0 == 0 || a + 0 == 0 ? \"NaN\" : a / b } \
-END { for (i = 1; i <= n; i++) { split(order[i], k, SUBSEP); f = k[1] SUBSEP first; if (!(f in rays)) continue; \
-r = rays[order[i]] / rays[f]; print k[1] \",\" k[2] \",\" over(cost[order[i]], cost[f]) \",\" over(tests[order[i]] / r, tests[f]) \",\" \
-over(steps[order[i]] / r, steps[f]) } }' counts.csv"
+# A row per scene and accelerator. Commas within quotes become semicolons first.
+table = "< awk -F '\"' '{ for (i = 2; i <= NF; i += 2) gsub(\",\", \";\", $i); print }' OFS= counts.csv | awk -F, -v first='".first."' '\
+function over(a, b) { return a + 0 == 0 || b + 0 == 0 ? \"NaN\" : a / b } \
+NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; print \"scene,accel,predicted_cost,object_tests,steps\"; next } \
+{ key = $at[\"scene\"] SUBSEP $at[\"accel\"]; if (!(key in rays)) order[++n] = key; rays[key] += $at[\"rays\"]; \
+cost[key] = $at[\"predicted_cost\"]; tests[key] += $at[\"object_tests\"]; steps[key] += $at[\"steps\"] } \
+END { for (i = 1; i <= n; i++) { o = order[i]; split(o, k, SUBSEP); f = k[1] SUBSEP first; if (!(f in rays)) continue; \
+print k[1] \",\" k[2] \",\" over(cost[o], cost[f]) \",\" over(tests[o] / rays[o], tests[f] / rays[f]) \",\" \
+over(steps[o] / rays[o], steps[f] / rays[f]) } }'"
 
 counters = "predicted_cost object_tests steps"
 titles = "'expected cost' 'object tests' 'steps'"
-key_rows = 1 + (strlen(scenes) - 1) / 80
+longest = 0
+do for [scene in scenes] { if (strlen(scene) > longest) { longest = strlen(scene) } }
+key_rows = (n_scenes - 1) / int(940 / (42 + 7.2 * longest)) + 1
 head = 44.0 + 20 * key_rows
 height = head + 66 + n_shown * (18 + 4 * n_scenes)
 set logscale x 2

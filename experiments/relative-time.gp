@@ -4,9 +4,8 @@
 #:   Medians with intervals, one marker per scene; left of 1 it is faster than the baseline.
 
 n_scenes = words(scenes); n_kinds = words(kinds)
-stats "times.csv" using 0 nooutput
-baseline = system("awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == \"baseline\") from_end = NF - i } \
-NR == 2 { print $(NF - from_end) }' times.csv")
+baseline = system("awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == \"baseline\") back = NF - i } \
+NR == 2 { print $(NF - back) }' times.csv")   # counted from the end: commas within quotes come before it
 shown = ""
 do for [a = 1:words(accels)] { if (word(accels, a) ne baseline) { shown = shown.word(accels, a)." " } }
 n_shown = words(shown)
@@ -16,7 +15,9 @@ on(s, k) = strcol("scene") eq word(scenes, s) && strcol("kind") eq word(kinds, k
 
 panel_columns = n_kinds < 2 ? 1 : 2
 panel_rows = (n_kinds + panel_columns - 1) / panel_columns
-key_rows = 1 + (strlen(scenes) - 1) / 80
+longest = 0
+do for [scene in scenes] { if (strlen(scene) > longest) { longest = strlen(scene) } }
+key_rows = (n_scenes - 1) / int(940 / (42 + 7.2 * longest)) + 1
 panel_height = 40 + n_shown * (18 + 4 * n_scenes)
 head = 44.0 + 20 * key_rows
 height = head + 14 + (panel_height + 52) * panel_rows
