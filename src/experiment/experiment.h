@@ -36,6 +36,9 @@ typedef struct RtSwept {
 /* The value as a number; false if it is a word. */
 bool rt_swept_number(const char *value, double *number);
 
+/* Whether two values are the same text or, as 1e5 and 100000, the same number. */
+bool rt_swept_equal(const char *a, const char *b);
+
 /* Whether the increasing values[0..count) are spaced more evenly on a logarithmic than on a linear axis. */
 bool rt_swept_logarithmic(const double *values, uint32_t count);
 

@@ -31,7 +31,8 @@ static void put_claims(FILE *out, const RtResults *results) {
     static const char *const classes[] = {[RT_CLAIM_HOLDS] = "holds",
                                           [RT_CLAIM_UNDECIDED] = "open",
                                           [RT_CLAIM_FALSE] = "false",
-                                          [RT_CLAIM_UNMEASURED] = "open"};
+                                          [RT_CLAIM_UNMEASURED] = "open",
+                                          [RT_CLAIM_FIGURE] = "readout"};
     const RtExperiment *experiment = results->experiment;
     fputs("<section class=\"card\" id=\"verdict\"><h2>Verdict</h2><p>", out);
     rt_page_verdict(out, results);
