@@ -24,6 +24,7 @@ set logscale xy
 set grid xtics ytics
 set xrange [1 : 1e9]
 set yrange [1e-4 : 1e3]
+set xtics 1000
 set format x "10^{%T}"
 set format y "10^{%T}"
 set xlabel "rays" textcolor rgb ink
@@ -51,8 +52,9 @@ do for [s = 1:words(scenes)] { do for [a = 1:words(accels)] {
 unset print
 eval canvas("2-break-even", 960, 400)
 set multiplot layout 1, words(scenes) margins screen 0.11, 0.985, 0.15, 0.8 spacing screen 0.02, 0.1
+set xtics 100
 set format x "10^{%T}"
-set xrange [1 : 1e8]
+set xrange [1 : 3e8]
 set yrange [words(accels) + 0.5 : 2.5]
 unset logscale y
 set format y "%s"

@@ -37,8 +37,9 @@ set xrange [1 : 300]
 set yrange [*:*]
 set xlabel "expected cost, steps of a random line" textcolor rgb ink
 set ylabel "time, ns per random ray" textcolor rgb ink
-set key bottom right samplen 1 textcolor rgb ink
+set key inside top left reverse Left samplen 1 textcolor rgb ink
 plot for [a = 1:words(accels)] NaN with points pointtype 7 linecolor rgb hue(a) title method(a), \
+     for [s = 1:words(scenes)] NaN with points pointtype mark(s) linecolor rgb soft title word(scenes, s), \
      for [a = 1:words(accels)] for [s = 1:words(scenes)] "times.csv" using (row(s, random, a) ? column("predicted_cost") : NaN):(column("ns")): \
-       (column("ns_low")):(column("ns_high")) with yerrorbars pointtype mark(s) linewidth 1.5 linecolor rgb hue(a) notitle
+       (column("ns_low")):(column("ns_high")) with yerrorbars pointtype mark(s) pointsize 0.8 linewidth 1.5 linecolor rgb hue(a) notitle
 unset output

@@ -32,7 +32,7 @@ do for [s = 1:words(scenes)] {
   do for [k = 1:words(kinds)] { set xtics add (word(kinds, k) k) }
   if (s == 1) {
     set ylabel "bvh, per ray" textcolor rgb ink
-    set key bottom left samplen 1 textcolor rgb ink
+    set key inside top right horizontal samplen 1 textcolor rgb ink
   } else { unset key }
   bvh = 4
   plot "counts.csv" using (row(s, bvh) ? kind_of(0) : NaN):(column("steps") / column("rays")) with points pointtype 7 linecolor rgb hue(6) title "steps", \

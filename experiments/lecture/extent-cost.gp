@@ -14,8 +14,8 @@ set multiplot layout 2, words(kinds) margins screen 0.075, 0.985, 0.1, 0.89 spac
 set logscale xy 2
 set grid xtics ytics
 set xrange [0.2 : 10]
-set yrange [0.5 : 4]
-set ytics (0.5, 1, 2, 4)
+set yrange [0.5 : 8]
+set ytics (0.5, 1, 2, 4, 8)
 do for [s = 1:words(shapes)] {
   shape = word(shapes, s)
   if (s == words(shapes)) { set xlabel "mean radius, in mean spacings" textcolor rgb ink }
@@ -33,6 +33,9 @@ unset multiplot
 unset output
 
 # The formula, fitted with relative errors: each cell counts alike.
+unset logscale
+set xrange [*:*]
+set yrange [*:*]
 set fit quiet nolog
 array fitted_c[words(accels)]; array fitted_B[words(accels)]; array fitted_I[words(accels)]
 formula(b, i) = c + B * b + I * i
@@ -50,13 +53,13 @@ unset print
 eval canvas("2-formula", 480, 400)
 unset title
 set logscale x 10
-unset logscale y
-set xrange [*:*]
+set xrange [*:*] noextend
+set offsets graph 0.05, graph 0.05, 0, 0
 set yrange [0 : 2]
 set ytics 0.5
 set xlabel "measured time, ns per ray" textcolor rgb ink
 set ylabel "measured / formula" textcolor rgb ink
-set key top left vertical maxrows 2 samplen 1 textcolor rgb ink
+set key inside top left vertical maxrows 2 samplen 1 textcolor rgb ink
 plot 1 with lines linewidth 1.5 dashtype 2 linecolor rgb soft notitle, \
      for [a = 1:words(accels)] "times.csv" using (strcol("accel") eq word(accels, a) ? column("ns") : NaN): \
        (column("ns") / (fitted_c[a] + fitted_B[a] * column("extent_tests") / column("rays") + fitted_I[a] * column("object_tests") / column("rays"))) \

@@ -6,8 +6,8 @@
 sweeps = "uniform clustered stadium"
 keys = "scene.n scene.width scene.ratio"
 captions = "'objects, evenly spread' 'width of clusters, of a cube of 2' 'length of the stadium / the teapot'"
-# The kinds of a cell are joined: times are weighted by the rays of each set. Rows of a cell follow each other, by kind.
-array total[words(accels)]
+# Kinds of rays are joined, weighted by the rays of each set.
+row(s, a) = strcol("scene") eq word(scenes, s) && strcol("accel") eq word(accels, a)
 set print "plots/1-crossover.csv"
 print "sweep,x,accel,ns,low,high"
 do for [s = 1:words(scenes)] {
@@ -15,18 +15,17 @@ do for [s = 1:words(scenes)] {
   sweep = scene[1:strstrt(scene, ":") - 1]
   x = real(scene[strstrt(scene, "=") + 1:*])
   do for [a = 1:words(accels)] {
-    here = "strcol('scene') eq scene && strcol('accel') eq word(accels, a)"
-    stats "times.csv" using (@here ? column("set_rays") : NaN) nooutput; rays = STATS_sum
-    stats "times.csv" using (@here ? column("set_rays") * column("ns") : NaN) nooutput; mean = STATS_sum / rays
-    stats "times.csv" using (@here ? column("set_rays") * column("ns_low") : NaN) nooutput; low = STATS_sum / rays
-    stats "times.csv" using (@here ? column("set_rays") * column("ns_high") : NaN) nooutput; high = STATS_sum / rays
+    stats "times.csv" using (row(s, a) ? column("set_rays") : NaN) nooutput; rays = STATS_sum
+    stats "times.csv" using (row(s, a) ? column("set_rays") * column("ns") : NaN) nooutput; mean = STATS_sum / rays
+    stats "times.csv" using (row(s, a) ? column("set_rays") * column("ns_low") : NaN) nooutput; low = STATS_sum / rays
+    stats "times.csv" using (row(s, a) ? column("set_rays") * column("ns_high") : NaN) nooutput; high = STATS_sum / rays
     print sprintf("%s,%g,%s,%g,%g,%g", sweep, x, word(accels, a), mean, low, high)
   }
 }
 unset print
 
 eval canvas("1-crossover", 960, 400)
-set multiplot layout 1, 3 margins screen 0.08, 0.985, 0.15, 0.88 spacing screen 0.02, 0.1
+set multiplot layout 1, 3 margins screen 0.085, 0.985, 0.15, 0.88 spacing screen 0.02, 0.1
 set logscale xy
 set grid xtics ytics
 stats "plots/1-crossover.csv" using (column("ns")) nooutput
@@ -37,7 +36,9 @@ do for [p = 1:3] {
   set format x (p == 1 ? "10^{%T}" : "%h")
   set logscale x (p == 1 ? 10 : 2)
   set xtics auto
-  if (p == 3) { set xtics (50, 400, 3200, 25600) }
+  if (p == 1) { set xrange [700 : 1.4e6] }
+  if (p == 2) { set xrange [0.01 : 0.5]; set xtics (0.0125, 0.05, 0.2) }
+  if (p == 3) { set xrange [35 : 36000]; set xtics (50, 400, 3200, 25600) }
   if (p == 1) { set ylabel "time, ns per ray" textcolor rgb ink; set key top left samplen 2 textcolor rgb ink } \
   else { unset ylabel; set format y ""; unset key }
   plot for [a = 1:words(accels)] "plots/1-crossover.csv" using (strcol("sweep") eq word(sweeps, p) && strcol("accel") eq word(accels, a) ? column("x") : NaN): \

@@ -3,14 +3,18 @@
 #: 1-leaf: Time per ray over the most objects of an octant that is not divided, for each kind of rays, with intervals.
 #: 2-depth: Time per ray over the largest depth, leaves of two objects, for each kind of rays, with intervals.
 
-row(s, k, name) = strcol("scene") eq word(scenes, s) && strcol("kind") eq word(kinds, k) && strcol("accel")[1:strlen(name) + 1] eq name.":"
+row(s, k, name) = strcol("scene") eq word(scenes, s) && strcol("kind") eq word(kinds, k) && measured(name)
+measured(name) = strcol("accel")[1:strlen(name) + 1] eq name.":" && strstrt(strcol("accel"), "(again)") == 0
 names = "leaf depth"
 columns = "accel.max_leaf_size accel.max_depth"
 captions = "'most objects per leaf' 'largest depth'"
 set grid xtics ytics
 do for [p = 1:2] {
   name = word(names, p); by = word(columns, p)
-  stats "times.csv" using (strcol("accel")[1:strlen(name) + 1] eq name.":" ? column("ns") : NaN) nooutput
+  unset logscale y
+  set xrange [*:*]
+  set yrange [*:*]
+  stats "times.csv" using (measured(name) ? column("ns") : NaN) nooutput
   set logscale y 10
   set format y "%h"
   set yrange [STATS_min / 1.3 : STATS_max * 1.3]

@@ -25,7 +25,7 @@ sum_of(n, stack) = 1 - (sum [o = 1:3] (has(stack, o) ? saved[3 * (n - 1) + o] : 
 eval canvas("frame", 960, 420)
 set multiplot layout 1, words(scenes) margins screen 0.07, 0.985, 0.28, 0.82 spacing screen 0.02, 0.1
 set xrange [0.5 : words(stacks) + 0.5]
-set yrange [0 : 1.4]
+set yrange [0 : *]
 set grid ytics
 set xtics rotate by 40 right
 do for [i = 1:words(stacks)] { set xtics add (word(stacks, i) i) }

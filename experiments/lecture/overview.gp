@@ -13,9 +13,9 @@ known(x) = place(accels, strcol("accel")) > 0 # not null runs
 array best[n_scenes * n_kinds]
 cells = 0
 do for [c = 1:|best|] {
-  stats "times.csv" using (known(0) && cell(0) == c ? column("ratio") : NaN) nooutput
-  best[c] = STATS_records > 0 ? STATS_max : NaN
-  cells = cells + (STATS_records > 0)
+  stats "times.csv" using (known(0) && cell(0) == c ? column("ratio") : 0) nooutput
+  best[c] = STATS_max > 0 ? STATS_max : NaN
+  cells = cells + (STATS_max > 0)
 }
 tau(a) = place(accels, strcol("accel")) == a ? best[cell(0)] / column("ratio") : NaN
 
@@ -34,12 +34,19 @@ plot for [a = 1:words(accels)] "times.csv" using (tau(a)):(100.0 / cells) smooth
 unset output
 
 # Means over the kinds of a scene.
+measured(s, a) = strcol("scene") eq word(scenes, s) && strcol("accel") eq word(accels, a)
 eval canvas("2-scenes", 960, 520)
+set xrange [*:*]
+set yrange [*:*]
+unset logscale
 array mean[n_scenes * words(accels)]
 do for [s = 1:n_scenes] { do for [a = 1:words(accels)] {
-  stats "times.csv" using (strcol("scene") eq word(scenes, s) ? log(tau(a)) : NaN) nooutput
-  mean[(s - 1) * words(accels) + a] = STATS_records > 0 ? exp(STATS_mean) : NaN
+  stats "times.csv" using (measured(s, a) ? 1 : 0) nooutput; n = STATS_sum
+  stats "times.csv" using (measured(s, a) ? log(tau(a)) : 0) nooutput
+  mean[(s - 1) * words(accels) + a] = n > 0 ? exp(STATS_sum / n) : NaN
 } }
+set logscale x
+set xrange [0.8 : 1000]
 set yrange [n_scenes + 0.5 : 0.5]
 unset ytics
 set ytics scale 0
