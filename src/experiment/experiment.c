@@ -366,6 +366,10 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
         snprintf(where, RT_MAX_LABEL, "plots[%u]", i);
         RT_TRY(check_plot(experiment, i, error));
     }
+    strcpy(where, "render");
+    if (experiment->render && experiment->count_only)
+        return rt_fail(error, RT_BAD_INPUT,
+                       "rendering is timed, and `count_only` times nothing: leave one out");
     strcpy(where, "hardware");
     if (experiment->hardware && experiment->count_only) /* then no rays are traced for the counters */
         return rt_fail(error, RT_BAD_INPUT,

@@ -165,6 +165,7 @@ typedef struct RtExperiment {
     char rays_from[RT_MAX_PATH]; /* a file of rays (measure/ray_file.h) of the one kind, in place of recorded
                                     ones; or "" */
     bool count_only;             /* nothing is timed */
+    bool render;                 /* frames are rendered, too */
     bool hardware;               /* hardware counters, if the machine has them (measure/hardware.h) */
     bool distributions;          /* of counts over rays, and of leaves (measure/distribution.h) */
     bool quick;                  /* the smaller variant, for a first look */

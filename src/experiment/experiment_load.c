@@ -281,10 +281,8 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
     RT_TRY(rt_yaml_keys(
         y, n,
         "name section? paper? question prediction scenes accelerators baseline? rays? limit? coherent_run? "
-        "rounds? "
-        "milliseconds? seed? count_only? hardware? distributions? published? frame? quick? plots? expect? "
-        "finding? "
-        "limits?"));
+        "rounds? milliseconds? seed? count_only? render? hardware? distributions? published? frame? quick? "
+        "plots? expect? finding? limits?"));
     RT_TRY(rt_yaml_copy(y, n, "name", RT_MAX_LABEL, experiment->name));
     RT_TRY(rt_yaml_copy(y, n, "section", RT_MAX_LABEL, experiment->section));
     RT_TRY(read_papers(y, rt_yaml_get(y, n, "paper"), experiment));
@@ -296,6 +294,7 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
     RT_TRY(rt_yaml_u64(y, n, "coherent_run", 1, RT_MAX_RAYS_A_KIND, &experiment->coherent_run));
     RT_TRY(rt_yaml_u64(y, n, "seed", 0, INT64_MAX, &experiment->seed));
     RT_TRY(read_flag(y, n, "count_only", &experiment->count_only));
+    RT_TRY(read_flag(y, n, "render", &experiment->render));
     RT_TRY(read_flag(y, n, "hardware", &experiment->hardware));
     RT_TRY(read_flag(y, n, "distributions", &experiment->distributions));
     RT_TRY(read_lists(y, n, experiment, error));

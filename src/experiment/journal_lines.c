@@ -61,6 +61,12 @@ static const RtMember hardware_members[] = {RT_MEMBER(RtCell, INT, "threads", ha
                                             RT_MEMBER(RtCell, TEXT, "why", hardware.why),
                                             RT_HARDWARE_EVENTS(EVENT)};
 
+static const RtMember render_members[] = {
+    RT_MEMBER_RANGE(RtBuildResult, U32, "rounds", render.rounds, 1, RT_MAX_ROUNDS),
+    RT_MEMBER_RANGE(RtBuildResult, INT, "threads", render.threads, 1, 0),
+    RT_MEMBER(RtBuildResult, ESTIMATE, "seconds", render.seconds),
+    RT_MEMBER(RtBuildResult, ESTIMATE, "share", render.share)};
+
 static const RtMember machine_members[] = {RT_MEMBER(RtMachine, TEXT, "host", host),
                                            RT_MEMBER(RtMachine, TEXT, "cpu", cpu)};
 static const RtRecord of_machine = RT_RECORD(machine_members);
@@ -83,6 +89,7 @@ static const struct Part {
              [RT_EVENT_DISTRIBUTION] = {"distributed", OF_CELL, {NULL, 0}},
              [RT_EVENT_TIME] = {"timed", OF_CELL, RT_RECORD(time_members)},
              [RT_EVENT_HARDWARE] = {"hardware", OF_CELL, RT_RECORD(hardware_members)},
+             [RT_EVENT_RENDER] = {"rendered", OF_BUILD, RT_RECORD(render_members)},
              [RT_EVENT_NO_BUILD] = {"too_large", OF_BUILD, {NULL, 0}},
              [RT_EVENT_NO_CELL] = {"too_long", OF_CELL, {NULL, 0}}};
 
@@ -135,6 +142,7 @@ static json_t *part_json(const RtResults *results, const RtEvent *event) {
     case RT_EVENT_DISTRIBUTION: return rt_distributions_json(cell->distributions, 0, RT_RAY_QUANTITY_COUNT);
     case RT_EVENT_TIME: return time_json(results, cell);
     case RT_EVENT_HARDWARE: return hardware_json(results, *cell);
+    case RT_EVENT_RENDER: return add_machine(rt_record_json(record, build), results, build->render.machine);
     case RT_EVENT_NO_BUILD: return json_string(build->left_out);
     case RT_EVENT_NO_CELL: return json_string(cell->left_out);
     }
@@ -228,11 +236,14 @@ static const json_t *take_part(RtRecordReader *reader, const json_t *line, RtEve
     return json;
 }
 
-static void take_build(RtRecordReader *reader, const json_t *line, RtBuildResult *build) {
+static void take_build(RtRecordReader *reader, const json_t *line, RtResults *results, RtBuildResult *build) {
     const json_t *built = take_part(reader, line, RT_EVENT_BUILD, build);
     build->known |= built != NULL;
     take_distributions(reader, &build->leaves, RT_RAY_QUANTITY_COUNT, RT_LEAF_QUANTITY_COUNT,
                        json_object_get(built, "distributions"));
+    const json_t *rendered = take_part(reader, line, RT_EVENT_RENDER, build);
+    build->render.known |= rendered != NULL;
+    if (rendered) build->render.machine = take_machine(reader, results, rendered);
     take_left_out(reader, line, "too_large", build->left_out, &build->broken);
 }
 
@@ -272,7 +283,7 @@ void rt_journal_line_take(RtRecordReader *reader, RtResults *results, const json
     if (!accel) return;
     const uint32_t candidate = rt_candidate_find(experiment, accel, workload);
     if (candidate > experiment->candidate_count) return;
-    take_build(reader, line, rt_build_at(results, workload, candidate));
+    take_build(reader, line, results, rt_build_at(results, workload, candidate));
     if (of_cell) take_cell(reader, line, results, workload, rt_cell_at(results, workload, candidate, kind));
 }
 

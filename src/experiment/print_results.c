@@ -211,6 +211,16 @@ void rt_print_hardware(const RtResults *results, FILE *out) {
     }
 }
 
+/* ---- frames ---- */
+
+static void print_rendered(const RtResults *results, FILE *out) {
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        if (!results->workloads[t].known) continue;
+        fprintf(out, "\n%s, rendering the frame:\n", results->experiment->workloads[t].label);
+        rt_print_rows(results, RT_RENDER_ROWS, t, out);
+    }
+}
+
 /* ---- null runs ---- */
 
 void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
@@ -255,6 +265,7 @@ void rt_print_summary(const RtResults *results, FILE *out) {
         fputc('\n', out);
         rt_print_wrapped(text, out);
     }
+    if (experiment->render) print_rendered(results, out);
     if (experiment->hardware) rt_print_hardware(results, out);
     rt_print_left_out(results, out);
     rt_claims_print(results, out);

@@ -71,13 +71,17 @@ static const void *build_of(const void *row) {
     return &((const Row *)row)->build->structure.build;
 }
 
-/* Hardware counters have their own rounds, and so their own machine and threads. */
+/* Hardware counters and frames have their own rounds, and so their own machine and threads. */
 static const RtMachine *machine_of(const Row *r) {
-    return &r->results->machines[r->which == RT_HARDWARE ? r->cell->hardware.machine : r->cell->machine];
+    return &r->results->machines[r->which == RT_HARDWARE   ? r->cell->hardware.machine
+                                 : r->which == RT_RENDERED ? r->build->render.machine
+                                                           : r->cell->machine];
 }
 
 static uint32_t threads_of(const Row *r) {
-    return (uint32_t)(r->which == RT_HARDWARE ? r->cell->hardware.threads : r->cell->threads);
+    return (uint32_t)(r->which == RT_HARDWARE   ? r->cell->hardware.threads
+                      : r->which == RT_RENDERED ? r->build->render.threads
+                                                : r->cell->threads);
 }
 
 static double ns_of_round(const Row *r, RtRoundTime which) {
@@ -89,6 +93,7 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
 #define OVER_RAYS(quantity)   (&r->cell->distributions[RT_QUANTITY_##quantity])
 #define OVER_LEAVES(quantity) (&r->build->leaves[RT_QUANTITY_##quantity])
 #define EVENT(name)           (r->cell->hardware.counts.of[RT_HARDWARE_##name])
+#define RENDER(part)          (r->build->render.part)
 #define TIMED(figure)         (r->cell->timed ? (figure) : (double)NAN)
 
 /* What a distribution shows. */
@@ -163,6 +168,21 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
       *r->cell->hardware.why ? r->cell->hardware.why : NULL)                                                 \
     X(host, "host", text, "", "host of the measurement", machine_of(r)->host)                                \
     X(cpu, "cpu", text, "", "its processor", machine_of(r)->cpu)                                             \
+    X(render_rounds, "rounds", integer, "", "frames rendered for the times", RENDER(rounds))                 \
+    X(render_ms, "render_ms", real6, "ms",                                                                   \
+      "time to render the frame: rays, queries and illumination; processor time (wall time on several "      \
+      "threads); median",                                                                                    \
+      1e3 * RENDER(seconds.median))                                                                          \
+    X(render_ms_low, "render_ms_low", real6, "ms", "lower end of its interval", 1e3 * RENDER(seconds.low))   \
+    X(render_ms_high, "render_ms_high", real6, "ms", "upper end of its interval",                            \
+      1e3 * RENDER(seconds.high))                                                                            \
+    X(query_share, "query_share", real6, "", "part of it spent in queries of the accelerator; median",       \
+      RENDER(share.median))                                                                                  \
+    X(query_share_low, "query_share_low", real6, "", "lower end of its interval", RENDER(share.low))         \
+    X(query_share_high, "query_share_high", real6, "", "upper end of its interval", RENDER(share.high))      \
+    X(eye_render, "ms/frame", interval, "ms", "time to render the frame", estimate(&RENDER(seconds), 1e-3))  \
+    X(eye_share, "% in queries", interval, "%", "part of it spent in queries",                               \
+      estimate(&RENDER(share), 1e-2))                                                                        \
     X(tests_a_ray, "tests/ray", figure, "", "object tests per ray", r->cost.object_tests)                    \
     X(extents_a_ray, "ext./ray", figure, "", "extent tests per ray", r->cost.extent_tests)                   \
     X(steps_a_ray, "steps/ray", figure, "", "steps per ray", r->cost.steps)                                  \
@@ -237,6 +257,9 @@ enum {
       ONE(kind), ONE(accel), ONE(baseline), FROM_TO(round, round_baseline_ns))                               \
     X(HARDWARE, ALL_SCENES, r->cell->hardware.known, ONE(scene), ONE(kind), FROM_TO(accel, spec), ONE(rays), \
       ONE(threads), FROM_TO(instructions, cpu))                                                              \
+    X(RENDERED, ALL_SCENES | SWEPT, r->build->render.known && r->kind == e->kinds[0],                        \
+      FROM_TO(scene, objects), FROM_TO(width, depth), FROM_TO(accel, spec), ONE(threads),                    \
+      FROM_TO(render_rounds, query_share_high), FROM_TO(host, cpu))                                          \
     X(BENCH, SWEPT, counted && !null, ONE(scene_spec), FROM_TO(accel, ray_stride), ONE(kind),                \
       FROM_TO(rays, bytes), {"structure", rt_structure_columns, RT_STRUCTURE_COLUMNS, structure_of},         \
       {"structure.build", rt_tally_columns, RT_TALLY_COUNTER_COUNT, build_of},                               \
@@ -254,6 +277,7 @@ enum {
     X(LEAF_PERCENTILES, 0, first && r->build->leaves, ONE(eye_label), FROM_TO(size_median, depth_most))      \
     X(HARDWARE_CELLS, 0, r->cell->hardware.known && !*r->cell->hardware.why, ONE(eye_label),                 \
       FROM_TO(eye_instructions, eye_branch))                                                                 \
+    X(RENDER_ROWS, 0, (first && r->build->render.known), ONE(eye_label), FROM_TO(eye_render, eye_share))     \
     X(CELLS_PAPER, BEST, (counted || timed) && !null && !is_lost(r, r->cell), ONE(accel),                    \
       FROM_TO(eye_tests, interval))                                                                          \
     X(COUNTED_PAPER, BEST, counted && !null, ONE(accel), FROM_TO(eye_tests, eye_steps))                      \

@@ -20,6 +20,8 @@ typedef enum RtResultTable {
     RT_ROUNDS,
     /* hardware.csv: a row per cell with hardware counters, or the reason why there are none. */
     RT_HARDWARE,
+    RT_RENDERED,  /* render.csv: a row per scene and accelerator: time to render the frame, and the part of
+                     it spent in queries */
     RT_BENCH,     /* "rows" of bench --json: a row per counted cell */
     RT_NULL_RUNS, /* "null_runs" there */
     RT_CELLS, /* to read: one workload by accelerator and ray kind; of several baselines only the fastest */
@@ -30,6 +32,7 @@ typedef enum RtResultTable {
                    of object tests and steps */
     RT_LEAF_PERCENTILES, /* to read: the same of sizes and depths of leaves, by accelerator */
     RT_HARDWARE_CELLS,   /* to read: one workload by accelerator and ray kind: hardware counters */
+    RT_RENDER_ROWS,      /* to read: one workload by accelerator: time of a frame and the part of queries */
     RT_CELLS_PAPER,      /* as RT_CELLS, with whole labels, marks of the best, and without null runs */
     RT_COUNTED_PAPER,    /* the same without times */
     RT_CELLS_MORE,       /* cells with more columns, and all rows */

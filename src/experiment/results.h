@@ -26,6 +26,16 @@ typedef struct RtWorkloadResult {
     uint64_t ray_fingerprints[RT_RAY_KIND_COUNT]; /* of the set */
 } RtWorkloadResult;
 
+/* Rendering the whole frame with an accelerator (`render`). */
+typedef struct RtRenderResult {
+    bool known;
+    uint32_t rounds;
+    int threads;
+    uint32_t machine;   /* one of RtResults.machines */
+    RtEstimate seconds; /* a frame: processor time on one thread, wall time on several */
+    RtEstimate share;   /* of it spent in queries of the accelerator */
+} RtRenderResult;
+
 typedef struct RtBuildResult {
     bool known, exact, counts;    /* as in RtAccel */
     char spec[RT_MAX_SPEC_CHARS]; /* every effective parameter */
@@ -37,6 +47,7 @@ typedef struct RtBuildResult {
     RtDescription structure;
     RtDistribution
         *leaves; /* [RT_LEAF_QUANTITY_COUNT] owned, of the base; NULL: not asked for, or it has none */
+    RtRenderResult render;
 } RtBuildResult;
 
 /* Times of each round in seconds per ray: by the clock of the comparison, by the wall clock, and the

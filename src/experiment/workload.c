@@ -28,8 +28,9 @@ static bool workload_is_done(const RtWorkloadState *workload) {
     if (!rt_only_scene(&workload->options->only, workload->experiment, workload->index)) return true;
     if (result->skipped || !result->known) return result->skipped;
     for (uint32_t c = 0; c < workload->count; c++) {
-        if (rt_workload_runs(workload, c) && !rt_build_at(workload->results, workload->index, c)->known)
-            return false;
+        const RtBuildResult *build = rt_build_at(workload->results, workload->index, c);
+        if (rt_workload_runs(workload, c) && !build->known) return false;
+        if (rt_workload_renders(workload, c) && !build->render.known) return false;
     }
     for (uint32_t k = 0; k < workload->experiment->kind_count; k++) {
         RtRayKind kind = workload->experiment->kinds[k];
@@ -283,7 +284,7 @@ static RtStatus measure(RtWorkloadState *workload, RtError *error) {
     for (uint32_t k = 0; k < workload->experiment->kind_count; k++) {
         RT_TRY(measure_kind(workload, workload->experiment->kinds[k], error));
     }
-    return RT_OK;
+    return rt_workload_render(workload, error);
 }
 
 static RtWorkloadState state_of(RtResults *results, uint32_t index, const RtWorkloadOptions *options) {

@@ -67,6 +67,12 @@ RtStatus rt_workload_time(RtWorkloadState *workload, RtRayKind kind, RtError *er
 /* Reads hardware counters while all candidates trace their shares of the rays of one kind. */
 RtStatus rt_workload_hardware(RtWorkloadState *workload, RtRayKind kind, RtError *error);
 
+/* Renders the frame with all candidates for which rt_workload_renders, if that is not known yet. */
+RtStatus rt_workload_render(RtWorkloadState *workload, RtError *error);
+
+/* Whether the experiment asks for frames rendered with candidate `c`. */
+bool rt_workload_renders(const RtWorkloadState *workload, uint32_t c);
+
 /* Whether candidate `c` takes part in the workload, so far. */
 bool rt_workload_runs(const RtWorkloadState *workload, uint32_t c);
 

@@ -27,6 +27,7 @@ typedef enum RtStart {
     X(DISTRIBUTIONS, "distributions.csv")                                                                    \
     X(HISTOGRAMS, "histograms.csv")                                                                          \
     X(HARDWARE, "hardware.csv")                                                                              \
+    X(RENDER, "render.csv")                                                                                  \
     X(FRAME, "frame.csv")                                                                                    \
     X(PUBLISHED, "published.csv")                                                                            \
     X(BEST, "best.csv")                                                                                      \

@@ -44,7 +44,8 @@ typedef struct Worker {
     RtTally tallies[RT_RAY_KIND_COUNT];
     uint64_t ray_count[RT_RAY_KIND_COUNT];
     size_t tile;
-    Level *levels; /* [depth]; 0 holds the primary rays */
+    double querying, working; /* seconds in queries, and in all; with `share` */
+    Level *levels;            /* [depth]; 0 holds the primary rays */
 
     /* The current stream: its answers, and the surfaces that it hit with the path of each. */
     RtHit hits[STREAM];
@@ -78,6 +79,10 @@ static void add_light(Worker *worker, Path path, RtVec3 light) {
 
 /* ---- queries ---- */
 
+static double clock_of(const Worker *worker) {
+    return worker->job->options->share ? rt_wall_seconds() : 0;
+}
+
 /* Moves the cost of one ray to its sample and its kind. */
 static void charge(Worker *worker, uint32_t sample, uint32_t kind, RtTally cost[RT_RAY_KIND_COUNT]) {
     uint32_t kinds = worker->job->options->cost_kinds;
@@ -103,7 +108,9 @@ static RtStatus trace_nearest(Worker *worker, const RtRay *rays, const Path *pat
                               RtError *error) {
     RT_TRY(take_rays(worker, rays, count, error));
     if (!worker->job->options->counted) {
+        const double start = clock_of(worker);
         rt_nearest(&worker->query, rays, count, worker->hits, NULL);
+        worker->querying += clock_of(worker) - start;
         return RT_OK;
     }
     RtTally cost[RT_RAY_KIND_COUNT] = {0};
@@ -118,7 +125,9 @@ static RtStatus trace_occluded(Worker *worker, RtError *error) {
     const RtRay *rays = worker->shadow_rays;
     RT_TRY(take_rays(worker, rays, worker->shadow_count, error));
     if (!worker->job->options->counted) {
+        const double start = clock_of(worker);
         rt_occluded(&worker->query, rays, worker->shadow_count, worker->occluded, NULL);
+        worker->querying += clock_of(worker) - start;
         return RT_OK;
     }
     RtTally cost[RT_RAY_KIND_COUNT] = {0};
@@ -236,10 +245,12 @@ static RtStatus trace_tile(void *context, size_t tile, int thread, RtError *erro
     Job *job = context;
     const RtFrameOptions *o = job->options;
     Worker *worker = &job->workers[thread];
+    const double start = clock_of(worker);
     worker->tile = tile;
     rt_query_begin(&worker->query);
     make_primary_rays(worker, &worker->levels[0]);
     RT_TRY(trace_level(worker, 0, error));
+    worker->working += clock_of(worker) - start;
     if (!o->progress) return RT_OK;
     pthread_mutex_lock(&job->lock);
     o->progress(o->progress_context, ++job->tiles_done, job->tile_count);
@@ -334,7 +345,10 @@ static RtStatus run(Job *job, const RtAccel *accel, RtError *error) {
     if (status == RT_OK) status = rt_parallel_for(job->tile_count, threads, trace_tile, job, error);
     job->frame->seconds = rt_wall_seconds() - start;
     if (status == RT_OK) status = rt_accel_check(accel, error);
+    double querying = 0, working = 0;
     for (int i = 0; i < threads; i++) {
+        querying += job->workers[i].querying;
+        working += job->workers[i].working;
         for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
             rt_tally_add(&job->frame->tallies[kind], &job->workers[i].tallies[kind]);
             job->frame->ray_count[kind] += job->workers[i].ray_count[kind];
@@ -342,6 +356,7 @@ static RtStatus run(Job *job, const RtAccel *accel, RtError *error) {
         rt_query_clear(&job->workers[i].query);
         rt_free(job->workers[i].levels);
     }
+    job->frame->share = working > 0 ? querying / working : 0;
     rt_free(job->workers);
     return status == RT_OK ? join_rays(job, error) : status;
 }

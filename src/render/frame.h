@@ -27,6 +27,7 @@ typedef struct RtFrameOptions {
     uint32_t cost_kinds;     /* ray kinds that count towards a sample's cost, bits 1 << RtRayKind; 0: all */
     bool light_from_outside; /* light surfaces from outside, whichever side the ray comes from */
     bool keep_rays;          /* keep all traced rays */
+    bool share;              /* fill `share`; reading the clock costs about 50 ns per stream of rays */
     /* Optional: called by one thread at a time when a tile is finished. */
     void (*progress)(void *context, size_t tiles_done, size_t tiles);
     void *progress_context;
@@ -44,7 +45,9 @@ typedef struct RtFrame {
     /* [ray_count] with keep_rays, else NULL. Tile after tile; within a tile in the order of tracing: level
      * by level, stream by stream. */
     RtRay *rays[RT_RAY_KIND_COUNT];
-    double seconds; /* wall time of the tracing */
+    double seconds; /* wall time of the frame */
+    double
+        share; /* part of the threads' time spent in queries of the accelerator, 0..1; 0 unless asked for */
 } RtFrame;
 
 /* Traces the frame of the accelerator's scene and sampling. Free with rt_frame_clear; after a failure it

@@ -64,7 +64,7 @@ typedef struct Section {
     RtTable table;
 } Section;
 
-enum { SECTIONS = 18 };
+enum { SECTIONS = 19 };
 static void list(Section sections[SECTIONS]) {
     const RtTable verify_csv = {.groups = rt_verify_csv, .group_count = RT_VERIFY_GROUPS};
     const RtTable verify_json = {.groups = rt_verify_json, .group_count = RT_VERIFY_GROUPS};
@@ -74,6 +74,7 @@ static void list(Section sections[SECTIONS]) {
         {"times.csv", true, NULL, of_results(RT_TIMES)},
         {"rounds.csv", true, NULL, of_results(RT_ROUNDS)},
         {"frame.csv", true, NULL, of_frames()},
+        {"render.csv", true, NULL, of_results(RT_RENDERED)},
         {"hardware.csv", true, NULL, of_results(RT_HARDWARE)},
         {"distributions.csv", true, NULL, of_distributions(RT_DISTRIBUTIONS)},
         {"histograms.csv", true, NULL, of_distributions(RT_HISTOGRAMS)},

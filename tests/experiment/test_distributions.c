@@ -172,6 +172,41 @@ RT_TEST_IN_PLACE(a_run_that_asks_for_hardware_counters_has_a_row_for_each_cell_w
     rt_csv_clear(&csv);
 }
 
+static double real_at(const RtCsv *csv, uint32_t row, const char *name) {
+    return strtod(rt_csv_field(csv, row, rt_csv_find(csv, name)), NULL);
+}
+
+/* brute, with a stride, is too slow for frames. Resumed, the second time without a table. */
+RT_TEST_IN_PLACE(a_run_that_renders_has_the_time_of_a_frame_and_the_part_of_queries_for_each_accelerator) {
+    const Place *place = *state;
+    RtCsv csv;
+    Path path = path_in(place, "out/render.csv");
+    write_changed(place, "small.yaml", spread, "distributions: yes\ncount_only: yes",
+                  "render: yes\nrounds: 6\nmilliseconds: 0");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_in_file(place, "output", "% in queries");
+    char *first = read_in(place, "out/render.csv");
+    assert_int_equal(remove(path.text), 0);
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 0);
+    assert_same_file(place, "out/render.csv", first);
+    rt_free(first);
+    assert_ok(rt_csv_read(&csv, path.text, error));
+    assert_int_equal(csv.rows, 2 * 2);
+    for (uint32_t row = 0; row < csv.rows; row++) {
+        assert_int_equal(integer_at(&csv, row, "render_rounds"), 6);
+        assert_true(real_at(&csv, row, "render_ms_low") > 0);
+        assert_true(real_at(&csv, row, "query_share_low") > 0 && real_at(&csv, row, "query_share_high") < 1);
+        assert_true(real_at(&csv, row, "query_share_low") <= real_at(&csv, row, "query_share"));
+    }
+    rt_csv_clear(&csv);
+}
+
+RT_TEST_IN_PLACE(rendering_where_nothing_is_timed_is_refused) {
+    const Place *place = *state;
+    write_changed(place, "small.yaml", spread, "distributions: yes", "render: yes");
+    assert_bad_input(load_small(place, false, error), ":13:9: render: rendering is timed");
+}
+
 RT_TEST_IN_PLACE(hardware_counters_where_nothing_is_timed_are_refused) {
     const Place *place = *state;
     write_changed(place, "small.yaml", spread, "distributions: yes", "hardware: yes");

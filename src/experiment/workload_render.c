@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Rendering the frame of a workload with each candidate, in interleaved rounds: how long it takes, and which
+ * part of that is spent in the candidate's queries. Candidates with a stride are too slow for whole frames.
+ * Plugins are left out: their rays travel to another process. */
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
+#include "experiment/workload_state.h"
+#include "measure/rounds.h"
+#include "render/frame.h"
+
+typedef struct Rendering {
+    const RtAccel *accel;
+    RtFrameOptions options;
+    double *seconds, *shares; /* [rounds] */
+    uint32_t runs;            /* the first is the warm-up */
+} Rendering;
+
+static RtStatus render_once(void *context, RtError *error) {
+    Rendering *rendering = context;
+    RtFrame frame;
+    RT_TRY(rt_frame_trace(&frame, rendering->accel, &rendering->options, error));
+    if (rendering->runs > 0) rendering->shares[rendering->runs - 1] = frame.share;
+    rendering->runs++;
+    rt_frame_clear(&frame);
+    return RT_OK;
+}
+
+bool rt_workload_renders(const RtWorkloadState *workload, uint32_t c) {
+    const RtExperiment *experiment = workload->experiment;
+    return experiment->render && !workload->options->timer && c < experiment->candidate_count &&
+           rt_workload_runs(workload, c) && experiment->candidates[c].ray_stride == 1 &&
+           !rt_spec_is_remote(&experiment->candidates[c].parsed);
+}
+
+/* The candidates still to be rendered, one runner each. */
+static uint32_t enter(RtWorkloadState *workload, Rendering *renderings, RtRunner *runners, double *times) {
+    const RtExperiment *experiment = workload->experiment;
+    const RtWorkload *setup = &experiment->workloads[workload->index];
+    const int threads = workload->options->timing;
+    uint32_t count = 0;
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        if (!workload->built[c] || !rt_workload_renders(workload, c) ||
+            rt_build_at(workload->results, workload->index, c)->render.known)
+            continue;
+        Rendering *rendering = &renderings[count];
+        *rendering = (Rendering){.accel = workload->built[c],
+                                 .options = {.depth = setup->depth,
+                                             .threads = threads,
+                                             .light_from_outside = setup->light_from_outside,
+                                             .share = true},
+                                 .seconds = times,
+                                 .shares = times + experiment->rounds};
+        times += 2 * experiment->rounds;
+        runners[count++] = (RtRunner){.run = render_once,
+                                      .context = rendering,
+                                      .work = 1,
+                                      .parallel = rt_thread_count(threads) > 1,
+                                      .seconds = rendering->seconds};
+    }
+    return count;
+}
+
+static RtStatus keep(RtWorkloadState *workload, const Rendering *renderings, uint32_t count, RtError *error) {
+    const RtMachine here = rt_machine_here();
+    const uint32_t rounds = workload->experiment->rounds;
+    for (uint32_t c = 0, i = 0; c < workload->experiment->candidate_count && i < count; c++) {
+        RtRenderResult *result = &rt_build_at(workload->results, workload->index, c)->render;
+        if (workload->built[c] != renderings[i].accel) continue;
+        *result = (RtRenderResult){.known = true,
+                                   .rounds = rounds,
+                                   .threads = rt_thread_count(workload->options->timing),
+                                   .machine = rt_results_machine(workload->results, &here),
+                                   .seconds = rt_estimate(renderings[i].seconds, rounds),
+                                   .share = rt_estimate(renderings[i].shares, rounds)};
+        RT_TRY(rt_workload_tell(workload, RT_EVENT_RENDER, c, RT_RAY_PRIMARY, error));
+        i++;
+    }
+    return RT_OK;
+}
+
+RtStatus rt_workload_render(RtWorkloadState *workload, RtError *error) {
+    const RtExperiment *experiment = workload->experiment;
+    const size_t most = experiment->candidate_count;
+    const RtRounds rounds = {
+        .rounds = experiment->rounds, .most = experiment->rounds, .seed = experiment->seed};
+    Rendering *renderings = rt_alloc(most, sizeof(Rendering));
+    RtRunner *runners = rt_alloc(most, sizeof(RtRunner));
+    double *times = rt_alloc(2 * most * experiment->rounds, sizeof(double));
+    uint32_t count = 0, done;
+    RtStatus status = RT_OK;
+    if (!renderings || !runners || !times)
+        status = rt_fail_memory(error, "times of frames", 2 * most * experiment->rounds * sizeof(double));
+    if (status == RT_OK) count = enter(workload, renderings, runners, times);
+    if (status == RT_OK && count > 0) status = rt_rounds_run(runners, count, &rounds, &done, error);
+    if (status == RT_OK) status = keep(workload, renderings, count, error);
+    rt_free(renderings);
+    rt_free(runners);
+    rt_free(times);
+    return status;
+}
