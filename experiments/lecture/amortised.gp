@@ -22,7 +22,7 @@ eval canvas("1-total", 960, 460)
 set multiplot layout 1, words(scenes) margins screen 0.075, 0.985, 0.13, 0.77 spacing screen 0.02, 0.1
 set logscale xy
 set grid xtics ytics
-set xrange [1 : 1e9]
+set xrange [1 : 8e9]
 set yrange [1e-4 : 1e3]
 set xtics 1000
 set format x "10^{%T}"

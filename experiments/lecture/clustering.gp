@@ -33,11 +33,11 @@ do for [k = 1:words(kinds)] { if (word(kinds, k) eq "random") { random = k } }
 eval canvas("2-expected", 480, 400)
 unset title
 set format y "%h"
-set xrange [1 : 300]
+set xrange [1 : 1000]
 set yrange [*:*]
 set xlabel "expected cost, steps of a random line" textcolor rgb ink
 set ylabel "time, ns per random ray" textcolor rgb ink
-set key inside top left reverse Left samplen 1 textcolor rgb ink
+set key inside bottom right reverse Left vertical maxrows 9 samplen 1 textcolor rgb ink
 plot for [a = 1:words(accels)] NaN with points pointtype 7 linecolor rgb hue(a) title method(a), \
      for [s = 1:words(scenes)] NaN with points pointtype mark(s) linecolor rgb soft title word(scenes, s), \
      for [a = 1:words(accels)] for [s = 1:words(scenes)] "times.csv" using (row(s, random, a) ? column("predicted_cost") : NaN):(column("ns")): \

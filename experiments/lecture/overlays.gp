@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # overlays: time of a frame with each combination of overlays over that of the structure alone.
 #: frame: Time of a frame with each combination of overlays, over that of the structure below them alone.
-#:   Intervals combine those of the kinds of rays. A cross marks the sum of what each overlay saves by itself.
+#:   Intervals combine those of the kinds of rays. A cross marks the sum of what each overlay saves by itself, where it leaves any time.
 
 bases = "octree grid bvh wide"
 stacks = "item light cache item+light item+cache cache+light item+cache+light"
@@ -25,7 +25,9 @@ sum_of(n, stack) = 1 - (sum [o = 1:3] (has(stack, o) ? saved[3 * (n - 1) + o] : 
 eval canvas("frame", 960, 420)
 set multiplot layout 1, words(scenes) margins screen 0.07, 0.985, 0.28, 0.82 spacing screen 0.02, 0.1
 set xrange [0.5 : words(stacks) + 0.5]
-set yrange [0 : *]
+set logscale y
+set yrange [0.01 : 4]
+set ytics (0.02, 0.05, 0.1, 0.2, 0.5, 1, 2)
 set grid ytics
 set xtics rotate by 40 right
 do for [i = 1:words(stacks)] { set xtics add (word(stacks, i) i) }
