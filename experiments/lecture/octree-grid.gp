@@ -36,7 +36,7 @@ do for [p = 1:3] {
   set format x (p == 1 ? "10^{%T}" : "%h")
   set logscale x (p == 1 ? 10 : 2)
   set xtics auto
-  if (p == 1) { set xrange [700 : 1.4e6] }
+  if (p == 1) { set xrange [700 : 1.4e5] }
   if (p == 2) { set xrange [0.01 : 0.5]; set xtics (0.0125, 0.05, 0.2) }
   if (p == 3) { set xrange [35 : 36000]; set xtics (50, 400, 3200, 25600) }
   if (p == 1) { set ylabel "time, ns per ray" textcolor rgb ink; set key top left samplen 2 textcolor rgb ink } \

@@ -26,15 +26,15 @@ eval canvas("frame", 960, 420)
 set multiplot layout 1, words(scenes) margins screen 0.07, 0.985, 0.28, 0.82 spacing screen 0.02, 0.1
 set xrange [0.5 : words(stacks) + 0.5]
 set logscale y
-set yrange [0.01 : 4]
-set ytics (0.02, 0.05, 0.1, 0.2, 0.5, 1, 2)
+set yrange [0.005 : 4]
+set ytics (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2)
 set grid ytics
 set xtics rotate by 40 right
 do for [i = 1:words(stacks)] { set xtics add (word(stacks, i) i) }
 do for [s = 1:words(scenes)] {
   set title word(scenes, s) font ",13" textcolor rgb ink
   if (s == 1) {
-    set ylabel "time of a frame, without overlays 1" textcolor rgb ink
+    set ylabel "frame, without overlays 1" textcolor rgb ink
     set key at screen 0.985, screen 0.985 right top vertical maxrows 1 samplen 1 textcolor rgb ink
   } else { unset ylabel; set format y ""; unset key }
   plot 1 with lines linewidth 1.5 dashtype 2 linecolor rgb soft notitle, \
