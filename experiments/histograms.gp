@@ -17,8 +17,9 @@ set xrange [0.4:*]; set yrange [*:*]
 set grid xtics ytics linecolor rgb faint linetype 1 linewidth 0.5
 set key at screen 0.5, 0.01 center bottom maxrows 2 samplen 1 textcolor rgb ink
 
-do for [scene in scenes] {
-  eval canvas("histograms-".scene, 300 * (n_kinds + 1), 640)
+do for [s = 1:words(scenes)] {
+  scene = word(scenes, s)
+  eval canvas("histograms-".word(files, s), 300 * (n_kinds + 1), 640)
   set multiplot layout 2, n_kinds + 1 columnsfirst margins 0.06, 0.99, 0.16, 0.9 spacing 0.055, 0.14 \
     title scene.": part of all, per doubling of its value" noenhanced
   do for [i = 1:n_kinds + 1] {

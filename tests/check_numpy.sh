@@ -36,6 +36,24 @@ awk '/^## / { inside = /^## Your own rays$/ }
     fail 'experiments/README.md has no such section'
 bash -e section.sh >said || fail 'what experiments/README.md says fails'
 
+# Several accelerators, kinds of rays and scenes: each is an array of one archive, the one that it would be alone.
+raytally bench 'balls:size=1|2' --size 16x16 --rays primary,shadow --accel bvh --accel 'grid:density=4' --accel brute \
+    --ray-stride 5 --count-only --hits all.npz --counts all-counts.npz >said
+one='bench balls:size=2 --size 16x16 --accel grid:density=4 --count-only'
+raytally $one --rays primary --hits primary.npy --counts primary-counts.npy >said
+raytally $one --rays shadow --hits shadow.npy >said
+python3 - <<'EOF'
+import numpy, zipfile
+assert zipfile.ZipFile("all.npz").testzip() is None
+hits, counts = numpy.load("all.npz"), numpy.load("all-counts.npz")
+scenes, accels, kinds = ["balls:size=1", "balls:size=2"], ["bvh", "grid:density=4", "brute"], ["primary", "shadow"]
+assert sorted(hits) == sorted(counts) == sorted(f"{s}/{a}/{k}" for s in scenes for a in accels for k in kinds)
+for kind in kinds:
+    assert (hits[f"balls:size=2/grid:density=4/{kind}"] == numpy.load(kind + ".npy")).all()
+    assert (hits[f"balls:size=2/bvh/{kind}"][::5] == hits[f"balls:size=2/brute/{kind}"]).all()
+assert (counts["balls:size=2/grid:density=4/primary"] == numpy.load("primary-counts.npy")).all()
+EOF
+
 # Through NumPy and back: the same hits and counts. Other orders and types: refused.
 raytally rays balls:size=2 --size 64x64 --rays diffuse -o rays.npy >said
 raytally bench balls:size=2 --size 64x64 --rays diffuse --accel grid --count-only --json --hits h1.npy --counts c1.npy \

@@ -60,7 +60,7 @@ static inline int make_place_with(void **state, const char *experiment) {
 /* The text with `to` in the place of `from`. */
 static inline void write_changed(const Place *place, const char *name, const char *text, const char *from,
                                  const char *to) {
-    char changed[4096];
+    char changed[16384];
     const char *at = strstr(text, from);
     assert_non_null(at);
     snprintf(changed, sizeof changed, "%.*s%s%s", (int)(at - text), text, to, at + strlen(from));

@@ -104,7 +104,7 @@ for arguments in '-o full.png' '-o full.exr' '--heatmap steps full.png' '--struc
     # shellcheck disable=SC2086
     full full. render $small $arguments
 done
-for arguments in '--csv full.csv' '--hits full.npy' '--counts full.npy'; do
+for arguments in '--csv full.csv' '--hits full.npy' '--counts full.npy' '--hits full.npz'; do
     # shellcheck disable=SC2086
     full full. bench $small --accel bvh --rays primary --count-only $arguments
 done
@@ -274,6 +274,7 @@ refuses 'patience.*1\.\.' $bench --accel bvh --until 1% --patience 0
 ends 0 $bench --accel bvh --until 100%
 refuses 'limit.*1\.\.' $bench --accel bvh --limit 0
 refuses 'rounds.*1\.\.1000' $bench --accel bvh --rounds 0
+refuses 'milliseconds.*0\.\.60000' $bench --accel bvh --milliseconds 60001
 refuses 'coherent-run.*1\.\.' $bench --accel bvh --coherent-run 0
 refuses 'depth.*1\.\.64' $bench --accel bvh --depth 0
 refuses 'ray-stride.*1\.\.' $bench --accel bvh --ray-stride 0

@@ -18,7 +18,7 @@
 
 typedef struct Options {
     RtRecordingOptions recording;
-    const char *scene, *baseline, *csv;
+    const char *scene, *baseline, *csv, *hits, *counts;
     RtWorkloadOptions workload;
     bool json, hardware, distributions;
     uint32_t rounds;    /* 0: the default */
@@ -69,10 +69,16 @@ static void set_baseline(RtExperiment *experiment, const char *text, struct argp
     }
 }
 
-/* Files of rays need one accelerator and one kind of rays; all files need different names. */
+/* Whether a file of hits or counts takes only one array. */
+static bool takes_one(const Options *o) {
+    return (o->hits && !rt_array_file_is_archive(o->hits)) ||
+           (o->counts && !rt_array_file_is_archive(o->counts));
+}
+
+/* All files need different names. */
 static void check_rows(const Options *o, struct argp_state *state) {
     const RtExperiment *e = o->recording.experiment;
-    const char *const files[] = {o->workload.hits, o->workload.counts, o->csv,
+    const char *const files[] = {o->hits, o->counts, o->csv,
                                  *e->rays_from ? e->rays_from : NULL};
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < i; k++) {
@@ -80,12 +86,14 @@ static void check_rows(const Options *o, struct argp_state *state) {
                 argp_error(state, "'%s' is named twice: give each file its own name", files[i]);
         }
     }
-    if (!o->workload.hits && !o->workload.counts) return;
+    if (!takes_one(o)) return;
     if (e->candidate_count != 1 || e->candidates[0].ray_stride != 1) {
-        argp_error(state, "--hits and --counts write the rays of one accelerator: give one --accel, no "
-                          "--ray-stride, and no other --baseline");
+        argp_error(state, "--hits and --counts write the rays of one accelerator to FILE.npy: give one --accel, "
+                          "no --ray-stride, and no other --baseline; or name FILE.npz, which takes several");
     }
-    if (e->kind_count != 1) argp_error(state, "--hits and --counts write one kind of rays: give --rays KIND");
+    if (e->kind_count != 1)
+        argp_error(state, "--hits and --counts write one kind of rays to FILE.npy: give --rays KIND, or name "
+                          "FILE.npz, which takes several");
 }
 
 static void take_accel(void *options, const char *text, struct argp_state *state) {
@@ -102,6 +110,11 @@ static void take_ray_stride(void *options, const char *text, struct argp_state *
     for (uint32_t c = 0; c <= last; c++) {
         if (e->candidates[c].entry == entry) e->candidates[c].ray_stride = (uint64_t)stride;
     }
+}
+
+static void take_milliseconds(void *options, const char *text, struct argp_state *state) {
+    ((Options *)options)->recording.experiment->milliseconds =
+        (uint32_t)rt_cli_integer(state, "--milliseconds", text, 0, RT_MAX_MILLISECONDS);
 }
 
 static void take_callgrind(void *options, const char *text, struct argp_state *state) {
@@ -144,6 +157,8 @@ static const RtOption options[] = {
     {"baseline", 0, "SPEC", RT_TO_TEXT(baseline),
      "The accelerator that ratios refer to (default: the first that is not a plugin). NAME:best is the "
      "fastest of several settings for each kind of rays, as in embree:best (`raytally accels NAME`)"},
+    {"milliseconds", 0, "N", RT_TO_TAKE(take_milliseconds),
+     "Repeat a short set of rays within a round until it takes so long (20); 0: run it once"},
     {"rounds", 0, "N", RT_TO_INTEGER(rounds, 1, RT_MAX_ROUNDS),
      "Timing rounds, each in a new random order (10); intervals of 95 % need 6 or more"},
     RT_UNTIL_OPTIONS(workload.until, workload.patience),
@@ -167,10 +182,11 @@ static const RtOption options[] = {
     {"worker", 0, NULL, RT_TO_HIDDEN_FLAG(worker), NULL}, /* experiment/worker.h */
     {"csv", 0, "FILE", RT_TO_TEXT(csv),
      "Also write a row per cell to FILE, in the columns of times.csv, or of counts.csv with --count-only"},
-    {"hits", 0, "FILE.npy", RT_TO_TEXT(workload.hits),
+    {"hits", 0, "FILE.npy|.npz", RT_TO_TEXT(hits),
      "Also write each ray's hit for NumPy, a row per ray: t and object (inf and -1 for a miss); for shadow "
-     "and occlusion rays whether the ray is blocked. Takes one --accel and one kind of --rays"},
-    {"counts", 0, "FILE.npy", RT_TO_TEXT(workload.counts),
+     "and occlusion rays whether the ray is blocked. FILE.npy takes one --accel and one kind of --rays; "
+     "FILE.npz takes any number, each an array SCENE/ACCELERATOR/KIND"},
+    {"counts", 0, "FILE.npy|.npz", RT_TO_TEXT(counts),
      "Also write each ray's cost for NumPy, a row per ray and a field per counter"},
     {"json", 0, NULL, RT_TO_FLAG(json), "One JSON document on stdout instead of the table"},
     {"rays-from", 0, "FILE.npy", RT_TO_TAKE(take_rays_from),
@@ -262,6 +278,21 @@ static RtStatus report(const Options *o, const RtResults *results, const RtCallg
 
 /* ---- the command ---- */
 
+/* Runs all cells, and writes the hits and counts of their rays. */
+static RtStatus run_cells(Options *o, RtResults *results, RtError *error) {
+    RtArrayFile hits = {0}, counts = {0};
+    RtStatus status = o->hits ? rt_array_file_open(&hits, o->hits, error) : RT_OK;
+    if (status == RT_OK && o->counts) status = rt_array_file_open(&counts, o->counts, error);
+    o->workload.hits = o->hits ? &hits : NULL;
+    o->workload.counts = o->counts ? &counts : NULL;
+    if (status == RT_OK) status = rt_workloads_run(results, &o->workload, error);
+    if (status == RT_OK) status = rt_array_file_commit(&hits, error);
+    if (status == RT_OK) status = rt_array_file_commit(&counts, error);
+    rt_array_file_discard(&hits);
+    rt_array_file_discard(&counts);
+    return status;
+}
+
 /* All but the report. */
 static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, RtError *error) {
     if (o->callgrind) {
@@ -272,7 +303,7 @@ static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, 
     }
     RtProgress progress = rt_progress_begin(&o->workload);
     o->workload.observer = rt_progress_observer(&progress);
-    RtStatus status = rt_workloads_run(results, &o->workload, error);
+    RtStatus status = run_cells(o, results, error);
     if (status == RT_OK && o->callgrind)
         rt_notify(&o->workload.observer, "counting instructions under valgrind, which takes a while");
     rt_progress_end(&progress);
@@ -284,10 +315,11 @@ static RtStatus bench(Options *o, RtError *error) {
     char where[RT_MAX_LABEL];
     RtExperiment *experiment = o->recording.experiment;
     RT_TRY(rt_experiment_add_scenes(experiment, &o->recording.like, o->scene, "", error));
-    if (experiment->workload_count > 1 && (o->workload.hits || o->workload.counts))
+    if (experiment->workload_count > 1 && takes_one(o))
         return rt_fail(error, RT_BAD_INPUT,
-                       "--hits and --counts write the rays of one scene: '%s' stands for %u", o->scene,
-                       experiment->workload_count);
+                       "--hits and --counts write the rays of one scene to FILE.npy: '%s' stands for %u; name "
+                       "FILE.npz",
+                       o->scene, experiment->workload_count);
     strcpy(experiment->name, "bench");
     RT_TRY(rt_experiment_check(experiment, where, error));
     if (o->worker) return rt_worker_serve(experiment, NULL, error);

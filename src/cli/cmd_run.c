@@ -91,8 +91,8 @@ static RtStatus check_part(const RtExperiment *e, const RtOnly *only, RtError *e
                    rt_plural(e->workload_count), only->shards);
 }
 
-/* The line of a cell in --dry-run. */
-static void print_cell(const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind) {
+/* The line of a cell in --dry-run; cells of a `previous` run are measured again. */
+static void print_cell(const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind, bool previous) {
     const RtExperiment *e = results->experiment;
     const RtCell *cell = rt_cell_at(results, t, c, kind);
     const char *left_out = *cell->left_out ? cell->left_out : rt_build_at(results, t, c)->left_out;
@@ -100,7 +100,7 @@ static void print_cell(const RtResults *results, uint32_t t, uint32_t c, RtRayKi
     if (results->workloads[t].known && !results->workloads[t].rays[kind]) return;
     printf("%-24s %-28s %-12s %s\n", e->workloads[t].label, rt_candidate_label(e, c), rt_ray_kind_name(kind),
            *left_out  ? left_out
-           : finished ? "finished"
+           : finished ? (previous ? "measured before" : "finished")
                       : "");
 }
 
@@ -110,16 +110,27 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, RtError *er
     const RtOnly *only = &how->workload.only;
     char path[RT_MAX_PATH], duration[RT_MAX_DURATION];
     RT_TRY(rt_path_join(how->directory, RT_RUN_JOURNAL, path, error));
-    if (rt_file_exists(path) && how->start != RT_START_ANEW)
-        RT_TRY(rt_journal_load(path, results, only, how->renew, error));
+    const bool exists = rt_file_exists(path), anew = how->start == RT_START_ANEW;
+    RtStatus status = exists && !anew ? rt_journal_load(path, results, only, how->renew, error) : RT_OK;
+    const bool refused = status == RT_BAD_INPUT, previous = exists && (anew || refused);
+    if (refused) fprintf(stderr, "raytally: %s\n", error->message);
+    if (previous) status = rt_forecast_learn(how->directory, results, error);
+    RT_TRY(status);
     for (uint32_t t = 0; t < e->workload_count; t++) {
         for (uint32_t c = 0; c < e->candidate_count; c++) {
             for (uint32_t k = 0; rt_candidate_runs(e, c, t) && k < e->kind_count; k++) {
-                if (rt_only_cell(only, e, t, c, e->kinds[k])) print_cell(results, t, c, e->kinds[k]);
+                if (rt_only_cell(only, e, t, c, e->kinds[k])) print_cell(results, t, c, e->kinds[k], previous);
             }
         }
     }
     RtForecast forecast = rt_forecast(results, &how->workload);
+    if (previous) {
+        rt_format_duration(forecast.known + forecast.left, duration);
+        printf("%u cell%s, %u of them as in the previous run; all of them take %s %s\n", forecast.cells,
+               rt_plural(forecast.cells), forecast.finished, forecast.guessed ? "at least" : "about",
+               duration);
+        return RT_OK;
+    }
     if (forecast.finished == forecast.cells) {
         printf("%u cell%s, all of them finished\n", forecast.cells, rt_plural(forecast.cells));
         return RT_OK;
@@ -186,7 +197,8 @@ static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
     RT_TRY(check_part(experiment, only, error));
     if (how->workload.until > 0 && experiment->rounds < RT_FULL_ROUNDS) experiment->rounds = RT_FULL_ROUNDS;
     if (o->memory) experiment->limit_bytes = o->memory;
-    snprintf(o->directory, sizeof o->directory, "results/%s", experiment->name);
+    strcpy(o->directory, "results/");
+    rt_file_name(experiment->name, o->directory + strlen(o->directory), RT_MAX_LABEL + 1);
     if (only->shards)
         rt_append_text(o->directory, sizeof o->directory, "-%u-of-%u", only->shard, only->shards);
     if (!how->directory) how->directory = o->directory;

@@ -38,7 +38,7 @@ void rt_recording_init(RtRecordingOptions *o) {
     rt_experiment_init(&experiment);
     o->experiment = &experiment;
     o->limit = experiment.limit;
-    o->coherent_run = 256;
+    o->coherent_run = experiment.coherent_run;
     o->seed = experiment.seed;
     o->like.depth = RT_DEFAULT_DEPTH;
 }

@@ -17,7 +17,7 @@ typedef struct RtRecordingOptions {
 
 extern const RtOption rt_recording_options[];
 
-/* Sets the defaults of `bench`; no scenes. Call it once in a process. */
+/* Sets the defaults of an experiment; no scenes. Call it once in a process. */
 void rt_recording_init(RtRecordingOptions *o);
 
 /* Fills in the experiment. The command's `finish` calls this: the kinds of rays depend on --rays-from. */

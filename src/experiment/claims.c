@@ -4,12 +4,15 @@
 
 #include "core/base/words.h"
 
+#include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-static const char *const measures[] = {"time",  "object_tests", "extent_tests",
-                                       "steps", "build_time",   "bytes"};
+static const char *const measures[] = {"time",  "object_tests",   "extent_tests",
+                                       "steps", "csg_tests",      "build_time",
+                                       "bytes", "predicted_cost", "break_even"};
+static const char objects[] = "objects";
 enum { MEASURES = sizeof measures / sizeof measures[0], MOST_WORDS = 32 };
 
 typedef struct Reader {
@@ -65,64 +68,119 @@ static RtStatus need(Reader *r, const char *expected) {
 
 /* ---- names ---- */
 
-static RtStatus read_measure(Reader *r) {
-    char suggestion[RT_MAX_SUGGESTION], list[128];
-    for (uint32_t m = 0; m < MEASURES; m++) {
-        if (!take(r, measures[m])) continue;
-        r->claim->measure = (RtClaimMeasure)m;
-        if (m != RT_CLAIM_TIME || !r->experiment->count_only) return RT_OK;
-        return fail(r, "this experiment times nothing (count_only)");
-    }
-    rt_suggest(word(r), measures, MEASURES, suggestion);
-    rt_join_names(measures, MEASURES, list, sizeof list);
-    return fail(r, "'%s' is not a measure%s choose one of %s", word(r), *suggestion ? suggestion : ":", list);
+/* Names to choose from, each once. */
+typedef struct Choice {
+    uint32_t count;
+    const char *names[2 * RT_MAX_CANDIDATES + RT_MAX_SWEPT_KEYS + MEASURES];
+} Choice;
+
+static void offer(Choice *choice, const char *name) {
+    uint32_t i = 0;
+    while (i < choice->count && strcmp(choice->names[i], name) != 0) i++;
+    if (i == choice->count) choice->names[choice->count++] = name;
 }
 
-/* The number of candidates with that label or stem; *last is one of them. */
-static uint32_t count_accels(const RtExperiment *experiment, const char *name, uint32_t *last) {
-    uint32_t count = 0;
+/* "'WORD' is not WHAT: did you mean 'NAME'? choose one of ..." */
+static RtStatus fail_choice(const Reader *r, const char *wrong, const char *what, const Choice *choice) {
+    enum { MOST_SHOWN = 24 };
+    char suggestion[RT_MAX_SUGGESTION], list[256];
+    const uint32_t shown = choice->count < MOST_SHOWN ? choice->count : MOST_SHOWN;
+    rt_suggest(wrong, choice->names, choice->count, suggestion);
+    rt_join_names(choice->names, shown, list, sizeof list);
+    return fail(r, "'%.*s' is not %s%s choose one of %s%s", RT_MAX_LABEL, wrong, what,
+                *suggestion ? suggestion : ":", list, shown < choice->count ? ", ..." : "");
+}
+
+static RtStatus read_measure(Reader *r, RtClaimMeasure *measure) {
+    Choice choice = {0};
+    for (uint32_t m = 0; m < MEASURES; m++) {
+        offer(&choice, measures[m]);
+        if (!take(r, measures[m])) continue;
+        *measure = (RtClaimMeasure)m;
+        if ((m != RT_CLAIM_TIME && m != RT_CLAIM_BREAK_EVEN) || !r->experiment->count_only) return RT_OK;
+        return fail(r, "this experiment times nothing (count_only)");
+    }
+    return fail_choice(r, word(r), "a measure", &choice);
+}
+
+/* Whether `name` is that of a baseline of several settings, which a measure of rays may be of. */
+static bool is_best(const Reader *r, const char *name) {
+    return *r->experiment->best && strcmp(r->experiment->best, name) == 0;
+}
+
+static RtStatus read_accel(Reader *r, char accel[RT_MAX_LABEL], bool may_be_all) {
+    const RtExperiment *experiment = r->experiment;
+    Choice choice = {0};
+    bool found = (may_be_all && strcmp(word(r), RT_CLAIM_ALL) == 0) || is_best(r, word(r));
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        if (!rt_candidate_is_called(&experiment->candidates[c], name)) continue;
-        *last = c;
-        count++;
+        offer(&choice, experiment->candidates[c].stem);
+        found |= rt_candidate_is_called(&experiment->candidates[c], word(r));
+    }
+    for (uint32_t c = 0; c < experiment->candidate_count; c++)
+        offer(&choice, experiment->candidates[c].label);
+    if (!found) return fail_choice(r, word(r), "the label of one of the accelerators", &choice);
+    const RtClaimMeasure of_structure =
+        r->claim->first >= RT_CLAIM_BUILD_TIME ? r->claim->first : r->claim->measure;
+    if (is_best(r, word(r)) && of_structure >= RT_CLAIM_BUILD_TIME) {
+        return fail(r,
+                    "'%s' is another setting for each kind of rays, each with its own %s: name one of them",
+                    word(r), measures[of_structure]);
+    }
+    snprintf(accel, RT_MAX_LABEL, "%s", r->words[r->at++]);
+    return RT_OK;
+}
+
+/* The number of accelerators on workload `t` that the other of a claim could be as well as `c`. */
+static uint32_t count_alike(const Reader *r, uint32_t t, uint32_t c) {
+    const RtExperiment *experiment = r->experiment;
+    const RtSweptKey *key = r->claim->key.key && !r->claim->key.scene ? &r->claim->key : NULL;
+    const char *own = key ? rt_swept_of(experiment, key, t, c) : NULL;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < experiment->candidate_count; i++) {
+        const RtCandidate *candidate = &experiment->candidates[i];
+        if (!rt_candidate_is_called(candidate, r->claim->other) || (candidate->excluded >> t & 1)) continue;
+        const char *its = own ? rt_swept_of(experiment, key, t, i) : NULL;
+        count += !its || rt_swept_equal(its, own);
     }
     return count;
 }
 
-static RtStatus read_accel(Reader *r) {
-    uint32_t last;
-    if (count_accels(r->experiment, word(r), &last) == 0) {
-        return fail(r, "'%s' is not the label of one of the accelerators", word(r));
+/* After the parameter is read, because the other accelerator may sweep that, too. */
+static RtStatus check_other(const Reader *r) {
+    const RtExperiment *experiment = r->experiment;
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+            if (!rt_candidate_is_called(&experiment->candidates[c], r->claim->other)) continue;
+            const uint32_t count = count_alike(r, t, c);
+            if (count <= 1) continue;
+            return fail(r, "'%s' names %" PRIu32 " accelerators: name one of them, as in '%s'",
+                        r->claim->other, count, experiment->candidates[c].label);
+        }
     }
-    snprintf(r->claim->accel, RT_MAX_LABEL, "%s", r->words[r->at++]);
-    return RT_OK;
-}
-
-static RtStatus read_other(Reader *r) {
-    uint32_t count = count_accels(r->experiment, word(r), &r->claim->other);
-    if (count == 0) return fail(r, "'%s' is not the label of one of the accelerators", word(r));
-    if (count > 1) {
-        return fail(r, "'%s' names %u accelerators: name one of them, as in '%s'", word(r), count,
-                    r->experiment->candidates[r->claim->other].label);
-    }
-    r->at++;
     return RT_OK;
 }
 
 static RtStatus read_scene(Reader *r) {
+    Choice choice = {0};
     bool found = false;
-    for (uint32_t t = 0; t < r->experiment->workload_count; t++)
+    for (uint32_t t = 0; t < r->experiment->workload_count; t++) {
+        offer(&choice, r->experiment->workloads[t].stem);
         found |= rt_workload_is_called(&r->experiment->workloads[t], word(r));
-    if (!found) return fail(r, "'%s' is not the label of one of the scenes", word(r));
+    }
+    for (uint32_t t = 0; t < r->experiment->workload_count; t++)
+        offer(&choice, r->experiment->workloads[t].label);
+    if (!found) return fail_choice(r, word(r), "the label of one of the scenes", &choice);
     snprintf(r->claim->scene, RT_MAX_LABEL, "%s", r->words[r->at++]);
     return RT_OK;
 }
 
-/* name[0..length) is "n", "scene.n" or "accel.n". */
-static RtStatus find_key(const Reader *r, const char *name, size_t length, RtSweptKey *key) {
+/* name[0..length) is "n", "scene.n" or "accel.n"; `choice` has what else it could have been. */
+static RtStatus find_key(const Reader *r, const char *name, size_t length, Choice *choice, RtSweptKey *key) {
     RtSweptKey keys[RT_MAX_SWEPT_KEYS];
     uint32_t count = rt_experiment_swept(r->experiment, keys), found = 0;
+    char wrong[RT_MAX_LABEL];
     for (uint32_t k = 0; k < count; k++) {
+        offer(choice, keys[k].key);
         char full[RT_MAX_NAME + 8];
         snprintf(full, sizeof full, "%s.%s", keys[k].scene ? "scene" : "accel", keys[k].key);
         bool is = strlen(full) == length && strncmp(full, name, length) == 0;
@@ -131,14 +189,23 @@ static RtStatus find_key(const Reader *r, const char *name, size_t length, RtSwe
         *key = keys[k];
         found++;
     }
-    if (found == 0) return fail(r, "'%.*s' is not a swept parameter", (int)length, name);
+    snprintf(wrong, sizeof wrong, "%.*s", (int)length, name);
+    if (found == 0 && choice->count == 0)
+        return fail(r, "'%s' is not a swept parameter: none is swept", wrong);
+    if (found == 0) return fail_choice(r, wrong, "a swept parameter", choice);
     if (found == 1) return RT_OK;
     return fail(r, "scenes and accelerators both sweep '%.*s': write scene.%.*s or accel.%.*s", (int)length,
                 name, (int)length, name, (int)length, name);
 }
 
 static RtStatus read_axis(Reader *r) {
-    RT_TRY(find_key(r, word(r), strlen(word(r)), &r->claim->key));
+    Choice choice = {1, {objects}};
+    r->claim->by_objects = take(r, objects);
+    if (r->claim->by_objects) {
+        r->claim->key = (RtSweptKey){objects, .scene = true, .number = true};
+        return RT_OK;
+    }
+    RT_TRY(find_key(r, word(r), strlen(word(r)), &choice, &r->claim->key));
     if (!r->claim->key.number) return fail(r, "the values of '%s' are not numbers", word(r));
     r->at++;
     return RT_OK;
@@ -168,7 +235,8 @@ static RtStatus read_at(Reader *r) {
     char *value = claim->places[claim->place_count++].value;
     size_t length = strcspn(word(r), "=");
     const char *given = word(r) + length;
-    RT_TRY(find_key(r, word(r), length, key));
+    Choice parameters = {0}, values = {0};
+    RT_TRY(find_key(r, word(r), length, &parameters, key));
     if ((largest || smallest) != (*given == '\0')) {
         return fail(r, "write 'at largest PARAM', 'at smallest PARAM' or 'at PARAM=VALUE', not 'at %s%s'",
                     largest    ? "largest "
@@ -185,17 +253,20 @@ static RtStatus read_at(Reader *r) {
     for (uint32_t t = 0; t < r->experiment->workload_count; t++) {
         for (uint32_t c = 0; c < r->experiment->candidate_count; c++) {
             const char *text = rt_swept_of(r->experiment, key, t, c);
-            found |= text && strcmp(text, value) == 0;
+            if (text) offer(&values, text);
+            found |= text && rt_swept_equal(text, value);
         }
     }
-    if (!found) return fail(r, "'%s' is not a value of '%.*s'", value, (int)length, word(r));
+    char what[RT_MAX_LABEL];
+    snprintf(what, sizeof what, "a value of %s", key->key);
+    if (!found) return fail_choice(r, value, what, &values);
     r->at++;
     return RT_OK;
 }
 
 static RtStatus read_kind(Reader *r) {
     RtClaim *claim = r->claim;
-    if (claim->measure >= RT_CLAIM_BUILD_TIME)
+    if (claim->measure >= RT_CLAIM_BUILD_TIME && claim->first >= RT_CLAIM_BUILD_TIME)
         return fail(r, "%s does not depend on the kind of rays", measures[claim->measure]);
     if (rt_ray_kind_parse(word(r), &claim->kind, NULL) != RT_OK ||
         !rt_experiment_has_kind(r->experiment, claim->kind))
@@ -234,10 +305,10 @@ static RtStatus read_comparison(Reader *r) {
     static const char *const operators[] = {"<", "<=", ">", ">="};
     uint32_t i = 0;
     RT_TRY(read_places(r));
+    r->claim->readout = r->at == r->count;
+    if (r->claim->readout) return RT_OK;
     while (i < 4 && !take(r, operators[i])) i++;
-    if (i == 4) {
-        return fail(r, "found '%s', expected one of < <= > >=", *word(r) ? word(r) : "nothing");
-    }
+    if (i == 4) return fail(r, "found '%s', expected one of < <= > >=", word(r));
     r->claim->greater = i >= 2;
     r->claim->or_equal = i % 2 == 1;
     if (!rt_swept_number(word(r), &r->claim->number)) return fail(r, "'%s' is not a number", word(r));
@@ -245,18 +316,41 @@ static RtStatus read_comparison(Reader *r) {
     return RT_OK;
 }
 
+/* The form by its first word; a value begins with its measure. */
+static RtStatus read_form(Reader *r) {
+    static const char *const forms[] = {[RT_CLAIM_RATIO] = "ratio",
+                                        [RT_CLAIM_EXPONENT] = "exponent",
+                                        [RT_CLAIM_CROSSOVER] = "crossover",
+                                        [RT_CLAIM_CORRELATION] = "correlation"};
+    for (uint32_t form = RT_CLAIM_RATIO; form <= RT_CLAIM_CORRELATION; form++) {
+        if (!take(r, forms[form])) continue;
+        r->claim->form = (RtClaimForm)form;
+        return need(r, "of");
+    }
+    return RT_OK;
+}
+
 static RtStatus read_claim(Reader *r) {
     RtClaim *claim = r->claim;
-    bool ratio = take(r, "ratio"), exponent = !ratio && take(r, "exponent");
-    if (ratio || exponent) RT_TRY(need(r, "of"));
-    RT_TRY(read_measure(r));
+    RT_TRY(read_form(r));
+    const bool ratio = claim->form == RT_CLAIM_RATIO, crossover = claim->form == RT_CLAIM_CROSSOVER;
+    RT_TRY(read_measure(r, &claim->measure));
+    claim->first = claim->measure;
+    if (claim->form == RT_CLAIM_CORRELATION) {
+        RT_TRY(need(r, "and"));
+        RT_TRY(read_measure(r, &claim->measure));
+    }
     RT_TRY(need(r, "of"));
-    RT_TRY(read_accel(r));
-    claim->form = ratio ? RT_CLAIM_RATIO : exponent ? RT_CLAIM_EXPONENT : RT_CLAIM_VALUE;
-    if (ratio) RT_TRY(need(r, "to"));
-    if (ratio) RT_TRY(read_other(r));
-    if (exponent) RT_TRY(need(r, "in"));
-    if (exponent) RT_TRY(read_axis(r));
+    RT_TRY(read_accel(r, claim->accel, true));
+    if (ratio || crossover) {
+        RT_TRY(need(r, ratio ? "to" : "and"));
+        RT_TRY(read_accel(r, claim->other, false));
+    }
+    if (crossover || claim->form == RT_CLAIM_EXPONENT) {
+        RT_TRY(need(r, "in"));
+        RT_TRY(read_axis(r));
+    }
+    if (*claim->other) RT_TRY(check_other(r));
     bool trend =
         strcmp(word(r), "falls") == 0 || strcmp(word(r), "rises") == 0 || strcmp(word(r), "never") == 0;
     if (claim->form == RT_CLAIM_VALUE && trend) return read_trend(r);

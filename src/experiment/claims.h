@@ -1,29 +1,49 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Claims: statements about the results that an experiment expects to hold (`expect:`).
+/* Claims: statements about the results that an experiment expects to hold, and figures that it asks for
+ * (`expect`).
  *
  *     CLAIM    = QUANTITY [PLACE] OP NUMBER                   OP: <  <=  >  >=
+ *              | QUANTITY [PLACE]                             a readout
  *              | MEASURE of ACCEL TREND with PARAM [PLACE]    TREND: falls, rises, never falls, never rises
  *     QUANTITY = MEASURE of ACCEL
  *              | ratio of MEASURE of ACCEL to ACCEL
  *              | exponent of MEASURE of ACCEL in PARAM
+ *              | crossover of MEASURE of ACCEL and ACCEL in PARAM
+ *              | correlation of MEASURE and MEASURE of ACCEL
  *     PLACE    = any of: on SCENE, for KIND rays, at largest PARAM, at smallest PARAM, at PARAM=VALUE
- *     MEASURE  = time, object_tests, extent_tests, steps (each per ray), build_time, bytes
+ *     MEASURE  = time, object_tests, extent_tests, steps, csg_tests (each per ray), build_time, bytes,
+ *                predicted_cost, break_even (rays)
  *
- * ACCEL and SCENE are labels, or the common part of the labels of a sweep; PARAM is a swept parameter: n, or
- * scene.n or accel.n if both have it. A claim covers every cell that it does not exclude, all kinds of rays
- * together unless it names one; it holds if it holds for all of them. "at" excludes cells without the
- * parameter. The second ACCEL of a ratio is one accelerator. "falls" means from each value of the parameter
- * to the next larger one.
+ * ACCEL and SCENE are labels, or the common part of the labels of a sweep. ACCEL may be `all`, every
+ * accelerator of the list; or the name of a baseline of several settings ("embree:best"): the setting that is
+ * the fastest on each kind of rays. PARAM is a swept parameter: n, or scene.n or accel.n if both have it; or,
+ * except in "at", `objects`, the number of objects of the scene, however scenes are named. A claim covers
+ * every cell that it does not exclude, all kinds of rays together unless it names one; it holds if it holds
+ * for all of them. "at" excludes cells without the parameter. The second ACCEL of a ratio or a crossover is
+ * one accelerator; in a crossover it may sweep PARAM, too. "falls" means from each value of the parameter to
+ * the next larger one.
  *
  * Times have intervals, counts are exact. A claim about times holds if it holds for all values within the
  * intervals, does not hold if it holds for none, and is undecided otherwise. A ratio of times to the baseline
- * on one kind of rays is the paired one; other ratios use the quotients of the intervals' ends. An exponent
- * is the least-squares slope of the logarithms; its interval covers all values within the times' intervals. A
- * build time has no interval.
+ * on one kind of rays is the paired one; other ratios use the quotients of the intervals' ends. A build time
+ * has no interval. A break-even is the number of rays from which on an accelerator is ahead of the baseline,
+ * its build included; it is infinite if there is none.
+ *
+ * An exponent is the least-squares slope of the logarithms, a correlation Pearson's of the logarithms.
+ * claims_figures.h defines their intervals. They include the scatter of the values, also of counts: a curve
+ * that is no power law has no precise exponent.
+ *
+ * A crossover is where the ratio of the two curves is 1, interpolated in the logarithms; its interval is the
+ * range around it in which the interval of the ratio contains 1. It is certain if the interval excludes 1 on
+ * both sides. Every crossover is printed, and a claim must hold for all that are certain; those that are not
+ * can only make it undecided. It is undecided, too, if no crossover is certain: curves that do not cross
+ * within the measured values may cross beyond them.
  *
  * A cell has no value for all kinds of rays together if one of them was not measured. A claim about cells
  * without a value is undecided, unless the others disprove it. If none of its cells was measured, as where a
- * plugin is missing, its verdict is "no measurements". An exponent needs all values of its line. */
+ * plugin is missing, its verdict is "no measurements". An exponent needs all values of its line; a crossover
+ * only those between the first and the last cell in which both accelerators have a value. A correlation of
+ * `all` leaves out structures to which a measure does not apply, as those without a prediction. */
 #ifndef RT_EXPERIMENT_CLAIMS_H
 #define RT_EXPERIMENT_CLAIMS_H
 
@@ -34,28 +54,42 @@ typedef enum RtClaimMeasure {
     RT_CLAIM_OBJECT_TESTS,
     RT_CLAIM_EXTENT_TESTS,
     RT_CLAIM_STEPS,
-    RT_CLAIM_BUILD_TIME,
-    RT_CLAIM_BYTES
+    RT_CLAIM_CSG_TESTS,
+    RT_CLAIM_BUILD_TIME, /* and those below: of structures, so not of a kind of rays */
+    RT_CLAIM_BYTES,
+    RT_CLAIM_PREDICTED_COST,
+    RT_CLAIM_BREAK_EVEN
 } RtClaimMeasure;
 
-typedef enum RtClaimForm { RT_CLAIM_VALUE, RT_CLAIM_RATIO, RT_CLAIM_EXPONENT, RT_CLAIM_TREND } RtClaimForm;
+typedef enum RtClaimForm {
+    RT_CLAIM_VALUE,
+    RT_CLAIM_RATIO,
+    RT_CLAIM_EXPONENT,
+    RT_CLAIM_CROSSOVER,
+    RT_CLAIM_CORRELATION,
+    RT_CLAIM_TREND
+} RtClaimForm;
+
+#define RT_CLAIM_ALL "all" /* as ACCEL */
 
 #define RT_MAX_CLAIM_PLACES 4
 
 /* A parsed claim. */
 typedef struct RtClaim {
     RtClaimForm form;
-    RtClaimMeasure measure;
+    RtClaimMeasure measure, first;                 /* first: of a correlation's two; else the same */
     char accel[RT_MAX_LABEL], scene[RT_MAX_LABEL]; /* scene: "" for all */
-    uint32_t other;                                /* of a ratio: the denominator */
-    RtSweptKey key;                                /* of an exponent or a trend */
-    RtRayKind kind;                                /* or RT_ALL_RAYS */
+    char other[RT_MAX_LABEL]; /* of a ratio, the denominator; of a crossover, the second; else "" */
+    RtSweptKey key;           /* of an exponent, a crossover or a trend; key.key NULL: none */
+    bool by_objects;          /* key is the number of objects of the scene */
+    RtRayKind kind;           /* or RT_ALL_RAYS */
     uint32_t place_count;
     struct {
         RtSweptKey key;
         char value[RT_MAX_SWEPT_CHARS];
     } places[RT_MAX_CLAIM_PLACES];
     bool rises, strictly;   /* of a trend */
+    bool readout;           /* without OP and NUMBER */
     bool greater, or_equal; /* of all others */
     double number;
 } RtClaim;
@@ -68,17 +102,19 @@ typedef enum RtClaimVerdict {
     RT_CLAIM_UNDECIDED,
     RT_CLAIM_FALSE,
     RT_CLAIM_UNMEASURED, /* no cell that it is about was measured */
+    RT_CLAIM_FIGURE,     /* a readout, which claims nothing */
     RT_CLAIM_VERDICT_COUNT
 } RtClaimVerdict;
 
-#define RT_MAX_CLAIM_FIGURES 256
+#define RT_MAX_CLAIM_FIGURES 512
 typedef struct RtClaimResult {
     RtClaimVerdict verdict;
-    char figures[RT_MAX_CLAIM_FIGURES]; /* with interval: the deciding figure, or the one nearest to deciding
-                                         */
+    /* With intervals: the deciding figure, or the one nearest to deciding; of a readout all, or the smallest
+     * and the largest of many. */
+    char figures[RT_MAX_CLAIM_FIGURES];
 } RtClaimResult;
 
-/* "holds", "does not hold", "undecided", "no measurements". */
+/* "holds", "does not hold", "undecided", "no measurements", "figure". */
 const char *rt_claim_verdict_name(RtClaimVerdict verdict);
 
 /* Judges claim number `i` of the experiment; an invalid one has no measurements. */

@@ -4,12 +4,14 @@
 #include "experiment/manifest_experiment.h"
 #include "measure/result_files.h"
 
+#include <inttypes.h>
 #include <string.h>
+#include <strings.h>
 
 void rt_experiment_init(RtExperiment *experiment) {
     memset(experiment, 0, sizeof *experiment);
     experiment->limit = 100000;
-    experiment->coherent_run = 1;
+    experiment->coherent_run = RT_COHERENT_RUN;
     experiment->rounds = 10;
     experiment->milliseconds = 20;
     experiment->seed = 1;
@@ -235,9 +237,22 @@ static RtStatus check_candidate(RtExperiment *experiment, uint32_t i, RtError *e
     return check_label(candidate->label, error);
 }
 
-static RtStatus check_workload(const RtExperiment *experiment, uint32_t i, RtError *error) {
+/* Names the files of workload `i`. Names that are equal but for case are numbered. */
+static void name_files(RtExperiment *experiment, uint32_t i) {
+    char name[RT_MAX_LABEL + 1], *file = experiment->workloads[i].file_name;
+    bool taken = true;
+    rt_file_name(experiment->workloads[i].label, name, sizeof name);
+    for (uint32_t number = 1; taken; number++) {
+        snprintf(file, sizeof experiment->workloads[i].file_name, number > 1 ? "%s-%" PRIu32 : "%s", name, number);
+        taken = false;
+        for (uint32_t t = 0; t < i; t++) taken |= strcasecmp(file, experiment->workloads[t].file_name) == 0;
+    }
+}
+
+static RtStatus check_workload(RtExperiment *experiment, uint32_t i, RtError *error) {
     const RtWorkload *workload = &experiment->workloads[i];
     if (rt_workload_find(experiment, workload->label) < i) return fail_twice(workload->label, error);
+    name_files(experiment, i);
     return check_label(workload->label, error);
 }
 

@@ -20,6 +20,8 @@
 #define RT_MAX_CLAIM      256
 #define RT_MAX_PAPERS     16
 
+#define RT_MAX_MILLISECONDS 60000 /* of a round of one cell */
+
 /* ---- sweeps (sweep.c) ---- */
 
 #define RT_MAX_SWEPT        4   /* parameters of one spec */
@@ -36,6 +38,9 @@ typedef struct RtSwept {
 /* The value as a number; false if it is a word. */
 bool rt_swept_number(const char *value, double *number);
 
+/* Whether two values are the same text or, as 1e5 and 100000, the same number. */
+bool rt_swept_equal(const char *a, const char *b);
+
 /* Whether the increasing values[0..count) are spaced more evenly on a logarithmic than on a linear axis. */
 bool rt_swept_logarithmic(const double *values, uint32_t count);
 
@@ -47,6 +52,8 @@ void rt_swept_name(const RtSwept *swept, const char *but, char *out, size_t size
 /* One scene of an experiment. Labels are unique, without blanks and quotes: names in CSV and plots. */
 typedef struct RtWorkload {
     char label[RT_MAX_LABEL];
+    char file_name[RT_MAX_LABEL + 8]; /* the label as a part of file names (rt_file_name); unique, also without
+                                     regard to case: rt_experiment_check */
     char stem[RT_MAX_LABEL];      /* the common part of the labels of one sweep; else the label */
     RtSwept swept;                /* of the scene's parameters */
     uint32_t entry;               /* of the list in the YAML; a sweep makes several workloads */
@@ -179,7 +186,7 @@ typedef struct RtExperiment {
 } RtExperiment;
 
 /* No scenes, no candidates, all ray kinds except occlusion (it repeats diffuse), and the defaults: limit
- * 100000, coherent runs of 1, 10 rounds, 20 milliseconds. */
+ * 100000, coherent runs of RT_COHERENT_RUN, 10 rounds, 20 milliseconds. */
 void rt_experiment_init(RtExperiment *experiment);
 
 /* Reads the YAML at `path`. Reports any error (unknown keys, invalid specs, duplicate labels, a baseline that

@@ -45,7 +45,7 @@ static RtStatus read_scale(const RtYaml *y, const RtYamlNode *n, uint64_t *limit
                            uint32_t *milliseconds) {
     RT_TRY(rt_yaml_u64(y, n, "limit", 1, RT_MAX_RAYS_A_KIND, limit));
     RT_TRY(rt_yaml_u32(y, n, "rounds", 1, RT_MAX_ROUNDS, rounds));
-    return rt_yaml_u32(y, n, "milliseconds", 0, 60000, milliseconds);
+    return rt_yaml_u32(y, n, "milliseconds", 0, RT_MAX_MILLISECONDS, milliseconds);
 }
 
 static RtStatus read_limits(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment) {

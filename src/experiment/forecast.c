@@ -1,7 +1,101 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "experiment/forecast.h"
 
+#include "core/base/memory.h"
+#include "experiment/journal.h"
+#include "experiment/result_directory.h"
+
 #include <math.h>
+#include <string.h>
+
+/* ---- the run of another version ---- */
+
+/* The workload of the same frames; workload_count if there is none. */
+static uint32_t find_workload(const RtExperiment *in, const RtWorkload *like) {
+    uint32_t t = 0;
+    for (; t < in->workload_count; t++) {
+        const RtWorkload *w = &in->workloads[t];
+        if (strcmp(w->spec, like->spec) == 0 && w->width == like->width && w->height == like->height &&
+            w->depth == like->depth && w->corners == like->corners &&
+            w->light_from_outside == like->light_from_outside)
+            break;
+    }
+    return t;
+}
+
+/* The candidate with the same spec on workload `t`; candidate_count if there is none. */
+static uint32_t find_candidate(const RtExperiment *in, uint32_t t, const RtCandidate *like) {
+    uint32_t c = 0;
+    while (c < in->candidate_count && (strcmp(in->candidates[c].spec, like->spec) != 0 ||
+                                       in->candidates[c].ray_stride != like->ray_stride ||
+                                       !rt_candidate_runs(in, c, t)))
+        c++;
+    return c;
+}
+
+static void learn_candidate(const RtResults *from, uint32_t t, uint32_t c, RtResults *to, uint32_t to_t,
+                            uint32_t to_c) {
+    const RtBuildResult *build = rt_build_at(from, t, c);
+    RtBuildResult *to_build = rt_build_at(to, to_t, to_c);
+    to_build->known = build->known;
+    to_build->seconds = build->seconds;
+    for (RtRayKind kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
+        const RtCell *cell = rt_cell_at(from, t, c, kind);
+        RtCell *to_cell = rt_cell_at(to, to_t, to_c, kind);
+        to_cell->counted = cell->counted;
+        to_cell->timed = cell->timed;
+        to_cell->tally = cell->tally;
+        to_cell->wall = cell->wall;
+    }
+}
+
+static void learn_all(const RtResults *from, RtResults *to) {
+    const RtExperiment *old = from->experiment, *new = to->experiment;
+    const bool same_sets = old->seed == new->seed && old->limit == new->limit &&
+                           memcmp(old->kinds, new->kinds, sizeof new->kinds) == 0;
+    for (uint32_t t = 0; t < new->workload_count; t++) {
+        const uint32_t old_t = find_workload(old, &new->workloads[t]);
+        if (old_t == old->workload_count) continue;
+        if (same_sets) to->workloads[t] = from->workloads[old_t];
+        for (uint32_t c = 0; c < new->candidate_count; c++) {
+            const uint32_t old_c = find_candidate(old, old_t, &new->candidates[c]);
+            if (old_c < old->candidate_count && rt_candidate_runs(new, c, t))
+                learn_candidate(from, old_t, old_c, to, t, c);
+        }
+    }
+}
+
+/* The experiment of the directory, if this build can read it; else *experiment gets no scenes. */
+static RtStatus load_old(const char *directory, const char *journal, RtExperiment *experiment,
+                         RtError *error) {
+    char path[RT_MAX_PATH];
+    json_t *lines;
+    RT_TRY(rt_path_join(directory, rt_result_files[RT_FILE_EXPERIMENT], path, error));
+    RT_TRY(rt_json_lines_load(journal, &lines, error));
+    const bool quick = json_is_true(json_object_get(json_array_get(lines, 0), "quick"));
+    json_decref(lines);
+    if (rt_experiment_load(experiment, path, quick, error) != RT_OK) rt_experiment_init(experiment);
+    return RT_OK;
+}
+
+RtStatus rt_forecast_learn(const char *directory, RtResults *results, RtError *error) {
+    char journal[RT_MAX_PATH];
+    RtResults old = {0};
+    RT_TRY(rt_path_join(directory, RT_RUN_JOURNAL, journal, error));
+    RtExperiment *experiment = rt_alloc(1, sizeof *experiment);
+    if (!experiment) return rt_fail_memory(error, "an experiment", sizeof *experiment);
+    RtStatus status = load_old(directory, journal, experiment, error);
+    if (status == RT_OK && experiment->workload_count) {
+        status = rt_results_init(&old, experiment, error);
+        if (status == RT_OK) status = rt_journal_load(journal, &old, NULL, false, error);
+        if (status == RT_OK) learn_all(&old, results);
+        rt_results_clear(&old);
+    }
+    rt_free(experiment);
+    return status;
+}
+
+/* ---- the forecast ---- */
 
 /* Sums over the known cells of one candidate, to estimate the others. */
 typedef struct RateEstimate {

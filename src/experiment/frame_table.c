@@ -3,6 +3,7 @@
 
 #include "accel/accel.h"
 #include "core/base/words.h"
+#include "experiment/result_tables.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -377,5 +378,7 @@ void rt_print_frames(const RtResults *results, FILE *out) {
         rt_frame_title(results, t, text);
         fprintf(out, "\n%s: %s\n\n", experiment->workloads[t].label, text);
         print_rows(results, t, out);
+        rt_learnt_sentence(results, t, text);
+        if (*text) rt_print_wrapped(text, out);
     }
 }

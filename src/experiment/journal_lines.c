@@ -50,6 +50,7 @@ static const RtMember count_members[] = {RT_TALLY_COUNTERS(COUNTER)
 
 static const RtMember time_members[] = {RT_MEMBER_RANGE(RtCell, COUNT, "rays", tally.rays, 1, 0),
                                         RT_MEMBER_RANGE(RtCell, U32, "rounds", rounds, 1, RT_MAX_ROUNDS),
+                                        RT_MEMBER(RtCell, NUMBER, "repeats", repeats),
                                         RT_MEMBER_RANGE(RtCell, INT, "threads", threads, 1, 0),
                                         RT_MEMBER(RtCell, ESTIMATE, "seconds", seconds),
                                         RT_MEMBER(RtCell, ESTIMATE, "wall", wall),

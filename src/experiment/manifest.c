@@ -96,6 +96,8 @@ static RtStatus load_experiment(const json_t *manifest, const char *directory, R
     json_t *now = rt_json_hex(experiment->fingerprint);
     bool same = now && json_equal(now, hash);
     json_decref(now);
+    const json_int_t run = json_integer_value(json_object_get(manifest, "coherent_run"));
+    if (run > 0) experiment->coherent_run = (uint64_t)run; /* its default was another in older versions */
     if (same) return RT_OK;
     return rt_fail(error, RT_MISMATCH, "%s has changed since %s was made from it", file, directory);
 }

@@ -156,6 +156,45 @@ static void print_differing(const RtResults *results, uint32_t t, FILE *out) {
     }
 }
 
+/* ---- rays that are learnt ---- */
+
+/* The cell of a kind of rays that repeats its rays most often, if they are learnt; else NULL. */
+static const RtCell *learnt_cell(const RtResults *results, uint32_t t, RtRayKind kind) {
+    const RtCell *learnt = NULL;
+    for (uint32_t c = 0; c < results->experiment->candidate_count; c++) {
+        const RtCell *cell = rt_cell_at(results, t, c, kind);
+        const bool few = cell->timed && cell->tally.rays < RT_LEARNT_RAYS;
+        if (few && cell->repeats > (learnt ? learnt->repeats : RT_LEARNT_REPEATS)) learnt = cell;
+    }
+    return learnt;
+}
+
+void rt_learnt_sentence(const RtResults *results, uint32_t workload, char out[RT_MAX_SENTENCE]) {
+    const RtExperiment *experiment = results->experiment;
+    out[0] = '\0';
+    for (uint32_t k = 0; k < experiment->kind_count; k++) {
+        const RtCell *cell = learnt_cell(results, workload, experiment->kinds[k]);
+        if (!cell) continue;
+        rt_append_text(out, RT_MAX_SENTENCE, "%s %" PRIu64 " %s ray%s %.0f times",
+                       *out ? "," : "Too few rays: within a round, an accelerator repeats", cell->tally.rays,
+                       rt_experiment_kind_name(experiment, experiment->kinds[k]), rt_plural(cell->tally.rays),
+                       cell->repeats);
+    }
+    if (!*out) return;
+    rt_append_text(out, RT_MAX_SENTENCE,
+                   ". Caches and branch predictors learn them, so they take less time than in a frame. %s, or "
+                   "run them once a round (milliseconds: 0).",
+                   *experiment->rays_from ? "Give more rays" : "Record more (a larger size or limit)");
+}
+
+static void print_learnt(const RtResults *results, uint32_t t, FILE *out) {
+    char text[RT_MAX_SENTENCE];
+    rt_learnt_sentence(results, t, text);
+    if (*text) rt_print_wrapped(text, out);
+}
+
+/* ---- tables of a workload ---- */
+
 static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
     uint32_t least = 0, most = rounds_of(results, t, &least);
     const bool timed = most > 0;
@@ -164,6 +203,7 @@ static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
     rt_print_rows(results, timed ? RT_CELLS : RT_COUNTED_CELLS, t, out);
     print_strides(results, t, timed, out);
     print_differing(results, t, out);
+    print_learnt(results, t, out);
     rt_print_rows(results, timed ? RT_STRUCTURES : RT_COUNTED_STRUCTURES, t, out);
 }
 
@@ -178,6 +218,7 @@ void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) 
         } else {
             rt_table_text(&table, out);
             print_differing(results, t, out);
+            print_learnt(results, t, out);
         }
     }
 }

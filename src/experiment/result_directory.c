@@ -66,8 +66,8 @@ static uint32_t slot_of(const RtExperiment *experiment, uint32_t t) {
 
 RtStatus rt_run_image_path(const char *directory, const RtExperiment *experiment, uint32_t workload,
                            char *path, RtError *error) {
-    char name[RT_MAX_LABEL + 16];
-    snprintf(name, sizeof name, "images/%s.png", experiment->workloads[workload].label);
+    char name[RT_MAX_LABEL + 24];
+    snprintf(name, sizeof name, "images/%s.png", experiment->workloads[workload].file_name);
     return rt_path_join(directory, name, path, error);
 }
 

@@ -125,6 +125,7 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
     X(bytes, "bytes", integer, "bytes", "memory of the structure's arrays", r->build->structure.bytes)       \
     X(threads, "threads", integer, "", "threads of the timing", threads_of(r))                               \
     X(rounds, "rounds", integer, "", "timing rounds", r->cell->rounds)                                       \
+    X(repeats, "repeats", real6, "", "passes over the rays in a round", TIMED(r->cell->repeats))             \
     X(coverage, "ratio_coverage", real6, "", "probability that an interval contains the median",             \
       TIMED(rt_interval_coverage(r->cell->rounds)))                                                          \
     X(ns, "ns", real6, "ns", "processor time per ray (wall time on several threads); median",                \

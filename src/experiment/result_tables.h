@@ -88,8 +88,12 @@ void rt_print_summary(const RtResults *results, FILE *out);
 
 /* "... 12 of 12 intervals include 1, ...", or a warning if fewer do; and the coverage of the intervals if
  * rounds are too few. "" if nothing was timed. */
-#define RT_MAX_SENTENCE 384
+#define RT_MAX_SENTENCE 640
 void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]);
+
+/* A warning that names the kinds of rays of a workload which some accelerator was timed on so few of, repeated
+ * so often, that processors learn them (RT_LEARNT_RAYS), and a remedy. "" if there are none. */
+void rt_learnt_sentence(const RtResults *results, uint32_t workload, char out[RT_MAX_SENTENCE]);
 
 /* The least coverage of the intervals: "95 %", or less if rounds are too few. */
 #define RT_MAX_INTERVAL_TITLE 16

@@ -67,7 +67,18 @@ double *rt_cell_round_times(const RtCell *cell, RtRoundTime which) {
     return cell->round_times + (size_t)which * cell->rounds;
 }
 
+uint32_t rt_results_candidate(const RtResults *results, uint32_t workload, uint32_t candidate,
+                              RtRayKind kind) {
+    if (candidate != RT_FASTEST_BASELINE) return candidate;
+    for (uint32_t c = 0; c < results->experiment->candidate_count; c++) {
+        const RtCell *cell = rt_cell_at(results, workload, c, kind);
+        if (cell->timed) return cell->baseline;
+    }
+    return RT_FASTEST_BASELINE;
+}
+
 const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidate) {
+    if (candidate == RT_FASTEST_BASELINE) return rt_baseline_label(experiment);
     return candidate < experiment->candidate_count ? experiment->candidates[candidate].label
                                                    : experiment->again;
 }
@@ -145,14 +156,20 @@ static double per_ray(const RtCell *cell, const RtBuildResult *build, uint64_t c
 }
 
 static RtCost cost_of_cell(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
+    const double unknown = (double)NAN;
+    candidate = rt_results_candidate(results, workload, candidate, kind);
+    if (candidate == RT_FASTEST_BASELINE) {
+        const RtEstimate none = {unknown, unknown, unknown, unknown};
+        return (RtCost){true, 0, unknown, unknown, unknown, unknown, none, none};
+    }
     const RtBuildResult *build = rt_build_at(results, workload, candidate);
     const RtCell *cell = rt_cell_at(results, workload, candidate, kind);
-    const double unknown = (double)NAN;
     RtCost cost = {.whole = true,
                    .rays = cell->tally.rays,
                    .object_tests = per_ray(cell, build, cell->tally.object_tests),
                    .extent_tests = per_ray(cell, build, cell->tally.extent_tests),
                    .steps = per_ray(cell, build, cell->tally.steps),
+                   .csg_tests = per_ray(cell, build, cell->tally.csg_tests),
                    .seconds = {unknown, unknown, unknown, unknown},
                    .ratio = {unknown, unknown, unknown, unknown}};
     if (!cell->timed) return cost;
@@ -178,6 +195,7 @@ RtCost rt_results_cost(const RtResults *results, uint32_t workload, uint32_t can
         sum.object_tests += weight * cost.object_tests;
         sum.extent_tests += weight * cost.extent_tests;
         sum.steps += weight * cost.steps;
+        sum.csg_tests += weight * cost.csg_tests;
         sum.seconds.median += weight * cost.seconds.median;
         sum.seconds.low += weight * cost.seconds.low;
         sum.seconds.high += weight * cost.seconds.high;
@@ -187,6 +205,7 @@ RtCost rt_results_cost(const RtResults *results, uint32_t workload, uint32_t can
     sum.object_tests /= weights; /* 0 / 0 is NAN: unknown */
     sum.extent_tests /= weights;
     sum.steps /= weights;
+    sum.csg_tests /= weights;
     sum.seconds.median /= weights;
     sum.seconds.low /= weights;
     sum.seconds.high /= weights;

@@ -78,6 +78,7 @@ typedef struct RtCell {
     uint64_t differ;               /* answers that differ from the reference's; 0 for exact accelerators */
     RtDistribution *distributions; /* [RT_RAY_QUANTITY_COUNT] owned; NULL: not asked for */
     uint32_t rounds;
+    double repeats;      /* passes over the rays in a round; NAN: unknown, as in older journals */
     int threads;         /* of the timing */
     uint32_t machine;    /* that timed it, in RtResults.machines */
     RtEstimate seconds;  /* per ray: processor time on one thread, wall time on several */
@@ -112,7 +113,16 @@ RtCell *rt_cell_at(const RtResults *results, uint32_t workload, uint32_t candida
 RtStatus rt_cell_make_round_times(RtCell *cell, RtError *error);
 double *rt_cell_round_times(const RtCell *cell, RtRoundTime which);
 
-/* The candidate's label; for the null run the baseline's and " (again)". */
+/* Stands for the baseline that ratios refer to, the fastest of several on the rays of each cell. */
+#define RT_FASTEST_BASELINE UINT32_MAX
+
+/* The candidate that stands for `candidate` on these rays: itself; for RT_FASTEST_BASELINE the baseline,
+ * or RT_FASTEST_BASELINE where nothing was timed. */
+uint32_t rt_results_candidate(const RtResults *results, uint32_t workload, uint32_t candidate,
+                              RtRayKind kind);
+
+/* The candidate's label; for the null run the baseline's and " (again)"; for RT_FASTEST_BASELINE
+ * rt_baseline_label. */
 const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidate);
 
 /* Every cell of the experiment except null runs, scene by scene, accelerator by accelerator:
@@ -123,6 +133,13 @@ typedef struct RtCellCursor {
     RtCell *cell;
 } RtCellCursor;
 bool rt_results_next(const RtResults *results, RtCellCursor *at);
+
+/* Fewer rays than this, repeated more often than that within a round, take less time than they would among
+ * the rays of a frame: branch predictors and caches have learnt them. A ray depends on tens of branches and
+ * reads tens of cache lines; predictors and second-level caches hold some ten thousand. experiments/README.md
+ * shows the effect. */
+#define RT_LEARNT_RAYS    1024
+#define RT_LEARNT_REPEATS 4
 
 /* The number of measured cells, and of their scenes. */
 uint64_t rt_results_size(const RtResults *results, uint32_t *scenes);
@@ -141,12 +158,13 @@ bool rt_results_has_kind(const RtResults *results, uint32_t workload, RtRayKind 
 
 /* The cost of a ray: of one kind, or of all kinds together (RT_ALL_RAYS). Together each kind has the weight
  * of its unthinned set, to make thinned and full measurements comparable; all candidates of a workload use
- * the kinds that any of them was measured on. Unknown values are NAN. */
+ * the kinds that any of them was measured on. `candidate` may be RT_FASTEST_BASELINE. Unknown values are NAN.
+ */
 #define RT_ALL_RAYS RT_RAY_KIND_COUNT
 typedef struct RtCost {
-    bool whole;                               /* it includes all kinds of rays of the experiment */
-    uint64_t rays;                            /* measured */
-    double object_tests, extent_tests, steps; /* per ray */
+    bool whole;                                          /* it includes all kinds of rays of the experiment */
+    uint64_t rays;                                       /* measured */
+    double object_tests, extent_tests, steps, csg_tests; /* per ray */
     RtEstimate seconds; /* per ray; for all kinds the weighted ends of their intervals: conservative */
     RtEstimate ratio;   /* of throughput to the baseline's on the same rays; for all kinds only the median */
 } RtCost;

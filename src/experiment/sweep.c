@@ -29,6 +29,11 @@ bool rt_swept_number(const char *value, double *number) {
            isfinite(*number);
 }
 
+bool rt_swept_equal(const char *a, const char *b) {
+    double x, y;
+    return strcmp(a, b) == 0 || (rt_swept_number(a, &x) && rt_swept_number(b, &y) && x == y);
+}
+
 /* Compares how much the quotients differ with how much the steps do. Two values: a factor above four. */
 bool rt_swept_logarithmic(const double *values, uint32_t count) {
     double quotient[2] = {INFINITY, 0}, step[2] = {INFINITY, 0};

@@ -225,19 +225,6 @@ static RtStatus build_all(RtWorkloadState *workload, RtError *error) {
 
 /* ---- a kind of rays ---- */
 
-/* Saves the hit and cost of each ray, if that is requested: for one candidate and one kind of rays. */
-static RtStatus save_rows(const RtWorkloadState *workload, RtRayKind kind, RtError *error) {
-    const RtWorkloadOptions *options = workload->options;
-    RtRows rows;
-    if (!options->hits && !options->counts) return RT_OK;
-    RtStatus status =
-        rt_measure_rows(workload->accels[0], &workload->sets[kind], options->threads, &rows, error);
-    if (status == RT_OK && options->hits) status = rt_hits_save(&rows, options->hits, error);
-    if (status == RT_OK && options->counts) status = rt_counts_save(&rows, options->counts, error);
-    rt_rows_clear(&rows);
-    return status;
-}
-
 /* Builds an accelerator again that broke on other rays. */
 static RtStatus rebuild_broken(RtWorkloadState *workload, uint32_t c, RtError *error) {
     RtAccel *accel = workload->built[c];
@@ -263,7 +250,6 @@ static RtStatus measure_kind(RtWorkloadState *workload, RtRayKind kind, RtError 
     if (workload->sets[kind].count == 0 || kind_is_done(workload, kind)) return RT_OK;
     RT_TRY(choose_accels(workload, kind, error));
     RtStatus status = rt_workload_count(workload, kind, error);
-    if (status == RT_OK) status = save_rows(workload, kind, error);
     if (status == RT_OK && workload->options->rays)
         status = workload->options->rays(workload->options->rays_context, workload->index,
                                          &workload->sets[kind], workload->reference, error);

@@ -4,6 +4,7 @@
 #ifndef RT_EXPERIMENT_WORKLOAD_H
 #define RT_EXPERIMENT_WORKLOAD_H
 
+#include "core/text/npz.h"
 #include "experiment/results.h"
 #include "rays/rayset.h"
 
@@ -81,9 +82,9 @@ typedef struct RtWorkloadOptions {
     double until;    /* rounds continue until all intervals of ratios are within this part of their medians:
                         0.01; 0: as many rounds as in the experiment */
     double patience; /* most seconds of that for a kind of rays on a scene */
-    /* Files for the hit and the cost of each ray (measure/ray_file.h), or NULL; for an experiment of one
-     * workload, one candidate without a stride, and one kind of rays. */
-    const char *hits, *counts;
+    /* Open files that get the hit and the cost of each ray of every cell (measure/ray_file.h), as the array
+     * SCENE/ACCELERATOR/KIND, by labels; or NULL. Those that are no archives take one cell. */
+    RtArrayFile *hits, *counts;
     RtRunObserver observer;
     const RtHardwareEvent *events; /* [RT_HARDWARE_COUNT] instead of rt_hardware_events, or NULL */
     /* Gets the recorded rays of each kind, and the exact accelerator that answers them; or NULL. */

@@ -5,6 +5,7 @@
 #include "accel/remote.h"
 #include "core/base/memory.h"
 #include "experiment/workload_state.h"
+#include "measure/ray_file.h"
 
 #include <string.h>
 
@@ -195,6 +196,27 @@ static RtStatus distribute_cell(RtWorkloadState *workload, uint32_t c, RtRayKind
     return rt_workload_tell(workload, RT_EVENT_DISTRIBUTION, c, kind, error);
 }
 
+/* ---- the hit and the cost of each ray ---- */
+
+static RtStatus save_cell(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtCell *cell,
+                          RtError *error) {
+    (void)cell;
+    const RtExperiment *experiment = workload->experiment;
+    const RtWorkloadOptions *options = workload->options;
+    char name[RT_MAX_ARRAY_NAME];
+    RtRows rows;
+    snprintf(name, sizeof name, "%s/%s/%s", experiment->workloads[workload->index].label,
+             rt_candidate_label(experiment, c), rt_experiment_kind_name(experiment, kind));
+    RtStatus status = rt_measure_rows(workload->accels[c], &workload->shares[c].set, options->threads, &rows,
+                                      error);
+    if (status == RT_OK && options->hits)
+        status = rt_rows_add(&rows, rt_hits_put, options->hits, name, error);
+    if (status == RT_OK && options->counts)
+        status = rt_rows_add(&rows, rt_counts_put, options->counts, name, error);
+    rt_rows_clear(&rows);
+    return status;
+}
+
 /* ---- all steps ---- */
 
 typedef RtStatus Step(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtCell *cell, RtError *error);
@@ -217,5 +239,7 @@ RtStatus rt_workload_count(RtWorkloadState *workload, RtRayKind kind, RtError *e
     RT_TRY(deal_shares(workload, &workload->sets[kind], error));
     if (workload->experiment->limit_seconds > 0) RT_TRY(each_cell(workload, kind, check_seconds, error));
     RT_TRY(each_cell(workload, kind, count_cell, error));
+    if (workload->options->hits || workload->options->counts)
+        RT_TRY(each_cell(workload, kind, save_cell, error));
     return workload->distributions ? each_cell(workload, kind, distribute_cell, error) : RT_OK;
 }

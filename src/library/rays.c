@@ -5,9 +5,6 @@
 
 #include <string.h>
 
-/* Neighbours that stay together when a set is thinned, as in `raytally bench`. */
-enum { COHERENT_RUN = 256 };
-
 static RtStatus check_kind(enum raytally_ray_kind kind, RtError *error) {
     if ((unsigned)kind < RT_RAY_KIND_COUNT) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT, "no kind of rays has the number %d", (int)kind);
@@ -34,7 +31,7 @@ static RtStatus record(const RtAccel *accel, enum raytally_ray_kind kind, const 
                              .random = kind == RAYTALLY_RANDOM ? how->limit : 0,
                              .threads = how->threads};
     RtStatus status = rt_rayset_record(sets, accel, &recording, error);
-    if (status == RT_OK) status = rt_rayset_limit(&sets[kind], how->limit, COHERENT_RUN, out, error);
+    if (status == RT_OK) status = rt_rayset_limit(&sets[kind], how->limit, RT_COHERENT_RUN, out, error);
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&sets[k]);
     return status;
 }

@@ -52,6 +52,7 @@ typedef struct RtTimed {
     double *wall;        /* [rounds.most] out: seconds per ray by the wall clock, all threads together */
     bool *broken;        /* as in RtRunner, or NULL */
     const RtHardwareEvent *events; /* [RT_HARDWARE_COUNT] that a remote runner counts; NULL: none */
+    uint32_t repeats;              /* out: passes over the rays in the last round */
 } RtTimed;
 
 typedef struct RtTiming {
@@ -71,7 +72,7 @@ RtStatus rt_runner_open_local(RtRunner *runner, const RtTimed *timed, int thread
 void rt_runner_close_local(RtRunner *runner);
 
 /* Times timed[0..count) in interleaved rounds (rounds.h), *done of them. */
-RtStatus rt_measure_time(const RtTimed *timed, size_t count, const RtTiming *timing, uint32_t *done,
+RtStatus rt_measure_time(RtTimed *timed, size_t count, const RtTiming *timing, uint32_t *done,
                          RtError *error);
 
 #endif

@@ -5,6 +5,7 @@
 #include "core/text/npy.h"
 
 #include <inttypes.h>
+#include <stdlib.h>
 #include <string.h>
 
 _Static_assert(offsetof(RtRay, org) == 0 && offsetof(RtRay, tmin) == 3 * sizeof(float) &&
@@ -77,25 +78,32 @@ RtStatus rt_rays_load(const char *path, RtRayKind kind, RtRaySet *set, RtError *
 
 /* ---- answers and counts ---- */
 
-RtStatus rt_hits_save(const RtRows *rows, const char *path, RtError *error) {
-    RtOutput output;
-    RT_TRY(rt_output_open(&output, path, error));
-    rt_npy_begin(output.file, rows->blocked ? "'|b1'" : "[('t', '<f4'), ('object', '<i8')]", rows->count, 0);
-    if (rows->blocked) fwrite(rows->blocked, sizeof(bool), rows->count, output.file);
+void rt_hits_put(const RtRows *rows, FILE *out) {
+    rt_npy_begin(out, rows->blocked ? "'|b1'" : "[('t', '<f4'), ('object', '<i8')]", rows->count, 0);
+    if (rows->blocked) fwrite(rows->blocked, sizeof(bool), rows->count, out);
     for (uint64_t i = 0; rows->hits && i < rows->count; i++) {
         int64_t object = rows->hits[i].object == RT_NO_OBJECT ? -1 : (int64_t)rows->hits[i].object;
-        fwrite(&rows->hits[i].t, sizeof(float), 1, output.file);
-        fwrite(&object, sizeof object, 1, output.file);
+        fwrite(&rows->hits[i].t, sizeof(float), 1, out);
+        fwrite(&object, sizeof object, 1, out);
     }
-    return rt_output_commit(&output, error);
 }
 
-RtStatus rt_counts_save(const RtRows *rows, const char *path, RtError *error) {
+void rt_counts_put(const RtRows *rows, FILE *out) {
 #define FIELD(name, meaning) "('" #name "', '<u8'), "
-    RtOutput output;
-    RT_TRY(rt_output_open(&output, path, error));
-    rt_npy_begin(output.file, "[" RT_TALLY_COUNTERS(FIELD) "]", rows->count, 0);
-    fwrite(rows->tallies, sizeof(RtTally), rows->count, output.file);
-    return rt_output_commit(&output, error);
+    rt_npy_begin(out, "[" RT_TALLY_COUNTERS(FIELD) "]", rows->count, 0);
+    fwrite(rows->tallies, sizeof(RtTally), rows->count, out);
 #undef FIELD
+}
+
+RtStatus rt_rows_add(const RtRows *rows, void (*put)(const RtRows *rows, FILE *out), RtArrayFile *file,
+                     const char *name, RtError *error) {
+    char *array = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&array, &size);
+    if (!out) return rt_fail_memory(error, "an array", 0);
+    put(rows, out);
+    RtStatus status = fclose(out) == 0 ? RT_OK : rt_fail_memory(error, "an array", size);
+    if (status == RT_OK) status = rt_array_file_add(file, name, array, size, error);
+    free(array);
+    return status;
 }

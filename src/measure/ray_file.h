@@ -4,6 +4,7 @@
 #ifndef RT_MEASURE_RAY_FILE_H
 #define RT_MEASURE_RAY_FILE_H
 
+#include "core/text/npz.h"
 #include "measure/measure.h"
 
 /* Floats per row: origin, tmin, direction, tmax. */
@@ -16,11 +17,15 @@ RtStatus rt_rays_save(const RtRaySet *set, const char *path, RtError *error);
  * (rt_ray_is_valid) by its row. Free with rt_rayset_clear. */
 RtStatus rt_rays_load(const char *path, RtRayKind kind, RtRaySet *set, RtError *error);
 
-/* Writes the hit of each ray: fields t (float32; inf for a miss) and object (int64; -1 for a miss); for
- * any-hit kinds, an array of bool. */
-RtStatus rt_hits_save(const RtRows *rows, const char *path, RtError *error);
+/* Writes an array of the hit of each ray: fields t (float32; inf for a miss) and object (int64; -1 for a
+ * miss); for any-hit kinds, an array of bool. */
+void rt_hits_put(const RtRows *rows, FILE *out);
 
-/* Writes the cost of each ray: a field of uint64 for each counter. */
-RtStatus rt_counts_save(const RtRows *rows, const char *path, RtError *error);
+/* Writes an array of the cost of each ray: a field of uint64 for each counter. */
+void rt_counts_put(const RtRows *rows, FILE *out);
+
+/* Adds the array that `put` writes to the file. */
+RtStatus rt_rows_add(const RtRows *rows, void (*put)(const RtRows *rows, FILE *out), RtArrayFile *file,
+                     const char *name, RtError *error);
 
 #endif

@@ -28,7 +28,7 @@ typedef struct RtRunner {
     bool parallel;    /* runs on several threads: the wall clock is then the clock of the comparison */
     double *seconds;  /* [most] out: by the clock of the comparison, else the thread's processor time */
     double *wall;     /* [most] out: by the wall clock, or NULL */
-    uint32_t repeats; /* scratch: runs in a round */
+    uint32_t repeats; /* out: runs in the last round */
     bool *broken;     /* in and out: set by RT_BROKEN, and never run again. NULL: RT_BROKEN ends the rounds */
 } RtRunner;
 

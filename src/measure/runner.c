@@ -193,7 +193,7 @@ void rt_runner_close(RtRunner *runner) {
 
 /* ---- timing ---- */
 
-RtStatus rt_measure_time(const RtTimed *timed, size_t count, const RtTiming *timing, uint32_t *done,
+RtStatus rt_measure_time(RtTimed *timed, size_t count, const RtTiming *timing, uint32_t *done,
                          RtError *error) {
     RtRunner *runners = rt_alloc(count, sizeof(RtRunner));
     if (!runners) return rt_fail_memory(error, "the rounds", count * sizeof(RtRunner));
@@ -205,7 +205,10 @@ RtStatus rt_measure_time(const RtTimed *timed, size_t count, const RtTiming *tim
         status = RT_OK;
     }
     if (status == RT_OK) status = rt_rounds_run(runners, count, &timing->rounds, done, error);
-    for (size_t i = 0; i < count; i++) rt_runner_close(&runners[i]);
+    for (size_t i = 0; i < count; i++) {
+        timed[i].repeats = runners[i].repeats;
+        rt_runner_close(&runners[i]);
+    }
     rt_free(runners);
     return status;
 }

@@ -14,6 +14,9 @@
 
 #define RT_MAX_RAYS_A_KIND UINT64_C(100000000)
 
+/* Neighbours that stay together when a set is thinned, unless the user asks for another number. */
+#define RT_COHERENT_RUN 256
+
 typedef struct RtRaySet {
     RtRayKind kind;
     uint64_t count;
@@ -37,9 +40,9 @@ RtStatus rt_rayset_record(RtRaySet *sets, const RtAccel *accel, const RtRecordin
 RtStatus rt_rayset_thin(const RtRaySet *from, uint64_t stride, RtRaySet *to, RtError *error);
 
 /* Keeps at most `limit` rays, evenly spread, in runs of `run` neighbours: one of every ceil(count / limit)
- * runs. Runs of 1 thin the set as above: the widest spread, for counting. Longer runs, up to a 64th of
- * `limit`, are picked at random within their group; they preserve the coherence that packets and caches need,
- * for timing. Runs of 64 and more are cut to a multiple of 64, which keeps whole blocks of 8 x 8 samples of
+ * runs. Runs of 1 thin the set as above: the widest spread, for counting. Longer runs are picked at random
+ * within their group; they preserve the coherence that packets and caches need, for timing. A run is at most
+ * a 64th of `limit`, so that a small limit still samples many places of the image, at least 32. Runs of 64 and more are cut to a multiple of 64, which keeps whole blocks of 8 x 8 samples of
  * primary rays. */
 RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, uint64_t run, RtRaySet *to, RtError *error);
 

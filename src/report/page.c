@@ -67,13 +67,13 @@ void rt_page_card(FILE *out, const char *title, const char *text) {
 }
 
 void rt_page_verdict(FILE *out, const RtResults *results) {
-    const uint32_t claims = results->experiment->claim_count;
-    uint32_t counts[RT_CLAIM_VERDICT_COUNT] = {0};
+    uint32_t counts[RT_CLAIM_VERDICT_COUNT] = {0}, claims = results->experiment->claim_count;
     for (uint32_t i = 0; i < claims; i++) {
         RtClaimResult result;
         rt_claim_judge(results, i, &result);
         counts[result.verdict]++;
     }
+    claims -= counts[RT_CLAIM_FIGURE];
     const uint32_t wrong = counts[RT_CLAIM_FALSE], open = counts[RT_CLAIM_UNDECIDED];
     const uint32_t unmeasured = counts[RT_CLAIM_UNMEASURED];
     fprintf(out, "<span class=\"verdict %s\">",

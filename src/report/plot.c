@@ -56,6 +56,10 @@ static RtStatus write_names(const RtResults *results, const char *directory, con
     for (uint32_t t = 0; t < experiment->workload_count; t++) {
         if (results->workloads[t].known) fprintf(out, "%s ", experiment->workloads[t].label);
     }
+    fprintf(out, "\"\nfiles = \"");
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        if (results->workloads[t].known) fprintf(out, "%s ", experiment->workloads[t].file_name);
+    }
     fprintf(out, "\"\naccels = \"");
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
         if (has_rows(results, c)) fprintf(out, "%s ", experiment->candidates[c].label);
@@ -90,12 +94,12 @@ static RtStatus write_histograms(const RtResults *results, const char *directory
     RtOutput output;
     RT_TRY(rt_output_open_in(&output, directory, "plots/" HISTOGRAM_SCRIPT, error));
     for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
-        const char *scene = results->experiment->workloads[t].label;
+        const RtWorkload *workload = &results->experiment->workloads[t];
         fprintf(
             output.file,
             "#: histograms-%s: Object tests and steps of each ray on %s, and sizes and depths of leaves, as\n"
             "#:   fractions per doubling of the value. Both axes are logarithmic; 0 is drawn at 1/2.\n",
-            scene, scene);
+            workload->file_name, workload->label);
     }
     fputs("reset session\nload \"plots/names.gp\"\n", output.file);
     rt_page_lines(output.file, style_gp);

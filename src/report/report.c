@@ -31,7 +31,8 @@ static void put_claims(FILE *out, const RtResults *results) {
     static const char *const classes[] = {[RT_CLAIM_HOLDS] = "holds",
                                           [RT_CLAIM_UNDECIDED] = "open",
                                           [RT_CLAIM_FALSE] = "false",
-                                          [RT_CLAIM_UNMEASURED] = "open"};
+                                          [RT_CLAIM_UNMEASURED] = "open",
+                                          [RT_CLAIM_FIGURE] = "readout"};
     const RtExperiment *experiment = results->experiment;
     fputs("<section class=\"card\" id=\"verdict\"><h2>Verdict</h2><p>", out);
     rt_page_verdict(out, results);
@@ -242,7 +243,7 @@ static void put_more_tables(FILE *out, const RtResults *results) {
 }
 
 static void put_tables(FILE *out, const RtResults *results) {
-    char interval[RT_MAX_INTERVAL_TITLE];
+    char interval[RT_MAX_INTERVAL_TITLE], sentence[RT_MAX_SENTENCE];
     rt_interval_title(results->experiment, interval);
     fprintf(
         out,
@@ -258,6 +259,8 @@ static void put_tables(FILE *out, const RtResults *results) {
         if (!results->workloads[t].known) continue;
         rt_html_wrap(out, "<section class=\"scene-tables\" data-scene=\"", label, "\"><h3>");
         rt_html_wrap(out, "", label, "</h3>\n");
+        rt_learnt_sentence(results, t, sentence);
+        if (*sentence) rt_html_wrap(out, "<p>", sentence, "</p>\n");
         put_table(out, results, t, RT_TOTALS_MORE, "all kinds of rays together");
         fputs("<details><summary>By kind of rays</summary>", out);
         put_table(out, results, t, RT_CELLS_MORE, "by kind of rays");

@@ -11,7 +11,6 @@
 #include "verify/replay.h"
 #include "verify/verify_table.h"
 
-#include <ctype.h>
 #include <string.h>
 
 /* A larger share of marginal answers is a problem for given rays; our own rays target the margins. */
@@ -160,14 +159,12 @@ static void on_tried(void *context, uint32_t left, uint32_t tries) {
     doing(context, what);
 }
 
-/* FOLDER/NUMBER-SCENE-SPEC.json, in characters that every file system accepts. */
+/* FOLDER/NUMBER-SCENE-SPEC.json. */
 static RtStatus replay_path(const Run *run, const char *scene, const char *spec, char *path, RtError *error) {
     const char *folder = run->verify->folder ? run->verify->folder : FAILURES;
-    char name[160];
-    snprintf(name, sizeof name, "%04zu-%.60s-%.50s.json", json_array_size(run->rows) + 1, scene, spec);
-    for (char *c = name; *c; c++) {
-        if (!isalnum((unsigned char)*c) && *c != '.') *c = '-';
-    }
+    char text[160], name[sizeof text];
+    snprintf(text, sizeof text, "%04zu-%.60s-%.50s.json", json_array_size(run->rows) + 1, scene, spec);
+    rt_file_name(text, name, sizeof name);
     RT_TRY(rt_directory_create(folder, error));
     return rt_path_join(folder, name, path, error);
 }

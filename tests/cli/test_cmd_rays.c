@@ -206,7 +206,7 @@ RT_TEST(what_does_not_go_together_is_refused_and_leaves_no_file) {
         {"bench balls:size=1 --accel bvh --ray-stride 2 --rays primary --hits y.npy", "of one accelerator"},
         {"bench balls:size=1 --accel bvh --baseline grid --rays primary --counts y.npy",
          "of one accelerator"},
-        {"bench balls:size=1 --accel bvh --hits y.npy", "one kind of rays"},
+        {"bench balls:size=1 --accel bvh --hits y.npy", "or name FILE.npz, which takes several"},
         {"bench balls:size=1 --accel bvh --rays primary --hits y.npy --counts y.npy", "named twice"},
         {"bench balls:size=1 --accel bvh --rays nearest --rays-from y.npy --hits y.npy", "named twice"},
         {"bench balls:size=1 --accel bvh --rays primary --size 8x8 --count-only --hits no/y.npy",

@@ -52,7 +52,7 @@ RT_TEST_IN_PLACE(a_bad_claim_is_refused_with_its_line_when_the_yaml_is_read) {
     write_changed(place, "small.yaml", claiming, "bvh > 1000", "bhv > 1000");
     assert_bad_input(
         load_small(place, false, error),
-        ":14:5: expect[1]: 'bhv' is not the label of one of the accelerators; claims are written as in");
+        ":14:5: expect[1]: 'bhv' is not the label of one of the accelerators: choose one of bvh, grid, ");
 }
 
 /* What is found, and better claims, come after the run. */

@@ -130,6 +130,29 @@ RT_TEST_IN_PLACE(a_dry_run_lists_the_cells_and_touches_nothing) {
     assert_in_file(place, "output", "12 cells"); /* bvh, the baseline, too */
 }
 
+RT_TEST_IN_PLACE(a_dry_run_of_a_changed_experiment_estimates_its_time_from_the_previous_results) {
+    const Place *place = *state;
+    write_changed(place, "first.yaml", long_experiment, "density=1..16*2", "density=1|4");
+    assert_int_equal(raytally(place, "run first.yaml --threads 1 --out out"), 0);
+    char *journal = read_in(place, "out/cells.jsonl");
+    write_changed(place, "small.yaml", long_experiment, "label: balls, size: 24x24", "label: balls, size: 32x32");
+    assert_ends(place, "run small.yaml --threads 1 --out out --dry-run", 0, "replace it with --force, or choose");
+    assert_in_file(place, "message", "another version of it ('small')");
+    assert_in_file(place, "output", "cloud:n=400              grid:density=4               diffuse      measured before");
+    assert_in_file(place, "output", "cloud:n=400              grid:density=8               diffuse      \n");
+    assert_in_file(place, "output", "balls                    grid:density=4               diffuse      \n");
+    /* 3 scenes by 2 kinds by 4 accelerators. */
+    assert_in_file(place, "output", "56 cells, 24 of them as in the previous run; all of them take about ");
+    assert_same_file(place, "out/cells.jsonl", journal);
+    rt_free(journal);
+    assert_ends(place, "run small.yaml --out out --force --dry-run", 0, "");
+    assert_in_file(place, "output", "56 cells, 24 of them as in the previous run");
+    /* Nothing is known if this program cannot read the previous experiment. */
+    write_in(place, "out/experiment.yaml", "name: unreadable\n");
+    assert_ends(place, "run small.yaml --out out --dry-run", 0, "another version of it");
+    assert_in_file(place, "output", "56 cells, 0 of them as in the previous run; all of them take at least ");
+}
+
 RT_TEST_IN_PLACE(a_part_is_measured_and_then_the_rest) {
     const Place *place = *state;
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out whole"), 0);

@@ -57,6 +57,48 @@ RT_TEST_IN_PLACE(results_are_refused_unless_they_are_gone_on_with_or_begun_anew)
     rt_free(page);
 }
 
+/* ---- what is measured ---- */
+
+RT_TEST_IN_PLACE(run_and_bench_thin_a_set_to_the_same_rays) {
+    const Place *place = *state;
+    write_in(place, "thin.yaml",
+             "name: thin\nquestion: a\nprediction: b\nscenes: [{scene: balls:size=1, size: 200x200}]\n"
+             "accelerators: [{accel: bvh}, {accel: grid}]\nlimit: 17000\ncount_only: yes\n");
+    assert_ends(place, "run thin.yaml", 0, "");
+    assert_ends(place,
+                "bench balls:size=1 --size 200x200 --accel bvh --accel grid --limit 17000 --count-only "
+                "--csv thin.csv",
+                0, "");
+    assert_equal_files(place, "results/thin/counts.csv", "thin.csv");
+    /* Runs are as long as when it was measured, even if the default has changed since. */
+    assert_ends(place, "reproduce results/thin", 0, "");
+    char *manifest = read_in(place, "results/thin/manifest.json");
+    write_changed(place, "results/thin/manifest.json", manifest, "\"coherent_run\": 256",
+                  "\"coherent_run\": 1");
+    assert_ends(place, "reproduce results/thin", 1, "differs from the new counts");
+    rt_free(manifest);
+}
+
+RT_TEST_IN_PLACE(a_few_rays_that_are_repeated_until_they_are_learnt_cause_a_warning) {
+    const Place *place = *state;
+    const char *warning = "Too few rays: within a round, an accelerator repeats 72 primary rays";
+    write_changed(place, "short.yaml", small_experiment, "count_only: yes", "rounds: 2\nmilliseconds: 1");
+    assert_ends(place, "run short.yaml", 0, "");
+    assert_in_file(place, "output", "Too few rays: within a round");
+    assert_in_file(place, "results/small/report.html", warning);
+    assert_in_file(place, "results/small/times.csv", ",rounds,repeats,");
+    assert_ends(place, "report results/small", 0, ""); /* from the journal */
+    assert_in_file(place, "results/small/report.html", warning);
+    write_changed(place, "once.yaml", small_experiment, "count_only: yes", "rounds: 2\nmilliseconds: 0");
+    assert_ends(place, "run once.yaml --force", 0, "");
+    assert_not_in_file(place, "output", "Too few rays");
+    assert_not_in_file(place, "results/small/report.html", "Too few rays");
+    assert_ends(place, "bench balls:size=1 --accel bvh --rays primary --size 10x10 --rounds 2", 0, "");
+    assert_in_file(place, "output", "Too few rays");
+    assert_ends(place, "bench balls:size=1 --accel bvh --rays primary --size 10x10 --milliseconds 0", 0, "");
+    assert_not_in_file(place, "output", "Too few rays");
+}
+
 RT_TEST_IN_PLACE(a_finished_run_that_is_resumed_shows_its_table_and_keeps_its_manifest) {
     const Place *place = *state;
     assert_ends(place, "run small.yaml --threads 1 --resume", 0, "");

@@ -221,7 +221,7 @@ RT_TEST(what_goes_wrong_while_tracing_is_a_status_of_all_who_trace) {
     const RtFrameOptions options = {.depth = 1, .threads = 1};
     double seconds, wall;
     assert_ok(rt_accel_builder_run(&builder, &stage->scene, &accel, error));
-    const RtTimed timed = {.accel = accel, .set = &set, .seconds = &seconds, .wall = &wall};
+    RtTimed timed = {.accel = accel, .set = &set, .seconds = &seconds, .wall = &wall};
     const RtTiming timing = {.rounds = {.rounds = 1, .most = 1}, .threads = 1};
     uint32_t done;
     assert_went_wrong(rt_equivalence_check(&stage->reference, accel, 1, &equivalence, &failure), &failure);

@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "experiment/claims_points.h"
+
+#include "core/base/words.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const RtEstimate UNKNOWN = {NAN, NAN, NAN, NAN};
+
+bool rt_claim_point_known(const RtClaimPoint *point) {
+    return !isnan(point->x) && !isnan(point->y.median);
+}
+
+/* ---- values ---- */
+
+static RtEstimate exactly(double value) {
+    return (RtEstimate){value, value, value, value};
+}
+
+/* The rays from which on it is ahead: of no number if only of few. */
+static double break_even(const RtResults *results, uint32_t t, uint32_t c) {
+    const double rays = rt_results_break_even(results, t, c);
+    return rays < 0 ? (double)INFINITY : rays;
+}
+
+static RtEstimate value_at(const RtResults *results, RtClaimMeasure measure, RtRayKind kind, uint32_t t,
+                           uint32_t c) {
+    if (measure >= RT_CLAIM_BUILD_TIME) {
+        const RtBuildResult *build = rt_build_at(results, t, c);
+        if (!build->known) return UNKNOWN;
+        if (measure == RT_CLAIM_BUILD_TIME) return exactly(build->seconds);
+        if (measure == RT_CLAIM_BREAK_EVEN) return exactly(break_even(results, t, c));
+        return exactly(measure == RT_CLAIM_BYTES ? (double)build->structure.bytes
+                                                 : build->structure.predicted_cost);
+    }
+    const RtCost cost = rt_results_cost(results, t, c, kind);
+    const double counts[] = {[RT_CLAIM_OBJECT_TESTS] = cost.object_tests,
+                             [RT_CLAIM_EXTENT_TESTS] = cost.extent_tests,
+                             [RT_CLAIM_STEPS] = cost.steps,
+                             [RT_CLAIM_CSG_TESTS] = cost.csg_tests};
+    if (!cost.whole) return UNKNOWN;
+    return measure == RT_CLAIM_TIME ? cost.seconds : exactly(counts[measure]);
+}
+
+/* The time of `c` over that of `other`, from ratios of throughput paired by round. */
+static bool paired(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c, uint32_t other,
+                   RtEstimate *out) {
+    const RtExperiment *experiment = results->experiment;
+    const bool all = claim->kind == RT_ALL_RAYS;
+    const RtRayKind kind = all ? experiment->kinds[0] : claim->kind;
+    if (claim->measure != RT_CLAIM_TIME || (all && experiment->kind_count > 1)) return false;
+    const uint32_t over = rt_results_candidate(results, t, c, kind);
+    const uint32_t under = rt_results_candidate(results, t, other, kind);
+    if (over == RT_FASTEST_BASELINE || under == RT_FASTEST_BASELINE) return false; /* nothing was timed */
+    const RtCell *own = rt_cell_at(results, t, over, kind), *its = rt_cell_at(results, t, under, kind);
+    if (!own->timed || !its->timed) return false;
+    if (own->baseline == under) {
+        *out = (RtEstimate){
+            .median = 1 / own->ratio.median, .low = 1 / own->ratio.high, .high = 1 / own->ratio.low};
+        return true;
+    }
+    *out = its->ratio;
+    return its->baseline == over;
+}
+
+/* The accelerator that `c` is compared with on workload `t`; false if it is not measured there. If it sweeps
+ * the claim's parameter, too, it is the one with the same value. */
+static bool find_other(const RtExperiment *experiment, const RtClaim *claim, uint32_t t, uint32_t c,
+                       uint32_t *other) {
+    *other = RT_FASTEST_BASELINE;
+    if (strcmp(claim->other, experiment->best) == 0) return true;
+    const char *own = claim->key.key && !claim->key.scene ? rt_swept_of(experiment, &claim->key, t, c) : NULL;
+    for (*other = 0; *other < experiment->candidate_count; ++*other) {
+        if (!rt_candidate_is_called(&experiment->candidates[*other], claim->other)) continue;
+        const char *its = own ? rt_swept_of(experiment, &claim->key, t, *other) : NULL;
+        if (rt_candidate_runs(experiment, *other, t) && (!its || rt_swept_equal(its, own))) return true;
+    }
+    return false;
+}
+
+static RtEstimate ratio_at(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c) {
+    RtEstimate ratio;
+    uint32_t other;
+    if (!find_other(results->experiment, claim, t, c, &other)) return UNKNOWN;
+    if (paired(results, claim, t, c, other, &ratio)) return ratio;
+    const RtEstimate over = value_at(results, claim->measure, claim->kind, t, c);
+    const RtEstimate under = value_at(results, claim->measure, claim->kind, t, other);
+    return (RtEstimate){
+        .median = over.median / under.median, .low = over.low / under.high, .high = over.high / under.low};
+}
+
+/* ---- the cells of a claim ---- */
+
+static bool is_called(const RtExperiment *experiment, const RtClaim *claim, uint32_t c) {
+    if (c == RT_FASTEST_BASELINE) return strcmp(claim->accel, experiment->best) == 0;
+    if (strcmp(claim->accel, RT_CLAIM_ALL) != 0)
+        return rt_candidate_is_called(&experiment->candidates[c], claim->accel);
+    return !*experiment->best || !rt_candidate_is_baseline(experiment, c);
+}
+
+static bool is_about(const RtExperiment *experiment, const RtClaim *claim, uint32_t t, uint32_t c) {
+    if (!is_called(experiment, claim, c)) return false;
+    if (c != RT_FASTEST_BASELINE && !rt_candidate_runs(experiment, c, t)) return false;
+    if (*claim->scene && !rt_workload_is_called(&experiment->workloads[t], claim->scene)) return false;
+    for (uint32_t p = 0; p < claim->place_count; p++) {
+        const char *value = rt_swept_of(experiment, &claim->places[p].key, t, c);
+        if (!value || !rt_swept_equal(value, claim->places[p].value)) return false;
+    }
+    return true;
+}
+
+/* Whether a measured structure has no such value: no prediction, no counts, or it is the baseline. */
+static bool lacks(const RtResults *results, RtClaimMeasure measure, uint32_t t, uint32_t c) {
+    const RtBuildResult *build = rt_build_at(results, t, c);
+    if (!build->known) return false;
+    if (measure == RT_CLAIM_PREDICTED_COST) return isnan(build->structure.predicted_cost);
+    if (measure == RT_CLAIM_BREAK_EVEN) return rt_candidate_is_baseline(results->experiment, c);
+    return measure > RT_CLAIM_TIME && measure < RT_CLAIM_BUILD_TIME && !build->counts;
+}
+
+/* The x of a cell; false if the claim excludes it. */
+static bool abscissa(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c, double *x) {
+    *x = 0;
+    if (claim->form == RT_CLAIM_CORRELATION) {
+        *x = value_at(results, claim->first, claim->kind, t, c).median;
+        bool all = strcmp(claim->accel, RT_CLAIM_ALL) == 0;
+        return !(all && (lacks(results, claim->first, t, c) || lacks(results, claim->measure, t, c)));
+    }
+    if (claim->by_objects) {
+        const RtWorkloadResult *workload = &results->workloads[t];
+        *x = workload->known ? (double)workload->objects : (double)NAN;
+        return true;
+    }
+    const char *value = claim->key.key ? rt_swept_of(results->experiment, &claim->key, t, c) : "0";
+    return value && rt_swept_number(value, x);
+}
+
+uint32_t rt_claim_gather(const RtResults *results, const RtClaim *claim, RtClaimPoint *points) {
+    const RtExperiment *experiment = results->experiment;
+    const bool one = *experiment->best && strcmp(claim->accel, experiment->best) == 0;
+    uint32_t count = 0;
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        for (uint32_t i = 0; i < (one ? 1 : experiment->candidate_count); i++) {
+            const uint32_t c = one ? RT_FASTEST_BASELINE : i;
+            RtClaimPoint point = {.workload = t, .candidate = c};
+            if (!is_about(experiment, claim, t, c) || !abscissa(results, claim, t, c, &point.x)) continue;
+            point.y = *claim->other ? ratio_at(results, claim, t, c)
+                                    : value_at(results, claim->measure, claim->kind, t, c);
+            points[count++] = point;
+        }
+    }
+    return count;
+}
+
+static bool is_measured(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c) {
+    if (claim->measure >= RT_CLAIM_BUILD_TIME) return rt_build_at(results, t, c)->known;
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        const RtRayKind kind = (RtRayKind)k;
+        const uint32_t measured = rt_results_candidate(results, t, c, kind);
+        const bool asked = claim->kind == RT_ALL_RAYS || claim->kind == kind;
+        if (asked && measured != RT_FASTEST_BASELINE && rt_cell_at(results, t, measured, kind)->counted)
+            return true;
+    }
+    return false;
+}
+
+bool rt_claim_any_measured(const RtResults *results, const RtClaim *claim, const RtClaimPoint *points,
+                           uint32_t count) {
+    for (uint32_t i = 0; i < count; i++) {
+        const RtClaimPoint *p = &points[i];
+        uint32_t other = p->candidate;
+        bool found = !*claim->other || find_other(results->experiment, claim, p->workload, other, &other);
+        if (found && is_measured(results, claim, p->workload, p->candidate) &&
+            is_measured(results, claim, p->workload, other))
+            return true;
+    }
+    return false;
+}
+
+/* ---- lines ---- */
+
+/* Whether two points differ only in the parameter. */
+static bool same_line(const RtExperiment *experiment, const RtClaim *claim, const RtClaimPoint *a,
+                      const RtClaimPoint *b) {
+    enum { ROOM = RT_MAX_LABEL + RT_MAX_SWEPT * (RT_MAX_NAME + RT_MAX_SWEPT_CHARS + 2) };
+    char names[2][2 * ROOM];
+    const RtClaimPoint *points[] = {a, b};
+    if (a->candidate == RT_FASTEST_BASELINE && claim->by_objects) return true;
+    for (int i = 0; i < 2; i++) {
+        const RtWorkload *workload = &experiment->workloads[points[i]->workload];
+        names[i][0] = '\0';
+        if (!claim->by_objects) {
+            snprintf(names[i], sizeof names[i], "%s ", workload->stem);
+            rt_swept_name(&workload->swept, claim->key.scene ? claim->key.key : NULL, names[i],
+                          sizeof names[i]);
+        }
+        if (points[i]->candidate == RT_FASTEST_BASELINE) continue;
+        const RtCandidate *candidate = &experiment->candidates[points[i]->candidate];
+        rt_append_text(names[i], sizeof names[i], " %s", candidate->stem);
+        rt_swept_name(&candidate->swept, claim->key.scene ? NULL : claim->key.key, names[i], sizeof names[i]);
+    }
+    return strcmp(names[0], names[1]) == 0;
+}
+
+/* Scenes may have equally many objects; unknown numbers come first. */
+static int by_x(const void *a, const void *b) {
+    const RtClaimPoint *p = a, *q = b;
+    if (isnan(p->x) != isnan(q->x)) return isnan(p->x) ? -1 : 1;
+    if (p->x != q->x && !isnan(p->x)) return p->x < q->x ? -1 : 1;
+    return (p->workload > q->workload) - (p->workload < q->workload);
+}
+
+uint32_t rt_claim_line(const RtExperiment *experiment, const RtClaim *claim, RtClaimPoint *points,
+                       uint32_t count) {
+    uint32_t end = 1;
+    for (uint32_t i = end; i < count; i++) {
+        if (!same_line(experiment, claim, &points[0], &points[i])) continue;
+        RtClaimPoint point = points[i];
+        points[i] = points[end];
+        points[end++] = point;
+    }
+    qsort(points, end, sizeof *points, by_x);
+    return end;
+}
