@@ -9,9 +9,9 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const measures[] = {"time",  "object_tests",   "extent_tests",
-                                       "steps", "csg_tests",      "build_time",
-                                       "bytes", "predicted_cost", "break_even"};
+static const char *const measures[] = {"time",       "object_tests", "extent_tests", "steps",
+                                       "csg_tests",  "build_time",   "bytes",        "predicted_cost",
+                                       "break_even", "render_time",  "query_share"};
 static const char objects[] = "objects";
 enum { MEASURES = sizeof measures / sizeof measures[0], MOST_WORDS = 32 };
 
@@ -97,8 +97,11 @@ static RtStatus read_measure(Reader *r, RtClaimMeasure *measure) {
         offer(&choice, measures[m]);
         if (!take(r, measures[m])) continue;
         *measure = (RtClaimMeasure)m;
-        if ((m != RT_CLAIM_TIME && m != RT_CLAIM_BREAK_EVEN) || !r->experiment->count_only) return RT_OK;
-        return fail(r, "this experiment times nothing (count_only)");
+        const bool rendered = m == RT_CLAIM_RENDER_TIME || m == RT_CLAIM_QUERY_SHARE;
+        const bool timed = rendered || m == RT_CLAIM_TIME || m == RT_CLAIM_BREAK_EVEN;
+        if (timed && r->experiment->count_only) return fail(r, "this experiment times nothing (count_only)");
+        if (rendered && !r->experiment->render) return fail(r, "%s needs `render: yes`", measures[m]);
+        return RT_OK;
     }
     return fail_choice(r, word(r), "a measure", &choice);
 }

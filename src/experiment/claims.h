@@ -12,7 +12,7 @@
  *              | correlation of MEASURE and MEASURE of ACCEL
  *     PLACE    = any of: on SCENE, for KIND rays, at largest PARAM, at smallest PARAM, at PARAM=VALUE
  *     MEASURE  = time, object_tests, extent_tests, steps, csg_tests (each per ray), build_time, bytes,
- *                predicted_cost, break_even (rays)
+ *                predicted_cost, break_even (rays), render_time (s), query_share (`render`)
  *
  * ACCEL and SCENE are labels, or the common part of the labels of a sweep. ACCEL may be `all`, every
  * accelerator of the list; or the name of a baseline of several settings ("embree:best"): the setting that is
@@ -58,7 +58,9 @@ typedef enum RtClaimMeasure {
     RT_CLAIM_BUILD_TIME, /* and those below: of structures, so not of a kind of rays */
     RT_CLAIM_BYTES,
     RT_CLAIM_PREDICTED_COST,
-    RT_CLAIM_BREAK_EVEN
+    RT_CLAIM_BREAK_EVEN,
+    RT_CLAIM_RENDER_TIME,
+    RT_CLAIM_QUERY_SHARE
 } RtClaimMeasure;
 
 typedef enum RtClaimForm {

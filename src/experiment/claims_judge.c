@@ -119,10 +119,9 @@ static void judge_figure(const RtClaim *claim, Figure *figure) {
 #define PUT(result, ...) rt_append_text((result)->figures, RT_MAX_CLAIM_FIGURES, __VA_ARGS__)
 
 static const char *unit_of(RtClaimMeasure measure) {
-    static const char *const units[] = {[RT_CLAIM_TIME] = " ns",
-                                        [RT_CLAIM_BUILD_TIME] = " s",
-                                        [RT_CLAIM_BYTES] = " bytes",
-                                        [RT_CLAIM_BREAK_EVEN] = " rays"};
+    static const char *const units[] = {
+        [RT_CLAIM_TIME] = " ns",         [RT_CLAIM_BUILD_TIME] = " s",  [RT_CLAIM_BYTES] = " bytes",
+        [RT_CLAIM_BREAK_EVEN] = " rays", [RT_CLAIM_RENDER_TIME] = " s", [RT_CLAIM_QUERY_SHARE] = ""};
     return units[measure] ? units[measure] : "";
 }
 

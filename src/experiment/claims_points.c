@@ -31,6 +31,9 @@ static RtEstimate value_at(const RtResults *results, RtClaimMeasure measure, RtR
         const RtBuildResult *build = rt_build_at(results, t, c);
         if (!build->known) return UNKNOWN;
         if (measure == RT_CLAIM_BUILD_TIME) return exactly(build->seconds);
+        if (measure >= RT_CLAIM_RENDER_TIME && !build->render.known) return UNKNOWN;
+        if (measure == RT_CLAIM_RENDER_TIME) return build->render.seconds;
+        if (measure == RT_CLAIM_QUERY_SHARE) return build->render.share;
         if (measure == RT_CLAIM_BREAK_EVEN) return exactly(break_even(results, t, c));
         return exactly(measure == RT_CLAIM_BYTES ? (double)build->structure.bytes
                                                  : build->structure.predicted_cost);

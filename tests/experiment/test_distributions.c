@@ -206,9 +206,11 @@ RT_TEST_IN_PLACE(a_run_that_renders_has_the_time_of_a_frame_and_the_part_of_quer
     RtCsv csv;
     Path path = path_in(place, "out/render.csv");
     write_changed(place, "small.yaml", spread, "distributions: yes\ncount_only: yes",
-                  "render: yes\nrounds: 6\nmilliseconds: 0");
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+                  "render: yes\nrounds: 6\nmilliseconds: 0\nexpect:\n"
+                  "  - query_share of bvh < 1\n  - render_time of grid < 3600");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --strict"), 0);
     assert_in_file(place, "output", "% in queries");
+    assert_in_file(place, "output", "holds            query_share of bvh < 1");
     char *first = read_in(place, "out/render.csv");
     assert_int_equal(remove(path.text), 0);
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 0);
