@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # clustering: time per ray over the time to build, of each method; and time over expected cost.
-#: 1-cost: Time per ray over build time, for each method of clustering and kind of rays. To the lower left is better.
+#: 1-cost: Time per ray over build time, for each method of clustering and kind of rays, with intervals.
+#:   To the lower left is better.
 #: 2-expected: Time per random ray over the expected cost of the tree, with intervals. Both axes are logarithmic.
 
 method(a) = word(accels, a)[17:*]
@@ -22,8 +23,8 @@ do for [s = 1:words(scenes)] {
   } else { unset ylabel; set format y ""; unset key }
   plot for [a = 1:words(accels)] NaN with points pointtype 7 linecolor rgb hue(a) title method(a), \
        for [k = 1:words(kinds)] NaN with points pointtype mark(k + 4) linecolor rgb soft title word(kinds, k), \
-       for [a = 1:words(accels)] for [k = 1:words(kinds)] "times.csv" using (row(s, k, a) ? column("build_seconds") * 1000 : NaN):(column("ns")) \
-         with points pointtype mark(k + 4) pointsize 0.9 linewidth 1.5 linecolor rgb hue(a) notitle
+       for [a = 1:words(accels)] for [k = 1:words(kinds)] "times.csv" using (row(s, k, a) ? column("build_seconds") * 1000 : NaN): \
+         (column("ns")):(column("ns_low")):(column("ns_high")) with yerrorbars pointtype mark(k + 4) pointsize 0.9 linewidth 1.5 linecolor rgb hue(a) notitle
 }
 unset multiplot
 unset output

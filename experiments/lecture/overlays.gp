@@ -23,7 +23,7 @@ has(stack, o) = strstrt("+".stack."+", "+".word(stacks, o)."+") > 0
 sum_of(n, stack) = 1 - (sum [o = 1:3] (has(stack, o) ? saved[3 * (n - 1) + o] : 0))
 
 eval canvas("frame", 960, 420)
-set multiplot layout 1, words(scenes) margins screen 0.07, 0.985, 0.28, 0.82 spacing screen 0.02, 0.1
+set multiplot layout 1, words(scenes) margins screen 0.085, 0.985, 0.28, 0.82 spacing screen 0.02, 0.1
 set xrange [0.5 : words(stacks) + 0.5]
 set logscale y
 set yrange [0.005 : 4]
