@@ -82,7 +82,7 @@ RtEstimate rt_claim_correlation(const RtClaimPoint *points, uint32_t count) {
 /* The curves of the logarithm of y between points[0] and points[1]; `at` is 0 at the first and 1 at the
  * second. */
 static double x_at(const RtClaimPoint *points, double at) {
-    return rt_power(points[0].x, 1 - at) * rt_power(points[1].x, at);
+    return at == 0 ? points[0].x : rt_power(points[0].x, 1 - at) * rt_power(points[1].x, at);
 }
 
 static double between(double first, double second, double at) {
@@ -150,10 +150,10 @@ uint32_t rt_claim_crossovers(const RtClaimPoint *points, uint32_t count, RtCross
 
 double rt_claim_median_crossover(const RtClaimPoint *points, uint32_t count, const RtCrossover *crossover,
                                  double after) {
-    for (uint32_t i = 0; i + 1 < count; i++) {
-        const double first = points[i].y.median, second = points[i + 1].y.median;
-        const double at = first == 1 ? 0 : root(first, second), x = x_at(&points[i], at);
-        if (at == 1 && second != 1) continue;
+    for (uint32_t i = 0; i < count; i++) {
+        const RtClaimPoint *p = &points[i];
+        const double at = i + 1 < count ? root(p[0].y.median, p[1].y.median) : 1;
+        const double x = p->y.median == 1 ? p->x : at < 1 ? x_at(p, at) : 0;
         if (x > after && x >= crossover->low && x <= crossover->high) return x;
     }
     return (double)NAN;

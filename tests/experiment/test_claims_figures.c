@@ -60,6 +60,9 @@ RT_TEST(the_number_of_objects_is_a_parameter_over_all_scenes) {
                "2.00 at objects=2500, 2.00 at objects=10000 (bvh)");
         set(t, 0, 20 + t, 100, 100);
     }
+    set(2, 0, 24, 100, 100);
+    expect(RT_CLAIM_FALSE, "object_tests of bvh falls with objects",
+           "2.30 at objects=1250, 2.40 at objects=2500");
     results.workloads[3].known = false;
     expect(RT_CLAIM_UNDECIDED, "exponent of time of bvh in objects < 5", "1 of 4 values are unknown");
 }
@@ -164,6 +167,9 @@ RT_TEST(a_curve_over_a_parameter_of_one_accelerator_crosses_the_value_of_the_oth
     expect(RT_CLAIM_FIGURE, "crossover of object_tests of grid and bvh in density on random:n=10",
            "grid is above bvh from density=1.41 (grid on random:n=10)");
     expect(RT_CLAIM_FIGURE, "crossover of object_tests of bvh and grid:density=2 in n on random", "from");
+    expect(RT_CLAIM_FIGURE,
+           "crossover of object_tests of grid and grid in density on random:n=10", /* equal */
+           "grid may cross grid at density=1.00 and 2.00 and 4.00 [<1.00, >4.00] (grid on random:n=10)");
 }
 
 /* Logarithms to base 10: 0, 1, 2, 3 and 0, 2, 1, 3, so r = 0.8; artanh 0.8 -+ 1.96 / sqrt(4 - 3). */

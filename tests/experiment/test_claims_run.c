@@ -35,6 +35,18 @@ RT_TEST_IN_PLACE(a_false_claim_is_said_to_be_and_is_exit_code_1_if_strict) {
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume --strict"), 0);
 }
 
+RT_TEST_IN_PLACE(a_figure_is_shown_with_the_claims_and_counted_with_none) {
+    const Place *place = *state;
+    write_changed(place, "small.yaml", claiming, "object_tests of bvh > 1000",
+                  "object_tests of bvh\n  - exponent of object_tests of grid in density");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --strict"), 0);
+    assert_in_file(place, "output", "figure           object_tests of bvh\n");
+    assert_in_file(place, "output", " over 3 values (grid on random:n=200)\n");
+    assert_in_file(place, "out/report.html",
+                   "<span class=\"verdict readout\">figure</span> object_tests of bvh");
+    assert_in_file(place, "out/report.html", "\"verdict holds\">1 of 1 claim holds</span>");
+}
+
 RT_TEST_IN_PLACE(a_claim_about_a_missing_plugin_has_no_measurements_and_is_no_failure) {
     const Place *place = *state;
     write_changed(place, "missing.yaml", claiming, "bvh > 1000", "nobodys > 1000");
