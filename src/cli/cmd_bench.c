@@ -78,8 +78,7 @@ static bool takes_one(const Options *o) {
 /* All files need different names. */
 static void check_rows(const Options *o, struct argp_state *state) {
     const RtExperiment *e = o->recording.experiment;
-    const char *const files[] = {o->hits, o->counts, o->csv,
-                                 *e->rays_from ? e->rays_from : NULL};
+    const char *const files[] = {o->hits, o->counts, o->csv, *e->rays_from ? e->rays_from : NULL};
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < i; k++) {
             if (files[i] && files[k] && strcmp(files[i], files[k]) == 0)
@@ -88,8 +87,9 @@ static void check_rows(const Options *o, struct argp_state *state) {
     }
     if (!takes_one(o)) return;
     if (e->candidate_count != 1 || e->candidates[0].ray_stride != 1) {
-        argp_error(state, "--hits and --counts write the rays of one accelerator to FILE.npy: give one --accel, "
-                          "no --ray-stride, and no other --baseline; or name FILE.npz, which takes several");
+        argp_error(state,
+                   "--hits and --counts write the rays of one accelerator to FILE.npy: give one --accel, "
+                   "no --ray-stride, and no other --baseline; or name FILE.npz, which takes several");
     }
     if (e->kind_count != 1)
         argp_error(state, "--hits and --counts write one kind of rays to FILE.npy: give --rays KIND, or name "
@@ -316,10 +316,11 @@ static RtStatus bench(Options *o, RtError *error) {
     RtExperiment *experiment = o->recording.experiment;
     RT_TRY(rt_experiment_add_scenes(experiment, &o->recording.like, o->scene, "", error));
     if (experiment->workload_count > 1 && takes_one(o))
-        return rt_fail(error, RT_BAD_INPUT,
-                       "--hits and --counts write the rays of one scene to FILE.npy: '%s' stands for %u; name "
-                       "FILE.npz",
-                       o->scene, experiment->workload_count);
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "--hits and --counts write the rays of one scene to FILE.npy: '%s' stands for %u; name "
+            "FILE.npz",
+            o->scene, experiment->workload_count);
     strcpy(experiment->name, "bench");
     RT_TRY(rt_experiment_check(experiment, where, error));
     if (o->worker) return rt_worker_serve(experiment, NULL, error);

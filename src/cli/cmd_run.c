@@ -119,7 +119,8 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, RtError *er
     for (uint32_t t = 0; t < e->workload_count; t++) {
         for (uint32_t c = 0; c < e->candidate_count; c++) {
             for (uint32_t k = 0; rt_candidate_runs(e, c, t) && k < e->kind_count; k++) {
-                if (rt_only_cell(only, e, t, c, e->kinds[k])) print_cell(results, t, c, e->kinds[k], previous);
+                if (rt_only_cell(only, e, t, c, e->kinds[k]))
+                    print_cell(results, t, c, e->kinds[k], previous);
             }
         }
     }

@@ -243,7 +243,8 @@ static void name_files(RtExperiment *experiment, uint32_t i) {
     bool taken = true;
     rt_file_name(experiment->workloads[i].label, name, sizeof name);
     for (uint32_t number = 1; taken; number++) {
-        snprintf(file, sizeof experiment->workloads[i].file_name, number > 1 ? "%s-%" PRIu32 : "%s", name, number);
+        snprintf(file, sizeof experiment->workloads[i].file_name, number > 1 ? "%s-%" PRIu32 : "%s", name,
+                 number);
         taken = false;
         for (uint32_t t = 0; t < i; t++) taken |= strcasecmp(file, experiment->workloads[t].file_name) == 0;
     }

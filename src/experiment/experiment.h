@@ -52,12 +52,12 @@ void rt_swept_name(const RtSwept *swept, const char *but, char *out, size_t size
 /* One scene of an experiment. Labels are unique, without blanks and quotes: names in CSV and plots. */
 typedef struct RtWorkload {
     char label[RT_MAX_LABEL];
-    char file_name[RT_MAX_LABEL + 8]; /* the label as a part of file names (rt_file_name); unique, also without
-                                     regard to case: rt_experiment_check */
-    char stem[RT_MAX_LABEL];      /* the common part of the labels of one sweep; else the label */
-    RtSwept swept;                /* of the scene's parameters */
-    uint32_t entry;               /* of the list in the YAML; a sweep makes several workloads */
-    char spec[RT_MAX_SCENE_NAME]; /* as written */
+    char file_name[RT_MAX_LABEL + 8]; /* the label as a part of file names (rt_file_name); unique, also
+                                     without regard to case: rt_experiment_check */
+    char stem[RT_MAX_LABEL];          /* the common part of the labels of one sweep; else the label */
+    RtSwept swept;                    /* of the scene's parameters */
+    uint32_t entry;                   /* of the list in the YAML; a sweep makes several workloads */
+    char spec[RT_MAX_SCENE_NAME];     /* as written */
     char path[RT_MAX_PATH];  /* for rt_scene_open: a built-in, or the file relative to the YAML's folder */
     uint32_t width, height;  /* of the frame whose rays are recorded; 0 x 0: the camera's */
     uint32_t depth;          /* levels of the ray tree */

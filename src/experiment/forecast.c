@@ -26,9 +26,9 @@ static uint32_t find_workload(const RtExperiment *in, const RtWorkload *like) {
 /* The candidate with the same spec on workload `t`; candidate_count if there is none. */
 static uint32_t find_candidate(const RtExperiment *in, uint32_t t, const RtCandidate *like) {
     uint32_t c = 0;
-    while (c < in->candidate_count && (strcmp(in->candidates[c].spec, like->spec) != 0 ||
-                                       in->candidates[c].ray_stride != like->ray_stride ||
-                                       !rt_candidate_runs(in, c, t)))
+    while (c < in->candidate_count &&
+           (strcmp(in->candidates[c].spec, like->spec) != 0 ||
+            in->candidates[c].ray_stride != like->ray_stride || !rt_candidate_runs(in, c, t)))
         c++;
     return c;
 }
@@ -51,8 +51,8 @@ static void learn_candidate(const RtResults *from, uint32_t t, uint32_t c, RtRes
 
 static void learn_all(const RtResults *from, RtResults *to) {
     const RtExperiment *old = from->experiment, *new = to->experiment;
-    const bool same_sets = old->seed == new->seed && old->limit == new->limit &&
-                           memcmp(old->kinds, new->kinds, sizeof new->kinds) == 0;
+    const bool same_sets = old->seed == new->seed &&
+                           old->limit == new->limit &&memcmp(old->kinds, new->kinds, sizeof new->kinds) == 0;
     for (uint32_t t = 0; t < new->workload_count; t++) {
         const uint32_t old_t = find_workload(old, &new->workloads[t]);
         if (old_t == old->workload_count) continue;

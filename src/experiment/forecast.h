@@ -12,9 +12,10 @@ typedef struct RtForecast {
     bool guessed;             /* nothing was timed yet: `left` is a lower bound */
 } RtForecast;
 
-/* Fills unknown `results` with counts and times of the run in `directory`, of another version of the experiment
- * or by another build: those of the same scenes, frames and accelerators, whatever their labels. They are good
- * for a forecast only. Nothing is filled in if this build cannot read the experiment of that run. */
+/* Fills unknown `results` with counts and times of the run in `directory`, of another version of the
+ * experiment or by another build: those of the same scenes, frames and accelerators, whatever their labels.
+ * They are good for a forecast only. Nothing is filled in if this build cannot read the experiment of that
+ * run. */
 RtStatus rt_forecast_learn(const char *directory, RtResults *results, RtError *error);
 
 /* Ignores kinds of rays that a recorded scene does not have. */

@@ -3,7 +3,6 @@
 
 #include "accel/accel.h"
 #include "core/base/words.h"
-#include "experiment/result_tables.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -378,7 +377,5 @@ void rt_print_frames(const RtResults *results, FILE *out) {
         rt_frame_title(results, t, text);
         fprintf(out, "\n%s: %s\n\n", experiment->workloads[t].label, text);
         print_rows(results, t, out);
-        rt_learnt_sentence(results, t, text);
-        if (*text) rt_print_wrapped(text, out);
     }
 }

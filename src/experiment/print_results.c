@@ -175,16 +175,21 @@ void rt_learnt_sentence(const RtResults *results, uint32_t workload, char out[RT
     for (uint32_t k = 0; k < experiment->kind_count; k++) {
         const RtCell *cell = learnt_cell(results, workload, experiment->kinds[k]);
         if (!cell) continue;
-        rt_append_text(out, RT_MAX_SENTENCE, "%s %" PRIu64 " %s ray%s %.0f times",
-                       *out ? "," : "Too few rays: within a round, an accelerator repeats", cell->tally.rays,
+        if (!*out)
+            snprintf(out, RT_MAX_SENTENCE, "Too few rays on %s: within a round, an accelerator repeats",
+                     experiment->workloads[workload].label);
+        else
+            rt_append_text(out, RT_MAX_SENTENCE, ",");
+        rt_append_text(out, RT_MAX_SENTENCE, " %" PRIu64 " %s ray%s %.0f times", cell->tally.rays,
                        rt_experiment_kind_name(experiment, experiment->kinds[k]), rt_plural(cell->tally.rays),
                        cell->repeats);
     }
     if (!*out) return;
-    rt_append_text(out, RT_MAX_SENTENCE,
-                   ". Caches and branch predictors learn them, so they take less time than in a frame. %s, or "
-                   "run them once a round (milliseconds: 0).",
-                   *experiment->rays_from ? "Give more rays" : "Record more (a larger size or limit)");
+    rt_append_text(
+        out, RT_MAX_SENTENCE,
+        ". Caches and branch predictors learn them, so they take less time than in a frame. %s, or "
+        "run them once a round (milliseconds: 0).",
+        *experiment->rays_from ? "Give more rays" : "Record more (a larger size or limit)");
 }
 
 static void print_learnt(const RtResults *results, uint32_t t, FILE *out) {
@@ -305,6 +310,7 @@ void rt_print_summary(const RtResults *results, FILE *out) {
         if (!*text) continue;
         fputc('\n', out);
         rt_print_wrapped(text, out);
+        print_learnt(results, t, out);
     }
     if (experiment->render) print_rendered(results, out);
     if (experiment->hardware) rt_print_hardware(results, out);

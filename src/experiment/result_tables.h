@@ -91,8 +91,8 @@ void rt_print_summary(const RtResults *results, FILE *out);
 #define RT_MAX_SENTENCE 640
 void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]);
 
-/* A warning that names the kinds of rays of a workload which some accelerator was timed on so few of, repeated
- * so often, that processors learn them (RT_LEARNT_RAYS), and a remedy. "" if there are none. */
+/* A warning that names the kinds of rays of a workload which some accelerator was timed on so few of,
+ * repeated so often, that processors learn them (RT_LEARNT_RAYS), and a remedy. "" if there are none. */
 void rt_learnt_sentence(const RtResults *results, uint32_t workload, char out[RT_MAX_SENTENCE]);
 
 /* The least coverage of the intervals: "95 %", or less if rounds are too few. */

@@ -207,8 +207,8 @@ static RtStatus save_cell(RtWorkloadState *workload, uint32_t c, RtRayKind kind,
     RtRows rows;
     snprintf(name, sizeof name, "%s/%s/%s", experiment->workloads[workload->index].label,
              rt_candidate_label(experiment, c), rt_experiment_kind_name(experiment, kind));
-    RtStatus status = rt_measure_rows(workload->accels[c], &workload->shares[c].set, options->threads, &rows,
-                                      error);
+    RtStatus status =
+        rt_measure_rows(workload->accels[c], &workload->shares[c].set, options->threads, &rows, error);
     if (status == RT_OK && options->hits)
         status = rt_rows_add(&rows, rt_hits_put, options->hits, name, error);
     if (status == RT_OK && options->counts)

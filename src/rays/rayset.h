@@ -42,8 +42,8 @@ RtStatus rt_rayset_thin(const RtRaySet *from, uint64_t stride, RtRaySet *to, RtE
 /* Keeps at most `limit` rays, evenly spread, in runs of `run` neighbours: one of every ceil(count / limit)
  * runs. Runs of 1 thin the set as above: the widest spread, for counting. Longer runs are picked at random
  * within their group; they preserve the coherence that packets and caches need, for timing. A run is at most
- * a 64th of `limit`, so that a small limit still samples many places of the image, at least 32. Runs of 64 and more are cut to a multiple of 64, which keeps whole blocks of 8 x 8 samples of
- * primary rays. */
+ * a 64th of `limit`, so that a small limit still samples many places of the image, at least 32. Runs of 64
+ * and more are cut to a multiple of 64, which keeps whole blocks of 8 x 8 samples of primary rays. */
 RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, uint64_t run, RtRaySet *to, RtError *error);
 
 /* Makes a set of `count` rays, unset, for the caller to fill; rt_rayset_seal then sets its fingerprint. */

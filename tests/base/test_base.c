@@ -18,14 +18,22 @@
 
 RT_TEST(a_text_makes_a_file_name_that_every_system_takes) {
     static const char *const names[][2] = {
-        {"balls", "balls"},          {"bunny-69k_2.5", "bunny-69k_2.5"},
-        {"balls:size=3", "balls-size-3"}, {"n=1|2*3?<>\"\\/", "n-1-2-3------"},
-        {"a b\tc", "a-b-c"},         {"ends.", "ends_"},
-        {"..", "__"},                 {".hidden", "_hidden"},
-        {"-n", "_n"},                 {"", "_"},
-        {"con", "_con"},              {"Aux.png", "_Aux.png"},
-        {"LPT9", "_LPT9"},            {"com", "com"},
-        {"con.", "_con_"},            {"console", "console"},
+        {"balls", "balls"},
+        {"bunny-69k_2.5", "bunny-69k_2.5"},
+        {"balls:size=3", "balls-size-3"},
+        {"n=1|2*3?<>\"\\/", "n-1-2-3------"},
+        {"a b\tc", "a-b-c"},
+        {"ends.", "ends_"},
+        {"..", "__"},
+        {".hidden", "_hidden"},
+        {"-n", "_n"},
+        {"", "_"},
+        {"con", "_con"},
+        {"Aux.png", "_Aux.png"},
+        {"LPT9", "_LPT9"},
+        {"com", "com"},
+        {"con.", "_con_"},
+        {"console", "console"},
         {"a name that is too long for its place", "a-name-that-is-too-long"},
     };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {

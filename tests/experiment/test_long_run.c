@@ -135,10 +135,13 @@ RT_TEST_IN_PLACE(a_dry_run_of_a_changed_experiment_estimates_its_time_from_the_p
     write_changed(place, "first.yaml", long_experiment, "density=1..16*2", "density=1|4");
     assert_int_equal(raytally(place, "run first.yaml --threads 1 --out out"), 0);
     char *journal = read_in(place, "out/cells.jsonl");
-    write_changed(place, "small.yaml", long_experiment, "label: balls, size: 24x24", "label: balls, size: 32x32");
-    assert_ends(place, "run small.yaml --threads 1 --out out --dry-run", 0, "replace it with --force, or choose");
+    write_changed(place, "small.yaml", long_experiment, "label: balls, size: 24x24",
+                  "label: balls, size: 32x32");
+    assert_ends(place, "run small.yaml --threads 1 --out out --dry-run", 0,
+                "replace it with --force, or choose");
     assert_in_file(place, "message", "another version of it ('small')");
-    assert_in_file(place, "output", "cloud:n=400              grid:density=4               diffuse      measured before");
+    assert_in_file(place, "output",
+                   "cloud:n=400              grid:density=4               diffuse      measured before");
     assert_in_file(place, "output", "cloud:n=400              grid:density=8               diffuse      \n");
     assert_in_file(place, "output", "balls                    grid:density=4               diffuse      \n");
     /* 3 scenes by 2 kinds by 4 accelerators. */

@@ -49,7 +49,7 @@ RT_TEST_IN_PLACE(four_shards_make_the_counts_of_one_run) {
     assert_not_in_file(place, "message", "nothing was left to measure");
     assert_equal_files(place, "one/counts.csv", "all/counts.csv");
     assert_true(rt_file_exists(path_in(place, "all/manifest.json").text));
-    assert_true(rt_file_exists(path_in(place, "all/images/cloud:n=200.png").text));
+    assert_true(rt_file_exists(path_in(place, "all/images/cloud-n-200.png").text));
     assert_in_file(place, "all/report.html", "cloud:n=200");
     assert_int_equal(raytally(place, "reproduce all"), 0);
     Path times = path_in(place, "all/times.csv");
@@ -87,16 +87,16 @@ RT_TEST_IN_PLACE(a_merge_that_fails_loses_nothing_of_earlier_results) {
     char *before[4];
     assert_int_equal(raytally(place, "merge s1 s2 s3 s4 -o all"), 0);
     for (int i = 0; i < 4; i++) before[i] = read_in(place, kept[i]);
-    Path picture = path_in(place, "s4/images/cloud:n=100.png");
+    Path picture = path_in(place, "s4/images/cloud-n-100.png");
     assert_int_equal(remove(picture.text), 0);
     assert_int_equal(mkdir(picture.text, 0777), 0);
     assert_ends(place, "merge s1 s2 s3 s4 -o all --force", 2,
-                "s4/images/cloud:n=100.png: this is not a file");
+                "s4/images/cloud-n-100.png: this is not a file");
     for (int i = 0; i < 4; i++) {
         assert_same_file(place, kept[i], before[i]);
         rt_free(before[i]);
     }
-    assert_true(rt_file_exists(path_in(place, "all/images/cloud:n=200.png").text));
+    assert_true(rt_file_exists(path_in(place, "all/images/cloud-n-200.png").text));
 }
 
 RT_TEST_IN_PLACE(a_merge_into_the_directory_of_another_run_is_refused_and_removes_nothing) {

@@ -81,10 +81,10 @@ RT_TEST_IN_PLACE(run_and_bench_thin_a_set_to_the_same_rays) {
 
 RT_TEST_IN_PLACE(a_few_rays_that_are_repeated_until_they_are_learnt_cause_a_warning) {
     const Place *place = *state;
-    const char *warning = "Too few rays: within a round, an accelerator repeats 72 primary rays";
+    const char *warning = "Too few rays on balls:size=1: within a round, an accelerator repeats 72 primary";
     write_changed(place, "short.yaml", small_experiment, "count_only: yes", "rounds: 2\nmilliseconds: 1");
     assert_ends(place, "run short.yaml", 0, "");
-    assert_in_file(place, "output", "Too few rays: within a round");
+    assert_in_file(place, "output", "Too few rays on cloud: within a round");
     assert_in_file(place, "results/small/report.html", warning);
     assert_in_file(place, "results/small/times.csv", ",rounds,repeats,");
     assert_ends(place, "report results/small", 0, ""); /* from the journal */

@@ -282,8 +282,7 @@ static bool is_device(const char *name) {
 }
 
 void rt_file_name(const char *text, char *out, size_t size) {
-    static const char portable[] =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
+    static const char portable[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
     const bool device = is_device(text);
     snprintf(out, size, "%s%s", device || !*text ? "_" : "", text);
     for (char *c = out; *c; c++) {

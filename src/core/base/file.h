@@ -85,9 +85,10 @@ void rt_directory_remove_files(const char *folder, const char *suffix);
  * Rejects a path that is too long. */
 RtStatus rt_path_join(const char *folder, const char *name, char *out, RtError *error);
 
-/* Makes a file name that every system takes from `text`: POSIX's portable characters (letters, digits, '.', '_'
- * and '-'; others become '-'), no '.' or '-' at the start, no '.' at the end, no name of a device of Windows
- * ("con", "nul.txt"). Cuts it to the size of `out`, 8 bytes or more. Different texts may get the same name. */
+/* Makes a file name that every system takes from `text`. POSIX's portable characters (letters, digits, '.',
+ * '_', '-') stay, others become '-'; it has no '.' or '-' at the start, no '.' at the end, and is no device
+ * of Windows ("con", "nul.txt"). Cuts it to `size`, 8 bytes or more. Different texts may get the same name.
+ */
 void rt_file_name(const char *text, char *out, size_t size);
 
 /* Writes the folder of `path` ("" if it has none) to out[0..RT_MAX_PATH). */

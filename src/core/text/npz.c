@@ -69,8 +69,8 @@ static void put_in_directory(FILE *out, const RtArrayEntry *entry) {
     put(out, 0x02014b50, 4);
     put(out, VERSION, 2);
     put_entry(out, entry, DIRECTORY_EXTRA);
-    put(out, 0, 2 + 2 + 2); /* comment, disk, attributes of the content */
-    put(out, 0, 4);         /* attributes of the file */
+    put(out, 0, 2 + 2 + 2);  /* comment, disk, attributes of the content */
+    put(out, 0, 4);          /* attributes of the file */
     put(out, IN_64_BITS, 4); /* offset */
     fputs(entry->name, out);
     put_extra(out, entry, DIRECTORY_EXTRA);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Files of arrays: FILE.npz, any number of NumPy arrays by name, as numpy.savez writes them; any other path, one
- * array alone (core/text/npy.h).
+/* Files of arrays: FILE.npz, any number of NumPy arrays by name, as numpy.savez writes them; any other path,
+ * one array alone (core/text/npy.h).
  *
  * An .npz file is a ZIP archive of .npy files, here without compression, and always with the 64-bit fields of
  * ZIP64, since one array may have more than 4 GB (PKWARE's APPNOTE.TXT 6.3.10). The same arrays make the same
