@@ -318,8 +318,8 @@ static void explain_directories(const RtComparison *comparison, char *out, size_
                        RT_LEAST_ACCELS);
     if (!isnan(comparison->all_accels))
         rt_append_text(out, size,
-                       "The median accelerator: %.3f. A faster clock, or a change of most accelerators, "
-                       "looks the same. ",
+                       "All accelerators together, by their median: %.3f, as a different clock would give, "
+                       "too. ",
                        comparison->all_accels);
     rt_append_text(out, size,
                    "Intervals of cells cover the rounds of these processes only, not how processes differ: "

@@ -12,7 +12,7 @@
  * below, whatever the noise: the interval is exact.
  *
  * Two directories are one process each, at two times. Their rounds show how the times of these processes
- * spread, not how processes differ: of runs of one build, single cells differ by up to 56 % in their medians.
+ * spread, not how processes differ: single cells of two runs of one build may differ by tens of per cent.
  * So cells have intervals, over rounds (rt_estimate_unpaired), but no verdicts. Verdicts are of accelerators:
  *
  *     log(before / after) of an accelerator on a scene = its change + that of the machine + of the process
