@@ -220,7 +220,7 @@ static RtStatus compare_loaded(const Options *o, RtExperiment *experiments, RtRe
         RT_TRY(rt_run_load(o->subjects[i], &experiments[i], &results[i], error));
         names[i % 2][i / 2] = o->subjects[i];
     }
-    for (uint32_t p = 0; p < pairs; p++)
+    for (size_t p = 0; p < pairs; p++)
         RT_TRY(compare_plugins(&o->subjects[2 * p], &experiments[2 * p], comparison, error));
     rt_join_names(names[0], pairs, comparison->before, sizeof comparison->before);
     rt_join_names(names[1], pairs, comparison->after, sizeof comparison->after);

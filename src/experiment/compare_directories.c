@@ -160,7 +160,8 @@ static RtStatus find_accels(RtComparison *comparison, RtError *error) {
 typedef struct Groups {
     double *ratios;   /* [accel][most] */
     double *together; /* [count] the medians */
-    uint32_t count, most;
+    uint32_t count;
+    size_t most;
 } Groups;
 
 static void add_group(RtComparison *comparison, const char *scene, uint32_t pair, Groups *groups) {
@@ -203,9 +204,9 @@ static bool is_first_of_scene(const RtComparison *comparison, uint32_t cell) {
 }
 
 static RtStatus judge_accels(RtComparison *comparison, RtError *error) {
-    const uint32_t most = RT_MAX_WORKLOADS * comparison->pairs;
+    const size_t most = (size_t)RT_MAX_WORKLOADS * comparison->pairs;
     RT_TRY(find_accels(comparison, error));
-    Groups groups = {.ratios = rt_alloc((size_t)comparison->accel_count * most, sizeof(double)),
+    Groups groups = {.ratios = rt_alloc(comparison->accel_count * most, sizeof(double)),
                      .together = rt_alloc(most, sizeof(double)),
                      .most = most};
     RtStatus status =
@@ -225,7 +226,7 @@ RtStatus rt_compare_results(const RtResults *results, uint32_t pairs, RtComparis
                             RtError *error) {
     comparison->pairs = pairs;
     for (uint32_t p = 0; p < pairs; p++) {
-        const RtResults *before = &results[2 * p], *after = before + 1;
+        const RtResults *before = &results[(size_t)2 * p], *after = before + 1;
         const Pair straight = {before, after, p, pairs, false}, swapped = {after, before, p, pairs, true};
         RT_TRY(compare_all(&straight, comparison, error));
         RT_TRY(compare_all(&swapped, comparison, error));
