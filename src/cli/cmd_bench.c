@@ -118,9 +118,7 @@ static void take_milliseconds(void *options, const char *text, struct argp_state
 }
 
 static void take_callgrind(void *options, const char *text, struct argp_state *state) {
-    Options *o = options;
-    o->callgrind =
-        text ? (uint64_t)rt_cli_integer(state, "--callgrind", text, 1, 100000000) : RT_CALLGRIND_RAYS;
+    ((Options *)options)->callgrind = rt_cli_callgrind(text, state);
 }
 
 static void take_rays_from(void *options, const char *text, struct argp_state *state) {
@@ -307,7 +305,8 @@ static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, 
     if (status == RT_OK && o->callgrind)
         rt_notify(&o->workload.observer, "counting instructions under valgrind, which takes a while");
     rt_progress_end(&progress);
-    if (status == RT_OK && o->callgrind) status = rt_callgrind_run(callgrind, results, o->argv + 1, error);
+    if (status == RT_OK && o->callgrind)
+        status = rt_callgrind_run(callgrind, NULL, results, o->argv + 1, error);
     return status;
 }
 

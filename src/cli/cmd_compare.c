@@ -3,6 +3,9 @@
  * directories, or two programs that run in turns. */
 #include "cli/cli.h"
 #include "cli/recording.h"
+#include "core/base/memory.h"
+#include "core/base/words.h"
+#include "experiment/callgrind.h"
 #include "experiment/compare.h"
 #include "experiment/manifest.h"
 #include "experiment/plugins_used.h"
@@ -13,13 +16,16 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Runs of one build, one after the other, differ by less. */
-static const double MARGIN_OF_DIRECTORIES = 0.05;
+/* Where one accelerator of four changes, the median of all moves by less. */
+static const double MARGIN_OF_DIRECTORIES = 0.02;
+
+enum { MAX_SUBJECTS = 64 };
 
 typedef struct Options {
     RtRecordingOptions recording;
-    const char *subjects[2]; /* directories; or an experiment or a scene */
-    int subject_count;
+    const char *subjects[MAX_SUBJECTS]; /* directories; or an experiment or a scene */
+    uint32_t subject_count;
+    uint64_t callgrind; /* rays of a kind at most; 0: it is not asked for */
     const char *with;
     bool worker, quick, strict, json;
     uint32_t rounds;
@@ -30,7 +36,7 @@ typedef struct Options {
 
 static void take_subject(void *options, const char *text, struct argp_state *state) {
     Options *o = options;
-    if (o->subject_count == 2) argp_error(state, "'%s' is one too many", text);
+    if (o->subject_count == MAX_SUBJECTS) argp_error(state, "'%s' is one too many", text);
     o->subjects[o->subject_count++] = text;
 }
 
@@ -38,18 +44,25 @@ static void take_accel(void *options, const char *text, struct argp_state *state
     rt_cli_add_accels(((Options *)options)->recording.experiment, text, state);
 }
 
+static void take_callgrind(void *options, const char *text, struct argp_state *state) {
+    ((Options *)options)->callgrind = rt_cli_callgrind(text, state);
+}
+
 static void finish(void *options, struct argp_state *state) {
     Options *o = options;
     RtExperiment *e = o->recording.experiment;
     const bool programs = o->with || o->worker;
-    if (!programs && o->subject_count != 2)
-        argp_error(state, "give two result directories, or --with PROGRAM and an EXPERIMENT or a SCENE");
+    if (!programs && (o->subject_count == 0 || o->subject_count % 2 != 0))
+        argp_error(state, "give two result directories, or pairs of them, BEFORE AFTER BEFORE AFTER; or "
+                          "--with PROGRAM and an EXPERIMENT or a SCENE");
     if (programs && o->subject_count != 1)
         argp_error(state, "--with takes one EXPERIMENT.yaml, or one SCENE with --accel");
-    if (!programs &&
-        (e->candidate_count || o->recording.frame || o->recording.kinds || o->until > 0 || o->rounds))
-        argp_error(state, "rays, --accel, --rounds and --until need --with PROGRAM: two result directories "
-                          "are compared as they are");
+    if (!programs && (e->candidate_count || o->recording.frame || o->recording.kinds || o->until > 0 ||
+                      o->rounds || o->callgrind))
+        argp_error(state, "rays, --accel, --rounds, --until and --callgrind need --with PROGRAM: result "
+                          "directories are compared as they are");
+    if (o->callgrind && !e->candidate_count)
+        argp_error(state, "--callgrind takes a SCENE with --accel, as `bench` does, and no EXPERIMENT");
     if (programs && !e->candidate_count && (o->recording.frame || o->recording.kinds))
         argp_error(state, "an EXPERIMENT defines its rays; for a SCENE give --accel");
     if (o->threads >= 0) o->timing = o->threads;
@@ -63,8 +76,7 @@ static const RtOption options[] = {
      "For a SCENE: an accelerator, or `all` of them; may be repeated"},
     {"strict", 0, NULL, RT_TO_FLAG(strict), "Exit code 1 if anything is slower"},
     {"margin", 0, "P%", RT_TO_PERCENT(margin),
-     "Report only differences beyond P % (default: 0 with --with; 5% for directories, which are single "
-     "runs)"},
+     "Report only differences beyond P % (default: 0 with --with; 2% for directories)"},
     {"rounds", 0, "N", RT_TO_INTEGER(rounds, 1, RT_MAX_ROUNDS),
      "With --with: at least N rounds, each with both programs restarted (10; more if there are many cells)"},
     {"until", 0, "P%", RT_TO_PERCENT(until),
@@ -72,6 +84,9 @@ static const RtOption options[] = {
      "--patience seconds"},
     {"patience", 0, "SECONDS", RT_TO_SECONDS(patience, 1, 86400),
      "With --until: at most this many seconds in total (600)"},
+    {"callgrind", 0, "N", RT_TO_TAKE_OPTIONAL(take_callgrind),
+     "With --with and a SCENE: also compare instructions per ray of both programs, on N rays of each kind "
+     "(4096), by valgrind, as `bench --callgrind` counts them. They tell a change from code that only moved"},
     {"quick", 0, NULL, RT_TO_FLAG(quick), "Run the smaller variant of the EXPERIMENT"},
     {"threads", 0, "N", RT_TO_INTEGER(threads, 0, 1024), "Threads, as in `raytally bench`"},
     {"json", 0, NULL, RT_TO_FLAG(json), "One JSON document on stdout instead of the table"},
@@ -108,13 +123,39 @@ static void on_notice(void *context, const char *message) {
     fprintf(stderr, "%sraytally: %s\n", *terminal ? "\r\033[K" : "", message);
 }
 
-/* A worker gets the same arguments, so it measures the same. */
+typedef struct OwnOption {
+    const char *name; /* the last has none */
+    bool value;       /* that may be the next argument */
+} OwnOption;
+
+/* Those of argv without some options, a new array. */
+static RtStatus arguments_without(const OwnOption *options_left_out, char **argv, char ***arguments,
+                                  RtError *error) {
+    int count = 0, used = 0;
+    while (argv[count]) count++;
+    *arguments = rt_alloc((size_t)count + 1, sizeof(char *));
+    if (!*arguments) return rt_fail_memory(error, "arguments", 0);
+    for (int i = 1; i < count; i++) {
+        const char *name = strncmp(argv[i], "--", 2) == 0 ? argv[i] + 2 : "";
+        const size_t length = strcspn(name, "="); /* argp takes any unique beginning of a name */
+        const OwnOption *own = options_left_out;
+        while (own->name && (length == 0 || strncmp(name, own->name, length) != 0)) own++;
+        if (!own->name) (*arguments)[used++] = argv[i];
+        if (own->value && name[length] != '=') i++;
+    }
+    return RT_OK;
+}
+
+/* A worker gets the same arguments, so it measures the same; older ones do not know --callgrind. */
 static RtStatus compare_programs(Options *o, char **argv, RtComparison *comparison, RtError *error) {
+    static const OwnOption left_out[] = {{"callgrind", false}, {NULL, false}};
+    char **arguments = NULL;
     bool terminal = isatty(STDERR_FILENO) == 1;
     RtStatus status = load(o, error); /* reports errors once */
+    if (status == RT_OK) status = arguments_without(left_out, argv, &arguments, error);
     RtPrograms programs = {.before = o->with,
                            .after = "/proc/self/exe",
-                           .arguments = argv + 1,
+                           .arguments = arguments,
                            .rounds = o->rounds ? o->rounds : 10,
                            .until = o->until,
                            .patience = o->patience,
@@ -126,40 +167,73 @@ static RtStatus compare_programs(Options *o, char **argv, RtComparison *comparis
                            .notice = on_notice};
     if (status == RT_OK) status = rt_compare_programs(&programs, comparison, error);
     if (terminal) fputs("\r\033[K", stderr);
+    rt_free(arguments);
     return status;
 }
 
-/* ---- two directories ---- */
+/* ---- instructions ---- */
 
-static RtStatus compare_plugins(const Options *o, const RtExperiment *experiments, RtComparison *comparison,
-                                RtError *error) {
+static RtStatus compare_instructions(const Options *o, char **argv, RtComparison *comparison,
+                                     RtError *error) {
+    static const OwnOption left_out[] = {/* `bench` lacks them */
+                                         {"with", true},
+                                         {"margin", true},
+                                         {"strict", false},
+                                         {"quick", false},
+                                         {NULL, false}};
+    char **arguments = NULL;
+    on_notice(&(bool){isatty(STDERR_FILENO) == 1},
+              "counting instructions under valgrind, which takes a while");
+    RtStatus status = arguments_without(left_out, argv, &arguments, error);
+    if (status == RT_OK)
+        status = rt_compare_instructions(o->recording.experiment, o->callgrind, o->with, arguments,
+                                         comparison, error);
+    rt_free(arguments);
+    return status;
+}
+
+/* ---- directories ---- */
+
+static RtStatus compare_plugins(const char *const *directories, const RtExperiment *experiments,
+                                RtComparison *comparison, RtError *error) {
     json_t *used[2] = {NULL, NULL};
     RtStatus status = RT_OK;
     for (int i = 0; i < 2 && status == RT_OK; i++) {
         json_t *manifest;
-        status = rt_manifest_read(o->subjects[i], &manifest, error);
+        status = rt_manifest_read(directories[i], &manifest, error);
         used[i] = rt_plugins_used_then(&experiments[i], manifest);
         json_decref(manifest);
     }
-    comparison->plugins = rt_plugins_changed(used[0], used[1]);
+    json_t *changed = rt_plugins_changed(used[0], used[1]);
+    if (!comparison->plugins) comparison->plugins = json_object();
+    json_object_update(comparison->plugins, changed);
+    json_decref(changed);
     for (int i = 0; i < 2; i++) json_decref(used[i]);
     return status;
 }
 
-static RtStatus load_both(const Options *o, RtExperiment *experiments, RtResults *results,
-                          RtComparison *comparison, RtError *error) {
-    for (int i = 0; i < 2; i++) RT_TRY(rt_run_load(o->subjects[i], &experiments[i], &results[i], error));
-    RT_TRY(compare_plugins(o, experiments, comparison, error));
-    snprintf(comparison->before, sizeof comparison->before, "%s", o->subjects[0]);
-    snprintf(comparison->after, sizeof comparison->after, "%s", o->subjects[1]);
-    return rt_compare_results(&results[0], &results[1], comparison, error);
+static RtStatus compare_loaded(const Options *o, RtExperiment *experiments, RtResults *results,
+                               RtComparison *comparison, RtError *error) {
+    const char *names[2][MAX_SUBJECTS / 2];
+    const uint32_t pairs = o->subject_count / 2;
+    for (uint32_t i = 0; i < o->subject_count; i++) {
+        RT_TRY(rt_run_load(o->subjects[i], &experiments[i], &results[i], error));
+        names[i % 2][i / 2] = o->subjects[i];
+    }
+    for (size_t p = 0; p < pairs; p++)
+        RT_TRY(compare_plugins(&o->subjects[2 * p], &experiments[2 * p], comparison, error));
+    rt_join_names(names[0], pairs, comparison->before, sizeof comparison->before);
+    rt_join_names(names[1], pairs, comparison->after, sizeof comparison->after);
+    return rt_compare_results(results, pairs, comparison, error);
 }
 
 static RtStatus compare_directories(const Options *o, RtComparison *comparison, RtError *error) {
-    static RtExperiment experiments[2];
-    RtResults results[2] = {0};
-    RtStatus status = load_both(o, experiments, results, comparison, error);
-    for (int i = 0; i < 2; i++) rt_results_clear(&results[i]);
+    RtResults results[MAX_SUBJECTS] = {0};
+    RtExperiment *experiments = rt_alloc(o->subject_count, sizeof(RtExperiment));
+    RtStatus status = experiments ? compare_loaded(o, experiments, results, comparison, error)
+                                  : rt_fail_memory(error, "experiments", 0);
+    for (uint32_t i = 0; i < o->subject_count; i++) rt_results_clear(&results[i]);
+    rt_free(experiments);
     return status;
 }
 
@@ -167,8 +241,11 @@ static RtStatus compare_directories(const Options *o, RtComparison *comparison, 
 
 static RtStatus compare(Options *o, char **argv, RtError *error) {
     RtComparison comparison = {.margin = o->margin >= 0 ? o->margin : o->with ? 0 : MARGIN_OF_DIRECTORIES};
-    RtStatus status =
-        o->with ? compare_programs(o, argv, &comparison, error) : compare_directories(o, &comparison, error);
+    RtStatus status = o->callgrind ? rt_callgrind_check(error) : RT_OK;
+    if (status == RT_OK)
+        status = o->with ? compare_programs(o, argv, &comparison, error)
+                         : compare_directories(o, &comparison, error);
+    if (status == RT_OK && o->callgrind) status = compare_instructions(o, argv, &comparison, error);
     if (status == RT_OK && o->json) rt_cli_print_json(rt_comparison_json(&comparison));
     if (status == RT_OK && !o->json) rt_comparison_print(&comparison, stdout);
     if (status == RT_OK && o->strict && rt_comparison_count(&comparison, RT_CHANGE_SLOWER) > 0) {
@@ -185,7 +262,8 @@ const RtSyntax rt_compare_syntax = {
     .shared_at = offsetof(Options, recording),
     .shared_group = 1,
     .plugins = true,
-    .arguments = "BEFORE AFTER\nEXPERIMENT.yaml --with PROGRAM\nSCENE --accel SPEC --with PROGRAM",
+    .arguments =
+        "BEFORE AFTER [BEFORE AFTER]...\nEXPERIMENT.yaml --with PROGRAM\nSCENE --accel SPEC --with PROGRAM",
     .argument = {.name = "BEFORE", .take = take_subject},
     .finish = finish,
     .help =
@@ -193,11 +271,13 @@ const RtSyntax rt_compare_syntax = {
         "result directories, or by alternating this raytally and another one on the same rays, which "
         "finds much smaller differences.\v"
         "Ratios are of throughput: above 1 means faster now. All intervals hold simultaneously with 95 % "
-        "confidence, however many cells there are. Directories are single runs at different times; "
-        "--margin allows for their systematic difference. Examples:\n"
+        "confidence, however many cells there are. Directories are single runs at different times: they "
+        "have verdicts of accelerators, over several scenes or pairs of runs, relative to the median "
+        "accelerator. Examples:\n"
         "  raytally compare balls --accel bvh --accel grid --with ../old/build/release/raytally\n"
         "  raytally compare experiments/first-look.yaml --quick --with ../old/build/release/raytally "
         "--until 1%\n"
+        "  raytally compare balls --accel bvh --with ../old/build/release/raytally --callgrind\n"
         "  raytally compare results/last-month results/first-look --strict"};
 
 RtStatus rt_command_compare(int argc, char **argv, RtError *error) {

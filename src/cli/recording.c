@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/recording.h"
 
+#include "experiment/callgrind.h"
+
 #include "cli/cli.h"
 #include "render/frame.h"
 
@@ -79,4 +81,8 @@ void rt_recording_finish(const RtRecordingOptions *o, struct argp_state *state) 
         e->kind_count = 1;
     }
     if (one && e->kind_count > 1) argp_error(state, "--rays: one kind at a time");
+}
+
+uint64_t rt_cli_callgrind(const char *text, struct argp_state *state) {
+    return text ? (uint64_t)rt_cli_integer(state, "--callgrind", text, 1, 100000000) : RT_CALLGRIND_RAYS;
 }

@@ -23,6 +23,9 @@ void rt_recording_init(RtRecordingOptions *o);
 /* Fills in the experiment. The command's `finish` calls this: the kinds of rays depend on --rays-from. */
 void rt_recording_finish(const RtRecordingOptions *o, struct argp_state *state);
 
+/* For parsers of --callgrind[=N]: the rays of a kind. */
+uint64_t rt_cli_callgrind(const char *text, struct argp_state *state);
+
 /* Adds the accelerators of --accel, or every one for `all`; ends the process by argp_error if there is an
  * error. */
 void rt_cli_add_accels(RtExperiment *experiment, const char *text, struct argp_state *state);

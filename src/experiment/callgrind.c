@@ -99,6 +99,7 @@ static RtStatus read_total(const RtCallgrind *callgrind, uint32_t n, uint64_t *t
         return rt_fail(error, RT_NOT_AVAILABLE,
                        "callgrind counted nothing: is the program stripped of its symbols?");
     RT_TRY(rt_file_read(path, (size_t)1 << 30, &text, &size, error));
+    remove(path); /* another program writes a file of that name, too */
     const char *at = strstr(text, "\ntotals: ");
     bool found = at && sscanf(at, "\ntotals: %" SCNu64, total) == 1;
     rt_free(text);
@@ -119,22 +120,34 @@ static RtStatus take_answer(RtCallgrind *callgrind, const json_t *answer, RtInst
 }
 
 /* With the end of its messages. */
-static RtStatus fail_ended(const RtWorker *worker, const char *how, RtError *error) {
+static RtStatus fail_with_log(const RtWorker *worker, const char *what, const char *how, RtError *error) {
     enum { MOST_BYTES = 1 << 24, MOST_SHOWN = 600 };
     char *text;
     size_t size;
     RT_TRY(rt_file_read(worker->log, MOST_BYTES, &text, &size, error));
     while (size > 0 && isspace((unsigned char)text[size - 1])) text[--size] = '\0';
-    rt_fail(error, RT_NOT_AVAILABLE, "valgrind, or raytally in it, failed: %s\n%s", how,
+    rt_fail(error, RT_NOT_AVAILABLE, "%s: %s\n%s", what, how,
             size > MOST_SHOWN ? text + size - MOST_SHOWN : text);
     rt_free(text);
     return RT_NOT_AVAILABLE;
+}
+
+static RtStatus fail_ended(const RtWorker *worker, const char *how, RtError *error) {
+    return fail_with_log(worker, "valgrind, or raytally in it, failed", how, error);
+}
+
+static RtStatus fail_other_ended(const RtWorker *worker, const char *how, RtError *error) {
+    return fail_with_log(worker,
+                         "the other program cannot count instructions: it must be a raytally whose `bench` "
+                         "has --callgrind and the options given here",
+                         how, error);
 }
 
 /* A run of the worker, and what starts it again. */
 typedef struct Session {
     RtCallgrind *callgrind;
     char *const *arguments;
+    bool other; /* not this program */
     char program[RT_MAX_PATH], log[RT_MAX_PATH], out_file[RT_MAX_PATH + 32];
     RtWorker worker;
     uint32_t passes; /* of this worker so far */
@@ -152,7 +165,7 @@ static RtStatus start(Session *session, RtError *error) {
                                    "--worker",
                                    NULL};
     session->passes = 0;
-    session->worker = (RtWorker){.log = session->log, .fail = fail_ended};
+    session->worker = (RtWorker){.log = session->log, .fail = session->other ? fail_other_ended : fail_ended};
     return rt_worker_start(&session->worker, command, session->arguments, error);
 }
 
@@ -195,18 +208,25 @@ static RtStatus count_cell(Session *session, const RtResults *results, const RtC
     return status;
 }
 
-RtStatus rt_callgrind_run(RtCallgrind *callgrind, const RtResults *results, char *const *arguments,
-                          RtError *error) {
+static RtStatus find_program(Session *session, const char *program, RtError *error) {
+    session->other = program != NULL;
+    if (!program) program = "/proc/self/exe"; /* valgrind has its own */
+    return realpath(program, session->program) ? RT_OK
+                                               : rt_fail(error, RT_IO, "%s: %s", program, strerror(errno));
+}
+
+RtStatus rt_callgrind_run(RtCallgrind *callgrind, const char *program, const RtResults *results,
+                          char *const *arguments, RtError *error) {
     const RtExperiment *e = callgrind->experiment;
     const size_t cells = (size_t)e->workload_count * e->candidate_count * e->kind_count;
     char out[RT_MAX_PATH];
     Session session = {.callgrind = callgrind, .arguments = arguments};
-    ssize_t length = readlink("/proc/self/exe", session.program, sizeof session.program - 1);
-    if (length < 0) return rt_fail(error, RT_IO, "/proc/self/exe: %s", strerror(errno));
-    session.program[length] = '\0';
+    RT_TRY(find_program(&session, program, error));
     RT_TRY(rt_path_join(callgrind->folder, "log", session.log, error));
     RT_TRY(rt_path_join(callgrind->folder, "out", out, error));
     snprintf(session.out_file, sizeof session.out_file, "--callgrind-out-file=%s", out);
+    rt_free(callgrind->cells);
+    callgrind->count = 0;
     callgrind->cells = rt_alloc(cells, sizeof(RtInstructions));
     if (!callgrind->cells) return rt_fail_memory(error, "counts of instructions", 0);
     RtStatus status = start(&session, error);

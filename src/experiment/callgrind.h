@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Instructions per ray by valgrind's callgrind: exact, for machines without hardware counters.
  *
- * The program runs itself as a worker (worker.h) under callgrind, with the same arguments. The worker builds
- * each accelerator and traces a few of the recorded rays twice, on one thread, with the timed kernels.
+ * A program, usually this one, runs as a worker (worker.h) under callgrind, with the same arguments. It
+ * builds each accelerator and traces a few of the recorded rays twice, on one thread, with the timed kernels.
  * Callgrind counts only within rt_callgrind_pass and writes its counts after each call, so program start and
  * builds are excluded. The first pass includes one-time work such as binding symbols, so the second is
  * reported. The count is the same on every run with the same compiler and libraries.
@@ -45,10 +45,11 @@ void rt_callgrind_clear(RtCallgrind *callgrind);
 RtStatus rt_callgrind_save_rays(void *context, uint32_t workload, const RtRaySet *set, const RtAccel *exact,
                                 RtError *error);
 
-/* Runs the worker with the arguments of `bench` (NULL behind the last), and counts each cell that has rays.
- * An accelerator that broke in `results` has no count, nor has a plugin that crashes under valgrind. */
-RtStatus rt_callgrind_run(RtCallgrind *callgrind, const RtResults *results, char *const *arguments,
-                          RtError *error);
+/* Runs the worker with the arguments of `bench` (NULL behind the last), and counts each cell that has rays;
+ * earlier counts are dropped. `program` is the path of another raytally; NULL: this one. An accelerator that
+ * broke in `results` has no count, nor has a plugin that crashes under valgrind. */
+RtStatus rt_callgrind_run(RtCallgrind *callgrind, const char *program, const RtResults *results,
+                          char *const *arguments, RtError *error);
 
 /* ---- as tables ---- */
 

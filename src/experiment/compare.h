@@ -11,12 +11,25 @@
  * programs are the same, which one is called `after` does not matter, so each ratio is as likely above 1 as
  * below, whatever the noise: the interval is exact.
  *
- * Two directories are one process each, at two times. They do not show how much such runs differ anyway, so
- * only differences beyond a margin count (RtComparison.margin), and their rounds are compared as unpaired
- * ones.
+ * Two directories are one process each, at two times. Their rounds show how the times of these processes
+ * spread, not how processes differ: single cells of two runs of one build may differ by tens of per cent.
+ * So cells have intervals, over rounds (rt_estimate_unpaired), but no verdicts. Verdicts are of accelerators:
+ *
+ *     log(before / after) of an accelerator on a scene = its change + that of the machine + of the process
+ *
+ * Every scene has its own structures, in its own memory, so the third terms of scenes, and of pairs of runs,
+ * are independent; they are symmetric about 0 if nothing changed, as either run may be the first. Those of
+ * the kinds of rays on one scene are not independent, so the median over kinds is taken. The second term is
+ * estimated by the median over accelerators on the same scene in the same pair of runs, which takes three
+ * accelerators; a change of most accelerators looks like one of the machine, and is only printed. What is
+ * left has Student's interval over scenes and pairs (rt_estimate_student), which long tails make no less
+ * safe.
+ *
+ * Instructions per ray (callgrind.h) of two programs tell a change from code that merely moved.
  *
  * Many cells. All intervals of a comparison hold together in 95 % of all cases (rt_coverage_of_each): of
  * twenty comparisons of a program with itself, about one reports a difference, however many cells they have.
+ * The cells of directories may have too few rounds for that: RtComparison.together is what they reach.
  */
 #ifndef RT_EXPERIMENT_COMPARE_H
 #define RT_EXPERIMENT_COMPARE_H
@@ -24,13 +37,16 @@
 #include "core/text/table.h"
 #include "experiment/workload.h"
 
-#define RT_TURNS 5 /* of each program in each cell, in a round */
+#define RT_TURNS        5 /* of each program in each cell, in a round */
+#define RT_LEAST_ACCELS 3 /* for verdicts from directories */
 
 /* X(CONSTANT, says) */
 #define RT_CHANGES(X)                                                                                        \
     X(NONE, "no difference")                                                                                 \
     X(FASTER, "faster")                                                                                      \
     X(SLOWER, "slower")                                                                                      \
+    X(BY_ACCEL, "by accelerator")                                                                            \
+    X(NOT_JUDGED, "not judged")                                                                              \
     X(OTHER_RAYS, "other rays")                                                                              \
     X(ONLY_BEFORE, "only before")                                                                            \
     X(ONLY_AFTER, "only after")                                                                              \
@@ -51,16 +67,32 @@ typedef struct RtComparedCell {
     double before, after;          /* seconds a ray: median */
     bool counted;                  /* both of these are known, and independent of the machine */
     RtTally counts_before, counts; /* of the cell */
-    const RtCell *cells[2];        /* before, after; borrowed: of two directories, if it is timed */
+    const RtCell *(*runs)[2];      /* [pairs] owned: before, after; NULL: not timed */
     double *ratios;                /* [RT_MAX_ROUNDS] owned: of each round of two programs; or NULL */
     uint32_t rounds;               /* of these; fewer if a limit excluded the cell from some */
+    double instructions[2];        /* a ray, before and after; 0: not counted */
+    char uncounted[RT_MAX_WHY];    /* why instructions of one are not, though asked for; else "" */
 } RtComparedCell;
+
+/* An accelerator in directories. */
+typedef struct RtComparedAccel {
+    char accel[RT_MAX_LABEL];
+    uint32_t groups;  /* scenes times pairs of runs that it is judged by; verdicts need two */
+    RtEstimate ratio; /* of throughput after to before, relative to the median of all; the mean of groups */
+    RtChange change;
+} RtComparedAccel;
 
 typedef struct RtComparison {
     RtComparedCell *cells; /* [count] owned */
     uint32_t count, capacity;
     uint32_t timed;               /* cells with an interval */
-    uint32_t rounds;              /* of two programs; 0: of two directories */
+    uint32_t rounds;              /* of two programs; 0: of directories */
+    RtComparedAccel *accels;      /* [accel_count] owned; of directories */
+    uint32_t accel_count, judged; /* and those with an interval */
+    uint32_t pairs;               /* of directories */
+    double all_accels;            /* ratio of the median accelerator; NAN: unknown */
+    double together;              /* the confidence with which the intervals of all cells hold */
+    double coverage;              /* of the interval of the cell with the fewest rounds */
     double margin;                /* differences count beyond this part */
     double seconds;               /* of the comparison */
     char before[256], after[256]; /* what was compared */
@@ -71,10 +103,12 @@ typedef struct RtComparison {
 /* Zero a comparison first; clear it, also after a failure. */
 void rt_comparison_clear(RtComparison *comparison);
 
-/* ---- two directories ---- */
+/* ---- directories ---- */
 
-/* Compares all cells of results loaded from two directories, except null runs. */
-RtStatus rt_compare_results(const RtResults *before, const RtResults *after, RtComparison *comparison,
+/* Compares all cells, except null runs, of results[0..2 * pairs), loaded from directories: in each pair
+ * `before` and `after`. The results may be cleared
+ * afterwards. */
+RtStatus rt_compare_results(const RtResults *results, uint32_t pairs, RtComparison *comparison,
                             RtError *error);
 
 /* ---- two programs ---- */
@@ -94,16 +128,21 @@ typedef struct RtPrograms {
 
 RtStatus rt_compare_programs(const RtPrograms *programs, RtComparison *comparison, RtError *error);
 
+/* Counts the instructions of both programs with callgrind.h, on at most `most` rays of each kind: for the
+ * cells of an earlier rt_compare_programs. `arguments` are those of `bench`, NULL behind the last. */
+RtStatus rt_compare_instructions(const RtExperiment *experiment, uint64_t most, const char *before,
+                                 char *const *arguments, RtComparison *comparison, RtError *error);
+
 /* ---- results ---- */
 
-/* Sets the verdict of every cell from its ratio. */
-void rt_comparison_judge(RtComparison *comparison);
+/* FASTER, SLOWER or NONE. */
+RtChange rt_comparison_verdict(const RtComparison *comparison, const RtEstimate *ratio);
 
 /* Finds the cell, or appends it; NULL if memory is short. Valid until the next call. */
 RtComparedCell *rt_comparison_cell(RtComparison *comparison, const char *scene, const char *accel,
                                    const char *kind);
 
-/* Cells with that verdict; cells whose counts differ. */
+/* Cells and accelerators with that verdict; cells whose counts differ. */
 uint32_t rt_comparison_count(const RtComparison *comparison, RtChange change);
 uint32_t rt_comparison_changed(const RtComparison *comparison);
 
@@ -112,8 +151,10 @@ uint32_t rt_comparison_changed(const RtComparison *comparison);
 typedef struct RtComparedRow {
     const RtComparison *comparison;
     const RtComparedCell *cell;
+    const RtComparedAccel *accel;
 } RtComparedRow;
 RtTable rt_comparison_table(RtComparedRow *row, bool all);
+RtTable rt_compared_accels_table(RtComparedRow *row, bool all);
 
 /* Prints the table, changed counts, and an explanation; or makes a JSON document, a new reference, NULL if
  * memory is short. */

@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/random.h"
 #include "core/text/json.h"
+#include "experiment/callgrind.h"
 #include "experiment/compare.h"
 #include "experiment/worker.h"
 
@@ -241,21 +242,25 @@ static RtStatus run_round(Run *run, RtError *error) {
 /* Computes the intervals after so many rounds; returns the width of the widest. */
 static double estimate(RtComparison *comparison, uint32_t rounds) {
     double widest = 0;
+    comparison->rounds = rounds;
+    comparison->together = 0.95;
+    comparison->all_accels = (double)NAN;
+    comparison->timed = 0;
     for (uint32_t i = 0; i < comparison->count; i++) {
         RtComparedCell *cell = &comparison->cells[i];
-        if (!cell->timed || cell->rounds == rounds) continue;
-        cell->timed = false; /* a time limit excluded it from some round */
-        cell->change = RT_CHANGE_NOT_TIMED;
+        if (cell->timed && cell->rounds < rounds) {
+            cell->timed = false; /* a time limit excluded it from some round */
+            cell->change = RT_CHANGE_NOT_TIMED;
+        }
+        comparison->timed += cell->timed;
     }
-    rt_comparison_judge(comparison);
     for (uint32_t i = 0; i < comparison->count; i++) {
         RtComparedCell *cell = &comparison->cells[i];
         if (!cell->timed) continue;
         cell->ratio = rt_estimate_at(cell->ratios, rounds, rt_coverage_of_each(comparison->timed));
+        cell->change = rt_comparison_verdict(comparison, &cell->ratio);
         widest = fmax(widest, rt_estimate_width(&cell->ratio));
     }
-    comparison->rounds = rounds;
-    rt_comparison_judge(comparison);
     return widest;
 }
 
@@ -291,5 +296,48 @@ RtStatus rt_compare_programs(const RtPrograms *programs, RtComparison *compariso
         rt_worker_end(&run.workers[AFTER]);
         run.round++;
     } while (status == RT_OK && !is_enough(&run));
+    return status;
+}
+
+/* ---- instructions ---- */
+
+static void take_instructions(const RtCallgrind *callgrind, int who, RtComparison *comparison) {
+    const RtExperiment *e = callgrind->experiment;
+    for (uint32_t i = 0; i < callgrind->count; i++) {
+        const RtInstructions *counted = &callgrind->cells[i];
+        RtComparedCell *cell = rt_comparison_cell(comparison, e->workloads[counted->workload].label,
+                                                  rt_candidate_label(e, counted->candidate),
+                                                  rt_experiment_kind_name(e, counted->kind));
+        if (!cell) continue;
+        if (*counted->why)
+            snprintf(cell->uncounted, sizeof cell->uncounted, "%s", counted->why);
+        else
+            cell->instructions[who] = (double)counted->instructions / (double)counted->rays;
+    }
+}
+
+/* Records rays, by this program, which both then trace. */
+static RtStatus count_both(RtCallgrind *callgrind, RtResults *results, const char *before,
+                           char *const *arguments, RtComparison *comparison, RtError *error) {
+    const RtWorkloadOptions how = {
+        .count_only = true, .timing = 1, .rays = rt_callgrind_save_rays, .rays_context = callgrind};
+    const char *const programs[] = {before, NULL};
+    RT_TRY(rt_workloads_run(results, &how, error));
+    for (int who = BEFORE; who <= AFTER; who++) {
+        RT_TRY(rt_callgrind_run(callgrind, programs[who], results, arguments, error));
+        take_instructions(callgrind, who, comparison);
+    }
+    return RT_OK;
+}
+
+RtStatus rt_compare_instructions(const RtExperiment *experiment, uint64_t most, const char *before,
+                                 char *const *arguments, RtComparison *comparison, RtError *error) {
+    RtCallgrind callgrind = {0};
+    RtResults results;
+    RtStatus status = rt_results_init(&results, experiment, error);
+    if (status == RT_OK) status = rt_callgrind_init(&callgrind, experiment, most, error);
+    if (status == RT_OK) status = count_both(&callgrind, &results, before, arguments, comparison, error);
+    rt_callgrind_clear(&callgrind);
+    rt_results_clear(&results);
     return status;
 }

@@ -161,3 +161,70 @@ RtStatus rt_estimate_unpaired(const double *over, uint32_t over_count, const dou
     rt_free(ratios);
     return RT_OK;
 }
+
+double rt_unpaired_coverage(uint32_t over_count, uint32_t under_count) {
+    double orders = 1;
+    for (uint32_t i = 1; i <= under_count; i++) orders *= (double)(over_count + i) / i;
+    return fmax(0, 1 - 2 / orders);
+}
+
+uint32_t rt_unpaired_rounds(double coverage) {
+    uint32_t count = 1;
+    while (count < RT_MAX_ROUNDS && rt_unpaired_coverage(count, count) < coverage) count++;
+    return count;
+}
+
+/* ---- Student's t ---- */
+
+enum { STUDENT_STEPS = 300 };
+
+/* Student's density of t = sqrt(freedom) 2 w / (1 - w^2), times dt / dw, up to a constant: it has no tail. */
+static double student_density(double w, uint32_t freedom) {
+    double density = 1 / (1 + w * w), power = (1 - w * w) / (1 + w * w);
+    for (uint32_t n = freedom - 1; n > 0; n /= 2, power *= power) {
+        if (n % 2) density *= power;
+    }
+    return density;
+}
+
+/* The integral from w to 1, by Simpson's rule. */
+static double student_tail(double w, uint32_t freedom) {
+    const double step = (1 - w) / (2 * STUDENT_STEPS);
+    double sum = 0;
+    for (int i = 0; i <= 2 * STUDENT_STEPS; i++) {
+        double weight = i == 0 || i == 2 * STUDENT_STEPS ? 1 : i % 2 ? 4 : 2;
+        sum += weight * student_density(w + i * step, freedom);
+    }
+    return sum * step / 3;
+}
+
+/* The t that |t| exceeds with probability 1 - coverage, by bisection of w. */
+static double student_quantile(uint32_t freedom, double coverage) {
+    const double wanted = (1 - coverage) * student_tail(0, freedom);
+    double lo = 0, hi = 1;
+    for (int i = 0; i < 50; i++) {
+        double w = 0.5 * (lo + hi);
+        if (student_tail(w, freedom) > wanted)
+            lo = w;
+        else
+            hi = w;
+    }
+    return sqrt(freedom) * 2 * lo / (1 - lo * lo);
+}
+
+RtEstimate rt_estimate_student(const double *ratios, uint32_t count, double coverage) {
+    const double e = 2.7182818284590452;
+    double sum = 0, squares = 0, least = ratios[0];
+    assert(count >= 2);
+    for (uint32_t i = 0; i < count; i++) {
+        sum += rt_log(ratios[i]);
+        least = fmin(least, ratios[i]);
+    }
+    const double mean = sum / count;
+    for (uint32_t i = 0; i < count; i++) squares += (rt_log(ratios[i]) - mean) * (rt_log(ratios[i]) - mean);
+    const double half = student_quantile(count - 1, coverage) * sqrt(squares / (count - 1) / count);
+    return (RtEstimate){.median = rt_power(e, mean),
+                        .low = rt_power(e, mean - half),
+                        .high = rt_power(e, mean + half),
+                        .least = least};
+}

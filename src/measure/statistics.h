@@ -59,6 +59,19 @@ uint32_t rt_rounds_for(double coverage);
 RtStatus rt_estimate_unpaired(const double *over, uint32_t over_count, const double *under,
                               uint32_t under_count, double coverage, RtEstimate *estimate, RtError *error);
 
+/* The most that such an interval can cover: the one from the smallest to the largest ratio. 0.9978 for 6 and
+ * 6. And the fewest measurements of each with which it covers as much; at most RT_MAX_ROUNDS. */
+double rt_unpaired_coverage(uint32_t over_count, uint32_t under_count);
+uint32_t rt_unpaired_rounds(double coverage);
+
+/* Estimates the ratio that ratios[0..count), count >= 2, are independent measurements of: their geometric
+ * mean (as `median`), with Student's interval of their logarithms. Their variances may differ: if each is
+ * normal with a variance of its own, or has the long tails of a mixture of such, the interval covers at least
+ * `coverage`, 0.95 or more (Bakirov & Szekely 2006, "Student's t-Test for Gaussian Scale Mixtures", Journal
+ * of Mathematical Sciences 139(3); Ibragimov & Muller 2010, "t-Statistic Based Correlation and Heterogeneity
+ * Robust Inference", Journal of Business & Economic Statistics 28(4)). */
+RtEstimate rt_estimate_student(const double *ratios, uint32_t count, double coverage);
+
 /* The coverage of each of `count` intervals with which all of them hold in 95 % of all cases, even if they
  * depend on one another (Bonferroni's inequality; Dunn 1961, "Multiple Comparisons among Means", Journal of
  * the American Statistical Association 56(293)). */

@@ -51,10 +51,10 @@ static RtTable of_published(RtPublishedTable which) {
     return rt_published_table(which, &cursor);
 }
 
-static RtTable of_comparison(void) {
+static RtTable of_comparison(RtTable (*table)(RtComparedRow *row, bool all)) {
     static const RtComparison comparison = {0};
     static RtComparedRow row = {.comparison = &comparison};
-    return rt_comparison_table(&row, true);
+    return table(&row, true);
 }
 
 typedef struct Section {
@@ -86,7 +86,8 @@ static void list(Section sections[SECTIONS]) {
         {"bench --json --hardware: hardware", false, NULL, of_results(RT_HARDWARE)},
         {"bench --json --distribution: distributions", false, NULL, of_distributions(RT_DISTRIBUTIONS)},
         {"bench --json --callgrind: instructions", false, NULL, of_instructions()},
-        {"compare --json: cells", false, NULL, of_comparison()},
+        {"compare --json: cells", false, NULL, of_comparison(rt_comparison_table)},
+        {"compare --json: accelerators", false, NULL, of_comparison(rt_compared_accels_table)},
         {"verify --json: rows", false, NULL, verify_json},
         {"info --extents --json: extents.rows", false, NULL, extents},
     };

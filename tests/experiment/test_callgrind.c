@@ -6,6 +6,8 @@
 #include "measure/ray_file.h"
 
 #include <glob.h>
+#include <math.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* Valgrind cannot run a program that has sanitizers. */
@@ -142,6 +144,37 @@ RT_TEST_VALGRIND(the_table_names_the_instruction_set) {
                      0);
     assert_in_file(place, "output", "instr./ray  isa");
     assert_in_file(place, "output", "portable");
+}
+
+static double figure_of(const json_t *row, const char *key) {
+    return json_number_value(json_object_get(row, key));
+}
+
+/* raytally_slower traces a fiftieth of the rays twice. */
+RT_TEST_VALGRIND(compare_shows_the_instructions_of_both_programs_and_their_ratio) {
+    assert_int_equal(raytally(place,
+                              "compare balls:size=1 --accel grid --rays primary --size 32x32 --rounds 1 "
+                              "--callgrind=512 --margin 1% --json --with " RT_BINARY_DIR "/raytally_slower"),
+                     0);
+    char *text = read_in(place, "output");
+    json_t *document = json_loads(text, 0, NULL);
+    const json_t *row = json_array_get(json_object_get(document, "cells"), 0);
+    const double before = figure_of(row, "instructions_before"), after = figure_of(row, "instructions_after");
+    assert_true(before > 100 && after > 100);
+    assert_in_range((int)(1000 * before / after), 1005, 1035);
+    assert_true(fabs(figure_of(row, "instructions_ratio") - after / before) < 1e-6);
+    json_decref(document);
+    rt_free(text);
+}
+
+RT_TEST_VALGRIND(a_program_that_cannot_count_instructions_is_told_apart_in_plain_words) {
+    write_in(place, "other", "#!/bin/sh\n[ \"$1\" = bench ] && exit 2\nexec '" RT_PROGRAM "' \"$@\"\n");
+    assert_int_equal(chmod(path_in(place, "other").text, 0755), 0);
+    assert_int_equal(raytally(place,
+                              "compare balls:size=1 --accel grid --rays primary --limit 100 --rounds 1 "
+                              "--callgrind --with ./other"),
+                     2);
+    assert_in_file(place, "message", "it must be a raytally whose `bench` has --callgrind");
 }
 
 /* Before anything is measured. */

@@ -1,59 +1,94 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* experiment/compare.h: two result directories, one of which is changed. */
+/* experiment/compare.h: result directories, one of which is changed; and other programs. */
 #include "experiment_testing.h"
 
 #include "experiment/compare.h"
 
-static const char experiment_yaml[] = "name: small\n"
-                                      "question: Which is cheaper?\n"
-                                      "prediction: The hierarchy.\n"
-                                      "scenes: [{scene: \"balls:size=1\", size: 8x8, depth: 2}]\n"
-                                      "accelerators: [{accel: bvh}, {accel: grid}]\n"
-                                      "rays: [primary, random]\n"
-                                      "limit: 100\n"
-                                      "rounds: 12\n"
-                                      "milliseconds: 0\n";
+#include <math.h>
+
+static const char experiment_yaml[] =
+    "name: small\n"
+    "question: Which is cheaper?\n"
+    "prediction: The hierarchy.\n"
+    "scenes: [{scene: \"balls:size=1\", size: 8x8, depth: 2}, {scene: \"tetra:size=1\", size: 8x8, depth: "
+    "2},\n"
+    "  {scene: \"random:n=20\", size: 8x8, depth: 2}, {scene: \"gears:size=1\", size: 8x8, depth: 2}]\n"
+    "accelerators: [{accel: bvh}, {accel: grid}, {accel: octree}, {accel: kd}]\n"
+    "rays: [primary, random]\n"
+    "limit: 100\n"
+    "rounds: 6\n"
+    "milliseconds: 0\n";
+
+enum { SCENES = 4, ACCELS = 4, KINDS = 2, ROUNDS = 6, MOST_PAIRS = 2, RUNS = 2 * MOST_PAIRS };
 
 typedef struct Sides {
-    RtExperiment *experiments; /* [2] */
-    RtResults results[2];
+    RtExperiment *experiments; /* [RUNS] */
+    RtResults results[RUNS];
     RtComparison comparison;
 } Sides;
 
-/* The same run as both sides, with times that spread by a percent in an order that differs. */
-static void load_sides(const Place *place, Sides *sides) {
-    Path out = path_in(place, "out");
-    write_in(place, "small.yaml", experiment_yaml);
-    assert_ok(run_small(place, "out", false, (RtRunOptions){.start = RT_START_ANEW}, error));
-    *sides = (Sides){.experiments = rt_alloc(2, sizeof(RtExperiment))};
-    assert_non_null(sides->experiments);
-    for (int i = 0; i < 2; i++) {
-        assert_ok(rt_run_load(out.text, &sides->experiments[i], &sides->results[i], error));
-        for (uint32_t c = 0; c < 2; c++) {
-            for (uint32_t k = 0; k < 2; k++) {
-                RtCell *cell = rt_cell_at(&sides->results[i], 0, c, sides->experiments[i].kinds[k]);
-                assert_int_equal(cell->rounds, 12);
-                double *seconds = rt_cell_round_times(cell, RT_ROUND_SECONDS);
-                for (uint32_t r = 0; r < 12; r++)
-                    seconds[r] = 1e-7 * (1 + 0.001 * (double)((5 * r + 3 * (uint32_t)i) % 12));
+static RtCell *cell_at(const Sides *sides, uint32_t run, uint32_t scene, uint32_t candidate, uint32_t kind) {
+    return rt_cell_at(&sides->results[run], scene, candidate, sides->experiments[run].kinds[kind]);
+}
+
+/* Multiplies the times of a cell. */
+static void scale(RtCell *cell, double factor) {
+    double *seconds = rt_cell_round_times(cell, RT_ROUND_SECONDS);
+    for (uint32_t r = 0; r < cell->rounds; r++) seconds[r] *= factor;
+    cell->seconds = rt_estimate(seconds, cell->rounds);
+}
+
+static void scale_accel(const Sides *sides, uint32_t run, uint32_t candidate, double factor) {
+    for (uint32_t t = 0; t < SCENES; t++) {
+        for (uint32_t k = 0; k < KINDS; k++) scale(cell_at(sides, run, t, candidate, k), factor);
+    }
+}
+
+/* Times as runs have them: the machine is faster or slower by up to 5 % for a run; a structure is, by a long-
+ * tailed figure (Student's t of two degrees of freedom, in units of 0.8 %), as long as its process lives; a
+ * kind of rays by up to 1 %, and a round by up to 2 %. */
+static void draw_times(const Sides *sides, uint32_t run, uint64_t seed) {
+    RtRandom random = rt_random(seed, run);
+    const double machine = rt_random_betweend(&random, 0.95, 1.05);
+    for (uint32_t t = 0; t < SCENES; t++) {
+        for (uint32_t c = 0; c < ACCELS; c++) {
+            const double u = rt_random_betweend(&random, 1e-6, 1 - 1e-6);
+            const double process = exp(0.008 * (2 * u - 1) / sqrt(2 * u * (1 - u)));
+            for (uint32_t k = 0; k < KINDS; k++) {
+                RtCell *cell = cell_at(sides, run, t, c, k);
+                const double kind = rt_random_betweend(&random, 0.99, 1.01);
+                for (uint32_t r = 0; r < ROUNDS; r++)
+                    rt_cell_round_times(cell, RT_ROUND_SECONDS)[r] =
+                        1e-7 * machine * process * kind * rt_random_betweend(&random, 1, 1.02);
+                cell->seconds = rt_estimate(rt_cell_round_times(cell, RT_ROUND_SECONDS), ROUNDS);
             }
         }
     }
 }
 
+/* One run as both sides of all pairs, with times that are drawn. */
+static void load_sides(const Place *place, Sides *sides) {
+    Path out = path_in(place, "out");
+    write_in(place, "small.yaml", experiment_yaml);
+    assert_ok(run_small(place, "out", false, (RtRunOptions){.start = RT_START_ANEW}, error));
+    *sides = (Sides){.experiments = rt_alloc(RUNS, sizeof(RtExperiment))};
+    assert_non_null(sides->experiments);
+    for (uint32_t i = 0; i < RUNS; i++) {
+        assert_ok(rt_run_load(out.text, &sides->experiments[i], &sides->results[i], error));
+        draw_times(sides, i, 1);
+    }
+}
+
 static void clear_sides(Sides *sides) {
     rt_comparison_clear(&sides->comparison);
-    for (int i = 0; i < 2; i++) rt_results_clear(&sides->results[i]);
+    for (int i = 0; i < RUNS; i++) rt_results_clear(&sides->results[i]);
     rt_free(sides->experiments);
 }
 
-static RtCell *after_cell(const Sides *sides, uint32_t candidate, RtRayKind kind) {
-    return rt_cell_at(&sides->results[1], 0, candidate, kind);
-}
-
-static void scale(const Sides *sides, uint32_t candidate, RtRayKind kind, double factor) {
-    RtCell *cell = after_cell(sides, candidate, kind);
-    for (uint32_t r = 0; r < cell->rounds; r++) rt_cell_round_times(cell, RT_ROUND_SECONDS)[r] *= factor;
+static void compare_sides(Sides *sides, uint32_t pairs, double margin) {
+    rt_comparison_clear(&sides->comparison);
+    sides->comparison.margin = margin;
+    assert_ok(rt_compare_results(sides->results, pairs, &sides->comparison, error));
 }
 
 static const RtComparedCell *compared(Sides *sides, const char *accel, const char *kind) {
@@ -62,48 +97,148 @@ static const RtComparedCell *compared(Sides *sides, const char *accel, const cha
     return cell;
 }
 
+/* What is printed of it; free it. */
+static char *printed(const RtComparison *comparison) {
+    char *text;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    rt_comparison_print(comparison, out);
+    fclose(out);
+    return text;
+}
+
+/* Whether it is printed, whatever the line breaks. */
+static bool is_printed(const RtComparison *comparison, const char *words) {
+    char *text = printed(comparison);
+    for (char *at = text; (at = strchr(at, '\n')) != NULL;) *at = ' ';
+    bool found = strstr(text, words) != NULL;
+    if (!found) print_message("%s\n", text);
+    free(text);
+    return found;
+}
+
 #define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_place, remove_place)
 
 RT_TEST_IN_PLACE(a_run_does_not_differ_from_itself) {
     Sides sides;
     load_sides(*state, &sides);
-    assert_ok(rt_compare_results(&sides.results[0], &sides.results[1], &sides.comparison, error));
-    assert_int_equal(sides.comparison.count, 4);
-    assert_int_equal(rt_comparison_count(&sides.comparison, RT_CHANGE_NONE), 4);
+    for (uint32_t t = 0; t < SCENES; t++) {
+        for (uint32_t c = 0; c < ACCELS; c++) {
+            for (uint32_t k = 0; k < KINDS; k++) {
+                RtCell *one = cell_at(&sides, 0, t, c, k), *other = cell_at(&sides, 1, t, c, k);
+                memcpy(other->round_times, one->round_times, ROUNDS * sizeof(double));
+                other->seconds = one->seconds;
+            }
+        }
+    }
+    compare_sides(&sides, 1, 0);
+    assert_int_equal(sides.comparison.count, SCENES * ACCELS * KINDS);
+    assert_int_equal(rt_comparison_count(&sides.comparison, RT_CHANGE_BY_ACCEL), SCENES * ACCELS * KINDS);
+    assert_int_equal(rt_comparison_count(&sides.comparison, RT_CHANGE_NONE), ACCELS);
     assert_int_equal(rt_comparison_changed(&sides.comparison), 0);
     clear_sides(&sides);
 }
 
-RT_TEST_IN_PLACE(what_is_faster_slower_or_counts_otherwise_is_said_of_the_cell) {
+/* 5 %: one of twenty pairs of runs of one build. */
+RT_TEST_IN_PLACE(of_runs_of_one_build_at_most_five_in_a_hundred_pairs_report_a_difference) {
+    enum { TRIALS = 400 };
     Sides sides;
     load_sides(*state, &sides);
-    scale(&sides, 0, RT_RAY_PRIMARY, 1.1);
-    scale(&sides, 1, RT_RAY_PRIMARY, 0.9);
-    scale(&sides, 1, RT_RAY_RANDOM, 1.03);
-    scale(&sides, 0, RT_RAY_RANDOM, 0.97);
-    after_cell(&sides, 0, RT_RAY_RANDOM)->tally.steps++;
-    sides.comparison.margin = 0.05;
-    assert_ok(rt_compare_results(&sides.results[0], &sides.results[1], &sides.comparison, error));
-    assert_int_equal(compared(&sides, "bvh", "primary")->change, RT_CHANGE_SLOWER);
-    assert_int_equal(compared(&sides, "grid", "primary")->change, RT_CHANGE_FASTER);
-    assert_int_equal(compared(&sides, "grid", "random")->change, RT_CHANGE_NONE); /* within the margin */
-    assert_int_equal(compared(&sides, "bvh", "random")->change, RT_CHANGE_NONE);
-    const RtEstimate ratio = compared(&sides, "bvh", "primary")->ratio;
-    assert_true(rt_estimate_holds(&ratio, 1 / 1.1) && rt_estimate_width(&ratio) < 0.012);
-    assert_int_equal(rt_comparison_changed(&sides.comparison), 1);
-    char *text;
-    size_t size;
-    FILE *out = open_memstream(&text, &size);
-    rt_comparison_print(&sides.comparison, out);
-    fclose(out);
-    assert_non_null(strstr(text, "1 faster, 1 slower, 2 no difference; counts changed in 1."));
-    assert_non_null(strstr(text, "balls:size=1 bvh random: steps "));
-    free(text);
+    for (uint32_t pairs = 1; pairs <= MOST_PAIRS; pairs++) {
+        int reports = 0;
+        for (uint64_t seed = 0; seed < TRIALS; seed++) {
+            for (uint32_t i = 0; i < 2 * pairs; i++) draw_times(&sides, i, seed);
+            compare_sides(&sides, pairs, 0);
+            reports += rt_comparison_count(&sides.comparison, RT_CHANGE_NONE) < ACCELS;
+        }
+        if (reports > TRIALS / 20) fail_msg("%d of %d with %u pairs", reports, TRIALS, pairs);
+    }
     clear_sides(&sides);
-    load_sides(*state, &sides); /* without a margin 3 % are found, too */
-    scale(&sides, 1, RT_RAY_RANDOM, 1.03);
-    assert_ok(rt_compare_results(&sides.results[0], &sides.results[1], &sides.comparison, error));
-    assert_int_equal(compared(&sides, "grid", "random")->change, RT_CHANGE_SLOWER);
+}
+
+/* The same runs, one accelerator of which takes longer. */
+RT_TEST_IN_PLACE(an_accelerator_that_is_ten_per_cent_slower_is_found_and_no_other_is_called_different) {
+    enum { TRIALS = 200 };
+    Sides sides;
+    int found = 0, others = 0;
+    load_sides(*state, &sides);
+    for (uint64_t seed = 0; seed < TRIALS; seed++) {
+        for (uint32_t i = 0; i < RUNS; i++) draw_times(&sides, i, seed);
+        for (uint32_t i = 1; i < RUNS; i += 2) scale_accel(&sides, i, 1, 1.1);
+        compare_sides(&sides, MOST_PAIRS, 0.02);
+        found += sides.comparison.accels[1].change == RT_CHANGE_SLOWER;
+        others += rt_comparison_count(&sides.comparison, RT_CHANGE_NONE) < ACCELS - 1;
+    }
+    if (found < TRIALS * 9 / 10 || others > TRIALS / 20)
+        fail_msg("found in %d of %d, others in %d", found, TRIALS, others);
+    assert_string_equal(sides.comparison.accels[1].accel, "grid");
+    clear_sides(&sides);
+}
+
+RT_TEST_IN_PLACE(a_change_of_all_accelerators_is_printed_and_no_verdict) {
+    Sides sides;
+    load_sides(*state, &sides);
+    for (uint32_t c = 0; c < ACCELS; c++) scale_accel(&sides, 1, c, 1.5);
+    compare_sides(&sides, 1, 0.02);
+    assert_int_equal(rt_comparison_count(&sides.comparison, RT_CHANGE_NONE), ACCELS);
+    assert_true(sides.comparison.all_accels > 0.6 && sides.comparison.all_accels < 0.74);
+    assert_true(is_printed(&sides.comparison, "All accelerators together, by their median: 0."));
+    clear_sides(&sides);
+}
+
+RT_TEST_IN_PLACE(what_is_faster_slower_or_counts_otherwise_is_said) {
+    Sides sides;
+    load_sides(*state, &sides);
+    scale_accel(&sides, 1, 0, 2);
+    scale_accel(&sides, 1, 1, 0.5);
+    cell_at(&sides, 1, 0, 0, 1)->tally.steps++;
+    compare_sides(&sides, 1, 0.02);
+    assert_int_equal(sides.comparison.accels[0].change, RT_CHANGE_SLOWER);
+    assert_int_equal(sides.comparison.accels[1].change, RT_CHANGE_FASTER);
+    assert_true(rt_estimate_holds(&sides.comparison.accels[0].ratio, 0.5));
+    assert_int_equal(rt_comparison_changed(&sides.comparison), 1);
+    assert_true(is_printed(&sides.comparison, "1 faster, 1 slower, 2 no difference; counts changed in 1."));
+    assert_true(is_printed(&sides.comparison, "balls:size=1 bvh random: steps "));
+    compare_sides(&sides, 1, 1.5); /* 2.5 times is the margin */
+    assert_int_equal(rt_comparison_count(&sides.comparison, RT_CHANGE_NONE), ACCELS);
+    clear_sides(&sides);
+}
+
+/* 1 - 2 / C(12, 6) = 99.78 % for each; 32 of them miss by 6.93 % at most. 32 cells take 1 - 0.05 / 32 =
+ * 99.84 %, and 1 - 2 / C(14, 7) is 99.94 %. */
+RT_TEST_IN_PLACE(the_confidence_that_the_rounds_reach_is_said_and_how_many_it_takes) {
+    Sides sides;
+    load_sides(*state, &sides);
+    compare_sides(&sides, 1, 0);
+    assert_true(fabs(sides.comparison.together - (1 - 32 * 2 / 924.0)) < 1e-9);
+    assert_true(is_printed(&sides.comparison,
+                           "each holds with 99.78 %, all 32 together with 93.1 % confidence. "
+                           "95 % together takes 7 rounds before and after."));
+    compare_sides(&sides, 2, 0); /* 12 rounds each are enough */
+    assert_true(fabs(sides.comparison.together - 0.95) < 1e-9);
+    assert_true(is_printed(&sides.comparison, "all 32 together with 95 % confidence."));
+    clear_sides(&sides);
+}
+
+RT_TEST_IN_PLACE(too_few_accelerators_or_scenes_have_no_verdict) {
+    Sides sides;
+    load_sides(*state, &sides);
+    for (uint32_t t = 0; t < SCENES; t++) {
+        for (uint32_t c = 0; c < ACCELS; c++) {
+            for (uint32_t k = 0; k < KINDS && (t > 0 || c > 2); k++) {
+                rt_free(cell_at(&sides, 0, t, c, k)->round_times);
+                cell_at(&sides, 0, t, c, k)->round_times = NULL;
+            }
+        }
+    }
+    scale_accel(&sides, 1, 0, 10);
+    compare_sides(&sides, 1, 0); /* one scene */
+    assert_int_equal(rt_comparison_count(&sides.comparison, RT_CHANGE_NOT_JUDGED), 3);
+    assert_true(is_printed(&sides.comparison, "Times are not judged: "));
+    scale_accel(&sides, 3, 0, 10);
+    compare_sides(&sides, 2, 0); /* two pairs of runs */
+    assert_int_equal(sides.comparison.accels[0].groups, 1 + SCENES);
+    assert_int_equal(sides.comparison.accels[0].change, RT_CHANGE_SLOWER);
     clear_sides(&sides);
 }
 
@@ -111,16 +246,52 @@ RT_TEST_IN_PLACE(cells_that_do_not_compare_say_why) {
     Sides sides;
     load_sides(*state, &sides);
     sides.results[1].workloads[0].ray_fingerprints[RT_RAY_RANDOM]++;
-    rt_free(after_cell(&sides, 0, RT_RAY_PRIMARY)->round_times);
-    after_cell(&sides, 0, RT_RAY_PRIMARY)->round_times = NULL;
+    rt_free(cell_at(&sides, 1, 0, 0, 0)->round_times);
+    cell_at(&sides, 1, 0, 0, 0)->round_times = NULL;
     strcpy(sides.experiments[1].candidates[1].label, "grid2");
-    assert_ok(rt_compare_results(&sides.results[0], &sides.results[1], &sides.comparison, error));
+    compare_sides(&sides, 1, 0);
     assert_int_equal(compared(&sides, "bvh", "primary")->change, RT_CHANGE_NOT_TIMED);
     assert_int_equal(compared(&sides, "bvh", "random")->change, RT_CHANGE_OTHER_RAYS);
     assert_int_equal(compared(&sides, "grid", "primary")->change, RT_CHANGE_ONLY_BEFORE);
     assert_int_equal(compared(&sides, "grid2", "primary")->change, RT_CHANGE_ONLY_AFTER);
-    assert_int_equal(sides.comparison.timed, 0);
     clear_sides(&sides);
+}
+
+/* A cell with the verdict `change`, and so many instructions after as a part of those before. */
+static bool says_of_instructions(RtChange change, double after, const char *words) {
+    RtComparison comparison = {0};
+    RtComparedCell *cell = rt_comparison_cell(&comparison, "balls", "bvh", "primary");
+    assert_non_null(cell);
+    cell->change = change;
+    cell->instructions[0] = 1000;
+    cell->instructions[1] = 1000 * after;
+    bool found = is_printed(&comparison, words);
+    rt_comparison_clear(&comparison);
+    return found;
+}
+
+RT_TEST(where_time_and_instructions_disagree_is_said_in_a_sentence) {
+    assert_true(says_of_instructions(RT_CHANGE_FASTER, 1.0002, "balls bvh primary: instructions equal"));
+    assert_true(says_of_instructions(RT_CHANGE_SLOWER, 1, "balls bvh primary: instructions equal"));
+    assert_true(
+        says_of_instructions(RT_CHANGE_FASTER, 1.008, "0.8 % more instructions although it measured faster"));
+    assert_true(
+        says_of_instructions(RT_CHANGE_SLOWER, 0.97, "3 % fewer instructions although it measured slower"));
+    assert_true(says_of_instructions(RT_CHANGE_NONE, 1.03, "1.0300"));
+}
+
+RT_TEST(where_they_agree_only_the_ratio_is_shown) {
+    RtComparison comparison = {0};
+    RtComparedCell *cell = rt_comparison_cell(&comparison, "balls", "bvh", "primary");
+    assert_non_null(cell);
+    cell->change = RT_CHANGE_SLOWER;
+    cell->instructions[0] = 1000;
+    cell->instructions[1] = 1030;
+    char *text = printed(&comparison);
+    assert_non_null(strstr(text, "1.0300"));
+    assert_null(strstr(text, "balls bvh primary:"));
+    free(text);
+    rt_comparison_clear(&comparison);
 }
 
 RT_TEST_IN_PLACE(strict_makes_something_slower_an_exit_code) {
@@ -131,10 +302,16 @@ RT_TEST_IN_PLACE(strict_makes_something_slower_an_exit_code) {
     snprintf(command, sizeof command, "cp -r '%s/a' '%s/b'", place->folder, place->folder);
     assert_int_equal(system(command), 0);
     assert_int_equal(raytally(place, "compare a b --strict"), 0);
-    assert_in_file(place, "output", "4 no difference; counts changed in 0.");
-    /* Times of 1e-7 s a ray become ten times longer by their exponents. */
+    assert_in_file(place, "output", "0 faster, 0 slower, 4 no difference; counts changed in 0.");
+    /* Times of 1e-7 s a ray become ten times longer by their exponents: those of the grid. */
     char *journal = read_in(place, "b/cells.jsonl");
-    for (char *at = journal; (at = strstr(at, "e-")) != NULL; at += 2) at[2] = (char)(at[2] - (at[2] > '0'));
+    for (char *line = journal, *end; (end = strchr(line, '\n')) != NULL; line = end + 1) {
+        *end = '\0';
+        bool grid = strstr(line, "\"grid\"") != NULL;
+        for (char *at = line; grid && (at = strstr(at, "e-")) != NULL; at += 2)
+            at[2] = (char)(at[2] - (at[2] > '0'));
+        *end = '\n';
+    }
     write_in(place, "b/cells.jsonl", journal);
     rt_free(journal);
     assert_int_equal(raytally(place, "compare a b --strict --json"), 1);

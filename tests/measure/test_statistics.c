@@ -130,6 +130,43 @@ RT_TEST(unpaired_intervals_hold_the_true_ratio_as_often_as_they_say) {
     }
 }
 
+/* 2 / C(12, 6) is 0.22 %; 168 cells take 1 - 0.05 / 168. */
+RT_TEST(so_many_unpaired_rounds_cover_at_most_so_much) {
+    assert_true(fabs(rt_unpaired_coverage(6, 6) - (1 - 2 / 924.0)) < 1e-12);
+    assert_true(fabs(rt_unpaired_coverage(2, 3) - 0.8) < 1e-12);
+    assert_true(rt_unpaired_coverage(1, 1) == 0);
+    assert_int_equal(rt_unpaired_rounds(0.95), 4);
+    assert_int_equal(rt_unpaired_rounds(rt_coverage_of_each(168)), 8);
+}
+
+/* Two-sided critical values of Student's t: 5 % of 1, 2 and 9 degrees of freedom, 1 % of 29, 0.1 % of 999. */
+RT_TEST(intervals_of_means_are_as_wide_as_the_tables_of_student_say) {
+    const struct {
+        uint32_t count;
+        double coverage, t;
+    } cases[] = {{2, 0.95, 12.7062},
+                 {3, 0.95, 4.30265},
+                 {10, 0.95, 2.26216},
+                 {30, 0.99, 2.75639},
+                 {1000, 0.999, 3.30031}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        double ratios[1000], squares = 0;
+        const uint32_t n = cases[i].count;
+        for (uint32_t k = 0; k < n; k++) { /* logarithms whose mean is 0.1 */
+            const double deviation = 1e-3 * (2.0 * k - (n - 1.0)) / n;
+            ratios[k] = exp(0.1 + deviation);
+            squares += deviation * deviation;
+        }
+        const RtEstimate e = rt_estimate_student(ratios, n, cases[i].coverage);
+        const double half = cases[i].t * sqrt(squares / (n - 1) / n);
+        assert_true(fabs(log(e.median) - 0.1) < 1e-12);
+        const double above = log(e.high) - 0.1, below = 0.1 - log(e.low);
+        if (fabs(above - half) > 1e-5 * half || fabs(below - half) > 1e-5 * half)
+            fail_msg("%u: %g %g in place of %g", n, above, below, half);
+        assert_true(e.least == ratios[0]);
+    }
+}
+
 RT_TEST(as_many_rounds_are_taken_as_so_many_cells_ask_for) {
     assert_true(rt_coverage_of_each(0) == 0.95 && rt_coverage_of_each(1) == 0.95);
     assert_true(fabs(rt_coverage_of_each(10) - 0.995) < 1e-12);
