@@ -47,7 +47,8 @@ static void finish(void *options, struct argp_state *state) {
 
 static const RtOption options[] = {
     {"index", 'i', "FOLDER", RT_TO_TAKE(take_index),
-     "Write FOLDER/index.html, a page that lists all result directories in FOLDER, as in `--index results`"},
+     "Write FOLDER/index.html and FOLDER/index.md, which list all result directories in FOLDER, as in "
+     "`--index results`"},
     {0}};
 const RtSyntax rt_report_syntax = {
     .options = options,
@@ -57,7 +58,8 @@ const RtSyntax rt_report_syntax = {
     .finish = finish,
     .help =
         "Write DIR/report.html again, from what is in DIR, and tables.md and tables.tex beside it.\n"
-        "--index: FOLDER/index.html, a page that lists all result directories in FOLDER and its subfolders."};
+        "--index: FOLDER/index.html and, for GitHub, FOLDER/index.md, which list all result directories in "
+        "FOLDER and its subfolders by the `section` of their experiments."};
 
 RtStatus rt_command_report(int argc, char **argv, RtError *error) {
     Options o = {0};

@@ -13,12 +13,40 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_CSV_BYTES = 1 << 28 };
+enum { MOST_CSV_BYTES = 1 << 28, MOST_DIRECTORIES = 1024 };
 
 typedef struct Options {
-    const char *directory;
+    const char *directories[MOST_DIRECTORIES];
+    uint32_t count;
     const char *scene; /* label of the only scene to count, or of a sweep of scenes; NULL: all */
+    bool quick;        /* only the scene that took least work */
 } Options;
+
+static void take_directory(void *options, const char *text, struct argp_state *state) {
+    Options *o = options;
+    if (o->count == MOST_DIRECTORIES) argp_error(state, "more than %d directories", MOST_DIRECTORIES);
+    o->directories[o->count++] = text;
+}
+
+static void finish(void *options, struct argp_state *state) {
+    const Options *o = options;
+    if (o->quick && o->scene) argp_error(state, "--quick and --only both choose scenes: give one of them");
+}
+
+/* The label of the scene that took least work: objects to build from, tests and steps of all accelerators. */
+static const char *cheapest_scene(const RtResults *results) {
+    double work[RT_MAX_WORKLOADS] = {0};
+    uint32_t best = RT_MAX_WORKLOADS;
+    for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
+        const RtTally *tally = &at.cell->tally;
+        work[at.workload] += (double)results->workloads[at.workload].objects +
+                             (double)(tally->object_tests + tally->extent_tests + tally->steps);
+    }
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        if (work[t] > 0 && (best == RT_MAX_WORKLOADS || work[t] < work[best])) best = t;
+    }
+    return best < RT_MAX_WORKLOADS ? results->experiment->workloads[best].label : NULL;
+}
 
 static RtOnly only_scene(const char *scene) {
     return (RtOnly){.parts[0].scene = scene, .part_count = 1};
@@ -112,7 +140,11 @@ static RtStatus compare_all(const char *directory, const RtResults *results, con
 }
 
 static RtStatus reproduce(const char *directory, RtResults *results, const void *options, RtError *error) {
-    const char *scene = ((const Options *)options)->scene;
+    const Options *o = options;
+    char cheapest[RT_MAX_LABEL] = "";
+    if (o->quick && cheapest_scene(results))
+        snprintf(cheapest, sizeof cheapest, "%s", cheapest_scene(results));
+    const char *scene = *cheapest ? cheapest : o->scene;
     rt_cli_tell_plugins(directory, results->experiment);
     /* The copy in the directory does not find its scenes; the original does. */
     static RtExperiment original;
@@ -127,20 +159,49 @@ static RtStatus reproduce(const char *directory, RtResults *results, const void 
     return status;
 }
 
-static const RtOption options[] = {{"only", 0, "SCENE", RT_TO_TEXT(scene),
-                                    "Count and compare only the rows of one scene, or of a sweep of scenes, "
-                                    "by its label; published figures are left out"},
-                                   {0}};
+static const RtOption options[] = {
+    {"only", 0, "SCENE", RT_TO_TEXT(scene),
+     "Count and compare only the rows of one scene, or of a sweep of scenes, "
+     "by its label; published figures are left out"},
+    {"quick", 0, NULL, RT_TO_FLAG(quick), "The same for the scene of each directory that took least work"},
+    {0}};
 const RtSyntax rt_reproduce_syntax = {
     .options = options,
     .plugins = true,
-    .arguments = "DIR",
-    .argument = RT_DIRECTORY_ARGUMENT,
+    .arguments = "DIR...",
+    .argument = {.name = "DIR", .missing = RT_DIRECTORY_MISSING, .take = take_directory},
+    .finish = finish,
     .help = "Count everything in a result directory again and compare it with DIR/counts.csv, byte for byte, "
-            "and with published figures if the experiment names any. Start it where the experiment was run."};
+            "and with published figures if the experiment names any. Several directories are compared one "
+            "after the other, and the worst exit code counts; verifications and plain files are skipped. "
+            "Start it where the experiment was run."};
+
+/* Such as the index of results/, or a verification beside the experiments. */
+static bool is_skipped(const char *path) {
+    return rt_file_exists_in(path, rt_result_files[RT_FILE_VERIFY_CSV]) ||
+           (rt_file_exists(path) && rt_directory_each(path, "", NULL, NULL) == 0);
+}
+
+/* Exit code 2 is worse than 1. */
+static RtStatus reproduce_all(const Options *o, RtError *error) {
+    RtStatus worst = RT_OK;
+    uint32_t failed = 0;
+    for (uint32_t i = 0; i < o->count; i++) {
+        RtError why;
+        if (is_skipped(o->directories[i])) continue;
+        RtStatus status = rt_cli_directory_work(o->directories[i], false, reproduce, o, &why);
+        if (status == RT_OK) continue;
+        fprintf(stderr, "raytally: %s\n", why.message);
+        if (worst == RT_OK || worst == RT_MISMATCH || worst == RT_BROKEN) worst = status;
+        failed++;
+    }
+    if (failed == 0) return RT_OK;
+    return rt_fail(error, worst, "%u of %u directories failed", failed, o->count);
+}
 
 RtStatus rt_command_reproduce(int argc, char **argv, RtError *error) {
-    Options o = {0};
+    static Options o;
     rt_cli_parse(&rt_reproduce_syntax, argc, argv, &o);
-    return rt_cli_directory_work(o.directory, false, reproduce, &o, error);
+    if (o.count == 1) return rt_cli_directory_work(o.directories[0], false, reproduce, &o, error);
+    return reproduce_all(&o, error);
 }

@@ -1,25 +1,31 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* raytally run: an experiment, from its YAML to a result directory. */
+/* raytally run: experiments, from their YAML to result directories. */
 #include "cli/cli.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
+#include "cli/turns.h"
 #include "core/base/words.h"
 #include "experiment/claims.h"
 #include "experiment/journal.h"
 #include "experiment/manifest.h"
 #include "experiment/result_directory.h"
 #include "experiment/result_tables.h"
+#include "report/index.h"
 #include "report/run_report.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
+enum { MOST_EXPERIMENTS = 256, MOST_COMMAND = 1 << 16 };
+
 typedef struct Options {
-    const char *path;
+    const char *paths[MOST_EXPERIMENTS];
+    uint32_t count, turn; /* paths; the one to run here */
+    const char *out;      /* as given: of one experiment the directory, of several the folder; or NULL */
     RtRunOptions how;
-    char directory[RT_MAX_PATH]; /* results/NAME: how.directory, unless --out names another */
-    bool quick, strict, dry;
+    char directory[RT_MAX_PATH]; /* of this run: results/NAME, or of several FOLDER/NAME */
+    bool quick, strict, dry, update;
     bool found;                                 /* the experiment comes from a manifest */
     char parts[RT_MAX_PARTS][3 * RT_MAX_LABEL]; /* texts of how.workload.only */
     uint64_t memory;                            /* bytes for each accelerator; 0: the experiment's limit */
@@ -57,10 +63,31 @@ static void take_renew(void *options, const char *text, struct argp_state *state
     how->renew = true;
 }
 
+static void take_path(void *options, const char *text, struct argp_state *state) {
+    Options *o = options;
+    if (o->count == MOST_EXPERIMENTS) argp_error(state, "more than %d experiments", MOST_EXPERIMENTS);
+    o->paths[o->count++] = text;
+}
+
+static void finish_options(void *options, struct argp_state *state) {
+    const Options *o = options;
+    if (o->count == 1) return;
+    if (o->how.workload.only.part_count || o->how.workload.only.shards)
+        argp_error(state, "--only and --shard take one experiment");
+    if (o->how.start == RT_START_ANEW)
+        argp_error(state, "--force takes one experiment: with several, every repetition would lose what is "
+                          "finished; use --update, or another --out");
+}
+
 static const RtOption options[] = {
-    {"out", 'o', "DIR", RT_TO_TEXT(how.directory), "The result directory (results/NAME)"},
+    {"out", 'o', "DIR", RT_TO_TEXT(out),
+     "The result directory (results/NAME); of several experiments the folder of their directories DIR/NAME "
+     "(results)"},
     {"resume", 0, NULL, RT_TO_SET(how.start, RT_START_RESUME),
      "Continue an interrupted run: its measurements stay. For a finished run, write tables and plots again"},
+    {"update", 0, NULL, RT_TO_FLAG(update),
+     "As --resume, but start over where another build, or another version of the YAML, was measured: those "
+     "results are lost"},
     {"renew", 0, NULL, RT_TO_TAKE(take_renew),
      "As --resume, after a plugin has changed: measure its cells again, keep all others"},
     {"force", 0, NULL, RT_TO_SET(how.start, RT_START_ANEW),
@@ -105,7 +132,7 @@ static void print_cell(const RtResults *results, uint32_t t, uint32_t c, RtRayKi
 }
 
 /* Opens no scenes: forecasts from the results in the directory. */
-static RtStatus dry_run(RtResults *results, const RtRunOptions *how, RtError *error) {
+static RtStatus dry_run(RtResults *results, const RtRunOptions *how, bool list, RtError *error) {
     const RtExperiment *e = results->experiment;
     const RtOnly *only = &how->workload.only;
     char path[RT_MAX_PATH], duration[RT_MAX_DURATION];
@@ -116,7 +143,7 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, RtError *er
     if (refused) fprintf(stderr, "raytally: %s\n", error->message);
     if (previous) status = rt_forecast_learn(how->directory, results, error);
     RT_TRY(status);
-    for (uint32_t t = 0; t < e->workload_count; t++) {
+    for (uint32_t t = 0; list && t < e->workload_count; t++) {
         for (uint32_t c = 0; c < e->candidate_count; c++) {
             for (uint32_t k = 0; rt_candidate_runs(e, c, t) && k < e->kind_count; k++) {
                 if (rt_only_cell(only, e, t, c, e->kinds[k]))
@@ -143,24 +170,41 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, RtError *er
     return RT_OK;
 }
 
-/* The command that continues the run. */
-static void go_on(const Options *o, const RtExperiment *e, char *out, size_t size) {
+/* The folder of the directories of several experiments. */
+static const char *folder_of(const Options *o) {
+    return o->out ? o->out : "results";
+}
+
+/* The command that continues the run, or the runs. */
+static void go_on(const Options *o, const RtExperiment *e, char out[MOST_COMMAND]) {
     const RtWorkloadOptions *how = &o->how.workload;
-    snprintf(out, size, "raytally run %s --out %s%s", e->path, o->how.directory, e->quick ? " --quick" : "");
+    const size_t size = MOST_COMMAND;
+    snprintf(out, size, "raytally run");
+    for (uint32_t i = 0; i < o->count; i++)
+        rt_append_text(out, size, " %s", o->count == 1 ? e->path : o->paths[i]);
+    rt_append_text(out, size, " --out %s%s", o->count == 1 ? o->how.directory : folder_of(o),
+                   (o->count == 1 ? e->quick : o->quick) ? " --quick" : "");
+    if (o->strict) rt_append_text(out, size, " --strict");
     if (o->threads >= 0) rt_append_text(out, size, " --threads %d", o->threads);
     if (o->memory) rt_append_text(out, size, " --memory %" PRIu64, o->memory);
     if (how->only.shards) rt_append_text(out, size, " --shard %u/%u", how->only.shard, how->only.shards);
     if (how->until > 0)
         rt_append_text(out, size, " --until %g%% --patience %g", 100 * how->until, how->patience);
     rt_cli_plugin_arguments(out, size);
-    rt_append_text(out, size, "%s --resume", o->how.scripts == RT_SCRIPTS_ALL ? " --trust" : "");
+    rt_append_text(out, size, "%s%s", o->how.scripts == RT_SCRIPTS_ALL ? " --trust" : "",
+                   o->update      ? " --update"
+                   : o->how.renew ? " --renew"
+                                  : " --resume");
 }
 
 static RtStatus measure(Options *o, RtResults *results, RtError *error) {
     RtRunOptions *how = &o->how;
-    char command[RT_MAX_PATH + 1280];
+    static char command[MOST_COMMAND];
     RtProgress progress = rt_progress_begin(&how->workload);
-    go_on(o, results->experiment, command, sizeof command);
+    if (o->count > 1)
+        snprintf(progress.title, sizeof progress.title, "%s, %" PRIu32 " of %" PRIu32 ": ",
+                 results->experiment->name, o->turn + 1, o->count);
+    go_on(o, results->experiment, command);
     rt_progress_watch(&progress, how->directory, command);
     how->workload.observer = rt_progress_observer(&progress);
     RtStatus status = rt_run_experiment(results, how, error);
@@ -176,49 +220,122 @@ static RtStatus measure(Options *o, RtResults *results, RtError *error) {
 /* Loads a YAML, or the experiment of a manifest.json. */
 static RtStatus load(Options *o, RtExperiment *experiment, RtError *error) {
     static const char manifest[] = "manifest.json";
+    const char *path = o->paths[o->turn];
     char folder[RT_MAX_PATH];
-    size_t length = strlen(o->path), last = sizeof manifest - 1;
-    if (length < last || strcmp(o->path + length - last, manifest) != 0)
-        return rt_experiment_load(experiment, o->path, o->quick, error);
+    size_t length = strlen(path), last = sizeof manifest - 1;
+    if (length < last || strcmp(path + length - last, manifest) != 0)
+        return rt_experiment_load(experiment, path, o->quick, error);
     if (o->quick)
-        return rt_fail(error, RT_BAD_INPUT, "--quick: %s says which variant it was; leave --quick out",
-                       o->path);
+        return rt_fail(error, RT_BAD_INPUT, "--quick: %s says which variant it was; leave --quick out", path);
     o->found = true;
-    rt_path_folder(o->path, folder);
+    rt_path_folder(path, folder);
     RtStatus status = rt_manifest_experiment(folder, experiment, error);
     rt_cli_tell_plugins(folder, experiment); /* even if loading failed for lack of a plugin */
     return status;
 }
 
+/* Where the results of the experiment go. */
+static RtStatus choose_directory(Options *o, const RtExperiment *experiment, RtError *error) {
+    const RtOnly *only = &o->how.workload.only;
+    o->how.directory = o->directory;
+    if (o->count > 1 || !o->out) {
+        char name[RT_MAX_LABEL + 8];
+        rt_file_name(experiment->name, name, sizeof name);
+        RT_TRY(rt_path_join(folder_of(o), name, o->directory, error));
+    } else {
+        o->how.directory = o->out;
+    }
+    if (only->shards && !o->out)
+        rt_append_text(o->directory, sizeof o->directory, "-%u-of-%u", only->shard, only->shards);
+    return RT_OK;
+}
+
+/* --update: resumes what this build began, and replaces what it cannot resume. */
+static RtStatus choose_start(Options *o, const RtExperiment *experiment, RtError *error) {
+    RtResults results;
+    RtRunOptions *how = &o->how;
+    char path[RT_MAX_PATH];
+    RT_TRY(rt_path_join(how->directory, RT_RUN_JOURNAL, path, error));
+    how->start = RT_START_RESUME;
+    if (!rt_file_exists(path)) return RT_OK;
+    RtStatus status = rt_results_init(&results, experiment, error);
+    if (status == RT_OK && rt_journal_load(path, &results, &how->workload.only, how->renew, NULL) != RT_OK)
+        how->start = RT_START_ANEW;
+    rt_results_clear(&results);
+    return status;
+}
+
 static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
     RtRunOptions *how = &o->how;
-    const RtOnly *only = &how->workload.only;
     RtResults results;
     RT_TRY(load(o, experiment, error));
-    RT_TRY(check_part(experiment, only, error));
+    RT_TRY(check_part(experiment, &how->workload.only, error));
     if (how->workload.until > 0 && experiment->rounds < RT_FULL_ROUNDS) experiment->rounds = RT_FULL_ROUNDS;
     if (o->memory) experiment->limit_bytes = o->memory;
-    strcpy(o->directory, "results/");
-    rt_file_name(experiment->name, o->directory + strlen(o->directory), RT_MAX_LABEL + 1);
-    if (only->shards)
-        rt_append_text(o->directory, sizeof o->directory, "-%u-of-%u", only->shard, only->shards);
-    if (!how->directory) how->directory = o->directory;
+    RT_TRY(choose_directory(o, experiment, error));
+    if (o->update) RT_TRY(choose_start(o, experiment, error));
     if (o->threads >= 0) how->workload.threads = how->workload.timing = o->threads;
     if (!o->found && how->scripts == RT_SCRIPTS_SHIPPED) how->scripts = RT_SCRIPTS_OWN;
     RtStatus status = rt_results_init(&results, experiment, error);
-    if (status == RT_OK) status = o->dry ? dry_run(&results, how, error) : measure(o, &results, error);
+    if (status == RT_OK)
+        status = o->dry ? dry_run(&results, how, o->count == 1, error) : measure(o, &results, error);
     rt_results_clear(&results);
     return status;
+}
+
+/* ---- several ---- */
+
+/* Parses all experiments before the first is measured. One that this build or machine cannot measure fails
+ * when it has its turn. */
+static RtStatus parse_all(Options *o, RtExperiment *experiment, char (*names)[RT_MAX_LABEL], RtError *error) {
+    for (o->turn = 0; o->turn < o->count; o->turn++) {
+        RtStatus status = load(o, experiment, error);
+        if (status != RT_OK && status != RT_NOT_AVAILABLE) return status;
+        memcpy(names[o->turn], experiment->name, RT_MAX_LABEL);
+        for (uint32_t i = 0; i < o->turn; i++) {
+            if (strcmp(names[i], names[o->turn]) != 0) continue;
+            return rt_fail(error, RT_BAD_INPUT,
+                           "%s and %s are both named '%s', and would share the directory %s/%s: give one of "
+                           "them another `name`",
+                           o->paths[i], o->paths[o->turn], names[i], folder_of(o), names[i]);
+        }
+    }
+    return RT_OK;
+}
+
+static RtStatus run_all(Options *o, RtExperiment *experiment, RtError *error) {
+    static char names[MOST_EXPERIMENTS][RT_MAX_LABEL], command[MOST_COMMAND];
+    static RtTurn turns[MOST_EXPERIMENTS];
+    size_t indexed;
+    RT_TRY(parse_all(o, experiment, names, error));
+    go_on(o, experiment, command);
+    for (o->turn = 0; o->turn < o->count; o->turn++) {
+        RtTurn *turn = &turns[o->turn];
+        turn->name = names[o->turn];
+        printf("%s== %s, %" PRIu32 " of %" PRIu32 "\n", o->turn ? "\n" : "", turn->name, o->turn + 1,
+               o->count);
+        RT_TRY(rt_turn_take(turn, command, error));
+        o->found = false;
+        if (turn->here) return run(o, experiment, error);
+    }
+    rt_turns_print(turns, o->count, stdout);
+    if (!o->dry && rt_index_write(folder_of(o), &indexed, NULL) == RT_OK)
+        printf("\nIndex: %s/index.html and index.md\n", folder_of(o));
+    return rt_turns_check(turns, o->count, error);
 }
 
 const RtSyntax rt_run_syntax = {
     .options = options,
     .plugins = true,
-    .arguments = "EXPERIMENT.yaml|DIR/manifest.json",
-    .argument =
-        RT_ARGUMENT("EXPERIMENT", path, "an EXPERIMENT is missing, as in experiments/first-look.yaml"),
+    .arguments = "EXPERIMENT.yaml|DIR/manifest.json...",
+    .argument = {.name = "EXPERIMENT",
+                 .missing = "an EXPERIMENT is missing, as in experiments/first-look.yaml",
+                 .take = take_path},
+    .finish = finish_options,
     .help = "Run an experiment and write its result directory: counts.csv, times.csv, manifest.json, plots, "
-            "images and report.html. Given the manifest of a directory, run its experiment again; start that "
+            "images and report.html. Several are run one after the other, each in a process of its own; one "
+            "that fails does not stop the others, the worst exit code counts, and an index lists all results "
+            "in the folder. Given the manifest of a directory, run its experiment again; start that "
             "where the first run was started. A directory that has results, finished or not, needs --resume "
             "or --force. Only one process at a time may write into a directory. Ctrl-C at any time keeps "
             "what is measured.\v"
@@ -231,5 +348,5 @@ RtStatus rt_command_run(int argc, char **argv, RtError *error) {
                  .how = {.report = &rt_run_report, .workload = {.timing = 1, .patience = RT_PATIENCE}}};
     rt_cli_parse(&rt_run_syntax, argc, argv, &o);
     static RtExperiment experiment;
-    return run(&o, &experiment, error);
+    return o.count == 1 ? run(&o, &experiment, error) : run_all(&o, &experiment, error);
 }

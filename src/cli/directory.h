@@ -5,8 +5,8 @@
 
 #include "experiment/result_directory.h"
 
-#define RT_DIRECTORY_ARGUMENT                                                                                \
-    RT_ARGUMENT("DIR", directory, "a result DIR is missing, as in results/first-look")
+#define RT_DIRECTORY_MISSING  "a result DIR is missing, as in results/first-look"
+#define RT_DIRECTORY_ARGUMENT RT_ARGUMENT("DIR", directory, RT_DIRECTORY_MISSING)
 
 /* What such a command does with the directory once its results are loaded; `options` are the command's. */
 typedef RtStatus RtDirectoryWork(const char *directory, RtResults *results, const void *options,

@@ -50,10 +50,11 @@ static void show(RtProgress *progress) {
     rt_format_duration(left, duration);
     if (!isnan(left)) snprintf(rest, sizeof rest, ", about %s left", duration);
     if (progress->terminal)
-        fprintf(stderr, "\r\033[K[%u/%u] %s%s", f->finished, f->cells, progress->doing, rest);
+        fprintf(stderr, "\r\033[K%s[%u/%u] %s%s", progress->title, f->finished, f->cells, progress->doing,
+                rest);
     else
-        fprintf(stderr, "raytally: %u of %u cell%s, %s%s\n", f->finished, f->cells, rt_plural(f->cells),
-                progress->doing, rest);
+        fprintf(stderr, "raytally: %s%u of %u cell%s, %s%s\n", progress->title, f->finished, f->cells,
+                rt_plural(f->cells), progress->doing, rest);
     fflush(stderr);
     progress->shown = now;
 }
@@ -105,14 +106,15 @@ RtRunObserver rt_progress_observer(RtProgress *progress) {
 
 /* The journal is always whole: there is nothing to clean up. */
 static void leave(const RtProgress *progress, int number) {
-    fprintf(stderr, "%sraytally: interrupted; ", progress->terminal ? "\r\033[K" : "");
+    fprintf(stderr, "%sraytally: %sinterrupted; ", progress->terminal ? "\r\033[K" : "", progress->title);
     if (progress->begun) {
-        fprintf(stderr, "%u of %u cell%s %s finished, all measurements are kept in %s. To continue:\n  %s\n",
+        fprintf(stderr, "%u of %u cell%s %s finished, all measurements are kept in %s.",
                 progress->forecast.finished, progress->forecast.cells, rt_plural(progress->forecast.cells),
-                progress->forecast.cells == 1 ? "is" : "are", progress->keeps, progress->go_on);
+                progress->forecast.cells == 1 ? "is" : "are", progress->keeps);
     } else {
-        fprintf(stderr, "nothing was measured yet, and %s is unchanged\n", progress->keeps);
+        fprintf(stderr, "nothing was measured yet, and %s is unchanged.", progress->keeps);
     }
+    fprintf(stderr, " To continue:\n  %s\n", progress->go_on);
     _exit(128 + number);
 }
 
@@ -148,8 +150,8 @@ static void block(int how) {
 }
 
 void rt_progress_watch(RtProgress *progress, const char *directory, const char *go_on) {
-    snprintf(progress->keeps, sizeof progress->keeps, "%s", directory);
-    snprintf(progress->go_on, sizeof progress->go_on, "%s", go_on);
+    progress->keeps = directory;
+    progress->go_on = go_on;
     pthread_mutex_init(&progress->lock, NULL);
     block(SIG_BLOCK);
     progress->watched = pthread_create(&progress->watcher, NULL, watch, progress) == 0;

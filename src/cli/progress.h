@@ -17,11 +17,12 @@ typedef struct RtProgress {
     double every;              /* seconds between lines */
     RtForecast forecast;
     bool begun;
+    char title[RT_MAX_LABEL + 32]; /* before what is shown: which of several runs this is; or "" */
     char doing[2 * RT_MAX_LABEL + 64];
     pthread_mutex_t lock; /* protects all above after rt_progress_watch */
     pthread_t watcher;
     bool watched, ended;
-    char keeps[RT_MAX_PATH], go_on[RT_MAX_PATH + 256];
+    const char *keeps, *go_on; /* of rt_progress_watch */
 } RtProgress;
 
 /* `options`: of the measurement, without its observer. */
@@ -29,8 +30,8 @@ RtProgress rt_progress_begin(const RtWorkloadOptions *options);
 
 /* For a run: a thread shows a line every minute (on a terminal every second), even if nothing finishes. From
  * now on SIGINT and SIGTERM, blocked in all later threads, end the process with 128 + their number, after
- * saying what is kept in `directory`, and `go_on`, the command that continues. Call before other threads are
- * made. */
+ * saying what is kept in `directory`, and `go_on`, the command that continues; both are borrowed until the
+ * end. Call before other threads are made. */
 void rt_progress_watch(RtProgress *progress, const char *directory, const char *go_on);
 
 /* The observer of a workload; each notice gets its own line. */

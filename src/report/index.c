@@ -1,96 +1,48 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* Each result directory is loaded once, in the order of their names, and written into texts of its own for
+ * both pages; the texts are then put together in the order of sections. */
 #include "report/index.h"
 
 #include "core/base/memory.h"
 #include "core/text/table.h"
-#include "experiment/manifest.h"
-#include "experiment/result_directory.h"
+#include "report/index_entry.h"
 #include "report/page.h"
 
-#include <inttypes.h>
+#include <ctype.h>
+#include <stddef.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct Index {
-    FILE *out;
     const char *folder;
-    RtExperiment *experiment;
-    bool inner; /* in one of its folders */
-    size_t count;
+    RtExperiment *experiment; /* for each in turn */
+    bool inner;               /* in one of the folder's folders */
+    RtIndexEntry *entries;    /* owned */
+    uint32_t count, capacity;
+    RtStatus status;
+    RtError *error;
 } Index;
-
-/* ---- an experiment ---- */
-
-static void put_size(FILE *out, const RtResults *results) {
-    const RtExperiment *experiment = results->experiment;
-    uint32_t scenes;
-    uint64_t cells = rt_results_size(results, &scenes);
-    fprintf(out,
-            "<p class=\"meta\">Scenes: %" PRIu32 " &middot; accelerators: %" PRIu32
-            " &middot; cells: %" PRIu64 "%s</p>\n",
-            scenes, experiment->candidate_count, cells,
-            experiment->count_only ? " &middot; counted only" : "");
-}
-
-static void put_paragraph(FILE *out, const char *title, const char *text) {
-    if (!*text) return;
-    fprintf(out, "<p><strong>%s</strong> ", title);
-    rt_html_wrap(out, "", text, "</p>\n");
-}
-
-/* `name`: of the directory, seen from the page. */
-static void put_title(const Index *index, const char *directory, const char *name, const char *title) {
-    char report[RT_MAX_PATH];
-    fputs("<section class=\"card\"><h2>", index->out);
-    if (rt_file_exists_in(directory, "report.html") &&
-        rt_path_join(name, "report.html", report, NULL) == RT_OK)
-        rt_page_link(index->out, report, title);
-    else
-        rt_html_put(index->out, title);
-    fputs("</h2>\n", index->out);
-}
-
-static void put_experiment(Index *index, const char *directory, const char *name) {
-    FILE *out = index->out;
-    RtResults results;
-    RtError error = {RT_OK, ""};
-    json_t *manifest = NULL;
-    RtStatus status = rt_run_load(directory, index->experiment, &results, &error);
-    if (status == RT_OK) status = rt_manifest_read(directory, &manifest, &error);
-    put_title(index, directory, name, status == RT_OK ? index->experiment->name : name);
-    if (status == RT_OK) {
-        fputs("<p>", out);
-        rt_page_verdict(out, &results);
-        fputs("</p>\n", out);
-        put_paragraph(out, "Question:", index->experiment->question);
-        put_paragraph(out, "Finding:", index->experiment->finding);
-        rt_page_provenance(out, manifest);
-        put_size(out, &results);
-    } else {
-        put_paragraph(out, "Cannot be read:", error.message);
-    }
-    fputs("</section>\n", out);
-    json_decref(manifest);
-    rt_results_clear(&results);
-    index->count++;
-}
-
-/* ---- all of them ---- */
-
-/* Whether a folder holds an experiment.yaml and a manifest. */
-static bool is_result(const char *directory) {
-    return rt_file_exists_in(directory, "experiment.yaml") && rt_file_exists_in(directory, RT_MANIFEST);
-}
 
 /* ., .. and hidden folders. */
 static bool is_hidden(const char *path) {
     return basename(path)[0] == '.';
 }
 
+static void add_entry(Index *index, const char *directory) {
+    index->status = rt_reserve(&index->entries, &index->capacity, index->count + UINT64_C(1),
+                               sizeof(RtIndexEntry), index->error);
+    if (index->status != RT_OK) return;
+    RtIndexEntry *entry = &index->entries[index->count];
+    index->status = rt_index_entry_read(entry, directory, directory + strlen(index->folder) + 1,
+                                        index->experiment, index->error);
+    entry->number = index->count++;
+}
+
 static void visit(void *context, const char *path) {
     Index *index = context;
-    if (is_hidden(path)) return;
-    if (is_result(path)) {
-        put_experiment(index, path, path + strlen(index->folder) + 1);
+    if (is_hidden(path) || index->status != RT_OK) return;
+    if (rt_index_is_entry(path)) {
+        add_entry(index, path);
     } else if (!index->inner) {
         index->inner = true;
         rt_directory_each(path, "", visit, index);
@@ -98,25 +50,149 @@ static void visit(void *context, const char *path) {
     }
 }
 
+/* ---- all of them ---- */
+
+static const char *const sections[] = {"lecture", "papers", "speed", "arena", "verification"};
+enum { SECTIONS = sizeof sections / sizeof sections[0] };
+
+/* Those above in this order, then others, then none. */
+static int order_of(const char *section) {
+    int i = 0;
+    while (i < SECTIONS && strcmp(sections[i], section) != 0) i++;
+    return i + !*section;
+}
+
+static int compare(const void *a, const void *b) {
+    const RtIndexEntry *x = a, *y = b;
+    const int order = order_of(x->section) - order_of(y->section), names = strcmp(x->section, y->section);
+    return order ? order : names ? names : x->number < y->number ? -1 : 1;
+}
+
+/* The title of a section: with a capital. */
+static void title_of(const char *section, char title[RT_MAX_LABEL]) {
+    snprintf(title, RT_MAX_LABEL, "%s", *section ? section : "others");
+    title[0] = (char)toupper((unsigned char)title[0]);
+}
+
+/* "Measured by raytally 0.1.0 (abc): one, two; by ...": the values of `origin` (an offset) with the entries
+ * that have them; without names if there is only one value. */
+static void put_origins(const Index *index, size_t origin, const char *before, FILE *out) {
+    const char *last = before;
+    for (uint32_t i = 0; i < index->count; i++) {
+        const char *value = (const char *)&index->entries[i] + origin;
+        bool earlier = !*value, all = true;
+        for (uint32_t k = 0; k < index->count; k++) {
+            const char *other = (const char *)&index->entries[k] + origin;
+            const bool same = strcmp(value, other) == 0;
+            earlier |= k < i && same;
+            all &= same || !*other;
+        }
+        if (earlier) continue;
+        fprintf(out, "%s%s", last, value);
+        last = "; ";
+        for (uint32_t k = i; k < index->count && !all; k++) {
+            if (strcmp(value, (const char *)&index->entries[k] + origin) != 0) continue;
+            fprintf(out, "%s%s", k == i ? ": " : ", ", index->entries[k].name);
+        }
+    }
+    if (last != before) fputc('.', out);
+}
+
+static void put_entries(const Index *index, uint32_t from, uint32_t to, RtIndexPart part, const char *before,
+                        const char *after, FILE *out) {
+    for (uint32_t i = from; i < to; i++) {
+        const RtIndexEntry *entry = &index->entries[i];
+        if (!entry->parts[part].size) continue;
+        fprintf(out, before, entry->name);
+        fputs(entry->parts[part].chars, out);
+        fputs(after, out);
+    }
+}
+
+static bool has_sentences(const Index *index, uint32_t from, uint32_t to) {
+    size_t size = 0;
+    for (uint32_t i = from; i < to; i++) size += index->entries[i].parts[RT_INDEX_ROWS].size;
+    return size > 0;
+}
+
+static void put_section(const Index *index, uint32_t from, uint32_t to, FILE *html, FILE *markdown) {
+    char title[RT_MAX_LABEL];
+    title_of(index->entries[from].section, title);
+    rt_html_wrap(html, "<h2>", title, "</h2>\n");
+    fputs("## ", markdown);
+    rt_index_put_markdown(markdown, title);
+    fputs("\n\n", markdown);
+    if (has_sentences(index, from, to)) {
+        fputs(
+            "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Sentences of the "
+            "literature\"><table>"
+            "<thead><tr><th>paper</th><th>page</th><th>sentence</th><th>verdict</th><th>experiment</th></tr>"
+            "</thead><tbody>\n",
+            html);
+        put_entries(index, from, to, RT_INDEX_ROWS, "", "", html);
+        fputs("</tbody></table></div>\n", html);
+        fputs("| paper | page | sentence | verdict | experiment |\n| --- | --- | --- | --- | --- |\n",
+              markdown);
+        put_entries(index, from, to, RT_INDEX_LINES, "", "", markdown);
+        fputs("\n", markdown);
+    }
+    put_entries(index, from, to, RT_INDEX_HTML, "<section class=\"card entry\" id=\"%s\">", "</section>\n",
+                html);
+    put_entries(index, from, to, RT_INDEX_MARKDOWN, "", "", markdown);
+}
+
+static void put_pages(const Index *index, FILE *html, FILE *markdown) {
+    char *origins = NULL;
+    size_t size;
+    FILE *text = open_memstream(&origins, &size);
+    if (text) {
+        put_origins(index, offsetof(RtIndexEntry, build), "Measured by ", text);
+        fputc(' ', text);
+        put_origins(index, offsetof(RtIndexEntry, machine), "On ", text);
+        fclose(text);
+    }
+    rt_page_begin(html, "Experiments", true);
+    rt_html_wrap(html, "<p class=\"meta\">", origins, "</p>\n");
+    fprintf(markdown, "# Experiments\n\n%s\n\n", origins ? origins : "");
+    free(origins);
+    for (uint32_t from = 0, to; from < index->count; from = to) {
+        to = from + 1;
+        while (to < index->count && strcmp(index->entries[from].section, index->entries[to].section) == 0)
+            to++;
+        put_section(index, from, to, html, markdown);
+    }
+    rt_page_end(html);
+}
+
+static RtStatus write_pages(Index *index, RtError *error) {
+    RtOutput html, markdown;
+    if (index->count == 0) return rt_fail(error, RT_BAD_INPUT, "%s holds no result directory", index->folder);
+    qsort(index->entries, index->count, sizeof(RtIndexEntry), compare);
+    RT_TRY(rt_output_open_in(&html, index->folder, "index.html", error));
+    RtStatus status = rt_output_open_in(&markdown, index->folder, "index.md", error);
+    if (status != RT_OK) {
+        rt_output_discard(&html);
+        return status;
+    }
+    put_pages(index, html.file, markdown.file);
+    status = rt_output_commit(&html, error);
+    if (status == RT_OK) return rt_output_commit(&markdown, error);
+    rt_output_discard(&markdown);
+    return status;
+}
+
 RtStatus rt_index_write(const char *folder, size_t *count, RtError *error) {
     char plain[RT_MAX_PATH];
-    RtOutput output;
     /* Without trailing slashes, for paths relative to it. */
     snprintf(plain, sizeof plain, "%s", *folder ? folder : ".");
     for (size_t size = strlen(plain); size > 1 && plain[size - 1] == '/'; size--) plain[size - 1] = '\0';
-    *count = 0;
-    RT_TRY(rt_output_open_in(&output, plain, "index.html", error));
-    Index index = {.out = output.file, .folder = plain, .experiment = rt_alloc(1, sizeof(RtExperiment))};
-    if (!index.experiment) {
-        rt_output_discard(&output);
-        return rt_fail_memory(error, "an experiment", sizeof(RtExperiment));
-    }
-    rt_page_begin(index.out, "Experiments");
+    Index index = {.folder = plain, .experiment = rt_alloc(1, sizeof(RtExperiment)), .error = error};
+    if (!index.experiment) return rt_fail_memory(error, "an experiment", sizeof(RtExperiment));
     rt_directory_each(plain, "", visit, &index);
-    rt_page_end(index.out);
+    if (index.status == RT_OK) index.status = write_pages(&index, error);
+    for (uint32_t i = 0; i < index.count; i++) rt_index_entry_clear(&index.entries[i]);
+    rt_free(index.entries);
     rt_free(index.experiment);
     *count = index.count;
-    if (index.count) return rt_output_commit(&output, error);
-    rt_output_discard(&output);
-    return rt_fail(error, RT_BAD_INPUT, "%s holds no result directory", folder);
+    return index.status;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The page over all experiments of a folder. */
+/* The pages over all experiments of a folder: index.html for a browser, index.md for GitHub. */
 #ifndef RT_REPORT_INDEX_H
 #define RT_REPORT_INDEX_H
 
@@ -7,9 +7,11 @@
 
 #include <stddef.h>
 
-/* Writes `folder`/index.html: verdict, question, finding, and a link to the report of each result directory
- * in it or in its folders. Names directories that cannot be read, with the reason. *count gets their number;
- * RT_BAD_INPUT if there is none. */
+/* Writes both for the result directories in `folder` or in its folders, grouped by the sections of their
+ * experiments: plot, verdicts and finding of each experiment, the sentences of the literature that it tests,
+ * and the sums of verifications. They say which builds and machines measured what, if there are several, and
+ * name directories that cannot be read, with the reason. *count gets the number of directories; RT_BAD_INPUT
+ * if there is none. */
 RtStatus rt_index_write(const char *folder, size_t *count, RtError *error);
 
 #endif

@@ -18,14 +18,15 @@ void rt_page_lines(FILE *out, const char *const *lines) {
     for (; *lines; lines++) fputs(*lines, out);
 }
 
-/* The policy lets the page load no other file. */
-void rt_page_begin(FILE *out, const char *title) {
-    fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-          "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
-          "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n<link rel=\"icon\" "
-          "href=\"data:,\">\n<title>",
-          out);
+/* For browsers, a page that is opened as a file has no 'self'. */
+void rt_page_begin(FILE *out, const char *title, bool images) {
+    fprintf(out,
+            "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+            "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:%s; "
+            "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n<link rel=\"icon\" "
+            "href=\"data:,\">\n<title>",
+            images ? " 'self' file:" : "");
     rt_html_wrap(out, "", title, "</title>\n<style>\n");
     rt_page_lines(out, page_css);
     rt_html_wrap(out, "</style></head>\n<body><main>\n<h1>", title, "</h1>\n");
@@ -50,11 +51,15 @@ void rt_page_data_url(FILE *out, const char *type, const void *data, size_t size
     }
 }
 
-void rt_page_link(FILE *out, const char *file, const char *text) {
-    fputs("<a href=\"", out);
+void rt_page_path(FILE *out, const char *file) {
     for (const char *c = file; *c; c++) {
         fprintf(out, isalnum((unsigned char)*c) || strchr("-_.~/", *c) ? "%c" : "%%%02X", (unsigned char)*c);
     }
+}
+
+void rt_page_link(FILE *out, const char *file, const char *text) {
+    fputs("<a href=\"", out);
+    rt_page_path(out, file);
     rt_html_wrap(out, "\">", text, "</a>");
 }
 
@@ -63,7 +68,27 @@ void rt_page_link(FILE *out, const char *file, const char *text) {
 void rt_page_card(FILE *out, const char *title, const char *text) {
     if (!*text) return;
     fprintf(out, "<section class=\"card\"><h2>%s</h2><p>", title);
-    rt_html_wrap(out, "", text, "</p></section>\n");
+    rt_html_markup(out, text);
+    fputs("</p></section>\n", out);
+}
+
+void rt_page_claims(FILE *out, const RtResults *results) {
+    static const char *const classes[] = {[RT_CLAIM_HOLDS] = "holds",
+                                          [RT_CLAIM_UNDECIDED] = "open",
+                                          [RT_CLAIM_FALSE] = "false",
+                                          [RT_CLAIM_UNMEASURED] = "open",
+                                          [RT_CLAIM_FIGURE] = "readout"};
+    const RtExperiment *experiment = results->experiment;
+    fputs("<ul class=\"claims\">", out);
+    for (uint32_t i = 0; i < experiment->claim_count; i++) {
+        RtClaimResult result;
+        rt_claim_judge(results, i, &result);
+        fprintf(out, "<li><span class=\"verdict %s\">%s</span> ", classes[result.verdict],
+                rt_claim_verdict_name(result.verdict));
+        rt_html_put(out, experiment->claims[i]);
+        rt_html_wrap(out, "<small>", result.figures, "</small></li>\n");
+    }
+    fputs("</ul>\n", out);
 }
 
 void rt_page_verdict(FILE *out, const RtResults *results) {

@@ -9,8 +9,9 @@
 #include <jansson.h>
 #include <stdio.h>
 
-/* The beginning up to the heading, and the end after the last section. */
-void rt_page_begin(FILE *out, const char *title);
+/* The beginning up to the heading, and the end after the last section. The page loads no files; with `images`
+ * it may load pictures. */
+void rt_page_begin(FILE *out, const char *title, bool images);
 void rt_page_end(FILE *out);
 
 /* Writes strings up to NULL, as in generated headers. */
@@ -19,8 +20,11 @@ void rt_page_lines(FILE *out, const char *const *lines);
 /* `size` bytes at `data` as a data URL in base64, `type` being "image/png" and the like. */
 void rt_page_data_url(FILE *out, const char *type, const void *data, size_t size);
 
-/* A heading with text below; nothing if the text is empty. */
+/* A heading with text below, which may have `code`; nothing if the text is empty. */
 void rt_page_card(FILE *out, const char *title, const char *text);
+
+/* The claims of the experiment as a list, each with its verdict and its figures. */
+void rt_page_claims(FILE *out, const RtResults *results);
 
 /* "3 of 4 claims hold, 1 does not", in the colour of the worst verdict; or that there are no claims. */
 void rt_page_verdict(FILE *out, const RtResults *results);
@@ -35,7 +39,8 @@ void rt_page_paper_verdict(FILE *out, const RtPaper *paper);
 /* A line with date and machine, from the manifest. */
 void rt_page_provenance(FILE *out, const json_t *manifest);
 
-/* A link to a file beside the page. */
+/* The name of a file beside the page, as in links; and a link to it. */
+void rt_page_path(FILE *out, const char *file);
 void rt_page_link(FILE *out, const char *file, const char *text);
 
 #endif

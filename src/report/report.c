@@ -6,7 +6,6 @@
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
-#include "experiment/claims.h"
 #include "experiment/distribution_tables.h"
 #include "experiment/frame_table.h"
 #include "experiment/manifest.h"
@@ -28,26 +27,13 @@ enum { MOST_FILE_BYTES = 1 << 26, MAX_CAPTION = 1024 };
 
 /* The verdict comes before the prediction. */
 static void put_claims(FILE *out, const RtResults *results) {
-    static const char *const classes[] = {[RT_CLAIM_HOLDS] = "holds",
-                                          [RT_CLAIM_UNDECIDED] = "open",
-                                          [RT_CLAIM_FALSE] = "false",
-                                          [RT_CLAIM_UNMEASURED] = "open",
-                                          [RT_CLAIM_FIGURE] = "readout"};
-    const RtExperiment *experiment = results->experiment;
     fputs("<section class=\"card\" id=\"verdict\"><h2>Verdict</h2><p>", out);
     rt_page_verdict(out, results);
-    if (!experiment->claim_count)
+    if (!results->experiment->claim_count)
         fputs(" The prediction states no claims (<code>expect</code>) to check.", out);
-    fputs("</p>\n<ul class=\"claims\">", out);
-    for (uint32_t i = 0; i < experiment->claim_count; i++) {
-        RtClaimResult result;
-        rt_claim_judge(results, i, &result);
-        fprintf(out, "<li><span class=\"verdict %s\">%s</span> ", classes[result.verdict],
-                rt_claim_verdict_name(result.verdict));
-        rt_html_put(out, experiment->claims[i]);
-        rt_html_wrap(out, "<small>", result.figures, "</small></li>\n");
-    }
-    fputs("</ul></section>\n", out);
+    fputs("</p>\n", out);
+    rt_page_claims(out, results);
+    fputs("</section>\n", out);
 }
 
 static void put_links(FILE *out, const char *directory) {
@@ -302,7 +288,7 @@ static void put_answer(FILE *out, const RtResults *results, const char *director
 
 static void put_head(FILE *out, const RtResults *results, const json_t *manifest, const char *directory) {
     const RtExperiment *experiment = results->experiment;
-    rt_page_begin(out, experiment->name);
+    rt_page_begin(out, experiment->name, false);
     rt_html_wrap(out, "<p class=\"lede\">", experiment->question, "</p>\n");
     put_answer(out, results, directory);
     rt_page_papers(out, experiment);

@@ -2,7 +2,7 @@
 // check_pages.mjs SMALL LARGE INDEX [AXE]: drives the pages in Chromium: a report, one of 5,000 cells, an index. AXE: axe.min.js,
 // to judge them too. Says what does not hold; exit code 1 where anything does not.
 import { readFileSync, statSync } from 'node:fs';
-import { resolve } from 'node:path';
+import { dirname, resolve } from 'node:path';
 import { openBrowser, sleep } from './browser.mjs';
 
 const [small, large, index, axe] = process.argv.slice(2).map((path) => resolve(path));
@@ -72,6 +72,19 @@ async function checkWidth(page, width, media) {
   await browser.media('screen');
 }
 
+// A plot is as dark as the page, in a report and in an index.
+async function checkDark(page, plot) {
+  await browser.size(1440, 900);
+  await browser.media('screen', 'dark');
+  await browser.open(url(page));
+  await browser.run("for (const image of document.images) image.loading = 'eager';");
+  const found = await browser.runAsync(`const done = arguments[arguments.length - 1];
+    Promise.all([...document.images].map((image) => image.decode()))
+      .then(() => done(getComputedStyle(document.querySelector(arguments[0])).filter), () => done('a picture is missing'));`, plot);
+  holds(found.startsWith('invert('), `plots of ${page} are dark in dark mode: ${found}`);
+  await browser.media('screen');
+}
+
 async function checkAxe(page, width, scheme) {
   if (!axe) return;
   await browser.size(width, 800);
@@ -107,11 +120,11 @@ async function checkLarge() {
 async function checkLogs() {
   const errors = (await browser.log('browser')).filter(({ level }) => level === 'SEVERE' || level === 'WARNING');
   holds(errors.length === 0, `the console stays empty: ${JSON.stringify(errors.slice(0, 3))}`);
-  const own = [small, large, index].map(url);
+  const own = [small, large, index].map(url), plots = new RegExp(`^${url(dirname(index))}/[^/]+/plots/[^/]+[.]svg$`);
   const asked = (await browser.log('performance')).map(({ message }) => JSON.parse(message).message)
     .filter(({ method }) => method === 'Network.requestWillBeSent').map(({ params }) => params.request.url.split('#')[0]);
-  const others = asked.filter((to) => !to.startsWith('data:') && !own.includes(decodeURI(to)));
-  holds(asked.length > 0 && others.length === 0, `no request leaves the pages: ${others.slice(0, 3)}`);
+  const others = asked.filter((to) => !to.startsWith('data:') && !own.includes(decodeURI(to)) && !plots.test(decodeURI(to)));
+  holds(asked.length > 0 && others.length === 0, `pages request nothing but the plots of an index: ${others.slice(0, 3)}`);
 }
 
 try {
@@ -128,6 +141,8 @@ try {
       await checkAxe(page, 1440, scheme);
     }
   }
+  await checkDark(small, '.plot img');
+  await checkDark(index, '.thumb img');
   const { bytes, opened, sorted } = await checkLarge();
   await checkLogs();
   if (failures === 0)

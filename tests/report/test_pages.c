@@ -316,4 +316,82 @@ RT_TEST_IN_PLACE(the_index_has_each_experiment_with_verdict_finding_and_link_and
     assert_int_equal(system("test ! -e nowhere"), 0);
 }
 
+/* Runs small.yaml under another name, with `members` in the place of its claim. */
+static void run_named(const Place *place, const char *name, const char *members) {
+    char from[32], arguments[64], *text;
+    write_small(place, members);
+    text = read_in(place, "small.yaml");
+    snprintf(from, sizeof from, "name: %s\n", name);
+    write_changed(place, "small.yaml", text, "name: small\n", from);
+    rt_free(text);
+    snprintf(arguments, sizeof arguments, "run small.yaml --out all/%s --threads 1", name);
+    assert_int_equal(raytally(place, arguments), 0);
+}
+
+RT_TEST_IN_PLACE(the_index_groups_experiments_by_section_with_plot_first_sentence_and_quotations) {
+    const Place *place = *state;
+    run_named(place, "plain", "");
+    run_named(place, "own", "section: zebras");
+    run_named(
+        place, "quoting",
+        "section: papers\npaper: {citation: \"A | B 1988\", page: 19, quote: It <is>., verdict: in part}\n"
+        "expect: [object_tests of bvh < 30]\nfinding: So et al. 1990 said. The `rest` is folded.");
+    run_named(place, "taught", "section: lecture");
+    write_in(place, "all/quoting/plots/2.svg", "<svg/>");
+    write_in(place, "all/quoting/plots/1.svg", "<svg/>");
+    assert_int_equal(raytally(place, "verify tetra:size=1 --accel bvh --rays 10 --out all/judged"), 0);
+    assert_int_equal(raytally(place, "report --index all"), 0);
+    const char *const page[] = {
+        "<p class=\"meta\">Measured by raytally ",
+        "<h2>Lecture</h2>",
+        "taught/report.html",
+        "<h2>Papers</h2>",
+        "<td class=\"prose\">A | B 1988</td><td>19</td><td class=\"prose\">"
+        "&ldquo;It &lt;is&gt;.&rdquo;</td><td><span class=\"verdict open\">in part</span>",
+        "<section class=\"card entry\" id=\"quoting\">",
+        "<img loading=\"lazy\" alt=\"Plot of quoting\" src=\"quoting/plots/1.svg\">",
+        "<p>So et al. 1990 said.</p>\n<details>",
+        "The <code>rest</code> is folded.",
+        "<h2>Verification</h2>",
+        "10 pairs of a ray and an accelerator in 1 row: 0 answers to nearest are wrong",
+        "<h2>Zebras</h2>",
+        "<h2>Others</h2>",
+        "plain/report.html"};
+    char *text = read_in(place, "all/index.html");
+    assert_in_order(text, page, sizeof page / sizeof page[0]);
+    rt_free(text);
+    const char *const markdown[] = {"## Papers",
+                                    "| A \\| B 1988 | 19 | “It \\<is>.” | in part | [quoting](quoting) |",
+                                    "### [quoting](quoting)\n\n![Plot of quoting](quoting/plots/1.svg)",
+                                    "**Question.** Which is \\<cheaper>?",
+                                    "- **holds**: `object_tests of bvh < 30`: ",
+                                    "**Finding.** So et al. 1990 said. The `rest` is folded.",
+                                    "### [judged](judged)\n\n10 pairs"};
+    text = read_in(place, "all/index.md");
+    assert_in_order(text, markdown, sizeof markdown / sizeof markdown[0]);
+    rt_free(text);
+}
+
+RT_TEST_IN_PLACE(the_index_says_what_another_build_or_machine_measured) {
+    const Place *place = *state;
+    run_named(place, "one", "");
+    run_named(place, "two", "");
+    run_named(place, "three", "");
+    assert_int_equal(raytally(place, "report --index all"), 0);
+    assert_not_in_file(place, "all/index.md", ": one");
+    char *manifest = read_in(place, "all/two/manifest.json");
+    const char *cpu = strstr(manifest, "\"cpu\": ");
+    assert_non_null(cpu);
+    *strchr(cpu, ':') = '\0';
+    char *rest = strchr(cpu + strlen(cpu) + 1, ',');
+    char *changed = NULL;
+    assert_true(asprintf(&changed, "%s: \"Z80\"%s", manifest, rest) > 0);
+    write_in(place, "all/two/manifest.json", changed);
+    free(changed);
+    rt_free(manifest);
+    assert_int_equal(raytally(place, "report --index all"), 0);
+    assert_in_file(place, "all/index.md", ": one, three; Z80: two.\n");
+    assert_in_file(place, "all/index.html", ": one, three; Z80: two.</p>");
+}
+
 RT_TESTS(pages, NULL, NULL)

@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* raytally run and reproduce with several experiments. With one: tests/experiment. */
+#include "experiment_testing.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+static const char pattern[] = "name: small\n"
+                              "question: Which is cheaper?\n"
+                              "prediction: The hierarchy.\n"
+                              "scenes: [{scene: \"random:n=60\", label: cloud, size: 12x12}]\n"
+                              "accelerators: [{accel: bvh}, {accel: grid}]\n"
+                              "rays: [primary, random]\n"
+                              "limit: 50\n"
+                              "rounds: 2\n"
+                              "milliseconds: 0\n"
+                              "expect: [object_tests of bvh < 30]\n";
+
+/* The pattern in a.yaml, b.yaml and c.yaml, each under its own name. */
+static int make_three(void **state) {
+    if (make_place(state) != 0) return -1;
+    write_changed(*state, "a.yaml", pattern, "name: small", "name: a");
+    write_changed(*state, "b.yaml", pattern, "name: small", "name: b");
+    write_changed(*state, "c.yaml", pattern, "name: small", "name: c");
+    return 0;
+}
+
+#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_three, remove_place)
+
+static void change(const Place *place, const char *name, const char *from, const char *to) {
+    char *text = read_in(place, name);
+    write_changed(place, name, text, from, to);
+    rt_free(text);
+}
+
+static bool exists(const Place *place, const char *name) {
+    return rt_file_exists(path_in(place, name).text);
+}
+
+RT_TEST_IN_PLACE(each_of_several_experiments_gets_its_directory_and_all_a_summary_and_an_index) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run a.yaml b.yaml --threads 1"), 0);
+    assert_true(exists(place, "results/a/report.html") && exists(place, "results/b/report.html"));
+    assert_true(exists(place, "results/index.html") && exists(place, "results/index.md"));
+    assert_in_file(place, "output", "== b, 2 of 2\n");
+    assert_in_file(place, "output",
+                   "\na                                finished                        0 s\n"
+                   "b                                finished                        0 s\n");
+    assert_int_equal(raytally(place, "run a.yaml c.yaml --threads 1 --out other"), 0);
+    assert_true(exists(place, "other/a/report.html") && exists(place, "other/c/report.html"));
+    assert_equal_files(place, "results/a/counts.csv", "other/a/counts.csv");
+}
+
+RT_TEST_IN_PLACE(one_that_fails_does_not_stop_the_others_and_the_worst_exit_code_counts) {
+    const Place *place = *state;
+    change(place, "a.yaml", "random:n=60", "nowhere.yaml");
+    change(place, "b.yaml", "bvh < 30", "bvh < 0.01");
+    assert_ends(place, "run a.yaml b.yaml c.yaml --threads 1 --strict", 2,
+                "2 of 3 experiments failed, the first: a");
+    assert_in_file(place, "output", "a                                failed, exit code 2");
+    assert_in_file(place, "output", "b                                failed, exit code 1");
+    assert_in_file(place, "output", "c                                finished");
+    assert_true(exists(place, "results/c/report.html"));
+    assert_ends(place, "run b.yaml c.yaml --threads 1 --strict --resume", 1,
+                "1 of 2 experiments failed, the first: b");
+}
+
+RT_TEST_IN_PLACE(all_are_parsed_before_the_first_is_measured) {
+    const Place *place = *state;
+    change(place, "c.yaml", "limit: 50", "limmit: 50");
+    assert_ends(place, "run a.yaml b.yaml c.yaml", 2, "c.yaml:7:1: unknown key 'limmit'");
+    change(place, "b.yaml", "name: b", "name: a");
+    assert_ends(place, "run a.yaml b.yaml", 2,
+                "a.yaml and b.yaml are both named 'a', and would share the directory results/a");
+    assert_ends(place, "run a.yaml c.yaml --force", 2, "--force takes one experiment");
+    assert_ends(place, "run a.yaml c.yaml --shard 1/2", 2, "--only and --shard take one experiment");
+    assert_false(exists(place, "results"));
+}
+
+RT_TEST_IN_PLACE(resume_finishes_and_starts_and_measures_nothing_again) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run a.yaml --threads 1 --out all/a"), 0);
+    assert_int_equal(raytally(place, "run b.yaml --threads 1 --out all/b --only cloud/grid/random"), 0);
+    char *finished = read_in(place, "all/a/cells.jsonl"), *part = read_in(place, "all/b/cells.jsonl");
+    assert_ends(place, "run a.yaml b.yaml c.yaml --threads 1 --out all", 2, "2 of 3 experiments failed");
+    assert_int_equal(raytally(place, "run a.yaml b.yaml c.yaml --threads 1 --out all --resume"), 0);
+    assert_same_file(place, "all/a/cells.jsonl", finished);
+    char *whole = read_in(place, "all/b/cells.jsonl");
+    assert_memory_equal(whole, part, strlen(part));
+    assert_true(exists(place, "all/b/report.html") && exists(place, "all/c/report.html"));
+    rt_free(finished);
+    rt_free(part);
+    rt_free(whole);
+}
+
+RT_TEST_IN_PLACE(update_starts_over_only_where_something_else_was_measured) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run a.yaml b.yaml --threads 1"), 0);
+    char *a = read_in(place, "results/a/cells.jsonl");
+    change(place, "b.yaml", "limit: 50", "limit: 40");
+    assert_ends(place, "run a.yaml b.yaml --threads 1 --resume", 2, "another version of it ('b')");
+    assert_int_equal(raytally(place, "run a.yaml b.yaml c.yaml --threads 1 --update"), 0);
+    assert_same_file(place, "results/a/cells.jsonl", a);
+    assert_in_file(place, "results/b/experiment.yaml", "limit: 40");
+    assert_int_equal(raytally(place, "reproduce results/b"), 0);
+    rt_free(a);
+}
+
+RT_TEST_IN_PLACE(a_dry_run_of_several_sums_up_each_and_touches_nothing) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run a.yaml b.yaml --dry-run"), 0);
+    assert_in_file(place, "output", "== a, 1 of 2\n4 cells, 0 of them finished; the others take at least");
+    assert_false(exists(place, "results"));
+}
+
+/* Starts `raytally run a.yaml b.yaml c.yaml` in the folder. */
+static pid_t start(const Place *place) {
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child > 0) return child;
+    int message = -1, nothing = open("/dev/null", O_WRONLY);
+    if (chdir(place->folder) == 0) message = open("message", O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    dup2(nothing, STDOUT_FILENO);
+    dup2(message, STDERR_FILENO);
+    execl(RT_PROGRAM, "raytally", "run", "a.yaml", "b.yaml", "c.yaml", "--threads", "1", "--out", "all",
+          (char *)NULL);
+    _exit(127);
+}
+
+RT_TEST_IN_PLACE(an_interruption_stops_all_and_says_the_one_command_that_continues) {
+    const Place *place = *state;
+    int how;
+    change(place, "b.yaml", "rounds: 2\nmilliseconds: 0", "rounds: 50\nmilliseconds: 100");
+    pid_t child = start(place);
+    while (!exists(place, "all/b/cells.jsonl")) nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
+    kill(child, SIGINT);
+    waitpid(child, &how, 0);
+    assert_true(WIFEXITED(how) && WEXITSTATUS(how) == 128 + SIGINT);
+    char *message = read_in(place, "message");
+    const char *command = strstr(message, "To continue:\n  ");
+    assert_non_null(command);
+    assert_string_equal(command,
+                        "To continue:\n  raytally run a.yaml b.yaml c.yaml --out all --threads 1 --resume\n");
+    rt_free(message);
+    assert_true(exists(place, "all/a/report.html") && !exists(place, "all/c"));
+}
+
+RT_TEST_IN_PLACE(reproduce_takes_several_directories_and_goes_on_after_one_that_differs) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run a.yaml b.yaml --threads 1"), 0);
+    assert_int_equal(raytally(place, "verify tetra:size=1 --accel bvh --rays 10 --out results/judged"), 0);
+    assert_int_equal(raytally(place, "reproduce results/*"), 0);
+    write_in(place, "results/a/counts.csv", "scene\n");
+    assert_ends(place, "reproduce results/*", 1, "results/a/counts.csv:1: differs from the new counts");
+    assert_in_file(place, "output", "Reproduced: results/b/counts.csv, byte for byte");
+    assert_ends(place, "reproduce results/a results/nowhere", 2, "2 of 2 directories failed");
+}
+
+RT_TEST_IN_PLACE(a_quick_reproduction_counts_the_scene_with_the_least_work) {
+    const Place *place = *state;
+    change(place, "a.yaml", "random:n=60", "random:n=300|60|200");
+    assert_int_equal(raytally(place, "run a.yaml b.yaml --threads 1"), 0);
+    assert_int_equal(raytally(place, "reproduce results/a results/b --quick"), 0);
+    assert_in_file(place, "output", "Reproduced: cloud:n=60 in results/a/counts.csv, byte for byte");
+    assert_ends(place, "reproduce results/a --quick --only cloud", 2, "both choose scenes");
+}
+
+RT_TESTS(cmd_run, NULL, NULL)
