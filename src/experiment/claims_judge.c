@@ -38,7 +38,7 @@ static RtEstimate value_at(const RtResults *results, const RtClaim *claim, uint3
     const RtCost cost = rt_results_cost(results, t, c, claim->kind);
     const double counts[] = {0, cost.object_tests, cost.extent_tests, cost.steps};
     if (claim->measure >= RT_CLAIM_BUILD_TIME && !build->known) return UNKNOWN;
-    if (claim->measure == RT_CLAIM_BUILD_TIME) return exactly(build->seconds);
+    if (claim->measure == RT_CLAIM_BUILD_TIME) return build->seconds;
     if (claim->measure == RT_CLAIM_BYTES) return exactly((double)build->structure.bytes);
     if (!cost.whole) return UNKNOWN;
     return claim->measure == RT_CLAIM_TIME ? cost.seconds : exactly(counts[claim->measure]);

@@ -137,6 +137,13 @@ RT_TEST(what_was_not_measured_decides_nothing) {
     expect(RT_CLAIM_FALSE, "object_tests of bvh > 5", "1 of 4 values are unknown");
 }
 
+RT_TEST(a_claim_about_build_times_is_undecided_within_their_interval) {
+    *rt_build_at(&results, 0, 0) = (RtBuildResult){.known = true, .builds = 6, .seconds = {3, 2, 5, 2}};
+    expect(RT_CLAIM_HOLDS, "build_time of bvh on random:n=10 < 5.5", "3.00 [2.00, 5.00]");
+    expect(RT_CLAIM_UNDECIDED, "build_time of bvh on random:n=10 < 4", "3.00 [2.00, 5.00]");
+    expect(RT_CLAIM_FALSE, "build_time of bvh on random:n=10 < 1", "3.00 [2.00, 5.00]");
+}
+
 /* grid:density=1 needs 2 tests a ray of the one kind and 50 of the other, bvh 5 and 5. Without the dear kind
  * grid would seem to be ahead. */
 RT_TEST(a_kind_of_rays_that_one_side_lacks_leaves_a_claim_about_all_kinds_undecided) {
@@ -157,7 +164,7 @@ RT_TEST(a_kind_of_rays_that_one_side_lacks_leaves_a_claim_about_all_kinds_undeci
     expect(RT_CLAIM_HOLDS,
            "ratio of object_tests of grid:density=1 to bvh on random:n=10 for primary rays < 1", "0.40");
     assert_true(isnan(rt_results_cost(&results, 0, 1, RT_ALL_RAYS).seconds.median));
-    assert_true(isnan(rt_results_break_even(&results, 0, 1)));
+    assert_true(isnan(rt_results_break_even(&results, 0, 1).rays.median));
     assert_int_equal(rt_standing(&results, 0, 0, RT_RAY_KIND_COUNT), RT_STANDING_BEST);
     assert_int_equal(rt_standing(&results, 0, 1, RT_RAY_KIND_COUNT), RT_STANDING_BEHIND);
     assert_int_equal(rt_standing(&results, 0, 1, RT_RAY_PRIMARY), RT_STANDING_BEST);
