@@ -22,6 +22,7 @@ typedef struct Options {
     RtWorkloadOptions workload;
     bool json, hardware, distributions;
     uint32_t rounds;    /* 0: the default */
+    uint32_t builds;    /* 0: the default */
     uint64_t memory;    /* bytes for each accelerator; 0: no limit */
     int threads;        /* -1: one to time, all to build and count */
     uint64_t callgrind; /* rays of a kind at most; 0: it is not asked for */
@@ -134,6 +135,7 @@ static void finish(void *options, struct argp_state *state) {
     if (o->baseline) set_baseline(e, o->baseline, state);
     if (!o->baseline) rt_experiment_set_baseline(e, NULL, NULL);
     if (o->rounds) e->rounds = o->rounds;
+    if (o->builds) e->builds = o->builds;
     if (o->threads >= 0) o->workload.threads = o->workload.timing = o->threads;
     if (o->workload.until > 0 && e->rounds < RT_FULL_ROUNDS) e->rounds = RT_FULL_ROUNDS;
     e->limit_bytes = o->memory;
@@ -159,6 +161,9 @@ static const RtOption options[] = {
      "Repeat a short set of rays within a round until it takes so long (20); 0: run it once"},
     {"rounds", 0, "N", RT_TO_INTEGER(rounds, 1, RT_MAX_ROUNDS),
      "Timing rounds, each in a new random order (10); intervals of 95 % need 6 or more"},
+    {"builds", 0, "N", RT_TO_INTEGER(builds, 1, RT_MAX_ROUNDS),
+     "Builds of each accelerator at most, in rounds like those of the rays, after a warm-up (20); no more "
+     "once they have taken 0.15 s times N. --count-only builds once"},
     RT_UNTIL_OPTIONS(workload.until, workload.patience),
     {"threads", 0, "N", RT_TO_INTEGER(threads, 0, 1024), RT_THREADS_HELP},
     RT_MEMORY_OPTION(memory),

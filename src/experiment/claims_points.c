@@ -20,9 +20,9 @@ static RtEstimate exactly(double value) {
 }
 
 /* The rays from which on it is ahead: of no number if only of few. */
-static double break_even(const RtResults *results, uint32_t t, uint32_t c) {
-    const double rays = rt_results_break_even(results, t, c);
-    return rays < 0 ? (double)INFINITY : rays;
+static RtEstimate break_even(const RtResults *results, uint32_t t, uint32_t c) {
+    const RtBreakEven even = rt_results_break_even(results, t, c);
+    return even.up_to ? exactly((double)INFINITY) : even.rays;
 }
 
 static RtEstimate value_at(const RtResults *results, RtClaimMeasure measure, RtRayKind kind, uint32_t t,
@@ -30,11 +30,11 @@ static RtEstimate value_at(const RtResults *results, RtClaimMeasure measure, RtR
     if (measure >= RT_CLAIM_BUILD_TIME) {
         const RtBuildResult *build = rt_build_at(results, t, c);
         if (!build->known) return UNKNOWN;
-        if (measure == RT_CLAIM_BUILD_TIME) return exactly(build->seconds);
+        if (measure == RT_CLAIM_BUILD_TIME) return build->seconds;
         if (measure >= RT_CLAIM_RENDER_TIME && !build->render.known) return UNKNOWN;
         if (measure == RT_CLAIM_RENDER_TIME) return build->render.seconds;
         if (measure == RT_CLAIM_QUERY_SHARE) return build->render.share;
-        if (measure == RT_CLAIM_BREAK_EVEN) return exactly(break_even(results, t, c));
+        if (measure == RT_CLAIM_BREAK_EVEN) return break_even(results, t, c);
         return exactly(measure == RT_CLAIM_BYTES ? (double)build->structure.bytes
                                                  : build->structure.predicted_cost);
     }

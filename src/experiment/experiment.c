@@ -13,6 +13,7 @@ void rt_experiment_init(RtExperiment *experiment) {
     experiment->limit = 100000;
     experiment->coherent_run = RT_COHERENT_RUN;
     experiment->rounds = 10;
+    experiment->builds = 20;
     experiment->milliseconds = 20;
     experiment->seed = 1;
     experiment->baseline_count = 1;

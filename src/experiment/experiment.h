@@ -160,6 +160,7 @@ typedef struct RtExperiment {
     uint64_t limit;        /* rays of one kind at most; a larger set is thinned evenly */
     uint64_t coherent_run; /* a set is thinned in runs of so many neighbouring rays */
     uint32_t rounds;       /* 1..RT_MAX_ROUNDS */
+    uint32_t builds;       /* of each structure at most, after a warm-up: 1..RT_MAX_ROUNDS */
     uint32_t milliseconds; /* a short set is repeated within a round until it takes this long; 0: once */
     uint64_t seed;
     double limit_seconds; /* longer cells are left out; 0: no limit */
@@ -186,7 +187,7 @@ typedef struct RtExperiment {
 } RtExperiment;
 
 /* No scenes, no candidates, all ray kinds except occlusion (it repeats diffuse), and the defaults: limit
- * 100000, coherent runs of RT_COHERENT_RUN, 10 rounds, 20 milliseconds. */
+ * 100000, coherent runs of RT_COHERENT_RUN, 10 rounds, 20 builds, 20 milliseconds. */
 void rt_experiment_init(RtExperiment *experiment);
 
 /* Reads the YAML at `path`. Reports any error (unknown keys, invalid specs, duplicate labels, a baseline that

@@ -42,9 +42,10 @@ static RtStatus read_labels(const RtYaml *y, const RtYamlNode *n, const char *ke
 
 /* The amount of measuring, which `quick` may override. */
 static RtStatus read_scale(const RtYaml *y, const RtYamlNode *n, uint64_t *limit, uint32_t *rounds,
-                           uint32_t *milliseconds) {
+                           uint32_t *builds, uint32_t *milliseconds) {
     RT_TRY(rt_yaml_u64(y, n, "limit", 1, RT_MAX_RAYS_A_KIND, limit));
     RT_TRY(rt_yaml_u32(y, n, "rounds", 1, RT_MAX_ROUNDS, rounds));
+    RT_TRY(rt_yaml_u32(y, n, "builds", 1, RT_MAX_ROUNDS, builds));
     return rt_yaml_u32(y, n, "milliseconds", 0, RT_MAX_MILLISECONDS, milliseconds);
 }
 
@@ -186,15 +187,17 @@ static RtStatus read_baseline(const RtYaml *y, const RtYamlNode *n, RtExperiment
 /* Parsed even without --quick, to find mistakes early. */
 static RtStatus read_quick(const RtYaml *y, const RtYamlNode *n, bool quick, RtExperiment *experiment) {
     uint64_t limit = experiment->limit;
-    uint32_t rounds = experiment->rounds, milliseconds = experiment->milliseconds;
+    uint32_t rounds = experiment->rounds, builds = experiment->builds;
+    uint32_t milliseconds = experiment->milliseconds;
     uint32_t width = 0, height = 0, depth = 0;
-    RT_TRY(rt_yaml_keys(y, n, "size? limit? rounds? milliseconds? depth?"));
-    RT_TRY(read_scale(y, n, &limit, &rounds, &milliseconds));
+    RT_TRY(rt_yaml_keys(y, n, "size? limit? rounds? builds? milliseconds? depth?"));
+    RT_TRY(read_scale(y, n, &limit, &rounds, &builds, &milliseconds));
     RT_TRY(read_size(y, n, &width, &height));
     RT_TRY(rt_yaml_u32(y, n, "depth", 1, RT_MAX_DEPTH, &depth));
     if (!quick) return RT_OK;
     experiment->limit = limit;
     experiment->rounds = rounds;
+    experiment->builds = builds;
     experiment->milliseconds = milliseconds;
     for (uint32_t i = 0; i < experiment->workload_count; i++) {
         RtWorkload *workload = &experiment->workloads[i];
@@ -281,15 +284,16 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
     RT_TRY(rt_yaml_keys(
         y, n,
         "name section? paper? question prediction scenes accelerators baseline? rays? limit? coherent_run? "
-        "rounds? milliseconds? seed? count_only? render? hardware? distributions? published? frame? quick? "
-        "plots? expect? finding? limits?"));
+        "rounds? builds? milliseconds? seed? count_only? render? hardware? distributions? published? frame? "
+        "quick? plots? expect? finding? limits?"));
     RT_TRY(rt_yaml_copy(y, n, "name", RT_MAX_LABEL, experiment->name));
     RT_TRY(rt_yaml_copy(y, n, "section", RT_MAX_LABEL, experiment->section));
     RT_TRY(read_papers(y, rt_yaml_get(y, n, "paper"), experiment));
     RT_TRY(rt_yaml_copy(y, n, "question", RT_MAX_TEXT, experiment->question));
     RT_TRY(rt_yaml_copy(y, n, "prediction", RT_MAX_TEXT, experiment->prediction));
     RT_TRY(rt_yaml_copy(y, n, "finding", RT_MAX_TEXT, experiment->finding));
-    RT_TRY(read_scale(y, n, &experiment->limit, &experiment->rounds, &experiment->milliseconds));
+    RT_TRY(read_scale(y, n, &experiment->limit, &experiment->rounds, &experiment->builds,
+                      &experiment->milliseconds));
     if (rt_yaml_get(y, n, "limits")) RT_TRY(read_limits(y, rt_yaml_get(y, n, "limits"), experiment));
     RT_TRY(rt_yaml_u64(y, n, "coherent_run", 1, RT_MAX_RAYS_A_KIND, &experiment->coherent_run));
     RT_TRY(rt_yaml_u64(y, n, "seed", 0, INT64_MAX, &experiment->seed));

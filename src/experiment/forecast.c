@@ -121,7 +121,7 @@ static double operations_of(const RtCell *cell) {
 static void learn(RateEstimate *rates, const RtResults *results, uint32_t t, uint32_t c) {
     const RtBuildResult *build = rt_build_at(results, t, c);
     if (build->known) {
-        rates->build += build->seconds;
+        rates->build += build->seconds.median;
         rates->builds++;
     }
     for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
@@ -137,9 +137,10 @@ static double mean(double sum, double count, double other) {
     return count > 0 ? sum / count : other;
 }
 
-/* workload.c repeats cheap builds. */
-static double build_seconds(double once) {
-    return fmin(RT_MOST_BUILDS * once, RT_CHEAP_BUILD + once);
+/* The seconds of all builds of a structure (workload_build.c). */
+static double build_seconds(const Forecast *f, double once) {
+    const double builds = f->experiment->builds;
+    return f->count_only ? once : fmin((1 + builds) * once, RT_BUILD_BUDGET * builds + once);
 }
 
 static void add(Forecast *f, bool known, double seconds) {
@@ -195,7 +196,7 @@ RtForecast rt_forecast(const RtResults *results, const RtWorkloadOptions *option
                 !rt_only_cell(&options->only, e, t, c, RT_ALL_RAYS))
                 continue;
             double once = mean(rates.build, rates.builds, mean(f.all.build, f.all.builds, 0));
-            add(&f, build->known, build_seconds(build->known ? build->seconds : once));
+            add(&f, build->known, build_seconds(&f, build->known ? build->seconds.median : once));
             for (uint32_t k = 0; k < e->kind_count; k++) {
                 RtRayKind kind = e->kinds[k];
                 bool none = results->workloads[t].known && !results->workloads[t].rays[kind];

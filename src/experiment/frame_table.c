@@ -61,7 +61,7 @@ static double seconds_of(const RtResults *results, uint32_t workload, uint32_t c
 }
 
 static double build_of(const RtResults *results, uint32_t workload, uint32_t candidate) {
-    return rt_build_at(results, workload, candidate)->seconds;
+    return rt_build_at(results, workload, candidate)->seconds.median;
 }
 
 static double seconds_with_build(const RtResults *results, uint32_t workload, uint32_t candidate) {
@@ -150,7 +150,7 @@ static const char *below_label(const Row *r) {
     X(times_faster, "times_faster", real6, "", "how many times faster than without a structure",             \
       faster(r, RT_FRAME_ALL))                                                                               \
     X(build_ms, "build_ms", real6, "ms", "time to build the structure",                                      \
-      1e3 * rt_build_at(r->results, r->workload, r->candidate)->seconds)                                     \
+      1e3 * build_of(r->results, r->workload, r->candidate))                                                 \
     X(primary_faster, "primary_faster", real6, "", "times_faster of the primary rays alone",                 \
       faster(r, RT_FRAME_PRIMARY))                                                                           \
     X(shadow_faster, "shadow_faster", real6, "", "times_faster of the shadow rays alone",                    \
@@ -172,7 +172,7 @@ static const char *below_label(const Row *r) {
     X(eye_ms, "ms", figure, "ms", "time of the frame", 1e3 * r->cost[0].seconds)                             \
     X(eye_faster, "faster", figure, "", "times faster than without a structure", faster(r, RT_FRAME_ALL))    \
     X(eye_build, "build", amount, "ms", "time to build the structure, in ms",                                \
-      1e3 * rt_build_at(r->results, r->workload, r->candidate)->seconds)                                     \
+      1e3 * build_of(r->results, r->workload, r->candidate))                                                 \
     X(primary, "primary", figure, "", "times faster for primary rays", faster(r, RT_FRAME_PRIMARY))          \
     X(shadow, "shadow", figure, "", "times faster for shadow rays", faster(r, RT_FRAME_SHADOW))              \
     X(secondary, "bounce", figure, "", "times faster for reflection and transmission rays",                  \
@@ -261,8 +261,8 @@ static void say_others(char *out, const RtResults *results, uint32_t t, uint32_t
         SAY(out, " %s makes the fewest object tests: %s times fewer than %s.",
             rt_candidate_label(experiment, fewest), figure(factor_of(results, t, fewest, tests_of), number),
             experiment->frame.without);
-    if (cost_of(results, t, first, RT_FRAME_ALL).high + build_of(results, t, first) <
-        cost_of(results, t, winner, RT_FRAME_ALL).low + build_of(results, t, winner))
+    if (cost_of(results, t, first, RT_FRAME_ALL).high + rt_build_at(results, t, first)->seconds.high <
+        cost_of(results, t, winner, RT_FRAME_ALL).low + rt_build_at(results, t, winner)->seconds.low)
         SAY(out, " If each is built for one frame, %s is the fastest of %s: %s ms, %s %s ms.",
             rt_candidate_label(experiment, first), experiment->frame.among,
             figure(1e3 * seconds_with_build(results, t, first), number),

@@ -48,15 +48,16 @@ static json_t *candidates_json(const RtExperiment *experiment) {
 static json_t *manifest_json(const RtResults *results, const RtWorkloadOptions *options) {
     const RtExperiment *experiment = results->experiment;
     return json_pack(
-        "{s:s, s:s, s:o, s:s, s:s, s:b, s:I, s:I, s:I, s:I, s:I, s:s, s:o, s:i, s:i, s:o, s:o, s:o}",
+        "{s:s, s:s, s:o, s:s, s:s, s:b, s:I, s:I, s:I, s:I, s:I, s:I, s:s, s:o, s:i, s:i, s:o, s:o, s:o}",
         "experiment", experiment->name, "file", experiment->path, "hash",
         rt_json_hex(experiment->fingerprint), "question", experiment->question, "prediction",
         experiment->prediction, "quick", experiment->quick, "seed", (json_int_t)experiment->seed, "limit",
         (json_int_t)experiment->limit, "coherent_run", (json_int_t)experiment->coherent_run, "rounds",
-        (json_int_t)experiment->rounds, "milliseconds", (json_int_t)experiment->milliseconds, "baseline",
-        rt_baseline_label(experiment), "date", rt_json_now(), "threads_counting",
-        rt_thread_count(options->threads), "threads_timing", rt_thread_count(options->timing), "scenes",
-        scenes_json(results), "accelerators", candidates_json(experiment), "machine", rt_machine_json());
+        (json_int_t)experiment->rounds, "builds", (json_int_t)experiment->builds, "milliseconds",
+        (json_int_t)experiment->milliseconds, "baseline", rt_baseline_label(experiment), "date",
+        rt_json_now(), "threads_counting", rt_thread_count(options->threads), "threads_timing",
+        rt_thread_count(options->timing), "scenes", scenes_json(results), "accelerators",
+        candidates_json(experiment), "machine", rt_machine_json());
 }
 
 RtStatus rt_manifest_write(const RtResults *results, const RtWorkloadOptions *options, const char *directory,

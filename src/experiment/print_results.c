@@ -200,6 +200,26 @@ static void print_learnt(const RtResults *results, uint32_t t, FILE *out) {
 
 /* ---- tables of a workload ---- */
 
+/* How often the structures were built. */
+static void print_builds(const RtResults *results, uint32_t t, FILE *out) {
+    uint32_t least = UINT32_MAX, most = 0;
+    char text[RT_MAX_SENTENCE];
+    for (uint32_t c = 0; c < results->experiment->candidate_count; c++) {
+        const RtBuildResult *build = rt_build_at(results, t, c);
+        if (!build->known) continue;
+        least = build->builds < least ? build->builds : least;
+        most = build->builds > most ? build->builds : most;
+    }
+    if (most == 0) return;
+    snprintf(text, sizeof text, "Build times are medians of %" PRIu32, least);
+    if (least < most) rt_append_text(text, sizeof text, " to %" PRIu32, most);
+    rt_append_text(text, sizeof text, " build%s%s", rt_plural(most),
+                   most == 1                ? ", without an interval."
+                   : least < RT_FULL_ROUNDS ? "; intervals of fewer than 6 cover less than 95 %."
+                                            : "; intervals of 95 %.");
+    rt_print_wrapped(text, out);
+}
+
 static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
     uint32_t least = 0, most = rounds_of(results, t, &least);
     const bool timed = most > 0;
@@ -210,6 +230,7 @@ static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
     print_differing(results, t, out);
     print_learnt(results, t, out);
     rt_print_rows(results, timed ? RT_STRUCTURES : RT_COUNTED_STRUCTURES, t, out);
+    if (timed) print_builds(results, t, out);
 }
 
 void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) {

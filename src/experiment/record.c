@@ -27,7 +27,6 @@ static json_t *member_json(const RtMember *m, const void *from) {
     case RT_MEMBER_COUNT: return json_integer(*(const int64_t *)at);
     case RT_MEMBER_HASH: return rt_json_hex(*(const uint64_t *)at);
     case RT_MEMBER_TEXT: return json_string(at);
-    case RT_MEMBER_SECONDS:
     case RT_MEMBER_NUMBER: return rt_json_number(*(const double *)at);
     case RT_MEMBER_ESTIMATE: return json_pack("[f, f, f, f]", e->median, e->low, e->high, e->least);
     case RT_MEMBER_OBJECT: return rt_record_json(m->object, from);
@@ -108,7 +107,6 @@ static void take_member(RtRecordReader *reader, const RtMember *m, void *to, con
         text = rt_record_text(reader, json, m->name);
         snprintf(at, m->size, "%s", text ? text : "");
         return;
-    case RT_MEMBER_SECONDS: *(double *)at = rt_record_seconds(reader, value, m->name); return;
     case RT_MEMBER_NUMBER:
         if (value && !json_is_null(value) && !json_is_number(value))
             rt_record_reject(reader, m->name, "a number");
@@ -118,7 +116,8 @@ static void take_member(RtRecordReader *reader, const RtMember *m, void *to, con
         RtEstimate *e = at;
         double *const parts[] = {&e->median, &e->low, &e->high, &e->least};
         for (size_t i = 0; i < 4; i++)
-            *parts[i] = rt_record_seconds(reader, json_array_get(value, i), m->name);
+            *parts[i] =
+                rt_record_seconds(reader, json_is_array(value) ? json_array_get(value, i) : value, m->name);
         return;
     }
     case RT_MEMBER_OBJECT: rt_record_take(reader, m->object, to, value); return;

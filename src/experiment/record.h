@@ -21,9 +21,8 @@ typedef enum RtMemberForm {
     RT_MEMBER_COUNT,    /* uint64_t: an integer, up to INT64_MAX */
     RT_MEMBER_HASH,     /* uint64_t: 16 hexadecimal digits */
     RT_MEMBER_TEXT,     /* char[]: a string; missing: "" */
-    RT_MEMBER_SECONDS,  /* double: a number, 0 or more */
     RT_MEMBER_NUMBER,   /* double: a number; NAN: null, or missing */
-    RT_MEMBER_ESTIMATE, /* RtEstimate: [median, low, high, least], each 0 or more */
+    RT_MEMBER_ESTIMATE, /* RtEstimate: [median, low, high, least], each 0 or more; or one number for all */
     RT_MEMBER_OBJECT    /* members of the same struct, as an object of their own */
 } RtMemberForm;
 

@@ -34,15 +34,27 @@ static RtField estimate(const RtEstimate *e, double unit) {
     return rt_field_interval(e->median / unit, e->low / unit, e->high / unit);
 }
 
-/* The number of rays in three digits. */
+/* A structure built once has a rough time without an interval. */
+static RtField build_ms_of(const Row *r) {
+    if (!r->build->known) return rt_field_missing();
+    if (r->build->builds < 2) return rt_field_real(1e3 * r->build->seconds.median);
+    return estimate(&r->build->seconds, 1e-3);
+}
+
 static RtField break_even_of(const Row *r) {
-    const double rays = rt_results_break_even(r->results, r->workload, r->candidate), count = fabs(rays);
-    if (isnan(rays)) return rt_field_missing();
-    if (isinf(rays)) return rt_field_text("never faster");
-    if (rays == 0) return rt_field_text("always faster");
-    double unit = 1;
-    while (count / unit >= 1000) unit *= 10;
-    return rt_field_print("faster %s %.0f", rays > 0 ? "from" : "up to", unit * round(count / unit));
+    const RtBreakEven even = rt_results_break_even(r->results, r->workload, r->candidate);
+    const RtEstimate *rays = &even.rays;
+    const bool rough = even.builds < 2, certain = rough || rays->low == rays->high;
+    char text[RT_MAX_FIELD];
+    if (isnan(rays->median)) return rt_field_missing();
+    if (certain && (rays->median == 0 || isinf(rays->median)))
+        return rt_field_text((rays->median == 0) == even.up_to ? "never faster" : "always faster");
+    if (!rough && rays->low == 0 && isinf(rays->high)) return rt_field_text("undecided");
+    if (rough)
+        rt_format_rough(rays->median, text);
+    else
+        rt_format_interval(rays->median, rays->low, rays->high, text);
+    return rt_field_print("faster %s %.100s", even.up_to ? "up to" : "from", text);
 }
 
 void rt_result_eye_label(const RtResultRow *r, char out[RT_MAX_EYE_LABEL]) {
@@ -121,7 +133,12 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
       ray_stride_of(r))                                                                                      \
     X(rays, "rays", integer, "", "rays measured", r->cost.rays)                                              \
     X(hits, "hits", integer, "", "those that hit an object", r->cell->tally.hits)                            \
-    X(build_seconds, "build_seconds", real6, "s", "time to build; median of up to 3", r->build->seconds)     \
+    X(build_seconds, "build_seconds", real6, "s", "time to build; median", r->build->seconds.median)         \
+    X(build_low, "build_low", real6, "s", "lower end of its interval", r->build->seconds.low)                \
+    X(build_high, "build_high", real6, "s", "upper end of its interval", r->build->seconds.high)             \
+    X(builds, "builds", integer, "",                                                                         \
+      "builds timed, after a warm-up; fewer than 6 have no interval of 95 %, one has none; 0: unknown",      \
+      r->build->builds)                                                                                      \
     X(bytes, "bytes", integer, "bytes", "memory of the structure's arrays", r->build->structure.bytes)       \
     X(threads, "threads", integer, "", "threads of the timing", threads_of(r))                               \
     X(rounds, "rounds", integer, "", "timing rounds", r->cell->rounds)                                       \
@@ -196,10 +213,12 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
     X(eye_steps, "steps", figure, "", "steps per ray", r->cost.steps)                                        \
     X(mrays, "Mrays/s", figure, "million/s", "throughput", 1e-6 / r->cost.seconds.median)                    \
     X(interval, "ratio", interval, "", "throughput over the baseline's", estimate(&r->cost.ratio, 1))        \
-    X(build_ms, "build ms", amount, "ms", "time to build the structure", 1e3 * r->build->seconds)            \
+    X(build_ms, "build ms", interval, "ms", "time to build the structure, with its interval",                \
+      build_ms_of(r))                                                                                        \
     X(mb, "MB", amount, "MB", "memory of the structure", 1e-6 * (double)r->build->structure.bytes)           \
     X(break_even, "break-even (rays)", text, "rays",                                                         \
-      "the number of rays for which it takes less time than the baseline, including both builds",            \
+      "the number of rays, with its interval, for which it takes less time than the baseline, including "    \
+      "both builds",                                                                                         \
       break_even_of(r))                                                                                      \
     X(min_ns, "min ns", figure, "ns", "smallest time per ray", 1e9 * r->cost.seconds.least)                  \
     X(msteps_per_s, "msteps_per_s", real6, "million/s", "steps per second: mrays_per_s times steps per ray", \

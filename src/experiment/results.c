@@ -212,22 +212,62 @@ RtCost rt_results_cost(const RtResults *results, uint32_t workload, uint32_t can
     return sum;
 }
 
-double rt_results_break_even(const RtResults *results, uint32_t workload, uint32_t candidate) {
-    double saved = 0, weights = 0, build = INFINITY;
-    if (rt_candidate_is_baseline(results->experiment, candidate)) return (double)NAN;
+/* Rays that save as much time as the build takes more, both above 0; else none or any. */
+static double rays_from(double more, double saved) {
+    return more <= 0 ? 0 : saved <= 0 ? INFINITY : more / saved;
+}
+
+/* Rays that lose as much time as the build takes less. */
+static double rays_up_to(double more, double saved) {
+    return more >= 0 ? 0 : saved >= 0 ? INFINITY : more / saved;
+}
+
+/* `more`: seconds that the build takes more than the baseline's; `saved`: seconds that a ray takes less. */
+static void set_rays(RtBreakEven *even, const RtEstimate *more, const RtEstimate *saved) {
+    even->up_to = saved->high < 0 || (saved->low <= 0 && more->median < 0);
+    if (even->up_to) {
+        even->rays.median = rays_up_to(more->median, saved->median);
+        even->rays.low = rays_up_to(more->high, saved->low);
+        even->rays.high = rays_up_to(more->low, saved->high);
+    } else {
+        even->rays.median = rays_from(more->median, saved->median);
+        even->rays.low = rays_from(more->low, saved->high);
+        even->rays.high = rays_from(more->high, saved->low);
+    }
+}
+
+/* Adds the seconds that a ray of the cell takes less than the baseline's, to the weighted sums. */
+static void add_saved(RtEstimate *saved, const RtCell *cell, double weight) {
+    const RtEstimate *ratio = &cell->ratio, *wall = &cell->wall;
+    saved->median += weight * (ratio->median - 1) * wall->median;
+    saved->low += weight * (ratio->low - 1) * (ratio->low > 1 ? wall->low : wall->high);
+    saved->high += weight * (ratio->high - 1) * (ratio->high > 1 ? wall->high : wall->low);
+}
+
+RtBreakEven rt_results_break_even(const RtResults *results, uint32_t workload, uint32_t candidate) {
+    const double unknown = (double)NAN;
+    const RtBuildResult *own = rt_build_at(results, workload, candidate), *baseline = NULL;
+    RtBreakEven even = {.rays = {unknown, unknown, unknown, unknown}};
+    RtEstimate saved = {0};
+    double weights = 0;
+    if (rt_candidate_is_baseline(results->experiment, candidate)) return even;
     for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
         const RtCell *cell = rt_cell_at(results, workload, candidate, (RtRayKind)k);
         const double weight = (double)results->workloads[workload].rays[k];
         if (!rt_results_has_kind(results, workload, (RtRayKind)k)) continue;
-        if (!cell->timed) return (double)NAN;
-        saved += weight * ((cell->ratio.median - 1) * cell->wall.median);
+        if (!cell->timed) return even;
+        add_saved(&saved, cell, weight);
         weights += weight;
-        build = fmin(build, rt_build_at(results, workload, cell->baseline)->seconds);
+        const RtBuildResult *build = rt_build_at(results, workload, cell->baseline);
+        if (!baseline || build->seconds.median < baseline->seconds.median) baseline = build;
     }
-    double more = rt_build_at(results, workload, candidate)->seconds - build, a_ray = saved / weights;
-    if (isnan(a_ray)) return (double)NAN;
-    if (more <= 0 && a_ray >= 0) return 0;
-    return more * a_ray > 0 ? copysign(more / a_ray, a_ray) : (double)INFINITY;
+    if (!(weights > 0)) return even;
+    saved = (RtEstimate){saved.median / weights, saved.low / weights, saved.high / weights, unknown};
+    const RtEstimate *a = &own->seconds, *b = &baseline->seconds,
+                     more = {a->median - b->median, a->low - b->high, a->high - b->low, unknown};
+    set_rays(&even, &more, &saved);
+    even.builds = own->builds < baseline->builds ? own->builds : baseline->builds;
+    return even;
 }
 
 /* ---- the best ---- */

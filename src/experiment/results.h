@@ -39,7 +39,8 @@ typedef struct RtRenderResult {
 typedef struct RtBuildResult {
     bool known, exact, counts;    /* as in RtAccel */
     char spec[RT_MAX_SPEC_CHARS]; /* every effective parameter */
-    double seconds;               /* median of up to three builds */
+    uint32_t builds;              /* timed; 0: unknown, from the journal of an older version */
+    RtEstimate seconds;           /* to build it; of fewer than two builds low = median = high */
     /* Why no cell of it is measured: the limit that it exceeded, or the message of a `broken` plugin; or "".
      */
     char left_out[RT_MAX_LEFT_OUT];
@@ -171,11 +172,17 @@ typedef struct RtCost {
 
 RtCost rt_results_cost(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind);
 
-/* The break-even with the baseline: the number of rays, of all kinds in proportion to their sets, for which a
- * candidate takes less time than the baseline, builds included (of several baselines the shortest build). 0:
- * any number; n: n rays or more; -n: n rays or fewer; INFINITY: none; NAN: unknown, or the baseline itself.
- * Assumes builds on as many threads as the timing. */
-double rt_results_break_even(const RtResults *results, uint32_t workload, uint32_t candidate);
+/* The break-even with the baseline: the number of rays, of all kinds in proportion to their sets, from which
+ * on a candidate takes less time than the baseline, builds included (of several baselines the shortest
+ * build); or up to which, if it builds faster and traces slower. The interval follows from the ends of those
+ * of builds, ratios and times, and so is conservative. Assumes builds on as many threads as the timing. */
+typedef struct RtBreakEven {
+    bool up_to;      /* faster for at most so many rays; else for at least so many */
+    RtEstimate rays; /* each 0..INFINITY; NAN: unknown, or the baseline itself. `least` is NAN */
+    uint32_t builds; /* the fewest of a structure; fewer than two have no interval, nor has this then */
+} RtBreakEven;
+
+RtBreakEven rt_results_break_even(const RtResults *results, uint32_t workload, uint32_t candidate);
 
 /* Compares a candidate with all others of the workload, for one kind of rays or RT_ALL_RAYS: by time if
  * anything was timed, else by object tests per ray. The best has the smallest median; an interval that

@@ -122,123 +122,13 @@ static RtStatus prepare(RtWorkloadState *workload, RtError *error) {
     return rt_workload_tell(workload, RT_EVENT_WORKLOAD, 0, RT_RAY_PRIMARY, error);
 }
 
-/* ---- leaves ---- */
-
-typedef struct Leaves {
-    RtOccurrences values[RT_LEAF_QUANTITY_COUNT];
-    RtStatus status;
-    RtError *error;
-} Leaves;
-
-static void take_leaf(void *context, const RtBoxView *view) {
-    Leaves *leaves = context;
-    if (!view->leaf) return;
-    const uint32_t values[RT_LEAF_QUANTITY_COUNT] = {
-        [RT_QUANTITY_leaf_size] = view->objects, [RT_QUANTITY_leaf_depth] = view->depth};
-    for (int q = 0; q < RT_LEAF_QUANTITY_COUNT && leaves->status == RT_OK; q++)
-        leaves->status = rt_occurrences_add(&leaves->values[q], values[q], leaves->error);
-}
-
-static RtStatus distribute_leaves(const RtAccel *accel, RtBuildResult *result, RtError *error) {
-    const RtAccel *base = rt_accel_base(accel);
-    Leaves leaves = {.error = error};
-    if (!base->ops->shows_lists) return RT_OK;
-    base->ops->each_box(base, (RtBoxViewer){take_leaf, &leaves});
-    RtStatus status = leaves.status;
-    if (status == RT_OK && !result->leaves)
-        result->leaves = rt_alloc(RT_LEAF_QUANTITY_COUNT, sizeof(RtDistribution));
-    if (status == RT_OK && !result->leaves)
-        status = rt_fail_memory(error, "distributions", RT_LEAF_QUANTITY_COUNT * sizeof(RtDistribution));
-    for (int q = 0; q < RT_LEAF_QUANTITY_COUNT; q++) {
-        if (status == RT_OK) result->leaves[q] = rt_distribution_of(&leaves.values[q]);
-        rt_occurrences_clear(&leaves.values[q]);
-    }
-    return status;
-}
-
-/* ---- structures ---- */
-
-static RtStatus build_limited(const RtWorkloadState *workload, const RtSpec *spec, RtAccel **out,
-                              RtError *error) {
-    rt_memory_limit(workload->experiment->limit_bytes);
-    return rt_memory_unlimit(rt_accel_build(spec, workload->scene, workload->options->threads, out, error),
-                             error);
-}
-
-/* Builds one candidate up to RT_MOST_BUILDS times and keeps the last; *median gets the median seconds. */
-static RtStatus build_one(RtWorkloadState *workload, const RtSpec *spec, RtAccel **out, double *median,
-                          RtError *error) {
-    double seconds[RT_MOST_BUILDS], sum = 0;
-    uint32_t builds = 0;
-    *out = NULL;
-    do {
-        rt_accel_destroy(*out);
-        *out = NULL;
-        RT_TRY(build_limited(workload, spec, out, error));
-        seconds[builds] = (*out)->build_seconds;
-        sum += seconds[builds++];
-    } while (builds < RT_MOST_BUILDS && sum < RT_CHEAP_BUILD);
-    *median = rt_median(seconds, builds);
-    return RT_OK;
-}
-
-/* Builds a candidate within the limits. If it exceeds one, it is destroyed and left out. */
-static RtStatus build_within(RtWorkloadState *workload, uint32_t c, const RtSpec *spec, double *seconds,
-                             RtError *error) {
-    const RtExperiment *experiment = workload->experiment;
-    const RtRayKind any = RT_RAY_PRIMARY;
-    RtStatus status = build_one(workload, spec, &workload->built[c], seconds, error);
-    const bool too_large = status == RT_NO_MEMORY && experiment->limit_bytes;
-    const bool too_slow = experiment->limit_seconds > 0 && *seconds > experiment->limit_seconds;
-    /* If a plugin refuses the scene, or takes all memory, only its own results are lost. */
-    const bool remote = rt_spec_is_remote(spec), refused = too_large || (status == RT_BAD_INPUT && remote);
-    const bool broken = status == RT_BROKEN || (status != RT_OK && !refused && remote);
-    if (broken || refused)
-        return rt_workload_leave_out(workload, c, RT_EVENT_NO_BUILD, any, broken, error, "%s",
-                                     error->message);
-    if (status != RT_OK || !too_slow) return status;
-    rt_accel_destroy(workload->built[c]);
-    workload->built[c] = NULL;
-    return rt_workload_leave_out(workload, c, RT_EVENT_NO_BUILD, any, false, error,
-                                 "building takes %.3g s, more than %g s", *seconds,
-                                 experiment->limit_seconds);
-}
-
-static RtStatus build_all(RtWorkloadState *workload, RtError *error) {
-    for (uint32_t c = 0; c < workload->count; c++) {
-        const RtSpec *spec = &rt_workload_setup(workload, c)->parsed;
-        double seconds = 0;
-        RtBuildResult *result = rt_build_at(workload->results, workload->index, c);
-        if (!rt_workload_runs(workload, c)) continue;
-        RT_TRY(build_within(workload, c, spec, &seconds, error));
-        if (!workload->built[c] || result->known) continue;
-        const RtAccel *accel = workload->built[c];
-        *result = (RtBuildResult){.known = true, .exact = accel->exact, .counts = accel->counts};
-        result->seconds = seconds;
-        rt_spec_format(spec, result->spec);
-        rt_accel_describe(accel, &result->structure);
-        if (workload->distributions) RT_TRY(distribute_leaves(accel, result, error));
-        RT_TRY(rt_workload_tell(workload, RT_EVENT_BUILD, c, RT_RAY_PRIMARY, error));
-    }
-    return RT_OK;
-}
-
 /* ---- a kind of rays ---- */
-
-/* Builds an accelerator again that broke on other rays. */
-static RtStatus rebuild_broken(RtWorkloadState *workload, uint32_t c, RtError *error) {
-    RtAccel *accel = workload->built[c];
-    if (!accel || rt_accel_check(accel, NULL) == RT_OK) return RT_OK;
-    rt_accel_destroy(accel);
-    workload->built[c] = NULL;
-    return build_limited(workload, &rt_workload_setup(workload, c)->parsed, &workload->built[c], error);
-}
 
 /* Selects accelerators that are not known to exceed a limit, or to break. */
 static RtStatus choose_accels(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
     for (uint32_t c = 0; c < workload->count; c++) {
         const RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
-        RtStatus status = rebuild_broken(workload, c, error);
+        RtStatus status = rt_workload_rebuild(workload, c, error);
         const bool traces = status == RT_OK && !*cell->left_out && is_asked(workload, c, kind);
         workload->accels[c] = traces ? workload->built[c] : NULL;
         if (status != RT_OK) RT_TRY(rt_workload_break(workload, c, kind, error));
@@ -266,7 +156,7 @@ static RtStatus measure_kind(RtWorkloadState *workload, RtRayKind kind, RtError 
 
 static RtStatus measure(RtWorkloadState *workload, RtError *error) {
     RT_TRY(prepare(workload, error));
-    RT_TRY(build_all(workload, error));
+    RT_TRY(rt_workload_build(workload, error));
     for (uint32_t k = 0; k < workload->experiment->kind_count; k++) {
         RT_TRY(measure_kind(workload, workload->experiment->kinds[k], error));
     }

@@ -8,9 +8,9 @@
 #include "experiment/results.h"
 #include "rays/rayset.h"
 
-/* A structure is built up to three times if that is cheap. The forecast uses these, too. */
-#define RT_MOST_BUILDS 3
-#define RT_CHEAP_BUILD 0.25 /* seconds, all builds together */
+/* Seconds for each build that the experiment asks for: a structure is not built again once all its builds
+ * together have taken that long. */
+#define RT_BUILD_BUDGET 0.15
 
 typedef enum RtEventKind {
     RT_EVENT_WORKLOAD,     /* results->workloads[workload] is known */

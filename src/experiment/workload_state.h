@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A workload while it runs, and its longer steps, one file each: count, time, hardware counters. */
+/* A workload while it runs, and its longer steps, one file each: build, count, time, hardware counters. */
 #ifndef RT_EXPERIMENT_WORKLOAD_STATE_H
 #define RT_EXPERIMENT_WORKLOAD_STATE_H
 
@@ -57,6 +57,13 @@ RtStatus rt_workload_break(RtWorkloadState *workload, uint32_t c, RtRayKind kind
 RtStatus rt_workload_exclude_broken(RtWorkloadState *workload, RtRayKind kind, RtError *error);
 
 /* ---- the steps ---- */
+
+/* Builds all candidates within the limits, and times that unless it is known. One that exceeds a limit is
+ * destroyed and left out. */
+RtStatus rt_workload_build(RtWorkloadState *workload, RtError *error);
+
+/* Builds an accelerator again that broke on other rays. */
+RtStatus rt_workload_rebuild(RtWorkloadState *workload, uint32_t c, RtError *error);
 
 /* Counts all candidates on their shares of the rays of one kind, and distributions if they are requested. */
 RtStatus rt_workload_count(RtWorkloadState *workload, RtRayKind kind, RtError *error);

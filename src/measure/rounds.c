@@ -57,14 +57,6 @@ static RtStatus warm_up(RtRunner *runners, size_t count, double least, RtError *
     return RT_OK;
 }
 
-static void shuffle(size_t *order, size_t count, RtRandom *random) {
-    for (size_t i = count; i > 1; i--) {
-        size_t k = ((uint64_t)rt_random_bits(random) * i) >> 32, other = order[k];
-        order[k] = order[i - 1];
-        order[i - 1] = other;
-    }
-}
-
 static RtStatus run_rounds(RtRunner *runners, size_t *order, size_t count, const RtRounds *rounds,
                            uint32_t *done, RtError *error) {
     RtRandom random = rt_random(rounds->seed, 0);
@@ -72,7 +64,7 @@ static RtStatus run_rounds(RtRunner *runners, size_t *order, size_t count, const
     RT_TRY(warm_up(runners, count, rounds->least, error));
     for (uint32_t round = 0; round < rounds->most; round++) {
         if (round >= rounds->rounds && (!rounds->enough || rounds->enough(rounds->context, round))) break;
-        shuffle(order, count, &random);
+        rt_random_shuffle(&random, order, count);
         for (size_t i = 0; i < count; i++) {
             RtRunner *runner = &runners[order[i]];
             double seconds, wall, work = runner->repeats * runner->work;

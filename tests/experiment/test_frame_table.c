@@ -23,7 +23,7 @@ static void add(const char *spec, const char *group) {
 /* One ray of each kind takes `ns` and `tests`; `shadow` ns a shadow ray. */
 static void set(uint32_t t, uint32_t c, const char *spec, double ns, double shadow, uint64_t tests) {
     RtBuildResult *build = rt_build_at(&results, t, c);
-    *build = (RtBuildResult){.known = true, .counts = true, .seconds = 0.002};
+    *build = (RtBuildResult){.known = true, .counts = true, .seconds = {0.002, 0.002, 0.002, 0.002}};
     strcpy(build->spec, spec);
     for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
         const RtRayKind kind = (RtRayKind)k;
@@ -145,8 +145,11 @@ FRAME_TEST(a_build_that_makes_another_the_fastest_for_one_frame_is_told_unless_t
         "If each is built for one frame, clusters is the fastest of the six: 2.02 ms, grid "
         "2.03 ms.";
     assert_false(says(1, "builds"));
-    rt_build_at(&results, 1, GRID)->seconds = 0.00202;
+    rt_build_at(&results, 1, GRID)->seconds = (RtEstimate){0.00202, 0.00202, 0.00202, 0.00202};
     assert_true(says(1, told));
+    rt_build_at(&results, 1, GRID)->seconds.low = 0.00199;
+    assert_false(says(1, "builds"));
+    rt_build_at(&results, 1, GRID)->seconds.low = 0.00202;
     rt_cell_at(&results, 1, CLUSTERS, RT_RAY_PRIMARY)->seconds.high = 1;
     assert_false(says(1, "builds"));
 }

@@ -45,6 +45,42 @@ RT_TEST_IN_PLACE(a_journal_without_the_times_of_rounds_is_read) {
     rt_results_clear(&results);
 }
 
+/* They gave the median of up to three builds. */
+RT_TEST_IN_PLACE(a_journal_with_one_time_for_each_structure_is_read_as_builds_of_unknown_number) {
+    const Place *place = *state;
+    RtResults results;
+    for (char *at = written; (at = strstr(at, "\"builds\"")) != NULL;) memcpy(at, "\"BUILDS\"", 8);
+    for (char *at = strstr(written, "\"built\""); at; at = strstr(at, "\"built\"")) {
+        char *list = strstr(at, "\"seconds\":[") + 10, *end = strchr(list, ']');
+        memset(list, ' ', (size_t)(end - list) + 1);
+        memcpy(list, "0.25", 4);
+        at = end;
+    }
+    assert_ok(read_journal(place, written, &results, error));
+    const RtBuildResult *build = rt_build_at(&results, 0, 0);
+    assert_true(build->known && build->builds == 0);
+    assert_true(build->seconds.median == 0.25 && build->seconds.low == 0.25 && build->seconds.high == 0.25);
+    rt_results_clear(&results);
+}
+
+/* The last line, and so some measurements, are missing. */
+RT_TEST_IN_PLACE(a_resumed_run_keeps_the_builds_and_their_intervals) {
+    const Place *place = *state;
+    char *last = strrchr(written, '{');
+    const char *built = strstr(written, "\"built\"");
+    static char line[sizeof written];
+    snprintf(line, sizeof line, "%.*s", (int)strcspn(built, "\n"), built);
+    assert_true(strstr(line, "\"builds\":20") && strstr(line, "\"seconds\":["));
+    *last = '\0';
+    write_in(place, "out/cells.jsonl", written);
+    assert_int_equal(raytally(place, "run small.yaml --out out --resume"), 0);
+    char *journal = read_in(place, "out/cells.jsonl");
+    assert_non_null(strstr(journal, line));
+    assert_null(strstr(strstr(journal, line) + strlen(line), line));
+    rt_free(journal);
+    assert_in_file(place, "out/times.csv", ",build_seconds,build_low,build_high,builds,bytes,");
+}
+
 /* Of two lines about a cell the second counts: the times of the first are not those of its rounds. */
 RT_TEST_IN_PLACE(a_line_of_more_rounds_without_their_times_takes_the_place_of_one_with_them) {
     const Place *place = *state;

@@ -143,8 +143,119 @@ RT_TEST(a_baseline_that_learns_knows_the_rays_of_thinned_candidates) {
     assert_true(0.2 < cell.ratio.median && cell.ratio.median < 5);
 }
 
-/* Two structures with given times: seconds to build, nanoseconds per ray. */
-static double break_even(double theirs, double their_ray, double ours, double our_ray) {
+/* ---- builds ---- */
+
+/* What the builds of a workload take: the first of the grid, its others (`step` more each time), and all of
+ * the hierarchy, the baseline, which is built for the null run too. `made` has a letter for each build. */
+static struct {
+    double first, then, step, baseline;
+    char made[256];
+    uint32_t count, grids;
+} takes;
+
+RtStatus __real_rt_accel_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
+                               RtError *error);
+RtStatus __wrap_rt_accel_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
+                               RtError *error);
+
+RtStatus __wrap_rt_accel_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
+                               RtError *error) {
+    const bool grid = strcmp(spec->layers[0].ops->name, "grid") == 0;
+    RT_TRY(__real_rt_accel_build(spec, scene, threads, out, error));
+    if (takes.baseline == 0) return RT_OK;
+    (*out)->build_seconds = !grid              ? takes.baseline
+                            : takes.grids == 0 ? takes.first
+                                               : takes.then + takes.step * (takes.grids - 1);
+    takes.grids += grid;
+    takes.made[takes.count++] = grid ? 'g' : 'b';
+    return RT_OK;
+}
+
+/* Builds, of which the experiment asks for nine, and times a hierarchy and a grid. The grid's result; `known`
+ * is the one that it has before. */
+static RtBuildResult build_with(double first, double then, double step, double limit, bool count_only,
+                                RtBuildResult known) {
+    const RtWorkloadOptions options = {.threads = 1, .timing = 1, .count_only = count_only};
+    RtResults results;
+    RtExperiment *e =
+        experiment_of("builds", (Candidates){{{.label = "bvh", .spec = "bvh", .ray_stride = 1},
+                                              {.label = "grid", .spec = "grid", .ray_stride = 1}}});
+    e->builds = 9;
+    e->limit_seconds = limit;
+    e->rounds = 1;
+    add_scene(e, "random:n=20", 8);
+    assert_ok(rt_results_init(&results, e, error));
+    *rt_build_at(&results, 0, 1) = known;
+    memset(&takes, 0, sizeof takes);
+    takes.first = first;
+    takes.then = then;
+    takes.step = step;
+    takes.baseline = 0.001;
+    assert_ok(rt_workloads_run(&results, &options, error));
+    takes.baseline = 0;
+    const RtBuildResult grid = *rt_build_at(&results, 0, 1);
+    rt_results_clear(&results);
+    rt_free(e);
+    return grid;
+}
+
+static const RtBuildResult unknown;
+
+RT_TEST(a_build_time_is_the_median_of_builds_without_the_warm_up_with_its_interval) {
+    const RtBuildResult grid = build_with(0.345, 0.01, 0.01, 0, false, unknown);
+    assert_int_equal(grid.builds, 9);
+    assert_true(fabs(grid.seconds.median - 0.05) < 1e-9 && fabs(grid.seconds.least - 0.01) < 1e-9);
+    assert_true(fabs(grid.seconds.low - 0.02) < 1e-9 && fabs(grid.seconds.high - 0.08) < 1e-9);
+}
+
+/* Two hierarchies and a grid: the warm-up in order, then nine rounds, not all of the same order. */
+RT_TEST(every_round_of_builds_has_each_structure_once_in_a_new_order) {
+    bool differ = false;
+    build_with(0.001, 0.001, 0, 0, false, unknown);
+    assert_int_equal(takes.count, 30);
+    assert_memory_equal(takes.made, "bgb", 3);
+    for (int round = 1; round < 10; round++) {
+        const char *made = takes.made + (size_t)3 * (size_t)round;
+        assert_int_equal((made[0] == 'g') + (made[1] == 'g') + (made[2] == 'g'), 1);
+        differ |= memcmp(made, takes.made + 3, 3) != 0;
+    }
+    assert_true(differ);
+}
+
+/* Nine builds may take 1.35 s together. */
+RT_TEST(a_dear_structure_is_built_less_often_and_one_that_spends_the_budget_once) {
+    const RtBuildResult some = build_with(0.5, 0.5, 0, 0, false, unknown);
+    assert_int_equal(some.builds, 2);
+    const RtBuildResult once = build_with(20, 1, 0, 0, false, unknown);
+    assert_int_equal(once.builds, 1);
+    assert_int_equal(takes.grids, 1);
+    assert_true(once.seconds.median == 20 && once.seconds.low == 20 && once.seconds.high == 20);
+}
+
+RT_TEST(a_structure_whose_build_time_is_known_or_not_asked_for_is_built_once) {
+    const RtBuildResult known = {.known = true, .builds = 7, .seconds = {3, 2, 4, 1}};
+    const RtBuildResult kept = build_with(0.001, 0.001, 0, 0, false, known);
+    assert_int_equal(takes.grids, 1);
+    assert_true(kept.builds == 7 && kept.seconds.low == 2);
+    build_with(0.001, 0.001, 0, 0, true, unknown);
+    assert_int_equal(takes.count, 2);
+}
+
+RT_TEST(a_structure_is_left_out_if_its_median_build_exceeds_the_limit) {
+    assert_string_equal(build_with(0.345, 0.01, 0, 0.3, false, unknown).left_out, "");
+    assert_string_equal(build_with(0.01, 0.345, 0, 0.3, false, unknown).left_out,
+                        "building takes 0.345 s, more than 0.3 s");
+}
+
+/* ---- break-even ---- */
+
+/* An estimate of a true value that is within `error` of it, as a part; the median errs by a third of that. */
+static RtEstimate measured(double exact, double error) {
+    return (RtEstimate){exact * (1 + error / 3), exact * (1 - error), exact * (1 + error), exact};
+}
+
+/* Two structures with given times, to within `error`: seconds to build, nanoseconds per ray. */
+static RtBreakEven break_even(double theirs, double their_ray, double ours, double our_ray, double error_of) {
     RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
     RtResults results;
     assert_non_null(e);
@@ -154,22 +265,54 @@ static double break_even(double theirs, double their_ray, double ours, double ou
     e->baseline_count = 1;
     assert_ok(rt_results_init(&results, e, error));
     results.workloads[0].rays[RT_RAY_SHADOW] = 1000;
-    rt_build_at(&results, 0, 0)->seconds = theirs;
-    rt_build_at(&results, 0, 1)->seconds = ours;
-    *rt_cell_at(&results, 0, 1, RT_RAY_SHADOW) =
-        (RtCell){.timed = true, .wall = {.median = 1e-9 * our_ray}, .ratio = {.median = their_ray / our_ray}};
-    double rays = rt_results_break_even(&results, 0, 1);
-    assert_true(isnan(rt_results_break_even(&results, 0, 0)));
+    *rt_build_at(&results, 0, 0) = (RtBuildResult){.builds = 7, .seconds = measured(theirs, error_of)};
+    *rt_build_at(&results, 0, 1) = (RtBuildResult){.builds = 6, .seconds = measured(ours, error_of)};
+    *rt_cell_at(&results, 0, 1, RT_RAY_SHADOW) = (RtCell){.timed = true,
+                                                          .wall = measured(1e-9 * our_ray, error_of),
+                                                          .ratio = measured(their_ray / our_ray, error_of)};
+    const RtBreakEven even = rt_results_break_even(&results, 0, 1);
+    assert_true(isnan(rt_results_break_even(&results, 0, 0).rays.median));
     rt_results_clear(&results);
     rt_free(e);
-    return rays;
+    assert_int_equal(even.builds, 6);
+    return even;
+}
+
+static bool is_at(RtBreakEven even, double rays) {
+    return even.rays.median == rays || fabs(even.rays.median / rays - 1) < 1e-9;
 }
 
 RT_TEST(a_build_pays_off_after_as_many_rays_as_save_what_it_takes_more) {
-    assert_true(fabs(break_even(1, 300, 3, 200) - 2e7) < 1);
-    assert_true(fabs(break_even(3, 200, 1, 300) + 2e7) < 1); /* ahead up to so many */
-    assert_true(break_even(1, 300, 1, 200) == 0);
-    assert_true(isinf(break_even(1, 200, 2, 300)));
+    const RtBreakEven from = break_even(1, 300, 3, 200, 0), up_to = break_even(3, 200, 1, 300, 0);
+    const RtBreakEven always = break_even(1, 300, 1, 200, 0), never = break_even(1, 200, 2, 300, 0);
+    assert_true(is_at(from, 2e7) && !from.up_to);
+    assert_true(is_at(up_to, 2e7) && up_to.up_to);
+    assert_true(is_at(always, 0) && !always.up_to);
+    assert_true(is_at(never, 0) && never.up_to);
+    assert_true(from.rays.low == from.rays.high && never.rays.low == never.rays.high);
+}
+
+/* Of times with errors of up to 30 %, and so at times of unknown order. */
+RT_TEST(the_interval_of_a_break_even_contains_that_of_the_exact_times) {
+    static const double times[][4] = {
+        {1, 300, 3, 200}, {3, 200, 1, 300}, {1, 300, 1.1, 200}, {1, 300, 3, 290}, {3, 280, 1, 300}};
+    for (size_t i = 0; i < sizeof times / sizeof times[0]; i++) {
+        const double *t = times[i], exact = fabs((t[2] - t[0]) / (1e-9 * (t[1] - t[3])));
+        double width = 0;
+        for (double error_of = 0.001; error_of < 0.3; error_of *= 3) {
+            const RtBreakEven even = break_even(t[0], t[1], t[2], t[3], error_of);
+            assert_int_equal(even.up_to, t[2] < t[0]);
+            assert_true(even.rays.low < exact && exact < even.rays.high);
+            assert_true(even.rays.low <= even.rays.median && even.rays.median <= even.rays.high);
+            assert_true(even.rays.high - even.rays.low >= width);
+            width = even.rays.high - even.rays.low;
+        }
+    }
+}
+
+RT_TEST(a_break_even_of_builds_and_rays_that_may_be_equal_is_any_number) {
+    const RtBreakEven even = break_even(1, 300, 1.01, 299, 0.1);
+    assert_true(even.rays.low == 0 && isinf(even.rays.high));
 }
 
 /* The first counting pass: its rays, and which of the eight parts of a frame of 64 rows they cover. */

@@ -79,15 +79,15 @@ static void assert_written(const RtTable *what, void (*write)(const RtTable *, F
 RT_TEST(csv_quotes_and_leaves_empty_what_is_missing) {
     assert_written(&table, rt_table_csv,
                    "name,hits,seconds,exact,range,rays\n"
-                   "\"a|b, `c` **d**\",12,1.5,yes,\"1.50 [0.750, 3.00]\",7\n"
+                   "\"a|b, `c` **d**\",12,1.5,yes,\"1.5 [0.8, 3.0]\",7\n"
                    "<x>,3456,,no,,\n");
 }
 
 RT_TEST(text_is_aligned_and_has_a_dash_for_what_is_missing) {
     assert_written(&table, rt_table_text,
-                   "name            hit count  seconds  exact  range               rays\n"
-                   "a|b, `c` **d**         12      1.5  yes    1.50 [0.750, 3.00]     7\n"
-                   "<x>                  3456        -  no     -                      -\n");
+                   "name            hit count  seconds  exact  range           rays\n"
+                   "a|b, `c` **d**         12      1.5  yes    1.5 [0.8, 3.0]     7\n"
+                   "<x>                  3456        -  no     -                  -\n");
 }
 
 RT_TEST(markdown_escapes_bars_and_aligns_numbers_unless_it_is_ragged) {
@@ -97,11 +97,11 @@ RT_TEST(markdown_escapes_bars_and_aligns_numbers_unless_it_is_ragged) {
     assert_written(&table, rt_table_markdown,
                    "| name | hit count | seconds | exact | range | rays |\n"
                    "| --- | ---: | ---: | --- | --- | ---: |\n"
-                   "| a\\|b, `c` **d** | 12 | 1.5 | yes | 1.50 [0.750, 3.00] | 7 |\n"
+                   "| a\\|b, `c` **d** | 12 | 1.5 | yes | 1.5 [0.8, 3.0] | 7 |\n"
                    "| <x> | 3456 | | no | | |\n");
     assert_written(&ragged, rt_table_markdown,
                    "| name | hit count | seconds | exact | range |\n| --- | --- | --- | --- | --- |\n"
-                   "| a\\|b, `c` **d** | 12 | 1.5 | yes | 1.50 [0.750, 3.00] |\n");
+                   "| a\\|b, `c` **d** | 12 | 1.5 | yes | 1.5 [0.8, 3.0] |\n");
 }
 
 static RtStanding first_is_best(const void *row) {
@@ -234,6 +234,39 @@ RT_TEST(an_interval_is_seen_not_to_hold_1_if_it_does_not) {
                   close = rt_field_interval(1.0041, 1.0031, 1.0279);
     assert_string_equal(rt_field_show(RT_FORM_interval, &usual, buffer), "1.01 [1.01, 1.03]");
     assert_string_equal(rt_field_show(RT_FORM_interval, &close, buffer), "1.004 [1.003, 1.028]");
+}
+
+static void expect_interval(double value, double low, double high, const char *text) {
+    char shown[RT_MAX_FIELD];
+    rt_format_interval(value, low, high, shown);
+    assert_string_equal(shown, text);
+}
+
+RT_TEST(an_interval_has_no_more_digits_than_it_supports) {
+    expect_interval(0.5312, 0.27, 7.99, "0.5 [0.3, 8.0]");
+    expect_interval(4.8012, 4.7981, 4.8031, "4.80 [4.80, 4.80]");
+    expect_interval(345.4, 177.2, 402, "300 [200, 400]");
+    expect_interval(123456, 91234, 161234, "1.2e5 [0.9e5, 1.6e5]");
+    expect_interval(123456, 123400, 123500, "1.23e5 [1.23e5, 1.24e5]");
+    expect_interval(0.00045678, 0.0004, 0.0005, "4.6e-4 [4.0e-4, 5.0e-4]");
+    expect_interval(0.307, (double)NAN, (double)NAN, "0.307");
+    expect_interval(2120, 1490, INFINITY, "2100 [1500, inf]");
+    expect_interval(INFINITY, 1490, INFINITY, "inf [1500, inf]");
+    expect_interval(0, 0, 1490, "0 [0, 1500]");
+    expect_interval(-0.52, -0.61, -0.4, "-0.5 [-0.6, -0.4]");
+}
+
+RT_TEST(a_number_of_unknown_error_has_two_digits) {
+    static const struct {
+        double value;
+        const char *text;
+    } cases[] = {{0, "0"},         {0.3456, "0.35"},  {12.34, "12"},         {345.6, "350"},
+                 {12345, "12000"}, {123456, "1.2e5"}, {0.00012345, "1.2e-4"}};
+    char text[32];
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        rt_format_rough(cases[i].value, text);
+        assert_string_equal(text, cases[i].text);
+    }
 }
 
 RT_TESTS(table, NULL, NULL)

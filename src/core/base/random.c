@@ -28,6 +28,14 @@ uint32_t rt_random_bits(RtRandom *random) {
     return random->block[random->used++];
 }
 
+void rt_random_shuffle(RtRandom *random, size_t *order, size_t count) {
+    for (size_t i = count; i > 1; i--) {
+        size_t k = ((uint64_t)rt_random_bits(random) * i) >> 32, other = order[k];
+        order[k] = order[i - 1];
+        order[i - 1] = other;
+    }
+}
+
 float rt_random_unit(RtRandom *random) {
     return (float)(rt_random_bits(random) >> 8) * 0x1p-24f;
 }

@@ -8,6 +8,7 @@
 
 #include "core/base/vec.h"
 
+#include <stddef.h>
 #include <stdint.h>
 
 typedef struct RtRandom {
@@ -27,6 +28,9 @@ uint32_t rt_random_bits(RtRandom *random);
 static inline uint32_t rt_random_below(RtRandom *random, uint32_t count) {
     return rt_random_bits(random) % count;
 }
+
+/* Puts order[0..count) into a random order. */
+void rt_random_shuffle(RtRandom *random, size_t *order, size_t count);
 
 /* Uniform in [0, 1), a multiple of 2^-24. */
 float rt_random_unit(RtRandom *random);

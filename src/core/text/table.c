@@ -68,9 +68,17 @@ RtField rt_field_print(const char *format, ...) {
     return field;
 }
 
+static int magnitude(double size) {
+    return (int)floor(log10(size));
+}
+
+/* The decimal place of the last digit of a figure of this size: -2 if it has two decimals. */
+static int figure_place(double size) {
+    return size >= 99.95 ? 0 : size >= 9.995 ? -1 : size >= 0.9995 ? -2 : size >= 0.0995 ? -3 : -4;
+}
+
 void rt_format_figure(double value, char *out) {
-    double size = fabs(value);
-    int digits = size >= 99.95 ? 0 : size >= 9.995 ? 1 : size >= 0.9995 ? 2 : size >= 0.0995 ? 3 : 4;
+    const double size = fabs(value);
     if (isnan(value)) {
         strcpy(out, "-");
     } else if (value == 0) {
@@ -78,8 +86,32 @@ void rt_format_figure(double value, char *out) {
     } else if (size < 0.00095 || size >= 1e7) {
         snprintf(out, 16, "%.1e", value);
     } else {
-        snprintf(out, 16, "%.*f", digits, value);
+        snprintf(out, 16, "%.*f", -figure_place(size), value);
     }
+}
+
+/* The power of ten that a number of this size, above 0, is printed in units of. */
+static int power_of(double size) {
+    return size >= 99999.5 || size < 0.00095 ? magnitude(size) : 0;
+}
+
+/* Rounded to the decimal place `place`, in units of 10^power. */
+static void put_rounded(double value, int place, int power, char out[32]) {
+    const double unit = pow(10, place);
+    if (place > power) value = unit * rint(value / unit);
+    const int decimals = place < power ? power - place : 0;
+    if (value == 0 || isinf(value))
+        strcpy(out, value == 0 ? "0" : "inf");
+    else
+        snprintf(out, 32, power ? "%.*fe%d" : "%.*f", decimals, value / pow(10, power), power);
+}
+
+void rt_format_rough(double value, char out[32]) {
+    const double size = fabs(value);
+    if (size > 0 && isfinite(size))
+        put_rounded(value, magnitude(size) - 1, power_of(size), out);
+    else
+        rt_format_figure(value, out);
 }
 
 /* Does the text read as 1? */
@@ -94,21 +126,30 @@ static void show_end(double value, char buffer[RT_MAX_FIELD]) {
     }
 }
 
-/* As figures; if the interval does not contain 1, with enough decimals to show that its nearer end is not
- * 1. */
-static void show_interval(const RtField *field, char buffer[RT_MAX_FIELD]) {
-    char value[32], low[32], high[32];
-    rt_format_figure(field->real, value);
-    rt_format_figure(field->low, low);
-    rt_format_figure(field->high, high);
-    bool holds_1 = field->low <= 1 && 1 <= field->high;
-    const char *nearer = field->low > 1 ? low : high;
-    for (int decimals = 3; !holds_1 && decimals <= 17 && reads_as_1(nearer); decimals++) {
-        snprintf(value, sizeof value, "%.*f", decimals, field->real);
-        snprintf(low, sizeof low, "%.*f", decimals, field->low);
-        snprintf(high, sizeof high, "%.*f", decimals, field->high);
-    }
-    snprintf(buffer, RT_MAX_FIELD, isnan(field->low) ? "%s" : "%s [%s, %s]", value, low, high);
+/* The last decimal place that an interval supports, of numbers of about `size`: that of half its width, at
+ * most three digits or those of a figure, and at least one digit of each number. */
+static int supported_place(double size, double half, double low) {
+    const int power = power_of(size), most = power ? power - 2 : figure_place(size);
+    if (!(half > 0)) return most;
+    int place = magnitude(fmin(half, size));
+    if (low > 0 && magnitude(low) < place) place = magnitude(low);
+    return place > most ? place : most;
+}
+
+void rt_format_interval(double value, double low, double high, char out[RT_MAX_FIELD]) {
+    char texts[3][32];
+    const bool any = isfinite(value) && value != 0, holds_1 = low <= 1 && 1 <= high;
+    const double size = fabs(any ? value : isfinite(high) && high != 0 ? high : low);
+    const double half = isfinite(high - low) ? 0.5 * (high - low) : any ? value - low : 0.1 * size;
+    const int power = size > 0 ? power_of(size) : 0;
+    int place = size > 0 ? supported_place(size, half, low) : 0;
+    const char *nearer = texts[low > 1 ? 1 : 2];
+    do {
+        put_rounded(value, place, power, texts[0]);
+        put_rounded(low, place, power, texts[1]);
+        put_rounded(high, place, power, texts[2]);
+    } while (!holds_1 && reads_as_1(nearer) && place-- > -17);
+    snprintf(out, RT_MAX_FIELD, isnan(low) ? "%s" : "%s [%s, %s]", texts[0], texts[1], texts[2]);
 }
 
 static void show_real(RtForm form, double value, char buffer[RT_MAX_FIELD]) {
@@ -118,6 +159,8 @@ static void show_real(RtForm form, double value, char buffer[RT_MAX_FIELD]) {
         snprintf(buffer, RT_MAX_FIELD, forms[form].format, value);
     } else if (form == RT_FORM_amount && value > 0 && value < 0.00095) {
         strcpy(buffer, "<0.001");
+    } else if (form == RT_FORM_interval) {
+        rt_format_rough(value, buffer);
     } else {
         rt_format_figure(value, buffer);
     }
@@ -134,7 +177,7 @@ const char *rt_field_show(RtForm form, const RtField *field, char buffer[RT_MAX_
         break;
     case RT_FIELD_REAL: show_real(form, field->real, buffer); break;
     case RT_FIELD_INTERVAL:
-        if (isfinite(field->real)) show_interval(field, buffer);
+        if (isfinite(field->real)) rt_format_interval(field->real, field->low, field->high, buffer);
         break;
     }
     return buffer;

@@ -26,9 +26,9 @@
 
 /* X(form, name in docs, printf format of a real number): how fields are written. Numbers are
  * right-aligned. `end` is one end of a ratio's interval: six digits, or as many as show that it is not 1;
- * `interval` shows likewise that it does not contain 1. `figure` takes about four characters; `amount`,
- * too, except that less than 0.001 is <0.001. `markup` is text with Markdown's `code` and **bold**; `json`
- * cannot be a table cell. */
+ * `interval` is rt_format_interval, or rt_format_rough of a number without one. `figure` takes about four
+ * characters; `amount`, too, except that less than 0.001 is <0.001. `markup` is text with Markdown's `code`
+ * and **bold**; `json` cannot be a table cell. */
 #define RT_FORMS(X)                                                                                          \
     X(text, "text", NULL)                                                                                    \
     X(markup, "text", NULL)                                                                                  \
@@ -102,6 +102,14 @@ const char *rt_field_show(RtForm form, const RtField *field, char buffer[RT_MAX_
 
 /* A number in about four characters: 0, 0.0034, 1.24, 12.4, 124, 69666; "-" for NAN. Needs 16 bytes. */
 void rt_format_figure(double value, char *out);
+
+/* A number with its interval: "1.23 [1.17, 1.31]", "1.2e5 [0.9e5, 1.6e5]"; without it if `low` is NAN. It has
+ * no more digits than the interval supports, except to show that the interval does not contain 1. Ends may be
+ * INFINITY: "inf". */
+void rt_format_interval(double value, double low, double high, char out[RT_MAX_FIELD]);
+
+/* A number whose error is unknown, in two digits: 0.35, 12, 350, 1.2e5. */
+void rt_format_rough(double value, char out[32]);
 
 /* ---- columns ---- */
 
