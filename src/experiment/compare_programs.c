@@ -310,7 +310,8 @@ static void take_instructions(const RtCallgrind *callgrind, int who, RtCompariso
                                                   rt_experiment_kind_name(e, counted->kind));
         if (!cell) continue;
         if (*counted->why)
-            snprintf(cell->uncounted, sizeof cell->uncounted, "%s", counted->why);
+            snprintf(cell->uncounted, sizeof cell->uncounted, "%s: %.*s", who == BEFORE ? "before" : "after",
+                     RT_MAX_WHY - 10, counted->why);
         else
             cell->instructions[who] = (double)counted->instructions / (double)counted->rays;
     }
