@@ -64,7 +64,7 @@ typedef struct Section {
     RtTable table;
 } Section;
 
-enum { SECTIONS = 19 };
+enum { SECTIONS = 20 };
 static void list(Section sections[SECTIONS]) {
     const RtTable verify_csv = {.groups = rt_verify_csv, .group_count = RT_VERIFY_GROUPS};
     const RtTable verify_json = {.groups = rt_verify_json, .group_count = RT_VERIFY_GROUPS};
