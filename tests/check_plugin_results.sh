@@ -45,7 +45,7 @@ says_not 'cannot be read'
 ! grep -q 'cannot be read' results/index.html || complain 'the index cannot read the results of a plugin'
 cp -r results/mine results/again
 ends 0 compare results/mine results/again
-says 'my-accel:boxes=on +primary +1\.00 .*no difference +same'
+says 'my-accel:boxes=on +primary +1\.00 .*by accelerator +same'
 says_not 'plugin'
 ends 2 reproduce results/mine
 says "results/mine/manifest.json: 'my-accel' belonged to the plugin $work/old/mine.so \($hash\) then, and does not now"

@@ -68,8 +68,17 @@ RtField rt_field_print(const char *format, ...) {
     return field;
 }
 
+/* The exponent of a number above 0 in scientific notation. */
 static int magnitude(double size) {
-    return (int)floor(log10(size));
+    char text[32];
+    snprintf(text, sizeof text, "%.17e", size);
+    return (int)strtol(strchr(text, 'e') + 1, NULL, 10);
+}
+
+static double ten_to_the(int place) {
+    char text[16];
+    snprintf(text, sizeof text, "1e%d", place);
+    return strtod(text, NULL);
 }
 
 /* The decimal place of the last digit of a figure of this size: -2 if it has two decimals. */
@@ -97,13 +106,13 @@ static int power_of(double size) {
 
 /* Rounded to the decimal place `place`, in units of 10^power. */
 static void put_rounded(double value, int place, int power, char out[32]) {
-    const double unit = pow(10, place);
+    const double unit = ten_to_the(place);
     if (place > power) value = unit * rint(value / unit);
     const int decimals = place < power ? power - place : 0;
     if (value == 0 || isinf(value))
         strcpy(out, value == 0 ? "0" : "inf");
     else
-        snprintf(out, 32, power ? "%.*fe%d" : "%.*f", decimals, value / pow(10, power), power);
+        snprintf(out, 32, power ? "%.*fe%d" : "%.*f", decimals, value / ten_to_the(power), power);
 }
 
 void rt_format_rough(double value, char out[32]) {
