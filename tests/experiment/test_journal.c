@@ -79,6 +79,7 @@ RT_TEST_IN_PLACE(a_resumed_run_keeps_the_builds_and_their_intervals) {
     assert_null(strstr(strstr(journal, line) + strlen(line), line));
     rt_free(journal);
     assert_in_file(place, "out/times.csv", ",build_seconds,build_low,build_high,builds,bytes,");
+    assert_in_file(place, "out/times.csv", ",20,");
 }
 
 /* Of two lines about a cell the second counts: the times of the first are not those of its rounds. */
