@@ -20,7 +20,7 @@ do for [scene in scenes] { if (strlen(scene) > longest) { longest = strlen(scene
 key_rows = (n_scenes - 1) / int(940 / (42 + 7.2 * longest)) + 1
 panel_height = 40 + n_shown * (18 + 4 * n_scenes)
 head = 44.0 + 20 * key_rows
-height = head + 14 + (panel_height + 52) * panel_rows
+height = head + 14 + (panel_height + 62) * panel_rows
 set logscale x 2
 set yrange [0.4 : n_shown + 0.6]
 set grid ytics
@@ -29,7 +29,7 @@ set format x "%g"
 
 eval canvas("1-time", 960, height)
 set multiplot layout panel_rows, panel_columns margins screen 0.17, 0.985, 44.0 / height, 1 - head / height \
-    spacing screen 0.03, 60.0 / height
+    spacing screen 0.05, 70.0 / height
 do for [k = 1:n_kinds] {
   set title word(kinds, k) font ",14" textcolor rgb ink
   set ytics () noenhanced
