@@ -5,12 +5,22 @@
 
 n_kinds = words(kinds); n_accels = words(accels); n_scenes = words(scenes)
 place(text, list) = sum [i = 1:words(list)] (word(list, i) eq text ? i : 0)
-level(s, k) = (s - 1) * (n_kinds + 0.5) + k
-at(a) = level(place(strcol("scene"), scenes), place(strcol("kind"), kinds)) + 0.7 / n_accels * (a - 0.5 * (n_accels + 1))
 named(a) = strcol("accel") eq word(accels, a)
-
 timed = system("test -f times.csv && echo 1 || echo 0") eq "1"
 table = timed ? "times.csv" : "counts.csv"
+
+# The heights of the rows, without kinds of rays that a scene has none of; half a row between scenes.
+array level[n_scenes * n_kinds]
+lowest = 0
+do for [s = 1:n_scenes] {
+  if (s > 1) { lowest = lowest + 0.5 }
+  do for [k = 1:n_kinds] {
+    stats table using (strcol("scene") eq word(scenes, s) && strcol("kind") eq word(kinds, k) ? 1 : 0) nooutput
+    if (STATS_max > 0) { lowest = lowest + 1; level[(s - 1) * n_kinds + k] = lowest } else { level[(s - 1) * n_kinds + k] = NaN }
+  }
+}
+at(a) = level[(place(strcol("scene"), scenes) - 1) * n_kinds + place(strcol("kind"), kinds)] + \
+        0.7 / n_accels * (a - 0.5 * (n_accels + 1))
 per_ray(name) = column(name) / column("rays")
 tests(a) = named(a) && column("object_tests") > 0 ? per_ray("object_tests") : NaN
 if (timed) { stats table using (column("ns")) nooutput; fastest = STATS_min; slowest = STATS_max }
@@ -20,13 +30,15 @@ longest = 0
 do for [label in accels] { if (strlen(label) > longest) { longest = strlen(label) } }
 key_rows = (n_accels - 1) / int(940 / (42 + 7.2 * longest)) + 1
 head = 50.0 + 20 * key_rows
-height = head + 40 + (12 + 5 * n_accels) * level(n_scenes, n_kinds)
+height = head + 40 + (12 + 5 * n_accels) * lowest
 eval canvas("1-dots", 960, height)
 set multiplot layout 1, 2 margins screen 0.19, 0.975, 34.0 / height, 1 - head / height spacing screen 0.04, 0
 set logscale x
-set yrange [level(n_scenes, n_kinds) + 0.6 : 0.4]
+set yrange [lowest + 0.6 : 0.4]
 set ytics ()
-do for [s = 1:n_scenes] { do for [k = 1:n_kinds] { set ytics add (word(scenes, s).", ".word(kinds, k) level(s, k)) } }
+do for [i = 1:|level|] {
+  if (level[i] == level[i]) { set ytics add (word(scenes, (i - 1) / n_kinds + 1).", ".word(kinds, (i - 1) % n_kinds + 1) level[i]) }
+}
 set ytics noenhanced font ",12"
 set grid xtics ytics
 set format x "%g"
@@ -35,7 +47,7 @@ set key at screen 0.985, screen 1 - 6.0 / height right top vertical maxrows key_
 plot for [a = 1:n_accels] table using (tests(a)):(at(a)) \
        with points pointtype mark(a) pointsize 0.7 linecolor rgb hue(a) title word(accels, a)
 unset key
-do for [s = 1:n_scenes] { do for [k = 1:n_kinds] { set ytics add ("" level(s, k)) } }
+do for [i = 1:|level|] { if (level[i] == level[i]) { set ytics add ("" level[i]) } }
 set title (timed ? "time, ns per ray" : "extent tests per ray") font ",14" textcolor rgb ink
 if (timed) {
   set xrange [fastest / 1.2 : slowest * 1.2]
