@@ -38,8 +38,8 @@ do for [k = 1:n_kinds] {
     set key at screen 0.985, screen 1 - 6.0 / height right top vertical maxrows key_rows samplen 1 textcolor rgb ink noenhanced
   } else { unset key }
   if (k > n_kinds - panel_columns) { set xlabel "time over that of ".baseline noenhanced textcolor rgb ink } else { unset xlabel }
-  set arrow 1 from 1, graph 0 to 1, graph 1 nohead linewidth 1.5 dashtype 2 linecolor rgb soft
-  plot for [s = 1:n_scenes] "times.csv" \
+  plot sample [t = 0.4 : n_shown + 0.6] "+" using (1):(t) with lines linewidth 1.5 dashtype 2 linecolor rgb soft notitle, \
+       for [s = 1:n_scenes] "times.csv" \
          using (on(s, k) ? 1 / column("ratio") : NaN):(row(strcol("accel")) + shift(s)): \
                (1 / column("ratio_high")):(1 / column("ratio_low")) \
          with xerrorbars linewidth 1.4 pointtype mark(s) pointsize 0.6 linecolor rgb hue(s) title word(scenes, s)
