@@ -19,10 +19,14 @@ static RtEstimate exactly(double value) {
     return (RtEstimate){value, value, value, value};
 }
 
-/* The rays from which on it is ahead: of no number if only of few. */
+/* The rays from which on it is ahead. If it is ahead up to some number, that is never; up to any, from 0. */
 static RtEstimate break_even(const RtResults *results, uint32_t t, uint32_t c) {
     const RtBreakEven even = rt_results_break_even(results, t, c);
-    return even.up_to ? exactly((double)INFINITY) : even.rays;
+    const double never = (double)INFINITY;
+    if (!even.up_to) return even.rays;
+    return (RtEstimate){.median = isinf(even.rays.median) ? 0 : never,
+                        .low = isinf(even.rays.high) ? 0 : never,
+                        .high = isinf(even.rays.low) ? 0 : never};
 }
 
 static RtEstimate value_at(const RtResults *results, RtClaimMeasure measure, RtRayKind kind, uint32_t t,

@@ -148,6 +148,10 @@ RT_TEST(structures_and_csg_trees_have_measures_of_their_own) {
     expect(RT_CLAIM_FALSE, "break_even of grid:density=2 on random:n=10 < 1e9", "never");
     expect(RT_CLAIM_FALSE, "break_even of grid:density=4 on random:n=10 < 1e9",
            "never"); /* ahead only before */
+    rt_cell_at(&results, 0, 3, RT_RAY_PRIMARY)->ratio = (RtEstimate){1.1, 0.9, 1.2, 0.9};
+    rt_cell_at(&results, 0, 3, RT_RAY_SHADOW)->ratio = (RtEstimate){1.1, 0.9, 1.2, 0.9};
+    expect(RT_CLAIM_UNDECIDED, "break_even of grid:density=4 on random:n=10 < 1e9",
+           "0 [0, never]"); /* ahead of any number, or only of few */
     expect(RT_CLAIM_FIGURE, "break_even of bvh on random:n=10", "no such value");
 }
 
