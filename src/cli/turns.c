@@ -49,9 +49,11 @@ RtStatus rt_turn_take(RtTurn *turn, const char *go_on, RtError *error) {
     int how = 0;
     RT_TRY(start(turn, error));
     if (turn->here) return RT_OK;
-    while (waitpid(now, &how, 0) < 0 && errno == EINTR) {
+    pid_t ended;
+    while ((ended = waitpid(now, &how, 0)) < 0 && errno == EINTR) {
     }
     handle(SIG_DFL);
+    if (ended < 0) return rt_fail(error, RT_IO, "waiting for %s: %s", turn->name, strerror(errno));
     turn->seconds = rt_wall_seconds() - began;
     turn->signal = WIFSIGNALED(how) ? WTERMSIG(how) : 0;
     turn->code = turn->signal ? RT_EXIT_BAD_INPUT : WEXITSTATUS(how);

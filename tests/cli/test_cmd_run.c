@@ -74,7 +74,10 @@ RT_TEST_IN_PLACE(all_are_parsed_before_the_first_is_measured) {
     assert_ends(place, "run a.yaml b.yaml c.yaml", 2, "c.yaml:7:1: unknown key 'limmit'");
     change(place, "b.yaml", "name: b", "name: a");
     assert_ends(place, "run a.yaml b.yaml", 2,
-                "a.yaml and b.yaml are both named 'a', and would share the directory results/a");
+                "a.yaml ('a') and b.yaml ('a') would share the directory results/a");
+    change(place, "b.yaml", "name: a", "name: x:Y");
+    change(place, "a.yaml", "name: a", "name: X-y");
+    assert_ends(place, "run a.yaml b.yaml", 2, "would share the directory results/x-Y");
     assert_ends(place, "run a.yaml c.yaml --force", 2, "--force takes one experiment");
     assert_ends(place, "run a.yaml c.yaml --shard 1/2", 2, "--only and --shard take one experiment");
     assert_false(exists(place, "results"));
@@ -102,7 +105,7 @@ RT_TEST_IN_PLACE(update_starts_over_only_where_something_else_was_measured) {
     char *a = read_in(place, "results/a/cells.jsonl");
     change(place, "b.yaml", "limit: 50", "limit: 40");
     assert_ends(place, "run a.yaml b.yaml --threads 1 --resume", 2, "another version of it ('b')");
-    assert_int_equal(raytally(place, "run a.yaml b.yaml c.yaml --threads 1 --update"), 0);
+    assert_ends(place, "run a.yaml b.yaml c.yaml --threads 1 --update", 0, "--update starts results/b over");
     assert_same_file(place, "results/a/cells.jsonl", a);
     assert_in_file(place, "results/b/experiment.yaml", "limit: 40");
     assert_int_equal(raytally(place, "reproduce results/b"), 0);
