@@ -161,13 +161,15 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, bool list, 
                duration);
         return RT_OK;
     }
-    if (forecast.finished == forecast.cells) {
+    const bool cells = forecast.finished < forecast.cells; /* else what is left is of structures */
+    if (!cells && forecast.left == 0) {
         printf("%u cell%s, all of them finished\n", forecast.cells, rt_plural(forecast.cells));
         return RT_OK;
     }
     rt_format_duration(forecast.left, duration);
-    printf("%u cell%s, %u of them finished; the others take %s %s%s\n", forecast.cells,
-           rt_plural(forecast.cells), forecast.finished, forecast.guessed ? "at least" : "about", duration,
+    printf("%u cell%s, %u of them finished; %s take %s %s%s\n", forecast.cells, rt_plural(forecast.cells),
+           forecast.finished, cells ? "the others" : "null runs and frames",
+           forecast.guessed ? "at least" : "about", duration,
            forecast.guessed ? " (estimated from rounds and milliseconds, since nothing is timed yet)" : "");
     return RT_OK;
 }

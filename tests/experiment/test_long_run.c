@@ -339,4 +339,34 @@ RT_TEST_IN_PLACE(what_was_not_timed_yet_is_foretold_by_its_tests_and_steps) {
     rt_results_clear(&results);
 }
 
+/* A warm-up and three rounds of 100 pixels, a millisecond each; diffuse rays are not of a frame, and brute is
+ * measured on a part of the rays. */
+RT_TEST_IN_PLACE(frames_that_are_not_rendered_yet_are_foretold_by_their_rays) {
+    const Place *place = *state;
+    const RtWorkloadOptions options = {.threads = 1, .timing = 1};
+    RtWorkloadOptions counting = options;
+    RtResults results;
+    assert_ok(load_small(place, false, error));
+    place->experiment->render = true;
+    assert_ok(rt_results_init(&results, place->experiment, error));
+    results.workloads[0] = (RtWorkloadResult){.known = true, .width = 10, .height = 10};
+    results.workloads[0].rays[RT_RAY_PRIMARY] = results.workloads[0].rays[RT_RAY_DIFFUSE] = 1000;
+    for (RtCellCursor at = {0}; rt_results_next(&results, &at);) {
+        *at.cell = (RtCell){.counted = true, .timed = true, .wall.median = 1e-3};
+        if (at.workload > 0) results.workloads[at.workload].skipped = true;
+    }
+    const RtForecast before = rt_forecast(&results, &options);
+    RtRenderResult *render = &rt_build_at(&results, 0, 0)->render;
+    *render = (RtRenderResult){.known = true, .seconds = rt_estimate_exactly(0.3)};
+    const RtForecast after = rt_forecast(&results, &options);
+    assert_true(fabs(before.left - after.left - 4 * 0.1) < 1e-9);
+    assert_true(fabs(after.known - before.known - 4 * 0.3) < 1e-9);
+    rt_build_at(&results, 0, 6)->render = *render; /* brute */
+    assert_true(rt_forecast(&results, &options).known == after.known);
+    counting.count_only = true;
+    render->seconds.median = 1000;
+    assert_true(rt_forecast(&results, &counting).known < 1000);
+    rt_results_clear(&results);
+}
+
 RT_TESTS(long_run, NULL, NULL)
