@@ -132,17 +132,16 @@ static void put_number(RtClaimResult *result, const RtClaim *claim, double value
 }
 
 static void put_estimate(RtClaimResult *result, const RtClaim *claim, const RtEstimate *b) {
+    char text[RT_MAX_FIELD];
     if (isnan(b->median)) {
         PUT(result, "unknown");
-        return;
+    } else if (b->low == b->high) {
+        put_number(result, claim, b->median);
+    } else {
+        rt_format_interval(in_units(claim, b->median), in_units(claim, b->low), in_units(claim, b->high),
+                           text);
+        PUT(result, "%s", text);
     }
-    put_number(result, claim, b->median);
-    if (b->low == b->high) return;
-    PUT(result, " [");
-    put_number(result, claim, b->low);
-    PUT(result, ", ");
-    put_number(result, claim, b->high);
-    PUT(result, "]");
 }
 
 /* Both labels; of a line without the parameter. */
