@@ -2,11 +2,8 @@
 /* raytally run and reproduce with several experiments. With one: tests/experiment. */
 #include "experiment_testing.h"
 
-#include <fcntl.h>
 #include <signal.h>
-#include <sys/wait.h>
 #include <time.h>
-#include <unistd.h>
 
 static const char pattern[] = "name: small\n"
                               "question: Which is cheaper?\n"
@@ -119,25 +116,11 @@ RT_TEST_IN_PLACE(a_dry_run_of_several_sums_up_each_and_touches_nothing) {
     assert_false(exists(place, "results"));
 }
 
-/* Starts `raytally run a.yaml b.yaml c.yaml` in the folder. */
-static pid_t start(const Place *place) {
-    pid_t child = fork();
-    assert_true(child >= 0);
-    if (child > 0) return child;
-    int message = -1, nothing = open("/dev/null", O_WRONLY);
-    if (chdir(place->folder) == 0) message = open("message", O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    dup2(nothing, STDOUT_FILENO);
-    dup2(message, STDERR_FILENO);
-    execl(RT_PROGRAM, "raytally", "run", "a.yaml", "b.yaml", "c.yaml", "--threads", "1", "--out", "all",
-          (char *)NULL);
-    _exit(127);
-}
-
 RT_TEST_IN_PLACE(an_interruption_stops_all_and_says_the_one_command_that_continues) {
     const Place *place = *state;
     int how;
     change(place, "b.yaml", "rounds: 2\nmilliseconds: 0", "rounds: 50\nmilliseconds: 100");
-    pid_t child = start(place);
+    pid_t child = start_raytally(place, "run a.yaml b.yaml c.yaml --threads 1 --out all");
     while (!exists(place, "all/b/cells.jsonl")) nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
     kill(child, SIGINT);
     waitpid(child, &how, 0);
