@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally run: experiments, from their YAML to result directories. */
 #include "cli/cli.h"
+#include "cli/jobs.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
-#include "cli/turns.h"
 #include "core/base/words.h"
 #include "experiment/claims.h"
 #include "experiment/journal.h"
@@ -22,8 +22,8 @@ enum { MOST_EXPERIMENTS = 256, MOST_COMMAND = 1 << 16 };
 
 typedef struct Options {
     const char *paths[MOST_EXPERIMENTS];
-    uint32_t count, turn; /* paths; the one to run here */
-    const char *out;      /* as given: of one experiment the directory, of several the folder; or NULL */
+    uint32_t count, current; /* paths; the one that is loaded or run */
+    const char *out;         /* as given: of one experiment the directory, of several the folder; or NULL */
     RtRunOptions how;
     char directory[RT_MAX_PATH]; /* of this run: results/NAME, or of several FOLDER/NAME */
     bool quick, strict, dry, update;
@@ -207,7 +207,7 @@ static RtStatus measure(Options *o, RtResults *results, RtError *error) {
     RtProgress progress = rt_progress_begin(&how->workload);
     if (o->count > 1)
         snprintf(progress.title, sizeof progress.title, "%s, %" PRIu32 " of %" PRIu32 ": ",
-                 results->experiment->name, o->turn + 1, o->count);
+                 results->experiment->name, o->current + 1, o->count);
     go_on(o, results->experiment, command);
     rt_progress_watch(&progress, how->directory, command);
     how->workload.observer = rt_progress_observer(&progress);
@@ -224,7 +224,7 @@ static RtStatus measure(Options *o, RtResults *results, RtError *error) {
 /* Loads a YAML, or the experiment of a manifest.json. */
 static RtStatus load(Options *o, RtExperiment *experiment, RtError *error) {
     static const char manifest[] = "manifest.json";
-    const char *path = o->paths[o->turn];
+    const char *path = o->paths[o->current];
     char folder[RT_MAX_PATH];
     size_t length = strlen(path), last = sizeof manifest - 1;
     o->found = length >= last && strcmp(path + length - last, manifest) == 0;
@@ -291,21 +291,21 @@ static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
 /* ---- several ---- */
 
 /* Parses all experiments before the first is measured. One that this build or machine cannot measure fails
- * when it has its turn. */
+ * when it is run. */
 static RtStatus parse_all(Options *o, RtExperiment *experiment, char (*names)[RT_MAX_LABEL], RtError *error) {
     static char files[MOST_EXPERIMENTS][RT_MAX_LABEL + 8];
-    for (o->turn = 0; o->turn < o->count; o->turn++) {
-        char *name = names[o->turn], *file = files[o->turn];
+    for (o->current = 0; o->current < o->count; o->current++) {
+        char *name = names[o->current], *file = files[o->current];
         RtStatus status = load(o, experiment, error);
         if (status != RT_OK && status != RT_NOT_AVAILABLE) return status;
         memcpy(name, experiment->name, RT_MAX_LABEL);
         rt_file_name(name, file, sizeof files[0]);
-        for (uint32_t i = 0; i < o->turn; i++) {
+        for (uint32_t i = 0; i < o->current; i++) {
             if (strcasecmp(files[i], file) != 0) continue;
             return rt_fail(error, RT_BAD_INPUT,
                            "%s ('%s') and %s ('%s') would share the directory %s/%s: give one of them "
                            "another `name`",
-                           o->paths[i], names[i], o->paths[o->turn], name, folder_of(o), file);
+                           o->paths[i], names[i], o->paths[o->current], name, folder_of(o), file);
         }
     }
     return RT_OK;
@@ -313,24 +313,24 @@ static RtStatus parse_all(Options *o, RtExperiment *experiment, char (*names)[RT
 
 static RtStatus run_all(Options *o, RtExperiment *experiment, RtError *error) {
     static char names[MOST_EXPERIMENTS][RT_MAX_LABEL], command[MOST_COMMAND];
-    static RtTurn turns[MOST_EXPERIMENTS];
+    static RtJob jobs[MOST_EXPERIMENTS];
     size_t indexed;
     RT_TRY(parse_all(o, experiment, names, error));
     go_on(o, experiment, command);
-    for (o->turn = 0; o->turn < o->count; o->turn++) {
-        RtTurn *turn = &turns[o->turn];
-        turn->name = names[o->turn];
-        printf("%s== %s, %" PRIu32 " of %" PRIu32 "\n", o->turn ? "\n" : "", turn->name, o->turn + 1,
+    for (o->current = 0; o->current < o->count; o->current++) {
+        RtJob *job = &jobs[o->current];
+        job->name = names[o->current];
+        printf("%s== %s, %" PRIu32 " of %" PRIu32 "\n", o->current ? "\n" : "", job->name, o->current + 1,
                o->count);
-        RT_TRY(rt_turn_take(turn, command, error));
-        if (turn->here) return run(o, experiment, error);
+        RT_TRY(rt_job_run(job, command, error));
+        if (job->here) return run(o, experiment, error);
     }
-    rt_turns_print(turns, o->count, stdout);
+    rt_jobs_print(jobs, o->count, stdout);
     if (!o->dry && rt_index_write(folder_of(o), &indexed, error) == RT_OK)
         printf("\nIndex: %s/index.html and index.md\n", folder_of(o));
     else if (!o->dry)
         fprintf(stderr, "raytally: there is no index: %s\n", error->message);
-    return rt_turns_check(turns, o->count, error);
+    return rt_jobs_check(jobs, o->count, error);
 }
 
 const RtSyntax rt_run_syntax = {
