@@ -87,8 +87,8 @@ static const RtOption options[] = {
     {"resume", 0, NULL, RT_TO_SET(how.start, RT_START_RESUME),
      "Continue an interrupted run: its measurements stay. For a finished run, write tables and plots again"},
     {"update", 0, NULL, RT_TO_FLAG(update),
-     "As --resume, but start over what --resume rejects, as the results of another build or of another "
-     "version of the YAML: they are lost"},
+     "As --renew, but start over where another build, or another version of the YAML, was measured: those "
+     "results are lost"},
     {"renew", 0, NULL, RT_TO_TAKE(take_renew),
      "As --resume, after a plugin has changed: measure its cells again, keep all others"},
     {"force", 0, NULL, RT_TO_SET(how.start, RT_START_ANEW),
@@ -253,18 +253,21 @@ static RtStatus choose_directory(Options *o, const RtExperiment *experiment, RtE
     return RT_OK;
 }
 
-/* --update: resumes what this build began, and replaces what cannot be resumed, saying why. */
+/* --update: resumes what this build began, and replaces what cannot be resumed, saying why; but not a run
+ * with other options, which is more likely a mistake. */
 static RtStatus choose_start(Options *o, const RtExperiment *experiment, RtError *error) {
     RtResults results;
     RtRunOptions *how = &o->how;
     char path[RT_MAX_PATH];
     RT_TRY(rt_path_join(how->directory, RT_RUN_JOURNAL, path, error));
     how->start = RT_START_RESUME;
+    how->renew = true;
     if (!rt_file_exists(path)) return RT_OK;
     RtStatus status = rt_results_init(&results, experiment, error);
     if (status == RT_OK) status = rt_journal_load(path, &results, &how->workload.only, how->renew, error);
     rt_results_clear(&results);
-    if (status != RT_BAD_INPUT) return status;
+    if (status != RT_BAD_INPUT || !rt_journal_has_options(path, experiment, &how->workload.only))
+        return status;
     fprintf(stderr, "raytally: %s; --update starts %s over\n", error->message, how->directory);
     how->start = RT_START_ANEW;
     return RT_OK;

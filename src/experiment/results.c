@@ -183,8 +183,9 @@ RtCost rt_results_cost(const RtResults *results, uint32_t workload, uint32_t can
         const RtCost cost = cost_of_cell(results, workload, candidate, experiment->kinds[k]);
         const double weight = (double)results->workloads[workload].rays[experiment->kinds[k]];
         if (weight == 0) continue;
-        sum.whole &= rt_results_has_kind(results, workload, experiment->kinds[k]);
-        if (!rt_results_has_kind(results, workload, experiment->kinds[k])) continue;
+        const bool measured = rt_results_has_kind(results, workload, experiment->kinds[k]);
+        sum.whole &= measured;
+        if (!measured) continue;
         weights += weight;
         sum.rays += cost.rays;
         sum.object_tests += weight * cost.object_tests;

@@ -102,6 +102,7 @@ RT_TEST_IN_PLACE(update_starts_over_only_where_something_else_was_measured) {
     char *a = read_in(place, "results/a/cells.jsonl");
     change(place, "b.yaml", "limit: 50", "limit: 40");
     assert_ends(place, "run a.yaml b.yaml --threads 1 --resume", 2, "another version of it ('b')");
+    assert_ends(place, "run a.yaml --threads 1 --update --quick", 2, "this is a run without --quick");
     assert_ends(place, "run a.yaml b.yaml c.yaml --threads 1 --update", 0, "--update starts results/b over");
     assert_same_file(place, "results/a/cells.jsonl", a);
     assert_in_file(place, "results/b/experiment.yaml", "limit: 40");
