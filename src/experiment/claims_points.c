@@ -67,17 +67,23 @@ static bool paired(const RtResults *results, const RtClaim *claim, uint32_t t, u
     return its->baseline == over;
 }
 
-/* The accelerator that `c` is compared with on workload `t`; false if it is not measured there. If it sweeps
- * the claim's parameter, too, it is the one with the same value. */
+bool rt_claim_is_other(const RtExperiment *experiment, const RtClaim *claim, uint32_t t, uint32_t c,
+                       uint32_t other) {
+    const bool swept = claim->key.key && !claim->key.scene;
+    if (!rt_candidate_is_called(&experiment->candidates[other], claim->other)) return false;
+    const char *own = swept ? rt_swept_of(experiment, &claim->key, t, c) : NULL;
+    const char *its = own ? rt_swept_of(experiment, &claim->key, t, other) : NULL;
+    return !its || rt_swept_equal(its, own);
+}
+
+/* The accelerator that `c` is compared with on workload `t`; false if it is not measured there. */
 static bool find_other(const RtExperiment *experiment, const RtClaim *claim, uint32_t t, uint32_t c,
                        uint32_t *other) {
     *other = RT_FASTEST_BASELINE;
     if (strcmp(claim->other, experiment->best) == 0) return true;
-    const char *own = claim->key.key && !claim->key.scene ? rt_swept_of(experiment, &claim->key, t, c) : NULL;
     for (*other = 0; *other < experiment->candidate_count; ++*other) {
-        if (!rt_candidate_is_called(&experiment->candidates[*other], claim->other)) continue;
-        const char *its = own ? rt_swept_of(experiment, &claim->key, t, *other) : NULL;
-        if (rt_candidate_runs(experiment, *other, t) && (!its || rt_swept_equal(its, own))) return true;
+        if (rt_candidate_runs(experiment, *other, t) && rt_claim_is_other(experiment, claim, t, c, *other))
+            return true;
     }
     return false;
 }

@@ -318,8 +318,7 @@ static void explain_directories(const RtComparison *comparison, char *out, size_
                        RT_LEAST_ACCELS);
     if (!isnan(comparison->all_accels))
         rt_append_text(out, size,
-                       "All accelerators together, by their median: %.3f, as a different clock would give, "
-                       "too. ",
+                       "The median accelerator: %.3f; another clock speed would have the same effect. ",
                        comparison->all_accels);
     rt_append_text(out, size,
                    "Intervals of cells cover the rounds of these processes only, not how processes differ: "
