@@ -53,7 +53,7 @@ static uint32_t enter(RtWorkloadState *workload, Rendering *renderings, RtRunner
                                              .share = true},
                                  .seconds = times,
                                  .shares = times + experiment->rounds};
-        times += 2 * experiment->rounds;
+        times += (size_t)2 * experiment->rounds;
         runners[count++] = (RtRunner){.run = render_once,
                                       .context = rendering,
                                       .work = 1,
