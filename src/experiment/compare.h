@@ -140,6 +140,9 @@ RtChange rt_comparison_verdict(const RtComparison *comparison, const RtEstimate 
 RtComparedCell *rt_comparison_cell(RtComparison *comparison, const char *scene, const char *accel,
                                    const char *kind);
 
+/* Whether both counts are known and differ. */
+bool rt_compared_counts_differ(const RtComparedCell *cell);
+
 /* Cells and accelerators with that verdict; cells whose counts differ. */
 uint32_t rt_comparison_count(const RtComparison *comparison, RtChange change);
 uint32_t rt_comparison_changed(const RtComparison *comparison);

@@ -225,6 +225,11 @@ RT_TEST_IN_PLACE(a_run_that_renders_has_the_time_of_a_frame_and_the_part_of_quer
         assert_true(real_at(&csv, row, "query_share_low") <= real_at(&csv, row, "query_share"));
     }
     rt_csv_clear(&csv);
+    char command[320];
+    snprintf(command, sizeof command, "sed -i /rendered/d '%s'", path_in(place, "out/cells.jsonl").text);
+    assert_int_equal(system(command), 0);
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume --dry-run"), 0);
+    assert_in_file(place, "output", " of them finished; null runs and frames take about ");
 }
 
 RT_TEST_IN_PLACE(counting_again_renders_no_frame) {
