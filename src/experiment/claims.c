@@ -10,9 +10,11 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const measures[] = {"time",       "object_tests", "extent_tests", "steps",
-                                       "csg_tests",  "build_time",   "bytes",        "predicted_cost",
-                                       "break_even", "render_time",  "query_share"};
+static const char *const measures[] = {
+#define NAME(CONSTANT, name, unit) name,
+    RT_CLAIM_MEASURES(NAME)
+#undef NAME
+};
 static const char objects[] = "objects";
 enum { MEASURES = sizeof measures / sizeof measures[0], MOST_WORDS = 32 };
 

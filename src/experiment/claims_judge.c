@@ -118,12 +118,11 @@ static void judge_figure(const RtClaim *claim, Figure *figure) {
 
 #define PUT(result, ...) rt_append_text((result)->figures, RT_MAX_CLAIM_FIGURES, __VA_ARGS__)
 
-static const char *unit_of(RtClaimMeasure measure) {
-    static const char *const units[] = {
-        [RT_CLAIM_TIME] = " ns",         [RT_CLAIM_BUILD_TIME] = " s",  [RT_CLAIM_BYTES] = " bytes",
-        [RT_CLAIM_BREAK_EVEN] = " rays", [RT_CLAIM_RENDER_TIME] = " s", [RT_CLAIM_QUERY_SHARE] = ""};
-    return units[measure] ? units[measure] : "";
-}
+static const char *const units[] = {
+#define UNIT(CONSTANT, name, unit) unit,
+    RT_CLAIM_MEASURES(UNIT)
+#undef UNIT
+};
 
 static void put_number(RtClaimResult *result, const RtClaim *claim, double value) {
     char text[16];
@@ -230,7 +229,7 @@ static void put_figure(RtClaimResult *result, const RtExperiment *experiment, co
     else
         put_estimate(result, claim, &figure->value);
     if (claim->readout && claim->form == RT_CLAIM_VALUE && isfinite(figure->value.median))
-        PUT(result, "%s", unit_of(claim->measure));
+        PUT(result, "%s", units[claim->measure]);
     if (figure->error > 0) {
         PUT(result, ", standard error ");
         put_number(result, claim, figure->error);
