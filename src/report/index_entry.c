@@ -178,6 +178,9 @@ static void put_html(FILE *out, const RtResults *results, const json_t *manifest
 static void put_markdown(FILE *out, const RtResults *results) {
     const RtExperiment *experiment = results->experiment;
     put_line(out, "Question.", experiment->question);
+    put_line(out, "Finding.", experiment->finding);
+    fputs("<details><summary>Prediction and claims</summary>\n\n", out);
+    put_line(out, "Prediction.", experiment->prediction);
     for (uint32_t i = 0; i < experiment->claim_count; i++) {
         RtClaimResult result;
         rt_claim_judge(results, i, &result);
@@ -186,8 +189,7 @@ static void put_markdown(FILE *out, const RtResults *results) {
         rt_index_put_markdown(out, result.figures);
         fputs("\n", out);
     }
-    if (experiment->claim_count) fputs("\n", out);
-    put_line(out, "Finding.", experiment->finding);
+    fputs("\n</details>\n\n", out);
 }
 
 static RtStatus put_experiment(RtIndexEntry *entry, const char *directory, const char *place,
