@@ -365,8 +365,9 @@ RT_TEST_IN_PLACE(the_index_groups_experiments_by_section_with_plot_first_sentenc
                                     "| A \\| B 1988 | 19 | “It \\<is>.” | in part | [quoting](quoting) |",
                                     "### [quoting](quoting)\n\n![Plot of quoting](quoting/plots/1.svg)",
                                     "**Question.** Which is \\<cheaper>?",
-                                    "- **holds**: `object_tests of bvh < 30`: ",
                                     "**Finding.** So et al. 1990 said. The `rest` is folded.",
+                                    "<details><summary>Prediction and claims</summary>\n\n**Prediction.** ",
+                                    "- **holds**: `object_tests of bvh < 30`: ",
                                     "### [judged](judged)\n\n10 pairs"};
     text = read_in(place, "all/index.md");
     assert_in_order(text, markdown, sizeof markdown / sizeof markdown[0]);
