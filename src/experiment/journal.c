@@ -144,6 +144,17 @@ static RtStatus take_lines(const char *path, RtResults *results, const json_t *l
     return status;
 }
 
+bool rt_journal_has_options(const char *path, const RtExperiment *experiment, const RtOnly *only) {
+    json_t *lines;
+    if (rt_json_lines_load(path, &lines, NULL) != RT_OK) return false;
+    const json_t *header = json_array_get(lines, 0);
+    const bool same = json_is_true(json_object_get(header, "quick")) == experiment->quick &&
+                      json_integer_value(json_object_get(header, "shard")) == only->shard &&
+                      json_integer_value(json_object_get(header, "shards")) == only->shards;
+    json_decref(lines);
+    return same;
+}
+
 RtStatus rt_journal_load(const char *path, RtResults *results, const RtOnly *only, bool renew,
                          RtError *error) {
     json_t *lines;

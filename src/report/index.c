@@ -98,15 +98,8 @@ static void put_origins(const Index *index, size_t origin, const char *before, F
     if (last != before) fputc('.', out);
 }
 
-static void put_entries(const Index *index, uint32_t from, uint32_t to, RtIndexPart part, const char *before,
-                        const char *after, FILE *out) {
-    for (uint32_t i = from; i < to; i++) {
-        const RtIndexEntry *entry = &index->entries[i];
-        if (!entry->parts[part].size) continue;
-        fprintf(out, before, entry->name);
-        fputs(entry->parts[part].chars, out);
-        fputs(after, out);
-    }
+static void put_entries(const Index *index, uint32_t from, uint32_t to, RtIndexPart part, FILE *out) {
+    for (uint32_t i = from; i < to; i++) fputs(index->entries[i].parts[part].chars, out);
 }
 
 static bool has_sentences(const Index *index, uint32_t from, uint32_t to) {
@@ -129,16 +122,15 @@ static void put_section(const Index *index, uint32_t from, uint32_t to, FILE *ht
             "<thead><tr><th>paper</th><th>page</th><th>sentence</th><th>verdict</th><th>experiment</th></tr>"
             "</thead><tbody>\n",
             html);
-        put_entries(index, from, to, RT_INDEX_ROWS, "", "", html);
+        put_entries(index, from, to, RT_INDEX_ROWS, html);
         fputs("</tbody></table></div>\n", html);
         fputs("| paper | page | sentence | verdict | experiment |\n| --- | --- | --- | --- | --- |\n",
               markdown);
-        put_entries(index, from, to, RT_INDEX_LINES, "", "", markdown);
+        put_entries(index, from, to, RT_INDEX_LINES, markdown);
         fputs("\n", markdown);
     }
-    put_entries(index, from, to, RT_INDEX_HTML, "<section class=\"card entry\" id=\"%s\">", "</section>\n",
-                html);
-    put_entries(index, from, to, RT_INDEX_MARKDOWN, "", "", markdown);
+    put_entries(index, from, to, RT_INDEX_HTML, html);
+    put_entries(index, from, to, RT_INDEX_MARKDOWN, markdown);
 }
 
 static void put_pages(const Index *index, FILE *html, FILE *markdown) {

@@ -2,11 +2,8 @@
 /* raytally run and reproduce with several experiments. With one: tests/experiment. */
 #include "experiment_testing.h"
 
-#include <fcntl.h>
 #include <signal.h>
-#include <sys/wait.h>
 #include <time.h>
-#include <unistd.h>
 
 static const char pattern[] = "name: small\n"
                               "question: Which is cheaper?\n"
@@ -74,7 +71,10 @@ RT_TEST_IN_PLACE(all_are_parsed_before_the_first_is_measured) {
     assert_ends(place, "run a.yaml b.yaml c.yaml", 2, "c.yaml:7:1: unknown key 'limmit'");
     change(place, "b.yaml", "name: b", "name: a");
     assert_ends(place, "run a.yaml b.yaml", 2,
-                "a.yaml and b.yaml are both named 'a', and would share the directory results/a");
+                "a.yaml ('a') and b.yaml ('a') would share the directory results/a");
+    change(place, "b.yaml", "name: a", "name: x:Y");
+    change(place, "a.yaml", "name: a", "name: X-y");
+    assert_ends(place, "run a.yaml b.yaml", 2, "would share the directory results/x-Y");
     assert_ends(place, "run a.yaml c.yaml --force", 2, "--force takes one experiment");
     assert_ends(place, "run a.yaml c.yaml --shard 1/2", 2, "--only and --shard take one experiment");
     assert_false(exists(place, "results"));
@@ -102,7 +102,8 @@ RT_TEST_IN_PLACE(update_starts_over_only_where_something_else_was_measured) {
     char *a = read_in(place, "results/a/cells.jsonl");
     change(place, "b.yaml", "limit: 50", "limit: 40");
     assert_ends(place, "run a.yaml b.yaml --threads 1 --resume", 2, "another version of it ('b')");
-    assert_int_equal(raytally(place, "run a.yaml b.yaml c.yaml --threads 1 --update"), 0);
+    assert_ends(place, "run a.yaml --threads 1 --update --quick", 2, "this is a run without --quick");
+    assert_ends(place, "run a.yaml b.yaml c.yaml --threads 1 --update", 0, "--update starts results/b over");
     assert_same_file(place, "results/a/cells.jsonl", a);
     assert_in_file(place, "results/b/experiment.yaml", "limit: 40");
     assert_int_equal(raytally(place, "reproduce results/b"), 0);
@@ -116,25 +117,11 @@ RT_TEST_IN_PLACE(a_dry_run_of_several_sums_up_each_and_touches_nothing) {
     assert_false(exists(place, "results"));
 }
 
-/* Starts `raytally run a.yaml b.yaml c.yaml` in the folder. */
-static pid_t start(const Place *place) {
-    pid_t child = fork();
-    assert_true(child >= 0);
-    if (child > 0) return child;
-    int message = -1, nothing = open("/dev/null", O_WRONLY);
-    if (chdir(place->folder) == 0) message = open("message", O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    dup2(nothing, STDOUT_FILENO);
-    dup2(message, STDERR_FILENO);
-    execl(RT_PROGRAM, "raytally", "run", "a.yaml", "b.yaml", "c.yaml", "--threads", "1", "--out", "all",
-          (char *)NULL);
-    _exit(127);
-}
-
 RT_TEST_IN_PLACE(an_interruption_stops_all_and_says_the_one_command_that_continues) {
     const Place *place = *state;
     int how;
     change(place, "b.yaml", "rounds: 2\nmilliseconds: 0", "rounds: 50\nmilliseconds: 100");
-    pid_t child = start(place);
+    pid_t child = start_raytally(place, "run a.yaml b.yaml c.yaml --threads 1 --out all");
     while (!exists(place, "all/b/cells.jsonl")) nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
     kill(child, SIGINT);
     waitpid(child, &how, 0);
