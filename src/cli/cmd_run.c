@@ -16,6 +16,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 enum { MOST_EXPERIMENTS = 256, MOST_COMMAND = 1 << 16 };
 
@@ -250,19 +251,15 @@ static RtStatus choose_directory(Options *o, const RtExperiment *experiment, RtE
     return RT_OK;
 }
 
-/* --update: resumes what this build began, and replaces what it cannot resume. */
+/* --update: starts over where another build or version was measured; refuses, as --resume does, to replace
+ * anything else. */
 static RtStatus choose_start(Options *o, const RtExperiment *experiment, RtError *error) {
-    RtResults results;
     RtRunOptions *how = &o->how;
     char path[RT_MAX_PATH];
     RT_TRY(rt_path_join(how->directory, RT_RUN_JOURNAL, path, error));
-    how->start = RT_START_RESUME;
-    if (!rt_file_exists(path)) return RT_OK;
-    RtStatus status = rt_results_init(&results, experiment, error);
-    if (status == RT_OK && rt_journal_load(path, &results, &how->workload.only, how->renew, NULL) != RT_OK)
-        how->start = RT_START_ANEW;
-    rt_results_clear(&results);
-    return status;
+    const bool outdated = rt_journal_is_outdated(path, experiment, &how->workload.only);
+    how->start = outdated ? RT_START_ANEW : RT_START_RESUME;
+    return RT_OK;
 }
 
 static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
@@ -289,15 +286,19 @@ static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
  * when it has its turn. */
 static RtStatus parse_all(Options *o, RtExperiment *experiment, char (*names)[RT_MAX_LABEL], RtError *error) {
     for (o->turn = 0; o->turn < o->count; o->turn++) {
+        char own[RT_MAX_LABEL + 8], other[RT_MAX_LABEL + 8];
         RtStatus status = load(o, experiment, error);
         if (status != RT_OK && status != RT_NOT_AVAILABLE) return status;
         memcpy(names[o->turn], experiment->name, RT_MAX_LABEL);
+        rt_file_name(names[o->turn], own, sizeof own);
         for (uint32_t i = 0; i < o->turn; i++) {
-            if (strcmp(names[i], names[o->turn]) != 0) continue;
-            return rt_fail(error, RT_BAD_INPUT,
-                           "%s and %s are both named '%s', and would share the directory %s/%s: give one of "
-                           "them another `name`",
-                           o->paths[i], o->paths[o->turn], names[i], folder_of(o), names[i]);
+            rt_file_name(names[i], other, sizeof other);
+            if (strcasecmp(own, other) != 0) continue; /* some file systems ignore case */
+            return rt_fail(
+                error, RT_BAD_INPUT,
+                "%s ('%s') and %s ('%s') would share the directory %s/%s: give one of them another "
+                "`name`",
+                o->paths[i], names[i], o->paths[o->turn], names[o->turn], folder_of(o), own);
         }
     }
     return RT_OK;

@@ -27,6 +27,10 @@ RtStatus rt_journal_add(RtOutputs *outputs, const char *path, const RtExperiment
 RtStatus rt_journal_load(const char *path, RtResults *results, const RtOnly *only, bool renew,
                          RtError *error);
 
+/* Whether the journal at `path` is of the same experiment, variant and shard, but of another build or another
+ * version of the YAML. */
+bool rt_journal_is_outdated(const char *path, const RtExperiment *experiment, const RtOnly *only);
+
 /* Rewrites the journal at `path`, which was loaded with `renew`, without the lines of changed plugins. At any
  * time the old or the new journal is whole. */
 RtStatus rt_journal_renew(const char *path, const RtExperiment *experiment, const RtOnly *only,

@@ -74,7 +74,11 @@ RT_TEST_IN_PLACE(all_are_parsed_before_the_first_is_measured) {
     assert_ends(place, "run a.yaml b.yaml c.yaml", 2, "c.yaml:7:1: unknown key 'limmit'");
     change(place, "b.yaml", "name: b", "name: a");
     assert_ends(place, "run a.yaml b.yaml", 2,
-                "a.yaml and b.yaml are both named 'a', and would share the directory results/a");
+                "a.yaml ('a') and b.yaml ('a') would share the directory results/a");
+    change(place, "a.yaml", "name: a", "name: one:1");
+    change(place, "b.yaml", "name: a", "name: One-1");
+    assert_ends(place, "run a.yaml b.yaml", 2,
+                "and b.yaml ('One-1') would share the directory results/One-1");
     assert_ends(place, "run a.yaml c.yaml --force", 2, "--force takes one experiment");
     assert_ends(place, "run a.yaml c.yaml --shard 1/2", 2, "--only and --shard take one experiment");
     assert_false(exists(place, "results"));
@@ -107,6 +111,20 @@ RT_TEST_IN_PLACE(update_starts_over_only_where_something_else_was_measured) {
     assert_in_file(place, "results/b/experiment.yaml", "limit: 40");
     assert_int_equal(raytally(place, "reproduce results/b"), 0);
     rt_free(a);
+}
+
+RT_TEST_IN_PLACE(update_keeps_a_run_of_another_experiment_or_variant_and_what_it_cannot_read) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run a.yaml --threads 1 --out kept"), 0);
+    char *kept = read_in(place, "kept/cells.jsonl");
+    assert_ends(place, "run b.yaml --out kept --update", 2, "this is a run of another experiment");
+    assert_ends(place, "run a.yaml --out kept --update --quick", 2, "this is a run without --quick");
+    assert_ends(place, "run a.yaml --out kept --update --shard 1/1", 2, "another --shard");
+    assert_same_file(place, "kept/cells.jsonl", kept);
+    change(place, "kept/cells.jsonl", "\"interior\":", "\"exterior\":");
+    assert_ends(place, "run a.yaml --out kept --update", 2, "kept/cells.jsonl:");
+    assert_true(exists(place, "kept/report.html"));
+    rt_free(kept);
 }
 
 RT_TEST_IN_PLACE(a_dry_run_of_several_sums_up_each_and_touches_nothing) {
