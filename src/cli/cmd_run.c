@@ -307,6 +307,7 @@ static RtStatus parse_all(Options *o, RtExperiment *experiment, char (*names)[RT
 static RtStatus run_all(Options *o, RtExperiment *experiment, RtError *error) {
     static char names[MOST_EXPERIMENTS][RT_MAX_LABEL], command[MOST_COMMAND];
     static RtTurn turns[MOST_EXPERIMENTS];
+    RtError why;
     size_t indexed;
     RT_TRY(parse_all(o, experiment, names, error));
     go_on(o, experiment, command);
@@ -320,9 +321,10 @@ static RtStatus run_all(Options *o, RtExperiment *experiment, RtError *error) {
         if (turn->here) return run(o, experiment, error);
     }
     rt_turns_print(turns, o->count, stdout);
-    if (!o->dry && rt_index_write(folder_of(o), &indexed, NULL) == RT_OK)
-        printf("\nIndex: %s/index.html and index.md\n", folder_of(o));
-    return rt_turns_check(turns, o->count, error);
+    const RtStatus status = o->dry ? RT_OK : rt_index_write(folder_of(o), &indexed, &why);
+    if (!o->dry && status == RT_OK) printf("\nIndex: %s/index.html and index.md\n", folder_of(o));
+    RT_TRY(rt_turns_check(turns, o->count, error));
+    return status == RT_OK ? RT_OK : rt_fail(error, status, "the index: %s", why.message);
 }
 
 const RtSyntax rt_run_syntax = {

@@ -54,6 +54,15 @@ RT_TEST_IN_PLACE(each_of_several_experiments_gets_its_directory_and_all_a_summar
     assert_equal_files(place, "results/a/counts.csv", "other/a/counts.csv");
 }
 
+RT_TEST_IN_PLACE(an_index_that_cannot_be_written_is_an_error) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run a.yaml b.yaml --threads 1"), 0);
+    remove(path_in(place, "results/index.md").text);
+    assert_ok(rt_directory_create(path_in(place, "results/index.md").text, error));
+    assert_ends(place, "run a.yaml b.yaml --threads 1 --resume", 2,
+                "the index: results/index.md is a folder");
+}
+
 RT_TEST_IN_PLACE(one_that_fails_does_not_stop_the_others_and_the_worst_exit_code_counts) {
     const Place *place = *state;
     change(place, "a.yaml", "random:n=60", "nowhere.yaml");
