@@ -13,11 +13,25 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static volatile sig_atomic_t taken; /* the last signal; 0: none */
-static volatile pid_t now;          /* the fork that has its turn */
+static volatile sig_atomic_t taken;  /* the last signal; 0: none */
+static volatile pid_t now;           /* the fork that has its turn; 0: between turns, and after the last */
+static const char *volatile command; /* that continues */
+
+/* Also in a handler of signals. */
+static void say(const char *text) {
+    if (write(STDERR_FILENO, text, strlen(text)) < 0) return;
+}
+
+_Noreturn static void leave(int number, bool told) {
+    if (!told) say("raytally: interrupted. To continue:\n  ");
+    if (!told) say(command);
+    if (!told) say("\n");
+    _exit(128 + number);
+}
 
 static void pass_on(int number) {
     taken = number;
+    if (now == 0) leave(number, false);
     kill(now, number);
 }
 
@@ -36,29 +50,30 @@ static RtStatus start(RtTurn *turn, RtError *error) {
     sigaddset(&signals, SIGTERM);
     fflush(NULL); /* or the fork would write it again */
     sigprocmask(SIG_BLOCK, &signals, &before);
-    now = fork();
+    const pid_t child = fork();
     const int why = errno;
-    turn->here = now == 0;
-    if (now > 0) handle(pass_on);
+    turn->here = child == 0;
+    now = child > 0 ? child : 0;
+    handle(turn->here ? SIG_DFL : pass_on);
     sigprocmask(SIG_SETMASK, &before, NULL);
-    return now >= 0 ? RT_OK : rt_fail(error, RT_IO, "a process for %s: %s", turn->name, strerror(why));
+    return child >= 0 ? RT_OK : rt_fail(error, RT_IO, "a process for %s: %s", turn->name, strerror(why));
 }
 
 RtStatus rt_turn_take(RtTurn *turn, const char *go_on, RtError *error) {
     const double began = rt_wall_seconds();
     int how = 0;
+    command = go_on;
     RT_TRY(start(turn, error));
     if (turn->here) return RT_OK;
     while (waitpid(now, &how, 0) < 0 && errno == EINTR) {
     }
-    handle(SIG_DFL);
+    now = 0;
     turn->seconds = rt_wall_seconds() - began;
     turn->signal = WIFSIGNALED(how) ? WTERMSIG(how) : 0;
     turn->code = turn->signal ? RT_EXIT_BAD_INPUT : WEXITSTATUS(how);
     if (!taken) return RT_OK;
-    if (turn->code != 128 + taken) fprintf(stderr, "raytally: interrupted. To continue:\n  %s\n", go_on);
     fflush(NULL);
-    _exit(128 + taken);
+    leave(taken, turn->code == 128 + taken);
 }
 
 void rt_turns_print(const RtTurn *turns, uint32_t count, FILE *out) {

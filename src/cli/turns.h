@@ -21,7 +21,7 @@ typedef struct RtTurn {
 
 /* Forks, and waits for the end of the fork. Call it before anything starts threads. SIGINT and SIGTERM are
  * passed on to the fork, and end this process after it, with 128 + their number; if the fork was too young to
- * say how to continue, this process prints `go_on`. */
+ * say how to continue, or there is none, as between two turns, this process prints `go_on`, borrowed. */
 RtStatus rt_turn_take(RtTurn *turn, const char *go_on, RtError *error);
 
 /* Prints how each of them ended, and how long it took. */

@@ -2,6 +2,8 @@
 /* raytally run and reproduce with several experiments. With one: tests/experiment. */
 #include "experiment_testing.h"
 
+#include "cli/turns.h"
+
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -173,6 +175,24 @@ RT_TEST_IN_PLACE(an_interruption_stops_all_and_says_the_one_command_that_continu
                         "To continue:\n  raytally run a.yaml b.yaml c.yaml --out all --threads 1 --resume\n");
     rt_free(message);
     assert_true(exists(place, "all/a/report.html") && !exists(place, "all/c"));
+}
+
+RT_TEST_IN_PLACE(an_interruption_between_two_turns_says_how_to_continue_too) {
+    const Place *place = *state;
+    int how;
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        RtTurn turn = {.name = "a"};
+        RtError failure;
+        dup2(open(path_in(place, "message").text, O_WRONLY | O_CREAT | O_TRUNC, 0666), STDERR_FILENO);
+        if (rt_turn_take(&turn, "raytally run all --resume", &failure) != RT_OK) _exit(1);
+        if (!turn.here) raise(SIGTERM);
+        _exit(0);
+    }
+    waitpid(child, &how, 0);
+    assert_true(WIFEXITED(how) && WEXITSTATUS(how) == 128 + SIGTERM);
+    assert_in_file(place, "message", "To continue:\n  raytally run all --resume\n");
 }
 
 RT_TEST_IN_PLACE(reproduce_takes_several_directories_and_goes_on_after_one_that_differs) {
