@@ -19,10 +19,14 @@ static RtEstimate exactly(double value) {
     return (RtEstimate){value, value, value, value};
 }
 
-/* The rays from which on it is ahead: of no number if only of few. */
+/* The rays from which on it is ahead: of no number if only of few. If it may be ahead of all, it is from 0
+ * rays on. */
 static RtEstimate break_even(const RtResults *results, uint32_t t, uint32_t c) {
     const RtBreakEven even = rt_results_break_even(results, t, c);
-    return even.up_to ? exactly((double)INFINITY) : even.rays;
+    RtEstimate from = even.up_to ? exactly((double)INFINITY) : even.rays;
+    if (even.up_to && isinf(even.rays.median)) from.median = 0;
+    if (even.up_to && isinf(even.rays.high)) from.low = 0;
+    return from;
 }
 
 static RtEstimate value_at(const RtResults *results, RtClaimMeasure measure, RtRayKind kind, uint32_t t,

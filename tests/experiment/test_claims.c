@@ -149,6 +149,12 @@ RT_TEST(structures_and_csg_trees_have_measures_of_their_own) {
     expect(RT_CLAIM_FALSE, "break_even of grid:density=4 on random:n=10 < 1e9",
            "never"); /* ahead only before */
     expect(RT_CLAIM_FIGURE, "break_even of bvh on random:n=10", "no such value");
+    for (uint32_t k = 0; k < 2; k++) /* perhaps ahead of all: it is built faster */
+        rt_cell_at(&results, 0, 3, (RtRayKind)k)->ratio = (RtEstimate){1.2, 0.9, 1.5, 0.9};
+    expect(RT_CLAIM_UNDECIDED, "break_even of grid:density=4 on random:n=10 < 1e9", "0 [0, never]");
+    for (uint32_t k = 0; k < 2; k++)
+        rt_cell_at(&results, 0, 3, (RtRayKind)k)->ratio = (RtEstimate){0.95, 0.9, 1.5, 0.9};
+    expect(RT_CLAIM_UNDECIDED, "break_even of grid:density=4 on random:n=10 < 1e9", "never [0, never]");
 }
 
 /* The fastest of the grids is another one for each kind of rays. */
