@@ -98,14 +98,14 @@ static void put_origins(const Index *index, size_t origin, const char *before, F
     if (last != before) fputc('.', out);
 }
 
-static void put_entries(const Index *index, uint32_t from, uint32_t to, RtIndexPart part, const char *before,
-                        const char *after, FILE *out) {
+static void put_entries(const Index *index, uint32_t from, uint32_t to, RtIndexPart part, FILE *out) {
     for (uint32_t i = from; i < to; i++) {
         const RtIndexEntry *entry = &index->entries[i];
         if (!entry->parts[part].size) continue;
-        fprintf(out, before, entry->name);
+        if (part == RT_INDEX_HTML)
+            rt_html_wrap(out, "<section class=\"card entry\" id=\"", entry->name, "\">");
         fputs(entry->parts[part].chars, out);
-        fputs(after, out);
+        if (part == RT_INDEX_HTML) fputs("</section>\n", out);
     }
 }
 
@@ -120,7 +120,7 @@ static void put_section(const Index *index, uint32_t from, uint32_t to, FILE *ht
     title_of(index->entries[from].section, title);
     rt_html_wrap(html, "<h2>", title, "</h2>\n");
     fputs("## ", markdown);
-    rt_index_put_markdown(markdown, title);
+    rt_index_put_markdown(markdown, title, false);
     fputs("\n\n", markdown);
     if (has_sentences(index, from, to)) {
         fputs(
@@ -129,16 +129,15 @@ static void put_section(const Index *index, uint32_t from, uint32_t to, FILE *ht
             "<thead><tr><th>paper</th><th>page</th><th>sentence</th><th>verdict</th><th>experiment</th></tr>"
             "</thead><tbody>\n",
             html);
-        put_entries(index, from, to, RT_INDEX_ROWS, "", "", html);
+        put_entries(index, from, to, RT_INDEX_ROWS, html);
         fputs("</tbody></table></div>\n", html);
         fputs("| paper | page | sentence | verdict | experiment |\n| --- | --- | --- | --- | --- |\n",
               markdown);
-        put_entries(index, from, to, RT_INDEX_LINES, "", "", markdown);
+        put_entries(index, from, to, RT_INDEX_LINES, markdown);
         fputs("\n", markdown);
     }
-    put_entries(index, from, to, RT_INDEX_HTML, "<section class=\"card entry\" id=\"%s\">", "</section>\n",
-                html);
-    put_entries(index, from, to, RT_INDEX_MARKDOWN, "", "", markdown);
+    put_entries(index, from, to, RT_INDEX_HTML, html);
+    put_entries(index, from, to, RT_INDEX_MARKDOWN, markdown);
 }
 
 static void put_pages(const Index *index, FILE *html, FILE *markdown) {
@@ -153,7 +152,9 @@ static void put_pages(const Index *index, FILE *html, FILE *markdown) {
     }
     rt_page_begin(html, "Experiments", true);
     rt_html_wrap(html, "<p class=\"meta\">", origins, "</p>\n");
-    fprintf(markdown, "# Experiments\n\n%s\n\n", origins ? origins : "");
+    fputs("# Experiments\n\n", markdown);
+    rt_index_put_markdown(markdown, origins ? origins : "", false);
+    fputs("\n\n", markdown);
     free(origins);
     for (uint32_t from = 0, to; from < index->count; from = to) {
         to = from + 1;
