@@ -50,6 +50,9 @@ static RtField break_even_of(const Row *r) {
     if (certain && (rays->median == 0 || isinf(rays->median)))
         return rt_field_text((rays->median == 0) == even.up_to ? "never faster" : "always faster");
     if (!rough && rays->low == 0 && isinf(rays->high)) return rt_field_text("undecided");
+    const bool doubtful = even.up_to ? rays->median == 0 : isinf(rays->median);
+    if (doubtful) rt_format_rough(even.up_to ? rays->high : rays->low, text);
+    if (doubtful) return rt_field_print("perhaps %s %.100s", even.up_to ? "up to" : "from", text);
     if (rough)
         rt_format_rough(rays->median, text);
     else

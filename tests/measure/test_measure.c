@@ -5,6 +5,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/memory.h"
+#include "experiment/result_tables.h"
 #include "experiment/workload.h"
 #include "measure/measure.h"
 #include "scenes/open.h"
@@ -254,6 +255,17 @@ static RtEstimate measured(double exact, double error) {
     return (RtEstimate){exact * (1 + error / 3), exact * (1 - error), exact * (1 + error), exact};
 }
 
+static char shown[1024]; /* the table of structures of the last break_even */
+
+static void show_structures(const RtResults *results) {
+    RtResultRow row = {.results = results};
+    const RtTable table = rt_result_table(RT_STRUCTURES, &row);
+    FILE *out = fmemopen(shown, sizeof shown, "w");
+    assert_non_null(out);
+    rt_table_csv(&table, out);
+    fclose(out);
+}
+
 /* Two structures with given times, to within `error`: seconds to build, nanoseconds per ray. */
 static RtBreakEven break_even(double theirs, double their_ray, double ours, double our_ray, double error_of) {
     RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
@@ -268,10 +280,13 @@ static RtBreakEven break_even(double theirs, double their_ray, double ours, doub
     *rt_build_at(&results, 0, 0) = (RtBuildResult){.builds = 7, .seconds = measured(theirs, error_of)};
     *rt_build_at(&results, 0, 1) = (RtBuildResult){.builds = 6, .seconds = measured(ours, error_of)};
     *rt_cell_at(&results, 0, 1, RT_RAY_SHADOW) = (RtCell){.timed = true,
+                                                          .counted = true,
+                                                          .baseline = 0,
                                                           .wall = measured(1e-9 * our_ray, error_of),
                                                           .ratio = measured(their_ray / our_ray, error_of)};
     const RtBreakEven even = rt_results_break_even(&results, 0, 1);
     assert_true(isnan(rt_results_break_even(&results, 0, 0).rays.median));
+    show_structures(&results);
     rt_results_clear(&results);
     rt_free(e);
     assert_int_equal(even.builds, 6);
@@ -324,6 +339,16 @@ RT_TEST(the_interval_of_a_break_even_contains_those_of_all_times_within_theirs) 
 RT_TEST(a_break_even_of_builds_and_rays_that_may_be_equal_is_any_number) {
     const RtBreakEven even = break_even(1, 300, 1.01, 299, 0.1);
     assert_true(even.rays.low == 0 && isinf(even.rays.high));
+    assert_non_null(strstr(shown, "undecided"));
+}
+
+RT_TEST(a_break_even_that_only_the_intervals_allow_is_shown_as_perhaps) {
+    break_even(1, 300, 3, 310, 0.05);
+    assert_non_null(strstr(shown, "perhaps from "));
+    break_even(3, 310, 1, 300, 0.05);
+    assert_null(strstr(shown, "perhaps"));
+    break_even(3, 200, 1, 300, 0.001);
+    assert_non_null(strstr(shown, "faster up to "));
 }
 
 /* The first counting pass: its rays, and which of the eight parts of a frame of 64 rows they cover. */
