@@ -25,8 +25,8 @@
  *
  * Times have intervals, counts are exact. A claim about times holds if it holds for all values within the
  * intervals, does not hold if it holds for none, and is undecided otherwise. A ratio of times to the baseline
- * on one kind of rays is the paired one; other ratios use the quotients of the intervals' ends. A build time
- * has no interval. A break-even is the number of rays from which on an accelerator is ahead of the baseline,
+ * on one kind of rays is the paired one; other ratios use the quotients of the intervals' ends. The time
+ * of a single build has no interval. A break-even is the number of rays from which on an accelerator is ahead of the baseline,
  * its build included; it is infinite if there is none.
  *
  * An exponent is the least-squares slope of the logarithms, a correlation Pearson's of the logarithms.
