@@ -320,6 +320,8 @@ RT_TEST_IN_PLACE(strict_makes_something_slower_an_exit_code) {
     assert_in_file(place, "output", "\"time\": \"slower\"");
     assert_int_equal(raytally(place, "compare a b"), 0);
     assert_int_equal(raytally(place, "compare b a --strict"), 0);
+    assert_ends(place, "compare a b a/ b", 2, "a/ is given twice as BEFORE");
+    assert_int_equal(raytally(place, "compare a b b a"), 0);
 }
 
 /* Writes the program `other` beside the experiment: runs `before`, then raytally with `arguments`. */
