@@ -215,6 +215,8 @@ RT_TEST(a_claim_that_is_none_is_refused_with_what_would_be_right) {
         {"ratio of time of bvh to all > 5", "'all' is not the label of one of the accelerators"},
         {"time of bvh at n > 5", "write 'at largest PARAM'"},
         {"time of bvh for random rays > 5", "this experiment has no 'random' rays"},
+        {"time of bvh for primary rays for shadow rays > 5", "it names two kinds of rays"},
+        {"time of bvh on balls on random > 5", "it names two scenes"},
         {"bytes of bvh for primary rays > 5", "bytes does not depend on the kind of rays"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
