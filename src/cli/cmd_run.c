@@ -182,9 +182,10 @@ static void go_on(const Options *o, const RtExperiment *e, char out[MOST_COMMAND
     const size_t size = MOST_COMMAND;
     snprintf(out, size, "raytally run");
     for (uint32_t i = 0; i < o->count; i++)
-        rt_append_text(out, size, " %s", o->count == 1 ? e->path : o->paths[i]);
-    rt_append_text(out, size, " --out %s%s", o->count == 1 ? o->how.directory : folder_of(o),
-                   (o->count == 1 ? e->quick : o->quick) ? " --quick" : "");
+        rt_append_argument(out, size, o->count == 1 ? e->path : o->paths[i]);
+    rt_append_text(out, size, " --out");
+    rt_append_argument(out, size, o->count == 1 ? o->how.directory : folder_of(o));
+    if (o->count == 1 ? e->quick : o->quick) rt_append_text(out, size, " --quick");
     if (o->strict) rt_append_text(out, size, " --strict");
     if (o->threads >= 0) rt_append_text(out, size, " --threads %d", o->threads);
     if (o->memory) rt_append_text(out, size, " --memory %" PRIu64, o->memory);
