@@ -22,7 +22,8 @@ void rt_index_put_markdown(FILE *out, const char *text, bool cell) {
     bool code = false;
     for (const char *c = text; *c; c++) {
         if (*c == '`') code = !code && strchr(c + 1, '`');
-        if (*c == '|' ? cell : !code && strchr("\\*[]<&", *c)) fputc('\\', out);
+        const bool entity = c[0] == '&' && (c[1] == '#' || isalpha((unsigned char)c[1]));
+        if (*c == '|' ? cell : !code && (entity || strchr("\\*[]<", *c))) fputc('\\', out);
         fputc(*c, out);
     }
 }

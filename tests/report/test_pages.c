@@ -383,7 +383,7 @@ RT_TEST_IN_PLACE(what_names_and_texts_hold_stays_text_in_the_index) {
     assert_in_file(place, "all/index.html", "id=\"&lt;i&gt;&quot;x&quot;\">");
     assert_in_file(place, "all/index.html", "<code>a|b*</code> &amp; a|b* and ` and ** to the end.</p>");
     assert_in_file(place, "all/index.md", "“`a\\|b*` \\&lt;” | in part | [a\\|b\\*\\[c\\](d)](");
-    assert_in_file(place, "all/index.md", "`a|b*` \\& a|b\\* and ` and \\*\\* to the end.");
+    assert_in_file(place, "all/index.md", "`a|b*` & a|b\\* and ` and \\*\\* to the end.");
 }
 
 RT_TEST_IN_PLACE(the_index_says_what_another_build_or_machine_measured) {
