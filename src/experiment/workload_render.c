@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Rendering the frame of a workload with each candidate, in interleaved rounds: how long it takes, and which
- * part of that is spent in the candidate's queries. Candidates with a stride are too slow for whole frames.
- * Plugins are left out: their rays travel to another process. */
+ * part of that is spent in the candidate's queries. Candidates with a stride, or of which a limit left out a
+ * cell, are too slow for whole frames. Plugins are left out: their rays travel to another process. */
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "experiment/workload_state.h"
@@ -27,6 +27,9 @@ static RtStatus render_once(void *context, RtError *error) {
 
 bool rt_workload_renders(const RtWorkloadState *workload, uint32_t c) {
     const RtExperiment *experiment = workload->experiment;
+    for (int k = 0; k < RT_RAY_KIND_COUNT && c < experiment->candidate_count; k++) {
+        if (*rt_cell_at(workload->results, workload->index, c, (RtRayKind)k)->left_out) return false;
+    }
     return experiment->render && !workload->options->timer && c < experiment->candidate_count &&
            rt_workload_runs(workload, c) && experiment->candidates[c].ray_stride == 1 &&
            !rt_spec_is_remote(&experiment->candidates[c].parsed);
