@@ -19,6 +19,7 @@ typedef enum RtStart {
  * result. experiment/result_csv.h defines which experiments have which files, and writes them. */
 #define RT_RESULT_FILES(X)                                                                                   \
     X(RUN_JOURNAL, "cells.jsonl")                                                                            \
+    X(PACKED_JOURNAL, "cells.jsonl.gz")                                                                      \
     X(VERIFY_JOURNAL, "rows.jsonl")                                                                          \
     X(MANIFEST, "manifest.json")                                                                             \
     X(COUNTS, "counts.csv")                                                                                  \

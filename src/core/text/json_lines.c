@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <string.h>
 #include <unistd.h>
+#include <zlib.h>
 
 enum { MOST_BYTES = 1 << 28 };
 
@@ -70,10 +71,41 @@ RtStatus rt_json_lines_write(RtJsonLines *lines, json_t *line, RtError *error) {
     return rt_fail(error, RT_IO, "%s: writing failed: %s", lines->path, strerror(errno));
 }
 
+/* ---- reading ---- */
+
+static RtStatus unpack(gzFile file, const char *path, char **text, size_t *size, RtError *error) {
+    enum { CHUNK = 1 << 16 };
+    uint32_t capacity = 0;
+    for (int got = CHUNK; got == CHUNK; *size += (size_t)got) {
+        if (*size > MOST_BYTES) return rt_fail(error, RT_BAD_INPUT, "%s: it is too large", path);
+        RT_TRY(rt_reserve(text, &capacity, *size + CHUNK, 1, error));
+        got = gzread(file, *text + *size, CHUNK);
+        if (got < 0) return rt_fail(error, RT_BAD_INPUT, "%s: it is damaged", path);
+    }
+    return RT_OK;
+}
+
+/* The file, or if it is missing the one that gzip has made of it. */
+static RtStatus read_file(const char *path, char **text, size_t *size, RtError *error) {
+    char packed[RT_MAX_PATH];
+    snprintf(packed, sizeof packed, "%s.gz", path);
+    if (rt_file_exists(path) || !rt_file_exists(packed))
+        return rt_file_read(path, MOST_BYTES, text, size, error);
+    gzFile file = gzopen(packed, "rb");
+    *text = NULL;
+    *size = 0;
+    if (!file) return rt_fail(error, RT_BAD_INPUT, "%s: cannot be opened: %s", packed, strerror(errno));
+    RtStatus status = unpack(file, packed, text, size, error);
+    const bool whole = gzclose_r(file) == Z_OK;
+    if (status == RT_OK && !whole) status = rt_fail(error, RT_BAD_INPUT, "%s: it is damaged", packed);
+    if (status != RT_OK) rt_free(*text);
+    return status;
+}
+
 RtStatus rt_json_lines_load(const char *path, json_t **lines, RtError *error) {
     char *text;
     size_t size;
-    RT_TRY(rt_file_read(path, MOST_BYTES, &text, &size, error));
+    RT_TRY(read_file(path, &text, &size, error));
     *lines = json_array();
     for (const char *line = text, *end; (end = memchr(line, '\n', (size_t)(text + size - line)));
          line = end + 1) {
