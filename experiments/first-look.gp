@@ -127,7 +127,7 @@ do for [s = 1:n_scenes] {
   if (s == 1) {
     eval names
     set label 1 "times as fast as ".without.", by kind of rays" at screen 6.0 / 960, screen 1 - 24.0 / height left font ",15" textcolor rgb ink
-    set key at screen 0.995, screen 1 - 6.0 / height right top horizontal maxrows 1 samplen 0.5 width -2 font ",11" textcolor rgb ink
+    set key at screen 0.995, screen 1 - 6.0 / height right top horizontal maxrows 1 samplen 0.5 width 0 font ",11" textcolor rgb ink
   } else { unset key }
   set label 2 word(scenes, s) at graph 0, graph 1 left offset 0, 0.7 font ",14" textcolor rgb ink
   plot for [p = 1:n_parts] "frame.csv" using (figure_of(s, part[p])):(row_of(strcol("accel"))) with points \

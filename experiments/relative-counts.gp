@@ -35,7 +35,7 @@ set format x "%g"
 set xlabel "over that of ".first noenhanced textcolor rgb ink
 
 eval canvas("2-counts", 960, height)
-set multiplot layout 1, 3 margins screen 0.17, 0.985, 48.0 / height, 1 - head / height spacing screen 0.025, 0
+set multiplot layout 1, 3 margins screen 0.17, 0.985, 48.0 / height, 1 - head / height spacing screen 0.045, 0
 do for [c = 1:3] {
   set title word(titles, c) font ",14" textcolor rgb ink
   set ytics () noenhanced
@@ -43,8 +43,8 @@ do for [c = 1:3] {
   if (c == 1) {
     set key at screen 0.985, screen 1 - 6.0 / height right top vertical maxrows key_rows samplen 1 textcolor rgb ink noenhanced
   } else { unset key }
-  set arrow 1 from 1, graph 0 to 1, graph 1 nohead linewidth 1.5 dashtype 2 linecolor rgb soft
-  plot for [s = 1:n_scenes] table \
+  plot sample [t = 0.4 : n_shown + 0.6] "+" using (1):(t) with lines linewidth 1.5 dashtype 2 linecolor rgb soft notitle, \
+       for [s = 1:n_scenes] table \
          using (strcol("scene") eq word(scenes, s) && row(strcol("accel")) > 0 ? column(word(counters, c)) : NaN): \
                (row(strcol("accel")) + shift(s)) \
          with points linewidth 1.4 pointtype mark(s) pointsize 0.7 linecolor rgb hue(s) title word(scenes, s)

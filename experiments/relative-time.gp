@@ -20,7 +20,7 @@ do for [scene in scenes] { if (strlen(scene) > longest) { longest = strlen(scene
 key_rows = (n_scenes - 1) / int(940 / (42 + 7.2 * longest)) + 1
 panel_height = 40 + n_shown * (18 + 4 * n_scenes)
 head = 44.0 + 20 * key_rows
-height = head + 14 + (panel_height + 52) * panel_rows
+height = head + 14 + (panel_height + 62) * panel_rows
 set logscale x 2
 set yrange [0.4 : n_shown + 0.6]
 set grid ytics
@@ -29,7 +29,7 @@ set format x "%g"
 
 eval canvas("1-time", 960, height)
 set multiplot layout panel_rows, panel_columns margins screen 0.17, 0.985, 44.0 / height, 1 - head / height \
-    spacing screen 0.03, 60.0 / height
+    spacing screen 0.05, 70.0 / height
 do for [k = 1:n_kinds] {
   set title word(kinds, k) font ",14" textcolor rgb ink
   set ytics () noenhanced
@@ -38,8 +38,8 @@ do for [k = 1:n_kinds] {
     set key at screen 0.985, screen 1 - 6.0 / height right top vertical maxrows key_rows samplen 1 textcolor rgb ink noenhanced
   } else { unset key }
   if (k > n_kinds - panel_columns) { set xlabel "time over that of ".baseline noenhanced textcolor rgb ink } else { unset xlabel }
-  set arrow 1 from 1, graph 0 to 1, graph 1 nohead linewidth 1.5 dashtype 2 linecolor rgb soft
-  plot for [s = 1:n_scenes] "times.csv" \
+  plot sample [t = 0.4 : n_shown + 0.6] "+" using (1):(t) with lines linewidth 1.5 dashtype 2 linecolor rgb soft notitle, \
+       for [s = 1:n_scenes] "times.csv" \
          using (on(s, k) ? 1 / column("ratio") : NaN):(row(strcol("accel")) + shift(s)): \
                (1 / column("ratio_high")):(1 / column("ratio_low")) \
          with xerrorbars linewidth 1.4 pointtype mark(s) pointsize 0.6 linecolor rgb hue(s) title word(scenes, s)

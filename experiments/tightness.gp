@@ -9,8 +9,6 @@ labelled(s, name) = chosen(s) && strcol("accel") eq name
 # The number of plane sets in a label such as slabs-7.
 k_of(label) = label[1:6] eq "slabs-" ? real(label[7:*]) : NaN
 others = "box sphere obb"
-number_of(label) = sum [a = 1:words(accels)] (word(accels, a) eq label ? a : 0)
-look(i) = color(number_of(word("box sphere obb slabs-7", i)))
 
 # For the box, the sphere and the oriented box, which have no k: object tests per object hit, and the time.
 array passed[3 * n_scenes]
@@ -30,22 +28,22 @@ set grid ytics
 set xtics 3, 2, 13
 set xrange [2.5 : 13.5]
 do for [s = 1:n_scenes] {
-  set yrange [1 : *]
-  set title word(scenes, s).": tests per object met" font ",13" textcolor rgb ink
+  set yrange [0.9 : *]
+  set title word(scenes, s).": tests per object hit" font ",13" textcolor rgb ink
   unset xlabel
   if (s == 1) {
     set key at screen 0.985, screen 0.985 right top vertical maxrows 1 samplen 2 textcolor rgb ink
   } else { unset key }
   plot "counts.csv" using (chosen(s) ? k_of(strcol("accel")) : NaN):(column("object_tests") / column("object_hits")) \
-         with linespoints linewidth 1.8 pointtype 7 pointsize 0.7 linecolor rgb look(4) title "k slabs", \
-       for [i = 1:3] passed[3 * (s - 1) + i] with lines linewidth 1.5 dashtype 1 + i linecolor rgb look(i) title word(others, i)
+         with linespoints linewidth 1.8 pointtype 7 pointsize 0.7 linecolor rgb hue(4) title "k slabs", \
+       for [i = 1:3] passed[3 * (s - 1) + i] with lines linewidth 1.5 dashtype 1 + i linecolor rgb hue(i) title word(others, i)
   unset key
   set yrange [0 : *]
   set title word(scenes, s).": time, boxes being 1" font ",13" textcolor rgb ink
   set xlabel "plane sets k" textcolor rgb ink
   plot "times.csv" using (chosen(s) ? k_of(strcol("accel")) : NaN):(1 / column("ratio")):(1 / column("ratio_high")):(1 / column("ratio_low")) \
-         with yerrorlines linewidth 1.8 pointtype 7 pointsize 0.7 linecolor rgb look(4) notitle, \
-       for [i = 1:3] taken[3 * (s - 1) + i] with lines linewidth 1.5 dashtype 1 + i linecolor rgb look(i) notitle
+         with yerrorlines linewidth 1.8 pointtype 7 pointsize 0.7 linecolor rgb hue(4) notitle, \
+       for [i = 1:3] taken[3 * (s - 1) + i] with lines linewidth 1.5 dashtype 1 + i linecolor rgb hue(i) notitle
 }
 unset multiplot
 unset output

@@ -81,6 +81,8 @@ says "'my-accel' has changed: .*old/mine.so.* when this run began, .*new/mine.so
 cmp -s before.jsonl results/mine/cells.jsonl || complain 'a run that is refused changed the journal'
 ends 0 run mine.yaml --plugin new/mine.so --renew --dry-run
 says '16 cells, 8 of them finished'
+ends 0 run mine.yaml --plugin new/mine.so --update --dry-run
+says '16 cells, 8 of them finished'
 cmp -s before.jsonl results/mine/cells.jsonl || complain '--dry-run changed the journal'
 ends 0 run mine.yaml --plugin new/mine.so --renew
 python3 - <<'END_OF_PYTHON' || failures=$((failures + 1))

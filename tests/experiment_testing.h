@@ -12,6 +12,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 /* Set-up and tear-down of a test in its own folder, which is its state. */
 typedef struct Place {
@@ -119,13 +121,23 @@ static inline void assert_equal_files(const Place *place, const char *a, const c
     rt_free(text);
 }
 
-/* Runs `raytally ARGUMENTS` in the folder, with what it says in the files output and message; its exit
- * code. */
-static inline int raytally(const Place *place, const char *arguments) {
+/* Starts `raytally ARGUMENTS` in the folder, with what it says in the files output and message. */
+static inline pid_t start_raytally(const Place *place, const char *arguments) {
     char command[512];
-    snprintf(command, sizeof command, "cd '%s' && '%s' %s >output 2>message", place->folder, RT_PROGRAM,
+    snprintf(command, sizeof command, "cd '%s' && exec '%s' %s >output 2>message", place->folder, RT_PROGRAM,
              arguments);
-    return WEXITSTATUS(system(command));
+    const pid_t child = fork();
+    assert_true(child >= 0);
+    if (child > 0) return child;
+    execl("/bin/sh", "sh", "-c", command, (char *)NULL);
+    _exit(127);
+}
+
+/* Runs it to its end; its exit code, or 128 and the signal that ended it. */
+static inline int raytally(const Place *place, const char *arguments) {
+    int how = 0;
+    waitpid(start_raytally(place, arguments), &how, 0);
+    return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
 }
 
 /* raytally must have ended with this exit code and have said this on standard error. */

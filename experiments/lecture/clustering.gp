@@ -22,9 +22,10 @@ do for [s = 1:words(scenes)] {
     set key at screen 0.985, screen 0.985 right top vertical maxrows 2 samplen 1.5 textcolor rgb ink
   } else { unset ylabel; set format y ""; unset key }
   plot for [a = 1:words(accels)] NaN with points pointtype 7 linecolor rgb hue(a) title method(a), \
-       for [k = 1:words(kinds)] NaN with points pointtype mark(k + 4) linecolor rgb soft title word(kinds, k), \
+       for [i = 1:words(accels) % 2] keyentry title " ", \
+       for [k = 1:words(kinds)] NaN with points pointtype mark(k) linecolor rgb soft title word(kinds, k), \
        for [a = 1:words(accels)] for [k = 1:words(kinds)] "times.csv" using (row(s, k, a) ? column("build_seconds") * 1000 : NaN): \
-         (column("ns")):(column("ns_low")):(column("ns_high")) with yerrorbars pointtype mark(k + 4) pointsize 0.9 linewidth 1.5 linecolor rgb hue(a) notitle
+         (column("ns")):(column("ns_low")):(column("ns_high")) with yerrorbars pointtype mark(k) pointsize 0.8 linewidth 1.5 linecolor rgb hue(a) notitle
 }
 unset multiplot
 unset output
@@ -34,8 +35,8 @@ do for [k = 1:words(kinds)] { if (word(kinds, k) eq "random") { random = k } }
 eval canvas("2-expected", 480, 400)
 unset title
 set format y "%h"
-set xrange [1 : 1000]
-set yrange [*:*]
+set xrange [1 : 400]
+set yrange [15 : 2000]
 set xlabel "expected cost, steps of a random line" textcolor rgb ink
 set ylabel "time, ns per random ray" textcolor rgb ink
 set key inside bottom right reverse Left vertical maxrows 9 samplen 1 textcolor rgb ink

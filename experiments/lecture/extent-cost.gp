@@ -2,7 +2,7 @@
 # extent-cost: time of each kind of extent over that of boxes, by the size of objects; and measured times over those of the formula.
 #: 1-crossing: Time per ray of each kind of extent over that of boxes, over the mean radius of objects, with intervals.
 #:   Below 1 the tighter extent pays. One column for each kind of rays.
-#: 2-formula: Measured time per ray over c + b B + i I, by the measured time. The constants of each kind of extent are fitted to all
+#: 2-formula: Measured time per ray over b B + i I, by the measured time. The constants B and I of each kind of extent are fitted to all
 #:   of its cells, and are listed in plots/2-formula.csv.
 
 shapes = "spheres triangles"
@@ -37,24 +37,24 @@ unset logscale
 set xrange [*:*]
 set yrange [*:*]
 set fit quiet nolog
-array fitted_c[words(accels)]; array fitted_B[words(accels)]; array fitted_I[words(accels)]
-formula(b, i) = c + B * b + I * i
+array fitted_B[words(accels)]; array fitted_I[words(accels)]
+formula(b, i) = B * b + I * i
 set print "plots/2-formula.csv"
-print "extent,c_ns,B_ns,I_ns"
+print "extent,B_ns,I_ns"
 do for [a = 1:words(accels)] {
-  c = 10; B = 2; I = 14
+  B = 2; I = 14
   fit formula(x, y) "times.csv" using (strcol("accel") eq word(accels, a) ? column("extent_tests") / column("rays") : NaN): \
-    (column("object_tests") / column("rays")):(column("ns")):(column("ns")) zerror via c, B, I
-  fitted_c[a] = c; fitted_B[a] = B; fitted_I[a] = I
-  print sprintf("%s,%.1f,%.2f,%.1f", word(accels, a), c, B, I)
+    (column("object_tests") / column("rays")):(column("ns")):(column("ns")) zerror via B, I
+  fitted_B[a] = B; fitted_I[a] = I
+  print sprintf("%s,%.2f,%.1f", word(accels, a), B, I)
 }
 unset print
 
 eval canvas("2-formula", 480, 400)
 unset title
 set logscale x 10
-set xrange [*:*] noextend
-set offsets graph 0.05, graph 0.05, 0, 0
+set xrange [1500 : 15000]
+set xtics (2000, 5000, 10000)
 set yrange [0 : 2]
 set ytics 0.5
 set xlabel "measured time, ns per ray" textcolor rgb ink
@@ -62,6 +62,6 @@ set ylabel "measured / formula" textcolor rgb ink
 set key inside top left vertical maxrows 2 samplen 1 textcolor rgb ink
 plot 1 with lines linewidth 1.5 dashtype 2 linecolor rgb soft notitle, \
      for [a = 1:words(accels)] "times.csv" using (strcol("accel") eq word(accels, a) ? column("ns") : NaN): \
-       (column("ns") / (fitted_c[a] + fitted_B[a] * column("extent_tests") / column("rays") + fitted_I[a] * column("object_tests") / column("rays"))) \
+       (column("ns") / (fitted_B[a] * column("extent_tests") / column("rays") + fitted_I[a] * column("object_tests") / column("rays"))) \
        with points pointtype mark(a) pointsize 0.7 linecolor rgb hue(a) title word(accels, a)
 unset output

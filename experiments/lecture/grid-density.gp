@@ -24,7 +24,7 @@ do for [s = 1:words(scenes)] {
   set title word(scenes, s) font ",13" textcolor rgb ink
   if (s == 1) {
     set ylabel "time, ns per ray" textcolor rgb ink
-    set key at screen 0.985, screen 0.985 right top vertical maxrows 2 samplen 2 textcolor rgb ink
+    set key at screen 0.985, screen 0.985 right top vertical maxrows 3 samplen 2 textcolor rgb ink
   } else { unset ylabel; set format y ""; unset key }
   stats "times.csv" using (row(s, random, "no-mailbox") && column("accel.density") == 1 ? column("ns") : NaN) nooutput
   scale = STATS_mean / model(1)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # growth: build and traversal over the number of objects, with the exponents of fitted powers.
-#: 1-build: Time to build each structure in nanoseconds per object, over the number of objects, with exponents of fitted powers of the time.
+#: 1-build: Time to build each structure in nanoseconds per object, over the number of objects, with exponents of fitted powers of the time
+#:   and with intervals.
 #: 2-rays: Time per ray over the number of objects, with exponents of fitted powers, for primary and random rays, with intervals.
 #:   All exponents are listed in plots/exponents.csv.
 
@@ -35,8 +36,10 @@ eval canvas("1-build", 960, 480)
 set ylabel "time to build, ns per object" textcolor rgb ink
 set key outside right center Left reverse textcolor rgb ink samplen 1.5 spacing 1.2 title "exponent" left
 # brute and extents only copy the list of objects: they are no structures
-plot for [a = 3:words(accels)] "times.csv" using (own(a)):(column("build_seconds") / column("objects") * 1e9) \
-  with linespoints linewidth 1.6 dashtype dash(a) pointtype marker(a) pointsize 0.7 linecolor rgb color(a) title sprintf("%.2f  %s", built[a], word(accels, a))
+side(a) = 1.05 ** (a - 0.5 * (words(accels) + 3)) # intervals stand side by side
+plot for [a = 3:words(accels)] "times.csv" using (own(a) * side(a)):(column("build_seconds") / column("objects") * 1e9): \
+    (column("build_low") / column("objects") * 1e9):(column("build_high") / column("objects") * 1e9) \
+  with yerrorlines linewidth 1.4 dashtype dash(a) pointtype marker(a) pointsize 0.7 linecolor rgb color(a) title sprintf("%.2f  %s", built[a], word(accels, a))
 unset output
 
 eval canvas("2-rays", 960, 440)

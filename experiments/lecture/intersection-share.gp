@@ -29,7 +29,7 @@ set xlabel " "
 set xrange [0.5 : words(others) + 0.5]
 set xtics scale 0 ("" 1)
 do for [i = 1:words(others)] { set xtics add (word(others, i) i) }
-plot for [a = 1:words(accels)] "render.csv" using (row(a) && place(0) > 0 ? place(0) + 0.1 * (a - 2.5) : NaN):(100 * column("query_share")): \
+plot for [a = 1:words(accels)] "render.csv" using (row(a) && place(0) > 0 ? place(0) + 0.1 * (a - 3.5) : NaN):(100 * column("query_share")): \
   (100 * column("query_share_low")):(100 * column("query_share_high")) with yerrorbars linewidth 1.8 pointtype marker(a) linecolor rgb color(a)
 unset multiplot
 unset output

@@ -26,8 +26,8 @@ eval canvas("frame", 960, 420)
 set multiplot layout 1, words(scenes) margins screen 0.085, 0.985, 0.28, 0.82 spacing screen 0.02, 0.1
 set xrange [0.5 : words(stacks) + 0.5]
 set logscale y
-set yrange [0.005 : 4]
-set ytics (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2)
+set yrange [0.005 : 7]
+set ytics (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5)
 set grid ytics
 set xtics rotate by 40 right
 do for [i = 1:words(stacks)] { set xtics add (word(stacks, i) i) }

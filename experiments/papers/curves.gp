@@ -13,34 +13,37 @@ stats "times.csv" using (swept(strcol("accel"))) nooutput
 if (STATS_max / STATS_min > 4) { set logscale x; set xrange [STATS_min / 1.2 : STATS_max * 1.2] }
 else { set xrange [STATS_min - 0.2 : STATS_max + 0.2] }
 set xtics ()
-do for [a = 1:words(accels)] {
-  x = swept(word(accels, a))
-  if (x == x) { set xtics add (sprintf("%g", x) x) }
+do for [label in accels] {
+  x = swept(label)
+  if (x == x) { set xtics add (sprintf("%g", x) x); parameter = label[strstrt(label, ":") + 1:strstrt(label, "=") - 1] }
 }
 tests(i) = column("object_tests") / column("rays")
 stats "times.csv" using (swept(strcol("accel")) > 0 && column("object_tests") > 0 ? tests(0) : NaN) nooutput
 least = STATS_min / 1.3; most = STATS_max * 1.3
 stats "times.csv" using (swept(strcol("accel")) > 0 ? 1 / column("ratio") : NaN) nooutput
 fastest = STATS_min > 0.6 ? 0.45 : STATS_min / 1.3; slowest = STATS_max < 1.7 ? 2.2 : STATS_max * 1.3
+longest = 0
+do for [scene in scenes] { if (strlen(scene) > longest) { longest = strlen(scene) } }
+right = 1 - (46 + 6.6 * longest) / 960
 
-eval canvas("1-curves", 960, 620)
-set multiplot layout 2, n_kinds margins screen 0.075, 0.86, 0.08, 0.93 spacing screen 0.05, 0.12
+eval canvas("1-curves", 960, 640)
+set multiplot layout 2, n_kinds margins screen 0.095, right, 0.08, 0.94 spacing screen 0.03, 0.1
 set logscale y 2
-set format y "%g"
 set grid xtics ytics
 do for [k = 1:n_kinds] {
-  if (k == 1) { set ylabel "object tests per ray" textcolor rgb ink } else { unset ylabel }
+  if (k == 1) { set ylabel "object tests per ray" textcolor rgb ink; set format y "%g" } else { unset ylabel; set format y "" }
   set title word(kinds, k) font ",13" textcolor rgb ink
   if (k < n_kinds) { unset key }
-  else { set key at screen 0.99, screen 0.93 right top vertical samplen 1.5 font ",11" noenhanced textcolor rgb ink }
+  else { set key at screen 0.99, screen 0.94 right top vertical samplen 1.5 font ",11" noenhanced textcolor rgb ink }
   set yrange [least : most]
   plot for [s = 1:n_scenes] "times.csv" using (row(s, k)):(tests(0)) with linespoints linewidth 1.5 \
          dashtype dashed(s) pointtype mark(s) pointsize 0.6 linecolor rgb hue(s) title word(scenes, s)
 }
 unset key
 unset title
+set xlabel parameter noenhanced textcolor rgb ink
 do for [k = 1:n_kinds] {
-  if (k == 1) { set ylabel "time, the baseline's being 1" textcolor rgb ink } else { unset ylabel }
+  if (k == 1) { set ylabel "time over that of the baseline" textcolor rgb ink; set format y "%g" } else { unset ylabel; set format y "" }
   set yrange [fastest : slowest]
   plot 1 with lines linewidth 0.7 linecolor rgb soft, \
        for [s = 1:n_scenes] "times.csv" using (row(s, k)):(1 / column("ratio")): \

@@ -282,13 +282,14 @@ static RtStatus report(const Options *o, const RtResults *results, const RtCallg
 /* ---- the command ---- */
 
 /* Runs all cells, and writes the hits and counts of their rays. */
-static RtStatus run_cells(Options *o, RtResults *results, RtError *error) {
+static RtStatus run_cells(const Options *o, RtResults *results, RtError *error) {
+    RtWorkloadOptions how = o->workload;
     RtArrayFile hits = {0}, counts = {0};
     RtStatus status = o->hits ? rt_array_file_open(&hits, o->hits, error) : RT_OK;
     if (status == RT_OK && o->counts) status = rt_array_file_open(&counts, o->counts, error);
-    o->workload.hits = o->hits ? &hits : NULL;
-    o->workload.counts = o->counts ? &counts : NULL;
-    if (status == RT_OK) status = rt_workloads_run(results, &o->workload, error);
+    how.hits = o->hits ? &hits : NULL;
+    how.counts = o->counts ? &counts : NULL;
+    if (status == RT_OK) status = rt_workloads_run(results, &how, error);
     if (status == RT_OK) status = rt_array_file_commit(&hits, error);
     if (status == RT_OK) status = rt_array_file_commit(&counts, error);
     rt_array_file_discard(&hits);
@@ -320,11 +321,10 @@ static RtStatus bench(Options *o, RtError *error) {
     RtExperiment *experiment = o->recording.experiment;
     RT_TRY(rt_experiment_add_scenes(experiment, &o->recording.like, o->scene, "", error));
     if (experiment->workload_count > 1 && takes_one(o))
-        return rt_fail(
-            error, RT_BAD_INPUT,
-            "--hits and --counts write the rays of one scene to FILE.npy: '%s' stands for %u; name "
-            "FILE.npz",
-            o->scene, experiment->workload_count);
+        return rt_fail(error, RT_BAD_INPUT,
+                       "--hits and --counts write the rays of one scene to FILE.npy: '%s' stands for %u; or "
+                       "name FILE.npz, which takes several",
+                       o->scene, experiment->workload_count);
     strcpy(experiment->name, "bench");
     RT_TRY(rt_experiment_check(experiment, where, error));
     if (o->worker) return rt_worker_serve(experiment, NULL, error);

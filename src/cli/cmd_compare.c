@@ -18,7 +18,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Where one accelerator of four changes, the median of all moves by less. */
+/* If one accelerator of four changes, the median of all moves by less. */
 static const double MARGIN_OF_DIRECTORIES = 0.02;
 
 enum { MAX_SUBJECTS = 64 };
@@ -125,12 +125,13 @@ static void on_notice(void *context, const char *message) {
     fprintf(stderr, "%sraytally: %s\n", *terminal ? "\r\033[K" : "", message);
 }
 
+/* An option that only one side has. */
 typedef struct OwnOption {
     const char *name; /* the last has none */
-    bool value;       /* that may be the next argument */
+    bool value;       /* it has one, which may be the next argument */
 } OwnOption;
 
-/* Those of argv without some options, a new array. */
+/* The arguments of argv without some options, in a new array, NULL behind the last. RT_NO_MEMORY. */
 static RtStatus arguments_without(const OwnOption *options_left_out, char **argv, char ***arguments,
                                   RtError *error) {
     int count = 0, used = 0;

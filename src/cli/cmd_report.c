@@ -28,7 +28,7 @@ typedef struct Options {
 static RtStatus write_index(const char *folder, RtError *error) {
     size_t count;
     RT_TRY(rt_index_write(folder, &count, error));
-    printf("Index: %s/index.html, of %zu experiment%s\n", folder, count, rt_plural(count));
+    printf("Index: %s/index.html and index.md, of %zu experiment%s\n", folder, count, rt_plural(count));
     return RT_OK;
 }
 
@@ -42,7 +42,7 @@ static void finish(void *options, struct argp_state *state) {
     const Options *o = options;
     if (o->folder && o->directory)
         argp_error(state, "--index FOLDER covers all directories in FOLDER, and takes no DIR");
-    if (!o->folder && !o->directory) argp_error(state, "a result DIR is missing, as in results/first-look");
+    if (!o->folder && !o->directory) argp_error(state, RT_DIRECTORY_MISSING);
 }
 
 static const RtOption options[] = {

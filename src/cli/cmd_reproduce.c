@@ -141,10 +141,7 @@ static RtStatus compare_all(const char *directory, const RtResults *results, con
 
 static RtStatus reproduce(const char *directory, RtResults *results, const void *options, RtError *error) {
     const Options *o = options;
-    char cheapest[RT_MAX_LABEL] = "";
-    if (o->quick && cheapest_scene(results))
-        snprintf(cheapest, sizeof cheapest, "%s", cheapest_scene(results));
-    const char *scene = *cheapest ? cheapest : o->scene;
+    const char *scene = o->quick ? cheapest_scene(results) : o->scene; /* a label of the loaded experiment */
     rt_cli_tell_plugins(directory, results->experiment);
     /* The copy in the directory does not find its scenes; the original does. */
     static RtExperiment original;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally run: experiments, from their YAML to result directories. */
 #include "cli/cli.h"
+#include "cli/jobs.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
-#include "cli/turns.h"
 #include "core/base/words.h"
 #include "experiment/claims.h"
 #include "experiment/journal.h"
@@ -22,8 +22,8 @@ enum { MOST_EXPERIMENTS = 256, MOST_COMMAND = 1 << 16 };
 
 typedef struct Options {
     const char *paths[MOST_EXPERIMENTS];
-    uint32_t count, turn; /* paths; the one to run here */
-    const char *out;      /* as given: of one experiment the directory, of several the folder; or NULL */
+    uint32_t count, current; /* paths; the one that is loaded or run */
+    const char *out;         /* as given: of one experiment the directory, of several the folder; or NULL */
     RtRunOptions how;
     char directory[RT_MAX_PATH]; /* of this run: results/NAME, or of several FOLDER/NAME */
     bool quick, strict, dry, update;
@@ -87,12 +87,13 @@ static const RtOption options[] = {
     {"resume", 0, NULL, RT_TO_SET(how.start, RT_START_RESUME),
      "Continue an interrupted run: its measurements stay. For a finished run, write tables and plots again"},
     {"update", 0, NULL, RT_TO_FLAG(update),
-     "As --resume, but start over where another build, or another version of the YAML, was measured: those "
+     "As --renew, but start over where another build, or another version of the YAML, was measured: those "
      "results are lost"},
     {"renew", 0, NULL, RT_TO_TAKE(take_renew),
      "As --resume, after a plugin has changed: measure its cells again, keep all others"},
     {"force", 0, NULL, RT_TO_SET(how.start, RT_START_ANEW),
-     "Start over: the results in DIR are lost. The last of --resume and --force counts"},
+     "Start over: the results in DIR are lost. The last of --resume and --force counts; --force rather than "
+     "--update"},
     RT_TRUST_OPTION(how.scripts),
     {"threads", 't', "N", RT_TO_INTEGER(threads, 0, 1024), RT_THREADS_HELP},
     RT_MEMORY_OPTION(memory),
@@ -160,13 +161,15 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, bool list, 
                duration);
         return RT_OK;
     }
-    if (forecast.finished == forecast.cells) {
+    const bool cells = forecast.finished < forecast.cells; /* else what is left is of structures */
+    if (!cells && forecast.left == 0) {
         printf("%u cell%s, all of them finished\n", forecast.cells, rt_plural(forecast.cells));
         return RT_OK;
     }
     rt_format_duration(forecast.left, duration);
-    printf("%u cell%s, %u of them finished; the others take %s %s%s\n", forecast.cells,
-           rt_plural(forecast.cells), forecast.finished, forecast.guessed ? "at least" : "about", duration,
+    printf("%u cell%s, %u of them finished; %s take %s %s%s\n", forecast.cells, rt_plural(forecast.cells),
+           forecast.finished, cells ? "the others" : "null runs and frames",
+           forecast.guessed ? "at least" : "about", duration,
            forecast.guessed ? " (estimated from rounds and milliseconds, since nothing is timed yet)" : "");
     return RT_OK;
 }
@@ -205,7 +208,7 @@ static RtStatus measure(Options *o, RtResults *results, RtError *error) {
     RtProgress progress = rt_progress_begin(&how->workload);
     if (o->count > 1)
         snprintf(progress.title, sizeof progress.title, "%s, %" PRIu32 " of %" PRIu32 ": ",
-                 results->experiment->name, o->turn + 1, o->count);
+                 results->experiment->name, o->current + 1, o->count);
     go_on(o, results->experiment, command);
     rt_progress_watch(&progress, how->directory, command);
     how->workload.observer = rt_progress_observer(&progress);
@@ -222,14 +225,13 @@ static RtStatus measure(Options *o, RtResults *results, RtError *error) {
 /* Loads a YAML, or the experiment of a manifest.json. */
 static RtStatus load(Options *o, RtExperiment *experiment, RtError *error) {
     static const char manifest[] = "manifest.json";
-    const char *path = o->paths[o->turn];
+    const char *path = o->paths[o->current];
     char folder[RT_MAX_PATH];
     size_t length = strlen(path), last = sizeof manifest - 1;
-    if (length < last || strcmp(path + length - last, manifest) != 0)
-        return rt_experiment_load(experiment, path, o->quick, error);
+    o->found = length >= last && strcmp(path + length - last, manifest) == 0;
+    if (!o->found) return rt_experiment_load(experiment, path, o->quick, error);
     if (o->quick)
         return rt_fail(error, RT_BAD_INPUT, "--quick: %s says which variant it was; leave --quick out", path);
-    o->found = true;
     rt_path_folder(path, folder);
     RtStatus status = rt_manifest_experiment(folder, experiment, error);
     rt_cli_tell_plugins(folder, experiment); /* even if loading failed for lack of a plugin */
@@ -252,14 +254,23 @@ static RtStatus choose_directory(Options *o, const RtExperiment *experiment, RtE
     return RT_OK;
 }
 
-/* --update: starts over where another build or version was measured; refuses, as --resume does, to replace
- * anything else. */
+/* --update: resumes what this build began, and replaces what cannot be resumed, saying why; but not a run
+ * of another experiment or with other options, which is more likely a mistake, nor what it cannot read. */
 static RtStatus choose_start(Options *o, const RtExperiment *experiment, RtError *error) {
+    RtResults results;
     RtRunOptions *how = &o->how;
     char path[RT_MAX_PATH];
     RT_TRY(rt_path_join(how->directory, RT_RUN_JOURNAL, path, error));
-    const bool outdated = rt_journal_is_outdated(path, experiment, &how->workload.only);
-    how->start = outdated ? RT_START_ANEW : RT_START_RESUME;
+    how->start = RT_START_RESUME;
+    how->renew = true;
+    if (!rt_file_exists(path)) return RT_OK;
+    RtStatus status = rt_results_init(&results, experiment, error);
+    if (status == RT_OK) status = rt_journal_load(path, &results, &how->workload.only, how->renew, error);
+    rt_results_clear(&results);
+    if (status != RT_BAD_INPUT || !rt_journal_is_outdated(path, experiment, &how->workload.only))
+        return status;
+    fprintf(stderr, "raytally: %s; --update starts %s over\n", error->message, how->directory);
+    how->start = RT_START_ANEW;
     return RT_OK;
 }
 
@@ -271,7 +282,7 @@ static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
     if (how->workload.until > 0 && experiment->rounds < RT_FULL_ROUNDS) experiment->rounds = RT_FULL_ROUNDS;
     if (o->memory) experiment->limit_bytes = o->memory;
     RT_TRY(choose_directory(o, experiment, error));
-    if (o->update) RT_TRY(choose_start(o, experiment, error));
+    if (o->update && how->start != RT_START_ANEW) RT_TRY(choose_start(o, experiment, error));
     if (o->threads >= 0) how->workload.threads = how->workload.timing = o->threads;
     if (!o->found && how->scripts == RT_SCRIPTS_SHIPPED) how->scripts = RT_SCRIPTS_OWN;
     RtStatus status = rt_results_init(&results, experiment, error);
@@ -284,22 +295,21 @@ static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
 /* ---- several ---- */
 
 /* Parses all experiments before the first is measured. One that this build or machine cannot measure fails
- * when it has its turn. */
+ * when it is run. */
 static RtStatus parse_all(Options *o, RtExperiment *experiment, char (*names)[RT_MAX_LABEL], RtError *error) {
-    for (o->turn = 0; o->turn < o->count; o->turn++) {
-        char own[RT_MAX_LABEL + 8], other[RT_MAX_LABEL + 8];
+    static char files[MOST_EXPERIMENTS][RT_MAX_LABEL + 8];
+    for (o->current = 0; o->current < o->count; o->current++) {
+        char *name = names[o->current], *file = files[o->current];
         RtStatus status = load(o, experiment, error);
         if (status != RT_OK && status != RT_NOT_AVAILABLE) return status;
-        memcpy(names[o->turn], experiment->name, RT_MAX_LABEL);
-        rt_file_name(names[o->turn], own, sizeof own);
-        for (uint32_t i = 0; i < o->turn; i++) {
-            rt_file_name(names[i], other, sizeof other);
-            if (strcasecmp(own, other) != 0) continue; /* some file systems ignore case */
-            return rt_fail(
-                error, RT_BAD_INPUT,
-                "%s ('%s') and %s ('%s') would share the directory %s/%s: give one of them another "
-                "`name`",
-                o->paths[i], names[i], o->paths[o->turn], names[o->turn], folder_of(o), own);
+        memcpy(name, experiment->name, RT_MAX_LABEL);
+        rt_file_name(name, file, sizeof files[0]);
+        for (uint32_t i = 0; i < o->current; i++) {
+            if (strcasecmp(files[i], file) != 0) continue;
+            return rt_fail(error, RT_BAD_INPUT,
+                           "%s ('%s') and %s ('%s') would share the directory %s/%s: give one of them "
+                           "another `name`",
+                           o->paths[i], names[i], o->paths[o->current], name, folder_of(o), file);
         }
     }
     return RT_OK;
@@ -307,25 +317,24 @@ static RtStatus parse_all(Options *o, RtExperiment *experiment, char (*names)[RT
 
 static RtStatus run_all(Options *o, RtExperiment *experiment, RtError *error) {
     static char names[MOST_EXPERIMENTS][RT_MAX_LABEL], command[MOST_COMMAND];
-    static RtTurn turns[MOST_EXPERIMENTS];
+    static RtJob jobs[MOST_EXPERIMENTS];
     RtError why;
     size_t indexed;
     RT_TRY(parse_all(o, experiment, names, error));
     go_on(o, experiment, command);
-    for (o->turn = 0; o->turn < o->count; o->turn++) {
-        RtTurn *turn = &turns[o->turn];
-        turn->name = names[o->turn];
-        printf("%s== %s, %" PRIu32 " of %" PRIu32 "\n", o->turn ? "\n" : "", turn->name, o->turn + 1,
+    for (o->current = 0; o->current < o->count; o->current++) {
+        RtJob *job = &jobs[o->current];
+        job->name = names[o->current];
+        printf("%s== %s, %" PRIu32 " of %" PRIu32 "\n", o->current ? "\n" : "", job->name, o->current + 1,
                o->count);
-        RT_TRY(rt_turn_take(turn, command, error));
-        o->found = false;
-        if (turn->here) return run(o, experiment, error);
+        RT_TRY(rt_job_run(job, command, error));
+        if (job->here) return run(o, experiment, error);
     }
-    rt_turns_print(turns, o->count, stdout);
+    rt_jobs_print(jobs, o->count, stdout);
     const RtStatus status = o->dry ? RT_OK : rt_index_write(folder_of(o), &indexed, &why);
     if (!o->dry && status == RT_OK) printf("\nIndex: %s/index.html and index.md\n", folder_of(o));
-    RT_TRY(rt_turns_check(turns, o->count, error));
-    return status == RT_OK ? RT_OK : rt_fail(error, status, "the index: %s", why.message);
+    RT_TRY(rt_jobs_check(jobs, o->count, error));
+    return status == RT_OK ? RT_OK : rt_fail(error, status, "there is no index: %s", why.message);
 }
 
 const RtSyntax rt_run_syntax = {
@@ -340,8 +349,9 @@ const RtSyntax rt_run_syntax = {
             "images and report.html. Several are run one after the other, each in a process of its own; one "
             "that fails does not stop the others, the worst exit code counts, and an index lists all results "
             "in the folder. Given the manifest of a directory, run its experiment again; start that "
-            "where the first run was started. A directory that has results, finished or not, needs --resume "
-            "or --force. Only one process at a time may write into a directory. Ctrl-C at any time keeps "
+            "where the first run was started. A directory that has results, finished or not, needs --resume, "
+            "--update or --force. Only one process at a time may write into a directory. Ctrl-C at any time "
+            "keeps "
             "what is measured.\v"
             "Exit code 1 if an accelerator returns a wrong answer, gnuplot fails (without gnuplot there is a "
             "note), a published figure is outside its tolerance, or with --strict a claim does not hold. "

@@ -70,11 +70,13 @@ static void describe(RtProgress *progress, const RtResults *results, const RtEve
                                        [RT_EVENT_NO_BUILD] = "left out",
                                        [RT_EVENT_NO_CELL] = "left out"};
     const RtExperiment *experiment = results->experiment;
-    bool scene = event->what == RT_EVENT_WORKLOAD, build = event->what == RT_EVENT_BUILD;
+    const bool scene = event->what == RT_EVENT_WORKLOAD;
+    const bool cell = !scene && event->what != RT_EVENT_BUILD && event->what != RT_EVENT_RENDER &&
+                      event->what != RT_EVENT_NO_BUILD;
     snprintf(progress->doing, sizeof progress->doing, "%s%s%s%s%s: %s",
              experiment->workloads[event->workload].label, scene ? "" : " ",
-             scene ? "" : rt_candidate_label(experiment, event->candidate), scene || build ? "" : " ",
-             scene || build ? "" : rt_experiment_kind_name(experiment, event->kind),
+             scene ? "" : rt_candidate_label(experiment, event->candidate), cell ? " " : "",
+             cell ? rt_experiment_kind_name(experiment, event->kind) : "",
              rt_event_is_broken(results, event) ? "is broken" : what[event->what]);
 }
 

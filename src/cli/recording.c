@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/recording.h"
 
-#include "experiment/callgrind.h"
-
 #include "cli/cli.h"
+#include "experiment/callgrind.h"
 #include "render/frame.h"
 
 #include <stdio.h>

@@ -3,15 +3,18 @@
 #include "experiment/claims.h"
 
 #include "core/base/words.h"
+#include "experiment/claims_points.h"
 
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-static const char *const measures[] = {"time",       "object_tests", "extent_tests", "steps",
-                                       "csg_tests",  "build_time",   "bytes",        "predicted_cost",
-                                       "break_even", "render_time",  "query_share"};
+static const char *const measures[] = {
+#define NAME(CONSTANT, name, unit) name,
+    RT_CLAIM_MEASURES(NAME)
+#undef NAME
+};
 static const char objects[] = "objects";
 enum { MEASURES = sizeof measures / sizeof measures[0], MOST_WORDS = 32 };
 
@@ -135,15 +138,10 @@ static RtStatus read_accel(Reader *r, char accel[RT_MAX_LABEL], bool may_be_all)
 
 /* The number of accelerators on workload `t` that the other of a claim could be as well as `c`. */
 static uint32_t count_alike(const Reader *r, uint32_t t, uint32_t c) {
-    const RtExperiment *experiment = r->experiment;
-    const RtSweptKey *key = r->claim->key.key && !r->claim->key.scene ? &r->claim->key : NULL;
-    const char *own = key ? rt_swept_of(experiment, key, t, c) : NULL;
     uint32_t count = 0;
-    for (uint32_t i = 0; i < experiment->candidate_count; i++) {
-        const RtCandidate *candidate = &experiment->candidates[i];
-        if (!rt_candidate_is_called(candidate, r->claim->other) || (candidate->excluded >> t & 1)) continue;
-        const char *its = own ? rt_swept_of(experiment, key, t, i) : NULL;
-        count += !its || rt_swept_equal(its, own);
+    for (uint32_t i = 0; i < r->experiment->candidate_count; i++) {
+        const bool excluded = r->experiment->candidates[i].excluded >> t & 1;
+        count += !excluded && rt_claim_is_other(r->experiment, r->claim, t, c, i);
     }
     return count;
 }

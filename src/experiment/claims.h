@@ -25,9 +25,9 @@
  *
  * Times have intervals, counts are exact. A claim about times holds if it holds for all values within the
  * intervals, does not hold if it holds for none, and is undecided otherwise. A ratio of times to the baseline
- * on one kind of rays is the paired one; other ratios use the quotients of the intervals' ends. The time
- * of a single build has no interval. A break-even is the number of rays from which on an accelerator is ahead
- * of the baseline, its build included; it is infinite if there is none.
+ * on one kind of rays is the paired one; other ratios use the quotients of the intervals' ends. The time of a
+ * single build has no interval and is taken as exact. A break-even is the number of rays from which on an
+ * accelerator is ahead of the baseline, its build included; it is infinite if there is none.
  *
  * An exponent is the least-squares slope of the logarithms, a correlation Pearson's of the logarithms.
  * claims_figures.h defines their intervals. They include the scatter of the values, also of counts: a curve
@@ -49,18 +49,24 @@
 
 #include "experiment/results.h"
 
+/* X(CONSTANT, name, unit of a figure); from BUILD_TIME on of structures, so not of a kind of rays. */
+#define RT_CLAIM_MEASURES(X)                                                                                 \
+    X(TIME, "time", " ns")                                                                                   \
+    X(OBJECT_TESTS, "object_tests", "")                                                                      \
+    X(EXTENT_TESTS, "extent_tests", "")                                                                      \
+    X(STEPS, "steps", "")                                                                                    \
+    X(CSG_TESTS, "csg_tests", "")                                                                            \
+    X(BUILD_TIME, "build_time", " s")                                                                        \
+    X(BYTES, "bytes", " bytes")                                                                              \
+    X(PREDICTED_COST, "predicted_cost", "")                                                                  \
+    X(BREAK_EVEN, "break_even", " rays")                                                                     \
+    X(RENDER_TIME, "render_time", " s")                                                                      \
+    X(QUERY_SHARE, "query_share", "")
+
 typedef enum RtClaimMeasure {
-    RT_CLAIM_TIME,
-    RT_CLAIM_OBJECT_TESTS,
-    RT_CLAIM_EXTENT_TESTS,
-    RT_CLAIM_STEPS,
-    RT_CLAIM_CSG_TESTS,
-    RT_CLAIM_BUILD_TIME, /* and those below: of structures, so not of a kind of rays */
-    RT_CLAIM_BYTES,
-    RT_CLAIM_PREDICTED_COST,
-    RT_CLAIM_BREAK_EVEN,
-    RT_CLAIM_RENDER_TIME,
-    RT_CLAIM_QUERY_SHARE
+#define RT_CLAIM_MEASURE(CONSTANT, name, unit) RT_CLAIM_##CONSTANT,
+    RT_CLAIM_MEASURES(RT_CLAIM_MEASURE)
+#undef RT_CLAIM_MEASURE
 } RtClaimMeasure;
 
 typedef enum RtClaimForm {

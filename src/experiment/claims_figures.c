@@ -5,8 +5,6 @@
 
 #include <math.h>
 
-static const RtEstimate UNKNOWN = {NAN, NAN, NAN, NAN};
-
 static bool all_have_logarithms(const RtClaimPoint *points, uint32_t count) {
     for (uint32_t i = 0; i < count; i++) {
         if (!(points[i].x > 0 && points[i].y.low > 0 && isfinite(points[i].y.high))) return false;
@@ -40,19 +38,12 @@ static Moments moments_of(const RtClaimPoint *points, uint32_t count) {
 
 /* ---- exponents ---- */
 
-/* The two-sided 95 % point of Student's distribution; beyond ten degrees of freedom that of ten, which is
- * wider. */
-static double student(uint32_t freedom) {
-    static const double points[] = {0, 12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228};
-    return points[freedom > 10 ? 10 : freedom];
-}
-
 RtEstimate rt_claim_exponent(const RtClaimPoint *points, uint32_t count, double *error) {
     *error = 0;
-    if (!all_have_logarithms(points, count)) return UNKNOWN;
+    if (!all_have_logarithms(points, count)) return rt_estimate_exactly((double)NAN);
     const Moments m = moments_of(points, count);
     RtEstimate slope = {0};
-    if (m.xx == 0) return UNKNOWN;
+    if (m.xx == 0) return rt_estimate_exactly((double)NAN);
     const double from = rt_log(points->y.median); /* equal values have a slope of exactly 0 */
     for (uint32_t i = 0; i < count; i++) {
         const RtEstimate *y = &points[i].y;
@@ -64,18 +55,19 @@ RtEstimate rt_claim_exponent(const RtClaimPoint *points, uint32_t count, double 
     const double residuals = m.yy - slope.median * m.xy;       /* the sum of their squares */
     if (count == 2 || residuals <= 1e-12 * m.yy) return slope; /* less is rounding */
     *error = sqrt(residuals / (count - 2) / m.xx);
-    slope.low = fmin(slope.low, slope.median - student(count - 2) * *error);
-    slope.high = fmax(slope.high, slope.median + student(count - 2) * *error);
+    const double scatter = rt_student_quantile(count - 2, 0.95) * *error;
+    slope.low = fmin(slope.low, slope.median - scatter);
+    slope.high = fmax(slope.high, slope.median + scatter);
     return slope;
 }
 
 /* ---- correlations ---- */
 
 RtEstimate rt_claim_correlation(const RtClaimPoint *points, uint32_t count) {
-    if (!all_have_logarithms(points, count)) return UNKNOWN;
+    if (!all_have_logarithms(points, count)) return rt_estimate_exactly((double)NAN);
     const Moments m = moments_of(points, count);
     const double r = fmax(-1, fmin(1, m.xy / sqrt(m.xx * m.yy)));
-    if (!(m.xx > 0 && m.yy > 0)) return UNKNOWN;
+    if (!(m.xx > 0 && m.yy > 0)) return rt_estimate_exactly((double)NAN);
     if (count < 4) return (RtEstimate){r, -1, 1, -1};
     /* tanh(artanh r -+ d) = (r -+ tanh d) / (1 -+ r tanh d) */
     const double e = rt_power(2.718281828459045, 2 * 1.96 / sqrt(count - 3)), t = (e - 1) / (e + 1);

@@ -119,12 +119,11 @@ static void judge_figure(const RtClaim *claim, Figure *figure) {
 
 #define PUT(result, ...) rt_append_text((result)->figures, RT_MAX_CLAIM_FIGURES, __VA_ARGS__)
 
-static const char *unit_of(RtClaimMeasure measure) {
-    static const char *const units[] = {
-        [RT_CLAIM_TIME] = " ns",         [RT_CLAIM_BUILD_TIME] = " s",  [RT_CLAIM_BYTES] = " bytes",
-        [RT_CLAIM_BREAK_EVEN] = " rays", [RT_CLAIM_RENDER_TIME] = " s", [RT_CLAIM_QUERY_SHARE] = ""};
-    return units[measure] ? units[measure] : "";
-}
+static const char *const units[] = {
+#define UNIT(CONSTANT, name, unit) unit,
+    RT_CLAIM_MEASURES(UNIT)
+#undef UNIT
+};
 
 static void put_number(RtClaimResult *result, const RtClaim *claim, double value) {
     char text[16];
@@ -134,17 +133,16 @@ static void put_number(RtClaimResult *result, const RtClaim *claim, double value
 }
 
 static void put_estimate(RtClaimResult *result, const RtClaim *claim, const RtEstimate *b) {
+    char text[RT_MAX_FIELD];
     if (isnan(b->median)) {
         PUT(result, "unknown");
-        return;
+    } else if (b->low == b->high) {
+        put_number(result, claim, b->median);
+    } else {
+        rt_format_interval(in_units(claim, b->median), in_units(claim, b->low), in_units(claim, b->high),
+                           text);
+        PUT(result, "%s", text);
     }
-    put_number(result, claim, b->median);
-    if (b->low == b->high) return;
-    PUT(result, " [");
-    put_number(result, claim, b->low);
-    PUT(result, ", ");
-    put_number(result, claim, b->high);
-    PUT(result, "]");
 }
 
 /* Both labels; of a line without the parameter. */
@@ -244,7 +242,7 @@ static void put_figure(RtClaimResult *result, const RtExperiment *experiment, co
     else
         put_estimate(result, claim, &figure->value);
     if (claim->readout && claim->form == RT_CLAIM_VALUE && isfinite(figure->value.median))
-        PUT(result, "%s", unit_of(claim->measure));
+        PUT(result, "%s", units[claim->measure]);
     if (figure->error > 0) {
         PUT(result, ", standard error ");
         put_number(result, claim, figure->error);

@@ -7,48 +7,43 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const RtEstimate UNKNOWN = {NAN, NAN, NAN, NAN};
-
 bool rt_claim_point_known(const RtClaimPoint *point) {
     return !isnan(point->x) && !isnan(point->y.median);
 }
 
 /* ---- values ---- */
 
-static RtEstimate exactly(double value) {
-    return (RtEstimate){value, value, value, value};
-}
-
-/* The rays from which on it is ahead: of no number if only of few. If it may be ahead of all, it is from 0
- * rays on. */
+/* The rays from which on it is ahead. If it is ahead up to some number, that is never; up to any, from 0. */
 static RtEstimate break_even(const RtResults *results, uint32_t t, uint32_t c) {
     const RtBreakEven even = rt_results_break_even(results, t, c);
-    RtEstimate from = even.up_to ? exactly((double)INFINITY) : even.rays;
-    if (even.up_to && isinf(even.rays.median)) from.median = 0;
-    if (even.up_to && isinf(even.rays.high)) from.low = 0;
-    return from;
+    const double never = (double)INFINITY;
+    if (!even.up_to) return even.rays;
+    return (RtEstimate){.median = isinf(even.rays.median) ? 0 : never,
+                        .low = isinf(even.rays.high) ? 0 : never,
+                        .high = isinf(even.rays.low) ? 0 : never};
 }
 
 static RtEstimate value_at(const RtResults *results, RtClaimMeasure measure, RtRayKind kind, uint32_t t,
                            uint32_t c) {
+    const RtEstimate unknown = rt_estimate_exactly((double)NAN);
     if (measure >= RT_CLAIM_BUILD_TIME) {
         const RtBuildResult *build = rt_build_at(results, t, c);
-        if (!build->known) return UNKNOWN;
+        if (!build->known) return unknown;
         if (measure == RT_CLAIM_BUILD_TIME) return build->seconds;
-        if (measure >= RT_CLAIM_RENDER_TIME && !build->render.known) return UNKNOWN;
+        if (measure >= RT_CLAIM_RENDER_TIME && !build->render.known) return unknown;
         if (measure == RT_CLAIM_RENDER_TIME) return build->render.seconds;
         if (measure == RT_CLAIM_QUERY_SHARE) return build->render.share;
         if (measure == RT_CLAIM_BREAK_EVEN) return break_even(results, t, c);
-        return exactly(measure == RT_CLAIM_BYTES ? (double)build->structure.bytes
-                                                 : build->structure.predicted_cost);
+        return rt_estimate_exactly(measure == RT_CLAIM_BYTES ? (double)build->structure.bytes
+                                                             : build->structure.predicted_cost);
     }
     const RtCost cost = rt_results_cost(results, t, c, kind);
     const double counts[] = {[RT_CLAIM_OBJECT_TESTS] = cost.object_tests,
                              [RT_CLAIM_EXTENT_TESTS] = cost.extent_tests,
                              [RT_CLAIM_STEPS] = cost.steps,
                              [RT_CLAIM_CSG_TESTS] = cost.csg_tests};
-    if (!cost.whole) return UNKNOWN;
-    return measure == RT_CLAIM_TIME ? cost.seconds : exactly(counts[measure]);
+    if (!cost.whole) return unknown;
+    return measure == RT_CLAIM_TIME ? cost.seconds : rt_estimate_exactly(counts[measure]);
 }
 
 /* The time of `c` over that of `other`, from ratios of throughput paired by round. */
@@ -72,17 +67,23 @@ static bool paired(const RtResults *results, const RtClaim *claim, uint32_t t, u
     return its->baseline == over;
 }
 
-/* The accelerator that `c` is compared with on workload `t`; false if it is not measured there. If it sweeps
- * the claim's parameter, too, it is the one with the same value. */
+bool rt_claim_is_other(const RtExperiment *experiment, const RtClaim *claim, uint32_t t, uint32_t c,
+                       uint32_t other) {
+    const bool swept = claim->key.key && !claim->key.scene;
+    if (!rt_candidate_is_called(&experiment->candidates[other], claim->other)) return false;
+    const char *own = swept ? rt_swept_of(experiment, &claim->key, t, c) : NULL;
+    const char *its = own ? rt_swept_of(experiment, &claim->key, t, other) : NULL;
+    return !its || rt_swept_equal(its, own);
+}
+
+/* The accelerator that `c` is compared with on workload `t`; false if it is not measured there. */
 static bool find_other(const RtExperiment *experiment, const RtClaim *claim, uint32_t t, uint32_t c,
                        uint32_t *other) {
     *other = RT_FASTEST_BASELINE;
     if (strcmp(claim->other, experiment->best) == 0) return true;
-    const char *own = claim->key.key && !claim->key.scene ? rt_swept_of(experiment, &claim->key, t, c) : NULL;
     for (*other = 0; *other < experiment->candidate_count; ++*other) {
-        if (!rt_candidate_is_called(&experiment->candidates[*other], claim->other)) continue;
-        const char *its = own ? rt_swept_of(experiment, &claim->key, t, *other) : NULL;
-        if (rt_candidate_runs(experiment, *other, t) && (!its || rt_swept_equal(its, own))) return true;
+        if (rt_candidate_runs(experiment, *other, t) && rt_claim_is_other(experiment, claim, t, c, *other))
+            return true;
     }
     return false;
 }
@@ -90,10 +91,10 @@ static bool find_other(const RtExperiment *experiment, const RtClaim *claim, uin
 static RtEstimate ratio_at(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c) {
     RtEstimate ratio;
     uint32_t other;
-    if (!find_other(results->experiment, claim, t, c, &other)) return UNKNOWN;
+    if (!find_other(results->experiment, claim, t, c, &other)) return rt_estimate_exactly((double)NAN);
     if (paired(results, claim, t, c, other, &ratio)) return ratio;
     const RtEstimate over = value_at(results, claim->measure, claim->kind, t, c);
-    if (other == c) return exactly(over.median / over.median);
+    if (other == c) return rt_estimate_exactly(over.median / over.median);
     const RtEstimate under = value_at(results, claim->measure, claim->kind, t, other);
     return (RtEstimate){
         .median = over.median / under.median, .low = over.low / under.high, .high = over.high / under.low};

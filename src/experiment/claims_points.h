@@ -15,6 +15,11 @@ typedef struct RtClaimPoint {
 /* Whether x and y are known. An infinite break-even is known. */
 bool rt_claim_point_known(const RtClaimPoint *point);
 
+/* Whether candidate `other` is the second accelerator of the claim for the cells of candidate `c` on workload
+ * `t`: of several that sweep the claim's parameter, too, the one with the same value. */
+bool rt_claim_is_other(const RtExperiment *experiment, const RtClaim *claim, uint32_t t, uint32_t c,
+                       uint32_t other);
+
 /* Writes the cells of a claim to points[0..workload_count * candidate_count); returns their number. */
 uint32_t rt_claim_gather(const RtResults *results, const RtClaim *claim, RtClaimPoint *points);
 

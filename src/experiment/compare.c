@@ -63,13 +63,14 @@ uint32_t rt_comparison_count(const RtComparison *comparison, RtChange change) {
     return count;
 }
 
-static bool counts_changed(const RtComparedCell *cell) {
+bool rt_compared_counts_differ(const RtComparedCell *cell) {
     return cell->counted && memcmp(&cell->counts_before, &cell->counts, sizeof(RtTally)) != 0;
 }
 
 uint32_t rt_comparison_changed(const RtComparison *comparison) {
     uint32_t count = 0;
-    for (uint32_t i = 0; i < comparison->count; i++) count += counts_changed(&comparison->cells[i]);
+    for (uint32_t i = 0; i < comparison->count; i++)
+        count += rt_compared_counts_differ(&comparison->cells[i]);
     return count;
 }
 
@@ -142,9 +143,9 @@ static const void *tally_after(const void *row) {
       "faster, slower, or why that is unknown; by accelerator: see `accelerators`",                          \
       change_names[r->cell->change])                                                                         \
     X(counts, "counts", text, "", "same or changed; null: unknown, or dependent on the machine",             \
-      !r->cell->counted         ? NULL                                                                       \
-      : counts_changed(r->cell) ? "changed"                                                                  \
-                                : "same")                                                                    \
+      !r->cell->counted                    ? NULL                                                            \
+      : rt_compared_counts_differ(r->cell) ? "changed"                                                       \
+                                           : "same")                                                         \
     X(eye_before, "instr. before", figure, "", "instructions per ray before", INSTRUCTIONS(0))               \
     X(eye_after, "after", figure, "", "instructions per ray after", INSTRUCTIONS(1))                         \
     X(eye_ratio, "after/before", text, "", "the ratio of both", instructions_ratio_of(r))                    \
@@ -241,7 +242,7 @@ RtTable rt_compared_accels_table(RtComparedRow *row, bool all) {
 static void print_changed_counts(const RtComparison *comparison, FILE *out) {
     for (uint32_t i = 0; i < comparison->count; i++) {
         const RtComparedCell *cell = &comparison->cells[i];
-        if (!counts_changed(cell)) continue;
+        if (!rt_compared_counts_differ(cell)) continue;
         fprintf(out, "%s %s %s:", cell->scene, cell->accel, cell->kind);
         for (size_t k = 0; k < RT_TALLY_COUNTER_COUNT; k++) {
             uint64_t before = rt_tally_get(&cell->counts_before, k), after = rt_tally_get(&cell->counts, k);
@@ -318,8 +319,7 @@ static void explain_directories(const RtComparison *comparison, char *out, size_
                        RT_LEAST_ACCELS);
     if (!isnan(comparison->all_accels))
         rt_append_text(out, size,
-                       "All accelerators together, by their median: %.3f, as a different clock would give, "
-                       "too. ",
+                       "The median accelerator: %.3f; another clock speed would have the same effect. ",
                        comparison->all_accels);
     rt_append_text(out, size,
                    "Intervals of cells cover the rounds of these processes only, not how processes differ: "

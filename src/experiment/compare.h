@@ -96,8 +96,7 @@ typedef struct RtComparison {
     double margin;                /* differences count beyond this part */
     double seconds;               /* of the comparison */
     char before[256], after[256]; /* what was compared */
-    json_t
-        *plugins; /* owned: of two directories, whose plugins are not the same (experiment/plugins_used.h) */
+    json_t *plugins;              /* owned: of directories; those that changed (experiment/plugins_used.h) */
 } RtComparison;
 
 /* Zero a comparison first; clear it, also after a failure. */
@@ -106,8 +105,7 @@ void rt_comparison_clear(RtComparison *comparison);
 /* ---- directories ---- */
 
 /* Compares all cells, except null runs, of results[0..2 * pairs), loaded from directories: in each pair
- * `before` and `after`. The results may be cleared
- * afterwards. */
+ * before and after. The results may be cleared afterwards. RT_NO_MEMORY. */
 RtStatus rt_compare_results(const RtResults *results, uint32_t pairs, RtComparison *comparison,
                             RtError *error);
 
@@ -141,6 +139,9 @@ RtChange rt_comparison_verdict(const RtComparison *comparison, const RtEstimate 
 /* Finds the cell, or appends it; NULL if memory is short. Valid until the next call. */
 RtComparedCell *rt_comparison_cell(RtComparison *comparison, const char *scene, const char *accel,
                                    const char *kind);
+
+/* Whether both counts are known and differ. */
+bool rt_compared_counts_differ(const RtComparedCell *cell);
 
 /* Cells and accelerators with that verdict; cells whose counts differ. */
 uint32_t rt_comparison_count(const RtComparison *comparison, RtChange change);

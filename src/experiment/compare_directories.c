@@ -19,13 +19,9 @@ static uint32_t find_candidate(const RtResults *results, uint32_t c, const RtRes
     return found < e->candidate_count ? found : e->candidate_count;
 }
 
-static bool same_counts(const RtComparedCell *cell) {
-    return memcmp(&cell->counts_before, &cell->counts, sizeof(RtTally)) == 0;
-}
-
 /* A pair of runs whose counts differ is kept in preference to one whose counts do not. */
 static void take_counts(RtComparedCell *cell, const RtTally *before, const RtTally *after) {
-    if (cell->counted && !same_counts(cell)) return;
+    if (rt_compared_counts_differ(cell)) return;
     cell->counted = true;
     cell->counts_before = *before;
     cell->counts = *after;

@@ -206,7 +206,7 @@ const char *rt_experiment_kind_name(const RtExperiment *experiment, RtRayKind ki
 /* "confirmed", "in part", "not confirmed", "true of its machine"; "not judged" before the run. */
 const char *rt_paper_verdict_name(RtPaperVerdict verdict);
 
-/* Whether its quotation is that of the paper. */
+/* Whether the paper was at hand, so that `quote` is word for word. */
 bool rt_paper_is_seen(const RtPaper *paper);
 
 /* Whether rays of that kind are asked for. */

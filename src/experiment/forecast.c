@@ -39,6 +39,7 @@ static void learn_candidate(const RtResults *from, uint32_t t, uint32_t c, RtRes
     RtBuildResult *to_build = rt_build_at(to, to_t, to_c);
     to_build->known = build->known;
     to_build->seconds = build->seconds;
+    to_build->render = build->render;
     for (RtRayKind kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
         const RtCell *cell = rt_cell_at(from, t, c, kind);
         RtCell *to_cell = rt_cell_at(to, to_t, to_c, kind);
@@ -50,16 +51,16 @@ static void learn_candidate(const RtResults *from, uint32_t t, uint32_t c, RtRes
 }
 
 static void learn_all(const RtResults *from, RtResults *to) {
-    const RtExperiment *old = from->experiment, *new = to->experiment;
-    const bool same_sets = old->seed == new->seed &&
-                           old->limit == new->limit &&memcmp(old->kinds, new->kinds, sizeof new->kinds) == 0;
-    for (uint32_t t = 0; t < new->workload_count; t++) {
-        const uint32_t old_t = find_workload(old, &new->workloads[t]);
+    const RtExperiment *old = from->experiment, *e = to->experiment;
+    const bool same_sets =
+        old->seed == e->seed && old->limit == e->limit && memcmp(old->kinds, e->kinds, sizeof e->kinds) == 0;
+    for (uint32_t t = 0; t < e->workload_count; t++) {
+        const uint32_t old_t = find_workload(old, &e->workloads[t]);
         if (old_t == old->workload_count) continue;
         if (same_sets) to->workloads[t] = from->workloads[old_t];
-        for (uint32_t c = 0; c < new->candidate_count; c++) {
-            const uint32_t old_c = find_candidate(old, old_t, &new->candidates[c]);
-            if (old_c < old->candidate_count && rt_candidate_runs(new, c, t))
+        for (uint32_t c = 0; c < e->candidate_count; c++) {
+            const uint32_t old_c = find_candidate(old, old_t, &e->candidates[c]);
+            if (old_c < old->candidate_count && rt_candidate_runs(e, c, t))
                 learn_candidate(from, old_t, old_c, to, t, c);
         }
     }
@@ -150,24 +151,49 @@ static void add(Forecast *f, bool known, double seconds) {
         f->sums.left += seconds;
 }
 
+/* Pixels of a frame; of a frame that is not recorded yet and as large as the camera's, as many as rays. */
+static double pixels_of(const Forecast *f, uint32_t t) {
+    const RtWorkloadResult *workload = &f->results->workloads[t];
+    const RtWorkload *setup = &f->experiment->workloads[t];
+    return workload->known ? (double)workload->width * workload->height
+           : setup->width  ? (double)setup->width * setup->height
+                           : (double)f->experiment->limit;
+}
+
+/* Seconds per ray. A candidate that was not timed yet: as much time per test and step as the others take, if
+ * they are counted; else as much as the baseline. */
+static double ray_seconds(const Forecast *f, const RateEstimate *rates, uint32_t t, uint32_t c,
+                          RtRayKind kind) {
+    const RtCell *cell = rt_cell_at(f->results, t, c, kind);
+    const double operations = operations_of(cell);
+    const double other = operations > 0 ? operations * mean(f->all.seconds, f->all.operations, 0)
+                                        : mean(f->baseline.seconds, f->baseline.rays, 0);
+    return cell->timed ? cell->wall.median : mean(rates->seconds, rates->rays, other);
+}
+
+/* A frame that was not rendered yet: a ray of each of its kinds per pixel. */
+static void add_frames(Forecast *f, const RateEstimate *rates, uint32_t t, uint32_t c) {
+    const RtExperiment *e = f->experiment;
+    const RtRenderResult *render = &rt_build_at(f->results, t, c)->render;
+    double frame = 0;
+    if (f->count_only || !rt_candidate_renders(e, c)) return;
+    for (uint32_t k = 0; k < e->kind_count; k++) {
+        if (rt_ray_kind_is_of_frame(e->kinds[k]))
+            frame += pixels_of(f, t) * ray_seconds(f, rates, t, c, e->kinds[k]);
+    }
+    add(f, render->known, (1 + e->rounds) * (render->known ? render->seconds.median : frame));
+}
+
 static void add_cell(Forecast *f, const RateEstimate *rates, uint32_t t, uint32_t c, RtRayKind kind) {
     const RtExperiment *e = f->experiment;
     const RtCell *cell = rt_cell_at(f->results, t, c, kind);
     const RtWorkloadResult *workload = &f->results->workloads[t];
     uint64_t stride = c < e->candidate_count ? e->candidates[c].ray_stride : 1;
     bool null = c == e->candidate_count;
-    const RtWorkload *setup = &e->workloads[t];
     double rays = (double)(workload->known ? workload->rays[kind] : e->limit);
-    /* A frame that is not recorded yet: one ray of a kind per pixel. */
-    if (!workload->known && setup->width && rt_ray_kind_is_of_frame(kind))
-        rays = fmin(rays, (double)setup->width * setup->height);
+    if (!workload->known && rt_ray_kind_is_of_frame(kind)) rays = fmin(rays, pixels_of(f, t));
     rays /= (double)stride;
-    /* A candidate that was not timed yet: as much time per test and step as the others take, if they are
-     * counted; else as much as the baseline. */
-    const double operations = operations_of(cell);
-    const double other = operations > 0 ? operations * mean(f->all.seconds, f->all.operations, 0)
-                                        : mean(f->baseline.seconds, f->baseline.rays, 0);
-    double ray = cell->timed ? cell->wall.median : mean(rates->seconds, rates->rays, other);
+    const double ray = ray_seconds(f, rates, t, c, kind);
     if (!null) {
         f->sums.cells++;
         f->sums.finished += cell->counted && (cell->timed || f->count_only);
@@ -197,6 +223,7 @@ RtForecast rt_forecast(const RtResults *results, const RtWorkloadOptions *option
                 continue;
             double once = mean(rates.build, rates.builds, mean(f.all.build, f.all.builds, 0));
             add(&f, build->known, build_seconds(&f, build->known ? build->seconds.median : once));
+            add_frames(&f, &rates, t, c);
             for (uint32_t k = 0; k < e->kind_count; k++) {
                 RtRayKind kind = e->kinds[k];
                 bool none = results->workloads[t].known && !results->workloads[t].rays[kind];

@@ -165,9 +165,13 @@ bool rt_journal_is_outdated(const char *path, const RtExperiment *experiment, co
     const bool same_run = strcmp(rt_json_text(header, "experiment", ""), experiment->name) == 0 &&
                           json_is_true(json_object_get(header, "quick")) == experiment->quick &&
                           is_of_shard(header, only);
+    json_t *used = rt_plugins_used(experiment);
+    json_t *changed = rt_plugins_changed(json_object_get(header, "plugins"), used);
     const bool same_version =
-        rt_json_parse_hex(json_object_get(header, "hash"), &good) == experiment->fingerprint && good;
-    const bool same_build = strcmp(rt_json_text(header, "build", ""), rt_build_alone()) == 0;
+        rt_json_parse_hex(json_object_get(header, "hash"), &good) == experiment->fingerprint && good &&
+        strcmp(rt_json_text(header, "build", ""), rt_build_alone()) == 0 && json_object_size(changed) == 0;
+    json_decref(changed);
+    json_decref(used);
     json_decref(lines);
-    return same_run && !(same_version && same_build);
+    return same_run && !same_version;
 }

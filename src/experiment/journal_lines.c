@@ -42,14 +42,10 @@ static const RtMember build_members[] = {
     RT_MEMBER(RtBuildResult, FLAG, "exact", exact),
     RT_MEMBER(RtBuildResult, FLAG, "counts", counts),
     RT_MEMBER(RtBuildResult, ESTIMATE, "seconds", seconds),
-    RT_MEMBER(RtBuildResult, COUNT, "bytes", structure.bytes)};
+    RT_MEMBER(RtBuildResult, COUNT, "bytes", structure.bytes),
+    RT_MEMBER_RANGE(RtBuildResult, ADDED, "builds", builds, 0, RT_MAX_ROUNDS)};
 
 #define COUNTER(name, meaning) RT_MEMBER(RtCell, COUNT, #name, tally.name),
-/* Missing in journals of older versions. */
-static const RtMember builds_members[] = {
-    RT_MEMBER_RANGE(RtBuildResult, U32, "builds", builds, 0, RT_MAX_ROUNDS)};
-static const RtRecord of_builds = RT_RECORD(builds_members);
-
 static const RtMember count_members[] = {RT_TALLY_COUNTERS(COUNTER)
                                              RT_MEMBER(RtCell, COUNT, "differ", differ)};
 
@@ -115,7 +111,6 @@ static json_t *add_machine(json_t *json, const RtResults *results, uint32_t mach
 
 static json_t *build_json(const RtBuildResult *build) {
     json_t *json = rt_record_json(&parts[RT_EVENT_BUILD].record, build);
-    json = rt_json_add(json, "builds", json_integer(build->builds));
     if (!build->leaves) return json;
     return rt_json_add(json, "distributions",
                        rt_distributions_json(build->leaves, RT_RAY_QUANTITY_COUNT, RT_LEAF_QUANTITY_COUNT));
@@ -246,7 +241,6 @@ static const json_t *take_part(RtRecordReader *reader, const json_t *line, RtEve
 static void take_build(RtRecordReader *reader, const json_t *line, RtResults *results, RtBuildResult *build) {
     const json_t *built = take_part(reader, line, RT_EVENT_BUILD, build);
     build->known |= built != NULL;
-    if (json_object_get(built, "builds")) rt_record_take(reader, &of_builds, build, built);
     take_distributions(reader, &build->leaves, RT_RAY_QUANTITY_COUNT, RT_LEAF_QUANTITY_COUNT,
                        json_object_get(built, "distributions"));
     const json_t *rendered = take_part(reader, line, RT_EVENT_RENDER, build);

@@ -328,9 +328,8 @@ void rt_print_summary(const RtResults *results, FILE *out) {
         rt_print_results(results, RT_TOTALS, out);
     for (uint32_t t = 0; frames && t < experiment->workload_count; t++) {
         rt_frame_sentence(results, t, text);
-        if (!*text) continue;
-        fputc('\n', out);
-        rt_print_wrapped(text, out);
+        if (*text) fputc('\n', out);
+        if (*text) rt_print_wrapped(text, out);
         print_learnt(results, t, out);
     }
     if (experiment->render) print_rendered(results, out);

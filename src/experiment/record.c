@@ -22,6 +22,7 @@ static json_t *member_json(const RtMember *m, const void *from) {
     const RtEstimate *e = at;
     switch (m->form) {
     case RT_MEMBER_FLAG: return json_boolean(*(const bool *)at);
+    case RT_MEMBER_ADDED:
     case RT_MEMBER_U32: return json_integer(*(const uint32_t *)at);
     case RT_MEMBER_INT: return json_integer(*(const int *)at);
     case RT_MEMBER_COUNT: return json_integer(*(const int64_t *)at);
@@ -96,6 +97,7 @@ static void take_member(RtRecordReader *reader, const RtMember *m, void *to, con
         if (!json_is_boolean(value)) rt_record_reject(reader, m->name, "true or false");
         *(bool *)at = json_is_true(value);
         return;
+    case RT_MEMBER_ADDED: *(uint32_t *)at = value ? (uint32_t)take_integer(reader, m, value) : 0; return;
     case RT_MEMBER_U32: *(uint32_t *)at = (uint32_t)take_integer(reader, m, value); return;
     case RT_MEMBER_INT: *(int *)at = (int)take_integer(reader, m, value); return;
     case RT_MEMBER_COUNT: *(uint64_t *)at = take_integer(reader, m, value); return;

@@ -17,6 +17,7 @@
 typedef enum RtMemberForm {
     RT_MEMBER_FLAG,     /* bool: true or false */
     RT_MEMBER_U32,      /* uint32_t: an integer */
+    RT_MEMBER_ADDED,    /* the same; 0: missing, as in journals of older versions */
     RT_MEMBER_INT,      /* int: an integer, 0 or more */
     RT_MEMBER_COUNT,    /* uint64_t: an integer, up to INT64_MAX */
     RT_MEMBER_HASH,     /* uint64_t: 16 hexadecimal digits */

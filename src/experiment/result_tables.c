@@ -50,14 +50,15 @@ static RtField break_even_of(const Row *r) {
     if (certain && (rays->median == 0 || isinf(rays->median)))
         return rt_field_text((rays->median == 0) == even.up_to ? "never faster" : "always faster");
     if (!rough && rays->low == 0 && isinf(rays->high)) return rt_field_text("undecided");
-    const bool doubtful = even.up_to ? rays->median == 0 : isinf(rays->median);
-    if (doubtful) rt_format_rough(even.up_to ? rays->high : rays->low, text);
-    if (doubtful) return rt_field_print("perhaps %s %.100s", even.up_to ? "up to" : "from", text);
-    if (rough)
+    const bool doubtful = even.up_to ? rays->median == 0 : isinf(rays->median); /* not by the medians */
+    if (doubtful)
+        rt_format_rough(even.up_to ? rays->high : rays->low, text);
+    else if (rough)
         rt_format_rough(rays->median, text);
     else
         rt_format_interval(rays->median, rays->low, rays->high, text);
-    return rt_field_print("faster %s %.100s", even.up_to ? "up to" : "from", text);
+    return rt_field_print("%s %s %.100s", doubtful ? "perhaps" : "faster", even.up_to ? "up to" : "from",
+                          text);
 }
 
 void rt_result_eye_label(const RtResultRow *r, char out[RT_MAX_EYE_LABEL]) {

@@ -157,25 +157,20 @@ static double per_ray(const RtCell *cell, const RtBuildResult *build, uint64_t c
 
 static RtCost cost_of_cell(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
     const double unknown = (double)NAN;
+    const RtEstimate none = rt_estimate_exactly(unknown);
     candidate = rt_results_candidate(results, workload, candidate, kind);
-    if (candidate == RT_FASTEST_BASELINE) {
-        const RtEstimate none = {unknown, unknown, unknown, unknown};
+    if (candidate == RT_FASTEST_BASELINE)
         return (RtCost){true, 0, unknown, unknown, unknown, unknown, none, none};
-    }
     const RtBuildResult *build = rt_build_at(results, workload, candidate);
     const RtCell *cell = rt_cell_at(results, workload, candidate, kind);
-    RtCost cost = {.whole = true,
-                   .rays = cell->tally.rays,
-                   .object_tests = per_ray(cell, build, cell->tally.object_tests),
-                   .extent_tests = per_ray(cell, build, cell->tally.extent_tests),
-                   .steps = per_ray(cell, build, cell->tally.steps),
-                   .csg_tests = per_ray(cell, build, cell->tally.csg_tests),
-                   .seconds = {unknown, unknown, unknown, unknown},
-                   .ratio = {unknown, unknown, unknown, unknown}};
-    if (!cell->timed) return cost;
-    cost.seconds = cell->seconds;
-    cost.ratio = cell->ratio;
-    return cost;
+    return (RtCost){.whole = true,
+                    .rays = cell->tally.rays,
+                    .object_tests = per_ray(cell, build, cell->tally.object_tests),
+                    .extent_tests = per_ray(cell, build, cell->tally.extent_tests),
+                    .steps = per_ray(cell, build, cell->tally.steps),
+                    .csg_tests = per_ray(cell, build, cell->tally.csg_tests),
+                    .seconds = cell->timed ? cell->seconds : none,
+                    .ratio = cell->timed ? cell->ratio : none};
 }
 
 RtCost rt_results_cost(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
@@ -188,8 +183,9 @@ RtCost rt_results_cost(const RtResults *results, uint32_t workload, uint32_t can
         const RtCost cost = cost_of_cell(results, workload, candidate, experiment->kinds[k]);
         const double weight = (double)results->workloads[workload].rays[experiment->kinds[k]];
         if (weight == 0) continue;
-        sum.whole &= rt_results_has_kind(results, workload, experiment->kinds[k]);
-        if (!rt_results_has_kind(results, workload, experiment->kinds[k])) continue;
+        const bool measured = rt_results_has_kind(results, workload, experiment->kinds[k]);
+        sum.whole &= measured;
+        if (!measured) continue;
         weights += weight;
         sum.rays += cost.rays;
         sum.object_tests += weight * cost.object_tests;
@@ -247,7 +243,7 @@ static void add_saved(RtEstimate *saved, const RtCell *cell, double weight) {
 RtBreakEven rt_results_break_even(const RtResults *results, uint32_t workload, uint32_t candidate) {
     const double unknown = (double)NAN;
     const RtBuildResult *own = rt_build_at(results, workload, candidate), *baseline = NULL;
-    RtBreakEven even = {.rays = {unknown, unknown, unknown, unknown}};
+    RtBreakEven even = {.rays = rt_estimate_exactly(unknown)};
     RtEstimate saved = {0};
     double weights = 0;
     if (rt_candidate_is_baseline(results->experiment, candidate)) return even;
@@ -287,8 +283,7 @@ static bool is_timed(const RtResults *results, uint32_t t) {
 /* Time, or object tests, which have no interval. */
 static RtEstimate weigh(const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind, bool timed) {
     const RtCost cost = rt_results_cost(results, t, c, kind);
-    const double tests = cost.object_tests;
-    return timed ? cost.seconds : (RtEstimate){tests, tests, tests, tests};
+    return timed ? cost.seconds : rt_estimate_exactly(cost.object_tests);
 }
 
 RtStanding rt_standing(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {

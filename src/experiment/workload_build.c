@@ -83,13 +83,14 @@ static RtStatus exclude(RtWorkloadState *workload, uint32_t c, RtStatus status, 
                                  error->message);
 }
 
-/* Destroys a structure that took longer than the limit. */
+/* Destroys a structure that took longer than the limit; not in a resumed run that kept it before. */
 static RtStatus check_seconds(const Builds *builds, RtError *error) {
     RtWorkloadState *workload = builds->workload;
     const double limit = workload->experiment->limit_seconds;
+    const bool known = rt_build_at(workload->results, workload->index, builds->candidate)->known;
     uint32_t count;
     const double seconds = estimate_of(builds, &count).median;
-    if (limit <= 0 || seconds <= limit) return RT_OK;
+    if (limit <= 0 || seconds <= limit || known) return RT_OK;
     rt_accel_destroy(workload->built[builds->candidate]);
     workload->built[builds->candidate] = NULL;
     return rt_workload_leave_out(workload, builds->candidate, RT_EVENT_NO_BUILD, RT_RAY_PRIMARY, false, error,

@@ -25,14 +25,17 @@ static RtStatus render_once(void *context, RtError *error) {
     return RT_OK;
 }
 
+bool rt_candidate_renders(const RtExperiment *experiment, uint32_t c) {
+    return experiment->render && c < experiment->candidate_count &&
+           experiment->candidates[c].ray_stride == 1 && !rt_spec_is_remote(&experiment->candidates[c].parsed);
+}
+
 bool rt_workload_renders(const RtWorkloadState *workload, uint32_t c) {
-    const RtExperiment *experiment = workload->experiment;
-    for (int k = 0; k < RT_RAY_KIND_COUNT && c < experiment->candidate_count; k++) {
+    for (int k = 0; k < RT_RAY_KIND_COUNT && c < workload->experiment->candidate_count; k++) {
         if (*rt_cell_at(workload->results, workload->index, c, (RtRayKind)k)->left_out) return false;
     }
-    return experiment->render && !workload->options->timer && c < experiment->candidate_count &&
-           rt_workload_runs(workload, c) && experiment->candidates[c].ray_stride == 1 &&
-           !rt_spec_is_remote(&experiment->candidates[c].parsed);
+    return !workload->count_only && !workload->options->timer &&
+           rt_candidate_renders(workload->experiment, c) && rt_workload_runs(workload, c);
 }
 
 /* The candidates still to be rendered, one runner each. */
@@ -53,7 +56,7 @@ static uint32_t enter(RtWorkloadState *workload, Rendering *renderings, RtRunner
                                              .share = true},
                                  .seconds = times,
                                  .shares = times + experiment->rounds};
-        times += 2 * experiment->rounds;
+        times += (size_t)2 * experiment->rounds;
         runners[count++] = (RtRunner){.run = render_once,
                                       .context = rendering,
                                       .work = 1,

@@ -77,7 +77,7 @@ RtStatus rt_workload_hardware(RtWorkloadState *workload, RtRayKind kind, RtError
 /* Renders the frame with all candidates for which rt_workload_renders, if that is not known yet. */
 RtStatus rt_workload_render(RtWorkloadState *workload, RtError *error);
 
-/* Whether the experiment asks for frames rendered with candidate `c`. */
+/* Whether frames are rendered with candidate `c`. */
 bool rt_workload_renders(const RtWorkloadState *workload, uint32_t c);
 
 /* Whether candidate `c` takes part in the workload, so far. */

@@ -189,8 +189,7 @@ RtStatus rt_extent_cost_time(const RtPopulation *population, const RtExtentChoic
     if (status == RT_OK) {
         conclude(&times, population, tightness, out);
         *object = rt_estimate(row(&times, count), rounds->rounds);
-        if (bench->chords.count == 0)
-            *object = (RtEstimate){(double)NAN, (double)NAN, (double)NAN, (double)NAN};
+        if (bench->chords.count == 0) *object = rt_estimate_exactly((double)NAN);
     }
     for (size_t c = 0; extents && c < count; c++) rt_extent_set_clear(&extents[c].set);
     rt_free(times.seconds);

@@ -58,6 +58,12 @@ RtStatus rt_result_files_look(const char *directory, const char *journal, RtStar
             directory, finished ? "is finished" : "is not finished",
             finished ? "write its tables again" : "go on");
     }
+    if (strcmp(result, rt_result_files[RT_FILE_PACKED_JOURNAL]) == 0) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s/%s is packed, and a packed journal is only read: unpack it with gunzip to go on, "
+                       "start over and lose it with --force, or give another --out",
+                       directory, result);
+    }
     return rt_fail(error, RT_BAD_INPUT,
                    "%s holds results of another kind, or without their journal (%s, but no %s), which cannot "
                    "be resumed: start over and lose them with --force, or give another --out",

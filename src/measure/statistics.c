@@ -198,8 +198,8 @@ static double student_tail(double w, uint32_t freedom) {
     return sum * step / 3;
 }
 
-/* The t that |t| exceeds with probability 1 - coverage, by bisection of w. */
-static double student_quantile(uint32_t freedom, double coverage) {
+/* By bisection of w. */
+double rt_student_quantile(uint32_t freedom, double coverage) {
     const double wanted = (1 - coverage) * student_tail(0, freedom);
     double lo = 0, hi = 1;
     for (int i = 0; i < 50; i++) {
@@ -222,7 +222,7 @@ RtEstimate rt_estimate_student(const double *ratios, uint32_t count, double cove
     }
     const double mean = sum / count;
     for (uint32_t i = 0; i < count; i++) squares += (rt_log(ratios[i]) - mean) * (rt_log(ratios[i]) - mean);
-    const double half = student_quantile(count - 1, coverage) * sqrt(squares / (count - 1) / count);
+    const double half = rt_student_quantile(count - 1, coverage) * sqrt(squares / (count - 1) / count);
     return (RtEstimate){.median = rt_power(e, mean),
                         .low = rt_power(e, mean - half),
                         .high = rt_power(e, mean + half),

@@ -29,6 +29,11 @@ typedef struct RtEstimate {
     double least;             /* the smallest measurement */
 } RtEstimate;
 
+/* The estimate of what is known exactly; of NAN: of what is unknown. */
+static inline RtEstimate rt_estimate_exactly(double value) {
+    return (RtEstimate){value, value, value, value};
+}
+
 /* Whether `value` is within the interval, at full precision. */
 bool rt_estimate_holds(const RtEstimate *estimate, double value);
 
@@ -71,6 +76,9 @@ uint32_t rt_unpaired_rounds(double coverage);
  * of Mathematical Sciences 139(3); Ibragimov & Muller 2010, "t-Statistic Based Correlation and Heterogeneity
  * Robust Inference", Journal of Business & Economic Statistics 28(4)). */
 RtEstimate rt_estimate_student(const double *ratios, uint32_t count, double coverage);
+
+/* The t that Student's |t| of `freedom` >= 1 degrees of freedom exceeds with probability 1 - coverage. */
+double rt_student_quantile(uint32_t freedom, double coverage);
 
 /* The coverage of each of `count` intervals with which all of them hold in 95 % of all cases, even if they
  * depend on one another (Bonferroni's inequality; Dunn 1961, "Multiple Comparisons among Means", Journal of

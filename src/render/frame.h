@@ -46,8 +46,7 @@ typedef struct RtFrame {
      * by level, stream by stream. */
     RtRay *rays[RT_RAY_KIND_COUNT];
     double seconds; /* wall time of the frame */
-    double
-        share; /* part of the threads' time spent in queries of the accelerator, 0..1; 0 unless asked for */
+    double share;   /* of the threads' time, the part spent in queries, 0..1; 0 unless asked for */
 } RtFrame;
 
 /* Traces the frame of the accelerator's scene and sampling. Free with rt_frame_clear; after a failure it

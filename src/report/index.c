@@ -99,14 +99,7 @@ static void put_origins(const Index *index, size_t origin, const char *before, F
 }
 
 static void put_entries(const Index *index, uint32_t from, uint32_t to, RtIndexPart part, FILE *out) {
-    for (uint32_t i = from; i < to; i++) {
-        const RtIndexEntry *entry = &index->entries[i];
-        if (!entry->parts[part].size) continue;
-        if (part == RT_INDEX_HTML)
-            rt_html_wrap(out, "<section class=\"card entry\" id=\"", entry->name, "\">");
-        fputs(entry->parts[part].chars, out);
-        if (part == RT_INDEX_HTML) fputs("</section>\n", out);
-    }
+    for (uint32_t i = from; i < to; i++) fputs(index->entries[i].parts[part].chars, out);
 }
 
 static bool has_sentences(const Index *index, uint32_t from, uint32_t to) {

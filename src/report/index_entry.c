@@ -115,6 +115,7 @@ static void put_head(const RtIndexEntry *entry, const char *directory, const cha
     FILE *out = entry->parts[RT_INDEX_HTML].file;
     char plot[RT_MAX_PATH], path[RT_MAX_PATH];
     find_plot(directory, plot);
+    rt_html_wrap(out, "<section class=\"card entry\" id=\"", entry->name, "\">");
     if (*plot && rt_path_join(place, plot, path, NULL) == RT_OK) put_thumbnail(out, entry->name, path);
     fputs("<div><h3>", out);
     if (rt_file_exists_in(directory, "report.html") &&
@@ -285,7 +286,7 @@ RtStatus rt_index_entry_read(RtIndexEntry *entry, const char *directory, const c
         put_paragraph(html, "Cannot be read:", why.message);
         put_line(entry->parts[RT_INDEX_MARKDOWN].file, "Cannot be read:", why.message);
     }
-    fputs("</div>", html);
+    fputs("</div></section>\n", html);
     close_parts(entry);
     return RT_OK;
 }

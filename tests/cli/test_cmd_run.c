@@ -2,13 +2,11 @@
 /* raytally run and reproduce with several experiments. With one: tests/experiment. */
 #include "experiment_testing.h"
 
-#include "cli/turns.h"
+#include "cli/jobs.h"
 
 #include <fcntl.h>
 #include <signal.h>
-#include <sys/wait.h>
 #include <time.h>
-#include <unistd.h>
 
 static const char pattern[] = "name: small\n"
                               "question: Which is cheaper?\n"
@@ -62,7 +60,7 @@ RT_TEST_IN_PLACE(an_index_that_cannot_be_written_is_an_error) {
     remove(path_in(place, "results/index.md").text);
     assert_ok(rt_directory_create(path_in(place, "results/index.md").text, error));
     assert_ends(place, "run a.yaml b.yaml --threads 1 --resume", 2,
-                "the index: results/index.md is a folder");
+                "there is no index: results/index.md is a folder");
 }
 
 RT_TEST_IN_PLACE(one_that_fails_does_not_stop_the_others_and_the_worst_exit_code_counts) {
@@ -86,10 +84,9 @@ RT_TEST_IN_PLACE(all_are_parsed_before_the_first_is_measured) {
     change(place, "b.yaml", "name: b", "name: a");
     assert_ends(place, "run a.yaml b.yaml", 2,
                 "a.yaml ('a') and b.yaml ('a') would share the directory results/a");
-    change(place, "a.yaml", "name: a", "name: one:1");
-    change(place, "b.yaml", "name: a", "name: One-1");
-    assert_ends(place, "run a.yaml b.yaml", 2,
-                "and b.yaml ('One-1') would share the directory results/One-1");
+    change(place, "b.yaml", "name: a", "name: x:Y");
+    change(place, "a.yaml", "name: a", "name: X-y");
+    assert_ends(place, "run a.yaml b.yaml", 2, "would share the directory results/x-Y");
     assert_ends(place, "run a.yaml c.yaml --force", 2, "--force takes one experiment");
     assert_ends(place, "run a.yaml c.yaml --shard 1/2", 2, "--only and --shard take one experiment");
     assert_false(exists(place, "results"));
@@ -117,7 +114,8 @@ RT_TEST_IN_PLACE(update_starts_over_only_where_something_else_was_measured) {
     char *a = read_in(place, "results/a/cells.jsonl");
     change(place, "b.yaml", "limit: 50", "limit: 40");
     assert_ends(place, "run a.yaml b.yaml --threads 1 --resume", 2, "another version of it ('b')");
-    assert_int_equal(raytally(place, "run a.yaml b.yaml c.yaml --threads 1 --update"), 0);
+    assert_ends(place, "run a.yaml --threads 1 --update --quick", 2, "this is a run without --quick");
+    assert_ends(place, "run a.yaml b.yaml c.yaml --threads 1 --update", 0, "--update starts results/b over");
     assert_same_file(place, "results/a/cells.jsonl", a);
     assert_in_file(place, "results/b/experiment.yaml", "limit: 40");
     assert_int_equal(raytally(place, "reproduce results/b"), 0);
@@ -145,25 +143,11 @@ RT_TEST_IN_PLACE(a_dry_run_of_several_sums_up_each_and_touches_nothing) {
     assert_false(exists(place, "results"));
 }
 
-/* Starts `raytally run a.yaml b.yaml c.yaml` in the folder. */
-static pid_t start(const Place *place) {
-    pid_t child = fork();
-    assert_true(child >= 0);
-    if (child > 0) return child;
-    int message = -1, nothing = open("/dev/null", O_WRONLY);
-    if (chdir(place->folder) == 0) message = open("message", O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    dup2(nothing, STDOUT_FILENO);
-    dup2(message, STDERR_FILENO);
-    execl(RT_PROGRAM, "raytally", "run", "a.yaml", "b.yaml", "c.yaml", "--threads", "1", "--out", "all",
-          (char *)NULL);
-    _exit(127);
-}
-
 RT_TEST_IN_PLACE(an_interruption_stops_all_and_says_the_one_command_that_continues) {
     const Place *place = *state;
     int how;
     change(place, "b.yaml", "rounds: 2\nmilliseconds: 0", "rounds: 50\nmilliseconds: 100");
-    pid_t child = start(place);
+    pid_t child = start_raytally(place, "run a.yaml b.yaml c.yaml --threads 1 --out all");
     while (!exists(place, "all/b/cells.jsonl")) nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
     kill(child, SIGINT);
     waitpid(child, &how, 0);
@@ -177,17 +161,17 @@ RT_TEST_IN_PLACE(an_interruption_stops_all_and_says_the_one_command_that_continu
     assert_true(exists(place, "all/a/report.html") && !exists(place, "all/c"));
 }
 
-RT_TEST_IN_PLACE(an_interruption_between_two_turns_says_how_to_continue_too) {
+RT_TEST_IN_PLACE(an_interruption_between_two_experiments_says_how_to_continue_too) {
     const Place *place = *state;
     int how;
     pid_t child = fork();
     assert_true(child >= 0);
     if (child == 0) {
-        RtTurn turn = {.name = "a"};
+        RtJob job = {.name = "a"};
         RtError failure;
         dup2(open(path_in(place, "message").text, O_WRONLY | O_CREAT | O_TRUNC, 0666), STDERR_FILENO);
-        if (rt_turn_take(&turn, "raytally run all --resume", &failure) != RT_OK) _exit(1);
-        if (!turn.here) raise(SIGTERM);
+        if (rt_job_run(&job, "raytally run all --resume", &failure) != RT_OK) _exit(1);
+        if (!job.here) raise(SIGTERM);
         _exit(0);
     }
     waitpid(child, &how, 0);

@@ -30,7 +30,7 @@ static int make_small(void **state) {
 #define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_small, remove_place)
 
 /* Tells progress in each of some milliseconds that something was finished; what it says, for rt_free. */
-static char *said(const Place *place, bool terminal, double every, int duration) {
+static char *said(const Place *place, RtEventKind what, bool terminal, double every, int duration) {
     RtResults results;
     RtWorkloadOptions options = {.threads = 1, .timing = 1};
     const char *path = path_in(place, "said").text;
@@ -44,7 +44,7 @@ static char *said(const Place *place, bool terminal, double every, int duration)
     assert_true(file >= 0 && stderr_was >= 0);
     dup2(file, STDERR_FILENO);
     for (int end = milliseconds + duration; milliseconds < end; milliseconds++) {
-        RtEvent event = {.what = RT_EVENT_BUILD, .candidate = 1};
+        RtEvent event = {.what = what, .candidate = 1};
         assert_int_equal(observer.event(observer.context, &results, &event, NULL), RT_OK);
     }
     rt_progress_end(&progress);
@@ -62,25 +62,34 @@ static int count(const char *text, const char *part) {
 }
 
 RT_TEST_IN_PLACE(without_a_terminal_a_line_comes_as_often_as_it_may_and_no_more) {
-    char *text = said(*state, false, 0.2, 900);
+    char *text = said(*state, RT_EVENT_BUILD, false, 0.2, 900);
     int lines = count(text, "\n");
     assert_int_equal(lines, 4);
     assert_int_equal(count(text, "raytally: 0 of 2 cells, balls:size=1 grid: built\n"), lines);
     assert_int_equal(count(text, "\r"), 0);
     rt_free(text);
-    text = said(*state, false, 60, 30000);
+    text = said(*state, RT_EVENT_BUILD, false, 60, 30000);
     assert_string_equal(text, "");
     rt_free(text);
 }
 
 RT_TEST_IN_PLACE(on_a_terminal_one_line_is_drawn_in_place_and_taken_away) {
-    char *text = said(*state, true, 1, 100);
+    char *text = said(*state, RT_EVENT_BUILD, true, 1, 100);
     const char *const away = "\r\033[K";
     size_t length = strlen(text);
     assert_int_equal(count(text, "\n"), 0);
     assert_int_equal(count(text, "\r\033[K[0/2] balls:size=1 grid: built"), 100);
     assert_true(length > strlen(away));
     assert_string_equal(text + length - strlen(away), away);
+    rt_free(text);
+}
+
+RT_TEST_IN_PLACE(a_frame_is_of_no_kind_of_rays) {
+    char *text = said(*state, RT_EVENT_RENDER, false, 0.2, 300);
+    assert_string_equal(text, "raytally: 0 of 2 cells, balls:size=1 grid: rendered\n");
+    rt_free(text);
+    text = said(*state, RT_EVENT_TIME, false, 0.2, 300);
+    assert_string_equal(text, "raytally: 0 of 2 cells, balls:size=1 grid primary: timed\n");
     rt_free(text);
 }
 

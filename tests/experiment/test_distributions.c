@@ -225,6 +225,26 @@ RT_TEST_IN_PLACE(a_run_that_renders_has_the_time_of_a_frame_and_the_part_of_quer
         assert_true(real_at(&csv, row, "query_share_low") <= real_at(&csv, row, "query_share"));
     }
     rt_csv_clear(&csv);
+    char command[320];
+    snprintf(command, sizeof command, "sed -i /rendered/d '%s'", path_in(place, "out/cells.jsonl").text);
+    assert_int_equal(system(command), 0);
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume --dry-run"), 0);
+    assert_in_file(place, "output", " of them finished; null runs and frames take about ");
+}
+
+RT_TEST_IN_PLACE(counting_again_renders_no_frame) {
+    const Place *place = *state;
+    const RtWorkloadOptions counting = {.threads = 1, .timing = 1, .count_only = true};
+    RtResults results;
+    write_changed(place, "small.yaml", spread, "distributions: yes\ncount_only: yes", "render: yes");
+    assert_ok(load_small(place, false, error));
+    assert_ok(rt_results_init(&results, place->experiment, error));
+    assert_ok(rt_workloads_run(&results, &counting, error));
+    for (RtCellCursor at = {0}; rt_results_next(&results, &at);) {
+        assert_true(at.cell->counted);
+        assert_false(rt_build_at(&results, at.workload, at.candidate)->render.known);
+    }
+    rt_results_clear(&results);
 }
 
 /* The journal of a run whose limit has left out a cell of grid: without its counts, times and frame. */

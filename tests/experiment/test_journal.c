@@ -138,7 +138,7 @@ RT_TEST_IN_PLACE(a_journal_that_gzip_has_packed_can_be_read_but_not_continued) {
     assert_int_equal(system(command), 0);
     assert_int_equal(raytally(place, "report out"), 0);
     assert_int_equal(raytally(place, "compare out out"), 0);
-    assert_ends(place, "run small.yaml --out out --resume", 2, "no cells.jsonl");
+    assert_ends(place, "run small.yaml --out out --resume", 2, "unpack it with gunzip");
     assert_ends(place, "run small.yaml --out out", 2, "out");
     write_in(place, "out/cells.jsonl.gz", "\x1f\x8b\x08 no gzip");
     assert_ends(place, "report out", 2, "cells.jsonl.gz: it is damaged");

@@ -6,12 +6,9 @@
 #include "experiment/forecast.h"
 #include "experiment/result_tables.h"
 
-#include <fcntl.h>
 #include <math.h>
 #include <signal.h>
-#include <sys/wait.h>
 #include <time.h>
-#include <unistd.h>
 
 static const char long_experiment[] = "name: small\n"
                                       "question: How long?\n"
@@ -33,20 +30,9 @@ static int make_long(void **state) {
     return make_place_with(state, long_experiment);
 }
 
-#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_long, remove_place)
+#define RESUME "run small.yaml --threads 1 --out out --resume"
 
-/* Starts `raytally run small.yaml ...` in the folder. */
-static pid_t start(const Place *place, const char *out, const char *resume) {
-    pid_t child = fork();
-    assert_true(child >= 0);
-    if (child > 0) return child;
-    int message = -1, nothing = open("/dev/null", O_WRONLY);
-    if (chdir(place->folder) == 0) message = open("message", O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    dup2(nothing, STDOUT_FILENO);
-    dup2(message, STDERR_FILENO);
-    execl(RT_PROGRAM, "raytally", "run", "small.yaml", "--threads", "1", "--out", out, resume, (char *)NULL);
-    _exit(127);
-}
+#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_long, remove_place)
 
 static void wait_seconds(double seconds) {
     struct timespec time = {.tv_sec = (time_t)seconds, .tv_nsec = (long)(1e9 * fmod(seconds, 1))};
@@ -80,7 +66,7 @@ RT_TEST_IN_PLACE(a_run_that_is_killed_again_and_again_ends_as_one_that_was_not) 
     size_t before = 0;
     while (killed < 100) {
         int how = 0;
-        pid_t child = start(place, "out", "--resume");
+        pid_t child = start_raytally(place, RESUME);
         draw = draw * 1664525 + 1013904223;
         wait_seconds(0.2 * whole * draw / 4294967296.0);
         kill(child, SIGKILL);
@@ -97,7 +83,7 @@ RT_TEST_IN_PLACE(a_run_that_is_killed_again_and_again_ends_as_one_that_was_not) 
             before = 0;
         }
     }
-    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --resume"), 0);
+    assert_int_equal(raytally(place, RESUME), 0);
     assert_equal_files(place, "whole/counts.csv", "out/counts.csv");
     assert_int_equal(raytally(place, "reproduce out"), 0);
 }
@@ -105,7 +91,7 @@ RT_TEST_IN_PLACE(a_run_that_is_killed_again_and_again_ends_as_one_that_was_not) 
 RT_TEST_IN_PLACE(an_interrupted_run_says_what_is_kept_and_how_to_go_on) {
     const Place *place = *state;
     int how;
-    pid_t child = start(place, "out", "--resume");
+    pid_t child = start_raytally(place, RESUME);
     while (journal_lines(place) < 20) wait_seconds(0.01);
     kill(child, SIGINT);
     waitpid(child, &how, 0);
@@ -113,10 +99,10 @@ RT_TEST_IN_PLACE(an_interrupted_run_says_what_is_kept_and_how_to_go_on) {
     assert_in_file(place, "message",
                    " of 56 cells are finished, all measurements are kept in out. To continue:");
     assert_in_file(place, "message", "raytally run small.yaml --out out --threads 1 --resume");
-    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --resume --dry-run"), 0);
+    assert_int_equal(raytally(place, RESUME " --dry-run"), 0);
     assert_in_file(place, "output", "finished\n");
     assert_in_file(place, "output", "the others take about ");
-    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --resume"), 0);
+    assert_int_equal(raytally(place, RESUME), 0);
 }
 
 RT_TEST_IN_PLACE(a_dry_run_lists_the_cells_and_touches_nothing) {
@@ -169,9 +155,9 @@ RT_TEST_IN_PLACE(a_part_is_measured_and_then_the_rest) {
     assert_null(strstr(counts, "diffuse"));
     rt_free(counts);
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out"), 2);
-    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --resume"), 0);
+    assert_int_equal(raytally(place, RESUME), 0);
     assert_equal_files(place, "whole/counts.csv", "out/counts.csv");
-    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --resume --dry-run"), 0);
+    assert_int_equal(raytally(place, RESUME " --dry-run"), 0);
     assert_in_file(place, "output", "56 cells, all of them finished\n");
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --only nowhere --resume"), 2);
 }
@@ -336,6 +322,36 @@ RT_TEST_IN_PLACE(what_was_not_timed_yet_is_foretold_by_its_tests_and_steps) {
     once = rt_forecast(&results, &options).left;
     strcpy(grid->left_out, "for comparison");
     assert_true(fabs(once - rt_forecast(&results, &options).left - 5 * 1) < 0.01); /* counting, too */
+    rt_results_clear(&results);
+}
+
+/* A warm-up and three rounds of 100 pixels, a millisecond each; diffuse rays are not of a frame, and brute is
+ * measured on a part of the rays. */
+RT_TEST_IN_PLACE(frames_that_are_not_rendered_yet_are_foretold_by_their_rays) {
+    const Place *place = *state;
+    const RtWorkloadOptions options = {.threads = 1, .timing = 1};
+    RtWorkloadOptions counting = options;
+    RtResults results;
+    assert_ok(load_small(place, false, error));
+    place->experiment->render = true;
+    assert_ok(rt_results_init(&results, place->experiment, error));
+    results.workloads[0] = (RtWorkloadResult){.known = true, .width = 10, .height = 10};
+    results.workloads[0].rays[RT_RAY_PRIMARY] = results.workloads[0].rays[RT_RAY_DIFFUSE] = 1000;
+    for (RtCellCursor at = {0}; rt_results_next(&results, &at);) {
+        *at.cell = (RtCell){.counted = true, .timed = true, .wall.median = 1e-3};
+        if (at.workload > 0) results.workloads[at.workload].skipped = true;
+    }
+    const RtForecast before = rt_forecast(&results, &options);
+    RtRenderResult *render = &rt_build_at(&results, 0, 0)->render;
+    *render = (RtRenderResult){.known = true, .seconds = rt_estimate_exactly(0.3)};
+    const RtForecast after = rt_forecast(&results, &options);
+    assert_true(fabs(before.left - after.left - 4 * 0.1) < 1e-9);
+    assert_true(fabs(after.known - before.known - 4 * 0.3) < 1e-9);
+    rt_build_at(&results, 0, 6)->render = *render; /* brute */
+    assert_true(rt_forecast(&results, &options).known == after.known);
+    counting.count_only = true;
+    render->seconds.median = 1000;
+    assert_true(rt_forecast(&results, &counting).known < 1000);
     rt_results_clear(&results);
 }
 

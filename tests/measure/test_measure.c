@@ -246,6 +246,8 @@ RT_TEST(a_structure_is_left_out_if_its_median_build_exceeds_the_limit) {
     assert_string_equal(build_with(0.345, 0.01, 0, 0.3, false, unknown).left_out, "");
     assert_string_equal(build_with(0.01, 0.345, 0, 0.3, false, unknown).left_out,
                         "building takes 0.345 s, more than 0.3 s");
+    const RtBuildResult known = {.known = true, .builds = 7, .seconds = {0.2, 0.2, 0.2, 0.2}};
+    assert_string_equal(build_with(0.345, 0.345, 0, 0.3, false, known).left_out, ""); /* resumed */
 }
 
 /* ---- break-even ---- */

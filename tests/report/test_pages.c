@@ -302,14 +302,15 @@ RT_TEST_IN_PLACE(the_index_has_each_experiment_with_verdict_finding_and_link_and
     assert_int_equal(raytally(place, "run small.yaml --out all/one --threads 1"), 0);
     write_small(place, "finding: It <was>.");
     assert_int_equal(raytally(place, "run small.yaml --out 'all/deeper/two & a half' --threads 1"), 0);
-    assert_int_equal(raytally(place, "run small.yaml --out all/damaged --threads 1"), 0);
-    write_in(place, "all/damaged/manifest.json", "{");
+    assert_int_equal(raytally(place, "run small.yaml --out 'all/a <\"damaged\">' --threads 1"), 0);
+    write_in(place, "all/a <\"damaged\">/manifest.json", "{");
     assert_int_equal(raytally(place, "report --index all/"), 0);
-    assert_in_file(place, "output", "all//index.html, of 3 experiments");
+    assert_in_file(place, "output", "all//index.html and index.md, of 3 experiments");
     assert_in_file(place, "all/index.html", "<a href=\"one/report.html\">small</a>");
     assert_in_file(place, "all/index.html", "<a href=\"deeper/two%20%26%20a%20half/report.html\">");
     assert_in_file(place, "all/index.html", "1 of 1 claim holds");
     assert_in_file(place, "all/index.html", "It &lt;was&gt;.");
+    assert_in_file(place, "all/index.html", "id=\"a &lt;&quot;damaged&quot;&gt;\"><div>");
     assert_in_file(place, "all/index.html", "Cannot be read:");
     assert_int_equal(raytally(place, "report --index nowhere"), 2);
     assert_int_equal(raytally(place, "report --index all small"), 2);
@@ -365,6 +366,7 @@ RT_TEST_IN_PLACE(the_index_groups_experiments_by_section_with_plot_first_sentenc
                                     "### [quoting](quoting)\n\n![Plot of quoting](quoting/plots/1.svg)",
                                     "**Question.** Which is \\<cheaper>?",
                                     "**Finding.** So et al. 1990 said. The `rest` is folded.",
+                                    "<details><summary>Prediction and claims</summary>\n\n**Prediction.** ",
                                     "- **holds**: `object_tests of bvh < 30`: ",
                                     "### [judged](judged)\n\n10 pairs"};
     text = read_in(place, "all/index.md");

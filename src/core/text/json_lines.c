@@ -73,6 +73,7 @@ RtStatus rt_json_lines_write(RtJsonLines *lines, json_t *line, RtError *error) {
 
 /* ---- reading ---- */
 
+/* Reads to the end. *text is for rt_free, also after a failure. */
 static RtStatus unpack(gzFile file, const char *path, char **text, size_t *size, RtError *error) {
     enum { CHUNK = 1 << 16 };
     uint32_t capacity = 0;

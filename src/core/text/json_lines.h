@@ -28,8 +28,8 @@ RtStatus rt_json_lines_save(const char *path, const json_t *lines, RtError *erro
 /* Writes one line, which is on disk when this returns. Takes the reference; NULL counts as short memory. */
 RtStatus rt_json_lines_write(RtJsonLines *lines, json_t *line, RtError *error);
 
-/* Reads all lines of the file, or of `path`.gz if there is only that, into a new array; lines that are not JSON become null. Rejects a file
- * without lines. */
+/* Reads all lines of the file, or of `path`.gz if there is only that, into a new array; lines that are not
+ * JSON become null. Rejects a file without lines. RT_BAD_INPUT if `path`.gz is damaged. */
 RtStatus rt_json_lines_load(const char *path, json_t **lines, RtError *error);
 
 #endif

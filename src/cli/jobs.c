@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "cli/turns.h"
+#include "cli/jobs.h"
 
 #include "cli/cli.h"
 #include "cli/progress.h"
@@ -13,9 +13,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static volatile sig_atomic_t taken;  /* the last signal; 0: none */
-static volatile pid_t now;           /* the fork that has its turn; 0: between turns, and after the last */
-static const char *volatile command; /* that continues */
+static volatile sig_atomic_t last_signal; /* 0: none */
+static volatile pid_t running;            /* the fork; 0: none, as between two jobs and after the last */
+static const char *volatile command;      /* that continues */
 
 /* Also in a handler of signals. */
 static void say(const char *text) {
@@ -30,9 +30,9 @@ _Noreturn static void leave(int number, bool told) {
 }
 
 static void pass_on(int number) {
-    taken = number;
-    if (now == 0) leave(number, false);
-    kill(now, number);
+    last_signal = number;
+    if (running == 0) leave(number, false);
+    kill(running, number);
 }
 
 static void handle(void (*handler)(int)) {
@@ -43,7 +43,7 @@ static void handle(void (*handler)(int)) {
 }
 
 /* With both signals blocked, so that each goes to the fork, whose handlers are the default ones. */
-static RtStatus start(RtTurn *turn, RtError *error) {
+static RtStatus start(RtJob *job, RtError *error) {
     sigset_t signals, before;
     sigemptyset(&signals);
     sigaddset(&signals, SIGINT);
@@ -52,53 +52,55 @@ static RtStatus start(RtTurn *turn, RtError *error) {
     sigprocmask(SIG_BLOCK, &signals, &before);
     const pid_t child = fork();
     const int why = errno;
-    turn->here = child == 0;
-    now = child > 0 ? child : 0;
-    handle(turn->here ? SIG_DFL : pass_on);
+    job->here = child == 0;
+    running = child > 0 ? child : 0;
+    handle(job->here ? SIG_DFL : pass_on);
     sigprocmask(SIG_SETMASK, &before, NULL);
-    return child >= 0 ? RT_OK : rt_fail(error, RT_IO, "a process for %s: %s", turn->name, strerror(why));
+    return child >= 0 ? RT_OK : rt_fail(error, RT_IO, "a process for %s: %s", job->name, strerror(why));
 }
 
-RtStatus rt_turn_take(RtTurn *turn, const char *go_on, RtError *error) {
+RtStatus rt_job_run(RtJob *job, const char *go_on, RtError *error) {
     const double began = rt_wall_seconds();
     int how = 0;
     command = go_on;
-    RT_TRY(start(turn, error));
-    if (turn->here) return RT_OK;
-    while (waitpid(now, &how, 0) < 0 && errno == EINTR) {
+    RT_TRY(start(job, error));
+    if (job->here) return RT_OK;
+    pid_t ended;
+    while ((ended = waitpid(running, &how, 0)) < 0 && errno == EINTR) {
     }
-    now = 0;
-    turn->seconds = rt_wall_seconds() - began;
-    turn->signal = WIFSIGNALED(how) ? WTERMSIG(how) : 0;
-    turn->code = turn->signal ? RT_EXIT_BAD_INPUT : WEXITSTATUS(how);
-    if (!taken) return RT_OK;
+    running = 0;
+    if (ended < 0) return rt_fail(error, RT_IO, "waiting for %s: %s", job->name, strerror(errno));
+    job->seconds = rt_wall_seconds() - began;
+    job->signal = WIFSIGNALED(how) ? WTERMSIG(how) : 0;
+    job->code = job->signal ? RT_EXIT_BAD_INPUT : WEXITSTATUS(how);
+    if (!last_signal) return RT_OK;
     fflush(NULL);
-    leave(taken, turn->code == 128 + taken);
+    leave(last_signal, job->code == 128 + last_signal);
 }
 
-void rt_turns_print(const RtTurn *turns, uint32_t count, FILE *out) {
+void rt_jobs_print(const RtJob *jobs, uint32_t count, FILE *out) {
     fprintf(out, "\n%-32s %-24s %10s\n", "experiment", "state", "time");
     for (uint32_t i = 0; i < count; i++) {
         char state[64] = "finished", duration[RT_MAX_DURATION];
-        if (turns[i].signal)
-            snprintf(state, sizeof state, "ended by signal %d", turns[i].signal);
-        else if (turns[i].code)
-            snprintf(state, sizeof state, "failed, exit code %d", turns[i].code);
-        rt_format_duration(turns[i].seconds, duration);
-        fprintf(out, "%-32s %-24s %10s\n", turns[i].name, state, duration);
+        if (jobs[i].signal)
+            snprintf(state, sizeof state, "ended by signal %d", jobs[i].signal);
+        else if (jobs[i].code)
+            snprintf(state, sizeof state, "failed, exit code %d", jobs[i].code);
+        rt_format_duration(jobs[i].seconds, duration);
+        fprintf(out, "%-32s %-24s %10s\n", jobs[i].name, state, duration);
     }
 }
 
-RtStatus rt_turns_check(const RtTurn *turns, uint32_t count, RtError *error) {
+RtStatus rt_jobs_check(const RtJob *jobs, uint32_t count, RtError *error) {
     uint32_t failed = 0, first = 0;
     int worst = RT_EXIT_OK;
     for (uint32_t i = 0; i < count; i++) {
-        if (turns[i].code == RT_EXIT_OK) continue;
+        if (jobs[i].code == RT_EXIT_OK) continue;
         if (failed++ == 0) first = i;
-        if (turns[i].code > worst) worst = turns[i].code;
+        if (jobs[i].code > worst) worst = jobs[i].code;
     }
     if (failed == 0) return RT_OK;
     return rt_fail(error, worst == RT_EXIT_CHECK_FAILED ? RT_MISMATCH : RT_BAD_INPUT,
                    "%" PRIu32 " of %" PRIu32 " experiment%s failed, the first: %s", failed, count,
-                   rt_plural(count), turns[first].name);
+                   rt_plural(count), jobs[first].name);
 }
