@@ -12,7 +12,9 @@
 #include "experiment/result_directory.h"
 #include "experiment/worker.h"
 
+#include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -213,10 +215,26 @@ static RtStatus compare_plugins(const char *const *directories, const RtExperime
     return status;
 }
 
+/* A run that one side has twice would count as two that agree. */
+static RtStatus check_given_once(const Options *o, RtError *error) {
+    char one[PATH_MAX], other[PATH_MAX];
+    for (uint32_t i = 0; i < o->subject_count; i++) {
+        for (uint32_t k = i % 2; k < i; k += 2) {
+            if (!realpath(o->subjects[i], one) || !realpath(o->subjects[k], other)) continue;
+            if (strcmp(one, other) == 0)
+                return rt_fail(error, RT_BAD_INPUT,
+                               "%s is given twice %s: each pair takes two runs of its own", o->subjects[i],
+                               i % 2 ? "as AFTER" : "as BEFORE");
+        }
+    }
+    return RT_OK;
+}
+
 static RtStatus compare_loaded(const Options *o, RtExperiment *experiments, RtResults *results,
                                RtComparison *comparison, RtError *error) {
     const char *names[2][MAX_SUBJECTS / 2];
     const uint32_t pairs = o->subject_count / 2;
+    RT_TRY(check_given_once(o, error));
     for (uint32_t i = 0; i < o->subject_count; i++) {
         RT_TRY(rt_run_load(o->subjects[i], &experiments[i], &results[i], error));
         names[i % 2][i / 2] = o->subjects[i];

@@ -185,9 +185,10 @@ static void go_on(const Options *o, const RtExperiment *e, char out[MOST_COMMAND
     const size_t size = MOST_COMMAND;
     snprintf(out, size, "raytally run");
     for (uint32_t i = 0; i < o->count; i++)
-        rt_append_text(out, size, " %s", o->count == 1 ? e->path : o->paths[i]);
-    rt_append_text(out, size, " --out %s%s", o->count == 1 ? o->how.directory : folder_of(o),
-                   (o->count == 1 ? e->quick : o->quick) ? " --quick" : "");
+        rt_append_argument(out, size, o->count == 1 ? e->path : o->paths[i]);
+    rt_append_text(out, size, " --out");
+    rt_append_argument(out, size, o->count == 1 ? o->how.directory : folder_of(o));
+    if (o->count == 1 ? e->quick : o->quick) rt_append_text(out, size, " --quick");
     if (o->strict) rt_append_text(out, size, " --strict");
     if (o->threads >= 0) rt_append_text(out, size, " --threads %d", o->threads);
     if (o->memory) rt_append_text(out, size, " --memory %" PRIu64, o->memory);
@@ -254,7 +255,7 @@ static RtStatus choose_directory(Options *o, const RtExperiment *experiment, RtE
 }
 
 /* --update: resumes what this build began, and replaces what cannot be resumed, saying why; but not a run
- * with other options, which is more likely a mistake. */
+ * of another experiment or with other options, which is more likely a mistake, nor what it cannot read. */
 static RtStatus choose_start(Options *o, const RtExperiment *experiment, RtError *error) {
     RtResults results;
     RtRunOptions *how = &o->how;
@@ -266,7 +267,7 @@ static RtStatus choose_start(Options *o, const RtExperiment *experiment, RtError
     RtStatus status = rt_results_init(&results, experiment, error);
     if (status == RT_OK) status = rt_journal_load(path, &results, &how->workload.only, how->renew, error);
     rt_results_clear(&results);
-    if (status != RT_BAD_INPUT || !rt_journal_has_options(path, experiment, &how->workload.only))
+    if (status != RT_BAD_INPUT || !rt_journal_is_outdated(path, experiment, &how->workload.only))
         return status;
     fprintf(stderr, "raytally: %s; --update starts %s over\n", error->message, how->directory);
     how->start = RT_START_ANEW;
@@ -317,6 +318,7 @@ static RtStatus parse_all(Options *o, RtExperiment *experiment, char (*names)[RT
 static RtStatus run_all(Options *o, RtExperiment *experiment, RtError *error) {
     static char names[MOST_EXPERIMENTS][RT_MAX_LABEL], command[MOST_COMMAND];
     static RtJob jobs[MOST_EXPERIMENTS];
+    RtError why;
     size_t indexed;
     RT_TRY(parse_all(o, experiment, names, error));
     go_on(o, experiment, command);
@@ -329,11 +331,10 @@ static RtStatus run_all(Options *o, RtExperiment *experiment, RtError *error) {
         if (job->here) return run(o, experiment, error);
     }
     rt_jobs_print(jobs, o->count, stdout);
-    if (!o->dry && rt_index_write(folder_of(o), &indexed, error) == RT_OK)
-        printf("\nIndex: %s/index.html and index.md\n", folder_of(o));
-    else if (!o->dry)
-        fprintf(stderr, "raytally: there is no index: %s\n", error->message);
-    return rt_jobs_check(jobs, o->count, error);
+    const RtStatus status = o->dry ? RT_OK : rt_index_write(folder_of(o), &indexed, &why);
+    if (!o->dry && status == RT_OK) printf("\nIndex: %s/index.html and index.md\n", folder_of(o));
+    RT_TRY(rt_jobs_check(jobs, o->count, error));
+    return status == RT_OK ? RT_OK : rt_fail(error, status, "there is no index: %s", why.message);
 }
 
 const RtSyntax rt_run_syntax = {

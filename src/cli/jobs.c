@@ -14,10 +14,24 @@
 #include <unistd.h>
 
 static volatile sig_atomic_t last_signal; /* 0: none */
-static volatile pid_t running;            /* the fork */
+static volatile pid_t running;            /* the fork; 0: none, as between two jobs and after the last */
+static const char *volatile command;      /* that continues */
+
+/* Also in a handler of signals. */
+static void say(const char *text) {
+    if (write(STDERR_FILENO, text, strlen(text)) < 0) return;
+}
+
+_Noreturn static void leave(int number, bool told) {
+    if (!told) say("raytally: interrupted. To continue:\n  ");
+    if (!told) say(command);
+    if (!told) say("\n");
+    _exit(128 + number);
+}
 
 static void pass_on(int number) {
     last_signal = number;
+    if (running == 0) leave(number, false);
     kill(running, number);
 }
 
@@ -36,31 +50,32 @@ static RtStatus start(RtJob *job, RtError *error) {
     sigaddset(&signals, SIGTERM);
     fflush(NULL); /* or the fork would write it again */
     sigprocmask(SIG_BLOCK, &signals, &before);
-    running = fork();
+    const pid_t child = fork();
     const int why = errno;
-    job->here = running == 0;
-    if (running > 0) handle(pass_on);
+    job->here = child == 0;
+    running = child > 0 ? child : 0;
+    handle(job->here ? SIG_DFL : pass_on);
     sigprocmask(SIG_SETMASK, &before, NULL);
-    return running >= 0 ? RT_OK : rt_fail(error, RT_IO, "a process for %s: %s", job->name, strerror(why));
+    return child >= 0 ? RT_OK : rt_fail(error, RT_IO, "a process for %s: %s", job->name, strerror(why));
 }
 
 RtStatus rt_job_run(RtJob *job, const char *go_on, RtError *error) {
     const double began = rt_wall_seconds();
     int how = 0;
+    command = go_on;
     RT_TRY(start(job, error));
     if (job->here) return RT_OK;
     pid_t ended;
     while ((ended = waitpid(running, &how, 0)) < 0 && errno == EINTR) {
     }
-    handle(SIG_DFL);
+    running = 0;
     if (ended < 0) return rt_fail(error, RT_IO, "waiting for %s: %s", job->name, strerror(errno));
     job->seconds = rt_wall_seconds() - began;
     job->signal = WIFSIGNALED(how) ? WTERMSIG(how) : 0;
     job->code = job->signal ? RT_EXIT_BAD_INPUT : WEXITSTATUS(how);
     if (!last_signal) return RT_OK;
-    if (job->code != 128 + last_signal) fprintf(stderr, "raytally: interrupted. To continue:\n  %s\n", go_on);
     fflush(NULL);
-    _exit(128 + last_signal);
+    leave(last_signal, job->code == 128 + last_signal);
 }
 
 void rt_jobs_print(const RtJob *jobs, uint32_t count, FILE *out) {

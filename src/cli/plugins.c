@@ -97,7 +97,10 @@ RtStatus rt_cli_load_plugins(int argc, char *const *argv, RtError *error) {
 }
 
 void rt_cli_plugin_arguments(char *out, size_t size) {
-    for (size_t i = 0; i < given_count; i++) rt_append_text(out, size, " --plugin '%s'", given[i]);
+    for (size_t i = 0; i < given_count; i++) {
+        rt_append_text(out, size, " --plugin");
+        rt_append_argument(out, size, given[i]);
+    }
 }
 
 static void tell(void *context, const char *sentence) {

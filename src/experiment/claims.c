@@ -164,6 +164,7 @@ static RtStatus check_other(const Reader *r) {
 static RtStatus read_scene(Reader *r) {
     Choice choice = {0};
     bool found = false;
+    if (*r->claim->scene) return fail(r, "it names two scenes (`on`)");
     for (uint32_t t = 0; t < r->experiment->workload_count; t++) {
         offer(&choice, r->experiment->workloads[t].stem);
         found |= rt_workload_is_called(&r->experiment->workloads[t], word(r));
@@ -269,6 +270,7 @@ static RtStatus read_kind(Reader *r) {
     RtClaim *claim = r->claim;
     if (claim->measure >= RT_CLAIM_BUILD_TIME && claim->first >= RT_CLAIM_BUILD_TIME)
         return fail(r, "%s does not depend on the kind of rays", measures[claim->measure]);
+    if (claim->kind != RT_ALL_RAYS) return fail(r, "it names two kinds of rays (`for`)");
     if (rt_ray_kind_parse(word(r), &claim->kind, NULL) != RT_OK ||
         !rt_experiment_has_kind(r->experiment, claim->kind))
         return fail(r, "this experiment has no '%s' rays", word(r));

@@ -15,13 +15,13 @@
  *                predicted_cost, break_even (rays), render_time (s), query_share (`render`)
  *
  * ACCEL and SCENE are labels, or the common part of the labels of a sweep. ACCEL may be `all`, every
- * accelerator of the list; or the name of a baseline of several settings ("embree:best"): the setting that is
- * the fastest on each kind of rays. PARAM is a swept parameter: n, or scene.n or accel.n if both have it; or,
- * except in "at", `objects`, the number of objects of the scene, however scenes are named. A claim covers
- * every cell that it does not exclude, all kinds of rays together unless it names one; it holds if it holds
- * for all of them. "at" excludes cells without the parameter. The second ACCEL of a ratio or a crossover is
- * one accelerator; in a crossover it may sweep PARAM, too. "falls" means from each value of the parameter to
- * the next larger one.
+ * accelerator of the list, in a crossover every one but the second; or the name of a baseline of several
+ * settings ("embree:best"): the setting that is the fastest on each kind of rays. PARAM is a swept parameter:
+ * n, or scene.n or accel.n if both have it; or, except in "at", `objects`, the number of objects of the
+ * scene, however scenes are named. A claim covers every cell that it does not exclude, all kinds of rays
+ * together unless it names one; it holds if it holds for all of them. "at" excludes cells without the
+ * parameter. The second ACCEL of a ratio or a crossover is one accelerator; in a crossover it may sweep
+ * PARAM, too. "falls" means from each value of the parameter to the next larger one.
  *
  * Times have intervals, counts are exact. A claim about times holds if it holds for all values within the
  * intervals, does not hold if it holds for none, and is undecided otherwise. A ratio of times to the baseline

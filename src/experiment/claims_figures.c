@@ -30,6 +30,9 @@ static Moments moments_of(const RtClaimPoint *points, uint32_t count) {
         m.yy += y * y;
         m.xy += x * y;
     }
+    /* Equal values differ from their mean by rounding. */
+    if (m.xx < 1e-24 * count) m.xx = 0;
+    if (m.yy < 1e-24 * count) m.yy = 0;
     return m;
 }
 
@@ -40,15 +43,17 @@ RtEstimate rt_claim_exponent(const RtClaimPoint *points, uint32_t count, double 
     if (!all_have_logarithms(points, count)) return rt_estimate_exactly((double)NAN);
     const Moments m = moments_of(points, count);
     RtEstimate slope = {0};
+    if (m.xx == 0) return rt_estimate_exactly((double)NAN);
+    const double from = rt_log(points->y.median); /* equal values have a slope of exactly 0 */
     for (uint32_t i = 0; i < count; i++) {
         const RtEstimate *y = &points[i].y;
         const double d = (rt_log(points[i].x) - m.x) / m.xx;
-        slope.median += d * rt_log(y->median);
-        slope.low += d * rt_log(d > 0 ? y->low : y->high);
-        slope.high += d * rt_log(d > 0 ? y->high : y->low);
+        slope.median += d * (rt_log(y->median) - from);
+        slope.low += d * (rt_log(d > 0 ? y->low : y->high) - from);
+        slope.high += d * (rt_log(d > 0 ? y->high : y->low) - from);
     }
-    const double residuals = m.yy - slope.median * m.xy;      /* the sum of their squares */
-    if (count == 2 || residuals < 1e-12 * m.yy) return slope; /* less is rounding */
+    const double residuals = m.yy - slope.median * m.xy;       /* the sum of their squares */
+    if (count == 2 || residuals <= 1e-12 * m.yy) return slope; /* less is rounding */
     *error = sqrt(residuals / (count - 2) / m.xx);
     const double scatter = rt_student_quantile(count - 2, 0.95) * *error;
     slope.low = fmin(slope.low, slope.median - scatter);

@@ -85,6 +85,7 @@ static void judge_crossover(const RtClaim *claim, Figure *figure) {
     const uint32_t count = found < MOST_CROSSOVERS ? found : MOST_CROSSOVERS;
     RtClaimVerdict certain = RT_CLAIM_HOLDS, possible = RT_CLAIM_HOLDS;
     bool any = false;
+    if (found > count) possible = RT_CLAIM_UNDECIDED;
     for (uint32_t i = 0; i < count; i++) {
         const RtClaimVerdict verdict = compare(claim, crossovers[i].low, crossovers[i].high);
         any |= is_certain(&crossovers[i]);
@@ -126,8 +127,9 @@ static const char *const units[] = {
 
 static void put_number(RtClaimResult *result, const RtClaim *claim, double value) {
     char text[16];
+    const bool never = isinf(value) && claim->measure == RT_CLAIM_BREAK_EVEN && claim->form != RT_CLAIM_RATIO;
     rt_format_figure(in_units(claim, value), text);
-    PUT(result, "%s", isinf(value) ? "never" : text); /* a break-even */
+    PUT(result, "%s", never ? "never" : text);
 }
 
 static void put_estimate(RtClaimResult *result, const RtClaim *claim, const RtEstimate *b) {
@@ -193,6 +195,17 @@ static void put_one_crossover(RtClaimResult *result, const RtClaim *claim, const
     PUT(result, "]");
 }
 
+/* Of curves without a crossover: on which side of the other one is at all points, also at those without a
+ * logarithm, between which no crossover can be interpolated. */
+static const char *side_of(const Figure *figure) {
+    bool above = true, below = true;
+    for (uint32_t i = 0; i < figure->count; i++) {
+        above &= figure->points[i].y.median >= 1;
+        below &= figure->points[i].y.median <= 1;
+    }
+    return above ? "is above" : below ? "is below" : "may cross";
+}
+
 static void put_crossover(RtClaimResult *result, const RtClaim *claim, const Figure *figure) {
     RtCrossover crossovers[MOST_CROSSOVERS];
     const RtClaimPoint *first = figure->points, *last = first + figure->count - 1;
@@ -216,8 +229,8 @@ static void put_crossover(RtClaimResult *result, const RtClaim *claim, const Fig
         put_one_crossover(result, claim, figure, crossover);
     }
     if (found > 0) return;
-    PUT(result, " is %s %s from %s=%.9g to %.9g", first->y.median > 1 ? "above" : "below", claim->other,
-        claim->key.key, first->x, last->x);
+    PUT(result, " %s %s from %s=%.9g to %.9g", side_of(figure), claim->other, claim->key.key, first->x,
+        last->x);
 }
 
 static void put_figure(RtClaimResult *result, const RtExperiment *experiment, const RtClaim *claim,
@@ -303,9 +316,10 @@ static void put_readout(RtClaimResult *result, const RtExperiment *experiment, c
         return;
     }
     const Figure *least = figures, *most = figures;
-    for (uint32_t i = 0; i < count; i++) {
-        if (!(figures[i].value.median >= least->value.median)) least = &figures[i];
-        if (!(figures[i].value.median <= most->value.median)) most = &figures[i];
+    for (uint32_t i = 1; i < count; i++) {
+        const double value = figures[i].value.median;
+        if (isnan(least->value.median) || value < least->value.median) least = &figures[i];
+        if (isnan(most->value.median) || value > most->value.median) most = &figures[i];
     }
     put_figure(result, experiment, claim, least);
     PUT(result, " to ");

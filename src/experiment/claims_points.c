@@ -94,6 +94,7 @@ static RtEstimate ratio_at(const RtResults *results, const RtClaim *claim, uint3
     if (!find_other(results->experiment, claim, t, c, &other)) return rt_estimate_exactly((double)NAN);
     if (paired(results, claim, t, c, other, &ratio)) return ratio;
     const RtEstimate over = value_at(results, claim->measure, claim->kind, t, c);
+    if (other == c) return rt_estimate_exactly(over.median / over.median);
     const RtEstimate under = value_at(results, claim->measure, claim->kind, t, other);
     return (RtEstimate){
         .median = over.median / under.median, .low = over.low / under.high, .high = over.high / under.low};
@@ -116,7 +117,9 @@ static bool is_about(const RtExperiment *experiment, const RtClaim *claim, uint3
         const char *value = rt_swept_of(experiment, &claim->places[p].key, t, c);
         if (!value || !rt_swept_equal(value, claim->places[p].value)) return false;
     }
-    return true;
+    uint32_t other;
+    const bool all = claim->form == RT_CLAIM_CROSSOVER && strcmp(claim->accel, RT_CLAIM_ALL) == 0;
+    return !all || !find_other(experiment, claim, t, c, &other) || other != c;
 }
 
 /* Whether a measured structure has no such value: no prediction, no counts, or it is the baseline. */

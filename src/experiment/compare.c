@@ -323,7 +323,8 @@ static void explain_directories(const RtComparison *comparison, char *out, size_
                        comparison->all_accels);
     rt_append_text(out, size,
                    "Intervals of cells cover the rounds of these processes only, not how processes differ: "
-                   "each holds with %.4g %%, all %" PRIu32 " together with %.3g %% confidence.",
+                   "each holds with %.*g %%, all %" PRIu32 " together with %.3g %% confidence.",
+                   comparison->coverage > 0.9999 ? 6 : 4, /* never 100 % */
                    100 * comparison->coverage, comparison->timed, 100 * comparison->together);
     if (comparison->coverage < each)
         rt_append_text(out, size, " 95 %% together takes %" PRIu32 " rounds before and after.",

@@ -83,15 +83,19 @@ static RtStatus check_experiment(const char *path, const json_t *header, const R
                    quick ? "with" : "without");
 }
 
+static bool is_of_shard(const json_t *header, const RtOnly *only) {
+    return json_integer_value(json_object_get(header, "shard")) == only->shard &&
+           json_integer_value(json_object_get(header, "shards")) == only->shards;
+}
+
 static RtStatus check_build(const char *path, const json_t *header, const RtOnly *only, RtError *error) {
     const char *build = rt_json_text(header, "build", "unknown");
-    json_int_t shard = json_integer_value(json_object_get(header, "shard")),
-               shards = json_integer_value(json_object_get(header, "shards"));
-    if (shard != only->shard || shards != only->shards) {
+    if (!is_of_shard(header, only)) {
         return rt_fail(error, RT_BAD_INPUT,
                        "%s: this is a run with another --shard (%d/%d): replace it with --force, or choose "
                        "another --out",
-                       path, (int)shard, (int)shards);
+                       path, (int)json_integer_value(json_object_get(header, "shard")),
+                       (int)json_integer_value(json_object_get(header, "shards")));
     }
     if (strcmp(build, rt_build_alone()) == 0) return RT_OK;
     return rt_fail(
@@ -144,17 +148,6 @@ static RtStatus take_lines(const char *path, RtResults *results, const json_t *l
     return status;
 }
 
-bool rt_journal_has_options(const char *path, const RtExperiment *experiment, const RtOnly *only) {
-    json_t *lines;
-    if (rt_json_lines_load(path, &lines, NULL) != RT_OK) return false;
-    const json_t *header = json_array_get(lines, 0);
-    const bool same = json_is_true(json_object_get(header, "quick")) == experiment->quick &&
-                      json_integer_value(json_object_get(header, "shard")) == only->shard &&
-                      json_integer_value(json_object_get(header, "shards")) == only->shards;
-    json_decref(lines);
-    return same;
-}
-
 RtStatus rt_journal_load(const char *path, RtResults *results, const RtOnly *only, bool renew,
                          RtError *error) {
     json_t *lines;
@@ -162,4 +155,23 @@ RtStatus rt_journal_load(const char *path, RtResults *results, const RtOnly *onl
     RtStatus status = take_lines(path, results, lines, only, renew, error);
     json_decref(lines);
     return status;
+}
+
+bool rt_journal_is_outdated(const char *path, const RtExperiment *experiment, const RtOnly *only) {
+    json_t *lines;
+    bool good;
+    if (rt_json_lines_load(path, &lines, NULL) != RT_OK) return false;
+    const json_t *header = json_array_get(lines, 0);
+    const bool same_run = strcmp(rt_json_text(header, "experiment", ""), experiment->name) == 0 &&
+                          json_is_true(json_object_get(header, "quick")) == experiment->quick &&
+                          is_of_shard(header, only);
+    json_t *used = rt_plugins_used(experiment);
+    json_t *changed = rt_plugins_changed(json_object_get(header, "plugins"), used);
+    const bool same_version =
+        rt_json_parse_hex(json_object_get(header, "hash"), &good) == experiment->fingerprint && good &&
+        strcmp(rt_json_text(header, "build", ""), rt_build_alone()) == 0 && json_object_size(changed) == 0;
+    json_decref(changed);
+    json_decref(used);
+    json_decref(lines);
+    return same_run && !same_version;
 }

@@ -27,8 +27,9 @@ RtStatus rt_journal_add(RtOutputs *outputs, const char *path, const RtExperiment
 RtStatus rt_journal_load(const char *path, RtResults *results, const RtOnly *only, bool renew,
                          RtError *error);
 
-/* Whether the journal at `path` is of a run with the same --quick and --shard; false if it cannot be read. */
-bool rt_journal_has_options(const char *path, const RtExperiment *experiment, const RtOnly *only);
+/* Whether the journal at `path` is of the same experiment, --quick and --shard, but of another build, another
+ * version of the YAML, or other plugins; false if it cannot be read. */
+bool rt_journal_is_outdated(const char *path, const RtExperiment *experiment, const RtOnly *only);
 
 /* Rewrites the journal at `path`, which was loaded with `renew`, without the lines of changed plugins. At any
  * time the old or the new journal is whole. */

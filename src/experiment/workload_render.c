@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Rendering the frame of a workload with each candidate, in interleaved rounds: how long it takes, and which
- * part of that is spent in the candidate's queries. Candidates with a stride are too slow for whole frames.
- * Plugins are left out: their rays travel to another process. */
+ * part of that is spent in the candidate's queries. Candidates with a stride, or of which a limit left out a
+ * cell, are too slow for whole frames. Plugins are left out: their rays travel to another process. */
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "experiment/workload_state.h"
@@ -31,6 +31,9 @@ bool rt_candidate_renders(const RtExperiment *experiment, uint32_t c) {
 }
 
 bool rt_workload_renders(const RtWorkloadState *workload, uint32_t c) {
+    for (int k = 0; k < RT_RAY_KIND_COUNT && c < workload->experiment->candidate_count; k++) {
+        if (*rt_cell_at(workload->results, workload->index, c, (RtRayKind)k)->left_out) return false;
+    }
     return !workload->count_only && !workload->options->timer &&
            rt_candidate_renders(workload->experiment, c) && rt_workload_runs(workload, c);
 }

@@ -113,7 +113,7 @@ static void put_section(const Index *index, uint32_t from, uint32_t to, FILE *ht
     title_of(index->entries[from].section, title);
     rt_html_wrap(html, "<h2>", title, "</h2>\n");
     fputs("## ", markdown);
-    rt_index_put_markdown(markdown, title);
+    rt_index_put_markdown(markdown, title, false);
     fputs("\n\n", markdown);
     if (has_sentences(index, from, to)) {
         fputs(
@@ -145,7 +145,9 @@ static void put_pages(const Index *index, FILE *html, FILE *markdown) {
     }
     rt_page_begin(html, "Experiments", true);
     rt_html_wrap(html, "<p class=\"meta\">", origins, "</p>\n");
-    fprintf(markdown, "# Experiments\n\n%s\n\n", origins ? origins : "");
+    fputs("# Experiments\n\n", markdown);
+    rt_index_put_markdown(markdown, origins ? origins : "", false);
+    fputs("\n\n", markdown);
     free(origins);
     for (uint32_t from = 0, to; from < index->count; from = to) {
         to = from + 1;

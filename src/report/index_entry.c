@@ -18,9 +18,12 @@
 
 /* ---- text ---- */
 
-void rt_index_put_markdown(FILE *out, const char *text) {
+void rt_index_put_markdown(FILE *out, const char *text, bool cell) {
+    bool code = false;
     for (const char *c = text; *c; c++) {
-        if (strchr("\\*[]|<", *c)) fputc('\\', out);
+        if (*c == '`') code = !code && strchr(c + 1, '`');
+        const bool entity = c[0] == '&' && (c[1] == '#' || isalpha((unsigned char)c[1]));
+        if (*c == '|' ? cell : !code && (entity || strchr("\\*[]<", *c))) fputc('\\', out);
         fputc(*c, out);
     }
 }
@@ -43,7 +46,7 @@ static void put_paragraph(FILE *out, const char *title, const char *text) {
 static void put_line(FILE *out, const char *title, const char *text) {
     if (!*text) return;
     fprintf(out, "**%s** ", title);
-    rt_index_put_markdown(out, text);
+    rt_index_put_markdown(out, text, false);
     fputs("\n\n", out);
 }
 
@@ -76,13 +79,14 @@ static void put_papers(const RtIndexEntry *entry, const RtExperiment *experiment
         rt_html_wrap(rows, "</td><td><a href=\"#", experiment->name, "\">");
         rt_html_wrap(rows, "", experiment->name, "</a></td></tr>\n");
         fputs("| ", lines);
-        rt_index_put_markdown(lines, paper->citation);
+        rt_index_put_markdown(lines, paper->citation, true);
         fputs(" | ", lines);
-        rt_index_put_markdown(lines, paper->page);
+        rt_index_put_markdown(lines, paper->page, true);
         fputs(seen ? " | “" : " | ", lines);
-        rt_index_put_markdown(lines, paper->quote);
-        fprintf(lines, "%s | %s | [%s](", seen ? "”" : "", rt_paper_verdict_name(paper->verdict),
-                experiment->name);
+        rt_index_put_markdown(lines, paper->quote, true);
+        fprintf(lines, "%s | %s | [", seen ? "”" : "", rt_paper_verdict_name(paper->verdict));
+        rt_index_put_markdown(lines, experiment->name, true);
+        fputs("](", lines);
         rt_page_path(lines, place);
         fputs(") |\n", lines);
     }
@@ -127,14 +131,14 @@ static void put_markdown_head(const RtIndexEntry *entry, const char *directory, 
     FILE *out = entry->parts[RT_INDEX_MARKDOWN].file;
     char plot[RT_MAX_PATH], path[RT_MAX_PATH];
     fputs("### [", out);
-    rt_index_put_markdown(out, entry->name);
+    rt_index_put_markdown(out, entry->name, false);
     fputs("](", out);
     rt_page_path(out, place);
     fputs(")\n\n", out);
     find_plot(directory, plot);
     if (!*plot || rt_path_join(place, plot, path, NULL) != RT_OK) return;
     fputs("![Plot of ", out);
-    rt_index_put_markdown(out, entry->name);
+    rt_index_put_markdown(out, entry->name, false);
     fputs("](", out);
     rt_page_path(out, path);
     fputs(")\n\n", out);
@@ -186,7 +190,7 @@ static void put_markdown(FILE *out, const RtResults *results) {
         rt_claim_judge(results, i, &result);
         fprintf(out, "- **%s**: `%s`%s", rt_claim_verdict_name(result.verdict), experiment->claims[i],
                 *result.figures ? ": " : "");
-        rt_index_put_markdown(out, result.figures);
+        rt_index_put_markdown(out, result.figures, false);
         fputs("\n", out);
     }
     fputs("\n</details>\n\n", out);

@@ -41,7 +41,7 @@ RtStatus rt_index_entry_read(RtIndexEntry *entry, const char *directory, const c
                              RtExperiment *experiment, RtError *error);
 void rt_index_entry_clear(RtIndexEntry *entry);
 
-/* Writes plain text as Markdown; `code` stays. */
-void rt_index_put_markdown(FILE *out, const char *text);
+/* Writes plain text as Markdown, for a cell of a table or elsewhere; `code` stays. */
+void rt_index_put_markdown(FILE *out, const char *text, bool cell);
 
 #endif

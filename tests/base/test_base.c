@@ -10,6 +10,7 @@
 #include "core/base/process.h"
 #include "core/base/random.h"
 #include "core/base/tally.h"
+#include "core/base/words.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -41,6 +42,14 @@ RT_TEST(a_text_makes_a_file_name_that_every_system_takes) {
         rt_file_name(names[i][0], name, sizeof name);
         assert_string_equal(name, names[i][1]);
     }
+}
+
+RT_TEST(a_command_quotes_what_a_shell_would_read_otherwise) {
+    char command[80] = "raytally run";
+    const char *const words[] = {"a/b-1_2.yaml", "two words", "n=1|2", "it's", "", "$x"};
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
+        rt_append_argument(command, sizeof command, words[i]);
+    assert_string_equal(command, "raytally run a/b-1_2.yaml 'two words' 'n=1|2' 'it'\\''s' '' '$x'");
 }
 
 RT_TEST(rounding_outward_brackets_the_number) {

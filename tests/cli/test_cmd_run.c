@@ -2,6 +2,9 @@
 /* raytally run and reproduce with several experiments. With one: tests/experiment. */
 #include "experiment_testing.h"
 
+#include "cli/jobs.h"
+
+#include <fcntl.h>
 #include <signal.h>
 #include <time.h>
 
@@ -49,6 +52,15 @@ RT_TEST_IN_PLACE(each_of_several_experiments_gets_its_directory_and_all_a_summar
     assert_int_equal(raytally(place, "run a.yaml c.yaml --threads 1 --out other"), 0);
     assert_true(exists(place, "other/a/report.html") && exists(place, "other/c/report.html"));
     assert_equal_files(place, "results/a/counts.csv", "other/a/counts.csv");
+}
+
+RT_TEST_IN_PLACE(an_index_that_cannot_be_written_is_an_error) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run a.yaml b.yaml --threads 1"), 0);
+    remove(path_in(place, "results/index.md").text);
+    assert_ok(rt_directory_create(path_in(place, "results/index.md").text, error));
+    assert_ends(place, "run a.yaml b.yaml --threads 1 --resume", 2,
+                "there is no index: results/index.md is a folder");
 }
 
 RT_TEST_IN_PLACE(one_that_fails_does_not_stop_the_others_and_the_worst_exit_code_counts) {
@@ -110,6 +122,20 @@ RT_TEST_IN_PLACE(update_starts_over_only_where_something_else_was_measured) {
     rt_free(a);
 }
 
+RT_TEST_IN_PLACE(update_keeps_a_run_of_another_experiment_or_variant_and_what_it_cannot_read) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run a.yaml --threads 1 --out kept"), 0);
+    char *kept = read_in(place, "kept/cells.jsonl");
+    assert_ends(place, "run b.yaml --out kept --update", 2, "this is a run of another experiment");
+    assert_ends(place, "run a.yaml --out kept --update --quick", 2, "this is a run without --quick");
+    assert_ends(place, "run a.yaml --out kept --update --shard 1/1", 2, "another --shard");
+    assert_same_file(place, "kept/cells.jsonl", kept);
+    change(place, "kept/cells.jsonl", "\"interior\":", "\"exterior\":");
+    assert_ends(place, "run a.yaml --out kept --update", 2, "kept/cells.jsonl:");
+    assert_true(exists(place, "kept/report.html"));
+    rt_free(kept);
+}
+
 RT_TEST_IN_PLACE(a_dry_run_of_several_sums_up_each_and_touches_nothing) {
     const Place *place = *state;
     assert_int_equal(raytally(place, "run a.yaml b.yaml --dry-run"), 0);
@@ -133,6 +159,24 @@ RT_TEST_IN_PLACE(an_interruption_stops_all_and_says_the_one_command_that_continu
                         "To continue:\n  raytally run a.yaml b.yaml c.yaml --out all --threads 1 --resume\n");
     rt_free(message);
     assert_true(exists(place, "all/a/report.html") && !exists(place, "all/c"));
+}
+
+RT_TEST_IN_PLACE(an_interruption_between_two_experiments_says_how_to_continue_too) {
+    const Place *place = *state;
+    int how;
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        RtJob job = {.name = "a"};
+        RtError failure;
+        dup2(open(path_in(place, "message").text, O_WRONLY | O_CREAT | O_TRUNC, 0666), STDERR_FILENO);
+        if (rt_job_run(&job, "raytally run all --resume", &failure) != RT_OK) _exit(1);
+        if (!job.here) raise(SIGTERM);
+        _exit(0);
+    }
+    waitpid(child, &how, 0);
+    assert_true(WIFEXITED(how) && WEXITSTATUS(how) == 128 + SIGTERM);
+    assert_in_file(place, "message", "To continue:\n  raytally run all --resume\n");
 }
 
 RT_TEST_IN_PLACE(reproduce_takes_several_directories_and_goes_on_after_one_that_differs) {

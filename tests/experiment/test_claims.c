@@ -153,6 +153,9 @@ RT_TEST(structures_and_csg_trees_have_measures_of_their_own) {
     expect(RT_CLAIM_UNDECIDED, "break_even of grid:density=4 on random:n=10 < 1e9",
            "0 [0, inf]"); /* ahead of any number, or only of few */
     expect(RT_CLAIM_FIGURE, "break_even of bvh on random:n=10", "no such value");
+    for (uint32_t k = 0; k < 2; k++)
+        rt_cell_at(&results, 0, 3, (RtRayKind)k)->ratio = (RtEstimate){0.95, 0.9, 1.5, 0.9};
+    expect(RT_CLAIM_UNDECIDED, "break_even of grid:density=4 on random:n=10 < 1e9", "inf [0, inf]");
 }
 
 /* The fastest of the grids is another one for each kind of rays. */
@@ -213,6 +216,8 @@ RT_TEST(a_claim_that_is_none_is_refused_with_what_would_be_right) {
         {"ratio of time of bvh to all > 5", "'all' is not the label of one of the accelerators"},
         {"time of bvh at n > 5", "write 'at largest PARAM'"},
         {"time of bvh for random rays > 5", "this experiment has no 'random' rays"},
+        {"time of bvh for primary rays for shadow rays > 5", "it names two kinds of rays"},
+        {"time of bvh on balls on random > 5", "it names two scenes"},
         {"bytes of bvh for primary rays > 5", "bytes does not depend on the kind of rays"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {

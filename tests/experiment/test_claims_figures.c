@@ -149,6 +149,95 @@ RT_TEST(a_possible_crossover_makes_a_claim_undecided_that_holds_for_the_certain_
     expect(RT_CLAIM_FALSE, CROSSOVER_OF_TIME " > 100", "");
 }
 
+RT_TEST(curves_that_begin_equal_are_named_by_where_they_go) {
+    set_curves(10, 50, 500);
+    expect(RT_CLAIM_FIGURE, CROSSOVER, "bvh is above grid:density=1 from n=10 to 1000 (bvh on random)");
+}
+
+/* At n=100 grid has no tests, so the ratio is infinite there: no line of logarithms leads to it. */
+RT_TEST(a_crossover_next_to_a_count_of_0_is_not_denied) {
+    set_curves(20, 0, 0);
+    for (uint32_t t = 0; t < 3; t++) rt_build_at(&results, t, 1)->counts = true;
+    expect(RT_CLAIM_UNDECIDED, CROSSOVER " > 5", "bvh may cross grid:density=1 from n=10 to 1000");
+    set_curves(5, 0, 0);
+    expect(RT_CLAIM_UNDECIDED, CROSSOVER " > 5", "bvh is above grid:density=1 from n=10 to 1000");
+    expect(RT_CLAIM_FIGURE, "ratio of object_tests of bvh to grid:density=1 on random:n=100", "inf (bvh");
+    for (uint32_t t = 0; t < 3; t++) rt_build_at(&results, t, 1)->counts = false;
+}
+
+/* Where logarithms are equal only but for rounding. */
+RT_TEST(equal_values_have_no_exponent_and_no_correlation) {
+    set_all();
+    for (uint32_t objects = 3; objects < 100; objects++) {
+        for (uint32_t t = 0; t < 4; t++) {
+            results.workloads[t].known = true;
+            results.workloads[t].objects = objects;
+            set(t, 0, 7 + t, 3.7, 3.7);
+            set(t, 1, objects, 3.7, 3.7);
+        }
+        expect(RT_CLAIM_FIGURE, "exponent of object_tests of bvh in objects on random",
+               "unknown over 3 values");
+        expect(RT_CLAIM_FIGURE, "correlation of object_tests and time of bvh on random",
+               "unknown over 3 values");
+        expect(RT_CLAIM_FIGURE, "correlation of object_tests and time of grid:density=1 on random",
+               "unknown over 3 values");
+    }
+}
+
+RT_TEST(the_exponent_of_equal_values_is_exactly_0) {
+    set_all();
+    for (uint32_t t = 0; t < 3; t++) set(t, 0, 7, 3.7, 3.7);
+    expect(RT_CLAIM_HOLDS, "exponent of time of bvh in n >= 0", "0 over 3 values");
+    expect(RT_CLAIM_HOLDS, "exponent of object_tests of bvh in n <= 0", "0 over 3 values");
+}
+
+RT_TEST(the_smallest_and_the_largest_of_many_figures_are_of_those_that_are_known) {
+    const char *const claim = "exponent of object_tests of all in n";
+    RtCandidate more = {.spec = "octree", .ray_stride = 1};
+    rt_results_clear(&results);
+    assert_ok(rt_experiment_add_accels(e, &more, error));
+    assert_ok(rt_results_init(&results, e, error));
+    for (uint32_t c = 0; c < 5; c++) {
+        for (uint32_t t = 0; t < 3; t++) set(t, c, (uint64_t)pow(10, c * t), 1, 1); /* slopes 0 to 4 */
+    }
+    for (uint32_t t = 0; t < 3; t++) results.workloads[t].rays[0] = results.workloads[t].rays[1] = 10;
+    set(1, 2, 0, 1, 1); /* that of slope 2 is unknown */
+    expect(RT_CLAIM_FIGURE, claim,
+           "0 over 3 values (bvh on random) to 4.00 over 3 values (octree on random)");
+    set(1, 2, 10000, 1, 1);
+    set(1, 4, 0, 1, 1);
+    expect(RT_CLAIM_FIGURE, claim, "0 over 3 values (bvh on random) to 3.00 over 3 values");
+    tear_down(NULL);
+    set_up(NULL);
+}
+
+/* Up and down 24 times. */
+RT_TEST(more_crossovers_than_are_printed_leave_a_claim_undecided) {
+    RtWorkload scene = {.depth = 1};
+    const char *const claim = "crossover of object_tests of bvh and grid:density=1 in size < 10";
+    rt_results_clear(&results);
+    assert_ok(rt_experiment_add_scenes(e, &scene, "balls:size=1..25+1", "", error));
+    assert_ok(rt_results_init(&results, e, error));
+    for (uint32_t t = 4; t < 29; t++) {
+        results.workloads[t].rays[0] = results.workloads[t].rays[1] = 10;
+        set(t, 0, t % 2 ? 10 : 1000, 1, 1);
+        set(t, 1, 100, 1, 1);
+    }
+    expect(RT_CLAIM_FALSE, claim, "16 crossovers");
+    expect(RT_CLAIM_UNDECIDED, "crossover of object_tests of bvh and grid:density=1 in size < 20", "16");
+    tear_down(NULL);
+    set_up(NULL);
+}
+
+RT_TEST(an_accelerator_is_as_fast_as_itself_and_does_not_cross_itself) {
+    set_curves(200, 200, 200);
+    expect(RT_CLAIM_HOLDS, "ratio of time of all to bvh on random:n=10 >= 1", "1.00 (bvh on random:n=10)");
+    for (uint32_t t = 0; t < 3; t++) {
+        for (uint32_t c = 2; c < 4; c++) set(t, c, 200, 200, 200);
+    }
+    expect(RT_CLAIM_HOLDS, "crossover of object_tests of all and bvh in n > 199", "n=200");
+}
+
 RT_TEST(an_unknown_value_between_others_may_hide_a_crossover_and_one_at_the_end_shortens_the_range) {
     set_curves(20, 20, 20);
     *rt_cell_at(&results, 2, 1, RT_RAY_PRIMARY) = (RtCell){0};

@@ -217,6 +217,8 @@ RT_TEST_IN_PLACE(the_confidence_that_the_rounds_reach_is_said_and_how_many_it_ta
     compare_sides(&sides, 2, 0); /* 12 rounds each are enough */
     assert_true(fabs(sides.comparison.together - 0.95) < 1e-9);
     assert_true(is_printed(&sides.comparison, "all 32 together with 95 % confidence."));
+    sides.comparison.coverage = rt_coverage_of_each(1064); /* as a large experiment needs */
+    assert_true(is_printed(&sides.comparison, "each holds with 99.9953 %, all"));
     clear_sides(&sides);
 }
 
@@ -318,6 +320,8 @@ RT_TEST_IN_PLACE(strict_makes_something_slower_an_exit_code) {
     assert_in_file(place, "output", "\"time\": \"slower\"");
     assert_int_equal(raytally(place, "compare a b"), 0);
     assert_int_equal(raytally(place, "compare b a --strict"), 0);
+    assert_ends(place, "compare a b a/ b", 2, "a/ is given twice as BEFORE");
+    assert_int_equal(raytally(place, "compare a b b a"), 0);
 }
 
 /* Writes the program `other` beside the experiment: runs `before`, then raytally with `arguments`. */

@@ -247,6 +247,31 @@ RT_TEST_IN_PLACE(counting_again_renders_no_frame) {
     rt_results_clear(&results);
 }
 
+/* The journal of a run whose limit has left out a cell of grid: without its counts, times and frame. */
+RT_TEST_IN_PLACE(what_is_too_slow_for_the_rays_is_not_rendered) {
+    const Place *place = *state;
+    write_in(place, "small.yaml",
+             "name: small\nquestion: a\nprediction: b\nscenes: [{scene: balls:size=1, size: 8x8}]\n"
+             "accelerators: [{accel: bvh}, {accel: grid}]\nrays: [primary]\nrender: yes\nrounds: 2\n"
+             "milliseconds: 0\n");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_in_file(place, "out/render.csv", ",grid,");
+    char *journal = read_in(place, "out/cells.jsonl"), *left = rt_alloc(strlen(journal) + 200, 1);
+    for (const char *line = journal, *end; (end = strchr(line, '\n')) != NULL; line = end + 1) {
+        const size_t length = (size_t)(end + 1 - line);
+        if (!memmem(line, length, "\"grid\"", 6) || memmem(line, length, "\"built\"", 7))
+            strncat(left, line, length);
+    }
+    strcat(left, "{\"scene\":\"balls:size=1\",\"accel\":\"grid\",\"kind\":\"primary\",\"too_long\":\"3 s\","
+                 "\"broken\":false}\n");
+    write_in(place, "out/cells.jsonl", left);
+    assert_ends(place, "run small.yaml --out out --threads 1 --resume", 0, "nothing was left to measure");
+    assert_in_file(place, "output", "Left out: grid on balls:size=1, primary rays: 3 s");
+    assert_not_in_file(place, "out/render.csv", ",grid,");
+    rt_free(journal);
+    rt_free(left);
+}
+
 RT_TEST_IN_PLACE(rendering_where_nothing_is_timed_is_refused) {
     const Place *place = *state;
     write_changed(place, "small.yaml", spread, "distributions: yes", "render: yes");

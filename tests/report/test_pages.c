@@ -319,7 +319,7 @@ RT_TEST_IN_PLACE(the_index_has_each_experiment_with_verdict_finding_and_link_and
 
 /* Runs small.yaml under another name, with `members` in the place of its claim. */
 static void run_named(const Place *place, const char *name, const char *members) {
-    char from[32], arguments[64], *text;
+    char from[48], arguments[80], *text;
     write_small(place, members);
     text = read_in(place, "small.yaml");
     snprintf(from, sizeof from, "name: %s\n", name);
@@ -372,6 +372,20 @@ RT_TEST_IN_PLACE(the_index_groups_experiments_by_section_with_plot_first_sentenc
     text = read_in(place, "all/index.md");
     assert_in_order(text, markdown, sizeof markdown / sizeof markdown[0]);
     rt_free(text);
+}
+
+RT_TEST_IN_PLACE(what_names_and_texts_hold_stays_text_in_the_index) {
+    const Place *place = *state;
+    run_named(place, "'a|b*[c](d)'",
+              "section: papers\npaper: {citation: A, page: 1, quote: \"`a|b*` &lt;\", verdict: in part}\n"
+              "finding: \"`a|b*` & a|b* and ` and ** to the end.\"");
+    assert_int_equal(raytally(place, "run small.yaml --out 'all/<i>\"x\"' --threads 1"), 0);
+    write_in(place, "all/<i>\"x\"/manifest.json", "{");
+    assert_int_equal(raytally(place, "report --index all"), 0);
+    assert_in_file(place, "all/index.html", "id=\"&lt;i&gt;&quot;x&quot;\">");
+    assert_in_file(place, "all/index.html", "<code>a|b*</code> &amp; a|b* and ` and ** to the end.</p>");
+    assert_in_file(place, "all/index.md", "“`a\\|b*` \\&lt;” | in part | [a\\|b\\*\\[c\\](d)](");
+    assert_in_file(place, "all/index.md", "`a|b*` & a|b\\* and ` and \\*\\* to the end.");
 }
 
 RT_TEST_IN_PLACE(the_index_says_what_another_build_or_machine_measured) {

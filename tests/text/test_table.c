@@ -254,6 +254,9 @@ RT_TEST(an_interval_has_no_more_digits_than_it_supports) {
     expect_interval(INFINITY, 1490, INFINITY, "inf [1500, inf]");
     expect_interval(0, 0, 1490, "0 [0, 1500]");
     expect_interval(-0.52, -0.61, -0.4, "-0.5 [-0.6, -0.4]");
+    expect_interval(INFINITY, INFINITY, INFINITY, "inf [inf, inf]"); /* a ratio to a time of 0 */
+    expect_interval(INFINITY, INFINITY, (double)NAN, "inf");
+    expect_interval(0, -INFINITY, INFINITY, "0 [-inf, inf]");
 }
 
 RT_TEST(a_number_of_unknown_error_has_two_digits) {

@@ -57,6 +57,17 @@ void rt_append_text(char *out, size_t size, const char *format, ...) {
     va_end(args);
 }
 
+void rt_append_argument(char *out, size_t size, const char *word) {
+    static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789%+,-./:=@_";
+    if (*word && !word[strspn(word, plain)]) {
+        rt_append_text(out, size, " %s", word);
+        return;
+    }
+    rt_append_text(out, size, " '");
+    for (; *word; word++) rt_append_text(out, size, *word == '\'' ? "'\\%c'" : "%c", *word);
+    rt_append_text(out, size, "'");
+}
+
 void rt_print_wrapped(const char *text, FILE *out) {
     enum { WIDTH = 80 };
     while (strlen(text) > WIDTH) {

@@ -26,6 +26,9 @@ void rt_join_names(const char *const *names, size_t count, char *out, size_t siz
 /* Appends to the text in out[0..size), truncated if it does not fit. */
 __attribute__((format(printf, 3, 4))) void rt_append_text(char *out, size_t size, const char *format, ...);
 
+/* Appends a blank and `word` as a shell reads it: in quotes where it needs them. */
+void rt_append_argument(char *out, size_t size, const char *word);
+
 /* Prints `text` and a newline, wrapped at blanks to 80 characters. */
 void rt_print_wrapped(const char *text, FILE *out);
 

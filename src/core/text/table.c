@@ -110,7 +110,7 @@ static void put_rounded(double value, int place, int power, char out[32]) {
     if (place > power) value = unit * rint(value / unit);
     const int decimals = place < power ? power - place : 0;
     if (value == 0 || isinf(value))
-        strcpy(out, value == 0 ? "0" : "inf");
+        strcpy(out, value == 0 ? "0" : value > 0 ? "inf" : "-inf");
     else
         snprintf(out, 32, power ? "%.*fe%d" : "%.*f", decimals, value / ten_to_the(power), power);
 }
@@ -148,7 +148,8 @@ static int supported_place(double size, double half, double low) {
 void rt_format_interval(double value, double low, double high, char out[RT_MAX_FIELD]) {
     char texts[3][32];
     const bool any = isfinite(value) && value != 0, holds_1 = low <= 1 && 1 <= high;
-    const double size = fabs(any ? value : isfinite(high) && high != 0 ? high : low);
+    const double end = isfinite(high) && high != 0 ? high : isfinite(low) ? low : 0;
+    const double size = fabs(any ? value : end);
     const double half = isfinite(high - low) ? 0.5 * (high - low) : any ? value - low : 0.1 * size;
     const int power = size > 0 ? power_of(size) : 0;
     int place = size > 0 ? supported_place(size, half, low) : 0;
@@ -158,7 +159,8 @@ void rt_format_interval(double value, double low, double high, char out[RT_MAX_F
         put_rounded(low, place, power, texts[1]);
         put_rounded(high, place, power, texts[2]);
     } while (!holds_1 && reads_as_1(nearer) && place-- > -17);
-    snprintf(out, RT_MAX_FIELD, isnan(low) ? "%s" : "%s [%s, %s]", texts[0], texts[1], texts[2]);
+    snprintf(out, RT_MAX_FIELD, isnan(low) || isnan(high) ? "%s" : "%s [%s, %s]", texts[0], texts[1],
+             texts[2]);
 }
 
 static void show_real(RtForm form, double value, char buffer[RT_MAX_FIELD]) {

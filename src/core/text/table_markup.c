@@ -3,6 +3,7 @@
 #include "core/text/table_line.h"
 
 #include <inttypes.h>
+#include <string.h>
 
 static RtStanding standing_of(const RtTableWriter *w, const void *row) {
     return row && w->table->standing ? w->table->standing(row) : RT_STANDING_BEHIND;
@@ -119,9 +120,9 @@ void rt_html_wrap(FILE *out, const char *before, const char *text, const char *a
 void rt_html_markup(FILE *out, const char *text) {
     bool code = false, bold = false;
     for (; *text; text++) {
-        if (*text == '`') {
+        if (*text == '`' && (code || strchr(text + 1, '`'))) {
             fputs((code = !code) ? "<code>" : "</code>", out);
-        } else if (text[0] == '*' && text[1] == '*') {
+        } else if (text[0] == '*' && text[1] == '*' && (bold || strstr(text + 2, "**"))) {
             fputs((bold = !bold) ? "<b>" : "</b>", out);
             text++;
         } else {
