@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # light-buffer: throughput of shadow rays over that of `wide` alone, and time to build, one line per choice of cells.
 #: 1-light-buffer: Throughput of shadow rays over that of wide alone, and seconds to build, by scene, one marker per choice of cells.
-#:   Medians with intervals; right of 1 the light buffer is faster. Times to build are on a logarithmic axis. The order in each
-#:   scene, from top to bottom, is that of the legend.
+#:   Medians with intervals; right of 1 the light buffer is faster. Times to build are on a logarithmic axis; one that was built
+#:   once has no interval. The order in each scene, from top to bottom, is that of the legend.
 
 n_scenes = words(scenes); n_accels = words(accels)
 chosen(s, a) = strcol("scene") eq word(scenes, s) && strcol("accel") eq word(accels, a)
@@ -31,7 +31,7 @@ set ytics ()
 do for [s = 1:n_scenes] { set ytics add ("" n_scenes - s) }
 set xlabel "time to build, in seconds" textcolor rgb ink
 plot for [a = 1:n_accels] for [s = 1:n_scenes] "times.csv" \
-       using (chosen(s, a) ? column("build_seconds") : NaN):(place(s, a)) \
-       with points pointtype marker(a) pointsize 0.8 linecolor rgb color(a) notitle
+       using (chosen(s, a) ? column("build_seconds") : NaN):(place(s, a)):(column("build_low")):(column("build_high")) \
+       with xerrorbars linewidth 1.5 pointtype marker(a) pointsize 0.8 linecolor rgb color(a) notitle
 unset multiplot
 unset output
