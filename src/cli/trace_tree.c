@@ -44,7 +44,8 @@ static void print_rays(const RtRayTree *tree, const RtTally *costs, const RtScen
 
 static void print_terms(const RtRayTree *tree, uint32_t rows) {
     printf("\n%5s", "");
-    for (int t = 0; t < RT_TERM_COUNT; t++) printf("  %-20s", rt_term_name((RtTerm)t));
+    for (int t = 0; t < RT_TERM_COUNT; t++)
+        printf("  %-*s", t + 1 < RT_TERM_COUNT ? 20 : 0, rt_term_name((RtTerm)t));
     putchar('\n');
     for (uint32_t i = 0, printed = 0; printed < rows; i = rt_ray_tree_next(tree, i), printed++) {
         const RtTreeRay *ray = &tree->rays[i];

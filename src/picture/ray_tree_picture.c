@@ -130,7 +130,7 @@ static Window find_window(const Drawing *d) {
         if (matters(&d->tree->rays[i]))
             include(&window, rt_section_point(&d->section, end_of(&d->tree->rays[i])), 0);
     }
-    const double most = span_of(&window) > 1e-4 * far ? 2 * span_of(&window) : far / 3;
+    const double most = 0.6 * (span_of(&window) > 1e-4 * far ? span_of(&window) : far / 4);
     for (uint32_t i = 0; i < d->tree->count; i++) {
         if (!matters(&d->tree->rays[i])) continue;
         RtBall ball = rt_object_ball(&d->scene->geometry, d->tree->rays[i].hit.object);
@@ -239,7 +239,8 @@ static void draw_number(const Drawing *d, const RtTreeRay *ray, RtPoint from, Rt
 /* A line with a head at `to`, `head` long. */
 static void draw_arrow(const Drawing *d, RtPoint from, RtPoint to, RtStyle style, double head) {
     double dx = to.x - from.x, dy = to.y - from.y, length = sqrt(dx * dx + dy * dy);
-    rt_add_line(d->cairo, from, to);
+    cairo_move_to(d->cairo, from.x, from.y); /* an open line: dashes do not come back over the gaps */
+    cairo_line_to(d->cairo, to.x, to.y);
     rt_paint(d->cairo, style);
     if (!(length > 0)) return;
     dx *= head / length, dy *= head / length;
@@ -361,8 +362,12 @@ static RtStatus draw(Drawing *d, const char *title, const char *file, RtError *e
     rt_draw_text_within(d->cairo, MARGIN, 24, WIDTH - 2 * MARGIN, title);
     cairo_set_font_size(d->cairo, FONT_SIZE);
     rt_set_color(d->cairo, dark, 1);
-    rt_draw_text(d->cairo, MARGIN, 46,
-                 "a section that contains the primary ray; numbers are those of the rows below");
+    RtVec3d up = d->section.up;
+    char text[128];
+    snprintf(text, sizeof text,
+             "a section that contains the primary ray; upward is (%.2f, %.2f, %.2f); numbers as below", up.x,
+             up.y, up.z);
+    rt_draw_text(d->cairo, MARGIN, 46, text);
     RtStatus status = draw_section(d, error);
     draw_keys(d, below + 22);
     draw_rows(d, below + KEYS + ROW, rows);

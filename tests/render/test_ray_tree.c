@@ -94,15 +94,18 @@ RT_TEST(each_reflection_between_two_mirrors_carries_half_of_the_light) {
     assert_ok(rt_scene_finish(&scene, error));
     OWNED_ACCEL RtAccel *accel = open_accel(&scene, "brute");
     OWNED_TREE tree = tree_of(accel, 0, 0, 4);
-    assert_int_equal(tree.count, 4);
     assert_int_equal(tree.levels, 4);
-    for (uint32_t i = 0; i < 4; i++) {
-        assert_int_equal(tree.rays[i].level, i + 1);
-        assert_int_equal(tree.rays[i].hit.object, i % 2);
-        assert_true(tree.rays[i].factor == powf(0.5f, (float)i));
-        assert_true(tree.rays[i].cut == (i == 3));
-        assert_false(tree.rays[i].total);
+    uint32_t level = 0;
+    for (uint32_t i = 0; i < tree.count; i++) {
+        const RtTreeRay *ray = &tree.rays[i];
+        if (ray->ray.kind == RT_RAY_SHADOW) continue;
+        assert_int_equal(ray->hit.object, level % 2);
+        assert_true(ray->factor == powf(0.5f, (float)level));
+        assert_true(ray->cut == (level == 3));
+        assert_false(ray->total);
+        assert_int_equal(ray->level, ++level);
     }
+    assert_int_equal(level, 4);
 }
 
 /* The camera is inside a ball of glass, above its centre, and looks along the surface. */
@@ -115,10 +118,16 @@ RT_TEST(a_ray_that_glass_holds_back_is_reflected_with_all_of_its_light) {
     assert_ok(rt_scene_finish(&scene, error));
     OWNED_ACCEL RtAccel *accel = open_accel(&scene, "brute");
     OWNED_TREE tree = tree_of(accel, 0, 0, 2);
-    assert_int_equal(tree.count, 2);
-    assert_int_equal(tree.rays[1].ray.kind, RT_RAY_REFLECTION);
-    assert_true(tree.rays[1].total);
-    assert_true(tree.rays[1].factor == 0.1f + 0.75f);
+    uint32_t reflected = 0;
+    for (uint32_t i = 1; i < tree.count; i++) {
+        const RtTreeRay *ray = &tree.rays[i];
+        if (ray->ray.kind == RT_RAY_SHADOW) continue;
+        assert_int_equal(ray->ray.kind, RT_RAY_REFLECTION);
+        assert_true(ray->total);
+        assert_true(ray->factor == 0.1f + 0.75f);
+        reflected++;
+    }
+    assert_int_equal(reflected, 1);
     assert_false(tree.rays[0].surface.entering);
 }
 
@@ -140,7 +149,7 @@ RT_TEST(a_shadow_ray_knows_what_is_in_the_way_and_adds_nothing_then) {
     assert_near(blocked->hit.t, 1.0 / 3 - 0.5 / sqrt(72), 1e-3);
     assert_true(blocked->light.x == 0);
     assert_int_equal(free->hit.object, RT_NO_OBJECT);
-    assert_near(free->light.x, 0.9 * sqrt(0.5), 1e-6);
+    assert_near(free->light.x, scene.materials[0].diffuse * scene.materials[0].color.x * sqrt(0.5), 1e-6);
     assert_near(tree.rays[0].terms[RT_TERM_DIFFUSE].x, free->light.x, 0);
     assert_int_equal(free->level, 1);
 }
