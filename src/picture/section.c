@@ -3,7 +3,7 @@
 
 #include "picture/extent_outline.h"
 
-enum { SPACING = 2, MOST_CROSSINGS = 64 }; /* pixels between lines; of one line */
+enum { SPACING = 3, MOST_CROSSINGS = 64 }; /* pixels between lines; of one line */
 
 bool rt_section_add_ball(const RtSection *section, cairo_t *cairo, RtVec3d center, double radius) {
     double off = rt_dotd(rt_subd(center, section->on), section->normal);
@@ -26,8 +26,10 @@ static void add_tangent(const RtSection *section, cairo_t *cairo, RtVec3d at, Rt
     double length = rt_lengthd(tangent), slant = fabs(rt_dotd(normal, along));
     if (!(length > 1e-6) || slant < 0.6 * length) return;
     RtVec3d half = rt_scaled(tangent, (double)SPACING / section->scale / length);
-    rt_add_line(cairo, rt_section_point(section, rt_subd(at, half)),
-                rt_section_point(section, rt_addd(at, half)));
+    RtPoint from = rt_section_point(section, rt_subd(at, half)),
+            to = rt_section_point(section, rt_addd(at, half));
+    cairo_move_to(cairo, from.x, from.y);
+    cairo_line_to(cairo, to.x, to.y);
 }
 
 /* Follows one line of the plane through the object. */
