@@ -63,12 +63,15 @@ static void scan(const RtSection *section, cairo_t *cairo, const RtGeometry *g, 
     const RtBall ball = rt_object_ball(g, id);
     double off = rt_dotd(rt_subd(ball.center, section->on), section->normal);
     if (fabs(off) >= ball.radius) return;
-    double radius = sqrt(ball.radius * ball.radius - off * off), from, to;
+    const double radius = sqrt(ball.radius * ball.radius - off * off), step = SPACING / section->scale;
+    double from, to;
     RtVec3d middle = rt_add_scaledd(ball.center, section->normal, -off);
     RtVec3d start = rt_add_scaledd(middle, along, -1.1 * radius);
     visible(section, cairo, middle, across, &from, &to);
-    for (double at = fmax(from, -radius); at <= fmin(to, radius); at += SPACING / section->scale)
-        add_crossings(section, cairo, g, id, rt_add_scaledd(start, across, at), along, crossings);
+    from = fmax(from, -radius), to = fmin(to, radius);
+    for (int i = 0; from + i * step <= to; i++)
+        add_crossings(section, cairo, g, id, rt_add_scaledd(start, across, from + i * step), along,
+                      crossings);
 }
 
 void rt_section_add_object(const RtSection *section, cairo_t *cairo, const RtGeometry *geometry, uint32_t id,

@@ -94,6 +94,22 @@ RT_TEST(the_five_terms_of_a_hit_add_up_to_the_light_that_comes_from_it) {
     for (int t = 0; t < RT_TERM_COUNT; t++) assert_true(used[t] > 0);
 }
 
+RT_TEST(rays_are_numbered_depth_first_and_each_once) {
+    OWNED_SCENE scene = busy_scene();
+    assert_ok(rt_scene_sample(&scene, 16, 12, 1, false, error));
+    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "bvh");
+    OWNED_TREE tree = tree_of(accel, 5, 6, 4);
+    uint32_t number = 0, deepest = 0, last = 0;
+    for (uint32_t i = 0; i != RT_NO_RAY; last = i, i = rt_ray_tree_next(&tree, i)) {
+        assert_int_equal(tree.rays[i].number, ++number);
+        if (tree.rays[last].child != RT_NO_RAY && i > 0) assert_int_equal(tree.rays[i].parent, last);
+        if (tree.rays[i].level > deepest) deepest = tree.rays[i].level;
+    }
+    assert_int_equal(number, tree.count);
+    assert_int_equal(deepest, 4);
+    assert_int_equal(tree.levels, 4);
+}
+
 /* A mirror below, and one above the camera, which looks straight down. */
 RT_TEST(each_reflection_between_two_mirrors_carries_half_of_the_light) {
     OWNED_SCENE scene =
