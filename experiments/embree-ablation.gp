@@ -20,7 +20,7 @@ set multiplot layout 1, n_scenes margins screen 0.155, 0.99, 66.0 / height, 1 - 
 do for [s = 1:n_scenes] {
   set title word(scenes, s) font ",14" textcolor rgb ink
   set xlabel (s == (n_scenes + 1) / 2 ? "throughput / that of wide" : "") textcolor rgb ink
-  set ytics () font ",12"
+  set ytics ()
   do for [a = 2:n_accels] { set ytics add ((s == 1 ? word(accels, a) : "") n_accels - a) }
   if (s == 1) { set key at screen 0.985, screen 1 - 8.0 / height right top vertical maxrows 1 samplen 1 textcolor rgb ink } else { unset key }
   plot for [k = 1:n_kinds] for [a = 2:n_accels] "times.csv" \

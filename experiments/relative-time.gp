@@ -13,23 +13,22 @@ row(name) = sum [i = 1:n_shown] (word(shown, i) eq name ? n_shown + 1 - i : 0)
 shift(s) = 0.7 / n_scenes * (0.5 * (n_scenes + 1) - s)
 on(s, k) = strcol("scene") eq word(scenes, s) && strcol("kind") eq word(kinds, k) && row(strcol("accel")) > 0
 
-panel_columns = n_kinds < 2 ? 1 : 2
+panel_columns = across(2, n_kinds)
 panel_rows = (n_kinds + panel_columns - 1) / panel_columns
 longest = 0
 do for [scene in scenes] { if (strlen(scene) > longest) { longest = strlen(scene) } }
-key_rows = (n_scenes - 1) / int(940 / (42 + 7.2 * longest)) + 1
+key_rows = (n_scenes - 1) / int((wide - 20) / (42 + 9 * longest)) + 1
 panel_height = 40 + n_shown * (18 + 4 * n_scenes)
 head = 44.0 + 20 * key_rows
-height = head + 14 + (panel_height + 52) * panel_rows
+height = head + 2 + (panel_height + 68) * panel_rows
 set logscale x 2
 set yrange [0.4 : n_shown + 0.6]
 set grid ytics
-set xtics rotate by 0
-set format x "%g"
+set xtics rotate by 0 @ratio_tics
 
-eval canvas("1-time", 960, height)
-set multiplot layout panel_rows, panel_columns margins screen 0.17, 0.985, 44.0 / height, 1 - head / height \
-    spacing screen 0.03, 60.0 / height
+eval canvas("1-time", wide, height)
+set multiplot layout panel_rows, panel_columns margins screen 163.0 / wide, 0.985, 58.0 / height, 1 - head / height \
+    spacing screen 0.03, 68.0 / height
 do for [k = 1:n_kinds] {
   set title word(kinds, k) font ",14" textcolor rgb ink
   set ytics () noenhanced
