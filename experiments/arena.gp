@@ -17,7 +17,7 @@ key_rows = paper eq "column" ? 2 : 1
 height = 64 + 20 * key_rows + (70 + 30 * n_shown) * rows
 set logscale x 2
 set xrange [0.02 : 4]
-set xtics @ratio_tics
+eval "set xtics ".ratio_tics(0.02, 4)
 set yrange [0.4 : n_shown + 0.6]
 set grid ytics
 

@@ -33,7 +33,7 @@ height = 78 + 290 * rows
 left = 76.0 / wide
 
 set logscale y 2
-set ytics @ratio_tics
+eval "set ytics ".ratio_tics(low, high)
 
 eval canvas("1-embree", wide, height)
 set multiplot layout rows, columns margins screen left, 0.985, 78.0 / height, 1 - 72.0 / height spacing screen 0.045, 105.0 / height

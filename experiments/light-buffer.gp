@@ -27,7 +27,7 @@ set ytics ()
 do for [s = 1:n_scenes] { set ytics add (word(scenes, s) n_scenes - s) }
 set key at screen 0.985, screen 1 - 8.0 / height right top vertical maxrows key_rows samplen 1 textcolor rgb ink
 set logscale x 2
-set xtics ("1/4" 0.25, "1/2" 0.5, "1" 1, "2" 2)
+eval "set xtics ".ratio_tics(0.2, 2.1)
 set xrange [0.2 : 2.1]
 plot keyentry with points pointtype marker(1) pointsize 0.65 linecolor rgb hue(1) title word(accels, 1), \
      for [a = 2:n_accels] for [s = 1:n_scenes] "times.csv" \

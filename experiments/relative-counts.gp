@@ -31,7 +31,7 @@ height = head + 76 + n_shown * (18 + 4 * n_scenes)
 set logscale x 2
 set yrange [0.4 : n_shown + 0.6]
 set grid ytics
-set xtics @ratio_tics
+set xtics 2; set format x "%g"
 set xlabel "over that of ".first noenhanced textcolor rgb ink
 
 eval canvas("2-counts", 960, height)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # relative-time: time per ray over that of the baseline, a row per accelerator, a panel per ray kind.
-#: 1-time: Time per ray over that of the baseline, on a logarithmic scale, one panel per ray kind, a row per accelerator.
+#: 1-time: Time per ray over that of the baseline, one panel per ray kind, all on one logarithmic scale, a row per accelerator.
 #:   Medians with intervals, one marker per scene; left of 1 it is faster than the baseline.
 
 n_scenes = words(scenes); n_kinds = words(kinds)
@@ -21,10 +21,15 @@ key_rows = (n_scenes - 1) / int((wide - 20) / (42 + 9 * longest)) + 1
 panel_height = 40 + n_shown * (18 + 4 * n_scenes)
 head = 44.0 + 20 * key_rows
 height = head + 2 + (panel_height + 68) * panel_rows
+stats "times.csv" using (row(strcol("accel")) > 0 ? 1 / column("ratio_high") : NaN) nooutput
+low = STATS_min / 1.1
+stats "times.csv" using (row(strcol("accel")) > 0 ? 1 / column("ratio_low") : NaN) nooutput
+high = STATS_max * 1.1
 set logscale x 2
+set xrange [low : high]
 set yrange [0.4 : n_shown + 0.6]
 set grid ytics
-set xtics rotate by 0 @ratio_tics
+eval "set xtics rotate by 0 ".ratio_tics(low, high)
 
 eval canvas("1-time", wide, height)
 set multiplot layout panel_rows, panel_columns margins screen 163.0 / wide, 0.985, 58.0 / height, 1 - head / height \
@@ -36,7 +41,7 @@ do for [k = 1:n_kinds] {
   if (k == 1) {
     set key at screen 0.985, screen 1 - 6.0 / height right top vertical maxrows key_rows samplen 1 textcolor rgb ink noenhanced
   } else { unset key }
-  if (k > n_kinds - panel_columns) { set xlabel "time over that of ".baseline noenhanced textcolor rgb ink } else { unset xlabel }
+  if (k > n_kinds - panel_columns) { set xlabel "time / ".baseline noenhanced textcolor rgb ink } else { unset xlabel }
   set arrow 1 from 1, graph 0 to 1, graph 1 nohead linewidth 1.5 dashtype 2 linecolor rgb soft
   plot for [s = 1:n_scenes] "times.csv" \
          using (on(s, k) ? 1 / column("ratio") : NaN):(row(strcol("accel")) + shift(s)): \

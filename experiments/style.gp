@@ -42,8 +42,9 @@ set output 'plots/%s.svg.tmp'", width, height, letters, name)
 wide = paper eq "column" ? 480 : 960
 across(most, panels) = paper eq "column" ? (panels > 3 ? 2 : 1) : panels < most ? panels : most
 
-# Tics of ratios on a logarithmic axis: set ytics @ratio_tics
-ratio_tics = paper eq "column" ? '("1/64" 1.0 / 64, "1/16" 1.0 / 16, "1/4" 0.25, "1" 1, "4" 4, "16" 16)' : \
+# Tics of ratios from low to high on a logarithmic axis: eval "set ytics ".ratio_tics(low, high)
+ratio_tics(low, high) = paper eq "column" && high > 12 * low ? \
+  '("1/64" 1.0 / 64, "1/16" 1.0 / 16, "1/4" 0.25, "1" 1, "4" 4, "16" 16, "64" 64)' : \
   '("1/32" 1.0 / 32, "1/16" 1.0 / 16, "1/8" 0.125, "1/4" 0.25, "1/2" 0.5, "1" 1, "2" 2, "4" 4, "8" 8, "16" 16, "32" 32)'
 
 # Requires `last`. Fills `order`, the indices of its numbers from the greatest to the least, as lines end at the right.
