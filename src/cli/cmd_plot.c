@@ -27,8 +27,8 @@ static RtStatus draw(const char *directory, RtResults *results, const void *opti
 static void take_paper(void *options, const char *text, struct argp_state *state) {
     Options *o = options;
     o->column = strcmp(text, "column") == 0;
-    if (!o->column && strcmp(text, "page") != 0)
-        argp_error(state, "--paper takes column or page, not '%s'", text);
+    if (o->column || strcmp(text, "page") == 0) return;
+    argp_error(state, "--paper: invalid value '%s': expected column or page", text);
 }
 
 static const RtOption options[] = {

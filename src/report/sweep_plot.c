@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "report/sweep_plot.h"
 
-#include "accel/accel.h"
 #include "core/base/memory.h"
 #include "report/color.h"
 #include "report/page.h"
@@ -263,9 +262,8 @@ static uint32_t find_order(const Figure *figure, Measure measure, uint32_t *orde
     return count;
 }
 
-static bool is_yardstick(const Figure *figure, uint32_t line) {
-    const uint32_t candidate = figure->lines[line].candidate;
-    return strcmp(figure->results->experiment->candidates[candidate].spec, rt_accel_yardstick()) == 0;
+static bool is_compared(const Figure *figure, uint32_t line) {
+    return rt_candidate_is_compared(figure->results->experiment, figure->lines[line].candidate);
 }
 
 /* The range of all panels, without the yardstick, which would take most of a logarithmic axis. */
@@ -279,7 +277,7 @@ static Range range_of(const Figure *figure, Measure measure) {
     for (uint32_t i = 0; i < figure->point_count; i++) {
         const RtCost *cost = &figure->points[i].cost;
         const double y = cost_of(cost, measure), unit = measure == TIME ? 1e9 : 1;
-        if (!(y > 0) || is_yardstick(figure, figure->points[i].line)) continue;
+        if (!(y > 0) || !is_compared(figure, figure->points[i].line)) continue;
         range.least = fmin(range.least, unit * (measure == TIME ? fmin(y, cost->seconds.low) : y));
         range.most = fmax(range.most, unit * (measure == TIME ? fmax(y, cost->seconds.high) : y));
     }
@@ -384,7 +382,7 @@ static void put_legend(const Figure *figure, const Layout *l, const uint32_t *or
         const double x = 12 + l->entry * (i % l->entry_columns);
         const double y = ENTRY * (rows - i / l->entry_columns) - 6;
         const double unit = l->measure == TIME ? 1e9 : 1;
-        const bool below = is_yardstick(figure, line) && range->logarithmic &&
+        const bool below = !is_compared(figure, line) && range->logarithmic &&
                            unit * last_of(figure, line, l->measure) < range->least / 1.3;
         fprintf(out,
                 "set arrow %u from screen %.4f, screen %.4f to screen %.4f, screen %.4f nohead linestyle %u\n"
