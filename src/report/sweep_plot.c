@@ -142,37 +142,47 @@ static void span_axis(Figure *figure) {
     }
 }
 
-/* Takes back the last group if it has fewer than two values of the parameter. */
-static void check_group(Figure *figure, uint32_t first_point) {
-    double x = NAN;
-    for (uint32_t i = first_point; i < figure->point_count; i++) {
-        const double other = figure->points[i].x;
-        if (!isfinite(other)) continue;
-        if (isfinite(x) && x != other) return;
-        x = other;
+static bool is_measured(const Figure *figure, uint32_t t, uint32_t c) {
+    const RtCost cost = rt_results_cost(figure->results, t, c, RT_ALL_RAYS);
+    return !isnan(cost.seconds.median) || !isnan(cost.object_tests);
+}
+
+/* Whether scene t is in the panel of scene `first`. */
+static bool in_group(const Figure *figure, uint32_t first, uint32_t t) {
+    return figure->results->workloads[t].known &&
+           same_group(figure->results->experiment, &figure->key, first, t);
+}
+
+/* Whether the parameter has several values there. */
+static bool varies(const Figure *figure, uint32_t first) {
+    const RtExperiment *experiment = figure->results->experiment;
+    const char *one = NULL;
+    for (uint32_t t = first; t < experiment->workload_count; t++) {
+        for (uint32_t c = 0; in_group(figure, first, t) && c < experiment->candidate_count; c++) {
+            const char *value = rt_swept_of(experiment, &figure->key, t, c);
+            if (!value || !is_measured(figure, t, c)) continue;
+            if (one && !rt_swept_equal(one, value)) return true;
+            one = value;
+        }
     }
-    figure->point_count = first_point;
-    figure->group_count--;
+    return false;
 }
 
 /* The lines of the scenes that differ from scene `first` only in the parameter. */
 static void gather_group(Figure *figure, uint32_t first) {
-    const RtResults *results = figure->results;
-    const RtExperiment *experiment = results->experiment;
-    const uint32_t group = figure->group_count, first_point = figure->point_count;
+    const RtExperiment *experiment = figure->results->experiment;
+    const uint32_t group = figure->group_count;
     figure->groups[figure->group_count++] = first;
     for (uint32_t t = first; t < experiment->workload_count; t++) {
-        if (!results->workloads[t].known || !same_group(experiment, &figure->key, first, t)) continue;
-        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        for (uint32_t c = 0; in_group(figure, first, t) && c < experiment->candidate_count; c++) {
             const char *value = rt_swept_of(experiment, &figure->key, t, c);
-            const RtCost cost = rt_results_cost(results, t, c, RT_ALL_RAYS);
-            if (isnan(cost.seconds.median) && isnan(cost.object_tests)) continue;
+            const RtCost cost = rt_results_cost(figure->results, t, c, RT_ALL_RAYS);
+            if (!is_measured(figure, t, c)) continue;
             figure->timed |= !isnan(cost.seconds.median);
             add_point(figure, group, line_of(figure, c, !value), value ? place_of(figure, value) : -INFINITY,
                       &cost);
         }
     }
-    check_group(figure, first_point);
 }
 
 static void gather(Figure *figure) {
@@ -183,7 +193,7 @@ static void gather(Figure *figure) {
         bool first = true;
         for (uint32_t before = 0; before < t; before++)
             first &= !same_group(experiment, &figure->key, before, t);
-        if (first) gather_group(figure, t);
+        if (first && varies(figure, t)) gather_group(figure, t);
     }
     span_axis(figure);
     qsort(figure->points, figure->point_count, sizeof(Point), by_place);
@@ -421,10 +431,11 @@ static void put_panel(const Figure *figure, const Layout *l, uint32_t group, FIL
             "linestyle int(word(order, i)) notitle",
             group + 1, measures[l->measure].column);
     if (l->measure == TIME)
-        fprintf(out,
-                ", for [i = 1:words(order)] '$p%u_'.word(order, i) using 1:2:3:4 with yerrorbars "
-                "linestyle int(word(order, i)) dashtype 1 pointtype 0 linewidth 1.8 notitle",
-                group + 1);
+        fprintf(
+            out,
+            ", for [i = 1:words(order)] '$p%u_'.word(order, i) using 1:3:(0):($4 - $3) with vectors heads "
+            "size graph 0.01, 90 nofilled linestyle int(word(order, i)) dashtype 1 linewidth 1.6 notitle",
+            group + 1);
     fputs("\nunset arrow; unset label\n", out); /* the legend, once */
 }
 

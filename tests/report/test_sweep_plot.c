@@ -65,7 +65,7 @@ RT_TEST_IN_PLACE(without_scripts_a_plot_is_drawn_for_each_parameter_and_measure)
     assert_in_file(place, drawn[0], "viewBox=\"0 0 480 ");
     assert_in_file(place, drawn[5], "lbvh");
     assert_in_file(place, "out/plots/sweep.gp", "set logscale x");
-    assert_in_file(place, "out/plots/sweep.gp", "with yerrorbars");
+    assert_in_file(place, "out/plots/sweep.gp", "($4 - $3) with vectors heads");
     assert_in_file(place, "out/report.html", "data:image/svg+xml");
     char *log = read_in(place, "out/plots/gnuplot.log");
     assert_string_equal(log, "");
