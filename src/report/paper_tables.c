@@ -222,12 +222,13 @@ static void put_head(const RtResults *results, bool tex, FILE *out) {
 static RtStatus write_tables(const RtResults *results, const char *directory, const char *name, bool tex,
                              RtError *error) {
     const RtExperiment *experiment = results->experiment;
-    const Measure lead = experiment->count_only ? OBJECT_TESTS : TIME;
+    const bool counts = experiment->count_only;
+    const Measure lead = counts ? OBJECT_TESTS : TIME, end = counts ? BUILD : MEASURE_COUNT;
     const bool one = experiment->kind_count == 1;
     RtOutput output;
     RT_TRY(rt_output_open_in(&output, directory, name, error));
     put_head(results, tex, output.file);
-    for (Measure m = lead; m < MEASURE_COUNT; m++)
+    for (Measure m = lead; m < end; m++)
         put_pivots(results, m, one ? experiment->kinds[0] : RT_ALL_RAYS, tex, output.file);
     for (uint32_t k = 0; !one && k < experiment->kind_count; k++)
         put_pivots(results, lead, experiment->kinds[k], tex, output.file);

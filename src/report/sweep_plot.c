@@ -209,26 +209,34 @@ static void put_number(FILE *out, double number) {
     }
 }
 
-/* The block $pGROUP_LINE; a line that a scene lacks has one row of unknown values. */
-static void put_data(const Figure *figure, FILE *out) {
-    for (uint32_t block = 0; block < figure->group_count * figure->line_count; block++) {
-        const uint32_t group = block / figure->line_count, line = block % figure->line_count;
-        bool any = false;
-        fprintf(out, "$p%u_%u << EOD\nx,ns,low,high,object_tests,steps\n", group + 1, line + 1);
-        for (uint32_t i = 0; i < figure->point_count; i++) {
-            const Point *point = &figure->points[i];
-            if (point->group != group || point->line != line) continue;
-            fprintf(out, "%.9g", point->x);
-            put_number(out, 1e9 * point->cost.seconds.median);
-            put_number(out, 1e9 * point->cost.seconds.low);
-            put_number(out, 1e9 * point->cost.seconds.high);
-            put_number(out, point->cost.object_tests);
-            put_number(out, point->cost.steps);
-            fputc('\n', out);
-            any = true;
-        }
-        fputs(any ? "EOD\n" : "NaN,NaN,NaN,NaN,NaN,NaN\nEOD\n", out);
+/* Whether the line has a cost in the panel. */
+static bool is_drawn(const Figure *figure, uint32_t group, uint32_t line, Measure measure) {
+    for (uint32_t i = 0; i < figure->point_count; i++) {
+        const Point *point = &figure->points[i];
+        if (point->group == group && point->line == line && !isnan(cost_of(&point->cost, measure)))
+            return true;
     }
+    return false;
+}
+
+/* The block $pGROUP_LINE. */
+static void put_data(const Figure *figure, FILE *out) {
+    const Point *before = NULL;
+    for (uint32_t i = 0; i < figure->point_count; i++) {
+        const Point *point = &figure->points[i];
+        if (!before || before->group != point->group || before->line != point->line)
+            fprintf(out, "%s$p%u_%u << EOD\nx,ns,low,high,object_tests,steps\n", before ? "EOD\n" : "",
+                    point->group + 1, point->line + 1);
+        fprintf(out, "%.9g", point->x);
+        put_number(out, 1e9 * point->cost.seconds.median);
+        put_number(out, 1e9 * point->cost.seconds.low);
+        put_number(out, 1e9 * point->cost.seconds.high);
+        put_number(out, point->cost.object_tests);
+        put_number(out, point->cost.steps);
+        fputc('\n', out);
+        before = point;
+    }
+    fputs("EOD\n", out);
 }
 
 /* The colour of the line's first accelerator; marker and dash distinguish lines in grey print. */
@@ -404,7 +412,8 @@ static void put_legend(const Figure *figure, const Layout *l, const uint32_t *or
     }
 }
 
-static void put_panel(const Figure *figure, const Layout *l, uint32_t group, FILE *out) {
+static void put_panel(const Figure *figure, const Layout *l, const uint32_t *order, uint32_t group,
+                      FILE *out) {
     const uint32_t column = group % l->columns, row = group / l->columns;
     const double left = LEFT + column * (l->panel + RIGHT);
     const double top = TOP + row * (double)(PANEL + GAP);
@@ -426,8 +435,12 @@ static void put_panel(const Figure *figure, const Layout *l, uint32_t group, FIL
         fprintf(out, "set xlabel \"%s\" noenhanced textcolor rgb ink\n", figure->key.key);
     else
         fputs("unset xlabel\n", out);
+    fputs("order = \"", out);
+    for (uint32_t i = 0; i < l->entries; i++) {
+        if (is_drawn(figure, group, order[i], l->measure)) fprintf(out, "%u ", order[i] + 1);
+    }
     fprintf(out,
-            "plot for [i = 1:words(order)] '$p%u_'.word(order, i) using 1:%d with linespoints "
+            "\"\nplot for [i = 1:words(order)] '$p%u_'.word(order, i) using 1:%d with linespoints "
             "linestyle int(word(order, i)) notitle",
             group + 1, measures[l->measure].column);
     if (l->measure == TIME)
@@ -450,12 +463,10 @@ static void put_figure(const Figure *figure, Measure measure, uint32_t number, u
         "All panels have the same scales; the legend has the order of the lines at the right of the first "
         "panel.\n",
         name, measures[measure].title, figure->key.key, measure == TIME ? ", medians with intervals" : "");
-    fputs("order = \"", out);
-    for (uint32_t i = 0; i < l.entries; i++) fprintf(out, "%u ", order[i] + 1);
-    fprintf(out, "\"\neval canvas(\"%s\", %.0f, %.0f)\nset multiplot\n", name, l.width, l.height);
+    fprintf(out, "eval canvas(\"%s\", %.0f, %.0f)\nset multiplot\n", name, l.width, l.height);
     put_y_axis(&range, out);
     put_legend(figure, &l, order, &range, out);
-    for (uint32_t group = 0; group < figure->group_count; group++) put_panel(figure, &l, group, out);
+    for (uint32_t group = 0; group < figure->group_count; group++) put_panel(figure, &l, order, group, out);
     fputs("unset multiplot\nunset output\n", out);
 }
 

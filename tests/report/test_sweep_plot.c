@@ -80,9 +80,9 @@ static uint32_t count_of(const char *text, const char *what) {
 
 RT_TEST_IN_PLACE(the_scenes_are_panels_of_one_plot_with_one_scale) {
     const Place *place = *state;
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --count-only"), 0);
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
     char *script = read_in(place, "out/plots/sweep.gp");
-    char *figure = strstr(script, "eval canvas(\"05-sweep-build-object-tests\", 960");
+    char *figure = strstr(script, "eval canvas(\"08-sweep-build-object-tests\", 960");
     assert_non_null(figure);
     *strstr(figure, "unset multiplot") = '\0';
     assert_int_equal(count_of(figure, "set yrange"), 1);
@@ -92,16 +92,16 @@ RT_TEST_IN_PLACE(the_scenes_are_panels_of_one_plot_with_one_scale) {
     rt_free(script);
     if (access("/usr/bin/gnuplot", X_OK) != 0) RT_SKIP("gnuplot-nox");
     assert_int_equal(raytally(place, "plot out --paper column"), 0);
-    assert_in_file(place, "out/plots/05-sweep-build-object-tests.svg", "viewBox=\"0 0 480 ");
+    assert_in_file(place, "out/plots/08-sweep-build-object-tests.svg", "viewBox=\"0 0 480 ");
 }
 
 RT_TEST_IN_PLACE(whole_numbers_have_whole_ticks) {
     const Place *place = *state;
     write_changed(place, "small.yaml", swept, "1..16*2", "1..5+1");
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --count-only"), 0);
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
     assert_in_file(place, "out/plots/sweep.gp", "set xtics (\"1\" 1,\"2\" 2,\"3\" 3,\"4\" 4,\"5\" 5)");
     write_changed(place, "small.yaml", swept, "1..16*2", "1..10+1");
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --count-only --force"), 0);
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --force"), 0);
     assert_in_file(place, "out/plots/sweep.gp", "set xtics 2\n");
 }
 
@@ -110,8 +110,8 @@ RT_TEST_IN_PLACE(ideal_below_the_others_is_named_so_and_does_not_stretch_the_axi
     write_in(place, "small.yaml",
              "name: small\nquestion: How far is it?\nprediction: Far.\n"
              "scenes: [{scene: \"random:n=40..4000*10\", size: 4x4}]\n"
-             "accelerators: [{accel: brute}, {accel: ideal}]\nrays: [primary]\n");
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --count-only"), 0);
+             "accelerators: [{accel: brute}, {accel: ideal}]\nrays: [primary]\ncount_only: yes\n");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
     assert_in_file(place, "out/plots/sweep.gp", "\"ideal (below)\"");
     assert_in_file(place, "out/plots/sweep.gp", "set logscale y; set yrange [30.7692308:5200]");
 }
