@@ -118,7 +118,7 @@ RT_TEST(latex_has_bold_fields_and_escapes_what_it_must) {
     marked.wide = true;
     assert_written(&marked, rt_table_tex,
                    "\\begin{table*}\n\\footnotesize\\centering\\setlength{\\tabcolsep}{3pt}\n"
-                   "\\caption{50 \\% of \\{a\\_b\\}}\n\\begin{tabular}{@{}lrr@{}}\n\\toprule\n"
+                   "\\caption{50 \\% of \\{a\\_b\\}}\\smallskip\n\\begin{tabular}{@{}lrr@{}}\n\\toprule\n"
                    "name & hit count & seconds \\\\\n\\midrule\n"
                    "a\\textbar{}b, `c` **d** & 12 & \\textbf{1.5} \\\\\n"
                    "\\textless{}x\\textgreater{} & 3456 & -- \\\\\n\\bottomrule\n\\end{tabular}\n"

@@ -82,7 +82,7 @@ void rt_table_tex(const RtTable *table, FILE *out) {
     if (table->caption) {
         fputs("\\caption{", out);
         put_tex_text(table->caption, out);
-        fputs("}\n", out);
+        fputs("}\\smallskip\n", out);
     }
     rt_table_walk((RtTableWriter){.table = table, .put = put_tex, .out = out});
     fprintf(out, "\\bottomrule\n\\end{tabular}\n\\end{table%s}\n", star);
