@@ -4,13 +4,14 @@
 #include "core/base/memory.h"
 #include "report/color.h"
 #include "report/page.h"
+#include "report/sweep_lines.h"
 #include "style_gp.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_TICS = 8, NAME_CHARS = RT_MAX_LABEL + RT_MAX_SWEPT * (RT_MAX_NAME + RT_MAX_SWEPT_CHARS + 2) };
+enum { MOST_TICS = 8 };
 
 /* Lengths in pixels, for letters of 15.6. */
 enum {
@@ -25,7 +26,6 @@ enum {
     ENTRY = 20
 };
 
-typedef enum Measure { TIME, OBJECT_TESTS, STEPS, MEASURE_COUNT } Measure;
 static const struct {
     const char *file, *title, *axis;
     int column; /* of the data */
@@ -33,170 +33,9 @@ static const struct {
                 {"object-tests", "Object tests per ray", "object tests per ray", 5},
                 {"steps", "Steps per ray", "steps per ray", 6}};
 
-typedef struct Line {
-    char name[NAME_CHARS];
-    uint32_t candidate; /* the first, whose colour it has */
-    bool flat;          /* without the parameter: the same at each value */
-} Line;
-
-typedef struct Point {
-    uint32_t group, line;
-    double x;
-    RtCost cost;
-} Point;
-
-/* The figures of one parameter: a line for each accelerator, a panel for each group of scenes. */
-typedef struct Figure {
-    const RtResults *results;
-    RtSweptKey key;
-    bool column; /* for a column of a paper */
-    bool timed;
-    uint32_t group_count, line_count, point_count, value_count;
-    uint32_t *groups;                                    /* [workload_count] the first scene of each */
-    Line *lines;                                         /* [candidate_count] */
-    Point *points;                                       /* [2 * workload_count * candidate_count] */
-    char words[RT_MAX_SWEEP_VALUES][RT_MAX_SWEPT_CHARS]; /* values that are no numbers */
-    double values[RT_MAX_SWEEP_VALUES];                  /* increasing */
-} Figure;
-
 bool rt_sweep_plots_needed(const RtExperiment *experiment) {
     RtSweptKey keys[RT_MAX_SWEPT_KEYS];
     return experiment->plot_count == 0 && rt_experiment_swept(experiment, keys) > 0;
-}
-
-/* ---- what is drawn ---- */
-
-/* The position of a value on the axis; words are numbered. */
-static double place_of(Figure *figure, const char *value) {
-    double x = 0;
-    uint32_t i = 0;
-    if (figure->key.number) rt_swept_number(value, &x);
-    for (; !figure->key.number && i < figure->value_count; i++) {
-        if (strcmp(figure->words[i], value) == 0) return i;
-    }
-    if (!figure->key.number) x = figure->value_count;
-    while (figure->key.number && i < figure->value_count && figure->values[i] < x) i++;
-    bool there = i < figure->value_count && figure->values[i] == x;
-    if (there || figure->value_count == RT_MAX_SWEEP_VALUES) return x;
-    memmove(&figure->values[i + 1], &figure->values[i], (figure->value_count - i) * sizeof(double));
-    figure->values[i] = x;
-    if (!figure->key.number) snprintf(figure->words[i], RT_MAX_SWEPT_CHARS, "%s", value);
-    figure->value_count++;
-    return x;
-}
-
-static void name_line(const Figure *figure, uint32_t c, char name[NAME_CHARS]) {
-    const RtCandidate *candidate = &figure->results->experiment->candidates[c];
-    snprintf(name, NAME_CHARS, "%s", figure->key.scene ? candidate->label : candidate->stem);
-    if (!figure->key.scene) rt_swept_name(&candidate->swept, figure->key.key, name, NAME_CHARS);
-}
-
-static uint32_t line_of(Figure *figure, uint32_t c, bool flat) {
-    char name[NAME_CHARS];
-    uint32_t line = 0;
-    name_line(figure, c, name);
-    while (line < figure->line_count && strcmp(figure->lines[line].name, name) != 0) line++;
-    if (line < figure->line_count) return line;
-    figure->lines[line] = (Line){.candidate = c, .flat = flat};
-    strcpy(figure->lines[line].name, name);
-    return figure->line_count++;
-}
-
-static double cost_of(const RtCost *cost, Measure measure) {
-    return measure == TIME ? cost->seconds.median : measure == STEPS ? cost->steps : cost->object_tests;
-}
-
-/* The common name of the scenes of one panel: everything except the parameter. */
-static void name_group(const RtExperiment *experiment, const RtSweptKey *key, uint32_t t,
-                       char name[NAME_CHARS]) {
-    const RtWorkload *workload = &experiment->workloads[t];
-    snprintf(name, NAME_CHARS, "%s", key->scene ? workload->stem : workload->label);
-    if (key->scene) rt_swept_name(&workload->swept, key->key, name, NAME_CHARS);
-}
-
-static bool same_group(const RtExperiment *experiment, const RtSweptKey *key, uint32_t t, uint32_t other) {
-    char name[NAME_CHARS], others[NAME_CHARS];
-    name_group(experiment, key, t, name);
-    name_group(experiment, key, other, others);
-    return strcmp(name, others) == 0;
-}
-
-static int by_place(const void *a, const void *b) {
-    const Point *p = a, *q = b;
-    if (p->group != q->group) return p->group < q->group ? -1 : 1;
-    if (p->line != q->line) return p->line < q->line ? -1 : 1;
-    return (p->x > q->x) - (p->x < q->x);
-}
-
-static void add_point(Figure *figure, uint32_t group, uint32_t line, double x, const RtCost *cost) {
-    figure->points[figure->point_count++] = (Point){group, line, x, *cost};
-}
-
-/* Lines without the parameter span the axis. */
-static void span_axis(Figure *figure) {
-    for (uint32_t i = 0, count = figure->point_count; i < count && figure->value_count; i++) {
-        Point *point = &figure->points[i];
-        if (isfinite(point->x)) continue;
-        point->x = figure->values[0];
-        add_point(figure, point->group, point->line, figure->values[figure->value_count - 1], &point->cost);
-    }
-}
-
-static bool is_measured(const Figure *figure, uint32_t t, uint32_t c) {
-    const RtCost cost = rt_results_cost(figure->results, t, c, RT_ALL_RAYS);
-    return !isnan(cost.seconds.median) || !isnan(cost.object_tests);
-}
-
-/* Whether scene t is in the panel of scene `first`. */
-static bool in_group(const Figure *figure, uint32_t first, uint32_t t) {
-    return figure->results->workloads[t].known &&
-           same_group(figure->results->experiment, &figure->key, first, t);
-}
-
-/* Whether the parameter has several values there. */
-static bool varies(const Figure *figure, uint32_t first) {
-    const RtExperiment *experiment = figure->results->experiment;
-    const char *one = NULL;
-    for (uint32_t t = first; t < experiment->workload_count; t++) {
-        for (uint32_t c = 0; in_group(figure, first, t) && c < experiment->candidate_count; c++) {
-            const char *value = rt_swept_of(experiment, &figure->key, t, c);
-            if (!value || !is_measured(figure, t, c)) continue;
-            if (one && !rt_swept_equal(one, value)) return true;
-            one = value;
-        }
-    }
-    return false;
-}
-
-/* The lines of the scenes that differ from scene `first` only in the parameter. */
-static void gather_group(Figure *figure, uint32_t first) {
-    const RtExperiment *experiment = figure->results->experiment;
-    const uint32_t group = figure->group_count;
-    figure->groups[figure->group_count++] = first;
-    for (uint32_t t = first; t < experiment->workload_count; t++) {
-        for (uint32_t c = 0; in_group(figure, first, t) && c < experiment->candidate_count; c++) {
-            const char *value = rt_swept_of(experiment, &figure->key, t, c);
-            const RtCost cost = rt_results_cost(figure->results, t, c, RT_ALL_RAYS);
-            if (!is_measured(figure, t, c)) continue;
-            figure->timed |= !isnan(cost.seconds.median);
-            add_point(figure, group, line_of(figure, c, !value), value ? place_of(figure, value) : -INFINITY,
-                      &cost);
-        }
-    }
-}
-
-static void gather(Figure *figure) {
-    const RtExperiment *experiment = figure->results->experiment;
-    figure->group_count = figure->line_count = figure->point_count = figure->value_count = 0;
-    figure->timed = false;
-    for (uint32_t t = 0; t < experiment->workload_count; t++) {
-        bool first = true;
-        for (uint32_t before = 0; before < t; before++)
-            first &= !same_group(experiment, &figure->key, before, t);
-        if (first && varies(figure, t)) gather_group(figure, t);
-    }
-    span_axis(figure);
-    qsort(figure->points, figure->point_count, sizeof(Point), by_place);
 }
 
 /* ---- the script ---- */
@@ -209,21 +48,11 @@ static void put_number(FILE *out, double number) {
     }
 }
 
-/* Whether the line has a cost in the panel. */
-static bool is_drawn(const Figure *figure, uint32_t group, uint32_t line, Measure measure) {
-    for (uint32_t i = 0; i < figure->point_count; i++) {
-        const Point *point = &figure->points[i];
-        if (point->group == group && point->line == line && !isnan(cost_of(&point->cost, measure)))
-            return true;
-    }
-    return false;
-}
-
 /* The block $pGROUP_LINE. */
-static void put_data(const Figure *figure, FILE *out) {
-    const Point *before = NULL;
+static void put_data(const RtSweepLines *figure, FILE *out) {
+    const RtSweepPoint *before = NULL;
     for (uint32_t i = 0; i < figure->point_count; i++) {
-        const Point *point = &figure->points[i];
+        const RtSweepPoint *point = &figure->points[i];
         if (!before || before->group != point->group || before->line != point->line)
             fprintf(out, "%s$p%u_%u << EOD\nx,ns,low,high,object_tests,steps\n", before ? "EOD\n" : "",
                     point->group + 1, point->line + 1);
@@ -240,10 +69,10 @@ static void put_data(const Figure *figure, FILE *out) {
 }
 
 /* The colour of the line's first accelerator; marker and dash distinguish lines in grey print. */
-static void put_styles(const Figure *figure, FILE *out) {
+static void put_styles(const RtSweepLines *figure, FILE *out) {
     const RtExperiment *experiment = figure->results->experiment;
     for (uint32_t line = 0; line < figure->line_count; line++) {
-        const Line *l = &figure->lines[line];
+        const RtSweepLine *l = &figure->lines[line];
         char color[RT_COLOR_CHARS];
         rt_candidate_color(experiment, l->candidate, color);
         fprintf(out,
@@ -254,33 +83,7 @@ static void put_styles(const Figure *figure, FILE *out) {
     }
 }
 
-/* The cost at the right end of a line in the first panel that has it, or NAN. */
-static double last_of(const Figure *figure, uint32_t line, Measure measure) {
-    double last = NAN;
-    for (uint32_t i = figure->point_count; i-- > 0;) {
-        const Point *point = &figure->points[i];
-        const double cost = cost_of(&point->cost, measure);
-        const bool later = i + 1 < figure->point_count && figure->points[i + 1].group == point->group &&
-                           figure->points[i + 1].line == line;
-        if (point->line == line && !later && !isnan(cost)) last = cost;
-    }
-    return last;
-}
-
-/* The lines from top to bottom at the right of the first panel; returns their number. */
-static uint32_t find_order(const Figure *figure, Measure measure, uint32_t *order) {
-    uint32_t count = 0;
-    for (uint32_t line = 0; line < figure->line_count; line++) {
-        const double last = last_of(figure, line, measure);
-        if (isnan(last)) continue;
-        uint32_t at = count++;
-        for (; at > 0 && last_of(figure, order[at - 1], measure) < last; at--) order[at] = order[at - 1];
-        order[at] = line;
-    }
-    return count;
-}
-
-static bool is_compared(const Figure *figure, uint32_t line) {
+static bool is_compared(const RtSweepLines *figure, uint32_t line) {
     return rt_candidate_is_compared(figure->results->experiment, figure->lines[line].candidate);
 }
 
@@ -290,14 +93,14 @@ typedef struct Range {
     bool logarithmic; /* costs over more than a decade; others begin at 0 */
 } Range;
 
-static Range range_of(const Figure *figure, Measure measure) {
+static Range range_of(const RtSweepLines *figure, RtSweepMeasure measure) {
     Range range = {INFINITY, 0, false};
     for (uint32_t i = 0; i < figure->point_count; i++) {
         const RtCost *cost = &figure->points[i].cost;
-        const double y = cost_of(cost, measure), unit = measure == TIME ? 1e9 : 1;
+        const double y = rt_sweep_lines_cost(cost, measure), unit = measure == RT_SWEEP_TIME ? 1e9 : 1;
         if (!(y > 0) || !is_compared(figure, figure->points[i].line)) continue;
-        range.least = fmin(range.least, unit * (measure == TIME ? fmin(y, cost->seconds.low) : y));
-        range.most = fmax(range.most, unit * (measure == TIME ? fmax(y, cost->seconds.high) : y));
+        range.least = fmin(range.least, unit * (measure == RT_SWEEP_TIME ? fmin(y, cost->seconds.low) : y));
+        range.most = fmax(range.most, unit * (measure == RT_SWEEP_TIME ? fmax(y, cost->seconds.high) : y));
     }
     range.logarithmic = range.most > 10 * range.least;
     return range;
@@ -333,7 +136,7 @@ static bool all_whole(const double *values, uint32_t count) {
     return true;
 }
 
-static void put_x_axis(const Figure *figure, FILE *out) {
+static void put_x_axis(const RtSweepLines *figure, FILE *out) {
     const double *x = figure->values;
     const uint32_t count = figure->value_count;
     const double span = x[count - 1] - x[0];
@@ -360,20 +163,20 @@ static void put_x_axis(const Figure *figure, FILE *out) {
 }
 
 /* Panels beside each other: as many as leave the letters room. */
-static uint32_t across(const Figure *figure) {
+static uint32_t across(const RtSweepLines *figure) {
     const uint32_t most = figure->column ? 2 : 3;
     return figure->group_count < most ? figure->group_count : most;
 }
 
 /* A figure of one measure, in pixels. */
 typedef struct Layout {
-    Measure measure;
+    RtSweepMeasure measure;
     uint32_t columns, rows, entries, entry_columns;
     double width, height, panel; /* panel: the width of one */
     double entry;                /* the width of an entry of the legend */
 } Layout;
 
-static Layout lay_out(const Figure *figure, Measure measure, uint32_t entries) {
+static Layout lay_out(const RtSweepLines *figure, RtSweepMeasure measure, uint32_t entries) {
     Layout l = {.measure = measure, .columns = across(figure), .entries = entries};
     size_t longest = 0;
     for (uint32_t i = 0; i < figure->line_count; i++) {
@@ -392,16 +195,16 @@ static Layout lay_out(const Figure *figure, Measure measure, uint32_t entries) {
 }
 
 /* Below the panels, in the order of the lines, row by row. A yardstick below the axis is named so. */
-static void put_legend(const Figure *figure, const Layout *l, const uint32_t *order, const Range *range,
+static void put_legend(const RtSweepLines *figure, const Layout *l, const uint32_t *order, const Range *range,
                        FILE *out) {
     const uint32_t rows = (l->entries + l->entry_columns - 1) / l->entry_columns;
     for (uint32_t i = 0; i < l->entries; i++) {
         const uint32_t line = order[i];
         const double x = 12 + l->entry * (i % l->entry_columns);
         const double y = ENTRY * (rows - i / l->entry_columns) - 6;
-        const double unit = l->measure == TIME ? 1e9 : 1;
+        const double unit = l->measure == RT_SWEEP_TIME ? 1e9 : 1;
         const bool below = !is_compared(figure, line) && range->logarithmic &&
-                           unit * last_of(figure, line, l->measure) < range->least / 1.3;
+                           unit * rt_sweep_lines_last(figure, line, l->measure) < range->least / 1.3;
         fprintf(out,
                 "set arrow %u from screen %.4f, screen %.4f to screen %.4f, screen %.4f nohead linestyle %u\n"
                 "set label %u \"%s%s\" at screen %.4f, screen %.4f left noenhanced point linestyle %u "
@@ -412,14 +215,14 @@ static void put_legend(const Figure *figure, const Layout *l, const uint32_t *or
     }
 }
 
-static void put_panel(const Figure *figure, const Layout *l, const uint32_t *order, uint32_t group,
+static void put_panel(const RtSweepLines *figure, const Layout *l, const uint32_t *order, uint32_t group,
                       FILE *out) {
     const uint32_t column = group % l->columns, row = group / l->columns;
     const double left = LEFT + column * (l->panel + RIGHT);
     const double top = TOP + row * (double)(PANEL + GAP);
     const bool lowest = group + l->columns >= figure->group_count;
-    char name[NAME_CHARS];
-    name_group(figure->results->experiment, &figure->key, figure->groups[group], name);
+    char name[RT_MAX_SWEEP_NAME];
+    rt_sweep_lines_group_name(figure->results->experiment, &figure->key, figure->groups[group], name);
     fprintf(out,
             "set lmargin at screen %.4f; set rmargin at screen %.4f; set tmargin at screen %.4f; "
             "set bmargin at screen %.4f\n",
@@ -437,13 +240,13 @@ static void put_panel(const Figure *figure, const Layout *l, const uint32_t *ord
         fputs("unset xlabel\n", out);
     fputs("order = \"", out);
     for (uint32_t i = 0; i < l->entries; i++) {
-        if (is_drawn(figure, group, order[i], l->measure)) fprintf(out, "%u ", order[i] + 1);
+        if (rt_sweep_lines_has(figure, group, order[i], l->measure)) fprintf(out, "%u ", order[i] + 1);
     }
     fprintf(out,
             "\"\nplot for [i = 1:words(order)] '$p%u_'.word(order, i) using 1:%d with linespoints "
             "linestyle int(word(order, i)) notitle",
             group + 1, measures[l->measure].column);
-    if (l->measure == TIME)
+    if (l->measure == RT_SWEEP_TIME)
         fprintf(
             out,
             ", for [i = 1:words(order)] '$p%u_'.word(order, i) using 1:3:(0):($4 - $3) with vectors heads "
@@ -452,17 +255,19 @@ static void put_panel(const Figure *figure, const Layout *l, const uint32_t *ord
     fputs("\nunset arrow; unset label\n", out); /* the legend, once */
 }
 
-static void put_figure(const Figure *figure, Measure measure, uint32_t number, uint32_t *order, FILE *out) {
-    const Layout l = lay_out(figure, measure, find_order(figure, measure, order));
+static void put_figure(const RtSweepLines *figure, RtSweepMeasure measure, uint32_t number, uint32_t *order,
+                       FILE *out) {
+    const Layout l = lay_out(figure, measure, rt_sweep_lines_order(figure, measure, order));
     const Range range = range_of(figure, measure);
-    char name[NAME_CHARS + 16];
+    char name[RT_MAX_SWEEP_NAME + 16];
     snprintf(name, sizeof name, "%02u-sweep-%s-%s", number, figure->key.key, measures[measure].file);
     fprintf(
         out,
         "\n#: %s: %s over %s, a line per accelerator, a panel per scene.\n#:   All kinds of rays together%s. "
         "All panels have the same scales; the legend has the order of the lines at the right of the first "
         "panel.\n",
-        name, measures[measure].title, figure->key.key, measure == TIME ? ", medians with intervals" : "");
+        name, measures[measure].title, figure->key.key,
+        measure == RT_SWEEP_TIME ? ", medians with intervals" : "");
     fprintf(out, "eval canvas(\"%s\", %.0f, %.0f)\nset multiplot\n", name, l.width, l.height);
     put_y_axis(&range, out);
     put_legend(figure, &l, order, &range, out);
@@ -470,7 +275,7 @@ static void put_figure(const Figure *figure, Measure measure, uint32_t number, u
     fputs("unset multiplot\nunset output\n", out);
 }
 
-static void put_figures(Figure *figure, uint32_t *order, FILE *out) {
+static void put_figures(RtSweepLines *figure, uint32_t *order, FILE *out) {
     RtSweptKey keys[RT_MAX_SWEPT_KEYS];
     const uint32_t count = rt_experiment_swept(figure->results->experiment, keys);
     uint32_t number = 0;
@@ -480,19 +285,20 @@ static void put_figures(Figure *figure, uint32_t *order, FILE *out) {
         out);
     for (uint32_t k = 0; k < count; k++) {
         figure->key = keys[k];
-        gather(figure);
+        rt_sweep_lines_gather(figure);
         if (figure->group_count == 0) continue;
         fputs("\nreset session\nload \"plots/names.gp\"; load \"plots/style.gp\"\nset grid xtics ytics\n",
               out);
         put_data(figure, out);
         put_styles(figure, out);
         put_x_axis(figure, out);
-        for (Measure m = figure->timed ? TIME : OBJECT_TESTS; m < MEASURE_COUNT; m++)
+        for (RtSweepMeasure m = figure->timed ? RT_SWEEP_TIME : RT_SWEEP_OBJECT_TESTS; m < RT_SWEEP_MEASURES;
+             m++)
             put_figure(figure, m, ++number, order, out);
     }
 }
 
-static RtStatus write_script(Figure *figure, uint32_t *order, const char *directory, RtError *error) {
+static RtStatus write_script(RtSweepLines *figure, uint32_t *order, const char *directory, RtError *error) {
     RtOutput output;
     RT_TRY(rt_output_open_in(&output, directory, "plots/sweep.gp", error));
     put_figures(figure, order, output.file);
@@ -510,15 +316,15 @@ RtStatus rt_sweep_plots_write(const RtResults *results, const char *directory, b
     const size_t candidates = results->experiment->candidate_count;
     const size_t scenes = results->experiment->workload_count, points = 2 * candidates * scenes;
     RT_TRY(write_style(directory, error));
-    Figure figure = {.results = results,
-                     .column = column,
-                     .groups = rt_alloc(scenes, sizeof(uint32_t)),
-                     .lines = rt_alloc(candidates, sizeof(Line)),
-                     .points = rt_alloc(points, sizeof(Point))};
+    RtSweepLines figure = {.results = results,
+                           .column = column,
+                           .groups = rt_alloc(scenes, sizeof(uint32_t)),
+                           .lines = rt_alloc(candidates, sizeof(RtSweepLine)),
+                           .points = rt_alloc(points, sizeof(RtSweepPoint))};
     uint32_t *order = rt_alloc(candidates, sizeof(uint32_t));
     RtStatus status = figure.groups && figure.lines && figure.points && order
                           ? write_script(&figure, order, directory, error)
-                          : rt_fail_memory(error, "plots", points * sizeof(Point));
+                          : rt_fail_memory(error, "plots", points * sizeof(RtSweepPoint));
     rt_free(figure.groups);
     rt_free(figure.lines);
     rt_free(figure.points);
