@@ -18,11 +18,12 @@ enum {
     COLUMN = 480,
     PAGE = 960,
     LEFT = 84,
-    RIGHT = 14,
+    RIGHT = 24,
     TOP = 32,
     PANEL = 220,
     GAP = 66,
     BOTTOM = 58,
+    WORDS = 18, /* higher than numbers, as they are inclined */
     ENTRY = 20
 };
 
@@ -151,11 +152,11 @@ static void put_x_axis(const RtSweepLines *figure, FILE *out) {
         fprintf(out, "set logscale x\nset xrange [%.9g:%.9g]\n", x[0] / 1.05, x[count - 1] * 1.05);
     else
         fprintf(out, "set xrange [%.9g:%.9g]\n", x[0] - 0.02 * span, x[count - 1] + 0.02 * span);
-    if (logarithmic && x[count - 1] / x[0] >= 1000) {
+    if (logarithmic && (x[count - 1] / x[0] >= 1000 || x[count - 1] >= 1e5)) {
         fputs("set format x \"10^{%T}\"\n", out);
     } else if (count <= MOST_TICS) { /* the values themselves */
         for (uint32_t i = 0; i < count; i++)
-            fprintf(out, "%s\"%.4g\" %.9g", i ? "," : "set xtics (", x[i], x[i]);
+            fprintf(out, "%s\"%.6g\" %.9g", i ? "," : "set xtics (", x[i], x[i]);
         fputs(")\n", out);
     } else if (all_whole(x, count)) {
         if (!logarithmic && span < 2 * MOST_TICS) fprintf(out, "set xtics %.9g\n", ceil(span / MOST_TICS));
@@ -173,6 +174,7 @@ typedef struct Layout {
     RtSweepMeasure measure;
     uint32_t columns, rows, entries, entry_columns;
     double width, height, panel; /* panel: the width of one */
+    double gap;                  /* between rows of panels */
     double entry;                /* the width of an entry of the legend */
 } Layout;
 
@@ -190,7 +192,8 @@ static Layout lay_out(const RtSweepLines *figure, RtSweepMeasure measure, uint32
     if (l.entry_columns < 1) l.entry_columns = 1;
     l.entry = (l.width - RIGHT) / l.entry_columns;
     const uint32_t entry_rows = (entries + l.entry_columns - 1) / l.entry_columns;
-    l.height = TOP + l.rows * (PANEL + GAP) - GAP + BOTTOM + ENTRY * entry_rows + 8;
+    l.gap = figure->key.number ? GAP : GAP + WORDS;
+    l.height = TOP + l.rows * (PANEL + l.gap) - GAP + BOTTOM + ENTRY * entry_rows + 8;
     return l;
 }
 
@@ -201,7 +204,8 @@ static void put_legend(const RtSweepLines *figure, const Layout *l, const uint32
     for (uint32_t i = 0; i < l->entries; i++) {
         const uint32_t line = order[i];
         const double x = 12 + l->entry * (i % l->entry_columns);
-        const double y = ENTRY * (rows - i / l->entry_columns) - 6;
+        const uint32_t row = i / l->entry_columns;
+        const double y = ENTRY * (rows - row) - 6;
         const double unit = l->measure == RT_SWEEP_TIME ? 1e9 : 1;
         const bool below = !is_compared(figure, line) && range->logarithmic &&
                            unit * rt_sweep_lines_last(figure, line, l->measure) < range->least / 1.3;
@@ -219,7 +223,7 @@ static void put_panel(const RtSweepLines *figure, const Layout *l, const uint32_
                       FILE *out) {
     const uint32_t column = group % l->columns, row = group / l->columns;
     const double left = LEFT + column * (l->panel + RIGHT);
-    const double top = TOP + row * (double)(PANEL + GAP);
+    const double top = TOP + row * (PANEL + l->gap);
     const bool lowest = group + l->columns >= figure->group_count;
     char name[RT_MAX_SWEEP_NAME];
     rt_sweep_lines_group_name(figure->results->experiment, &figure->key, figure->groups[group], name);
