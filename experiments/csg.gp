@@ -45,7 +45,7 @@ eval canvas("1-csg", 960, 760)
 set multiplot
 set yrange [n_accels + 0.6 : 0.4]
 set border 2 linecolor rgb soft
-set xtics scale 0.4 font ",11" offset 0, 0.3
+set xtics scale 0.4 offset 0, 0.3
 left = 0.125; width = 0.87 / 3
 on_color = "#0072b2"; off_color = "#e9a27a"
 do for [s = 1:2] {
@@ -67,19 +67,19 @@ do for [s = 1:2] {
     if (s == 1 && m == 1) {
       set label 3 "■ with inner extents" at screen left + 0.012, screen 0.975 left font ",14" textcolor rgb on_color
       set label 4 "■ without" at screen left + 0.19, screen 0.975 left font ",14" textcolor rgb "#b4521f"
-      set label 5 "Means over all kinds of rays." at screen 0.985, screen 0.975 right font ",12" textcolor rgb soft
+      set label 5 "Means over all kinds of rays." at screen 0.985, screen 0.975 right textcolor rgb soft
     }
-    set label 1 word(caption, s).": ".title[m] at graph 0, 1.045 left font ",12" textcolor rgb ink
+    set label 1 word(caption, s).": ".title[m] at graph 0, 1.045 left textcolor rgb ink
     if (m == 1) {
       do for [a = 1:n_accels] {
-        set label 100 + a word(accels, a) at graph -0.03, first a right textcolor rgb ink font ",13"
+        set label 100 + a word(accels, a) at graph -0.03, first a right textcolor rgb ink
       }
     }
     do for [i = 1:2] { do for [a = 1:n_accels] {
       v = value[place(s, m, i, a)]
       end = v != v ? 0 : m == 3 ? high[place(s, m, i, a)] : v
       set label 200 + 50 * i + a figure(v) at first end, first a + 0.4 * i - 0.6 left \
-          offset character 0.3, 0 textcolor rgb ink font ",10"
+          offset character 0.3, 0 textcolor rgb ink
     } }
     plot for [i = 1:2] for [a = 1:n_accels] "+" using (0):(a):(0):(value[place(s, m, i, a)]): \
            (a + 0.4 * i - 0.78):(a + 0.4 * i - 0.42) every ::0::0 \

@@ -6,7 +6,8 @@
 n_kinds = words(kinds); n_accels = words(accels)
 first(low) = low < 1 ? 0.5 : low
 middle(low, end) = low < 1 ? 0.5 : sqrt(low * (end - 1))
-height(low, end, part) = part * log(2) / log((end < 1 ? 1 : end) / first(low))
+most_of(a, b) = a > b ? a : b
+density(low, end, part) = part * log(2) / log((end < 1 ? 1 : end) / first(low))
 is_panel(s, k, q) = strcol("scene") eq s && strcol("kind") eq k && strcol("quantity") eq q
 says(q) = q eq "object_tests" ? "object tests of a ray" : q eq "steps" ? "steps of a ray" : \
           q eq "leaf_size" ? "objects of a leaf" : "depth of a leaf"
@@ -15,12 +16,17 @@ set logscale xy
 set format x "%g"; set format y "%g"
 set xrange [0.4:*]; set yrange [*:*]
 set grid xtics ytics linecolor rgb faint linetype 1 linewidth 0.5
-set key at screen 0.5, 0.01 center bottom maxrows 2 samplen 1 textcolor rgb ink
+width = 300 * (n_kinds + 1)
+longest = 0
+do for [accel in accels] { if (strlen(accel) > longest) { longest = strlen(accel) } }
+key_rows = (n_accels - 1) / int(most_of(1, width / (60 + 9 * longest))) + 1
+height = 560.0 + 20 * key_rows
+set key at screen 0.5, 0.01 center bottom maxrows key_rows samplen 1 textcolor rgb ink
 
 do for [s = 1:words(scenes)] {
   scene = word(scenes, s)
-  eval canvas("histograms-".word(files, s), 300 * (n_kinds + 1), 640)
-  set multiplot layout 2, n_kinds + 1 columnsfirst margins 0.06, 0.99, 0.16, 0.9 spacing 0.055, 0.14 \
+  eval canvas("histograms-".word(files, s), width, height)
+  set multiplot layout 2, n_kinds + 1 columnsfirst margins 0.06, 0.975, (60.0 + 20 * key_rows) / height, 1 - 64.0 / height spacing 0.055, 0.14 \
     title scene.": part of all, per doubling of its value" noenhanced
   do for [i = 1:n_kinds + 1] {
     do for [row = 1:2] {
@@ -32,7 +38,7 @@ do for [s = 1:words(scenes)] {
       if (STATS_sum > 0) {
         plot for [a = 1:n_accels] "histograms.csv" \
           using (is_panel(scene, kind, quantity) && strcol("accel") eq word(accels, a) ? \
-                 middle(column("low"), column("end")) : NaN):(height(column("low"), column("end"), column("part"))) \
+                 middle(column("low"), column("end")) : NaN):(density(column("low"), column("end"), column("part"))) \
           with linespoints pointtype marker(a) pointsize 0.4 dashtype dash(a) linewidth 1.5 linecolor rgb color(a) title word(accels, a) noenhanced
         unset key
       } else { set multiplot next }

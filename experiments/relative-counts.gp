@@ -25,17 +25,17 @@ counters = "predicted_cost object_tests steps"
 titles = "'expected cost' 'object tests' 'steps'"
 longest = 0
 do for [scene in scenes] { if (strlen(scene) > longest) { longest = strlen(scene) } }
-key_rows = (n_scenes - 1) / int(940 / (42 + 7.2 * longest)) + 1
+key_rows = (n_scenes - 1) / int(940 / (42 + 9 * longest)) + 1
 head = 44.0 + 20 * key_rows
-height = head + 66 + n_shown * (18 + 4 * n_scenes)
+height = head + 76 + n_shown * (18 + 4 * n_scenes)
 set logscale x 2
 set yrange [0.4 : n_shown + 0.6]
 set grid ytics
-set format x "%g"
+set xtics 2; set format x "%g"
 set xlabel "over that of ".first noenhanced textcolor rgb ink
 
 eval canvas("2-counts", 960, height)
-set multiplot layout 1, 3 margins screen 0.17, 0.985, 48.0 / height, 1 - head / height spacing screen 0.045, 0
+set multiplot layout 1, 3 margins screen 0.17, 0.985, 58.0 / height, 1 - head / height spacing screen 0.025, 0
 do for [c = 1:3] {
   set title word(titles, c) font ",14" textcolor rgb ink
   set ytics () noenhanced

@@ -29,7 +29,7 @@ set xtics 3, 2, 13
 set xrange [2.5 : 13.5]
 do for [s = 1:n_scenes] {
   set yrange [0.9 : *]
-  set title word(scenes, s).": tests per object hit" font ",13" textcolor rgb ink
+  set title word(scenes, s).": tests per object hit" textcolor rgb ink
   unset xlabel
   if (s == 1) {
     set key at screen 0.985, screen 0.985 right top vertical maxrows 1 samplen 2 textcolor rgb ink
@@ -39,7 +39,7 @@ do for [s = 1:n_scenes] {
        for [i = 1:3] passed[3 * (s - 1) + i] with lines linewidth 1.5 dashtype 1 + i linecolor rgb hue(i) title word(others, i)
   unset key
   set yrange [0 : *]
-  set title word(scenes, s).": time, boxes being 1" font ",13" textcolor rgb ink
+  set title word(scenes, s).": time, boxes being 1" textcolor rgb ink
   set xlabel "plane sets k" textcolor rgb ink
   plot "times.csv" using (chosen(s) ? k_of(strcol("accel")) : NaN):(1 / column("ratio")):(1 / column("ratio_high")):(1 / column("ratio_low")) \
          with yerrorlines linewidth 1.8 pointtype 7 pointsize 0.7 linecolor rgb hue(4) notitle, \

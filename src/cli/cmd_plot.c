@@ -6,23 +6,37 @@
 #include "report/plot.h"
 
 #include <stdio.h>
+#include <string.h>
 
 typedef struct Options {
     const char *directory;
     RtScripts allowed;
+    bool column;
 } Options;
 
 static RtStatus draw(const char *directory, RtResults *results, const void *options, RtError *error) {
     const Options *o = options;
     RT_TRY(rt_scripts_check(results->experiment, directory, true, o->allowed, error));
-    RtStatus status = rt_plots_draw(results, directory, error);
+    RtStatus status = rt_plots_draw(results, directory, o->column, error);
     if (status == RT_OK) printf("Plots: %s/plots\n", directory);
     if (status != RT_NOT_AVAILABLE) return status;
     fprintf(stderr, "raytally: %s\n", error->message);
     return RT_OK;
 }
 
-static const RtOption options[] = {RT_TRUST_OPTION(allowed), {0}};
+static void take_paper(void *options, const char *text, struct argp_state *state) {
+    Options *o = options;
+    o->column = strcmp(text, "column") == 0;
+    if (o->column || strcmp(text, "page") == 0) return;
+    argp_error(state, "--paper: invalid value '%s': expected column or page", text);
+}
+
+static const RtOption options[] = {
+    {"paper", 0, "WIDTH", RT_TO_TAKE(take_paper),
+     "lay out figures with several panels for one `column` of a paper (3.5 in), or for the `page` (7.16 in, "
+     "the default)"},
+    RT_TRUST_OPTION(allowed),
+    {0}};
 const RtSyntax rt_plot_syntax = {
     .options = options,
     .plugins = true,

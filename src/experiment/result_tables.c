@@ -302,9 +302,6 @@ enum {
     X(HARDWARE_CELLS, 0, r->cell->hardware.known && !*r->cell->hardware.why, ONE(eye_label),                 \
       FROM_TO(eye_instructions, eye_branch))                                                                 \
     X(RENDER_ROWS, 0, (first && r->build->render.known), ONE(eye_label), FROM_TO(eye_render, eye_share))     \
-    X(CELLS_PAPER, BEST, (counted || timed) && !null && !is_lost(r, r->cell), ONE(accel),                    \
-      FROM_TO(eye_tests, interval))                                                                          \
-    X(COUNTED_PAPER, BEST, counted && !null, ONE(accel), FROM_TO(eye_tests, eye_steps))                      \
     X(CELLS_MORE, BEST, counted || timed, ONE(accel), ONE(kind), ONE(rays),                                  \
       FROM_TO(tests_a_ray, steps_a_ray), ONE(ns_interval), FROM_TO(mrays, interval), ONE(min_ns),            \
       ONE(differ))                                                                                           \

@@ -33,8 +33,6 @@ typedef enum RtResultTable {
     RT_LEAF_PERCENTILES, /* to read: the same of sizes and depths of leaves, by accelerator */
     RT_HARDWARE_CELLS,   /* to read: one workload by accelerator and ray kind: hardware counters */
     RT_RENDER_ROWS,      /* to read: one workload by accelerator: time of a frame and the part of queries */
-    RT_CELLS_PAPER,      /* as RT_CELLS, with whole labels, marks of the best, and without null runs */
-    RT_COUNTED_PAPER,    /* the same without times */
     RT_CELLS_MORE,       /* cells with more columns, and all rows */
     RT_TOTALS,           /* one workload by accelerator, all kinds together */
     RT_TOTALS_MORE,      /* these with the intervals of their times */

@@ -268,7 +268,7 @@ RtBreakEven rt_results_break_even(const RtResults *results, uint32_t workload, u
 
 /* ---- the best ---- */
 
-static bool takes_part(const RtExperiment *experiment, uint32_t candidate) {
+bool rt_candidate_is_compared(const RtExperiment *experiment, uint32_t candidate) {
     return candidate < experiment->candidate_count &&
            strcmp(experiment->candidates[candidate].spec, rt_accel_yardstick()) != 0;
 }
@@ -288,13 +288,13 @@ static RtEstimate weigh(const RtResults *results, uint32_t t, uint32_t c, RtRayK
 
 RtStanding rt_standing(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
     const RtExperiment *experiment = results->experiment;
-    if (!takes_part(experiment, candidate)) return RT_STANDING_BEHIND;
+    if (!rt_candidate_is_compared(experiment, candidate)) return RT_STANDING_BEHIND;
     const bool timed = is_timed(results, workload);
     const RtEstimate own = weigh(results, workload, candidate, kind, timed);
     RtEstimate best = {INFINITY, INFINITY, INFINITY, INFINITY};
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
         const RtEstimate other = weigh(results, workload, c, kind, timed);
-        if (takes_part(experiment, c) && other.median < best.median) best = other;
+        if (rt_candidate_is_compared(experiment, c) && other.median < best.median) best = other;
     }
     if (own.median == best.median) return RT_STANDING_BEST; /* not of NAN */
     return own.low <= best.high ? RT_STANDING_LEVEL : RT_STANDING_BEHIND;

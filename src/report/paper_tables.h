@@ -5,9 +5,12 @@
 
 #include "experiment/results.h"
 
-/* Writes `directory`/tables.md and tables.tex (for the packages booktabs and graphicx): a table per scene and
- * ray kind, as wide as a column of a paper. The best is bold, and so is every interval that overlaps with it
- * (rt_standing). */
+/* Writes `directory`/tables.md and tables.tex (for the package booktabs): for each measure a table with a row
+ * per accelerator and a column per scene, all kinds of rays together; and for each kind of rays one of the
+ * times, or of the object tests if nothing was timed. Each sweep of a scene has tables of its own, a column
+ * per value. In LaTeX the letters have 8 points; a table too wide for one column of a two-column article
+ * takes both, and one too wide for these is divided. The best is bold, and so is every interval that
+ * overlaps with it. */
 RtStatus rt_paper_tables_write(const RtResults *results, const char *directory, RtError *error);
 
 #endif

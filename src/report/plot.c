@@ -43,7 +43,7 @@ static bool has_rays(const RtResults *results, RtRayKind kind) {
 }
 
 /* Labels hold nothing that gnuplot's double quotes would interpret (rt_experiment_check). */
-static RtStatus write_names(const RtResults *results, const char *directory, const char *format,
+static RtStatus write_names(const RtResults *results, const char *directory, const char *format, bool column,
                             RtError *error) {
     const RtExperiment *experiment = results->experiment;
     RtOutput output;
@@ -51,8 +51,8 @@ static RtStatus write_names(const RtResults *results, const char *directory, con
     FILE *out = output.file;
     fprintf(out,
             "# What counts.csv and times.csv have rows of, in the order of the experiment.\n"
-            "experiment = \"%s\"\nformat = \"%s\"\nscenes = \"",
-            experiment->name, format);
+            "experiment = \"%s\"\nformat = \"%s\"\npaper = \"%s\"\nscenes = \"",
+            experiment->name, format, column ? "column" : "page");
     for (uint32_t t = 0; t < experiment->workload_count; t++) {
         if (results->workloads[t].known) fprintf(out, "%s ", experiment->workloads[t].label);
     }
@@ -170,17 +170,17 @@ static RtStatus settle(const char *directory, const char *format, bool keep, RtE
     return settling.status;
 }
 
-static RtStatus draw(const RtResults *results, const char *directory, const char *format, char **arguments,
-                     RtError *error) {
+static RtStatus draw(const RtResults *results, const char *directory, const char *format, bool column,
+                     char **arguments, RtError *error) {
     settle(directory, format, false, NULL); /* of an interrupted drawing */
-    RtStatus status = write_names(results, directory, format, error);
+    RtStatus status = write_names(results, directory, format, column, error);
     if (status == RT_OK) status = run_gnuplot(arguments, directory, error);
     if (status == RT_OK) return settle(directory, format, true, error);
     settle(directory, format, false, NULL);
     return status;
 }
 
-RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError *error) {
+RtStatus rt_plots_draw(const RtResults *results, const char *directory, bool column, RtError *error) {
     const RtExperiment *experiment = results->experiment;
     char paths[RT_MAX_PLOTS + 1][RT_MAX_LABEL + 8];
     char program[] = "gnuplot", sweep_script[] = "plots/sweep.gp",
@@ -188,7 +188,7 @@ RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError 
     char *arguments[MOST_ARGUMENTS] = {program};
     const bool sweeps = rt_sweep_plots_needed(experiment);
     if (experiment->plot_count == 0 && !sweeps && !experiment->distributions) return RT_OK;
-    if (sweeps) RT_TRY(rt_sweep_plots_write(results, directory, error));
+    if (sweeps) RT_TRY(rt_sweep_plots_write(results, directory, column, error));
     for (uint32_t i = 0; i <= experiment->plot_count; i++) {
         snprintf(paths[i], sizeof paths[i], "plots/%s", i ? rt_plot_name(experiment, i - 1) : "names.gp");
         arguments[i + 1] = paths[i];
@@ -198,9 +198,9 @@ RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError 
         RT_TRY(write_histograms(results, directory, error));
         arguments[experiment->plot_count + 2] = histogram_script;
     }
-    RT_TRY(draw(results, directory, "svg", arguments, error));
+    RT_TRY(draw(results, directory, "svg", column, arguments, error));
     /* If only PDF fails, this gnuplot does not support it. */
     RtError reason;
-    draw(results, directory, "pdf", arguments, &reason);
-    return write_names(results, directory, "svg", error); /* as it is kept */
+    draw(results, directory, "pdf", column, arguments, &reason);
+    return write_names(results, directory, "svg", column, error); /* as it is kept */
 }

@@ -17,7 +17,7 @@ static RtStatus write_parts(const RtResults *results, const RtPublished *publish
     RT_TRY(rt_published_files_write(published, directory, error));
     /* The report is written even if drawing failed. */
     RtError drawing = {RT_OK, ""};
-    RtStatus drawn = rt_plots_draw(results, directory, &drawing);
+    RtStatus drawn = rt_plots_draw(results, directory, false, &drawing);
     RT_TRY(rt_report_write(results, published, directory, error));
     RtStatus checked = rt_published_check(published, error);
     if (drawn == RT_OK) return checked;

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Line plots of cost over each swept parameter, for experiments that name no scripts.
  *
- * The generated plots/sweep.gp contains its data, and runs after names.gp and style.gp. It draws time, object
- * tests and steps per ray, over all ray kinds. Over a parameter of scenes there is a line for each
- * accelerator. Over a parameter of accelerators there is a figure for each scene, with a line for each group
- * of specs that differ only in the parameter, and a line without markers for each accelerator without it. The
- * legend has the order of the lines at their right ends. */
+ * The generated plots/sweep.gp contains its data, and runs after names.gp and style.gp. For each parameter it
+ * draws three figures: time, object tests and steps per ray, over all ray kinds. A figure has a panel for
+ * each scene, or for each group of scenes that differ only in the parameter, all with the same axes.
+ * Accelerators that differ only in the parameter are one line; one without it is a line without markers. The
+ * legend has the order of the lines at their right ends. The axes do not extend to `ideal` if it lies far
+ * below. */
 #ifndef RT_REPORT_SWEEP_PLOT_H
 #define RT_REPORT_SWEEP_PLOT_H
 
@@ -14,7 +15,8 @@
 /* Whether the experiment sweeps parameters and names no plots. */
 bool rt_sweep_plots_needed(const RtExperiment *experiment);
 
-/* Writes sweep.gp and style.gp to `directory`/plots, which exists. */
-RtStatus rt_sweep_plots_write(const RtResults *results, const char *directory, RtError *error);
+/* Writes sweep.gp and style.gp to `directory`/plots, which exists. `column`: as wide as a column of a paper,
+ * also with several scenes. */
+RtStatus rt_sweep_plots_write(const RtResults *results, const char *directory, bool column, RtError *error);
 
 #endif

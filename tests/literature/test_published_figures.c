@@ -110,4 +110,15 @@ RT_TEST_IN_PLACE(ours_must_need_less_than_every_published_row) {
     assert_differs(place, "balls,s,Tree,deep,,hit,,11.0,3.5\n", "", false, "on balls none of ours is better");
 }
 
+/* bvh tests few objects and many extents, of which published rows count none. */
+RT_TEST_IN_PLACE(ours_that_needs_more_with_its_extent_tests_is_said_to) {
+    const Place *place = *state;
+    change_experiment(place, "  reasons:", "  ours: [bvh]\n  reasons:");
+    assert_agrees(place, "balls,s,Tree,,,ray,,3.0,30\n", "");
+    assert_in_file(place, "out/published.md",
+                   " | fewer, but **more with extent tests** |\n| balls | object_tests+steps |");
+    assert_in_file(place, "out/report.html", "fewer, but <b>more with extent tests</b>");
+    assert_in_file(place, "out/published.md", " | fewer, also with extent tests |\n");
+}
+
 RT_TESTS(published_figures, NULL, NULL)

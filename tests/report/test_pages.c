@@ -137,7 +137,8 @@ RT_TEST_IN_PLACE(plots_are_drawn_as_pdf_too_as_wide_as_a_column_of_a_paper) {
     const Place *place = *state;
     if (access("/usr/bin/gnuplot", X_OK) != 0) RT_SKIP("gnuplot-nox");
     write_in(place, "my.gp",
-             "load \"plots/style.gp\"\neval canvas(\"mine\", 480, 240)\nplot x\nunset output\n");
+             "load \"plots/style.gp\"\neval canvas(\"mine\", 480, 240)\nplot x\nunset output\n"
+             "eval canvas(\"both\", wide, 240)\nplot x\nunset output\n");
     char copy[512];
     snprintf(copy, sizeof copy, "cp '%s/experiments/style.gp' '%s'", RT_SOURCE_DIR, place->folder);
     assert_int_equal(system(copy), 0);
@@ -147,6 +148,29 @@ RT_TEST_IN_PLACE(plots_are_drawn_as_pdf_too_as_wide_as_a_column_of_a_paper) {
     assert_in_file(place, "out/report.html", "<a href=\"plots/mine.pdf\">PDF</a>");
     assert_in_file(place, "out/plots/names.gp", "format = \"svg\"");
     assert_true(pdf_has(path_in(place, "out/plots/mine.pdf").text, "/MediaBox [ 0 0 252 126 ]"));
+    /* A PDF font's size is the scale of its text matrix. */
+    assert_true(pdf_has(path_in(place, "out/plots/mine.pdf").text, "\n8.1904"));
+    assert_true(pdf_has(path_in(place, "out/plots/both.pdf").text, "\n8.3769"));
+    assert_true(pdf_has(path_in(place, "out/plots/both.pdf").text, "/FontFile"));
+}
+
+RT_TEST_IN_PLACE(a_plot_of_several_panels_is_laid_out_for_the_page_or_for_a_column) {
+    const Place *place = *state;
+    if (access("/usr/bin/gnuplot", X_OK) != 0) RT_SKIP("gnuplot-nox");
+    write_in(place, "my.gp",
+             "load \"plots/style.gp\"\neval canvas(\"mine\", wide, 240)\nplot x\nunset output\n");
+    char copy[512];
+    snprintf(copy, sizeof copy, "cp '%s/experiments/style.gp' '%s'", RT_SOURCE_DIR, place->folder);
+    assert_int_equal(system(copy), 0);
+    write_small(place, "plots: [style.gp, my.gp]");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_in_file(place, "out/plots/mine.svg", "viewBox=\"0 0 960 240\"");
+    assert_int_equal(raytally(place, "plot out --trust --paper column"), 0);
+    assert_in_file(place, "out/plots/mine.svg", "viewBox=\"0 0 480 240\"");
+    assert_true(pdf_has(path_in(place, "out/plots/mine.pdf").text, "/MediaBox [ 0 0 252 126 ]"));
+    assert_int_equal(raytally(place, "plot out --trust --paper page"), 0);
+    assert_in_file(place, "out/plots/mine.svg", "viewBox=\"0 0 960 240\"");
+    assert_ends(place, "plot out --trust --paper a4", 2, "expected column or page");
 }
 
 /* As a limit of time leaves it: grid has no mean of tests, extent tests, steps and time, which are of other
@@ -199,24 +223,64 @@ RT_TEST_IN_PLACE(where_gnuplot_cannot_draw_pdf_plots_are_svg_alone) {
     assert_in_file(place, "out/plots/names.gp", "format = \"svg\"");
 }
 
-RT_TEST_IN_PLACE(tables_for_papers_have_the_best_in_bold) {
-    const Place *place = *state;
-    write_small(place, "count_only: yes");
+/* The accelerators of small.yaml on other scenes. */
+static void run_scenes(const Place *place, const char *scenes, const char *count_only) {
+    char yaml[1024];
+    snprintf(yaml, sizeof yaml,
+             "name: small\nquestion: Which?\nprediction: The hierarchy.\nscenes: [%s]\n"
+             "accelerators: [{accel: bvh}, {accel: grid}, {accel: brute}, {accel: ideal}]\n"
+             "rays: [primary, random]\nlimit: 50\nrounds: 2\nmilliseconds: 0\ncount_only: %s\n",
+             scenes, count_only);
+    write_in(place, "small.yaml", yaml);
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
-    assert_in_file(place, "out/tables.md", "cloud, 50 random rays.");
-    assert_in_file(place, "out/tables.md", "| **bvh** | ");
-    assert_in_file(place, "out/tables.md", "| brute | ");
-    assert_in_file(place, "out/tables.md", "| ideal | ");
+}
+
+RT_TEST_IN_PLACE(a_table_for_papers_has_a_row_per_accelerator_and_a_column_per_scene_with_the_best_in_bold) {
+    const Place *place = *state;
+    run_scenes(place, "{scene: \"random:n=60\", label: cloud, size: 12x12}, {scene: balls, size: 8x8}",
+               "yes");
+    assert_in_file(place, "out/tables.md",
+                   "\nObject tests per ray, all kinds of rays.\n\n| accelerator | cloud | balls |\n"
+                   "| --- | ---: | ---: |\n| bvh | **");
+    assert_in_file(place, "out/tables.md", "| brute | 60.0 | ");
     assert_in_file(place, "out/tables.md", "Bold: the fewest object tests.");
+    assert_in_file(place, "out/tables.md", "\nObject tests per ray, primary rays.\n");
+    assert_in_file(place, "out/tables.tex", "\\begin{table}\n\\footnotesize");
+    assert_in_file(place, "out/tables.tex", "accelerator & cloud & balls \\\\\n");
+    assert_in_file(place, "out/tables.tex", "\nbvh & \\textbf{");
     char *text = read_in(place, "out/tables.md");
-    assert_null(strstr(text, "Mrays"));
+    assert_null(strstr(text, "Time"));
+    assert_null(strstr(text, "| ideal | **")); /* not compared */
     rt_free(text);
     text = read_in(place, "out/report.html");
     assert_null(strstr(text, "<dd></dd>")); /* real numbers of the manifest, too */
     rt_free(text);
-    assert_in_file(place, "out/tables.tex", "\\textbf{bvh} & ");
-    assert_in_file(place, "out/tables.tex", "\\bottomrule");
     assert_in_file(place, "out/report.html", "bvh <span class=\"mark\">&#9733;");
+}
+
+RT_TEST_IN_PLACE(a_sweep_of_a_scene_is_a_table_whose_columns_are_the_values) {
+    const Place *place = *state;
+    run_scenes(place, "{scene: \"random:n=20..80*2\", size: 8x8}, {scene: balls, size: 8x8}", "no");
+    assert_in_file(
+        place, "out/tables.md",
+        "\nTime per ray in ns, all kinds of rays, random.\n\n| accelerator | n=20 | n=40 | n=80 |\n");
+    assert_in_file(place, "out/tables.md",
+                   "\nTime per ray in ns, all kinds of rays.\n\n| accelerator | balls |\n");
+    assert_in_file(place, "out/tables.md", "\nTime to build in ms, random.\n");
+    assert_in_file(place, "out/tables.md", "\nTime per ray in ns, primary rays, random.\n");
+}
+
+RT_TEST_IN_PLACE(a_table_wider_than_a_column_takes_both_and_one_wider_than_the_page_is_divided) {
+    const Place *place = *state;
+    run_scenes(place, "{scene: \"random:n=101..122+1\", size: 4x4, depth: 1}", "yes");
+    assert_in_file(place, "out/tables.tex", "\\begin{table*}\n");
+    assert_in_file(place, "out/tables.tex", "\\end{table*}\n");
+    assert_in_file(place, "out/tables.tex", "accelerator & n=101 & ");
+    char *text = read_in(place, "out/tables.tex");
+    const char *row = strstr(text, "accelerator & n=101");
+    assert_null(memmem(row, strcspn(row, "\n"), "n=122", 5));
+    assert_non_null(strstr(text, " & n=122 \\\\\n"));
+    rt_free(text);
 }
 
 /* ---- who is best ---- */
@@ -366,6 +430,7 @@ RT_TEST_IN_PLACE(the_index_groups_experiments_by_section_with_plot_first_sentenc
                                     "### [quoting](quoting)\n\n![Plot of quoting](quoting/plots/1.svg)",
                                     "**Question.** Which is \\<cheaper>?",
                                     "**Finding.** So et al. 1990 said. The `rest` is folded.",
+
                                     "<details><summary>Prediction and claims</summary>\n\n**Prediction.** ",
                                     "- **holds**: `object_tests of bvh < 30`: ",
                                     "### [judged](judged)\n\n10 pairs"};

@@ -49,21 +49,71 @@ RT_TEST_IN_PLACE(each_value_is_a_row_and_each_parameter_a_column_at_the_end) {
     rt_csv_clear(&csv);
 }
 
-RT_TEST_IN_PLACE(without_scripts_a_plot_is_drawn_for_each_parameter_and_scene) {
+RT_TEST_IN_PLACE(without_scripts_a_plot_is_drawn_for_each_parameter_and_measure) {
     const Place *place = *state;
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
     if (access("/usr/bin/gnuplot", X_OK) != 0) RT_SKIP("gnuplot-nox");
-    const char *const drawn[] = {"out/plots/01-sweep-n.svg", "out/plots/02-sweep-density.svg",
-                                 "out/plots/03-sweep-density.svg", "out/plots/04-sweep-build.svg"};
+    const char *const drawn[] = {"out/plots/01-sweep-n-time.svg",
+                                 "out/plots/02-sweep-n-object-tests.svg",
+                                 "out/plots/03-sweep-n-steps.svg",
+                                 "out/plots/04-sweep-density-time.svg",
+                                 "out/plots/05-sweep-density-object-tests.svg",
+                                 "out/plots/07-sweep-build-time.svg"};
     for (size_t i = 0; i < sizeof drawn / sizeof drawn[0]; i++) assert_in_file(place, drawn[i], "</svg>");
     assert_in_file(place, drawn[0], "grid:density=16");
     assert_in_file(place, drawn[0], "ns per ray");
-    assert_in_file(place, drawn[3], "lbvh");
+    assert_in_file(place, drawn[0], "viewBox=\"0 0 480 ");
+    assert_in_file(place, drawn[5], "lbvh");
     assert_in_file(place, "out/plots/sweep.gp", "set logscale x");
+    assert_in_file(place, "out/plots/sweep.gp", "($4 - $3) with vectors heads");
     assert_in_file(place, "out/report.html", "data:image/svg+xml");
     char *log = read_in(place, "out/plots/gnuplot.log");
     assert_string_equal(log, "");
     rt_free(log);
+}
+
+static uint32_t count_of(const char *text, const char *what) {
+    uint32_t count = 0;
+    for (; (text = strstr(text, what)); text++) count++;
+    return count;
+}
+
+RT_TEST_IN_PLACE(the_scenes_are_panels_of_one_plot_with_one_scale) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    char *script = read_in(place, "out/plots/sweep.gp");
+    char *figure = strstr(script, "eval canvas(\"08-sweep-build-object-tests\", 960");
+    assert_non_null(figure);
+    *strstr(figure, "unset multiplot") = '\0';
+    assert_int_equal(count_of(figure, "set yrange"), 1);
+    assert_int_equal(count_of(figure, "plot for"), 3);
+    assert_non_null(strstr(figure, "set title \"cloud:n=200\""));
+    assert_non_null(strstr(figure, "set title \"balls\""));
+    rt_free(script);
+    if (access("/usr/bin/gnuplot", X_OK) != 0) RT_SKIP("gnuplot-nox");
+    assert_int_equal(raytally(place, "plot out --paper column"), 0);
+    assert_in_file(place, "out/plots/08-sweep-build-object-tests.svg", "viewBox=\"0 0 480 ");
+}
+
+RT_TEST_IN_PLACE(whole_numbers_have_whole_ticks) {
+    const Place *place = *state;
+    write_changed(place, "small.yaml", swept, "1..16*2", "1..5+1");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_in_file(place, "out/plots/sweep.gp", "set xtics (\"1\" 1,\"2\" 2,\"3\" 3,\"4\" 4,\"5\" 5)");
+    write_changed(place, "small.yaml", swept, "1..16*2", "1..10+1");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --force"), 0);
+    assert_in_file(place, "out/plots/sweep.gp", "set xtics 2\n");
+}
+
+RT_TEST_IN_PLACE(ideal_below_the_others_is_named_so_and_does_not_stretch_the_axis) {
+    const Place *place = *state;
+    write_in(place, "small.yaml",
+             "name: small\nquestion: How far is it?\nprediction: Far.\n"
+             "scenes: [{scene: \"random:n=40..4000*10\", size: 4x4}]\n"
+             "accelerators: [{accel: brute}, {accel: ideal}]\nrays: [primary]\ncount_only: yes\n");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_in_file(place, "out/plots/sweep.gp", "\"ideal (below)\"");
+    assert_in_file(place, "out/plots/sweep.gp", "set logscale y; set yrange [30.7692308:5200]");
 }
 
 RT_TEST_IN_PLACE(fifty_accelerators_are_fifty_lines_of_which_no_two_look_alike) {

@@ -24,6 +24,7 @@ typedef struct Row {
 static RtField seconds_of(const Row *r) {
     RtField field = rt_field_real(r->seconds);
     field.missed = r->seconds > 1;
+    field.bold = field.missed;
     field.note = field.missed ? "a \"slow\" one" : NULL;
     return field;
 }
@@ -96,36 +97,32 @@ RT_TEST(markdown_escapes_bars_and_aligns_numbers_unless_it_is_ragged) {
     ragged.row_count = ragged.group_count = 1;
     assert_written(&table, rt_table_markdown,
                    "| name | hit count | seconds | exact | range | rays |\n"
-                   "| --- | ---: | ---: | --- | --- | ---: |\n"
-                   "| a\\|b, `c` **d** | 12 | 1.5 | yes | 1.5 [0.8, 3.0] | 7 |\n"
+                   "| --- | ---: | ---: | --- | ---: | ---: |\n"
+                   "| a\\|b, `c` **d** | 12 | **1.5** | yes | 1.5 [0.8, 3.0] | 7 |\n"
                    "| <x> | 3456 | | no | | |\n");
     assert_written(&ragged, rt_table_markdown,
                    "| name | hit count | seconds | exact | range |\n| --- | --- | --- | --- | --- |\n"
-                   "| a\\|b, `c` **d** | 12 | 1.5 | yes | 1.5 [0.8, 3.0] |\n");
+                   "| a\\|b, `c` **d** | 12 | **1.5** | yes | 1.5 [0.8, 3.0] |\n");
 }
 
 static RtStanding first_is_best(const void *row) {
     return row == things ? RT_STANDING_BEST : RT_STANDING_BEHIND;
 }
 
-RT_TEST(markdown_and_latex_have_the_best_in_bold_and_escape_what_they_must) {
+RT_TEST(latex_has_bold_fields_and_escapes_what_it_must) {
     RtTable marked = table;
     const RtColumnGroup first[] = {RT_FROM_TO(columns, name, seconds)};
     marked.groups = first;
     marked.group_count = 1;
     marked.caption = "50 % of {a_b}";
-    marked.standing = first_is_best;
-    assert_written(&marked, rt_table_markdown,
-                   "| name | hit count | seconds |\n| --- | ---: | ---: |\n"
-                   "| **a\\|b, `c` **d**** | 12 | 1.5 |\n| <x> | 3456 | |\n");
-    assert_written(
-        &marked, rt_table_tex,
-        "\\begin{table}\n\\scriptsize\\centering\\setlength{\\tabcolsep}{3pt}\n\\caption{50 \\% of "
-        "\\{a\\_b\\}}\n"
-        "\\resizebox{\\ifdim\\width>\\columnwidth\\columnwidth\\else\\width\\fi}{!}{%\n\\begin{tabular}{@{}"
-        "lrr@{}}\n\\toprule\nname & hit count & seconds \\\\\n\\midrule\n"
-        "\\textbf{a\\textbar{}b, `c` **d**} & 12 & 1.5 \\\\\n"
-        "\\textless{}x\\textgreater{} & 3456 & -- \\\\\n\\bottomrule\n\\end{tabular}}\n\\end{table}\n");
+    marked.wide = true;
+    assert_written(&marked, rt_table_tex,
+                   "\\begin{table*}\n\\footnotesize\\centering\\setlength{\\tabcolsep}{3pt}\n"
+                   "\\caption{50 \\% of \\{a\\_b\\}}\\smallskip\n\\begin{tabular}{@{}lrr@{}}\n\\toprule\n"
+                   "name & hit count & seconds \\\\\n\\midrule\n"
+                   "a\\textbar{}b, `c` **d** & 12 & \\textbf{1.5} \\\\\n"
+                   "\\textless{}x\\textgreater{} & 3456 & -- \\\\\n\\bottomrule\n\\end{tabular}\n"
+                   "\\end{table*}\n");
 }
 
 RT_TEST(html_escapes_marks_notes_and_keeps_numbers_for_sorting) {

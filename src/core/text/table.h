@@ -72,6 +72,7 @@ typedef struct RtField {
     double real, low, high;
     const char *note; /* borrowed; a tooltip in HTML; or NULL */
     bool missed;      /* marked in HTML as below expectation */
+    bool bold;        /* in Markdown and LaTeX */
     char buffer[RT_MAX_FIELD];
 } RtField;
 
@@ -171,9 +172,10 @@ typedef struct RtTable {
     const void *(*row)(void *context, size_t i); /* NULL: skip this row; the next call may reuse the row */
     void *context;
     const char *(*color)(const void *row);   /* HTML: colour of a dot before the row; or NULL */
-    RtStanding (*standing)(const void *row); /* Markdown, LaTeX, HTML; NULL: no marks */
+    RtStanding (*standing)(const void *row); /* HTML; NULL: no marks */
     const char *caption;                     /* LaTeX, HTML; or NULL */
     bool ragged;                             /* Markdown: numbers are not right-aligned */
+    bool wide;                               /* LaTeX: as wide as both columns of an article */
 } RtTable;
 
 /* Initialises the first two members of a table from an array of groups. */
@@ -183,7 +185,7 @@ void rt_table_csv(const RtTable *table, FILE *out);
 void rt_table_text(const RtTable *table, FILE *out);
 void rt_table_markdown(const RtTable *table, FILE *out);
 
-/* A table environment for the packages booktabs and graphicx, shrunk if it is wider than the column. */
+/* A table environment for the package booktabs. */
 void rt_table_tex(const RtTable *table, FILE *out);
 
 /* <table>, with data-id in headers and data-value in numbers for sorting. */

@@ -5,26 +5,26 @@
 #include <inttypes.h>
 #include <string.h>
 
-static RtStanding standing_of(const RtTableWriter *w, const void *row) {
-    return row && w->table->standing ? w->table->standing(row) : RT_STANDING_BEHIND;
+/* Numbers, also with intervals. */
+static bool is_sortable(const RtTableColumn *column) {
+    return rt_column_is_number(column) || column->form == RT_FORM_interval;
 }
 
 /* ---- Markdown ---- */
 
 static void put_markdown(RtTableWriter *w, const RtTableLine *line, const void *row) {
-    const bool bold = standing_of(w, row) != RT_STANDING_BEHIND;
     char buffer[RT_MAX_FIELD];
     fputc('|', w->out);
     for (size_t i = 0; i < line->count; i++) {
         const char *text = row ? rt_line_show(line, i, buffer) : line->columns[i]->name;
-        const char *mark = bold && i == 0 ? "**" : "";
+        const char *mark = row && line->fields[i].bold ? "**" : "";
         if (*text) fprintf(w->out, " %s", mark);
         for (const char *c = text; *c; c++) fprintf(w->out, *c == '|' ? "\\|" : "%c", *c);
         fprintf(w->out, "%s |", *text ? mark : "");
     }
     fputs(row ? "\n" : "\n|", w->out);
     for (size_t i = 0; !row && i < line->count; i++) {
-        bool right = rt_column_is_number(line->columns[i]) && !w->table->ragged;
+        bool right = is_sortable(line->columns[i]) && !w->table->ragged;
         fprintf(w->out, " ---%s |%s", right ? ":" : "", i + 1 < line->count ? "" : "\n");
     }
 }
@@ -57,45 +57,39 @@ static void put_tex_text(const char *text, FILE *out) {
 }
 
 static void put_tex(RtTableWriter *w, const RtTableLine *line, const void *row) {
-    const bool bold = standing_of(w, row) != RT_STANDING_BEHIND;
     char buffer[RT_MAX_FIELD];
     if (!row) {
-        fputs("\\resizebox{\\ifdim\\width>\\columnwidth\\columnwidth\\else\\width\\fi}{!}{%\n\\begin{tabular}"
-              "{@{}",
-              w->out);
-        for (size_t i = 0; i < line->count; i++)
-            fputc(rt_column_is_number(line->columns[i]) ? 'r' : 'l', w->out);
+        fputs("\\begin{tabular}{@{}", w->out);
+        for (size_t i = 0; i < line->count; i++) fputc(is_sortable(line->columns[i]) ? 'r' : 'l', w->out);
         fputs("@{}}\n\\toprule\n", w->out);
     }
     for (size_t i = 0; i < line->count; i++) {
         const char *text = row ? rt_line_show(line, i, buffer) : line->columns[i]->name;
+        const bool bold = row && line->fields[i].bold;
         fputs(i ? " & " : "", w->out);
-        fputs(bold && i == 0 ? "\\textbf{" : "", w->out);
+        fputs(bold ? "\\textbf{" : "", w->out);
         if (*text)
             put_tex_text(text, w->out);
         else
             fputs("--", w->out);
-        fputs(bold && i == 0 ? "}" : "", w->out);
+        fputs(bold ? "}" : "", w->out);
     }
     fputs(row ? " \\\\\n" : " \\\\\n\\midrule\n", w->out);
 }
 
 void rt_table_tex(const RtTable *table, FILE *out) {
-    fputs("\\begin{table}\n\\scriptsize\\centering\\setlength{\\tabcolsep}{3pt}\n", out);
+    const char *star = table->wide ? "*" : "";
+    fprintf(out, "\\begin{table%s}\n\\footnotesize\\centering\\setlength{\\tabcolsep}{3pt}\n", star);
     if (table->caption) {
         fputs("\\caption{", out);
         put_tex_text(table->caption, out);
-        fputs("}\n", out);
+        fputs("}\\smallskip\n", out);
     }
     rt_table_walk((RtTableWriter){.table = table, .put = put_tex, .out = out});
-    fputs("\\bottomrule\n\\end{tabular}}\n\\end{table}\n", out);
+    fprintf(out, "\\bottomrule\n\\end{tabular}\n\\end{table%s}\n", star);
 }
 
 /* ---- HTML ---- */
-
-static bool is_sortable(const RtTableColumn *column) {
-    return rt_column_is_number(column) || column->form == RT_FORM_interval;
-}
 
 static void put_character(FILE *out, char c) {
     switch (c) {
@@ -164,7 +158,7 @@ static const char *const standings[] = {
 
 static void put_html(RtTableWriter *w, const RtTableLine *line, const void *row) {
     const char *color = row && w->table->color ? w->table->color(row) : NULL;
-    const RtStanding standing = standing_of(w, row);
+    const RtStanding standing = row && w->table->standing ? w->table->standing(row) : RT_STANDING_BEHIND;
     fputs(row ? "<tr" : "<thead><tr", w->out);
     if (standing != RT_STANDING_BEHIND) fputs(" class=\"best\"", w->out);
     if (color) fprintf(w->out, " style=\"--dot:%s\"", color);
