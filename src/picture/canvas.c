@@ -214,6 +214,23 @@ void rt_add_circle(cairo_t *cairo, RtPoint center, double radius) {
     cairo_close_path(cairo);
 }
 
+void rt_paint(cairo_t *cairo, RtStyle style) {
+    const double dashes[] = {3, 3};
+    rt_set_color(cairo, style.color, style.opacity);
+    if (style.opacity > 0) cairo_fill_preserve(cairo);
+    rt_set_color(cairo, style.color, 1);
+    cairo_set_line_width(cairo, style.width);
+    cairo_set_dash(cairo, dashes, style.dashed ? 2 : 0, 0);
+    cairo_set_line_cap(cairo, CAIRO_LINE_CAP_BUTT);
+    if (style.width > 0) cairo_stroke(cairo);
+    cairo_new_path(cairo);
+}
+
+void rt_draw_disc(cairo_t *cairo, RtPoint center, double radius, RtColor color) {
+    rt_add_circle(cairo, center, radius);
+    rt_paint(cairo, (RtStyle){color, 0, 1, false});
+}
+
 /* ---- text ---- */
 
 enum { MAX_TEXT = 512 };
@@ -267,7 +284,10 @@ static double font_size(cairo_t *cairo) {
 double rt_draw_key(cairo_t *cairo, double x, double y, RtColor color, const char *text) {
     double em = font_size(cairo), side = floor(0.75 * em);
     rt_fill_rectangle(cairo, floor(x), floor(y) - side, side, side, color);
-    rt_set_color(cairo, RT_WHITE, 1);
+    rt_set_color(cairo, RT_GREY, 1);
+    cairo_rectangle(cairo, floor(x) + 0.5, floor(y) - side + 0.5, side - 1, side - 1);
+    cairo_stroke(cairo);
+    rt_set_color(cairo, RT_BLACK, 1);
     return 1.1 * em + rt_draw_text(cairo, x + 1.1 * em, y, text);
 }
 
@@ -333,7 +353,7 @@ void rt_draw_scale(cairo_t *cairo, double x, double y, double width, const RtSca
     cairo_pattern_destroy(colors);
     cairo_rectangle(cairo, x, y, width, floor(em));
     cairo_fill(cairo);
-    rt_set_color(cairo, RT_WHITE, 1);
+    rt_set_color(cairo, RT_BLACK, 1);
     Bar bar = {cairo, scale, x, y, width, em, x, x + width};
     if (scale->logarithmic && scale->most == floor(scale->most)) { /* its end is hardly ever a power of ten */
         bar.free_to = put_mark(&bar, scale->most) - 0.5 * em;

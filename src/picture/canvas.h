@@ -69,6 +69,19 @@ void rt_add_line(cairo_t *cairo, RtPoint from, RtPoint to);
  * distance from the picture's middle. */
 void rt_add_circle(cairo_t *cairo, RtPoint center, double radius);
 
+/* How a path is drawn. */
+typedef struct RtStyle {
+    RtColor color;
+    double width;   /* of its outline, 0: none */
+    double opacity; /* of its filling, 0: none */
+    bool dashed;
+} RtStyle;
+
+/* Fills and outlines the path, and ends it. */
+void rt_paint(cairo_t *cairo, RtStyle style);
+
+void rt_draw_disc(cairo_t *cairo, RtPoint center, double radius, RtColor color);
+
 /* Clips the convex polygon to normal . p <= limit (Sutherland & Hodgman 1974), which may add one corner;
  * returns its number of corners. */
 uint32_t rt_polygon_cut(RtPoint *points, uint32_t count, RtPoint normal, double limit);
@@ -87,8 +100,8 @@ double rt_text_width(cairo_t *cairo, const char *text);
 /* The same, truncated with "..." if the text is wider than `room`. */
 void rt_draw_text_within(cairo_t *cairo, double x, double y, double room, const char *text);
 
-/* A legend entry: a square of `color` as high as a capital letter, and white text; returns the width of
- * both. */
+/* A legend entry: a square of `color` as high as a capital letter, with an outline, and black text; returns
+ * the width of both. */
 double rt_draw_key(cairo_t *cairo, double x, double y, RtColor color, const char *text);
 
 /* Maps values to positions on a colour scale: `least` to 0, `most` to 1. A logarithmic scale, of log(1 +
@@ -99,8 +112,8 @@ typedef struct RtScale {
 } RtScale;
 double rt_scale_position(const RtScale *scale, double value);
 
-/* Draws a bar with the scale's colours and round values below, `rt_scale_height` high. Scales that start
- * below 0 use the colours of differences. */
+/* Draws a bar with the scale's colours and round values below, in black, `rt_scale_height` high. Scales that
+ * start below 0 use the colours of differences. */
 void rt_draw_scale(cairo_t *cairo, double x, double y, double width, const RtScale *scale);
 double rt_scale_height(double font_size);
 
