@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# pictures.sh [PAGE.md...]: redraws the pictures of docs/accelerators and of the tour with the commands beside them in
+# pictures.sh [PAGE.md...]: redraws the pictures of docs/accelerators, the tour and the exercises with the commands beside them in
 # the pages (all pages, or those named): each picture by the command that names it. A picture X.svg of a sweep is
 # plots/X.svg, or the first plot, of the directory X.
 # RT_PROGRAM: the program (build/release/raytally). Exit code 1 if a command fails or draws no picture for a page.
@@ -8,7 +8,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 root=$PWD program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
 pages=("$@")
-[ $# -gt 0 ] || pages=(docs/accelerators/*.md docs/guide/tour.md)
+[ $# -gt 0 ] || pages=(docs/accelerators/*.md docs/guide/tour.md docs/guide/teaching.md)
 
 # The drawing commands of a page: only in fences marked sh, since others take long or need meshes.
 commands() {
@@ -43,6 +43,6 @@ for page in "${pages[@]}"; do
         else
             complain "draws no $name: $line"
         fi
-    done < <(grep -oE 'images/(accelerators|tour)/[a-z0-9.-]+' "$page" | sort -u)
+    done < <(grep -oE 'images/(accelerators|tour|teaching)/[a-z0-9.-]+' "$page" | sort -u)
 done
 exit $status

@@ -11,7 +11,6 @@
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
-#include "render/illumination.h"
 
 #include <pthread.h>
 #include <string.h>
@@ -22,6 +21,7 @@ enum { STREAM = 1024, LEVEL = RT_MAX_SPAWN * STREAM };
 typedef struct Path {
     uint32_t sample; /* of the frame */
     float factor;    /* of the light: the product of kr and kt along the path */
+    uint32_t parent; /* as in RtFrameRay, if the sample is observed */
 } Path;
 
 typedef struct Level {
@@ -43,6 +43,7 @@ typedef struct Worker {
     RtQuery query;
     RtTally tallies[RT_RAY_KIND_COUNT];
     uint64_t ray_count[RT_RAY_KIND_COUNT];
+    uint32_t seen; /* rays that the observer saw */
     size_t tile;
     double querying, working; /* seconds in queries, and in all; with `share` */
     Level *levels;            /* [depth]; 0 holds the primary rays */
@@ -75,6 +76,16 @@ struct Job {
 static void add_light(Worker *worker, Path path, RtVec3 light) {
     RtVec3 *color = &worker->job->frame->color[path.sample];
     *color = rt_add(*color, rt_scale(light, path.factor));
+}
+
+/* Shows a ray to the observer of its sample; returns its number. */
+static uint32_t show(Worker *worker, Path path, RtFrameRay ray) {
+    const RtFrameObserver *observer = worker->job->options->observer;
+    if (!observer || observer->sample != path.sample) return RT_NO_RAY;
+    ray.parent = path.parent;
+    ray.factor = path.factor;
+    observer->see(observer->context, &ray);
+    return worker->seen++;
 }
 
 /* ---- queries ---- */
@@ -144,7 +155,11 @@ static RtStatus flush_shadows(Worker *worker, RtError *error) {
     if (worker->shadow_count == 0) return RT_OK;
     RT_TRY(trace_occluded(worker, error));
     for (uint32_t i = 0; i < worker->shadow_count; i++) {
-        if (!worker->occluded[i]) add_light(worker, worker->shadow_paths[i], worker->shadow_lights[i]);
+        const bool occluded = worker->occluded[i];
+        RtVec3 light = occluded ? rt_vec3(0, 0, 0) : worker->shadow_lights[i];
+        if (!occluded) add_light(worker, worker->shadow_paths[i], light);
+        show(worker, worker->shadow_paths[i],
+             (RtFrameRay){&worker->shadow_rays[i], .hit = RT_MISS, .occluded = occluded, .light = light});
     }
     worker->shadow_count = 0;
     return RT_OK;
@@ -174,14 +189,18 @@ static uint32_t find_surfaces(Worker *worker, const RtRay *rays, const Path *pat
     const RtScene *scene = worker->job->scene;
     uint32_t surface_count = 0;
     for (uint32_t i = 0; i < count; i++) {
-        if (worker->hits[i].object == RT_NO_OBJECT) {
-            add_light(worker, paths[i], scene->background);
-            continue;
+        RtSurface *surface = NULL;
+        RtVec3 light = scene->background;
+        if (worker->hits[i].object != RT_NO_OBJECT) {
+            surface = &worker->surfaces[surface_count];
+            *surface = rt_surface(scene, &rays[i], worker->hits[i], rt_query_crossings(&worker->query));
+            light = rt_ambient_light(scene, surface);
         }
-        RtSurface *surface = &worker->surfaces[surface_count];
-        *surface = rt_surface(scene, &rays[i], worker->hits[i], rt_query_crossings(&worker->query));
-        worker->surface_paths[surface_count++] = paths[i];
-        add_light(worker, paths[i], rt_ambient_light(scene, surface));
+        add_light(worker, paths[i], light);
+        RtFrameRay shown = {&rays[i], .hit = worker->hits[i], .surface = surface, .light = light};
+        uint32_t number = show(worker, paths[i], shown);
+        if (surface)
+            worker->surface_paths[surface_count++] = (Path){paths[i].sample, paths[i].factor, number};
     }
     return surface_count;
 }
@@ -193,7 +212,7 @@ static void spawn(Worker *worker, uint32_t surface_count, Level *below) {
         Path from = worker->surface_paths[i];
         uint32_t spawned = rt_spawn_rays(&worker->surfaces[i], below->rays + below->count, factors);
         for (uint32_t k = 0; k < spawned; k++)
-            below->paths[below->count++] = (Path){from.sample, from.factor * factors[k]};
+            below->paths[below->count++] = (Path){from.sample, from.factor * factors[k], from.parent};
     }
 }
 
@@ -237,7 +256,7 @@ static void make_primary_rays(Worker *worker, Level *level) {
         job->frame->depth[ray.source] = INFINITY;
         if (!rt_ray_is_valid(&ray)) continue;
         level->rays[level->count] = ray;
-        level->paths[level->count++] = (Path){ray.source, 1};
+        level->paths[level->count++] = (Path){ray.source, 1, RT_NO_RAY};
     }
 }
 
@@ -286,10 +305,14 @@ static RtStatus init_frame(RtFrame *frame, const RtSampling *sampling, bool coun
 }
 
 static RtStatus init_tiles(Job *job, const RtSampling *sampling, RtError *error) {
-    job->tile_count = rt_tile_count(sampling);
+    const RtFrameObserver *observer = job->options->observer;
+    job->tile_count = observer ? 1 : rt_tile_count(sampling);
     job->tiles = rt_alloc(job->tile_count, sizeof(RtSample));
     if (!job->tiles) return rt_fail_memory(error, "the tiles of a frame", job->tile_count * sizeof(RtSample));
-    rt_tiles_in_order(sampling, job->tiles);
+    if (observer)
+        job->tiles[0] = rt_tile_of(sampling, observer->sample);
+    else
+        rt_tiles_in_order(sampling, job->tiles);
     if (!job->options->keep_rays) return RT_OK;
     job->kept = rt_alloc(job->tile_count, sizeof(TileRays));
     if (job->kept) return RT_OK;

@@ -12,6 +12,7 @@
 #define RT_RENDER_FRAME_H
 
 #include "accel/accel.h"
+#include "render/illumination.h"
 #include "render/tiles.h"
 
 #define RT_MAX_DEPTH     64
@@ -19,6 +20,26 @@
 
 /* Larger frames are rejected: 8192 x 8192 samples take 1.3 GB, counted 6.7 GB. */
 #define RT_MAX_FRAME_SAMPLES (UINT32_C(1) << 26)
+
+/* A ray of a sample, after it was traced. */
+typedef struct RtFrameRay {
+    const RtRay *ray;
+    uint32_t parent;          /* number of the ray from whose hit it starts; RT_NO_RAY for the primary ray */
+    float factor;             /* of its light in the sample's colour: the product of kr and kt on the way */
+    RtHit hit;                /* RT_MISS for shadow rays */
+    const RtSurface *surface; /* what it hit; NULL for a miss, and for shadow rays */
+    bool occluded;            /* of a shadow ray */
+    RtVec3 light; /* what it adds, without the factor: the surface's ambient light, the background, or that of
+                   * the light that it sees */
+} RtFrameRay;
+#define RT_NO_RAY UINT32_MAX
+
+/* Sees the rays of one sample, numbered 0, 1, ... in the order in which their light is added. */
+typedef struct RtFrameObserver {
+    uint32_t sample; /* row * columns + column */
+    void (*see)(void *context, const RtFrameRay *ray);
+    void *context;
+} RtFrameObserver;
 
 typedef struct RtFrameOptions {
     uint32_t depth;          /* levels of the ray tree, 1..RT_MAX_DEPTH; the primary ray is the first */
@@ -28,6 +49,7 @@ typedef struct RtFrameOptions {
     bool light_from_outside; /* light surfaces from outside, whichever side the ray comes from */
     bool keep_rays;          /* keep all traced rays */
     bool share;              /* fill `share`; reading the clock costs about 50 ns per stream of rays */
+    const RtFrameObserver *observer; /* optional: trace only the tile of its sample */
     /* Optional: called by one thread at a time when a tile is finished. */
     void (*progress)(void *context, size_t tiles_done, size_t tiles);
     void *progress_context;

@@ -59,12 +59,35 @@ static RtRay start_ray(const RtSurface *surface, double away, RtVec3d dir, RtRay
     return (RtRay){.org = rt_narrow(org), .dir = rt_narrow(dir), .tmax = INFINITY, .kind = kind};
 }
 
+static RtVec3d direction_to(const RtSurface *surface, const RtLight *light) {
+    return rt_normalized(rt_subd(rt_widen(light->position), surface->point));
+}
+
+/* kd (N.L) and ks (R.V)^shine */
+static void reflect_light(const RtSurface *surface, RtVec3d to_light, RtVec3 *matte, RtVec3 *glossy) {
+    const RtMaterial *m = surface->material;
+    double n_dot_l = rt_dotd(surface->normal, to_light);
+    double r_dot_v = rt_dotd(mirrored(to_light, surface->normal), surface->arriving);
+    double highlight = 0;
+    if (m->specular > 0 && r_dot_v > 0) highlight = (double)m->specular * rt_power(r_dot_v, (double)m->shine);
+    *matte = rt_scale(m->color, (float)((double)m->diffuse * n_dot_l));
+    *glossy = rt_vec3((float)highlight, (float)highlight, (float)highlight);
+}
+
+void rt_light_terms(const RtScene *scene, const RtSurface *surface, uint32_t index, RtVec3 *diffuse,
+                    RtVec3 *specular) {
+    const RtLight *source = &scene->lights[index];
+    reflect_light(surface, direction_to(surface, source), diffuse, specular);
+    *diffuse = rt_mul(source->intensity, *diffuse);
+    *specular = rt_mul(source->intensity, *specular);
+}
+
 bool rt_shadow_ray(const RtScene *scene, const RtSurface *surface, uint32_t index, RtRay *ray,
                    RtVec3 *light) {
     const RtLight *source = &scene->lights[index];
-    RtVec3d to_light = rt_normalized(rt_subd(rt_widen(source->position), surface->point));
-    double n_dot_l = rt_dotd(surface->normal, to_light);
-    if (!(n_dot_l > 0) || !(rt_dotd(surface->side, to_light) > 0)) return false;
+    RtVec3d to_light = direction_to(surface, source);
+    RtVec3 matte, glossy;
+    if (!(rt_dotd(surface->normal, to_light) > 0) || !(rt_dotd(surface->side, to_light) > 0)) return false;
 
     *ray = start_ray(surface, 1, to_light, RT_RAY_SHADOW);
     ray->dir = rt_sub(source->position, ray->org);
@@ -72,12 +95,7 @@ bool rt_shadow_ray(const RtScene *scene, const RtSurface *surface, uint32_t inde
     ray->source = index;
     if (!rt_ray_is_valid(ray)) return false;
 
-    const RtMaterial *m = surface->material;
-    double r_dot_v = rt_dotd(mirrored(to_light, surface->normal), surface->arriving);
-    double highlight = 0;
-    if (m->specular > 0 && r_dot_v > 0) highlight = (double)m->specular * rt_power(r_dot_v, (double)m->shine);
-    RtVec3 matte = rt_scale(m->color, (float)((double)m->diffuse * n_dot_l));
-    RtVec3 glossy = {(float)highlight, (float)highlight, (float)highlight};
+    reflect_light(surface, to_light, &matte, &glossy);
     *light = rt_mul(source->intensity, rt_add(matte, glossy));
     return true;
 }

@@ -36,4 +36,10 @@ static inline RtSample rt_tile_sample(RtSample tile, uint32_t i) {
     return (RtSample){tile.column + rt_even_bits(i), tile.row + rt_even_bits(i >> 1)};
 }
 
+/* The tile of sample row * columns + column. */
+static inline RtSample rt_tile_of(const RtSampling *sampling, uint32_t sample) {
+    uint32_t column = sample % sampling->columns, row = sample / sampling->columns;
+    return (RtSample){column - column % RT_TILE, row - row % RT_TILE};
+}
+
 #endif

@@ -42,6 +42,41 @@ static inline RtFrame trace(const RtScene *scene, const RtFrameOptions *options)
     return frame;
 }
 
+/* Mirrors, glass and matte, of every shape, over a floor, under two lights. */
+static inline RtScene busy_scene(void) {
+    RtScene scene = start_scene(rt_default_material());
+    RtMaterial others[2] = {
+        {.color = {1, 0.5f, 0.2f},
+         .diffuse = 0.5f,
+         .specular = 0.5f,
+         .shine = 9,
+         .reflection = 0.5f,
+         .ior = 1},
+        {.color = {1, 1, 1}, .diffuse = 0.1f, .reflection = 0.1f, .transmission = 0.9f, .ior = 1.5f}};
+    uint32_t mirror, clear;
+    assert_ok(rt_scene_add_material(&scene, &others[0], &mirror, error));
+    assert_ok(rt_scene_add_material(&scene, &others[1], &clear, error));
+    add_square(&scene, 6, -1);
+    for (int i = 0; i < 5; i++) {
+        float x = (float)i - 2;
+        assert_ok(rt_scene_add_sphere(&scene, mirror, rt_vec3(x, x * x / 4, 0), 0.45f, error));
+        assert_ok(rt_scene_add_sphere(&scene, clear, rt_vec3(x, -1 + x * x / 4, 1), 0.4f, error));
+    }
+    for (int i = 0; i < 3; i++) { /* panes over the left half: rays multiply */
+        float z = 2 + (float)i;
+        RtVec3 pane[4] = {{-6, -6, z}, {0, -6, z}, {0, 6, z}, {-6, 6, z}};
+        assert_ok(rt_scene_add_polygon(&scene, clear, pane, 4, error));
+    }
+    RtVec3 corners[3] = {{-2, 2, 0}, {2, 2, 0}, {0, 2.5f, 2}},
+           normals[3] = {{0, -1, 1}, {0, -1, 1}, {0, -1, 0}};
+    assert_ok(rt_scene_add_triangle(&scene, mirror, corners, normals, error));
+    assert_ok(rt_scene_add_cone(&scene, 0, rt_vec3(-2, -2, -1), 0.5f, rt_vec3(-2, -2, 1), 0.2f, error));
+    assert_ok(rt_scene_add_light(&scene, rt_vec3(3, 4, 8), rt_vec3(0.6f, 0.6f, 0.6f), error));
+    assert_ok(rt_scene_add_light(&scene, rt_vec3(-5, 0, 4), rt_vec3(0.5f, 0.4f, 0.4f), error));
+    assert_ok(rt_scene_finish(&scene, error));
+    return scene;
+}
+
 /* The surface that a ray towards the only object of `scene` meets. */
 static inline RtSurface surface_of(const RtScene *scene, RtVec3 org, RtVec3 dir, float t) {
     RtRay ray = {.org = org, .dir = dir, .tmax = INFINITY};
