@@ -198,11 +198,10 @@ RtStatus rt_path_draw(const RtPath *path, const RtScene *scene, const char *titl
     rt_set_color(d.cairo, RT_PATH_DARK, 1);
     rt_draw_text_within(d.cairo, MARGIN, 44, WIDTH - 2 * MARGIN, spec);
     draw_legend(&d);
-    rt_path_section_draw(&d.section, d.cairo);
+    RtStatus status = rt_path_section_draw(&d.section, d.cairo, error);
     draw_axis(&d, bars - 4, bottom);
     draw_rows(&d, bars, true, &left);
     snprintf(text, sizeof text, "and %u more row%s", left, rt_plural(left));
     if (left > 0) put_line(&d, bottom + 18, text);
-    RtStatus status = path->accel ? rt_accel_check(path->accel, error) : RT_OK;
     return rt_canvas_close(&canvas, status, error);
 }

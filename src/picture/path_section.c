@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "picture/path_section.h"
 
+#include "core/base/memory.h"
 #include "picture/extent_outline.h"
+#include "picture/section.h"
 
 enum { FAR = 1000 }; /* pixels beyond a window at which lines may end */
 
@@ -12,16 +14,35 @@ typedef struct Part {
 
 /* ---- the plane ---- */
 
+/* The plane as the window shows it. */
+static RtSection plane_of(const RtPathSection *s) {
+    const RtPathWindow *w = s->window;
+    RtSection plane = {.on = rt_add_scaledd(s->org, s->along, w->s0),
+                       .right = s->along,
+                       .normal = s->normal,
+                       .origin = {w->x, w->y},
+                       .scale = w->scale};
+    plane.on.at[s->axis] = w->v0;
+    plane.up.at[s->axis] = 1;
+    return plane;
+}
+
+static void add_ball(const RtPathSection *s, RtVec3d center, double radius) {
+    const RtSection plane = plane_of(s);
+    rt_section_add_ball(&plane, s->cairo, center, radius);
+}
+
+static void add_object(const RtPathSection *s, uint32_t id) {
+    const RtSection plane = plane_of(s);
+    rt_section_add_object(&plane, s->cairo, s->geometry, id, s->crossings);
+}
+
 static double x_of(const RtPathSection *s, double distance) {
     return s->window->x + (distance - s->window->s0) * s->window->scale;
 }
 
 static double y_of(const RtPathSection *s, double v) {
     return s->window->y + (s->window->v0 - v) * s->window->scale;
-}
-
-static RtPoint point_of(const RtPathSection *s, RtVec3d p) {
-    return (RtPoint){x_of(s, rt_dotd(rt_subd(p, s->org), s->along)), y_of(s, p.at[s->axis])};
 }
 
 static RtPoint point_on_ray(const RtPathSection *s, double t) {
@@ -151,13 +172,6 @@ RtColor rt_path_row_color(const RtPath *path, uint32_t row) {
     return rt_color_scale(path->count > 1 ? 0.8 * row / (path->count - 1) : 0);
 }
 
-/* Adds the circle in which the plane cuts a ball. */
-static void add_ball(const RtPathSection *s, RtVec3d center, double r) {
-    double off = rt_dotd(rt_subd(center, s->org), s->normal);
-    if (fabs(off) < r)
-        rt_add_circle(s->cairo, point_of(s, center), sqrt(r * r - off * off) * s->window->scale);
-}
-
 /* Adds the rectangle in which the plane cuts a box, which may be infinite. */
 static void add_box(const RtPathSection *s, const RtBox *box) {
     double from, to;
@@ -183,26 +197,6 @@ static void draw_extent(const RtPathSection *s, uint32_t i) {
         rt_paint(s->cairo, (RtStyle){RT_PATH_LIGHT, 1, 0, true});
     else
         rt_paint(s->cairo, (RtStyle){rt_path_row_color(s->path, i), leaf ? 1.5 : 1, leaf ? 0.12 : 0, false});
-}
-
-/* Adds the line in which the plane cuts a flat object. */
-static void add_flat(const RtPathSection *s, const RtVec3 *corners, uint32_t count) {
-    RtVec3d cut[2];
-    if (rt_outline_cut_flat(corners, count, s->org, s->normal, cut))
-        rt_add_line(s->cairo, point_of(s, cut[0]), point_of(s, cut[1]));
-}
-
-/* Cones and CSG trees appear only as boxes, in rows of their own. */
-static void add_object(const RtPathSection *s, uint32_t id) {
-    const RtGeometry *g = s->geometry;
-    uint32_t index = rt_ref_index(g->objects[id]);
-    RtShape shape = rt_ref_shape(g->objects[id]);
-    if (shape == RT_SHAPE_SPHERE)
-        add_ball(s, rt_widen(g->spheres[index].center), (double)g->spheres[index].radius);
-    else if (shape == RT_SHAPE_TRIANGLE)
-        add_flat(s, g->triangles[index].v, 3);
-    else if (shape == RT_SHAPE_POLYGON)
-        add_flat(s, rt_polygon_vertices(g, index), g->polygons[index].count);
 }
 
 static void draw_object(const RtPathSection *s, const RtPathRow *row) {
@@ -299,16 +293,27 @@ static void draw_section(const RtPathSection *s) {
     rt_paint(s->cairo, (RtStyle){RT_PATH_LIGHT, 1, 0, false});
 }
 
-void rt_path_section_draw(RtPathSection *section, cairo_t *cairo) {
+/* Both windows, after what they need has been allocated. */
+static void draw_windows(RtPathSection *section) {
     const RtPathWindow *detail = &section->detail;
-    section->cairo = cairo;
+    cairo_t *cairo = section->cairo;
     section->window = detail;
     draw_section(section);
     if (section->overview.width == 0) return;
     section->window = &section->overview;
     draw_section(section);
-    double part = section->overview.scale / detail->scale;
-    cairo_rectangle(cairo, x_of(section, detail->s0), y_of(section, detail->v0), detail->width * part,
-                    detail->height * part);
+    const RtPathWindow *w = &section->overview;
+    double size = w->scale / detail->scale, x = x_of(section, detail->s0), y = y_of(section, detail->v0);
+    double left = fmax(x, w->x), top = fmax(y, w->y);
+    cairo_rectangle(cairo, left, top, fmin(x + detail->width * size, w->x + w->width) - left,
+                    fmin(y + detail->height * size, w->y + w->height) - top);
     rt_paint(cairo, (RtStyle){RT_BLACK, 1.5, 0, false});
+}
+
+RtStatus rt_path_section_draw(RtPathSection *section, cairo_t *cairo, RtError *error) {
+    section->cairo = cairo;
+    RT_TRY(rt_crossings_alloc(section->geometry, &section->crossings, error));
+    draw_windows(section);
+    rt_free(section->crossings);
+    return section->path->accel ? rt_accel_check(section->path->accel, error) : RT_OK;
 }

@@ -26,6 +26,7 @@ typedef struct RtPathSection {
     RtPathWindow detail, overview; /* overview.width is 0 if the detail shows the whole path */
     const RtPathWindow *window;    /* being drawn: one of these */
     cairo_t *cairo;
+    RtCrossing *crossings; /* scratch memory, while drawing */
 } RtPathSection;
 
 /* The detail shows where objects are tested, and as much around it. If that is much less than the path, the
@@ -36,8 +37,8 @@ void rt_path_section_init(RtPathSection *section, const RtPath *path, const RtGe
 double rt_path_section_x(const RtPathSection *section, double t);
 
 /* Draws the detail, and the overview with the detail's outline. Objects that the ray does not test and leaves
- * that it does not visit are pale. */
-void rt_path_section_draw(RtPathSection *section, cairo_t *cairo);
+ * that it does not visit are pale. RT_NO_MEMORY, or a failure of a remote accelerator. */
+RtStatus rt_path_section_draw(RtPathSection *section, cairo_t *cairo, RtError *error);
 
 /* ---- colours, shared with legends and bars ---- */
 

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* In perspective, boxes are drawn in homogeneous view coordinates: (x, y, w) with w the distance along the
  * axis and -w <= x, y <= w inside the image, so that the near plane and the sides of the view clip alike.
- * In section, boxes and objects are cut by a plane whose coordinates (across, up) map to pixels by `left`,
- * `top` and `scale`. */
+ * In section, boxes and objects are cut by a plane (section.h). */
 #include "picture/structure.h"
 
 #include "core/base/elementary.h"
+#include "core/base/memory.h"
 #include "picture/extent_outline.h"
+#include "picture/section.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -25,13 +26,13 @@ typedef struct Drawing {
     RtView view;
     double near;
     RtSectionPlane plane;
-    double left, top, scale; /* of a section */
-    uint32_t first, last;    /* range of drawn levels */
-    uint32_t level;          /* current level */
-    bool hidden;             /* draw hidden or visible edges */
-    RtExtentKind kind;       /* of what is drawn */
-    uint64_t drawn, all;     /* boxes */
-    double least, most;      /* their sizes: lengths of diagonals, points left out */
+    RtSection section;    /* the plane in the picture */
+    uint32_t first, last; /* range of drawn levels */
+    uint32_t level;       /* current level */
+    bool hidden;          /* draw hidden or visible edges */
+    RtExtentKind kind;    /* of what is drawn */
+    uint64_t drawn, all;  /* boxes */
+    double least, most;   /* their sizes: lengths of diagonals, points left out */
 } Drawing;
 
 /* ---- which boxes, in which lines ---- */
@@ -197,28 +198,20 @@ static RtStatus draw_perspective(Drawing *d, RtError *error) {
 
 /* ---- in section ---- */
 
-static RtPoint point_of(const Drawing *d, double across, double up) {
-    return (RtPoint){(across - d->left) * d->scale, (d->top - up) * d->scale};
-}
-
-/* Adds the circle in which the plane cuts a ball. */
-static void add_ball(const Drawing *d, RtVec3d center, double r) {
-    double off = center.at[d->plane.axis] - d->plane.at;
-    if (fabs(off) >= r) return;
-    rt_add_circle(d->cairo, point_of(d, center.at[d->plane.across], center.at[d->plane.up]),
-                  sqrt(r * r - off * off) * d->scale);
-}
-
 static void fill_box(void *context, const RtBoxView *view) {
     const Drawing *d = context;
     RtPoint corners[RT_OUTLINE_CORNERS];
     if (!is_shown(d, view)) return;
     if (rt_outline_kind(view) == RT_EXTENT_SPHERE) {
         const RtBall *ball = &view->extents->balls[view->extent];
-        add_ball(d, ball->center, ball->radius);
+        rt_section_add_ball(&d->section, d->cairo, ball->center, ball->radius);
     } else {
         uint32_t count = rt_outline_section(view, d->plane, corners);
-        for (uint32_t i = 0; i < count; i++) corners[i] = point_of(d, corners[i].x, corners[i].y);
+        for (uint32_t i = 0; i < count; i++) {
+            RtVec3d corner = d->section.on;
+            corner.at[d->plane.across] = corners[i].x, corner.at[d->plane.up] = corners[i].y;
+            corners[i] = rt_section_point(&d->section, corner);
+        }
         rt_add_polygon(d->cairo, corners, count);
     }
     if (view->leaf) {
@@ -227,16 +220,6 @@ static void fill_box(void *context, const RtBoxView *view) {
     }
     set_line(d, place_of_box(d, view), 1);
     cairo_stroke(d->cairo);
-}
-
-/* Adds the line in which the plane cuts a flat object. */
-static void add_flat(const Drawing *d, const RtVec3 *corners, uint32_t count) {
-    RtVec3d on = {{0, 0, 0}}, normal = {{0, 0, 0}}, cut[2];
-    on.at[d->plane.axis] = d->plane.at;
-    normal.at[d->plane.axis] = 1;
-    if (!rt_outline_cut_flat(corners, count, on, normal, cut)) return;
-    rt_add_line(d->cairo, point_of(d, cut[0].at[d->plane.across], cut[0].at[d->plane.up]),
-                point_of(d, cut[1].at[d->plane.across], cut[1].at[d->plane.up]));
 }
 
 static void choose_plane(Drawing *d) {
@@ -256,27 +239,35 @@ static void choose_window(Drawing *d) {
     double distance = rt_lengthd(rt_subd(rt_widen(camera->at), rt_widen(camera->from)));
     RtTurn half = rt_turn((double)camera->fov / 2);
     double seen = d->height / (2 * distance * half.sine / half.cosine);
-    d->scale = 0.96 * fmin(d->width / fmax(size.at[d->plane.across], 1e-30),
-                           d->height / fmax(size.at[d->plane.up], 1e-30));
-    if (seen > d->scale) d->scale = seen, center = rt_widen(camera->at);
-    d->left = center.at[d->plane.across] - d->width / 2 / d->scale;
-    d->top = center.at[d->plane.up] + d->height / 2 / d->scale;
+    double scale = 0.96 * fmin(d->width / fmax(size.at[d->plane.across], 1e-30),
+                               d->height / fmax(size.at[d->plane.up], 1e-30));
+    if (seen > scale) scale = seen, center = rt_widen(camera->at);
+    d->section = (RtSection){.on = center, .origin = {d->width / 2, d->height / 2}, .scale = scale};
+    d->section.on.at[d->plane.axis] = d->plane.at;
+    d->section.right.at[d->plane.across] = 1;
+    d->section.up.at[d->plane.up] = 1;
+    d->section.normal.at[d->plane.axis] = 1;
 }
 
-static void draw_section(Drawing *d) {
+static RtStatus draw_section(Drawing *d, RtError *error) {
     const RtGeometry *g = &d->layer->scene->geometry;
+    RtCrossing *crossings;
+    RT_TRY(rt_crossings_alloc(g, &crossings, error));
     choose_window(d);
-    for (uint32_t i = 0; i < g->sphere_count; i++)
-        add_ball(d, rt_widen(g->spheres[i].center), (double)g->spheres[i].radius);
-    for (uint32_t i = 0; i < g->triangle_count; i++) add_flat(d, g->triangles[i].v, 3);
-    for (uint32_t i = 0; i < g->polygon_count; i++)
-        add_flat(d, rt_polygon_vertices(g, i), g->polygons[i].count);
+    for (uint32_t id = 0; id < g->object_count; id++) {
+        const RtBox *box = &g->boxes[id];
+        if ((double)box->lo.at[d->plane.axis] <= d->plane.at &&
+            d->plane.at <= (double)box->hi.at[d->plane.axis])
+            rt_section_add_object(&d->section, d->cairo, g, id, crossings);
+    }
+    rt_free(crossings);
     rt_set_color(d->cairo, object_color, 0.35);
     cairo_fill_preserve(d->cairo);
     rt_set_color(d->cairo, object_color, 1);
     cairo_stroke(d->cairo);
     d->layer->ops->each_box(d->layer, (RtBoxViewer){fill_box, d});
     cairo_set_line_width(d->cairo, 1);
+    return RT_OK;
 }
 
 /* ---- the legend ---- */
@@ -369,14 +360,11 @@ RtStatus rt_structure_available(const RtSpec *spec, const char *name, RtError *e
 }
 
 static RtStatus draw(Drawing *d, RtError *error) {
-    RtStatus status = RT_OK;
+    RtStatus status;
     cairo_save(d->cairo);
     cairo_rectangle(d->cairo, 0, 0, d->width, d->height);
     cairo_clip(d->cairo);
-    if (d->options->slice)
-        draw_section(d);
-    else
-        status = draw_perspective(d, error);
+    status = d->options->slice ? draw_section(d, error) : draw_perspective(d, error);
     cairo_restore(d->cairo);
     RT_TRY(status);
     draw_legend(d);

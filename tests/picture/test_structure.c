@@ -8,6 +8,7 @@
 #include "picture/extent_outline.h"
 #include "picture/picture_testing.h"
 #include "picture/structure.h"
+#include "scenes/open.h"
 
 #include <string.h>
 
@@ -248,6 +249,23 @@ RT_TEST(deep_levels_have_lighter_and_thinner_lines_than_the_first) {
     int leaf = ink_across(&image, (int)(100 + 2 * scale), (int)(100 - 2.85 * scale));
     assert_true(leaf > 30);
     assert_true(root > 2 * leaf);
+    rt_image_clear(&image);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST(a_section_outlines_csg_trees) {
+    RtScene scene;
+    RtImage image = {0};
+    uint32_t drawn = 0;
+    assert_ok(rt_scene_open("csg-field", &scene, error));
+    assert_ok(rt_scene_sample(&scene, SIDE, SIDE, 1, false, error));
+    RtStructureOptions options = {.slice = true, .axis = 2}; /* no boxes inside that of the root */
+    options.at = (double)rt_box_center(scene.geometry.box).z;
+    assert_ok(draw(&scene, "bvh", options, &image, error));
+    for (int y = 20; y < SIDE - 20; y++) {
+        for (int x = 20; x < SIDE - 20; x++) drawn += pixel(&image, x, y)[0] < 200;
+    }
+    assert_true(drawn > 50);
     rt_image_clear(&image);
     rt_scene_clear(&scene);
 }
