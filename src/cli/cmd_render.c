@@ -19,7 +19,7 @@
 
 typedef struct Options {
     const char *scene;
-    const char *accels[RT_MAX_PANELS]; /* the first makes everything except heatmaps */
+    const char *accels[RT_MAX_PANELS]; /* the first makes the image; all are counted for heatmaps */
     uint32_t accel_count;
     uint32_t size[2]; /* width, height; 0: the camera's */
     uint32_t samples, depth;
@@ -85,13 +85,22 @@ static const RtOption options[] = {
     {"threads", 't', "N", RT_TO_INTEGER(threads, 1, 1024), "Threads (default: all processors)"},
     {"output", 'o', "FILE", RT_TO_TAKE(take_output),
      "The image, .png or .exr; may be repeated, once for each format"},
-    {"stats", 0, "FILE.json", RT_TO_PATH(stats, ".json"), "Counts by ray kind, times and sizes"},
+    {"stats", 0, "FILE.json", RT_TO_PATH(stats, ".json"),
+     "Counts by ray kind, sizes and build times of each --accel; the image's time with the first"},
     {"check", 0, NULL, RT_TO_FLAG(check),
      "Compare the answer to every ray, and the frame, with those of brute; exit code 1 if one differs. brute "
      "is slow: try a small --size first"},
     {0}};
 
 /* ---- the frames ---- */
+
+/* An accelerator after the first, for heatmaps. */
+typedef struct Compared {
+    char spec[RT_MAX_SPEC_CHARS];
+    double build_seconds;
+    RtDescription description;
+    RtFrame counted;
+} Compared;
 
 /* One run of the command. */
 typedef struct Run {
@@ -102,6 +111,7 @@ typedef struct Run {
     double build_seconds;
     RtFrameOptions frame_options;
     RtFrame timed, counted;
+    Compared compared[RT_MAX_PANELS]; /* [accel_count], the first unused */
     bool by_default; /* only the picture of the structure is made: the default accelerator draws its
                         background */
 } Run;
@@ -122,6 +132,21 @@ static RtStatus trace_background(Run *run, const RtFrameOptions *f, RtError *err
     return status;
 }
 
+static RtStatus count_compared(Run *run, uint32_t i, RtError *error) {
+    Compared *compared = &run->compared[i];
+    RtSpec spec;
+    RtAccel *accel = NULL;
+    RT_TRY(rt_spec_parse(run->options->accels[i], &spec, error));
+    rt_spec_format(&spec, compared->spec);
+    double start = rt_wall_seconds();
+    RT_TRY(rt_accel_build(&spec, &run->scene, run->options->threads, &accel, error));
+    compared->build_seconds = rt_wall_seconds() - start;
+    rt_accel_describe(accel, &compared->description);
+    RtStatus status = rt_frame_trace(&compared->counted, accel, &run->frame_options, error);
+    rt_accel_destroy(accel);
+    return status;
+}
+
 static RtStatus trace_frames(Run *run, RtError *error) {
     const Options *o = run->options;
     RtFrameOptions *f = &run->frame_options;
@@ -138,7 +163,9 @@ static RtStatus trace_frames(Run *run, RtError *error) {
     f->progress_context = "counting";
     f->counted = true;
     f->cost_kinds = o->pictures.kinds;
-    return rt_frame_trace(&run->counted, run->accel, f, error);
+    RT_TRY(rt_frame_trace(&run->counted, run->accel, f, error));
+    for (uint32_t i = 1; i < o->accel_count; i++) RT_TRY(count_compared(run, i, error));
+    return RT_OK;
 }
 
 static RtStatus prepare(Run *run, RtError *error) {
@@ -158,22 +185,12 @@ static RtStatus prepare(Run *run, RtError *error) {
 
 /* ---- what is written ---- */
 
-/* Counts the image with each accelerator after the first, and draws the heatmaps. */
 static RtStatus write_heatmaps(const Run *run, RtError *error) {
     const Options *o = run->options;
-    RtFrame frames[RT_MAX_PANELS] = {{.cost = NULL}};
     RtHeatmapPanel panels[RT_MAX_PANELS] = {{&run->counted, o->accel_count > 1 ? o->accels[0] : NULL}};
-    RtStatus status = RT_OK;
-    for (uint32_t i = 1; i < o->accel_count && status == RT_OK; i++) {
-        RtAccel *accel = NULL;
-        panels[i] = (RtHeatmapPanel){&frames[i], o->accels[i]};
-        status = rt_accel_open_on(o->accels[i], &run->scene, o->threads, &accel, error);
-        if (status == RT_OK) status = rt_frame_trace(&frames[i], accel, &run->frame_options, error);
-        rt_accel_destroy(accel);
-    }
-    if (status == RT_OK) status = rt_pictures_heatmaps(&o->pictures, panels, o->accel_count, error);
-    for (uint32_t i = 1; i < o->accel_count; i++) rt_frame_clear(&frames[i]);
-    return status;
+    for (uint32_t i = 1; i < o->accel_count; i++)
+        panels[i] = (RtHeatmapPanel){&run->compared[i].counted, o->accels[i]};
+    return rt_pictures_heatmaps(&o->pictures, panels, o->accel_count, error);
 }
 
 static RtStatus write_images(const Run *run, RtError *error) {
@@ -190,27 +207,45 @@ static uint64_t total_rays(const Run *run) {
     return sum;
 }
 
+static json_t *kinds_json(const RtFrame *counted) {
+    json_t *kinds = json_object();
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
+        if (counted->ray_count[kind])
+            json_object_set_new(kinds, rt_ray_kind_name((RtRayKind)kind),
+                                rt_json_tally(&counted->tallies[kind]));
+    }
+    return kinds;
+}
+
+/* The counts of the accelerators after the first. */
+static json_t *compared_json(const Run *run) {
+    json_t *list = json_array();
+    for (uint32_t i = 1; i < run->options->accel_count; i++) {
+        const Compared *c = &run->compared[i];
+        json_array_append_new(list, json_pack("{s:s, s:f, s:I, s:o, s:o}", "accel", c->spec, "build_seconds",
+                                              c->build_seconds, "bytes", (json_int_t)c->description.bytes,
+                                              "structure", rt_json_structure(&c->description), "kinds",
+                                              kinds_json(&c->counted)));
+    }
+    return list;
+}
+
 static json_t *stats_json(const Run *run) {
     const RtSampling *s = &run->timed.sampling;
     const Options *o = run->options;
     RtDescription d;
     rt_accel_describe(run->accel, &d);
-    json_t *kinds = json_object();
-    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
-        if (run->timed.ray_count[kind])
-            json_object_set_new(kinds, rt_ray_kind_name((RtRayKind)kind),
-                                rt_json_tally(&run->counted.tallies[kind]));
-    }
     uint64_t rays = total_rays(run);
     double mrays = run->timed.seconds > 0 ? (double)rays * 1e-6 / run->timed.seconds : 0;
-    return json_pack("{s:s, s:s, s:I, s:I, s:i, s:i, s:i, s:b, s:i, s:i, s:f, s:I, s:o, s:I, s:f, s:f, s:o}",
-                     "scene", run->scene.name, "accel", run->spec, "objects",
-                     (json_int_t)run->scene.geometry.object_count, "lights",
-                     (json_int_t)run->scene.light_count, "width", (int)s->width, "height", (int)s->height,
-                     "samples", (int)s->samples, "corners", (int)s->corners, "depth", (int)o->depth,
-                     "threads", rt_thread_count(o->threads), "build_seconds", run->build_seconds, "bytes",
-                     (json_int_t)d.bytes, "structure", rt_json_structure(&d), "rays", (json_int_t)rays,
-                     "seconds", run->timed.seconds, "mrays_per_s", mrays, "kinds", kinds);
+    return json_pack(
+        "{s:s, s:s, s:I, s:I, s:i, s:i, s:i, s:b, s:i, s:i, s:f, s:I, s:o, s:I, s:f, s:f, s:o, "
+        "s:o}",
+        "scene", run->scene.name, "accel", run->spec, "objects", (json_int_t)run->scene.geometry.object_count,
+        "lights", (json_int_t)run->scene.light_count, "width", (int)s->width, "height", (int)s->height,
+        "samples", (int)s->samples, "corners", (int)s->corners, "depth", (int)o->depth, "threads",
+        rt_thread_count(o->threads), "build_seconds", run->build_seconds, "bytes", (json_int_t)d.bytes,
+        "structure", rt_json_structure(&d), "rays", (json_int_t)rays, "seconds", run->timed.seconds,
+        "mrays_per_s", mrays, "kinds", kinds_json(&run->counted), "compared", compared_json(run));
 }
 
 static RtStatus write_stats(const Run *run, RtError *error) {
@@ -230,6 +265,29 @@ static void print_rays(const Run *run) {
     printf("%llu ray%s in %.3g s on %d thread%s: %.3g Mrays/s.", (unsigned long long)rays, rt_plural(rays),
            run->timed.seconds, threads, rt_plural((uint64_t)threads),
            (double)rays * 1e-6 / fmax(run->timed.seconds, 1e-9));
+}
+
+/* The counters of the heatmaps, per ray over all kinds. */
+static void print_counts(const Run *run, const char *spec, const RtFrame *counted) {
+    const char *separator = ": ";
+    uint64_t rays = 0;
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rays += counted->ray_count[kind];
+    fputs(spec, stdout);
+    for (size_t c = 0; c < RT_TALLY_COUNTER_COUNT; c++) {
+        uint64_t sum = 0;
+        if (!run->options->pictures.heatmaps[c]) continue;
+        for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) sum += rt_tally_get(&counted->tallies[kind], c);
+        printf("%s%.4g %s", separator, (double)sum / (double)(rays ? rays : 1), rt_tally_name(c));
+        separator = ", ";
+    }
+    puts(" a ray.");
+}
+
+static void print_compared(const Run *run) {
+    if (run->options->accel_count == 1) return;
+    print_counts(run, run->options->accels[0], &run->counted);
+    for (uint32_t i = 1; i < run->options->accel_count; i++)
+        print_counts(run, run->options->accels[i], &run->compared[i].counted);
 }
 
 static void print_summary(const Run *run) {
@@ -252,6 +310,7 @@ static void print_summary(const Run *run) {
     size_t count = list_outputs(o, written);
     for (size_t i = 0; i < count; i++) printf("%s%s", i ? ", " : " Wrote ", written[i]);
     puts(count ? "." : "");
+    print_compared(run);
 }
 
 /* ---- the check ---- */
@@ -346,6 +405,7 @@ RtStatus rt_command_render(int argc, char **argv, RtError *error) {
     if (status == RT_OK) status = check_rays(&run, error);
     rt_frame_clear(&run.timed);
     rt_frame_clear(&run.counted);
+    for (uint32_t i = 1; i < o.accel_count; i++) rt_frame_clear(&run.compared[i].counted);
     rt_accel_destroy(run.accel);
     rt_scene_clear(&run.scene);
     return status;

@@ -97,9 +97,9 @@ static void take_pixel(void *options, const char *text, struct argp_state *state
 #define Options RtPictureOptions
 const RtOption rt_picture_options[] = {
     {NULL, 0, NULL, {0}, "Pictures of a structure:"},
-    {"structure", 0, "FILE.png", RT_TO_PATH(structure, RT_CLI_PICTURES),
+    {"structure", 0, "FILE", RT_TO_PATH(structure, RT_CLI_PICTURES),
      "Draw the accelerator's boxes over the image; for item the objects in its samples, for light the "
-     "lengths of its lists on an unfolded cube"},
+     "lengths of its lists on an unfolded cube. PNG, SVG or PDF by the name of the file"},
     {"layer", 0, "NAME", RT_TO_TEXT(layer),
      "For overlays: the layer to draw (default: the topmost that can be drawn)"},
     {"level", 0, "A[..B]", RT_MARKING(of_boxes, RT_CALLS(take_level)),
@@ -114,7 +114,7 @@ const RtOption rt_picture_options[] = {
     {"pixel", 0, "X,Y", RT_MARKING(of_light, RT_CALLS(take_pixel)),
      "For light: mark the cell that the shadow ray of this pixel reads"},
     {NULL, 0, NULL, {0}, "Heatmaps, the cost of each pixel:"},
-    {"heatmap", 0, "COUNTER FILE.png", RT_TO_TAKE(take_heatmap),
+    {"heatmap", 0, "COUNTER FILE", RT_TO_TAKE(take_heatmap),
      "object_tests, extent_tests, steps, or any other counter; may be repeated. Several --accel are drawn "
      "side by side on one scale"},
     {"heatmap-max", 0, "VALUE", RT_MARKING(thermal, RT_CALLS(take_max)),

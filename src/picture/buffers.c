@@ -6,10 +6,11 @@
 #include "picture/canvas.h"
 
 #include <stdio.h>
+#include <string.h>
 
 enum { LEAST_WIDTH = 330 }; /* of a legend, pixels */
 
-static const RtColor magenta = {{255, 0, 200}}, unseen = {{60, 60, 60}}, red = {{230, 40, 40}};
+static const RtColor magenta = {{255, 0, 200}}, unseen = {{225, 225, 225}}, red = {{230, 40, 40}};
 
 /* The baseline of a legend line below `top`, and the height of `lines` lines. */
 static double baseline(double top, int line, double em) {
@@ -24,7 +25,7 @@ static double legend_height(int lines, double em) {
 
 static RtColor color_of_sample(const RtCellView *cell, uint32_t x, uint32_t y) {
     if (cell->object == RT_UNNAMED_OBJECT) return (x + y) % 4 ? magenta : RT_WHITE;
-    return cell->object == RT_NO_OBJECT ? RT_BLACK : rt_color_of_id(cell->object);
+    return cell->object == RT_NO_OBJECT ? RT_WHITE : rt_color_of_id(cell->object);
 }
 
 static RtStatus draw_samples(cairo_t *cairo, const RtAccel *layer, RtImage *image, double em,
@@ -52,9 +53,9 @@ static RtStatus draw_samples(cairo_t *cairo, const RtAccel *layer, RtImage *imag
         const char *what;
     } keys[] = {{named, rt_color_of_id(1), "name an object (a colour each)"},
                 {undecided, magenta, "are undecided and passed on"},
-                {samples - named - undecided, unseen, "see nothing (black)"}};
+                {samples - named - undecided, RT_WHITE, "see nothing"}};
     char text[128];
-    rt_set_color(cairo, RT_WHITE, 1);
+    rt_set_color(cairo, RT_BLACK, 1);
     snprintf(text, sizeof text, "%s: %llu sample%s", layer->ops->name, (unsigned long long)samples,
              rt_plural(samples));
     rt_draw_text(cairo, 0.5 * em, baseline(s->height, 0, em), text);
@@ -73,7 +74,7 @@ static RtStatus draw_item_buffer(const char *file, const RtAccel *layer, RtError
     RtImage image;
     RT_TRY(rt_image_init(&image, s->width, s->height, error));
     RtStatus status =
-        rt_canvas_open(&canvas, file, width, s->height + legend_height(4, em), RT_BLACK, em, error);
+        rt_canvas_open(&canvas, file, width, s->height + legend_height(4, em), RT_WHITE, em, error);
     if (status == RT_OK)
         status = rt_canvas_close(&canvas, draw_samples(canvas.cairo, layer, &image, em, error), error);
     rt_image_clear(&image);
@@ -161,8 +162,9 @@ static bool has_number(const CubeMap *map, int x, int y, uint32_t number) {
     return x >= 0 && y >= 0 && x < WIDTH && y < HEIGHT && map->cells[y * WIDTH + x].number == number;
 }
 
-/* The faces, and the outline of the cell `marked` (NO_CELL: none). */
+/* The faces, on white, and the outline of the cell `marked` (NO_CELL: none). */
 static void fill_image(const CubeMap *map, uint32_t marked, RtImage *image) {
+    memset(image->rgb, 255, (size_t)3 * WIDTH * HEIGHT);
     for (int i = 0; i < 6 * SIDE * SIDE; i++) {
         const Face *face = &faces[i / (SIDE * SIDE)];
         int x = face->column * SIDE + i % SIDE, y = face->row * SIDE + i / SIDE % SIDE;
@@ -178,8 +180,8 @@ static void draw_face_names(const CubeMap *map) {
         char name[3] = {faces[f].middle < 0 ? '-' : '+', "xyz"[axis_of(map, faces[f].middle)], 0};
         double x = faces[f].column * SIDE + 2, y = faces[f].row * SIDE + 2, em = map->em;
         rt_fill_rectangle(map->cairo, x, y, ceil(rt_text_width(map->cairo, name) + 0.6 * em), ceil(1.3 * em),
-                          RT_BLACK);
-        rt_set_color(map->cairo, RT_WHITE, 1);
+                          RT_WHITE);
+        rt_set_color(map->cairo, RT_BLACK, 1);
         rt_draw_text(map->cairo, x + 0.3 * em, y + em, name);
     }
 }
@@ -203,7 +205,7 @@ static void draw_legend(const CubeMap *map, const RtRay *marked, const RtCellVie
     char text[160];
     snprintf(text, sizeof text, "%s, light %u: objects in the list of a cell, up to %g",
              map->layer->ops->name, map->light, map->scale.most);
-    rt_set_color(map->cairo, RT_WHITE, 1);
+    rt_set_color(map->cairo, RT_BLACK, 1);
     rt_draw_text(map->cairo, left, baseline(HEIGHT, 0, em), text);
     rt_draw_scale(map->cairo, left, floor(baseline(HEIGHT, 0, em) + 0.6 * em), WIDTH - 2 * left, &map->scale);
     rt_draw_key(map->cairo, left, baseline(HEIGHT, 3, em), unseen, "nothing is seen there");
@@ -230,7 +232,7 @@ static RtStatus draw_cube_map(CubeMap *map, const char *file, const RtRay *marke
     if (marked && !map->layer->ops->find_cell(map->layer, marked, &cell)) cell.number = NO_CELL;
     RT_TRY(rt_image_init(&image, WIDTH, HEIGHT, error));
     RtStatus status = rt_canvas_open(&canvas, file, WIDTH, HEIGHT + legend_height(LINES - 1, map->em),
-                                     RT_BLACK, map->em, error);
+                                     RT_WHITE, map->em, error);
     if (status == RT_OK) {
         map->cairo = canvas.cairo;
         fill_image(map, cell.number, &image);

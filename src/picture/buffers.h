@@ -8,7 +8,7 @@
 
 /* Draws an overlay to `file` (canvas.h).
  *
- * For primary rays: each pixel has the colour of the object in its middle sample, black for none, magenta
+ * For primary rays: each pixel has the colour of the object in its middle sample, white for none, magenta
  * with white dots if undecided. A legend counts the samples of each kind.
  *
  * For shadow rays: the cells around light `light` on the six faces of an unfolded cube, coloured by the

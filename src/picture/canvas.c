@@ -284,7 +284,10 @@ static double font_size(cairo_t *cairo) {
 double rt_draw_key(cairo_t *cairo, double x, double y, RtColor color, const char *text) {
     double em = font_size(cairo), side = floor(0.75 * em);
     rt_fill_rectangle(cairo, floor(x), floor(y) - side, side, side, color);
-    rt_set_color(cairo, RT_WHITE, 1);
+    rt_set_color(cairo, RT_GREY, 1);
+    cairo_rectangle(cairo, floor(x) + 0.5, floor(y) - side + 0.5, side - 1, side - 1);
+    cairo_stroke(cairo);
+    rt_set_color(cairo, RT_BLACK, 1);
     return 1.1 * em + rt_draw_text(cairo, x + 1.1 * em, y, text);
 }
 
@@ -350,7 +353,7 @@ void rt_draw_scale(cairo_t *cairo, double x, double y, double width, const RtSca
     cairo_pattern_destroy(colors);
     cairo_rectangle(cairo, x, y, width, floor(em));
     cairo_fill(cairo);
-    rt_set_color(cairo, RT_WHITE, 1);
+    rt_set_color(cairo, RT_BLACK, 1);
     Bar bar = {cairo, scale, x, y, width, em, x, x + width};
     if (scale->logarithmic && scale->most == floor(scale->most)) { /* its end is hardly ever a power of ten */
         bar.free_to = put_mark(&bar, scale->most) - 0.5 * em;

@@ -100,8 +100,8 @@ double rt_text_width(cairo_t *cairo, const char *text);
 /* The same, truncated with "..." if the text is wider than `room`. */
 void rt_draw_text_within(cairo_t *cairo, double x, double y, double room, const char *text);
 
-/* A legend entry: a square of `color` as high as a capital letter, and white text; returns the width of
- * both. */
+/* A legend entry: a square of `color` as high as a capital letter, with an outline, and black text; returns
+ * the width of both. */
 double rt_draw_key(cairo_t *cairo, double x, double y, RtColor color, const char *text);
 
 /* Maps values to positions on a colour scale: `least` to 0, `most` to 1. A logarithmic scale, of log(1 +
@@ -112,8 +112,8 @@ typedef struct RtScale {
 } RtScale;
 double rt_scale_position(const RtScale *scale, double value);
 
-/* Draws a bar with the scale's colours and round values below, `rt_scale_height` high. Scales that start
- * below 0 use the colours of differences. */
+/* Draws a bar with the scale's colours and round values below, in black, `rt_scale_height` high. Scales that
+ * start below 0 use the colours of differences. */
 void rt_draw_scale(cairo_t *cairo, double x, double y, double width, const RtScale *scale);
 double rt_scale_height(double font_size);
 

@@ -80,7 +80,7 @@ static RtStatus draw_panel(Drawing *d, uint32_t panel, RtError *error) {
         snprintf(label, sizeof label, "%s - %s", d->panels[0].label, d->panels[1].label);
         snprintf(text, sizeof text, "mean %.4g", found.mean);
     }
-    rt_set_color(d->cairo, RT_WHITE, 1);
+    rt_set_color(d->cairo, RT_BLACK, 1);
     rt_draw_text_within(d->cairo, left + d->pad, d->pad + d->em, room, label);
     rt_draw_text_within(d->cairo, left + d->pad, d->top + d->image.height + d->pad + d->em, room, text);
     return RT_OK;
@@ -119,7 +119,7 @@ RtStatus rt_heatmap_draw(const char *file, const RtHeatmapPanel *panels, uint32_
     double below = ceil(2 * d.pad + 2 * RT_LINE * d.em + rt_scale_height(d.em));
     RT_TRY(rt_image_init(&d.image, s->width, s->height, error));
     RtStatus status =
-        rt_canvas_open(&canvas, file, d.width, d.top + s->height + below, RT_BLACK, d.em, error);
+        rt_canvas_open(&canvas, file, d.width, d.top + s->height + below, RT_WHITE, d.em, error);
     d.cairo = canvas.cairo;
     if (status == RT_OK) status = rt_canvas_close(&canvas, draw(&d, error), error);
     rt_image_clear(&d.image);

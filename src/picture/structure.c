@@ -1,17 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* In perspective, boxes are drawn in homogeneous view coordinates: (x, y, w) with w the distance along the
  * axis and -w <= x, y <= w inside the image, so that the near plane and the sides of the view clip alike.
- * In section, boxes and objects are cut by a plane whose coordinates (across, up) map to pixels by `left`,
- * `top` and `scale`. */
+ * In section, boxes and objects are cut by a plane (section.h). */
 #include "picture/structure.h"
 
 #include "core/base/elementary.h"
+#include "core/base/memory.h"
 #include "picture/extent_outline.h"
+#include "picture/section.h"
 
 #include <stdio.h>
 #include <string.h>
 
 enum { LEAST_WIDTH = 300, LINES = 3 }; /* of the legend */
+
+static const RtColor object_color = {{130, 130, 130}};
 
 typedef struct Drawing {
     cairo_t *cairo;
@@ -23,16 +26,16 @@ typedef struct Drawing {
     RtView view;
     double near;
     RtSectionPlane plane;
-    double left, top, scale; /* of a section */
-    uint32_t first, last;    /* range of drawn levels */
-    uint32_t level;          /* current level */
-    bool hidden;             /* draw hidden or visible edges */
-    RtExtentKind kind;       /* of what is drawn */
-    uint64_t drawn, all;     /* boxes */
-    double least, most;      /* their sizes: lengths of diagonals, points left out */
+    RtSection section;    /* the plane in the picture */
+    uint32_t first, last; /* range of drawn levels */
+    uint32_t level;       /* current level */
+    bool hidden;          /* draw hidden or visible edges */
+    RtExtentKind kind;    /* of what is drawn */
+    uint64_t drawn, all;  /* boxes */
+    double least, most;   /* their sizes: lengths of diagonals, points left out */
 } Drawing;
 
-/* ---- which boxes, in which colours ---- */
+/* ---- which boxes, in which lines ---- */
 
 /* Empty leaves are left out. */
 static bool is_empty_leaf(const Drawing *d, const RtBoxView *view) {
@@ -67,23 +70,28 @@ static void count_box(void *context, const RtBoxView *view) {
     d->most = fmax(d->most, size);
 }
 
-static RtColor color_of_level(const Drawing *d, uint32_t depth) {
-    double deep = d->last > d->first ? (double)(depth - d->first) / (d->last - d->first) : 0;
-    return rt_color_scale(1 - 0.7 * deep);
-}
-
-/* If all boxes are on one level, colours show sizes. */
+/* If all boxes are on one level, lines show sizes. */
 static bool is_by_size(const Drawing *d) {
     return d->first == d->last && d->most > 1.5 * d->least;
 }
 
-static RtColor color_of_size(const Drawing *d, double size) {
-    double small = rt_log(d->most / fmax(fmin(size, d->most), d->least)) / rt_log(d->most / d->least);
-    return rt_color_scale(1 - 0.7 * small);
+/* The place of a level, or of a size, between the first, 0, and the last, 1. */
+static double place_of_level(const Drawing *d, uint32_t level) {
+    return d->last > d->first ? (double)(level - d->first) / (d->last - d->first) : 0;
 }
 
-static RtColor color_of_box(const Drawing *d, const RtBoxView *view) {
-    return is_by_size(d) ? color_of_size(d, size_of(view->box)) : color_of_level(d, view->depth);
+static double place_of_size(const Drawing *d, double size) {
+    return rt_log(d->most / fmax(fmin(size, d->most), d->least)) / rt_log(d->most / d->least);
+}
+
+static double place_of_box(const Drawing *d, const RtBoxView *view) {
+    return is_by_size(d) ? place_of_size(d, size_of(view->box)) : place_of_level(d, view->depth);
+}
+
+/* Dark and thick at 0, lighter and thinner towards 1. */
+static void set_line(const Drawing *d, double place, double opacity) {
+    rt_set_color(d->cairo, rt_color_scale(0.7 * place), opacity);
+    cairo_set_line_width(d->cairo, 2 - 1.2 * place);
 }
 
 /* ---- in perspective ---- */
@@ -117,13 +125,16 @@ static bool clip(const Drawing *d, RtVec3d *a, RtVec3d *b) {
     return a->z > 0 && b->z > 0;
 }
 
+/* The sample in the middle of a pixel. */
+static size_t sample_of(const Drawing *d, uint32_t x, uint32_t y) {
+    RtFootprint f = rt_pixel_footprint(&d->frame->sampling, x, y);
+    return (size_t)(f.row + f.span / 2) * d->frame->sampling.columns + f.column + f.span / 2;
+}
+
 /* Is a point at depth `w` behind the surface that the frame shows there? */
 static bool is_hidden(const Drawing *d, double x, double y, double w) {
-    const RtSampling *s = &d->frame->sampling;
-    uint32_t column = (uint32_t)fmin(x, d->width - 1), row = (uint32_t)fmin(y, d->height - 1);
-    RtFootprint f = rt_pixel_footprint(s, column, row);
-    size_t sample = (size_t)(f.row + f.span / 2) * s->columns + f.column + f.span / 2;
-    return w > (double)d->frame->depth[sample] * (1 + 1e-4);
+    size_t sample = sample_of(d, (uint32_t)fmin(x, d->width - 1), (uint32_t)fmin(y, d->height - 1));
+    return w > (double)d->frame->depth[sample] * (1 + 2e-3);
 }
 
 /* Walks along the line pixel by pixel and adds its hidden or visible parts to the path. 1 / w is linear
@@ -149,12 +160,22 @@ static void add_edge(void *context, RtVec3d from, RtVec3d to) {
 static void draw_box(void *context, const RtBoxView *view) {
     Drawing *d = context;
     if (view->depth != d->level || !is_shown(d, view)) return;
-    double opacity = d->options->leaves ? 1 : fmax(0.25, 1 / (1 + 0.15 * (view->depth - d->first)));
     for (int pass = 0; pass < 2; pass++) {
         d->hidden = pass == 0;
         rt_outline_edges(view, d->view.eye, (RtLineViewer){add_edge, d});
-        rt_set_color(d->cairo, color_of_box(d, view), d->hidden ? 0.06 * opacity : opacity);
+        set_line(d, place_of_box(d, view), d->hidden ? 0.12 : 1);
         cairo_stroke(d->cairo);
+    }
+}
+
+/* White where nothing is seen, and pale elsewhere. */
+static void lighten(const Drawing *d, RtImage *image) {
+    for (uint32_t y = 0; y < image->height; y++) {
+        for (uint32_t x = 0; x < image->width; x++) {
+            uint8_t *rgb = image->rgb + 3 * ((size_t)y * image->width + x);
+            bool seen = d->frame->object[sample_of(d, x, y)] != RT_NO_OBJECT;
+            for (int c = 0; c < 3; c++) rgb[c] = seen ? (uint8_t)(255 - (255 - rgb[c]) * 2 / 5) : 255;
+        }
     }
 }
 
@@ -165,52 +186,39 @@ static RtStatus draw_perspective(Drawing *d, RtError *error) {
     RT_TRY(rt_sampling_init(&sampling, (uint32_t)d->width, (uint32_t)d->height, 1, false, error));
     RT_TRY(rt_view_init(&d->view, camera, sampling, error));
     RT_TRY(rt_image_from_frame(&image, d->frame, error));
-    for (size_t i = 0; i < (size_t)3 * image.width * image.height; i++)
-        image.rgb[i] = (uint8_t)(image.rgb[i] * 2 / 5);
+    lighten(d, &image);
     RtStatus status = rt_paint_image(d->cairo, &image, 0, 0, error);
     rt_image_clear(&image);
     d->near = fmax(d->view.near, 1e-3 * rt_lengthd(rt_subd(rt_widen(camera->at), d->view.eye)));
-    /* Large boxes are drawn last, over small ones that share their edges. */
-    for (d->level = d->last + 1; status == RT_OK && d->level-- > d->first;)
+    /* Small boxes are drawn last, in the middle of the thick lines of large ones that share their edges. */
+    for (d->level = d->first; status == RT_OK && d->level <= d->last; d->level++)
         d->layer->ops->each_box(d->layer, (RtBoxViewer){draw_box, d});
     return status;
 }
 
 /* ---- in section ---- */
 
-static RtPoint point_of(const Drawing *d, double across, double up) {
-    return (RtPoint){(across - d->left) * d->scale, (d->top - up) * d->scale};
-}
-
 static void fill_box(void *context, const RtBoxView *view) {
     const Drawing *d = context;
     RtPoint corners[RT_OUTLINE_CORNERS];
     if (!is_shown(d, view)) return;
-    uint32_t count = rt_outline_section(view, d->plane, corners);
-    for (uint32_t i = 0; i < count; i++) corners[i] = point_of(d, corners[i].x, corners[i].y);
-    rt_add_polygon(d->cairo, corners, count);
-    rt_set_color(d->cairo, color_of_box(d, view), view->leaf ? 0.18 : 0.05);
-    cairo_fill_preserve(d->cairo);
-    rt_set_color(d->cairo, color_of_box(d, view), 0.9);
-    cairo_stroke(d->cairo);
-}
-
-static void outline_sphere(const Drawing *d, const RtSphere *sphere) {
-    RtVec3d center = rt_widen(sphere->center);
-    double off = center.at[d->plane.axis] - d->plane.at, r = (double)sphere->radius;
-    if (fabs(off) >= r) return;
-    rt_add_circle(d->cairo, point_of(d, center.at[d->plane.across], center.at[d->plane.up]),
-                  sqrt(r * r - off * off) * d->scale);
-    cairo_stroke(d->cairo);
-}
-
-static void outline_flat(const Drawing *d, const RtVec3 *corners, uint32_t count) {
-    RtVec3d on = {{0, 0, 0}}, normal = {{0, 0, 0}}, cut[2];
-    on.at[d->plane.axis] = d->plane.at;
-    normal.at[d->plane.axis] = 1;
-    if (!rt_outline_cut_flat(corners, count, on, normal, cut)) return;
-    rt_add_line(d->cairo, point_of(d, cut[0].at[d->plane.across], cut[0].at[d->plane.up]),
-                point_of(d, cut[1].at[d->plane.across], cut[1].at[d->plane.up]));
+    if (rt_outline_kind(view) == RT_EXTENT_SPHERE) {
+        const RtBall *ball = &view->extents->balls[view->extent];
+        rt_section_add_ball(&d->section, d->cairo, ball->center, ball->radius);
+    } else {
+        uint32_t count = rt_outline_section(view, d->plane, corners);
+        for (uint32_t i = 0; i < count; i++) {
+            RtVec3d corner = d->section.on;
+            corner.at[d->plane.across] = corners[i].x, corner.at[d->plane.up] = corners[i].y;
+            corners[i] = rt_section_point(&d->section, corner);
+        }
+        rt_add_polygon(d->cairo, corners, count);
+    }
+    if (view->leaf) {
+        set_line(d, place_of_box(d, view), 0.12);
+        cairo_fill_preserve(d->cairo);
+    }
+    set_line(d, place_of_box(d, view), 1);
     cairo_stroke(d->cairo);
 }
 
@@ -231,23 +239,35 @@ static void choose_window(Drawing *d) {
     double distance = rt_lengthd(rt_subd(rt_widen(camera->at), rt_widen(camera->from)));
     RtTurn half = rt_turn((double)camera->fov / 2);
     double seen = d->height / (2 * distance * half.sine / half.cosine);
-    d->scale = 0.96 * fmin(d->width / fmax(size.at[d->plane.across], 1e-30),
-                           d->height / fmax(size.at[d->plane.up], 1e-30));
-    if (seen > d->scale) d->scale = seen, center = rt_widen(camera->at);
-    d->left = center.at[d->plane.across] - d->width / 2 / d->scale;
-    d->top = center.at[d->plane.up] + d->height / 2 / d->scale;
+    double scale = 0.96 * fmin(d->width / fmax(size.at[d->plane.across], 1e-30),
+                               d->height / fmax(size.at[d->plane.up], 1e-30));
+    if (seen > scale) scale = seen, center = rt_widen(camera->at);
+    d->section = (RtSection){.on = center, .origin = {d->width / 2, d->height / 2}, .scale = scale};
+    d->section.on.at[d->plane.axis] = d->plane.at;
+    d->section.right.at[d->plane.across] = 1;
+    d->section.up.at[d->plane.up] = 1;
+    d->section.normal.at[d->plane.axis] = 1;
 }
 
-static void draw_section(Drawing *d) {
+static RtStatus draw_section(Drawing *d, RtError *error) {
     const RtGeometry *g = &d->layer->scene->geometry;
+    RtCrossing *crossings;
+    RT_TRY(rt_crossings_alloc(g, &crossings, error));
     choose_window(d);
-    rt_fill_rectangle(d->cairo, 0, 0, d->width, d->height, (RtColor){{20, 20, 24}});
+    for (uint32_t id = 0; id < g->object_count; id++) {
+        const RtBox *box = &g->boxes[id];
+        if ((double)box->lo.at[d->plane.axis] <= d->plane.at &&
+            d->plane.at <= (double)box->hi.at[d->plane.axis])
+            rt_section_add_object(&d->section, d->cairo, g, id, crossings);
+    }
+    rt_free(crossings);
+    rt_set_color(d->cairo, object_color, 0.35);
+    cairo_fill_preserve(d->cairo);
+    rt_set_color(d->cairo, object_color, 1);
+    cairo_stroke(d->cairo);
     d->layer->ops->each_box(d->layer, (RtBoxViewer){fill_box, d});
-    rt_set_color(d->cairo, RT_WHITE, 1);
-    for (uint32_t i = 0; i < g->sphere_count; i++) outline_sphere(d, &g->spheres[i]);
-    for (uint32_t i = 0; i < g->triangle_count; i++) outline_flat(d, g->triangles[i].v, 3);
-    for (uint32_t i = 0; i < g->polygon_count; i++)
-        outline_flat(d, rt_polygon_vertices(g, i), g->polygons[i].count);
+    cairo_set_line_width(d->cairo, 1);
+    return RT_OK;
 }
 
 /* ---- the legend ---- */
@@ -256,24 +276,30 @@ static double legend_height(double em) {
     return ceil((0.9 + RT_LINE * LINES) * em);
 }
 
-/* Legend entries for the levels, every nth if there are many, or for sizes. */
-static void draw_colors(const Drawing *d, double x, double y) {
-    enum { MOST = 7, SIZES = 5 };
+/* Samples of the lines of levels, of some if there are many, or of sizes; then of objects in a section. */
+static void draw_keys(const Drawing *d, double x, double y) {
+    enum { MOST = 6, SIZES = 5 };
     bool by_size = is_by_size(d);
     uint32_t levels = d->last - d->first + 1, count = by_size ? SIZES : levels < MOST ? levels : MOST;
     x += rt_draw_text(d->cairo, x, y, by_size ? "size" : "level") + 0.8 * d->em;
     for (uint32_t i = 0; i < count; i++) {
-        double at = count > 1 ? (double)i / (count - 1) : 0, size = d->most;
+        double at = count > 1 ? (double)i / (count - 1) : 0;
         uint32_t level = d->first + (uint32_t)(at * (levels - 1) + 0.5);
         char text[32];
-        if (by_size) size *= rt_power(d->least / d->most, at);
         if (by_size)
-            snprintf(text, sizeof text, "%.2g", size);
+            snprintf(text, sizeof text, "%.2g", d->most * rt_power(d->least / d->most, at));
         else
             snprintf(text, sizeof text, "%u", level);
-        x += rt_draw_key(d->cairo, x, y, by_size ? color_of_size(d, size) : color_of_level(d, level), text);
-        x += 0.7 * d->em;
+        set_line(d, by_size ? at : place_of_level(d, level), 1);
+        cairo_move_to(d->cairo, x, floor(y - 0.35 * d->em) + 0.5);
+        cairo_line_to(d->cairo, x + d->em, floor(y - 0.35 * d->em) + 0.5);
+        cairo_stroke(d->cairo);
+        rt_set_color(d->cairo, RT_BLACK, 1);
+        x += 1.4 * d->em;
+        x += rt_draw_text(d->cairo, x, y, text) + 0.6 * d->em;
     }
+    cairo_set_line_width(d->cairo, 1);
+    if (d->options->slice) rt_draw_key(d->cairo, x, y, object_color, "object");
 }
 
 static void draw_legend(const Drawing *d) {
@@ -287,12 +313,12 @@ static void draw_legend(const Drawing *d) {
                  axes[d->plane.axis], d->plane.at, axes[d->plane.up]);
     else
         snprintf(text, sizeof text, "%s", d->layer->ops->name);
-    rt_set_color(d->cairo, RT_WHITE, 1);
+    rt_set_color(d->cairo, RT_BLACK, 1);
     rt_draw_text(d->cairo, left, y, text);
     snprintf(text, sizeof text, "%llu of %llu %s%s", (unsigned long long)d->drawn, (unsigned long long)d->all,
              names[d->kind], d->options->leaves ? ", leaves only" : "");
     rt_draw_text(d->cairo, left, y + RT_LINE * d->em, text);
-    draw_colors(d, left, y + 2 * RT_LINE * d->em);
+    draw_keys(d, left, y + 2 * RT_LINE * d->em);
 }
 
 /* ---- from outside ---- */
@@ -334,14 +360,11 @@ RtStatus rt_structure_available(const RtSpec *spec, const char *name, RtError *e
 }
 
 static RtStatus draw(Drawing *d, RtError *error) {
-    RtStatus status = RT_OK;
+    RtStatus status;
     cairo_save(d->cairo);
     cairo_rectangle(d->cairo, 0, 0, d->width, d->height);
     cairo_clip(d->cairo);
-    if (d->options->slice)
-        draw_section(d);
-    else
-        status = draw_perspective(d, error);
+    status = d->options->slice ? draw_section(d, error) : draw_perspective(d, error);
     cairo_restore(d->cairo);
     RT_TRY(status);
     draw_legend(d);
@@ -370,7 +393,7 @@ RtStatus rt_structure_draw(const char *file, const RtAccel *layer, const RtFrame
         return rt_fail(error, RT_BAD_INPUT,
                        "none of the %llu boxes of %s is on the requested levels or in the slice",
                        (unsigned long long)d.all, layer->ops->name);
-    RT_TRY(rt_canvas_open(&canvas, file, width, s->height + legend_height(d.em), RT_BLACK, d.em, error));
+    RT_TRY(rt_canvas_open(&canvas, file, width, s->height + legend_height(d.em), RT_WHITE, d.em, error));
     d.cairo = canvas.cairo;
     return rt_canvas_close(&canvas, draw(&d, error), error);
 }

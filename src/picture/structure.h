@@ -24,12 +24,12 @@ RtStatus rt_structure_layer(const RtAccel *accel, const char *name, const RtAcce
 RtStatus rt_structure_available(const RtSpec *spec, const char *name, RtError *error);
 
 /* Draws the boxes of `layer` (each_box), or the outlines of other extents, to `file` (canvas.h), over a
- * dimmed image of its scene, `frame`, with a legend below. Edges behind visible surfaces are faint. Colours
- * show the level (rt_color_scale, yellow for the first), with deep levels fainter; if all boxes are on one
- * level, colours show their size on a logarithmic scale.
+ * pale image of its scene, `frame`, on white, with a legend below. Edges behind visible surfaces are faint.
+ * Lines show the level: dark and thick at the first, lighter (rt_color_scale) and thinner below; if all boxes
+ * are on one level, they show size on a logarithmic scale.
  *
  * With `slice` it draws a section along the axis instead, of the region that the camera aims at: boxes cut by
- * the plane are filled, spheres and flat objects are outlined in white.
+ * the plane are outlined, leaves also filled; objects are grey.
  *
  * RT_BAD_INPUT if no box is left to draw. */
 RtStatus rt_structure_draw(const char *file, const RtAccel *layer, const RtFrame *frame,

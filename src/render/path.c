@@ -133,7 +133,8 @@ static RtStatus compare(RtPath *path, const RtTally *counted, bool remote, RtErr
 RtStatus rt_path_trace(RtPath *path, RtAccel *accel, const RtRay *ray, RtError *error) {
     RtQuery query;
     RtTally tallies[RT_RAY_KIND_COUNT] = {0};
-    *path = (RtPath){.ray = *ray, .any = rt_ray_kind_is_any_hit((RtRayKind)ray->kind), .hit = RT_MISS};
+    *path = (RtPath){
+        .ray = *ray, .accel = accel, .any = rt_ray_kind_is_any_hit((RtRayKind)ray->kind), .hit = RT_MISS};
     RT_TRY(rt_query_init(&query, accel, error));
     RtStatus status = teach(accel, &query, &path->ray, error);
     if (status == RT_OK) {

@@ -27,9 +27,10 @@ typedef struct RtPathRow {
 /* Owned; free with rt_path_clear. */
 typedef struct RtPath {
     RtRay ray;
-    bool any;      /* traced for any hit, like shadow rays, not for the nearest */
-    RtHit hit;     /* for `any`, t is that of the occluder if one was named */
-    RtTally tally; /* sums over the rows, except `rays` and `hits`, from the kernel */
+    const RtAccel *accel; /* borrowed */
+    bool any;             /* traced for any hit, like shadow rays, not for the nearest */
+    RtHit hit;            /* for `any`, t is that of the occluder if one was named */
+    RtTally tally;        /* sums over the rows, except `rays` and `hits`, from the kernel */
     RtPathRow *rows;
     uint32_t count, capacity;
 } RtPath;

@@ -5,11 +5,15 @@
 
 #include <stdio.h>
 
-/* 0, -1/2, 1/4, -1/4, 1/8, -3/8, ...: in (-1/2, 1/2], no number twice, and far from those before. */
-static double shade(uint32_t k) {
-    double sum = 0, part = 0.5;
-    for (; k; k >>= 1, part /= 2) sum += k & 1 ? part : 0;
-    return sum < 0.5 ? sum : sum - 1;
+/* How far from its colour candidate `k` of `count` with the same one is drawn: the first not at all, the
+ * others in equal parts, half of them darker, from the darkest to the lightest. No part of a dark colour is
+ * darker. */
+static double shade(uint32_t color, uint32_t k, uint32_t count) {
+    const double most = 0.65;
+    const bool dark = (color & 0xff) < 0x40 && (color >> 8 & 0xff) < 0x40 && color >> 16 < 0x40;
+    const uint32_t darker = dark ? 0 : count / 2, lighter = count - 1 - darker;
+    if (k == 0) return 0;
+    return k <= darker ? -most * (darker + 1 - k) / darker : most * (k - darker) / lighter;
 }
 
 /* From black, -1, to white, 1. */
@@ -28,10 +32,13 @@ void rt_candidate_color(const RtExperiment *experiment, uint32_t candidate, char
     uint32_t out = NULL_RUN;
     if (candidate < experiment->candidate_count) {
         const uint32_t own = rt_accel_color(experiment->candidates[candidate].spec);
-        uint32_t earlier = 0;
-        for (uint32_t c = 0; c < candidate; c++)
-            earlier += rt_accel_color(experiment->candidates[c].spec) == own;
-        out = shaded(own, 0.9 * shade(earlier));
+        uint32_t earlier = 0, all = 0;
+        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+            bool same = rt_accel_color(experiment->candidates[c].spec) == own;
+            earlier += same && c < candidate;
+            all += same;
+        }
+        out = shaded(own, shade(own, earlier, all));
     }
     snprintf(color, RT_COLOR_CHARS, "#%06x", (unsigned)(out & 0xffffff));
 }

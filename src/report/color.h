@@ -6,7 +6,7 @@
 #include "experiment/experiment.h"
 
 /* "#rrggbb" of a candidate: that of the topmost accelerator of its spec; further candidates with the same one
- * get darker and lighter shades. The null run is grey. */
+ * get shades of it, evenly from dark to light. The null run is grey. */
 #define RT_COLOR_CHARS 8
 void rt_candidate_color(const RtExperiment *experiment, uint32_t candidate, char color[RT_COLOR_CHARS]);
 

@@ -121,6 +121,45 @@ RT_TEST(every_heatmap_asked_for_is_written) {
     }
 }
 
+RT_TEST(heatmaps_of_several_accelerators_come_with_the_counts_of_each) {
+    json_t *both = stats_of(SMALL "--accel grid --accel kd --heatmap steps " OUT ".png");
+    assert_says("grid: ");
+    assert_says("kd: ");
+    assert_says(" steps a ray.");
+    json_t *alone = stats_of(SMALL "--accel kd");
+    json_t *compared = json_object_get(both, "compared");
+    assert_int_equal(json_array_size(compared), 1);
+    json_t *kd = json_array_get(compared, 0);
+    assert_true(json_equal(json_object_get(kd, "kinds"), json_object_get(alone, "kinds")));
+    assert_true(json_equal(json_object_get(kd, "structure"), json_object_get(alone, "structure")));
+    assert_int_equal(json_array_size(json_object_get(alone, "compared")), 0);
+    json_decref(both);
+    json_decref(alone);
+    unlink(OUT ".png");
+    unlink(OUT ".txt");
+}
+
+RT_TEST(a_structure_is_a_vector_drawing_by_its_name_and_the_same_bytes_every_time) {
+    static const char *const how[] = {"", "--slice z --leaves"}, *const formats[] = {"svg", "pdf"};
+    for (int i = 0; i < 4; i++) {
+        char arguments[256], compare[600];
+        for (int run = 0; run < 2; run++) {
+            snprintf(arguments, sizeof arguments, SMALL "--accel bvh %s --structure " OUT ".%d.%s",
+                     how[i / 2], run, formats[i % 2]);
+            assert_int_equal(render(arguments), 0);
+        }
+        snprintf(compare, sizeof compare, "cmp '" OUT ".0.%s' '" OUT ".1.%s'", formats[i % 2],
+                 formats[i % 2]);
+        assert_int_equal(system(compare), 0);
+        snprintf(compare, sizeof compare, OUT ".0.%s", formats[i % 2]);
+        assert_memory_equal(text_of(compare), i % 2 ? "%PDF" : "<?xml", 4);
+        unlink(compare);
+        snprintf(compare, sizeof compare, OUT ".1.%s", formats[i % 2]);
+        unlink(compare);
+    }
+    unlink(OUT ".txt");
+}
+
 RT_TEST(a_check_compares_every_ray_with_brute) {
     assert_int_equal(render("balls:size=2 --size 64x64 --accel grid --check"), 0);
     assert_says("the hits of all 4096 primary rays equal brute's");

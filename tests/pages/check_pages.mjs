@@ -30,6 +30,8 @@ async function filter(words) {
   return browser.run(`const rows = [...document.querySelectorAll('.scene-tables tbody tr')];
     const shown = rows.filter((row) => !row.hidden);
     return { all: rows.length, shown: shown.map((row) => row.closest('section').dataset.scene + ' ' + row.textContent),
+             headers: [...document.querySelectorAll('.scene-tables table')].filter((table) => table.checkVisibility() &&
+               [...table.tBodies[0].rows].every((row) => row.hidden)).length,
              said: document.querySelector('#filter output').textContent };`);
 }
 
@@ -47,6 +49,7 @@ async function checkFilter() {
   holds(some.shown.length > 0 && some.shown.length < some.all, 'a filter leaves some rows');
   holds(some.shown.every((text) => /grid/i.test(text) && /random/i.test(text)), 'each row left has all the words');
   holds(some.said === `${some.shown.length} of ${some.all} rows`, 'the page says how many rows are left');
+  holds(some.headers === 0, 'no table is left with a header and no row');
   const none = await filter('no-such-accelerator');
   holds(none.shown.length === 0, 'a filter that nothing has leaves nothing');
   const all = await filter('');

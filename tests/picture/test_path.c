@@ -193,11 +193,60 @@ RT_TEST(an_axis_has_few_ticks_also_where_the_rows_are_far_away_and_of_no_length)
         RtImage image = read_picture();
         uint32_t ticks = 0;
         for (int x = 0; x < (int)image.width; x++)
-            ticks += pixel(&image, x, 438)[0] == 221; /* above the row */
+            ticks += pixel(&image, x, 558)[0] == 221; /* above the row */
         assert_true(ticks >= 3 && ticks <= 20);
         rt_image_clear(&image);
     }
     rt_scene_clear(&scene);
+}
+
+RT_TEST(a_path_is_drawn_large_where_objects_are_tested) {
+    enum { LEAF_ROW = 560 + 14 + 7 }; /* of pixels: through the second bar */
+    RtScene scene = make_lattice(1, 1, 1);
+    RtPathRow rows[] = {
+        {.kind = RT_TRACED_STEP, .boxed = true, .box = {{{0, -1, -1}}, {{100, 1, 1}}}, .leave = 100},
+        {.kind = RT_TRACED_STEP,
+         .boxed = true,
+         .box = {{{50, -1, -1}}, {{51, 1, 1}}},
+         .enter = 50,
+         .leave = 51},
+        {.kind = RT_TRACED_OBJECT_TEST, .what = "object", .met = true, .t = 50.5f}};
+    RtPath path = {
+        .ray = {.dir = {{1, 0, 0}}, .tmax = INFINITY}, .hit = {50.5f, 0}, .rows = rows, .count = 3};
+    rows[1].leaf = true;
+    for (int i = 0; i < 3; i++) rows[i].nearest = i == 2 ? 50.5f : INFINITY;
+    assert_ok(rt_path_draw(&path, &scene, "title", "spec", PICTURE_FILE, error));
+    RtImage image = read_picture();
+    uint32_t width = 0;
+    for (int x = 250; x < 980; x++) width += pixel(&image, x, LEAF_ROW)[0] < 200;
+    assert_true(width > 150 && width < 300); /* 7 pixels if the whole path were drawn */
+    rt_image_clear(&image);
+    rt_scene_clear(&scene);
+}
+
+/* Pixels that are grey but neither white nor black. */
+static uint32_t count_pale(const RtPath *path, const RtScene *scene) {
+    uint32_t count = 0;
+    assert_ok(rt_path_draw(path, scene, "title", "spec", PICTURE_FILE, error));
+    RtImage image = read_picture();
+    for (int i = 0; i < 730 * 450; i++) {
+        const uint8_t *rgb = pixel(&image, 250 + i % 730, 64 + i / 730);
+        count += rgb[0] == rgb[1] && rgb[1] == rgb[2] && rgb[0] > 160 && rgb[0] < 254;
+    }
+    rt_image_clear(&image);
+    return count;
+}
+
+RT_TEST(objects_that_are_not_tested_and_leaves_that_are_not_visited_are_drawn_pale) {
+    RtScene scene, alone = make_lattice(1, 1, 1);
+    RtAccel *accel;
+    RtPath path = path_along_the_row("bvh:max_leaf_size=1", 0.3f, &scene, &accel);
+    uint32_t all = count_pale(&path, &scene), first = count_pale(&path, &alone);
+    assert_true(all > first + 100); /* the other spheres */
+    path.accel = NULL;
+    assert_true(count_pale(&path, &scene) + 30 < all); /* their leaves */
+    rt_scene_clear(&alone);
+    forget(&path, &scene, accel);
 }
 
 /* Each format begins with what names it, and is the same again when drawn again. */

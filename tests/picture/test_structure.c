@@ -8,6 +8,7 @@
 #include "picture/extent_outline.h"
 #include "picture/picture_testing.h"
 #include "picture/structure.h"
+#include "scenes/open.h"
 
 #include <string.h>
 
@@ -41,23 +42,19 @@ static RtStatus draw(const RtScene *scene, const char *spec, RtStructureOptions 
     return status;
 }
 
-/* How yellow, the colour of the first level, the three pixels around a place in a row are: 0..255. */
-static int yellow_at(const RtImage *image, int x, int y) {
+/* How dark, as the first level is, the darkest of the three pixels around a place in a row is: 0..255. */
+static int ink_at(const RtImage *image, int x, int y) {
     int most = 0;
     for (int i = x - 1; i <= x + 1; i++) {
-        const uint8_t *rgb = pixel(image, i, y);
-        int yellow = (rgb[0] < rgb[1] ? rgb[0] : rgb[1]) - rgb[2];
-        if (yellow > most) most = yellow;
+        int ink = 255 - pixel(image, i, y)[1];
+        if (ink > most) most = ink;
     }
     return most;
 }
 
-static int count_yellow(const RtImage *image) {
+static int count_ink(const RtImage *image) {
     int count = 0;
-    for (int i = 0; i < SIDE * SIDE; i++) {
-        const uint8_t *rgb = pixel(image, i % SIDE, i / SIDE);
-        count += rgb[0] > 90 && rgb[1] > 80 && rgb[2] < rgb[1] / 2;
-    }
+    for (int i = 0; i < SIDE * SIDE; i++) count += pixel(image, i % SIDE, i / SIDE)[1] < 100;
     return count;
 }
 
@@ -69,8 +66,8 @@ RT_TEST(the_root_box_is_drawn_where_the_camera_sees_it) {
     /* The near face of the box is x, y in -3..3 at z = 1, 9 in front of the eye. */
     double reach = 3 / 9.0 / tan(45 * 3.14159265358979 / 360) * 100;
     int left = (int)floor(100 - reach);
-    assert_true(yellow_at(&image, left, 100) > 90);
-    assert_int_equal(pixel(&image, left - 3, 100)[0], 0);
+    assert_true(ink_at(&image, left, 100) > 150);
+    assert_int_equal(pixel(&image, left - 3, 100)[0], 255);
     rt_image_clear(&image);
     /* From inside the box, with corners behind the eye: clipped, and no crash. */
     scene.camera.from = rt_vec3(0, 2, 0.5f);
@@ -87,8 +84,8 @@ RT_TEST(boxes_behind_what_is_seen_are_faint) {
     assert_ok(draw(&scene, "extents", RT_ALL_LEVELS, &image, error));
     double scale = 100 / tan(45 * 3.14159265358979 / 360);
     int near = (int)floor(100 - scale / 9), far = (int)floor(100 - scale / 11);
-    assert_true(yellow_at(&image, near, 100) > 90);
-    assert_true(yellow_at(&image, far, 100) < 60);
+    assert_true(ink_at(&image, near, 100) > 150);
+    assert_true(ink_at(&image, far, 100) < 130);
     rt_image_clear(&image);
     rt_scene_clear(&scene);
 }
@@ -188,12 +185,12 @@ RT_TEST(levels_and_leaves_leave_the_other_boxes_out) {
     assert_ok(draw(&scene, "bvh:max_leaf_size=1", options, &leaves, error));
     options = (RtStructureOptions){0, 0, false, false, 0, 0};
     assert_ok(draw(&scene, "bvh:max_leaf_size=1", options, &root, error));
-    assert_true(count_yellow(&root) > 400);
-    assert_true(count_yellow(&all) > 400);
+    assert_true(count_ink(&root) > 400);
+    assert_true(count_ink(&all) > 400);
     double reach = 3 / 9.0 / tan(45 * 3.14159265358979 / 360) * 100;
     int left = (int)floor(100 - reach); /* a place of the root's box alone */
-    assert_true(yellow_at(&root, left, 100) > 90);
-    assert_true(yellow_at(&leaves, left, 100) < 60);
+    assert_true(ink_at(&root, left, 100) > 150);
+    assert_true(ink_at(&leaves, left, 100) < 60);
     rt_image_clear(&all);
     rt_image_clear(&root);
     rt_image_clear(&leaves);
@@ -212,11 +209,64 @@ RT_TEST(a_section_shows_the_boxes_and_outlines_of_what_the_plane_cuts) {
     /* The scene is 6 wide, in 96 % of the image. Only the middle sphere reaches z = -0.5, in x from -1 to 1.
      */
     double scale = 0.96 * SIDE / 6;
-    assert_true(yellow_at(&image, (int)(100 - scale), 100) > 40);
-    assert_int_equal(pixel(&image, (int)(100 - 3 * scale) + 1, 20)[0], 20);
+    assert_true(ink_at(&image, (int)(100 - scale), 100) > 150);
+    assert_int_equal(pixel(&image, (int)(100 - 3 * scale) + 1, 20)[0], 255);
     rt_image_clear(&image);
     options.at = 5;
     assert_int_equal(draw(&scene, "extents", options, &image, &refusal), RT_BAD_INPUT);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST(a_structure_is_drawn_on_white_over_a_pale_image) {
+    RtScene scene;
+    RtImage image = {0};
+    open_scene(&scene);
+    assert_ok(draw(&scene, "bvh:max_leaf_size=64", RT_ALL_LEVELS, &image, error));
+    assert_memory_equal(pixel(&image, 2, 2), RT_WHITE.rgb, 3);
+    for (int c = 0; c < 3; c++) { /* the sphere in the middle */
+        assert_true(pixel(&image, 100, 100)[c] >= 150);
+        assert_true(pixel(&image, 100, 100)[c] < 255);
+    }
+    rt_image_clear(&image);
+    rt_scene_clear(&scene);
+}
+
+/* The ink around an upright line. */
+static int ink_across(const RtImage *image, int x, int y) {
+    int sum = 0;
+    for (int i = x - 3; i <= x + 3; i++) sum += 255 - pixel(image, i, y)[1];
+    return sum;
+}
+
+RT_TEST(deep_levels_have_lighter_and_thinner_lines_than_the_first) {
+    RtScene scene;
+    RtImage image = {0};
+    open_scene(&scene);
+    RtStructureOptions options = {.last_level = UINT32_MAX, .slice = true, .axis = 2, .at = 0.5};
+    assert_ok(draw(&scene, "bvh:max_leaf_size=1", options, &image, error));
+    double scale = 0.96 * SIDE / 6;
+    int root = ink_across(&image, (int)(100 - 3 * scale), 100); /* no other box ends there, nor here: */
+    int leaf = ink_across(&image, (int)(100 + 2 * scale), (int)(100 - 2.85 * scale));
+    assert_true(leaf > 30);
+    assert_true(root > 2 * leaf);
+    rt_image_clear(&image);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST(a_section_outlines_csg_trees) {
+    RtScene scene;
+    RtImage image = {0};
+    uint32_t drawn = 0;
+    assert_ok(rt_scene_open("csg-field", &scene, error));
+    assert_ok(rt_scene_sample(&scene, SIDE, SIDE, 1, false, error));
+    RtStructureOptions options = {.slice = true, .axis = 2}; /* no boxes inside that of the root */
+    options.at = (double)rt_box_center(scene.geometry.box).z;
+    assert_ok(draw(&scene, "bvh", options, &image, error));
+    for (int y = 20; y < SIDE - 20; y++) {
+        for (int x = 20; x < SIDE - 20; x++) drawn += pixel(&image, x, y)[0] < 200;
+    }
+    assert_true(drawn > 50);
+    rt_image_clear(&image);
     rt_scene_clear(&scene);
 }
 
@@ -234,10 +284,10 @@ RT_TEST(a_wall_that_is_far_larger_than_a_section_is_outlined_where_it_is) {
     double scale = 100 / (10 * tan(45 * 3.14159265358979 / 360)); /* what the camera sees at its aim */
     for (int i = -8; i <= 8; i++) {
         double x = 0.25 * i, y = 1.5 * x + 0.5;
-        int column = (int)floor(100 + scale * x), row = (int)floor(100 - scale * y), white = 0;
+        int column = (int)floor(100 + scale * x), row = (int)floor(100 - scale * y), grey = 0;
         for (int near = row - 2; near <= row + 2; near++)
-            white += near >= 0 && near < SIDE && pixel(&image, column, near)[2] > 90;
-        assert_true(white > 0);
+            grey += near >= 0 && near < SIDE && pixel(&image, column, near)[2] < 205;
+        assert_true(grey > 0);
     }
     rt_image_clear(&image);
     rt_scene_clear(&scene);
@@ -265,7 +315,7 @@ RT_TEST(the_topmost_layer_that_can_be_drawn_is_and_any_can_be_named) {
     rt_scene_clear(&scene);
 }
 
-RT_TEST(the_item_buffer_has_a_color_for_each_object_black_for_none_and_magenta_for_undecided) {
+RT_TEST(the_item_buffer_has_a_color_for_each_object_white_for_none_and_magenta_for_undecided) {
     RtScene scene;
     RtAccel *accel;
     RtImage image = {0};
@@ -275,7 +325,7 @@ RT_TEST(the_item_buffer_has_a_color_for_each_object_black_for_none_and_magenta_f
     image = read_picture();
     RtColor middle = rt_color_of_id(0);
     assert_memory_equal(pixel(&image, 100, 100), middle.rgb, 3);
-    assert_int_equal(pixel(&image, 2, 2)[0] + pixel(&image, 2, 2)[1], 0);
+    assert_memory_equal(pixel(&image, 2, 2), RT_WHITE.rgb, 3);
     assert_true(count_color(&image, (RtColor){{255, 0, 200}}) < 100); /* the legend: all are settled */
     rt_image_clear(&image);
     rt_accel_destroy(accel);
@@ -334,7 +384,7 @@ RT_TEST(the_cells_around_a_light_are_drawn_and_a_light_without_cells_is_refused)
     image = read_picture();
     assert_true(image.width > 900 && image.height > 700);
     const uint8_t *hidden = pixel(&image, 4 * 240 - 10, 10); /* beside the cross */
-    assert_memory_equal(hidden, RT_BLACK.rgb, 3);
+    assert_memory_equal(hidden, RT_WHITE.rgb, 3);
     /* Lists without an object have the scale's colour of 0. */
     assert_true(count_color(&image, rt_color_scale(0)) > 1000);
     rt_image_clear(&image);

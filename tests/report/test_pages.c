@@ -359,6 +359,27 @@ RT_TEST_IN_PLACE(of_fifty_accelerators_no_two_have_a_colour_and_in_grey_print_ma
     }
 }
 
+/* Rec. 709, of 0..255. */
+static double lightness_of(const RtExperiment *experiment, uint32_t candidate) {
+    const Color color = color_of(experiment, candidate);
+    unsigned long rgb = strtoul(color.text + 1, NULL, 16);
+    return 0.2126 * (double)(rgb >> 16) + 0.7152 * (double)(rgb >> 8 & 255) + 0.0722 * (double)(rgb & 255);
+}
+
+RT_TEST_IN_PLACE(five_settings_of_an_accelerator_are_told_apart_by_their_lightness) {
+    const Place *place = *state;
+    static const char *const tops[] = {"light", "ideal", "octree", "extents"};
+    for (int t = 0; t < 4; t++) {
+        const char *specs[5] = {tops[t], tops[t], tops[t], tops[t], tops[t]};
+        take_accelerators(place->experiment, specs, 5);
+        for (uint32_t a = 0; a < 5; a++) {
+            for (uint32_t b = 0; b < a; b++)
+                assert_true(fabs(lightness_of(place->experiment, a) - lightness_of(place->experiment, b)) >
+                            15);
+        }
+    }
+}
+
 /* ---- the index ---- */
 
 RT_TEST_IN_PLACE(the_index_has_each_experiment_with_verdict_finding_and_link_and_names_what_cannot_be_read) {

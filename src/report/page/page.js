@@ -32,12 +32,13 @@
     place.hidden = false;
     const input = place.querySelector('input'), said = place.querySelector('output');
     const sections = all('.scene-tables').map((section) => ({ section, details: all('details', section),
+      tables: all('table', section),
       rows: all('tbody tr', section).map((row) => ({ row, text: null })) }));
     const total = sections.reduce((sum, { rows }) => sum + rows.length, 0);
     const filter = () => {
       const words = input.value.toLowerCase().split(/\s+/).filter(Boolean);
       let shown = 0;
-      for (const { section, details, rows } of sections) {
+      for (const { section, details, tables, rows } of sections) {
         let here = 0;
         for (const entry of rows) {
           // The words of a row: its fields, and the scene's name.
@@ -51,6 +52,8 @@
         }
         shown += here;
         section.hidden = here === 0;
+        const isEmpty = (part) => all('tbody tr', part).every((row) => row.hidden);
+        for (const part of [...tables, ...details]) part.hidden = isEmpty(part);
         if (words.length) for (const each of details) each.open = true;
       }
       said.textContent = words.length ? `${shown} of ${total} rows` : `${total} rows`;
