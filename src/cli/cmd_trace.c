@@ -1,17 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* raytally trace: one ray's path through an accelerator, step by step. */
+/* raytally trace: one ray's path through an accelerator, step by step, or the ray tree of a pixel. */
 #include "accel/columns.h"
 #include "cli/cli.h"
+#include "cli/trace_tree.h"
+#include "core/base/memory.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
 #include "picture/path_picture.h"
+#include "picture/ray_tree_picture.h"
 #include "scenes/open.h"
 
 #include <stdio.h>
 
 typedef struct Options {
     const char *scene, *accel, *svg;
-    uint32_t x, y, size[2], light;
+    uint32_t x, y, size[2], light, depth;
     int64_t rows;
     RtRayKind kind;
     bool aimed, json;
@@ -30,7 +33,10 @@ static void take_kind(void *options, const char *text, struct argp_state *state)
 }
 
 static void finish(void *options, struct argp_state *state) {
-    if (!((Options *)options)->aimed) argp_error(state, "the pixel is missing: --pixel X,Y");
+    const Options *o = options;
+    if (!o->aimed) argp_error(state, "the pixel is missing: --pixel X,Y");
+    if (o->depth > 0 && (o->kind != RT_RAY_PRIMARY || o->light > 0))
+        argp_error(state, "--depth follows all rays of the pixel: leave out --rays and --light");
 }
 
 static const RtOption options[] = {
@@ -43,8 +49,12 @@ static const RtOption options[] = {
      "hits"},
     {"light", 0, "N", RT_TO_INTEGER(light, 0, UINT32_MAX),
      "The light that the shadow ray goes to (default 0)"},
+    {"depth", 'd', "N", RT_TO_INTEGER(depth, 1, RT_MAX_DEPTH),
+     "Follow the whole ray tree of the pixel, N levels, instead of one ray; the primary ray is the first "
+     "level"},
     {"svg", 0, "FILE.svg", RT_TO_PATH(svg, RT_CLI_PICTURES),
-     "Draw the path: a section through the scene along the ray, with each step and test"},
+     "Draw the path: a section through the scene along the ray, with each step and test; with --depth, the "
+     "ray tree in a section that contains the primary ray"},
     {"rows", 0, "N", RT_TO_INTEGER(rows, 0, UINT32_MAX),
      "Print at most N rows, 0 for all (200); rows of hits are always printed"},
     {"json", 'j', NULL, RT_TO_FLAG(json), "One JSON document on stdout, with all rows"},
@@ -192,18 +202,71 @@ static json_t *path_json(const RtPath *path, const Options *o, const char *spec)
                      rt_json_number((double)path->hit.t));
 }
 
+static json_t *tree_json(const RtRayTree *tree, const RtTally *costs, const RtScene *scene, const Options *o,
+                         const char *spec) {
+    return json_pack("{s:s, s:s, s:[i, i], s:i, s:i, s:o, s:o}", "scene", o->scene, "accel", spec, "pixel",
+                     (int)o->x, (int)o->y, "depth", (int)tree->depth, "levels", (int)tree->levels, "color",
+                     rt_cli_vector_json(tree->color), "tree", rt_cli_tree_json(tree, costs, scene));
+}
+
 /* ---- the command ---- */
 
-static RtStatus trace(const Options *o, const RtScene *scene, RtAccel *accel, const char *spec,
-                      RtError *error) {
-    char title[512];
+/* `what` it is of the pixel: "the ray tree", "the primary ray". */
+static void make_title(const Options *o, const RtScene *scene, const char *what, char *title, size_t size) {
+    snprintf(title, size, "%s: the %s of pixel %u,%u of %u x %u", scene->name[0] ? scene->name : o->scene,
+             what, o->x, o->y, scene->sampling.width, scene->sampling.height);
+}
+
+/* The counts of each ray of the tree, traced on its own. */
+static RtStatus count_rays(const RtRayTree *tree, RtAccel *accel, RtTally *costs, RtError *error) {
+    for (uint32_t i = 0; i < tree->count; i++) {
+        RtPath path;
+        RT_TRY(rt_path_trace(&path, accel, &tree->rays[i].ray, error));
+        costs[i] = path.tally;
+        rt_path_clear(&path);
+    }
+    return RT_OK;
+}
+
+static RtStatus show_tree(const Options *o, const RtScene *scene, const RtRayTree *tree, const RtTally *costs,
+                          const char *spec, RtError *error) {
+    char title[512], what[64];
+    snprintf(what, sizeof what, "ray tree, %u level%s,", o->depth, rt_plural(o->depth));
+    make_title(o, scene, what, title, sizeof title);
+    if (o->svg) RT_TRY(rt_ray_tree_draw(tree, scene, title, o->svg, error));
+    if (o->json) {
+        rt_cli_print_json(tree_json(tree, costs, scene, o, spec));
+        return RT_OK;
+    }
+    printf("%s\n%s\n", spec, title);
+    rt_cli_print_tree(tree, costs, scene, o->rows);
+    if (o->svg) printf("wrote %s\n", o->svg);
+    return RT_OK;
+}
+
+static RtStatus trace_tree(const Options *o, const RtScene *scene, RtAccel *accel, const char *spec,
+                           RtError *error) {
+    RtRayTree tree;
+    RT_TRY(rt_ray_tree_trace(&tree, accel, o->x, o->y, o->depth, error));
+    RtTally *costs = rt_alloc(tree.count, sizeof(RtTally));
+    RtStatus status =
+        costs ? RT_OK : rt_fail_memory(error, "the counts of rays", tree.count * sizeof(RtTally));
+    if (status == RT_OK) status = count_rays(&tree, accel, costs, error);
+    if (status == RT_OK) status = show_tree(o, scene, &tree, costs, spec, error);
+    rt_free(costs);
+    rt_ray_tree_clear(&tree);
+    return status;
+}
+
+static RtStatus trace_path(const Options *o, const RtScene *scene, RtAccel *accel, const char *spec,
+                           RtError *error) {
+    char title[512], what[64];
     RtRay ray;
     RtPath path;
     RT_TRY(rt_path_ray(accel, o->kind, o->x, o->y, o->light, &ray, error));
     RT_TRY(rt_path_trace(&path, accel, &ray, error));
-    snprintf(title, sizeof title, "%s: the %s ray of pixel %u,%u of %u x %u",
-             scene->name[0] ? scene->name : o->scene, rt_ray_kind_name(o->kind), o->x, o->y,
-             scene->sampling.width, scene->sampling.height);
+    snprintf(what, sizeof what, "%s ray", rt_ray_kind_name(o->kind));
+    make_title(o, scene, what, title, sizeof title);
     RtStatus status = o->svg ? rt_path_draw(&path, scene, title, o->accel, o->svg, error) : RT_OK;
     if (status == RT_OK && o->json) {
         rt_cli_print_json(path_json(&path, o, spec));
@@ -229,7 +292,7 @@ static RtStatus run(const Options *o, RtError *error) {
     if (status == RT_OK) status = rt_cli_check_pixel(&scene.sampling, o->x, o->y, error);
     if (status == RT_OK) status = rt_accel_build(&spec, &scene, 0, &accel, error);
     if (status == RT_OK) status = rt_path_available(accel, text, error);
-    if (status == RT_OK) status = trace(o, &scene, accel, text, error);
+    if (status == RT_OK) status = (o->depth > 0 ? trace_tree : trace_path)(o, &scene, accel, text, error);
     rt_accel_destroy(accel);
     rt_scene_clear(&scene);
     return status;
@@ -242,7 +305,9 @@ const RtSyntax rt_trace_syntax = {
     .argument = RT_SCENE_ARGUMENT,
     .finish = finish,
     .help =
-        "Follow one ray through an accelerator: each step, extent test and object test, in order.\v"
+        "Follow one ray through an accelerator: each step, extent test and object test, in order. With "
+        "--depth, "
+        "follow the whole ray tree of a pixel.\v"
         "A row shows what was visited or tested, the interval of t in which the ray is inside its box (if it "
         "has one), whether the ray hit the extent or the object, and the t of the nearest hit so far. An "
         "extent that the ray enters behind that hit counts as missed. A step is a visit to a node, voxel, "
@@ -251,10 +316,21 @@ const RtSyntax rt_trace_syntax = {
         "\n"
         "The upper part of the drawing is a section along the ray and one axis of the scene; it shows a box "
         "where the ray passes through it. The bars below show that part of the ray, in the order of the "
-        "rows. Examples:\n"
+        "rows.\n"
+        "\n"
+        "The ray tree has the primary ray, and for each hit a shadow ray to every light that shines on that "
+        "side of the surface, a reflection and a transmission ray. A row shows the t and the object of its "
+        "hit; factor, the product of the coefficients kr and kt on the way from the eye; the light that the "
+        "ray brings, as its share of the pixel's colour; and what the accelerator did for it. A second table "
+        "splits the light of each hit into the five terms of the illumination model. The drawing shows rays "
+        "in "
+        "a section that contains the primary ray and lies as close to the others as it can.\n"
+        "\n"
+        "Examples:\n"
         "  raytally trace balls --pixel 256,256\n"
         "  raytally trace balls --pixel 256,256 --accel grid:density=1 --svg path.svg\n"
         "  raytally trace balls --pixel 256,400 --accel light:cells=40+octree --rays shadow --light 1\n"
+        "  raytally trace scenes/lecture.yaml --pixel 320,330 --depth 3 --svg tree.svg\n"
         "embree shows no steps, because it counts none; with mode=user it shows object tests. A plugin shows "
         "its "
         "steps and extent tests by raytally_show (raytally/accel.h); without that they have no boxes."};

@@ -81,7 +81,7 @@ static void add_light(Worker *worker, Path path, RtVec3 light) {
 /* Shows a ray to the observer; returns its number. */
 static uint32_t show(Worker *worker, Path path, RtFrameRay ray) {
     const RtFrameObserver *observer = worker->job->options->observer;
-    if (!observer) return RT_NO_PARENT;
+    if (!observer) return RT_NO_RAY;
     ray.parent = path.parent;
     ray.factor = path.factor;
     observer->see(observer->context, &ray);
@@ -257,7 +257,7 @@ static void make_primary_rays(Worker *worker, Level *level) {
         job->frame->depth[ray.source] = INFINITY;
         if (!rt_ray_is_valid(&ray) || (observer && observer->sample != ray.source)) continue;
         level->rays[level->count] = ray;
-        level->paths[level->count++] = (Path){ray.source, 1, RT_NO_PARENT};
+        level->paths[level->count++] = (Path){ray.source, 1, RT_NO_RAY};
     }
 }
 

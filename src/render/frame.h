@@ -24,7 +24,7 @@
 /* A ray of a sample, after it was traced. */
 typedef struct RtFrameRay {
     const RtRay *ray;
-    uint32_t parent; /* number of the ray from whose hit it starts; RT_NO_PARENT for the primary ray */
+    uint32_t parent; /* number of the ray from whose hit it starts; RT_NO_RAY for the primary ray */
     float factor;    /* of its light in the sample's colour: the product of kr and kt on the way */
     RtHit hit;       /* RT_MISS for shadow rays */
     const RtSurface *surface; /* what it hit; NULL for a miss, and for shadow rays */
@@ -32,7 +32,7 @@ typedef struct RtFrameRay {
     RtVec3 light; /* what it adds, without the factor: the surface's ambient light, the background, or that of
                    * the light that it sees */
 } RtFrameRay;
-#define RT_NO_PARENT UINT32_MAX
+#define RT_NO_RAY UINT32_MAX
 
 /* Sees the rays of one sample, numbered 0, 1, ... in the order in which their light is added. */
 typedef struct RtFrameObserver {

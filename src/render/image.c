@@ -44,7 +44,7 @@ double rt_frame_cost(const RtFrame *frame, size_t counter, uint32_t x, uint32_t 
 }
 
 /* IEC 61966-2-1. */
-static uint8_t encode_srgb(float linear) {
+uint8_t rt_srgb(float linear) {
     if (!(linear > 0)) return 0;
     if (linear >= 1) return 255;
     double x = (double)linear;
@@ -58,7 +58,7 @@ RtStatus rt_image_from_frame(RtImage *image, const RtFrame *frame, RtError *erro
     for (uint32_t y = 0; y < image->height; y++) {
         for (uint32_t x = 0; x < image->width; x++) {
             RtVec3 color = rt_frame_pixel(frame, x, y);
-            for (int channel = 0; channel < 3; channel++) *out++ = encode_srgb(color.at[channel]);
+            for (int channel = 0; channel < 3; channel++) *out++ = rt_srgb(color.at[channel]);
         }
     }
     return RT_OK;

@@ -11,6 +11,9 @@ typedef struct RtImage {
     uint8_t *rgb; /* [height][width][3], from the upper left */
 } RtImage;
 
+/* A linear value as 8 bits of sRGB, clipped to 0..1. */
+uint8_t rt_srgb(float linear);
+
 /* A black image. Free with rt_image_clear. */
 RtStatus rt_image_init(RtImage *image, uint32_t width, uint32_t height, RtError *error);
 void rt_image_clear(RtImage *image);

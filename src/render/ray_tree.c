@@ -2,6 +2,9 @@
 #include "render/ray_tree.h"
 
 #include "core/base/memory.h"
+#include "core/base/words.h"
+
+#include <stdio.h>
 
 typedef struct Recorder {
     RtRayTree *tree;
@@ -20,13 +23,13 @@ static void record(void *context, const RtFrameRay *seen) {
     RtTreeRay ray = {.ray = *seen->ray,
                      .level = 1,
                      .parent = seen->parent,
-                     .child = RT_NO_CHILD,
-                     .next = RT_NO_CHILD,
+                     .child = RT_NO_RAY,
+                     .next = RT_NO_RAY,
                      .factor = seen->factor,
                      .hit = seen->occluded ? (RtHit){INFINITY, RT_UNNAMED_OBJECT} : seen->hit,
                      .added = rt_scale(seen->light, seen->factor)};
     if (seen->surface) ray.surface = *seen->surface;
-    if (seen->parent != RT_NO_PARENT) ray.level = tree->rays[seen->parent].level + !shadow;
+    if (seen->parent != RT_NO_RAY) ray.level = tree->rays[seen->parent].level + !shadow;
     tree->color = rt_add(tree->color, ray.added);
     recorder->status =
         rt_append(&tree->rays, &tree->count, &tree->capacity, &ray, sizeof ray, recorder->error);
@@ -91,8 +94,10 @@ static void finish(RtRayTree *tree, const RtScene *scene) {
         for (int t = 0; t < RT_TERM_COUNT; t++) ray->light = rt_addd(ray->light, ray->terms[t]);
         ray->cut = m && ray->level == tree->depth && (m->reflection > 0 || m->transmission > 0);
         if (ray->level > tree->levels) tree->levels = ray->level;
-        if (ray->parent != RT_NO_PARENT) join_parent(&tree->rays[ray->parent], ray, i);
+        if (ray->parent != RT_NO_RAY) join_parent(&tree->rays[ray->parent], ray, i);
     }
+    uint32_t number = 0;
+    for (uint32_t i = 0; number < tree->count; i = rt_ray_tree_next(tree, i)) tree->rays[i].number = ++number;
 }
 
 RtStatus rt_ray_tree_trace(RtRayTree *tree, const RtAccel *accel, uint32_t column, uint32_t row,
@@ -116,6 +121,40 @@ RtStatus rt_ray_tree_trace(RtRayTree *tree, const RtAccel *accel, uint32_t colum
 void rt_ray_tree_clear(RtRayTree *tree) {
     rt_free(tree->rays);
     *tree = (RtRayTree){0};
+}
+
+uint32_t rt_ray_tree_next(const RtRayTree *tree, uint32_t index) {
+    if (tree->rays[index].child != RT_NO_RAY) return tree->rays[index].child;
+    while (index != RT_NO_RAY && tree->rays[index].next == RT_NO_RAY) index = tree->rays[index].parent;
+    return index == RT_NO_RAY ? RT_NO_RAY : tree->rays[index].next;
+}
+
+void rt_tree_ray_name(const RtTreeRay *ray, char name[RT_TREE_RAY_TEXT]) {
+    const RtRayKind kind = (RtRayKind)ray->ray.kind;
+    if (kind == RT_RAY_SHADOW)
+        snprintf(name, RT_TREE_RAY_TEXT, "shadow to light %u", ray->ray.source);
+    else
+        snprintf(name, RT_TREE_RAY_TEXT, "%s",
+                 ray->total ? "total internal reflection" : rt_ray_kind_name(kind));
+}
+
+void rt_tree_ray_hit(const RtTreeRay *ray, const RtScene *scene, char out[RT_TREE_HIT_TEXT]) {
+    const bool shadow = ray->ray.kind == RT_RAY_SHADOW;
+    const uint32_t object = ray->hit.object;
+    if (object == RT_NO_OBJECT) {
+        snprintf(out, RT_TREE_HIT_TEXT, "%s", shadow ? "nothing: lit" : "nothing: background");
+        return;
+    }
+    if (object == RT_UNNAMED_OBJECT) {
+        snprintf(out, RT_TREE_HIT_TEXT, "an object: in shadow");
+        return;
+    }
+    const RtMaterial *m = ray->surface.material;
+    snprintf(out, RT_TREE_HIT_TEXT, "object %u, %s", object,
+             rt_shape_name(rt_ref_shape(scene->geometry.objects[object])));
+    if (shadow) rt_append_text(out, RT_TREE_HIT_TEXT, ": in shadow");
+    if (m && m->name[0]) rt_append_text(out, RT_TREE_HIT_TEXT, ", %s", m->name);
+    if (m && !ray->surface.entering) rt_append_text(out, RT_TREE_HIT_TEXT, ", from inside");
 }
 
 const char *rt_term_name(RtTerm term) {

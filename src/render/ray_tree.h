@@ -28,9 +28,10 @@ const char *rt_term_name(RtTerm term);
 /* A ray of the tree. All colours are linear rgb, and shares of the sample's colour: `factor` is in them. */
 typedef struct RtTreeRay {
     RtRay ray;       /* of a shadow ray, ray.source is the light */
+    uint32_t number; /* 1, 2, ..., depth first */
     uint32_t level;  /* 1 for the primary ray; a shadow ray has the level of the ray that it starts from */
-    uint32_t parent; /* index of that ray; RT_NO_PARENT for the primary ray */
-    uint32_t child, next; /* first ray that starts at the hit, next ray of the same parent; RT_NO_CHILD */
+    uint32_t parent; /* index of that ray; RT_NO_RAY for the primary ray */
+    uint32_t child, next; /* first ray that starts at the hit, next ray of the same parent; RT_NO_RAY */
     float factor;         /* product of kr and kt on the way from the eye; under total internal reflection a
                            * reflection ray has kr + kt */
     RtHit hit;            /* of a shadow ray the nearest occluder: object RT_UNNAMED_OBJECT and t INFINITY if
@@ -43,7 +44,6 @@ typedef struct RtTreeRay {
                                    * specular as it adds them; zero for a miss */
     RtVec3d light;                /* in all: the sum of the terms, or the background */
 } RtTreeRay;
-#define RT_NO_CHILD UINT32_MAX
 
 /* Owned; free with rt_ray_tree_clear. The surfaces borrow materials of the scene. */
 typedef struct RtRayTree {
@@ -58,6 +58,19 @@ typedef struct RtRayTree {
 /* Traces the sample of the frame's grid, to `depth` levels, 1..RT_MAX_DEPTH. */
 RtStatus rt_ray_tree_trace(RtRayTree *tree, const RtAccel *accel, uint32_t column, uint32_t row,
                            uint32_t depth, RtError *error);
+
+/* The ray after `index`, depth first: its first child, or the next of a parent; RT_NO_RAY at the end. The
+ * primary ray is the first. */
+uint32_t rt_ray_tree_next(const RtRayTree *tree, uint32_t index);
+
+/* "primary", "shadow to light 0", "reflection", "transmission", "total internal reflection" */
+#define RT_TREE_RAY_TEXT 32
+void rt_tree_ray_name(const RtTreeRay *ray, char name[RT_TREE_RAY_TEXT]);
+
+/* "object 5, sphere, glass", "nothing: background", "object 3, cone: in shadow", ... */
+#define RT_TREE_HIT_TEXT 128
+void rt_tree_ray_hit(const RtTreeRay *ray, const RtScene *scene, char out[RT_TREE_HIT_TEXT]);
+
 void rt_ray_tree_clear(RtRayTree *tree);
 
 #endif

@@ -174,7 +174,7 @@ static RtStatus put_candidates(RtBytes *out, const RtAccel *base, RtRay ray, RtE
     return RT_OK;
 }
 
-static RtStatus put_ray(RtRecording *recording, const RtTreeRay *ray, RtError *error) {
+static RtStatus put_ray(RtRecording *recording, const RtRayTree *tree, const RtTreeRay *ray, RtError *error) {
     RtBytes *out = &recording->rays;
     const RtAccel *first = recording->of[0].accel;
     bool looked_up = false;
@@ -182,7 +182,7 @@ static RtStatus put_ray(RtRecording *recording, const RtTreeRay *ray, RtError *e
         looked_up |= overlay_for(recording->of[i].accel, RT_RAY_PRIMARY) != NULL;
     rt_bytes_put_number(out, ray->ray.kind);
     rt_bytes_put_number(out, ray->level);
-    rt_bytes_put_number(out, ray->parent == RT_NO_PARENT ? 0 : (uint64_t)ray->parent + 1);
+    rt_bytes_put_number(out, ray->parent == RT_NO_RAY ? 0 : tree->rays[ray->parent].number);
     rt_bytes_put_number(out, ray->ray.source);
     rt_bytes_put_number(out, (uint64_t)ray->total + 2 * (uint64_t)ray->cut);
     put_vector(out, ray->ray.org);
@@ -200,8 +200,8 @@ static RtStatus put_ray(RtRecording *recording, const RtTreeRay *ray, RtError *e
 static RtStatus record_tree(RtRecording *recording, const RtRayTree *tree, RtError *error) {
     uint32_t place = rt_bytes_begin(&recording->rays), places[RT_MAX_EXPLORED];
     for (uint32_t i = 0; i < recording->count; i++) places[i] = rt_bytes_begin(&recording->of[i].paths);
-    for (uint32_t k = 0; k < tree->count; k++) {
-        RT_TRY(put_ray(recording, &tree->rays[k], error));
+    for (uint32_t k = 0, left = tree->count; left > 0; k = rt_ray_tree_next(tree, k), left--) {
+        RT_TRY(put_ray(recording, tree, &tree->rays[k], error));
         for (uint32_t i = 0; i < recording->count; i++) {
             RtPath path;
             RT_TRY(rt_path_trace(&path, recording->of[i].accel, &tree->rays[k].ray, error));

@@ -5,8 +5,8 @@
  * All numbers are LEB128 but for floats and the lengths, u32 (explore_bytes.h). An object is written as 0 for
  * none, 1 for one without a name, id + 2 otherwise.
  *
- *   rays:   for each pixel its length, and the rays of its tree (RtTreeRay), each: kind, level, 1 + parent
- *           or 0, source, total + 2 * cut, org[3], dir[3], tmax (floats), object, t, added[3] (floats),
+ *   rays:   for each pixel its length, and the rays of its tree (RtTreeRay), depth first, each: kind, level,
+ *           1 + parent or 0, source, total + 2 * cut, org[3], dir[3], tmax (floats), object, t, added[3] (floats),
  *           candidates, and of each candidate object and t (float)
  *   paths:  of one accelerator: for each pixel its length, and for each ray of its tree:
  *           object, t (float), the counters of its tally, the cell (1 + number, length, object, cut; or 0),

@@ -69,7 +69,7 @@ RT_TEST(the_five_terms_of_a_hit_add_up_to_the_light_that_comes_from_it) {
         for (uint32_t k = 0; k < tree.count; k++) {
             const RtTreeRay *ray = &tree.rays[k];
             RtVec3d sum = {{0, 0, 0}}, of_children = {{0, 0, 0}};
-            for (uint32_t child = ray->child; child != RT_NO_CHILD; child = tree.rays[child].next) {
+            for (uint32_t child = ray->child; child != RT_NO_RAY; child = tree.rays[child].next) {
                 assert_true(child > k && tree.rays[child].parent == k);
                 of_children = rt_addd(of_children, tree.rays[child].light);
             }

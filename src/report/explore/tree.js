@@ -10,11 +10,6 @@ function sums(tree) {
   return light;
 }
 
-// The rays in the order of a walk, each with its depth.
-function walk(tree, parent = -1, depth = 0) {
-  return tree.flatMap((ray, i) => ray.parent === parent ? [[i, depth], ...walk(tree, i, depth + 1)] : []);
-}
-
 export const rayName = (ray) => ray.kind === 'shadow' ? `shadow ray to light ${ray.source}` :
   ray.kind === 'reflection' && ray.total ? 'reflection ray (total)' : `${ray.kind} ray`;
 
@@ -27,8 +22,8 @@ function note(ray) {
 // Calls choose(number of the ray).
 export function showTree(data, tree, chosen, choose) {
   const light = sums(tree), body = byId('tree').tBodies[0];
-  body.replaceChildren(...walk(tree).map(([i, depth]) => {
-    const ray = tree[i], color = light[i].map(number).join(', ');
+  body.replaceChildren(...tree.map((ray, i) => {
+    const depth = ray.level - (ray.kind === 'shadow' ? 0 : 1), color = light[i].map(number).join(', ');
     const button = element('button', { type: 'button', style: `margin-left: ${depth * 1.4}em` },
       element('span', { class: 'kind', style: `--kind: var(--${ray.kind})` }), rayName(ray));
     button.addEventListener('click', () => choose(i));
