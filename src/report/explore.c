@@ -15,10 +15,11 @@ enum { SCALE_COLORS = 16 };
 
 RtStatus rt_explore_available(RtError *error) {
     if (explore_js[0]) return RT_OK;
-    return rt_fail(error, RT_NOT_AVAILABLE,
-                   "this raytally was built without the explorer: npm was missing, or could not fetch three.js "
-                   "and esbuild. Install npm (Debian: apt-get install npm), connect to the network once, and "
-                   "build again; docs/components.md says more");
+    return rt_fail(
+        error, RT_NOT_AVAILABLE,
+        "this raytally was built without the explorer: npm was missing, or could not fetch three.js "
+        "and esbuild. Install npm (Debian: apt-get install npm), connect to the network once, and "
+        "build again; docs/components.md says more");
 }
 
 /* ---- what the page knows, as JSON ---- */
@@ -30,8 +31,8 @@ static json_t *vector_json(RtVec3 v) {
 static json_t *counters_json(void) {
     json_t *list = json_array();
     for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++)
-        json_array_append_new(list,
-                              json_pack("{s:s, s:s}", "name", rt_tally_name(i), "meaning", rt_tally_meaning(i)));
+        json_array_append_new(
+            list, json_pack("{s:s, s:s}", "name", rt_tally_name(i), "meaning", rt_tally_meaning(i)));
     return list;
 }
 
@@ -83,15 +84,16 @@ static json_t *accelerator_json(const RtRecordedPaths *paths, const char *spec, 
 }
 
 /* Takes both references. */
-static json_t *page_json(const RtScene *scene, const RtRecording *recording, uint32_t depth,
+static json_t *page_json(const RtScene *scene, const RtRecordedPixels *recording, uint32_t depth,
                          json_t *scene_data, json_t *accelerators) {
     const RtSampling *s = &scene->sampling;
-    return json_pack("{s:i, s:i, s:i, s:i, s:i, s:I, s:I, s:i, s:i, s:o, s:o, s:o, s:o, s:o}", "width",
+    return json_pack("{s:i, s:i, s:i, s:i, s:i, s:I, s:I, s:i, s:i, s:i, s:o, s:o, s:o, s:o, s:o}", "width",
                      (int)s->width, "height", (int)s->height, "stride", (int)recording->stride, "columns",
                      (int)recording->columns, "rows", (int)recording->rows, "rays",
-                     (json_int_t)recording->ray_count, "cut", (json_int_t)recording->cut_count, "most_rows",
-                     RT_MAX_RECORDED_ROWS, "depth", (int)depth, "counters", counters_json(), "kinds",
-                     kinds_json(), "scale", scale_json(), "scene", scene_data, "accelerators", accelerators);
+                     (json_int_t)recording->ray_count, "cut", (json_int_t)recording->cut_count, "cell_map",
+                     RT_CELL_MAP, "most_rows", RT_MAX_RECORDED_ROWS, "depth", (int)depth, "counters",
+                     counters_json(), "kinds", kinds_json(), "scale", scale_json(), "scene", scene_data,
+                     "accelerators", accelerators);
 }
 
 /* `<` would end the element in some places. Takes the reference. */
@@ -145,19 +147,22 @@ static RtStatus embed_shapes(const RtGeometry *g, FILE *out, RtError *error) {
 static RtStatus embed_accelerator(const RtRecordedPaths *paths, uint32_t number, RtShownBoxes *shown,
                                   FILE *out, RtError *error) {
     char id[32];
-    RtBytes events = {0}, boxes = {0};
+    RtBytes events = {0}, boxes = {0}, cells = {0};
     snprintf(id, sizeof id, "paths-%u", number);
     rt_bytes_embed(&paths->paths, id, out);
     rt_recorded_events(paths, &events);
     snprintf(id, sizeof id, "events-%u", number);
     RT_TRY(embed(&events, id, out, error));
+    rt_explore_cells(paths->accel, &cells);
+    snprintf(id, sizeof id, "cells-%u", number);
+    RT_TRY(embed(&cells, id, out, error));
     *shown = rt_explore_boxes(paths->accel, &boxes);
     snprintf(id, sizeof id, "boxes-%u", number);
     return embed(&boxes, id, out, error);
 }
 
-static RtStatus write_page(FILE *out, const char *name, const RtRecording *recording, const char *const *specs,
-                           uint32_t depth, RtError *error) {
+static RtStatus write_page(FILE *out, const char *name, const RtRecordedPixels *recording,
+                           const char *const *specs, uint32_t depth, RtError *error) {
     const RtScene *scene = recording->of[0].accel->scene;
     json_t *accelerators = json_array();
     RtBytes objects = {0};
@@ -175,8 +180,8 @@ static RtStatus write_page(FILE *out, const char *name, const RtRecording *recor
     }
     uint32_t every = rt_explore_objects(scene, &objects);
     if (status == RT_OK)
-        status = embed_json(page_json(scene, recording, depth, scene_json(scene, name, every), accelerators), out,
-                            error);
+        status = embed_json(page_json(scene, recording, depth, scene_json(scene, name, every), accelerators),
+                            out, error);
     else
         json_decref(accelerators);
     rt_bytes_embed(&recording->rays, "rays", out);
@@ -193,15 +198,15 @@ static RtStatus write_page(FILE *out, const char *name, const RtRecording *recor
 RtStatus rt_explore_write(const char *path, const char *name, RtAccel *const *accels,
                           const char *const *specs, uint32_t count, const RtExploreOptions *options,
                           uint32_t *stride, RtError *error) {
-    RtRecording recording;
+    RtRecordedPixels recording;
     RtOutput output;
     RT_TRY(rt_explore_available(error));
     RT_TRY(rt_output_open(&output, path, error));
-    RtStatus status = rt_recording_make(&recording, accels, count, options, error);
+    RtStatus status = rt_recorded_pixels_make(&recording, accels, count, options, error);
     if (status == RT_OK) {
         *stride = recording.stride;
         status = write_page(output.file, name, &recording, specs, options->depth, error);
-        rt_recording_clear(&recording);
+        rt_recorded_pixels_clear(&recording);
     }
     if (status == RT_OK) return rt_output_commit(&output, error);
     rt_output_discard(&output);

@@ -2,6 +2,7 @@
 #include "report/explore_record.h"
 
 #include "core/base/memory.h"
+#include "report/explore_shapes.h"
 
 #include <string.h>
 #include <xxhash.h>
@@ -11,16 +12,16 @@ enum { MOST_CANDIDATES = 16, RAW_PER_BYTE = 3 }; /* base64 of compressed data is
 /* ---- events ---- */
 
 static bool same_form(const RtPathRow *a, const RtPathRow *b) {
-    return a->kind == b->kind && strcmp(a->what, b->what) == 0 && a->leaf == b->leaf && a->empty == b->empty &&
-           a->met == b->met && a->round == b->round;
+    return a->kind == b->kind && strcmp(a->what, b->what) == 0 && a->leaf == b->leaf &&
+           a->empty == b->empty && a->met == b->met && a->round == b->round;
 }
 
 static RtStatus find_form(RtRecordedPaths *to, const RtPathRow *row, uint32_t *form, RtError *error) {
     for (*form = 0; *form < to->form_count; ++*form) {
         if (same_form(&to->forms[*form].row, row)) return RT_OK;
     }
-    return rt_append(&to->forms, &to->form_count, &to->form_capacity, &(RtEventForm){*row},
-                     sizeof *to->forms, error);
+    return rt_append(&to->forms, &to->form_count, &to->form_capacity, &(RtEventForm){*row}, sizeof *to->forms,
+                     error);
 }
 
 /* The slot of the event, or the free one where it belongs. */
@@ -80,11 +81,10 @@ json_t *rt_recorded_forms(const RtRecordedPaths *paths) {
     json_t *forms = json_array();
     for (uint32_t i = 0; i < paths->form_count; i++) {
         const RtPathRow *row = &paths->forms[i].row;
-        json_array_append_new(forms, json_pack("{s:s, s:s, s:o, s:b, s:b, s:o}", "name", rt_path_row_name(row),
-                                               "of", row->what, "met",
-                                               rt_path_row_answers(row) ? json_boolean(row->met) : json_null(),
-                                               "hit", is_hit(row), "round", row->round, "counts",
-                                               counts_of(row)));
+        json_array_append_new(
+            forms, json_pack("{s:s, s:s, s:o, s:b, s:b, s:o}", "name", rt_path_row_name(row), "of", row->what,
+                             "met", rt_path_row_answers(row) ? json_boolean(row->met) : json_null(), "hit",
+                             is_hit(row), "round", row->round, "counts", counts_of(row)));
     }
     return forms;
 }
@@ -107,15 +107,9 @@ static void put_object(RtBytes *out, uint32_t object) {
                                                            : (uint64_t)object + 2);
 }
 
-/* The overlay that looks rays of this kind up in cells, or NULL. */
-static const RtAccel *overlay_for(const RtAccel *accel, uint32_t kind) {
-    while (accel && !(accel->ops->find_cell && accel->ops->kinds >> kind & 1)) accel = accel->below;
-    return accel;
-}
-
 static void put_cell(RtBytes *out, const RtAccel *accel, const RtRay *ray) {
     RtCellView cell;
-    accel = overlay_for(accel, ray->kind);
+    accel = rt_cell_layer(accel, ray->kind);
     if (!accel || !accel->ops->find_cell(accel, ray, &cell)) {
         rt_bytes_put_number(out, 0);
         return;
@@ -126,7 +120,8 @@ static void put_cell(RtBytes *out, const RtAccel *accel, const RtRay *ray) {
     rt_bytes_put_number(out, cell.cut);
 }
 
-static RtStatus put_path(RtRecording *recording, RtRecordedPaths *to, const RtPath *path, RtError *error) {
+static RtStatus put_path(RtRecordedPixels *recording, RtRecordedPaths *to, const RtPath *path,
+                         RtError *error) {
     uint32_t kept = path->count < RT_MAX_RECORDED_ROWS ? path->count : RT_MAX_RECORDED_ROWS;
     put_object(&to->paths, path->hit.object);
     rt_bytes_put_float(&to->paths, path->hit.t);
@@ -174,12 +169,13 @@ static RtStatus put_candidates(RtBytes *out, const RtAccel *base, RtRay ray, RtE
     return RT_OK;
 }
 
-static RtStatus put_ray(RtRecording *recording, const RtRayTree *tree, const RtTreeRay *ray, RtError *error) {
+static RtStatus put_ray(RtRecordedPixels *recording, const RtRayTree *tree, const RtTreeRay *ray,
+                        RtError *error) {
     RtBytes *out = &recording->rays;
     const RtAccel *first = recording->of[0].accel;
     bool looked_up = false;
     for (uint32_t i = 0; i < recording->count; i++)
-        looked_up |= overlay_for(recording->of[i].accel, RT_RAY_PRIMARY) != NULL;
+        looked_up |= rt_cell_layer(recording->of[i].accel, RT_RAY_PRIMARY) != NULL;
     rt_bytes_put_number(out, ray->ray.kind);
     rt_bytes_put_number(out, ray->level);
     rt_bytes_put_number(out, ray->parent == RT_NO_RAY ? 0 : tree->rays[ray->parent].number);
@@ -197,7 +193,7 @@ static RtStatus put_ray(RtRecording *recording, const RtRayTree *tree, const RtT
     return RT_OK;
 }
 
-static RtStatus record_tree(RtRecording *recording, const RtRayTree *tree, RtError *error) {
+static RtStatus record_tree(RtRecordedPixels *recording, const RtRayTree *tree, RtError *error) {
     uint32_t place = rt_bytes_begin(&recording->rays), places[RT_MAX_EXPLORED];
     for (uint32_t i = 0; i < recording->count; i++) places[i] = rt_bytes_begin(&recording->of[i].paths);
     for (uint32_t k = 0, left = tree->count; left > 0; k = rt_ray_tree_next(tree, k), left--) {
@@ -218,20 +214,21 @@ static RtStatus record_tree(RtRecording *recording, const RtRayTree *tree, RtErr
 
 /* ---- all pixels ---- */
 
-static uint64_t bytes_of(const RtRecording *recording) {
+static uint64_t bytes_of(const RtRecordedPixels *recording) {
     uint64_t bytes = recording->rays.count;
     for (uint32_t i = 0; i < recording->count; i++)
         bytes += recording->of[i].paths.count + recording->of[i].event_count * (uint64_t)sizeof(RtEvent);
     return bytes;
 }
 
-static RtStatus record_pixels(RtRecording *recording, const RtExploreOptions *options, bool *fits,
+static RtStatus record_pixels(RtRecordedPixels *recording, const RtExploreOptions *options, bool *fits,
                               RtError *error) {
     const RtAccel *first = recording->of[0].accel;
     for (uint32_t i = 0; i < recording->columns * recording->rows; i++) {
         RtRayTree tree;
         RT_TRY(rt_ray_tree_trace(&tree, first, rt_recorded_pixel(recording, i % recording->columns),
-                                 rt_recorded_pixel(recording, i / recording->columns), options->depth, error));
+                                 rt_recorded_pixel(recording, i / recording->columns), options->depth,
+                                 error));
         RtStatus status = record_tree(recording, &tree, error);
         rt_ray_tree_clear(&tree);
         RT_TRY(status);
@@ -239,8 +236,7 @@ static RtStatus record_pixels(RtRecording *recording, const RtExploreOptions *op
         if (!*fits) return RT_OK;
     }
     RT_TRY(rt_bytes_compress(&recording->rays, error));
-    for (uint32_t i = 0; i < recording->count; i++)
-        RT_TRY(rt_bytes_compress(&recording->of[i].paths, error));
+    for (uint32_t i = 0; i < recording->count; i++) RT_TRY(rt_bytes_compress(&recording->of[i].paths, error));
     return RT_OK;
 }
 
@@ -249,27 +245,27 @@ static uint32_t places_in(uint32_t side, uint32_t stride) {
     return side > stride / 2 ? (side - stride / 2 + stride - 1) / stride : 0;
 }
 
-RtStatus rt_recording_make(RtRecording *recording, RtAccel *const *accels, uint32_t count,
-                           const RtExploreOptions *options, RtError *error) {
+RtStatus rt_recorded_pixels_make(RtRecordedPixels *recording, RtAccel *const *accels, uint32_t count,
+                                 const RtExploreOptions *options, RtError *error) {
     const RtSampling *s = &accels[0]->scene->sampling;
     RtStatus status = RT_OK;
     bool fits = false;
     for (uint32_t stride = 1; status == RT_OK && !fits; stride++) {
-        *recording = (RtRecording){.stride = stride,
-                                   .columns = places_in(s->width, stride),
-                                   .rows = places_in(s->height, stride),
-                                   .count = count};
+        *recording = (RtRecordedPixels){.stride = stride,
+                                        .columns = places_in(s->width, stride),
+                                        .rows = places_in(s->height, stride),
+                                        .count = count};
         if (recording->columns == 0 || recording->rows == 0)
             return rt_fail(error, RT_BAD_INPUT,
                            "the paths of a single pixel do not fit on the page: leave out an accelerator");
         for (uint32_t i = 0; i < count; i++) recording->of[i].accel = accels[i];
         status = record_pixels(recording, options, &fits, error);
-        if (status != RT_OK || !fits) rt_recording_clear(recording);
+        if (status != RT_OK || !fits) rt_recorded_pixels_clear(recording);
     }
     return status;
 }
 
-void rt_recording_clear(RtRecording *recording) {
+void rt_recorded_pixels_clear(RtRecordedPixels *recording) {
     rt_bytes_clear(&recording->rays);
     for (uint32_t i = 0; i < recording->count; i++) {
         RtRecordedPaths *of = &recording->of[i];
@@ -278,5 +274,5 @@ void rt_recording_clear(RtRecording *recording) {
         rt_free(of->events);
         rt_free(of->slots);
     }
-    *recording = (RtRecording){0};
+    *recording = (RtRecordedPixels){0};
 }

@@ -6,12 +6,11 @@
  * none, 1 for one without a name, id + 2 otherwise.
  *
  *   rays:   for each pixel its length, and the rays of its tree (RtTreeRay), depth first, each: kind, level,
- *           1 + parent or 0, source, total + 2 * cut, org[3], dir[3], tmax (floats), object, t, added[3] (floats),
- *           candidates, and of each candidate object and t (float)
- *   paths:  of one accelerator: for each pixel its length, and for each ray of its tree:
- *           object, t (float), the counters of its tally, the cell (1 + number, length, object, cut; or 0),
- *           rows of the path, rows kept, and of each kept one: event, and t (float) if the form has one
- *   events: of one accelerator: form, index, 1 and a box or 0
+ *           1 + parent or 0, source, total + 2 * cut, org[3], dir[3], tmax (floats), object, t, added[3]
+ * (floats), candidates, and of each candidate object and t (float) paths:  of one accelerator: for each pixel
+ * its length, and for each ray of its tree: object, t (float), the counters of its tally, the cell (1 +
+ * number, length, object, cut; or 0), rows of the path, rows kept, and of each kept one: event, and t (float)
+ * if the form has one events: of one accelerator: form, index, 1 and a box or 0
  *
  * Candidates are the objects that a primary ray hits, from near to far, if an accelerator looks primary rays
  * up in cells. */
@@ -48,23 +47,23 @@ typedef struct RtRecordedPaths {
     uint32_t slot_count;
 } RtRecordedPaths;
 
-typedef struct RtRecording {
+typedef struct RtRecordedPixels {
     uint32_t stride, columns, rows; /* of the recorded pixels */
     uint64_t ray_count, cut_count;  /* rays; paths of which rows were left out */
     RtBytes rays;
     uint32_t count;
     RtRecordedPaths of[RT_MAX_EXPLORED];
-} RtRecording;
+} RtRecordedPixels;
 
 /* The pixel that is recorded in place `i` of a row or column. */
-static inline uint32_t rt_recorded_pixel(const RtRecording *recording, uint32_t i) {
+static inline uint32_t rt_recorded_pixel(const RtRecordedPixels *recording, uint32_t i) {
     return i * recording->stride + recording->stride / 2;
 }
 
-/* Records as many pixels as fit; compresses what it recorded. Free with rt_recording_clear. */
-RtStatus rt_recording_make(RtRecording *recording, RtAccel *const *accels, uint32_t count,
-                           const RtExploreOptions *options, RtError *error);
-void rt_recording_clear(RtRecording *recording);
+/* Records as many pixels as fit; compresses what it recorded. Free with rt_recorded_pixels_clear. */
+RtStatus rt_recorded_pixels_make(RtRecordedPixels *recording, RtAccel *const *accels, uint32_t count,
+                                 const RtExploreOptions *options, RtError *error);
+void rt_recorded_pixels_clear(RtRecordedPixels *recording);
 
 /* The forms of rows, in order: {"name", "of", "met", "hit", "round", "counts": [names of counters]}. NULL if
  * memory is short. */

@@ -146,3 +146,31 @@ RtShownBoxes rt_explore_boxes(const RtAccel *accel, RtBytes *out) {
     accel->ops->each_box(accel, (RtBoxViewer){put_box, &levels});
     return result;
 }
+
+/* ---- cells ---- */
+
+const RtAccel *rt_cell_layer(const RtAccel *accel, uint32_t kind) {
+    while (accel && !(accel->ops->find_cell && accel->ops->kinds >> kind & 1)) accel = accel->below;
+    return accel;
+}
+
+static void put_side(const RtAccel *layer, uint32_t light, int side, RtBytes *out) {
+    const int axis = side / 2;
+    for (int i = 0; i < RT_CELL_MAP * RT_CELL_MAP; i++) {
+        RtRay ray = {.kind = RT_RAY_SHADOW, .source = light};
+        RtCellView cell;
+        ray.dir.at[axis] = side % 2 ? -1 : 1; /* shadow rays point at the light */
+        ray.dir.at[(axis + 1) % 3] = 1 - 2 * ((float)(i % RT_CELL_MAP) + 0.5f) / RT_CELL_MAP;
+        ray.dir.at[(axis + 2) % 3] = 1 - 2 * ((float)(i / RT_CELL_MAP) + 0.5f) / RT_CELL_MAP;
+        const bool found = layer->ops->find_cell(layer, &ray, &cell);
+        rt_bytes_put_number(out, found ? (uint64_t)cell.number + 1 : 0);
+        rt_bytes_put_number(out, found ? cell.length : 0);
+    }
+}
+
+void rt_explore_cells(const RtAccel *accel, RtBytes *out) {
+    const RtAccel *layer = rt_cell_layer(accel, RT_RAY_SHADOW);
+    for (uint32_t light = 0; layer && light < accel->scene->light_count; light++) {
+        for (int side = 0; side < 6; side++) put_side(layer, light, side, out);
+    }
+}

@@ -106,6 +106,16 @@ function readObjects(bytes) {
   return { spheres: part(4), triangles: part(9), boxes: part(6) };
 }
 
+// Of each light the six sides of its cube, and the longest list.
+function readCells(bytes, side) {
+  const reader = new Reader(bytes), lights = [];
+  while (!reader.done) {
+    const sides = many(6, () => many(side * side, () => ({ number: reader.number() - 1, length: reader.number() })));
+    lights.push({ sides, longest: sides.flat().reduce((most, { length }) => Math.max(most, length), 0) });
+  }
+  return lights;
+}
+
 // Everything but the pixels, which `pixel(column, row)` reads when they are asked for.
 export async function load() {
   const data = JSON.parse(document.getElementById('data').textContent);
@@ -115,6 +125,7 @@ export async function load() {
   for (const [i, accelerator] of data.accelerators.entries()) {
     accelerator.events = readEvents(await unpack(`events-${i}`), accelerator.forms);
     accelerator.boxList = readBoxes(await unpack(`boxes-${i}`));
+    accelerator.cells = readCells(await unpack(`cells-${i}`), data.cell_map);
     accelerator.paths = await unpack(`paths-${i}`);
     accelerator.places = places(accelerator.paths);
   }

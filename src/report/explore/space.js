@@ -4,41 +4,12 @@
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { boxLines, boxFill, lineOf } from './boxes.js';
+import { cubeOf } from './cube.js';
+import { objectsOf } from './objects.js';
 import { element } from './text.js';
 import { span } from './walk.js';
 
 const vector = (v) => new THREE.Vector3(...v);
-
-function objectsOf(data, look) {
-  const group = new THREE.Group(), color = data.scene.materials.map((c) => new THREE.Color(...c));
-  const { spheres, triangles, boxes } = data.objects;
-  if (spheres.length) {
-    const fine = spheres.length > 20000 ? 6 : spheres.length > 2000 ? 10 : 24;
-    const mesh = new THREE.InstancedMesh(new THREE.SphereGeometry(1, fine, fine / 2 | 0), look, spheres.length), place = new THREE.Matrix4();
-    spheres.forEach(({ at: [x, y, z, radius], material }, i) => {
-      mesh.setMatrixAt(i, place.makeScale(radius, radius, radius).setPosition(x, y, z));
-      mesh.setColorAt(i, color[material]);
-    });
-    group.add(mesh);
-  }
-  if (triangles.length) {
-    const corners = new Float32Array(9 * triangles.length), colors = new Float32Array(9 * triangles.length);
-    triangles.forEach(({ at, material }, i) => {
-      corners.set(at, 9 * i);
-      for (let k = 0; k < 3; k++) color[material].toArray(colors, 9 * i + 3 * k);
-    });
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute('position', new THREE.BufferAttribute(corners, 3));
-    geometry.setAttribute('color', new THREE.BufferAttribute(colors, 3));
-    geometry.computeVertexNormals();
-    const faceted = look.clone();
-    faceted.vertexColors = true;
-    group.add(new THREE.Mesh(geometry, faceted));
-  }
-  if (boxes.length)
-    group.add(boxLines(boxes.map(({ at, material }) => ({ lo: at.slice(0, 3), hi: at.slice(3), color: color[material].toArray() }))));
-  return group;
-}
 
 function themeColors() {
   const style = getComputedStyle(document.documentElement), get = (name) => new THREE.Color(style.getPropertyValue(name).trim());
@@ -121,7 +92,10 @@ export function makeSpace(data, place) {
     views.push({ number, accelerator, group, steps, name });
   }
   const clear = (group) => {
-    group.traverse((part) => { part.geometry?.dispose(); });
+    group.traverse((part) => {
+      part.geometry?.dispose();
+      part.material?.map?.dispose();
+    });
     group.clear();
   };
   const onLayer = (group, number) => group.traverse((part) => part.layers.set(1 + number));
@@ -200,6 +174,8 @@ export function makeSpace(data, place) {
         steps.add(boxFill(row.box, color, row.form.round));
         if (inside) steps.add(lineOf(ray, inside[0], Math.min(inside[1], inside[0] + 4 * size), new THREE.Color(color), 1));
       }
+      const light = path.cell && ray.kind === 'shadow' ? accelerator.cells[ray.source] : null;
+      if (light) steps.add(cubeOf(data, light, path.cell.number, data.scene.lights[ray.source], size / 8));
       onLayer(steps, number);
       draw();
     },

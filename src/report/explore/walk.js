@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The path of one ray through one accelerator, step by step: counters, cell, the rows around the step.
+import { drawSides } from './cells.js';
 import { element, number, plural } from './text.js';
 
 const AROUND = 7; // rows shown before and after the current one
@@ -79,9 +80,10 @@ const heads = ['', 'event', 'of', 'enters at t', 'leaves at t', 'result'];
 // A panel in `place`; its show(ray, path, step, aloud) displays a step, and tells screen readers if `aloud`.
 export function makePanel(data, accelerator, place) {
   const counts = element('ul', { class: 'counts' }), cell = element('p', { class: 'meta' }), said = element('p', { class: 'said' });
+  const sides = element('canvas', { class: 'sides', role: 'img' });
   const caption = element('caption'), body = element('tbody');
   place.append(element('article', { 'aria-label': accelerator.spec }, element('h3', {}, accelerator.spec.split(/[:+]/)[0] + ' ',
-    element('small', { class: 'meta' }, accelerator.spec)), cell, counts, said,
+    element('small', { class: 'meta' }, accelerator.spec)), cell, sides, counts, said,
   element('div', { class: 'wide', tabindex: 0, role: 'region', 'aria-label': `Rows of ${accelerator.spec}` },
     element('table', { class: 'rows' }, caption, element('thead', {}, element('tr', {}, ...heads.map((head) => element('th', {}, head)))), body))));
   return (ray, path, step, aloud) => {
@@ -91,6 +93,14 @@ export function makePanel(data, accelerator, place) {
         element('small', {}, name.replaceAll('_', ' ')))));
     cell.textContent = cellText(data, ray, path.cell);
     cell.hidden = !path.cell;
+    const light = path.cell && ray.kind === 'shadow' ? accelerator.cells[ray.source] : null;
+    sides.hidden = !light;
+    if (light && sides.dataset.cell !== `${ray.source} ${path.cell.number}`) {
+      sides.dataset.cell = `${ray.source} ${path.cell.number}`;
+      sides.setAttribute('aria-label', `The six sides of the cube around light ${ray.source}; yellow has the longest lists, ` +
+        `${plural(light.longest, 'object')}; red is the cell that is looked up`);
+      drawSides(data, light, path.cell.number, sides);
+    }
     said.setAttribute('aria-live', aloud ? 'polite' : 'off');
     said.textContent = sentence(data, ray, path, Math.min(step, path.rows.length));
     const middle = Math.min(step, path.rows.length), from = Math.max(0, Math.min(middle - 1 - AROUND, path.rows.length - 2 * AROUND - 1));
