@@ -214,6 +214,23 @@ void rt_add_circle(cairo_t *cairo, RtPoint center, double radius) {
     cairo_close_path(cairo);
 }
 
+void rt_paint(cairo_t *cairo, RtStyle style) {
+    const double dashes[] = {3, 3};
+    rt_set_color(cairo, style.color, style.opacity);
+    if (style.opacity > 0) cairo_fill_preserve(cairo);
+    rt_set_color(cairo, style.color, 1);
+    cairo_set_line_width(cairo, style.width);
+    cairo_set_dash(cairo, dashes, style.dashed ? 2 : 0, 0);
+    cairo_set_line_cap(cairo, CAIRO_LINE_CAP_BUTT);
+    if (style.width > 0) cairo_stroke(cairo);
+    cairo_new_path(cairo);
+}
+
+void rt_draw_disc(cairo_t *cairo, RtPoint center, double radius, RtColor color) {
+    rt_add_circle(cairo, center, radius);
+    rt_paint(cairo, (RtStyle){color, 0, 1, false});
+}
+
 /* ---- text ---- */
 
 enum { MAX_TEXT = 512 };

@@ -69,6 +69,19 @@ void rt_add_line(cairo_t *cairo, RtPoint from, RtPoint to);
  * distance from the picture's middle. */
 void rt_add_circle(cairo_t *cairo, RtPoint center, double radius);
 
+/* How a path is drawn. */
+typedef struct RtStyle {
+    RtColor color;
+    double width;   /* of its outline, 0: none */
+    double opacity; /* of its filling, 0: none */
+    bool dashed;
+} RtStyle;
+
+/* Fills and outlines the path, and ends it. */
+void rt_paint(cairo_t *cairo, RtStyle style);
+
+void rt_draw_disc(cairo_t *cairo, RtPoint center, double radius, RtColor color);
+
 /* Clips the convex polygon to normal . p <= limit (Sutherland & Hodgman 1974), which may add one corner;
  * returns its number of corners. */
 uint32_t rt_polygon_cut(RtPoint *points, uint32_t count, RtPoint normal, double limit);

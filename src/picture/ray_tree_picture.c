@@ -7,12 +7,12 @@
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "picture/section.h"
-#include "picture/stroke.h"
 
 #include <stdio.h>
 
 enum { WIDTH = 1000, MARGIN = 12, TOP = 60, LEAST = 260, MOST = 560, ROW = 17, MOST_ROWS = 60 };
 enum { FONT_SIZE = 12, TITLE_SIZE = 16, KEYS = 40, INDENT = 16 };
+enum { BESIDE = 6 };      /* pixels between a hit and the plane, from which on it is said */
 enum { CONTEXT = 20000 }; /* objects up to which those that no ray hits are drawn, too */
 
 typedef struct Drawing {
@@ -29,14 +29,14 @@ static const RtColor dark = {{85, 85, 85}}, pale = {{205, 205, 205}};
 /* Colours that colour-blind readers can tell apart (Okabe & Ito 2008). */
 enum { PRIMARY, REFLECTION, TRANSMISSION, LIT, BLOCKED, NORMAL, STYLES };
 static const struct {
-    RtStroke stroke;
+    RtStyle style;
     const char *text;
-} styles[STYLES] = {{{{{0, 0, 0}}, 2, 0, 0}, "primary ray"},
-                    {{{{0, 114, 178}}, 2, 0, 0}, "reflection"},
-                    {{{{0, 158, 115}}, 2, 0, 0}, "transmission"},
-                    {{{{230, 159, 0}}, 1.5, 0, 3}, "shadow ray, lit"},
-                    {{{{213, 94, 0}}, 1.5, 0, 3}, "shadow ray, blocked"},
-                    {{{{120, 120, 120}}, 1, 0, 0}, "normal"}};
+} styles[STYLES] = {{{{{0, 0, 0}}, 2, 0, false}, "primary ray"},
+                    {{{{0, 114, 178}}, 2, 0, false}, "reflection"},
+                    {{{{0, 158, 115}}, 2, 0, false}, "transmission"},
+                    {{{{230, 159, 0}}, 1.5, 0, true}, "shadow ray, lit"},
+                    {{{{213, 94, 0}}, 1.5, 0, true}, "shadow ray, blocked"},
+                    {{{{120, 120, 120}}, 1, 0, false}, "normal"}};
 
 static int style_of(const RtTreeRay *ray) {
     if (ray->ray.kind == RT_RAY_SHADOW) return ray->hit.object == RT_NO_OBJECT ? LIT : BLOCKED;
@@ -167,11 +167,11 @@ static void draw_object(const Drawing *d, uint32_t id, bool met) {
     if (met) {
         RtColor color = color_of(scene->materials[scene->material_of[id]].color);
         cairo_path_t *outline = cairo_copy_path(d->cairo);
-        rt_paint_path(d->cairo, (RtStroke){color, 0, 0.3, 0});
+        rt_paint(d->cairo, (RtStyle){color, 0, 0.3, false});
         cairo_append_path(d->cairo, outline);
         cairo_path_destroy(outline);
     }
-    rt_paint_path(d->cairo, met ? (RtStroke){dark, 2, 0, 0} : (RtStroke){pale, 1, 0, 0});
+    rt_paint(d->cairo, met ? (RtStyle){dark, 2, 0, false} : (RtStyle){pale, 1, 0, false});
 }
 
 /* Those that rays hit over the others. */
@@ -236,31 +236,42 @@ static void draw_number(const Drawing *d, const RtTreeRay *ray, RtPoint from, Rt
     rt_draw_text(d->cairo, x, y, text);
 }
 
-static void draw_cross(const Drawing *d, RtPoint at, RtStroke stroke) {
+/* A line with a head at `to`, `head` long. */
+static void draw_arrow(const Drawing *d, RtPoint from, RtPoint to, RtStyle style, double head) {
+    double dx = to.x - from.x, dy = to.y - from.y, length = sqrt(dx * dx + dy * dy);
+    rt_add_line(d->cairo, from, to);
+    rt_paint(d->cairo, style);
+    if (!(length > 0)) return;
+    dx *= head / length, dy *= head / length;
+    const RtPoint corners[] = {
+        to, {to.x - dx - dy / 2, to.y - dy + dx / 2}, {to.x - dx + dy / 2, to.y - dy - dx / 2}};
+    rt_add_polygon(d->cairo, corners, 3);
+    rt_paint(d->cairo, (RtStyle){style.color, 0, 1, false});
+}
+
+static void draw_cross(const Drawing *d, RtPoint at, RtStyle style) {
     rt_add_line(d->cairo, (RtPoint){at.x - 5, at.y - 5}, (RtPoint){at.x + 5, at.y + 5});
     rt_add_line(d->cairo, (RtPoint){at.x - 5, at.y + 5}, (RtPoint){at.x + 5, at.y - 5});
-    stroke.width = 2, stroke.dash = 0;
-    rt_paint_path(d->cairo, stroke);
+    style.width = 2, style.dashed = false;
+    rt_paint(d->cairo, style);
 }
 
 static void draw_ray(const Drawing *d, const RtTreeRay *ray) {
     const bool shadow = ray->ray.kind == RT_RAY_SHADOW, ends = isfinite((double)ray->hit.t);
     RtVec3d origin = rt_widen(ray->ray.org), end = drawn_end(d, ray);
     RtPoint from = rt_section_point(&d->section, origin), to = rt_section_point(&d->section, end);
-    RtStroke stroke = styles[style_of(ray)].stroke;
+    RtStyle style = styles[style_of(ray)].style;
     bool whole;
     if (!cut_line(d, &from, &to, &whole)) return;
-    if (!shadow) {
-        stroke.width = 0.8 + 1.4 * sqrt((double)ray->factor);
-        if (ends && fmax(distance_to_plane(d, origin), distance_to_plane(d, end)) > 6) stroke.dash = 7;
-    }
-    rt_draw_arrow(d->cairo, from, to, stroke, shadow ? 8 : 11);
-    if (d->tree->count <= MOST_ROWS) draw_number(d, ray, from, to, stroke.color);
+    if (!shadow) style.width = 0.8 + 1.4 * sqrt((double)ray->factor);
+    draw_arrow(d, from, to, style, shadow ? 8 : 11);
+    if (d->tree->count <= MOST_ROWS) draw_number(d, ray, from, to, style.color);
     if (!whole || !ends) return;
     if (shadow)
-        draw_cross(d, to, stroke);
+        draw_cross(d, to, style);
     else
-        rt_draw_disc(d->cairo, to, 3.5, stroke.color);
+        rt_draw_disc(d->cairo, to, 4, style.color);
+    if (!shadow && distance_to_plane(d, end) > BESIDE) rt_draw_disc(d->cairo, to, 2.5, RT_WHITE);
 }
 
 static void draw_normal(const Drawing *d, const RtTreeRay *ray) {
@@ -268,7 +279,7 @@ static void draw_normal(const Drawing *d, const RtTreeRay *ray) {
     RtVec3d tip = rt_add_scaledd(ray->surface.point, ray->surface.normal, 40 / d->section.scale);
     RtPoint from = rt_section_point(&d->section, ray->surface.point), to = rt_section_point(&d->section, tip);
     bool whole;
-    if (cut_line(d, &from, &to, &whole)) rt_draw_arrow(d->cairo, from, to, styles[NORMAL].stroke, 6);
+    if (cut_line(d, &from, &to, &whole)) draw_arrow(d, from, to, styles[NORMAL].style, 6);
 }
 
 static RtStatus draw_section(const Drawing *d, RtError *error) {
@@ -281,7 +292,7 @@ static RtStatus draw_section(const Drawing *d, RtError *error) {
     for (uint32_t i = d->tree->count; i-- > 0;) draw_ray(d, &d->tree->rays[i]);
     cairo_restore(d->cairo);
     cairo_rectangle(d->cairo, MARGIN + 0.5, TOP + 0.5, d->width - 1, d->height - 1);
-    rt_paint_path(d->cairo, (RtStroke){pale, 1, 0, 0});
+    rt_paint(d->cairo, (RtStyle){pale, 1, 0, false});
     return status;
 }
 
@@ -290,12 +301,12 @@ static RtStatus draw_section(const Drawing *d, RtError *error) {
 static void draw_keys(const Drawing *d, double y) {
     double x = MARGIN;
     for (int i = 0; i < STYLES; i++) {
-        rt_draw_arrow(d->cairo, (RtPoint){x, y - 4}, (RtPoint){x + 28, y - 4}, styles[i].stroke, 8);
+        draw_arrow(d, (RtPoint){x, y - 4}, (RtPoint){x + 28, y - 4}, styles[i].style, 8);
         rt_set_color(d->cairo, RT_BLACK, 1);
         x += 34 + rt_draw_text(d->cairo, x + 34, y, styles[i].text) + 22;
     }
     rt_set_color(d->cairo, dark, 1);
-    rt_draw_text(d->cairo, x, y, "dashed: leaves the plane");
+    rt_draw_text(d->cairo, x, y, "open circle: beside the plane");
 }
 
 enum { HIT = 300, T = 610, FACTOR = 690, LIGHT = 770 }; /* columns */
@@ -304,7 +315,7 @@ static void draw_row(const Drawing *d, const RtTreeRay *ray, double y) {
     char text[RT_TREE_HIT_TEXT];
     const double x = MARGIN + INDENT * (ray->level - (ray->ray.kind != RT_RAY_SHADOW));
     snprintf(text, sizeof text, "%u", ray->number);
-    rt_set_color(d->cairo, styles[style_of(ray)].stroke.color, 1);
+    rt_set_color(d->cairo, styles[style_of(ray)].style.color, 1);
     double wide = rt_draw_text(d->cairo, x, y, text);
     rt_tree_ray_name(ray, text);
     rt_draw_text_within(d->cairo, x + wide + 6, y, HIT - x - wide - 12, text);

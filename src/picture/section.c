@@ -41,7 +41,7 @@ static void add_crossings(const RtSection *section, cairo_t *cairo, const RtGeom
         if (!rt_object_hit(g, id, &prepared, &t, NULL)) return;
         RtNormals normals = rt_object_normals(g, id, &ray, t, crossings);
         add_tangent(section, cairo, rt_ray_point(&ray, t), normals.geometric, along);
-        ray.tmin = nextafterf(t * (1 + 1e-5f), INFINITY);
+        ray.tmin = nextafterf(t, INFINITY);
     }
 }
 

@@ -24,9 +24,9 @@
 /* A ray of a sample, after it was traced. */
 typedef struct RtFrameRay {
     const RtRay *ray;
-    uint32_t parent; /* number of the ray from whose hit it starts; RT_NO_RAY for the primary ray */
-    float factor;    /* of its light in the sample's colour: the product of kr and kt on the way */
-    RtHit hit;       /* RT_MISS for shadow rays */
+    uint32_t parent;          /* number of the ray from whose hit it starts; RT_NO_RAY for the primary ray */
+    float factor;             /* of its light in the sample's colour: the product of kr and kt on the way */
+    RtHit hit;                /* RT_MISS for shadow rays */
     const RtSurface *surface; /* what it hit; NULL for a miss, and for shadow rays */
     bool occluded;            /* of a shadow ray */
     RtVec3 light; /* what it adds, without the factor: the surface's ambient light, the background, or that of

@@ -121,19 +121,87 @@ RT_TEST(many_object_tests_that_miss_are_one_row_unless_each_is_asked_for) {
     unlink(OUT ".txt");
 }
 
-RT_TEST(the_path_is_drawn_in_the_format_that_the_name_says) {
+/* ---- ray trees ---- */
+
+#define LECTURE "'" RT_SOURCE_DIR "/scenes/lecture.yaml' --size 80x60"
+
+/* The rays of a tree below and with `ray`; adds what each adds itself to sum[3]. */
+static json_int_t walk(const json_t *ray, double sum[3]) {
+    json_int_t count = 1;
+    size_t i;
+    json_t *child;
+    json_array_foreach(json_object_get(ray, "rays"), i, child) count += walk(child, sum);
+    const char *kind = json_string_value(json_object_get(ray, "kind"));
+    const bool hits = strcmp(kind, "shadow") != 0 && json_is_integer(json_object_get(ray, "object"));
+    const json_t *own = json_object_get(ray, "light");
+    if (hits) own = json_object_get(json_object_get(ray, "terms"), "ambient");
+    for (size_t a = 0; a < 3; a++) sum[a] += json_number_value(json_array_get(own, a));
+    return count;
+}
+
+RT_TEST(a_tree_grows_by_one_level_with_depth_and_adds_up_to_the_color) {
+    json_int_t before = 0;
+    for (int depth = 1; depth <= 4; depth++) {
+        char arguments[256];
+        double sum[3] = {0};
+        snprintf(arguments, sizeof arguments, LECTURE " --pixel 42,42 --depth %d",
+                 depth); /* the glass ball */
+        json_t *tree = path_of(arguments);
+        json_int_t count = walk(json_object_get(tree, "tree"), sum);
+        assert_int_equal(json_integer_value(json_object_get(tree, "levels")), depth);
+        assert_true(count > before);
+        before = count;
+        for (size_t a = 0; a < 3; a++) {
+            double color = json_number_value(json_array_get(json_object_get(tree, "color"), a));
+            assert_true(sum[a] > 0 && sum[a] - color < 1e-5 && color - sum[a] < 1e-5);
+        }
+        json_decref(tree);
+    }
+    unlink(OUT ".txt");
+}
+
+RT_TEST(a_tree_is_printed_with_each_ray_the_five_terms_and_sums) {
+    assert_int_equal(trace(LECTURE " --pixel 42,42 --depth 2 --accel grid"), 0);
+    static const char *const parts[] = {"the ray tree, 2 levels, of pixel 42,42 of 80 x 60",
+                                        "  primary  ",
+                                        "  shadow to light 0  ",
+                                        "  reflection  ",
+                                        "  transmission  ",
+                                        "sphere, glass",
+                                        "from inside",
+                                        "nothing: lit",
+                                        "ambient                diffuse",
+                                        "in 2 levels, ",
+                                        "would reflect or transmit, but the depth is reached"};
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+        if (!says(OUT ".txt", parts[i])) fail_msg("the tree does not say '%s'", parts[i]);
+    }
+    assert_int_equal(trace(LECTURE " --pixel 42,42 --depth 1"), 0);
+    assert_true(says(OUT ".txt", "the ray tree, 1 level, of"));
+    assert_true(says(OUT ".txt", "in 1 level, "));
+    assert_int_equal(trace(LECTURE " --pixel 42,42 --depth 5 --rows 3"), 0);
+    assert_true(says(OUT ".txt", "more rays\n       --rows 0 prints each\n"));
+    unlink(OUT ".txt");
+}
+
+static void assert_drawn_in_every_format(const char *what) {
     static const char *const begins[][2] = {{".svg", "<svg"}, {".pdf", "%PDF"}, {".png", "PNG"}};
     for (int i = 0; i < 3; i++) {
         char arguments[512], file[256];
         snprintf(file, sizeof file, OUT "%s", begins[i][0]);
-        snprintf(arguments, sizeof arguments, "balls:size=2 --size 64x64 --pixel 32,30 --accel kd --svg %s",
-                 file);
+        snprintf(arguments, sizeof arguments,
+                 "balls:size=2 --size 64x64 --pixel 32,30 --accel kd %s --svg %s", what, file);
         assert_int_equal(trace(arguments), 0);
         assert_true(says(OUT ".txt", "wrote "));
         assert_true(says(file, begins[i][1]));
         unlink(file);
     }
     unlink(OUT ".txt");
+}
+
+RT_TEST(a_path_or_a_tree_is_drawn_in_the_format_that_the_name_says) {
+    assert_drawn_in_every_format("");
+    assert_drawn_in_every_format("--depth 3");
 }
 
 RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
@@ -159,6 +227,10 @@ RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
         {"balls --pixel 256,256 --rays shadow --light 3", "there is no light 3"},
         {"tetra --pixel 0,0 --rays shadow", "hits nothing"},
         {"tetra --pixel 256,256 --rays transmission", "transmission"},
+        {"balls --pixel 0,0 --depth 0", "1..64"},
+        {"balls --pixel 0,0 --depth 65", "1..64"},
+        {"balls --pixel 0,0 --depth 2 --rays shadow", "leave out --rays"},
+        {"balls --pixel 0,0 --depth 2 --light 1", "leave out --rays"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         if (trace(cases[i].arguments) != 2) fail_msg("'%s' did not exit with 2", cases[i].arguments);
