@@ -56,9 +56,9 @@ static RtStatus build(Built *built, const Options *o, const RtScene *scene, RtEr
 
 static RtStatus explore(const Options *o, Built *built, const RtScene *scene, RtError *error) {
     const RtExploreOptions how = {.depth = o->depth, .bytes = o->megabytes * 1000000};
-    const char *specs[RT_MAX_EXPLORED];
+    RtExploredSpec specs[RT_MAX_EXPLORED];
     uint32_t stride;
-    for (uint32_t i = 0; i < o->accel_count; i++) specs[i] = built->texts[i];
+    for (uint32_t i = 0; i < o->accel_count; i++) specs[i] = (RtExploredSpec){o->accels[i], built->texts[i]};
     RT_TRY(build(built, o, scene, error));
     RT_TRY(rt_explore_write(o->page, scene->name[0] ? scene->name : o->scene, built->accels, specs,
                             o->accel_count, &how, &stride, error));

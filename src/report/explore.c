@@ -74,11 +74,13 @@ static json_t *scene_json(const RtScene *scene, const char *name, uint32_t every
                      "shapes", shapes_json());
 }
 
-static json_t *accelerator_json(const RtRecordedPaths *paths, const char *spec, const RtShownBoxes *boxes) {
+static json_t *accelerator_json(const RtRecordedPaths *paths, const RtExploredSpec *spec,
+                                const RtShownBoxes *boxes) {
     const bool all = boxes->level == UINT32_MAX;
-    return json_pack("{s:s, s:o, s:s?, s:I, s:I, s:o, s:o}", "spec", spec, "forms", rt_recorded_forms(paths),
-                     "boxes_of", boxes->layer ? boxes->layer->ops->name : NULL, "boxes_shown",
-                     (json_int_t)boxes->shown, "boxes", (json_int_t)boxes->all, "thinned_level",
+    return json_pack("{s:s, s:s, s:o, s:s?, s:I, s:I, s:o, s:o}", "spec", spec->text, "parameters",
+                     spec->parameters, "forms", rt_recorded_forms(paths), "boxes_of",
+                     boxes->layer ? boxes->layer->ops->name : NULL, "boxes_shown", (json_int_t)boxes->shown,
+                     "boxes", (json_int_t)boxes->all, "thinned_level",
                      all ? json_null() : json_integer(boxes->level), "thinned_every",
                      all || boxes->every == UINT32_MAX ? json_null() : json_integer(boxes->every));
 }
@@ -116,9 +118,9 @@ static RtStatus embed_json(json_t *json, FILE *out, RtError *error) {
 /* ---- the parts ---- */
 
 /* Compresses and embeds the bytes, and frees them. */
-static RtStatus embed(RtBytes *bytes, const char *id, FILE *out, RtError *error) {
+static RtStatus embed(RtBytes *bytes, const char *name, FILE *out, RtError *error) {
     RtStatus status = rt_bytes_compress(bytes, error);
-    if (status == RT_OK) rt_bytes_embed(bytes, id, out);
+    if (status == RT_OK) rt_bytes_embed(bytes, name, out);
     rt_bytes_clear(bytes);
     return status;
 }
@@ -146,28 +148,30 @@ static RtStatus embed_shapes(const RtGeometry *g, FILE *out, RtError *error) {
 
 static RtStatus embed_accelerator(const RtRecordedPaths *paths, uint32_t number, RtShownBoxes *shown,
                                   FILE *out, RtError *error) {
-    char id[32];
+    char name[32];
     RtBytes events = {0}, boxes = {0}, cells = {0};
-    snprintf(id, sizeof id, "paths-%u", number);
-    rt_bytes_embed(&paths->paths, id, out);
+    snprintf(name, sizeof name, "paths-%u", number);
+    rt_bytes_embed(&paths->paths, name, out);
     rt_recorded_events(paths, &events);
-    snprintf(id, sizeof id, "events-%u", number);
-    RT_TRY(embed(&events, id, out, error));
+    snprintf(name, sizeof name, "events-%u", number);
+    RT_TRY(embed(&events, name, out, error));
     rt_explore_cells(paths->accel, &cells);
-    snprintf(id, sizeof id, "cells-%u", number);
-    RT_TRY(embed(&cells, id, out, error));
+    snprintf(name, sizeof name, "cells-%u", number);
+    RT_TRY(embed(&cells, name, out, error));
     *shown = rt_explore_boxes(paths->accel, &boxes);
-    snprintf(id, sizeof id, "boxes-%u", number);
-    return embed(&boxes, id, out, error);
+    snprintf(name, sizeof name, "boxes-%u", number);
+    return embed(&boxes, name, out, error);
 }
 
 static RtStatus write_page(FILE *out, const char *name, const RtRecordedPixels *recording,
-                           const char *const *specs, uint32_t depth, RtError *error) {
+                           const RtExploredSpec *specs, uint32_t depth, RtError *error) {
     const RtScene *scene = recording->of[0].accel->scene;
     json_t *accelerators = json_array();
     RtBytes objects = {0};
     RtStatus status = RT_OK;
-    rt_page_begin(out, name, false);
+    char title[RT_MAX_SCENE_NAME + 16];
+    snprintf(title, sizeof title, "Explorer: %s", name);
+    rt_page_begin(out, title, false);
     fputs("<style>\n", out);
     rt_page_lines(out, explore_css);
     fputs("</style>\n", out);
@@ -176,7 +180,7 @@ static RtStatus write_page(FILE *out, const char *name, const RtRecordedPixels *
         RtShownBoxes shown;
         status = embed_accelerator(&recording->of[i], i, &shown, out, error);
         if (status == RT_OK)
-            json_array_append_new(accelerators, accelerator_json(&recording->of[i], specs[i], &shown));
+            json_array_append_new(accelerators, accelerator_json(&recording->of[i], &specs[i], &shown));
     }
     uint32_t every = rt_explore_objects(scene, &objects);
     if (status == RT_OK)
@@ -196,7 +200,7 @@ static RtStatus write_page(FILE *out, const char *name, const RtRecordedPixels *
 }
 
 RtStatus rt_explore_write(const char *path, const char *name, RtAccel *const *accels,
-                          const char *const *specs, uint32_t count, const RtExploreOptions *options,
+                          const RtExploredSpec *specs, uint32_t count, const RtExploreOptions *options,
                           uint32_t *stride, RtError *error) {
     RtRecordedPixels recording;
     RtOutput output;

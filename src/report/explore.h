@@ -15,14 +15,19 @@ typedef struct RtExploreOptions {
     uint32_t bytes; /* of the recorded paths on the page, about: pixels are left out until they fit */
 } RtExploreOptions;
 
+/* An accelerator as it was given, and with all its parameters. */
+typedef struct RtExploredSpec {
+    const char *text, *parameters;
+} RtExploredSpec;
+
 /* RT_OK, or RT_NOT_AVAILABLE and why: the program was built without the script. */
 RtStatus rt_explore_available(RtError *error);
 
 /* Writes the page to `path`. accels[0..count) are built over one scene, which has one sample a pixel;
- * specs[0..count) are their names, and `name` that of the scene. *stride becomes k, where each kth pixel of
+ * specs[0..count) name them, and `name` the scene. *stride becomes k, where each kth pixel of
  * each kth row was recorded. */
 RtStatus rt_explore_write(const char *path, const char *name, RtAccel *const *accels,
-                          const char *const *specs, uint32_t count, const RtExploreOptions *options,
+                          const RtExploredSpec *specs, uint32_t count, const RtExploreOptions *options,
                           uint32_t *stride, RtError *error);
 
 #endif

@@ -68,8 +68,8 @@ RtStatus rt_bytes_compress(RtBytes *bytes, RtError *error) {
     return RT_OK;
 }
 
-void rt_bytes_embed(const RtBytes *bytes, const char *id, FILE *out) {
-    fprintf(out, "<script type=\"text/plain\" id=\"%s\">", id);
+void rt_bytes_embed(const RtBytes *bytes, const char *name, FILE *out) {
+    fprintf(out, "<script type=\"text/plain\" id=\"part-%s\">", name);
     rt_page_data_url(out, "application/zlib", bytes->data, bytes->count);
     fputs("</script>\n", out);
 }

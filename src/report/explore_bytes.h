@@ -33,7 +33,7 @@ void rt_bytes_end(RtBytes *bytes, uint32_t place);
 /* Replaces the contents by the same compressed (zlib's format); *bytes stays as it is on failure. */
 RtStatus rt_bytes_compress(RtBytes *bytes, RtError *error);
 
-/* Writes compressed contents as a <script> element with this id, a data URL. */
-void rt_bytes_embed(const RtBytes *bytes, const char *id, FILE *out);
+/* Writes compressed contents as a <script> element of id "part-NAME", a data URL. */
+void rt_bytes_embed(const RtBytes *bytes, const char *name, FILE *out);
 
 #endif

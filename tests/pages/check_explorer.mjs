@@ -38,7 +38,7 @@ const shown = () => browser.run(`const text = (element) => element.textContent;
     panels: [...document.querySelectorAll('#walks article')].map((panel) => ({ name: panel.getAttribute('aria-label'),
       counts: Object.fromEntries([...panel.querySelectorAll('[data-counter]')].map((item) =>
         [item.dataset.counter, [Number(text(item.querySelector('b'))), Number(item.textContent.match(/ of ([0-9]+)/)[1])]])),
-      cell: text(panel.querySelector('p.meta')), said: text(panel.querySelector('.said')),
+      cell: text(panel.querySelector('.cell')), said: text(panel.querySelector('.said')),
       live: panel.querySelector('.said').getAttribute('aria-live'),
       current: panel.querySelector('tr[aria-current]')?.textContent ?? '' })) };`);
 
@@ -116,6 +116,7 @@ async function checkPointerAndKeys() {
 }
 
 async function checkStructures() {
+  await browser.run(`const boxes = document.querySelector('#boxes'); boxes.value = 'all'; boxes.dispatchEvent(new Event('input', { bubbles: true }));`);
   const legend = await browser.run("return document.querySelector('#legend').textContent;"), [, bvh, grid] = legend.match(/bvh (\d+), grid (\d+)/) ?? [];
   holds(bvh > 100 && grid > 10, `the boxes of both structures are drawn: ${legend}`);
   const cut = await browser.run(`const set = (id, value) => { const at = document.getElementById(id); at.value = value;

@@ -4,8 +4,8 @@
 export const UNNAMED = 'unknown';
 
 // The bytes of one part of the page: a compressed data URL.
-async function unpack(id) {
-  const text = document.getElementById(id).textContent;
+async function unpack(name) {
+  const text = document.getElementById(`part-${name}`).textContent;
   const bytes = Uint8Array.from(atob(text.slice(text.indexOf(',') + 1)), (char) => char.charCodeAt(0));
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
   return new Uint8Array(await new Response(stream).arrayBuffer());

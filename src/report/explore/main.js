@@ -10,10 +10,14 @@ import { makePanel } from './walk.js';
 const data = await load();
 const state = { tree: [], ray: 0, step: 0, playing: 0, shown: data.accelerators.map((_, i) => i).slice(0, 2) };
 const depths = data.accelerators.map(({ boxList }) => boxList.reduce((most, { depth }) => Math.max(most, depth), 0));
+const dark = matchMedia('(prefers-color-scheme: dark)');
 const deepest = Math.max(0, ...depths);
 for (const accelerator of data.accelerators) {
-  // Yellow for the first level, as in the pictures of `render --structure`.
-  accelerator.colorOf = (depth) => data.scale[Math.round((data.scale.length - 1) * (1 - depth / (deepest || 1)))].map((c) => c / 255);
+  // Yellow for the first level, as in the pictures of `render --structure`; lighter on a dark page.
+  accelerator.colorOf = (depth) => data.scale[Math.round((data.scale.length - 1) * (1 - depth / (deepest || 1)))]
+    .map((c) => dark.matches ? 0.4 + 0.6 * c / 255 : c / 255);
+  // Some structures do not tell the lengths of their lists.
+  accelerator.leastList = accelerator.boxList.some(({ list }) => list > 0) ? 1 : 0;
   accelerator.stepColor = [0.25, 0.55, 0.95];
 }
 const space = makeSpace(data, byId('space'));
@@ -27,8 +31,7 @@ function about() {
   if (data.cut) notes.push(`${plural(data.cut, 'path')} had more than ${data.most_rows} rows, of which the first are here.`);
   if (data.scene.shown_every > 1) notes.push(`The 3-D view shows one object in ${data.scene.shown_every}.`);
   for (const { spec, boxes, boxes_shown: shown, boxes_of: of, thinned_level: level, thinned_every: every_ } of data.accelerators) {
-    const name = spec.split(/[:+]/)[0];
-    if (!of) notes.push(`${name} has no boxes to draw.`);
+    if (!of) notes.push(`${spec} has no boxes to draw.`);
     else if (shown < boxes) notes.push(`The 3-D view shows ${shown} of ${boxes} boxes of ${of}: of level ${level} ${every_ ? `one in ${every_}` : 'none'}, and none below.`);
   }
   byId('about').textContent = notes.join(' ');
@@ -128,7 +131,7 @@ function showBoxes() {
   byId('slice').setAttribute('aria-valuetext', number(position));
   space.slice(axis, position);
   const drawn = data.accelerators.map((_, i) => space.boxes(i, choice));
-  byId('legend').textContent = `Boxes drawn: ${data.accelerators.map(({ spec, boxes_of: of }, i) => `${of ?? spec.split(/[:+]/)[0]} ${drawn[i]}`).join(', ')}` +
+  byId('legend').textContent = `Boxes drawn: ${data.accelerators.map(({ spec, boxes_of: of }, i) => `${of ?? spec} ${drawn[i]}`).join(', ')}` +
     (axis < 0 ? '.' : `, cut by ${'xyz'[axis]} = ${number(position)}.`);
 }
 
@@ -144,9 +147,10 @@ function connectSpace() {
   byId('shown').addEventListener('submit', (event) => event.preventDefault());
   byId('shown').addEventListener('input', (event) => event.target.id === 'objects' ? space.objects(event.target.value) : showBoxes());
   byId('from-eye').addEventListener('click', space.eye);
+  byId('aside').addEventListener('click', space.aside);
   byId('whole').addEventListener('click', space.whole);
   byId('closer').addEventListener('click', () => ray() && space.closer(ray()));
-  if (matchMedia('(max-width: 600px)').matches) byId('boxes').value = 'leaves';
+  dark.addEventListener('change', showBoxes);
   space.objects('clear');
   showBoxes();
 }

@@ -33,6 +33,6 @@ export function objectsOf(data, look) {
   if (spheres.length) group.add(spheresOf(spheres, color, look));
   if (triangles.length) group.add(trianglesOf(triangles, color, look));
   if (boxes.length)
-    group.add(boxLines(boxes.map(({ at, material }) => ({ lo: at.slice(0, 3), hi: at.slice(3), color: color[material].toArray() }))));
+    group.add(boxLines(boxes.map(({ at, material }) => ({ lo: at.slice(0, 3), hi: at.slice(3), color: color[material].clone().convertLinearToSRGB().toArray() }))));
   return group;
 }

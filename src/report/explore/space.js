@@ -86,7 +86,7 @@ export function makeSpace(data, place) {
   };
 
   for (const [number, accelerator] of data.accelerators.entries()) {
-    const group = new THREE.Group(), steps = new THREE.Group(), name = element('span', { class: 'name', title: accelerator.spec }, accelerator.spec);
+    const group = new THREE.Group(), steps = new THREE.Group(), name = element('span', { class: 'name', title: accelerator.parameters }, accelerator.spec);
     scene.add(group, steps);
     place.append(name);
     views.push({ number, accelerator, group, steps, name });
@@ -103,6 +103,8 @@ export function makeSpace(data, place) {
     draw,
     whole: () => aim(center.clone().add(from.clone().sub(at).normalize().multiplyScalar(1.1 * size)), center),
     eye: () => aim(from, at),
+    // Beside the eye, where primary rays are not seen end-on.
+    aside: () => aim(at.clone().add(from.clone().sub(at).applyAxisAngle(camera.up, -0.6).multiplyScalar(1.2)), at),
     // From aside, so that the ray is seen in its length.
     closer(ray) {
       const end = vector(ray.org).addScaledVector(vector(ray.dir), Number.isFinite(ray.t) ? ray.t : 0), to = vector(ray.dir).normalize();
@@ -125,8 +127,8 @@ export function makeSpace(data, place) {
     boxes(number, choice) {
       const { group, accelerator } = views[number];
       clear(group);
-      const list = choice.boxes === 'none' || choice.boxes === 'path' ? [] : accelerator.boxList.filter((box) =>
-        box.depth >= choice.levels[0] && box.depth <= choice.levels[1] && (choice.boxes !== 'leaves' || box.list >= 0) &&
+      const list = choice.boxes === 'path' ? [] : accelerator.boxList.filter((box) =>
+        box.depth >= choice.levels[0] && box.depth <= choice.levels[1] && box.list >= (choice.boxes === 'all' ? -1 : choice.boxes === 'leaves' ? 0 : accelerator.leastList) &&
         (choice.axis < 0 || (box.lo[choice.axis] <= choice.position && box.hi[choice.axis] >= choice.position)));
       if (list.length) group.add(boxLines(list.map((box) => ({ ...box, color: accelerator.colorOf(box.depth) })), list.length > 3000 ? 0.35 : 0.8));
       onLayer(group, number);
@@ -156,9 +158,8 @@ export function makeSpace(data, place) {
         const line = lineOf(ray, 0, far, colors[ray.kind] ?? colors.ink, i === chosen ? 1 : 0.55);
         rays.add(line);
         if (i === chosen && Number.isFinite(ray.t) && ray.kind !== 'shadow') {
-          const mark = new THREE.Mesh(new THREE.SphereGeometry(size / 300), new THREE.MeshBasicMaterial({ color: colors[ray.kind] }));
-          mark.position.copy(vector(ray.org).addScaledVector(vector(ray.dir), ray.t));
-          rays.add(mark);
+          const point = new THREE.BufferGeometry().setFromPoints([vector(ray.org).addScaledVector(vector(ray.dir), ray.t)]);
+          rays.add(new THREE.Points(point, new THREE.PointsMaterial({ color: colors[ray.kind], size: 9, sizeAttenuation: false, depthTest: false })));
         }
       });
       draw();
@@ -196,6 +197,6 @@ export function makeSpace(data, place) {
     }
     aim(controls.target.clone().add(offset), controls.target);
   });
-  space.eye();
+  space.aside();
   return space;
 }

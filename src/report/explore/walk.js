@@ -79,11 +79,11 @@ const heads = ['', 'event', 'of', 'enters at t', 'leaves at t', 'result'];
 
 // A panel in `place`; its show(ray, path, step, aloud) displays a step, and tells screen readers if `aloud`.
 export function makePanel(data, accelerator, place) {
-  const counts = element('ul', { class: 'counts' }), cell = element('p', { class: 'meta' }), said = element('p', { class: 'said' });
+  const counts = element('ul', { class: 'counts' }), cell = element('p', { class: 'meta cell' }), said = element('p', { class: 'said' });
   const sides = element('canvas', { class: 'sides', role: 'img' });
   const caption = element('caption'), body = element('tbody');
-  place.append(element('article', { 'aria-label': accelerator.spec }, element('h3', {}, accelerator.spec.split(/[:+]/)[0] + ' ',
-    element('small', { class: 'meta' }, accelerator.spec)), cell, sides, counts, said,
+  place.append(element('article', { 'aria-label': accelerator.spec }, element('h3', {}, accelerator.spec),
+    element('details', {}, element('summary', {}, 'all parameters'), element('p', { class: 'meta' }, accelerator.parameters)), cell, sides, counts, said,
   element('div', { class: 'wide', tabindex: 0, role: 'region', 'aria-label': `Rows of ${accelerator.spec}` },
     element('table', { class: 'rows' }, caption, element('thead', {}, element('tr', {}, ...heads.map((head) => element('th', {}, head)))), body))));
   return (ray, path, step, aloud) => {
