@@ -14,9 +14,9 @@ export function sidePixels(data, { sides, longest }, side, marked) {
   return pixels;
 }
 
-// Draws the sides in two rows of three, with their names.
+// Draws the sides in two rows of three, with their names, and a ring around the marked cell.
 export function drawSides(data, light, marked, canvas) {
-  const unit = data.cell_map, scale = 2, gap = 14, context = canvas.getContext('2d');
+  const unit = data.cell_map, scale = 3, gap = 16, context = canvas.getContext('2d');
   canvas.width = 3 * (unit * scale + 4);
   canvas.height = 2 * (unit * scale + gap);
   context.font = '12px system-ui, sans-serif';
@@ -27,5 +27,15 @@ export function drawSides(data, light, marked, canvas) {
     part.getContext('2d').putImageData(new ImageData(sidePixels(data, light, side, marked), unit, unit), 0, 0);
     context.fillText(name, x, y + 11);
     context.drawImage(part, x, y + gap, unit * scale, unit * scale);
+    const places = light.sides[side].flatMap(({ number }, i) => number === marked ? [[i % unit, Math.floor(i / unit)]] : []);
+    if (places.length === 0) return;
+    const [column, row] = [0, 1].map((k) => places.reduce((sum, place) => sum + place[k] + 0.5, 0) / places.length);
+    for (const [color, width] of [['#000', 4], ['#fff', 2]]) {
+      context.strokeStyle = color;
+      context.lineWidth = width;
+      context.beginPath();
+      context.arc(x + column * scale, y + gap + row * scale, 9, 0, 2 * Math.PI);
+      context.stroke();
+    }
   });
 }

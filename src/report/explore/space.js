@@ -176,7 +176,7 @@ export function makeSpace(data, place) {
         if (inside) steps.add(lineOf(ray, inside[0], Math.min(inside[1], inside[0] + 4 * size), new THREE.Color(color), 1));
       }
       const light = path.cell && ray.kind === 'shadow' ? accelerator.cells[ray.source] : null;
-      if (light) steps.add(cubeOf(data, light, path.cell.number, data.scene.lights[ray.source], size / 8));
+      if (light) steps.add(cubeOf(data, light, path.cell.number, data.scene.lights[ray.source], Math.min(size / 8, 0.4 * at.distanceTo(vector(data.scene.lights[ray.source])))));
       onLayer(steps, number);
       draw();
     },

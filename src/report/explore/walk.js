@@ -48,7 +48,7 @@ function cellText(data, ray, cell) {
   if (!cell) return '';
   if (ray.kind !== 'shadow') return `It is looked up in sample ${cell.number}, which holds ${data.nameOf(cell.object)}.`;
   return `It is looked up in cell ${cell.number} of the cube around light ${ray.source}, on the side ${faceOf(ray.dir)}: ` +
-    `a list of ${plural(cell.length, 'object')}${cell.cut ? ', cut off, so a ray that finds nothing is passed on' : ''}.`;
+    `a list of ${plural(cell.length, 'object')}${cell.cut ? ', truncated, so a ray that reaches its end is passed on' : ''}.`;
 }
 
 function answer(data, ray, path) {
