@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # Writes OUT, a header with the lines of SOURCE/main.js and all that it imports as `explore_js`, ended by NULL. NPM fetches
 # what SOURCE/package-lock.json pins into WORK, once. Without NPM, or if it fails, there are no lines, and a warning says why.
-# Does nothing if nothing changed, so that every build may run it.
+# Does nothing if nothing has changed, because every build runs it.
 file(GLOB modules ${SOURCE}/*.js)
-set(print "")
+set(print "${NPM}\n")
 foreach(file ${modules} ${SOURCE}/package-lock.json ${CMAKE_CURRENT_LIST_FILE})
   file(SHA256 ${file} hash)
   string(APPEND print "${hash}\n")
