@@ -330,7 +330,7 @@ const RtSyntax rt_trace_syntax = {
         "  raytally trace balls --pixel 256,256\n"
         "  raytally trace balls --pixel 256,256 --accel grid:density=1 --svg path.svg\n"
         "  raytally trace balls --pixel 256,400 --accel light:cells=40+octree --rays shadow --light 1\n"
-        "  raytally trace scenes/lecture.yaml --pixel 320,330 --depth 3 --svg tree.svg\n"
+        "  raytally trace scenes/lecture.yaml --pixel 279,366 --depth 4 --svg tree.svg\n"
         "embree shows no steps, because it counts none; with mode=user it shows object tests. A plugin shows "
         "its "
         "steps and extent tests by raytally_show (raytally/accel.h); without that they have no boxes."};

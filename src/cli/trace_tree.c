@@ -24,19 +24,19 @@ static void print_ray(const RtTreeRay *ray, const RtTally *cost, const RtScene *
     const int indent = (int)indent_of(ray);
     rt_tree_ray_name(ray, name);
     rt_tree_ray_hit(ray, scene, hit);
-    printf("%5u  %*s%-*s", ray->number, indent, "", 34 - indent, name);
+    printf("%5u  %*s%-*s", ray->number, indent, "", indent < 32 ? 32 - indent : 0, name);
     if (isfinite((double)ray->hit.t))
         printf("  %9.6g", (double)ray->hit.t);
     else
         printf("  %9s", "-");
-    printf("  %-40s  %7.4g", hit, (double)ray->factor);
+    printf("  %-36s  %7.4g", hit, (double)ray->factor);
     print_color(ray->light);
     printf("  %5llu  %5llu  %5llu\n", (unsigned long long)cost->object_tests,
            (unsigned long long)cost->extent_tests, (unsigned long long)cost->steps);
 }
 
 static void print_rays(const RtRayTree *tree, const RtTally *costs, const RtScene *scene, uint32_t rows) {
-    printf("\n%5s  %-34s  %9s  %-40s  %7s  %6s %6s %6s  %5s  %5s  %5s\n", "", "ray", "t", "hits", "factor",
+    printf("\n%5s  %-32s  %9s  %-36s  %7s  %6s %6s %6s  %5s  %5s  %5s\n", "", "ray", "t", "hits", "factor",
            "red", "green", "blue", "tests", "ext.", "steps");
     for (uint32_t i = 0, printed = 0; printed < rows; i = rt_ray_tree_next(tree, i), printed++)
         print_ray(&tree->rays[i], &costs[i], scene);
@@ -44,7 +44,8 @@ static void print_rays(const RtRayTree *tree, const RtTally *costs, const RtScen
 
 static void print_terms(const RtRayTree *tree, uint32_t rows) {
     printf("\n%5s", "");
-    for (int t = 0; t < RT_TERM_COUNT; t++) printf("  %-20s", rt_term_name((RtTerm)t));
+    for (int t = 0; t < RT_TERM_COUNT; t++)
+        printf("  %-*s", t + 1 < RT_TERM_COUNT ? 20 : 0, rt_term_name((RtTerm)t));
     putchar('\n');
     for (uint32_t i = 0, printed = 0; printed < rows; i = rt_ray_tree_next(tree, i), printed++) {
         const RtTreeRay *ray = &tree->rays[i];

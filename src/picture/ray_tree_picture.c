@@ -12,8 +12,9 @@
 
 enum { WIDTH = 1000, MARGIN = 12, TOP = 60, LEAST = 260, MOST = 560, ROW = 17, MOST_ROWS = 60 };
 enum { FONT_SIZE = 12, TITLE_SIZE = 16, KEYS = 40, INDENT = 16 };
-enum { BESIDE = 6 };      /* pixels between a hit and the plane, from which on it is said */
-enum { CONTEXT = 20000 }; /* objects up to which those that no ray hits are drawn, too */
+enum { BESIDE = 6 };             /* pixels from the plane */
+static const double slant = 0.1; /* sine of the angle with the plane */
+enum { CONTEXT = 20000 };        /* objects up to which those that no ray hits are drawn, too */
 
 typedef struct Drawing {
     const RtRayTree *tree;
@@ -118,28 +119,41 @@ static bool matters(const RtTreeRay *ray) {
     return ray->surface.material && (ray->factor >= 0.1f || ray->level == 1);
 }
 
-/* Holds the hits, objects that are not much larger than the region of the hits, and a part of the primary
- * ray. */
+/* The ball around object `id`, unless the object is flat or the ball larger than `most`. */
+static void include_object(const Drawing *d, Window *window, uint32_t id, double most) {
+    const RtShape shape = rt_ref_shape(d->scene->geometry.objects[id]);
+    const RtBall ball = rt_object_ball(&d->scene->geometry, id);
+    if (shape == RT_SHAPE_POLYGON || shape == RT_SHAPE_TRIANGLE || ball.radius > most) return;
+    include(window, rt_section_point(&d->section, ball.center), ball.radius);
+}
+
+/* Of a ray that hits nothing: it and the scene. */
+static Window window_of_miss(const Drawing *d) {
+    const RtBox *box = &d->scene->geometry.box;
+    const RtVec3d lo = rt_widen(box->lo), hi = rt_widen(box->hi);
+    Window window = {0, 0, 0, 0};
+    include(&window, rt_section_point(&d->section, rt_scaled(rt_addd(lo, hi), 0.5)),
+            rt_lengthd(rt_subd(hi, lo)) / 2);
+    return window;
+}
+
+/* Holds the hits, objects there of the size of their region, and a part of the primary ray. */
 static Window find_window(const Drawing *d) {
     const RtTreeRay *primary = &d->tree->rays[0];
-    const double far = isfinite((double)primary->hit.t)
-                           ? (double)primary->hit.t * rt_lengthd(rt_widen(primary->ray.dir))
-                           : 1;
+    if (primary->hit.object == RT_NO_OBJECT) return window_of_miss(d);
+    const double far = (double)primary->hit.t * rt_lengthd(rt_widen(primary->ray.dir));
     Window window = {0, 0, 0, 0}; /* the end of the primary ray */
     for (uint32_t i = 0; i < d->tree->count; i++) {
         if (matters(&d->tree->rays[i]))
             include(&window, rt_section_point(&d->section, end_of(&d->tree->rays[i])), 0);
     }
-    const double most = span_of(&window) > 1e-4 * far ? 2 * span_of(&window) : far / 3;
+    const double most = span_of(&window) > 1e-4 * far ? 2 * span_of(&window) : far / 4;
     for (uint32_t i = 0; i < d->tree->count; i++) {
-        if (!matters(&d->tree->rays[i])) continue;
-        RtBall ball = rt_object_ball(&d->scene->geometry, d->tree->rays[i].hit.object);
-        if (ball.radius <= most) include(&window, rt_section_point(&d->section, ball.center), ball.radius);
+        if (matters(&d->tree->rays[i])) include_object(d, &window, d->tree->rays[i].hit.object, most);
     }
     const double span = span_of(&window) > 1e-4 * far ? span_of(&window) : far / 4;
-    include(&window,
-            rt_section_point(&d->section, rt_add_scaledd(d->section.on, direction_of(primary), -span / 2)),
-            0);
+    const RtVec3d before = rt_add_scaledd(d->section.on, direction_of(primary), -span / 2);
+    include(&window, rt_section_point(&d->section, before), 0);
     include(&window, (RtPoint){0, 0}, span / 8);
     return window;
 }
@@ -220,9 +234,17 @@ static RtVec3d drawn_end(const Drawing *d, const RtTreeRay *ray) {
                           2 * (d->width + d->height) / d->section.scale);
 }
 
-/* Pixels from the plane. */
-static double distance_to_plane(const Drawing *d, RtVec3d p) {
-    return fabs(rt_dotd(rt_subd(p, d->section.on), d->section.normal)) * d->section.scale;
+/* Shadow rays nearly always leave it: lights are elsewhere. */
+static bool leaves_plane(const Drawing *d, const RtTreeRay *ray) {
+    RtVec3d from_plane = rt_subd(rt_widen(ray->ray.org), d->section.on);
+    return ray->ray.kind != RT_RAY_SHADOW &&
+           (fabs(rt_dotd(from_plane, d->section.normal)) * d->section.scale > BESIDE ||
+            fabs(rt_dotd(direction_of(ray), d->section.normal)) > slant);
+}
+
+static RtColor paler(RtColor color) {
+    for (int c = 0; c < 3; c++) color.rgb[c] = (uint8_t)(127 + color.rgb[c] / 2);
+    return color;
 }
 
 static void draw_number(const Drawing *d, const RtTreeRay *ray, RtPoint from, RtPoint to, RtColor color) {
@@ -239,7 +261,8 @@ static void draw_number(const Drawing *d, const RtTreeRay *ray, RtPoint from, Rt
 /* A line with a head at `to`, `head` long. */
 static void draw_arrow(const Drawing *d, RtPoint from, RtPoint to, RtStyle style, double head) {
     double dx = to.x - from.x, dy = to.y - from.y, length = sqrt(dx * dx + dy * dy);
-    rt_add_line(d->cairo, from, to);
+    cairo_move_to(d->cairo, from.x, from.y); /* an open line: dashes do not come back over the gaps */
+    cairo_line_to(d->cairo, to.x, to.y);
     rt_paint(d->cairo, style);
     if (!(length > 0)) return;
     dx *= head / length, dy *= head / length;
@@ -258,12 +281,13 @@ static void draw_cross(const Drawing *d, RtPoint at, RtStyle style) {
 
 static void draw_ray(const Drawing *d, const RtTreeRay *ray) {
     const bool shadow = ray->ray.kind == RT_RAY_SHADOW, ends = isfinite((double)ray->hit.t);
-    RtVec3d origin = rt_widen(ray->ray.org), end = drawn_end(d, ray);
-    RtPoint from = rt_section_point(&d->section, origin), to = rt_section_point(&d->section, end);
+    RtPoint from = rt_section_point(&d->section, rt_widen(ray->ray.org));
+    RtPoint to = rt_section_point(&d->section, drawn_end(d, ray));
     RtStyle style = styles[style_of(ray)].style;
     bool whole;
     if (!cut_line(d, &from, &to, &whole)) return;
     if (!shadow) style.width = 0.8 + 1.4 * sqrt((double)ray->factor);
+    if (leaves_plane(d, ray)) style.color = paler(style.color);
     draw_arrow(d, from, to, style, shadow ? 8 : 11);
     if (d->tree->count <= MOST_ROWS) draw_number(d, ray, from, to, style.color);
     if (!whole || !ends) return;
@@ -271,7 +295,6 @@ static void draw_ray(const Drawing *d, const RtTreeRay *ray) {
         draw_cross(d, to, style);
     else
         rt_draw_disc(d->cairo, to, 4, style.color);
-    if (!shadow && distance_to_plane(d, end) > BESIDE) rt_draw_disc(d->cairo, to, 2.5, RT_WHITE);
 }
 
 static void draw_normal(const Drawing *d, const RtTreeRay *ray) {
@@ -306,7 +329,7 @@ static void draw_keys(const Drawing *d, double y) {
         x += 34 + rt_draw_text(d->cairo, x + 34, y, styles[i].text) + 22;
     }
     rt_set_color(d->cairo, dark, 1);
-    rt_draw_text(d->cairo, x, y, "open circle: beside the plane");
+    rt_draw_text(d->cairo, x, y, "pale: leaves the plane");
 }
 
 enum { HIT = 300, T = 610, FACTOR = 690, LIGHT = 770 }; /* columns */
@@ -314,12 +337,12 @@ enum { HIT = 300, T = 610, FACTOR = 690, LIGHT = 770 }; /* columns */
 static void draw_row(const Drawing *d, const RtTreeRay *ray, double y) {
     char text[RT_TREE_HIT_TEXT];
     const double x = MARGIN + INDENT * (ray->level - (ray->ray.kind != RT_RAY_SHADOW));
-    snprintf(text, sizeof text, "%u", ray->number);
-    rt_set_color(d->cairo, styles[style_of(ray)].style.color, 1);
-    double wide = rt_draw_text(d->cairo, x, y, text);
-    rt_tree_ray_name(ray, text);
-    rt_draw_text_within(d->cairo, x + wide + 6, y, HIT - x - wide - 12, text);
+    rt_fill_rectangle(d->cairo, x, y - 10, 4, 12, styles[style_of(ray)].style.color);
     rt_set_color(d->cairo, RT_BLACK, 1);
+    snprintf(text, sizeof text, "%u", ray->number);
+    const double name_at = x + 15 + rt_draw_text(d->cairo, x + 9, y, text);
+    rt_tree_ray_name(ray, text);
+    rt_draw_text_within(d->cairo, name_at, y, HIT - name_at - 6, text);
     rt_tree_ray_hit(ray, d->scene, text);
     rt_draw_text_within(d->cairo, HIT, y, T - HIT - 10, text);
     snprintf(text, sizeof text, "%.4g", (double)ray->hit.t);
@@ -361,8 +384,12 @@ static RtStatus draw(Drawing *d, const char *title, const char *file, RtError *e
     rt_draw_text_within(d->cairo, MARGIN, 24, WIDTH - 2 * MARGIN, title);
     cairo_set_font_size(d->cairo, FONT_SIZE);
     rt_set_color(d->cairo, dark, 1);
-    rt_draw_text(d->cairo, MARGIN, 46,
-                 "a section that contains the primary ray; numbers are those of the rows below");
+    RtVec3d up = d->section.up;
+    char text[128];
+    snprintf(text, sizeof text,
+             "a section that contains the primary ray; upward is (%.2f, %.2f, %.2f); numbers as below", up.x,
+             up.y, up.z);
+    rt_draw_text(d->cairo, MARGIN, 46, text);
     RtStatus status = draw_section(d, error);
     draw_keys(d, below + 22);
     draw_rows(d, below + KEYS + ROW, rows);

@@ -3,7 +3,7 @@
 
 #include "picture/extent_outline.h"
 
-enum { SPACING = 2, MOST_CROSSINGS = 64 }; /* pixels between lines; of one line */
+enum { SPACING = 3, MOST_CROSSINGS = 64 }; /* pixels between lines; of one line */
 
 bool rt_section_add_ball(const RtSection *section, cairo_t *cairo, RtVec3d center, double radius) {
     double off = rt_dotd(rt_subd(center, section->on), section->normal);
@@ -26,8 +26,10 @@ static void add_tangent(const RtSection *section, cairo_t *cairo, RtVec3d at, Rt
     double length = rt_lengthd(tangent), slant = fabs(rt_dotd(normal, along));
     if (!(length > 1e-6) || slant < 0.6 * length) return;
     RtVec3d half = rt_scaled(tangent, (double)SPACING / section->scale / length);
-    rt_add_line(cairo, rt_section_point(section, rt_subd(at, half)),
-                rt_section_point(section, rt_addd(at, half)));
+    RtPoint from = rt_section_point(section, rt_subd(at, half)),
+            to = rt_section_point(section, rt_addd(at, half));
+    cairo_move_to(cairo, from.x, from.y);
+    cairo_line_to(cairo, to.x, to.y);
 }
 
 /* Follows one line of the plane through the object. */
@@ -61,12 +63,15 @@ static void scan(const RtSection *section, cairo_t *cairo, const RtGeometry *g, 
     const RtBall ball = rt_object_ball(g, id);
     double off = rt_dotd(rt_subd(ball.center, section->on), section->normal);
     if (fabs(off) >= ball.radius) return;
-    double radius = sqrt(ball.radius * ball.radius - off * off), from, to;
+    const double radius = sqrt(ball.radius * ball.radius - off * off), step = SPACING / section->scale;
+    double from, to;
     RtVec3d middle = rt_add_scaledd(ball.center, section->normal, -off);
     RtVec3d start = rt_add_scaledd(middle, along, -1.1 * radius);
     visible(section, cairo, middle, across, &from, &to);
-    for (double at = fmax(from, -radius); at <= fmin(to, radius); at += SPACING / section->scale)
-        add_crossings(section, cairo, g, id, rt_add_scaledd(start, across, at), along, crossings);
+    from = fmax(from, -radius), to = fmin(to, radius);
+    for (int i = 0; from + i * step <= to; i++)
+        add_crossings(section, cairo, g, id, rt_add_scaledd(start, across, from + i * step), along,
+                      crossings);
 }
 
 void rt_section_add_object(const RtSection *section, cairo_t *cairo, const RtGeometry *geometry, uint32_t id,

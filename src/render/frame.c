@@ -78,10 +78,10 @@ static void add_light(Worker *worker, Path path, RtVec3 light) {
     *color = rt_add(*color, rt_scale(light, path.factor));
 }
 
-/* Shows a ray to the observer; returns its number. */
+/* Shows a ray to the observer of its sample; returns its number. */
 static uint32_t show(Worker *worker, Path path, RtFrameRay ray) {
     const RtFrameObserver *observer = worker->job->options->observer;
-    if (!observer) return RT_NO_RAY;
+    if (!observer || observer->sample != path.sample) return RT_NO_RAY;
     ray.parent = path.parent;
     ray.factor = path.factor;
     observer->see(observer->context, &ray);
@@ -247,7 +247,6 @@ static RtStatus trace_level(Worker *worker, uint32_t depth, RtError *error) {
 static void make_primary_rays(Worker *worker, Level *level) {
     const Job *job = worker->job;
     const RtSampling *s = &job->view.sampling;
-    const RtFrameObserver *observer = job->options->observer;
     level->count = 0;
     for (uint32_t i = 0; i < RT_TILE * RT_TILE; i++) {
         RtSample sample = rt_tile_sample(job->tiles[worker->tile], i);
@@ -255,7 +254,7 @@ static void make_primary_rays(Worker *worker, Level *level) {
         RtRay ray = rt_view_ray(&job->view, sample.column, sample.row);
         job->frame->object[ray.source] = RT_NO_OBJECT;
         job->frame->depth[ray.source] = INFINITY;
-        if (!rt_ray_is_valid(&ray) || (observer && observer->sample != ray.source)) continue;
+        if (!rt_ray_is_valid(&ray)) continue;
         level->rays[level->count] = ray;
         level->paths[level->count++] = (Path){ray.source, 1, RT_NO_RAY};
     }

@@ -49,7 +49,7 @@ typedef struct RtFrameOptions {
     bool light_from_outside; /* light surfaces from outside, whichever side the ray comes from */
     bool keep_rays;          /* keep all traced rays */
     bool share;              /* fill `share`; reading the clock costs about 50 ns per stream of rays */
-    const RtFrameObserver *observer; /* optional: trace only its sample */
+    const RtFrameObserver *observer; /* optional: trace only the tile of its sample */
     /* Optional: called by one thread at a time when a tile is finished. */
     void (*progress)(void *context, size_t tiles_done, size_t tiles);
     void *progress_context;

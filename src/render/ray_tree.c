@@ -159,7 +159,7 @@ void rt_tree_ray_hit(const RtTreeRay *ray, const RtScene *scene, char out[RT_TRE
 
 const char *rt_term_name(RtTerm term) {
     static const char *const names[] = {
-#define RT_TERM_NAME(CONSTANT, name, formula) #name,
+#define RT_TERM_NAME(CONSTANT, name) #name,
         RT_TERMS(RT_TERM_NAME)
 #undef RT_TERM_NAME
     };

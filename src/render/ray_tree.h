@@ -7,16 +7,16 @@
 
 #include "render/frame.h"
 
-/* The five terms of the standard illumination model: X(CONSTANT, name, formula) */
+/* The five terms of the standard illumination model (illumination.h): X(CONSTANT, name) */
 #define RT_TERMS(X)                                                                                          \
-    X(AMBIENT, ambient, "ka Ia")                                                                             \
-    X(DIFFUSE, diffuse, "sum of S_L I_L kd (N.L)")                                                           \
-    X(SPECULAR, specular, "sum of S_L I_L ks (R.V)^shine")                                                   \
-    X(REFLECTED, reflected, "kr Ir")                                                                         \
-    X(TRANSMITTED, transmitted, "kt It")
+    X(AMBIENT, ambient)                                                                                      \
+    X(DIFFUSE, diffuse)                                                                                      \
+    X(SPECULAR, specular)                                                                                    \
+    X(REFLECTED, reflected)                                                                                  \
+    X(TRANSMITTED, transmitted)
 
 typedef enum RtTerm {
-#define RT_TERM_ENUM(CONSTANT, name, formula) RT_TERM_##CONSTANT,
+#define RT_TERM_ENUM(CONSTANT, name) RT_TERM_##CONSTANT,
     RT_TERMS(RT_TERM_ENUM)
 #undef RT_TERM_ENUM
         RT_TERM_COUNT

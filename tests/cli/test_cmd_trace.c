@@ -170,7 +170,7 @@ RT_TEST(a_tree_is_printed_with_each_ray_the_five_terms_and_sums) {
                                         "sphere, glass",
                                         "from inside",
                                         "nothing: lit",
-                                        "ambient                diffuse",
+                                        "ambient               diffuse",
                                         "in 2 levels, ",
                                         "would reflect or transmit, but the depth is reached"};
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {

@@ -76,9 +76,9 @@ RT_TEST(each_kind_of_ray_has_its_color) {
     rt_image_clear(&three);
 }
 
-RT_TEST(a_pixel_without_a_hit_is_drawn) {
-    RtImage image = draw_lecture(40, 0, 3);
-    assert_true(image.height > 300);
+RT_TEST(a_ray_that_hits_nothing_is_drawn_past_the_scene) {
+    RtImage image = draw_lecture(40, 0, 1);
+    assert_true(count_color(&image, RT_BLACK) > 1000); /* 2 pixels wide, over most of the picture */
     rt_image_clear(&image);
 }
 
