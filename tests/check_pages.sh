@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Reports and the index in headless Chromium: tables sort and filter, nothing is cut off at any width or in
-# print, no page makes a request, the console stays empty, 5,000 cells are under 10 MB and usable, and axe (through npm) finds
-# nothing serious. Skipped without Chromium, its driver or node, and without axe if npm cannot install it.
+# Reports, the index and the explorer in headless Chromium: tables sort and filter, nothing is cut off at any width or in
+# print, no page makes a request, the console stays empty, 5,000 cells are under 10 MB and usable, the explorer counts what
+# `trace` counts, and axe (through npm) finds nothing serious. Skipped without Chromium, its driver or node, and without axe or
+# the explorer if npm cannot install what they need.
 set -euo pipefail
 program=$(realpath "${RT_PROGRAM:?the path of raytally}")
 here=$(realpath "$(dirname "$0")")
@@ -36,3 +37,8 @@ else
     echo "check_pages: without axe, which npm did not bring: $(tail -n 1 npm.log)"
 fi
 node "$here/pages/check_pages.mjs" results/small/report.html results/large/report.html results/index.html "${axe[@]}"
+if "$program" explore balls:size=1 --size 2x2 -o walk.html >explore.log 2>&1; then
+    node "$here/pages/check_explorer.mjs" "$program" "${axe[@]}"
+else
+    echo "check_pages: without the explorer: $(cat explore.log)"
+fi

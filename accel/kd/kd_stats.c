@@ -189,8 +189,35 @@ static RtStatus compare_node(void *context, const RtKd *kd, const CellView *view
     return RT_OK;
 }
 
+/* Descends by the numbers of nodes: where a subtree's nodes are adjacent, a node is below the child whose own
+ * children come last before it. Returns false where they are not. */
+static bool descend_to(const RtKd *kd, Sought *sought) {
+    uint32_t at = 0;
+    sought->cell = kd->box;
+    while (at != sought->node) {
+        const RtKdNode *node = &kd->nodes[at];
+        if (rt_kd_is_leaf(node)) return false;
+        const uint32_t lower = rt_kd_child(node);
+        uint32_t next = lower, least = 0;
+        for (uint32_t c = 0; c < 2; c++) {
+            const RtKdNode *child = &kd->nodes[lower + c];
+            const uint32_t below = rt_kd_is_leaf(child) ? 0 : rt_kd_child(child);
+            if (lower + c == sought->node) {
+                next = lower + c;
+                break;
+            }
+            if (below > sought->node || below <= least) continue;
+            next = lower + c;
+            least = below;
+        }
+        sought->cell = rt_kd_half(sought->cell, rt_kd_axis(node), node->split, next - lower);
+        at = next;
+    }
+    return true;
+}
+
 RtBox rt_kd_cell(const RtKd *kd, uint32_t node) {
     Sought sought = {node, RT_EMPTY_BOX};
-    each_node(kd, compare_node, &sought);
+    if (!descend_to(kd, &sought)) each_node(kd, compare_node, &sought);
     return sought.cell;
 }

@@ -31,6 +31,7 @@ typedef struct RtCommand {
     X(info, "info", "SCENE", "objects by shape, bounds, materials, lights, camera of a scene")               \
     X(render, "render", "SCENE", "an image of a scene, heatmaps of its cost, pictures of structures")        \
     X(trace, "trace", "SCENE", "one ray's path through an accelerator, or the ray tree of a pixel")          \
+    X(explore, "explore", "SCENE", "a page: click a pixel, step its rays through structures in 3-D")         \
     X(verify, "verify", "[SCENE...]", "check that every hit equals brute's")                                 \
     X(bench, "bench", "SCENE", "count and time accelerators on the rays of one scene")                       \
     X(compare, "compare", "BEFORE AFTER", "compare two results, or two programs that alternate")             \

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally trace: one ray's path through an accelerator, step by step, or the ray tree of a pixel. */
 #include "accel/columns.h"
-#include "accel/remote.h"
 #include "cli/cli.h"
 #include "cli/trace_tree.h"
 #include "core/base/memory.h"
@@ -292,12 +291,7 @@ static RtStatus run(const Options *o, RtError *error) {
     RtStatus status = rt_scene_sample(&scene, o->size[0], o->size[1], 1, false, error);
     if (status == RT_OK) status = rt_cli_check_pixel(&scene.sampling, o->x, o->y, error);
     if (status == RT_OK) status = rt_accel_build(&spec, &scene, 0, &accel, error);
-    if (status == RT_OK && rt_accel_is_remote(accel) && !(accel->exact && accel->counts))
-        status =
-            rt_fail(error, RT_BAD_INPUT,
-                    "%s: raytally cannot follow a ray through a plugin that has hit functions of its own "
-                    "or counts nothing",
-                    text);
+    if (status == RT_OK) status = rt_path_available(accel, text, error);
     if (status == RT_OK) status = (o->depth > 0 ? trace_tree : trace_path)(o, &scene, accel, text, error);
     rt_accel_destroy(accel);
     rt_scene_clear(&scene);

@@ -130,6 +130,14 @@ static RtStatus compare(RtPath *path, const RtTally *counted, bool remote, RtErr
     return RT_OK;
 }
 
+RtStatus rt_path_available(const RtAccel *accel, const char *spec, RtError *error) {
+    if (!rt_accel_is_remote(accel) || (accel->exact && accel->counts)) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "%s: raytally cannot follow a ray through a plugin that has hit functions of its own "
+                   "or counts nothing",
+                   spec);
+}
+
 RtStatus rt_path_trace(RtPath *path, RtAccel *accel, const RtRay *ray, RtError *error) {
     RtQuery query;
     RtTally tallies[RT_RAY_KIND_COUNT] = {0};

@@ -35,9 +35,13 @@ typedef struct RtPath {
     uint32_t count, capacity;
 } RtPath;
 
+/* RT_OK, or RT_BAD_INPUT if paths through the accelerator of `spec` cannot be traced: a plugin must be exact
+ * and count. */
+RtStatus rt_path_available(const RtAccel *accel, const char *spec, RtError *error);
+
 /* Traces a valid ray with a counted kernel: `occluded` for a shadow ray, else `nearest`. An accelerator
- * that learns (rt_accel_learn) learns the ray's own hit first. A remote accelerator must be exact and count;
- * which of its steps were leaves may be unknown. RT_MISMATCH if the events do not add up to
+ * that learns (rt_accel_learn) learns the ray's own hit first. Which steps of a remote accelerator were
+ * leaves may be unknown. RT_MISMATCH if the events do not add up to
  * the kernel's counts, which would be a bug in this program. */
 RtStatus rt_path_trace(RtPath *path, RtAccel *accel, const RtRay *ray, RtError *error);
 void rt_path_clear(RtPath *path);

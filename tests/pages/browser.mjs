@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A headless Chromium, driven through chromedriver by the WebDriver protocol: no library is needed.
+// A headless Chromium, driven through chromedriver by the WebDriver protocol: no library is needed. And what tests of pages share.
 import { spawn } from 'node:child_process';
+import { readFileSync } from 'node:fs';
 
 export const sleep = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
 
@@ -30,7 +31,8 @@ export async function openBrowser() {
   const { driver, url } = await startDriver();
   const { sessionId } = await request(`${url}/session`, 'POST', { capabilities: { alwaysMatch: {
     browserName: 'chrome',
-    'goog:chromeOptions': { args: ['--headless=new', '--no-sandbox', '--disable-gpu', '--disable-dev-shm-usage',
+    'goog:chromeOptions': { args: ['--headless=new', '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
+      '--disable-dev-shm-usage',
       '--disable-background-networking', '--disable-component-update', '--no-first-run', '--hide-scrollbars'] },
     'goog:loggingPrefs': { browser: 'ALL', performance: 'ALL' } } } });
   const session = `${url}/session/${sessionId}`;
@@ -41,6 +43,8 @@ export async function openBrowser() {
     // The body of a function of `args`, run in the page.
     run: (script, ...args) => request(`${session}/execute/sync`, 'POST', { script, args }),
     runAsync: (script, ...args) => request(`${session}/execute/async`, 'POST', { script, args }),
+    // The body of a function that every page opened from now on runs before its own scripts.
+    before: (script) => devtools('Page.addScriptToEvaluateOnNewDocument', { source: `(() => { ${script} })();` }),
     log: (type) => request(`${session}/se/log`, 'POST', { type }),
     size: (width, height) => devtools('Emulation.setDeviceMetricsOverride',
       { width, height, deviceScaleFactor: 1, mobile: false }),
@@ -51,4 +55,34 @@ export async function openBrowser() {
       driver.kill();
     },
   };
+}
+
+// Collects the sentences that do not hold.
+export function makeJudge() {
+  const judge = { failures: 0, holds(truth, sentence) {
+    if (truth) return;
+    judge.failures += 1;
+    console.log(`does not hold: ${sentence}`);
+  } };
+  return judge;
+}
+
+// Judges the open page by axe, axe.min.js: what it finds serious does not hold.
+export async function judgeByAxe(browser, axe, name, holds) {
+  await browser.run(readFileSync(axe, 'utf8'));
+  const found = await browser.runAsync(`const done = arguments[arguments.length - 1];
+    axe.run(document, { resultTypes: ['violations'] }).then(({ violations }) => done(violations.map(({ id, impact, nodes }) =>
+      ({ id, impact, first: nodes[0].html.slice(0, 160), why: nodes[0].failureSummary }))), (error) => done([{ id: String(error), impact: 'serious' }]));`);
+  for (const { id, impact, first, why } of found)
+    holds(impact !== 'serious' && impact !== 'critical', `axe, ${name}: ${impact} ${id}: ${first}: ${why}`);
+}
+
+// The console of all pages so far stays empty, and nothing is requested but what `allowed` matches.
+export async function judgeLogs(browser, allowed, holds) {
+  const errors = (await browser.log('browser')).filter(({ level }) => level === 'SEVERE' || level === 'WARNING');
+  holds(errors.length === 0, `the console stays empty: ${JSON.stringify(errors.slice(0, 3))}`);
+  const asked = (await browser.log('performance')).map(({ message }) => JSON.parse(message).message)
+    .filter(({ method }) => method === 'Network.requestWillBeSent').map(({ params }) => params.request.url.split('#')[0]);
+  const others = asked.filter((to) => !to.startsWith('data:') && !allowed(decodeURI(to)));
+  holds(asked.length > 0 && others.length === 0, `pages request nothing that they do not contain: ${others.slice(0, 3)}`);
 }

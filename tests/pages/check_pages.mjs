@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // check_pages.mjs SMALL LARGE INDEX [AXE]: drives the pages in Chromium: a report, one of 5,000 cells, an index. AXE: axe.min.js,
 // to judge them too. Says what does not hold; exit code 1 where anything does not.
-import { readFileSync, statSync } from 'node:fs';
+import { statSync } from 'node:fs';
 import { dirname, resolve } from 'node:path';
-import { openBrowser, sleep } from './browser.mjs';
+import { judgeByAxe, judgeLogs, makeJudge, openBrowser, sleep } from './browser.mjs';
 
 const [small, large, index, axe] = process.argv.slice(2).map((path) => resolve(path));
 const browser = await openBrowser();
-let failures = 0;
-
-function holds(truth, sentence) {
-  if (truth) return;
-  failures += 1;
-  console.log(`does not hold: ${sentence}`);
-}
+const judge = makeJudge(), { holds } = judge;
 
 const url = (page) => `file://${page}`;
 const columnOf = (id) => browser.run(`const table = document.querySelector('.scene-tables table');
@@ -94,12 +88,7 @@ async function checkAxe(page, width, scheme) {
   await browser.media('screen', scheme);
   await browser.open(url(page));
   await browser.run("for (const each of document.querySelectorAll('details')) each.open = true;");
-  await browser.run(readFileSync(axe, 'utf8'));
-  const found = await browser.runAsync(`const done = arguments[arguments.length - 1];
-    axe.run(document, { resultTypes: ['violations'] }).then(({ violations }) => done(violations.map(({ id, impact, nodes }) =>
-      ({ id, impact, first: nodes[0].html.slice(0, 160), why: nodes[0].failureSummary }))), (error) => done([{ id: String(error), impact: 'serious' }]));`);
-  for (const { id, impact, first, why } of found)
-    holds(impact !== 'serious' && impact !== 'critical', `axe, ${page}, ${width} pixels, ${scheme}: ${impact} ${id}: ${first}: ${why}`);
+  await judgeByAxe(browser, axe, `${page}, ${width} pixels, ${scheme}`, holds);
 }
 
 async function checkLarge() {
@@ -119,15 +108,9 @@ async function checkLarge() {
   return { bytes: statSync(large).size, opened: Math.round(opened), sorted: Math.round(slowest) };
 }
 
-// What the console says, and what was asked for, of all pages so far.
 async function checkLogs() {
-  const errors = (await browser.log('browser')).filter(({ level }) => level === 'SEVERE' || level === 'WARNING');
-  holds(errors.length === 0, `the console stays empty: ${JSON.stringify(errors.slice(0, 3))}`);
   const own = [small, large, index].map(url), plots = new RegExp(`^${url(dirname(index))}/[^/]+/plots/[^/]+[.]svg$`);
-  const asked = (await browser.log('performance')).map(({ message }) => JSON.parse(message).message)
-    .filter(({ method }) => method === 'Network.requestWillBeSent').map(({ params }) => params.request.url.split('#')[0]);
-  const others = asked.filter((to) => !to.startsWith('data:') && !own.includes(decodeURI(to)) && !plots.test(decodeURI(to)));
-  holds(asked.length > 0 && others.length === 0, `pages request nothing but the plots of an index: ${others.slice(0, 3)}`);
+  await judgeLogs(browser, (to) => own.includes(to) || plots.test(to), holds);
 }
 
 try {
@@ -148,10 +131,10 @@ try {
   await checkDark(index, '.thumb img');
   const { bytes, opened, sorted } = await checkLarge();
   await checkLogs();
-  if (failures === 0)
+  if (judge.failures === 0)
     console.log(`check_pages: 5,000 cells are ${(bytes / 1e6).toFixed(1)} MB, open in ${opened} ms, are sorted in ${sorted} ms` +
       (axe ? '; axe finds nothing serious' : ''));
 } finally {
   await browser.close();
 }
-process.exit(failures ? 1 : 0);
+process.exit(judge.failures ? 1 : 0);

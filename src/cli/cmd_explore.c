@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* raytally explore: a page on which to click a pixel, and to step its rays through accelerators. */
+#include "cli/cli.h"
+#include "render/path.h"
+#include "render/ray_tree.h"
+#include "report/explore.h"
+#include "scenes/open.h"
+
+#include <stdio.h>
+
+typedef struct Options {
+    const char *scene, *page;
+    const char *accels[RT_MAX_EXPLORED];
+    uint32_t accel_count, size[2], depth, megabytes;
+} Options;
+
+static void take_accel(void *options, const char *spec, struct argp_state *state) {
+    Options *o = options;
+    if (o->accel_count == RT_MAX_EXPLORED) argp_error(state, "--accel: %d at most", RT_MAX_EXPLORED);
+    o->accels[o->accel_count++] = spec;
+}
+
+static void finish(void *options, struct argp_state *state) {
+    Options *o = options;
+    if (!o->page) argp_error(state, "the page is missing: -o FILE.html");
+    if (o->accel_count == 0) take_accel(o, rt_accel_default(), state);
+}
+
+static const RtOption options[] = {
+    {"accel", 'a', "SPEC", RT_TO_TAKE(take_accel),
+     "Accelerator (default bvh), up to 4 times; `raytally accels` lists them"},
+    {"output", 'o', "FILE.html", RT_TO_PATH(page, ".html"), "The page"},
+    {"size", 's', "WxH", RT_TO_SIZE(size), "Size of the image in pixels (default 160x120)"},
+    {"depth", 'd', "N", RT_TO_INTEGER(depth, 1, RT_MAX_DEPTH),
+     "Levels of the ray tree, the primary ray being the first, 1..64 (default 4)"},
+    {"megabytes", 0, "N", RT_TO_INTEGER(megabytes, 1, 100),
+     "Most megabytes for recorded rays, 1..100 (default 6). If those of all pixels need more, one pixel in "
+     "2 x 2 is recorded, or in 3 x 3, and so on"},
+    {0}};
+
+typedef struct Built {
+    RtAccel *accels[RT_MAX_EXPLORED];
+    char texts[RT_MAX_EXPLORED][RT_MAX_SPEC_CHARS];
+} Built;
+
+static RtStatus build(Built *built, const Options *o, const RtScene *scene, RtError *error) {
+    for (uint32_t i = 0; i < o->accel_count; i++) {
+        RtSpec spec;
+        RT_TRY(rt_spec_parse(o->accels[i], &spec, error));
+        rt_spec_format(&spec, built->texts[i]);
+        RT_TRY(rt_accel_build(&spec, scene, 0, &built->accels[i], error));
+        RT_TRY(rt_path_available(built->accels[i], built->texts[i], error));
+    }
+    return RT_OK;
+}
+
+static RtStatus explore(const Options *o, Built *built, const RtScene *scene, RtError *error) {
+    const RtExploreOptions how = {.depth = o->depth, .bytes = o->megabytes * 1000000};
+    RtExploredSpec specs[RT_MAX_EXPLORED];
+    uint32_t stride;
+    for (uint32_t i = 0; i < o->accel_count; i++) specs[i] = (RtExploredSpec){o->accels[i], built->texts[i]};
+    RT_TRY(build(built, o, scene, error));
+    RT_TRY(rt_explore_write(o->page, scene->name[0] ? scene->name : o->scene, built->accels, specs,
+                            o->accel_count, &how, &stride, error));
+    printf("wrote %s, with the rays of ", o->page);
+    if (stride == 1)
+        puts("all pixels");
+    else
+        printf("one pixel in %u x %u\n", stride, stride);
+    return RT_OK;
+}
+
+static RtStatus run(const Options *o, RtError *error) {
+    Built built = {0};
+    RtScene scene;
+    RT_TRY(rt_explore_available(error));
+    RT_TRY(rt_cli_check_json_name(o->scene, error));
+    RT_TRY(rt_scene_open(o->scene, &scene, error));
+    RtStatus status = rt_scene_sample(&scene, o->size[0], o->size[1], 1, false, error);
+    if (status == RT_OK) status = explore(o, &built, &scene, error);
+    for (uint32_t i = 0; i < o->accel_count; i++) rt_accel_destroy(built.accels[i]);
+    rt_scene_clear(&scene);
+    return status;
+}
+
+const RtSyntax rt_explore_syntax = {
+    .options = options,
+    .plugins = true,
+    .arguments = "SCENE",
+    .argument = RT_SCENE_ARGUMENT,
+    .finish = finish,
+    .help =
+        "Write a page on which to explore how accelerators trace a scene: its image beside their structures "
+        "in "
+        "3-D. A click on a pixel shows its ray tree, and each ray can be stepped through the accelerators, "
+        "side "
+        "by side, with the counters running.\v"
+        "The page is one file that works without a network: all paths are recorded in advance, as `raytally "
+        "trace` prints them. It needs a browser of 2023 or later; without WebGL it shows all but the 3-D "
+        "view. "
+        "Examples:\n"
+        "  raytally explore balls:size=2 --accel bvh --accel grid -o walk.html\n"
+        "  raytally explore balls:size=2 --accel item+light:cells=20+octree -o buffers.html"};
+
+RtStatus rt_command_explore(int argc, char **argv, RtError *error) {
+    Options o = {.size = {160, 120}, .depth = 4, .megabytes = 6};
+    rt_cli_parse(&rt_explore_syntax, argc, argv, &o);
+    return run(&o, error);
+}

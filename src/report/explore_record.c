@@ -1,0 +1,278 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "report/explore_record.h"
+
+#include "core/base/memory.h"
+#include "report/explore_shapes.h"
+
+#include <string.h>
+#include <xxhash.h>
+
+enum { MOST_CANDIDATES = 16, RAW_PER_BYTE = 3 }; /* base64 of compressed data is a third of it, or less */
+
+/* ---- events ---- */
+
+static bool same_form(const RtPathRow *a, const RtPathRow *b) {
+    return a->kind == b->kind && strcmp(a->what, b->what) == 0 && a->leaf == b->leaf &&
+           a->empty == b->empty && a->met == b->met && a->round == b->round;
+}
+
+static RtStatus find_form(RtRecordedPaths *to, const RtPathRow *row, uint32_t *form, RtError *error) {
+    for (*form = 0; *form < to->form_count; ++*form) {
+        if (same_form(&to->forms[*form].row, row)) return RT_OK;
+    }
+    return rt_append(&to->forms, &to->form_count, &to->form_capacity, &(RtEventForm){*row}, sizeof *to->forms,
+                     error);
+}
+
+/* The slot of the event, or the free one where it belongs. */
+static uint32_t *find_slot(const RtRecordedPaths *to, const RtEvent *event) {
+    uint32_t mask = to->slot_count - 1, at = (uint32_t)XXH3_64bits(event, sizeof *event) & mask;
+    while (to->slots[at] && memcmp(&to->events[to->slots[at] - 1], event, sizeof *event) != 0)
+        at = (at + 1) & mask;
+    return &to->slots[at];
+}
+
+/* The table stays at most half full. */
+static RtStatus grow_slots(RtRecordedPaths *to, RtError *error) {
+    if (to->slot_count > 2 * to->event_count) return RT_OK;
+    uint32_t count = to->slot_count ? 2 * to->slot_count : 1024;
+    uint32_t *slots = rt_alloc(count, sizeof *slots);
+    if (!slots) return rt_fail_memory(error, "the events of paths", count * sizeof *slots);
+    rt_free(to->slots);
+    to->slots = slots;
+    to->slot_count = count;
+    for (uint32_t i = 0; i < to->event_count; i++) *find_slot(to, &to->events[i]) = i + 1;
+    return RT_OK;
+}
+
+static RtStatus find_event(RtRecordedPaths *to, const RtPathRow *row, uint32_t *index, RtError *error) {
+    RtEvent event;
+    memset(&event, 0, sizeof event);
+    RT_TRY(find_form(to, row, &event.form, error));
+    event.index = row->index;
+    event.boxed = row->boxed;
+    if (row->boxed) event.box = row->box;
+    RT_TRY(grow_slots(to, error));
+    uint32_t *slot = find_slot(to, &event);
+    if (*slot == 0) {
+        RT_TRY(rt_append(&to->events, &to->event_count, &to->event_capacity, &event, sizeof event, error));
+        *slot = to->event_count;
+    }
+    *index = *slot - 1;
+    return RT_OK;
+}
+
+static bool is_hit(const RtPathRow *row) {
+    return row->kind == RT_TRACED_OBJECT_TEST && row->met;
+}
+
+static json_t *counts_of(const RtPathRow *row) {
+    RtTally tally = {0};
+    rt_traced_count(&(RtTraced){.kind = row->kind, .leaf = row->leaf, .empty = row->empty}, &tally);
+    tally.object_hits += is_hit(row);
+    json_t *names = json_array();
+    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
+        if (rt_tally_get(&tally, i)) json_array_append_new(names, json_string(rt_tally_name(i)));
+    }
+    return names;
+}
+
+json_t *rt_recorded_forms(const RtRecordedPaths *paths) {
+    json_t *forms = json_array();
+    for (uint32_t i = 0; i < paths->form_count; i++) {
+        const RtPathRow *row = &paths->forms[i].row;
+        json_array_append_new(
+            forms, json_pack("{s:s, s:s, s:o, s:b, s:b, s:o}", "name", rt_path_row_name(row), "of", row->what,
+                             "met", rt_path_row_answers(row) ? json_boolean(row->met) : json_null(), "hit",
+                             is_hit(row), "round", row->round, "counts", counts_of(row)));
+    }
+    return forms;
+}
+
+void rt_recorded_events(const RtRecordedPaths *paths, RtBytes *out) {
+    for (uint32_t i = 0; i < paths->event_count; i++) {
+        const RtEvent *event = &paths->events[i];
+        rt_bytes_put_number(out, event->form);
+        rt_bytes_put_number(out, event->index);
+        rt_bytes_put_number(out, event->boxed);
+        if (event->boxed) rt_bytes_put_box(out, &event->box);
+    }
+}
+
+/* ---- paths ---- */
+
+static void put_object(RtBytes *out, uint32_t object) {
+    rt_bytes_put_number(out, object == RT_NO_OBJECT        ? 0
+                             : object == RT_UNNAMED_OBJECT ? 1
+                                                           : (uint64_t)object + 2);
+}
+
+static void put_cell(RtBytes *out, const RtAccel *accel, const RtRay *ray) {
+    RtCellView cell;
+    accel = rt_cell_layer(accel, ray->kind);
+    if (!accel || !accel->ops->find_cell(accel, ray, &cell)) {
+        rt_bytes_put_number(out, 0);
+        return;
+    }
+    rt_bytes_put_number(out, (uint64_t)cell.number + 1);
+    rt_bytes_put_number(out, cell.length);
+    put_object(out, cell.object);
+    rt_bytes_put_number(out, cell.cut);
+}
+
+static RtStatus put_path(RtRecordedPixels *recording, RtRecordedPaths *to, const RtPath *path,
+                         RtError *error) {
+    uint32_t kept = path->count < RT_MAX_RECORDED_ROWS ? path->count : RT_MAX_RECORDED_ROWS;
+    put_object(&to->paths, path->hit.object);
+    rt_bytes_put_float(&to->paths, path->hit.t);
+    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++)
+        rt_bytes_put_number(&to->paths, rt_tally_get(&path->tally, i));
+    put_cell(&to->paths, to->accel, &path->ray);
+    rt_bytes_put_number(&to->paths, path->count);
+    rt_bytes_put_number(&to->paths, kept);
+    recording->cut_count += kept < path->count;
+    for (uint32_t i = 0; i < kept; i++) {
+        uint32_t event;
+        RT_TRY(find_event(to, &path->rows[i], &event, error));
+        rt_bytes_put_number(&to->paths, event);
+        if (is_hit(&path->rows[i])) rt_bytes_put_float(&to->paths, path->rows[i].t);
+    }
+    return RT_OK;
+}
+
+/* ---- ray trees ---- */
+
+static void put_vector(RtBytes *out, RtVec3 v) {
+    for (int a = 0; a < 3; a++) rt_bytes_put_float(out, v.at[a]);
+}
+
+/* Along the primary ray, behind one hit after the other, in the accelerator below all overlays. */
+static RtStatus put_candidates(RtBytes *out, const RtAccel *base, RtRay ray, RtError *error) {
+    RtHit hits[MOST_CANDIDATES], hit;
+    RtQuery query;
+    uint32_t count = 0;
+    RT_TRY(rt_query_init(&query, base, error));
+    while (count < MOST_CANDIDATES) {
+        rt_nearest(&query, &ray, 1, &hit, NULL);
+        if (hit.object == RT_NO_OBJECT) break;
+        uint32_t known = 0;
+        while (known < count && hits[known].object != hit.object) known++;
+        if (known == count) hits[count++] = hit;
+        ray.tmin = nextafterf(hit.t, INFINITY);
+    }
+    rt_query_clear(&query);
+    rt_bytes_put_number(out, count);
+    for (uint32_t i = 0; i < count; i++) {
+        put_object(out, hits[i].object);
+        rt_bytes_put_float(out, hits[i].t);
+    }
+    return RT_OK;
+}
+
+static RtStatus put_ray(RtRecordedPixels *recording, const RtRayTree *tree, const RtTreeRay *ray,
+                        RtError *error) {
+    RtBytes *out = &recording->rays;
+    const RtAccel *first = recording->of[0].accel;
+    bool looked_up = false;
+    for (uint32_t i = 0; i < recording->count; i++)
+        looked_up |= rt_cell_layer(recording->of[i].accel, RT_RAY_PRIMARY) != NULL;
+    rt_bytes_put_number(out, ray->ray.kind);
+    rt_bytes_put_number(out, ray->level);
+    rt_bytes_put_number(out, ray->parent == RT_NO_RAY ? 0 : tree->rays[ray->parent].number);
+    rt_bytes_put_number(out, ray->ray.source);
+    rt_bytes_put_number(out, (uint64_t)ray->total + 2 * (uint64_t)ray->cut);
+    put_vector(out, ray->ray.org);
+    put_vector(out, ray->ray.dir);
+    rt_bytes_put_float(out, ray->ray.tmax);
+    put_object(out, ray->hit.object);
+    rt_bytes_put_float(out, ray->hit.t);
+    put_vector(out, ray->added);
+    if (looked_up && ray->ray.kind == RT_RAY_PRIMARY)
+        return put_candidates(out, rt_accel_base(first), ray->ray, error);
+    rt_bytes_put_number(out, 0);
+    return RT_OK;
+}
+
+static RtStatus record_tree(RtRecordedPixels *recording, const RtRayTree *tree, RtError *error) {
+    uint32_t place = rt_bytes_begin(&recording->rays), places[RT_MAX_EXPLORED];
+    for (uint32_t i = 0; i < recording->count; i++) places[i] = rt_bytes_begin(&recording->of[i].paths);
+    for (uint32_t k = 0, left = tree->count; left > 0; k = rt_ray_tree_next(tree, k), left--) {
+        RT_TRY(put_ray(recording, tree, &tree->rays[k], error));
+        for (uint32_t i = 0; i < recording->count; i++) {
+            RtPath path;
+            RT_TRY(rt_path_trace(&path, recording->of[i].accel, &tree->rays[k].ray, error));
+            RtStatus status = put_path(recording, &recording->of[i], &path, error);
+            rt_path_clear(&path);
+            RT_TRY(status);
+        }
+    }
+    rt_bytes_end(&recording->rays, place);
+    for (uint32_t i = 0; i < recording->count; i++) rt_bytes_end(&recording->of[i].paths, places[i]);
+    recording->ray_count += tree->count;
+    return RT_OK;
+}
+
+/* ---- all pixels ---- */
+
+static uint64_t bytes_of(const RtRecordedPixels *recording) {
+    uint64_t bytes = recording->rays.count;
+    for (uint32_t i = 0; i < recording->count; i++)
+        bytes += recording->of[i].paths.count + recording->of[i].event_count * (uint64_t)sizeof(RtEvent);
+    return bytes;
+}
+
+static RtStatus record_pixels(RtRecordedPixels *recording, const RtExploreOptions *options, bool *fits,
+                              RtError *error) {
+    const RtAccel *first = recording->of[0].accel;
+    for (uint32_t i = 0; i < recording->columns * recording->rows; i++) {
+        RtRayTree tree;
+        RT_TRY(rt_ray_tree_trace(&tree, first, rt_recorded_pixel(recording, i % recording->columns),
+                                 rt_recorded_pixel(recording, i / recording->columns), options->depth,
+                                 error));
+        RtStatus status = record_tree(recording, &tree, error);
+        rt_ray_tree_clear(&tree);
+        RT_TRY(status);
+        *fits = bytes_of(recording) <= (uint64_t)options->bytes * RAW_PER_BYTE;
+        if (!*fits) return RT_OK;
+    }
+    RT_TRY(rt_bytes_compress(&recording->rays, error));
+    for (uint32_t i = 0; i < recording->count; i++) RT_TRY(rt_bytes_compress(&recording->of[i].paths, error));
+    return RT_OK;
+}
+
+/* Pixels in places stride / 2, stride / 2 + stride, ... below `side`; one at least. */
+static uint32_t places_in(uint32_t side, uint32_t stride) {
+    return side > stride / 2 ? (side - stride / 2 + stride - 1) / stride : 0;
+}
+
+RtStatus rt_recorded_pixels_make(RtRecordedPixels *recording, RtAccel *const *accels, uint32_t count,
+                                 const RtExploreOptions *options, RtError *error) {
+    const RtSampling *s = &accels[0]->scene->sampling;
+    RtStatus status = RT_OK;
+    bool fits = false;
+    for (uint32_t stride = 1; status == RT_OK && !fits; stride++) {
+        *recording = (RtRecordedPixels){.stride = stride,
+                                        .columns = places_in(s->width, stride),
+                                        .rows = places_in(s->height, stride),
+                                        .count = count};
+        if (recording->columns == 0 || recording->rows == 0)
+            return rt_fail(error, RT_BAD_INPUT,
+                           "the paths of a single pixel do not fit on the page: leave out an accelerator");
+        for (uint32_t i = 0; i < count; i++) recording->of[i].accel = accels[i];
+        status = record_pixels(recording, options, &fits, error);
+        if (status != RT_OK || !fits) rt_recorded_pixels_clear(recording);
+    }
+    return status;
+}
+
+void rt_recorded_pixels_clear(RtRecordedPixels *recording) {
+    rt_bytes_clear(&recording->rays);
+    for (uint32_t i = 0; i < recording->count; i++) {
+        RtRecordedPaths *of = &recording->of[i];
+        rt_bytes_clear(&of->paths);
+        rt_free(of->forms);
+        rt_free(of->events);
+        rt_free(of->slots);
+    }
+    *recording = (RtRecordedPixels){0};
+}
