@@ -100,7 +100,8 @@ static void find_nearest(RtPath *path) {
 
 /* Accelerators that replay answers learn what the ray hits. */
 static RtStatus teach(RtAccel *accel, RtQuery *query, const RtRay *ray, RtError *error) {
-    RtHit hit;
+    RtHit hit = RT_MISS;
+    RT_TRY(rt_accel_learn(accel, ray, &hit, 0, error)); /* forget an earlier ray that lay at this address */
     rt_nearest(query, ray, 1, &hit, NULL);
     return rt_accel_learn(accel, ray, &hit, 1, error);
 }

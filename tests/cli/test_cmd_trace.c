@@ -184,6 +184,12 @@ RT_TEST(a_tree_is_printed_with_each_ray_the_five_terms_and_sums) {
     unlink(OUT ".txt");
 }
 
+RT_TEST(ideal_tests_one_object_for_each_ray_of_a_tree_that_hits) {
+    assert_int_equal(trace(LECTURE " --pixel 35,44 --depth 4 --accel ideal"), 0);
+    assert_true(says(OUT ".txt", "in all: 15 rays in 4 levels, 10 object_tests, 0 extent_tests"));
+    unlink(OUT ".txt");
+}
+
 static void assert_drawn_in_every_format(const char *what) {
     static const char *const begins[][2] = {{".svg", "<svg"}, {".pdf", "%PDF"}, {".png", "PNG"}};
     for (int i = 0; i < 3; i++) {
