@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "report/explore_shapes.h"
 
+#include "core/base/elementary.h"
+
 enum { CORNERS = 16 }; /* of a cone's circles */
 
 /* ---- objects ---- */
@@ -39,8 +41,8 @@ static void put_polygon(Shapes *shapes, uint32_t object, const RtVec3 *vertices,
 
 /* The point of a circle around the axis, in direction cosine * u + sine * v. */
 static RtVec3 on_circle(RtVec3 center, float radius, RtVec3d u, RtVec3d v, uint32_t corner) {
-    double angle = 2 * 3.14159265358979323846 * corner / CORNERS;
-    RtVec3d out = rt_add_scaledd(rt_scaled(u, cos(angle)), v, sin(angle));
+    const RtTurn turn = rt_turn(360.0 * corner / CORNERS);
+    RtVec3d out = rt_add_scaledd(rt_scaled(u, turn.cosine), v, turn.sine);
     return rt_narrow(rt_add_scaledd(rt_widen(center), out, (double)radius));
 }
 

@@ -119,9 +119,12 @@ static void put_y_axis(const Range *range, FILE *out) {
     if (high > 100 * low) return;
     static const int steps[] = {1, 2, 5};
     const char *before = "set ytics (";
-    for (int power = (int)floor(log10(low)); power <= (int)floor(log10(high)); power++) {
+    double decade = 1;
+    while (decade > low) decade /= 10;
+    while (10 * decade <= low) decade *= 10;
+    for (; decade <= high; decade *= 10) {
         for (int i = 0; i < 3; i++) {
-            const double tic = steps[i] * pow(10, power);
+            const double tic = steps[i] * decade;
             if (tic < low || tic > high) continue;
             fprintf(out, "%s%.9g", before, tic);
             before = ",";

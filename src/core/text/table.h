@@ -104,9 +104,9 @@ const char *rt_field_show(RtForm form, const RtField *field, char buffer[RT_MAX_
 /* A number in about four characters: 0, 0.0034, 1.24, 12.4, 124, 69666; "-" for NAN. Needs 16 bytes. */
 void rt_format_figure(double value, char *out);
 
-/* A number with its interval: "1.23 [1.17, 1.31]", "1.2e5 [0.9e5, 1.6e5]"; without it if an end is NAN. It has
- * no more digits than the interval supports, except to show that the interval does not contain 1. Ends may be
- * INFINITY: "inf". */
+/* A number with its interval: "1.23 [1.17, 1.31]", "1.2e5 [0.9e5, 1.6e5]"; without it if an end is NAN. It
+ * has no more digits than the interval supports, except to show that the interval does not contain 1. Ends
+ * may be INFINITY: "inf". */
 void rt_format_interval(double value, double low, double high, char out[RT_MAX_FIELD]);
 
 /* A number whose error is unknown, in two digits: 0.35, 12, 350, 1.2e5. */
