@@ -1,9 +1,11 @@
 # What counts.csv and times.csv have rows of, in the order of the experiment.
 experiment = "first-look"
 format = "svg"
+paper = "page"
 scenes = "balls scattered bunny "
+files = "balls scattered bunny "
 accels = "brute extents clusters grid octree item+wide light+wide wide bvh kd embree-user embree ideal "
-colors = "#7f7f7f #e69f00 #cc79a7 #009e73 #56b4e9 #a6761d #b2182b #0072b2 #d55e00 #5b4a9f #7b3294 #441c51 #222222 "
+colors = "#7f7f7f #e69f00 #cc79a7 #009e73 #56b4e9 #a6761d #b2182b #0072b2 #d55e00 #5b4a9f #7b3294 #2b1234 #222222 "
 markers = "7 5 9 11 13 6 4 8 10 12 7 5 9 "
 dashes = "1 1 1 1 1 1 1 1 1 1 2 2 2 "
 groups = "\"no structure\" \"the four classic structures\" \"the four classic structures\" \"the four classic structures\" \"the four classic structures\" \"the two classic buffers over wide\" \"the two classic buffers over wide\" \"newer structures\" \"newer structures\" \"newer structures\" \"Embree\" \"Embree\" \"bounds object tests, not time\" "

@@ -27,14 +27,25 @@ figure(x) = x != x ? "–" : x == 0 ? "0" : x < 0.01 ? "< 0.01" : x < 0.1 ? spri
             x < 10 ? sprintf("%.1f", x) : sprintf("%.0f", x)
 
 # Opens plots/NAME.svg, or .pdf as wide as a column of a paper (3.5 in up to 480 pixels, else both columns, 7.16 in). In a pdf a
-# pixel is `point` points, and three quarters of that for letters: letters of 13 of 960 pixels are 7 points high. raytally draws
-# both, and removes .tmp when all is drawn.
+# pixel is `point` points, and three quarters of that for letters. Letters of `font` 13 and more have at least 8 points there.
+# raytally draws both, and removes .tmp when all is drawn.
+letters = 1.2
 point(width) = 72.0 * (width <= 480 ? 3.5 : 7.16) / width
 canvas(name, width, height) = format eq "pdf" ? \
   sprintf("set terminal pdfcairo size %.3fin,%.3fin font 'Helvetica,13' fontscale %.4f linewidth %.4f pointscale %.4f background '#ffffff'; \
-set output 'plots/%s.pdf.tmp'", point(width) * width / 72, point(width) * height / 72, 0.75 * point(width), point(width), 1.9 * point(width), name) : \
-  sprintf("set terminal svg size %d,%d dynamic font 'Helvetica,13' background '#ffffff'; \
-set output 'plots/%s.svg.tmp'", width, height, name)
+set output 'plots/%s.pdf.tmp'", point(width) * width / 72, point(width) * height / 72, 0.75 * letters * point(width), point(width), \
+    1.9 * point(width), name) : \
+  sprintf("set terminal svg size %d,%d dynamic font 'Helvetica,13' fontscale %.4f background '#ffffff'; \
+set output 'plots/%s.svg.tmp'", width, height, letters, name)
+
+# For plots of several panels: their width in pixels, and the panels beside each other, at most `most` where the page is wide.
+wide = paper eq "column" ? 480 : 960
+across(most, panels) = paper eq "column" ? (panels > 3 ? 2 : 1) : panels < most ? panels : most
+
+# Tics of ratios from low to high on a logarithmic axis: eval "set ytics ".ratio_tics(low, high)
+ratio_tics(low, high) = paper eq "column" && high > 12 * low ? \
+  '("1/64" 1.0 / 64, "1/16" 1.0 / 16, "1/4" 0.25, "1" 1, "4" 4, "16" 16, "64" 64)' : \
+  '("1/32" 1.0 / 32, "1/16" 1.0 / 16, "1/8" 0.125, "1/4" 0.25, "1/2" 0.5, "1" 1, "2" 2, "4" 4, "8" 8, "16" 16, "32" 32)'
 
 # Requires `last`. Fills `order`, the indices of its numbers from the greatest to the least, as lines end at the right.
 sort_last = "order = ''; do for [n_ = 1:|last|] { best_ = 0; do for [i_ = 1:|last|] { \

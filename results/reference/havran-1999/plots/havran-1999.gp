@@ -6,7 +6,7 @@
 #:   Band: the tolerance; points at the edges lie beyond the panel.
 #: 3-best: Tests per ray of ours beside those of the best published row, a pair of bars per scene: left without steps, right with
 #:   steps. Blue: what the published rows also count. Orange: extent tests, which they do not count (a grid or an octree makes one
-#:   per ray). A hierarchy trades object tests for extent tests: ours needs less in all only if the whole bar is shorter.
+#:   per ray). A hierarchy trades object tests for extent tests: "more" or "fewer" compares the whole bars.
 #:   Axes begin at 0.
 
 n_scenes = words(scenes)
@@ -44,15 +44,15 @@ do for [m = 1:6] {
   set xrange [low : high]; set yrange [low : high]
   unset label
   set label 1 title[m] at graph 0, 1.06 left font ",15" textcolor rgb ink
-  set label 2 sprintf("band: ± %g %%", tolerance[m]) at graph 1, 1.06 right font ",12" textcolor rgb soft
+  set label 2 sprintf("band: ± %g %%", tolerance[m]) at graph 1, 1.06 right textcolor rgb soft
   if (m == 1) {
     do for [i = 1:7] {
-      set label 10 + i structure[i] at screen 0.03 + (i - 1) * 0.14, screen 0.02 left textcolor rgb ink font ",13" \
+      set label 10 + i structure[i] at screen 0.015 + (i - 1) * 0.14 + (i > 2 ? 0.02 : 0), screen 0.02 left textcolor rgb ink \
           point pointtype style_of[i] pointsize 0.9 linecolor rgb shade[i] offset character 1, 0
     }
   }
-  if (m > 3) { set label 3 "published" at graph 0.5, -0.14 center font ",12" textcolor rgb soft }
-  if (col == 0) { set label 4 "measured" at graph -0.2, 0.5 center rotate by 90 font ",12" textcolor rgb soft }
+  if (m > 3) { set label 3 "published" at graph 0.5, -0.14 center textcolor rgb soft }
+  if (col == 0) { set label 4 "measured" at graph -0.2, 0.5 center rotate by 90 textcolor rgb soft }
   factor = 0.01 * tolerance[m]
   set samples 200
   plot "+" using 1:($1 * (1 - factor)):($1 * (1 + factor)) with filledcurves linecolor rgb faint, \
@@ -92,19 +92,19 @@ do for [m = 1:6] {
     if (m == 1) { set label 1 word(scenes, s) at graph 0.5, 1.12 center font ",15" textcolor rgb ink }
     if (m == 1 && s == 1) {
       set label 20 "Measured against published, in %: a point a row. Bands: tolerance; on the edge: beyond the panel." \
-        at screen 0.085, screen 0.985 left textcolor rgb soft font ",12"
+        at screen 0.085, screen 0.985 left textcolor rgb soft
     }
     if (s == 1) {
-      set label 2 title[m] at screen 0.012, graph 0.5 center rotate by 90 font ",12" textcolor rgb ink
+      set label 2 title[m] at screen 0.012, graph 0.5 center rotate by 90 textcolor rgb ink
     }
     if (m == 6 && s == 1) {
       do for [i = 1:7] {
-        set label 10 + i structure[i] at screen 0.03 + (i - 1) * 0.14, screen 0.012 left textcolor rgb ink font ",13" \
+        set label 10 + i structure[i] at screen 0.015 + (i - 1) * 0.14 + (i > 2 ? 0.02 : 0), screen 0.012 left textcolor rgb ink \
           point pointtype style_of[i] pointsize 0.9 linecolor rgb shade[i] offset character 1, 0
       }
     }
     set format y (s == 1 ? "%+.0f %%" : "")
-    set ytics font ",11"
+    set ytics
     number = 0
     chosen(i) = is(m) && strcol("scene") eq word(scenes, s)
     count(i) = (number = number + 1, number)
@@ -139,30 +139,31 @@ do for [m = 1:2] {
   longest = STATS_max
   stats "best.csv" using (strcol("measure") eq measure ? column("ours") + column("extent_tests") : NaN) nooutput
   if (STATS_max > longest) { longest = STATS_max }
-  set xrange [0 : 1.95 * longest]
+  set xrange [0 : 2.35 * longest]
   set yrange [n_scenes + 0.6 : 0.4]
   unset label
-  set label 1 (m == 1 ? "object tests + extent tests / ray" : "object tests and steps + extent tests / ray") at graph 0, 1.05 left \
+  set label 1 (m == 1 ? "object tests + extent tests" : "object tests and steps + extent tests") at graph 0, 1.05 left \
     font ",15" textcolor rgb ink
   if (m == 1) {
     do for [s = 1:n_scenes] { set label 10 + s word(scenes, s) at graph -0.03, first s right font ",14" textcolor rgb ink }
-    set label 2 "■ best published row" at screen 0.075, screen 0.03 left textcolor rgb soft font ",13"
-    set label 3 "■ least of ours" at screen 0.245, screen 0.03 left textcolor rgb ours font ",13"
-    set label 4 "■ its extent tests" at screen 0.375, screen 0.03 left textcolor rgb "#9a6a00" font ",13"
-    set label 5 "Per ray of all kinds. Published rows count no extent tests." at screen 0.995, screen 0.03 right \
-      textcolor rgb soft font ",12"
+    set label 2 "■ best published row" at screen 0.075, screen 0.03 left textcolor rgb soft
+    set label 3 "■ least of ours" at screen 0.29, screen 0.03 left textcolor rgb ours
+    set label 4 "■ its extent tests" at screen 0.435, screen 0.03 left textcolor rgb "#9a6a00"
+    set label 5 "Published rows count no extent tests." at screen 0.995, screen 0.03 right \
+      textcolor rgb soft
   }
   place(text) = sum [s = 1:n_scenes] (word(scenes, s) eq text ? s : 0)
   at(i) = strcol("measure") eq measure ? place(strcol("scene")) : NaN
   all_tests(i) = column("ours") + column("extent_tests")
+  in_all(i) = all_tests(i) < column("published") + 1 ? "fewer" : "{/:Bold more}" # a grid or an octree makes one extent test
   plot "best.csv" using (0):(at(0) - 0.19):(0):(column("published")):(at(0) - 0.36):(at(0) - 0.02) with boxxyerror linecolor rgb theirs, \
        "" using (0):(at(0) + 0.19):(0):(column("ours")):(at(0) + 0.02):(at(0) + 0.36) with boxxyerror linecolor rgb ours, \
        "" using (0):(at(0) + 0.19):(column("ours")):(all_tests(0)):(at(0) + 0.02):(at(0) + 0.36) with boxxyerror linecolor rgb extents, \
        "" using (column("published")):(at(0) - 0.19):(sprintf(" %s  %s", figure(column("published")), strcol("published_row"))) \
-         with labels left textcolor rgb soft font ",12", \
+         with labels left textcolor rgb soft, \
        "" using (all_tests(0)):(at(0) + 0.19): \
-         (sprintf(" %s + %s  %s", figure(column("ours")), figure(column("extent_tests")), strcol("accel"))) \
-         with labels left textcolor rgb ink font ",12"
+         (sprintf(" %s + %s  %s: %s", figure(column("ours")), figure(column("extent_tests")), strcol("accel"), in_all(0))) \
+         with labels left textcolor rgb ink
 }
 unset multiplot
 unset output

@@ -2,7 +2,7 @@
 # item-buffer: throughput of whole frames over that of Embree's best, by samples along a side, without the buffer's build and with
 # it in one frame or ten.
 #: 1-frames: Throughput of whole frames over that of Embree's best, over the samples along a side, without the buffer's build and
-#:   with it in one frame or ten. Medians, with intervals without the build; above 1 the item buffer is faster.
+#:   with it in one frame or ten. Logarithmic axes, one scale. Medians, with intervals without the build; above 1 the item buffer is faster.
 #: 2-triangles: The same for a frame of 1024 x 1024 samples over the triangles of the dragon.
 
 names = "bunny dragon hall forest"
@@ -15,13 +15,17 @@ with_build(frames) = theirs(0) / (column("ns") + 1e9 * column("build_seconds") /
 
 set logscale x 2
 set xrange [200 : 2600]
-set yrange [0 : *]
+set logscale y 2
+set yrange [0.4 : 24]
+eval "set ytics ".ratio_tics(0.4, 24)
 set grid ytics
 set xtics (256, 512, 1024, 2048)
-set xlabel "samples along a side of the frame" textcolor rgb ink
+set xlabel "samples along a side" textcolor rgb ink
 
-eval canvas("1-frames", 960, 400)
-set multiplot layout 1, 3 margins screen 0.075, 0.985, 0.14, 0.84 spacing screen 0.04, 0.1
+columns = across(3, 3); rows = 3 / columns
+height = 72 + 328 * rows
+eval canvas("1-frames", wide, height)
+set multiplot layout rows, columns margins screen 72.0 / wide, 0.985, 60.0 / height, 1 - 44.0 / height spacing screen 0.04, 108.0 / height
 set title "buffer built" font ",14" textcolor rgb ink
 set ylabel "throughput / Embree's best" textcolor rgb ink
 set key top right samplen 2 textcolor rgb ink

@@ -88,7 +88,7 @@ do for [f = 1:n_families] {
   set xlabel "α: weight of overlap; of cost 1 - α" textcolor rgb ink
   set format y (f == 1 ? "%g" : "")
   set ylabel (f == 1 ? "correlation with ns per ray" : "") textcolor rgb ink
-  if (f == 1) { set key left bottom font ",12" textcolor rgb ink samplen 1.5 } else { unset key }
+  if (f == 1) { set key left bottom textcolor rgb ink samplen 1.5 } else { unset key }
   plot for [k = 1:n_kinds] mean(f, k, x, 0) with lines linewidth 2 dashtype stroke(k) linecolor rgb hue(k) title word(kinds, k), \
        for [k = 1:n_kinds] "+" using (best_alpha[(f - 1) * n_kinds + k]):(mean(f, k, best_alpha[(f - 1) * n_kinds + k], 0)) every ::0::0 \
          with points pointtype mark(k) pointsize 0.9 linecolor rgb hue(k) notitle

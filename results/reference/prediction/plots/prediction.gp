@@ -34,7 +34,7 @@ eval canvas("1-random-lines", 960, 500)
 set multiplot
 set logscale xy
 set grid ytics
-set key left top font ",12" textcolor rgb ink samplen 0.5 spacing 1.05
+set key left top textcolor rgb ink samplen 0.5 spacing 1.05
 do for [m = 1:2] {
   what = word("tests steps", m)
   set lmargin at screen 0.085 + (m - 1) * 0.475
@@ -61,7 +61,7 @@ unset logscale y
 set grid xtics noytics
 set yrange [n_scenes + 0.6 : 0.4]
 set xrange [0.008 : 250]
-set xtics ("1/100" 0.01, "1/10" 0.1, "1" 1, "10" 10, "100" 100)
+set xtics ("1/100" 0.01, "1" 1, "100" 100)
 unset ylabel
 do for [m = 1:2] {
   what = word("tests steps", m)
@@ -71,12 +71,12 @@ do for [m = 1:2] {
     set rmargin at screen 0.08 + k * 0.23 - 0.02
     set tmargin at screen 0.94 - (m - 1) * 0.46
     set bmargin at screen 0.585 - (m - 1) * 0.46
-    set title (m == 1 ? "tests" : "steps").", ".kind." rays" textcolor rgb ink font ",13"
+    set title (m == 1 ? "tests" : "steps").", ".kind." rays" textcolor rgb ink
     set xlabel (m == 2 ? "measured / predicted" : "") textcolor rgb ink
     unset ytics; unset label
     if (k == 1) {
       do for [s = 1:n_scenes] {
-        set label s word(scenes, s) at graph -0.04, first s right textcolor rgb ink font ",12"
+        set label s word(scenes, s) at graph -0.04, first s right textcolor rgb ink
       }
     }
     set arrow 1 from 1, graph 0 to 1, graph 1 nohead linecolor rgb soft
@@ -145,7 +145,7 @@ set logscale xy
 set grid xtics ytics
 set xtics autofreq; set ytics autofreq
 set xrange [20 : 200000]; set yrange [20 : 200000]
-set key left top font ",12" textcolor rgb ink samplen 0.5 spacing 1.05
+set key left top textcolor rgb ink samplen 0.5 spacing 1.05
 do for [m = 1:2] {
   set lmargin at screen 0.085 + (m - 1) * 0.475
   set rmargin at screen 0.505 + (m - 1) * 0.475
