@@ -8,7 +8,7 @@ method(a) = word(accels, a)[17:*]
 row(s, k, a) = strcol("scene") eq word(scenes, s) && strcol("kind") eq word(kinds, k) && strcol("accel") eq word(accels, a)
 
 eval canvas("1-cost", 960, 480)
-set multiplot layout 1, words(scenes) margins screen 0.075, 0.985, 0.14, 0.78 spacing screen 0.02, 0.1
+set multiplot layout 1, words(scenes) margins screen 0.095, 0.985, 0.15, 0.76 spacing screen 0.02, 0.1
 set logscale xy
 set grid xtics ytics
 stats "times.csv" using (column("build_seconds") * 1000):(column("ns")) nooutput

@@ -9,8 +9,8 @@ shapes = "spheres triangles"
 of(shape) = strcol("scene")[1:strlen(shape)] eq shape
 row(shape, k, a) = of(shape) && strcol("kind") eq word(kinds, k) && strcol("accel") eq word(accels, a)
 
-eval canvas("1-crossing", 960, 560)
-set multiplot layout 2, words(kinds) margins screen 0.075, 0.985, 0.1, 0.89 spacing screen 0.035, 0.13
+eval canvas("1-crossing", 960, 590)
+set multiplot layout 2, words(kinds) margins screen 0.075, 0.985, 0.1, 0.87 spacing screen 0.035, 0.13
 set logscale xy 2
 set grid xtics ytics
 set xrange [0.2 : 10]

@@ -43,11 +43,11 @@ plot for [a = 3:words(accels)] "times.csv" using (own(a) * side(a)):(column("bui
 unset output
 
 eval canvas("2-rays", 960, 440)
-set multiplot layout 1, words(kinds) margins screen 0.075, 0.845, 0.13, 0.9 spacing screen 0.18, 0.1
+set multiplot layout 1, words(kinds) margins screen 0.08, 0.775, 0.15, 0.9 spacing screen 0.255, 0.1
 set yrange [10 : 1e6]
 do for [k = 1:words(kinds)] {
   set title word(kinds, k)." rays" font ",13" textcolor rgb ink
-  set key at screen 0.375 + 0.475 * (k - 1), screen 0.88 left top Left reverse font ",11" samplen 1.2 spacing 1.1 textcolor rgb ink title "exponent" left
+  set key at screen 0.305 + 0.475 * (k - 1), screen 0.9 left top Left reverse samplen 1.2 spacing 0.95 textcolor rgb ink title "exponent" left
   if (k == 1) { set ylabel "time, ns per ray" textcolor rgb ink } else { unset ylabel }
   plot for [a = 1:words(accels)] "times.csv" using (ray(a, k)):(column("ns")):(column("ns_low")):(column("ns_high")) \
     with yerrorlines linewidth 1.6 dashtype dash(a) pointtype marker(a) pointsize 0.6 linecolor rgb color(a) \

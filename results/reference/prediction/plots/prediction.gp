@@ -60,8 +60,8 @@ set multiplot
 unset logscale y
 set grid xtics noytics
 set yrange [n_scenes + 0.6 : 0.4]
-set xrange [0.008 : 250]
-set xtics ("1/100" 0.01, "1" 1, "100" 100)
+set xrange [0.008 : 600]
+set xtics ("1/100" 0.01, "1/10" 0.1, "1" 1, "10" 10, "100" 100)
 unset ylabel
 do for [m = 1:2] {
   what = word("tests steps", m)
@@ -143,7 +143,8 @@ eval canvas("3-time", 960, 500)
 set multiplot
 set logscale xy
 set grid xtics ytics
-set xtics autofreq; set ytics autofreq
+set xtics autofreq nomirror; set ytics autofreq nomirror
+set format "10^{%T}" # until the end of this plot
 set xrange [20 : 200000]; set yrange [20 : 200000]
 set key left top textcolor rgb ink samplen 0.5 spacing 1.05
 do for [m = 1:2] {
@@ -163,5 +164,6 @@ do for [m = 1:2] {
          with points pointtype mark(s) pointsize 0.55 linecolor rgb hue(s) notitle
 }
 unset multiplot
+set format "%g"
 unset key
 unset output
