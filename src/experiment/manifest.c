@@ -93,6 +93,11 @@ static RtStatus load_experiment(const json_t *manifest, const char *directory, R
                        "%s/manifest.json does not say what was run: give the YAML of the experiment",
                        directory);
     }
+    if (!rt_file_exists(file)) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s is not here: start raytally in the folder in which %s was measured", file,
+                       directory);
+    }
     RT_TRY(rt_experiment_load(experiment, file, json_is_true(json_object_get(manifest, "quick")), error));
     json_t *now = rt_json_hex(experiment->fingerprint);
     bool same = now && json_equal(now, hash);
