@@ -56,7 +56,14 @@ for command in $("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\) .
     cmp -s <("$program" "$command" --help) <("$program" help "$command") ||
         complain "raytally help $command: says something other than raytally $command --help"
     refuses "unrecognized option '--bogus'.*$command --help" "$command" --bogus
+    # An example that is wrapped cannot be pasted; it continues in an indented line.
+    "$program" "$command" --help | awk '
+        /[[:blank:]]$/ || (example && /^[^[:blank:]]/) { print "line " NR ": " $0; bad = 1 }
+        { example = /^  raytally / }
+        END { exit bad }' >wrapped || complain "raytally $command --help is wrapped badly: $(cat wrapped)"
+    rm wrapped
 done
+[ -z "$("$program" --help | awk 'length > 80')" ] || complain "raytally --help exceeds 80 columns"
 for command in render info convert; do
     refuses "raytally $command: .*raytally $command" $command
 done
@@ -383,6 +390,9 @@ refuses 'occupied.*(directory|folder)' run small.yaml --out occupied
 ends 0 run small.yaml
 ends 0 run small.yaml --resume
 ends 0 reproduce results/small
+mv small.yaml away.yaml
+refuses 'small\.yaml is not here: start raytally in the folder in which results/small was measured' reproduce results/small
+mv away.yaml small.yaml
 ends 0 run results/small/manifest.json --out again
 cmp -s results/small/counts.csv again/counts.csv || complain "raytally run DIR/manifest.json: does not count the same"
 refuses "quick: .*manifest.json says" run results/small/manifest.json --quick --out again
