@@ -74,8 +74,8 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
 
 const RtAccelOps rt_ideal_ops = {
     .name = "ideal",
-    .summary =
-        "recorded answers: one test for a ray that hits, none for one that misses; a lower bound on cost",
+    .summary = "recorded answers: one test for a ray that hits, none for one that misses; a lower bound on "
+               "object tests",
     .paper = "none: a reference",
     .build = build,
     .destroy = destroy,

@@ -56,7 +56,14 @@ for command in $("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\) .
     cmp -s <("$program" "$command" --help) <("$program" help "$command") ||
         complain "raytally help $command: says something other than raytally $command --help"
     refuses "unrecognized option '--bogus'.*$command --help" "$command" --bogus
+    # An example that is wrapped cannot be pasted; it continues in an indented line.
+    "$program" "$command" --help | awk '
+        /[[:blank:]]$/ || (example && /^[^[:blank:]]/) { print "line " NR ": " $0; bad = 1 }
+        { example = /^  raytally / }
+        END { exit bad }' >wrapped || complain "raytally $command --help is wrapped badly: $(cat wrapped)"
+    rm wrapped
 done
+[ -z "$("$program" --help | awk 'length > 80')" ] || complain "raytally --help exceeds 80 columns"
 for command in render info convert; do
     refuses "raytally $command: .*raytally $command" $command
 done
@@ -327,7 +334,9 @@ for subject in '' 'a' 'a b c' 'a b --with c' 'a b --accel bvh' 'a b --until 1%' 
     refuses 'raytally compare: ' compare $subject
 done
 refuses "margin: invalid value '3'" compare a b --margin 3
-refuses 'nowhere is not a finished result directory.*raytally run EXPERIMENT --out nowhere --resume' compare nowhere nowhere
+refuses 'there is no directory nowhere' compare nowhere nowhere
+mkdir begun
+refuses 'begun is not a finished result directory.*raytally run EXPERIMENT --out begun --resume' compare begun begun
 refuses 'an EXPERIMENT defines its rays' compare a.yaml --rays primary --with "$program"
 refuses 'no/such: cannot be started: No such file' compare balls:size=1 --accel bvh --size 8x8 --with no/such
 refuses '/bin/true cannot be compared' compare balls:size=1 --accel bvh --size 8x8 --with /bin/true
@@ -342,7 +351,8 @@ yaml absent 'name: a' 'question: b' 'prediction: c' 'scenes: [{scene: absent.obj
 refuses 'absent\.obj: there is no such file; .*fetch\.sh' run absent.yaml
 for command in plot report reproduce; do
     refuses 'DIR is missing' $command
-    refuses 'nowhere is not a finished result directory' $command nowhere
+    refuses 'there is no directory nowhere' $command nowhere
+    refuses 'begun is not a finished result directory' $command begun
 done
 ends 0 info family:kind=slivers,seed=7
 ends 0 render family:kind=csg,seed=7 --size 8x8 -o family.png
@@ -383,6 +393,9 @@ refuses 'occupied.*(directory|folder)' run small.yaml --out occupied
 ends 0 run small.yaml
 ends 0 run small.yaml --resume
 ends 0 reproduce results/small
+mv small.yaml away.yaml
+refuses 'small\.yaml cannot be read here: start raytally in the folder in which results/small was measured' reproduce results/small
+mv away.yaml small.yaml
 ends 0 run results/small/manifest.json --out again
 cmp -s results/small/counts.csv again/counts.csv || complain "raytally run DIR/manifest.json: does not count the same"
 refuses "quick: .*manifest.json says" run results/small/manifest.json --quick --out again

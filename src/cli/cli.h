@@ -28,19 +28,19 @@ typedef struct RtCommand {
 #define RT_COMMANDS(X)                                                                                       \
     X(accels, "accels", "[NAME]", "list the accelerators and their parameters")                              \
     X(scenes, "scenes", "[NAME]", "list the built-in scenes and their parameters")                           \
-    X(info, "info", "SCENE", "objects by shape, bounds, materials, lights, camera of a scene")               \
-    X(render, "render", "SCENE", "an image of a scene, heatmaps of its cost, pictures of structures")        \
-    X(trace, "trace", "SCENE", "one ray's path through an accelerator, or the ray tree of a pixel")          \
-    X(explore, "explore", "SCENE", "a page: click a pixel, step its rays through structures in 3-D")         \
+    X(info, "info", "SCENE", "objects, bounds, materials, lights, camera of a scene")                        \
+    X(render, "render", "SCENE", "an image of a scene, of its cost, or of structures")                       \
+    X(trace, "trace", "SCENE", "a ray's path through an accelerator, or a pixel's ray tree")                 \
+    X(explore, "explore", "SCENE", "a page to step rays of a pixel through structures")                      \
     X(verify, "verify", "[SCENE...]", "check that every hit equals brute's")                                 \
     X(bench, "bench", "SCENE", "count and time accelerators on the rays of one scene")                       \
     X(compare, "compare", "BEFORE AFTER", "compare two results, or two programs that alternate")             \
-    X(rays, "rays", "SCENE", "write rays of a scene for NumPy; bench and verify read such files")            \
+    X(rays, "rays", "SCENE", "write rays for NumPy; bench and verify read such files")                       \
     X(run, "run", "EXPERIMENT", "run an experiment: CSV files, plots, report")                               \
     X(merge, "merge", "DIR...", "join the shards of an experiment (run --shard)")                            \
     X(plot, "plot", "DIR", "draw the plots of a result directory again")                                     \
-    X(report, "report", "DIR", "write the report of a result directory again, or an index")                  \
-    X(reproduce, "reproduce", "DIR", "count again and compare with DIR/counts.csv, byte for byte")           \
+    X(report, "report", "DIR", "write a result directory's report again, or an index")                       \
+    X(reproduce, "reproduce", "DIR", "count again, compare with DIR/counts.csv byte for byte")               \
     X(convert, "convert", "IN OUT", "write a scene in another format")                                       \
     X(new_accel, "new-accel", "NAME", "make a folder with a working plugin to start from")                   \
     X(completion, "completion", "SHELL", "print a completion script for bash")

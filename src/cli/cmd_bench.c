@@ -356,7 +356,8 @@ const RtSyntax rt_bench_syntax = {
             "Example:\n"
             "  raytally bench balls --accel bvh --accel grid --accel brute --ray-stride 100\n"
             "  raytally bench 'balls:size=2|3' --accel bvh --accel 'grid:density=1..16*4'\n"
-            "  raytally bench balls --accel bvh --rays-from rays.npy --rays nearest --hits hits.npy"};
+            "  raytally bench balls --accel bvh --rays-from rays.npy --rays nearest \\\n"
+            "    --hits hits.npy"};
 
 RtStatus rt_command_bench(int argc, char **argv, RtError *error) {
     Options o = {.threads = -1, .workload = {.timing = 1, .patience = RT_PATIENCE}, .argv = argv};

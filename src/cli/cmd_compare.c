@@ -88,7 +88,7 @@ static const RtOption options[] = {
      "With --until: at most this many seconds in total (600)"},
     {"callgrind", 0, "N", RT_TO_TAKE_OPTIONAL(take_callgrind),
      "With --with and a SCENE: also compare instructions per ray of both programs, on N rays of each kind "
-     "(4096), by valgrind, as `bench --callgrind` counts them. They tell a change from code that only moved"},
+     "(4096), by valgrind, as `bench --callgrind` counts them. Equal counts mean that code only moved"},
     {"quick", 0, NULL, RT_TO_FLAG(quick), "Run the smaller variant of the EXPERIMENT"},
     {"threads", 0, "N", RT_TO_INTEGER(threads, 0, 1024), "Threads, as in `raytally bench`"},
     {"json", 0, NULL, RT_TO_FLAG(json), "One JSON document on stdout instead of the table"},
@@ -293,10 +293,12 @@ const RtSyntax rt_compare_syntax = {
         "confidence, however many cells there are. Directories are single runs at different times: they "
         "have verdicts of accelerators, over several scenes or pairs of runs, relative to the median "
         "accelerator. Examples:\n"
-        "  raytally compare balls --accel bvh --accel grid --with ../old/build/release/raytally\n"
-        "  raytally compare experiments/first-look.yaml --quick --with ../old/build/release/raytally "
-        "--until 1%\n"
-        "  raytally compare balls --accel bvh --with ../old/build/release/raytally --callgrind\n"
+        "  raytally compare balls --accel bvh --accel grid \\\n"
+        "    --with ../old/build/release/raytally\n"
+        "  raytally compare experiments/first-look.yaml --quick \\\n"
+        "    --with ../old/build/release/raytally --until 1%\n"
+        "  raytally compare balls --accel bvh --callgrind \\\n"
+        "    --with ../old/build/release/raytally\n"
         "  raytally compare results/last-month results/first-look --strict"};
 
 RtStatus rt_command_compare(int argc, char **argv, RtError *error) {

@@ -100,7 +100,8 @@ const RtSyntax rt_explore_syntax = {
         "view. "
         "Examples:\n"
         "  raytally explore balls:size=2 --accel bvh --accel grid -o walk.html\n"
-        "  raytally explore balls:size=2 --accel item+light:cells=20+octree -o buffers.html"};
+        "  raytally explore balls:size=2 --accel item+light:cells=20+octree \\\n"
+        "    -o buffers.html"};
 
 RtStatus rt_command_explore(int argc, char **argv, RtError *error) {
     Options o = {.size = {160, 120}, .depth = 4, .megabytes = 6};

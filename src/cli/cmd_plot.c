@@ -33,7 +33,7 @@ static void take_paper(void *options, const char *text, struct argp_state *state
 
 static const RtOption options[] = {
     {"paper", 0, "WIDTH", RT_TO_TAKE(take_paper),
-     "lay out figures with several panels for one `column` of a paper (3.5 in), or for the `page` (7.16 in, "
+     "Lay out figures with several panels for one `column` of a paper (3.5 in), or for the `page` (7.16 in, "
      "the default)"},
     RT_TRUST_OPTION(allowed),
     {0}};

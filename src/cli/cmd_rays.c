@@ -65,7 +65,8 @@ const RtSyntax rt_rays_syntax = {
             "(of any length; t is measured in it), tmax. `raytally bench --rays-from` and `raytally verify "
             "--rays-from` read such a file from any renderer. Example:\n"
             "  raytally rays balls --rays diffuse -o rays.npy\n"
-            "  raytally bench balls --accel bvh --rays-from rays.npy --rays nearest --hits hits.npy\n"
+            "  raytally bench balls --accel bvh --rays-from rays.npy --rays nearest \\\n"
+            "    --hits hits.npy\n"
             "  python3 -c \"import numpy; print(numpy.load('hits.npy')['object'])\""};
 
 RtStatus rt_command_rays(int argc, char **argv, RtError *error) {

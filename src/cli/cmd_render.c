@@ -76,7 +76,7 @@ static void finish(void *options, struct argp_state *state) {
 static const RtOption options[] = {
     {"accel", 'a', "SPEC", RT_TO_TAKE(take_accel),
      "Accelerator (default bvh); `raytally accels` lists them. With --heatmap up to 8 times, to compare"},
-    {"size", 's', "WxH", RT_TO_SIZE(size), "Size of the image in pixels (default: the scene's)"},
+    {"size", 's', "WxH", RT_TO_SIZE(size), "Size of the image in pixels (default: the camera's)"},
     {"corners", 0, NULL, RT_TO_FLAG(corners),
      "Sample the corners of pixels, (W+1) x (H+1) rays, as the SPD scenes require"},
     {"samples", 'n', "N", RT_TO_INTEGER(samples, 1, 64), "N x N samples per pixel, 1..64 (default 1)"},
@@ -377,12 +377,14 @@ static const char help[] =
     "Trace SCENE, a file or a built-in (as in balls:size=4), under the standard illumination model.\v"
     "For example:\n"
     "  raytally render balls -o balls.png\n"
-    "  raytally render balls --accel octree --structure leaves.png --leaves --level 0..6\n"
+    "  raytally render balls --accel octree --structure leaves.png --leaves \\\n"
+    "    --level 0..6\n"
     "  raytally render balls --accel grid --structure section.png --slice z\n"
     "  raytally render balls --accel item:settle=off+bvh --structure samples.png\n"
-    "  raytally render balls --accel light:cells=64+bvh --structure cells.png --pixel 256,400\n"
-    "  raytally render balls --accel grid --accel kd --heatmap object_tests tests.png "
-    "--heatmap-difference\n"
+    "  raytally render balls --accel light:cells=64+bvh --structure cells.png \\\n"
+    "    --pixel 256,400\n"
+    "  raytally render balls --accel grid --accel kd \\\n"
+    "    --heatmap object_tests tests.png --heatmap-difference\n\n"
     "`raytally trace` follows a single ray. docs/columns.md explains the counters.";
 const RtSyntax rt_render_syntax = {.options = options,
                                    .shared = rt_picture_options,

@@ -92,7 +92,7 @@ static const RtOption options[] = {
     {"renew", 0, NULL, RT_TO_TAKE(take_renew),
      "As --resume, after a plugin has changed: measure its cells again, keep all others"},
     {"force", 0, NULL, RT_TO_SET(how.start, RT_START_ANEW),
-     "Start over: the results in DIR are lost. The last of --resume and --force counts; --force rather than "
+     "Start over: the results in DIR are lost. The last of --resume and --force counts; --force overrides "
      "--update"},
     RT_TRUST_OPTION(how.scripts),
     {"threads", 't', "N", RT_TO_INTEGER(threads, 0, 1024), RT_THREADS_HELP},

@@ -43,7 +43,7 @@ static const RtOption options[] = {
     {"pixel", 'p', "X,Y", RT_TO_TAKE(take_pixel),
      "The ray through the middle of this pixel, 0,0 is the upper left"},
     {"accel", 'a', "SPEC", RT_TO_TEXT(accel), "Accelerator (default bvh); `raytally accels` lists them"},
-    {"size", 's', "WxH", RT_TO_SIZE(size), "Size of the image in pixels (default: the scene's)"},
+    {"size", 's', "WxH", RT_TO_SIZE(size), "Size of the image in pixels (default: the camera's)"},
     {"rays", 'k', "KIND", RT_TO_TAKE(take_kind),
      "primary (default), or the shadow, reflection or transmission ray that starts where the primary ray "
      "hits"},
@@ -330,8 +330,9 @@ const RtSyntax rt_trace_syntax = {
         "Examples:\n"
         "  raytally trace balls --pixel 256,256\n"
         "  raytally trace balls --pixel 256,256 --accel grid:density=1 --svg path.svg\n"
-        "  raytally trace balls --pixel 256,400 --accel light:cells=40+octree --rays shadow --light 1\n"
-        "  raytally trace scenes/lecture.yaml --pixel 279,366 --depth 4 --svg tree.svg\n"
+        "  raytally trace balls --pixel 256,400 --accel light:cells=40+octree \\\n"
+        "    --rays shadow --light 1\n"
+        "  raytally trace scenes/lecture.yaml --pixel 279,366 --depth 4 --svg tree.svg\n\n"
         "embree shows no steps, because it counts none; with mode=user it shows object tests. A plugin shows "
         "its "
         "steps and extent tests by raytally_show (raytally/accel.h); without that they have no boxes."};

@@ -31,7 +31,7 @@ static void print_usage(FILE *to) {
         snprintf(usage, sizeof usage, "%s %s", commands[i].name, commands[i].arguments);
         fprintf(to, "  %-21s %s\n", usage, commands[i].summary);
     }
-    fprintf(to, "\n`raytally COMMAND --help` or `raytally help COMMAND` explains a command. First steps:\n"
+    fprintf(to, "\n`raytally COMMAND --help` or `raytally help COMMAND` explains a command.\nFirst steps:\n"
                 "  raytally accels                          list the accelerators\n"
                 "  raytally render balls -o balls.png       a picture\n"
                 "  raytally bench balls --accel bvh --accel grid   a comparison\n"

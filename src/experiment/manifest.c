@@ -71,6 +71,8 @@ RtStatus rt_manifest_read(const char *directory, json_t **manifest, RtError *err
     char path[RT_MAX_PATH];
     json_error_t fault;
     *manifest = NULL;
+    if (!rt_file_exists(directory))
+        return rt_fail(error, RT_BAD_INPUT, "there is no directory %s", directory);
     RT_TRY(rt_path_join(directory, RT_MANIFEST, path, error));
     if (!rt_file_exists(path)) {
         return rt_fail(error, RT_BAD_INPUT,
@@ -91,6 +93,11 @@ static RtStatus load_experiment(const json_t *manifest, const char *directory, R
     if (!file || !json_is_string(hash)) {
         return rt_fail(error, RT_BAD_INPUT,
                        "%s/manifest.json does not say what was run: give the YAML of the experiment",
+                       directory);
+    }
+    if (!rt_file_exists(file)) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s cannot be read here: start raytally in the folder in which %s was measured", file,
                        directory);
     }
     RT_TRY(rt_experiment_load(experiment, file, json_is_true(json_object_get(manifest, "quick")), error));

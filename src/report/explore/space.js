@@ -105,7 +105,7 @@ export function makeSpace(data, place) {
     eye: () => aim(from, at),
     // Beside the eye, where primary rays are not seen end-on.
     aside: () => aim(at.clone().add(from.clone().sub(at).applyAxisAngle(camera.up, -0.6).multiplyScalar(1.2)), at),
-    // From aside, so that the ray is seen in its length.
+    // From the side, so that the ray is seen in its length.
     closer(ray) {
       const end = vector(ray.org).addScaledVector(vector(ray.dir), Number.isFinite(ray.t) ? ray.t : 0), to = vector(ray.dir).normalize();
       const aside = new THREE.Vector3().crossVectors(to, camera.up).normalize();

@@ -14,7 +14,7 @@ export const rayName = (ray) => ray.kind === 'shadow' ? `shadow ray to light ${r
   ray.kind === 'reflection' && ray.total ? 'reflection ray (total)' : `${ray.kind} ray`;
 
 function note(ray) {
-  if (ray.kind === 'shadow') return ray.object === null ? 'the light arrives' : 'in shadow';
+  if (ray.kind === 'shadow') return ray.object === null ? 'lit' : 'in shadow';
   if (ray.object === null) return 'background';
   return ray.cut ? 'the depth is reached' : '';
 }
