@@ -147,7 +147,9 @@ static void put_pages(const Index *index, FILE *html, FILE *markdown) {
     rt_html_wrap(html, "<p class=\"meta\">", origins, "</p>\n");
     fputs("# Experiments\n\n", markdown);
     rt_index_put_markdown(markdown, origins ? origins : "", false);
-    fputs("\n\n", markdown);
+    fputs(
+        "\n\nA name links to the files of the experiment; `raytally report DIR` makes a report of them.\n\n",
+        markdown);
     free(origins);
     for (uint32_t from = 0, to; from < index->count; from = to) {
         to = from + 1;
