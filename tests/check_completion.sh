@@ -122,7 +122,7 @@ done
 # Every option that --help lists, except argp's own.
 for command in $("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\) .*/\1/p'); do
     # shellcheck disable=SC2046 # options are words
-    offers "raytally $command --" $("$program" "$command" --help | grep -oE '^ {2,6}(-., )?--[a-z-]+' | grep -o -e '--.*')
+    offers "raytally $command --" $("$program" "$command" --help | grep -oE '^(  -., |      )--[a-z-]+' | grep -o -e '--.*')
 done
 
 [ $failures = 0 ]

@@ -30,7 +30,7 @@ typedef struct RtCommand {
     X(scenes, "scenes", "[NAME]", "list the built-in scenes and their parameters")                           \
     X(info, "info", "SCENE", "objects, bounds, materials, lights, camera of a scene")                        \
     X(render, "render", "SCENE", "an image of a scene, of its cost, or of structures")                       \
-    X(trace, "trace", "SCENE", "a ray's path through an accelerator, or a pixel's ray tree")                 \
+    X(trace, "trace", "SCENE", "a ray's path through an accelerator, or its ray tree")                       \
     X(explore, "explore", "SCENE", "a page to step rays of a pixel through structures")                      \
     X(verify, "verify", "[SCENE...]", "check that every hit equals brute's")                                 \
     X(bench, "bench", "SCENE", "count and time accelerators on the rays of one scene")                       \
