@@ -1,9 +1,11 @@
 # What counts.csv and times.csv have rows of, in the order of the experiment.
 experiment = "arena-streams"
 format = "svg"
+paper = "page"
 scenes = "bunny dragon hall forest tetra soup clusters stadium "
+files = "bunny dragon hall forest tetra soup clusters stadium "
 accels = "wide visionaray embree-1-medium-avx2 embree-8-medium-avx2 embree-16-medium-avx2 embree-stream-medium-avx2 embree-1-high-avx2 embree-8-high-avx2 embree-16-high-avx2 embree-stream-high-avx2 embree-1-medium-avx512 embree-8-medium-avx512 embree-16-medium-avx512 embree-stream-medium-avx512 embree-1-high-avx512 embree-8-high-avx512 embree-16-high-avx512 embree-stream-high-avx512 "
-colors = "#0072b2 #17becf #7b3294 #441c51 #9960ac #5f2773 #8a49a0 #512162 #a877b8 #6d2c83 #823e9a #4b1e5a #a06cb2 #662a7b #9155a6 #58246a #af83be #742f8c "
+colors = "#0072b2 #17becf #7b3294 #2b1234 #351640 #3f1a4c #491e58 #532264 #5d2670 #672a7c #712e88 #87459e #9458a8 #a06bb2 #ac7ebc #b891c6 #c5a4d0 #d1b7da "
 markers = "7 5 9 11 13 6 4 8 10 12 7 5 9 11 13 6 4 8 "
 dashes = "1 1 1 1 1 1 1 1 1 1 2 2 2 2 2 2 2 2 "
 groups = "\"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" "
