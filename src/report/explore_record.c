@@ -194,7 +194,7 @@ static RtStatus put_ray(RtRecordedPixels *recording, const RtRayTree *tree, cons
 }
 
 static RtStatus record_tree(RtRecordedPixels *recording, const RtRayTree *tree, RtError *error) {
-    uint32_t place = rt_bytes_begin(&recording->rays), places[RT_MAX_EXPLORED];
+    uint32_t place = rt_bytes_begin(&recording->rays), places[RT_MAX_EXPLORED] = {0};
     for (uint32_t i = 0; i < recording->count; i++) places[i] = rt_bytes_begin(&recording->of[i].paths);
     for (uint32_t k = 0, left = tree->count; left > 0; k = rt_ray_tree_next(tree, k), left--) {
         RT_TRY(put_ray(recording, tree, &tree->rays[k], error));

@@ -159,11 +159,12 @@ const RtAccel *rt_cell_layer(const RtAccel *accel, uint32_t kind) {
 static void put_side(const RtAccel *layer, uint32_t light, int side, RtBytes *out) {
     const int axis = side / 2;
     for (int i = 0; i < RT_CELL_MAP * RT_CELL_MAP; i++) {
+        const int column = i % RT_CELL_MAP, row = i / RT_CELL_MAP;
         RtRay ray = {.kind = RT_RAY_SHADOW, .source = light};
         RtCellView cell;
         ray.dir.at[axis] = side % 2 ? -1 : 1; /* shadow rays point at the light */
-        ray.dir.at[(axis + 1) % 3] = 1 - 2 * ((float)(i % RT_CELL_MAP) + 0.5f) / RT_CELL_MAP;
-        ray.dir.at[(axis + 2) % 3] = 1 - 2 * ((float)(i / RT_CELL_MAP) + 0.5f) / RT_CELL_MAP;
+        ray.dir.at[(axis + 1) % 3] = 1 - 2 * ((float)column + 0.5f) / RT_CELL_MAP;
+        ray.dir.at[(axis + 2) % 3] = 1 - 2 * ((float)row + 0.5f) / RT_CELL_MAP;
         const bool found = layer->ops->find_cell(layer, &ray, &cell);
         rt_bytes_put_number(out, found ? (uint64_t)cell.number + 1 : 0);
         rt_bytes_put_number(out, found ? cell.length : 0);

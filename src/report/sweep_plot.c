@@ -122,13 +122,14 @@ static void put_y_axis(const Range *range, FILE *out) {
     double decade = 1;
     while (decade > low) decade /= 10;
     while (10 * decade <= low) decade *= 10;
-    for (; decade <= high; decade *= 10) {
+    while (decade <= high) {
         for (int i = 0; i < 3; i++) {
             const double tic = steps[i] * decade;
             if (tic < low || tic > high) continue;
             fprintf(out, "%s%.9g", before, tic);
             before = ",";
         }
+        decade *= 10;
     }
     fputs(")\n", out);
 }
