@@ -432,8 +432,8 @@ RT_TEST_IN_PLACE(the_index_groups_experiments_by_section_with_plot_first_sentenc
         "<h2>Lecture</h2>",
         "taught/report.html",
         "<h2>Papers</h2>",
-        "<td class=\"prose\">A | B 1988</td><td>19</td><td class=\"prose\">"
-        "&ldquo;It &lt;is&gt;.&rdquo;</td><td><span class=\"verdict open\">in part</span>",
+        ("<td class=\"prose\">A | B 1988</td><td>19</td><td class=\"prose\">"
+         "&ldquo;It &lt;is&gt;.&rdquo;</td><td><span class=\"verdict open\">in part</span>"),
         "<section class=\"card entry\" id=\"quoting\">",
         "<img loading=\"lazy\" alt=\"Plot of quoting\" src=\"quoting/plots/1.svg\">",
         "<p>So et al. 1990 said.</p>\n<details>",
