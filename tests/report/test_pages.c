@@ -451,7 +451,6 @@ RT_TEST_IN_PLACE(the_index_groups_experiments_by_section_with_plot_first_sentenc
                                     "### [quoting](quoting)\n\n![Plot of quoting](quoting/plots/1.svg)",
                                     "**Question.** Which is \\<cheaper>?",
                                     "**Finding.** So et al. 1990 said. The `rest` is folded.",
-
                                     "<details><summary>Prediction and claims</summary>\n\n**Prediction.** ",
                                     "- **holds**: `object_tests of bvh < 30`: ",
                                     "### [judged](judged)\n\n10 pairs"};
