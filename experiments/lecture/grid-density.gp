@@ -11,7 +11,7 @@ random = 0
 do for [k = 1:words(kinds)] { if (word(kinds, k) eq "random") { random = k } }
 
 eval canvas("1-density", 960, 420)
-set multiplot layout 1, words(scenes) margins screen 0.085, 0.985, 0.15, 0.77 spacing screen 0.02, 0.1
+set multiplot layout 1, words(scenes) margins screen 0.1, 0.985, 0.15, 0.74 spacing screen 0.02, 0.1
 set logscale x 2
 set logscale y 10
 set grid xtics ytics

@@ -23,7 +23,7 @@ has(stack, o) = strstrt("+".stack."+", "+".word(stacks, o)."+") > 0
 sum_of(n, stack) = 1 - (sum [o = 1:3] (has(stack, o) ? saved[3 * (n - 1) + o] : 0))
 
 eval canvas("frame", 960, 420)
-set multiplot layout 1, words(scenes) margins screen 0.085, 0.985, 0.28, 0.82 spacing screen 0.02, 0.1
+set multiplot layout 1, words(scenes) margins screen 0.085, 0.985, 0.28, 0.79 spacing screen 0.02, 0.1
 set xrange [0.5 : words(stacks) + 0.5]
 set logscale y
 set yrange [0.005 : 7]
@@ -35,7 +35,7 @@ do for [s = 1:words(scenes)] {
   set title word(scenes, s) font ",13" textcolor rgb ink
   if (s == 1) {
     set ylabel "frame, without overlays 1" textcolor rgb ink
-    set key at screen 0.985, screen 0.985 right top vertical maxrows 1 samplen 1 textcolor rgb ink
+    set key at screen 0.985, screen 0.985 right top vertical maxrows 2 samplen 1 textcolor rgb ink
   } else { unset ylabel; set format y ""; unset key }
   plot 1 with lines linewidth 1.5 dashtype 2 linecolor rgb soft notitle, \
        for [b = 1:words(bases)] NaN with points pointtype mark(b) linecolor rgb hue(b) title "over ".word(bases, b), \

@@ -223,8 +223,8 @@ static void put_legend(const RtSweepLines *figure, const Layout *l, const uint32
     }
 }
 
-static void put_panel(const RtSweepLines *figure, const Layout *l, const uint32_t *order, uint32_t group,
-                      FILE *out) {
+static void put_panel(const RtSweepLines *figure, const Layout *l, const uint32_t *order, const Range *range,
+                      uint32_t group, FILE *out) {
     const uint32_t column = group % l->columns, row = group / l->columns;
     const double left = LEFT + column * (l->panel + RIGHT);
     const double top = TOP + row * (PANEL + l->gap);
@@ -238,8 +238,8 @@ static void put_panel(const RtSweepLines *figure, const Layout *l, const uint32_
             1 - (top + PANEL) / l->height);
     fprintf(out, "set title \"%s\" noenhanced textcolor rgb ink offset 0, -0.4\n", name);
     if (column == 0)
-        fprintf(out, "set ylabel \"%s\" textcolor rgb ink; set format y \"%%g\"\n",
-                measures[l->measure].axis);
+        fprintf(out, "set ylabel \"%s\" textcolor rgb ink; set format y \"%s\"\n", measures[l->measure].axis,
+                range->logarithmic && range->most >= 1e5 ? "10^{%T}" : "%g");
     else
         fputs("unset ylabel; set format y \"\"\n", out);
     if (lowest)
@@ -279,7 +279,8 @@ static void put_figure(const RtSweepLines *figure, RtSweepMeasure measure, uint3
     fprintf(out, "eval canvas(\"%s\", %.0f, %.0f)\nset multiplot\n", name, l.width, l.height);
     put_y_axis(&range, out);
     put_legend(figure, &l, order, &range, out);
-    for (uint32_t group = 0; group < figure->group_count; group++) put_panel(figure, &l, order, group, out);
+    for (uint32_t group = 0; group < figure->group_count; group++)
+        put_panel(figure, &l, order, &range, group, out);
     fputs("unset multiplot\nunset output\n", out);
 }
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # octree-grid: time of grid, nested grid and octree over the number of objects, the width of clusters and the ratio of the stadium.
-#: 1-crossover: Time per ray of grid, nested grid and octree, primary, shadow and diffuse rays together, with intervals: over the
-#:   number of evenly spread spheres, the width of clusters, and the length of the stadium over that of the teapot.
+#: 1-crossover: Time per ray of grid, nested grid, octree and, in the stadium, a deep octree, with intervals: over the number
+#:   of evenly spread spheres, the width of clusters, and the length of the stadium over that of the teapot. All kinds of rays.
 
 sweeps = "uniform clustered stadium"
 keys = "scene.n scene.width scene.ratio"
@@ -15,17 +15,20 @@ do for [s = 1:words(scenes)] {
   sweep = scene[1:strstrt(scene, ":") - 1]
   x = real(scene[strstrt(scene, "=") + 1:*])
   do for [a = 1:words(accels)] {
-    stats "times.csv" using (row(s, a) ? column("set_rays") : NaN) nooutput; rays = STATS_sum
-    stats "times.csv" using (row(s, a) ? column("set_rays") * column("ns") : NaN) nooutput; mean = STATS_sum / rays
-    stats "times.csv" using (row(s, a) ? column("set_rays") * column("ns_low") : NaN) nooutput; low = STATS_sum / rays
-    stats "times.csv" using (row(s, a) ? column("set_rays") * column("ns_high") : NaN) nooutput; high = STATS_sum / rays
-    print sprintf("%s,%g,%s,%g,%g,%g", sweep, x, word(accels, a), mean, low, high)
+    stats "times.csv" using (row(s, a) ? 1 : 0) nooutput
+    if (STATS_max > 0) { # the accelerator was run on this scene
+      stats "times.csv" using (row(s, a) ? column("set_rays") : NaN) nooutput; rays = STATS_sum
+      stats "times.csv" using (row(s, a) ? column("set_rays") * column("ns") : NaN) nooutput; mean = STATS_sum / rays
+      stats "times.csv" using (row(s, a) ? column("set_rays") * column("ns_low") : NaN) nooutput; low = STATS_sum / rays
+      stats "times.csv" using (row(s, a) ? column("set_rays") * column("ns_high") : NaN) nooutput; high = STATS_sum / rays
+      print sprintf("%s,%g,%s,%g,%g,%g", sweep, x, word(accels, a), mean, low, high)
+    }
   }
 }
 unset print
 
 eval canvas("1-crossover", 960, 400)
-set multiplot layout 1, 3 margins screen 0.085, 0.985, 0.15, 0.88 spacing screen 0.02, 0.1
+set multiplot layout 1, 3 margins screen 0.1, 0.985, 0.15, 0.88 spacing screen 0.02, 0.1
 set logscale xy
 set grid xtics ytics
 stats "plots/1-crossover.csv" using (column("ns")) nooutput
@@ -43,6 +46,8 @@ do for [p = 1:3] {
   else { unset ylabel; set format y ""; unset key }
   plot for [a = 1:words(accels)] "plots/1-crossover.csv" using (strcol("sweep") eq word(sweeps, p) && strcol("accel") eq word(accels, a) ? column("x") : NaN): \
     (column("ns")):(column("low")):(column("high")) with yerrorlines linewidth 1.8 dashtype dash(a) pointtype marker(a) pointsize 0.7 \
+    linecolor rgb color(a) notitle, \
+    for [a = 1:words(accels)] keyentry with linespoints linewidth 1.8 dashtype dash(a) pointtype marker(a) pointsize 0.7 \
     linecolor rgb color(a) title word(accels, a)
 }
 unset multiplot
