@@ -21,7 +21,7 @@ do for [p = 1:2] {
   if (p == 1) { set logscale x 2; set xrange [0.8 : 40]; set xtics (1, 2, 4, 8, 16, 32) } \
   else { unset logscale x; set xrange [2.7 : 10.3]; set xtics 3, 1, 10 }
   eval canvas(sprintf("%d-%s", p, name), 960, 380)
-  set multiplot layout 1, words(scenes) margins screen 0.075, 0.985, 0.16, 0.8 spacing screen 0.02, 0.1
+  set multiplot layout 1, words(scenes) margins screen 0.095, 0.985, 0.16, 0.8 spacing screen 0.02, 0.1
   set xlabel word(captions, p) textcolor rgb ink
   do for [s = 1:words(scenes)] {
     set title word(scenes, s) font ",13" textcolor rgb ink

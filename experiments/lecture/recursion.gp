@@ -27,9 +27,10 @@ do for [n = 1:words(names)] {
   name = word(names, n)
   set title name.": rays of a frame" font ",13" textcolor rgb ink
   set ylabel "thousand rays" textcolor rgb ink
-  if (n == words(names)) { set key inside top left reverse Left samplen 1.5 textcolor rgb ink } else { unset key }
+  if (n == words(names)) { set key inside top left reverse Left samplen 1.5 textcolor rgb ink; set offsets 0, 0, graph 0.35, 0 } else { unset key }
   plot for [k = 1:words(kinds)] "times.csv" using (row(name, word(kinds, k), word(accels, 1)) ? column("depth") : NaN):(column("set_rays") / 1000.0) \
     with linespoints linewidth 1.8 pointtype mark(k) pointsize 0.8 linecolor rgb hue(k) title word(kinds, k)
+  unset offsets
   set title name.": time of a frame" font ",13" textcolor rgb ink
   set ylabel "ms" textcolor rgb ink
   plot for [a = 1:words(accels)] "+" using (int($0) + 1):(ms[cell(n, int($0) + 1, a)]):(low[cell(n, int($0) + 1, a)]):(high[cell(n, int($0) + 1, a)]) \

@@ -239,7 +239,7 @@ static void put_panel(const RtSweepLines *figure, const Layout *l, const uint32_
     fprintf(out, "set title \"%s\" noenhanced textcolor rgb ink offset 0, -0.4\n", name);
     if (column == 0)
         fprintf(out, "set ylabel \"%s\" textcolor rgb ink; set format y \"%s\"\n", measures[l->measure].axis,
-                range->logarithmic && range->most >= 1e5 ? "10^{%T}" : "%g");
+                range->logarithmic && range->most * 1.3 >= 1e5 ? "10^{%T}" : "%g");
     else
         fputs("unset ylabel; set format y \"\"\n", out);
     if (lowest)

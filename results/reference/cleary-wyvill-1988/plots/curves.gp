@@ -27,7 +27,7 @@ do for [scene in scenes] { if (strlen(scene) > longest) { longest = strlen(scene
 right = 1 - (46 + 8.5 * longest) / 960
 
 eval canvas("1-curves", 960, 640)
-set multiplot layout 2, n_kinds margins screen 0.095, right, 0.11, 0.94 spacing screen 0.03, 0.1
+set multiplot layout 2, n_kinds margins screen 0.095, right, 0.125, 0.94 spacing screen 0.03, 0.1
 set logscale y 2
 set grid xtics ytics
 do for [k = 1:n_kinds] {

@@ -5,7 +5,7 @@
 
 n_accels = words(accels)
 sizes = "small large"
-caption = "'trees of 8 to 64 solids' 'trees of 512 solids'"
+caption = "'8 to 64 solids' '512 solids'"
 array title[3] = ["solids tested / ray", "extents tested / ray", "ns / ray"]
 
 # Means over all ray kinds, weighted by the size of the whole set; unknown if a kind was left out.
@@ -41,7 +41,7 @@ do for [s = 1:2] {
   }
 }
 
-eval canvas("1-csg", 960, 760)
+eval canvas("1-csg", 960, 1000)
 set multiplot
 set yrange [n_accels + 0.6 : 0.4]
 set border 2 linecolor rgb soft
@@ -60,17 +60,18 @@ do for [s = 1:2] {
     set xtics auto; set xtics power * (highest > 5.5 * power ? 5 : highest > 3 * power ? 2 : highest > 1.5 * power ? 1 : 0.5)
     set lmargin at screen left + (m - 1) * width + 0.012
     set rmargin at screen left + m * width
-    set tmargin at screen 0.875 - (s - 1) * 0.455
-    set bmargin at screen 0.515 - (s - 1) * 0.455
+    set tmargin at screen 0.905 - (s - 1) * 0.455
+    set bmargin at screen 0.535 - (s - 1) * 0.455
     unset label
     unset ytics
     if (s == 1 && m == 1) {
       set label 3 "■ with inner extents" at screen left + 0.012, screen 0.975 left font ",14" textcolor rgb on_color
-      set label 4 "■ without" at screen left + 0.19, screen 0.975 left font ",14" textcolor rgb "#b4521f"
+      set label 4 "■ without" at screen left + 0.25, screen 0.975 left font ",14" textcolor rgb "#b4521f"
       set label 5 "Means over all kinds of rays." at screen 0.985, screen 0.975 right textcolor rgb soft
     }
-    set label 1 word(caption, s).": ".title[m] at graph 0, 1.045 left textcolor rgb ink
+    set label 1 title[m] at graph 0, 1.035 left textcolor rgb ink
     if (m == 1) {
+      set label 2 word(caption, s) at screen 0.01, graph 1.035 left textcolor rgb ink
       do for [a = 1:n_accels] {
         set label 100 + a word(accels, a) at graph -0.03, first a right textcolor rgb ink
       }

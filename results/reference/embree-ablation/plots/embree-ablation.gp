@@ -9,7 +9,7 @@ height(a, k) = n_accels - a + 0.14 * (0.5 * (n_kinds + 1) - k)
 
 set logscale x 2
 set xrange [0.035 : 1.8]
-eval "set xtics ".ratio_tics(0.035, 1.8)
+set xtics ("1/16" 1.0 / 16, "" 0.125, "1/4" 0.25, "" 0.5, "1" 1)
 set yrange [-0.5 : n_accels - 1.5]
 set grid xtics ytics
 set bars small

@@ -8,7 +8,7 @@ given(k, a) = strcol("kind") eq word(kinds, k) && strcol("accel") eq word(accels
 measured(i) = column("extent_tests") / column("rays")
 
 eval canvas("1-predicted", 960, 480)
-set multiplot layout 1, n_kinds margins screen 0.075, 0.98, 0.12, 0.82 spacing screen 0.06, 0.1
+set multiplot layout 1, n_kinds margins screen 0.095, 0.965, 0.12, 0.82 spacing screen 0.06, 0.1
 set logscale xy
 set grid xtics ytics
 set xlabel "predicted cost" textcolor rgb ink

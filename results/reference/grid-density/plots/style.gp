@@ -43,7 +43,9 @@ wide = paper eq "column" ? 480 : 960
 across(most, panels) = paper eq "column" ? (panels > 3 ? 2 : 1) : panels < most ? panels : most
 
 # Tics of ratios from low to high on a logarithmic axis: eval "set ytics ".ratio_tics(low, high)
-ratio_tics(low, high) = paper eq "column" && high > 12 * low ? \
+ratio_tics(low, high) = high < 2.5 * low ? \
+  '("0.5" 0.5, "0.6" 0.6, "0.7" 0.7, "0.8" 0.8, "0.9" 0.9, "1" 1, "1.2" 1.2, "1.4" 1.4, "1.7" 1.7, "2" 2, "2.5" 2.5)' : high < 6 * low ? \
+  '("0.2" 0.2, "0.3" 0.3, "0.5" 0.5, "0.7" 0.7, "1" 1, "1.4" 1.4, "2" 2, "3" 3, "4" 4)' : paper eq "column" && high > 12 * low ? \
   '("1/64" 1.0 / 64, "1/16" 1.0 / 16, "1/4" 0.25, "1" 1, "4" 4, "16" 16, "64" 64)' : \
   '("1/32" 1.0 / 32, "1/16" 1.0 / 16, "1/8" 0.125, "1/4" 0.25, "1/2" 0.5, "1" 1, "2" 2, "4" 4, "8" 8, "16" 16, "32" 32)'
 

@@ -24,17 +24,17 @@ stats "times.csv" using (swept(strcol("accel")) > 0 ? 1 / column("ratio") : NaN)
 fastest = STATS_min > 0.6 ? 0.45 : STATS_min / 1.3; slowest = STATS_max < 1.7 ? 2.2 : STATS_max * 1.3
 longest = 0
 do for [scene in scenes] { if (strlen(scene) > longest) { longest = strlen(scene) } }
-right = 1 - (46 + 6.6 * longest) / 960
+right = 1 - (46 + 8.5 * longest) / 960
 
 eval canvas("1-curves", 960, 640)
-set multiplot layout 2, n_kinds margins screen 0.095, right, 0.08, 0.94 spacing screen 0.03, 0.1
+set multiplot layout 2, n_kinds margins screen 0.095, right, 0.125, 0.94 spacing screen 0.03, 0.1
 set logscale y 2
 set grid xtics ytics
 do for [k = 1:n_kinds] {
   if (k == 1) { set ylabel "object tests per ray" textcolor rgb ink; set format y "%g" } else { unset ylabel; set format y "" }
   set title word(kinds, k) font ",13" textcolor rgb ink
   if (k < n_kinds) { unset key }
-  else { set key at screen 0.99, screen 0.94 right top vertical samplen 1.5 font ",11" noenhanced textcolor rgb ink }
+  else { set key at screen 0.99, screen 0.94 right top vertical maxcols 1 samplen 1.5 spacing 0.95 noenhanced textcolor rgb ink }
   set yrange [least : most]
   plot for [s = 1:n_scenes] "times.csv" using (row(s, k)):(tests(0)) with linespoints linewidth 1.5 \
          dashtype dashed(s) pointtype mark(s) pointsize 0.6 linecolor rgb hue(s) title word(scenes, s)

@@ -66,7 +66,7 @@ set arrow 3 from screen 0.6583, screen 0.0414 to screen 0.7250, screen 0.0414 no
 set label 3 "oriented" at screen 0.6917, screen 0.0414 left noenhanced point linestyle 1 offset screen 0.0458, 0 textcolor rgb ink
 set lmargin at screen 0.1750; set rmargin at screen 0.9500; set tmargin at screen 0.9053; set bmargin at screen 0.2544
 set title "scattered" noenhanced textcolor rgb ink offset 0, -0.4
-set ylabel "object tests per ray" textcolor rgb ink; set format y "%g"
+set ylabel "object tests per ray" textcolor rgb ink; set format y "10^{%T}"
 set xlabel "n" noenhanced textcolor rgb ink
 order = "3 2 1 "
 plot for [i = 1:words(order)] '$p1_'.word(order, i) using 1:5 with linespoints linestyle int(word(order, i)) notitle

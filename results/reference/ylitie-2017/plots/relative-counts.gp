@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # relative-counts: expected cost, object tests and steps over those of the first accelerator, a row per accelerator.
-#: 2-counts: Expected cost, object tests and steps per ray over those of the first accelerator, on logarithmic scales.
+#: 2-counts: Expected cost, object tests and steps per ray over those of the first accelerator, on one logarithmic scale.
 #:   All ray kinds together, one marker per scene; left of 1 there are fewer.
 
 n_scenes = words(scenes)
@@ -29,9 +29,17 @@ key_rows = (n_scenes - 1) / int(940 / (42 + 9 * longest)) + 1
 head = 44.0 + 20 * key_rows
 height = head + 76 + n_shown * (18 + 4 * n_scenes)
 set logscale x 2
-set yrange [0.4 : n_shown + 0.6]
 set grid ytics
-set xtics 2; set format x "%g"
+set xrange [*:*]; set yrange [*:*] # that relative-time.gp may have set
+low = 1; high = 1 # the same scale for all
+do for [c = 1:3] {
+  stats table using (row(strcol("accel")) > 0 && column(word(counters, c)) > 0 ? column(word(counters, c)) : 1) nooutput
+  if (STATS_min < low) { low = STATS_min }
+  if (STATS_max > high) { high = STATS_max }
+}
+set xrange [low / 1.1 : high * 1.1]
+set yrange [0.4 : n_shown + 0.6]
+eval "set xtics ".ratio_tics(low / 1.1, high * 1.1)
 set xlabel "over that of ".first noenhanced textcolor rgb ink
 
 eval canvas("2-counts", 960, height)
