@@ -49,7 +49,7 @@ write_basic_package_version_file(raytally-config-version.cmake COMPATIBILITY Sam
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/raytally-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/raytally-config-version.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/raytally)
 # What libraytally.a needs is named by its flags: by Requires.private, programs that link the shared library would need it too.
-pkg_check_modules(STATIC assimp gmp jansson libpng libxxhash OpenEXR yaml-0.1)
+pkg_check_modules(STATIC gmp jansson libpng libxxhash OpenEXR yaml-0.1)
 set(private ${STATIC_STATIC_LDFLAGS} -lm -pthread)
 if(RT_WITH_EMBREE)
   list(PREPEND private -lembree${embree_VERSION_MAJOR})

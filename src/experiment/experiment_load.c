@@ -366,7 +366,7 @@ static RtStatus load(RtExperiment *experiment, const char *path, bool quick, RtE
         return rt_fail(error, RT_BAD_INPUT, "%.80s...: the path is too long", path);
     strcpy(experiment->path, path);
     rt_path_folder(path, experiment->folder);
-    RT_TRY(rt_file_read(path, RT_YAML_MAX_BYTES, &text, &length, error));
+    RT_TRY(rt_file_read_text(path, RT_YAML_MAX_BYTES, &text, &length, error));
     RtStatus status = rt_yaml_parse(&yaml, path, text, length, error);
     bool mapping = status == RT_OK && yaml.nodes->kind == RT_YAML_MAPPING;
     if (mapping) experiment->fingerprint = fingerprint_of(&yaml, text, length);

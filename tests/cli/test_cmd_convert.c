@@ -3,6 +3,8 @@
 #include "command_testing.h"
 #include "scene_testing.h"
 
+#include "core/base/file.h"
+
 #include <unistd.h>
 
 #define OUT RT_BINARY_DIR "/test_cmd_convert"
@@ -27,6 +29,9 @@ RT_TEST(convert_refuses_and_leaves_nothing_behind) {
     assert_int_equal(convert("balls:size=1"), 2);
     assert_int_equal(convert("nothing " OUT ".yaml"), 2);
     assert_int_equal(convert("balls:size=1 " OUT ".ply"), 2); /* spheres are no triangles */
+    static const char cut[] = "OFF\n3 1 0\n0 0 0\n1 0 0\n";
+    assert_ok(rt_file_write(OUT ".off", cut, strlen(cut), error));
+    assert_int_equal(convert(OUT ".off " OUT ".ply"), 2);
     assert_not_written(OUT ".ply");
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Meshes through Assimp: what is kept, where it is placed, what is rejected. */
+/* Meshes: what is kept, where it is placed, how polygons are split. test_mesh_damage.c has what is rejected.
+ */
 #include "scene_testing.h"
 
 #include "core/base/file.h"
@@ -11,6 +12,7 @@
 #include <unistd.h>
 
 #define OBJ_NAME RT_BINARY_DIR "/test_mesh_scene.obj"
+#define PLY_NAME RT_BINARY_DIR "/test_mesh_scene.ply"
 #define BUNNY    "/usr/share/glmark2/models/bunny.obj"
 
 static RtStatus load_text(const char *path, const char *text, RtScene *scene, RtError *out) {
@@ -112,67 +114,197 @@ RT_TEST(a_scene_with_other_shapes_is_not_written_as_a_mesh) {
     assert_not_written(REFUSED);
 }
 
-#define PLY(faces)                                                                                           \
-    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"        \
-    "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n" faces
+/* ---- polygons ---- */
 
-RT_TEST(bad_meshes_are_refused_with_what_is_wrong) {
-    const struct {
-        const char *path, *text, *says;
-    } cases[] = {
-        {OBJ_NAME, "", "Assimp cannot read"},
-        {OBJ_NAME, "v 0 0 0\nv 1 0 0\n", ""},
-        {OBJ_NAME, "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", "vertex 1 of mesh"},
-        {OBJ_NAME, "v 0 0 0\nv 1e30 0 0\nv 0 1 0\nf 1 2 3\n", "exceeds"},
-        {OBJ_NAME, "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\n", "no triangle"},
-        {OBJ_NAME, "v 0 0 0\nv 1 0 0\nf 1 2 9\n", ""},
-        {RT_BINARY_DIR "/test_mesh.glb", "glTF but not really", "Assimp cannot read"},
-        {RT_BINARY_DIR "/test_mesh.stl", "solid\nfacet", ""},
-        {RT_BINARY_DIR "/test_mesh.ply", PLY("0\n"), "has no vertices"},
-        {RT_BINARY_DIR "/test_mesh.ply", PLY("4 0 1 2 99999999\n"), "names vertex 99999999 of 3"},
-        {RT_BINARY_DIR "/test_mesh.ply", PLY("5 0 1 2 0 -1\n"), "names vertex 4294967295 of 3"},
-        {RT_BINARY_DIR "/test_mesh.ply", "ply\nformat ascii 1.0\nelement vertex 4000000000\nend_header\n",
-         ""},
-    };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        RtScene scene;
-        assert_bad_input_at(load_text(cases[i].path, cases[i].text, &scene, error), cases[i].path,
-                            cases[i].says);
-    }
-    RtScene scene = {0};
-    assert_bad_input(rt_mesh_append(&scene, "no_such.obj", 0, NULL, error), "No such file");
+/* Twice the area of a triangle, negative if the plane z = 0 sees it from behind. */
+static double area_of(const RtTriangle *triangle) {
+    const RtVec3d a = rt_widen(triangle->v[0]);
+    return rt_crossd(rt_subd(rt_widen(triangle->v[1]), a), rt_subd(rt_widen(triangle->v[2]), a)).z;
 }
 
-RT_TEST(assimp_says_nothing_on_the_terminal) {
-    FILE *both = tmpfile();
-    assert_non_null(both);
-    fflush(stdout);
-    fflush(stderr);
-    int out = dup(1), err = dup(2);
-    dup2(fileno(both), 1);
-    dup2(fileno(both), 2);
-    RtScene scene;
-    RtError problem;
-    RtStatus good = load_text(OBJ_NAME, "mtllib none.mtl\nusemtl x\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
-                              &scene, &problem);
-    if (good == RT_OK) rt_scene_clear(&scene);
-    RtStatus bad = load_text(OBJ_NAME, "nothing of the kind\n", &scene, &problem);
-    fflush(stdout);
-    fflush(stderr);
-    dup2(out, 1);
-    dup2(err, 2);
-    close(out);
-    close(err);
-    fseek(both, 0, SEEK_END);
-    assert_int_equal(ftell(both), 0);
-    fclose(both);
-    assert_int_equal(good, RT_OK);
-    assert_int_equal(bad, RT_BAD_INPUT);
+RT_TEST(polygons_of_any_form_become_triangles_that_cover_them) {
+    const struct {
+        const char *text;
+        uint32_t triangles;
+        double area; /* twice */
+    } cases[] = {
+        {"v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nf 1 2 3 4\n", 2, 8},
+        {"v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\nf 1 2 3 4\n", 2, 8}, /* an arrow, from each corner */
+        {"v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\nf 2 3 4 1\n", 2, 8},
+        {"v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\nf 3 4 1 2\n", 2, 8},
+        {"v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\nf 4 3 2 1\n", 2, -8}, /* seen from behind */
+        {"v 0 0 0\nv 3 0 0\nv 3 1 0\nv 2 1 0\nv 2 2 0\nv 3 2 0\nv 3 3 0\nv 0 3 0\nf 1 2 3 4 5 6 7 8\n", 6,
+         16},
+        {"v 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nf 1 2 3 4 5\n", 3, 8}, /* a corner on an edge */
+        {"v 0 0 0\nv 1 1 0\nv 2 2 0\nv 3 3 0\nf 1 2 3 4\n", 2, 0},            /* no area at all */
+        {"v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 1 1 0\nv 1 3 0\nv 3 3 0\nv 3 1 0\n"
+         "f 1 2 3 4 1 5 6 7 8 5\n",
+         8, 24}, /* a square with a hole, cut open */
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        OWNED_SCENE scene;
+        assert_ok(load_text(OBJ_NAME, cases[i].text, &scene, error));
+        assert_int_equal(scene.geometry.triangle_count, cases[i].triangles);
+        double area = 0;
+        for (uint32_t t = 0; t < scene.geometry.triangle_count; t++) {
+            const double part = area_of(&scene.geometry.triangles[t]);
+            assert_true(part * cases[i].area >= 0);
+            area += part;
+        }
+        assert_true(area == cases[i].area);
+    }
+}
+
+RT_TEST(a_polygon_that_crosses_itself_is_refused) {
+    static const char *const texts[] = {"v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 3 0\nf 1 2 3 4\n",
+                                        "v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 2 0\nf 1 2 3 4\n"};
+    for (int i = 0; i < 2; i++) {
+        RtScene scene;
+        assert_bad_input_at(load_text(OBJ_NAME, texts[i], &scene, error),
+                            OBJ_NAME ":5: ", "face 0 (counted from 0) crosses itself");
+    }
+}
+
+/* ---- formats ---- */
+
+RT_TEST(every_way_to_write_a_corner_of_obj_is_read) {
+    static const char head[] = "v 0 0 0\nv 1 0 0 1\nv 0 1 0 .1 .2 .3\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\n";
+    static const char *const faces[] = {
+        "f 1 2 3\n",      "f 1/1 2/2 3/3\n",        "f 1//1 2//1 3//1\n",
+        "f -3 -2 -1\n",   "f 1/1/1 2/2/1 3/3/1\n",  "f 1/-3/-1 2/2/1 -1/3/1\r\n",
+        "f 1 2 \\\n 3\n", "\tf  1\t2  3 # a face\n"};
+    for (size_t i = 0; i < sizeof faces / sizeof faces[0]; i++) {
+        char text[256];
+        OWNED_SCENE scene;
+        snprintf(text, sizeof text, "# a comment\no name\n%sg a b c\nusemtl x\ns off\nl 1 2\n%s", head,
+                 faces[i]);
+        assert_ok(load_text(OBJ_NAME, text, &scene, error));
+        assert_int_equal(scene.geometry.triangle_count, 1);
+        assert_true(scene.geometry.triangles[0].v[1].x == 1 && scene.geometry.triangles[0].v[2].y == 1);
+        assert_int_equal(scene.geometry.vertex_normal_count,
+                         strstr(faces[i], "//") || strstr(faces[i], "/1/") || strstr(faces[i], "/-3/"));
+    }
+}
+
+/* Element order, unused elements and properties, types, and both orders of bytes. */
+RT_TEST(ply_is_read_with_all_its_types) {
+    static const char text[] =
+        "ply\r\nformat ascii 1.0\r\ncomment # odd\r\nelement material 1\r\n"
+        "property list int8 uint16 x\r\nelement vertex 3\r\nproperty double y\r\n"
+        "property float32 x\r\nproperty uchar red\r\nproperty short z\r\nelement face 1\r\n"
+        "property list uint8 int32 vertex_index\r\nproperty list uchar float uv\r\n"
+        "end_header\r\n2 7 8\r\n0 0 255 -1\r\n0 1 255 -1\r\n1 0 255 -1\r\n"
+        "3 0 1 2 2 .5 .5\r\n";
+    static const char big[] = "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty short x\n"
+                              "property char y\nproperty int z\nelement face 1\n"
+                              "property list ushort uint vertex_indices\nend_header\n"
+                              "\0\0\0\xff\xff\xff\xff\0\1\0\xff\xff\xff\xff\0\0\1\xff\xff\xff\xff"
+                              "\0\3\0\0\0\0\0\0\0\1\0\0\0\2";
+    for (int i = 0; i < 2; i++) {
+        OWNED_SCENE scene;
+        assert_ok(rt_file_write(PLY_NAME, i ? big : text, (i ? sizeof big : sizeof text) - 1, error));
+        assert_ok(rt_scene_open(PLY_NAME, &scene, error));
+        assert_int_equal(scene.geometry.triangle_count, 1);
+        const RtVec3 *v = scene.geometry.triangles[0].v;
+        assert_true(v[0].z == -1 && v[1].x == 1 && v[1].y == 0 && v[2].x == 0 && v[2].y == 1);
+    }
+}
+
+RT_TEST(ply_and_off_keep_the_normals_of_their_vertices) {
+    static const char *const texts[][2] = {
+        {PLY_NAME,
+         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+         "property float nx\nproperty float ny\nproperty float nz\nelement face 1\n"
+         "property list uchar int vertex_indices\nend_header\n"
+         "0 0 0 0 0 2\n1 0 0 0 1 0\n0 1 0 1 0 0\n3 0 1 2\n"},
+        {RT_BINARY_DIR "/test_mesh.off",
+         "NOFF\n3 1 0\n0 0 0 0 0 2\n1 0 0 0 1 0\n0 1 0 1 0 0\n3 0 1 2 255 0 0\n"},
+    };
+    for (int i = 0; i < 2; i++) {
+        OWNED_SCENE scene;
+        assert_ok(load_text(texts[i][0], texts[i][1], &scene, error));
+        assert_int_equal(scene.geometry.vertex_normal_count, 1);
+        const RtVec3 *n = scene.geometry.vertex_normals[0].n;
+        assert_true(n[0].z == 1 && n[1].y == 1 && n[2].x == 1);
+    }
+}
+
+/* Of the corners 0 1 2 0, the second triangle is 1 0 2 as a strip, and 0 2 0 as a fan. */
+RT_TEST(strips_and_fans_of_gltf_keep_their_orientation) {
+    static const char form[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
+        "\"meshes\":[{\"primitives\":[{\"mode\":%d,\"attributes\":{\"POSITION\":0},\"indices\":1}]}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"
+        "{\"bufferView\":1,\"componentType\":5121,\"count\":4,\"type\":\"SCALAR\"}],\"bufferViews\":["
+        "{\"buffer\":0,\"byteLength\":36},{\"buffer\":1,\"byteLength\":4}],\"buffers\":[{\"byteLength\":36,"
+        "\"uri\":"
+        "\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"},"
+        "{\"byteLength\":4,\"uri\":\"data:;base64,AAECAA==\"}]}";
+    for (int mode = 5; mode <= 6; mode++) {
+        char text[1024];
+        OWNED_SCENE scene;
+        snprintf(text, sizeof text, form, mode);
+        assert_ok(load_text(RT_BINARY_DIR "/test_mesh_scene.gltf", text, &scene, error));
+        assert_int_equal(scene.geometry.triangle_count, 2);
+        const RtVec3 *v = scene.geometry.triangles[1].v;
+        assert_true(v[0].x == (mode == 5 ? 1 : 0) && v[1].y == (mode == 5 ? 0 : 1));
+        assert_true(v[2].y == (mode == 5 ? 1 : 0));
+    }
+}
+
+/* A turn about z whose cosine is 0.28 and whose sine is 0.96; the name of the file has a blank. */
+RT_TEST(steps_of_a_gltf_node_and_a_buffer_in_a_file_are_read) {
+    static const char document[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"children\":[1],"
+        "\"translation\":[0,0,7]},{\"mesh\":0,\"scale\":[2,1,1],\"rotation\":[0,0,0.6,0.8],"
+        "\"translation\":[0,0,1]}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
+        "\"buffers\":[{\"byteLength\":36,\"uri\":\"test_mesh%20buffer.bin\"}]}";
+    static const float triangle[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    OWNED_SCENE scene;
+    assert_ok(rt_file_write(RT_BINARY_DIR "/test_mesh buffer.bin", triangle, sizeof triangle, error));
+    assert_ok(load_text(RT_BINARY_DIR "/test_mesh_scene.gltf", document, &scene, error));
+    const RtVec3 *v = scene.geometry.triangles[0].v;
+    assert_true(v[0].z == 8 && fabsf(v[1].x - 0.56f) < 1e-6f && fabsf(v[1].y - 1.92f) < 1e-6f);
+    assert_true(fabsf(v[2].x + 0.96f) < 1e-6f && fabsf(v[2].y - 0.28f) < 1e-6f);
+}
+
+RT_TEST(normals_come_back_from_ply_and_glb) {
+    static const char *const names[] = {PLY_NAME, RT_BINARY_DIR "/test_mesh.glb"};
+    OWNED_SCENE scene;
+    assert_ok(load_text(OBJ_NAME,
+                        "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 1 0 0\nf 1//1 2//2 3//1\nf 1 3 2\n", &scene,
+                        error));
+    for (size_t i = 0; i < 2; i++) {
+        assert_ok(rt_scene_save(&scene, names[i], true, error));
+        OWNED_SCENE again = open_scene(names[i]);
+        assert_int_equal(again.geometry.vertex_normal_count, 2);
+        assert_memory_equal(again.geometry.vertex_normals, scene.geometry.vertex_normals,
+                            sizeof(RtVertexNormals));
+        assert_true(again.geometry.vertex_normals[1].n[2].z == -1); /* of the triangle without its own */
+    }
+}
+
+RT_TEST(a_text_stl_is_read_whatever_its_normals_say) {
+    OWNED_SCENE scene;
+    assert_ok(load_text(
+        RT_BINARY_DIR "/test_mesh.stl",
+        "solid a name # of words\nfacet normal nan nan nan\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+        "vertex 0 1 0\nendloop\nendfacet\nendsolid a\nsolid\nfacet normal 0 0 -1\nouter loop\n"
+        "vertex 0 0 1\nvertex 1 0 1\nvertex 0 1 1\nendloop\nendfacet\nendsolid",
+        &scene, error));
+    assert_int_equal(scene.geometry.triangle_count, 2);
+    assert_int_equal(scene.geometry.vertex_normal_count, 0);
+    assert_true(rt_triangle_normal(&scene.geometry.triangles[1]).z == 1);
 }
 
 RT_TEST(every_failed_allocation_is_reported_and_leaves_nothing) {
-    assert_ok(rt_file_write(OBJ_NAME, "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n", 51, error));
+    static const char text[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n";
+    assert_ok(rt_file_write(OBJ_NAME, text, strlen(text), error));
     assert_failed_allocations_are_reported(OBJ_NAME);
+    assert_ok(rt_file_write(RT_BINARY_DIR "/test_mesh_scene.gltf", two_nodes, strlen(two_nodes), error));
+    assert_failed_allocations_are_reported(RT_BINARY_DIR "/test_mesh_scene.gltf");
     OWNED_SCENE scene = open_scene(OBJ_NAME);
     assert_fails_cleanly(rt_scene_save(&scene, RT_BINARY_DIR "/test_mesh.ply", true, error), (void)0);
     OWNED_SCENE again = open_scene(RT_BINARY_DIR "/test_mesh.ply");
@@ -185,6 +317,26 @@ RT_TEST(the_bunny_has_69666_triangles_all_with_area) {
     assert_int_equal(scene.geometry.triangle_count, 69666);
     for (uint32_t i = 0; i < 69666; i++)
         assert_true(rt_lengthd(rt_triangle_normal(&scene.geometry.triangles[i])) > 0);
+}
+
+/* The reference results were counted over coordinates of exactly these bits. */
+RT_TEST(the_meshes_of_the_reference_results_keep_their_coordinates) {
+#define FETCHED(name) RT_SOURCE_DIR "/scenes/fetched/" name
+    static const struct {
+        const char *path;
+        uint32_t triangles;
+        uint64_t fingerprint;
+    } meshes[] = {{BUNNY, 69666, UINT64_C(0x461ebbb6bd637e13)},
+                  {FETCHED("dragon-11k.ply"), 11102, UINT64_C(0xbf4ce6aa2ffefaf4)},
+                  {FETCHED("dragon-48k.ply"), 47794, UINT64_C(0xfda245376712785e)},
+                  {FETCHED("dragon-202k.ply"), 202520, UINT64_C(0x501e4eac20ba676c)},
+                  {FETCHED("dragon-871k.ply"), 871414, UINT64_C(0xce6c7b24da30bbab)}};
+    for (size_t i = 0; i < sizeof meshes / sizeof meshes[0]; i++) {
+        if (!rt_file_exists(meshes[i].path)) RT_SKIP("scenes/fetch.sh, for the meshes");
+        OWNED_SCENE scene = open_scene(meshes[i].path);
+        assert_int_equal(scene.geometry.triangle_count, meshes[i].triangles);
+        assert_true(rt_scene_fingerprint(&scene) == meshes[i].fingerprint);
+    }
 }
 
 RT_TESTS(mesh, NULL, NULL)

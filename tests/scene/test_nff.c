@@ -24,8 +24,9 @@ static const char everything[] = "# a comment\n"
                                  "p 3\n0 0 0\n1 0 0\n0 1 0\n"
                                  "pp 4\n0 0 0 0 0 1\n1 0 0 0 0 2\n1 1 0 0 0 1\n0 1 0 0 1 0\n";
 
-/* Without the wait for the disk that rt_file_write takes. */
+/* Without the waits for the disk of rt_file_write, and of closing a file that was emptied. */
 static RtStatus load_bytes(const char *text, size_t size, RtScene *scene, RtError *out) {
+    remove(FILE_NAME);
     FILE *file = fopen(FILE_NAME, "wb");
     assert_non_null(file);
     assert_int_equal(fwrite(text, 1, size, file), size);

@@ -122,7 +122,11 @@ static const struct {
     {SPHERE "ambient: [a, b, c]\n", 3, "invalid value 'a'"},
     /* meshes, built-ins, transforms */
     {SPHERE "- mesh:\n    path: no-such.obj\n", 4, "no-such.obj"},
-    {SPHERE "- mesh:\n    path: scene.yaml\n", 4, "scene.yaml"},
+    {SPHERE "- mesh:\n    path: scene.yaml\n", 4, "the name of a mesh ends in .obj"},
+    {SPHERE "- mesh:\n    path: ../../../../../../../../dev/zero\n", 4, "the name of a mesh ends in .obj"},
+    {SPHERE "- mesh:\n    path: /dev/zero.obj\n", 4, "No such file"},
+    {SPHERE "- mesh:\n    path: ../../../../../../../../dev/full.obj\n", 4, "No such file"},
+    {SPHERE "- builtin:\n    name: scene.yaml\n", 4, "scene.yaml"}, /* scenes cannot include each other */
     {SPHERE "- builtin:\n    name: bals\n", 4, "balls"},
     {SPHERE "- builtin: {name: \"balls:size=1000000000\"}\n", 3, "size"},
     {SPHERE "- builtin:\n    name: balls:size=1\n    transform:\n    - scale: 1\n    - stretch: [1, 1, 2]\n",
@@ -263,12 +267,26 @@ RT_TEST(zero_bytes_are_refused_with_their_place) {
     write_bytes(RT_TEST_FOLDER "/scene.yaml", text, sizeof text - 1);
     RtScene scene;
     assert_bad_input(load(RT_TEST_FOLDER "/scene.yaml", &scene, error),
-                     "scene.yaml:2:24: this is not text in UTF-8: control characters");
+                     "scene.yaml:2:24: there is a byte of 0");
+}
+
+RT_TEST(line_ends_of_windows_do_not_matter) {
+    char text[2 * sizeof everything];
+    size_t size = 0;
+    for (const char *c = everything; *c; c++) {
+        if (*c == '\n') text[size++] = '\r';
+        text[size++] = *c;
+    }
+    OWNED_SCENE scene, windows;
+    assert_ok(load_text(everything, &scene, error));
+    write_bytes(RT_TEST_FOLDER "/scene.yaml", text, size);
+    assert_ok(load(RT_TEST_FOLDER "/scene.yaml", &windows, error));
+    assert_true(rt_scene_fingerprint(&scene) == rt_scene_fingerprint(&windows));
 }
 
 RT_TEST(every_prefix_of_a_scene_is_read_or_refused) {
     int64_t live = rt_alloc_live();
-    for (size_t length = 0; length < sizeof everything; length += 7) {
+    for (size_t length = 0; length < sizeof everything; length += RT_SHARE(1, 7)) {
         write_bytes(RT_TEST_FOLDER "/scene.yaml", everything, length);
         RtScene scene;
         RtError error;

@@ -150,23 +150,46 @@ void rt_outputs_remove_left(const char *folder) {
 
 /* ---- reading ---- */
 
-static RtStatus read_all(FILE *file, const char *path, size_t limit, char **data, size_t *size,
+static RtStatus fail_zero(const char *path, const char *text, const char *zero, RtError *error) {
+    size_t line = 1;
+    const char *start = text;
+    for (const char *end; (end = memchr(start, '\n', (size_t)(zero - start))); start = end + 1) line++;
+    return rt_fail_at(error, path, line, (size_t)(zero - start) + 1,
+                      "there is a byte of 0: this is a binary or damaged file, not text");
+}
+
+/* Reads in pieces, so that a large file of zeros is rejected as text before it takes memory. */
+static RtStatus read_pieces(FILE *file, const char *path, bool text, char *buffer, size_t bytes, size_t *size,
+                            RtError *error) {
+    enum { PIECE = 1 << 20 };
+    for (size_t left = bytes; left > 0; left = bytes - *size) {
+        errno = 0;
+        const size_t got = fread(buffer + *size, 1, left < PIECE ? left : PIECE, file);
+        if (ferror(file)) return fail_io(error, "reading", path);
+        if (got == 0) break;
+        const char *zero = text ? memchr(buffer + *size, '\0', got) : NULL;
+        if (zero) return fail_zero(path, buffer, zero, error);
+        *size += got;
+    }
+    buffer[*size] = '\0';
+    return RT_OK;
+}
+
+static RtStatus read_all(FILE *file, const char *path, bool text, size_t limit, char **data, size_t *size,
                          RtError *error) {
     struct stat info;
     if (fstat(fileno(file), &info) != 0) return fail_io(error, "reading", path);
     if ((uint64_t)info.st_size > limit)
         return rt_fail(error, RT_BAD_INPUT, "%s: %lld bytes are too many: the limit is %zu", path,
                        (long long)info.st_size, limit);
-    char *buffer = rt_alloc((size_t)info.st_size + 1, 1);
+    char *buffer = rt_alloc_unset((size_t)info.st_size + 1, 1);
     if (!buffer) return rt_fail_memory(error, path, (size_t)info.st_size + 1);
-    *size = fread(buffer, 1, (size_t)info.st_size, file);
-    if (ferror(file)) {
+    RtStatus status = read_pieces(file, path, text, buffer, (size_t)info.st_size, size, error);
+    if (status == RT_OK)
+        *data = buffer;
+    else
         rt_free(buffer);
-        return fail_io(error, "reading", path);
-    }
-    buffer[*size] = '\0';
-    *data = buffer;
-    return RT_OK;
+    return status;
 }
 
 RtStatus rt_file_open(const char *path, FILE **file, RtError *error) {
@@ -181,14 +204,23 @@ RtStatus rt_file_open(const char *path, FILE **file, RtError *error) {
     return rt_fail(error, RT_BAD_INPUT, "%s: cannot be opened: %s", path, strerror(reason));
 }
 
-RtStatus rt_file_read(const char *path, size_t limit, char **data, size_t *size, RtError *error) {
+static RtStatus read_file(const char *path, bool text, size_t limit, char **data, size_t *size,
+                          RtError *error) {
     *data = NULL;
     *size = 0;
     FILE *file;
     RT_TRY(rt_file_open(path, &file, error));
-    RtStatus status = read_all(file, path, limit, data, size, error);
+    RtStatus status = read_all(file, path, text, limit, data, size, error);
     fclose(file);
     return status;
+}
+
+RtStatus rt_file_read(const char *path, size_t limit, char **data, size_t *size, RtError *error) {
+    return read_file(path, false, limit, data, size, error);
+}
+
+RtStatus rt_file_read_text(const char *path, size_t limit, char **text, size_t *size, RtError *error) {
+    return read_file(path, true, limit, text, size, error);
 }
 
 bool rt_file_exists(const char *path) {

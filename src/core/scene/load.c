@@ -13,22 +13,15 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-typedef RtStatus Load(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error);
-
 static RtStatus load_nff(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error) {
     (void)open_named;
     return rt_nff_load(path, scene, error);
 }
 
-static RtStatus load_mesh(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error) {
-    (void)open_named;
-    return rt_mesh_load(path, scene, error);
-}
-
-/* Formats with our own reader and writer; everything else is a mesh. */
+/* The formats of whole scenes; all others are meshes. */
 static const struct {
     const char *extension; /* without the dot */
-    Load *load;
+    RtStatus (*load)(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error);
     RtStatus (*save)(const RtScene *scene, FILE *file, RtError *error);
 } formats[] = {
     {"yaml", rt_yaml_load, rt_yaml_save},
@@ -36,7 +29,7 @@ static const struct {
     {"nff", load_nff, rt_nff_save},
 };
 
-enum { FORMAT_COUNT = sizeof formats / sizeof formats[0], MAX_WRITTEN = FORMAT_COUNT + 8 };
+enum { FORMAT_COUNT = sizeof formats / sizeof formats[0], MOST_NAMES = FORMAT_COUNT + 8 };
 
 /* The text after the last dot of the last path component, or "". */
 static const char *extension_of(const char *path) {
@@ -44,40 +37,34 @@ static const char *extension_of(const char *path) {
     return dot ? dot + 1 : "";
 }
 
-/* Index of our own format with that extension, or -1. */
-static int find_format(const char *extension) {
-    for (int i = 0; i < FORMAT_COUNT; i++) {
-        if (strcasecmp(formats[i].extension, extension) == 0) return i;
-    }
-    return -1;
-}
-
-static Load *find_loader(const char *extension) {
-    int own = find_format(extension);
-    return own >= 0 ? formats[own].load : rt_mesh_reads(extension) ? load_mesh : NULL;
-}
-
-/* Lists the extensions that can be written in names[0..MAX_WRITTEN); returns their number. */
-static size_t list_written(const char *names[MAX_WRITTEN]) {
+/* Lists the extensions that can be read, or written (rt_mesh_read, rt_mesh_written), in names[0..MOST_NAMES);
+ * returns their number. */
+static size_t list_formats(const char *(*mesh)(size_t i), const char *names[MOST_NAMES]) {
     size_t count = 0;
     for (int i = 0; i < FORMAT_COUNT; i++) names[count++] = formats[i].extension;
-    for (size_t i = 0; rt_mesh_written(i) && count < MAX_WRITTEN; i++) names[count++] = rt_mesh_written(i);
+    for (size_t i = 0; mesh(i) && count < MOST_NAMES; i++) names[count++] = mesh(i);
     return count;
 }
 
-/* `more` ends the list of extensions. */
-static RtStatus fail_extension(const char *path, const char *doing, const char *more, RtError *error) {
-    const char *names[MAX_WRITTEN], *extension = extension_of(path);
-    size_t count = list_written(names);
+/* The number of the format of `path` in a list, or `count`. */
+static size_t find_format(const char *path, const char *const *names, size_t count) {
+    size_t i = 0;
+    while (i < count && strcasecmp(names[i], extension_of(path)) != 0) i++;
+    return i;
+}
+
+static RtStatus fail_extension(const char *path, const char *doing, const char *const *names, size_t count,
+                               RtError *error) {
+    const char *extension = extension_of(path);
     char list[256] = "";
     for (size_t i = 0; i < count; i++) {
         size_t used = strlen(list);
         snprintf(list + used, sizeof list - used, "%s.%s", i ? " " : "", names[i]);
     }
     const char *near = rt_nearest_name(extension, names, count);
-    return rt_fail(error, RT_BAD_INPUT, "%s: no format '.%.40s' can be %s%s%s%s These can: %s%s", path,
+    return rt_fail(error, RT_BAD_INPUT, "%s: no format '.%.40s' can be %s%s%s%s These can: %s", path,
                    extension, doing, near ? ": did you mean '." : "", near ? near : "", near ? "'?" : ".",
-                   list, more);
+                   list);
 }
 
 /* Suggests the file with the nearest name in the same folder. */
@@ -110,12 +97,14 @@ RtStatus rt_scene_load(const char *path, RtSceneOpener *open_named, RtScene *sce
     bool exists = stat(path, &found) == 0;
     if (exists && S_ISDIR(found.st_mode))
         return rt_fail(error, RT_BAD_INPUT, "%s is a folder: give the name of a file in it", path);
-    Load *load = find_loader(extension_of(path));
-    if (!load) return fail_extension(path, "read", ", and the other mesh formats of Assimp", error);
+    const char *names[MOST_NAMES];
+    const size_t count = list_formats(rt_mesh_read, names), format = find_format(path, names, count);
+    if (format == count) return fail_extension(path, "read", names, count, error);
     if (!exists) return rt_file_is_dead_link(path, error) ? RT_BAD_INPUT : fail_missing(path, error);
     rt_scene_init(scene);
     snprintf(scene->name, sizeof scene->name, "%.*s", (int)sizeof scene->name - 1, path);
-    RtStatus status = load(path, open_named, scene, error);
+    RtStatus status = format < FORMAT_COUNT ? formats[format].load(path, open_named, scene, error)
+                                            : rt_mesh_load(path, scene, error);
     if (status == RT_OK && scene->geometry.object_count == 0)
         status = rt_fail_at(error, path, 0, 0, "the scene is empty: it needs at least one object");
     if (status == RT_OK) status = rt_scene_finish(scene, error);
@@ -124,17 +113,16 @@ RtStatus rt_scene_load(const char *path, RtSceneOpener *open_named, RtScene *sce
 }
 
 RtStatus rt_scene_save(const RtScene *scene, const char *path, bool overwrite, RtError *error) {
-    const char *extension = extension_of(path), *names[MAX_WRITTEN];
-    size_t count = list_written(names), named = 0;
-    while (named < count && strcasecmp(names[named], extension) != 0) named++;
-    if (named == count) return fail_extension(path, "written", "", error);
+    const char *names[MOST_NAMES];
+    const size_t count = list_formats(rt_mesh_written, names), format = find_format(path, names, count);
+    if (format == count) return fail_extension(path, "written", names, count, error);
     if (!overwrite && rt_file_exists(path))
         return rt_fail(error, RT_BAD_INPUT,
                        "%s already exists: remove it, choose another name, or convert with --force", path);
     RtOutput output;
     RT_TRY(rt_output_open(&output, path, error));
-    RtStatus status = named < FORMAT_COUNT ? formats[named].save(scene, output.file, error)
-                                           : rt_mesh_save(scene, extension, output.file, error);
+    RtStatus status = format < FORMAT_COUNT ? formats[format].save(scene, output.file, error)
+                                            : rt_mesh_save(scene, names[format], output.file, error);
     if (status == RT_OK) return rt_output_commit(&output, error);
     rt_output_discard(&output);
     return status;

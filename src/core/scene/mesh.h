@@ -1,11 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Triangle meshes, through Assimp: OBJ, PLY, STL, glTF and all other formats that it reads, except NFF, which
- * has its own reader.
+/* Triangle meshes: OBJ, PLY, STL, OFF and glTF 2.0.
  *
- * Triangles come in the order of Assimp's scene: nodes depth first, the meshes of a node, the faces of a
- * mesh. Polygons are triangulated; points and lines are skipped. Nothing is merged, removed or invented:
+ * Triangles come in the order of the file; of glTF, nodes depth first, then the primitives of a mesh.
+ * Polygons are split into triangles; points and lines are skipped. Nothing is merged, removed or invented:
  * triangles without area stay (they are never hit), and only the file's own vertex normals are used.
- * Materials, cameras and lights of the file are ignored. */
+ * Materials, cameras and lights of the file are ignored.
+ *
+ * A damaged file is rejected with the place of the damage, in time and memory proportional to its size (of
+ * glTF, which may place a mesh many times, to that of the scene). That is why the readers are our own
+ * (mesh_reader.h): Assimp 5 loads much of what is cut off or inconsistent, and crashes or hangs on some
+ * files. A child process would end a crash, but its result would still need a check that reads every number
+ * of the file again. */
 #ifndef RT_SCENE_MESH_H
 #define RT_SCENE_MESH_H
 
@@ -14,12 +19,12 @@
 
 #include <stdio.h>
 
-/* True if Assimp reads files with this extension, given without its dot. */
-bool rt_mesh_reads(const char *extension);
+/* The extensions that can be read, without dots; NULL after the last. */
+const char *rt_mesh_read(size_t i);
 
 /* Adds the triangles of `path` to the scene with `material`, moved by `transform` (NULL: in place). After
- * a failure some may remain, and the scene must be cleared. Rejects files that Assimp cannot read (with
- * its message), files without triangles, and vertices that are not finite (with their index). */
+ * a failure some may remain, and the scene must be cleared. Rejects damaged files, files without triangles,
+ * vertices that are not finite, and polygons that cross themselves. */
 RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, const RtTransform *transform,
                         RtError *error);
 
@@ -30,10 +35,10 @@ RtStatus rt_mesh_load(const char *path, RtScene *scene, RtError *error);
 const char *rt_mesh_written(size_t i);
 
 /* Writes the triangles of a scene in the format of `extension`, without sharing vertices. Coordinates
- * survive bit for bit in ply and stl, within the rounding of Assimp's reader in obj, and in glb except
- * that Assimp's writer joins nearly equal vertices. stl has facet normals only. If only some triangles
- * have vertex normals, ply and glb use the geometric normal for the others. Rejects scenes with other
- * shapes and names formats that support them. Materials, lights and camera are not written. */
+ * survive bit for bit in ply, stl and glb, and within the rounding of the reader in obj. stl has facet
+ * normals only. If only some triangles have vertex normals, ply and glb use the geometric normal for the
+ * others. Rejects scenes with other shapes and names formats that support them. Materials, lights and camera
+ * are not written. */
 RtStatus rt_mesh_save(const RtScene *scene, const char *extension, FILE *file, RtError *error);
 
 #endif

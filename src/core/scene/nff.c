@@ -1,113 +1,62 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Reading NFF. The file is read whole and split into tokens, words between blanks that know their line;
- * line ends matter only for the optional colour of a light and for comments. Invariant: `at` never passes
- * `end`, where there is a 0, so strtod stops there too. Counts declared by the file are checked against
- * its remaining length before memory is allocated. */
+/* Reading NFF. The file is read whole and split into words; line ends matter only for the optional colour of
+ * a light and for comments. Behind the file there is a 0, where strtod stops. Counts declared by the file are
+ * checked against its remaining length before memory is allocated. */
 #include "core/scene/nff.h"
 
 #include "core/base/file.h"
 #include "core/base/memory.h"
+#include "core/text/scanner.h"
 
 #include <ctype.h>
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct Token {
-    const char *text;
-    size_t length; /* 0 at the end of the file */
-    size_t line;
-} Token;
-
 typedef struct Reader {
-    const char *path;
-    const char *at, *end;
-    size_t line;      /* of `at` */
+    RtScanner text;
     size_t statement; /* line of the keyword being read */
-    size_t last;      /* line of the last token taken */
     RtScene *scene;
     uint32_t material; /* of what follows */
     uint32_t vertex_capacity, normal_capacity, plain_count, plain_capacity;
     RtVec3 *vertices, *normals; /* of one polygon */
     uint32_t *plain;            /* [plain_count] indices of lights without a colour */
-    RtError *error;
 } Reader;
 
 #define NO_MATERIAL UINT32_MAX
 
-/* ---- tokens ---- */
+/* ---- words ---- */
 
-/* The next token, without consuming it. */
-static Token peek(Reader *r) {
-    while (r->at < r->end) {
-        if (*r->at == '\n') {
-            r->line++;
-        } else if (*r->at == '#') {
-            while (r->at + 1 < r->end && r->at[1] != '\n') r->at++;
-        } else if (!isspace((unsigned char)*r->at)) {
-            break;
-        }
-        r->at++;
-    }
-    const char *stop = r->at;
-    while (stop < r->end && !isspace((unsigned char)*stop) && *stop != '#') stop++;
-    return (Token){r->at, (size_t)(stop - r->at), r->line};
-}
-
-static bool is_word(Token token, const char *word) {
-    return strlen(word) == token.length && strncmp(token.text, word, token.length) == 0;
-}
-
-/* The token for a message: quoted, truncated, with only printable characters. */
-static const char *show(Token token, char out[48]) {
-    if (token.length == 0) return "the end of the file";
-    size_t n = token.length < 32 ? token.length : 32;
-    out[0] = '\'';
-    for (size_t i = 0; i < n; i++)
-        out[i + 1] = (char)(isprint((unsigned char)token.text[i]) ? token.text[i] : '?');
-    strcpy(out + 1 + n, n < token.length ? "...'" : "'");
-    return out;
-}
-
-static void take(Reader *r, Token token) {
-    r->at += token.length;
-    r->last = token.line;
-}
-
-static RtStatus fail_token(Reader *r, Token token, const char *wanted) {
-    char text[48];
-    return rt_fail_at(r->error, r->path, token.line, 0, "expected %s, found %s", wanted, show(token, text));
-}
-
-/* The same inside a statement: if the next statement or the end comes too soon, the position is the end of
- * the text so far. */
-static RtStatus fail_inside(Reader *r, Token token, const char *wanted) {
-    bool too_soon = token.length == 0 || isalpha((unsigned char)token.text[0]);
-    if (too_soon) token.line = r->last;
-    return fail_token(r, token, wanted);
+/* Inside a statement: if the next statement or the end comes too soon, the position is the end of the text
+ * so far. */
+static RtStatus fail_inside(Reader *r, RtWord word, const char *wanted) {
+    bool too_soon = word.length == 0 || isalpha((unsigned char)word.text[0]);
+    if (too_soon) word.line = r->text.last;
+    return rt_scan_fail(&r->text, word, wanted);
 }
 
 /* Adds the line of the statement to a message of the scene. */
 static RtStatus located(Reader *r, RtStatus status) {
-    if (status != RT_BAD_INPUT || !r->error) return status;
-    RtError inner = *r->error;
-    return rt_fail_at(r->error, r->path, r->statement, 0, "%s", inner.message);
+    if (status != RT_BAD_INPUT || !r->text.error) return status;
+    RtError inner = *r->text.error;
+    return rt_fail_at(r->text.error, r->text.path, r->statement, 0, "%s", inner.message);
 }
 
 /* ---- numbers ---- */
 
 static RtStatus read_double(Reader *r, const char *what, double *out) {
-    Token token = peek(r);
+    enum { LONGEST = 1024 };
+    RtWord word = rt_scan_peek(&r->text);
     char *stop = NULL;
-    if (token.length > 0) *out = strtod(token.text, &stop);
-    if (token.length == 0 || stop != token.text + token.length) return fail_inside(r, token, what);
+    if (word.length > 0 && word.length <= LONGEST) *out = strtod(word.text, &stop);
+    if (!stop || stop != word.text + word.length) return fail_inside(r, word, what);
     if (!isfinite(*out) || fabs(*out) > (double)FLT_MAX) {
-        char text[48];
-        return rt_fail_at(r->error, r->path, token.line, 0,
+        char text[RT_WORD_SHOWN];
+        return rt_fail_at(r->text.error, r->text.path, word.line, 0,
                           "%s: invalid value %s: expected a finite number that fits float32", what,
-                          show(token, text));
+                          rt_scan_show(word, text));
     }
-    take(r, token);
+    rt_scan_take(&r->text, word);
     return RT_OK;
 }
 
@@ -124,22 +73,21 @@ static RtStatus read_vector(Reader *r, const char *what, RtVec3 *out) {
 }
 
 static RtStatus read_count(Reader *r, const char *what, double lo, double hi, uint32_t *out) {
-    double number;
-    Token token = peek(r);
+    double number = 0;
+    const size_t line = rt_scan_peek(&r->text).line;
     RT_TRY(read_double(r, what, &number));
     if (number < lo || number > hi || number != floor(number))
-        return rt_fail_at(r->error, r->path, token.line, 0,
+        return rt_fail_at(r->text.error, r->text.path, line, 0,
                           "%s: invalid value '%.15g': expected a whole number %.15g..%.15g", what, number, lo,
                           hi);
     *out = (uint32_t)number;
     return RT_OK;
 }
 
-/* Is there another token on this line that might be a number? */
+/* Is there another word on this line that might be a number? */
 static bool number_follows(Reader *r) {
-    size_t line = r->line;
-    Token token = peek(r);
-    return token.length > 0 && token.line == line && strchr("+-.0123456789", token.text[0]) != NULL;
+    RtWord word = rt_scan_peek(&r->text);
+    return word.length > 0 && !word.first && strchr("+-.0123456789", word.text[0]) != NULL;
 }
 
 /* ---- camera, lights, materials ---- */
@@ -148,8 +96,8 @@ static bool number_follows(Reader *r) {
 static RtStatus check_camera(Reader *r, const RtCamera *camera) {
     RtSampling sampling;
     RtView view;
-    RT_TRY(located(r, rt_sampling_init(&sampling, camera->width, camera->height, 1, false, r->error)));
-    return located(r, rt_view_init(&view, camera, sampling, r->error));
+    RT_TRY(located(r, rt_sampling_init(&sampling, camera->width, camera->height, 1, false, r->text.error)));
+    return located(r, rt_view_init(&view, camera, sampling, r->text.error));
 }
 
 static RtStatus read_camera(Reader *r) {
@@ -158,11 +106,11 @@ static RtStatus read_camera(Reader *r) {
     RtCamera *camera = &r->scene->camera;
     bool given[WORDS] = {false};
     for (;;) {
-        Token token = peek(r);
+        RtWord next = rt_scan_peek(&r->text);
         int word = 0;
-        while (word < WORDS && !is_word(token, words[word])) word++;
+        while (word < WORDS && !rt_scan_is(next, words[word])) word++;
         if (word == WORDS) break;
-        take(r, token);
+        rt_scan_take(&r->text, next);
         given[word] = true;
         switch (word) {
         case FROM: RT_TRY(read_vector(r, "from x y z", &camera->from)); break;
@@ -179,10 +127,10 @@ static RtStatus read_camera(Reader *r) {
     for (int i = 0; i < REQUIRED; i++) {
         char wanted[64];
         snprintf(wanted, sizeof wanted, "'%s' of the camera (v: from, at, up, angle)", words[i]);
-        if (!given[i]) return fail_inside(r, peek(r), wanted);
+        if (!given[i]) return fail_inside(r, rt_scan_peek(&r->text), wanted);
     }
     if (camera->near < 0)
-        return rt_fail_at(r->error, r->path, r->statement, 0, "hither is %g: expected at least 0",
+        return rt_fail_at(r->text.error, r->text.path, r->statement, 0, "hither is %g: expected at least 0",
                           (double)camera->near);
     return check_camera(r, camera);
 }
@@ -193,10 +141,10 @@ static RtStatus read_light(Reader *r) {
     bool plain = !number_follows(r);
     if (plain)
         RT_TRY(rt_append(&r->plain, &r->plain_count, &r->plain_capacity, &r->scene->light_count,
-                         sizeof(uint32_t), r->error));
+                         sizeof(uint32_t), r->text.error));
     else
         RT_TRY(read_vector(r, "l x y z r g b, the colour of a light", &color));
-    return located(r, rt_scene_add_light(r->scene, position, color, r->error));
+    return located(r, rt_scene_add_light(r->scene, position, color, r->text.error));
 }
 
 RtMaterial rt_nff_material(const char *name, RtVec3 color, float kd, float ks, float shine, float t,
@@ -236,14 +184,14 @@ static RtStatus read_material(Reader *r) {
         r->material = i - 1;
         return RT_OK;
     }
-    return located(r, rt_scene_add_material(r->scene, &material, &r->material, r->error));
+    return located(r, rt_scene_add_material(r->scene, &material, &r->material, r->text.error));
 }
 
 /* The current material; the default if there was no `f` yet. */
 static RtStatus use_material(Reader *r) {
     if (r->material != NO_MATERIAL) return RT_OK;
     RtMaterial material = rt_default_material();
-    return rt_scene_add_material(r->scene, &material, &r->material, r->error);
+    return rt_scene_add_material(r->scene, &material, &r->material, r->text.error);
 }
 
 /* ---- objects ---- */
@@ -255,7 +203,7 @@ static RtStatus read_sphere(Reader *r) {
     RT_TRY(read_vector(r, what, &center));
     RT_TRY(read_float(r, what, &radius));
     RT_TRY(use_material(r));
-    return located(r, rt_scene_add_sphere(r->scene, r->material, center, fabsf(radius), r->error));
+    return located(r, rt_scene_add_sphere(r->scene, r->material, center, fabsf(radius), r->text.error));
 }
 
 static RtStatus read_cone(Reader *r) {
@@ -268,7 +216,7 @@ static RtStatus read_cone(Reader *r) {
     }
     RT_TRY(use_material(r));
     return located(r, rt_scene_add_cone(r->scene, r->material, ends[0], fabsf(radii[0]), ends[1],
-                                        fabsf(radii[1]), r->error));
+                                        fabsf(radii[1]), r->text.error));
 }
 
 /* Reads n and the n vertices of a polygon, or of a patch with their normals. */
@@ -277,13 +225,13 @@ static RtStatus read_vertices(Reader *r, bool patch, uint32_t *count) {
         patch ? "a number of a vertex and its normal, x y z nx ny nz" : "a number of a vertex x y z";
     RT_TRY(read_count(r, "the number of vertices", 3, UINT32_MAX, count));
     size_t least = patch ? 12 : 6; /* bytes of the shortest vertex, with blanks */
-    size_t size = (size_t)(r->end - r->at) / least + 1;
+    size_t size = (size_t)(r->text.end - r->text.at) / least + 1;
     if (*count > size)
-        return rt_fail_at(r->error, r->path, r->statement, 0,
+        return rt_fail_at(r->text.error, r->text.path, r->statement, 0,
                           "the statement declares %u vertices, but the rest of the file holds at most %zu",
                           *count, size);
-    RT_TRY(rt_reserve(&r->vertices, &r->vertex_capacity, *count, sizeof(RtVec3), r->error));
-    if (patch) RT_TRY(rt_reserve(&r->normals, &r->normal_capacity, *count, sizeof(RtVec3), r->error));
+    RT_TRY(rt_reserve(&r->vertices, &r->vertex_capacity, *count, sizeof(RtVec3), r->text.error));
+    if (patch) RT_TRY(rt_reserve(&r->normals, &r->normal_capacity, *count, sizeof(RtVec3), r->text.error));
     for (uint32_t i = 0; i < *count; i++) {
         RT_TRY(read_vector(r, what, &r->vertices[i]));
         if (patch) RT_TRY(read_vector(r, what, &r->normals[i]));
@@ -295,12 +243,12 @@ static RtStatus read_polygon(Reader *r) {
     uint32_t count;
     RT_TRY(read_vertices(r, false, &count));
     if (count > 3)
-        return located(r, rt_scene_add_polygon(r->scene, r->material, r->vertices, count, r->error));
+        return located(r, rt_scene_add_polygon(r->scene, r->material, r->vertices, count, r->text.error));
     RtTriangle triangle = {{r->vertices[0], r->vertices[1], r->vertices[2]}};
     if (rt_lengthd(rt_triangle_normal(&triangle)) == 0)
-        return rt_fail_at(r->error, r->path, r->statement, 0,
+        return rt_fail_at(r->text.error, r->text.path, r->statement, 0,
                           "the polygon has no area: its vertices lie on a line or in a point; remove it");
-    return located(r, rt_scene_add_triangle(r->scene, r->material, r->vertices, NULL, r->error));
+    return located(r, rt_scene_add_triangle(r->scene, r->material, r->vertices, NULL, r->text.error));
 }
 
 static RtVec3d twice_area(const RtVec3 *v, uint32_t i) {
@@ -318,14 +266,14 @@ static RtStatus read_patch(Reader *r) {
     for (uint32_t i = 1; i + 1 < count; i++) {
         if (rt_dotd(whole, twice_area(v, i)) < 0)
             return rt_fail_at(
-                r->error, r->path, r->statement, 0,
+                r->text.error, r->text.path, r->statement, 0,
                 "the patch is concave: vertex %u cannot be seen from the first; split the patch "
                 "into triangles",
                 i + 2);
     }
     for (uint32_t i = 1; i + 1 < count; i++) {
         const RtVec3 vertices[3] = {v[0], v[i], v[i + 1]}, normals[3] = {n[0], n[i], n[i + 1]};
-        RT_TRY(located(r, rt_scene_add_triangle(r->scene, r->material, vertices, normals, r->error)));
+        RT_TRY(located(r, rt_scene_add_triangle(r->scene, r->material, vertices, normals, r->text.error)));
     }
     return RT_OK;
 }
@@ -336,7 +284,7 @@ static RtStatus read_background(Reader *r) {
     RtVec3 color;
     RT_TRY(read_vector(r, "a number of b r g b", &color));
     if (color.x < 0 || color.y < 0 || color.z < 0)
-        return rt_fail_at(r->error, r->path, r->statement, 0,
+        return rt_fail_at(r->text.error, r->text.path, r->statement, 0,
                           "the background has a negative colour: expected at least 0 for each of r g b");
     r->scene->background = color;
     return RT_OK;
@@ -348,23 +296,18 @@ static RtStatus read_statement(Reader *r) {
         RtStatus (*read)(Reader *r);
     } statements[] = {{"v", read_camera}, {"b", read_background}, {"l", read_light},   {"f", read_material},
                       {"s", read_sphere}, {"c", read_cone},       {"p", read_polygon}, {"pp", read_patch}};
-    Token token = peek(r);
-    r->statement = token.line;
+    RtWord word = rt_scan_peek(&r->text);
+    r->statement = word.line;
     for (size_t i = 0; i < sizeof statements / sizeof statements[0]; i++) {
-        if (!is_word(token, statements[i].word)) continue;
-        take(r, token);
+        if (!rt_scan_is(word, statements[i].word)) continue;
+        rt_scan_take(&r->text, word);
         return statements[i].read(r);
     }
-    return fail_token(r, token, "a statement of NFF (v b l f s c p pp, or a # comment)");
+    return rt_scan_fail(&r->text, word, "a statement of NFF (v b l f s c p pp, or a # comment)");
 }
 
 static RtStatus read_file(Reader *r) {
-    const char *zero = memchr(r->at, '\0', (size_t)(r->end - r->at));
-    if (zero)
-        return rt_fail_at(r->error, r->path, 0, 0,
-                          "byte %zu is 0: this is a binary file, NFF is text; convert it first",
-                          (size_t)(zero - r->at));
-    while (peek(r).length > 0) RT_TRY(read_statement(r));
+    while (rt_scan_peek(&r->text).length > 0) RT_TRY(read_statement(r));
     for (uint32_t i = 0; i < r->plain_count; i++)
         r->scene->lights[r->plain[i]].intensity = rt_nff_light_intensity(r->scene->light_count);
     return RT_OK;
@@ -378,15 +321,16 @@ RtVec3 rt_nff_light_intensity(uint32_t count) {
 RtStatus rt_nff_load(const char *path, RtScene *scene, RtError *error) {
     char *text;
     size_t size;
-    RT_TRY(rt_file_read(path, RT_NFF_MAX_BYTES, &text, &size, error));
+    RT_TRY(rt_file_read_text(path, RT_NFF_MAX_BYTES, &text, &size, error));
     RtError own;
-    Reader reader = {.path = path,
-                     .at = text,
-                     .end = text + size,
-                     .line = 1,
+    Reader reader = {.text = {.path = path,
+                              .at = text,
+                              .end = text + size,
+                              .line = 1,
+                              .fresh = true,
+                              .error = error ? error : &own},
                      .scene = scene,
-                     .material = NO_MATERIAL,
-                     .error = error ? error : &own};
+                     .material = NO_MATERIAL};
     RtStatus status = read_file(&reader);
     rt_free(reader.vertices);
     rt_free(reader.normals);

@@ -224,7 +224,7 @@ RtStatus rt_yaml_parse(RtYaml *yaml, const char *name, const char *text, size_t 
 RtStatus rt_yaml_open(RtYaml *yaml, const char *path, RtError *error) {
     char *text;
     size_t length;
-    RT_TRY(rt_file_read(path, RT_YAML_MAX_BYTES, &text, &length, error));
+    RT_TRY(rt_file_read_text(path, RT_YAML_MAX_BYTES, &text, &length, error));
     RtStatus status = rt_yaml_parse(yaml, path, text, length, error);
     rt_free(text);
     return status;

@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What the readers of mesh formats share. A reader fills `vertices`, and `normals` if there are any, and for
+ * each polygon of the file adds its corners and then the polygon.
+ *
+ * The readers trust nothing in the file: every index is checked, no count allocates more than a small
+ * multiple of the file's size, and a file that declares counts must have exactly as much as it declares. */
+#ifndef RT_SCENE_MESH_READER_H
+#define RT_SCENE_MESH_READER_H
+
+#include "core/base/transform.h"
+#include "core/scene/scene.h"
+#include "core/text/scanner.h"
+
+#include <string.h>
+
+/* Longer files are rejected, and documents of glTF without its buffers, which take 30 times as much memory.
+ */
+#define RT_MESH_MAX_BYTES ((size_t)1 << 32)
+enum { RT_MESH_MAX_JSON = 1 << 28 };
+
+#define RT_NO_NORMAL UINT32_MAX
+
+typedef struct RtMeshCorner {
+    uint32_t vertex;
+    uint32_t normal; /* RT_NO_NORMAL: none */
+} RtMeshCorner;
+
+typedef struct RtMeshReader {
+    RtScanner text; /* the whole file, with a 0 behind it; binary formats use path, at, end and error */
+    RtScene *scene;
+    uint32_t material;
+    RtTransform transform; /* of the vertices and normals */
+    uint32_t vertex_count, vertex_capacity, normal_count, normal_capacity, corner_count, corner_capacity;
+    RtVec3 *vertices;      /* [vertex_count] */
+    RtVec3 *normals;       /* [normal_count] */
+    RtMeshCorner *corners; /* [corner_count] of the polygon being read */
+    uint32_t face_count;   /* polygons added */
+} RtMeshReader;
+
+/* Fails at the line of the last word; for binary formats, where there is none, at the file. */
+__attribute__((format(printf, 2, 3))) RtStatus rt_mesh_fail(const RtMeshReader *r, const char *format, ...);
+
+/* Rejects coordinates that are not finite. */
+RtStatus rt_mesh_add_vertex(RtMeshReader *r, RtVec3 vertex);
+/* Accepts any numbers: a normal that is not finite or has no length is ignored where it is used. */
+RtStatus rt_mesh_add_normal(RtMeshReader *r, RtVec3 normal);
+
+/* Adds a corner; its indices must be valid. */
+RtStatus rt_mesh_add_corner(RtMeshReader *r, RtMeshCorner corner);
+
+/* Adds a corner with vertex `index`, counted from 0, and if there are normals, that of the same index.
+ * Rejects a vertex that does not exist. */
+RtStatus rt_mesh_add_index(RtMeshReader *r, double index);
+
+/* Adds the polygon of the corners as triangles, and removes the corners. Triangles have vertex normals if all
+ * three corners do. */
+RtStatus rt_mesh_add_polygon(RtMeshReader *r);
+
+/* ---- text formats ---- */
+
+/* Takes a word that must be the first of its line, or else must be on the line of the last one. */
+RtStatus rt_mesh_take(RtMeshReader *r, bool first, const char *wanted, RtWord *word);
+/* Takes the word `text`, wherever it is. */
+RtStatus rt_mesh_expect(RtMeshReader *r, const char *text);
+
+/* The value of a word that must be a number. Integers have at most 18 digits. */
+RtStatus rt_mesh_float(const RtMeshReader *r, RtWord word, float *out);
+RtStatus rt_mesh_integer(const RtMeshReader *r, RtWord word, int64_t *out);
+
+/* Takes three numbers of a line, the first as rt_mesh_take. */
+RtStatus rt_mesh_take_vector(RtMeshReader *r, bool first, const char *wanted, RtVec3 *out);
+
+/* Fails: the file ends after `count` of the `declared` things that its header declares. */
+RtStatus rt_mesh_fail_short(const RtMeshReader *r, uint64_t count, uint64_t declared, const char *things);
+
+/* Rejects further words, and a last line without a line break: its last number may have been cut off. */
+RtStatus rt_mesh_end(RtMeshReader *r);
+
+/* ---- the formats ---- */
+
+/* The first bytes of a binary file, and its size: what can be checked before the file is read. */
+enum { RT_MESH_HEAD = 84 };
+typedef struct RtMeshHead {
+    const char *path;
+    unsigned char bytes[RT_MESH_HEAD + 1]; /* zeros behind the end of the file */
+    uint64_t size;
+} RtMeshHead;
+
+RtStatus rt_mesh_check_ply(const RtMeshHead *head, RtError *error);
+RtStatus rt_mesh_check_stl(const RtMeshHead *head, RtError *error);
+RtStatus rt_mesh_check_glb(const RtMeshHead *head, RtError *error);
+
+RtStatus rt_mesh_read_obj(RtMeshReader *r);
+RtStatus rt_mesh_read_off(RtMeshReader *r);
+RtStatus rt_mesh_read_ply(RtMeshReader *r);
+RtStatus rt_mesh_read_stl(RtMeshReader *r);
+RtStatus rt_mesh_read_gltf(RtMeshReader *r);
+RtStatus rt_mesh_read_glb(RtMeshReader *r);
+
+/* A number of 4 bytes, low byte first; and three float32. */
+static inline uint32_t rt_mesh_u32(const void *at) {
+    const unsigned char *b = at;
+    return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+}
+
+static inline RtVec3 rt_mesh_vector(const char *at) {
+    RtVec3 v;
+    for (size_t a = 0; a < 3; a++) {
+        const uint32_t bits = rt_mesh_u32(at + 4 * a);
+        memcpy(&v.at[a], &bits, sizeof bits);
+    }
+    return v;
+}
+
+#endif

@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The words of a text file: what lies between blanks. Lines end with LF, CR LF or CR; a '#' begins a comment
+ * that ends with its line. */
+#ifndef RT_TEXT_SCANNER_H
+#define RT_TEXT_SCANNER_H
+
+#include "core/base/status.h"
+
+#include <stdbool.h>
+
+typedef struct RtWord {
+    const char *text; /* into the file; not terminated */
+    size_t length;    /* 0 at the end of the file */
+    size_t line;      /* counted from 1 */
+    bool first;       /* of its line */
+} RtWord;
+
+/* Initialise path, at, end and error, and `line` to 1 and `fresh` to true; *end must be a 0. */
+typedef struct RtScanner {
+    const char *path;
+    const char *at, *end;
+    size_t line; /* of `at` */
+    size_t last; /* line of the last word taken */
+    bool fresh;  /* no word of the current line was taken */
+    bool joins;  /* a backslash at the end of a line joins it with the next one */
+    RtError *error;
+} RtScanner;
+
+/* The next word, without taking it. */
+RtWord rt_scan_peek(RtScanner *scanner);
+void rt_scan_take(RtScanner *scanner, RtWord word);
+/* Takes what is left of the line of the last word. */
+void rt_scan_skip_line(RtScanner *scanner);
+
+bool rt_scan_is(RtWord word, const char *text);
+
+/* Fails at the line of the word: "expected WANTED, found 'WORD'". */
+RtStatus rt_scan_fail(const RtScanner *scanner, RtWord word, const char *wanted);
+
+/* Writes the word to `out` for a message: in quotes, truncated, with only printable characters. Returns out,
+ * or "the end of the file". */
+enum { RT_WORD_SHOWN = 48 };
+const char *rt_scan_show(RtWord word, char out[RT_WORD_SHOWN]);
+
+#endif
