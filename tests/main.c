@@ -40,6 +40,7 @@ static bool is_wanted(const char *name, int argc, char **argv) {
 
 int main(int argc, char **argv) {
     bool failed = false, skipped = true;
+    unsetenv("COLUMNS"); /* tables would be printed in parts */
     for (int i = 1; i < argc; i++) {
         if (!is_known(argv[i])) return 2;
     }

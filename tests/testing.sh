@@ -4,6 +4,7 @@
 program=$(realpath "${RT_PROGRAM:-$(dirname "${BASH_SOURCE[0]}")/../build/release/raytally}")
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 failures=0
+unset COLUMNS # tables would be printed in parts
 
 complain() {
     printf '%s\n' "$*" >&2

@@ -263,6 +263,7 @@ static RtStatus report(const Options *o, const RtResults *results, const RtCallg
                        RtError *error) {
     const RtExperiment *e = results->experiment;
     char sentence[RT_MAX_SENTENCE];
+    const char *const files[] = {o->csv, o->hits, o->counts};
     if (o->csv) RT_TRY(write_csv(o, results, error));
     if (o->json) {
         print_json(results, callgrind);
@@ -273,9 +274,12 @@ static RtStatus report(const Options *o, const RtResults *results, const RtCallg
     if (callgrind->count) rt_print_instructions(callgrind, stdout);
     if (e->distributions) rt_print_distributions(results, stdout);
     rt_null_sentence(results, sentence);
-    if (!sentence[0]) return RT_OK;
-    putchar('\n');
-    rt_print_wrapped(sentence, stdout);
+    if (*sentence) putchar('\n');
+    if (*sentence) rt_print_wrapped(sentence, stdout);
+    if (o->csv || o->hits || o->counts) putchar('\n');
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        if (files[i]) printf("wrote %s\n", files[i]);
+    }
     return RT_OK;
 }
 
@@ -348,16 +352,18 @@ const RtSyntax rt_bench_syntax = {
     .arguments = "SCENE",
     .argument = RT_SCENE_ARGUMENT,
     .finish = finish,
-    .help = "Count and time accelerators on the rays of one scene, and compare them.\v"
-            "SCENE is a file or a built-in, as in balls:size=3, or several: random:n=1e2..1e5*10 (quote what "
-            "your shell would interpret: | and *). Every accelerator traces the same rays and must return "
-            "the same answers, or the exit code is 1; those with hit functions of their own (Embree's native "
-            "mode, libraries as plugins) are measured whatever they answer, and what differs is counted. "
-            "Example:\n"
-            "  raytally bench balls --accel bvh --accel grid --accel brute --ray-stride 100\n"
-            "  raytally bench 'balls:size=2|3' --accel bvh --accel 'grid:density=1..16*4'\n"
-            "  raytally bench balls --accel bvh --rays-from rays.npy --rays nearest \\\n"
-            "    --hits hits.npy"};
+    .help =
+        "Count and time accelerators on the rays of one scene, and compare them.\v"
+        "SCENE is a file or a built-in, as in balls:size=3, or several: random:n=1e2..1e5*10 (quote what "
+        "your shell would interpret: | and *). Every accelerator traces the same rays and must return "
+        "the same answers, or the exit code is 1; those with hit functions of their own (Embree's native "
+        "mode, libraries as plugins) are measured whatever they answer, and what differs is counted. "
+        "Mrays/s are millions of rays per second, on one thread unless --threads says otherwise; `raytally "
+        "run` prints the time per ray instead: ns/ray = 1000 / (Mrays/s). Examples:\n"
+        "  raytally bench balls --accel bvh --accel grid --accel brute --ray-stride 100\n"
+        "  raytally bench 'balls:size=2|3' --accel bvh --accel 'grid:density=1..16*4'\n"
+        "  raytally bench balls --accel bvh --rays-from rays.npy --rays nearest \\\n"
+        "    --hits hits.npy"};
 
 RtStatus rt_command_bench(int argc, char **argv, RtError *error) {
     Options o = {.threads = -1, .workload = {.timing = 1, .patience = RT_PATIENCE}, .argv = argv};

@@ -10,6 +10,7 @@
 #include "experiment/manifest.h"
 #include "experiment/result_directory.h"
 #include "experiment/result_tables.h"
+#include "measure/result_files.h"
 #include "report/index.h"
 #include "report/run_report.h"
 
@@ -127,10 +128,9 @@ static void print_cell(const RtResults *results, uint32_t t, uint32_t c, RtRayKi
     const char *left_out = *cell->left_out ? cell->left_out : rt_build_at(results, t, c)->left_out;
     bool finished = cell->counted && (cell->timed || e->count_only);
     if (results->workloads[t].known && !results->workloads[t].rays[kind]) return;
-    printf("%-24s %-28s %-12s %s\n", e->workloads[t].label, rt_candidate_label(e, c), rt_ray_kind_name(kind),
-           *left_out  ? left_out
-           : finished ? (previous ? "measured before" : "finished")
-                      : "");
+    const char *state = *left_out ? left_out : finished ? (previous ? "measured before" : "finished") : "";
+    printf("%-24s %-28s %-*s%s%s\n", e->workloads[t].label, rt_candidate_label(e, c), *state ? 12 : 0,
+           rt_ray_kind_name(kind), *state ? " " : "", state);
 }
 
 /* Opens no scenes: forecasts from the results in the directory. */
@@ -200,6 +200,18 @@ static void go_on(const Options *o, const RtExperiment *e, char out[MOST_COMMAND
                    o->update      ? " --update"
                    : o->how.renew ? " --renew"
                                   : " --resume");
+}
+
+/* With several experiments, --force is refused: --update is what continues them. */
+static RtStatus check_update(const Options *o, RtError *error) {
+    bool goes_on;
+    const RtStart start = o->how.start;
+    if (o->count == 1 || o->dry || start != RT_START_FRESH) return RT_OK;
+    if (rt_result_files_look(o->how.directory, RT_RUN_JOURNAL, start, &goes_on, NULL) == RT_OK) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "%s holds results of an earlier run: --update keeps what is up to date and measures the "
+                   "rest; or give another --out",
+                   o->how.directory);
 }
 
 static RtStatus measure(Options *o, RtResults *results, RtError *error) {
@@ -283,6 +295,7 @@ static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
     if (o->memory) experiment->limit_bytes = o->memory;
     RT_TRY(choose_directory(o, experiment, error));
     if (o->update && how->start != RT_START_ANEW) RT_TRY(choose_start(o, experiment, error));
+    RT_TRY(check_update(o, error));
     if (o->threads >= 0) how->workload.threads = how->workload.timing = o->threads;
     if (!o->found && how->scripts == RT_SCRIPTS_SHIPPED) how->scripts = RT_SCRIPTS_OWN;
     RtStatus status = rt_results_init(&results, experiment, error);
@@ -345,17 +358,21 @@ const RtSyntax rt_run_syntax = {
                  .missing = "an EXPERIMENT is missing, as in experiments/first-look.yaml",
                  .take = take_path},
     .finish = finish_options,
-    .help = "Run an experiment and write its result directory: counts.csv, times.csv, manifest.json, plots, "
-            "images and report.html. Several are run one after the other, each in a process of its own; one "
-            "that fails does not stop the others, the worst exit code counts, and an index lists all results "
-            "in the folder. Given the manifest of a directory, run its experiment again; start that "
-            "where the first run was started. A directory that has results, finished or not, needs --resume, "
-            "--update or --force. Only one process at a time may write into a directory. Ctrl-C at any time "
-            "keeps "
-            "what is measured.\v"
-            "Exit code 1 if an accelerator returns a wrong answer, gnuplot fails (without gnuplot there is a "
-            "note), a published figure is outside its tolerance, or with --strict a claim does not hold. "
-            "experiments/README.md describes how to write an experiment."};
+    .help =
+        "Run an experiment and write its result directory: counts.csv, times.csv, manifest.json, plots, "
+        "images and report.html. Several are run one after the other, each in a process of its own; one "
+        "that fails does not stop the others, the worst exit code counts, and an index lists all results "
+        "in the folder. Given the manifest of a directory, run its experiment again; start that "
+        "where the first run was started. A directory that has results, finished or not, needs --resume, "
+        "--update or --force. Only one process at a time may write into a directory. Ctrl-C at any time "
+        "keeps "
+        "what is measured.\v"
+        "Times per ray are in ns/ray, over all kinds of rays, on one thread unless --threads says otherwise; "
+        "`raytally bench` prints them by kind, as throughput: Mrays/s = 1000 / (ns/ray).\n"
+        "\n"
+        "Exit code 1 if an accelerator returns a wrong answer, gnuplot fails (without gnuplot there is a "
+        "note), a published figure is outside its tolerance, or with --strict a claim does not hold. "
+        "experiments/README.md describes how to write an experiment."};
 
 RtStatus rt_command_run(int argc, char **argv, RtError *error) {
     Options o = {.threads = -1,

@@ -247,7 +247,7 @@ static RtStatus show_tree(const Options *o, const RtScene *scene, const RtRayTre
 static RtStatus trace_tree(const Options *o, const RtScene *scene, RtAccel *accel, const char *spec,
                            RtError *error) {
     RtRayTree tree;
-    RT_TRY(rt_ray_tree_trace(&tree, accel, o->x, o->y, o->depth, error));
+    RT_TRY(rt_ray_tree_trace(&tree, accel, (RtSample){o->x, o->y}, o->depth, error));
     RtTally *costs = rt_alloc(tree.count, sizeof(RtTally));
     RtStatus status =
         costs ? RT_OK : rt_fail_memory(error, "the counts of rays", tree.count * sizeof(RtTally));
@@ -321,10 +321,10 @@ const RtSyntax rt_trace_syntax = {
         "\n"
         "The ray tree has the primary ray, and for each hit a shadow ray to every light that shines on that "
         "side of the surface, a reflection and a transmission ray. A row shows the t and the object of its "
-        "hit; factor, the product of the coefficients kr and kt on the way from the eye; the light that the "
-        "ray brings, as its share of the pixel's colour; and what the accelerator did for it. A second table "
-        "splits the light of each hit into the five terms of the illumination model. The drawing shows rays "
-        "in "
+        "hit; factor, the product of the coefficients kr and kt on the way from the eye; and what the "
+        "accelerator did for it. A second table shows the light that each ray brings, as its share of the "
+        "pixel's colour, and the five terms of the illumination model whose sum it is. The drawing shows "
+        "rays in "
         "a section that contains the primary ray and lies as close to the others as it can.\n"
         "\n"
         "Examples:\n"

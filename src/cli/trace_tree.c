@@ -8,51 +8,110 @@
 #include "core/text/json.h"
 
 #include <stdio.h>
+#include <string.h>
 
 /* ---- in words ---- */
 
-static uint32_t indent_of(const RtTreeRay *ray) {
-    return 2 * (ray->level - (ray->ray.kind != RT_RAY_SHADOW));
-}
+enum { PAGE = 100, LEAST_HIT = 16 }; /* characters: of a line, and of the column of objects */
 
-static void print_color(RtVec3d color) {
-    printf("  %6.4f %6.4f %6.4f", color.x, color.y, color.z);
-}
+/* A row of the tree as text. */
+typedef struct Row {
+    char ray[2 * RT_MAX_DEPTH + RT_TREE_RAY_TEXT], t[16], hit[RT_TREE_HIT_TEXT], factor[16];
+} Row;
 
-static void print_ray(const RtTreeRay *ray, const RtTally *cost, const RtScene *scene) {
+/* The columns' widths, from all rows that are printed. */
+typedef struct Widths {
+    int number, ray, t, hit, factor;
+} Widths;
+
+static Row row_of(const RtTreeRay *ray, const RtScene *scene) {
+    static const char object[] = "object "; /* the column's name says it */
+    const uint32_t indent = 2 * (ray->level - (ray->ray.kind != RT_RAY_SHADOW));
+    Row row = {.t = "-"};
     char name[RT_TREE_RAY_TEXT], hit[RT_TREE_HIT_TEXT];
-    const int indent = (int)indent_of(ray);
     rt_tree_ray_name(ray, name);
     rt_tree_ray_hit(ray, scene, hit);
-    printf("%5u  %*s%-*s", ray->number, indent, "", indent < 32 ? 32 - indent : 0, name);
-    if (isfinite((double)ray->hit.t))
-        printf("  %9.6g", (double)ray->hit.t);
-    else
-        printf("  %9s", "-");
-    printf("  %-36s  %7.4g", hit, (double)ray->factor);
-    print_color(ray->light);
-    printf("  %5llu  %5llu  %5llu\n", (unsigned long long)cost->object_tests,
-           (unsigned long long)cost->extent_tests, (unsigned long long)cost->steps);
+    snprintf(row.ray, sizeof row.ray, "%*s%s", (int)indent, "", name);
+    if (isfinite((double)ray->hit.t)) snprintf(row.t, sizeof row.t, "%.5g", (double)ray->hit.t);
+    strcpy(row.hit, hit + (strncmp(hit, object, strlen(object)) == 0 ? strlen(object) : 0));
+    snprintf(row.factor, sizeof row.factor, "%.4g", (double)ray->factor);
+    return row;
+}
+
+static void widen(int *width, const char *text) {
+    const int own = (int)strlen(text);
+    if (own > *width) *width = own;
+}
+
+/* The column of objects is as wide as it needs, or as fits. */
+static Widths measure(const RtRayTree *tree, const RtScene *scene, uint32_t rows) {
+    Widths w = {2, 3, 1, 6, 6};
+    char number[16];
+    for (uint32_t i = 0, left = rows; left > 0; i = rt_ray_tree_next(tree, i), left--) {
+        const Row row = row_of(&tree->rays[i], scene);
+        snprintf(number, sizeof number, "%u", tree->rays[i].number);
+        widen(&w.number, number);
+        widen(&w.ray, row.ray);
+        widen(&w.t, row.t);
+        widen(&w.hit, row.hit);
+        widen(&w.factor, row.factor);
+    }
+    const int fits = PAGE - (w.number + w.ray + w.t + w.factor + 5 + 4 + 5 + 2 * 7);
+    if (w.hit > fits) w.hit = fits > LEAST_HIT ? fits : LEAST_HIT;
+    return w;
 }
 
 static void print_rays(const RtRayTree *tree, const RtTally *costs, const RtScene *scene, uint32_t rows) {
-    printf("\n%5s  %-32s  %9s  %-36s  %7s  %6s %6s %6s  %5s  %5s  %5s\n", "", "ray", "t", "hits", "factor",
-           "red", "green", "blue", "tests", "ext.", "steps");
-    for (uint32_t i = 0, printed = 0; printed < rows; i = rt_ray_tree_next(tree, i), printed++)
-        print_ray(&tree->rays[i], &costs[i], scene);
+    const Widths w = measure(tree, scene, rows);
+    printf("\n%*s  %-*s  %*s  %-*s  %*s  %5s  %4s  %5s\n", w.number, "", w.ray, "ray", w.t, "t", w.hit,
+           "object", w.factor, "factor", "tests", "ext.", "steps");
+    for (uint32_t i = 0, left = rows; left > 0; i = rt_ray_tree_next(tree, i), left--) {
+        Row row = row_of(&tree->rays[i], scene);
+        if ((int)strlen(row.hit) > w.hit) strcpy(row.hit + w.hit - 3, "...");
+        printf("%*u  %-*s  %*s  %-*s  %*s  %5llu  %4llu  %5llu\n", w.number, tree->rays[i].number, w.ray,
+               row.ray, w.t, row.t, w.hit, row.hit, w.factor, row.factor,
+               (unsigned long long)costs[i].object_tests, (unsigned long long)costs[i].extent_tests,
+               (unsigned long long)costs[i].steps);
+    }
 }
 
-static void print_terms(const RtRayTree *tree, uint32_t rows) {
-    printf("\n%5s", "");
-    for (int t = 0; t < RT_TERM_COUNT; t++)
-        printf("  %-*s", t + 1 < RT_TERM_COUNT ? 20 : 0, rt_term_name((RtTerm)t));
-    putchar('\n');
-    for (uint32_t i = 0, printed = 0; printed < rows; i = rt_ray_tree_next(tree, i), printed++) {
+/* Whether the light of a ray can have the term: of a hit any, of a shadow ray diffuse and specular. */
+static bool has_term(const RtTreeRay *ray, RtTerm term) {
+    if (ray->ray.kind == RT_RAY_SHADOW) return term == RT_TERM_DIFFUSE || term == RT_TERM_SPECULAR;
+    return ray->surface.material != NULL;
+}
+
+static int term_width(RtTerm term) {
+    const int name = (int)strlen(rt_term_name(term));
+    return name > 6 ? name : 6;
+}
+
+/* A line per channel: the terms, and the light that is their sum. */
+static void print_light_of(const RtTreeRay *ray) {
+    static const char *const channels[] = {"red", "green", "blue"};
+    for (int c = 0; c < 3; c++) {
+        if (c == 0)
+            printf("%5u  %-5s", ray->number, channels[c]);
+        else
+            printf("%5s  %-5s", "", channels[c]);
+        for (int t = 0; t < RT_TERM_COUNT; t++) {
+            if (has_term(ray, (RtTerm)t))
+                printf("  %*.4f", term_width((RtTerm)t), ray->terms[t].at[c]);
+            else
+                printf("  %*s", term_width((RtTerm)t), "-");
+        }
+        printf("  %6.4f\n", ray->light.at[c]);
+    }
+}
+
+/* Of all rays but those in shadow, which bring nothing. */
+static void print_light(const RtRayTree *tree, uint32_t rows) {
+    printf("\n%5s  %-5s", "ray", "");
+    for (int t = 0; t < RT_TERM_COUNT; t++) printf("  %*s", term_width((RtTerm)t), rt_term_name((RtTerm)t));
+    printf("  %6s\n", "light");
+    for (uint32_t i = 0, left = rows; left > 0; i = rt_ray_tree_next(tree, i), left--) {
         const RtTreeRay *ray = &tree->rays[i];
-        if (!ray->surface.material) continue;
-        printf("%5u", ray->number);
-        for (int t = 0; t < RT_TERM_COUNT; t++) print_color(ray->terms[t]);
-        putchar('\n');
+        if (ray->ray.kind != RT_RAY_SHADOW || ray->hit.object == RT_NO_OBJECT) print_light_of(ray);
     }
 }
 
@@ -78,7 +137,7 @@ void rt_cli_print_tree(const RtRayTree *tree, const RtTally *costs, const RtScen
     const uint32_t left = tree->count - shown;
     print_rays(tree, costs, scene, shown);
     if (left > 0) printf("       and %u more ray%s\n       --rows 0 prints each\n", left, rt_plural(left));
-    print_terms(tree, shown);
+    print_light(tree, shown);
     print_sums(tree, costs);
 }
 

@@ -9,8 +9,8 @@
 
 /* Both take the cost of each ray, in the order of tree->rays. */
 
-/* Prints at most `rows` rays, all for 0, depth first and indented; the terms of the light from each hit; and
- * sums. */
+/* Prints at most `rows` rays, all for 0, depth first and indented; the light that each brings, and its terms;
+ * and sums: in 100 columns, unless rays are more than about 12 levels deep. */
 void rt_cli_print_tree(const RtRayTree *tree, const RtTally *costs, const RtScene *scene, int64_t rows);
 
 /* The primary ray, with the rays that start at its hit as its member "rays", and so on; null for an empty

@@ -3,6 +3,7 @@
 
 #include "accel/accel.h"
 #include "core/base/words.h"
+#include "experiment/result_tables.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -171,8 +172,8 @@ static const char *below_label(const Row *r) {
       r->without[0].object_tests / r->cost[0].object_tests)                                                  \
     X(eye_ms, "ms", figure, "ms", "time of the frame", 1e3 * r->cost[0].seconds)                             \
     X(eye_faster, "faster", figure, "", "times faster than without a structure", faster(r, RT_FRAME_ALL))    \
-    X(eye_build, "build", amount, "ms", "time to build the structure, in ms",                                \
-      1e3 * build_of(r->results, r->workload, r->candidate))                                                 \
+    X(eye_build, "build", interval, "ms", "time to build the structure, in ms, with its interval",           \
+      rt_build_ms(rt_build_at(r->results, r->workload, r->candidate)))                                       \
     X(primary, "primary", figure, "", "times faster for primary rays", faster(r, RT_FRAME_PRIMARY))          \
     X(shadow, "shadow", figure, "", "times faster for shadow rays", faster(r, RT_FRAME_SHADOW))              \
     X(secondary, "bounce", figure, "", "times faster for reflection and transmission rays",                  \
@@ -221,8 +222,6 @@ RtTable rt_frame_table(RtFrameRow *row) {
 
 /* ---- in words ---- */
 
-#define SAY(out, ...) rt_append_text(out, RT_MAX_FRAME_SENTENCE, __VA_ARGS__)
-
 static const char *figure(double value, char size[16]) {
     rt_format_figure(value, size);
     return size;
@@ -236,115 +235,133 @@ static bool is_level(const RtResults *results, uint32_t t, uint32_t one, uint32_
 }
 
 /* "octree follows with 230 times, grid with 122 (level with octree)." */
-static void say_followers(char *out, const RtResults *results, uint32_t t, uint32_t winner) {
+static void say_followers(FILE *out, const RtResults *results, uint32_t t, uint32_t winner) {
     const RtExperiment *experiment = results->experiment;
     Measure *of = decisive(experiment);
     char number[16];
     uint32_t last = winner;
     for (uint32_t c; (c = next_of(results, t, of, false, last)) < experiment->candidate_count; last = c) {
-        SAY(out, last == winner ? " %s follows with %s times" : ", %s with %s",
-            rt_candidate_label(experiment, c), figure(factor_of(results, t, c, of), number));
-        if (is_level(results, t, last, c)) SAY(out, " (level with %s)", rt_candidate_label(experiment, last));
+        fprintf(out, last == winner ? " %s follows with %s times" : ", %s with %s",
+                rt_candidate_label(experiment, c), figure(factor_of(results, t, c, of), number));
+        if (is_level(results, t, last, c))
+            fprintf(out, " (level with %s)", rt_candidate_label(experiment, last));
     }
-    SAY(out, "%s", last == winner ? "" : ".");
+    fputs(last == winner ? "" : ".", out);
 }
 
 /* What the winner's time leaves out: who makes fewer object tests, and who is faster if each is built for one
  * frame. */
-static void say_others(char *out, const RtResults *results, uint32_t t, uint32_t winner) {
+static void say_others(FILE *out, const RtResults *results, uint32_t t, uint32_t winner) {
     const RtExperiment *experiment = results->experiment;
     const uint32_t none = experiment->candidate_count;
     const uint32_t fewest = next_of(results, t, tests_of, false, none);
     const uint32_t first = next_of(results, t, seconds_with_build, false, none);
     char number[16], other[16];
     if (fewest != none && tests_of(results, t, fewest) < tests_of(results, t, winner))
-        SAY(out, " %s makes the fewest object tests: %s times fewer than %s.",
-            rt_candidate_label(experiment, fewest), figure(factor_of(results, t, fewest, tests_of), number),
-            experiment->frame.without);
+        fprintf(out, " %s makes the fewest object tests: %s times fewer than %s.",
+                rt_candidate_label(experiment, fewest),
+                figure(factor_of(results, t, fewest, tests_of), number), experiment->frame.without);
     if (cost_of(results, t, first, RT_FRAME_ALL).high + rt_build_at(results, t, first)->seconds.high <
         cost_of(results, t, winner, RT_FRAME_ALL).low + rt_build_at(results, t, winner)->seconds.low)
-        SAY(out, " If each is built for one frame, %s is the fastest of %s: %s ms, %s %s ms.",
-            rt_candidate_label(experiment, first), experiment->frame.among,
-            figure(1e3 * seconds_with_build(results, t, first), number),
-            rt_candidate_label(experiment, winner),
-            figure(1e3 * seconds_with_build(results, t, winner), other));
+        fprintf(out, " If each is built for one frame, %s is the fastest of %s: %s ms, %s %s ms.",
+                rt_candidate_label(experiment, first), experiment->frame.among,
+                figure(1e3 * seconds_with_build(results, t, first), number),
+                rt_candidate_label(experiment, winner),
+                figure(1e3 * seconds_with_build(results, t, winner), other));
 }
 
-/* "item+wide is 1.12 times as fast as wide alone." */
-static void say_overlays(char *out, const RtResults *results, uint32_t t) {
+/* "light+wide is 1.82 times as fast as wide alone, item+wide 1.12 times (level)." The overlays over candidate
+ * `below`. */
+static void say_overlays(FILE *out, const RtResults *results, uint32_t t, uint32_t below) {
     const RtExperiment *experiment = results->experiment;
+    const bool counted = experiment->count_only;
+    bool any = false;
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        const uint32_t below = below_of(results, t, c);
         const double gain = factor_of(results, t, c, decisive(experiment));
         char number[16];
-        if (below == experiment->candidate_count || isnan(gain)) continue;
-        SAY(out,
-            experiment->count_only ? " %s makes %s times fewer object tests than %s alone%s."
-                                   : " %s is %s times as fast as %s alone%s.",
-            rt_candidate_label(experiment, c), figure(gain, number), rt_candidate_label(experiment, below),
-            is_level(results, t, c, below) ? " (level)" : "");
+        if (below_of(results, t, c) != below || isnan(gain)) continue;
+        figure(gain, number);
+        if (any)
+            fprintf(out, ", %s %s times", rt_candidate_label(experiment, c), number);
+        else
+            fprintf(out,
+                    counted ? " %s makes %s times fewer object tests than %s alone"
+                            : " %s is %s times as fast as %s alone",
+                    rt_candidate_label(experiment, c), number, rt_candidate_label(experiment, below));
+        if (is_level(results, t, c, below)) fputs(" (level)", out);
+        any = true;
     }
+    if (any) fputc('.', out);
 }
 
 /* The fastest of all, and which are level with it. */
-static void say_fastest(char *out, const RtResults *results, uint32_t t) {
+static void say_fastest(FILE *out, const RtResults *results, uint32_t t) {
     const RtExperiment *experiment = results->experiment;
     const uint32_t none = experiment->candidate_count, best = next_of(results, t, seconds_of, true, none);
     const uint32_t without = without_of(experiment, t);
     char number[16];
     bool any = false;
-    SAY(out, " The fastest of all is %s: %s times as fast as %s", rt_candidate_label(experiment, best),
-        figure(seconds_of(results, t, without) / seconds_of(results, t, best), number),
-        experiment->frame.without);
+    fprintf(out, " The fastest of all is %s: %s times as fast as %s", rt_candidate_label(experiment, best),
+            figure(seconds_of(results, t, without) / seconds_of(results, t, best), number),
+            experiment->frame.without);
     for (uint32_t c = best; (c = next_of(results, t, seconds_of, true, c)) != none;) {
         if (!is_level(results, t, best, c)) continue;
-        SAY(out, "%s %s", any ? "," : " (level with", rt_candidate_label(experiment, c));
+        fprintf(out, "%s %s", any ? "," : " (level with", rt_candidate_label(experiment, c));
         any = true;
     }
-    SAY(out, any ? ")." : ".");
+    fputs(any ? ")." : ".", out);
 }
 
-void rt_frame_sentence(const RtResults *results, uint32_t workload, char out[RT_MAX_FRAME_SENTENCE]) {
+static void say_frame(FILE *out, const RtResults *results, uint32_t t, uint32_t winner) {
     const RtExperiment *experiment = results->experiment;
-    const uint32_t winner = winner_of(results, workload);
     const bool timed = !experiment->count_only;
     char number[16];
-    out[0] = '\0';
-    if (winner == experiment->candidate_count) return;
-    SAY(out, "On %s, %s is the %s of %s: ", experiment->workloads[workload].label,
-        rt_candidate_label(experiment, winner), timed ? "fastest" : "best", experiment->frame.among);
+    fprintf(out, "On %s, %s is the %s of %s: ", experiment->workloads[t].label,
+            rt_candidate_label(experiment, winner), timed ? "fastest" : "best", experiment->frame.among);
     if (timed)
-        SAY(out, "%s times as fast, with ", figure(factor_of(results, workload, winner, seconds_of), number));
-    SAY(out, "%s times fewer object tests than %s.",
-        figure(factor_of(results, workload, winner, tests_of), number), experiment->frame.without);
-    say_followers(out, results, workload, winner);
-    if (timed) say_others(out, results, workload, winner);
-    say_overlays(out, results, workload);
-    if (timed) say_fastest(out, results, workload);
+        fprintf(out, "%s times as fast, with ", figure(factor_of(results, t, winner, seconds_of), number));
+    fprintf(out, "%s times fewer object tests than %s.",
+            figure(factor_of(results, t, winner, tests_of), number), experiment->frame.without);
+    say_followers(out, results, t, winner);
+    if (timed) say_others(out, results, t, winner);
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) say_overlays(out, results, t, c);
+    if (timed) say_fastest(out, results, t);
 }
 
-void rt_frame_title(const RtResults *results, uint32_t workload, char out[RT_MAX_FRAME_SENTENCE]) {
+char *rt_frame_sentence(const RtResults *results, uint32_t workload) {
+    const uint32_t winner = winner_of(results, workload);
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    if (!out) return NULL;
+    if (winner < results->experiment->candidate_count) say_frame(out, results, workload, winner);
+    fclose(out);
+    return text;
+}
+
+void rt_frame_title(const RtResults *results, uint32_t workload, char out[RT_MAX_FRAME_TEXT]) {
     const RtWorkloadResult *w = &results->workloads[workload];
     const RtWorkload *setup = &results->experiment->workloads[workload];
     const uint64_t samples = (uint64_t)(w->width + setup->corners) * (w->height + setup->corners);
-    out[0] = '\0';
-    SAY(out, "%" PRIu32 " object%s, %s frame of %" PRIu32 "x%" PRIu32 ": ", w->objects, rt_plural(w->objects),
-        w->rays[RT_RAY_PRIMARY] == samples ? "a" : "a part of a", w->width, w->height);
-    SAY(out, "%" PRIu64 " primary, %" PRIu64 " shadow and %" PRIu64 " secondary rays",
-        w->rays[RT_RAY_PRIMARY], w->rays[RT_RAY_SHADOW],
-        w->rays[RT_RAY_REFLECTION] + w->rays[RT_RAY_TRANSMISSION]);
+    snprintf(out, RT_MAX_FRAME_TEXT,
+             "%" PRIu32 " object%s, %s frame of %" PRIu32 "x%" PRIu32 ": %" PRIu64 " primary, %" PRIu64
+             " shadow and %" PRIu64 " secondary rays",
+             w->objects, rt_plural(w->objects), w->rays[RT_RAY_PRIMARY] == samples ? "a" : "a part of a",
+             w->width, w->height, w->rays[RT_RAY_PRIMARY], w->rays[RT_RAY_SHADOW],
+             w->rays[RT_RAY_REFLECTION] + w->rays[RT_RAY_TRANSMISSION]);
 }
 
 /* ---- to read ---- */
 
-void rt_frame_legend(const RtExperiment *experiment, char out[RT_MAX_FRAME_SENTENCE]) {
+void rt_frame_legend(const RtExperiment *experiment, const char *mark, char out[RT_MAX_FRAME_TEXT]) {
     snprintf(
-        out, RT_MAX_FRAME_SENTENCE,
+        out, RT_MAX_FRAME_TEXT,
         "Mtests: object tests of a whole frame, in millions; ms: time to trace it on one thread; build: ms "
         "to build, on all processors (--threads changes both). fewer, faster: how many times, than %s; "
         "primary, shadow, bounce (reflection and transmission): how many times faster. -: no such rays, "
-        "or not counted. >: the fastest of %s. level: the difference is within the intervals of measurement.",
-        experiment->frame.without, experiment->frame.among);
+        "or not counted. %s: the %s of %s. level: the difference is within the intervals of measurement.",
+        experiment->frame.without, mark, experiment->count_only ? "best" : "fastest",
+        experiment->frame.among);
 }
 
 static void print_rows(const RtResults *results, uint32_t workload, FILE *out) {
@@ -352,30 +369,33 @@ static void print_rows(const RtResults *results, uint32_t workload, FILE *out) {
     RtTable table = rt_frame_table(&row);
     table.groups = for_terminals;
     table.group_count = 1;
-    int widths[RT_MAX_TABLE_COLUMNS];
-    const char *group = "";
+    int widths[RT_MAX_TABLE_COLUMNS], part[RT_MAX_TABLE_COLUMNS];
     rt_table_widths(&table, widths);
-    rt_table_line(&table, widths, NULL, out);
-    for (size_t i = 0; i < table.row_count; i++) {
-        if (!table.row(table.context, i)) continue;
-        const char *own = results->experiment->candidates[row.candidate].group;
-        if (strcmp(own, group) != 0) fprintf(out, "%s\n", own);
-        group = own;
-        rt_table_line(&table, widths, &row, out);
+    for (size_t next = 0; rt_table_part(&table, widths, rt_page_width(out), &next, part);) {
+        const char *group = "";
+        fputc('\n', out);
+        rt_table_line(&table, part, NULL, out);
+        for (size_t i = 0; i < table.row_count; i++) {
+            if (!table.row(table.context, i)) continue;
+            const char *own = results->experiment->candidates[row.candidate].group;
+            if (strcmp(own, group) != 0) fprintf(out, "%s\n", own);
+            group = own;
+            rt_table_line(&table, part, &row, out);
+        }
     }
 }
 
 void rt_print_frames(const RtResults *results, FILE *out) {
     const RtExperiment *experiment = results->experiment;
-    char text[RT_MAX_FRAME_SENTENCE];
+    char text[RT_MAX_FRAME_TEXT];
     fputc('\n', out);
-    rt_frame_legend(experiment, text);
+    rt_frame_legend(experiment, ">", text);
     rt_print_wrapped(text, out);
     if (*experiment->frame.note) rt_print_wrapped(experiment->frame.note, out);
     for (uint32_t t = 0; t < experiment->workload_count; t++) {
         if (!results->workloads[t].known) continue;
         rt_frame_title(results, t, text);
-        fprintf(out, "\n%s: %s\n\n", experiment->workloads[t].label, text);
+        fprintf(out, "\n%s: %s\n", experiment->workloads[t].label, text);
         print_rows(results, t, out);
     }
 }

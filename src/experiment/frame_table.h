@@ -46,17 +46,18 @@ typedef struct RtFrameRow {
 RtTable rt_frame_table(RtFrameRow *row);
 
 /* Which accelerator of the group is the fastest on a workload, by how much, and how the others and the
- * overlays compare; those whose intervals overlap are level: sentences, or "" if unknown. */
-#define RT_MAX_FRAME_SENTENCE 1024
-void rt_frame_sentence(const RtResults *results, uint32_t workload, char out[RT_MAX_FRAME_SENTENCE]);
+ * overlays compare; those whose intervals overlap are level: sentences, to be freed with free(). "" if
+ * unknown, NULL if memory is short. */
+char *rt_frame_sentence(const RtResults *results, uint32_t workload);
 
 /* The size of a workload's frame, and its rays by kind: "a frame of 256x256: 65536 primary, ... rays". */
-void rt_frame_title(const RtResults *results, uint32_t workload, char out[RT_MAX_FRAME_SENTENCE]);
+#define RT_MAX_FRAME_TEXT 1024
+void rt_frame_title(const RtResults *results, uint32_t workload, char out[RT_MAX_FRAME_TEXT]);
 
-/* Explains the columns of the tables to read. */
-void rt_frame_legend(const RtExperiment *experiment, char out[RT_MAX_FRAME_SENTENCE]);
+/* Explains the columns of the tables to read, `mark` beside the fastest, and "level". */
+void rt_frame_legend(const RtExperiment *experiment, const char *mark, char out[RT_MAX_FRAME_TEXT]);
 
-/* Prints the tables of all known workloads, in 80 columns. */
+/* Prints the tables of all known workloads. */
 void rt_print_frames(const RtResults *results, FILE *out);
 
 #endif

@@ -6,6 +6,7 @@
 #include "experiment/result_tables.h"
 
 #include <inttypes.h>
+#include <stdlib.h>
 #include <string.h>
 
 void rt_interval_title(const RtExperiment *experiment, char out[RT_MAX_INTERVAL_TITLE]) {
@@ -31,31 +32,37 @@ static void print_title(const RtResults *results, uint32_t t, FILE *out) {
 }
 
 /* Prints a heading before the rows of each kind of rays, and long labels on their own lines. */
-void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workload, FILE *out) {
-    RtResultRow row = {.results = results, .workload = workload};
-    const RtTable table = rt_result_table(which, &row);
-    int widths[RT_MAX_TABLE_COLUMNS];
+static void print_part(const RtTable *table, const RtResultRow *row, int *widths, FILE *out) {
+    const RtResultTable which = row->which;
     bool by_kind = which == RT_CELLS || which == RT_COUNTED_CELLS || which == RT_PERCENTILES ||
                    which == RT_HARDWARE_CELLS,
          any = false;
     RtRayKind kind = RT_RAY_PRIMARY;
     fputc('\n', out);
-    rt_table_widths(&table, widths);
-    rt_table_line(&table, widths, NULL, out);
-    for (size_t i = 0; i < table.row_count; i++) {
+    rt_table_line(table, widths, NULL, out);
+    for (size_t i = 0; i < table->row_count; i++) {
         char label[RT_MAX_EYE_LABEL];
-        if (!table.row(table.context, i)) continue;
-        if (by_kind && (!any || row.kind != kind)) {
-            const uint64_t rays = row.scene->rays[row.kind];
-            fprintf(out, "  %s, %" PRIu64 " ray%s\n", rt_experiment_kind_name(results->experiment, row.kind),
-                    rays, rt_plural(rays));
+        if (!table->row(table->context, i)) continue;
+        if (by_kind && (!any || row->kind != kind)) {
+            const uint64_t rays = row->scene->rays[row->kind];
+            fprintf(out, "  %s, %" PRIu64 " ray%s\n",
+                    rt_experiment_kind_name(row->results->experiment, row->kind), rays, rt_plural(rays));
         }
         any = true;
-        kind = row.kind;
-        rt_result_eye_label(&row, label);
+        kind = row->kind;
+        rt_result_eye_label(row, label);
         if (strlen(label) > RT_EYE_WIDTH) fprintf(out, "%s\n", label);
-        rt_table_line(&table, widths, &row, out);
+        rt_table_line(table, widths, row, out);
     }
+}
+
+void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workload, FILE *out) {
+    RtResultRow row = {.results = results, .workload = workload};
+    const RtTable table = rt_result_table(which, &row);
+    int widths[RT_MAX_TABLE_COLUMNS], part[RT_MAX_TABLE_COLUMNS];
+    rt_table_widths(&table, widths);
+    for (size_t next = 0; rt_table_part(&table, widths, rt_page_width(out), &next, part);)
+        print_part(&table, &row, part, out);
 }
 
 /* The fewest and the most rounds of any cell; 0 if nothing was timed. */
@@ -169,33 +176,49 @@ static const RtCell *learnt_cell(const RtResults *results, uint32_t t, RtRayKind
     return learnt;
 }
 
-void rt_learnt_sentence(const RtResults *results, uint32_t workload, char out[RT_MAX_SENTENCE]) {
+/* The workload and its kinds: "on balls 72 primary rays 12 times, 30 shadow rays 40 times"; false if none. */
+static bool say_learnt(const RtResults *results, uint32_t t, const char *before, FILE *out) {
     const RtExperiment *experiment = results->experiment;
-    out[0] = '\0';
-    for (uint32_t k = 0; k < experiment->kind_count; k++) {
-        const RtCell *cell = learnt_cell(results, workload, experiment->kinds[k]);
+    bool any = false;
+    for (uint32_t k = 0; results->workloads[t].known && k < experiment->kind_count; k++) {
+        const RtCell *cell = learnt_cell(results, t, experiment->kinds[k]);
         if (!cell) continue;
-        if (!*out)
-            snprintf(out, RT_MAX_SENTENCE, "Too few rays on %s: within a round, an accelerator repeats",
-                     experiment->workloads[workload].label);
+        if (any)
+            fputc(',', out);
         else
-            rt_append_text(out, RT_MAX_SENTENCE, ",");
-        rt_append_text(out, RT_MAX_SENTENCE, " %" PRIu64 " %s ray%s %.0f times", cell->tally.rays,
-                       rt_experiment_kind_name(experiment, experiment->kinds[k]), rt_plural(cell->tally.rays),
-                       cell->repeats);
+            fprintf(out, "%s on %s", before, experiment->workloads[t].label);
+        fprintf(out, " %" PRIu64 " %s ray%s %.0f times", cell->tally.rays,
+                rt_experiment_kind_name(experiment, experiment->kinds[k]), rt_plural(cell->tally.rays),
+                cell->repeats);
+        any = true;
     }
-    if (!*out) return;
-    rt_append_text(
-        out, RT_MAX_SENTENCE,
-        ". Caches and branch predictors learn them, so they take less time than in a frame. %s, or "
-        "run them once a round (milliseconds: 0).",
-        *experiment->rays_from ? "Give more rays" : "Record more (a larger size or limit)");
+    return any;
 }
 
-static void print_learnt(const RtResults *results, uint32_t t, FILE *out) {
-    char text[RT_MAX_SENTENCE];
-    rt_learnt_sentence(results, t, text);
-    if (*text) rt_print_wrapped(text, out);
+char *rt_learnt_sentence(const RtResults *results) {
+    const RtExperiment *experiment = results->experiment;
+    const char *before = "Too few rays. Within a round, an accelerator repeats";
+    char *text = NULL;
+    size_t size;
+    bool any = false;
+    FILE *out = open_memstream(&text, &size);
+    if (!out) return NULL;
+    for (uint32_t t = 0; t < experiment->workload_count; t++)
+        any |= say_learnt(results, t, any ? ";" : before, out);
+    if (any)
+        fprintf(out,
+                ". Caches and branch predictors learn them, so they take less time than in a frame. %s, or "
+                "run them once a round (milliseconds: 0).",
+                *experiment->rays_from ? "Give more rays" : "Record more (a larger size or limit)");
+    fclose(out);
+    return text;
+}
+
+/* Prints and frees a text; nothing for "" or NULL. */
+static void print_text(char *text, FILE *out) {
+    if (text && *text) fputc('\n', out);
+    if (text && *text) rt_print_wrapped(text, out);
+    free(text);
 }
 
 /* ---- tables of a workload ---- */
@@ -228,7 +251,6 @@ static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
     rt_print_rows(results, timed ? RT_CELLS : RT_COUNTED_CELLS, t, out);
     print_strides(results, t, timed, out);
     print_differing(results, t, out);
-    print_learnt(results, t, out);
     rt_print_rows(results, timed ? RT_STRUCTURES : RT_COUNTED_STRUCTURES, t, out);
     if (timed) print_builds(results, t, out);
 }
@@ -244,9 +266,9 @@ void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) 
         } else {
             rt_table_text(&table, out);
             print_differing(results, t, out);
-            print_learnt(results, t, out);
         }
     }
+    print_text(rt_learnt_sentence(results), out);
 }
 
 /* ---- hardware counters ---- */
@@ -321,17 +343,14 @@ void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
 void rt_print_summary(const RtResults *results, FILE *out) {
     const RtExperiment *experiment = results->experiment;
     const bool frames = *experiment->frame.without;
-    char text[RT_MAX_FRAME_SENTENCE];
+    char text[RT_MAX_SENTENCE];
     if (frames)
         rt_print_frames(results, out);
     else
         rt_print_results(results, RT_TOTALS, out);
-    for (uint32_t t = 0; frames && t < experiment->workload_count; t++) {
-        rt_frame_sentence(results, t, text);
-        if (*text) fputc('\n', out);
-        if (*text) rt_print_wrapped(text, out);
-        print_learnt(results, t, out);
-    }
+    for (uint32_t t = 0; frames && t < experiment->workload_count; t++)
+        print_text(rt_frame_sentence(results, t), out);
+    if (frames) print_text(rt_learnt_sentence(results), out);
     if (experiment->render) print_rendered(results, out);
     if (experiment->hardware) rt_print_hardware(results, out);
     rt_print_left_out(results, out);

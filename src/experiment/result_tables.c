@@ -34,11 +34,10 @@ static RtField estimate(const RtEstimate *e, double unit) {
     return rt_field_interval(e->median / unit, e->low / unit, e->high / unit);
 }
 
-/* A structure built once has a rough time without an interval. */
-static RtField build_ms_of(const Row *r) {
-    if (!r->build->known) return rt_field_missing();
-    if (r->build->builds < 2) return rt_field_real(1e3 * r->build->seconds.median);
-    return estimate(&r->build->seconds, 1e-3);
+RtField rt_build_ms(const RtBuildResult *build) {
+    if (!build->known) return rt_field_missing();
+    if (build->builds < 2) return rt_field_real(1e3 * build->seconds.median);
+    return estimate(&build->seconds, 1e-3);
 }
 
 static RtField break_even_of(const Row *r) {
@@ -218,7 +217,7 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
     X(mrays, "Mrays/s", figure, "million/s", "throughput", 1e-6 / r->cost.seconds.median)                    \
     X(interval, "ratio", interval, "", "throughput over the baseline's", estimate(&r->cost.ratio, 1))        \
     X(build_ms, "build ms", interval, "ms", "time to build the structure, with its interval",                \
-      build_ms_of(r))                                                                                        \
+      rt_build_ms(r->build))                                                                                 \
     X(mb, "MB", amount, "MB", "memory of the structure", 1e-6 * (double)r->build->structure.bytes)           \
     X(break_even, "break-even (rays)", text, "rays",                                                         \
       "the number of rays, with its interval, for which it takes less time than the baseline, including "    \

@@ -70,14 +70,18 @@ RtTable rt_result_table(RtResultTable which, RtResultRow *row);
 #define RT_MAX_EYE_LABEL (RT_MAX_LABEL + 16)
 void rt_result_eye_label(const RtResultRow *row, char out[RT_MAX_EYE_LABEL]);
 
-/* Prints RT_CELLS, in 80 columns, with RT_STRUCTURES and an explanation of the figures (or the counted tables
+/* The time to build in ms, with its interval: without one if it was built once. */
+RtField rt_build_ms(const RtBuildResult *build);
+
+/* Prints RT_CELLS, with RT_STRUCTURES and an explanation of the figures (or the counted tables
  * if nothing was timed), or RT_TOTALS; for each known workload. */
 void rt_print_results(const RtResults *results, RtResultTable which, FILE *out);
 
 /* Prints the hardware counters of each known workload, or why there are none. */
 void rt_print_hardware(const RtResults *results, FILE *out);
 
-/* Prints a blank line, the names of the columns, and the rows of one workload. */
+/* Prints a blank line, the names of the columns, and the rows of one workload; in several parts if the page
+ * is narrower (rt_table_part). */
 void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workload, FILE *out);
 
 /* What a run ends with: the frames' costs and what follows from them, or the totals if the experiment has no
@@ -89,9 +93,10 @@ void rt_print_summary(const RtResults *results, FILE *out);
 #define RT_MAX_SENTENCE 640
 void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]);
 
-/* A warning that names the kinds of rays of a workload which some accelerator was timed on so few of,
- * repeated so often, that processors learn them (RT_LEARNT_RAYS), and a remedy. "" if there are none. */
-void rt_learnt_sentence(const RtResults *results, uint32_t workload, char out[RT_MAX_SENTENCE]);
+/* A warning that names the workloads and kinds of rays which some accelerator was timed on so few of,
+ * repeated so often, that processors learn them (RT_LEARNT_RAYS), and a remedy: to be freed with free(). ""
+ * if there are none, NULL if memory is short. */
+char *rt_learnt_sentence(const RtResults *results);
 
 /* The least coverage of the intervals: "95 %", or less if rounds are too few. */
 #define RT_MAX_INTERVAL_TITLE 16

@@ -164,7 +164,7 @@ static void draw_legend(const Drawing *d) {
         rt_paint(d->cairo, keys[i].style);
         draw_text(d, MARGIN + 26, y + 10, RT_BLACK, keys[i].text);
     }
-    y = put_line(d, y + 10, "colours: order, from dark to light");
+    y = put_line(d, y + 10, "dark: visited first, light: last");
     snprintf(text, sizeof text, "%c is up", "xyz"[d->section.axis]);
     y = put_line(d, y, text) + 6;
     snprintf(text, sizeof text, "%llu step%s, %llu of them in leaves", (unsigned long long)t->steps,

@@ -21,7 +21,7 @@ enum { STREAM = 1024, LEVEL = RT_MAX_SPAWN * STREAM };
 typedef struct Path {
     uint32_t sample; /* of the frame */
     float factor;    /* of the light: the product of kr and kt along the path */
-    uint32_t parent; /* as in RtFrameRay, if the sample is observed */
+    uint32_t parent; /* as in RtFrameRay, if the tile is observed */
 } Path;
 
 typedef struct Level {
@@ -43,7 +43,7 @@ typedef struct Worker {
     RtQuery query;
     RtTally tallies[RT_RAY_KIND_COUNT];
     uint64_t ray_count[RT_RAY_KIND_COUNT];
-    uint32_t seen; /* rays that the observer saw */
+    uint32_t seen[RT_TILE * RT_TILE]; /* rays of each sample of a tile that the observer saw */
     size_t tile;
     double querying, working; /* seconds in queries, and in all; with `share` */
     Level *levels;            /* [depth]; 0 holds the primary rays */
@@ -78,14 +78,16 @@ static void add_light(Worker *worker, Path path, RtVec3 light) {
     *color = rt_add(*color, rt_scale(light, path.factor));
 }
 
-/* Shows a ray to the observer of its sample; returns its number. */
+/* Shows a ray to the observer; returns its number in its sample. */
 static uint32_t show(Worker *worker, Path path, RtFrameRay ray) {
     const RtFrameObserver *observer = worker->job->options->observer;
-    if (!observer || observer->sample != path.sample) return RT_NO_RAY;
+    if (!observer) return RT_NO_RAY;
+    const uint32_t columns = worker->job->frame->sampling.columns;
+    const RtSample sample = {path.sample % columns, path.sample / columns};
     ray.parent = path.parent;
     ray.factor = path.factor;
-    observer->see(observer->context, &ray);
-    return worker->seen++;
+    observer->see(observer->context, sample, &ray);
+    return worker->seen[rt_tile_place(sample)]++;
 }
 
 /* ---- queries ---- */
@@ -310,7 +312,7 @@ static RtStatus init_tiles(Job *job, const RtSampling *sampling, RtError *error)
     job->tiles = rt_alloc(job->tile_count, sizeof(RtSample));
     if (!job->tiles) return rt_fail_memory(error, "the tiles of a frame", job->tile_count * sizeof(RtSample));
     if (observer)
-        job->tiles[0] = rt_tile_of(sampling, observer->sample);
+        job->tiles[0] = observer->tile;
     else
         rt_tiles_in_order(sampling, job->tiles);
     if (!job->options->keep_rays) return RT_OK;

@@ -34,10 +34,11 @@ typedef struct RtFrameRay {
 } RtFrameRay;
 #define RT_NO_RAY UINT32_MAX
 
-/* Sees the rays of one sample, numbered 0, 1, ... in the order in which their light is added. */
+/* Sees the rays of the samples of one tile. Those of a sample are numbered 0, 1, ... in the order in which
+ * their light is added. */
 typedef struct RtFrameObserver {
-    uint32_t sample; /* row * columns + column */
-    void (*see)(void *context, const RtFrameRay *ray);
+    RtSample tile; /* of rt_tile_of */
+    void (*see)(void *context, RtSample sample, const RtFrameRay *ray);
     void *context;
 } RtFrameObserver;
 
@@ -49,7 +50,7 @@ typedef struct RtFrameOptions {
     bool light_from_outside; /* light surfaces from outside, whichever side the ray comes from */
     bool keep_rays;          /* keep all traced rays */
     bool share;              /* fill `share`; reading the clock costs about 50 ns per stream of rays */
-    const RtFrameObserver *observer; /* optional: trace only the tile of its sample */
+    const RtFrameObserver *observer; /* optional: trace only its tile */
     /* Optional: called by one thread at a time when a tile is finished. */
     void (*progress)(void *context, size_t tiles_done, size_t tiles);
     void *progress_context;

@@ -63,30 +63,30 @@ static RtVec3d direction_to(const RtSurface *surface, const RtLight *light) {
     return rt_normalized(rt_subd(rt_widen(light->position), surface->point));
 }
 
-/* kd (N.L) and ks (R.V)^shine */
-static void reflect_light(const RtSurface *surface, RtVec3d to_light, RtVec3 *matte, RtVec3 *glossy) {
+/* kd (N.L) */
+static RtVec3 matte_light(const RtSurface *surface, RtVec3d to_light) {
     const RtMaterial *m = surface->material;
-    double n_dot_l = rt_dotd(surface->normal, to_light);
-    double r_dot_v = rt_dotd(mirrored(to_light, surface->normal), surface->arriving);
-    double highlight = 0;
-    if (m->specular > 0 && r_dot_v > 0) highlight = (double)m->specular * rt_power(r_dot_v, (double)m->shine);
-    *matte = rt_scale(m->color, (float)((double)m->diffuse * n_dot_l));
-    *glossy = rt_vec3((float)highlight, (float)highlight, (float)highlight);
+    return rt_scale(m->color, (float)((double)m->diffuse * rt_dotd(surface->normal, to_light)));
 }
 
-void rt_light_terms(const RtScene *scene, const RtSurface *surface, uint32_t index, RtVec3 *diffuse,
-                    RtVec3 *specular) {
+/* ks (R.V)^shine */
+static RtVec3 highlight(const RtSurface *surface, RtVec3d to_light) {
+    const RtMaterial *m = surface->material;
+    double r_dot_v = rt_dotd(mirrored(to_light, surface->normal), surface->arriving);
+    if (!(m->specular > 0 && r_dot_v > 0)) return rt_vec3(0, 0, 0);
+    const float light = (float)((double)m->specular * rt_power(r_dot_v, (double)m->shine));
+    return rt_vec3(light, light, light);
+}
+
+RtVec3 rt_diffuse_light(const RtScene *scene, const RtSurface *surface, uint32_t index) {
     const RtLight *source = &scene->lights[index];
-    reflect_light(surface, direction_to(surface, source), diffuse, specular);
-    *diffuse = rt_mul(source->intensity, *diffuse);
-    *specular = rt_mul(source->intensity, *specular);
+    return rt_mul(source->intensity, matte_light(surface, direction_to(surface, source)));
 }
 
 bool rt_shadow_ray(const RtScene *scene, const RtSurface *surface, uint32_t index, RtRay *ray,
                    RtVec3 *light) {
     const RtLight *source = &scene->lights[index];
     RtVec3d to_light = direction_to(surface, source);
-    RtVec3 matte, glossy;
     if (!(rt_dotd(surface->normal, to_light) > 0) || !(rt_dotd(surface->side, to_light) > 0)) return false;
 
     *ray = start_ray(surface, 1, to_light, RT_RAY_SHADOW);
@@ -95,8 +95,7 @@ bool rt_shadow_ray(const RtScene *scene, const RtSurface *surface, uint32_t inde
     ray->source = index;
     if (!rt_ray_is_valid(ray)) return false;
 
-    reflect_light(surface, to_light, &matte, &glossy);
-    *light = rt_mul(source->intensity, rt_add(matte, glossy));
+    *light = rt_mul(source->intensity, rt_add(matte_light(surface, to_light), highlight(surface, to_light)));
     return true;
 }
 

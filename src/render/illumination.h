@@ -56,9 +56,8 @@ RtVec3 rt_ambient_light(const RtScene *scene, const RtSurface *surface);
  * the light that arrives if it is not occluded: I_L (kd (N.L) + ks (R.V)^shine). */
 bool rt_shadow_ray(const RtScene *scene, const RtSurface *surface, uint32_t index, RtRay *ray, RtVec3 *light);
 
-/* The two terms of that light, before it is rounded as their sum: I_L kd (N.L) and I_L ks (R.V)^shine. */
-void rt_light_terms(const RtScene *scene, const RtSurface *surface, uint32_t index, RtVec3 *diffuse,
-                    RtVec3 *specular);
+/* The diffuse part of that light, I_L kd (N.L). The rest, never less than 0, is the highlight. */
+RtVec3 rt_diffuse_light(const RtScene *scene, const RtSurface *surface, uint32_t index);
 
 /* The reflection and transmission rays of the surface, with unit directions, and the factor of the light that
  * each returns. Returns their number, 0..2, the reflection first.

@@ -7,18 +7,17 @@
 #include <stdio.h>
 
 typedef struct Recorder {
-    RtRayTree *tree;
-    const RtScene *scene;
+    RtRayTree *of[RT_TILE * RT_TILE]; /* the tree of each sample of the tile; NULL: none */
     RtStatus status;
     RtError *error;
 } Recorder;
 
 /* ---- while the frame is traced ---- */
 
-static void record(void *context, const RtFrameRay *seen) {
+static void record(void *context, RtSample sample, const RtFrameRay *seen) {
     Recorder *recorder = context;
-    RtRayTree *tree = recorder->tree;
-    if (recorder->status != RT_OK) return;
+    RtRayTree *tree = recorder->of[rt_tile_place(sample)];
+    if (!tree || recorder->status != RT_OK) return;
     const bool shadow = seen->ray->kind == RT_RAY_SHADOW;
     RtTreeRay ray = {.ray = *seen->ray,
                      .level = 1,
@@ -37,32 +36,24 @@ static void record(void *context, const RtFrameRay *seen) {
 
 /* ---- afterwards ---- */
 
-static RtStatus find_occluders(RtRayTree *tree, const RtAccel *accel, RtError *error) {
-    RtQuery query;
-    RT_TRY(rt_query_init(&query, accel, error));
+static void find_occluders(RtRayTree *tree, RtQuery *query) {
     for (uint32_t i = 0; i < tree->count; i++) {
         RtTreeRay *ray = &tree->rays[i];
         if (ray->hit.object != RT_UNNAMED_OBJECT) continue;
         RtHit nearest;
-        rt_nearest(&query, &ray->ray, 1, &nearest, NULL);
+        rt_nearest(query, &ray->ray, 1, &nearest, NULL);
         if (nearest.object != RT_NO_OBJECT) ray->hit = nearest;
     }
-    rt_query_clear(&query);
-    return rt_accel_check(accel, error);
 }
 
-static void add_share(RtVec3d *to, RtVec3 light, float factor) {
-    *to = rt_add_scaledd(*to, rt_widen(light), (double)factor);
-}
-
-/* Sets the terms that the ray itself adds. */
+/* Sets the terms that the ray itself adds. The highlight is what the light is more than its diffuse part, so
+ * that together they are what the frame added. */
 static void set_own_terms(const RtRayTree *tree, const RtScene *scene, RtTreeRay *ray) {
     if (ray->ray.kind == RT_RAY_SHADOW) {
-        RtVec3 diffuse, specular;
         if (ray->hit.object != RT_NO_OBJECT) return;
-        rt_light_terms(scene, &tree->rays[ray->parent].surface, ray->ray.source, &diffuse, &specular);
-        add_share(&ray->terms[RT_TERM_DIFFUSE], diffuse, ray->factor);
-        add_share(&ray->terms[RT_TERM_SPECULAR], specular, ray->factor);
+        const RtVec3 diffuse = rt_diffuse_light(scene, &tree->rays[ray->parent].surface, ray->ray.source);
+        ray->terms[RT_TERM_DIFFUSE] = rt_widen(rt_scale(diffuse, ray->factor));
+        ray->terms[RT_TERM_SPECULAR] = rt_subd(rt_widen(ray->added), ray->terms[RT_TERM_DIFFUSE]);
     } else if (ray->hit.object == RT_NO_OBJECT) {
         ray->light = rt_widen(ray->added);
     } else {
@@ -100,22 +91,38 @@ static void finish(RtRayTree *tree, const RtScene *scene) {
     for (uint32_t i = 0; number < tree->count; i = rt_ray_tree_next(tree, i)) tree->rays[i].number = ++number;
 }
 
-RtStatus rt_ray_tree_trace(RtRayTree *tree, const RtAccel *accel, uint32_t column, uint32_t row,
-                           uint32_t depth, RtError *error) {
+static RtStatus finish_all(RtRayTree *trees, const RtAccel *accel, uint32_t count, RtError *error) {
+    RtQuery query;
+    RT_TRY(rt_query_init(&query, accel, error));
+    for (uint32_t i = 0; i < count; i++) {
+        find_occluders(&trees[i], &query);
+        finish(&trees[i], accel->scene);
+    }
+    rt_query_clear(&query);
+    return rt_accel_check(accel, error);
+}
+
+RtStatus rt_ray_trees_trace(RtRayTree *trees, const RtAccel *accel, const RtSample *samples, uint32_t count,
+                            uint32_t depth, RtError *error) {
     RtFrame frame;
-    *tree = (RtRayTree){.depth = depth};
-    Recorder recorder = {tree, accel->scene, RT_OK, error};
-    const RtFrameObserver observer = {row * accel->scene->sampling.columns + column, record, &recorder};
+    Recorder recorder = {.status = RT_OK, .error = error};
+    for (uint32_t i = 0; i < count; i++) {
+        trees[i] = (RtRayTree){.depth = depth};
+        recorder.of[rt_tile_place(samples[i])] = &trees[i];
+    }
+    const RtFrameObserver observer = {rt_tile_of(samples[0]), record, &recorder};
     const RtFrameOptions options = {.depth = depth, .threads = 1, .observer = &observer};
-    RT_TRY(rt_frame_trace(&frame, accel, &options, error));
+    RtStatus status = rt_frame_trace(&frame, accel, &options, error);
     rt_frame_clear(&frame);
-    RtStatus status = recorder.status;
-    if (status == RT_OK) status = find_occluders(tree, accel, error);
-    if (status == RT_OK)
-        finish(tree, accel->scene);
-    else
-        rt_ray_tree_clear(tree);
+    if (status == RT_OK) status = recorder.status;
+    if (status == RT_OK) status = finish_all(trees, accel, count, error);
+    for (uint32_t i = 0; i < count && status != RT_OK; i++) rt_ray_tree_clear(&trees[i]);
     return status;
+}
+
+RtStatus rt_ray_tree_trace(RtRayTree *tree, const RtAccel *accel, RtSample sample, uint32_t depth,
+                           RtError *error) {
+    return rt_ray_trees_trace(tree, accel, &sample, 1, depth, error);
 }
 
 void rt_ray_tree_clear(RtRayTree *tree) {

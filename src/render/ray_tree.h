@@ -41,7 +41,7 @@ typedef struct RtTreeRay {
     bool cut;             /* the surface reflects or transmits, but the depth is reached */
     RtVec3 added;         /* what the ray itself adds: ambient light, the background, or a light's */
     RtVec3d terms[RT_TERM_COUNT]; /* of the light that comes from the hit; of a shadow ray diffuse and
-                                   * specular as it adds them; zero for a miss */
+                                   * specular, which are `added` together; zero for a miss */
     RtVec3d light;                /* in all: the sum of the terms, or the background */
 } RtTreeRay;
 
@@ -56,8 +56,13 @@ typedef struct RtRayTree {
 } RtRayTree;
 
 /* Traces the sample of the frame's grid, to `depth` levels, 1..RT_MAX_DEPTH. */
-RtStatus rt_ray_tree_trace(RtRayTree *tree, const RtAccel *accel, uint32_t column, uint32_t row,
-                           uint32_t depth, RtError *error);
+RtStatus rt_ray_tree_trace(RtRayTree *tree, const RtAccel *accel, RtSample sample, uint32_t depth,
+                           RtError *error);
+
+/* The same for samples[0..count) of one tile (rt_tile_of). The order of a sample's rays depends on those of
+ * its tile, so a tile is traced as a whole, once for all samples. After a failure all trees are empty. */
+RtStatus rt_ray_trees_trace(RtRayTree *trees, const RtAccel *accel, const RtSample *samples, uint32_t count,
+                            uint32_t depth, RtError *error);
 
 /* The ray after `index`, depth first: its first child, or the next of a parent; RT_NO_RAY at the end. The
  * primary ray is the first. */

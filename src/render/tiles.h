@@ -36,10 +36,14 @@ static inline RtSample rt_tile_sample(RtSample tile, uint32_t i) {
     return (RtSample){tile.column + rt_even_bits(i), tile.row + rt_even_bits(i >> 1)};
 }
 
-/* The tile of sample row * columns + column. */
-static inline RtSample rt_tile_of(const RtSampling *sampling, uint32_t sample) {
-    uint32_t column = sample % sampling->columns, row = sample / sampling->columns;
-    return (RtSample){column - column % RT_TILE, row - row % RT_TILE};
+/* The tile of a sample. */
+static inline RtSample rt_tile_of(RtSample sample) {
+    return (RtSample){sample.column - sample.column % RT_TILE, sample.row - sample.row % RT_TILE};
+}
+
+/* The place of a sample in its tile, row by row: 0..RT_TILE * RT_TILE - 1. */
+static inline uint32_t rt_tile_place(RtSample sample) {
+    return sample.row % RT_TILE * RT_TILE + sample.column % RT_TILE;
 }
 
 #endif

@@ -14,6 +14,7 @@ void rt_bytes_clear(RtBytes *bytes) {
 
 /* Grows by doubling (rt_reserve). */
 void rt_bytes_put(RtBytes *bytes, const void *data, size_t size) {
+    if (size == 0) return; /* `data` may be NULL */
     if (bytes->status == RT_OK)
         bytes->status = rt_reserve(&bytes->data, &bytes->capacity, bytes->count + (uint64_t)size, 1, NULL);
     if (bytes->status != RT_OK) return;

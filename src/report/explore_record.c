@@ -169,8 +169,7 @@ static RtStatus put_candidates(RtBytes *out, const RtAccel *base, RtRay ray, RtE
     return RT_OK;
 }
 
-static RtStatus put_ray(RtRecordedPixels *recording, const RtRayTree *tree, const RtTreeRay *ray,
-                        RtError *error) {
+static RtStatus put_ray(RtRecordedPixels *recording, const RtTreeRay *ray, RtError *error) {
     RtBytes *out = &recording->rays;
     const RtAccel *first = recording->of[0].accel;
     bool looked_up = false;
@@ -178,7 +177,7 @@ static RtStatus put_ray(RtRecordedPixels *recording, const RtRayTree *tree, cons
         looked_up |= rt_cell_layer(recording->of[i].accel, RT_RAY_PRIMARY) != NULL;
     rt_bytes_put_number(out, ray->ray.kind);
     rt_bytes_put_number(out, ray->level);
-    rt_bytes_put_number(out, ray->parent == RT_NO_RAY ? 0 : tree->rays[ray->parent].number);
+    rt_bytes_put_number(out, ray->parent == RT_NO_RAY ? 0 : (uint64_t)ray->parent + 1);
     rt_bytes_put_number(out, ray->ray.source);
     rt_bytes_put_number(out, (uint64_t)ray->total + 2 * (uint64_t)ray->cut);
     put_vector(out, ray->ray.org);
@@ -187,17 +186,24 @@ static RtStatus put_ray(RtRecordedPixels *recording, const RtRayTree *tree, cons
     put_object(out, ray->hit.object);
     rt_bytes_put_float(out, ray->hit.t);
     put_vector(out, ray->added);
-    if (looked_up && ray->ray.kind == RT_RAY_PRIMARY)
-        return put_candidates(out, rt_accel_base(first), ray->ray, error);
+    if (ray->ray.kind == RT_RAY_SHADOW) put_vector(out, rt_narrow(ray->terms[RT_TERM_DIFFUSE]));
+    if (ray->ray.kind != RT_RAY_PRIMARY) return RT_OK;
+    if (looked_up) return put_candidates(out, rt_accel_base(first), ray->ray, error);
     rt_bytes_put_number(out, 0);
     return RT_OK;
 }
 
-static RtStatus record_tree(RtRecordedPixels *recording, const RtRayTree *tree, RtError *error) {
-    uint32_t place = rt_bytes_begin(&recording->rays), places[RT_MAX_EXPLORED] = {0};
-    for (uint32_t i = 0; i < recording->count; i++) places[i] = rt_bytes_begin(&recording->of[i].paths);
-    for (uint32_t k = 0, left = tree->count; left > 0; k = rt_ray_tree_next(tree, k), left--) {
-        RT_TRY(put_ray(recording, tree, &tree->rays[k], error));
+static uint32_t begin_pixel(RtBytes *bytes, uint32_t number) {
+    rt_bytes_put_number(bytes, number);
+    return rt_bytes_begin(bytes);
+}
+
+static RtStatus record_tree(RtRecordedPixels *recording, uint32_t number, const RtRayTree *tree,
+                            RtError *error) {
+    uint32_t place = begin_pixel(&recording->rays, number), places[RT_MAX_EXPLORED] = {0};
+    for (uint32_t i = 0; i < recording->count; i++) places[i] = begin_pixel(&recording->of[i].paths, number);
+    for (uint32_t k = 0; k < tree->count; k++) {
+        RT_TRY(put_ray(recording, &tree->rays[k], error));
         for (uint32_t i = 0; i < recording->count; i++) {
             RtPath path;
             RT_TRY(rt_path_trace(&path, recording->of[i].accel, &tree->rays[k].ray, error));
@@ -221,28 +227,54 @@ static uint64_t bytes_of(const RtRecordedPixels *recording) {
     return bytes;
 }
 
+/* Pixels in places stride / 2, stride / 2 + stride, ... below `side`. */
+static uint32_t places_in(uint32_t side, uint32_t stride) {
+    return side > stride / 2 ? (side - stride / 2 + stride - 1) / stride : 0;
+}
+
+/* The recorded pixels of a tile, and the number of each; returns how many. */
+static uint32_t pixels_of_tile(const RtRecordedPixels *recording, RtSample tile, RtSample *pixels,
+                               uint32_t *numbers) {
+    const uint32_t stride = recording->stride, columns = recording->columns, rows = recording->rows;
+    const uint32_t right = places_in(tile.column + RT_TILE, stride);
+    const uint32_t below = places_in(tile.row + RT_TILE, stride);
+    uint32_t count = 0;
+    for (uint32_t row = places_in(tile.row, stride); row < below && row < rows; row++) {
+        for (uint32_t column = places_in(tile.column, stride); column < right && column < columns; column++) {
+            numbers[count] = row * columns + column;
+            pixels[count++] = (RtSample){column * stride + stride / 2, row * stride + stride / 2};
+        }
+    }
+    return count;
+}
+
+static RtStatus record_tile(RtRecordedPixels *recording, RtSample tile, uint32_t depth, RtError *error) {
+    RtSample pixels[RT_TILE * RT_TILE];
+    uint32_t numbers[RT_TILE * RT_TILE], count = pixels_of_tile(recording, tile, pixels, numbers);
+    RtRayTree trees[RT_TILE * RT_TILE];
+    if (count == 0) return RT_OK;
+    RT_TRY(rt_ray_trees_trace(trees, recording->of[0].accel, pixels, count, depth, error));
+    RtStatus status = RT_OK;
+    for (uint32_t i = 0; i < count; i++) {
+        if (status == RT_OK) status = record_tree(recording, numbers[i], &trees[i], error);
+        rt_ray_tree_clear(&trees[i]);
+    }
+    return status;
+}
+
 static RtStatus record_pixels(RtRecordedPixels *recording, const RtExploreOptions *options, bool *fits,
                               RtError *error) {
-    const RtAccel *first = recording->of[0].accel;
-    for (uint32_t i = 0; i < recording->columns * recording->rows; i++) {
-        RtRayTree tree;
-        RT_TRY(rt_ray_tree_trace(&tree, first, rt_recorded_pixel(recording, i % recording->columns),
-                                 rt_recorded_pixel(recording, i / recording->columns), options->depth,
-                                 error));
-        RtStatus status = record_tree(recording, &tree, error);
-        rt_ray_tree_clear(&tree);
-        RT_TRY(status);
-        *fits = bytes_of(recording) <= (uint64_t)options->bytes * RAW_PER_BYTE;
-        if (!*fits) return RT_OK;
+    const RtSampling *s = &recording->of[0].accel->scene->sampling;
+    for (uint32_t row = 0; row < s->height; row += RT_TILE) {
+        for (uint32_t column = 0; column < s->width; column += RT_TILE) {
+            RT_TRY(record_tile(recording, (RtSample){column, row}, options->depth, error));
+            *fits = bytes_of(recording) <= (uint64_t)options->bytes * RAW_PER_BYTE;
+            if (!*fits) return RT_OK;
+        }
     }
     RT_TRY(rt_bytes_compress(&recording->rays, error));
     for (uint32_t i = 0; i < recording->count; i++) RT_TRY(rt_bytes_compress(&recording->of[i].paths, error));
     return RT_OK;
-}
-
-/* Pixels in places stride / 2, stride / 2 + stride, ... below `side`; one at least. */
-static uint32_t places_in(uint32_t side, uint32_t stride) {
-    return side > stride / 2 ? (side - stride / 2 + stride - 1) / stride : 0;
 }
 
 RtStatus rt_recorded_pixels_make(RtRecordedPixels *recording, RtAccel *const *accels, uint32_t count,

@@ -5,12 +5,15 @@
  * All numbers are LEB128 but for floats and the lengths, u32 (explore_bytes.h). An object is written as 0 for
  * none, 1 for one without a name, id + 2 otherwise.
  *
- *   rays:   for each pixel its length, and the rays of its tree (RtTreeRay), depth first, each: kind, level,
+ *   rays:   for each pixel, tile by tile: its number (row * columns + column), its length, and the rays of
+ *           its tree (RtTreeRay) in the order in which the frame adds their light, each: kind, level,
  *           1 + parent or 0, source, total + 2 * cut, org[3], dir[3], tmax (floats), object, t, added[3]
- * (floats), candidates, and of each candidate object and t (float) paths:  of one accelerator: for each pixel
- * its length, and for each ray of its tree: object, t (float), the counters of its tally, the cell (1 +
- * number, length, object, cut; or 0), rows of the path, rows kept, and of each kept one: event, and t (float)
- * if the form has one events: of one accelerator: form, index, 1 and a box or 0
+ *           (floats), of a shadow ray the diffuse part of that (floats), of a primary ray the number of
+ *           candidates, and of each object and t (float)
+ *   paths:  of one accelerator: for each pixel its number and length, and for each ray of its tree: object,
+ *           t (float), the counters of its tally, the cell (1 + number, length, object, cut; or 0), rows of
+ *           the path, rows kept, and of each kept one: event, and t (float) if the form has one
+ *   events: of one accelerator: form, index, 1 and a box or 0
  *
  * Candidates are the objects that a primary ray hits, from near to far, if an accelerator looks primary rays
  * up in cells. */
@@ -54,11 +57,6 @@ typedef struct RtRecordedPixels {
     uint32_t count;
     RtRecordedPaths of[RT_MAX_EXPLORED];
 } RtRecordedPixels;
-
-/* The pixel that is recorded in place `i` of a row or column. */
-static inline uint32_t rt_recorded_pixel(const RtRecordedPixels *recording, uint32_t i) {
-    return i * recording->stride + recording->stride / 2;
-}
 
 /* Records as many pixels as fit; compresses what it recorded. Free with rt_recorded_pixels_clear. */
 RtStatus rt_recorded_pixels_make(RtRecordedPixels *recording, RtAccel *const *accels, uint32_t count,

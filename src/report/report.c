@@ -228,8 +228,14 @@ static void put_more_tables(FILE *out, const RtResults *results) {
     if (results->experiment->hardware) put_details(out, "Hardware counters per ray", &hardware);
 }
 
+/* A paragraph; nothing for "" or NULL. Frees the text. */
+static void put_sentences(FILE *out, char *text) {
+    if (text && *text) rt_html_wrap(out, "<p>", text, "</p>\n");
+    free(text);
+}
+
 static void put_tables(FILE *out, const RtResults *results) {
-    char interval[RT_MAX_INTERVAL_TITLE], sentence[RT_MAX_SENTENCE];
+    char interval[RT_MAX_INTERVAL_TITLE];
     rt_interval_title(results->experiment, interval);
     fprintf(
         out,
@@ -240,13 +246,12 @@ static void put_tables(FILE *out, const RtResults *results) {
         "<input type=\"search\" id=\"words\" placeholder=\"words, e.g. of a scene, an accelerator, a kind\"> "
         "<output for=\"words\" class=\"meta\"></output></div>\n",
         interval, results->experiment->count_only ? "object tests" : "time");
+    put_sentences(out, rt_learnt_sentence(results));
     for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
         const char *label = results->experiment->workloads[t].label;
         if (!results->workloads[t].known) continue;
         rt_html_wrap(out, "<section class=\"scene-tables\" data-scene=\"", label, "\"><h3>");
         rt_html_wrap(out, "", label, "</h3>\n");
-        rt_learnt_sentence(results, t, sentence);
-        if (*sentence) rt_html_wrap(out, "<p>", sentence, "</p>\n");
         put_table(out, results, t, RT_TOTALS_MORE, "all kinds of rays together");
         fputs("<details><summary>By kind of rays</summary>", out);
         put_table(out, results, t, RT_CELLS_MORE, "by kind of rays");
@@ -260,13 +265,14 @@ static void put_tables(FILE *out, const RtResults *results) {
 /* For an experiment with frames: the fastest accelerators on each scene, as sentences, plot and tables. */
 static void put_answer(FILE *out, const RtResults *results, const char *directory) {
     const RtExperiment *experiment = results->experiment;
-    char path[RT_MAX_PATH], text[RT_MAX_FRAME_SENTENCE], caption[RT_MAX_FRAME_SENTENCE + RT_MAX_LABEL];
+    char path[RT_MAX_PATH], text[RT_MAX_FRAME_TEXT], caption[RT_MAX_FRAME_TEXT + RT_MAX_LABEL];
     if (!*experiment->frame.without) return;
     fputs("<section class=\"card\" id=\"answer\"><h2>Answer</h2>", out);
-    for (uint32_t t = 0; t < experiment->workload_count; t++) {
-        rt_frame_sentence(results, t, text);
-        if (*text) rt_html_wrap(out, "<p>", text, "</p>\n");
-    }
+    for (uint32_t t = 0; t < experiment->workload_count; t++)
+        put_sentences(out, rt_frame_sentence(results, t));
+    rt_frame_legend(experiment, "\u2605", text);
+    rt_html_wrap(out, "<p class=\"meta\">", text, " ");
+    rt_html_wrap(out, "", experiment->frame.note, "</p>\n");
     fputs("</section>\n", out);
     if (rt_file_exists_in(directory, RT_FRAME_PLOT) &&
         rt_path_join(directory, RT_FRAME_PLOT, path, NULL) == RT_OK)
@@ -281,9 +287,6 @@ static void put_answer(FILE *out, const RtResults *results, const char *director
         table.color = frame_dot_of;
         rt_table_html(&table, out);
     }
-    rt_frame_legend(experiment, text);
-    rt_html_wrap(out, "<p class=\"meta\">", text, " ");
-    rt_html_wrap(out, "", experiment->frame.note, "</p>\n");
 }
 
 static void put_head(FILE *out, const RtResults *results, const json_t *manifest, const char *directory) {

@@ -98,6 +98,10 @@ RT_TEST_IN_PLACE(resume_finishes_and_starts_and_measures_nothing_again) {
     assert_int_equal(raytally(place, "run b.yaml --threads 1 --out all/b --only cloud/grid/random"), 0);
     char *finished = read_in(place, "all/a/cells.jsonl"), *part = read_in(place, "all/b/cells.jsonl");
     assert_ends(place, "run a.yaml b.yaml c.yaml --threads 1 --out all", 2, "2 of 3 experiments failed");
+    assert_in_file(
+        place, "message",
+        "all/a holds results of an earlier run: --update keeps what is up to date and measures the "
+        "rest; or give another --out");
     assert_int_equal(raytally(place, "run a.yaml b.yaml c.yaml --threads 1 --out all --resume"), 0);
     assert_same_file(place, "all/a/cells.jsonl", finished);
     char *whole = read_in(place, "all/b/cells.jsonl");

@@ -170,7 +170,7 @@ RT_TEST(a_tree_is_printed_with_each_ray_the_five_terms_and_sums) {
                                         "sphere, glass",
                                         "from inside",
                                         "nothing: lit",
-                                        "ambient               diffuse",
+                                        "ambient  diffuse  specular  reflected  transmitted   light",
                                         "in 2 levels, ",
                                         "would reflect or transmit, but the depth is reached"};
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
@@ -181,6 +181,31 @@ RT_TEST(a_tree_is_printed_with_each_ray_the_five_terms_and_sums) {
     assert_true(says(OUT ".txt", "in 1 level, "));
     assert_int_equal(trace(LECTURE " --pixel 42,42 --depth 5 --rows 3"), 0);
     assert_true(says(OUT ".txt", "more rays\n       --rows 0 prints each\n"));
+    unlink(OUT ".txt");
+}
+
+/* The longest line of the file after the first, the spec. */
+static size_t longest_line(const char *path) {
+    char line[1024];
+    size_t most = 0;
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    if (file) fgets(line, sizeof line, file);
+    while (file && fgets(line, sizeof line, file)) {
+        if (strcspn(line, "\n") > most) most = strcspn(line, "\n");
+    }
+    if (file) fclose(file);
+    return most;
+}
+
+RT_TEST(a_tree_is_printed_in_100_columns) {
+    static const char *const trees[] = {
+        LECTURE " --pixel 35,44 --depth 8", "'" RT_SOURCE_DIR "/scenes/prism.yaml' --pixel 40,30 --depth 4",
+        "balls:size=4 --pixel 256,300 --depth 5", "tetra:size=5 --pixel 256,256 --depth 2"};
+    for (size_t i = 0; i < sizeof trees / sizeof trees[0]; i++) {
+        assert_int_equal(trace(trees[i]), 0);
+        assert_in_range(longest_line(OUT ".txt"), 60, 100);
+    }
     unlink(OUT ".txt");
 }
 

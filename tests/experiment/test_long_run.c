@@ -108,7 +108,7 @@ RT_TEST_IN_PLACE(an_interrupted_run_says_what_is_kept_and_how_to_go_on) {
 RT_TEST_IN_PLACE(a_dry_run_lists_the_cells_and_touches_nothing) {
     const Place *place = *state;
     assert_int_equal(raytally(place, "run small.yaml --out out --dry-run"), 0);
-    assert_in_file(place, "output", "cloud:n=400              grid:density=16              diffuse");
+    assert_in_file(place, "output", "cloud:n=400              grid:density=16              diffuse\n");
     /* 4 scenes by 2 kinds by 8 that are timed in 1 + 3 rounds, brute with the baseline on its rays. */
     assert_in_file(place, "output", "56 cells, 0 of them finished; the others take at least 1 s");
     assert_false(rt_file_exists(path_in(place, "out").text));
@@ -128,8 +128,8 @@ RT_TEST_IN_PLACE(a_dry_run_of_a_changed_experiment_estimates_its_time_from_the_p
     assert_in_file(place, "message", "another version of it ('small')");
     assert_in_file(place, "output",
                    "cloud:n=400              grid:density=4               diffuse      measured before");
-    assert_in_file(place, "output", "cloud:n=400              grid:density=8               diffuse      \n");
-    assert_in_file(place, "output", "balls                    grid:density=4               diffuse      \n");
+    assert_in_file(place, "output", "cloud:n=400              grid:density=8               diffuse\n");
+    assert_in_file(place, "output", "balls                    grid:density=4               diffuse\n");
     /* 3 scenes by 2 kinds by 4 accelerators. */
     assert_in_file(place, "output", "56 cells, 24 of them as in the previous run; all of them take about ");
     assert_same_file(place, "out/cells.jsonl", journal);

@@ -69,6 +69,7 @@ RT_TEST_IN_PLACE(run_and_bench_thin_a_set_to_the_same_rays) {
                 "bench balls:size=1 --size 200x200 --accel bvh --accel grid --limit 17000 --count-only "
                 "--csv thin.csv",
                 0, "");
+    assert_in_file(place, "output", "\nwrote thin.csv\n");
     assert_equal_files(place, "results/thin/counts.csv", "thin.csv");
     /* Runs are as long as when it was measured, even if the default has changed since. */
     assert_ends(place, "reproduce results/thin", 0, "");
@@ -79,12 +80,23 @@ RT_TEST_IN_PLACE(run_and_bench_thin_a_set_to_the_same_rays) {
     rt_free(manifest);
 }
 
+static int occurrences(const Place *place, const char *name, const char *what) {
+    char *text = read_in(place, name);
+    int count = 0;
+    for (const char *at = text; (at = strstr(at, what)); at++) count++;
+    rt_free(text);
+    return count;
+}
+
 RT_TEST_IN_PLACE(a_few_rays_that_are_repeated_until_they_are_learnt_cause_a_warning) {
     const Place *place = *state;
-    const char *warning = "Too few rays on balls:size=1: within a round, an accelerator repeats 72 primary";
+    const char *warning =
+        "Too few rays. Within a round, an accelerator repeats on balls:size=1 72 primary rays";
     write_changed(place, "short.yaml", small_experiment, "count_only: yes", "rounds: 2\nmilliseconds: 1");
     assert_ends(place, "run short.yaml", 0, "");
-    assert_in_file(place, "output", "Too few rays on cloud: within a round");
+    assert_in_file(place, "output", "; on cloud ");
+    assert_int_equal(occurrences(place, "output", "Too few rays"), 1);
+    assert_int_equal(occurrences(place, "results/small/report.html", "Too few rays"), 1);
     assert_in_file(place, "results/small/report.html", warning);
     assert_in_file(place, "results/small/times.csv", ",rounds,repeats,");
     assert_ends(place, "report results/small", 0, ""); /* from the journal */

@@ -11,7 +11,11 @@ const browser = await openBrowser(), judge = makeJudge(), { holds } = judge;
 const scene = 'balls:size=2', size = '40x30', url = (page) => `file://${resolve(page)}`;
 
 function explore(page, accels, ...more) {
-  execFileSync(program, ['explore', scene, '--size', size, '--depth', '3', ...accels.flatMap((spec) => ['--accel', spec]), '-o', page, ...more]);
+  exploreScene(scene, page, accels, ...more);
+}
+
+function exploreScene(of, page, accels, ...more) {
+  execFileSync(program, ['explore', of, '--size', size, '--depth', '3', ...accels.flatMap((spec) => ['--accel', spec]), '-o', page, ...more]);
 }
 
 const trace = (x, y, accel, ...more) => JSON.parse(execFileSync(program,
@@ -42,6 +46,11 @@ const shown = () => browser.run(`const text = (element) => element.textContent;
       live: panel.querySelector('.said').getAttribute('aria-live'),
       current: panel.querySelector('tr[aria-current]')?.textContent ?? '' })) };`);
 
+// The terms of the chosen ray by name, "sum" the last, each [red, green, blue] with all digits; and the colour of the pixel.
+const light = () => browser.run(`return { color: document.querySelector('#color')?.title.split(' ').map(Number),
+  terms: Object.fromEntries([...document.querySelectorAll('#terms tbody tr')].map((row) => [row.cells[0].textContent.split(' ')[0],
+    [...row.cells].slice(2).map(({ title }) => Number(title))])) };`);
+
 const counters = (tally) => Object.fromEntries(Object.entries(tally).filter(([name, value]) => value > 0 && name !== 'rays' && name !== 'hits'));
 const same = (a, b) => JSON.stringify(Object.entries(a).sort()) === JSON.stringify(Object.entries(b).sort());
 const sums = (panel, which) => Object.fromEntries(Object.entries(panel.counts).map(([name, both]) => [name, both[which]]));
@@ -60,9 +69,35 @@ async function checkTree(accels) {
   });
   for (let i = 0; i < expected[0].length; i++) {
     await chooseRay(i);
+    const { panels: first } = await shown();
+    first.forEach((panel, k) => holds(Object.values(sums(panel, 0)).every((count) => count === 0) && /press Play or Step/.test(panel.said) || panel.said.startsWith('Nothing is counted'),
+      `ray ${i} begins before the first step in ${accels[k]}: ${panel.said}`));
+    await press('last');
     const { panels } = await shown();
     panels.forEach((panel, k) => holds(same(sums(panel, 1), counters(expected[k][i].counts)) && same(sums(panel, 0), sums(panel, 1)),
       `ray ${i} counts in ${accels[k]} what trace counts: ${JSON.stringify(panel.counts)}, ${JSON.stringify(expected[k][i].counts)}`));
+    await checkLight(expected[0][i], i);
+  }
+}
+
+// `trace` prints nine digits; the sum of the terms has the bits of the light.
+async function checkLight(ray, i) {
+  const { terms } = await light(), names = Object.keys(terms), sum = terms.sum ?? terms.background;
+  const near = (a, b) => a.every((value, c) => Math.abs(value - b[c]) <= 1e-8 * Math.abs(b[c]));
+  holds(near(sum, ray.light), `ray ${i} brings the light that trace prints: ${sum}, ${ray.light}`);
+  holds(names.sort().join() === (terms.background ? 'background' : ray.kind === 'shadow' ? 'diffuse,specular,sum' : 'ambient,diffuse,reflected,specular,sum,transmitted'),
+    `ray ${i} shows the terms that it can have: ${names}`);
+  if (terms.background) return;
+  const parts = ['ambient', 'diffuse', 'specular', 'reflected', 'transmitted'].filter((name) => terms[name]);
+  for (const name of parts) holds(near(terms[name], ray.terms[name]), `ray ${i}: ${name} is what trace prints: ${terms[name]}, ${ray.terms[name]}`);
+  sum.forEach((value, c) => holds(parts.reduce((all, name) => all + terms[name][c], 0) === value, `ray ${i}: its terms add up to its light, bit for bit`));
+}
+
+async function checkColors(accel) {
+  for (const [x, y] of [[22, 17], [3, 5], [20, 20], [30, 25], [12, 22], [25, 12], [17, 14], [36, 28], [8, 18]]) {
+    await choosePixel(x, y);
+    const { color } = await light(), expected = trace(x, y, accel, '--depth', '3').color.map(Math.fround);
+    holds(same(color, expected), `pixel ${x},${y}: what its rays add, in their order, is the colour of the image, bit for bit: ${color}, ${expected}`);
   }
 }
 
@@ -139,6 +174,9 @@ async function checkBuffers(page, spec) {
   const [nearest] = await browser.run("return [...document.querySelectorAll('#sample tbody tr')].map((row) => [...row.cells].map((cell) => cell.textContent));");
   holds(nearest[0].startsWith(`object ${primary.object},`) && nearest[2] === 'kept' && Math.abs(Number(nearest[1]) - primary.t) <= 1e-5 * primary.t,
     `the nearest competitor is kept: ${nearest}`);
+  const other = first.rays.findIndex(([name]) => name.startsWith('reflection'));
+  await chooseRay(other);
+  holds(/for shadow rays only/.test((await shown()).panels[0].cell), 'a reflection ray is told that the cubes are for shadow rays');
   const at = first.rays.findIndex(([name]) => name.startsWith('shadow'));
   await chooseRay(at);
   const { panels: [{ cell }] } = await shown();
@@ -164,6 +202,8 @@ async function checkLooks(page, width, scheme) {
   await open(page);
   const found = await browser.run('return document.documentElement.scrollWidth;');
   holds(found <= width, `${page} at ${width} pixels is not wider than that: ${found}`);
+  const cut = await browser.run("const { scrollWidth, clientWidth } = document.querySelector('#tree').parentElement; return [scrollWidth, clientWidth];");
+  holds(cut[0] <= cut[1], `no column of the ray tree is cut at ${width} pixels: ${cut}`);
   if (axe) await judgeByAxe(browser, axe, `${page}, ${width} pixels, ${scheme}`, holds);
 }
 
@@ -171,21 +211,27 @@ try {
   const accels = ['bvh', 'grid'], buffers = 'item+light:cells=20+octree';
   explore('walk.html', accels);
   explore('buffers.html', [buffers]);
+  exploreScene('random:n=30000', 'deep.html', ['kd'], '--size', '8x6');
   explore('limited.html', ['brute'], '--megabytes', '1', '--size', '400x300');
   await browser.size(1440, 900);
   await browser.media('screen');
   await open('walk.html');
+  holds(/^0 of [1-9]/.test((await shown()).step), 'the page opens before the first step');
   await checkTree(accels);
+  await checkColors(accels[0]);
   await checkSteps(accels);
   await checkPointerAndKeys();
   await checkStructures();
   await checkBuffers('buffers.html', buffers);
   await checkWithoutWebGL('walk.html');
   for (const width of [390, 768, 1440]) for (const scheme of ['light', 'dark']) await checkLooks('walk.html', width, scheme);
+  await open('deep.html');
+  const legend = await browser.run("return document.querySelector('#legend').textContent;");
+  holds(/no boxes of kd below level \d+: deeper leaves are missing/.test(legend), `leaves that are left out are told: ${legend}`);
   await open('limited.html');
   holds(statSync('limited.html').size < 4e6, `paths take the room that they are given: ${statSync('limited.html').size} bytes`);
   holds(/of one pixel in (\d+) x \1/.test(await browser.run("return document.querySelector('#about').textContent;")), 'the page says which pixels it has');
-  await judgeLogs(browser, (to) => ['walk.html', 'buffers.html', 'limited.html'].map(url).includes(to), holds);
+  await judgeLogs(browser, (to) => ['walk.html', 'buffers.html', 'deep.html', 'limited.html'].map(url).includes(to), holds);
   if (judge.failures === 0) console.log(`check_pages: the explorer shows what trace prints${axe ? '; axe finds nothing serious' : ''}`);
 } finally {
   await browser.close();

@@ -9,7 +9,7 @@
 
 static RtRayTree tree_of(const RtAccel *accel, uint32_t column, uint32_t row, uint32_t depth) {
     RtRayTree tree;
-    assert_ok(rt_ray_tree_trace(&tree, accel, column, row, depth, error));
+    assert_ok(rt_ray_tree_trace(&tree, accel, (RtSample){column, row}, depth, error));
     return tree;
 }
 
@@ -62,7 +62,27 @@ RT_TEST(the_order_of_rays_is_that_of_the_frame_where_a_tile_is_cut_into_streams)
     assert_trees_make_the_frame(accel, 9, RT_SHARE(1, 41));
 }
 
-RT_TEST(the_five_terms_of_a_hit_add_up_to_the_light_that_comes_from_it) {
+RT_TEST(the_trees_of_a_tile_are_those_of_its_samples_one_by_one) {
+    OWNED_SCENE scene = busy_scene();
+    assert_ok(rt_scene_sample(&scene, 20, 20, 1, false, error));
+    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "item+light+bvh");
+    const RtSample samples[] = {{19, 0}, {16, 15}, {17, 3}};
+    RtRayTree trees[3];
+    assert_ok(rt_ray_trees_trace(trees, accel, samples, 3, 4, error));
+    for (uint32_t i = 0; i < 3; i++) {
+        OWNED_TREE alone = tree_of(accel, samples[i].column, samples[i].row, 4);
+        assert_int_equal(trees[i].rays[0].ray.source, samples[i].row * 20 + samples[i].column);
+        assert_memory_equal(&trees[i].color, &alone.color, sizeof alone.color);
+        assert_int_equal(trees[i].count, alone.count);
+        for (uint32_t k = 0; k < alone.count; k++) {
+            assert_int_equal(trees[i].rays[k].parent, alone.rays[k].parent);
+            assert_memory_equal(&trees[i].rays[k].terms, &alone.rays[k].terms, sizeof alone.rays[k].terms);
+        }
+        rt_ray_tree_clear(&trees[i]);
+    }
+}
+
+RT_TEST(the_five_terms_of_a_hit_add_up_to_the_light_that_comes_from_it_bit_for_bit) {
     OWNED_SCENE scene = busy_scene();
     assert_ok(rt_scene_sample(&scene, 16, 12, 1, false, error));
     OWNED_ACCEL RtAccel *accel = open_accel(&scene, "bvh");
@@ -84,8 +104,10 @@ RT_TEST(the_five_terms_of_a_hit_add_up_to_the_light_that_comes_from_it) {
                 sum = rt_addd(sum, ray->terms[t]);
                 used[t] += ray->terms[t].x > 0;
             }
+            const RtVec3d added = rt_widen(ray->added);
+            if (ray->ray.kind == RT_RAY_SHADOW) assert_memory_equal(&ray->light, &added, sizeof added);
             if (!ray->surface.material) continue;
-            assert_near(sum.x, ray->light.x, 1e-12);
+            assert_memory_equal(&sum, &ray->light, sizeof sum);
             assert_near(sum.x, (double)ray->added.x + of_children.x, 1e-6);
             assert_near(ray->terms[RT_TERM_REFLECTED].x, of_kind[RT_RAY_REFLECTION], 1e-12);
             assert_near(ray->terms[RT_TERM_TRANSMITTED].x, of_kind[RT_RAY_TRANSMISSION], 1e-12);
@@ -184,7 +206,8 @@ RT_TEST(a_tree_that_memory_does_not_suffice_for_leaves_nothing_behind) {
     assert_ok(rt_scene_sample(&scene, 4, 4, 1, false, error));
     OWNED_ACCEL RtAccel *accel = open_accel(&scene, "bvh");
     RtRayTree tree;
-    assert_fails_cleanly(rt_ray_tree_trace(&tree, accel, 1, 1, 8, error), rt_ray_tree_clear(&tree));
+    assert_fails_cleanly(rt_ray_tree_trace(&tree, accel, (RtSample){1, 1}, 8, error),
+                         rt_ray_tree_clear(&tree));
 }
 
 RT_TESTS(ray_tree, NULL, assert_nothing_is_kept)

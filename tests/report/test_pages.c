@@ -79,9 +79,13 @@ RT_TEST_IN_PLACE(a_report_of_frames_opens_with_the_fastest_and_its_plot) {
                                      "plots: [frame.gp]\n"
                                      "rounds: 2\n"
                                      "milliseconds: 0\n";
-    static const char *const parts[] = {"<h2>Answer</h2>", "On cloud, grid is the fastest of ours",
-                                        "Plot: A frame",   "of 12x12: 144 primary",
-                                        "A note.",         "<h2>Verdict</h2>",
+    static const char *const parts[] = {"<h2>Answer</h2>",
+                                        "On cloud, grid is the fastest of ours",
+                                        "\u2605: the fastest of ours. level: ",
+                                        "A note.",
+                                        "Plot: A frame",
+                                        "of 12x12: 144 primary",
+                                        "<h2>Verdict</h2>",
                                         "id=\"plots\""};
     write_in(place, "small.yaml", with_frame);
     write_in(place, "frame.gp",

@@ -174,6 +174,23 @@ RT_TEST(lines_one_by_one_are_those_of_the_whole_table) {
     free(text);
 }
 
+RT_TEST(a_table_that_is_wider_than_the_page_is_printed_in_parts_that_repeat_the_first_column) {
+    setenv("COLUMNS", "38", 1);
+    assert_written(&table, rt_table_text,
+                   "name            hit count  seconds\n"
+                   "a|b, `c` **d**         12      1.5\n"
+                   "<x>                  3456        -\n"
+                   "\n"
+                   "name            exact  range\n"
+                   "a|b, `c` **d**  yes    1.5 [0.8, 3.0]\n"
+                   "<x>             no     -\n"
+                   "\n"
+                   "name            rays\n"
+                   "a|b, `c` **d**     7\n"
+                   "<x>                -\n");
+    unsetenv("COLUMNS");
+}
+
 RT_TEST(figures_are_about_four_characters) {
     const struct {
         double value;

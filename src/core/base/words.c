@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "core/base/words.h"
 
+#include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
 
 /* Levenshtein distance, for words of up to 63 characters. */
 static size_t edit_distance(const char *a, const char *b) {
@@ -68,10 +71,21 @@ void rt_append_argument(char *out, size_t size, const char *word) {
     rt_append_text(out, size, "'");
 }
 
+int rt_page_width(FILE *out) {
+    enum { LEAST = 20 }; /* narrower ones are not believed */
+    const char *columns = getenv("COLUMNS");
+    struct winsize size;
+    long width = columns ? strtol(columns, NULL, 10) : 0;
+    if (width < LEAST && ioctl(fileno(out), TIOCGWINSZ, &size) == 0) width = size.ws_col;
+    return width < LEAST || width > INT_MAX ? INT_MAX : (int)width;
+}
+
 void rt_print_wrapped(const char *text, FILE *out) {
     enum { WIDTH = 80 };
-    while (strlen(text) > WIDTH) {
-        size_t end = WIDTH;
+    const int page = rt_page_width(out);
+    const size_t width = page < WIDTH ? (size_t)page : WIDTH;
+    while (strlen(text) > width) {
+        size_t end = width;
         while (end > 0 && text[end] != ' ') end--;
         if (end == 0) end = strcspn(text, " ");
         if (text[end] == '\0') break;

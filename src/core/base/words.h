@@ -29,7 +29,10 @@ __attribute__((format(printf, 3, 4))) void rt_append_text(char *out, size_t size
 /* Appends a blank and `word` as a shell reads it: in quotes where it needs them. */
 void rt_append_argument(char *out, size_t size, const char *word);
 
-/* Prints `text` and a newline, wrapped at blanks to 80 characters. */
+/* Characters of a line of `out`: $COLUMNS, or as many as the terminal has; INT_MAX for a file. */
+int rt_page_width(FILE *out);
+
+/* Prints `text` and a newline, wrapped at blanks to 80 characters, or to the page if that is narrower. */
 void rt_print_wrapped(const char *text, FILE *out);
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "core/text/table.h"
 
+#include "core/base/words.h"
 #include "core/text/csv.h"
 #include "core/text/json.h"
 #include "core/text/table_line.h"
@@ -279,10 +280,15 @@ static void widen(RtTableWriter *w, const RtTableLine *line, const void *row) {
     }
 }
 
+enum { HIDDEN = -1, GAP = 2 }; /* the width of a column of another part; between columns */
+
 static void put_text(RtTableWriter *w, const RtTableLine *line, const void *row) {
     char buffer[RT_MAX_FIELD];
+    size_t last_shown = line->count - 1;
+    while (last_shown > 0 && w->widths[last_shown] == HIDDEN) last_shown--;
     for (size_t i = 0; i < line->count; i++) {
-        bool last = i + 1 == line->count, left = !rt_column_is_number(line->columns[i]);
+        if (w->widths[i] == HIDDEN) continue;
+        bool last = i == last_shown, left = !rt_column_is_number(line->columns[i]);
         int width = left && last ? 0 : w->widths[i];
         fprintf(w->out, left ? "%-*s%s" : "%*s%s", width, show_text(line, i, row, buffer),
                 last ? "\n" : "  ");
@@ -298,10 +304,35 @@ void rt_table_line(const RtTable *table, int *widths, const void *row, FILE *out
     write_row(&(RtTableWriter){table, put_text, out, widths}, row);
 }
 
+static size_t column_count(const RtTable *table) {
+    size_t count = 0;
+    for (size_t g = 0; g < table->group_count; g++) count += table->groups[g].count;
+    return count;
+}
+
+bool rt_table_part(const RtTable *table, const int widths[RT_MAX_TABLE_COLUMNS], int page, size_t *next,
+                   int part[RT_MAX_TABLE_COLUMNS]) {
+    const size_t count = column_count(table);
+    size_t end = *next > 0 ? *next : 1;
+    int left = page - widths[0];
+    if (*next == count) return false;
+    for (bool first = true; end < count && (first || widths[end] + GAP <= left); first = false)
+        left -= widths[end++] + GAP;
+    for (size_t i = 0; i < RT_MAX_TABLE_COLUMNS; i++)
+        part[i] = i == 0 || (i >= *next && i < end) ? widths[i] : HIDDEN;
+    *next = end;
+    return true;
+}
+
 void rt_table_text(const RtTable *table, FILE *out) {
-    int widths[RT_MAX_TABLE_COLUMNS];
+    int widths[RT_MAX_TABLE_COLUMNS], part[RT_MAX_TABLE_COLUMNS];
     rt_table_widths(table, widths);
-    rt_table_walk((RtTableWriter){table, put_text, out, widths});
+    size_t next = 0;
+    for (const char *before = ""; rt_table_part(table, widths, rt_page_width(out), &next, part);
+         before = "\n") {
+        fputs(before, out);
+        rt_table_walk((RtTableWriter){table, put_text, out, part});
+    }
 }
 
 /* ---- JSON ---- */

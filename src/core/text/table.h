@@ -200,6 +200,12 @@ json_t *rt_row_json(const RtColumnGroup *groups, size_t count, const void *row);
 void rt_table_widths(const RtTable *table, int widths[RT_MAX_TABLE_COLUMNS]);
 void rt_table_line(const RtTable *table, int *widths, const void *row, FILE *out);
 
+/* A table that is wider than the page (rt_page_width) is printed in parts: each has the first column, and as
+ * many of the others as fit. Sets part[], for rt_table_line, to the widths of the part that begins with
+ * column *next, 0 at first; other columns are hidden. Moves *next; false after the last part. */
+bool rt_table_part(const RtTable *table, const int widths[RT_MAX_TABLE_COLUMNS], int page, size_t *next,
+                   int part[RT_MAX_TABLE_COLUMNS]);
+
 /* Writes text as HTML, escaped; NULL is "". */
 void rt_html_put(FILE *out, const char *text);
 

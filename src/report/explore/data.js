@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the program recorded, as src/report/explore_record.h and explore_shapes.h describe it.
 
+import { light } from './light.js';
+
 export const UNNAMED = 'unknown';
 
 // The bytes of one part of the page: a compressed data URL.
@@ -47,8 +49,8 @@ class Reader {
 function places(bytes) {
   const reader = new Reader(bytes), list = [];
   while (!reader.done) {
-    const length = reader.length();
-    list.push(reader.at);
+    const number = reader.number(), length = reader.length();
+    list[number] = reader.at;
     reader.at += length;
   }
   return list;
@@ -61,9 +63,11 @@ function many(count, read) {
 function readRay(reader, kinds) {
   const ray = { kind: kinds[reader.number()], level: reader.number(), parent: reader.number() - 1, source: reader.number() };
   const flags = reader.number();
-  return Object.assign(ray, { total: (flags & 1) !== 0, cut: (flags & 2) !== 0, org: reader.vector(), dir: reader.vector(),
-    tmax: reader.float(), object: reader.object(), t: reader.float(), added: reader.vector(),
-    candidates: many(reader.number(), () => ({ object: reader.object(), t: reader.float() })) });
+  Object.assign(ray, { total: (flags & 1) !== 0, cut: (flags & 2) !== 0, org: reader.vector(), dir: reader.vector(),
+    tmax: reader.float(), object: reader.object(), t: reader.float(), added: reader.vector() });
+  if (ray.kind === 'shadow') ray.diffuse = reader.vector();
+  if (ray.kind === 'primary') ray.candidates = many(reader.number(), () => ({ object: reader.object(), t: reader.float() }));
+  return ray;
 }
 
 function readCell(reader) {
@@ -139,7 +143,7 @@ export async function load() {
       const from = new Reader(accelerator.paths, accelerator.places[place]);
       for (const ray of tree) (ray.paths ??= []).push(readPath(from, data.counters, accelerator));
     }
-    return tree;
+    return light(tree);
   };
   return data;
 }

@@ -4,11 +4,11 @@ import { load } from './data.js';
 import { makePicker } from './picker.js';
 import { makeSpace } from './space.js';
 import { byId, element, number, plural } from './text.js';
-import { markRay, rayName, showTree } from './tree.js';
+import { markRay, rayName, showTerms, showTree } from './tree.js';
 import { makePanel } from './walk.js';
 
 const data = await load();
-const state = { tree: [], ray: 0, step: 0, playing: 0, shown: data.accelerators.map((_, i) => i).slice(0, 2) };
+const state = { tree: [], color: [0, 0, 0], ray: 0, step: 0, playing: 0, shown: data.accelerators.map((_, i) => i).slice(0, 2) };
 const depths = data.accelerators.map(({ boxList }) => boxList.reduce((most, { depth }) => Math.max(most, depth), 0));
 const dark = matchMedia('(prefers-color-scheme: dark)');
 const deepest = Math.max(0, ...depths);
@@ -81,15 +81,16 @@ function chooseRay(i) {
   state.ray = i;
   const at = (v) => `(${v.map(number).join(', ')})`;
   markRay(i);
+  showTerms(state.tree, state.color, i);
   byId('ray-said').textContent = ray() ? `${rayName(ray())}, from ${at(ray().org)} along ${at(ray().dir)}` : 'There is no ray.';
   byId('step').max = steps();
   space?.tree(state.tree, i);
-  if (ray()) showStep(steps());
+  if (ray()) showStep(0);
 }
 
 function choosePixel(column, row) {
   const x = column * data.stride + (data.stride >> 1), y = row * data.stride + (data.stride >> 1);
-  state.tree = data.pixel(column, row);
+  ({ rays: state.tree, color: state.color } = data.pixel(column, row));
   mark(column, row, `pixel ${x},${y}: ${plural(state.tree.length, 'ray')}, ${data.nameOf(state.tree[0]?.object ?? null)}`);
   showTree(data, state.tree, 0, chooseRay);
   chooseRay(0);
@@ -131,8 +132,10 @@ function showBoxes() {
   byId('slice').setAttribute('aria-valuetext', number(position));
   space.slice(axis, position);
   const drawn = data.accelerators.map((_, i) => space.boxes(i, choice));
+  const missing = data.accelerators.filter(({ thinned_level: level }) => level !== null).map(({ boxes_of: of, thinned_level: level }) =>
+    ` The page has no boxes of ${of} below level ${level}: deeper leaves are missing.`);
   byId('legend').textContent = `Boxes drawn: ${data.accelerators.map(({ spec, boxes_of: of }, i) => `${of ?? spec} ${drawn[i]}`).join(', ')}` +
-    (axis < 0 ? '.' : `, cut by ${'xyz'[axis]} = ${number(position)}.`);
+    (axis < 0 ? '.' : `, cut by ${'xyz'[axis]} = ${number(position)}.`) + missing.join('');
 }
 
 function connectSpace() {

@@ -98,13 +98,20 @@ export function makeSpace(data, place) {
     });
     group.clear();
   };
+  // How far from `at` along the unit vector `dir`, at least `least`, no leaf is around the camera.
+  const outside = (dir, least) => data.accelerators.flatMap(({ boxList, leastList }) => boxList.filter(({ list }) => list >= leastList))
+    .map((box) => span({ org: data.scene.at, dir: dir.toArray(), tmax: Infinity }, box)).filter(Boolean)
+    .sort(([a], [b]) => a - b).reduce((distance, [enter, leave]) => enter <= distance && distance <= leave ? 1.05 * leave : distance, least);
   const onLayer = (group, number) => group.traverse((part) => part.layers.set(1 + number));
   const space = {
     draw,
     whole: () => aim(center.clone().add(from.clone().sub(at).normalize().multiplyScalar(1.1 * size)), center),
     eye: () => aim(from, at),
     // Beside the eye, where primary rays are not seen end-on.
-    aside: () => aim(at.clone().add(from.clone().sub(at).applyAxisAngle(camera.up, -0.6).multiplyScalar(1.2)), at),
+    aside() {
+      const dir = from.clone().sub(at).normalize().applyAxisAngle(camera.up, -0.6);
+      aim(at.clone().addScaledVector(dir, outside(dir, 1.2 * from.distanceTo(at))), at);
+    },
     // From the side, so that the ray is seen in its length.
     closer(ray) {
       const end = vector(ray.org).addScaledVector(vector(ray.dir), Number.isFinite(ray.t) ? ray.t : 0), to = vector(ray.dir).normalize();

@@ -44,8 +44,9 @@ function faceOf(dir) {
   return (away[axis] < 0 ? '-' : '+') + 'xyz'[axis];
 }
 
-function cellText(data, ray, cell) {
-  if (!cell) return '';
+function cellText(data, accelerator, ray, cell) {
+  if (!cell) return ray.kind === 'shadow' || accelerator.cells.length === 0 ? '' :
+    `The cubes of cells around the lights are for shadow rays only: they do not answer this ${ray.kind} ray.`;
   if (ray.kind !== 'shadow') return `It is looked up in sample ${cell.number}, which holds ${data.nameOf(cell.object)}.`;
   return `It is looked up in cell ${cell.number} of the cube around light ${ray.source}, on the side ${faceOf(ray.dir)}: ` +
     `a list of ${plural(cell.length, 'object')}${cell.cut ? ', truncated, so a ray that reaches its end is passed on' : ''}.`;
@@ -60,7 +61,7 @@ function answer(data, ray, path) {
 
 function sentence(data, ray, path, step) {
   if (path.count === 0) return `Nothing is counted. ${answer(data, ray, path)}`;
-  if (step === 0) return `Before the first of ${plural(path.count, 'step')}.`;
+  if (step === 0) return `Before the first of ${plural(path.count, 'step')}: press Play or Step.`;
   if (step > path.rows.length) return answer(data, ray, path);
   const row = path.rows[step - 1], said = [row.form.name, subject(data, row), result(row)].filter(Boolean).join(', ');
   const end = step === path.rows.length ? ` ${path.count > path.rows.length ?
@@ -91,8 +92,8 @@ export function makePanel(data, accelerator, place) {
     counts.replaceChildren(...data.counters.filter(({ name }) => name !== 'rays' && name !== 'hits' && path.tally[name] > 0)
       .map(({ name }) => element('li', { 'data-counter': name }, element('b', {}, String(now[name])), ` of ${path.tally[name]} `,
         element('small', {}, name.replaceAll('_', ' ')))));
-    cell.textContent = cellText(data, ray, path.cell);
-    cell.hidden = !path.cell;
+    cell.textContent = cellText(data, accelerator, ray, path.cell);
+    cell.hidden = !cell.textContent;
     const light = path.cell && ray.kind === 'shadow' ? accelerator.cells[ray.source] : null;
     sides.hidden = !light;
     if (light && sides.dataset.cell !== `${ray.source} ${path.cell.number}`) {
