@@ -14,6 +14,7 @@
 #define RT_ACCEL_WIDE_RAY_SOURCE_H
 
 #include "accel/kernel.h"
+#include "accel/surface.h"
 #include "accel/wide/wide.h"
 #include "core/base/simd_across.h"
 

@@ -3,6 +3,10 @@
  * size. Skipped without Embree. */
 #include "embree_testing.h"
 
+#ifdef RT_WITH_EMBREE
+#include "accel/embree/embree.h"
+#endif
+
 RT_TEST(user_mode_is_brute_bit_for_bit_by_every_query) {
     static const char *const specs[] = {
         "embree:mode=user,query=1,robust=on",  "embree:mode=user,query=1,robust=off",
@@ -94,6 +98,56 @@ RT_TEST(user_mode_counts_tests_where_it_is_asked_to) {
     forget(&brute);
     forget(&user);
 }
+
+#ifdef RT_WITH_EMBREE
+/* A sphere of radius 1, at 0 and far off: twice the thickness of a ray from 8 away, which is four times the
+ * size, and 2^-21 of the largest coordinate. With 15/16 of either this fails. */
+RT_TEST(boxes_of_user_geometry_grow_by_their_bound) {
+    for (int far = 0; far < 2; far++) {
+        const float x = far ? 0x1p16f : 0;
+        OWNED_SCENE scene = begin_scene();
+        assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(x, 0, 0), 1, error));
+        scene.camera.from = rt_vec3(x, 0, 2);
+        scene.camera.at = rt_vec3(x, 0, 0);
+        assert_ok(rt_scene_finish(&scene, error));
+        OWNED_ACCEL RtEmbree *embree = open_accel(&scene, "embree:mode=user");
+        double thick = 0x1p-20 * 8, rounding = 0x1p-21 * ((double)x + 1), least = far ? 31.0 / 32 : 1;
+        assert_true((double)embree->growth >= 2 * thick + least * rounding);
+        assert_true((double)embree->growth <= 2 * thick + 33.0 / 32 * rounding);
+        assert_true((double)embree->max_thickness > 31.0 / 32 * thick);
+        assert_true((double)embree->max_thickness <= thick);
+    }
+}
+
+/* What remains for a scene that is hardly more than a point. */
+RT_TEST(boxes_of_user_geometry_grow_even_among_the_least_numbers) {
+    OWNED_SCENE scene = begin_scene();
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 0x1p-130f, error));
+    scene.camera.from = rt_vec3(0, 0, 0x1p-120f);
+    scene.camera.at = rt_vec3(0, 0, 0);
+    assert_ok(rt_scene_finish(&scene, error));
+    OWNED_ACCEL RtEmbree *embree = open_accel(&scene, "embree:mode=user");
+    assert_true((double)embree->growth >= 31.0 / 32 * 0x1p-100);
+}
+
+RT_TEST(the_first_error_that_embree_reports_is_told) {
+    OWNED_SCENE scene = begin_scene();
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    OWNED_ACCEL RtEmbree *embree = open_accel(&scene, "embree:mode=user");
+    assert_ok(rt_embree_device_check(&embree->device, error));
+    RTCScene empty = rtcNewScene(embree->device.device);
+    rtcAttachGeometry(empty, NULL);
+    assert_fails_with(rt_embree_device_check(&embree->device, error), RT_MISMATCH, "invalid argument");
+    rtcReleaseScene(empty);
+}
+
+/* At 1.5, 2^-20 is 12 units in the last place. */
+RT_TEST(searches_go_on_beyond_a_hit_by_their_bound) {
+    assert_true((double)rt_embree_limit(1.5f, 1) == 1.5 + 12 * 0x1p-23);
+    assert_true((double)rt_embree_limit(0, 1) == (double)FLT_MIN);
+}
+#endif
 
 RT_TEST_GROUP(embree_user) {
     if (!embree_is_built_in()) return RT_TEST_SKIPPED;

@@ -203,4 +203,35 @@ RT_TEST(scenes_far_off_tiny_or_huge_are_drawn_right) {
     }
 }
 
+/* 32 x 32 samples, of which a wall covers half, on each of four sides. Behind its edge, which is between two
+ * rows or columns of blocks, is a row of small triangles. */
+RT_TEST(small_triangles_that_are_half_hidden_are_drawn) {
+    for (int side = 0; side < 4; side++) {
+        const int axis = side & 1 ? 0 : 2;
+        const float past = side & 2 ? 2 : -2;
+        RtVec3 wall[4] = {{{-2, 1, -2}}, {{2, 1, -2}}, {{2, 1, 2}}, {{-2, 1, 2}}};
+        RtScene scene = begin_view();
+        scene.camera.width = scene.camera.height = 32;
+        scene.camera.fov = 90;
+        look(&scene, rt_vec3(0, 0, 0), rt_vec3(0, 1, 0));
+        for (int i = 0; i < 4; i++) {
+            if (wall[i].at[axis] == past) wall[i].at[axis] = 0;
+        }
+        const RtVec3 other[3] = {wall[0], wall[2], wall[3]};
+        assert_ok(rt_scene_add_triangle(&scene, 0, wall, NULL, error));
+        assert_ok(rt_scene_add_triangle(&scene, 0, other, NULL, error));
+        for (int k = 0; k < 16; k++) {
+            const float along = 1.25f * ((float)k - 7.5f), across[3] = {-1, -1, 1.5f},
+                        beside[3] = {-0.5f, 0.5f, 0};
+            RtVec3 v[3];
+            for (int i = 0; i < 3; i++) {
+                v[i] = rt_vec3(along + beside[i], 10, along + beside[i]);
+                v[i].at[axis] = past < 0 ? across[i] : -across[i];
+            }
+            assert_ok(rt_scene_add_triangle(&scene, 0, v, NULL, error));
+        }
+        check_scene(&scene, 0.97);
+    }
+}
+
 RT_TESTS(item_exact, NULL, assert_nothing_is_kept)

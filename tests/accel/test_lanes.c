@@ -10,6 +10,7 @@
 #include "accel/extents/extents.h"
 #include "accel/kernel.h"
 #include "accel/sphere_prefilter.h"
+#include "accel/watertight.h"
 #include "accel_testing.h"
 
 /* What is asked, and what is answered, timed and counted. */
@@ -383,6 +384,42 @@ RT_TEST(spheres_that_may_be_hit_pass_the_prefilter_and_hardly_any_other) {
                          passed & ~(1u << round / 4 % RT_LANES));
     }
     assert_true(hits > 10000 && misses > 10000);
+}
+
+/* Whether a hit at t, near an end of the interval in which the ray is in the triangle's box, is one, and at
+ * which t. */
+RT_TEST(hits_are_admitted_to_boxes_of_triangles_in_lanes_as_one_by_one) {
+    RtRandom random = rt_random(21, 0);
+    int admitted = 0;
+    for (int i = 0; i < 20000; i++) {
+        RtVec3 v[3], org = rt_random_point(&random, i % 2 ? 1 : 100);
+        RtBox box = RT_EMPTY_BOX;
+        RtLaneRays rays = {.tmin = rt_all(0), .tmax = rt_all(FLT_MAX)};
+        RtFloats at[3][3];
+        for (int k = 0; k < 3; k++) {
+            v[k] = rt_random_point(&random, 1);
+            box = rt_box_add_point(box, v[k]);
+            for (int a = 0; a < 3; a++) at[k][a] = rt_all(v[k].at[a]);
+        }
+        const RtRay ray = {.org = org, .dir = rt_sub(v[i % 3], org), .tmax = INFINITY};
+        RtPreparedRay prepared = rt_ray_prepare(&ray, &box);
+        for (int a = 0; a < 3; a++) {
+            rays.org[a] = rt_all(org.at[a]);
+            rays.inv[a] = 1 / rt_all(ray.dir.at[a]);
+            rays.negative[a] = rt_all_ints(-(int)prepared.negative[a]);
+        }
+        float near, far;
+        rt_box_own_span(&box, &prepared, &near, &far);
+        float t = (i & 4 ? near : far) * (1 + rt_random_between(&random, -0x1p-18f, 0x1p-18f)),
+              lanes[RT_LANES];
+        RtFloats all = rt_all(t);
+        bool one = rt_box_admit(&box, &prepared, &t), many = rt_admit(&rays, at, 1, &all) & 1;
+        rt_store(lanes, all);
+        assert_int_equal(one, many);
+        if (one) assert_memory_equal(&t, &lanes[0], sizeof t);
+        admitted += one;
+    }
+    assert_in_range(admitted, 1000, 19999);
 }
 
 RT_TESTS(lanes, NULL, assert_nothing_is_kept)

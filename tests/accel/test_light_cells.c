@@ -6,7 +6,7 @@
 
 /* ---- lists and covers ---- */
 
-/* A list of the face that looks down, -z, from the first light: its cells are in one tile. */
+/* A list of the face that looks down, -z, from the first light; its tiles have the same resolution. */
 typedef struct List {
     const RtLightEntry *at;
     uint32_t count;
@@ -16,9 +16,10 @@ typedef struct List {
 static List list_at(const RtLightBuffer *buffer, uint32_t column, uint32_t row) {
     const RtLightCube *cube = &buffer->cubes[0];
     const RtLightGrid *grid = &cube->grids[4];
-    assert_int_equal(grid->columns * grid->rows, 1);
-    uint32_t tile = cube->tiles[grid->first_tile];
-    uint32_t cell = grid->first_cell + rt_light_first_cell(tile) + row * rt_light_resolution(tile) + column;
+    uint32_t n = grid->max_resolution,
+             tile = cube->tiles[grid->first_tile + row / n * grid->columns + column / n];
+    assert_int_equal(rt_light_resolution(tile), n);
+    uint32_t cell = grid->first_cell + rt_light_first_cell(tile) + row % n * n + column % n;
     List list = {cube->entries + cube->first[cell], cube->first[cell + 1] - cube->first[cell], false};
     list.cut = list.count > 0 && list.at[list.count - 1].object == RT_LIGHT_BEYOND;
     return list;
@@ -85,6 +86,75 @@ RT_TEST(a_key_says_which_parts_of_the_cell_an_object_is_seen_in) {
     List list = list_at(buffer, 0, 0);
     assert_int_equal(list.count, 1);
     assert_int_equal(list.at[0].key & RT_LIGHT_PARTS, 0x37ff); /* on the diagonal, and up to it */
+}
+
+/* ---- the size of the bounds ----
+ *
+ * What is off a cell by 31/32 of the bound on its place is in the cell's list, so the test fails with 15/16.
+ */
+
+/* A triangle in lanes, a polygon by its rectangle, and a polygon by the line through its edge. */
+typedef enum Beside { TRIANGLE, RECTANGLE, DIAGONAL, BESIDE_COUNT } Beside;
+
+/* A screen at depth 5 from the light, and an object in its plane if `v` is not NULL. */
+static RtScene make_floor(const RtVec3 v[4], Beside beside) {
+    const RtVec3 square[4] = {{{-4, -4, 5}}, {{4, -4, 5}}, {{4, 4, 5}}, {{-4, 4, 5}}};
+    RtScene scene = begin_scene();
+    assert_ok(rt_scene_add_polygon(&scene, 0, square, 4, error));
+    if (v && beside == TRIANGLE) assert_ok(rt_scene_add_triangle(&scene, 0, v, NULL, error));
+    if (v && beside != TRIANGLE)
+        assert_ok(rt_scene_add_polygon(&scene, 0, v, beside == DIAGONAL ? 3 : 4, error));
+    assert_ok(rt_scene_add_light(&scene, rt_vec3(0, 0, 10), rt_vec3(1, 1, 1), error));
+    assert_ok(rt_scene_finish(&scene, error));
+    return scene;
+}
+
+/* The most that an object at depth 5, near the middle, may be off a cell of width `cell` that lists it, in u
+ * (light_project.h, light_footprint.c). */
+static double bound_beside(Beside beside, double margin, double cell) {
+    if (beside == TRIANGLE) return 0x1p-18 + 4 * 1.25 * margin / 5 + 0x1p-6 * cell;
+    return 0x1p-20 + (beside == DIAGONAL ? 4 : 1) * margin / 5 + 0x1p-6 * cell;
+}
+
+/* Whether the cell to the left of a border near the middle, and below one, lists an object beyond these. */
+static bool is_listed_beside(const char *spec, Beside beside, double part) {
+    OWNED_SCENE empty = make_floor(NULL, beside);
+    OWNED_ACCEL RtLightBuffer *first = open_accel(&empty, spec);
+    const RtLightGrid *grid = &first->cubes[0].grids[4];
+    const double cell = 1 / ((double)grid->scale * grid->max_resolution);
+    const uint32_t column = (uint32_t)(-(double)grid->u / cell), row = (uint32_t)(-(double)grid->w / cell);
+    const double off = part * bound_beside(beside, first->cubes[0].margin, cell);
+    const double u = (double)grid->u + column * cell + off, w = (double)grid->w + row * cell;
+    double at[4][2] = {{u, w - 0.8 * cell}, {u, w - 0.2 * cell}, {u + cell, w - 0.5 * cell}};
+    if (beside == RECTANGLE) at[2][0] = at[3][0] = u + 0.5, at[2][1] = at[1][1], at[3][1] = at[0][1];
+    if (beside == DIAGONAL) {
+        at[0][0] = u + 0.5, at[0][1] = w + off - 0.5;
+        at[1][0] = u - 0.5, at[1][1] = w + off + 0.5;
+        at[2][0] = at[2][1] = 0.7;
+    }
+    RtVec3 v[4];
+    for (int i = 0; i < 4; i++) v[i] = rt_vec3((float)(5 * at[i][0]), (float)(5 * at[i][1]), 5);
+    OWNED_SCENE scene = make_floor(v, beside);
+    OWNED_ACCEL RtLightBuffer *buffer = open_accel(&scene, spec);
+    assert_memory_equal(&buffer->cubes[0].grids[4], grid, offsetof(RtLightGrid, first_tile));
+    List list = list_at(buffer, column - 1, row - 1);
+    bool listed = false;
+    for (uint32_t i = 0; i < list.count; i++) listed |= list.at[i].object == scene.geometry.objects[1];
+    return listed;
+}
+
+/* By large cells, of which 2^-6 is most of the bound, and by small ones, for which the margin is. */
+RT_TEST(objects_beside_a_cell_are_listed_within_the_bound) {
+    static const char *const specs[] = {"light:cells=16,full_occlusion=off+brute",
+                                        "light:cells=2048,full_occlusion=off+brute"};
+    for (Beside beside = 0; beside < BESIDE_COUNT; beside++) {
+        for (int i = 0; i < 2; i++) {
+            if (!is_listed_beside(specs[i], beside, 31.0 / 32))
+                fail_msg("sort %d: %s: within", (int)beside, specs[i]);
+            if (is_listed_beside(specs[i], beside, 33.0 / 32))
+                fail_msg("sort %d: %s: beyond", (int)beside, specs[i]);
+        }
+    }
 }
 
 /* ---- limits and invariants ---- */
@@ -174,6 +244,19 @@ RT_TEST(each_broken_invariant_is_named) {
     assert_true(first->near_count > 0); /* the first light is inside a sphere */
     assert_broken_by(accel, first->near[0], first->near[0] ^ 1, "near list of light 0");
     assert_broken_by(accel, first->near_count, first->near_count - 1, "near list of light 0");
+}
+
+/* A screen over 2 x 2 tiles: an entry is spoilt in each. */
+RT_TEST(validate_looks_at_all_tiles_of_an_object) {
+    static const uint32_t places[2] = {4, 59};
+    OWNED_SCENE scene = make_floor(NULL, TRIANGLE);
+    OWNED_ACCEL RtLightBuffer *buffer = open_valid(&scene, "light:cells=64+brute");
+    for (int i = 0; i < 4; i++) {
+        List list = list_at(buffer, places[i & 1], places[i >> 1]);
+        assert_int_equal(list.count, 1);
+        RtLightEntry *entry = &buffer->cubes[0].entries[list.at - buffer->cubes[0].entries];
+        assert_broken_by(&buffer->isa.base, entry->key, entry->key & ~RT_LIGHT_PARTS, "lacks object");
+    }
 }
 
 RT_TESTS(light_cells, NULL, assert_nothing_is_kept)

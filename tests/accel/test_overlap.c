@@ -4,6 +4,8 @@
 #include "equivalence_testing.h"
 
 #include "accel/grid/grid.h"
+#include "accel/surface.h"
+#include "accel/tree/tree.h"
 #include "core/shape/overlap.h"
 #include "scenes/family.h"
 #include "verify/ray_families.h"
@@ -171,6 +173,61 @@ RT_TEST(a_ray_with_the_shortest_of_directions_is_not_trusted_to_voxels) {
         assert_int_equal(hit.object, 0);
         assert_true(hit.t > 0.9f * 0x1p126f && hit.t < 0.95f * 0x1p126f);
     }
+}
+
+/* ---- the size of the bounds ----
+ *
+ * Cases at the edge of a bound: what is off by 31/32 of it is let in, so the tests fail with 15/16. */
+
+static const double within = 31.0 / 32, beyond = 33.0 / 32;
+
+/* Voxels 2 x 2 over the unit square, and a triangle whose slanted edge passes their common corner at `off`
+ * along each axis. The other object is in one voxel. */
+static uint32_t references_at(double off) {
+    const float side = (float)(1 - 2 * off);
+    const RtVec3 slanted[3] = {{{0, 0, 0.5f}}, {{side, 0, 0.5f}}, {{0, side, 0.5f}}};
+    const RtVec3 corner[3] = {{{1, 1, 0}}, {{0.875f, 1, 0}}, {{1, 0.875f, 1}}};
+    OWNED_SCENE scene = begin_scene();
+    assert_ok(rt_scene_add_triangle(&scene, 0, slanted, NULL, error));
+    assert_ok(rt_scene_add_triangle(&scene, 0, corner, NULL, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    return (uint32_t)describe_spec(&scene, "grid:resolution=2x2x1,overlap=exact").references;
+}
+
+RT_TEST(a_voxel_lists_the_surfaces_within_the_margin) {
+    const double bound = 0x1p-18 * 9;
+    assert_int_equal(references_at(within * bound), 1 + 4);
+    assert_int_equal(references_at(beyond * bound), 1 + 3);
+}
+
+RT_TEST(the_margin_of_surfaces_covers_large_coordinates_and_the_least_numbers) {
+    const RtBox far = {{{0x1p40f, 0, 0}}, {{0x1p40f, 0, 0}}}, point = {{{0, 0, 0}}, {{0, 0, 0}}};
+    assert_true(rt_surface_rays(&far, &far).margin >= within * 1);
+    assert_true(rt_surface_rays(&point, &point).margin >= within * 0x1p-80);
+}
+
+/* Half a square, x >= y, cut at y = 0: its part begins at x = 0, less the margin by which the cut is late,
+ * and the margin by which the part is grown. */
+RT_TEST(the_part_of_an_object_reaches_beyond_its_surface_by_the_margin) {
+    const RtVec3 v[3] = {{{-1, -1, 0}}, {{1, 1, 0}}, {{1, -1, 0}}};
+    const RtBox above = {{{-1, 0, -1}}, {{1, 1, 1}}};
+    OWNED_GEOMETRY g = {0};
+    RtBox part;
+    assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    assert_true(rt_object_part(&g, 0, &above, rt_tree_part_margin(&g.box), &part));
+    assert_true((double)part.lo.x <= -within * 0x1p-39 && (double)part.lo.x >= -beyond * 0x1p-39);
+}
+
+/* The pole of the unit sphere, where rounding the distance by 2^-40 moves the circle by 2^-20. */
+RT_TEST(the_part_of_a_sphere_covers_the_rounding_of_a_square) {
+    const RtBox above = {{{-2, 1, -2}}, {{2, 2, 2}}};
+    OWNED_GEOMETRY g = {0};
+    RtBox part;
+    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 1, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    assert_true(rt_object_part(&g, 0, &above, 0x1p-60, &part));
+    assert_true((double)part.hi.x >= 0.98 * 0x1p-20 && (double)part.hi.x <= 1.02 * 0x1p-20);
 }
 
 RT_TESTS(overlap, NULL, NULL)

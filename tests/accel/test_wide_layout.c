@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The layout of `wide`: the room that was foreseen, and blocks that are no emptier than they need be. */
+/* The layout of `wide`: the room that was foreseen, blocks that are no emptier than they need be; and how
+ * thick the rays are that it is traced with in lanes. */
+#include "random_testing.h"
 #include "tree_testing.h"
 
-#include "accel/wide/wide.h"
+#include "accel/wide/ray_source.h"
 
 static const RtWideLayout plain = {
     .leaf_limit = 4, .block_cost = 1, .huge_pages = true, .threads = 1, .limit = UINT64_MAX};
@@ -76,6 +78,22 @@ RT_TEST(one_object_is_a_leaf_below_a_root_and_what_takes_too_much_is_refused) {
     assert_int_equal(rt_wide_lay_out(&wide, &tree, &scene.geometry, &how, &refusal), RT_BAD_INPUT);
     assert_null(wide.arena);
     assert_true(wide.bytes == 0);
+}
+
+RT_TEST(rays_in_lanes_are_as_thick_as_one_by_one) {
+    RtRandom random = rt_random(31, 0);
+    for (int i = 0; i < 1000; i++) {
+        RtGeometry g = {.box = {rt_random_point(&random, 1), rt_random_point(&random, 1)}};
+        RtVec3 at = rt_random_point(&random, i % 2 ? 1 : 1e4f);
+        const RtFloats org[3] = {rt_all(at.x), rt_all(at.y), rt_all(at.z)};
+        const RtRay ray = {.org = at, .dir = {{1, 1, 1}}, .tmax = INFINITY};
+        RtPreparedRay prepared = rt_ray_prepare(&ray, &g.box);
+        float lanes[RT_LANES];
+        for (int a = 0; a < 3; a++) {
+            rt_store(lanes, org[a] + shift_of(thickness_of(org, &g), org[a]));
+            for (int k = 0; k < RT_LANES; k++) assert_true(lanes[k] == prepared.org_near[a]);
+        }
+    }
 }
 
 RT_TESTS(wide_layout, NULL, NULL)

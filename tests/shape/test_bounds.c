@@ -5,6 +5,7 @@
 
 #include "core/base/random.h"
 #include "core/shape/geometry.h"
+#include "core/shape/solid_parts.h"
 
 enum { POINTS = 1000, OBJECTS = 40 };
 
@@ -257,6 +258,102 @@ RT_TEST(frames_are_orthonormal) {
             assert_true(fabs(rt_dotd(axes[a], axes[(a + 1) % 3])) < 1e-14);
         }
     }
+}
+
+/* ---- the size of the bounds on rounding ----
+ *
+ * Extents that are exact but for the bound that is added to them: at least 31/32 of it must be there, so with
+ * 15/16 these tests fail. Of 125 and of 125/64, 2^-50 is nearly 8 units in the last place, and 15/16 of that
+ * nearly 7. */
+
+static const double within = 31.0 / 32;
+
+static void assert_larger(double radius, double exact, double part) {
+    assert_true(radius - exact >= within * part * exact && radius - exact <= 1.125 * part * exact);
+}
+
+/* An octahedron about 0 whose farthest tips are those along x. */
+static void add_octahedron(RtSolidSet *set, float far, uint32_t *solid) {
+    const RtTransform still = rt_transform_identity();
+    RtTriangle triangles[8];
+    for (int i = 0; i < 8; i++) {
+        RtVec3 tip[3] = {{{i & 1 ? far : -far, 0, 0}}, {{0, i & 2 ? 1 : -1, 0}}, {{0, 0, i & 4 ? 1 : -1}}};
+        bool turned = (i & 1) ^ (i >> 1 & 1) ^ (i >> 2);
+        triangles[i] = (RtTriangle){{tip[0], tip[turned ? 1 : 2], tip[turned ? 2 : 1]}};
+    }
+    assert_ok(rt_solid_add_mesh(set, triangles, 8, &still, solid, error));
+}
+
+RT_TEST(balls_are_larger_than_their_points_by_their_bound) {
+    const float far = 125.0f / 64;
+    const RtVec3 points[3] = {{{-far, 0, 0}}, {{far, 0, 0}}, {{0, 1, 0}}};
+    assert_larger(rt_ball_of_points(points, 3).radius, (double)far, 0x1p-50);
+    OWNED_GEOMETRY g = {0};
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, -100), 75, rt_vec3(0, 0, 100), 75, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    assert_larger(rt_object_ball(&g, 0).radius, 125, 0x1p-50);
+    OWNED_SOLIDS set = {0};
+    uint32_t mesh;
+    add_octahedron(&set, far, &mesh);
+    assert_larger(rt_solid_ball(&set, mesh).radius, (double)far, 0x1p-50);
+    assert_larger(rt_largest_stretch(rt_vec3d(1, 0, 0), rt_vec3d(0, 0, 0), rt_vec3d(0, 0, 0)), 1, 0x1p-40);
+}
+
+/* Of two balls of a tree, side by side about `x`: 2^-48 of the radius, and 2^-50 of the centre. */
+static void check_united(float x, double centered) {
+    OWNED_GEOMETRY g = {0};
+    OWNED_BUILDER b = {0};
+    RtCsgTerm term[2];
+    double reach = 0;
+    for (int i = 0; i < 2; i++) {
+        uint32_t solid;
+        RtVec3 center = rt_vec3(x + (i ? 1.0f : -1.0f), 0, 0);
+        assert_ok(rt_solid_add_ellipsoid(&b.set, center, rt_vec3(1, 1, 1), &solid, error));
+        assert_ok(rt_csg_solid(&b, solid, 0, &term[i], error));
+        reach += rt_solid_ball(&b.set, solid).radius / 2;
+    }
+    assert_ok(rt_csg_combine(&b, RT_CSG_UNION, term[0], term[1], &term[0], error));
+    assert_ok(rt_geometry_add_csg(&g, &b, term[0], true, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    double more = rt_object_ball(&g, 0).radius - (1 + reach), bound = 0x1p-48 * (1 + reach) + centered;
+    assert_true(more >= within * bound && more <= 1.125 * bound);
+}
+
+/* What is in three bars, along the axes: a box of 6 x 8 x 24, smaller than any of them. */
+static void check_crossed(void) {
+    const float half[3] = {3, 4, 12};
+    OWNED_GEOMETRY g = {0};
+    OWNED_BUILDER b = {0};
+    RtCsgTerm all, bar;
+    for (int a = 0; a < 3; a++) {
+        uint32_t solid;
+        RtVec3 hi = rt_vec3(100, 100, 100);
+        hi.at[a] = half[a];
+        assert_ok(rt_solid_add_box(&b.set, rt_scale(hi, -1), hi, &solid, error));
+        assert_ok(rt_csg_solid(&b, solid, 0, a ? &bar : &all, error));
+        if (a) assert_ok(rt_csg_combine(&b, RT_CSG_INTERSECTION, all, bar, &all, error));
+    }
+    assert_ok(rt_geometry_add_csg(&g, &b, all, true, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    assert_larger(rt_object_ball(&g, 0).radius, 13, 0x1p-48);
+}
+
+RT_TEST(the_ball_of_a_tree_is_larger_by_its_bound) {
+    check_united(0, 0);
+    check_united(1024, 0x1p-40);
+    check_crossed();
+}
+
+/* A cylinder and a ball that touch x = 0 from below. */
+RT_TEST(boxes_are_wider_than_their_solids_by_their_bound) {
+    OWNED_GEOMETRY g = {0};
+    OWNED_SOLIDS set = {0};
+    uint32_t ball;
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(-1, 0, 0), 1, rt_vec3(-1, 0, 2), 1, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    assert_ok(rt_solid_add_ellipsoid(&set, rt_vec3(-1, 0, 0), rt_vec3(1, 1, 1), &ball, error));
+    const double over[2] = {(double)g.boxes[0].hi.x / 4, (double)set.solids[ball].box.hi.x};
+    for (int i = 0; i < 2; i++) assert_true(over[i] >= within * 0x1p-50 && over[i] <= 1.125 * 0x1p-50);
 }
 
 RT_TESTS(bounds, NULL, NULL)
