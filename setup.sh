@@ -9,12 +9,18 @@ exec </dev/null # nothing here reads stdin, which may be closed
 say() { printf '== %s\n' "$*"; }
 die() { printf '%s: %s\n' "${0##*/}" "$*" >&2 && exit 2; }
 
-# packages SECTION...: the names that packages.txt lists in these sections
+# packages SECTION...: the names that packages.txt lists in these sections for this system; Debian's on others
 packages() {
-    awk -v wanted="$*" '
-        BEGIN { split(wanted, list, " "); for (i in list) want[list[i]] = 1 }
+    local system
+    system="$(uname) $(sed -nE 's/^ID(_LIKE)?=//p' "${os_release:-/etc/os-release}" 2>/dev/null | xargs)"
+    awk -v wanted="$*" -v ids="$system" '
+        BEGIN {
+            split(wanted, list, " ")
+            for (i in list) want[list[i]] = 1
+            column = ids ~ /fedora/ ? 2 : ids ~ /arch/ ? 3 : ids ~ /^Darwin/ ? 4 : 1
+        }
         /^\[/ { section = $1; gsub(/[][]/, "", section) }
-        /^[a-z0-9]/ && section in want { print $1 }' packages.txt
+        /^[a-z0-9]/ && section in want && $column != "-" { print $column }' packages.txt
 }
 
 # missing SECTION...: the packages of these sections that are not installed
@@ -62,7 +68,7 @@ install_missing() {
         esac
     done
     command -v dpkg-query >/dev/null || {
-        say "this is not Debian: install the equivalents of these packages: $(packages "$@" | xargs)"
+        say "this is not Debian: install these packages or their equivalents: $(packages "$@" | xargs)"
         return
     }
     local names

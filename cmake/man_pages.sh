@@ -5,7 +5,7 @@
 set -euo pipefail
 program=$1 folder=$2
 mkdir -p "$folder"
-version=$("$program" --version)
+read -r version < <("$program" --version)
 date=$(date -u -d "@${SOURCE_DATE_EPOCH:-$(date +%s)}" +%F)
 
 # page NAME SUMMARY PROGRAM...: NAME.1

@@ -118,6 +118,15 @@ said=$(bash "$tree/original/adds.sh" 2>&1)
     echo "setup.sh: where a package conflicts: $said"
     failures=$((failures + 1))
 }
+# packages.txt has a name for each system, or none
+echo 'ID_LIKE="rhel fedora"' >"$tree/fedora"
+said=$(os_release=$tree/fedora bash -c 'source "$0" && packages build data' "$here/../setup.sh" | xargs)
+[[ $said == 'gcc glibc-devel '*' glmark2' ]] || {
+    echo "setup.sh: the packages of Fedora: $said"
+    failures=$((failures + 1))
+}
+awk '/^[a-z]/ && NF != 4 { print "packages.txt: not four columns: " $0; bad = 1 } END { exit bad }' "$here/../packages.txt" ||
+    failures=$((failures + 1))
 # skipped.awk, on ctest's reports of one build, and of another that ran more tests
 cat >"$tree/one.xml" <<'END'
 <testcase name="script" classname="script" time="0.02" status="notrun">

@@ -41,6 +41,7 @@ yaml() {
 
 ends 0 --help
 ends 0 --version
+says '^raytally [0-9]+\.[0-9]+\.[0-9]+ commit: ([0-9a-f]{12}|unknown).* compiler: [A-Z][A-Za-z]+ [0-9].* accelerator libraries: (none|embree [34]\..*) kernels that run here: (portable|avx).* interface: [0-9]+, of plugins: [0-9]+ file format: [0-9]+ counts: [0-9]+ $'
 ends 0 accels --json
 refuses 'Usage: raytally COMMAND'
 refuses "no command 'rendr': did you mean 'render'.*--help" rendr

@@ -5,6 +5,7 @@
 #include "cli/plugins.h"
 #include "cli/progress.h"
 #include "core/base/memory.h"
+#include "core/base/versions.h"
 #include "experiment/manifest.h"
 #include "experiment/result_csv.h"
 #include "literature/published_tables.h"
@@ -139,10 +140,25 @@ static RtStatus compare_all(const char *directory, const RtResults *results, con
     return status;
 }
 
+/* Says why counts of another version may differ. */
+static void tell_version(const char *directory) {
+    json_t *manifest;
+    if (rt_manifest_read(directory, &manifest, NULL) != RT_OK) return;
+    const json_t *counts = json_object_get(manifest, "counts");
+    if (counts && json_integer_value(counts) != RT_COUNTS_VERSION)
+        fprintf(stderr,
+                "raytally: %s has counts of version %" JSON_INTEGER_FORMAT
+                ", and this raytally makes version "
+                "%d: some may differ (tests/golden/CHANGES.md)\n",
+                directory, json_integer_value(counts), RT_COUNTS_VERSION);
+    json_decref(manifest);
+}
+
 static RtStatus reproduce(const char *directory, RtResults *results, const void *options, RtError *error) {
     const Options *o = options;
     const char *scene = o->quick ? cheapest_scene(results) : o->scene; /* a label of the loaded experiment */
     rt_cli_tell_plugins(directory, results->experiment);
+    tell_version(directory);
     /* The copy in the directory does not find its scenes; the original does. */
     static RtExperiment original;
     RtStatus status = rt_manifest_experiment(directory, &original, error);

@@ -1,9 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally: the list of commands. */
+#include "accel/isa.h"
 #include "accel/remote.h"
 #include "cli/cli.h"
 #include "cli/plugins.h"
+#include "core/base/versions.h"
 #include "core/base/words.h"
+#include "core/text/json.h"
+#include "measure/machine.h"
+#include <raytally/accel.h>
+#include <raytally/raytally.h>
 
 #include <stdio.h>
 #include <string.h>
@@ -18,8 +24,7 @@ enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
 RtStatus rt_command_completion(int argc, char **argv, RtError *error) {
     (void)error;
-    rt_cli_parse(&rt_completion_syntax, argc, argv, NULL);
-    rt_completion_print(commands, COMMAND_COUNT);
+    rt_completion(commands, COMMAND_COUNT, argc, argv);
     return RT_OK;
 }
 
@@ -36,6 +41,29 @@ static void print_usage(FILE *to) {
                 "  raytally render balls -o balls.png       a picture\n"
                 "  raytally bench balls --accel bvh --accel grid   a comparison\n"
                 "Exit codes: 0 fine, 1 a check failed, 2 bad usage or bad input.\n");
+}
+
+/* What is built, what of it runs here, and the numbers of docs/interface.md. */
+static void print_version(void) {
+    json_t *machine = rt_machine_json();
+    char libraries[256] = "";
+    for (size_t i = 0; i < rt_accel_count(); i++) {
+        const RtAccelOps *ops = rt_accel_at(i);
+        if (!ops->library) continue;
+        rt_append_text(libraries, sizeof libraries, " %s %s", ops->name,
+                       rt_json_text(machine, ops->name, "unknown"));
+    }
+    printf("raytally " RT_VERSION
+           "\ncommit: %s%s\ncompiler: %s\naccelerator libraries:%s\nkernels that run here:",
+           rt_json_text(machine, "commit", "unknown"),
+           json_is_true(json_object_get(machine, "dirty")) ? ", with changes" : "",
+           rt_json_text(machine, "compiler", "unknown"), *libraries ? libraries : " none");
+    for (int isa = RT_ISA_PORTABLE; isa <= RT_ISA_AVX512; isa++) {
+        if (rt_isa_runs((RtIsa)isa)) printf(" %s", rt_isa_name((RtIsa)isa));
+    }
+    printf("\ninterface: %d, of plugins: %d\nfile format: %d\ncounts: %d\n", RAYTALLY_ABI_VERSION,
+           RAYTALLY_ACCEL_ABI, RT_FILE_FORMAT, RT_COUNTS_VERSION);
+    json_decref(machine);
 }
 
 static int run_unknown(const char *name) {
@@ -100,7 +128,7 @@ int main(int argc, char **argv) {
         return RT_EXIT_OK;
     }
     if (strcmp(name, "--version") == 0) {
-        puts("raytally " RT_VERSION);
+        print_version();
         return RT_EXIT_OK;
     }
     return run_command(argc - 1, argv + 1);

@@ -281,11 +281,12 @@ static RtStatus place(const RtYaml *y, RtStatus status, const char *where) {
 
 static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *experiment, RtError *error) {
     const RtYamlNode *n = y->nodes;
+    RT_TRY(rt_yaml_check_format(y));
     RT_TRY(rt_yaml_keys(
         y, n,
         "name section? paper? question prediction scenes accelerators baseline? rays? limit? coherent_run? "
         "rounds? builds? milliseconds? seed? count_only? render? hardware? distributions? published? frame? "
-        "quick? plots? expect? finding? limits?"));
+        "quick? plots? expect? finding? limits? format?"));
     RT_TRY(rt_yaml_copy(y, n, "name", RT_MAX_LABEL, experiment->name));
     RT_TRY(rt_yaml_copy(y, n, "section", RT_MAX_LABEL, experiment->section));
     RT_TRY(read_papers(y, rt_yaml_get(y, n, "paper"), experiment));

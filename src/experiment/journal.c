@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "experiment/journal.h"
 
+#include "core/base/versions.h"
 #include "core/text/json.h"
 #include "experiment/journal_lines.h"
 #include "experiment/plugins_used.h"
@@ -9,10 +10,10 @@
 #include <string.h>
 
 static json_t *header_json(const RtExperiment *experiment, const RtOnly *only) {
-    return json_pack("{s:s, s:o, s:b, s:s, s:i, s:i, s:o}", "experiment", experiment->name, "hash",
-                     rt_json_hex(experiment->fingerprint), "quick", experiment->quick, "build",
-                     rt_build_alone(), "shard", (int)only->shard, "shards", (int)only->shards, "plugins",
-                     rt_plugins_used(experiment));
+    return json_pack("{s:i, s:s, s:o, s:b, s:s, s:i, s:i, s:o}", "format", RT_FILE_FORMAT, "experiment",
+                     experiment->name, "hash", rt_json_hex(experiment->fingerprint), "quick",
+                     experiment->quick, "build", rt_build_alone(), "shard", (int)only->shard, "shards",
+                     (int)only->shards, "plugins", rt_plugins_used(experiment));
 }
 
 /* ---- writing ---- */
@@ -131,6 +132,7 @@ static RtStatus take_lines(const char *path, RtResults *results, const json_t *l
     const RtExperiment *experiment = results->experiment;
     const json_t *header = json_array_get(lines, 0);
     if (json_is_true(json_object_get(header, "given_up"))) return RT_OK; /* rt_result_files_remove */
+    RT_TRY(rt_json_check_format(header, path, error));
     RT_TRY(check_experiment(path, header, experiment, error));
     if (only) RT_TRY(check_build(path, header, only, error));
     json_t *used = only ? rt_plugins_used(experiment) : NULL;

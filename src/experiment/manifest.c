@@ -2,6 +2,7 @@
 #include "experiment/manifest.h"
 
 #include "core/base/parallel.h"
+#include "core/base/versions.h"
 #include "core/text/json.h"
 #include "experiment/journal_lines.h"
 #include "measure/machine.h"
@@ -47,17 +48,18 @@ static json_t *candidates_json(const RtExperiment *experiment) {
 
 static json_t *manifest_json(const RtResults *results, const RtWorkloadOptions *options) {
     const RtExperiment *experiment = results->experiment;
-    return json_pack(
-        "{s:s, s:s, s:o, s:s, s:s, s:b, s:I, s:I, s:I, s:I, s:I, s:I, s:s, s:o, s:i, s:i, s:o, s:o, s:o}",
-        "experiment", experiment->name, "file", experiment->path, "hash",
-        rt_json_hex(experiment->fingerprint), "question", experiment->question, "prediction",
-        experiment->prediction, "quick", experiment->quick, "seed", (json_int_t)experiment->seed, "limit",
-        (json_int_t)experiment->limit, "coherent_run", (json_int_t)experiment->coherent_run, "rounds",
-        (json_int_t)experiment->rounds, "builds", (json_int_t)experiment->builds, "milliseconds",
-        (json_int_t)experiment->milliseconds, "baseline", rt_baseline_label(experiment), "date",
-        rt_json_now(), "threads_counting", rt_thread_count(options->threads), "threads_timing",
-        rt_thread_count(options->timing), "scenes", scenes_json(results), "accelerators",
-        candidates_json(experiment), "machine", rt_machine_json());
+    return json_pack("{s:i, s:i, s:s, s:s, s:o, s:s, s:s, s:b, s:I, s:I, s:I, s:I, s:I, s:I, s:s, s:o, s:i, "
+                     "s:i, s:o, s:o, s:o}",
+                     "format", RT_FILE_FORMAT, "counts", RT_COUNTS_VERSION, "experiment", experiment->name,
+                     "file", experiment->path, "hash", rt_json_hex(experiment->fingerprint), "question",
+                     experiment->question, "prediction", experiment->prediction, "quick", experiment->quick,
+                     "seed", (json_int_t)experiment->seed, "limit", (json_int_t)experiment->limit,
+                     "coherent_run", (json_int_t)experiment->coherent_run, "rounds",
+                     (json_int_t)experiment->rounds, "builds", (json_int_t)experiment->builds, "milliseconds",
+                     (json_int_t)experiment->milliseconds, "baseline", rt_baseline_label(experiment), "date",
+                     rt_json_now(), "threads_counting", rt_thread_count(options->threads), "threads_timing",
+                     rt_thread_count(options->timing), "scenes", scenes_json(results), "accelerators",
+                     candidates_json(experiment), "machine", rt_machine_json());
 }
 
 RtStatus rt_manifest_write(const RtResults *results, const RtWorkloadOptions *options, const char *directory,
@@ -81,9 +83,14 @@ RtStatus rt_manifest_read(const char *directory, json_t **manifest, RtError *err
                        directory, directory);
     }
     *manifest = json_load_file(path, 0, &fault);
-    if (*manifest) return RT_OK;
-    return rt_fail_at(error, path, fault.line > 0 ? (size_t)fault.line : 0, 0,
-                      "%s; the file is damaged: run the experiment again", fault.text);
+    if (!*manifest)
+        return rt_fail_at(error, path, fault.line > 0 ? (size_t)fault.line : 0, 0,
+                          "%s; the file is damaged: run the experiment again", fault.text);
+    RtStatus status = rt_json_check_format(*manifest, path, error);
+    if (status == RT_OK) return RT_OK;
+    json_decref(*manifest);
+    *manifest = NULL;
+    return status;
 }
 
 static RtStatus load_experiment(const json_t *manifest, const char *directory, RtExperiment *experiment,

@@ -129,7 +129,7 @@ json_t *rt_machine_json(void) {
 const char *rt_build_alone(void) {
     static char identity[1024];
     char program[64] = "";
-    if (RT_DIRTY || strcmp(RT_COMMIT, "unknown") == 0)
+    if (!RT_CLEAN)
         snprintf(program, sizeof program, "%s (program %016" PRIx64 ")", RT_DIRTY ? " with changes" : "",
                  program_hash());
     snprintf(identity, sizeof identity, "%s %s%s, %s, %s", RT_VERSION, RT_COMMIT, program, RT_COMPILER,

@@ -3,6 +3,7 @@
 
 #include "core/base/file.h"
 #include "core/base/memory.h"
+#include "core/base/versions.h"
 #include "core/scene/append.h"
 #include "core/scene/yaml.h"
 #include "core/text/json.h"
@@ -77,8 +78,9 @@ static json_t *record_json(const RtReplayRecord *r, RtError *error) {
     json_t *rays = json_array();
     for (size_t i = 0; i < q->count; i++) json_array_append_new(rays, ray_json(&q->rays[i]));
     bool whole = !rt_builtin_find(r->scene_spec) && r->scene->geometry.object_count <= MOST_OBJECTS;
-    return json_pack("{s:s, s:o, s:o, s:[I, I], s:s, s:s, s:s, s:I, s:I, s:o, s:o, s:o, s:o}", "scene",
-                     r->scene_spec, "fingerprint", rt_json_hex(rt_scene_fingerprint(r->scene)), "yaml",
+    return json_pack("{s:i, s:s, s:o, s:o, s:[I, I], s:s, s:s, s:s, s:I, s:I, s:o, s:o, s:o, s:o}", "format",
+                     RT_FILE_FORMAT, "scene", r->scene_spec, "fingerprint",
+                     rt_json_hex(rt_scene_fingerprint(r->scene)), "yaml",
                      whole ? yaml_json(r->scene) : json_null(), "sampling",
                      (json_int_t)r->scene->sampling.columns, (json_int_t)r->scene->sampling.rows, "accel",
                      r->accel_spec, "query", q->occluded ? "occluded" : "nearest", "kernel",
@@ -167,12 +169,19 @@ static bool take(RtReplay *r, const char **wrong) {
     return true;
 }
 
+static RtStatus take_all(RtReplay *replay, const char *path, RtError *error) {
+    const char *wrong;
+    if (take(replay, &wrong)) return RT_OK;
+    if (!wrong) return rt_fail_memory(error, "rays", replay->failure.count * sizeof(RtRay));
+    return rt_fail(error, RT_BAD_INPUT, "%s: this is not a replay file: '%s' is missing or invalid", path,
+                   wrong);
+}
+
 RtStatus rt_replay_load(RtReplay *replay, const char *path, RtError *error) {
     *replay = (RtReplay){0};
     char *text;
     size_t size;
     json_error_t at;
-    const char *wrong;
     RT_TRY(rt_file_read(path, MOST_BYTES, &text, &size, error));
     replay->document = json_loadb(text, size, 0, &at);
     rt_free(text);
@@ -180,12 +189,9 @@ RtStatus rt_replay_load(RtReplay *replay, const char *path, RtError *error) {
         return rt_fail_at(error, path, (size_t)(at.line > 0 ? at.line : 0), 0, "this is not JSON: %s",
                           at.text);
     }
-    if (take(replay, &wrong)) return RT_OK;
-    RtStatus status = wrong
-                          ? rt_fail(error, RT_BAD_INPUT,
-                                    "%s: this is not a replay file: '%s' is missing or invalid", path, wrong)
-                          : rt_fail_memory(error, "rays", replay->failure.count * sizeof(RtRay));
-    rt_replay_clear(replay);
+    RtStatus status = rt_json_check_format(replay->document, path, error);
+    if (status == RT_OK) status = take_all(replay, path, error);
+    if (status != RT_OK) rt_replay_clear(replay);
     return status;
 }
 

@@ -3,6 +3,7 @@
 
 #include "core/base/lock.h"
 #include "core/base/memory.h"
+#include "core/base/versions.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
 #include "core/text/json_lines.h"
@@ -69,9 +70,10 @@ static json_t *header_json(const Run *run) {
         json_array_append_new(specs, json_string(v->specs[i].spec));
     }
     json_t *given = v->rays.given ? rt_json_hex(v->rays.given->fingerprint) : json_null();
-    return json_pack("{s:s, s:o, s:o, s:o, s:I, s:o, s:I, s:I}", "build", rt_build_identity(), "scenes",
-                     scenes, "fingerprints", fingerprints, "accels", specs, "rays", (json_int_t)v->rays.count,
-                     "rays_hash", given, "seed", (json_int_t)v->rays.seed, "shrink", (json_int_t)v->shrink);
+    return json_pack("{s:i, s:s, s:o, s:o, s:o, s:I, s:o, s:I, s:I}", "format", RT_FILE_FORMAT, "build",
+                     rt_build_identity(), "scenes", scenes, "fingerprints", fingerprints, "accels", specs,
+                     "rays", (json_int_t)v->rays.count, "rays_hash", given, "seed", (json_int_t)v->rays.seed,
+                     "shrink", (json_int_t)v->shrink);
 }
 
 /* Records what was verified, and with what, in the folder's manifest.json. */

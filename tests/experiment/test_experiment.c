@@ -93,6 +93,7 @@ RT_TEST_IN_PLACE(a_bad_experiment_is_refused_with_its_line) {
         {"label: cloud", "label: \"balls:size=2\"", ":6:"},
         {"depth: 2}", "optional: perhaps}", ":6:"},
         {"question: Which is cheaper?\n", "", "question"},
+        {"question: Which is cheaper?\n", "format: 2\n", "reads formats 1..1"},
         {"rounds: 3", "limit: 5", "given twice"},
         {"ray_stride: 7", "scenes: [nowhere]", ":8:29: accelerators[0].scenes[0]: 'nowhere'"},
         {"rounds: 3", "count_only: maybe", "invalid value 'maybe': expected yes or no or true or false"},

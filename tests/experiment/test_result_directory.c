@@ -57,6 +57,46 @@ RT_TEST_IN_PLACE(results_are_refused_unless_they_are_gone_on_with_or_begun_anew)
     rt_free(page);
 }
 
+/* ---- formats ---- */
+
+/* Changes the member `format` of both files of a run, or removes it for "". */
+static void set_format(const Place *place, const char *member) {
+    char command[512];
+    snprintf(command, sizeof command,
+             "cd '%s/results/small' && sed -Ei 's/^  \"format\": [0-9]+,/  %s/' manifest.json && "
+             "sed -Ei '1s/\"format\":[0-9]+,/%s/' cells.jsonl",
+             place->folder, member, member);
+    assert_int_equal(system(command), 0);
+}
+
+RT_TEST_IN_PLACE(results_of_0_1_which_name_no_format_are_read_and_those_of_a_later_format_refused) {
+    const Place *place = *state;
+    const char *const reading[] = {"report results/small", "reproduce results/small",
+                                   "run small.yaml --resume", "compare results/small results/small"};
+    assert_ends(place, "run small.yaml --threads 1", 0, "");
+    assert_in_file(place, "results/small/manifest.json", "\"format\": 1");
+    assert_in_file(place, "results/small/cells.jsonl", "{\"format\":1,");
+    set_format(place, "");
+    assert_not_in_file(place, "results/small/cells.jsonl", "format");
+    for (size_t i = 0; i < sizeof reading / sizeof reading[0]; i++) assert_ends(place, reading[i], 0, "");
+    assert_ends(place, "run small.yaml --threads 1 --force", 0, "");
+    set_format(place, "\"format\": 2,");
+    for (size_t i = 0; i < sizeof reading / sizeof reading[0]; i++)
+        assert_ends(place, reading[i], 2, "its format is 2, and raytally " RT_VERSION " reads formats 1..1");
+}
+
+RT_TEST_IN_PLACE(counts_of_another_version_may_differ_and_reproduce_says_so) {
+    const Place *place = *state;
+    assert_ends(place, "run small.yaml", 0, "");
+    char *manifest = read_in(place, "results/small/manifest.json");
+    assert_ends(place, "reproduce results/small", 0, "");
+    assert_not_in_file(place, "output", "some may differ");
+    write_changed(place, "results/small/manifest.json", manifest, "\"counts\": 1", "\"counts\": 2");
+    assert_ends(place, "reproduce results/small", 0,
+                "counts of version 2, and this raytally makes version 1");
+    rt_free(manifest);
+}
+
 /* ---- what is measured ---- */
 
 RT_TEST_IN_PLACE(run_and_bench_thin_a_set_to_the_same_rays) {

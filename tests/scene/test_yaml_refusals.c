@@ -41,6 +41,8 @@ static const struct {
     {"- a\n- b\n", 1, "found a list"},
     {SPHERE "---\n" SPHERE, 3, "second document"},
     {"{}\n", 1, "'objects' is missing"},
+    {"light: 1\nformat: 2\n", 2, "reads formats 1..1: use the raytally that wrote it, or a newer one"},
+    {"format: 0\n" SPHERE, 1, "expected a whole number 1.."},
     {"objects: []\n", 1, "at least 1"},
     {"objects:\n", 1, "expected a list of objects, found nothing"},
     {"objects: &a [*a]\n", 1, "aliases"},

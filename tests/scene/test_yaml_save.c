@@ -36,6 +36,18 @@ RT_TEST(a_scene_saved_and_loaded_keeps_every_bit) {
     }
 }
 
+RT_TEST(a_saved_scene_names_its_format_first) {
+    OWNED_SCENE scene;
+    char line[32];
+    assert_ok(load_text(everything, &scene, error));
+    save_to(&scene, RT_TEST_FOLDER "/named.yaml");
+    FILE *in = fopen(RT_TEST_FOLDER "/named.yaml", "r");
+    assert_non_null(in);
+    assert_non_null(fgets(line, sizeof line, in));
+    assert_int_equal(fclose(in), 0);
+    assert_string_equal(line, "format: 1\n");
+}
+
 /* Half-spaces are saved as polyhedra of one plane, slabs as polyhedra of two. */
 RT_TEST(solids_without_an_end_survive_saving) {
     OWNED_SCENE scene;

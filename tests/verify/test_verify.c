@@ -5,6 +5,7 @@
 #include "testing.h"
 
 #include "core/base/file.h"
+#include "core/text/json.h"
 #include "scenes/open.h"
 #include "verify/replay.h"
 #include "verify/spread.h"
@@ -335,6 +336,13 @@ RT_TEST(a_replay_file_needs_no_other_file) {
                      RT_BAD_INPUT);
     rt_replay_clear(&replay);
     rt_scene_clear(&scene);
+}
+
+RT_TEST(a_replay_file_of_a_later_format_is_refused_by_its_number) {
+    RtReplay replay;
+    assert_ok(rt_directory_create(OUT, error));
+    assert_ok(rt_json_save(OUT "/later.json", json_pack("{s:i}", "format", 2), error));
+    assert_bad_input(rt_replay_load(&replay, OUT "/later.json", error), "its format is 2");
 }
 
 RT_TEST(what_is_no_replay_file_is_refused) {

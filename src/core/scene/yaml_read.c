@@ -213,7 +213,8 @@ static RtStatus add_lights(RtYamlReader *r, const RtYamlNode *list) {
 static RtStatus build(RtYamlReader *r) {
     const RtYaml *y = &r->yaml;
     const RtYamlNode *root = y->nodes;
-    RT_TRY(rt_yaml_keys(y, root, "camera? background? ambient? lights? materials? solids? objects"));
+    RT_TRY(rt_yaml_check_format(y));
+    RT_TRY(rt_yaml_keys(y, root, "camera? background? ambient? lights? materials? solids? objects format?"));
     const RtYamlNode *camera = rt_yaml_get(y, root, "camera"), *objects = rt_yaml_get(y, root, "objects");
     if (camera) RT_TRY(set_camera(r, camera));
     RT_TRY(set_color(r, root, "background", &r->scene->background));

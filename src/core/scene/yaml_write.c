@@ -2,6 +2,7 @@
 /* Writing a scene as YAML. Numbers have as many significant digits as restore the float32 bit for bit: 9
  * always suffice, 6 often. */
 #include "core/base/memory.h"
+#include "core/base/versions.h"
 #include "core/scene/yaml.h"
 #include "core/scene/yaml_reader.h"
 
@@ -229,6 +230,7 @@ RtStatus rt_yaml_save(const RtScene *scene, FILE *out, RtError *error) {
     rt_free(names);
     RT_TRY(status);
     w.numbered = !good;
+    fprintf(out, "format: %d\n", RT_FILE_FORMAT);
     write_camera(&w, &scene->camera);
     point_key(&w, "background: ", scene->background);
     point_key(&w, "\nambient: ", scene->ambient);

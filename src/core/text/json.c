@@ -2,6 +2,7 @@
 #include "core/text/json.h"
 
 #include "core/base/file.h"
+#include "core/base/versions.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -32,6 +33,13 @@ json_t *rt_json_now(void) {
 const char *rt_json_text(const json_t *object, const char *key, const char *otherwise) {
     const char *text = json_string_value(json_object_get(object, key));
     return text ? text : otherwise;
+}
+
+RtStatus rt_json_check_format(const json_t *document, const char *path, RtError *error) {
+    const json_t *member = json_object_get(document, "format");
+    const int64_t format = json_integer_value(member);
+    if (!member || (format >= 1 && format <= RT_FILE_FORMAT)) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "%s: " RT_FORMAT_UNKNOWN, path, format, RT_FILE_FORMAT);
 }
 
 RtStatus rt_json_save(const char *path, json_t *document, RtError *error) {

@@ -25,6 +25,10 @@ json_t *rt_json_now(void);
 /* The text of a member, borrowed; `otherwise` if there is none. */
 const char *rt_json_text(const json_t *object, const char *key, const char *otherwise);
 
+/* Rejects the document of the file `path` if its member `format` is not a format that this version reads.
+ * Without the member it is of format 1, as 0.1 wrote. */
+RtStatus rt_json_check_format(const json_t *document, const char *path, RtError *error);
+
 /* Writes `document`, indented, to `path`, completely or not at all. NULL counts as short memory. Takes the
  * reference. */
 RtStatus rt_json_save(const char *path, json_t *document, RtError *error);

@@ -61,6 +61,10 @@ void rt_yaml_close(RtYaml *yaml);
  * at most 32 words and 511 characters. */
 RtStatus rt_yaml_keys(const RtYaml *yaml, const RtYamlNode *node, const char *keys);
 
+/* Rejects a file whose key `format` is not a format that this version reads. Without the key it is of
+ * format 1. Call it before rt_yaml_keys, which would reject the keys of later formats. */
+RtStatus rt_yaml_check_format(const RtYaml *yaml);
+
 /* The value of `key` in a mapping; NULL if there is none. */
 const RtYamlNode *rt_yaml_get(const RtYaml *yaml, const RtYamlNode *mapping, const char *key);
 

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Reading values from the nodes of a YAML tree, and the messages about wrong ones. */
 #include "core/base/memory.h"
+#include "core/base/versions.h"
 #include "core/base/words.h"
 #include "core/text/yaml.h"
 
 #include <assert.h>
 #include <errno.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -214,6 +216,15 @@ RtStatus rt_yaml_u32(const RtYaml *yaml, const RtYamlNode *node, const char *key
     RT_TRY(rt_yaml_u64(yaml, node, key, lo, hi, &given));
     *value = (uint32_t)given;
     return RT_OK;
+}
+
+RtStatus rt_yaml_check_format(const RtYaml *yaml) {
+    const RtYamlNode *root = yaml->nodes;
+    uint64_t format = RT_FILE_FORMAT;
+    RT_TRY(rt_yaml_u64(yaml, root, "format", 1, INT64_MAX, &format));
+    if (format <= RT_FILE_FORMAT) return RT_OK;
+    return rt_yaml_fail(yaml, rt_yaml_get(yaml, root, "format"), RT_FORMAT_UNKNOWN, (int64_t)format,
+                        RT_FILE_FORMAT);
 }
 
 /* ---- words and texts ---- */

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The numbers of what raytally promises to keep, beside those of its interfaces (include/raytally).
+ * docs/interface.md says what each covers, and what raises it. */
+#ifndef RT_BASE_VERSIONS_H
+#define RT_BASE_VERSIONS_H
+
+#define RT_FILE_FORMAT    1 /* the newest that is read, and the one that is written: `format` in files */
+#define RT_COUNTS_VERSION 1 /* `counts` in manifests */
+
+/* Of a file with another format, an int64_t. */
+#define RT_FORMAT_UNKNOWN                                                                                    \
+    "its format is %" PRId64 ", and raytally " RT_VERSION                                                    \
+    " reads formats 1..%d: use the raytally that wrote it, or a newer one"
+
+#endif
