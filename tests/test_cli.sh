@@ -83,8 +83,7 @@ ends 0 render $none --accel bvh --size 4x4 -o none.png --structure boxes.png --s
 ends 0 verify $none --accel kd --rays 10 --json
 ends 0 rays $none --size 4x4 -o none.npy
 ends 0 trace $none --pixel 0,0 --accel octree
-ends 0 convert $none none.obj
-for file in none.ply none.stl none.glb; do
+for file in none.obj none.ply none.stl none.glb; do
     refuses 'the scene has none: write' convert $none $file
 done
 "$program" render random:n=1 --size 4x4 --depth 1 --threads 1 -o one.png | tr '\n' ' ' |
@@ -221,19 +220,19 @@ refuses "stuff\.yaml:2:.*gold" render stuff.yaml -o x.png
 refuses "nothing\.yaml" render nothing.yaml -o x.png
 
 printf '%s\n' 'f 1 2 3' >bad.obj
-refuses 'bad\.obj: ' render bad.obj -o x.png
+refuses 'bad\.obj:1: .*vertex 1, but there are 0' render bad.obj -o x.png
 printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'f 1 2 9' >index.obj
-refuses 'index\.obj: .*index' render index.obj -o x.png
+refuses 'index\.obj:4: .*vertex 9' render index.obj -o x.png
 printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v nan 1 0' 'f 1 2 3' >nan.obj
-refuses 'nan\.obj: .*not finite' render nan.obj -o x.png
+refuses 'nan\.obj:3: .*finite number' render nan.obj -o x.png
 printf '%s\n' 'v 0 0 0' 'v 1 0 0' >points.obj
 refuses 'points\.obj: .*no triangle' render points.obj -o x.png
-printf '%s\n' ply 'format ascii 1.0' 'element vertex 1000000000' 'property float x' end_header >huge.ply
-refuses 'huge\.ply:3: .*1000000000 elements' render huge.ply -o x.png
+printf '%s\n' ply 'format ascii 1.0' 'element vertex 1000000000' 'property float x' 'property float y' 'property float z' end_header >huge.ply
+refuses 'huge\.ply:.*0 of the 1000000000 vertices' render huge.ply -o x.png
 printf '%s\n' OFF '1000000000 1 0' '0 0 0' >huge.off
-refuses 'huge\.off:2: .*1000000000 elements' render huge.off -o x.png
+refuses 'huge\.off:3: .*1 of the 1000000000 vertices' render huge.off -o x.png
 : >empty.ply
-refuses 'empty\.ply: .*empty' render empty.ply -o x.png
+refuses "empty\.ply:1: .*begins with a line 'ply'" render empty.ply -o x.png
 
 nff whole 's 0 0 0 1'
 refuses "out\.xyz.*\.nff" convert whole.nff out.xyz
