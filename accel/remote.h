@@ -43,6 +43,17 @@ static inline bool rt_occluder_is_possible(const RtAccel *accel, uint32_t occlud
            ((occluder == RT_UNNAMED_OBJECT) & !accel->exact);
 }
 
+/* The same of a counter after so many rays. No ray costs that much: the plugin counted below zero, or copied
+ * unset memory. */
+static inline bool rt_count_is_possible(uint64_t count, size_t rays) {
+    return count <= rays * (UINT64_C(1) << 32);
+}
+
+/* And of a number that describes a structure, such as its bytes. */
+static inline bool rt_size_is_possible(uint64_t size) {
+    return size <= UINT64_C(1) << 53;
+}
+
 /* Reports progress; long work calls it regularly. A process without progress for 60 seconds, or for
  * RAYTALLY_PLUGIN_SECONDS, counts as hung; a build has ten times as long. With RAYTALLY_PLUGIN_WAIT set there
  * is no limit, and the process waits for a debugger before it loads the plugin. */

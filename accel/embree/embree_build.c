@@ -101,11 +101,25 @@ static RtStatus attach_all(RtEmbree *self, enum RTCBuildQuality quality, RtError
     return RT_OK;
 }
 
+/* Directions have components up to 2^16 (RT_EMBREE_LONG). In a wider scene their products with two edges may
+ * overflow, t may become NaN, and a build of Embree with assertions, such as Debian's, ends the process. */
+#define MOST_NATIVE_WIDTH 0x1p54f
+
+static RtStatus check_width(const RtBox *box, RtError *error) {
+    float width = 0;
+    for (int a = 0; a < 3; a++) width = rt_maxf(width, box->hi.at[a] - box->lo.at[a]);
+    if (width <= MOST_NATIVE_WIDTH) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "embree: mode=native overflows float32 in a scene %g wide: %g would fit, or mode=user",
+                   (double)width, (double)MOST_NATIVE_WIDTH);
+}
+
 static RtStatus build_into(RtEmbree *self, const RtBuild *what, RtError *error) {
     const RtValue *values = what->values;
     static const enum RTCBuildQuality qualities[] = {RTC_BUILD_QUALITY_LOW, RTC_BUILD_QUALITY_MEDIUM,
                                                      RTC_BUILD_QUALITY_HIGH};
     enum RTCBuildQuality quality = qualities[values[RT_EMBREE_QUALITY].choice];
+    if (!self->user) RT_TRY(check_width(&self->base.scene->geometry.box, error));
     RT_TRY(rt_embree_device_open(&self->device, values[RT_EMBREE_ISA].choice, what->threads, error));
     set_reach(self);
     self->scene = rtcNewScene(self->device.device);

@@ -114,7 +114,7 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
 static void check_numbers(RtPluginAccel *accel, const raytally_description *d) {
     const uint64_t numbers[] = {d->interior, d->leaves, d->empty_leaves, d->references, d->depth, d->bytes};
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
-        if (numbers[i] > UINT64_C(1) << 53)
+        if (!rt_size_is_possible(numbers[i]))
             rt_plugin_break(accel, "its description has the impossible number %" PRIu64, numbers[i]);
     }
 }

@@ -399,9 +399,6 @@ static void take_occluders(PluginQuery *query, const RtRay *rays, size_t count, 
 _Static_assert(2 OWN_COUNTERS(ONE) OBJECT_COUNTERS(ONE) == RT_TALLY_COUNTER_COUNT,
                "a counter is a plugin's, or counted here");
 
-/* No ray costs this much: the plugin counted below zero, or copied unset memory. */
-#define MOST_A_RAY (UINT64_C(1) << 32)
-
 /* Adds the counts of a stream of so many rays, and of the layers below, where rays and hits count again. */
 static void add_counters(PluginQuery *query, const raytally_counters *counted, size_t rays,
                          RtTally *tallies) {
@@ -410,7 +407,7 @@ static void add_counters(PluginQuery *query, const raytally_counters *counted, s
         const uint64_t *at = counted[kind].at;
         const RtTally *right = &query->tallies[kind];
 #define ADD_OWN(CONSTANT, name)                                                                              \
-    if (at[RAYTALLY_##CONSTANT] <= rays * MOST_A_RAY)                                                        \
+    if (rt_count_is_possible(at[RAYTALLY_##CONSTANT], rays))                                                 \
         tallies[kind].name += at[RAYTALLY_##CONSTANT];                                                       \
     else                                                                                                     \
         rt_plugin_break(query->accel, "it counted %" PRIu64 " " #name " for %s rays, more than possible",    \

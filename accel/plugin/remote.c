@@ -91,11 +91,14 @@ static bool request_master(Remote *remote, WireWork *work, void *message, size_t
     return answered;
 }
 
-/* Takes an error from the process: its text may lack its end, and its status may be invalid. */
-static RtStatus forward(RtStatus status, const char *name, RtError *from, RtError *error) {
+/* Takes an error from the process, whose text names the accelerator unless it is `unnamed`. It may lack its
+ * end, or be missing, and its status may be invalid. */
+static RtStatus forward(const Remote *remote, RtStatus status, bool unnamed, RtError *from, RtError *error) {
     from->message[sizeof from->message - 1] = '\0';
-    return rt_fail(error, status >= RT_OK && status <= RT_IO ? status : RT_BROKEN, "%s%s%s", name,
-                   *name ? ": " : "", from->message);
+    const char *why = *from->message ? from->message : "it failed and sent no reason";
+    unnamed |= !*from->message;
+    return rt_fail(error, status > RT_OK && status <= RT_IO ? status : RT_BROKEN, "%s%s%s",
+                   unnamed ? remote->child.name : "", unnamed ? ": " : "", why);
 }
 
 static RtStatus fail_broken(const Remote *remote, RtError *error) {
@@ -108,8 +111,7 @@ static RtStatus request_check(Remote *remote, WireWork *work, WireChecked *messa
                               RtError *error) {
     if (!request_master(remote, work, message, sizeof *message, doing)) return fail_broken(remote, error);
     if (message->status == RT_OK) return RT_OK;
-    return forward(message->status, message->status == RT_BROKEN ? remote->child.name : "", &message->error,
-                   error);
+    return forward(remote, message->status, message->status == RT_BROKEN, &message->error, error);
 }
 
 bool rt_remote_do(RtQuery *query, RtRemoteWork *work, const RtRay *rays, size_t count, void *message,
@@ -146,6 +148,17 @@ static RtStatus start(Remote *remote, RtError *error) {
     return status;
 }
 
+/* The process has checked its description; an invalid one here was overwritten. */
+static bool is_possible(const WireBuilt *built) {
+    const RtDescription *d = &built->description;
+    bool possible = built->seconds >= 0 && built->seconds < INFINITY;
+    const uint64_t sizes[] = {d->interior, d->leaves, d->empty_leaves, d->references, d->depth, d->bytes};
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) possible &= rt_size_is_possible(sizes[i]);
+    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++)
+        possible &= rt_size_is_possible(rt_tally_get(&d->build, i));
+    return possible;
+}
+
 static RtStatus take_built(Remote *remote, double limit, RtError *error) {
     char doing[96];
     WireBuilt built;
@@ -153,7 +166,11 @@ static RtStatus take_built(Remote *remote, double limit, RtError *error) {
              rt_plural(remote->base.scene->geometry.object_count));
     if (!rt_watched_wait(&remote->child, 0, doing, limit)) return fail_broken(remote, error);
     memcpy(&built, remote->child.wire->channels[0].message, sizeof built);
-    if (built.status != RT_OK) return forward(built.status, "", &built.error, error);
+    if (built.status != RT_OK) return forward(remote, built.status, false, &built.error, error);
+    if (!is_possible(&built)) {
+        rt_watched_break(&remote->child, "it overwrote its description", doing);
+        return fail_broken(remote, error);
+    }
     remote->base.exact = built.exact != 0;
     remote->base.counts = built.counts != 0;
     remote->base.build_seconds = built.seconds;
@@ -286,7 +303,7 @@ static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) 
     RtStatus status = request_check(remote, rt_wire_open, &message, "a query was opened", error);
     if (status == RT_OK) return RT_OK;
     release_channel(remote, channel);
-    if (status != RT_BROKEN) forward(RT_BROKEN, remote->child.name, &message.error, error);
+    if (status != RT_BROKEN) forward(remote, RT_BROKEN, true, &message.error, error);
     return RT_BROKEN;
 }
 
@@ -302,6 +319,25 @@ static void begin(const RtAccel *accel, void *scratch) {
 }
 
 /* ---- kernels ---- */
+
+/* Each layer may count as much for a ray as a plugin may. */
+static bool are_possible(const RtTally *counts, size_t rays) {
+    bool possible = true;
+    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++)
+        possible &= rt_count_is_possible(rt_tally_get(counts, i), rays * RT_MAX_LAYERS);
+    return possible;
+}
+
+static void add_tallies(const RtAccel *accel, const RtTally *sent, size_t rays, RtTally *tallies) {
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
+        RtTally counts;
+        memcpy(&counts, &sent[kind], sizeof counts);
+        if (are_possible(&counts, rays))
+            rt_tally_add(&tallies[kind], &counts);
+        else
+            rt_remote_break(accel, "it overwrote its counts", "it answered a stream");
+    }
+}
 
 /* Traces at most WIRE_RAYS rays. The process has checked its answers; an invalid one here was overwritten. */
 static void trace_part(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, uint32_t count,
@@ -323,8 +359,7 @@ static void trace_part(const RtAccel *accel, const RtScratch *scratch, const RtR
         for (uint32_t i = 0; i < count; i++) hits[i] = RT_MISS;
         return;
     }
-    for (int kind = 0; kind < RT_RAY_KIND_COUNT && tallies; kind++)
-        rt_tally_add(&tallies[kind], &message->tallies[kind]);
+    if (tallies) add_tallies(accel, message->tallies, count, tallies);
     memcpy(hits, message->hits, count * sizeof *hits);
     for (uint32_t i = 0; i < count; i++) {
         if (any ? rt_occluder_is_possible(accel, hits[i].object)

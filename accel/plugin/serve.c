@@ -321,6 +321,16 @@ void rt_wire_open(RtQuery *query, const RtRay *rays, void *message) {
 
 /* ---- the process ---- */
 
+/* A description with a number that no structure has breaks the plugin. */
+static RtStatus describe(const RtSpec *spec, WireBuilt *built) {
+    char name[RT_MAX_SPEC_CHARS];
+    RtError why;
+    rt_accel_describe(served.accel, &built->description);
+    const RtStatus status = rt_accel_check(served.accel, &why);
+    rt_spec_format(spec, name);
+    return status == RT_OK ? RT_OK : rt_fail(&built->error, status, "%s: %s", name, why.message);
+}
+
 static void build(const RtSpec *spec, const RtScene *scene, int threads) {
     WireBuilt built = {.status = rt_plugin_enter(spec, &built.error)};
     if (built.status == RT_OK)
@@ -330,7 +340,7 @@ static void build(const RtSpec *spec, const RtScene *scene, int threads) {
         built.exact = served.accel->exact;
         built.counts = served.accel->counts;
         built.seconds = served.accel->build_seconds;
-        rt_accel_describe(served.accel, &built.description);
+        built.status = describe(spec, &built);
     }
     memcpy(served.wire->channels[0].message, &built, sizeof built);
     rt_futex_set(&served.wire->channels[0].answered, WIRE_BUILD);

@@ -274,10 +274,11 @@ static void print_counts(const Run *run, const char *spec, const RtFrame *counte
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rays += counted->ray_count[kind];
     fputs(spec, stdout);
     for (size_t c = 0; c < RT_TALLY_COUNTER_COUNT; c++) {
-        uint64_t sum = 0;
+        double sum = 0;
         if (!run->options->pictures.heatmaps[c]) continue;
-        for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) sum += rt_tally_get(&counted->tallies[kind], c);
-        printf("%s%.4g %s", separator, (double)sum / (double)(rays ? rays : 1), rt_tally_name(c));
+        for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++)
+            sum += (double)rt_tally_get(&counted->tallies[kind], c);
+        printf("%s%.4g %s", separator, sum / (double)(rays ? rays : 1), rt_tally_name(c));
         separator = ", ";
     }
     puts(" a ray.");

@@ -40,8 +40,8 @@ static const char *cheapest_scene(const RtResults *results) {
     uint32_t best = RT_MAX_WORKLOADS;
     for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
         const RtTally *tally = &at.cell->tally;
-        work[at.workload] += (double)results->workloads[at.workload].objects +
-                             (double)(tally->object_tests + tally->extent_tests + tally->steps);
+        work[at.workload] += (double)results->workloads[at.workload].objects + (double)tally->object_tests +
+                             (double)tally->extent_tests + (double)tally->steps;
     }
     for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
         if (work[t] > 0 && (best == RT_MAX_WORKLOADS || work[t] < work[best])) best = t;

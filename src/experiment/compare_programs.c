@@ -135,6 +135,10 @@ static RtStatus time_pairs(Run *run, Pair *pairs, uint32_t count, RtError *error
     }
     for (uint32_t i = 0; i < count; i++) {
         RtComparedCell *cell = &run->comparison->cells[pairs[i].cell];
+        if (cell->rounds > run->round) { /* ratios has room for one a round */
+            return rt_fail(error, RT_BAD_INPUT, "%s cannot be compared: it lists %s on %s twice",
+                           run->programs->before, cell->accel, cell->scene);
+        }
         cell->ratios[cell->rounds++] = rt_median(pairs[i].turns, RT_TURNS);
         cell->before = rt_median(pairs[i].seconds[BEFORE], RT_TURNS);
         cell->after = rt_median(pairs[i].seconds[AFTER], RT_TURNS);

@@ -116,7 +116,8 @@ typedef struct Forecast {
 /* Tests and steps per ray of a counted cell. */
 static double operations_of(const RtCell *cell) {
     const RtTally *t = &cell->tally;
-    return t->rays ? (double)(t->object_tests + t->extent_tests + t->steps) / (double)t->rays : 0;
+    return t->rays ? ((double)t->object_tests + (double)t->extent_tests + (double)t->steps) / (double)t->rays
+                   : 0;
 }
 
 static void learn(RateEstimate *rates, const RtResults *results, uint32_t t, uint32_t c) {

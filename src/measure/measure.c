@@ -117,9 +117,13 @@ static RtStatus compare_pass(const RtAccel *accel, const RtRaySet *set, const Rt
     if (status == RT_OK) status = run_pass(&pass, error);
     count->seconds = rt_wall_seconds() - start;
     count->timed_kernel = !counted;
+    for (int i = 0; status == RT_OK && counted && i < pass.threads; i++)
+        rt_tally_add(&count->tally, &pass.tallies[i][set->kind]);
+    const char *overflown = rt_tally_overflown(&count->tally);
+    if (overflown)
+        status = rt_fail(error, RT_BAD_INPUT, "%s: it counts 2^63 %s or more: measure fewer rays",
+                         accel->ops->name, overflown);
     if (status == RT_OK) {
-        for (int i = 0; counted && i < pass.threads; i++)
-            rt_tally_add(&count->tally, &pass.tallies[i][set->kind]);
         for (size_t i = 0; i < set->count; i++) {
             if (answers_agree(&pass, i, expected[i])) continue;
             if (count->differ++ == 0) count->first = i;

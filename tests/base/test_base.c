@@ -97,6 +97,23 @@ RT_TEST(tallies_add_counter_by_counter) {
     assert_int_equal(rt_tally_get(&sum, 0), 11);
 }
 
+/* Also when a sum is added to another, it never wraps around to a small number. */
+RT_TEST(tallies_are_exact_up_to_2_63_and_say_that_they_have_reached_it) {
+    const RtTally many = {.steps = UINT64_C(3) << 32}, most = {.steps = RT_TALLY_MOST, .rays = 7};
+    RtTally sum = {0};
+    for (int i = 0; i < 5; i++) rt_tally_add(&sum, &many);
+    assert_true(sum.steps == UINT64_C(15) << 32);
+    sum = (RtTally){.steps = RT_TALLY_MOST - 2};
+    rt_tally_add(&sum, &(RtTally){.steps = 1});
+    assert_true(sum.steps == RT_TALLY_MOST - 1 && !rt_tally_overflown(&sum));
+    for (int i = 0; i < 5; i++) {
+        rt_tally_add(&sum, &most);
+        rt_tally_add(&sum, &(RtTally){.steps = UINT64_MAX});
+        assert_true(sum.steps == RT_TALLY_MOST && sum.rays == 7 * ((uint64_t)i + 1));
+        assert_string_equal(rt_tally_overflown(&sum), "steps");
+    }
+}
+
 static const RtParam table[] = {
     {.name = "width",
      .type = RT_PARAM_INT,

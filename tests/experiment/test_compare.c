@@ -342,6 +342,18 @@ RT_TEST_IN_PLACE(a_program_that_crashes_while_it_is_compared_is_reported_with_it
     assert_in_file(place, "message", "./other cannot be compared: it crashed (Segmentation fault)");
 }
 
+/* A cell has room for the times of RT_MAX_ROUNDS rounds, one each. The second of the two cells is asked for
+ * as the first. */
+RT_TEST_IN_PLACE(a_program_that_lists_a_cell_twice_is_refused) {
+    const Place *place = *state;
+    write_other(place, "exec 3<&0",
+                "\"$@\" < <(sed -u 's/^time 1 /time 0 /' <&3) > "
+                ">(sed -u 's/\"cells\":\\[\\(.*\\)\\]}$/\"cells\":[\\1,\\1]}/')");
+    assert_int_equal(
+        raytally(place, "compare balls:size=1 --accel bvh --rays random --limit 100 --with ./other"), 2);
+    assert_in_file(place, "message", "./other cannot be compared: it lists bvh on balls:size=1 twice");
+}
+
 /* The other program has another accelerator in the place of the grid in the second round, as one has none
  * whose limit of time it goes beyond. */
 RT_TEST_IN_PLACE(what_was_not_timed_in_every_round_is_not_compared) {

@@ -98,6 +98,18 @@ RT_TEST_IN_PLACE(a_line_of_more_rounds_without_their_times_takes_the_place_of_on
     rt_results_clear(&results);
 }
 
+RT_TEST_IN_PLACE(a_count_of_2_63_less_1_is_read_as_it_was_written) {
+    const Place *place = *state;
+    RtResults results;
+    write_changed(place, "out/cells.jsonl", written, "\"differ\":0", "\"differ\":9223372036854775807");
+    assert_ok(rt_run_load(path_in(place, "out").text, place->experiment, &results, error));
+    uint64_t most = 0;
+    for (RtCellCursor at = {0}; rt_results_next(&results, &at);)
+        if (at.cell->differ > most) most = at.cell->differ;
+    assert_true(most == INT64_MAX);
+    rt_results_clear(&results);
+}
+
 RT_TEST_IN_PLACE(a_line_that_no_journal_has_is_refused_by_its_number) {
     static const char *const cases[][3] = {
         {"\"rounds\":3", "\"rounds\":5", "'each_seconds' is not a list of as many times"},
@@ -106,6 +118,7 @@ RT_TEST_IN_PLACE(a_line_that_no_journal_has_is_refused_by_its_number) {
         {"\"each_wall\"", "\"EACH_wall\"", "'each_wall' is not a list"},
         {"\"each_wall\":[", "\"each_wall\":[null,", "'each_wall' is not a list"},
         {"\"differ\":0", "\"differ\":-1", "'differ' is not a whole number"},
+        {"\"differ\":0", "\"differ\":9223372036854775808", "'this line' is not a JSON object"},
         {"\"object_tests\":", "\"OBJECT_tests\":", "'object_tests' is not a whole number"},
         {"\"exact\":true", "\"exact\":1", "'exact' is not true or false"},
         {"\"baseline\":\"bvh", "\"baseline\":\"grid", "'baseline' is not a baseline"},

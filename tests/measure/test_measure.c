@@ -36,6 +36,37 @@ static void close_stage(Stage *stage) {
     rt_scene_clear(&stage->scene);
 }
 
+static RtAccelOps enormous;
+static RtNearestCounted *count_below;
+static uint64_t enormous_steps;
+
+static void count_enormously(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                             RtHit *hits, RtTally *tallies) {
+    count_below(accel, scratch, rays, count, hits, tallies);
+    tallies[rays->kind].steps = enormous_steps;
+}
+
+RT_TEST(counts_of_2_63_or_more_are_refused_and_never_wrap_around) {
+    Stage stage;
+    RtCount count;
+    open_stage(&stage, "balls:size=1", 8, 100, "brute", NULL);
+    const RtRaySet *set = &stage.sets[RT_RAY_RANDOM];
+    RtHit *expected = rt_alloc(set->count, sizeof(RtHit));
+    assert_ok(rt_measure_answers(stage.accels[0], set, 1, expected, error));
+    enormous = *stage.accels[0]->ops;
+    count_below = enormous.nearest_counted;
+    enormous.nearest_counted = count_enormously;
+    stage.accels[0]->ops = &enormous;
+    enormous_steps = INT64_MAX - 1;
+    assert_ok(rt_measure_count(stage.accels[0], set, expected, 1, &count, error));
+    assert_true(count.tally.steps == INT64_MAX - 1);
+    enormous_steps = UINT64_MAX - 1;
+    assert_bad_input(rt_measure_count(stage.accels[0], set, expected, 1, &count, error),
+                     "brute: it counts 2^63 steps or more");
+    rt_free(expected);
+    close_stage(&stage);
+}
+
 /* The spheres of balls:size=1 are 10, and one polygon; brute tests each for every ray. */
 RT_TEST(a_count_is_the_sum_over_threads_and_finds_wrong_answers) {
     Stage stage;

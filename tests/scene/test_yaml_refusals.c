@@ -14,6 +14,7 @@
     "- {name: a, sphere: {center: [0, 0, 0], radius: 1}}\n"                                                  \
     "- {name: h, half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}\n"                                       \
     "# line 4\n"
+#define PLACE                "ratio: 1, place: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]"
 #define JOIN_4(x)            x "|" x "|" x "|" x
 #define TIMES_64(name, part) "- {name: " name ", formula: " JOIN_4(JOIN_4(JOIN_4(part))) "}\n"
 #define CSG(formula)         "objects:\n- csg: {formula: " formula "}\n"
@@ -146,6 +147,14 @@ static const struct {
     {SOLIDS "- {name: a, sphere: {center: [0, 0, 0], radius: 1}}\n" CSG("a"), 5, "two solids 'a'"},
     {SOLIDS "- {name: a b, sphere: {center: [0, 0, 0], radius: 1}}\n" CSG("a"), 5, "a name is a letter or _"},
     {SOLIDS "- {name: c}\n" CSG("a"), 5, "0 of them"},
+    {SOLIDS "- {name: c, standard: {kind: cone, " PLACE
+            ", caps: [[0, 0, -1, 0], [0, 0, 1, 1.01]]}}\n" CSG("a"),
+     5, "the caps are not those of the cone"},
+    {SOLIDS "- {name: c, standard: {kind: cone, " PLACE ", caps: [[0, 0, -1, 0]]}}\n" CSG("a"), 5,
+     "the caps are not those of the cone"},
+    {SOLIDS "- {name: c, standard: {kind: sphere, " PLACE
+            ", caps: [[0, 0, -1, 0], [0, 0, 1, 1]]}}\n" CSG("a"),
+     5, "the caps are not those of the cone"},
     {SOLIDS "- {name: c, box: {lo: [0, 0, 0], hi: [1, 1, 0]}}\n" CSG("a"), 5, "lo < hi on each axis"},
     {SOLIDS "- {name: c, box: {lo: [1, 0, 0], hi: [0, 1, 1]}}\n" CSG("a"), 5, "lo < hi on each axis"},
     {SOLIDS "- {name: c, torus: {center: [0, 0, 0], major: 1, minor: 2}}\n" CSG("a"), 5, "minor < major"},

@@ -62,6 +62,22 @@ RT_TEST(solids_without_an_end_survive_saving) {
     assert_survives(&scene);
 }
 
+/* Moving them rounds otherwise than moving the cone and computing them again. */
+RT_TEST(the_caps_of_moved_cones_survive_saving) {
+    OWNED_SCENE scene;
+    assert_ok(load_text("solids:\n"
+                        "  - {name: a, cone: {base: [1, 0, 0.1], base_radius: 0.26, apex: [0, 0, 0.34], "
+                        "apex_radius: 0.18}}\n"
+                        "  - {name: b, cone: {base: [1, 2, 3], base_radius: 1, apex: [0, 0, 0.34], "
+                        "apex_radius: 0}}\n"
+                        "objects:\n"
+                        "  - csg: {formula: a | b, transform: [{translate: [3.5, 0.5, 0]}]}\n"
+                        "  - csg: {formula: a - b, transform: [{rotate: {axis: [1, 2, 3], degrees: 20}}]}\n"
+                        "  - csg: {formula: a, transform: [{translate: [-2.5, 1.5, 1e6]}]}\n",
+                        &scene, error));
+    assert_survives(&scene);
+}
+
 RT_TEST(vertex_normals_survive_saving_bit_for_bit) {
     OWNED_SCENE scene;
     rt_scene_init(&scene);

@@ -28,6 +28,24 @@ RT_TEST_IN_PLACE(a_csv_field_may_be_quoted_and_is_written_as_it_was_read) {
     rt_csv_clear(&csv);
 }
 
+RT_TEST_IN_PLACE(a_field_that_would_read_as_a_comment_or_a_line_break_is_quoted) {
+    const Place *place = *state;
+    static const char *const fields[] = {"#a", "b\r"};
+    RtCsv csv;
+    FILE *out = fopen(path_in(place, "some.csv").text, "wb");
+    assert_non_null(out);
+    for (size_t i = 0; i < 4; i++) {
+        rt_csv_put(out, fields[i % 2]);
+        fputc(i % 2 ? '\n' : ',', out);
+    }
+    fclose(out);
+    assert_ok(rt_csv_read(&csv, path_in(place, "some.csv").text, error));
+    assert_int_equal(csv.rows, 1);
+    assert_string_equal(rt_csv_field(&csv, 0, 0), fields[0]);
+    assert_string_equal(rt_csv_field(&csv, 0, 1), fields[1]);
+    rt_csv_clear(&csv);
+}
+
 RT_TEST_IN_PLACE(a_csv_file_with_a_byte_0_is_refused_and_not_cut_off_there) {
     const Place *place = *state;
     static const char text[] = "a,b\n1,2\n\0,3,4\n";
@@ -50,6 +68,24 @@ RT_TEST_IN_PLACE(a_csv_file_that_is_none_is_refused_with_its_line) {
         assert_bad_input(rt_csv_read(&csv, path_in(place, "some.csv").text, error), cases[i][1]);
         rt_csv_clear(&csv);
     }
+}
+
+/* As many columns as lines: rows of that many fields would fill 32 GiB. */
+RT_TEST_IN_PLACE(a_csv_file_needs_memory_for_the_fields_that_it_has_not_for_lines_times_columns) {
+    enum { COLUMNS = 1 << 16, MOST_BYTES = 1 << 21 };
+    const Place *place = *state;
+    RtCsv csv;
+    char *text = rt_alloc(2 * COLUMNS + 1, 1);
+    assert_non_null(text);
+    memset(text, ',', COLUMNS);
+    memset(text + COLUMNS, '\n', COLUMNS);
+    text[2 * COLUMNS - 2] = 'x';
+    write_in(place, "some.csv", text);
+    rt_free(text);
+    rt_memory_limit(MOST_BYTES);
+    assert_bad_input(rt_csv_read(&csv, path_in(place, "some.csv").text, error), ": there are fewer");
+    rt_memory_limit(0);
+    rt_csv_clear(&csv);
 }
 
 RT_TESTS(csv, NULL, NULL)

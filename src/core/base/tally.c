@@ -24,7 +24,19 @@ uint64_t rt_tally_get(const RtTally *tally, size_t i) {
     return ((const uint64_t *)tally)[i]; /* a tally holds nothing but counters */
 }
 
+static uint64_t capped(uint64_t count) {
+    return count < RT_TALLY_MOST ? count : RT_TALLY_MOST;
+}
+
+/* The sum of two capped counts is less than 2^64. */
 void rt_tally_add(RtTally *sum, const RtTally *part) {
-#define ADD(name, meaning) sum->name += part->name;
+#define ADD(name, meaning) sum->name = capped(capped(sum->name) + capped(part->name));
     RT_TALLY_COUNTERS(ADD)
+}
+
+const char *rt_tally_overflown(const RtTally *tally) {
+    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
+        if (rt_tally_get(tally, i) >= RT_TALLY_MOST) return rt_tally_name(i);
+    }
+    return NULL;
 }

@@ -47,7 +47,13 @@ const char *rt_tally_meaning(size_t i);
 /* Value of counter `i`. */
 uint64_t rt_tally_get(const RtTally *tally, size_t i);
 
-/* sum += part, counter by counter. */
+/* The most that a counter of a sum reaches: JSON has signed integers of 64 bits. */
+#define RT_TALLY_MOST ((uint64_t)INT64_MAX)
+
+/* sum += part, counter by counter; a counter that would exceed RT_TALLY_MOST stays there. */
 void rt_tally_add(RtTally *sum, const RtTally *part);
+
+/* The name of a counter that has reached RT_TALLY_MOST, so that its value is unknown; NULL if none has. */
+const char *rt_tally_overflown(const RtTally *tally);
 
 #endif

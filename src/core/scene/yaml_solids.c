@@ -145,6 +145,19 @@ static RtStatus add_facets(RtYamlReader *r, const RtYamlNode *n, uint32_t *index
     return rt_yaml_place(&r->yaml, status, n, "triangles");
 }
 
+static RtStatus set_caps(RtYamlReader *r, const RtYamlNode *list, uint32_t index) {
+    RtPlane caps[2];
+    uint32_t count = 0;
+    RT_TRY(rt_yaml_list(&r->yaml, list, NULL, 1, 2, "planes, as in [[0, 0, 1, 2]]"));
+    for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
+        double p[4] = {0};
+        RT_TRY(rt_yaml_doubles(&r->yaml, n, NULL, 4, p));
+        caps[count++] = (RtPlane){rt_vec3d(p[0], p[1], p[2]), p[3]};
+    }
+    return rt_yaml_place(&r->yaml, rt_solid_set_caps(&r->builder.set, index, caps, count, r->error), list,
+                         NULL);
+}
+
 /* A solid as raytally writes it: in object space (solid.h), with its transform. */
 static RtStatus add_standard(RtYamlReader *r, const RtYamlNode *n, uint32_t *index) {
     const RtYaml *y = &r->yaml;
@@ -152,14 +165,16 @@ static RtStatus add_standard(RtYamlReader *r, const RtYamlNode *n, uint32_t *ind
     RtTransform place = rt_transform_identity();
     double ratio = 1;
     uint32_t kind = 0;
-    RT_TRY(rt_yaml_keys(y, n, "kind ratio? place material?"));
+    RT_TRY(rt_yaml_keys(y, n, "kind ratio? place caps? material?"));
     RT_TRY(rt_yaml_word(y, n, "kind", "sphere cone torus", &kind));
     RT_TRY(rt_yaml_double(y, n, "ratio", &ratio));
     RT_TRY(rt_yaml_doubles(y, n, "place", 12, &place.m[0][0]));
     RtStatus status = kind == 0   ? rt_solid_add_sphere(set, &place, index, r->error)
                       : kind == 1 ? rt_solid_add_cone(set, ratio, &place, index, r->error)
                                   : rt_solid_add_torus(set, ratio, &place, index, r->error);
-    return rt_yaml_place(y, status, n, NULL);
+    RT_TRY(rt_yaml_place(y, status, n, NULL));
+    const RtYamlNode *caps = rt_yaml_get(y, n, "caps");
+    return caps ? set_caps(r, caps, *index) : RT_OK;
 }
 
 /* ---- formulas ---- */

@@ -134,6 +134,8 @@ static void write_solids(Writer *w) {
             number(w, solid->ratio, true);
             fputs(", place: ", w->out);
             numbers(w, solid->to_world.m, 12, true);
+            if (solid->count > 0) fputs(", caps: ", w->out);
+            if (solid->count > 0) rows(w, set->planes + solid->first, solid->count, 4, true);
         }
         material_name(w, ", material: ", solid->material);
         fputs("}}\n", w->out);

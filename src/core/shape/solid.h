@@ -90,6 +90,10 @@ uint64_t rt_solid_set_bytes(const RtSolidSet *set);
 RtStatus rt_solid_add_sphere(RtSolidSet *set, const RtTransform *to_world, uint32_t *index, RtError *error);
 RtStatus rt_solid_add_cone(RtSolidSet *set, double ratio, const RtTransform *to_world, uint32_t *index,
                            RtError *error);
+/* Replaces the caps of a cone, caps[0..count) as in RtSolid. Those of a moved cone differ from those of its
+ * transform by rounding; rejects any other difference. */
+RtStatus rt_solid_set_caps(RtSolidSet *set, uint32_t index, const RtPlane *caps, uint32_t count,
+                           RtError *error);
 RtStatus rt_solid_add_torus(RtSolidSet *set, double ratio, const RtTransform *to_world, uint32_t *index,
                             RtError *error);
 /* planes[0..count) in object space, 1 <= count <= RT_SOLID_MAX_FACES. Rejects planes that leave no point,

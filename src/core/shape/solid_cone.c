@@ -13,6 +13,8 @@
 #include "core/base/memory.h"
 #include "core/shape/solid_parts.h"
 
+#include <string.h>
+
 enum { SIDE, BASE, APEX };
 
 /* Sets span->open and close to where near + s dir, relative to the middle of the axis, is within the side. */
@@ -136,6 +138,26 @@ RtStatus rt_solid_add_cone(RtSolidSet *set, double ratio, const RtTransform *to_
     caps[1] = rt_plane_through(apex_of(&solid), up);
     rt_solid_cone_to_caps(set, &solid);
     return rt_solid_finish(set, &solid, rt_solid_cone_support, index, error);
+}
+
+/* Equal but for rounding of a point at the plane's distance from the origin, or of one as far as the solid.
+ */
+static bool is_nearly(const RtPlane *a, const RtPlane *b, double size) {
+    bool near = fabs(a->offset - b->offset) <= 0x1p-40 * (fabs(b->offset) + size);
+    for (int i = 0; i < 3; i++) near &= fabs(a->normal.at[i] - b->normal.at[i]) <= 0x1p-40;
+    return near;
+}
+
+RtStatus rt_solid_set_caps(RtSolidSet *set, uint32_t index, const RtPlane *caps, uint32_t count,
+                           RtError *error) {
+    const RtSolid *solid = &set->solids[index];
+    RtPlane *own = set->planes + solid->first;
+    const double size = rt_lengthd(column(solid, 3)) + rt_lengthd(column(solid, 2));
+    bool near = solid->kind == RT_SOLID_CONE && count == solid->count;
+    for (uint32_t i = 0; i < count && near; i++) near = is_nearly(&caps[i], &own[i], size);
+    if (!near) return rt_fail(error, RT_BAD_INPUT, "the caps are not those of the cone: leave them out");
+    memcpy(own, caps, count * sizeof *caps);
+    return RT_OK;
 }
 
 RtStatus rt_solid_add_frustum(RtSolidSet *set, RtVec3 base, float base_radius, RtVec3 apex, float apex_radius,

@@ -50,7 +50,9 @@ static RtStatus take_line(RtCsv *csv, char *line, uint32_t number, bool header, 
 }
 
 static RtStatus take_text(RtCsv *csv, RtError *error) {
-    uint32_t number = 1, most = count_of(csv->text, '\n') + 1;
+    /* An accepted row has as many fields as the header, and at most one more than it has commas. So the file
+     * bounds the fields; its lines times its columns may be far more. */
+    uint32_t number = 1, lines = count_of(csv->text, '\n') + 1, fields = lines + count_of(csv->text, ',');
     bool header = true;
     for (char *line = csv->text, *next; *line; line = next, number++) {
         size_t length = strcspn(line, "\n");
@@ -60,8 +62,8 @@ static RtStatus take_text(RtCsv *csv, RtError *error) {
         if (!*line || *line == '#') continue;
         if (header) {
             csv->columns = count_of(line, ',') + 1;
-            csv->fields = rt_alloc((size_t)most * csv->columns, sizeof(char *));
-            csv->lines = rt_alloc(most, sizeof(uint32_t));
+            csv->fields = rt_alloc(fields, sizeof(char *));
+            csv->lines = rt_alloc(lines, sizeof(uint32_t));
             if (!csv->fields || !csv->lines) return rt_fail_memory(error, csv->path, 0);
         }
         RT_TRY(take_line(csv, line, number, header, error));
@@ -104,7 +106,8 @@ const char *rt_csv_field(const RtCsv *csv, uint32_t row, uint32_t column) {
 }
 
 void rt_csv_put(FILE *out, const char *field) {
-    if (!strpbrk(field, ",\"\n")) {
+    /* A line that begins with # would be a comment; a carriage return before a line break belongs to that. */
+    if (!strpbrk(field, ",\"\r\n") && *field != '#') {
         fputs(field, out);
         return;
     }

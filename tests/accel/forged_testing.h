@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A remote accelerator (accel/remote.h) whose process is forged: its answers are bytes of a test, which stand
+ * for a plugin that overwrites the memory that it shares with raytally. The executable is linked with
+ * --wrap=rt_process_fork,
+ * --wrap=rt_process_signal, --wrap=rt_process_wait and --wrap=rt_watched_wait; nothing changes while nothing
+ * is forged. */
+#ifndef RT_TESTS_FORGED_TESTING_H
+#define RT_TESTS_FORGED_TESTING_H
+
+#include "accel/plugin/watch.h"
+#include "accel/remote.h"
+
+#include <string.h>
+
+/* Each answer is a ForgedAnswer and then the `length` bytes that replace those of the message from `offset`
+ * on: what raytally asked, or an earlier answer. After the last answer, and after a cut one, the process has
+ * ended. */
+typedef struct ForgedAnswer {
+    uint16_t offset, length;
+} ForgedAnswer;
+
+static struct Forged {
+    bool on;
+    const uint8_t *bytes;
+    size_t left;
+} forged;
+
+static inline bool take_forged(void *to, size_t size) {
+    if (forged.left < size) return false;
+    memcpy(to, forged.bytes, size);
+    forged.bytes += size;
+    forged.left -= size;
+    return true;
+}
+
+/* The accelerator, built by the first answer. `scene` must outlive it. */
+static inline RtStatus open_forged(const RtScene *scene, const void *bytes, size_t size, RtAccel **out,
+                                   RtError *error) {
+    static const RtAccelOps ops = {.name = "forged", .summary = "", .paper = "", .remote = true};
+    const RtSpec spec = {.layer_count = 1, .layers = {{.ops = &ops}}};
+    forged = (struct Forged){true, bytes, size};
+    const RtStatus status = rt_remote_build(&spec, scene, 1, out, error);
+    if (status != RT_OK) forged = (struct Forged){0};
+    return status;
+}
+
+static inline void close_forged(RtAccel *accel) {
+    rt_accel_destroy(accel);
+    forged = (struct Forged){0};
+}
+
+RtStatus __real_rt_process_fork(RtProcess *process, int keep, RtError *error);
+void __real_rt_process_signal(const RtProcess *process, int number);
+bool __real_rt_process_wait(RtProcess *process, int milliseconds, RtProcessEnd *end);
+bool __real_rt_watched_wait(RtWatched *child, uint32_t channel, const char *doing, double limit);
+RtStatus __wrap_rt_process_fork(RtProcess *process, int keep, RtError *error);
+void __wrap_rt_process_signal(const RtProcess *process, int number);
+bool __wrap_rt_process_wait(RtProcess *process, int milliseconds, RtProcessEnd *end);
+bool __wrap_rt_watched_wait(RtWatched *child, uint32_t channel, const char *doing, double limit);
+
+/* This process stands for the other one, since its use of memory will be looked up. */
+RtStatus __wrap_rt_process_fork(RtProcess *process, int keep, RtError *error) {
+    if (!forged.on) return __real_rt_process_fork(process, keep, error);
+    *process = (RtProcess){.pid = getpid(), .descriptor = -1};
+    return RT_OK;
+}
+
+void __wrap_rt_process_signal(const RtProcess *process, int number) {
+    if (!forged.on) __real_rt_process_signal(process, number);
+}
+
+bool __wrap_rt_process_wait(RtProcess *process, int milliseconds, RtProcessEnd *end) {
+    if (!forged.on) return __real_rt_process_wait(process, milliseconds, end);
+    *process = (RtProcess){0};
+    *end = (RtProcessEnd){0};
+    return true;
+}
+
+bool __wrap_rt_watched_wait(RtWatched *child, uint32_t channel, const char *doing, double limit) {
+    ForgedAnswer answer;
+    if (!forged.on) return __real_rt_watched_wait(child, channel, doing, limit);
+    if (take_forged(&answer, sizeof answer) &&
+        take_forged(child->wire->channels[channel].message + answer.offset, answer.length))
+        return true;
+    rt_watched_break(child, "it ended", doing);
+    return false;
+}
+
+#endif

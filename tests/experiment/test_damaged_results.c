@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Files of a result directory that are cut off, or have a byte that no text has, or line ends of another
+ * system: each is read or refused, and nothing is left. Arbitrary damage is tried by tests/fuzz.sh. */
+#include "experiment_testing.h"
+
+#include "experiment/manifest.h"
+#include "literature/published.h"
+
+static const char experiment_text[] =
+    "name: small\n"
+    "question: What is left?\n"
+    "prediction: Nothing.\n"
+    "scenes: [{scene: \"random:n=10\", label: cloud, size: 4x4, depth: 1}]\n"
+    "accelerators: [{accel: bvh}, {accel: \"grid:density=1|4\", label: grid}]\n"
+    "published: {tables: [figures.csv], reasons: reasons.csv}\n"
+    "rays: [primary]\n"
+    "expect: [object_tests of grid falls with density]\n"
+    "count_only: yes\n";
+
+static const char *const files[] = {"out/experiment.yaml", "out/cells.jsonl", "out/manifest.json",
+                                    "out/figures.csv", "out/reasons.csv"};
+enum { FILES = sizeof files / sizeof files[0] };
+
+static int make_results(void **state) {
+    if (make_place_with(state, experiment_text) != 0) return -1;
+    write_in(*state, "figures.csv",
+             "scene,source,accel,structure,parameters,tests_per,leaves,object_tests\n"
+             "cloud,s,bvh,\"Tree, deep\",depth=3,ray,12,3.50\n");
+    write_in(*state, "reasons.csv", "scene,source,accel,column,reason\n*,s,bvh,leaves,rounded\n");
+    if (raytally(*state, "run small.yaml --out out") > 1) return -1;
+    for (size_t i = 3; i < FILES; i++) {
+        char *text = read_in(*state, files[i] + strlen("out/"));
+        write_in(*state, files[i], text);
+        rt_free(text);
+    }
+    return 0;
+}
+
+#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_results, remove_place)
+
+/* Everything that is read of a result directory. */
+static RtStatus read_all(const Place *place, RtError *error) {
+    Path out = path_in(place, "out");
+    RtResults results = {0};
+    RtPublished *published = rt_alloc(1, sizeof *published);
+    json_t *manifest = NULL;
+    assert_non_null(published);
+    RtStatus status = rt_run_load(out.text, place->experiment, &results, error);
+    if (status == RT_OK) status = rt_published_load(published, place->experiment, error);
+    if (status == RT_OK) status = rt_manifest_read(out.text, &manifest, error);
+    json_decref(manifest);
+    rt_published_clear(published);
+    rt_results_clear(&results);
+    rt_free(published);
+    return status;
+}
+
+/* Of a file with these bytes in its place. */
+static RtStatus read_with(const Place *place, const char *file, const char *bytes, size_t size) {
+    RtError problem = {RT_OK, ""};
+    const int64_t live = rt_alloc_live();
+    assert_ok(rt_file_write(path_in(place, file).text, bytes, size, error));
+    const RtStatus status = read_all(place, &problem);
+    assert_int_equal(rt_alloc_live(), live);
+    if (status != RT_OK && status != RT_BAD_INPUT)
+        fail_msg("%s: status %d: %s", file, status, problem.message);
+    return status;
+}
+
+/* Some 300 places of each file. */
+RT_TEST_IN_PLACE(a_file_that_is_cut_off_or_has_a_zero_byte_is_read_or_refused) {
+    const Place *place = *state;
+    assert_ok(read_all(place, error));
+    for (size_t i = 0; i < FILES; i++) {
+        char *text = read_in(place, files[i]);
+        const size_t size = strlen(text), step = size / RT_SHARE(300, 30) + 1;
+        for (size_t at = 0; at < size; at += step) {
+            const char byte = text[at];
+            read_with(place, files[i], text, at);
+            text[at] = '\0';
+            read_with(place, files[i], text, size);
+            text[at] = byte;
+        }
+        assert_int_equal(read_with(place, files[i], text, size), RT_OK);
+        rt_free(text);
+    }
+}
+
+RT_TEST_IN_PLACE(line_ends_of_windows_change_nothing) {
+    const Place *place = *state;
+    for (size_t i = 1; i < FILES; i++) {
+        char *text = read_in(place, files[i]), *other = rt_alloc(2 * strlen(text) + 1, 1), *to = other;
+        assert_non_null(other);
+        for (const char *c = text; *c; *to++ = *c++) {
+            if (*c == '\n') *to++ = '\r';
+        }
+        assert_int_equal(read_with(place, files[i], other, strlen(other)), RT_OK);
+        rt_free(other);
+        rt_free(text);
+    }
+}
+
+RT_TESTS(damaged_results, NULL, NULL)
