@@ -123,7 +123,28 @@ for format in yaml nff obj ply; do full full.$format convert tetra:size=1 full.$
 yaml full 'name: full' 'question: q' 'prediction: p' 'scenes: [{scene: "balls:size=1", size: 8x8}]' \
     'accelerators: [{accel: bvh}]' 'rays: [primary]' 'count_only: yes'
 full experiment.yaml run full.yaml --out out
-rm -r full.yaml out
+rm -r out
+
+# ---- a folder in which nobody can make a file ----
+
+# unmade FILE ARGUMENT...: FILE in /proc
+unmade() {
+    refuses "/proc/$1: creating the file failed" "${@:2}" "/proc/$1"
+}
+
+# shellcheck disable=SC2086
+{
+    unmade x.png render $small -o
+    unmade x.json render $small --stats
+    unmade x.svg trace $small --pixel 4,4 --svg
+    unmade x.npy rays $small --rays primary -o
+    unmade x.ply convert tetra:size=1
+    unmade x.csv bench $small --accel bvh --rays primary --count-only --csv
+}
+refuses '/proc/out' run full.yaml --out /proc/out
+refuses '/proc/out' verify tetra:size=1 --accel bvh --rays 10 --out /proc/out
+refuses '/proc/mine' new-accel mine --out /proc
+rm full.yaml
 
 # ---- a dangling link is not a misspelt name ----
 

@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/cli.h"
 
+#include "cli/stop.h"
+#include "core/base/memory.h"
+#include "core/text/json.h"
+
+#include <assert.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,12 +22,12 @@ RtStatus rt_cli_check_json_name(const char *name, RtError *error) {
 }
 
 void rt_cli_print_json(json_t *document) {
-    if (!document) {
-        fprintf(stderr, "raytally: out of memory for the JSON document\n");
-        exit(RT_EXIT_BAD_INPUT);
+    const bool whole = rt_json_check_memory("", NULL) == RT_OK; /* else main says so */
+    assert(document || !whole);
+    if (whole) {
+        json_dumpf(document, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
+        putchar('\n');
     }
-    json_dumpf(document, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
-    putchar('\n');
     json_decref(document);
 }
 
@@ -57,6 +62,28 @@ int64_t rt_cli_integer(struct argp_state *state, const char *option, const char 
                    (long long)lo, (long long)hi);
     }
     return value;
+}
+
+uint64_t rt_cli_bytes(struct argp_state *state, const char *option, const char *text) {
+    static const char units[] = "KMGT";
+    char *end;
+    double bytes = strtod(text, &end);
+    const char *unit = *end && end != text ? strchr(units, *end) : NULL;
+    for (const char *u = units; unit && u <= unit; u++) bytes *= 1000;
+    if (end == text || end[unit != NULL] || !(bytes >= 1 && bytes <= 1e18))
+        argp_error(state, "%s: invalid value '%s': expected a number of bytes, as in 512M or 4G", option,
+                   text);
+    return (uint64_t)bytes;
+}
+
+void rt_cli_take_memory(void *options, const char *text, struct argp_state *state) {
+    (void)options;
+    rt_memory_limit_process(rt_cli_bytes(state, "--memory", text));
+}
+
+void rt_cli_take_time(void *options, const char *text, struct argp_state *state) {
+    (void)options;
+    rt_stop_after((unsigned)rt_cli_integer(state, "--time", text, 1, 10000000));
 }
 
 bool rt_cli_digits(const char **text, uint32_t *number) {

@@ -68,9 +68,16 @@ json_t *rt_cli_params_json(const RtParam *table, size_t count);
 int64_t rt_cli_integer(struct argp_state *state, const char *option, const char *text, int64_t lo,
                        int64_t hi);
 
+/* The same for bytes, "512M": a number and K, M, G or T, powers of 1000, or neither. */
+uint64_t rt_cli_bytes(struct argp_state *state, const char *option, const char *text);
+
 /* For parsers of several numbers: reads the digits at *text, up to UINT32_MAX, and moves *text past them;
  * false if there are none, or the number is larger. */
 bool rt_cli_digits(const char **text, uint32_t *number);
+
+/* For tables of options: limits the memory and the time of this process. */
+void rt_cli_take_memory(void *options, const char *text, struct argp_state *state);
+void rt_cli_take_time(void *options, const char *text, struct argp_state *state);
 
 /* Options of several commands. */
 #define RT_PATIENCE 60 /* seconds */
@@ -89,6 +96,17 @@ bool rt_cli_digits(const char **text, uint32_t *number);
             "allocates while it is built, and what the process of a plugin holds at any time. One that "     \
             "needs more to be built is left out, which is no failure; a plugin that exceeds it later is "    \
             "broken (exit code 1)"                                                                           \
+    }
+#define RT_ALL_MEMORY_OPTION                                                                                 \
+    {                                                                                                        \
+        "memory", 0, "BYTES", RT_TO_TAKE(rt_cli_take_memory),                                                \
+            "Most memory that raytally allocates for scenes, structures, rays and images, as in 512M or 4G " \
+            "(powers of 1000); a command that needs more ends with exit code 2"                              \
+    }
+#define RT_TIME_OPTION(kept)                                                                                 \
+    {                                                                                                        \
+        "time", 0, "SECONDS", RT_TO_TAKE(rt_cli_take_time),                                                  \
+            "Most seconds for the whole command, which then ends with exit code 2" kept                      \
     }
 #define RT_TRUST_OPTION(scripts)                                                                             \
     {                                                                                                        \

@@ -167,6 +167,7 @@ static const RtOption options[] = {
     RT_UNTIL_OPTIONS(workload.until, workload.patience),
     {"threads", 0, "N", RT_TO_INTEGER(threads, 0, 1024), RT_THREADS_HELP},
     RT_MEMORY_OPTION(memory),
+    RT_TIME_OPTION(""),
     {"count-only", 0, NULL, RT_TO_FLAG(workload.count_only), "Count, do not time"},
     {"distribution", 0, NULL, RT_TO_FLAG(distributions),
      "Also show distributions: object tests and steps over the rays, each ray traced alone, and objects and "

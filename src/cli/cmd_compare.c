@@ -91,6 +91,8 @@ static const RtOption options[] = {
      "(4096), by valgrind, as `bench --callgrind` counts them. Equal counts mean that code only moved"},
     {"quick", 0, NULL, RT_TO_FLAG(quick), "Run the smaller variant of the EXPERIMENT"},
     {"threads", 0, "N", RT_TO_INTEGER(threads, 0, 1024), "Threads, as in `raytally bench`"},
+    RT_ALL_MEMORY_OPTION,
+    RT_TIME_OPTION(""),
     {"json", 0, NULL, RT_TO_FLAG(json), "One JSON document on stdout instead of the table"},
     {"worker", 0, NULL, RT_TO_HIDDEN_FLAG(worker), NULL}, /* experiment/worker.h */
     {0}};
@@ -149,9 +151,10 @@ static RtStatus arguments_without(const OwnOption *options_left_out, char **argv
     return RT_OK;
 }
 
-/* A worker gets the same arguments, so it measures the same; older ones do not know --callgrind. */
+/* A worker gets the same arguments, so it measures the same; older ones do not know these. */
 static RtStatus compare_programs(Options *o, char **argv, RtComparison *comparison, RtError *error) {
-    static const OwnOption left_out[] = {{"callgrind", false}, {NULL, false}};
+    static const OwnOption left_out[] = {
+        {"callgrind", false}, {"memory", true}, {"time", true}, {NULL, false}};
     char **arguments = NULL;
     bool terminal = isatty(STDERR_FILENO) == 1;
     RtStatus status = load(o, error); /* reports errors once */
@@ -179,11 +182,9 @@ static RtStatus compare_programs(Options *o, char **argv, RtComparison *comparis
 static RtStatus compare_instructions(const Options *o, char **argv, RtComparison *comparison,
                                      RtError *error) {
     static const OwnOption left_out[] = {/* `bench` lacks them */
-                                         {"with", true},
-                                         {"margin", true},
-                                         {"strict", false},
-                                         {"quick", false},
-                                         {NULL, false}};
+                                         {"with", true},   {"margin", true}, {"strict", false},
+                                         {"quick", false}, {"memory", true}, /* for each accelerator, there */
+                                         {"time", true},   {NULL, false}};
     char **arguments = NULL;
     on_notice(&(bool){isatty(STDERR_FILENO) == 1},
               "counting instructions under valgrind, which takes a while");

@@ -19,7 +19,10 @@ static void finish(void *options, struct argp_state *state) {
     if (!((Options *)options)->out) argp_error(state, "give a scene IN and a file OUT");
 }
 
-static const RtOption options[] = {{"force", 'f', NULL, RT_TO_FLAG(force), "Replace OUT if it exists"}, {0}};
+static const RtOption options[] = {{"force", 'f', NULL, RT_TO_FLAG(force), "Replace OUT if it exists"},
+                                   RT_ALL_MEMORY_OPTION,
+                                   RT_TIME_OPTION(""),
+                                   {0}};
 
 const RtSyntax rt_convert_syntax = {.options = options,
                                     .arguments = "IN OUT",

@@ -36,6 +36,8 @@ static const RtOption options[] = {
     {"megabytes", 0, "N", RT_TO_INTEGER(megabytes, 1, 100),
      "Most megabytes for recorded rays, 1..100 (default 6). If those of all pixels need more, one pixel in "
      "2 x 2 is recorded, or in 3 x 3, and so on"},
+    RT_ALL_MEMORY_OPTION,
+    RT_TIME_OPTION(""),
     {0}};
 
 typedef struct Built {

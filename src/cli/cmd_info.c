@@ -36,6 +36,8 @@ static const RtOption options[] = {
      "boxes, 3, 7 and 13 slabs; with =all every number of slabs"},
     {"rays", 'n', "N", RT_TO_INTEGER(rays, 1, 1000000000), "Random lines per shape for --extents (100000)"},
     {"seed", 's', "S", RT_TO_INTEGER(seed, 0, INT64_MAX), "Seed of these lines (1)"},
+    RT_ALL_MEMORY_OPTION,
+    RT_TIME_OPTION(""),
     {"json", 'j', NULL, RT_TO_FLAG(json), "One JSON document on stdout"},
     {0}};
 

@@ -83,6 +83,8 @@ static const RtOption options[] = {
     {"depth", 'd', "N", RT_TO_INTEGER(depth, 1, RT_MAX_DEPTH),
      "Levels of the ray tree, the primary ray being the first, 1..64 (default 5)"},
     {"threads", 't', "N", RT_TO_INTEGER(threads, 1, 1024), "Threads (default: all processors)"},
+    RT_ALL_MEMORY_OPTION,
+    RT_TIME_OPTION(""),
     {"output", 'o', "FILE", RT_TO_TAKE(take_output),
      "The image, .png or .exr; may be repeated, once for each format"},
     {"stats", 0, "FILE.json", RT_TO_PATH(stats, ".json"),

@@ -105,22 +105,22 @@ static RtStatus compare(const char *path, const char *kept, const char *counted,
 
 static RtStatus compare_file(const char *directory, RtResultFile file, const RtResults *results,
                              const RtPublished *published, const char *scene, RtError *error) {
-    char path[RT_MAX_PATH], *kept = NULL, *counted = NULL;
+    char path[RT_MAX_PATH], *kept = NULL;
     size_t size;
+    RtMemoryFile counted;
     RT_TRY(rt_path_join(directory, rt_result_files[file], path, error));
-    FILE *stream = open_memstream(&counted, &size);
-    if (!stream) return rt_fail_memory(error, "the counts", 0);
+    RT_TRY(rt_memory_file_open(&counted, error));
     if (rt_result_file_sort(results->experiment, file) == RT_FILE_COMPARED)
-        rt_published_file_write(file, published, stream);
+        rt_published_file_write(file, published, counted.file);
     else
-        rt_result_csv_write(file, results, stream);
-    RtStatus status = fclose(stream) == 0 ? RT_OK : rt_fail_memory(error, "the counts", 0);
-    if (status == RT_OK) status = rt_file_read(path, MOST_CSV_BYTES, &kept, &size, error);
-    if (status == RT_OK) status = compare(path, kept, counted, scene, error);
+        rt_result_csv_write(file, results, counted.file);
+    RT_TRY(rt_memory_file_close(&counted, "the counts", error));
+    RtStatus status = rt_file_read(path, MOST_CSV_BYTES, &kept, &size, error);
+    if (status == RT_OK) status = compare(path, kept, counted.data, scene, error);
     if (status == RT_OK)
         printf("Reproduced: %s%s%s, byte for byte\n", scene ? scene : "", scene ? " in " : "", path);
     rt_free(kept);
-    free(counted);
+    rt_free(counted.data);
     return status;
 }
 
@@ -177,6 +177,8 @@ static const RtOption options[] = {
      "Count and compare only the rows of one scene, or of a sweep of scenes, "
      "by its label; published figures are left out"},
     {"quick", 0, NULL, RT_TO_FLAG(quick), "The same for the scene of each directory that took least work"},
+    RT_ALL_MEMORY_OPTION,
+    RT_TIME_OPTION(""),
     {0}};
 const RtSyntax rt_reproduce_syntax = {
     .options = options,

@@ -57,6 +57,8 @@ static const RtOption options[] = {
      "ray tree in a section that contains the primary ray"},
     {"rows", 0, "N", RT_TO_INTEGER(rows, 0, UINT32_MAX),
      "Print at most N rows, 0 for all (200); rows of hits are always printed"},
+    RT_ALL_MEMORY_OPTION,
+    RT_TIME_OPTION(""),
     {"json", 'j', NULL, RT_TO_FLAG(json), "One JSON document on stdout, with all rows"},
     {0}};
 

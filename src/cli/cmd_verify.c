@@ -83,6 +83,7 @@ static const RtOption options[] = {
     {"threads", 't', "N", RT_TO_INTEGER(work.rays.threads, 0, 1024),
      "Threads; 0, the default, is all processors"},
     RT_MEMORY_OPTION(work.memory),
+    RT_TIME_OPTION("; what is finished stays in --out DIR"),
     {"out", 'o', "DIR", RT_TO_TEXT(work.folder),
      "Write rows to DIR as they are found, tables of them (verify.csv, verify.md), and replay files of wrong "
      "answers"},

@@ -3,6 +3,7 @@
 
 #include "cli/cli.h"
 #include "cli/progress.h"
+#include "cli/stop.h"
 #include "core/base/clock.h"
 #include "core/base/words.h"
 
@@ -23,10 +24,14 @@ static void say(const char *text) {
 }
 
 _Noreturn static void leave(int number, bool told) {
-    if (!told) say("raytally: interrupted. To continue:\n  ");
-    if (!told) say(command);
-    if (!told) say("\n");
-    _exit(128 + number);
+    if (!told) {
+        say("raytally: ");
+        say(rt_stop_reason(number));
+        say(". To continue:\n  ");
+        say(command);
+        say("\n");
+    }
+    _exit(rt_stop_code(number));
 }
 
 static void pass_on(int number) {
@@ -35,26 +40,35 @@ static void pass_on(int number) {
     kill(running, number);
 }
 
-static void handle(void (*handler)(int)) {
-    struct sigaction action = {.sa_handler = handler};
-    sigemptyset(&action.sa_mask);
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
+static void take_signals(sigset_t *signals) {
+    sigemptyset(signals);
+    sigaddset(signals, SIGINT);
+    sigaddset(signals, SIGTERM);
+    sigaddset(signals, SIGALRM);
 }
 
-/* With both signals blocked, so that each goes to the fork, whose handlers are the default ones. */
+static void handle(void) {
+    struct sigaction action = {.sa_handler = pass_on};
+    take_signals(&action.sa_mask);
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    sigaction(SIGALRM, &action, NULL);
+}
+
+/* With these signals blocked, so that each goes to the fork, which stops as the command for one job does. */
 static RtStatus start(RtJob *job, RtError *error) {
     sigset_t signals, before;
-    sigemptyset(&signals);
-    sigaddset(&signals, SIGINT);
-    sigaddset(&signals, SIGTERM);
+    take_signals(&signals);
     fflush(NULL); /* or the fork would write it again */
     sigprocmask(SIG_BLOCK, &signals, &before);
     const pid_t child = fork();
     const int why = errno;
     job->here = child == 0;
     running = child > 0 ? child : 0;
-    handle(job->here ? SIG_DFL : pass_on);
+    if (job->here)
+        rt_stop_init();
+    else
+        handle();
     sigprocmask(SIG_SETMASK, &before, NULL);
     return child >= 0 ? RT_OK : rt_fail(error, RT_IO, "a process for %s: %s", job->name, strerror(why));
 }
@@ -75,7 +89,7 @@ RtStatus rt_job_run(RtJob *job, const char *go_on, RtError *error) {
     job->code = job->signal ? RT_EXIT_BAD_INPUT : WEXITSTATUS(how);
     if (!last_signal) return RT_OK;
     fflush(NULL);
-    leave(last_signal, job->code == 128 + last_signal);
+    leave(last_signal, job->code == rt_stop_code(last_signal));
 }
 
 void rt_jobs_print(const RtJob *jobs, uint32_t count, FILE *out) {

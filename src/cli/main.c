@@ -4,6 +4,8 @@
 #include "accel/remote.h"
 #include "cli/cli.h"
 #include "cli/plugins.h"
+#include "cli/stop.h"
+#include "core/base/memory.h"
 #include "core/base/versions.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
@@ -100,6 +102,8 @@ static int run_command(int argc, char **argv) {
     RtError error;
     RtStatus status = command->syntax->plugins ? rt_cli_load_plugins(argc, argv, &error) : RT_OK;
     if (status == RT_OK) status = command->run(argc, argv, &error);
+    if (status == RT_OK) status = rt_json_check_memory("the results", &error);
+    status = rt_memory_unlimit_process(status, &error);
     int code = status == RT_OK ? RT_EXIT_OK : fail(&error);
     if (rt_remote_exit_message()) {
         fprintf(stderr, "raytally: %s\n", rt_remote_exit_message());
@@ -113,6 +117,10 @@ static int run_command(int argc, char **argv) {
 
 int main(int argc, char **argv) {
     argp_err_exit_status = RT_EXIT_BAD_INPUT;
+    rt_stop_init();
+    rt_json_watch_memory();
+    rt_memory_limit_process(
+        rt_memory_size()); /* more would be granted, and end the process once it is used */
     if (argc < 2) {
         print_usage(stderr);
         return RT_EXIT_BAD_INPUT;

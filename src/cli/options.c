@@ -28,19 +28,6 @@ static double percent_of(struct argp_state *state, const char *option, const cha
     return percent / 100;
 }
 
-/* "512M": a number and K, M, G or T, powers of 1000, or neither. */
-static uint64_t bytes_of(struct argp_state *state, const char *option, const char *text) {
-    static const char units[] = "KMGT";
-    char *end;
-    double bytes = strtod(text, &end);
-    const char *unit = *end && end != text ? strchr(units, *end) : NULL;
-    for (const char *u = units; unit && u <= unit; u++) bytes *= 1000;
-    if (end == text || end[unit != NULL] || !(bytes >= 1 && bytes <= 1e18))
-        argp_error(state, "%s: invalid value '%s': expected a number of bytes, as in 512M or 4G", option,
-                   text);
-    return (uint64_t)bytes;
-}
-
 static void take_option(const RtOption *o, char *options, const char *text, struct argp_state *state) {
     const RtOptionValue *value = &o->value;
     char *at = options + value->offset, name[40];
@@ -60,7 +47,7 @@ static void take_option(const RtOption *o, char *options, const char *text, stru
     case RT_OPTION_SECONDS: *(double *)at = (double)number; return;
     case RT_OPTION_PERCENT: *(double *)at = percent_of(state, name, text); return;
     case RT_OPTION_SET: *(int *)at = (int)number; return;
-    case RT_OPTION_BYTES: *(uint64_t *)at = bytes_of(state, name, text); return;
+    case RT_OPTION_BYTES: *(uint64_t *)at = rt_cli_bytes(state, name, text); return;
     case RT_OPTION_SIZE: rt_cli_size(state, text, (uint32_t *)at, (uint32_t *)at + 1); return;
     case RT_OPTION_PATH: rt_cli_set_path(state, name, (const char **)at, text, value->endings); return;
     case RT_OPTION_TAKE: value->take(options, text, state); return;
@@ -152,5 +139,7 @@ const struct argp *rt_cli_argp(const RtSyntax *syntax) {
 void rt_cli_parse(const RtSyntax *syntax, int argc, char **argv, void *options) {
     Parse shared = {NULL, syntax->shared, (char *)options + syntax->shared_at, NULL};
     Parse parse = {syntax, syntax->options, options, &shared};
-    argp_parse(rt_cli_argp(syntax), argc, argv, 0, 0, &parse);
+    if (argp_parse(rt_cli_argp(syntax), argc, argv, 0, 0, &parse) == 0) return;
+    fputs("raytally: out of memory: not enough to parse the arguments\n", stderr);
+    exit(RT_EXIT_BAD_INPUT);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/progress.h"
 
+#include "cli/stop.h"
 #include "core/base/clock.h"
 #include "core/base/words.h"
 
@@ -106,9 +107,11 @@ RtRunObserver rt_progress_observer(RtProgress *progress) {
 
 /* ---- the thread ---- */
 
-/* The journal is always whole: there is nothing to clean up. */
+/* The journal is always whole. */
 static void leave(const RtProgress *progress, int number) {
-    fprintf(stderr, "%sraytally: %sinterrupted; ", progress->terminal ? "\r\033[K" : "", progress->title);
+    rt_stop_clean();
+    fprintf(stderr, "%sraytally: %s%s; ", progress->terminal ? "\r\033[K" : "", progress->title,
+            rt_stop_reason(number));
     if (progress->begun) {
         fprintf(stderr, "%u of %u cell%s %s finished, all measurements are kept in %s.",
                 progress->forecast.finished, progress->forecast.cells, rt_plural(progress->forecast.cells),
@@ -117,7 +120,7 @@ static void leave(const RtProgress *progress, int number) {
         fprintf(stderr, "nothing was measured yet, and %s is unchanged.", progress->keeps);
     }
     fprintf(stderr, " To continue:\n  %s\n", progress->go_on);
-    _exit(128 + number);
+    _exit(rt_stop_code(number));
 }
 
 /* Those that the thread takes; SIGUSR2 wakes it. */
@@ -126,6 +129,7 @@ static sigset_t signals_taken(void) {
     sigemptyset(&signals);
     sigaddset(&signals, SIGINT);
     sigaddset(&signals, SIGTERM);
+    sigaddset(&signals, SIGALRM);
     sigaddset(&signals, SIGUSR2);
     return signals;
 }
@@ -138,7 +142,7 @@ static void *watch(void *context) {
         int number = sigtimedwait(&signals, NULL, &second);
         pthread_mutex_lock(&progress->lock);
         bool ended = progress->ended;
-        if (!ended && (number == SIGINT || number == SIGTERM)) leave(progress, number);
+        if (!ended && number > 0 && number != SIGUSR2) leave(progress, number);
         double since = rt_wall_seconds() - progress->shown;
         if (!ended && progress->begun && since >= progress->every) show(progress);
         pthread_mutex_unlock(&progress->lock);

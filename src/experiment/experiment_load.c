@@ -8,6 +8,7 @@
 #include "render/frame.h"
 
 #include <string.h>
+#define XXH_STATIC_LINKING_ONLY /* the state of a hash on the stack */
 #include <xxhash.h>
 
 /* ---- values ---- */
@@ -336,9 +337,8 @@ static bool is_editable(const char *key) {
 
 /* The hash of the text without the lines of editable keys. They count if they share a line with another. */
 static uint64_t fingerprint_of(const RtYaml *y, const char *text, size_t length) {
-    XXH3_state_t *state = XXH3_createState();
+    XXH3_state_t whole, *state = &whole;
     size_t from = 0;
-    if (!state) return XXH3_64bits(text, length);
     XXH3_64bits_reset(state);
     const RtYamlNode *end = rt_yaml_end(y->nodes);
     for (const RtYamlNode *key = rt_yaml_first(y->nodes); key != end;) {
@@ -354,9 +354,7 @@ static uint64_t fingerprint_of(const RtYaml *y, const char *text, size_t length)
         key = next;
     }
     XXH3_64bits_update(state, text + from, length - from);
-    uint64_t fingerprint = XXH3_64bits_digest(state);
-    XXH3_freeState(state);
-    return fingerprint;
+    return XXH3_64bits_digest(state);
 }
 
 static RtStatus load(RtExperiment *experiment, const char *path, bool quick, RtError *error) {

@@ -2,6 +2,7 @@
 #include "measure/ray_file.h"
 
 #include "core/base/file.h"
+#include "core/base/memory.h"
 #include "core/text/npy.h"
 
 #include <inttypes.h>
@@ -97,13 +98,11 @@ void rt_counts_put(const RtRows *rows, FILE *out) {
 
 RtStatus rt_rows_add(const RtRows *rows, void (*put)(const RtRows *rows, FILE *out), RtArrayFile *file,
                      const char *name, RtError *error) {
-    char *array = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&array, &size);
-    if (!out) return rt_fail_memory(error, "an array", 0);
-    put(rows, out);
-    RtStatus status = fclose(out) == 0 ? RT_OK : rt_fail_memory(error, "an array", size);
-    if (status == RT_OK) status = rt_array_file_add(file, name, array, size, error);
-    free(array);
+    RtMemoryFile array;
+    RT_TRY(rt_memory_file_open(&array, error));
+    put(rows, array.file);
+    RT_TRY(rt_memory_file_close(&array, "an array", error));
+    RtStatus status = rt_array_file_add(file, name, array.data, array.size, error);
+    rt_free(array.data);
     return status;
 }

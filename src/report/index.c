@@ -99,7 +99,7 @@ static void put_origins(const Index *index, size_t origin, const char *before, F
 }
 
 static void put_entries(const Index *index, uint32_t from, uint32_t to, RtIndexPart part, FILE *out) {
-    for (uint32_t i = from; i < to; i++) fputs(index->entries[i].parts[part].chars, out);
+    for (uint32_t i = from; i < to; i++) fputs(index->entries[i].parts[part].data, out);
 }
 
 static bool has_sentences(const Index *index, uint32_t from, uint32_t to) {
@@ -133,24 +133,21 @@ static void put_section(const Index *index, uint32_t from, uint32_t to, FILE *ht
     put_entries(index, from, to, RT_INDEX_MARKDOWN, markdown);
 }
 
-static void put_pages(const Index *index, FILE *html, FILE *markdown) {
-    char *origins = NULL;
-    size_t size;
-    FILE *text = open_memstream(&origins, &size);
-    if (text) {
-        put_origins(index, offsetof(RtIndexEntry, build), "Measured by ", text);
-        fputc(' ', text);
-        put_origins(index, offsetof(RtIndexEntry, machine), "On ", text);
-        fclose(text);
-    }
+static RtStatus put_pages(const Index *index, FILE *html, FILE *markdown, RtError *error) {
+    RtMemoryFile origins;
+    RT_TRY(rt_memory_file_open(&origins, error));
+    put_origins(index, offsetof(RtIndexEntry, build), "Measured by ", origins.file);
+    fputc(' ', origins.file);
+    put_origins(index, offsetof(RtIndexEntry, machine), "On ", origins.file);
+    RT_TRY(rt_memory_file_close(&origins, "the index", error));
     rt_page_begin(html, "Experiments", true);
-    rt_html_wrap(html, "<p class=\"meta\">", origins, "</p>\n");
+    rt_html_wrap(html, "<p class=\"meta\">", origins.data, "</p>\n");
     fputs("# Experiments\n\n", markdown);
-    rt_index_put_markdown(markdown, origins ? origins : "", false);
+    rt_index_put_markdown(markdown, origins.data, false);
     fputs(
         "\n\nA name links to the files of the experiment; `raytally report DIR` makes a report of them.\n\n",
         markdown);
-    free(origins);
+    rt_free(origins.data);
     for (uint32_t from = 0, to; from < index->count; from = to) {
         to = from + 1;
         while (to < index->count && strcmp(index->entries[from].section, index->entries[to].section) == 0)
@@ -158,6 +155,7 @@ static void put_pages(const Index *index, FILE *html, FILE *markdown) {
         put_section(index, from, to, html, markdown);
     }
     rt_page_end(html);
+    return RT_OK;
 }
 
 static RtStatus write_pages(Index *index, RtError *error) {
@@ -166,13 +164,10 @@ static RtStatus write_pages(Index *index, RtError *error) {
     qsort(index->entries, index->count, sizeof(RtIndexEntry), compare);
     RT_TRY(rt_output_open_in(&html, index->folder, "index.html", error));
     RtStatus status = rt_output_open_in(&markdown, index->folder, "index.md", error);
-    if (status != RT_OK) {
-        rt_output_discard(&html);
-        return status;
-    }
-    put_pages(index, html.file, markdown.file);
-    status = rt_output_commit(&html, error);
-    if (status == RT_OK) return rt_output_commit(&markdown, error);
+    if (status == RT_OK) status = put_pages(index, html.file, markdown.file, error);
+    if (status == RT_OK) status = rt_output_commit(&html, error);
+    if (status == RT_OK) status = rt_output_commit(&markdown, error);
+    rt_output_discard(&html); /* unless it is committed */
     rt_output_discard(&markdown);
     return status;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "report/index_entry.h"
 
+#include "core/base/memory.h"
 #include "core/base/words.h"
 #include "core/text/csv.h"
 #include "core/text/json.h"
@@ -261,11 +262,14 @@ bool rt_index_is_entry(const char *directory) {
            (is_verification(directory) || rt_file_exists_in(directory, rt_result_files[RT_FILE_EXPERIMENT]));
 }
 
-static void close_parts(RtIndexEntry *entry) {
+static RtStatus close_parts(RtIndexEntry *entry, RtError *error) {
+    RtStatus status = RT_OK;
     for (int p = 0; p < RT_INDEX_PARTS; p++) {
-        if (entry->parts[p].file) fclose(entry->parts[p].file);
-        entry->parts[p].file = NULL;
+        if (!entry->parts[p].file) continue;
+        RtStatus closed = rt_memory_file_close(&entry->parts[p], "the index", error);
+        if (status == RT_OK) status = closed;
     }
+    return status;
 }
 
 RtStatus rt_index_entry_read(RtIndexEntry *entry, const char *directory, const char *place,
@@ -273,11 +277,7 @@ RtStatus rt_index_entry_read(RtIndexEntry *entry, const char *directory, const c
     RtError why = {RT_OK, ""};
     *entry = (RtIndexEntry){0};
     snprintf(entry->name, sizeof entry->name, "%s", place);
-    for (int p = 0; p < RT_INDEX_PARTS; p++) {
-        RtIndexText *part = &entry->parts[p];
-        part->file = open_memstream(&part->chars, &part->size);
-        if (!part->file) return rt_fail_memory(error, "the index", 0);
-    }
+    for (int p = 0; p < RT_INDEX_PARTS; p++) RT_TRY(rt_memory_file_open(&entry->parts[p], error));
     FILE *html = entry->parts[RT_INDEX_HTML].file;
     RtStatus status = is_verification(directory) ? put_verification(entry, directory, place, &why)
                                                  : put_experiment(entry, directory, place, experiment, &why);
@@ -287,11 +287,10 @@ RtStatus rt_index_entry_read(RtIndexEntry *entry, const char *directory, const c
         put_line(entry->parts[RT_INDEX_MARKDOWN].file, "Cannot be read:", why.message);
     }
     fputs("</div></section>\n", html);
-    close_parts(entry);
-    return RT_OK;
+    return close_parts(entry, error);
 }
 
 void rt_index_entry_clear(RtIndexEntry *entry) {
-    close_parts(entry);
-    for (int p = 0; p < RT_INDEX_PARTS; p++) free(entry->parts[p].chars);
+    close_parts(entry, NULL);
+    for (int p = 0; p < RT_INDEX_PARTS; p++) rt_free(entry->parts[p].data);
 }

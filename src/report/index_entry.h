@@ -7,13 +7,6 @@
 
 #include <stdio.h>
 
-/* A text that is written like a file. */
-typedef struct RtIndexText {
-    FILE *file;  /* while it is written */
-    char *chars; /* for free() */
-    size_t size;
-} RtIndexText;
-
 typedef enum RtIndexPart {
     RT_INDEX_HTML,     /* the card of a directory */
     RT_INDEX_MARKDOWN, /* the same in index.md */
@@ -29,7 +22,7 @@ typedef struct RtIndexEntry {
     char section[RT_MAX_LABEL]; /* or "" */
     char build[RT_MAX_ORIGIN], machine[RT_MAX_ORIGIN];
     uint32_t number; /* the caller's */
-    RtIndexText parts[RT_INDEX_PARTS];
+    RtMemoryFile parts[RT_INDEX_PARTS];
 } RtIndexEntry;
 
 /* Whether `directory` is one: of an experiment or a verification. */

@@ -142,6 +142,17 @@ static RtStatus run_gnuplot(char **arguments, const char *directory, RtError *er
     return end.code == 0 ? RT_OK : fail_drawing(arguments, directory, error);
 }
 
+/* gnuplot does not say when the disk is full: whether the file ends as files in its format do. */
+static bool is_whole(const char *path) {
+    char tail[16] = "";
+    FILE *file = fopen(path, "re");
+    if (!file) return false;
+    const bool end =
+        fseek(file, -(long)(sizeof tail - 1), SEEK_END) == 0 && fread(tail, 1, sizeof tail - 1, file) > 0;
+    fclose(file);
+    return end && (strstr(tail, "</svg>") || strstr(tail, "%%EOF"));
+}
+
 /* Renames the files that the scripts wrote, or removes them if drawing failed. */
 typedef struct Settling {
     bool keep;
@@ -153,11 +164,13 @@ static void settle_file(void *context, const char *path) {
     Settling *settling = context;
     char name[RT_MAX_PATH];
     snprintf(name, sizeof name, "%.*s", (int)(strlen(path) - strlen(".tmp")), path);
-    if (!settling->keep) {
+    if (!settling->keep)
         remove(path);
-    } else if (rename(path, name) != 0) {
+    else if (!is_whole(path))
+        settling->status =
+            rt_fail(settling->error, RT_IO, "%s: gnuplot wrote only a part of it: is the disk full?", name);
+    else if (rename(path, name) != 0)
         settling->status = rt_fail(settling->error, RT_IO, "%s: renaming failed: %s", path, strerror(errno));
-    }
 }
 
 /* Those in a format, "svg" or "pdf". */
@@ -166,8 +179,10 @@ static RtStatus settle(const char *directory, const char *format, bool keep, RtE
     Settling settling = {keep, RT_OK, error};
     snprintf(end, sizeof end, ".%s.tmp", format);
     RT_TRY(rt_path_join(directory, "plots", plots, error));
-    rt_directory_each(plots, end, settle_file, &settling);
-    return settling.status;
+    errno = 0;
+    const size_t count = rt_directory_each(plots, end, settle_file, &settling);
+    if (count > 0 || errno == 0) return settling.status;
+    return rt_fail(error, RT_IO, "%s: reading the folder failed: %s", plots, strerror(errno));
 }
 
 static RtStatus draw(const RtResults *results, const char *directory, const char *format, bool column,
@@ -175,8 +190,8 @@ static RtStatus draw(const RtResults *results, const char *directory, const char
     settle(directory, format, false, NULL); /* of an interrupted drawing */
     RtStatus status = write_names(results, directory, format, column, error);
     if (status == RT_OK) status = run_gnuplot(arguments, directory, error);
-    if (status == RT_OK) return settle(directory, format, true, error);
-    settle(directory, format, false, NULL);
+    if (status == RT_OK) status = settle(directory, format, true, error);
+    if (status != RT_OK) settle(directory, format, false, NULL);
     return status;
 }
 

@@ -48,15 +48,14 @@ static json_t *got_json(const RtFailure *failure, const RtAnswer *answer) {
 
 /* The scene as YAML, or NULL if memory is short. */
 static json_t *yaml_json(const RtScene *scene) {
-    char *text = NULL;
-    size_t size = 0;
+    RtMemoryFile text;
     RtError error;
     json_t *json = NULL;
-    FILE *file = open_memstream(&text, &size);
-    if (!file) return NULL;
-    RtStatus status = rt_yaml_save(scene, file, &error);
-    if (fclose(file) == 0 && status == RT_OK) json = json_stringn(text, size);
-    free(text);
+    if (rt_memory_file_open(&text, &error) != RT_OK) return NULL;
+    RtStatus saved = rt_yaml_save(scene, text.file, &error);
+    RtStatus closed = rt_memory_file_close(&text, "a scene", &error);
+    if (saved == RT_OK && closed == RT_OK) json = json_stringn(text.data, text.size);
+    rt_free(text.data);
     return json;
 }
 

@@ -12,6 +12,7 @@
 #include "core/base/tally.h"
 #include "core/base/words.h"
 
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -269,6 +270,41 @@ RT_TEST_IN_FOLDER(what_a_killed_process_was_writing_is_removed_and_nothing_else)
     assert_folder_has("/mine-0123456789abcdef.tmp /mine.tmp ");
 }
 
+RT_TEST_IN_FOLDER(a_signal_leaves_no_file_half_written) {
+    RtOutput begun, committed;
+    RtOutputs others = {0};
+    RtOutput *other;
+    assert_ok(rt_output_open(&begun, in_folder("begun"), error));
+    assert_ok(rt_output_open(&committed, in_folder("committed"), error));
+    assert_ok(rt_output_commit(&committed, error));
+    for (int i = 0; i < 100; i++) { /* more than are remembered at a time, but one after the other */
+        assert_ok(rt_outputs_add(&others, in_folder("discarded"), &other, error));
+        rt_outputs_clear(&others);
+    }
+    assert_ok(rt_outputs_add(&others, in_folder("finished"), &other, error));
+    assert_ok(rt_output_finish(other, error));
+    rt_outputs_remove_open();
+    assert_folder_has("/committed ");
+    rt_output_discard(&begun);
+    rt_outputs_clear(&others);
+}
+
+static RtStatus write_much(RtMemoryFile *memory, RtError *error) {
+    RT_TRY(rt_memory_file_open(memory, error));
+    for (int i = 0; i < 9999; i++) fprintf(memory->file, "%04d\n", i);
+    return rt_memory_file_close(memory, "numbers", error);
+}
+
+RT_TEST(a_file_in_memory_is_whole_or_reports_that_memory_is_short) {
+    RtMemoryFile memory;
+    assert_ok(write_much(&memory, error));
+    assert_int_equal(memory.size, 5 * 9999);
+    assert_int_equal(strlen(memory.data), memory.size);
+    assert_string_equal(memory.data + memory.size - 5, "9998\n");
+    rt_free(memory.data);
+    assert_fails_cleanly(write_much(&memory, error), rt_free(memory.data));
+}
+
 /* ---- parameters ---- */
 
 RT_TEST_IN_FOLDER(a_file_may_have_the_longest_name_that_there_is) {
@@ -344,6 +380,24 @@ RT_TEST(the_nth_allocation_fails_when_told_to) {
     rt_free(a);
     rt_free(c);
     assert_null(rt_alloc(SIZE_MAX, 2));
+}
+
+RT_TEST(all_memory_of_a_process_is_limited_beside_that_of_a_step) {
+    RtError error;
+    void *block = rt_alloc(1, 1 << 19);
+    rt_memory_limit_process(1 << 20);
+    void *small = rt_alloc(1, 1 << 18);
+    assert_non_null(small);
+    rt_memory_limit(1 << 24);
+    assert_null(rt_alloc(1, 1 << 19));
+    rt_fail_memory(&error, "a block", 1 << 19);
+    assert_int_equal(rt_memory_unlimit(RT_NO_MEMORY, &error), RT_NO_MEMORY);
+    assert_int_equal(strncmp(error.message, "out of memory: 524288 bytes", 27), 0);
+    assert_int_equal(rt_memory_unlimit_process(RT_NO_MEMORY, &error), RT_NO_MEMORY);
+    assert_non_null(
+        strstr(error.message, " MB of memory (that of --memory, or of this machine): out of memory"));
+    rt_free(block);
+    rt_free(small);
 }
 
 RT_TEST(random_numbers_depend_on_seed_stream_and_place_alone) {
@@ -475,6 +529,19 @@ RT_TEST(a_process_sees_the_end_of_its_input_while_others_run) {
         if (!ended) rt_process_end(&processes[i], 0);
         assert_true(ended);
     }
+}
+
+RT_TEST(a_signal_ends_the_programs_that_were_started) {
+    char *const arguments[] = {(char *)"sleep", (char *)"60", NULL};
+    RtProcess process;
+    RtProcessEnd end;
+    assert_ok(rt_process_spawn(&process, &(RtProcessCommand){.arguments = arguments}, error));
+    rt_processes_kill();
+    assert_true(rt_process_wait(&process, 30000, &end));
+    assert_int_equal(end.signal, SIGKILL);
+    assert_ok(rt_process_spawn(&process, &(RtProcessCommand){.arguments = arguments}, error));
+    rt_process_end(&process, 0);
+    rt_processes_kill(); /* of none */
 }
 
 RT_TESTS(base, NULL, NULL)

@@ -230,6 +230,7 @@ RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
         {"balls --accel bvhh -o " OUT ".png", "mean 'bvh'"},
         {"balls --size 0x5 -o " OUT ".png", "WIDTHxHEIGHT"},
         {"balls --size 32768x32768 -o " OUT ".png", "smaller image"},
+        {"balls --size 2000x2000 --memory 1M -o " OUT ".png", "it needs more than 1 MB of memory (that of "},
         {"balls --corners --samples 2 -o " OUT ".png", "corners"},
         {"balls --samples 65 -o " OUT ".png", "1..64"},
         {"balls --depth 0 -o " OUT ".png", "1..64"},

@@ -183,6 +183,32 @@ RT_TEST_IN_PLACE(an_interruption_between_two_experiments_says_how_to_continue_to
     assert_in_file(place, "message", "To continue:\n  raytally run all --resume\n");
 }
 
+RT_TEST_IN_PLACE(a_limit_of_time_stops_all_and_says_the_command_that_continues) {
+    const Place *place = *state;
+    change(place, "b.yaml", "rounds: 2\nmilliseconds: 0", "rounds: 50\nmilliseconds: 200");
+    assert_ends(place, "run b.yaml --threads 1 --out one --time 1", 2,
+                "raytally: stopped after 1 s (--time); ");
+    assert_in_file(place, "message", "To continue:\n  raytally run b.yaml --out one --threads 1 --resume\n");
+    assert_ends(place, "run a.yaml b.yaml c.yaml --threads 1 --out all --time 1", 2,
+                "stopped after 1 s (--time); ");
+    assert_true(exists(place, "all/a/report.html") && !exists(place, "all/c"));
+    assert_ends(place, "run b.yaml --time 0", 2, "--time: invalid value '0': expected a whole number 1..");
+}
+
+RT_TEST_IN_PLACE(a_directory_that_is_removed_in_mid_run_is_reported) {
+    const Place *place = *state;
+    int how;
+    char command[300];
+    change(place, "a.yaml", "rounds: 2\nmilliseconds: 0", "rounds: 5\nmilliseconds: 50");
+    pid_t child = start_raytally(place, "run a.yaml --threads 1 --out gone");
+    while (!exists(place, "gone/cells.jsonl")) nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
+    snprintf(command, sizeof command, "rm -r '%s'", path_in(place, "gone").text);
+    assert_int_equal(system(command), 0);
+    waitpid(child, &how, 0);
+    assert_true(WIFEXITED(how) && WEXITSTATUS(how) == 2);
+    assert_in_file(place, "message", "raytally: gone");
+}
+
 RT_TEST_IN_PLACE(reproduce_takes_several_directories_and_goes_on_after_one_that_differs) {
     const Place *place = *state;
     assert_int_equal(raytally(place, "run a.yaml b.yaml --threads 1"), 0);

@@ -194,6 +194,11 @@ RT_TEST(what_needs_more_memory_than_is_allowed_is_refused_and_the_others_are_ver
     json_decref(json);
 }
 
+RT_TEST(a_verification_stops_when_its_time_is_over) {
+    assert_int_equal(verify("random:n=2000 --accel brute --rays 20000000 --time 1"), 2);
+    assert_string_equal(text_of(OUT ".err"), "raytally: stopped after 1 s (--time)\n");
+}
+
 /* Verifies whatever an earlier round of this test has left in --out. */
 static void begin_anew(const char *arguments) {
     char anew[1024];

@@ -4,6 +4,7 @@
 
 #include "core/text/table.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -283,6 +284,24 @@ RT_TEST(a_number_of_unknown_error_has_two_digits) {
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         rt_format_rough(cases[i].value, text);
         assert_string_equal(text, cases[i].text);
+    }
+}
+
+RT_TEST(counts_keep_all_their_digits_up_to_the_last_that_json_has) {
+    static const uint64_t counts[] = {UINT64_C(1) << 32, (UINT64_C(1) << 53) + 1, INT64_MAX};
+    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
+        const Row row = {"many", counts[i], 0, false, NULL};
+        const RtField field = rt_field_integer(counts[i]);
+        char buffer[RT_MAX_FIELD], expected[32];
+        snprintf(expected, sizeof expected, "%" PRIu64, counts[i]);
+        assert_string_equal(rt_field_show(RT_FORM_integer, &field, buffer), expected);
+        json_t *written = rt_row_json(groups, 1, &row);
+        char *text = json_dumps(written, JSON_COMPACT);
+        json_t *read = json_loads(text, 0, NULL);
+        assert_true((uint64_t)json_integer_value(json_object_get(read, "hit count")) == counts[i]);
+        json_decref(written);
+        json_decref(read);
+        free(text);
     }
 }
 

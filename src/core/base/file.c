@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -18,6 +19,39 @@
 
 static RtStatus fail_io(RtError *error, const char *doing, const char *path) {
     return rt_fail(error, RT_IO, "%s: %s failed: %s", path, doing, strerror(errno ? errno : EIO));
+}
+
+/* ---- temporary files ---- */
+
+/* Those of this process, for a handler of signals: a name is whole while it is LISTED. */
+enum { MOST_LISTED = 64, UNUSED = 0, CHANGING, LISTED };
+static struct {
+    atomic_int state;
+    char path[RT_MAX_PATH + 24];
+} listed[MOST_LISTED];
+
+static void list_temporary(RtOutput *output) {
+    output->listed = -1;
+    for (int i = 0; i < MOST_LISTED && output->listed < 0; i++) {
+        int unused = UNUSED;
+        if (atomic_compare_exchange_strong(&listed[i].state, &unused, CHANGING)) output->listed = i;
+    }
+    if (output->listed < 0) return;
+    strcpy(listed[output->listed].path, output->temporary);
+    atomic_store(&listed[output->listed].state, LISTED);
+}
+
+/* It is renamed or removed. */
+static void forget_temporary(RtOutput *output) {
+    if (output->listed >= 0) atomic_store(&listed[output->listed].state, UNUSED);
+    output->listed = -1;
+    output->temporary[0] = '\0';
+}
+
+void rt_outputs_remove_open(void) {
+    for (int i = 0; i < MOST_LISTED; i++) {
+        if (atomic_load(&listed[i].state) == LISTED) unlink(listed[i].path);
+    }
 }
 
 /* ---- writing ---- */
@@ -33,6 +67,7 @@ static RtStatus create_temporary(RtOutput *output, RtError *error) {
     if (getrandom(&number, sizeof number, 0) == sizeof number) {
         snprintf(output->temporary, sizeof output->temporary, "%.*s.%016" PRIx64 TEMPORARY_END, kept,
                  output->path, number);
+        list_temporary(output);
         descriptor = open(output->temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
     }
     if (descriptor >= 0) output->file = fdopen(descriptor, "wb");
@@ -42,13 +77,14 @@ static RtStatus create_temporary(RtOutput *output, RtError *error) {
         close(descriptor);
         remove(output->temporary);
     }
-    output->temporary[0] = '\0';
+    forget_temporary(output);
     return status;
 }
 
 RtStatus rt_output_open(RtOutput *output, const char *path, RtError *error) {
     output->file = NULL;
     output->temporary[0] = '\0';
+    output->listed = -1;
     if (strlen(path) >= RT_MAX_PATH)
         return rt_fail(error, RT_BAD_INPUT, "%.80s...: the path is too long", path);
     struct stat info;
@@ -81,15 +117,16 @@ RtStatus rt_output_commit(RtOutput *output, RtError *error) {
     RtStatus status = RT_OK;
     if (rename(output->temporary, output->path) != 0) status = fail_io(error, "writing", output->path);
     if (status != RT_OK) remove(output->temporary);
-    output->temporary[0] = '\0';
+    forget_temporary(output);
     return status;
 }
 
 void rt_output_discard(RtOutput *output) {
     if (output->file) fclose(output->file);
     output->file = NULL;
-    if (*output->temporary) remove(output->temporary);
-    output->temporary[0] = '\0';
+    if (!*output->temporary) return;
+    remove(output->temporary);
+    forget_temporary(output);
 }
 
 RtStatus rt_file_write(const char *path, const void *data, size_t size, RtError *error) {
@@ -146,6 +183,47 @@ static void remove_temporary(void *context, const char *path) {
 
 void rt_outputs_remove_left(const char *folder) {
     rt_directory_each(folder, TEMPORARY_END, remove_temporary, NULL);
+}
+
+/* ---- in memory ---- */
+
+/* Leaves room for the 0 at the end. */
+static ssize_t write_to_memory(void *cookie, const char *bytes, size_t count) {
+    RtMemoryFile *memory = cookie;
+    if (count >= memory->capacity - memory->size) {
+        const size_t capacity = 2 * memory->capacity + count;
+        char *grown = rt_alloc_unset(capacity, 1);
+        if (!grown) return 0; /* an error, for the file */
+        memcpy(grown, memory->data, memory->size);
+        rt_free(memory->data);
+        memory->data = grown;
+        memory->capacity = capacity;
+    }
+    memcpy(memory->data + memory->size, bytes, count);
+    memory->size += count;
+    return (ssize_t)count;
+}
+
+RtStatus rt_memory_file_open(RtMemoryFile *memory, RtError *error) {
+    enum { CAPACITY = 4096 };
+    *memory = (RtMemoryFile){.data = rt_alloc_unset(CAPACITY, 1), .capacity = CAPACITY};
+    if (memory->data)
+        memory->file = fopencookie(memory, "w", (cookie_io_functions_t){.write = write_to_memory});
+    if (memory->file) return RT_OK;
+    rt_free(memory->data);
+    memory->data = NULL;
+    return rt_fail_memory(error, "a file in memory", CAPACITY);
+}
+
+RtStatus rt_memory_file_close(RtMemoryFile *memory, const char *what, RtError *error) {
+    bool whole = fflush(memory->file) == 0 && !ferror(memory->file);
+    fclose(memory->file);
+    memory->file = NULL;
+    memory->data[memory->size] = '\0';
+    if (whole) return RT_OK;
+    rt_free(memory->data);
+    memory->data = NULL;
+    return rt_fail_memory(error, what, 0);
 }
 
 /* ---- reading ---- */

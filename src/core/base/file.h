@@ -16,6 +16,7 @@
 typedef struct RtOutput {
     FILE *file;                                          /* NULL when not open */
     char path[RT_MAX_PATH], temporary[RT_MAX_PATH + 24]; /* "": no temporary file */
+    int listed;                                          /* for rt_outputs_remove_open; -1: it is not */
 } RtOutput;
 
 /* Rejects a `path` that exists and is not a regular file: renaming would replace /dev/null, say. */
@@ -57,6 +58,22 @@ void rt_outputs_clear(RtOutputs *outputs);
 /* Removes temporary files that killed processes left in `folder`. Call it only while nobody else writes
  * there. */
 void rt_outputs_remove_left(const char *folder);
+
+/* Removes the temporary files of all outputs that are open, up to 64; for handlers of signals that end the
+ * process. */
+void rt_outputs_remove_open(void);
+
+/* A file in memory. Unlike one of open_memstream, which drops in silence what it has no memory for, it
+ * reports that. Write to `file`; it must not be moved until it is closed. */
+typedef struct RtMemoryFile {
+    FILE *file; /* NULL when not open */
+    char *data; /* once it is closed: complete, followed by a 0; for rt_free */
+    size_t size, capacity;
+} RtMemoryFile;
+RtStatus rt_memory_file_open(RtMemoryFile *memory, RtError *error);
+
+/* After a failure there are no data. `what` it is, for the message. */
+RtStatus rt_memory_file_close(RtMemoryFile *memory, const char *what, RtError *error);
 
 /* Opens a regular file for reading; rejects folders, devices and pipes. */
 RtStatus rt_file_open(const char *path, FILE **file, RtError *error);

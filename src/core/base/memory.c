@@ -10,9 +10,15 @@
 #include <unistd.h>
 
 static _Atomic uint64_t fail_countdown;
-static _Atomic int64_t live_blocks, live_bytes, most_bytes = INT64_MAX;
+static _Atomic int64_t live_blocks, live_bytes;
 
-static uint64_t limit_bytes = UINT64_MAX; /* as rt_memory_limit was given it */
+typedef struct Limit {
+    _Atomic int64_t most; /* live bytes */
+    uint64_t given;       /* UINT64_MAX: none */
+    atomic_bool reached;
+} Limit;
+static Limit limit_now = {.most = INT64_MAX, .given = UINT64_MAX},
+             limit_of_process = {.most = INT64_MAX, .given = UINT64_MAX};
 
 static bool fails_on_purpose(void) {
     uint64_t left = atomic_load(&fail_countdown);
@@ -20,6 +26,12 @@ static bool fails_on_purpose(void) {
         if (atomic_compare_exchange_weak(&fail_countdown, &left, left - 1)) return left == 1;
     }
     return false;
+}
+
+static bool exceeds(Limit *limit, int64_t bytes) {
+    if (bytes <= atomic_load(&limit->most)) return false;
+    atomic_store(&limit->reached, true);
+    return true;
 }
 
 /* Blocks of LARGE_BLOCK bytes or more use pages of this size. */
@@ -32,9 +44,9 @@ static void *allocate(size_t count, size_t size, size_t *padded) {
     if (size != 0 && count > (SIZE_MAX - boundary) / size) return NULL;
     if (fails_on_purpose()) return NULL;
     *padded = (count * size + boundary) / boundary * boundary;
-    if (*padded > (uint64_t)INT64_MAX / 2 ||
-        atomic_load(&live_bytes) + (int64_t)*padded > atomic_load(&most_bytes))
-        return NULL;
+    if (*padded > (uint64_t)INT64_MAX / 2) return NULL;
+    const int64_t bytes = atomic_load(&live_bytes) + (int64_t)*padded;
+    if (exceeds(&limit_now, bytes) || exceeds(&limit_of_process, bytes)) return NULL;
     void *block = aligned_alloc(boundary, *padded);
     if (!block) return NULL;
     atomic_fetch_add(&live_blocks, 1);
@@ -62,22 +74,42 @@ void rt_free(void *block) {
     free(block);
 }
 
+static void set_limit(Limit *limit, uint64_t bytes, int64_t before) {
+    const bool none = bytes == 0 || bytes > (uint64_t)INT64_MAX / 2;
+    limit->given = bytes ? bytes : UINT64_MAX;
+    atomic_store(&limit->reached, false);
+    atomic_store(&limit->most, none ? INT64_MAX : before + (int64_t)bytes);
+}
+
+/* Removes the limit, and puts it in front of the message if it was reached. */
+static RtStatus unlimit(Limit *limit, const char *origin, RtStatus status, RtError *error) {
+    const uint64_t given = limit->given;
+    const bool reached = atomic_load(&limit->reached);
+    set_limit(limit, 0, 0);
+    if (status != RT_NO_MEMORY || !reached || !error) return status;
+    const RtError why = *error;
+    return rt_fail(error, status, "it needs more than %.4g MB of memory (%s): %s", 1e-6 * (double)given,
+                   origin, why.message);
+}
+
 void rt_memory_limit(uint64_t bytes) {
-    limit_bytes = bytes ? bytes : UINT64_MAX;
-    atomic_store(&most_bytes, bytes ? atomic_load(&live_bytes) + (int64_t)bytes : INT64_MAX);
+    set_limit(&limit_now, bytes, atomic_load(&live_bytes));
 }
 
 RtStatus rt_memory_unlimit(RtStatus status, RtError *error) {
-    const uint64_t limit = limit_bytes;
-    rt_memory_limit(0);
-    if (status != RT_NO_MEMORY || limit == UINT64_MAX || !error) return status;
-    const RtError why = *error;
-    return rt_fail(error, status, "it needs more than %.4g MB of memory (--memory): %s", 1e-6 * (double)limit,
-                   why.message);
+    return unlimit(&limit_now, "--memory", status, error);
 }
 
 uint64_t rt_memory_current_limit(void) {
-    return limit_bytes;
+    return limit_now.given;
+}
+
+void rt_memory_limit_process(uint64_t bytes) {
+    set_limit(&limit_of_process, bytes, 0);
+}
+
+RtStatus rt_memory_unlimit_process(RtStatus status, RtError *error) {
+    return unlimit(&limit_of_process, "that of --memory, or of this machine", status, error);
 }
 
 RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error) {

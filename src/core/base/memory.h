@@ -45,6 +45,10 @@ RtStatus rt_memory_unlimit(RtStatus status, RtError *error);
 /* The limit as it was given; UINT64_MAX without one. */
 uint64_t rt_memory_current_limit(void);
 
+/* The same for all memory that this process allocates here, beside the limit above. */
+void rt_memory_limit_process(uint64_t bytes);
+RtStatus rt_memory_unlimit_process(RtStatus status, RtError *error);
+
 /* For tests: the allocation `n` calls from now fails (1 = the next); 0 switches this off. */
 void rt_alloc_fail_at(uint64_t n);
 

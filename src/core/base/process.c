@@ -12,6 +12,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <stdatomic.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,6 +25,30 @@
 #include <unistd.h>
 
 enum { BY_DESCRIPTOR = 3 /* P_PIDFD, which some C libraries lack */, PAUSE = 10 /* ms */ };
+
+/* ---- those that run ---- */
+
+/* For rt_processes_kill: process ids, of groups below 0; 0: none. */
+enum { MOST_LISTED = 64 };
+static _Atomic pid_t listed[MOST_LISTED];
+
+static void relist(pid_t from, pid_t to) {
+    for (int i = 0; i < MOST_LISTED; i++) {
+        pid_t was = from;
+        if (atomic_compare_exchange_strong(&listed[i], &was, to)) return;
+    }
+}
+
+static pid_t listed_id(const RtProcess *process) {
+    return process->group ? -process->pid : process->pid;
+}
+
+void rt_processes_kill(void) {
+    for (int i = 0; i < MOST_LISTED; i++) {
+        const pid_t id = atomic_load(&listed[i]);
+        if (id != 0) kill(id, SIGKILL);
+    }
+}
 
 /* ---- copies of this process ---- */
 
@@ -115,7 +140,10 @@ RtStatus rt_process_fork(RtProcess *process, int keep, RtError *error) {
     }
     close(go[0]);
     close(go[1]);
-    if (process->pid > 0) return RT_OK;
+    if (process->pid > 0) {
+        relist(0, listed_id(process));
+        return RT_OK;
+    }
     *process = (RtProcess){0};
     return rt_fail(error, RT_IO, "a process for a plugin: %s", strerror(why));
 }
@@ -164,6 +192,7 @@ RtStatus rt_process_spawn(RtProcess *process, const RtProcessCommand *command, R
                        command->program ? command->program : command->arguments[0], strerror(failed));
     }
     process->descriptor = (int)syscall(SYS_pidfd_open, process->pid, 0);
+    relist(0, listed_id(process));
     if (!command->to || (*command->to && *command->from)) return RT_OK;
     return rt_fail_memory(error, "a connection to a process", 0);
 }
@@ -247,6 +276,7 @@ bool rt_process_wait(RtProcess *process, int milliseconds, RtProcessEnd *end) {
     }
     if (process->group) end_group(process->pid, end);
     if (process->descriptor >= 0) close(process->descriptor);
+    relist(listed_id(process), 0);
     *process = (RtProcess){0};
     return true;
 }

@@ -65,6 +65,9 @@ bool rt_process_wait(RtProcess *process, int milliseconds, RtProcessEnd *end);
 /* The same, but kills it if it still runs then. */
 void rt_process_end(RtProcess *process, int milliseconds);
 
+/* Kills all that run, up to 64; for handlers of signals that end this process. */
+void rt_processes_kill(void);
+
 /* How it ended, to out[0..size): "it crashed (Segmentation fault)". `reported` is a signal that the process
  * itself recorded, or 0; it takes precedence over *end. `detail` follows the name of a signal. */
 void rt_process_end_format(RtProcessEnd end, int reported, const char *detail, char *out, size_t size);

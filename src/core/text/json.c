@@ -6,7 +6,25 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdatomic.h>
+#include <stdlib.h>
 #include <time.h>
+
+static atomic_bool ran_out;
+
+static void *allocate(size_t size) {
+    void *block = malloc(size);
+    if (!block && size > 0) atomic_store(&ran_out, true);
+    return block;
+}
+
+void rt_json_watch_memory(void) {
+    json_set_alloc_funcs(allocate, free);
+}
+
+RtStatus rt_json_check_memory(const char *what, RtError *error) {
+    return atomic_load(&ran_out) ? rt_fail_memory(error, what, 0) : RT_OK;
+}
 
 json_t *rt_json_number(double value) {
     return isfinite(value) ? json_real(value) : json_null();
@@ -44,8 +62,8 @@ RtStatus rt_json_check_format(const json_t *document, const char *path, RtError 
 
 RtStatus rt_json_save(const char *path, json_t *document, RtError *error) {
     RtOutput output;
-    if (!document) return rt_fail_memory(error, path, 0);
-    RtStatus status = rt_output_open(&output, path, error);
+    RtStatus status = document ? rt_json_check_memory(path, error) : rt_fail_memory(error, path, 0);
+    if (status == RT_OK) status = rt_output_open(&output, path, error);
     if (status == RT_OK) {
         bool whole = json_dumpf(document, output.file, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) == 0;
         fputc('\n', output.file);

@@ -8,7 +8,13 @@
 #include <jansson.h>
 #include <stdint.h>
 
-/* Each returns a new reference, or NULL if memory is short; json_pack then returns NULL, too. */
+/* A part of a document for which memory is short is left out, by json_object_set_new and others, in silence.
+ * A program that calls rt_json_watch_memory first, before it uses jansson, does not write such documents:
+ * rt_json_check_memory returns RT_NO_MEMORY for `what` from then on. */
+void rt_json_watch_memory(void);
+RtStatus rt_json_check_memory(const char *what, RtError *error);
+
+/* Each of these returns a new reference, or NULL if memory is short; json_pack then returns NULL, too. */
 
 /* The number; null for NAN and infinities. */
 json_t *rt_json_number(double value);

@@ -2,6 +2,7 @@
 #include "core/text/json_lines.h"
 
 #include "core/base/memory.h"
+#include "core/text/json.h"
 
 #include <errno.h>
 #include <string.h>
@@ -26,12 +27,14 @@ static bool put_line(const json_t *line, FILE *file) {
 }
 
 RtStatus rt_json_lines_put(RtOutput *output, const json_t *lines, RtError *error) {
-    bool put = true;
+    RtStatus status = rt_json_check_memory(output->path, error);
+    bool put = status == RT_OK;
     for (size_t i = 0; put && i < json_array_size(lines); i++)
         put = put_line(json_array_get(lines, i), output->file);
     if (put) return RT_OK;
+    if (status == RT_OK) status = rt_fail(error, RT_IO, "%s: writing failed", output->path);
     rt_output_discard(output);
-    return rt_fail(error, RT_IO, "%s: writing failed", output->path);
+    return status;
 }
 
 RtStatus rt_json_lines_save(const char *path, const json_t *lines, RtError *error) {
@@ -64,9 +67,10 @@ void rt_json_lines_close(RtJsonLines *lines) {
 }
 
 RtStatus rt_json_lines_write(RtJsonLines *lines, json_t *line, RtError *error) {
-    if (!line) return rt_fail_memory(error, lines->path, 0);
-    bool put = put_line(line, lines->file);
+    RtStatus status = line ? rt_json_check_memory(lines->path, error) : rt_fail_memory(error, lines->path, 0);
+    bool put = status == RT_OK && put_line(line, lines->file);
     json_decref(line);
+    if (status != RT_OK) return status;
     if (put && fflush(lines->file) == 0 && fdatasync(fileno(lines->file)) == 0) return RT_OK;
     return rt_fail(error, RT_IO, "%s: writing failed: %s", lines->path, strerror(errno));
 }
@@ -114,8 +118,11 @@ RtStatus rt_json_lines_load(const char *path, json_t **lines, RtError *error) {
         json_array_append_new(*lines, object ? object : json_null());
     }
     rt_free(text);
-    if (json_array_size(*lines) > 0) return RT_OK;
+    RtStatus status = rt_json_check_memory(path, error);
+    if (status == RT_OK && json_array_size(*lines) > 0) return RT_OK;
     json_decref(*lines);
     *lines = NULL;
-    return rt_fail(error, RT_BAD_INPUT, "%s: the journal is empty: start over with --force", path);
+    return status != RT_OK
+               ? status
+               : rt_fail(error, RT_BAD_INPUT, "%s: the journal is empty: start over with --force", path);
 }

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What ends a command early: SIGINT, SIGTERM, SIGHUP, SIGABRT, and --time. Temporary files and child
+ * processes go with it, so that nothing half-written is left and nothing runs on. */
+#ifndef RT_CLI_STOP_H
+#define RT_CLI_STOP_H
+
+/* From now on these signals, unless they are ignored, and SIGALRM clean up before they end the process. Call
+ * it first, and again in a fork, which then cleans up its own files and processes alone. */
+void rt_stop_init(void);
+
+/* For a command that takes these signals itself: removes temporary files, and kills children. In a handler,
+ * too. */
+void rt_stop_clean(void);
+
+/* The exit code after a signal: 128 + its number; after SIGALRM that of too little time. */
+int rt_stop_code(int number);
+
+/* What a signal says on stderr: "interrupted", or "stopped after 60 s (--time)". In a handler, too. */
+const char *rt_stop_reason(int number);
+
+/* --time: sends SIGALRM after so many seconds. */
+void rt_stop_after(unsigned seconds);
+
+#endif
