@@ -78,7 +78,12 @@ RT_TEST(many_objects_on_many_threads_make_the_structure_of_one) {
 
 /* Whether it answers like brute at every scale, and can be built here. */
 static bool is_exact(const char *spec, const RtScene *scene) {
-    OWNED_ACCEL RtAccel *accel = open_available(scene, spec, 0);
+    OWNED_ACCEL RtAccel *accel = NULL;
+    RtError reason;
+    const RtStatus status = rt_accel_open(spec, scene, &accel, &reason);
+    if (status == RT_BAD_INPUT && strncmp(spec, "embree", 6) == 0)
+        return false; /* the scene is too wide for native mode */
+    if (status != RT_OK && status != RT_NOT_AVAILABLE) fail_msg("%s: %s", spec, reason.message);
     return accel && accel->exact;
 }
 
