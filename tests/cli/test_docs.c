@@ -133,6 +133,7 @@ static size_t check_line(const char *document, char *line) {
     for (char *code; (code = strsep(&line, "`")); strsep(&line, "`")) {
         if (strncmp(code, "tests/", 6) == 0 && !strchr(code, '*')) {
             free(tests);
+            code[strcspn(code, " ")] = '\0'; /* its arguments */
             tests = read_document(code);
             files++;
         } else if (tests && is_name(code) && !strstr(tests, code + strspn(code, "."))) {
