@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# `raytally completion --words` prints what may follow. Words are read into arrays, never left to the shell to part, which would
-# also look for files that match them.
+# `raytally completion --words` prints what may follow. Words are read into arrays: if the shell split them, it would also replace
+# them by the names of matching files.
 _raytally() {
     local line=${COMP_LINE:0:COMP_POINT} words word value found files
     # Without -r a backslash keeps the blank behind it in its word, as in the shell.

@@ -19,17 +19,13 @@ static volatile pid_t running;            /* the fork; 0: none, as between two j
 static const char *volatile command;      /* that continues */
 
 /* Also in a handler of signals. */
-static void say(const char *text) {
-    if (write(STDERR_FILENO, text, strlen(text)) < 0) return;
-}
-
 _Noreturn static void leave(int number, bool told) {
     if (!told) {
-        say("raytally: ");
-        say(rt_stop_reason(number));
-        say(". To continue:\n  ");
-        say(command);
-        say("\n");
+        rt_stop_say("raytally: ");
+        rt_stop_say(rt_stop_reason(number));
+        rt_stop_say(". To continue:\n  ");
+        rt_stop_say(command);
+        rt_stop_say("\n");
     }
     _exit(rt_stop_code(number));
 }

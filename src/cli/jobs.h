@@ -20,9 +20,9 @@ typedef struct RtJob {
 } RtJob;
 
 /* Forks, and waits for the end of the fork. Call it before anything starts threads. SIGINT, SIGTERM and
- * SIGALRM are passed on to the fork, and end this process after it, with rt_stop_code; if the fork was too
- * young to say how to continue, or there is none, as between two jobs, this process prints `go_on`, borrowed.
- * RT_IO if there is no fork to wait for. */
+ * SIGALRM are passed on to the fork, and end this process after it, with rt_stop_code. If the fork ended
+ * before it could say how to continue, or there is none, as between two jobs, this process prints `go_on`,
+ * borrowed. RT_IO if there is no fork to wait for. */
 RtStatus rt_job_run(RtJob *job, const char *go_on, RtError *error);
 
 /* Prints how each of them ended, and how long it took. */

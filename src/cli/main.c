@@ -119,8 +119,8 @@ int main(int argc, char **argv) {
     argp_err_exit_status = RT_EXIT_BAD_INPUT;
     rt_stop_init();
     rt_json_watch_memory();
-    rt_memory_limit_process(
-        rt_memory_size()); /* more would be granted, and end the process once it is used */
+    /* The system grants more, and ends the process when that is used. */
+    rt_memory_limit_process(rt_memory_size());
     if (argc < 2) {
         print_usage(stderr);
         return RT_EXIT_BAD_INPUT;

@@ -107,9 +107,8 @@ RtRunObserver rt_progress_observer(RtProgress *progress) {
 
 /* ---- the thread ---- */
 
-/* The journal is always whole. */
+/* The journal is always whole. Cleans up last, since other threads run on until the process ends. */
 static void leave(const RtProgress *progress, int number) {
-    rt_stop_clean();
     fprintf(stderr, "%sraytally: %s%s; ", progress->terminal ? "\r\033[K" : "", progress->title,
             rt_stop_reason(number));
     if (progress->begun) {
@@ -120,6 +119,7 @@ static void leave(const RtProgress *progress, int number) {
         fprintf(stderr, "nothing was measured yet, and %s is unchanged.", progress->keeps);
     }
     fprintf(stderr, " To continue:\n  %s\n", progress->go_on);
+    rt_stop_clean();
     _exit(rt_stop_code(number));
 }
 

@@ -15,8 +15,8 @@ static char time_is_over[64] = "stopped by an alarm";
 
 void rt_stop_clean(void) {
     if (getpid() != owner) return;
-    rt_processes_kill();
     rt_outputs_remove_open();
+    rt_processes_kill(); /* last: other threads run on, and would take it for a crash */
 }
 
 int rt_stop_code(int number) {
@@ -27,18 +27,18 @@ const char *rt_stop_reason(int number) {
     return number == SIGALRM ? time_is_over : "interrupted";
 }
 
-static void say(const char *text) {
+void rt_stop_say(const char *text) {
     if (write(STDERR_FILENO, text, strlen(text)) < 0) return;
 }
 
 static void stop(int number) {
-    rt_stop_clean();
     if (number == SIGALRM) {
-        say("raytally: ");
-        say(time_is_over);
-        say("\n");
-        _exit(rt_stop_code(number));
+        rt_stop_say("raytally: ");
+        rt_stop_say(time_is_over);
+        rt_stop_say("\n");
     }
+    rt_stop_clean();
+    if (number == SIGALRM) _exit(rt_stop_code(number));
     raise(number); /* which ends the process once the handler returns */
 }
 

@@ -18,6 +18,9 @@ int rt_stop_code(int number);
 /* What a signal says on stderr: "interrupted", or "stopped after 60 s (--time)". In a handler, too. */
 const char *rt_stop_reason(int number);
 
+/* Writes `text` to stderr; in a handler, too. */
+void rt_stop_say(const char *text);
+
 /* --time: sends SIGALRM after so many seconds. */
 void rt_stop_after(unsigned seconds);
 
