@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A remote accelerator (accel/remote.h) whose process is forged: its answers are bytes of a test, which stand
  * for a plugin that overwrites the memory that it shares with raytally. The executable is linked with
- * --wrap=rt_process_fork,
- * --wrap=rt_process_signal, --wrap=rt_process_wait and --wrap=rt_watched_wait; nothing changes while nothing
- * is forged. */
+ * --wrap for the four functions below; they are the real ones while nothing is forged. */
 #ifndef RT_TESTS_FORGED_TESTING_H
 #define RT_TESTS_FORGED_TESTING_H
 
@@ -11,6 +9,7 @@
 #include "accel/remote.h"
 
 #include <string.h>
+#include <unistd.h>
 
 /* Each answer is a ForgedAnswer and then the `length` bytes that replace those of the message from `offset`
  * on: what raytally asked, or an earlier answer. After the last answer, and after a cut one, the process has

@@ -4,10 +4,12 @@
 #ifndef RT_BASE_VERSIONS_H
 #define RT_BASE_VERSIONS_H
 
+#include <inttypes.h>
+
 #define RT_FILE_FORMAT    1 /* the newest that is read, and the one that is written: `format` in files */
 #define RT_COUNTS_VERSION 1 /* `counts` in manifests */
 
-/* Of a file with another format, an int64_t. */
+/* A message about a file of another format; takes that format, an int64_t, and RT_FILE_FORMAT. */
 #define RT_FORMAT_UNKNOWN                                                                                    \
     "its format is %" PRId64 ", and raytally " RT_VERSION                                                    \
     " reads formats 1..%d: use the raytally that wrote it, or a newer one"

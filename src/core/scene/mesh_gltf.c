@@ -210,10 +210,10 @@ static RtStatus take_chunk(RtMeshReader *r, const char type[4], RtGltfBuffer *ch
     RtScanner *text = &r->text;
     const size_t left = (size_t)(text->end - text->at);
     if (left < CHUNK_HEADER || memcmp(text->at + 4, type, 4) != 0)
-        return rt_mesh_fail(r, "expected a chunk %.3s at byte %zu before the end", type, left);
+        return rt_mesh_fail(r, "expected a chunk %.4s at byte %zu before the end", type, left);
     chunk->size = rt_mesh_u32(text->at);
     if (chunk->size > left - CHUNK_HEADER)
-        return rt_mesh_fail(r, "a chunk %.3s declares %zu bytes, but the file ends after %zu", type,
+        return rt_mesh_fail(r, "a chunk %.4s declares %zu bytes, but the file ends after %zu", type,
                             chunk->size, left - CHUNK_HEADER);
     text->at += CHUNK_HEADER;
     chunk->data = (char *)text->at;

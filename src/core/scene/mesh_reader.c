@@ -76,7 +76,7 @@ static RtStatus add_triangle(RtMeshReader *r, const RtMeshCorner corners[3]) {
     }
     RtStatus status =
         rt_scene_add_triangle(r->scene, r->material, vertices, has_normals ? normals : NULL, r->text.error);
-    if (status != RT_BAD_INPUT || !r->text.error) return status;
+    if (status != RT_BAD_INPUT) return status;
     const RtError inner = *r->text.error;
     return rt_mesh_fail(r, "face %u (counted from 0): %s", r->face_count, inner.message);
 }

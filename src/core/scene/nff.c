@@ -37,7 +37,7 @@ static RtStatus fail_inside(Reader *r, RtWord word, const char *wanted) {
 
 /* Adds the line of the statement to a message of the scene. */
 static RtStatus located(Reader *r, RtStatus status) {
-    if (status != RT_BAD_INPUT || !r->text.error) return status;
+    if (status != RT_BAD_INPUT) return status;
     RtError inner = *r->text.error;
     return rt_fail_at(r->text.error, r->text.path, r->statement, 0, "%s", inner.message);
 }
