@@ -21,8 +21,8 @@ typedef struct RtIndexEntry {
     char name[RT_MAX_LABEL];    /* of the experiment, or the directory */
     char section[RT_MAX_LABEL]; /* or "" */
     char build[RT_MAX_ORIGIN], machine[RT_MAX_ORIGIN];
-    uint32_t number; /* the caller's */
-    RtMemoryFile parts[RT_INDEX_PARTS];
+    uint32_t number;                    /* the caller's */
+    RtMemoryFile parts[RT_INDEX_PARTS]; /* closed once they are complete */
 } RtIndexEntry;
 
 /* Whether `directory` is one: of an experiment or a verification. */

@@ -63,8 +63,8 @@ void rt_outputs_remove_left(const char *folder);
  * process. */
 void rt_outputs_remove_open(void);
 
-/* A file in memory. Unlike one of open_memstream, which drops in silence what it has no memory for, it
- * reports that. Write to `file`; it must not be moved until it is closed. */
+/* A file in memory. Unlike open_memstream, which may lose data without an error, it fails if memory is short.
+ * Write to `file`; the struct must not be moved until it is closed. */
 typedef struct RtMemoryFile {
     FILE *file; /* NULL when not open */
     char *data; /* once it is closed: complete, followed by a 0; for rt_free */

@@ -8,9 +8,9 @@
 #include <jansson.h>
 #include <stdint.h>
 
-/* A part of a document for which memory is short is left out, by json_object_set_new and others, in silence.
- * A program that calls rt_json_watch_memory first, before it uses jansson, does not write such documents:
- * rt_json_check_memory returns RT_NO_MEMORY for `what` from then on. */
+/* If memory is short, json_object_set_new and others leave out a part of the document without an error. A
+ * program that calls rt_json_watch_memory before it uses jansson does not write such a document: once memory
+ * was short, rt_json_check_memory returns RT_NO_MEMORY for `what`. */
 void rt_json_watch_memory(void);
 RtStatus rt_json_check_memory(const char *what, RtError *error);
 
