@@ -104,7 +104,7 @@ static void print_light_of(const RtTreeRay *ray) {
     }
 }
 
-/* Of all rays but those in shadow, which bring nothing. */
+/* Of all rays except shadow rays that end at an occluder: those bring no light. */
 static void print_light(const RtRayTree *tree, uint32_t rows) {
     printf("\n%5s  %-5s", "ray", "");
     for (int t = 0; t < RT_TERM_COUNT; t++) printf("  %*s", term_width((RtTerm)t), rt_term_name((RtTerm)t));

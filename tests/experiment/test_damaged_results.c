@@ -55,7 +55,7 @@ static RtStatus read_all(const Place *place, RtError *error) {
     return status;
 }
 
-/* Of a file with these bytes in its place. */
+/* The status of reading everything while `file` has these bytes. */
 static RtStatus read_with(const Place *place, const char *file, const char *bytes, size_t size) {
     RtError problem = {RT_OK, ""};
     const int64_t live = rt_alloc_live();

@@ -3,8 +3,6 @@
  * polygon. NOFF has a normal behind each vertex. Colours, which end the lines of COFF, are skipped. */
 #include "core/scene/mesh_reader.h"
 
-#include <inttypes.h>
-
 /* Nothing is allocated for a count: the file must have the elements. */
 static RtStatus take_count(RtMeshReader *r, uint64_t *out) {
     const RtWord word = rt_scan_peek(&r->text);

@@ -4,7 +4,6 @@
  * is skipped, but must be there. A line of text holds one element. */
 #include "core/scene/mesh_reader.h"
 
-#include <inttypes.h>
 #include <string.h>
 
 enum { MOST_ELEMENTS = 16, MOST_PROPERTIES = 256 };

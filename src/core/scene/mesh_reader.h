@@ -86,10 +86,12 @@ typedef struct RtMeshHead {
     uint64_t size;
 } RtMeshHead;
 
+/* Rejects a file that begins otherwise, or has another size, than its format says. */
 RtStatus rt_mesh_check_ply(const RtMeshHead *head, RtError *error);
 RtStatus rt_mesh_check_stl(const RtMeshHead *head, RtError *error);
 RtStatus rt_mesh_check_glb(const RtMeshHead *head, RtError *error);
 
+/* Each reads the whole file of r->text, and adds its triangles to r->scene. */
 RtStatus rt_mesh_read_obj(RtMeshReader *r);
 RtStatus rt_mesh_read_off(RtMeshReader *r);
 RtStatus rt_mesh_read_ply(RtMeshReader *r);

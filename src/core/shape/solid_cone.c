@@ -140,8 +140,8 @@ RtStatus rt_solid_add_cone(RtSolidSet *set, double ratio, const RtTransform *to_
     return rt_solid_finish(set, &solid, rt_solid_cone_support, index, error);
 }
 
-/* Equal but for rounding of a point at the plane's distance from the origin, or of one as far as the solid.
- */
+/* Equal except for rounding of a point at the plane's distance from the origin, or of one as far as the
+ * solid. */
 static bool is_nearly(const RtPlane *a, const RtPlane *b, double size) {
     bool near = fabs(a->offset - b->offset) <= 0x1p-40 * (fabs(b->offset) + size);
     for (int i = 0; i < 3; i++) near &= fabs(a->normal.at[i] - b->normal.at[i]) <= 0x1p-40;
