@@ -2,6 +2,8 @@
 #include "experiment/frame_table.h"
 
 #include "accel/accel.h"
+#include "core/base/file.h"
+#include "core/base/memory.h"
 #include "core/base/words.h"
 #include "experiment/result_tables.h"
 
@@ -330,13 +332,11 @@ static void say_frame(FILE *out, const RtResults *results, uint32_t t, uint32_t 
 
 char *rt_frame_sentence(const RtResults *results, uint32_t workload) {
     const uint32_t winner = winner_of(results, workload);
-    char *text = NULL;
-    size_t size;
-    FILE *out = open_memstream(&text, &size);
-    if (!out) return NULL;
-    if (winner < results->experiment->candidate_count) say_frame(out, results, workload, winner);
-    fclose(out);
-    return text;
+    RtMemoryFile memory;
+    RtError ignored;
+    if (rt_memory_file_open(&memory, &ignored) != RT_OK) return NULL;
+    if (winner < results->experiment->candidate_count) say_frame(memory.file, results, workload, winner);
+    return rt_memory_file_close(&memory, "sentences", &ignored) == RT_OK ? memory.data : NULL;
 }
 
 void rt_frame_title(const RtResults *results, uint32_t workload, char out[RT_MAX_FRAME_TEXT]) {

@@ -46,7 +46,7 @@ typedef struct RtFrameRow {
 RtTable rt_frame_table(RtFrameRow *row);
 
 /* Which accelerator of the group is the fastest on a workload, by how much, and how the others and the
- * overlays compare; those whose intervals overlap are level: sentences, to be freed with free(). "" if
+ * overlays compare; those whose intervals overlap are level: sentences, for rt_free(). "" if
  * unknown, NULL if memory is short. */
 char *rt_frame_sentence(const RtResults *results, uint32_t workload);
 

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Results for a terminal of 80 columns. */
+#include "core/base/file.h"
+#include "core/base/memory.h"
 #include "core/base/words.h"
 #include "experiment/claims.h"
 #include "experiment/frame_table.h"
@@ -198,27 +200,25 @@ static bool say_learnt(const RtResults *results, uint32_t t, const char *before,
 char *rt_learnt_sentence(const RtResults *results) {
     const RtExperiment *experiment = results->experiment;
     const char *before = "Too few rays. Within a round, an accelerator repeats";
-    char *text = NULL;
-    size_t size;
+    RtMemoryFile memory;
+    RtError ignored;
     bool any = false;
-    FILE *out = open_memstream(&text, &size);
-    if (!out) return NULL;
+    if (rt_memory_file_open(&memory, &ignored) != RT_OK) return NULL;
     for (uint32_t t = 0; t < experiment->workload_count; t++)
-        any |= say_learnt(results, t, any ? ";" : before, out);
+        any |= say_learnt(results, t, any ? ";" : before, memory.file);
     if (any)
-        fprintf(out,
+        fprintf(memory.file,
                 ". Caches and branch predictors learn them, so they take less time than in a frame. %s, or "
                 "run them once a round (milliseconds: 0).",
                 *experiment->rays_from ? "Give more rays" : "Record more (a larger size or limit)");
-    fclose(out);
-    return text;
+    return rt_memory_file_close(&memory, "a sentence", &ignored) == RT_OK ? memory.data : NULL;
 }
 
 /* Prints and frees a text; nothing for "" or NULL. */
 static void print_text(char *text, FILE *out) {
     if (text && *text) fputc('\n', out);
     if (text && *text) rt_print_wrapped(text, out);
-    free(text);
+    rt_free(text);
 }
 
 /* ---- tables of a workload ---- */

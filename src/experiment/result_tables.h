@@ -94,7 +94,7 @@ void rt_print_summary(const RtResults *results, FILE *out);
 void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]);
 
 /* A warning that names the workloads and kinds of rays which some accelerator was timed on so few of,
- * repeated so often, that processors learn them (RT_LEARNT_RAYS), and a remedy: to be freed with free(). ""
+ * repeated so often, that processors learn them (RT_LEARNT_RAYS), and a remedy: for rt_free(). ""
  * if there are none, NULL if memory is short. */
 char *rt_learnt_sentence(const RtResults *results);
 

@@ -231,7 +231,7 @@ static void put_more_tables(FILE *out, const RtResults *results) {
 /* A paragraph; nothing for "" or NULL. Frees the text. */
 static void put_sentences(FILE *out, char *text) {
     if (text && *text) rt_html_wrap(out, "<p>", text, "</p>\n");
-    free(text);
+    rt_free(text);
 }
 
 static void put_tables(FILE *out, const RtResults *results) {

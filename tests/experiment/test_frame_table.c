@@ -92,7 +92,7 @@ static int tear_down(void **state) {
 static void expect_sentence(uint32_t t, const char *sentence) {
     char *text = rt_frame_sentence(&results, t);
     assert_string_equal(text, sentence);
-    free(text);
+    rt_free(text);
 }
 
 /* Frames take 4 ms, 0.136, 0.08, 0.011 and 0.02 ms. */
@@ -147,13 +147,13 @@ FRAME_TEST(a_sentence_about_many_overlays_is_not_cut_off) {
     assert_non_null(
         strstr(text, ", light:cells=60+wide 1.00 times (level). The fastest of all is light+wide: "));
     assert_string_equal(text + strlen(text) - 6, "brute.");
-    free(text);
+    rt_free(text);
 }
 
 static bool says(uint32_t t, const char *part) {
     char *text = rt_frame_sentence(&results, t);
     const bool found = strstr(text, part) != NULL;
-    free(text);
+    rt_free(text);
     return found;
 }
 
