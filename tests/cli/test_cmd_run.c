@@ -189,8 +189,8 @@ RT_TEST_IN_PLACE(a_limit_of_time_stops_all_and_says_the_command_that_continues) 
     assert_ends(place, "run b.yaml --threads 1 --out one --time 1", 2,
                 "raytally: stopped after 1 s (--time); ");
     assert_in_file(place, "message", "To continue:\n  raytally run b.yaml --out one --threads 1 --resume\n");
-    assert_ends(place, "run a.yaml b.yaml c.yaml --threads 1 --out all --time 1", 2,
-                "stopped after 1 s (--time); ");
+    assert_ends(place, "run a.yaml b.yaml c.yaml --threads 1 --out all --time 4", 2,
+                "stopped after 4 s (--time); ");
     assert_true(exists(place, "all/a/report.html") && !exists(place, "all/c"));
     assert_ends(place, "run b.yaml --time 0", 2, "--time: invalid value '0': expected a whole number 1..");
 }
@@ -199,10 +199,13 @@ RT_TEST_IN_PLACE(a_directory_that_is_removed_in_mid_run_is_reported) {
     const Place *place = *state;
     int how;
     char command[300];
-    change(place, "a.yaml", "rounds: 2\nmilliseconds: 0", "rounds: 5\nmilliseconds: 50");
+    change(place, "a.yaml", "rounds: 2\nmilliseconds: 0", "rounds: 20\nmilliseconds: 50");
     pid_t child = start_raytally(place, "run a.yaml --threads 1 --out gone");
-    while (!exists(place, "gone/cells.jsonl")) nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
-    snprintf(command, sizeof command, "rm -r '%s'", path_in(place, "gone").text);
+    while (!exists(place, "gone/cells.jsonl")) {
+        assert_int_equal(waitpid(child, &how, WNOHANG), 0);
+        nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
+    }
+    snprintf(command, sizeof command, "until rm -rf '%s'; do :; done", path_in(place, "gone").text);
     assert_int_equal(system(command), 0);
     waitpid(child, &how, 0);
     assert_true(WIFEXITED(how) && WEXITSTATUS(how) == 2);

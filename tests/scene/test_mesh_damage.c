@@ -447,9 +447,9 @@ RT_TEST(a_gigabyte_of_zeros_is_refused_soon) {
         RtScene scene;
         write_mesh(names[i], "", 0);
         assert_int_equal(truncate(path, 1000000000), 0);
-        const double start = rt_wall_seconds();
+        const double start = rt_thread_seconds();
         assert_bad_input_at(rt_scene_open(path, &scene, error), path, "");
-        assert_true(rt_wall_seconds() - start < RT_SHARE(1, 10));
+        assert_true(rt_thread_seconds() - start < RT_SHARE(1, 10));
         remove(path);
     }
 }
