@@ -186,6 +186,18 @@ RT_TEST(every_way_to_write_a_corner_of_obj_is_read) {
     }
 }
 
+RT_TEST(every_way_to_write_a_number_is_read) {
+    static const char *const tens[] = {"10",     "+10.0",       "1e1", "1E+0000000001",
+                                       "100e-1", "0000000010.", ".1e2"};
+    for (size_t i = 0; i < sizeof tens / sizeof tens[0]; i++) {
+        char text[256];
+        OWNED_SCENE scene;
+        snprintf(text, sizeof text, "v %s 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", tens[i]);
+        assert_ok(load_text(OBJ_NAME, text, &scene, error));
+        assert_true(scene.geometry.triangles[0].v[0].x == 10);
+    }
+}
+
 /* Element order, unused elements and properties, types, and both orders of bytes. */
 RT_TEST(ply_is_read_with_all_its_types) {
     static const char text[] =

@@ -225,10 +225,10 @@ static double power_of_ten(double exponent) {
  * before it is a factor. This is the arithmetic of Assimp 5, which read the meshes when the reference results
  * were counted: exact rounding would move 4 of the bunny's coordinates by one unit in the last place. */
 RtStatus rt_mesh_float(const RtMeshReader *r, RtWord word, float *out) {
-    enum { INTEGER = 300, FRACTION = 15, EXPONENT = 9 }; /* digits used */
+    enum { LONGEST = 300, FRACTION = 15 }; /* characters of a number; digits used of a fraction */
     const char *at = word.text + (*word.text == '-' || *word.text == '+');
     int before, after = 0, exponent_digits = 1;
-    float value = (float)digits(&at, INTEGER, &before);
+    float value = (float)digits(&at, LONGEST, &before);
     if (*at == '.') {
         at++;
         const double fraction = digits(&at, FRACTION, &after);
@@ -237,10 +237,11 @@ RtStatus rt_mesh_float(const RtMeshReader *r, RtWord word, float *out) {
     if (before + after > 0 && (*at == 'e' || *at == 'E')) {
         const bool negative = at[1] == '-';
         at += 1 + (at[1] == '-' || at[1] == '+');
-        const double power = power_of_ten(digits(&at, EXPONENT, &exponent_digits));
+        const double power = power_of_ten(digits(&at, LONGEST, &exponent_digits));
         value *= (float)(negative ? 1 / power : power);
     }
-    if (before + after == 0 || exponent_digits == 0 || at != word.text + word.length || !isfinite(value))
+    if (before + after == 0 || exponent_digits == 0 || at != word.text + word.length ||
+        word.length > LONGEST || !isfinite(value))
         return rt_scan_fail(&r->text, word, "a finite number that fits float32");
     *out = *word.text == '-' ? -value : value;
     return RT_OK;
