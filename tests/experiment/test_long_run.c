@@ -77,7 +77,8 @@ RT_TEST_IN_PLACE(a_run_that_is_killed_again_and_again_ends_as_one_that_was_not) 
         if (WIFSIGNALED(how)) {
             killed++;
         } else {
-            assert_int_equal(WEXITSTATUS(how), 0);
+            if (WEXITSTATUS(how) != 0)
+                fail_msg("exit code %d: %s", WEXITSTATUS(how), read_in(place, "message"));
             assert_equal_files(place, "whole/counts.csv", "out/counts.csv");
             assert_int_equal(rename(path_in(place, "out").text, numbered(place, ended++).text), 0);
             before = 0;

@@ -3,11 +3,13 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
+#include <time.h>
 #include <unistd.h>
 
 /* The process that holds the lock, from /proc/locks; 0 if unknown. */
@@ -39,18 +41,32 @@ static RtStatus fail_held(const char *path, int holder, RtError *error) {
                    path, who);
 }
 
+/* The lock of a killed process outlives it for a moment, in a child that has not started its program yet. */
+enum { MOST_TRIES = 100 };
+
+static bool is_alive(int process) {
+    return process > 0 && (kill(process, 0) == 0 || errno != ESRCH);
+}
+
 RtStatus rt_lock_take(RtLock *lock, const char *path, RtError *error) {
     *lock = RT_NO_LOCK;
     int descriptor = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (descriptor < 0 && (errno == ENOENT || errno == ENOTDIR)) return RT_OK;
     if (descriptor < 0) return rt_fail(error, RT_IO, "%s: cannot be opened: %s", path, strerror(errno));
-    if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
-        lock->descriptor = descriptor;
-        return RT_OK;
+    RtStatus status = RT_OK;
+    for (int tries = 0; flock(descriptor, LOCK_EX | LOCK_NB) != 0; tries++) {
+        const bool held = errno == EWOULDBLOCK;
+        const int holder = held ? find_holder(descriptor) : 0;
+        if (held && tries < MOST_TRIES && !is_alive(holder)) {
+            nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
+            continue;
+        }
+        if (held) status = fail_held(path, holder, error);
+        close(descriptor);
+        return status;
     }
-    RtStatus status = errno == EWOULDBLOCK ? fail_held(path, find_holder(descriptor), error) : RT_OK;
-    close(descriptor);
-    return status;
+    lock->descriptor = descriptor;
+    return RT_OK;
 }
 
 void rt_lock_release(RtLock *lock) {
