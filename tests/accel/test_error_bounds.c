@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The size of the bounds on rounding errors in accel/. A test builds the case at the edge of a bound as its
- * proof states it: what is off by 31/32 of the bound is let in. With 15/16 of the bound the test fails. A
+ * proof states it: what is off by 31/32 of the bound is not culled. With 15/16 of the bound the test fails. A
  * test of both sides also fails with 17/16. Most proofs leave a margin that no ray uses up, so the last tests
  * search for the largest errors that there are. */
 #include "item_testing.h"

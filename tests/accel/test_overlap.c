@@ -177,7 +177,7 @@ RT_TEST(a_ray_with_the_shortest_of_directions_is_not_trusted_to_voxels) {
 
 /* ---- the size of the bounds ----
  *
- * Cases at the edge of a bound: what is off by 31/32 of it is let in, so the tests fail with 15/16. */
+ * Cases at the edge of a bound: what is off by 31/32 of it is not culled, so the tests fail with 15/16. */
 
 static const double within = 31.0 / 32, beyond = 33.0 / 32;
 
