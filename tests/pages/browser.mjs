@@ -31,6 +31,7 @@ export async function openBrowser() {
   const { driver, url } = await startDriver();
   const { sessionId } = await request(`${url}/session`, 'POST', { capabilities: { alwaysMatch: {
     browserName: 'chrome',
+    timeouts: { script: 300000, pageLoad: 300000 }, // milliseconds: beside other tests a frame drawn in software takes long
     'goog:chromeOptions': { args: ['--headless=new', '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
       '--disable-dev-shm-usage',
       '--disable-background-networking', '--disable-component-update', '--no-first-run', '--hide-scrollbars'] },
