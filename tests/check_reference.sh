@@ -12,7 +12,8 @@ scenes=(--quick)
 [ "${1-}" != --whole ] || scenes=()
 
 for yaml in "$reference"/*/experiment.yaml; do
-    name=$(basename "$(dirname "$yaml")")
+    name=$(sed -n 's/^name: //p' "$yaml") # NAME, or NAME-SYSTEM of another one
+    [[ $(basename "$(dirname "$yaml")") = "$name"* ]]
     cmp "$yaml" "$(find experiments -name "$name.yaml" -not -path 'experiments/light-buffer/*')"
 done
 index=$(mktemp -d) && trap 'rm -rf "$index"' EXIT

@@ -49,12 +49,7 @@ static void print_usage(FILE *to) {
 static void print_version(void) {
     json_t *machine = rt_machine_json();
     char libraries[256] = "";
-    for (size_t i = 0; i < rt_accel_count(); i++) {
-        const RtAccelOps *ops = rt_accel_at(i);
-        if (!ops->library) continue;
-        rt_append_text(libraries, sizeof libraries, " %s %s", ops->name,
-                       rt_json_text(machine, ops->name, "unknown"));
-    }
+    rt_machine_libraries(machine, " ", libraries, sizeof libraries);
     printf("raytally " RT_VERSION
            "\ncommit: %s%s\ncompiler: %s\naccelerator libraries:%s\nkernels that run here:",
            rt_json_text(machine, "commit", "unknown"),

@@ -125,6 +125,14 @@ json_t *rt_machine_json(void) {
     return machine;
 }
 
+void rt_machine_libraries(const json_t *machine, const char *before, char *text, size_t size) {
+    for (size_t i = 0; i < rt_accel_count(); i++) {
+        const RtAccelOps *ops = rt_accel_at(i);
+        if (!ops->library) continue;
+        rt_append_text(text, size, "%s%s %s", before, ops->name, rt_json_text(machine, ops->name, "unknown"));
+    }
+}
+
 /* Programs of one clean commit differ only by paths, and by compiler and flags, which are included. */
 const char *rt_build_alone(void) {
     static char identity[1024];

@@ -4,6 +4,7 @@
 #define RT_MEASURE_MACHINE_H
 
 #include <jansson.h>
+#include <stddef.h>
 
 /* Where cells were timed. */
 #define RT_MAX_MACHINES 256
@@ -16,6 +17,10 @@ typedef struct RtMachine {
  * one)}, "plugins" if any are loaded, and under the name of each accelerator that uses a library, its
  * version. Unknown values are null. NULL if memory is short; the caller owns the reference. */
 json_t *rt_machine_json(void);
+
+/* Appends the libraries that accelerators use, "NAME VERSION" each after `before`, to a text of `size` chars.
+ */
+void rt_machine_libraries(const json_t *machine, const char *before, char *text, size_t size);
 
 /* The loaded plugins, [{"file", "hash", "accelerators": [NAME, ...]}, ...]; the caller owns the reference. */
 json_t *rt_plugins_json(void);

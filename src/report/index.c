@@ -74,28 +74,39 @@ static void title_of(const char *section, char title[RT_MAX_LABEL]) {
     title[0] = (char)toupper((unsigned char)title[0]);
 }
 
-/* "Measured by raytally 0.1.0 (abc): one, two; by ...": the values of `origin` (an offset) with the entries
- * that have them; without names if there is only one value. */
-static void put_origins(const Index *index, size_t origin, const char *before, FILE *out) {
-    const char *last = before;
-    for (uint32_t i = 0; i < index->count; i++) {
-        const char *value = (const char *)&index->entries[i] + origin;
-        bool earlier = !*value, all = true;
-        for (uint32_t k = 0; k < index->count; k++) {
-            const char *other = (const char *)&index->entries[k] + origin;
-            const bool same = strcmp(value, other) == 0;
-            earlier |= k < i && same;
-            all &= same || !*other;
-        }
-        if (earlier) continue;
-        fprintf(out, "%s%s", last, value);
-        last = "; ";
-        for (uint32_t k = i; k < index->count && !all; k++) {
-            if (strcmp(value, (const char *)&index->entries[k] + origin) != 0) continue;
-            fprintf(out, "%s%s", k == i ? ": " : ", ", index->entries[k].name);
-        }
+static const char *origin_of(const Index *index, uint32_t i, size_t origin) {
+    return (const char *)&index->entries[i] + origin;
+}
+
+/* Of how many entries `origin` (an offset) has the value of entry i; 0 if it has none, or an earlier entry
+ * has it. */
+static uint32_t count_first(const Index *index, uint32_t i, size_t origin) {
+    const char *value = origin_of(index, i, origin);
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < index->count; k++) {
+        const bool same = *value && strcmp(value, origin_of(index, k, origin)) == 0;
+        if (same && k < i) return 0;
+        count += same;
     }
-    if (last != before) fputc('.', out);
+    return count;
+}
+
+/* "Measured by raytally 0.1.0 (abc); raytally 0.2.0 (def): one, two; ...": each value of `origin`, with the
+ * entries that have it, except for the most frequent one. */
+static void put_origins(const Index *index, size_t origin, const char *before, FILE *out) {
+    uint32_t most = 0;
+    for (uint32_t i = 0; i < index->count; i++)
+        if (count_first(index, i, origin) > count_first(index, most, origin)) most = i;
+    if (index->count == 0 || count_first(index, most, origin) == 0) return;
+    fprintf(out, "%s%s", before, origin_of(index, most, origin));
+    for (uint32_t i = 0; i < index->count; i++) {
+        if (i == most || count_first(index, i, origin) == 0) continue;
+        fprintf(out, "; %s", origin_of(index, i, origin));
+        for (uint32_t k = i, named = 0; k < index->count; k++)
+            if (strcmp(origin_of(index, i, origin), origin_of(index, k, origin)) == 0)
+                fprintf(out, "%s%s", named++ ? ", " : ": ", index->entries[k].name);
+    }
+    fputc('.', out);
 }
 
 static void put_entries(const Index *index, uint32_t from, uint32_t to, RtIndexPart part, FILE *out) {

@@ -10,6 +10,7 @@
 #include "experiment/frame_table.h"
 #include "experiment/manifest.h"
 #include "experiment/result_directory.h"
+#include "measure/machine.h"
 #include "report/page.h"
 
 #include <ctype.h>
@@ -77,8 +78,8 @@ static void put_papers(const RtIndexEntry *entry, const RtExperiment *experiment
         rt_html_wrap(rows, "", paper->page, "</td><td class=\"prose\">");
         rt_html_wrap(rows, seen ? "&ldquo;" : "", paper->quote, seen ? "&rdquo;</td><td>" : "</td><td>");
         rt_page_paper_verdict(rows, paper);
-        rt_html_wrap(rows, "</td><td><a href=\"#", experiment->name, "\">");
-        rt_html_wrap(rows, "", experiment->name, "</a></td></tr>\n");
+        rt_html_wrap(rows, "</td><td><a href=\"#", entry->name, "\">");
+        rt_html_wrap(rows, "", entry->name, "</a></td></tr>\n");
         fputs("| ", lines);
         rt_index_put_markdown(lines, paper->citation, true);
         fputs(" | ", lines);
@@ -86,7 +87,7 @@ static void put_papers(const RtIndexEntry *entry, const RtExperiment *experiment
         fputs(seen ? " | “" : " | ", lines);
         rt_index_put_markdown(lines, paper->quote, true);
         fprintf(lines, "%s | %s | [", seen ? "”" : "", rt_paper_verdict_name(paper->verdict));
-        rt_index_put_markdown(lines, experiment->name, true);
+        rt_index_put_markdown(lines, entry->name, true);
         fputs("](", lines);
         rt_page_path(lines, place);
         fputs(") |\n", lines);
@@ -97,9 +98,11 @@ static void put_papers(const RtIndexEntry *entry, const RtExperiment *experiment
 
 static void note_origin(RtIndexEntry *entry, const json_t *manifest) {
     const json_t *machine = json_object_get(manifest, "machine");
-    snprintf(entry->build, RT_MAX_ORIGIN, "raytally %s (%s%s)", rt_json_text(machine, "version", "unknown"),
-             rt_json_text(machine, "commit", "unknown"),
-             json_is_true(json_object_get(machine, "dirty")) ? ", with changes" : "");
+    snprintf(entry->build, RT_MAX_ORIGIN, "raytally %s (%s%s), %s",
+             rt_json_text(machine, "version", "unknown"), rt_json_text(machine, "commit", "unknown"),
+             json_is_true(json_object_get(machine, "dirty")) ? ", with changes" : "",
+             rt_json_text(machine, "compiler", "unknown"));
+    rt_machine_libraries(machine, ", ", entry->build, RT_MAX_ORIGIN);
     snprintf(entry->machine, RT_MAX_ORIGIN, "%s", rt_json_text(machine, "cpu", "an unknown machine"));
 }
 
@@ -204,7 +207,6 @@ static RtStatus put_experiment(RtIndexEntry *entry, const char *directory, const
     RtStatus status = rt_run_load(directory, experiment, &results, error);
     if (status == RT_OK) status = rt_manifest_read(directory, &manifest, error);
     if (status == RT_OK) {
-        strcpy(entry->name, experiment->name);
         strcpy(entry->section, experiment->section);
         note_origin(entry, manifest);
         put_heads(entry, directory, place);

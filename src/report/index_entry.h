@@ -18,7 +18,7 @@ enum { RT_INDEX_PARTS = 4, RT_MAX_ORIGIN = 256 };
 
 /* A result directory. */
 typedef struct RtIndexEntry {
-    char name[RT_MAX_LABEL];    /* of the experiment, or the directory */
+    char name[RT_MAX_LABEL];    /* of the directory: one experiment may have several, of different systems */
     char section[RT_MAX_LABEL]; /* or "" */
     char build[RT_MAX_ORIGIN], machine[RT_MAX_ORIGIN];
     uint32_t number;                    /* the caller's */
