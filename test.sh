@@ -35,7 +35,7 @@ case "${1-}" in
     run_tests debug -L '^(accel|base|scene|scenes|shape|text)$' -LE 'slow|long'
     ;;
 --all)
-    install_missing build optional data test check cluster pages
+    install_missing build optional data test check cluster package pages
     fetch_bunny
     build release -DRT_KERNELS=all -DRT_WERROR=ON
     run_tests release

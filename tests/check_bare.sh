@@ -35,7 +35,7 @@ check() {
         inside "$root" './run.sh --quick' &&
         inside "$root" "build/release/raytally --version | tee /dev/stderr | grep -q '^commit: $commit'" &&
         inside "$root" "./test.sh ${TEST_OPTIONS-}" &&
-        inside "$root" 'apt-get install -y --no-install-recommends dpkg-dev help2man && cmake --preset release &&
+        inside "$root" 'source ./setup.sh && install_missing package && cmake --preset release &&
             cmake --build build/release --target deb' &&
         minimal "$1" "$root-package" &&
         cp "$root"/root/raytally/build/release/raytally_*.deb "$root-package/root/" &&

@@ -3,13 +3,13 @@
 # check_package.sh: the packages that the build makes. The .deb holds what `cmake --install` installs, names the libraries that it
 # needs, and lintian (if available) finds no error in it. Unpacked by `dpkg -x`, it runs the guide's first experiment, and a shipped
 # experiment with its scenes and gnuplot scripts. The source archive holds the files of the commit, and builds say which it is. Uses
-# $RT_PROGRAM. Skipped (77) without dpkg-dev, git or help2man, or outside a repository.
+# $RT_PROGRAM. Skipped (77) without dpkg-dev, file, git or help2man, or outside a repository.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/testing.sh"
 cd "$(dirname "$0")/.."
 source=$PWD build=$(dirname "$program")
-for tool in dpkg-shlibdeps git help2man; do
-    command -v "$tool" >/dev/null || { echo "skipped: packages; needs dpkg-dev, git and help2man" && exit 77; }
+for tool in dpkg-shlibdeps file git help2man; do
+    command -v "$tool" >/dev/null || { echo "skipped: packages; needs dpkg-dev, file, git and help2man" && exit 77; }
 done
 git rev-parse --verify --quiet HEAD >/dev/null || { echo "skipped: packages; needs a repository" && exit 77; }
 
