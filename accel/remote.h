@@ -49,10 +49,9 @@ static inline bool rt_count_is_possible(uint64_t count, size_t rays) {
     return count <= rays * (UINT64_C(1) << 32);
 }
 
-/* And of a number that describes a structure, such as its bytes. */
-static inline bool rt_size_is_possible(uint64_t size) {
-    return size <= UINT64_C(1) << 53;
-}
+/* A number of a description, or count of its build, that no structure has: usually below zero. 0 if there is
+ * none. */
+uint64_t rt_description_impossible(const RtDescription *description);
 
 /* Reports progress; long work calls it regularly. A process without progress for 60 seconds, or for
  * RAYTALLY_PLUGIN_SECONDS, counts as hung; a build has ten times as long. With RAYTALLY_PLUGIN_WAIT set there

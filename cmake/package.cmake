@@ -2,10 +2,13 @@
 # Documents and data, and packages of what is installed. The target `deb` makes a .deb for the Debian that it runs on; the
 # target `package_source` an archive of the commit.
 install(FILES CHANGELOG.md CITATION.cff LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN Doxyfile EXCLUDE PATTERN "*.sh" EXCLUDE)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN Doxyfile EXCLUDE PATTERN "*.sh" EXCLUDE PATTERN slides EXCLUDE)
 install(DIRECTORY experiments DESTINATION ${CMAKE_INSTALL_DATADIR}/raytally USE_SOURCE_PERMISSIONS)
 file(GLOB scenes CONFIGURE_DEPENDS scenes/*.nff scenes/*.yaml)
 install(FILES ${scenes} DESTINATION ${CMAKE_INSTALL_DATADIR}/raytally/scenes)
+install(CODE "file(GLOB_RECURSE pages \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR}/*.md\"
+  \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/raytally/*.md\")")
+install(SCRIPT cmake/installed_links.cmake)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "The raytally authors <authors@raytally.invalid>")

@@ -9,6 +9,9 @@ if(CPACK_GENERATOR STREQUAL "DEB") # where and how Debian wants them
   file(RENAME ${share}/zsh/site-functions ${share}/zsh/vendor-completions)
   file(REMOVE ${doc}/LICENSE)
   file(COPY_FILE ${CMAKE_CURRENT_LIST_DIR}/copyright ${doc}/copyright)
+  file(READ ${doc}/README.md readme)
+  string(REPLACE "](LICENSE)" "](copyright)" readme "${readme}")
+  file(WRITE ${doc}/README.md "${readme}")
   string(TIMESTAMP now "%a, %d %b %Y %H:%M:%S +0000" UTC)
   file(WRITE ${doc}/changelog.Debian "raytally (${CPACK_PACKAGE_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}) unstable; urgency=low
 

@@ -11,17 +11,12 @@
 #include <stdio.h>
 #include <string.h>
 
-#define OWNED_QUERY  OWNED(rt_query_clear) RtQuery
-#define OWNED_ACCEL  OWNED(destroy_owned)
-#define OWNED_MEMORY OWNED(free_owned)
+#define OWNED_QUERY OWNED(rt_query_clear) RtQuery
+#define OWNED_ACCEL OWNED(destroy_owned)
 
 /* pointer: to any struct that begins with an RtAccel. */
 static inline void destroy_owned(void *pointer) {
     rt_accel_destroy(*(RtAccel **)pointer);
-}
-
-static inline void free_owned(void *pointer) {
-    rt_free(*(void **)pointer);
 }
 
 /* Builds a spec; the struct of the topmost layer. */

@@ -108,14 +108,6 @@ end_block() {
     [ "$language" = sh ] || last=''
 }
 
-# check_links DOCUMENT: its links into the tree exist
-check_links() {
-    local link
-    while read -r link; do
-        [ -e "$(dirname "$1")/$link" ] || complain "$1: there is no $link"
-    done < <(grep -oE '\]\([^)# ]+' "$1" | sed 's/^](//; /:/d' | sort -u)
-}
-
 check_document() {
     local document=$1 number=0 line place='' words=()
     last='' scratch=$work/scratch

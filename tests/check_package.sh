@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # check_package.sh: the packages that the build makes. The .deb holds what `cmake --install` installs, names the libraries that it
-# needs, and lintian (if available) finds no error in it. Unpacked by `dpkg -x`, it runs the guide's first experiment, and a shipped
-# experiment with its scenes and gnuplot scripts. The source archive holds the files of the commit, and builds say which it is. Uses
-# $RT_PROGRAM. Skipped (77) without dpkg-dev, file, git or help2man, or outside a repository.
+# needs, no link of its documents is dead, and lintian (if available) finds no error in it. Unpacked by `dpkg -x`, it runs the
+# guide's first experiment, and a shipped experiment with its scenes and gnuplot scripts. The source archive holds the files of the
+# commit, and builds say which it is. Uses $RT_PROGRAM. Skipped (77) without dpkg-dev, file, git or help2man, or outside a repository.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/testing.sh"
 cd "$(dirname "$0")/.."
@@ -34,6 +34,7 @@ for file in bin/raytally include/raytally/raytally.h share/man/man1/raytally-ben
     share/doc/raytally/copyright share/raytally/experiments/first-look.yaml share/raytally/scenes/jewel.nff; do
     [ -s "$work/root/usr/$file" ] || complain "the .deb has no $file"
 done
+while read -r document; do check_links "$document"; done < <(find "$work/root" -name '*.md')
 needs=$(dpkg-deb -f "$deb" Depends)
 for library in libc6 libcairo2 libgmp10 libjansson4 libopenexr libyaml-0-2 fonts-dejavu-core; do
     [[ $needs == *"$library"* ]] || complain "the .deb depends on $needs, not on $library"

@@ -75,6 +75,14 @@ static inline RtStatus load_small(const Place *place, bool quick, RtError *error
 }
 
 /* Runs small.yaml into a directory of the place, timed on one thread, and counted on one by default. */
+static inline void copy_style(const Place *place, const char *name) {
+    char *text;
+    size_t size;
+    assert_ok(rt_file_read(RT_SOURCE_DIR "/experiments/style.gp", 1 << 20, &text, &size, error));
+    write_in(place, name, text);
+    rt_free(text);
+}
+
 static inline RtStatus run_small(const Place *place, const char *directory, bool quick, RtRunOptions how,
                                  RtError *error) {
     RtResults results;
@@ -98,27 +106,23 @@ static inline char *read_in(const Place *place, const char *name) {
 }
 
 static inline void assert_in_file(const Place *place, const char *name, const char *part) {
-    char *text = read_in(place, name);
+    OWNED_MEMORY char *text = read_in(place, name);
     if (!strstr(text, part)) fail_msg("%s has no '%s':\n%s", name, part, text);
-    rt_free(text);
 }
 
 static inline void assert_not_in_file(const Place *place, const char *name, const char *part) {
-    char *text = read_in(place, name);
+    OWNED_MEMORY char *text = read_in(place, name);
     if (strstr(text, part)) fail_msg("%s has '%s':\n%s", name, part, text);
-    rt_free(text);
 }
 
 static inline void assert_same_file(const Place *place, const char *name, const char *before) {
-    char *now = read_in(place, name);
+    OWNED_MEMORY char *now = read_in(place, name);
     assert_string_equal(now, before);
-    rt_free(now);
 }
 
 static inline void assert_equal_files(const Place *place, const char *a, const char *b) {
-    char *text = read_in(place, b);
+    OWNED_MEMORY char *text = read_in(place, b);
     assert_same_file(place, a, text);
-    rt_free(text);
 }
 
 /* Starts `raytally ARGUMENTS` in the folder, with what it says in the files output and message. */
@@ -133,22 +137,25 @@ static inline pid_t start_raytally(const Place *place, const char *arguments) {
     _exit(127);
 }
 
-/* Runs it to its end; its exit code, or 128 and the signal that ended it. */
-static inline int raytally(const Place *place, const char *arguments) {
+/* Waits for its end; the exit code, or 128 and the signal that ended it. */
+static inline int end_of(pid_t child) {
     int how = 0;
-    waitpid(start_raytally(place, arguments), &how, 0);
+    waitpid(child, &how, 0);
     return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
+}
+
+static inline int raytally(const Place *place, const char *arguments) {
+    return end_of(start_raytally(place, arguments));
 }
 
 /* raytally must have ended with this exit code and have said this on standard error. */
 static inline void assert_ended(const Place *place, const char *arguments, int ended, int code,
                                 const char *says) {
-    char *message = read_in(place, "message");
+    OWNED_MEMORY char *message = read_in(place, "message");
     if (ended != code || !strstr(message, says)) {
         fail_msg("raytally %s: exit code %d, expected %d with '%s': %s", arguments, ended, code, says,
                  message);
     }
-    rt_free(message);
 }
 
 /* Runs `raytally ARGUMENTS`, which must end so. */

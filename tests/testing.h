@@ -89,12 +89,20 @@ static inline int assert_nothing_is_kept(void **state) {
 
 /* Owned variables clear themselves at the end of their scope, the last declared first. */
 #define OWNED(clear)   __attribute__((cleanup(clear)))
+#define OWNED_MEMORY   OWNED(free_owned)
 #define OWNED_GEOMETRY OWNED(rt_geometry_clear) RtGeometry
 #define OWNED_SCENE    OWNED(rt_scene_clear) RtScene
 #define OWNED_FRAME    OWNED(rt_frame_clear) RtFrame
+#define OWNED_IMAGE    OWNED(rt_image_clear) RtImage
+#define OWNED_RESULTS  OWNED(rt_results_clear) RtResults
+#define OWNED_CSV      OWNED(rt_csv_clear) RtCsv
 #define OWNED_SOLIDS   OWNED(rt_solid_set_clear) RtSolidSet
 #define OWNED_BUILDER  OWNED(rt_csg_builder_clear) RtCsgBuilder
 #define OWNED_FOREST   OWNED(rt_csg_forest_clear) RtCsgForest
+
+static inline void free_owned(void *pointer) {
+    rt_free(*(void **)pointer);
+}
 
 /* Exit code of a test executable that ctest reports as skipped. */
 #define RT_TEST_SKIPPED 77

@@ -32,3 +32,11 @@ says() {
 says_not() {
     [[ ! $(cat printed said | tr '\n' ' ') =~ $1 ]] || complain "raytally $last: says '$1': $(tail -n 50 said printed)"
 }
+
+# check_links DOCUMENT: the files that it links to exist
+check_links() {
+    local link
+    while read -r link; do
+        [ -e "$(dirname "$1")/$link" ] || complain "$1: there is no $link"
+    done < <(grep -oE '\]\([^)# ]+' "$1" | sed 's/^](//; /:/d' | sort -u)
+}

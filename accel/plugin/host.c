@@ -110,20 +110,21 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     return RT_OK;
 }
 
-/* Numbers that no structure has: usually below zero. */
-static void check_numbers(RtPluginAccel *accel, const raytally_description *d) {
-    const uint64_t numbers[] = {d->interior, d->leaves, d->empty_leaves, d->references, d->depth, d->bytes};
-    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
-        if (!rt_size_is_possible(numbers[i]))
-            rt_plugin_break(accel, "its description has the impossible number %" PRIu64, numbers[i]);
+uint64_t rt_description_impossible(const RtDescription *d) {
+    enum { SIZES = 6 };
+    const uint64_t sizes[SIZES] = {d->interior,   d->leaves, d->empty_leaves,
+                                   d->references, d->depth,  d->bytes};
+    for (size_t i = 0; i < SIZES + RT_TALLY_COUNTER_COUNT; i++) {
+        const uint64_t number = i < SIZES ? sizes[i] : rt_tally_get(&d->build, i - SIZES);
+        if (number > UINT64_C(1) << 53) return number;
     }
+    return 0;
 }
 
 static void describe(const RtAccel *accel, RtDescription *out) {
     const RtPluginAccel *self = rt_plugin_of(accel);
     raytally_description d = {.predicted_cost = NAN, .predicted_tests = NAN, .predicted_steps = NAN};
     if (self->table->describe) self->table->describe(self->self, &d);
-    check_numbers((RtPluginAccel *)accel, &d);
     *out = (RtDescription){.interior = d.interior,
                            .leaves = d.leaves,
                            .empty_leaves = d.empty_leaves,
@@ -134,6 +135,10 @@ static void describe(const RtAccel *accel, RtDescription *out) {
                            .predicted_tests = d.predicted_tests,
                            .predicted_steps = d.predicted_steps,
                            RT_NO_QUALITY};
+    const uint64_t impossible = rt_description_impossible(out);
+    if (impossible)
+        rt_plugin_break((RtPluginAccel *)accel, "its description has the impossible number %" PRIu64,
+                        impossible);
 }
 
 static RtStatus validate(const RtAccel *accel, RtError *error) {

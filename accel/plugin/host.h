@@ -9,6 +9,7 @@
 #define RT_ACCEL_PLUGIN_HOST_H
 
 #include "accel/accel.h"
+#include "accel/plugin/guard.h"
 
 #include <raytally/accel.h>
 
@@ -67,13 +68,7 @@ void rt_plugin_show(RtPluginEvents *events, const raytally_prepared *ray, uint32
 
 /* ---- what a query is doing, for reports of crashes ---- */
 
-/* Memory between guard pages; `mapping` includes them. */
-typedef struct RtGuarded {
-    char *mapping; /* [mapped] or NULL */
-    size_t mapped;
-    char *begin, *end; /* of the pages that may be accessed */
-} RtGuarded;
-
+/* Its memory between guard pages. */
 enum { RT_GUARD_QUERY, RT_GUARD_ANSWERS, RT_GUARD_COUNT };
 
 typedef struct RtPluginNow {

@@ -11,8 +11,6 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 /* Types of the interface have the layout of raytally's own. */
 _Static_assert(sizeof(raytally_ray) == sizeof(RtRay) && offsetof(raytally_ray, dir) == offsetof(RtRay, dir) &&
@@ -170,43 +168,17 @@ static const raytally_host host = HOST(NULL), observed_host = HOST(show);
 
 /* ---- memory between guard pages ---- */
 
-enum { GUARD = 64 * 1024, CANARY = 0xA5, CANARIES = 1024, MOST_ANSWERS = 4096, UNSET = 0xFE };
-
-static RtStatus map_guarded(RtGuarded *guarded, size_t bytes, RtError *error) {
-    size_t page = (size_t)sysconf(_SC_PAGESIZE), pages = (bytes + page - 1) / page * page;
-    size_t mapped = pages + 2 * (size_t)GUARD;
-    char *mapping = mmap(NULL, mapped, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (mapping != MAP_FAILED && mprotect(mapping + GUARD, pages, PROT_READ | PROT_WRITE) == 0) {
-        *guarded = (RtGuarded){mapping, mapped, mapping + GUARD, mapping + GUARD + pages};
-        return RT_OK;
-    }
-    if (mapping != MAP_FAILED) munmap(mapping, mapped);
-    return rt_fail_memory(error, "the memory of a plugin's query", bytes);
-}
+enum { CANARIES = 1024, MOST_ANSWERS = 4096, UNSET = 0xFE };
 
 static void unmap_guarded(PluginQuery *query) {
-    for (int i = 0; i < RT_GUARD_COUNT; i++) {
-        RtGuarded *guarded = &query->now.guarded[i];
-        if (guarded->mapping) munmap(guarded->mapping, guarded->mapped);
-        *guarded = (RtGuarded){0};
-    }
-}
-
-static void lay_canaries(char *from, const char *end) {
-    memset(from, CANARY, (size_t)(end - from));
-}
-
-/* All bytes are CANARY if the first is and each equals the one before. */
-static bool canaries_are_intact(const char *from, const char *end) {
-    size_t bytes = (size_t)(end - from);
-    return bytes == 0 || ((unsigned char)*from == CANARY && memcmp(from, from + 1, bytes - 1) == 0);
+    for (int i = 0; i < RT_GUARD_COUNT; i++) rt_guarded_unmap(&query->now.guarded[i]);
 }
 
 static bool wrote_beside_memory(const PluginQuery *query) {
     const char *memory = query->memory;
     const RtGuarded *own = &query->now.guarded[RT_GUARD_QUERY];
-    return memory && !(canaries_are_intact(own->begin, memory) &&
-                       canaries_are_intact(memory + query->accel->query_bytes, own->end));
+    return memory && !(rt_canaries_are_intact(own->begin, memory) &&
+                       rt_canaries_are_intact(memory + query->accel->query_bytes, own->end));
 }
 
 static RtStatus map_memory(PluginQuery *query, RtError *error) {
@@ -214,14 +186,14 @@ static RtStatus map_memory(PluginQuery *query, RtError *error) {
     RtGuarded *own = &query->now.guarded[RT_GUARD_QUERY];
     if (wanted > RT_ACCEL_MAX_BYTES)
         return rt_fail(error, RT_BROKEN, "its query_bytes asks for %zu bytes for each query", wanted);
-    RT_TRY(
-        map_guarded(&query->now.guarded[RT_GUARD_ANSWERS], CANARIES + MOST_ANSWERS * sizeof(RtHit), error));
+    RT_TRY(rt_guarded_map(&query->now.guarded[RT_GUARD_ANSWERS], CANARIES + MOST_ANSWERS * sizeof(RtHit),
+                          error));
     if (wanted == 0) return RT_OK;
     const size_t used = (wanted + RT_CACHE_LINE - 1) / RT_CACHE_LINE * RT_CACHE_LINE;
-    RT_TRY(map_guarded(own, used, error));
+    RT_TRY(rt_guarded_map(own, used, error));
     char *memory = query->memory = own->end - used;
-    lay_canaries(own->begin, memory);
-    lay_canaries(memory + wanted, own->end);
+    rt_canaries_lay(own->begin, memory);
+    rt_canaries_lay(memory + wanted, own->end);
     return RT_OK;
 }
 
@@ -271,7 +243,7 @@ static void begin(const RtAccel *accel, void *scratch) {
 static void *enter(PluginQuery *query, const RtScratch *scratch, const RtRay *rays, size_t count,
                    size_t size) {
     char *answers = query->now.guarded[RT_GUARD_ANSWERS].end - count * size;
-    lay_canaries(answers - CANARIES, answers);
+    rt_canaries_lay(answers - CANARIES, answers);
     memset(answers, UNSET, count * size);
     query->now.stream = rays;
     query->now.count = count;
@@ -290,7 +262,7 @@ static void *enter(PluginQuery *query, const RtScratch *scratch, const RtRay *ra
 static void leave(PluginQuery *query, const char *answers) {
     query->now.face.ray = NULL;
     now = NULL;
-    if (!canaries_are_intact(answers - CANARIES, answers))
+    if (!rt_canaries_are_intact(answers - CANARIES, answers))
         rt_plugin_break(query->accel, "it wrote in front of its answers");
     if (wrote_beside_memory(query))
         rt_plugin_break(query->accel,

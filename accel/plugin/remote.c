@@ -148,17 +148,6 @@ static RtStatus start(Remote *remote, RtError *error) {
     return status;
 }
 
-/* The process has checked its description; an invalid one here was overwritten. */
-static bool is_possible(const WireBuilt *built) {
-    const RtDescription *d = &built->description;
-    bool possible = built->seconds >= 0 && built->seconds < INFINITY;
-    const uint64_t sizes[] = {d->interior, d->leaves, d->empty_leaves, d->references, d->depth, d->bytes};
-    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) possible &= rt_size_is_possible(sizes[i]);
-    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++)
-        possible &= rt_size_is_possible(rt_tally_get(&d->build, i));
-    return possible;
-}
-
 static RtStatus take_built(Remote *remote, double limit, RtError *error) {
     char doing[96];
     WireBuilt built;
@@ -167,7 +156,8 @@ static RtStatus take_built(Remote *remote, double limit, RtError *error) {
     if (!rt_watched_wait(&remote->child, 0, doing, limit)) return fail_broken(remote, error);
     memcpy(&built, remote->child.wire->channels[0].message, sizeof built);
     if (built.status != RT_OK) return forward(remote, built.status, false, &built.error, error);
-    if (!is_possible(&built)) {
+    /* The process has checked its description; an invalid one here was overwritten. */
+    if (!(built.seconds >= 0 && built.seconds < INFINITY) || rt_description_impossible(&built.description)) {
         rt_watched_break(&remote->child, "it overwrote its description", doing);
         return fail_broken(remote, error);
     }
@@ -405,26 +395,18 @@ static void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *r
     for (size_t i = 0; i < count && RT_OBSERVED(tallies); i++) observe(accel, scratch, &rays[i], !hits);
 }
 
-static void count_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                          RtHit *hits, RtTally *tallies) {
-    trace(accel, scratch, rays, count, hits, NULL, tallies);
-}
-
-static void count_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                           uint32_t *occluders, RtTally *tallies) {
-    trace(accel, scratch, rays, count, NULL, occluders, tallies);
-}
-
 /* The process times itself, so here a timed kernel is a counted one without tallies. */
-static void nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                    RtHit *hits) {
-    trace(accel, scratch, rays, count, hits, NULL, NULL);
-}
-
-static void occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                     uint32_t *occluders) {
-    trace(accel, scratch, rays, count, NULL, occluders, NULL);
-}
+#define DEFINE_KERNELS(question, Answer, hits, occluders)                                                    \
+    static void question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,    \
+                         Answer *answers) {                                                                  \
+        trace(accel, scratch, rays, count, hits, occluders, NULL);                                           \
+    }                                                                                                        \
+    static void count_##question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,          \
+                                 size_t count, Answer *answers, RtTally *tallies) {                          \
+        trace(accel, scratch, rays, count, hits, occluders, tallies);                                        \
+    }
+DEFINE_KERNELS(nearest, RtHit, answers, NULL)
+DEFINE_KERNELS(occluded, uint32_t, NULL, answers)
 
 /* ---- the structure ---- */
 

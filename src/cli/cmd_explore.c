@@ -93,14 +93,11 @@ const RtSyntax rt_explore_syntax = {
     .finish = finish,
     .help =
         "Write a page on which to explore how accelerators trace a scene: its image beside their structures "
-        "in "
-        "3-D. A click on a pixel shows its ray tree, and each ray can be stepped through the accelerators, "
-        "side "
-        "by side, with the counters running.\v"
+        "in 3-D. A click on a pixel shows its ray tree, and each ray can be stepped through the "
+        "accelerators, side by side, with the counters running.\v"
         "The page is one file that works without a network: all paths are recorded in advance, as `raytally "
         "trace` prints them. It needs a browser of 2023 or later; without WebGL it shows all but the 3-D "
-        "view. "
-        "Examples:\n"
+        "view. Examples:\n"
         "  raytally explore balls:size=2 --accel bvh --accel grid -o walk.html\n"
         "  raytally explore balls:size=2 --accel item+light:cells=20+octree \\\n"
         "    -o buffers.html"};

@@ -240,9 +240,8 @@ static json_t *stats_json(const Run *run) {
     uint64_t rays = total_rays(run);
     double mrays = run->timed.seconds > 0 ? (double)rays * 1e-6 / run->timed.seconds : 0;
     return json_pack(
-        "{s:s, s:s, s:I, s:I, s:i, s:i, s:i, s:b, s:i, s:i, s:f, s:I, s:o, s:I, s:f, s:f, s:o, "
-        "s:o}",
-        "scene", run->scene.name, "accel", run->spec, "objects", (json_int_t)run->scene.geometry.object_count,
+        "{s:s, s:s, s:I, s:I, s:i, s:i, s:i, s:b, s:i, s:i, s:f, s:I, s:o, s:I, s:f, s:f, s:o, s:o}", "scene",
+        run->scene.name, "accel", run->spec, "objects", (json_int_t)run->scene.geometry.object_count,
         "lights", (json_int_t)run->scene.light_count, "width", (int)s->width, "height", (int)s->height,
         "samples", (int)s->samples, "corners", (int)s->corners, "depth", (int)o->depth, "threads",
         rt_thread_count(o->threads), "build_seconds", run->build_seconds, "bytes", (json_int_t)d.bytes,

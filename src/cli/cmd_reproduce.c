@@ -148,8 +148,7 @@ static void tell_version(const char *directory) {
     if (counts && json_integer_value(counts) != RT_COUNTS_VERSION)
         fprintf(stderr,
                 "raytally: %s has counts of version %" JSON_INTEGER_FORMAT
-                ", and this raytally makes version "
-                "%d: some may differ (tests/golden/CHANGES.md)\n",
+                ", and this raytally makes version %d: some may differ (tests/golden/CHANGES.md)\n",
                 directory, json_integer_value(counts), RT_COUNTS_VERSION);
     json_decref(manifest);
 }

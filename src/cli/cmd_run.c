@@ -361,13 +361,11 @@ const RtSyntax rt_run_syntax = {
     .finish = finish_options,
     .help =
         "Run an experiment and write its result directory: counts.csv, times.csv, manifest.json, plots, "
-        "images and report.html. Several are run one after the other, each in a process of its own; one "
-        "that fails does not stop the others, the worst exit code counts, and an index lists all results "
-        "in the folder. Given the manifest of a directory, run its experiment again; start that "
-        "where the first run was started. A directory that has results, finished or not, needs --resume, "
-        "--update or --force. Only one process at a time may write into a directory. Ctrl-C at any time "
-        "keeps "
-        "what is measured.\v"
+        "images and report.html. Several are run one after the other, each in a process of its own; one that "
+        "fails does not stop the others, the worst exit code counts, and an index lists all results in the "
+        "folder. Given the manifest of a directory, run its experiment again; start that where the first run "
+        "was started. A directory that has results, finished or not, needs --resume, --update or --force. "
+        "Only one process at a time may write into a directory. Ctrl-C at any time keeps what is measured.\v"
         "Times per ray are in ns/ray, over all kinds of rays, on one thread unless --threads says otherwise; "
         "`raytally bench` prints them by kind, as throughput: Mrays/s = 1000 / (ns/ray).\n"
         "\n"

@@ -308,13 +308,12 @@ const RtSyntax rt_trace_syntax = {
     .finish = finish,
     .help =
         "Follow one ray through an accelerator: each step, extent test and object test, in order. With "
-        "--depth, "
-        "follow the whole ray tree of a pixel.\v"
+        "--depth, follow the whole ray tree of a pixel.\v"
         "A row shows what was visited or tested, the interval of t in which the ray is inside its box (if it "
         "has one), whether the ray hit the extent or the object, and the t of the nearest hit so far. An "
         "extent that the ray enters behind that hit counts as missed. A step is a visit to a node, voxel, "
-        "sample or list entry; docs/accelerators/README.md explains the other words. "
-        "The rows come from the counted kernel itself; raytally checks that they add up to its tally.\n"
+        "sample or list entry; docs/accelerators/README.md explains the other words. The rows come from the "
+        "counted kernel itself; raytally checks that they add up to its tally.\n"
         "\n"
         "The upper part of the drawing is a section along the ray and one axis of the scene; it shows a box "
         "where the ray passes through it, and pale what is not tested or visited. It is enlarged where "
@@ -326,8 +325,7 @@ const RtSyntax rt_trace_syntax = {
         "hit; factor, the product of the coefficients kr and kt on the way from the eye; and what the "
         "accelerator did for it. A second table shows the light that each ray brings, as its share of the "
         "pixel's colour, and the five terms of the illumination model whose sum it is. The drawing shows "
-        "rays in "
-        "a section that contains the primary ray and lies as close to the others as it can.\n"
+        "rays in a section that contains the primary ray and lies as close to the others as it can.\n"
         "\n"
         "Examples:\n"
         "  raytally trace balls --pixel 256,256\n"
@@ -336,8 +334,7 @@ const RtSyntax rt_trace_syntax = {
         "    --rays shadow --light 1\n"
         "  raytally trace scenes/lecture.yaml --pixel 279,366 --depth 4 --svg tree.svg\n\n"
         "embree shows no steps, because it counts none; with mode=user it shows object tests. A plugin shows "
-        "its "
-        "steps and extent tests by raytally_show (raytally/accel.h); without that they have no boxes."};
+        "its steps and extent tests by raytally_show (raytally/accel.h); without that they have no boxes."};
 
 RtStatus rt_command_trace(int argc, char **argv, RtError *error) {
     Options o = {.accel = rt_accel_default(), .rows = DEFAULT_ROWS};

@@ -36,25 +36,16 @@ static void pass_on(int number) {
     kill(running, number);
 }
 
-static void take_signals(sigset_t *signals) {
-    sigemptyset(signals);
-    sigaddset(signals, SIGINT);
-    sigaddset(signals, SIGTERM);
-    sigaddset(signals, SIGALRM);
-}
-
-static void handle(void) {
-    struct sigaction action = {.sa_handler = pass_on};
-    take_signals(&action.sa_mask);
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-    sigaction(SIGALRM, &action, NULL);
+static void handle(const sigset_t *signals) {
+    const struct sigaction action = {.sa_handler = pass_on, .sa_mask = *signals};
+    for (int number = 1; number < _NSIG; number++)
+        if (sigismember(signals, number) == 1) sigaction(number, &action, NULL);
 }
 
 /* With these signals blocked, so that each goes to the fork, which stops as the command for one job does. */
 static RtStatus start(RtJob *job, RtError *error) {
-    sigset_t signals, before;
-    take_signals(&signals);
+    const sigset_t signals = rt_stop_signals();
+    sigset_t before;
     fflush(NULL); /* or the fork would write it again */
     sigprocmask(SIG_BLOCK, &signals, &before);
     const pid_t child = fork();
@@ -64,7 +55,7 @@ static RtStatus start(RtJob *job, RtError *error) {
     if (job->here)
         rt_stop_init();
     else
-        handle();
+        handle(&signals);
     sigprocmask(SIG_SETMASK, &before, NULL);
     return child >= 0 ? RT_OK : rt_fail(error, RT_IO, "a process for %s: %s", job->name, strerror(why));
 }

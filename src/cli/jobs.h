@@ -19,10 +19,10 @@ typedef struct RtJob {
     double seconds;   /* wall time */
 } RtJob;
 
-/* Forks, and waits for the end of the fork. Call it before anything starts threads. SIGINT, SIGTERM and
- * SIGALRM are passed on to the fork, and end this process after it, with rt_stop_code. If the fork ended
- * before it could say how to continue, or there is none, as between two jobs, this process prints `go_on`,
- * borrowed. RT_IO if there is no fork to wait for. */
+/* Forks, and waits for the end of the fork. Call it before anything starts threads. The signals of
+ * rt_stop_signals are passed on to the fork, and end this process after it, with rt_stop_code. If the fork
+ * ended before it could say how to continue, or there is none, as between two jobs, this process prints
+ * `go_on`, borrowed. RT_IO if there is no fork to wait for. */
 RtStatus rt_job_run(RtJob *job, const char *go_on, RtError *error);
 
 /* Prints how each of them ended, and how long it took. */

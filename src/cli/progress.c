@@ -107,7 +107,7 @@ RtRunObserver rt_progress_observer(RtProgress *progress) {
 
 /* ---- the thread ---- */
 
-/* The journal is always whole. Cleans up last, since other threads run on until the process ends. */
+/* The journal is always whole. */
 static void leave(const RtProgress *progress, int number) {
     fprintf(stderr, "%sraytally: %s%s; ", progress->terminal ? "\r\033[K" : "", progress->title,
             rt_stop_reason(number));
@@ -125,11 +125,7 @@ static void leave(const RtProgress *progress, int number) {
 
 /* Those that the thread takes; SIGUSR2 wakes it. */
 static sigset_t signals_taken(void) {
-    sigset_t signals;
-    sigemptyset(&signals);
-    sigaddset(&signals, SIGINT);
-    sigaddset(&signals, SIGTERM);
-    sigaddset(&signals, SIGALRM);
+    sigset_t signals = rt_stop_signals();
     sigaddset(&signals, SIGUSR2);
     return signals;
 }

@@ -29,9 +29,9 @@ typedef struct RtProgress {
 RtProgress rt_progress_begin(const RtWorkloadOptions *options);
 
 /* For a run: a thread shows a line every minute (on a terminal every second), even if nothing finishes. From
- * now on SIGINT, SIGTERM and SIGALRM, blocked in all later threads, end the process with rt_stop_code, after
- * saying what is kept in `directory`, and `go_on`, the command that continues; both are borrowed until the
- * end. Call before other threads are made. */
+ * now on the signals of rt_stop_signals, blocked in all later threads, end the process with rt_stop_code,
+ * after saying what is kept in `directory`, and `go_on`, the command that continues; both are borrowed until
+ * the end. Call before other threads are made. */
 void rt_progress_watch(RtProgress *progress, const char *directory, const char *go_on);
 
 /* The observer of a workload; each notice gets its own line. */

@@ -16,7 +16,7 @@ static char time_is_over[64] = "stopped by an alarm";
 void rt_stop_clean(void) {
     if (getpid() != owner) return;
     rt_outputs_remove_open();
-    rt_processes_kill(); /* last: other threads run on, and would take it for a crash */
+    rt_processes_kill();
 }
 
 int rt_stop_code(int number) {
@@ -42,15 +42,28 @@ static void stop(int number) {
     raise(number); /* which ends the process once the handler returns */
 }
 
+static bool is_ignored(int number) {
+    struct sigaction action;
+    return sigaction(number, NULL, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
 void rt_stop_init(void) {
     static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGALRM, SIGABRT};
     owner = getpid();
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
-        struct sigaction before, action = {.sa_handler = stop, .sa_flags = (int)SA_RESETHAND};
+        struct sigaction action = {.sa_handler = stop, .sa_flags = (int)SA_RESETHAND};
         sigemptyset(&action.sa_mask);
-        if (sigaction(numbers[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
-            sigaction(numbers[i], &action, NULL);
+        if (!is_ignored(numbers[i])) sigaction(numbers[i], &action, NULL);
     }
+}
+
+sigset_t rt_stop_signals(void) {
+    static const int numbers[] = {SIGINT, SIGTERM, SIGALRM};
+    sigset_t signals;
+    sigemptyset(&signals);
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
+        if (!is_ignored(numbers[i])) sigaddset(&signals, numbers[i]);
+    return signals;
 }
 
 void rt_stop_after(unsigned seconds) {

@@ -4,12 +4,16 @@
 #ifndef RT_CLI_STOP_H
 #define RT_CLI_STOP_H
 
+#include <signal.h>
+
 /* From now on these signals, unless they are ignored, and SIGALRM clean up before they end the process. Call
  * it first, and again in a fork, which then cleans up its own files and processes alone. */
 void rt_stop_init(void);
 
-/* For a command that takes these signals itself: removes temporary files, and kills children. In a handler,
- * too. */
+/* The signals that a command may take itself: SIGINT, SIGTERM and SIGALRM, unless they are ignored. */
+sigset_t rt_stop_signals(void);
+
+/* For such a command, at its end: removes temporary files, and kills children. In a handler, too. */
 void rt_stop_clean(void);
 
 /* The exit code after a signal: 128 + its number; after SIGALRM that of too little time. */

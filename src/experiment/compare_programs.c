@@ -157,8 +157,7 @@ static RtStatus check_alike(const Run *run, const json_t *const sections[2], RtE
     return rt_fail(
         error, RT_BAD_INPUT,
         "%s and %s do not record the same rays (%s, %s), so times would not compare. Record the rays once "
-        "with "
-        "`raytally rays`, and measure each program on that file: `raytally bench --rays-from FILE`",
+        "with `raytally rays`, and measure each program on that file: `raytally bench --rays-from FILE`",
         run->programs->before, run->programs->after, scene, kind);
 }
 

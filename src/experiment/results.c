@@ -119,8 +119,7 @@ RtStatus rt_results_check_broken(const RtResults *results, RtError *error) {
         if (!at.cell->broken && !rt_build_at(results, at.workload, at.candidate)->broken) continue;
         return rt_fail(error, RT_BROKEN,
                        "'%s' is broken and left out, at least on %s: see above; `raytally verify --accel %s` "
-                       "says more. All other "
-                       "accelerators were measured",
+                       "says more. All other accelerators were measured",
                        e->candidates[at.candidate].label, e->workloads[at.workload].label,
                        e->candidates[at.candidate].spec);
     }

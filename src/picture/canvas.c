@@ -231,6 +231,16 @@ void rt_draw_disc(cairo_t *cairo, RtPoint center, double radius, RtColor color) 
     rt_paint(cairo, (RtStyle){color, 0, 1, false});
 }
 
+void rt_draw_arrow_head(cairo_t *cairo, RtPoint from, RtPoint to, double size, RtColor color) {
+    double dx = to.x - from.x, dy = to.y - from.y, length = sqrt(dx * dx + dy * dy);
+    if (!(length > 0)) return;
+    dx *= size / length, dy *= size / length;
+    const RtPoint corners[] = {
+        to, {to.x - dx - dy / 2, to.y - dy + dx / 2}, {to.x - dx + dy / 2, to.y - dy - dx / 2}};
+    rt_add_polygon(cairo, corners, 3);
+    rt_paint(cairo, (RtStyle){color, 0, 1, false});
+}
+
 /* ---- text ---- */
 
 enum { MAX_TEXT = 512 };

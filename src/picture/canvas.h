@@ -82,6 +82,9 @@ void rt_paint(cairo_t *cairo, RtStyle style);
 
 void rt_draw_disc(cairo_t *cairo, RtPoint center, double radius, RtColor color);
 
+/* The head of an arrow, `size` long; none for an arrow without length. */
+void rt_draw_arrow_head(cairo_t *cairo, RtPoint from, RtPoint to, double size, RtColor color);
+
 /* Clips the convex polygon to normal . p <= limit (Sutherland & Hodgman 1974), which may add one corner;
  * returns its number of corners. */
 uint32_t rt_polygon_cut(RtPoint *points, uint32_t count, RtPoint normal, double limit);

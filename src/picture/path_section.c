@@ -252,15 +252,9 @@ static void draw_surroundings(const RtPathSection *s) {
 /* ---- the windows ---- */
 
 static void draw_arrow(const RtPathSection *s, RtPoint from, RtPoint to) {
-    double dx = to.x - from.x, dy = to.y - from.y, length = sqrt(dx * dx + dy * dy);
     rt_add_line(s->cairo, from, to);
     rt_paint(s->cairo, (RtStyle){RT_BLACK, 1.5, 0, false});
-    if (!(length > 0)) return;
-    dx *= 12 / length, dy *= 12 / length;
-    const RtPoint head[] = {
-        to, {to.x - dx - dy / 2, to.y - dy + dx / 2}, {to.x - dx + dy / 2, to.y - dy - dx / 2}};
-    rt_add_polygon(s->cairo, head, 3);
-    rt_paint(s->cairo, (RtStyle){RT_BLACK, 0, 1, false});
+    rt_draw_arrow_head(s->cairo, from, to, 12, RT_BLACK);
 }
 
 static void draw_ray(const RtPathSection *s) {

@@ -260,16 +260,10 @@ static void draw_number(const Drawing *d, const RtTreeRay *ray, RtPoint from, Rt
 
 /* A line with a head at `to`, `head` long. */
 static void draw_arrow(const Drawing *d, RtPoint from, RtPoint to, RtStyle style, double head) {
-    double dx = to.x - from.x, dy = to.y - from.y, length = sqrt(dx * dx + dy * dy);
     cairo_move_to(d->cairo, from.x, from.y); /* an open line: dashes do not come back over the gaps */
     cairo_line_to(d->cairo, to.x, to.y);
     rt_paint(d->cairo, style);
-    if (!(length > 0)) return;
-    dx *= head / length, dy *= head / length;
-    const RtPoint corners[] = {
-        to, {to.x - dx - dy / 2, to.y - dy + dx / 2}, {to.x - dx + dy / 2, to.y - dy - dx / 2}};
-    rt_add_polygon(d->cairo, corners, 3);
-    rt_paint(d->cairo, (RtStyle){style.color, 0, 1, false});
+    rt_draw_arrow_head(d->cairo, from, to, head, style.color);
 }
 
 static void draw_cross(const Drawing *d, RtPoint at, RtStyle style) {

@@ -130,22 +130,22 @@ static void put_head(const RtIndexEntry *entry, const char *directory, const cha
     fputs("</h3>\n", out);
 }
 
+static void put_markdown_link(FILE *out, const char *begin, const char *text, const char *path) {
+    fputs(begin, out);
+    rt_index_put_markdown(out, text, false);
+    fputs("](", out);
+    rt_page_path(out, path);
+    fputs(")\n\n", out);
+}
+
 /* The same in index.md, with a link to the directory. */
 static void put_markdown_head(const RtIndexEntry *entry, const char *directory, const char *place) {
     FILE *out = entry->parts[RT_INDEX_MARKDOWN].file;
     char plot[RT_MAX_PATH], path[RT_MAX_PATH];
-    fputs("### [", out);
-    rt_index_put_markdown(out, entry->name, false);
-    fputs("](", out);
-    rt_page_path(out, place);
-    fputs(")\n\n", out);
+    put_markdown_link(out, "### [", entry->name, place);
     find_plot(directory, plot);
     if (!*plot || rt_path_join(place, plot, path, NULL) != RT_OK) return;
-    fputs("![Plot of ", out);
-    rt_index_put_markdown(out, entry->name, false);
-    fputs("](", out);
-    rt_page_path(out, path);
-    fputs(")\n\n", out);
+    put_markdown_link(out, "![Plot of ", entry->name, path);
 }
 
 static void put_heads(const RtIndexEntry *entry, const char *directory, const char *place) {

@@ -182,7 +182,7 @@ static RtPath path_of(RtAccel *accel, const RtRay *ray) {
 }
 
 static void assert_same_path(RtAccel *accel, RtAccel *other, const RtRay *ray) {
-    RtPath path = path_of(accel, ray), same = path_of(other, ray);
+    OWNED(rt_path_clear) RtPath path = path_of(accel, ray), same = path_of(other, ray);
     assert_int_equal(path.count, same.count);
     assert_memory_equal(&path.hit, &same.hit, sizeof path.hit);
     for (uint32_t i = 0; i < path.count; i++) {
@@ -191,8 +191,6 @@ static void assert_same_path(RtAccel *accel, RtAccel *other, const RtRay *ray) {
                     a->t == b->t && a->boxed == b->boxed && a->enter == b->enter && a->leave == b->leave);
         assert_string_equal(a->what, b->what);
     }
-    rt_path_clear(&path);
-    rt_path_clear(&same);
 }
 
 RT_TEST(its_path_is_that_of_the_built_in_one_that_it_copies_alone_and_in_a_stack) {
@@ -223,7 +221,7 @@ RT_TEST(a_path_of_more_events_than_a_message_holds_is_whole) {
 RT_TEST(what_it_does_not_show_is_in_its_path_without_a_name_and_what_it_passes_on_with_its_own) {
     OWNED(close_stage) Stage stage;
     open_stage(&stage, "faulty-shows", 1);
-    RtPath path = path_of(stage.accel, stage.set.rays);
+    OWNED(rt_path_clear) RtPath path = path_of(stage.accel, stage.set.rays);
     assert_int_equal(path.count, 600); /* a step and a test of each object */
     for (uint32_t i = 0; i < path.count; i++) {
         assert_int_equal(path.rows[i].kind, i < 300 ? RT_TRACED_STEP : RT_TRACED_OBJECT_TEST);
@@ -235,7 +233,6 @@ RT_TEST(what_it_does_not_show_is_in_its_path_without_a_name_and_what_it_passes_o
     path = path_of(cache, stage.set.rays);
     assert_int_equal(path.rows[0].kind, RT_TRACED_PASSED_ON);
     assert_string_equal(path.rows[0].what, "shadow-cache");
-    rt_path_clear(&path);
 }
 
 /* ---- hit functions of their own ---- */

@@ -42,11 +42,10 @@ static inline uint32_t height_of(const RtTree *tree, uint32_t at, uint32_t *seen
 
 /* Every node is in the tree once, every object a leaf; returns the height. */
 static inline uint32_t assert_tree(const RtTree *tree) {
-    uint32_t *seen = rt_alloc(tree->used, sizeof(uint32_t));
+    OWNED_MEMORY uint32_t *seen = rt_alloc(tree->used, sizeof(uint32_t));
     assert_int_equal(tree->used, tree->capacity);
     uint32_t height = height_of(tree, tree->root, seen);
     for (uint32_t i = 0; i < tree->used; i++) assert_int_equal(seen[i], 1);
-    rt_free(seen);
     return height;
 }
 

@@ -31,9 +31,8 @@ static int make_three(void **state) {
 #define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_three, remove_place)
 
 static void change(const Place *place, const char *name, const char *from, const char *to) {
-    char *text = read_in(place, name);
+    OWNED_MEMORY char *text = read_in(place, name);
     write_changed(place, name, text, from, to);
-    rt_free(text);
 }
 
 static bool exists(const Place *place, const char *name) {
@@ -104,18 +103,17 @@ RT_TEST_IN_PLACE(resume_finishes_and_starts_and_measures_nothing_again) {
         "rest; or give another --out");
     assert_int_equal(raytally(place, "run a.yaml b.yaml c.yaml --threads 1 --out all --resume"), 0);
     assert_same_file(place, "all/a/cells.jsonl", finished);
-    char *whole = read_in(place, "all/b/cells.jsonl");
+    OWNED_MEMORY char *whole = read_in(place, "all/b/cells.jsonl");
     assert_memory_equal(whole, part, strlen(part));
     assert_true(exists(place, "all/b/report.html") && exists(place, "all/c/report.html"));
     rt_free(finished);
     rt_free(part);
-    rt_free(whole);
 }
 
 RT_TEST_IN_PLACE(update_starts_over_only_where_something_else_was_measured) {
     const Place *place = *state;
     assert_int_equal(raytally(place, "run a.yaml b.yaml --threads 1"), 0);
-    char *a = read_in(place, "results/a/cells.jsonl");
+    OWNED_MEMORY char *a = read_in(place, "results/a/cells.jsonl");
     change(place, "b.yaml", "limit: 50", "limit: 40");
     assert_ends(place, "run a.yaml b.yaml --threads 1 --resume", 2, "another version of it ('b')");
     assert_ends(place, "run a.yaml --threads 1 --update --quick", 2, "this is a run without --quick");
@@ -123,13 +121,12 @@ RT_TEST_IN_PLACE(update_starts_over_only_where_something_else_was_measured) {
     assert_same_file(place, "results/a/cells.jsonl", a);
     assert_in_file(place, "results/b/experiment.yaml", "limit: 40");
     assert_int_equal(raytally(place, "reproduce results/b"), 0);
-    rt_free(a);
 }
 
 RT_TEST_IN_PLACE(update_keeps_a_run_of_another_experiment_or_variant_and_what_it_cannot_read) {
     const Place *place = *state;
     assert_int_equal(raytally(place, "run a.yaml --threads 1 --out kept"), 0);
-    char *kept = read_in(place, "kept/cells.jsonl");
+    OWNED_MEMORY char *kept = read_in(place, "kept/cells.jsonl");
     assert_ends(place, "run b.yaml --out kept --update", 2, "this is a run of another experiment");
     assert_ends(place, "run a.yaml --out kept --update --quick", 2, "this is a run without --quick");
     assert_ends(place, "run a.yaml --out kept --update --shard 1/1", 2, "another --shard");
@@ -137,7 +134,6 @@ RT_TEST_IN_PLACE(update_keeps_a_run_of_another_experiment_or_variant_and_what_it
     change(place, "kept/cells.jsonl", "\"interior\":", "\"exterior\":");
     assert_ends(place, "run a.yaml --out kept --update", 2, "kept/cells.jsonl:");
     assert_true(exists(place, "kept/report.html"));
-    rt_free(kept);
 }
 
 RT_TEST_IN_PLACE(a_dry_run_of_several_sums_up_each_and_touches_nothing) {
@@ -149,25 +145,39 @@ RT_TEST_IN_PLACE(a_dry_run_of_several_sums_up_each_and_touches_nothing) {
 
 RT_TEST_IN_PLACE(an_interruption_stops_all_and_says_the_one_command_that_continues) {
     const Place *place = *state;
-    int how;
     change(place, "b.yaml", "rounds: 2\nmilliseconds: 0", "rounds: 50\nmilliseconds: 100");
     pid_t child = start_raytally(place, "run a.yaml b.yaml c.yaml --threads 1 --out all");
     while (!exists(place, "all/b/cells.jsonl")) nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
     kill(child, SIGINT);
-    waitpid(child, &how, 0);
-    assert_true(WIFEXITED(how) && WEXITSTATUS(how) == 128 + SIGINT);
-    char *message = read_in(place, "message");
+    assert_int_equal(end_of(child), 128 + SIGINT);
+    OWNED_MEMORY char *message = read_in(place, "message");
     const char *command = strstr(message, "To continue:\n  ");
     assert_non_null(command);
     assert_string_equal(command,
                         "To continue:\n  raytally run a.yaml b.yaml c.yaml --out all --threads 1 --resume\n");
-    rt_free(message);
     assert_true(exists(place, "all/a/report.html") && !exists(place, "all/c"));
+}
+
+/* As by nohup, or behind a shell's `&`. */
+RT_TEST_IN_PLACE(a_signal_that_was_ignored_from_the_start_stays_ignored) {
+    static const char *const commands[] = {"run a.yaml --threads 1 --out one",
+                                           "run a.yaml b.yaml --threads 1 --out all"};
+    const Place *place = *state;
+    for (int i = 0; i < 2; i++) {
+        int how;
+        signal(SIGINT, SIG_IGN);
+        const pid_t child = start_raytally(place, commands[i]);
+        signal(SIGINT, SIG_DFL);
+        while (waitpid(child, &how, WNOHANG) == 0) {
+            kill(child, SIGINT);
+            nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
+        }
+        assert_true(WIFEXITED(how) && WEXITSTATUS(how) == 0);
+    }
 }
 
 RT_TEST_IN_PLACE(an_interruption_between_two_experiments_says_how_to_continue_too) {
     const Place *place = *state;
-    int how;
     pid_t child = fork();
     assert_true(child >= 0);
     if (child == 0) {
@@ -178,8 +188,7 @@ RT_TEST_IN_PLACE(an_interruption_between_two_experiments_says_how_to_continue_to
         if (!job.here) raise(SIGTERM);
         _exit(0);
     }
-    waitpid(child, &how, 0);
-    assert_true(WIFEXITED(how) && WEXITSTATUS(how) == 128 + SIGTERM);
+    assert_int_equal(end_of(child), 128 + SIGTERM);
     assert_in_file(place, "message", "To continue:\n  raytally run all --resume\n");
 }
 
@@ -207,8 +216,7 @@ RT_TEST_IN_PLACE(a_directory_that_is_removed_in_mid_run_is_reported) {
     }
     snprintf(command, sizeof command, "until rm -rf '%s'; do :; done", path_in(place, "gone").text);
     assert_int_equal(system(command), 0);
-    waitpid(child, &how, 0);
-    assert_true(WIFEXITED(how) && WEXITSTATUS(how) == 2);
+    assert_int_equal(end_of(child), 2);
     assert_in_file(place, "message", "raytally: gone");
 }
 

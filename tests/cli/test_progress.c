@@ -74,14 +74,13 @@ RT_TEST_IN_PLACE(without_a_terminal_a_line_comes_as_often_as_it_may_and_no_more)
 }
 
 RT_TEST_IN_PLACE(on_a_terminal_one_line_is_drawn_in_place_and_taken_away) {
-    char *text = said(*state, RT_EVENT_BUILD, true, 1, 100);
+    OWNED_MEMORY char *text = said(*state, RT_EVENT_BUILD, true, 1, 100);
     const char *const away = "\r\033[K";
     size_t length = strlen(text);
     assert_int_equal(count(text, "\n"), 0);
     assert_int_equal(count(text, "\r\033[K[0/2] balls:size=1 grid: built"), 100);
     assert_true(length > strlen(away));
     assert_string_equal(text + length - strlen(away), away);
-    rt_free(text);
 }
 
 RT_TEST_IN_PLACE(a_frame_is_of_no_kind_of_rays) {

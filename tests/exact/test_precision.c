@@ -37,7 +37,7 @@ static void format_row(RtSubject subject, size_t i, char *out, size_t size) {
 }
 
 RT_TEST(the_table_in_the_docs_is_what_is_measured) {
-    char *text = NULL;
+    OWNED_MEMORY char *text = NULL;
     size_t size = 0, stale = 0;
     assert_ok(rt_file_read(RT_SOURCE_DIR "/docs/precision.md", 1 << 20, &text, &size, error));
     for (size_t i = 0; i < MOST_CASES; i++) {
@@ -53,7 +53,6 @@ RT_TEST(the_table_in_the_docs_is_what_is_measured) {
             if (!strstr(text, row)) stale++;
         }
     }
-    rt_free(text);
     if (stale > 0)
         fail_msg("%zu rows of docs/precision.md are not those above, or its cases are others", stale);
 }

@@ -31,11 +31,10 @@ static json_t *instructions_of(const Place *place, const char *arguments) {
     char command[300];
     snprintf(command, sizeof command, "bench %s --count-only --threads 1 --json --callgrind=256", arguments);
     if (raytally(place, command) != 0) fail_msg("%s: %s", command, read_in(place, "message"));
-    char *text = read_in(place, "output");
+    OWNED_MEMORY char *text = read_in(place, "output");
     json_t *document = json_loads(text, 0, NULL);
     json_t *rows = json_incref(json_object_get(document, "instructions"));
     json_decref(document);
-    rt_free(text);
     assert_non_null(rows);
     return rows;
 }
@@ -64,14 +63,13 @@ RT_TEST_VALGRIND(instructions_are_the_same_figure_twice_whatever_the_environment
 
 /* `count` rays, all alike, to NAME. */
 static void write_alike(const Place *place, const char *name, uint64_t count) {
-    RtRaySet set;
+    OWNED(rt_rayset_clear) RtRaySet set;
     assert_ok(rt_rayset_init(&set, RT_RAY_DIFFUSE, count, error));
     for (uint64_t i = 0; i < count; i++) {
         set.rays[i] =
             (RtRay){.org = {{3, 2, 1}}, .dir = {{-3, -2, -1}}, .tmax = INFINITY, .kind = RT_RAY_DIFFUSE};
     }
     assert_ok(rt_rays_save(&set, path_in(place, name).text, error));
-    rt_rayset_clear(&set);
 }
 
 /* So neither the start of the program nor a build is in it, and every ray is. */
@@ -114,7 +112,7 @@ RT_TEST_VALGRIND(instructions_of_a_plugin_are_counted_and_a_broken_one_is_named)
                                      "/plugins/faulty.so --accel bvh --accel bvh_copy --accel faulty-print "
                                      "--accel faulty-crash-nearest"),
                      1);
-    char *text = read_in(place, "output");
+    OWNED_MEMORY char *text = read_in(place, "output");
     json_t *document = json_loads(text, 0, NULL);
     const json_t *rows = json_object_get(document, "instructions");
     assert_int_equal(json_array_size(rows), 4 * 2);
@@ -122,7 +120,6 @@ RT_TEST_VALGRIND(instructions_of_a_plugin_are_counted_and_a_broken_one_is_named)
     for (size_t i = 2; i < 4; i++) assert_string_equal(text_of(rows, i, "accelerator"), "bvh_copy");
     assert_non_null(strstr(text_of(rows, 6, "why"), "it crashed (Segmentation fault)"));
     json_decref(document);
-    rt_free(text);
 }
 
 /* The worker gets at most so many rays, and no file stays behind. */
@@ -156,7 +153,7 @@ RT_TEST_VALGRIND(compare_shows_the_instructions_of_both_programs_and_their_ratio
                               "compare balls:size=1 --accel grid --rays primary --size 32x32 --rounds 1 "
                               "--callgrind=512 --margin 1% --json --with " RT_BINARY_DIR "/raytally_slower"),
                      0);
-    char *text = read_in(place, "output");
+    OWNED_MEMORY char *text = read_in(place, "output");
     json_t *document = json_loads(text, 0, NULL);
     const json_t *row = json_array_get(json_object_get(document, "cells"), 0);
     const double before = figure_of(row, "instructions_before"), after = figure_of(row, "instructions_after");
@@ -164,17 +161,15 @@ RT_TEST_VALGRIND(compare_shows_the_instructions_of_both_programs_and_their_ratio
     assert_in_range((int)(1000 * before / after), 1005, 1035);
     assert_true(fabs(figure_of(row, "instructions_ratio") - after / before) < 1e-6);
     json_decref(document);
-    rt_free(text);
 }
 
 RT_TEST_VALGRIND(a_program_that_cannot_count_instructions_is_told_apart_in_plain_words) {
     write_in(place, "other", "#!/bin/sh\n[ \"$1\" = bench ] && exit 2\nexec '" RT_PROGRAM "' \"$@\"\n");
     assert_int_equal(chmod(path_in(place, "other").text, 0755), 0);
-    assert_int_equal(raytally(place,
-                              "compare balls:size=1 --accel grid --rays primary --limit 100 --rounds 1 "
-                              "--callgrind --with ./other"),
-                     2);
-    assert_in_file(place, "message", "it must be a raytally whose `bench` has --callgrind");
+    assert_ends(place,
+                "compare balls:size=1 --accel grid --rays primary --limit 100 --rounds 1 "
+                "--callgrind --with ./other",
+                2, "it must be a raytally whose `bench` has --callgrind");
 }
 
 /* Before anything is measured. */
@@ -189,9 +184,8 @@ RT_TEST_IN_PLACE(without_valgrind_there_is_a_message_that_says_how_to_get_it) {
     assert_int_equal(code, 2);
     assert_in_file(place, "message", "valgrind is not installed");
     assert_in_file(place, "message", "apt install valgrind");
-    char *output = read_in(place, "output");
+    OWNED_MEMORY char *output = read_in(place, "output");
     assert_string_equal(output, "");
-    rt_free(output);
 }
 
 RT_TESTS(callgrind, NULL, NULL)

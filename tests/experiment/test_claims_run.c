@@ -50,10 +50,9 @@ RT_TEST_IN_PLACE(a_figure_is_shown_with_the_claims_and_counted_with_none) {
 RT_TEST_IN_PLACE(a_claim_about_a_missing_plugin_has_no_measurements_and_is_no_failure) {
     const Place *place = *state;
     write_changed(place, "missing.yaml", claiming, "bvh > 1000", "nobodys > 1000");
-    char *text = read_in(place, "missing.yaml");
+    OWNED_MEMORY char *text = read_in(place, "missing.yaml");
     write_changed(place, "small.yaml", text, "{accel: bvh}\n",
                   "{accel: bvh}\n  - {accel: nobodys, optional: yes}\n");
-    rt_free(text);
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --strict"), 0);
     assert_in_file(place, "output", "no measurements  object_tests of nobodys > 1000");
     assert_in_file(place, "out/report.html", "1 of 2 claims hold, 1 without measurements");

@@ -283,7 +283,7 @@ RT_TEST(where_time_and_instructions_disagree_is_said_in_a_sentence) {
 }
 
 RT_TEST(where_they_agree_only_the_ratio_is_shown) {
-    RtComparison comparison = {0};
+    OWNED(rt_comparison_clear) RtComparison comparison = {0};
     RtComparedCell *cell = rt_comparison_cell(&comparison, "balls", "bvh", "primary");
     assert_non_null(cell);
     cell->change = RT_CHANGE_SLOWER;
@@ -293,7 +293,6 @@ RT_TEST(where_they_agree_only_the_ratio_is_shown) {
     assert_non_null(strstr(text, "1.0300"));
     assert_null(strstr(text, "balls bvh primary:"));
     free(text);
-    rt_comparison_clear(&comparison);
 }
 
 RT_TEST_IN_PLACE(strict_makes_something_slower_an_exit_code) {
@@ -306,7 +305,7 @@ RT_TEST_IN_PLACE(strict_makes_something_slower_an_exit_code) {
     assert_int_equal(raytally(place, "compare a b --strict"), 0);
     assert_in_file(place, "output", "0 faster, 0 slower, 4 no difference; counts changed in 0.");
     /* Times of 1e-7 s a ray become ten times longer by their exponents: those of the grid. */
-    char *journal = read_in(place, "b/cells.jsonl");
+    OWNED_MEMORY char *journal = read_in(place, "b/cells.jsonl");
     for (char *line = journal, *end; (end = strchr(line, '\n')) != NULL; line = end + 1) {
         *end = '\0';
         bool grid = strstr(line, "\"grid\"") != NULL;
@@ -315,7 +314,6 @@ RT_TEST_IN_PLACE(strict_makes_something_slower_an_exit_code) {
         *end = '\n';
     }
     write_in(place, "b/cells.jsonl", journal);
-    rt_free(journal);
     assert_int_equal(raytally(place, "compare a b --strict --json"), 1);
     assert_in_file(place, "output", "\"time\": \"slower\"");
     assert_int_equal(raytally(place, "compare a b"), 0);
@@ -337,9 +335,8 @@ static void write_other(const Place *place, const char *before, const char *argu
 RT_TEST_IN_PLACE(a_program_that_crashes_while_it_is_compared_is_reported_with_its_signal) {
     const Place *place = *state;
     write_other(place, "echo '{\"worker\": 1, \"build\": \"none\"}'; kill -SEGV $$", "");
-    assert_int_equal(
-        raytally(place, "compare balls:size=1 --accel bvh --rays random --limit 100 --with ./other"), 2);
-    assert_in_file(place, "message", "./other cannot be compared: it crashed (Segmentation fault)");
+    assert_ends(place, "compare balls:size=1 --accel bvh --rays random --limit 100 --with ./other", 2,
+                "./other cannot be compared: it crashed (Segmentation fault)");
 }
 
 /* A cell has room for the times of RT_MAX_ROUNDS rounds, one each. The second of the two cells is asked for
@@ -349,9 +346,8 @@ RT_TEST_IN_PLACE(a_program_that_lists_a_cell_twice_is_refused) {
     write_other(place, "exec 3<&0",
                 "\"$@\" < <(sed -u 's/^time 1 /time 0 /' <&3) > "
                 ">(sed -u 's/\"cells\":\\[\\(.*\\)\\]}$/\"cells\":[\\1,\\1]}/')");
-    assert_int_equal(
-        raytally(place, "compare balls:size=1 --accel bvh --rays random --limit 100 --with ./other"), 2);
-    assert_in_file(place, "message", "./other cannot be compared: it lists bvh on balls:size=1 twice");
+    assert_ends(place, "compare balls:size=1 --accel bvh --rays random --limit 100 --with ./other", 2,
+                "./other cannot be compared: it lists bvh on balls:size=1 twice");
 }
 
 /* The other program has another accelerator in the place of the grid in the second round, as one has none
@@ -371,9 +367,8 @@ RT_TEST_IN_PLACE(what_was_not_timed_in_every_round_is_not_compared) {
 RT_TEST_IN_PLACE(programs_that_record_other_rays_are_told_how_to_compare_all_the_same) {
     const Place *place = *state;
     write_other(place, "", "\"$@\" --seed 7");
-    assert_int_equal(
-        raytally(place, "compare balls:size=1 --accel bvh --rays random --limit 100 --with ./other"), 2);
-    assert_in_file(place, "message", "do not record the same rays");
+    assert_ends(place, "compare balls:size=1 --accel bvh --rays random --limit 100 --with ./other", 2,
+                "do not record the same rays");
     assert_in_file(
         place, "message",
         "with `raytally rays`, and measure each program on that file: `raytally bench --rays-from");

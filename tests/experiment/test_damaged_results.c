@@ -29,9 +29,8 @@ static int make_results(void **state) {
     write_in(*state, "reasons.csv", "scene,source,accel,column,reason\n*,s,bvh,leaves,rounded\n");
     if (raytally(*state, "run small.yaml --out out") > 1) return -1;
     for (size_t i = 3; i < FILES; i++) {
-        char *text = read_in(*state, files[i] + strlen("out/"));
+        OWNED_MEMORY char *text = read_in(*state, files[i] + strlen("out/"));
         write_in(*state, files[i], text);
-        rt_free(text);
     }
     return 0;
 }
@@ -42,7 +41,7 @@ static int make_results(void **state) {
 static RtStatus read_all(const Place *place, RtError *error) {
     Path out = path_in(place, "out");
     RtResults results = {0};
-    RtPublished *published = rt_alloc(1, sizeof *published);
+    OWNED_MEMORY RtPublished *published = rt_alloc(1, sizeof *published);
     json_t *manifest = NULL;
     assert_non_null(published);
     RtStatus status = rt_run_load(out.text, place->experiment, &results, error);
@@ -51,7 +50,6 @@ static RtStatus read_all(const Place *place, RtError *error) {
     json_decref(manifest);
     rt_published_clear(published);
     rt_results_clear(&results);
-    rt_free(published);
     return status;
 }
 
@@ -72,7 +70,7 @@ RT_TEST_IN_PLACE(a_file_that_is_cut_off_or_has_a_zero_byte_is_read_or_refused) {
     const Place *place = *state;
     assert_ok(read_all(place, error));
     for (size_t i = 0; i < FILES; i++) {
-        char *text = read_in(place, files[i]);
+        OWNED_MEMORY char *text = read_in(place, files[i]);
         const size_t size = strlen(text), step = size / RT_SHARE(300, 30) + 1;
         for (size_t at = 0; at < size; at += step) {
             const char byte = text[at];
@@ -82,7 +80,6 @@ RT_TEST_IN_PLACE(a_file_that_is_cut_off_or_has_a_zero_byte_is_read_or_refused) {
             text[at] = byte;
         }
         assert_int_equal(read_with(place, files[i], text, size), RT_OK);
-        rt_free(text);
     }
 }
 

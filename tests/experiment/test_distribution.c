@@ -79,13 +79,12 @@ RT_TEST(of_equal_values_each_percentile_is_that_value_and_of_none_all_are_zero) 
 }
 
 RT_TEST(a_distribution_that_does_not_fit_into_memory_is_refused) {
-    RtOccurrences occurrences = {0};
+    OWNED(rt_occurrences_clear) RtOccurrences occurrences = {0};
     RtError error;
     rt_alloc_fail_at(1);
     assert_int_equal(rt_occurrences_add(&occurrences, 1, &error), RT_NO_MEMORY);
     rt_alloc_fail_at(0);
     assert_int_equal(rt_occurrences_add(&occurrences, UINT64_C(1) << 40, &error), RT_BROKEN);
-    rt_occurrences_clear(&occurrences);
 }
 
 /* ---- JSON ---- */
@@ -133,8 +132,8 @@ enum { COUNTED = sizeof counted / sizeof counted[0] };
 
 /* None of these has rays share what they do. */
 RT_TEST(sums_over_rays_are_the_counts_and_leaves_are_those_of_the_structure) {
-    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
-    RtResults results;
+    OWNED_MEMORY RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
+    OWNED_RESULTS results;
     count_cloud(e, &results, counted, COUNTED, 2);
     for (uint32_t c = 0; c < COUNTED; c++) {
         const RtBuildResult *build = rt_build_at(&results, 0, c);
@@ -153,12 +152,10 @@ RT_TEST(sums_over_rays_are_the_counts_and_leaves_are_those_of_the_structure) {
         assert_int_equal(build->leaves[RT_QUANTITY_leaf_size].sum, build->structure.references);
         assert_int_equal(build->leaves[RT_QUANTITY_leaf_depth].most, build->structure.depth);
     }
-    rt_results_clear(&results);
-    rt_free(e);
 }
 
 RT_TEST(distributions_are_the_same_on_any_number_of_threads) {
-    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
+    OWNED_MEMORY RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
     RtResults one, three;
     const char *const specs[] = {"grid", "cache+wide", "bvh"};
     count_cloud(e, &one, specs, 3, 1);
@@ -173,7 +170,6 @@ RT_TEST(distributions_are_the_same_on_any_number_of_threads) {
     }
     rt_results_clear(&one);
     rt_results_clear(&three);
-    rt_free(e);
 }
 
 RT_TESTS(distribution, NULL, assert_nothing_is_kept)

@@ -133,28 +133,26 @@ RT_TEST_IN_PLACE(reproduce_compares_distributions_byte_for_byte) {
 RT_TEST_IN_PLACE(reproduce_of_one_scene_compares_its_rows_alone) {
     const Place *place = *state;
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
-    char *counts = read_in(place, "out/counts.csv");
+    OWNED_MEMORY char *counts = read_in(place, "out/counts.csv");
     write_changed(place, "out/counts.csv", counts, "\nballs,", "\nballs,changed");
     assert_int_equal(raytally(place, "reproduce out --only cloud"), 0);
     assert_in_file(place, "output", "Reproduced: cloud in out/counts.csv");
     assert_ends(place, "reproduce out --only balls", 1, "out/counts.csv:8: differs");
     assert_ends(place, "reproduce out --only scattered", 2,
                 "'scattered' is not the label of one of the scenes");
-    rt_free(counts);
 }
 
 RT_TEST_IN_PLACE(reproduce_of_a_sweep_of_scenes_compares_the_rows_of_each) {
     const Place *place = *state;
     write_changed(place, "small.yaml", spread, "n=50\"", "n=50..100*2\"");
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
-    char *counts = read_in(place, "out/counts.csv");
+    OWNED_MEMORY char *counts = read_in(place, "out/counts.csv");
     write_changed(place, "out/counts.csv", counts, "\nballs,", "\nballs,changed");
     assert_int_equal(raytally(place, "reproduce out --only cloud"), 0);
     assert_int_equal(raytally(place, "reproduce out --only cloud:n=100"), 0);
     write_changed(place, "out/counts.csv", counts, "\ncloud:n=100,", "\ncloud:n=100,changed");
     assert_int_equal(raytally(place, "reproduce out --only cloud:n=50"), 0);
     assert_int_equal(raytally(place, "reproduce out --only cloud"), 1);
-    rt_free(counts);
 }
 
 RT_TEST_IN_PLACE(bench_shows_medians_percentiles_and_maxima) {
@@ -176,16 +174,15 @@ RT_TEST_IN_PLACE(bench_shows_medians_percentiles_and_maxima) {
 /* Resumed, the second time without a table, which is made from the journal again. */
 RT_TEST_IN_PLACE(a_run_that_asks_for_hardware_counters_has_a_row_for_each_cell_with_them_or_the_reason) {
     const Place *place = *state;
-    RtCsv csv;
+    OWNED_CSV csv;
     Path path = path_in(place, "out/hardware.csv");
     write_changed(place, "small.yaml", spread, "count_only: yes",
                   "hardware: yes\nrounds: 2\nmilliseconds: 0");
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
-    char *first = read_in(place, "out/hardware.csv");
+    OWNED_MEMORY char *first = read_in(place, "out/hardware.csv");
     assert_int_equal(remove(path.text), 0);
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 0);
     assert_same_file(place, "out/hardware.csv", first);
-    rt_free(first);
     assert_ok(rt_csv_read(&csv, path.text, error));
     assert_int_equal(csv.rows, 2 * 2 * 3);
     for (uint32_t row = 0; row < csv.rows; row++) {
@@ -193,7 +190,6 @@ RT_TEST_IN_PLACE(a_run_that_asks_for_hardware_counters_has_a_row_for_each_cell_w
         assert_true(counted != (*rt_csv_field(&csv, row, rt_csv_find(&csv, "why")) != '\0'));
         assert_true(*rt_csv_field(&csv, row, rt_csv_find(&csv, "cpu")) != '\0');
     }
-    rt_csv_clear(&csv);
 }
 
 static double real_at(const RtCsv *csv, uint32_t row, const char *name) {
@@ -211,11 +207,10 @@ RT_TEST_IN_PLACE(a_run_that_renders_has_the_time_of_a_frame_and_the_part_of_quer
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --strict"), 0);
     assert_in_file(place, "output", "% in queries");
     assert_in_file(place, "output", "holds            query_share of bvh < 1");
-    char *first = read_in(place, "out/render.csv");
+    OWNED_MEMORY char *first = read_in(place, "out/render.csv");
     assert_int_equal(remove(path.text), 0);
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 0);
     assert_same_file(place, "out/render.csv", first);
-    rt_free(first);
     assert_ok(rt_csv_read(&csv, path.text, error));
     assert_int_equal(csv.rows, 2 * 2);
     for (uint32_t row = 0; row < csv.rows; row++) {
@@ -235,7 +230,7 @@ RT_TEST_IN_PLACE(a_run_that_renders_has_the_time_of_a_frame_and_the_part_of_quer
 RT_TEST_IN_PLACE(counting_again_renders_no_frame) {
     const Place *place = *state;
     const RtWorkloadOptions counting = {.threads = 1, .timing = 1, .count_only = true};
-    RtResults results;
+    OWNED_RESULTS results;
     write_changed(place, "small.yaml", spread, "distributions: yes\ncount_only: yes", "render: yes");
     assert_ok(load_small(place, false, error));
     assert_ok(rt_results_init(&results, place->experiment, error));
@@ -244,7 +239,6 @@ RT_TEST_IN_PLACE(counting_again_renders_no_frame) {
         assert_true(at.cell->counted);
         assert_false(rt_build_at(&results, at.workload, at.candidate)->render.known);
     }
-    rt_results_clear(&results);
 }
 
 /* The journal of a run whose limit has left out a cell of grid: without its counts, times and frame. */

@@ -60,13 +60,12 @@ RT_TEST_IN_PLACE(a_run_on_one_thread_starts_no_other) {
 
 RT_TEST_IN_PLACE(the_work_of_a_build_is_in_the_journal) {
     const Place *place = *state;
-    RtResults results;
+    OWNED_RESULTS results;
     write_changed(place, "small.yaml", small_experiment, "accel: ideal", "accel: item+bvh");
     assert_ok(run(place, "out", false, 1, nobody, error));
     assert_ok(rt_run_load(path_in(place, "out").text, place->experiment, &results, error));
     assert_int_equal(rt_build_at(&results, 0, 1)->structure.build.object_tests, 0);
     assert_true(rt_build_at(&results, 0, 3)->structure.build.object_tests > 0);
-    rt_results_clear(&results);
 }
 
 /* ---- the YAML ---- */
@@ -187,11 +186,10 @@ RT_TEST_IN_PLACE(counts_are_the_same_bytes_on_one_thread_and_on_two) {
     const Place *place = *state;
     assert_ok(run(place, "one", RT_START_FRESH, 1, nobody, error));
     assert_ok(run(place, "two", RT_START_FRESH, 2, nobody, error));
-    char *one = read_in(place, "one/counts.csv");
+    OWNED_MEMORY char *one = read_in(place, "one/counts.csv");
     assert_same_file(place, "two/counts.csv", one);
     assert_non_null(strstr(one, ",brute,brute:lanes=16,7,"));
     assert_non_null(strstr(one, "\"grid:")); /* every effective parameter, quoted for its commas */
-    rt_free(one);
 }
 
 typedef struct Stopper {
@@ -205,9 +203,8 @@ static RtStatus stop_after(void *context, const RtResults *results, const RtEven
 }
 
 static void cut_last_line(const Place *place, const char *name) {
-    char *text = read_in(place, name);
+    OWNED_MEMORY char *text = read_in(place, name);
     assert_int_equal(truncate(path_in(place, name).text, (off_t)strlen(text) - 9), 0);
-    rt_free(text);
 }
 
 /* Every line of `before` but its last, which was cut, must still be there as it was. */
@@ -238,7 +235,7 @@ RT_TEST_IN_PLACE(an_interrupted_run_resumes_and_loses_no_finished_cell) {
         RtRunObserver observer = {&stopper, stop_after, NULL};
         assert_int_equal(run(place, "parts", RT_START_ANEW, 1, observer, &stopped), RT_IO);
         cut_last_line(place, "parts/cells.jsonl");
-        char *before = read_in(place, "parts/cells.jsonl");
+        OWNED_MEMORY char *before = read_in(place, "parts/cells.jsonl");
         assert_ok(run(place, "parts", RT_START_RESUME, 1, nobody, error));
         char *after = read_in(place, "parts/cells.jsonl"), *counts = read_in(place, "parts/counts.csv");
         assert_kept(before, after);
@@ -246,7 +243,6 @@ RT_TEST_IN_PLACE(an_interrupted_run_resumes_and_loses_no_finished_cell) {
         assert_int_equal(count_of(after, "\"counted\":"), count_of(lines, "\"counted\":"));
         stopper = (Stopper){0};
         assert_ok(run(place, "parts", RT_START_RESUME, 1, observer, error));
-        rt_free(before);
         rt_free(after);
         rt_free(counts);
     }
@@ -273,14 +269,13 @@ RT_TEST_IN_PLACE(a_finished_run_that_is_resumed_measures_nothing_and_writes_the_
     const Place *place = *state;
     assert_ok(run(place, "done", RT_START_FRESH, 1, nobody, error));
     char *counts = read_in(place, "done/counts.csv"), *times = read_in(place, "done/times.csv");
-    char *rounds = read_in(place, "done/rounds.csv");
+    OWNED_MEMORY char *rounds = read_in(place, "done/rounds.csv");
     Stopper stopper = {0}; /* the first event would stop it */
     RtRunObserver observer = {&stopper, stop_after, NULL};
     assert_ok(run(place, "done", RT_START_RESUME, 1, observer, error));
     assert_same_file(place, "done/counts.csv", counts);
     assert_same_file(place, "done/times.csv", times);
     assert_same_file(place, "done/rounds.csv", rounds);
-    rt_free(rounds);
     rt_free(counts);
     rt_free(times);
 }
@@ -339,12 +334,11 @@ RT_TEST_IN_PLACE(a_run_of_another_experiment_is_not_resumed) {
 RT_TEST_IN_PLACE(the_report_has_the_question_and_nothing_outside_itself) {
     const Place *place = *state;
     assert_ok(run(place, "page", RT_START_FRESH, 1, nobody, error));
-    char *page = read_in(place, "page/report.html");
+    OWNED_MEMORY char *page = read_in(place, "page/report.html");
     assert_non_null(strstr(page, "Which is cheaper?"));
     assert_non_null(strstr(page, "data:image/png;base64,"));
     assert_null(strstr(page, "src=\"http"));
     assert_non_null(strstr(page, "</html>"));
-    rt_free(page);
 }
 
 RT_TEST_IN_PLACE(a_missing_scene_is_an_error_unless_it_is_optional) {
@@ -369,10 +363,9 @@ RT_TEST_IN_PLACE(an_accelerator_of_a_missing_plugin_is_an_error_unless_it_is_opt
         assert_int_equal(status, tried[i].said ? RT_BAD_INPUT : RT_OK);
         if (tried[i].said) assert_non_null(strstr(error.message, tried[i].said));
     }
-    char *counts = read_in(place, "optional/counts.csv");
+    OWNED_MEMORY char *counts = read_in(place, "optional/counts.csv");
     assert_null(strstr(counts, "nobodys"));
     assert_non_null(strstr(counts, "grid"));
-    rt_free(counts);
 }
 
 /* ---- tables ---- */
@@ -380,7 +373,7 @@ RT_TEST_IN_PLACE(an_accelerator_of_a_missing_plugin_is_an_error_unless_it_is_opt
 /* The null run's interval begins just above 1: in every table, and in the verdict. */
 RT_TEST_IN_PLACE(the_verdict_on_null_runs_is_what_the_tables_show) {
     const Place *place = *state;
-    RtResults results;
+    OWNED_RESULTS results;
     char sentence[RT_MAX_SENTENCE];
     assert_ok(load_small(place, false, error));
     assert_ok(rt_results_init(&results, place->experiment, error));
@@ -400,7 +393,6 @@ RT_TEST_IN_PLACE(the_verdict_on_null_runs_is_what_the_tables_show) {
     fclose(file);
     assert_in_file(place, "tables", ",1,1.0000003,1.0004,");
     assert_in_file(place, "tables", " 1.0000020 [1.0000003, 1.0004000]");
-    rt_results_clear(&results);
 }
 
 RT_TESTS(experiment, NULL, NULL)

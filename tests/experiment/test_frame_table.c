@@ -90,9 +90,8 @@ static int tear_down(void **state) {
 #define FRAME_TEST(name) RT_TEST_WITH(name, set_up, tear_down)
 
 static void expect_sentence(uint32_t t, const char *sentence) {
-    char *text = rt_frame_sentence(&results, t);
+    OWNED_MEMORY char *text = rt_frame_sentence(&results, t);
     assert_string_equal(text, sentence);
-    rt_free(text);
 }
 
 /* Frames take 4 ms, 0.136, 0.08, 0.011 and 0.02 ms. */
@@ -140,20 +139,18 @@ FRAME_TEST(a_sentence_about_many_overlays_is_not_cut_off) {
     fill();
     for (uint32_t c = IDEAL + 1; c < e->candidate_count; c++)
         set(0, c, "light:cells=1+wide:width=8", 40, 40, 6);
-    char *text = rt_frame_sentence(&results, 0);
+    OWNED_MEMORY char *text = rt_frame_sentence(&results, 0);
     assert_true(strlen(text) > 2000);
     assert_non_null(
         strstr(text, "light+wide is 1.82 times as fast as wide alone, light:cells=1+wide 1.00 times"));
     assert_non_null(
         strstr(text, ", light:cells=60+wide 1.00 times (level). The fastest of all is light+wide: "));
     assert_string_equal(text + strlen(text) - 6, "brute.");
-    rt_free(text);
 }
 
 static bool says(uint32_t t, const char *part) {
-    char *text = rt_frame_sentence(&results, t);
+    OWNED_MEMORY char *text = rt_frame_sentence(&results, t);
     const bool found = strstr(text, part) != NULL;
-    rt_free(text);
     return found;
 }
 

@@ -20,10 +20,9 @@ static int make_run(void **state) {
     if (make_place_with(state, small_experiment) != 0) return -1;
     assert_ok(load_small(*state, false, error));
     if (raytally(*state, "run small.yaml --out out") != 0) return -1;
-    char *text = read_in(*state, "out/cells.jsonl");
+    OWNED_MEMORY char *text = read_in(*state, "out/cells.jsonl");
     assert_true(strlen(text) < sizeof written);
     strcpy(written, text);
-    rt_free(text);
     return 0;
 }
 
@@ -37,18 +36,17 @@ static RtStatus read_journal(const Place *place, const char *text, RtResults *re
 
 RT_TEST_IN_PLACE(a_journal_without_the_times_of_rounds_is_read) {
     const Place *place = *state;
-    RtResults results;
+    OWNED_RESULTS results;
     for (char *at = written; (at = strstr(at, "\"each_")) != NULL;) memcpy(at, "\"EACH_", 6);
     assert_ok(read_journal(place, written, &results, error));
     const RtCell *cell = rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
     assert_true(cell->timed && cell->rounds == 3 && !cell->round_times);
-    rt_results_clear(&results);
 }
 
 /* They gave the median of up to three builds. */
 RT_TEST_IN_PLACE(a_journal_with_one_time_for_each_structure_is_read_as_builds_of_unknown_number) {
     const Place *place = *state;
-    RtResults results;
+    OWNED_RESULTS results;
     for (char *at = written; (at = strstr(at, "\"builds\"")) != NULL;) memcpy(at, "\"BUILDS\"", 8);
     for (char *at = strstr(written, "\"built\""); at; at = strstr(at, "\"built\"")) {
         char *list = strstr(at, "\"seconds\":[") + 10, *end = strchr(list, ']');
@@ -60,7 +58,6 @@ RT_TEST_IN_PLACE(a_journal_with_one_time_for_each_structure_is_read_as_builds_of
     const RtBuildResult *build = rt_build_at(&results, 0, 0);
     assert_true(build->known && build->builds == 0);
     assert_true(build->seconds.median == 0.25 && build->seconds.low == 0.25 && build->seconds.high == 0.25);
-    rt_results_clear(&results);
 }
 
 /* The last line, and so some measurements, are missing. */
@@ -74,10 +71,9 @@ RT_TEST_IN_PLACE(a_resumed_run_keeps_the_builds_and_their_intervals) {
     *last = '\0';
     write_in(place, "out/cells.jsonl", written);
     assert_int_equal(raytally(place, "run small.yaml --out out --resume"), 0);
-    char *journal = read_in(place, "out/cells.jsonl");
+    OWNED_MEMORY char *journal = read_in(place, "out/cells.jsonl");
     assert_non_null(strstr(journal, line));
     assert_null(strstr(strstr(journal, line) + strlen(line), line));
-    rt_free(journal);
     assert_in_file(place, "out/times.csv", ",build_seconds,build_low,build_high,builds,bytes,");
     assert_in_file(place, "out/times.csv", ",20,");
 }
@@ -85,7 +81,7 @@ RT_TEST_IN_PLACE(a_resumed_run_keeps_the_builds_and_their_intervals) {
 /* Of two lines about a cell the second counts: the times of the first are not those of its rounds. */
 RT_TEST_IN_PLACE(a_line_of_more_rounds_without_their_times_takes_the_place_of_one_with_them) {
     const Place *place = *state;
-    RtResults results;
+    OWNED_RESULTS results;
     static char both[2 * sizeof written];
     char *again = both + strlen(written);
     strcpy(both, written);
@@ -95,19 +91,17 @@ RT_TEST_IN_PLACE(a_line_of_more_rounds_without_their_times_takes_the_place_of_on
     assert_ok(read_journal(place, both, &results, error));
     const RtCell *cell = rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
     assert_true(cell->timed && cell->rounds == 9 && !cell->round_times);
-    rt_results_clear(&results);
 }
 
 RT_TEST_IN_PLACE(a_count_of_2_63_less_1_is_read_as_it_was_written) {
     const Place *place = *state;
-    RtResults results;
+    OWNED_RESULTS results;
     write_changed(place, "out/cells.jsonl", written, "\"differ\":0", "\"differ\":9223372036854775807");
     assert_ok(rt_run_load(path_in(place, "out").text, place->experiment, &results, error));
     uint64_t most = 0;
     for (RtCellCursor at = {0}; rt_results_next(&results, &at);)
         if (at.cell->differ > most) most = at.cell->differ;
     assert_true(most == INT64_MAX);
-    rt_results_clear(&results);
 }
 
 RT_TEST_IN_PLACE(a_line_that_no_journal_has_is_refused_by_its_number) {

@@ -145,7 +145,7 @@ RT_TEST_IN_PLACE(a_run_that_is_killed_at_any_moment_resumes_to_the_same_counts) 
     assert_ok(run(place, "whole", RT_START_FRESH, error));
     int all = changes;
     assert_true(all > MOMENTS);
-    char *whole = read_in(place, "whole/counts.csv");
+    OWNED_MEMORY char *whole = read_in(place, "whole/counts.csv");
     for (int i = 0; i <= MOMENTS; i++) {
         char directory[32], counts[64], cells[64];
         snprintf(directory, sizeof directory, "part-%d", i);
@@ -158,12 +158,10 @@ RT_TEST_IN_PLACE(a_run_that_is_killed_at_any_moment_resumes_to_the_same_counts) 
         assert_same_file(place, counts, whole);
         assert_no_temporary(place, directory);
         /* The journal has all of it: nothing is measured once more. */
-        char *journal = read_in(place, cells);
+        OWNED_MEMORY char *journal = read_in(place, cells);
         assert_ok(run(place, directory, RT_START_RESUME, error));
         assert_same_file(place, cells, journal);
-        rt_free(journal);
     }
-    rt_free(whole);
 }
 
 /* The last two have dates in them. */
@@ -209,31 +207,36 @@ static bool is_untouched(const Place *place, const char *old) {
     return true;
 }
 
-/* Pictures and counts of the new one differ. */
-RT_TEST_IN_PLACE(a_run_that_begins_anew_and_is_killed_leaves_the_old_one_whole_or_the_new_one_to_be_resumed) {
-    const Place *place = *state;
+/* Kills `work` over a copy of `old` at every other change of a file, and then goes on: what is untouched is
+ * `old`, and all else becomes `new`, whose pictures and counts differ. */
+static void kill_often(const Place *place, Work *work, int last) {
     int untouched = 0, begun = 0;
-    assert_ok(run(place, "old", RT_START_FRESH, error));
-    write_changed(place, "small.yaml", small_experiment, "cloud, size: 8x8", "cloud, size: 10x8");
-    assert_ok(run(place, "new", RT_START_FRESH, error));
-    for (int moment = 1; moment < 50; moment += 2) {
+    for (int moment = 1; moment <= last; moment += 2) {
         copy_folder(place, "old", "out");
-        assert_true(killed_at(place, moment, run, "out", RT_START_ANEW));
+        assert_true(killed_at(place, moment, work, "out", RT_START_ANEW));
         if (is_untouched(place, "old")) {
             untouched++;
             continue;
         }
-        assert_ok(run(place, "out", RT_START_RESUME, error));
+        assert_ok(work == merge && moment % 4 == 1 ? merge(place, "out", RT_START_ANEW, error)
+                                                   : run(place, "out", RT_START_RESUME, error));
         assert_same_results(place, "out", "new");
-        assert_no_temporary(place, "out");
+        if (work == run) assert_no_temporary(place, "out");
         begun++;
     }
     assert_true(untouched > 3 && begun > 3);
 }
 
+RT_TEST_IN_PLACE(a_run_that_begins_anew_and_is_killed_leaves_the_old_one_whole_or_the_new_one_to_be_resumed) {
+    const Place *place = *state;
+    assert_ok(run(place, "old", RT_START_FRESH, error));
+    write_changed(place, "small.yaml", small_experiment, "cloud, size: 8x8", "cloud, size: 10x8");
+    assert_ok(run(place, "new", RT_START_FRESH, error));
+    kill_often(place, run, 49);
+}
+
 RT_TEST_IN_PLACE(a_merge_that_is_killed_leaves_the_earlier_results_whole_or_can_be_made_again) {
     const Place *place = *state;
-    int untouched = 0, begun = 0;
     assert_ok(run(place, "old", RT_START_FRESH, error));
     write_changed(place, "small.yaml", small_experiment, "cloud, size: 8x8", "cloud, size: 10x8");
     for (uint32_t shard = 1; shard <= 2; shard++)
@@ -242,19 +245,7 @@ RT_TEST_IN_PLACE(a_merge_that_is_killed_leaves_the_earlier_results_whole_or_can_
     changes = 0;
     copy_folder(place, "old", "out");
     assert_ok(merge(place, "out", RT_START_ANEW, error));
-    for (int moment = 1, all = changes; moment <= all; moment += 2) {
-        copy_folder(place, "old", "out");
-        assert_true(killed_at(place, moment, merge, "out", RT_START_ANEW));
-        if (is_untouched(place, "old")) {
-            untouched++;
-            continue;
-        }
-        assert_ok(moment % 4 == 1 ? merge(place, "out", RT_START_ANEW, error)
-                                  : run(place, "out", RT_START_RESUME, error));
-        assert_same_results(place, "out", "new");
-        begun++;
-    }
-    assert_true(untouched > 3 && begun > 3);
+    kill_often(place, merge, changes);
 }
 
 RT_TESTS(killed_run, NULL, NULL)

@@ -42,10 +42,9 @@ static void wait_seconds(double seconds) {
 /* Whole lines: the last may have been cut off. */
 static size_t journal_lines(const Place *place) {
     if (!rt_file_exists(path_in(place, "out/cells.jsonl").text)) return 0;
-    char *text = read_in(place, "out/cells.jsonl");
+    OWNED_MEMORY char *text = read_in(place, "out/cells.jsonl");
     size_t lines = 0;
     for (const char *c = text; *c; c++) lines += *c == '\n';
-    rt_free(text);
     return lines;
 }
 
@@ -65,20 +64,18 @@ RT_TEST_IN_PLACE(a_run_that_is_killed_again_and_again_ends_as_one_that_was_not) 
     uint32_t draw = 12345, killed = 0, ended = 0;
     size_t before = 0;
     while (killed < 100) {
-        int how = 0;
         pid_t child = start_raytally(place, RESUME);
         draw = draw * 1664525 + 1013904223;
         wait_seconds(0.2 * whole * draw / 4294967296.0);
         kill(child, SIGKILL);
-        waitpid(child, &how, 0);
+        const int end = end_of(child);
         size_t now = journal_lines(place);
         assert_true(now >= before);
         before = now;
-        if (WIFSIGNALED(how)) {
+        if (end == 128 + SIGKILL) {
             killed++;
         } else {
-            if (WEXITSTATUS(how) != 0)
-                fail_msg("exit code %d: %s", WEXITSTATUS(how), read_in(place, "message"));
+            if (end != 0) fail_msg("exit code %d: %s", end, read_in(place, "message"));
             assert_equal_files(place, "whole/counts.csv", "out/counts.csv");
             assert_int_equal(rename(path_in(place, "out").text, numbered(place, ended++).text), 0);
             before = 0;
@@ -91,12 +88,10 @@ RT_TEST_IN_PLACE(a_run_that_is_killed_again_and_again_ends_as_one_that_was_not) 
 
 RT_TEST_IN_PLACE(an_interrupted_run_says_what_is_kept_and_how_to_go_on) {
     const Place *place = *state;
-    int how;
     pid_t child = start_raytally(place, RESUME);
     while (journal_lines(place) < 20) wait_seconds(0.01);
     kill(child, SIGINT);
-    waitpid(child, &how, 0);
-    assert_true(WIFEXITED(how) && WEXITSTATUS(how) == 128 + SIGINT);
+    assert_int_equal(end_of(child), 128 + SIGINT);
     assert_in_file(place, "message",
                    " of 56 cells are finished, all measurements are kept in out. To continue:");
     assert_in_file(place, "message", "raytally run small.yaml --out out --threads 1 --resume");
@@ -121,7 +116,7 @@ RT_TEST_IN_PLACE(a_dry_run_of_a_changed_experiment_estimates_its_time_from_the_p
     const Place *place = *state;
     write_changed(place, "first.yaml", long_experiment, "density=1..16*2", "density=1|4");
     assert_int_equal(raytally(place, "run first.yaml --threads 1 --out out"), 0);
-    char *journal = read_in(place, "out/cells.jsonl");
+    OWNED_MEMORY char *journal = read_in(place, "out/cells.jsonl");
     write_changed(place, "small.yaml", long_experiment, "label: balls, size: 24x24",
                   "label: balls, size: 32x32");
     assert_ends(place, "run small.yaml --threads 1 --out out --dry-run", 0,
@@ -134,7 +129,6 @@ RT_TEST_IN_PLACE(a_dry_run_of_a_changed_experiment_estimates_its_time_from_the_p
     /* 3 scenes by 2 kinds by 4 accelerators. */
     assert_in_file(place, "output", "56 cells, 24 of them as in the previous run; all of them take about ");
     assert_same_file(place, "out/cells.jsonl", journal);
-    rt_free(journal);
     assert_ends(place, "run small.yaml --out out --force --dry-run", 0, "");
     assert_in_file(place, "output", "56 cells, 24 of them as in the previous run");
     /* Nothing is known if this program cannot read the previous experiment. */
@@ -146,15 +140,13 @@ RT_TEST_IN_PLACE(a_dry_run_of_a_changed_experiment_estimates_its_time_from_the_p
 RT_TEST_IN_PLACE(a_part_is_measured_and_then_the_rest) {
     const Place *place = *state;
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out whole"), 0);
-    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --only cloud:n=400/brute/primary"),
-                     0);
-    assert_in_file(place, "message", "a part was measured");
+    assert_ends(place, "run small.yaml --threads 1 --out out --only cloud:n=400/brute/primary", 0,
+                "a part was measured");
     assert_false(rt_file_exists(path_in(place, "out/manifest.json").text));
-    char *counts = read_in(place, "out/counts.csv");
+    OWNED_MEMORY char *counts = read_in(place, "out/counts.csv");
     assert_non_null(strstr(counts, "brute"));
     assert_null(strstr(counts, "grid"));
     assert_null(strstr(counts, "diffuse"));
-    rt_free(counts);
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out"), 2);
     assert_int_equal(raytally(place, RESUME), 0);
     assert_equal_files(place, "whole/counts.csv", "out/counts.csv");
@@ -188,9 +180,8 @@ RT_TEST_IN_PLACE(what_goes_beyond_a_limit_is_left_out_and_recorded) {
     assert_in_file(place, "output", "Left out: bvh on cloud:n=30000");
     /* The option takes the place of the limit in the YAML. */
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --force --memory 1G"), 0);
-    char *lines = read_in(place, "out/cells.jsonl");
+    OWNED_MEMORY char *lines = read_in(place, "out/cells.jsonl");
     assert_non_null(strstr(lines, "\"scene\":\"cloud:n=30000\",\"accel\":\"bvh\",\"kind\":\"primary\""));
-    rt_free(lines);
     assert_ends(place, "run small.yaml --threads 1 --out out --memory 1Q", 2, "as in 512M or 4G");
 }
 
@@ -211,7 +202,7 @@ RT_TEST_IN_PLACE(several_parts_are_measured_together) {
     char command[256];
     snprintf(command, sizeof command, "run small.yaml --threads 1 --out out %s", parts);
     assert_int_equal(raytally(place, command), 0);
-    char *journal = read_in(place, "out/cells.jsonl");
+    OWNED_MEMORY char *journal = read_in(place, "out/cells.jsonl");
     for (int s = 0; s < 3; s++) {
         for (int a = 0; a < 3; a++) {
             for (int k = 0; k < 2; k++) {
@@ -220,7 +211,6 @@ RT_TEST_IN_PLACE(several_parts_are_measured_together) {
             }
         }
     }
-    rt_free(journal);
     snprintf(command, sizeof command, "run small.yaml --threads 1 --out out --resume --dry-run %s", parts);
     assert_int_equal(raytally(place, command), 0);
     assert_in_file(place, "output", "all of them finished\n");
@@ -275,7 +265,7 @@ static RtStatus look(void *context, const RtResults *results, const RtEvent *eve
 RT_TEST_IN_PLACE(the_time_that_is_left_is_foretold_from_a_tenth_on) {
     const Place *place = *state;
     static Watch watch;
-    RtResults results;
+    OWNED_RESULTS results;
     watch = (Watch){.options = {.threads = 1, .timing = 1}};
     write_changed(place, "small.yaml", long_experiment, "milliseconds: 3", "milliseconds: 8");
     assert_ok(load_small(place, false, error));
@@ -296,14 +286,13 @@ RT_TEST_IN_PLACE(the_time_that_is_left_is_foretold_from_a_tenth_on) {
     assert_int_equal(watch.last.cells, 56);
     assert_int_equal(watch.last.finished, 56);
     assert_true(watch.last.left == 0);
-    rt_results_clear(&results);
 }
 
 /* bvh takes 1 s for 10000 steps; grid is counted alone. */
 RT_TEST_IN_PLACE(what_was_not_timed_yet_is_foretold_by_its_tests_and_steps) {
     const Place *place = *state;
     const RtWorkloadOptions options = {.threads = 1, .timing = 1};
-    RtResults results;
+    OWNED_RESULTS results;
     assert_ok(load_small(place, false, error));
     assert_ok(rt_results_init(&results, place->experiment, error));
     results.workloads[0].known = true;
@@ -323,7 +312,6 @@ RT_TEST_IN_PLACE(what_was_not_timed_yet_is_foretold_by_its_tests_and_steps) {
     once = rt_forecast(&results, &options).left;
     strcpy(grid->left_out, "for comparison");
     assert_true(fabs(once - rt_forecast(&results, &options).left - 5 * 1) < 0.01); /* counting, too */
-    rt_results_clear(&results);
 }
 
 /* A warm-up and three rounds of 100 pixels, a millisecond each; diffuse rays are not of a frame, and brute is
@@ -332,7 +320,7 @@ RT_TEST_IN_PLACE(frames_that_are_not_rendered_yet_are_foretold_by_their_rays) {
     const Place *place = *state;
     const RtWorkloadOptions options = {.threads = 1, .timing = 1};
     RtWorkloadOptions counting = options;
-    RtResults results;
+    OWNED_RESULTS results;
     assert_ok(load_small(place, false, error));
     place->experiment->render = true;
     assert_ok(rt_results_init(&results, place->experiment, error));
@@ -353,7 +341,6 @@ RT_TEST_IN_PLACE(frames_that_are_not_rendered_yet_are_foretold_by_their_rays) {
     counting.count_only = true;
     render->seconds.median = 1000;
     assert_true(rt_forecast(&results, &counting).known < 1000);
-    rt_results_clear(&results);
 }
 
 RT_TESTS(long_run, NULL, NULL)

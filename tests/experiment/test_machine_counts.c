@@ -108,7 +108,7 @@ static char *text_of(const RtResults *results, bool csv) {
 }
 
 RT_TEST(counts_are_per_ray_of_the_work_that_is_timed) {
-    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
+    OWNED_MEMORY RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
     RtResults results;
     for (int threads = 1; threads <= 2; threads++) {
         counting_rays = true;
@@ -128,12 +128,11 @@ RT_TEST(counts_are_per_ray_of_the_work_that_is_timed) {
         free(eye);
         rt_results_clear(&results);
     }
-    rt_free(e);
 }
 
 RT_TEST(where_nothing_can_be_counted_cells_are_known_to_have_none_and_the_reason_is_shown) {
-    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
-    RtResults results;
+    OWNED_MEMORY RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
+    OWNED_RESULTS results;
     measure(e, &results, none, 1, false);
     const RtCell *cell = rt_cell_at(&results, 0, 0, RT_RAY_PRIMARY);
     assert_true(cell->timed && cell->hardware.known && *cell->hardware.why);
@@ -145,17 +144,13 @@ RT_TEST(where_nothing_can_be_counted_cells_are_known_to_have_none_and_the_reason
     assert_non_null(strstr(text, cell->hardware.why));
     free(text);
     free(eye);
-    rt_results_clear(&results);
-    rt_free(e);
 }
 
 RT_TEST(where_nothing_is_timed_nothing_is_counted_by_the_machine) {
-    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
-    RtResults results;
+    OWNED_MEMORY RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
+    OWNED_RESULTS results;
     measure(e, &results, none, 1, true);
     assert_false(rt_cell_at(&results, 0, 0, RT_RAY_PRIMARY)->hardware.known);
-    rt_results_clear(&results);
-    rt_free(e);
 }
 
 RT_TESTS(machine_counts, NULL, NULL)

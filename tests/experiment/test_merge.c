@@ -103,12 +103,11 @@ RT_TEST_IN_PLACE(a_merge_into_the_directory_of_another_run_is_refused_and_remove
     const Place *place = *state;
     RtLock lock = RT_NO_LOCK;
     assert_int_equal(raytally(place, "merge s1 s2 s3 s4 -o all"), 0);
-    char *before = read_in(place, "all/counts.csv");
+    OWNED_MEMORY char *before = read_in(place, "all/counts.csv");
     assert_ok(rt_lock_take(&lock, path_in(place, "all").text, error));
     assert_ends(place, "merge s1 s2 s3 s4 -o all --force", 2, "is writing");
     assert_same_file(place, "all/counts.csv", before);
     rt_lock_release(&lock);
-    rt_free(before);
 }
 
 RT_TEST_IN_PLACE(a_shard_is_gone_on_with_as_the_shard_that_it_is) {
@@ -148,10 +147,9 @@ RT_TEST_IN_PLACE(another_program_of_uncommitted_sources_is_another_build) {
              "| sort -u | wc -l | grep -qx 2",
              place->folder);
     assert_int_equal(system(program), 0);
-    char *manifest = read_in(place, "s2/manifest.json");
+    OWNED_MEMORY char *manifest = read_in(place, "s2/manifest.json");
     const bool uncommitted =
         strstr(manifest, "\"dirty\": true") || strstr(manifest, "\"commit\": \"unknown\"");
-    rt_free(manifest);
     int code = raytally(place, "merge s1 s2 s3 s4 -o all");
     assert_int_equal(code, uncommitted ? 2 : 0);
     if (!uncommitted) return;

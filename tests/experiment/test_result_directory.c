@@ -35,8 +35,8 @@ RtStatus __wrap_rt_scene_open(const char *spec, RtScene *scene, RtError *error) 
 RT_TEST_IN_PLACE(results_are_refused_unless_they_are_gone_on_with_or_begun_anew) {
     const Place *place = *state;
     assert_ends(place, "run small.yaml", 0, "");
-    char *journal = read_in(place, "results/small/cells.jsonl"),
-         *page = read_in(place, "results/small/manifest.json");
+    OWNED_MEMORY char *journal = read_in(place, "results/small/cells.jsonl"),
+                      *page = read_in(place, "results/small/manifest.json");
     assert_ends(place, "run small.yaml", 2, "is finished: write its tables again with --resume");
     assert_ends(place, "run small.yaml --out results/small", 2, "with --force");
     assert_ends(place, "run small.yaml --quick", 2, "without --quick");
@@ -53,8 +53,6 @@ RT_TEST_IN_PLACE(results_are_refused_unless_they_are_gone_on_with_or_begun_anew)
     assert_same_file(place, "results/small/cells.jsonl", journal);
     assert_ends(place, "run other.yaml --resume --force", 0, "");
     assert_ends(place, "run other.yaml --force --resume", 0, "nothing was left to measure");
-    rt_free(journal);
-    rt_free(page);
 }
 
 /* ---- formats ---- */
@@ -88,13 +86,12 @@ RT_TEST_IN_PLACE(results_of_0_1_which_name_no_format_are_read_and_those_of_a_lat
 RT_TEST_IN_PLACE(counts_of_another_version_may_differ_and_reproduce_says_so) {
     const Place *place = *state;
     assert_ends(place, "run small.yaml", 0, "");
-    char *manifest = read_in(place, "results/small/manifest.json");
+    OWNED_MEMORY char *manifest = read_in(place, "results/small/manifest.json");
     assert_ends(place, "reproduce results/small", 0, "");
     assert_not_in_file(place, "output", "some may differ");
     write_changed(place, "results/small/manifest.json", manifest, "\"counts\": 1", "\"counts\": 2");
     assert_ends(place, "reproduce results/small", 0,
                 "counts of version 2, and this raytally makes version 1");
-    rt_free(manifest);
 }
 
 /* ---- what is measured ---- */
@@ -113,18 +110,16 @@ RT_TEST_IN_PLACE(run_and_bench_thin_a_set_to_the_same_rays) {
     assert_equal_files(place, "results/thin/counts.csv", "thin.csv");
     /* Runs are as long as when it was measured, even if the default has changed since. */
     assert_ends(place, "reproduce results/thin", 0, "");
-    char *manifest = read_in(place, "results/thin/manifest.json");
+    OWNED_MEMORY char *manifest = read_in(place, "results/thin/manifest.json");
     write_changed(place, "results/thin/manifest.json", manifest, "\"coherent_run\": 256",
                   "\"coherent_run\": 1");
     assert_ends(place, "reproduce results/thin", 1, "differs from the new counts");
-    rt_free(manifest);
 }
 
 static int occurrences(const Place *place, const char *name, const char *what) {
-    char *text = read_in(place, name);
+    OWNED_MEMORY char *text = read_in(place, name);
     int count = 0;
     for (const char *at = text; (at = strstr(at, what)); at++) count++;
-    rt_free(text);
     return count;
 }
 
@@ -168,11 +163,10 @@ RT_TEST_IN_PLACE(a_finished_run_that_is_resumed_shows_its_table_and_keeps_its_ma
 RT_TEST_IN_PLACE(results_without_their_journal_are_not_gone_on_with) {
     const Place *place = *state;
     assert_ends(place, "run small.yaml", 0, "");
-    char *counts = read_in(place, "results/small/counts.csv");
+    OWNED_MEMORY char *counts = read_in(place, "results/small/counts.csv");
     assert_int_equal(remove(path_in(place, "results/small/cells.jsonl").text), 0);
     assert_ends(place, "run small.yaml --resume", 2, "no cells.jsonl");
     assert_same_file(place, "results/small/counts.csv", counts);
-    rt_free(counts);
 }
 
 RT_TEST_IN_PLACE(what_begins_anew_leaves_nothing_of_what_was_there) {
@@ -355,14 +349,6 @@ static void assert_draws(const Place *place, const char *arguments, int code, co
 }
 
 /* style.gp as it is shipped, to a file of the place. */
-static void copy_style(const Place *place, const char *name) {
-    char *text;
-    size_t size;
-    assert_ok(rt_file_read(RT_SOURCE_DIR "/experiments/style.gp", 1 << 20, &text, &size, error));
-    write_in(place, name, text);
-    rt_free(text);
-}
-
 static void name_plots(const Place *place, const char *plots) {
     write_changed(place, "small.yaml", small_experiment, "limit: 100\n", plots);
 }
@@ -428,9 +414,8 @@ RT_TEST_IN_PLACE(a_merge_draws_by_scripts_that_raytally_does_not_ship_only_if_th
     name_plots(place, "limit: 100\nplots: [x.gp]\n");
     assert_int_equal(mkdir(path_in(place, "t1").text, 0777), 0);
     write_in(place, "t1/x.gp", "print 1\n");
-    char *yaml = read_in(place, "small.yaml");
+    OWNED_MEMORY char *yaml = read_in(place, "small.yaml");
     write_in(place, "t1/small.yaml", yaml);
-    rt_free(yaml);
     for (int i = 0; i < 4; i++) assert_draws(place, runs[i], 0, "", false);
     assert_draws(place, "merge s1 s2 -o all", 2, "x.gp: raytally does not ship", false);
     assert_draws(place, "merge s1 s2 -o all --trust", 0, "", true);

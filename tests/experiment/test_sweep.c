@@ -114,7 +114,7 @@ RT_TEST(values_that_rise_by_a_factor_want_a_logarithmic_axis) {
 
 /* Two accelerators, and a scene, have parameters of one name. */
 RT_TEST(what_is_swept_has_a_label_a_base_and_a_column) {
-    RtExperiment *e = rt_alloc(1, sizeof *e);
+    OWNED_MEMORY RtExperiment *e = rt_alloc(1, sizeof *e);
     RtCandidate octree = {.ray_stride = 1, .spec = "octree:margin=0|0.1", .label = "oct"},
                 grid = {.ray_stride = 1, .spec = "grid:margin=0|0.1,nest=4"};
     RtWorkload scene = {.depth = 3};
@@ -139,7 +139,6 @@ RT_TEST(what_is_swept_has_a_label_a_base_and_a_column) {
     assert_string_equal(rt_swept_of(e, &keys[1], 1, 3), "0.1");
     strcpy(e->name, "test");
     assert_ok(rt_experiment_check(e, where, error));
-    rt_free(e);
 }
 
 RT_TESTS(sweep, NULL, NULL)

@@ -81,7 +81,7 @@ static void assert_costs(const Row *row, const RtAccel *accel) {
 
 static void structure_and_costs_are_the_published_ones(void **state) {
     const Row *row = *state;
-    RtScene scene;
+    OWNED_SCENE scene;
     RtAccel *accel;
     RtDescription d;
     assert_ok(rt_scene_open(row->scene, &scene, error));
@@ -95,7 +95,6 @@ static void structure_and_costs_are_the_published_ones(void **state) {
     assert_true(near((double)d.references, (double)row->references));
     if (row->tests > 0) assert_costs(row, accel);
     rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST_GROUP(published) {

@@ -69,7 +69,7 @@ static RtStatus spin_and_touch(void *context, size_t item, int thread, RtError *
 
 /* Threads end within: what they counted must not be lost, nor be counted again with the next. */
 RT_TEST(threads_that_are_started_meanwhile_are_counted_each_time_once) {
-    RtHardware hardware;
+    OWNED(rt_hardware_close) RtHardware hardware;
     if (!open_events(&hardware)) RT_SKIP("a kernel that allows perf_event_open");
     double first = 0;
     for (int threads = 1; threads <= 4; threads++) {
@@ -80,7 +80,6 @@ RT_TEST(threads_that_are_started_meanwhile_are_counted_each_time_once) {
         assert_true(800 <= counts.of[FAULTS] && counts.of[FAULTS] < 1.5 * first + 200);
         assert_true(0.15e9 < counts.of[CLOCK] && counts.of[CLOCK] < 0.5e9);
     }
-    rt_hardware_close(&hardware);
 }
 
 RT_TEST(an_event_that_cannot_be_had_is_not_known_and_the_others_are) {
@@ -116,7 +115,7 @@ RT_TEST(what_was_counted_in_a_part_of_the_time_is_scaled_to_all_of_it) {
 
 /* Either they count something, or there is a reason. */
 RT_TEST(counters_of_the_processor_count_or_say_why_not) {
-    RtHardware hardware;
+    OWNED(rt_hardware_close) RtHardware hardware;
     RtError error = {RT_OK, ""};
     RtStatus status = rt_hardware_open(&hardware, rt_hardware_events, &error);
     if (status == RT_OK) {
@@ -129,7 +128,6 @@ RT_TEST(counters_of_the_processor_count_or_say_why_not) {
         assert_int_equal(status, RT_NOT_AVAILABLE);
         assert_true(*error.message);
     }
-    rt_hardware_close(&hardware);
 }
 
 RT_TESTS(hardware, NULL, NULL)

@@ -51,7 +51,7 @@ RT_TEST(counts_of_2_63_or_more_are_refused_and_never_wrap_around) {
     RtCount count;
     open_stage(&stage, "balls:size=1", 8, 100, "brute", NULL);
     const RtRaySet *set = &stage.sets[RT_RAY_RANDOM];
-    RtHit *expected = rt_alloc(set->count, sizeof(RtHit));
+    OWNED_MEMORY RtHit *expected = rt_alloc(set->count, sizeof(RtHit));
     assert_ok(rt_measure_answers(stage.accels[0], set, 1, expected, error));
     enormous = *stage.accels[0]->ops;
     count_below = enormous.nearest_counted;
@@ -63,7 +63,6 @@ RT_TEST(counts_of_2_63_or_more_are_refused_and_never_wrap_around) {
     enormous_steps = UINT64_MAX - 1;
     assert_bad_input(rt_measure_count(stage.accels[0], set, expected, 1, &count, error),
                      "brute: it counts 2^63 steps or more");
-    rt_free(expected);
     close_stage(&stage);
 }
 
@@ -72,7 +71,7 @@ RT_TEST(a_count_is_the_sum_over_threads_and_finds_wrong_answers) {
     Stage stage;
     open_stage(&stage, "balls:size=1", 8, 10000, "brute", NULL);
     const RtRaySet *set = &stage.sets[RT_RAY_RANDOM];
-    RtHit *expected = rt_alloc(set->count, sizeof(RtHit));
+    OWNED_MEMORY RtHit *expected = rt_alloc(set->count, sizeof(RtHit));
     RtCount count;
     assert_ok(rt_measure_answers(stage.accels[0], set, 2, expected, error));
     for (int threads = 1; threads <= 3; threads++) {
@@ -86,7 +85,6 @@ RT_TEST(a_count_is_the_sum_over_threads_and_finds_wrong_answers) {
     assert_ok(rt_measure_count(stage.accels[0], set, expected, 2, &count, error));
     assert_int_equal(count.differ, expected[4242].object == RT_NO_OBJECT ? 1 : 2);
     assert_int_equal(count.first, 42);
-    rt_free(expected);
     close_stage(&stage);
 }
 
@@ -98,7 +96,7 @@ RT_TEST(shadow_and_occlusion_rays_are_traced_for_any_hit) {
         const RtRaySet *set = &stage.sets[k];
         RtCount count;
         uint64_t hits = 0, tests = set->count * stage.scene.geometry.object_count;
-        RtHit *expected = rt_alloc(set->count, sizeof(RtHit));
+        OWNED_MEMORY RtHit *expected = rt_alloc(set->count, sizeof(RtHit));
         assert_ok(rt_measure_answers(stage.accels[0], set, 1, expected, error));
         for (uint64_t i = 0; i < set->count; i++) {
             hits += expected[i].object != RT_NO_OBJECT;
@@ -109,7 +107,6 @@ RT_TEST(shadow_and_occlusion_rays_are_traced_for_any_hit) {
         assert_int_equal(count.tally.hits, hits);
         assert_int_equal(count.differ, any ? 0 : set->count);
         assert_true((count.tally.object_tests < tests) == (any && hits > 0));
-        rt_free(expected);
     }
     close_stage(&stage);
 }
@@ -147,7 +144,7 @@ static RtCell time_thinned(const char *spec) {
     Candidates candidates = {{{.label = "all", .ray_stride = 1}, {.label = "some", .ray_stride = 64}}};
     RtResults results;
     for (int c = 0; c < 2; c++) strcpy(candidates.of[c].spec, spec);
-    RtExperiment *e = experiment_of("thinned", candidates);
+    OWNED_MEMORY RtExperiment *e = experiment_of("thinned", candidates);
     add_scene(e, "random:n=300", 8);
     assert_ok(rt_results_init(&results, e, error));
     assert_ok(rt_workloads_run(&results, &options, error));
@@ -155,7 +152,6 @@ static RtCell time_thinned(const char *spec) {
     assert_true(fabs(rt_results_cost(&results, 0, 1, RT_ALL_RAYS).ratio.median / cell.ratio.median - 1) <
                 1e-9);
     rt_results_clear(&results);
-    rt_free(e);
     return cell;
 }
 
@@ -301,7 +297,7 @@ static void show_structures(const RtResults *results) {
 
 /* Two structures with given times, to within `error`: seconds to build, nanoseconds per ray. */
 static RtBreakEven break_even(double theirs, double their_ray, double ours, double our_ray, double error_of) {
-    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
+    OWNED_MEMORY RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
     RtResults results;
     assert_non_null(e);
     rt_experiment_init(e);
@@ -321,7 +317,6 @@ static RtBreakEven break_even(double theirs, double their_ray, double ours, doub
     assert_true(isnan(rt_results_break_even(&results, 0, 0).rays.median));
     show_structures(&results);
     rt_results_clear(&results);
-    rt_free(e);
     assert_int_equal(even.builds, 6);
     return even;
 }

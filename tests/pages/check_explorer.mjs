@@ -154,6 +154,10 @@ async function checkStructures() {
   await browser.run(`const boxes = document.querySelector('#boxes'); boxes.value = 'all'; boxes.dispatchEvent(new Event('input', { bubbles: true }));`);
   const legend = await browser.run("return document.querySelector('#legend').textContent;"), [, bvh, grid] = legend.match(/bvh (\d+), grid (\d+)/) ?? [];
   holds(bvh > 100 && grid > 10, `the boxes of both structures are drawn: ${legend}`);
+  const colors = await browser.run(`return [...document.querySelectorAll('#colors .swatch')].map((swatch) =>
+    [getComputedStyle(swatch).backgroundColor, swatch.parentElement.textContent]);`), deepest = await browser.run("return document.querySelector('#to-level').max;");
+  holds(colors[0][1] === `boxes of levels 0 to ${deepest}` && same(Object.fromEntries(colors.slice(1)), { 'rgb(46, 130, 247)': 'on the path of the ray, the current one filled',
+    'rgb(240, 128, 0)': 'a tested object', 'rgb(224, 33, 15)': 'a hit', 'rgb(242, 184, 0)': 'a light' }), `a legend says what the colours mean: ${colors}`);
   const cut = await browser.run(`const set = (id, value) => { const at = document.getElementById(id); at.value = value;
       at.dispatchEvent(new Event('input', { bubbles: true })); };
     set('axis', 'z'); set('slice', '0.4');

@@ -18,7 +18,7 @@ RT_TEST(a_heatmap_is_dark_where_nothing_was_spent_and_yellow_at_the_most) {
     assert_ok(rt_sampling_init(&frame.sampling, W, H, 1, false, error));
     for (int i = 0; i < W * H; i++) cost[i].object_tests = i == 0 ? 0 : i == 1 ? 100 : 50;
     assert_ok(rt_heatmap_draw(PICTURE_FILE, &panel, 1, &options, error));
-    RtImage image = read_picture();
+    OWNED_IMAGE image = read_picture();
     RtColor none = rt_color_scale(0), half = rt_color_scale(0.5), most = rt_color_scale(1);
     assert_memory_equal(image.rgb, none.rgb, 3);
     assert_memory_equal(image.rgb + 3, most.rgb, 3);
@@ -31,7 +31,6 @@ RT_TEST(a_heatmap_is_dark_where_nothing_was_spent_and_yellow_at_the_most) {
     image = read_picture();
     RtColor some = rt_color_scale(log1p(50) / log1p(1e6));
     assert_memory_equal(image.rgb + 6, some.rgb, 3);
-    rt_image_clear(&image);
 }
 
 RT_TEST(a_heatmap_of_nothing_or_of_one_pixel_has_its_legend) {
@@ -70,7 +69,7 @@ static bool has_color(const RtImage *image, int panel, int x, RtColor color) {
 
 RT_TEST(heatmaps_of_two_accelerators_have_one_scale) {
     for (int i = 0; i < WIDE; i++) costs[0][i].steps = 50, costs[1][i].steps = i == 0 ? 100 : 25;
-    RtImage image = two_heatmaps((RtHeatmapOptions){0});
+    OWNED_IMAGE image = two_heatmaps((RtHeatmapOptions){0});
     assert_true(has_color(&image, 0, 0, rt_color_scale(0.5)));
     assert_true(has_color(&image, 1, 0, rt_color_scale(1)));
     assert_true(has_color(&image, 1, 1, rt_color_scale(0.25)));
@@ -87,19 +86,17 @@ RT_TEST(heatmaps_of_two_accelerators_have_one_scale) {
     image = two_heatmaps((RtHeatmapOptions){0});
     assert_true(has_color(&image, 0, 5, rt_color_scale(1)));
     assert_true(has_color(&image, 1, 0, rt_color_scale(0.5)));
-    rt_image_clear(&image);
 }
 
 RT_TEST(a_difference_is_red_where_the_first_costs_more_and_blue_where_the_second_does) {
     for (int i = 0; i < WIDE; i++)
         costs[0][i].steps = 50, costs[1][i].steps = i == 0 ? 100 : i == 1 ? 50 : 25;
-    RtImage image = two_heatmaps((RtHeatmapOptions){.difference = true});
+    OWNED_IMAGE image = two_heatmaps((RtHeatmapOptions){.difference = true});
     assert_true(has_color(&image, 2, 0, rt_color_difference(-1)));
     assert_true(has_color(&image, 2, 1, rt_color_difference(0)));
     assert_true(has_color(&image, 2, 2, rt_color_difference(0.5)));
     RtColor blue = rt_color_difference(-1), red = rt_color_difference(1);
     assert_true(blue.rgb[2] > blue.rgb[0] && red.rgb[0] > red.rgb[2]);
-    rt_image_clear(&image);
 }
 
 /* Is any pixel of the columns from..to, in the rows of the labels, dark? */
@@ -122,7 +119,7 @@ RT_TEST(panels_of_four_pixels_have_the_labels_and_bars_of_their_pitch_and_no_mor
     spent[0][0].steps = 9;
     for (int i = 0; i < 2; i++) assert_ok(rt_sampling_init(&frames[i].sampling, SIDE, SIDE, 1, false, error));
     assert_ok(rt_heatmap_draw(PICTURE_FILE, panels, 2, &options, error));
-    RtImage image = read_picture();
+    OWNED_IMAGE image = read_picture();
     assert_int_equal(image.width, 2 * PITCH + ROOM);
     assert_true(has_label(&image, ROOM - PAD - 15, ROOM - PAD)); /* cut */
     assert_false(has_label(&image, ROOM - PAD, PITCH + PAD));
@@ -132,7 +129,6 @@ RT_TEST(panels_of_four_pixels_have_the_labels_and_bars_of_their_pitch_and_no_mor
     const uint8_t *right = pixel(&image, 2 * PITCH + ROOM - PAD - 2, BAR);
     assert_true(left[2] > 80 && left[0] < 20 && right[0] > 90 && right[2] < 50); /* blue, red */
     assert_memory_equal(pixel(&image, 2 * PITCH + ROOM - PAD + 1, BAR), RT_WHITE.rgb, 3);
-    rt_image_clear(&image);
 }
 
 RT_TEST(the_scale_grows_in_lightness) {

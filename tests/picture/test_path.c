@@ -17,7 +17,7 @@
 static void assert_adds_up(RtAccel *accel, const char *spec, const RtRay *ray) {
     RtQuery query;
     RtTally counted[RT_RAY_KIND_COUNT] = {0};
-    RtPath path;
+    OWNED(rt_path_clear) RtPath path;
     RtHit hit;
     bool occluded;
     RtError problem;
@@ -35,7 +35,6 @@ static void assert_adds_up(RtAccel *accel, const char *spec, const RtRay *ray) {
     else
         assert_memory_equal(&hit, &path.hit, sizeof hit);
     rt_query_clear(&query);
-    rt_path_clear(&path);
 }
 
 static const RtRayKind kinds[] = {RT_RAY_PRIMARY, RT_RAY_SHADOW, RT_RAY_REFLECTION, RT_RAY_TRANSMISSION};
@@ -180,7 +179,7 @@ RT_TEST(a_circle_of_any_size_passes_the_middle_of_the_picture_at_its_distance) {
 }
 
 RT_TEST(an_axis_has_few_ticks_also_where_the_rows_are_far_away_and_of_no_length) {
-    RtScene scene = make_lattice(1, 1, 1);
+    OWNED_SCENE scene = make_lattice(1, 1, 1);
     for (double far = 1; far < 1e30; far *= 10) {
         RtPathRow row = {.kind = RT_TRACED_STEP,
                          .boxed = true,
@@ -197,12 +196,11 @@ RT_TEST(an_axis_has_few_ticks_also_where_the_rows_are_far_away_and_of_no_length)
         assert_true(ticks >= 3 && ticks <= 20);
         rt_image_clear(&image);
     }
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(a_path_is_drawn_large_where_objects_are_tested) {
     enum { LEAF_ROW = 560 + 14 + 7 }; /* of pixels: through the second bar */
-    RtScene scene = make_lattice(1, 1, 1);
+    OWNED_SCENE scene = make_lattice(1, 1, 1);
     RtPathRow rows[] = {
         {.kind = RT_TRACED_STEP, .boxed = true, .box = {{{0, -1, -1}}, {{100, 1, 1}}}, .leave = 100},
         {.kind = RT_TRACED_STEP,
@@ -216,12 +214,10 @@ RT_TEST(a_path_is_drawn_large_where_objects_are_tested) {
     rows[1].leaf = true;
     for (int i = 0; i < 3; i++) rows[i].nearest = i == 2 ? 50.5f : INFINITY;
     assert_ok(rt_path_draw(&path, &scene, "title", "spec", PICTURE_FILE, error));
-    RtImage image = read_picture();
+    OWNED_IMAGE image = read_picture();
     uint32_t width = 0;
     for (int x = 250; x < 980; x++) width += pixel(&image, x, LEAF_ROW)[0] < 200;
     assert_true(width > 150 && width < 300); /* 7 pixels if the whole path were drawn */
-    rt_image_clear(&image);
-    rt_scene_clear(&scene);
 }
 
 /* Pixels that are grey but neither white nor black. */

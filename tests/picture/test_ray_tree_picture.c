@@ -77,9 +77,8 @@ RT_TEST(each_kind_of_ray_has_its_color) {
 }
 
 RT_TEST(a_ray_that_hits_nothing_is_drawn_past_the_scene) {
-    RtImage image = draw_lecture(40, 0, 1);
+    OWNED_IMAGE image = draw_lecture(40, 0, 1);
     assert_true(count_color(&image, RT_BLACK) > 1000); /* 2 pixels wide, over most of the picture */
-    rt_image_clear(&image);
 }
 
 RT_TESTS(ray_tree_picture, NULL, assert_nothing_is_kept)

@@ -59,8 +59,8 @@ static int count_ink(const RtImage *image) {
 }
 
 RT_TEST(the_root_box_is_drawn_where_the_camera_sees_it) {
-    RtScene scene;
-    RtImage image = {0};
+    OWNED_SCENE scene;
+    OWNED_IMAGE image = {0};
     open_scene(&scene);
     assert_ok(draw(&scene, "bvh:max_leaf_size=64", RT_ALL_LEVELS, &image, error));
     /* The near face of the box is x, y in -3..3 at z = 1, 9 in front of the eye. */
@@ -72,13 +72,11 @@ RT_TEST(the_root_box_is_drawn_where_the_camera_sees_it) {
     /* From inside the box, with corners behind the eye: clipped, and no crash. */
     scene.camera.from = rt_vec3(0, 2, 0.5f);
     assert_ok(draw(&scene, "bvh", RT_ALL_LEVELS, &image, error));
-    rt_image_clear(&image);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(boxes_behind_what_is_seen_are_faint) {
-    RtScene scene;
-    RtImage image = {0};
+    OWNED_SCENE scene;
+    OWNED_IMAGE image = {0};
     open_scene(&scene);
     /* The box of the sphere in the middle: its far face, at z = -1, is behind the sphere. */
     assert_ok(draw(&scene, "extents", RT_ALL_LEVELS, &image, error));
@@ -86,8 +84,6 @@ RT_TEST(boxes_behind_what_is_seen_are_faint) {
     int near = (int)floor(100 - scale / 9), far = (int)floor(100 - scale / 11);
     assert_true(ink_at(&image, near, 100) > 150);
     assert_true(ink_at(&image, far, 100) < 130);
-    rt_image_clear(&image);
-    rt_scene_clear(&scene);
 }
 
 /* The lines of a ball's outline: their number, and their least and largest distance from its centre, in
@@ -126,7 +122,7 @@ static void check_ball(void *context, const RtBoxView *view) {
 }
 
 RT_TEST(spheres_are_outlined_by_circles_and_cut_in_circles) {
-    RtScene scene;
+    OWNED_SCENE scene;
     RtAccel *accel;
     int count = 0;
     open_scene(&scene);
@@ -134,7 +130,6 @@ RT_TEST(spheres_are_outlined_by_circles_and_cut_in_circles) {
     accel->ops->each_box(accel, (RtBoxViewer){check_ball, &count});
     assert_int_equal(count, 9);
     rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
 }
 
 static void count_line(void *context, RtVec3d from, RtVec3d to) {
@@ -162,7 +157,7 @@ static void check_polytope(void *context, const RtBoxView *view) {
 
 RT_TEST(three_slabs_and_oriented_boxes_of_spheres_have_the_edges_of_boxes) {
     static const char *const specs[] = {"extents:kind=slabs,slabs=3", "extents:kind=obb"};
-    RtScene scene;
+    OWNED_SCENE scene;
     open_scene(&scene);
     for (int i = 0; i < 2; i++) {
         RtAccel *accel;
@@ -172,11 +167,10 @@ RT_TEST(three_slabs_and_oriented_boxes_of_spheres_have_the_edges_of_boxes) {
         assert_int_equal(count, 5);
         rt_accel_destroy(accel);
     }
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(levels_and_leaves_leave_the_other_boxes_out) {
-    RtScene scene;
+    OWNED_SCENE scene;
     RtImage all = {0}, root = {0}, leaves = {0};
     open_scene(&scene);
     RtStructureOptions options = RT_ALL_LEVELS;
@@ -196,11 +190,10 @@ RT_TEST(levels_and_leaves_leave_the_other_boxes_out) {
     rt_image_clear(&leaves);
     options.first_level = options.last_level = 60;
     assert_bad_input(draw(&scene, "bvh", options, &all, error), "levels");
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(a_section_shows_the_boxes_and_outlines_of_what_the_plane_cuts) {
-    RtScene scene;
+    OWNED_SCENE scene;
     RtImage image = {0};
     RtError refusal;
     open_scene(&scene);
@@ -214,12 +207,11 @@ RT_TEST(a_section_shows_the_boxes_and_outlines_of_what_the_plane_cuts) {
     rt_image_clear(&image);
     options.at = 5;
     assert_int_equal(draw(&scene, "extents", options, &image, &refusal), RT_BAD_INPUT);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(a_structure_is_drawn_on_white_over_a_pale_image) {
-    RtScene scene;
-    RtImage image = {0};
+    OWNED_SCENE scene;
+    OWNED_IMAGE image = {0};
     open_scene(&scene);
     assert_ok(draw(&scene, "bvh:max_leaf_size=64", RT_ALL_LEVELS, &image, error));
     assert_memory_equal(pixel(&image, 2, 2), RT_WHITE.rgb, 3);
@@ -227,8 +219,6 @@ RT_TEST(a_structure_is_drawn_on_white_over_a_pale_image) {
         assert_true(pixel(&image, 100, 100)[c] >= 150);
         assert_true(pixel(&image, 100, 100)[c] < 255);
     }
-    rt_image_clear(&image);
-    rt_scene_clear(&scene);
 }
 
 /* The ink around an upright line. */
@@ -239,8 +229,8 @@ static int ink_across(const RtImage *image, int x, int y) {
 }
 
 RT_TEST(deep_levels_have_lighter_and_thinner_lines_than_the_first) {
-    RtScene scene;
-    RtImage image = {0};
+    OWNED_SCENE scene;
+    OWNED_IMAGE image = {0};
     open_scene(&scene);
     RtStructureOptions options = {.last_level = UINT32_MAX, .slice = true, .axis = 2, .at = 0.5};
     assert_ok(draw(&scene, "bvh:max_leaf_size=1", options, &image, error));
@@ -249,13 +239,11 @@ RT_TEST(deep_levels_have_lighter_and_thinner_lines_than_the_first) {
     int leaf = ink_across(&image, (int)(100 + 2 * scale), (int)(100 - 2.85 * scale));
     assert_true(leaf > 30);
     assert_true(root > 2 * leaf);
-    rt_image_clear(&image);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(a_section_outlines_csg_trees) {
-    RtScene scene;
-    RtImage image = {0};
+    OWNED_SCENE scene;
+    OWNED_IMAGE image = {0};
     uint32_t drawn = 0;
     assert_ok(rt_scene_open("csg-field", &scene, error));
     assert_ok(rt_scene_sample(&scene, SIDE, SIDE, 1, false, error));
@@ -266,15 +254,13 @@ RT_TEST(a_section_outlines_csg_trees) {
         for (int x = 20; x < SIDE - 20; x++) drawn += pixel(&image, x, y)[0] < 200;
     }
     assert_true(drawn > 50);
-    rt_image_clear(&image);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(a_wall_that_is_far_larger_than_a_section_is_outlined_where_it_is) {
-    RtImage image = {0};
+    OWNED_IMAGE image = {0};
     RtVec3 wall[4] = {
         {{-1000, -1499.5f, -9}}, {{1000, 1500.5f, -9}}, {{1000, 1500.5f, 9}}, {{-1000, -1499.5f, 9}}};
-    RtScene scene = start_scene(rt_default_material());
+    OWNED_SCENE scene = start_scene(rt_default_material());
     scene.camera.fov = 45;
     assert_ok(rt_scene_add_polygon(&scene, 0, wall, 4, error));
     assert_ok(rt_scene_finish(&scene, error));
@@ -289,12 +275,10 @@ RT_TEST(a_wall_that_is_far_larger_than_a_section_is_outlined_where_it_is) {
             grey += near >= 0 && near < SIDE && pixel(&image, column, near)[2] < 205;
         assert_true(grey > 0);
     }
-    rt_image_clear(&image);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(the_topmost_layer_that_can_be_drawn_is_and_any_can_be_named) {
-    RtScene scene;
+    OWNED_SCENE scene;
     RtAccel *accel;
     const RtAccel *layer = NULL;
     RtError refusal;
@@ -312,11 +296,10 @@ RT_TEST(the_topmost_layer_that_can_be_drawn_is_and_any_can_be_named) {
     assert_ok(rt_spec_parse("item+brute", &spec, error));
     assert_ok(rt_structure_available(&spec, NULL, error));
     rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(the_item_buffer_has_a_color_for_each_object_white_for_none_and_magenta_for_undecided) {
-    RtScene scene;
+    OWNED_SCENE scene;
     RtAccel *accel;
     RtImage image = {0};
     open_scene(&scene);
@@ -335,12 +318,11 @@ RT_TEST(the_item_buffer_has_a_color_for_each_object_white_for_none_and_magenta_f
     assert_true(count_color(&image, (RtColor){{255, 0, 200}}) > 200);
     rt_image_clear(&image);
     rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
 }
 
 /* A picture looks up the cells that the kernel reads: a ray's steps are entries of that cell. */
 RT_TEST(a_shadow_ray_reads_the_cell_that_is_marked) {
-    RtScene scene;
+    OWNED_SCENE scene;
     RtAccel *accel;
     RtQuery query;
     open_scene(&scene);
@@ -368,11 +350,10 @@ RT_TEST(a_shadow_ray_reads_the_cell_that_is_marked) {
     assert_true(listed > 20);
     rt_query_clear(&query);
     rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(the_cells_around_a_light_are_drawn_and_a_light_without_cells_is_refused) {
-    RtScene scene;
+    OWNED_SCENE scene;
     RtAccel *accel;
     RtImage image = {0};
     RtError refusal;
@@ -393,7 +374,6 @@ RT_TEST(the_cells_around_a_light_are_drawn_and_a_light_without_cells_is_refused)
     assert_ok(rt_accel_open("light+bvh", &scene, &accel, error));
     assert_int_equal(rt_buffer_draw(PICTURE_FILE, accel, 0, NULL, &refusal), RT_NOT_AVAILABLE);
     rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
 }
 
 RT_TESTS(structure, NULL, assert_nothing_is_kept)

@@ -195,7 +195,7 @@ RT_TEST(random_rays_are_chords_between_uniform_points_of_the_sphere) {
 RT_TEST(thinning_keeps_every_nth_ray_and_a_limit_holds) {
     const Stage *stage = *state;
     const RtRaySet *set = &stage->sets[RT_RAY_PRIMARY]; /* 1850 */
-    RtRaySet thin;
+    OWNED(rt_rayset_clear) RtRaySet thin;
     assert_ok(rt_rayset_thin(set, 3, &thin, error));
     assert_int_equal(thin.count, 617);
     assert_memory_equal(&thin.rays[616], &set->rays[1848], sizeof(RtRay));
@@ -213,12 +213,11 @@ RT_TEST(thinning_keeps_every_nth_ray_and_a_limit_holds) {
     RtRaySet nothing = {.kind = RT_RAY_SHADOW};
     assert_ok(rt_rayset_limit(&nothing, 10, 1, &thin, error));
     assert_int_equal(thin.count, 0);
-    rt_rayset_clear(&thin);
 }
 
 /* Asserts that `limit` keeps runs of `run` rays, one of every `every` runs, somewhere in its group. */
 static void assert_runs(const RtRaySet *set, uint64_t limit, uint64_t asked, uint64_t run, uint64_t stride) {
-    RtRaySet kept;
+    OWNED(rt_rayset_clear) RtRaySet kept;
     bool moved = false;
     assert_ok(rt_rayset_limit(set, limit, asked, &kept, error));
     assert_true(kept.count <= limit && kept.count + 2 * run >= set->count / stride);
@@ -230,7 +229,6 @@ static void assert_runs(const RtRaySet *set, uint64_t limit, uint64_t asked, uin
         moved |= from % (run * stride) >= run;
     }
     assert_true(moved);
-    rt_rayset_clear(&kept);
 }
 
 RT_TEST(a_limit_keeps_runs_of_neighbours_together_all_over_the_set) {
@@ -302,7 +300,7 @@ RT_TEST(rays_of_a_file_have_the_same_fingerprint_each_time_that_they_are_read) {
 /* There is no room for the usual distance behind it: the camera and the light that every scene gets are put
  * as far off as rays may begin. */
 RT_TEST(a_scene_at_the_end_of_coordinates_is_seen_and_lit) {
-    RtScene scene;
+    OWNED_SCENE scene;
     RtMaterial grey = rt_default_material();
     uint32_t material;
     rt_scene_init(&scene);
@@ -314,7 +312,6 @@ RT_TEST(a_scene_at_the_end_of_coordinates_is_seen_and_lit) {
     assert_true(rt_ray_is_valid(&ray));
     ray.org = scene.lights[0].position;
     assert_true(rt_ray_is_valid(&ray));
-    rt_scene_clear(&scene);
 }
 
 RT_TESTS(rayset, set_up, tear_down)

@@ -14,8 +14,8 @@ static const RtSampling samplings[] = {
  * first block of 64 that is not one of 8 x 8. */
 static uint32_t walk(const RtSampling *s) {
     size_t tiles = rt_tile_count(s), samples = (size_t)s->columns * s->rows;
-    RtSample *tile = rt_alloc(tiles, sizeof(RtSample));
-    bool *seen = rt_alloc(samples, sizeof(bool));
+    OWNED_MEMORY RtSample *tile = rt_alloc(tiles, sizeof(RtSample));
+    OWNED_MEMORY bool *seen = rt_alloc(samples, sizeof(bool));
     uint32_t count = 0, whole = UINT32_MAX;
     RtSample first = {0, 0};
     assert_true(tile && seen);
@@ -34,8 +34,6 @@ static uint32_t walk(const RtSampling *s) {
         count++;
     }
     assert_int_equal(count, samples);
-    rt_free(tile);
-    rt_free(seen);
     return whole < count ? whole : count - count % RT_TILE_BLOCK;
 }
 

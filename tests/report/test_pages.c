@@ -61,9 +61,8 @@ RT_TEST_IN_PLACE(the_report_has_verdict_finding_and_prediction_first_then_plots_
                                  "id=\"tables\"",
                                  "<script>"};
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
-    char *page = read_in(place, "out/report.html");
+    OWNED_MEMORY char *page = read_in(place, "out/report.html");
     assert_in_order(page, parts, sizeof parts / sizeof parts[0]);
-    rt_free(page);
 }
 
 RT_TEST_IN_PLACE(a_report_of_frames_opens_with_the_fastest_and_its_plot) {
@@ -143,9 +142,7 @@ RT_TEST_IN_PLACE(plots_are_drawn_as_pdf_too_as_wide_as_a_column_of_a_paper) {
     write_in(place, "my.gp",
              "load \"plots/style.gp\"\neval canvas(\"mine\", 480, 240)\nplot x\nunset output\n"
              "eval canvas(\"both\", wide, 240)\nplot x\nunset output\n");
-    char copy[512];
-    snprintf(copy, sizeof copy, "cp '%s/experiments/style.gp' '%s'", RT_SOURCE_DIR, place->folder);
-    assert_int_equal(system(copy), 0);
+    copy_style(place, "style.gp");
     write_small(place, "plots: [style.gp, my.gp]");
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
     assert_in_file(place, "out/plots/mine.svg", "viewBox=\"0 0 480 240\"");
@@ -163,9 +160,7 @@ RT_TEST_IN_PLACE(a_plot_of_several_panels_is_laid_out_for_the_page_or_for_a_colu
     if (access("/usr/bin/gnuplot", X_OK) != 0) RT_SKIP("gnuplot-nox");
     write_in(place, "my.gp",
              "load \"plots/style.gp\"\neval canvas(\"mine\", wide, 240)\nplot x\nunset output\n");
-    char copy[512];
-    snprintf(copy, sizeof copy, "cp '%s/experiments/style.gp' '%s'", RT_SOURCE_DIR, place->folder);
-    assert_int_equal(system(copy), 0);
+    copy_style(place, "style.gp");
     write_small(place, "plots: [style.gp, my.gp]");
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
     assert_in_file(place, "out/plots/mine.svg", "viewBox=\"0 0 960 240\"");
@@ -280,11 +275,10 @@ RT_TEST_IN_PLACE(a_table_wider_than_a_column_takes_both_and_one_wider_than_the_p
     assert_in_file(place, "out/tables.tex", "\\begin{table*}\n");
     assert_in_file(place, "out/tables.tex", "\\end{table*}\n");
     assert_in_file(place, "out/tables.tex", "accelerator & n=101 & ");
-    char *text = read_in(place, "out/tables.tex");
+    OWNED_MEMORY char *text = read_in(place, "out/tables.tex");
     const char *row = strstr(text, "accelerator & n=101");
     assert_null(memmem(row, strcspn(row, "\n"), "n=122", 5));
     assert_non_null(strstr(text, " & n=122 \\\\\n"));
-    rt_free(text);
 }
 
 /* ---- who is best ---- */
@@ -484,7 +478,7 @@ RT_TEST_IN_PLACE(the_index_says_what_another_build_or_machine_measured) {
     run_named(place, "three", "");
     assert_int_equal(raytally(place, "report --index all"), 0);
     assert_not_in_file(place, "all/index.md", ": one");
-    char *manifest = read_in(place, "all/two/manifest.json");
+    OWNED_MEMORY char *manifest = read_in(place, "all/two/manifest.json");
     const char *cpu = strstr(manifest, "\"cpu\": ");
     assert_non_null(cpu);
     *strchr(cpu, ':') = '\0';
@@ -493,7 +487,6 @@ RT_TEST_IN_PLACE(the_index_says_what_another_build_or_machine_measured) {
     assert_true(asprintf(&changed, "%s: \"Z80\"%s", manifest, rest) > 0);
     write_in(place, "all/two/manifest.json", changed);
     free(changed);
-    rt_free(manifest);
     assert_int_equal(raytally(place, "report --index all"), 0);
     assert_in_file(place, "all/index.md", "; Z80: two.\n");
     assert_in_file(place, "all/index.html", "; Z80: two.</p>");

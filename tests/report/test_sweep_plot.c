@@ -30,7 +30,7 @@ static int make_swept(void **state) {
 /* 2 clouds with 1 + 5 + 2 accelerators, and balls with 3. */
 RT_TEST_IN_PLACE(each_value_is_a_row_and_each_parameter_a_column_at_the_end) {
     const Place *place = *state;
-    RtCsv csv;
+    OWNED_CSV csv;
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
     Path path = path_in(place, "out/counts.csv");
     assert_ok(rt_csv_read(&csv, path.text, error));
@@ -46,7 +46,6 @@ RT_TEST_IN_PLACE(each_value_is_a_row_and_each_parameter_a_column_at_the_end) {
     assert_string_equal(rt_csv_field(&csv, row, build), "");
     assert_string_equal(rt_csv_field(&csv, 18, n), "");
     assert_string_equal(rt_csv_field(&csv, 18, build), "lbvh");
-    rt_csv_clear(&csv);
 }
 
 RT_TEST_IN_PLACE(without_scripts_a_plot_is_drawn_for_each_parameter_and_measure) {
@@ -67,9 +66,8 @@ RT_TEST_IN_PLACE(without_scripts_a_plot_is_drawn_for_each_parameter_and_measure)
     assert_in_file(place, "out/plots/sweep.gp", "set logscale x");
     assert_in_file(place, "out/plots/sweep.gp", "($4 - $3) with vectors heads");
     assert_in_file(place, "out/report.html", "data:image/svg+xml");
-    char *log = read_in(place, "out/plots/gnuplot.log");
+    OWNED_MEMORY char *log = read_in(place, "out/plots/gnuplot.log");
     assert_string_equal(log, "");
-    rt_free(log);
 }
 
 static uint32_t count_of(const char *text, const char *what) {
@@ -81,7 +79,7 @@ static uint32_t count_of(const char *text, const char *what) {
 RT_TEST_IN_PLACE(the_scenes_are_panels_of_one_plot_with_one_scale) {
     const Place *place = *state;
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
-    char *script = read_in(place, "out/plots/sweep.gp");
+    OWNED_MEMORY char *script = read_in(place, "out/plots/sweep.gp");
     char *figure = strstr(script, "eval canvas(\"08-sweep-build-object-tests\", 960");
     assert_non_null(figure);
     *strstr(figure, "unset multiplot") = '\0';
@@ -89,7 +87,6 @@ RT_TEST_IN_PLACE(the_scenes_are_panels_of_one_plot_with_one_scale) {
     assert_int_equal(count_of(figure, "plot for"), 3);
     assert_non_null(strstr(figure, "set title \"cloud:n=200\""));
     assert_non_null(strstr(figure, "set title \"balls\""));
-    rt_free(script);
     if (access("/usr/bin/gnuplot", X_OK) != 0) RT_SKIP("gnuplot-nox");
     assert_int_equal(raytally(place, "plot out --paper column"), 0);
     assert_in_file(place, "out/plots/08-sweep-build-object-tests.svg", "viewBox=\"0 0 480 ");

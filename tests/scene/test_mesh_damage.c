@@ -36,21 +36,20 @@ static RtStatus load_bytes(const char *extension, const void *bytes, size_t size
 }
 
 typedef struct Damaged {
-    const char *extension, *text, *place, *says; /* place: behind the path */
+    const char *text, *place, *says; /* place: behind the path */
 } Damaged;
 
-static void assert_refused(const Damaged *cases, size_t count) {
+static void assert_refused(const char *extension, const Damaged *cases, size_t count) {
     for (size_t i = 0; i < count; i++) {
         RtScene scene;
         char place[300];
-        snprintf(place, sizeof place, "%s:%s ", path_of(cases[i].extension), cases[i].place);
-        assert_bad_input_at(
-            load_bytes(cases[i].extension, cases[i].text, strlen(cases[i].text), &scene, error), place,
-            cases[i].says);
+        snprintf(place, sizeof place, "%s:%s ", path_of(extension), cases[i].place);
+        assert_bad_input_at(load_bytes(extension, cases[i].text, strlen(cases[i].text), &scene, error), place,
+                            cases[i].says);
     }
 }
 
-#define ASSERT_REFUSED(cases) assert_refused(cases, sizeof(cases) / sizeof(cases)[0])
+#define ASSERT_REFUSED(extension, cases) assert_refused(extension, cases, sizeof(cases) / sizeof(cases)[0])
 
 /* ---- one mesh in every format: two triangles of a square, with a normal at each vertex where possible ----
  */
@@ -67,19 +66,17 @@ static void assert_refused(const Damaged *cases, size_t count) {
 #define STL                                                                                                  \
     "solid square\n" FACET("0 0 0", "1 0 0", "1 1 0.5") FACET("0 0 0", "1 1 0.5", "0 1 0") "endsolid\n"
 
-/* A node over two triangles with indices of one byte; the parts in between differ in the tests. */
-#define GLTF_PARTS(node, mesh, accessor0, count1, view1, buffer0, indices)                                   \
-    "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[" node "],"        \
-    "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1" mesh "}]}],"               \
-    "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"" accessor0 "},"   \
-    "{\"bufferView\":1,\"componentType\":5121,\"count\":" count1 ",\"type\":\"SCALAR\"}],"                   \
-    "\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},{\"buffer\":1" view1 ",\"byteLength\":6}],"           \
-    "\"buffers\":[{\"byteLength\":" buffer0 ",\"uri\":\"data:application/octet-stream;base64,"               \
-    "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwAAgD8AAAA/AAAAAAAAgD8AAAAA\"},"                                   \
-    "{\"byteLength\":6,\"uri\":\"data:;base64," indices "\"}]}"
-#define NODE   "{\"mesh\":0}"
-#define SQUARE "AAECAAID" /* 0 1 2 0 2 3 */
-#define GLTF   GLTF_PARTS(NODE, "", "", "6", "", "48", SQUARE)
+/* A node over two triangles, 0 1 2 and 0 2 3, with indices of one byte. */
+#define ASSET "{\"asset\":{\"version\":\"2.0\"}"
+#define GLTF                                                                                                 \
+    ASSET ",\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"                              \
+          "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}],"                 \
+          "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},"          \
+          "{\"bufferView\":1,\"componentType\":5121,\"count\":6,\"type\":\"SCALAR\"}],"                      \
+          "\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},{\"buffer\":1,\"byteLength\":6}],"              \
+          "\"buffers\":[{\"byteLength\":48,\"uri\":\"data:application/octet-stream;base64,"                  \
+          "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwAAgD8AAAA/AAAAAAAAgD8AAAAA\"},"                             \
+          "{\"byteLength\":6,\"uri\":\"data:;base64,AAECAAID\"}]}"
 
 enum { TEXTS = 5, GLB = 5, BINARY_PLY, BINARY_STL, FORMATS, MOST_BYTES = 2000 };
 
@@ -203,88 +200,75 @@ RT_TEST(line_ends_of_windows_do_not_matter) {
 
 RT_TEST(a_damaged_obj_is_refused_with_its_line) {
     static const Damaged cases[] = {
-        {"obj", "", "", "no triangle"},
-        {"obj", "v 0 0 0\nv 1 0 0\n", "", "no triangle"},
-        {"obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\n", "", "no triangle"},
-        {"obj", "v 0 0 0\nv nan 0 0\n", "2:", "expected a finite number that fits float32, found 'nan'"},
-        {"obj", "v 0 0 0\nv 1e39 0 0\n", "2:", "found '1e39'"},
-        {"obj", "v 0 0 0\nv 0x1 0 0\n", "2:", "found '0x1'"},
-        {"obj", "v 0 0 0\nv . 0 0\n", "2:", "found '.'"},
-        {"obj", "v 0 0 0\nv 1e 0 0\n", "2:", "found '1e'"},
-        {"obj", "v 0 0 0\nv 0 0\nv 0 1 0\n",
-         "2:", "expected the x y z of a vertex, found the end of the line"},
-        {"obj", "v 0 0 0 v 1 0 0\n", "1:", "found 'v'"},
-        {"obj", "v 0 0 0 2\n", "1:", "a weight of 2"},
-        {"obj", "vn 0 0 1 1\n", "1:", "a normal has 3 numbers"},
-        {"obj", "v 0 0 0\nv 1e30 0 0\nv 0 1 0\nf 1 2 3\n", "4:", "exceeds"},
-        {"obj", "v 0 0 0\nv 1 0 0\nf 1 2 9\n", "3:", "names vertex 9, but there are 2 so far"},
-        {"obj", "v 0 0 0\nv 1 0 0\nf 1 2 0\n", "3:", "names vertex 0"},
-        {"obj", "v 0 0 0\nv 1 0 0\nf 1 2 -3\n", "3:", "names vertex -3"},
-        {"obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 99999999999999999999\n", "4:", "expected an integer"},
-        {"obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2 3\n", "4:", "names normal 1, but there are 0"},
-        {"obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2 3\n", "4:", "names texture coordinate 1"},
-        {"obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/ 2 3\n", "4:", "expected v, v/vt, v//vn or v/vt/vn"},
-        {"obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/// 2 3\n", "4:", "expected v, v/vt, v//vn or v/vt/vn"},
-        {"obj", "v 0 0 0\nv 1 0 0\nf 1 2\n", "3:", "has 2 vertices: a polygon has at least 3"},
-        {"obj", "v 0 0 0\nsurf 0 1 0 1\n", "2:", "expected a statement of a polygon mesh"},
-        {"obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", "4:", "the last line has no line break"},
+        {"", "", "no triangle"},
+        {"v 0 0 0\nv 1 0 0\n", "", "no triangle"},
+        {"v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\n", "", "no triangle"},
+        {"v 0 0 0\nv nan 0 0\n", "2:", "expected a finite number that fits float32, found 'nan'"},
+        {"v 0 0 0\nv 1e39 0 0\n", "2:", "found '1e39'"},
+        {"v 0 0 0\nv 0x1 0 0\n", "2:", "found '0x1'"},
+        {"v 0 0 0\nv . 0 0\n", "2:", "found '.'"},
+        {"v 0 0 0\nv 1e 0 0\n", "2:", "found '1e'"},
+        {"v 0 0 0\nv 0 0\nv 0 1 0\n", "2:", "expected the x y z of a vertex, found the end of the line"},
+        {"v 0 0 0 v 1 0 0\n", "1:", "found 'v'"},
+        {"v 0 0 0 2\n", "1:", "a weight of 2"},
+        {"vn 0 0 1 1\n", "1:", "a normal has 3 numbers"},
+        {"v 0 0 0\nv 1e30 0 0\nv 0 1 0\nf 1 2 3\n", "4:", "exceeds"},
+        {"v 0 0 0\nv 1 0 0\nf 1 2 9\n", "3:", "names vertex 9, but there are 2 so far"},
+        {"v 0 0 0\nv 1 0 0\nf 1 2 0\n", "3:", "names vertex 0"},
+        {"v 0 0 0\nv 1 0 0\nf 1 2 -3\n", "3:", "names vertex -3"},
+        {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 99999999999999999999\n", "4:", "expected an integer"},
+        {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2 3\n", "4:", "names normal 1, but there are 0"},
+        {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2 3\n", "4:", "names texture coordinate 1"},
+        {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/ 2 3\n", "4:", "expected v, v/vt, v//vn or v/vt/vn"},
+        {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/// 2 3\n", "4:", "expected v, v/vt, v//vn or v/vt/vn"},
+        {"v 0 0 0\nv 1 0 0\nf 1 2\n", "3:", "has 2 vertices: a polygon has at least 3"},
+        {"v 0 0 0\nsurf 0 1 0 1\n", "2:", "expected a statement of a polygon mesh"},
+        {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", "4:", "the last line has no line break"},
     };
-    ASSERT_REFUSED(cases);
+    ASSERT_REFUSED("obj", cases);
 }
 
 RT_TEST(a_damaged_ply_is_refused_with_its_line) {
 #define HEADER_OF(lines) "ply\nformat ascii 1.0\n" lines "end_header\n"
 #define XYZ              "property float x\nproperty float y\nproperty float z\n"
+#define VERTICES(kind)   "ply\nformat " kind " 1.0\nelement vertex 3\n" XYZ
     static const Damaged cases[] = {
-        {"ply", "", "1:", "a PLY file begins with a line 'ply'"},
-        {"ply", PLY_HEADER PLY_VERTICES "3 0 1 2\n", "14:", "ends after 1 of the 2 faces"},
-        {"ply", PLY_HEADER "0 0 0\n", "10:", "ends after 1 of the 4 vertices"},
-        {"ply", PLY_HEADER PLY_VERTICES "3 0 1 2\n3 0 2", "15:", "found the end of the file"},
-        {"ply", PLY_HEADER PLY_VERTICES "3 0 1 2\n3 0 2 3", "15:", "no line break"},
-        {"ply", PLY "3 0 2 3\n", "16:", "expected the end of the file, found '3'"},
-        {"ply", PLY_HEADER "0 0\n1 0 0\n", "10:", "found the end of the line"},
-        {"ply", PLY_HEADER "0 0 0 1\n", "10:", "expected the end of the line, found '1'"},
-        {"ply", PLY_HEADER PLY_VERTICES "4 0 1 2 99999999\n",
-         "14:", "names vertex 99999999, but there are 4"},
-        {"ply", PLY_HEADER PLY_VERTICES "5 0 1 2 0 -1\n", "14:", "names vertex -1"},
-        {"ply", PLY_HEADER PLY_VERTICES "0\n", "14:", "has 0 vertices"},
-        {"ply", PLY_HEADER PLY_VERTICES "-3 0 1 2\n", "14:", "a list has -3 numbers"},
-        {"ply",
-         HEADER_OF(
+        {"", "1:", "a PLY file begins with a line 'ply'"},
+        {PLY_HEADER PLY_VERTICES "3 0 1 2\n", "14:", "ends after 1 of the 2 faces"},
+        {PLY_HEADER "0 0 0\n", "10:", "ends after 1 of the 4 vertices"},
+        {PLY_HEADER PLY_VERTICES "3 0 1 2\n3 0 2", "15:", "found the end of the file"},
+        {PLY_HEADER PLY_VERTICES "3 0 1 2\n3 0 2 3", "15:", "no line break"},
+        {PLY "3 0 2 3\n", "16:", "expected the end of the file, found '3'"},
+        {PLY_HEADER "0 0\n1 0 0\n", "10:", "found the end of the line"},
+        {PLY_HEADER "0 0 0 1\n", "10:", "expected the end of the line, found '1'"},
+        {PLY_HEADER PLY_VERTICES "4 0 1 2 99999999\n", "14:", "names vertex 99999999, but there are 4"},
+        {PLY_HEADER PLY_VERTICES "5 0 1 2 0 -1\n", "14:", "names vertex -1"},
+        {PLY_HEADER PLY_VERTICES "0\n", "14:", "has 0 vertices"},
+        {PLY_HEADER PLY_VERTICES "-3 0 1 2\n", "14:", "a list has -3 numbers"},
+        {HEADER_OF(
              "element vertex 3\n" XYZ
              "element face 1\nproperty list float int vertex_index\n") "0 0 0\n1 0 0\n0 1 0\n3.5 0 1 2\n",
          "13:", "a list has 3.5 numbers"},
-        {"ply", PLY_HEADER "0 0 inf\n", "10:", "expected a finite number"},
-        {"ply", HEADER_OF("element vertex 4000000000\n" XYZ),
-         "7:", "ends after 0 of the 4000000000 vertices"},
-        {"ply", HEADER_OF("element vertex -1\n" XYZ), "3:", "a count of at least 0"},
-        {"ply", HEADER_OF("element none 999999999999\n"), "", "no triangle"},
-        {"ply", HEADER_OF("element vertex 1\nproperty float x\n"), "5:", "lacks a property x, y or z"},
-        {"ply", HEADER_OF("element vertex 1\n" XYZ "element face 1\n"), "8:", "lacks a list vertex_indices"},
-        {"ply", HEADER_OF("element face 1\nproperty list uchar int vertex_index\n"),
-         "5:", "must come before"},
-        {"ply", HEADER_OF("property float x\n"), "3:", "without an element"},
-        {"ply", HEADER_OF("element vertex 1\nproperty real x\n"), "4:", "expected a type"},
-        {"ply", HEADER_OF("element vertex 1\nproperty float x\nproperty int x\n"), "5:", "twice"},
-        {"ply", HEADER_OF("elements vertex 1\n"), "3:", "expected format, element, property"},
-        {"ply", "ply\nend_header\n", "2:", "no line 'format'"},
-        {"ply", "ply\nformat ascii 2.0\n", "2:", "version 1.0"},
-        {"ply", "ply\nformat text 1.0\n", "2:", "expected ascii, binary_little_endian"},
-        {"ply", "ply\nformat ascii 1.0\n", "2:", "expected end_header, found the end of the file"},
+        {PLY_HEADER "0 0 inf\n", "10:", "expected a finite number"},
+        {HEADER_OF("element vertex 4000000000\n" XYZ), "7:", "ends after 0 of the 4000000000 vertices"},
+        {HEADER_OF("element vertex -1\n" XYZ), "3:", "a count of at least 0"},
+        {HEADER_OF("element none 999999999999\n"), "", "no triangle"},
+        {HEADER_OF("element vertex 1\nproperty float x\n"), "5:", "lacks a property x, y or z"},
+        {HEADER_OF("element vertex 1\n" XYZ "element face 1\n"), "8:", "lacks a list vertex_indices"},
+        {HEADER_OF("element face 1\nproperty list uchar int vertex_index\n"), "5:", "must come before"},
+        {HEADER_OF("property float x\n"), "3:", "without an element"},
+        {HEADER_OF("element vertex 1\nproperty real x\n"), "4:", "expected a type"},
+        {HEADER_OF("element vertex 1\nproperty float x\nproperty int x\n"), "5:", "twice"},
+        {HEADER_OF("elements vertex 1\n"), "3:", "expected format, element, property"},
+        {"ply\nend_header\n", "2:", "no line 'format'"},
+        {"ply\nformat ascii 2.0\n", "2:", "version 1.0"},
+        {"ply\nformat text 1.0\n", "2:", "expected ascii, binary_little_endian"},
+        {"ply\nformat ascii 1.0\n", "2:", "expected end_header, found the end of the file"},
+        {VERTICES("ascii") "end_header", "7:", "no line break behind end_header"},
+        {VERTICES("binary_little_endian") "end_header", "7:", "no line break behind end_header"},
+        {VERTICES("binary_big_endian") "end_header\r", "7:", "no line break behind end_header"},
     };
-    ASSERT_REFUSED(cases);
-}
-
-RT_TEST(a_ply_without_a_line_break_behind_its_header_is_refused) {
-    static const Damaged cases[] = {
-        {"ply", "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ "end_header",
-         "7:", "no line break behind end_header"},
-        {"ply", "ply\nformat binary_little_endian 1.0\nelement vertex 3\n" XYZ "end_header",
-         "7:", "no line break behind end_header"},
-        {"ply", "ply\nformat binary_big_endian 1.0\nelement vertex 3\n" XYZ "end_header\r",
-         "7:", "no line break behind end_header"},
-    };
-    ASSERT_REFUSED(cases);
+    ASSERT_REFUSED("ply", cases);
 }
 
 RT_TEST(a_ply_of_many_elements_or_properties_is_refused) {
@@ -301,87 +285,87 @@ RT_TEST(a_ply_of_many_elements_or_properties_is_refused) {
 
 RT_TEST(a_damaged_stl_is_refused) {
     static const Damaged cases[] = {
-        {"stl", "", "", "no STL file"},
-        {"stl", "solid\nfacet", "2:", "expected 'normal', found the end of the file"},
-        {"stl", "solid\n" FACET("0 0 0", "1 0 0", "0 1 0"),
-         "9:", "expected 'endsolid', found the end of the file"},
-        {"stl", "solid\n" FACET("0 0 0", "1 0 0", "0 1") "endsolid\n", "6:", "found the end of the line"},
-        {"stl", "solid\n" FACET("0 0 0", "1 0 0", "0 nan 0") "endsolid\n", "6:", "found 'nan'"},
-        {"stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n",
+        {"", "", "no STL file"},
+        {"solid\nfacet", "2:", "expected 'normal', found the end of the file"},
+        {"solid\n" FACET("0 0 0", "1 0 0", "0 1 0"), "9:", "expected 'endsolid', found the end of the file"},
+        {"solid\n" FACET("0 0 0", "1 0 0", "0 1") "endsolid\n", "6:", "found the end of the line"},
+        {"solid\n" FACET("0 0 0", "1 0 0", "0 nan 0") "endsolid\n", "6:", "found 'nan'"},
+        {"solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n",
          "6:", "expected 'vertex', found 'endloop'"},
-        {"stl", "solid\nendsolid\n", "", "no triangle"},
-        {"stl", STL "facet\n", "17:", "expected 'solid', found 'facet'"},
-        {"stl",
-         "a text of more than eighty-four bytes that is neither kind of STL, however long it may be, at all",
+        {"solid\nendsolid\n", "", "no triangle"},
+        {STL "facet\n", "17:", "expected 'solid', found 'facet'"},
+        {"a text of more than eighty-four bytes that is neither kind of STL, however long it may be, at all",
          "", "the header declares"},
     };
-    ASSERT_REFUSED(cases);
+    ASSERT_REFUSED("stl", cases);
 }
 
 RT_TEST(a_damaged_off_is_refused_with_its_line) {
     static const Damaged cases[] = {
-        {"off", "", "1:", "expected OFF, COFF, NOFF or CNOFF, found the end of the file"},
-        {"off", "OFF\n4 2\n", "3:", "expected the numbers of vertices, faces and edges"},
-        {"off", "OFF\n4000000000 1 0\n0 0 0\n", "3:", "ends after 1 of the 4000000000 vertices"},
-        {"off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "6:", "ends after 1 of the 2 faces"},
-        {"off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "6:", "names vertex 3, but there are 3"},
-        {"off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n4 0 1 2\n", "6:", "found the end of the file"},
-        {"off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 2\n", "7:", "expected the end of the file"},
-        {"off", "OFF\n-3 1 0\n", "2:", "a count of at least 0"},
-        {"off", "OFF\n3 1 0\n0 0\n1 0 0\n", "3:", "found the end of the line"},
+        {"", "1:", "expected OFF, COFF, NOFF or CNOFF, found the end of the file"},
+        {"OFF\n4 2\n", "3:", "expected the numbers of vertices, faces and edges"},
+        {"OFF\n4000000000 1 0\n0 0 0\n", "3:", "ends after 1 of the 4000000000 vertices"},
+        {"OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "6:", "ends after 1 of the 2 faces"},
+        {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "6:", "names vertex 3, but there are 3"},
+        {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n4 0 1 2\n", "6:", "found the end of the file"},
+        {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 2\n", "7:", "expected the end of the file"},
+        {"OFF\n-3 1 0\n", "2:", "a count of at least 0"},
+        {"OFF\n3 1 0\n0 0\n1 0 0\n", "3:", "found the end of the line"},
     };
-    ASSERT_REFUSED(cases);
+    ASSERT_REFUSED("off", cases);
 }
 
 RT_TEST(a_damaged_gltf_is_refused_with_what_is_wrong) {
     static const Damaged cases[] = {
-        {"gltf", "", "1:", "'[' or '{' expected"},
-        {"gltf", "{\"asset\":{\"version\":\"1.0\"}}", "", "expected glTF 2.0"},
-        {"gltf", "{\"asset\":{\"version\":\"2.0\"}}", "", "the file names scenes[0], but there are 0"},
-        {"gltf", "{\"asset\":{\"version\":\"2.0\"},\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]}",
-         "", "requires the extension 'KHR_draco_mesh_compression'"},
-        {"gltf", GLTF_PARTS(NODE, "", "", "6", "", "48", "AAECAAIE"), "", "names vertex 4, but there are 4"},
-        {"gltf", GLTF_PARTS("{\"mesh\":1}", "", "", "6", "", "48", SQUARE), "", "a node names meshes[1]"},
-        {"gltf", GLTF_PARTS("{\"children\":[0]}", "", "", "6", "", "48", SQUARE), "",
-         "nodes[0]: it is named twice"},
-        {"gltf", GLTF_PARTS("{\"children\":[9]}", "", "", "6", "", "48", SQUARE), "",
-         "a node names nodes[9]"},
-        {"gltf", GLTF_PARTS("{\"matrix\":[1,2]}", "", "", "6", "", "48", SQUARE), "", "a list of 16 numbers"},
-        {"gltf", GLTF_PARTS("{\"mesh\":0,\"scale\":[1e300,1,1]}", "", "", "6", "", "48", SQUARE), "",
-         "not a finite"},
-        {"gltf", GLTF_PARTS(NODE, "", ",\"sparse\":{}", "6", "", "48", SQUARE), "",
-         "accessors[0]: it is sparse"},
-        {"gltf", GLTF_PARTS(NODE, "", ",\"byteOffset\":1", "6", "", "48", SQUARE), "",
-         "do not fit into the 48 bytes"},
-        {"gltf", GLTF_PARTS(NODE, "", "", "9", "", "48", SQUARE), "",
-         "its 9 elements do not fit into the 6 bytes"},
-        {"gltf", GLTF_PARTS(NODE, "", "", "4000000000", "", "48", SQUARE), "", "do not fit"},
-        {"gltf", GLTF_PARTS(NODE, "", "", "4611686018427387904", "", "48", SQUARE), "", "expected count"},
-        {"gltf", GLTF_PARTS(NODE, "", "", "5", "", "48", SQUARE), "",
-         "a primitive of triangles has 5 corners"},
-        {"gltf", GLTF_PARTS(NODE, ",\"mode\":7", "", "6", "", "48", SQUARE), "", "expected mode"},
-        {"gltf", GLTF_PARTS(NODE, ",\"mode\":1", "", "6", "", "48", SQUARE), "", "no triangle"},
-        {"gltf", GLTF_PARTS(NODE, "", "", "6", ",\"byteOffset\":1", "48", SQUARE), "",
-         "bufferViews[1]: it ends at byte 7 of a buffer of 6 bytes"},
-        {"gltf", GLTF_PARTS(NODE, "", "", "6", ",\"byteStride\":-1", "48", SQUARE), "",
-         "expected byteStride"},
-        {"gltf", GLTF_PARTS(NODE, "", "", "6", "", "49", SQUARE), "",
-         "buffers[0]: it declares 49 bytes, but has 48"},
-        {"gltf", GLTF_PARTS(NODE, "", "", "6", "", "48", "AAECAA"), "",
-         "buffers[1]: it declares 6 bytes, but has 4"},
-        {"gltf", GLTF_PARTS(NODE, "", "", "6", "", "48", "AAEC*AID"), "",
-         "buffers[1]: its base64 is damaged"},
-        {"gltf",
-         "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":1,\"uri\":\"http://x.org/a\"}]}", "",
+        {"", "1:", "'[' or '{' expected"},
+        {"{\"asset\":{\"version\":\"1.0\"}}", "", "expected glTF 2.0"},
+        {ASSET "}", "", "the file names scenes[0], but there are 0"},
+        {ASSET ",\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]}", "",
+         "requires the extension 'KHR_draco_mesh_compression'"},
+        {ASSET ",\"buffers\":[{\"byteLength\":1,\"uri\":\"http://x.org/a\"}]}", "",
          "'http://x.org/a' is not a file"},
-        {"gltf", "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":1}]}", "", "expected uri"},
+        {ASSET ",\"buffers\":[{\"byteLength\":1}]}", "", "expected uri"},
     };
-    ASSERT_REFUSED(cases);
+    static const struct {
+        const char *was, *is, *says;
+    } changes[] = {
+        {"AAECAAID", "AAECAAIE", "names vertex 4, but there are 4"},
+        {"AAECAAID", "AAECAA", "buffers[1]: it declares 6 bytes, but has 4"},
+        {"AAECAAID", "AAEC*AID", "buffers[1]: its base64 is damaged"},
+        {"{\"mesh\":0", "{\"mesh\":1", "a node names meshes[1]"},
+        {"{\"mesh\":0", "{\"children\":[0]", "nodes[0]: it is named twice"},
+        {"{\"mesh\":0", "{\"children\":[9]", "a node names nodes[9]"},
+        {"{\"mesh\":0", "{\"matrix\":[1,2]", "a list of 16 numbers"},
+        {"{\"mesh\":0", "{\"mesh\":0,\"scale\":[1e300,1,1]", "not a finite"},
+        {"\"indices\"", "\"mode\":7,\"indices\"", "expected mode"},
+        {"\"indices\"", "\"mode\":1,\"indices\"", "no triangle"},
+        {"\"VEC3\"", "\"VEC3\",\"sparse\":{}", "accessors[0]: it is sparse"},
+        {"\"VEC3\"", "\"VEC3\",\"byteOffset\":1", "do not fit into the 48 bytes"},
+        {"5121", "4294972417", "accessors[1]: expected the type SCALAR"}, /* 2^32 more */
+        {"\"count\":6", "\"count\":9", "its 9 elements do not fit into the 6 bytes"},
+        {"\"count\":6", "\"count\":4000000000", "do not fit"},
+        {"\"count\":6", "\"count\":4611686018427387904", "expected count"},
+        {"\"count\":6", "\"count\":5", "a primitive of triangles has 5 corners"},
+        {"\"buffer\":1", "\"buffer\":1,\"byteOffset\":1",
+         "bufferViews[1]: it ends at byte 7 of a buffer of 6 bytes"},
+        {"\"buffer\":1", "\"buffer\":1,\"byteStride\":-1", "expected byteStride"},
+        {"\"byteLength\":48,\"uri\"", "\"byteLength\":49,\"uri\"",
+         "buffers[0]: it declares 49 bytes, but has 48"},
+    };
+    static const char gltf[] = GLTF,
+                      missing[] = ASSET ",\"buffers\":[{\"byteLength\":1,\"uri\":\"no%20file\"}]}";
     RtScene scene;
-    static const char missing[] =
-        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":1,\"uri\":\"no%20file\"}]}";
+    ASSERT_REFUSED("gltf", cases);
     assert_bad_input_at(load_bytes("gltf", missing, strlen(missing), &scene, error),
                         RT_TEST_FOLDER "/no file: ", "No such file");
+    for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++) {
+        char text[MOST_BYTES];
+        const char *at = strstr(gltf, changes[i].was);
+        assert_non_null(at);
+        snprintf(text, sizeof text, "%.*s%s%s", (int)(at - gltf), gltf, changes[i].is,
+                 at + strlen(changes[i].was));
+        assert_bad_input(load_bytes("gltf", text, strlen(text), &scene, error), changes[i].says);
+    }
 }
 
 /* Deeper than the stack, if it followed them. */
@@ -399,9 +383,41 @@ RT_TEST(deeply_nested_gltf_is_refused) {
     assert_bad_input(load_bytes("gltf", text, sizeof text, &scene, error), "maximum parsing depth reached");
 }
 
+/* Each of `nodes` places `nodes` primitives, of a triangle each, that share as many vertices. */
+static RtStatus load_repeated(int nodes, RtScene *scene, RtError *problem) {
+    static char text[100000];
+    size_t size = (size_t)sprintf(text, "{\"asset\":{\"version\":\"2.0\"},\"meshes\":[{\"primitives\":[");
+#define REPEAT(item)                                                                                         \
+    for (int i = 0; i < nodes; i++) size += (size_t)sprintf(text + size, "%s" item, i ? "," : "", i)
+    REPEAT("{\"attributes\":{\"POSITION\":0},\"indices\":1,\"extras\":%d}");
+    size += (size_t)sprintf(text + size, "]}],\"nodes\":[");
+    REPEAT("{\"mesh\":0,\"extras\":%d}");
+    size += (size_t)sprintf(text + size, "],\"scenes\":[{\"nodes\":[");
+    REPEAT("%d");
+    size += (size_t)sprintf(
+        text + size,
+        "]}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":%d,\"type\":\"VEC3\"},"
+        "{\"bufferView\":0,\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":%d}],"
+        "\"buffers\":[{\"byteLength\":%d,\"uri\":\"data:;base64,",
+        nodes, 12 * nodes, 12 * nodes);
+    memset(text + size, 'A', (size_t)(16 * nodes));
+    size += (size_t)(16 * nodes);
+    size += (size_t)sprintf(text + size, "\"}]}");
+    return load_bytes("gltf", text, size, scene, problem);
+}
+
+RT_TEST(gltf_that_repeats_its_meshes_too_often_for_its_size_is_refused) {
+    OWNED_SCENE few;
+    RtScene many;
+    assert_ok(load_repeated(100, &few, error));
+    assert_int_equal(few.geometry.triangle_count, 100 * 100);
+    assert_bad_input(load_repeated(400, &many, error), "its nodes place more than 1000 vertices and corners");
+}
+
 RT_TEST(the_sizes_that_a_binary_file_declares_must_be_its_own) {
     static const struct {
-        size_t mesh, at; /* the byte that grows by 1 */
+        size_t mesh, at; /* the byte that grows by 1; 0: the file grows by a byte */
         const char *says;
     } cases[] = {
         {GLB, 4, "this is glTF 3: only 2 can be read"},
@@ -409,23 +425,19 @@ RT_TEST(the_sizes_that_a_binary_file_declares_must_be_its_own) {
         {GLB, 12, "expected a chunk BIN"}, /* the length of the JSON */
         {BINARY_STL, 80, "the header declares 3 triangles, which take 234 bytes, but the file has 184"},
         {BINARY_PLY, 51, "face 0 (counted from 0) has 0 vertices"}, /* the number of vertices */
+        {GLB, 0, "declares"},
+        {BINARY_STL, 0, "declares"},
+        {BINARY_PLY, 0, "declares"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct Mesh changed = whole[cases[i].mesh];
         RtScene scene;
-        changed.bytes[cases[i].at]++;
+        if (cases[i].at)
+            changed.bytes[cases[i].at]++;
+        else
+            changed.size++;
         assert_bad_input(load_bytes(changed.extension, changed.bytes, changed.size, &scene, error),
                          cases[i].says);
-    }
-}
-
-RT_TEST(bytes_behind_the_end_of_a_binary_file_are_refused) {
-    static const size_t meshes[] = {GLB, BINARY_PLY, BINARY_STL};
-    for (size_t i = 0; i < 3; i++) {
-        struct Mesh longer = whole[meshes[i]];
-        RtScene scene;
-        longer.size++;
-        assert_bad_input(load_bytes(longer.extension, longer.bytes, longer.size, &scene, error), "declares");
     }
 }
 

@@ -125,8 +125,10 @@ static const struct {
     {SPHERE "ambient: [a, b, c]\n", 3, "invalid value 'a'"},
     /* meshes, built-ins, transforms */
     {SPHERE "- mesh:\n    path: no-such.obj\n", 4, "no-such.obj"},
-    {SPHERE "- mesh:\n    path: scene.yaml\n", 4, "the name of a mesh ends in .obj"},
-    {SPHERE "- mesh:\n    path: ../../../../../../../../dev/zero\n", 4, "the name of a mesh ends in .obj"},
+    {SPHERE "- mesh:\n    path: scene.yaml\n", 4,
+     "no format '.yaml' can be read as a mesh. These can: .obj .ply"},
+    {SPHERE "- mesh:\n    path: ../../../../../../../../dev/zero\n", 4,
+     "no format '.' can be read as a mesh"},
     {SPHERE "- mesh:\n    path: /dev/zero.obj\n", 4, "No such file"},
     {SPHERE "- mesh:\n    path: ../../../../../../../../dev/full.obj\n", 4, "No such file"},
     {SPHERE "- builtin:\n    name: scene.yaml\n", 4, "scene.yaml"}, /* scenes cannot include each other */
@@ -232,7 +234,7 @@ RT_TEST(deep_nesting_is_refused_without_descending) {
 static RtStatus parse_much(const char *head, const char *part, size_t bytes, const char *tail,
                            RtError *error) {
     size_t length = strlen(head), step = strlen(part);
-    char *text = rt_alloc(length + bytes + step + strlen(tail) + 1, 1);
+    OWNED_MEMORY char *text = rt_alloc(length + bytes + step + strlen(tail) + 1, 1);
     assert_non_null(text);
     memcpy(text, head, length);
     for (size_t end = length + bytes; length < end; length += step) memcpy(text + length, part, step);
@@ -240,7 +242,6 @@ static RtStatus parse_much(const char *head, const char *part, size_t bytes, con
     OWNED_SCENE scene;
     rt_scene_init(&scene);
     RtStatus status = rt_yaml_load_text("much", text, rt_builtin_open, &scene, error);
-    rt_free(text);
     return status;
 }
 
@@ -319,7 +320,7 @@ RT_TEST(whichever_allocation_fails_nothing_is_left) {
 RT_TEST(too_little_memory_for_libyaml_is_out_of_memory) {
     if (RT_SANITIZED) RT_SKIP("a build without sanitizers");
     enum { LENGTH = 100000000 };
-    char *text = rt_alloc(LENGTH + 2, 1);
+    OWNED_MEMORY char *text = rt_alloc(LENGTH + 2, 1);
     assert_non_null(text);
     memset(text, 'x', LENGTH);
     pid_t child = fork();
@@ -339,7 +340,6 @@ RT_TEST(too_little_memory_for_libyaml_is_out_of_memory) {
     int result = 1;
     assert_true(child > 0 && waitpid(child, &result, 0) == child);
     assert_int_equal(result, 0);
-    rt_free(text);
 }
 
 RT_TESTS(yaml_refusals, make_folder, NULL)

@@ -146,7 +146,7 @@ static uint64_t count_misses(RtScene *scene, uint32_t side) {
 
 /* The room itself is the first of its triangles: 39 columns, 2 * 12 - 2 a column. */
 RT_TEST(a_hall_is_closed_so_that_every_primary_ray_hits) {
-    RtScene scene = open_scene("hall");
+    OWNED_SCENE scene = open_scene("hall");
     assert_int_equal(open_edges(&scene.geometry, 0, 39 * 22), 0);
     assert_int_equal(count_misses(&scene, 512), 0);
     RtVec3 eye = scene.camera.from;
@@ -156,7 +156,6 @@ RT_TEST(a_hall_is_closed_so_that_every_primary_ray_hits) {
     rt_scene_clear(&scene);
     scene = open_scene("hall:size=1");
     assert_int_equal(count_misses(&scene, 512), 0);
-    rt_scene_clear(&scene);
 }
 
 /* Recorded with gcc 12 and clang 14 on x86-64. */

@@ -11,7 +11,7 @@ RT_TEST_IN_PLACE(a_csv_field_may_be_quoted_and_is_written_as_it_was_read) {
     const char text[] = "# told here: a, b\na,b,c\r\n1,\"x, \"\"y\"\"\",\n\n,2,3\n";
     char *written = NULL;
     size_t size;
-    RtCsv csv;
+    OWNED_CSV csv;
     write_in(place, "some.csv", text);
     assert_ok(rt_csv_read(&csv, path_in(place, "some.csv").text, error));
     assert_int_equal(csv.rows, 2);
@@ -25,13 +25,12 @@ RT_TEST_IN_PLACE(a_csv_field_may_be_quoted_and_is_written_as_it_was_read) {
     fclose(out);
     assert_string_equal(written, "\"x, \"\"y\"\"\"");
     free(written);
-    rt_csv_clear(&csv);
 }
 
 RT_TEST_IN_PLACE(a_field_that_would_read_as_a_comment_or_a_line_break_is_quoted) {
     const Place *place = *state;
     static const char *const fields[] = {"#a", "b\r"};
-    RtCsv csv;
+    OWNED_CSV csv;
     FILE *out = fopen(path_in(place, "some.csv").text, "wb");
     assert_non_null(out);
     for (size_t i = 0; i < 4; i++) {
@@ -43,17 +42,15 @@ RT_TEST_IN_PLACE(a_field_that_would_read_as_a_comment_or_a_line_break_is_quoted)
     assert_int_equal(csv.rows, 1);
     assert_string_equal(rt_csv_field(&csv, 0, 0), fields[0]);
     assert_string_equal(rt_csv_field(&csv, 0, 1), fields[1]);
-    rt_csv_clear(&csv);
 }
 
 RT_TEST_IN_PLACE(a_csv_file_with_a_byte_0_is_refused_and_not_cut_off_there) {
     const Place *place = *state;
     static const char text[] = "a,b\n1,2\n\0,3,4\n";
-    RtCsv csv;
+    OWNED_CSV csv;
     assert_ok(rt_file_write(path_in(place, "some.csv").text, text, sizeof text - 1, error));
     assert_bad_input(rt_csv_read(&csv, path_in(place, "some.csv").text, error),
                      ":3: the file contains a zero byte");
-    rt_csv_clear(&csv);
 }
 
 RT_TEST_IN_PLACE(a_csv_file_that_is_none_is_refused_with_its_line) {
@@ -74,18 +71,16 @@ RT_TEST_IN_PLACE(a_csv_file_that_is_none_is_refused_with_its_line) {
 RT_TEST_IN_PLACE(a_csv_file_needs_memory_for_the_fields_that_it_has_not_for_lines_times_columns) {
     enum { COLUMNS = 1 << 16, MOST_BYTES = 1 << 21 };
     const Place *place = *state;
-    RtCsv csv;
-    char *text = rt_alloc(2 * COLUMNS + 1, 1);
+    OWNED_CSV csv;
+    OWNED_MEMORY char *text = rt_alloc(2 * COLUMNS + 1, 1);
     assert_non_null(text);
     memset(text, ',', COLUMNS);
     memset(text + COLUMNS, '\n', COLUMNS);
     text[2 * COLUMNS - 2] = 'x';
     write_in(place, "some.csv", text);
-    rt_free(text);
     rt_memory_limit(MOST_BYTES);
     assert_bad_input(rt_csv_read(&csv, path_in(place, "some.csv").text, error), ": there are fewer");
     rt_memory_limit(0);
-    rt_csv_clear(&csv);
 }
 
 RT_TESTS(csv, NULL, NULL)

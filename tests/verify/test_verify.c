@@ -145,13 +145,12 @@ RT_TEST(a_row_has_the_members_that_its_columns_name) {
 RT_TEST(threads_and_interruptions_change_no_byte) {
     json_decref(verify(OUT "/a", 1, RT_START_ANEW));
     json_decref(verify(OUT "/b", 2, RT_START_ANEW));
-    char *journal = text_of(OUT "/b", "rows.jsonl");
+    OWNED_MEMORY char *journal = text_of(OUT "/b", "rows.jsonl");
     /* The header, two rows, and a part of the third: as if the power had failed then. */
     char *end = journal;
     for (int line = 0; line < 3; line++) end = strchr(end, '\n') + 1;
     assert_ok(rt_file_write(OUT "/b/rows.jsonl", journal, (size_t)(end - journal) + 7, error));
     assert_int_equal(unlink(OUT "/b/verify.csv"), 0);
-    rt_free(journal);
     json_decref(verify(OUT "/b", 0, RT_START_RESUME));
     assert_int_equal(rows_seen, 4);
     assert_int_equal(scenes_worked_on, 1);
@@ -306,7 +305,7 @@ RT_TEST(the_spread_has_the_trial_and_that_beside_each_value) {
 /* A scene from a file is stored in the replay file and restored to the last bit. */
 RT_TEST(a_replay_file_needs_no_other_file) {
     const char *path = OUT "/lecture.json";
-    RtScene scene;
+    OWNED_SCENE scene;
     uint32_t ids[] = {1};
     RtAnswer answer = {.expected = {1, 0}, .got = RT_MISS, .wrong = true}, again;
     RtShrunk shrunk = {.ids = ids, .count = 1, .answer = answer, .minimal = true};
@@ -335,7 +334,6 @@ RT_TEST(a_replay_file_needs_no_other_file) {
     assert_int_equal(rt_replay_ask(&replay, rt_accel_builder_of_spec("bvh"), false, &again, &error),
                      RT_BAD_INPUT);
     rt_replay_clear(&replay);
-    rt_scene_clear(&scene);
 }
 
 RT_TEST(a_replay_file_of_a_later_format_is_refused_by_its_number) {
@@ -402,14 +400,13 @@ RT_TEST(rows_add_up_over_the_parameters_of_an_accelerator) {
     rt_free(sums);
     assert_ok(rt_directory_create(OUT "/e", error));
     assert_ok(rt_verify_write(rows, OUT "/e", error));
-    char *table = text_of(OUT "/e", "verify.md");
+    OWNED_MEMORY char *table = text_of(OUT "/e", "verify.md");
     assert_non_null(strstr(table, "500 pairs of a ray and an accelerator"));
     assert_non_null(strstr(table, "0 answers to `nearest` are wrong, 5 to `occluded`"));
     assert_non_null(strstr(table, "\n| `item+bvh` | 3 | 300 | 300 | 0 | 0 | 0 | 5 | 1 |\n"));
     assert_non_null(strstr(table, "\n| `embree` * | 1 | 100 | 93 | 0 | 7 | 0 | 0 | 0 |\n"));
     assert_non_null(strstr(table, "\n| `embree` | 4 | 0 | 3 | 0 | 0 |\n"));
     assert_non_null(strstr(table, "\n| `tetra` | 2 | 200 | 200 | 0 | 0 | 0 | 5 | 0 |\n"));
-    rt_free(table);
     json_decref(rows);
 }
 

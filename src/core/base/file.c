@@ -23,7 +23,8 @@ static RtStatus fail_io(RtError *error, const char *doing, const char *path) {
 
 /* ---- temporary files ---- */
 
-/* Those of this process, for a handler of signals: a name is whole while it is LISTED. */
+/* Those of this process, for a handler of signals: a name is whole while it is LISTED. What the handler takes
+ * stays CHANGING, so that no thread overwrites the name as it is read. */
 enum { MOST_LISTED = 64, UNUSED = 0, CHANGING, LISTED };
 static struct {
     atomic_int state;
@@ -43,14 +44,16 @@ static void list_temporary(RtOutput *output) {
 
 /* It is renamed or removed. */
 static void forget_temporary(RtOutput *output) {
-    if (output->listed >= 0) atomic_store(&listed[output->listed].state, UNUSED);
+    int whole = LISTED;
+    if (output->listed >= 0) atomic_compare_exchange_strong(&listed[output->listed].state, &whole, UNUSED);
     output->listed = -1;
     output->temporary[0] = '\0';
 }
 
 void rt_outputs_remove_open(void) {
     for (int i = 0; i < MOST_LISTED; i++) {
-        if (atomic_load(&listed[i].state) == LISTED) unlink(listed[i].path);
+        int whole = LISTED;
+        if (atomic_compare_exchange_strong(&listed[i].state, &whole, CHANGING)) unlink(listed[i].path);
     }
 }
 

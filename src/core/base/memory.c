@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "core/base/memory.h"
 
+#include <inttypes.h>
 #include <malloc.h>
 #include <stdatomic.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -109,7 +111,7 @@ void rt_memory_limit_process(uint64_t bytes) {
 }
 
 RtStatus rt_memory_unlimit_process(RtStatus status, RtError *error) {
-    return unlimit(&limit_of_process, "that of --memory, or of this machine", status, error);
+    return unlimit(&limit_of_process, "that of --memory, or of this machine or container", status, error);
 }
 
 RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error) {
@@ -142,8 +144,38 @@ RtStatus rt_append(void *array, uint32_t *count, uint32_t *capacity, const void 
     return RT_OK;
 }
 
+/* Lines are "0::/GROUP" (version 2) or "NUMBER:CONTROLLER,...:/GROUP". All groups around one limit it. */
+uint64_t rt_memory_of_groups(const char *groups, const char *mounted) {
+    char line[4096], path[sizeof line + 4096];
+    uint64_t least = UINT64_MAX;
+    FILE *file = fopen(groups, "re");
+    while (file && fgets(line, sizeof line, file)) {
+        char *controllers = strchr(line, ':'), *group = controllers ? strchr(controllers + 1, ':') : NULL;
+        if (!group) continue;
+        *group++ = '\0';
+        group[strcspn(group, "\n")] = '\0';
+        const bool second = controllers[1] == '\0';
+        if (!second && !strstr(controllers, "memory")) continue;
+        for (bool more = true; more;) {
+            snprintf(path, sizeof path, second ? "%s%s/memory.max" : "%s/memory%s/memory.limit_in_bytes",
+                     mounted, group);
+            uint64_t limit;
+            FILE *limits = fopen(path, "re"); /* it may say "max" */
+            if (limits && fscanf(limits, "%" SCNu64, &limit) == 1 && limit < least) least = limit;
+            if (limits) fclose(limits);
+            char *last = strrchr(group, '/');
+            more = last != NULL;
+            if (more) *last = '\0';
+        }
+    }
+    if (file) fclose(file);
+    return least;
+}
+
 uint64_t rt_memory_size(void) {
-    return (uint64_t)sysconf(_SC_PHYS_PAGES) * (uint64_t)sysconf(_SC_PAGESIZE);
+    const uint64_t machine = (uint64_t)sysconf(_SC_PHYS_PAGES) * (uint64_t)sysconf(_SC_PAGESIZE);
+    const uint64_t container = rt_memory_of_groups("/proc/self/cgroup", "/sys/fs/cgroup");
+    return container < machine ? container : machine;
 }
 
 void rt_alloc_fail_at(uint64_t n) {

@@ -32,8 +32,12 @@ RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t siz
 RtStatus rt_append(void *array, uint32_t *count, uint32_t *capacity, const void *element, size_t size,
                    RtError *error);
 
-/* Bytes of memory in this machine. */
+/* Bytes of memory in this machine, or that its control groups (a container, a job of Slurm) may use. */
 uint64_t rt_memory_size(void);
+
+/* The least limit of the control groups that the file `groups` lists (/proc/self/cgroup), of version 1 or 2,
+ * whose file systems are in the folder `mounted`; UINT64_MAX without one. */
+uint64_t rt_memory_of_groups(const char *groups, const char *mounted);
 
 /* Limits further allocation to `bytes` more than now; 0 removes the limit. Memory of other libraries does
  * not count. */

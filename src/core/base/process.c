@@ -31,6 +31,7 @@ enum { BY_DESCRIPTOR = 3 /* P_PIDFD, which some C libraries lack */, PAUSE = 10 
 /* For rt_processes_kill: process ids, of groups below 0; 0: none. */
 enum { MOST_LISTED = 64 };
 static _Atomic pid_t listed[MOST_LISTED];
+static atomic_bool stopping; /* they were killed, and this process is about to end */
 
 static void relist(pid_t from, pid_t to) {
     for (int i = 0; i < MOST_LISTED; i++) {
@@ -44,6 +45,7 @@ static pid_t listed_id(const RtProcess *process) {
 }
 
 void rt_processes_kill(void) {
+    atomic_store(&stopping, true);
     for (int i = 0; i < MOST_LISTED; i++) {
         const pid_t id = atomic_load(&listed[i]);
         if (id != 0) kill(id, SIGKILL);
@@ -214,7 +216,8 @@ void rt_process_signal(const RtProcess *process, int number) {
         kill(process->pid, number);
 }
 
-static bool has_ended(const RtProcess *process, RtProcessEnd *end) {
+/* With WNOWAIT as `more`, a process that has ended keeps its id. */
+static bool has_ended(const RtProcess *process, int more, RtProcessEnd *end) {
     struct pollfd ended = {.fd = process->descriptor, .events = POLLIN};
     bool held = process->descriptor >= 0;
     idtype_t type = held ? (idtype_t)BY_DESCRIPTOR : P_PID;
@@ -222,7 +225,7 @@ static bool has_ended(const RtProcess *process, RtProcessEnd *end) {
     siginfo_t about = {0};
     int got;
     if (held && poll(&ended, 1, 0) != 1) return false;
-    do got = waitid(type, id, &about, WEXITED | WNOHANG);
+    do got = waitid(type, id, &about, WEXITED | WNOHANG | more);
     while (got != 0 && errno == EINTR);
     if (got != 0) return true; /* ECHILD: other code waited for it */
     if (about.si_pid == 0) return held;
@@ -269,14 +272,16 @@ bool rt_process_wait(RtProcess *process, int milliseconds, RtProcessEnd *end) {
     const double until = milliseconds < 0 ? INFINITY : rt_wall_seconds() + milliseconds / 1000.0;
     *end = (RtProcessEnd){.code = -1};
     if (process->pid <= 0) return true;
-    while (!has_ended(process, end)) {
+    while (!has_ended(process, WNOWAIT, end)) {
         double left = until - rt_wall_seconds();
         if (left <= 0) return false;
         pause_for(process, (int)(fmin(left, 60) * 1000) + 1);
     }
+    while (atomic_load(&stopping)) pause();
+    relist(listed_id(process), 0); /* before its id may become another's */
+    has_ended(process, 0, end);
     if (process->group) end_group(process->pid, end);
     if (process->descriptor >= 0) close(process->descriptor);
-    relist(listed_id(process), 0);
     *process = (RtProcess){0};
     return true;
 }

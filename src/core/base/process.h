@@ -65,7 +65,8 @@ bool rt_process_wait(RtProcess *process, int milliseconds, RtProcessEnd *end);
 /* The same, but kills it if it still runs then. */
 void rt_process_end(RtProcess *process, int milliseconds);
 
-/* Kills all that run, up to 64; for handlers of signals that end this process. */
+/* Kills all that run, up to 64; for handlers of signals that end this process. In other threads,
+ * rt_process_wait does not return any more: nobody takes their end for a crash. */
 void rt_processes_kill(void);
 
 /* How it ended, to out[0..size): "it crashed (Segmentation fault)". `reported` is a signal that the process

@@ -90,6 +90,11 @@ static inline RtVec3d rt_crossd(RtVec3d a, RtVec3d b) {
     return (RtVec3d){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+/* The normal of a triangle; its length is twice the area. */
+static inline RtVec3d rt_area_vector(RtVec3d a, RtVec3d b, RtVec3d c) {
+    return rt_crossd(rt_subd(b, a), rt_subd(c, a));
+}
+
 static inline double rt_lengthd(RtVec3d a) {
     return sqrt(rt_dotd(a, a));
 }

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/ioctl.h>
 
 /* Levenshtein distance, for words of up to 63 characters. */
@@ -44,6 +45,22 @@ void rt_suggest(const char *word, const char *const *names, size_t count, char o
     const char *near = rt_nearest_name(word, names, count);
     out[0] = '\0';
     if (near) snprintf(out, RT_MAX_SUGGESTION, ": did you mean '%s'?", near);
+}
+
+RtStatus rt_find_format(const char *path, const char *(*extension)(size_t i), const char *done, size_t *found,
+                        RtError *error) {
+    enum { MOST = 16 };
+    const char *names[MOST], *dot = strrchr(basename(path), '.'), *own = dot ? dot + 1 : "";
+    char list[256] = "";
+    size_t count = 0;
+    for (; count < MOST && (names[count] = extension(count)); count++) {
+        *found = count;
+        if (strcasecmp(names[count], own) == 0) return RT_OK;
+        rt_append_text(list, sizeof list, " .%s", names[count]);
+    }
+    const char *near = rt_nearest_name(own, names, count);
+    return rt_fail(error, RT_BAD_INPUT, "%s: no format '.%.40s' can be %s%s%s%s These can:%s", path, own,
+                   done, near ? ": did you mean '." : "", near ? near : "", near ? "'?" : ".", list);
 }
 
 void rt_join_names(const char *const *names, size_t count, char *out, size_t size) {

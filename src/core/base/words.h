@@ -3,6 +3,8 @@
 #ifndef RT_BASE_WORDS_H
 #define RT_BASE_WORDS_H
 
+#include "core/base/status.h"
+
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -19,6 +21,12 @@ const char *rt_nearest_name(const char *word, const char *const *names, size_t c
 
 /* ": did you mean 'NAME'?" with the nearest name, "" if none is near. */
 void rt_suggest(const char *word, const char *const *names, size_t count, char out[RT_MAX_SUGGESTION]);
+
+/* Finds the format of a file by the extension of `path`, in upper or lower case: the i for which extension(i)
+ * is that, without the dot. It returns NULL after the last, of 16 at most. RT_BAD_INPUT, with all extensions,
+ * if there is none: "no format '.x' can be DONE". */
+RtStatus rt_find_format(const char *path, const char *(*extension)(size_t i), const char *done, size_t *found,
+                        RtError *error);
 
 /* Writes "a, b, c" to out[0..size), truncated if it does not fit. */
 void rt_join_names(const char *const *names, size_t count, char *out, size_t size);

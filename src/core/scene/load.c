@@ -10,7 +10,6 @@
 #include <dirent.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 
 static RtStatus load_nff(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error) {
@@ -18,7 +17,7 @@ static RtStatus load_nff(const char *path, RtSceneOpener *open_named, RtScene *s
     return rt_nff_load(path, scene, error);
 }
 
-/* The formats of whole scenes; all others are meshes. */
+/* The formats of whole scenes; those of meshes follow. */
 static const struct {
     const char *extension; /* without the dot */
     RtStatus (*load)(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error);
@@ -29,42 +28,14 @@ static const struct {
     {"nff", load_nff, rt_nff_save},
 };
 
-enum { FORMAT_COUNT = sizeof formats / sizeof formats[0], MOST_NAMES = FORMAT_COUNT + 8 };
+enum { FORMAT_COUNT = sizeof formats / sizeof formats[0] };
 
-/* The text after the last dot of the last path component, or "". */
-static const char *extension_of(const char *path) {
-    const char *dot = strrchr(basename(path), '.');
-    return dot ? dot + 1 : "";
+static const char *read_extension(size_t i) {
+    return i < FORMAT_COUNT ? formats[i].extension : rt_mesh_extension(i - FORMAT_COUNT);
 }
 
-/* Lists the extensions that can be read, or written (rt_mesh_read, rt_mesh_written), in names[0..MOST_NAMES);
- * returns their number. */
-static size_t list_formats(const char *(*mesh)(size_t i), const char *names[MOST_NAMES]) {
-    size_t count = 0;
-    for (int i = 0; i < FORMAT_COUNT; i++) names[count++] = formats[i].extension;
-    for (size_t i = 0; mesh(i) && count < MOST_NAMES; i++) names[count++] = mesh(i);
-    return count;
-}
-
-/* The number of the format of `path` in a list, or `count`. */
-static size_t find_format(const char *path, const char *const *names, size_t count) {
-    size_t i = 0;
-    while (i < count && strcasecmp(names[i], extension_of(path)) != 0) i++;
-    return i;
-}
-
-static RtStatus fail_extension(const char *path, const char *doing, const char *const *names, size_t count,
-                               RtError *error) {
-    const char *extension = extension_of(path);
-    char list[256] = "";
-    for (size_t i = 0; i < count; i++) {
-        size_t used = strlen(list);
-        snprintf(list + used, sizeof list - used, "%s.%s", i ? " " : "", names[i]);
-    }
-    const char *near = rt_nearest_name(extension, names, count);
-    return rt_fail(error, RT_BAD_INPUT, "%s: no format '.%.40s' can be %s%s%s%s These can: %s", path,
-                   extension, doing, near ? ": did you mean '." : "", near ? near : "", near ? "'?" : ".",
-                   list);
+static const char *written_extension(size_t i) {
+    return i < FORMAT_COUNT + RT_MESH_WRITTEN ? read_extension(i) : NULL;
 }
 
 /* Suggests the file with the nearest name in the same folder. */
@@ -88,7 +59,7 @@ static RtStatus fail_missing(const char *path, RtError *error) {
 }
 
 bool rt_scene_is_file(const char *spec) {
-    return rt_file_exists(spec) || strchr(spec, '/') || extension_of(spec)[0];
+    return rt_file_exists(spec) || strchr(spec, '/') || strchr(spec, '.');
 }
 
 RtStatus rt_scene_load(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error) {
@@ -97,9 +68,8 @@ RtStatus rt_scene_load(const char *path, RtSceneOpener *open_named, RtScene *sce
     bool exists = stat(path, &found) == 0;
     if (exists && S_ISDIR(found.st_mode))
         return rt_fail(error, RT_BAD_INPUT, "%s is a folder: give the name of a file in it", path);
-    const char *names[MOST_NAMES];
-    const size_t count = list_formats(rt_mesh_read, names), format = find_format(path, names, count);
-    if (format == count) return fail_extension(path, "read", names, count, error);
+    size_t format;
+    RT_TRY(rt_find_format(path, read_extension, "read", &format, error));
     if (!exists) return rt_file_is_dead_link(path, error) ? RT_BAD_INPUT : fail_missing(path, error);
     rt_scene_init(scene);
     snprintf(scene->name, sizeof scene->name, "%.*s", (int)sizeof scene->name - 1, path);
@@ -113,16 +83,15 @@ RtStatus rt_scene_load(const char *path, RtSceneOpener *open_named, RtScene *sce
 }
 
 RtStatus rt_scene_save(const RtScene *scene, const char *path, bool overwrite, RtError *error) {
-    const char *names[MOST_NAMES];
-    const size_t count = list_formats(rt_mesh_written, names), format = find_format(path, names, count);
-    if (format == count) return fail_extension(path, "written", names, count, error);
+    size_t format;
+    RT_TRY(rt_find_format(path, written_extension, "written", &format, error));
     if (!overwrite && rt_file_exists(path))
         return rt_fail(error, RT_BAD_INPUT,
                        "%s already exists: remove it, choose another name, or convert with --force", path);
     RtOutput output;
     RT_TRY(rt_output_open(&output, path, error));
     RtStatus status = format < FORMAT_COUNT ? formats[format].save(scene, output.file, error)
-                                            : rt_mesh_save(scene, names[format], output.file, error);
+                                            : rt_mesh_save(scene, format - FORMAT_COUNT, output.file, error);
     if (status == RT_OK) return rt_output_commit(&output, error);
     rt_output_discard(&output);
     return status;

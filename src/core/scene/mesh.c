@@ -3,39 +3,30 @@
 
 #include "core/base/file.h"
 #include "core/base/memory.h"
+#include "core/base/words.h"
 #include "core/scene/mesh_reader.h"
-
-#include <string.h>
-#include <strings.h>
 
 typedef struct Format {
     const char *extension;
-    bool text;
     RtStatus (*check)(const RtMeshHead *head, RtError *error); /* or NULL */
     RtStatus (*read)(RtMeshReader *r);
+    void (*write)(const RtGeometry *geometry, FILE *file); /* of the first RT_MESH_WRITTEN */
+    uint32_t most;                                         /* triangles that can be written */
+    bool text;
 } Format;
 
 static const Format formats[] = {
-    {"obj", true, NULL, rt_mesh_read_obj},
-    {"ply", false, rt_mesh_check_ply, rt_mesh_read_ply},
-    {"stl", false, rt_mesh_check_stl, rt_mesh_read_stl},
-    {"off", true, NULL, rt_mesh_read_off},
-    {"gltf", true, NULL, rt_mesh_read_gltf},
-    {"glb", false, rt_mesh_check_glb, rt_mesh_read_glb},
+    {"obj", NULL, rt_mesh_read_obj, rt_mesh_write_obj, UINT32_MAX, true},
+    {"ply", rt_mesh_check_ply, rt_mesh_read_ply, rt_mesh_write_ply, UINT32_MAX / 3, false},
+    {"stl", rt_mesh_check_stl, rt_mesh_read_stl, rt_mesh_write_stl, UINT32_MAX, false},
+    {"glb", rt_mesh_check_glb, rt_mesh_read_glb, rt_mesh_write_glb, UINT32_MAX / (3 * sizeof(RtTriangle)),
+     false},
+    {"gltf", NULL, rt_mesh_read_gltf, NULL, 0, true},
+    {"off", NULL, rt_mesh_read_off, NULL, 0, true},
 };
 
-enum { FORMAT_COUNT = sizeof formats / sizeof formats[0] };
-
-const char *rt_mesh_read(size_t i) {
-    return i < FORMAT_COUNT ? formats[i].extension : NULL;
-}
-
-static const Format *find_format(const char *path) {
-    const char *dot = strrchr(basename(path), '.');
-    for (int i = 0; dot && i < FORMAT_COUNT; i++) {
-        if (strcasecmp(formats[i].extension, dot + 1) == 0) return &formats[i];
-    }
-    return NULL;
+const char *rt_mesh_extension(size_t i) {
+    return i < sizeof formats / sizeof formats[0] ? formats[i].extension : NULL;
 }
 
 static RtStatus check_head(const Format *format, const char *path, RtError *error) {
@@ -60,13 +51,11 @@ static RtStatus read_mesh(const Format *format, RtMeshReader *r) {
 
 RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, const RtTransform *transform,
                         RtError *error) {
-    const Format *format = find_format(path);
     RtError own;
     char *data;
-    size_t size;
-    if (!format)
-        return rt_fail(error, RT_BAD_INPUT,
-                       "%s: the name of a mesh ends in .obj, .ply, .stl, .off, .gltf or .glb", path);
+    size_t size, number;
+    RT_TRY(rt_find_format(path, rt_mesh_extension, "read as a mesh", &number, error));
+    const Format *format = &formats[number];
     RT_TRY(check_head(format, path, error));
     RT_TRY((format->text ? rt_file_read_text : rt_file_read)(path, RT_MESH_MAX_BYTES, &data, &size, error));
     RtMeshReader reader = {.text = {.path = path,
@@ -92,4 +81,34 @@ RtStatus rt_mesh_load(const char *path, RtScene *scene, RtError *error) {
     scene->camera.up = rt_vec3(0, 1, 0);
     RT_TRY(rt_scene_add_material(scene, &standard, &material, error));
     return rt_mesh_append(scene, path, material, NULL, error);
+}
+
+static RtStatus check_shapes(const RtGeometry *g, const char *extension, RtError *error) {
+    const uint32_t counts[RT_SHAPE_COUNT] = {
+#define COUNT(CONSTANT, name, Type) g->name##_count,
+        RT_SHAPES(COUNT)
+#undef COUNT
+    };
+    for (int shape = 0; shape < RT_SHAPE_COUNT; shape++) {
+        if (shape == RT_SHAPE_TRIANGLE || counts[shape] == 0) continue;
+        return rt_fail(error, RT_BAD_INPUT,
+                       ".%s holds triangles only, but this scene has objects of other shapes (%s: %u)%s",
+                       extension, rt_shape_name((RtShape)shape), counts[shape],
+                       g->csg_count == 0 ? ": write .yaml or .nff" : "");
+    }
+    return RT_OK;
+}
+
+RtStatus rt_mesh_save(const RtScene *scene, size_t i, FILE *file, RtError *error) {
+    const RtGeometry *g = &scene->geometry;
+    const Format *format = &formats[i];
+    RT_TRY(check_shapes(g, format->extension, error));
+    if (g->triangle_count == 0)
+        return rt_fail(error, RT_BAD_INPUT,
+                       "a mesh needs at least one triangle, and the scene has none: write .yaml or .nff");
+    if (g->triangle_count > format->most)
+        return rt_fail(error, RT_BAD_INPUT, "%u triangles are too many for .%s, which holds %u at most",
+                       g->triangle_count, format->extension, format->most);
+    format->write(g, file);
+    return ferror(file) ? rt_fail(error, RT_IO, "the mesh could not be written") : RT_OK;
 }

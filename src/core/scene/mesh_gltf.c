@@ -67,21 +67,34 @@ static RtStatus add_vertices(const RtGltf *g, const json_t *attributes, RtGltfVi
     return RT_OK;
 }
 
-static RtStatus add_primitive(const RtGltf *g, const RtGltfItem *mesh, json_t *primitive) {
+/* Nodes may place a mesh many times, and primitives share vertices: a small file could take days. */
+static RtStatus count_placed(RtGltf *g, uint64_t count) {
+    enum { MOST = 1000 }; /* for each byte; a forest of 10,000 trees of 10,000 triangles has 400 */
+    g->placed += count;
+    if (g->placed / MOST <= g->size) return RT_OK;
+    return rt_mesh_fail(g->mesh,
+                        "its nodes place more than %d vertices and corners for each of its %zu bytes: divide "
+                        "the file, or export it without the vertices that a primitive does not use",
+                        MOST, g->size);
+}
+
+static RtStatus add_primitive(RtGltf *g, const RtGltfItem *mesh, json_t *primitive) {
     const RtGltfItem item = {mesh->list, mesh->index, primitive}; /* for messages: of this mesh */
     const json_t *reference = json_object_get(primitive, "indices");
     uint64_t mode;
     RtGltfView positions, indices;
+    RT_TRY(count_placed(g, 1));
     RT_TRY(rt_gltf_integer(g, &item, "mode", 0, TRIANGLES, &mode));
     if (mode < TRIANGLES) return RT_OK; /* points and lines */
     if (mode > FAN) return rt_gltf_fail(g, &item, "expected mode, 0 to 6");
     RT_TRY(add_vertices(g, json_object_get(primitive, "attributes"), &positions));
     indices = (RtGltfView){.count = positions.count};
     if (reference) RT_TRY(rt_gltf_open_view(g, reference, 1, &indices));
+    RT_TRY(count_placed(g, (uint64_t)positions.count + indices.count));
     return add_triangles(g, mode, &indices);
 }
 
-static RtStatus add_mesh(const RtGltf *g, const json_t *reference) {
+static RtStatus add_mesh(RtGltf *g, const json_t *reference) {
     RtGltfItem mesh;
     json_t *primitive;
     size_t i;
@@ -176,7 +189,7 @@ static RtStatus read_document(RtGltf *g, const char *text, size_t size) {
 }
 
 static RtStatus read_all(RtMeshReader *r, const char *text, size_t size, RtGltfBuffer chunk) {
-    RtGltf g = {.mesh = r, .chunk = chunk};
+    RtGltf g = {.mesh = r, .chunk = chunk, .size = size};
     RtStatus status = read_document(&g, text, size);
     for (size_t i = 0; i < g.buffer_count; i++) {
         if (g.buffers[i].data != chunk.data) rt_free(g.buffers[i].data);

@@ -145,13 +145,14 @@ RtStatus rt_gltf_load_buffers(RtGltf *g) {
         const RtGltfItem item = {"buffers", i, json_array_get(list, i)};
         RT_TRY(load_buffer(g, &item, left, &g->buffers[i]));
         left -= g->buffers[i].size < left ? g->buffers[i].size : left;
+        g->size += g->buffers[i].size;
     }
     return RT_OK;
 }
 
 /* ---- accessors ---- */
 
-static size_t component_size(int type) {
+static size_t component_size(uint64_t type) {
     return type == UINT8 ? 1 : type == UINT16 ? 2 : type == UINT32 || type == FLOAT32 ? 4 : 0;
 }
 
@@ -165,7 +166,7 @@ RtStatus rt_gltf_open_view(const RtGltf *g, const json_t *reference, size_t widt
     RT_TRY(rt_gltf_integer(g, &accessor, "componentType", 0, -1, &type));
     RT_TRY(rt_gltf_integer(g, &accessor, "count", 1, 0, &count));
     RT_TRY(rt_gltf_integer(g, &accessor, "byteOffset", 0, 0, &skip));
-    const size_t size = component_size((int)type) * width;
+    const size_t size = component_size(type) * width;
     const char *shape = json_string_value(json_object_get(accessor.object, "type"));
     if (size == 0 || (type == FLOAT32) != (width == 3) || !shape || strcmp(shape, names[width]) != 0)
         return rt_gltf_fail(g, &accessor, "expected the type %s of %s", names[width],
@@ -183,8 +184,7 @@ RtStatus rt_gltf_open_view(const RtGltf *g, const json_t *reference, size_t widt
         return rt_gltf_fail(g, &accessor,
                             "its %llu elements do not fit into the %llu bytes of bufferViews[%zu]",
                             (unsigned long long)count, (unsigned long long)length, range.index);
-    *view = (RtGltfView){g->buffers[buffer.index].data + begin + skip, (uint32_t)count, (int)type,
-                         (size_t)stride};
+    *view = (RtGltfView){g->buffers[buffer.index].data + begin + skip, (uint32_t)count, type, (size_t)stride};
     return RT_OK;
 }
 

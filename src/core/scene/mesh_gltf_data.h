@@ -19,6 +19,8 @@ typedef struct RtGltf {
     RtGltfBuffer chunk; /* the binary chunk of a .glb, borrowed; a zeroed struct: none */
     size_t buffer_count;
     RtGltfBuffer *buffers; /* [buffer_count], owned, except `chunk` */
+    size_t size;           /* bytes of the document and its buffers */
+    uint64_t placed;       /* primitives, their vertices and corners, in all nodes so far */
     bool *visited;         /* [nodes], owned */
 } RtGltf;
 
@@ -33,7 +35,7 @@ typedef struct RtGltfItem {
 typedef struct RtGltfView {
     const char *data;
     uint32_t count;
-    int type; /* of a component, as the document says it */
+    uint64_t type; /* of a component, as the document says it */
     size_t stride;
 } RtGltfView;
 

@@ -74,11 +74,12 @@ static RtStatus add_triangle(RtMeshReader *r, const RtMeshCorner corners[3]) {
         normals[i] = rt_transform_normal(&r->transform, mirror ? rt_scale(normal, -1) : normal);
         has_normals = rt_finite(normals[i]) && rt_lengthd(rt_widen(normals[i])) > 0;
     }
-    RtStatus status =
+    const RtStatus status =
         rt_scene_add_triangle(r->scene, r->material, vertices, has_normals ? normals : NULL, r->text.error);
-    if (status != RT_BAD_INPUT) return status;
-    const RtError inner = *r->text.error;
-    return rt_mesh_fail(r, "face %u (counted from 0): %s", r->face_count, inner.message);
+    if (status == RT_OK) return RT_OK;
+    char face[48];
+    snprintf(face, sizeof face, "face %u (counted from 0): ", r->face_count);
+    return rt_scan_place(&r->text, status, r->text.last, face);
 }
 
 static RtVec3d vertex_of(const RtMeshReader *r, uint32_t corner) {
@@ -87,8 +88,7 @@ static RtVec3d vertex_of(const RtMeshReader *r, uint32_t corner) {
 
 /* Twice the area of a triangle of three corners, as a vector. */
 static RtVec3d twice_area(const RtMeshReader *r, uint32_t a, uint32_t b, uint32_t c) {
-    const RtVec3d origin = vertex_of(r, a);
-    return rt_crossd(rt_subd(vertex_of(r, b), origin), rt_subd(vertex_of(r, c), origin));
+    return rt_area_vector(vertex_of(r, a), vertex_of(r, b), vertex_of(r, c));
 }
 
 static RtVec3d polygon_area(const RtMeshReader *r) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the readers of mesh formats share. A reader fills `vertices`, and `normals` if there are any, and for
- * each polygon of the file adds its corners and then the polygon.
+/* The formats of meshes, and what their readers share. A reader fills `vertices`, and `normals` if there are
+ * any, and for each polygon of the file adds its corners and then the polygon.
  *
  * The readers trust nothing in the file: every index is checked, no count allocates more than a small
  * multiple of the file's size, and a file that declares counts must have exactly as much as it declares. */
@@ -11,6 +11,7 @@
 #include "core/scene/scene.h"
 #include "core/text/scanner.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* Longer files are rejected, and documents of glTF without its buffers, which take 30 times as much memory.
@@ -98,6 +99,12 @@ RtStatus rt_mesh_read_ply(RtMeshReader *r);
 RtStatus rt_mesh_read_stl(RtMeshReader *r);
 RtStatus rt_mesh_read_gltf(RtMeshReader *r);
 RtStatus rt_mesh_read_glb(RtMeshReader *r);
+
+/* Each writes all triangles. */
+void rt_mesh_write_obj(const RtGeometry *g, FILE *file);
+void rt_mesh_write_ply(const RtGeometry *g, FILE *file);
+void rt_mesh_write_stl(const RtGeometry *g, FILE *file);
+void rt_mesh_write_glb(const RtGeometry *g, FILE *file);
 
 /* A number of 4 bytes, low byte first; and three float32. */
 static inline uint32_t rt_mesh_u32(const void *at) {

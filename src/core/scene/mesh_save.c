@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Writing meshes: every triangle with three vertices of its own. */
-#include "core/scene/mesh.h"
+#include "core/scene/mesh_reader.h"
 
 #include <inttypes.h>
 #include <string.h>
-#include <strings.h>
 
 static void put_u32(FILE *file, uint32_t value) {
     const unsigned char bytes[4] = {(unsigned char)value, (unsigned char)(value >> 8),
@@ -27,7 +26,7 @@ static RtVec3 normal_of(const RtGeometry *g, uint32_t triangle, int vertex) {
                                   : g->vertex_normals[entry].n[vertex];
 }
 
-static void save_stl(const RtGeometry *g, FILE *file) {
+void rt_mesh_write_stl(const RtGeometry *g, FILE *file) {
     fprintf(file, "%-80s", "binary STL");
     put_u32(file, g->triangle_count);
     for (uint32_t i = 0; i < g->triangle_count; i++) {
@@ -37,7 +36,7 @@ static void save_stl(const RtGeometry *g, FILE *file) {
     }
 }
 
-static void save_ply(const RtGeometry *g, FILE *file) {
+void rt_mesh_write_ply(const RtGeometry *g, FILE *file) {
     const bool normals = g->vertex_normal_count > 0;
     fprintf(file,
             "ply\nformat binary_little_endian 1.0\nelement vertex %u\n"
@@ -62,7 +61,7 @@ static void put_line(FILE *file, const char *word, RtVec3 v) {
 }
 
 /* Negative indices count from the end: -1 is the latest. */
-static void save_obj(const RtGeometry *g, FILE *file) {
+void rt_mesh_write_obj(const RtGeometry *g, FILE *file) {
     for (uint32_t i = 0; i < g->triangle_count; i++) {
         uint32_t entry = g->triangle_normals ? g->triangle_normals[i] : RT_NO_NORMALS;
         for (int k = 0; k < 3; k++) {
@@ -101,7 +100,7 @@ static uint32_t format_document(const RtGeometry *g, uint64_t part, bool normals
         (double)hi.y, (double)hi.z, accessor, part, view, normals ? 2 * part : part);
 }
 
-static void save_glb(const RtGeometry *g, FILE *file) {
+void rt_mesh_write_glb(const RtGeometry *g, FILE *file) {
     enum { HEADER = 12, CHUNK_HEADER = 8 };
     const bool normals = g->vertex_normal_count > 0;
     const uint64_t part = (uint64_t)g->triangle_count * sizeof(RtTriangle), data = (normals ? 2 : 1) * part;
@@ -120,56 +119,4 @@ static void save_glb(const RtGeometry *g, FILE *file) {
                 put_vector(file, part_number ? normal_of(g, i, k) : g->triangles[i].v[k]);
         }
     }
-}
-
-/* ---- choosing the format ---- */
-
-static const struct {
-    const char *extension;
-    uint32_t most; /* triangles */
-    void (*save)(const RtGeometry *geometry, FILE *file);
-} writers[] = {{"obj", UINT32_MAX, save_obj},
-               {"ply", UINT32_MAX / 3, save_ply},
-               {"stl", UINT32_MAX, save_stl},
-               {"glb", UINT32_MAX / (3 * sizeof(RtTriangle)), save_glb}};
-
-enum { WRITER_COUNT = sizeof writers / sizeof writers[0] };
-
-const char *rt_mesh_written(size_t i) {
-    return i < WRITER_COUNT ? writers[i].extension : NULL;
-}
-
-static RtStatus check_shapes(const RtGeometry *g, const char *extension, RtError *error) {
-    const uint32_t counts[RT_SHAPE_COUNT] = {
-#define COUNT(CONSTANT, name, Type) g->name##_count,
-        RT_SHAPES(COUNT)
-#undef COUNT
-    };
-    for (int shape = 0; shape < RT_SHAPE_COUNT; shape++) {
-        if (shape == RT_SHAPE_TRIANGLE || counts[shape] == 0) continue;
-        return rt_fail(error, RT_BAD_INPUT,
-                       ".%s holds triangles only, but this scene has objects of other shapes "
-                       "(%s: %u)%s",
-                       extension, rt_shape_name((RtShape)shape), counts[shape],
-                       g->csg_count == 0 ? ": write .yaml or .nff" : "");
-    }
-    return RT_OK;
-}
-
-RtStatus rt_mesh_save(const RtScene *scene, const char *extension, FILE *file, RtError *error) {
-    const RtGeometry *g = &scene->geometry;
-    int writer = 0;
-    while (writer < WRITER_COUNT && strcasecmp(writers[writer].extension, extension) != 0) writer++;
-    if (writer == WRITER_COUNT)
-        return rt_fail(error, RT_BAD_INPUT, "meshes cannot be written as .%.40s", extension);
-    RT_TRY(check_shapes(g, extension, error));
-    if (g->triangle_count == 0)
-        return rt_fail(error, RT_BAD_INPUT,
-                       "a mesh needs at least one triangle, and the scene has none: write "
-                       ".yaml or .nff");
-    if (g->triangle_count > writers[writer].most)
-        return rt_fail(error, RT_BAD_INPUT, "%u triangles are too many for .%s, which holds %u at most",
-                       g->triangle_count, writers[writer].extension, writers[writer].most);
-    writers[writer].save(g, file);
-    return ferror(file) ? rt_fail(error, RT_IO, "the mesh could not be written") : RT_OK;
 }

@@ -37,9 +37,7 @@ static RtStatus fail_inside(Reader *r, RtWord word, const char *wanted) {
 
 /* Adds the line of the statement to a message of the scene. */
 static RtStatus located(Reader *r, RtStatus status) {
-    if (status != RT_BAD_INPUT) return status;
-    RtError inner = *r->text.error;
-    return rt_fail_at(r->text.error, r->text.path, r->statement, 0, "%s", inner.message);
+    return rt_scan_place(&r->text, status, r->statement, "");
 }
 
 /* ---- numbers ---- */
@@ -251,9 +249,8 @@ static RtStatus read_polygon(Reader *r) {
     return located(r, rt_scene_add_triangle(r->scene, r->material, r->vertices, NULL, r->text.error));
 }
 
-static RtVec3d twice_area(const RtVec3 *v, uint32_t i) {
-    RtVec3d origin = rt_widen(v[0]);
-    return rt_crossd(rt_subd(rt_widen(v[i]), origin), rt_subd(rt_widen(v[i + 1]), origin));
+static RtVec3d fan_area(const RtVec3 *v, uint32_t i) {
+    return rt_area_vector(rt_widen(v[0]), rt_widen(v[i]), rt_widen(v[i + 1]));
 }
 
 /* A fan around the first vertex; no triangle may be oriented against the whole. */
@@ -262,9 +259,9 @@ static RtStatus read_patch(Reader *r) {
     RT_TRY(read_vertices(r, true, &count));
     const RtVec3 *v = r->vertices, *n = r->normals;
     RtVec3d whole = {0, 0, 0};
-    for (uint32_t i = 1; i + 1 < count; i++) whole = rt_addd(whole, twice_area(v, i));
+    for (uint32_t i = 1; i + 1 < count; i++) whole = rt_addd(whole, fan_area(v, i));
     for (uint32_t i = 1; i + 1 < count; i++) {
-        if (rt_dotd(whole, twice_area(v, i)) < 0)
+        if (rt_dotd(whole, fan_area(v, i)) < 0)
             return rt_fail_at(
                 r->text.error, r->text.path, r->statement, 0,
                 "the patch is concave: vertex %u cannot be seen from the first; split the patch "

@@ -64,7 +64,7 @@ static void triangle_points(const RtTriangle *triangle, const Block *block, RtVe
 static bool triangle_meets(const RtTriangle *triangle, const Block *block) {
     RtVec3d points[3];
     triangle_points(triangle, block, points);
-    RtVec3d normal = rt_crossd(rt_subd(points[1], points[0]), rt_subd(points[2], points[0]));
+    RtVec3d normal = rt_area_vector(points[0], points[1], points[2]);
     return chain_meets(block, points, 3, normal);
 }
 

@@ -73,7 +73,7 @@ static double depth_between_edges(const Seen v[3]) {
 
 static double depth_of(const RtTriangle *triangle, const RtSolidRay *ray, const Seen v[3]) {
     RtVec3d a = rt_widen(triangle->v[0]);
-    RtVec3d normal = rt_crossd(rt_subd(rt_widen(triangle->v[1]), a), rt_subd(rt_widen(triangle->v[2]), a));
+    RtVec3d normal = rt_area_vector(a, rt_widen(triangle->v[1]), rt_widen(triangle->v[2]));
     int axis = rt_axis_of(normal);
     if (axis < 0 || ray->dir.at[axis] == 0) return depth_between_edges(v);
     return (a.at[axis] - ray->org.at[axis]) / ray->dir.at[axis];

@@ -11,22 +11,17 @@ double rt_triangle_support(const RtTriangle *triangle, RtVec3d direction) {
     return most;
 }
 
-/* Twice the area, as a vector along the normal. */
-static RtVec3d area_vector(RtVec3d a, RtVec3d b, RtVec3d c) {
-    return rt_crossd(rt_subd(b, a), rt_subd(c, a));
-}
-
 RtVec3d rt_triangle_normal(const RtTriangle *triangle) {
     const RtVec3 *v = triangle->v;
-    return rt_normalized(area_vector(rt_widen(v[0]), rt_widen(v[1]), rt_widen(v[2])));
+    return rt_normalized(rt_area_vector(rt_widen(v[0]), rt_widen(v[1]), rt_widen(v[2])));
 }
 
 RtVec3d rt_triangle_weights(const RtTriangle *triangle, RtVec3d point) {
     RtVec3d a = rt_widen(triangle->v[0]), b = rt_widen(triangle->v[1]), c = rt_widen(triangle->v[2]);
-    RtVec3d whole = area_vector(a, b, c);
+    RtVec3d whole = rt_area_vector(a, b, c);
     double ww = rt_dotd(whole, whole);
     if (!(ww > 0)) return rt_vec3d(1, 0, 0);
-    double wb = rt_dotd(area_vector(a, point, c), whole) / ww;
-    double wc = rt_dotd(area_vector(a, b, point), whole) / ww;
+    double wb = rt_dotd(rt_area_vector(a, point, c), whole) / ww;
+    double wc = rt_dotd(rt_area_vector(a, b, point), whole) / ww;
     return rt_vec3d(1 - wb - wc, wb, wc);
 }

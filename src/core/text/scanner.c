@@ -70,3 +70,9 @@ RtStatus rt_scan_fail(const RtScanner *s, RtWord word, const char *wanted) {
     return rt_fail_at(s->error, s->path, word.line, 0, "expected %s, found %s", wanted,
                       rt_scan_show(word, text));
 }
+
+RtStatus rt_scan_place(const RtScanner *s, RtStatus status, size_t line, const char *what) {
+    if (status != RT_BAD_INPUT) return status;
+    const RtError inner = *s->error;
+    return rt_fail_at(s->error, s->path, line, 0, "%s%s", what, inner.message);
+}

@@ -37,6 +37,9 @@ bool rt_scan_is(RtWord word, const char *text);
 /* Fails at the line of the word: "expected WANTED, found 'WORD'". */
 RtStatus rt_scan_fail(const RtScanner *scanner, RtWord word, const char *wanted);
 
+/* Puts the line, and `what` the message is about, in front of a message of RT_BAD_INPUT; returns `status`. */
+RtStatus rt_scan_place(const RtScanner *scanner, RtStatus status, size_t line, const char *what);
+
 /* Writes the word to `out` for a message: in quotes, truncated, with only printable characters. Returns out,
  * or "the end of the file". */
 enum { RT_WORD_SHOWN = 48 };

@@ -2,6 +2,9 @@
 // Outlines of boxes as one draw call, a filled box or ball, and lines along rays.
 import * as THREE from 'three';
 
+// What boxes on the path of a ray show, and lights, in sRGB; main.js has the legend.
+export const COLORS = { step: [0.18, 0.51, 0.97], object: [0.94, 0.5, 0], hit: [0.88, 0.13, 0.06], light: [0.95, 0.72, 0] };
+
 // The twelve edges of the unit cube.
 const edges = [];
 for (let axis = 0; axis < 3; axis++) {
@@ -35,10 +38,12 @@ export function boxLines(boxes, opacity = 1) {
   return lines;
 }
 
+export const shade = (color) => new THREE.Color().setRGB(...color, THREE.SRGBColorSpace);
+
 export function boxFill({ lo, hi }, color, round) {
   const extent = lo.map((value, a) => Math.max(hi[a] - value, 1e-6)), middle = lo.map((value, a) => (value + hi[a]) / 2);
   const mesh = new THREE.Mesh(round ? new THREE.SphereGeometry(0.5, 24, 16) : new THREE.BoxGeometry(),
-    new THREE.MeshBasicMaterial({ color, transparent: true, opacity: 0.22, depthWrite: false, side: THREE.DoubleSide }));
+    new THREE.MeshBasicMaterial({ color: shade(color), transparent: true, opacity: 0.22, depthWrite: false, side: THREE.DoubleSide }));
   mesh.scale.set(...extent);
   mesh.position.set(...middle);
   return mesh;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // raytally's explorer: which pixel, ray and step are shown, and all that follows from it.
+import { COLORS } from './boxes.js';
 import { load } from './data.js';
 import { makePicker } from './picker.js';
 import { makeSpace } from './space.js';
@@ -18,7 +19,6 @@ for (const accelerator of data.accelerators) {
     .map((c) => dark.matches ? 0.4 + 0.6 * c / 255 : c / 255);
   // Some structures do not tell the lengths of their lists.
   accelerator.leastList = accelerator.boxList.some(({ list }) => list > 0) ? 1 : 0;
-  accelerator.stepColor = [0.25, 0.55, 0.95];
 }
 const space = makeSpace(data, byId('space'));
 
@@ -124,7 +124,16 @@ function choices() {
   }
 }
 
+function showColors() {
+  const css = (color) => `rgb(${color.map((c) => Math.round(255 * c)).join(', ')})`, { colorOf } = data.accelerators[0];
+  const meanings = [[`linear-gradient(to right, ${css(colorOf(0))}, ${css(colorOf(deepest))})`, `boxes of levels 0 to ${deepest}`],
+    [css(COLORS.step), 'on the path of the ray, the current one filled'], [css(COLORS.object), 'a tested object'], [css(COLORS.hit), 'a hit'], [css(COLORS.light), 'a light']];
+  byId('colors').replaceChildren(...meanings.map(([color, meaning]) =>
+    element('span', { class: 'group' }, element('span', { class: 'swatch', style: `background: ${color}` }), meaning)));
+}
+
 function showBoxes() {
+  showColors();
   const axis = ['x', 'y', 'z'].indexOf(byId('axis').value), { lo, hi } = data.scene;
   const position = axis < 0 ? 0 : lo[axis] + Number(byId('slice').value) * (hi[axis] - lo[axis]);
   const choice = { boxes: byId('boxes').value, levels: [Number(byId('from-level').value), Number(byId('to-level').value)], axis, position };

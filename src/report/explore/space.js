@@ -3,13 +3,14 @@
 // from the same camera. The layers of three.js tell them apart: 0 is in every view, 1 + i in that of accelerator i.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-import { boxLines, boxFill, lineOf } from './boxes.js';
+import { COLORS, boxLines, boxFill, lineOf, shade } from './boxes.js';
 import { cubeOf } from './cube.js';
 import { objectsOf } from './objects.js';
 import { element } from './text.js';
 import { span } from './walk.js';
 
 const vector = (v) => new THREE.Vector3(...v);
+const rowColor = ({ form }) => COLORS[form.hit ? 'hit' : form.of === 'object' ? 'object' : 'step'];
 
 function themeColors() {
   const style = getComputedStyle(document.documentElement), get = (name) => new THREE.Color(style.getPropertyValue(name).trim());
@@ -44,7 +45,7 @@ export function makeSpace(data, place) {
   const objects = objectsOf(data, look);
   scene.add(objects);
   for (const light of data.scene.lights) {
-    const mark = new THREE.Mesh(new THREE.OctahedronGeometry(size / 120), new THREE.MeshBasicMaterial({ color: 0xf2b700 }));
+    const mark = new THREE.Mesh(new THREE.OctahedronGeometry(size / 120), new THREE.MeshBasicMaterial({ color: shade(COLORS.light) }));
     mark.position.set(...light);
     scene.add(mark);
   }
@@ -175,12 +176,11 @@ export function makeSpace(data, place) {
     step(number, ray, path, step) {
       const { steps, accelerator } = views[number], before = path.rows.slice(0, step).filter(({ box }) => box), row = path.rows[step - 1];
       clear(steps);
-      if (before.length) steps.add(boxLines(before.slice(-400).map(({ box, form }) => ({ ...box, color: form.hit ? [1, 0.2, 0.1] : form.of === 'object' ? [0.95, 0.5, 0.05] :
-        accelerator.stepColor })), 0.6));
+      if (before.length) steps.add(boxLines(before.slice(-400).map((each) => ({ ...each.box, color: rowColor(each) })), 0.6));
       if (row?.box) {
-        const color = row.form.hit ? 0xe02010 : row.form.of === 'object' ? 0xf08000 : 0x2f81f7, inside = span(ray, row.box);
-        steps.add(boxFill(row.box, color, row.form.round));
-        if (inside) steps.add(lineOf(ray, inside[0], Math.min(inside[1], inside[0] + 4 * size), new THREE.Color(color), 1));
+        const inside = span(ray, row.box);
+        steps.add(boxFill(row.box, rowColor(row), row.form.round));
+        if (inside) steps.add(lineOf(ray, inside[0], Math.min(inside[1], inside[0] + 4 * size), shade(rowColor(row)), 1));
       }
       const light = path.cell && ray.kind === 'shadow' ? accelerator.cells[ray.source] : null;
       if (light) steps.add(cubeOf(data, light, path.cell.number, data.scene.lights[ray.source], Math.min(size / 8, 0.4 * at.distanceTo(vector(data.scene.lights[ray.source])))));

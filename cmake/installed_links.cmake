@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: Apache-2.0
+# Run by install: in installed documents, a link to a file that is not installed becomes plain text.
+foreach(page IN LISTS pages)
+  file(READ ${page} text)
+  get_filename_component(folder ${page} DIRECTORY)
+  set(rest "${text}")
+  while(rest MATCHES "\\]\\(([^)#: ]+)(#[^) ]*)?\\)(.*)")
+    set(target ${CMAKE_MATCH_1})
+    set(rest "${CMAKE_MATCH_3}")
+    if(NOT EXISTS ${folder}/${target})
+      string(REPLACE "." "[.]" pattern ${target})
+      string(REGEX REPLACE "!?\\[([^]]*)\\]\\(${pattern}(#[^) ]*)?\\)" "\\1" text "${text}")
+    endif()
+  endwhile()
+  file(WRITE ${page} "${text}")
+endforeach()
