@@ -45,9 +45,8 @@ RT_TEST_IN_PLACE(each_of_several_experiments_gets_its_directory_and_all_a_summar
     assert_true(exists(place, "results/a/report.html") && exists(place, "results/b/report.html"));
     assert_true(exists(place, "results/index.html") && exists(place, "results/index.md"));
     assert_in_file(place, "output", "== b, 2 of 2\n");
-    assert_in_file(place, "output",
-                   "\na                                finished                        0 s\n"
-                   "b                                finished                        0 s\n");
+    assert_in_file(place, "output", "\na                                finished ");
+    assert_in_file(place, "output", "\nb                                finished ");
     assert_int_equal(raytally(place, "run a.yaml c.yaml --threads 1 --out other"), 0);
     assert_true(exists(place, "other/a/report.html") && exists(place, "other/c/report.html"));
     assert_equal_files(place, "results/a/counts.csv", "other/a/counts.csv");
