@@ -8,13 +8,13 @@
 
 #include <stdlib.h>
 
-/* In the plane z = 0: a sliver (object 0) along the diagonal of [0,16]^2, and four equal triangles in each of
- * the two other corners. To cut the sliver at any x costs 5 * 256 by the heuristic; whole, with one of the
- * corners, 5 * 256 + 4. */
-static RtScene make_diagonal(void) {
+/* In the plane z = 0: a sliver (object 0) along the diagonal of [0,16]^2, and n equal triangles in each of
+ * the two other corners. To cut the sliver at any x costs (n + 1) * 256 by the heuristic; whole, with one of
+ * the corners, (n + 1) * 256 + n; a leaf of all, (2 * n + 1) * 256. */
+static RtScene make_diagonal(int n) {
     RtScene scene = begin_scene();
     add_triangle(&scene, rt_vec3(0, 0, 0), rt_vec3(16, 16, 0), rt_vec3(16, 15.9f, 0));
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < n; i++) {
         add_triangle(&scene, rt_vec3(0, 15, 0), rt_vec3(1, 15, 0), rt_vec3(0, 16, 0));
         add_triangle(&scene, rt_vec3(15, 0, 0), rt_vec3(16, 0, 0), rt_vec3(15, 1, 0));
     }
@@ -23,13 +23,20 @@ static RtScene make_diagonal(void) {
 }
 
 RT_TEST(a_long_diagonal_triangle_is_in_two_leaves) {
-    OWNED_SCENE scene = make_diagonal();
+    OWNED_SCENE scene = make_diagonal(4);
     OWNED_ACCEL RtBvh *bvh = open_valid(&scene, "bvh:build=spatial");
     assert_true(bvh->hierarchy.split_refs);
     assert_int_equal(bvh->hierarchy.id_count, 10);
     uint32_t leaves = 0;
     for (uint32_t i = 0; i < bvh->hierarchy.id_count; i++) leaves += bvh->hierarchy.ids[i] == 0;
     assert_int_equal(leaves, 2);
+}
+
+RT_TEST(few_objects_are_cut_where_a_leaf_of_them_costs_more) {
+    OWNED_SCENE scene = make_diagonal(3);
+    assert_int_equal(describe_spec(&scene, "bvh:build=spatial,max_leaf_size=8").references, 8);
+    assert_int_equal(describe_spec(&scene, "bvh:build=spatial,max_leaf_size=8,traversal_cost=9").references,
+                     7);
 }
 
 static RtTally count_ray(const RtScene *scene, const char *spec, const RtRay *ray) {
@@ -45,7 +52,7 @@ static RtTally count_ray(const RtScene *scene, const char *spec, const RtRay *ra
 /* A ray in the plane of the triangles, which it misses, along the diagonal: the root, both of its children,
  * and the two leaves with parts of the sliver, whose siblings in the corners it passes by. */
 RT_TEST(a_part_that_was_tested_before_is_not_tested_again) {
-    OWNED_SCENE scene = make_diagonal();
+    OWNED_SCENE scene = make_diagonal(4);
     const RtRay ray = {{-1, -1, 0}, 0, {1, 1, 0}, INFINITY, RT_RAY_RANDOM, 0};
     RtTally on = count_ray(&scene, "bvh:build=spatial", &ray);
     RtTally off = count_ray(&scene, "bvh:build=spatial,mailbox=off", &ray);
@@ -78,6 +85,22 @@ RT_TEST(the_budget_is_kept_and_used) {
         assert_true(description.predicted_cost < before);
         before = description.predicted_cost;
     }
+}
+
+/* Two heaps of equal slivers, one of twice as many: the nine parts more that the budget allows are shared
+ * alike. */
+RT_TEST(the_budget_is_shared_by_the_areas_of_both_sides) {
+    OWNED_SCENE scene = begin_scene();
+    for (int i = 0; i < 9; i++) {
+        float x = (float)(i % 3) * 0.3f + (i < 6 ? 0 : 1000), y = (float)(i % 6 / 3) * 0.3f;
+        add_triangle(&scene, rt_vec3(x, y, 0), rt_vec3(x + 16, y + 16, 0), rt_vec3(x + 16, y + 15.9f, 0));
+    }
+    assert_ok(rt_scene_finish(&scene, error));
+    OWNED_ACCEL RtBvh *bvh = open_valid(&scene, "bvh:build=spatial,budget=2,alpha=0,max_leaf_size=1");
+    assert_int_equal(bvh->hierarchy.id_count, 18);
+    uint32_t left = 0;
+    for (uint32_t i = 0; i < bvh->hierarchy.id_count; i++) left += bvh->hierarchy.ids[i] < 6;
+    assert_int_equal(left, 12);
 }
 
 RT_TEST(without_budget_or_overlap_it_is_the_binned_tree) {

@@ -221,6 +221,9 @@ RT_TEST(ideal_is_broken_by_answers_that_are_no_objects) {
     told[1].object = scene.geometry.object_count;
     assert_ok(rt_accel_learn(accel, rays, told, RAY_COUNT, error));
     assert_fails_with(rt_accel_validate(accel, error), RT_MISMATCH, "ideal: the recorded answer of ray 1");
+    told[0].object = scene.geometry.object_count;
+    assert_ok(rt_accel_learn(accel, rays, told, RAY_COUNT, error));
+    assert_fails_with(rt_accel_validate(accel, error), RT_MISMATCH, "ideal: the recorded answer of ray 0");
 }
 
 RT_TESTS(counters, NULL, assert_nothing_is_kept)

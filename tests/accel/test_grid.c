@@ -40,6 +40,43 @@ RT_TEST(a_voxel_holds_its_lower_planes) {
     assert_true(fabs(description.predicted_cost - 27.0 / 4.0) < 1e-6);
 }
 
+/* Triangle k of n + 1 begins at x[k]; the last one reaches the corner of the scene, [0, 7]^3. */
+static RtScene make_places(const float *x, uint32_t n) {
+    RtScene scene = begin_scene();
+    for (uint32_t k = 0; k <= n; k++) {
+        float y = k < n ? 0 : 7, end = k < n ? rt_minf(x[k] + 0.5f, 7) : 7;
+        const RtVec3 v[3] = {rt_vec3(x[k], y, y), rt_vec3(end, y, y), rt_vec3(x[k], y, 0)};
+        assert_ok(rt_scene_add_triangle(&scene, 0, v, NULL, error));
+    }
+    assert_ok(rt_scene_finish(&scene, error));
+    return scene;
+}
+
+/* Division rounds some places just below a plane to that plane, and others up to it to the plane before. */
+RT_TEST(an_object_beside_a_plane_is_listed_on_its_side) {
+    enum { N = 1000 };
+    const char *spec = "grid:resolution=1000x1x1";
+    float x[N + 1], plane[N + 1];
+    for (int k = 0; k <= N; k++) x[k] = 7.0f * (float)k / (N + 1);
+    RtScene scene = make_places(x, N);
+    RtGrid *grid = open_valid(&scene, spec);
+    const float slack = (float)grid->slack;
+    memcpy(plane, grid->levels[0].blocks->planes[0], sizeof plane);
+    rt_grid_destroy(&grid->base);
+    rt_scene_clear(&scene);
+    for (int ulps = -3; ulps <= 3; ulps++) {
+        for (int k = 1; k < N; k++) {
+            x[k] = plane[k] + slack;
+            x[k] += (float)ulps * (nextafterf(x[k], INFINITY) - x[k]);
+        }
+        scene = make_places(x, N);
+        grid = open_valid(&scene, spec);
+        assert_memory_equal(grid->levels[0].blocks->planes[0], plane, sizeof plane);
+        rt_grid_destroy(&grid->base);
+        rt_scene_clear(&scene);
+    }
+}
+
 RT_TEST(validate_names_each_invariant_that_is_broken) {
     OWNED_SCENE scene = make_lattice(4, 4, 4);
     OWNED_ACCEL RtGrid *grid = open_valid(&scene, "grid:resolution=8x8x8");
@@ -73,6 +110,20 @@ RT_TEST(a_grid_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {
                      RT_BAD_INPUT);
     assert_int_equal(rt_alloc_live(), live);
 
+    for (int a = 0; a < 3;
+         a++) { /* the estimate is an upper bound, and close, whichever axis has most voxels */
+        const uint32_t ids[8] = {0, 1, 2, 3, 4, 5, 6, 7}, most[5] = {2, 5, 90, 2, 5}, *n = &most[a];
+        char spec[64];
+        snprintf(spec, sizeof spec, "grid:resolution=%ux%ux%u", n[0], n[1], n[2]);
+        RtGrid *grid = open_valid(&scene, spec);
+        RtDescription own;
+        rt_grid_describe(&grid->base, &own);
+        double bytes = rt_grid_estimate(grid, &grid->box, n, ids, 8);
+        double needed = (double)(own.leaves + own.references + 1) * sizeof(uint32_t);
+        assert_true(bytes >= needed && bytes <= 1.5 * needed);
+        rt_grid_destroy(&grid->base);
+    }
+
     /* The named resolution fits, and one more voxel a side does not. */
     static const char *const specs[] = {"density=1e6", "resolution=500x90x3", "overlap=exact,density=1e5"};
     for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
@@ -88,11 +139,30 @@ RT_TEST(a_grid_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {
         RtDescription description;
         rt_grid_describe(accel, &description);
         assert_true((description.leaves + description.references + 1) * sizeof(uint32_t) <= LIMIT);
+        const uint32_t ids[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+        const RtGrid *grid = (const RtGrid *)accel;
+        uint64_t exactly = (uint64_t)rt_grid_estimate(grid, &grid->box, n, ids, 8);
         rt_grid_destroy(accel);
+        assert_ok(build_within("grid", exactly, &scene, values, &accel, error));
+        rt_grid_destroy(accel);
+        assert_int_equal(build_within("grid", exactly - 1, &scene, values, &accel, &refusal), RT_BAD_INPUT);
         uint32_t longest = n[0];
         for (int a = 0; a < 3; a++) n[a] += n[a] == longest;
         assert_int_equal(build_within("grid", LIMIT, &scene, values, &accel, &refusal), RT_BAD_INPUT);
     }
+}
+
+RT_TEST(without_memory_for_voxels_it_says_how_much_they_take) {
+    OWNED_SCENE scene = make_lattice(2, 2, 2);
+    RtError failure = {RT_OK, ""};
+    for (uint64_t n = 1; !strstr(failure.message, "the voxels of a grid"); n++) {
+        RtAccel *accel;
+        rt_alloc_fail_at(n);
+        RtStatus status = rt_accel_open("grid:resolution=2x2x2", &scene, &accel, &failure);
+        rt_alloc_fail_at(0);
+        assert_int_equal(status, RT_NO_MEMORY);
+    }
+    assert_non_null(strstr(failure.message, ": 36 bytes for")); /* eight voxels, and the end */
 }
 
 RT_TESTS(grid, NULL, NULL)

@@ -161,7 +161,7 @@ RT_TEST(too_many_samples_are_refused_with_a_number_that_fits) {
     const struct {
         uint32_t width, height, samples;
         const char *says;
-    } sizes[] = {{32768, 32768, 1, "an image of 3275"},
+    } sizes[] = {{32768, 32768, 1, "takes 4.0 GiB to build, more than 4 GiB: an image of 3275"},
                  {32768, 32768, 64, "an image of"},
                  {2048, 2048, 64, "15 samples along the side"}};
     OWNED_SCENE scene = begin_view();
@@ -178,13 +178,17 @@ RT_TEST(each_broken_invariant_is_named) {
     look(&scene, rt_vec3(0, -8, 0), rt_vec3(0, 0, 0));
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 4, 0), 1, error));
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
+    assert_ok(
+        rt_scene_add_sphere(&scene, 0, rt_vec3(0, 110, 0), 100, error)); /* behind both, in every sample */
     assert_ok(rt_scene_finish(&scene, error));
     OWNED_ACCEL RtAccel *accel = open_valid(&scene, "item+brute");
-    uint32_t *middle = &((RtItemBuffer *)accel)->samples[18 * 48 + 24];
+    uint32_t *first = ((RtItemBuffer *)accel)->samples, *middle = &first[18 * 48 + 24];
+    assert_int_equal(*first, 2);
+    assert_broken_by(accel, *first, RT_NO_OBJECT, "sample 0,0 hits object 2");
     assert_int_equal(*middle, 1);
     assert_broken_by(accel, *middle, 0, "hits object 1");
     assert_broken_by(accel, *middle, RT_NO_OBJECT, "hits object");
-    assert_broken_by(accel, *middle, 2, "names object 2");
+    assert_broken_by(accel, *middle, 3, "names object 3");
     assert_ok(rt_accel_validate(accel, error));
 }
 

@@ -73,6 +73,21 @@ RT_TEST(polygons_in_a_plane_go_to_one_side_of_it) {
     assert_ok(rt_scene_finish(&scene, error));
     kd = open_valid(&scene, "kd:traversal_cost=0");
     assert_int_equal(kd->id_count, 3);
+    rt_kd_destroy(&kd->base);
+
+    for (uint32_t nearer = 0; nearer < 2;
+         nearer++) { /* into the smaller cell: the lower one, or the upper one */
+        rt_scene_clear(&scene);
+        scene = begin_scene();
+        float middle = nearer == 0 ? 1 : 3;
+        for (int z = 0; z < 3; z++) add_floor(&scene, 0, 0, z == 1 ? middle : (float)(2 * z), 10);
+        assert_ok(rt_scene_finish(&scene, error));
+        kd = open_valid(&scene, "kd:traversal_cost=0,max_depth=1,max_leaf_size=0");
+        assert_split(kd, 0, 2, middle);
+        assert_lists(kd, 1, 2 - nearer, 0);
+        assert_lists(kd, 2, 1 + nearer, 2 - nearer);
+        if (nearer == 0) rt_kd_destroy(&kd->base);
+    }
 }
 
 /* Tiles of a floor and nothing else: cells are cut across it, never along it. */

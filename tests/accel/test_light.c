@@ -98,6 +98,43 @@ RT_TEST(it_counts_what_was_counted_by_hand) {
     check_rows(&scene, rows, sizeof rows / sizeof rows[0]);
 }
 
+/* Down a triangle that slants from depth 1 to 10: 6.9 along the ray, whose point is before it, and then
+ * behind. */
+RT_TEST(a_slanted_triangle_is_as_deep_in_each_cell_as_its_plane) {
+    OWNED_SCENE scene = begin_scene();
+    const RtVec3 slanted[3] = {{{-1, 0, -1}}, {{10, -10, -10}}, {{10, 10, -10}}};
+    assert_ok(rt_scene_add_light(&scene, rt_vec3(0, 0, 0), rt_vec3(1, 1, 1), error));
+    assert_ok(rt_scene_add_triangle(&scene, 0, slanted, NULL, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    const Row rows[] = {
+        {"light:cells=16+brute", shadow_ray(&scene, rt_vec3(2.7f, 0, -3), 0), false, {.rays = 1}},
+        {"light:cells=16+brute", shadow_ray(&scene, rt_vec3(8.1f, 0, -9), 0), true, HIT(1, 1, 1)},
+    };
+    check_rows(&scene, rows, sizeof rows / sizeof rows[0]);
+}
+
+/* ---- the domain ---- */
+
+/* Beyond the scene by a 256th of its size, 3 % less or more. */
+RT_TEST(rays_from_a_little_off_the_scene_are_served) {
+    OWNED_SCENE scene = make_screen();
+    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "light:cells=4+brute");
+    OWNED_QUERY query = open_query(accel);
+    const RtBox *box = &scene.geometry.box;
+    const float off = (float)rt_box_longest_side(*box) / 256;
+    for (int i = 0; i < 12; i++) {
+        RtVec3 from = rt_box_center(*box);
+        int axis = i / 4, outside = i % 2;
+        float away = off * (outside ? 1.03f : 0.97f);
+        from.at[axis] = i & 2 ? box->hi.at[axis] + away : box->lo.at[axis] - away;
+        RtRay ray = shadow_ray(&scene, from, 0);
+        RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
+        bool blocked;
+        rt_occluded(&query, &ray, 1, &blocked, tallies);
+        assert_int_equal(tallies[RT_RAY_SHADOW].passed_on, outside);
+    }
+}
+
 /* ---- the same on all machines ---- */
 
 static void check_same_lists(const RtLightBuffer *a, const RtLightBuffer *b) {

@@ -79,6 +79,8 @@ RT_TEST(validate_names_each_invariant_that_is_broken) {
     uint32_t *last = &tree->ids[leaf->first + leaf->count - 1];
     assert_broken_by(accel, *last, 63, "which it does not touch");
     assert_broken_by(accel, *last, 64, "not ascending ids");
+    assert_true(leaf->count > 1);
+    assert_broken_by(accel, tree->ids[leaf->first], tree->ids[leaf->first + 1], "not ascending ids");
     assert_broken_by(accel, leaf->count, leaf->count - 1, "leaves, but");
     assert_ok(rt_octree_validate(accel, error));
 }

@@ -200,6 +200,22 @@ RT_TEST(a_voxel_lists_the_surfaces_within_the_margin) {
     assert_int_equal(references_at(beyond * bound), 1 + 3);
 }
 
+RT_TEST(rays_from_outside_the_domain_are_not_served_on_any_side) {
+    const RtBox scene = cube(3, 3, 3, 1);
+    const RtSurfaceRays served = rt_surface_rays(&scene, &scene);
+    RtPreparedRay ray = {.org = {3, 3, 3}, .dir = {0, 0, 1}, .kz = 2};
+    assert_true(rt_surface_serves(&served, &ray));
+    for (int a = 0; a < 3; a++) {
+        for (int side = -1; side <= 1; side += 2) {
+            ray.org[a] = 3 + (float)side * (1 + 2 * RT_SURFACE_SIDES);
+            assert_true(rt_surface_serves(&served, &ray));
+            ray.org[a] += (float)side;
+            assert_false(rt_surface_serves(&served, &ray));
+        }
+        ray.org[a] = 3;
+    }
+}
+
 RT_TEST(the_margin_of_surfaces_covers_large_coordinates_and_the_least_numbers) {
     const RtBox far = {{{0x1p40f, 0, 0}}, {{0x1p40f, 0, 0}}}, point = {{{0, 0, 0}}, {{0, 0, 0}}};
     assert_true(rt_surface_rays(&far, &far).margin >= within * 1);

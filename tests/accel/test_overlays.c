@@ -37,6 +37,19 @@ RT_TEST(a_spec_is_read_from_the_top_down_and_written_as_it_was) {
     assert_true(again.layers[1].values[1].f == 1e6);
 }
 
+RT_TEST(a_stack_has_the_colour_of_its_topmost_accelerator_and_all_plugins_share_one) {
+    const uint32_t plugin = rt_accel_color("a-plugin");
+    for (size_t i = 0; i < rt_accel_count(); i++) {
+        uint32_t own = rt_accel_color(rt_accel_at(i)->name);
+        assert_int_not_equal(own, plugin);
+        for (size_t k = 0; k < i; k++) assert_int_not_equal(own, rt_accel_color(rt_accel_at(k)->name));
+    }
+    assert_int_equal(rt_accel_color("grid:density=4"), rt_accel_color("grid"));
+    assert_int_equal(rt_accel_color("cache+grid"), rt_accel_color("cache"));
+    assert_int_equal(rt_accel_color("gri"), plugin);
+    assert_int_equal(rt_accel_color("grids"), plugin);
+}
+
 RT_TEST(a_wrong_plus_is_refused_with_a_remedy) {
     const struct {
         const char *spec, *says;

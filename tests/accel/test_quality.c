@@ -47,6 +47,16 @@ RT_TEST(an_inner_node_overlaps_at_its_own_cost) {
     assert_ok(rt_scene_finish(&scene, error));
     double overlap = describe_spec(&scene, "bvh:max_leaf_size=1,traversal_cost=7").end_point_overlap;
     assert_true(fabs(overlap - (7 + 3)) < 1e-9);
+    rt_scene_clear(&scene);
+
+    scene = begin_scene(); /* the last one is a speck, whose leaf hardly any point is in */
+    for (int i = 0; i < 3; i++) add_triangle(&scene, 0);
+    const float lo = 0.5f - 0x1p-20f, hi = 0.5f + 0x1p-20f;
+    const RtVec3 speck[3] = {{lo, lo, lo}, {hi, hi, lo}, {hi, lo, hi}};
+    assert_ok(rt_scene_add_triangle(&scene, 0, speck, NULL, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    overlap = describe_spec(&scene, "bvh:max_leaf_size=1,traversal_cost=7").end_point_overlap;
+    assert_true(fabs(overlap - (7 + 2)) < CLOSE);
 }
 
 /* Two cubes side by side: of the lines that meet their box, 3/5 meet each and 1/5 both, so that a line meets

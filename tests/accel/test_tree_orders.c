@@ -3,6 +3,7 @@
 #include "tree_testing.h"
 
 #include "accel/tree/order.h"
+#include "accel/tree/sah_split.h"
 
 RT_TEST(an_axis_is_sorted_by_centres_and_ids) {
     static const float centers[] = {3, -1, 0, -1e30f, 3, -0.5f, 1e-40f, 1e30f, -1};
@@ -41,6 +42,20 @@ RT_TEST(morton_codes_interleave_the_cells_of_centres) {
     for (uint32_t i = 1; i < 64; i++) {
         assert_int_equal(coarse[i].key, i / 8);
         if (i % 8) assert_true(coarse[i].id > coarse[i - 1].id);
+    }
+}
+
+RT_TEST(centres_that_are_equal_along_an_axis_are_in_its_first_cell) {
+    for (int axis = 0; axis < 3; axis++) {
+        RtBox boxes[64];
+        make_cells(boxes);
+        for (uint32_t i = 0; i < 64; i++) {
+            boxes[i].lo.at[axis] = 5;
+            boxes[i].hi.at[axis] = 6;
+        }
+        OWNED_MEMORY RtKeyed *order = rt_order_morton(boxes, 64, 2, 1);
+        for (uint32_t i = 0; i < 64; i++)
+            assert_int_equal(order[i].key & UINT64_C(0x1249249249249249) << axis, 0);
     }
 }
 
@@ -144,6 +159,27 @@ static void assert_same_on_any_number_of_threads(const RtBox *boxes, uint32_t co
             assert_memory_equal(one.nodes, other.nodes, one.used * sizeof(RtTreeNode));
         }
     }
+}
+
+RT_TEST(a_centre_between_two_bins_is_on_the_side_of_the_upper_one) {
+    enum { COUNT = 257 };
+    RtTreeRef refs[COUNT];
+    for (uint32_t i = 0; i < COUNT; i++) {
+        RtVec3 corner = rt_vec3((float)i, 0, 0);
+        refs[i] = (RtTreeRef){.box = {corner, rt_add(corner, rt_vec3(1, 1, 1))}, .id = i};
+    }
+    RtBox4 centers[2];
+    assert_int_equal(rt_split_binned(refs, COUNT, 16, rt_refs_centers(refs, COUNT), centers), 128);
+    for (uint32_t i = 0; i < COUNT; i++) assert_int_equal(refs[i].id < 128, i < 128);
+    assert_int_equal(rt_bin_count(32, 1023), 16);
+    assert_int_equal(rt_bin_count(32, 1024), 32);
+}
+
+RT_TEST(every_allocation_of_a_build_from_the_top_may_fail) {
+    OWNED_MEMORY RtBox *boxes = make_boxes(100, 1);
+    RtTree tree;
+    for (int bins = 0; bins <= 16; bins += 16)
+        assert_fails_cleanly(rt_tree_topdown(&tree, boxes, 100, bins, 1, error), rt_tree_clear(&tree));
 }
 
 RT_TEST(a_tree_is_the_same_bit_for_bit_on_any_number_of_threads) {

@@ -58,6 +58,10 @@ RT_TEST(validate_names_what_is_wrong_with_a_node) {
     const uint32_t counts[] = {0, 1, 9, UINT32_MAX};
     for (int i = 0; i < 4; i++) assert_broken_by(accel, node->count, counts[i], "children");
     assert_broken_by(accel, root->count, 1, "node 0 has 1 children");
+    root->count = 1; /* a node, before what would be a leaf */
+    root->child[0] = at;
+    assert_broken_by(accel, root->child[1], RT_WIDE_DONE, "node 0 has 1 children");
+    *root = kept_root;
     root->count--; /* a child left out */
     assert_broken(accel, "has a box and no child");
     for (int p = 0; p < 6; p++) root->plane[p][root->count] = p % 2 ? -INFINITY : INFINITY;
@@ -165,7 +169,10 @@ RT_TEST(validate_names_a_node_that_is_too_deep) {
         node->child[1] = i + 1 < CHAIN ? (i + 1) * (uint32_t)sizeof *node
                                        : rt_wide_leaf(RT_WIDE_OBJECTS, nodes + i * (uint32_t)sizeof *list, 1);
     }
-    assert_broken(&wide->isa.base, "is too deep");
+    char says[64];
+    snprintf(says, sizeof says, "node %u is too deep",
+             (RT_TREE_MAX_DEPTH + 1) * (uint32_t)sizeof(RtWideNode));
+    assert_broken(&wide->isa.base, says);
 }
 
 /* By `whole`, any-hit rays have a tree of their own: it is looked at too. */

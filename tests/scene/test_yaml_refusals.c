@@ -152,6 +152,9 @@ static const struct {
     {SOLIDS "- {name: c, standard: {kind: cone, " PLACE
             ", caps: [[0, 0, -1, 0], [0, 0, 1, 1.01]]}}\n" CSG("a"),
      5, "the caps are not those of the cone"},
+    {SOLIDS "- {name: c, standard: {kind: cone, " PLACE
+            ", caps: [[0, 0, -1, 0], [0x1.8p-40, 0, 1, 1]]}}\n" CSG("a"),
+     5, "the caps are not those of the cone"},
     {SOLIDS "- {name: c, standard: {kind: cone, " PLACE ", caps: [[0, 0, -1, 0]]}}\n" CSG("a"), 5,
      "the caps are not those of the cone"},
     {SOLIDS "- {name: c, standard: {kind: sphere, " PLACE

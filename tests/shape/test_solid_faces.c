@@ -270,14 +270,17 @@ RT_TEST(what_rounding_makes_flat_is_refused) {
 RT_TEST(the_hull_of_the_corners_of_a_box_is_the_box) {
     RtRandom random = rt_random(4, 0);
     OWNED_SOLIDS set = {0};
-    RtVec3 lo = rt_vec3(-0.7f, 2.1f, 100.3f), hi = rt_vec3(0.1f, 2.5f, 101), corners[10];
+    RtVec3 lo = rt_vec3(-0.7f, 2.1f, 100.3f), hi = rt_vec3(0.1f, 2.5f, 101);
+    RtVec3 points[12], *corners = points + 1;
+    points[0] = rt_vec3(0, lo.y, lo.z); /* between the first two corners */
     for (uint32_t i = 0; i < 8; i++)
         corners[i] = rt_vec3((i & 1 ? hi : lo).x, (i & 2 ? hi : lo).y, (i & 4 ? hi : lo).z);
     corners[8] = corners[3];
     corners[9] = rt_vec3(0, 2.3f, 100.5f); /* inside */
+    corners[10] = rt_vec3(0, 2.3f, NAN);   /* behind the last */
     uint32_t box, hull;
     assert_ok(rt_solid_add_box(&set, lo, hi, &box, error));
-    assert_ok(rt_solid_add_hull(&set, corners, 10, &hull, error));
+    assert_ok(rt_solid_add_hull(&set, points, 11, &hull, error));
     assert_int_equal(set.solids[hull].count, 6);
     RtBox own = {lo, hi};
     assert_memory_equal(&set.solids[hull].box, &own, sizeof own);
@@ -286,6 +289,23 @@ RT_TEST(the_hull_of_the_corners_of_a_box_is_the_box) {
         ray.dir = rt_sub(corners[i % 10], ray.org);
         List a = cross(&set, box, &ray), b = cross(&set, hull, &ray);
         assert_same_places(&a, &b, &ray);
+    }
+}
+
+/* Its corners are rounded by 2^-15 of its size, so that no four of a face lie in a plane. */
+RT_TEST(the_hull_of_a_turned_cube_has_six_faces_far_off_along_any_axis) {
+    for (int axis = 0; axis < 3; axis++) {
+        OWNED_SOLIDS set = {0};
+        RtTransform place = rt_transform_identity();
+        RtVec3 corners[8], far = rt_vec3(0, 0, 0);
+        uint32_t hull;
+        far.at[axis] = 1000;
+        assert_ok(rt_transform_rotate(&place, rt_vec3(1, 2, 3), 40, error));
+        assert_ok(rt_transform_translate(&place, far, error));
+        for (uint32_t i = 0; i < 8; i++)
+            corners[i] = rt_transform_point(&place, rt_vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+        assert_ok(rt_solid_add_hull(&set, corners, 8, &hull, error));
+        assert_int_equal(set.solids[hull].count, 6);
     }
 }
 

@@ -188,6 +188,11 @@ RT_TEST(what_has_no_end_has_extents_without_end) {
         assert_memory_equal(&set.solids[i].box, &boxes[i], sizeof(RtBox));
         assert_true(isinf(rt_solid_ball(&set, i).radius));
     }
+    const RtPlane octant_planes[3] = {{{{1, 0, 0}}, 3}, {{{0, 1, 0}}, 5}, {{{0, 0, 1}}, 7}};
+    uint32_t octant;
+    assert_ok(rt_solid_add_polyhedron(&set, octant_planes, 3, &here, &octant, error));
+    assert_near(rt_solid_support(&set, octant, rt_vec3d(1, 1, 1)), 15, 1e-9);
+    assert_true(isinf(rt_solid_support(&set, octant, rt_vec3d(1, 1, -1))));
     assert_near(rt_solid_support(&set, oblique, rt_vec3d(2, 2, 2)), 14, 1e-9);
     assert_true(isinf(rt_solid_support(&set, oblique, rt_vec3d(-1, -1, -1))));
     assert_near(rt_solid_support(&set, wedge, rt_vec3d(1, 2, 0)), 13, 1e-9);
