@@ -4,6 +4,11 @@
 
 #include "core/base/clock.h"
 
+static uint64_t limit_for(const RtScene *scene) {
+    const uint64_t bytes = scene->geometry.object_count * RT_ACCEL_OBJECT_BYTES;
+    return bytes > RT_ACCEL_MAX_BYTES ? bytes : RT_ACCEL_MAX_BYTES;
+}
+
 RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
                              RtError *error) {
     RtAccel *top = NULL;
@@ -13,7 +18,7 @@ RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threa
     for (uint32_t i = spec->layer_count; i-- > 0;) {
         RtAccel *accel = NULL;
         const RtBuild what = {spec->layers[i].ops, scene, spec->layers[i].values, top, threads,
-                              RT_ACCEL_MAX_BYTES};
+                              limit_for(scene)};
         RtStatus status = what.ops->build(&what, &accel, error);
         if (status != RT_OK) {
             rt_accel_destroy(top);

@@ -6,8 +6,9 @@
 #include "scenes/build.h"
 
 /* Memory that an object may take while a scene is built, including arrays that grow by doubling: a sphere,
- * a cone, a triangle or a polygon of four corners. */
-#define RT_BUILTIN_OBJECT_BYTES 256
+ * a cone, a triangle or a polygon of four corners; and a triangle, where few have vertex normals. */
+#define RT_BUILTIN_OBJECT_BYTES   256
+#define RT_BUILTIN_TRIANGLE_BYTES 96
 
 /* The parameter `seed` of random scenes. */
 #define RT_BUILTIN_SEED "seed", RT_INT("1", 0, 1e15, "1"), "of the random numbers", "any"

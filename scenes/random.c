@@ -141,6 +141,10 @@ static uint64_t object_count(const RtValue *values) {
     return (uint64_t)values[N].i;
 }
 
+static uint64_t object_bytes(const RtValue *values) {
+    return values[SHAPE].choice == TRIANGLES ? RT_BUILTIN_TRIANGLE_BYTES : RT_BUILTIN_OBJECT_BYTES;
+}
+
 static void generate(RtSceneBuilder *b, const RtValue *values) {
     rt_build_studio(b, true);
     /* Rounded to float32, because published counts were made with these sizes. */
@@ -155,5 +159,6 @@ const RtBuiltin rt_builtin_random = {
     .source = "made for tests",
     RT_PARAMS_OF(params),
     .object_count = object_count,
+    .object_bytes = object_bytes,
     .generate = generate,
 };

@@ -1,9 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_slurm.sh: experiments/slurm.sh on a cluster of one node, which it starts and ends: munged, slurmctld and slurmd
-# on loopback, with their own files, keys and ports. 4 shards have the counts of one run; a killed job is continued
+# check_slurm.sh [--large]: experiments/slurm.sh on a cluster of one node, which it starts and ends: munged, slurmctld and
+# slurmd on loopback, with their own files, keys and ports. 4 shards have the counts of one run; a killed job is continued
 # when the experiment is submitted again. Needs root and Debian's slurm-wlm; skipped (77) without either, or if the
 # daemons do not start. Uses $RT_PROGRAM.
+#
+# --large, by hand: also 10,112 cells in 8 shards, of which one is killed and continued; prints the seconds and sizes of the
+# results and of what is made from them.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
@@ -136,3 +139,54 @@ grep -q "$host" "$work/all/times.csv" || fail "times.csv does not say where it w
 code=0
 experiments/slurm.sh "$work/sharded.yaml" 99 2>"$work/refused.log" || code=$?
 [ "$code" = 2 ] && grep -q 'too few for 99 shards' "$work/refused.log" || fail "99 shards of 6 scenes are not refused"
+
+# ---- ten thousand cells ----
+
+[ "${1:-}" = --large ] || exit 0
+cat >"$work/large.yaml" <<'END'
+name: large
+question: Which of 79 accelerators is the cheapest on each of 32 scenes?
+prediction: It differs.
+scenes: [{scene: "random:n=20..51+1", size: 6x6}]
+accelerators: [{accel: bvh}, {accel: "grid:density=1..78+1"}]
+rays: [primary, shadow, diffuse, random]
+limit: 40
+rounds: 2
+milliseconds: 0
+END
+
+submit() { OUT=$work/results/large RT_PROGRAM=$program experiments/slurm.sh "$work/large.yaml" 8 --threads 1; }
+lines() { [ -e "$1" ] && wc -l <"$1" || echo 0; }
+timed() { # timed NAME COMMAND...
+    local name=$1 start=$EPOCHREALTIME
+    shift
+    "$@" >"$work/$name.log" 2>&1 || fail "$name failed"
+    printf '%-10s %6.1f s\n' "$name" "$(bc -l <<<"$EPOCHREALTIME - $start")"
+}
+wait_for_jobs() { while [ -n "$(squeue -h -t PD,R,CG -n raytally-large)" ]; do sleep 0.5; done; }
+
+run_all() {
+    local killed kept jobs
+    jobs=$(submit)
+    killed=$work/results/large-shards/3/cells.jsonl
+    while [ "$(lines "$killed")" -lt 500 ] && [ -n "$(squeue -h)" ]; do sleep 0.1; done
+    scancel --signal=KILL --full "${jobs%% *}_3"
+    wait_for_jobs
+    kept=$(lines "$killed")
+    [ -e "$work/results/large-shards/3/manifest.json" ] && return 1
+    scancel $jobs
+    submit >/dev/null
+    wait_for "$work/results/large/report.html" || return 1
+    echo "shard 3 had $kept lines when it was killed, and has $(lines "$killed")"
+}
+timed run run_all
+cat "$work/run.log"
+timed report "$program" report "$work/results/large"
+timed index "$program" report --index "$work/results"
+timed plot "$program" plot "$work/results/large"
+timed compare "$program" compare "$work/results/large" "$work/results/large"
+timed reproduce "$program" reproduce "$work/results/large"
+cells=$(($(lines "$work/results/large/counts.csv") - 1))
+(cd "$work/results/large" && wc -c cells.jsonl counts.csv times.csv report.html)
+[ "$cells" = 10112 ] || fail "there are $cells cells"
+[ "$(stat -c %s "$work/results/large/report.html")" -lt 12000000 ] || fail "the report of 10,112 cells is not under 12 MB"

@@ -26,7 +26,8 @@ typedef struct RtReducedParts {
 
 /* Whether a node at this depth belongs to the top, and is not the root of a part. */
 static inline bool rt_reduction_is_top(const RtTree *tree, uint32_t index, uint32_t depth) {
-    return depth < RT_REDUCTION_LEVELS && !rt_tree_is_leaf(tree, index);
+    RtTreeLeaf leaf;
+    return depth < RT_REDUCTION_LEVELS && !rt_tree_get_leaf(tree, index, &leaf);
 }
 
 /* Computes the value of a complete tree, whose depth is limited first if necessary (rt_tree_limit_depth), and

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Binary trees of references, and the bound on their depth. */
+/* Binary trees of references: the bound on their depth, and leaves without nodes. */
 #include "accel/tree/tree.h"
 
 #include "accel/tree/sah_split.h"
@@ -126,4 +126,31 @@ RtStatus rt_tree_limit_depth(RtTree *tree, RtError *error) {
     rt_free(parts.unions);
     rt_free(parts.todo);
     return enough ? RT_OK : rt_fail_memory(error, "limiting the depth of a tree", count * sizeof(RtTreeRef));
+}
+
+/* ---- without nodes for leaves ---- */
+
+RtStatus rt_tree_drop_leaves(RtTree *tree, const RtBox *boxes, RtError *error) {
+    const uint32_t inner = rt_tree_leaf_count(tree) - 1;
+    uint32_t next = 0;
+    RT_TRY(rt_tree_limit_depth(tree, error));
+    if (tree->split_refs) return RT_OK;
+    RtTreeNode *nodes = rt_alloc_unset(inner, sizeof *nodes);
+    uint32_t *moved = rt_alloc_unset(tree->used, sizeof *moved); /* the new number of each node */
+    const bool enough = nodes && moved;
+    for (uint32_t i = 0; enough && i < tree->used; i++)
+        moved[i] = rt_tree_is_leaf(tree, i) ? RT_TREE_OBJECT + tree->nodes[i].child[1] : next++;
+    for (uint32_t i = 0; enough && i < tree->used; i++) {
+        const RtTreeNode *node = &tree->nodes[i];
+        if (moved[i] >= RT_TREE_OBJECT) continue;
+        nodes[moved[i]] = (RtTreeNode){node->box, {moved[node->child[0]], moved[node->child[1]]}};
+    }
+    if (enough) {
+        rt_free(tree->nodes);
+        *tree = (RtTree){nodes, inner, inner, moved[tree->root], false, boxes};
+    } else {
+        rt_free(nodes);
+    }
+    rt_free(moved);
+    return enough ? RT_OK : rt_fail_memory(error, "the inner nodes of a tree", inner * sizeof *nodes);
 }

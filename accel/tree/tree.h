@@ -23,6 +23,9 @@ enum { RT_TREE_MEDIAN_DEPTH = 34 };
 
 #define RT_TREE_LEAF UINT32_MAX
 
+/* Where leaves have no nodes (rt_tree_drop_leaves), RT_TREE_OBJECT + id is the leaf of an object. */
+#define RT_TREE_OBJECT (UINT32_C(1) << 31)
+
 typedef struct RtTreeNode {
     RtBox box;
     uint32_t child[2]; /* nodes; of a leaf: RT_TREE_LEAF and the object's id */
@@ -32,7 +35,8 @@ typedef struct RtTree {
     RtTreeNode *nodes; /* [capacity] */
     uint32_t capacity, used;
     uint32_t root;
-    bool split_refs; /* some references are parts of objects */
+    bool split_refs;    /* some references are parts of objects */
+    const RtBox *boxes; /* of the objects, borrowed, if leaves have no nodes; else NULL */
 } RtTree;
 
 /* An empty tree with room for `most` references, at least 1. */
@@ -43,13 +47,35 @@ void rt_tree_clear(RtTree *tree);
  * 1. */
 RtStatus rt_tree_init_leaves(RtTree *tree, const RtBox *boxes, uint32_t count, RtError *error);
 
+/* Whether a node that the tree has is a leaf. */
 static inline bool rt_tree_is_leaf(const RtTree *tree, uint32_t node) {
     return tree->nodes[node].child[0] == RT_TREE_LEAF;
 }
 
+/* The object of a leaf, and the box of the reference. */
+typedef struct RtTreeLeaf {
+    const RtBox *box;
+    uint32_t object;
+} RtTreeLeaf;
+
+/* Whether `node`, which may be no node but a number of rt_tree_drop_leaves, is a leaf. If so, sets *leaf. */
+static inline bool rt_tree_get_leaf(const RtTree *tree, uint32_t node, RtTreeLeaf *leaf) {
+    if (node >= RT_TREE_OBJECT) {
+        *leaf = (RtTreeLeaf){&tree->boxes[node - RT_TREE_OBJECT], node - RT_TREE_OBJECT};
+        return true;
+    }
+    *leaf = (RtTreeLeaf){&tree->nodes[node].box, tree->nodes[node].child[1]};
+    return rt_tree_is_leaf(tree, node);
+}
+
+/* The box of such a node. */
+static inline RtBox rt_tree_box(const RtTree *tree, uint32_t node) {
+    return node >= RT_TREE_OBJECT ? tree->boxes[node - RT_TREE_OBJECT] : tree->nodes[node].box;
+}
+
 /* References of a complete tree. */
 static inline uint32_t rt_tree_leaf_count(const RtTree *tree) {
-    return (tree->used + 1) / 2;
+    return tree->boxes ? tree->used + 1 : (tree->used + 1) / 2;
 }
 
 /* Allocates a node, which the caller fills. */
@@ -69,6 +95,11 @@ double rt_tree_cost(const RtTree *tree);
 
 /* Rebuilds by medians the subtrees with leaves deeper than RT_TREE_MAX_DEPTH, if there are any. */
 RtStatus rt_tree_limit_depth(RtTree *tree, RtError *error);
+
+/* Limits the depth of a complete tree, and removes the nodes of its leaves: half of its memory. boxes[..] are
+ * those of the objects. Only rt_tree_reduce, rt_tree_get_leaf and rt_tree_box still work. Does not remove
+ * split references, whose boxes are their own. On failure the leaves are still there. */
+RtStatus rt_tree_drop_leaves(RtTree *tree, const RtBox *boxes, RtError *error);
 
 /* ---- methods ----
  *

@@ -21,7 +21,7 @@ static_assert(MAX_REFERENCES * (uint64_t)(RT_WIDE_NODE_UNITS + RT_WIDE_BLOCK_UNI
 static_assert(MAX_REFERENCES * sizeof(RtWideTriangles) / RT_WIDE_BLOCK >= RT_WIDE_MAX_BYTES,
               "no arena holds more");
 
-/* A subtree to be placed: the node of the binary tree, and its offset in the arena. */
+/* A subtree to be placed: the node of the binary tree, and its offset in the arena, in units. */
 typedef struct Task {
     uint32_t index, at;
     uint32_t nodes; /* result: nodes made */
@@ -40,7 +40,8 @@ typedef struct Layout {
 enum { WAITING = 16 };
 
 typedef struct Leaf {
-    uint32_t ids[RT_WIDE_MAX_LEAF], count, at;
+    uint32_t ids[RT_WIDE_MAX_LEAF], count;
+    uint32_t at; /* in units */
     RtWideKind kind;
 } Leaf;
 
@@ -70,9 +71,13 @@ static void fill_block(const Layout *layout, RtWideTriangles *block, const uint3
     }
 }
 
+static void *place_at(const Layout *layout, uint32_t units) {
+    return layout->self->arena + (size_t)units * RT_WIDE_UNIT;
+}
+
 static void fill_leaf(const Layout *layout, const Leaf *leaf) {
     const RtGeometry *g = layout->plan.geometry;
-    void *place = layout->self->arena + leaf->at;
+    void *place = place_at(layout, leaf->at);
     RtWideTriangles *blocks = place;
     RtWideSphere *sphere = place;
     RtWideList *list = place;
@@ -111,9 +116,10 @@ static RtWideRef place_leaf(Placer *placer, uint32_t index, uint32_t *at) {
     }
     leaf->at = *at;
     placer->cost +=
-        rt_box_half_area(layout->plan.tree->nodes[index].box) * layout->plan.how->block_cost * size.tests;
-    *at += size.units * RT_WIDE_UNIT;
-    return rt_wide_leaf(leaf->kind, leaf->at, leaf->count);
+        rt_box_half_area(rt_tree_box(layout->plan.tree, index)) * layout->plan.how->block_cost * size.tests;
+    *at += size.units;
+    const uint32_t one = leaf->kind == RT_WIDE_TRIANGLES ? RT_WIDE_BLOCK : 1;
+    return rt_wide_ref(leaf->at, leaf->kind, leaf->count > one);
 }
 
 static void put_box(RtWideNode *node, uint32_t lane, RtBox box) {
@@ -137,23 +143,23 @@ static void place_below(Placer *placer, uint32_t at, uint32_t index) {
 
 static void place_node(Placer *placer, uint32_t at, uint32_t index) {
     const Layout *layout = placer->layout;
-    RtWideNode *node = (RtWideNode *)(void *)(layout->self->arena + at);
+    RtWideNode *node = place_at(layout, at);
     uint32_t children[RT_WIDE] = {0}, count = rt_wide_children_of(&layout->plan, index, children);
     *node = (RtWideNode){.count = count};
     placer->nodes++;
-    placer->cost += rt_box_half_area(layout->plan.tree->nodes[index].box);
-    at += sizeof(RtWideNode);
+    placer->cost += rt_box_half_area(rt_tree_box(layout->plan.tree, index));
+    at += RT_WIDE_NODE_UNITS;
     for (uint32_t i = 0; i < RT_WIDE; i++) {
-        put_box(node, i, i < count ? layout->plan.tree->nodes[children[i]].box : RT_EMPTY_BOX);
+        put_box(node, i, i < count ? rt_tree_box(layout->plan.tree, children[i]) : RT_EMPTY_BOX);
         node->child[i] = RT_WIDE_DONE;
         if (i < count && rt_wide_becomes_leaf(&layout->plan, children[i]))
             node->child[i] = place_leaf(placer, children[i], &at);
     }
     for (uint32_t i = 0; i < count; i++) {
         if (node->child[i] != RT_WIDE_DONE) continue;
-        node->child[i] = at;
+        node->child[i] = rt_wide_ref(at, RT_WIDE_NODE, false);
         place_below(placer, at, children[i]);
-        at += layout->plan.choices[children[i]].units * RT_WIDE_UNIT;
+        at += layout->plan.choices[children[i]].units;
     }
 }
 
@@ -180,7 +186,7 @@ static RtStatus place_all(Layout *layout, RtError *error) {
         placer.nodes += layout->tasks[i].nodes;
         placer.cost += layout->tasks[i].cost;
     }
-    double area = rt_box_half_area(layout->plan.tree->nodes[layout->plan.tree->root].box);
+    double area = rt_box_half_area(rt_tree_box(layout->plan.tree, layout->plan.tree->root));
     layout->self->node_count = placer.nodes;
     layout->self->cost = area > 0 ? placer.cost / area : NAN;
     return RT_OK;

@@ -53,9 +53,10 @@ RT_KERNEL void prefilter_rays(Packet *p, const RtWideTriangles *block, uint32_t 
 /* With at least so many rays of a beam, a block is tested triangle by triangle, and spheres are filtered. */
 enum { MANY_RAYS = 6 };
 
-/* The same as prefilter_rays for rays of beam b, with `count` triangles. */
-RT_KERNEL void prefilter_beam(Packet *p, const RtWideTriangles *block, uint32_t at, uint32_t count,
-                              uint32_t b, uint32_t rays) {
+/* The same as prefilter_rays for rays of beam b. */
+RT_KERNEL void prefilter_beam(Packet *p, const RtWideTriangles *block, uint32_t at, uint32_t b,
+                              uint32_t rays) {
+    const uint32_t count = rt_wide_block_count(block);
     uint32_t pairs = p->pair_count;
     for (uint32_t lane = 0; lane < BEAM; lane += RT_LANES) {
         const size_t first = first_of(b) + lane;
@@ -190,7 +191,7 @@ RT_KERNEL void visit_sphere_leaf(Packet *p, const Query *q, RtWideRef ref, uint6
     SpherePair pairs[PACKET * RT_WIDE_MAX_LEAF];
     uint32_t ray[PACKET * RT_WIDE_MAX_LEAF], count = 0;
     float t[PACKET * RT_WIDE_MAX_LEAF];
-    for (uint32_t i = 0; i < rt_wide_count(ref); i++) {
+    for (uint32_t i = 0, spheres = list_count(q, ref); i < spheres; i++) {
         SpherePair pair = sphere_pair(q, NULL, ref, i);
         for (uint64_t left = filter_rays(p, pair.sphere, rays); left; left &= left - 1) {
             ray[count] = first_ray(left);
@@ -204,13 +205,12 @@ RT_KERNEL void visit_sphere_leaf(Packet *p, const Query *q, RtWideRef ref, uint6
     }
 }
 
-RT_KERNEL void visit_block(Packet *p, const RtWideTree *tree, const RtWideTriangles *block, uint32_t count,
-                           uint64_t rays) {
-    uint32_t at = (uint32_t)((const char *)block - tree->arena) / sizeof(float);
+RT_KERNEL void visit_block(Packet *p, const RtWideTree *tree, const RtWideTriangles *block, uint64_t rays) {
+    uint32_t at = (uint32_t)((size_t)((const char *)block - tree->arena) / sizeof(float));
     for (uint32_t b = 0; b < BEAMS; b++) {
         uint32_t some = (uint32_t)(rays >> b * BEAM) & ((1u << BEAM) - 1);
         if (__builtin_popcount(some) < MANY_RAYS) continue;
-        prefilter_beam(p, block, at, count, b, some);
+        prefilter_beam(p, block, at, b, some);
         rays &= ~((uint64_t)some << b * BEAM);
     }
     if (rays) prefilter_rays(p, block, at, rays);
@@ -226,10 +226,8 @@ RT_KERNEL void visit_leaf(Packet *p, const Query *q, RtWideRef ref, uint64_t ray
         return;
     }
     const RtWideTriangles *block = rt_wide_leaf_at(q->tree, ref);
-    uint32_t count = rt_wide_count(ref);
-    for (; count > RT_WIDE_BLOCK; count -= RT_WIDE_BLOCK)
-        visit_block(p, q->tree, block++, RT_WIDE_BLOCK, rays);
-    visit_block(p, q->tree, block, count, rays);
+    if (rt_wide_has_more(ref)) visit_block(p, q->tree, block++, rays);
+    visit_block(p, q->tree, block, rays);
     test_pairs(p, q->tree, RT_LANES, any);
 }
 

@@ -42,15 +42,15 @@ static uint32_t blocks_of(uint32_t count) {
 /* ---- costs ---- */
 
 void rt_wide_collect(const RtTree *tree, uint32_t index, uint32_t *ids, uint32_t *count) {
-    const uint32_t *child = tree->nodes[index].child;
-    if (rt_tree_is_leaf(tree, index)) {
+    RtTreeLeaf leaf;
+    if (rt_tree_get_leaf(tree, index, &leaf)) {
         for (uint32_t i = 0; i < *count && tree->split_refs; i++) {
-            if (ids[i] == child[1]) return;
+            if (ids[i] == leaf.object) return;
         }
-        ids[(*count)++] = child[1];
+        ids[(*count)++] = leaf.object;
         return;
     }
-    for (int s = 0; s < 2; s++) rt_wide_collect(tree, child[s], ids, count);
+    for (int s = 0; s < 2; s++) rt_wide_collect(tree, tree->nodes[index].child[s], ids, count);
 }
 
 RtWideLeafSize rt_wide_leaf_size(uint32_t count, uint32_t shapes) {
@@ -66,14 +66,14 @@ static float leaf_cost(const RtWidePlan *self, float area, RtWideLeafSize size) 
     return area * (float)self->how->block_cost * ((float)size.tests + EMPTY_LANE * (float)size.empty);
 }
 
-static float area_of(const RtWidePlan *self, uint32_t index) {
-    return (float)(rt_box_half_area(self->tree->nodes[index].box) * self->scale);
+static float area_of(const RtWidePlan *self, const RtBox *box) {
+    return (float)(rt_box_half_area(*box) * self->scale);
 }
 
 /* A power of two that makes the area of the root 1 to 2. So sums of areas do not overflow float32, and the
  * choices do not depend on the unit of length. */
 static double scale_for(const RtTree *tree) {
-    double area = rt_box_half_area(tree->nodes[tree->root].box);
+    double area = rt_box_half_area(rt_tree_box(tree, tree->root));
     return area > 0 ? ldexp(1, -ilogb(area)) : 1;
 }
 
@@ -91,12 +91,12 @@ static float priority_of(float surface, float area, float cost) {
     return area > 0 && cost > 0 ? surface / (surface + area) * (area / cost) : 0;
 }
 
-static void weigh_reference(const RtWidePlan *self, uint32_t index, Weight *own) {
+static void weigh_reference(const RtWidePlan *self, RtTreeLeaf leaf, Weight *own) {
     own->references = 1;
-    own->surface = surface_of(self, &self->tree->nodes[index].box);
-    own->shapes = 1u << rt_wide_shape_of(self, self->tree->nodes[index].child[1]);
+    own->surface = surface_of(self, leaf.box);
+    own->shapes = 1u << rt_wide_shape_of(self, leaf.object);
     RtWideLeafSize size = rt_wide_leaf_size(1, own->shapes);
-    float cost = leaf_cost(self, area_of(self, index), size);
+    float cost = leaf_cost(self, area_of(self, leaf.box), size);
     for (int k = 0; k < RT_WIDE; k++) {
         own->cost[k] = cost;
         own->units[k] = size.units;
@@ -144,7 +144,7 @@ static void consider_leaf(const RtWidePlan *self, uint32_t index, float area, We
 /* weigh_both for two references, the most frequent case: the same result, sooner. */
 static void weigh_pair(const RtWidePlan *self, uint32_t index, const Weight *sides[2], Weight *own) {
     RtWideChoice *chosen = &self->choices[index];
-    float area = area_of(self, index), split = sides[0]->cost[0] + sides[1]->cost[0];
+    float area = area_of(self, &self->tree->nodes[index].box), split = sides[0]->cost[0] + sides[1]->cost[0];
     uint32_t units = sides[0]->units[0] + sides[1]->units[0];
     memset(chosen, 0, sizeof *chosen);
     chosen->choice[0] = 1;
@@ -163,7 +163,7 @@ static void weigh_pair(const RtWidePlan *self, uint32_t index, const Weight *sid
 
 static void weigh_both(const RtWidePlan *self, uint32_t index, const Weight *sides[2], Weight *own) {
     RtWideChoice *chosen = &self->choices[index];
-    float area = area_of(self, index), split[RT_WIDE];
+    float area = area_of(self, &self->tree->nodes[index].box), split[RT_WIDE];
     int32_t left[RT_WIDE];
     own->references = sides[0]->references + sides[1]->references;
     own->surface = sides[0]->surface + sides[1]->surface;
@@ -191,8 +191,9 @@ static void weigh_both(const RtWidePlan *self, uint32_t index, const Weight *sid
 }
 
 static bool weigh(const RtWidePlan *self, uint32_t index, uint32_t levels, Weight *own) {
-    if (rt_tree_is_leaf(self->tree, index)) {
-        weigh_reference(self, index, own);
+    RtTreeLeaf leaf;
+    if (rt_tree_get_leaf(self->tree, index, &leaf)) {
+        weigh_reference(self, leaf, own);
         return true;
     }
     const uint32_t *child = self->tree->nodes[index].child;
@@ -243,7 +244,8 @@ void rt_wide_plan_clear(RtWidePlan *self) {
 static void open_children(const RtWidePlan *self, uint32_t index, uint32_t most, uint32_t *children,
                           uint32_t *count) {
     const RtWideChoice *chosen = &self->choices[index];
-    bool whole = rt_tree_is_leaf(self->tree, index);
+    RtTreeLeaf leaf;
+    bool whole = rt_tree_get_leaf(self->tree, index, &leaf);
     while (!whole && most > 1 && chosen->choice[most - 1] == RT_WIDE_FEWER) most--;
     if (whole || most == 1) {
         children[(*count)++] = index;
@@ -256,10 +258,11 @@ static void open_children(const RtWidePlan *self, uint32_t index, uint32_t most,
 }
 
 static float priority_of_child(const RtWidePlan *self, uint32_t index) {
-    if (!rt_tree_is_leaf(self->tree, index)) return self->choices[index].priority;
+    RtTreeLeaf leaf;
     Weight own;
-    weigh_reference(self, index, &own);
-    return priority_of(own.surface, area_of(self, index), own.cost[0]);
+    if (!rt_tree_get_leaf(self->tree, index, &leaf)) return self->choices[index].priority;
+    weigh_reference(self, leaf, &own);
+    return priority_of(own.surface, area_of(self, leaf.box), own.cost[0]);
 }
 
 static void sort_by_priority(const RtWidePlan *self, uint32_t *children, uint32_t count) {

@@ -55,7 +55,8 @@ static inline uint32_t rt_wide_shape_of(const RtWidePlan *self, uint32_t id) {
 void rt_wide_collect(const RtTree *tree, uint32_t index, uint32_t *ids, uint32_t *count);
 
 static inline bool rt_wide_becomes_leaf(const RtWidePlan *self, uint32_t index) {
-    return rt_tree_is_leaf(self->tree, index) || self->choices[index].choice[0] == RT_WIDE_LEAF;
+    RtTreeLeaf leaf;
+    return rt_tree_get_leaf(self->tree, index, &leaf) || self->choices[index].choice[0] == RT_WIDE_LEAF;
 }
 
 /* Writes the children of a subtree that becomes a node, and returns their number. A root that is a leaf is

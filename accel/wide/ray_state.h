@@ -130,7 +130,7 @@ RT_KERNEL bool init_ray(RayState *f, const Query *q, size_t index, bool any, RtT
 }
 
 RT_KERNEL void prefetch(const RtWideTree *tree, RtWideRef ref) {
-    const char *at = tree->arena + ref;
+    const char *at = (const char *)rt_wide_node(tree, ref); /* of a leaf, some bytes into it: the same line */
     for (size_t i = 0; i < sizeof(RtWideNode); i += RT_CACHE_LINE) __builtin_prefetch(at + i, 0, 3);
 }
 
@@ -154,13 +154,12 @@ RT_KERNEL uint32_t hit_children(const RtWideNode *node, const RayState *f, RtFlo
 /* A node has no box of its own; the boxes of its children are tested together. */
 RT_COLD static void observe_node(const RtWideNode *node, RtWideRef ref, uint32_t mask) {
     RtBox all = rt_wide_children_box(node);
-    rt_observe(
-        &(RtTraced){.kind = RT_TRACED_STEP, .what = "node at", .index = rt_wide_place(ref), .box = &all});
+    rt_observe(&(RtTraced){.kind = RT_TRACED_STEP, .what = "node", .index = rt_wide_place(ref), .box = &all});
     for (uint32_t i = 0; i < node->count; i++) {
         bool leaf = rt_wide_kind(node->child[i]) != RT_WIDE_NODE;
         RtBox box = rt_wide_child_box(node, i);
         rt_observe(&(RtTraced){.kind = RT_TRACED_EXTENT_TEST,
-                               .what = leaf ? "leaf at" : "node at",
+                               .what = leaf ? "leaf" : "node",
                                .index = rt_wide_place(node->child[i]),
                                .box = &box,
                                .met = mask >> i & 1});
@@ -231,7 +230,7 @@ RT_KERNEL uint32_t prefilter_block(const RtWideTriangles *block, const RayState 
 /* The same of a leaf: bit i is triangle i of it. */
 RT_KERNEL uint32_t prefilter_leaf(const RtWideTriangles *blocks, RtWideRef ref, const RayState *f) {
     uint32_t mask = prefilter_block(&blocks[0], f);
-    if (rt_wide_count(ref) > RT_WIDE_BLOCK) mask |= prefilter_block(&blocks[1], f) << RT_WIDE_BLOCK;
+    if (rt_wide_has_more(ref)) mask |= prefilter_block(&blocks[1], f) << RT_WIDE_BLOCK;
     return mask;
 }
 
@@ -273,11 +272,19 @@ RT_KERNEL bool test_triangles(const RtWideTriangles *blocks, uint32_t mask, RayS
     return false;
 }
 
+/* rt_wide_list_count. Ids are less than 2^31, and RT_NO_OBJECT is not. */
+RT_KERNEL uint32_t list_count(const Query *q, RtWideRef ref) {
+    const RtWideList *list = rt_wide_leaf_at(q->tree, ref);
+    const uint32_t none = rt_bits(rt_load_ints8(list->id));
+    return rt_wide_is_sphere(ref) ? 1 : RT_WIDE_MAX_LEAF - (uint32_t)__builtin_popcount(none);
+}
+
 /* Tests the objects of another leaf; true if the search is over. */
 RT_KERNEL bool test_objects(const Query *q, RtWideRef ref, const RtPreparedRay *ray, bool any, RtHit *best,
                             RtTally *tally) {
     const RtWideList *list = rt_wide_leaf_at(q->tree, ref);
-    for (uint32_t i = 0; i < rt_wide_count(ref); i++) {
+    const uint32_t objects = list_count(q, ref);
+    for (uint32_t i = 0; i < objects; i++) {
         if (test_object(q->geometry, list->id[i], ray, any, best, tally)) return true;
     }
     return false;
@@ -288,7 +295,7 @@ RT_KERNEL SpherePair sphere_pair(const Query *q, const RtRay *ray, RtWideRef ref
     const RtGeometry *g = q->geometry;
     const RtWideSphere *only = rt_wide_leaf_at(q->tree, ref);
     const RtWideList *list = rt_wide_leaf_at(q->tree, ref);
-    if (rt_wide_count(ref) == 1) return (SpherePair){ray, &only->sphere, only->id};
+    if (rt_wide_is_sphere(ref)) return (SpherePair){ray, &only->sphere, only->id};
     return (SpherePair){ray, &g->spheres[rt_ref_index(g->objects[list->id[i]])], list->id[i]};
 }
 
@@ -309,7 +316,7 @@ static __attribute__((noinline)) float hit_pair(const RtGeometry *g, const Spher
 /* Tests the spheres of a leaf; true if the search is over. */
 static __attribute__((noinline)) bool test_spheres(const Query *q, RtWideRef ref, RayState *f, bool any,
                                                    RtTally *tally) {
-    for (uint32_t i = 0, count = rt_wide_count(ref); i < count; i++) {
+    for (uint32_t i = 0, count = list_count(q, ref); i < count; i++) {
         const SpherePair pair = sphere_pair(q, &q->rays[f->index], ref, i);
         const float t = hit_pair(q->geometry, &pair, f->sure);
         if (rt_take_test(q->geometry, pair.id, t, any, &f->best, tally)) return true;
@@ -321,11 +328,11 @@ static __attribute__((noinline)) bool test_spheres(const Query *q, RtWideRef ref
 RT_COLD static void observe_leaf(const RtWideTree *tree, const RtGeometry *g, RtWideRef ref) {
     RtBox box = RT_EMPTY_BOX;
     bool triangles = rt_wide_kind(ref) == RT_WIDE_TRIANGLES;
-    for (uint32_t i = 0; i < rt_wide_count(ref); i++)
+    for (uint32_t i = 0; i < rt_wide_count(tree, ref); i++)
         box = rt_box_union(box, g->boxes[rt_wide_leaf_object(tree, ref, i)]);
     rt_observe(&(RtTraced){
-        .kind = RT_TRACED_STEP, .what = "leaf at", .index = rt_wide_place(ref), .box = &box, .leaf = true});
-    for (uint32_t i = 0; triangles && i < rt_wide_count(ref); i++) {
+        .kind = RT_TRACED_STEP, .what = "leaf", .index = rt_wide_place(ref), .box = &box, .leaf = true});
+    for (uint32_t i = 0; triangles && i < rt_wide_count(tree, ref); i++) {
         uint32_t id = rt_wide_leaf_object(tree, ref, i);
         rt_observe(&(RtTraced){.kind = RT_TRACED_OBJECT_TEST, .index = id, .box = &g->boxes[id]});
     }
@@ -334,7 +341,7 @@ RT_COLD static void observe_leaf(const RtWideTree *tree, const RtGeometry *g, Rt
 RT_KERNEL void count_leaf(RtTally *tally, const RtWideTree *tree, const RtGeometry *g, RtWideRef ref) {
     RT_COUNT(tally, steps, 1);
     RT_COUNT(tally, leaf_steps, 1);
-    if (rt_wide_kind(ref) == RT_WIDE_TRIANGLES) RT_COUNT(tally, object_tests, rt_wide_count(ref));
+    if (rt_wide_kind(ref) == RT_WIDE_TRIANGLES) RT_COUNT(tally, object_tests, rt_wide_count(tree, ref));
     if (RT_OBSERVED(tally)) observe_leaf(tree, g, ref);
 }
 

@@ -15,7 +15,7 @@ typedef struct Sizes {
 static void measure(const RtWideTree *self, RtWideRef ref, Sizes *sum) {
     sum->nodes++;
     if (rt_wide_kind(ref) != RT_WIDE_NODE) {
-        sum->ids += rt_wide_count(ref);
+        sum->ids += rt_wide_count(self, ref);
         return;
     }
     const RtWideNode *node = rt_wide_node(self, ref);
@@ -25,7 +25,7 @@ static void measure(const RtWideTree *self, RtWideRef ref, Sizes *sum) {
 /* Copies a subtree to node `at`, whose box is set. */
 static void copy(const RtWideTree *self, RtHierarchy *to, uint32_t at, RtWideRef ref) {
     if (rt_wide_kind(ref) != RT_WIDE_NODE) {
-        uint32_t count = rt_wide_count(ref);
+        uint32_t count = rt_wide_count(self, ref);
         to->nodes[at].first = to->id_count;
         to->nodes[at].count = RT_NODE_LEAF | count;
         for (uint32_t i = 0; i < count; i++) to->ids[to->id_count++] = rt_wide_leaf_object(self, ref, i);
@@ -88,9 +88,10 @@ void rt_wide_describe(const RtWideTree *self, const RtGeometry *geometry, RtDesc
 
 static void show(const RtWideTree *self, RtWideRef ref, RtBox box, uint32_t depth, RtBoxViewer viewer) {
     bool leaf = rt_wide_kind(ref) != RT_WIDE_NODE;
-    viewer.show(
-        viewer.context,
-        &(RtBoxView){.box = &box, .depth = depth, .leaf = leaf, .objects = leaf ? rt_wide_count(ref) : 0});
+    viewer.show(viewer.context, &(RtBoxView){.box = &box,
+                                             .depth = depth,
+                                             .leaf = leaf,
+                                             .objects = leaf ? rt_wide_count(self, ref) : 0});
     if (leaf) return;
     const RtWideNode *node = rt_wide_node(self, ref);
     for (uint32_t i = 0; i < node->count; i++)
@@ -116,11 +117,15 @@ static bool is_shape(const RtGeometry *g, uint32_t id, RtShape shape) {
     return id < g->object_count && rt_ref_shape(g->objects[id]) == shape;
 }
 
+static bool is_inside(const RtWideTree *self, RtWideRef ref, uint64_t bytes) {
+    return (uint64_t)rt_wide_place(ref) * RT_WIDE_UNIT + bytes <= self->bytes;
+}
+
 /* Checks a leaf of spheres. */
 static RtStatus check_spheres(const Check *check, RtWideRef ref) {
     const RtGeometry *g = check->geometry;
     const RtWideSphere *only = rt_wide_leaf_at(check->self, ref);
-    for (uint32_t i = 0; i < rt_wide_count(ref); i++) {
+    for (uint32_t i = 0; i < rt_wide_count(check->self, ref); i++) {
         if (is_shape(g, rt_wide_leaf_object(check->self, ref, i), RT_SHAPE_SPHERE)) continue;
         return BROKEN(check, "the leaf at %u holds an object that is no sphere", rt_wide_place(ref));
     }
@@ -130,25 +135,17 @@ static RtStatus check_spheres(const Check *check, RtWideRef ref) {
     return RT_OK;
 }
 
-/* Checks that a leaf is in the arena, and that its triangles and spheres are those of the scene. */
-static RtStatus check_leaf(const Check *check, RtWideRef ref) {
+/* Checks block `b` of a leaf: its triangles come first, and are those of the scene. */
+static RtStatus check_block(const Check *check, RtWideRef ref, uint32_t b, bool full) {
     const RtGeometry *g = check->geometry;
-    uint32_t count = rt_wide_count(ref), at = rt_wide_place(ref);
-    uint32_t blocks = (count + RT_WIDE_BLOCK - 1) / RT_WIDE_BLOCK;
-    bool triangles = rt_wide_kind(ref) == RT_WIDE_TRIANGLES;
-    uint64_t bytes = triangles ? blocks * sizeof(RtWideTriangles) : sizeof(RtWideList);
-    if (ref == RT_WIDE_DONE || at + bytes > check->self->bytes)
-        return BROKEN(check, "a leaf at %u is not in the arena", at);
-    if (rt_wide_kind(ref) == RT_WIDE_SPHERES) RT_TRY(check_spheres(check, ref));
-    for (uint32_t i = count; !triangles && !rt_wide_is_sphere(ref) && i < RT_WIDE_MAX_LEAF; i++) {
-        if (rt_wide_leaf_object(check->self, ref, i) == RT_NO_OBJECT) continue;
-        return BROKEN(check, "the leaf at %u holds more than its objects", at);
-    }
-    const RtWideTriangles *block = rt_wide_leaf_at(check->self, ref);
-    for (uint32_t i = 0; triangles && i < blocks * RT_WIDE_BLOCK; i++, block += i % RT_WIDE_BLOCK == 0) {
-        uint32_t lane = i % RT_WIDE_BLOCK, id = block->id[lane];
-        bool there = i < count && is_shape(g, id, RT_SHAPE_TRIANGLE);
-        if (there != (i < count)) return BROKEN(check, "the leaf at %u holds no triangle in lane %u", at, i);
+    const RtWideTriangles *block = (const RtWideTriangles *)rt_wide_leaf_at(check->self, ref) + b;
+    const uint32_t count = full ? RT_WIDE_BLOCK : rt_wide_block_count(block);
+    const uint32_t at = rt_wide_place(ref);
+    for (uint32_t lane = 0; lane < RT_WIDE_BLOCK; lane++) {
+        uint32_t id = block->id[lane], i = b * RT_WIDE_BLOCK + lane;
+        bool there = is_shape(g, id, RT_SHAPE_TRIANGLE);
+        if (lane < count ? !there : id != RT_NO_OBJECT)
+            return BROKEN(check, "the leaf at %u holds no triangle in lane %u", at, i);
         for (int k = 0; k < 9; k++) {
             float x = block->v[k / 3][k % 3][lane];
             if (there ? x == g->triangles[rt_ref_index(g->objects[id])].v[k / 3].at[k % 3] : isnan(x))
@@ -159,25 +156,46 @@ static RtStatus check_leaf(const Check *check, RtWideRef ref) {
     return RT_OK;
 }
 
+/* Checks that a leaf is in the arena and holds objects, and that its triangles and spheres are those of the
+ * scene. */
+static RtStatus check_leaf(const Check *check, RtWideRef ref) {
+    const uint32_t at = rt_wide_place(ref);
+    const uint32_t blocks = rt_wide_has_more(ref) ? 2 : 1;
+    const bool triangles = rt_wide_kind(ref) == RT_WIDE_TRIANGLES;
+    const uint64_t bytes = triangles ? blocks * sizeof(RtWideTriangles) : sizeof(RtWideList);
+    if (ref == RT_WIDE_DONE || !is_inside(check->self, ref, bytes))
+        return BROKEN(check, "a leaf at %u is not in the arena", at);
+    const uint32_t count = rt_wide_count(check->self, ref);
+    for (uint32_t b = 0; triangles && b < blocks; b++) RT_TRY(check_block(check, ref, b, b + 1 < blocks));
+    if (count <= (triangles && blocks == 2 ? RT_WIDE_BLOCK : 0))
+        return BROKEN(check, "the leaf at %u is empty", at);
+    for (uint32_t i = count; !triangles && !rt_wide_is_sphere(ref) && i < RT_WIDE_MAX_LEAF; i++) {
+        if (rt_wide_leaf_object(check->self, ref, i) == RT_NO_OBJECT) continue;
+        return BROKEN(check, "the leaf at %u has a gap between its objects", at);
+    }
+    return rt_wide_kind(ref) == RT_WIDE_SPHERES ? check_spheres(check, ref) : RT_OK;
+}
+
 static RtStatus check_node(Check *check, RtWideRef ref, uint32_t depth) {
     const RtWideTree *self = check->self;
-    if (depth > RT_TREE_MAX_DEPTH) return BROKEN(check, "node %u is too deep", ref);
-    if (ref % RT_WIDE_UNIT != 0 || ref + sizeof(RtWideNode) > self->bytes)
-        return BROKEN(check, "a node at %u is not in the arena", ref);
+    const uint32_t at = rt_wide_place(ref);
+    if (depth > RT_TREE_MAX_DEPTH) return BROKEN(check, "node %u is too deep", at);
+    if (rt_wide_has_more(ref) || !is_inside(self, ref, sizeof(RtWideNode)))
+        return BROKEN(check, "a node at %u is not in the arena", at);
     const RtWideNode *node = rt_wide_node(self, ref);
-    if (++check->nodes > self->node_count) return BROKEN(check, "node %u has two parents", ref);
+    if (++check->nodes > self->node_count) return BROKEN(check, "node %u has two parents", at);
     bool lone = ref == 0 && rt_wide_kind(node->child[0]) != RT_WIDE_NODE; /* a root may hold a single leaf */
     if (node->count < (lone ? 1 : 2) || node->count > RT_WIDE)
-        return BROKEN(check, "node %u has %u children", ref, node->count);
+        return BROKEN(check, "node %u has %u children", at, node->count);
     for (uint32_t i = node->count; i < RT_WIDE; i++) {
         for (size_t a = 0; a < 3; a++) {
             if (node->plane[2 * a][i] == INFINITY && node->plane[2 * a + 1][i] == -INFINITY) continue;
-            return BROKEN(check, "lane %u of node %u has a box and no child", i, ref);
+            return BROKEN(check, "lane %u of node %u has a box and no child", i, at);
         }
     }
     for (uint32_t i = 0; i < node->count; i++) {
         bool inner = rt_wide_kind(node->child[i]) == RT_WIDE_NODE;
-        if (inner && node->child[i] <= ref) return BROKEN(check, "node %u has a child before it", ref);
+        if (inner && node->child[i] <= ref) return BROKEN(check, "node %u has a child before it", at);
         RT_TRY(inner ? check_node(check, node->child[i], depth + 1) : check_leaf(check, node->child[i]));
     }
     return RT_OK;

@@ -179,23 +179,23 @@ RT_KERNEL void finish_leaf(const Query *q, RayQueues *t, RayState *f, bool over,
 RT_KERNEL void visit_spheres(const Query *q, RayQueues *t, bool any, bool counted, bool ahead) {
     SpherePair pairs[RT_WIDE_MAX_IN_FLIGHT * RT_WIDE_MAX_LEAF];
     float at[RT_WIDE_MAX_IN_FLIGHT * RT_WIDE_MAX_LEAF];
-    uint32_t n = take_queue(t, RT_WIDE_SPHERES), count = 0, first = 0;
+    uint32_t n = take_queue(t, RT_WIDE_SPHERES), count = 0, first = 0, ends[RT_WIDE_MAX_IN_FLIGHT];
     for (uint32_t i = 0; i < n; i++) {
         const RayState *f = t->list[RT_WIDE_SPHERES][i];
-        for (uint32_t k = 0; k < rt_wide_count(f->next); k++)
+        ends[i] = count + list_count(q, f->next);
+        for (uint32_t k = 0; count < ends[i]; k++)
             pairs[count++] = sphere_pair(q, &q->rays[f->index], f->next, k);
     }
     hit_sphere_pairs(q->geometry, pairs, count, at);
     for (uint32_t i = 0; i < n; i++) {
         RayState *f = t->list[RT_WIDE_SPHERES][i];
         RtTally *tally = counted ? f->tally : NULL;
-        const uint32_t end = first + rt_wide_count(f->next);
         bool over = false;
         count_leaf(tally, q->tree, q->geometry, f->next);
-        for (uint32_t k = first; k < end && !over; k++)
+        for (uint32_t k = first; k < ends[i] && !over; k++)
             over = rt_take_test(q->geometry, pairs[k].id, at[k], any, &f->best, tally);
         finish_leaf(q, t, f, over, any, ahead);
-        first = end;
+        first = ends[i];
     }
 }
 

@@ -64,6 +64,10 @@ enum { MORTON_BITS = 21, PLOC_RADIUS = 25 };
 enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
+/* From so many objects on, leaves have no nodes while the tree is laid out: it takes 2 % more instructions,
+ * and 48 bytes an object less. */
+enum { MANY_OBJECTS = 1 << 20 };
+
 /* ---- build ---- */
 
 static void destroy(RtAccel *accel) {
@@ -99,7 +103,9 @@ static RtStatus fill(RtWideTree *self, const RtBuild *what, RtTreeMethod method,
     RtTree tree;
     if (geometry->object_count == 0) return RT_OK;
     RT_TRY(rt_tree_build(&tree, geometry, &options, what->threads, error));
-    RtStatus status = rt_wide_lay_out(self, &tree, geometry, &how, error);
+    RtStatus status = RT_OK;
+    if (geometry->object_count >= MANY_OBJECTS) status = rt_tree_drop_leaves(&tree, geometry->boxes, error);
+    if (status == RT_OK) status = rt_wide_lay_out(self, &tree, geometry, &how, error);
     rt_tree_clear(&tree);
     return status;
 }

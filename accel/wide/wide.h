@@ -10,8 +10,8 @@
  * Invariants: the box of a child contains the boxes of all references below it (of a split reference, its
  * part of the object). Children come first in a node; the lanes after them have an empty box, which no ray
  * meets. A leaf holds 1..RT_WIDE_MAX_LEAF objects, first in their blocks; the lanes after them hold no
- * triangle. A scene with objects has a root, which is a node; its only child may be a leaf. No leaf is deeper
- * than RT_TREE_MAX_DEPTH. */
+ * triangle; only the last of two blocks has any. A scene with objects has a root, which is a node; its only
+ * child may be a leaf. No leaf is deeper than RT_TREE_MAX_DEPTH. */
 #ifndef RT_ACCEL_WIDE_WIDE_H
 #define RT_ACCEL_WIDE_WIDE_H
 
@@ -27,8 +27,8 @@ enum {
     RT_WIDE_MAX_PACKETS = 16    /* packets that are traced at once at most */
 };
 
-/* A child: its offset in the arena in bytes, a multiple of 32. The low bits hold its kind and, for a leaf,
- * the number of objects less one. The root is the node at 0. */
+/* A child: its place in the arena and, in the low bits, its kind and RT_WIDE_MORE. The root is the node at 0.
+ */
 typedef uint32_t RtWideRef;
 typedef enum RtWideKind {
     RT_WIDE_NODE,
@@ -37,26 +37,30 @@ typedef enum RtWideKind {
     RT_WIDE_OBJECTS    /* any other list */
 } RtWideKind;
 
-#define RT_WIDE_UNIT      32
-#define RT_WIDE_DONE      ((RtWideRef)RT_WIDE_OBJECTS) /* no child: the ray has finished; at 0 is the root */
-#define RT_WIDE_MAX_BYTES UINT64_C(0xffffff00)
+#define RT_WIDE_MORE 4U                           /* a leaf has two blocks, or several objects in a list */
+#define RT_WIDE_TAGS 7U                           /* the low bits */
+#define RT_WIDE_UNIT 32                           /* bytes; nodes and leaves begin at multiples of it */
+#define RT_WIDE_DONE ((RtWideRef)RT_WIDE_OBJECTS) /* no child: the ray has finished; at 0 is the root */
 
-static inline RtWideRef rt_wide_leaf(RtWideKind kind, uint32_t at, uint32_t count) {
-    return at | (count - 1) << 2 | (uint32_t)kind;
+/* Gathers index an arena by signed 32-bit numbers of floats. */
+#define RT_WIDE_MAX_BYTES (UINT64_C(1) << 33)
+
+/* The child that lies `units` units from the start of the arena. */
+static inline RtWideRef rt_wide_ref(uint32_t units, RtWideKind kind, bool more) {
+    return units * (RT_WIDE_TAGS + 1) | (more ? RT_WIDE_MORE : 0) | (uint32_t)kind;
 }
 
 static inline RtWideKind rt_wide_kind(RtWideRef ref) {
     return (RtWideKind)(ref & 3);
 }
 
-/* The offset of a node or a leaf. */
-static inline uint32_t rt_wide_place(RtWideRef ref) {
-    return ref & ~(uint32_t)(RT_WIDE_UNIT - 1);
+static inline bool rt_wide_has_more(RtWideRef ref) {
+    return (ref & RT_WIDE_MORE) != 0;
 }
 
-/* Objects of a leaf. */
-static inline uint32_t rt_wide_count(RtWideRef ref) {
-    return (ref >> 2 & 7) + 1;
+/* The units before a node or a leaf: its number in messages and paths of rays. */
+static inline uint32_t rt_wide_place(RtWideRef ref) {
+    return ref / (RT_WIDE_TAGS + 1);
 }
 
 typedef struct RtWideNode {
@@ -94,18 +98,44 @@ typedef struct RtWideTree {
     double cost;         /* expected, in visits of nodes, for a random line through the root's box */
 } RtWideTree;
 
+/* The first block, the sphere or the list of a leaf. */
+static inline const void *rt_wide_leaf_at(const RtWideTree *tree, RtWideRef ref) {
+    return tree->arena + (size_t)(ref & ~RT_WIDE_TAGS) * (RT_WIDE_UNIT / (RT_WIDE_TAGS + 1));
+}
+
 static inline const RtWideNode *rt_wide_node(const RtWideTree *tree, RtWideRef ref) {
-    return (const RtWideNode *)(const void *)(tree->arena + ref);
+    return (const RtWideNode *)(const void *)(tree->arena +
+                                              (size_t)ref * (RT_WIDE_UNIT / (RT_WIDE_TAGS + 1)));
 }
 
 /* Whether a leaf is one sphere. */
 static inline bool rt_wide_is_sphere(RtWideRef ref) {
-    return rt_wide_kind(ref) == RT_WIDE_SPHERES && rt_wide_count(ref) == 1;
+    return rt_wide_kind(ref) == RT_WIDE_SPHERES && !rt_wide_has_more(ref);
 }
 
-/* The first block, the sphere or the list of a leaf. */
-static inline const void *rt_wide_leaf_at(const RtWideTree *tree, RtWideRef ref) {
-    return tree->arena + rt_wide_place(ref);
+/* Those of ids[0..most) that name objects, which come first. */
+static inline uint32_t rt_wide_count_ids(const uint32_t *ids, uint32_t most) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < most; i++) count += ids[i] != RT_NO_OBJECT;
+    return count;
+}
+
+/* Triangles of a block. */
+static inline uint32_t rt_wide_block_count(const RtWideTriangles *block) {
+    return rt_wide_count_ids(block->id, RT_WIDE_BLOCK);
+}
+
+/* Objects of a leaf of spheres or other objects. */
+static inline uint32_t rt_wide_list_count(const RtWideTree *tree, RtWideRef ref) {
+    const RtWideList *list = (const RtWideList *)rt_wide_leaf_at(tree, ref);
+    return rt_wide_is_sphere(ref) ? 1 : rt_wide_count_ids(list->id, RT_WIDE_MAX_LEAF);
+}
+
+/* Objects of a leaf. */
+static inline uint32_t rt_wide_count(const RtWideTree *tree, RtWideRef ref) {
+    const RtWideTriangles *blocks = (const RtWideTriangles *)rt_wide_leaf_at(tree, ref);
+    if (rt_wide_kind(ref) != RT_WIDE_TRIANGLES) return rt_wide_list_count(tree, ref);
+    return rt_wide_block_count(blocks) + (rt_wide_has_more(ref) ? rt_wide_block_count(blocks + 1) : 0);
 }
 
 /* Object `i` of a leaf. */

@@ -329,8 +329,8 @@ static void find(Row *r, size_t i) {
     const size_t kinds = e->kind_count, candidates = e->candidate_count + 1;
     const bool by_workload = tables[r->which].has & ALL_SCENES;
     if (r->which == RT_ROUNDS) {
-        r->round = (uint32_t)(i % RT_MAX_ROUNDS);
-        i /= RT_MAX_ROUNDS;
+        r->round = (uint32_t)(i % r->most_rounds);
+        i /= r->most_rounds;
     }
     r->kind = e->kinds[by_workload ? i % kinds : i / candidates];
     r->candidate = (uint32_t)((by_workload ? i / kinds : i) % candidates);
@@ -415,13 +415,27 @@ static void add_swept(RtTable *table, Row *row) {
     table->groups = row->groups;
 }
 
+/* The most rounds of any cell, null runs included. */
+static uint32_t most_rounds(const RtResults *results) {
+    const RtExperiment *e = results->experiment;
+    uint32_t most = 0;
+    for (uint32_t t = 0; t < e->workload_count; t++) {
+        for (uint32_t i = 0; i < (e->candidate_count + 1) * e->kind_count; i++) {
+            const RtCell *cell = rt_cell_at(results, t, i / e->kind_count, e->kinds[i % e->kind_count]);
+            if (cell->timed && cell->rounds > most) most = cell->rounds;
+        }
+    }
+    return most;
+}
+
 RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
     const RtExperiment *e = row->results->experiment;
     const int has = tables[which].has;
     const size_t workloads = has & ALL_SCENES ? e->workload_count : 1;
     RtTable table = tables[which].table;
     table.row_count = workloads * (e->candidate_count + 1) * e->kind_count;
-    if (which == RT_ROUNDS) table.row_count *= RT_MAX_ROUNDS;
+    if (which == RT_ROUNDS) row->most_rounds = most_rounds(row->results);
+    if (which == RT_ROUNDS) table.row_count *= row->most_rounds;
     table.row = row_at;
     table.context = row;
     table.standing = has & BEST ? standing_of : NULL;

@@ -47,7 +47,7 @@ typedef struct RtResultRow {
     uint32_t workload; /* of tables of one workload */
     uint32_t candidate;
     RtRayKind kind;
-    uint32_t round; /* of RT_ROUNDS */
+    uint32_t round, most_rounds; /* of RT_ROUNDS; most_rounds: of any cell */
     const RtWorkload *setup;
     const RtWorkloadResult *scene;
     const RtBuildResult *build;

@@ -7,6 +7,7 @@
 #include "random_testing.h"
 
 #include <math.h>
+#include <sys/mman.h>
 
 /* Unit right triangles in planes z = 0, in a row along x, `apart` from each other. */
 static RtScene make_triangles(uint32_t count, float apart) {
@@ -20,7 +21,7 @@ static RtScene make_triangles(uint32_t count, float apart) {
 }
 
 static RtWideNode *node_at(const RtWide *wide, RtWideRef ref) {
-    return (RtWideNode *)(void *)(wide->trees[0].arena + ref);
+    return (RtWideNode *)(void *)(wide->trees[0].arena + (uint64_t)rt_wide_place(ref) * RT_WIDE_UNIT);
 }
 
 /* ---- invariants ---- */
@@ -41,7 +42,8 @@ RT_TEST(validate_names_what_is_wrong_with_a_node) {
     OWNED_ACCEL RtWide *wide = make_wide(&scene, BEST_SET, "max_leaf_size=1");
     const RtAccel *accel = &wide->isa.base;
     RtWideTree *tree = &wide->trees[0];
-    RtWideRef at = inner_child(wide, &lane), end = (RtWideRef)tree->bytes;
+    RtWideRef at = inner_child(wide, &lane),
+              end = rt_wide_ref((uint32_t)(tree->bytes / RT_WIDE_UNIT), 0, false);
     RtWideNode *root = node_at(wide, 0), *node = node_at(wide, at), kept_root = *root;
 
     for (uint32_t plane = 0; plane < 2; plane++) { /* both along x, inward and outward of the parent */
@@ -71,9 +73,9 @@ RT_TEST(validate_names_what_is_wrong_with_a_node) {
     RtWideRef *child = &root->child[lane], *other = child + 1;
     assert_broken_by(accel, *child, 0, "has a child before it");
     assert_broken_by(accel, *child, end, "is not in the arena");
-    assert_broken_by(accel, *child, end - RT_WIDE_UNIT,
-                     "is not in the arena");                        /* begins in it, ends behind */
-    assert_broken_by(accel, *child, at | 4, "is not in the arena"); /* a node has no number of objects */
+    assert_broken_by(accel, *child, end - (RT_WIDE_TAGS + 1),
+                     "is not in the arena"); /* begins in it, ends behind */
+    assert_broken_by(accel, *child, at | RT_WIDE_MORE, "is not in the arena");
     assert_broken_by(accel, *child, RT_WIDE_DONE, "is not in the arena");
     while (other < root->child + root->count && rt_wide_kind(*other) != RT_WIDE_NODE) other++;
     assert_true(other < root->child + root->count);
@@ -92,23 +94,28 @@ RT_TEST(validate_names_what_is_wrong_with_a_leaf_of_triangles) {
     RtWideRef *leaf = &root->child[0];
     assert_int_equal(root->count, 1);
     assert_int_equal(rt_wide_kind(*leaf), RT_WIDE_TRIANGLES);
-    assert_int_equal(rt_wide_count(*leaf), 5);
+    assert_int_equal(rt_wide_count(&wide->trees[0], *leaf), 5);
     uint32_t place = rt_wide_place(*leaf);
-    RtWideTriangles *blocks = (void *)(wide->trees[0].arena + place);
+    RtWideTriangles *blocks = (void *)node_at(wide, *leaf);
 
     float *y = &blocks[1].v[2][1][0];
     assert_broken_by(accel, *y, *y + 1, "is another triangle");
     assert_broken_by(accel, *y, NAN, "is another triangle");
     assert_broken_by(accel, blocks[1].v[0][0][1], 0, "is another triangle"); /* where no triangle is */
-    assert_broken_by(accel, blocks[1].id[0], RT_NO_OBJECT, "holds no triangle in lane 4");
+    assert_broken_by(accel, blocks[0].id[3], RT_NO_OBJECT, "holds no triangle in lane 3");
     assert_broken_by(accel, blocks[1].id[0], 5, "holds no triangle in lane 4");
+    assert_broken_by(accel, blocks[1].id[1], 5, "holds no triangle in lane 5");
     assert_broken_by(accel, blocks[1].id[0], blocks[0].id[0], "is in 2 leaves");
 
-    assert_broken_by(accel, *leaf, rt_wide_leaf(RT_WIDE_TRIANGLES, place, 6), "holds no triangle in lane 5");
-    assert_broken_by(accel, *leaf, rt_wide_leaf(RT_WIDE_TRIANGLES, place, 4), "is in 0 leaves");
-    assert_broken_by(accel, *leaf, rt_wide_leaf(RT_WIDE_TRIANGLES, place + RT_WIDE_UNIT, 5),
-                     "is not in the arena");
-    assert_broken_by(accel, *leaf, rt_wide_leaf(RT_WIDE_SPHERES, place, 5), "that is no sphere");
+    const RtWideTriangles kept = blocks[1];
+    blocks[1].id[0] = RT_NO_OBJECT;
+    for (int c = 0; c < 9; c++) blocks[1].v[c / 3][c % 3][0] = NAN;
+    assert_broken(accel, "is empty");
+    blocks[1] = kept;
+
+    assert_broken_by(accel, *leaf, rt_wide_ref(place, RT_WIDE_TRIANGLES, false), "is in 0 leaves");
+    assert_broken_by(accel, *leaf, rt_wide_ref(place + 1, RT_WIDE_TRIANGLES, true), "is not in the arena");
+    assert_broken_by(accel, *leaf, rt_wide_ref(place, RT_WIDE_SPHERES, true), "that is no sphere");
 }
 
 RT_TEST(validate_names_what_is_wrong_with_a_leaf_of_one_sphere) {
@@ -117,12 +124,11 @@ RT_TEST(validate_names_what_is_wrong_with_a_leaf_of_one_sphere) {
     const RtAccel *accel = &wide->isa.base;
     RtWideRef *leaf = &node_at(wide, 0)->child[0];
     assert_int_equal(rt_wide_kind(*leaf), RT_WIDE_SPHERES);
-    assert_int_equal(rt_wide_count(*leaf), 1);
-    uint32_t place = rt_wide_place(*leaf);
-    RtWideSphere *only = (void *)(wide->trees[0].arena + place);
+    assert_true(rt_wide_is_sphere(*leaf));
+    RtWideSphere *only = (void *)node_at(wide, *leaf);
     assert_broken_by(accel, only->id, 3, "that is no sphere");
     assert_broken_by(accel, only->sphere.radius, only->sphere.radius * 2, "is another sphere");
-    assert_broken_by(accel, *leaf, rt_wide_leaf(RT_WIDE_OBJECTS, place, 1), "wide: ");
+    assert_broken_by(accel, *leaf, rt_wide_ref(rt_wide_place(*leaf), RT_WIDE_OBJECTS, false), "wide: ");
 }
 
 RT_TEST(validate_names_what_is_wrong_with_a_list) {
@@ -132,14 +138,16 @@ RT_TEST(validate_names_what_is_wrong_with_a_list) {
     RtWideNode *root = node_at(wide, 0);
     RtWideRef *leaf = &root->child[0];
     assert_int_equal(rt_wide_kind(*leaf), RT_WIDE_SPHERES);
-    uint32_t place = rt_wide_place(*leaf), *ids = ((RtWideList *)(void *)(wide->trees[0].arena + place))->id;
+    uint32_t place = rt_wide_place(*leaf), *ids = ((RtWideList *)(void *)node_at(wide, *leaf))->id;
     assert_broken_by(accel, ids[1], ids[0], "is in 2 leaves");
     assert_broken_by(accel, ids[1], 3, "that is no sphere");
-    assert_broken_by(accel, ids[7], 0, "holds more than its objects");
-    assert_broken_by(accel, *leaf, rt_wide_leaf(RT_WIDE_SPHERES, place, 2), "holds more than its objects");
-    assert_broken_by(accel, *leaf, rt_wide_leaf(RT_WIDE_OBJECTS, place, 2), "holds more than its objects");
-    assert_broken_by(accel, *leaf, rt_wide_leaf(RT_WIDE_TRIANGLES, place, 3),
+    assert_broken_by(accel, ids[7], 0, "has a gap between its objects");
+    assert_broken_by(accel, *leaf, rt_wide_ref(place, RT_WIDE_SPHERES, false), "is no sphere");
+    assert_broken_by(accel, *leaf, rt_wide_ref(place, RT_WIDE_TRIANGLES, false),
                      "wide: "); /* spheres are none */
+    memset(ids, 0xff, sizeof(RtWideList));
+    assert_broken(accel, "is empty");
+    for (uint32_t i = 0; i < 3; i++) ids[i] = i;
     assert_broken_by(accel, root->plane[1][0], root->plane[1][0] - 1, "does not contain its object");
 }
 
@@ -156,7 +164,9 @@ RT_TEST(validate_names_a_node_that_is_too_deep) {
     tree->arena = rt_alloc(tree->bytes, 1);
     tree->node_count = CHAIN;
     for (uint32_t i = 0; i < CHAIN; i++) {
-        RtWideNode *node = node_at(wide, i * (uint32_t)sizeof *node);
+        const uint32_t units = sizeof(RtWideNode) / RT_WIDE_UNIT;
+        const RtWideRef leaf = rt_wide_ref(CHAIN * units + i, RT_WIDE_OBJECTS, false);
+        RtWideNode *node = node_at(wide, rt_wide_ref(i * units, RT_WIDE_NODE, false));
         RtWideList *list = (void *)(tree->arena + nodes + i * sizeof *list);
         memset(list, 0xff, sizeof *list);
         list->id[0] = i;
@@ -165,13 +175,12 @@ RT_TEST(validate_names_a_node_that_is_too_deep) {
             RtBox own = k < 2 ? box : RT_EMPTY_BOX;
             for (int p = 0; p < 6; p++) node->plane[p][k] = (p % 2 ? own.hi : own.lo).at[p / 2];
         }
-        node->child[0] = rt_wide_leaf(RT_WIDE_OBJECTS, nodes + i * (uint32_t)sizeof *list, 1);
-        node->child[1] = i + 1 < CHAIN ? (i + 1) * (uint32_t)sizeof *node
-                                       : rt_wide_leaf(RT_WIDE_OBJECTS, nodes + i * (uint32_t)sizeof *list, 1);
+        node->child[0] = leaf;
+        node->child[1] = i + 1 < CHAIN ? rt_wide_ref((i + 1) * units, RT_WIDE_NODE, false) : leaf;
     }
     char says[64];
     snprintf(says, sizeof says, "node %u is too deep",
-             (RT_TREE_MAX_DEPTH + 1) * (uint32_t)sizeof(RtWideNode));
+             (RT_TREE_MAX_DEPTH + 1) * (uint32_t)sizeof(RtWideNode) / RT_WIDE_UNIT);
     assert_broken(&wide->isa.base, says);
 }
 
@@ -228,6 +237,40 @@ RT_TEST(a_structure_is_the_same_byte_for_byte_on_any_number_of_threads) {
             if (other != one) rt_accel_destroy(other);
         }
         rt_accel_destroy(one);
+    }
+}
+
+/* Only the pages of the root and of its leaf, of two blocks, are in memory. */
+RT_TEST(a_leaf_at_the_end_of_the_largest_arena_is_hit) {
+    enum { RAYS = 128, UNITS = 2 * sizeof(RtWideTriangles) / RT_WIDE_UNIT };
+    const uint32_t last = (uint32_t)(RT_WIDE_MAX_BYTES / RT_WIDE_UNIT) - UNITS;
+    const char *ways[] = {"in_flight=1", "packets=0", "sharing=0"};
+    OWNED_SCENE scene = make_triangles(5, 0);
+    RtRay rays[RAYS];
+    RtHit hits[RAYS];
+    for (int i = 0; i < RAYS; i++)
+        rays[i] = (RtRay){{0.25f, 0.25f, -1}, 0, {0, 0, 1}, INFINITY, RT_RAY_PRIMARY, 0};
+    for (int variant = 0; variant < 3 * INSTRUCTION_SETS; variant++) {
+        char settings[64];
+        snprintf(settings, sizeof settings, "max_leaf_size=8,block_cost=0,%s", ways[variant % 3]);
+        OWNED_ACCEL RtWide *wide = make_wide(&scene, variant / 3, settings);
+        if (!wide) continue;
+        RtWideTree *tree = &wide->trees[0];
+        char *own = tree->arena, *large = mmap(NULL, RT_WIDE_MAX_BYTES, PROT_READ | PROT_WRITE,
+                                               MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+        assert_true(large != MAP_FAILED);
+        memcpy(large, own, sizeof(RtWideNode));
+        memcpy(large + (uint64_t)last * RT_WIDE_UNIT, rt_wide_leaf_at(tree, node_at(wide, 0)->child[0]),
+               2 * sizeof(RtWideTriangles));
+        tree->arena = large;
+        node_at(wide, 0)->child[0] = rt_wide_ref(last, RT_WIDE_TRIANGLES, true);
+        {
+            OWNED_QUERY query = open_query(&wide->isa.base);
+            rt_nearest(&query, rays, RAYS, hits, NULL);
+        }
+        for (int i = 0; i < RAYS; i++) assert_true(hits[i].t == 1 && hits[i].object == 0);
+        tree->arena = own;
+        munmap(large, RT_WIDE_MAX_BYTES);
     }
 }
 

@@ -11,7 +11,7 @@ static const RtWideLayout plain = {
 
 /* Nodes and leaves, from `ref` on, in bytes. */
 static uint64_t bytes_below(const RtWideTree *wide, RtWideRef ref) {
-    uint32_t blocks = (rt_wide_count(ref) + RT_WIDE_BLOCK - 1) / RT_WIDE_BLOCK;
+    uint32_t blocks = rt_wide_has_more(ref) ? 2 : 1;
     if (rt_wide_kind(ref) == RT_WIDE_TRIANGLES) return blocks * sizeof(RtWideTriangles);
     if (rt_wide_kind(ref) != RT_WIDE_NODE) return sizeof(RtWideList);
     const RtWideNode *node = rt_wide_node(wide, ref);
@@ -39,7 +39,7 @@ RT_TEST(a_leaf_is_next_to_its_node_or_another_leaf) {
     for (int leaves = 1; leaves >= 0; leaves--) {
         for (uint32_t i = 0; i < root->count; i++) {
             if ((rt_wide_kind(root->child[i]) != RT_WIDE_NODE) != leaves) continue;
-            assert_int_equal(rt_wide_place(root->child[i]), end);
+            assert_int_equal((uint64_t)rt_wide_place(root->child[i]) * RT_WIDE_UNIT, end);
             end += bytes_below(&wide, root->child[i]);
         }
     }
@@ -78,6 +78,61 @@ RT_TEST(one_object_is_a_leaf_below_a_root_and_what_takes_too_much_is_refused) {
     assert_int_equal(rt_wide_lay_out(&wide, &tree, &scene.geometry, &how, &refusal), RT_BAD_INPUT);
     assert_null(wide.arena);
     assert_true(wide.bytes == 0);
+}
+
+/* Trees of each method number their nodes in another order. */
+RT_TEST(a_tree_is_laid_out_alike_when_its_leaves_have_no_nodes) {
+    OWNED_SCENE scene = open_scene("random:n=5000,shape=mixed");
+    const RtBox *boxes = scene.geometry.boxes;
+    for (uint32_t variant = 0; variant < 6; variant++) {
+        uint32_t count = variant < 3 ? 5000 : variant - 2;
+        OWNED_TREE tree;
+        if (variant % 3 == 0) assert_ok(rt_tree_topdown(&tree, boxes, count, 16, 1, error));
+        if (variant % 3 == 1) assert_ok(rt_tree_lbvh(&tree, boxes, count, 21, 1, error));
+        if (variant % 3 == 2) assert_ok(rt_tree_sweep(&tree, boxes, count, error));
+        RtWideTree before, after;
+        assert_ok(rt_wide_lay_out(&before, &tree, &scene.geometry, &plain, error));
+        assert_ok(rt_tree_drop_leaves(&tree, boxes, error));
+        assert_int_equal(tree.used, count - 1);
+        assert_int_equal(rt_tree_leaf_count(&tree), count);
+        assert_ok(rt_wide_lay_out(&after, &tree, &scene.geometry, &plain, error));
+        assert_int_equal(before.bytes, after.bytes);
+        assert_true(before.cost == after.cost);
+        assert_memory_equal(before.arena, after.arena, before.bytes);
+        rt_wide_clear(&before);
+        rt_wide_clear(&after);
+    }
+}
+
+RT_TEST(split_references_keep_their_nodes_and_so_does_a_tree_if_memory_is_short) {
+    OWNED_SCENE scene = open_scene("random:n=200,shape=triangle,radius=3");
+    const RtSpatial how = {.bins = 16, .budget = 2, .leaf = 4, .traversal = 1, .limit = UINT64_MAX};
+    OWNED_TREE split, whole;
+    assert_ok(rt_tree_spatial(&split, &scene.geometry, &how, 1, error));
+    const uint32_t used = split.used;
+    assert_true(split.split_refs);
+    assert_ok(rt_tree_drop_leaves(&split, scene.geometry.boxes, error));
+    assert_int_equal(split.used, used);
+    assert_ok(rt_tree_topdown(&whole, scene.geometry.boxes, 200, 16, 1, error));
+    for (uint64_t n = 1; n <= 2; n++) {
+        RtError refusal;
+        rt_alloc_fail_at(n);
+        assert_int_equal(rt_tree_drop_leaves(&whole, scene.geometry.boxes, &refusal), RT_NO_MEMORY);
+        assert_tree(&whole);
+    }
+}
+
+/* The largest trees at once: all nodes and the references while it is built; then the inner nodes, their plan
+ * and the arena. */
+RT_TEST(a_million_triangles_are_built_in_140_bytes_each_beside_80_of_the_scene) {
+    OWNED_SCENE scene = open_scene("forest:n=1030");
+    const uint64_t count = scene.geometry.object_count;
+    RtAccel *accel;
+    assert_true(count > 1 << 20);
+    assert_true(rt_scene_bytes(&scene) < 80 * count);
+    rt_memory_limit(140 * count);
+    assert_ok(rt_memory_unlimit(rt_accel_open("wide", &scene, &accel, error), error));
+    rt_accel_destroy(accel);
 }
 
 RT_TEST(rays_in_lanes_are_as_thick_as_one_by_one) {

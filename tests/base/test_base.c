@@ -406,6 +406,26 @@ RT_TEST(the_nth_allocation_fails_when_told_to) {
     assert_null(rt_alloc(SIZE_MAX, 2));
 }
 
+RT_TEST(a_trimmed_array_keeps_its_elements_and_no_unused_room) {
+    enum { COUNT = 1 << 16 };
+    uint32_t *array = NULL, capacity = 0, count = 0;
+    for (uint32_t i = 0; i <= COUNT; i++)
+        assert_ok(rt_append(&array, &count, &capacity, &i, sizeof i, error));
+    assert_true(capacity > count);
+    const uint32_t before = capacity;
+    rt_alloc_fail_at(1);
+    rt_trim(&array, count, &capacity, sizeof *array);
+    assert_int_equal(capacity, before);
+    rt_trim(&array, count, &capacity, sizeof *array);
+    assert_int_equal(capacity, count);
+    for (uint32_t i = 0; i < count; i++) assert_int_equal(array[i], i);
+    const uint32_t *kept = array;
+    rt_trim(&array, count - 1, &capacity, sizeof *array); /* too little to copy for */
+    assert_ptr_equal(array, kept);
+    assert_int_equal(capacity, count);
+    rt_free(array);
+}
+
 RT_TEST(all_memory_of_a_process_is_limited_beside_that_of_a_step) {
     RtError error;
     OWNED_MEMORY void *block = rt_alloc(1, 1 << 19);

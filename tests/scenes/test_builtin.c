@@ -128,7 +128,7 @@ RT_TEST(wrong_names_are_refused_with_what_would_be_right) {
         {"scenes/jewl.nff", "did you mean 'scenes/jewel.nff'?"},
         {"no_such_folder/a.nff", "nor a folder no_such_folder/"},
         {"scenes", "is a folder"},
-        {"README.md", ".yaml .yml .nff .obj .ply .stl .off .gltf .glb"},
+        {"README.md", ".yaml .yml .nff .obj .ply .stl .glb .gltf .off"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         RtScene scene;

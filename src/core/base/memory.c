@@ -114,6 +114,18 @@ RtStatus rt_memory_unlimit_process(RtStatus status, RtError *error) {
     return unlimit(&limit_of_process, "that of --memory, or of this machine or container", status, error);
 }
 
+/* Moves `kept` elements of an array to a new block of `room` elements; false if there is no memory for it.
+ * The caller's pointer is no void pointer, so it is read and written as bytes. */
+static bool move(void *array, uint32_t kept, uint32_t room, size_t size) {
+    void *old, *block = rt_alloc_unset(room, size);
+    if (!block) return false;
+    memcpy(&old, array, sizeof old);
+    if (old) memcpy(block, old, kept * size);
+    rt_free(old);
+    memcpy(array, &block, sizeof block);
+    return true;
+}
+
 RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error) {
     if (needed <= *capacity) return RT_OK;
     if (needed > UINT32_MAX)
@@ -122,16 +134,17 @@ RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t siz
     if (grown < needed) grown = needed;
     if (grown < 16) grown = 16;
     if (grown > UINT32_MAX) grown = UINT32_MAX;
-    void *block = rt_alloc_unset((size_t)grown, size);
-    if (!block) return rt_fail_memory(error, "a growing array", (size_t)grown * size);
-    /* The caller's pointer is no void pointer, so it is read and written as bytes. */
-    void *old;
-    memcpy(&old, array, sizeof old);
-    if (old) memcpy(block, old, (size_t)*capacity * size);
-    rt_free(old);
-    memcpy(array, &block, sizeof block);
-    *capacity = (uint32_t)grown;
-    return RT_OK;
+    if (move(array, *capacity, (uint32_t)grown, size)) {
+        *capacity = (uint32_t)grown;
+        return RT_OK;
+    }
+    return rt_fail_memory(error, "a growing array", (size_t)grown * size);
+}
+
+void rt_trim(void *array, uint32_t count, uint32_t *capacity, size_t size) {
+    enum { MUCH = 1 << 16 }; /* bytes */
+    const bool trims = (size_t)(*capacity - count) * size >= MUCH;
+    if (trims && move(array, count, count, size)) *capacity = count;
 }
 
 RtStatus rt_append(void *array, uint32_t *count, uint32_t *capacity, const void *element, size_t size,

@@ -32,6 +32,10 @@ RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t siz
 RtStatus rt_append(void *array, uint32_t *count, uint32_t *capacity, const void *element, size_t size,
                    RtError *error);
 
+/* Shrinks such an array, of `count` elements, to its contents if much of it is unused. Leaves it as it is if
+ * there is not enough memory for a copy. */
+void rt_trim(void *array, uint32_t count, uint32_t *capacity, size_t size);
+
 /* Bytes of memory in this machine, or that its control groups (a container, a job of Slurm) may use. */
 uint64_t rt_memory_size(void);
 

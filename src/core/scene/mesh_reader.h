@@ -16,7 +16,7 @@
 
 /* Longer files are rejected, and documents of glTF without its buffers, which take 30 times as much memory.
  */
-#define RT_MESH_MAX_BYTES ((size_t)1 << 32)
+#define RT_MESH_MAX_BYTES ((size_t)1 << 33)
 enum { RT_MESH_MAX_JSON = 1 << 28 };
 
 #define RT_NO_NORMAL UINT32_MAX

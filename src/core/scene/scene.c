@@ -175,6 +175,8 @@ static void place_camera(RtCamera *camera, const RtBox *box) {
 }
 
 RtStatus rt_scene_finish(RtScene *scene, RtError *error) {
+    rt_trim(&scene->material_of, scene->geometry.object_count, &scene->material_of_capacity,
+            sizeof(uint32_t));
     RT_TRY(rt_geometry_finish(&scene->geometry, error));
     RtCamera *camera = &scene->camera;
     if (same_point(camera->from, camera->at)) place_camera(camera, &scene->geometry.box);

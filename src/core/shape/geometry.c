@@ -166,8 +166,23 @@ static RtBox object_box(const RtGeometry *g, RtRef ref) {
     return RT_EMPTY_BOX;
 }
 
+/* Scenes are kept for long, and accelerators need the memory. */
+static void trim_arrays(RtGeometry *g) {
+    rt_trim(&g->objects, g->object_count, &g->object_capacity, sizeof(RtRef));
+#define TRIM(CONSTANT, name, Type)                                                                           \
+    rt_trim(&g->name##s, g->name##_count, &g->name##_capacity, sizeof(Type));                                \
+    rt_trim(&g->name##_ids, g->name##_count, &g->name##_id_capacity, sizeof(uint32_t));
+    RT_SHAPES(TRIM)
+#undef TRIM
+    rt_trim(&g->polygon_vertices, g->polygon_vertex_count, &g->polygon_vertex_capacity, sizeof(RtVec3));
+    if (g->triangle_normals)
+        rt_trim(&g->triangle_normals, g->triangle_count, &g->triangle_normal_capacity, sizeof(uint32_t));
+    rt_trim(&g->vertex_normals, g->vertex_normal_count, &g->vertex_normal_capacity, sizeof(RtVertexNormals));
+}
+
 RtStatus rt_geometry_finish(RtGeometry *geometry, RtError *error) {
     assert(!geometry->boxes);
+    trim_arrays(geometry);
     geometry->boxes = rt_alloc(geometry->object_count, sizeof(RtBox));
     if (!geometry->boxes)
         return rt_fail_memory(error, "the boxes of the objects", geometry->object_count * sizeof(RtBox));
