@@ -31,6 +31,8 @@
  * Their depth in a cell is that of bound 4. What covers a cell need not be proved: see light.h. */
 #include "accel/light/light.h"
 
+#include <assert.h>
+
 static RtVec3d face_axes(int face, RtVec3d v) {
     int axis = face / 2;
     double depth = v.at[axis];
@@ -258,6 +260,7 @@ void rt_light_outline(const RtLightTile *tile, uint32_t id, const RtLightFootpri
     double grow = on->cube->margin, warp;
     RtVec3d offsets[RT_LIGHT_MAX_EDGES], normal, point;
     const RtVec3 *vertices = vertices_of(g, id, &count, &warp);
+    assert(vertices);
     *o = (RtLightOutline){.covers = count <= RT_LIGHT_MAX_EDGES, .edges = count, .slope = {0, 0, INFINITY}};
     if (o->covers && at->near > 0) {
         for (uint32_t i = 0; i < count; i++) offsets[i] = offset(on, vertices[i]);

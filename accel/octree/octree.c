@@ -146,7 +146,7 @@ RT_KERNEL uint32_t push_children(const Planes *planes, const RtOctreeNode *node,
     uint32_t children = rt_le_bits(enter[0], leave[0]) | rt_le_bits(enter[1], leave[1]) << 4;
     float enters[8];
     uint32_t pushed = 0;
-    memcpy(enters, enter, sizeof enters);
+    memcpy(enters, enter, sizeof enter);
     for (; children; children &= children - 1) {
         uint32_t octant = (uint32_t)__builtin_ctz(children), i = pushed++;
         for (; i > 0 && stack[i - 1].enter < enters[octant]; i--) stack[i] = stack[i - 1];

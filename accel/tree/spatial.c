@@ -215,7 +215,7 @@ typedef struct Top {
     Run *runs; /* [run_count] parents before their children */
     _Atomic uint32_t run_count;
     uint32_t limit; /* larger groups belong to the top */
-    RtTree *into;
+    RtTree into;    /* the tree without gaps */
 } Top;
 
 /* Splits a run while it is large, and builds the last left side; the right sides become tasks. */
@@ -245,7 +245,7 @@ static void move_run(void *context, size_t item) {
         RtTreeNode node = top->b->tree->nodes[from + i];
         bool leaf = node.child[0] == RT_TREE_LEAF;
         for (int s = 0; s < 2 && !leaf; s++) node.child[s] = node.child[s] - from + run->at;
-        top->into->nodes[run->at + i] = node;
+        top->into.nodes[run->at + i] = node;
     }
 }
 
@@ -264,16 +264,14 @@ static RtStatus close_gaps(Top *top, RtTree *tree, int threads, RtError *error) 
     bool was_cut = false;
     for (uint32_t r = 0; r < runs; r++) was_cut |= top->runs[r].group.was_cut;
     if (runs > 1) {
-        RtTree into;
-        RT_TRY(rt_tree_init(&into, (used + 1) / 2, error));
-        top->into = &into;
+        RT_TRY(rt_tree_init(&top->into, (used + 1) / 2, error));
         RtStatus status = rt_parallel_each(runs, threads, move_run, top, error);
         for (uint32_t r = runs; r-- > 0 && status == RT_OK;) {
             const Run *run = &top->runs[r], *child = &top->runs[run->children];
-            if (run->children > 0) rt_tree_set_union(&into, run->at, child[0].at, child[1].at);
+            if (run->children > 0) rt_tree_set_union(&top->into, run->at, child[0].at, child[1].at);
         }
         rt_tree_clear(tree);
-        *tree = into;
+        *tree = top->into;
         RT_TRY(status);
     }
     tree->used = tree->capacity = used;

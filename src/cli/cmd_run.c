@@ -37,10 +37,9 @@ typedef struct Options {
 static void take_only(void *options, const char *text, struct argp_state *state) {
     Options *o = options;
     RtOnly *only = &o->how.workload.only;
-    char *scene = o->parts[only->part_count];
     if (only->part_count == RT_MAX_PARTS) argp_error(state, "--only: more than %d parts", RT_MAX_PARTS);
     if (strlen(text) >= sizeof o->parts[0]) argp_error(state, "--only: '%s' is too long", text);
-    strcpy(scene, text);
+    char *scene = strcpy(o->parts[only->part_count], text);
     char *accel = strchr(scene, '/'), *kind = accel ? strchr(accel + 1, '/') : NULL;
     if (accel) *accel++ = '\0';
     if (kind) *kind++ = '\0';

@@ -30,7 +30,8 @@ static double percent_of(struct argp_state *state, const char *option, const cha
 
 static void take_option(const RtOption *o, char *options, const char *text, struct argp_state *state) {
     const RtOptionValue *value = &o->value;
-    char *at = options + value->offset, name[40];
+    void *at = options + value->offset;
+    char name[40];
     snprintf(name, sizeof name, "--%s", o->name);
     if (value->mark) *(const char **)(options + value->mark) = o->name;
     const bool whole = value->form == RT_OPTION_INTEGER || value->form == RT_OPTION_SECONDS;

@@ -119,7 +119,7 @@ static RtStatus add_range(SweptParam *param, const char *text, size_t length, si
     const char *above = text + dots + 2;
     size_t rest = length - dots - 2, at = find_step(above, rest);
     double low, high, step = 0, value = 0, power = 1;
-    bool factor = above[at] == '*' && at < rest;
+    bool factor = at < rest && above[at] == '*';
     bool fine = read_number(text, dots, &low) && read_number(above, at, &high) && at < rest &&
                 read_number(above + at + 1, rest - at - 1, &step) && low < high;
     if (!fine || (factor ? step <= 1 || low <= 0 : step <= 0)) return fail_range(text, (int)length, error);

@@ -174,7 +174,7 @@ static void lighten(const Drawing *d, RtImage *image) {
         for (uint32_t x = 0; x < image->width; x++) {
             uint8_t *rgb = image->rgb + 3 * ((size_t)y * image->width + x);
             bool seen = d->frame->object[sample_of(d, x, y)] != RT_NO_OBJECT;
-            for (int c = 0; c < 3; c++) rgb[c] = seen ? (uint8_t)(255 - (255 - rgb[c]) * 2 / 5) : 255;
+            for (int c = 0; c < 3; c++) rgb[c] = (uint8_t)(seen ? 255 - (255 - rgb[c]) * 2 / 5 : 255);
         }
     }
 }

@@ -52,6 +52,19 @@ RT_TEST_IN_PLACE(each_of_several_experiments_gets_its_directory_and_all_a_summar
     assert_equal_files(place, "results/a/counts.csv", "other/a/counts.csv");
 }
 
+/* Skipped without Embree. */
+RT_TEST_IN_PLACE(answers_by_another_arithmetic_are_said_to_differ) {
+    const Place *place = *state;
+    change(place, "a.yaml", "{accel: grid}", "{accel: \"embree:mode=native\"}");
+    const int code = raytally(place, "run a.yaml --threads 1");
+    if (code == 2) {
+        assert_in_file(place, "output", "without Embree");
+        RT_SKIP("Embree");
+    }
+    assert_int_equal(code, 0);
+    assert_in_file(place, "output", "embree uses its own arithmetic. Answers that differ from");
+}
+
 RT_TEST_IN_PLACE(an_index_that_cannot_be_written_is_an_error) {
     const Place *place = *state;
     assert_int_equal(raytally(place, "run a.yaml b.yaml --threads 1"), 0);

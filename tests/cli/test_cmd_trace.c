@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* raytally trace, as a user runs it. */
+/* raytally trace and explore, as a user runs them. */
 #include "command_testing.h"
 
 #include "core/base/file.h"
@@ -270,6 +270,21 @@ RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
     }
     unlink(OUT ".txt");
     unlink(OUT ".err");
+}
+
+/* tests/check_pages.sh tests what the page does, in a browser. */
+RT_TEST(a_page_to_explore_holds_the_rays_and_names_the_accelerators) {
+    const char *const all =
+        "explore balls:size=1 --size 8x6 --accel bvh --accel grid:density=1 -o '" OUT ".html'";
+    const int code = raytally_to("> '" OUT ".txt' 2> '" OUT ".err'", "%s", all);
+    if (code == 2 && says(OUT ".err", "npm")) RT_SKIP("npm, and a network once");
+    assert_int_equal(code, 0);
+    assert_true(says(OUT ".txt", "with the rays of all pixels"));
+    assert_true(says(OUT ".html", "{\"spec\":\"bvh\",") &&
+                says(OUT ".html", "{\"spec\":\"grid:density=1\","));
+    unlink(OUT ".txt");
+    unlink(OUT ".err");
+    unlink(OUT ".html");
 }
 
 RT_TESTS(cmd_trace, NULL, NULL)

@@ -78,7 +78,7 @@ RT_TEST_VALGRIND(each_ray_more_costs_exactly_as_much_as_the_one_before) {
     for (int s = 0; s < 3; s++) {
         json_int_t sums[3];
         for (int i = 0; i < 3; i++) {
-            char name[16], arguments[160];
+            char name[24], arguments[160];
             snprintf(name, sizeof name, "rays-%d.npy", i);
             write_alike(place, name, 32 * (uint64_t)(1 + i));
             snprintf(arguments, sizeof arguments, "random:n=50 --accel %s --rays-from %s --rays nearest",

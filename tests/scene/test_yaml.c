@@ -49,10 +49,10 @@ RT_TEST(a_material_called_default_is_the_default) {
 
 RT_TEST(a_built_in_moved_and_moved_back_is_itself) {
     OWNED_SCENE plain, s;
-    assert_ok(rt_builtin_open("balls:size=2", &plain, error));
+    assert_ok(rt_builtin_open("tree:size=2", &plain, error));
     assert_ok(load_text("objects:\n"
                         "  - builtin:\n"
-                        "      name: balls:size=2\n"
+                        "      name: tree:size=2\n"
                         "      transform:\n"
                         "        - rotate: {axis: [0, 0, 1], degrees: 90}\n"
                         "        - {scale: 4}\n"
@@ -62,9 +62,9 @@ RT_TEST(a_built_in_moved_and_moved_back_is_itself) {
     const RtGeometry *a = &plain.geometry, *b = &s.geometry;
     assert_int_equal(a->object_count, b->object_count);
     assert_memory_equal(a->objects, b->objects, a->object_count * sizeof *a->objects);
-    assert_true(a->sphere_count > 0);
-    for (uint32_t i = 0; i < a->sphere_count; i++)
-        assert_memory_equal(&a->spheres[i], &b->spheres[i], sizeof(RtSphere));
+    assert_true(a->sphere_count > 0 && a->cone_count > 0);
+    assert_memory_equal(a->spheres, b->spheres, a->sphere_count * sizeof *a->spheres);
+    assert_memory_equal(a->cones, b->cones, a->cone_count * sizeof *a->cones);
 }
 
 /* ---- the documentation, and scenes that come along ---- */

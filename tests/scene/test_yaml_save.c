@@ -62,6 +62,25 @@ RT_TEST(solids_without_an_end_survive_saving) {
     assert_survives(&scene);
 }
 
+/* They are saved as facets. */
+RT_TEST(meshes_as_solids_survive_saving) {
+    OWNED_SCENE scene;
+    assert_ok(load_text("solids:\n"
+                        "  - {name: ball, sphere: {center: [0, 0, 0], radius: 0.9}}\n"
+                        "  - name: corner\n"
+                        "    facets:\n"
+                        "      triangles:\n"
+                        "        - [0.1, 0, 0, 0, 1.1, 0, 1.3, 0, 0]\n"
+                        "        - [0.1, 0, 0, 1.3, 0, 0, 0, 0, 0.7]\n"
+                        "        - [0.1, 0, 0, 0, 0, 0.7, 0, 1.1, 0]\n"
+                        "        - [1.3, 0, 0, 0, 1.1, 0, 0, 0, 0.7]\n"
+                        "objects:\n"
+                        "  - csg: {formula: ball & corner}\n"
+                        "  - csg: {formula: ball - corner, transform: [{scale: 0.3}]}\n",
+                        &scene, error));
+    assert_survives(&scene);
+}
+
 /* Moving them rounds otherwise than moving the cone and computing them again. */
 RT_TEST(the_caps_of_moved_cones_survive_saving) {
     OWNED_SCENE scene;

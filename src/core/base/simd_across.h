@@ -94,7 +94,8 @@ RT_INLINE uint32_t rt_mask8_bits(RtMask8 mask) {
     return rt_bits_int8(mask);
 }
 RT_INLINE RtMask8 rt_one_mask8(uint32_t i) {
-    return (RtInt8){0, 1, 2, 3, 4, 5, 6, 7} == (int32_t)i;
+    const RtInt8 lanes = {0, 1, 2, 3, 4, 5, 6, 7};
+    return lanes == (int32_t)i;
 }
 RT_INLINE RtFloat8 rt_select_mask8(RtMask8 mask, RtFloat8 a, RtFloat8 b) {
     return rt_select(mask, a, b);
