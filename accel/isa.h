@@ -4,15 +4,15 @@
  *
  * Such an accelerator NAME has its kernels in accel/NAME/NAME_kernels.c, which ends with a table of them
  * (RT_DEFINE_KERNEL_TABLE in accel/kernel.h). CMakeLists.txt compiles it three times, with RT_ISA portable,
- * avx2 and avx512. Its own struct begins with an RtIsaAccel, `kernels` of which `build` sets to
- * RT_KERNELS_FOR(NAME, isa); RT_ISA_OPS are its queries. */
+ * avx2 and avx512, and on processors other than x86 once, with RT_ISA portable. Its own struct begins with an
+ * RtIsaAccel, `kernels` of which `build` sets to RT_KERNELS_FOR(NAME, isa); RT_ISA_OPS are its queries. */
 #ifndef RT_ACCEL_ISA_H
 #define RT_ACCEL_ISA_H
 
 #include "accel/accel.h"
 
 typedef enum RtIsa {
-    RT_ISA_PORTABLE, /* whatever the program itself is compiled for */
+    RT_ISA_PORTABLE, /* whatever the program itself is compiled for: SSE2 on x86-64, NEON on 64-bit ARM */
     RT_ISA_AVX2,     /* and BMI2 */
     RT_ISA_AVX512,   /* F, VL, DQ and BW */
 } RtIsa;
@@ -46,8 +46,8 @@ typedef struct RtKernels {
 #define RT_DECLARE_KERNELS(name)                                                                             \
     extern const RtKernels rt_##name##_portable, rt_##name##_avx2, rt_##name##_avx512
 
-/* Those of an accelerator for an RtIsa that runs. The build option RT_KERNELS=native compiles those of one
- * alone, RT_ONLY_ISA. */
+/* Those of an accelerator for an RtIsa that runs. A build for one instruction set alone, as by the option
+ * RT_KERNELS=native, has RT_ONLY_ISA. */
 #define RT_KERNELS_OF(name, isa) (&rt_##name##_##isa)
 #if defined(RT_ONLY_ISA)
 #define RT_KERNELS_FOR(name, isa) ((void)(isa), RT_EXPAND(RT_KERNELS_OF, name, RT_ONLY_ISA))

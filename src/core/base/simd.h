@@ -9,9 +9,10 @@
  *     nearest = rt_min(rt_select(inside, x, far), nearest);
  *
  * RtFloats, RtInts, RtWords and RtDoubles fill a register of the instruction set that the file is compiled
- * for: RT_LANES floats (16 with AVX-512, 8 with AVX2, else 4), as many signed or unsigned 32-bit words, half
- * as many doubles. A kernel takes its items RT_LANES at a time. gcc would keep wider vectors in memory, which
- * doubles the instructions. Where the data set the width, use RtFloat4 or RtFloat8.
+ * for: RT_LANES floats (16 with AVX-512, 8 with AVX2, else 4, as with SSE2 and NEON), as many signed or
+ * unsigned 32-bit words, half as many doubles. A kernel takes its items RT_LANES at a time. gcc would keep
+ * wider vectors in memory, which doubles the instructions. Where the data set the width, use RtFloat4 or
+ * RtFloat8.
  *
  * The helpers below do what operators cannot. Those that take a vector accept each width and
  * element. Those that make one end in the number of its lanes (rt_load8), or make RT_LANES (rt_load). A mask
@@ -31,6 +32,12 @@
 #include <immintrin.h>
 #elif defined(__SSE2__)
 #include <emmintrin.h>
+#elif defined(__aarch64__) && defined(__ARM_NEON)
+#include <arm_neon.h>
+#define RT_NEON 1
+#endif
+#if !defined(RT_NEON)
+#define RT_NEON 0
 #endif
 
 #if defined(__AVX512F__) && defined(__AVX512VL__) && defined(__AVX512DQ__) && defined(__AVX512BW__)
@@ -121,6 +128,32 @@ RT_DEFINE_VECTORS(8, 4)
 RT_DEFINE_VECTORS(16, 8)
 #endif
 
+/* ---- halves ---- */
+
+#if defined(__AVX2__)
+RT_INLINE RtFloat4 rt_lower4(RtFloat8 a) {
+    return _mm256_castps256_ps128(a);
+}
+RT_INLINE RtFloat4 rt_upper4(RtFloat8 a) {
+    return _mm256_extractf128_ps(a, 1);
+}
+#else
+/* Without registers of eight gcc would move and compare lane by lane what is not in a union. */
+typedef union RtHalves {
+    RtFloat8 whole;
+    RtFloat4 half[2];
+} RtHalves;
+RT_INLINE RtFloat4 rt_lower4(RtFloat8 a) {
+    return (RtHalves){.whole = a}.half[0];
+}
+RT_INLINE RtFloat4 rt_upper4(RtFloat8 a) {
+    return (RtHalves){.whole = a}.half[1];
+}
+RT_INLINE RtFloat8 rt_join4(RtFloat4 lower, RtFloat4 upper) {
+    return (RtHalves){.half = {lower, upper}}.whole;
+}
+#endif
+
 /* ---- minimum, maximum, signs ----
  *
  * rt_bits(mask): bit i is the sign of lane i */
@@ -176,26 +209,30 @@ RT_DEFINE_BITS_BY_REGISTER(4, 2, _mm)
 #else
 RT_DEFINE_BY_OPERATOR(RtFloat4, float4)
 RT_DEFINE_BY_OPERATOR(RtDouble2, double2)
-RT_DEFINE_BITS_BY_LANE(RtInt4, int4, 4)
 RT_DEFINE_BITS_BY_LANE(RtLong2, long2, 2)
 #endif
-
-#if defined(__AVX2__)
-RT_INLINE RtFloat4 rt_lower4(RtFloat8 a) {
-    return _mm256_castps256_ps128(a);
+#if RT_NEON
+RT_INLINE uint32_t rt_bits_int4(RtInt4 mask) {
+    return vaddvq_u32((uint32x4_t)((mask < 0) & (RtInt4){1, 2, 4, 8}));
 }
-RT_INLINE RtFloat4 rt_upper4(RtFloat8 a) {
-    return _mm256_extractf128_ps(a, 1);
+RT_INLINE uint32_t rt_bits_int8(RtInt8 mask) {
+    RtInt4 lower = (RtInt4)rt_lower4((RtFloat8)mask) < 0, upper = (RtInt4)rt_upper4((RtFloat8)mask) < 0;
+    return vaddvq_u32((uint32x4_t)((lower & (RtInt4){1, 2, 4, 8}) | (upper & (RtInt4){16, 32, 64, 128})));
 }
-#else
-RT_INLINE RtFloat4 rt_lower4(RtFloat8 a) {
-    return __builtin_shufflevector(a, a, 0, 1, 2, 3);
+RT_INLINE RtInt4 rt_min_int4(RtInt4 a, RtInt4 b) {
+    return (RtInt4)vminq_s32((int32x4_t)a, (int32x4_t)b);
 }
-RT_INLINE RtFloat4 rt_upper4(RtFloat8 a) {
-    return __builtin_shufflevector(a, a, 4, 5, 6, 7);
+RT_INLINE RtInt4 rt_max_int4(RtInt4 a, RtInt4 b) {
+    return (RtInt4)vmaxq_s32((int32x4_t)a, (int32x4_t)b);
 }
-RT_INLINE RtFloat8 rt_join4(RtFloat4 lower, RtFloat4 upper) {
-    return __builtin_shufflevector(lower, upper, 0, 1, 2, 3, 4, 5, 6, 7);
+#elif !defined(__AVX2__)
+RT_DEFINE_BY_OPERATOR(RtInt4, int4)
+#if !defined(__SSE2__)
+RT_DEFINE_BITS_BY_LANE(RtInt4, int4, 4)
+#endif
+RT_INLINE uint32_t rt_bits_int8(RtInt8 mask) {
+    return rt_bits_int4((RtInt4)rt_lower4((RtFloat8)mask)) | rt_bits_int4((RtInt4)rt_upper4((RtFloat8)mask))
+                                                                 << 4;
 }
 #endif
 
@@ -205,18 +242,19 @@ RT_DEFINE_INTS_BY_REGISTER(4, _mm, __m128i)
 RT_DEFINE_INTS_BY_REGISTER(8, _mm256, __m256i)
 RT_DEFINE_BITS_BY_REGISTER(8, 4, _mm256)
 #else
-RT_DEFINE_BY_OPERATOR(RtInt4, int4)
-RT_DEFINE_BY_OPERATOR(RtInt8, int8)
-RT_INLINE RtFloat8 rt_min_float8(RtFloat8 a, RtFloat8 b) {
-    return rt_join4(rt_min_float4(rt_lower4(a), rt_lower4(b)), rt_min_float4(rt_upper4(a), rt_upper4(b)));
-}
-RT_INLINE RtFloat8 rt_max_float8(RtFloat8 a, RtFloat8 b) {
-    return rt_join4(rt_max_float4(rt_lower4(a), rt_lower4(b)), rt_max_float4(rt_upper4(a), rt_upper4(b)));
-}
-RT_INLINE uint32_t rt_bits_int8(RtInt8 mask) {
-    return rt_bits_int4((RtInt4)rt_lower4((RtFloat8)mask)) | rt_bits_int4((RtInt4)rt_upper4((RtFloat8)mask))
-                                                                 << 4;
-}
+/* f of both halves of a and b */
+#define RT_HALVES(f, Result, Type, a, b)                                                                     \
+    ((Result##8)rt_join4((RtFloat4)f((Type##4)rt_lower4((RtFloat8)(a)), (Type##4)rt_lower4((RtFloat8)(b))),  \
+                         (RtFloat4)f((Type##4)rt_upper4((RtFloat8)(a)), (Type##4)rt_upper4((RtFloat8)(b)))))
+#define RT_DEFINE_BY_HALVES(Type, type)                                                                      \
+    RT_INLINE Type##8 rt_min_##type##8(Type##8 a, Type##8 b) {                                               \
+        return RT_HALVES(rt_min_##type##4, Type, Type, a, b);                                                \
+    }                                                                                                        \
+    RT_INLINE Type##8 rt_max_##type##8(Type##8 a, Type##8 b) {                                               \
+        return RT_HALVES(rt_max_##type##4, Type, Type, a, b);                                                \
+    }
+RT_DEFINE_BY_HALVES(RtFloat, float)
+RT_DEFINE_BY_HALVES(RtInt, int)
 #endif
 #if RT_AVX512
 RT_DEFINE_BY_REGISTER(16, 8, _mm512)
@@ -231,6 +269,10 @@ RT_INLINE uint32_t rt_bits_int16(RtInt16 mask) {
 #if defined(__SSE2__)
 RT_INLINE RtDouble2 rt_sqrt_double2(RtDouble2 a) {
     return _mm_sqrt_pd(a);
+}
+#elif RT_NEON
+RT_INLINE RtDouble2 rt_sqrt_double2(RtDouble2 a) {
+    return vsqrtq_f64(a);
 }
 #else
 RT_INLINE RtDouble2 rt_sqrt_double2(RtDouble2 a) {
@@ -250,17 +292,24 @@ RT_INLINE RtDouble8 rt_sqrt_double8(RtDouble8 a) {
 
 /* ---- comparisons to bits ---- */
 
-#define RT_DEFINE_COMPARISON(name, op, type, Type, sign, Sign)                                               \
+/* rt_le_float8(a, b) and its kin: masks */
+#define RT_DEFINE_COMPARISON(name, type, Type, sign, Sign, mask)                                             \
+    RT_INLINE Sign rt_##name##_##type(Type a, Type b) {                                                      \
+        return (Sign)(mask);                                                                                 \
+    }                                                                                                        \
     RT_INLINE uint32_t rt_##name##_bits_##type(Type a, Type b) {                                             \
-        return rt_bits_##sign((Sign)(a op b));                                                               \
+        return rt_bits_##sign(rt_##name##_##type(a, b));                                                     \
     }
 #define RT_DEFINE_COMPARISONS(N)                                                                             \
-    RT_DEFINE_COMPARISON(le, <=, float##N, RtFloat##N, int##N, RtInt##N)                                     \
-    RT_DEFINE_COMPARISON(lt, <, float##N, RtFloat##N, int##N, RtInt##N)                                      \
-    RT_DEFINE_COMPARISON(lt, <, int##N, RtInt##N, int##N, RtInt##N)                                          \
-    RT_DEFINE_COMPARISON(eq, ==, int##N, RtInt##N, int##N, RtInt##N)
+    RT_DEFINE_COMPARISON(le, float##N, RtFloat##N, int##N, RtInt##N, a <= b)                                 \
+    RT_DEFINE_COMPARISON(lt, float##N, RtFloat##N, int##N, RtInt##N, a < b)                                  \
+    RT_DEFINE_COMPARISON(lt, int##N, RtInt##N, int##N, RtInt##N, a < b)                                      \
+    RT_DEFINE_COMPARISON(eq, int##N, RtInt##N, int##N, RtInt##N, a == b)
 #define RT_DEFINE_DOUBLE_COMPARISONS(N)                                                                      \
-    RT_DEFINE_COMPARISON(le, <=, double##N, RtDouble##N, long##N, RtLong##N)
+    RT_DEFINE_COMPARISON(le, double##N, RtDouble##N, long##N, RtLong##N, a <= b)
+#define RT_DEFINE_COMPARISON_BY_HALVES(name, type, Type)                                                     \
+    RT_DEFINE_COMPARISON(name, type##8, Type##8, int8, RtInt8,                                               \
+                         RT_HALVES(rt_##name##_##type##4, RtInt, Type, a, b))
 #define RT_DEFINE_MASK_COMPARISON(name, type, Type, intrinsic, Reg, predicate)                               \
     RT_INLINE uint32_t rt_##name##_bits_##type(Type a, Type b) {                                             \
         return intrinsic((Reg)a, (Reg)b, predicate);                                                         \
@@ -278,8 +327,13 @@ RT_DEFINE_MASK_COMPARISON(lt, float16, RtFloat16, _mm512_cmp_ps_mask, __m512, _C
 RT_DEFINE_MASK_COMPARISON(lt, int16, RtInt16, _mm512_cmp_epi32_mask, __m512i, _MM_CMPINT_LT)
 RT_DEFINE_MASK_COMPARISON(eq, int16, RtInt16, _mm512_cmp_epi32_mask, __m512i, _MM_CMPINT_EQ)
 RT_DEFINE_MASK_COMPARISON(le, double8, RtDouble8, _mm512_cmp_pd_mask, __m512d, _CMP_LE_OQ)
-#else
+#elif defined(__AVX2__)
 RT_DEFINE_COMPARISONS(8)
+#else
+RT_DEFINE_COMPARISON_BY_HALVES(le, float, RtFloat)
+RT_DEFINE_COMPARISON_BY_HALVES(lt, float, RtFloat)
+RT_DEFINE_COMPARISON_BY_HALVES(lt, int, RtInt)
+RT_DEFINE_COMPARISON_BY_HALVES(eq, int, RtInt)
 #endif
 #if defined(__AVX2__)
 RT_DEFINE_DOUBLE_COMPARISONS(4)
@@ -315,7 +369,8 @@ RT_INLINE uint32_t rt_inside_double8(RtDouble8 least, RtDouble8 most, RtDouble8 
 RT_DEFINE_SIGNS(8, 4)
 #else
 RT_INLINE uint32_t rt_one_sign_float8(RtFloat8 least, RtFloat8 most) {
-    return rt_bits_int8((least >= 0) | (most <= 0));
+    const RtFloat8 zero = {0};
+    return rt_bits_int8(rt_le_float8(zero, least) | rt_le_float8(most, zero));
 }
 #endif
 
@@ -383,11 +438,7 @@ RT_INLINE RtInts rt_lane_numbers(void) {
 
 /* ---- bits as masks ---- */
 
-/* -1 in the lanes of the bits, else 0; a in these lanes, else b; and a stored to them, the others kept. */
-RT_INLINE RtInt8 rt_mask8(uint32_t bits) {
-    const RtInt8 lanes = {1, 2, 4, 8, 16, 32, 64, 128};
-    return (rt_all_ints8((int32_t)bits) & lanes) == lanes;
-}
+/* a in the lanes of the bits, else b; and a stored to them, the others kept. */
 #if RT_AVX512
 RT_INLINE RtInt16 rt_select_bits(uint32_t bits, RtInt16 a, RtInt16 b) {
     return (RtInt16)_mm512_mask_mov_epi32((__m512i)b, (__mmask16)bits, (__m512i)a);
@@ -400,7 +451,8 @@ RT_INLINE void rt_store_lanes(void *at, uint32_t bits, RtInt16 a) {
 }
 #else
 RT_INLINE RtInt8 rt_select_bits8(uint32_t bits, RtInt8 a, RtInt8 b) {
-    return rt_select(rt_mask8(bits), a, b);
+    const RtInt8 lanes = {1, 2, 4, 8, 16, 32, 64, 128};
+    return rt_select(rt_eq_int8(rt_all_ints8((int32_t)bits) & lanes, lanes), a, b);
 }
 RT_INLINE RtInts rt_select_bits(uint32_t bits, RtInts a, RtInts b) {
 #if RT_LANES == 8
@@ -423,6 +475,13 @@ RT_INLINE RtFloats rt_floor(RtFloats a) {
 }
 RT_INLINE RtFloats rt_ceil(RtFloats a) {
     return RT_MM(ceil_ps)(a);
+}
+#elif RT_NEON
+RT_INLINE RtFloats rt_floor(RtFloats a) {
+    return vrndmq_f32(a);
+}
+RT_INLINE RtFloats rt_ceil(RtFloats a) {
+    return vrndpq_f32(a);
 }
 #else
 RT_INLINE RtFloats rt_floor(RtFloats a) {
@@ -455,6 +514,8 @@ RT_INLINE RtFloat4 rt_round4(RtDouble4 a) {
 RT_INLINE RtDouble2 rt_widen_lower(RtFloat4 a) {
 #if defined(__SSE2__)
     return _mm_cvtps_pd(a);
+#elif RT_NEON
+    return vcvt_f64_f32(vget_low_f32(a));
 #else
     return (RtDouble2){(double)a[0], (double)a[1]};
 #endif
@@ -491,6 +552,16 @@ RT_INLINE RtFloats rt_round_doubles(RtDoubles lower, RtDoubles upper) {
 }
 RT_INLINE void rt_store_doubles(float *at, RtDoubles a) {
     _mm_storel_epi64((__m128i *)(void *)at, _mm_castps_si128(_mm_cvtpd_ps(a)));
+}
+#elif RT_NEON
+RT_INLINE RtDoubles rt_to_doubles(RtFloats a, int half) {
+    return half ? vcvt_high_f64_f32(a) : vcvt_f64_f32(vget_low_f32(a));
+}
+RT_INLINE RtFloats rt_round_doubles(RtDoubles lower, RtDoubles upper) {
+    return vcvt_high_f32_f64(vcvt_f32_f64(lower), upper);
+}
+RT_INLINE void rt_store_doubles(float *at, RtDoubles a) {
+    vst1_f32(at, vcvt_f32_f64(a));
 }
 #else
 RT_INLINE RtDoubles rt_to_doubles(RtFloats a, int half) {

@@ -28,6 +28,19 @@ RT_INLINE RtOrder8 rt_order8(uint32_t bits) {
 RT_INLINE RtInt8 rt_compress8(RtOrder8 order, RtInt8 a) {
     return (RtInt8)_mm256_permutevar8x32_epi32((__m256i)a, order);
 }
+#elif RT_NEON
+typedef uint8x16x2_t RtOrder8; /* of bytes */
+RT_INLINE RtOrder8 rt_order8(uint32_t bits) {
+    const uint8x16_t byte = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
+    uint8x16_t lanes = (uint8x16_t)vdupq_n_u64(rt_lanes_of_bits[bits]), twice = vzip1q_u8(lanes, lanes);
+    return (RtOrder8){
+        {vsliq_n_u8(byte, vzip1q_u8(twice, twice), 2), vsliq_n_u8(byte, vzip2q_u8(twice, twice), 2)}};
+}
+RT_INLINE RtInt8 rt_compress8(RtOrder8 order, RtInt8 a) {
+    const uint8x16x2_t from = {{(uint8x16_t)rt_lower4((RtFloat8)a), (uint8x16_t)rt_upper4((RtFloat8)a)}};
+    return (RtInt8)rt_join4((RtFloat4)vqtbl2q_u8(from, order.val[0]),
+                            (RtFloat4)vqtbl2q_u8(from, order.val[1]));
+}
 #else
 typedef uint64_t RtOrder8;
 RT_INLINE RtOrder8 rt_order8(uint32_t bits) {
@@ -46,6 +59,8 @@ RT_INLINE void rt_compress_store(uint32_t *at, uint32_t bits, RtInts a) {
     _mm512_storeu_si512(at, _mm512_maskz_compress_epi32((__mmask16)bits, (__m512i)a));
 #elif RT_LANES == 8
     rt_store(at, rt_compress8(rt_order8(bits), a));
+#elif RT_NEON
+    rt_store(at, (RtInt4)vqtbl1q_u8((uint8x16_t)a, rt_order8(bits).val[0]));
 #else
     for (int i = 0; i < RT_LANES; i++) at[i] = (uint32_t)a[rt_lanes_of_bits[bits] >> 8 * i & 3];
 #endif
@@ -84,44 +99,54 @@ RT_INLINE void rt_sets8_compress(uint64_t *at, uint32_t bits, const RtSets8 *set
 }
 #else
 typedef RtInt8 RtMask8;
-typedef struct RtSets8 {
-    RtLong4 lower, upper;
-} RtSets8;
 RT_INLINE RtMask8 rt_le_mask8(RtFloat8 a, RtFloat8 b) {
-    return a <= b;
+    return rt_le_float8(a, b);
 }
 RT_INLINE uint32_t rt_mask8_bits(RtMask8 mask) {
     return rt_bits_int8(mask);
 }
 RT_INLINE RtMask8 rt_one_mask8(uint32_t i) {
     const RtInt8 lanes = {0, 1, 2, 3, 4, 5, 6, 7};
-    return lanes == (int32_t)i;
+    return rt_eq_int8(lanes, rt_all_ints8((int32_t)i));
 }
 RT_INLINE RtFloat8 rt_select_mask8(RtMask8 mask, RtFloat8 a, RtFloat8 b) {
     return rt_select(mask, a, b);
 }
+#if defined(__AVX2__)
+typedef struct RtSets8 {
+    RtLong4 lower, upper;
+} RtSets8;
 /* Each lane of a mask twice as wide. */
 RT_INLINE RtLong4 rt_widen_mask4(RtFloat4 mask) {
-#if defined(__AVX2__)
     return (RtLong4)_mm256_cvtepi32_epi64((__m128i)mask);
-#else
-    return (RtLong4)__builtin_shufflevector(mask, mask, 0, 0, 1, 1, 2, 2, 3, 3);
-#endif
 }
 RT_INLINE void rt_sets8_add(RtSets8 *sets, RtMask8 mask, uint64_t members) {
     sets->lower |= rt_widen_mask4(rt_lower4((RtFloat8)mask)) & (int64_t)members;
     sets->upper |= rt_widen_mask4(rt_upper4((RtFloat8)mask)) & (int64_t)members;
 }
 RT_INLINE uint32_t rt_sets8_bits(const RtSets8 *sets) {
-#if defined(__AVX2__)
     return 255 ^ (rt_bits_long4(sets->lower == 0) | rt_bits_long4(sets->upper == 0) << 4);
-#else
-    uint32_t bits = 0;
-    for (int i = 0; i < 4; i++)
-        bits |= (uint32_t)(sets->lower[i] != 0) << i | (uint32_t)(sets->upper[i] != 0) << (4 + i);
-    return bits;
-#endif
 }
+#else
+typedef struct RtSets8 {
+    RtLong2 pair[4];
+} RtSets8;
+RT_INLINE void rt_sets8_add(RtSets8 *sets, RtMask8 mask, uint64_t members) {
+    RtFloat4 lower = rt_lower4((RtFloat8)mask), upper = rt_upper4((RtFloat8)mask);
+    sets->pair[0] |= (RtLong2)__builtin_shufflevector(lower, lower, 0, 0, 1, 1) & (int64_t)members;
+    sets->pair[1] |= (RtLong2)__builtin_shufflevector(lower, lower, 2, 2, 3, 3) & (int64_t)members;
+    sets->pair[2] |= (RtLong2)__builtin_shufflevector(upper, upper, 0, 0, 1, 1) & (int64_t)members;
+    sets->pair[3] |= (RtLong2)__builtin_shufflevector(upper, upper, 2, 2, 3, 3) & (int64_t)members;
+}
+/* The four of two pairs: are there any? */
+RT_INLINE RtFloat4 rt_some4(RtLong2 a, RtLong2 b) {
+    return __builtin_shufflevector((RtFloat4)(a != 0), (RtFloat4)(b != 0), 0, 2, 4, 6);
+}
+RT_INLINE uint32_t rt_sets8_bits(const RtSets8 *sets) {
+    return rt_bits_int8(
+        (RtInt8)rt_join4(rt_some4(sets->pair[0], sets->pair[1]), rt_some4(sets->pair[2], sets->pair[3])));
+}
+#endif
 RT_INLINE void rt_sets8_compress(uint64_t *at, uint32_t bits, const RtSets8 *sets) {
     _Alignas(32) RtSets8 all = *sets;
     const uint64_t *set = (const uint64_t *)&all;
