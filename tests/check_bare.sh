@@ -49,7 +49,7 @@ for system; do
         { echo "$folder/$system or $folder/$system-package exists: remove it first" >&2 && exit 2; }
     echo "== $system, commit $commit: $folder/$system.log"
     if check "$system" >"$folder/$system.log" 2>&1 </dev/null; then
-        echo "== $system: passed: $(grep ' passed, ' "$folder/$system.log" | tail -n 1)"
+        echo "== $system: passed: $(grep -a ' passed, ' "$folder/$system.log" | tail -n 1)"
     else
         echo "== $system: failed" && tail -n 20 "$folder/$system.log"
         failed=1

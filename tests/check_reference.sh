@@ -13,7 +13,8 @@ scenes=(--quick)
 
 for yaml in "$reference"/*/experiment.yaml; do
     name=$(sed -n 's/^name: //p' "$yaml") # NAME, or NAME-SYSTEM of another one
-    [[ $(basename "$(dirname "$yaml")") = "$name"* ]]
+    directory=$(basename "$(dirname "$yaml")")
+    [[ $directory = "$name" || $directory = "$name"-* ]] || { echo "$yaml is of experiment '$name'" && exit 1; }
     cmp "$yaml" "$(find experiments -name "$name.yaml" -not -path 'experiments/light-buffer/*')"
 done
 index=$(mktemp -d) && trap 'rm -rf "$index"' EXIT

@@ -24,6 +24,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 HERE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
@@ -300,6 +301,7 @@ class Tree:
 
 SURVIVED, SURVIVED_SHORT, UNTRIED = "survived", "survived the short steps", "not tried"
 times = {}  # of each command, the seconds of processor time that it takes without a fault
+times_lock = threading.Lock()
 
 
 def children_seconds():
@@ -322,9 +324,10 @@ class Step:
             clean = self.command.replace("build/" + self.program, f"build/{self.program}.clean")
             if tree.shell(clean, LONGEST) not in (0, 77):
                 fail(f"without a fault this fails, see {tree.root}/log: {self.command}")
-            times[self.command] = children_seconds() - began
-            with open(TIMES, "w") as file:
-                json.dump(times, file, indent=0)
+            with times_lock:
+                times[self.command] = children_seconds() - began
+                with open(TIMES, "w") as file:
+                    json.dump(times, file, indent=0)
         return times[self.command]
 
     def is_long(self, tree):
@@ -383,7 +386,7 @@ def try_all(mutants, trees, known, long):
         for m in waiting:
             began, subject = time.monotonic(), subject_of(m.path)
             steps = [step for step in steps_for(subject) if step.is_long(tree) == long]
-            kills = collections.Counter(name for key, (_, name) in known.items() if subject_of(key[0]) == subject)
+            kills = collections.Counter(name for key, (_, name) in list(known.items()) if subject_of(key[0]) == subject)
             steps.sort(key=lambda step: step.seconds(tree) / (1 + kills[step.name]))
             verdict, name = tree.try_mutant(m, steps)
             if verdict == SURVIVED and not long:
