@@ -91,8 +91,8 @@ static uint32_t count_first(const Index *index, uint32_t i, size_t origin) {
     return count;
 }
 
-/* "Measured by raytally 0.1.0 (abc); raytally 0.2.0 (def): one, two; ...": each value of `origin`, with the
- * entries that have it, except for the most frequent one. */
+/* "Measured by raytally 0.1.0 (abc); raytally 0.2.0 (def): one, two; ...": the most frequent value of
+ * `origin`, then each other one with its entries. */
 static void put_origins(const Index *index, size_t origin, const char *before, FILE *out) {
     uint32_t most = 0;
     for (uint32_t i = 0; i < index->count; i++)
