@@ -75,9 +75,11 @@ typedef struct RtDescription {
 #define RT_NO_QUALITY    .end_point_overlap = NAN, .leaf_count_variability = NAN
 #define RT_NO_PREDICTION .predicted_cost = NAN, .predicted_tests = NAN, .predicted_steps = NAN, RT_NO_QUALITY
 
-/* RtBuild.limit of rt_accel_build: so many bytes, or so many for each object, whichever is more. */
 #define RT_ACCEL_MAX_BYTES    (UINT64_C(4) << 30)
 #define RT_ACCEL_OBJECT_BYTES UINT64_C(128)
+
+/* RtBuild.limit: RT_ACCEL_MAX_BYTES, or RT_ACCEL_OBJECT_BYTES for each object, whichever is more. */
+uint64_t rt_accel_byte_limit(const RtScene *scene);
 
 /* The memory that the kernels of a layer may write to. */
 typedef struct RtScratch {

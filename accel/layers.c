@@ -4,7 +4,7 @@
 
 #include "core/base/clock.h"
 
-static uint64_t limit_for(const RtScene *scene) {
+uint64_t rt_accel_byte_limit(const RtScene *scene) {
     const uint64_t bytes = scene->geometry.object_count * RT_ACCEL_OBJECT_BYTES;
     return bytes > RT_ACCEL_MAX_BYTES ? bytes : RT_ACCEL_MAX_BYTES;
 }
@@ -17,8 +17,8 @@ RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threa
     RT_TRY(rt_spec_available(spec, error));
     for (uint32_t i = spec->layer_count; i-- > 0;) {
         RtAccel *accel = NULL;
-        const RtBuild what = {spec->layers[i].ops, scene, spec->layers[i].values, top, threads,
-                              limit_for(scene)};
+        const RtBuild what = {spec->layers[i].ops,       scene, spec->layers[i].values, top, threads,
+                              rt_accel_byte_limit(scene)};
         RtStatus status = what.ops->build(&what, &accel, error);
         if (status != RT_OK) {
             rt_accel_destroy(top);

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # check_files.sh [TREE]: every .c file of the tree is built: CMakeLists.txt lists it, or for tests/DIRECTORY/test_NAME.c lists
-# NAME in raytally_tests(DIRECTORY ...). Every source states its licence. Prints the files that fail; exit code 1 if
-# there is one.
+# NAME in raytally_tests(DIRECTORY ...). Every source states its licence. CITATION.cff and CHANGELOG.md name the version of
+# CMakeLists.txt. Prints the files that fail; exit code 1 if there is one.
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
 
@@ -27,5 +27,12 @@ unlicensed() {
             END { for (i = 1; i < ARGC; i++) if (!(ARGV[i] in states)) print ARGV[i] ": no SPDX line" }'
 }
 
-failed=$(unlisted && unlicensed)
+of_another_version() {
+    local version
+    version=$(sed -n 's/^project(raytally VERSION \([0-9.]*\) .*/\1/p' CMakeLists.txt)
+    grep -qx "version: $version" CITATION.cff || echo "CITATION.cff: the version is not $version"
+    grep -m 1 '^## ' CHANGELOG.md | grep -q "^## $version " || echo "CHANGELOG.md: does not begin with version $version"
+}
+
+failed=$(unlisted && unlicensed && of_another_version)
 [ -z "$failed" ] || { echo "$failed" && exit 1; }

@@ -18,6 +18,9 @@ fresh_tree() {
     echo '#include "testing.h"' >"$tree/tests/accel/test_grid.c"
     printf '%s\n' 'set(ALL src/render/frame.c' 'src/core/scene/load.c scenes/balls.c' 'accel/grid.c accel/registry.c)' \
         'raytally_tests(accel bvh' '  grid)' >"$tree/CMakeLists.txt"
+    echo 'project(raytally VERSION 1.2.3 LANGUAGES C)' >>"$tree/CMakeLists.txt"
+    echo 'version: 1.2.3' >"$tree/CITATION.cff"
+    echo '## 1.2.3 (2001-09-26)' >"$tree/CHANGELOG.md"
     find "$tree" -type f -exec sed -i '1i# SPDX-License-Identifier: Apache-2.0' {} +
 }
 
@@ -85,6 +88,11 @@ fresh_tree && touch "$tree/tests/accel/test_octree.c"
 expect fails check_files.sh "a test that is not registered"
 fresh_tree && touch "$tree/accel/grid_c.c" && sed -i 's|accel/grid\.c|accel/grid.c.orig|' "$tree/CMakeLists.txt"
 expect fails check_files.sh "a name that only resembles one in the list"
+
+fresh_tree && sed -i 's/1.2.3/1.2.2/' "$tree/CITATION.cff"
+expect fails check_files.sh "a citation of another version"
+fresh_tree && sed -i 's/## 1.2.3 /## 1.2.30 /' "$tree/CHANGELOG.md"
+expect fails check_files.sh "a list of changes that begins with another version"
 
 # built TREE: the output of setup.sh while it builds a minimal tree
 built() {

@@ -79,7 +79,6 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     const raytally_accel_ops *table = &((const RtPluginOps *)what->ops)->table;
     const RtGeometry *geometry = &what->scene->geometry;
     const uint64_t memory = rt_memory_current_limit();
-    const uint64_t most = what->limit < RT_ACCEL_MAX_BYTES ? what->limit : RT_ACCEL_MAX_BYTES;
     raytally_value values[RAYTALLY_MAX_PARAMS] = {0};
     char message[900] = "";
     copy_values(what, values);
@@ -88,7 +87,7 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
                                   .boxes = rt_public_box(geometry->boxes),
                                   .values = values,
                                   .threads = rt_thread_count(what->threads),
-                                  .byte_limit = memory < UINT64_MAX ? memory : most,
+                                  .byte_limit = memory < UINT64_MAX ? memory : what->limit,
                                   .message = message,
                                   .message_room = sizeof message - 1};
     memcpy(&input.box, &geometry->box, sizeof input.box);

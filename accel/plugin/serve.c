@@ -113,10 +113,10 @@ static rlim_t data_bytes(void) {
 }
 
 /* Limits what the plugin can allocate, in case that it is faster than raytally, which watches it. */
-static void limit_memory(void) {
-    const uint64_t limit = rt_memory_current_limit();
-    const bool larger = limit > RT_ACCEL_MAX_BYTES && limit < UINT64_MAX;
-    const rlim_t used = data_bytes(), bytes = used + 2 * (rlim_t)(larger ? limit : RT_ACCEL_MAX_BYTES);
+static void limit_memory(const RtScene *scene) {
+    const uint64_t limit = rt_memory_current_limit(), least = rt_accel_byte_limit(scene);
+    const bool larger = limit > least && limit < UINT64_MAX;
+    const rlim_t used = data_bytes(), bytes = used + 2 * (rlim_t)(larger ? limit : least);
     if (used) setrlimit(RLIMIT_DATA, &(struct rlimit){bytes, bytes});
     setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
 }
@@ -350,7 +350,7 @@ void rt_wire_serve(Wire *wire, const RtSpec *spec, const RtScene *scene, int thr
     pthread_t thread;
     served = (struct Served){.wire = wire};
     madvise(wire, sizeof(Wire), MADV_DONTFORK); /* processes that the plugin forks must not have it */
-    limit_memory();
+    limit_memory(scene);
     watch_signals();
     setlocale(LC_ALL, "C"); /* the program that uses the library may have another one */
     fesetenv(FE_DFL_ENV);

@@ -1,0 +1,13 @@
+# What counts.csv and times.csv have rows of, in the order of the experiment.
+experiment = "arena"
+format = "svg"
+scenes = "bunny dragon hall forest tetra soup clusters stadium "
+files = "bunny dragon hall forest tetra soup clusters stadium "
+accels = "wide bvh tinybvh tinybvh-bvh4 madmann91 madmann91-robust nanort fastbvh visionaray embree-1-medium-avx2 embree-1-high-avx2 embree-1-medium-avx512 embree-1-high-avx512 "
+colors = "#0072b2 #d55e00 #17becf #0d6972 #4bcdda #1293a0 #31c5d4 #0f7e89 #65d4df #7b3294 #441c51 #9960ac #5f2773 "
+markers = "7 5 9 11 13 6 4 8 10 12 7 5 9 "
+dashes = "1 1 1 1 1 1 1 1 1 1 2 2 2 "
+groups = "\"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" "
+without = ""
+among = ""
+kinds = "primary shadow diffuse occlusion random "

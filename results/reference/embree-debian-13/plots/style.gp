@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+# The common style of all plots, and functions to read the CSV files. names.gp runs before this.
+#
+# Totals weight a ray kind by the number of rays in its whole set (set_rays), so accelerators that were measured on
+# every Kth ray compare with the others.
+#
+# A comment "#: NAME: text" in a script, continued in lines "#:   text", is the caption of plot NAME in the report;
+# its first sentence is the alternative text of the plot.
+
+set datafile separator comma
+set datafile columnheaders
+set datafile missing NaN
+
+# The style of accelerator a, the same in every plot and in the report. Marker and dash distinguish lines in grey print.
+color(a) = word(colors, a)
+marker(a) = int(word(markers, a))
+dash(a) = int(word(dashes, a))
+ink = "#222222"; faint = "#d9d9d9"; soft = "#666666"
+
+# The style of other things: scenes, ray kinds.
+hue(i) = word("#0072b2 #d55e00 #009e73 #7b3294 #e69f00 #222222 #56b4e9 #a6761d", 1 + (i - 1) % 8)
+mark(i) = int(word("7 5 9 13 11 6 4 8 12 10", 1 + (i - 1) % 10))
+stroke(i) = 1 + (i - 1) % 5
+
+# A figure with three digits: 0.034, 1.24, 12.4, 124, 69666.
+figure(x) = x != x ? "–" : x == 0 ? "0" : x < 0.01 ? "< 0.01" : x < 0.1 ? sprintf("%.3f", x) : x < 1 ? sprintf("%.2f", x) : \
+            x < 10 ? sprintf("%.1f", x) : sprintf("%.0f", x)
+
+# Opens plots/NAME.svg, or .pdf as wide as a column of a paper (3.5 in up to 480 pixels, else both columns, 7.16 in). In a pdf a
+# pixel is `point` points, and three quarters of that for letters: letters of 13 of 960 pixels are 7 points high. raytally draws
+# both, and removes .tmp when all is drawn.
+point(width) = 72.0 * (width <= 480 ? 3.5 : 7.16) / width
+canvas(name, width, height) = format eq "pdf" ? \
+  sprintf("set terminal pdfcairo size %.3fin,%.3fin font 'Helvetica,13' fontscale %.4f linewidth %.4f pointscale %.4f background '#ffffff'; \
+set output 'plots/%s.pdf.tmp'", point(width) * width / 72, point(width) * height / 72, 0.75 * point(width), point(width), 1.9 * point(width), name) : \
+  sprintf("set terminal svg size %d,%d dynamic font 'Helvetica,13' background '#ffffff'; \
+set output 'plots/%s.svg.tmp'", width, height, name)
+
+# Requires `last`. Fills `order`, the indices of its numbers from the greatest to the least, as lines end at the right.
+sort_last = "order = ''; do for [n_ = 1:|last|] { best_ = 0; do for [i_ = 1:|last|] { \
+if (strstrt(' '.order, sprintf(' %d ', i_)) == 0) { if (best_ == 0) { best_ = i_ } else { if (last[i_] > last[best_]) { best_ = i_ } } } }; \
+order = order.sprintf('%d ', best_) }"
+
+# Panels: a thin frame below and to the left, grid lines behind.
+set border 3 linecolor rgb soft
+set tics nomirror scale 0.5 textcolor rgb ink
+set grid xtics linecolor rgb faint linetype 1 linewidth 0.5
+set style fill solid 0.9 noborder
+set bars small
+unset key
