@@ -396,6 +396,21 @@ for scene in 'my scene.obj' 'a folder/Größe & Co.obj'; do
 done
 refuses 'verified is not the result directory of an experiment' report verified
 
+# reproduce says what it did not compare, and why counts differ
+printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'f 1 2 3' >one.obj
+yaml mesh 'name: mesh' 'question: b' 'prediction: c' 'scenes: [{scene: one.obj, optional: yes}, {scene: "balls:size=1", size: 8x8}]' \
+    'accelerators: [{accel: bvh}]' 'count_only: true'
+ends 0 run mesh.yaml
+mv one.obj two.obj
+ends 2 reproduce results/mesh
+says "the other scenes in results/mesh/counts\.csv, byte for byte.*'one' was not compared, because its scene is missing here"
+refuses "'one' was not compared" reproduce results/mesh --only one
+ends 0 reproduce results/mesh --only balls:size=1
+sed 's/v 1 0 0/v 2 0 0/' two.obj >one.obj
+ends 1 reproduce results/mesh
+says "the scene 'one' has changed: its fingerprint was [0-9a-f]{16}, and is [0-9a-f]{16} here"
+rm printed said
+
 # ---- correct input passes: the same scenes without their mistake ----
 
 nff right 's 0 0 0 1' 'p 3' '0 0 0' '1 0 0' '1 1 0' 'c' '0 0 0 1' '0 0 1 1'
@@ -415,7 +430,7 @@ ends 0 run small.yaml
 ends 0 run small.yaml --resume
 ends 0 reproduce results/small
 mv small.yaml away.yaml
-refuses 'small\.yaml cannot be read here: start raytally in the folder in which results/small was measured' reproduce results/small
+ends 0 reproduce results/small # by its own copy
 mv away.yaml small.yaml
 ends 0 run results/small/manifest.json --out again
 cmp -s results/small/counts.csv again/counts.csv || complain "raytally run DIR/manifest.json: does not count the same"

@@ -10,6 +10,7 @@
 #include "experiment/result_csv.h"
 #include "literature/published_tables.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -75,69 +76,100 @@ static const char *end_of_line(const char *line) {
                                                : "";
 }
 
-/* Whether a table has a row that begins with the same field, the scene. */
-static bool has_scene_of(const char *table, const char *row) {
-    const size_t field = *row == '"' ? strcspn(row + 1, "\"") + 2 : strcspn(row, ",\n");
-    for (; *table; table += line_length(table)) {
-        if (strncmp(table, row, field + 1) == 0) return true;
+/* What was counted again, and what became of it. */
+typedef struct Again {
+    const char *directory;
+    const RtResults *results;
+    RtOnly only;
+    const char *scene;   /* the only one; NULL: all */
+    const char *missing; /* a scene with rows in the directory whose file is missing here, or NULL */
+    uint64_t compared;   /* lines */
+} Again;
+
+/* Whether the row of a table is of a scene that was not counted again. */
+static bool is_left_out(Again *again, const char *row) {
+    const RtExperiment *experiment = again->results->experiment;
+    row += *row == '"';
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        const char *label = experiment->workloads[t].label;
+        const size_t length = strlen(label);
+        if (strncmp(row, label, length) != 0 || !strchr(",\"", row[length])) continue;
+        if (!rt_only_scene(&again->only, experiment, t)) return true;
+        if (!again->results->workloads[t].skipped) return false;
+        again->missing = label;
+        return true;
     }
     return false;
 }
 
-/* Compares line by line; RT_MISMATCH with the first line that differs. If only `some` scenes were counted,
- * rows of the others are skipped. */
-static RtStatus compare(const char *path, const char *kept, const char *counted, bool some, RtError *error) {
-    const char *const table = counted;
+/* Compares line by line; RT_MISMATCH with the first line that differs. */
+static RtStatus compare(Again *again, const char *path, const char *kept, const char *counted,
+                        RtError *error) {
     for (size_t line = 1; *kept || *counted; line++) {
-        size_t length = line_length(kept);
-        bool skipped = some && *kept && !has_scene_of(table, kept);
-        if (!skipped && (length != line_length(counted) || memcmp(kept, counted, length) != 0)) {
+        const size_t length = line_length(kept);
+        const bool left_out = *kept && is_left_out(again, kept);
+        if (!left_out && (length != line_length(counted) || memcmp(kept, counted, length) != 0)) {
             return rt_fail(error, RT_MISMATCH,
                            "%s:%zu: differs from the new counts:\n  there: %.*s%s\n  now:   %.*s%s", path,
                            line, (int)strcspn(kept, "\n"), kept, end_of_line(kept),
                            (int)strcspn(counted, "\n"), counted, end_of_line(counted));
         }
         kept += length;
-        if (!skipped) counted += length;
+        if (left_out) continue;
+        counted += length;
+        again->compared++;
     }
     return RT_OK;
 }
 
-static RtStatus compare_file(const char *directory, RtResultFile file, const RtResults *results,
-                             const RtPublished *published, const char *scene, RtError *error) {
+static RtStatus compare_file(Again *again, RtResultFile file, const RtPublished *published, RtError *error) {
     char path[RT_MAX_PATH], *kept = NULL;
     size_t size;
     RtMemoryFile counted;
-    RT_TRY(rt_path_join(directory, rt_result_files[file], path, error));
+    RT_TRY(rt_path_join(again->directory, rt_result_files[file], path, error));
     RT_TRY(rt_memory_file_open(&counted, error));
-    if (rt_result_file_sort(results->experiment, file) == RT_FILE_COMPARED)
+    if (rt_result_file_sort(again->results->experiment, file) == RT_FILE_COMPARED)
         rt_published_file_write(file, published, counted.file);
     else
-        rt_result_csv_write(file, results, counted.file);
+        rt_result_csv_write(file, again->results, counted.file);
     RT_TRY(rt_memory_file_close(&counted, "the counts", error));
     RtStatus status = rt_file_read(path, MOST_CSV_BYTES, &kept, &size, error);
-    if (status == RT_OK) status = compare(path, kept, counted.data, scene, error);
-    if (status == RT_OK)
-        printf("Reproduced: %s%s%s, byte for byte\n", scene ? scene : "", scene ? " in " : "", path);
+    again->compared = 0;
+    if (status == RT_OK) status = compare(again, path, kept, counted.data, error);
+    if (status == RT_OK && again->compared > 1) /* more than the names of the columns */
+        printf("Reproduced: %s%s%s, byte for byte\n",
+               again->scene     ? again->scene
+               : again->missing ? "the other scenes"
+                                : "",
+               again->scene || again->missing ? " in " : "", path);
     rt_free(kept);
     rt_free(counted.data);
     return status;
 }
 
 /* Comparisons with published figures need all scenes. */
-static RtStatus compare_all(const char *directory, const RtResults *results, const char *scene,
-                            RtError *error) {
+static RtStatus compare_all(Again *again, RtError *error) {
+    const RtExperiment *experiment = again->results->experiment;
     RtPublished published;
-    RtStatus status = rt_published_load(&published, results->experiment, error);
-    if (status == RT_OK && !scene) rt_published_compare(&published, results);
+    RtStatus status = rt_published_load(&published, experiment, error);
     for (RtResultFile file = 0; status == RT_OK && file < RT_RESULT_FILE_COUNT; file++) {
-        const RtFileSort sort = rt_result_file_sort(results->experiment, file);
-        if (sort == RT_FILE_COUNTED || (sort == RT_FILE_COMPARED && !scene))
-            status = compare_file(directory, file, results, &published, scene, error);
+        if (rt_result_file_sort(experiment, file) == RT_FILE_COUNTED)
+            status = compare_file(again, file, &published, error);
     }
-    if (status == RT_OK && !scene) status = rt_published_check(&published, error);
+    if (status == RT_OK && !again->scene && !again->missing) {
+        rt_published_compare(&published, again->results);
+        for (RtResultFile file = 0; status == RT_OK && file < RT_RESULT_FILE_COUNT; file++) {
+            if (rt_result_file_sort(experiment, file) == RT_FILE_COMPARED)
+                status = compare_file(again, file, &published, error);
+        }
+        if (status == RT_OK) status = rt_published_check(&published, error);
+    }
     rt_published_clear(&published);
-    return status;
+    if (status != RT_OK || !again->missing) return status;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "%s: '%s' was not compared, because its scene is missing here: get it first, as "
+                   "`scenes/fetch.sh` does for the public meshes",
+                   again->directory, again->missing);
 }
 
 /* Says why counts of another version may differ. */
@@ -153,6 +185,20 @@ static void tell_version(const char *directory) {
     json_decref(manifest);
 }
 
+/* A scene that is another than it was is the reason for other counts. */
+static RtStatus check_scenes(const Again *again, const RtWorkloadResult *then, RtError *error) {
+    const RtExperiment *experiment = again->results->experiment;
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        const RtWorkloadResult *now = &again->results->workloads[t];
+        if (!now->known || !then[t].known || now->scene == then[t].scene) continue;
+        return rt_fail(error, RT_MISMATCH,
+                       "%s: the scene '%s' has changed: its fingerprint was %016" PRIx64
+                       ", and is %016" PRIx64 " here",
+                       again->directory, experiment->workloads[t].label, then[t].scene, now->scene);
+    }
+    return RT_OK;
+}
+
 static RtStatus reproduce(const char *directory, RtResults *results, const void *options, RtError *error) {
     const Options *o = options;
     const char *scene = o->quick ? cheapest_scene(results) : o->scene; /* a label of the loaded experiment */
@@ -160,13 +206,16 @@ static RtStatus reproduce(const char *directory, RtResults *results, const void 
     tell_version(directory);
     /* The copy in the directory does not find its scenes; the original does. */
     static RtExperiment original;
+    static RtWorkloadResult then[RT_MAX_WORKLOADS];
     RtStatus status = rt_manifest_experiment(directory, &original, error);
+    memcpy(then, results->workloads, results->experiment->workload_count * sizeof *then);
     rt_results_clear(results);
-    const RtOnly only = only_scene(scene);
-    if (status == RT_OK) status = rt_only_check(&only, &original, error);
+    Again again = {.directory = directory, .results = results, .only = only_scene(scene), .scene = scene};
+    if (status == RT_OK) status = rt_only_check(&again.only, &original, error);
     if (status == RT_OK) status = rt_results_init(results, &original, error);
     if (status == RT_OK) status = count_again(results, scene, error);
-    if (status == RT_OK) status = compare_all(directory, results, scene, error);
+    if (status == RT_OK) status = check_scenes(&again, then, error);
+    if (status == RT_OK) status = compare_all(&again, error);
     rt_results_clear(results);
     return status;
 }

@@ -96,17 +96,15 @@ RtStatus rt_manifest_read(const char *directory, json_t **manifest, RtError *err
 static RtStatus load_experiment(const json_t *manifest, const char *directory, RtExperiment *experiment,
                                 RtError *error) {
     const char *file = json_string_value(json_object_get(manifest, "file"));
+    char copy[RT_MAX_PATH];
     const json_t *hash = json_object_get(manifest, "hash");
     if (!file || !json_is_string(hash)) {
         return rt_fail(error, RT_BAD_INPUT,
                        "%s/manifest.json does not say what was run: give the YAML of the experiment",
                        directory);
     }
-    if (!rt_file_exists(file)) {
-        return rt_fail(error, RT_BAD_INPUT,
-                       "%s cannot be read here: start raytally in the folder in which %s was measured", file,
-                       directory);
-    }
+    RT_TRY(rt_path_join(directory, rt_result_files[RT_FILE_EXPERIMENT], copy, error));
+    if (!rt_file_exists(file)) file = copy; /* the directory was sent elsewhere */
     RT_TRY(rt_experiment_load(experiment, file, json_is_true(json_object_get(manifest, "quick")), error));
     json_t *now = rt_json_hex(experiment->fingerprint);
     bool same = now && json_equal(now, hash);
@@ -114,7 +112,9 @@ static RtStatus load_experiment(const json_t *manifest, const char *directory, R
     const json_int_t run = json_integer_value(json_object_get(manifest, "coherent_run"));
     if (run > 0) experiment->coherent_run = (uint64_t)run; /* its default was another in older versions */
     if (same) return RT_OK;
-    return rt_fail(error, RT_MISMATCH, "%s has changed since %s was made from it", file, directory);
+    return rt_fail(error, RT_MISMATCH,
+                   "%s has changed since %s was made from it: %s is a copy of what it was", file, directory,
+                   copy);
 }
 
 RtStatus rt_manifest_experiment(const char *directory, RtExperiment *experiment, RtError *error) {

@@ -15,7 +15,8 @@ RtStatus rt_manifest_write(const RtResults *results, const RtWorkloadOptions *op
 RtStatus rt_manifest_read(const char *directory, json_t **manifest, RtError *error);
 
 /* Loads the experiment of the manifest in `directory`, in the same variant, from the file that it names,
- * relative to the current folder; its scenes are relative to that file. RT_MISMATCH if the file has changed.
+ * relative to the current folder, or from the copy in `directory` where there is none; its scenes are
+ * relative to that file. RT_MISMATCH if the file has changed.
  */
 RtStatus rt_manifest_experiment(const char *directory, RtExperiment *experiment, RtError *error);
 
