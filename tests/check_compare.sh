@@ -33,12 +33,12 @@ compare() {
 
 rays='--rays primary,random --size 128x128 --limit 16384 --until 0.7% --patience 120'
 compare "$program" compare balls --accel bvh $rays --with "$slower" --strict
-[ $code = 0 ] && [ "$(grep -c ' faster  ' said)" = 2 ] && grep -q '^2 faster, 0 slower, 0 no difference; counts changed in 0' said ||
+[ $code = 0 ] && [ "$(grep -c ' faster  ' said)" = 2 ] && grep -q '^2 faster, 0 slower, 0 with no difference found; counts changed in 0' said ||
     fail '2 % less time are not found'
 compare "$slower" compare balls --accel bvh $rays --with "$program" --strict
 [ $code = 1 ] && grep -q '^0 faster, 2 slower' said || fail '2 % more time are not found, or not told by the exit code'
 
-# ---- no difference ----
+# ---- no difference found ----
 
 cat >null.yaml <<'YAML'
 name: "null"
@@ -63,7 +63,7 @@ compare_alike() { # EXPECTED COMMAND...
 }
 for seed in {1..20}; do
     sed "1a seed: $seed" null.yaml >seeded.yaml
-    compare_alike '0 faster, 0 slower, 4 no difference' "$program" compare seeded.yaml --with "$program"
+    compare_alike '0 faster, 0 slower, 4 with no difference found' "$program" compare seeded.yaml --with "$program"
 done
 [ $reports -le $allowed ] || fail "$reports of 20 comparisons of the program with itself report a difference"
 
@@ -86,7 +86,7 @@ YAML
 null=$reports reports=0
 for pair in {1..20}; do
     "$program" run runs.yaml --out before >message 2>&1 && "$program" run runs.yaml --out after >message 2>&1 || fail 'no runs'
-    compare_alike '0 faster, 0 slower, 4 no difference' "$program" compare before after --margin 0.1%
+    compare_alike '0 faster, 0 slower, 4 with no difference found' "$program" compare before after --margin 0.1%
     rm -r before after
 done
 [ $reports -le $allowed ] || fail "$reports of 20 pairs of runs of one program report a difference"

@@ -53,7 +53,7 @@ as_expected() {
 
 # A text without figures, blanks, and words that follow from times: verdicts, who is ahead, null runs.
 without_figures() {
-    sed -E '/^Null runs/,/^$/d; s/[-+<]?[0-9][0-9.,]*(e[-+]?[0-9]+)?/0/g; s/faster|slower|no difference/verdict/g
+    sed -E '/^Null runs/,/^$/d; s/[-+<]?[0-9][0-9.,]*(e[-+]?[0-9]+)?/0/g; s/faster|slower|no difference found/verdict/g
         s/ (ahead (from|up to) 0|(always|never) ahead)$/ ahead/; s/[-=|+ ]+/ /g; s/^ //; s/ $//' "$1"
 }
 

@@ -429,6 +429,7 @@ refuses 'occupied.*(directory|folder)' run small.yaml --out occupied
 ends 0 run small.yaml
 ends 0 run small.yaml --resume
 ends 0 reproduce results/small
+refuses 'there is nothing to compare: no scene, accelerator and kind of rays is in both' compare results/small results/blank
 mv small.yaml away.yaml
 ends 0 reproduce results/small # by its own copy
 mv away.yaml small.yaml

@@ -207,7 +207,7 @@ RtTable rt_comparison_table(RtComparedRow *row, bool all) {
     X(groups, "groups", integer, "", "scenes times pairs of runs that it is judged by", r->accel->groups)    \
     X(relative, "ratio", interval, "", "throughput after over before, relative to the median accelerator",   \
       interval_of(r->accel->groups >= 2, &r->accel->ratio))                                                  \
-    X(verdict, "time", text, "", "faster, slower, no difference, or not judged",                             \
+    X(verdict, "time", text, "", "faster, slower, no difference found, or not judged",                       \
       change_names[r->accel->change])                                                                        \
     X(mean, "ratio", real6, "",                                                                              \
       "throughput after over that before, relative to the median accelerator; mean of groups",               \
@@ -295,7 +295,7 @@ static void explain_verdicts(const RtComparison *comparison, char *out, size_t s
     if (count == 0) return;
     rt_append_text(out, size,
                    "Ratios are of throughput%s. All %" PRIu32
-                   " intervals hold simultaneously with 95 %% confidence; the widest is +-%.2g %%.",
+                   " intervals hold simultaneously with 95 %% confidence; the widest is +-%.3g %%.",
                    comparison->pairs
                        ? "; those of accelerators, over scenes, are relative to the median accelerator"
                        : "",
@@ -343,8 +343,8 @@ void rt_comparison_print(const RtComparison *comparison, FILE *out) {
     if (changed) fprintf(out, "\nCounts that changed:\n");
     print_changed_counts(comparison, out);
     fprintf(out,
-            "\n%" PRIu32 " faster, %" PRIu32 " slower, %" PRIu32 " no difference; counts changed in %" PRIu32
-            ".\n",
+            "\n%" PRIu32 " faster, %" PRIu32 " slower, %" PRIu32
+            " with no difference found; counts changed in %" PRIu32 ".\n",
             rt_comparison_count(comparison, RT_CHANGE_FASTER),
             rt_comparison_count(comparison, RT_CHANGE_SLOWER),
             rt_comparison_count(comparison, RT_CHANGE_NONE), changed);

@@ -42,7 +42,7 @@
 
 /* X(CONSTANT, says) */
 #define RT_CHANGES(X)                                                                                        \
-    X(NONE, "no difference")                                                                                 \
+    X(NONE, "no difference found")                                                                           \
     X(FASTER, "faster")                                                                                      \
     X(SLOWER, "slower")                                                                                      \
     X(BY_ACCEL, "by accelerator")                                                                            \

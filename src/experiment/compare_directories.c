@@ -227,7 +227,15 @@ RtStatus rt_compare_results(const RtResults *results, uint32_t pairs, RtComparis
         RT_TRY(compare_all(&straight, comparison, error));
         RT_TRY(compare_all(&swapped, comparison, error));
     }
-    for (uint32_t i = 0; i < comparison->count; i++) comparison->timed += comparison->cells[i].timed;
+    uint32_t shared = 0;
+    for (uint32_t i = 0; i < comparison->count; i++) {
+        const RtComparedCell *cell = &comparison->cells[i];
+        comparison->timed += cell->timed;
+        shared += cell->change != RT_CHANGE_ONLY_BEFORE && cell->change != RT_CHANGE_ONLY_AFTER;
+    }
+    if (shared == 0)
+        return rt_fail(error, RT_BAD_INPUT,
+                       "there is nothing to compare: no scene, accelerator and kind of rays is in both");
     comparison->together = comparison->coverage = 1;
     for (uint32_t i = 0; i < comparison->count; i++) {
         RtComparedCell *cell = &comparison->cells[i];

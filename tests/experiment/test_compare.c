@@ -197,7 +197,8 @@ RT_TEST_IN_PLACE(what_is_faster_slower_or_counts_otherwise_is_said) {
     assert_int_equal(sides.comparison.accels[1].change, RT_CHANGE_FASTER);
     assert_true(rt_estimate_holds(&sides.comparison.accels[0].ratio, 0.5));
     assert_int_equal(rt_comparison_changed(&sides.comparison), 1);
-    assert_true(is_printed(&sides.comparison, "1 faster, 1 slower, 2 no difference; counts changed in 1."));
+    assert_true(is_printed(&sides.comparison,
+                           "1 faster, 1 slower, 2 with no difference found; counts changed in 1."));
     assert_true(is_printed(&sides.comparison, "balls:size=1 bvh random: steps "));
     compare_sides(&sides, 1, 1.5); /* 2.5 times is the margin */
     assert_int_equal(rt_comparison_count(&sides.comparison, RT_CHANGE_NONE), ACCELS);
@@ -303,7 +304,7 @@ RT_TEST_IN_PLACE(strict_makes_something_slower_an_exit_code) {
     snprintf(command, sizeof command, "cp -r '%s/a' '%s/b'", place->folder, place->folder);
     assert_int_equal(system(command), 0);
     assert_int_equal(raytally(place, "compare a b --strict"), 0);
-    assert_in_file(place, "output", "0 faster, 0 slower, 4 no difference; counts changed in 0.");
+    assert_in_file(place, "output", "0 faster, 0 slower, 4 with no difference found; counts changed in 0.");
     /* Times of 1e-7 s a ray become ten times longer by their exponents: those of the grid. */
     OWNED_MEMORY char *journal = read_in(place, "b/cells.jsonl");
     for (char *line = journal, *end; (end = strchr(line, '\n')) != NULL; line = end + 1) {
