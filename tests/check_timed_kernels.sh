@@ -9,7 +9,7 @@
 # For optimised x86-64 builds; otherwise it is skipped (exit code 77).
 set -eu
 
-build=$(dirname "${RT_PROGRAM:?the path of raytally, beside which its library lies}")
+build=$(dirname "${RT_PROGRAM:-$(dirname "$0")/../build/release/raytally}")
 library=$build/libraytally_accel.a
 [ "$(uname -m)" = x86_64 ] || { echo "skipped: timed kernels count nothing; needs x86-64"; exit 77; }
 command -v objdump >/dev/null || { echo "skipped: timed kernels count nothing; needs binutils"; exit 77; }

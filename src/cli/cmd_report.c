@@ -3,6 +3,7 @@
 #include "cli/cli.h"
 #include "cli/directory.h"
 #include "core/base/words.h"
+#include "experiment/claims.h"
 #include "report/index.h"
 #include "report/report.h"
 
@@ -17,8 +18,10 @@ static RtStatus report(const char *directory, RtResults *results, const void *op
         status = rt_report_write(results, &published, directory, error);
     }
     rt_published_clear(&published);
-    if (status == RT_OK) printf("Report: %s/report.html\n", directory);
-    return status;
+    if (status != RT_OK) return status;
+    rt_claims_print(results, stdout);
+    printf("%sReport: %s/report.html\n", results->experiment->claim_count ? "\n" : "", directory);
+    return RT_OK;
 }
 
 typedef struct Options {

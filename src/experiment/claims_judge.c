@@ -391,7 +391,9 @@ RtStatus rt_claims_check(const RtResults *results, RtError *error) {
 void rt_claims_print(const RtResults *results, FILE *out) {
     const RtExperiment *experiment = results->experiment;
     bool open = false;
-    if (experiment->claim_count) fputs("\nClaims:\n", out);
+    if (experiment->claim_count)
+        fprintf(out, "\nClaims%s:\n",
+                experiment->quick ? ", about the whole experiment; this is its smaller variant" : "");
     for (uint32_t i = 0; i < experiment->claim_count; i++) {
         RtClaimResult result;
         rt_claim_judge(results, i, &result);
