@@ -160,7 +160,7 @@ static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
 
 const RtAccelOps rt_wide_ops = {
     .name = "wide",
-    .summary = "hierarchy of boxes eight wide, SIMD traversal, many rays at once: the fastest",
+    .summary = "hierarchy of boxes eight wide, SIMD traversal, many rays at once: our fastest",
     .paper = "Wald, Benthin & Boulos 2008, Getting Rid of Packets: Efficient SIMD Single-Ray Traversal using "
              "Multi-branching BVHs, RT'08",
     RT_PARAMS_OF(params),
