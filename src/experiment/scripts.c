@@ -103,7 +103,7 @@ static RtStatus refuse_links(const char *plots, RtError *error) {
     refuse_link(&links, plots);
     RT_TRY(links.status);
     DIR *folder = opendir(plots);
-    if (!folder && errno != ENOENT)
+    if (!folder && errno != ENOENT && errno != ENOTDIR)
         return rt_fail(error, RT_IO,
                        "%s cannot be read (%s), so it may hold symbolic links: allow that with --trust",
                        plots, strerror(errno));
