@@ -1,28 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What accelerators share: the struct that each begins with, the test of all objects, and sums over boxes. */
+/* What accelerators share: the test of all objects, and sums over boxes. */
 #include "accel/kernel.h"
-
-#include "core/base/memory.h"
-
-RtStatus rt_accel_new(const RtBuild *what, size_t bytes, RtAccel **out, RtError *error) {
-    RtAccel *accel = rt_alloc(1, bytes);
-    if (!accel) return rt_fail_memory(error, what->ops->name, bytes);
-    *accel = (RtAccel){.ops = what->ops,
-                       .scene = what->scene,
-                       .below = what->below,
-                       .exact = !what->below || what->below->exact,
-                       .counts = !what->below || what->below->counts};
-    *out = accel;
-    return RT_OK;
-}
-
-RtStatus rt_accel_built(RtAccel *accel, RtStatus status, RtAccel **out) {
-    if (status == RT_OK)
-        *out = accel;
-    else
-        accel->ops->destroy(accel);
-    return status;
-}
 
 RT_KERNEL bool test_all(const RtGeometry *geometry, const RtPreparedRay *ray, bool any, RtHit *best,
                         RtTally *tally) {

@@ -36,6 +36,7 @@ typedef struct RtAccel {
     const RtAccelOps *ops;
     const RtScene *scene;  /* borrowed */
     struct RtAccel *below; /* owned; NULL for a base */
+    size_t scratch_bytes;  /* of a query: memory that is zeroed and 64-byte aligned. Set by its `build` */
     bool exact;            /* its hits equal brute's bit for bit; false: judged by verdicts */
     bool counts;           /* its counts are the same on every machine, so counts.csv has them */
     double build_seconds;  /* wall seconds to build it and all layers below. Set by rt_accel_build */
@@ -139,10 +140,8 @@ void rt_box_sums_predict(const RtBoxSums *sums, const RtBox *root, double traver
 
 /* The arguments of `build`. */
 typedef struct RtBuild {
-    const RtAccelOps *ops; /* of the accelerator itself */
     const RtScene *scene;  /* finished; it may be empty */
     const RtValue *values; /* [param_count], in range */
-    RtAccel *below;        /* what an overlay lies on; NULL for a base */
     int threads;           /* 0 = all processors; does not change the structure */
     uint64_t limit;        /* a structure of more bytes, as its `build` estimates them, is refused */
 } RtBuild;
@@ -180,18 +179,20 @@ struct RtAccelOps {
     const RtBestOf *bests; /* [best_count], or NULL */
     size_t best_count;
 
-    /* On failure nothing is left behind. The caller owns *out and frees it by `destroy`, which does not
-     * destroy the layer below. An overlay may trace rays in the layer below while it is built. */
-    RtStatus (*build)(const RtBuild *build, RtAccel **out, RtError *error);
+    size_t bytes; /* of the accelerator's own struct */
+
+    /* Optional: builds the accelerator in its own struct, which is zeroed except for the RtAccel that it
+     * begins with; that one is exact and counts if the layer below does. An overlay may trace rays in the
+     * layer below. After a failure `destroy` is called. */
+    RtStatus (*build)(RtAccel *accel, const RtBuild *what, RtError *error);
+
+    /* Optional: frees what the accelerator owns, except its own struct and the layer below. */
     void (*destroy)(RtAccel *accel);
 
     RtNearestKernel *nearest;
     RtOccludedKernel *occluded;
     RtNearestCounted *nearest_counted;
     RtOccludedCounted *occluded_counted;
-
-    /* Optional: bytes of scratch memory per query, which is zeroed and 64-byte aligned. */
-    size_t (*scratch_bytes)(const RtAccel *accel);
 
     /* Optional, both or none: set up and tear down resources in the scratch memory, before the first ray and
      * after the last. If `open` fails, `close` is not called. */
@@ -204,7 +205,7 @@ struct RtAccelOps {
     /* Describes this layer alone. */
     void (*describe)(const RtAccel *accel, RtDescription *out);
 
-    /* RT_OK, or RT_MISMATCH and a message that names the first broken invariant. */
+    /* Optional: RT_OK, or RT_MISMATCH and a message that names the first broken invariant. */
     RtStatus (*validate)(const RtAccel *accel, RtError *error);
 
     /* Optional: shows the boxes of the structure, for pictures and distributions. If `shows_lists`, the
@@ -233,14 +234,6 @@ struct RtAccelOps {
      * out[0..size); false, and "", if it is not available. */
     bool (*library)(char *out, size_t size);
 };
-
-/* For `build`: allocates `bytes` for the accelerator's own struct, zeroed except for the RtAccel that it
- * begins with, which is exact and counts if the layer below does. Free *out with rt_free. */
-RtStatus rt_accel_new(const RtBuild *what, size_t bytes, RtAccel **out, RtError *error);
-
-/* The end of `build`: sets *out to the accelerator, or destroys it if `status` is a failure. Returns
- * `status`. */
-RtStatus rt_accel_built(RtAccel *accel, RtStatus status, RtAccel **out);
 
 /* ---- the registry ---- */
 
@@ -326,6 +319,11 @@ RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, int threads, R
 RtStatus rt_accel_open_on(const char *spec, const RtScene *scene, int threads, RtAccel **out, RtError *error);
 RtStatus rt_accel_open(const char *spec, const RtScene *scene, RtAccel **out, RtError *error);
 void rt_accel_destroy(RtAccel *accel); /* and the layers below; NULL is allowed */
+
+/* Builds one layer over `below`, or a base if that is NULL. On failure nothing is left behind, and `below`
+ * still exists. */
+RtStatus rt_accel_build_layer(const RtAccelOps *ops, const RtBuild *what, RtAccel *below, RtAccel **out,
+                              RtError *error);
 
 /* The bottom layer. */
 const RtAccel *rt_accel_base(const RtAccel *accel);

@@ -14,22 +14,10 @@
  * number of threads: between two of its calls the rays come in one order, in streams of any length. */
 #include "accel/kernel.h"
 
-#include "core/base/memory.h"
-
-typedef struct Cache {
-    RtAccel base;
-} Cache;
-
-static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
-    return rt_accel_new(what, sizeof(Cache), out, error);
-}
-
-static void destroy(RtAccel *accel) {
-    rt_free(accel);
-}
-
-static size_t scratch_bytes(const RtAccel *accel) {
-    return accel->scene->light_count * sizeof(uint32_t);
+static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
+    (void)error;
+    accel->scratch_bytes = what->scene->light_count * sizeof(uint32_t);
+    return RT_OK;
 }
 
 static void begin(const RtAccel *accel, void *scratch) {
@@ -39,11 +27,11 @@ static void begin(const RtAccel *accel, void *scratch) {
 
 /* ---- queries ---- */
 
-RT_KERNEL uint32_t find_occluder(const Cache *self, const RtScratch *scratch, const RtRay *ray,
+RT_KERNEL uint32_t find_occluder(const RtAccel *self, const RtScratch *scratch, const RtRay *ray,
                                  RtTally *tallies) {
-    const RtScene *scene = self->base.scene;
+    const RtScene *scene = self->scene;
     RtTally *tally = tallies ? &tallies[RT_RAY_SHADOW] : NULL;
-    if (ray->source >= scene->light_count) return rt_pass_on_occluded(&self->base, scratch, ray, tallies);
+    if (ray->source >= scene->light_count) return rt_pass_on_occluded(self, scratch, ray, tallies);
 
     uint32_t *last = (uint32_t *)scratch->own + ray->source;
     if (*last != RT_NO_OBJECT) {
@@ -55,23 +43,16 @@ RT_KERNEL uint32_t find_occluder(const Cache *self, const RtScratch *scratch, co
         if (rt_test_object(&scene->geometry, *last, &prepared, true, &hit, tally))
             return rt_answer_occluded(*last, tally);
     }
-    uint32_t occluder = rt_pass_on_occluded(&self->base, scratch, ray, tallies);
+    uint32_t occluder = rt_pass_on_occluded(self, scratch, ray, tallies);
     if (occluder < scene->geometry.object_count) *last = occluder;
     return occluder;
 }
 
-RT_DEFINE_SHADOW_KERNELS(Cache, find_occluder)
-
-/* ---- describe and validate ---- */
+RT_DEFINE_SHADOW_KERNELS(find_occluder)
 
 static void describe(const RtAccel *accel, RtDescription *out) {
     (void)accel;
     *out = (RtDescription){RT_NO_PREDICTION};
-}
-
-static RtStatus validate(const RtAccel *accel, RtError *error) {
-    (void)accel, (void)error;
-    return RT_OK;
 }
 
 const RtAccelOps rt_cache_ops = {
@@ -79,11 +60,9 @@ const RtAccelOps rt_cache_ops = {
     .summary = "overlay: the last occluder of each light is tested first",
     .paper = "Haines & Greenberg 1986, The Light Buffer: A Shadow-Testing Accelerator, CG&A 6(9)",
     .kinds = 1u << RT_RAY_SHADOW,
+    .bytes = sizeof(RtAccel),
     .build = build,
-    .destroy = destroy,
     RT_KERNEL_OPS,
-    .scratch_bytes = scratch_bytes,
     .begin = begin,
     .describe = describe,
-    .validate = validate,
 };

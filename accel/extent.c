@@ -81,12 +81,7 @@ static double support(const RtGroup *group, RtVec3d direction) {
 /* The rounding error of an extent of an object in `box`, computed in double: 2^-46 of its largest
  * coordinate. */
 static double inflation(const RtBox *box) {
-    float most = 0;
-    for (int a = 0; a < 3; a++) {
-        most = rt_maxf(fabsf(box->lo.at[a]), most);
-        most = rt_maxf(fabsf(box->hi.at[a]), most);
-    }
-    return 0x1p-46 * (double)most;
+    return 0x1p-46 * rt_box_largest_coordinate(*box);
 }
 
 static RtVec3d opposite(RtVec3d a) {

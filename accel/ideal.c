@@ -16,13 +16,8 @@ typedef struct Ideal {
     size_t count;
 } Ideal;
 
-static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
-    return rt_accel_new(what, sizeof(Ideal), out, error);
-}
-
 static void destroy(RtAccel *accel) {
     rt_free(((Ideal *)accel)->objects);
-    rt_free(accel);
 }
 
 static RtStatus learn(RtAccel *accel, const RtRay *rays, const RtHit *hits, size_t count, RtError *error) {
@@ -77,7 +72,7 @@ const RtAccelOps rt_ideal_ops = {
     .summary = "recorded answers: one test for a ray that hits, none for one that misses; a lower bound on "
                "object tests",
     .paper = "none: a reference",
-    .build = build,
+    .bytes = sizeof(Ideal),
     .destroy = destroy,
     RT_KERNEL_OPS,
     .describe = describe,

@@ -19,25 +19,21 @@ static RtIsa machine_isa(void) {
 #endif
 }
 
+RtIsa rt_isa_best(void) {
 #if defined(RT_ONLY_ISA)
-enum { portable = RT_ISA_PORTABLE, avx2 = RT_ISA_AVX2, avx512 = RT_ISA_AVX512 };
-
-RtIsa rt_isa_best(void) {
+    enum { portable = RT_ISA_PORTABLE, avx2 = RT_ISA_AVX2, avx512 = RT_ISA_AVX512 };
     return (RtIsa)RT_ONLY_ISA;
-}
-
-bool rt_isa_runs(RtIsa isa) {
-    return isa == rt_isa_best() && isa <= machine_isa();
-}
 #else
-RtIsa rt_isa_best(void) {
     return machine_isa();
+#endif
 }
 
 bool rt_isa_runs(RtIsa isa) {
+#if defined(RT_ONLY_ISA)
+    if (isa != rt_isa_best()) return false;
+#endif
     return isa <= machine_isa();
 }
-#endif
 
 RtIsa rt_isa_asked(RtValue value) {
     switch ((Choice)value.choice) {
@@ -98,8 +94,4 @@ void rt_isa_nearest_counted(const RtAccel *accel, const RtScratch *scratch, cons
 void rt_isa_occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                              uint32_t *occluders, RtTally *tallies) {
     kernels_of(accel)->occluded_counted(accel, scratch, rays, count, occluders, tallies);
-}
-
-size_t rt_isa_scratch_bytes(const RtAccel *accel) {
-    return kernels_of(accel)->scratch_bytes;
 }

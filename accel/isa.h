@@ -5,7 +5,7 @@
  * Such an accelerator NAME has its kernels in accel/NAME/NAME_kernels.c, which ends with a table of them
  * (RT_DEFINE_KERNEL_TABLE in accel/kernel.h). CMakeLists.txt compiles it three times, with RT_ISA portable,
  * avx2 and avx512, and on processors other than x86 once, with RT_ISA portable. Its own struct begins with an
- * RtIsaAccel, `kernels` of which `build` sets to RT_KERNELS_FOR(NAME, isa); RT_ISA_OPS are its queries. */
+ * RtIsaAccel, whose kernels `build` sets to RT_KERNELS_FOR(NAME, isa); RT_ISA_OPS are its queries. */
 #ifndef RT_ACCEL_ISA_H
 #define RT_ACCEL_ISA_H
 
@@ -35,7 +35,7 @@ typedef struct RtKernels {
     RtOccludedKernel *occluded;
     RtNearestCounted *nearest_counted;
     RtOccludedCounted *occluded_counted;
-    size_t scratch_bytes; /* of a query, where that does not depend on what was built */
+    size_t scratch_bytes; /* of a query */
 } RtKernels;
 
 /* The name of a table in a file that is compiled for the instruction set RT_ISA. */
@@ -65,12 +65,17 @@ typedef struct RtIsaAccel {
     const RtKernels *kernels;
 } RtIsaAccel;
 
+/* For `build`: sets the kernels. */
+static inline void rt_isa_use(RtAccel *accel, const RtKernels *kernels) {
+    ((RtIsaAccel *)accel)->kernels = kernels;
+    accel->scratch_bytes = kernels->scratch_bytes;
+}
+
 /* For RtAccelOps: hand over to the kernels. */
 RtNearestKernel rt_isa_nearest;
 RtOccludedKernel rt_isa_occluded;
 RtNearestCounted rt_isa_nearest_counted;
 RtOccludedCounted rt_isa_occluded_counted;
-size_t rt_isa_scratch_bytes(const RtAccel *accel);
 
 #define RT_ISA_OPS                                                                                           \
     .nearest = rt_isa_nearest, .occluded = rt_isa_occluded, .nearest_counted = rt_isa_nearest_counted,       \

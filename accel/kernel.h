@@ -68,42 +68,6 @@ RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
     .nearest = nearest_timed, .occluded = occluded_timed, .nearest_counted = nearest_counted,                \
     .occluded_counted = occluded_counted
 
-/* The four kernels from a search for one ray. */
-#define RT_DEFINE_KERNELS(Type, search)                                                                      \
-    RT_KERNEL RtHit search_one(const RtAccel *accel, const RtScratch *scratch, const RtRay *ray, bool any,   \
-                               RtTally *tally) {                                                             \
-        RtPreparedRay prepared;                                                                              \
-        rt_hit_ray(&prepared, &accel->scene->geometry, ray, scratch->crossings);                             \
-        RtHit best = RT_MISS;                                                                                \
-        search((const Type *)accel, scratch->own, &prepared, any, &best, tally);                             \
-        RT_COUNT(tally, rays, 1);                                                                            \
-        RT_COUNT(tally, hits, best.object != RT_NO_OBJECT);                                                  \
-        return best;                                                                                         \
-    }                                                                                                        \
-    static void nearest_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,             \
-                              size_t count, RtHit *hits) {                                                   \
-        for (size_t i = 0; i < count; i++) hits[i] = search_one(accel, scratch, &rays[i], false, NULL);      \
-    }                                                                                                        \
-    static void nearest_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,           \
-                                size_t count, RtHit *hits, RtTally *tallies) {                               \
-        for (size_t i = 0; i < count; i++) {                                                                 \
-            hits[i] = search_one(accel, scratch, &rays[i], false, &tallies[rays[i].kind]);                   \
-        }                                                                                                    \
-    }                                                                                                        \
-    static void occluded_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,            \
-                               size_t count, uint32_t *occluders) {                                          \
-        for (size_t i = 0; i < count; i++) {                                                                 \
-            occluders[i] = search_one(accel, scratch, &rays[i], true, NULL).object;                          \
-        }                                                                                                    \
-    }                                                                                                        \
-    static void occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,          \
-                                 size_t count, uint32_t *occluders, RtTally *tallies) {                      \
-        for (size_t i = 0; i < count; i++) {                                                                 \
-            RtTally *tally = &tallies[rays[i].kind];                                                         \
-            occluders[i] = search_one(accel, scratch, &rays[i], true, tally).object;                         \
-        }                                                                                                    \
-    }
-
 /* The four kernels from a function that traces a whole stream,
  *
  *     void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
@@ -128,6 +92,27 @@ RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
                                  size_t count, uint32_t *occluders, RtTally *tallies) {                      \
         trace(accel, scratch, rays, count, NULL, occluders, tallies, true, true);                            \
     }
+
+/* The four kernels from a search for one ray. */
+#define RT_DEFINE_KERNELS(Type, search)                                                                      \
+    RT_KERNEL void search_each(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,            \
+                               size_t count, RtHit *hits, uint32_t *occluders, RtTally *tallies, bool any,   \
+                               bool counted) {                                                               \
+        for (size_t i = 0; i < count; i++) {                                                                 \
+            RtTally *tally = counted ? &tallies[rays[i].kind] : NULL;                                        \
+            RtPreparedRay prepared;                                                                          \
+            rt_hit_ray(&prepared, &accel->scene->geometry, &rays[i], scratch->crossings);                    \
+            RtHit best = RT_MISS;                                                                            \
+            search((const Type *)accel, scratch->own, &prepared, any, &best, tally);                         \
+            RT_COUNT(tally, rays, 1);                                                                        \
+            RT_COUNT(tally, hits, best.object != RT_NO_OBJECT);                                              \
+            if (any)                                                                                         \
+                occluders[i] = best.object;                                                                  \
+            else                                                                                             \
+                hits[i] = best;                                                                              \
+        }                                                                                                    \
+    }                                                                                                        \
+    RT_DEFINE_STREAM_KERNELS(search_each)
 
 /* For accelerators with kernels for several instruction sets (accel/isa.h): defines the table of the kernels
  * defined by an RT_DEFINE_..._KERNELS macro, and the bytes of scratch memory that they need. */
@@ -192,11 +177,12 @@ RT_KERNEL uint32_t rt_answer_occluded(uint32_t occluder, RtTally *tally) {
 
 /* The kernels of an overlay that answers shadow rays one by one, from
  *
- *     uint32_t find_occluder(const Type *self, const RtScratch *scratch, const RtRay *ray, RtTally *tallies);
+ *     uint32_t find_occluder(const RtAccel *self, const RtScratch *scratch, const RtRay *ray,
+ *                            RtTally *tallies);
  *
  * which returns the occluder of a shadow ray through rt_answer_occluded or rt_pass_on_occluded. All other
  * rays are handed down in streams. */
-#define RT_DEFINE_SHADOW_KERNELS(Type, find_occluder)                                                        \
+#define RT_DEFINE_SHADOW_KERNELS(find_occluder)                                                              \
     RT_KERNEL void occluded_all(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,           \
                                 size_t count, uint32_t *occluders, RtTally *tallies) {                       \
         for (size_t i = 0, next; i < count; i = next) {                                                      \
@@ -204,7 +190,7 @@ RT_KERNEL uint32_t rt_answer_occluded(uint32_t occluder, RtTally *tally) {
             }                                                                                                \
             if (next > i) rt_hand_down_occluded(accel, scratch, rays + i, next - i, occluders + i, tallies); \
             for (; next < count && rays[next].kind == RT_RAY_SHADOW; next++) {                               \
-                occluders[next] = find_occluder((const Type *)accel, scratch, &rays[next], tallies);         \
+                occluders[next] = find_occluder(accel, scratch, &rays[next], tallies);                       \
             }                                                                                                \
         }                                                                                                    \
     }                                                                                                        \

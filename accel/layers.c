@@ -3,10 +3,36 @@
 #include "accel/accel.h"
 
 #include "core/base/clock.h"
+#include "core/base/memory.h"
+
+#include <assert.h>
 
 uint64_t rt_accel_byte_limit(const RtScene *scene) {
     const uint64_t bytes = scene->geometry.object_count * RT_ACCEL_OBJECT_BYTES;
     return bytes > RT_ACCEL_MAX_BYTES ? bytes : RT_ACCEL_MAX_BYTES;
+}
+
+static void destroy_layer(RtAccel *accel) {
+    if (accel->ops->destroy) accel->ops->destroy(accel);
+    rt_free(accel);
+}
+
+RtStatus rt_accel_build_layer(const RtAccelOps *ops, const RtBuild *what, RtAccel *below, RtAccel **out,
+                              RtError *error) {
+    assert(ops->bytes >= sizeof(RtAccel));
+    RtAccel *accel = rt_alloc(1, ops->bytes);
+    if (!accel) return rt_fail_memory(error, ops->name, ops->bytes);
+    *accel = (RtAccel){.ops = ops,
+                       .scene = what->scene,
+                       .below = below,
+                       .exact = !below || below->exact,
+                       .counts = !below || below->counts};
+    RtStatus status = ops->build ? ops->build(accel, what, error) : RT_OK;
+    if (status == RT_OK)
+        *out = accel;
+    else
+        destroy_layer(accel);
+    return status;
 }
 
 RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
@@ -16,16 +42,13 @@ RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threa
     *out = NULL;
     RT_TRY(rt_spec_available(spec, error));
     for (uint32_t i = spec->layer_count; i-- > 0;) {
-        RtAccel *accel = NULL;
-        const RtBuild what = {spec->layers[i].ops,       scene, spec->layers[i].values, top, threads,
-                              rt_accel_byte_limit(scene)};
-        RtStatus status = what.ops->build(&what, &accel, error);
+        const RtBuild what = {scene, spec->layers[i].values, threads, rt_accel_byte_limit(scene)};
+        RtStatus status = rt_accel_build_layer(spec->layers[i].ops, &what, top, &top, error);
         if (status != RT_OK) {
             rt_accel_destroy(top);
             return status;
         }
-        accel->build_seconds = rt_wall_seconds() - start;
-        top = accel;
+        top->build_seconds = rt_wall_seconds() - start;
     }
     *out = top;
     return RT_OK;
@@ -34,7 +57,7 @@ RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threa
 void rt_accel_destroy(RtAccel *accel) {
     while (accel) {
         RtAccel *below = accel->below;
-        accel->ops->destroy(accel);
+        destroy_layer(accel);
         accel = below;
     }
 }
@@ -65,7 +88,9 @@ void rt_accel_describe(const RtAccel *accel, RtDescription *out) {
 }
 
 RtStatus rt_accel_validate(const RtAccel *accel, RtError *error) {
-    for (; accel; accel = accel->below) RT_TRY(accel->ops->validate(accel, error));
+    for (; accel; accel = accel->below) {
+        if (accel->ops->validate) RT_TRY(accel->ops->validate(accel, error));
+    }
     return RT_OK;
 }
 

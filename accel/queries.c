@@ -14,8 +14,7 @@ static void close_layers(const RtQuery *query, const RtAccel *end) {
 
 /* Bytes of the scratch memory of a layer: whole cache lines. */
 static size_t scratch_stride(const RtAccel *layer) {
-    size_t bytes = layer->ops->scratch_bytes ? layer->ops->scratch_bytes(layer) : 0;
-    return (bytes + RT_CACHE_LINE - 1) / RT_CACHE_LINE * RT_CACHE_LINE;
+    return (layer->scratch_bytes + RT_CACHE_LINE - 1) / RT_CACHE_LINE * RT_CACHE_LINE;
 }
 
 /* On failure nothing is left of the query. */
@@ -33,20 +32,16 @@ static RtStatus open_layers(RtQuery *query, RtError *error) {
 }
 
 RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error) {
-    *query = (RtQuery){.accel = accel};
     RtScratch scratch = {NULL, NULL};
-    RtStatus status = rt_crossings_alloc(&accel->scene->geometry, &scratch.crossings, error);
-    if (status != RT_OK) {
-        query->accel = NULL;
-        return status;
-    }
     size_t bytes = 0;
+    *query = (RtQuery){0};
+    RT_TRY(rt_crossings_alloc(&accel->scene->geometry, &scratch.crossings, error));
     for (const RtAccel *layer = accel; layer; layer = layer->below) bytes += scratch_stride(layer);
     if (bytes > 0 && !(scratch.own = rt_alloc(bytes, 1))) {
         rt_free(scratch.crossings);
-        query->accel = NULL;
         return rt_fail_memory(error, "the scratch memory of a query", bytes);
     }
+    query->accel = accel;
     uint32_t layers = 0;
     for (const RtAccel *layer = accel; layer; layer = layer->below) {
         query->scratch[layers++] = scratch;

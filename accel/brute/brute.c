@@ -7,8 +7,6 @@
 #include "accel/brute/brute.h"
 #include "accel/kernel.h"
 
-#include "core/base/memory.h"
-
 #define PARAMS(X) X(PARAM_LANES, RT_LANES_PARAM("spheres or triangles"))
 
 enum { PARAMS(RT_PARAM_INDEX) };
@@ -24,15 +22,11 @@ RT_DEFINE_KERNELS(RtIsaAccel, search)
 
 static const RtKernels one_lane = {RT_KERNEL_OPS};
 
-static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
-    RT_TRY(rt_accel_new(what, sizeof(RtIsaAccel), out, error));
-    ((RtIsaAccel *)*out)->kernels =
-        rt_has_lanes(what->values[PARAM_LANES]) ? RT_KERNELS_FOR(brute, rt_isa_best()) : &one_lane;
+static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
+    bool in_lanes = rt_has_lanes(what->values[PARAM_LANES]);
+    (void)error;
+    rt_isa_use(accel, in_lanes ? RT_KERNELS_FOR(brute, rt_isa_best()) : &one_lane);
     return RT_OK;
-}
-
-static void destroy(RtAccel *accel) {
-    rt_free(accel);
 }
 
 static void describe(const RtAccel *accel, RtDescription *out) {
@@ -41,20 +35,13 @@ static void describe(const RtAccel *accel, RtDescription *out) {
         .references = count, .predicted_cost = count, .predicted_tests = count, RT_NO_QUALITY};
 }
 
-static RtStatus validate(const RtAccel *accel, RtError *error) {
-    (void)accel, (void)error;
-    return RT_OK;
-}
-
 const RtAccelOps rt_brute_ops = {
     .name = "brute",
     .summary = "every object for every ray: no structure, and the definition of the answer",
     .paper = "Whitted 1980, An Improved Illumination Model for Shaded Display, CACM 23(6)",
     RT_PARAMS_OF(params),
+    .bytes = sizeof(RtIsaAccel),
     .build = build,
-    .destroy = destroy,
     RT_ISA_OPS,
-    .scratch_bytes = rt_isa_scratch_bytes,
     .describe = describe,
-    .validate = validate,
 };

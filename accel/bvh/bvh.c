@@ -15,8 +15,6 @@
 #include "accel/surface.h"
 #include "accel/tree/order.h"
 #include "accel/tree/sah_split.h"
-#include "accel/tree/tree_build.h"
-#include "core/base/memory.h"
 
 #define PARAMS(X)                                                                                            \
     X(PARAM_BUILD, "build", RT_CHOICE("binned", RT_TREE_METHODS),                                            \
@@ -52,7 +50,6 @@ static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 static void destroy(RtAccel *accel) {
     rt_hierarchy_clear(&((RtBvh *)accel)->hierarchy);
-    rt_free(accel);
 }
 
 static RtTreeOptions options_of(const RtBuild *what) {
@@ -70,18 +67,18 @@ static RtTreeOptions options_of(const RtBuild *what) {
                            .batch = 1};
 }
 
-static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
+static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
+    const RtGeometry *geometry = &what->scene->geometry;
     const RtValue *values = what->values;
-    RtAccel *accel;
-    RT_TRY(rt_accel_new(what, sizeof(RtBvh), &accel, error));
-    RtHierarchy *hierarchy = &((RtBvh *)accel)->hierarchy;
-    *hierarchy = (RtHierarchy){.width = 2,
-                               .leaf_limit = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
-                               .traversal_cost = values[PARAM_TRAVERSAL_COST].f};
-    ((RtBvh *)accel)->mailbox = values[PARAM_MAILBOX].flag;
     const RtTreeOptions options = options_of(what);
-    return rt_accel_built(
-        accel, rt_hierarchy_build(hierarchy, &what->scene->geometry, &options, what->threads, error), out);
+    RtBvh *self = (RtBvh *)accel;
+    self->hierarchy = (RtHierarchy){.width = 2,
+                                    .leaf_limit = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
+                                    .traversal_cost = values[PARAM_TRAVERSAL_COST].f};
+    RT_TRY(rt_hierarchy_build(&self->hierarchy, geometry, &options, what->threads, error));
+    self->mailbox = values[PARAM_MAILBOX].flag && self->hierarchy.split_refs;
+    if (self->mailbox) accel->scratch_bytes = rt_mailbox_bytes(geometry);
+    return RT_OK;
 }
 
 /* ---- queries ---- */
@@ -168,12 +165,6 @@ RT_KERNEL void search(const RtBvh *self, void *scratch, const RtPreparedRay *ray
 
 RT_DEFINE_KERNELS(RtBvh, search)
 
-static size_t scratch_bytes(const RtAccel *accel) {
-    const RtBvh *self = (const RtBvh *)accel;
-    bool mailbox = self->mailbox && self->hierarchy.split_refs;
-    return mailbox ? rt_mailbox_bytes(&accel->scene->geometry) : 0;
-}
-
 /* ---- looking at it ---- */
 
 static void describe(const RtAccel *accel, RtDescription *out) {
@@ -193,10 +184,10 @@ const RtAccelOps rt_bvh_ops = {
     .summary = "binary hierarchy of boxes, built by the surface area heuristic or along the Morton curve",
     .paper = "Wald 2007, On fast Construction of SAH-based Bounding Volume Hierarchies, RT'07",
     RT_PARAMS_OF(params),
+    .bytes = sizeof(RtBvh),
     .build = build,
     .destroy = destroy,
     RT_KERNEL_OPS,
-    .scratch_bytes = scratch_bytes,
     .describe = describe,
     .validate = validate,
     .each_box = each_box,

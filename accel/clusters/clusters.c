@@ -17,8 +17,6 @@
 #include "accel/clusters/clusters.h"
 
 #include "accel/tree/order.h"
-#include "accel/tree/tree_build.h"
-#include "core/base/memory.h"
 
 #define PARAMS(X)                                                                                            \
     X(PARAM_METHOD, "method",                                                                                \
@@ -58,7 +56,6 @@ static void destroy(RtAccel *accel) {
     RtClusters *self = (RtClusters *)accel;
     rt_extent_set_clear(&self->set);
     rt_hierarchy_clear(&self->hierarchy);
-    rt_free(self);
 }
 
 /* In the order of the choices of `method`. */
@@ -85,10 +82,15 @@ static RtGroup group_of(const RtClusters *self, uint32_t index) {
                      last->first + rt_node_fanout(last) - first->first, hierarchy->nodes[index].box};
 }
 
-static RtStatus fill(RtClusters *self, const RtBuild *what, RtError *error) {
+static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     const RtGeometry *geometry = &what->scene->geometry;
     const RtValue *values = what->values;
     const RtTreeOptions options = options_of(values);
+    RtClusters *self = (RtClusters *)accel;
+    self->hierarchy = (RtHierarchy){.width = (uint32_t)values[PARAM_WIDTH].i,
+                                    .leaf_limit = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
+                                    .traversal_cost = 1};
+    self->nearest_first = values[PARAM_TRAVERSAL_ORDER].choice == 1;
     RT_TRY(rt_hierarchy_build(&self->hierarchy, geometry, &options, what->threads, error));
     uint32_t node_count = self->hierarchy.node_count;
     RT_TRY(rt_extent_set_init(&self->set, (RtExtentKind)values[PARAM_EXTENT].choice,
@@ -98,18 +100,6 @@ static RtStatus fill(RtClusters *self, const RtBuild *what, RtError *error) {
         rt_extent_fit(&self->set, index, &group);
     }
     return RT_OK;
-}
-
-static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
-    const RtValue *values = what->values;
-    RtAccel *accel;
-    RT_TRY(rt_accel_new(what, sizeof(RtClusters), &accel, error));
-    RtClusters *self = (RtClusters *)accel;
-    self->hierarchy = (RtHierarchy){.width = (uint32_t)values[PARAM_WIDTH].i,
-                                    .leaf_limit = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
-                                    .traversal_cost = 1};
-    self->nearest_first = values[PARAM_TRAVERSAL_ORDER].choice == 1;
-    return rt_accel_built(accel, fill(self, what, error), out);
 }
 
 /* ---- queries ---- */
@@ -218,6 +208,7 @@ const RtAccelOps rt_clusters_ops = {
         "hierarchy of extents of any kind, built by clustering objects bottom-up, top-down or one by one",
     .paper = "Walter, Bala, Kulkarni & Pingali 2008, Fast Agglomerative Clustering for Rendering, RT'08",
     RT_PARAMS_OF(params),
+    .bytes = sizeof(RtClusters),
     .build = build,
     .destroy = destroy,
     RT_KERNEL_OPS,

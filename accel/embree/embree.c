@@ -106,11 +106,6 @@ RT_KERNEL void answer_all(const RtAccel *accel, const RtScratch *scratch, const 
 
 RT_DEFINE_STREAM_KERNELS(answer_all)
 
-static size_t scratch_bytes(const RtAccel *accel) {
-    (void)accel;
-    return sizeof(RtEmbreeBatch);
-}
-
 const RtAccelOps rt_embree_ops = {
     .name = "embree",
     .summary = "Intel's library: the competitor (mode=native) and a reference (mode=user)",
@@ -120,10 +115,10 @@ const RtAccelOps rt_embree_ops = {
     .bests = bests,
     .best_count = sizeof bests / sizeof bests[0],
     .available = rt_embree_available,
+    .bytes = sizeof(RtEmbree),
     .build = rt_embree_build,
     .destroy = rt_embree_destroy,
     RT_KERNEL_OPS,
-    .scratch_bytes = scratch_bytes,
     .describe = rt_embree_describe,
     .validate = rt_embree_validate,
     .library = rt_embree_library,

@@ -146,7 +146,7 @@ void rt_embree_answer_native(const RtEmbree *self, const RtScratch *scratch, con
 
 /* embree_build.c, for the table of operations. */
 RtStatus rt_embree_available(const RtValue *values, RtError *error);
-RtStatus rt_embree_build(const RtBuild *what, RtAccel **out, RtError *error);
+RtStatus rt_embree_build(RtAccel *accel, const RtBuild *what, RtError *error);
 void rt_embree_destroy(RtAccel *accel);
 void rt_embree_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_embree_validate(const RtAccel *accel, RtError *error);

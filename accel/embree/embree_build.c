@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Building, describing and validating Embree's scene. */
-#include "accel/embree/embree.h"
-
-#include "core/base/memory.h"
+#include "accel/embree/embree_batch.h"
 
 #include <stdatomic.h>
 #include <string.h>
@@ -23,11 +21,7 @@ RtStatus rt_embree_available(const RtValue *values, RtError *error) {
 static void set_reach(RtEmbree *self) {
     const RtScene *scene = self->base.scene;
     const RtBox *box = &scene->geometry.box;
-    double size = 0, magnitude = 0;
-    for (int a = 0; a < 3; a++) {
-        size = fmax(size, (double)box->hi.at[a] - (double)box->lo.at[a]);
-        magnitude = fmax(magnitude, fmax(fabs((double)box->lo.at[a]), fabs((double)box->hi.at[a])));
-    }
+    double size = fmax(rt_box_longest_side(*box), 0), magnitude = rt_box_largest_coordinate(*box);
     double camera = (double)rt_thickness(scene->camera.from, box) * 0x1p20;
     double reach = fmax(4 * size, 2 * camera);
     self->max_thickness = rt_float_below(reach * 0x1p-20);
@@ -114,11 +108,17 @@ static RtStatus check_width(const RtBox *box, RtError *error) {
                    (double)width, (double)MOST_NATIVE_WIDTH);
 }
 
-static RtStatus build_into(RtEmbree *self, const RtBuild *what, RtError *error) {
-    const RtValue *values = what->values;
+RtStatus rt_embree_build(RtAccel *accel, const RtBuild *what, RtError *error) {
     static const enum RTCBuildQuality qualities[] = {RTC_BUILD_QUALITY_LOW, RTC_BUILD_QUALITY_MEDIUM,
                                                      RTC_BUILD_QUALITY_HIGH};
+    const RtValue *values = what->values;
     enum RTCBuildQuality quality = qualities[values[RT_EMBREE_QUALITY].choice];
+    RtEmbree *self = (RtEmbree *)accel;
+    self->user = values[RT_EMBREE_MODE].choice == 1;
+    self->query = (RtEmbreeQueryKind)values[RT_EMBREE_QUERY].choice;
+    accel->exact = self->user;
+    accel->counts = false;
+    accel->scratch_bytes = sizeof(RtEmbreeBatch);
     if (!self->user) RT_TRY(check_width(&self->base.scene->geometry.box, error));
     RT_TRY(rt_embree_device_open(&self->device, values[RT_EMBREE_ISA].choice, what->threads, error));
     set_reach(self);
@@ -136,19 +136,6 @@ void rt_embree_destroy(RtAccel *accel) {
     if (self->scene) rtcReleaseScene(self->scene);
     rt_embree_device_close(&self->device);
     rt_free(self->indices);
-    rt_free(self);
-}
-
-RtStatus rt_embree_build(const RtBuild *what, RtAccel **out, RtError *error) {
-    const RtValue *values = what->values;
-    RtAccel *accel;
-    RT_TRY(rt_accel_new(what, sizeof(RtEmbree), &accel, error));
-    RtEmbree *self = (RtEmbree *)accel;
-    self->user = values[RT_EMBREE_MODE].choice == 1;
-    self->query = (RtEmbreeQueryKind)values[RT_EMBREE_QUERY].choice;
-    accel->exact = self->user;
-    accel->counts = false;
-    return rt_accel_built(accel, build_into(self, what, error), out);
 }
 
 /* ---- describe, validate ---- */

@@ -8,8 +8,6 @@
  * Exact for every kind: see accel/extent.h. */
 #include "accel/extents/extents.h"
 
-#include "core/base/memory.h"
-
 /* ---- tracing ---- */
 
 RT_KERNEL void scan(RtExtentKind kind, const RtExtents *self, const RtPreparedRay *ray, bool any, RtHit *best,
@@ -44,9 +42,7 @@ static const RtKernels one_lane = {RT_KERNEL_OPS};
 /* ---- building ---- */
 
 static void destroy(RtAccel *accel) {
-    RtExtents *self = (RtExtents *)accel;
-    rt_extent_set_clear(&self->set);
-    rt_free(self);
+    rt_extent_set_clear(&((RtExtents *)accel)->set);
 }
 
 #define PARAMS(X)                                                                                            \
@@ -64,22 +60,20 @@ static RtGroup group_of(const RtGeometry *geometry, const uint32_t *id) {
     return (RtGroup){geometry, id, 1, geometry->boxes[*id]};
 }
 
-static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
+static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     const RtGeometry *geometry = &what->scene->geometry;
+    const uint32_t count = geometry->object_count;
     const RtValue *values = what->values;
-    RtAccel *accel;
-    RT_TRY(rt_accel_new(what, sizeof(RtExtents), &accel, error));
     RtExtents *self = (RtExtents *)accel;
     RtExtentKind kind = (RtExtentKind)values[PARAM_KIND].choice;
     bool in_lanes = kind == RT_EXTENT_BOX && rt_has_lanes(values[PARAM_LANES]);
-    self->isa.kernels = in_lanes ? RT_KERNELS_FOR(extents, rt_isa_best()) : &one_lane;
-    RtStatus status =
-        rt_extent_set_init(&self->set, kind, (uint32_t)values[PARAM_SLABS].i, geometry->object_count, error);
-    for (uint32_t id = 0; status == RT_OK && id < geometry->object_count; id++) {
+    rt_isa_use(accel, in_lanes ? RT_KERNELS_FOR(extents, rt_isa_best()) : &one_lane);
+    RT_TRY(rt_extent_set_init(&self->set, kind, (uint32_t)values[PARAM_SLABS].i, count, error));
+    for (uint32_t id = 0; id < count; id++) {
         RtGroup group = group_of(geometry, &id);
         rt_extent_fit(&self->set, id, &group);
     }
-    return rt_accel_built(accel, status, out);
+    return RT_OK;
 }
 
 /* ---- looking at it ---- */
@@ -122,10 +116,10 @@ const RtAccelOps rt_extents_ops = {
     .summary = "every object's extent, and the object only if its extent is hit: no hierarchy",
     .paper = "Weghorst, Hooper & Greenberg 1984, Improved Computational Methods for Ray Tracing, TOG 3(1)",
     RT_PARAMS_OF(params),
+    .bytes = sizeof(RtExtents),
     .build = build,
     .destroy = destroy,
     RT_ISA_OPS,
-    .scratch_bytes = rt_isa_scratch_bytes,
     .describe = describe,
     .validate = validate,
     .each_box = each_box,

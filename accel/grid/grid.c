@@ -35,11 +35,6 @@
 #include "accel/grid/grid.h"
 #include "accel/mailbox.h"
 
-static size_t scratch_bytes(const RtAccel *accel) {
-    const RtGrid *grid = (const RtGrid *)accel;
-    return grid->mailbox ? rt_mailbox_bytes(&accel->scene->geometry) : 0;
-}
-
 /* One axis of a walk. Intervals are numbered along the ray: 0 is the first it can meet, and lies between
  * planes 0 and 1. Steps and strides are negative (modulo 2^32) if the ray runs against the axis. */
 typedef struct Axis {
@@ -324,10 +319,10 @@ const RtAccelOps rt_grid_ops = {
     .paper = "Fujimoto, Tanaka & Iwata 1986, ARTS, CG&A 6(4); Amanatides & Woo 1987, A Fast Voxel Traversal "
              "Algorithm; Jevans & Wyvill 1989, Adaptive Voxel Subdivision for Ray Tracing, GI'89",
     RT_PARAMS_OF(rt_grid_params),
+    .bytes = sizeof(RtGrid),
     .build = rt_grid_build,
     .destroy = rt_grid_destroy,
     RT_KERNEL_OPS,
-    .scratch_bytes = scratch_bytes,
     .describe = rt_grid_describe,
     .validate = rt_grid_validate,
     .each_box = rt_grid_each_box,

@@ -121,7 +121,7 @@ RtStatus rt_grid_check_limit(const RtGrid *grid, const uint32_t n[3], const uint
 
 /* ---- grid_build.c ---- */
 
-RtStatus rt_grid_build(const RtBuild *what, RtAccel **out, RtError *error);
+RtStatus rt_grid_build(RtAccel *accel, const RtBuild *what, RtError *error);
 void rt_grid_destroy(RtAccel *accel);
 
 /* ---- grid_stats.c ---- */

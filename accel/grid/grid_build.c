@@ -4,6 +4,7 @@
  * these voxels, is complete. */
 #include "accel/grid/grid.h"
 
+#include "accel/mailbox.h"
 #include "core/base/memory.h"
 
 #include <string.h>
@@ -244,7 +245,6 @@ void rt_grid_destroy(RtAccel *accel) {
         rt_free(level->ids);
         rt_free(level->inner);
     }
-    rt_free(grid);
 }
 
 /* The scene's box, extended beyond flat objects by `flat`, and widened by `margin`. */
@@ -262,22 +262,18 @@ static RtBox choose_box(const RtGeometry *geometry, double flat, double margin) 
     return rt_box_widened(box, margin);
 }
 
-RtStatus rt_grid_build(const RtBuild *what, RtAccel **out, RtError *error) {
-    const RtScene *scene = what->scene;
+RtStatus rt_grid_build(RtAccel *accel, const RtBuild *what, RtError *error) {
+    const RtGeometry *g = &what->scene->geometry;
     const RtValue *values = what->values;
-    RtStatus status = RT_OK;
-    RtAccel *accel;
-    RT_TRY(rt_accel_new(what, sizeof(RtGrid), &accel, error));
     RtGrid *grid = (RtGrid *)accel;
     const Builder builder = {grid, values, what->limit, error};
-    grid->box = scene->geometry.box;
+    grid->box = g->box;
     grid->mailbox = values[RT_GRID_MAILBOX].flag;
+    if (grid->mailbox) accel->scratch_bytes = rt_mailbox_bytes(g);
     grid->surfaces = values[RT_GRID_OVERLAP].choice == RT_GRID_EXACT;
     grid->slack = values[RT_GRID_SLACK].f;
-    if (scene->geometry.object_count > 0) {
-        grid->box = choose_box(&scene->geometry, values[RT_GRID_FLAT].f, values[RT_GRID_MARGIN].f);
-        grid->served = rt_surface_rays(&scene->geometry.box, &grid->box);
-        status = make_levels(&builder);
-    }
-    return rt_accel_built(accel, status, out);
+    if (g->object_count == 0) return RT_OK;
+    grid->box = choose_box(g, values[RT_GRID_FLAT].f, values[RT_GRID_MARGIN].f);
+    grid->served = rt_surface_rays(&g->box, &grid->box);
+    return make_levels(&builder);
 }

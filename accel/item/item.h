@@ -34,9 +34,6 @@
 #include "accel/raster/bins.h"
 #include "core/base/simd_across.h"
 
-enum { RT_ITEM_SETTLE, RT_ITEM_ISA, RT_ITEM_PARAM_COUNT };
-extern const RtParam rt_item_params[RT_ITEM_PARAM_COUNT];
-
 RT_DECLARE_KERNELS(item);
 
 #define RT_ITEM_UNDECIDED (UINT32_MAX - 1)
@@ -191,10 +188,8 @@ struct RtItemRaster {
 
 extern const RtItemRaster rt_item_raster_portable, rt_item_raster_avx2, rt_item_raster_avx512;
 
-/* ---- item_build.c, item_stats.c ---- */
+/* ---- item_stats.c ---- */
 
-RtStatus rt_item_build(const RtBuild *what, RtAccel **out, RtError *error);
-void rt_item_destroy(RtAccel *accel);
 bool rt_item_find_cell(const RtAccel *accel, const RtRay *ray, RtCellView *cell);
 void rt_item_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_item_validate(const RtAccel *accel, RtError *error);

@@ -1,7 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Building an item buffer in two steps: objects are sorted into the tiles of the image that they may be seen
- * in (accel/raster/bins.h), then each tile is drawn by one thread. Objects that are in many tiles are kept in
- * a list of their own, which every tile draws first: so no list is long, and large objects hide others.
+/* item: the item buffer of Weghorst, Hooper & Greenberg 1984, an overlay for primary rays.
+ *
+ * Each sample of the image knows which object its ray meets first, found once by drawing all objects. A ray
+ * through a sample tests that one object, RT_LANES rays at a time where they are triangles; where the sample
+ * sees nothing, none.
+ *
+ * Exact: the object's own hit function says whether and where it is hit, and no other object is hit before.
+ * Rays of samples that are undecided, or whose object is missed, and rays that are not bit for bit those of
+ * the samples are passed on.
+ *
+ * It is built in two steps: objects are sorted into the tiles of the image that they may be seen in
+ * (accel/raster/bins.h), then each tile is drawn by one thread. Objects that are in many tiles are kept in a
+ * list of their own, which every tile draws first: so no list is long, and large objects hide others.
  *
  * Neither the samples nor the hit functions asked depend on the number of threads. */
 #include "accel/item/item.h"
@@ -12,7 +22,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-const RtParam rt_item_params[RT_ITEM_PARAM_COUNT] = {
+enum { PARAM_SETTLE, PARAM_ISA };
+static const RtParam params[] = {
     {"settle", RT_FLAG("on"),
      "call hit functions while building, for samples that the projection leaves undecided",
      "this program; off is Weghorst, Hooper & Greenberg 1984"},
@@ -205,9 +216,17 @@ static RtStatus make_terms(RtItemBuffer *buffer, RtError *error) {
     return RT_OK;
 }
 
-static RtStatus fill(RtItemBuffer *buffer, int threads, RtError *error) {
-    RT_TRY(rt_view_init(&buffer->view, &buffer->isa.base.scene->camera, buffer->isa.base.scene->sampling,
-                        error));
+static RtStatus available(const RtValue *values, RtError *error) {
+    return rt_isa_available(values[PARAM_ISA], error);
+}
+
+static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
+    RtItemBuffer *buffer = (RtItemBuffer *)accel;
+    RtIsa isa = rt_isa_asked(what->values[PARAM_ISA]);
+    buffer->settle = what->values[PARAM_SETTLE].flag;
+    rt_isa_use(accel, RT_KERNELS_FOR(item, isa));
+    buffer->raster = RT_KERNELS_FOR(item_raster, isa);
+    RT_TRY(rt_view_init(&buffer->view, &what->scene->camera, what->scene->sampling, error));
     RT_TRY(refuse_size(buffer, error));
     buffer->projection = rt_item_projection(&buffer->view);
     RT_TRY(make_terms(buffer, error));
@@ -215,29 +234,34 @@ static RtStatus fill(RtItemBuffer *buffer, int threads, RtError *error) {
     buffer->samples = rt_alloc_unset(count, sizeof(uint32_t));
     if (!buffer->samples)
         return rt_fail_memory(error, "the samples of an item buffer", count * sizeof(uint32_t));
-    Builder b = {.placing.buffer = buffer, .worker_count = rt_thread_count(threads)};
-    RtStatus status = draw_all(&b, threads, error);
+    Builder b = {.placing.buffer = buffer, .worker_count = rt_thread_count(what->threads)};
+    RtStatus status = draw_all(&b, what->threads, error);
     for (int k = 0; b.workers && k < b.worker_count; k++) free_worker(b.workers[k]);
     rt_free(b.workers);
     rt_bins_clear(&b.bins);
     return status;
 }
 
-void rt_item_destroy(RtAccel *accel) {
+static void destroy(RtAccel *accel) {
     RtItemBuffer *buffer = (RtItemBuffer *)accel;
     rt_free(buffer->samples);
     rt_free(buffer->columns);
     rt_free(buffer->rows);
-    rt_free(buffer);
 }
 
-RtStatus rt_item_build(const RtBuild *what, RtAccel **out, RtError *error) {
-    RtAccel *accel;
-    RT_TRY(rt_accel_new(what, sizeof(RtItemBuffer), &accel, error));
-    RtItemBuffer *buffer = (RtItemBuffer *)accel;
-    RtIsa isa = rt_isa_asked(what->values[RT_ITEM_ISA]);
-    buffer->settle = what->values[RT_ITEM_SETTLE].flag;
-    buffer->isa.kernels = RT_KERNELS_FOR(item, isa);
-    buffer->raster = RT_KERNELS_FOR(item_raster, isa);
-    return rt_accel_built(accel, fill(buffer, what->threads, error), out);
-}
+const RtAccelOps rt_item_ops = {
+    .name = "item",
+    .summary =
+        "overlay: the object that is seen at each sample of the image, found by projecting all objects",
+    .paper = "Weghorst, Hooper & Greenberg 1984, Improved Computational Methods for Ray Tracing, TOG 3(1)",
+    RT_PARAMS_OF(params),
+    .kinds = 1u << RT_RAY_PRIMARY,
+    .bytes = sizeof(RtItemBuffer),
+    .build = build,
+    .destroy = destroy,
+    RT_ISA_OPS,
+    .describe = rt_item_describe,
+    .validate = rt_item_validate,
+    .find_cell = rt_item_find_cell,
+    .available = available,
+};

@@ -25,11 +25,6 @@
 #include "accel/kd/kd.h"
 #include "accel/mailbox.h"
 
-static size_t scratch_bytes(const RtAccel *accel) {
-    const RtKd *kd = (const RtKd *)accel;
-    return kd->mailbox ? rt_mailbox_bytes(&accel->scene->geometry) : 0;
-}
-
 /* A pending node, and the interval of t in which the ray is in its cell. */
 typedef struct Span {
     uint32_t node;
@@ -112,10 +107,10 @@ const RtAccelOps rt_kd_ops = {
         "Wald & Havran 2006, On building fast kd-trees for Ray Tracing, and on doing that in O(N log N), "
         "RT'06",
     RT_PARAMS_OF(rt_kd_params),
+    .bytes = sizeof(RtKd),
     .build = rt_kd_build,
     .destroy = rt_kd_destroy,
     RT_KERNEL_OPS,
-    .scratch_bytes = scratch_bytes,
     .describe = rt_kd_describe,
     .validate = rt_kd_validate,
     .each_box = rt_kd_each_box,

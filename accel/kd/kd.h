@@ -101,7 +101,7 @@ static inline bool rt_kd_part(const RtKd *kd, uint32_t id, const RtBox *cell, Rt
 }
 
 /* kd_build.c */
-RtStatus rt_kd_build(const RtBuild *what, RtAccel **out, RtError *error);
+RtStatus rt_kd_build(RtAccel *accel, const RtBuild *what, RtError *error);
 void rt_kd_destroy(RtAccel *accel);
 
 /* ---- while building ---- */
@@ -179,9 +179,6 @@ typedef struct RtKdMemory {
     double estimate; /* bytes that the requested tree would take; 0 while it fits */
     RtKdLevel levels[RT_KD_DEPTH_LIMIT + 1];
 } RtKdMemory;
-
-/* kd_limit.c. Counts a cell; lowers max_depth where the tree would exceed the limit. */
-void rt_kd_count_cell(RtKdBuilder *b, const RtKdCell *cell, bool leaf);
 
 /* kd_divide.c. Divides a cell, whose children go on top of the pending cells, or makes it a leaf. */
 RtStatus rt_kd_divide(RtKdBuilder *b, const RtKdCell *cell, RtError *error);

@@ -4,6 +4,7 @@
  * Paper: Wald & Havran 2006, On building fast kd-trees for Ray Tracing, and on doing that in O(N log N). */
 #include "accel/kd/kd.h"
 
+#include "accel/mailbox.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 
@@ -56,9 +57,8 @@ static RtStatus make_root(RtKdBuilder *b, const RtGeometry *g, int threads, RtEr
     return RT_OK;
 }
 
-static RtStatus build_on_one(RtKdBuilder *b, const RtGeometry *g, RtError *error) {
+static RtStatus build_on_one(RtKdBuilder *b, RtError *error) {
     uint32_t asked = b->kd->max_depth;
-    RT_TRY(make_root(b, g, 1, error));
     while (b->pending_count > 0) {
         RtKdCell cell = b->pending[--b->pending_count];
         RT_TRY(rt_kd_divide(b, &cell, error));
@@ -68,12 +68,6 @@ static RtStatus build_on_one(RtKdBuilder *b, const RtGeometry *g, RtError *error
                    "a kd-tree of max_depth=%u would take about %.3g GiB, more than %.3g GiB: max_depth=%u "
                    "would fit",
                    asked, b->memory->estimate / 0x1p30, (double)b->memory->limit / 0x1p30, b->kd->max_depth);
-}
-
-static RtStatus build_on_several(RtKdBuilder *b, const RtGeometry *g, uint32_t most, int threads, bool *fits,
-                                 RtError *error) {
-    RT_TRY(make_root(b, g, threads, error));
-    return rt_kd_build_subtrees(b, most, threads, fits, error);
 }
 
 /* A cell is built by one thread if it has at most this fraction of a thread's share; SMALL at least. */
@@ -95,9 +89,11 @@ static RtStatus build_tree(RtKd *kd, const RtGeometry *g, uint64_t limit, int th
         rt_free(kd->ids);
         *kd = empty;
         fits = !several;
-        status = !builder.sides ? rt_fail_memory(error, "building a kd-tree", g->object_count)
-                 : several      ? build_on_several(&builder, g, most, threads, &fits, error)
-                                : build_on_one(&builder, g, error);
+        status = builder.sides ? make_root(&builder, g, several ? threads : 1, error)
+                               : rt_fail_memory(error, "building a kd-tree", g->object_count);
+        if (status == RT_OK)
+            status = several ? rt_kd_build_subtrees(&builder, most, threads, &fits, error)
+                             : build_on_one(&builder, error);
         rt_kd_clear(&builder);
     }
     return status;
@@ -107,16 +103,12 @@ void rt_kd_destroy(RtAccel *accel) {
     RtKd *kd = (RtKd *)accel;
     rt_free(kd->nodes);
     rt_free(kd->ids);
-    rt_free(kd);
 }
 
-RtStatus rt_kd_build(const RtBuild *what, RtAccel **out, RtError *error) {
+RtStatus rt_kd_build(RtAccel *accel, const RtBuild *what, RtError *error) {
     const RtValue *values = what->values;
     const RtGeometry *g = &what->scene->geometry;
     int64_t depth = values[RT_KD_MAX_DEPTH].i;
-    RtStatus status = RT_OK;
-    RtAccel *accel;
-    RT_TRY(rt_accel_new(what, sizeof(RtKd), &accel, error));
     RtKd *kd = (RtKd *)accel;
     kd->traversal_cost = values[RT_KD_TRAVERSAL_COST].f;
     kd->empty_bonus = values[RT_KD_EMPTY_BONUS].f;
@@ -124,11 +116,10 @@ RtStatus rt_kd_build(const RtBuild *what, RtAccel **out, RtError *error) {
     kd->max_depth = depth < 0 ? usual_depth(g->object_count) : (uint32_t)depth;
     kd->failures = (uint32_t)values[RT_KD_FAILURES].i;
     kd->mailbox = values[RT_KD_MAILBOX].flag;
+    if (kd->mailbox) accel->scratch_bytes = rt_mailbox_bytes(g);
     kd->surfaces = values[RT_KD_OVERLAP].choice == OVERLAP_EXACT;
-    if (g->object_count > 0) {
-        kd->box = rt_box_widened(g->box, values[RT_KD_MARGIN].f);
-        kd->served = rt_surface_rays(&g->box, &kd->box);
-        status = build_tree(kd, g, what->limit, what->threads, error);
-    }
-    return rt_accel_built(accel, status, out);
+    if (g->object_count == 0) return RT_OK;
+    kd->box = rt_box_widened(g->box, values[RT_KD_MARGIN].f);
+    kd->served = rt_surface_rays(&g->box, &kd->box);
+    return build_tree(kd, g, what->limit, what->threads, error);
 }

@@ -14,6 +14,7 @@
 
 #include "core/base/memory.h"
 
+#include <float.h>
 #include <string.h>
 
 /* ---- the split ---- */
@@ -233,12 +234,50 @@ static RtStatus partition(RtKdBuilder *b, const RtKdCell *cell, const RtKdSplit 
     return RT_OK;
 }
 
+/* ---- the memory limit ---- */
+
+static uint64_t bytes_of(uint64_t nodes, uint64_t ids) {
+    return nodes * sizeof(RtKdNode) + ids * sizeof(uint32_t);
+}
+
+/* The bytes so far of the tree cut off at `depth`; *estimate extrapolates them to the whole tree. */
+static uint64_t bytes_down_to(const RtKdMemory *memory, uint32_t depth, double *estimate) {
+    const RtKdLevel *levels = memory->levels;
+    uint64_t nodes = levels[depth].nodes, ids = levels[depth].ids;
+    double share = levels[depth].share;
+    for (uint32_t d = 0; d < depth; d++) {
+        nodes += levels[d].nodes;
+        ids += levels[d].leaf_ids;
+        share += levels[d].leaf_share;
+    }
+    *estimate = (double)bytes_of(nodes, ids) / fmax(share, DBL_MIN);
+    return bytes_of(nodes, ids);
+}
+
+/* Counts a cell; lowers max_depth where the tree would exceed the limit. */
+static void count_cell(RtKdBuilder *b, const RtKdCell *cell, bool leaf) {
+    RtKdMemory *memory = b->memory;
+    RtKdLevel *level = &memory->levels[cell->depth];
+    level->nodes++;
+    level->ids += cell->ids.count;
+    level->share += cell->share;
+    level->leaf_ids += leaf ? cell->ids.count : 0;
+    level->leaf_share += leaf ? cell->share : 0;
+    memory->bytes += bytes_of(1, leaf ? cell->ids.count : 0);
+    if (memory->bytes <= memory->limit) return;
+    double estimate;
+    bytes_down_to(memory, b->kd->max_depth, &estimate);
+    if (memory->estimate == 0) memory->estimate = estimate;
+    while (b->kd->max_depth > 0 && (memory->bytes > memory->limit || estimate > (double)memory->limit))
+        memory->bytes = bytes_down_to(memory, --b->kd->max_depth, &estimate);
+}
+
 /* ---- nodes ---- */
 
 static RtStatus make_leaf(RtKdBuilder *b, const RtKdCell *cell, RtError *error) {
     RtKd *kd = b->kd;
     uint64_t needed = (uint64_t)kd->id_count + cell->ids.count;
-    rt_kd_count_cell(b, cell, true);
+    count_cell(b, cell, true);
     if (b->memory->estimate > 0) return RT_OK;
     RT_TRY(rt_reserve(&kd->ids, &b->leaf_id_capacity, needed, sizeof(uint32_t), error));
     kd->nodes[cell->node] = (RtKdNode){.first = kd->id_count, .link = cell->ids.count << 2 | RT_KD_LEAF};
@@ -253,7 +292,7 @@ static RtStatus make_inner(RtKdBuilder *b, const RtKdCell *cell, const RtKdSplit
     RtKd *kd = b->kd;
     RtKdCell children[2];
     uint32_t above, child = kd->node_count;
-    rt_kd_count_cell(b, cell, false);
+    count_cell(b, cell, false);
     if (b->memory->estimate == 0) {
         RT_TRY(rt_reserve(&kd->nodes, &b->node_capacity, (uint64_t)child + 2, sizeof(RtKdNode), error));
         kd->nodes[cell->node] = (RtKdNode){.split = split->plane, .link = child << 2 | split->axis};

@@ -157,20 +157,23 @@ static RtStatus build_subtree(void *context, RtTasks *tasks, const void *task, R
     return RT_OK;
 }
 
-/* Adds up the bytes of the subtrees, and whether all of them fit. */
-static void add_up(const Subtrees *s, uint64_t *bytes, bool *fits) {
-    for (uint32_t i = 0; i < s->count; i++) {
-        *bytes += s->items[i]->memory.bytes;
-        *fits &= s->items[i]->memory.estimate == 0;
-        add_up(&s->items[i]->below, bytes, fits);
-    }
-}
+/* The whole tree, before it is joined. */
+typedef struct Sums {
+    uint64_t bytes, nodes, ids;
+    uint32_t subtrees;
+    bool fit; /* each of its parts */
+} Sums;
 
-static bool all_fits(const Subtrees *s, const RtKdBuilder *b) {
-    uint64_t bytes = b->memory->bytes;
-    bool fits = b->memory->estimate == 0;
-    add_up(s, &bytes, &fits);
-    return fits && bytes <= b->memory->limit;
+static void add_up(const Subtrees *s, Sums *sums) {
+    sums->subtrees += s->count;
+    for (uint32_t i = 0; i < s->count; i++) {
+        const Subtree *item = s->items[i];
+        sums->bytes += item->memory.bytes;
+        sums->nodes += item->kd.node_count - 1;
+        sums->ids += item->kd.id_count;
+        sums->fit &= item->memory.estimate == 0;
+        add_up(&item->below, sums);
+    }
 }
 
 /* ---- one tree ---- */
@@ -232,26 +235,14 @@ static void copy_subtree(void *context, size_t index) {
         memcpy(joined->ids + item->ids_at, item->kd.ids, item->kd.id_count * sizeof(uint32_t));
 }
 
-/* Adds the numbers of nodes, ids and subtrees. */
-static void count(const Subtrees *s, uint64_t *nodes, uint64_t *ids, uint32_t *subtrees) {
-    *subtrees += s->count;
-    for (uint32_t i = 0; i < s->count; i++) {
-        *nodes += s->items[i]->kd.node_count - 1;
-        *ids += s->items[i]->kd.id_count;
-        count(&s->items[i]->below, nodes, ids, subtrees);
-    }
-}
-
-static RtStatus join(const Subtrees *s, RtKd *kd, int threads, RtError *error) {
-    uint64_t nodes = kd->node_count, ids = kd->id_count;
-    uint32_t subtrees = 0;
-    count(s, &nodes, &ids, &subtrees);
-    if (nodes > UINT32_MAX || ids > UINT32_MAX)
+static RtStatus join(const Subtrees *s, const Sums *sums, RtKd *kd, int threads, RtError *error) {
+    const size_t nodes = (size_t)sums->nodes, ids = (size_t)sums->ids;
+    if (sums->nodes > UINT32_MAX || sums->ids > UINT32_MAX)
         return rt_fail(error, RT_BAD_INPUT, "a kd-tree holds no more than %u nodes and entries of lists",
                        UINT32_MAX);
-    Joined joined = {.nodes = rt_alloc_unset((size_t)nodes, sizeof(RtKdNode)),
-                     .ids = rt_alloc_unset((size_t)ids, sizeof(uint32_t)),
-                     .whole = rt_alloc(subtrees, sizeof(Subtree *)),
+    Joined joined = {.nodes = rt_alloc_unset(nodes, sizeof(RtKdNode)),
+                     .ids = rt_alloc_unset(ids, sizeof(uint32_t)),
+                     .whole = rt_alloc(sums->subtrees, sizeof(Subtree *)),
                      .node_count = 1};
     RtStatus status = RT_OK;
     if (joined.nodes && joined.ids && joined.whole) {
@@ -259,7 +250,7 @@ static RtStatus join(const Subtrees *s, RtKd *kd, int threads, RtError *error) {
         status = rt_parallel_each(joined.whole_count, threads, copy_subtree, &joined, error);
     } else {
         status = rt_fail_memory(error, "the nodes of a kd-tree",
-                                (size_t)nodes * sizeof(RtKdNode) + (size_t)ids * sizeof(uint32_t));
+                                nodes * sizeof(RtKdNode) + ids * sizeof(uint32_t));
     }
     rt_free(joined.whole);
     rt_free(status == RT_OK ? kd->nodes : joined.nodes);
@@ -294,8 +285,10 @@ RtStatus rt_kd_build_subtrees(RtKdBuilder *b, uint32_t most, int threads, bool *
     if (status == RT_OK)
         status =
             rt_parallel_tasks(s.items, s.count, sizeof(Subtree *), threads, build_subtree, &sharing, error);
-    *fits = status == RT_OK && all_fits(&s, b);
-    if (*fits) status = join(&s, b->kd, threads, error);
+    Sums sums = {b->memory->bytes, b->kd->node_count, b->kd->id_count, 0, b->memory->estimate == 0};
+    if (status == RT_OK) add_up(&s, &sums);
+    *fits = status == RT_OK && sums.fit && sums.bytes <= b->memory->limit;
+    if (*fits) status = join(&s, &sums, b->kd, threads, error);
     clear(&s);
     return status;
 }

@@ -29,21 +29,6 @@
 
 #include <assert.h>
 
-#define RT_LIGHT_PARAMS(X)                                                                                   \
-    X(RT_LIGHT_CELLS, "cells", RT_INT("0", 0, 4096, "1|7|256"),                                              \
-      "cells along the longer edge of the part of a face that sees the scene; 0: as fine as the objects",    \
-      "this program; Haines & Greenberg 1986 use 20 to 200")                                                 \
-    X(RT_LIGHT_FULL_OCCLUSION, "full_occlusion", RT_FLAG("on"),                                              \
-      "end a list at the depth where objects probably cover the whole cell",                                 \
-      "Haines & Greenberg 1986, of one object")                                                              \
-    X(RT_LIGHT_EXTENTS, "extents", RT_FLAG("on"),                                                            \
-      "skip objects that are not seen in the ray's sixteenth of the cell", "this program")                   \
-    X(RT_LIGHT_LONGEST, "longest", RT_INT("64", 1, 65534, "2"),                                              \
-      "most entries of a list; rays that need deeper ones are passed on", "measured")
-
-enum { RT_LIGHT_PARAMS(RT_PARAM_INDEX) RT_LIGHT_PARAM_COUNT };
-extern const RtParam rt_light_params[RT_LIGHT_PARAM_COUNT];
-
 /* An object of a list, or RT_LIGHT_BEYOND. */
 typedef struct RtLightEntry {
     uint32_t key;
@@ -198,6 +183,10 @@ typedef struct RtLightOutline {
     float face[3];
 } RtLightOutline;
 
+static inline bool rt_light_is_flat(RtRef object) {
+    return rt_ref_shape(object) == RT_SHAPE_TRIANGLE || rt_ref_shape(object) == RT_SHAPE_POLYGON;
+}
+
 /* Of a flat object, in cells of the tile. */
 void rt_light_outline(const RtLightTile *tile, uint32_t id, const RtLightFootprint *at,
                       RtLightOutline *outline);
@@ -264,10 +253,8 @@ RtStatus rt_light_choose(RtLightBuffer *buffer, RtLightProbes **out, RtError *er
 /* After lists are made: drops the lists of lights that cost more with than without them. */
 RtStatus rt_light_choose_again(RtLightBuffer *buffer, RtLightProbes *p, RtError *error);
 
-/* ---- light_build.c, light_stats.c ---- */
+/* ---- light_stats.c ---- */
 uint64_t rt_light_bytes(const RtLightCube *cube);
-RtStatus rt_light_build(const RtBuild *what, RtAccel **out, RtError *error);
-void rt_light_destroy(RtAccel *accel);
 bool rt_light_find_cell(const RtAccel *accel, const RtRay *ray, RtCellView *cell);
 void rt_light_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_light_validate(const RtAccel *accel, RtError *error);

@@ -1,13 +1,25 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Building a light buffer: margins; the lights that pay (light_choice.c); grids and their resolution, near
- * lists; then the lists, light by light (light_lists.c). */
+/* light: the light buffer of Haines & Greenberg 1986, an overlay for shadow rays.
+ *
+ * A ray to a light lies in one cell of the cube around it, and can be blocked by the objects in the list of
+ * that cell alone, and of these by none that is deeper than the ray's origin or not around the ray's place in
+ * the cell. Lists end where a cell is likely to be covered, or where they would be too long: a ray that comes
+ * to such an end is passed on. So nothing need be proved about covers, and lists may be cut anywhere.
+ *
+ * Every object is opaque: shadow rays are blocked by whatever they meet, transmission or not (rt_shadow_ray
+ * in render/illumination.c and its caller attenuate nothing). So any shape that fills a cell can cover it.
+ *
+ * Exact: every object is tested by its own hit function, or the same in lanes (light_pairs.h); lists hold
+ * more than needed rather than less (light_footprint.c). Passed on are also rays that are not exactly what a
+ * shadow ray is: from inside the domain, dir = light - origin, tmax at most 1.
+ *
+ * This file builds it: margins; the lights that pay (light_choice.c); grids and their resolution, near lists;
+ * then the lists, light by light (light_lists.c). */
 #include "accel/light/light.h"
 
 #include "core/base/memory.h"
 
 #include <stdlib.h>
-
-const RtParam rt_light_params[RT_LIGHT_PARAM_COUNT] = {RT_LIGHT_PARAMS(RT_PARAM_ENTRY)};
 
 /* ---- margins ---- */
 
@@ -214,28 +226,56 @@ static RtStatus fill(RtLightBuffer *buffer, const RtBuild *what, RtLightProbes *
     return RT_OK;
 }
 
-void rt_light_destroy(RtAccel *accel) {
+static void destroy(RtAccel *accel) {
     RtLightBuffer *buffer = (RtLightBuffer *)accel;
     for (uint32_t i = 0; buffer->cubes && i < accel->scene->light_count; i++)
         rt_light_drop(&buffer->cubes[i]);
     rt_free(buffer->cubes);
-    rt_free(buffer);
 }
 
-RtStatus rt_light_build(const RtBuild *what, RtAccel **out, RtError *error) {
+#define PARAMS(X)                                                                                            \
+    X(PARAM_CELLS, "cells", RT_INT("0", 0, 4096, "1|7|256"),                                                 \
+      "cells along the longer edge of the part of a face that sees the scene; 0: as fine as the objects",    \
+      "this program; Haines & Greenberg 1986 use 20 to 200")                                                 \
+    X(PARAM_FULL_OCCLUSION, "full_occlusion", RT_FLAG("on"),                                                 \
+      "end a list at the depth where objects probably cover the whole cell",                                 \
+      "Haines & Greenberg 1986, of one object")                                                              \
+    X(PARAM_EXTENTS, "extents", RT_FLAG("on"),                                                               \
+      "skip objects that are not seen in the ray's sixteenth of the cell", "this program")                   \
+    X(PARAM_LONGEST, "longest", RT_INT("64", 1, 65534, "2"),                                                 \
+      "most entries of a list; rays that need deeper ones are passed on", "measured")
+
+enum { PARAMS(RT_PARAM_INDEX) };
+static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
+
+static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     const RtValue *values = what->values;
-    RtAccel *accel;
-    RT_TRY(rt_accel_new(what, sizeof(RtLightBuffer), &accel, error));
     RtLightBuffer *buffer = (RtLightBuffer *)accel;
-    buffer->cells = (uint32_t)values[RT_LIGHT_CELLS].i;
-    buffer->longest = (uint32_t)values[RT_LIGHT_LONGEST].i;
-    buffer->full_occlusion = values[RT_LIGHT_FULL_OCCLUSION].flag;
-    buffer->extents = values[RT_LIGHT_EXTENTS].flag;
+    buffer->cells = (uint32_t)values[PARAM_CELLS].i;
+    buffer->longest = (uint32_t)values[PARAM_LONGEST].i;
+    buffer->full_occlusion = values[PARAM_FULL_OCCLUSION].flag;
+    buffer->extents = values[PARAM_EXTENTS].flag;
     RtIsa isa = rt_isa_best();
-    buffer->isa.kernels = RT_KERNELS_FOR(light, isa);
+    rt_isa_use(accel, RT_KERNELS_FOR(light, isa));
     buffer->raster = RT_KERNELS_FOR(light_raster, isa);
     RtLightProbes *probes = NULL;
     RtStatus status = fill(buffer, what, &probes, error);
     rt_free(probes);
-    return rt_accel_built(accel, status, out);
+    return status;
 }
+
+const RtAccelOps rt_light_ops = {
+    .name = "light",
+    .summary = "overlay: a cube of cells around each light, with the objects seen in each cell by depth",
+    .paper = "Haines & Greenberg 1986, The Light Buffer: A Shadow-Testing Accelerator, CG&A 6(9)",
+    RT_PARAMS_OF(params),
+    .kinds = 1u << RT_RAY_SHADOW,
+    .trial = "light:cells=100", /* a scene of few objects has no cells but those asked for */
+    .bytes = sizeof(RtLightBuffer),
+    .build = build,
+    .destroy = destroy,
+    RT_ISA_OPS,
+    .describe = rt_light_describe,
+    .validate = rt_light_validate,
+    .find_cell = rt_light_find_cell,
+};

@@ -84,10 +84,6 @@ static RtLightTile tile_at(const Drawing *d, uint32_t tile) {
     return (RtLightTile){*on, tile % on->grid->columns, tile / on->grid->columns, 1};
 }
 
-static bool is_flat(RtRef object) {
-    return rt_ref_shape(object) == RT_SHAPE_TRIANGLE || rt_ref_shape(object) == RT_SHAPE_POLYGON;
-}
-
 static void cover_curved(const RtLightTile *tile, uint32_t id, const RtLightCells *at, RtLightDraft *draft) {
     for (int row = at->lo[1]; row <= at->hi[1] + 1; row++) {
         for (int column = at->lo[0]; column <= at->hi[0] + 1; column++) {
@@ -134,7 +130,7 @@ static RtStatus take_footprint(const RtLightTile *tile, RtRef object, bool cover
     const RtLightCells at = rt_light_cells(tile, &from);
     if (at.lo[0] > at.hi[0] || at.lo[1] > at.hi[1]) return RT_OK;
     if (!cover) RT_TRY(make_room(draft, RT_LIGHT_TILE_CELLS, error));
-    if (is_flat(object)) {
+    if (rt_light_is_flat(object)) {
         rt_light_outline(tile, id, &from, &outline);
         if (cover)
             raster->cover_outline(&outline, &at, draft);
@@ -314,8 +310,7 @@ static RtStatus make_tile(void *context, size_t item, int thread, RtError *error
 /* ---- all tiles ---- */
 
 /* Moves the lists of a tile to their place. */
-static RtStatus move_tile(void *context, size_t item, int thread, RtError *error) {
-    (void)thread, (void)error;
+static void move_tile(void *context, size_t item) {
     const Drawing *d = context;
     RtLightCube *cube = &d->buffer->cubes[d->light];
     Made *made = &d->made[item];
@@ -330,7 +325,6 @@ static RtStatus move_tile(void *context, size_t item, int thread, RtError *error
         memcpy(cube->entries + made->place, made->entries, made->count * sizeof(RtLightEntry));
     rt_free(made->entries);
     made->entries = NULL;
-    return RT_OK;
 }
 
 /* Assigns faces and tiles their places; returns the number of entries. */
@@ -362,7 +356,7 @@ static RtStatus make_all(Drawing *d, int threads, RtError *error) {
     if (!cube->tiles || !cube->first || !cube->entries)
         return rt_fail_memory(error, "the lists of a light buffer", sum * sizeof(RtLightEntry));
     cube->first[cube->cell_count] = sum;
-    return rt_parallel_for(cube->tile_count, threads, move_tile, d, error);
+    return rt_parallel_each(cube->tile_count, threads, move_tile, d, error);
 }
 
 /* An object that is no triangle, on all faces. */

@@ -128,9 +128,8 @@ static RtStatus check_tile(const RtLightTile *tile, uint32_t id, const RtLightFo
     const RtLightGrid *grid = tile->on.grid;
     const RtLightCells at = rt_light_cells(tile, from);
     RtRef object = tile->on.geometry->objects[id];
-    RtShape shape = rt_ref_shape(object);
     RtLightOutline outline;
-    bool flat = shape == RT_SHAPE_TRIANGLE || shape == RT_SHAPE_POLYGON;
+    bool flat = rt_light_is_flat(object);
     if (flat) rt_light_outline(tile, id, from, &outline);
     uint32_t number = grid->first_tile + tile->row * grid->columns + tile->column;
     uint32_t first = grid->first_cell + rt_light_first_cell(cube->tiles[number]);

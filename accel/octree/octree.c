@@ -35,11 +35,6 @@
 /* A descent pushes at most 7 nodes per depth. */
 enum { MAX_STACK = 7 * RT_OCTREE_DEPTH_LIMIT + 8, MAX_CELLS = 64 };
 
-static size_t scratch_bytes(const RtAccel *accel) {
-    const RtOctree *tree = (const RtOctree *)accel;
-    return tree->mailbox ? rt_mailbox_bytes(&accel->scene->geometry) : 0;
-}
-
 RT_KERNEL float near_crossing(const RtPreparedRay *ray, int axis, float plane) {
     return (plane - ray->org_near[axis]) * ray->inv[axis];
 }
@@ -375,10 +370,10 @@ const RtAccelOps rt_octree_ops = {
     .paper = "Glassner 1984, Space Subdivision for Fast Ray Tracing, CG&A 4(10); Revelles, Ureña & Lastra "
              "2000, An Efficient Parametric Algorithm for Octree Traversal, WSCG",
     RT_PARAMS_OF(rt_octree_params),
+    .bytes = sizeof(RtOctree),
     .build = rt_octree_build,
     .destroy = rt_octree_destroy,
     RT_KERNEL_OPS,
-    .scratch_bytes = scratch_bytes,
     .describe = rt_octree_describe,
     .validate = rt_octree_validate,
     .each_box = rt_octree_each_box,

@@ -77,7 +77,7 @@ static inline bool rt_octree_is_inner(const RtOctreeNode *node) {
 }
 
 /* octree_build.c */
-RtStatus rt_octree_build(const RtBuild *what, RtAccel **out, RtError *error);
+RtStatus rt_octree_build(RtAccel *accel, const RtBuild *what, RtError *error);
 void rt_octree_destroy(RtAccel *accel);
 
 /* Whether dividing the cell can separate its objects ids[0..count): float32 has a plane inside it and, unless

@@ -11,6 +11,7 @@
  * as many cells as there were to pick from. Its sums are unbiased; their variance is their precision. */
 #include "accel/octree/octree.h"
 
+#include "accel/mailbox.h"
 #include "core/base/memory.h"
 #include "core/base/random.h"
 
@@ -313,9 +314,7 @@ static RtStatus check_limit(const Builder *b, uint32_t from, uint32_t to, RtErro
     RtStatus status = probe_level(b, &probe, from, candidates, &estimate, error);
     rt_free(probe.list);
     rt_free(probe.next);
-    rt_free(tree.nodes);
-    rt_free(tree.boxes);
-    rt_free(tree.ids);
+    rt_octree_destroy(&tree.base);
     RT_TRY(status);
 
     /* A deeper tree is no smaller, and nearer levels are known better. */
@@ -368,15 +367,12 @@ void rt_octree_destroy(RtAccel *accel) {
     rt_free(tree->nodes);
     rt_free(tree->boxes);
     rt_free(tree->ids);
-    rt_free(tree);
 }
 
-RtStatus rt_octree_build(const RtBuild *what, RtAccel **out, RtError *error) {
+RtStatus rt_octree_build(RtAccel *accel, const RtBuild *what, RtError *error) {
     const RtValue *values = what->values;
     const RtGeometry *g = &what->scene->geometry;
     int64_t depth = values[RT_OCTREE_MAX_DEPTH].i;
-    RtAccel *accel;
-    RT_TRY(rt_accel_new(what, sizeof(RtOctree), &accel, error));
     RtOctree *tree = (RtOctree *)accel;
     tree->max_leaf_size = (uint32_t)values[RT_OCTREE_MAX_LEAF_SIZE].i;
     tree->max_depth = depth < 0 ? usual_depth(g->object_count) : (uint32_t)depth;
@@ -386,16 +382,15 @@ RtStatus rt_octree_build(const RtBuild *what, RtAccel **out, RtError *error) {
     tree->flat = values[RT_OCTREE_FLAT].f;
     tree->cut_filled = values[RT_OCTREE_CUT_FILLED].flag;
     tree->mailbox = values[RT_OCTREE_MAILBOX].flag;
+    if (tree->mailbox) accel->scratch_bytes = rt_mailbox_bytes(g);
+    if (g->object_count == 0) return RT_OK;
+    RtBox root = g->box;
+    for (uint32_t i = 0; i < g->object_count; i++)
+        root = rt_box_union(root, rt_octree_grown(tree, g->boxes[i]));
+    root = rt_box_widened(root, values[RT_OCTREE_MARGIN].f);
     Builder builder = {.tree = tree, .objects = g->boxes, .limit = what->limit};
-    RtStatus status = RT_OK;
-    if (g->object_count > 0) {
-        RtBox root = g->box;
-        for (uint32_t i = 0; i < g->object_count; i++)
-            root = rt_box_union(root, rt_octree_grown(tree, g->boxes[i]));
-        root = rt_box_widened(root, values[RT_OCTREE_MARGIN].f);
-        status = build_levels(&builder, root, g->object_count, error);
-    }
+    RtStatus status = build_levels(&builder, root, g->object_count, error);
     rt_free(builder.list);
     rt_free(builder.next);
-    return rt_accel_built(accel, status, out);
+    return status;
 }

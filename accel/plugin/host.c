@@ -12,16 +12,14 @@
 
 /* ---- the structure ---- */
 
-static void free_accel(RtPluginAccel *self) {
-    rt_free(self->other_objects);
-    rt_free(self);
-}
-
+/* Without a table its build has failed. */
 static void destroy(RtAccel *accel) {
     RtPluginAccel *self = (RtPluginAccel *)accel;
-    self->table->destroy(self->self);
-    pthread_mutex_destroy(&self->lock);
-    free_accel(self);
+    if (self->table) {
+        self->table->destroy(self->self);
+        pthread_mutex_destroy(&self->lock);
+    }
+    rt_free(self->other_objects);
 }
 
 /* Reports that `build` failed, with the plugin's message if it wrote one. */
@@ -36,10 +34,10 @@ static RtStatus refuse(const raytally_accel_ops *table, int result, const char *
                    *message ? message : "it refuses this scene without giving a reason");
 }
 
-static void copy_values(const RtBuild *what, raytally_value *values) {
-    for (size_t i = 0; i < what->ops->param_count; i++) {
-        const RtValue value = what->values[i];
-        switch (what->ops->params[i].type) {
+static void copy_values(const RtAccelOps *ops, const RtValue *from, raytally_value *values) {
+    for (size_t i = 0; i < ops->param_count; i++) {
+        const RtValue value = from[i];
+        switch (ops->params[i].type) {
         case RT_PARAM_INT: values[i].integer = value.i; break;
         case RT_PARAM_FLOAT: values[i].number = value.f; break;
         case RT_PARAM_CHOICE: values[i].choice = value.choice; break;
@@ -75,13 +73,14 @@ static RtStatus add_geometry(RtPluginAccel *self, const RtGeometry *geometry, ra
     return RT_OK;
 }
 
-static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
-    const raytally_accel_ops *table = &((const RtPluginOps *)what->ops)->table;
+static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
+    RtPluginAccel *self = (RtPluginAccel *)accel;
+    const raytally_accel_ops *table = &((const RtPluginOps *)accel->ops)->table;
     const RtGeometry *geometry = &what->scene->geometry;
     const uint64_t memory = rt_memory_current_limit();
     raytally_value values[RAYTALLY_MAX_PARAMS] = {0};
     char message[900] = "";
-    copy_values(what, values);
+    copy_values(accel->ops, what->values, values);
     raytally_build_input input = {.size = sizeof input,
                                   .object_count = geometry->object_count,
                                   .boxes = rt_public_box(geometry->boxes),
@@ -91,22 +90,13 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
                                   .message = message,
                                   .message_room = sizeof message - 1};
     memcpy(&input.box, &geometry->box, sizeof input.box);
-    RT_TRY(rt_accel_new(what, sizeof(RtPluginAccel), out, error));
-    RtPluginAccel *self = (RtPluginAccel *)*out;
-    RtStatus status = add_geometry(self, geometry, &input, error);
-    if (status == RT_OK) {
-        int result = table->build(&input, &self->self);
-        if (result != RAYTALLY_BUILD_OK) status = refuse(table, result, message, error);
-    }
-    if (status != RT_OK) {
-        free_accel(self);
-        return status;
-    }
+    RT_TRY(add_geometry(self, geometry, &input, error));
+    int result = table->build(&input, &self->self);
+    if (result != RAYTALLY_BUILD_OK) return refuse(table, result, message, error);
     self->table = table;
-    self->base.exact &= !(table->flags & RAYTALLY_OWN_HITS);
-    self->base.counts &= !(table->flags & RAYTALLY_NO_COUNTS);
-    self->query_bytes = table->query_bytes ? table->query_bytes(self->self) : 0;
-    pthread_mutex_init(&self->lock, NULL);
+    accel->exact &= !(table->flags & RAYTALLY_OWN_HITS);
+    accel->counts &= !(table->flags & RAYTALLY_NO_COUNTS);
+    rt_plugin_query_init(self);
     return RT_OK;
 }
 
@@ -197,6 +187,7 @@ void rt_plugin_ops_init(RtPluginOps *ops, const raytally_accel_ops *table) {
                             .param_count = table->param_count,
                             .kinds = table->flags & RAYTALLY_OVERLAY ? RT_ALL_RAY_KINDS : 0,
                             .remote = true,
+                            .bytes = sizeof(RtPluginAccel),
                             .build = build,
                             .destroy = destroy,
                             .describe = describe,

@@ -50,6 +50,9 @@ __attribute__((format(printf, 2, 3))) void rt_plugin_break(RtPluginAccel *accel,
 /* Sets the kernels, what opens and closes queries, and `check`. */
 void rt_plugin_query_ops(RtAccelOps *ops);
 
+/* Once the plugin has built its structure: sets what queries need. */
+void rt_plugin_query_init(RtPluginAccel *self);
+
 /* ---- the events of a ray that is traced for an observer ---- */
 
 typedef struct RtPluginEvents {

@@ -448,9 +448,10 @@ static RtStatus check(const RtAccel *accel, RtError *error) {
     return self->broken ? rt_fail(error, RT_BROKEN, "%s", self->error.message) : RT_OK;
 }
 
-static size_t scratch_bytes(const RtAccel *accel) {
-    (void)accel;
-    return sizeof(PluginQuery);
+void rt_plugin_query_init(RtPluginAccel *self) {
+    self->base.scratch_bytes = sizeof(PluginQuery);
+    self->query_bytes = self->table->query_bytes ? self->table->query_bytes(self->self) : 0;
+    pthread_mutex_init(&self->lock, NULL);
 }
 
 void rt_plugin_query_ops(RtAccelOps *ops) {
@@ -458,7 +459,6 @@ void rt_plugin_query_ops(RtAccelOps *ops) {
     ops->occluded = time_occluded;
     ops->nearest_counted = count_nearest;
     ops->occluded_counted = count_occluded;
-    ops->scratch_bytes = scratch_bytes;
     ops->open = open_query;
     ops->close = close_query;
     ops->begin = begin;

@@ -58,7 +58,7 @@ void rt_remote_break(const RtAccel *accel, const char *what, const char *doing) 
 /* ---- requests ---- */
 
 typedef struct Request {
-    WireWork *work;
+    RtRemoteWork *work;
     void *message; /* changes only if there is an answer; NULL: it lies in the channel */
     size_t bytes;
     const RtRay *rays; /* [ray_count] */
@@ -83,7 +83,8 @@ static bool request(Remote *remote, uint32_t number, const Request *r) {
     return true;
 }
 
-static bool request_master(Remote *remote, WireWork *work, void *message, size_t bytes, const char *doing) {
+static bool request_master(Remote *remote, RtRemoteWork *work, void *message, size_t bytes,
+                           const char *doing) {
     pthread_mutex_lock(&remote->master);
     bool answered =
         request(remote, 0, &(Request){.work = work, .message = message, .bytes = bytes, .doing = doing});
@@ -107,7 +108,7 @@ static RtStatus fail_broken(const Remote *remote, RtError *error) {
 }
 
 /* A request to channel 0 whose message is a WireChecked. */
-static RtStatus request_check(Remote *remote, WireWork *work, WireChecked *message, const char *doing,
+static RtStatus request_check(Remote *remote, RtRemoteWork *work, WireChecked *message, const char *doing,
                               RtError *error) {
     if (!request_master(remote, work, message, sizeof *message, doing)) return fail_broken(remote, error);
     if (message->status == RT_OK) return RT_OK;
@@ -176,7 +177,7 @@ static RtStatus build(const RtSpec *spec, const RtScene *scene, int threads, dou
     Remote *remote = rt_alloc(1, sizeof(Remote));
     *out = NULL;
     if (!remote) return rt_fail_memory(error, "an accelerator", sizeof(Remote));
-    *remote = (Remote){.base = {.ops = &remote->ops, .scene = scene},
+    *remote = (Remote){.base = {.ops = &remote->ops, .scene = scene, .scratch_bytes = sizeof(RemoteQuery)},
                        .ops = remote_ops,
                        .spec = *spec,
                        .threads = threads,
@@ -194,7 +195,7 @@ static RtStatus build(const RtSpec *spec, const RtScene *scene, int threads, dou
         *out = &remote->base;
     } else {
         remote->child.broken = true;
-        destroy(&remote->base);
+        rt_accel_destroy(&remote->base);
     }
     return status;
 }
@@ -262,15 +263,9 @@ static void destroy(RtAccel *accel) {
     if (remote->child.wire) munmap(remote->child.wire, sizeof(Wire));
     pthread_mutex_destroy(&remote->child.lock);
     pthread_mutex_destroy(&remote->master);
-    rt_free(remote);
 }
 
 /* ---- queries ---- */
-
-static size_t scratch_bytes(const RtAccel *accel) {
-    (void)accel;
-    return sizeof(RemoteQuery);
-}
 
 static void release_channel(Remote *remote, uint32_t channel) {
     pthread_mutex_lock(&remote->child.lock);
@@ -461,7 +456,6 @@ static const RtAccelOps remote_ops = {
     .occluded = occluded,
     .nearest_counted = count_nearest,
     .occluded_counted = count_occluded,
-    .scratch_bytes = scratch_bytes,
     .open = open_query,
     .close = close_query,
     .begin = begin,

@@ -224,13 +224,10 @@ static void trace_occluded(RtQuery *query, WireRays *asked, const RtRay *rays) {
 
 void rt_wire_trace(RtQuery *query, const RtRay *rays, void *message) {
     WireRays *asked = message;
-    const RtAccelOps *ops = query->accel->ops;
     if (asked->any)
         trace_occluded(query, asked, rays);
-    else if (asked->counted)
-        ops->nearest_counted(query->accel, query->scratch, rays, asked->count, asked->hits, asked->tallies);
     else
-        ops->nearest(query->accel, query->scratch, rays, asked->count, asked->hits);
+        rt_nearest(query, rays, asked->count, asked->hits, asked->counted ? asked->tallies : NULL);
 }
 
 void rt_wire_trace_alone(RtQuery *query, const RtRay *rays, void *message) {
@@ -260,7 +257,7 @@ static void serve_channel(Channel *channel, unsigned done, RtQuery *query) {
         unsigned asked;
         while ((asked = atomic_load_explicit(&channel->asked, memory_order_acquire)) != done + 1)
             rt_futex_wait(&channel->asked, asked, NULL);
-        WireWork *work = channel->work;
+        RtRemoteWork *work = channel->work;
         size_t bytes = channel->bytes;
         if (work) {
             RtRay *rays = rt_wire_rays(message, bytes);

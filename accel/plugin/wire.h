@@ -29,12 +29,10 @@
 /* One more than the most threads. The memory of unused channels is never touched. */
 enum { CHANNELS = 1 + 1024, MESSAGE_BYTES = RT_REMOTE_BYTES + 1024 };
 
-/* A request: called with the channel's query; channel 0 has none. */
-typedef RtRemoteWork WireWork;
-
 typedef struct Channel {
     atomic_uint asked, answered; /* number of the last request, and of the last answer */
-    WireWork *work;              /* NULL: closes the channel */
+    RtRemoteWork *work;          /* called with the channel's query, which channel 0 lacks; NULL: closes the
+                                    channel */
     size_t bytes, rays;          /* of the message, and the number of rays after it */
     bool begin;                  /* rt_query_begin comes first */
     _Alignas(64) char message[MESSAGE_BYTES];
@@ -98,8 +96,8 @@ typedef struct WireChecked {
     RtError error;
 } WireChecked;
 
-WireWork rt_wire_validate, rt_wire_show, rt_wire_check, rt_wire_open; /* message: WireChecked */
-WireWork rt_wire_destroy;                                             /* no message; the last request */
+RtRemoteWork rt_wire_validate, rt_wire_show, rt_wire_check, rt_wire_open; /* message: WireChecked */
+RtRemoteWork rt_wire_destroy;                                             /* no message; the last request */
 
 /* Boxes number first, first + 1, ... of the structure, as many as fit; called in order from 0. */
 enum { WIRE_BOXES = 4096, WIRE_DEPTH = 10000 };
@@ -118,7 +116,7 @@ typedef struct WireBoxes {
     uint32_t complete; /* out: 1 if memory sufficed for all of them, else 0 */
     WireBox boxes[WIRE_BOXES];
 } WireBoxes;
-WireWork rt_wire_boxes;
+RtRemoteWork rt_wire_boxes;
 
 /* A stream of rays. The answers are hits: an occluder is a hit at tmin. */
 typedef struct WireRays {
@@ -127,7 +125,7 @@ typedef struct WireRays {
     RtTally tallies[RT_RAY_KIND_COUNT]; /* out: to be added */
     RtHit hits[];                       /* [count] out */
 } WireRays;
-WireWork rt_wire_trace;
+RtRemoteWork rt_wire_trace;
 
 /* Traces a ray for its events number first, first + 1, ..., as many as fit (core/base/observe.h). */
 enum { WIRE_EVENTS = 1024 };
@@ -145,7 +143,7 @@ typedef struct WireEvents {
     uint32_t any, count;  /* count: out; fewer than WIRE_EVENTS: these are the last */
     WireEvent events[WIRE_EVENTS];
 } WireEvents;
-WireWork rt_wire_events;
+RtRemoteWork rt_wire_events;
 
 /* Reports an event that was sent, whatever it holds, to the observer of this thread. */
 void rt_wire_observe(const WireEvent *sent);
@@ -154,7 +152,7 @@ void rt_wire_observe(const WireEvent *sent);
 typedef struct WireAlone {
     uint32_t count, any, counted; /* as in Crash */
 } WireAlone;
-WireWork rt_wire_trace_alone;
+RtRemoteWork rt_wire_trace_alone;
 
 _Static_assert(sizeof(WireBoxes) <= MESSAGE_BYTES &&
                    sizeof(WireEvents) + 2 * sizeof(RtRay) <= MESSAGE_BYTES &&

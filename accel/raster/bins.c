@@ -79,11 +79,9 @@ static RtStatus place_part(void *context, size_t item, int thread, RtError *erro
     return RT_OK;
 }
 
-static RtStatus fill_part(void *context, size_t item, int thread, RtError *error) {
-    (void)thread, (void)error;
+static void fill_part(void *context, size_t item) {
     Sorter *s = context;
     go_over_tiles(s, &s->parts[item]);
-    return RT_OK;
 }
 
 static RtStatus make_room(Sorter *s, RtError *error) {
@@ -129,7 +127,7 @@ RtStatus rt_bins_fill(const RtBinning *what, int threads, RtBins *bins, RtError 
     RtStatus status = rt_parallel_for(s.part_count, threads, place_part, &s, error);
     if (status == RT_OK) status = collect_large(&s, error);
     if (status == RT_OK) status = make_room(&s, error);
-    if (status == RT_OK) status = rt_parallel_for(s.part_count, threads, fill_part, &s, error);
+    if (status == RT_OK) status = rt_parallel_each(s.part_count, threads, fill_part, &s, error);
     for (size_t i = 0; i < s.part_count; i++) {
         rt_free(s.parts[i].ranges);
         rt_free(s.parts[i].next);

@@ -33,6 +33,41 @@ typedef struct RtHierarchy {
     bool split_refs;       /* objects may be in several leaves (accel/surface.h) */
 } RtHierarchy;
 
+/* ---- building ---- */
+
+/* In the order of RT_TREE_METHODS, the choices of a parameter. */
+#define RT_TREE_METHODS "binned|sweep|lbvh|ploc|spatial"
+typedef enum RtTreeMethod {
+    RT_TREE_BINNED,
+    RT_TREE_SWEEP,
+    RT_TREE_LBVH,
+    RT_TREE_PLOC,
+    RT_TREE_SPATIAL,
+    RT_TREE_AGGLOMERATIVE, /* from here on not among RT_TREE_METHODS */
+    RT_TREE_INSERTION,
+    RT_TREE_MEDIAN
+} RtTreeMethod;
+
+typedef struct RtTreeOptions {
+    RtTreeMethod method;
+    uint32_t bits;     /* lbvh, ploc: of a Morton code along each axis */
+    uint32_t radius;   /* ploc: neighbours searched on either side */
+    RtSpatial spatial; /* spatial; its bins also apply to binned */
+    RtInsertionOrder insertion;
+    uint32_t reinsertion; /* most rounds */
+    double batch;         /* of reinsertion: part of the nodes */
+} RtTreeOptions;
+
+/* Builds a complete tree of all objects, at least 1; the same on any number of `threads` (0 = all
+ * processors). On failure nothing is left behind. */
+RtStatus rt_tree_build(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options, int threads,
+                       RtError *error);
+
+/* Builds such a tree of all objects, if there are any, and lays it out: sets the nodes and ids of a hierarchy
+ * whose other members are set. */
+RtStatus rt_hierarchy_build(RtHierarchy *self, const RtGeometry *geometry, const RtTreeOptions *options,
+                            int threads, RtError *error);
+
 static inline bool rt_node_is_leaf(const RtNode *node) {
     return (node->count & RT_NODE_LEAF) != 0;
 }
@@ -62,9 +97,5 @@ void rt_hierarchy_each_box(const RtHierarchy *self, const struct RtExtentSet *ex
 /* RT_OK, or RT_MISMATCH with the first broken invariant, in a message that begins with `name`. */
 RtStatus rt_hierarchy_validate(const RtHierarchy *self, const RtGeometry *geometry, const char *name,
                                RtError *error);
-
-/* coverage.c, for rt_hierarchy_validate: whether the leaves of each object contain its surface. */
-RtStatus rt_hierarchy_check_coverage(const RtHierarchy *self, const RtGeometry *geometry, const char *name,
-                                     RtError *error);
 
 #endif

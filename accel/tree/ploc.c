@@ -40,6 +40,8 @@ typedef struct Rounds {
     uint32_t *nearest;   /* [count] its position in the row */
     Remaining *left;     /* [chunks] */
     uint32_t count, radius;
+    const RtKeyed *order; /* the input of the first round */
+    const RtBox *boxes;   /* by object */
 } Rounds;
 
 static uint32_t chunk_begin(size_t chunk) {
@@ -160,28 +162,21 @@ static RtStatus run_round(Rounds *r, uint32_t round, int threads, RtError *error
     return RT_OK;
 }
 
-/* The input of the first round. Neighbours in the row are neighbours in memory where possible. */
-typedef struct Start {
-    const Rounds *rounds;
-    const RtKeyed *order;
-    const RtBox *boxes;
-} Start;
-
+/* Neighbours in the row are neighbours in memory where possible. */
 static void set_leaves(void *context, size_t chunk) {
-    const Start *start = context;
-    const Rounds *r = start->rounds;
+    const Rounds *r = context;
     for (uint32_t i = chunk_begin(chunk); i < chunk_end(r, chunk); i++) {
-        uint32_t id = start->order[i].id;
-        rt_tree_set_leaf(r->tree, i, start->boxes[id], id);
-        r->row[i] = (Cluster){rt_box4_load(&start->boxes[id]), i};
+        uint32_t id = r->order[i].id;
+        rt_tree_set_leaf(r->tree, i, r->boxes[id], id);
+        r->row[i] = (Cluster){rt_box4_load(&r->boxes[id]), i};
     }
 }
 
-static RtStatus run_rounds(Rounds *r, const RtBox *boxes, uint32_t bits, int threads, RtError *error) {
-    RtKeyed *order = rt_order_morton(boxes, r->count, bits, threads);
+static RtStatus run_rounds(Rounds *r, uint32_t bits, int threads, RtError *error) {
+    RtKeyed *order = rt_order_morton(r->boxes, r->count, bits, threads);
     if (!order) return rt_fail_memory(error, "Morton codes", 2 * (size_t)r->count * sizeof(RtKeyed));
-    Start start = {r, order, boxes};
-    RtStatus status = rt_parallel_each((r->count + CHUNK - 1) / CHUNK, threads, set_leaves, &start, error);
+    r->order = order;
+    RtStatus status = rt_parallel_each((r->count + CHUNK - 1) / CHUNK, threads, set_leaves, r, error);
     rt_free(order);
     r->tree->used = r->count;
     for (uint32_t round = 0; status == RT_OK && r->count > 1; round++)
@@ -192,16 +187,17 @@ static RtStatus run_rounds(Rounds *r, const RtBox *boxes, uint32_t bits, int thr
 RtStatus rt_tree_ploc(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits, uint32_t radius,
                       int threads, RtError *error) {
     RT_TRY(rt_tree_init(tree, count, error));
-    Rounds r = {tree,
-                rt_alloc_unset(count, sizeof(Cluster)),
-                rt_alloc_unset(count, sizeof(Cluster)),
-                rt_alloc_unset(count, sizeof(double)),
-                rt_alloc_unset(count, sizeof(uint32_t)),
-                rt_alloc((size_t)count / CHUNK + 1, sizeof(Remaining)),
-                count,
-                radius};
+    Rounds r = {.tree = tree,
+                .row = rt_alloc_unset(count, sizeof(Cluster)),
+                .next = rt_alloc_unset(count, sizeof(Cluster)),
+                .distance = rt_alloc_unset(count, sizeof(double)),
+                .nearest = rt_alloc_unset(count, sizeof(uint32_t)),
+                .left = rt_alloc((size_t)count / CHUNK + 1, sizeof(Remaining)),
+                .count = count,
+                .radius = radius,
+                .boxes = boxes};
     bool enough = r.row && r.next && r.distance && r.nearest && r.left;
-    RtStatus status = enough ? run_rounds(&r, boxes, bits, threads, error)
+    RtStatus status = enough ? run_rounds(&r, bits, threads, error)
                              : rt_fail_memory(error, "a row of clusters", (size_t)count * sizeof(Cluster));
     rt_free(r.row);
     rt_free(r.next);

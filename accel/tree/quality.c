@@ -18,13 +18,6 @@ enum { POINTS = 4096, LINES = 8192, POINT_SEED = 1, LINE_SEED = 2 };
 
 /* ---- end-point overlap ---- */
 
-static bool holds_point(const RtBox *box, RtVec3 p) {
-    for (int a = 0; a < 3; a++) {
-        if (!(box->lo.at[a] <= p.at[a] && p.at[a] <= box->hi.at[a])) return false;
-    }
-    return true;
-}
-
 static bool lists(const RtHierarchy *self, const RtNode *leaf, uint32_t id) {
     for (uint32_t i = 0; i < rt_node_fanout(leaf); i++) {
         if (self->ids[leaf->first + i] == id) return true;
@@ -38,7 +31,7 @@ static bool add_overlap(const RtHierarchy *self, uint32_t index, RtVec3 point, u
     const RtNode *node = &self->nodes[index];
     uint32_t fanout = rt_node_fanout(node);
     bool leaf = rt_node_is_leaf(node), below = leaf && lists(self, node, id);
-    if (!holds_point(&node->box, point)) return false;
+    if (!rt_box_contains(node->box, (RtBox){point, point})) return false;
     for (uint32_t i = 0; i < fanout && !leaf; i++)
         below |= add_overlap(self, node->first + i, point, id, cost);
     if (!below) *cost += leaf ? (double)fanout : self->traversal_cost;

@@ -227,11 +227,11 @@ static void descend(Top *top) {
             top->done[top->done_count++] = *group;
             continue;
         }
-        RtTreeRef *refs = into + (group->refs - from);
+        RtRefGroup sides[2], moved = *group;
+        moved.refs = into + (group->refs - from);
+        get_sides(&moved, split->left, centers, sides);
         add_node(top, group->node, split->left);
-        add_group(top, (RtRefGroup){refs, split->left, group->node + 1, group->depth + 1, centers[0]});
-        add_group(top, (RtRefGroup){refs + split->left, group->count - split->left,
-                                    group->node + 2 * split->left, group->depth + 1, centers[1]});
+        for (int s = 0; s < 2; s++) add_group(top, sides[s]);
     }
     RtRefGroup *kept = top->groups;
     top->groups = top->next;

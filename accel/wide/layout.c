@@ -163,16 +163,14 @@ static void place_node(Placer *placer, uint32_t at, uint32_t index) {
     }
 }
 
-static RtStatus place_task(void *context, size_t item, int thread, RtError *error) {
+static void place_task(void *context, size_t item) {
     Layout *layout = context;
     Task *task = &layout->tasks[item];
-    Placer placer = {.layout = layout, .error = error};
-    (void)thread;
+    Placer placer = {.layout = layout};
     place_node(&placer, task->at, task->index);
     fill_waiting(&placer, 0);
     task->nodes = placer.nodes;
     task->cost = placer.cost;
-    return RT_OK;
 }
 
 static RtStatus place_all(Layout *layout, RtError *error) {
@@ -181,7 +179,7 @@ static RtStatus place_all(Layout *layout, RtError *error) {
     place_node(&placer, 0, layout->plan.tree->root);
     fill_waiting(&placer, 0);
     RT_TRY(placer.status);
-    RT_TRY(rt_parallel_for(layout->task_count, layout->plan.how->threads, place_task, layout, error));
+    RT_TRY(rt_parallel_each(layout->task_count, layout->plan.how->threads, place_task, layout, error));
     for (uint32_t i = 0; i < layout->task_count; i++) {
         placer.nodes += layout->tasks[i].nodes;
         placer.cost += layout->tasks[i].cost;

@@ -190,23 +190,20 @@ static void weigh_both(const RtWidePlan *self, uint32_t index, const Weight *sid
     chosen->priority = priority_of(own->surface, area, own->cost[0]);
 }
 
-static bool weigh(const RtWidePlan *self, uint32_t index, uint32_t levels, Weight *own) {
+static bool weigh(void *context, uint32_t index, uint32_t levels, void *weight) {
+    const RtWidePlan *self = context;
     RtTreeLeaf leaf;
     if (rt_tree_get_leaf(self->tree, index, &leaf)) {
-        weigh_reference(self, leaf, own);
+        weigh_reference(self, leaf, weight);
         return true;
     }
     const uint32_t *child = self->tree->nodes[index].child;
     Weight below[2];
-    if (levels == 0 || !weigh(self, child[0], levels - 1, &below[0]) ||
-        !weigh(self, child[1], levels - 1, &below[1]))
+    if (levels == 0 || !weigh(context, child[0], levels - 1, &below[0]) ||
+        !weigh(context, child[1], levels - 1, &below[1]))
         return false;
-    weigh_both(self, index, (const Weight *[2]){&below[0], &below[1]}, own);
+    weigh_both(self, index, (const Weight *[2]){&below[0], &below[1]}, weight);
     return true;
-}
-
-static bool weigh_part(void *context, uint32_t index, uint32_t levels, void *weight) {
-    return weigh(context, index, levels, weight);
 }
 
 static void weigh_node(void *context, uint32_t index, const void *const sides[2], void *weight) {
@@ -215,7 +212,7 @@ static void weigh_node(void *context, uint32_t index, const void *const sides[2]
 
 RtStatus rt_wide_plan_init(RtWidePlan *self, RtTree *tree, const RtGeometry *geometry,
                            const RtWideLayout *how, RtError *error) {
-    RtReduction reduction = {sizeof(Weight), weigh_part, weigh_node, self};
+    RtReduction reduction = {sizeof(Weight), weigh, weigh_node, self};
     RtReducedParts parts;
     Weight whole;
     *self = (RtWidePlan){.tree = tree,

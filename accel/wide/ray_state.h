@@ -272,7 +272,7 @@ RT_KERNEL bool test_triangles(const RtWideTriangles *blocks, uint32_t mask, RayS
     return false;
 }
 
-/* rt_wide_list_count. Ids are less than 2^31, and RT_NO_OBJECT is not. */
+/* rt_wide_count of a leaf without triangles. Ids are less than 2^31, and RT_NO_OBJECT is not. */
 RT_KERNEL uint32_t list_count(const Query *q, RtWideRef ref) {
     const RtWideList *list = rt_wide_leaf_at(q->tree, ref);
     const uint32_t none = rt_bits(rt_load_ints8(list->id));

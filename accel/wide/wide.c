@@ -14,9 +14,6 @@
  * triangle of a leaf. Rays are counted as if traced alone, with the same counts for all instruction sets and
  * any number of rays in flight. */
 #include "accel/wide/wide.h"
-#include "accel/tree/tree_build.h"
-
-#include "core/base/memory.h"
 
 /* Parameters of `bvh` that are constants here. */
 enum { MORTON_BITS = 21, PLOC_RADIUS = 25 };
@@ -71,9 +68,7 @@ enum { MANY_OBJECTS = 1 << 20 };
 /* ---- build ---- */
 
 static void destroy(RtAccel *accel) {
-    RtWide *self = (RtWide *)accel;
-    for (int i = 0; i < 2; i++) rt_wide_clear(&self->trees[i]);
-    rt_free(self);
+    for (int i = 0; i < 2; i++) rt_wide_clear(&((RtWide *)accel)->trees[i]);
 }
 
 static RtTreeOptions options_of(const RtBuild *what, RtTreeMethod method) {
@@ -114,28 +109,20 @@ static RtStatus available(const RtValue *values, RtError *error) {
     return rt_isa_available(values[PARAM_ISA], error);
 }
 
-static RtStatus fill_trees(RtWide *self, const RtBuild *what, RtError *error) {
-    RtTreeMethod method = (RtTreeMethod)what->values[PARAM_BUILD].choice;
-    RT_TRY(fill(&self->trees[0], what, method, error));
-    if (self->occluded == &self->trees[0]) return RT_OK;
-    return fill(&self->trees[1], what, RT_TREE_BINNED, error);
-}
-
-static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
+static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     const RtValue *values = what->values;
-    RtAccel *accel;
-    RT_TRY(rt_accel_new(what, sizeof(RtWide), &accel, error));
+    const RtTreeMethod method = (RtTreeMethod)values[PARAM_BUILD].choice;
+    const bool two = method == RT_TREE_SPATIAL && values[PARAM_WHOLE].flag;
     RtWide *self = (RtWide *)accel;
-    bool two = values[PARAM_BUILD].choice == RT_TREE_SPATIAL && values[PARAM_WHOLE].flag;
-    self->nearest = &self->trees[0];
     self->occluded = &self->trees[two ? 1 : 0];
-    self->isa.kernels = RT_KERNELS_FOR(wide, rt_isa_asked(values[PARAM_ISA]));
+    rt_isa_use(accel, RT_KERNELS_FOR(wide, rt_isa_asked(values[PARAM_ISA])));
     self->in_flight = (uint32_t)values[PARAM_IN_FLIGHT].i;
     self->order = values[PARAM_ORDER].flag;
     self->prefetch = values[PARAM_PREFETCH].flag;
     self->sharing = (float)values[PARAM_SHARING].f;
     self->packets = (uint32_t)values[PARAM_PACKETS].i;
-    return rt_accel_built(accel, fill_trees(self, what, error), out);
+    RT_TRY(fill(&self->trees[0], what, method, error));
+    return two ? fill(&self->trees[1], what, RT_TREE_BINNED, error) : RT_OK;
 }
 
 /* ---- describe and validate ---- */
@@ -143,19 +130,19 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
 /* Describes the tree for nearest hits; `bytes` counts both trees. */
 static void describe(const RtAccel *accel, RtDescription *out) {
     const RtWide *self = (const RtWide *)accel;
-    rt_wide_describe(self->nearest, &accel->scene->geometry, out);
+    rt_wide_describe(&self->trees[0], &accel->scene->geometry, out);
     out->bytes = self->trees[0].bytes + self->trees[1].bytes;
 }
 
 static RtStatus validate(const RtAccel *accel, RtError *error) {
     const RtWide *self = (const RtWide *)accel;
-    RT_TRY(rt_wide_validate(self->nearest, &accel->scene->geometry, error));
-    return self->occluded == self->nearest ? RT_OK
-                                           : rt_wide_validate(self->occluded, &accel->scene->geometry, error);
+    const RtGeometry *g = &accel->scene->geometry;
+    RT_TRY(rt_wide_validate(&self->trees[0], g, error));
+    return self->occluded == &self->trees[0] ? RT_OK : rt_wide_validate(self->occluded, g, error);
 }
 
 static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
-    rt_wide_each_box(((const RtWide *)accel)->nearest, viewer);
+    rt_wide_each_box(&((const RtWide *)accel)->trees[0], viewer);
 }
 
 const RtAccelOps rt_wide_ops = {
@@ -165,10 +152,10 @@ const RtAccelOps rt_wide_ops = {
              "Multi-branching BVHs, RT'08",
     RT_PARAMS_OF(params),
     .trial = "wide:sharing=0", /* scattered rays make no packets where they need not */
+    .bytes = sizeof(RtWide),
     .build = build,
     .destroy = destroy,
     RT_ISA_OPS,
-    .scratch_bytes = rt_isa_scratch_bytes,
     .describe = describe,
     .validate = validate,
     .each_box = each_box,

@@ -125,16 +125,12 @@ static inline uint32_t rt_wide_block_count(const RtWideTriangles *block) {
     return rt_wide_count_ids(block->id, RT_WIDE_BLOCK);
 }
 
-/* Objects of a leaf of spheres or other objects. */
-static inline uint32_t rt_wide_list_count(const RtWideTree *tree, RtWideRef ref) {
-    const RtWideList *list = (const RtWideList *)rt_wide_leaf_at(tree, ref);
-    return rt_wide_is_sphere(ref) ? 1 : rt_wide_count_ids(list->id, RT_WIDE_MAX_LEAF);
-}
-
 /* Objects of a leaf. */
 static inline uint32_t rt_wide_count(const RtWideTree *tree, RtWideRef ref) {
-    const RtWideTriangles *blocks = (const RtWideTriangles *)rt_wide_leaf_at(tree, ref);
-    if (rt_wide_kind(ref) != RT_WIDE_TRIANGLES) return rt_wide_list_count(tree, ref);
+    const RtWideTriangles *blocks = rt_wide_leaf_at(tree, ref);
+    const RtWideList *list = rt_wide_leaf_at(tree, ref);
+    if (rt_wide_is_sphere(ref)) return 1;
+    if (rt_wide_kind(ref) != RT_WIDE_TRIANGLES) return rt_wide_count_ids(list->id, RT_WIDE_MAX_LEAF);
     return rt_wide_block_count(blocks) + (rt_wide_has_more(ref) ? rt_wide_block_count(blocks + 1) : 0);
 }
 
@@ -187,11 +183,11 @@ RT_DECLARE_KERNELS(wide);
 
 typedef struct RtWide {
     RtIsaAccel isa;
-    RtWideTree trees[2];                  /* the second is for any-hit rays, if they have their own */
-    const RtWideTree *nearest, *occluded; /* point to these */
-    uint32_t in_flight;                   /* rays traced at once; 1: one after the other */
-    uint32_t packets;                     /* packets traced at once; 0: none */
-    float sharing; /* packets pay if at least so many rays share a visit of a node, on average */
+    RtWideTree trees[2];        /* the second is for any-hit rays, if they have their own */
+    const RtWideTree *occluded; /* the one for any-hit rays */
+    uint32_t in_flight;         /* rays traced at once; 1: one after the other */
+    uint32_t packets;           /* packets traced at once; 0: none */
+    float sharing;              /* packets pay if at least so many rays share a visit of a node, on average */
     bool order, prefetch;
 } RtWide;
 

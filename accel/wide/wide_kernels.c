@@ -75,7 +75,7 @@ RT_KERNEL void trace_as_packets(const Query *q, RateEstimate *estimate, size_t c
 RT_KERNEL void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                      RtHit *hits, uint32_t *occluders, RtTally *tallies, bool any, bool counted) {
     const RtWide *self = (const RtWide *)accel;
-    const RtWideTree *tree = any ? self->occluded : self->nearest;
+    const RtWideTree *tree = any ? self->occluded : &self->trees[0];
     Scratch *own = scratch->own;
     const Query q = {self,    tree,        &accel->scene->geometry, scratch, rays, hits, occluders,
                      tallies, &own->source};

@@ -62,7 +62,7 @@ RT_TEST(an_object_beside_a_plane_is_listed_on_its_side) {
     RtGrid *grid = open_valid(&scene, spec);
     const float slack = (float)grid->slack;
     memcpy(plane, grid->levels[0].blocks->planes[0], sizeof plane);
-    rt_grid_destroy(&grid->base);
+    rt_accel_destroy(&grid->base);
     rt_scene_clear(&scene);
     for (int ulps = -3; ulps <= 3; ulps++) {
         for (int k = 1; k < N; k++) {
@@ -72,7 +72,7 @@ RT_TEST(an_object_beside_a_plane_is_listed_on_its_side) {
         scene = make_places(x, N);
         grid = open_valid(&scene, spec);
         assert_memory_equal(grid->levels[0].blocks->planes[0], plane, sizeof plane);
-        rt_grid_destroy(&grid->base);
+        rt_accel_destroy(&grid->base);
         rt_scene_clear(&scene);
     }
 }
@@ -121,7 +121,7 @@ RT_TEST(a_grid_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {
         double bytes = rt_grid_estimate(grid, &grid->box, n, ids, 8);
         double needed = (double)(own.leaves + own.references + 1) * sizeof(uint32_t);
         assert_true(bytes >= needed && bytes <= 1.5 * needed);
-        rt_grid_destroy(&grid->base);
+        rt_accel_destroy(&grid->base);
     }
 
     /* The named resolution fits, and one more voxel a side does not. */
@@ -142,9 +142,9 @@ RT_TEST(a_grid_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {
         const uint32_t ids[8] = {0, 1, 2, 3, 4, 5, 6, 7};
         const RtGrid *grid = (const RtGrid *)accel;
         uint64_t exactly = (uint64_t)rt_grid_estimate(grid, &grid->box, n, ids, 8);
-        rt_grid_destroy(accel);
+        rt_accel_destroy(accel);
         assert_ok(build_within("grid", exactly, &scene, values, &accel, error));
-        rt_grid_destroy(accel);
+        rt_accel_destroy(accel);
         assert_int_equal(build_within("grid", exactly - 1, &scene, values, &accel, &refusal), RT_BAD_INPUT);
         uint32_t longest = n[0];
         for (int a = 0; a < 3; a++) n[a] += n[a] == longest;

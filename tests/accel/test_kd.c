@@ -39,7 +39,7 @@ RT_TEST(two_spheres_are_split_as_by_hand) {
     assert_lists(kd, 3, 0, 0);
     assert_lists(kd, 4, 1, 1);
     rt_kd_describe(&kd->base, &d);
-    rt_kd_destroy(&kd->base);
+    rt_accel_destroy(&kd->base);
     assert_int_equal(d.interior, 2);
     assert_int_equal(d.leaves, 3);
     assert_int_equal(d.empty_leaves, 1);
@@ -65,7 +65,7 @@ RT_TEST(polygons_in_a_plane_go_to_one_side_of_it) {
     assert_split(kd, 0, 2, 0);
     assert_lists(kd, 1, 1, 0);
     assert_int_equal(kd->id_count, 2);
-    rt_kd_destroy(&kd->base);
+    rt_accel_destroy(&kd->base);
     rt_scene_clear(&scene);
 
     scene = begin_scene();
@@ -73,7 +73,7 @@ RT_TEST(polygons_in_a_plane_go_to_one_side_of_it) {
     assert_ok(rt_scene_finish(&scene, error));
     kd = open_valid(&scene, "kd:traversal_cost=0");
     assert_int_equal(kd->id_count, 3);
-    rt_kd_destroy(&kd->base);
+    rt_accel_destroy(&kd->base);
 
     for (uint32_t nearer = 0; nearer < 2;
          nearer++) { /* into the smaller cell: the lower one, or the upper one */
@@ -86,7 +86,7 @@ RT_TEST(polygons_in_a_plane_go_to_one_side_of_it) {
         assert_split(kd, 0, 2, middle);
         assert_lists(kd, 1, 2 - nearer, 0);
         assert_lists(kd, 2, 1 + nearer, 2 - nearer);
-        if (nearer == 0) rt_kd_destroy(&kd->base);
+        if (nearer == 0) rt_accel_destroy(&kd->base);
     }
 }
 
@@ -198,8 +198,8 @@ RT_TEST(several_threads_refuse_what_one_refuses_and_leave_nothing_behind) {
         RtError refusals[2];
         for (int t = 0; t < 2; t++) {
             RtAccel *accel = NULL;
-            RtBuild what = {ops, &scene, values, NULL, t + 1, limit};
-            assert_int_equal(rt_kd_build(&what, &accel, &refusals[t]), RT_BAD_INPUT);
+            RtBuild what = {&scene, values, t + 1, limit};
+            assert_int_equal(rt_accel_build_layer(ops, &what, NULL, &accel, &refusals[t]), RT_BAD_INPUT);
             assert_int_equal(rt_alloc_live(), live);
         }
         assert_string_equal(refusals[0].message, refusals[1].message);

@@ -119,7 +119,7 @@ RT_TEST(nested_grids_beyond_the_limit_of_memory_are_refused_with_the_depth_that_
         RtDescription description;
         rt_grid_describe(accel, &description);
         assert_true(description.bytes <= limit);
-        rt_grid_destroy(accel);
+        rt_accel_destroy(accel);
         values[RT_GRID_DEPTH].i = 8;
     }
 }
@@ -149,7 +149,7 @@ static double tests_per_ray(const RtScene *scene, const char *spec) {
     RtGrid *grid = open_valid(scene, spec);
     assert_ok(rt_frame_trace(&frame, &grid->base, &options, error));
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_tally_add(&sum, &frame.tallies[kind]);
-    rt_grid_destroy(&grid->base);
+    rt_accel_destroy(&grid->base);
     return (double)sum.object_tests / (double)sum.rays;
 }
 

@@ -136,7 +136,7 @@ RT_TEST(the_estimate_is_near_what_a_build_takes) {
         double estimate = refused_bytes("octree", 1 << 20, &scene, values, &depth);
         assert_ok(build_within("octree", 1 << 28, &scene, values, &accel, error));
         rt_octree_describe(accel, &description);
-        rt_octree_destroy(accel);
+        rt_accel_destroy(accel);
         double ratio = estimate / (double)description.bytes;
         if (!(ratio > 0.75 && ratio < 1.33)) fail_msg("%s: %g of what is taken", specs[i], ratio);
     }

@@ -78,8 +78,8 @@ static RtStatus refuse(const RtValue *values, RtError *problem) {
     return rt_fail(problem, RT_NOT_AVAILABLE, "not here");
 }
 
-static RtStatus build_all_the_same(const RtBuild *what, RtAccel **out, RtError *problem) {
-    (void)what, (void)out, (void)problem;
+static RtStatus build_all_the_same(RtAccel *accel, const RtBuild *what, RtError *problem) {
+    (void)accel, (void)what, (void)problem;
     fail_msg("a layer was built that is not available");
     return RT_OK;
 }

@@ -27,14 +27,14 @@ static void look_at(const RtRay *rays, size_t count) {
     for (size_t i = 0; i < count; i++) rays_sum += XXH3_64bits(&rays[i], sizeof rays[i]);
 }
 
-static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
+static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     look();
-    return brute->build(what, out, error);
+    return brute->build(accel, what, error);
 }
 
 static void destroy(RtAccel *accel) {
+    (void)accel;
     look();
-    brute->destroy(accel);
 }
 
 static void nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
@@ -59,11 +59,6 @@ static void occluded_counted(const RtAccel *accel, const RtScratch *scratch, con
                              uint32_t *occluders, RtTally *tallies) {
     look_at(rays, count);
     brute->occluded_counted(accel, scratch, rays, count, occluders, tallies);
-}
-
-static size_t scratch_bytes(const RtAccel *accel) {
-    look();
-    return brute->scratch_bytes(accel);
 }
 
 static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) {
@@ -104,7 +99,6 @@ static int call_witness(void **state) {
     witness.occluded = occluded;
     witness.nearest_counted = nearest_counted;
     witness.occluded_counted = occluded_counted;
-    witness.scratch_bytes = scratch_bytes;
     witness.open = open_query;
     witness.close = close_query;
     witness.begin = begin;

@@ -241,22 +241,12 @@ static void search(const Mutant *m, void *scratch, const RtPreparedRay *ray, boo
 
 RT_DEFINE_KERNELS(Mutant, search)
 
-static void destroy_mutant(RtAccel *accel) {
-    rt_free(accel);
-}
-
-static RtStatus validate_mutant(const RtAccel *accel, RtError *error) {
-    (void)accel, (void)error;
-    return RT_OK;
-}
-
-static const RtAccelOps mutant_ops = {
-    .name = "mutant", .destroy = destroy_mutant, RT_KERNEL_OPS, .validate = validate_mutant};
+static const RtAccelOps mutant_ops = {.name = "mutant", .bytes = sizeof(Mutant), RT_KERNEL_OPS};
 
 static RtStatus build_mutant(const void *context, const RtScene *scene, int threads, RtAccel **out,
                              RtError *error) {
-    (void)threads;
-    RT_TRY(rt_accel_new(&(RtBuild){.ops = &mutant_ops, .scene = scene}, sizeof(Mutant), out, error));
+    const RtBuild what = {.scene = scene, .threads = threads};
+    RT_TRY(rt_accel_build_layer(&mutant_ops, &what, NULL, out, error));
     Mutant *mutant = (Mutant *)*out;
     mutant->recipe = *(const MutantRecipe *)context;
     mutant->base.exact = mutant->recipe.kind != IGNORED_START;

@@ -61,11 +61,6 @@ static void lie_occluded_counted(const RtAccel *accel, const RtScratch *scratch,
     liar->truth.accel->ops->occluded(liar->truth.accel, scratch, asked, count, occluders);
 }
 
-static size_t scratch_of_truth(const RtAccel *accel) {
-    const RtAccel *truth = ((const Liar *)accel)->truth.accel;
-    return truth->ops->scratch_bytes(truth);
-}
-
 typedef struct Stage {
     RtScene scene;
     RtAccel *brute;
@@ -94,7 +89,6 @@ static int set_up(void **state) {
     liar_ops.nearest_counted = lie_nearest_counted;
     liar_ops.occluded = lie_occluded;
     liar_ops.occluded_counted = lie_occluded_counted;
-    liar_ops.scratch_bytes = scratch_of_truth;
     stage.liar.base = *stage.brute;
     stage.liar.base.ops = &liar_ops;
     *state = &stage;
