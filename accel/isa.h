@@ -85,7 +85,7 @@ RtOccludedCounted rt_isa_occluded_counted;
 
 #define RT_ISA_PARAM                                                                                         \
     "isa", RT_CHOICE("best", "best|portable|avx2|avx512"),                                                   \
-        "instruction set; changes no answer and no count", "best: the widest of this machine"
+        "instruction set; does not affect hits or counts", "best: the widest of this machine"
 
 /* What a value of it asks for. */
 RtIsa rt_isa_asked(RtValue value);
@@ -96,7 +96,7 @@ RtStatus rt_isa_available(RtValue value, RtError *error);
 /* For accelerators that have their kernels in lanes and, to be compared with scalar structures, one record at
  * a time too. */
 #define RT_LANES_PARAM(records)                                                                              \
-    "lanes", RT_CHOICE("16", "1|16"), records " tested at once; changes no answer and no count",             \
+    "lanes", RT_CHOICE("16", "1|16"), records " tested at once; does not affect hits or counts",             \
         "the faster; the same for brute and extents"
 
 /* Whether a value of it asks for the kernels in lanes. */

@@ -11,7 +11,7 @@
 #define RT_BUILTIN_TRIANGLE_BYTES 96
 
 /* The parameter `seed` of random scenes. */
-#define RT_BUILTIN_SEED "seed", RT_INT("1", 0, 1e15, "1"), "of the random numbers", "any"
+#define RT_BUILTIN_SEED "seed", RT_INT("1", 0, 1e15, "1"), "seed of the random numbers", "any"
 
 typedef struct RtBuiltin {
     const char *name, *summary, *source; /* source: the origin of the scene */

@@ -9,8 +9,9 @@
 
 #define PARAMS(X)                                                                                            \
     X(N, "n", RT_INT("1000", 1, 1e6, "1|27"), "trees", "the size that experiments use")                      \
-    X(LEAST, "least", RT_INT("8", 1, 4096, "1|8"), "fewest solids of a tree", "a simple machine part")       \
-    X(MOST, "most", RT_INT("64", 1, 4096, "64"), "most solids of a tree; no fewer than the fewest",          \
+    X(LEAST, "least", RT_INT("8", 1, 4096, "1|8"), "minimum number of solids in a tree",                     \
+      "a simple machine part")                                                                               \
+    X(MOST, "most", RT_INT("64", 1, 4096, "64"), "maximum number of solids in a tree; at least `least`",     \
       "a complicated machine part")                                                                          \
     X(EXTENTS, "extents", RT_FLAG("on"), "trees skip inner nodes whose box a ray misses", "Roth 1982")       \
     X(SEED, RT_BUILTIN_SEED)

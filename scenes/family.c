@@ -273,8 +273,7 @@ static const Recipe recipes[] = {RECIPES(AS_RECIPE)};
 /* The choices without the first bar. */
 #define PARAMS(X)                                                                                            \
     X(SEED, RT_BUILTIN_SEED)                                                                                 \
-    X(KIND, "kind", RT_PARAM_CHOICE, "mixed", 0, 0, &RECIPES(AS_CHOICE)[1], "mixed",                         \
-      "what is hard about it", "any")
+    X(KIND, "kind", RT_PARAM_CHOICE, "mixed", 0, 0, &RECIPES(AS_CHOICE)[1], "mixed", "why it is hard", "any")
 
 enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};

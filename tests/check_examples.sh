@@ -27,7 +27,7 @@ verified() {
 
 # right NAME [SPEC]: all rays of all scenes were traced, without a wrong answer
 right() {
-    local said form='^6 scenes, ([1-9][0-9]*) accelerators?, 5000 rays, ([0-9]+) pairs of a ray and an accelerator: nothing wrong$'
+    local said form='^6 scenes, ([1-9][0-9]*) accelerators?, 5000 rays, ([0-9]+) comparisons: nothing wrong$'
     said=$(verified "$@")
     [[ $said =~ $form && ${BASH_REMATCH[2]} = $((6 * 5000 * BASH_REMATCH[1])) ]] || complain "$1: $said"
 }
@@ -89,7 +89,7 @@ judged() {
     local said
     said=$("$program" verify tetra:size=3 random:n=300,shape=triangle --rays 2000 --plugin "$work/$1.so" --accel "$1" \
         --out "$work/out" --force 2>&1 | tail -n 1 || true)
-    [[ $said = '2 scenes, 1 accelerator, 2000 rays, 4000 pairs of a ray and an accelerator: nothing wrong' ]] || complain "$1: $said"
+    [[ $said = '2 scenes, 1 accelerator, 2000 rays, 4000 comparisons: nothing wrong' ]] || complain "$1: $said"
 }
 
 # peer NAME INCLUDES: as its CMakeLists.txt builds it, if the library is there

@@ -329,7 +329,7 @@ awk -F '[":, ]+' '
 long=wide:in_flight=1,packets=0,order=off
 "$program" $bench --accel bvh --accel brute --ray-stride 7 --accel $long --rays primary,shadow >table 2>&1
 awk 'length > 80 { exit 1 }' table || complain "bench: the table has lines of more than 80 characters"
-for says in 'size=1: 11 objects, 8x8, depth 5, seed 1' 'with that of bvh, .* of 2 rounds;' '^intervals of 50 %' \
+for says in 'size=1: 11 objects, 8x8, depth 5, seed 1' 'relative to bvh, .* of 2 rounds, with 50 %' '^confidence intervals' \
     '^  shadow, [0-9]* rays' '^brute \* ' '^\* brute is measured on one in 7 rays' '^wide:in_flight=1,packets=0,' '^bvh (again) '; do
     grep -q "$says" table || complain "bench: the table does not say '$says'"
 done

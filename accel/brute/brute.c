@@ -37,7 +37,7 @@ static void describe(const RtAccel *accel, RtDescription *out) {
 
 const RtAccelOps rt_brute_ops = {
     .name = "brute",
-    .summary = "every object for every ray: no structure, and the definition of the answer",
+    .summary = "tests every object for every ray: no structure; defines the correct answer",
     .paper = "Whitted 1980, An Improved Illumination Model for Shaded Display, CACM 23(6)",
     RT_PARAMS_OF(params),
     .bytes = sizeof(RtIsaAccel),

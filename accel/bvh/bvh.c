@@ -33,15 +33,15 @@
       "root's area",                                                                                         \
       "Stich et al. 2009")                                                                                   \
     X(PARAM_BUDGET, "budget", RT_FLOAT("2", 1, 16, "1|1.1|16"),                                              \
-      "build=spatial: most references per object, on average", "this program")                               \
+      "build=spatial: maximum average number of references per object", "this program")                      \
     X(PARAM_MAILBOX, "mailbox", RT_FLAG("on"), "build=spatial: test an object at most once per ray",         \
       "Kirk & Arvo 1991")                                                                                    \
-    X(PARAM_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("8", 1, 1024, "1|2|64"), "most objects in a leaf",        \
-      "measured: larger is no better")                                                                       \
+    X(PARAM_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("8", 1, 1024, "1|2|64"),                                  \
+      "maximum number of objects in a leaf", "measured: larger is no better")                                \
     X(PARAM_TRAVERSAL_COST, "traversal_cost", RT_FLOAT("1", 0, 1000, "0|0.1|10"),                            \
       "cost of visiting an inner node, in object tests", "MacDonald & Booth 1990")                           \
     X(PARAM_REINSERTION, "reinsertion", RT_INT("0", 0, 1000, "1|3"),                                         \
-      "most rounds in which subtrees move to cheaper places", "0: the tree as built")
+      "maximum number of rounds in which subtrees move to cheaper places", "0: the tree as built")
 
 enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};

@@ -29,10 +29,10 @@
       "extent=slabs: plane sets, first 3 axes, then 4 diagonals of a cube, then 6 of its faces",             \
       "Kay & Kajiya 1986")                                                                                   \
     X(PARAM_WIDTH, "width", RT_INT("2", 2, RT_NODE_MAX_WIDTH, "3|4|16"),                                     \
-      "most children of a node; the largest are replaced by their own children",                             \
+      "maximum number of children of a node; the largest child is replaced by its children",                 \
       "clustering makes binary trees")                                                                       \
     X(PARAM_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("1", 1, 1024, "2|8|64"),                                  \
-      "most objects in a leaf; objects share a leaf if that costs no more by SAH",                           \
+      "maximum number of objects in a leaf; objects share a leaf if that costs no more by SAH",              \
       "an extent around every object")                                                                       \
     X(PARAM_TRAVERSAL_ORDER, "traversal_order", RT_CHOICE("nearest", "fixed|nearest"),                       \
       "children visited in stored order, or in the order in which the ray enters them", "Kay & Kajiya 1986") \

@@ -113,7 +113,7 @@ static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
 
 const RtAccelOps rt_extents_ops = {
     .name = "extents",
-    .summary = "every object's extent, and the object only if its extent is hit: no hierarchy",
+    .summary = "tests every object's extent, and the object only if its extent is hit: no hierarchy",
     .paper = "Weghorst, Hooper & Greenberg 1984, Improved Computational Methods for Ray Tracing, TOG 3(1)",
     RT_PARAMS_OF(params),
     .bytes = sizeof(RtExtents),

@@ -33,7 +33,7 @@
       "levels of grids; above 1, a voxel may contain a grid, by the rule",                                   \
       "1: a uniform grid; nested grids: Jevans & Wyvill 1989")                                               \
     X(RT_GRID_NEST, "nest", RT_INT("8", 1, 1e6, "1|30"),                                                     \
-      "depth > 1: most objects of a voxel that gets no nested grid",                                         \
+      "depth > 1: a voxel of more objects gets a nested grid",                                               \
       "the only value that reproduces Havran & Sixta 1999")                                                  \
     X(RT_GRID_MARGIN, RT_MARGIN_PARAM("the grid"))                                                           \
     X(RT_GRID_FLAT, "flat", RT_FLOAT("0", 0, 1e9, "0.5"),                                                    \

@@ -243,7 +243,7 @@ static void destroy(RtAccel *accel) {
     X(PARAM_EXTENTS, "extents", RT_FLAG("on"),                                                               \
       "skip objects that are not seen in the ray's sixteenth of the cell", "this program")                   \
     X(PARAM_LONGEST, "longest", RT_INT("64", 1, 65534, "2"),                                                 \
-      "most entries of a list; rays that need deeper ones are passed on", "measured")
+      "maximum number of entries in a list; rays that need deeper ones are passed on", "measured")
 
 enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};

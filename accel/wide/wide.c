@@ -29,12 +29,12 @@ enum { MORTON_BITS = 21, PLOC_RADIUS = 25 };
       "root's area",                                                                                         \
       "Stich et al. 2009")                                                                                   \
     X(PARAM_BUDGET, "budget", RT_FLOAT("2", 1, 16, "1|16"),                                                  \
-      "build=spatial: most references per object, on average", "as for bvh")                                 \
+      "build=spatial: maximum average number of references per object", "as for bvh")                        \
     X(PARAM_WHOLE, "whole", RT_FLAG("off"),                                                                  \
       "build=spatial: any-hit rays use a second tree, binned, which splits no objects",                      \
       "measured: spatial splits help nearest-hit rays and may slow down any-hit rays")                       \
     X(PARAM_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("4", 1, RT_WIDE_MAX_LEAF, "1|8"),                         \
-      "most objects in a leaf; four triangles are tested at once", "measured")                               \
+      "maximum number of objects in a leaf; four triangles are tested at once", "measured")                  \
     X(PARAM_BLOCK_COST, "block_cost", RT_FLOAT("1", 0, 1000, "0|0.1|10"),                                    \
       "cost of testing four triangles, or one other object, in visits of a node", "measured")                \
     X(PARAM_REINSERTION, "reinsertion", RT_INT("2", 0, 1000, "0|1"),                                         \

@@ -31,15 +31,15 @@ typedef struct RtCommand {
     X(info, "info", "SCENE", "objects, bounds, materials, lights, camera of a scene")                        \
     X(render, "render", "SCENE", "an image of a scene, of its cost, or of structures")                       \
     X(trace, "trace", "SCENE", "a ray's path through an accelerator, or its ray tree")                       \
-    X(explore, "explore", "SCENE", "a page to step rays of a pixel through structures")                      \
+    X(explore, "explore", "SCENE", "a web page: step a pixel's rays through structures")                     \
     X(verify, "verify", "[SCENE...]", "check that every hit equals brute's")                                 \
     X(bench, "bench", "SCENE", "count and time accelerators on the rays of one scene")                       \
-    X(compare, "compare", "BEFORE AFTER", "compare two results, or two programs that alternate")             \
-    X(rays, "rays", "SCENE", "write rays for NumPy; bench and verify read such files")                       \
+    X(compare, "compare", "BEFORE AFTER", "compare two results, or two alternating programs")                \
+    X(rays, "rays", "SCENE", "write rays for NumPy, as bench and verify read them")                          \
     X(run, "run", "EXPERIMENT", "run an experiment: CSV files, plots, report")                               \
     X(merge, "merge", "DIR...", "join the shards of an experiment (run --shard)")                            \
-    X(plot, "plot", "DIR", "draw the plots of a result directory again")                                     \
-    X(report, "report", "DIR", "write a result directory's report again, or an index")                       \
+    X(plot, "plot", "DIR", "redraw the plots of a result directory")                                         \
+    X(report, "report", "DIR", "rewrite the report of a result directory, or an index")                      \
     X(reproduce, "reproduce", "DIR", "count again, compare with DIR/counts.csv byte for byte")               \
     X(convert, "convert", "IN OUT", "write a scene in another format")                                       \
     X(new_accel, "new-accel", "NAME", "make a folder with a working plugin to start from")                   \
@@ -92,21 +92,21 @@ void rt_cli_take_time(void *options, const char *text, struct argp_state *state)
 #define RT_MEMORY_OPTION(memory)                                                                             \
     {                                                                                                        \
         "memory", 0, "BYTES", RT_TO_BYTES(memory),                                                           \
-            "Most memory for each accelerator, as in 512M or 4G (powers of 1000): what a built-in one "      \
-            "allocates while it is built, and what the process of a plugin holds at any time. One that "     \
-            "needs more to be built is left out, which is no failure; a plugin that exceeds it later is "    \
+            "Memory limit for each accelerator, as in 512M or 4G (powers of 1000): what a built-in one "     \
+            "allocates during its build, and what a plugin's process holds at any time. One that exceeds "   \
+            "it during its build is skipped, which is no failure; a plugin that exceeds it later is "        \
             "broken (exit code 1)"                                                                           \
     }
 #define RT_ALL_MEMORY_OPTION                                                                                 \
     {                                                                                                        \
         "memory", 0, "BYTES", RT_TO_TAKE(rt_cli_take_memory),                                                \
-            "Most memory that raytally allocates for scenes, structures, rays and images, as in 512M or 4G " \
-            "(powers of 1000); a command that needs more ends with exit code 2"                              \
+            "Memory limit for scenes, structures, rays and images, as in 512M or 4G (powers of 1000); a "    \
+            "command that needs more ends with exit code 2"                                                  \
     }
 #define RT_TIME_OPTION(kept)                                                                                 \
     {                                                                                                        \
         "time", 0, "SECONDS", RT_TO_TAKE(rt_cli_take_time),                                                  \
-            "Most seconds for the whole command, which then ends with exit code 2" kept                      \
+            "Time limit for the whole command, which then ends with exit code 2" kept                        \
     }
 #define RT_TRUST_OPTION(scripts)                                                                             \
     {                                                                                                        \

@@ -151,19 +151,20 @@ static const RtOption options[] = {
     {"accel", 'a', "SPEC", RT_TO_TAKE(take_accel),
      "An accelerator, NAME[:KEY=VALUE,...]; repeat the option for several. `all`: every accelerator at its "
      "defaults. A VALUE may be a list, 1|4|16, or a range, 1..9+2 (steps of 2) or 1..64*2 (doubling): "
-     "raytally then measures an accelerator for each value, and for each combination of several such VALUEs"},
+     "raytally then measures an accelerator for each value, or combination of values"},
     {"ray-stride", 0, "K", RT_TO_TAKE(take_ray_stride),
      "Measure the preceding --accel on every Kth ray only, for slow accelerators"},
     {"baseline", 0, "SPEC", RT_TO_TEXT(baseline),
-     "The accelerator that ratios refer to (default: the first that is not a plugin). NAME:best is the "
+     "The accelerator that ratios are relative to (default: the first that is not a plugin). NAME:best is "
+     "the "
      "fastest of several settings for each kind of rays, as in embree:best (`raytally accels NAME`)"},
     {"milliseconds", 0, "N", RT_TO_TAKE(take_milliseconds),
-     "Repeat a short set of rays within a round until it takes so long (20); 0: run it once"},
+     "Repeat a short set of rays within a round until N milliseconds have passed (20); 0: run it once"},
     {"rounds", 0, "N", RT_TO_INTEGER(rounds, 1, RT_MAX_ROUNDS),
-     "Timing rounds, each in a new random order (10); intervals of 95 % need 6 or more"},
+     "Timing rounds, each in a new random order (10); 95 % intervals need 6 or more"},
     {"builds", 0, "N", RT_TO_INTEGER(builds, 1, RT_MAX_ROUNDS),
-     "Builds of each accelerator at most, in rounds like those of the rays, after a warm-up (20); no more "
-     "once they have taken 0.15 s times N. --count-only builds once"},
+     "Time at most N builds of each accelerator, in rounds too, after a warm-up (20); fewer if they take "
+     "longer than 0.15 s times N. --count-only builds once"},
     RT_UNTIL_OPTIONS(workload.until, workload.patience),
     {"threads", 0, "N", RT_TO_INTEGER(threads, 0, 1024), RT_THREADS_HELP},
     RT_MEMORY_OPTION(memory),
@@ -176,13 +177,12 @@ static const RtOption options[] = {
      "yes`"},
     {"hardware", 0, NULL, RT_TO_FLAG(hardware),
      "Also show the processor's counters per ray: instructions, cycles, last-level cache misses, branch "
-     "mispredictions. They run in separate rounds, so times do not change, and exclude the kernel. If the "
-     "machine or the kernel has no counters, raytally says why. In an experiment: `hardware: yes`"},
+     "mispredictions. They are read in separate rounds, so times do not change, and exclude the kernel. If "
+     "there are none, raytally says why. In an experiment: `hardware: yes`"},
     {"callgrind", 0, "N", RT_TO_TAKE_OPTIONAL(take_callgrind),
      "Also show instructions per ray, counted by valgrind's callgrind: exact, the same on every run, and "
      "available where --hardware is not. raytally builds each accelerator again under valgrind, which is "
-     "many times slower, and traces N rays of each kind (4096). valgrind does not support AVX-512, so this "
-     "runs without it"},
+     "many times slower, and traces N rays of each kind (4096), without AVX-512, which valgrind lacks"},
     {"worker", 0, NULL, RT_TO_HIDDEN_FLAG(worker), NULL}, /* experiment/worker.h */
     {"csv", 0, "FILE", RT_TO_TEXT(csv),
      "Also write a row per cell to FILE, in the columns of times.csv, or of counts.csv with --count-only"},
@@ -357,8 +357,8 @@ const RtSyntax rt_bench_syntax = {
         "Count and time accelerators on the rays of one scene, and compare them.\v"
         "SCENE is a file or a built-in, as in balls:size=3, or several: random:n=1e2..1e5*10 (quote what "
         "your shell would interpret: | and *). Every accelerator traces the same rays and must return "
-        "the same answers, or the exit code is 1; those with hit functions of their own (Embree's native "
-        "mode, libraries as plugins) are measured whatever they answer, and what differs is counted. "
+        "the same answers, or the exit code is 1; those with their own hit functions (Embree's native "
+        "mode, libraries as plugins) are measured whatever they answer, and differences are counted. "
         "Mrays/s are millions of rays per second, on one thread unless --threads says otherwise; `raytally "
         "run` prints the time per ray instead: ns/ray = 1000 / (Mrays/s). Examples:\n"
         "  raytally bench balls --accel bvh --accel grid --accel brute --ray-stride 100\n"

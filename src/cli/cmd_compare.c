@@ -88,7 +88,7 @@ static const RtOption options[] = {
      "With --until: at most this many seconds in total (600)"},
     {"callgrind", 0, "N", RT_TO_TAKE_OPTIONAL(take_callgrind),
      "With --with and a SCENE: also compare instructions per ray of both programs, on N rays of each kind "
-     "(4096), by valgrind, as `bench --callgrind` counts them. Equal counts mean that code only moved"},
+     "(4096), as `bench --callgrind` does. Equal counts mean that code only moved"},
     {"quick", 0, NULL, RT_TO_FLAG(quick), "Run the smaller variant of the EXPERIMENT"},
     {"threads", 0, "N", RT_TO_INTEGER(threads, 0, 1024), "Threads, as in `raytally bench`"},
     RT_ALL_MEMORY_OPTION,
@@ -291,8 +291,8 @@ const RtSyntax rt_compare_syntax = {
         "result directories, or by alternating this raytally and another one on the same rays, which "
         "finds much smaller differences.\v"
         "Ratios are of throughput: above 1 means faster now. All intervals hold simultaneously with 95 % "
-        "confidence, however many cells there are. Directories are single runs at different times: they "
-        "have verdicts of accelerators, over several scenes or pairs of runs, relative to the median "
+        "confidence, however many cells there are. Directories are single runs at different times, so "
+        "verdicts are on accelerators, over several scenes or pairs of runs, relative to the median "
         "accelerator. Examples:\n"
         "  raytally compare balls --accel bvh --accel grid \\\n"
         "    --with ../old/build/release/raytally\n"

@@ -34,7 +34,7 @@ static const RtOption options[] = {
     {"depth", 'd', "N", RT_TO_INTEGER(depth, 1, RT_MAX_DEPTH),
      "Levels of the ray tree, the primary ray being the first, 1..64 (default 4)"},
     {"megabytes", 0, "N", RT_TO_INTEGER(megabytes, 1, 100),
-     "Most megabytes for recorded rays, 1..100 (default 6). If those of all pixels need more, one pixel in "
+     "Size limit for recorded rays, 1..100 (default 6). If the rays of all pixels need more, one pixel in "
      "2 x 2 is recorded, or in 3 x 3, and so on"},
     RT_ALL_MEMORY_OPTION,
     RT_TIME_OPTION(""),
@@ -92,12 +92,12 @@ const RtSyntax rt_explore_syntax = {
     .argument = RT_SCENE_ARGUMENT,
     .finish = finish,
     .help =
-        "Write a page on which to explore how accelerators trace a scene: its image beside their structures "
-        "in 3-D. A click on a pixel shows its ray tree, and each ray can be stepped through the "
-        "accelerators, side by side, with the counters running.\v"
+        "Write a web page that shows how accelerators trace a scene: the image beside the structures in 3-D. "
+        "Click a pixel to see its ray tree, then step a ray through the accelerators, side by side, and "
+        "watch the counters.\v"
         "The page is one file that works without a network: all paths are recorded in advance, as `raytally "
-        "trace` prints them. It needs a browser of 2023 or later; without WebGL it shows all but the 3-D "
-        "view. Examples:\n"
+        "trace` prints them. It needs a browser from 2023 or later; without WebGL only the 3-D view is "
+        "missing. Examples:\n"
         "  raytally explore balls:size=2 --accel bvh --accel grid -o walk.html\n"
         "  raytally explore balls:size=2 --accel item+light:cells=20+octree \\\n"
         "    -o buffers.html"};

@@ -173,8 +173,8 @@ const RtSyntax rt_info_syntax = {.options = options,
                                  .argument = RT_SCENE_ARGUMENT,
                                  .help =
                                      "Show what is in a scene: objects by shape, bounds, materials, lights, "
-                                     "the camera, memory, and a fingerprint of everything that affects an "
-                                     "answer. SCENE is a file or a built-in such as balls:size=5."};
+                                     "the camera, memory, and a fingerprint of everything that affects hits. "
+                                     "SCENE is a file or a built-in such as balls:size=5."};
 
 RtStatus rt_command_info(int argc, char **argv, RtError *error) {
     Options o = {.rays = 100000, .seed = 1};

@@ -24,8 +24,8 @@ const RtSyntax rt_new_accel_syntax = {
     .options = options,
     .arguments = "NAME",
     .argument = RT_ARGUMENT("NAME", name, "a NAME for the accelerator is missing, as in my-grid"),
-    .help = "Make a folder NAME with a new accelerator, as a working plugin to edit: its code, its build "
-            "file, its check, and a README.\v"
+    .help = "Create a folder NAME with a new accelerator, as a working plugin to edit: code, build file, "
+            "check, and README.\v"
             "For example:\n"
             "  raytally new-accel my-grid\n"
             "  raytally new-accel my-grid --out ~/plugins"};

@@ -42,7 +42,7 @@ const RtSyntax rt_plot_syntax = {
     .plugins = true,
     .arguments = "DIR",
     .argument = RT_DIRECTORY_ARGUMENT,
-    .help = "Draw the plots of a result directory again, from its CSV files and the scripts in DIR/plots. A "
+    .help = "Redraw the plots of a result directory from its CSV files and the scripts in DIR/plots. A "
             "script that raytally does not ship, your own or a changed one, needs --trust: a gnuplot script "
             "can run any command. Exit code 1 if gnuplot fails; without gnuplot there is a note."};
 

@@ -64,8 +64,8 @@ const RtSyntax rt_rays_syntax = {
     .finish = finish,
     .help = "Write the rays that `raytally bench` measures to a file for NumPy.\v"
             "Each row of the array, float32 of shape (N, 8), is a ray: origin x y z, tmin, direction x y z "
-            "(of any length; t is measured in it), tmax. `raytally bench --rays-from` and `raytally verify "
-            "--rays-from` read such a file from any renderer. Example:\n"
+            "(of any length, the unit of t), tmax. `raytally bench --rays-from` and `raytally verify "
+            "--rays-from` read such files, from any renderer. Example:\n"
             "  raytally rays balls --rays diffuse -o rays.npy\n"
             "  raytally bench balls --accel bvh --rays-from rays.npy --rays nearest \\\n"
             "    --hits hits.npy\n"

@@ -59,10 +59,9 @@ const RtSyntax rt_report_syntax = {
     .arguments = "DIR\n--index FOLDER",
     .argument = RT_ARGUMENT("DIR", directory, NULL),
     .finish = finish,
-    .help =
-        "Write DIR/report.html again, from what is in DIR, and tables.md and tables.tex beside it.\n"
-        "--index: FOLDER/index.html and, for GitHub, FOLDER/index.md, which list all result directories in "
-        "FOLDER and its subfolders by the `section` of their experiments."};
+    .help = "Rewrite DIR/report.html, tables.md and tables.tex from the results in DIR.\n"
+            "With --index, write FOLDER/index.html and (for GitHub) FOLDER/index.md, which list all result "
+            "directories in FOLDER and its subfolders by the `section` of their experiments."};
 
 RtStatus rt_command_report(int argc, char **argv, RtError *error) {
     Options o = {0};

@@ -223,8 +223,8 @@ static RtStatus reproduce(const char *directory, RtResults *results, const void 
 static const RtOption options[] = {
     {"only", 0, "SCENE", RT_TO_TEXT(scene),
      "Count and compare only the rows of one scene, or of a sweep of scenes, "
-     "by its label; published figures are left out"},
-    {"quick", 0, NULL, RT_TO_FLAG(quick), "The same for the scene of each directory that took least work"},
+     "by its label, without published figures"},
+    {"quick", 0, NULL, RT_TO_FLAG(quick), "The same for the cheapest scene of each directory"},
     RT_ALL_MEMORY_OPTION,
     RT_TIME_OPTION(""),
     {0}};
@@ -237,7 +237,7 @@ const RtSyntax rt_reproduce_syntax = {
     .help = "Count everything in a result directory again and compare it with DIR/counts.csv, byte for byte, "
             "and with published figures if the experiment names any. Several directories are compared one "
             "after the other, and the worst exit code counts; verifications and plain files are skipped. "
-            "Start it where the experiment was run."};
+            "Start it in the directory in which the experiment was started."};
 
 /* Such as the index of results/, or a verification beside the experiments. */
 static bool is_skipped(const char *path) {

@@ -82,10 +82,10 @@ static void finish_options(void *options, struct argp_state *state) {
 
 static const RtOption options[] = {
     {"out", 'o', "DIR", RT_TO_TEXT(out),
-     "The result directory (results/NAME); of several experiments the folder of their directories DIR/NAME "
+     "The result directory (results/NAME); for several experiments, the folder of their directories DIR/NAME "
      "(results)"},
     {"resume", 0, NULL, RT_TO_SET(how.start, RT_START_RESUME),
-     "Continue an interrupted run: its measurements stay. For a finished run, write tables and plots again"},
+     "Continue an interrupted run: its measurements stay. For a finished run, rewrite its tables and plots"},
     {"update", 0, NULL, RT_TO_FLAG(update),
      "As --renew, but start over where another build, or another version of the YAML, was measured: those "
      "results are lost"},
@@ -103,13 +103,14 @@ static const RtOption options[] = {
     {"strict", 0, NULL, RT_TO_FLAG(strict),
      "Exit code 1 if a claim of the experiment (`expect`) does not hold"},
     {"dry-run", 0, NULL, RT_TO_FLAG(dry),
-     "Measure nothing: list the cells, which of them are finished, and the time that the others will take"},
+     "Measure nothing: list the cells, which of them are finished, and an estimate of the time for the "
+     "others"},
     {"only", 0, "SCENE[/ACCEL[/KIND]]", RT_TO_TAKE(take_only),
-     "Measure only the baseline and one scene, one accelerator on it, or one kind of rays; by labels; may be "
-     "repeated. --resume without --only measures the rest"},
+     "Measure only the baseline and one scene, one accelerator on it, or one kind of rays, given by labels; "
+     "may be repeated. --resume without --only measures the rest"},
     {"shard", 0, "I/N", RT_TO_TAKE(take_shard),
-     "Measure every Nth scene from the Ith on with all accelerators (into results/NAME-I-of-N), to share a "
-     "run among N machines. `raytally merge` joins the directories"},
+     "Measure every Nth scene from the Ith on with all accelerators (into results/NAME-I-of-N), to split a "
+     "run across N machines. `raytally merge` joins the directories"},
     {0}};
 
 /* ---- before ---- */
@@ -360,11 +361,11 @@ const RtSyntax rt_run_syntax = {
     .finish = finish_options,
     .help =
         "Run an experiment and write its result directory: counts.csv, times.csv, manifest.json, plots, "
-        "images and report.html. Several are run one after the other, each in a process of its own; one that "
+        "images and report.html. Several run one after the other, each in a separate process; one that "
         "fails does not stop the others, the worst exit code counts, and an index lists all results in the "
-        "folder. Given the manifest of a directory, run its experiment again; start that where the first run "
-        "was started. A directory that has results, finished or not, needs --resume, --update or --force. "
-        "Only one process at a time may write into a directory. Ctrl-C at any time keeps what is measured.\v"
+        "folder. Given a manifest, run its experiment again; start it in the same working directory as the "
+        "first run. A directory that has results, finished or not, needs --resume, --update or --force. "
+        "Only one process at a time may write to a directory. After Ctrl-C, finished cells are kept.\v"
         "Times per ray are in ns/ray, over all kinds of rays, on one thread unless --threads says otherwise; "
         "`raytally bench` prints them by kind, as throughput: Mrays/s = 1000 / (ns/ray).\n"
         "\n"

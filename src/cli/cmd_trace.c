@@ -41,7 +41,7 @@ static void finish(void *options, struct argp_state *state) {
 
 static const RtOption options[] = {
     {"pixel", 'p', "X,Y", RT_TO_TAKE(take_pixel),
-     "The ray through the middle of this pixel, 0,0 is the upper left"},
+     "The ray through the middle of this pixel; 0,0 is the upper left"},
     {"accel", 'a', "SPEC", RT_TO_TEXT(accel), "Accelerator (default bvh); `raytally accels` lists them"},
     {"size", 's', "WxH", RT_TO_SIZE(size), "Size of the image in pixels (default: the camera's)"},
     {"rays", 'k', "KIND", RT_TO_TAKE(take_kind),
@@ -123,13 +123,13 @@ static void print_rows(const RtPath *path, const Options *o, const RtGeometry *g
 
 static void print_counts(const RtTally *t) {
     bool any = false;
-    printf("\nin all:");
+    printf("\ntotal:");
     for (size_t i = 2; i < RT_TALLY_COUNTER_COUNT; i++) { /* without rays and hits */
         if (rt_tally_get(t, i) == 0) continue;
         printf(" %llu %s,", (unsigned long long)rt_tally_get(t, i), rt_tally_name(i));
         any = true;
     }
-    puts(any ? " equal to the counted kernel's" : " nothing is counted");
+    puts(any ? " as in the counted kernel" : " nothing is counted");
 }
 
 static void print_answer(const RtPath *path, const RtGeometry *g) {
@@ -311,21 +311,21 @@ const RtSyntax rt_trace_syntax = {
         "--depth, follow the whole ray tree of a pixel.\v"
         "A row shows what was visited or tested, the interval of t in which the ray is inside its box (if it "
         "has one), whether the ray hit the extent or the object, and the t of the nearest hit so far. An "
-        "extent that the ray enters behind that hit counts as missed. A step is a visit to a node, voxel, "
-        "sample or list entry; docs/accelerators/README.md explains the other words. The rows come from the "
+        "extent that the ray enters beyond that hit counts as missed. A step is a visit to a node, voxel, "
+        "sample or list entry; docs/accelerators/README.md explains the other terms. The rows come from the "
         "counted kernel itself; raytally checks that they add up to its tally.\n"
         "\n"
-        "The upper part of the drawing is a section along the ray and one axis of the scene; it shows a box "
-        "where the ray passes through it, and pale what is not tested or visited. It is enlarged where "
+        "The upper part of the drawing is a section along the ray and one axis of the scene; it shows boxes "
+        "where the ray passes through them, pale if not tested or visited. It is enlarged where "
         "objects are tested; an inset shows the whole path. The bars below show where the ray is in each "
         "box, in the order of the rows.\n"
         "\n"
         "The ray tree has the primary ray, and for each hit a shadow ray to every light that shines on that "
         "side of the surface, a reflection and a transmission ray. A row shows the t and the object of its "
-        "hit; factor, the product of the coefficients kr and kt on the way from the eye; and what the "
-        "accelerator did for it. A second table shows the light that each ray brings, as its share of the "
-        "pixel's colour, and the five terms of the illumination model whose sum it is. The drawing shows "
-        "rays in a section that contains the primary ray and lies as close to the others as it can.\n"
+        "hit; factor, the product of the coefficients kr and kt on the way from the eye; and the "
+        "accelerator's counts. A second table shows the light that each ray contributes to the pixel's "
+        "colour, and the five terms of the illumination model that add up to it. The drawing shows the "
+        "rays in a section that contains the primary ray and lies as close to the others as possible.\n"
         "\n"
         "Examples:\n"
         "  raytally trace balls --pixel 256,256\n"
@@ -333,8 +333,8 @@ const RtSyntax rt_trace_syntax = {
         "  raytally trace balls --pixel 256,400 --accel light:cells=40+octree \\\n"
         "    --rays shadow --light 1\n"
         "  raytally trace scenes/lecture.yaml --pixel 279,366 --depth 4 --svg tree.svg\n\n"
-        "embree shows no steps, because it counts none; with mode=user it shows object tests. A plugin shows "
-        "its steps and extent tests by raytally_show (raytally/accel.h); without that they have no boxes."};
+        "embree counts no steps, so none are shown; with mode=user object tests are. A plugin's steps and "
+        "extent tests have boxes only if it calls raytally_show (raytally/accel.h)."};
 
 RtStatus rt_command_trace(int argc, char **argv, RtError *error) {
     Options o = {.accel = rt_accel_default(), .rows = DEFAULT_ROWS};

@@ -68,7 +68,7 @@ static const RtOption options[] = {
     {"accel", 'a', "SPEC", RT_TO_TAKE(take_accel),
      "An accelerator, or `all` of them (the default); may be repeated"},
     {"spread", 0, NULL, RT_TO_FLAG(spread),
-     "Also try each parameter at every value worth testing, one at a time"},
+     "Also try each parameter at every value worth testing, one parameter at a time"},
     {"quick", 0, NULL, RT_TO_FLAG(quick),
      "A short check of a few seconds: 2000 rays, and without a SCENE only scenes of up to 100 objects; the "
      "last line says what it left out"},
@@ -85,7 +85,7 @@ static const RtOption options[] = {
     RT_MEMORY_OPTION(work.memory),
     RT_TIME_OPTION("; what is finished stays in --out DIR"),
     {"out", 'o', "DIR", RT_TO_TEXT(work.folder),
-     "Write rows to DIR as they are found, tables of them (verify.csv, verify.md), and replay files of wrong "
+     "Write rows to DIR as they are finished, then tables (verify.csv, verify.md), and replay files of wrong "
      "answers"},
     {"resume", 0, NULL, RT_TO_SET(work.start, RT_START_RESUME), "Continue the interrupted run in --out DIR"},
     {"force", 0, NULL, RT_TO_SET(work.start, RT_START_ANEW),
@@ -95,7 +95,7 @@ static const RtOption options[] = {
      "be traced"},
     {"shrink", 0, "N", RT_TO_TAKE(take_shrink),
      "Reduce the scenes of the first N failures of each accelerator, or of `all`, which takes some seconds "
-     "for each (default 1, and at most 8 of all accelerators)"},
+     "each (default 1, and at most 8 in total)"},
     {"json", 'j', NULL, RT_TO_FLAG(json), "One JSON document on stdout"},
     {0}};
 
@@ -234,7 +234,7 @@ static void print_total(const Options *o, const RtVerifySum *sums, uint32_t coun
     print_count(o->choice.scene_count, "scene");
     print_count(o->choice.spec_count, "accelerator");
     print_count(o->work.rays.count, "ray");
-    printf("%" PRIu64 " pair%s of a ray and an accelerator: ", total.pairs, rt_plural(total.pairs));
+    printf("%" PRIu64 " comparison%s: ", total.pairs, rt_plural(total.pairs));
     if (total.failed == 0) {
         fputs("nothing wrong", stdout);
     } else {
@@ -336,10 +336,10 @@ const RtSyntax rt_verify_syntax = {
     .help =
         "Verify that each accelerator hits the same object as brute, with the same bits of t, for every "
         "ray of each SCENE, in the timed and the counted kernel, ray by ray and in streams. The default "
-        "is some fifty small scenes that are hard for accelerators. SCENE may be `triangles`, the default "
-        "scenes of triangles alone; `families`, generated scenes that are hard for accelerators; or one of "
-        "these, as in family:kind=slivers,seed=7 (`raytally scenes family` lists them).\v"
-        "Accelerators with hit functions of their own (Embree's native mode, libraries as plugins) get "
+        "is some fifty small scenes that are hard for accelerators. SCENE may be `triangles`, those that "
+        "consist of triangles only; `families`, those generated from a seed; or one of these, as in "
+        "family:kind=slivers,seed=7 (`raytally scenes family` lists them).\v"
+        "Accelerators with their own hit functions (Embree's native mode, libraries as plugins) get "
         "verdicts: equal, tie, marginal (explained by rounding) or wrong. raytally writes the first wrong "
         "answer of each row to a file (in --out DIR, or in verify-failures/), with the scene reduced to "
         "the objects that cause it; --replay traces it again. Exit code 1 if anything is wrong."};

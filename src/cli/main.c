@@ -42,7 +42,7 @@ static void print_usage(FILE *to) {
                 "  raytally accels                          list the accelerators\n"
                 "  raytally render balls -o balls.png       a picture\n"
                 "  raytally bench balls --accel bvh --accel grid   a comparison\n"
-                "Exit codes: 0 fine, 1 a check failed, 2 bad usage or bad input.\n");
+                "Exit codes: 0 success, 1 a check failed, 2 bad usage or bad input.\n");
 }
 
 /* What is built, what of it runs here, and the numbers of docs/interface.md. */

@@ -99,7 +99,7 @@ const RtOption rt_picture_options[] = {
     {NULL, 0, NULL, {0}, "Pictures of a structure:"},
     {"structure", 0, "FILE", RT_TO_PATH(structure, RT_CLI_PICTURES),
      "Draw the accelerator's boxes over the image; for item the objects in its samples, for light the "
-     "lengths of its lists on an unfolded cube. PNG, SVG or PDF by the name of the file"},
+     "lengths of its lists on an unfolded cube. PNG, SVG or PDF, by the file name"},
     {"layer", 0, "NAME", RT_TO_TEXT(layer),
      "For overlays: the layer to draw (default: the topmost that can be drawn)"},
     {"level", 0, "A[..B]", RT_MARKING(of_boxes, RT_CALLS(take_level)),
@@ -118,7 +118,7 @@ const RtOption rt_picture_options[] = {
      "object_tests, extent_tests, steps, or any other counter; may be repeated. Several --accel are drawn "
      "side by side on one scale"},
     {"heatmap-max", 0, "VALUE", RT_MARKING(thermal, RT_CALLS(take_max)),
-     "Values from this on get the brightest colour (default: the maximum)"},
+     "Values of VALUE and above get the brightest colour (default: the maximum)"},
     {"heatmap-scale", 0, "linear|log", RT_MARKING(thermal, RT_CALLS(take_scale)),
      "How values map to colours (default: log if the mean is below an eighth of the maximum)"},
     {"heatmap-rays", 0, "KIND", RT_MARKING(thermal, RT_CALLS(take_rays)),

@@ -122,8 +122,8 @@ static void print_sums(const RtRayTree *tree, const RtTally *costs) {
         rt_tally_add(&sum, &costs[i]);
         cut += tree->rays[i].cut;
     }
-    printf("\nin all: %u ray%s in %u level%s, %llu object_tests, %llu extent_tests, %llu steps\n",
-           tree->count, rt_plural(tree->count), tree->levels, rt_plural(tree->levels),
+    printf("\ntotal: %u ray%s in %u level%s, %llu object_tests, %llu extent_tests, %llu steps\n", tree->count,
+           rt_plural(tree->count), tree->levels, rt_plural(tree->levels),
            (unsigned long long)sum.object_tests, (unsigned long long)sum.extent_tests,
            (unsigned long long)sum.steps);
     if (cut > 0)

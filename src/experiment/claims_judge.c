@@ -393,7 +393,7 @@ void rt_claims_print(const RtResults *results, FILE *out) {
     bool open = false;
     if (experiment->claim_count)
         fprintf(out, "\nClaims%s:\n",
-                experiment->quick ? ", about the whole experiment; this is its smaller variant" : "");
+                experiment->quick ? " (made for the full experiment; this is its --quick variant)" : "");
     for (uint32_t i = 0; i < experiment->claim_count; i++) {
         RtClaimResult result;
         rt_claim_judge(results, i, &result);

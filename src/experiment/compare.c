@@ -291,21 +291,25 @@ static double widest_of(const RtComparison *comparison) {
 /* The first words of what explains the verdicts; "" if there are none. */
 static void explain_verdicts(const RtComparison *comparison, char *out, size_t size) {
     const uint32_t count = comparison->pairs ? comparison->judged : comparison->timed;
+    const double widest = 100 * widest_of(comparison);
     out[0] = '\0';
     if (count == 0) return;
-    rt_append_text(out, size,
-                   "Ratios are of throughput%s. All %" PRIu32
-                   " intervals hold simultaneously with 95 %% confidence; the widest is +-%.3g %%.",
+    rt_append_text(out, size, "Ratios are of throughput%s.",
                    comparison->pairs
                        ? "; those of accelerators, over scenes, are relative to the median accelerator"
-                       : "",
-                   count, 100 * widest_of(comparison));
+                       : "");
+    if (count == 1)
+        rt_append_text(out, size, " The interval, +-%.3g %%, holds with 95 %% confidence.", widest);
+    else
+        rt_append_text(out, size,
+                       " All %" PRIu32
+                       " intervals hold simultaneously with 95 %% confidence; the widest is +-%.3g %%.",
+                       count, widest);
     if (comparison->rounds)
         rt_append_text(out, size, " %" PRIu32 " round%s in %.0f s.", comparison->rounds,
                        rt_plural(comparison->rounds), comparison->seconds);
     if (comparison->margin > 0)
-        rt_append_text(out, size, " Smaller differences than %.3g %% are not reported.",
-                       100 * comparison->margin);
+        rt_append_text(out, size, " Differences below %.3g %% are not reported.", 100 * comparison->margin);
 }
 
 /* What rounds cannot show, and what they do. */
@@ -319,7 +323,7 @@ static void explain_directories(const RtComparison *comparison, char *out, size_
                        RT_LEAST_ACCELS);
     if (!isnan(comparison->all_accels))
         rt_append_text(out, size,
-                       "The median accelerator: %.3f; another clock speed would have the same effect. ",
+                       "The median accelerator: %.3f; a change in clock speed would have the same effect. ",
                        comparison->all_accels);
     rt_append_text(out, size,
                    "Intervals of cells cover the rounds of these processes only, not how processes differ: "

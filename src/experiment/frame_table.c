@@ -260,7 +260,7 @@ static void say_others(FILE *out, const RtResults *results, uint32_t t, uint32_t
     const uint32_t first = next_of(results, t, seconds_with_build, false, none);
     char number[16], other[16];
     if (fewest != none && tests_of(results, t, fewest) < tests_of(results, t, winner))
-        fprintf(out, " %s makes the fewest object tests: %s times fewer than %s.",
+        fprintf(out, " %s needs the fewest object tests: %s times fewer than %s.",
                 rt_candidate_label(experiment, fewest),
                 figure(factor_of(results, t, fewest, tests_of), number), experiment->frame.without);
     if (cost_of(results, t, first, RT_FRAME_ALL).high + rt_build_at(results, t, first)->seconds.high <
@@ -287,7 +287,7 @@ static void say_overlays(FILE *out, const RtResults *results, uint32_t t, uint32
             fprintf(out, ", %s %s times", rt_candidate_label(experiment, c), number);
         else
             fprintf(out,
-                    counted ? " %s makes %s times fewer object tests than %s alone"
+                    counted ? " %s needs %s times fewer object tests than %s alone"
                             : " %s is %s times as fast as %s alone",
                     rt_candidate_label(experiment, c), number, rt_candidate_label(experiment, below));
         if (is_level(results, t, c, below)) fputs(" (level)", out);

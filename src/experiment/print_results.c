@@ -88,7 +88,8 @@ static void print_ratios(const RtResults *results, uint32_t least, uint32_t most
     rt_interval_title(experiment, title);
     snprintf(rounds, sizeof rounds, least == most ? "%" PRIu32 : "%" PRIu32 " to %" PRIu32, least, most);
     snprintf(text, sizeof text,
-             "Ratios compare throughput with that of %s, paired within each of %s round%s; intervals of %s.",
+             "Ratios are throughput relative to %s, paired within each of %s round%s, with %s confidence "
+             "intervals.",
              rt_baseline_label(experiment), rounds, rt_plural(most), title);
     rt_print_wrapped(text, out);
     if (experiment->baseline_count == 1) return;
@@ -178,7 +179,8 @@ static const RtCell *learnt_cell(const RtResults *results, uint32_t t, RtRayKind
     return learnt;
 }
 
-/* The workload and its kinds: "on balls 72 primary rays 12 times, 30 shadow rays 40 times"; false if none. */
+/* The workload and its kinds: "on balls, 72 primary rays 12 times, 30 shadow rays 40 times"; false if none.
+ */
 static bool say_learnt(const RtResults *results, uint32_t t, const char *before, FILE *out) {
     const RtExperiment *experiment = results->experiment;
     bool any = false;
@@ -188,7 +190,7 @@ static bool say_learnt(const RtResults *results, uint32_t t, const char *before,
         if (any)
             fputc(',', out);
         else
-            fprintf(out, "%s on %s", before, experiment->workloads[t].label);
+            fprintf(out, "%s on %s,", before, experiment->workloads[t].label);
         fprintf(out, " %" PRIu64 " %s ray%s %.0f times", cell->tally.rays,
                 rt_experiment_kind_name(experiment, experiment->kinds[k]), rt_plural(cell->tally.rays),
                 cell->repeats);
@@ -199,7 +201,7 @@ static bool say_learnt(const RtResults *results, uint32_t t, const char *before,
 
 char *rt_learnt_sentence(const RtResults *results) {
     const RtExperiment *experiment = results->experiment;
-    const char *before = "Too few rays. Within a round, an accelerator repeats";
+    const char *before = "Too few rays. Each round repeats,";
     RtMemoryFile memory;
     RtError ignored;
     bool any = false;
@@ -209,7 +211,7 @@ char *rt_learnt_sentence(const RtResults *results) {
     if (any)
         fprintf(memory.file,
                 ". Caches and branch predictors learn them, so they take less time than in a frame. %s, or "
-                "run them once a round (milliseconds: 0).",
+                "run them once per round (milliseconds: 0).",
                 *experiment->rays_from ? "Give more rays" : "Record more (a larger size or limit)");
     return rt_memory_file_close(&memory, "a sentence", &ignored) == RT_OK ? memory.data : NULL;
 }
@@ -239,7 +241,7 @@ static void print_builds(const RtResults *results, uint32_t t, FILE *out) {
     rt_append_text(text, sizeof text, " build%s%s", rt_plural(most),
                    most == 1                ? ", without an interval."
                    : least < RT_FULL_ROUNDS ? "; intervals of fewer than 6 cover less than 95 %."
-                                            : "; intervals of 95 %.");
+                                            : ", with 95 % intervals.");
     rt_print_wrapped(text, out);
 }
 

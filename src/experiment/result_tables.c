@@ -115,7 +115,7 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
 #define VALUES(X, id, title, half, most_of, of)                                                              \
     X(id##_median, title ": 50 %", integer, "", half, (of)->median)                                          \
     X(id##_p99, "99 %", integer, "", "that 99 % do not exceed", (of)->p99)                                   \
-    X(id##_most, "most", integer, "", most_of, (of)->most)
+    X(id##_most, "max", integer, "", most_of, (of)->most)
 
 #define COLUMNS(X)                                                                                           \
     X(scene, "scene", text, "", "the scene's label in the experiment", r->setup->label)                      \

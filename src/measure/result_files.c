@@ -53,16 +53,16 @@ RtStatus rt_result_files_look(const char *directory, const char *journal, RtStar
     if (whole) {
         return rt_fail(
             error, RT_BAD_INPUT,
-            "%s holds a run that %s: %s with --resume, start over and lose it with --force, or give "
-            "another --out",
-            directory, finished ? "is finished" : "is not finished",
-            finished ? "write its tables again" : "go on");
+            "%s holds %s run: use --resume to %s, --force to start over and lose it, or another --out",
+            directory, finished ? "a finished" : "an unfinished",
+            finished ? "rewrite its tables" : "continue it");
     }
     if (strcmp(result, rt_result_files[RT_FILE_PACKED_JOURNAL]) == 0) {
-        return rt_fail(error, RT_BAD_INPUT,
-                       "%s/%s is packed, and a packed journal is only read: unpack it with gunzip to go on, "
-                       "start over and lose it with --force, or give another --out",
-                       directory, result);
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "%s/%s is packed, and a packed journal is read-only: unpack it with gunzip to continue, use "
+            "--force to start over and lose it, or another --out",
+            directory, result);
     }
     return rt_fail(error, RT_BAD_INPUT,
                    "%s holds results of another kind, or without their journal (%s, but no %s), which cannot "

@@ -239,7 +239,7 @@ static RtStatus put_verification(RtIndexEntry *entry, const char *directory, con
         strcpy(entry->section, "verification");
         note_origin(entry, manifest);
         snprintf(sums, sizeof sums,
-                 "%" PRIu64 " pairs of a ray and an accelerator in %" PRIu32 " row%s: %" PRIu64
+                 "%" PRIu64 " comparisons in %" PRIu32 " row%s: %" PRIu64
                  " answers to nearest are wrong, %" PRIu64 " to occluded.",
                  sum_of(&csv, "rays"), csv.rows, rt_plural(csv.rows), sum_of(&csv, "wrong"),
                  sum_of(&csv, "occluded_wrong"));

@@ -214,9 +214,9 @@ static void put_head(const RtResults *results, bool tex, FILE *out) {
     fprintf(out, "%sBold: the fewest object tests%s.\n", lead,
             results->experiment->count_only
                 ? ""
-                : "; the least time, and times whose interval overlaps with its interval");
+                : "; the least time, and times whose interval overlaps its interval");
     if (!results->experiment->count_only)
-        fprintf(out, "%sIn brackets: intervals of %s, where a page has room for them.\n", lead, interval);
+        fprintf(out, "%sIn brackets: %s intervals, where there is room for them.\n", lead, interval);
 }
 
 static RtStatus write_tables(const RtResults *results, const char *directory, const char *name, bool tex,

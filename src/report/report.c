@@ -239,9 +239,9 @@ static void put_tables(FILE *out, const RtResults *results) {
     rt_interval_title(results->experiment, interval);
     fprintf(
         out,
-        "<h2 id=\"tables\">Tables</h2>\n<p>In brackets: intervals of %s. &#9733; marks the best of a scene "
-        "and kind of rays, by %s; &asymp; marks intervals that overlap with the interval of the best. Times "
-        "over all kinds have conservative intervals, and are unknown if one of the kinds was left out.</p>\n"
+        "<h2 id=\"tables\">Tables</h2>\n<p>In brackets: %s intervals. &#9733; marks the best of a scene "
+        "and kind of rays, by %s; &asymp; marks intervals that overlap that of the best. Times "
+        "over all kinds have conservative intervals, and are unknown if a kind is missing.</p>\n"
         "<div class=\"filter\" id=\"filter\" hidden><label for=\"words\">Rows with</label> "
         "<input type=\"search\" id=\"words\" placeholder=\"words, e.g. of a scene, an accelerator, a kind\"> "
         "<output for=\"words\" class=\"meta\"></output></div>\n",
@@ -337,8 +337,8 @@ static void put_timing(FILE *out, const RtResults *results) {
     char sentence[RT_MAX_SENTENCE], interval[RT_MAX_INTERVAL_TITLE];
     rt_interval_title(results->experiment, interval);
     fputs("Counting and timing are separate passes. Times are medians over rounds that run all accelerators "
-          "in random order; ratios compare throughput with the baseline's, paired within a round. Intervals "
-          "are order statistics: they contain the median with a probability of at least  ",
+          "in random order; ratios are throughput relative to the baseline, paired within a round. Intervals "
+          "are order statistics: they contain the median with a probability of at least ",
           out);
     fprintf(out, "%s. ", interval);
     rt_null_sentence(results, sentence);
@@ -347,9 +347,9 @@ static void put_timing(FILE *out, const RtResults *results) {
 
 static void put_method(FILE *out, const RtResults *results, const json_t *manifest) {
     fputs("<h2 id=\"method\">How it was measured</h2>\n<p>Every accelerator traced the same recorded rays. "
-          "Totals weigh each kind of rays by the size of its set. Shadow rays stop at any hit. "
+          "Totals weight each kind of rays by the size of its set. Shadow rays stop at any hit. "
           "<em>ideal</em> knows the answers in advance: it is the lower bound. <em>differ</em> counts "
-          "answers unlike the reference; the run fails if an exact accelerator has any.</p>\n<p>",
+          "answers that differ from the reference; the run fails if an exact accelerator has any.</p>\n<p>",
           out);
     if (results->experiment->count_only) {
         fputs("Nothing was timed: this experiment counts.", out);

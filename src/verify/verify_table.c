@@ -170,7 +170,7 @@ typedef RtVerifySum Row;
     X(accel, "accelerator", markup, "", "", rt_field_print("`%s`%s", r->name, r->exact ? "" : " *"))         \
     X(scene, "scene", markup, "", "", rt_field_print("`%s`", r->name))                                       \
     X(rows, "rows", integer, "", "", r->rows)                                                                \
-    X(pairs, "pairs", integer, "", "", r->pairs)                                                             \
+    X(pairs, "comparisons", integer, "", "", r->pairs)                                                       \
     X(equal, "equal", integer, "", "", r->verdicts[RT_EQUAL])                                                \
     X(tie, "tie", integer, "", "", r->verdicts[RT_TIE])                                                      \
     X(marginal, "marginal", integer, "", "", r->verdicts[RT_MARGINAL])                                       \
@@ -214,9 +214,8 @@ static void write_sums(const RtColumnGroup groups[2], RtVerifySum *sums, uint32_
 
 static void write_markdown(const Sums *sums, FILE *out) {
     RtVerifySum total = rt_verify_total(sums->accels, sums->accel_count);
-    fprintf(out, "# Verification\n\n%" PRIu64 " pair%s of a ray and an accelerator, ", total.pairs,
-            rt_plural(total.pairs));
-    fputs("each queried for `nearest` and `occluded`, timed and counted:\n", out);
+    fprintf(out, "# Verification\n\n%" PRIu64 " comparison%s, ", total.pairs, rt_plural(total.pairs));
+    fputs("each of the answers to `nearest` and `occluded`, timed and counted:\n", out);
     fprintf(out, "%" PRIu64 " answer%s to `nearest` %s wrong, %" PRIu64 " to `occluded`. ",
             total.verdicts[RT_WRONG], rt_plural(total.verdicts[RT_WRONG]),
             total.verdicts[RT_WRONG] == 1 ? "is" : "are", total.occluded_wrong);

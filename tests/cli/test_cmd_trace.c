@@ -92,7 +92,7 @@ RT_TEST(an_occluder_that_is_not_named_has_no_number) {
     if (trace(arguments) == 2 && says(OUT ".err", "without Embree")) return;
     assert_int_equal(trace(arguments), 0);
     assert_true(says(OUT ".txt", "it is blocked\n"));
-    assert_true(says(OUT ".txt", "in all: nothing is counted\n"));
+    assert_true(says(OUT ".txt", "total: nothing is counted\n"));
     json_t *path = path_of(arguments);
     assert_true(json_is_null(json_object_get(path, "object")));
     assert_true(json_is_true(json_object_get(path, "blocked")));
@@ -211,7 +211,7 @@ RT_TEST(a_tree_is_printed_in_100_columns) {
 
 RT_TEST(ideal_tests_one_object_for_each_ray_of_a_tree_that_hits) {
     assert_int_equal(trace(LECTURE " --pixel 35,44 --depth 4 --accel ideal"), 0);
-    assert_true(says(OUT ".txt", "in all: 15 rays in 4 levels, 10 object_tests, 0 extent_tests"));
+    assert_true(says(OUT ".txt", "total: 15 rays in 4 levels, 10 object_tests, 0 extent_tests"));
     unlink(OUT ".txt");
 }
 

@@ -66,7 +66,7 @@ RT_TEST(all_is_the_default_and_threads_change_nothing) {
     strcpy(one, text_of(OUT ".out"));
     assert_non_null(strstr(one, " brute "));
     assert_non_null(strstr(one, " grid "));
-    assert_non_null(strstr(one, " pairs of a ray and an accelerator: nothing wrong\n"));
+    assert_non_null(strstr(one, " comparisons: nothing wrong\n"));
     assert_int_equal(verify("random:n=30,shape=mixed --rays 5000 --threads 3 --accel all"), 0);
     assert_string_equal(text_of(OUT ".out"), one);
 }
@@ -115,7 +115,7 @@ RT_TEST(hard_scenes_are_verified_unasked_and_the_small_ones_with_quick) {
     assert_non_null(last);
     assert_non_null(strstr(last, "larger scenes. Omit it for the full check."));
     assert_int_equal(verify("balls:size=1 --accel bvh"), 0);
-    assert_non_null(strstr(text_of(OUT ".out"), "\n1 scene, 1 accelerator, 20000 rays, 20000 pairs"));
+    assert_non_null(strstr(text_of(OUT ".out"), "\n1 scene, 1 accelerator, 20000 rays, 20000 comparisons"));
     assert_null(strstr(text_of(OUT ".out"), "--quick used"));
 }
 
@@ -234,11 +234,11 @@ RT_TEST(rows_that_are_there_are_not_begun_anew_unasked) {
     begin_anew(arguments);
     strcpy(rows, text_of(OUT ".kept/rows.jsonl"));
     assert_int_equal(verify(arguments), 2);
-    assert_non_null(strstr(text_of(OUT ".err"), OUT ".kept holds a run that is finished"));
+    assert_non_null(strstr(text_of(OUT ".err"), OUT ".kept holds a finished run"));
     assert_string_equal(text_of(OUT ".out"), "");
     assert_int_equal(remove(OUT ".kept/manifest.json"), 0);
     assert_int_equal(verify(arguments), 2);
-    assert_non_null(strstr(text_of(OUT ".err"), "is not finished: go on with --resume"));
+    assert_non_null(strstr(text_of(OUT ".err"), "holds an unfinished run: use --resume to continue it"));
     /* A scene that cannot be opened is found before anything is lost. */
     snprintf(other, sizeof other, "nothing.nff %s --force", arguments);
     assert_int_equal(verify(other), 2);
@@ -277,10 +277,8 @@ RT_TEST(the_last_line_tells_of_wrong_answers_to_occluded_too) {
                             "-e '2s/\"problem\": *null/\"problem\": \"a lie\"/' '" OUT ".lies/rows.jsonl'"),
                      0);
     assert_int_equal(verify(again), 1);
-    assert_non_null(
-        strstr(text_of(OUT ".out"),
-               "1 scene, 2 accelerators, 50 rays, 100 pairs of a ray and an accelerator: 0 wrong, "
-               "3 occluded wrong; rows that fail: 1 of bvh\n"));
+    assert_non_null(strstr(text_of(OUT ".out"), "1 scene, 2 accelerators, 50 rays, 100 comparisons: 0 wrong, "
+                                                "3 occluded wrong; rows that fail: 1 of bvh\n"));
     assert_non_null(strstr(text_of(OUT ".err"), "a lie"));
 }
 

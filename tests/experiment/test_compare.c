@@ -296,6 +296,20 @@ RT_TEST(where_they_agree_only_the_ratio_is_shown) {
     free(text);
 }
 
+RT_TEST(a_single_interval_holds_by_itself) {
+    OWNED(rt_comparison_clear) RtComparison comparison = {0};
+    for (uint32_t timed = 1; timed <= 2; timed++) {
+        RtComparedCell *cell =
+            rt_comparison_cell(&comparison, "balls", timed == 1 ? "bvh" : "grid", "primary");
+        assert_non_null(cell);
+        cell->timed = true;
+        cell->ratio = (RtEstimate){.median = 1, .low = 0.99, .high = 1.01};
+        comparison.timed = timed;
+        assert_true(is_printed(&comparison, timed == 1 ? "The interval, +-1 %, holds with 95 % confidence."
+                                                       : "All 2 intervals hold simultaneously"));
+    }
+}
+
 RT_TEST_IN_PLACE(strict_makes_something_slower_an_exit_code) {
     const Place *place = *state;
     write_in(place, "small.yaml", experiment_yaml);

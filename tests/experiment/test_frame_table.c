@@ -107,7 +107,7 @@ FRAME_TEST(an_accelerator_without_one_kind_of_ray_has_no_frame_and_does_not_win)
     rt_cell_at(&results, 0, LIGHT, RT_RAY_SHADOW)->timed = false;
     expect_sentence(
         0, "On balls, grid is the fastest of the six: 29.4 times as fast, with 30.0 times fewer object tests "
-           "than brute. clusters makes the fewest object tests: 200 times fewer than brute. The fastest of "
+           "than brute. clusters needs the fewest object tests: 200 times fewer than brute. The fastest of "
            "all is wide: 200 times as fast as brute.");
 }
 
@@ -122,7 +122,7 @@ FRAME_TEST(an_overlay_is_never_the_fastest_of_the_group) {
 FRAME_TEST(fewer_object_tests_than_the_fastest_makes_are_told) {
     expect_sentence(
         1, "On tetra, grid is the fastest of the six: 100 times as fast, with 30.0 times fewer object tests "
-           "than brute. clusters follows with 50.0 times. clusters makes the fewest object tests: 200 times "
+           "than brute. clusters follows with 50.0 times. clusters needs the fewest object tests: 200 times "
            "fewer than brute. light+wide is 1.00 times as fast as wide alone (level). The fastest of all is "
            "light+wide: 200 times as fast as brute (level with wide).");
 }
@@ -200,7 +200,7 @@ FRAME_TEST(where_nothing_is_timed_object_tests_decide) {
     e->count_only = true;
     expect_sentence(
         1, "On tetra, clusters is the best of the six: 200 times fewer object tests than brute. grid follows "
-           "with 30.0 times. light+wide makes 3.00 times fewer object tests than wide alone.");
+           "with 30.0 times. light+wide needs 3.00 times fewer object tests than wide alone.");
 }
 
 FRAME_TEST(a_thinned_set_is_told_as_a_part_of_a_frame) {

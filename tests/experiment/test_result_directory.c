@@ -37,8 +37,8 @@ RT_TEST_IN_PLACE(results_are_refused_unless_they_are_gone_on_with_or_begun_anew)
     assert_ends(place, "run small.yaml", 0, "");
     OWNED_MEMORY char *journal = read_in(place, "results/small/cells.jsonl"),
                       *page = read_in(place, "results/small/manifest.json");
-    assert_ends(place, "run small.yaml", 2, "is finished: write its tables again with --resume");
-    assert_ends(place, "run small.yaml --out results/small", 2, "with --force");
+    assert_ends(place, "run small.yaml", 2, "holds a finished run: use --resume to rewrite its tables");
+    assert_ends(place, "run small.yaml --out results/small", 2, "--force to start over");
     assert_ends(place, "run small.yaml --quick", 2, "without --quick");
     write_changed(place, "other.yaml", small_experiment, "limit: 100", "limit: 99");
     assert_ends(place, "run other.yaml", 2, "another version of it ('small')");
@@ -49,7 +49,7 @@ RT_TEST_IN_PLACE(results_are_refused_unless_they_are_gone_on_with_or_begun_anew)
     assert_same_file(place, "results/small/cells.jsonl", journal);
     assert_same_file(place, "results/small/manifest.json", page);
     assert_int_equal(remove(path_in(place, "results/small/manifest.json").text), 0);
-    assert_ends(place, "run small.yaml", 2, "is not finished: go on with --resume");
+    assert_ends(place, "run small.yaml", 2, "holds an unfinished run: use --resume to continue it");
     assert_same_file(place, "results/small/cells.jsonl", journal);
     assert_ends(place, "run other.yaml --resume --force", 0, "");
     assert_ends(place, "run other.yaml --force --resume", 0, "nothing was left to measure");
@@ -125,11 +125,10 @@ static int occurrences(const Place *place, const char *name, const char *what) {
 
 RT_TEST_IN_PLACE(a_few_rays_that_are_repeated_until_they_are_learnt_cause_a_warning) {
     const Place *place = *state;
-    const char *warning =
-        "Too few rays. Within a round, an accelerator repeats on balls:size=1 72 primary rays";
+    const char *warning = "Too few rays. Each round repeats, on balls:size=1, 72 primary rays";
     write_changed(place, "short.yaml", small_experiment, "count_only: yes", "rounds: 2\nmilliseconds: 1");
     assert_ends(place, "run short.yaml", 0, "");
-    assert_in_file(place, "output", "; on cloud ");
+    assert_in_file(place, "output", "; on cloud, ");
     assert_int_equal(occurrences(place, "output", "Too few rays"), 1);
     assert_int_equal(occurrences(place, "results/small/report.html", "Too few rays"), 1);
     assert_in_file(place, "results/small/report.html", warning);

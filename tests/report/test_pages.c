@@ -192,7 +192,7 @@ RT_TEST_IN_PLACE(a_kind_of_rays_that_an_accelerator_lacks_leaves_its_means_out_o
     assert_in_file(
         place, "output",
         "\n  undecided: the interval includes the bound, a value is missing, or no crossover is certain\n");
-    assert_in_file(place, "out/report.html", "are unknown if one of the kinds was left out");
+    assert_in_file(place, "out/report.html", "are unknown if a kind is missing");
     snprintf(command, sizeof command, "grep -Eqx 'grid +[0-9]+ +- +- +- +- +- .*' '%s/output'",
              place->folder);
     assert_int_equal(system(command), 0);
@@ -437,7 +437,7 @@ RT_TEST_IN_PLACE(the_index_groups_experiments_by_section_with_plot_first_sentenc
         "<p>So et al. 1990 said.</p>\n<details>",
         "The <code>rest</code> is folded.",
         "<h2>Verification</h2>",
-        "10 pairs of a ray and an accelerator in 1 row: 0 answers to nearest are wrong",
+        "10 comparisons in 1 row: 0 answers to nearest are wrong",
         "<h2>Zebras</h2>",
         "<h2>Others</h2>",
         "plain/report.html"};
@@ -451,7 +451,7 @@ RT_TEST_IN_PLACE(the_index_groups_experiments_by_section_with_plot_first_sentenc
                                     "**Finding.** So et al. 1990 said. The `rest` is folded.",
                                     "<details><summary>Prediction and claims</summary>\n\n**Prediction.** ",
                                     "- **holds**: `object_tests of bvh < 30`: ",
-                                    "### [judged](judged)\n\n10 pairs"};
+                                    "### [judged](judged)\n\n10 comparisons"};
     text = read_in(place, "all/index.md");
     assert_in_order(text, markdown, sizeof markdown / sizeof markdown[0]);
     rt_free(text);
