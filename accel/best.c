@@ -29,13 +29,6 @@ static bool combine(const RtAccelOps *ops, const RtBestOf *best, size_t n, char 
     return n == 0;
 }
 
-static const RtBestOf *find(const RtAccelOps *ops, const char *name) {
-    for (size_t i = 0; i < ops->best_count; i++) {
-        if (strcmp(ops->bests[i].name, name) == 0) return &ops->bests[i];
-    }
-    return NULL;
-}
-
 static RtStatus fail_unknown(const RtAccelOps *ops, const char *text, RtError *error) {
     char names[128] = "";
     for (size_t i = 0, used = 0; i < ops->best_count && used < sizeof names; i++)
@@ -54,7 +47,7 @@ RtStatus rt_best_specs(const char *text, char specs[RT_MAX_BEST][RT_MAX_SPEC_CHA
     const RtAccelOps *ops;
     snprintf(name, sizeof name, "%.*s", (int)strcspn(text, ":"), text);
     RT_TRY(rt_accel_find(name, &ops, error));
-    const RtBestOf *best = rt_best_is(text) ? find(ops, strchr(text, ':') + 1) : NULL;
+    const RtBestOf *best = rt_best_is(text) ? rt_best_find(ops, strchr(text, ':') + 1) : NULL;
     if (!best) return fail_unknown(ops, text, error);
     *count = 0;
     for (size_t n = 0; *count < RT_MAX_BEST && combine(ops, best, n, specs[*count]); n++) {

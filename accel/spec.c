@@ -29,6 +29,11 @@ static RtStatus parse_layer(const char *text, size_t chars, RtSpecLayer *layer, 
     char *params = strchr(copy, ':');
     if (params) *params++ = '\0';
     RT_TRY(rt_accel_find(copy, &layer->ops, error));
+    if (params && rt_best_find(layer->ops, params))
+        return rt_fail(error, RT_BAD_INPUT,
+                       "'%s:%s' is the fastest of several settings: it can only be a baseline, as in "
+                       "`raytally bench --baseline %s:%s`",
+                       copy, params, copy, params);
     snprintf(what, sizeof what, "accelerator %s", layer->ops->name);
     return rt_params_parse(layer->ops->params, layer->ops->param_count, params, what, layer->values, error);
 }

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # libraytally.so and libraytally.a, of all libraries that are declared so far, and what is installed with them: headers,
-# raytally.pc, and a CMake package. The number of the shared library is that of the binary interface.
+# raytally.pc, and a CMake package, which the build folder is, too. The number of the shared library is that of the binary
+# interface.
 file(STRINGS include/raytally/raytally.h abi REGEX "^#define RAYTALLY_ABI_VERSION [0-9]+$")
 string(REGEX REPLACE ".* " "" abi "${abi}")
 get_property(libraries DIRECTORY PROPERTY raytally_libraries)
@@ -25,17 +26,21 @@ set_target_properties(raytally_static PROPERTIES OUTPUT_NAME raytally EXPORT_NAM
 target_link_libraries(raytally_static PRIVATE ${components})
 
 foreach(library shared static)
-  target_include_directories(raytally_${library} INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_include_directories(raytally_${library} INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+    $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/include>)
   install(TARGETS raytally_${library} EXPORT raytally-${library})
   install(EXPORT raytally-${library} NAMESPACE raytally:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/raytally)
+  export(EXPORT raytally-${library} NAMESPACE raytally:: FILE ${CMAKE_BINARY_DIR}/raytally-${library}.cmake)
 endforeach()
 
 # Of a plugin, which is linked with nothing.
 add_library(raytally_headers INTERFACE)
 set_target_properties(raytally_headers PROPERTIES EXPORT_NAME headers)
-target_include_directories(raytally_headers INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+target_include_directories(raytally_headers INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+  $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/include>)
 install(TARGETS raytally_headers EXPORT raytally-headers)
 install(EXPORT raytally-headers NAMESPACE raytally:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/raytally)
+export(EXPORT raytally-headers NAMESPACE raytally:: FILE ${CMAKE_BINARY_DIR}/raytally-headers.cmake)
 install(DIRECTORY include/raytally DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
 
 # What builds against it.

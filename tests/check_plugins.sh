@@ -3,8 +3,8 @@
 # check_plugins.sh: a faulty plugin damages only its own results. For each fault of tests/plugins/faulty.c, `verify` and `bench`
 # report it and end with 1, and the results of another accelerator beside it are complete, JSON included. A library that cannot
 # be loaded is rejected with exit code 2 and a sentence. A fresh `raytally new-accel` and the plugins of examples/ are built
-# against an installed raytally, verified and measured (those in C++ if there is a compiler for it). Uses $RT_PROGRAM, in its build
-# folder, and python3.
+# against an installed raytally, the first also against the build folder, verified and measured (those in C++ if there is a
+# compiler for it). Uses $RT_PROGRAM, in its build folder, and python3.
 set -uo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/testing.sh"
 root=$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")
@@ -320,11 +320,7 @@ done
 ends 0 compare balls:size=1 --plugin 'a:b/faulty.so' --accel faulty-not --with "$program" --rays primary --size 8x8 --limit 64 \
     --until 90% --patience 1
 
-# ---- correct plugins, built against an installation ----
-
-cmake --install "$build" --prefix "$work/prefix" >log 2>&1 || complain "cmake --install: $(tail -n 5 log)"
-program=$work/prefix/bin/raytally
-export PATH=$work/prefix/bin:$PATH
+# ---- correct plugins, built against the build folder and against an installation ----
 
 # works FOLDER: builds its plugin, if it has one, verifies and measures it
 works() {
@@ -347,9 +343,17 @@ names() {
     "$program" accels --json "$@" | sed -nE 's/^      "name": "(.*)",?$/\1/p' | sort
 }
 
+"$program" new-accel early >/dev/null || complain 'raytally new-accel early fails'
+PATH=$build:$PATH works early
+
+cmake --install "$build" --prefix "$work/prefix" >log 2>&1 || complain "cmake --install: $(tail -n 5 log)"
+program=$work/prefix/bin/raytally
+export PATH=$work/prefix/bin:$PATH
 (cd "$work" && raytally new-accel mine >/dev/null) || complain 'raytally new-accel mine fails'
 works mine
 (cmake --build built-mine --target check) >log 2>&1 || complain "the test of new-accel fails: $(tail -n 20 log)"
+ends 2 render balls:size=1 --plugin built-mine/mine.so --accel mine --structure boxes.png
+says 'no picture of mine.* a plugin shows its boxes by .each_box.'
 for example in "$root"/examples/*/CMakeLists.txt; do
     case $example in
     *'*'* | */header-only/* | */peers/*) ;; # no match, or it needs a library that the user must get

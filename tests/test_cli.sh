@@ -292,7 +292,9 @@ refuses 'SCENE is missing' bench --accel bvh
 refuses 'accelerator is missing' $bench
 refuses 'nope\.nff: there is no such file' bench nope.nff --accel bvh
 refuses "'grd': did you mean 'grid'" $bench --accel grd
-refuses 'bvh.*used twice' $bench --accel bvh --accel bvh
+refuses "'bhv': did you mean 'bvh'" $bench --accel bhv
+refuses "'embree:best' .*--baseline embree:best|without Embree" $bench --accel embree:best
+refuses 'bvh.*used twice: leave one out' $bench --accel bvh --accel bvh
 refuses "'bvh:best' is neither a spec" $bench --accel bvh --baseline bvh:best
 refuses "no ray kind 'sideways'.*primary" $bench --accel bvh --rays sideways
 refuses 'primary.*twice' $bench --accel bvh --rays primary,primary
@@ -313,6 +315,11 @@ refuses 'missing/x\.csv.*No such file' $bench --accel bvh --csv missing/x.csv
 ends 0 $bench --accel all --json
 ends 0 $bench --accel brute --ray-stride 3 --accel bvh --baseline bvh --count-only
 ends 0 $bench --accel bvh --rays diffuse,occlusion
+yaml named 'name: ünï' 'question: q' 'prediction: p' 'scenes: [{scene: "balls:size=1"}]' 'accelerators: [{accel: bvh}]'
+refuses 'named\.yaml:1:7: .*letters outside ASCII' run named.yaml --dry-run
+yaml matte 'objects: [{sphere: {center: [0, 0, 0], radius: 1}}]'
+ends 0 bench matte.yaml --accel bvh --size 4x4 --count-only --rays reflection,transmission
+says 'matte: there are no rays to measure \(reflection, transmission\): no surface'
 # Times per second are times per ray, multiplied by rays per second.
 timeout 60 "$program" $bench --accel kd --accel grid --rays primary,shadow --json >seconds.json
 awk -F '[":, ]+' '

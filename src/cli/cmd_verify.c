@@ -3,6 +3,7 @@
  * wrong? The command line of verify/verify.h and verify/replay.h. */
 #include "cli/cli.h"
 #include "cli/plugins.h"
+#include "cli/stop.h"
 #include "cli/verify_choice.h"
 #include "core/base/clock.h"
 #include "core/base/memory.h"
@@ -28,6 +29,7 @@ typedef struct Options {
     const char *replay, *rays_from;
     RtRaySet given; /* those of rays_from */
     RtVerifyChoice choice;
+    char go_on[1 << 16]; /* the command that continues */
 } Options;
 
 static void take_accel(void *options, const char *text, struct argp_state *state) {
@@ -130,11 +132,12 @@ static void clear_progress(const Show *show) {
     if (show->terminal) fputs("\r\033[K", stderr);
 }
 
-/* Redrawn at most ten times a second. */
+/* Redrawn at most ten times a second. From the first call on, --out has the journal. */
 static void on_doing(void *context, const RtVerifyProgress *p) {
     Show *show = context;
     const RtVerifyChoice *choice = &show->options->choice;
     double now = rt_wall_seconds(), passed = now - show->start;
+    if (show->options->work.folder) rt_stop_continue(show->options->work.folder, show->options->go_on);
     if (!show->terminal || now - show->drawn < 0.1) return;
     show->drawn = now;
     fprintf(stderr, "\r\033[Kverify: scene %u of %u, %s: %s", p->scene + 1, choice->scene_count,
@@ -179,7 +182,11 @@ static void print_row(Show *show, const json_t *row) {
             printf("    The scene is not reduced: only the first failures are (--shrink). ");
         }
         rt_cli_plugin_arguments(plugins, sizeof plugins);
-        printf("To repeat: raytally verify --replay '%s'%s\n", rt_json_text(wrong, "replay", ""), plugins);
+        if (!*rt_json_text(wrong, "replay", ""))
+            puts("The replay file could not be written.");
+        else
+            printf("To repeat: raytally verify --replay '%s'%s\n", rt_json_text(wrong, "replay", ""),
+                   plugins);
     }
     fflush(stdout);
 }
@@ -210,7 +217,8 @@ static void print_sides(const RtVerifySum *sum) {
     printf("%s: %" PRIu64 " answer%s to nearest differ%s by more than a tie; exactly right:", sum->name,
            differ, rt_plural(differ), differ == 1 ? "s" : "");
     for (int s = 0; s < RT_SIDE_COUNT; s++) {
-        printf("%s %s %" PRIu64, s ? "," : "", rt_side_name((RtSide)s), sum->sides[s]);
+        const char *name = s == RT_SIDE_EXPECTED ? rt_accel_truth() : rt_side_name((RtSide)s);
+        printf("%s %s %" PRIu64, s ? "," : "", s == RT_SIDE_GOT ? sum->name : name, sum->sides[s]);
     }
     putchar('\n');
 }
@@ -348,6 +356,9 @@ RtStatus rt_command_verify(int argc, char **argv, RtError *error) {
     static Options o;
     o = (Options){.work.rays.seed = 1};
     rt_cli_parse(&rt_verify_syntax, argc, argv, &o);
+    snprintf(o.go_on, sizeof o.go_on, "raytally verify");
+    for (int i = 1; i < argc; i++) rt_append_argument(o.go_on, sizeof o.go_on, argv[i]);
+    rt_append_text(o.go_on, sizeof o.go_on, " --resume");
     bool failed = false;
     RtStatus status = o.replay ? replay(&o, &failed, error) : choose(&o, error);
     if (status == RT_OK && !o.replay) status = verify(&o, &failed, error);

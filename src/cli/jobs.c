@@ -16,17 +16,10 @@
 
 static volatile sig_atomic_t last_signal; /* 0: none */
 static volatile pid_t running;            /* the fork; 0: none, as between two jobs and after the last */
-static const char *volatile command;      /* that continues */
 
 /* Also in a handler of signals. */
 _Noreturn static void leave(int number, bool told) {
-    if (!told) {
-        rt_stop_say("raytally: ");
-        rt_stop_say(rt_stop_reason(number));
-        rt_stop_say(". To continue:\n  ");
-        rt_stop_say(command);
-        rt_stop_say("\n");
-    }
+    if (!told) rt_stop_say(number);
     _exit(rt_stop_code(number));
 }
 
@@ -63,7 +56,7 @@ static RtStatus start(RtJob *job, RtError *error) {
 RtStatus rt_job_run(RtJob *job, const char *go_on, RtError *error) {
     const double began = rt_wall_seconds();
     int how = 0;
-    command = go_on;
+    rt_stop_continue(NULL, go_on);
     RT_TRY(start(job, error));
     if (job->here) return RT_OK;
     pid_t ended;

@@ -12,6 +12,7 @@
 
 static pid_t owner; /* of the files and processes: plugins run in forks that have the same handlers */
 static char time_is_over[64] = "stopped by an alarm";
+static const char *volatile keeps, *volatile go_on; /* NULL: nothing is kept, or continues */
 
 void rt_stop_clean(void) {
     if (getpid() != owner) return;
@@ -27,16 +28,28 @@ const char *rt_stop_reason(int number) {
     return number == SIGALRM ? time_is_over : "interrupted";
 }
 
-void rt_stop_say(const char *text) {
+void rt_stop_continue(const char *folder, const char *command) {
+    keeps = folder;
+    go_on = command;
+}
+
+static void say(const char *text) {
     if (write(STDERR_FILENO, text, strlen(text)) < 0) return;
 }
 
+void rt_stop_say(int number) {
+    say(isatty(STDERR_FILENO) == 1 ? "\r\033[Kraytally: " : "raytally: ");
+    say(rt_stop_reason(number));
+    if (keeps) say("; what is finished is kept in ");
+    if (keeps) say(keeps);
+    if (go_on) say(". To continue:\n  ");
+    if (go_on) say(go_on);
+    say("\n");
+}
+
 static void stop(int number) {
-    if (number == SIGALRM) {
-        rt_stop_say("raytally: ");
-        rt_stop_say(time_is_over);
-        rt_stop_say("\n");
-    }
+    const bool told = number == SIGALRM || (go_on && number != SIGABRT);
+    if (told && getpid() == owner) rt_stop_say(number);
     rt_stop_clean();
     if (number == SIGALRM) _exit(rt_stop_code(number));
     raise(number); /* which ends the process once the handler returns */
@@ -50,6 +63,7 @@ static bool is_ignored(int number) {
 void rt_stop_init(void) {
     static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGALRM, SIGABRT};
     owner = getpid();
+    rt_stop_continue(NULL, NULL);
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
         struct sigaction action = {.sa_handler = stop, .sa_flags = (int)SA_RESETHAND};
         sigemptyset(&action.sa_mask);

@@ -7,8 +7,13 @@
 #include <signal.h>
 
 /* From now on these signals, unless they are ignored, and SIGALRM clean up before they end the process. Call
- * it first, and again in a fork, which then cleans up its own files and processes alone. */
+ * it first, and again in a fork, which then cleans up its own files and processes alone and continues
+ * nothing. */
 void rt_stop_init(void);
+
+/* From now on one that stops this process says how to go on: `go_on` is the command, `keeps` the folder of
+ * what is finished, or NULL. Both are borrowed. */
+void rt_stop_continue(const char *keeps, const char *go_on);
 
 /* The signals that a command may take itself: SIGINT, SIGTERM and SIGALRM, unless they are ignored. */
 sigset_t rt_stop_signals(void);
@@ -22,8 +27,8 @@ int rt_stop_code(int number);
 /* What a signal says on stderr: "interrupted", or "stopped after 60 s (--time)". In a handler, too. */
 const char *rt_stop_reason(int number);
 
-/* Writes `text` to stderr; in a handler, too. */
-void rt_stop_say(const char *text);
+/* Says that, and what rt_stop_continue has set, on stderr. In a handler, too. */
+void rt_stop_say(int number);
 
 /* --time: sends SIGALRM after so many seconds. */
 void rt_stop_after(unsigned seconds);

@@ -324,7 +324,8 @@ static RtStatus read_comparison(Reader *r) {
     r->claim->readout = r->at == r->count;
     if (r->claim->readout) return RT_OK;
     while (i < 4 && !take(r, operators[i])) i++;
-    if (i == 4) return fail(r, "found '%s', expected one of < <= > >=", word(r));
+    if (i == 4)
+        return fail(r, "found '%s', expected `falls with`, `rises with` or one of < <= > >=", word(r));
     r->claim->greater = i >= 2;
     r->claim->or_equal = i % 2 == 1;
     if (!rt_swept_number(word(r), &r->claim->number)) return fail(r, "'%s' is not a number", word(r));

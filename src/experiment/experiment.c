@@ -193,17 +193,21 @@ const char *rt_plot_name(const RtExperiment *experiment, uint32_t plot) {
 static RtStatus check_label(const char *label, RtError *error) {
     for (const char *c = label; *c; c++) {
         if (rt_may_label(*c)) continue;
-        return rt_fail(error, RT_BAD_INPUT,
-                       "'%s' cannot name a row or a plot: give a `label` without blanks, quotes and any of "
-                       "/ \\ $ & < > @ ^ { }",
-                       label);
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "'%s' cannot be a name or `label`, which rows, plots and folders have: leave out blanks, "
+            "quotes, letters outside ASCII, and / \\ $ & < > @ ^ { }",
+            label);
     }
     return RT_OK;
 }
 
 static RtStatus fail_twice(const char *label, RtError *error) {
-    return rt_fail(error, RT_BAD_INPUT, "the label '%s' is used twice: give one of them another `label`",
-                   label);
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "the label '%s' is used twice: leave one out, or, in an experiment, give one of them another "
+        "`label`",
+        label);
 }
 
 /* Whether a spec begins with an accelerator that neither we nor a loaded plugin have. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A workload in order: record, build, and for each kind of rays count, time, and read hardware counters. */
 #include "core/base/memory.h"
+#include "core/base/words.h"
 #include "experiment/workload_state.h"
 #include "measure/ray_file.h"
 #include "scenes/open.h"
@@ -154,8 +155,26 @@ static RtStatus measure_kind(RtWorkloadState *workload, RtRayKind kind, RtError 
     return status;
 }
 
+/* Without rays of any kind the tables would be empty. */
+static void notify_empty(const RtWorkloadState *workload) {
+    const RtExperiment *experiment = workload->experiment;
+    const char *names[RT_RAY_KIND_COUNT];
+    char list[128];
+    for (uint32_t k = 0; k < experiment->kind_count; k++) {
+        if (workload->sets[experiment->kinds[k]].count > 0) return;
+        names[k] = rt_experiment_kind_name(experiment, experiment->kinds[k]);
+    }
+    rt_join_names(names, experiment->kind_count, list, sizeof list);
+    rt_notify(
+        &workload->options->observer,
+        "%s: there are no rays to measure (%s): no surface, light or material in its image causes them; "
+        "choose other kinds (--rays; in an experiment `rays`) or a larger image",
+        experiment->workloads[workload->index].label, list);
+}
+
 static RtStatus measure(RtWorkloadState *workload, RtError *error) {
     RT_TRY(prepare(workload, error));
+    notify_empty(workload);
     RT_TRY(rt_workload_build(workload, error));
     for (uint32_t k = 0; k < workload->experiment->kind_count; k++) {
         RT_TRY(measure_kind(workload, workload->experiment->kinds[k], error));

@@ -118,7 +118,8 @@ static uint64_t outside_exactly(uint32_t n, uint32_t m, double tail) {
 
 /* How much of the normal distribution lies above z >= 0: the integral of its density, by Simpson's rule. */
 static double normal_tail(double z) {
-    const double e = 2.7182818284590452, root = 2.5066282746310002, step = 12.0 / (2 * NORMAL_STEPS);
+    const double root = 2.5066282746310002; /* sqrt(2 pi), the area under exp(-x^2 / 2) */
+    const double e = 2.7182818284590452, step = 12.0 / (2 * NORMAL_STEPS);
     double sum = 0;
     for (int i = 0; i <= 2 * NORMAL_STEPS; i++) {
         double x = z + i * step, weight = i == 0 || i == 2 * NORMAL_STEPS ? 1 : i % 2 ? 4 : 2;
@@ -153,7 +154,7 @@ RtStatus rt_estimate_unpaired(const double *over, uint32_t over_count, const dou
     qsort(ratios, count, sizeof(double), compare);
     uint64_t out = over_count + under_count <= UNPAIRED_EXACT ? outside_exactly(over_count, under_count, tail)
                                                               : outside_nearly(over_count, under_count, tail);
-    if (out > 0) out--; /* the k-th smallest is an end of it */
+    if (out > 0) out--; /* the interval begins at the out-th smallest ratio, whose index is out - 1 */
     *estimate = (RtEstimate){.median = 0.5 * (ratios[(count - 1) / 2] + ratios[count / 2]),
                              .low = ratios[out],
                              .high = ratios[count - 1 - out],

@@ -330,7 +330,8 @@ static bool has_picture(const RtAccelOps *ops) {
 static RtStatus refuse(const RtAccelOps *ops, RtError *error) {
     return rt_fail(
         error, RT_NOT_AVAILABLE,
-        "there is no picture of %s, which has neither boxes nor cells: choose another, such as bvh or grid",
+        "there is no picture of %s, which has neither boxes nor cells: choose another, such as bvh or grid; "
+        "a plugin shows its boxes by `each_box`",
         ops->name);
 }
 

@@ -1,9 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* Verdicts by the margins that the header defines. An answer that is neither equal nor a tie goes to the
+ * referee. If it is not exactly right, each object gets its margin, the t at which it may be hit
+ * (triangle_margin, sphere_margin, probed_margin). The answer is marginal if it is in that of its object, and
+ * no object that is certainly hit is clearly before it. */
 #include "verify/verdict.h"
 
+/* Times the largest coordinate: the error of a place, the shift of a probe, the tolerance of t |dir|. */
 #define ERROR     0x1p-20
-#define SHIFT     0x1p-21
-#define TOLERANCE 0x1p-18
+#define SHIFT     (ERROR / 2)
+#define TOLERANCE (4 * ERROR)
 
 /* Sums of a few products of this size may overflow float32. */
 #define OVERFLOW_SIZE 0x1p124

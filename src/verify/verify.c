@@ -33,6 +33,7 @@ typedef struct Run {
     size_t next_known;
     json_t *rows;
     RtJsonLines journal;
+    RtError unsaved; /* why the replay file of the row could not be written, or empty */
 } Run;
 
 static RtAccelBuilder builder_of(const Run *run, const RtVerifySpec *spec) {
@@ -145,12 +146,13 @@ static json_t *known_row(Run *run, const char *scene, const char *spec) {
     return row;
 }
 
-/* Takes the reference. */
+/* Takes the reference. A row is shown even if it cannot be written. */
 static RtStatus add_row(Run *run, json_t *row, RtError *error) {
     if (!row || json_array_append_new(run->rows, row) != 0) return rt_fail_memory(error, "a row", 0);
-    if (run->journal.file) RT_TRY(rt_json_lines_write(&run->journal, json_incref(row), error));
     run->observer->row(run->observer->context, row);
-    return RT_OK;
+    if (*run->unsaved.message) run->observer->notice(run->observer->context, run->unsaved.message);
+    *run->unsaved.message = '\0';
+    return run->journal.file ? rt_json_lines_write(&run->journal, json_incref(row), error) : RT_OK;
 }
 
 /* ---- a wrong answer ---- */
@@ -161,14 +163,16 @@ static void on_tried(void *context, uint32_t left, uint32_t tries) {
     doing(context, what);
 }
 
-/* FOLDER/NUMBER-SCENE-SPEC.json. */
-static RtStatus replay_path(const Run *run, const char *scene, const char *spec, char *path, RtError *error) {
+/* Writes FOLDER/NUMBER-SCENE-SPEC.json, and its name to path[0..RT_MAX_PATH). */
+static RtStatus save_replay(const Run *run, const RtReplayRecord *record, char *path, RtError *error) {
     const char *folder = run->verify->folder ? run->verify->folder : FAILURES;
     char text[160], name[sizeof text];
-    snprintf(text, sizeof text, "%04zu-%.60s-%.50s.json", json_array_size(run->rows) + 1, scene, spec);
+    snprintf(text, sizeof text, "%04zu-%.60s-%.50s.json", json_array_size(run->rows) + 1, record->scene_spec,
+             record->accel_spec);
     rt_file_name(text, name, sizeof name);
     RT_TRY(rt_directory_create(folder, error));
-    return rt_path_join(folder, name, path, error);
+    RT_TRY(rt_path_join(folder, name, path, error));
+    return rt_replay_save(path, record, error);
 }
 
 /* The budget for shrinking a failure: by default half that of the one before, so that all take some seconds.
@@ -188,7 +192,8 @@ static uint64_t shrink_budget(const Run *run, const char *spec) {
     return shrunk < MOST_SHRUNK ? RT_SHRINK_BUDGET >> shrunk : 0;
 }
 
-/* Shrinks the failure within its budget, writes a replay file, and adds its name to the row. */
+/* Shrinks the failure within its budget, writes a replay file, and adds its name to the row: null if it
+ * cannot be written. */
 static RtStatus keep_failure(Run *run, const RtVerifyScene *scene, const RtVerifySpec *spec,
                              const RtWrongAnswer *wrong, json_t *row, RtError *error) {
     RtAccelBuilder builder = builder_of(run, spec);
@@ -198,20 +203,19 @@ static RtStatus keep_failure(Run *run, const RtVerifyScene *scene, const RtVerif
     RtShrunk shrunk = {.count = scene->scene.geometry.object_count};
     uint64_t budget = shrink_budget(run, spec->spec);
     char path[RT_MAX_PATH];
-    RT_TRY(replay_path(run, scene->name, spec->spec, path, error));
     RT_TRY(rt_failure_of(&scene->reference, wrong, builder, &failure, &answer, error));
     RtReplayRecord record = {scene->name, spec->spec, &scene->scene, &failure, &answer, NULL};
     if (answer.wrong && budget > 0) {
         RT_TRY(rt_shrink(&scene->scene, &failure, &answer, builder, budget, &observer, &shrunk, error));
         record.shrunk = &shrunk;
     }
-    RtStatus status = rt_replay_save(path, &record, error);
+    const bool saved = save_replay(run, &record, path, &run->unsaved) == RT_OK;
     json_t *first = json_object_get(row, "first_wrong");
-    json_object_set_new(first, "replay", json_string(path));
+    json_object_set_new(first, "replay", saved ? json_string(path) : json_null());
     json_object_set_new(first, "objects_left", answer.wrong ? json_integer(shrunk.count) : json_null());
     json_object_set_new(first, "shrunk", json_boolean(record.shrunk != NULL));
     rt_free(shrunk.ids);
-    return status;
+    return RT_OK;
 }
 
 /* ---- a row ---- */

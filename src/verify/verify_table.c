@@ -128,7 +128,7 @@ enum { OF_CSV = 10, AGAINST = 2 };
 static const RtTableColumn sides[] = {RT_SIDES(SIDE)};
 
 static const RtTableColumn first_wrong[] = {
-    MEMBER("replay", text, "replay file of the first wrong answer"),
+    MEMBER("replay", text, "replay file of the first wrong answer; empty: it could not be written"),
     MEMBER("objects_left", integer,
            "objects left in the reduced scene; empty: traced again, the answer is right"),
     MEMBER("shrunk", flag,

@@ -3,6 +3,7 @@
 #include "command_testing.h"
 
 #include <jansson.h>
+#include <signal.h>
 
 #define OUT RT_BINARY_DIR "/test_cmd_verify"
 
@@ -197,6 +198,24 @@ RT_TEST(what_needs_more_memory_than_is_allowed_is_refused_and_the_others_are_ver
 RT_TEST(a_verification_stops_when_its_time_is_over) {
     assert_int_equal(verify("random:n=2000 --accel brute --rays 20000000 --time 1"), 2);
     assert_string_equal(text_of(OUT ".err"), "raytally: stopped after 1 s (--time)\n");
+}
+
+/* Interrupted once it has finished the first row. */
+RT_TEST(an_interruption_says_what_is_kept_and_how_to_go_on) {
+    static const char arguments[] =
+        "-a bvh --rays 200000 --out " OUT ".part --force tetra:size=1 random:n=20000";
+    remove(OUT ".part/rows.jsonl");
+    assert_int_equal(raytally_to("> '" OUT ".out' 2> '" OUT ".err' & "
+                                 "until [ \"$(grep -c . " OUT ".part/rows.jsonl 2> /dev/null)\" = 2 ]; "
+                                 "do sleep 0.01; done; kill $! && wait $!",
+                                 "verify %s", arguments),
+                     128 + SIGTERM);
+    char expected[1024];
+    snprintf(expected, sizeof expected,
+             "raytally: interrupted; what is finished is kept in " OUT ".part. To continue:\n"
+             "  raytally verify %s --resume\n",
+             arguments);
+    assert_string_equal(text_of(OUT ".err"), expected);
 }
 
 /* Verifies whatever an earlier round of this test has left in --out. */

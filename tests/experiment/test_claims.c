@@ -198,7 +198,7 @@ RT_TEST(a_claim_that_is_none_is_refused_with_what_would_be_right) {
                                      "'grid'? choose one of bvh, grid, grid:d"},
         {"object_tests of grid on ball < 5", "'ball' is not the label of one of the scenes: did you mean "
                                              "'balls'? choose one of random, balls, random:n=10,"},
-        {"object_tests of grid = 5", "found '=', expected one of < <= > >="},
+        {"object_tests of grid = 5", "found '=', expected `falls with`, `rises with` or one of < <= > >="},
         {"object_tests of grid <", "'' is not a number"},
         {"object_tests of grid < five", "'five' is not a number"},
         {"object_tests of grid < 5 always", "unexpected 'always' at its end"},

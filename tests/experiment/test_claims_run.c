@@ -61,9 +61,9 @@ RT_TEST_IN_PLACE(a_claim_about_a_missing_plugin_has_no_measurements_and_is_no_fa
 RT_TEST_IN_PLACE(a_bad_claim_is_refused_with_its_line_when_the_yaml_is_read) {
     const Place *place = *state;
     write_changed(place, "small.yaml", claiming, "bvh > 1000", "bhv > 1000");
-    assert_bad_input(
-        load_small(place, false, error),
-        ":14:5: expect[1]: 'bhv' is not the label of one of the accelerators: choose one of bvh, grid, ");
+    assert_bad_input(load_small(place, false, error),
+                     ":14:5: expect[1]: 'bhv' is not the label of one of the accelerators: did you mean "
+                     "'bvh'? choose one of bvh, grid, ");
 }
 
 /* What is found, and better claims, come after the run. */

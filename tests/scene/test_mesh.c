@@ -186,6 +186,12 @@ RT_TEST(every_way_to_write_a_corner_of_obj_is_read) {
     }
 }
 
+RT_TEST(a_byte_order_mark_is_skipped) {
+    OWNED_SCENE scene;
+    assert_ok(load_text(OBJ_NAME, "\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", &scene, error));
+    assert_int_equal(scene.geometry.triangle_count, 1);
+}
+
 RT_TEST(every_way_to_write_a_number_is_read) {
     static const char *const tens[] = {"10",     "+10.0",       "1e1", "1E+0000000001",
                                        "100e-1", "0000000010.", ".1e2"};

@@ -196,6 +196,36 @@ RT_TEST(another_run_is_not_gone_on_with) {
     json_decref(rows);
 }
 
+static int notices;
+
+static void count_notice(void *context, const char *message) {
+    (void)context;
+    assert_non_null(strstr(message, OUT "/u/0001-"));
+    assert_int_equal(rows_seen, 1);
+    notices++;
+}
+
+RT_TEST(a_wrong_answer_is_shown_though_its_replay_file_cannot_be_written) {
+    const RtVerifySpec spec = {"unpadded", true, {build_mutant, &unpadded, 0}};
+    const RtVerifyObserver counting = {on_doing, on_row, count_notice, NULL};
+    const RtVerify work = {.scenes = scenes,
+                           .scene_count = 1,
+                           .specs = &spec,
+                           .spec_count = 1,
+                           .rays = {6000, 1, 0, NULL},
+                           .folder = OUT "/u",
+                           .start = RT_START_ANEW};
+    json_t *rows;
+    assert_ok(rt_directory_create(OUT "/u/0001-family-kind-plane-seed-1-unpadded.json", error));
+    rows_seen = notices = 0;
+    assert_ok(rt_verify_run(&work, &counting, &rows, error));
+    const json_t *row = json_array_get(rows, 0);
+    assert_true(rt_verify_row_fails(row));
+    assert_true(json_is_null(json_object_get(json_object_get(row, "first_wrong"), "replay")));
+    assert_int_equal(notices, 1);
+    json_decref(rows);
+}
+
 /* Only its first failure is shrunk; the next one is kept with its whole scene. */
 RT_TEST(an_accelerator_has_one_failure_shrunk) {
     const char *const both[] = {scenes[0], "family:kind=axis-aligned,seed=1"};

@@ -252,6 +252,7 @@ static RtStatus read_pieces(FILE *file, const char *path, bool text, char *buffe
         if (zero) return fail_zero(path, buffer, zero, error);
         *size += got;
     }
+    if (text && *size >= 3 && memcmp(buffer, "\xEF\xBB\xBF", 3) == 0) memmove(buffer, buffer + 3, *size -= 3);
     buffer[*size] = '\0';
     return RT_OK;
 }

@@ -81,7 +81,7 @@ RtStatus rt_file_open(const char *path, FILE **file, RtError *error);
 /* Reads the whole file and appends a 0; rejects more than `limit` bytes. Free with rt_free. */
 RtStatus rt_file_read(const char *path, size_t limit, char **data, size_t *size, RtError *error);
 
-/* The same for text: rejects a byte of 0, with its place. */
+/* The same for text: rejects a byte of 0, with its place, and leaves out a byte-order mark (UTF-8). */
 RtStatus rt_file_read_text(const char *path, size_t limit, char **text, size_t *size, RtError *error);
 
 bool rt_file_exists(const char *path);

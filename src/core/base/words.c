@@ -3,29 +3,32 @@
 
 #include <limits.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/ioctl.h>
 
-/* Levenshtein distance, for words of up to 63 characters. */
+/* Levenshtein distance, for words of up to 63 characters; two neighbours that are swapped count once. */
 static size_t edit_distance(const char *a, const char *b) {
-    size_t row[64], n = strlen(b);
+    size_t rows[3][64], n = strlen(b), i = 0;
     if (n > 63 || strlen(a) > 63) return 64;
-    for (size_t j = 0; j <= n; j++) row[j] = j;
-    for (size_t i = 0; a[i]; i++) {
-        size_t diagonal = row[0];
+    for (size_t j = 0; j <= n; j++) rows[0][j] = j;
+    for (; a[i]; i++) {
+        const size_t *above = rows[i % 3], *before = rows[(i + 2) % 3];
+        size_t *row = rows[(i + 1) % 3];
         row[0] = i + 1;
         for (size_t j = 0; j < n; j++) {
-            size_t replace = diagonal + (a[i] != b[j]);
-            diagonal = row[j + 1];
-            size_t remove = row[j + 1] + 1, insert = row[j] + 1;
-            row[j + 1] = replace < remove ? (replace < insert ? replace : insert)
-                                          : (remove < insert ? remove : insert);
+            size_t least = above[j] + (a[i] != b[j]);
+            if (above[j + 1] + 1 < least) least = above[j + 1] + 1;
+            if (row[j] + 1 < least) least = row[j] + 1;
+            const bool swapped = i > 0 && j > 0 && a[i] == b[j - 1] && a[i - 1] == b[j];
+            if (swapped && before[j - 1] + 1 < least) least = before[j - 1] + 1;
+            row[j + 1] = least;
         }
     }
-    return row[n];
+    return rows[i % 3][n];
 }
 
 const char *rt_nearest_name(const char *word, const char *const *names, size_t count) {
