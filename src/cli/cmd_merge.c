@@ -3,7 +3,7 @@
 #include "cli/cli.h"
 #include "experiment/merge.h"
 #include "experiment/result_tables.h"
-#include "report/run_report.h"
+#include "report/report.h"
 
 #include <stdio.h>
 

@@ -7,7 +7,7 @@
 #include "core/base/memory.h"
 #include "core/base/versions.h"
 #include "experiment/manifest.h"
-#include "experiment/result_csv.h"
+#include "experiment/result_directory.h"
 #include "literature/published_tables.h"
 
 #include <inttypes.h>

@@ -12,7 +12,7 @@
 #include "experiment/result_tables.h"
 #include "measure/result_files.h"
 #include "report/index.h"
-#include "report/run_report.h"
+#include "report/report.h"
 
 #include <inttypes.h>
 #include <stdio.h>

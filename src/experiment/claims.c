@@ -228,17 +228,13 @@ static RtStatus read_axis(Reader *r) {
 
 /* ---- places ---- */
 
-static void extreme(const RtExperiment *experiment, const RtSweptKey *key, bool largest, char *value) {
-    double best = 0;
-    for (uint32_t t = 0; t < experiment->workload_count; t++) {
-        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-            const char *text = rt_swept_of(experiment, key, t, c);
-            double number;
-            if (!text || !rt_swept_number(text, &number)) continue;
-            if (*value && (largest ? number <= best : number >= best)) continue;
-            best = number;
-            strcpy(value, text);
-        }
+static void extreme(const Choice *values, bool largest, char *value) {
+    double best = 0, number;
+    for (uint32_t i = 0; i < values->count; i++) {
+        if (!rt_swept_number(values->names[i], &number)) continue;
+        if (*value && (largest ? number <= best : number >= best)) continue;
+        best = number;
+        strcpy(value, values->names[i]);
     }
 }
 
@@ -260,18 +256,18 @@ static RtStatus read_at(Reader *r) {
                     word(r));
     }
     if ((largest || smallest) && !key->number) return fail(r, "the values of '%s' are not numbers", word(r));
-    if (largest || smallest)
-        extreme(r->experiment, key, largest, value);
-    else
-        snprintf(value, RT_MAX_SWEPT_CHARS, "%s", given + 1);
-    bool found = false;
     for (uint32_t t = 0; t < r->experiment->workload_count; t++) {
         for (uint32_t c = 0; c < r->experiment->candidate_count; c++) {
             const char *text = rt_swept_of(r->experiment, key, t, c);
             if (text) offer(&values, text);
-            found |= text && rt_swept_equal(text, value);
         }
     }
+    if (largest || smallest)
+        extreme(&values, largest, value);
+    else
+        snprintf(value, RT_MAX_SWEPT_CHARS, "%s", given + 1);
+    bool found = false;
+    for (uint32_t i = 0; i < values.count; i++) found |= rt_swept_equal(values.names[i], value);
     char what[RT_MAX_LABEL];
     snprintf(what, sizeof what, "a value of %s", key->key);
     if (!found) return fail_choice(r, value, what, &values);

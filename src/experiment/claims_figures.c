@@ -101,13 +101,13 @@ static int side_at(const RtClaimPoint *points, double at) {
 /* Follows the side along x; enters `side` at `x`. */
 typedef struct Walk {
     RtCrossover *crossovers;
-    uint32_t count, most;
+    uint32_t count;
     int side;
     RtCrossover open; /* while side is 0 */
 } Walk;
 
 static void add(Walk *walk, RtCrossover crossover) {
-    if (walk->count < walk->most) walk->crossovers[walk->count] = crossover;
+    if (walk->count < RT_MAX_CROSSOVERS) walk->crossovers[walk->count] = crossover;
     walk->count++;
 }
 
@@ -125,9 +125,9 @@ static void enter(Walk *walk, double x, int side) {
     walk->side = side;
 }
 
-uint32_t rt_claim_crossovers(const RtClaimPoint *points, uint32_t count, RtCrossover *crossovers,
-                             uint32_t most) {
-    Walk walk = {.crossovers = crossovers, .most = most};
+uint32_t rt_claim_crossovers(const RtClaimPoint *points, uint32_t count,
+                             RtCrossover crossovers[RT_MAX_CROSSOVERS]) {
+    Walk walk = {.crossovers = crossovers};
     if (count < 2 || !all_have_logarithms(points, count)) return 0;
     for (uint32_t i = 0; i + 1 < count; i++) {
         const RtClaimPoint *p = &points[i];

@@ -24,9 +24,10 @@ typedef struct RtCrossover {
     int before, after; /* -1: y is below 1 on that side; 1: above; 0: unknown, beyond the points */
 } RtCrossover;
 
-/* Writes the first `most` of the crossovers in order and returns their number. Zero for unknown values. */
-uint32_t rt_claim_crossovers(const RtClaimPoint *points, uint32_t count, RtCrossover *crossovers,
-                             uint32_t most);
+/* Writes the first RT_MAX_CROSSOVERS of them in order and returns their number. Zero for unknown values. */
+enum { RT_MAX_CROSSOVERS = 16 };
+uint32_t rt_claim_crossovers(const RtClaimPoint *points, uint32_t count,
+                             RtCrossover crossovers[RT_MAX_CROSSOVERS]);
 
 /* The x within [crossover->low, crossover->high] above `after` where the median of y is next 1; NAN if there
  * is none. */

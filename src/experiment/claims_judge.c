@@ -8,7 +8,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <string.h>
 
 /* What a claim says about some of its cells. */
 typedef struct Figure {
@@ -18,6 +17,8 @@ typedef struct Figure {
     RtEstimate value;       /* of a value, ratio, exponent or correlation */
     double error;           /* of an exponent: the standard error */
     uint32_t from, to;      /* of a trend: the points of the deciding step */
+    uint32_t found;         /* crossovers; the first of them: */
+    RtCrossover crossovers[RT_MAX_CROSSOVERS];
 } Figure;
 
 const char *rt_claim_verdict_name(RtClaimVerdict verdict) {
@@ -71,25 +72,21 @@ static void judge_trend(const RtClaim *claim, Figure *figure) {
     }
 }
 
-enum { MOST_CROSSOVERS = 16 };
-
 /* Whether the curves surely cross there: the ratio is below 1 on one side and above it on the other. */
 static bool is_certain(const RtCrossover *crossover) {
     return crossover->before * crossover->after < 0;
 }
 
 static void judge_crossover(const RtClaim *claim, Figure *figure) {
-    RtCrossover crossovers[MOST_CROSSOVERS];
-    const RtClaimPoint *points = figure->points;
-    const uint32_t found = rt_claim_crossovers(points, figure->count, crossovers, MOST_CROSSOVERS);
-    const uint32_t count = found < MOST_CROSSOVERS ? found : MOST_CROSSOVERS;
     RtClaimVerdict certain = RT_CLAIM_HOLDS, possible = RT_CLAIM_HOLDS;
     bool any = false;
-    if (found > count) possible = RT_CLAIM_UNDECIDED;
-    for (uint32_t i = 0; i < count; i++) {
-        const RtClaimVerdict verdict = compare(claim, crossovers[i].low, crossovers[i].high);
-        any |= is_certain(&crossovers[i]);
-        if (is_certain(&crossovers[i]))
+    figure->found = rt_claim_crossovers(figure->points, figure->count, figure->crossovers);
+    if (figure->found > RT_MAX_CROSSOVERS) possible = RT_CLAIM_UNDECIDED;
+    for (uint32_t i = 0; i < figure->found && i < RT_MAX_CROSSOVERS; i++) {
+        const RtCrossover *crossover = &figure->crossovers[i];
+        const RtClaimVerdict verdict = compare(claim, crossover->low, crossover->high);
+        any |= is_certain(crossover);
+        if (is_certain(crossover))
             certain = worse(certain, verdict);
         else if (verdict != RT_CLAIM_HOLDS)
             possible = RT_CLAIM_UNDECIDED;
@@ -207,15 +204,14 @@ static const char *side_of(const Figure *figure) {
 }
 
 static void put_crossover(RtClaimResult *result, const RtClaim *claim, const Figure *figure) {
-    RtCrossover crossovers[MOST_CROSSOVERS];
     const RtClaimPoint *first = figure->points, *last = first + figure->count - 1;
-    const uint32_t found = rt_claim_crossovers(first, figure->count, crossovers, MOST_CROSSOVERS);
+    const uint32_t count = figure->found < RT_MAX_CROSSOVERS ? figure->found : RT_MAX_CROSSOVERS;
     uint32_t certain = 0;
-    for (uint32_t i = 0; i < found && i < MOST_CROSSOVERS; i++) certain += is_certain(&crossovers[i]);
+    for (uint32_t i = 0; i < count; i++) certain += is_certain(&figure->crossovers[i]);
     if (certain > 1) PUT(result, "%" PRIu32 " crossovers: ", certain);
     PUT(result, "%s", claim->accel);
-    for (uint32_t i = 0; i < found && i < MOST_CROSSOVERS; i++) {
-        const RtCrossover *crossover = &crossovers[i];
+    for (uint32_t i = 0; i < count; i++) {
+        const RtCrossover *crossover = &figure->crossovers[i];
         const bool is = is_certain(crossover), begins = !is && i == 0 && crossover->before != 0;
         const int side = is ? crossover->after : crossover->before;
         PUT(result, "%s", i > 0 ? "," : "");
@@ -228,7 +224,7 @@ static void put_crossover(RtClaimResult *result, const RtClaim *claim, const Fig
             PUT(result, " may cross %s at ", claim->other);
         put_one_crossover(result, claim, figure, crossover);
     }
-    if (found > 0) return;
+    if (count > 0) return;
     PUT(result, " %s %s from %s=%.9g to %.9g", side_of(figure), claim->other, claim->key.key, first->x,
         last->x);
 }

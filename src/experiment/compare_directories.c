@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Pairs of result directories: their cells, and verdicts of accelerators over scenes. */
-#include "core/base/elementary.h"
 #include "core/base/memory.h"
 #include "experiment/compare.h"
 
@@ -8,16 +7,6 @@
 #include <string.h>
 
 /* ---- cells ---- */
-
-/* The candidate of `other` with the label of candidate `c`, on workload `t`; its candidate_count if there is
- * none. */
-static uint32_t find_candidate(const RtResults *results, uint32_t c, const RtResults *other, uint32_t t) {
-    const RtExperiment *e = other->experiment;
-    uint32_t found = t == e->workload_count
-                         ? e->candidate_count
-                         : rt_candidate_find(e, results->experiment->candidates[c].label, t);
-    return found < e->candidate_count ? found : e->candidate_count;
-}
 
 /* A pair of runs whose counts differ is kept in preference to one whose counts do not. */
 static void take_counts(RtComparedCell *cell, const RtTally *before, const RtTally *after) {
@@ -42,21 +31,25 @@ static RtStatus take_times(RtComparedCell *cell, uint32_t pair, const RtCell *on
 /* What a pair of runs is compared with. */
 typedef struct Pair {
     const RtResults *before, *after;
-    uint32_t number, count;
+    uint32_t number;
     bool swapped; /* looks only for cells that are missing before */
 } Pair;
 
-static RtStatus compare_cell(const Pair *pair, uint32_t t, uint32_t c, RtRayKind kind,
-                             RtComparison *comparison, RtError *error) {
+static RtStatus compare_cell(const Pair *pair, const RtCellCursor *at, RtComparison *comparison,
+                             RtError *error) {
     const RtResults *before = pair->before, *after = pair->after;
+    const uint32_t t = at->workload, c = at->candidate;
+    const RtRayKind kind = at->kind;
     const char *scene = before->experiment->workloads[t].label;
     const char *accel = before->experiment->candidates[c].label;
-    const RtCell *one = rt_cell_at(before, t, c, kind);
-    if (!one->counted && !one->timed) return RT_OK;
+    const RtCell *one = at->cell;
+    if (!rt_candidate_runs(before->experiment, c, t) || (!one->counted && !one->timed)) return RT_OK;
     RtComparedCell *cell = rt_comparison_cell(comparison, scene, accel, rt_ray_kind_name(kind));
     if (!cell) return rt_fail_memory(error, "a comparison", 0);
-    uint32_t t2 = rt_workload_find(after->experiment, scene), c2 = find_candidate(before, c, after, t2);
-    const RtCell *other = c2 < after->experiment->candidate_count ? rt_cell_at(after, t2, c2, kind) : NULL;
+    const RtExperiment *e = after->experiment;
+    const uint32_t t2 = rt_workload_find(e, scene);
+    const uint32_t c2 = t2 < e->workload_count ? rt_candidate_find(e, accel, t2) : e->candidate_count;
+    const RtCell *other = c2 < e->candidate_count ? rt_cell_at(after, t2, c2, kind) : NULL;
     cell->rays = one->tally.rays;
     if (!other || (!other->counted && !other->timed)) {
         cell->change = pair->swapped ? RT_CHANGE_ONLY_AFTER : RT_CHANGE_ONLY_BEFORE;
@@ -72,18 +65,12 @@ static RtStatus compare_cell(const Pair *pair, uint32_t t, uint32_t c, RtRayKind
         rt_build_at(after, t2, c2)->counts)
         take_counts(cell, &one->tally, &other->tally);
     if (!one->round_times || !other->round_times || one->threads != other->threads) return RT_OK;
-    return take_times(cell, pair->number, one, other, pair->count, error);
+    return take_times(cell, pair->number, one, other, comparison->pairs, error);
 }
 
 static RtStatus compare_all(const Pair *pair, RtComparison *comparison, RtError *error) {
-    const RtExperiment *e = pair->before->experiment;
-    for (uint32_t t = 0; t < e->workload_count; t++) {
-        for (uint32_t c = 0; c < e->candidate_count; c++) {
-            for (uint32_t k = 0; k < e->kind_count && rt_candidate_runs(e, c, t); k++) {
-                RT_TRY(compare_cell(pair, t, c, e->kinds[k], comparison, error));
-            }
-        }
-    }
+    for (RtCellCursor at = {0}; rt_results_next(pair->before, &at);)
+        RT_TRY(compare_cell(pair, &at, comparison, error));
     return RT_OK;
 }
 
@@ -223,7 +210,7 @@ RtStatus rt_compare_results(const RtResults *results, uint32_t pairs, RtComparis
     comparison->pairs = pairs;
     for (uint32_t p = 0; p < pairs; p++) {
         const RtResults *before = &results[(size_t)2 * p], *after = before + 1;
-        const Pair straight = {before, after, p, pairs, false}, swapped = {after, before, p, pairs, true};
+        const Pair straight = {before, after, p, false}, swapped = {after, before, p, true};
         RT_TRY(compare_all(&straight, comparison, error));
         RT_TRY(compare_all(&swapped, comparison, error));
     }

@@ -63,8 +63,7 @@ static const json_t *cell_of(const json_t *section, const char *accel, uint32_t 
 }
 
 /* The cell of the comparison, with the counts of both; or a note that only one of them has it. */
-static RtComparedCell *enter(Run *run, const json_t *const sections[2], const json_t *before,
-                             const json_t *after) {
+static RtComparedCell *enter(Run *run, json_t *const sections[2], const json_t *before, const json_t *after) {
     const json_t *either = before ? before : after, *section = sections[before ? BEFORE : AFTER];
     RtComparedCell *cell =
         rt_comparison_cell(run->comparison, rt_json_text(section, "scene", ""),
@@ -85,7 +84,7 @@ static RtComparedCell *enter(Run *run, const json_t *const sections[2], const js
     return cell;
 }
 
-static RtStatus find_pairs(Run *run, const json_t *const sections[2], Pair *pairs, uint32_t *count,
+static RtStatus find_pairs(Run *run, json_t *const sections[2], Pair *pairs, uint32_t *count,
                            RtError *error) {
     *count = 0;
     for (int who = BEFORE; who <= AFTER; who++) {
@@ -146,22 +145,23 @@ static RtStatus time_pairs(Run *run, Pair *pairs, uint32_t count, RtError *error
     return RT_OK;
 }
 
-static RtStatus check_alike(const Run *run, const json_t *const sections[2], RtError *error) {
-    const char *scene = rt_json_text(sections[AFTER], "scene", ""),
-               *kind = rt_json_text(sections[AFTER], "kind", "");
-    bool same_place = strcmp(rt_json_text(sections[BEFORE], "scene", ""), scene) == 0 &&
-                      strcmp(rt_json_text(sections[BEFORE], "kind", ""), kind) == 0;
-    if (same_place &&
-        strcmp(rt_json_text(sections[BEFORE], "hash", ""), rt_json_text(sections[AFTER], "hash", "")) == 0)
-        return RT_OK;
+static RtStatus check_alike(const Run *run, json_t *const sections[2], RtError *error) {
+    static const char *const keys[] = {"scene", "kind", "hash"};
+    const char *texts[2][3];
+    bool alike = true;
+    for (int k = 0; k < 3; k++) {
+        for (int who = BEFORE; who <= AFTER; who++) texts[who][k] = rt_json_text(sections[who], keys[k], "");
+        alike &= strcmp(texts[BEFORE][k], texts[AFTER][k]) == 0;
+    }
+    if (alike) return RT_OK;
     return rt_fail(
         error, RT_BAD_INPUT,
         "%s and %s do not record the same rays (%s, %s), so times would not compare. Record the rays once "
         "with `raytally rays`, and measure each program on that file: `raytally bench --rays-from FILE`",
-        run->programs->before, run->programs->after, scene, kind);
+        run->programs->before, run->programs->after, texts[AFTER][0], texts[AFTER][1]);
 }
 
-static RtStatus compare_section(Run *run, const json_t *const sections[2], RtError *error) {
+static RtStatus compare_section(Run *run, json_t *const sections[2], RtError *error) {
     const RtPrograms *programs = run->programs;
     uint32_t count = (uint32_t)json_array_size(json_object_get(sections[BEFORE], "cells"));
     RT_TRY(check_alike(run, sections, error));
@@ -193,12 +193,8 @@ static RtStatus compare_sections(Run *run, bool *more, RtError *error) {
         status = rt_worker_take(&run->workers[who], &sections[who], error);
     }
     if (status == RT_OK) {
-        bool done[2];
-        for (int who = BEFORE; who <= AFTER; who++)
-            done[who] = json_object_get(sections[who], "done") != NULL;
-        *more = !(done[BEFORE] && done[AFTER]);
-        const json_t *const both[2] = {sections[BEFORE], sections[AFTER]};
-        if (*more) status = compare_section(run, both, error);
+        *more = !json_object_get(sections[BEFORE], "done") || !json_object_get(sections[AFTER], "done");
+        if (*more) status = compare_section(run, sections, error);
     }
     json_decref(sections[BEFORE]);
     json_decref(sections[AFTER]);

@@ -86,18 +86,19 @@ static void label_setting(const char *spec, char label[RT_MAX_LABEL]) {
     label[used] = '\0';
 }
 
+static void append_setting(RtExperiment *experiment, RtCandidate *candidate) {
+    candidate->ray_stride = 1;
+    memcpy(candidate->stem, candidate->label, sizeof candidate->stem);
+    experiment->candidates[experiment->candidate_count++] = *candidate;
+    experiment->baseline_count++;
+}
+
 /* The baseline of the results: the accelerators after those of the YAML in the manifest. */
-static void append_from_manifest(RtExperiment *experiment, const char *label) {
-    RtCandidate candidate = {.ray_stride = 1};
-    uint32_t first = experiment->candidate_count;
+static void append_from_manifest(RtExperiment *experiment) {
+    RtCandidate candidate = {0};
     while (experiment->candidate_count < RT_MAX_CANDIDATES &&
-           rt_manifest_candidate(experiment->manifest, experiment->candidate_count, &candidate)) {
-        memcpy(candidate.stem, candidate.label, sizeof candidate.stem);
-        experiment->candidates[experiment->candidate_count++] = candidate;
-    }
-    snprintf(experiment->best, sizeof experiment->best, "%s", label);
-    experiment->baseline = first;
-    experiment->baseline_count = experiment->candidate_count - first;
+           rt_manifest_candidate(experiment->manifest, experiment->candidate_count, &candidate))
+        append_setting(experiment, &candidate);
 }
 
 static RtStatus append_best(RtExperiment *experiment, const char *label, RtError *error) {
@@ -108,15 +109,11 @@ static RtStatus append_best(RtExperiment *experiment, const char *label, RtError
         return rt_fail(error, RT_BAD_INPUT, "'%s' expands to %zu accelerators: an experiment has at most %d",
                        label, count, RT_MAX_CANDIDATES);
     }
-    snprintf(experiment->best, sizeof experiment->best, "%s", label);
-    experiment->baseline = experiment->candidate_count;
-    experiment->baseline_count = (uint32_t)count;
     for (size_t i = 0; i < count; i++) {
-        RtCandidate *candidate = &experiment->candidates[experiment->candidate_count++];
-        *candidate = (RtCandidate){.ray_stride = 1};
-        memcpy(candidate->spec, specs[i], sizeof candidate->spec);
-        label_setting(specs[i], candidate->label);
-        memcpy(candidate->stem, candidate->label, sizeof candidate->stem);
+        RtCandidate candidate = {0};
+        memcpy(candidate.spec, specs[i], sizeof candidate.spec);
+        label_setting(specs[i], candidate.label);
+        append_setting(experiment, &candidate);
     }
     return RT_OK;
 }
@@ -139,11 +136,11 @@ RtStatus rt_experiment_set_baseline(RtExperiment *experiment, const char *label,
     while (c < experiment->candidate_count && strcmp(experiment->candidates[c].label, label) != 0) c++;
     experiment->baseline = c;
     if (c < experiment->candidate_count || !rt_best_is(label)) return RT_OK;
-    if (experiment->manifest) {
-        append_from_manifest(experiment, label);
-        return RT_OK;
-    }
-    return append_best(experiment, label, error);
+    snprintf(experiment->best, sizeof experiment->best, "%s", label);
+    experiment->baseline_count = 0;
+    if (!experiment->manifest) return append_best(experiment, label, error);
+    append_from_manifest(experiment);
+    return RT_OK;
 }
 
 bool rt_candidate_is_baseline(const RtExperiment *experiment, uint32_t c) {

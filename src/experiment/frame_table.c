@@ -3,7 +3,6 @@
 
 #include "accel/accel.h"
 #include "core/base/file.h"
-#include "core/base/memory.h"
 #include "core/base/words.h"
 #include "experiment/result_tables.h"
 

@@ -29,11 +29,10 @@ RtStatus rt_journal_open(RtJsonLines *journal, const char *path, const RtExperim
 
 /* A new header, then all lines except those of accelerators whose plugin has changed. */
 static json_t *lines_without(const json_t *lines, const RtExperiment *experiment, const RtOnly *only) {
-    json_t *kept = json_array(), *line, *header = header_json(experiment, only);
-    json_t *changed = rt_plugins_changed(json_object_get(json_array_get(lines, 0), "plugins"),
-                                         json_object_get(header, "plugins"));
+    const json_t *plugins = json_object_get(json_array_get(lines, 0), "plugins");
+    json_t *kept = json_array(), *line, *changed = rt_plugins_changed_since(plugins, experiment);
     size_t i;
-    json_array_append_new(kept, header);
+    json_array_append_new(kept, header_json(experiment, only));
     json_array_foreach((json_t *)lines, i, line) {
         if (i > 0 && json_is_object(line) && !rt_journal_line_concerns(line, experiment, changed))
             json_array_append(kept, line);
@@ -135,8 +134,7 @@ static RtStatus take_lines(const char *path, RtResults *results, const json_t *l
     RT_TRY(rt_json_check_format(header, path, error));
     RT_TRY(check_experiment(path, header, experiment, error));
     if (only) RT_TRY(check_build(path, header, only, error));
-    json_t *used = only ? rt_plugins_used(experiment) : NULL;
-    json_t *changed = only ? rt_plugins_changed(json_object_get(header, "plugins"), used) : NULL;
+    json_t *changed = only ? rt_plugins_changed_since(json_object_get(header, "plugins"), experiment) : NULL;
     RtStatus status = only ? check_plugins(path, experiment, changed, renew, error) : RT_OK;
     for (size_t i = 1; status == RT_OK && i < json_array_size(lines); i++) {
         const json_t *line = json_array_get(lines, i);
@@ -146,7 +144,6 @@ static RtStatus take_lines(const char *path, RtResults *results, const json_t *l
         status = reader.status;
     }
     json_decref(changed);
-    json_decref(used);
     return status;
 }
 
@@ -167,13 +164,11 @@ bool rt_journal_is_outdated(const char *path, const RtExperiment *experiment, co
     const bool same_run = strcmp(rt_json_text(header, "experiment", ""), experiment->name) == 0 &&
                           json_is_true(json_object_get(header, "quick")) == experiment->quick &&
                           is_of_shard(header, only);
-    json_t *used = rt_plugins_used(experiment);
-    json_t *changed = rt_plugins_changed(json_object_get(header, "plugins"), used);
+    json_t *changed = rt_plugins_changed_since(json_object_get(header, "plugins"), experiment);
     const bool same_version =
         rt_json_parse_hex(json_object_get(header, "hash"), &good) == experiment->fingerprint && good &&
         strcmp(rt_json_text(header, "build", ""), rt_build_alone()) == 0 && json_object_size(changed) == 0;
     json_decref(changed);
-    json_decref(used);
     json_decref(lines);
     return same_run && !same_version;
 }

@@ -95,10 +95,10 @@ static RtStatus check_threads(const Merge *merge, int *threads, RtError *error) 
 
 /* The shards must have used the plugins that are loaded here, which the manifest will name. */
 static RtStatus check_plugins(const Merge *merge, const RtExperiment *experiment, RtError *error) {
-    json_t *used = rt_plugins_used(experiment);
     RtStatus status = RT_OK;
     for (uint32_t i = 0; i < merge->count && status == RT_OK; i++) {
-        json_t *changed = rt_plugins_changed(json_object_get(header_of(merge, i), "plugins"), used);
+        json_t *changed =
+            rt_plugins_changed_since(json_object_get(header_of(merge, i), "plugins"), experiment);
         const char *name = json_object_iter_key(json_object_iter(changed));
         char sentence[RT_MAX_PLUGIN_CHANGE];
         if (name) {
@@ -107,7 +107,6 @@ static RtStatus check_plugins(const Merge *merge, const RtExperiment *experiment
         }
         json_decref(changed);
     }
-    json_decref(used);
     return status;
 }
 

@@ -64,6 +64,12 @@ json_t *rt_plugins_changed(const json_t *before, const json_t *after) {
     return changed;
 }
 
+json_t *rt_plugins_changed_since(const json_t *before, const RtExperiment *experiment) {
+    json_t *now = rt_plugins_used(experiment), *changed = rt_plugins_changed(before, now);
+    json_decref(now);
+    return changed;
+}
+
 bool rt_plugins_concern(const json_t *object, const RtExperiment *experiment, uint32_t candidate) {
     const char *name;
     json_t *plugin;
@@ -96,8 +102,8 @@ void rt_plugins_change_format(const char *name, const json_t *change, const char
 
 void rt_plugins_tell_changes(const RtExperiment *experiment, const json_t *manifest,
                              void (*tell)(void *context, const char *sentence), void *context) {
-    json_t *then = rt_plugins_used_then(experiment, manifest), *now = rt_plugins_used(experiment), *change;
-    json_t *changed = rt_plugins_changed(then, now);
+    json_t *then = rt_plugins_used_then(experiment, manifest), *change;
+    json_t *changed = rt_plugins_changed_since(then, experiment);
     const char *name;
     json_object_foreach(changed, name, change) {
         char sentence[RT_MAX_PLUGIN_CHANGE];
@@ -106,5 +112,4 @@ void rt_plugins_tell_changes(const RtExperiment *experiment, const json_t *manif
     }
     json_decref(changed);
     json_decref(then);
-    json_decref(now);
 }

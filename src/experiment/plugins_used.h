@@ -18,6 +18,9 @@ json_t *rt_plugins_used_then(const RtExperiment *experiment, const json_t *manif
  * reference; NULL if memory is short. */
 json_t *rt_plugins_changed(const json_t *before, const json_t *after);
 
+/* The same up to the loaded plugins. */
+json_t *rt_plugins_changed_since(const json_t *before, const RtExperiment *experiment);
+
 /* Whether a layer of the candidate (for the null run, of the baseline) is a member of `object`. */
 bool rt_plugins_concern(const json_t *object, const RtExperiment *experiment, uint32_t candidate);
 

@@ -8,7 +8,6 @@
 #include "experiment/result_tables.h"
 
 #include <inttypes.h>
-#include <stdlib.h>
 #include <string.h>
 
 void rt_interval_title(const RtExperiment *experiment, char out[RT_MAX_INTERVAL_TITLE]) {
@@ -67,18 +66,12 @@ void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workl
         print_part(&table, &row, part, out);
 }
 
-/* The fewest and the most rounds of any cell; 0 if nothing was timed. */
-static uint32_t rounds_of(const RtResults *results, uint32_t t, uint32_t *least) {
-    uint32_t most = 0;
-    for (uint32_t c = 0; c <= results->experiment->candidate_count; c++) {
-        for (uint32_t k = 0; k < results->experiment->kind_count; k++) {
-            const RtCell *cell = rt_cell_at(results, t, c, results->experiment->kinds[k]);
-            if (!cell->timed) continue;
-            *least = most == 0 || cell->rounds < *least ? cell->rounds : *least;
-            most = cell->rounds > most ? cell->rounds : most;
-        }
+static void print_all_rows(const RtResults *results, RtResultTable which, const char *title, FILE *out) {
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        if (!results->workloads[t].known) continue;
+        fprintf(out, "\n%s, %s:\n", results->experiment->workloads[t].label, title);
+        rt_print_rows(results, which, t, out);
     }
-    return most;
 }
 
 /* The baseline of the ratios, and the coverage of the intervals. */
@@ -246,7 +239,7 @@ static void print_builds(const RtResults *results, uint32_t t, FILE *out) {
 }
 
 static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
-    uint32_t least = 0, most = rounds_of(results, t, &least);
+    uint32_t least = 0, most = rt_results_rounds(results, t, &least);
     const bool timed = most > 0;
     rt_print_wrapped("Object tests, extent tests and steps are per ray.", out);
     if (timed) print_ratios(results, least, most, out);
@@ -295,21 +288,7 @@ void rt_print_hardware(const RtResults *results, FILE *out) {
         rt_print_wrapped(text, out);
         return;
     }
-    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
-        if (!results->workloads[t].known) continue;
-        fprintf(out, "\n%s, hardware counters per ray:\n", results->experiment->workloads[t].label);
-        rt_print_rows(results, RT_HARDWARE_CELLS, t, out);
-    }
-}
-
-/* ---- frames ---- */
-
-static void print_rendered(const RtResults *results, FILE *out) {
-    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
-        if (!results->workloads[t].known) continue;
-        fprintf(out, "\n%s, rendering the frame:\n", results->experiment->workloads[t].label);
-        rt_print_rows(results, RT_RENDER_ROWS, t, out);
-    }
+    print_all_rows(results, RT_HARDWARE_CELLS, "hardware counters per ray", out);
 }
 
 /* ---- null runs ---- */
@@ -366,7 +345,7 @@ void rt_print_summary(const RtResults *results, FILE *out) {
     for (uint32_t t = 0; frames && t < experiment->workload_count; t++)
         print_text(rt_frame_sentence(results, t), out);
     if (frames) print_text(rt_learnt_sentence(results), out);
-    if (experiment->render) print_rendered(results, out);
+    if (experiment->render) print_all_rows(results, RT_RENDER_ROWS, "rendering the frame", out);
     if (experiment->hardware) rt_print_hardware(results, out);
     rt_print_left_out(results, out);
     rt_claims_print(results, out);

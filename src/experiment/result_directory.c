@@ -7,20 +7,77 @@
 #include "core/base/parallel.h"
 #include "core/base/words.h"
 #include "core/text/json_lines.h"
+#include "experiment/distribution_tables.h"
+#include "experiment/frame_table.h"
 #include "experiment/journal.h"
 #include "experiment/journal_lines.h"
 #include "experiment/manifest.h"
-#include "experiment/result_csv.h"
+#include "experiment/result_tables.h"
 #include "render/image.h"
 
 #include <inttypes.h>
 #include <string.h>
+
+/* ---- CSV files ---- */
+
+RtFileSort rt_result_file_sort(const RtExperiment *e, RtResultFile file) {
+    const bool timed = !e->count_only;
+    switch (file) {
+    case RT_FILE_COUNTS: return RT_FILE_COUNTED;
+    case RT_FILE_DISTRIBUTIONS:
+    case RT_FILE_HISTOGRAMS: return e->distributions ? RT_FILE_COUNTED : RT_FILE_OTHER;
+    case RT_FILE_TIMES:
+    case RT_FILE_ROUNDS: return timed ? RT_FILE_MEASURED : RT_FILE_OTHER;
+    case RT_FILE_FRAME: return timed && *e->frame.without ? RT_FILE_MEASURED : RT_FILE_OTHER;
+    case RT_FILE_RENDER: return timed && e->render ? RT_FILE_MEASURED : RT_FILE_OTHER;
+    case RT_FILE_HARDWARE: return timed && e->hardware ? RT_FILE_MEASURED : RT_FILE_OTHER;
+    case RT_FILE_PUBLISHED:
+    case RT_FILE_BEST:
+    case RT_FILE_PUBLISHED_PAGE: return e->published.table_count ? RT_FILE_COMPARED : RT_FILE_OTHER;
+    default: return RT_FILE_OTHER;
+    }
+}
+
+void rt_result_csv_write(RtResultFile file, const RtResults *results, FILE *out) {
+    RtResultRow row = {.results = results};
+    RtDistributionRow distribution = {.results = results};
+    RtFrameRow frame = {.results = results};
+    RtTable table = {0};
+    switch (file) {
+    case RT_FILE_COUNTS: table = rt_result_table(RT_COUNTS, &row); break;
+    case RT_FILE_TIMES: table = rt_result_table(RT_TIMES, &row); break;
+    case RT_FILE_ROUNDS: table = rt_result_table(RT_ROUNDS, &row); break;
+    case RT_FILE_RENDER: table = rt_result_table(RT_RENDERED, &row); break;
+    case RT_FILE_HARDWARE: table = rt_result_table(RT_HARDWARE, &row); break;
+    case RT_FILE_DISTRIBUTIONS: table = rt_distribution_table(RT_DISTRIBUTIONS, &distribution); break;
+    case RT_FILE_HISTOGRAMS: table = rt_distribution_table(RT_HISTOGRAMS, &distribution); break;
+    case RT_FILE_FRAME: table = rt_frame_table(&frame); break;
+    default: return;
+    }
+    rt_table_csv(&table, out);
+}
+
+/* All that the experiment has. */
+static RtStatus write_csvs(const RtResults *results, const char *directory, RtError *error) {
+    for (RtResultFile file = 0; file < RT_RESULT_FILE_COUNT; file++) {
+        const RtFileSort sort = rt_result_file_sort(results->experiment, file);
+        RtOutput output;
+        if (sort != RT_FILE_MEASURED && sort != RT_FILE_COUNTED) continue;
+        RT_TRY(rt_output_open_in(&output, directory, rt_result_files[file], error));
+        rt_result_csv_write(file, results, output.file);
+        RT_TRY(rt_output_commit(&output, error));
+    }
+    return RT_OK;
+}
+
+/* ---- a run ---- */
 
 typedef struct Run {
     RtResults *results;             /* borrowed, like what follows */
     const RtExperiment *experiment; /* that of the results */
     const RtRunOptions *options;
     RtLock lock;
+    char path[RT_MAX_PATH];           /* of the journal */
     bool resumed;                     /* the directory has the journal that is resumed */
     bool measured;                    /* anything that the journal did not have */
     RtScene scenes[RT_MAX_WORKLOADS]; /* each until its last workload is over */
@@ -37,13 +94,12 @@ static RtStatus path_in(const Run *run, const char *name, char *path, RtError *e
 /* Locks the directory and checks its contents, once it exists. */
 static RtStatus take_directory(Run *run, RtError *error) {
     const RtRunOptions *options = run->options;
-    char path[RT_MAX_PATH];
     if (rt_lock_is_held(&run->lock)) return RT_OK;
     RT_TRY(rt_lock_take(&run->lock, options->directory, error));
-    RT_TRY(path_in(run, RT_RUN_JOURNAL, path, error));
+    RT_TRY(path_in(run, RT_RUN_JOURNAL, run->path, error));
     /* Loading a journal gives a better error than its existence. */
-    if (options->start != RT_START_ANEW && rt_file_exists(path)) {
-        RT_TRY(rt_journal_load(path, run->results, &options->workload.only, options->renew, error));
+    if (options->start != RT_START_ANEW && rt_file_exists(run->path)) {
+        RT_TRY(rt_journal_load(run->path, run->results, &options->workload.only, options->renew, error));
     }
     return rt_result_files_look(options->directory, RT_RUN_JOURNAL, options->start, &run->resumed, error);
 }
@@ -162,11 +218,9 @@ static RtStatus prepare_directory(Run *run, RtError *error) {
 
 /* Writes the journal of the joined shards, which is then resumed. */
 static RtStatus join_shards(Run *run, RtError *error) {
-    char path[RT_MAX_PATH];
     RT_TRY(prepare_directory(run, error));
-    RT_TRY(path_in(run, RT_RUN_JOURNAL, path, error));
     run->resumed = true;
-    return rt_journal_load(path, run->results, &run->options->workload.only, false, error);
+    return rt_journal_load(run->path, run->results, &run->options->workload.only, false, error);
 }
 
 static RtStatus begin(Run *run, RtError *error) {
@@ -181,12 +235,10 @@ static RtStatus begin(Run *run, RtError *error) {
 /* ---- measuring ---- */
 
 static RtStatus open_journal(Run *run, RtError *error) {
-    char path[RT_MAX_PATH];
-    RT_TRY(path_in(run, RT_RUN_JOURNAL, path, error));
+    const RtOnly *only = &run->options->workload.only;
     if (run->resumed && run->options->renew)
-        RT_TRY(rt_journal_renew(path, run->experiment, &run->options->workload.only, error));
-    return rt_journal_open(&run->journal, path, run->experiment, &run->options->workload.only, run->resumed,
-                           error);
+        RT_TRY(rt_journal_renew(run->path, run->experiment, only, error));
+    return rt_journal_open(&run->journal, run->path, run->experiment, only, run->resumed, error);
 }
 
 static void name_missing(const Run *run) {
@@ -273,7 +325,7 @@ static RtStatus measure(Run *run, RtError *error) {
         RtScene *scene = &run->scenes[slot_of(run->experiment, t)];
         if (!rt_only_scene(&options.only, run->experiment, t)) continue;
         RT_TRY(rt_workload_measure(run->results, t, &options, scene, error));
-        RT_TRY(rt_result_csvs_write(run->results, run->options->directory, error));
+        RT_TRY(write_csvs(run->results, run->options->directory, error));
         RT_TRY(write_image(run, t, error));
         close_scene(run, t);
     }
@@ -284,17 +336,11 @@ static RtStatus measure(Run *run, RtError *error) {
 
 /* ---- after ---- */
 
-/* If nothing was measured, the existing manifest stays valid. */
-static RtStatus write_manifest(const Run *run, RtError *error) {
-    char path[RT_MAX_PATH];
-    RT_TRY(path_in(run, RT_MANIFEST, path, error));
-    if (!run->measured && rt_file_exists(path)) return RT_OK;
-    return rt_manifest_write(run->results, &run->options->workload, run->options->directory, error);
-}
-
 static RtStatus finish(const Run *run, RtError *error) {
     const RtRunOptions *options = run->options;
-    RT_TRY(write_manifest(run, error));
+    /* If nothing was measured, the existing manifest stays valid. */
+    if (run->measured || !rt_file_exists_in(options->directory, RT_MANIFEST))
+        RT_TRY(rt_manifest_write(run->results, &options->workload, options->directory, error));
     /* rt_merge has the report written of all shards. */
     if (!options->report || options->workload.only.shards) return RT_OK;
     return options->report->write(run->results, options->directory, &options->workload.observer, error);

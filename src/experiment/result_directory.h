@@ -24,7 +24,21 @@
 #include "experiment/workload.h"
 #include "measure/result_files.h"
 
-/* What else is made from the results of a finished run: report/run_report.h. */
+/* When a file is written, and whether its bytes are reproducible. */
+typedef enum RtFileSort {
+    RT_FILE_OTHER,    /* none of these */
+    RT_FILE_MEASURED, /* written as cells are measured; depends on times */
+    RT_FILE_COUNTED,  /* written as cells are measured; byte-identical on every machine */
+    RT_FILE_COMPARED  /* made from published figures (literature/published_tables.h); as identical */
+} RtFileSort;
+
+/* RT_FILE_OTHER also if the experiment has no such file. */
+RtFileSort rt_result_file_sort(const RtExperiment *experiment, RtResultFile file);
+
+/* A file of RT_FILE_MEASURED or RT_FILE_COUNTED. */
+void rt_result_csv_write(RtResultFile file, const RtResults *results, FILE *out);
+
+/* What else is made from the results of a finished run: report/report.h. */
 typedef struct RtRunReport {
     /* Checks its input, before anything of a previous run is removed. */
     RtStatus (*check)(const RtExperiment *experiment, RtError *error);

@@ -117,6 +117,12 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
     X(id##_p99, "99 %", integer, "", "that 99 % do not exceed", (of)->p99)                                   \
     X(id##_most, "max", integer, "", most_of, (of)->most)
 
+/* A measurement with its interval, in three columns. */
+#define MEASURED(X, id, unit, meaning, factor, e)                                                            \
+    X(id, #id, real6, unit, meaning "; median", (factor) * (e).median)                                       \
+    X(id##_low, #id "_low", real6, unit, "lower end of its interval", (factor) * (e).low)                    \
+    X(id##_high, #id "_high", real6, unit, "upper end of its interval", (factor) * (e).high)
+
 #define COLUMNS(X)                                                                                           \
     X(scene, "scene", text, "", "the scene's label in the experiment", r->setup->label)                      \
     X(scene_spec, "scene", text, "", "the scene as it is opened: a file, or a built-in", r->setup->spec)     \
@@ -148,14 +154,9 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
     X(repeats, "repeats", real6, "", "passes over the rays in a round", TIMED(r->cell->repeats))             \
     X(coverage, "ratio_coverage", real6, "", "probability that an interval contains the median",             \
       TIMED(rt_interval_coverage(r->cell->rounds)))                                                          \
-    X(ns, "ns", real6, "ns", "processor time per ray (wall time on several threads); median",                \
-      1e9 * r->cell->seconds.median)                                                                         \
-    X(ns_low, "ns_low", real6, "ns", "lower end of its interval", 1e9 * r->cell->seconds.low)                \
-    X(ns_high, "ns_high", real6, "ns", "upper end of its interval", 1e9 * r->cell->seconds.high)             \
+    MEASURED(X, ns, "ns", "processor time per ray (wall time on several threads)", 1e9, r->cell->seconds)    \
     X(ns_min, "ns_min", real6, "ns", "smallest time", 1e9 * r->cell->seconds.least)                          \
-    X(wall_ns, "wall_ns", real6, "ns", "wall time per ray; median", 1e9 * r->cell->wall.median)              \
-    X(wall_ns_low, "wall_ns_low", real6, "ns", "lower end of its interval", 1e9 * r->cell->wall.low)         \
-    X(wall_ns_high, "wall_ns_high", real6, "ns", "upper end of its interval", 1e9 * r->cell->wall.high)      \
+    MEASURED(X, wall_ns, "ns", "wall time per ray", 1e9, r->cell->wall)                                      \
     X(mrays_per_s, "mrays_per_s", real6, "million/s", "rays per second, by the median",                      \
       1e-6 / r->cost.seconds.median)                                                                         \
     X(baseline, "baseline", text, "", "the accelerator that the ratio refers to",                            \
@@ -190,17 +191,11 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
     X(host, "host", text, "", "host of the measurement", machine_of(r)->host)                                \
     X(cpu, "cpu", text, "", "its processor", machine_of(r)->cpu)                                             \
     X(render_rounds, "rounds", integer, "", "frames rendered for the times", RENDER(rounds))                 \
-    X(render_ms, "render_ms", real6, "ms",                                                                   \
-      "time to render the frame: rays, queries and illumination; processor time (wall time on several "      \
-      "threads); median",                                                                                    \
-      1e3 * RENDER(seconds.median))                                                                          \
-    X(render_ms_low, "render_ms_low", real6, "ms", "lower end of its interval", 1e3 * RENDER(seconds.low))   \
-    X(render_ms_high, "render_ms_high", real6, "ms", "upper end of its interval",                            \
-      1e3 * RENDER(seconds.high))                                                                            \
-    X(query_share, "query_share", real6, "", "part of it spent in queries of the accelerator; median",       \
-      RENDER(share.median))                                                                                  \
-    X(query_share_low, "query_share_low", real6, "", "lower end of its interval", RENDER(share.low))         \
-    X(query_share_high, "query_share_high", real6, "", "upper end of its interval", RENDER(share.high))      \
+    MEASURED(X, render_ms, "ms",                                                                             \
+             "time to render the frame: rays, queries and illumination; processor time (wall time on "       \
+             "several threads)",                                                                             \
+             1e3, RENDER(seconds))                                                                           \
+    MEASURED(X, query_share, "", "part of it spent in queries of the accelerator", 1, RENDER(share))         \
     X(eye_render, "ms/frame", interval, "ms", "time to render the frame", estimate(&RENDER(seconds), 1e-3))  \
     X(eye_share, "% in queries", interval, "%", "part of it spent in queries",                               \
       estimate(&RENDER(share), 1e-2))                                                                        \
@@ -415,15 +410,12 @@ static void add_swept(RtTable *table, Row *row) {
     table->groups = row->groups;
 }
 
-/* The most rounds of any cell, null runs included. */
+/* Of any cell. */
 static uint32_t most_rounds(const RtResults *results) {
-    const RtExperiment *e = results->experiment;
-    uint32_t most = 0;
-    for (uint32_t t = 0; t < e->workload_count; t++) {
-        for (uint32_t i = 0; i < (e->candidate_count + 1) * e->kind_count; i++) {
-            const RtCell *cell = rt_cell_at(results, t, i / e->kind_count, e->kinds[i % e->kind_count]);
-            if (cell->timed && cell->rounds > most) most = cell->rounds;
-        }
+    uint32_t most = 0, least;
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        const uint32_t rounds = rt_results_rounds(results, t, &least);
+        most = rounds > most ? rounds : most;
     }
     return most;
 }

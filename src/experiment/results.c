@@ -7,14 +7,11 @@
 #include <string.h>
 
 RtStatus rt_results_init(RtResults *results, const RtExperiment *experiment, RtError *error) {
-    size_t workloads = experiment->workload_count, builds = workloads * (experiment->candidate_count + 1);
-    *results = (RtResults){.experiment = experiment};
-    results->workloads = rt_alloc(workloads, sizeof(RtWorkloadResult));
+    const size_t builds = experiment->workload_count * ((size_t)experiment->candidate_count + 1);
+    *results = (RtResults){.experiment = experiment, .machine_count = 1};
     results->builds = rt_alloc(builds, sizeof(RtBuildResult));
     results->cells = rt_alloc(builds * RT_RAY_KIND_COUNT, sizeof(RtCell));
-    results->machines = rt_alloc(RT_MAX_MACHINES, sizeof(RtMachine));
-    results->machine_count = 1;
-    if (results->workloads && results->builds && results->cells && results->machines) return RT_OK;
+    if (results->builds && results->cells) return RT_OK;
     return rt_fail_memory(error, "the results", builds * RT_RAY_KIND_COUNT * sizeof(RtCell));
 }
 
@@ -26,10 +23,8 @@ void rt_results_clear(RtResults *results) {
         rt_free(results->cells[i].distributions);
     }
     for (size_t i = 0; results->builds && i < builds; i++) rt_free(results->builds[i].leaves);
-    rt_free(results->workloads);
     rt_free(results->builds);
     rt_free(results->cells);
-    rt_free(results->machines);
     *results = (RtResults){0};
 }
 
@@ -100,6 +95,19 @@ uint64_t rt_results_size(const RtResults *results, uint32_t *scenes) {
     for (uint32_t t = 0; t < results->experiment->workload_count; t++) *scenes += results->workloads[t].known;
     for (RtCellCursor at = {0}; rt_results_next(results, &at);) cells += at.cell->counted || at.cell->timed;
     return cells;
+}
+
+uint32_t rt_results_rounds(const RtResults *results, uint32_t workload, uint32_t *least) {
+    uint32_t most = 0;
+    for (uint32_t c = 0; c <= results->experiment->candidate_count; c++) {
+        for (uint32_t k = 0; k < results->experiment->kind_count; k++) {
+            const RtCell *cell = rt_cell_at(results, workload, c, results->experiment->kinds[k]);
+            if (!cell->timed) continue;
+            *least = most == 0 || cell->rounds < *least ? cell->rounds : *least;
+            most = cell->rounds > most ? cell->rounds : most;
+        }
+    }
+    return most;
 }
 
 void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddling) {
@@ -280,19 +288,23 @@ static bool is_timed(const RtResults *results, uint32_t t) {
 }
 
 /* Time, or object tests, which have no interval. */
-static RtEstimate weigh(const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind, bool timed) {
+static RtEstimate weigh(const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind, bool time) {
     const RtCost cost = rt_results_cost(results, t, c, kind);
-    return timed ? cost.seconds : rt_estimate_exactly(cost.object_tests);
+    return time ? cost.seconds : rt_estimate_exactly(cost.object_tests);
 }
 
 RtStanding rt_standing(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
+    return rt_standing_by(is_timed(results, workload), results, workload, candidate, kind);
+}
+
+RtStanding rt_standing_by(bool time, const RtResults *results, uint32_t workload, uint32_t candidate,
+                          RtRayKind kind) {
     const RtExperiment *experiment = results->experiment;
     if (!rt_candidate_is_compared(experiment, candidate)) return RT_STANDING_BEHIND;
-    const bool timed = is_timed(results, workload);
-    const RtEstimate own = weigh(results, workload, candidate, kind, timed);
-    RtEstimate best = {INFINITY, INFINITY, INFINITY, INFINITY};
+    const RtEstimate own = weigh(results, workload, candidate, kind, time);
+    RtEstimate best = rt_estimate_exactly((double)INFINITY);
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        const RtEstimate other = weigh(results, workload, c, kind, timed);
+        const RtEstimate other = weigh(results, workload, c, kind, time);
         if (rt_candidate_is_compared(experiment, c) && other.median < best.median) best = other;
     }
     if (own.median == best.median) return RT_STANDING_BEST; /* not of NAN */

@@ -92,10 +92,10 @@ typedef struct RtCell {
 
 typedef struct RtResults {
     const RtExperiment *experiment; /* borrowed */
-    RtWorkloadResult *workloads;    /* [workload_count] */
-    RtBuildResult *builds;          /* see rt_build_at */
-    RtCell *cells;                  /* see rt_cell_at */
-    RtMachine *machines;            /* [RT_MAX_MACHINES]; the first is the unknown one */
+    RtWorkloadResult workloads[RT_MAX_WORKLOADS];
+    RtBuildResult *builds;               /* see rt_build_at */
+    RtCell *cells;                       /* see rt_cell_at */
+    RtMachine machines[RT_MAX_MACHINES]; /* the first is the unknown one */
     uint32_t machine_count;
 } RtResults;
 
@@ -191,5 +191,13 @@ bool rt_candidate_is_compared(const RtExperiment *experiment, uint32_t candidate
  * anything was timed, else by object tests per ray. The best has the smallest median; an interval that
  * overlaps with the interval of the best is level with it. Only rt_candidate_is_compared are compared. */
 RtStanding rt_standing(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind);
+
+/* The same by time, or by object tests, whatever was timed. */
+RtStanding rt_standing_by(bool time, const RtResults *results, uint32_t workload, uint32_t candidate,
+                          RtRayKind kind);
+
+/* The most rounds of any timed cell of a workload, null runs included, and in *least the fewest; 0 if nothing
+ * was timed. */
+uint32_t rt_results_rounds(const RtResults *results, uint32_t workload, uint32_t *least);
 
 #endif

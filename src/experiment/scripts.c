@@ -4,7 +4,6 @@
 #include "core/base/memory.h"
 #include "shipped_scripts.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -20,19 +19,14 @@ RtStatus rt_scripts_find(const RtExperiment *experiment, RtError *error) {
     return RT_OK;
 }
 
-static RtStatus copy_script(const RtExperiment *experiment, uint32_t i, const char *directory, bool keep,
-                            RtOutputs *copies, RtError *error) {
-    char from[RT_MAX_PATH], plots[RT_MAX_PATH], to[RT_MAX_PATH];
-    RT_TRY(rt_path_join(experiment->folder, experiment->plots[i], from, error));
-    RT_TRY(rt_path_join(directory, "plots", plots, error));
-    RT_TRY(rt_path_join(plots, rt_plot_name(experiment, i), to, error));
-    return keep && rt_file_exists(to) ? RT_OK : rt_outputs_copy(copies, from, to, error);
-}
-
 RtStatus rt_scripts_copy(const RtExperiment *experiment, const char *directory, bool keep, RtOutputs *copies,
                          RtError *error) {
+    char from[RT_MAX_PATH], plots[RT_MAX_PATH], to[RT_MAX_PATH];
+    RT_TRY(rt_path_join(directory, "plots", plots, error));
     for (uint32_t i = 0; i < experiment->plot_count; i++) {
-        RT_TRY(copy_script(experiment, i, directory, keep, copies, error));
+        RT_TRY(rt_path_join(experiment->folder, experiment->plots[i], from, error));
+        RT_TRY(rt_path_join(plots, rt_plot_name(experiment, i), to, error));
+        if (!keep || !rt_file_exists(to)) RT_TRY(rt_outputs_copy(copies, from, to, error));
     }
     return RT_OK;
 }
@@ -102,13 +96,11 @@ static RtStatus refuse_links(const char *plots, RtError *error) {
     Links links = {RT_OK, error};
     refuse_link(&links, plots);
     RT_TRY(links.status);
-    DIR *folder = opendir(plots);
-    if (!folder && errno != ENOENT && errno != ENOTDIR)
+    errno = 0;
+    if (rt_directory_each(plots, "", refuse_link, &links) == 0 && errno != ENOENT && errno != ENOTDIR)
         return rt_fail(error, RT_IO,
                        "%s cannot be read (%s), so it may hold symbolic links: allow that with --trust",
                        plots, strerror(errno));
-    if (folder) closedir(folder);
-    rt_directory_each(plots, "", refuse_link, &links);
     return links.status;
 }
 

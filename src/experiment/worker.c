@@ -163,8 +163,7 @@ static RtStatus serve_runners(Server *server, const RtRunner *runners, uint32_t 
 
 static RtStatus serve_kind(void *context, RtWorkloadState *workload, RtRayKind kind, RtError *error) {
     Server *server = context;
-    RtRunner *runners = rt_alloc(workload->count, sizeof(RtRunner));
-    if (!runners) return rt_fail_memory(error, "runners", workload->count * sizeof(RtRunner));
+    RtRunner runners[RT_MAX_MEASURED];
     RtStatus status = RT_OK;
     uint32_t count = 0;
     for (uint32_t c = 0; c < workload->count && status == RT_OK; c++) {
@@ -176,7 +175,6 @@ static RtStatus serve_kind(void *context, RtWorkloadState *workload, RtRayKind k
         status = serve_runners(server, runners, count, error);
     }
     for (uint32_t i = 0; i < count; i++) rt_runner_close(&runners[i]);
-    rt_free(runners);
     return status;
 }
 

@@ -202,19 +202,10 @@ RtStatus rt_workload_measure(RtResults *results, uint32_t index, const RtWorkloa
     RtWorkloadState workload = state_of(results, index, options);
     workload.scene = scene;
     if (workload_is_done(&workload)) return RT_OK;
-    workload.built = rt_alloc(workload.count, sizeof(RtAccel *));
-    workload.accels = rt_alloc(workload.count, sizeof(RtAccel *));
-    workload.shares = rt_alloc(workload.count, sizeof(RtWorkloadShare));
-    RtStatus status = RT_OK;
-    if (!workload.built || !workload.accels || !workload.shares)
-        status = rt_fail_memory(error, "a workload", workload.count * sizeof(RtWorkloadShare));
-    if (status == RT_OK) status = measure(&workload, error);
-    for (uint32_t c = 0; workload.built && c < workload.count; c++) rt_accel_destroy(workload.built[c]);
+    RtStatus status = measure(&workload, error);
+    for (uint32_t c = 0; c < workload.count; c++) rt_accel_destroy(workload.built[c]);
     rt_accel_destroy(workload.reference);
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&workload.sets[k]);
-    rt_free(workload.built);
-    rt_free(workload.accels);
-    rt_free(workload.shares);
     return status;
 }
 

@@ -46,9 +46,9 @@ static RtStatus distribute_leaves(const RtAccel *accel, RtBuildResult *result, R
 typedef struct Builds {
     RtWorkloadState *workload;
     uint32_t candidate;
-    uint32_t done, left; /* the warm-up included */
-    double budget;       /* seconds that are left */
-    double *seconds;     /* [experiment->builds]; the first measured build takes the place of the warm-up */
+    uint32_t done, left;           /* the warm-up included */
+    double budget;                 /* seconds that are left */
+    double seconds[RT_MAX_ROUNDS]; /* the first measured build takes the place of the warm-up */
 } Builds;
 
 static RtEstimate estimate_of(const Builds *builds, uint32_t *count) {
@@ -57,7 +57,7 @@ static RtEstimate estimate_of(const Builds *builds, uint32_t *count) {
 }
 
 /* Builds a structure in place of the one before. */
-static RtStatus build_limited(const RtWorkloadState *workload, uint32_t c, RtError *error) {
+static RtStatus build_limited(RtWorkloadState *workload, uint32_t c, RtError *error) {
     rt_accel_destroy(workload->built[c]);
     workload->built[c] = NULL;
     rt_memory_limit(workload->experiment->limit_bytes);
@@ -113,8 +113,9 @@ static RtStatus build_once_more(Builds *builds, RtError *error) {
 }
 
 /* The warm-up in order, then each round in a new random one. */
-static RtStatus build_rounds(Builds *all, size_t *order, size_t count, uint64_t seed, RtError *error) {
+static RtStatus build_rounds(Builds *all, size_t count, uint64_t seed, RtError *error) {
     RtRandom random = rt_random(seed, 0);
+    size_t order[RT_MAX_MEASURED];
     for (size_t i = 0; i < count; i++) order[i] = i;
     for (bool any = count > 0; any; rt_random_shuffle(&random, order, count)) {
         any = false;
@@ -142,36 +143,27 @@ static RtStatus keep_result(const Builds *builds, RtError *error) {
     return rt_workload_tell(workload, RT_EVENT_BUILD, builds->candidate, RT_RAY_PRIMARY, error);
 }
 
-static RtStatus build_all(RtWorkloadState *workload, Builds *all, size_t *order, double *seconds,
-                          RtError *error) {
+static RtStatus build_all(RtWorkloadState *workload, Builds *all, RtError *error) {
     const RtExperiment *experiment = workload->experiment;
     const bool timed = !workload->count_only && !workload->options->timer;
     size_t count = 0;
     for (uint32_t c = 0; c < workload->count; c++) {
         if (!rt_workload_runs(workload, c)) continue;
         const bool known = rt_build_at(workload->results, workload->index, c)->known;
-        all[count] = (Builds){.workload = workload,
-                              .candidate = c,
-                              .left = timed && !known ? 1 + experiment->builds : 1,
-                              .budget = RT_BUILD_BUDGET * experiment->builds,
-                              .seconds = seconds + count * experiment->builds};
-        count++;
+        all[count++] = (Builds){.workload = workload,
+                                .candidate = c,
+                                .left = timed && !known ? 1 + experiment->builds : 1,
+                                .budget = RT_BUILD_BUDGET * experiment->builds};
     }
-    RT_TRY(build_rounds(all, order, count, experiment->seed, error));
+    RT_TRY(build_rounds(all, count, experiment->seed, error));
     for (size_t i = 0; i < count; i++) RT_TRY(keep_result(&all[i], error));
     return RT_OK;
 }
 
 RtStatus rt_workload_build(RtWorkloadState *workload, RtError *error) {
-    const size_t count = workload->count, doubles = count * workload->experiment->builds;
-    Builds *all = rt_alloc(count, sizeof(Builds));
-    size_t *order = rt_alloc(count, sizeof(size_t));
-    double *seconds = rt_alloc(doubles, sizeof(double));
-    RtStatus status = RT_OK;
-    if (!all || !order || !seconds) status = rt_fail_memory(error, "build times", doubles * sizeof(double));
-    if (status == RT_OK) status = build_all(workload, all, order, seconds, error);
+    Builds *all = rt_alloc(workload->count, sizeof(Builds));
+    if (!all) return rt_fail_memory(error, "build times", workload->count * sizeof(Builds));
+    RtStatus status = build_all(workload, all, error);
     rt_free(all);
-    rt_free(order);
-    rt_free(seconds);
     return status;
 }

@@ -7,6 +7,7 @@
 #include "experiment/workload_state.h"
 #include "measure/ray_file.h"
 
+#include <inttypes.h>
 #include <string.h>
 
 enum { PROBE_RAYS = 256 }; /* at most */
@@ -109,34 +110,26 @@ static RtStatus check_seconds(RtWorkloadState *workload, uint32_t c, RtRayKind k
 
 /* The invariants of Havran & Sixta 1999: every correct accelerator has the same number of rays and of hits,
  * and, stronger, the same answers. */
-static RtStatus check_differ(const RtWorkloadState *workload, uint32_t candidate, RtRayKind kind,
-                             const RtCount *count, RtError *error) {
-    const RtWorkloadShare *share = &workload->shares[candidate];
-    if (count->differ == 0) return RT_OK;
-    return rt_fail(error, RT_MISMATCH,
-                   "%s on %s: the answers to %llu of %llu %s rays differ from those of %s%s, the first for "
-                   "ray %llu; `raytally verify` shows what is wrong",
-                   rt_candidate_label(workload->experiment, candidate),
-                   workload->experiment->workloads[workload->index].label, (unsigned long long)count->differ,
-                   (unsigned long long)share->set.count, rt_experiment_kind_name(workload->experiment, kind),
-                   rt_accel_default(), count->timed_kernel ? " in the timed kernel" : "",
-                   (unsigned long long)count->first);
-}
-
 static RtStatus check_answers(const RtWorkloadState *workload, uint32_t candidate, RtRayKind kind,
                               const RtCount *count, RtError *error) {
     const RtWorkloadShare *share = &workload->shares[candidate];
     const char *scene = workload->experiment->workloads[workload->index].label;
     const char *accel = rt_candidate_label(workload->experiment, candidate);
+    const char *kind_name = rt_experiment_kind_name(workload->experiment, kind);
+    const uint64_t rays = share->set.count;
     uint64_t hits = 0;
-    for (uint64_t i = 0; i < share->set.count; i++) hits += share->expected[i].object != RT_NO_OBJECT;
-    RT_TRY(check_differ(workload, candidate, kind, count, error));
-    if (count->tally.rays == share->set.count && count->tally.hits == hits) return RT_OK;
+    if (count->differ > 0)
+        return rt_fail(error, RT_MISMATCH,
+                       "%s on %s: the answers to %" PRIu64 " of %" PRIu64 " %s rays differ from those of "
+                       "%s%s, the first for ray %" PRIu64 "; `raytally verify` shows what is wrong",
+                       accel, scene, count->differ, rays, kind_name, rt_accel_default(),
+                       count->timed_kernel ? " in the timed kernel" : "", count->first);
+    for (uint64_t i = 0; i < rays; i++) hits += share->expected[i].object != RT_NO_OBJECT;
+    if (count->tally.rays == rays && count->tally.hits == hits) return RT_OK;
     return rt_fail(error, RT_MISMATCH,
-                   "%s on %s counts %llu %s rays with %llu hits, but there are %llu with %llu", accel, scene,
-                   (unsigned long long)count->tally.rays, rt_experiment_kind_name(workload->experiment, kind),
-                   (unsigned long long)count->tally.hits, (unsigned long long)share->set.count,
-                   (unsigned long long)hits);
+                   "%s on %s counts %" PRIu64 " %s rays with %" PRIu64 " hits, but there are %" PRIu64
+                   " with %" PRIu64,
+                   accel, scene, count->tally.rays, kind_name, count->tally.hits, rays, hits);
 }
 
 static RtStatus count_cell(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtCell *cell,

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Hardware counters of the rays of a workload: separate interleaved rounds after the timed ones, so that
  * counting changes no time. */
-#include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "experiment/workload_state.h"
 #include "measure/machine.h"
@@ -11,24 +10,24 @@
 enum { ROUNDS = 5 }; /* of which medians are taken; the counts differ little */
 
 typedef struct TimingRun {
-    const RtHardware *hardware;
-    RtRunner *runners;        /* [count] */
-    RtHardwareCounts *counts; /* [count][ROUNDS] per ray */
-    bool *broken;             /* [count] */
+    RtHardware hardware;
+    RtRunner runners[RT_MAX_CANDIDATES];                /* [count] */
+    RtHardwareCounts counts[RT_MAX_CANDIDATES][ROUNDS]; /* [count] per ray */
+    bool broken[RT_MAX_CANDIDATES];                     /* [count] */
     uint32_t count;
 } TimingRun;
 
-static RtStatus run_counted(const TimingRun *run, uint32_t i, int round, RtError *error) {
+static RtStatus run_counted(TimingRun *run, uint32_t i, int round, RtError *error) {
     const RtRunner *runner = &run->runners[i];
-    RtHardwareCounts *counts = &run->counts[(size_t)i * ROUNDS + (size_t)round];
+    RtHardwareCounts *counts = &run->counts[i][round];
     RtStatus status = RT_OK;
     if (runner->count) {
         status = runner->count(runner->context, runner->repeats, counts, error);
     } else {
-        RtHardwareStart start = rt_hardware_start(run->hardware);
+        RtHardwareStart start = rt_hardware_start(&run->hardware);
         for (uint32_t k = 0; k < runner->repeats && status == RT_OK; k++)
             status = runner->run(runner->context, error);
-        *counts = rt_hardware_stop(run->hardware, &start);
+        *counts = rt_hardware_stop(&run->hardware, &start);
     }
     for (int e = 0; e < RT_HARDWARE_COUNT; e++) counts->of[e] /= runner->repeats * runner->work;
     return status;
@@ -84,52 +83,31 @@ static RtStatus count_all(RtWorkloadState *workload, RtRayKind kind, TimingRun *
     for (uint32_t c = 0, i = 0; c < candidates && status == RT_OK; c++) {
         if (!workload->accels[c]) continue;
         RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
-        cell->hardware.counts = median_of(&run->counts[(size_t)ROUNDS * i++]);
+        cell->hardware.counts = median_of(run->counts[i++]);
     }
     for (uint32_t i = 0; i < run->count; i++) rt_runner_close(&run->runners[i]);
     return status == RT_OK ? rt_workload_exclude_broken(workload, kind, error) : status;
 }
 
 /* Counts, or records the reason why nothing can be counted. */
-static RtStatus count_or_say_why(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
-    const uint32_t candidates = workload->experiment->candidate_count;
-    const RtHardwareEvent *events =
-        workload->options->events ? workload->options->events : rt_hardware_events;
-    RtHardware hardware;
-    RtError why = {RT_OK, ""};
-    bool available = rt_hardware_open(&hardware, events, &why) == RT_OK;
-    TimingRun run = {.hardware = &hardware,
-                     .runners = rt_alloc(candidates, sizeof(RtRunner)),
-                     .counts = rt_alloc((size_t)ROUNDS * candidates, sizeof(RtHardwareCounts)),
-                     .broken = rt_alloc(candidates, sizeof(bool))};
-    RtStatus status = RT_OK;
-    if (!run.runners || !run.counts || !run.broken) {
-        status = rt_fail_memory(error, "hardware counters", candidates * sizeof(RtRunner));
-    } else if (available) {
-        status = count_all(workload, kind, &run, events, error);
-    }
-    rt_hardware_close(&hardware);
-    rt_free(run.runners);
-    rt_free(run.counts);
-    rt_free(run.broken);
-    for (uint32_t c = 0; c < candidates && status == RT_OK && !available; c++) {
-        RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
-        snprintf(cell->hardware.why, sizeof cell->hardware.why, "%.*s", RT_MAX_WHY - 1, why.message);
-        for (int e = 0; e < RT_HARDWARE_COUNT; e++) cell->hardware.counts.of[e] = (double)NAN;
-    }
-    return status;
-}
-
 RtStatus rt_workload_hardware(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
     const RtMachine here = rt_machine_here();
-    RT_TRY(count_or_say_why(workload, kind, error));
-    for (uint32_t c = 0; c < workload->experiment->candidate_count; c++) {
-        RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
-        if (!workload->accels[c] || cell->hardware.known) continue;
-        cell->hardware.known = true;
-        cell->hardware.threads = rt_thread_count(workload->options->timing);
-        cell->hardware.machine = rt_results_machine(workload->results, &here);
-        RT_TRY(rt_workload_tell(workload, RT_EVENT_HARDWARE, c, kind, error));
+    const RtHardwareEvent *events =
+        workload->options->events ? workload->options->events : rt_hardware_events;
+    RtError why = {RT_OK, ""};
+    TimingRun run = {.count = 0};
+    bool available = rt_hardware_open(&run.hardware, events, &why) == RT_OK;
+    RtStatus status = available ? count_all(workload, kind, &run, events, error) : RT_OK;
+    rt_hardware_close(&run.hardware);
+    for (uint32_t c = 0; c < workload->experiment->candidate_count && status == RT_OK; c++) {
+        RtCellHardware *hardware = &rt_cell_at(workload->results, workload->index, c, kind)->hardware;
+        if (!workload->accels[c] || hardware->known) continue;
+        hardware->known = true;
+        hardware->threads = rt_thread_count(workload->options->timing);
+        hardware->machine = rt_results_machine(workload->results, &here);
+        snprintf(hardware->why, sizeof hardware->why, "%.*s", RT_MAX_WHY - 1, available ? "" : why.message);
+        for (int e = 0; e < RT_HARDWARE_COUNT && !available; e++) hardware->counts.of[e] = (double)NAN;
+        status = rt_workload_tell(workload, RT_EVENT_HARDWARE, c, kind, error);
     }
-    return RT_OK;
+    return status;
 }

@@ -9,10 +9,11 @@
 #include "render/frame.h"
 
 typedef struct Rendering {
+    uint32_t candidate;
     const RtAccel *accel;
     RtFrameOptions options;
-    double *seconds, *shares; /* [rounds] */
-    uint32_t runs;            /* the first is the warm-up */
+    double seconds[RT_MAX_ROUNDS], shares[RT_MAX_ROUNDS];
+    uint32_t runs; /* the first is the warm-up */
 } Rendering;
 
 static RtStatus render_once(void *context, RtError *error) {
@@ -39,7 +40,7 @@ bool rt_workload_renders(const RtWorkloadState *workload, uint32_t c) {
 }
 
 /* The candidates still to be rendered, one runner each. */
-static uint32_t enter(RtWorkloadState *workload, Rendering *renderings, RtRunner *runners, double *times) {
+static uint32_t enter(RtWorkloadState *workload, Rendering *renderings, RtRunner *runners) {
     const RtExperiment *experiment = workload->experiment;
     const RtWorkload *setup = &experiment->workloads[workload->index];
     const int threads = workload->options->timing;
@@ -49,14 +50,12 @@ static uint32_t enter(RtWorkloadState *workload, Rendering *renderings, RtRunner
             rt_build_at(workload->results, workload->index, c)->render.known)
             continue;
         Rendering *rendering = &renderings[count];
-        *rendering = (Rendering){.accel = workload->built[c],
+        *rendering = (Rendering){.candidate = c,
+                                 .accel = workload->built[c],
                                  .options = {.depth = setup->depth,
                                              .threads = threads,
                                              .light_from_outside = setup->light_from_outside,
-                                             .share = true},
-                                 .seconds = times,
-                                 .shares = times + experiment->rounds};
-        times += (size_t)2 * experiment->rounds;
+                                             .share = true}};
         runners[count++] = (RtRunner){.run = render_once,
                                       .context = rendering,
                                       .work = 1,
@@ -69,17 +68,16 @@ static uint32_t enter(RtWorkloadState *workload, Rendering *renderings, RtRunner
 static RtStatus keep(RtWorkloadState *workload, const Rendering *renderings, uint32_t count, RtError *error) {
     const RtMachine here = rt_machine_here();
     const uint32_t rounds = workload->experiment->rounds;
-    for (uint32_t c = 0, i = 0; c < workload->experiment->candidate_count && i < count; c++) {
-        RtRenderResult *result = &rt_build_at(workload->results, workload->index, c)->render;
-        if (workload->built[c] != renderings[i].accel) continue;
-        *result = (RtRenderResult){.known = true,
-                                   .rounds = rounds,
-                                   .threads = rt_thread_count(workload->options->timing),
-                                   .machine = rt_results_machine(workload->results, &here),
-                                   .seconds = rt_estimate(renderings[i].seconds, rounds),
-                                   .share = rt_estimate(renderings[i].shares, rounds)};
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t c = renderings[i].candidate;
+        rt_build_at(workload->results, workload->index, c)->render =
+            (RtRenderResult){.known = true,
+                             .rounds = rounds,
+                             .threads = rt_thread_count(workload->options->timing),
+                             .machine = rt_results_machine(workload->results, &here),
+                             .seconds = rt_estimate(renderings[i].seconds, rounds),
+                             .share = rt_estimate(renderings[i].shares, rounds)};
         RT_TRY(rt_workload_tell(workload, RT_EVENT_RENDER, c, RT_RAY_PRIMARY, error));
-        i++;
     }
     return RT_OK;
 }
@@ -90,17 +88,11 @@ RtStatus rt_workload_render(RtWorkloadState *workload, RtError *error) {
     const RtRounds rounds = {
         .rounds = experiment->rounds, .most = experiment->rounds, .seed = experiment->seed};
     Rendering *renderings = rt_alloc(most, sizeof(Rendering));
-    RtRunner *runners = rt_alloc(most, sizeof(RtRunner));
-    double *times = rt_alloc(2 * most * experiment->rounds, sizeof(double));
-    uint32_t count = 0, done;
-    RtStatus status = RT_OK;
-    if (!renderings || !runners || !times)
-        status = rt_fail_memory(error, "times of frames", 2 * most * experiment->rounds * sizeof(double));
-    if (status == RT_OK) count = enter(workload, renderings, runners, times);
-    if (status == RT_OK && count > 0) status = rt_rounds_run(runners, count, &rounds, &done, error);
+    if (!renderings) return rt_fail_memory(error, "times of frames", most * sizeof(Rendering));
+    RtRunner runners[RT_MAX_CANDIDATES];
+    uint32_t count = enter(workload, renderings, runners), done;
+    RtStatus status = count > 0 ? rt_rounds_run(runners, count, &rounds, &done, error) : RT_OK;
     if (status == RT_OK) status = keep(workload, renderings, count, error);
     rt_free(renderings);
-    rt_free(runners);
-    rt_free(times);
     return status;
 }

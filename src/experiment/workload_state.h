@@ -6,6 +6,8 @@
 #include "experiment/workload.h"
 #include "measure/measure.h"
 
+enum { RT_MAX_MEASURED = RT_MAX_CANDIDATES + 1 }; /* candidates and the null run */
+
 /* The rays of one kind for one candidate, and their answers: views into arrays of the workload. */
 typedef struct RtWorkloadShare {
     RtRaySet set;
@@ -20,12 +22,12 @@ typedef struct RtWorkloadState {
     bool count_only, hardware, distributions;
     RtScene *scene;
     RtAccel *reference;               /* gives the expected answers */
-    RtAccel **built;                  /* [count], NULL for one that does not run here */
-    RtAccel **accels;                 /* [count], those that trace the current kind of rays, or NULL */
+    RtAccel *built[RT_MAX_MEASURED];  /* [count], NULL for one that does not run here */
+    RtAccel *accels[RT_MAX_MEASURED]; /* [count], those that trace the current kind of rays, or NULL */
     RtRaySet sets[RT_RAY_KIND_COUNT]; /* the current one is followed by its thinned shares and the probe */
-    RtWorkloadShare *shares;          /* [count], of the current kind */
-    RtWorkloadShare probe;            /* the part of the set that predicts times */
-    RtHit *answers;                   /* for the set of the current kind and what follows it */
+    RtWorkloadShare shares[RT_MAX_MEASURED]; /* [count], of the current kind */
+    RtWorkloadShare probe;                   /* the part of the set that predicts times */
+    RtHit *answers;                          /* for the set of the current kind and what follows it */
 } RtWorkloadState;
 
 /* The candidate that is built: itself, or the baseline for the null run. */

@@ -15,14 +15,14 @@ typedef struct TimingRun {
     const RtWorkloadState *workload;
     RtRayKind kind;
     uint32_t count;
-    uint32_t rounds, most;    /* done, and most */
-    double start;             /* wall seconds */
-    RtTimed *timed;           /* [count] */
-    double *seconds;          /* [count][2][most] of `timed` */
-    bool *broken;             /* [count] */
-    uint32_t *place;          /* [workload->count] index of a candidate in `timed` */
-    uint32_t *baseline_entry; /* [workload->count] of the first candidate of the baseline on its rays; others
-                                 follow */
+    uint32_t rounds, most;           /* done, and most */
+    double start;                    /* wall seconds */
+    RtTimed *timed;                  /* [count] */
+    double *seconds;                 /* [count][2][most] of `timed` */
+    bool *broken;                    /* [count] */
+    uint32_t place[RT_MAX_MEASURED]; /* [workload->count] index of a candidate in `timed` */
+    /* [workload->count] of the first candidate of the baseline on its rays; others follow */
+    uint32_t baseline_entry[RT_MAX_MEASURED];
 } TimingRun;
 
 static uint32_t enter(TimingRun *run, const RtAccel *accel, const RtRaySet *set) {
@@ -48,12 +48,9 @@ static RtStatus timing_run_init(TimingRun *run, const RtWorkloadState *workload,
                        .start = rt_wall_seconds(),
                        .timed = rt_alloc(most, sizeof(RtTimed)),
                        .seconds = rt_alloc(doubles, sizeof(double)),
-                       .broken = rt_alloc(most, sizeof(bool)),
-                       .place = rt_alloc(workload->count, sizeof(uint32_t)),
-                       .baseline_entry = rt_alloc(workload->count, sizeof(uint32_t))};
-    if (!run->timed || !run->seconds || !run->broken || !run->place || !run->baseline_entry) {
+                       .broken = rt_alloc(most, sizeof(bool))};
+    if (!run->timed || !run->seconds || !run->broken)
         return rt_fail_memory(error, "times", doubles * sizeof(double));
-    }
     for (uint32_t c = 0; c < workload->count; c++) {
         if (workload->accels[c]) run->place[c] = enter(run, workload->accels[c], &workload->shares[c].set);
     }
@@ -72,8 +69,6 @@ static void timing_run_clear(TimingRun *run) {
     rt_free(run->timed);
     rt_free(run->seconds);
     rt_free(run->broken);
-    rt_free(run->place);
-    rt_free(run->baseline_entry);
 }
 
 /* The median part of baselines[i] in the time that baselines[0..count) take in a round: paired, as ratios

@@ -2,6 +2,7 @@
 #include "literature/published.h"
 
 #include <fnmatch.h>
+#include <inttypes.h>
 #include <math.h>
 
 void rt_published_row_name(const RtPublishedRow *row, char *out) {
@@ -210,9 +211,10 @@ static RtStatus check_figures(const RtPublished *published, RtError *error) {
 static RtStatus check_reasons(const RtPublished *published, RtError *error) {
     for (uint32_t i = 0; i < published->reason_count; i++) {
         if (published->reasons[i].used) continue;
-        return rt_fail_at(error, published->reasons_path, published->reasons[i].line, 0,
-                          "no figure needs this reason: all figures that it applies to are within their "
-                          "tolerance, not measured, or have an earlier reason");
+        return rt_fail(error, RT_MISMATCH,
+                       "%s:%" PRIu32 ": no figure needs this reason: all figures that it applies to are "
+                       "within their tolerance, not measured, or have an earlier reason",
+                       published->reasons_path, published->reasons[i].line);
     }
     return RT_OK;
 }
@@ -235,15 +237,9 @@ static RtStatus check_best(const RtPublished *published, RtError *error) {
     return RT_OK;
 }
 
-/* The status of the check, with a place in a file. */
-static RtStatus as_mismatch(RtStatus status, RtError *error) {
-    if (status != RT_OK && error) error->status = RT_MISMATCH;
-    return status == RT_OK ? RT_OK : RT_MISMATCH;
-}
-
 RtStatus rt_published_check(const RtPublished *published, RtError *error) {
     RT_TRY(check_figures(published, error));
     if (published->experiment->quick) return RT_OK;
-    RT_TRY(as_mismatch(check_reasons(published, error), error));
+    RT_TRY(check_reasons(published, error));
     return check_best(published, error);
 }

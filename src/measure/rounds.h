@@ -25,10 +25,10 @@ typedef struct RtRunner {
     RtStatus (*count)(void *context, uint32_t repeats, RtHardwareCounts *counts, RtError *error);
     void *context;
     double work;      /* units of work in one run, > 0: times are per unit */
-    bool parallel;    /* runs on several threads: the wall clock is then the clock of the comparison */
     double *seconds;  /* [most] out: by the clock of the comparison, else the thread's processor time */
     double *wall;     /* [most] out: by the wall clock, or NULL */
     uint32_t repeats; /* out: runs in the last round */
+    bool parallel;    /* runs on several threads: the wall clock is then the clock of the comparison */
     bool *broken;     /* in and out: set by RT_BROKEN, and never run again. NULL: RT_BROKEN ends the rounds */
 } RtRunner;
 

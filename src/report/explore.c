@@ -2,7 +2,6 @@
 #include "report/explore.h"
 
 #include "core/base/file.h"
-#include "core/text/table.h"
 #include "explore_css.h"
 #include "explore_html.h"
 #include "explore_js.h"

@@ -34,9 +34,13 @@ void rt_bytes_put_float(RtBytes *bytes, float value) {
     rt_bytes_put(bytes, out, sizeof out);
 }
 
+void rt_bytes_put_vector(RtBytes *bytes, RtVec3 v) {
+    for (int a = 0; a < 3; a++) rt_bytes_put_float(bytes, v.at[a]);
+}
+
 void rt_bytes_put_box(RtBytes *bytes, const RtBox *box) {
-    for (int a = 0; a < 3; a++) rt_bytes_put_float(bytes, box->lo.at[a]);
-    for (int a = 0; a < 3; a++) rt_bytes_put_float(bytes, box->hi.at[a]);
+    rt_bytes_put_vector(bytes, box->lo);
+    rt_bytes_put_vector(bytes, box->hi);
 }
 
 void rt_bytes_put_number(RtBytes *bytes, uint64_t value) {

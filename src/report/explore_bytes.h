@@ -20,6 +20,7 @@ void rt_bytes_clear(RtBytes *bytes);
 
 void rt_bytes_put(RtBytes *bytes, const void *data, size_t size);
 void rt_bytes_put_float(RtBytes *bytes, float value);
+void rt_bytes_put_vector(RtBytes *bytes, RtVec3 v);
 void rt_bytes_put_box(RtBytes *bytes, const RtBox *box); /* lo, then hi: six floats */
 
 /* LEB128: seven bits a byte, the lowest first; all but the last byte have the highest bit set. */

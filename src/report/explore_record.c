@@ -18,10 +18,9 @@ static bool same_form(const RtPathRow *a, const RtPathRow *b) {
 
 static RtStatus find_form(RtRecordedPaths *to, const RtPathRow *row, uint32_t *form, RtError *error) {
     for (*form = 0; *form < to->form_count; ++*form) {
-        if (same_form(&to->forms[*form].row, row)) return RT_OK;
+        if (same_form(&to->forms[*form], row)) return RT_OK;
     }
-    return rt_append(&to->forms, &to->form_count, &to->form_capacity, &(RtEventForm){*row}, sizeof *to->forms,
-                     error);
+    return rt_append(&to->forms, &to->form_count, &to->form_capacity, row, sizeof *row, error);
 }
 
 /* The slot of the event, or the free one where it belongs. */
@@ -80,7 +79,7 @@ static json_t *counts_of(const RtPathRow *row) {
 json_t *rt_recorded_forms(const RtRecordedPaths *paths) {
     json_t *forms = json_array();
     for (uint32_t i = 0; i < paths->form_count; i++) {
-        const RtPathRow *row = &paths->forms[i].row;
+        const RtPathRow *row = &paths->forms[i];
         json_array_append_new(
             forms, json_pack("{s:s, s:s, s:o, s:b, s:b, s:o}", "name", rt_path_row_name(row), "of", row->what,
                              "met", rt_path_row_answers(row) ? json_boolean(row->met) : json_null(), "hit",
@@ -142,10 +141,6 @@ static RtStatus put_path(RtRecordedPixels *recording, RtRecordedPaths *to, const
 
 /* ---- ray trees ---- */
 
-static void put_vector(RtBytes *out, RtVec3 v) {
-    for (int a = 0; a < 3; a++) rt_bytes_put_float(out, v.at[a]);
-}
-
 /* Along the primary ray, behind one hit after the other, in the accelerator below all overlays. */
 static RtStatus put_candidates(RtBytes *out, const RtAccel *base, RtRay ray, RtError *error) {
     RtHit hits[MOST_CANDIDATES], hit;
@@ -180,13 +175,13 @@ static RtStatus put_ray(RtRecordedPixels *recording, const RtTreeRay *ray, RtErr
     rt_bytes_put_number(out, ray->parent == RT_NO_RAY ? 0 : (uint64_t)ray->parent + 1);
     rt_bytes_put_number(out, ray->ray.source);
     rt_bytes_put_number(out, (uint64_t)ray->total + 2 * (uint64_t)ray->cut);
-    put_vector(out, ray->ray.org);
-    put_vector(out, ray->ray.dir);
+    rt_bytes_put_vector(out, ray->ray.org);
+    rt_bytes_put_vector(out, ray->ray.dir);
     rt_bytes_put_float(out, ray->ray.tmax);
     put_object(out, ray->hit.object);
     rt_bytes_put_float(out, ray->hit.t);
-    put_vector(out, ray->added);
-    if (ray->ray.kind == RT_RAY_SHADOW) put_vector(out, rt_narrow(ray->terms[RT_TERM_DIFFUSE]));
+    rt_bytes_put_vector(out, ray->added);
+    if (ray->ray.kind == RT_RAY_SHADOW) rt_bytes_put_vector(out, rt_narrow(ray->terms[RT_TERM_DIFFUSE]));
     if (ray->ray.kind != RT_RAY_PRIMARY) return RT_OK;
     if (looked_up) return put_candidates(out, rt_accel_base(first), ray->ray, error);
     rt_bytes_put_number(out, 0);

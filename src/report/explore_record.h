@@ -29,11 +29,6 @@
 
 enum { RT_MAX_RECORDED_ROWS = 1000 }; /* of one path; brute's would fill the page */
 
-/* What rows have in common: all but index, box and t. */
-typedef struct RtEventForm {
-    RtPathRow row;
-} RtEventForm;
-
 typedef struct RtEvent {
     uint32_t form, index, boxed;
     RtBox box;
@@ -42,7 +37,7 @@ typedef struct RtEvent {
 typedef struct RtRecordedPaths {
     RtAccel *accel; /* borrowed */
     RtBytes paths;
-    RtEventForm *forms;
+    RtPathRow *forms; /* what rows have in common: all but index, box and t */
     uint32_t form_count, form_capacity;
     RtEvent *events; /* different ones */
     uint32_t event_count, event_capacity;

@@ -16,10 +16,6 @@ typedef struct Shapes {
 
 enum { SPHERES, TRIANGLES, BOXES };
 
-static void put_point(RtBytes *out, RtVec3 p) {
-    for (int a = 0; a < 3; a++) rt_bytes_put_float(out, p.at[a]);
-}
-
 static void end_part(Shapes *shapes, int part, uint32_t object) {
     rt_bytes_put_number(&shapes->parts[part], shapes->scene->material_of[object]);
     shapes->counts[part]++;
@@ -27,9 +23,9 @@ static void end_part(Shapes *shapes, int part, uint32_t object) {
 
 static void put_triangle(Shapes *shapes, uint32_t object, RtVec3 a, RtVec3 b, RtVec3 c) {
     RtBytes *out = &shapes->parts[TRIANGLES];
-    put_point(out, a);
-    put_point(out, b);
-    put_point(out, c);
+    rt_bytes_put_vector(out, a);
+    rt_bytes_put_vector(out, b);
+    rt_bytes_put_vector(out, c);
     end_part(shapes, TRIANGLES, object);
 }
 
@@ -71,7 +67,7 @@ static void put_object(Shapes *shapes, uint32_t object) {
     uint32_t i = rt_ref_index(g->objects[object]);
     switch (rt_ref_shape(g->objects[object])) {
     case RT_SHAPE_SPHERE:
-        put_point(&shapes->parts[SPHERES], g->spheres[i].center);
+        rt_bytes_put_vector(&shapes->parts[SPHERES], g->spheres[i].center);
         rt_bytes_put_float(&shapes->parts[SPHERES], g->spheres[i].radius);
         end_part(shapes, SPHERES, object);
         break;

@@ -59,12 +59,13 @@ static void take_first(void *context, const char *path) {
     if (!*first) snprintf(first, RT_MAX_PATH, "plots/%s", basename(path));
 }
 
-/* The main plot of a result directory, relative to it: that of frames, or the first; "" if there is none. */
-static void find_plot(const char *directory, char plot[RT_MAX_PATH]) {
-    char folder[RT_MAX_PATH];
-    snprintf(plot, RT_MAX_PATH, "%s", rt_file_exists_in(directory, RT_FRAME_PLOT) ? RT_FRAME_PLOT : "");
+/* The main plot of a result directory, in `place`: that of frames, or the first; "" if there is none. */
+static void find_plot(const char *directory, const char *place, char plot[RT_MAX_PATH]) {
+    char folder[RT_MAX_PATH], name[RT_MAX_PATH] = "";
+    if (rt_file_exists_in(directory, RT_FRAME_PLOT)) strcpy(name, RT_FRAME_PLOT);
     if (rt_path_join(directory, "plots", folder, NULL) == RT_OK)
-        rt_directory_each(folder, ".svg", take_first, plot);
+        rt_directory_each(folder, ".svg", take_first, name);
+    if (!*name || rt_path_join(place, name, plot, NULL) != RT_OK) *plot = '\0';
 }
 
 /* ---- sentences of the literature ---- */
@@ -115,12 +116,11 @@ static void put_thumbnail(FILE *out, const char *name, const char *plot) {
 }
 
 /* The plot, and the name as a link to the report, if there is one. */
-static void put_head(const RtIndexEntry *entry, const char *directory, const char *place) {
+static void put_head(const RtIndexEntry *entry, const char *directory, const char *place, const char *plot) {
     FILE *out = entry->parts[RT_INDEX_HTML].file;
-    char plot[RT_MAX_PATH], path[RT_MAX_PATH];
-    find_plot(directory, plot);
+    char path[RT_MAX_PATH];
     rt_html_wrap(out, "<section class=\"card entry\" id=\"", entry->name, "\">");
-    if (*plot && rt_path_join(place, plot, path, NULL) == RT_OK) put_thumbnail(out, entry->name, path);
+    if (*plot) put_thumbnail(out, entry->name, plot);
     fputs("<div><h3>", out);
     if (rt_file_exists_in(directory, "report.html") &&
         rt_path_join(place, "report.html", path, NULL) == RT_OK)
@@ -139,18 +139,13 @@ static void put_markdown_link(FILE *out, const char *begin, const char *text, co
 }
 
 /* The same in index.md, with a link to the directory. */
-static void put_markdown_head(const RtIndexEntry *entry, const char *directory, const char *place) {
-    FILE *out = entry->parts[RT_INDEX_MARKDOWN].file;
-    char plot[RT_MAX_PATH], path[RT_MAX_PATH];
-    put_markdown_link(out, "### [", entry->name, place);
-    find_plot(directory, plot);
-    if (!*plot || rt_path_join(place, plot, path, NULL) != RT_OK) return;
-    put_markdown_link(out, "![Plot of ", entry->name, path);
-}
-
 static void put_heads(const RtIndexEntry *entry, const char *directory, const char *place) {
-    put_head(entry, directory, place);
-    put_markdown_head(entry, directory, place);
+    FILE *markdown = entry->parts[RT_INDEX_MARKDOWN].file;
+    char plot[RT_MAX_PATH];
+    find_plot(directory, place, plot);
+    put_head(entry, directory, place, plot);
+    put_markdown_link(markdown, "### [", entry->name, place);
+    if (*plot) put_markdown_link(markdown, "![Plot of ", entry->name, plot);
 }
 
 static void put_size(FILE *out, const RtResults *results) {

@@ -30,10 +30,6 @@ typedef struct Pivot {
 
 /* ---- cells ---- */
 
-static RtEstimate exactly(double value) {
-    return (RtEstimate){value, value, value, value};
-}
-
 static RtEstimate in_units(const RtEstimate *seconds, double a_second) {
     return (RtEstimate){a_second * seconds->median, a_second * seconds->low, a_second * seconds->high, 0};
 }
@@ -43,24 +39,18 @@ static RtEstimate estimate_of(const Pivot *p, uint32_t workload, uint32_t candid
     const RtBuildResult *build = rt_build_at(p->results, workload, candidate);
     switch (p->measure) {
     case TIME: return in_units(&cost.seconds, 1e9);
-    case OBJECT_TESTS: return exactly(cost.object_tests);
-    case EXTENT_TESTS: return exactly(cost.extent_tests);
-    case STEPS: return exactly(cost.steps);
-    default: return build->known ? in_units(&build->seconds, 1e3) : exactly((double)NAN);
+    case OBJECT_TESTS: return rt_estimate_exactly(cost.object_tests);
+    case EXTENT_TESTS: return rt_estimate_exactly(cost.extent_tests);
+    case STEPS: return rt_estimate_exactly(cost.steps);
+    default: return build->known ? in_units(&build->seconds, 1e3) : rt_estimate_exactly((double)NAN);
     }
 }
 
 /* Whether it is the least of the scene, or its interval overlaps with that of the least. Tables of extent
  * tests, of steps and of builds have no best: without a structure there are none. */
-static bool is_best(const Pivot *p, uint32_t workload, const RtEstimate *own) {
-    const RtExperiment *experiment = p->results->experiment;
-    RtEstimate best = exactly(INFINITY);
-    if (p->measure > OBJECT_TESTS || !rt_candidate_is_compared(experiment, p->candidate)) return false;
-    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        const RtEstimate other = estimate_of(p, workload, c);
-        if (rt_candidate_is_compared(experiment, c) && other.median < best.median) best = other;
-    }
-    return own->low <= best.high;
+static bool is_best(const Pivot *p, uint32_t workload) {
+    return p->measure <= OBJECT_TESTS && rt_standing_by(p->measure == TIME, p->results, workload,
+                                                        p->candidate, p->kind) != RT_STANDING_BEHIND;
 }
 
 static RtField get_label(const void *row, const RtTableColumn *column) {
@@ -77,7 +67,7 @@ static RtField get_cell(const void *row, const RtTableColumn *column) {
     const bool spread = p->intervals && value.low < value.high;
     RtField field =
         spread ? rt_field_interval(value.median, value.low, value.high) : rt_field_real(value.median);
-    field.bold = is_best(p, workload, &value);
+    field.bold = is_best(p, workload);
     return field;
 }
 

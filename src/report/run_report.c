@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "report/run_report.h"
+#include "report/report.h"
 
 #include "literature/published_tables.h"
 #include "report/plot.h"
-#include "report/report.h"
 
 static RtStatus check(const RtExperiment *experiment, RtError *error) {
     RtPublished published;

@@ -27,15 +27,15 @@ typedef struct RtSweepPoint {
     RtCost cost;
 } RtSweepPoint;
 
-/* Of one parameter; the caller allocates the arrays. */
+/* Of one parameter; the caller allocates the points. */
 typedef struct RtSweepLines {
     const RtResults *results;
     RtSweptKey key;
     bool column; /* for a column of a paper */
     bool timed;
     uint32_t group_count, line_count, point_count, value_count;
-    uint32_t *groups;                                    /* [workload_count] the first scene of each */
-    RtSweepLine *lines;                                  /* [candidate_count] */
+    uint32_t groups[RT_MAX_WORKLOADS]; /* the first scene of each */
+    RtSweepLine lines[RT_MAX_CANDIDATES];
     RtSweepPoint *points;                                /* [2 * workload_count * candidate_count] */
     char words[RT_MAX_SWEEP_VALUES][RT_MAX_SWEPT_CHARS]; /* values that are no numbers */
     double values[RT_MAX_SWEEP_VALUES];                  /* increasing */

@@ -8,7 +8,6 @@
 #include "style_gp.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_TICS = 8 };
@@ -167,12 +166,6 @@ static void put_x_axis(const RtSweepLines *figure, FILE *out) {
     }
 }
 
-/* Panels beside each other: as many as leave the letters room. */
-static uint32_t across(const RtSweepLines *figure) {
-    const uint32_t most = figure->column ? 2 : 3;
-    return figure->group_count < most ? figure->group_count : most;
-}
-
 /* A figure of one measure, in pixels. */
 typedef struct Layout {
     RtSweepMeasure measure;
@@ -183,8 +176,10 @@ typedef struct Layout {
 } Layout;
 
 static Layout lay_out(const RtSweepLines *figure, RtSweepMeasure measure, uint32_t entries) {
-    Layout l = {.measure = measure, .columns = across(figure), .entries = entries};
+    const uint32_t most = figure->column ? 2 : 3; /* panels beside each other leave the letters room */
+    Layout l = {.measure = measure, .entries = entries};
     size_t longest = 0;
+    l.columns = figure->group_count < most ? figure->group_count : most;
     for (uint32_t i = 0; i < figure->line_count; i++) {
         const size_t length = strlen(figure->lines[i].name);
         longest = length > longest ? length : longest;
@@ -263,8 +258,8 @@ static void put_panel(const RtSweepLines *figure, const Layout *l, const uint32_
     fputs("\nunset arrow; unset label\n", out); /* the legend, once */
 }
 
-static void put_figure(const RtSweepLines *figure, RtSweepMeasure measure, uint32_t number, uint32_t *order,
-                       FILE *out) {
+static void put_figure(const RtSweepLines *figure, RtSweepMeasure measure, uint32_t number, FILE *out) {
+    uint32_t order[RT_MAX_CANDIDATES];
     const Layout l = lay_out(figure, measure, rt_sweep_lines_order(figure, measure, order));
     const Range range = range_of(figure, measure);
     char name[RT_MAX_SWEEP_NAME + 16];
@@ -284,7 +279,7 @@ static void put_figure(const RtSweepLines *figure, RtSweepMeasure measure, uint3
     fputs("unset multiplot\nunset output\n", out);
 }
 
-static void put_figures(RtSweepLines *figure, uint32_t *order, FILE *out) {
+static void put_figures(RtSweepLines *figure, FILE *out) {
     RtSweptKey keys[RT_MAX_SWEPT_KEYS];
     const uint32_t count = rt_experiment_swept(figure->results->experiment, keys);
     uint32_t number = 0;
@@ -303,14 +298,14 @@ static void put_figures(RtSweepLines *figure, uint32_t *order, FILE *out) {
         put_x_axis(figure, out);
         for (RtSweepMeasure m = figure->timed ? RT_SWEEP_TIME : RT_SWEEP_OBJECT_TESTS; m < RT_SWEEP_MEASURES;
              m++)
-            put_figure(figure, m, ++number, order, out);
+            put_figure(figure, m, ++number, out);
     }
 }
 
-static RtStatus write_script(RtSweepLines *figure, uint32_t *order, const char *directory, RtError *error) {
+static RtStatus write_script(RtSweepLines *figure, const char *directory, RtError *error) {
     RtOutput output;
     RT_TRY(rt_output_open_in(&output, directory, "plots/sweep.gp", error));
-    put_figures(figure, order, output.file);
+    put_figures(figure, output.file);
     return rt_output_commit(&output, error);
 }
 
@@ -322,21 +317,13 @@ static RtStatus write_style(const char *directory, RtError *error) {
 }
 
 RtStatus rt_sweep_plots_write(const RtResults *results, const char *directory, bool column, RtError *error) {
-    const size_t candidates = results->experiment->candidate_count;
-    const size_t scenes = results->experiment->workload_count, points = 2 * candidates * scenes;
+    const RtExperiment *experiment = results->experiment;
+    const size_t points = (size_t)2 * experiment->candidate_count * experiment->workload_count;
     RT_TRY(write_style(directory, error));
-    RtSweepLines figure = {.results = results,
-                           .column = column,
-                           .groups = rt_alloc(scenes, sizeof(uint32_t)),
-                           .lines = rt_alloc(candidates, sizeof(RtSweepLine)),
-                           .points = rt_alloc(points, sizeof(RtSweepPoint))};
-    uint32_t *order = rt_alloc(candidates, sizeof(uint32_t));
-    RtStatus status = figure.groups && figure.lines && figure.points && order
-                          ? write_script(&figure, order, directory, error)
-                          : rt_fail_memory(error, "plots", points * sizeof(RtSweepPoint));
-    rt_free(figure.groups);
-    rt_free(figure.lines);
+    RtSweepLines figure = {
+        .results = results, .column = column, .points = rt_alloc(points, sizeof(RtSweepPoint))};
+    if (!figure.points) return rt_fail_memory(error, "plots", points * sizeof(RtSweepPoint));
+    RtStatus status = write_script(&figure, directory, error);
     rt_free(figure.points);
-    rt_free(order);
     return status;
 }

@@ -7,7 +7,7 @@
 #include "core/text/csv.h"
 #include "core/text/json.h"
 #include "experiment/result_tables.h"
-#include "report/run_report.h"
+#include "report/report.h"
 
 #include <math.h>
 #include <unistd.h>

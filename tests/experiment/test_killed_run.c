@@ -6,7 +6,7 @@
 #include "small_run_testing.h"
 
 #include "experiment/merge.h"
-#include "report/run_report.h"
+#include "report/report.h"
 
 #include <fcntl.h>
 #include <signal.h>

@@ -12,7 +12,7 @@
 #include "experiment/journal.h"
 #include "experiment/manifest.h"
 #include "experiment/manifest_experiment.h"
-#include "experiment/result_csv.h"
+#include "experiment/result_directory.h"
 #include "experiment/result_tables.h"
 #include "literature/published_tables.h"
 #include "report/index_entry.h"

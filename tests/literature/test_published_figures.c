@@ -3,7 +3,7 @@
 #include "published_testing.h"
 
 #include "core/text/csv.h"
-#include "report/run_report.h"
+#include "report/report.h"
 
 /* Runs the experiment with these rows and reasons into DIR/out, and gives what the check says. */
 static RtStatus run(const Place *place, const char *rows, const char *reasons, bool quick, RtError *error) {

@@ -205,7 +205,7 @@ static uint64_t take_path(Reader *r, const RtRecordedPaths *paths, float *t, RtT
     for (uint64_t i = 0; i < kept; i++) {
         const uint64_t event = take_number(r);
         assert_true(event < paths->event_count);
-        const RtPathRow *row = &paths->forms[paths->events[event].form].row;
+        const RtPathRow *row = &paths->forms[paths->events[event].form];
         tests += row->kind == RT_TRACED_OBJECT_TEST;
         if (row->kind == RT_TRACED_OBJECT_TEST && row->met) take_float(r);
     }
