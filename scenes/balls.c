@@ -15,12 +15,6 @@ static const RtParam params[] = {
 
 enum { CHILDREN = 9 };
 
-static uint64_t object_count(const RtValue *values) {
-    uint64_t spheres = 1;
-    for (int64_t level = 0; level < values[0].i; level++) spheres = spheres * CHILDREN + 1;
-    return spheres + 1;
-}
-
 /* Unit directions of the children of a sphere that points to +Z. */
 static void set_offsets(RtVec3d offsets[CHILDREN]) {
     double d = sqrt(0.5);
@@ -61,6 +55,5 @@ const RtBuiltin rt_builtin_balls = {
     .summary = "a sphereflake over a floor: reflective spheres of very different sizes, touching",
     .source = RT_SPD_SOURCE,
     RT_PARAMS_OF(params),
-    .object_count = object_count,
     .generate = generate,
 };

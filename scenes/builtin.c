@@ -56,14 +56,17 @@ uint64_t rt_builtin_object_count(const RtBuiltin *builtin, const RtValue *values
     return builtin->object_count ? builtin->object_count(values) : rt_build_count(builtin->generate, values);
 }
 
+static uint64_t bytes_each(const RtBuiltin *builtin, const RtValue *values) {
+    return builtin->object_bytes ? builtin->object_bytes(values) : RT_BUILTIN_OBJECT_BYTES;
+}
+
 uint64_t rt_builtin_bytes(const RtBuiltin *builtin, const RtValue *values) {
-    uint64_t each = builtin->object_bytes ? builtin->object_bytes(values) : RT_BUILTIN_OBJECT_BYTES;
-    return rt_builtin_object_count(builtin, values) * each;
+    return rt_builtin_object_count(builtin, values) * bytes_each(builtin, values);
 }
 
 static bool fits(const RtBuiltin *builtin, const RtValue *values, uint64_t bytes) {
-    return rt_builtin_object_count(builtin, values) <= RT_MAX_OBJECTS &&
-           rt_builtin_bytes(builtin, values) <= bytes;
+    const uint64_t count = rt_builtin_object_count(builtin, values);
+    return count <= RT_MAX_OBJECTS && count * bytes_each(builtin, values) <= bytes;
 }
 
 RtStatus rt_builtin_check_memory(const RtBuiltin *builtin, const RtValue *values, uint64_t bytes,
@@ -85,7 +88,7 @@ RtStatus rt_builtin_check_memory(const RtBuiltin *builtin, const RtValue *values
                    "scene %s: %s=%lld makes %llu objects, which may take %.1f GB, but only %.1f GB are "
                    "available: %s=%lld would fit",
                    builtin->name, size->name, (long long)values[0].i, (unsigned long long)objects,
-                   (double)rt_builtin_bytes(builtin, values) / 1e9, (double)bytes / 1e9, size->name,
+                   (double)(objects * bytes_each(builtin, values)) / 1e9, (double)bytes / 1e9, size->name,
                    (long long)fitting);
 }
 

@@ -17,7 +17,8 @@ typedef struct RtBuiltin {
     const char *name, *summary, *source; /* source: the origin of the scene */
     const RtParam *params;               /* params[0]: the integer that sets the size, if there is one */
     size_t param_count;
-    /* The number of objects, to check memory before anything is built; NULL: `generate` counts. */
+    /* The number of objects, to check memory before anything is built, where there may be so many that
+     * counting takes long; NULL: `generate` counts. */
     uint64_t (*object_count)(const RtValue *values);
     /* Bytes that each may take while the scene is built; NULL: RT_BUILTIN_OBJECT_BYTES. */
     uint64_t (*object_bytes)(const RtValue *values);
@@ -56,5 +57,14 @@ uint64_t rt_builtin_bytes(const RtBuiltin *builtin, const RtValue *values);
 /* Rejects values whose scene may need more than `bytes`, with the value of params[0] that would fit. */
 RtStatus rt_builtin_check_memory(const RtBuiltin *builtin, const RtValue *values, uint64_t bytes,
                                  RtError *error);
+
+/* Families of scenes that are hard on accelerators: objects that coincide, are flat, huge, tiny or far
+ * away, slivers, shared edges, trees. Each is the built-in scene "family:kind=NAME,seed=N"; these
+ * functions enumerate them. */
+size_t rt_family_count(void);
+const char *rt_family_name(size_t family);
+
+/* The spec of scene number `seed` of a family, for rt_scene_open. */
+void rt_family_spec(size_t family, uint64_t seed, char spec[RT_MAX_SPEC_CHARS]);
 
 #endif

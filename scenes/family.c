@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The families of scenes. One row per recipe: how many objects of which shapes, where, how large, and how
  * the whole is scaled and moved. */
-#include "scenes/family.h"
-
 #include "scenes/builtin.h"
 #include "scenes/family_places.h"
 #include "scenes/random_tree.h"
@@ -34,7 +32,7 @@ typedef struct Recipe {
     const char *name;
     uint32_t count;
     Make make;
-    RtPlace *place;
+    RtPlace place;
     double scale, offset;
     Scaling scaling;
     Around around;
@@ -186,7 +184,7 @@ static void add_mesh(Family *f, uint32_t n) {
 }
 
 static void add_object(Family *f, uint32_t i) {
-    RtPlacement at = f->recipe->place(&f->random, i, f->recipe->count);
+    RtPlacement at = rt_place(f->recipe->place, &f->random, i, f->recipe->count);
     switch (f->recipe->make) {
     case SPHERES: rt_build_sphere(f->b, at.center, at.size); break;
     case TRIANGLES: add_triangle(f, at); break;
@@ -229,42 +227,42 @@ static void add_eye(RtSceneBuilder *b) {
 
 /* X(name, count, make, place, scale, offset, scaling, around), in the order of the random streams. */
 #define RECIPES(X)                                                                                           \
-    X("empty", 0, SPHERES, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                            \
-    X("one-sphere", 1, SPHERES, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                       \
-    X("one-triangle", 1, TRIANGLES, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                   \
-    X("two", 2, ROUND_AND_FLAT, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                       \
-    X("coincident", 33, SPHERES, rt_place_coincident, 1, 0, GIVEN, CAMERA)                                   \
-    X("line", 64, ROUND_AND_FLAT, rt_place_on_a_line, 1, 0, GIVEN, CAMERA)                                   \
-    X("plane", 96, AXIS_ALIGNED, rt_place_in_a_plane, 1, 0, GIVEN, CAMERA)                                   \
-    X("huge-beside-tiny", 96, ROUND_AND_FLAT, rt_place_huge_beside_tiny, 1, 0, GIVEN, CAMERA)                \
-    X("uniform", 150, SPHERES, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                        \
-    X("clustered", 160, ROUND_AND_FLAT, rt_place_clustered, 1, 0, GIVEN, CAMERA)                             \
-    X("mixed", 160, ROUND_AND_FLAT, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                   \
-    X("soup", 200, TRIANGLES, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                         \
-    X("duplicates", 120, SPHERES, rt_place_duplicated, 1, 0, GIVEN, CAMERA)                                  \
-    X("axis-aligned", 100, AXIS_ALIGNED, rt_place_on_a_lattice, 1, 0, GIVEN, CAMERA)                         \
-    X("csg", 48, TREES, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                               \
-    X("csg-coincident", 12, TREES, rt_place_coincident, 1, 0, GIVEN, CAMERA)                                 \
-    X("csg-tiny", 24, TREES, rt_place_uniform, 0x1p-30, 0, GIVEN, CAMERA)                                    \
-    X("csg-far", 24, TREES, rt_place_uniform, 1, 1e5, GIVEN, CAMERA)                                         \
-    X("mesh", 5, MESH, NULL, 1, 0, GIVEN, CAMERA)                                                            \
-    X("mesh-far", 5, MESH, NULL, 1, 1e5, GIVEN, CAMERA)                                                      \
-    X("mixed-tiny", 100, ROUND_AND_FLAT, rt_place_uniform, 0x1p-30, 0, GIVEN, CAMERA)                        \
-    X("mixed-huge", 100, ROUND_AND_FLAT, rt_place_uniform, 0x1p30, 0, GIVEN, CAMERA)                         \
-    X("mixed-far", 100, ROUND_AND_FLAT, rt_place_uniform, 1, 1e5, GIVEN, CAMERA)                             \
-    X("slivers", 150, SLIVERS, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                        \
-    X("shared", 100, SHARED, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                          \
-    X("touching", 150, SPHERES, rt_place_touching, 1, 0, GIVEN, CAMERA)                                      \
-    X("scaled", 100, ROUND_AND_FLAT, rt_place_uniform, 1, 0, DRAWN_SCALE, CAMERA)                            \
-    X("scaled-far", 100, ROUND_AND_FLAT, rt_place_uniform, 1, 0, DRAWN_SCALE_AND_OFFSET, CAMERA)             \
-    X("slivers-scaled", 100, SLIVERS, rt_place_uniform, 1, 0, DRAWN_SCALE, CAMERA)                           \
-    X("needles", 60, NEEDLES, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                         \
-    X("progression", 60, ROUND_AND_FLAT, rt_place_in_progression, 1, 0, GIVEN, CAMERA)                       \
-    X("concentric", 200, AXIS_ALIGNED, rt_place_concentric, 1, 0, GIVEN, CAMERA)                             \
-    X("stacked", 40, AXIS_ALIGNED, rt_place_stacked, 1, 0, GIVEN, CAMERA)                                    \
-    X("lit-within", 60, ROUND_AND_FLAT, rt_place_uniform, 1, 0, GIVEN, LIGHTS)                               \
-    X("eye-within", 80, AXIS_ALIGNED, rt_place_around_the_origin, 1, 0, GIVEN, EYE)                          \
-    X("eye-among", 80, ROUND_AND_FLAT, rt_place_around_the_origin, 1, 0, GIVEN, EYE)
+    X("empty", 0, SPHERES, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                            \
+    X("one-sphere", 1, SPHERES, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                       \
+    X("one-triangle", 1, TRIANGLES, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                   \
+    X("two", 2, ROUND_AND_FLAT, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                       \
+    X("coincident", 33, SPHERES, RT_PLACE_COINCIDENT, 1, 0, GIVEN, CAMERA)                                   \
+    X("line", 64, ROUND_AND_FLAT, RT_PLACE_ON_A_LINE, 1, 0, GIVEN, CAMERA)                                   \
+    X("plane", 96, AXIS_ALIGNED, RT_PLACE_IN_A_PLANE, 1, 0, GIVEN, CAMERA)                                   \
+    X("huge-beside-tiny", 96, ROUND_AND_FLAT, RT_PLACE_HUGE_BESIDE_TINY, 1, 0, GIVEN, CAMERA)                \
+    X("uniform", 150, SPHERES, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                        \
+    X("clustered", 160, ROUND_AND_FLAT, RT_PLACE_CLUSTERED, 1, 0, GIVEN, CAMERA)                             \
+    X("mixed", 160, ROUND_AND_FLAT, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                   \
+    X("soup", 200, TRIANGLES, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                         \
+    X("duplicates", 120, SPHERES, RT_PLACE_DUPLICATED, 1, 0, GIVEN, CAMERA)                                  \
+    X("axis-aligned", 100, AXIS_ALIGNED, RT_PLACE_ON_A_LATTICE, 1, 0, GIVEN, CAMERA)                         \
+    X("csg", 48, TREES, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                               \
+    X("csg-coincident", 12, TREES, RT_PLACE_COINCIDENT, 1, 0, GIVEN, CAMERA)                                 \
+    X("csg-tiny", 24, TREES, RT_PLACE_UNIFORM, 0x1p-30, 0, GIVEN, CAMERA)                                    \
+    X("csg-far", 24, TREES, RT_PLACE_UNIFORM, 1, 1e5, GIVEN, CAMERA)                                         \
+    X("mesh", 5, MESH, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                                \
+    X("mesh-far", 5, MESH, RT_PLACE_UNIFORM, 1, 1e5, GIVEN, CAMERA)                                          \
+    X("mixed-tiny", 100, ROUND_AND_FLAT, RT_PLACE_UNIFORM, 0x1p-30, 0, GIVEN, CAMERA)                        \
+    X("mixed-huge", 100, ROUND_AND_FLAT, RT_PLACE_UNIFORM, 0x1p30, 0, GIVEN, CAMERA)                         \
+    X("mixed-far", 100, ROUND_AND_FLAT, RT_PLACE_UNIFORM, 1, 1e5, GIVEN, CAMERA)                             \
+    X("slivers", 150, SLIVERS, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                        \
+    X("shared", 100, SHARED, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                          \
+    X("touching", 150, SPHERES, RT_PLACE_TOUCHING, 1, 0, GIVEN, CAMERA)                                      \
+    X("scaled", 100, ROUND_AND_FLAT, RT_PLACE_UNIFORM, 1, 0, DRAWN_SCALE, CAMERA)                            \
+    X("scaled-far", 100, ROUND_AND_FLAT, RT_PLACE_UNIFORM, 1, 0, DRAWN_SCALE_AND_OFFSET, CAMERA)             \
+    X("slivers-scaled", 100, SLIVERS, RT_PLACE_UNIFORM, 1, 0, DRAWN_SCALE, CAMERA)                           \
+    X("needles", 60, NEEDLES, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                         \
+    X("progression", 60, ROUND_AND_FLAT, RT_PLACE_IN_PROGRESSION, 1, 0, GIVEN, CAMERA)                       \
+    X("concentric", 200, AXIS_ALIGNED, RT_PLACE_CONCENTRIC, 1, 0, GIVEN, CAMERA)                             \
+    X("stacked", 40, AXIS_ALIGNED, RT_PLACE_STACKED, 1, 0, GIVEN, CAMERA)                                    \
+    X("lit-within", 60, ROUND_AND_FLAT, RT_PLACE_UNIFORM, 1, 0, GIVEN, LIGHTS)                               \
+    X("eye-within", 80, AXIS_ALIGNED, RT_PLACE_AROUND_THE_ORIGIN, 1, 0, GIVEN, EYE)                          \
+    X("eye-among", 80, ROUND_AND_FLAT, RT_PLACE_AROUND_THE_ORIGIN, 1, 0, GIVEN, EYE)
 
 #define AS_RECIPE(...)       {__VA_ARGS__},
 #define AS_CHOICE(name, ...) "|" name

@@ -18,12 +18,6 @@ static const RtParam params[] = {
 #define ROD_RADIUS 0.075
 #define END_RADIUS 0.15
 
-static uint64_t object_count(const RtValue *values) {
-    uint64_t jacks = 0;
-    for (int64_t level = 0; level < values[0].i; level++) jacks = 8 * jacks + 1;
-    return 9 * jacks;
-}
-
 /* Three cylinders, then six spheres at their ends. */
 static void add_arms(RtSceneBuilder *b, const RtVec3d axes[3], RtVec3d center, double scale) {
     RtVec3d ends[2][3]; /* along the axes, and against them */
@@ -69,6 +63,5 @@ const RtBuiltin rt_builtin_jacks = {
     .summary = "crossed cylinders with spheres at their ends, among smaller ones: mirrors that touch",
     .source = RT_SPD_LATER_SOURCE,
     RT_PARAMS_OF(params),
-    .object_count = object_count,
     .generate = generate,
 };

@@ -24,10 +24,6 @@ typedef struct Mount {
     uint32_t size;
 } Mount;
 
-static uint64_t object_count(const RtValue *values) {
-    return (UINT64_C(2) << 2 * values[0].i) + 4;
-}
-
 /* A normal random number that `seed` determines: Marsaglia's polar method over a linear congruential
  * generator. No two numbers of that generator in a row are 0, so `square` is not. */
 static double normal_random(uint32_t seed) {
@@ -114,6 +110,5 @@ const RtBuiltin rt_builtin_mount = {
     .summary = "a fractal mountain of triangles of one size, seen through spheres of glass",
     .source = RT_SPD_SOURCE,
     RT_PARAMS_OF(params),
-    .object_count = object_count,
     .generate = generate,
 };

@@ -88,43 +88,20 @@ void rt_ornament_column(RtSceneBuilder *b, uint32_t size) {
 
 /* ---- vases and balusters ---- */
 
-enum { VASE_POINTS = 10 };
-
 void rt_ornament_vase(RtSceneBuilder *b, uint32_t size, uint32_t kind) {
     /* From the middle of the foot up the outside, over the lip and down inside. */
-    static const RtVec3d profiles[RT_VASE_KINDS][VASE_POINTS] = {
-        {{0, 0, 0},
-         {0.24, 0, 0},
-         {0.22, 0, 0.08},
-         {0.1, 0, 0.2},
-         {0.36, 0, 0.55},
-         {0.42, 0, 0.8},
-         {0.2, 0, 1.08},
-         {0.3, 0, 1.3},
-         {0.17, 0, 1.1},
-         {0, 0, 0.4}},
-        {{0, 0, 0},
-         {0.2, 0, 0},
-         {0.17, 0, 0.06},
-         {0.3, 0, 0.3},
-         {0.4, 0, 0.6},
-         {0.33, 0, 0.85},
-         {0.14, 0, 1.05},
-         {0.2, 0, 1.3},
-         {0.11, 0, 1.1},
-         {0, 0, 0.3}},
-        {{0, 0, 0},
-         {0.26, 0, 0},
-         {0.12, 0, 0.1},
-         {0.09, 0, 0.3},
-         {0.2, 0, 0.5},
-         {0.48, 0, 0.75},
-         {0.5, 0, 1.0},
-         {0.56, 0, 1.3},
-         {0.46, 0, 1.05},
-         {0, 0, 0.62}},
-    };
-    add_lathe(b, profiles[kind % RT_VASE_KINDS], VASE_POINTS, 5 * size, 6 * size);
+    enum { POINTS = 10 };
+    static const RtVec3d amphora[POINTS] = {{0, 0, 0},       {0.24, 0, 0},   {0.22, 0, 0.08}, {0.1, 0, 0.2},
+                                            {0.36, 0, 0.55}, {0.42, 0, 0.8}, {0.2, 0, 1.08},  {0.3, 0, 1.3},
+                                            {0.17, 0, 1.1},  {0, 0, 0.4}};
+    static const RtVec3d jar[POINTS] = {{0, 0, 0},      {0.2, 0, 0},     {0.17, 0, 0.06}, {0.3, 0, 0.3},
+                                        {0.4, 0, 0.6},  {0.33, 0, 0.85}, {0.14, 0, 1.05}, {0.2, 0, 1.3},
+                                        {0.11, 0, 1.1}, {0, 0, 0.3}};
+    static const RtVec3d goblet[POINTS] = {{0, 0, 0},       {0.26, 0, 0},    {0.12, 0, 0.1}, {0.09, 0, 0.3},
+                                           {0.2, 0, 0.5},   {0.48, 0, 0.75}, {0.5, 0, 1.0},  {0.56, 0, 1.3},
+                                           {0.46, 0, 1.05}, {0, 0, 0.62}};
+    static const RtVec3d *const profiles[RT_VASE_KINDS] = {amphora, jar, goblet};
+    add_lathe(b, profiles[kind % RT_VASE_KINDS], POINTS, 5 * size, 6 * size);
 }
 
 void rt_ornament_baluster(RtSceneBuilder *b, uint32_t size) {

@@ -18,12 +18,7 @@
 enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
-enum {
-    SECTORS = 64,
-    MASTS = 4,
-    LAMPS = 12, /* of a mast */
-    STRIPES = 14
-};
+enum { SECTORS = 64, MASTS = 4, LAMPS = 12, STRIPES = 14 }; /* LAMPS of a mast */
 
 enum {
     CHINA,

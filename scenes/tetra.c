@@ -12,10 +12,6 @@ static const RtParam params[] = {
     {"size", RT_INT("6", 1, 9, "1|3"), "levels: 4^size triangles", "SPD: 4096 triangles"},
 };
 
-static uint64_t object_count(const RtValue *values) {
-    return UINT64_C(1) << 2 * values[0].i;
-}
-
 /* The corner of the cube about `center` at the signs (x, y, x * y). */
 static RtVec3d corner(RtVec3d center, double half, double x, double y) {
     return rt_addd(center, rt_vec3d(x * half, y * half, x * y * half));
@@ -50,6 +46,5 @@ const RtBuiltin rt_builtin_tetra = {
     .summary = "a Sierpinski tetrahedron of triangles, mostly empty space",
     .source = RT_SPD_SOURCE,
     RT_PARAMS_OF(params),
-    .object_count = object_count,
     .generate = generate,
 };

@@ -21,10 +21,6 @@ typedef struct Frame {
     RtVec3d axis[3];
 } Frame;
 
-static uint64_t object_count(const RtValue *values) {
-    return (UINT64_C(4) << values[0].i) - 1;
-}
-
 /* A vector of a frame, seen from outside it. */
 static RtVec3d outward(const Frame *frame, RtVec3d v) {
     RtVec3d sum = rt_scaled(frame->axis[0], v.x);
@@ -76,6 +72,5 @@ const RtBuiltin rt_builtin_tree = {
     .summary = "a tree of cones and spheres that get smaller and smaller, alone on a large field",
     .source = RT_SPD_SOURCE,
     RT_PARAMS_OF(params),
-    .object_count = object_count,
     .generate = generate,
 };

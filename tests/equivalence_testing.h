@@ -6,7 +6,7 @@
 
 #include "accel_testing.h"
 
-#include "scenes/family.h"
+#include "scenes/builtin.h"
 #include "verify/equivalence.h"
 #include "verify/ray_families.h"
 

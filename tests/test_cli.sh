@@ -69,6 +69,8 @@ for command in render info convert; do
     refuses "raytally $command: .*raytally $command" $command
 done
 refuses 'one SCENE at a time' info balls balls
+# shellcheck disable=SC2046 # nine options
+refuses "--accel: 'bvh' is one too many: 8 at most" render balls $(printf -- '--accel bvh %.0s' {1..9}) -o balls.png
 ends 0 info balls:size=1 --extents --rays 1000
 ends 0 info balls:size=1 --extents=all --rays 1000 --json
 refuses "extents: invalid value 'some'.*--extents=all" info balls --extents=some

@@ -103,16 +103,11 @@ void rt_cli_size(struct argp_state *state, const char *text, uint32_t *width, ui
                RT_MAX_IMAGE_SIDE);
 }
 
-void rt_cli_pixel(struct argp_state *state, const char *text, uint32_t *x, uint32_t *y) {
-    const char *at = text;
-    if (rt_cli_digits(&at, x) && *at++ == ',' && rt_cli_digits(&at, y) && *at == '\0') return;
-    argp_error(state, "--pixel: invalid value '%s': expected X,Y, as in 256,200", text);
-}
-
-RtStatus rt_cli_check_pixel(const RtSampling *sampling, uint32_t x, uint32_t y, RtError *error) {
-    if (x < sampling->width && y < sampling->height) return RT_OK;
+RtStatus rt_cli_check_pixel(const RtSampling *sampling, RtPixel pixel, RtError *error) {
+    if (pixel.x < sampling->width && pixel.y < sampling->height) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT, "--pixel %u,%u is outside the image of %u x %u: choose 0..%u,0..%u",
-                   x, y, sampling->width, sampling->height, sampling->width - 1, sampling->height - 1);
+                   pixel.x, pixel.y, sampling->width, sampling->height, sampling->width - 1,
+                   sampling->height - 1);
 }
 
 RtRayKind rt_cli_image_ray_kind(struct argp_state *state, const char *option, const char *text) {

@@ -97,17 +97,16 @@ void rt_cli_take_time(void *options, const char *text, struct argp_state *state)
             "it during its build is skipped, which is no failure; a plugin that exceeds it later is "        \
             "broken (exit code 1)"                                                                           \
     }
-#define RT_ALL_MEMORY_OPTION                                                                                 \
-    {                                                                                                        \
-        "memory", 0, "BYTES", RT_TO_TAKE(rt_cli_take_memory),                                                \
-            "Memory limit for scenes, structures, rays and images, as in 512M or 4G (powers of 1000); a "    \
-            "command that needs more ends with exit code 2"                                                  \
-    }
 #define RT_TIME_OPTION(kept)                                                                                 \
     {                                                                                                        \
         "time", 0, "SECONDS", RT_TO_TAKE(rt_cli_take_time),                                                  \
             "Time limit for the whole command, which then ends with exit code 2" kept                        \
     }
+#define RT_LIMIT_OPTIONS                                                                                     \
+    {"memory", 0, "BYTES", RT_TO_TAKE(rt_cli_take_memory),                                                   \
+     "Memory limit for scenes, structures, rays and images, as in 512M or 4G (powers of 1000); a command "   \
+     "that needs more ends with exit code 2"},                                                               \
+        RT_TIME_OPTION("")
 #define RT_TRUST_OPTION(scripts)                                                                             \
     {                                                                                                        \
         "trust", 0, NULL, RT_TO_SET(scripts, RT_SCRIPTS_ALL),                                                \
@@ -125,7 +124,7 @@ typedef struct RtListOptions {
 } RtListOptions;
 extern const RtOption rt_list_options[];
 #define RT_LIST_ARGUMENT                                                                                     \
-    { "NAME", NULL, offsetof(RtListOptions, name), NULL }
+    { "NAME", NULL, RT_VALUE(.form = RT_OPTION_TEXT, .offset = offsetof(RtListOptions, name)) }
 
 /* Prints `list`, an array, under `key` with `json`; else `syntax`, without a name. Takes the reference. */
 void rt_list_finish(const RtListOptions *options, const char *key, json_t *list, const char *syntax);
@@ -133,9 +132,8 @@ void rt_list_finish(const RtListOptions *options, const char *key, json_t *list,
 /* A vector as [x, y, z]. */
 json_t *rt_cli_vector_json(RtVec3 v);
 
-/* "X,Y" of --pixel; the check, once the image is known, is RT_BAD_INPUT if the pixel is outside. */
-void rt_cli_pixel(struct argp_state *state, const char *text, uint32_t *x, uint32_t *y);
-RtStatus rt_cli_check_pixel(const RtSampling *sampling, uint32_t x, uint32_t y, RtError *error);
+/* RT_BAD_INPUT if the pixel of --pixel is outside the image. */
+RtStatus rt_cli_check_pixel(const RtSampling *sampling, RtPixel pixel, RtError *error);
 
 /* A kind of rays of images: primary, shadow, reflection or transmission. */
 RtRayKind rt_cli_image_ray_kind(struct argp_state *state, const char *option, const char *text);

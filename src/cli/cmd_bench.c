@@ -11,7 +11,6 @@
 #include "experiment/result_tables.h"
 #include "experiment/worker.h"
 #include "measure/machine.h"
-#include "verify/spread.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -21,40 +20,15 @@ typedef struct Options {
     const char *scene, *baseline, *csv, *hits, *counts;
     RtWorkloadOptions workload;
     bool json, hardware, distributions;
-    uint32_t rounds;    /* 0: the default */
-    uint32_t builds;    /* 0: the default */
-    uint64_t memory;    /* bytes for each accelerator; 0: no limit */
-    int threads;        /* -1: one to time, all to build and count */
-    uint64_t callgrind; /* rays of a kind at most; 0: it is not asked for */
-    bool worker;        /* it counts instructions for another one (experiment/worker.h) */
-    char *const *argv;  /* all arguments, NULL behind the last */
+    uint32_t rounds;   /* 0: the default */
+    uint32_t builds;   /* 0: the default */
+    uint64_t memory;   /* bytes for each accelerator; 0: no limit */
+    int threads;       /* -1: one to time, all to build and count */
+    bool worker;       /* it counts instructions for another one (experiment/worker.h) */
+    char *const *argv; /* all arguments, NULL behind the last */
 } Options;
 
 /* ---- options ---- */
-
-/* One accelerator, or each of a sweep. */
-static void add_accel(RtExperiment *experiment, const char *text, struct argp_state *state) {
-    RtError error;
-    RtCandidate like = {.entry = experiment->candidate_count, .ray_stride = 1};
-    if (strlen(text) >= RT_MAX_SPEC_CHARS) {
-        argp_error(state, "--accel: a spec has at most %d characters", RT_MAX_SPEC_CHARS - 1);
-    }
-    strcpy(like.spec, text);
-    if (rt_experiment_add_accels(experiment, &like, &error) != RT_OK)
-        argp_error(state, "--accel: %s", error.message);
-}
-
-void rt_cli_add_accels(RtExperiment *experiment, const char *text, struct argp_state *state) {
-    if (strcmp(text, "all") != 0) {
-        add_accel(experiment, text, state);
-        return;
-    }
-    for (size_t i = 0; i < rt_accel_count(); i++) {
-        char spec[RT_MAX_SPEC_CHARS];
-        rt_spread_spec(rt_accel_at(i), 0, spec);
-        add_accel(experiment, spec, state);
-    }
-}
 
 /* Adds an accelerator that was not given. */
 static void set_baseline(RtExperiment *experiment, const char *text, struct argp_state *state) {
@@ -64,7 +38,7 @@ static void set_baseline(RtExperiment *experiment, const char *text, struct argp
     experiment->baseline = c;
     if (c < experiment->candidate_count) return;
     if (!rt_best_is(text)) {
-        add_accel(experiment, text, state);
+        rt_recording_add_accel(experiment, text, state);
     } else if (rt_experiment_set_baseline(experiment, text, &error) != RT_OK) {
         argp_error(state, "--baseline: %s", error.message);
     }
@@ -97,11 +71,6 @@ static void check_rows(const Options *o, struct argp_state *state) {
                           "FILE.npz, which takes several");
 }
 
-static void take_accel(void *options, const char *text, struct argp_state *state) {
-    Options *o = options;
-    rt_cli_add_accels(o->recording.experiment, text, state);
-}
-
 /* Of all accelerators of the preceding --accel. */
 static void take_ray_stride(void *options, const char *text, struct argp_state *state) {
     RtExperiment *e = ((Options *)options)->recording.experiment;
@@ -116,10 +85,6 @@ static void take_ray_stride(void *options, const char *text, struct argp_state *
 static void take_milliseconds(void *options, const char *text, struct argp_state *state) {
     ((Options *)options)->recording.experiment->milliseconds =
         (uint32_t)rt_cli_integer(state, "--milliseconds", text, 0, RT_MAX_MILLISECONDS);
-}
-
-static void take_callgrind(void *options, const char *text, struct argp_state *state) {
-    ((Options *)options)->callgrind = rt_cli_callgrind(text, state);
 }
 
 static void take_rays_from(void *options, const char *text, struct argp_state *state) {
@@ -148,7 +113,7 @@ static void finish(void *options, struct argp_state *state) {
 }
 
 static const RtOption options[] = {
-    {"accel", 'a', "SPEC", RT_TO_TAKE(take_accel),
+    {"accel", 'a', "SPEC", RT_TO_TAKE(rt_recording_take_accel),
      "An accelerator, NAME[:KEY=VALUE,...]; repeat the option for several. `all`: every accelerator at its "
      "defaults. A VALUE may be a list, 1|4|16, or a range, 1..9+2 (steps of 2) or 1..64*2 (doubling): "
      "raytally then measures an accelerator for each value, or combination of values"},
@@ -179,7 +144,7 @@ static const RtOption options[] = {
      "Also show the processor's counters per ray: instructions, cycles, last-level cache misses, branch "
      "mispredictions. They are read in separate rounds, so times do not change, and exclude the kernel. If "
      "there are none, raytally says why. In an experiment: `hardware: yes`"},
-    {"callgrind", 0, "N", RT_TO_TAKE_OPTIONAL(take_callgrind),
+    {"callgrind", 0, "N", RT_TO_TAKE_OPTIONAL(rt_recording_take_callgrind),
      "Also show instructions per ray, counted by valgrind's callgrind: exact, the same on every run, and "
      "available where --hardware is not. raytally builds each accelerator again under valgrind, which is "
      "many times slower, and traces N rays of each kind (4096), without AVX-512, which valgrind lacks"},
@@ -304,19 +269,19 @@ static RtStatus run_cells(const Options *o, RtResults *results, RtError *error) 
 
 /* All but the report. */
 static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, RtError *error) {
-    if (o->callgrind) {
+    if (o->recording.callgrind) {
         RT_TRY(rt_callgrind_check(error));
-        RT_TRY(rt_callgrind_init(callgrind, results->experiment, o->callgrind, error));
+        RT_TRY(rt_callgrind_init(callgrind, results->experiment, o->recording.callgrind, error));
         o->workload.rays = rt_callgrind_save_rays;
         o->workload.rays_context = callgrind;
     }
     RtProgress progress = rt_progress_begin(&o->workload);
     o->workload.observer = rt_progress_observer(&progress);
     RtStatus status = run_cells(o, results, error);
-    if (status == RT_OK && o->callgrind)
+    if (status == RT_OK && o->recording.callgrind)
         rt_notify(&o->workload.observer, "counting instructions under valgrind, which takes a while");
     rt_progress_end(&progress);
-    if (status == RT_OK && o->callgrind)
+    if (status == RT_OK && o->recording.callgrind)
         status = rt_callgrind_run(callgrind, NULL, results, o->argv + 1, error);
     return status;
 }
@@ -350,8 +315,7 @@ const RtSyntax rt_bench_syntax = {
     .shared_at = offsetof(Options, recording),
     .shared_group = 1,
     .plugins = true,
-    .arguments = "SCENE",
-    .argument = RT_SCENE_ARGUMENT,
+    RT_ONE_SCENE,
     .finish = finish,
     .help =
         "Count and time accelerators on the rays of one scene, and compare them.\v"

@@ -2,6 +2,7 @@
 /* raytally compare: what a change made faster or slower, and which counts it changed; from two result
  * directories, or two programs that run in turns. */
 #include "cli/cli.h"
+#include "cli/progress.h"
 #include "cli/recording.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
@@ -27,7 +28,6 @@ typedef struct Options {
     RtRecordingOptions recording;
     const char *subjects[MAX_SUBJECTS]; /* directories; or an experiment or a scene */
     uint32_t subject_count;
-    uint64_t callgrind; /* rays of a kind at most; 0: it is not asked for */
     const char *with;
     bool worker, quick, strict, json;
     uint32_t rounds;
@@ -35,20 +35,6 @@ typedef struct Options {
     int threads;                    /* -1: one to time, all to count */
     int timing;
 } Options;
-
-static void take_subject(void *options, const char *text, struct argp_state *state) {
-    Options *o = options;
-    if (o->subject_count == MAX_SUBJECTS) argp_error(state, "'%s' is one too many", text);
-    o->subjects[o->subject_count++] = text;
-}
-
-static void take_accel(void *options, const char *text, struct argp_state *state) {
-    rt_cli_add_accels(((Options *)options)->recording.experiment, text, state);
-}
-
-static void take_callgrind(void *options, const char *text, struct argp_state *state) {
-    ((Options *)options)->callgrind = rt_cli_callgrind(text, state);
-}
 
 static void finish(void *options, struct argp_state *state) {
     Options *o = options;
@@ -60,10 +46,10 @@ static void finish(void *options, struct argp_state *state) {
     if (programs && o->subject_count != 1)
         argp_error(state, "--with takes one EXPERIMENT.yaml, or one SCENE with --accel");
     if (!programs && (e->candidate_count || o->recording.frame || o->recording.kinds || o->until > 0 ||
-                      o->rounds || o->callgrind))
+                      o->rounds || o->recording.callgrind))
         argp_error(state, "rays, --accel, --rounds, --until and --callgrind need --with PROGRAM: result "
                           "directories are compared as they are");
-    if (o->callgrind && !e->candidate_count)
+    if (o->recording.callgrind && !e->candidate_count)
         argp_error(state, "--callgrind takes a SCENE with --accel, as `bench` does, and no EXPERIMENT");
     if (programs && !e->candidate_count && (o->recording.frame || o->recording.kinds))
         argp_error(state, "an EXPERIMENT defines its rays; for a SCENE give --accel");
@@ -74,7 +60,7 @@ static void finish(void *options, struct argp_state *state) {
 static const RtOption options[] = {
     {"with", 0, "PROGRAM", RT_TO_TEXT(with),
      "Another raytally, such as ../old/build/release/raytally, as `before`; this one is `after`"},
-    {"accel", 'a', "SPEC", RT_TO_TAKE(take_accel),
+    {"accel", 'a', "SPEC", RT_TO_TAKE(rt_recording_take_accel),
      "For a SCENE: an accelerator, or `all` of them; may be repeated"},
     {"strict", 0, NULL, RT_TO_FLAG(strict), "Exit code 1 if anything is slower"},
     {"margin", 0, "P%", RT_TO_PERCENT(margin),
@@ -86,13 +72,12 @@ static const RtOption options[] = {
      "--patience seconds"},
     {"patience", 0, "SECONDS", RT_TO_SECONDS(patience, 1, 86400),
      "With --until: at most this many seconds in total (600)"},
-    {"callgrind", 0, "N", RT_TO_TAKE_OPTIONAL(take_callgrind),
+    {"callgrind", 0, "N", RT_TO_TAKE_OPTIONAL(rt_recording_take_callgrind),
      "With --with and a SCENE: also compare instructions per ray of both programs, on N rays of each kind "
      "(4096), as `bench --callgrind` does. Equal counts mean that code only moved"},
     {"quick", 0, NULL, RT_TO_FLAG(quick), "Run the smaller variant of the EXPERIMENT"},
     {"threads", 0, "N", RT_TO_INTEGER(threads, 0, 1024), "Threads, as in `raytally bench`"},
-    RT_ALL_MEMORY_OPTION,
-    RT_TIME_OPTION(""),
+    RT_LIMIT_OPTIONS,
     {"json", 0, NULL, RT_TO_FLAG(json), "One JSON document on stdout instead of the table"},
     {"worker", 0, NULL, RT_TO_HIDDEN_FLAG(worker), NULL}, /* experiment/worker.h */
     {0}};
@@ -116,15 +101,10 @@ static RtStatus work(Options *o, RtError *error) {
 }
 
 static void on_progress(void *context, uint32_t round, uint32_t rounds, const char *scene, const char *kind) {
-    const bool *terminal = context;
-    if (!*terminal) return;
+    (void)context;
+    if (!isatty(STDERR_FILENO)) return;
     fprintf(stderr, "\r\033[Kround %u of %u or more: %s %s", round + 1, rounds, scene, kind);
     fflush(stderr);
-}
-
-static void on_notice(void *context, const char *message) {
-    const bool *terminal = context;
-    fprintf(stderr, "%sraytally: %s\n", *terminal ? "\r\033[K" : "", message);
 }
 
 /* An option that only one side has. */
@@ -156,7 +136,6 @@ static RtStatus compare_programs(Options *o, char **argv, RtComparison *comparis
     static const OwnOption left_out[] = {
         {"callgrind", false}, {"memory", true}, {"time", true}, {NULL, false}};
     char **arguments = NULL;
-    bool terminal = isatty(STDERR_FILENO) == 1;
     RtStatus status = load(o, error); /* reports errors once */
     if (status == RT_OK) status = arguments_without(left_out, argv, &arguments, error);
     RtPrograms programs = {.before = o->with,
@@ -168,11 +147,10 @@ static RtStatus compare_programs(Options *o, char **argv, RtComparison *comparis
                            .least = 1e-3 * o->recording.experiment->milliseconds,
                            .pinned = o->timing == 1,
                            .seed = o->recording.experiment->seed,
-                           .context = &terminal,
                            .progress = on_progress,
-                           .notice = on_notice};
+                           .notice = rt_progress_notice};
     if (status == RT_OK) status = rt_compare_programs(&programs, comparison, error);
-    if (terminal) fputs("\r\033[K", stderr);
+    rt_progress_clear();
     rt_free(arguments);
     return status;
 }
@@ -186,11 +164,10 @@ static RtStatus compare_instructions(const Options *o, char **argv, RtComparison
                                          {"quick", false}, {"memory", true}, /* for each accelerator, there */
                                          {"time", true},   {NULL, false}};
     char **arguments = NULL;
-    on_notice(&(bool){isatty(STDERR_FILENO) == 1},
-              "counting instructions under valgrind, which takes a while");
+    rt_progress_notice(NULL, "counting instructions under valgrind, which takes a while");
     RtStatus status = arguments_without(left_out, argv, &arguments, error);
     if (status == RT_OK)
-        status = rt_compare_instructions(o->recording.experiment, o->callgrind, o->with, arguments,
+        status = rt_compare_instructions(o->recording.experiment, o->recording.callgrind, o->with, arguments,
                                          comparison, error);
     rt_free(arguments);
     return status;
@@ -261,11 +238,11 @@ static RtStatus compare_directories(const Options *o, RtComparison *comparison, 
 
 static RtStatus compare(Options *o, char **argv, RtError *error) {
     RtComparison comparison = {.margin = o->margin >= 0 ? o->margin : o->with ? 0 : MARGIN_OF_DIRECTORIES};
-    RtStatus status = o->callgrind ? rt_callgrind_check(error) : RT_OK;
+    RtStatus status = o->recording.callgrind ? rt_callgrind_check(error) : RT_OK;
     if (status == RT_OK)
         status = o->with ? compare_programs(o, argv, &comparison, error)
                          : compare_directories(o, &comparison, error);
-    if (status == RT_OK && o->callgrind) status = compare_instructions(o, argv, &comparison, error);
+    if (status == RT_OK && o->recording.callgrind) status = compare_instructions(o, argv, &comparison, error);
     if (status == RT_OK && o->json) rt_cli_print_json(rt_comparison_json(&comparison));
     if (status == RT_OK && !o->json) rt_comparison_print(&comparison, stdout);
     if (status == RT_OK && o->strict && rt_comparison_count(&comparison, RT_CHANGE_SLOWER) > 0) {
@@ -284,7 +261,7 @@ const RtSyntax rt_compare_syntax = {
     .plugins = true,
     .arguments =
         "BEFORE AFTER [BEFORE AFTER]...\nEXPERIMENT.yaml --with PROGRAM\nSCENE --accel SPEC --with PROGRAM",
-    .argument = {.name = "BEFORE", .take = take_subject},
+    .argument = {.name = "BEFORE", .value = RT_TO_LIST(subjects, subject_count)},
     .finish = finish,
     .help =
         "Report what is faster, slower or no different after a change, and which counts changed: from two "

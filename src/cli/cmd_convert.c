@@ -19,14 +19,12 @@ static void finish(void *options, struct argp_state *state) {
     if (!((Options *)options)->out) argp_error(state, "give a scene IN and a file OUT");
 }
 
-static const RtOption options[] = {{"force", 'f', NULL, RT_TO_FLAG(force), "Replace OUT if it exists"},
-                                   RT_ALL_MEMORY_OPTION,
-                                   RT_TIME_OPTION(""),
-                                   {0}};
+static const RtOption options[] = {
+    {"force", 'f', NULL, RT_TO_FLAG(force), "Replace OUT if it exists"}, RT_LIMIT_OPTIONS, {0}};
 
 const RtSyntax rt_convert_syntax = {.options = options,
                                     .arguments = "IN OUT",
-                                    .argument = {.name = "IN", .take = take_file},
+                                    .argument = {.name = "IN", .value = RT_TO_TAKE(take_file)},
                                     .finish = finish,
                                     .help = "Read the scene IN (a file or a built-in) and write it to OUT, "
                                             "in the format that the extension of OUT names.\v"

@@ -14,20 +14,14 @@ typedef struct Options {
     uint32_t accel_count, size[2], depth, megabytes;
 } Options;
 
-static void take_accel(void *options, const char *spec, struct argp_state *state) {
-    Options *o = options;
-    if (o->accel_count == RT_MAX_EXPLORED) argp_error(state, "--accel: %d at most", RT_MAX_EXPLORED);
-    o->accels[o->accel_count++] = spec;
-}
-
 static void finish(void *options, struct argp_state *state) {
     Options *o = options;
     if (!o->page) argp_error(state, "the page is missing: -o FILE.html");
-    if (o->accel_count == 0) take_accel(o, rt_accel_default(), state);
+    if (o->accel_count == 0) o->accels[o->accel_count++] = rt_accel_default();
 }
 
 static const RtOption options[] = {
-    {"accel", 'a', "SPEC", RT_TO_TAKE(take_accel),
+    {"accel", 'a', "SPEC", RT_TO_LIST(accels, accel_count),
      "Accelerator (default bvh), up to 4 times; `raytally accels` lists them"},
     {"output", 'o', "FILE.html", RT_TO_PATH(page, ".html"), "The page"},
     {"size", 's', "WxH", RT_TO_SIZE(size), "Size of the image in pixels (default 160x120)"},
@@ -36,8 +30,7 @@ static const RtOption options[] = {
     {"megabytes", 0, "N", RT_TO_INTEGER(megabytes, 1, 100),
      "Size limit for recorded rays, 1..100 (default 6). If the rays of all pixels need more, one pixel in "
      "2 x 2 is recorded, or in 3 x 3, and so on"},
-    RT_ALL_MEMORY_OPTION,
-    RT_TIME_OPTION(""),
+    RT_LIMIT_OPTIONS,
     {0}};
 
 typedef struct Built {
@@ -88,8 +81,7 @@ static RtStatus run(const Options *o, RtError *error) {
 const RtSyntax rt_explore_syntax = {
     .options = options,
     .plugins = true,
-    .arguments = "SCENE",
-    .argument = RT_SCENE_ARGUMENT,
+    RT_ONE_SCENE,
     .finish = finish,
     .help =
         "Write a web page that shows how accelerators trace a scene: the image beside the structures in 3-D. "

@@ -36,8 +36,7 @@ static const RtOption options[] = {
      "boxes, 3, 7 and 13 slabs; with =all every number of slabs"},
     {"rays", 'n', "N", RT_TO_INTEGER(rays, 1, 1000000000), "Random lines per shape for --extents (100000)"},
     {"seed", 's', "S", RT_TO_INTEGER(seed, 0, INT64_MAX), "Seed of these lines (1)"},
-    RT_ALL_MEMORY_OPTION,
-    RT_TIME_OPTION(""),
+    RT_LIMIT_OPTIONS,
     {"json", 'j', NULL, RT_TO_FLAG(json), "One JSON document on stdout"},
     {0}};
 
@@ -169,8 +168,7 @@ static RtStatus show(const RtScene *scene, const Options *o, RtError *error) {
 }
 
 const RtSyntax rt_info_syntax = {.options = options,
-                                 .arguments = "SCENE",
-                                 .argument = RT_SCENE_ARGUMENT,
+                                 RT_ONE_SCENE,
                                  .help =
                                      "Show what is in a scene: objects by shape, bounds, materials, lights, "
                                      "the camera, memory, and a fingerprint of everything that affects hits. "

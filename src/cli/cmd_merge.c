@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally merge: joins the shards of an experiment. */
 #include "cli/cli.h"
+#include "cli/progress.h"
 #include "experiment/merge.h"
 #include "experiment/result_tables.h"
 #include "report/report.h"
@@ -13,12 +14,6 @@ typedef struct Options {
     RtRunOptions how;
 } Options;
 
-static void take_directory(void *options, const char *text, struct argp_state *state) {
-    Options *o = options;
-    if (o->count == RT_MAX_SHARDS) argp_error(state, "at most %d shards can be joined", RT_MAX_SHARDS);
-    o->directories[o->count++] = text;
-}
-
 static void finish(void *options, struct argp_state *state) {
     if (!((Options *)options)->how.directory) argp_error(state, "the result directory is missing: -o DIR");
 }
@@ -29,18 +24,13 @@ static const RtOption options[] = {
     RT_TRUST_OPTION(how.scripts),
     {0}};
 
-static void on_notice(void *context, const char *message) {
-    (void)context;
-    fprintf(stderr, "raytally: %s\n", message);
-}
-
 const RtSyntax rt_merge_syntax = {
     .options = options,
     .plugins = true,
     .arguments = "DIR...",
     .argument = {.name = "DIR",
                  .missing = "the directories of the shards are missing, as in results/NAME-*-of-4",
-                 .take = take_directory},
+                 .value = RT_TO_LIST(directories, count)},
     .finish = finish,
     .help =
         "Join the shards of a run (`raytally run --shard I/N`) into one result directory, with its tables, "
@@ -51,7 +41,7 @@ const RtSyntax rt_merge_syntax = {
         "  raytally merge results/first-look-*-of-3 -o results/first-look"};
 
 RtStatus rt_command_merge(int argc, char **argv, RtError *error) {
-    Options o = {.how = {.report = &rt_run_report, .workload.observer.notice = on_notice}};
+    Options o = {.how = {.report = &rt_run_report, .workload.observer.notice = rt_progress_notice}};
     rt_cli_parse(&rt_merge_syntax, argc, argv, &o);
     RtResults results = {0};
     static RtExperiment experiment;

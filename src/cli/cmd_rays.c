@@ -24,8 +24,7 @@ static void finish(void *options, struct argp_state *state) {
 static const RtOption options[] = {{"out", 'o', "FILE.npy", RT_TO_TEXT(out), "The file to write"},
                                    {"threads", 't', "N", RT_TO_INTEGER(threads, 0, 1024),
                                     "Threads, 0 for all processors (0); the rays do not depend on them"},
-                                   RT_ALL_MEMORY_OPTION,
-                                   RT_TIME_OPTION(""),
+                                   RT_LIMIT_OPTIONS,
                                    {0}};
 
 static RtStatus save(const Options *o, const RtRaySet *set, RtError *error) {
@@ -59,8 +58,7 @@ const RtSyntax rt_rays_syntax = {
     .options = options,
     .shared = rt_recording_options,
     .shared_at = offsetof(Options, recording),
-    .arguments = "SCENE",
-    .argument = RT_SCENE_ARGUMENT,
+    RT_ONE_SCENE,
     .finish = finish,
     .help = "Write the rays that `raytally bench` measures to a file for NumPy.\v"
             "Each row of the array, float32 of shape (N, 8), is a ray: origin x y z, tmin, direction x y z "

@@ -40,12 +40,6 @@ static void take_output(void *options, const char *path, struct argp_state *stat
     *slot = path;
 }
 
-static void take_accel(void *options, const char *spec, struct argp_state *state) {
-    Options *o = options;
-    if (o->accel_count == RT_MAX_PANELS) argp_error(state, "--accel: %d at most", RT_MAX_PANELS);
-    o->accels[o->accel_count++] = spec;
-}
-
 /* Lists the files to be written; returns their number. */
 static size_t list_outputs(const Options *o, const char *paths[MOST_OUTPUTS]) {
     const char *const others[] = {o->png, o->exr, o->stats};
@@ -60,7 +54,7 @@ static void finish(void *options, struct argp_state *state) {
     Options *o = options;
     const char *paths[MOST_OUTPUTS];
     size_t count = list_outputs(o, paths);
-    if (o->accel_count == 0) take_accel(o, rt_accel_default(), state);
+    if (o->accel_count == 0) o->accels[o->accel_count++] = rt_accel_default();
     if (count == 0 && !o->check) {
         argp_error(state, "nothing to do: give -o FILE.png, or --heatmap, --structure, --stats or --check");
     }
@@ -74,7 +68,7 @@ static void finish(void *options, struct argp_state *state) {
 }
 
 static const RtOption options[] = {
-    {"accel", 'a', "SPEC", RT_TO_TAKE(take_accel),
+    {"accel", 'a', "SPEC", RT_TO_LIST(accels, accel_count),
      "Accelerator (default bvh); `raytally accels` lists them. With --heatmap up to 8 times, to compare"},
     {"size", 's', "WxH", RT_TO_SIZE(size), "Size of the image in pixels (default: the camera's)"},
     {"corners", 0, NULL, RT_TO_FLAG(corners),
@@ -83,8 +77,7 @@ static const RtOption options[] = {
     {"depth", 'd', "N", RT_TO_INTEGER(depth, 1, RT_MAX_DEPTH),
      "Levels of the ray tree, the primary ray being the first, 1..64 (default 5)"},
     {"threads", 't', "N", RT_TO_INTEGER(threads, 1, 1024), "Threads (default: all processors)"},
-    RT_ALL_MEMORY_OPTION,
-    RT_TIME_OPTION(""),
+    RT_LIMIT_OPTIONS,
     {"output", 'o', "FILE", RT_TO_TAKE(take_output),
      "The image, .png or .exr; may be repeated, once for each format"},
     {"stats", 0, "FILE.json", RT_TO_PATH(stats, ".json"),
@@ -96,24 +89,21 @@ static const RtOption options[] = {
 
 /* ---- the frames ---- */
 
-/* An accelerator after the first, for heatmaps. */
-typedef struct Compared {
+typedef struct Built {
     char spec[RT_MAX_SPEC_CHARS];
     double build_seconds;
     RtDescription description;
     RtFrame counted;
-} Compared;
+} Built;
 
 /* One run of the command. */
 typedef struct Run {
     const Options *options;
     RtScene scene;
-    RtAccel *accel;
-    char spec[RT_MAX_SPEC_CHARS];
-    double build_seconds;
+    RtAccel *accel; /* the first */
     RtFrameOptions frame_options;
-    RtFrame timed, counted;
-    Compared compared[RT_MAX_PANELS]; /* [accel_count], the first unused */
+    RtFrame timed;              /* by it */
+    Built built[RT_MAX_PANELS]; /* [accel_count] */
     bool by_default; /* only the picture of the structure is made: the default accelerator draws its
                         background */
 } Run;
@@ -134,17 +124,22 @@ static RtStatus trace_background(Run *run, const RtFrameOptions *f, RtError *err
     return status;
 }
 
-static RtStatus count_compared(Run *run, uint32_t i, RtError *error) {
-    Compared *compared = &run->compared[i];
+static RtStatus build(Run *run, uint32_t i, RtAccel **accel, RtError *error) {
+    Built *built = &run->built[i];
     RtSpec spec;
-    RtAccel *accel = NULL;
     RT_TRY(rt_spec_parse(run->options->accels[i], &spec, error));
-    rt_spec_format(&spec, compared->spec);
+    rt_spec_format(&spec, built->spec);
     double start = rt_wall_seconds();
-    RT_TRY(rt_accel_build(&spec, &run->scene, run->options->threads, &accel, error));
-    compared->build_seconds = rt_wall_seconds() - start;
-    rt_accel_describe(accel, &compared->description);
-    RtStatus status = rt_frame_trace(&compared->counted, accel, &run->frame_options, error);
+    RT_TRY(rt_accel_build(&spec, &run->scene, run->options->threads, accel, error));
+    built->build_seconds = rt_wall_seconds() - start;
+    rt_accel_describe(*accel, &built->description);
+    return RT_OK;
+}
+
+static RtStatus count_other(Run *run, uint32_t i, RtError *error) {
+    RtAccel *accel = NULL;
+    RT_TRY(build(run, i, &accel, error));
+    RtStatus status = rt_frame_trace(&run->built[i].counted, accel, &run->frame_options, error);
     rt_accel_destroy(accel);
     return status;
 }
@@ -165,8 +160,8 @@ static RtStatus trace_frames(Run *run, RtError *error) {
     f->progress_context = "counting";
     f->counted = true;
     f->cost_kinds = o->pictures.kinds;
-    RT_TRY(rt_frame_trace(&run->counted, run->accel, f, error));
-    for (uint32_t i = 1; i < o->accel_count; i++) RT_TRY(count_compared(run, i, error));
+    RT_TRY(rt_frame_trace(&run->built[0].counted, run->accel, f, error));
+    for (uint32_t i = 1; i < o->accel_count; i++) RT_TRY(count_other(run, i, error));
     return RT_OK;
 }
 
@@ -174,14 +169,11 @@ static RtStatus prepare(Run *run, RtError *error) {
     const Options *o = run->options;
     RtSpec spec;
     for (uint32_t i = o->accel_count; i-- > 0;) RT_TRY(rt_spec_parse(o->accels[i], &spec, error));
-    rt_spec_format(&spec, run->spec);
     if (o->pictures.structure) RT_TRY(rt_structure_available(&spec, o->pictures.layer, error));
     if (o->stats) RT_TRY(rt_cli_check_json_name(o->scene, error));
     RT_TRY(rt_scene_open(o->scene, &run->scene, error));
     RT_TRY(rt_scene_sample(&run->scene, o->size[0], o->size[1], o->samples, o->corners, error));
-    double start = rt_wall_seconds();
-    RT_TRY(rt_accel_build(&spec, &run->scene, o->threads, &run->accel, error));
-    run->build_seconds = rt_wall_seconds() - start;
+    RT_TRY(build(run, 0, &run->accel, error));
     return rt_pictures_check(&o->pictures, run->accel, error);
 }
 
@@ -189,23 +181,23 @@ static RtStatus prepare(Run *run, RtError *error) {
 
 static RtStatus write_heatmaps(const Run *run, RtError *error) {
     const Options *o = run->options;
-    RtHeatmapPanel panels[RT_MAX_PANELS] = {{&run->counted, o->accel_count > 1 ? o->accels[0] : NULL}};
-    for (uint32_t i = 1; i < o->accel_count; i++)
-        panels[i] = (RtHeatmapPanel){&run->compared[i].counted, o->accels[i]};
+    RtHeatmapPanel panels[RT_MAX_PANELS];
+    for (uint32_t i = 0; i < o->accel_count; i++)
+        panels[i] = (RtHeatmapPanel){&run->built[i].counted, o->accel_count > 1 ? o->accels[i] : NULL};
     return rt_pictures_heatmaps(&o->pictures, panels, o->accel_count, error);
 }
 
 static RtStatus write_images(const Run *run, RtError *error) {
     const Options *o = run->options;
-    if (o->exr) RT_TRY(rt_exr_write(&run->counted, o->exr, error));
+    if (o->exr) RT_TRY(rt_exr_write(&run->built[0].counted, o->exr, error));
     if (o->png) RT_TRY(rt_png_write(&run->timed, o->png, error));
     if (o->pictures.structure) RT_TRY(rt_pictures_structure(&o->pictures, run->accel, &run->timed, error));
     return rt_pictures_any_heatmap(&o->pictures) ? write_heatmaps(run, error) : RT_OK;
 }
 
-static uint64_t total_rays(const Run *run) {
+static uint64_t total_rays(const RtFrame *frame) {
     uint64_t sum = 0;
-    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) sum += run->timed.ray_count[kind];
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) sum += frame->ray_count[kind];
     return sum;
 }
 
@@ -223,11 +215,11 @@ static json_t *kinds_json(const RtFrame *counted) {
 static json_t *compared_json(const Run *run) {
     json_t *list = json_array();
     for (uint32_t i = 1; i < run->options->accel_count; i++) {
-        const Compared *c = &run->compared[i];
-        json_array_append_new(list, json_pack("{s:s, s:f, s:I, s:o, s:o}", "accel", c->spec, "build_seconds",
-                                              c->build_seconds, "bytes", (json_int_t)c->description.bytes,
-                                              "structure", rt_json_structure(&c->description), "kinds",
-                                              kinds_json(&c->counted)));
+        const Built *b = &run->built[i];
+        json_array_append_new(list, json_pack("{s:s, s:f, s:I, s:o, s:o}", "accel", b->spec, "build_seconds",
+                                              b->build_seconds, "bytes", (json_int_t)b->description.bytes,
+                                              "structure", rt_json_structure(&b->description), "kinds",
+                                              kinds_json(&b->counted)));
     }
     return list;
 }
@@ -235,18 +227,18 @@ static json_t *compared_json(const Run *run) {
 static json_t *stats_json(const Run *run) {
     const RtSampling *s = &run->timed.sampling;
     const Options *o = run->options;
-    RtDescription d;
-    rt_accel_describe(run->accel, &d);
-    uint64_t rays = total_rays(run);
+    const Built *b = &run->built[0];
+    uint64_t rays = total_rays(&run->timed);
     double mrays = run->timed.seconds > 0 ? (double)rays * 1e-6 / run->timed.seconds : 0;
     return json_pack(
         "{s:s, s:s, s:I, s:I, s:i, s:i, s:i, s:b, s:i, s:i, s:f, s:I, s:o, s:I, s:f, s:f, s:o, s:o}", "scene",
-        run->scene.name, "accel", run->spec, "objects", (json_int_t)run->scene.geometry.object_count,
-        "lights", (json_int_t)run->scene.light_count, "width", (int)s->width, "height", (int)s->height,
-        "samples", (int)s->samples, "corners", (int)s->corners, "depth", (int)o->depth, "threads",
-        rt_thread_count(o->threads), "build_seconds", run->build_seconds, "bytes", (json_int_t)d.bytes,
-        "structure", rt_json_structure(&d), "rays", (json_int_t)rays, "seconds", run->timed.seconds,
-        "mrays_per_s", mrays, "kinds", kinds_json(&run->counted), "compared", compared_json(run));
+        run->scene.name, "accel", b->spec, "objects", (json_int_t)run->scene.geometry.object_count, "lights",
+        (json_int_t)run->scene.light_count, "width", (int)s->width, "height", (int)s->height, "samples",
+        (int)s->samples, "corners", (int)s->corners, "depth", (int)o->depth, "threads",
+        rt_thread_count(o->threads), "build_seconds", b->build_seconds, "bytes",
+        (json_int_t)b->description.bytes, "structure", rt_json_structure(&b->description), "rays",
+        (json_int_t)rays, "seconds", run->timed.seconds, "mrays_per_s", mrays, "kinds",
+        kinds_json(&b->counted), "compared", compared_json(run));
 }
 
 static RtStatus write_stats(const Run *run, RtError *error) {
@@ -255,7 +247,7 @@ static RtStatus write_stats(const Run *run, RtError *error) {
 }
 
 static void print_rays(const Run *run) {
-    uint64_t rays = total_rays(run);
+    uint64_t rays = total_rays(&run->timed);
     int threads = rt_thread_count(run->options->threads);
     printf(", %u level%s: ", run->options->depth, rt_plural(run->options->depth));
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
@@ -271,8 +263,7 @@ static void print_rays(const Run *run) {
 /* The counters of the heatmaps, per ray over all kinds. */
 static void print_counts(const Run *run, const char *spec, const RtFrame *counted) {
     const char *separator = ": ";
-    uint64_t rays = 0;
-    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rays += counted->ray_count[kind];
+    const uint64_t rays = total_rays(counted);
     fputs(spec, stdout);
     for (size_t c = 0; c < RT_TALLY_COUNTER_COUNT; c++) {
         double sum = 0;
@@ -287,24 +278,22 @@ static void print_counts(const Run *run, const char *spec, const RtFrame *counte
 
 static void print_compared(const Run *run) {
     if (run->options->accel_count == 1) return;
-    print_counts(run, run->options->accels[0], &run->counted);
-    for (uint32_t i = 1; i < run->options->accel_count; i++)
-        print_counts(run, run->options->accels[i], &run->compared[i].counted);
+    for (uint32_t i = 0; i < run->options->accel_count; i++)
+        print_counts(run, run->options->accels[i], &run->built[i].counted);
 }
 
 static void print_summary(const Run *run) {
     const Options *o = run->options;
     const RtSampling *s = &run->scene.sampling;
-    RtDescription d;
-    rt_accel_describe(run->accel, &d);
+    const Built *b = &run->built[0];
     printf("%s: %u object%s, %u light%s. %s: built in %.3g s, %.3g MB. %u x %u pixels%s",
            run->scene.name[0] ? run->scene.name : o->scene, run->scene.geometry.object_count,
            rt_plural(run->scene.geometry.object_count), run->scene.light_count,
-           rt_plural(run->scene.light_count), run->spec, run->build_seconds, (double)d.bytes * 1e-6, s->width,
-           s->height, s->corners ? " at their corners" : "");
+           rt_plural(run->scene.light_count), b->spec, b->build_seconds, (double)b->description.bytes * 1e-6,
+           s->width, s->height, s->corners ? " at their corners" : "");
     if (run->by_default) /* its speed says nothing about this one */
         printf(", drawn over an image by %s.", rt_accel_default());
-    else if (total_rays(run) > 0)
+    else if (total_rays(&run->timed) > 0)
         print_rays(run);
     else
         printf(", not traced: the picture shows only cells.");
@@ -326,13 +315,13 @@ static RtStatus check_kind(const Run *run, const RtAccel *brute, const RtRaySet 
     rt_reference_clear(&reference);
     if (status != RT_OK) return status;
     if (!result.any_wrong && result.occluded_wrong == 0) {
-        printf("%s: the hits of all %llu %s rays equal brute's.\n", run->spec, (unsigned long long)set->count,
-               rt_ray_kind_name(set->kind));
+        printf("%s: the hits of all %llu %s rays equal brute's.\n", run->built[0].spec,
+               (unsigned long long)set->count, rt_ray_kind_name(set->kind));
         return RT_OK;
     }
     char says[512];
     rt_wrong_answer_format(&result.first_wrong, says, sizeof says);
-    return rt_fail(error, RT_MISMATCH, "%s differs from brute on %s rays, first on: %s", run->spec,
+    return rt_fail(error, RT_MISMATCH, "%s differs from brute on %s rays, first on: %s", run->built[0].spec,
                    rt_ray_kind_name(set->kind), says);
 }
 
@@ -352,10 +341,10 @@ static RtStatus check_frame(const Run *run, const RtAccel *brute, RtError *error
     rt_frame_clear(&right);
     if (i < samples) {
         return rt_fail(error, RT_MISMATCH,
-                       "%s: the frame differs from brute's in column %zu, row %zu of samples", run->spec,
-                       i % got->sampling.columns, i / got->sampling.columns);
+                       "%s: the frame differs from brute's in column %zu, row %zu of samples",
+                       run->built[0].spec, i % got->sampling.columns, i / got->sampling.columns);
     }
-    printf("%s: the frame equals brute's, bit for bit.\n", run->spec);
+    printf("%s: the frame equals brute's, bit for bit.\n", run->built[0].spec);
     return RT_OK;
 }
 
@@ -392,8 +381,7 @@ const RtSyntax rt_render_syntax = {.options = options,
                                    .shared = rt_picture_options,
                                    .shared_at = offsetof(Options, pictures),
                                    .plugins = true,
-                                   .arguments = "SCENE",
-                                   .argument = RT_SCENE_ARGUMENT,
+                                   RT_ONE_SCENE,
                                    .finish = finish,
                                    .help = help};
 
@@ -408,8 +396,7 @@ RtStatus rt_command_render(int argc, char **argv, RtError *error) {
     if (status == RT_OK) print_summary(&run);
     if (status == RT_OK) status = check_rays(&run, error);
     rt_frame_clear(&run.timed);
-    rt_frame_clear(&run.counted);
-    for (uint32_t i = 1; i < o.accel_count; i++) rt_frame_clear(&run.compared[i].counted);
+    for (uint32_t i = 0; i < o.accel_count; i++) rt_frame_clear(&run.built[i].counted);
     rt_accel_destroy(run.accel);
     rt_scene_clear(&run.scene);
     return status;

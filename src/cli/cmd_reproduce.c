@@ -24,12 +24,6 @@ typedef struct Options {
     bool quick;        /* only the scene that took least work */
 } Options;
 
-static void take_directory(void *options, const char *text, struct argp_state *state) {
-    Options *o = options;
-    if (o->count == MOST_DIRECTORIES) argp_error(state, "more than %d directories", MOST_DIRECTORIES);
-    o->directories[o->count++] = text;
-}
-
 static void finish(void *options, struct argp_state *state) {
     const Options *o = options;
     if (o->quick && o->scene) argp_error(state, "--quick and --only both choose scenes: give one of them");
@@ -225,14 +219,13 @@ static const RtOption options[] = {
      "Count and compare only the rows of one scene, or of a sweep of scenes, "
      "by its label, without published figures"},
     {"quick", 0, NULL, RT_TO_FLAG(quick), "The same for the cheapest scene of each directory"},
-    RT_ALL_MEMORY_OPTION,
-    RT_TIME_OPTION(""),
+    RT_LIMIT_OPTIONS,
     {0}};
 const RtSyntax rt_reproduce_syntax = {
     .options = options,
     .plugins = true,
     .arguments = "DIR...",
-    .argument = {.name = "DIR", .missing = RT_DIRECTORY_MISSING, .take = take_directory},
+    .argument = {.name = "DIR", .missing = RT_DIRECTORY_MISSING, .value = RT_TO_LIST(directories, count)},
     .finish = finish,
     .help = "Count everything in a result directory again and compare it with DIR/counts.csv, byte for byte, "
             "and with published figures if the experiment names any. Several directories are compared one "

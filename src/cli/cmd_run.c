@@ -64,12 +64,6 @@ static void take_renew(void *options, const char *text, struct argp_state *state
     how->renew = true;
 }
 
-static void take_path(void *options, const char *text, struct argp_state *state) {
-    Options *o = options;
-    if (o->count == MOST_EXPERIMENTS) argp_error(state, "more than %d experiments", MOST_EXPERIMENTS);
-    o->paths[o->count++] = text;
-}
-
 static void finish_options(void *options, struct argp_state *state) {
     const Options *o = options;
     if (o->count == 1) return;
@@ -237,11 +231,9 @@ static RtStatus measure(Options *o, RtResults *results, RtError *error) {
 
 /* Loads a YAML, or the experiment of a manifest.json. */
 static RtStatus load(Options *o, RtExperiment *experiment, RtError *error) {
-    static const char manifest[] = "manifest.json";
     const char *path = o->paths[o->current];
     char folder[RT_MAX_PATH];
-    size_t length = strlen(path), last = sizeof manifest - 1;
-    o->found = length >= last && strcmp(path + length - last, manifest) == 0;
+    o->found = rt_ends_in(path, RT_MANIFEST);
     if (!o->found) return rt_experiment_load(experiment, path, o->quick, error);
     if (o->quick)
         return rt_fail(error, RT_BAD_INPUT, "--quick: %s says which variant it was; leave --quick out", path);
@@ -357,7 +349,7 @@ const RtSyntax rt_run_syntax = {
     .arguments = "EXPERIMENT.yaml|DIR/manifest.json...",
     .argument = {.name = "EXPERIMENT",
                  .missing = "an EXPERIMENT is missing, as in experiments/first-look.yaml",
-                 .take = take_path},
+                 .value = RT_TO_LIST(paths, count)},
     .finish = finish_options,
     .help =
         "Run an experiment and write its result directory: counts.csv, times.csv, manifest.json, plots, "

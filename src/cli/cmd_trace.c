@@ -7,26 +7,20 @@
 #include "core/base/words.h"
 #include "core/text/json.h"
 #include "picture/path_picture.h"
-#include "picture/ray_tree_picture.h"
 #include "scenes/open.h"
 
 #include <stdio.h>
 
 typedef struct Options {
     const char *scene, *accel, *svg;
-    uint32_t x, y, size[2], light, depth;
+    RtPixel pixel;
+    uint32_t size[2], light, depth;
     int64_t rows;
     RtRayKind kind;
-    bool aimed, json;
+    bool json;
 } Options;
 
 enum { DEFAULT_ROWS = 200 };
-
-static void take_pixel(void *options, const char *text, struct argp_state *state) {
-    Options *o = options;
-    rt_cli_pixel(state, text, &o->x, &o->y);
-    o->aimed = true;
-}
 
 static void take_kind(void *options, const char *text, struct argp_state *state) {
     ((Options *)options)->kind = rt_cli_image_ray_kind(state, "--rays", text);
@@ -34,13 +28,13 @@ static void take_kind(void *options, const char *text, struct argp_state *state)
 
 static void finish(void *options, struct argp_state *state) {
     const Options *o = options;
-    if (!o->aimed) argp_error(state, "the pixel is missing: --pixel X,Y");
+    if (!o->pixel.given) argp_error(state, "the pixel is missing: --pixel X,Y");
     if (o->depth > 0 && (o->kind != RT_RAY_PRIMARY || o->light > 0))
         argp_error(state, "--depth follows all rays of the pixel: leave out --rays and --light");
 }
 
 static const RtOption options[] = {
-    {"pixel", 'p', "X,Y", RT_TO_TAKE(take_pixel),
+    {"pixel", 'p', "X,Y", RT_TO_PIXEL(pixel),
      "The ray through the middle of this pixel; 0,0 is the upper left"},
     {"accel", 'a', "SPEC", RT_TO_TEXT(accel), "Accelerator (default bvh); `raytally accels` lists them"},
     {"size", 's', "WxH", RT_TO_SIZE(size), "Size of the image in pixels (default: the camera's)"},
@@ -57,8 +51,7 @@ static const RtOption options[] = {
      "ray tree in a section that contains the primary ray"},
     {"rows", 0, "N", RT_TO_INTEGER(rows, 0, UINT32_MAX),
      "Print at most N rows, 0 for all (200); rows of hits are always printed"},
-    RT_ALL_MEMORY_OPTION,
-    RT_TIME_OPTION(""),
+    RT_LIMIT_OPTIONS,
     {"json", 'j', NULL, RT_TO_FLAG(json), "One JSON document on stdout, with all rows"},
     {0}};
 
@@ -194,7 +187,7 @@ static json_t *rows_json(const RtPath *path) {
 static json_t *path_json(const RtPath *path, const Options *o, const char *spec) {
     const RtRay *r = &path->ray;
     return json_pack("{s:s, s:s, s:[i, i], s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
-                     o->scene, "accel", spec, "pixel", (int)o->x, (int)o->y, "kind",
+                     o->scene, "accel", spec, "pixel", (int)o->pixel.x, (int)o->pixel.y, "kind",
                      rt_ray_kind_name(o->kind), "org", rt_cli_vector_json(r->org), "dir",
                      rt_cli_vector_json(r->dir), "tmin", rt_json_number((double)r->tmin), "tmax",
                      rt_json_number((double)r->tmax), "rows", rows_json(path), "counts",
@@ -207,8 +200,8 @@ static json_t *path_json(const RtPath *path, const Options *o, const char *spec)
 static json_t *tree_json(const RtRayTree *tree, const RtTally *costs, const RtScene *scene, const Options *o,
                          const char *spec) {
     return json_pack("{s:s, s:s, s:[i, i], s:i, s:i, s:o, s:o}", "scene", o->scene, "accel", spec, "pixel",
-                     (int)o->x, (int)o->y, "depth", (int)tree->depth, "levels", (int)tree->levels, "color",
-                     rt_cli_vector_json(tree->color), "tree", rt_cli_tree_json(tree, costs, scene));
+                     (int)o->pixel.x, (int)o->pixel.y, "depth", (int)tree->depth, "levels", (int)tree->levels,
+                     "color", rt_cli_vector_json(tree->color), "tree", rt_cli_tree_json(tree, costs, scene));
 }
 
 /* ---- the command ---- */
@@ -216,7 +209,7 @@ static json_t *tree_json(const RtRayTree *tree, const RtTally *costs, const RtSc
 /* `what` it is of the pixel: "the ray tree", "the primary ray". */
 static void make_title(const Options *o, const RtScene *scene, const char *what, char *title, size_t size) {
     snprintf(title, size, "%s: the %s of pixel %u,%u of %u x %u", scene->name[0] ? scene->name : o->scene,
-             what, o->x, o->y, scene->sampling.width, scene->sampling.height);
+             what, o->pixel.x, o->pixel.y, scene->sampling.width, scene->sampling.height);
 }
 
 /* The counts of each ray of the tree, traced on its own. */
@@ -249,7 +242,7 @@ static RtStatus show_tree(const Options *o, const RtScene *scene, const RtRayTre
 static RtStatus trace_tree(const Options *o, const RtScene *scene, RtAccel *accel, const char *spec,
                            RtError *error) {
     RtRayTree tree;
-    RT_TRY(rt_ray_tree_trace(&tree, accel, (RtSample){o->x, o->y}, o->depth, error));
+    RT_TRY(rt_ray_tree_trace(&tree, accel, (RtSample){o->pixel.x, o->pixel.y}, o->depth, error));
     RtTally *costs = rt_alloc(tree.count, sizeof(RtTally));
     RtStatus status =
         costs ? RT_OK : rt_fail_memory(error, "the counts of rays", tree.count * sizeof(RtTally));
@@ -265,7 +258,7 @@ static RtStatus trace_path(const Options *o, const RtScene *scene, RtAccel *acce
     char title[512], what[64];
     RtRay ray;
     RtPath path;
-    RT_TRY(rt_path_ray(accel, o->kind, o->x, o->y, o->light, &ray, error));
+    RT_TRY(rt_path_ray(accel, o->kind, o->pixel.x, o->pixel.y, o->light, &ray, error));
     RT_TRY(rt_path_trace(&path, accel, &ray, error));
     snprintf(what, sizeof what, "%s ray", rt_ray_kind_name(o->kind));
     make_title(o, scene, what, title, sizeof title);
@@ -291,7 +284,7 @@ static RtStatus run(const Options *o, RtError *error) {
     if (o->json) RT_TRY(rt_cli_check_json_name(o->scene, error));
     RT_TRY(rt_scene_open(o->scene, &scene, error));
     RtStatus status = rt_scene_sample(&scene, o->size[0], o->size[1], 1, false, error);
-    if (status == RT_OK) status = rt_cli_check_pixel(&scene.sampling, o->x, o->y, error);
+    if (status == RT_OK) status = rt_cli_check_pixel(&scene.sampling, o->pixel, error);
     if (status == RT_OK) status = rt_accel_build(&spec, &scene, 0, &accel, error);
     if (status == RT_OK) status = rt_path_available(accel, text, error);
     if (status == RT_OK) status = (o->depth > 0 ? trace_tree : trace_path)(o, &scene, accel, text, error);
@@ -303,8 +296,7 @@ static RtStatus run(const Options *o, RtError *error) {
 const RtSyntax rt_trace_syntax = {
     .options = options,
     .plugins = true,
-    .arguments = "SCENE",
-    .argument = RT_SCENE_ARGUMENT,
+    RT_ONE_SCENE,
     .finish = finish,
     .help =
         "Follow one ray through an accelerator: each step, extent test and object test, in order. With "

@@ -3,6 +3,7 @@
  * wrong? The command line of verify/verify.h and verify/replay.h. */
 #include "cli/cli.h"
 #include "cli/plugins.h"
+#include "cli/progress.h"
 #include "cli/stop.h"
 #include "cli/verify_choice.h"
 #include "core/base/clock.h"
@@ -32,20 +33,6 @@ typedef struct Options {
     char go_on[1 << 16]; /* the command that continues */
 } Options;
 
-static void take_accel(void *options, const char *text, struct argp_state *state) {
-    Options *o = options;
-    if (o->accel_count == RT_VERIFY_MAX_SPECS)
-        argp_error(state, "more than %d accelerators", RT_VERIFY_MAX_SPECS);
-    o->accels[o->accel_count++] = text;
-}
-
-static void take_scene(void *options, const char *text, struct argp_state *state) {
-    Options *o = options;
-    if (o->scene_count == RT_VERIFY_MAX_SCENES)
-        argp_error(state, "more than %d scenes", RT_VERIFY_MAX_SCENES);
-    o->scenes[o->scene_count++] = text;
-}
-
 static void take_shrink(void *options, const char *text, struct argp_state *state) {
     RtVerify *work = &((Options *)options)->work;
     work->shrink = strcmp(text, "all") == 0
@@ -67,7 +54,7 @@ static void finish(void *options, struct argp_state *state) {
 }
 
 static const RtOption options[] = {
-    {"accel", 'a', "SPEC", RT_TO_TAKE(take_accel),
+    {"accel", 'a', "SPEC", RT_TO_LIST(accels, accel_count),
      "An accelerator, or `all` of them (the default); may be repeated"},
     {"spread", 0, NULL, RT_TO_FLAG(spread),
      "Also try each parameter at every value worth testing, one parameter at a time"},
@@ -124,13 +111,9 @@ static RtStatus choose(Options *o, RtError *error) {
 typedef struct Show {
     const Options *options;
     int widths[RT_MAX_TABLE_COLUMNS]; /* of columns; 0: the header is not yet printed */
-    bool failed, terminal;
+    bool failed;
     double start, drawn; /* wall seconds */
 } Show;
-
-static void clear_progress(const Show *show) {
-    if (show->terminal) fputs("\r\033[K", stderr);
-}
 
 /* Redrawn at most ten times a second. From the first call on, --out has the journal. */
 static void on_doing(void *context, const RtVerifyProgress *p) {
@@ -138,7 +121,7 @@ static void on_doing(void *context, const RtVerifyProgress *p) {
     const RtVerifyChoice *choice = &show->options->choice;
     double now = rt_wall_seconds(), passed = now - show->start;
     if (show->options->work.folder) rt_stop_continue(show->options->work.folder, show->options->go_on);
-    if (!show->terminal || now - show->drawn < 0.1) return;
+    if (!isatty(STDERR_FILENO) || now - show->drawn < 0.1) return;
     show->drawn = now;
     fprintf(stderr, "\r\033[Kverify: scene %u of %u, %s: %s", p->scene + 1, choice->scene_count,
             choice->scenes[p->scene], p->what);
@@ -193,7 +176,7 @@ static void print_row(Show *show, const json_t *row) {
 
 static void on_row(void *context, const json_t *row) {
     Show *show = context;
-    clear_progress(show);
+    rt_progress_clear();
     if (!show->options->json) print_row(show, row);
     const bool refused = !json_is_null(json_object_get(row, "refused"));
     if (refused || !json_is_null(json_object_get(row, "problem"))) {
@@ -202,11 +185,6 @@ static void on_row(void *context, const json_t *row) {
                 rt_json_text(row, refused ? "refused" : "problem", ""));
     }
     show->failed |= rt_verify_row_fails(row);
-}
-
-static void on_notice(void *context, const char *message) {
-    clear_progress(context);
-    fprintf(stderr, "raytally: %s\n", message);
 }
 
 /* Which side is right where an inexact accelerator differs by more than a tie. */
@@ -237,8 +215,8 @@ static void print_failed(const RtVerifySum *sums, uint32_t count) {
     }
 }
 
-static void print_total(const Options *o, const RtVerifySum *sums, uint32_t count) {
-    RtVerifySum total = rt_verify_total(sums, count);
+static void print_total(const Options *o, const json_t *rows, const RtVerifySum *sums, uint32_t count) {
+    RtVerifySum total = rt_verify_total(rows);
     print_count(o->choice.scene_count, "scene");
     print_count(o->choice.spec_count, "accelerator");
     print_count(o->work.rays.count, "ray");
@@ -270,7 +248,7 @@ static RtStatus print_totals(const Options *o, const json_t *rows, RtError *erro
     RtStatus status = rt_verify_sums(rows, RT_BY_ACCEL, &sums, &count, error);
     for (uint32_t i = 0; i < count; i++) print_sides(&sums[i]);
     if (status == RT_OK) {
-        print_total(o, sums, count);
+        print_total(o, rows, sums, count);
         print_left_out(o);
     }
     rt_free(sums);
@@ -278,11 +256,11 @@ static RtStatus print_totals(const Options *o, const json_t *rows, RtError *erro
 }
 
 static RtStatus verify(const Options *o, bool *failed, RtError *error) {
-    Show show = {.options = o, .terminal = isatty(STDERR_FILENO) == 1, .start = rt_wall_seconds()};
-    RtVerifyObserver observer = {on_doing, on_row, on_notice, &show};
+    Show show = {.options = o, .start = rt_wall_seconds()};
+    RtVerifyObserver observer = {on_doing, on_row, rt_progress_notice, &show};
     json_t *rows;
     RtStatus status = rt_verify_run(&o->work, &observer, &rows, error);
-    clear_progress(&show);
+    rt_progress_clear();
     if (status == RT_OK && o->json) {
         rt_cli_print_json(json_pack("{s:I, s:O}", "seed", (json_int_t)o->work.rays.seed, "rows", rows));
     }
@@ -339,7 +317,7 @@ const RtSyntax rt_verify_syntax = {
     .options = options,
     .plugins = true,
     .arguments = "[SCENE...]\n--replay FILE",
-    .argument = {.name = "SCENE", .take = take_scene},
+    .argument = {.name = "SCENE", .value = RT_TO_LIST(scenes, scene_count)},
     .finish = finish,
     .help =
         "Verify that each accelerator hits the same object as brute, with the same bits of t, for every "

@@ -203,7 +203,9 @@ static void take_shell(void *options, const char *text, struct argp_state *state
 
 const RtSyntax rt_completion_syntax = {
     .arguments = SHELLS,
-    .argument = {.name = "SHELL", .missing = "a SHELL is missing: bash, zsh or fish", .take = take_shell},
+    .argument = {.name = "SHELL",
+                 .missing = "a SHELL is missing: bash, zsh or fish",
+                 .value = RT_TO_TAKE(take_shell)},
     .help = "Print a script that completes commands, options, accelerators and scenes with their parameters. "
             "It runs raytally at each completion, so it stays valid for other versions.\v"
             "In this shell:\n"

@@ -28,17 +28,31 @@ static double percent_of(struct argp_state *state, const char *option, const cha
     return percent / 100;
 }
 
-static void take_option(const RtOption *o, char *options, const char *text, struct argp_state *state) {
-    const RtOptionValue *value = &o->value;
+static void read_pixel(struct argp_state *state, const char *option, const char *text, RtPixel *pixel) {
+    const char *at = text;
+    pixel->given = true;
+    if (rt_cli_digits(&at, &pixel->x) && *at++ == ',' && rt_cli_digits(&at, &pixel->y) && *at == '\0') return;
+    argp_error(state, "%s: invalid value '%s': expected X,Y, as in 256,200", option, text);
+}
+
+static void add_to_list(const RtOptionValue *value, const char *name, char *options, const char *text,
+                        struct argp_state *state) {
+    uint32_t *count = (uint32_t *)(options + value->count);
+    if (*count == value->high)
+        argp_error(state, "%s: '%s' is one too many: %lld at most", name, text, (long long)value->high);
+    ((const char **)(options + value->offset))[(*count)++] = text;
+}
+
+/* `name` is that of an option, with its dashes, or of an argument. */
+static void take_value(const RtOptionValue *value, const char *name, char *options, const char *text,
+                       struct argp_state *state) {
     void *at = options + value->offset;
-    char name[40];
-    snprintf(name, sizeof name, "--%s", o->name);
-    if (value->mark) *(const char **)(options + value->mark) = o->name;
     const bool whole = value->form == RT_OPTION_INTEGER || value->form == RT_OPTION_SECONDS;
     const int64_t number = whole ? rt_cli_integer(state, name, text, value->low, value->high) : value->low;
     switch (value->form) {
     case RT_OPTION_FLAG: *(bool *)at = true; return;
     case RT_OPTION_TEXT: *(const char **)at = text; return;
+    case RT_OPTION_LIST: add_to_list(value, name, options, text, state); return;
     case RT_OPTION_INTEGER:
         if (value->size == sizeof(uint32_t))
             *(uint32_t *)at = (uint32_t)number;
@@ -50,20 +64,25 @@ static void take_option(const RtOption *o, char *options, const char *text, stru
     case RT_OPTION_SET: *(int *)at = (int)number; return;
     case RT_OPTION_BYTES: *(uint64_t *)at = rt_cli_bytes(state, name, text); return;
     case RT_OPTION_SIZE: rt_cli_size(state, text, (uint32_t *)at, (uint32_t *)at + 1); return;
+    case RT_OPTION_PIXEL: read_pixel(state, name, text, at); return;
     case RT_OPTION_PATH: rt_cli_set_path(state, name, (const char **)at, text, value->endings); return;
     case RT_OPTION_TAKE: value->take(options, text, state); return;
     }
 }
 
+static void take_option(const RtOption *o, char *options, const char *text, struct argp_state *state) {
+    char name[40];
+    snprintf(name, sizeof name, "--%s", o->name);
+    if (o->value.mark) *(const char **)(options + o->value.mark) = o->name;
+    take_value(&o->value, name, options, text, state);
+}
+
 static void take_argument(const Parse *parse, const char *text, struct argp_state *state) {
     const RtArgument *argument = &parse->syntax->argument;
-    const char **slot = (const char **)(parse->options + argument->offset);
-    if (argument->take) {
-        argument->take(parse->options, text, state);
-        return;
-    }
-    if (*slot) argp_error(state, "one %s at a time; '%s' is a second one", argument->name, text);
-    *slot = text;
+    const char *const *slot = (const char *const *)(parse->options + argument->value.offset);
+    if (argument->value.form == RT_OPTION_TEXT && *slot)
+        argp_error(state, "one %s at a time; '%s' is a second one", argument->name, text);
+    take_value(&argument->value, argument->name, parse->options, text, state);
 }
 
 /* Whether the table has an entry `i`, given that it has all before. */

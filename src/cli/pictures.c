@@ -88,12 +88,6 @@ static void take_scale(void *options, const char *text, struct argp_state *state
     o->heat.scale = linear ? RT_HEATMAP_LINEAR : RT_HEATMAP_LOG;
 }
 
-static void take_pixel(void *options, const char *text, struct argp_state *state) {
-    RtPictureOptions *o = options;
-    rt_cli_pixel(state, text, &o->x, &o->y);
-    o->aimed = true;
-}
-
 #define Options RtPictureOptions
 const RtOption rt_picture_options[] = {
     {NULL, 0, NULL, {0}, "Pictures of a structure:"},
@@ -111,7 +105,7 @@ const RtOption rt_picture_options[] = {
      "it cuts"},
     {"light", 0, "N", RT_MARKING(of_light, RT_SETS_INTEGER(light, 0, UINT32_MAX)),
      "For light: the light whose cells are drawn (default 0)"},
-    {"pixel", 0, "X,Y", RT_MARKING(of_light, RT_CALLS(take_pixel)),
+    {"pixel", 0, "X,Y", RT_MARKING(of_light, RT_SETS_PIXEL(pixel)),
      "For light: mark the cell that the shadow ray of this pixel reads"},
     {NULL, 0, NULL, {0}, "Heatmaps, the cost of each pixel:"},
     {"heatmap", 0, "COUNTER FILE", RT_TO_TAKE(take_heatmap),
@@ -189,13 +183,13 @@ static RtStatus draw_cells(const RtPictureOptions *o, const RtAccel *accel, cons
                            RtError *error) {
     RtRay ray;
     const RtSampling *s = &accel->scene->sampling;
-    if (o->aimed) RT_TRY(rt_cli_check_pixel(s, o->x, o->y, error));
-    if (o->aimed && o->light < accel->scene->light_count) {
-        RtFootprint f = rt_pixel_footprint(s, o->x, o->y);
+    if (o->pixel.given) RT_TRY(rt_cli_check_pixel(s, o->pixel, error));
+    if (o->pixel.given && o->light < accel->scene->light_count) {
+        RtFootprint f = rt_pixel_footprint(s, o->pixel.x, o->pixel.y);
         RT_TRY(rt_path_ray(accel, RT_RAY_SHADOW, f.column + f.span / 2, f.row + f.span / 2, o->light, &ray,
                            error));
     }
-    return rt_buffer_draw(o->structure, layer, o->light, o->aimed ? &ray : NULL, error);
+    return rt_buffer_draw(o->structure, layer, o->light, o->pixel.given ? &ray : NULL, error);
 }
 
 RtStatus rt_pictures_structure(const RtPictureOptions *o, const RtAccel *accel, const RtFrame *frame,

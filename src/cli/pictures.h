@@ -14,9 +14,9 @@ typedef struct RtPictureOptions {
     RtStructureOptions boxes;
     bool in_middle; /* the slice is in the middle of the scene; boxes.at is not set */
     RtHeatmapOptions heat;
-    uint32_t kinds;       /* of rays, bits; 0: all */
-    uint32_t light, x, y; /* of an overlay for shadow rays; the pixel of the marked ray */
-    bool aimed;           /* a pixel was given */
+    uint32_t kinds; /* of rays, bits; 0: all */
+    uint32_t light; /* of an overlay for shadow rays */
+    RtPixel pixel;  /* of the marked ray */
     /* The name of the last given option, or NULL, that needs a picture of boxes, a picture of a light's
      * cells, or --heatmap. */
     const char *of_boxes, *of_light, *thermal;

@@ -24,6 +24,16 @@ RtProgress rt_progress_begin(const RtWorkloadOptions *options) {
                         .every = terminal ? LINE_OF_TERMINAL_EVERY : LINE_EVERY};
 }
 
+void rt_progress_clear(void) {
+    if (isatty(STDERR_FILENO)) fputs("\r\033[K", stderr);
+}
+
+void rt_progress_notice(void *context, const char *message) {
+    (void)context;
+    rt_progress_clear();
+    fprintf(stderr, "raytally: %s\n", message);
+}
+
 /* ---- time left ---- */
 
 void rt_format_duration(double seconds, char out[RT_MAX_DURATION]) {
@@ -96,21 +106,16 @@ static RtStatus on_event(void *context, const RtResults *results, const RtEvent 
     return RT_OK;
 }
 
-static void on_notice(void *context, const char *message) {
-    const RtProgress *progress = context;
-    fprintf(stderr, "%sraytally: %s\n", progress->terminal ? "\r\033[K" : "", message);
-}
-
 RtRunObserver rt_progress_observer(RtProgress *progress) {
-    return (RtRunObserver){progress, on_event, on_notice};
+    return (RtRunObserver){progress, on_event, rt_progress_notice};
 }
 
 /* ---- the thread ---- */
 
 /* The journal is always whole. */
 static void leave(const RtProgress *progress, int number) {
-    fprintf(stderr, "%sraytally: %s%s; ", progress->terminal ? "\r\033[K" : "", progress->title,
-            rt_stop_reason(number));
+    rt_progress_clear();
+    fprintf(stderr, "raytally: %s%s; ", progress->title, rt_stop_reason(number));
     if (progress->begun) {
         fprintf(stderr, "%u of %u cell%s %s finished, all measurements are kept in %s.",
                 progress->forecast.finished, progress->forecast.cells, rt_plural(progress->forecast.cells),

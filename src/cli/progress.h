@@ -34,7 +34,13 @@ RtProgress rt_progress_begin(const RtWorkloadOptions *options);
  * the end. Call before other threads are made. */
 void rt_progress_watch(RtProgress *progress, const char *directory, const char *go_on);
 
-/* The observer of a workload; each notice gets its own line. */
+/* Clears the line, if stderr is a terminal. */
+void rt_progress_clear(void);
+
+/* Prints a message on a line of its own. `context` is not used. */
+void rt_progress_notice(void *context, const char *message);
+
+/* The observer of a workload. */
 RtRunObserver rt_progress_observer(RtProgress *progress);
 
 /* "3 h 20 min", "5 min", "40 s"; room for RT_MAX_DURATION. */

@@ -4,6 +4,7 @@
 #include "cli/cli.h"
 #include "experiment/callgrind.h"
 #include "render/frame.h"
+#include "verify/spread.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -82,6 +83,32 @@ void rt_recording_finish(const RtRecordingOptions *o, struct argp_state *state) 
     if (one && e->kind_count > 1) argp_error(state, "--rays: one kind at a time");
 }
 
-uint64_t rt_cli_callgrind(const char *text, struct argp_state *state) {
-    return text ? (uint64_t)rt_cli_integer(state, "--callgrind", text, 1, 100000000) : RT_CALLGRIND_RAYS;
+void rt_recording_take_callgrind(void *options, const char *text, struct argp_state *state) {
+    RtRecordingOptions *o = options;
+    o->callgrind = RT_CALLGRIND_RAYS;
+    if (text) o->callgrind = (uint64_t)rt_cli_integer(state, "--callgrind", text, 1, 100000000);
+}
+
+void rt_recording_add_accel(RtExperiment *experiment, const char *text, struct argp_state *state) {
+    RtError error;
+    RtCandidate like = {.entry = experiment->candidate_count, .ray_stride = 1};
+    if (strlen(text) >= RT_MAX_SPEC_CHARS) {
+        argp_error(state, "--accel: a spec has at most %d characters", RT_MAX_SPEC_CHARS - 1);
+    }
+    strcpy(like.spec, text);
+    if (rt_experiment_add_accels(experiment, &like, &error) != RT_OK)
+        argp_error(state, "--accel: %s", error.message);
+}
+
+void rt_recording_take_accel(void *options, const char *text, struct argp_state *state) {
+    RtExperiment *experiment = ((RtRecordingOptions *)options)->experiment;
+    if (strcmp(text, "all") != 0) {
+        rt_recording_add_accel(experiment, text, state);
+        return;
+    }
+    for (size_t i = 0; i < rt_accel_count(); i++) {
+        char spec[RT_MAX_SPEC_CHARS];
+        rt_spread_spec(rt_accel_at(i), 0, spec);
+        rt_recording_add_accel(experiment, spec, state);
+    }
 }

@@ -15,61 +15,48 @@
 enum { PAGE = 100, LEAST_HIT = 16 }; /* characters: of a line, and of the column of objects */
 
 /* A row of the tree as text. */
+enum { NUMBER, RAY, T, HIT, FACTOR, COLUMNS };
 typedef struct Row {
-    char ray[2 * RT_MAX_DEPTH + RT_TREE_RAY_TEXT], t[16], hit[RT_TREE_HIT_TEXT], factor[16];
+    char of[COLUMNS][2 * RT_MAX_DEPTH + RT_TREE_HIT_TEXT];
 } Row;
-
-/* The columns' widths, from all rows that are printed. */
-typedef struct Widths {
-    int number, ray, t, hit, factor;
-} Widths;
 
 static Row row_of(const RtTreeRay *ray, const RtScene *scene) {
     static const char object[] = "object "; /* the column's name says it */
     const uint32_t indent = 2 * (ray->level - (ray->ray.kind != RT_RAY_SHADOW));
-    Row row = {.t = "-"};
+    const size_t size = sizeof(((Row *)0)->of[0]);
+    Row row = {.of[T] = "-"};
     char name[RT_TREE_RAY_TEXT], hit[RT_TREE_HIT_TEXT];
     rt_tree_ray_name(ray, name);
     rt_tree_ray_hit(ray, scene, hit);
-    snprintf(row.ray, sizeof row.ray, "%*s%s", (int)indent, "", name);
-    if (isfinite((double)ray->hit.t)) snprintf(row.t, sizeof row.t, "%.5g", (double)ray->hit.t);
-    strcpy(row.hit, hit + (strncmp(hit, object, strlen(object)) == 0 ? strlen(object) : 0));
-    snprintf(row.factor, sizeof row.factor, "%.4g", (double)ray->factor);
+    snprintf(row.of[NUMBER], size, "%u", ray->number);
+    snprintf(row.of[RAY], size, "%*s%s", (int)indent, "", name);
+    if (isfinite((double)ray->hit.t)) snprintf(row.of[T], size, "%.5g", (double)ray->hit.t);
+    strcpy(row.of[HIT], hit + (strncmp(hit, object, strlen(object)) == 0 ? strlen(object) : 0));
+    snprintf(row.of[FACTOR], size, "%.4g", (double)ray->factor);
     return row;
 }
 
-static void widen(int *width, const char *text) {
-    const int own = (int)strlen(text);
-    if (own > *width) *width = own;
-}
-
-/* The column of objects is as wide as it needs, or as fits. */
-static Widths measure(const RtRayTree *tree, const RtScene *scene, uint32_t rows) {
-    Widths w = {2, 3, 1, 6, 6};
-    char number[16];
+/* Widens the columns for all rows that are printed; that of objects is as wide as it needs, or as fits. */
+static void measure(const RtRayTree *tree, const RtScene *scene, uint32_t rows, int w[COLUMNS]) {
     for (uint32_t i = 0, left = rows; left > 0; i = rt_ray_tree_next(tree, i), left--) {
         const Row row = row_of(&tree->rays[i], scene);
-        snprintf(number, sizeof number, "%u", tree->rays[i].number);
-        widen(&w.number, number);
-        widen(&w.ray, row.ray);
-        widen(&w.t, row.t);
-        widen(&w.hit, row.hit);
-        widen(&w.factor, row.factor);
+        for (int c = 0; c < COLUMNS; c++)
+            if ((int)strlen(row.of[c]) > w[c]) w[c] = (int)strlen(row.of[c]);
     }
-    const int fits = PAGE - (w.number + w.ray + w.t + w.factor + 5 + 4 + 5 + 2 * 7);
-    if (w.hit > fits) w.hit = fits > LEAST_HIT ? fits : LEAST_HIT;
-    return w;
+    const int fits = PAGE - (w[NUMBER] + w[RAY] + w[T] + w[FACTOR] + 5 + 4 + 5 + 2 * 7);
+    if (w[HIT] > fits) w[HIT] = fits > LEAST_HIT ? fits : LEAST_HIT;
 }
 
 static void print_rays(const RtRayTree *tree, const RtTally *costs, const RtScene *scene, uint32_t rows) {
-    const Widths w = measure(tree, scene, rows);
-    printf("\n%*s  %-*s  %*s  %-*s  %*s  %5s  %4s  %5s\n", w.number, "", w.ray, "ray", w.t, "t", w.hit,
-           "object", w.factor, "factor", "tests", "ext.", "steps");
+    int w[COLUMNS] = {2, 3, 1, 6, 6};
+    measure(tree, scene, rows, w);
+    printf("\n%*s  %-*s  %*s  %-*s  %*s  %5s  %4s  %5s\n", w[NUMBER], "", w[RAY], "ray", w[T], "t", w[HIT],
+           "object", w[FACTOR], "factor", "tests", "ext.", "steps");
     for (uint32_t i = 0, left = rows; left > 0; i = rt_ray_tree_next(tree, i), left--) {
         Row row = row_of(&tree->rays[i], scene);
-        if ((int)strlen(row.hit) > w.hit) strcpy(row.hit + w.hit - 3, "...");
-        printf("%*u  %-*s  %*s  %-*s  %*s  %5llu  %4llu  %5llu\n", w.number, tree->rays[i].number, w.ray,
-               row.ray, w.t, row.t, w.hit, row.hit, w.factor, row.factor,
+        if ((int)strlen(row.of[HIT]) > w[HIT]) strcpy(row.of[HIT] + w[HIT] - 3, "...");
+        printf("%*s  %-*s  %*s  %-*s  %*s  %5llu  %4llu  %5llu\n", w[NUMBER], row.of[NUMBER], w[RAY],
+               row.of[RAY], w[T], row.of[T], w[HIT], row.of[HIT], w[FACTOR], row.of[FACTOR],
                (unsigned long long)costs[i].object_tests, (unsigned long long)costs[i].extent_tests,
                (unsigned long long)costs[i].steps);
     }

@@ -2,7 +2,6 @@
 #include "cli/verify_choice.h"
 
 #include "scenes/builtin.h"
-#include "scenes/family.h"
 #include "scenes/open.h"
 #include "verify/spread.h"
 

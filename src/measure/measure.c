@@ -136,14 +136,12 @@ static RtStatus compare_pass(const RtAccel *accel, const RtRaySet *set, const Rt
 /* Whether two passes over the same rays counted the same. */
 static RtStatus check_counts(const RtAccel *accel, const RtTally *first, const RtTally *second,
                              RtError *error) {
-    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
-        uint64_t was = rt_tally_get(first, i), is = rt_tally_get(second, i);
-        if (was != is)
-            return rt_fail(
-                error, RT_BROKEN, "%s: it counts %llu %s on some rays, and %llu when they are traced again",
-                accel->ops->name, (unsigned long long)was, rt_tally_name(i), (unsigned long long)is);
-    }
-    return RT_OK;
+    const size_t i = rt_tally_difference(first, second);
+    if (i == RT_TALLY_COUNTER_COUNT) return RT_OK;
+    return rt_fail(error, RT_BROKEN,
+                   "%s: it counts %llu %s on some rays, and %llu when they are traced again",
+                   accel->ops->name, (unsigned long long)rt_tally_get(first, i), rt_tally_name(i),
+                   (unsigned long long)rt_tally_get(second, i));
 }
 
 RtStatus rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit *expected, int threads,

@@ -6,7 +6,6 @@
 #include "picture/canvas.h"
 
 #include <stdio.h>
-#include <string.h>
 
 enum { LEAST_WIDTH = 330 }; /* of a legend, pixels */
 
@@ -23,13 +22,18 @@ static double legend_height(int lines, double em) {
 
 /* ---- the item buffer ---- */
 
-static RtColor color_of_sample(const RtCellView *cell, uint32_t x, uint32_t y) {
-    if (cell->object == RT_UNNAMED_OBJECT) return (x + y) % 4 ? magenta : RT_WHITE;
-    return cell->object == RT_NO_OBJECT ? RT_WHITE : rt_color_of_id(cell->object);
+static RtColor color_of_sample(const void *context, uint32_t x, uint32_t y) {
+    const RtAccel *layer = context;
+    const RtSampling *s = &layer->scene->sampling;
+    RtFootprint f = rt_pixel_footprint(s, x, y);
+    uint32_t sample = (f.row + f.span / 2) * s->columns + f.column + f.span / 2;
+    RtCellView cell;
+    layer->ops->find_cell(layer, &(RtRay){.source = sample}, &cell);
+    if (cell.object == RT_UNNAMED_OBJECT) return (x + y) % 4 ? magenta : RT_WHITE;
+    return cell.object == RT_NO_OBJECT ? RT_WHITE : rt_color_of_id(cell.object);
 }
 
-static RtStatus draw_samples(cairo_t *cairo, const RtAccel *layer, RtImage *image, double em,
-                             RtError *error) {
+static RtStatus draw_samples(cairo_t *cairo, const RtAccel *layer, double em, RtError *error) {
     const RtSampling *s = &layer->scene->sampling;
     uint64_t named = 0, undecided = 0, samples = (uint64_t)s->columns * s->rows;
     RtCellView cell;
@@ -38,15 +42,7 @@ static RtStatus draw_samples(cairo_t *cairo, const RtAccel *layer, RtImage *imag
         named += cell.object < RT_UNNAMED_OBJECT;
         undecided += cell.object == RT_UNNAMED_OBJECT;
     }
-    for (uint32_t y = 0; y < s->height; y++) {
-        for (uint32_t x = 0; x < s->width; x++) {
-            RtFootprint f = rt_pixel_footprint(s, x, y);
-            uint32_t sample = (f.row + f.span / 2) * s->columns + f.column + f.span / 2;
-            layer->ops->find_cell(layer, &(RtRay){.source = sample}, &cell);
-            rt_image_set(image, x, y, color_of_sample(&cell, x, y));
-        }
-    }
-    RT_TRY(rt_paint_image(cairo, image, 0, 0, error));
+    RT_TRY(rt_paint_pixels(cairo, (RtPixels){s->width, s->height, color_of_sample, layer}, 0, 0, error));
     const struct {
         uint64_t count;
         RtColor color;
@@ -54,15 +50,11 @@ static RtStatus draw_samples(cairo_t *cairo, const RtAccel *layer, RtImage *imag
     } keys[] = {{named, rt_color_of_id(1), "name an object (a colour each)"},
                 {undecided, magenta, "are undecided and passed on"},
                 {samples - named - undecided, RT_WHITE, "see nothing"}};
-    char text[128];
-    rt_set_color(cairo, RT_BLACK, 1);
-    snprintf(text, sizeof text, "%s: %llu sample%s", layer->ops->name, (unsigned long long)samples,
-             rt_plural(samples));
-    rt_draw_text(cairo, 0.5 * em, baseline(s->height, 0, em), text);
-    for (int i = 0; i < 3; i++) {
-        snprintf(text, sizeof text, "%llu %s", (unsigned long long)keys[i].count, keys[i].what);
-        rt_draw_key(cairo, 0.5 * em, baseline(s->height, i + 1, em), keys[i].color, text);
-    }
+    rt_draw_text(cairo, 0.5 * em, baseline(s->height, 0, em), RT_BLACK, "%s: %llu sample%s", layer->ops->name,
+                 (unsigned long long)samples, rt_plural(samples));
+    for (int i = 0; i < 3; i++)
+        rt_draw_key(cairo, 0.5 * em, baseline(s->height, i + 1, em), keys[i].color, "%llu %s",
+                    (unsigned long long)keys[i].count, keys[i].what);
     return RT_OK;
 }
 
@@ -71,14 +63,8 @@ static RtStatus draw_item_buffer(const char *file, const RtAccel *layer, RtError
     uint32_t width = s->width > LEAST_WIDTH ? s->width : LEAST_WIDTH;
     double em = rt_font_size(width);
     RtCanvas canvas;
-    RtImage image;
-    RT_TRY(rt_image_init(&image, s->width, s->height, error));
-    RtStatus status =
-        rt_canvas_open(&canvas, file, width, s->height + legend_height(4, em), RT_WHITE, em, error);
-    if (status == RT_OK)
-        status = rt_canvas_close(&canvas, draw_samples(canvas.cairo, layer, &image, em, error), error);
-    rt_image_clear(&image);
-    return status;
+    RT_TRY(rt_canvas_open(&canvas, file, width, s->height + legend_height(4, em), em, error));
+    return rt_canvas_close(&canvas, draw_samples(canvas.cairo, layer, em, error), error);
 }
 
 /* ---- the light buffer ---- */
@@ -92,12 +78,8 @@ typedef struct Face {
 static const Face faces[6] = {{0, 1, -1, 3, 2},  {1, 1, 3, 1, 2},  {2, 1, 1, -3, 2},
                               {3, 1, -3, -1, 2}, {1, 0, 2, 1, -3}, {1, 2, -2, 1, 3}};
 
-enum {
-    SIDE = 240,
-    WIDTH = 4 * SIDE,
-    HEIGHT = 3 * SIDE,
-    LINES = 7
-}; /* pixels of a face and of the map; lines of the legend */
+enum { SIDE = 240, WIDTH = 4 * SIDE, HEIGHT = 3 * SIDE }; /* pixels of a face and of the map */
+enum { LEGEND_LINES = 6 };
 
 #define NO_CELL UINT32_MAX
 
@@ -107,6 +89,7 @@ typedef struct CubeMap {
     uint32_t light;
     int up;            /* the scene's axis for axis 1 */
     RtCellView *cells; /* [HEIGHT][WIDTH], number NO_CELL if there is none */
+    uint32_t marked;   /* the cell to be outlined, or NO_CELL */
     RtScale scale;     /* of lengths */
     double em;
 } CubeMap;
@@ -158,21 +141,21 @@ static RtColor color_of_cell(const CubeMap *map, int x, int y) {
     return rt_color_scale(rt_scale_position(&map->scale, cell->length));
 }
 
-static bool has_number(const CubeMap *map, int x, int y, uint32_t number) {
-    return x >= 0 && y >= 0 && x < WIDTH && y < HEIGHT && map->cells[y * WIDTH + x].number == number;
+static bool is_marked(const CubeMap *map, int x, int y) {
+    return x >= 0 && y >= 0 && x < WIDTH && y < HEIGHT && map->cells[y * WIDTH + x].number == map->marked;
 }
 
-/* The faces, on white, and the outline of the cell `marked` (NO_CELL: none). */
-static void fill_image(const CubeMap *map, uint32_t marked, RtImage *image) {
-    memset(image->rgb, 255, (size_t)3 * WIDTH * HEIGHT);
-    for (int i = 0; i < 6 * SIDE * SIDE; i++) {
-        const Face *face = &faces[i / (SIDE * SIDE)];
-        int x = face->column * SIDE + i % SIDE, y = face->row * SIDE + i / SIDE % SIDE;
-        bool inner = has_number(map, x - 1, y, marked) && has_number(map, x + 1, y, marked) &&
-                     has_number(map, x, y - 1, marked) && has_number(map, x, y + 1, marked);
-        bool outline = marked != NO_CELL && has_number(map, x, y, marked) && !inner;
-        rt_image_set(image, (uint32_t)x, (uint32_t)y, outline ? RT_WHITE : color_of_cell(map, x, y));
-    }
+/* The faces, on white, and the outline of the marked cell. */
+static RtColor color_at(const void *context, uint32_t column, uint32_t row) {
+    const CubeMap *map = context;
+    const int x = (int)column, y = (int)row;
+    int face = 0;
+    while (face < 6 && (faces[face].column != x / SIDE || faces[face].row != y / SIDE)) face++;
+    if (face == 6) return RT_WHITE;
+    bool inner = is_marked(map, x - 1, y) && is_marked(map, x + 1, y) && is_marked(map, x, y - 1) &&
+                 is_marked(map, x, y + 1);
+    bool outline = map->marked != NO_CELL && is_marked(map, x, y) && !inner;
+    return outline ? RT_WHITE : color_of_cell(map, x, y);
 }
 
 static void draw_face_names(const CubeMap *map) {
@@ -181,16 +164,15 @@ static void draw_face_names(const CubeMap *map) {
         double x = faces[f].column * SIDE + 2, y = faces[f].row * SIDE + 2, em = map->em;
         rt_fill_rectangle(map->cairo, x, y, ceil(rt_text_width(map->cairo, name) + 0.6 * em), ceil(1.3 * em),
                           RT_WHITE);
-        rt_set_color(map->cairo, RT_BLACK, 1);
-        rt_draw_text(map->cairo, x + 0.3 * em, y + em, name);
+        rt_draw_text(map->cairo, x + 0.3 * em, y + em, RT_BLACK, "%s", name);
     }
 }
 
-static void draw_ring(const CubeMap *map, uint32_t number) {
+static void draw_ring(const CubeMap *map) {
     int count = 0;
     int64_t x_sum = 0, y_sum = 0;
     for (int i = 0; i < WIDTH * HEIGHT; i++) {
-        if (map->cells[i].number == number) x_sum += i % WIDTH, y_sum += i / WIDTH, count++;
+        if (map->cells[i].number == map->marked) x_sum += i % WIDTH, y_sum += i / WIDTH, count++;
     }
     for (int pass = 0; count > 0 && pass < 2; pass++) {
         rt_set_color(map->cairo, pass ? RT_WHITE : RT_BLACK, 1);
@@ -202,27 +184,24 @@ static void draw_ring(const CubeMap *map, uint32_t number) {
 
 static void draw_legend(const CubeMap *map, const RtRay *marked, const RtCellView *cell) {
     double em = map->em, left = 0.5 * em;
-    char text[160];
-    snprintf(text, sizeof text, "%s, light %u: objects in the list of a cell, up to %g",
-             map->layer->ops->name, map->light, map->scale.most);
-    rt_set_color(map->cairo, RT_BLACK, 1);
-    rt_draw_text(map->cairo, left, baseline(HEIGHT, 0, em), text);
+    rt_draw_text(map->cairo, left, baseline(HEIGHT, 0, em), RT_BLACK,
+                 "%s, light %u: objects in the list of a cell, up to %g", map->layer->ops->name, map->light,
+                 map->scale.most);
     rt_draw_scale(map->cairo, left, floor(baseline(HEIGHT, 0, em) + 0.6 * em), WIDTH - 2 * left, &map->scale);
     rt_draw_key(map->cairo, left, baseline(HEIGHT, 3, em), unseen, "nothing is seen there");
     rt_draw_key(map->cairo, left, baseline(HEIGHT, 4, em), red,
                 "red dots: the list was cut, rays may be passed on");
     if (!marked) return;
+    const double y = baseline(HEIGHT, 5, em);
     if (cell->number == NO_CELL)
-        snprintf(text, sizeof text, "the ray reads no cell: it is lit");
+        rt_draw_key(map->cairo, left, y, RT_WHITE, "the ray reads no cell: it is lit");
     else
-        snprintf(text, sizeof text, "ringed: the ray reads cell %u, with %u object%s%s", cell->number,
-                 cell->length, rt_plural(cell->length), cell->cut ? ", cut" : "");
-    rt_draw_key(map->cairo, left, baseline(HEIGHT, 5, em), RT_WHITE, text);
+        rt_draw_key(map->cairo, left, y, RT_WHITE, "ringed: the ray reads cell %u, with %u object%s%s",
+                    cell->number, cell->length, rt_plural(cell->length), cell->cut ? ", cut" : "");
 }
 
 static RtStatus draw_cube_map(CubeMap *map, const char *file, const RtRay *marked, RtError *error) {
     RtCanvas canvas;
-    RtImage image;
     RtCellView cell = {.number = NO_CELL};
     if (!find_cells(map))
         return rt_fail(
@@ -230,21 +209,16 @@ static RtStatus draw_cube_map(CubeMap *map, const char *file, const RtRay *marke
             "%s has no cells around light %u, and passes its rays on: choose a number, as in light:cells=64",
             map->layer->ops->name, map->light);
     if (marked && !map->layer->ops->find_cell(map->layer, marked, &cell)) cell.number = NO_CELL;
-    RT_TRY(rt_image_init(&image, WIDTH, HEIGHT, error));
-    RtStatus status = rt_canvas_open(&canvas, file, WIDTH, HEIGHT + legend_height(LINES - 1, map->em),
-                                     RT_WHITE, map->em, error);
-    if (status == RT_OK) {
-        map->cairo = canvas.cairo;
-        fill_image(map, cell.number, &image);
-        status = rt_paint_image(map->cairo, &image, 0, 0, error);
-        draw_face_names(map);
-        if (cell.number != NO_CELL) draw_ring(map, cell.number);
-        cairo_set_line_width(map->cairo, 1);
-        draw_legend(map, marked, &cell);
-        status = rt_canvas_close(&canvas, status, error);
-    }
-    rt_image_clear(&image);
-    return status;
+    RT_TRY(
+        rt_canvas_open(&canvas, file, WIDTH, HEIGHT + legend_height(LEGEND_LINES, map->em), map->em, error));
+    map->cairo = canvas.cairo;
+    map->marked = cell.number;
+    RtStatus status = rt_paint_pixels(map->cairo, (RtPixels){WIDTH, HEIGHT, color_at, map}, 0, 0, error);
+    draw_face_names(map);
+    if (cell.number != NO_CELL) draw_ring(map);
+    cairo_set_line_width(map->cairo, 1);
+    draw_legend(map, marked, &cell);
+    return rt_canvas_close(&canvas, status, error);
 }
 
 static RtStatus draw_light_buffer(const char *file, const RtAccel *layer, uint32_t light, const RtRay *marked,

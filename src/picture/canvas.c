@@ -2,10 +2,12 @@
 #include "picture/canvas.h"
 
 #include "core/base/elementary.h"
+#include "core/base/words.h"
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <jansson.h>
+#include <stdarg.h>
 #include <string.h>
 
 /* ---- colours ---- */
@@ -48,11 +50,6 @@ RtColor rt_color_of_id(uint32_t id) {
 
 /* ---- the file ---- */
 
-static bool ends_in(const char *file, const char *extension) {
-    size_t length = strlen(file), tail = strlen(extension);
-    return length > tail && strcmp(file + length - tail, extension) == 0;
-}
-
 static cairo_status_t write_bytes(void *file, const unsigned char *bytes, unsigned count) {
     return fwrite(bytes, 1, count, file) == count ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
 }
@@ -60,10 +57,10 @@ static cairo_status_t write_bytes(void *file, const unsigned char *bytes, unsign
 static cairo_surface_t *create_surface(RtCanvas *canvas, const char *name, double width, double height) {
     cairo_surface_t *surface;
     FILE *file = canvas->output.file;
-    if (ends_in(name, ".svg")) {
+    if (rt_ends_in(name, ".svg")) {
         surface = cairo_svg_surface_create_for_stream(write_bytes, file, width, height);
         cairo_svg_surface_set_document_unit(surface, CAIRO_SVG_UNIT_PX);
-    } else if (ends_in(name, ".pdf")) {
+    } else if (rt_ends_in(name, ".pdf")) {
         surface = cairo_pdf_surface_create_for_stream(write_bytes, file, width, height);
         /* A fixed date: the same picture is the same file. */
         cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "2000-01-01T00:00:00Z");
@@ -90,14 +87,14 @@ static void set_font(cairo_t *cairo, double size) {
     cairo_set_font_size(cairo, size);
 }
 
-RtStatus rt_canvas_open(RtCanvas *canvas, const char *file, double width, double height, RtColor background,
-                        double font_size, RtError *error) {
+RtStatus rt_canvas_open(RtCanvas *canvas, const char *file, double width, double height, double font_size,
+                        RtError *error) {
     *canvas = (RtCanvas){.cairo = NULL};
     RT_TRY(rt_output_open(&canvas->output, file, error));
     cairo_surface_t *surface = create_surface(canvas, file, width, height);
     canvas->cairo = cairo_create(surface);
     cairo_surface_destroy(surface); /* the context has a reference */
-    rt_set_color(canvas->cairo, background, 1);
+    rt_set_color(canvas->cairo, RT_WHITE, 1);
     cairo_paint(canvas->cairo);
     set_font(canvas->cairo, font_size);
     cairo_set_line_width(canvas->cairo, 1);
@@ -141,26 +138,26 @@ void rt_fill_rectangle(cairo_t *cairo, double x, double y, double width, double 
     cairo_fill(cairo);
 }
 
-RtStatus rt_paint_image(cairo_t *cairo, const RtImage *image, double x, double y, RtError *error) {
-    cairo_surface_t *surface =
-        cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)image->width, (int)image->height);
-    unsigned char *pixels = cairo_image_surface_get_data(surface);
+RtStatus rt_paint_pixels(cairo_t *cairo, RtPixels pixels, double x, double y, RtError *error) {
+    const uint32_t width = pixels.width, height = pixels.height;
+    cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)width, (int)height);
+    unsigned char *bytes = cairo_image_surface_get_data(surface);
     size_t stride = (size_t)cairo_image_surface_get_stride(surface);
-    const uint8_t *rgb = image->rgb;
-    for (uint32_t row = 0; pixels && row < image->height; row++) {
-        for (uint32_t column = 0; column < image->width; column++, rgb += 3) {
-            uint32_t pixel = (uint32_t)rgb[0] << 16 | (uint32_t)rgb[1] << 8 | rgb[2];
-            memcpy(pixels + row * stride + column * sizeof pixel, &pixel, sizeof pixel);
+    for (uint32_t row = 0; bytes && row < height; row++) {
+        for (uint32_t column = 0; column < width; column++) {
+            const RtColor c = pixels.color(pixels.context, column, row);
+            uint32_t pixel = (uint32_t)c.rgb[0] << 16 | (uint32_t)c.rgb[1] << 8 | c.rgb[2];
+            memcpy(bytes + row * stride + column * sizeof pixel, &pixel, sizeof pixel);
         }
     }
     cairo_surface_mark_dirty(surface);
     cairo_set_source_surface(cairo, surface, x, y);
     cairo_pattern_set_filter(cairo_get_source(cairo), CAIRO_FILTER_NEAREST);
-    cairo_rectangle(cairo, x, y, image->width, image->height);
+    cairo_rectangle(cairo, x, y, width, height);
     cairo_fill(cairo);
     cairo_set_source_rgb(cairo, 0, 0, 0); /* drops the surface */
     cairo_surface_destroy(surface);
-    return pixels ? RT_OK : rt_fail_memory(error, "an image", (size_t)4 * image->width * image->height);
+    return bytes ? RT_OK : rt_fail_memory(error, "an image", (size_t)4 * width * height);
 }
 
 uint32_t rt_polygon_cut(RtPoint *points, uint32_t count, RtPoint normal, double limit) {
@@ -266,10 +263,12 @@ double rt_text_width(cairo_t *cairo, const char *text) {
     return extents.x_advance;
 }
 
-double rt_draw_text(cairo_t *cairo, double x, double y, const char *text) {
-    char utf8[MAX_TEXT];
+static double draw_text(cairo_t *cairo, double x, double y, RtColor color, const char *format, va_list args) {
+    char text[MAX_TEXT], utf8[MAX_TEXT];
     double end;
+    vsnprintf(text, sizeof text, format, args);
     make_utf8(text, utf8);
+    rt_set_color(cairo, color, 1);
     cairo_move_to(cairo, x, y);
     cairo_show_text(cairo, utf8);
     cairo_get_current_point(cairo, &end, &y);
@@ -277,12 +276,20 @@ double rt_draw_text(cairo_t *cairo, double x, double y, const char *text) {
     return end - x;
 }
 
-void rt_draw_text_within(cairo_t *cairo, double x, double y, double room, const char *text) {
+double rt_draw_text(cairo_t *cairo, double x, double y, RtColor color, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    const double width = draw_text(cairo, x, y, color, format, args);
+    va_end(args);
+    return width;
+}
+
+void rt_draw_text_within(cairo_t *cairo, double x, double y, double room, RtColor color, const char *text) {
     char part[MAX_TEXT];
     int length = (int)strlen(text);
     do snprintf(part, sizeof part, "%.*s%s", length, text, text[length] ? "..." : "");
     while (rt_text_width(cairo, part) > room && length-- > 0);
-    rt_draw_text(cairo, x, y, part);
+    rt_draw_text(cairo, x, y, color, "%s", part);
 }
 
 static double font_size(cairo_t *cairo) {
@@ -291,14 +298,17 @@ static double font_size(cairo_t *cairo) {
     return matrix.xx;
 }
 
-double rt_draw_key(cairo_t *cairo, double x, double y, RtColor color, const char *text) {
+double rt_draw_key(cairo_t *cairo, double x, double y, RtColor color, const char *format, ...) {
     double em = font_size(cairo), side = floor(0.75 * em);
+    va_list args;
     rt_fill_rectangle(cairo, floor(x), floor(y) - side, side, side, color);
     rt_set_color(cairo, RT_GREY, 1);
     cairo_rectangle(cairo, floor(x) + 0.5, floor(y) - side + 0.5, side - 1, side - 1);
     cairo_stroke(cairo);
-    rt_set_color(cairo, RT_BLACK, 1);
-    return 1.1 * em + rt_draw_text(cairo, x + 1.1 * em, y, text);
+    va_start(args, format);
+    const double width = draw_text(cairo, x + 1.1 * em, y, RT_BLACK, format, args);
+    va_end(args);
+    return 1.1 * em + width;
 }
 
 /* ---- scales ---- */
@@ -341,7 +351,7 @@ static double put_mark(Bar *bar, double value) {
     cairo_line_to(bar->cairo, mark, bar->y + 1.2 * bar->em);
     cairo_stroke(bar->cairo);
     if (from < bar->free_from || from + width > bar->free_to) return from;
-    rt_draw_text(bar->cairo, from, bar->y + 2.1 * bar->em, text);
+    rt_draw_text(bar->cairo, from, bar->y + 2.1 * bar->em, RT_BLACK, "%s", text);
     bar->free_from = from + width + 0.5 * bar->em;
     return from;
 }

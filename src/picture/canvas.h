@@ -27,10 +27,6 @@ RtColor rt_color_difference(double position);
 /* A colour for an object id; neighbouring ids have very different colours. */
 RtColor rt_color_of_id(uint32_t id);
 
-static inline void rt_image_set(RtImage *image, uint32_t x, uint32_t y, RtColor color) {
-    for (int c = 0; c < 3; c++) image->rgb[3 * ((size_t)y * image->width + x) + (size_t)c] = color.rgb[c];
-}
-
 /* ---- the file ---- */
 
 typedef struct RtCanvas {
@@ -39,9 +35,9 @@ typedef struct RtCanvas {
     bool png;
 } RtCanvas;
 
-/* Opens `file` with a plain background; the font is DejaVu Sans of `font_size`, lines are 1 pixel wide. */
-RtStatus rt_canvas_open(RtCanvas *canvas, const char *file, double width, double height, RtColor background,
-                        double font_size, RtError *error);
+/* Opens `file`, with a white background; the font is DejaVu Sans of `font_size`, lines are 1 pixel wide. */
+RtStatus rt_canvas_open(RtCanvas *canvas, const char *file, double width, double height, double font_size,
+                        RtError *error);
 
 /* Writes the file, or discards it if `drawn`, the status of the drawing, is not RT_OK. Returns `drawn`, or
  * why writing failed. */
@@ -52,8 +48,15 @@ RtStatus rt_canvas_close(RtCanvas *canvas, RtStatus drawn, RtError *error);
 void rt_set_color(cairo_t *cairo, RtColor color, double opacity);
 void rt_fill_rectangle(cairo_t *cairo, double x, double y, double width, double height, RtColor color);
 
-/* Paints the image's pixels unscaled, the upper left at (x, y). RT_NO_MEMORY. */
-RtStatus rt_paint_image(cairo_t *cairo, const RtImage *image, double x, double y, RtError *error);
+/* An image, pixel by pixel. */
+typedef struct RtPixels {
+    uint32_t width, height;
+    RtColor (*color)(const void *context, uint32_t x, uint32_t y);
+    const void *context;
+} RtPixels;
+
+/* Paints its pixels unscaled, the upper left at (x, y). RT_NO_MEMORY. */
+RtStatus rt_paint_pixels(cairo_t *cairo, RtPixels pixels, double x, double y, RtError *error);
 
 typedef struct RtPoint {
     double x, y;
@@ -97,15 +100,17 @@ double rt_font_size(double width);
 
 /* Draws UTF-8 with its baseline from (x, y) on; returns its width. In text that is not UTF-8, bytes other
  * than ASCII become `?`. */
-double rt_draw_text(cairo_t *cairo, double x, double y, const char *text);
+__attribute__((format(printf, 5, 6))) double rt_draw_text(cairo_t *cairo, double x, double y, RtColor color,
+                                                          const char *format, ...);
 double rt_text_width(cairo_t *cairo, const char *text);
 
 /* The same, truncated with "..." if the text is wider than `room`. */
-void rt_draw_text_within(cairo_t *cairo, double x, double y, double room, const char *text);
+void rt_draw_text_within(cairo_t *cairo, double x, double y, double room, RtColor color, const char *text);
 
 /* A legend entry: a square of `color` as high as a capital letter, with an outline, and black text; returns
  * the width of both. */
-double rt_draw_key(cairo_t *cairo, double x, double y, RtColor color, const char *text);
+__attribute__((format(printf, 5, 6))) double rt_draw_key(cairo_t *cairo, double x, double y, RtColor color,
+                                                         const char *format, ...);
 
 /* Maps values to positions on a colour scale: `least` to 0, `most` to 1. A logarithmic scale, of log(1 +
  * value), starts at 0. */

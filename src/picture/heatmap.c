@@ -11,13 +11,13 @@ typedef struct Statistics {
 
 typedef struct Drawing {
     cairo_t *cairo;
-    RtImage image; /* of the current panel */
     const RtHeatmapPanel *panels;
     const RtHeatmapOptions *options;
-    uint32_t count;      /* of panels, without the difference */
-    uint32_t width;      /* of the whole picture */
-    uint32_t pitch;      /* from a panel to the next, pixels */
-    double em, pad, top; /* the font size; around text; where panels begin */
+    uint32_t count;         /* of panels, without the difference */
+    uint32_t columns, rows; /* pixels of a panel */
+    uint32_t width;         /* of the whole picture */
+    uint32_t pitch;         /* from a panel to the next, pixels */
+    double em, pad, top;    /* the font size; around text; where panels begin */
     RtScale scale, difference;
 } Drawing;
 
@@ -32,11 +32,11 @@ static double value_of(const Drawing *d, uint32_t panel, uint32_t x, uint32_t y)
 
 static Statistics statistics_of(const Drawing *d, uint32_t panel) {
     Statistics found = {0};
-    for (uint32_t y = 0; y < d->image.height; y++) {
-        for (uint32_t x = 0; x < d->image.width; x++) {
+    for (uint32_t y = 0; y < d->rows; y++) {
+        for (uint32_t x = 0; x < d->columns; x++) {
             double value = value_of(d, panel, x, y);
             found.most = fmax(found.most, fabs(value));
-            found.mean += value / ((double)d->image.width * d->image.height);
+            found.mean += value / ((double)d->columns * d->rows);
         }
     }
     return found;
@@ -58,21 +58,26 @@ static void find_scales(Drawing *d) {
     d->difference.least = -d->difference.most;
 }
 
-static RtColor color_of(const Drawing *d, uint32_t panel, double value) {
-    if (panel < d->count) return rt_color_scale(rt_scale_position(&d->scale, value));
+typedef struct Panel {
+    const Drawing *drawing;
+    uint32_t number;
+} Panel;
+
+static RtColor color_at(const void *panel, uint32_t x, uint32_t y) {
+    const Panel *p = panel;
+    const Drawing *d = p->drawing;
+    const double value = value_of(d, p->number, x, y);
+    if (p->number < d->count) return rt_color_scale(rt_scale_position(&d->scale, value));
     return rt_color_difference(d->difference.most > 0 ? value / d->difference.most : 0);
 }
 
-static RtStatus draw_panel(Drawing *d, uint32_t panel, RtError *error) {
+static RtStatus draw_panel(const Drawing *d, uint32_t panel, RtError *error) {
     Statistics found = statistics_of(d, panel);
     char label[256], text[160];
     bool only = d->count + d->options->difference == 1;
     double left = panel * d->pitch, room = (only ? d->width : d->pitch - GAP) - 2 * d->pad;
-    for (uint32_t y = 0; y < d->image.height; y++) {
-        for (uint32_t x = 0; x < d->image.width; x++)
-            rt_image_set(&d->image, x, y, color_of(d, panel, value_of(d, panel, x, y)));
-    }
-    RT_TRY(rt_paint_image(d->cairo, &d->image, left, d->top, error));
+    const RtPixels pixels = {d->columns, d->rows, color_at, &(Panel){d, panel}};
+    RT_TRY(rt_paint_pixels(d->cairo, pixels, left, d->top, error));
     if (panel < d->count) {
         snprintf(label, sizeof label, "%s", d->panels[panel].label ? d->panels[panel].label : "");
         snprintf(text, sizeof text, "mean %.4g, max %.4g", found.mean, found.most);
@@ -80,22 +85,20 @@ static RtStatus draw_panel(Drawing *d, uint32_t panel, RtError *error) {
         snprintf(label, sizeof label, "%s - %s", d->panels[0].label, d->panels[1].label);
         snprintf(text, sizeof text, "mean %.4g", found.mean);
     }
-    rt_set_color(d->cairo, RT_BLACK, 1);
-    rt_draw_text_within(d->cairo, left + d->pad, d->pad + d->em, room, label);
-    rt_draw_text_within(d->cairo, left + d->pad, d->top + d->image.height + d->pad + d->em, room, text);
+    rt_draw_text_within(d->cairo, left + d->pad, d->pad + d->em, room, RT_BLACK, label);
+    rt_draw_text_within(d->cairo, left + d->pad, d->top + d->rows + d->pad + d->em, room, RT_BLACK, text);
     return RT_OK;
 }
 
 static void draw_legend(const Drawing *d) {
-    double top = d->top + d->image.height + d->pad + RT_LINE * d->em;
+    double top = d->top + d->rows + d->pad + RT_LINE * d->em;
     double width = d->options->difference ? 2 * d->pitch - GAP : d->width;
-    char text[160];
     rt_draw_scale(d->cairo, d->pad, top, width - 2 * d->pad, &d->scale);
     if (d->options->difference)
         rt_draw_scale(d->cairo, 2 * d->pitch + d->pad, top, d->pitch - GAP - 2 * d->pad, &d->difference);
-    snprintf(text, sizeof text, "%s, %s, %s rays", rt_tally_name(d->options->counter),
-             d->scale.logarithmic ? "log" : "linear", d->options->rays ? d->options->rays : "all");
-    rt_draw_text(d->cairo, d->pad, top + rt_scale_height(d->em) + d->em, text);
+    rt_draw_text(d->cairo, d->pad, top + rt_scale_height(d->em) + d->em, RT_BLACK, "%s, %s, %s rays",
+                 rt_tally_name(d->options->counter), d->scale.logarithmic ? "log" : "linear",
+                 d->options->rays ? d->options->rays : "all");
 }
 
 static RtStatus draw(Drawing *d, RtError *error) {
@@ -109,7 +112,8 @@ RtStatus rt_heatmap_draw(const char *file, const RtHeatmapPanel *panels, uint32_
                          const RtHeatmapOptions *options, RtError *error) {
     const RtSampling *s = &panels[0].frame->sampling;
     RtCanvas canvas;
-    Drawing d = {.panels = panels, .options = options, .count = count};
+    Drawing d = {
+        .panels = panels, .options = options, .count = count, .columns = s->width, .rows = s->height};
     uint32_t all = count + options->difference;
     d.pitch = s->width + GAP > LEAST_WIDTH || all == 1 ? s->width + GAP : LEAST_WIDTH;
     d.width = all * d.pitch - GAP > LEAST_WIDTH ? all * d.pitch - GAP : LEAST_WIDTH;
@@ -117,11 +121,7 @@ RtStatus rt_heatmap_draw(const char *file, const RtHeatmapPanel *panels, uint32_
     d.pad = 0.5 * d.em;
     d.top = panels[0].label ? ceil((RT_LINE + 0.3) * d.em) : 0;
     double below = ceil(2 * d.pad + 2 * RT_LINE * d.em + rt_scale_height(d.em));
-    RT_TRY(rt_image_init(&d.image, s->width, s->height, error));
-    RtStatus status =
-        rt_canvas_open(&canvas, file, d.width, d.top + s->height + below, RT_WHITE, d.em, error);
+    RT_TRY(rt_canvas_open(&canvas, file, d.width, d.top + s->height + below, d.em, error));
     d.cairo = canvas.cairo;
-    if (status == RT_OK) status = rt_canvas_close(&canvas, draw(&d, error), error);
-    rt_image_clear(&d.image);
-    return status;
+    return rt_canvas_close(&canvas, draw(&d, error), error);
 }

@@ -7,12 +7,7 @@
 #include "core/base/words.h"
 #include "picture/path_section.h"
 
-enum {
-    WIDTH = 1000,
-    LEFT = 250,
-    PLOT = WIDTH - LEFT - 20,
-    MARGIN = 12
-}; /* PLOT: the common x axis, pixels */
+enum { WIDTH = 1000, LEFT = 250, MARGIN = 12, PLOT = WIDTH - LEFT - 20 }; /* of the common x axis, pixels */
 enum { TOP = 64, SECTION = 450, INSET = 160, GAP = 46, ROW = 14, MOST_ROWS = 90, MOST_TICKS = 20 };
 enum { FONT_SIZE = 11, TITLE_SIZE = 16 };
 
@@ -21,11 +16,6 @@ typedef struct Drawing {
     cairo_t *cairo;
     RtPathSection section;
 } Drawing;
-
-static void draw_text(const Drawing *d, double x, double y, RtColor color, const char *text) {
-    rt_set_color(d->cairo, color, 1);
-    rt_draw_text(d->cairo, x, y, text);
-}
 
 /* ---- the rows ---- */
 
@@ -67,14 +57,14 @@ static void draw_bar(const Drawing *d, uint32_t i, double y) {
 static void draw_row(const Drawing *d, uint32_t i, double y) {
     const RtPathRow *row = &d->path->rows[i];
     bool object = row->kind == RT_TRACED_OBJECT_TEST;
-    char of[128] = "", text[256];
+    char of[128] = "";
     if (row->kind == RT_TRACED_PASSED_ON)
         snprintf(of, sizeof of, " by %s", row->what);
     else if (*row->what)
         snprintf(of, sizeof of, ", %s %u", row->what, row->index);
     const char *result = !rt_path_row_answers(row) ? "" : row->met ? ": hit" : ": missed";
-    snprintf(text, sizeof text, "%u  %s%s%s", i + 1, rt_path_row_name(row), of, result);
-    draw_text(d, MARGIN, y + ROW - 3, RT_BLACK, text);
+    rt_draw_text(d->cairo, MARGIN, y + ROW - 3, RT_BLACK, "%u  %s%s%s", i + 1, rt_path_row_name(row), of,
+                 result);
     draw_bar(d, i, y);
     if (object && row->met)
         rt_draw_disc(d->cairo, (RtPoint){rt_path_section_x(&d->section, (double)row->t), y + ROW / 2.0}, 4,
@@ -83,9 +73,8 @@ static void draw_row(const Drawing *d, uint32_t i, double y) {
 
 /* Draws consecutive object tests that missed as one row. */
 static void draw_run(const Drawing *d, uint32_t first, uint32_t run, double y) {
-    char text[128];
-    snprintf(text, sizeof text, "%u to %u  %u object tests: missed", first + 1, first + run, run);
-    draw_text(d, MARGIN, y + ROW - 3, RT_BLACK, text);
+    rt_draw_text(d->cairo, MARGIN, y + ROW - 3, RT_BLACK, "%u to %u  %u object tests: missed", first + 1,
+                 first + run, run);
     for (uint32_t i = first; i < first + run; i++) draw_bar(d, i, y);
 }
 
@@ -132,16 +121,11 @@ static void draw_axis(const Drawing *d, double y, double bottom) {
         snprintf(text, sizeof text, "t = %.6g", t);
         rt_add_line(d->cairo, (RtPoint){x, y}, (RtPoint){x, bottom});
         rt_paint(d->cairo, (RtStyle){{{221, 221, 221}}, 1, 0, false});
-        draw_text(d, x - rt_text_width(d->cairo, text) / 2, y - 4, RT_PATH_DARK, text);
+        rt_draw_text(d->cairo, x - rt_text_width(d->cairo, text) / 2, y - 4, RT_PATH_DARK, "%s", text);
     }
 }
 
 /* ---- the legend ---- */
-
-static double put_line(const Drawing *d, double y, const char *text) {
-    draw_text(d, MARGIN, y, RT_BLACK, text);
-    return y + 16;
-}
 
 static void draw_legend(const Drawing *d) {
     const struct {
@@ -157,51 +141,45 @@ static void draw_legend(const Drawing *d) {
                 {RT_PATH_UNVISITED, "leaf not visited"}};
     enum { COUNT = sizeof keys / sizeof keys[0] };
     const RtTally *t = &d->path->tally;
-    char text[128];
     double y = TOP;
     for (int i = 0; i < COUNT; i++, y += 18) {
         cairo_rectangle(d->cairo, MARGIN + 0.5, y + 0.5, keys[i].style.width > 0 ? 18 : 2, 11);
         rt_paint(d->cairo, keys[i].style);
-        draw_text(d, MARGIN + 26, y + 10, RT_BLACK, keys[i].text);
+        rt_draw_text(d->cairo, MARGIN + 26, y + 10, RT_BLACK, "%s", keys[i].text);
     }
-    y = put_line(d, y + 10, "dark: visited first, light: last");
-    snprintf(text, sizeof text, "%c is up", "xyz"[d->section.axis]);
-    y = put_line(d, y, text) + 6;
-    snprintf(text, sizeof text, "%llu step%s, %llu of them in leaves", (unsigned long long)t->steps,
-             rt_plural(t->steps), (unsigned long long)t->leaf_steps);
-    y = put_line(d, y, text);
-    snprintf(text, sizeof text, "%llu extent test%s", (unsigned long long)t->extent_tests,
-             rt_plural(t->extent_tests));
-    y = put_line(d, y, text);
-    snprintf(text, sizeof text, "%llu object test%s, %llu hit%s", (unsigned long long)t->object_tests,
-             rt_plural(t->object_tests), (unsigned long long)t->object_hits, rt_plural(t->object_hits));
-    put_line(d, y, text);
+    rt_draw_text(d->cairo, MARGIN, y + 10, RT_BLACK, "dark: visited first, light: last");
+    rt_draw_text(d->cairo, MARGIN, y + 26, RT_BLACK, "%c is up", "xyz"[d->section.axis]);
+    rt_draw_text(d->cairo, MARGIN, y + 48, RT_BLACK, "%llu step%s, %llu of them in leaves",
+                 (unsigned long long)t->steps, rt_plural(t->steps), (unsigned long long)t->leaf_steps);
+    rt_draw_text(d->cairo, MARGIN, y + 64, RT_BLACK, "%llu extent test%s",
+                 (unsigned long long)t->extent_tests, rt_plural(t->extent_tests));
+    rt_draw_text(d->cairo, MARGIN, y + 80, RT_BLACK, "%llu object test%s, %llu hit%s",
+                 (unsigned long long)t->object_tests, rt_plural(t->object_tests),
+                 (unsigned long long)t->object_hits, rt_plural(t->object_hits));
     if (d->section.overview.width > 0)
-        put_line(d, d->section.overview.y - 6, "the whole path; framed: the part drawn");
+        rt_draw_text(d->cairo, MARGIN, d->section.overview.y - 6, RT_BLACK,
+                     "the whole path; framed: the part drawn");
 }
 
 RtStatus rt_path_draw(const RtPath *path, const RtScene *scene, const char *title, const char *spec,
                       const char *file, RtError *error) {
     RtCanvas canvas;
     uint32_t left;
-    char text[64];
     Drawing d = {.path = path,
                  .section = {.detail = {LEFT, TOP, PLOT, SECTION, 0, 0, 0},
                              .overview = {MARGIN, TOP + SECTION - INSET, LEFT - 2 * MARGIN, INSET, 0, 0, 0}}};
     rt_path_section_init(&d.section, path, &scene->geometry);
     double bars = TOP + SECTION + GAP, bottom = bars + ROW * draw_rows(&d, bars, false, &left);
-    RT_TRY(rt_canvas_open(&canvas, file, WIDTH, bottom + 30, RT_WHITE, TITLE_SIZE, error));
+    RT_TRY(rt_canvas_open(&canvas, file, WIDTH, bottom + 30, TITLE_SIZE, error));
     d.cairo = canvas.cairo;
-    rt_set_color(d.cairo, RT_BLACK, 1);
-    rt_draw_text_within(d.cairo, MARGIN, 24, WIDTH - 2 * MARGIN, title);
+    rt_draw_text_within(d.cairo, MARGIN, 24, WIDTH - 2 * MARGIN, RT_BLACK, title);
     cairo_set_font_size(d.cairo, FONT_SIZE);
-    rt_set_color(d.cairo, RT_PATH_DARK, 1);
-    rt_draw_text_within(d.cairo, MARGIN, 44, WIDTH - 2 * MARGIN, spec);
+    rt_draw_text_within(d.cairo, MARGIN, 44, WIDTH - 2 * MARGIN, RT_PATH_DARK, spec);
     draw_legend(&d);
     RtStatus status = rt_path_section_draw(&d.section, d.cairo, error);
     draw_axis(&d, bars - 4, bottom);
     draw_rows(&d, bars, true, &left);
-    snprintf(text, sizeof text, "and %u more row%s", left, rt_plural(left));
-    if (left > 0) put_line(&d, bottom + 18, text);
+    if (left > 0)
+        rt_draw_text(d.cairo, MARGIN, bottom + 18, RT_BLACK, "and %u more row%s", left, rt_plural(left));
     return rt_canvas_close(&canvas, status, error);
 }

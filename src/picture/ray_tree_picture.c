@@ -2,7 +2,7 @@
 /* The upper part is a section through a plane that contains the primary ray, turned about it so that the rays
  * that follow lie as close to it as they can: those of a ball lie in it. Rays that leave it are projected
  * onto it. The window shows the hits. The lower part has a row for each ray. */
-#include "picture/ray_tree_picture.h"
+#include "picture/path_picture.h"
 
 #include "core/base/memory.h"
 #include "core/base/words.h"
@@ -254,8 +254,7 @@ static void draw_number(const Drawing *d, const RtTreeRay *ray, RtPoint from, Rt
     snprintf(text, sizeof text, "%u", ray->number);
     double x = (from.x + to.x) / 2 - 10 * dy / length - rt_text_width(d->cairo, text) / 2;
     double y = (from.y + to.y) / 2 + 10 * dx / length + 4;
-    rt_set_color(d->cairo, color, 1);
-    rt_draw_text(d->cairo, x, y, text);
+    rt_draw_text(d->cairo, x, y, color, "%s", text);
 }
 
 /* A line with a head at `to`, `head` long. */
@@ -319,11 +318,9 @@ static void draw_keys(const Drawing *d, double y) {
     double x = MARGIN;
     for (int i = 0; i < STYLES; i++) {
         draw_arrow(d, (RtPoint){x, y - 4}, (RtPoint){x + 28, y - 4}, styles[i].style, 8);
-        rt_set_color(d->cairo, RT_BLACK, 1);
-        x += 34 + rt_draw_text(d->cairo, x + 34, y, styles[i].text) + 22;
+        x += 34 + rt_draw_text(d->cairo, x + 34, y, RT_BLACK, "%s", styles[i].text) + 22;
     }
-    rt_set_color(d->cairo, dark, 1);
-    rt_draw_text(d->cairo, x, y, "pale: leaves the plane");
+    rt_draw_text(d->cairo, x, y, dark, "pale: leaves the plane");
 }
 
 enum { HIT = 300, T = 610, FACTOR = 690, LIGHT = 770 }; /* columns */
@@ -332,21 +329,16 @@ static void draw_row(const Drawing *d, const RtTreeRay *ray, double y) {
     char text[RT_TREE_HIT_TEXT];
     const double x = MARGIN + INDENT * (ray->level - (ray->ray.kind != RT_RAY_SHADOW));
     rt_fill_rectangle(d->cairo, x, y - 10, 4, 12, styles[style_of(ray)].style.color);
-    rt_set_color(d->cairo, RT_BLACK, 1);
-    snprintf(text, sizeof text, "%u", ray->number);
-    const double name_at = x + 15 + rt_draw_text(d->cairo, x + 9, y, text);
+    const double name_at = x + 15 + rt_draw_text(d->cairo, x + 9, y, RT_BLACK, "%u", ray->number);
     rt_tree_ray_name(ray, text);
-    rt_draw_text_within(d->cairo, name_at, y, HIT - name_at - 6, text);
+    rt_draw_text_within(d->cairo, name_at, y, HIT - name_at - 6, RT_BLACK, text);
     rt_tree_ray_hit(ray, d->scene, text);
-    rt_draw_text_within(d->cairo, HIT, y, T - HIT - 10, text);
-    snprintf(text, sizeof text, "%.4g", (double)ray->hit.t);
-    if (isfinite((double)ray->hit.t)) rt_draw_text(d->cairo, T, y, text);
-    snprintf(text, sizeof text, "%.3g", (double)ray->factor);
-    rt_draw_text(d->cairo, FACTOR, y, text);
+    rt_draw_text_within(d->cairo, HIT, y, T - HIT - 10, RT_BLACK, text);
+    if (isfinite((double)ray->hit.t)) rt_draw_text(d->cairo, T, y, RT_BLACK, "%.4g", (double)ray->hit.t);
+    rt_draw_text(d->cairo, FACTOR, y, RT_BLACK, "%.3g", (double)ray->factor);
     rt_fill_rectangle(d->cairo, LIGHT, y - 10, 22, 12, color_of(rt_narrow(ray->light)));
-    snprintf(text, sizeof text, "%.3f  %.3f  %.3f", ray->light.x, ray->light.y, ray->light.z);
-    rt_set_color(d->cairo, RT_BLACK, 1);
-    rt_draw_text(d->cairo, LIGHT + 30, y, text);
+    rt_draw_text(d->cairo, LIGHT + 30, y, RT_BLACK, "%.3f  %.3f  %.3f", ray->light.x, ray->light.y,
+                 ray->light.z);
 }
 
 static void draw_rows(const Drawing *d, double y, uint32_t rows) {
@@ -355,15 +347,13 @@ static void draw_rows(const Drawing *d, double y, uint32_t rows) {
         const char *text;
     } heads[] = {
         {MARGIN, "ray"}, {HIT, "hits"}, {T, "t"}, {FACTOR, "factor"}, {LIGHT, "light: red, green, blue"}};
-    rt_set_color(d->cairo, dark, 1);
     for (size_t i = 0; i < sizeof heads / sizeof heads[0]; i++)
-        rt_draw_text(d->cairo, heads[i].x, y, heads[i].text);
+        rt_draw_text(d->cairo, heads[i].x, y, dark, "%s", heads[i].text);
     for (uint32_t i = 0, row = 0; row < rows; i = rt_ray_tree_next(d->tree, i), row++)
         draw_row(d, &d->tree->rays[i], y += ROW);
-    char text[64];
     const uint32_t left = d->tree->count - rows;
-    snprintf(text, sizeof text, "and %u more ray%s", left, rt_plural(left));
-    if (left > 0) rt_draw_text(d->cairo, MARGIN, y + ROW, text);
+    if (left > 0)
+        rt_draw_text(d->cairo, MARGIN, y + ROW, RT_BLACK, "and %u more ray%s", left, rt_plural(left));
 }
 
 static RtStatus draw(Drawing *d, const char *title, const char *file, RtError *error) {
@@ -372,18 +362,14 @@ static RtStatus draw(Drawing *d, const char *title, const char *file, RtError *e
     choose_plane(d);
     choose_window(d);
     const double below = TOP + d->height, height = below + KEYS + ROW * (rows + 2.0) + MARGIN;
-    RT_TRY(rt_canvas_open(&canvas, file, WIDTH, height, RT_WHITE, TITLE_SIZE, error));
+    RT_TRY(rt_canvas_open(&canvas, file, WIDTH, height, TITLE_SIZE, error));
     d->cairo = canvas.cairo;
-    rt_set_color(d->cairo, RT_BLACK, 1);
-    rt_draw_text_within(d->cairo, MARGIN, 24, WIDTH - 2 * MARGIN, title);
+    rt_draw_text_within(d->cairo, MARGIN, 24, WIDTH - 2 * MARGIN, RT_BLACK, title);
     cairo_set_font_size(d->cairo, FONT_SIZE);
-    rt_set_color(d->cairo, dark, 1);
     RtVec3d up = d->section.up;
-    char text[128];
-    snprintf(text, sizeof text,
-             "a section that contains the primary ray; upward is (%.2f, %.2f, %.2f); numbers as below", up.x,
-             up.y, up.z);
-    rt_draw_text(d->cairo, MARGIN, 46, text);
+    rt_draw_text(d->cairo, MARGIN, 46, dark,
+                 "a section that contains the primary ray; upward is (%.2f, %.2f, %.2f); numbers as below",
+                 up.x, up.y, up.z);
     RtStatus status = draw_section(d, error);
     draw_keys(d, below + 22);
     draw_rows(d, below + KEYS + ROW, rows);

@@ -169,26 +169,22 @@ static void draw_box(void *context, const RtBoxView *view) {
 }
 
 /* White where nothing is seen, and pale elsewhere. */
-static void lighten(const Drawing *d, RtImage *image) {
-    for (uint32_t y = 0; y < image->height; y++) {
-        for (uint32_t x = 0; x < image->width; x++) {
-            uint8_t *rgb = image->rgb + 3 * ((size_t)y * image->width + x);
-            bool seen = d->frame->object[sample_of(d, x, y)] != RT_NO_OBJECT;
-            for (int c = 0; c < 3; c++) rgb[c] = (uint8_t)(seen ? 255 - (255 - rgb[c]) * 2 / 5 : 255);
-        }
-    }
+static RtColor pale_color(const void *drawing, uint32_t x, uint32_t y) {
+    const Drawing *d = drawing;
+    const RtVec3 seen = rt_frame_pixel(d->frame, x, y);
+    RtColor color = RT_WHITE;
+    if (d->frame->object[sample_of(d, x, y)] == RT_NO_OBJECT) return color;
+    for (int c = 0; c < 3; c++) color.rgb[c] = (uint8_t)(255 - (255 - rt_srgb(seen.at[c])) * 2 / 5);
+    return color;
 }
 
 static RtStatus draw_perspective(Drawing *d, RtError *error) {
     const RtCamera *camera = &d->layer->scene->camera;
     RtSampling sampling;
-    RtImage image;
     RT_TRY(rt_sampling_init(&sampling, (uint32_t)d->width, (uint32_t)d->height, 1, false, error));
     RT_TRY(rt_view_init(&d->view, camera, sampling, error));
-    RT_TRY(rt_image_from_frame(&image, d->frame, error));
-    lighten(d, &image);
-    RtStatus status = rt_paint_image(d->cairo, &image, 0, 0, error);
-    rt_image_clear(&image);
+    const RtPixels image = {(uint32_t)d->width, (uint32_t)d->height, pale_color, d};
+    RtStatus status = rt_paint_pixels(d->cairo, image, 0, 0, error);
     d->near = fmax(d->view.near, 1e-3 * rt_lengthd(rt_subd(rt_widen(camera->at), d->view.eye)));
     /* Small boxes are drawn last, in the middle of the thick lines of large ones that share their edges. */
     for (d->level = d->first; status == RT_OK && d->level <= d->last; d->level++)
@@ -281,7 +277,7 @@ static void draw_keys(const Drawing *d, double x, double y) {
     enum { MOST = 6, SIZES = 5 };
     bool by_size = is_by_size(d);
     uint32_t levels = d->last - d->first + 1, count = by_size ? SIZES : levels < MOST ? levels : MOST;
-    x += rt_draw_text(d->cairo, x, y, by_size ? "size" : "level") + 0.8 * d->em;
+    x += rt_draw_text(d->cairo, x, y, RT_BLACK, by_size ? "size" : "level") + 0.8 * d->em;
     for (uint32_t i = 0; i < count; i++) {
         double at = count > 1 ? (double)i / (count - 1) : 0;
         uint32_t level = d->first + (uint32_t)(at * (levels - 1) + 0.5);
@@ -294,9 +290,8 @@ static void draw_keys(const Drawing *d, double x, double y) {
         cairo_move_to(d->cairo, x, floor(y - 0.35 * d->em) + 0.5);
         cairo_line_to(d->cairo, x + d->em, floor(y - 0.35 * d->em) + 0.5);
         cairo_stroke(d->cairo);
-        rt_set_color(d->cairo, RT_BLACK, 1);
         x += 1.4 * d->em;
-        x += rt_draw_text(d->cairo, x, y, text) + 0.6 * d->em;
+        x += rt_draw_text(d->cairo, x, y, RT_BLACK, "%s", text) + 0.6 * d->em;
     }
     cairo_set_line_width(d->cairo, 1);
     if (d->options->slice) rt_draw_key(d->cairo, x, y, object_color, "object");
@@ -307,17 +302,14 @@ static void draw_legend(const Drawing *d) {
     static const char *const names[RT_EXTENT_KIND_COUNT] = {"boxes", "spheres", "oriented boxes",
                                                             "slab polytopes"};
     double left = 0.5 * d->em, y = d->height + 1.5 * d->em;
-    char text[128];
     if (d->options->slice)
-        snprintf(text, sizeof text, "%s, section at %c = %.4g, %c up", d->layer->ops->name,
-                 axes[d->plane.axis], d->plane.at, axes[d->plane.up]);
+        rt_draw_text(d->cairo, left, y, RT_BLACK, "%s, section at %c = %.4g, %c up", d->layer->ops->name,
+                     axes[d->plane.axis], d->plane.at, axes[d->plane.up]);
     else
-        snprintf(text, sizeof text, "%s", d->layer->ops->name);
-    rt_set_color(d->cairo, RT_BLACK, 1);
-    rt_draw_text(d->cairo, left, y, text);
-    snprintf(text, sizeof text, "%llu of %llu %s%s", (unsigned long long)d->drawn, (unsigned long long)d->all,
-             names[d->kind], d->options->leaves ? ", leaves only" : "");
-    rt_draw_text(d->cairo, left, y + RT_LINE * d->em, text);
+        rt_draw_text(d->cairo, left, y, RT_BLACK, "%s", d->layer->ops->name);
+    rt_draw_text(d->cairo, left, y + RT_LINE * d->em, RT_BLACK, "%llu of %llu %s%s",
+                 (unsigned long long)d->drawn, (unsigned long long)d->all, names[d->kind],
+                 d->options->leaves ? ", leaves only" : "");
     draw_keys(d, left, y + 2 * RT_LINE * d->em);
 }
 
@@ -394,7 +386,7 @@ RtStatus rt_structure_draw(const char *file, const RtAccel *layer, const RtFrame
         return rt_fail(error, RT_BAD_INPUT,
                        "none of the %llu boxes of %s is on the requested levels or in the slice",
                        (unsigned long long)d.all, layer->ops->name);
-    RT_TRY(rt_canvas_open(&canvas, file, width, s->height + legend_height(d.em), RT_WHITE, d.em, error));
+    RT_TRY(rt_canvas_open(&canvas, file, width, s->height + legend_height(d.em), d.em, error));
     d.cairo = canvas.cairo;
     return rt_canvas_close(&canvas, draw(&d, error), error);
 }

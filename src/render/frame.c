@@ -117,36 +117,28 @@ static RtStatus take_rays(Worker *worker, const RtRay *rays, uint32_t count, RtE
     return RT_OK;
 }
 
-static RtStatus trace_nearest(Worker *worker, const RtRay *rays, const Path *paths, uint32_t count,
-                              RtError *error) {
+/* Queries of one kind: shadow rays are answered by `occluded`, to worker->occluded, others by `nearest`. */
+static void ask(Worker *worker, const RtRay *rays, uint32_t first, uint32_t count, RtTally *tallies) {
+    if (rays[first].kind == RT_RAY_SHADOW)
+        rt_occluded(&worker->query, rays + first, count, worker->occluded + first, tallies);
+    else
+        rt_nearest(&worker->query, rays + first, count, worker->hits + first, tallies);
+}
+
+/* A counted frame traces one ray at a time. */
+static RtStatus trace_stream(Worker *worker, const RtRay *rays, const Path *paths, uint32_t count,
+                             RtError *error) {
     RT_TRY(take_rays(worker, rays, count, error));
     if (!worker->job->options->counted) {
         const double start = clock_of(worker);
-        rt_nearest(&worker->query, rays, count, worker->hits, NULL);
+        ask(worker, rays, 0, count, NULL);
         worker->querying += clock_of(worker) - start;
         return RT_OK;
     }
     RtTally cost[RT_RAY_KIND_COUNT] = {0};
     for (uint32_t i = 0; i < count; i++) {
-        rt_nearest(&worker->query, &rays[i], 1, &worker->hits[i], cost);
+        ask(worker, rays, i, 1, cost);
         charge(worker, paths[i].sample, rays[i].kind, cost);
-    }
-    return RT_OK;
-}
-
-static RtStatus trace_occluded(Worker *worker, RtError *error) {
-    const RtRay *rays = worker->shadow_rays;
-    RT_TRY(take_rays(worker, rays, worker->shadow_count, error));
-    if (!worker->job->options->counted) {
-        const double start = clock_of(worker);
-        rt_occluded(&worker->query, rays, worker->shadow_count, worker->occluded, NULL);
-        worker->querying += clock_of(worker) - start;
-        return RT_OK;
-    }
-    RtTally cost[RT_RAY_KIND_COUNT] = {0};
-    for (uint32_t i = 0; i < worker->shadow_count; i++) {
-        rt_occluded(&worker->query, &rays[i], 1, &worker->occluded[i], cost);
-        charge(worker, worker->shadow_paths[i].sample, rays[i].kind, cost);
     }
     return RT_OK;
 }
@@ -155,7 +147,7 @@ static RtStatus trace_occluded(Worker *worker, RtError *error) {
 
 static RtStatus flush_shadows(Worker *worker, RtError *error) {
     if (worker->shadow_count == 0) return RT_OK;
-    RT_TRY(trace_occluded(worker, error));
+    RT_TRY(trace_stream(worker, worker->shadow_rays, worker->shadow_paths, worker->shadow_count, error));
     for (uint32_t i = 0; i < worker->shadow_count; i++) {
         const bool occluded = worker->occluded[i];
         RtVec3 light = occluded ? rt_vec3(0, 0, 0) : worker->shadow_lights[i];
@@ -233,7 +225,7 @@ static RtStatus trace_level(Worker *worker, uint32_t depth, RtError *error) {
         uint32_t count = level->count - begin < STREAM ? level->count - begin : STREAM;
         const RtRay *rays = level->rays + begin;
         const Path *paths = level->paths + begin;
-        RT_TRY(trace_nearest(worker, rays, paths, count, error));
+        RT_TRY(trace_stream(worker, rays, paths, count, error));
         if (depth == 0) record_primary(worker, paths, count);
         uint32_t surface_count = find_surfaces(worker, rays, paths, count);
         RT_TRY(trace_shadows(worker, surface_count, error));

@@ -122,13 +122,11 @@ static RtStatus compare(RtPath *path, const RtTally *counted, bool remote, RtErr
         path->tally.leaf_steps = counted->leaf_steps;
         path->tally.empty_steps = counted->empty_steps;
     }
-    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
-        uint64_t seen = rt_tally_get(&path->tally, i), right = rt_tally_get(counted, i);
-        if (seen == right) continue;
-        return rt_fail(error, RT_MISMATCH, "the path has %llu %s where the kernel counted %llu",
-                       (unsigned long long)seen, rt_tally_name(i), (unsigned long long)right);
-    }
-    return RT_OK;
+    const size_t i = rt_tally_difference(&path->tally, counted);
+    if (i == RT_TALLY_COUNTER_COUNT) return RT_OK;
+    return rt_fail(error, RT_MISMATCH, "the path has %llu %s where the kernel counted %llu",
+                   (unsigned long long)rt_tally_get(&path->tally, i), rt_tally_name(i),
+                   (unsigned long long)rt_tally_get(counted, i));
 }
 
 RtStatus rt_path_available(const RtAccel *accel, const char *spec, RtError *error) {

@@ -232,16 +232,14 @@ static RtStatus judge(const Job *job, const Worker *worker, size_t chunk, size_t
 
 static void compare_recounts(Job *job, const Answers *answers) {
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
-        for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
-            uint64_t was = rt_tally_get(&answers->recounts[0][kind], i);
-            uint64_t is = rt_tally_get(&answers->recounts[1][kind], i);
-            if (was == is) continue;
-            rt_fail(&job->recounted, RT_BROKEN,
-                    "it counts %llu %s on some %s rays, and %llu when they are traced again",
-                    (unsigned long long)was, rt_tally_name(i), rt_ray_kind_name((RtRayKind)kind),
-                    (unsigned long long)is);
-            return;
-        }
+        const RtTally *first = &answers->recounts[0][kind], *second = &answers->recounts[1][kind];
+        const size_t i = rt_tally_difference(first, second);
+        if (i == RT_TALLY_COUNTER_COUNT) continue;
+        rt_fail(&job->recounted, RT_BROKEN,
+                "it counts %llu %s on some %s rays, and %llu when they are traced again",
+                (unsigned long long)rt_tally_get(first, i), rt_tally_name(i),
+                rt_ray_kind_name((RtRayKind)kind), (unsigned long long)rt_tally_get(second, i));
+        return;
     }
 }
 

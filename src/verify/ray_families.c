@@ -25,6 +25,11 @@ static RtVec3d point_of_object(Generator *m, RtWhere where, uint32_t *id) {
     return rt_point_of_object(m->geometry, where, &m->random, rt_query_crossings(m->query), id);
 }
 
+static RtVec3d some_point(Generator *m, RtWhere where) {
+    uint32_t id;
+    return point_of_object(m, where, &id);
+}
+
 static RtRay ray_along(RtVec3d from, RtVec3d dir) {
     return (RtRay){.org = rt_narrow(from), .dir = rt_narrow(dir), .tmax = INFINITY, .kind = RT_RAY_RANDOM};
 }
@@ -72,8 +77,7 @@ static RtRay on_fractions(Generator *m) {
 }
 
 static RtRay from_surface(Generator *m) {
-    uint32_t id;
-    RtVec3d p = point_of_object(m, RT_ON_SURFACE, &id);
+    RtVec3d p = some_point(m, RT_ON_SURFACE);
     return ray_along(p, rt_random_direction(&m->random));
 }
 
@@ -98,13 +102,11 @@ static RtRay from_inside(Generator *m) {
 }
 
 static RtRay at_vertex(Generator *m) {
-    uint32_t id;
-    return ray_through(m, point_of_object(m, RT_AT_VERTEX, &id));
+    return ray_through(m, some_point(m, RT_AT_VERTEX));
 }
 
 static RtRay at_edge(Generator *m) {
-    uint32_t id;
-    return ray_through(m, point_of_object(m, RT_ON_EDGE, &id));
+    return ray_through(m, some_point(m, RT_ON_EDGE));
 }
 
 /* A random direction along the surface of an object at p, and its normal there; without an object just a
@@ -131,9 +133,7 @@ static RtRay from_afar(Generator *m) {
     static const double sizes[] = {1e3, 1e4, 1e5, 1e6, 1e7};
     double distance = m->size * sizes[below(m, 5)];
     RtVec3d from = rt_add_scaledd(m->center, rt_random_direction(&m->random), distance);
-    uint32_t id;
-    RtVec3d to =
-        below(m, 2) ? rt_point_in_scene(m->geometry, &m->random) : point_of_object(m, RT_ON_SURFACE, &id);
+    RtVec3d to = below(m, 2) ? rt_point_in_scene(m->geometry, &m->random) : some_point(m, RT_ON_SURFACE);
     return ray_along(from, rt_normalized(rt_subd(to, from)));
 }
 
@@ -264,10 +264,9 @@ static RtRay grazing(Generator *m) {
 static RtRay denormal(Generator *m) {
     static const float tiny[] = {0x1p-149f, -0x1p-149f, 0x1p-140f, -0x1p-130f, 0x1p-127f,
                                  0x1p-126f, -0x1p-126f, 0.0f,      -0.0f};
-    uint32_t id;
     RtRay ray = along_axis(m);
     if (below(m, 2)) {
-        RtVec3d from = point_of_object(m, RT_AT_VERTEX, &id);
+        RtVec3d from = some_point(m, RT_AT_VERTEX);
         ray = ray_along(from, free_direction(m));
     }
     int whole = (int)below(m, 3);
@@ -283,14 +282,14 @@ static RtRay denormal(Generator *m) {
  * from anywhere around; some with a wrong light, another tmax, or a slightly wrong direction. */
 static RtRay to_light(Generator *m) {
     if (m->scene->light_count == 0) return chord(m);
-    uint32_t id, light = below(m, m->scene->light_count);
+    uint32_t light = below(m, m->scene->light_count);
     RtVec3d to = rt_widen(m->scene->lights[light].position), from;
     switch (below(m, 5)) {
-    case 0: from = point_of_object(m, RT_ON_SURFACE, &id); break;
-    case 1: from = point_of_object(m, RT_ON_EDGE, &id); break;
+    case 0: from = some_point(m, RT_ON_SURFACE); break;
+    case 1: from = some_point(m, RT_ON_EDGE); break;
     case 2: from = rt_point_in_scene(m->geometry, &m->random); break;
     case 3: /* far away, past an edge, or behind the light */
-        from = point_of_object(m, RT_ON_EDGE, &id);
+        from = some_point(m, RT_ON_EDGE);
         from =
             rt_add_scaledd(to, rt_subd(to, from), below(m, 2) ? 1 : -rt_random_betweend(&m->random, 1, 1e4));
         break;

@@ -63,26 +63,20 @@ RtStatus rt_verify_sums(const json_t *rows, RtVerifyGroup group, RtVerifySum **s
         if (group == RT_BY_SCENE) snprintf(key.name, sizeof key.name, "%s", scene);
         RtVerifySum *sum = sum_of(*sums, *count, &key);
         if (!sum) {
-            RT_TRY(rt_reserve(sums, &capacity, (uint64_t)*count + 1, sizeof(RtVerifySum), error));
-            sum = &(*sums)[(*count)++];
-            *sum = key;
+            RT_TRY(rt_append(sums, count, &capacity, &key, sizeof key, error));
+            sum = &(*sums)[*count - 1];
         }
         add(sum, row);
     }
     return RT_OK;
 }
 
-RtVerifySum rt_verify_total(const RtVerifySum *sums, uint32_t count) {
+RtVerifySum rt_verify_total(const json_t *rows) {
     RtVerifySum total = {.exact = true};
-    for (uint32_t i = 0; i < count; i++) {
-        total.exact &= sums[i].exact;
-        total.rows += sums[i].rows;
-        total.failed += sums[i].failed;
-        total.refused += sums[i].refused;
-        total.pairs += sums[i].pairs;
-        for (int v = 0; v < RT_VERDICT_COUNT; v++) total.verdicts[v] += sums[i].verdicts[v];
-        total.occluded_wrong += sums[i].occluded_wrong;
-        for (int s = 0; s < RT_SIDE_COUNT; s++) total.sides[s] += sums[i].sides[s];
+    for (size_t i = 0; i < json_array_size(rows); i++) {
+        const json_t *row = json_array_get(rows, i);
+        total.exact &= json_is_true(json_object_get(row, "exact"));
+        add(&total, row);
     }
     return total;
 }
@@ -212,8 +206,8 @@ static void write_sums(const RtColumnGroup groups[2], RtVerifySum *sums, uint32_
     rt_table_markdown(&(RtTable){groups, 2, count, row, .context = sums}, out);
 }
 
-static void write_markdown(const Sums *sums, FILE *out) {
-    RtVerifySum total = rt_verify_total(sums->accels, sums->accel_count);
+static void write_markdown(const json_t *rows, const Sums *sums, FILE *out) {
+    RtVerifySum total = rt_verify_total(rows);
     fprintf(out, "# Verification\n\n%" PRIu64 " comparison%s, ", total.pairs, rt_plural(total.pairs));
     fputs("each of the answers to `nearest` and `occluded`, timed and counted:\n", out);
     fprintf(out, "%" PRIu64 " answer%s to `nearest` %s wrong, %" PRIu64 " to `occluded`. ",
@@ -255,7 +249,7 @@ static RtStatus write_files(json_t *rows, const Sums *sums, const char *folder, 
     rt_table_csv(&table, output.file);
     RT_TRY(rt_output_commit(&output, error));
     RT_TRY(rt_output_open_in(&output, folder, "verify.md", error));
-    write_markdown(sums, output.file);
+    write_markdown(rows, sums, output.file);
     return rt_output_commit(&output, error);
 }
 

@@ -33,8 +33,8 @@ typedef enum RtVerifyGroup { RT_BY_ACCEL, RT_BY_SCENE } RtVerifyGroup;
 RtStatus rt_verify_sums(const json_t *rows, RtVerifyGroup group, RtVerifySum **sums, uint32_t *count,
                         RtError *error);
 
-/* The sum of sums. */
-RtVerifySum rt_verify_total(const RtVerifySum *sums, uint32_t count);
+/* The sum of all rows; exact if every accelerator is. */
+RtVerifySum rt_verify_total(const json_t *rows);
 
 /* True if a row has a wrong answer or a "problem": an invalid structure, or too many marginal answers. */
 bool rt_verify_row_fails(const json_t *row);

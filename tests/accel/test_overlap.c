@@ -7,7 +7,7 @@
 #include "accel/surface.h"
 #include "accel/tree/tree.h"
 #include "core/shape/overlap.h"
-#include "scenes/family.h"
+#include "scenes/builtin.h"
 #include "verify/ray_families.h"
 
 static const double margin = 1e-9;

@@ -7,7 +7,7 @@
 
 #include "exact/border.h"
 #include "exact/referee.h"
-#include "scenes/family.h"
+#include "scenes/builtin.h"
 #include "verify/ray_families.h"
 
 /* ---- rings ---- */

@@ -3,7 +3,6 @@
 #include "scene_testing.h"
 
 #include "scenes/builtin.h"
-#include "scenes/family.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Scenes at the limits of what readers accept, harder than any family (scenes/family.h): every exact
+/* Scenes at the limits of what readers accept, harder than any family (scenes/family.c): every exact
  * accelerator, at every value worth testing of its parameters, answers rays of every family like brute. Only
  * Embree's native mode may refuse a scene, whose own arithmetic it would overflow. It must survive the
  * others; it takes denormal numbers for 0. */

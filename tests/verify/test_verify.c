@@ -420,8 +420,8 @@ RT_TEST(rows_add_up_over_the_parameters_of_an_accelerator) {
     assert_int_equal(sums[1].sides[RT_SIDE_BOTH], 4);
     assert_int_equal(sums[1].sides[RT_SIDE_GOT], 3);
     assert_int_equal(sums[0].occluded_wrong, 5);
-    assert_int_equal(rt_verify_total(sums, count).pairs, 500);
-    assert_int_equal(rt_verify_total(sums, count).occluded_wrong, 5);
+    assert_int_equal(rt_verify_total(rows).pairs, 500);
+    assert_int_equal(rt_verify_total(rows).occluded_wrong, 5);
     rt_free(sums);
     assert_ok(rt_verify_sums(rows, RT_BY_SCENE, &sums, &count, error));
     assert_int_equal(count, 2);

@@ -2,6 +2,7 @@
 #include "core/base/file.h"
 
 #include "core/base/memory.h"
+#include "core/base/words.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -342,11 +343,6 @@ RtStatus rt_directory_create(const char *path, RtError *error) {
     return rt_fail(error, RT_IO, "%s: this is not a directory", path);
 }
 
-static bool ends_in(const char *name, const char *suffix) {
-    size_t length = strlen(name), tail = strlen(suffix);
-    return length >= tail && strcmp(name + length - tail, suffix) == 0;
-}
-
 size_t rt_directory_each(const char *folder, const char *suffix,
                          void (*visit)(void *context, const char *path), void *context) {
     struct dirent **entries;
@@ -356,7 +352,7 @@ size_t rt_directory_each(const char *folder, const char *suffix,
     for (int i = 0; i < count; i++) {
         char path[RT_MAX_PATH];
         const char *name = entries[i]->d_name;
-        if (ends_in(name, suffix) && rt_path_join(folder, name, path, NULL) == RT_OK) {
+        if (rt_ends_in(name, suffix) && rt_path_join(folder, name, path, NULL) == RT_OK) {
             if (visit) visit(context, path);
             visited++;
         }

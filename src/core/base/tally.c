@@ -24,6 +24,12 @@ uint64_t rt_tally_get(const RtTally *tally, size_t i) {
     return ((const uint64_t *)tally)[i]; /* a tally holds nothing but counters */
 }
 
+size_t rt_tally_difference(const RtTally *a, const RtTally *b) {
+    size_t i = 0;
+    while (i < RT_TALLY_COUNTER_COUNT && rt_tally_get(a, i) == rt_tally_get(b, i)) i++;
+    return i;
+}
+
 static uint64_t capped(uint64_t count) {
     return count < RT_TALLY_MOST ? count : RT_TALLY_MOST;
 }

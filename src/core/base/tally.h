@@ -47,6 +47,9 @@ const char *rt_tally_meaning(size_t i);
 /* Value of counter `i`. */
 uint64_t rt_tally_get(const RtTally *tally, size_t i);
 
+/* The first counter in which two tallies differ; RT_TALLY_COUNTER_COUNT if none does. */
+size_t rt_tally_difference(const RtTally *a, const RtTally *b);
+
 /* The most that a counter of a sum reaches: JSON has signed integers of 64 bits. */
 #define RT_TALLY_MOST ((uint64_t)INT64_MAX)
 

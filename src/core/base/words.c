@@ -10,6 +10,11 @@
 #include <strings.h>
 #include <sys/ioctl.h>
 
+bool rt_ends_in(const char *text, const char *end) {
+    const size_t length = strlen(text), tail = strlen(end);
+    return length >= tail && strcmp(text + length - tail, end) == 0;
+}
+
 /* Levenshtein distance, for words of up to 63 characters; two neighbours that are swapped count once. */
 static size_t edit_distance(const char *a, const char *b) {
     size_t rows[3][64], n = strlen(b), i = 0;

@@ -5,6 +5,7 @@
 
 #include "core/base/status.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -13,6 +14,9 @@
 static inline const char *rt_plural(uint64_t count) {
     return count == 1 ? "" : "s";
 }
+
+/* Whether `text` ends in `end`. */
+bool rt_ends_in(const char *text, const char *end);
 
 /* The name nearest to `word` by edit distance, or NULL if none is near. */
 const char *rt_nearest_name(const char *word, const char *const *names, size_t count);

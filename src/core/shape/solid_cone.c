@@ -11,6 +11,7 @@
  * closely as double allows. So the transform describes what is between the caps, for extents and for the
  * referee, too. */
 #include "core/base/memory.h"
+#include "core/shape/cone.h"
 #include "core/shape/solid_parts.h"
 
 #include <string.h>
@@ -162,16 +163,12 @@ RtStatus rt_solid_set_caps(RtSolidSet *set, uint32_t index, const RtPlane *caps,
 
 RtStatus rt_solid_add_frustum(RtSolidSet *set, RtVec3 base, float base_radius, RtVec3 apex, float apex_radius,
                               uint32_t *index, RtError *error) {
-    if (!(base_radius >= 0) || !(apex_radius >= 0) || !(base_radius + apex_radius > 0))
-        return rt_fail(error, RT_BAD_INPUT,
-                       "a cone needs radii of at least 0, one of them above 0; these are %g and %g",
-                       (double)base_radius, (double)apex_radius);
     if (apex_radius > base_radius)
         return rt_solid_add_frustum(set, apex, apex_radius, base, base_radius, index, error);
+    RtCone checked;
+    RT_TRY(rt_cone_init(&checked, base, base_radius, apex, apex_radius, error));
     RtVec3d axis = rt_subd(rt_widen(apex), rt_widen(base));
-    if (!(rt_lengthd(axis) > 0))
-        return rt_fail(error, RT_BAD_INPUT, "the two ends of the cone are the same point: move one of them");
     RtTransform to_world =
-        rt_solid_transform_about(rt_widen(base), axis, (double)base_radius, rt_lengthd(axis));
+        rt_solid_transform_about(rt_widen(base), axis, (double)base_radius, checked.height);
     return rt_solid_add_cone(set, (double)apex_radius / (double)base_radius, &to_world, index, error);
 }

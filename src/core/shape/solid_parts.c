@@ -136,10 +136,8 @@ RtStatus rt_solid_finish(RtSolidSet *set, RtSolid *solid, RtSolidSupport *suppor
     invert(solid);
     solid->box = box_of(set, solid, support);
     RT_TRY(check_box(&solid->box, error));
-    RT_TRY(rt_reserve(&set->solids, &set->solid_capacity, (uint64_t)set->solid_count + 1, sizeof(RtSolid),
-                      error));
-    *index = set->solid_count;
-    set->solids[set->solid_count++] = *solid;
+    RT_TRY(rt_append(&set->solids, &set->solid_count, &set->solid_capacity, solid, sizeof *solid, error));
+    *index = set->solid_count - 1;
     *(is_mesh ? &set->triangle_count : &set->plane_count) += solid->count;
     if (is_mesh) set->box_count += 2 * solid->leaves - 1;
     return RT_OK;

@@ -75,12 +75,7 @@ static RtStatus take_text(RtCsv *csv, RtError *error) {
 RtStatus rt_csv_read(RtCsv *csv, const char *path, RtError *error) {
     size_t size;
     *csv = (RtCsv){.path = path};
-    RT_TRY(rt_file_read(path, MOST_BYTES, &csv->text, &size, error));
-    /* Otherwise the text would end there, and later rows would be lost silently. */
-    if (strlen(csv->text) < size) {
-        return rt_fail_at(error, path, count_of(csv->text, '\n') + 1, 0,
-                          "the file contains a zero byte, so it is not text");
-    }
+    RT_TRY(rt_file_read_text(path, MOST_BYTES, &csv->text, &size, error));
     return take_text(csv, error);
 }
 

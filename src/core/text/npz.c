@@ -2,9 +2,11 @@
 #include "core/text/npz.h"
 
 #include "core/base/memory.h"
+#include "core/base/words.h"
 
 #include <assert.h>
 #include <string.h>
+#include <zlib.h>
 
 /* Constants of the format. */
 enum {
@@ -19,19 +21,6 @@ enum {
 
 static void put(FILE *out, uint64_t value, int bytes) {
     for (int i = 0; i < bytes; i++) fputc((int)(value >> 8 * i & 255), out);
-}
-
-/* ---- check sums ---- */
-
-static uint32_t crc_of(const void *data, size_t size) {
-    const unsigned char *byte = data;
-    uint32_t table[256], crc = UINT32_MAX;
-    for (uint32_t i = 0; i < 256; i++) {
-        table[i] = i;
-        for (int bit = 0; bit < 8; bit++) table[i] = table[i] >> 1 ^ (table[i] & 1 ? 0xedb88320 : 0);
-    }
-    for (size_t i = 0; i < size; i++) crc = crc >> 8 ^ table[(crc ^ byte[i]) & 255];
-    return ~crc;
 }
 
 /* ---- records ---- */
@@ -104,9 +93,7 @@ static void put_end(FILE *out, uint32_t count, uint64_t start, uint64_t end) {
 /* ---- files ---- */
 
 bool rt_array_file_is_archive(const char *path) {
-    static const char end[] = ".npz";
-    const size_t length = strlen(path), last = sizeof end - 1;
-    return length >= last && strcmp(path + length - last, end) == 0;
+    return rt_ends_in(path, ".npz");
 }
 
 RtStatus rt_array_file_open(RtArrayFile *file, const char *path, RtError *error) {
@@ -122,7 +109,7 @@ RtStatus rt_array_file_add(RtArrayFile *file, const char *name, const void *arra
     if (file->archive) {
         assert(strlen(name) + 4 < sizeof entry.name);
         snprintf(entry.name, sizeof entry.name, "%s.npy", name);
-        entry.crc = crc_of(array, size);
+        entry.crc = (uint32_t)crc32_z(0, array, size);
         RT_TRY(rt_append(&file->entries, &file->count, &file->capacity, &entry, sizeof entry, error));
         put_local(out, &entry);
     }
