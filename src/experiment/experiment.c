@@ -192,8 +192,8 @@ static RtStatus check_label(const char *label, RtError *error) {
         if (rt_may_label(*c)) continue;
         return rt_fail(
             error, RT_BAD_INPUT,
-            "'%s' cannot be a name or `label`, which rows, plots and folders have: leave out blanks, "
-            "quotes, letters outside ASCII, and / \\ $ & < > @ ^ { }",
+            "'%s' cannot name a row, a plot or a folder: use a name or `label` without blanks, quotes, "
+            "letters outside ASCII, and / \\ $ & < > @ ^ { }",
             label);
     }
     return RT_OK;

@@ -118,7 +118,7 @@ static uint64_t outside_exactly(uint32_t n, uint32_t m, double tail) {
 
 /* How much of the normal distribution lies above z >= 0: the integral of its density, by Simpson's rule. */
 static double normal_tail(double z) {
-    const double root = 2.5066282746310002; /* sqrt(2 pi), the area under exp(-x^2 / 2) */
+    const double root = 2.5066282746310002; /* sqrt(2 pi), the area under e^(-x^2 / 2) */
     const double e = 2.7182818284590452, step = 12.0 / (2 * NORMAL_STEPS);
     double sum = 0;
     for (int i = 0; i <= 2 * NORMAL_STEPS; i++) {
