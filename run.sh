@@ -9,6 +9,6 @@ install_missing build optional data
 fetch_bunny
 targets=raytally build release -DRT_KERNELS=native
 say "running experiments/first-look.yaml"
-directory=results/first-look
-[[ " $* " != *" --quick "* ]] || directory+=-quick
-exec build/release/raytally run experiments/first-look.yaml --out "$directory" --resume "$@"
+out=()
+[[ " $* " != *" --quick "* ]] || out=(--out results/first-look-quick)
+exec build/release/raytally run experiments/first-look.yaml "${out[@]}" --resume "$@"

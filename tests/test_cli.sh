@@ -415,6 +415,10 @@ ends 2 reproduce results/mesh
 says "the other scenes in results/mesh/counts\.csv, byte for byte.*'one' was not compared, because its scene is missing here"
 refuses "'one' was not compared" reproduce results/mesh --only one
 ends 0 reproduce results/mesh --only balls:size=1
+yaml prefix 'name: prefix' 'question: b' 'prediction: c' 'scenes: [{scene: "random:n=10", size: 8x8}, {scene: "random:n=10,seed=2", size: 8x8}, {scene: "tetra:size=1", label: scene, size: 8x8}]' \
+    'accelerators: [{accel: bvh}]' 'count_only: true'
+ends 0 run prefix.yaml
+for scene in random:n=10 random:n=10,seed=2 scene; do ends 0 reproduce results/prefix --only $scene; done
 sed 's/v 1 0 0/v 2 0 0/' two.obj >one.obj
 ends 1 reproduce results/mesh
 says "the scene 'one' has changed: its fingerprint was [0-9a-f]{16}, and is [0-9a-f]{16} here"
@@ -441,6 +445,7 @@ ends 0 reproduce results/small
 refuses 'there is nothing to compare: no scene, accelerator and kind of rays is in both' compare results/small results/blank
 mv small.yaml away.yaml
 ends 0 reproduce results/small # by its own copy
+refuses 'small\.yaml cannot be read here: start raytally in the folder in which results/small was measured' run results/small/manifest.json
 mv away.yaml small.yaml
 ends 0 run results/small/manifest.json --out again
 cmp -s results/small/counts.csv again/counts.csv || complain "raytally run DIR/manifest.json: does not count the same"

@@ -225,7 +225,7 @@ static RtStatus compare_loaded(const Options *o, RtExperiment *experiments, RtRe
 }
 
 static RtStatus compare_directories(const Options *o, RtComparison *comparison, RtError *error) {
-    RtResults results[MAX_SUBJECTS] = {0};
+    static RtResults results[MAX_SUBJECTS]; /* megabytes */
     RtExperiment *experiments = rt_alloc(o->subject_count, sizeof(RtExperiment));
     RtStatus status = experiments ? compare_loaded(o, experiments, results, comparison, error)
                                   : rt_fail_memory(error, "experiments", 0);

@@ -83,11 +83,12 @@ typedef struct Again {
 /* Whether the row of a table is of a scene that was not counted again. */
 static bool is_left_out(Again *again, const char *row) {
     const RtExperiment *experiment = again->results->experiment;
-    row += *row == '"';
+    const char end = *row == '"' ? '"' : ',';
+    row += end == '"';
     for (uint32_t t = 0; t < experiment->workload_count; t++) {
         const char *label = experiment->workloads[t].label;
         const size_t length = strlen(label);
-        if (strncmp(row, label, length) != 0 || !strchr(",\"", row[length])) continue;
+        if (strncmp(row, label, length) != 0 || row[length] != end) continue;
         if (!rt_only_scene(&again->only, experiment, t)) return true;
         if (!again->results->workloads[t].skipped) return false;
         again->missing = label;
@@ -101,7 +102,7 @@ static RtStatus compare(Again *again, const char *path, const char *kept, const 
                         RtError *error) {
     for (size_t line = 1; *kept || *counted; line++) {
         const size_t length = line_length(kept);
-        const bool left_out = *kept && is_left_out(again, kept);
+        const bool left_out = line > 1 && *kept && is_left_out(again, kept); /* line 1 names the columns */
         if (!left_out && (length != line_length(counted) || memcmp(kept, counted, length) != 0)) {
             return rt_fail(error, RT_MISMATCH,
                            "%s:%zu: differs from the new counts:\n  there: %.*s%s\n  now:   %.*s%s", path,
@@ -130,7 +131,7 @@ static RtStatus compare_file(Again *again, RtResultFile file, const RtPublished 
     RtStatus status = rt_file_read(path, MOST_CSV_BYTES, &kept, &size, error);
     again->compared = 0;
     if (status == RT_OK) status = compare(again, path, kept, counted.data, error);
-    if (status == RT_OK && again->compared > 1) /* more than the names of the columns */
+    if (status == RT_OK && (again->compared > 1 || !again->missing)) /* more than the names of the columns */
         printf("Reproduced: %s%s%s, byte for byte\n",
                again->scene     ? again->scene
                : again->missing ? "the other scenes"
@@ -162,7 +163,7 @@ static RtStatus compare_all(Again *again, RtError *error) {
     if (status != RT_OK || !again->missing) return status;
     return rt_fail(error, RT_BAD_INPUT,
                    "%s: '%s' was not compared, because its scene is missing here: get it first, as "
-                   "`scenes/fetch.sh` does for the public meshes",
+                   "`scenes/fetch.sh` does for the public meshes, or start raytally where it was measured",
                    again->directory, again->missing);
 }
 
@@ -198,10 +199,10 @@ static RtStatus reproduce(const char *directory, RtResults *results, const void 
     const char *scene = o->quick ? cheapest_scene(results) : o->scene; /* a label of the loaded experiment */
     rt_cli_tell_plugins(directory, results->experiment);
     tell_version(directory);
-    /* The copy in the directory does not find its scenes; the original does. */
+    /* The original finds its scenes; the copy in the directory only those that are built in. */
     static RtExperiment original;
     static RtWorkloadResult then[RT_MAX_WORKLOADS];
-    RtStatus status = rt_manifest_experiment(directory, &original, error);
+    RtStatus status = rt_manifest_experiment(directory, true, &original, error);
     memcpy(then, results->workloads, results->experiment->workload_count * sizeof *then);
     rt_results_clear(results);
     Again again = {.directory = directory, .results = results, .only = only_scene(scene), .scene = scene};

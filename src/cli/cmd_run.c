@@ -238,7 +238,7 @@ static RtStatus load(Options *o, RtExperiment *experiment, RtError *error) {
     if (o->quick)
         return rt_fail(error, RT_BAD_INPUT, "--quick: %s says which variant it was; leave --quick out", path);
     rt_path_folder(path, folder);
-    RtStatus status = rt_manifest_experiment(folder, experiment, error);
+    RtStatus status = rt_manifest_experiment(folder, false, experiment, error);
     rt_cli_tell_plugins(folder, experiment); /* even if loading failed for lack of a plugin */
     return status;
 }

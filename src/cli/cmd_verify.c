@@ -165,7 +165,7 @@ static void print_row(Show *show, const json_t *row) {
             printf("    The scene is not reduced: only the first failures are (--shrink). ");
         }
         rt_cli_plugin_arguments(plugins, sizeof plugins);
-        if (!*rt_json_text(wrong, "replay", ""))
+        if (json_is_null(json_object_get(wrong, "replay")))
             puts("The replay file could not be written.");
         else
             printf("To repeat: raytally verify --replay '%s'%s\n", rt_json_text(wrong, "replay", ""),
@@ -334,9 +334,11 @@ RtStatus rt_command_verify(int argc, char **argv, RtError *error) {
     static Options o;
     o = (Options){.work.rays.seed = 1};
     rt_cli_parse(&rt_verify_syntax, argc, argv, &o);
-    snprintf(o.go_on, sizeof o.go_on, "raytally verify");
-    for (int i = 1; i < argc; i++) rt_append_argument(o.go_on, sizeof o.go_on, argv[i]);
-    rt_append_text(o.go_on, sizeof o.go_on, " --resume");
+    snprintf(o.go_on, sizeof o.go_on, "raytally verify --resume");
+    for (int i = 1; i < argc; i++) {
+        if (strcmp(argv[i], "--force") != 0 && strcmp(argv[i], "--resume") != 0)
+            rt_append_argument(o.go_on, sizeof o.go_on, argv[i]);
+    }
     bool failed = false;
     RtStatus status = o.replay ? replay(&o, &failed, error) : choose(&o, error);
     if (status == RT_OK && !o.replay) status = verify(&o, &failed, error);

@@ -11,9 +11,9 @@
  * nothing. */
 void rt_stop_init(void);
 
-/* From now on one that stops this process says how to go on: `go_on` is the command, `keeps` the folder of
- * what is finished, or NULL. Both are borrowed. */
-void rt_stop_continue(const char *keeps, const char *go_on);
+/* From now on one that stops this process says how to go on: by `command`; `folder` has what is finished, or
+ * is NULL. Both are borrowed. */
+void rt_stop_continue(const char *folder, const char *command);
 
 /* The signals that a command may take itself: SIGINT, SIGTERM and SIGALRM, unless they are ignored. */
 sigset_t rt_stop_signals(void);

@@ -93,8 +93,8 @@ RtStatus rt_manifest_read(const char *directory, json_t **manifest, RtError *err
     return status;
 }
 
-static RtStatus load_experiment(const json_t *manifest, const char *directory, RtExperiment *experiment,
-                                RtError *error) {
+static RtStatus load_experiment(const json_t *manifest, const char *directory, bool elsewhere,
+                                RtExperiment *experiment, RtError *error) {
     const char *file = json_string_value(json_object_get(manifest, "file"));
     char copy[RT_MAX_PATH];
     const json_t *hash = json_object_get(manifest, "hash");
@@ -104,7 +104,12 @@ static RtStatus load_experiment(const json_t *manifest, const char *directory, R
                        directory);
     }
     RT_TRY(rt_path_join(directory, rt_result_files[RT_FILE_EXPERIMENT], copy, error));
-    if (!rt_file_exists(file)) file = copy; /* the directory was sent elsewhere */
+    if (!rt_file_exists(file) && elsewhere) file = copy;
+    if (!rt_file_exists(file)) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s cannot be read here: start raytally in the folder in which %s was measured", file,
+                       directory);
+    }
     RT_TRY(rt_experiment_load(experiment, file, json_is_true(json_object_get(manifest, "quick")), error));
     json_t *now = rt_json_hex(experiment->fingerprint);
     bool same = now && json_equal(now, hash);
@@ -113,14 +118,15 @@ static RtStatus load_experiment(const json_t *manifest, const char *directory, R
     if (run > 0) experiment->coherent_run = (uint64_t)run; /* its default was another in older versions */
     if (same) return RT_OK;
     return rt_fail(error, RT_MISMATCH,
-                   "%s has changed since %s was made from it: %s is a copy of what it was", file, directory,
-                   copy);
+                   "%s has changed since %s was made from it (its copy there is experiment.yaml)", file,
+                   directory);
 }
 
-RtStatus rt_manifest_experiment(const char *directory, RtExperiment *experiment, RtError *error) {
+RtStatus rt_manifest_experiment(const char *directory, bool elsewhere, RtExperiment *experiment,
+                                RtError *error) {
     json_t *manifest;
     RT_TRY(rt_manifest_read(directory, &manifest, error));
-    RtStatus status = load_experiment(manifest, directory, experiment, error);
+    RtStatus status = load_experiment(manifest, directory, elsewhere, experiment, error);
     json_decref(manifest);
     return status;
 }

@@ -15,9 +15,9 @@ RtStatus rt_manifest_write(const RtResults *results, const RtWorkloadOptions *op
 RtStatus rt_manifest_read(const char *directory, json_t **manifest, RtError *error);
 
 /* Loads the experiment of the manifest in `directory`, in the same variant, from the file that it names,
- * relative to the current folder, or from the copy in `directory` where there is none; its scenes are
- * relative to that file. RT_MISMATCH if the file has changed.
- */
-RtStatus rt_manifest_experiment(const char *directory, RtExperiment *experiment, RtError *error);
+ * relative to the current folder. If there is none, and the directory may have been sent elsewhere, from the
+ * copy in it. Scenes are relative to the file that is loaded. RT_MISMATCH if it has changed. */
+RtStatus rt_manifest_experiment(const char *directory, bool elsewhere, RtExperiment *experiment,
+                                RtError *error);
 
 #endif

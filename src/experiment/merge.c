@@ -130,7 +130,7 @@ static RtStatus check_whole(const Merge *merge, RtError *error) {
 
 /* Loads the experiment, which must not have changed. */
 static RtStatus load_experiment(const Merge *merge, RtExperiment *experiment, RtError *error) {
-    RtStatus status = rt_manifest_experiment(merge->directories[0], experiment, error);
+    RtStatus status = rt_manifest_experiment(merge->directories[0], true, experiment, error);
     if (status != RT_MISMATCH) return status;
     return rt_fail(error, RT_BAD_INPUT, "%s has changed since the shards were made from it",
                    experiment->path);

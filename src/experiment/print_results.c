@@ -251,6 +251,7 @@ static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
 }
 
 void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) {
+    bool explained = which == RT_CELLS;
     for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
         RtResultRow row = {.results = results, .workload = t};
         RtTable table = rt_result_table(which, &row);
@@ -259,6 +260,9 @@ void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) 
         if (which == RT_CELLS) {
             print_cells(results, t, out);
         } else {
+            uint32_t least = 0, most = explained ? 0 : rt_results_rounds(results, t, &least);
+            if (most > 0) print_ratios(results, least, most, out);
+            explained |= most > 0;
             rt_table_text(&table, out);
             print_differing(results, t, out);
         }

@@ -202,18 +202,17 @@ RT_TEST(a_verification_stops_when_its_time_is_over) {
 
 /* Interrupted once it has finished the first row. */
 RT_TEST(an_interruption_says_what_is_kept_and_how_to_go_on) {
-    static const char arguments[] =
-        "-a bvh --rays 200000 --out " OUT ".part --force tetra:size=1 random:n=20000";
+    static const char arguments[] = "-a bvh --rays 200000 --out " OUT ".part tetra:size=1 random:n=20000";
     remove(OUT ".part/rows.jsonl");
     assert_int_equal(raytally_to("> '" OUT ".out' 2> '" OUT ".err' & "
-                                 "until [ \"$(grep -c . " OUT ".part/rows.jsonl 2> /dev/null)\" = 2 ]; "
-                                 "do sleep 0.01; done; kill $! && wait $!",
-                                 "verify %s", arguments),
+                                 "until [ $(cat " OUT ".part/rows.jsonl 2> /dev/null | wc -l) -ge 2 ] || "
+                                 "! kill -0 $!; do sleep 0.01; done; kill $! && wait $!",
+                                 "verify --force %s", arguments),
                      128 + SIGTERM);
     char expected[1024];
     snprintf(expected, sizeof expected,
              "raytally: interrupted; what is finished is kept in " OUT ".part. To continue:\n"
-             "  raytally verify %s --resume\n",
+             "  raytally verify --resume %s\n",
              arguments);
     assert_string_equal(text_of(OUT ".err"), expected);
 }

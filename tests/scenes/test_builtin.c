@@ -198,6 +198,14 @@ RT_TEST(the_count_of_objects_is_told_beforehand) {
         OWNED_SCENE scene = open_scene(builtin->name);
         assert_int_equal(rt_builtin_object_count(builtin, values), scene.geometry.object_count);
     }
+    const struct {
+        const char *spec;
+        uint32_t objects;
+    } known[] = {{"balls:size=2", 92}, {"jacks:size=2", 81}, {"tree:size=3", 31}, {"tetra:size=2", 16}};
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
+        OWNED_SCENE scene = open_scene(known[i].spec);
+        assert_int_equal(scene.geometry.object_count, known[i].objects);
+    }
 }
 
 RT_TEST(every_failed_allocation_is_reported_and_leaves_nothing) {

@@ -163,10 +163,10 @@ RtStatus rt_solid_set_caps(RtSolidSet *set, uint32_t index, const RtPlane *caps,
 
 RtStatus rt_solid_add_frustum(RtSolidSet *set, RtVec3 base, float base_radius, RtVec3 apex, float apex_radius,
                               uint32_t *index, RtError *error) {
-    if (apex_radius > base_radius)
-        return rt_solid_add_frustum(set, apex, apex_radius, base, base_radius, index, error);
     RtCone checked;
     RT_TRY(rt_cone_init(&checked, base, base_radius, apex, apex_radius, error));
+    if (apex_radius > base_radius)
+        return rt_solid_add_frustum(set, apex, apex_radius, base, base_radius, index, error);
     RtVec3d axis = rt_subd(rt_widen(apex), rt_widen(base));
     RtTransform to_world =
         rt_solid_transform_about(rt_widen(base), axis, (double)base_radius, checked.height);
