@@ -220,7 +220,7 @@ RtStatus rt_compare_results(const RtResults *results, uint32_t pairs, RtComparis
         comparison->timed += cell->timed;
         shared += cell->change != RT_CHANGE_ONLY_BEFORE && cell->change != RT_CHANGE_ONLY_AFTER;
     }
-    if (shared == 0)
+    if (shared == 0 && comparison->count > 0)
         return rt_fail(error, RT_BAD_INPUT,
                        "there is nothing to compare: no scene, accelerator and kind of rays is in both");
     comparison->together = comparison->coverage = 1;
