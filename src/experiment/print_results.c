@@ -297,18 +297,6 @@ void rt_print_hardware(const RtResults *results, FILE *out) {
 
 /* ---- null runs ---- */
 
-/* The probability of at least `misses` among `runs`, each of which misses by this chance. */
-static double probability_of(uint32_t misses, uint32_t runs, double chance) {
-    double each = 1, sum = 1;
-    if (chance >= 1) return 1;
-    for (uint32_t i = 0; i < runs; i++) each *= 1 - chance;
-    for (uint32_t k = 0; k < misses; k++) {
-        sum -= each;
-        each *= (double)(runs - k) / (k + 1) * chance / (1 - chance);
-    }
-    return sum;
-}
-
 void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
     const RtExperiment *experiment = results->experiment;
     uint32_t runs, straddling;
@@ -324,7 +312,7 @@ void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
     double coverage = rt_interval_coverage(rounds), chance = 1 - coverage;
     if (misses == 0)
         rt_append_text(out, RT_MAX_SENTENCE, ", as expected.");
-    else if (probability_of(misses, runs, chance) >= 0.05)
+    else if (rt_binomial_tail(misses, runs, chance) >= 0.05)
         rt_append_text(out, RT_MAX_SENTENCE, "; each misses it by chance in %.3g %% of all cases.",
                        100 * chance);
     else

@@ -52,6 +52,17 @@ double rt_interval_coverage(uint32_t count) {
     return coverage;
 }
 
+double rt_binomial_tail(uint32_t least, uint32_t count, double chance) {
+    double exactly = 1, tail = 1; /* k of them; more than k - 1 */
+    if (chance >= 1) return 1;
+    for (uint32_t i = 0; i < count; i++) exactly *= 1 - chance;
+    for (uint32_t k = 0; k < least; k++) {
+        tail -= exactly;
+        exactly *= (double)(count - k) / (k + 1) * chance / (1 - chance);
+    }
+    return tail;
+}
+
 RtEstimate rt_estimate(const double *values, uint32_t count) {
     return rt_estimate_at(values, count, WANTED);
 }

@@ -92,4 +92,7 @@ RtEstimate rt_estimate_ratio(const double *over, const double *under, uint32_t c
  * RT_MAX_ROUNDS. */
 double rt_interval_coverage(uint32_t count);
 
+/* The probability that `least` or more of `count` independent events happen, each with this chance, 0..1. */
+double rt_binomial_tail(uint32_t least, uint32_t count, double chance);
+
 #endif

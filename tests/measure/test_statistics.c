@@ -73,6 +73,15 @@ RT_TEST(intervals_hold_the_true_median_as_often_as_they_say) {
 }
 
 /* Both slow down together from round to round; only pairing shows that one is always twice the other. */
+RT_TEST(the_chance_of_so_many_events_or_more_is_the_binomial_tail) {
+    assert_true(rt_binomial_tail(0, 9, 0.3) == 1);
+    assert_true(rt_binomial_tail(3, 9, 1) == 1);
+    assert_true(rt_binomial_tail(1, 9, 0) == 0);
+    assert_true(fabs(rt_binomial_tail(1, 2, 0.25) - 7.0 / 16) < 1e-15);
+    assert_true(fabs(rt_binomial_tail(2, 3, 0.5) - 0.5) < 1e-15);
+    assert_true(fabs(rt_binomial_tail(3, 3, 0.1) - 1e-3) < 1e-15);
+}
+
 RT_TEST(ratios_are_paired_within_a_round) {
     double over[20], under[20];
     for (int i = 0; i < 20; i++) {
