@@ -9,10 +9,11 @@ set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/testing.sh"
 cd "$(dirname "$0")/.."
 
+warnings=(-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror)
 # builds COMPILER STANDARD SOURCE NAME [OPTION...]: to $work/NAME.so; false without this compiler
 builds() {
     command -v "$1" >/dev/null || { echo "check_examples: no $1: $4 is not built by it" >&2 && return 1; }
-    "$1" -std="$2" -O2 -fPIC -shared -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror "${@:5}" -I include "$3" \
+    "$1" -std="$2" -O2 -fPIC -shared "${warnings[@]}" "${@:5}" -I include "$3" \
         -o "$work/$4.so" 2>"$work/log" && return
     complain "$1 -std=$2 does not build $3: $(cat "$work/log")"
     return 1
@@ -92,26 +93,22 @@ judged() {
     [[ $said = '2 scenes, 1 accelerator, 2000 rays, 4000 comparisons: nothing wrong' ]] || complain "$1: $said"
 }
 
-# peer NAME INCLUDES: as its CMakeLists.txt builds it, if the library is there
-peer() {
-    local headers=${PEERS-}/$1/$2 flags
-    [ -n "${PEERS-}" ] && [ -d "$headers" ] || { echo "check_examples: no $1 in \$PEERS: its plugin is not built" >&2 && return; }
-    if [ "$1" = nanort ]; then
-        mkdir "$work/nanort"
-        sed 's/vertex_stride_bytes_ = rhs.vertex_stride_bytes_;//' "$headers/nanort.h" >"$work/nanort/nanort.h"
-        headers=$work/nanort
-    fi
-    flags=(-O3 -march=native -Wno-maybe-uninitialized -isystem "$headers") # the warnings of its library
-    if builds g++ c++20 "examples/peers/$1.cpp" "$1" "${flags[@]}"; then judged "$1"; fi
-}
-
 sed -n '/^```cpp$/,/^```$/p' examples/peers/README.md | sed '/^```/d' >"$work/mine.cpp"
 if builds g++ c++20 "$work/mine.cpp" mine -I examples/peers -I tests/plugins; then judged mine; fi
-peer fastbvh include
-peer madmann91 src
-peer nanort .
-peer tinybvh .
-peer visionaray include
+if [ -z "${PEERS-}" ]; then
+    echo "check_examples: no \$PEERS: plugins of libraries are not built" >&2
+elif cmake -S examples/peers -B "$work/peers" -Draytally_DIR="$(dirname "$program")" -DPEERS="$(realpath "$PEERS")" \
+    -DPEER_FLAGS="-O3 -march=native ${warnings[*]} -Wno-maybe-uninitialized" >"$work/log" 2>&1 &&
+    cmake --build "$work/peers" >>"$work/log" 2>&1; then # what may be uninitialised is in a library
+    grep 'left out' "$work/log" >&2 || true
+    for plugin in "$work"/peers/*.so; do
+        [ -e "$plugin" ] || continue
+        cp "$plugin" "$work"
+        judged "$(basename "$plugin" .so)"
+    done
+else
+    complain "examples/peers is not built: $(cat "$work/log")"
+fi
 
 # ---- without the libraries that the user must get ----
 if command -v cmake >/dev/null; then
