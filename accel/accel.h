@@ -38,6 +38,7 @@ typedef struct RtAccel {
     struct RtAccel *below; /* owned; NULL for a base */
     size_t scratch_bytes;  /* of a query: memory that is zeroed and 64-byte aligned. Set by its `build` */
     bool exact;            /* its hits equal brute's bit for bit; false: judged by verdicts */
+    bool absolute;         /* not exact, and computes with absolute coordinates (exact/margin.h) */
     bool counts;           /* its counts are the same on every machine, so counts.csv has them */
     double build_seconds;  /* wall seconds to build it and all layers below. Set by rt_accel_build */
     RtTally build_tally;   /* hit functions called while building; not part of tracing */

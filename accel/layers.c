@@ -26,6 +26,7 @@ RtStatus rt_accel_build_layer(const RtAccelOps *ops, const RtBuild *what, RtAcce
                        .scene = what->scene,
                        .below = below,
                        .exact = !below || below->exact,
+                       .absolute = below && below->absolute,
                        .counts = !below || below->counts};
     RtStatus status = ops->build ? ops->build(accel, what, error) : RT_OK;
     if (status == RT_OK)

@@ -117,6 +117,8 @@ RtStatus rt_embree_build(RtAccel *accel, const RtBuild *what, RtError *error) {
     self->user = values[RT_EMBREE_MODE].choice == 1;
     self->query = (RtEmbreeQueryKind)values[RT_EMBREE_QUERY].choice;
     accel->exact = self->user;
+    /* Without the flag its box test is one fused multiply-add of plane, 1 / dir and org / dir. */
+    accel->absolute = !self->user && !values[RT_EMBREE_ROBUST].flag;
     accel->counts = false;
     accel->scratch_bytes = sizeof(RtEmbreeBatch);
     if (!self->user) RT_TRY(check_width(&self->base.scene->geometry.box, error));

@@ -95,6 +95,7 @@ static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     if (result != RAYTALLY_BUILD_OK) return refuse(table, result, message, error);
     self->table = table;
     accel->exact &= !(table->flags & RAYTALLY_OWN_HITS);
+    accel->absolute |= (table->flags & RAYTALLY_ABSOLUTE_HITS) != 0;
     accel->counts &= !(table->flags & RAYTALLY_NO_COUNTS);
     rt_plugin_query_init(self);
     return RT_OK;

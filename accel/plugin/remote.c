@@ -163,6 +163,7 @@ static RtStatus take_built(Remote *remote, double limit, RtError *error) {
         return fail_broken(remote, error);
     }
     remote->base.exact = built.exact != 0;
+    remote->base.absolute = built.absolute != 0;
     remote->base.counts = built.counts != 0;
     remote->base.build_seconds = built.seconds;
     remote->base.build_tally = built.description.build;

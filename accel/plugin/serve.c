@@ -335,6 +335,7 @@ static void build(const RtSpec *spec, const RtScene *scene, int threads) {
     rt_memory_limit(0);
     if (built.status == RT_OK) {
         built.exact = served.accel->exact;
+        built.absolute = served.accel->absolute;
         built.counts = served.accel->counts;
         built.seconds = served.accel->build_seconds;
         built.status = describe(spec, &built);

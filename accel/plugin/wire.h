@@ -85,7 +85,7 @@ enum { WIRE_BUILD = 1 };
 typedef struct WireBuilt {
     RtStatus status;
     RtError error;
-    uint32_t exact, counts; /* 0 or 1 */
+    uint32_t exact, absolute, counts; /* 0 or 1 */
     double seconds;
     RtDescription description;
 } WireBuilt;

@@ -324,14 +324,19 @@ typedef struct raytally_verify_result {
     uint64_t marginal; /**< Explained by rounding; 0 for an exact accelerator. */
     uint64_t wrong;    /**< Anything else. */
     uint64_t occluded_wrong; /**< Wrong any-hit answers; these rays also have a verdict. */
-    uint64_t reserved[10];   /**< 0. */
+    uint64_t certain;     /**< Rays that every careful float32 implementation answers alike, of an accelerator
+                               that is not exact; since version 1.1. */
+    uint64_t must_hit;    /**< Rays that must hit something, maybe one of several objects. */
+    uint64_t certain_of;  /**< The rays examined for that: all, or a sample; 0 for an exact accelerator. */
+    uint64_t reserved[7]; /**< 0. */
 } raytally_verify_result;
 
 /** Builds the accelerator that `spec` describes over `scene`, validates its structure, and compares its
  * answers with those of `brute`, which tests every object. It uses the rays of `raytally verify` with that
- * number and seed, however the image is sampled. RAYTALLY_MISMATCH if an answer is wrong or the structure is
- * broken: *error then describes the first wrong ray, its expected answer and the actual one, and *out is
- * filled. `how` may be NULL: RAYTALLY_VERIFY_DEFAULTS. */
+ * number and seed, however the image is sampled. RAYTALLY_MISMATCH if an answer is wrong, if too few rays
+ * and hits are certain to judge an accelerator that is not exact, or if the
+ * structure is broken: *error then describes the first wrong ray, its expected answer and the actual one, and
+ * *out is filled. `how` may be NULL: RAYTALLY_VERIFY_DEFAULTS. */
 RAYTALLY_API raytally_status raytally_verify(const raytally_scene *scene, const char *spec,
                                              const raytally_verify_options *how, raytally_verify_result *out,
                                              raytally_error *error);

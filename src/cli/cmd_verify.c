@@ -187,9 +187,21 @@ static void on_row(void *context, const json_t *row) {
     show->failed |= rt_verify_row_fails(row);
 }
 
-/* Which side is right where an inexact accelerator differs by more than a tie. */
-static void print_sides(const RtVerifySum *sum) {
+/* How much could be seen of an accelerator with its own arithmetic, what is wrong with its wrong answers, and
+ * which side is right where it differs by more than a tie. */
+static void print_judged(const RtVerifySum *sum) {
     uint64_t differ = 0;
+    const char *between = "; wrong: ";
+    if (sum->judged == 0) return;
+    printf("%s has its own arithmetic: %" PRIu64 " of %" PRIu64 " rays have a certain answer, %" PRIu64
+           " must hit something",
+           sum->name, sum->certain, sum->certain_of, sum->must_hit);
+    for (int f = 0; f < RT_FAULT_COUNT; f++) {
+        if (sum->faults[f] == 0) continue;
+        printf("%s%s %" PRIu64, between, rt_fault_name((RtFault)f), sum->faults[f]);
+        between = ", ";
+    }
+    putchar('\n');
     for (int s = 0; s < RT_SIDE_COUNT; s++) differ += sum->sides[s];
     if (differ == 0) return;
     printf("%s: %" PRIu64 " answer%s to nearest differ%s by more than a tie; exactly right:", sum->name,
@@ -220,12 +232,15 @@ static void print_total(const Options *o, const json_t *rows, const RtVerifySum 
     print_count(o->choice.scene_count, "scene");
     print_count(o->choice.spec_count, "accelerator");
     print_count(o->work.rays.count, "ray");
-    printf("%" PRIu64 " comparison%s: ", total.pairs, rt_plural(total.pairs));
+    printf("%" PRIu64 " comparison%s", total.pairs, rt_plural(total.pairs));
+    if (total.judged > 0) printf(", %" PRIu64 " of them judged by verdicts", total.judged);
+    fputs(": ", stdout);
     if (total.failed == 0) {
         fputs("nothing wrong", stdout);
     } else {
         printf("%" PRIu64 " wrong", total.verdicts[RT_WRONG]);
         if (total.occluded_wrong > 0) printf(", %" PRIu64 " occluded wrong", total.occluded_wrong);
+        if (total.undecided > 0) printf(", %u row%s undecided", total.undecided, rt_plural(total.undecided));
         print_failed(sums, count);
     }
     if (total.refused > 0) printf("; %u row%s refused", total.refused, rt_plural(total.refused));
@@ -246,7 +261,7 @@ static RtStatus print_totals(const Options *o, const json_t *rows, RtError *erro
     RtVerifySum *sums;
     uint32_t count;
     RtStatus status = rt_verify_sums(rows, RT_BY_ACCEL, &sums, &count, error);
-    for (uint32_t i = 0; i < count; i++) print_sides(&sums[i]);
+    for (uint32_t i = 0; i < count; i++) print_judged(&sums[i]);
     if (status == RT_OK) {
         print_total(o, rows, sums, count);
         print_left_out(o);
@@ -326,7 +341,10 @@ const RtSyntax rt_verify_syntax = {
         "consist of triangles only; `families`, those generated from a seed; or one of these, as in "
         "family:kind=slivers,seed=7 (`raytally scenes family` lists them).\v"
         "Accelerators with their own hit functions (Embree's native mode, libraries as plugins) get "
-        "verdicts: equal, tie, marginal (explained by rounding) or wrong. raytally writes the first wrong "
+        "verdicts: equal, tie, marginal (explained by rounding) or wrong. If fewer than 1000 rays, or half "
+        "of "
+        "--rays-from, have an answer that rounding cannot change, the row is undecided, which is no success. "
+        "raytally writes the first wrong "
         "answer of each row to a file (in --out DIR, or in verify-failures/), with the scene reduced to "
         "the objects that cause it; --replay traces it again. Exit code 1 if anything is wrong."};
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "exact/exact.h"
 
+#include <pthread.h>
+
 /* ---- the arena ---- */
 
 mpq_ptr rt_exact_arena_number(RtExactArena *arena) {
@@ -27,6 +29,34 @@ void rt_exact_arena_clear(RtExactArena *arena) {
     }
     if (arena->block_count > 0) release(arena->blocks, arena->block_count * sizeof(void *));
     *arena = (RtExactArena){0};
+}
+
+/* ---- the thread's arena ---- */
+
+/* Each thread keeps an arena while it runs, because creating numbers takes as long as computing with them.
+ * Blocks beyond MOST_BLOCKS are freed after a search. */
+enum { MOST_BLOCKS = 256 };
+static _Thread_local RtExactArena kept;
+static pthread_key_t threads_end;
+static pthread_once_t begun = PTHREAD_ONCE_INIT;
+
+static void forget(void *arena) {
+    rt_exact_arena_clear(arena);
+}
+
+static void begin(void) {
+    pthread_key_create(&threads_end, forget);
+}
+
+RtExactArena *rt_exact_arena_borrow(void) {
+    pthread_once(&begun, begin);
+    if (kept.block_count == 0) pthread_setspecific(threads_end, &kept);
+    return &kept;
+}
+
+void rt_exact_arena_return(RtExactArena *arena, size_t mark) {
+    rt_exact_arena_rewind(arena, mark);
+    if (mark == 0 && arena->block_count > MOST_BLOCKS) rt_exact_arena_clear(arena);
 }
 
 /* ---- rationals ---- */

@@ -44,6 +44,11 @@ static inline void rt_exact_arena_rewind(RtExactArena *arena, size_t mark) {
 /* A new number of the arena, to be written once. */
 mpq_ptr rt_exact_arena_number(RtExactArena *arena);
 
+/* The calling thread's own arena, which lives as long as the thread; it is used from its mark on. A nested
+ * borrower continues behind the numbers of the outer one. Return it with that mark. */
+RtExactArena *rt_exact_arena_borrow(void);
+void rt_exact_arena_return(RtExactArena *arena, size_t mark);
+
 /* ---- rationals ---- */
 
 /* A finite `x`. */

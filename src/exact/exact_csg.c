@@ -2,10 +2,16 @@
 /* CSG trees in exact arithmetic. A solid consists of parts with one equation each: a quadric, a half-space
  * or a torus. On a line, the inside of a part alternates at a few roots; a mesh has any number of roots
  * (exact_mesh.c). Parts are joined to solids, and solids to trees, by one stack machine, which merges the
- * two topmost lists of roots. All lists lie one behind another in one array. */
+ * two topmost lists of roots. All lists lie one behind another in one array.
+ *
+ * For margins (margin.h) solids grow by a distance, or shrink if it is below 0; a subtracted solid does the
+ * opposite. The result contains all points within the distance of the solid, or none within it of the
+ * outside: planes move, a distance in object space is at most the norm of the inverse transform times as
+ * long, and of a mesh every place that rounding may take for its surface is added or removed. */
 #include "exact/exact_hit.h"
 
 #include "core/base/memory.h"
+#include "exact/flat_margin.h"
 
 #include <assert.h>
 
@@ -21,6 +27,7 @@ typedef struct List {
 typedef struct Machine {
     RtExactArena *arena;
     const RtExactLine *line;
+    double grow; /* of a solid that is not subtracted */
     List lists[MOST_LISTS];
     uint32_t depth;
     uint32_t capacity;
@@ -121,32 +128,59 @@ static ObjectLine to_object_space(RtExactArena *arena, const RtSolid *solid, con
     return out;
 }
 
-static RtStatus push_sphere(Machine *m, const RtSolid *solid, RtError *error) {
+/* How far a solid grows in its object space, below 0 if it shrinks. */
+static double growth_of(const Machine *m, const RtSolid *solid) {
+    double norm = 0, grow = solid->subtracted ? -m->grow : m->grow;
+    for (int i = 0; i < 3; i++) norm += rt_dotd(solid->inverse[i], solid->inverse[i]);
+    return grow * sqrt(norm);
+}
+
+static RtStatus push_nothing(Machine *m, RtError *error) {
+    return push(m, false, NULL, 0, error);
+}
+
+/* The ball of `radius` about the origin of object space. */
+static RtStatus push_ball(Machine *m, const RtSolid *solid, double radius, RtError *error) {
+    if (!(radius > 0)) return push_nothing(m, error);
     ObjectLine s = to_object_space(m->arena, solid, m->line);
-    RtRational radius = rt_exact_mul(m->arena, s.unit, s.unit);
-    RtRational c = rt_exact_sub(m->arena, rt_exact_dot(m->arena, s.org, s.org), radius);
+    RtRational r = rt_exact_mul(m->arena, rt_exact_of(m->arena, radius), s.unit);
+    RtRational c = rt_exact_sub(m->arena, rt_exact_dot(m->arena, s.org, s.org), rt_exact_mul(m->arena, r, r));
     return push_quadric(m, rt_exact_dot(m->arena, s.dir, s.dir), rt_exact_dot(m->arena, s.org, s.dir), c,
                         error);
 }
 
-/* x^2 + y^2 - R^2 with R = 1 + (ratio - 1) z. Beyond the tip R is negative, but there z is outside 0..1. */
+/* Where z is between 0 and 1, both moved outward by `grow`. */
+static RtStatus cut_caps(Machine *m, const ObjectLine *s, RtRational grow, RtError *error) {
+    RtExactArena *arena = m->arena;
+    RtRational z = s->org.at[2], dz = s->dir.at[2], top = rt_exact_add(arena, s->unit, grow);
+    RT_TRY(push_half(m, rt_exact_add(arena, z, grow), rt_exact_neg(arena, dz), error));
+    RT_TRY(apply(m, RT_CSG_INTERSECTION, false, error));
+    RT_TRY(push_half(m, rt_exact_sub(arena, top, z), dz, error));
+    return apply(m, RT_CSG_INTERSECTION, false, error);
+}
+
+/* x^2 + y^2 - R^2 with R = 1 + (ratio - 1) z. Beyond the tip R is negative; there z is outside 0..1, unless
+ * the cone shrinks. */
 static RtStatus push_cone(Machine *m, const RtSolid *solid, RtError *error) {
     RtExactArena *arena = m->arena;
     ObjectLine s = to_object_space(arena, solid, m->line);
-    RtRational z = s.org.at[2], dz = s.dir.at[2];
+    double growth = growth_of(m, solid), side = solid->ratio - 1;
     RtRational slope = rt_exact_sub(arena, rt_exact_of(arena, solid->ratio), rt_exact_of(arena, 1));
+    RtRational wider = rt_exact_of(arena, 1 + growth * sqrt(1 + side * side));
     RtExactVec org = s.org, dir = s.dir;
-    org.at[2] = rt_exact_add(arena, s.unit, rt_exact_mul(arena, slope, z));
-    dir.at[2] = rt_exact_mul(arena, slope, dz);
+    org.at[2] =
+        rt_exact_add(arena, rt_exact_mul(arena, wider, s.unit), rt_exact_mul(arena, slope, org.at[2]));
+    dir.at[2] = rt_exact_mul(arena, slope, dir.at[2]);
     RtExactVec mirrored = dir, turned = org;
     mirrored.at[2] = rt_exact_neg(arena, dir.at[2]);
     turned.at[2] = rt_exact_neg(arena, org.at[2]);
     RT_TRY(push_quadric(m, rt_exact_dot(arena, dir, mirrored), rt_exact_dot(arena, org, mirrored),
                         rt_exact_dot(arena, org, turned), error));
-    RT_TRY(push_half(m, z, rt_exact_neg(arena, dz), error));
-    RT_TRY(apply(m, RT_CSG_INTERSECTION, false, error));
-    RT_TRY(push_half(m, rt_exact_sub(arena, s.unit, z), dz, error));
-    return apply(m, RT_CSG_INTERSECTION, false, error);
+    if (growth < 0) {
+        RT_TRY(push_half(m, org.at[2], rt_exact_neg(arena, dir.at[2]), error));
+        RT_TRY(apply(m, RT_CSG_INTERSECTION, false, error));
+    }
+    return cut_caps(m, &s, rt_exact_mul(arena, rt_exact_of(arena, growth), s.unit), error);
 }
 
 /* The squared distance of org + t dir from the origin in the first `axes` coordinates: c[0] + c[1] t +
@@ -162,9 +196,9 @@ static void squared_distance(RtExactArena *arena, const ObjectLine *s, int axes,
 }
 
 /* Inside where (x^2 + y^2 + z^2 + 1 - ratio^2)^2 < 4 (x^2 + y^2): see shape/solid_torus.c. */
-static RtPolynomial torus_polynomial(RtExactArena *arena, const RtSolid *solid, const ObjectLine *s) {
+static RtPolynomial torus_polynomial(RtExactArena *arena, double minor, const ObjectLine *s) {
     RtPolynomial p = {.degree = 4};
-    RtRational k[3], w[3], one = rt_exact_of(arena, 1), ratio = rt_exact_of(arena, solid->ratio);
+    RtRational k[3], w[3], one = rt_exact_of(arena, 1), ratio = rt_exact_of(arena, minor);
     squared_distance(arena, s, 3, k);
     squared_distance(arena, s, 2, w);
     RtRational square = rt_exact_mul(arena, s->unit, s->unit);
@@ -179,13 +213,17 @@ static RtPolynomial torus_polynomial(RtExactArena *arena, const RtSolid *solid, 
     return p;
 }
 
-/* A root without a change of sign does not count. */
+/* A root without a change of sign does not count. A torus that grows over its own hole is replaced by a ball
+ * around it. */
 static RtStatus push_torus(Machine *m, const RtSolid *solid, RtError *error) {
+    double minor = solid->ratio + growth_of(m, solid);
+    if (minor >= 1) return push_ball(m, solid, 1 + minor, error);
+    RT_TRY(push_nothing(m, error));
+    if (!(minor > 0)) return RT_OK;
     ObjectLine s = to_object_space(m->arena, solid, m->line);
-    RtPolynomial p = torus_polynomial(m->arena, solid, &s);
+    RtPolynomial p = torus_polynomial(m->arena, minor, &s);
     RtAlgebraic roots[RT_MAX_DEGREE];
     int count = rt_polynomial_roots(m->arena, &p, roots);
-    RT_TRY(push(m, false, NULL, 0, error));
     for (int i = 0; i < count; i++) {
         int before = rt_polynomial_sign(m->arena, &p, roots[i].lo);
         if (before == rt_polynomial_sign(m->arena, &p, roots[i].hi)) continue;
@@ -194,10 +232,11 @@ static RtStatus push_torus(Machine *m, const RtSolid *solid, RtError *error) {
     return RT_OK;
 }
 
-static RtStatus push_polyhedron(Machine *m, const RtPlane *planes, uint32_t count, RtError *error) {
-    for (uint32_t i = 0; i < count; i++) {
+static RtStatus push_polyhedron(Machine *m, const RtSolid *solid, const RtPlane *planes, RtError *error) {
+    RtRational grow = rt_exact_of(m->arena, solid->subtracted ? -m->grow : m->grow);
+    for (uint32_t i = 0; i < solid->count; i++) {
         RtExactVec normal = rt_exact_vec(m->arena, planes[i].normal);
-        RtRational offset = rt_exact_of(m->arena, planes[i].offset);
+        RtRational offset = rt_exact_add(m->arena, rt_exact_of(m->arena, planes[i].offset), grow);
         RtRational gap = rt_exact_sub(m->arena, offset, rt_exact_dot(m->arena, normal, m->line->org));
         RT_TRY(push_half(m, gap, rt_exact_dot(m->arena, normal, m->line->dir), error));
         if (i > 0) RT_TRY(apply(m, RT_CSG_INTERSECTION, false, error));
@@ -205,23 +244,41 @@ static RtStatus push_polyhedron(Machine *m, const RtPlane *planes, uint32_t coun
     return RT_OK;
 }
 
+/* Where rounding may take the line to cross the triangle, added to the topmost list, or removed. */
+static RtStatus blur(Machine *m, const RtTriangle *triangle, double delta, RtCsgOp op, RtError *error) {
+    RtUnitLine line = rt_unit_line(&m->line->wide);
+    RtBox box = rt_triangle_box(triangle);
+    RtFlatMargin flat = rt_flat_margin(&line, triangle->v, 3, &box, delta);
+    if (!flat.possible) return RT_OK;
+    /* They may be infinite. */
+    double lo = fmax(flat.lo / line.length, -DBL_MAX), hi = fmin(flat.hi / line.length, DBL_MAX);
+    const RtSurd ends[2] = {rt_surd_of(m->arena, rt_exact_of(m->arena, lo)),
+                            rt_surd_of(m->arena, rt_exact_of(m->arena, hi))};
+    RT_TRY(push(m, false, ends, 2, error));
+    return apply(m, op, false, error);
+}
+
 static RtStatus push_mesh(Machine *m, const RtSolidSet *set, uint32_t index, RtError *error) {
+    const RtSolid *solid = &set->solids[index];
     RtRational *roots;
     uint32_t count;
     RT_TRY(rt_exact_mesh_roots(m->arena, set, index, m->line, &roots, &count, error));
-    RtStatus status = push(m, false, NULL, 0, error);
+    RtStatus status = push_nothing(m, error);
     for (uint32_t i = 0; i < count && status == RT_OK; i++)
         status = extend(m, rt_root_of(m->arena, roots[i]), error);
     rt_free(roots);
+    RtCsgOp op = (m->grow > 0) != solid->subtracted ? RT_CSG_UNION : RT_CSG_DIFFERENCE;
+    for (uint32_t i = 0; m->grow != 0 && i < solid->count && status == RT_OK; i++)
+        status = blur(m, &set->triangles[solid->first + i], fabs(m->grow), op, error);
     return status;
 }
 
 static RtStatus push_solid(Machine *m, const RtSolidSet *set, uint32_t index, RtError *error) {
     const RtSolid *solid = &set->solids[index];
     switch (solid->kind) {
-    case RT_SOLID_SPHERE: return push_sphere(m, solid, error);
+    case RT_SOLID_SPHERE: return push_ball(m, solid, 1 + growth_of(m, solid), error);
     case RT_SOLID_CONE: return push_cone(m, solid, error);
-    case RT_SOLID_POLYHEDRON: return push_polyhedron(m, set->planes + solid->first, solid->count, error);
+    case RT_SOLID_POLYHEDRON: return push_polyhedron(m, solid, set->planes + solid->first, error);
     case RT_SOLID_MESH: return push_mesh(m, set, index, error);
     case RT_SOLID_TORUS: return push_torus(m, solid, error);
     case RT_SOLID_KIND_COUNT: break;
@@ -256,4 +313,22 @@ RtExactResult rt_exact_csg_hit(RtExactArena *arena, const RtCsgForest *forest, c
     }
     rt_free(machine.roots);
     return result;
+}
+
+RtStatus rt_exact_csg_boundaries(const RtCsgForest *forest, const RtCsg *tree, const RtWideRay *line,
+                                 double grow, double **at, uint32_t *count, RtError *error) {
+    RtExactArena *arena = rt_exact_arena_borrow();
+    size_t mark = rt_exact_arena_mark(arena);
+    RtExactLine exact = rt_exact_line(arena, line);
+    Machine machine = {.arena = arena, .line = &exact, .grow = grow};
+    RtStatus status = run(&machine, forest, tree, error);
+    *count = status == RT_OK ? machine.lists[0].count : 0;
+    *at = rt_alloc(*count, sizeof **at);
+    if (status == RT_OK && !*at)
+        status = rt_fail_memory(error, "boundaries of a CSG tree", *count * sizeof **at);
+    for (uint32_t i = 0; *at && i < *count; i++)
+        (*at)[i] = (double)rt_root_value(arena, &machine.roots[i], exact.zero);
+    rt_free(machine.roots);
+    rt_exact_arena_return(arena, mark);
+    return status;
 }

@@ -36,6 +36,12 @@ RtExactResult rt_exact_hit(RtExactArena *arena, const RtGeometry *geometry, uint
 RtExactResult rt_exact_csg_hit(RtExactArena *arena, const RtCsgForest *forest, const RtCsg *tree,
                                const RtExactLine *line, RtRoot *t);
 
+/* Where the whole line enters and leaves a CSG tree whose solids have grown by `grow`, or shrunk if it is
+ * below 0 (margin.h): a new array of t in ascending order; free it with rt_free. RT_NO_MEMORY without a
+ * result. */
+RtStatus rt_exact_csg_boundaries(const RtCsgForest *forest, const RtCsg *tree, const RtWideRay *line,
+                                 double grow, double **at, uint32_t *count, RtError *error);
+
 /* The roots at which the whole line, regardless of its interval, alternately enters and leaves mesh solid
  * `index`, in ascending order; roots beyond FLT_MAX may be missing. The caller frees *roots by rt_free;
  * the numbers lie in the arena. */

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "exact/referee.h"
 
-#include <pthread.h>
-
 const char *rt_side_name(RtSide side) {
     static const char *const names[RT_SIDE_COUNT] = {
 #define RT_SIDE_NAME(CONSTANT, name, meaning) #name,
@@ -16,35 +14,6 @@ long double rt_float_ulp(long double x) {
     int exponent;
     frexpl(x, &exponent);
     return ldexpl(1, x == 0 || exponent < FLT_MIN_EXP ? FLT_MIN_EXP - FLT_MANT_DIG : exponent - FLT_MANT_DIG);
-}
-
-/* ---- the thread's arena ---- */
-
-/* Each thread keeps an arena while it runs, because creating numbers takes as long as computing with them.
- * Blocks beyond MOST_BLOCKS are freed after a search. */
-enum { MOST_BLOCKS = 256 };
-static _Thread_local RtExactArena kept;
-static pthread_key_t threads_end;
-static pthread_once_t begun = PTHREAD_ONCE_INIT;
-
-static void forget(void *arena) {
-    rt_exact_arena_clear(arena);
-}
-
-static void begin(void) {
-    pthread_key_create(&threads_end, forget);
-}
-
-/* The thread's arena. A nested borrower continues behind the numbers of the outer one. */
-static RtExactArena *borrow(void) {
-    pthread_once(&begun, begin);
-    if (kept.block_count == 0) pthread_setspecific(threads_end, &kept);
-    return &kept;
-}
-
-static void give_back(RtExactArena *arena, size_t mark) {
-    rt_exact_arena_rewind(arena, mark);
-    if (mark == 0 && arena->block_count > MOST_BLOCKS) rt_exact_arena_clear(arena);
 }
 
 /* ---- the nearest ---- */
@@ -61,7 +30,7 @@ typedef struct Search {
 } Search;
 
 static void search_init(Search *s, const RtGeometry *geometry, const RtRay *ray) {
-    *s = (Search){.arena = borrow(),
+    *s = (Search){.arena = rt_exact_arena_borrow(),
                   .geometry = geometry,
                   .line = rt_wide_ray(ray),
                   .nearest = {.result = RT_MISSED, .object = RT_NO_OBJECT, .t = HUGE_VALL},
@@ -102,7 +71,7 @@ RtExactAnswer rt_referee_nearest(const RtGeometry *geometry, const RtRay *ray) {
     Search s;
     search_init(&s, geometry, ray);
     search(&s);
-    give_back(s.arena, s.mark);
+    rt_exact_arena_return(s.arena, s.mark);
     return s.nearest;
 }
 
@@ -113,7 +82,7 @@ RtExactResult rt_referee_occluded(const RtGeometry *geometry, const RtRay *ray) 
         double soonest;
         if (rt_line_may_meet(&s.line, &geometry->boxes[id], &soonest)) consider(&s, id, soonest);
     }
-    give_back(s.arena, s.mark);
+    rt_exact_arena_return(s.arena, s.mark);
     return s.nearest.result == RT_MISSED && s.open < HUGE_VAL ? RT_UNDECIDED : s.nearest.result;
 }
 
@@ -149,19 +118,19 @@ RtExactAnswer rt_referee_judge(const RtGeometry *geometry, const RtRay *ray, RtH
 /* ---- one or two objects ---- */
 
 RtExactResult rt_referee_hit(const RtGeometry *geometry, uint32_t id, const RtWideRay *line, long double *t) {
-    RtExactArena *arena = borrow();
+    RtExactArena *arena = rt_exact_arena_borrow();
     size_t mark = rt_exact_arena_mark(arena);
     RtExactLine exact = rt_exact_line(arena, line);
     RtRoot at;
     RtExactResult result = rt_exact_hit(arena, geometry, id, &exact, &at);
     if (result == RT_HIT) *t = rt_root_value(arena, &at, exact.zero);
-    give_back(arena, mark);
+    rt_exact_arena_return(arena, mark);
     return result;
 }
 
 RtExactResult rt_referee_order(const RtGeometry *geometry, uint32_t a, uint32_t b, const RtRay *ray,
                                int *order, long double *apart) {
-    RtExactArena *arena = borrow();
+    RtExactArena *arena = rt_exact_arena_borrow();
     size_t mark = rt_exact_arena_mark(arena);
     RtWideRay line = rt_wide_ray(ray);
     RtExactLine exact = rt_exact_line(arena, &line);
@@ -173,6 +142,6 @@ RtExactResult rt_referee_order(const RtGeometry *geometry, uint32_t a, uint32_t 
         long double first = rt_root_value(arena, &at[0], exact.zero);
         *apart = *order == 0 ? 0 : fabsl(first - rt_root_value(arena, &at[1], exact.zero));
     }
-    give_back(arena, mark);
+    rt_exact_arena_return(arena, mark);
     return result;
 }

@@ -8,30 +8,44 @@
 /* The limit of `raytally verify`. */
 #define MOST_RAYS UINT64_C(20000000)
 
-static void fill(const RtEquivalence *result, raytally_verify_result *out) {
+static void fill(const RtEquivalence *result, const RtCertain *certain, raytally_verify_result *out) {
     *out = (raytally_verify_result){.rays = result->rays,
                                     .equal = result->verdicts[RT_EQUAL],
                                     .tie = result->verdicts[RT_TIE],
                                     .marginal = result->verdicts[RT_MARGINAL],
                                     .wrong = result->verdicts[RT_WRONG],
-                                    .occluded_wrong = result->occluded_wrong};
+                                    .occluded_wrong = result->occluded_wrong,
+                                    .certain = certain->certain,
+                                    .must_hit = certain->must_hit,
+                                    .certain_of = certain->rays};
 }
 
-/* Reports the first wrong answer; a broken structure only if all answers are right. */
-static RtStatus judge(const RtAccel *accel, const RtEquivalence *result, const char *spec, RtError *error) {
+/* Reports the first wrong answer; a broken structure, and too few certain rays, only if all answers are
+ * right. */
+static RtStatus judge(const RtAccel *accel, const RtVerifyRays *wanted, const RtEquivalence *result,
+                      const RtCertain *certain, const char *spec, RtError *error) {
     char says[512];
-    if (!result->any_wrong) return rt_accel_validate(accel, error);
-    rt_wrong_answer_format(&result->first_wrong, says, sizeof says);
-    return rt_fail(error, RT_MISMATCH, "%.200s differs from %s, first on %s", spec, rt_accel_truth(), says);
+    if (result->any_wrong) {
+        rt_wrong_answer_format(&result->first_wrong, says, sizeof says);
+        return rt_fail(error, RT_MISMATCH, "%.200s differs from %s, first on %s", spec, rt_accel_truth(),
+                       says);
+    }
+    RT_TRY(rt_accel_validate(accel, error));
+    if (accel->exact || rt_certain_suffices(certain, wanted->count, wanted->given)) return RT_OK;
+    rt_certain_undecided(certain, wanted->count, wanted->given, accel->absolute, says, sizeof says);
+    return rt_fail(error, RT_MISMATCH, "%.200s: %s", spec, says);
 }
 
 static RtStatus verify(RtVerifyScene *stage, const RtVerifyRays *wanted, RtAccel *accel, const char *spec,
                        raytally_verify_result *out, RtError *error) {
     RtEquivalence result;
+    RtCertain certain = {0};
     RT_TRY(rt_verify_scene_answer(stage, wanted, error));
     RT_TRY(rt_equivalence_check(&stage->reference, accel, wanted->threads, &result, error));
-    fill(&result, out);
-    return judge(accel, &result, spec, error);
+    if (!accel->exact)
+        RT_TRY(rt_reference_certain(&stage->reference, accel->absolute, wanted->threads, &certain, error));
+    fill(&result, &certain, out);
+    return judge(accel, wanted, &result, &certain, spec, error);
 }
 
 /* Answering the rays takes longest, so the accelerator is built first: a bad spec fails at once. */

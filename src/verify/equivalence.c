@@ -5,6 +5,8 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 
+#include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -119,6 +121,87 @@ void rt_reference_clear(RtReference *reference) {
     *reference = (RtReference){0};
 }
 
+/* ---- certain rays ---- */
+
+/* Margins of objects, and how many of them a solid of a CSG tree takes the time of. */
+#define CERTAIN_WORK   (UINT64_C(1) << 31)
+#define WORK_PER_SOLID 10000
+enum { FEWEST_SAMPLED = 2000, NEEDED = 1000 };
+
+typedef struct CertainJob {
+    const RtReference *reference;
+    RtJudge judge;
+    uint64_t stride, count; /* rays 0, stride, 2 stride, ... */
+    RtCertain *parts;       /* [chunks] */
+} CertainJob;
+
+static RtStatus count_chunk(void *context, size_t chunk, int thread, RtError *error) {
+    const CertainJob *job = context;
+    RtCertain *part = &job->parts[chunk];
+    (void)thread;
+    for (uint64_t i = chunk * CHUNK; i < (chunk + 1) * CHUNK && i < job->count; i++) {
+        bool certain, must_hit;
+        RT_TRY(rt_verdict_certain(job->judge, &job->reference->rays[i * job->stride], &certain, &must_hit,
+                                  error));
+        part->rays++;
+        part->hits += job->reference->hits[i * job->stride].object != RT_NO_OBJECT;
+        part->certain += certain;
+        part->must_hit += must_hit;
+    }
+    return RT_OK;
+}
+
+RtStatus rt_reference_certain(const RtReference *reference, bool absolute, int threads, RtCertain *out,
+                              RtError *error) {
+    const RtGeometry *g = &reference->scene->geometry;
+    uint64_t solids = g->csg_count > 0 ? g->forest.set.solid_count / g->csg_count : 0;
+    uint64_t most = CERTAIN_WORK / (g->object_count + WORK_PER_SOLID * solids + 1);
+    if (most < FEWEST_SAMPLED) most = FEWEST_SAMPLED;
+    CertainJob job = {.reference = reference, .judge = {g, absolute}, .stride = reference->count / most + 1};
+    job.count = (reference->count + job.stride - 1) / job.stride;
+    size_t chunks = (size_t)(job.count + CHUNK - 1) / CHUNK;
+    job.parts = rt_alloc(chunks, sizeof(RtCertain));
+    if (!job.parts) return rt_fail_memory(error, "certain rays", chunks * sizeof(RtCertain));
+    RtStatus status = rt_parallel_for(chunks, rt_thread_count(threads), count_chunk, &job, error);
+    *out = (RtCertain){0};
+    for (size_t i = 0; i < chunks; i++) {
+        out->rays += job.parts[i].rays;
+        out->hits += job.parts[i].hits;
+        out->certain += job.parts[i].certain;
+        out->must_hit += job.parts[i].must_hit;
+    }
+    rt_free(job.parts);
+    return status;
+}
+
+/* At least how many of `rays` rays have what `found` of `sampled` have, with 97.5 % confidence? */
+static double at_least(uint64_t found, uint64_t sampled, uint64_t rays) {
+    double n = (double)sampled, share = n > 0 ? (double)found / n : 0;
+    if (sampled < rays) share -= 1.96 * sqrt(share * (1 - share) / n);
+    return share * (double)rays;
+}
+
+bool rt_certain_suffices(const RtCertain *c, uint64_t rays, bool given) {
+    double hits = c->rays > 0 ? (double)c->hits / (double)c->rays * (double)rays : 0;
+    double needed = given ? (double)rays / 2 : NEEDED;
+    double needed_hits = given ? hits / 2 : fmin(hits / 10, NEEDED);
+    return at_least(c->certain, c->rays, rays) >= needed &&
+           at_least(c->must_hit, c->rays, rays) >= needed_hits;
+}
+
+void rt_certain_undecided(const RtCertain *c, uint64_t rays, bool given, bool absolute, char *out,
+                          size_t size) {
+    snprintf(out, size,
+             "undecided: of %" PRIu64 " %srays, %" PRIu64 " of which hit, %" PRIu64
+             " have one answer, whatever rounding%s does, and %" PRIu64
+             " must hit something. Needed are %s. %s",
+             c->rays, c->rays < rays ? "sampled " : "", c->hits, c->certain,
+             absolute ? " in absolute coordinates" : "", c->must_hit,
+             given ? "half of the rays and half of the hits" : "1000 rays, and a tenth of the hits or 1000",
+             given ? "Use rays that pass farther from edges and start farther from surfaces"
+                   : "Trace more rays, or move the scene nearer to the origin of coordinates");
+}
+
 /* ---- checking ---- */
 
 /* Traces a chunk in all modes. */
@@ -154,12 +237,15 @@ static void answer_chunk(RtQuery *query, const RtRay *rays, void *message) {
     answer(query, &plan, rays, answers);
 }
 
+RtJudge rt_judge_of(const RtAccel *accel) {
+    return (RtJudge){&accel->scene->geometry, accel->absolute};
+}
+
 RtStatus rt_answer_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, RtHit got,
                            RtVerdict *verdict, RtError *error) {
     *verdict = memcmp(&expected, &got, sizeof got) == 0 ? RT_EQUAL : RT_WRONG;
     if (*verdict == RT_EQUAL || query->accel->exact) return RT_OK;
-    return rt_verdict_nearest(&query->accel->scene->geometry, ray, expected, got, rt_query_crossings(query),
-                              verdict, error);
+    return rt_verdict_nearest(rt_judge_of(query->accel), ray, expected, got, verdict, error);
 }
 
 RtStatus rt_blocked_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, bool got,
@@ -167,8 +253,7 @@ RtStatus rt_blocked_verdict(const RtQuery *query, const RtRay *ray, RtHit expect
     bool blocked = expected.object != RT_NO_OBJECT;
     *verdict = blocked == got ? RT_EQUAL : RT_WRONG;
     if (*verdict == RT_EQUAL || query->accel->exact) return RT_OK;
-    return rt_verdict_occluded(&query->accel->scene->geometry, ray, blocked, got, rt_query_crossings(query),
-                               verdict, error);
+    return rt_verdict_occluded(rt_judge_of(query->accel), ray, blocked, got, verdict, error);
 }
 
 void rt_wrong_answer_context(const RtReference *reference, const RtWrongAnswer *wrong, size_t *first,
@@ -195,7 +280,7 @@ static RtStatus judge(const Job *job, const Worker *worker, size_t chunk, size_t
     RtHit expected = job->reference->hits[index];
     RtVerdict worst = RT_EQUAL;
     bool occluded_wrong = false;
-    const RtHit *doubtful = NULL;
+    const RtHit *doubtful = NULL, *faulty = NULL;
     for (int w = 0; w < worker->plan.mode_count; w++) {
         RtHit got = worker->answers.hits[w][i];
         bool blocked = worker->answers.blocked[w][i];
@@ -210,6 +295,7 @@ static RtStatus judge(const Job *job, const Worker *worker, size_t chunk, size_t
         RT_TRY(rt_answer_verdict(&worker->query, ray, expected, got, &verdict, error));
         if (verdict == RT_WRONG) keep_wrong_answer(part, wrong);
         if (verdict >= RT_MARGINAL) doubtful = &worker->answers.hits[w][i];
+        if (verdict == RT_WRONG) faulty = doubtful;
         if (verdict > worst) worst = verdict;
         RT_TRY(rt_blocked_verdict(&worker->query, ray, expected, blocked, &verdict, error));
         if (verdict == RT_WRONG) {
@@ -223,8 +309,13 @@ static RtStatus judge(const Job *job, const Worker *worker, size_t chunk, size_t
     part->verdicts[worst]++;
     if (doubtful && !job->accel->exact) {
         RtSide side;
-        RT_TRY(rt_verdict_side(&job->reference->scene->geometry, ray, expected, *doubtful, &side, error));
+        RT_TRY(rt_verdict_side(rt_judge_of(job->accel), ray, expected, *doubtful, &side, error));
         part->sides[side]++;
+    }
+    if (faulty && !job->accel->exact) {
+        RtFault fault;
+        RT_TRY(rt_verdict_fault(rt_judge_of(job->accel), ray, *faulty, &fault, error));
+        part->faults[fault]++;
     }
     part->occluded_wrong += occluded_wrong;
     return RT_OK;
@@ -288,6 +379,7 @@ RtStatus rt_equivalence_check(const RtReference *reference, RtAccel *accel, int 
         out->occluded_wrong += job.parts[i].occluded_wrong;
         for (int v = 0; v < RT_VERDICT_COUNT; v++) out->verdicts[v] += job.parts[i].verdicts[v];
         for (int s = 0; s < RT_SIDE_COUNT; s++) out->sides[s] += job.parts[i].sides[s];
+        for (int f = 0; f < RT_FAULT_COUNT; f++) out->faults[f] += job.parts[i].faults[f];
         if (job.parts[i].any_wrong) keep_wrong_answer(out, job.parts[i].first_wrong);
     }
     rt_free(job.parts);
@@ -334,11 +426,18 @@ json_t *rt_equivalence_json(const RtEquivalence *result, const char *scene, cons
         json_object_set_new(row, rt_verdict_name((RtVerdict)v),
                             json_integer((json_int_t)result->verdicts[v]));
     }
-    json_t *sides = json_object();
+    json_t *sides = json_object(), *faults = json_object();
     for (int s = 0; s < RT_SIDE_COUNT; s++) {
         json_object_set_new(sides, rt_side_name((RtSide)s), json_integer((json_int_t)result->sides[s]));
     }
+    for (int f = 0; f < RT_FAULT_COUNT; f++) {
+        json_object_set_new(faults, rt_fault_name((RtFault)f), json_integer((json_int_t)result->faults[f]));
+    }
     json_object_set_new(row, "exactly_right", sides);
+    json_object_set_new(row, "faults", faults);
+    json_object_set_new(row, "certain", json_null());
+    json_object_set_new(row, "must_hit", json_null());
+    json_object_set_new(row, "certain_of", json_null());
     json_object_set_new(row, "occluded_wrong", json_integer((json_int_t)result->occluded_wrong));
     json_object_set_new(row, "first_wrong",
                         result->any_wrong ? wrong_answer_json(&result->first_wrong) : json_null());

@@ -44,7 +44,9 @@ typedef struct RtEquivalence {
     uint64_t verdicts[RT_VERDICT_COUNT]; /* sum to `rays` */
     /* Rays with a marginal or wrong answer to `nearest`, by which answer is exactly right. */
     uint64_t sides[RT_SIDE_COUNT];
-    uint64_t occluded_wrong; /* rays, regardless of their verdict */
+    uint64_t
+        faults[RT_FAULT_COUNT]; /* of the wrong answers to `nearest` of an accelerator that is not exact */
+    uint64_t occluded_wrong;    /* rays, regardless of their verdict */
     bool any_wrong;
     RtWrongAnswer first_wrong; /* if any_wrong: of the lowest ray index */
 } RtEquivalence;
@@ -53,6 +55,28 @@ typedef struct RtEquivalence {
  * accelerator that learns receives the reference's hits first. */
 RtStatus rt_equivalence_check(const RtReference *reference, RtAccel *accel, int threads, RtEquivalence *out,
                               RtError *error);
+
+/* Rays of a reference whose answer is certain (verify/verdict.h), for accelerators with absolute coordinates
+ * or for others. If there are too many objects for all rays, every kth one is examined. */
+typedef struct RtCertain {
+    uint64_t rays, hits;        /* examined, and those that brute says hit */
+    uint64_t certain, must_hit; /* only one answer is right; a miss is wrong */
+} RtCertain;
+
+RtStatus rt_reference_certain(const RtReference *reference, bool absolute, int threads, RtCertain *out,
+                              RtError *error);
+
+/* Do enough of `rays` rays have a certain answer for a verdict on an accelerator that is not exact? 1000
+ * must, and a tenth of the hits, or 1000, must hit something; of rays from a file (`given`) half must, and
+ * half of the hits. (An accelerator that hits nothing is right on every ray that misses for certain.)
+ * Otherwise the result is undecided, which is no success. */
+bool rt_certain_suffices(const RtCertain *certain, uint64_t rays, bool given);
+
+/* "undecided: ...", with a remedy, to out[0..size). */
+void rt_certain_undecided(const RtCertain *certain, uint64_t rays, bool given, bool absolute, char *out,
+                          size_t size);
+
+RtJudge rt_judge_of(const RtAccel *accel);
 
 /* The verdict on an answer of the query's accelerator to `nearest`, or to `occluded`, given brute's
  * nearest hit `expected`: RT_EQUAL or RT_WRONG for an exact accelerator. RT_NO_MEMORY as in
@@ -67,8 +91,8 @@ RtStatus rt_blocked_verdict(const RtQuery *query, const RtRay *ray, RtHit expect
 void rt_wrong_answer_context(const RtReference *reference, const RtWrongAnswer *wrong, size_t *first,
                              size_t *count);
 
-/* The row of `verify --json`: a new reference, NULL if memory is short. Floats are strings that read back
- * to the same bits ("inf" included). */
+/* The row of `verify --json`, without the number of certain rays: a new reference, NULL if memory is short.
+ * Floats are strings that read back to the same bits ("inf" included). */
 json_t *rt_equivalence_json(const RtEquivalence *result, const char *scene, const char *accel,
                             const char *against);
 

@@ -1,37 +1,29 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Verdicts: compare the answer of an accelerator with its own arithmetic (Embree's native mode) with that of
- * our hit functions.
+/* Verdicts: is an answer of an accelerator with its own arithmetic (Embree's native mode, a library) right?
  *
- * Both compute in rounded arithmetic, so if a ray grazes an object, or starts or ends on one, either answer
- * may be wrong. Where they differ, the referee (exact/referee.h) decides in exact arithmetic. An exactly
- * right answer is never wrong, whatever our hit functions return. Other answers are excused as marginal only
- * if the ray is closer to the decision boundary than float32 arithmetic can resolve. Each object has such a
- * margin: where it may be hit if its vertices and the ray are displaced by up to
+ * Each object has a margin (exact/margin.h), which depends on the ray and the scene, not on the accelerator:
+ * it may be hit (possible), or every careful float32 implementation must hit it (certain). So an answer is
+ * wrong
  *
- *     error = 2^-20 * the largest coordinate of the scene's box or of the ray's origin     (16 half-ulps)
+ *     if it is a miss, and an object is certain
+ *     if it names an object at a t at which that is not possible
+ *     if another object is certainly hit before
  *
- * For triangles and spheres, which such an accelerator tests with its own arithmetic, the margin is computed
- * in double: edge functions within their error of 0, and t with an error that grows as the plane is seen
- * edge-on, or arbitrary where products of three lengths overflow float32; for spheres, the distance of the
- * line from the centre within the error of the radius, and every t on the chord between the smaller and the
- * larger sphere. Other shapes are tested with our hit functions, and their margin is found by probing: the
- * ray is moved by half the error along the 26 directions of a cube's faces, edges and corners, and once its
- * direction loses all components below 2^-24 of the largest; its interval is once widened and once narrowed
- * by the tolerance; t lies between those found for the front or between those for the back.
- *
- * An object that is hit all over its margin is certain, one that is hit somewhere is possible. An answer
- * is marginal if it names a possible or certain object, at a t that is possible for it, with no certain
- * object clearly before it. A miss is marginal if nothing is certain. */
+ * and a ray is certain if only one answer is not wrong: if nothing is possible, or a certain object precedes
+ * all other possible ones. An accelerator that never hits anything is wrong for every certain hit. Where the
+ * margins allow several answers, nothing can be said of any of them; so a verdict on an accelerator needs
+ * enough certain rays (verify.h). */
 #ifndef RT_VERIFY_VERDICT_H
 #define RT_VERIFY_VERDICT_H
 
+#include "exact/margin.h"
 #include "exact/referee.h"
 
 /* In order of severity. */
 typedef enum RtVerdict {
-    RT_EQUAL,    /* the same object, t within the tolerance: 2^-18 * the largest coordinate / |dir| */
-    RT_TIE,      /* another object, whose exact t is within the tolerance of the exact t of ours */
-    RT_MARGINAL, /* exactly right, or explained by rounding as above */
+    RT_EQUAL,    /* the same object, at a t possible for it */
+    RT_TIE,      /* another object, whose exact t differs from the exact t of ours by at most delta / |dir| */
+    RT_MARGINAL, /* another answer that rounding explains */
     RT_WRONG,    /* anything else */
     RT_VERDICT_COUNT
 } RtVerdict;
@@ -39,19 +31,48 @@ typedef enum RtVerdict {
 /* "equal", "tie", "marginal", "wrong" */
 const char *rt_verdict_name(RtVerdict verdict);
 
-/* All three fail with RT_NO_MEMORY if the referee lacks memory, without a result. */
+/* The scene, and whether the accelerator computes with absolute coordinates (RtAccel.absolute). */
+typedef struct RtJudge {
+    const RtGeometry *geometry; /* borrowed */
+    bool absolute;
+} RtJudge;
 
-/* Judges the nearest hit `answer` of a valid ray; `expected` is brute's, `crossings` comes from
- * rt_crossings_alloc. */
-RtStatus rt_verdict_nearest(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer,
-                            RtCrossing *crossings, RtVerdict *verdict, RtError *error);
+/* What is wrong with a wrong answer to `nearest`. X(CONSTANT, name, meaning) */
+#define RT_FAULTS(X)                                                                                         \
+    X(LOST, lost, "a certain hit is missed")                                                                 \
+    X(BEHIND, behind, "another object is certainly hit before")                                              \
+    X(BESIDE, beside, "the ray cannot hit the object")                                                       \
+    X(DISPLACED, displaced, "the object may be hit, but not at that t")                                      \
+    X(EDGE_ON, edge_on, "the triangle or polygon is seen edge on, and t lies outside its box")
 
-/* Which answer to `nearest` is exactly right, within that tolerance? */
-RtStatus rt_verdict_side(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer,
-                         RtSide *side, RtError *error);
+typedef enum RtFault {
+#define RT_FAULT_ENUM(CONSTANT, name, meaning) RT_FAULT_##CONSTANT,
+    RT_FAULTS(RT_FAULT_ENUM)
+#undef RT_FAULT_ENUM
+        RT_FAULT_COUNT
+} RtFault;
+
+/* "lost", ... */
+const char *rt_fault_name(RtFault fault);
+
+/* All of these fail with RT_NO_MEMORY if exact arithmetic on a CSG tree lacks memory, without a result. */
+
+/* Judges the nearest hit `answer` of a valid ray; `expected` is brute's. */
+RtStatus rt_verdict_nearest(RtJudge judge, const RtRay *ray, RtHit expected, RtHit answer, RtVerdict *verdict,
+                            RtError *error);
+
+/* The fault of an answer that is wrong. */
+RtStatus rt_verdict_fault(RtJudge judge, const RtRay *ray, RtHit answer, RtFault *fault, RtError *error);
 
 /* Judges an answer to `occluded`: equal, marginal or wrong. */
-RtStatus rt_verdict_occluded(const RtGeometry *geometry, const RtRay *ray, bool expected, bool answer,
-                             RtCrossing *crossings, RtVerdict *verdict, RtError *error);
+RtStatus rt_verdict_occluded(RtJudge judge, const RtRay *ray, bool expected, bool answer, RtVerdict *verdict,
+                             RtError *error);
+
+/* Is the ray certain, and must it hit something (even if several objects may be the nearest)? */
+RtStatus rt_verdict_certain(RtJudge judge, const RtRay *ray, bool *certain, bool *must_hit, RtError *error);
+
+/* Which answer to `nearest` is exactly right, up to delta / |dir|? */
+RtStatus rt_verdict_side(RtJudge judge, const RtRay *ray, RtHit expected, RtHit answer, RtSide *side,
+                         RtError *error);
 
 #endif

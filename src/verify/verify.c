@@ -14,9 +14,6 @@
 
 #include <string.h>
 
-/* A larger share of marginal answers is a problem for given rays; our own rays target the margins. */
-#define MARGINAL_PART 0.01
-
 #define FAILURES "verify-failures" /* default folder */
 
 /* If everything fails, the same fault is not shrunk again and again, unless that is asked for. */
@@ -33,6 +30,8 @@ typedef struct Run {
     size_t next_known;
     json_t *rows;
     RtJsonLines journal;
+    /* Of the current scene, by RtAccel.absolute; rays is UINT64_MAX where not yet counted. */
+    RtCertain certain[2];
     RtError unsaved; /* why the replay file of the row could not be written, or empty */
 } Run;
 
@@ -220,31 +219,42 @@ static RtStatus keep_failure(Run *run, const RtVerifyScene *scene, const RtVerif
 
 /* ---- a row ---- */
 
-static json_t *problem_json(const Run *run, const RtEquivalence *result, const char *broken) {
-    bool too_marginal = run->verify->rays.given &&
-                        (double)result->verdicts[RT_MARGINAL] > MARGINAL_PART * (double)result->rays;
-    if (broken[0]) return json_string(broken);
-    if (!too_marginal) return json_null();
-    return json_sprintf("more than %g %% of the answers are marginal", MARGINAL_PART * 100);
+/* Adds the number of certain rays to the row of an accelerator that is not exact. With too few, `problem`
+ * says so, unless it is already known. */
+static RtStatus add_certain(Run *run, const RtVerifyScene *scene, const RtAccel *accel, json_t *row,
+                            char *problem, size_t size, RtError *error) {
+    const RtVerifyRays *rays = &run->verify->rays;
+    RtCertain *certain = &run->certain[accel->absolute];
+    if (accel->exact) return RT_OK;
+    if (certain->rays == UINT64_MAX)
+        RT_TRY(rt_reference_certain(&scene->reference, accel->absolute, rays->threads, certain, error));
+    json_object_set_new(row, "certain", json_integer((json_int_t)certain->certain));
+    json_object_set_new(row, "must_hit", json_integer((json_int_t)certain->must_hit));
+    json_object_set_new(row, "certain_of", json_integer((json_int_t)certain->rays));
+    if (!*problem && !rt_certain_suffices(certain, rays->count, rays->given))
+        rt_certain_undecided(certain, rays->count, rays->given, accel->absolute, problem, size);
+    return RT_OK;
 }
 
 /* A broken structure is a problem, like a wrong answer; rays are traced through it all the same. */
 static RtStatus check(Run *run, const RtVerifyScene *scene, RtAccel *accel, const RtVerifySpec *spec,
                       RtError *error) {
-    char broken[sizeof error->message] = "";
+    char problem[sizeof error->message] = "";
     RtEquivalence result;
     RtStatus status = rt_accel_validate(accel, error);
     if (status == RT_MISMATCH) {
-        memcpy(broken, error->message, sizeof broken);
+        memcpy(problem, error->message, sizeof problem);
     } else {
         RT_TRY(status);
     }
     RT_TRY(rt_equivalence_check(&scene->reference, accel, run->verify->rays.threads, &result, error));
     json_t *row = rt_equivalence_json(&result, scene->name, spec->spec, rt_accel_truth());
     json_object_set_new(row, "exact", json_boolean(accel->exact));
-    json_object_set_new(row, "problem", problem_json(run, &result, broken));
     json_object_set_new(row, "refused", json_null());
-    status = result.any_wrong ? keep_failure(run, scene, spec, &result.first_wrong, row, error) : RT_OK;
+    status = add_certain(run, scene, accel, row, problem, sizeof problem, error);
+    json_object_set_new(row, "problem", *problem ? json_string(problem) : json_null());
+    if (status == RT_OK && result.any_wrong)
+        status = keep_failure(run, scene, spec, &result.first_wrong, row, error);
     if (status == RT_OK) return add_row(run, row, error);
     json_decref(row);
     return status;
@@ -293,6 +303,7 @@ static RtStatus prepare_scene(Run *run, uint32_t i, RtVerifyScene *scene, RtErro
     RT_TRY(rt_verify_scene_init(scene, &run->scenes[i], &v->rays, error));
     doing(run, "answering them by brute force");
     scene->name = v->scenes[i];
+    run->certain[0].rays = run->certain[1].rays = UINT64_MAX;
     return rt_verify_scene_answer(scene, &v->rays, error);
 }
 

@@ -4,6 +4,7 @@
 #include "core/base/file.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
+#include "core/text/json.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -37,16 +38,24 @@ static uint64_t number(const json_t *object, const char *key) {
 }
 
 static void add(RtVerifySum *sum, const json_t *row) {
-    const json_t *sides = json_object_get(row, "exactly_right");
+    const json_t *sides = json_object_get(row, "exactly_right"), *faults = json_object_get(row, "faults");
     sum->rows++;
     sum->failed += rt_verify_row_fails(row);
     sum->refused += !json_is_null(json_object_get(row, "refused"));
+    sum->undecided += strncmp(rt_json_text(row, "problem", ""), "undecided", strlen("undecided")) == 0;
     sum->pairs += number(row, "rays");
+    if (!json_is_true(json_object_get(row, "exact"))) sum->judged += number(row, "rays");
+    if (strcmp(rt_json_text(row, "accel", ""), rt_json_text(row, "against", "")) == 0)
+        sum->itself += number(row, "rays");
+    sum->certain += number(row, "certain");
+    sum->must_hit += number(row, "must_hit");
+    sum->certain_of += number(row, "certain_of");
     for (int v = 0; v < RT_VERDICT_COUNT; v++) {
         sum->verdicts[v] += number(row, rt_verdict_name((RtVerdict)v));
     }
     sum->occluded_wrong += number(row, "occluded_wrong");
     for (int s = 0; s < RT_SIDE_COUNT; s++) sum->sides[s] += number(sides, rt_side_name((RtSide)s));
+    for (int f = 0; f < RT_FAULT_COUNT; f++) sum->faults[f] += number(faults, rt_fault_name((RtFault)f));
 }
 
 RtStatus rt_verify_sums(const json_t *rows, RtVerifyGroup group, RtVerifySum **sums, uint32_t *count,
@@ -93,6 +102,10 @@ static const void *sides_of(const void *row) {
     return json_object_get(row, "exactly_right");
 }
 
+static const void *faults_of(const void *row) {
+    return json_object_get(row, "faults");
+}
+
 static const void *first_wrong_of(const void *row) {
     return json_object_get(row, "first_wrong");
 }
@@ -106,10 +119,10 @@ static const RtTableColumn members[] = {
     MEMBER("rays", integer, "rays traced"),
     MEMBER("equal", integer, "answers to nearest that equal brute's"),
     MEMBER("tie", integer, "answers with another object that is hit at the same point"),
-    MEMBER("marginal", integer, "answers that are exactly right, or differ by rounding"),
+    MEMBER("marginal", integer, "other answers that rounding explains"),
     MEMBER("wrong", integer, "all other answers"),
     MEMBER("occluded_wrong", integer, "rays whose answer to occluded is wrong"),
-    MEMBER("problem", text, "a broken structure, or too many marginal answers; empty: none"),
+    MEMBER("problem", text, "a broken structure, or `undecided` and why; empty: none"),
     MEMBER(
         "refused", text,
         "why a plugin refuses the scene, or that the accelerator exceeds --memory; the row then has no rays"),
@@ -117,9 +130,20 @@ static const RtTableColumn members[] = {
 };
 enum { OF_CSV = 10, AGAINST = 2 };
 
+static const RtTableColumn certain[] = {
+    MEMBER("certain", integer,
+           "rays that every careful float32 implementation answers alike; empty: the accelerator is exact"),
+    MEMBER("must_hit", integer, "rays that must hit something, maybe one of several objects"),
+    MEMBER("certain_of", integer, "rays examined for that: all, or a sample"),
+};
+
 #define SIDE(CONSTANT, name, meaning)                                                                        \
     {"exactly_right_" #name, #name, "", "if they differ: " meaning, get_member, RT_FORM_integer, 0},
 static const RtTableColumn sides[] = {RT_SIDES(SIDE)};
+
+#define FAULT(CONSTANT, name, meaning)                                                                       \
+    {"fault_" #name, #name, "", "wrong answers to nearest: " meaning, get_member, RT_FORM_integer, 0},
+static const RtTableColumn faults[] = {RT_FAULTS(FAULT)};
 
 static const RtTableColumn first_wrong[] = {
     MEMBER("replay", text, "replay file of the first wrong answer; empty: it could not be written"),
@@ -141,12 +165,16 @@ static const RtTableColumn first_wrong[] = {
 };
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
-const RtColumnGroup rt_verify_csv[RT_VERIFY_GROUPS] = {{NULL, members, OF_CSV, NULL},
-                                                       {NULL, sides, COUNT(sides), sides_of},
-                                                       {NULL, first_wrong, 1, first_wrong_of}};
-const RtColumnGroup rt_verify_json[RT_VERIFY_GROUPS] = {
+const RtColumnGroup rt_verify_csv[RT_VERIFY_CSV_GROUPS] = {{NULL, members, OF_CSV, NULL},
+                                                           {NULL, sides, COUNT(sides), sides_of},
+                                                           {NULL, first_wrong, 1, first_wrong_of},
+                                                           {NULL, certain, COUNT(certain), NULL},
+                                                           {NULL, faults, COUNT(faults), faults_of}};
+const RtColumnGroup rt_verify_json[RT_VERIFY_JSON_GROUPS] = {
     {NULL, members, COUNT(members), NULL},
+    {NULL, certain, COUNT(certain), NULL},
     {"exactly_right", sides, COUNT(sides), sides_of},
+    {"faults", faults, COUNT(faults), faults_of},
     {"first_wrong", first_wrong, COUNT(first_wrong), first_wrong_of}};
 const RtColumnGroup rt_verify_text[RT_VERIFY_TEXT_GROUPS] = {
     {NULL, members, AGAINST, NULL}, {NULL, members + AGAINST + 1, OF_CSV - AGAINST - 2, NULL}};
@@ -171,6 +199,9 @@ typedef RtVerifySum Row;
     X(wrong, "wrong", integer, "", "", r->verdicts[RT_WRONG])                                                \
     X(occluded_wrong, "occluded wrong", integer, "", "", r->occluded_wrong)                                  \
     X(failed, "rows that fail", integer, "", "", r->failed)                                                  \
+    X(certain, "certain rays", integer, "", "", r->certain)                                                  \
+    X(must_hit, "must hit", integer, "", "", r->must_hit)                                                    \
+    X(certain_of, "examined", integer, "", "", r->certain_of)                                                \
     X(inexact, "accelerator", markup, "", "", rt_field_print("`%s`", r->name))
 RT_TABLE_COLUMNS(sum_columns, SUMS)
 
@@ -184,6 +215,16 @@ static const RtTableColumn sum_sides[] = {RT_SIDES(SUM_OF_SIDE)};
 
 static const RtColumnGroup by_accel[] = {RT_ONE(sum_columns, accel), RT_FROM_TO(sum_columns, rows, failed)};
 static const RtColumnGroup by_scene[] = {RT_ONE(sum_columns, scene), RT_FROM_TO(sum_columns, rows, failed)};
+static RtField get_fault(const void *row, const RtTableColumn *column) {
+    return rt_field_integer(((const RtVerifySum *)row)->faults[column->key]);
+}
+
+#define SUM_OF_FAULT(CONSTANT, name, meaning)                                                                \
+    {#name, #name, "", meaning, get_fault, RT_FORM_integer, RT_FAULT_##CONSTANT},
+static const RtTableColumn sum_faults[] = {RT_FAULTS(SUM_OF_FAULT)};
+
+static const RtColumnGroup by_fault[] = {RT_ONE(sum_columns, inexact),
+                                         RT_FROM_TO(sum_columns, certain, certain_of), RT_ALL(sum_faults)};
 static const RtColumnGroup by_side[] = {RT_ONE(sum_columns, inexact), RT_ALL(sum_sides)};
 
 static const void *sum_at(void *sums, size_t i) {
@@ -200,51 +241,65 @@ typedef struct Sums {
     uint32_t accel_count, scene_count;
 } Sums;
 
-static void write_sums(const RtColumnGroup groups[2], RtVerifySum *sums, uint32_t count,
+static void write_sums(const RtColumnGroup *groups, int group_count, RtVerifySum *sums, uint32_t count,
                        const void *(*row)(void *, size_t), FILE *out) {
     fputc('\n', out);
-    rt_table_markdown(&(RtTable){groups, 2, count, row, .context = sums}, out);
+    rt_table_markdown(&(RtTable){groups, (size_t)group_count, count, row, .context = sums}, out);
 }
 
-static void write_markdown(const json_t *rows, const Sums *sums, FILE *out) {
-    RtVerifySum total = rt_verify_total(rows);
-    fprintf(out, "# Verification\n\n%" PRIu64 " comparison%s, ", total.pairs, rt_plural(total.pairs));
-    fputs("each of the answers to `nearest` and `occluded`, timed and counted:\n", out);
+static void write_introduction(const RtVerifySum *total, FILE *out) {
+    fprintf(out, "# Verification\n\n%" PRIu64 " comparison%s of the answers to `nearest` and `occluded`, ",
+            total->pairs, rt_plural(total->pairs));
+    fprintf(out, "timed and counted:\n%" PRIu64 " with `brute`, bit for bit (%" PRIu64 " of them",
+            total->pairs - total->judged, total->itself);
+    fprintf(out, " of `brute` with itself),\nand %" PRIu64 " judged by verdicts.\n", total->judged);
     fprintf(out, "%" PRIu64 " answer%s to `nearest` %s wrong, %" PRIu64 " to `occluded`. ",
-            total.verdicts[RT_WRONG], rt_plural(total.verdicts[RT_WRONG]),
-            total.verdicts[RT_WRONG] == 1 ? "is" : "are", total.occluded_wrong);
-    fprintf(out, "%u row%s, %u of which fail, %s in [verify.csv](verify.csv).\n", total.rows,
-            rt_plural(total.rows), total.failed, total.rows == 1 ? "is" : "are");
+            total->verdicts[RT_WRONG], rt_plural(total->verdicts[RT_WRONG]),
+            total->verdicts[RT_WRONG] == 1 ? "is" : "are", total->occluded_wrong);
+    fprintf(out, "%u row%s, %u of which fail, %s in [verify.csv](verify.csv).\n", total->rows,
+            rt_plural(total->rows), total->failed, total->rows == 1 ? "is" : "are");
     fputs(
         "What was verified, with which seed and by which build, is in [manifest.json](manifest.json).\n"
         "\n"
         "An answer of an exact accelerator either equals that of `brute` (the same object and the same bits\n"
         "of t) or is wrong. An accelerator with a star has its own arithmetic; an answer of it to `nearest`\n"
-        "is equal (the same object at nearly the same t), a tie (another object that is also hit there),\n"
-        "marginal (exactly right, or explained by rounding) or wrong. A row is a scene and an accelerator\n"
-        "with its parameters; it fails if an answer is wrong or verify.csv names a problem. The first table\n"
-        "adds up the rows of an accelerator over all its parameters.\n",
+        "is equal (the same object, at a t that rounding explains), a tie (another object that is also hit\n"
+        "there), marginal (another answer that rounding explains) or wrong. A row is a scene and an\n"
+        "accelerator with its parameters; it fails if an answer is wrong or verify.csv names a problem. The\n"
+        "first table adds up the rows of an accelerator over all its parameters.\n",
         out);
-    write_sums(by_accel, sums->accels, sums->accel_count, sum_at, out);
-    if (!total.exact) {
-        fputs("\n"
-              "## Who is right\n"
-              "\n"
-              "Answers to `nearest` with the verdict marginal or wrong, by which side is right in exact "
-              "arithmetic:\n"
-              "`expected` means only `brute`, `got` only the accelerator.\n",
-              out);
-        write_sums(by_side, sums->accels, sums->accel_count, inexact_at, out);
-    }
+}
+
+static void write_judged(const Sums *sums, FILE *out) {
+    fputs("\n"
+          "## Verdicts\n"
+          "\n"
+          "Rays whose answer is certain, among those examined, and what is wrong with wrong answers to\n"
+          "`nearest`:\n",
+          out);
+    write_sums(by_fault, 3, sums->accels, sums->accel_count, inexact_at, out);
+    fputs("\n"
+          "Answers to `nearest` with the verdict marginal or wrong, by which side is right in exact "
+          "arithmetic:\n"
+          "`expected` means only `brute`, `got` only the accelerator.\n",
+          out);
+    write_sums(by_side, 2, sums->accels, sums->accel_count, inexact_at, out);
+}
+
+static void write_markdown(const json_t *rows, const Sums *sums, FILE *out) {
+    RtVerifySum total = rt_verify_total(rows);
+    write_introduction(&total, out);
+    write_sums(by_accel, 2, sums->accels, sums->accel_count, sum_at, out);
+    if (!total.exact) write_judged(sums, out);
     fputs("\n## By scene\n", out);
-    write_sums(by_scene, sums->scenes, sums->scene_count, sum_at, out);
+    write_sums(by_scene, 2, sums->scenes, sums->scene_count, sum_at, out);
 }
 
 /* ---- files ---- */
 
 static RtStatus write_files(json_t *rows, const Sums *sums, const char *folder, RtError *error) {
     RtOutput output;
-    RtTable table = {rt_verify_csv, RT_VERIFY_GROUPS, json_array_size(rows), member_of, .context = rows};
+    RtTable table = {rt_verify_csv, RT_VERIFY_CSV_GROUPS, json_array_size(rows), member_of, .context = rows};
     RT_TRY(rt_output_open_in(&output, folder, "verify.csv", error));
     rt_table_csv(&table, output.file);
     RT_TRY(rt_output_commit(&output, error));

@@ -10,8 +10,9 @@
 #include "verify/verdict.h"
 
 /* Columns over a row: for verify.csv, verify --json, and the terminal. */
-enum { RT_VERIFY_GROUPS = 3, RT_VERIFY_TEXT_GROUPS = 2 };
-extern const RtColumnGroup rt_verify_csv[RT_VERIFY_GROUPS], rt_verify_json[RT_VERIFY_GROUPS];
+enum { RT_VERIFY_CSV_GROUPS = 5, RT_VERIFY_JSON_GROUPS = 5, RT_VERIFY_TEXT_GROUPS = 2 };
+extern const RtColumnGroup rt_verify_csv[RT_VERIFY_CSV_GROUPS];
+extern const RtColumnGroup rt_verify_json[RT_VERIFY_JSON_GROUPS];
 extern const RtColumnGroup rt_verify_text[RT_VERIFY_TEXT_GROUPS];
 
 /* The sum of the rows of one accelerator with any parameters, or of one scene. A pair is a ray and an
@@ -20,10 +21,15 @@ typedef struct RtVerifySum {
     char name[RT_MAX_SPEC_CHARS];   /* "item+bvh", without parameters; or the scene */
     bool exact;                     /* must match brute bit for bit; true for scenes */
     uint32_t rows, failed, refused; /* the last by a plugin, which is no failure */
+    uint32_t undecided;             /* failed for want of certain rays (equivalence.h) */
     uint64_t pairs;
-    uint64_t verdicts[RT_VERDICT_COUNT]; /* of nearest; sum to `pairs` */
-    uint64_t occluded_wrong;             /* pairs with a wrong answer to occluded */
-    uint64_t sides[RT_SIDE_COUNT];       /* as in RtEquivalence */
+    uint64_t judged;                        /* pairs compared by verdicts; the others bit for bit */
+    uint64_t itself;                        /* pairs of brute with itself */
+    uint64_t certain, must_hit, certain_of; /* rays of judged rows: certain among those examined */
+    uint64_t verdicts[RT_VERDICT_COUNT];    /* of nearest; sum to `pairs` */
+    uint64_t occluded_wrong;                /* pairs with a wrong answer to occluded */
+    uint64_t sides[RT_SIDE_COUNT];          /* as in RtEquivalence */
+    uint64_t faults[RT_FAULT_COUNT];
 } RtVerifySum;
 
 typedef enum RtVerifyGroup { RT_BY_ACCEL, RT_BY_SCENE } RtVerifyGroup;
@@ -36,7 +42,7 @@ RtStatus rt_verify_sums(const json_t *rows, RtVerifyGroup group, RtVerifySum **s
 /* The sum of all rows; exact if every accelerator is. */
 RtVerifySum rt_verify_total(const json_t *rows);
 
-/* True if a row has a wrong answer or a "problem": an invalid structure, or too many marginal answers. */
+/* True if a row has a wrong answer or a "problem": an invalid structure, or too few certain rays. */
 bool rt_verify_row_fails(const json_t *row);
 
 /* Writes `folder`/verify.csv and verify.md. */

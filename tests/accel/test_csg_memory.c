@@ -169,19 +169,18 @@ static RtStatus stack_of_overlays(const Row *row, RtError *error) {
 
 /* Of answers that are not brute's, by the referee: the one is right, the other wrong. */
 static RtStatus judge(const Row *row, RtError *error) {
-    const RtGeometry *g = &row->scene.geometry;
+    const RtJudge by = {.geometry = &row->scene.geometry};
     const RtRay *ray = &row->rays[0];
     const RtHit hit = {49, 0};
-    RtCrossing *crossings = crossings_of_tests();
     RtVerdict verdict;
     RtSide side;
-    RT_TRY(rt_verdict_nearest(g, ray, RT_MISS, hit, crossings, &verdict, error));
+    RT_TRY(rt_verdict_nearest(by, ray, RT_MISS, hit, &verdict, error));
     assert_int_equal(verdict, RT_MARGINAL);
-    RT_TRY(rt_verdict_nearest(g, ray, hit, RT_MISS, crossings, &verdict, error));
+    RT_TRY(rt_verdict_nearest(by, ray, hit, RT_MISS, &verdict, error));
     assert_int_equal(verdict, RT_WRONG);
-    RT_TRY(rt_verdict_side(g, ray, RT_MISS, hit, &side, error));
+    RT_TRY(rt_verdict_side(by, ray, RT_MISS, hit, &side, error));
     assert_int_equal(side, RT_SIDE_GOT);
-    RT_TRY(rt_verdict_occluded(g, ray, true, false, crossings, &verdict, error));
+    RT_TRY(rt_verdict_occluded(by, ray, true, false, &verdict, error));
     assert_int_equal(verdict, RT_WRONG);
     return RT_OK;
 }

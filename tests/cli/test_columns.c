@@ -66,8 +66,8 @@ typedef struct Section {
 
 enum { SECTIONS = 20 };
 static void list(Section sections[SECTIONS]) {
-    const RtTable verify_csv = {.groups = rt_verify_csv, .group_count = RT_VERIFY_GROUPS};
-    const RtTable verify_json = {.groups = rt_verify_json, .group_count = RT_VERIFY_GROUPS};
+    const RtTable verify_csv = {.groups = rt_verify_csv, .group_count = RT_VERIFY_CSV_GROUPS};
+    const RtTable verify_json = {.groups = rt_verify_json, .group_count = RT_VERIFY_JSON_GROUPS};
     const RtTable extents = {.groups = rt_extents_json, .group_count = 1};
     const Section all[SECTIONS] = {
         {"counts.csv", true, "tests/golden/counts.csv", of_results(RT_COUNTS)},

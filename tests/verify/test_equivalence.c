@@ -288,7 +288,7 @@ RT_TEST(verdicts_tell_ties_and_margins_from_errors) {
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const Case *c = &cases[i];
         RtVerdict got;
-        assert_ok(rt_verdict_nearest(&g, &c->ray, c->expected, c->answer, NULL, &got, error));
+        assert_ok(rt_verdict_nearest((RtJudge){.geometry = &g}, &c->ray, c->expected, c->answer, &got, error));
         if (got == c->verdict) continue;
         print_error("%s: %s instead of %s\n", c->what, rt_verdict_name(got), rt_verdict_name(c->verdict));
         wrong++;
@@ -300,7 +300,7 @@ RT_TEST(verdicts_tell_ties_and_margins_from_errors) {
 static void assert_occluded(const RtGeometry *g, const RtRay *ray, bool expected, bool answer,
                             RtVerdict verdict) {
     RtVerdict got;
-    assert_ok(rt_verdict_occluded(g, ray, expected, answer, NULL, &got, error));
+    assert_ok(rt_verdict_occluded((RtJudge){.geometry = g}, ray, expected, answer, &got, error));
     assert_int_equal(got, verdict);
 }
 
