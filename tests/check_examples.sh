@@ -90,7 +90,7 @@ judged() {
     local said
     said=$("$program" verify tetra:size=3 random:n=300,shape=triangle --rays 2000 --plugin "$work/$1.so" --accel "$1" \
         --out "$work/out" --force 2>&1 | tail -n 1 || true)
-    [[ $said = '2 scenes, 1 accelerator, 2000 rays, 4000 comparisons: nothing wrong' ]] || complain "$1: $said"
+    [[ $said = '2 scenes, 1 accelerator, 2000 rays, 4000 comparisons: by verdicts, nothing wrong' ]] || complain "$1: $said"
 }
 
 sed -n '/^```cpp$/,/^```$/p' examples/peers/README.md | sed '/^```/d' >"$work/mine.cpp"
@@ -101,11 +101,7 @@ elif cmake -S examples/peers -B "$work/peers" -Draytally_DIR="$(dirname "$progra
     -DPEER_FLAGS="-O3 -march=native ${warnings[*]} -Wno-maybe-uninitialized" >"$work/log" 2>&1 &&
     cmake --build "$work/peers" >>"$work/log" 2>&1; then # what may be uninitialised is in a library
     grep 'left out' "$work/log" >&2 || true
-    for plugin in "$work"/peers/*.so; do
-        [ -e "$plugin" ] || continue
-        cp "$plugin" "$work"
-        judged "$(basename "$plugin" .so)"
-    done
+    RT_PROGRAM=$program tests/check_verdicts.sh "$work"/peers/*.so || complain "the verdicts on libraries are not the expected ones"
 else
     complain "examples/peers is not built: $(cat "$work/log")"
 fi

@@ -120,7 +120,7 @@ class Library {
 constexpr raytally_accel_ops table = peer::ops<Library>(
     "madmann91", "madmann91/bvh as it is",
     "Meister and Bittner 2018, Parallel Reinsertion for Bounding Volume Hierarchy Optimization, CGF 37(2)",
-    params, PARAMS);
+    params, PARAMS, RAYTALLY_ABSOLUTE_HITS); // its fast box test multiplies the origin out
 
 } // namespace
 

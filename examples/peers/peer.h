@@ -70,10 +70,12 @@ struct Ray : raytally_ray {
     }
 };
 
-/// The table of an accelerator; `ops.flags` and all functions are set, names and parameters are the plugin's.
+/// The table of an accelerator; `ops.flags` (with more, such as RAYTALLY_ABSOLUTE_HITS) and all functions are
+/// set, names and parameters are the plugin's.
 template <typename Library>
 constexpr raytally_accel_ops ops(const char *name, const char *summary, const char *paper,
-                                 const raytally_param *params, std::uint32_t param_count) {
+                                 const raytally_param *params, std::uint32_t param_count,
+                                 std::uint64_t more_flags = 0) {
     raytally_accel_ops ops{};
     ops.abi = RAYTALLY_ACCEL_ABI;
     ops.size = sizeof ops;
@@ -82,7 +84,7 @@ constexpr raytally_accel_ops ops(const char *name, const char *summary, const ch
     ops.paper = paper;
     ops.params = params;
     ops.param_count = param_count;
-    ops.flags = RAYTALLY_OWN_HITS | RAYTALLY_NO_COUNTS;
+    ops.flags = RAYTALLY_OWN_HITS | RAYTALLY_NO_COUNTS | more_flags;
     ops.build = [](const raytally_build_input *from, void **self) -> int {
         try {
             if (from->object_count == 0) throw Refused("the scene is empty");

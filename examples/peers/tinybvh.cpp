@@ -133,7 +133,8 @@ class Library {
 
 constexpr raytally_accel_ops table = peer::ops<Library>(
     "tinybvh", "jbikker/tinybvh as it is",
-    "Fuetterling et al. 2017, Accelerated Single Ray Tracing for Wide Vector Units, HPG'17", params, PARAMS);
+    "Fuetterling et al. 2017, Accelerated Single Ray Tracing for Wide Vector Units, HPG'17", params, PARAMS,
+    RAYTALLY_ABSOLUTE_HITS); // its box tests multiply the origin out
 
 } // namespace
 

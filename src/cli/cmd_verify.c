@@ -55,7 +55,7 @@ static void finish(void *options, struct argp_state *state) {
 
 static const RtOption options[] = {
     {"accel", 'a', "SPEC", RT_TO_LIST(accels, accel_count),
-     "An accelerator, or `all` of them (the default); may be repeated"},
+     "An accelerator, or `all` that are exact (the default); may be repeated"},
     {"spread", 0, NULL, RT_TO_FLAG(spread),
      "Also try each parameter at every value worth testing, one parameter at a time"},
     {"quick", 0, NULL, RT_TO_FLAG(quick),
@@ -227,22 +227,37 @@ static void print_failed(const RtVerifySum *sums, uint32_t count) {
     }
 }
 
+/* The wrong answers of the accelerators that are exact, or of the others. */
+static void print_wrong(const RtVerifySum *sums, uint32_t count, bool exact) {
+    uint64_t wrong = 0, occluded_wrong = 0, undecided = 0, failed = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        if (sums[i].exact != exact) continue;
+        wrong += sums[i].verdicts[RT_WRONG];
+        occluded_wrong += sums[i].occluded_wrong;
+        undecided += sums[i].undecided;
+        failed += sums[i].failed;
+    }
+    if (failed == 0)
+        fputs("nothing wrong", stdout);
+    else
+        printf("%" PRIu64 " wrong", wrong);
+    if (occluded_wrong > 0) printf(", %" PRIu64 " occluded wrong", occluded_wrong);
+    if (undecided > 0) printf(", %" PRIu64 " row%s undecided", undecided, rt_plural(undecided));
+}
+
 static void print_total(const Options *o, const json_t *rows, const RtVerifySum *sums, uint32_t count) {
     RtVerifySum total = rt_verify_total(rows);
     print_count(o->choice.scene_count, "scene");
     print_count(o->choice.spec_count, "accelerator");
     print_count(o->work.rays.count, "ray");
-    printf("%" PRIu64 " comparison%s", total.pairs, rt_plural(total.pairs));
-    if (total.judged > 0) printf(", %" PRIu64 " of them judged by verdicts", total.judged);
-    fputs(": ", stdout);
-    if (total.failed == 0) {
-        fputs("nothing wrong", stdout);
-    } else {
-        printf("%" PRIu64 " wrong", total.verdicts[RT_WRONG]);
-        if (total.occluded_wrong > 0) printf(", %" PRIu64 " occluded wrong", total.occluded_wrong);
-        if (total.undecided > 0) printf(", %u row%s undecided", total.undecided, rt_plural(total.undecided));
-        print_failed(sums, count);
+    printf("%" PRIu64 " comparison%s: ", total.pairs, rt_plural(total.pairs));
+    if (total.judged < total.pairs || total.judged == 0) print_wrong(sums, count, true);
+    if (total.judged > 0) {
+        if (total.judged < total.pairs) printf("; %" PRIu64 " of them", total.judged);
+        fputs(total.judged < total.pairs ? " by verdicts: " : "by verdicts, ", stdout);
+        print_wrong(sums, count, false);
     }
+    print_failed(sums, count);
     if (total.refused > 0) printf("; %u row%s refused", total.refused, rt_plural(total.refused));
     putchar('\n');
 }
@@ -340,8 +355,9 @@ const RtSyntax rt_verify_syntax = {
         "is some fifty small scenes that are hard for accelerators. SCENE may be `triangles`, those that "
         "consist of triangles only; `families`, those generated from a seed; or one of these, as in "
         "family:kind=slivers,seed=7 (`raytally scenes family` lists them).\v"
-        "Accelerators with their own hit functions (Embree's native mode, libraries as plugins) get "
-        "verdicts: equal, tie, marginal (explained by rounding) or wrong. If fewer than 1000 rays, or half "
+        "Accelerators with their own hit functions (Embree's native mode, libraries as plugins) are judged "
+        "if they are named: equal, tie, marginal (explained by rounding) or wrong. If fewer than 1000 rays, "
+        "or half "
         "of "
         "--rays-from, have an answer that rounding cannot change, the row is undecided, which is no success. "
         "raytally writes the first wrong "

@@ -105,24 +105,25 @@ RtStatus rt_verify_choose_scenes(RtVerifyChoice *choice, const char *const *give
 
 /* ---- accelerators ---- */
 
-static RtStatus add_spec(RtVerifyChoice *choice, const char *spec, bool named, RtError *error) {
+static RtStatus add_spec(RtVerifyChoice *choice, const char *spec, bool named, bool judged, RtError *error) {
     if (choice->spec_count == RT_VERIFY_MAX_SPECS) {
         return rt_fail(error, RT_BAD_INPUT, "more than %d accelerators: verify fewer at a time",
                        RT_VERIFY_MAX_SPECS);
     }
     RtVerifySpec *c = &choice->specs[choice->spec_count++];
-    *c = (RtVerifySpec){.named = named};
+    *c = (RtVerifySpec){.named = named, .judged = judged};
     snprintf(c->spec, sizeof c->spec, "%s", spec);
     return RT_OK;
 }
 
-/* Adds its defaults and its trial, the first two of its spread, unless !`own`; with `spread` the rest. */
+/* Adds its defaults and its trial, the first two of its spread, unless !`own` (it was named, and these are
+ * there); with `spread` the rest. */
 static RtStatus add_registered(RtVerifyChoice *choice, const RtAccelOps *ops, bool own, bool spread,
                                RtError *error) {
     char spec[RT_MAX_SPEC_CHARS];
     size_t whole = ops->trial ? 2 : 1;
     for (size_t n = own ? 0 : whole; (n < whole || spread) && rt_spread_spec(ops, n, spec); n++) {
-        RT_TRY(add_spec(choice, spec, false, error));
+        RT_TRY(add_spec(choice, spec, false, !own, error));
     }
     return RT_OK;
 }
@@ -131,8 +132,8 @@ static RtStatus add_named(RtVerifyChoice *choice, const char *text, bool spread,
     RtSpec spec;
     char trial[RT_MAX_SPEC_CHARS];
     RT_TRY(rt_spec_parse(text, &spec, error));
-    RT_TRY(add_spec(choice, text, true, error));
-    if (rt_trial_spec(text, trial)) RT_TRY(add_spec(choice, trial, true, error));
+    RT_TRY(add_spec(choice, text, true, true, error));
+    if (rt_trial_spec(text, trial)) RT_TRY(add_spec(choice, trial, true, true, error));
     return add_registered(choice, spec.layers[0].ops, false, spread, error);
 }
 

@@ -62,7 +62,7 @@ static Flat measure(const RtUnitLine *line, const RtVec3 *vertices, uint32_t cou
         last = v;
     }
     f.longest = sqrt(longest);
-    f.stretch = longest / rt_lengthd(f.normal); /* infinite or NaN without an area */
+    f.stretch = fmax(1, longest / rt_lengthd(f.normal)); /* infinite without an area */
     f.normal = rt_normalized(f.normal);
     f.center = rt_add_scaledd(from_origin(line, vertices[0]), sum, 1.0 / count);
     for (uint32_t i = 0; i < count; i++) {

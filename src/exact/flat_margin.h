@@ -9,9 +9,9 @@
  *
  * An edge function is a triple product of a vertex, an edge and the direction; it decides correctly if the
  * line passes the edge, as seen along the line, by delta, and by delta * longest / edge where the edge is a
- * difference of longer ones. The plane of a triangle with longest side L and area A tilts by delta * L^2 / 2A
- * within the triangle. In the plane both distances are divided by the cosine between line and normal.
- * Vertices of a polygon that are not in its plane add their distance from it. */
+ * difference of longer ones. The plane of a shape with longest side L and area A moves by delta * L^2 / 2A
+ * within the shape, at least by delta. In the plane both distances are divided by the cosine between line and
+ * normal. Vertices of a polygon that are not in its plane add their distance from it. */
 #ifndef RT_EXACT_FLAT_MARGIN_H
 #define RT_EXACT_FLAT_MARGIN_H
 

@@ -9,11 +9,11 @@ RtMarginRay rt_margin_ray(const RtGeometry *geometry, const RtRay *ray, bool abs
     m.line = rt_unit_line(&m.wide);
     m.first = m.wide.tmin * m.line.length;
     m.last = m.wide.tmax * m.line.length;
-    m.quantum = 0x1p-149 * m.line.length;
+    m.extra = 0x1p-149 * m.line.length;
     if (!absolute) return m;
     double largest = geometry->object_count > 0 ? rt_box_largest_coordinate(geometry->box) : 0;
     for (int a = 0; a < 3; a++) largest = fmax(largest, fabs(m.wide.org.at[a]));
-    m.extra = RT_MARGIN / 2 * largest;
+    m.extra += RT_MARGIN / 2 * largest;
     return m;
 }
 
@@ -35,14 +35,17 @@ double rt_margin_delta(const RtMarginRay *ray, const RtGeometry *geometry, uint3
  * in ascending order. */
 static void add_piece(RtMargin *m, const RtMarginRay *ray, double lo, double hi, bool crossed, double delta,
                       double asked) {
-    double tolerance = delta + ray->quantum;
-    lo = fmax(lo, ray->first - tolerance);
-    hi = fmin(hi, ray->last + tolerance);
+    lo = fmax(lo, ray->first - delta);
+    hi = fmin(hi, ray->last + delta);
     if (m->certain || !(lo <= hi)) return;
     m->possible = true;
     m->earliest = fmin(m->earliest, lo);
-    m->holds |= asked >= lo - ray->quantum && asked <= hi + ray->quantum;
-    m->certain = crossed && lo >= ray->first + tolerance && hi <= ray->last - tolerance;
+    if (asked >= lo && asked <= hi) {
+        m->holds = true;
+        m->lo = lo;
+        m->hi = hi;
+    }
+    m->certain = crossed && lo >= ray->first + delta && hi <= ray->last - delta;
     m->latest = hi;
 }
 

@@ -27,8 +27,8 @@ typedef struct RtMarginRay {
     RtWideRay wide;
     RtUnitLine line;
     double first, last; /* the interval as distances */
-    double extra;       /* added to delta */
-    double quantum;     /* the least difference of t as a distance */
+    double extra; /* added to delta: the least float32 as a difference of t, and for absolute coordinates */
+
 } RtMarginRay;
 
 /* For a valid ray. */
@@ -39,6 +39,7 @@ typedef struct RtMargin {
     double earliest; /* distance at which it may be hit; HUGE_VAL: nowhere */
     double latest;   /* if certain: by this distance it is hit */
     bool holds;      /* it may be hit at `asked` */
+    double lo, hi;   /* if so: the piece of the line with that hit */
     bool edge_on;    /* as of RtFlatMargin */
 } RtMargin;
 

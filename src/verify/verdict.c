@@ -122,8 +122,9 @@ RtStatus rt_verdict_nearest(RtJudge judge, const RtRay *ray, RtHit expected, RtH
         RT_TRY(rt_margin_of(&prepared, judge.geometry, answer.object, asked, &own, error));
         if (!own.holds) return RT_OK;
         *verdict = RT_EQUAL;
-        if (answer.object == expected.object) return RT_OK;
-        if (expected.object != RT_NO_OBJECT) {
+        const double at = (double)expected.t * prepared.line.length;
+        if (answer.object == expected.object && at >= own.lo && at <= own.hi) return RT_OK;
+        if (expected.object != RT_NO_OBJECT && expected.object != answer.object) {
             bool tie;
             RT_TRY(is_tie(judge, &prepared, ray, expected, answer, &tie, error));
             *verdict = RT_TIE;
@@ -131,8 +132,7 @@ RtStatus rt_verdict_nearest(RtJudge judge, const RtRay *ray, RtHit expected, RtH
         }
     }
     RT_TRY(margins(&prepared, judge.geometry, answer.object, &others, error));
-    bool overtaken =
-        others.first_certain != RT_NO_OBJECT && (miss || asked - prepared.quantum > others.latest);
+    bool overtaken = others.first_certain != RT_NO_OBJECT && (miss || asked > others.latest);
     *verdict = overtaken ? RT_WRONG : RT_MARGINAL;
     return RT_OK;
 }

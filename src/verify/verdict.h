@@ -21,7 +21,7 @@
 
 /* In order of severity. */
 typedef enum RtVerdict {
-    RT_EQUAL,    /* the same object, at a t possible for it */
+    RT_EQUAL,    /* the same object, at a t that rounding makes of ours */
     RT_TIE,      /* another object, whose exact t differs from the exact t of ours by at most delta / |dir| */
     RT_MARGINAL, /* another answer that rounding explains */
     RT_WRONG,    /* anything else */

@@ -32,6 +32,7 @@ typedef struct Run {
     RtJsonLines journal;
     /* Of the current scene, by RtAccel.absolute; rays is UINT64_MAX where not yet counted. */
     RtCertain certain[2];
+    bool skipped_inexact;
     RtError unsaved; /* why the replay file of the row could not be written, or empty */
 } Run;
 
@@ -272,6 +273,15 @@ static RtStatus add_unanswered(Run *run, const RtVerifyScene *scene, const RtVer
     return add_row(run, row, error);
 }
 
+/* Said once. */
+static void skip_inexact(Run *run, const char *spec) {
+    char notice[RT_MAX_SPEC_CHARS + 128];
+    snprintf(notice, sizeof notice,
+             "%s has its own arithmetic, so it is not among `all`: name it to judge its answers", spec);
+    if (!run->skipped_inexact) run->observer->notice(run->observer->context, notice);
+    run->skipped_inexact = true;
+}
+
 static RtStatus verify_spec(Run *run, const RtVerifyScene *scene, const RtVerifySpec *spec, RtError *error) {
     RtAccel *accel = NULL;
     RtAccelBuilder builder = builder_of(run, spec);
@@ -288,7 +298,10 @@ static RtStatus verify_spec(Run *run, const RtVerifyScene *scene, const RtVerify
     /* Only its own row fails. */
     const bool unbuilt = too_large || (status != RT_OK && rt_spec_text_is_remote(spec->spec));
     const bool refused = too_large || (status == RT_BAD_INPUT && unbuilt);
-    if (status == RT_OK) status = check(run, scene, accel, spec, error);
+    if (status == RT_OK && !accel->exact && !spec->judged)
+        skip_inexact(run, spec->spec);
+    else if (status == RT_OK)
+        status = check(run, scene, accel, spec, error);
     rt_accel_destroy(accel);
     if (status != RT_BROKEN && !unbuilt) return status;
     const RtError why = *error;

@@ -15,10 +15,10 @@
 #include "verify/verify_rays.h"
 
 /* One accelerator to verify. Unless it was requested by name, it may be missing on this machine or reject
- * a scene: then it has no row there. */
+ * a scene: then it has no row there. With its own arithmetic it has rows only if `judged`. */
 typedef struct RtVerifySpec {
     char spec[RT_MAX_SPEC_CHARS];
-    bool named;
+    bool named, judged;
     RtAccelBuilder builder; /* how it is built; if zero, from the spec */
 } RtVerifySpec;
 

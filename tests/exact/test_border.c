@@ -100,7 +100,8 @@ RT_TEST(the_referee_decides_against_us_too) {
             assert_int_equal(side, RT_SIDE_GOT);
             assert_ok(rt_verdict_nearest((RtJudge){.geometry = &g}, &ray, expected, right, &verdict, error));
             assert_int_equal(verdict, RT_MARGINAL);
-            assert_ok(rt_verdict_occluded((RtJudge){.geometry = &g}, &ray, decision.hit, !decision.hit, &verdict, error));
+            assert_ok(rt_verdict_occluded((RtJudge){.geometry = &g}, &ray, decision.hit, !decision.hit,
+                                          &verdict, error));
             assert_int_equal(verdict, RT_MARGINAL);
         }
     }

@@ -288,7 +288,8 @@ RT_TEST(verdicts_tell_ties_and_margins_from_errors) {
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const Case *c = &cases[i];
         RtVerdict got;
-        assert_ok(rt_verdict_nearest((RtJudge){.geometry = &g}, &c->ray, c->expected, c->answer, &got, error));
+        assert_ok(
+            rt_verdict_nearest((RtJudge){.geometry = &g}, &c->ray, c->expected, c->answer, &got, error));
         if (got == c->verdict) continue;
         print_error("%s: %s instead of %s\n", c->what, rt_verdict_name(got), rt_verdict_name(c->verdict));
         wrong++;
