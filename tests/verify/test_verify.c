@@ -51,8 +51,8 @@ static const RtVerifyObserver observer = {on_doing, on_row, on_notice, NULL};
 
 /* Verifies grid and a mutant on both scenes; the rows are the caller's. */
 static json_t *verify(const char *folder, int threads, RtStart start) {
-    static const RtVerifySpec specs[] = {{"grid", true, {NULL, NULL, 0}},
-                                         {"unpadded", true, {build_mutant, &unpadded, 0}}};
+    static const RtVerifySpec specs[] = {{"grid", true, true, {NULL, NULL, 0}},
+                                         {"unpadded", true, true, {build_mutant, &unpadded, 0}}};
     RtVerify work = {.scenes = scenes,
                      .scene_count = 2,
                      .specs = specs,
@@ -181,7 +181,7 @@ static RtStatus build_noting_threads(const void *context, const RtScene *scene, 
 }
 
 RT_TEST(accelerators_are_built_on_the_threads_of_the_run) {
-    const RtVerifySpec spec = {"noting", true, {build_noting_threads, &padded, 0}};
+    const RtVerifySpec spec = {"noting", true, true, {build_noting_threads, &padded, 0}};
     for (int threads = 1; threads <= 3; threads += 2) {
         json_t *rows = verify_spec(&spec, scenes, 1, 100, threads, NULL);
         assert_int_equal(threads_of_build, threads);
@@ -207,7 +207,7 @@ static void count_notice(void *context, const char *message) {
 }
 
 RT_TEST(a_wrong_answer_is_shown_though_its_replay_file_cannot_be_written) {
-    const RtVerifySpec spec = {"unpadded", true, {build_mutant, &unpadded, 0}};
+    const RtVerifySpec spec = {"unpadded", true, true, {build_mutant, &unpadded, 0}};
     const RtVerifyObserver counting = {on_doing, on_row, count_notice, NULL};
     const RtVerify work = {.scenes = scenes,
                            .scene_count = 1,
@@ -230,7 +230,7 @@ RT_TEST(a_wrong_answer_is_shown_though_its_replay_file_cannot_be_written) {
 /* Only its first failure is shrunk; the next one is kept with its whole scene. */
 RT_TEST(an_accelerator_has_one_failure_shrunk) {
     const char *const both[] = {scenes[0], "family:kind=axis-aligned,seed=1"};
-    const RtVerifySpec spec = {"unpadded", true, {build_mutant, &unpadded, 0}};
+    const RtVerifySpec spec = {"unpadded", true, true, {build_mutant, &unpadded, 0}};
     json_t *rows = verify_spec(&spec, both, 2, 6000, 0, OUT "/g");
     for (size_t i = 0; i < 2; i++) {
         RtReplay replay;
@@ -252,7 +252,7 @@ RT_TEST(an_accelerator_has_as_many_failures_shrunk_as_are_asked_for) {
     static const char *const three[] = {"family:kind=plane,seed=1", "family:kind=axis-aligned,seed=1",
                                         "family:kind=axis-aligned,seed=2"};
     static const uint32_t wanted[] = {2, RT_SHRINK_ALL};
-    const RtVerifySpec spec = {"unpadded", true, {build_mutant, &unpadded, 0}};
+    const RtVerifySpec spec = {"unpadded", true, true, {build_mutant, &unpadded, 0}};
     for (size_t w = 0; w < 2; w++) {
         shrink = wanted[w];
         json_t *rows = verify_spec(&spec, three, 3, 6000, 0, OUT "/s");
@@ -287,7 +287,7 @@ static RtStatus build_losing(const void *context, const RtScene *scene, int thre
 }
 
 RT_TEST(a_failure_that_takes_its_neighbours_is_kept_with_them) {
-    const RtVerifySpec spec = {"losing", true, {build_losing, &padded, 1}};
+    const RtVerifySpec spec = {"losing", true, true, {build_losing, &padded, 1}};
     RtReplay replay;
     RtAnswer answer;
     shortest_losing = 2;
@@ -305,7 +305,7 @@ RT_TEST(a_failure_that_takes_its_neighbours_is_kept_with_them) {
 
 /* Including the camera's rays, which come first: they form packets. */
 RT_TEST(the_first_rays_are_asked_in_long_streams_as_well_as_alone) {
-    const RtVerifySpec spec = {"losing", true, {build_losing, &padded, 1}};
+    const RtVerifySpec spec = {"losing", true, true, {build_losing, &padded, 1}};
     shortest_losing = 64;
     json_t *rows = verify_spec(&spec, scenes + 1, 1, 1000, 0, OUT "/h");
     assert_true(rt_verify_row_fails(json_array_get(rows, 0)));
