@@ -19,7 +19,7 @@ extern const RtColumnGroup rt_verify_text[RT_VERIFY_TEXT_GROUPS];
 typedef struct RtVerifySum {
     char name[RT_MAX_SPEC_CHARS];   /* "item+bvh", without parameters; or the scene */
     bool exact;                     /* must match brute bit for bit; true for scenes */
-    uint32_t rows, failed, refused; /* the last by a plugin, which is no failure */
+    uint32_t rows, failed, refused; /* the last by accelerators, which is no failure */
     uint64_t pairs;
     uint64_t verdicts[RT_VERDICT_COUNT]; /* of nearest; sum to `pairs` */
     uint64_t occluded_wrong;             /* pairs with a wrong answer to occluded */
