@@ -102,6 +102,12 @@ void rt_cli_take_time(void *options, const char *text, struct argp_state *state)
         "time", 0, "SECONDS", RT_TO_TAKE(rt_cli_take_time),                                                  \
             "Time limit for the whole command, which then ends with exit code 2" kept                        \
     }
+/* Whether the build of one of `count` accelerators was refused and the command goes on with the others; says so. */
+bool rt_cli_goes_on(RtStatus status, const char *spec, uint32_t count, const RtError *why);
+
+/* Removes texts[i] of texts[0..*count). */
+void rt_cli_remove(const char **texts, uint32_t *count, uint32_t i);
+
 #define RT_LIMIT_OPTIONS                                                                                     \
     {"memory", 0, "BYTES", RT_TO_TAKE(rt_cli_take_memory),                                                   \
      "Memory limit for scenes, structures, rays and images, as in 512M or 4G (powers of 1000); a command "   \
