@@ -182,7 +182,8 @@ typedef struct RtKdShared {
 } RtKdShared;
 
 static inline void rt_kd_hold(RtKdShared *shared, uint64_t bytes) {
-    if (atomic_fetch_add(&shared->bytes, bytes) + bytes > shared->limit) atomic_store(&shared->exceeded, true);
+    if (atomic_fetch_add(&shared->bytes, bytes) + bytes > shared->limit)
+        atomic_store(&shared->exceeded, true);
 }
 
 /* The bytes so far of the tree, and of the same tree cut off at any depth. Once they exceed the limit, cells
@@ -190,7 +191,7 @@ static inline void rt_kd_hold(RtKdShared *shared, uint64_t bytes) {
 typedef struct RtKdMemory {
     uint64_t limit, bytes;
     RtKdShared *shared; /* borrowed; NULL on one thread */
-    double estimate; /* bytes that the requested tree would take; 0 while it fits */
+    double estimate;    /* bytes that the requested tree would take; 0 while it fits */
     RtKdLevel levels[RT_KD_DEPTH_LIMIT + 1];
 } RtKdMemory;
 

@@ -3,9 +3,9 @@
  * deferred with their lists. Each deferred cell is then a task, which defers cells of its own while it is
  * large. Finally all nodes are copied into one tree, in the order in which one thread makes them.
  *
- * All subtrees share one limit of memory. Which of them exceeds it depends on threads, but not whether any does:
- * the size of the tree is the same. Where many objects are in several cells, waiting lists may take more than the
- * tree; such a tree is built on one thread, which keeps few of them. */
+ * All subtrees share one limit of memory. Which of them exceeds it depends on threads, but not whether any
+ * does: the size of the tree is the same. Where many objects are in several cells, waiting lists may take
+ * more than the tree; such a tree is built on one thread, which keeps few of them. */
 #include "accel/kd/kd.h"
 
 #include "core/base/memory.h"

@@ -144,8 +144,8 @@ static RtStatus count_other(Run *run, uint32_t i, RtError *error) {
     return status;
 }
 
-/* Removes accelerator `i`, which ended its build with `status`, if the command goes on without it. The difference
- * of two heatmaps needs both. */
+/* Removes accelerator `i`, which ended its build with `status`, if the command goes on without it. The
+ * difference of two heatmaps needs both. */
 static bool remove_refused(Run *run, RtStatus status, uint32_t i, const RtError *why) {
     Options *o = run->options;
     const uint32_t count = o->pictures.heat.difference ? 1 : o->accel_count;

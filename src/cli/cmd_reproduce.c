@@ -117,10 +117,10 @@ static RtStatus compare(Again *again, const char *path, const char *kept, const 
     return RT_OK;
 }
 
-/* Writes the file as it would be now; without rows of refused accelerators if the kept one, of an older version, has
- * no column for them. */
-static RtStatus write_again(const Again *again, RtResultFile file, const RtPublished *published, const char *kept,
-                            RtMemoryFile *counted, RtError *error) {
+/* Writes the file as it would be now; without rows of refused accelerators if the kept one, of an older
+ * version, has no column for them. */
+static RtStatus write_again(const Again *again, RtResultFile file, const RtPublished *published,
+                            const char *kept, RtMemoryFile *counted, RtError *error) {
     RtResults results = *again->results;
     const char *column = strstr(kept, ",refused");
     results.old_rows = !column || column > kept + strcspn(kept, "\n");

@@ -196,7 +196,8 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
     X(why, "why", text, "", "why nothing could be counted; else empty",                                      \
       *r->cell->hardware.why ? r->cell->hardware.why : NULL)                                                 \
     X(refused, "refused", text, "",                                                                          \
-      "why the accelerator refuses the scene (memory, a limit of its own); empty: it does not. The row then "  \
+      "why the accelerator refuses the scene (memory, a limit of its own); empty: it does not. The row "     \
+      "then "                                                                                                \
       "has no rays",                                                                                         \
       r->build->refused ? r->build->left_out : NULL)                                                         \
     X(host, "host", text, "", "host of the measurement", machine_of(r)->host)                                \
@@ -262,7 +263,7 @@ RT_TABLE_COLUMNS(columns, COLUMNS)
 
 #define FROM_TO(first, last) RT_FROM_TO(columns, first, last)
 #define ONE(id)              RT_ONE(columns, id)
-#define MEASURED(first, last)                                                                        \
+#define MEASURED(first, last)                                                                                \
     { NULL, &columns[AT_##first], AT_##last - AT_##first + 1, measured_of }
 
 /* What tables are and have. */
@@ -295,11 +296,11 @@ enum {
       FROM_TO(scene, objects), FROM_TO(width, depth), FROM_TO(accel, spec), ONE(threads),                    \
       FROM_TO(render_rounds, query_share_high), FROM_TO(host, cpu))                                          \
     X(BENCH, SWEPT, (counted && !null) || refused, ONE(scene_spec), FROM_TO(accel, ray_stride), ONE(kind),   \
-      ONE(refused), MEASURED(rays, bytes), {"structure", rt_structure_columns, RT_STRUCTURE_COLUMNS, structure_of},         \
+      ONE(refused), MEASURED(rays, bytes),                                                                   \
+      {"structure", rt_structure_columns, RT_STRUCTURE_COLUMNS, structure_of},                               \
       {"structure.build", rt_tally_columns, RT_TALLY_COUNTER_COUNT, build_of},                               \
-      {"counts", rt_tally_columns, RT_TALLY_COUNTER_COUNT, known_tally_of},                                  \
-      MEASURED(differ, differ), MEASURED(threads, mrays_per_s), MEASURED(msteps_per_s, mtests_per_s),        \
-      MEASURED(baseline, ratio_high))                                                                        \
+      {"counts", rt_tally_columns, RT_TALLY_COUNTER_COUNT, known_tally_of}, MEASURED(differ, differ),        \
+      MEASURED(threads, mrays_per_s), MEASURED(msteps_per_s, mtests_per_s), MEASURED(baseline, ratio_high))  \
     X(NULL_RUNS, 0, (timed && null), ONE(scene_spec), ONE(kind), FROM_TO(accel, spec), ONE(rays),            \
       FROM_TO(build_seconds, straddles_1))                                                                   \
     X(CELLS, 0, (counted || timed) && !is_lost(r, r->cell), FROM_TO(eye_label, interval))                    \
@@ -431,9 +432,11 @@ static void add_swept(RtTable *table, Row *row) {
 /* Appends the column of reasons if there are any: files without are those of version 1.0. */
 static void add_refused(RtTable *table, Row *row) {
     static const RtColumnGroup refused = ONE(refused);
+    const RtExperiment *e = row->results->experiment;
     bool any = false;
-    for (RtCellCursor at = {0}; rt_results_next(row->results, &at);)
-        any |= rt_build_at(row->results, at.workload, at.candidate)->refused;
+    for (uint32_t t = 0; t < e->workload_count; t++) {
+        for (uint32_t c = 0; c < e->candidate_count; c++) any |= rt_build_at(row->results, t, c)->refused;
+    }
     if (!any || row->results->old_rows) return;
     assert(table->group_count < RT_MAX_RESULT_GROUPS);
     memmove(row->groups, table->groups, table->group_count * sizeof *row->groups);

@@ -128,7 +128,8 @@ void rt_results_leave_out(RtResults *results, uint32_t workload, uint32_t candid
     snprintf(build->left_out, sizeof build->left_out, "%s", why);
     build->refused = refused;
     build->broken = broken;
-    rt_spec_format(&e->candidates[candidate < e->candidate_count ? candidate : e->baseline].parsed, build->spec);
+    rt_spec_format(&e->candidates[candidate < e->candidate_count ? candidate : e->baseline].parsed,
+                   build->spec);
 }
 
 bool rt_results_refused(const RtResults *results, uint32_t workload, uint32_t candidate) {
@@ -145,7 +146,8 @@ static const char *refused_by_all(const RtResults *results) {
     const char *why = NULL;
     for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
         const RtBuildResult *build = rt_build_at(results, at.workload, at.candidate);
-        if (!results->workloads[at.workload].known || !rt_candidate_runs(results->experiment, at.candidate, at.workload))
+        if (!results->workloads[at.workload].known ||
+            !rt_candidate_runs(results->experiment, at.candidate, at.workload))
             continue;
         if (!build->refused) return NULL;
         why = why ? why : build->left_out;

@@ -41,8 +41,8 @@ typedef struct RtBuildResult {
     char spec[RT_MAX_SPEC_CHARS]; /* every effective parameter */
     uint32_t builds;              /* timed; 0: unknown, from the journal of an older version */
     RtEstimate seconds;           /* to build it; of fewer than two builds low = median = high */
-    /* Why no cell of it is measured: the structure's reason if it was `refused`, the time it would take, or the
-     * message of a `broken` plugin; or "". */
+    /* Why no cell of it is measured: the structure's reason if it was `refused`, the time it would take, or
+     * the message of a `broken` plugin; or "". */
     char left_out[RT_MAX_LEFT_OUT];
     bool refused; /* rt_accel_refuses: its rows say why */
     bool broken;  /* a plugin's fault */
@@ -150,7 +150,8 @@ uint64_t rt_results_size(const RtResults *results, uint32_t *scenes);
 /* The number of null runs, and of those whose interval contains 1. */
 void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddling);
 
-/* RT_BROKEN with the first plugin that broke, if any did; RT_BAD_INPUT if all accelerators refused all scenes. */
+/* RT_BROKEN with the first plugin that broke, if any did; RT_BAD_INPUT if all accelerators refused all
+ * scenes. */
 RtStatus rt_results_check(const RtResults *results, RtError *error);
 
 /* Whether the candidate was refused on the workload; of several baselines, whether all were. */

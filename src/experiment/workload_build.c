@@ -91,7 +91,8 @@ static RtStatus check_seconds(const Builds *builds, RtError *error) {
     rt_accel_destroy(workload->built[builds->candidate]);
     workload->built[builds->candidate] = NULL;
     return rt_workload_leave_out(workload, builds->candidate, RT_EVENT_NO_BUILD, RT_RAY_PRIMARY,
-                                 RT_CAUSE_TIME, error, "building takes %.3g s, more than %g s", seconds, limit);
+                                 RT_CAUSE_TIME, error, "building takes %.3g s, more than %g s", seconds,
+                                 limit);
 }
 
 static RtStatus build_once_more(Builds *builds, RtError *error) {

@@ -48,8 +48,8 @@ static inline RtStatus rt_workload_tell(const RtWorkloadState *workload, RtEvent
 typedef enum RtCause { RT_CAUSE_TIME, RT_CAUSE_REFUSED, RT_CAUSE_BROKEN } RtCause;
 
 /* Leaves candidate `c` (RT_EVENT_NO_BUILD), or its cell of that kind of rays (RT_EVENT_NO_CELL), out of the
- * results. `why`, as of printf, is kept there and reported. If it is the baseline, the workload fails instead,
- * unless it was refused: then ratios are unknown. */
+ * results. `why`, as of printf, is kept there and reported. If it is the baseline, the workload fails
+ * instead, unless it was refused: then ratios are unknown. */
 __attribute__((format(printf, 7, 8))) RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c,
                                                                      RtEventKind what, RtRayKind kind,
                                                                      RtCause cause, RtError *error,

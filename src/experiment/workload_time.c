@@ -21,7 +21,8 @@ typedef struct TimingRun {
     double *seconds;                 /* [count][2][most] of `timed` */
     bool *broken;                    /* [count] */
     uint32_t place[RT_MAX_MEASURED]; /* [workload->count] index of a candidate in `timed` */
-    uint32_t baselines[RT_MAX_CANDIDATES], baseline_count; /* those that did not refuse the scene; may be none */
+    uint32_t baselines[RT_MAX_CANDIDATES],
+        baseline_count; /* those that did not refuse the scene; may be none */
     /* [workload->count] of the first candidate of the baseline on its rays; others follow */
     uint32_t baseline_entry[RT_MAX_MEASURED];
 } TimingRun;

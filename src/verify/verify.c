@@ -250,8 +250,8 @@ static RtStatus check(Run *run, const RtVerifyScene *scene, RtAccel *accel, cons
     return status;
 }
 
-/* A plugin's accelerator broke before it answered all rays, or an accelerator refuses the scene: a row without
- * rays, with the reason. */
+/* A plugin's accelerator broke before it answered all rays, or an accelerator refuses the scene: a row
+ * without rays, with the reason. */
 static RtStatus add_unanswered(Run *run, const RtVerifyScene *scene, const RtVerifySpec *spec, bool refused,
                                const char *why, RtError *error) {
     const RtEquivalence nothing = {0};

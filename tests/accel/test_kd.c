@@ -218,7 +218,7 @@ RT_TEST(several_threads_refuse_what_one_refuses_and_leave_nothing_behind) {
 
 /* Triangles that share a corner are in most cells near it, whose waiting lists take more than the tree. */
 RT_TEST(objects_in_many_cells_are_refused_alike_on_any_number_of_threads_with_little_memory) {
-    enum { OBJECTS = 33000 }; /* on two threads cells are shared */
+    enum { OBJECTS = 66000 }; /* on two threads cells are shared */
     const uint64_t limit = 8 << 20;
     RtValue values[RT_KD_PARAM_COUNT];
     RtError refusals[3];

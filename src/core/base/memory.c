@@ -118,8 +118,8 @@ void rt_memory_limit_process(uint64_t bytes) {
 
 RtStatus rt_memory_unlimit_process(RtStatus status, RtError *error) {
     const RtError why = error ? *error : (RtError){0};
-    return unlimit(&limit_of_process, "that of --memory, or of this machine or container", status, why.message,
-                   error);
+    return unlimit(&limit_of_process, "that of --memory, or of this machine or container", status,
+                   why.message, error);
 }
 
 /* Moves `kept` elements of an array to a new block of `room` elements; false if there is no memory for it.

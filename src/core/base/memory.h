@@ -48,8 +48,8 @@ uint64_t rt_memory_of_groups(const char *groups, const char *mounted);
  * not count. */
 void rt_memory_limit(uint64_t bytes);
 
-/* Removes the limit and returns `status`. If it was reached, the message of RT_NO_MEMORY becomes the limit: which
- * allocation failed may depend on the number of threads. */
+/* Removes the limit and returns `status`. If it was reached, the message of RT_NO_MEMORY becomes the limit:
+ * which allocation failed may depend on the number of threads. */
 RtStatus rt_memory_unlimit(RtStatus status, RtError *error);
 
 /* Whether an allocation since the last rt_memory_limit failed because of a limit. */
