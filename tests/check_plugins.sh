@@ -168,7 +168,7 @@ END
 
 # notices NAME [PATTERN]: bench and verify end with 0 and say so; no pattern: they say nothing
 notices() {
-    ends 0 verify balls:size=1 --rays 100 --threads 1 --plugin "$plugins/faulty.so" --accel "faulty-$1"
+    ends 0 verify balls:size=1 --rays 100 --threads 1 --plugin "$plugins/faulty.so" --accel kd --accel "faulty-$1"
     [ -z "${2-}" ] && [ -s said ] && complain "verify --accel faulty-$1 says $(cat said)"
     says "${2-}"
     ends 0 "${bench[@]}" --plugin "$plugins/faulty.so" --accel kd --accel "faulty-$1"
