@@ -314,15 +314,20 @@ RtStatus rt_best_specs(const char *text, char specs[RT_MAX_BEST][RT_MAX_SPEC_CHA
 /* ---- using an accelerator ---- */
 
 /* Builds the accelerator of a spec over `scene`, on `threads` threads (0 = all processors), which do not
- * change the structure. rt_accel_build builds a remote spec in a process of its own (accel/remote.h);
- * rt_accel_build_here builds any spec in this process. rt_accel_open_on takes the spec as text; rt_accel_open
- * also uses all processors. Destroy with rt_accel_destroy. */
+ * change the structure; on one, which needs least memory, if more exceed a limit of memory. rt_accel_build
+ * builds a remote spec in a process of its own (accel/remote.h); rt_accel_build_here builds any spec in this
+ * process. rt_accel_open_on takes the spec as text; rt_accel_open also uses all processors. Destroy with
+ * rt_accel_destroy. */
 RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
                              RtError *error);
 RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out, RtError *error);
 RtStatus rt_accel_open_on(const char *spec, const RtScene *scene, int threads, RtAccel **out, RtError *error);
 RtStatus rt_accel_open(const char *spec, const RtScene *scene, RtAccel **out, RtError *error);
 void rt_accel_destroy(RtAccel *accel); /* and the layers below; NULL is allowed */
+
+/* Whether a build that ended with `status` refuses the scene: for a limit of its own, or of memory. Only the
+ * accelerator's own results are lost. */
+bool rt_accel_refuses(RtStatus status);
 
 /* Builds one layer over `below`, or a base if that is NULL. On failure nothing is left behind, and `below`
  * still exists. */

@@ -4,6 +4,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 
 #include <assert.h>
 
@@ -36,7 +37,7 @@ RtStatus rt_accel_build_layer(const RtAccelOps *ops, const RtBuild *what, RtAcce
     return status;
 }
 
-RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
+static RtStatus build_layers(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
                              RtError *error) {
     RtAccel *top = NULL;
     double start = rt_wall_seconds();
@@ -53,6 +54,17 @@ RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threa
     }
     *out = top;
     return RT_OK;
+}
+
+RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
+                             RtError *error) {
+    const RtStatus status = build_layers(spec, scene, threads, out, error);
+    const bool too_large = status == RT_NO_MEMORY && rt_memory_limit_was_reached();
+    return too_large && rt_thread_count(threads) > 1 ? build_layers(spec, scene, 1, out, error) : status;
+}
+
+bool rt_accel_refuses(RtStatus status) {
+    return status == RT_BAD_INPUT || (status == RT_NO_MEMORY && rt_memory_limit_was_reached());
 }
 
 void rt_accel_destroy(RtAccel *accel) {

@@ -17,6 +17,8 @@
 #include "accel/surface.h"
 #include "core/shape/overlap.h"
 
+#include <stdatomic.h>
+
 #define RT_KD_PARAMS(X)                                                                                      \
     X(RT_KD_TRAVERSAL_COST, "traversal_cost", RT_FLOAT("0.3", 0, 1000, "0|1|10"),                            \
       "cost of visiting an inner node, in object tests", "measured")                                         \
@@ -172,13 +174,31 @@ typedef struct RtKdLevel {
     double share, leaf_share;
 } RtKdLevel;
 
+/* The memory of all subtrees that threads build at once: nodes and leaves so far, and waiting lists. */
+typedef struct RtKdShared {
+    uint64_t limit;
+    _Atomic uint64_t bytes;
+    atomic_bool exceeded; /* once; then all stop */
+} RtKdShared;
+
+static inline void rt_kd_hold(RtKdShared *shared, uint64_t bytes) {
+    if (atomic_fetch_add(&shared->bytes, bytes) + bytes > shared->limit)
+        atomic_store(&shared->exceeded, true);
+}
+
 /* The bytes so far of the tree, and of the same tree cut off at any depth. Once they exceed the limit, cells
  * are only counted, and max_depth is lowered repeatedly to where the tree seems to fit. */
 typedef struct RtKdMemory {
     uint64_t limit, bytes;
-    double estimate; /* bytes that the requested tree would take; 0 while it fits */
+    RtKdShared *shared; /* borrowed; NULL on one thread */
+    double estimate;    /* bytes that the requested tree would take; 0 while it fits */
     RtKdLevel levels[RT_KD_DEPTH_LIMIT + 1];
 } RtKdMemory;
+
+/* Whether the tree is only counted, or useless, because it takes too much memory. */
+static inline bool rt_kd_is_too_large(const RtKdMemory *memory) {
+    return memory->estimate > 0 || (memory->shared && atomic_load(&memory->shared->exceeded));
+}
 
 /* kd_divide.c. Divides a cell, whose children go on top of the pending cells, or makes it a leaf. */
 RtStatus rt_kd_divide(RtKdBuilder *b, const RtKdCell *cell, RtError *error);

@@ -264,6 +264,7 @@ static void count_cell(RtKdBuilder *b, const RtKdCell *cell, bool leaf) {
     level->leaf_ids += leaf ? cell->ids.count : 0;
     level->leaf_share += leaf ? cell->share : 0;
     memory->bytes += bytes_of(1, leaf ? cell->ids.count : 0);
+    if (memory->shared) rt_kd_hold(memory->shared, bytes_of(1, leaf ? cell->ids.count : 0));
     if (memory->bytes <= memory->limit) return;
     double estimate;
     bytes_down_to(memory, b->kd->max_depth, &estimate);

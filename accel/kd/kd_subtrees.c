@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Building the subtrees of a kd-tree on all threads. The top is built as on one thread, but small cells are
  * deferred with their lists. Each deferred cell is then a task, which defers cells of its own while it is
- * large. Finally all nodes are copied into one tree, in the order in which one thread makes them. */
+ * large. Finally all nodes are copied into one tree, in the order in which one thread makes them.
+ *
+ * All subtrees share one limit of memory. Which of them exceeds it depends on threads, but not whether any
+ * does: the size of the tree is the same. Where many objects are in several cells, waiting lists may take
+ * more than the tree; such a tree is built on one thread, which keeps few of them. */
 #include "accel/kd/kd.h"
 
 #include "core/base/memory.h"
@@ -28,15 +32,19 @@ struct Subtree {
     RtKdMemory memory;
     RtKdBuilder builder;
     Subtrees below;
+    uint64_t list_bytes; /* while they wait */
     uint32_t objects;
     uint32_t root, nodes_at, ids_at; /* their places in the whole tree */
 };
 
 /* When work is shared. */
 typedef struct Sharing {
-    uint32_t most;  /* objects of a cell that one thread builds */
-    uint64_t limit; /* bytes of each subtree */
+    uint32_t most; /* objects of a cell that one thread builds */
+    RtKdShared memory;
 } Sharing;
+
+/* Bytes of lists per object that do not count: more than a tree has whose cells share few objects. */
+enum { USUAL_LISTS = 512 };
 
 /* The whole tree. */
 typedef struct Joined {
@@ -79,7 +87,12 @@ static void move_lists(RtKdBuilder *from, RtKdBuilder *to) {
     from->id_capacity = 0;
 }
 
-static RtStatus defer(Subtrees *s, RtKdBuilder *b, RtKdCell cell, uint64_t limit, RtError *error) {
+static uint64_t bytes_of_lists(const RtKdBuilder *b) {
+    const uint64_t events = (uint64_t)b->event_capacity[0] + b->event_capacity[1] + b->event_capacity[2];
+    return b->id_capacity * sizeof(uint32_t) + (events + b->spare_capacity) * sizeof(RtKdEvent);
+}
+
+static RtStatus defer(Subtrees *s, RtKdBuilder *b, RtKdCell cell, RtError *error) {
     RT_TRY(rt_reserve(&s->items, &s->capacity, (uint64_t)s->count + 1, sizeof(Subtree *), error));
     Subtree *item = s->items[s->count] = rt_alloc(1, sizeof(Subtree));
     if (!item) return rt_fail_memory(error, "a subtree of a kd-tree", sizeof(Subtree));
@@ -88,7 +101,7 @@ static RtStatus defer(Subtrees *s, RtKdBuilder *b, RtKdCell cell, uint64_t limit
     item->kd.nodes = NULL;
     item->kd.ids = NULL;
     item->kd.node_count = item->kd.id_count = 0;
-    item->memory.limit = limit;
+    item->memory = (RtKdMemory){.limit = b->memory->limit, .shared = b->memory->shared};
     item->builder.kd = &item->kd;
     item->builder.memory = &item->memory;
     item->objects = cell.ids.count;
@@ -96,21 +109,23 @@ static RtStatus defer(Subtrees *s, RtKdBuilder *b, RtKdCell cell, uint64_t limit
         move_lists(b, &item->builder);
     else
         RT_TRY(copy_lists(b, &cell, &item->builder, error));
+    item->list_bytes = bytes_of_lists(&item->builder);
+    rt_kd_hold(item->memory.shared, item->list_bytes);
     cell.node = 0;
     item->builder.pending[item->builder.pending_count++] = cell;
     return RT_OK;
 }
 
-/* Defers the cells of at most `most` objects, with a limit of bytes each. */
-static RtStatus build_top(Subtrees *s, RtKdBuilder *b, uint32_t most, uint64_t limit, RtError *error) {
-    while (b->pending_count > 0 && b->memory->estimate == 0) {
+/* Defers the cells of at most `most` objects. */
+static RtStatus build_top(Subtrees *s, RtKdBuilder *b, uint32_t most, RtError *error) {
+    while (b->pending_count > 0 && !rt_kd_is_too_large(b->memory)) {
         RtKdCell cell = b->pending[--b->pending_count];
         uint32_t waiting = b->pending_count;
         RT_TRY(rt_reserve(&s->of, &s->of_capacity, b->kd->node_count, sizeof(uint32_t), error));
         RT_TRY(rt_reserve(&s->upper, &s->upper_capacity, b->kd->node_count, sizeof(bool), error));
         s->of[cell.node] = NONE;
         if (cell.ids.count <= most) {
-            RT_TRY(defer(s, b, cell, limit, error));
+            RT_TRY(defer(s, b, cell, error));
             continue;
         }
         RT_TRY(rt_kd_divide(b, &cell, error));
@@ -141,19 +156,21 @@ static RtStatus build_subtree(void *context, RtTasks *tasks, const void *task, R
     Subtree *item = *(Subtree *const *)task;
     RtKdBuilder *b = &item->builder;
     uint32_t objects = item->kd.base.scene->geometry.object_count;
+    if (rt_kd_is_too_large(&item->memory)) return RT_OK;
     b->sides = rt_alloc_unset(objects, 1);
     if (!b->sides) return rt_fail_memory(error, "building a kd-tree", objects);
     RT_TRY(rt_reserve(&item->kd.nodes, &b->node_capacity, 1, sizeof(RtKdNode), error));
     item->kd.node_count = 1;
     if (item->objects > sharing->most) {
-        RT_TRY(build_top(&item->below, b, most_deferred(sharing, item->objects), sharing->limit, error));
+        RT_TRY(build_top(&item->below, b, most_deferred(sharing, item->objects), error));
         RT_TRY(add_tasks(tasks, &item->below, error));
     }
-    while (b->pending_count > 0 && item->memory.estimate == 0) {
+    while (b->pending_count > 0 && !rt_kd_is_too_large(&item->memory)) {
         RtKdCell cell = b->pending[--b->pending_count];
         RT_TRY(rt_kd_divide(b, &cell, error));
     }
     rt_kd_clear(b);
+    atomic_fetch_sub(&item->memory.shared->bytes, item->list_bytes);
     return RT_OK;
 }
 
@@ -277,15 +294,16 @@ static void clear(Subtrees *s) {
 }
 
 RtStatus rt_kd_build_subtrees(RtKdBuilder *b, uint32_t most, int threads, bool *fits, RtError *error) {
-    Sharing sharing = {most, b->memory->limit / (uint64_t)rt_thread_count(threads)};
-    Subtrees s = {.items = NULL};
     uint32_t objects = b->kd->base.scene->geometry.object_count;
-    RtStatus status = build_top(&s, b, most_deferred(&sharing, objects), sharing.limit, error);
+    Sharing sharing = {.most = most, .memory.limit = b->memory->limit + (uint64_t)USUAL_LISTS * objects};
+    Subtrees s = {.items = NULL};
+    b->memory->shared = &sharing.memory;
+    RtStatus status = build_top(&s, b, most_deferred(&sharing, objects), error);
     rt_kd_clear(b); /* the lists of the top are no longer needed */
     if (status == RT_OK)
         status =
             rt_parallel_tasks(s.items, s.count, sizeof(Subtree *), threads, build_subtree, &sharing, error);
-    Sums sums = {b->memory->bytes, b->kd->node_count, b->kd->id_count, 0, b->memory->estimate == 0};
+    Sums sums = {b->memory->bytes, b->kd->node_count, b->kd->id_count, 0, !rt_kd_is_too_large(b->memory)};
     if (status == RT_OK) add_up(&s, &sums);
     *fits = status == RT_OK && sums.fit && sums.bytes <= b->memory->limit;
     if (*fits) status = join(&s, &sums, b->kd, threads, error);

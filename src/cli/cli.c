@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/cli.h"
 
+#include "accel/accel.h"
 #include "cli/stop.h"
 #include "core/base/memory.h"
 #include "core/text/json.h"
@@ -74,6 +75,16 @@ uint64_t rt_cli_bytes(struct argp_state *state, const char *option, const char *
         argp_error(state, "%s: invalid value '%s': expected a number of bytes, as in 512M or 4G", option,
                    text);
     return (uint64_t)bytes;
+}
+
+bool rt_cli_goes_on(RtStatus status, const char *spec, uint32_t count, const RtError *why) {
+    if (count == 1 || !rt_accel_refuses(status)) return false;
+    fprintf(stderr, "raytally: %s is refused: %s\n", spec, why->message);
+    return true;
+}
+
+void rt_cli_remove(const char **texts, uint32_t *count, uint32_t i) {
+    memmove(&texts[i], &texts[i + 1], (--*count - i) * sizeof *texts);
 }
 
 void rt_cli_take_memory(void *options, const char *text, struct argp_state *state) {

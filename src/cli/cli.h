@@ -94,14 +94,22 @@ void rt_cli_take_time(void *options, const char *text, struct argp_state *state)
         "memory", 0, "BYTES", RT_TO_BYTES(memory),                                                           \
             "Memory limit for each accelerator, as in 512M or 4G (powers of 1000): what a built-in one "     \
             "allocates during its build, and what a plugin's process holds at any time. One that exceeds "   \
-            "it during its build is skipped, which is no failure; a plugin that exceeds it later is "        \
-            "broken (exit code 1)"                                                                           \
+            "it during its build is refused, which costs only its own rows; a plugin that exceeds it later " \
+            "is broken (exit code 1). It does not raise the limit of structures: 4 GiB, or 128 bytes per "   \
+            "object"                                                                                         \
     }
 #define RT_TIME_OPTION(kept)                                                                                 \
     {                                                                                                        \
         "time", 0, "SECONDS", RT_TO_TAKE(rt_cli_take_time),                                                  \
             "Time limit for the whole command, which then ends with exit code 2" kept                        \
     }
+/* Whether the build of one of `count` accelerators was refused and the command goes on with the others; says
+ * so. */
+bool rt_cli_goes_on(RtStatus status, const char *spec, uint32_t count, const RtError *why);
+
+/* Removes texts[i] of texts[0..*count). */
+void rt_cli_remove(const char **texts, uint32_t *count, uint32_t i);
+
 #define RT_LIMIT_OPTIONS                                                                                     \
     {"memory", 0, "BYTES", RT_TO_TAKE(rt_cli_take_memory),                                                   \
      "Memory limit for scenes, structures, rays and images, as in 512M or 4G (powers of 1000); a command "   \

@@ -236,6 +236,7 @@ static RtStatus report(const Options *o, const RtResults *results, const RtCallg
         return RT_OK;
     }
     rt_print_results(results, RT_CELLS, stdout);
+    rt_print_left_out(results, stdout);
     if (e->hardware) rt_print_hardware(results, stdout);
     if (callgrind->count) rt_print_instructions(callgrind, stdout);
     if (e->distributions) rt_print_distributions(results, stdout);
@@ -303,7 +304,7 @@ static RtStatus bench(Options *o, RtError *error) {
     RtStatus status = rt_results_init(&results, experiment, error);
     if (status == RT_OK) status = measure(o, &results, &callgrind, error);
     if (status == RT_OK) status = report(o, &results, &callgrind, error);
-    if (status == RT_OK) status = rt_results_check_broken(&results, error);
+    if (status == RT_OK) status = rt_results_check(&results, error);
     rt_callgrind_clear(&callgrind);
     rt_results_clear(&results);
     return status;

@@ -38,23 +38,29 @@ typedef struct Built {
     char texts[RT_MAX_EXPLORED][RT_MAX_SPEC_CHARS];
 } Built;
 
-static RtStatus build(Built *built, const Options *o, const RtScene *scene, RtError *error) {
+/* Builds all; those that refuse the scene are removed from the options. */
+static RtStatus build(Built *built, Options *o, const RtScene *scene, RtError *error) {
     for (uint32_t i = 0; i < o->accel_count; i++) {
         RtSpec spec;
         RT_TRY(rt_spec_parse(o->accels[i], &spec, error));
         rt_spec_format(&spec, built->texts[i]);
-        RT_TRY(rt_accel_build(&spec, scene, 0, &built->accels[i], error));
+        const RtStatus status = rt_accel_build(&spec, scene, 0, &built->accels[i], error);
+        if (rt_cli_goes_on(status, o->accels[i], o->accel_count, error)) {
+            rt_cli_remove(o->accels, &o->accel_count, i--);
+            continue;
+        }
+        RT_TRY(status);
         RT_TRY(rt_path_available(built->accels[i], built->texts[i], error));
     }
     return RT_OK;
 }
 
-static RtStatus explore(const Options *o, Built *built, const RtScene *scene, RtError *error) {
+static RtStatus explore(Options *o, Built *built, const RtScene *scene, RtError *error) {
     const RtExploreOptions how = {.depth = o->depth, .bytes = o->megabytes * 1000000};
     RtExploredSpec specs[RT_MAX_EXPLORED];
     uint32_t stride;
-    for (uint32_t i = 0; i < o->accel_count; i++) specs[i] = (RtExploredSpec){o->accels[i], built->texts[i]};
     RT_TRY(build(built, o, scene, error));
+    for (uint32_t i = 0; i < o->accel_count; i++) specs[i] = (RtExploredSpec){o->accels[i], built->texts[i]};
     RT_TRY(rt_explore_write(o->page, scene->name[0] ? scene->name : o->scene, built->accels, specs,
                             o->accel_count, &how, &stride, error));
     printf("wrote %s, with the rays of ", o->page);
@@ -65,7 +71,7 @@ static RtStatus explore(const Options *o, Built *built, const RtScene *scene, Rt
     return RT_OK;
 }
 
-static RtStatus run(const Options *o, RtError *error) {
+static RtStatus run(Options *o, RtError *error) {
     Built built = {0};
     RtScene scene;
     RT_TRY(rt_explore_available(error));

@@ -98,7 +98,7 @@ typedef struct Built {
 
 /* One run of the command. */
 typedef struct Run {
-    const Options *options;
+    Options *options; /* accelerators that refuse the scene are removed */
     RtScene scene;
     RtAccel *accel; /* the first */
     RtFrameOptions frame_options;
@@ -144,6 +144,16 @@ static RtStatus count_other(Run *run, uint32_t i, RtError *error) {
     return status;
 }
 
+/* Removes accelerator `i`, which ended its build with `status`, if the command goes on without it. The
+ * difference of two heatmaps needs both. */
+static bool remove_refused(Run *run, RtStatus status, uint32_t i, const RtError *why) {
+    Options *o = run->options;
+    const uint32_t count = o->pictures.heat.difference ? 1 : o->accel_count;
+    if (!rt_cli_goes_on(status, o->accels[i], count, why)) return false;
+    rt_cli_remove(o->accels, &o->accel_count, i);
+    return true;
+}
+
 static RtStatus trace_frames(Run *run, RtError *error) {
     const Options *o = run->options;
     RtFrameOptions *f = &run->frame_options;
@@ -161,7 +171,13 @@ static RtStatus trace_frames(Run *run, RtError *error) {
     f->counted = true;
     f->cost_kinds = o->pictures.kinds;
     RT_TRY(rt_frame_trace(&run->built[0].counted, run->accel, f, error));
-    for (uint32_t i = 1; i < o->accel_count; i++) RT_TRY(count_other(run, i, error));
+    for (uint32_t i = 1; i < o->accel_count; i++) {
+        const RtStatus status = count_other(run, i, error);
+        if (remove_refused(run, status, i, error))
+            i--;
+        else
+            RT_TRY(status);
+    }
     return RT_OK;
 }
 
@@ -173,7 +189,9 @@ static RtStatus prepare(Run *run, RtError *error) {
     if (o->stats) RT_TRY(rt_cli_check_json_name(o->scene, error));
     RT_TRY(rt_scene_open(o->scene, &run->scene, error));
     RT_TRY(rt_scene_sample(&run->scene, o->size[0], o->size[1], o->samples, o->corners, error));
-    RT_TRY(build(run, 0, &run->accel, error));
+    RtStatus status = build(run, 0, &run->accel, error);
+    while (remove_refused(run, status, 0, error)) status = build(run, 0, &run->accel, error);
+    RT_TRY(status);
     return rt_pictures_check(&o->pictures, run->accel, error);
 }
 

@@ -117,18 +117,28 @@ static RtStatus compare(Again *again, const char *path, const char *kept, const 
     return RT_OK;
 }
 
+/* Writes the file as it would be now; without rows of refused accelerators if the kept one, of an older
+ * version, has no column for them. */
+static RtStatus write_again(const Again *again, RtResultFile file, const RtPublished *published,
+                            const char *kept, RtMemoryFile *counted, RtError *error) {
+    RtResults results = *again->results;
+    const char *column = strstr(kept, ",refused");
+    results.old_rows = !column || column > kept + strcspn(kept, "\n");
+    RT_TRY(rt_memory_file_open(counted, error));
+    if (rt_result_file_sort(results.experiment, file) == RT_FILE_COMPARED)
+        rt_published_file_write(file, published, counted->file);
+    else
+        rt_result_csv_write(file, &results, counted->file);
+    return rt_memory_file_close(counted, "the counts", error);
+}
+
 static RtStatus compare_file(Again *again, RtResultFile file, const RtPublished *published, RtError *error) {
     char path[RT_MAX_PATH], *kept = NULL;
     size_t size;
-    RtMemoryFile counted;
+    RtMemoryFile counted = {0};
     RT_TRY(rt_path_join(again->directory, rt_result_files[file], path, error));
-    RT_TRY(rt_memory_file_open(&counted, error));
-    if (rt_result_file_sort(again->results->experiment, file) == RT_FILE_COMPARED)
-        rt_published_file_write(file, published, counted.file);
-    else
-        rt_result_csv_write(file, again->results, counted.file);
-    RT_TRY(rt_memory_file_close(&counted, "the counts", error));
     RtStatus status = rt_file_read(path, MOST_CSV_BYTES, &kept, &size, error);
+    if (status == RT_OK) status = write_again(again, file, published, kept, &counted, error);
     again->compared = 0;
     if (status == RT_OK) status = compare(again, path, kept, counted.data, error);
     if (status == RT_OK && (again->compared > 1 || !again->missing)) /* more than the names of the columns */

@@ -225,7 +225,7 @@ static RtStatus measure(Options *o, RtResults *results, RtError *error) {
     rt_print_summary(results, stdout);
     if (!how->workload.only.part_count && !how->workload.only.shards)
         printf("\nReport: %s/report.html\n", how->directory);
-    RT_TRY(rt_results_check_broken(results, error));
+    RT_TRY(rt_results_check(results, error));
     return o->strict ? rt_claims_check(results, error) : RT_OK;
 }
 

@@ -285,6 +285,14 @@ static RtStatus print_totals(const Options *o, const json_t *rows, RtError *erro
     return status;
 }
 
+/* Refused rows are results, unless there are no others. */
+static RtStatus check_refused(const json_t *rows, RtError *error) {
+    const RtVerifySum total = rt_verify_total(rows);
+    if (total.rows == 0 || total.refused < total.rows) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "nothing was verified: every accelerator refuses the scene: %s",
+                   rt_json_text(json_array_get(rows, 0), "refused", ""));
+}
+
 static RtStatus verify(const Options *o, bool *failed, RtError *error) {
     Show show = {.options = o, .start = rt_wall_seconds()};
     RtVerifyObserver observer = {on_doing, on_row, rt_progress_notice, &show};
@@ -295,6 +303,7 @@ static RtStatus verify(const Options *o, bool *failed, RtError *error) {
         rt_cli_print_json(json_pack("{s:I, s:O}", "seed", (json_int_t)o->work.rays.seed, "rows", rows));
     }
     if (status == RT_OK && !o->json) status = print_totals(o, rows, error);
+    if (status == RT_OK) status = check_refused(rows, error);
     json_decref(rows);
     *failed = show.failed;
     return status;

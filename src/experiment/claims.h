@@ -41,9 +41,10 @@
  *
  * A cell has no value for all kinds of rays together if one of them was not measured. A claim about cells
  * without a value is undecided, unless the others disprove it. If none of its cells was measured, as where a
- * plugin is missing, its verdict is "no measurements". An exponent needs all values of its line; a crossover
- * only those between the first and the last cell in which both accelerators have a value. A correlation of
- * `all` leaves out structures to which a measure does not apply, as those without a prediction. */
+ * plugin is missing, its verdict is "no measurements"; if an accelerator refused the scene, it is undecided.
+ * An exponent needs all values of its line; a crossover only those between the first and the last cell in
+ * which both accelerators have a value. A correlation of `all` leaves out structures to which a measure does
+ * not apply, as those without a prediction. */
 #ifndef RT_EXPERIMENT_CLAIMS_H
 #define RT_EXPERIMENT_CLAIMS_H
 

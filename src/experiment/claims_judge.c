@@ -364,6 +364,9 @@ void rt_claim_judge(const RtResults *results, uint32_t i, RtClaimResult *result)
         if (claim.form != RT_CLAIM_CROSSOVER) result->verdict = worse(result->verdict, RT_CLAIM_UNDECIDED);
         PUT(result, "; %" PRIu32 " of %" PRIu32 " values are unknown", count - known, count);
     }
+    const char *refusal = known < count || count == 0 ? rt_claim_refusal(results, &claim) : NULL;
+    if (refusal && result->verdict == RT_CLAIM_UNMEASURED) result->verdict = RT_CLAIM_UNDECIDED;
+    if (refusal) PUT(result, "; refused: %.300s", refusal);
     if (claim.readout) result->verdict = RT_CLAIM_FIGURE;
     rt_free(points);
 }

@@ -235,3 +235,16 @@ uint32_t rt_claim_line(const RtExperiment *experiment, const RtClaim *claim, RtC
     qsort(points, end, sizeof *points, by_x);
     return end;
 }
+
+const char *rt_claim_refusal(const RtResults *results, const RtClaim *claim) {
+    const RtExperiment *e = results->experiment;
+    for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
+        const RtCandidate *candidate = &e->candidates[at.candidate];
+        const RtBuildResult *build = rt_build_at(results, at.workload, at.candidate);
+        const bool named =
+            is_called(e, claim, at.candidate) || rt_candidate_is_called(candidate, claim->other);
+        const bool here = !*claim->scene || rt_workload_is_called(&e->workloads[at.workload], claim->scene);
+        if (build->refused && named && here) return build->left_out;
+    }
+    return NULL;
+}

@@ -32,4 +32,7 @@ bool rt_claim_any_measured(const RtResults *results, const RtClaim *claim, const
 uint32_t rt_claim_line(const RtExperiment *experiment, const RtClaim *claim, RtClaimPoint *points,
                        uint32_t count);
 
+/* Why an accelerator that the claim names refused a scene of it; NULL if none did. */
+const char *rt_claim_refusal(const RtResults *results, const RtClaim *claim);
+
 #endif

@@ -2,6 +2,7 @@
 #include "experiment/journal_lines.h"
 
 #include "core/base/memory.h"
+#include "core/text/json.h"
 #include "experiment/plugins_used.h"
 
 #include <math.h>
@@ -55,7 +56,7 @@ static const RtMember time_members[] = {RT_MEMBER_RANGE(RtCell, COUNT, "rays", t
                                         RT_MEMBER_RANGE(RtCell, INT, "threads", threads, 1, 0),
                                         RT_MEMBER(RtCell, ESTIMATE, "seconds", seconds),
                                         RT_MEMBER(RtCell, ESTIMATE, "wall", wall),
-                                        RT_MEMBER(RtCell, ESTIMATE, "ratio", ratio)};
+                                        RT_MEMBER(RtCell, RATIO, "ratio", ratio)};
 
 #define EVENT(name, meaning) RT_MEMBER(RtCell, NUMBER, #name, hardware.counts.of[RT_HARDWARE_##name]),
 static const RtMember hardware_members[] = {RT_MEMBER(RtCell, INT, "threads", hardware.threads),
@@ -100,7 +101,7 @@ static const struct Part {
 static json_t *rounds_json(const RtCell *cell, RtRoundTime which) {
     json_t *list = json_array();
     for (uint32_t r = 0; r < cell->rounds; r++)
-        json_array_append_new(list, json_real(rt_cell_round_times(cell, which)[r]));
+        json_array_append_new(list, rt_json_number(rt_cell_round_times(cell, which)[r]));
     return list;
 }
 
@@ -160,7 +161,10 @@ json_t *rt_journal_line(const RtResults *results, const RtEvent *event) {
     if (place == OF_CELL) line = rt_json_add(line, "kind", json_string(rt_ray_kind_name(event->kind)));
     line = rt_json_add(line, parts[event->what].key, part_json(results, event));
     const bool left_out = event->what == RT_EVENT_NO_BUILD || event->what == RT_EVENT_NO_CELL;
-    return left_out ? rt_json_add(line, "broken", json_boolean(rt_event_is_broken(results, event))) : line;
+    if (left_out) line = rt_json_add(line, "broken", json_boolean(rt_event_is_broken(results, event)));
+    if (event->what != RT_EVENT_NO_BUILD) return line;
+    const RtBuildResult *build = rt_build_at(results, event->workload, event->candidate);
+    return rt_json_add(line, "refused", json_boolean(build->refused));
 }
 
 /* ---- reading ---- */
@@ -192,9 +196,11 @@ static void take_rounds(RtRecordReader *reader, RtCell *cell, const json_t *json
     reader->status = rt_cell_make_round_times(cell, reader->error);
     for (int i = 0; i < RT_ROUND_TIME_COUNT && cell->round_times; i++) {
         const json_t *list = json_object_get(json, round_time_names[i]);
+        const bool unknown = i == RT_ROUND_BASELINE && isnan(cell->ratio.median); /* no baseline */
         for (uint32_t r = 0; r < cell->rounds; r++)
             rt_cell_round_times(cell, (RtRoundTime)i)[r] =
-                rt_record_seconds(reader, json_array_get(list, r), round_time_names[i]);
+                unknown ? (double)NAN
+                        : rt_record_seconds(reader, json_array_get(list, r), round_time_names[i]);
     }
 }
 
@@ -213,14 +219,11 @@ static void take_baseline(RtRecordReader *reader, const RtExperiment *experiment
     cell->baseline = c < experiment->candidate_count ? c : experiment->baseline;
 }
 
-static void take_left_out(RtRecordReader *reader, const json_t *line, const char *key, char *left_out,
-                          bool *broken) {
-    const char *text = rt_record_text(reader, line, key);
-    if (!text) return;
-    const json_t *flag = json_object_get(line, "broken");
-    if (flag && !json_is_boolean(flag)) rt_record_reject(reader, "broken", "true or false");
-    snprintf(left_out, RT_MAX_LEFT_OUT, "%s", text);
-    *broken = json_is_true(flag);
+/* A flag that journals of older versions lack. */
+static bool take_added_flag(RtRecordReader *reader, const json_t *line, const char *key) {
+    const json_t *flag = json_object_get(line, key);
+    if (flag && !json_is_boolean(flag)) rt_record_reject(reader, key, "true or false");
+    return json_is_true(flag);
 }
 
 /* Whether the line has a part for this place. */
@@ -238,7 +241,9 @@ static const json_t *take_part(RtRecordReader *reader, const json_t *line, RtEve
     return json;
 }
 
-static void take_build(RtRecordReader *reader, const json_t *line, RtResults *results, RtBuildResult *build) {
+static void take_build(RtRecordReader *reader, const json_t *line, RtResults *results, uint32_t workload,
+                       uint32_t candidate) {
+    RtBuildResult *build = rt_build_at(results, workload, candidate);
     const json_t *built = take_part(reader, line, RT_EVENT_BUILD, build);
     build->known |= built != NULL;
     take_distributions(reader, &build->leaves, RT_RAY_QUANTITY_COUNT, RT_LEAF_QUANTITY_COUNT,
@@ -246,7 +251,10 @@ static void take_build(RtRecordReader *reader, const json_t *line, RtResults *re
     const json_t *rendered = take_part(reader, line, RT_EVENT_RENDER, build);
     build->render.known |= rendered != NULL;
     if (rendered) build->render.machine = take_machine(reader, results, rendered);
-    take_left_out(reader, line, "too_large", build->left_out, &build->broken);
+    const char *why = rt_record_text(reader, line, parts[RT_EVENT_NO_BUILD].key);
+    if (why)
+        rt_results_leave_out(results, workload, candidate, why, take_added_flag(reader, line, "refused"),
+                             take_added_flag(reader, line, "broken"));
 }
 
 static void take_cell(RtRecordReader *reader, const json_t *line, RtResults *results, uint32_t workload,
@@ -254,7 +262,11 @@ static void take_cell(RtRecordReader *reader, const json_t *line, RtResults *res
     cell->counted |= take_part(reader, line, RT_EVENT_COUNT, cell) != NULL;
     take_distributions(reader, &cell->distributions, 0, RT_RAY_QUANTITY_COUNT,
                        json_object_get(line, "distributed"));
-    take_left_out(reader, line, "too_long", cell->left_out, &cell->broken);
+    const char *why = rt_record_text(reader, line, parts[RT_EVENT_NO_CELL].key);
+    if (why) {
+        snprintf(cell->left_out, sizeof cell->left_out, "%s", why);
+        cell->broken = take_added_flag(reader, line, "broken");
+    }
     const json_t *hardware = take_part(reader, line, RT_EVENT_HARDWARE, cell);
     cell->hardware.known |= hardware != NULL;
     if (hardware) cell->hardware.machine = take_machine(reader, results, hardware);
@@ -285,7 +297,7 @@ void rt_journal_line_take(RtRecordReader *reader, RtResults *results, const json
     if (!accel) return;
     const uint32_t candidate = rt_candidate_find(experiment, accel, workload);
     if (candidate > experiment->candidate_count) return;
-    take_build(reader, line, results, rt_build_at(results, workload, candidate));
+    take_build(reader, line, results, workload, candidate);
     if (of_cell) take_cell(reader, line, results, workload, rt_cell_at(results, workload, candidate, kind));
 }
 

@@ -29,6 +29,9 @@ static json_t *member_json(const RtMember *m, const void *from) {
     case RT_MEMBER_HASH: return rt_json_hex(*(const uint64_t *)at);
     case RT_MEMBER_TEXT: return json_string(at);
     case RT_MEMBER_NUMBER: return rt_json_number(*(const double *)at);
+    case RT_MEMBER_RATIO:
+        if (isnan(e->median)) return json_null();
+        __attribute__((fallthrough));
     case RT_MEMBER_ESTIMATE: return json_pack("[f, f, f, f]", e->median, e->low, e->high, e->least);
     case RT_MEMBER_OBJECT: return rt_record_json(m->object, from);
     }
@@ -114,6 +117,10 @@ static void take_member(RtRecordReader *reader, const RtMember *m, void *to, con
             rt_record_reject(reader, m->name, "a number");
         *(double *)at = json_is_number(value) ? json_number_value(value) : (double)NAN;
         return;
+    case RT_MEMBER_RATIO:
+        *(RtEstimate *)at = rt_estimate_exactly((double)NAN);
+        if (json_is_null(value)) return;
+        __attribute__((fallthrough));
     case RT_MEMBER_ESTIMATE: {
         RtEstimate *e = at;
         double *const parts[] = {&e->median, &e->low, &e->high, &e->least};

@@ -24,6 +24,7 @@ typedef enum RtMemberForm {
     RT_MEMBER_TEXT,     /* char[]: a string; missing: "" */
     RT_MEMBER_NUMBER,   /* double: a number; NAN: null, or missing */
     RT_MEMBER_ESTIMATE, /* RtEstimate: [median, low, high, least], each 0 or more; or one number for all */
+    RT_MEMBER_RATIO,    /* the same; NAN: null */
     RT_MEMBER_OBJECT    /* members of the same struct, as an object of their own */
 } RtMemberForm;
 

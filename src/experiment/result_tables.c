@@ -70,8 +70,13 @@ static RtField known(uint64_t counter, double a_ray) {
     return isnan(a_ray) ? rt_field_missing() : rt_field_integer(counter);
 }
 
+/* NULL of a row of a refused accelerator. */
+static const void *measured_of(const void *row) {
+    return ((const Row *)row)->cell->counted || ((const Row *)row)->cell->timed ? row : NULL;
+}
+
 static const void *tally_of(const void *row) {
-    return &((const Row *)row)->cell->tally;
+    return measured_of(row) ? &((const Row *)row)->cell->tally : NULL;
 }
 
 static const void *known_tally_of(const void *row) {
@@ -79,11 +84,13 @@ static const void *known_tally_of(const void *row) {
 }
 
 static const void *structure_of(const void *row) {
-    return &((const Row *)row)->build->structure;
+    const RtBuildResult *build = ((const Row *)row)->build;
+    return build->known ? &build->structure : NULL;
 }
 
 static const void *build_of(const void *row) {
-    return &((const Row *)row)->build->structure.build;
+    const RtBuildResult *build = ((const Row *)row)->build;
+    return build->known ? &build->structure.build : NULL;
 }
 
 /* Hardware counters and frames have their own rounds, and so their own machine and threads. */
@@ -118,7 +125,7 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
     X(id##_most, "max", integer, "", most_of, (of)->most)
 
 /* A measurement with its interval, in three columns. */
-#define MEASURED(X, id, unit, meaning, factor, e)                                                            \
+#define ESTIMATE(X, id, unit, meaning, factor, e)                                                            \
     X(id, #id, real6, unit, meaning "; median", (factor) * (e).median)                                       \
     X(id##_low, #id "_low", real6, unit, "lower end of its interval", (factor) * (e).low)                    \
     X(id##_high, #id "_high", real6, unit, "upper end of its interval", (factor) * (e).high)
@@ -154,9 +161,9 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
     X(repeats, "repeats", real6, "", "passes over the rays in a round", TIMED(r->cell->repeats))             \
     X(coverage, "ratio_coverage", real6, "", "probability that an interval contains the median",             \
       TIMED(rt_interval_coverage(r->cell->rounds)))                                                          \
-    MEASURED(X, ns, "ns", "processor time per ray (wall time on several threads)", 1e9, r->cell->seconds)    \
+    ESTIMATE(X, ns, "ns", "processor time per ray (wall time on several threads)", 1e9, r->cell->seconds)    \
     X(ns_min, "ns_min", real6, "ns", "smallest time", 1e9 * r->cell->seconds.least)                          \
-    MEASURED(X, wall_ns, "ns", "wall time per ray", 1e9, r->cell->wall)                                      \
+    ESTIMATE(X, wall_ns, "ns", "wall time per ray", 1e9, r->cell->wall)                                      \
     X(mrays_per_s, "mrays_per_s", real6, "million/s", "rays per second, by the median",                      \
       1e-6 / r->cost.seconds.median)                                                                         \
     X(baseline, "baseline", text, "", "the accelerator that the ratio refers to",                            \
@@ -188,14 +195,19 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
       *r->cell->hardware.why ? (double)NAN : r->cell->hardware.counts.running)                               \
     X(why, "why", text, "", "why nothing could be counted; else empty",                                      \
       *r->cell->hardware.why ? r->cell->hardware.why : NULL)                                                 \
+    X(refused, "refused", text, "",                                                                          \
+      "why the accelerator refuses the scene (memory, a limit of its own); empty: it does not. The row "     \
+      "then "                                                                                                \
+      "has no rays",                                                                                         \
+      r->build->refused ? r->build->left_out : NULL)                                                         \
     X(host, "host", text, "", "host of the measurement", machine_of(r)->host)                                \
     X(cpu, "cpu", text, "", "its processor", machine_of(r)->cpu)                                             \
     X(render_rounds, "rounds", integer, "", "frames rendered for the times", RENDER(rounds))                 \
-    MEASURED(X, render_ms, "ms",                                                                             \
+    ESTIMATE(X, render_ms, "ms",                                                                             \
              "time to render the frame: rays, queries and illumination; processor time (wall time on "       \
              "several threads)",                                                                             \
              1e3, RENDER(seconds))                                                                           \
-    MEASURED(X, query_share, "", "part of it spent in queries of the accelerator", 1, RENDER(share))         \
+    ESTIMATE(X, query_share, "", "part of it spent in queries of the accelerator", 1, RENDER(share))         \
     X(eye_render, "ms/frame", interval, "ms", "time to render the frame", estimate(&RENDER(seconds), 1e-3))  \
     X(eye_share, "% in queries", interval, "%", "part of it spent in queries",                               \
       estimate(&RENDER(share), 1e-2))                                                                        \
@@ -251,6 +263,8 @@ RT_TABLE_COLUMNS(columns, COLUMNS)
 
 #define FROM_TO(first, last) RT_FROM_TO(columns, first, last)
 #define ONE(id)              RT_ONE(columns, id)
+#define MEASURED(first, last)                                                                                \
+    { NULL, &columns[AT_##first], AT_##last - AT_##first + 1, measured_of }
 
 /* What tables are and have. */
 enum {
@@ -258,19 +272,22 @@ enum {
                        kind, then accelerator */
     ALL_KINDS = 2,  /* a row is of all kinds of rays together */
     SWEPT = 4,      /* a column for each swept parameter */
-    BEST = 8        /* marks of the best */
+    BEST = 8,       /* marks of the best */
+    REFUSED = 16    /* a column that says why rows are refused, if any are */
 };
 
 /* X(TABLE, what it is and has, which rows it has, its columns...) */
 #define TABLES(X)                                                                                            \
-    X(COUNTS, ALL_SCENES | SWEPT, counted && r->build->counts, FROM_TO(scene, rays),                         \
+    X(COUNTS, ALL_SCENES | SWEPT | REFUSED, (counted && r->build->counts) || refused,                        \
+      FROM_TO(scene, ray_stride), MEASURED(rays, rays),                                                      \
       {NULL, rt_tally_columns + 1, RT_TALLY_COUNTER_COUNT - 1, tally_of},                                    \
-      {NULL, rt_structure_columns, RT_STRUCTURE_COUNTS, structure_of}, ONE(bytes),                           \
+      {NULL, rt_structure_columns, RT_STRUCTURE_COUNTS, structure_of}, MEASURED(bytes, bytes),               \
       {NULL, rt_structure_columns + RT_STRUCTURE_COUNTS, RT_PREDICTION_COLUMNS, structure_of})               \
-    X(TIMES, ALL_SCENES | SWEPT, timed, FROM_TO(scene, rays), FROM_TO(threads, ratio_high),                  \
-      FROM_TO(build_seconds, bytes), FROM_TO(object_tests, differ),                                          \
+    X(TIMES, ALL_SCENES | SWEPT | REFUSED, timed || refused, FROM_TO(scene, ray_stride),                     \
+      MEASURED(rays, rays), MEASURED(threads, ratio_high), MEASURED(build_seconds, bytes),                   \
+      MEASURED(object_tests, differ),                                                                        \
       {NULL, rt_structure_columns + RT_STRUCTURE_COUNTS, RT_PREDICTION_COLUMNS, structure_of},               \
-      FROM_TO(host, cpu))                                                                                    \
+      MEASURED(host, cpu))                                                                                   \
     X(ROUNDS, ALL_SCENES | SWEPT, timed && r->cell->round_times && r->round < r->cell->rounds, ONE(scene),   \
       ONE(kind), ONE(accel), ONE(baseline), FROM_TO(round, round_baseline_ns))                               \
     X(HARDWARE, ALL_SCENES, r->cell->hardware.known, ONE(scene), ONE(kind), FROM_TO(accel, spec), ONE(rays), \
@@ -278,11 +295,12 @@ enum {
     X(RENDERED, ALL_SCENES | SWEPT, r->build->render.known && r->kind == e->kinds[0],                        \
       FROM_TO(scene, objects), FROM_TO(width, depth), FROM_TO(accel, spec), ONE(threads),                    \
       FROM_TO(render_rounds, query_share_high), FROM_TO(host, cpu))                                          \
-    X(BENCH, SWEPT, counted && !null, ONE(scene_spec), FROM_TO(accel, ray_stride), ONE(kind),                \
-      FROM_TO(rays, bytes), {"structure", rt_structure_columns, RT_STRUCTURE_COLUMNS, structure_of},         \
+    X(BENCH, SWEPT, (counted && !null) || refused, ONE(scene_spec), FROM_TO(accel, ray_stride), ONE(kind),   \
+      ONE(refused), MEASURED(rays, bytes),                                                                   \
+      {"structure", rt_structure_columns, RT_STRUCTURE_COLUMNS, structure_of},                               \
       {"structure.build", rt_tally_columns, RT_TALLY_COUNTER_COUNT, build_of},                               \
-      {"counts", rt_tally_columns, RT_TALLY_COUNTER_COUNT, known_tally_of}, ONE(differ),                     \
-      FROM_TO(threads, mrays_per_s), FROM_TO(msteps_per_s, mtests_per_s), FROM_TO(baseline, ratio_high))     \
+      {"counts", rt_tally_columns, RT_TALLY_COUNTER_COUNT, known_tally_of}, MEASURED(differ, differ),        \
+      MEASURED(threads, mrays_per_s), MEASURED(msteps_per_s, mtests_per_s), MEASURED(baseline, ratio_high))  \
     X(NULL_RUNS, 0, (timed && null), ONE(scene_spec), ONE(kind), FROM_TO(accel, spec), ONE(rays),            \
       FROM_TO(build_seconds, straddles_1))                                                                   \
     X(CELLS, 0, (counted || timed) && !is_lost(r, r->cell), FROM_TO(eye_label, interval))                    \
@@ -363,6 +381,7 @@ static const void *row_at(void *context, size_t i) {
     const RtExperiment *e = r->results->experiment;
     const bool null = r->candidate == e->candidate_count, first = i < e->candidate_count;
     const bool counted = r->cell->counted, timed = r->cell->timed;
+    const bool refused = !null && r->build->refused && !r->results->old_rows && r->scene->rays[r->kind] > 0;
     r->cost = rt_results_cost(r->results, r->workload, r->candidate, kinds_of(r));
     const bool there[] = {
 #define ROWS(id, has, rows, ...) [RT_##id] = rows,
@@ -405,8 +424,23 @@ static void add_swept(RtTable *table, Row *row) {
     }
     if (!row->swept_count) return;
     assert(table->group_count < RT_MAX_RESULT_GROUPS);
-    memcpy(row->groups, table->groups, table->group_count * sizeof *row->groups);
+    memmove(row->groups, table->groups, table->group_count * sizeof *row->groups);
     row->groups[table->group_count++] = (RtColumnGroup){NULL, row->swept_columns, row->swept_count, NULL};
+    table->groups = row->groups;
+}
+
+/* Appends the column of reasons if there are any: files without are those of version 1.0. */
+static void add_refused(RtTable *table, Row *row) {
+    static const RtColumnGroup refused = ONE(refused);
+    const RtExperiment *e = row->results->experiment;
+    bool any = false;
+    for (uint32_t t = 0; t < e->workload_count; t++) {
+        for (uint32_t c = 0; c < e->candidate_count; c++) any |= rt_build_at(row->results, t, c)->refused;
+    }
+    if (!any || row->results->old_rows) return;
+    assert(table->group_count < RT_MAX_RESULT_GROUPS);
+    memmove(row->groups, table->groups, table->group_count * sizeof *row->groups);
+    row->groups[table->group_count++] = refused;
     table->groups = row->groups;
 }
 
@@ -432,6 +466,7 @@ RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
     table.context = row;
     table.standing = has & BEST ? standing_of : NULL;
     row->which = which;
+    if (has & REFUSED) add_refused(&table, row);
     if (has & SWEPT) add_swept(&table, row);
     return table;
 }

@@ -121,8 +121,46 @@ void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddl
     }
 }
 
-RtStatus rt_results_check_broken(const RtResults *results, RtError *error) {
+void rt_results_leave_out(RtResults *results, uint32_t workload, uint32_t candidate, const char *why,
+                          bool refused, bool broken) {
     const RtExperiment *e = results->experiment;
+    RtBuildResult *build = rt_build_at(results, workload, candidate);
+    snprintf(build->left_out, sizeof build->left_out, "%s", why);
+    build->refused = refused;
+    build->broken = broken;
+    rt_spec_format(&e->candidates[candidate < e->candidate_count ? candidate : e->baseline].parsed,
+                   build->spec);
+}
+
+bool rt_results_refused(const RtResults *results, uint32_t workload, uint32_t candidate) {
+    const RtExperiment *e = results->experiment;
+    if (candidate != RT_FASTEST_BASELINE) return rt_build_at(results, workload, candidate)->refused;
+    for (uint32_t i = 0; i < e->baseline_count; i++) {
+        if (!rt_build_at(results, workload, e->baseline + i)->refused) return false;
+    }
+    return true;
+}
+
+/* The first reason, if all accelerators of all known scenes refused them; NULL if not. */
+static const char *refused_by_all(const RtResults *results) {
+    const char *why = NULL;
+    for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
+        const RtBuildResult *build = rt_build_at(results, at.workload, at.candidate);
+        if (!results->workloads[at.workload].known ||
+            !rt_candidate_runs(results->experiment, at.candidate, at.workload))
+            continue;
+        if (!build->refused) return NULL;
+        why = why ? why : build->left_out;
+    }
+    return why;
+}
+
+RtStatus rt_results_check(const RtResults *results, RtError *error) {
+    const RtExperiment *e = results->experiment;
+    const char *why = refused_by_all(results);
+    if (why)
+        return rt_fail(error, RT_BAD_INPUT, "every accelerator refuses %s: %s",
+                       e->workload_count == 1 ? "the scene" : "every scene; the first", why);
     for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
         if (!at.cell->broken && !rt_build_at(results, at.workload, at.candidate)->broken) continue;
         return rt_fail(error, RT_BROKEN,
@@ -140,7 +178,8 @@ void rt_print_left_out(const RtResults *results, FILE *out) {
         const char *scene = e->workloads[at.workload].label, *accel = e->candidates[at.candidate].label;
         const RtBuildResult *build = rt_build_at(results, at.workload, at.candidate);
         if (*build->left_out && at.kind == e->kinds[0])
-            fprintf(out, "Left out: %s on %s: %s\n", accel, scene, build->left_out);
+            fprintf(out, "%s: %s on %s: %s\n", build->refused ? "Refused" : "Left out", accel, scene,
+                    build->left_out);
         if (*at.cell->left_out)
             fprintf(out, "Left out: %s on %s, %s rays: %s\n", accel, scene, rt_ray_kind_name(at.kind),
                     at.cell->left_out);

@@ -41,10 +41,11 @@ typedef struct RtBuildResult {
     char spec[RT_MAX_SPEC_CHARS]; /* every effective parameter */
     uint32_t builds;              /* timed; 0: unknown, from the journal of an older version */
     RtEstimate seconds;           /* to build it; of fewer than two builds low = median = high */
-    /* Why no cell of it is measured: the limit that it exceeded, or the message of a `broken` plugin; or "".
-     */
+    /* Why no cell of it is measured: the structure's reason if it was `refused`, the time it would take, or
+     * the message of a `broken` plugin; or "". */
     char left_out[RT_MAX_LEFT_OUT];
-    bool broken; /* a plugin's fault */
+    bool refused; /* rt_accel_refuses: its rows say why */
+    bool broken;  /* a plugin's fault */
     RtDescription structure;
     RtDistribution
         *leaves; /* [RT_LEAF_QUANTITY_COUNT] owned, of the base; NULL: not asked for, or it has none */
@@ -97,6 +98,7 @@ typedef struct RtResults {
     RtCell *cells;                       /* see rt_cell_at */
     RtMachine machines[RT_MAX_MACHINES]; /* the first is the unknown one */
     uint32_t machine_count;
+    bool old_rows; /* tables have no rows of refused accelerators, like files of version 1.0 */
 } RtResults;
 
 /* All unknown. Clear with rt_results_clear, also after a failure. */
@@ -148,8 +150,16 @@ uint64_t rt_results_size(const RtResults *results, uint32_t *scenes);
 /* The number of null runs, and of those whose interval contains 1. */
 void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddling);
 
-/* RT_BROKEN with the first plugin that broke, if any did. */
-RtStatus rt_results_check_broken(const RtResults *results, RtError *error);
+/* RT_BROKEN with the first plugin that broke, if any did; RT_BAD_INPUT if all accelerators refused all
+ * scenes. */
+RtStatus rt_results_check(const RtResults *results, RtError *error);
+
+/* Whether the candidate was refused on the workload; of several baselines, whether all were. */
+bool rt_results_refused(const RtResults *results, uint32_t workload, uint32_t candidate);
+
+/* Notes why a candidate is left out of a workload: as in RtBuildResult. */
+void rt_results_leave_out(RtResults *results, uint32_t workload, uint32_t candidate, const char *why,
+                          bool refused, bool broken);
 
 /* Prints a line for each structure and each cell that was left out, with the reason. */
 void rt_print_left_out(const RtResults *results, FILE *out);

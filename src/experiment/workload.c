@@ -85,6 +85,7 @@ RtStatus rt_workload_record(const RtExperiment *experiment, uint32_t index, int 
                              .threads = threads,
                              .light_from_outside = setup->light_from_outside};
     RtRaySet recorded[RT_RAY_KIND_COUNT] = {0};
+    for (uint32_t k = 0; k < experiment->kind_count; k++) recording.kinds |= 1u << experiment->kinds[k];
     RT_TRY(rt_scene_sample(scene, setup->width, setup->height, 1, setup->corners, error));
     RT_TRY(rt_accel_open_on(rt_accel_default(), scene, threads, reference, error));
     if (*experiment->rays_from) {

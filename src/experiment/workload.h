@@ -20,7 +20,7 @@ typedef enum RtEventKind {
     RT_EVENT_TIME,         /* the cell is timed */
     RT_EVENT_HARDWARE,     /* the cell has hardware counts, or the reason why not */
     RT_EVENT_RENDER,       /* rendering with `candidate` is timed */
-    RT_EVENT_NO_BUILD,     /* `candidate` is left out: its structure exceeded a limit, or it broke */
+    RT_EVENT_NO_BUILD,     /* `candidate` is left out: it refuses the scene, took too long, or broke */
     RT_EVENT_NO_CELL /* the cell is left out: it would exceed a limit, or `candidate` broke on its rays */
 } RtEventKind;
 

@@ -71,16 +71,13 @@ RtStatus rt_workload_rebuild(RtWorkloadState *workload, uint32_t c, RtError *err
     return build_limited(workload, c, error);
 }
 
-/* Leaves out a candidate that exceeds the limit of memory, or whose plugin refuses the scene or breaks: only
- * its own results are lost. */
+/* Leaves out a candidate that refuses the scene, or whose plugin breaks: only its own results are lost. */
 static RtStatus exclude(RtWorkloadState *workload, uint32_t c, RtStatus status, RtError *error) {
-    const bool remote = rt_spec_is_remote(&rt_workload_setup(workload, c)->parsed);
-    const bool too_large = status == RT_NO_MEMORY && workload->experiment->limit_bytes;
-    const bool refused = too_large || (status == RT_BAD_INPUT && remote);
-    const bool broken = status == RT_BROKEN || (!refused && remote);
+    const bool refused = rt_accel_refuses(status);
+    const bool broken = !refused && rt_spec_is_remote(&rt_workload_setup(workload, c)->parsed);
     if (!broken && !refused) return status;
-    return rt_workload_leave_out(workload, c, RT_EVENT_NO_BUILD, RT_RAY_PRIMARY, broken, error, "%s",
-                                 error->message);
+    return rt_workload_leave_out(workload, c, RT_EVENT_NO_BUILD, RT_RAY_PRIMARY,
+                                 refused ? RT_CAUSE_REFUSED : RT_CAUSE_BROKEN, error, "%s", error->message);
 }
 
 /* Destroys a structure that took longer than the limit; not in a resumed run that kept it before. */
@@ -93,8 +90,9 @@ static RtStatus check_seconds(const Builds *builds, RtError *error) {
     if (limit <= 0 || seconds <= limit || known) return RT_OK;
     rt_accel_destroy(workload->built[builds->candidate]);
     workload->built[builds->candidate] = NULL;
-    return rt_workload_leave_out(workload, builds->candidate, RT_EVENT_NO_BUILD, RT_RAY_PRIMARY, false, error,
-                                 "building takes %.3g s, more than %g s", seconds, limit);
+    return rt_workload_leave_out(workload, builds->candidate, RT_EVENT_NO_BUILD, RT_RAY_PRIMARY,
+                                 RT_CAUSE_TIME, error, "building takes %.3g s, more than %g s", seconds,
+                                 limit);
 }
 
 static RtStatus build_once_more(Builds *builds, RtError *error) {

@@ -101,7 +101,7 @@ static RtStatus check_seconds(RtWorkloadState *workload, uint32_t c, RtRayKind k
     double seconds = count.seconds / (double)part->count * all * passes;
     if (seconds <= experiment->limit_seconds) return RT_OK;
     workload->accels[c] = NULL;
-    return rt_workload_leave_out(workload, c, RT_EVENT_NO_CELL, kind, false, error,
+    return rt_workload_leave_out(workload, c, RT_EVENT_NO_CELL, kind, RT_CAUSE_TIME, error,
                                  "it would take about %.2g s, more than %g s", seconds,
                                  experiment->limit_seconds);
 }

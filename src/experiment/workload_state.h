@@ -44,12 +44,15 @@ static inline RtStatus rt_workload_tell(const RtWorkloadState *workload, RtEvent
     return observer->event ? observer->event(observer->context, workload->results, &event, error) : RT_OK;
 }
 
+/* Why something is left out: it would take too long, the structure refuses the scene, or a plugin broke. */
+typedef enum RtCause { RT_CAUSE_TIME, RT_CAUSE_REFUSED, RT_CAUSE_BROKEN } RtCause;
+
 /* Leaves candidate `c` (RT_EVENT_NO_BUILD), or its cell of that kind of rays (RT_EVENT_NO_CELL), out of the
- * results, because it is broken, exceeds a limit or refuses the scene. `why`, as of printf, is kept there and
- * reported. If it is the baseline, the workload fails instead. */
+ * results. `why`, as of printf, is kept there and reported. If it is the baseline, the workload fails
+ * instead, unless it was refused: then ratios are unknown. */
 __attribute__((format(printf, 7, 8))) RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c,
                                                                      RtEventKind what, RtRayKind kind,
-                                                                     bool broken, RtError *error,
+                                                                     RtCause cause, RtError *error,
                                                                      const char *why, ...);
 
 /* Excludes the candidate on rays of that kind as broken, for the reason in *error. */
@@ -60,8 +63,8 @@ RtStatus rt_workload_exclude_broken(RtWorkloadState *workload, RtRayKind kind, R
 
 /* ---- the steps ---- */
 
-/* Builds all candidates within the limits, and times that unless it is known. One that exceeds a limit is
- * destroyed and left out. */
+/* Builds all candidates within the limits, and times that unless it is known. One that refuses the scene, or
+ * exceeds a limit, is left out. */
 RtStatus rt_workload_build(RtWorkloadState *workload, RtError *error);
 
 /* Builds an accelerator again that broke on other rays. */

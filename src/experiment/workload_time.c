@@ -21,6 +21,8 @@ typedef struct TimingRun {
     double *seconds;                 /* [count][2][most] of `timed` */
     bool *broken;                    /* [count] */
     uint32_t place[RT_MAX_MEASURED]; /* [workload->count] index of a candidate in `timed` */
+    uint32_t baselines[RT_MAX_CANDIDATES],
+        baseline_count; /* those that did not refuse the scene; may be none */
     /* [workload->count] of the first candidate of the baseline on its rays; others follow */
     uint32_t baseline_entry[RT_MAX_MEASURED];
 } TimingRun;
@@ -38,8 +40,7 @@ static uint32_t enter(TimingRun *run, const RtAccel *accel, const RtRaySet *set)
 /* Clear it also after a failure. */
 static RtStatus timing_run_init(TimingRun *run, const RtWorkloadState *workload, RtRayKind kind,
                                 RtError *error) {
-    const uint32_t baseline = workload->experiment->baseline,
-                   baselines = workload->experiment->baseline_count;
+    const uint32_t baselines = workload->experiment->baseline_count;
     const uint32_t rounds = workload->options->until > 0 ? RT_MAX_ROUNDS : workload->experiment->rounds;
     size_t most = (1 + (size_t)baselines) * workload->count, doubles = 2 * most * rounds;
     *run = (TimingRun){.workload = workload,
@@ -54,12 +55,16 @@ static RtStatus timing_run_init(TimingRun *run, const RtWorkloadState *workload,
     for (uint32_t c = 0; c < workload->count; c++) {
         if (workload->accels[c]) run->place[c] = enter(run, workload->accels[c], &workload->shares[c].set);
     }
-    for (uint32_t c = 0; c < workload->count; c++) {
-        run->baseline_entry[c] = run->place[baseline];
+    for (uint32_t i = 0; i < baselines; i++) {
+        const uint32_t c = workload->experiment->baseline + i;
+        if (workload->accels[c]) run->baselines[run->baseline_count++] = c;
+    }
+    for (uint32_t c = 0; c < workload->count && run->baseline_count > 0; c++) {
+        run->baseline_entry[c] = run->place[run->baselines[0]];
         if (!workload->accels[c] || rt_workload_setup(workload, c)->ray_stride == 1) continue;
         run->baseline_entry[c] = run->count;
-        for (uint32_t i = 0; i < baselines; i++) {
-            enter(run, workload->accels[baseline + i], &workload->shares[c].set);
+        for (uint32_t i = 0; i < run->baseline_count; i++) {
+            enter(run, workload->accels[run->baselines[i]], &workload->shares[c].set);
         }
     }
     return RT_OK;
@@ -88,7 +93,7 @@ static double part_of_round(const RtTimed *baselines, uint32_t count, uint32_t i
 static uint32_t pick_baseline(const TimingRun *run, uint32_t candidate) {
     const RtExperiment *experiment = run->workload->experiment;
     const RtTimed *baselines = &run->timed[run->baseline_entry[candidate]];
-    uint32_t best = 0, count = experiment->baseline_count;
+    uint32_t best = 0, count = run->baseline_count;
     if (candidate == experiment->candidate_count) return 0;
     double least = INFINITY;
     for (uint32_t i = 0; i < count; i++) {
@@ -107,7 +112,7 @@ static uint32_t pick_baseline(const TimingRun *run, uint32_t candidate) {
 static double widest_of(const TimingRun *run, uint32_t *candidate) {
     double widest = 0;
     *candidate = 0;
-    for (uint32_t c = 0; c < run->workload->count; c++) {
+    for (uint32_t c = 0; c < run->workload->count && run->baseline_count > 0; c++) {
         if (!run->workload->accels[c] || run->broken[run->place[c]]) continue;
         const RtTimed *baseline = &run->timed[run->baseline_entry[c] + pick_baseline(run, c)];
         RtEstimate ratio =
@@ -148,6 +153,21 @@ static void report_width(const TimingRun *run) {
 
 /* ---- timing ---- */
 
+/* The times of the baseline, and the ratio to them; NAN without a baseline. */
+static void compare_times(const TimingRun *run, uint32_t c, RtCell *cell) {
+    const RtTimed *own = &run->timed[run->place[c]];
+    double *times = rt_cell_round_times(cell, RT_ROUND_BASELINE);
+    cell->ratio = rt_estimate_exactly((double)NAN);
+    cell->baseline = run->workload->experiment->baseline;
+    for (uint32_t r = 0; r < run->rounds; r++) times[r] = (double)NAN;
+    if (run->baseline_count == 0) return;
+    const uint32_t best = pick_baseline(run, c);
+    const RtTimed *baseline = &run->timed[run->baseline_entry[c] + best];
+    memcpy(times, baseline->seconds, run->rounds * sizeof(double));
+    cell->ratio = rt_estimate_ratio(baseline->seconds, own->seconds, run->rounds);
+    cell->baseline = run->baselines[best];
+}
+
 /* Copies the times to the cells. */
 static RtStatus keep_times(RtWorkloadState *workload, RtRayKind kind, const TimingRun *run, RtError *error) {
     const RtMachine here = rt_machine_here();
@@ -155,23 +175,19 @@ static RtStatus keep_times(RtWorkloadState *workload, RtRayKind kind, const Timi
     for (uint32_t c = 0; c < workload->count; c++) {
         RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
         if (!workload->accels[c] || cell->timed) continue;
-        uint32_t best = pick_baseline(run, c);
         const RtTimed *own = &run->timed[run->place[c]];
-        const RtTimed *baseline = &run->timed[run->baseline_entry[c] + best];
         cell->rounds = rounds;
         cell->repeats = own->repeats;
         RT_TRY(rt_cell_make_round_times(cell, error));
         memcpy(rt_cell_round_times(cell, RT_ROUND_SECONDS), own->seconds, rounds * sizeof(double));
         memcpy(rt_cell_round_times(cell, RT_ROUND_WALL), own->wall, rounds * sizeof(double));
-        memcpy(rt_cell_round_times(cell, RT_ROUND_BASELINE), baseline->seconds, rounds * sizeof(double));
         cell->timed = true;
         cell->threads = rt_thread_count(workload->options->timing);
         cell->machine = machine;
         cell->tally.rays = own->set->count;
         cell->seconds = rt_estimate(own->seconds, rounds);
         cell->wall = rt_estimate(own->wall, rounds);
-        cell->ratio = rt_estimate_ratio(baseline->seconds, own->seconds, rounds);
-        cell->baseline = workload->experiment->baseline + best;
+        compare_times(run, c, cell);
         RT_TRY(rt_workload_tell(workload, RT_EVENT_TIME, c, kind, error));
     }
     return RT_OK;

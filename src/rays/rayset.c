@@ -131,21 +131,35 @@ static RtStatus make_random(Recorder *recorder, RtError *error) {
 
 /* ---- recording ---- */
 
-static RtStatus make_sets(Recorder *recorder, const RtAccel *accel, RtError *error) {
+#define BIT(kind) (1u << RT_RAY_##kind)
+
+/* The kinds that the frame's hits make, and those that its whole ray tree makes. */
+enum {
+    OF_HITS = BIT(PRIMARY) | BIT(DIFFUSE) | BIT(OCCLUSION),
+    OF_TREE = BIT(SHADOW) | BIT(REFLECTION) | BIT(TRANSMISSION)
+};
+
+static RtStatus trace_frame(Recorder *recorder, const RtAccel *accel, uint32_t kinds, RtError *error) {
     RtFrame *frame = &recorder->frame;
-    const RtFrameOptions options = {.depth = recorder->recording->depth,
+    const RtFrameOptions options = {.depth = kinds & OF_TREE ? recorder->recording->depth : 1,
                                     .threads = recorder->recording->threads,
                                     .light_from_outside = recorder->recording->light_from_outside,
                                     .keep_rays = true};
     RT_TRY(rt_frame_trace(frame, accel, &options, error));
     for (int kind = RT_RAY_PRIMARY; kind <= RT_RAY_TRANSMISSION; kind++) {
+        if (kind != RT_RAY_PRIMARY && !(kinds & 1u << kind)) continue;
         recorder->sets[kind].count = frame->ray_count[kind];
         recorder->sets[kind].rays = frame->rays[kind];
         frame->rays[kind] = NULL; /* the set owns them now */
     }
-    RT_TRY(make_diffuse(recorder, error));
-    RT_TRY(make_occlusion(recorder, error));
-    RT_TRY(make_random(recorder, error));
+    if (kinds & (BIT(DIFFUSE) | BIT(OCCLUSION))) RT_TRY(make_diffuse(recorder, error));
+    return kinds & BIT(OCCLUSION) ? make_occlusion(recorder, error) : RT_OK;
+}
+
+static RtStatus make_sets(Recorder *recorder, const RtAccel *accel, RtError *error) {
+    const uint32_t kinds = recorder->recording->kinds ? recorder->recording->kinds : RT_ALL_RAY_KINDS;
+    if (kinds & (OF_HITS | OF_TREE)) RT_TRY(trace_frame(recorder, accel, kinds, error));
+    if (kinds & BIT(RANDOM)) RT_TRY(make_random(recorder, error));
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_seal(&recorder->sets[kind]);
     return RT_OK;
 }

@@ -25,6 +25,7 @@ typedef struct RtRaySet {
 } RtRaySet;
 
 typedef struct RtRecording {
+    uint32_t kinds;          /* that are needed, bits 1 << RtRayKind; 0: all */
     uint32_t depth;          /* levels of the ray tree */
     uint64_t seed;           /* of diffuse and random rays */
     uint64_t random;         /* number of random rays */
@@ -32,8 +33,10 @@ typedef struct RtRecording {
     bool light_from_outside; /* as in RtFrameOptions */
 } RtRecording;
 
-/* Fills sets[RT_RAY_KIND_COUNT], indexed by kind; a kind that the scene does not produce gets an empty set.
- * `accel` answers the recorded rays; it may be any exact one. Free each set with rt_rayset_clear. */
+/* Fills sets[RT_RAY_KIND_COUNT], indexed by kind; a kind that the scene does not produce gets an empty set,
+ * and so does one that is not needed. No frame is traced for random rays, and only one level of the ray tree
+ * where no kind needs those below. `accel` answers the recorded rays; it may be any exact one. Free each set
+ * with rt_rayset_clear. */
 RtStatus rt_rayset_record(RtRaySet *sets, const RtAccel *accel, const RtRecording *recording, RtError *error);
 
 /* Keeps each `stride`th ray, starting with the first; 1 keeps all. */

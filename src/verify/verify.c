@@ -261,8 +261,8 @@ static RtStatus check(Run *run, const RtVerifyScene *scene, RtAccel *accel, cons
     return status;
 }
 
-/* A plugin's accelerator broke before it answered all rays or refuses the scene, or an accelerator needs too
- * much memory (both `refused`): a row without rays, with the reason. */
+/* A plugin's accelerator broke before it answered all rays, or an accelerator refuses the scene: a row
+ * without rays, with the reason. */
 static RtStatus add_unanswered(Run *run, const RtVerifyScene *scene, const RtVerifySpec *spec, bool refused,
                                const char *why, RtError *error) {
     const RtEquivalence nothing = {0};
@@ -288,16 +288,15 @@ static RtStatus verify_spec(Run *run, const RtVerifyScene *scene, const RtVerify
     doing(run, spec->spec);
     rt_memory_limit(run->verify->memory);
     RtStatus status = rt_memory_unlimit(rt_accel_builder_run(&builder, &scene->scene, &accel, error), error);
-    if ((status == RT_NOT_AVAILABLE || status == RT_BAD_INPUT) && !spec->named) {
+    if (status == RT_NOT_AVAILABLE && !spec->named) {
         char notice[sizeof error->message + RT_MAX_SPEC_CHARS + RT_MAX_SCENE_NAME];
         snprintf(notice, sizeof notice, "%s on %s is skipped: %s", spec->spec, scene->name, error->message);
         run->observer->notice(run->observer->context, notice);
         return RT_OK;
     }
-    const bool too_large = status == RT_NO_MEMORY && run->verify->memory;
+    const bool refused = rt_accel_refuses(status);
     /* Only its own row fails. */
-    const bool unbuilt = too_large || (status != RT_OK && rt_spec_text_is_remote(spec->spec));
-    const bool refused = too_large || (status == RT_BAD_INPUT && unbuilt);
+    const bool unbuilt = refused || (status != RT_OK && rt_spec_text_is_remote(spec->spec));
     if (status == RT_OK && !accel->exact && !spec->judged)
         skip_inexact(run, spec->spec);
     else if (status == RT_OK)

@@ -123,9 +123,8 @@ static const RtTableColumn members[] = {
     MEMBER("wrong", integer, "all other answers"),
     MEMBER("occluded_wrong", integer, "rays whose answer to occluded is wrong"),
     MEMBER("problem", text, "a broken structure, or `undecided` and why; empty: none"),
-    MEMBER(
-        "refused", text,
-        "why a plugin refuses the scene, or that the accelerator exceeds --memory; the row then has no rays"),
+    MEMBER("refused", text,
+           "why the accelerator refuses the scene (memory, a limit of its own); the row then has no rays"),
     MEMBER("exact", flag, "whether its answers must equal brute's bit for bit; if not, they get verdicts"),
 };
 enum { OF_CSV = 10, AGAINST = 2 };

@@ -20,7 +20,7 @@ extern const RtColumnGroup rt_verify_text[RT_VERIFY_TEXT_GROUPS];
 typedef struct RtVerifySum {
     char name[RT_MAX_SPEC_CHARS];   /* "item+bvh", without parameters; or the scene */
     bool exact;                     /* must match brute bit for bit; true for scenes */
-    uint32_t rows, failed, refused; /* the last by a plugin, which is no failure */
+    uint32_t rows, failed, refused; /* the last by accelerators, which is no failure */
     uint32_t undecided;             /* failed for want of certain rays (equivalence.h) */
     uint64_t pairs;
     uint64_t judged;                        /* pairs compared by verdicts; the others bit for bit */

@@ -216,6 +216,31 @@ RT_TEST(several_threads_refuse_what_one_refuses_and_leave_nothing_behind) {
     }
 }
 
+/* Triangles that share a corner are in most cells near it, whose waiting lists take more than the tree. */
+RT_TEST(objects_in_many_cells_are_refused_alike_on_any_number_of_threads_with_little_memory) {
+    enum { OBJECTS = 66000 }; /* on two threads cells are shared */
+    const uint64_t limit = 8 << 20;
+    RtValue values[RT_KD_PARAM_COUNT];
+    RtError refusals[3];
+    const RtAccelOps *ops;
+    assert_ok(rt_accel_find("kd", &ops, error));
+    assert_ok(rt_params_parse(rt_kd_params, RT_KD_PARAM_COUNT, "", "kd", values, error));
+    OWNED_SCENE scene = begin_scene();
+    for (int i = 1; i <= OBJECTS; i++) {
+        const RtVec3 v[3] = {{0, 0, 0}, {(float)i, 0, 0}, {0, (float)i, 0}};
+        assert_ok(rt_scene_add_polygon(&scene, 0, v, 3, error));
+    }
+    assert_ok(rt_scene_finish(&scene, error));
+    for (int t = 0; t < 3; t++) {
+        RtAccel *accel = NULL;
+        const RtBuild what = {&scene, values, t + 1, limit};
+        rt_memory_limit(5 * limit + 600 * OBJECTS);
+        const RtStatus status = rt_accel_build_layer(ops, &what, NULL, &accel, &refusals[t]);
+        assert_int_equal(rt_memory_unlimit(status, &refusals[t]), RT_BAD_INPUT);
+        assert_string_equal(refusals[t].message, refusals[0].message);
+    }
+}
+
 /* Combinations of parameters, which the spread of the conformance test does not vary together. */
 RT_TEST(every_structure_answers_like_brute) {
     static const char *const specs[] = {"kd:overlap=exact,traversal_cost=0,failures=4",

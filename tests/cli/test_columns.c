@@ -145,7 +145,8 @@ static void print_document(FILE *out) {
           "If an experiment sweeps parameters, `counts.csv`, `times.csv` and the rows of `bench --json`\n"
           "have one more column for each of them, at the end: `scene.KEY` for a parameter of scenes,\n"
           "`accel.KEY` for one of accelerators, as in `accel.density`. It is empty if the row has no such\n"
-          "parameter. All other columns are the same for every experiment.\n",
+          "parameter. Before them stands `refused` if an accelerator refuses a scene: its rows say there\n"
+          "why, and have no measurements. All other columns are the same for every experiment.\n",
           out);
     for (size_t i = 0; i < SECTIONS; i++) {
         Row row = {.section = &sections[i]};

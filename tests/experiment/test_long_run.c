@@ -164,8 +164,8 @@ RT_TEST_IN_PLACE(what_goes_beyond_a_limit_is_left_out_and_recorded) {
     write_changed(place, "small.yaml", text, "n=200|400\"", "n=200|30000\"");
     rt_free(text);
     /* bvh, the baseline, takes 2 MB of 30000 spheres. */
-    assert_ends(place, "run small.yaml --threads 1 --out out", 2,
-                "the baseline 'bvh' is left out on 'cloud:n=30000'");
+    assert_ends(place, "run small.yaml --threads 1 --out out", 0,
+                "cloud:n=30000: without the baseline 'bvh' there are no ratios");
     text = read_in(place, "small.yaml");
     write_changed(place, "small.yaml", text, "rays: [", "baseline: brute\nrays: [");
     rt_free(text);
@@ -173,11 +173,11 @@ RT_TEST_IN_PLACE(what_goes_beyond_a_limit_is_left_out_and_recorded) {
     write_changed(place, "small.yaml", text, ", ray_stride: 10", "");
     rt_free(text);
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --force"), 0);
-    assert_in_file(place, "output", "Left out: bvh on cloud:n=30000: it needs more than 1 MB of memory");
+    assert_in_file(place, "output", "Refused: bvh on cloud:n=30000: it needs more than 1 MB of memory");
     assert_in_file(place, "out/cells.jsonl", "too_large");
     assert_in_file(place, "out/report.html", "it needs more than 1 MB of memory");
     assert_ends(place, "run small.yaml --threads 1 --out out --resume", 0, "nothing was left to measure");
-    assert_in_file(place, "output", "Left out: bvh on cloud:n=30000");
+    assert_in_file(place, "output", "Refused: bvh on cloud:n=30000");
     /* The option takes the place of the limit in the YAML. */
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --force --memory 1G"), 0);
     OWNED_MEMORY char *lines = read_in(place, "out/cells.jsonl");
@@ -236,6 +236,43 @@ RT_TEST_IN_PLACE(a_cell_that_would_take_too_long_is_not_begun) {
     if (raytally(place, "run small.yaml --threads 1 --out out --force") != 0)
         RT_SKIP("a machine on which bvh takes less than half a second"); /* the baseline */
     assert_in_file(place, "output", "Left out: brute on cloud:n=100000, primary rays: it would take about");
+}
+
+/* A refusal costs its own rows, which say why, and is reproduced; the baseline's costs the ratios, too. */
+RT_TEST_IN_PLACE(a_refusal_costs_its_own_rows_which_say_why) {
+    const Place *place = *state;
+    char obj[30000] = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    for (int i = 0; i < 3500; i++) strcat(obj, "f 1 2 3\n");
+    write_in(place, "same.obj", obj);
+    write_in(place, "small.yaml",
+             "name: small\nquestion: Does it go on?\nprediction: Yes.\n"
+             "scenes:\n  - {scene: same.obj, size: 16x16}\n"
+             "accelerators:\n  - {accel: \"grid:density=30000\", label: grid}\n  - {accel: bvh}\n"
+             "rays: [primary, random]\nlimit: 50\nrounds: 2\nmilliseconds: 0\nbaseline: grid\n"
+             "expect:\n  - ratio of object_tests of grid to bvh < 1\n");
+    assert_ends(place, "run small.yaml --threads 1 --out out", 0, "grid on same: refused: a grid of ");
+    assert_in_file(place, "output", "Refused: grid on same: a grid of ");
+    assert_in_file(place, "output", "undecided        ratio of object_tests of grid to bvh < 1");
+    assert_in_file(place, "output", "refused: a grid of");
+    OWNED_MEMORY char *counts = read_in(place, "out/counts.csv");
+    assert_non_null(strstr(counts, ",refused\n"));
+    assert_non_null(strstr(counts, "would fit\"\n"));
+    assert_non_null(strstr(counts, ",bvh,"));
+    assert_int_equal(raytally(place, "reproduce out"), 0);
+    assert_ends(place, "run small.yaml --threads 1 --out out --resume", 0, "nothing was left to measure");
+    assert_int_equal(raytally(place, "compare out out"), 0);
+    assert_int_equal(raytally(place, "report out"), 0);
+    assert_in_file(place, "out/report.html", "Refused: grid on same");
+    assert_ends(place, "bench same.obj --size 9x9 -a grid:density=30000 --count-only", 2,
+                "every accelerator refuses the scene: a grid of ");
+    assert_ends(place, "verify same.obj --rays 9 -a grid:density=30000", 2, "every accelerator refuses");
+    assert_ends(place, "verify same.obj --rays 9 -a grid:density=30000 -a bvh", 0,
+                "grid:density=30000 on same.obj: refused: a grid of ");
+    assert_in_file(place, "output", "1 row refused");
+    assert_ends(place,
+                "render same.obj --size 9x9 -a grid:density=30000 -a bvh --heatmap steps x.png --check", 0,
+                "grid:density=30000 is refused: a grid of ");
+    assert_ends(place, "render same.obj --size 9x9 -a grid:density=30000 --check", 2, "a grid of ");
 }
 
 /* ---- how long it will take ---- */

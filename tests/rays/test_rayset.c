@@ -128,6 +128,25 @@ RT_TEST(sets_are_the_same_on_any_number_of_threads_and_any_accelerator) {
     }
 }
 
+/* Without a camera no frame can be traced. */
+RT_TEST(a_kind_is_the_same_when_it_is_recorded_alone_and_random_rays_need_no_frame) {
+    const Stage *stage = *state;
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
+        RtRaySet sets[RT_RAY_KIND_COUNT];
+        RtRecording recording = make_recording(2);
+        RtScene scene = stage->scene;
+        RtAccel accel = *stage->accel;
+        recording.kinds = 1u << kind;
+        if (kind == RT_RAY_RANDOM) scene.camera.up = scene.camera.at = scene.camera.from;
+        accel.scene = kind == RT_RAY_RANDOM ? &scene : accel.scene;
+        const RtAccel *asked = kind == RT_RAY_RANDOM ? &accel : stage->accel;
+        assert_ok(rt_rayset_record(sets, asked, &recording, error));
+        assert_int_equal(sets[kind].count, stage->sets[kind].count);
+        assert_true(sets[kind].fingerprint == stage->sets[kind].fingerprint);
+        for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&sets[k]);
+    }
+}
+
 RT_TEST(another_seed_changes_bounces_and_random_rays_alone) {
     const Stage *stage = *state;
     RtRaySet sets[RT_RAY_KIND_COUNT];

@@ -19,6 +19,7 @@ typedef struct Limit {
     uint64_t given;       /* UINT64_MAX: none */
     atomic_bool reached;
 } Limit;
+static atomic_bool was_reached; /* any limit, since the last rt_memory_limit */
 static Limit limit_now = {.most = INT64_MAX, .given = UINT64_MAX},
              limit_of_process = {.most = INT64_MAX, .given = UINT64_MAX};
 
@@ -33,6 +34,7 @@ static bool fails_on_purpose(void) {
 static bool exceeds(Limit *limit, int64_t bytes) {
     if (bytes <= atomic_load(&limit->most)) return false;
     atomic_store(&limit->reached, true);
+    atomic_store(&was_reached, true);
     return true;
 }
 
@@ -83,23 +85,27 @@ static void set_limit(Limit *limit, uint64_t bytes, int64_t before) {
     atomic_store(&limit->most, none ? INT64_MAX : before + (int64_t)bytes);
 }
 
-/* Removes the limit, and puts it in front of the message if it was reached. */
-static RtStatus unlimit(Limit *limit, const char *origin, RtStatus status, RtError *error) {
+/* Removes the limit, and reports it if it was reached. */
+static RtStatus unlimit(Limit *limit, const char *origin, RtStatus status, const char *why, RtError *error) {
     const uint64_t given = limit->given;
     const bool reached = atomic_load(&limit->reached);
     set_limit(limit, 0, 0);
-    if (status != RT_NO_MEMORY || !reached || !error) return status;
-    const RtError why = *error;
-    return rt_fail(error, status, "it needs more than %.4g MB of memory (%s): %s", 1e-6 * (double)given,
-                   origin, why.message);
+    if (status != RT_NO_MEMORY || !reached) return status;
+    return rt_fail(error, status, "it needs more than %.4g MB of memory (%s)%s%s", 1e-6 * (double)given,
+                   origin, *why ? ": " : "", why);
 }
 
 void rt_memory_limit(uint64_t bytes) {
+    atomic_store(&was_reached, false);
     set_limit(&limit_now, bytes, atomic_load(&live_bytes));
 }
 
 RtStatus rt_memory_unlimit(RtStatus status, RtError *error) {
-    return unlimit(&limit_now, "--memory", status, error);
+    return unlimit(&limit_now, "--memory", status, "", error);
+}
+
+bool rt_memory_limit_was_reached(void) {
+    return atomic_load(&was_reached);
 }
 
 uint64_t rt_memory_current_limit(void) {
@@ -111,7 +117,9 @@ void rt_memory_limit_process(uint64_t bytes) {
 }
 
 RtStatus rt_memory_unlimit_process(RtStatus status, RtError *error) {
-    return unlimit(&limit_of_process, "that of --memory, or of this machine or container", status, error);
+    const RtError why = error ? *error : (RtError){0};
+    return unlimit(&limit_of_process, "that of --memory, or of this machine or container", status,
+                   why.message, error);
 }
 
 /* Moves `kept` elements of an array to a new block of `room` elements; false if there is no memory for it.

@@ -6,6 +6,7 @@
 
 #include "core/base/status.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -47,8 +48,12 @@ uint64_t rt_memory_of_groups(const char *groups, const char *mounted);
  * not count. */
 void rt_memory_limit(uint64_t bytes);
 
-/* Removes the limit and returns `status`; in front of the message of RT_NO_MEMORY it puts the limit. */
+/* Removes the limit and returns `status`. If it was reached, the message of RT_NO_MEMORY becomes the limit:
+ * which allocation failed may depend on the number of threads. */
 RtStatus rt_memory_unlimit(RtStatus status, RtError *error);
+
+/* Whether an allocation since the last rt_memory_limit failed because of a limit. */
+bool rt_memory_limit_was_reached(void);
 
 /* The limit as it was given; UINT64_MAX without one. */
 uint64_t rt_memory_current_limit(void);

@@ -352,6 +352,7 @@ static bool put_group(const RtColumnGroup *group, const void *row, json_t *objec
     if (!name) return put_members(group, row, object);
     json_t *into = dot ? json_object_getn(object, name, (size_t)(dot - name)) : object;
     if (dot) name = dot + 1;
+    if (json_is_null(into)) return true; /* so are its members */
     if (group->of && !group->of(row)) return json_object_set_new(into, name, json_null()) == 0;
     json_t *members = json_object();
     if (json_object_set(into, name, members) != 0) return json_decref(members), false;
