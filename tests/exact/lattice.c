@@ -86,7 +86,7 @@ static RtStatus make_tree(RtLattice *lattice, RtCsgBuilder *b, RtSubject subject
                                 rt_add(center, rt_vec3(0, 0, 8)), 1, &solid, error));
     RT_TRY(rt_csg_solid(b, solid, 0, &drill, error));
     for (uint32_t i = 0; i < 6; i++)
-        tips[i] = rt_add(center, turned(rt_vec3(i < 3 ? 5 : -5, 0, 0), 3 - i % 3 == 3 ? 0 : 3 - i % 3));
+        tips[i] = rt_add(center, turned(rt_vec3(i < 3 ? 5 : -5, 0, 0), (3 - i % 3) % 3));
     for (uint32_t i = 0; i < 8; i++) {
         const uint32_t x = i & 1, y = i >> 1 & 1, z = i >> 2, flip = x ^ y ^ z;
         faces[i] = (RtTriangle){
