@@ -81,10 +81,9 @@ static void generate(RtSceneBuilder *b, const RtValue *values) {
         {2, 4, 4}, {-2, 4, 3}, {2, -2.5, 2.5}, {-1, -4, 2}, {-1.111f, -2.121f, 2.626f}};
     static const RtVec3d ground[4] = {{2, 2, 0}, {-2, 2, 0}, {-2, -2, 0}, {2, -2, 0}};
     rt_spd_lights(b, lights, 5);
-    b->scene->background = rt_vec3(0, 0, 0);
     b->scene->camera.from = rt_vec3(-1.1f, -2.1f, 2.6f);
     b->scene->camera.near = 1;
-    rt_build_material(b, rt_nff_material("ground", rt_vec3(1, 0.85f, 0.7f), 0.3f, 0.6f, 181.81f, 0, 1));
+    rt_build_material(b, rt_nff_material("ground", rt_vec3(1, 0.85f, 0.7f), 0.3f, 0.6f, 3.0827f, 0, 1));
     rt_build_polygon(b, ground, 4);
 
     const int64_t size = values[0].i;

@@ -57,7 +57,7 @@ static void add_materials(RtSceneBuilder *b) {
     static const RtVec3 colors[RINGS] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 1, 1}, {1, 0, 1}, {1, 1, 0}};
     static const char *const names[RINGS] = {"red", "green", "blue", "cyan", "magenta", "yellow"};
     for (int i = 0; i < RINGS; i++)
-        rt_build_material(b, rt_nff_material(names[i], colors[i], 0.5f, 0.2f, 45.2776f, 0, 1));
+        rt_build_material(b, rt_nff_material(names[i], colors[i], 0.5f, 0.2f, 3.0827f, 0, 1));
     rt_build_material(b, rt_nff_material("wall", rt_vec3(1, 1, 1), 1, 0, 100000, 0, 1));
 }
 

@@ -27,7 +27,9 @@ enum raytally_ray_kind {
 
 /** The points org + t * dir for tmin <= t <= tmax. A valid ray has finite org and dir, no coordinate of org
  * beyond 5e17 in magnitude, a dir that is not zero, and 0 <= tmin <= tmax with tmin finite; tmax may be
- * infinite. dir need not be normalised: t is in units of its length. */
+ * infinite. dir need not be normalised: t is in units of its length. As t is a float32, a ray reaches no
+ * farther than 3.4e38 lengths of its dir: with (0, 0, 1e-38) an object 3.5 away is missed. If every component
+ * is 2^-128 or less in magnitude, its reciprocal is no float32 and the ray may miss what it meets. */
 typedef struct raytally_ray {
     float org[3];    /**< Origin: x, y, z in the units of the scene. */
     float tmin;      /**< The least t that counts. */

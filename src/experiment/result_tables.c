@@ -254,7 +254,7 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
       ns_of_round(r, RT_ROUND_SECONDS))                                                                      \
     X(round_wall_ns, "wall_ns", real6, "ns", "wall time per ray", ns_of_round(r, RT_ROUND_WALL))             \
     X(round_baseline_ns, "baseline_ns", real6, "ns",                                                         \
-      "time per ray of the baseline in this round, on the same rays; divided by ns it is the ratio",         \
+      "time per ray of the baseline in this round, on the same rays; divided by round_ns it is the ratio",   \
       ns_of_round(r, RT_ROUND_BASELINE))
 
 RT_TABLE_COLUMNS(columns, COLUMNS)
@@ -452,6 +452,10 @@ static uint32_t most_rounds(const RtResults *results) {
         most = rounds > most ? rounds : most;
     }
     return most;
+}
+
+bool rt_result_table_sweeps(RtResultTable which) {
+    return tables[which].has & SWEPT;
 }
 
 RtTable rt_result_table(RtResultTable which, RtResultRow *row) {

@@ -64,6 +64,9 @@ typedef struct RtResultRow {
  * table of one workload. */
 RtTable rt_result_table(RtResultTable which, RtResultRow *row);
 
+/* Whether it has a column for each parameter that the experiment sweeps. */
+bool rt_result_table_sweeps(RtResultTable which);
+
 /* The label of a row in tables to read, with a star if it is measured on a part of the rays. A label of more
  * than RT_EYE_WIDTH characters is printed on its own line. */
 #define RT_EYE_WIDTH     24

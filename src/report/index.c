@@ -150,6 +150,8 @@ static RtStatus put_pages(const Index *index, FILE *html, FILE *markdown, RtErro
     put_origins(index, offsetof(RtIndexEntry, build), "Measured by ", origins.file);
     fputc(' ', origins.file);
     put_origins(index, offsetof(RtIndexEntry, machine), "On ", origins.file);
+    put_origins(index, offsetof(RtIndexEntry, again), " Scenes that changed later were counted again by ",
+                origins.file);
     RT_TRY(rt_memory_file_close(&origins, "the index", error));
     rt_page_begin(html, "Experiments", true);
     rt_html_wrap(html, "<p class=\"meta\">", origins.data, "</p>\n");

@@ -105,6 +105,10 @@ static void note_origin(RtIndexEntry *entry, const json_t *manifest) {
              rt_json_text(machine, "compiler", "unknown"));
     rt_machine_libraries(machine, ", ", entry->build, RT_MAX_ORIGIN);
     snprintf(entry->machine, RT_MAX_ORIGIN, "%s", rt_json_text(machine, "cpu", "an unknown machine"));
+    const json_t *again = json_object_get(manifest, "recounted");
+    if (again)
+        snprintf(entry->again, RT_MAX_ORIGIN, "raytally %s (%s)", rt_json_text(again, "version", "unknown"),
+                 rt_json_text(again, "commit", "unknown"));
 }
 
 static void put_thumbnail(FILE *out, const char *name, const char *plot) {

@@ -21,6 +21,7 @@ typedef struct RtIndexEntry {
     char name[RT_MAX_LABEL];    /* of the directory: one experiment may have several, of different systems */
     char section[RT_MAX_LABEL]; /* or "" */
     char build[RT_MAX_ORIGIN], machine[RT_MAX_ORIGIN];
+    char again[RT_MAX_ORIGIN];          /* the build that counted some scenes again, or "" */
     uint32_t number;                    /* the caller's */
     RtMemoryFile parts[RT_INDEX_PARTS]; /* closed once they are complete */
 } RtIndexEntry;

@@ -62,7 +62,10 @@ typedef struct Section {
     bool csv;
     const char *example; /* a CSV file that has these columns, or NULL */
     RtTable table;
+    bool swept; /* has a column for each swept parameter, too */
 } Section;
+
+#define RESULTS(which) .table = of_results(which), .swept = rt_result_table_sweeps(which)
 
 enum { SECTIONS = 20 };
 static void list(Section sections[SECTIONS]) {
@@ -70,26 +73,28 @@ static void list(Section sections[SECTIONS]) {
     const RtTable verify_json = {.groups = rt_verify_json, .group_count = RT_VERIFY_JSON_GROUPS};
     const RtTable extents = {.groups = rt_extents_json, .group_count = 1};
     const Section all[SECTIONS] = {
-        {"counts.csv", true, "tests/golden/counts.csv", of_results(RT_COUNTS)},
-        {"times.csv", true, NULL, of_results(RT_TIMES)},
-        {"rounds.csv", true, NULL, of_results(RT_ROUNDS)},
-        {"frame.csv", true, NULL, of_frames()},
-        {"render.csv", true, NULL, of_results(RT_RENDERED)},
-        {"hardware.csv", true, NULL, of_results(RT_HARDWARE)},
-        {"distributions.csv", true, NULL, of_distributions(RT_DISTRIBUTIONS)},
-        {"histograms.csv", true, NULL, of_distributions(RT_HISTOGRAMS)},
-        {"published.csv", true, "results/reference/havran-1999/published.csv", of_published(RT_FIGURES)},
-        {"best.csv", true, "results/reference/havran-1999/best.csv", of_published(RT_BEST)},
-        {"verify.csv", true, "results/reference/verify/verify.csv", verify_csv},
-        {"bench --json: rows", false, NULL, of_results(RT_BENCH)},
-        {"bench --json: null_runs", false, NULL, of_results(RT_NULL_RUNS)},
-        {"bench --json --hardware: hardware", false, NULL, of_results(RT_HARDWARE)},
-        {"bench --json --distribution: distributions", false, NULL, of_distributions(RT_DISTRIBUTIONS)},
-        {"bench --json --callgrind: instructions", false, NULL, of_instructions()},
-        {"compare --json: cells", false, NULL, of_comparison(rt_comparison_table)},
-        {"compare --json: accelerators", false, NULL, of_comparison(rt_compared_accels_table)},
-        {"verify --json: rows", false, NULL, verify_json},
-        {"info --extents --json: extents.rows", false, NULL, extents},
+        {"counts.csv", true, "tests/golden/counts.csv", RESULTS(RT_COUNTS)},
+        {"times.csv", true, NULL, RESULTS(RT_TIMES)},
+        {"rounds.csv", true, NULL, RESULTS(RT_ROUNDS)},
+        {"frame.csv", true, NULL, .table = of_frames()},
+        {"render.csv", true, NULL, RESULTS(RT_RENDERED)},
+        {"hardware.csv", true, NULL, RESULTS(RT_HARDWARE)},
+        {"distributions.csv", true, NULL, .table = of_distributions(RT_DISTRIBUTIONS)},
+        {"histograms.csv", true, NULL, .table = of_distributions(RT_HISTOGRAMS)},
+        {"published.csv", true, "results/reference/havran-1999/published.csv",
+         .table = of_published(RT_FIGURES)},
+        {"best.csv", true, "results/reference/havran-1999/best.csv", .table = of_published(RT_BEST)},
+        {"verify.csv", true, "results/reference/verify/verify.csv", .table = verify_csv},
+        {"bench --json: rows", false, NULL, RESULTS(RT_BENCH)},
+        {"bench --json: null_runs", false, NULL, RESULTS(RT_NULL_RUNS)},
+        {"bench --json --hardware: hardware", false, NULL, RESULTS(RT_HARDWARE)},
+        {"bench --json --distribution: distributions", false, NULL,
+         .table = of_distributions(RT_DISTRIBUTIONS)},
+        {"bench --json --callgrind: instructions", false, NULL, .table = of_instructions()},
+        {"compare --json: cells", false, NULL, .table = of_comparison(rt_comparison_table)},
+        {"compare --json: accelerators", false, NULL, .table = of_comparison(rt_compared_accels_table)},
+        {"verify --json: rows", false, NULL, .table = verify_json},
+        {"info --extents --json: extents.rows", false, NULL, .table = extents},
     };
     memcpy(sections, all, sizeof all);
 }
@@ -142,11 +147,16 @@ static void print_document(FILE *out) {
           "unknown value is empty in CSV and null in JSON. In JSON a dot in a name separates an object\n"
           "from its member; yes is true, no is false, and an interval is an object of three numbers.\n"
           "\n"
-          "If an experiment sweeps parameters, `counts.csv`, `times.csv` and the rows of `bench --json`\n"
-          "have one more column for each of them, at the end: `scene.KEY` for a parameter of scenes,\n"
-          "`accel.KEY` for one of accelerators, as in `accel.density`. It is empty if the row has no such\n"
-          "parameter. Before them stands `refused` if an accelerator refuses a scene: its rows say there\n"
-          "why, and have no measurements. All other columns are the same for every experiment.\n",
+          "If an experiment sweeps parameters, these have one more column for each of them, at the end:\n",
+          out);
+    for (size_t i = 0, named = 0; i < SECTIONS; i++) {
+        if (sections[i].swept) fprintf(out, "%s`%s`", named++ ? ", " : "", sections[i].title);
+    }
+    fputs(".\n`scene.KEY` is a parameter of scenes, `accel.KEY` one of accelerators, as in `accel.density`. "
+          "It is\n"
+          "empty if the row has no such parameter. Before them stands `refused` if an accelerator refuses a\n"
+          "scene: its rows say there why, and have no measurements. All other columns are the same for every\n"
+          "experiment.\n",
           out);
     for (size_t i = 0; i < SECTIONS; i++) {
         Row row = {.section = &sections[i]};

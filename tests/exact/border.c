@@ -70,31 +70,44 @@ static double least_move(const RtGeometry *g, uint32_t id, RtWideRay line, doubl
     return INFINITY;
 }
 
+/* Of the start of the ray from the plane: the ends of the interval are a border, too. */
+static double distance_from_plane(const RtWideRay *line, RtVec3d point, RtVec3d normal) {
+    RtVec3d start = rt_add_scaledd(line->org, line->dir, line->tmin);
+    return fabs(rt_dotd(rt_subd(start, point), rt_normalized(normal)));
+}
+
 double rt_border_distance(const RtGeometry *geometry, uint32_t id, const RtRay *ray, RtDecision decision) {
     RtWideRay line = rt_wide_ray(ray);
     uint32_t index = rt_ref_index(geometry->objects[id]);
     double unit = rt_border_unit(geometry, id, &line);
     switch (rt_ref_shape(geometry->objects[id])) {
-    case RT_SHAPE_TRIANGLE: return distance_from_edges(&line, geometry->triangles[index].v, 3) / unit;
+    case RT_SHAPE_TRIANGLE: {
+        const RtVec3 *v = geometry->triangles[index].v;
+        const RtVec3d normal = rt_area_vector(rt_widen(v[0]), rt_widen(v[1]), rt_widen(v[2]));
+        return fmin(distance_from_edges(&line, v, 3), distance_from_plane(&line, rt_widen(v[0]), normal)) /
+               unit;
+    }
     case RT_SHAPE_POLYGON: {
         const RtPolygon *polygon = &geometry->polygons[index];
-        const RtVec3 *vertices = geometry->polygon_vertices + polygon->first;
-        return distance_from_edges(&line, vertices, polygon->count) / unit;
+        const RtVec3 *v = geometry->polygon_vertices + polygon->first;
+        return fmin(distance_from_edges(&line, v, polygon->count),
+                    distance_from_plane(&line, rt_widen(v[0]), polygon->normal)) /
+               unit;
     }
     default: return least_move(geometry, id, line, unit, decision);
     }
 }
 
 RtExactResult rt_referee_error(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
-                               long double *ulps) {
+                               long double *off, long double *ulps) {
     RtExactArena arena = {0};
     RtWideRay line = rt_wide_ray(ray);
     RtExactLine exact = rt_exact_line(&arena, &line);
     RtRoot at;
     RtExactResult finding = rt_exact_hit(&arena, geometry, id, &exact, &at);
     if (finding == RT_HIT) {
-        long double ulp = rt_float_ulp(rt_root_value(&arena, &at, exact.zero));
-        *ulps = -rt_root_value(&arena, &at, rt_exact_of(&arena, (double)t)) / ulp;
+        *off = -rt_root_value(&arena, &at, rt_exact_of(&arena, (double)t));
+        *ulps = *off / rt_float_ulp(rt_root_value(&arena, &at, exact.zero));
     }
     rt_exact_arena_clear(&arena);
     return finding;

@@ -28,15 +28,16 @@ RtDecision rt_decision_of(const RtGeometry *geometry, uint32_t id, const RtRay *
 RtExactResult rt_decision_check(const RtGeometry *geometry, uint32_t id, const RtWideRay *line,
                                 RtDecision decision);
 
-/* (t - exact t) in ulps of the exact t in float32, the difference being exact. RT_MISSED if object `id` is
- * not met. */
+/* t - exact t, an exact difference, and the same in ulps of the exact t in float32. RT_MISSED if object `id`
+ * is not met. */
 RtExactResult rt_referee_error(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
-                               long double *ulps);
+                               long double *off, long double *ulps);
 
 /* How near to a border of the object the ray's line passes, in units. Of flat shapes it is the distance from
- * the nearest edge. Of others it is the least power of two, 2^RT_BORDER_NEAR or more, by which the origin has
- * to be moved, along one of the 26 directions of a cube's faces, edges and corners, for exact arithmetic to
- * decide like `decision`; INFINITY where 2^RT_BORDER_FAR does not do. */
+ * the nearest edge, or of the ray's start from the plane. Of others it is the least power of two,
+ * 2^RT_BORDER_NEAR or more, by which the origin has to be moved, along one of the 26 directions of a cube's
+ * faces, edges and corners, for exact arithmetic to decide like `decision`; INFINITY where 2^RT_BORDER_FAR
+ * does not do. */
 #define RT_BORDER_NEAR (-6)
 #define RT_BORDER_FAR  20
 double rt_border_distance(const RtGeometry *geometry, uint32_t id, const RtRay *ray, RtDecision decision);

@@ -5,10 +5,11 @@
 
 #include "core/base/memory.h"
 #include "exact/border.h"
+#include "exact/lattice.h"
 
 #include <stdlib.h>
 
-typedef enum Aim { AIM_BOX, AIM_GRAZING, AIM_BORDER } Aim;
+typedef enum Aim { AIM_BOX, AIM_GRAZING, AIM_BORDER, AIM_LATTICE, AIM_LEAVING } Aim;
 
 typedef struct Case {
     const char *name, *meaning;
@@ -27,6 +28,11 @@ static const Case cases[] = {
     {"tiny", "all coordinates times 2^-70", AIM_BOX, -70, 0, 0},
     {"huge", "all coordinates times 2^50", AIM_BOX, 50, 0, 0},
     {"lengths", "directions 2^-50 to 2^50 times as long", AIM_BOX, 0, 0, 50},
+    {"lattice",
+     "objects of small integers; from integer points along integer directions, through vertices, "
+     "middles of edges, rims, and points of tangents",
+     AIM_LATTICE, 0, 0, 0},
+    {"leaving", "from a point of the surface, rounded, in any direction", AIM_LEAVING, 0, 0, 0},
 };
 
 const char *rt_subject_name(RtSubject subject) {
@@ -143,8 +149,12 @@ static RtStatus add_object(RtGeometry *g, RtSubject subject, RtRandom *random, f
     return rt_geometry_add_triangle(g, v, NULL, error);
 }
 
-static RtStatus add_objects(RtGeometry *g, RtSubject subject, RtRandom *random, float scale, RtError *error) {
-    for (int i = 0; i < OBJECTS; i++) RT_TRY(add_object(g, subject, random, scale, error));
+/* Without a `lattice`, objects of random numbers. */
+static RtStatus add_objects(RtGeometry *g, RtSubject subject, RtRandom *random, float scale,
+                            RtLattice *lattice, RtError *error) {
+    for (uint32_t i = 0; i < OBJECTS; i++)
+        RT_TRY(lattice ? rt_lattice_add(&lattice[i], g, subject, random, error)
+                       : add_object(g, subject, random, scale, error));
     return rt_geometry_finish(g, error);
 }
 
@@ -157,6 +167,7 @@ typedef struct Range {
     RtRandom random;
     double distance;       /* of origins */
     RtCrossing *crossings; /* of hit functions */
+    RtLattice lattice[OBJECTS];
 } Range;
 
 /* The ray towards `target` along `dir`, unit, as near as float32 can. */
@@ -228,7 +239,19 @@ static RtRay ray_to_border(Range *r, uint32_t id) {
     return ray_along_surface(r, id, 0);
 }
 
+/* From where an ordinary ray hits the object, if it does. */
+static RtRay ray_from_surface(Range *r, uint32_t id) {
+    RtRay ray = ray_to_box(r, id);
+    RtDecision decision = rt_decision_of(r->geometry, id, &ray, r->crossings);
+    if (!decision.hit) return ray;
+    ray.org = rt_narrow(rt_ray_point(&ray, decision.t));
+    ray.dir = rt_narrow(rt_random_direction(&r->random));
+    return ray;
+}
+
 static RtRay next_ray(Range *r, uint32_t id) {
+    if (r->how->aim == AIM_LATTICE) return rt_lattice_ray(&r->lattice[id], &r->random);
+    if (r->how->aim == AIM_LEAVING) return ray_from_surface(r, id);
     if (r->how->aim == AIM_BOX) return ray_to_box(r, id);
     if (r->how->aim == AIM_BORDER) return ray_to_border(r, id);
     return ray_along_surface(r, id, ldexp(1, -1 - (int)(rt_random_below(&r->random, 24))));
@@ -255,16 +278,19 @@ static RtStatus measure_ray(const Range *r, uint32_t id, const RtRay *ray, doubl
                             RtError *error) {
     const RtGeometry *g = r->geometry;
     RtDecision ours = rt_decision_of(g, id, ray, r->crossings);
-    long double ulps;
-    RtExactResult exact = rt_referee_error(g, id, ray, ours.hit ? ours.t : 0, &ulps);
+    long double off = 0, ulps = 0;
+    RtExactResult exact = rt_referee_error(g, id, ray, ours.hit ? ours.t : 0, &off, &ulps);
     RtWideRay line = rt_wide_ray(ray);
     RtExactResult same = rt_decision_check(g, id, &line, ours);
     if (exact == RT_UNDECIDED || same == RT_UNDECIDED)
         return rt_fail_memory(error, "exact arithmetic on a CSG tree", 0);
-    if (same == RT_HIT) {
+    const double size = (double)fabsl(off), rounding = 0.501 * (double)rt_float_ulp((long double)ours.t);
+    const double height = same == RT_HIT && exact == RT_HIT ? off_surface(r, id, ray, ours.t, size) : 0;
+    if (same == RT_HIT && (height <= 2 || r->subject == RT_SUBJECT_TRIANGLE)) { /* else another crossing */
         if (exact != RT_HIT) return RT_OK;
-        double size = (double)(ulps * rt_float_ulp((long double)ours.t));
-        out->off = fmax(out->off, off_surface(r, id, ray, ours.t, size));
+        out->off = fmax(out->off, height);
+        out->excess =
+            fmax(out->excess, (size - rounding) * rt_lengthd(line.dir) / rt_border_unit(g, id, &line));
         errors[out->hits++] = (double)fabsl(ulps);
         return RT_OK;
     }
@@ -291,7 +317,8 @@ RtStatus rt_precision_measure(RtSubject subject, size_t index, uint64_t rays, Rt
                    .random = rt_random(6, (uint64_t)subject)};
     range.distance = 3 * (double)scale;
     for (int i = 0; i < cases[index].distance; i++) range.distance *= 10;
-    RtStatus status = add_objects(&geometry, subject, &range.random, scale, error);
+    RtStatus status = add_objects(&geometry, subject, &range.random, scale,
+                                  range.how->aim == AIM_LATTICE ? range.lattice : NULL, error);
     if (status == RT_OK) status = rt_crossings_alloc(&geometry, &range.crossings, error);
     for (uint64_t i = 0; i < rays && status == RT_OK; i++) {
         uint32_t id = (uint32_t)(i % geometry.object_count);

@@ -41,6 +41,7 @@ typedef struct RtPrecision {
     double median, most99;     /* of |error|: half, and 99 of 100 hits, are no farther off */
     double most;               /* |error| */
     double off;                /* the farthest that org + t dir was from the surface, in units of border.h */
+    double excess;             /* the most that |error| |dir| exceeds 0.501 ulp, in units of border.h */
     uint64_t missed, invented; /* only exact arithmetic, or only the hit function, finds a hit */
     uint64_t elsewhere;        /* both do, at different places of the object */
     double border;             /* the farthest that any of these was from a border, in units of border.h */

@@ -119,9 +119,9 @@ RT_TEST(equal_places_of_rings_and_balls_are_a_tie) {
     ray.org.y = 0x1p-40f; /* beside the plane through both centres: a little of the ring is left */
     line = rt_wide_ray(&ray);
     assert_int_equal(rt_referee_hit(&g, 2, &line, &t), RT_HIT);
-    long double ulps, full;
+    long double off, ulps, full;
     assert_int_equal(rt_referee_hit(&g, 0, &line, &full), RT_HIT);
-    assert_int_equal(rt_referee_error(&g, 0, &ray, (float)full, &ulps), RT_HIT);
+    assert_int_equal(rt_referee_error(&g, 0, &ray, (float)full, &off, &ulps), RT_HIT);
     assert_true(fabsl(ulps) <= 0.5L && ulps != 0);
 }
 

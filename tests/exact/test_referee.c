@@ -335,12 +335,12 @@ RT_TEST(the_referee_says_who_is_right) {
         if (side != cases[i].side) fail_msg("case %zu: %s", i, rt_side_name(side));
     }
     assert_int_equal(rt_referee_judge(&g, &ray, (RtHit){1.001f, 0}, RT_MISS, 0.01).side, RT_SIDE_EXPECTED);
-    long double ulps;
-    assert_int_equal(rt_referee_error(&g, 0, &ray, nextafterf(1, 2), &ulps), RT_HIT);
+    long double off, ulps;
+    assert_int_equal(rt_referee_error(&g, 0, &ray, nextafterf(1, 2), &off, &ulps), RT_HIT);
     assert_true(ulps == 1);
-    assert_int_equal(rt_referee_error(&g, 0, &ray, nextafterf(1, 0), &ulps), RT_HIT);
+    assert_int_equal(rt_referee_error(&g, 0, &ray, nextafterf(1, 0), &off, &ulps), RT_HIT);
     assert_true(ulps == -0.5L);
-    assert_int_equal(rt_referee_error(&g, 0, &aside, 1, &ulps), RT_MISSED);
+    assert_int_equal(rt_referee_error(&g, 0, &aside, 1, &off, &ulps), RT_MISSED);
 }
 
 RT_TESTS(referee, NULL, NULL)

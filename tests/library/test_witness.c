@@ -217,6 +217,30 @@ static int choose_standard(void **state) {
         assert_string_equal(localeconv()->decimal_point, ",");                                               \
     } while (0)
 
+/* The first number is a tie of two float32, which strtof decides. */
+RT_TEST_WITH(numbers_in_files_have_a_point_in_every_locale, choose_comma, choose_standard) {
+    if (*localeconv()->decimal_point != ',') RT_SKIP("a locale with a decimal comma, or locales to make one");
+    static const struct {
+        const char *path, *text;
+    } files[] = {
+        {RT_BINARY_DIR "/test_witness.obj", "v -4.5000002384185791015625 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
+        {RT_BINARY_DIR "/test_witness.nff", "p 3\n-4.5000002384185791015625 0 0\n1 0 0\n0 1 0\n"},
+        {RT_BINARY_DIR "/test_witness.yaml",
+         "objects:\n  - polygon: {vertices: [[-4.5000002384185791015625, 0, 0], [1, 0, 0], [0, 1, 0]]}\n"}};
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        raytally_scene *scene;
+        float low[3], high[3];
+        FILE *file = fopen(files[i].path, "w");
+        assert_non_null(file);
+        assert_true(fputs(files[i].text, file) >= 0);
+        assert_int_equal(fclose(file), 0);
+        assert_fine(raytally_scene_open(files[i].path, &scene, error));
+        raytally_scene_bounds(scene, low, high);
+        assert_true(low[0] == -4.5f);
+        raytally_scene_free(scene);
+    }
+}
+
 RT_TEST_WITH(whoever_is_called_works_in_the_locale_of_c, choose_comma, choose_standard) {
     if (*localeconv()->decimal_point != ',') RT_SKIP("a locale with a decimal comma, or locales to make one");
     raytally_scene *scene;

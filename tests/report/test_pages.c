@@ -424,9 +424,14 @@ RT_TEST_IN_PLACE(the_index_groups_experiments_by_section_with_plot_first_sentenc
     write_in(place, "all/quoting/plots/2.svg", "<svg/>");
     write_in(place, "all/quoting/plots/1.svg", "<svg/>");
     assert_int_equal(raytally(place, "verify tetra:size=1 --accel bvh --rays 10 --out all/judged"), 0);
+    char *manifest = read_in(place, "all/plain/manifest.json");
+    write_changed(place, "all/plain/manifest.json", manifest, "\"date\"",
+                  "\"recounted\": {\"version\": \"9.9\", \"commit\": \"abc\"}, \"date\"");
+    rt_free(manifest);
     assert_int_equal(raytally(place, "report --index all"), 0);
     const char *const page[] = {
         "<p class=\"meta\">Measured by raytally ",
+        "Scenes that changed later were counted again by raytally 9.9 (abc).",
         "<h2>Lecture</h2>",
         "taught/report.html",
         "<h2>Papers</h2>",

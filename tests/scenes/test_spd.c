@@ -223,6 +223,8 @@ RT_TEST(they_are_seen_and_lit_as_the_databases_say) {
         assert_points(&scene.lights[cases[i].lights - 1].position, 1, cases[i].last_light);
         assert_true(scene.lights[0].intensity.x ==
                     (float)(sqrt((double)cases[i].lights) / (2 * (double)cases[i].lights)));
+        const bool jacks = strcmp(cases[i].spec, "jacks") == 0;
+        assert_points(&scene.background, 1, jacks ? "0.2 0.05 0.2" : "0.078 0.361 0.753");
         const RtVec3 box[2] = {scene.geometry.box.lo, scene.geometry.box.hi};
         assert_points(box, 2, cases[i].box);
     }
@@ -242,13 +244,13 @@ RT_TEST(their_materials_are_those_of_the_databases) {
         {"lattice", 1, "0.9 0.1 0.1 0.99 0 100000 0 1 0"},
         {"lattice", 2, "0.1 0.9 0.1 0.99 0 100000 0 1 0"},
         {"lattice", 3, "0.1 0.1 0.9 0.99 0 100000 0 1 0"},
-        {"gears", 0, "1 0.85 0.7 0.3 0.6 181.81 0 1 0.6"},
+        {"gears", 0, "1 0.85 0.7 0.3 0.6 3.0827 0 1 0.6"},
         {"gears", 1, "1 0.605523 0.408284 0.2 0 100000 0.8 1.1 0.0023"},
         {"gears", 147, "1 1 1 1 0 100000 0 1 0"},
         {"jacks", 656, "0.737 0.561 0.561 0.7 0.7 11.1434 0 1 0.7"},
         {"rings", 0, "1 1 1 1 0 100000 0 1 0"},
-        {"rings", 1, "1 0 0 0.5 0.2 45.2776 0 1 0.2"},
-        {"rings", 8400, "1 1 0 0.5 0.2 45.2776 0 1 0.2"},
+        {"rings", 1, "1 0 0 0.5 0.2 3.0827 0 1 0.2"},
+        {"rings", 8400, "1 1 0 0.5 0.2 3.0827 0 1 0.2"},
         {"shells", 0, "1 0.8 0.4 0.8 0.2 45.2776 0 1 0.2"},
         {"mount", 0, "1 1 1 0.1 0.1 101.148 0.9 1.5 0.1"},
         {"mount", 8195, "0.5 0.45 0.35 1 0 100000 0 1 0"},

@@ -4,6 +4,8 @@
 #include "random_testing.h"
 #include "shape_testing.h"
 
+#include <float.h>
+
 /* One object of each kind, about the origin, 2^exponent in size; 0.75 and the like survive the scaling. */
 static RtGeometry one_of_each(int exponent) {
     RtGeometry g = {0};
@@ -105,6 +107,35 @@ RT_TEST(a_flat_cone_is_hit_between_its_circles_only) {
         }
     }
     assert_true(hits > RAYS / 20);
+}
+
+/* raytally/types.h: t is a float32 at most, and 1 / dir one as well. */
+RT_TEST(a_ray_with_a_short_direction_reaches_as_far_as_the_largest_t) {
+    static const float lengths[] = {1e-36f, 1e-37f, 2e-38f, 0x1p-126f, 1e-38f, 5e-39f, 0x1p-127f};
+    static const float distances[] = {1e-9f, 0.001f, 0.5f, 2, 3, 3.5f, 4, 8, 20, 100};
+    for (size_t i = 0; i < sizeof distances / sizeof distances[0]; i++) {
+        const float d = distances[i];
+        const RtVec3 square[4] = {{{-1, -1, d}}, {{1, -1, d}}, {{1, 1, d}}, {{-1, 1, d}}};
+        OWNED_GEOMETRY g = {0};
+        assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, d + d / 2), d / 2, error));
+        assert_ok(rt_geometry_add_triangle(&g, square, NULL, error));
+        assert_ok(rt_geometry_add_polygon(&g, square, 4, error));
+        assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, -1, d + d / 2), d / 2, rt_vec3(0, 1, d + d / 2), d / 2,
+                                       error));
+        assert_ok(rt_geometry_finish(&g, error));
+        for (size_t k = 0; k < sizeof lengths / sizeof lengths[0]; k++) {
+            RtRay ray = {.dir = rt_vec3(0, 0, lengths[k]), .tmax = INFINITY};
+            RtPreparedRay prepared;
+            rt_hit_ray(&prepared, &g, &ray, NULL);
+            for (uint32_t id = 0; id < g.object_count; id++) {
+                const double exact = (double)d / (double)lengths[k];
+                float t = 0;
+                const bool hit = rt_object_hit(&g, id, &prepared, &t, NULL);
+                assert_int_equal(hit, exact <= (double)FLT_MAX);
+                if (hit) assert_true(fabs((double)t / exact - 1) < 1e-6);
+            }
+        }
+    }
 }
 
 RT_TESTS(hits, NULL, NULL)

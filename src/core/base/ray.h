@@ -69,7 +69,7 @@ const char *rt_ray_kind_name(RtRayKind kind);
 RtStatus rt_ray_kind_parse(const char *name, RtRayKind *kind, RtError *error);
 
 /* Invariants (rt_ray_is_valid): org and dir finite, |org| <= RT_MAX_COORDINATE, dir not zero,
- * 0 <= tmin <= tmax, tmin finite, tmax possibly infinite. */
+ * 0 <= tmin <= tmax, tmin finite, tmax possibly infinite. Of short directions: raytally/types.h. */
 typedef struct RtRay {
     RtVec3 org;
     float tmin;

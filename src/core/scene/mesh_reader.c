@@ -4,6 +4,7 @@
 #include "core/scene/mesh_reader.h"
 
 #include "core/base/memory.h"
+#include "core/text/number.h"
 
 #include <inttypes.h>
 #include <stdarg.h>
@@ -204,47 +205,9 @@ RtStatus rt_mesh_expect(RtMeshReader *r, const char *text) {
     return RT_OK;
 }
 
-/* Takes digits; the value of at most `most` of them, and their number. */
-static double digits(const char **at, int most, int *count) {
-    double value = 0;
-    for (*count = 0; **at >= '0' && **at <= '9'; ++*at) {
-        if (*count >= most) continue;
-        value = value * 10 + (**at - '0');
-        ++*count;
-    }
-    return value;
-}
-
-static double power_of_ten(double exponent) {
-    double power = 1;
-    for (int i = 0; i < 60 && i < exponent; i++) power *= 10;
-    return power;
-}
-
-/* The integer and the fraction are each rounded to float32 before they are added, and so is a power of ten
- * before it is a factor. This is the arithmetic of Assimp 5, which read the meshes when the reference results
- * were counted: exact rounding would move 4 of the bunny's coordinates by one unit in the last place. */
 RtStatus rt_mesh_float(const RtMeshReader *r, RtWord word, float *out) {
-    enum { LONGEST = 300, FRACTION = 15 }; /* characters of a number; digits used of a fraction */
-    const char *at = word.text + (*word.text == '-' || *word.text == '+');
-    int before, after = 0, exponent_digits = 1;
-    float value = (float)digits(&at, LONGEST, &before);
-    if (*at == '.') {
-        at++;
-        const double fraction = digits(&at, FRACTION, &after);
-        value += (float)(fraction / power_of_ten(after));
-    }
-    if (before + after > 0 && (*at == 'e' || *at == 'E')) {
-        const bool negative = at[1] == '-';
-        at += 1 + (at[1] == '-' || at[1] == '+');
-        const double power = power_of_ten(digits(&at, LONGEST, &exponent_digits));
-        value *= (float)(negative ? 1 / power : power);
-    }
-    if (before + after == 0 || exponent_digits == 0 || at != word.text + word.length ||
-        word.length > LONGEST || !isfinite(value))
-        return rt_scan_fail(&r->text, word, "a finite number that fits float32");
-    *out = *word.text == '-' ? -value : value;
-    return RT_OK;
+    if (rt_number_float(word.text, word.length, out)) return RT_OK;
+    return rt_scan_fail(&r->text, word, "a finite number that fits float32");
 }
 
 RtStatus rt_mesh_integer(const RtMeshReader *r, RtWord word, int64_t *out) {

@@ -9,7 +9,6 @@
 #include "core/text/scanner.h"
 
 #include <ctype.h>
-#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -42,27 +41,29 @@ static RtStatus located(Reader *r, RtStatus status) {
 
 /* ---- numbers ---- */
 
-static RtStatus read_double(Reader *r, const char *what, double *out) {
+/* Stores to whichever of the two is not NULL. */
+static RtStatus read_number(Reader *r, const char *what, float *narrow, double *wide) {
     enum { LONGEST = 1024 };
     RtWord word = rt_scan_peek(&r->text);
     char *stop = NULL;
-    if (word.length > 0 && word.length <= LONGEST) *out = strtod(word.text, &stop);
+    double value = 0;
+    if (word.length > 0 && word.length <= LONGEST)
+        value = narrow ? (double)strtof(word.text, &stop) : strtod(word.text, &stop);
     if (!stop || stop != word.text + word.length) return fail_inside(r, word, what);
-    if (!isfinite(*out) || fabs(*out) > (double)FLT_MAX) {
+    if (!isfinite(value)) {
         char text[RT_WORD_SHOWN];
         return rt_fail_at(r->text.error, r->text.path, word.line, 0,
                           "%s: invalid value %s: expected a finite number that fits float32", what,
                           rt_scan_show(word, text));
     }
+    if (narrow) *narrow = (float)value;
+    if (wide) *wide = value;
     rt_scan_take(&r->text, word);
     return RT_OK;
 }
 
 static RtStatus read_float(Reader *r, const char *what, float *out) {
-    double number;
-    RT_TRY(read_double(r, what, &number));
-    *out = (float)number;
-    return RT_OK;
+    return read_number(r, what, out, NULL);
 }
 
 static RtStatus read_vector(Reader *r, const char *what, RtVec3 *out) {
@@ -73,7 +74,7 @@ static RtStatus read_vector(Reader *r, const char *what, RtVec3 *out) {
 static RtStatus read_count(Reader *r, const char *what, double lo, double hi, uint32_t *out) {
     double number = 0;
     const size_t line = rt_scan_peek(&r->text).line;
-    RT_TRY(read_double(r, what, &number));
+    RT_TRY(read_number(r, what, NULL, &number));
     if (number < lo || number > hi || number != floor(number))
         return rt_fail_at(r->text.error, r->text.path, line, 0,
                           "%s: invalid value '%.15g': expected a whole number %.15g..%.15g", what, number, lo,
