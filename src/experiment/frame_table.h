@@ -2,10 +2,10 @@
 /* The cost of a whole frame by accelerator, compared with the frame without a structure: the answer of an
  * experiment that has `frame` (RtFrameSetup).
  *
- * A frame's rays are its primary, shadow, reflection and transmission rays. Each kind counts with all rays of
- * its set; measurements on every kth ray are scaled up. If one kind was not measured, the frame's cost is
- * unknown. The gain of an overlay is relative to the accelerator below it, if that is measured too; the gain
- * of any other accelerator is relative to no structure. */
+ * A frame's rays are its primary, shadow, reflection and transmission rays: measurements on a part of them
+ * are scaled up (rt_results_total). If one kind was not measured, the frame's cost is unknown. The gain of an
+ * overlay is relative to the accelerator below it, if that is measured too; the gain of any other accelerator
+ * is relative to no structure. */
 #ifndef RT_EXPERIMENT_FRAME_TABLE_H
 #define RT_EXPERIMENT_FRAME_TABLE_H
 
@@ -24,7 +24,7 @@ typedef enum RtFramePart {
 
 /* Over all rays of a part of the frame; NAN if unknown, or if the part has no rays. */
 typedef struct RtFrameCost {
-    uint64_t rays;
+    double rays;
     double object_tests;
     double seconds, low, high; /* median, and the sums of the ends of the kinds' intervals */
 } RtFrameCost;
@@ -50,7 +50,8 @@ RtTable rt_frame_table(RtFrameRow *row);
  * unknown, NULL if memory is short. */
 char *rt_frame_sentence(const RtResults *results, uint32_t workload);
 
-/* The size of a workload's frame, and its rays by kind: "a frame of 256x256: 65536 primary, ... rays". */
+/* The size of a workload's frame, its rays by kind, and how many were measured: "a frame of 256x256: 65536
+ * primary, ... rays; of 326921 rays, 152585 measured". */
 #define RT_MAX_FRAME_TEXT 1024
 void rt_frame_title(const RtResults *results, uint32_t workload, char out[RT_MAX_FRAME_TEXT]);
 
