@@ -254,9 +254,9 @@ static RtField isa_of(const Row *r) {
       r->callgrind->experiment->workloads[r->cell->workload].label)                                          \
     X(kind, "kind", text, "", "kind of the rays",                                                            \
       rt_experiment_kind_name(r->callgrind->experiment, r->cell->kind))                                      \
-    X(accel, "accelerator", text, "", "the accelerator's label",                                             \
+    X(accel, "accel", text, "", "the accelerator's label",                                                   \
       rt_candidate_label(r->callgrind->experiment, r->cell->candidate))                                      \
-    X(spec, "accel", text, "", "the accelerator as built under valgrind, which has no AVX-512",              \
+    X(spec, "spec", text, "", "the accelerator as built under valgrind, which has no AVX-512",               \
       r->cell->spec)                                                                                         \
     X(rays, "rays", integer, "", "rays that were traced, of those recorded", r->cell->rays)                  \
     X(instructions, "instructions", integer, "", "instructions of all these rays, by callgrind: exact",      \

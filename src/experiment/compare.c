@@ -135,7 +135,7 @@ static const void *tally_after(const void *row) {
 
 #define COLUMNS(X)                                                                                           \
     X(scene, "scene", text, "", "the scene's label", r->cell->scene)                                         \
-    X(accel, "accelerator", text, "", "the accelerator's label", r->cell->accel)                             \
+    X(accel, "accel", text, "", "the accelerator's label", r->cell->accel)                                   \
     X(kind, "kind", text, "", "kind of the rays", r->cell->kind)                                             \
     X(interval, "ratio", interval, "", "throughput after over that before",                                  \
       interval_of(r->cell->timed, &r->cell->ratio))                                                          \
@@ -203,7 +203,7 @@ RtTable rt_comparison_table(RtComparedRow *row, bool all) {
 #define JUDGED(value) (r->accel->groups >= 2 ? (value) : (double)NAN)
 
 #define ACCEL_COLUMNS(X)                                                                                     \
-    X(of_accel, "accelerator", text, "", "the accelerator's label", r->accel->accel)                         \
+    X(of_accel, "accel", text, "", "the accelerator's label", r->accel->accel)                               \
     X(groups, "groups", integer, "", "scenes times pairs of runs that it is judged by", r->accel->groups)    \
     X(relative, "ratio", interval, "", "throughput after over before, relative to the median accelerator",   \
       interval_of(r->accel->groups >= 2, &r->accel->ratio))                                                  \

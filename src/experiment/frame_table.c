@@ -117,8 +117,9 @@ static double faster(const Row *r, RtFramePart part) {
 }
 
 static RtField label_of(const Row *r) {
-    return rt_field_print("%s %s", r->candidate == r->winner ? ">" : " ",
-                          rt_candidate_label(r->results->experiment, r->candidate));
+    char label[RT_MAX_SHOWN];
+    rt_candidate_show(r->results->experiment, r->candidate, label);
+    return rt_field_print("%s %s", r->candidate == r->winner ? ">" : " ", label);
 }
 
 static const char *below_label(const Row *r) {

@@ -67,7 +67,7 @@ RtTable rt_result_table(RtResultTable which, RtResultRow *row);
 /* The label of a row in tables to read, with a star if it is measured on a part of the rays. A label of more
  * than RT_EYE_WIDTH characters is printed on its own line. */
 #define RT_EYE_WIDTH     24
-#define RT_MAX_EYE_LABEL (RT_MAX_LABEL + 16)
+#define RT_MAX_EYE_LABEL (RT_MAX_SHOWN + 8)
 void rt_result_eye_label(const RtResultRow *row, char out[RT_MAX_EYE_LABEL]);
 
 /* The time to build in ms, with its interval: without one if it was built once. */

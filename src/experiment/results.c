@@ -79,6 +79,16 @@ const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidat
                                                    : experiment->again;
 }
 
+void rt_candidate_show(const RtExperiment *experiment, uint32_t candidate, char out[RT_MAX_SHOWN]) {
+    const bool null = candidate == experiment->candidate_count;
+    if (candidate == RT_FASTEST_BASELINE)
+        snprintf(out, RT_MAX_SHOWN, "%s", rt_baseline_label(experiment));
+    else
+        snprintf(out, RT_MAX_SHOWN, "%s%s",
+                 experiment->candidates[null ? experiment->baseline : candidate].shown,
+                 null ? " (again)" : "");
+}
+
 bool rt_results_next(const RtResults *results, RtCellCursor *at) {
     const RtExperiment *e = results->experiment;
     const uint32_t i = at->next++;

@@ -18,8 +18,8 @@ enum { RT_INDEX_PARTS = 4, RT_MAX_ORIGIN = 256 };
 
 /* A result directory. */
 typedef struct RtIndexEntry {
-    char name[RT_MAX_LABEL];    /* of the directory: one experiment may have several, of different systems */
-    char section[RT_MAX_LABEL]; /* or "" */
+    char name[RT_MAX_LABEL];   /* of the directory: one experiment may have several, of different systems */
+    char section[RT_MAX_WORD]; /* or "" */
     char build[RT_MAX_ORIGIN], machine[RT_MAX_ORIGIN];
     uint32_t number;                    /* the caller's */
     RtMemoryFile parts[RT_INDEX_PARTS]; /* closed once they are complete */

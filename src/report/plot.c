@@ -217,7 +217,7 @@ static RtStatus draw(const RtResults *results, const char *directory, const char
 
 RtStatus rt_plots_draw(const RtResults *results, const char *directory, bool column, RtError *error) {
     const RtExperiment *experiment = results->experiment;
-    char paths[RT_MAX_PLOTS + 1][RT_MAX_LABEL + 8];
+    char paths[RT_MAX_PLOTS + 1][RT_MAX_WORD + 8];
     char program[] = "gnuplot", sweep_script[] = "plots/sweep.gp",
          histogram_script[] = "plots/" HISTOGRAM_SCRIPT;
     char *arguments[MOST_ARGUMENTS] = {program};
