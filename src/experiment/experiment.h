@@ -12,6 +12,7 @@
 #include <jansson.h>
 
 #define RT_MAX_LABEL      RT_MAX_SPEC_CHARS /* of a scene or an accelerator: whole, as long as its spec */
+#define RT_SHOWN_WIDTH    47                /* of a label on a screen */
 #define RT_MAX_WORD       48                /* names that people choose: of an experiment, a group, a file */
 #define RT_MAX_TEXT       4096
 #define RT_MAX_FILE_NAME  128 /* bytes of a label in the name of a file */
@@ -54,6 +55,8 @@ void rt_swept_name(const RtSwept *swept, const char *but, char *out, size_t size
 /* One scene of an experiment. Labels are unique, without blanks and quotes: names in CSV and plots. */
 typedef struct RtWorkload {
     char label[RT_MAX_LABEL];
+    char shown[RT_MAX_LABEL]; /* the label on a screen: a long one without what all have in common, mostly of
+                                 RT_SHOWN_WIDTH characters at most (rt_shorten_name): rt_experiment_check */
     char file_name[RT_MAX_FILE_NAME + 8]; /* the label as a part of file names (rt_file_name); unique, also
                                      without regard to case: rt_experiment_check */
     char stem[RT_MAX_LABEL];              /* the common part of the labels of one sweep; else the label */
@@ -70,12 +73,9 @@ typedef struct RtWorkload {
 } RtWorkload;
 
 /* One accelerator of an experiment. No two on the same scene have the same label. */
-#define RT_SHOWN_WIDTH 47
 typedef struct RtCandidate {
     char label[RT_MAX_LABEL];
-    char shown[RT_MAX_LABEL]; /* the label on a screen: a long one without what all have in common, mostly of
-                                 RT_SHOWN_WIDTH characters at most (rt_shorten_name): rt_experiment_check */
-    char stem[RT_MAX_LABEL];  /* as of a workload */
+    char shown[RT_MAX_LABEL], stem[RT_MAX_LABEL]; /* as of a workload */
     RtSwept swept;
     uint32_t entry;
     char group[RT_MAX_WORD];      /* its heading in the table of frames, or "" */

@@ -74,6 +74,10 @@ void rt_labels_shorten(RtExperiment *experiment) {
     for (uint32_t c = 0; c < count; c++) labels[c] = experiment->candidates[c].label;
     for (uint32_t c = 0; c < count; c++)
         rt_shorten_name(labels, count, c, RT_SHOWN_WIDTH, experiment->candidates[c].shown, RT_MAX_LABEL);
+    for (uint32_t t = 0; t < experiment->workload_count; t++) labels[t] = experiment->workloads[t].label;
+    for (uint32_t t = 0; t < experiment->workload_count; t++)
+        rt_shorten_name(labels, experiment->workload_count, t, RT_SHOWN_WIDTH, experiment->workloads[t].shown,
+                        RT_MAX_LABEL);
 }
 
 /* ---- finding ---- */

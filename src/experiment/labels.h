@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Labels of scenes and accelerators. In files they are whole; on a screen they may be shortened
- * (RtCandidate.shown); names of files are made from them. */
+ * (RtWorkload.shown); names of files are made from them. */
 #ifndef RT_EXPERIMENT_LABELS_H
 #define RT_EXPERIMENT_LABELS_H
 
@@ -18,7 +18,7 @@ void rt_label_scene(RtExperiment *experiment, RtWorkload *workload, const char *
 /* Names the files of workload `i`. Names that are equal but for case are numbered. */
 void rt_label_files(RtExperiment *experiment, uint32_t i);
 
-/* Sets what is shown of all accelerators. */
+/* Sets what is shown of all scenes and accelerators. */
 void rt_labels_shorten(RtExperiment *experiment);
 
 #endif

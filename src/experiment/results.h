@@ -132,7 +132,7 @@ uint32_t rt_results_candidate(const RtResults *results, uint32_t workload, uint3
  * rt_baseline_label. */
 const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidate);
 
-/* The same for a screen (RtCandidate.shown). */
+/* The same for a screen (RtWorkload.shown). */
 #define RT_MAX_SHOWN (RT_MAX_LABEL + 8)
 void rt_candidate_show(const RtExperiment *experiment, uint32_t candidate, char out[RT_MAX_SHOWN]);
 
