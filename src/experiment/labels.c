@@ -15,6 +15,13 @@ bool rt_may_label(char c) {
 
 /* ---- making ---- */
 
+void rt_swept_name(const RtSwept *swept, const char *but, char *out, size_t size) {
+    for (uint32_t i = 0; i < swept->count; i++) {
+        if (but && strcmp(swept->keys[i], but) == 0) continue;
+        rt_append_text(out, size, ":%s=%s", swept->keys[i], swept->values[i]);
+    }
+}
+
 RtStatus rt_label_sweep(const char *given, const RtSwept *swept, char stem[RT_MAX_LABEL],
                         char label[RT_MAX_LABEL], RtError *error) {
     char whole[RT_MAX_LABEL + RT_MAX_SWEPT * (RT_MAX_NAME + RT_MAX_SWEPT_CHARS + 2)];

@@ -49,13 +49,6 @@ bool rt_swept_logarithmic(const double *values, uint32_t count) {
     return quotient[1] / quotient[0] < step[1] / step[0];
 }
 
-void rt_swept_name(const RtSwept *swept, const char *but, char *out, size_t size) {
-    for (uint32_t i = 0; i < swept->count; i++) {
-        if (but && strcmp(swept->keys[i], but) == 0) continue;
-        rt_append_text(out, size, ":%s=%s", swept->keys[i], swept->values[i]);
-    }
-}
-
 /* ---- values ---- */
 
 typedef struct SweptParam {

@@ -48,6 +48,12 @@ RT_TEST_IN_PLACE(a_sweep_of_a_long_spec_has_labels_that_are_whole_and_differ) {
     assert_string_equal(e->candidates[1].shown, "kd:...,max_depth=12");
 }
 
+RT_TEST_IN_PLACE(a_label_that_is_too_long_with_its_swept_values_is_refused) {
+    RtCandidate like = {.ray_stride = 1, .spec = "grid:density=1|2"};
+    memset(like.label, 'l', RT_MAX_LABEL - 8);
+    assert_bad_input(rt_experiment_add_accels(begin(*state), &like, error), "give a short `label`");
+}
+
 RT_TEST_IN_PLACE(files_have_whole_labels_and_csv_and_json_call_them_alike) {
     const Place *place = *state;
     static const char row[] = "\"" SCENE "0.025\",\"" SCENE "0.025\",50,";
