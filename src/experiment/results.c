@@ -3,7 +3,6 @@
 
 #include "core/base/memory.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
@@ -258,20 +257,20 @@ RtCost rt_results_cost(const RtResults *results, uint32_t workload, uint32_t can
 
 void rt_results_say_part(const RtResults *results, uint32_t workloads, RtKinds kinds,
                          char out[RT_MAX_PART_TEXT]) {
-    uint64_t rays = 0;
-    double whole = 0;
+    double rays = 0, whole = 0;
     bool known = true;
     for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
         const RtWorkloadResult *w = &results->workloads[t];
         for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
             if (!(workloads >> t & 1) || !(kinds >> k & 1)) continue;
             known &= w->rays[k] == 0 || w->whole_rays[k] > 0;
-            rays += w->rays[k];
-            whole += rt_results_weight(results, t, (RtRayKind)k);
+            const double weight = rt_results_weight(results, t, (RtRayKind)k);
+            rays += fmin((double)w->rays[k], weight); /* there may be more random ones */
+            whole += weight;
         }
     }
     if (known)
-        snprintf(out, RT_MAX_PART_TEXT, "of %.0f rays, %" PRIu64 " measured", whole, rays);
+        snprintf(out, RT_MAX_PART_TEXT, "of %.0f rays, %.0f measured", whole, rays);
     else
         snprintf(out, RT_MAX_PART_TEXT, "of the measured part");
 }
