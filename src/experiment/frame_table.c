@@ -116,12 +116,6 @@ static double faster(const Row *r, RtFramePart part) {
     return r->without[part].seconds / r->cost[part].seconds;
 }
 
-static RtField label_of(const Row *r) {
-    char label[RT_MAX_SHOWN];
-    rt_candidate_show(r->results->experiment, r->candidate, label);
-    return rt_field_print("%s %s", r->candidate == r->winner ? ">" : " ", label);
-}
-
 static const char *below_label(const Row *r) {
     const uint32_t below = below_of(r->results, r->workload, r->candidate);
     const RtExperiment *experiment = r->results->experiment;
@@ -161,7 +155,7 @@ static const char *below_label(const Row *r) {
       "times_fewer; for an overlay, relative to the accelerator below it", r->tests_gain)                    \
     X(winner, "winner", flag, "", "whether it is marked as the fastest of the compared group",               \
       rt_field_flag(r->candidate == r->winner))                                                              \
-    X(eye_label, "  accelerator", text, "", "> marks the fastest of those compared", label_of(r))            \
+    X(eye_label, "  accelerator", text, "", "> marks the fastest of those compared", r->shown)               \
     X(mega_tests, "Mtests", figure, "million", "object tests of the frame", 1e-6 * r->cost[0].object_tests)  \
     X(fewer, "fewer", figure, "", "times fewer object tests than without a structure",                       \
       r->without[0].object_tests / r->cost[0].object_tests)                                                  \
@@ -197,6 +191,8 @@ static const void *row_at(void *context, size_t i) {
     r->gain = factor_of(r->results, r->workload, r->candidate, seconds_of);
     r->tests_gain = factor_of(r->results, r->workload, r->candidate, tests_of);
     r->winner = winner_of(r->results, r->workload);
+    strcpy(r->shown, r->candidate == r->winner ? "> " : "  ");
+    rt_candidate_show(experiment, r->candidate, r->shown + 2);
     return r;
 }
 

@@ -2,7 +2,6 @@
 #include "experiment/result_tables.h"
 
 #include "accel/columns.h"
-#include "core/base/words.h"
 
 #include <assert.h>
 #include <math.h>
@@ -22,12 +21,6 @@ static RtField label_of(const Row *r) {
     RtField field = rt_field_text(rt_candidate_label(r->results->experiment, r->candidate));
     if (ray_stride_of(r) > 1) field.note = "measured on a part of the rays";
     return field;
-}
-
-static RtField shown_of(const Row *r) {
-    char label[RT_MAX_SHOWN];
-    rt_candidate_show(r->results->experiment, r->candidate, label);
-    return rt_field_print("%s", label);
 }
 
 /* A label too long to fit beside the figures is printed on a line before them. */
@@ -68,8 +61,7 @@ static RtField break_even_of(const Row *r) {
 }
 
 void rt_result_eye_label(const RtResultRow *r, char out[RT_MAX_EYE_LABEL]) {
-    rt_candidate_show(r->results->experiment, r->candidate, out);
-    if (ray_stride_of(r) > 1) rt_append_text(out, RT_MAX_EYE_LABEL, " *");
+    snprintf(out, RT_MAX_EYE_LABEL, "%s%s", r->shown, ray_stride_of(r) > 1 ? " *" : "");
 }
 
 /* A counter; missing if its value per ray is unknown. */
@@ -214,7 +206,7 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
     X(ns_interval, "ns/ray", interval, "ns", "median time per ray, with its interval",                       \
       estimate(&r->cost.seconds, 1e-9))                                                                      \
     X(label, "accelerator", text, "", "the label", label_of(r))                                              \
-    X(shown, "accelerator", text, "", "the label, shortened if it is long", shown_of(r))                     \
+    X(shown, "accelerator", text, "", "the label, shortened if it is long", r->shown)                        \
     X(eye_label, "accelerator", text, "", "the label, if there is room", short_label_of(r))                  \
     X(eye_tests, "tests", figure, "", "object tests per ray", r->cost.object_tests)                          \
     X(eye_extents, "ext.", figure, "", "extent tests per ray", r->cost.extent_tests)                         \
@@ -374,6 +366,7 @@ static const void *row_at(void *context, size_t i) {
     const bool null = r->candidate == e->candidate_count, first = i < e->candidate_count;
     const bool counted = r->cell->counted, timed = r->cell->timed;
     r->cost = rt_results_cost(r->results, r->workload, r->candidate, kinds_of(r));
+    rt_candidate_show(e, r->candidate, r->shown);
     const bool there[] = {
 #define ROWS(id, has, rows, ...) [RT_##id] = rows,
         TABLES(ROWS)

@@ -46,6 +46,7 @@ typedef struct RtResultRow {
     RtResultTable which;
     uint32_t workload; /* of tables of one workload */
     uint32_t candidate;
+    char shown[RT_MAX_SHOWN]; /* its label on a screen */
     RtRayKind kind;
     uint32_t round, most_rounds; /* of RT_ROUNDS; most_rounds: of any cell */
     const RtWorkload *setup;
