@@ -141,7 +141,7 @@ def load(name):
         sys.exit(f"{name} is no JSON: {error}")
 
 def of_kd(document):
-    return [(row["kind"], row["counts"], "ns" in row) for row in document["rows"] if row["accelerator"] == "kd"]
+    return [(row["kind"], row["counts"], "ns" in row) for row in document["rows"] if row["accel"] == "kd"]
 
 alone, failed = of_kd(load("alone.json")), False
 for name in sorted(glob.glob("bench-*.json")):
@@ -150,7 +150,7 @@ for name in sorted(glob.glob("bench-*.json")):
         failed = True
 # An accelerator with its own hit functions is timed, and its rows say how many answers differ.
 for name, differs in {"older": 0, "own-unnamed": 0, "own-uncounted": 0, "own-farther": 1, "own-wrong": 1, "own-lazy": 1}.items():
-    rows = [row for row in load(f"bench-{name}.json")["rows"] if row["accelerator"] == f"faulty-{name}"]
+    rows = [row for row in load(f"bench-{name}.json")["rows"] if row["accel"] == f"faulty-{name}"]
     if len(rows) != 2 or any(row["ns"] <= 0 for row in rows) or (rows[0]["differ"] > 0) != differs:
         print(f"bench-{name}.json: not timed, or answers that differ are counted wrongly: {rows}")
         failed = True
@@ -270,7 +270,7 @@ diff <(sed '/^wrote/d' path-copy) path-bvh || complain 'the path of a ray throug
 counted() {
     python3 -c 'import json, sys
 for row in json.load(open("counted.json"))["instructions"]:
-    if row["accelerator"] == sys.argv[1]: print(row.get("instructions") or "none:", row.get("why") or "")' "$1"
+    if row["accel"] == sys.argv[1]: print(row.get("instructions") or "none:", row.get("why") or "")' "$1"
 }
 
 if command -v valgrind >/dev/null; then

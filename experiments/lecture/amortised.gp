@@ -14,15 +14,15 @@ array build[n_cells]; array build_low[n_cells]; array build_high[n_cells]
 array per_ray[n_cells]; array per_ray_low[n_cells]; array per_ray_high[n_cells]
 do for [s = 1:words(scenes)] {
   do for [a = 1:words(accels)] {
-    stats "times.csv" using (named(s, a) ? column("set_rays") : NaN) nooutput; rays = STATS_sum
+    stats "times.csv" using (named(s, a) ? weight(0) : NaN) nooutput; rays = STATS_sum
     do for [end in "_low _high"] {
       stats "times.csv" using (named(s, a) ? column("build".end) : NaN) nooutput; seconds = STATS_mean
       eval sprintf("build%s[cell(s, a)] = seconds", end)
-      stats "times.csv" using (named(s, a) ? column("set_rays") * column("ns".end) : NaN) nooutput; seconds = STATS_sum / rays * 1e-9
+      stats "times.csv" using (named(s, a) ? weight(0) * column("ns".end) : NaN) nooutput; seconds = STATS_sum / rays * 1e-9
       eval sprintf("per_ray%s[cell(s, a)] = seconds", end)
     }
     stats "times.csv" using (named(s, a) ? column("build_seconds") : NaN) nooutput; build[cell(s, a)] = STATS_mean
-    stats "times.csv" using (named(s, a) ? column("set_rays") * column("ns") : NaN) nooutput; per_ray[cell(s, a)] = STATS_sum / rays * 1e-9
+    stats "times.csv" using (named(s, a) ? weight(0) * column("ns") : NaN) nooutput; per_ray[cell(s, a)] = STATS_sum / rays * 1e-9
   }
 }
 

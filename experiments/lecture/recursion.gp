@@ -11,9 +11,9 @@ array ms[words(names) * deepest * words(accels)]
 array low[|ms|]; array high[|ms|]
 cell(n, d, a) = ((n - 1) * deepest + d - 1) * words(accels) + a
 do for [n = 1:words(names)] { do for [d = 1:deepest] { do for [a = 1:words(accels)] {
-  stats "times.csv" using (cell_row(n, d, a) ? column("set_rays") * column("ns") : NaN) nooutput; ms[cell(n, d, a)] = STATS_sum * 1e-6
-  stats "times.csv" using (cell_row(n, d, a) ? column("set_rays") * column("ns_low") : NaN) nooutput; low[cell(n, d, a)] = STATS_sum * 1e-6
-  stats "times.csv" using (cell_row(n, d, a) ? column("set_rays") * column("ns_high") : NaN) nooutput; high[cell(n, d, a)] = STATS_sum * 1e-6
+  stats "times.csv" using (cell_row(n, d, a) ? weight(0) * column("ns") : NaN) nooutput; ms[cell(n, d, a)] = STATS_sum * 1e-6
+  stats "times.csv" using (cell_row(n, d, a) ? weight(0) * column("ns_low") : NaN) nooutput; low[cell(n, d, a)] = STATS_sum * 1e-6
+  stats "times.csv" using (cell_row(n, d, a) ? weight(0) * column("ns_high") : NaN) nooutput; high[cell(n, d, a)] = STATS_sum * 1e-6
 } } }
 
 eval canvas("1-depth", 960, 560)
@@ -28,7 +28,7 @@ do for [n = 1:words(names)] {
   set title name.": rays of a frame" font ",13" textcolor rgb ink
   set ylabel "thousand rays" textcolor rgb ink
   if (n == words(names)) { set key inside top left reverse Left samplen 1.5 textcolor rgb ink; set offsets 0, 0, graph 0.35, 0 } else { unset key }
-  plot for [k = 1:words(kinds)] "times.csv" using (row(name, word(kinds, k), word(accels, 1)) ? column("depth") : NaN):(column("set_rays") / 1000.0) \
+  plot for [k = 1:words(kinds)] "times.csv" using (row(name, word(kinds, k), word(accels, 1)) ? column("depth") : NaN):(weight(0) / 1000.0) \
     with linespoints linewidth 1.8 pointtype mark(k) pointsize 0.8 linecolor rgb hue(k) title word(kinds, k)
   unset offsets
   set title name.": time of a frame" font ",13" textcolor rgb ink

@@ -185,8 +185,8 @@ static json_t *scene_json(const RtResults *results, uint32_t workload) {
                                      "height", (json_int_t)scene->height, "corners", setup->corners, "depth",
                                      (json_int_t)setup->depth, "limit", (json_int_t)e->limit, "coherent_run",
                                      (json_int_t)e->coherent_run);
-    return json_pack("{s:s, s:I, s:o, s:o}", "scene", setup->spec, "objects", (json_int_t)scene->objects,
-                     "scene_hash", rt_json_hex(scene->scene), "recorded", rays);
+    return json_pack("{s:s, s:s, s:I, s:o, s:o}", "scene", setup->label, "scene_spec", setup->spec, "objects",
+                     (json_int_t)scene->objects, "scene_hash", rt_json_hex(scene->scene), "recorded", rays);
 }
 
 static void add_table(json_t *all, const char *name, RtTable table) {

@@ -41,12 +41,13 @@ static RtStatus record(const Options *o, RtError *error) {
     RtScene scene;
     RtAccel *reference = NULL;
     RtRaySet sets[RT_RAY_KIND_COUNT] = {0};
+    uint64_t whole_rays[RT_RAY_KIND_COUNT];
     RT_TRY(rt_experiment_add_scenes(e, &o->recording.like, o->scene, "", error));
     if (e->workload_count > 1)
         return rt_fail(error, RT_BAD_INPUT, "one SCENE at a time: '%s' stands for %u", o->scene,
                        e->workload_count);
     RT_TRY(rt_workload_open_scene(&e->workloads[0], &scene, error));
-    RtStatus status = rt_workload_record(e, 0, o->threads, &scene, &reference, sets, error);
+    RtStatus status = rt_workload_record(e, 0, o->threads, &scene, &reference, sets, whole_rays, error);
     if (status == RT_OK) status = save(o, &sets[e->kinds[0]], error);
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&sets[k]);
     rt_accel_destroy(reference);

@@ -234,7 +234,8 @@ static json_t *compared_json(const Run *run) {
     json_t *list = json_array();
     for (uint32_t i = 1; i < run->options->accel_count; i++) {
         const Built *b = &run->built[i];
-        json_array_append_new(list, json_pack("{s:s, s:f, s:I, s:o, s:o}", "accel", b->spec, "build_seconds",
+        json_array_append_new(list, json_pack("{s:s, s:s, s:f, s:I, s:o, s:o}", "accel",
+                                              run->options->accels[i], "spec", b->spec, "build_seconds",
                                               b->build_seconds, "bytes", (json_int_t)b->description.bytes,
                                               "structure", rt_json_structure(&b->description), "kinds",
                                               kinds_json(&b->counted)));
@@ -249,12 +250,12 @@ static json_t *stats_json(const Run *run) {
     uint64_t rays = total_rays(&run->timed);
     double mrays = run->timed.seconds > 0 ? (double)rays * 1e-6 / run->timed.seconds : 0;
     return json_pack(
-        "{s:s, s:s, s:I, s:I, s:i, s:i, s:i, s:b, s:i, s:i, s:f, s:I, s:o, s:I, s:f, s:f, s:o, s:o}", "scene",
-        run->scene.name, "accel", b->spec, "objects", (json_int_t)run->scene.geometry.object_count, "lights",
-        (json_int_t)run->scene.light_count, "width", (int)s->width, "height", (int)s->height, "samples",
-        (int)s->samples, "corners", (int)s->corners, "depth", (int)o->depth, "threads",
-        rt_thread_count(o->threads), "build_seconds", b->build_seconds, "bytes",
-        (json_int_t)b->description.bytes, "structure", rt_json_structure(&b->description), "rays",
+        "{s:s, s:s, s:s, s:I, s:I, s:i, s:i, s:i, s:b, s:i, s:i, s:f, s:I, s:o, s:I, s:f, s:f, s:o, s:o}",
+        "scene", run->scene.name, "accel", o->accels[0], "spec", b->spec, "objects",
+        (json_int_t)run->scene.geometry.object_count, "lights", (json_int_t)run->scene.light_count, "width",
+        (int)s->width, "height", (int)s->height, "samples", (int)s->samples, "corners", (int)s->corners,
+        "depth", (int)o->depth, "threads", rt_thread_count(o->threads), "build_seconds", b->build_seconds,
+        "bytes", (json_int_t)b->description.bytes, "structure", rt_json_structure(&b->description), "rays",
         (json_int_t)rays, "seconds", run->timed.seconds, "mrays_per_s", mrays, "kinds",
         kinds_json(&b->counted), "compared", compared_json(run));
 }

@@ -248,7 +248,7 @@ static RtStatus choose_directory(Options *o, const RtExperiment *experiment, RtE
     const RtOnly *only = &o->how.workload.only;
     o->how.directory = o->directory;
     if (o->count > 1 || !o->out) {
-        char name[RT_MAX_LABEL + 8];
+        char name[RT_MAX_WORD + 8];
         rt_file_name(experiment->name, name, sizeof name);
         RT_TRY(rt_path_join(folder_of(o), name, o->directory, error));
     } else {
@@ -302,13 +302,13 @@ static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
 
 /* Parses all experiments before the first is measured. One that this build or machine cannot measure fails
  * when it is run. */
-static RtStatus parse_all(Options *o, RtExperiment *experiment, char (*names)[RT_MAX_LABEL], RtError *error) {
-    static char files[MOST_EXPERIMENTS][RT_MAX_LABEL + 8];
+static RtStatus parse_all(Options *o, RtExperiment *experiment, char (*names)[RT_MAX_WORD], RtError *error) {
+    static char files[MOST_EXPERIMENTS][RT_MAX_WORD + 8];
     for (o->current = 0; o->current < o->count; o->current++) {
         char *name = names[o->current], *file = files[o->current];
         RtStatus status = load(o, experiment, error);
         if (status != RT_OK && status != RT_NOT_AVAILABLE) return status;
-        memcpy(name, experiment->name, RT_MAX_LABEL);
+        memcpy(name, experiment->name, RT_MAX_WORD);
         rt_file_name(name, file, sizeof files[0]);
         for (uint32_t i = 0; i < o->current; i++) {
             if (strcasecmp(files[i], file) != 0) continue;
@@ -322,7 +322,7 @@ static RtStatus parse_all(Options *o, RtExperiment *experiment, char (*names)[RT
 }
 
 static RtStatus run_all(Options *o, RtExperiment *experiment, RtError *error) {
-    static char names[MOST_EXPERIMENTS][RT_MAX_LABEL], command[MOST_COMMAND];
+    static char names[MOST_EXPERIMENTS][RT_MAX_WORD], command[MOST_COMMAND];
     static RtJob jobs[MOST_EXPERIMENTS];
     RtError why;
     size_t indexed;

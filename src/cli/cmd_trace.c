@@ -186,9 +186,9 @@ static json_t *rows_json(const RtPath *path) {
 /* `object` is null if none is hit, or if the occluder is unknown; `blocked` is null for nearest-hit rays. */
 static json_t *path_json(const RtPath *path, const Options *o, const char *spec) {
     const RtRay *r = &path->ray;
-    return json_pack("{s:s, s:s, s:[i, i], s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
-                     o->scene, "accel", spec, "pixel", (int)o->pixel.x, (int)o->pixel.y, "kind",
-                     rt_ray_kind_name(o->kind), "org", rt_cli_vector_json(r->org), "dir",
+    return json_pack("{s:s, s:s, s:s, s:[i, i], s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
+                     o->scene, "accel", o->accel, "spec", spec, "pixel", (int)o->pixel.x, (int)o->pixel.y,
+                     "kind", rt_ray_kind_name(o->kind), "org", rt_cli_vector_json(r->org), "dir",
                      rt_cli_vector_json(r->dir), "tmin", rt_json_number((double)r->tmin), "tmax",
                      rt_json_number((double)r->tmax), "rows", rows_json(path), "counts",
                      rt_json_tally(&path->tally), "object",
@@ -199,9 +199,10 @@ static json_t *path_json(const RtPath *path, const Options *o, const char *spec)
 
 static json_t *tree_json(const RtRayTree *tree, const RtTally *costs, const RtScene *scene, const Options *o,
                          const char *spec) {
-    return json_pack("{s:s, s:s, s:[i, i], s:i, s:i, s:o, s:o}", "scene", o->scene, "accel", spec, "pixel",
-                     (int)o->pixel.x, (int)o->pixel.y, "depth", (int)tree->depth, "levels", (int)tree->levels,
-                     "color", rt_cli_vector_json(tree->color), "tree", rt_cli_tree_json(tree, costs, scene));
+    return json_pack("{s:s, s:s, s:s, s:[i, i], s:i, s:i, s:o, s:o}", "scene", o->scene, "accel", o->accel,
+                     "spec", spec, "pixel", (int)o->pixel.x, (int)o->pixel.y, "depth", (int)tree->depth,
+                     "levels", (int)tree->levels, "color", rt_cli_vector_json(tree->color), "tree",
+                     rt_cli_tree_json(tree, costs, scene));
 }
 
 /* ---- the command ---- */

@@ -84,9 +84,10 @@ static void describe(RtProgress *progress, const RtResults *results, const RtEve
     const bool scene = event->what == RT_EVENT_WORKLOAD;
     const bool cell = !scene && event->what != RT_EVENT_BUILD && event->what != RT_EVENT_RENDER &&
                       event->what != RT_EVENT_NO_BUILD;
+    char accel[RT_MAX_SHOWN] = "";
+    if (!scene) rt_candidate_show(experiment, event->candidate, accel);
     snprintf(progress->doing, sizeof progress->doing, "%s%s%s%s%s: %s",
-             experiment->workloads[event->workload].label, scene ? "" : " ",
-             scene ? "" : rt_candidate_label(experiment, event->candidate), cell ? " " : "",
+             experiment->workloads[event->workload].shown, scene ? "" : " ", accel, cell ? " " : "",
              cell ? rt_experiment_kind_name(experiment, event->kind) : "",
              rt_event_is_broken(results, event) ? "is broken" : what[event->what]);
 }

@@ -254,9 +254,11 @@ static RtField isa_of(const Row *r) {
       r->callgrind->experiment->workloads[r->cell->workload].label)                                          \
     X(kind, "kind", text, "", "kind of the rays",                                                            \
       rt_experiment_kind_name(r->callgrind->experiment, r->cell->kind))                                      \
-    X(accel, "accelerator", text, "", "the accelerator's label",                                             \
+    X(eye_accel, "accelerator", text, "", "the accelerator's label",                                         \
       rt_candidate_label(r->callgrind->experiment, r->cell->candidate))                                      \
-    X(spec, "accel", text, "", "the accelerator as built under valgrind, which has no AVX-512",              \
+    X(accel, "accel", text, "", "the accelerator's label",                                                   \
+      rt_candidate_label(r->callgrind->experiment, r->cell->candidate))                                      \
+    X(spec, "spec", text, "", "the accelerator as built under valgrind, which has no AVX-512",               \
       r->cell->spec)                                                                                         \
     X(rays, "rays", integer, "", "rays that were traced, of those recorded", r->cell->rays)                  \
     X(instructions, "instructions", integer, "", "instructions of all these rays, by callgrind: exact",      \
@@ -268,8 +270,9 @@ static RtField isa_of(const Row *r) {
 
 RT_TABLE_COLUMNS(columns, COLUMNS)
 
-static const RtColumnGroup json_groups[] = {RT_FROM_TO(columns, scene, why)};
-static const RtColumnGroup eye_groups[] = {RT_FROM_TO(columns, scene, accel), RT_ONE(columns, rays),
+static const RtColumnGroup json_groups[] = {RT_FROM_TO(columns, scene, kind),
+                                            RT_FROM_TO(columns, accel, why)};
+static const RtColumnGroup eye_groups[] = {RT_FROM_TO(columns, scene, eye_accel), RT_ONE(columns, rays),
                                            RT_FROM_TO(columns, eye, isa)};
 
 static const void *row_at(void *context, size_t i) {

@@ -134,8 +134,9 @@ static const void *tally_after(const void *row) {
 #define INSTRUCTIONS(which) (r->cell->instructions[which] > 0 ? r->cell->instructions[which] : (double)NAN)
 
 #define COLUMNS(X)                                                                                           \
+    X(accel, "accel", text, "", "the accelerator's label", r->cell->accel)                                   \
     X(scene, "scene", text, "", "the scene's label", r->cell->scene)                                         \
-    X(accel, "accelerator", text, "", "the accelerator's label", r->cell->accel)                             \
+    X(eye_accel, "accelerator", text, "", "the accelerator's label", r->cell->accel)                         \
     X(kind, "kind", text, "", "kind of the rays", r->cell->kind)                                             \
     X(interval, "ratio", interval, "", "throughput after over that before",                                  \
       interval_of(r->cell->timed, &r->cell->ratio))                                                          \
@@ -171,7 +172,9 @@ static const RtColumnGroup for_the_eye[] = {RT_FROM_TO(columns, scene, counts),
                                             RT_FROM_TO(columns, eye_before, eye_ratio)};
 
 static const RtColumnGroup in_full[] = {
-    RT_FROM_TO(columns, scene, kind),
+    RT_ONE(columns, scene),
+    RT_ONE(columns, accel),
+    RT_ONE(columns, kind),
     RT_FROM_TO(columns, change, counts),
     RT_FROM_TO(columns, rays, disagreement),
     {"counts_before", rt_tally_columns, RT_TALLY_COUNTER_COUNT, tally_before},
@@ -203,7 +206,8 @@ RtTable rt_comparison_table(RtComparedRow *row, bool all) {
 #define JUDGED(value) (r->accel->groups >= 2 ? (value) : (double)NAN)
 
 #define ACCEL_COLUMNS(X)                                                                                     \
-    X(of_accel, "accelerator", text, "", "the accelerator's label", r->accel->accel)                         \
+    X(of_accel, "accel", text, "", "the accelerator's label", r->accel->accel)                               \
+    X(eye_of, "accelerator", text, "", "the accelerator's label", r->accel->accel)                           \
     X(groups, "groups", integer, "", "scenes times pairs of runs that it is judged by", r->accel->groups)    \
     X(relative, "ratio", interval, "", "throughput after over before, relative to the median accelerator",   \
       interval_of(r->accel->groups >= 2, &r->accel->ratio))                                                  \
@@ -219,8 +223,8 @@ RtTable rt_comparison_table(RtComparedRow *row, bool all) {
 
 RT_TABLE_COLUMNS(accel_columns, ACCEL_COLUMNS)
 
-static const RtColumnGroup accels_for_the_eye[] = {RT_FROM_TO(accel_columns, of_accel, verdict)};
-static const RtColumnGroup accels_in_full[] = {RT_FROM_TO(accel_columns, of_accel, groups),
+static const RtColumnGroup accels_for_the_eye[] = {RT_FROM_TO(accel_columns, eye_of, verdict)};
+static const RtColumnGroup accels_in_full[] = {RT_ONE(accel_columns, of_accel), RT_ONE(accel_columns, groups),
                                                RT_FROM_TO(accel_columns, verdict, high)};
 
 static const void *accel_at(void *context, size_t i) {

@@ -13,13 +13,13 @@ typedef RtDistributionRow Row;
       r->results->experiment->workloads[r->workload].label)                                                  \
     X(kind, "kind", text, "", "kind of the rays; empty: leaves of the structure",                            \
       r->quantity < RT_RAY_QUANTITY_COUNT ? rt_experiment_kind_name(r->results->experiment, r->kind) : NULL) \
-    X(accel, "accelerator", text, "", "the accelerator's label in the experiment",                           \
+    X(accel, "accel", text, "", "the accelerator's label in the experiment",                                 \
       rt_candidate_label(r->results->experiment, r->candidate))                                              \
     X(quantity, "quantity", text, "",                                                                        \
       "object_tests, extent_tests, steps: per ray, each traced alone; leaf_size, leaf_depth: objects in "    \
       "the list of a leaf or voxel, and its depth",                                                          \
       rt_quantity_name(r->quantity))                                                                         \
-    X(spec, "accel", text, "", "the accelerator with every effective parameter",                             \
+    X(spec, "spec", text, "", "the accelerator with every effective parameter",                              \
       rt_build_at(r->results, r->workload, r->candidate)->spec)                                              \
     X(count, "count", integer, "", "rays, or leaves", r->distribution->count)                                \
     X(mean, "mean", real6, "", "mean of the quantity",                                                       \

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "experiment/experiment.h"
+#include "experiment/labels.h"
 
 #include "experiment/manifest_experiment.h"
 #include "measure/result_files.h"
@@ -158,29 +158,6 @@ bool rt_candidate_runs(const RtExperiment *experiment, uint32_t c, uint32_t t) {
     return !experiment->candidates[c].missing && !(experiment->candidates[c].excluded >> t & 1);
 }
 
-uint32_t rt_candidate_find(const RtExperiment *experiment, const char *label, uint32_t t) {
-    if (strcmp(label, experiment->again) == 0) return experiment->candidate_count;
-    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        const RtCandidate *candidate = &experiment->candidates[c];
-        if (strcmp(candidate->label, label) == 0 && !(candidate->excluded >> t & 1)) return c;
-    }
-    return experiment->candidate_count + 1;
-}
-
-uint32_t rt_workload_find(const RtExperiment *experiment, const char *label) {
-    uint32_t t = 0;
-    while (t < experiment->workload_count && strcmp(experiment->workloads[t].label, label) != 0) t++;
-    return t;
-}
-
-bool rt_candidate_is_called(const RtCandidate *candidate, const char *name) {
-    return strcmp(candidate->label, name) == 0 || strcmp(candidate->stem, name) == 0;
-}
-
-bool rt_workload_is_called(const RtWorkload *workload, const char *name) {
-    return strcmp(workload->label, name) == 0 || strcmp(workload->stem, name) == 0;
-}
-
 const char *rt_plot_name(const RtExperiment *experiment, uint32_t plot) {
     return basename(experiment->plots[plot]);
 }
@@ -239,23 +216,10 @@ static RtStatus check_candidate(RtExperiment *experiment, uint32_t i, RtError *e
     return check_label(candidate->label, error);
 }
 
-/* Names the files of workload `i`. Names that are equal but for case are numbered. */
-static void name_files(RtExperiment *experiment, uint32_t i) {
-    char name[RT_MAX_LABEL + 1], *file = experiment->workloads[i].file_name;
-    bool taken = true;
-    rt_file_name(experiment->workloads[i].label, name, sizeof name);
-    for (uint32_t number = 1; taken; number++) {
-        snprintf(file, sizeof experiment->workloads[i].file_name, number > 1 ? "%s-%" PRIu32 : "%s", name,
-                 number);
-        taken = false;
-        for (uint32_t t = 0; t < i; t++) taken |= strcasecmp(file, experiment->workloads[t].file_name) == 0;
-    }
-}
-
 static RtStatus check_workload(RtExperiment *experiment, uint32_t i, RtError *error) {
     const RtWorkload *workload = &experiment->workloads[i];
     if (rt_workload_find(experiment, workload->label) < i) return fail_twice(workload->label, error);
-    name_files(experiment, i);
+    rt_label_files(experiment, i);
     return check_label(workload->label, error);
 }
 
@@ -376,6 +340,7 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
     RT_TRY(check_baseline(experiment, error));
     snprintf(experiment->again, sizeof experiment->again, "%s (again)",
              experiment->candidates[experiment->baseline].label);
+    rt_labels_shorten(experiment);
     strcpy(where, "published");
     RT_TRY(check_published(experiment, error));
     strcpy(where, "frame");

@@ -11,8 +11,11 @@
 
 #include <jansson.h>
 
-#define RT_MAX_LABEL      48
+#define RT_MAX_LABEL      RT_MAX_SPEC_CHARS /* of a scene or an accelerator: whole, as long as its spec */
+#define RT_SHOWN_WIDTH    47                /* of a label on a screen */
+#define RT_MAX_WORD       48                /* names that people choose: of an experiment, a group, a file */
 #define RT_MAX_TEXT       4096
+#define RT_MAX_FILE_NAME  128 /* bytes of a label in the name of a file */
 #define RT_MAX_WORKLOADS  32
 #define RT_MAX_CANDIDATES 256
 #define RT_MAX_PLOTS      8
@@ -52,12 +55,14 @@ void rt_swept_name(const RtSwept *swept, const char *but, char *out, size_t size
 /* One scene of an experiment. Labels are unique, without blanks and quotes: names in CSV and plots. */
 typedef struct RtWorkload {
     char label[RT_MAX_LABEL];
-    char file_name[RT_MAX_LABEL + 8]; /* the label as a part of file names (rt_file_name); unique, also
+    char shown[RT_MAX_LABEL]; /* the label on a screen: a long one without what all have in common, mostly of
+                                 RT_SHOWN_WIDTH characters at most (rt_shorten_name): rt_experiment_check */
+    char file_name[RT_MAX_FILE_NAME + 8]; /* the label as a part of file names (rt_file_name); unique, also
                                      without regard to case: rt_experiment_check */
-    char stem[RT_MAX_LABEL];          /* the common part of the labels of one sweep; else the label */
-    RtSwept swept;                    /* of the scene's parameters */
-    uint32_t entry;                   /* of the list in the YAML; a sweep makes several workloads */
-    char spec[RT_MAX_SCENE_NAME];     /* as written */
+    char stem[RT_MAX_LABEL];              /* the common part of the labels of one sweep; else the label */
+    RtSwept swept;                        /* of the scene's parameters */
+    uint32_t entry;                       /* of the list in the YAML; a sweep makes several workloads */
+    char spec[RT_MAX_SCENE_NAME];         /* as written */
     char path[RT_MAX_PATH];  /* for rt_scene_open: a built-in, or the file relative to the YAML's folder */
     uint32_t width, height;  /* of the frame whose rays are recorded; 0 x 0: the camera's */
     uint32_t depth;          /* levels of the ray tree */
@@ -70,10 +75,10 @@ typedef struct RtWorkload {
 /* One accelerator of an experiment. No two on the same scene have the same label. */
 typedef struct RtCandidate {
     char label[RT_MAX_LABEL];
-    char stem[RT_MAX_LABEL]; /* as of a workload */
+    char shown[RT_MAX_LABEL], stem[RT_MAX_LABEL]; /* as of a workload */
     RtSwept swept;
     uint32_t entry;
-    char group[RT_MAX_LABEL];     /* its heading in the table of frames, or "" */
+    char group[RT_MAX_WORD];      /* its heading in the table of frames, or "" */
     char spec[RT_MAX_SPEC_CHARS]; /* as written */
     RtSpec parsed;                /* by rt_experiment_check, if this build has it */
     uint64_t ray_stride;          /* k: measured on every kth ray of a set, for slow accelerators; >= 1 */
@@ -105,16 +110,16 @@ typedef enum RtColumn {
 
 /* Published figures that the measured ones are compared with (literature/published.h). */
 typedef struct RtPublishedSetup {
-    char tables[RT_MAX_PUBLISHED][RT_MAX_LABEL]; /* CSV files, relative to the YAML's folder */
-    uint32_t table_count;                        /* 0: nothing is compared */
-    char reasons[RT_MAX_LABEL];                  /* CSV file, or "" */
-    double tolerance[RT_COLUMN_COUNT];           /* in percent; 0: shown but not checked */
+    char tables[RT_MAX_PUBLISHED][RT_MAX_WORD]; /* CSV files, relative to the YAML's folder */
+    uint32_t table_count;                       /* 0: nothing is compared */
+    char reasons[RT_MAX_WORD];                  /* CSV file, or "" */
+    double tolerance[RT_COLUMN_COUNT];          /* in percent; 0: shown but not checked */
 } RtPublishedSetup;
 
 /* The table of the costs of a whole frame (experiment/frame_table.h). */
 typedef struct RtFrameSetup {
     char without[RT_MAX_LABEL]; /* the candidate without a structure; "": no such table */
-    char among[RT_MAX_LABEL];   /* the group whose fastest is marked */
+    char among[RT_MAX_WORD];    /* the group whose fastest is marked */
     char note[RT_MAX_TEXT];     /* a note for readers of the table, or "" */
 } RtFrameSetup;
 
@@ -130,15 +135,15 @@ typedef enum RtPaperVerdict {
 /* A sentence of the literature that an experiment tests. */
 typedef struct RtPaper {
     char citation[RT_MAX_TEXT];
-    char page[RT_MAX_LABEL]; /* or "unseen": the paper was not at hand, and `quote` states its claim in other
-                                words (rt_paper_is_seen) */
+    char page[RT_MAX_WORD];  /* or "unseen": the paper was not at hand, and `quote` states its claim in other
+                                 words (rt_paper_is_seen) */
     char quote[RT_MAX_TEXT]; /* word for word, without quotation marks */
     RtPaperVerdict verdict;
 } RtPaper;
 
 typedef struct RtExperiment {
-    char name[RT_MAX_LABEL];
-    char section[RT_MAX_LABEL]; /* its heading in an index, or "" */
+    char name[RT_MAX_WORD];
+    char section[RT_MAX_WORD]; /* its heading in an index, or "" */
     RtPaper papers[RT_MAX_PAPERS];
     uint32_t paper_count;
     char question[RT_MAX_TEXT], prediction[RT_MAX_TEXT];
@@ -166,7 +171,7 @@ typedef struct RtExperiment {
     double limit_seconds; /* longer cells are left out; 0: no limit */
     uint64_t limit_bytes; /* larger structures, also while built, are left out; 0: no limit */
     char plots[RT_MAX_PLOTS]
-              [RT_MAX_LABEL]; /* gnuplot scripts relative to the YAML, run in this order in one process */
+              [RT_MAX_WORD]; /* gnuplot scripts relative to the YAML, run in this order in one process */
     uint32_t plot_count;
     RtPublishedSetup published;
     RtFrameSetup frame;
@@ -230,7 +235,8 @@ const char *rt_baseline_label(const RtExperiment *experiment);
  * 1 if there is none. */
 uint32_t rt_candidate_find(const RtExperiment *experiment, const char *label, uint32_t t);
 
-/* The workload with that label; workload_count if there is none. */
+/* The workload with that label; workload_count if there is none. Both also take the labels that version 1.0
+ * cut to 47 characters. */
 uint32_t rt_workload_find(const RtExperiment *experiment, const char *label);
 
 /* Whether `name` is its label, or its stem, which all of a sweep have. */

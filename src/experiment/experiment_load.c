@@ -22,7 +22,7 @@ static RtStatus read_flag(const RtYaml *y, const RtYamlNode *n, const char *key,
 
 static RtStatus read_size(const RtYaml *y, const RtYamlNode *n, uint32_t *width, uint32_t *height) {
     const char *text = NULL;
-    RT_TRY(rt_yaml_text(y, n, "size", RT_MAX_LABEL, &text));
+    RT_TRY(rt_yaml_text(y, n, "size", RT_MAX_WORD, &text));
     if (!text || rt_image_size_parse(text, width, height)) return RT_OK;
     return rt_yaml_fail(y, rt_yaml_get(y, n, "size"),
                         "invalid value '%s': expected WIDTHxHEIGHT, each 1..%d, as in 512x512", text,
@@ -31,12 +31,12 @@ static RtStatus read_size(const RtYaml *y, const RtYamlNode *n, uint32_t *width,
 
 /* A list of up to `size` texts; without a list *count stays unchanged. */
 static RtStatus read_labels(const RtYaml *y, const RtYamlNode *n, const char *key, uint32_t size,
-                            char (*labels)[RT_MAX_LABEL], uint32_t *count) {
+                            char (*labels)[RT_MAX_WORD], uint32_t *count) {
     const RtYamlNode *list = rt_yaml_get(y, n, key);
     RT_TRY(rt_yaml_list(y, list, NULL, 1, size, key));
     if (list) *count = 0;
     for (const RtYamlNode *e = rt_yaml_first(list); e != rt_yaml_end(list); e += e->size) {
-        RT_TRY(rt_yaml_copy(y, e, NULL, RT_MAX_LABEL, labels[(*count)++]));
+        RT_TRY(rt_yaml_copy(y, e, NULL, RT_MAX_WORD, labels[(*count)++]));
     }
     return RT_OK;
 }
@@ -100,8 +100,8 @@ static RtStatus read_scenes(const RtYaml *y, const RtYamlNode *list, const RtExp
 }
 
 /* The name of a group of accelerators, which plots quote. */
-static RtStatus read_group(const RtYaml *y, const RtYamlNode *n, const char *key, char group[RT_MAX_LABEL]) {
-    RT_TRY(rt_yaml_copy(y, n, key, RT_MAX_LABEL, group));
+static RtStatus read_group(const RtYaml *y, const RtYamlNode *n, const char *key, char group[RT_MAX_WORD]) {
+    RT_TRY(rt_yaml_copy(y, n, key, RT_MAX_WORD, group));
     for (const char *c = group; *c; c++) {
         if (!rt_may_label(*c) && *c != ' ' && *c != '\'')
             return rt_yaml_fail(y, rt_yaml_get(y, n, key),
@@ -142,7 +142,7 @@ static RtStatus read_published(const RtYaml *y, const RtYamlNode *n, RtExperimen
     RtPublishedSetup *published = &experiment->published;
     RT_TRY(rt_yaml_keys(y, n, "tables reasons? tolerance? ours?"));
     RT_TRY(read_labels(y, n, "tables", RT_MAX_PUBLISHED, published->tables, &published->table_count));
-    RT_TRY(rt_yaml_copy(y, n, "reasons", RT_MAX_LABEL, published->reasons));
+    RT_TRY(rt_yaml_copy(y, n, "reasons", RT_MAX_WORD, published->reasons));
     const RtYamlNode *tolerance = rt_yaml_get(y, n, "tolerance"), *ours = rt_yaml_get(y, n, "ours");
     if (tolerance) RT_TRY(read_tolerances(y, tolerance, published->tolerance));
     RT_TRY(rt_yaml_list(y, ours, NULL, 1, RT_MAX_CANDIDATES, "labels"));
@@ -240,7 +240,7 @@ static RtStatus read_claims(const RtYaml *y, const RtYamlNode *list, RtExperimen
 
 static RtStatus read_paper_verdict(const RtYaml *y, const RtYamlNode *n, RtPaperVerdict *verdict) {
     const char *text = NULL;
-    RT_TRY(rt_yaml_text(y, n, "verdict", RT_MAX_LABEL, &text));
+    RT_TRY(rt_yaml_text(y, n, "verdict", RT_MAX_WORD, &text));
     if (!text) return RT_OK;
     for (*verdict = RT_PAPER_CONFIRMED; *verdict < RT_PAPER_VERDICT_COUNT; (*verdict)++) {
         if (strcmp(text, rt_paper_verdict_name(*verdict)) == 0) return RT_OK;
@@ -255,7 +255,7 @@ static RtStatus read_paper(const RtYaml *y, const RtYamlNode *n, RtExperiment *e
     RtPaper *paper = &experiment->papers[experiment->paper_count++];
     RT_TRY(rt_yaml_keys(y, n, "citation page quote verdict?"));
     RT_TRY(rt_yaml_copy(y, n, "citation", RT_MAX_TEXT, paper->citation));
-    RT_TRY(rt_yaml_copy(y, n, "page", RT_MAX_LABEL, paper->page));
+    RT_TRY(rt_yaml_copy(y, n, "page", RT_MAX_WORD, paper->page));
     RT_TRY(rt_yaml_copy(y, n, "quote", RT_MAX_TEXT, paper->quote));
     return read_paper_verdict(y, n, &paper->verdict);
 }
@@ -288,8 +288,8 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
         "name section? paper? question prediction scenes accelerators baseline? rays? limit? coherent_run? "
         "rounds? builds? milliseconds? seed? count_only? render? hardware? distributions? published? frame? "
         "quick? plots? expect? finding? limits? format?"));
-    RT_TRY(rt_yaml_copy(y, n, "name", RT_MAX_LABEL, experiment->name));
-    RT_TRY(rt_yaml_copy(y, n, "section", RT_MAX_LABEL, experiment->section));
+    RT_TRY(rt_yaml_copy(y, n, "name", RT_MAX_WORD, experiment->name));
+    RT_TRY(rt_yaml_copy(y, n, "section", RT_MAX_WORD, experiment->section));
     RT_TRY(read_papers(y, rt_yaml_get(y, n, "paper"), experiment));
     RT_TRY(rt_yaml_copy(y, n, "question", RT_MAX_TEXT, experiment->question));
     RT_TRY(rt_yaml_copy(y, n, "prediction", RT_MAX_TEXT, experiment->prediction));

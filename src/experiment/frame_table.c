@@ -12,30 +12,23 @@
 
 /* ---- costs ---- */
 
-static bool is_in_part(RtRayKind kind, RtFramePart part) {
-    const RtFramePart own = kind == RT_RAY_PRIMARY  ? RT_FRAME_PRIMARY
-                            : kind == RT_RAY_SHADOW ? RT_FRAME_SHADOW
-                                                    : RT_FRAME_SECONDARY;
-    return rt_ray_kind_is_of_frame(kind) && (part == RT_FRAME_ALL || part == own);
+static RtKinds kinds_of(RtFramePart part) {
+    RtKinds kinds = 0;
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        const RtFramePart own = k == RT_RAY_PRIMARY  ? RT_FRAME_PRIMARY
+                                : k == RT_RAY_SHADOW ? RT_FRAME_SHADOW
+                                                     : RT_FRAME_SECONDARY;
+        if (rt_ray_kind_is_of_frame((RtRayKind)k) && (part == RT_FRAME_ALL || part == own)) kinds |= 1u << k;
+    }
+    return kinds;
 }
 
 static RtFrameCost cost_of(const RtResults *results, uint32_t workload, uint32_t candidate,
                            RtFramePart part) {
     const double unknown = (double)NAN;
-    RtFrameCost sum = {0};
-    for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
-        const uint64_t rays = results->workloads[workload].rays[k];
-        if (rays == 0 || !is_in_part((RtRayKind)k, part)) continue;
-        const RtCost cost = rt_results_cost(results, workload, candidate, (RtRayKind)k);
-        const double weight = (double)rays;
-        sum.rays += rays;
-        sum.object_tests += weight * cost.object_tests;
-        sum.seconds += weight * cost.seconds.median;
-        sum.low += weight * cost.seconds.low;
-        sum.high += weight * cost.seconds.high;
-    }
-    if (sum.rays == 0) return (RtFrameCost){0, unknown, unknown, unknown, unknown};
-    return sum;
+    const RtCost sum = rt_results_total(results, workload, candidate, kinds_of(part));
+    if (!sum.whole || sum.weight == 0) return (RtFrameCost){sum.weight, unknown, unknown, unknown, unknown};
+    return (RtFrameCost){sum.weight, sum.object_tests, sum.seconds.median, sum.seconds.low, sum.seconds.high};
 }
 
 static uint32_t without_of(const RtExperiment *experiment, uint32_t workload) {
@@ -123,11 +116,6 @@ static double faster(const Row *r, RtFramePart part) {
     return r->without[part].seconds / r->cost[part].seconds;
 }
 
-static RtField label_of(const Row *r) {
-    return rt_field_print("%s %s", r->candidate == r->winner ? ">" : " ",
-                          rt_candidate_label(r->results->experiment, r->candidate));
-}
-
 static const char *below_label(const Row *r) {
     const uint32_t below = below_of(r->results, r->workload, r->candidate);
     const RtExperiment *experiment = r->results->experiment;
@@ -141,7 +129,7 @@ static const char *below_label(const Row *r) {
       rt_candidate_label(r->results->experiment, r->candidate))                                              \
     X(group, "group", text, "", "its group in the experiment",                                               \
       r->results->experiment->candidates[r->candidate].group)                                                \
-    X(rays, "rays", integer, "", "rays of the frame", r->cost[RT_FRAME_ALL].rays)                            \
+    X(rays, "rays", integer, "", "rays of the whole frame", (uint64_t)r->cost[RT_FRAME_ALL].rays)            \
     X(object_tests, "object_tests", real6, "", "object tests of the frame", r->cost[0].object_tests)         \
     X(times_fewer, "times_fewer", real6, "", "how many times fewer than without a structure",                \
       r->without[0].object_tests / r->cost[0].object_tests)                                                  \
@@ -167,7 +155,7 @@ static const char *below_label(const Row *r) {
       "times_fewer; for an overlay, relative to the accelerator below it", r->tests_gain)                    \
     X(winner, "winner", flag, "", "whether it is marked as the fastest of the compared group",               \
       rt_field_flag(r->candidate == r->winner))                                                              \
-    X(eye_label, "  accelerator", text, "", "> marks the fastest of those compared", label_of(r))            \
+    X(eye_label, "  accelerator", text, "", "> marks the fastest of those compared", r->shown)               \
     X(mega_tests, "Mtests", figure, "million", "object tests of the frame", 1e-6 * r->cost[0].object_tests)  \
     X(fewer, "fewer", figure, "", "times fewer object tests than without a structure",                       \
       r->without[0].object_tests / r->cost[0].object_tests)                                                  \
@@ -203,6 +191,8 @@ static const void *row_at(void *context, size_t i) {
     r->gain = factor_of(r->results, r->workload, r->candidate, seconds_of);
     r->tests_gain = factor_of(r->results, r->workload, r->candidate, tests_of);
     r->winner = winner_of(r->results, r->workload);
+    strcpy(r->shown, r->candidate == r->winner ? "> " : "  ");
+    rt_candidate_show(experiment, r->candidate, r->shown + 2);
     return r;
 }
 
@@ -341,13 +331,17 @@ char *rt_frame_sentence(const RtResults *results, uint32_t workload) {
 void rt_frame_title(const RtResults *results, uint32_t workload, char out[RT_MAX_FRAME_TEXT]) {
     const RtWorkloadResult *w = &results->workloads[workload];
     const RtWorkload *setup = &results->experiment->workloads[workload];
-    const uint64_t samples = (uint64_t)(w->width + setup->corners) * (w->height + setup->corners);
+    const double samples = (double)(w->width + setup->corners) * (w->height + setup->corners);
+    double rays[RT_RAY_KIND_COUNT];
+    char part[RT_MAX_PART_TEXT];
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rays[k] = rt_results_weight(results, workload, (RtRayKind)k);
+    rt_results_say_part(results, 1u << workload, kinds_of(RT_FRAME_ALL), part);
     snprintf(out, RT_MAX_FRAME_TEXT,
-             "%" PRIu32 " object%s, %s frame of %" PRIu32 "x%" PRIu32 ": %" PRIu64 " primary, %" PRIu64
-             " shadow and %" PRIu64 " secondary rays",
-             w->objects, rt_plural(w->objects), w->rays[RT_RAY_PRIMARY] == samples ? "a" : "a part of a",
-             w->width, w->height, w->rays[RT_RAY_PRIMARY], w->rays[RT_RAY_SHADOW],
-             w->rays[RT_RAY_REFLECTION] + w->rays[RT_RAY_TRANSMISSION]);
+             "%" PRIu32 " object%s, %s frame of %" PRIu32 "x%" PRIu32
+             ": %.0f primary, %.0f shadow and %.0f secondary rays; %s",
+             w->objects, rt_plural(w->objects), rays[RT_RAY_PRIMARY] == samples ? "a" : "a part of a",
+             w->width, w->height, rays[RT_RAY_PRIMARY], rays[RT_RAY_SHADOW],
+             rays[RT_RAY_REFLECTION] + rays[RT_RAY_TRANSMISSION], part);
 }
 
 /* ---- to read ---- */
@@ -386,7 +380,7 @@ static void print_rows(const RtResults *results, uint32_t workload, FILE *out) {
 
 void rt_print_frames(const RtResults *results, FILE *out) {
     const RtExperiment *experiment = results->experiment;
-    char text[RT_MAX_FRAME_TEXT];
+    char text[RT_MAX_FRAME_TEXT], title[RT_MAX_LABEL + RT_MAX_FRAME_TEXT];
     fputc('\n', out);
     rt_frame_legend(experiment, ">", text);
     rt_print_wrapped(text, out);
@@ -394,7 +388,9 @@ void rt_print_frames(const RtResults *results, FILE *out) {
     for (uint32_t t = 0; t < experiment->workload_count; t++) {
         if (!results->workloads[t].known) continue;
         rt_frame_title(results, t, text);
-        fprintf(out, "\n%s: %s\n", experiment->workloads[t].label, text);
+        snprintf(title, sizeof title, "%s: %s", experiment->workloads[t].label, text);
+        fputc('\n', out);
+        rt_print_wrapped(title, out);
         print_rows(results, t, out);
     }
 }

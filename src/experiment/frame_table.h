@@ -2,10 +2,10 @@
 /* The cost of a whole frame by accelerator, compared with the frame without a structure: the answer of an
  * experiment that has `frame` (RtFrameSetup).
  *
- * A frame's rays are its primary, shadow, reflection and transmission rays. Each kind counts with all rays of
- * its set; measurements on every kth ray are scaled up. If one kind was not measured, the frame's cost is
- * unknown. The gain of an overlay is relative to the accelerator below it, if that is measured too; the gain
- * of any other accelerator is relative to no structure. */
+ * A frame's rays are its primary, shadow, reflection and transmission rays: measurements on a part of them
+ * are scaled up (rt_results_total). If one kind was not measured, the frame's cost is unknown. The gain of an
+ * overlay is relative to the accelerator below it, if that is measured too; the gain of any other accelerator
+ * is relative to no structure. */
 #ifndef RT_EXPERIMENT_FRAME_TABLE_H
 #define RT_EXPERIMENT_FRAME_TABLE_H
 
@@ -24,7 +24,7 @@ typedef enum RtFramePart {
 
 /* Over all rays of a part of the frame; NAN if unknown, or if the part has no rays. */
 typedef struct RtFrameCost {
-    uint64_t rays;
+    double rays;
     double object_tests;
     double seconds, low, high; /* median, and the sums of the ends of the kinds' intervals */
 } RtFrameCost;
@@ -35,6 +35,7 @@ typedef struct RtFrameRow {
     bool one;          /* a table to read, of one workload; else frame.csv, of all */
     uint32_t workload; /* of the row; given if `one` */
     uint32_t candidate;
+    char shown[2 + RT_MAX_SHOWN]; /* its mark and its label, for a screen */
     RtFrameCost cost[RT_FRAME_PARTS], without[RT_FRAME_PARTS];
     double gain, tests_gain; /* in time, and in object tests */
     uint32_t winner; /* the fastest of the group, without overlays; of the fewest object tests if nothing was
@@ -50,7 +51,8 @@ RtTable rt_frame_table(RtFrameRow *row);
  * unknown, NULL if memory is short. */
 char *rt_frame_sentence(const RtResults *results, uint32_t workload);
 
-/* The size of a workload's frame, and its rays by kind: "a frame of 256x256: 65536 primary, ... rays". */
+/* The size of a workload's frame, its rays by kind, and how many were measured: "a frame of 256x256: 65536
+ * primary, ... rays; of 326921 rays, 152585 measured". */
 #define RT_MAX_FRAME_TEXT 1024
 void rt_frame_title(const RtResults *results, uint32_t workload, char out[RT_MAX_FRAME_TEXT]);
 

@@ -12,6 +12,7 @@
 #define SET(CONSTANT, name, meaning)                                                                         \
     static const RtMember name##_members[] = {                                                               \
         RT_MEMBER(RtWorkloadResult, COUNT, "rays", rays[RT_RAY_##CONSTANT]),                                 \
+        RT_MEMBER(RtWorkloadResult, ADDED_COUNT, "whole_rays", whole_rays[RT_RAY_##CONSTANT]),               \
         RT_MEMBER(RtWorkloadResult, HASH, "hash", ray_fingerprints[RT_RAY_##CONSTANT])};
 RT_RAY_KINDS(SET)
 

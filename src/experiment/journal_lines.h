@@ -16,7 +16,8 @@ void rt_journal_line_take(RtRecordReader *reader, RtResults *results, const json
 /* Whether a line is about a candidate that has a layer of one of `plugins` (experiment/plugins_used.h). */
 bool rt_journal_line_concerns(const json_t *line, const RtExperiment *experiment, const json_t *plugins);
 
-/* The ray set of each kind in an RtWorkloadResult: how many rays, and their hash. */
+/* The ray set of each kind in an RtWorkloadResult: how many rays it has, and had before the limit, and its
+ * hash. */
 extern const RtRecord rt_ray_set_records[RT_RAY_KIND_COUNT];
 
 #endif

@@ -18,9 +18,9 @@ static json_t *scenes_json(const RtResults *results) {
             json_object_set_new(sets, rt_ray_kind_name(experiment->kinds[k]),
                                 rt_record_json(&rt_ray_set_records[experiment->kinds[k]], workload));
         json_array_append_new(
-            list, json_pack("{s:s, s:s, s:b, s:I, s:o, s:I, s:I, s:b, s:b, s:I, s:o}", "label",
-                            experiment->workloads[t].label, "scene", experiment->workloads[t].spec, "skipped",
-                            workload->skipped, "objects", (json_int_t)workload->objects, "hash",
+            list, json_pack("{s:s, s:s, s:b, s:I, s:o, s:I, s:I, s:b, s:b, s:I, s:o}", "scene",
+                            experiment->workloads[t].label, "scene_spec", experiment->workloads[t].spec,
+                            "skipped", workload->skipped, "objects", (json_int_t)workload->objects, "hash",
                             rt_json_hex(workload->scene), "width", (json_int_t)workload->width, "height",
                             (json_int_t)workload->height, "corners", experiment->workloads[t].corners,
                             "light_from_outside", experiment->workloads[t].light_from_outside, "depth",
@@ -39,7 +39,7 @@ static json_t *candidates_json(const RtExperiment *experiment) {
             json_array_append_new(scenes, json_string(experiment->workloads[t].label));
         }
         json_array_append_new(list,
-                              json_pack("{s:s, s:s, s:I, s:b, s:o}", "label", candidate->label, "accel",
+                              json_pack("{s:s, s:s, s:I, s:b, s:o}", "accel", candidate->label, "spec",
                                         candidate->spec, "ray_stride", (json_int_t)candidate->ray_stride,
                                         "missing", candidate->missing, "scenes", scenes));
     }

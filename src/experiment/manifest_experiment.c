@@ -10,10 +10,16 @@ static const json_t *entry_at(const json_t *manifest, size_t i) {
     return json_array_get(json_object_get(manifest, "accelerators"), i);
 }
 
+/* Version 1.0 wrote the label as "label", and the spec as "accel". */
+static const char *spec_of(const json_t *entry) {
+    const json_t *spec = json_object_get(entry, "spec");
+    return json_string_value(spec ? spec : json_object_get(entry, "accel"));
+}
+
 bool rt_manifest_candidate(const json_t *manifest, uint32_t i, RtCandidate *candidate) {
-    const json_t *entry = entry_at(manifest, i);
-    const char *spec = json_string_value(json_object_get(entry, "accel"));
-    const char *label = json_string_value(json_object_get(entry, "label"));
+    const json_t *entry = entry_at(manifest, i), *old = json_object_get(entry, "label");
+    const char *spec = spec_of(entry);
+    const char *label = json_string_value(old ? old : json_object_get(entry, "accel"));
     if (!spec || !label) return false;
     snprintf(candidate->spec, sizeof candidate->spec, "%s", spec);
     snprintf(candidate->label, sizeof candidate->label, "%s", label);
@@ -42,7 +48,7 @@ static bool is_whole_in(const char *layer, const char *owner, const char *key) {
 bool rt_manifest_is_whole(const json_t *manifest, const char *owner, const char *key) {
     const json_t *list = json_object_get(manifest, "accelerators");
     for (size_t i = 0; i < json_array_size(list); i++) {
-        const char *layer = json_string_value(json_object_get(json_array_get(list, i), "accel"));
+        const char *layer = spec_of(json_array_get(list, i));
         for (; layer; layer = strchr(layer, '+') ? strchr(layer, '+') + 1 : NULL) {
             if (!is_whole_in(layer, owner, key)) return false;
         }

@@ -18,7 +18,8 @@ void rt_interval_title(const RtExperiment *experiment, char out[RT_MAX_INTERVAL_
 
 /* ---- one workload ---- */
 
-static void print_title(const RtResults *results, uint32_t t, FILE *out) {
+/* `totals`: of a table of all kinds of rays together. */
+static void print_title(const RtResults *results, uint32_t t, bool totals, FILE *out) {
     const RtExperiment *experiment = results->experiment;
     const RtWorkloadResult *workload = &results->workloads[t];
     fprintf(out, "\n%s: %" PRIu32 " object%s, ", experiment->workloads[t].label, workload->objects,
@@ -29,6 +30,9 @@ static void print_title(const RtResults *results, uint32_t t, FILE *out) {
         fprintf(out, "%" PRIu32 "x%" PRIu32 ", depth %" PRIu32 ", seed %" PRIu64, workload->width,
                 workload->height, experiment->workloads[t].depth, experiment->seed);
     }
+    char part[RT_MAX_PART_TEXT];
+    rt_results_say_part(results, 1u << t, rt_experiment_kinds(experiment), part);
+    if (totals) fprintf(out, "; %s", part);
     fputc('\n', out);
 }
 
@@ -238,6 +242,16 @@ static void print_builds(const RtResults *results, uint32_t t, FILE *out) {
     rt_print_wrapped(text, out);
 }
 
+/* Over which rays a break-even is. */
+static void print_break_even(const RtResults *results, uint32_t t, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    char part[RT_MAX_PART_TEXT], text[RT_MAX_SENTENCE];
+    if (experiment->kind_count < 2 || experiment->candidate_count < 2) return;
+    rt_results_say_part(results, 1u << t, rt_experiment_kinds(experiment), part);
+    snprintf(text, sizeof text, "Break-evens are over all kinds of rays together: %s.", part);
+    rt_print_wrapped(text, out);
+}
+
 static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
     uint32_t least = 0, most = rt_results_rounds(results, t, &least);
     const bool timed = most > 0;
@@ -248,6 +262,7 @@ static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
     print_differing(results, t, out);
     rt_print_rows(results, timed ? RT_STRUCTURES : RT_COUNTED_STRUCTURES, t, out);
     if (timed) print_builds(results, t, out);
+    if (timed) print_break_even(results, t, out);
 }
 
 void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) {
@@ -256,7 +271,7 @@ void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) 
         RtResultRow row = {.results = results, .workload = t};
         RtTable table = rt_result_table(which, &row);
         if (!results->workloads[t].known) continue;
-        print_title(results, t, out);
+        print_title(results, t, which == RT_TOTALS, out);
         if (which == RT_CELLS) {
             print_cells(results, t, out);
         } else {

@@ -25,6 +25,7 @@ static json_t *member_json(const RtMember *m, const void *from) {
     case RT_MEMBER_ADDED:
     case RT_MEMBER_U32: return json_integer(*(const uint32_t *)at);
     case RT_MEMBER_INT: return json_integer(*(const int *)at);
+    case RT_MEMBER_ADDED_COUNT:
     case RT_MEMBER_COUNT: return json_integer(*(const int64_t *)at);
     case RT_MEMBER_HASH: return rt_json_hex(*(const uint64_t *)at);
     case RT_MEMBER_TEXT: return json_string(at);
@@ -103,6 +104,7 @@ static void take_member(RtRecordReader *reader, const RtMember *m, void *to, con
     case RT_MEMBER_ADDED: *(uint32_t *)at = value ? (uint32_t)take_integer(reader, m, value) : 0; return;
     case RT_MEMBER_U32: *(uint32_t *)at = (uint32_t)take_integer(reader, m, value); return;
     case RT_MEMBER_INT: *(int *)at = (int)take_integer(reader, m, value); return;
+    case RT_MEMBER_ADDED_COUNT: *(uint64_t *)at = value ? take_integer(reader, m, value) : 0; return;
     case RT_MEMBER_COUNT: *(uint64_t *)at = take_integer(reader, m, value); return;
     case RT_MEMBER_HASH:
         *(uint64_t *)at = rt_json_parse_hex(value, &good);

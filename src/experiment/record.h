@@ -15,17 +15,18 @@
 
 /* The C type of a member, and its JSON. */
 typedef enum RtMemberForm {
-    RT_MEMBER_FLAG,     /* bool: true or false */
-    RT_MEMBER_U32,      /* uint32_t: an integer */
-    RT_MEMBER_ADDED,    /* the same; 0: missing, as in journals of older versions */
-    RT_MEMBER_INT,      /* int: an integer, 0 or more */
-    RT_MEMBER_COUNT,    /* uint64_t: an integer, up to INT64_MAX */
-    RT_MEMBER_HASH,     /* uint64_t: 16 hexadecimal digits */
-    RT_MEMBER_TEXT,     /* char[]: a string; missing: "" */
-    RT_MEMBER_NUMBER,   /* double: a number; NAN: null, or missing */
-    RT_MEMBER_ESTIMATE, /* RtEstimate: [median, low, high, least], each 0 or more; or one number for all */
-    RT_MEMBER_RATIO,    /* the same; NAN: null */
-    RT_MEMBER_OBJECT    /* members of the same struct, as an object of their own */
+    RT_MEMBER_FLAG,        /* bool: true or false */
+    RT_MEMBER_U32,         /* uint32_t: an integer */
+    RT_MEMBER_ADDED,       /* the same; 0: missing, as in journals of older versions */
+    RT_MEMBER_ADDED_COUNT, /* uint64_t, likewise */
+    RT_MEMBER_INT,         /* int: an integer, 0 or more */
+    RT_MEMBER_COUNT,       /* uint64_t: an integer, up to INT64_MAX */
+    RT_MEMBER_HASH,        /* uint64_t: 16 hexadecimal digits */
+    RT_MEMBER_TEXT,        /* char[]: a string; missing: "" */
+    RT_MEMBER_NUMBER,      /* double: a number; NAN: null, or missing */
+    RT_MEMBER_ESTIMATE,    /* RtEstimate: [median, low, high, least], each 0 or more; or one number for all */
+    RT_MEMBER_RATIO,       /* the same; NAN: null */
+    RT_MEMBER_OBJECT       /* members of the same struct, as an object of their own */
 } RtMemberForm;
 
 typedef struct RtRecord RtRecord;

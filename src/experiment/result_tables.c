@@ -61,8 +61,7 @@ static RtField break_even_of(const Row *r) {
 }
 
 void rt_result_eye_label(const RtResultRow *r, char out[RT_MAX_EYE_LABEL]) {
-    snprintf(out, RT_MAX_EYE_LABEL, "%s%s", rt_candidate_label(r->results->experiment, r->candidate),
-             ray_stride_of(r) > 1 ? " *" : "");
+    snprintf(out, RT_MAX_EYE_LABEL, "%s%s", r->shown, ray_stride_of(r) > 1 ? " *" : "");
 }
 
 /* A counter; missing if its value per ray is unknown. */
@@ -132,7 +131,8 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
 
 #define COLUMNS(X)                                                                                           \
     X(scene, "scene", text, "", "the scene's label in the experiment", r->setup->label)                      \
-    X(scene_spec, "scene", text, "", "the scene as it is opened: a file, or a built-in", r->setup->spec)     \
+    X(scene_spec, "scene_spec", text, "", "the scene as it is opened: a file, or a built-in",                \
+      r->setup->spec)                                                                                        \
     X(objects, "objects", integer, "", "objects in the scene", r->scene->objects)                            \
     X(scene_hash, "scene_hash", hash, "", "fingerprint of the scene", r->scene->scene)                       \
     X(width, "width", integer, "pixels", "width of the frame whose rays are recorded", r->scene->width)      \
@@ -142,9 +142,9 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
     X(kind, "kind", text, "", "kind of the rays", rt_experiment_kind_name(r->results->experiment, r->kind))  \
     X(set_rays, "set_rays", integer, "", "rays in the set, after the limit", r->scene->rays[r->kind])        \
     X(set_hash, "set_hash", hash, "", "fingerprint of the set", r->scene->ray_fingerprints[r->kind])         \
-    X(accel, "accelerator", text, "", "the accelerator's label in the experiment; (again): a null run",      \
+    X(accel, "accel", text, "", "the accelerator's label in the experiment; (again): a null run",            \
       label_of(r))                                                                                           \
-    X(spec, "accel", text, "", "the accelerator with every effective parameter", r->build->spec)             \
+    X(spec, "spec", text, "", "the accelerator with every effective parameter", r->build->spec)              \
     X(ray_stride, "ray_stride", integer, "", "k, if only every kth ray of the set is measured",              \
       ray_stride_of(r))                                                                                      \
     X(rays, "rays", integer, "", "rays measured", r->cost.rays)                                              \
@@ -159,7 +159,7 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
     X(threads, "threads", integer, "", "threads of the timing", threads_of(r))                               \
     X(rounds, "rounds", integer, "", "timing rounds", r->cell->rounds)                                       \
     X(repeats, "repeats", real6, "", "passes over the rays in a round", TIMED(r->cell->repeats))             \
-    X(coverage, "ratio_coverage", real6, "", "probability that an interval contains the median",             \
+    X(coverage, "coverage", real6, "", "probability that an interval contains the median",                   \
       TIMED(rt_interval_coverage(r->cell->rounds)))                                                          \
     ESTIMATE(X, ns, "ns", "processor time per ray (wall time on several threads)", 1e9, r->cell->seconds)    \
     X(ns_min, "ns_min", real6, "ns", "smallest time", 1e9 * r->cell->seconds.least)                          \
@@ -217,6 +217,8 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
     X(ns_a_ray, "ns/ray", figure, "ns", "median time per ray", 1e9 * r->cost.seconds.median)                 \
     X(ns_interval, "ns/ray", interval, "ns", "median time per ray, with its interval",                       \
       estimate(&r->cost.seconds, 1e-9))                                                                      \
+    X(label, "accelerator", text, "", "the label", label_of(r))                                              \
+    X(shown, "accelerator", text, "", "the label, shortened if it is long", r->shown)                        \
     X(eye_label, "accelerator", text, "", "the label, if there is room", short_label_of(r))                  \
     X(eye_tests, "tests", figure, "", "object tests per ray", r->cost.object_tests)                          \
     X(eye_extents, "ext.", figure, "", "extent tests per ray", r->cost.extent_tests)                         \
@@ -295,13 +297,13 @@ enum {
     X(RENDERED, ALL_SCENES | SWEPT, r->build->render.known && r->kind == e->kinds[0],                        \
       FROM_TO(scene, objects), FROM_TO(width, depth), FROM_TO(accel, spec), ONE(threads),                    \
       FROM_TO(render_rounds, query_share_high), FROM_TO(host, cpu))                                          \
-    X(BENCH, SWEPT, (counted && !null) || refused, ONE(scene_spec), FROM_TO(accel, ray_stride), ONE(kind),   \
-      ONE(refused), MEASURED(rays, bytes),                                                                   \
+    X(BENCH, SWEPT, (counted && !null) || refused, FROM_TO(scene, scene_spec), FROM_TO(accel, ray_stride),   \
+      ONE(kind), ONE(refused), MEASURED(rays, bytes),                                                        \
       {"structure", rt_structure_columns, RT_STRUCTURE_COLUMNS, structure_of},                               \
       {"structure.build", rt_tally_columns, RT_TALLY_COUNTER_COUNT, build_of},                               \
       {"counts", rt_tally_columns, RT_TALLY_COUNTER_COUNT, known_tally_of}, MEASURED(differ, differ),        \
       MEASURED(threads, mrays_per_s), MEASURED(msteps_per_s, mtests_per_s), MEASURED(baseline, ratio_high))  \
-    X(NULL_RUNS, 0, (timed && null), ONE(scene_spec), ONE(kind), FROM_TO(accel, spec), ONE(rays),            \
+    X(NULL_RUNS, 0, (timed && null), FROM_TO(scene, scene_spec), ONE(kind), FROM_TO(accel, spec), ONE(rays), \
       FROM_TO(build_seconds, straddles_1))                                                                   \
     X(CELLS, 0, (counted || timed) && !is_lost(r, r->cell), FROM_TO(eye_label, interval))                    \
     X(STRUCTURES, 0, (first && is_shown(r)), ONE(eye_label), FROM_TO(build_ms, break_even))                  \
@@ -314,12 +316,12 @@ enum {
     X(HARDWARE_CELLS, 0, r->cell->hardware.known && !*r->cell->hardware.why, ONE(eye_label),                 \
       FROM_TO(eye_instructions, eye_branch))                                                                 \
     X(RENDER_ROWS, 0, (first && r->build->render.known), ONE(eye_label), FROM_TO(eye_render, eye_share))     \
-    X(CELLS_MORE, BEST, counted || timed, ONE(accel), ONE(kind), ONE(rays),                                  \
+    X(CELLS_MORE, BEST, counted || timed, ONE(label), ONE(kind), ONE(rays),                                  \
       FROM_TO(tests_a_ray, steps_a_ray), ONE(ns_interval), FROM_TO(mrays, interval), ONE(min_ns),            \
       ONE(differ))                                                                                           \
-    X(TOTALS, ALL_KINDS | BEST, first && r->build->known, ONE(accel), ONE(rays),                             \
+    X(TOTALS, ALL_KINDS | BEST, first && r->build->known, ONE(shown), ONE(rays),                             \
       FROM_TO(tests_a_ray, ns_a_ray), FROM_TO(interval, break_even))                                         \
-    X(TOTALS_MORE, ALL_KINDS | BEST, first && r->build->known, ONE(accel), ONE(rays),                        \
+    X(TOTALS_MORE, ALL_KINDS | BEST, first && r->build->known, ONE(label), ONE(rays),                        \
       FROM_TO(tests_a_ray, steps_a_ray), ONE(ns_interval), FROM_TO(interval, break_even))
 
 static const struct {
@@ -383,6 +385,7 @@ static const void *row_at(void *context, size_t i) {
     const bool counted = r->cell->counted, timed = r->cell->timed;
     const bool refused = !null && r->build->refused && !r->results->old_rows && r->scene->rays[r->kind] > 0;
     r->cost = rt_results_cost(r->results, r->workload, r->candidate, kinds_of(r));
+    rt_candidate_show(e, r->candidate, r->shown);
     const bool there[] = {
 #define ROWS(id, has, rows, ...) [RT_##id] = rows,
         TABLES(ROWS)

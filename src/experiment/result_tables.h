@@ -46,6 +46,7 @@ typedef struct RtResultRow {
     RtResultTable which;
     uint32_t workload; /* of tables of one workload */
     uint32_t candidate;
+    char shown[RT_MAX_SHOWN]; /* its label on a screen */
     RtRayKind kind;
     uint32_t round, most_rounds; /* of RT_ROUNDS; most_rounds: of any cell */
     const RtWorkload *setup;
@@ -70,7 +71,7 @@ bool rt_result_table_sweeps(RtResultTable which);
 /* The label of a row in tables to read, with a star if it is measured on a part of the rays. A label of more
  * than RT_EYE_WIDTH characters is printed on its own line. */
 #define RT_EYE_WIDTH     24
-#define RT_MAX_EYE_LABEL (RT_MAX_LABEL + 16)
+#define RT_MAX_EYE_LABEL (RT_MAX_SHOWN + 8)
 void rt_result_eye_label(const RtResultRow *row, char out[RT_MAX_EYE_LABEL]);
 
 /* The time to build in ms, with its interval: without one if it was built once. */

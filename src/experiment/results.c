@@ -78,6 +78,16 @@ const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidat
                                                    : experiment->again;
 }
 
+void rt_candidate_show(const RtExperiment *experiment, uint32_t candidate, char out[RT_MAX_SHOWN]) {
+    const bool null = candidate == experiment->candidate_count;
+    if (candidate == RT_FASTEST_BASELINE)
+        snprintf(out, RT_MAX_SHOWN, "%s", rt_baseline_label(experiment));
+    else
+        snprintf(out, RT_MAX_SHOWN, "%s%s",
+                 experiment->candidates[null ? experiment->baseline : candidate].shown,
+                 null ? " (again)" : "");
+}
+
 bool rt_results_next(const RtResults *results, RtCellCursor *at) {
     const RtExperiment *e = results->experiment;
     const uint32_t i = at->next++;
@@ -201,57 +211,107 @@ static double per_ray(const RtCell *cell, const RtBuildResult *build, uint64_t c
     return known ? (double)counter / (double)cell->tally.rays : (double)NAN;
 }
 
+/* The seconds that a ray of the cell takes less than the baseline's. */
+static RtEstimate saved_by(const RtCell *cell) {
+    const RtEstimate *ratio = &cell->ratio, *wall = &cell->wall;
+    return (RtEstimate){.median = (ratio->median - 1) * wall->median,
+                        .low = (ratio->low - 1) * (ratio->low > 1 ? wall->low : wall->high),
+                        .high = (ratio->high - 1) * (ratio->high > 1 ? wall->high : wall->low)};
+}
+
 static RtCost cost_of_cell(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
-    const double unknown = (double)NAN;
-    const RtEstimate none = rt_estimate_exactly(unknown);
-    candidate = rt_results_candidate(results, workload, candidate, kind);
-    if (candidate == RT_FASTEST_BASELINE)
-        return (RtCost){true, 0, unknown, unknown, unknown, unknown, none, none};
-    const RtBuildResult *build = rt_build_at(results, workload, candidate);
-    const RtCell *cell = rt_cell_at(results, workload, candidate, kind);
+    static const RtBuildResult no_build = {0};
+    static const RtCell no_cell = {0};
+    const RtEstimate none = rt_estimate_exactly((double)NAN);
+    const uint32_t c = rt_results_candidate(results, workload, candidate, kind);
+    const bool known = c != RT_FASTEST_BASELINE;
+    const RtBuildResult *build = known ? rt_build_at(results, workload, c) : &no_build;
+    const RtCell *cell = known ? rt_cell_at(results, workload, c, kind) : &no_cell;
     return (RtCost){.whole = true,
                     .rays = cell->tally.rays,
-                    .object_tests = per_ray(cell, build, cell->tally.object_tests),
-                    .extent_tests = per_ray(cell, build, cell->tally.extent_tests),
-                    .steps = per_ray(cell, build, cell->tally.steps),
-                    .csg_tests = per_ray(cell, build, cell->tally.csg_tests),
-                    .seconds = cell->timed ? cell->seconds : none,
+                    .weight = 1,
+#define PER_RAY(name) .name = per_ray(cell, build, cell->tally.name),
+                    RT_COST_COUNTERS(PER_RAY)
+#undef PER_RAY
+                        .seconds = cell->timed ? cell->seconds : none,
+                    .saved = cell->timed ? saved_by(cell) : none,
                     .ratio = cell->timed ? cell->ratio : none};
 }
 
-RtCost rt_results_cost(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
-    const RtExperiment *experiment = results->experiment;
+double rt_results_weight(const RtResults *results, uint32_t workload, RtRayKind kind) {
+    const RtWorkloadResult *w = &results->workloads[workload];
+    return (double)(w->rays[kind] && w->whole_rays[kind] ? w->whole_rays[kind] : w->rays[kind]);
+}
+
+static void add_weighed(RtEstimate *sum, const RtEstimate *estimate, double weight) {
+    sum->median += weight * estimate->median;
+    sum->low += weight * estimate->low;
+    sum->high += weight * estimate->high;
+}
+
+RtCost rt_results_total(const RtResults *results, uint32_t workload, uint32_t candidate, RtKinds kinds) {
     const double unknown = (double)NAN;
-    double weights = 0, baseline = 0;
-    RtCost sum = {.whole = true, .seconds.least = unknown};
-    if (kind != RT_ALL_RAYS) return cost_of_cell(results, workload, candidate, kind);
-    for (uint32_t k = 0; k < experiment->kind_count; k++) {
-        const RtCost cost = cost_of_cell(results, workload, candidate, experiment->kinds[k]);
-        const double weight = (double)results->workloads[workload].rays[experiment->kinds[k]];
-        if (weight == 0) continue;
-        const bool measured = rt_results_has_kind(results, workload, experiment->kinds[k]);
+    double baseline = 0;
+    RtCost sum = {.whole = true, .seconds.least = unknown, .saved.least = unknown};
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        const double weight = rt_results_weight(results, workload, (RtRayKind)k);
+        if (weight == 0 || !(kinds >> k & 1)) continue;
+        const bool measured = rt_results_has_kind(results, workload, (RtRayKind)k);
         sum.whole &= measured;
         if (!measured) continue;
-        weights += weight;
+        const RtCost cost = cost_of_cell(results, workload, candidate, (RtRayKind)k);
+        sum.weight += weight;
         sum.rays += cost.rays;
-        sum.object_tests += weight * cost.object_tests;
-        sum.extent_tests += weight * cost.extent_tests;
-        sum.steps += weight * cost.steps;
-        sum.csg_tests += weight * cost.csg_tests;
-        sum.seconds.median += weight * cost.seconds.median;
-        sum.seconds.low += weight * cost.seconds.low;
-        sum.seconds.high += weight * cost.seconds.high;
+#define ADD(name) sum.name += weight * cost.name;
+        RT_COST_COUNTERS(ADD)
+#undef ADD
+        add_weighed(&sum.seconds, &cost.seconds, weight);
+        add_weighed(&sum.saved, &cost.saved, weight);
         baseline += weight * (cost.ratio.median * cost.seconds.median);
     }
     sum.ratio = (RtEstimate){baseline / sum.seconds.median, unknown, unknown, unknown};
-    sum.object_tests /= weights; /* 0 / 0 is NAN: unknown */
-    sum.extent_tests /= weights;
-    sum.steps /= weights;
-    sum.csg_tests /= weights;
-    sum.seconds.median /= weights;
-    sum.seconds.low /= weights;
-    sum.seconds.high /= weights;
     return sum;
+}
+
+RtKinds rt_experiment_kinds(const RtExperiment *experiment) {
+    RtKinds kinds = 0;
+    for (uint32_t k = 0; k < experiment->kind_count; k++) kinds |= 1u << experiment->kinds[k];
+    return kinds;
+}
+
+RtCost rt_results_cost(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
+    if (kind != RT_ALL_RAYS) return cost_of_cell(results, workload, candidate, kind);
+    RtCost mean = rt_results_total(results, workload, candidate, rt_experiment_kinds(results->experiment));
+#define DIVIDE(name) mean.name /= mean.weight; /* 0 / 0 is NAN: unknown */
+    RT_COST_COUNTERS(DIVIDE)
+#undef DIVIDE
+    RtEstimate *const estimates[] = {&mean.seconds, &mean.saved};
+    for (int i = 0; i < 2; i++) {
+        estimates[i]->median /= mean.weight;
+        estimates[i]->low /= mean.weight;
+        estimates[i]->high /= mean.weight;
+    }
+    return mean;
+}
+
+void rt_results_say_part(const RtResults *results, uint32_t workloads, RtKinds kinds,
+                         char out[RT_MAX_PART_TEXT]) {
+    double rays = 0, whole = 0;
+    bool known = true;
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        const RtWorkloadResult *w = &results->workloads[t];
+        for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+            if (!(workloads >> t & 1) || !(kinds >> k & 1)) continue;
+            known &= w->rays[k] == 0 || w->whole_rays[k] > 0;
+            const double weight = rt_results_weight(results, t, (RtRayKind)k);
+            rays += fmin((double)w->rays[k], weight); /* there may be more random ones */
+            whole += weight;
+        }
+    }
+    if (known)
+        snprintf(out, RT_MAX_PART_TEXT, "of %.0f rays, %.0f measured", whole, rays);
+    else
+        snprintf(out, RT_MAX_PART_TEXT, "of the measured part");
 }
 
 /* Rays that save as much time as the build takes more, both above 0; else none or any. */
@@ -278,33 +338,18 @@ static void set_rays(RtBreakEven *even, const RtEstimate *more, const RtEstimate
     }
 }
 
-/* Adds the seconds that a ray of the cell takes less than the baseline's, to the weighted sums. */
-static void add_saved(RtEstimate *saved, const RtCell *cell, double weight) {
-    const RtEstimate *ratio = &cell->ratio, *wall = &cell->wall;
-    saved->median += weight * (ratio->median - 1) * wall->median;
-    saved->low += weight * (ratio->low - 1) * (ratio->low > 1 ? wall->low : wall->high);
-    saved->high += weight * (ratio->high - 1) * (ratio->high > 1 ? wall->high : wall->low);
-}
-
 RtBreakEven rt_results_break_even(const RtResults *results, uint32_t workload, uint32_t candidate) {
     const double unknown = (double)NAN;
     const RtBuildResult *own = rt_build_at(results, workload, candidate), *baseline = NULL;
     RtBreakEven even = {.rays = rt_estimate_exactly(unknown)};
-    RtEstimate saved = {0};
-    double weights = 0;
-    if (rt_candidate_is_baseline(results->experiment, candidate)) return even;
+    const RtEstimate saved = rt_results_cost(results, workload, candidate, RT_ALL_RAYS).saved;
+    if (rt_candidate_is_baseline(results->experiment, candidate) || isnan(saved.median)) return even;
     for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
         const RtCell *cell = rt_cell_at(results, workload, candidate, (RtRayKind)k);
-        const double weight = (double)results->workloads[workload].rays[k];
-        if (!rt_results_has_kind(results, workload, (RtRayKind)k)) continue;
-        if (!cell->timed) return even;
-        add_saved(&saved, cell, weight);
-        weights += weight;
+        if (!cell->timed) continue;
         const RtBuildResult *build = rt_build_at(results, workload, cell->baseline);
         if (!baseline || build->seconds.median < baseline->seconds.median) baseline = build;
     }
-    if (!(weights > 0)) return even;
-    saved = (RtEstimate){saved.median / weights, saved.low / weights, saved.high / weights, unknown};
     const RtEstimate *a = &own->seconds, *b = &baseline->seconds,
                      more = {a->median - b->median, a->low - b->high, a->high - b->low, unknown};
     set_rays(&even, &more, &saved);

@@ -16,6 +16,10 @@
 
 #define RT_MAX_LEFT_OUT 512
 
+/* A set of ray kinds: a bit 1 << kind for each. */
+typedef uint32_t RtKinds;
+RtKinds rt_experiment_kinds(const RtExperiment *experiment);
+
 typedef struct RtWorkloadResult {
     bool known;   /* the scene was opened and its rays recorded */
     bool skipped; /* optional, and its file is missing */
@@ -23,6 +27,8 @@ typedef struct RtWorkloadResult {
     uint32_t width, height;                       /* of the frame */
     uint64_t scene;                               /* rt_scene_fingerprint */
     uint64_t rays[RT_RAY_KIND_COUNT];             /* in the set, after the limit */
+    uint64_t whole_rays[RT_RAY_KIND_COUNT];       /* in the whole set, before it; 0: unknown, as in results
+                                                     of version 1.0 (rt_workload_record) */
     uint64_t ray_fingerprints[RT_RAY_KIND_COUNT]; /* of the set */
 } RtWorkloadResult;
 
@@ -128,6 +134,10 @@ uint32_t rt_results_candidate(const RtResults *results, uint32_t workload, uint3
  * rt_baseline_label. */
 const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidate);
 
+/* The same for a screen (RtWorkload.shown). */
+#define RT_MAX_SHOWN (RT_MAX_LABEL + 8)
+void rt_candidate_show(const RtExperiment *experiment, uint32_t candidate, char out[RT_MAX_SHOWN]);
+
 /* Every cell of the experiment except null runs, scene by scene, accelerator by accelerator:
  *     for (RtCellCursor at = {0}; rt_results_next(results, &at);) use(at.cell); */
 typedef struct RtCellCursor {
@@ -167,22 +177,43 @@ void rt_print_left_out(const RtResults *results, FILE *out);
 /* Whether any candidate was measured on the workload's rays of that kind. */
 bool rt_results_has_kind(const RtResults *results, uint32_t workload, RtRayKind kind);
 
-/* The cost of a ray: of one kind, or of all kinds together (RT_ALL_RAYS). Together each kind has the weight
- * of its unthinned set, to make thinned and full measurements comparable; all candidates of a workload use
- * the kinds that any of them was measured on. `candidate` may be RT_FASTEST_BASELINE. Unknown values are NAN.
- */
-#define RT_ALL_RAYS RT_RAY_KIND_COUNT
+/* What a ray kind weighs in every sum over kinds: the rays of its whole set, so that a lower limit changes no
+ * total; of the measured set if the size of the whole is unknown. */
+double rt_results_weight(const RtResults *results, uint32_t workload, RtRayKind kind);
+
+/* Beside a total: "of 326921 rays, 152585 measured", or "of the measured part" if the size of a whole set is
+ * unknown. `workloads`: a bit 1 << t for each. */
+#define RT_MAX_PART_TEXT 64
+void rt_results_say_part(const RtResults *results, uint32_t workloads, RtKinds kinds,
+                         char out[RT_MAX_PART_TEXT]);
+
+/* Counters of costs: X(name), as in RtTally. */
+#define RT_COST_COUNTERS(X)                                                                                  \
+    X(hits) X(object_tests) X(extent_tests) X(steps) X(leaf_steps) X(empty_steps) X(csg_tests)
+
+/* A cost: of a ray, or the total of many. Unknown values are NAN. */
 typedef struct RtCost {
-    bool whole;                                          /* it includes all kinds of rays of the experiment */
-    uint64_t rays;                                       /* measured */
-    double object_tests, extent_tests, steps, csg_tests; /* per ray */
-    RtEstimate seconds; /* per ray; for all kinds the weighted ends of their intervals: conservative */
-    RtEstimate ratio;   /* of throughput to the baseline's on the same rays; for all kinds only the median */
+    bool whole;    /* it includes all kinds of rays that it is asked for */
+    uint64_t rays; /* measured */
+    double weight; /* rays that it stands for */
+#define RT_COST_COUNTER(name) double name;
+    RT_COST_COUNTERS(RT_COST_COUNTER)
+#undef RT_COST_COUNTER
+    RtEstimate seconds; /* of several kinds the weighted ends of their intervals: conservative */
+    RtEstimate saved;   /* wall seconds less than the baseline on the same rays, conservative; no `least` */
+    RtEstimate ratio;   /* of throughput to the baseline's on the same rays; of several kinds the median */
 } RtCost;
 
+/* The cost of a ray: of one kind, or of all kinds of the experiment together (RT_ALL_RAYS), each with its
+ * weight; all candidates of a workload use the kinds that any of them was measured on. `candidate` may be
+ * RT_FASTEST_BASELINE. */
+#define RT_ALL_RAYS RT_RAY_KIND_COUNT
 RtCost rt_results_cost(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind);
 
-/* The break-even with the baseline: the number of rays, of all kinds in proportion to their sets, from which
+/* The total of the whole sets of several kinds: the cost of a ray of each times its weight. */
+RtCost rt_results_total(const RtResults *results, uint32_t workload, uint32_t candidate, RtKinds kinds);
+
+/* The break-even with the baseline: the number of rays, of all kinds by their weights, from which
  * on a candidate takes less time than the baseline, builds included (of several baselines the shortest
  * build); or up to which, if it builds faster and traces slower. The interval follows from the ends of those
  * of builds, ratios and times, and so is conservative. Assumes builds on as many threads as the timing. */

@@ -10,7 +10,7 @@
  * number, values are rounded and duplicates dropped. The characters are unambiguous: no other value has two
  * dots or a bar, and a '+' before a digit never separates accelerators. */
 #include "core/base/words.h"
-#include "experiment/experiment.h"
+#include "experiment/labels.h"
 #include "experiment/manifest_experiment.h"
 #include "scenes/builtin.h"
 
@@ -47,13 +47,6 @@ bool rt_swept_logarithmic(const double *values, uint32_t count) {
         step[1] = fmax(step[1], d);
     }
     return quotient[1] / quotient[0] < step[1] / step[0];
-}
-
-void rt_swept_name(const RtSwept *swept, const char *but, char *out, size_t size) {
-    for (uint32_t i = 0; i < swept->count; i++) {
-        if (but && strcmp(swept->keys[i], but) == 0) continue;
-        rt_append_text(out, size, ":%s=%s", swept->keys[i], swept->values[i]);
-    }
 }
 
 /* ---- values ---- */
@@ -263,42 +256,11 @@ static void stem_of(const Sweep *sweep, char *out, size_t size) {
     out[used] = '\0';
 }
 
-/* ---- labels ---- */
-
-bool rt_may_label(char c) {
-    return isgraph((unsigned char)c) && !strchr("\"'`/\\$&<>@^{}", c);
-}
-
-/* Appends the swept values to the given label, their stem. */
-static RtStatus label_one(const char *given, const RtSwept *swept, char stem[RT_MAX_LABEL],
-                          char label[RT_MAX_LABEL], RtError *error) {
-    char whole[RT_MAX_LABEL + RT_MAX_SWEPT * (RT_MAX_NAME + RT_MAX_SWEPT_CHARS + 2)];
-    strcpy(stem, given);
-    snprintf(whole, sizeof whole, "%s", given);
-    rt_swept_name(swept, NULL, whole, sizeof whole);
-    if (strlen(whole) >= RT_MAX_LABEL) {
-        return rt_fail(error, RT_BAD_INPUT, "'%s' is longer than %d characters: give a short `label`", whole,
-                       RT_MAX_LABEL - 1);
-    }
-    strcpy(label, whole);
-    return RT_OK;
-}
-
 /* ---- scenes ---- */
-
-/* The file's name without folder and extension, or the built-in's spec. */
-static void name_scene(const char *spec, bool file, char label[RT_MAX_LABEL]) {
-    const char *start = file ? basename(spec) : spec;
-    size_t length = file ? strcspn(start, ".") : strlen(start);
-    snprintf(label, RT_MAX_LABEL, "%.*s", (int)length, start);
-    for (char *c = label; *c; c++) {
-        if (!rt_may_label(*c)) *c = '_';
-    }
-}
 
 static RtStatus add_scene(RtExperiment *experiment, const RtWorkload *like, const Sweep *sweep, uint32_t i,
                           const char *folder, RtError *error) {
-    char spec[RT_MAX_SPEC_CHARS], stem[RT_MAX_SCENE_NAME];
+    char spec[RT_MAX_SPEC_CHARS], stem[RT_MAX_SPEC_CHARS];
     if (experiment->workload_count == RT_MAX_WORKLOADS) {
         return rt_fail(error, RT_BAD_INPUT, "there are more than %d scenes: sweep fewer values",
                        RT_MAX_WORKLOADS);
@@ -314,9 +276,9 @@ static RtStatus add_scene(RtExperiment *experiment, const RtWorkload *like, cons
     workload->file = strcspn(spec, "./") < strcspn(spec, ":");
     RT_TRY(rt_path_join(workload->file ? folder : "", spec, workload->path, error));
     stem_of(sweep, stem, sizeof stem);
-    if (*like->label) return label_one(like->label, &workload->swept, workload->stem, workload->label, error);
-    name_scene(stem, workload->file, workload->stem);
-    name_scene(spec, workload->file, workload->label);
+    if (*like->label)
+        return rt_label_sweep(like->label, &workload->swept, workload->stem, workload->label, error);
+    rt_label_scene(experiment, workload, stem, spec);
     return RT_OK;
 }
 
@@ -330,13 +292,6 @@ RtStatus rt_experiment_add_scenes(RtExperiment *experiment, const RtWorkload *li
 
 /* ---- accelerators ---- */
 
-/* Truncated specs may make equal labels. */
-static bool is_taken(const RtExperiment *experiment, const RtCandidate *candidate) {
-    const RtCandidate *other = experiment->candidates;
-    while (strcmp(other->label, candidate->label) != 0) other++;
-    return other != candidate;
-}
-
 static RtStatus add_accel(RtExperiment *experiment, const RtCandidate *like, const Sweep *sweep, uint32_t i,
                           RtError *error) {
     if (experiment->candidate_count == RT_MAX_CANDIDATES) {
@@ -349,12 +304,9 @@ static RtStatus add_accel(RtExperiment *experiment, const RtCandidate *like, con
     RT_TRY(spec_at(sweep, i, spec, &candidate->swept, error));
     strcpy(candidate->spec, spec);
     if (*like->label)
-        return label_one(like->label, &candidate->swept, candidate->stem, candidate->label, error);
-    stem_of(sweep, candidate->stem, RT_MAX_LABEL);
-    snprintf(candidate->label, RT_MAX_LABEL, "%.*s", RT_MAX_LABEL - 1, spec);
-    if (strlen(spec) >= RT_MAX_LABEL && is_taken(experiment, candidate))
-        snprintf(candidate->label, RT_MAX_LABEL, "%.*s...%u", RT_MAX_LABEL - 8, spec,
-                 experiment->candidate_count);
+        return rt_label_sweep(like->label, &candidate->swept, candidate->stem, candidate->label, error);
+    stem_of(sweep, candidate->stem, sizeof candidate->stem);
+    strcpy(candidate->label, spec);
     return RT_OK;
 }
 

@@ -76,7 +76,7 @@ void rt_worker_end(RtWorker *worker) {
 
 /* ---- the worker: requests and answers ---- */
 
-enum { MOST_LINE = RT_MAX_PATH + 256 }; /* characters of a request */
+enum { MOST_LINE = RT_MAX_PATH + RT_MAX_LABEL + 256 }; /* characters of a request */
 
 typedef struct Server {
     const RtExperiment *experiment;
@@ -286,10 +286,10 @@ static RtStatus answer_count(Server *server, Counting *counting, uint32_t c, RtR
 
 static RtStatus serve_count(Server *server, Counting *counting, const char *line, RtError *error) {
     const RtExperiment *e = server->experiment;
-    char name[RT_MAX_LABEL], label[RT_MAX_LABEL], path[RT_MAX_PATH];
+    char name[RT_MAX_WORD], label[RT_MAX_LABEL], path[RT_MAX_PATH];
     uint32_t t;
     RtRayKind kind;
-    if (sscanf(line, "count %" SCNu32 " %47s %47s %4095[^\n]", &t, name, label, path) != 4 ||
+    if (sscanf(line, "count %" SCNu32 " %47s %511s %4095[^\n]", &t, name, label, path) != 4 ||
         t >= e->workload_count || rt_ray_kind_parse(name, &kind, NULL) != RT_OK)
         return fail_request(line, error);
     const uint32_t c = rt_candidate_find(e, label, t);

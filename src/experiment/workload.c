@@ -66,10 +66,12 @@ RtStatus rt_workload_open(RtResults *results, uint32_t index, const RtWorkloadOp
 /* ---- the rays ---- */
 
 /* Keeps at most `limit` rays of each kind that the experiment asks for. */
-static RtStatus keep_sets(const RtExperiment *experiment, const RtRaySet *recorded, RtRaySet *sets,
-                          RtError *error) {
+static RtStatus keep_sets(const RtExperiment *experiment, const RtScene *scene, const RtRaySet *recorded,
+                          RtRaySet *sets, uint64_t *whole_rays, RtError *error) {
+    const uint64_t samples = (uint64_t)scene->sampling.columns * scene->sampling.rows;
     for (uint32_t k = 0; k < experiment->kind_count; k++) {
         RtRayKind kind = experiment->kinds[k];
+        whole_rays[kind] = kind == RT_RAY_RANDOM ? samples : recorded[kind].count;
         RT_TRY(rt_rayset_limit(&recorded[kind], experiment->limit, experiment->coherent_run, &sets[kind],
                                error));
     }
@@ -77,7 +79,7 @@ static RtStatus keep_sets(const RtExperiment *experiment, const RtRaySet *record
 }
 
 RtStatus rt_workload_record(const RtExperiment *experiment, uint32_t index, int threads, RtScene *scene,
-                            RtAccel **reference, RtRaySet *sets, RtError *error) {
+                            RtAccel **reference, RtRaySet *sets, uint64_t *whole_rays, RtError *error) {
     const RtWorkload *setup = &experiment->workloads[index];
     RtRecording recording = {.depth = setup->depth,
                              .seed = experiment->seed,
@@ -90,18 +92,21 @@ RtStatus rt_workload_record(const RtExperiment *experiment, uint32_t index, int 
     RT_TRY(rt_accel_open_on(rt_accel_default(), scene, threads, reference, error));
     if (*experiment->rays_from) {
         RtRayKind kind = experiment->kinds[0];
-        return rt_rays_load(experiment->rays_from, kind, &sets[kind], error);
+        RT_TRY(rt_rays_load(experiment->rays_from, kind, &sets[kind], error));
+        whole_rays[kind] = sets[kind].count;
+        return RT_OK;
     }
     RtStatus status = rt_rayset_record(recorded, *reference, &recording, error);
-    if (status == RT_OK) status = keep_sets(experiment, recorded, sets, error);
+    if (status == RT_OK) status = keep_sets(experiment, scene, recorded, sets, whole_rays, error);
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&recorded[k]);
     return status;
 }
 
 /* Records the rays; fills the workload's part of the results, or compares it with the previous run's. */
 static RtStatus prepare(RtWorkloadState *workload, RtError *error) {
+    uint64_t whole_rays[RT_RAY_KIND_COUNT] = {0};
     RT_TRY(rt_workload_record(workload->experiment, workload->index, workload->options->threads,
-                              workload->scene, &workload->reference, workload->sets, error));
+                              workload->scene, &workload->reference, workload->sets, whole_rays, error));
     RtWorkloadResult *result = &workload->results->workloads[workload->index];
     RtWorkloadResult now = {.known = true,
                             .objects = workload->scene->geometry.object_count,
@@ -111,6 +116,7 @@ static RtStatus prepare(RtWorkloadState *workload, RtError *error) {
     bool same = now.scene == result->scene;
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
         now.rays[k] = workload->sets[k].count;
+        now.whole_rays[k] = whole_rays[k];
         now.ray_fingerprints[k] = workload->sets[k].fingerprint;
         same &= now.ray_fingerprints[k] == result->ray_fingerprints[k];
     }

@@ -98,10 +98,12 @@ typedef struct RtWorkloadOptions {
 
 /* Records the rays of workload number `index` on its scene, whose sampling it sets; or reads them from a
  * file, if the experiment names one. At most the experiment's limit of each of its kinds, to
- * sets[RT_RAY_KIND_COUNT]. *reference is the exact accelerator that recorded them. Destroy and clear both,
- * also after a failure. */
+ * sets[RT_RAY_KIND_COUNT]; the size of each whole set, before the limit, to whole_rays[RT_RAY_KIND_COUNT].
+ * There could be any number of random rays: their whole set has one for each sample of the frame, so that it
+ * does not depend on the limit either. *reference is the exact accelerator that recorded them. Destroy and
+ * clear both, also after a failure. */
 RtStatus rt_workload_record(const RtExperiment *experiment, uint32_t index, int threads, RtScene *scene,
-                            RtAccel **reference, RtRaySet *sets, RtError *error);
+                            RtAccel **reference, RtRaySet *sets, uint64_t *whole_rays, RtError *error);
 
 /* Whether all results of workload number `index` are known. */
 bool rt_workload_is_done(RtResults *results, uint32_t index, const RtWorkloadOptions *options);

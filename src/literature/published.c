@@ -30,50 +30,31 @@ const RtFigure *rt_published_figure(const RtPublished *published, const RtPublis
 
 /* ---- measured figures ---- */
 
-/* Over all ray kinds; no rays if nothing was counted, or a kind that others counted is missing. */
-static RtTally tally_of(const RtResults *results, uint32_t workload, uint32_t candidate) {
-    RtTally sum = {0};
-    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
-        const RtCell *cell = rt_cell_at(results, workload, candidate, (RtRayKind)k);
-        if (!rt_results_has_kind(results, workload, (RtRayKind)k)) continue;
-        if (!cell->counted) return (RtTally){0};
-        rt_tally_add(&sum, &cell->tally);
-    }
-    return sum;
-}
-
 /* Rays of the baseline, which is measured on all of them. */
 static double count_rays(const RtResults *results, uint32_t workload, RtColumn column) {
-    RtTally tally[RT_RAY_KIND_COUNT];
-    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
-        tally[k] = rt_cell_at(results, workload, results->experiment->baseline, (RtRayKind)k)->tally;
-    }
-    RtTally secondary = tally[RT_RAY_REFLECTION];
-    rt_tally_add(&secondary, &tally[RT_RAY_TRANSMISSION]);
-    switch (column) {
-    case RT_COLUMN_primary: return (double)tally[RT_RAY_PRIMARY].rays;
-    case RT_COLUMN_primary_hit: return (double)tally[RT_RAY_PRIMARY].hits;
-    case RT_COLUMN_shadow: return (double)tally[RT_RAY_SHADOW].rays;
-    case RT_COLUMN_shadow_hit: return (double)tally[RT_RAY_SHADOW].hits;
-    case RT_COLUMN_secondary: return (double)secondary.rays;
-    default: return (double)secondary.hits;
-    }
+    const bool primary = column == RT_COLUMN_primary || column == RT_COLUMN_primary_hit;
+    const bool shadow = column == RT_COLUMN_shadow || column == RT_COLUMN_shadow_hit;
+    const bool hit = column == RT_COLUMN_primary_hit || column == RT_COLUMN_shadow_hit ||
+                     column == RT_COLUMN_secondary_hit;
+    const RtKinds kinds = primary  ? 1u << RT_RAY_PRIMARY
+                          : shadow ? 1u << RT_RAY_SHADOW
+                                   : 1u << RT_RAY_REFLECTION | 1u << RT_RAY_TRANSMISSION;
+    const RtCost rays = rt_results_total(results, workload, results->experiment->baseline, kinds);
+    return hit ? rays.hits : rays.weight;
 }
 
 static double measure_row(const RtResults *results, const RtPublishedRow *row, RtColumn column) {
     const RtDescription *structure = &rt_build_at(results, row->workload, row->candidate)->structure;
-    RtTally tally = tally_of(results, row->workload, row->candidate);
-    double rays = (double)tally.rays; /* 0: figures per ray are NAN */
+    const RtCost cost = rt_results_cost(results, row->workload, row->candidate, RT_ALL_RAYS);
     switch (column) {
     case RT_COLUMN_interior: return (double)structure->interior;
     case RT_COLUMN_leaves: return (double)structure->leaves;
     case RT_COLUMN_empty_leaves: return (double)structure->empty_leaves;
     case RT_COLUMN_references: return (double)structure->references;
-    case RT_COLUMN_object_tests:
-        return (double)tally.object_tests / (row->per_hit ? (double)tally.hits : rays);
-    case RT_COLUMN_steps: return (double)tally.steps / rays;
-    case RT_COLUMN_leaf_steps: return (double)tally.leaf_steps / rays;
-    default: return (double)tally.empty_steps / rays;
+    case RT_COLUMN_object_tests: return cost.object_tests / (row->per_hit ? cost.hits : 1);
+    case RT_COLUMN_steps: return cost.steps;
+    case RT_COLUMN_leaf_steps: return cost.leaf_steps;
+    default: return cost.empty_steps;
     }
 }
 
@@ -115,13 +96,12 @@ static uint32_t find_reason(const RtPublished *published, const RtFigure *figure
 
 /* ---- the best rows ---- */
 
-/* A row's figure per ray of ours, or NAN. */
-static double per_ray(const RtPublished *published, const RtPublishedRow *row, RtColumn column,
-                      const RtTally *rays) {
+/* A row's figure per ray of ours, of which `hits` hit, or NAN. */
+static double per_ray(const RtPublished *published, const RtPublishedRow *row, RtColumn column, double hits) {
     const RtFigure *figure = rt_published_figure(published, row, column);
     bool per_hit = row->per_hit && column == RT_COLUMN_object_tests;
     if (!figure) return (double)NAN;
-    return figure->published * (per_hit ? (double)rays->hits / (double)rays->rays : 1);
+    return figure->published * (per_hit ? hits : 1);
 }
 
 static bool is_less(double value, double than) {
@@ -132,13 +112,13 @@ static RtBest find_best(const RtPublished *published, const RtResults *results, 
                         RtMeasure measure) {
     const RtExperiment *experiment = published->experiment;
     RtBest best = {RT_NOT_MEASURED, RT_NOT_MEASURED, (double)NAN, (double)NAN, (double)NAN};
-    RtTally rays = tally_of(results, workload, experiment->baseline);
+    const double hits = rt_results_cost(results, workload, experiment->baseline, RT_ALL_RAYS).hits;
     bool steps = measure == RT_BEST_TESTS_AND_STEPS;
     for (uint32_t r = 0; r < published->row_count; r++) {
         const RtPublishedRow *row = &published->rows[r];
         if (row->workload != workload || row->of_rays) continue;
-        double value = per_ray(published, row, RT_COLUMN_object_tests, &rays);
-        if (steps) value += per_ray(published, row, RT_COLUMN_steps, &rays);
+        double value = per_ray(published, row, RT_COLUMN_object_tests, hits);
+        if (steps) value += per_ray(published, row, RT_COLUMN_steps, hits);
         if (!is_less(value, best.published)) continue;
         best.published = value;
         best.row = r;

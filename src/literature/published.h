@@ -27,7 +27,7 @@
 #define RT_NO_REASON    UINT32_MAX
 
 typedef struct RtPublishedRow {
-    char source[RT_MAX_LABEL], structure[RT_MAX_LABEL], parameters[RT_MAX_LABEL], accel[RT_MAX_LABEL];
+    char source[RT_MAX_WORD], structure[RT_MAX_WORD], parameters[RT_MAX_WORD], accel[RT_MAX_LABEL];
     uint32_t workload;
     uint32_t candidate;    /* or RT_NOT_MEASURED */
     bool of_rays;          /* from a table without structures */
@@ -49,7 +49,7 @@ typedef struct RtFigure {
 } RtFigure;
 
 typedef struct RtReason {
-    char scene[RT_MAX_LABEL], source[RT_MAX_LABEL], accel[RT_MAX_LABEL], column[RT_MAX_LABEL];
+    char scene[RT_MAX_LABEL], source[RT_MAX_WORD], accel[RT_MAX_LABEL], column[RT_MAX_WORD];
     char text[RT_MAX_REASON];
     uint32_t line, used; /* in its file; number of figures that need it */
 } RtReason;
@@ -98,7 +98,7 @@ bool rt_best_is_ahead(const RtBest *best);
 
 /* "Octree84-C depth=4", or the source of a row of rays; room for RT_MAX_ROW_NAME. */
 #define RT_MAX_ROW_NAME 96
-_Static_assert(RT_MAX_ROW_NAME >= 2 * RT_MAX_LABEL, "structure and parameters");
+_Static_assert(RT_MAX_ROW_NAME >= 2 * RT_MAX_WORD, "structure and parameters");
 void rt_published_row_name(const RtPublishedRow *row, char *out);
 
 /* The measured figure: whole numbers exactly, others in six digits; "" if there is none. */

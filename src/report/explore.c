@@ -76,7 +76,7 @@ static json_t *scene_json(const RtScene *scene, const char *name, uint32_t every
 static json_t *accelerator_json(const RtRecordedPaths *paths, const RtExploredSpec *spec,
                                 const RtShownBoxes *boxes) {
     const bool all = boxes->level == UINT32_MAX;
-    return json_pack("{s:s, s:s, s:o, s:s?, s:I, s:I, s:o, s:o}", "spec", spec->text, "parameters",
+    return json_pack("{s:s, s:s, s:o, s:s?, s:I, s:I, s:o, s:o}", "accel", spec->text, "spec",
                      spec->parameters, "forms", rt_recorded_forms(paths), "boxes_of",
                      boxes->layer ? boxes->layer->ops->name : NULL, "boxes_shown", (json_int_t)boxes->shown,
                      "boxes", (json_int_t)boxes->all, "thinned_level",

@@ -69,8 +69,8 @@ static int compare(const void *a, const void *b) {
 }
 
 /* The title of a section: with a capital. */
-static void title_of(const char *section, char title[RT_MAX_LABEL]) {
-    snprintf(title, RT_MAX_LABEL, "%s", *section ? section : "others");
+static void title_of(const char *section, char title[RT_MAX_WORD]) {
+    snprintf(title, RT_MAX_WORD, "%s", *section ? section : "others");
     title[0] = (char)toupper((unsigned char)title[0]);
 }
 
@@ -120,7 +120,7 @@ static bool has_sentences(const Index *index, uint32_t from, uint32_t to) {
 }
 
 static void put_section(const Index *index, uint32_t from, uint32_t to, FILE *html, FILE *markdown) {
-    char title[RT_MAX_LABEL];
+    char title[RT_MAX_WORD];
     title_of(index->entries[from].section, title);
     rt_html_wrap(html, "<h2>", title, "</h2>\n");
     fputs("## ", markdown);

@@ -18,8 +18,8 @@ enum { RT_INDEX_PARTS = 4, RT_MAX_ORIGIN = 256 };
 
 /* A result directory. */
 typedef struct RtIndexEntry {
-    char name[RT_MAX_LABEL];    /* of the directory: one experiment may have several, of different systems */
-    char section[RT_MAX_LABEL]; /* or "" */
+    char name[RT_MAX_LABEL];   /* of the directory: one experiment may have several, of different systems */
+    char section[RT_MAX_WORD]; /* or "" */
     char build[RT_MAX_ORIGIN], machine[RT_MAX_ORIGIN];
     char again[RT_MAX_ORIGIN];          /* the build that counted some scenes again, or "" */
     uint32_t number;                    /* the caller's */

@@ -159,11 +159,15 @@ static bool has_intervals(Measure measure) {
 static void put_table(Pivot *p, bool tex, FILE *out) {
     const RtExperiment *experiment = p->results->experiment;
     const RtWorkload *scene = &experiment->workloads[p->columns[1].key];
-    char caption[2 * RT_MAX_LABEL + 128];
+    char caption[2 * RT_MAX_LABEL + 192], part[RT_MAX_PART_TEXT];
+    uint32_t scenes = 0;
     RtTable table = table_of(p);
     snprintf(caption, sizeof caption, "%s", titles[p->measure]);
-    if (p->measure != BUILD && p->kind == RT_ALL_RAYS)
-        rt_append_text(caption, sizeof caption, ", all kinds of rays");
+    if (p->measure != BUILD && p->kind == RT_ALL_RAYS) {
+        for (uint32_t c = 1; c < p->count; c++) scenes |= 1u << p->columns[c].key;
+        rt_results_say_part(p->results, scenes, rt_experiment_kinds(experiment), part);
+        rt_append_text(caption, sizeof caption, ", all kinds of rays, %s", part);
+    }
     if (p->measure != BUILD && p->kind != RT_ALL_RAYS)
         rt_append_text(caption, sizeof caption, ", %s rays", rt_experiment_kind_name(experiment, p->kind));
     rt_append_text(caption, sizeof caption, is_swept(scene) ? ", %s." : ".", scene->stem);

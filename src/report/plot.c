@@ -42,6 +42,25 @@ static bool has_rays(const RtResults *results, RtRayKind kind) {
     return false;
 }
 
+/* The weight of each set of rays, and weight(0), that of the row at hand in counts.csv or times.csv. */
+static void write_sets(const RtResults *results, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    fprintf(out, "sets = \"");
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        for (uint32_t k = 0; k < experiment->kind_count; k++) {
+            const RtRayKind kind = experiment->kinds[k];
+            if (results->workloads[t].rays[kind])
+                fprintf(out, "%s/%s=%.0f ", experiment->workloads[t].label,
+                        rt_experiment_kind_name(experiment, kind), rt_results_weight(results, t, kind));
+        }
+    }
+    fprintf(out,
+            "\"\n"
+            "whole_rays(scene, kind) = (at_ = strstrt(' '.sets, ' '.scene.'/'.kind.'='), at_ == 0 ? 0 : \\\n"
+            "  real(word(sets[at_ + strlen(scene) + strlen(kind) + 2 : *], 1)))\n"
+            "weight(unused) = whole_rays(strcol('scene'), strcol('kind'))\n");
+}
+
 /* Labels hold nothing that gnuplot's double quotes would interpret (rt_experiment_check). */
 static RtStatus write_names(const RtResults *results, const char *directory, const char *format, bool column,
                             RtError *error) {
@@ -86,6 +105,7 @@ static RtStatus write_names(const RtResults *results, const char *directory, con
             fprintf(out, "%s ", rt_ray_kind_name(experiment->kinds[k]));
     }
     fprintf(out, "\"\n");
+    write_sets(results, out);
     return rt_output_commit(&output, error);
 }
 
@@ -197,7 +217,7 @@ static RtStatus draw(const RtResults *results, const char *directory, const char
 
 RtStatus rt_plots_draw(const RtResults *results, const char *directory, bool column, RtError *error) {
     const RtExperiment *experiment = results->experiment;
-    char paths[RT_MAX_PLOTS + 1][RT_MAX_LABEL + 8];
+    char paths[RT_MAX_PLOTS + 1][RT_MAX_WORD + 8];
     char program[] = "gnuplot", sweep_script[] = "plots/sweep.gp",
          histogram_script[] = "plots/" HISTOGRAM_SCRIPT;
     char *arguments[MOST_ARGUMENTS] = {program};

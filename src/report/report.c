@@ -201,7 +201,7 @@ static void put_table(FILE *out, const RtResults *results, uint32_t t, RtResultT
                       const char *what) {
     RtResultRow row = {.results = results, .workload = t};
     RtTable table = rt_result_table(which, &row);
-    char caption[RT_MAX_LABEL + 64];
+    char caption[RT_MAX_LABEL + RT_MAX_PART_TEXT + 64];
     snprintf(caption, sizeof caption, "%s, %s", results->experiment->workloads[t].label, what);
     table.caption = caption;
     table.color = dot_of;
@@ -235,7 +235,7 @@ static void put_sentences(FILE *out, char *text) {
 }
 
 static void put_tables(FILE *out, const RtResults *results) {
-    char interval[RT_MAX_INTERVAL_TITLE];
+    char interval[RT_MAX_INTERVAL_TITLE], part[RT_MAX_PART_TEXT], what[RT_MAX_PART_TEXT + 32];
     rt_interval_title(results->experiment, interval);
     fprintf(
         out,
@@ -252,7 +252,9 @@ static void put_tables(FILE *out, const RtResults *results) {
         if (!results->workloads[t].known) continue;
         rt_html_wrap(out, "<section class=\"scene-tables\" data-scene=\"", label, "\"><h3>");
         rt_html_wrap(out, "", label, "</h3>\n");
-        put_table(out, results, t, RT_TOTALS_MORE, "all kinds of rays together");
+        rt_results_say_part(results, 1u << t, rt_experiment_kinds(results->experiment), part);
+        snprintf(what, sizeof what, "all kinds of rays together, %s", part);
+        put_table(out, results, t, RT_TOTALS_MORE, what);
         fputs("<details><summary>By kind of rays</summary>", out);
         put_table(out, results, t, RT_CELLS_MORE, "by kind of rays");
         fputs("</details></section>\n", out);
@@ -347,7 +349,8 @@ static void put_timing(FILE *out, const RtResults *results) {
 
 static void put_method(FILE *out, const RtResults *results, const json_t *manifest) {
     fputs("<h2 id=\"method\">How it was measured</h2>\n<p>Every accelerator traced the same recorded rays. "
-          "Totals weight each kind of rays by the size of its set. Shadow rays stop at any hit. "
+          "Totals weight each kind of rays by the size of its whole set, before any limit. Shadow rays stop "
+          "at any hit. "
           "<em>ideal</em> knows the answers in advance: it is the lower bound. <em>differ</em> counts "
           "answers that differ from the reference; the run fails if an exact accelerator has any.</p>\n<p>",
           out);

@@ -262,14 +262,17 @@ static void put_figure(const RtSweepLines *figure, RtSweepMeasure measure, uint3
     uint32_t order[RT_MAX_CANDIDATES];
     const Layout l = lay_out(figure, measure, rt_sweep_lines_order(figure, measure, order));
     const Range range = range_of(figure, measure);
-    char name[RT_MAX_SWEEP_NAME + 16];
+    const RtResults *results = figure->results;
+    char name[RT_MAX_SWEEP_NAME + 16], part[RT_MAX_PART_TEXT];
+    rt_results_say_part(results, UINT32_MAX, rt_experiment_kinds(results->experiment), part);
     snprintf(name, sizeof name, "%02u-sweep-%s-%s", number, figure->key.key, measures[measure].file);
     fprintf(
         out,
-        "\n#: %s: %s over %s, a line per accelerator, a panel per scene.\n#:   All kinds of rays together%s. "
+        "\n#: %s: %s over %s, a line per accelerator, a panel per scene.\n#:   All kinds of rays together, "
+        "%s%s. "
         "All panels have the same scales; the legend has the order of the lines at the right of the first "
         "panel.\n",
-        name, measures[measure].title, figure->key.key,
+        name, measures[measure].title, figure->key.key, part,
         measure == RT_SWEEP_TIME ? ", medians with intervals" : "");
     fprintf(out, "eval canvas(\"%s\", %.0f, %.0f)\nset multiplot\n", name, l.width, l.height);
     put_y_axis(&range, out);

@@ -280,8 +280,8 @@ RT_TEST(a_page_to_explore_holds_the_rays_and_names_the_accelerators) {
     if (code == 2 && says(OUT ".err", "npm")) RT_SKIP("npm, and a network once");
     assert_int_equal(code, 0);
     assert_true(says(OUT ".txt", "with the rays of all pixels"));
-    assert_true(says(OUT ".html", "{\"spec\":\"bvh\",") &&
-                says(OUT ".html", "{\"spec\":\"grid:density=1\","));
+    assert_true(says(OUT ".html", "{\"accel\":\"bvh\",") &&
+                says(OUT ".html", "{\"accel\":\"grid:density=1\","));
     unlink(OUT ".txt");
     unlink(OUT ".err");
     unlink(OUT ".html");

@@ -146,6 +146,8 @@ static void print_document(FILE *out) {
           "`build/release/test_cli columns` fails and writes the current page, to be copied here. An\n"
           "unknown value is empty in CSV and null in JSON. In JSON a dot in a name separates an object\n"
           "from its member; yes is true, no is false, and an interval is an object of three numbers.\n"
+          "CSV and JSON call the same thing alike: `scene` and `accel` are labels, whole however long,\n"
+          "`scene_spec` the scene as it is opened, `spec` the accelerator with every effective parameter.\n"
           "\n"
           "If an experiment sweeps parameters, these have one more column for each of them, at the end:\n",
           out);

@@ -98,9 +98,9 @@ RT_TEST_VALGRIND(an_instruction_set_that_valgrind_does_not_know_is_replaced_and_
     json_t *rows =
         instructions_of(place, "random:n=50 --accel wide --accel wide:isa=portable --rays primary --size "
                                "16x16");
-    assert_null(strstr(text_of(rows, 0, "accel"), "isa=best"));
-    assert_null(strstr(text_of(rows, 0, "accel"), "isa=avx512"));
-    assert_non_null(strstr(text_of(rows, 1, "accel"), "isa=portable"));
+    assert_null(strstr(text_of(rows, 0, "spec"), "isa=best"));
+    assert_null(strstr(text_of(rows, 0, "spec"), "isa=avx512"));
+    assert_non_null(strstr(text_of(rows, 1, "spec"), "isa=portable"));
     json_decref(rows);
 }
 
@@ -117,7 +117,7 @@ RT_TEST_VALGRIND(instructions_of_a_plugin_are_counted_and_a_broken_one_is_named)
     const json_t *rows = json_object_get(document, "instructions");
     assert_int_equal(json_array_size(rows), 4 * 2);
     for (size_t i = 0; i < 6; i++) assert_true(integer_of(rows, i, "instructions") > 0);
-    for (size_t i = 2; i < 4; i++) assert_string_equal(text_of(rows, i, "accelerator"), "bvh_copy");
+    for (size_t i = 2; i < 4; i++) assert_string_equal(text_of(rows, i, "accel"), "bvh_copy");
     assert_non_null(strstr(text_of(rows, 6, "why"), "it crashed (Segmentation fault)"));
     json_decref(document);
 }

@@ -206,10 +206,29 @@ FRAME_TEST(where_nothing_is_timed_object_tests_decide) {
 FRAME_TEST(a_thinned_set_is_told_as_a_part_of_a_frame) {
     char text[RT_MAX_FRAME_TEXT];
     rt_frame_title(&results, 0, text);
-    assert_string_equal(text, "0 objects, a frame of 10x10: 100 primary, 300 shadow and 100 secondary rays");
+    assert_string_equal(text, "0 objects, a frame of 10x10: 100 primary, 300 shadow and 100 secondary rays; "
+                              "of the measured part");
     results.workloads[0].rays[RT_RAY_PRIMARY] = 50;
     rt_frame_title(&results, 0, text);
     assert_non_null(strstr(text, "a part of a frame of 10x10: 50 primary"));
+}
+
+/* 100 primary, 900 of 2700 shadow and 100 reflection rays. */
+FRAME_TEST(a_frame_weighs_each_kind_of_ray_by_its_whole_set) {
+    RtFrameRow row = {.results = &results};
+    const RtTable table = rt_frame_table(&row);
+    RtWorkloadResult *w = &results.workloads[0];
+    char text[RT_MAX_FRAME_TEXT];
+    memcpy(w->whole_rays, w->rays, sizeof w->rays);
+    w->whole_rays[RT_RAY_SHADOW] = 2700;
+    assert_non_null(table.row(table.context, GRID));
+    assert_true(row.cost[RT_FRAME_ALL].rays == 2900);
+    assert_true(row.cost[RT_FRAME_ALL].object_tests == 2900 * 20);
+    assert_true(fabs(row.cost[RT_FRAME_ALL].seconds - 1e-9 * (200 * 80 + 2700 * 400)) < 1e-15);
+    assert_true(fabs(row.without[RT_FRAME_SHADOW].seconds - 1e-9 * 2700 * 8000) < 1e-15);
+    rt_frame_title(&results, 0, text);
+    assert_string_equal(text, "0 objects, a frame of 10x10: 100 primary, 2700 shadow and 100 secondary rays; "
+                              "of 2900 rays, 500 measured");
 }
 
 static void refused(const char *why) {

@@ -15,6 +15,8 @@
 #include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#define XXH_INLINE_ALL
+#include <xxhash.h>
 
 #define TEMPORARY_END ".tmp"
 
@@ -392,9 +394,13 @@ static bool is_device(const char *name) {
 }
 
 void rt_file_name(const char *text, char *out, size_t size) {
+    enum { HASH_CHARS = 9 };
     static const char portable[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
     const bool device = is_device(text);
-    snprintf(out, size, "%s%s", device || !*text ? "_" : "", text);
+    const int length = snprintf(out, size, "%s%s", device || !*text ? "_" : "", text);
+    if (length >= (int)size)
+        snprintf(out + size - 1 - HASH_CHARS, HASH_CHARS + 1, "-%08" PRIx32,
+                 (uint32_t)XXH3_64bits(text, strlen(text)));
     for (char *c = out; *c; c++) {
         if (!strchr(portable, *c)) *c = '-';
     }

@@ -96,6 +96,68 @@ void rt_append_argument(char *out, size_t size, const char *word) {
     rt_append_text(out, size, "'");
 }
 
+/* ---- short names ---- */
+
+/* A part without its end. */
+static size_t part_length(const char *part) {
+    return strcspn(part, ":,+");
+}
+
+static const char *next_part(const char *part) {
+    part += part_length(part);
+    return *part ? part + 1 : NULL;
+}
+
+static bool has_part(const char *name, const char *part) {
+    const size_t length = part_length(part);
+    while (name && (part_length(name) != length || strncmp(name, part, length) != 0)) name = next_part(name);
+    return name != NULL;
+}
+
+/* Whether all names that begin with the same part as `name` have this one. */
+static bool is_common(const char *part, const char *name, const char *const *names, size_t count) {
+    const size_t first = part_length(name);
+    for (size_t i = 0; i < count; i++) {
+        const bool alike = part_length(names[i]) == first && strncmp(names[i], name, first) == 0;
+        if (alike && !has_part(names[i], part)) return false;
+    }
+    return true;
+}
+
+/* Whether no other name has the same `head` characters at its start and `tail` at its end. */
+static bool differs_at_ends(const char *name, const char *const *names, size_t count, size_t head,
+                            size_t tail) {
+    const char *end = name + strlen(name) - tail;
+    for (size_t i = 0; i < count; i++) {
+        const bool alike = strncmp(names[i], name, head) == 0 && rt_ends_in(names[i], end);
+        if (alike && strcmp(names[i], name) != 0) return false;
+    }
+    return true;
+}
+
+void rt_shorten_name(const char *const *names, size_t count, size_t i, size_t width, char *out, size_t size) {
+    const char *name = names[i], *gap = NULL; /* the part before, if it is left out */
+    const size_t whole = strlen(name), head = width / 2, tail = width > head + 3 ? width - head - 3 : 0;
+    bool shorter = false;
+    *out = '\0';
+    for (const char *part = name; part; part = next_part(part)) {
+        const size_t length = part_length(part);
+        if (part != name && whole > width && is_common(part, name, names, count)) {
+            shorter = true;
+            gap = part;
+            continue;
+        }
+        if (gap) rt_append_text(out, size, "...%c", gap[part_length(gap)]);
+        rt_append_text(out, size, "%.*s", (int)(length + (part[length] != '\0')), part);
+        gap = NULL;
+    }
+    if (gap) rt_append_text(out, size, "...");
+    if (whole > width && !shorter && differs_at_ends(name, names, count, head, tail))
+        snprintf(out, size, "%.*s...%s", (int)head, name, name + whole - tail);
+}
+
+/* ---- pages ---- */
+
 int rt_page_width(FILE *out) {
     enum { LEAST = 20 }; /* narrower ones are not believed */
     const char *columns = getenv("COLUMNS");

@@ -41,6 +41,11 @@ __attribute__((format(printf, 3, 4))) void rt_append_text(char *out, size_t size
 /* Appends a blank and `word` as a shell reads it: in quotes where it needs them. */
 void rt_append_argument(char *out, size_t size, const char *word);
 
+/* Writes names[i] to out[0..size) for a screen that has room for `width` characters: a longer name leaves out
+ * parts that all names which begin alike have, "random:...,width=0.0125". Parts end at ':', ',' or '+'. What
+ * differs is kept, even if it needs more room. */
+void rt_shorten_name(const char *const *names, size_t count, size_t i, size_t width, char *out, size_t size);
+
 /* Characters of a line of `out`: $COLUMNS, or as many as the terminal has; INT_MAX for a file. */
 int rt_page_width(FILE *out);
 

@@ -10,7 +10,7 @@
 
 #include "core/base/file.h"
 
-#define RT_MAX_ARRAY_NAME 160
+#define RT_MAX_ARRAY_NAME 1200
 
 typedef struct RtArrayEntry {
     char name[RT_MAX_ARRAY_NAME];

@@ -87,7 +87,7 @@ export function makeSpace(data, place) {
   };
 
   for (const [number, accelerator] of data.accelerators.entries()) {
-    const group = new THREE.Group(), steps = new THREE.Group(), name = element('span', { class: 'name', title: accelerator.parameters }, accelerator.spec);
+    const group = new THREE.Group(), steps = new THREE.Group(), name = element('span', { class: 'name', title: accelerator.spec }, accelerator.accel);
     scene.add(group, steps);
     place.append(name);
     views.push({ number, accelerator, group, steps, name });

@@ -83,9 +83,9 @@ export function makePanel(data, accelerator, place) {
   const counts = element('ul', { class: 'counts' }), cell = element('p', { class: 'meta cell' }), said = element('p', { class: 'said' });
   const sides = element('canvas', { class: 'sides', role: 'img' });
   const caption = element('caption'), body = element('tbody');
-  place.append(element('article', { 'aria-label': accelerator.spec }, element('h3', {}, accelerator.spec),
-    element('details', {}, element('summary', {}, 'all parameters'), element('p', { class: 'meta' }, accelerator.parameters)), cell, sides, counts, said,
-  element('div', { class: 'wide', tabindex: 0, role: 'region', 'aria-label': `Rows of ${accelerator.spec}` },
+  place.append(element('article', { 'aria-label': accelerator.accel }, element('h3', {}, accelerator.accel),
+    element('details', {}, element('summary', {}, 'all parameters'), element('p', { class: 'meta' }, accelerator.spec)), cell, sides, counts, said,
+  element('div', { class: 'wide', tabindex: 0, role: 'region', 'aria-label': `Rows of ${accelerator.accel}` },
     element('table', { class: 'rows' }, caption, element('thead', {}, element('tr', {}, ...heads.map((head) => element('th', {}, head)))), body))));
   return (ray, path, step, aloud) => {
     const now = countsAfter(data, path, step);

@@ -12,3 +12,7 @@ groups = "\"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" "
 without = ""
 among = ""
 kinds = "primary shadow diffuse "
+sets = "balls/primary=16384 balls/shadow=19712 balls/diffuse=16384 bunny/primary=16384 bunny/shadow=13256 bunny/diffuse=13426 hall/primary=16384 hall/shadow=19456 hall/diffuse=16384 "
+whole_rays(scene, kind) = (at_ = strstrt(' '.sets, ' '.scene.'/'.kind.'='), at_ == 0 ? 0 : \
+  real(word(sets[at_ + strlen(scene) + strlen(kind) + 2 : *], 1)))
+weight(unused) = whole_rays(strcol('scene'), strcol('kind'))

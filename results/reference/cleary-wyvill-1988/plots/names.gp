@@ -12,3 +12,7 @@ groups = "\"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" "
 without = ""
 among = ""
 kinds = "primary random "
+sets = "scattered:n=100/primary=8192 scattered:n=100/random=10000 scattered:n=1000/primary=8192 scattered:n=1000/random=10000 scattered:n=10000/primary=8192 scattered:n=10000/random=10000 scattered:n=100000/primary=8192 scattered:n=100000/random=10000 sparse:n=100/primary=8192 sparse:n=100/random=10000 sparse:n=1000/primary=8192 sparse:n=1000/random=10000 sparse:n=10000/primary=8192 sparse:n=10000/random=10000 sparse:n=100000/primary=8192 sparse:n=100000/random=10000 teapot:size=4/primary=8192 teapot:size=4/random=10000 teapot:size=9/primary=8192 teapot:size=9/random=10000 teapot:size=18/primary=8192 teapot:size=18/random=10000 teapot:size=39/primary=8192 teapot:size=39/random=10000 "
+whole_rays(scene, kind) = (at_ = strstrt(' '.sets, ' '.scene.'/'.kind.'='), at_ == 0 ? 0 : \
+  real(word(sets[at_ + strlen(scene) + strlen(kind) + 2 : *], 1)))
+weight(unused) = whole_rays(strcol('scene'), strcol('kind'))

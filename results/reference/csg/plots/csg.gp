@@ -21,20 +21,20 @@ do for [s = 1:2] {
       inner = word("on off", i)
       whole = 0
       do for [kind in kinds] {
-        stats file using (strcol("scene") eq word(sizes, s)."-".inner && strcol("kind") eq kind ? column("set_rays") : 0) nooutput
+        stats file using (strcol("scene") eq word(sizes, s)."-".inner && strcol("kind") eq kind ? weight(0) : 0) nooutput
         whole = whole + STATS_max
       }
       do for [a = 1:n_accels] {
-        stats file using (chosen(word(sizes, s), inner, a) ? column("set_rays") : 0) nooutput
-        weight = STATS_sum
-        stats file using (chosen(word(sizes, s), inner, a) ? per_ray(m) * column("set_rays") : 0) nooutput
-        known = weight > 0 && weight == whole
-        value[place(s, m, i, a)] = known ? STATS_sum / weight : NaN
+        stats file using (chosen(word(sizes, s), inner, a) ? weight(0) : 0) nooutput
+        measured = STATS_sum
+        stats file using (chosen(word(sizes, s), inner, a) ? per_ray(m) * weight(0) : 0) nooutput
+        known = measured > 0 && measured == whole
+        value[place(s, m, i, a)] = known ? STATS_sum / measured : NaN
         if (m == 3) {
-          stats file using (chosen(word(sizes, s), inner, a) ? column("ns_low") * column("set_rays") : 0) nooutput
-          low[place(s, m, i, a)] = known ? STATS_sum / weight : NaN
-          stats file using (chosen(word(sizes, s), inner, a) ? column("ns_high") * column("set_rays") : 0) nooutput
-          high[place(s, m, i, a)] = known ? STATS_sum / weight : NaN
+          stats file using (chosen(word(sizes, s), inner, a) ? column("ns_low") * weight(0) : 0) nooutput
+          low[place(s, m, i, a)] = known ? STATS_sum / measured : NaN
+          stats file using (chosen(word(sizes, s), inner, a) ? column("ns_high") * weight(0) : 0) nooutput
+          high[place(s, m, i, a)] = known ? STATS_sum / measured : NaN
         }
       }
     }

@@ -12,3 +12,7 @@ groups = "\"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" 
 without = ""
 among = ""
 kinds = "primary shadow diffuse occlusion random "
+sets = "bunny/primary=262144 bunny/shadow=212014 bunny/diffuse=214784 bunny/occlusion=214784 bunny/random=262144 dragon/primary=262144 dragon/shadow=198635 dragon/diffuse=201053 dragon/occlusion=201053 dragon/random=262144 hall/primary=262144 hall/shadow=243712 hall/diffuse=262144 hall/occlusion=262144 hall/random=262144 forest/primary=262144 forest/shadow=249856 forest/diffuse=235106 forest/occlusion=235106 forest/random=262144 balls/primary=262144 balls/shadow=257169 balls/diffuse=262144 balls/occlusion=262144 balls/random=262144 "
+whole_rays(scene, kind) = (at_ = strstrt(' '.sets, ' '.scene.'/'.kind.'='), at_ == 0 ? 0 : \
+  real(word(sets[at_ + strlen(scene) + strlen(kind) + 2 : *], 1)))
+weight(unused) = whole_rays(strcol('scene'), strcol('kind'))

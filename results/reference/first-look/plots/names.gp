@@ -12,3 +12,7 @@ groups = "\"no structure\" \"the four classic structures\" \"the four classic st
 without = "brute"
 among = "the four classic structures"
 kinds = "primary shadow reflection transmission "
+sets = "balls/primary=65536 balls/shadow=238320 balls/reflection=44168 scattered/primary=65536 scattered/shadow=98269 scattered/reflection=42907 scattered/transmission=30913 bunny/primary=65536 bunny/shadow=13256 "
+whole_rays(scene, kind) = (at_ = strstrt(' '.sets, ' '.scene.'/'.kind.'='), at_ == 0 ? 0 : \
+  real(word(sets[at_ + strlen(scene) + strlen(kind) + 2 : *], 1)))
+weight(unused) = whole_rays(strcol('scene'), strcol('kind'))

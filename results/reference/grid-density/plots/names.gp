@@ -12,3 +12,7 @@ groups = "\"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" 
 without = ""
 among = ""
 kinds = "primary shadow random "
+sets = "uniform/primary=4096 uniform/shadow=4974 uniform/random=5000 clustered/primary=4096 clustered/shadow=2624 clustered/random=5000 bunny/primary=4096 bunny/shadow=3314 bunny/random=5000 stadium/primary=4096 stadium/shadow=4480 stadium/random=5000 "
+whole_rays(scene, kind) = (at_ = strstrt(' '.sets, ' '.scene.'/'.kind.'='), at_ == 0 ? 0 : \
+  real(word(sets[at_ + strlen(scene) + strlen(kind) + 2 : *], 1)))
+weight(unused) = whole_rays(strcol('scene'), strcol('kind'))

@@ -12,3 +12,7 @@ groups = "\"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" 
 without = ""
 among = ""
 kinds = "primary random "
+sets = "spheres:n=100/primary=2046 spheres:n=100/random=4000 spheres:n=1000/primary=2046 spheres:n=1000/random=4000 spheres:n=10000/primary=2046 spheres:n=10000/random=4000 spheres:n=100000/primary=2046 spheres:n=100000/random=4000 spheres:n=1000000/primary=2046 spheres:n=1000000/random=4000 spheres:n=10000000/primary=2046 spheres:n=10000000/random=4000 "
+whole_rays(scene, kind) = (at_ = strstrt(' '.sets, ' '.scene.'/'.kind.'='), at_ == 0 ? 0 : \
+  real(word(sets[at_ + strlen(scene) + strlen(kind) + 2 : *], 1)))
+weight(unused) = whole_rays(strcol('scene'), strcol('kind'))

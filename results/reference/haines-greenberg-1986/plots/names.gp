@@ -12,3 +12,7 @@ groups = "\"\" \"\" \"\" \"\" \"\" "
 without = ""
 among = ""
 kinds = "shadow "
+sets = "balls/shadow=9856 gears/shadow=9856 mount/shadow=9350 rings/shadow=9728 teapot/shadow=9216 tree/shadow=9728 "
+whole_rays(scene, kind) = (at_ = strstrt(' '.sets, ' '.scene.'/'.kind.'='), at_ == 0 ? 0 : \
+  real(word(sets[at_ + strlen(scene) + strlen(kind) + 2 : *], 1)))
+weight(unused) = whole_rays(strcol('scene'), strcol('kind'))

@@ -12,3 +12,7 @@ groups = "\"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" 
 without = ""
 among = ""
 kinds = "primary shadow reflection transmission "
+sets = "balls/primary=263169 balls/shadow=954973 balls/reflection=175939 lattice/primary=263169 lattice/shadow=1163985 lattice/reflection=236982 mount/primary=263169 mount/shadow=363349 mount/reflection=356188 mount/transmission=356188 tetra/primary=263169 tetra/shadow=46260 tree/primary=263169 tree/shadow=1097837 "
+whole_rays(scene, kind) = (at_ = strstrt(' '.sets, ' '.scene.'/'.kind.'='), at_ == 0 ? 0 : \
+  real(word(sets[at_ + strlen(scene) + strlen(kind) + 2 : *], 1)))
+weight(unused) = whole_rays(strcol('scene'), strcol('kind'))

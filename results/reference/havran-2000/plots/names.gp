@@ -12,3 +12,7 @@ groups = "\"\" \"\" \"\" \"\" \"\" \"\" \"\" "
 without = ""
 among = ""
 kinds = "primary shadow reflection transmission "
+sets = "balls/primary=4672 balls/shadow=4928 balls/reflection=4928 gears/primary=4672 gears/shadow=4992 gears/reflection=4736 gears/transmission=4546 jacks/primary=4672 jacks/shadow=4928 jacks/reflection=4296 lattice/primary=4672 lattice/shadow=4928 lattice/reflection=4928 mount/primary=4672 mount/shadow=4928 mount/reflection=4928 mount/transmission=4928 rings/primary=4672 rings/shadow=4928 rings/reflection=4928 shells/primary=4672 shells/shadow=4224 shells/reflection=4416 teapot/primary=4672 teapot/shadow=4864 teapot/reflection=4672 tetra/primary=4672 tetra/shadow=3863 tree/primary=4672 tree/shadow=4992 "
+whole_rays(scene, kind) = (at_ = strstrt(' '.sets, ' '.scene.'/'.kind.'='), at_ == 0 ? 0 : \
+  real(word(sets[at_ + strlen(scene) + strlen(kind) + 2 : *], 1)))
+weight(unused) = whole_rays(strcol('scene'), strcol('kind'))

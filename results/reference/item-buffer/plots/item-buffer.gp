@@ -11,7 +11,7 @@ side(name) = of(name) ? column("width") : NaN
 
 # For `frames` frames including the build: Embree's time over ours; Embree's build is not counted.
 theirs(x) = column("ns") * column("ratio")
-with_build(frames) = theirs(0) / (column("ns") + 1e9 * column("build_seconds") / (frames * column("set_rays")))
+with_build(frames) = theirs(0) / (column("ns") + 1e9 * column("build_seconds") / (frames * weight(0)))
 
 set logscale x 2
 set xrange [200 : 2600]

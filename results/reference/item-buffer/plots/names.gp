@@ -12,3 +12,7 @@ groups = "\"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" 
 without = ""
 among = ""
 kinds = "primary "
+sets = "bunny-256/primary=65536 bunny-1024/primary=1048576 bunny-2048/primary=4194304 hall-256/primary=65536 hall-1024/primary=1048576 hall-2048/primary=4194304 forest-1024/primary=1048576 dragon-1024/primary=1048576 dragon11k-1024/primary=1048576 dragon48k-1024/primary=1048576 dragon202k-1024/primary=1048576 "
+whole_rays(scene, kind) = (at_ = strstrt(' '.sets, ' '.scene.'/'.kind.'='), at_ == 0 ? 0 : \
+  real(word(sets[at_ + strlen(scene) + strlen(kind) + 2 : *], 1)))
+weight(unused) = whole_rays(strcol('scene'), strcol('kind'))

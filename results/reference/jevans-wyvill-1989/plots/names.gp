@@ -12,3 +12,7 @@ groups = "\"\" \"\" \"\" \"\" "
 without = ""
 among = ""
 kinds = "primary shadow "
+sets = "scattered/primary=9344 scattered/shadow=8832 clustered/primary=9344 clustered/shadow=9503 balls/primary=9344 balls/shadow=9856 teapot/primary=9344 teapot/shadow=9216 stadium/primary=9344 stadium/shadow=9984 bunny/primary=9344 bunny/shadow=6600 "
+whole_rays(scene, kind) = (at_ = strstrt(' '.sets, ' '.scene.'/'.kind.'='), at_ == 0 ? 0 : \
+  real(word(sets[at_ + strlen(scene) + strlen(kind) + 2 : *], 1)))
+weight(unused) = whole_rays(strcol('scene'), strcol('kind'))

@@ -12,3 +12,7 @@ groups = "\"\" \"\" \"\" \"\" \"\" \"\" \"\" "
 without = ""
 among = ""
 kinds = "primary shadow "
+sets = "tetra/primary=22016 tetra/shadow=11607 tree/primary=22016 tree/shadow=27383 balls/primary=22016 balls/shadow=29696 mount/primary=22016 mount/shadow=25856 bunny/primary=22016 bunny/shadow=13256 "
+whole_rays(scene, kind) = (at_ = strstrt(' '.sets, ' '.scene.'/'.kind.'='), at_ == 0 ? 0 : \
+  real(word(sets[at_ + strlen(scene) + strlen(kind) + 2 : *], 1)))
+weight(unused) = whole_rays(strcol('scene'), strcol('kind'))

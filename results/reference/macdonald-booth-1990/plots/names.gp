@@ -12,3 +12,7 @@ groups = "\"\" \"\" \"\" \"\" \"\" \"\" \"\" "
 without = ""
 among = ""
 kinds = "primary random "
+sets = "small/primary=16384 small/random=20000 large/primary=16384 large/random=20000 balls/primary=16384 balls/random=20000 tetra/primary=16384 tetra/random=20000 tree/primary=16384 tree/random=20000 "
+whole_rays(scene, kind) = (at_ = strstrt(' '.sets, ' '.scene.'/'.kind.'='), at_ == 0 ? 0 : \
+  real(word(sets[at_ + strlen(scene) + strlen(kind) + 2 : *], 1)))
+weight(unused) = whole_rays(strcol('scene'), strcol('kind'))

@@ -6,7 +6,7 @@
 sweeps = "uniform clustered stadium"
 keys = "scene.n scene.width scene.ratio"
 captions = "'objects, evenly spread' 'width of clusters, of a cube of 2' 'length of the stadium / the teapot'"
-# Kinds of rays are joined, weighted by the rays of each set.
+# Kinds of rays are joined, weighted by the rays of each whole set.
 row(s, a) = strcol("scene") eq word(scenes, s) && strcol("accel") eq word(accels, a)
 set print "plots/1-crossover.csv"
 print "sweep,x,accel,ns,low,high"
@@ -17,10 +17,10 @@ do for [s = 1:words(scenes)] {
   do for [a = 1:words(accels)] {
     stats "times.csv" using (row(s, a) ? 1 : 0) nooutput
     if (STATS_max > 0) { # the accelerator was run on this scene
-      stats "times.csv" using (row(s, a) ? column("set_rays") : NaN) nooutput; rays = STATS_sum
-      stats "times.csv" using (row(s, a) ? column("set_rays") * column("ns") : NaN) nooutput; mean = STATS_sum / rays
-      stats "times.csv" using (row(s, a) ? column("set_rays") * column("ns_low") : NaN) nooutput; low = STATS_sum / rays
-      stats "times.csv" using (row(s, a) ? column("set_rays") * column("ns_high") : NaN) nooutput; high = STATS_sum / rays
+      stats "times.csv" using (row(s, a) ? weight(0) : NaN) nooutput; rays = STATS_sum
+      stats "times.csv" using (row(s, a) ? weight(0) * column("ns") : NaN) nooutput; mean = STATS_sum / rays
+      stats "times.csv" using (row(s, a) ? weight(0) * column("ns_low") : NaN) nooutput; low = STATS_sum / rays
+      stats "times.csv" using (row(s, a) ? weight(0) * column("ns_high") : NaN) nooutput; high = STATS_sum / rays
       print sprintf("%s,%g,%s,%g,%g,%g", sweep, x, word(accels, a), mean, low, high)
     }
   }

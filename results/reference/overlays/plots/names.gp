@@ -12,3 +12,7 @@ groups = "\"no structure\" \"bases\" \"over octree\" \"over octree\" \"over octr
 without = "brute"
 among = "bases"
 kinds = "primary shadow reflection transmission "
+sets = "balls/primary=16384 balls/shadow=59250 balls/reflection=10855 scattered/primary=16384 scattered/shadow=24310 scattered/reflection=10588 scattered/transmission=7569 bunny/primary=65536 bunny/shadow=13256 "
+whole_rays(scene, kind) = (at_ = strstrt(' '.sets, ' '.scene.'/'.kind.'='), at_ == 0 ? 0 : \
+  real(word(sets[at_ + strlen(scene) + strlen(kind) + 2 : *], 1)))
+weight(unused) = whole_rays(strcol('scene'), strcol('kind'))

@@ -12,3 +12,7 @@ groups = "\"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" 
 without = ""
 among = ""
 kinds = "primary shadow diffuse random "
+sets = "points/primary=9363 points/shadow=238 points/diffuse=118 points/random=10000 spheres/primary=9363 spheres/shadow=8726 spheres/diffuse=7589 spheres/random=10000 balls/primary=9363 balls/shadow=9681 balls/diffuse=9363 balls/random=10000 tetra/primary=9363 tetra/shadow=5804 tetra/diffuse=6255 tetra/random=10000 mount/primary=9363 mount/shadow=9906 mount/diffuse=8679 mount/random=10000 lattice/primary=9363 lattice/shadow=9712 lattice/diffuse=9292 lattice/random=10000 tree/primary=9363 tree/shadow=9765 tree/diffuse=8468 tree/random=10000 stadium/primary=9363 stadium/shadow=9383 stadium/diffuse=8647 stadium/random=10000 soup/primary=9363 soup/shadow=7341 soup/diffuse=9902 soup/random=10000 crowd/primary=9363 crowd/shadow=6629 crowd/diffuse=4472 crowd/random=10000 bunny/primary=9363 bunny/shadow=6628 bunny/diffuse=6713 bunny/random=10000 dragon/primary=9363 dragon/shadow=6211 dragon/diffuse=6286 dragon/random=10000 hall/primary=9363 hall/shadow=9712 hall/diffuse=9363 hall/random=10000 forest/primary=9363 forest/shadow=9782 forest/diffuse=8806 forest/random=10000 "
+whole_rays(scene, kind) = (at_ = strstrt(' '.sets, ' '.scene.'/'.kind.'='), at_ == 0 ? 0 : \
+  real(word(sets[at_ + strlen(scene) + strlen(kind) + 2 : *], 1)))
+weight(unused) = whole_rays(strcol('scene'), strcol('kind'))

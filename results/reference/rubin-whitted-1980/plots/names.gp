@@ -12,3 +12,7 @@ groups = "\"\" \"\" \"\" "
 without = ""
 among = ""
 kinds = "primary shadow "
+sets = "scattered:n=100/primary=16384 scattered:n=100/shadow=18631 scattered:n=1000/primary=16384 scattered:n=1000/shadow=16128 scattered:n=10000/primary=16384 scattered:n=10000/shadow=15360 scattered:n=100000/primary=16384 scattered:n=100000/shadow=17664 mount:size=3/primary=16384 mount:size=3/shadow=15360 mount:size=4/primary=16384 mount:size=4/shadow=16384 mount:size=5/primary=16384 mount:size=5/shadow=16384 mount:size=6/primary=16384 mount:size=6/shadow=16569 mount:size=7/primary=16384 mount:size=7/shadow=16128 mount:size=8/primary=16384 mount:size=8/shadow=15616 "
+whole_rays(scene, kind) = (at_ = strstrt(' '.sets, ' '.scene.'/'.kind.'='), at_ == 0 ? 0 : \
+  real(word(sets[at_ + strlen(scene) + strlen(kind) + 2 : *], 1)))
+weight(unused) = whole_rays(strcol('scene'), strcol('kind'))

@@ -12,3 +12,7 @@ groups = "\"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" \"\" "
 without = ""
 among = ""
 kinds = "primary "
+sets = "balls:size=3/primary=993 jewel/primary=993 bunny/primary=993 "
+whole_rays(scene, kind) = (at_ = strstrt(' '.sets, ' '.scene.'/'.kind.'='), at_ == 0 ? 0 : \
+  real(word(sets[at_ + strlen(scene) + strlen(kind) + 2 : *], 1)))
+weight(unused) = whole_rays(strcol('scene'), strcol('kind'))

@@ -12,3 +12,7 @@ groups = "\"\" \"\" \"\" \"\" "
 without = ""
 among = ""
 kinds = "primary "
+sets = "soup:n=1000/primary=825 soup:n=4000/primary=825 soup:n=16000/primary=825 soup:n=64000/primary=825 soup:n=256000/primary=825 soup:n=1024000/primary=825 "
+whole_rays(scene, kind) = (at_ = strstrt(' '.sets, ' '.scene.'/'.kind.'='), at_ == 0 ? 0 : \
+  real(word(sets[at_ + strlen(scene) + strlen(kind) + 2 : *], 1)))
+weight(unused) = whole_rays(strcol('scene'), strcol('kind'))

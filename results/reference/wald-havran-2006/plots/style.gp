@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # The common style of all plots, and functions to read the CSV files. names.gp runs before this.
 #
-# Totals weight a ray kind by the number of rays in its whole set (set_rays), so accelerators that were measured on
-# every Kth ray compare with the others.
+# Totals weight a ray kind by the number of rays in its whole set (weight(0), the row at hand's), so accelerators that were
+# measured on every Kth ray compare with the others, and a lower limit changes nothing.
 #
 # A comment "#: NAME: text" in a script, continued in lines "#:   text", is the caption of plot NAME in the report;
 # its first sentence is the alternative text of the plot.

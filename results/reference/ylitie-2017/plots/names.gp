@@ -12,3 +12,7 @@ groups = "\"\" \"\" \"\" \"\" "
 without = ""
 among = ""
 kinds = "diffuse random "
+sets = "dragon-11k/diffuse=12374 dragon-11k/random=20000 dragon-48k/diffuse=12601 dragon-48k/random=20000 dragon-202k/diffuse=12559 dragon-202k/random=20000 dragon-871k/diffuse=12571 dragon-871k/random=20000 hall/diffuse=16384 hall/random=20000 "
+whole_rays(scene, kind) = (at_ = strstrt(' '.sets, ' '.scene.'/'.kind.'='), at_ == 0 ? 0 : \
+  real(word(sets[at_ + strlen(scene) + strlen(kind) + 2 : *], 1)))
+weight(unused) = whole_rays(strcol('scene'), strcol('kind'))
