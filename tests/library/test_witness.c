@@ -128,7 +128,7 @@ static void on_notice(void *context, const char *message) {
 }
 
 static void verify_by_program(const char *scene, uint64_t rays, uint64_t seed) {
-    static const RtVerifySpec spec = {"witness", true, {NULL, NULL, 0}};
+    static const RtVerifySpec spec = {.spec = "witness", .named = true, .judged = true};
     const RtVerifyObserver observer = {on_doing, on_row, on_notice, NULL};
     const RtVerify work = {
         .scenes = &scene, .scene_count = 1, .specs = &spec, .spec_count = 1, .rays = {rays, seed, 1, NULL}};
