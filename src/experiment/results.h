@@ -184,18 +184,6 @@ typedef struct RtBreakEven {
 
 RtBreakEven rt_results_break_even(const RtResults *results, uint32_t workload, uint32_t candidate);
 
-/* False of null runs and the yardstick (rt_accel_yardstick). */
-bool rt_candidate_is_compared(const RtExperiment *experiment, uint32_t candidate);
-
-/* Compares a candidate with all others of the workload, for one kind of rays or RT_ALL_RAYS: by time if
- * anything was timed, else by object tests per ray. The best has the smallest median; an interval that
- * overlaps with the interval of the best is level with it. Only rt_candidate_is_compared are compared. */
-RtStanding rt_standing(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind);
-
-/* The same by time, or by object tests, whatever was timed. */
-RtStanding rt_standing_by(bool time, const RtResults *results, uint32_t workload, uint32_t candidate,
-                          RtRayKind kind);
-
 /* The most rounds of any timed cell of a workload, null runs included, and in *least the fewest; 0 if nothing
  * was timed. */
 uint32_t rt_results_rounds(const RtResults *results, uint32_t workload, uint32_t *least);
