@@ -86,7 +86,7 @@ static bool kept_ratio(const RtResults *results, uint32_t t, uint32_t over, uint
                               .low = 1 / own->ratio.high,
                               .high = 1 / own->ratio.low,
                               .least = (double)NAN};
-    return own->baseline == under || its->baseline == over;
+    return (own->baseline == under || its->baseline == over) && ratio->median > 0 && isfinite(ratio->median);
 }
 
 RtEstimate rt_results_time_ratio(const RtResults *results, uint32_t workload, uint32_t over, uint32_t under,

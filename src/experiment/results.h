@@ -80,6 +80,7 @@ typedef struct RtCell {
     RtDistribution *distributions; /* [RT_RAY_QUANTITY_COUNT] owned; NULL: not asked for */
     uint32_t rounds;
     double repeats;      /* passes over the rays in a round; NAN: unknown, as in older journals */
+    uint32_t structures; /* built anew and timed in turns; 0: unknown, from an older journal */
     int threads;         /* of the timing */
     uint32_t machine;    /* that timed it, in RtResults.machines */
     RtEstimate seconds;  /* per ray: processor time on one thread, wall time on several */

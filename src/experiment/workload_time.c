@@ -215,6 +215,7 @@ static RtStatus keep_times(RtWorkloadState *workload, RtRayKind kind, const Timi
         const RtTimed *baseline = &run->timed[run->baseline_entry[c] + best];
         cell->rounds = rounds;
         cell->repeats = own->repeats;
+        cell->structures = run->structures[c];
         RT_TRY(rt_cell_make_round_times(cell, error));
         memcpy(rt_cell_round_times(cell, RT_ROUND_SECONDS), own->seconds, rounds * sizeof(double));
         memcpy(rt_cell_round_times(cell, RT_ROUND_WALL), own->wall, rounds * sizeof(double));

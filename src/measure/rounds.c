@@ -62,8 +62,8 @@ static RtStatus warm_up(RtRunner *runners, size_t count, double least, RtError *
  * those that take twice as long find that out for themselves. */
 static RtStatus settle(const RtRunner *runner, double least, RtError *error) {
     double seconds, wall, part;
-    if (runner->warm && !runner->parallel) return runner->warm(runner->context, least, &part, error);
     if (runner->once >= 2 * least) return RT_OK;
+    if (runner->warm && !runner->parallel) return runner->warm(runner->context, least, &part, error);
     return rt_runner_time(runner, 1, &seconds, &wall, error);
 }
 

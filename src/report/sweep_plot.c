@@ -4,6 +4,7 @@
 #include "core/base/memory.h"
 #include "report/color.h"
 #include "report/page.h"
+#include "experiment/paired.h"
 #include "report/sweep_lines.h"
 #include "style_gp.h"
 

@@ -6,13 +6,13 @@ static const char claiming[] = "name: small\n"
                                "question: Which density is best?\n"
                                "prediction: Four.\n"
                                "scenes:\n"
-                               "  - {scene: \"random:n=200\", size: 12x12}\n"
+                               "  - {scene: \"random:n=200\", size: 40x40}\n"
                                "accelerators:\n"
                                "  - {accel: bvh}\n"
                                "  - {accel: \"grid:density=1..16*4\"}\n"
                                "rays: [primary]\n"
                                "count_only: yes\n"
-                               "limit: 100\n"
+                               "limit: 1600\n"
                                "expect:\n"
                                "  - object_tests of grid falls with density\n"
                                "  - object_tests of bvh > 1000\n";
@@ -76,7 +76,7 @@ RT_TEST_IN_PLACE(a_finding_is_added_to_a_run_that_is_there_and_nothing_else_is) 
     assert_in_file(place, "out/report.html", "<h2>Finding</h2><p>Four it is, indeed.");
     assert_int_equal(raytally(place, "report out"), 0);
     assert_int_equal(raytally(place, "reproduce out"), 0);
-    write_changed(place, "small.yaml", claiming, "limit: 100", "finding: Four.\nlimit: 99");
+    write_changed(place, "small.yaml", claiming, "limit: 1600", "finding: Four.\nlimit: 1599");
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 2);
     write_changed(place, "small.yaml", claiming, "prediction: Four.", "prediction: Five.");
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 2);
