@@ -144,7 +144,11 @@ void rt_claim_judge(const RtResults *results, uint32_t i, RtClaimResult *result)
 /* RT_MISMATCH with the number of claims that do not hold, if there are any. */
 RtStatus rt_claims_check(const RtResults *results, RtError *error);
 
-/* Prints all claims with their verdicts. */
+/* A sentence on the intervals of many claims; "" without any. */
+#define RT_MAX_CLAIM_LEVEL 160
+void rt_claims_level(const RtResults *results, char out[RT_MAX_CLAIM_LEVEL]);
+
+/* Prints all claims with their verdicts, and which of them changed after the run. */
 void rt_claims_print(const RtResults *results, FILE *out);
 
 #endif

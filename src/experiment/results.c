@@ -25,6 +25,7 @@ void rt_results_clear(RtResults *results) {
     for (size_t i = 0; results->builds && i < builds; i++) rt_free(results->builds[i].leaves);
     rt_free(results->builds);
     rt_free(results->cells);
+    json_decref(results->first_claims);
     *results = (RtResults){0};
 }
 

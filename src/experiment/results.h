@@ -5,6 +5,7 @@
 #ifndef RT_EXPERIMENT_RESULTS_H
 #define RT_EXPERIMENT_RESULTS_H
 
+#include "core/text/json.h"
 #include "core/text/table.h"
 #include "experiment/experiment.h"
 #include "measure/distribution.h"
@@ -98,6 +99,7 @@ typedef struct RtResults {
     RtCell *cells;                       /* see rt_cell_at */
     RtMachine machines[RT_MAX_MACHINES]; /* the first is the unknown one */
     uint32_t machine_count;
+    json_t *first_claims; /* owned: the list of claims when the run began, from its journal; NULL: unknown */
 } RtResults;
 
 /* All unknown. Clear with rt_results_clear, also after a failure. */

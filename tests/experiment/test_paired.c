@@ -99,7 +99,8 @@ RT_TEST(with_many_intervals_each_covers_more) {
     e->claim_count = 2;
     rt_claims_print(&results, out);
     fclose(out);
-    assert_non_null(strstr(list, "All 17 intervals of tracing times hold together with 95 % confidence"));
+    assert_non_null(
+        strstr(list, "The 17 intervals of tracing times in these claims hold together with 95 % confidence"));
 }
 
 RT_TESTS(paired, set_up, tear_down)
