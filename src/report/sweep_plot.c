@@ -2,9 +2,9 @@
 #include "report/sweep_plot.h"
 
 #include "core/base/memory.h"
+#include "experiment/paired.h"
 #include "report/color.h"
 #include "report/page.h"
-#include "experiment/paired.h"
 #include "report/sweep_lines.h"
 #include "style_gp.h"
 

@@ -110,8 +110,9 @@ RT_TEST_IN_PLACE(claims_that_change_after_a_run_are_shown_as_such_beside_the_ori
 RT_TEST_IN_PLACE(plots_may_change_after_a_run_and_scripts_be_added_to_its_results) {
     const Place *place = *state;
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
-    write_in(place, "mine.gp", "set output 'plots/mine.svg.tmp'\nplot 1\nunset output\n");
-    write_in(place, "out/plots/later.gp", "set output 'plots/later.svg.tmp'\nplot 2\nunset output\n");
+    write_in(place, "mine.gp", "set terminal svg\nset output \"plots/mine.svg.tmp\"\nplot 1\nunset output\n");
+    write_in(place, "out/plots/later.gp",
+             "set terminal svg\nset output \"plots/later.svg.tmp\"\nplot 2\nunset output\n");
     assert_int_equal(raytally(place, "plot out"), 2); /* a script of somebody */
     assert_in_file(place, "message", "later.gp: raytally does not ship this gnuplot script");
     write_changed(place, "small.yaml", claiming, "count_only", "plots: [mine.gp]\ncount_only");
