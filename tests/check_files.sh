@@ -31,7 +31,7 @@ of_another_version() {
     local version
     version=$(sed -n 's/^project(raytally VERSION \([0-9.]*\) .*/\1/p' CMakeLists.txt)
     grep -qx "version: $version" CITATION.cff || echo "CITATION.cff: the version is not $version"
-    grep -m 1 '^## ' CHANGELOG.md | grep -q "^## $version " || echo "CHANGELOG.md: does not begin with version $version"
+    grep '^## ' CHANGELOG.md | grep -v '(unreleased)$' | head -n 1 | grep -q "^## $version " || echo "CHANGELOG.md: does not begin with version $version"
 }
 
 failed=$(unlisted && unlicensed && of_another_version)

@@ -82,14 +82,15 @@ static void timing_run_clear(TimingRun *run) {
 
 /* ---- structures built anew ---- */
 
-/* Earns what the last round of tracing took, but at least RT_BUILD_BUDGET, for building. So building takes no
- * more time than tracing where that takes long; structures that take longer to build stay for some rounds. */
+/* Earns what the last round of tracing took, but at least RT_RENEWAL_BUDGET, for building. So building takes
+ * no more time than tracing where that takes long; structures that take longer to build stay for some rounds.
+ */
 static void earn(TimingRun *run) {
     const uint32_t round = run->renewed++;
     for (uint32_t c = 0; c < run->workload->count; c++) {
         const RtTimed *own = &run->timed[run->place[c]];
         const double traced = own->wall[round] * (double)own->set->count * own->repeats;
-        run->credit[c] += fmax(RT_BUILD_BUDGET, traced);
+        run->credit[c] += fmax(RT_RENEWAL_BUDGET, traced);
     }
 }
 
