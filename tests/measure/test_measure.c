@@ -684,6 +684,7 @@ static uint32_t rounds_until(double until, double patience, char says[256]) {
     uint32_t rounds = null->rounds;
     assert_true((rt_estimate_width(&null->ratio) <= until) == (says[0] == '\0'));
     assert_non_null(null->round_times);
+    assert_int_equal(null->structures, rounds); /* each round timed another build */
     rt_results_clear(&results);
     rt_free(e);
     return rounds;
