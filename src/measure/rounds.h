@@ -28,8 +28,8 @@ typedef struct RtRunner {
     double work;      /* units of work in one run, > 0: times are per unit */
     double *seconds;  /* [most] out: by the clock of the comparison, else the thread's processor time */
     double *wall;     /* [most] out: by the wall clock, or NULL */
+    double once;      /* out: seconds of a run in the last round */
     uint32_t repeats; /* out: runs in the last round */
-    double once;      /* out: seconds of one of them */
     bool parallel;    /* runs on several threads: the wall clock is then the clock of the comparison */
     bool *broken;     /* in and out: set by RT_BROKEN, and never run again. NULL: RT_BROKEN ends the rounds */
 } RtRunner;
