@@ -16,6 +16,10 @@ typedef struct Options {
 
 static RtStatus draw(const char *directory, RtResults *results, const void *options, RtError *error) {
     const Options *o = options;
+    static RtExperiment experiment; /* with the scripts that were added later */
+    experiment = *results->experiment;
+    RT_TRY(rt_scripts_add_found(&experiment, directory, error));
+    results->experiment = &experiment;
     RT_TRY(rt_scripts_check(results->experiment, directory, true, o->allowed, error));
     RtStatus status = rt_plots_draw(results, directory, o->column, error);
     if (status == RT_OK) printf("Plots: %s/plots\n", directory);
@@ -42,7 +46,8 @@ const RtSyntax rt_plot_syntax = {
     .plugins = true,
     .arguments = "DIR",
     .argument = RT_DIRECTORY_ARGUMENT,
-    .help = "Redraw the plots of a result directory from its CSV files and the scripts in DIR/plots. A "
+    .help = "Redraw the plots of a result directory from its CSV files and the scripts in DIR/plots, "
+            "those included that were put there later. A "
             "script that raytally does not ship, your own or a changed one, needs --trust: a gnuplot script "
             "can run any command. Exit code 1 if gnuplot fails; without gnuplot there is a note."};
 

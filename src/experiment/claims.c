@@ -277,9 +277,11 @@ static RtStatus read_at(Reader *r) {
 
 static RtStatus read_kind(Reader *r) {
     RtClaim *claim = r->claim;
-    if (claim->measure >= RT_CLAIM_BUILD_TIME && claim->first >= RT_CLAIM_BUILD_TIME)
+    if (!rt_claim_is_of_rays(claim))
         return fail(r, "%s does not depend on the kind of rays", measures[claim->measure]);
-    if (claim->kind != RT_ALL_RAYS) return fail(r, "it names two kinds of rays (`for`)");
+    if (!claim->each_kind) return fail(r, "it names two kinds of rays (`for`)");
+    claim->each_kind = false;
+    if (take(r, RT_CLAIM_ALL)) return need(r, "rays");
     if (rt_ray_kind_parse(word(r), &claim->kind, NULL) != RT_OK ||
         !rt_experiment_has_kind(r->experiment, claim->kind))
         return fail(r, "this experiment has no '%s' rays", word(r));
@@ -372,8 +374,9 @@ static RtStatus read_claim(Reader *r) {
 
 RtStatus rt_claim_parse(const RtExperiment *experiment, const char *text, RtClaim *claim, RtError *error) {
     Reader r = {.experiment = experiment, .claim = claim, .error = error};
-    *claim = (RtClaim){.kind = RT_ALL_RAYS};
+    *claim = (RtClaim){.each_kind = true, .kind = RT_ALL_RAYS};
     RT_TRY(split(&r, text));
     RT_TRY(read_claim(&r));
+    claim->each_kind &= rt_claim_is_of_rays(claim);
     return r.at == r.count ? RT_OK : fail(&r, "unexpected '%s' at its end", word(&r));
 }

@@ -10,24 +10,30 @@
  *              | exponent of MEASURE of ACCEL in PARAM
  *              | crossover of MEASURE of ACCEL and ACCEL in PARAM
  *              | correlation of MEASURE and MEASURE of ACCEL
- *     PLACE    = any of: on SCENE, for KIND rays, at largest PARAM, at smallest PARAM, at PARAM=VALUE
- *     MEASURE  = time, object_tests, extent_tests, steps, csg_tests (each per ray), build_time, bytes,
- *                predicted_cost, break_even (rays), render_time (s), query_share (`render`)
+ *     PLACE    = any of: on SCENE, for KIND rays, for all rays, at largest PARAM, at smallest PARAM, at
+ * PARAM=VALUE MEASURE  = time, object_tests, extent_tests, steps, csg_tests (each per ray), build_time,
+ * bytes, predicted_cost, break_even (rays), render_time (s), query_share (`render`)
  *
  * ACCEL and SCENE are labels, or the common part of the labels of a sweep. ACCEL may be `all`, every
  * accelerator of the list, in a crossover every one but the second; or the name of a baseline of several
  * settings ("embree:best"): the setting that is the fastest on each kind of rays. PARAM is a swept parameter:
  * n, or scene.n or accel.n if both have it; or, except in "at", `objects`, the number of objects of the
- * scene, however scenes are named. A claim covers every cell that it does not exclude, all kinds of rays
- * together unless it names one; it holds if it holds for all of them. "at" excludes cells without the
- * parameter. The second ACCEL of a ratio or a crossover is one accelerator; in a crossover it may sweep
- * PARAM, too. "falls" means from each value of the parameter to the next larger one.
+ * scene, however scenes are named. A claim covers every cell that it does not exclude, and holds if it holds
+ * for all of them. Without "for" that is each kind of rays by itself that a scene has, and the verdict says
+ * where kinds differ; "for all rays" is their sum: the mean cost of a ray, each kind weighted by the size of
+ * its set. "at" excludes cells without the parameter. The second ACCEL of a ratio or a crossover is one
+ * accelerator; in a crossover it may sweep PARAM, too. "falls" means from each value of the parameter to the
+ * next larger one.
  *
  * Times have intervals, counts are exact. A claim about times holds if it holds for all values within the
- * intervals, does not hold if it holds for none, and is undecided otherwise. A ratio of times to the baseline
- * on one kind of rays is the paired one; other ratios use the quotients of the intervals' ends. The time of a
- * single build has no interval and is taken as exact. A break-even is the number of rays from which on an
- * accelerator is ahead of the baseline, its build included; it is infinite if there is none.
+ * intervals, does not hold if it holds for none, and is undecided otherwise. It is undecided, too, with fewer
+ * than RT_CLAIM_RAYS rays. Ratios of times, and the steps of a trend of times on one scene, are paired
+ * (paired.h). With many cells some interval misses by chance; so all intervals of tracing times in an
+ * experiment's claims hold together in 95 % of all cases (rt_coverage_of_each, counting the cells of all
+ * claims). Readouts claim nothing and have 95 % each; so have times of builds and frames, whose single
+ * measurements are not kept. The time of a single build has no interval and is taken as exact. A break-even
+ * is the number of rays from which on an accelerator is ahead of the baseline, its build included; it is
+ * infinite if there is none.
  *
  * An exponent is the least-squares slope of the logarithms, a correlation Pearson's of the logarithms.
  * claims_figures.h defines their intervals. They include the scatter of the values, also of counts: a curve
@@ -39,7 +45,7 @@
  * can only make it undecided. It is undecided, too, if no crossover is certain: curves that do not cross
  * within the measured values may cross beyond them.
  *
- * A cell has no value for all kinds of rays together if one of them was not measured. A claim about cells
+ * A cell has no value for all rays if one kind of them was not measured. A claim about cells
  * without a value is undecided, unless the others disprove it. If none of its cells was measured, as where a
  * plugin is missing, its verdict is "no measurements"; if an accelerator refused the scene, it is undecided.
  * An exponent needs all values of its line; a crossover only those between the first and the last cell in
@@ -83,6 +89,8 @@ typedef enum RtClaimForm {
 
 #define RT_MAX_CLAIM_PLACES 4
 
+#define RT_CLAIM_RAYS 1000 /* fewer rays decide nothing */
+
 /* A parsed claim. */
 typedef struct RtClaim {
     RtClaimForm form;
@@ -91,7 +99,8 @@ typedef struct RtClaim {
     char other[RT_MAX_LABEL]; /* of a ratio, the denominator; of a crossover, the second; else "" */
     RtSweptKey key;           /* of an exponent, a crossover or a trend; key.key NULL: none */
     bool by_objects;          /* key is the number of objects of the scene */
-    RtRayKind kind;           /* or RT_ALL_RAYS */
+    bool each_kind;           /* judged for each kind of rays by itself */
+    RtRayKind kind;           /* else; or RT_ALL_RAYS */
     uint32_t place_count;
     struct {
         RtSweptKey key;
@@ -126,13 +135,21 @@ typedef struct RtClaimResult {
 /* "holds", "does not hold", "undecided", "no measurements", "figure". */
 const char *rt_claim_verdict_name(RtClaimVerdict verdict);
 
+/* The coverage of each interval of a tracing time, with which those of all claims hold together in 95 % of
+ * all cases; *count gets the number of them. */
+double rt_claims_coverage(const RtResults *results, uint32_t *count);
+
 /* Judges claim number `i` of the experiment; an invalid one has no measurements. */
 void rt_claim_judge(const RtResults *results, uint32_t i, RtClaimResult *result);
 
 /* RT_MISMATCH with the number of claims that do not hold, if there are any. */
 RtStatus rt_claims_check(const RtResults *results, RtError *error);
 
-/* Prints all claims with their verdicts. */
+/* A sentence on the intervals of many claims; "" without any. */
+#define RT_MAX_CLAIM_LEVEL 160
+void rt_claims_level(const RtResults *results, char out[RT_MAX_CLAIM_LEVEL]);
+
+/* Prints all claims with their verdicts, and which of them changed after the run. */
 void rt_claims_print(const RtResults *results, FILE *out);
 
 #endif

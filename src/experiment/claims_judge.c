@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "core/text/table.h"
+#include "experiment/paired.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -14,6 +15,7 @@ typedef struct Figure {
     const RtClaimPoint *points; /* [count] */
     uint32_t count;
     RtClaimVerdict verdict; /* of claims */
+    uint64_t rays;          /* the fewest of any point */
     RtEstimate value;       /* of a value, ratio, exponent or correlation */
     double error;           /* of an exponent: the standard error */
     uint32_t from, to;      /* of a trend: the points of the deciding step */
@@ -48,8 +50,23 @@ static RtClaimVerdict compare(const RtClaim *claim, double low, double high) {
     return first && last ? RT_CLAIM_HOLDS : first || last ? RT_CLAIM_UNDECIDED : RT_CLAIM_FALSE;
 }
 
+/* What claims are judged by. */
+typedef struct Judge {
+    const RtResults *results;
+    const RtClaim *claim;
+    double coverage; /* of each interval of a tracing time */
+} Judge;
+
 /* The verdict on one step of a trend. */
-static RtClaimVerdict step_of(const RtClaim *claim, const RtEstimate *from, const RtEstimate *to) {
+static RtClaimVerdict step_of(const Judge *judge, const RtClaimPoint *one, const RtClaimPoint *next) {
+    const RtClaim *claim = judge->claim;
+    RtEstimate before = one->y, after = next->y;
+    if (claim->measure == RT_CLAIM_TIME && one->workload == next->workload) {
+        before = rt_estimate_exactly(1);
+        after = rt_results_time_ratio(judge->results, one->workload, next->candidate, one->candidate,
+                                      one->kind, judge->coverage);
+    }
+    const RtEstimate *from = &before, *to = &after;
     const RtEstimate *less = claim->rises ? from : to, *more = claim->rises ? to : from;
     if (claim->strictly ? more->low > less->high : more->low >= less->high) return RT_CLAIM_HOLDS;
     bool may = claim->strictly ? more->high > less->low : more->high >= less->low;
@@ -57,13 +74,13 @@ static RtClaimVerdict step_of(const RtClaim *claim, const RtEstimate *from, cons
 }
 
 /* By the first step with the worst verdict; if all hold, from the first value to the last. */
-static void judge_trend(const RtClaim *claim, Figure *figure) {
+static void judge_trend(const Judge *judge, Figure *figure) {
     const RtClaimPoint *points = figure->points;
     figure->to = figure->count - 1;
     for (uint32_t i = 0, next = 0; i < figure->count; i++) {
         while (next < figure->count && points[next].x == points[i].x) next++;
         for (uint32_t k = next; k < figure->count && points[k].x == points[next].x; k++) {
-            RtClaimVerdict step = step_of(claim, &points[i].y, &points[k].y);
+            RtClaimVerdict step = step_of(judge, &points[i], &points[k]);
             if (step <= figure->verdict) continue;
             figure->verdict = step;
             figure->from = i;
@@ -95,10 +112,18 @@ static void judge_crossover(const RtClaim *claim, Figure *figure) {
     figure->verdict = any ? worse(certain, possible) : RT_CLAIM_UNDECIDED;
 }
 
-static void judge_figure(const RtClaim *claim, Figure *figure) {
+static bool has_too_few_rays(const Figure *figure) {
+    return figure->rays < RT_CLAIM_RAYS;
+}
+
+static void judge_figure(const Judge *judge, Figure *figure) {
+    const RtClaim *claim = judge->claim;
     figure->verdict = RT_CLAIM_HOLDS;
+    figure->rays = UINT64_MAX;
+    for (uint32_t i = 0; i < figure->count; i++)
+        figure->rays = figure->points[i].rays < figure->rays ? figure->points[i].rays : figure->rays;
     if (claim->form == RT_CLAIM_TREND) {
-        judge_trend(claim, figure);
+        judge_trend(judge, figure);
     } else if (claim->form == RT_CLAIM_CROSSOVER) {
         judge_crossover(claim, figure);
     } else {
@@ -110,6 +135,7 @@ static void judge_figure(const RtClaim *claim, Figure *figure) {
         figure->verdict = isnan(figure->value.median) ? RT_CLAIM_UNDECIDED
                                                       : compare(claim, figure->value.low, figure->value.high);
     }
+    if (has_too_few_rays(figure)) figure->verdict = RT_CLAIM_UNDECIDED;
 }
 
 /* ---- texts ---- */
@@ -147,7 +173,12 @@ static void put_place(RtClaimResult *result, const RtExperiment *experiment, con
                       const RtClaimPoint *point) {
     const bool line = claim->form >= RT_CLAIM_EXPONENT && !claim->by_objects;
     const RtWorkload *workload = &experiment->workloads[point->workload];
-    if (claim->form == RT_CLAIM_CORRELATION) return;
+    const bool kind = claim->each_kind && experiment->kind_count > 1;
+    const char *kind_name = kind ? rt_experiment_kind_name(experiment, point->kind) : "";
+    if (claim->form == RT_CLAIM_CORRELATION) {
+        if (kind) PUT(result, " (%s rays)", kind_name);
+        return;
+    }
     if (line && !claim->key.scene && point->candidate != RT_FASTEST_BASELINE) {
         const RtCandidate *candidate = &experiment->candidates[point->candidate];
         PUT(result, " (%s", candidate->stem);
@@ -161,6 +192,7 @@ static void put_place(RtClaimResult *result, const RtExperiment *experiment, con
     } else if (!claim->by_objects) {
         PUT(result, " on %s", workload->label);
     }
+    if (kind) PUT(result, ", %s rays", kind_name);
     PUT(result, ")");
 }
 
@@ -246,6 +278,34 @@ static void put_figure(RtClaimResult *result, const RtExperiment *experiment, co
     if (claim->form == RT_CLAIM_EXPONENT || claim->form == RT_CLAIM_CORRELATION)
         PUT(result, " over %" PRIu32 " values", figure->count);
     put_place(result, experiment, claim, figure->points);
+    if (!claim->readout && has_too_few_rays(figure))
+        PUT(result, ", but of %" PRIu64 " ray%s, and fewer than %d decide nothing", figure->rays,
+            rt_plural(figure->rays), RT_CLAIM_RAYS);
+}
+
+/* "; holds for primary and shadow rays, does not hold for reflection rays", unless all kinds agree. */
+static void put_kinds(RtClaimResult *result, const RtExperiment *experiment, const Figure *figures,
+                      uint32_t count) {
+    RtClaimVerdict verdicts[RT_RAY_KIND_COUNT];
+    bool has[RT_RAY_KIND_COUNT] = {false}, agree = true;
+    for (uint32_t i = 0; i < count; i++) {
+        const RtRayKind kind = figures[i].points->kind;
+        verdicts[kind] = has[kind] ? worse(verdicts[kind], figures[i].verdict) : figures[i].verdict;
+        has[kind] = true;
+    }
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) agree &= !has[k] || verdicts[k] == result->verdict;
+    for (int v = 0; v < RT_CLAIM_VERDICT_COUNT && !agree; v++) {
+        const char *names[RT_RAY_KIND_COUNT];
+        char list[128];
+        uint32_t found = 0;
+        for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+            if (has[k] && verdicts[k] == (RtClaimVerdict)v)
+                names[found++] = rt_experiment_kind_name(experiment, (RtRayKind)k);
+        }
+        if (found == 0) continue;
+        rt_join_names(names, found, list, sizeof list);
+        PUT(result, "; %s for %s rays", rt_claim_verdict_name((RtClaimVerdict)v), list);
+    }
 }
 
 /* ---- the figures of a claim ---- */
@@ -269,20 +329,29 @@ static bool trim_line(RtClaimPoint **points, uint32_t *count) {
     return hidden;
 }
 
+/* How many points, from the first on, belong to the correlation of one kind of rays. */
+static uint32_t count_of_kind(const RtClaimPoint *points, uint32_t count) {
+    uint32_t same = 1;
+    while (same < count && points[same].kind == points->kind) same++;
+    return same;
+}
+
 /* Reorders the points; returns the number of figures[]. */
-static uint32_t make_figures(const RtExperiment *experiment, const RtClaim *claim, RtClaimPoint *points,
-                             uint32_t count, Figure *figures) {
+static uint32_t make_figures(const Judge *judge, RtClaimPoint *points, uint32_t count, Figure *figures) {
+    const RtClaim *claim = judge->claim;
     const bool line = claim->form >= RT_CLAIM_EXPONENT, all = claim->form == RT_CLAIM_CORRELATION;
     uint32_t made = 0;
     for (uint32_t first = 0, length; first < count; first += length) {
         RtClaimPoint *start = points + first;
-        length = all ? count : line ? rt_claim_line(experiment, claim, start, count - first) : 1;
+        length = all    ? count_of_kind(start, count - first)
+                 : line ? rt_claim_line(judge->results->experiment, claim, start, count - first)
+                        : 1;
         uint32_t left = length;
         const bool hidden = claim->form == RT_CLAIM_CROSSOVER && trim_line(&start, &left);
         if (line && left < 2) continue;
         Figure *figure = &figures[made++];
         *figure = (Figure){.points = start, .count = left};
-        judge_figure(claim, figure);
+        judge_figure(judge, figure);
         if (hidden) figure->verdict = worse(figure->verdict, RT_CLAIM_UNDECIDED);
     }
     return made;
@@ -322,10 +391,11 @@ static void put_readout(RtClaimResult *result, const RtExperiment *experiment, c
     put_figure(result, experiment, claim, most);
 }
 
-static void judge(const RtExperiment *experiment, const RtClaim *claim, RtClaimPoint *points, uint32_t count,
-                  RtClaimResult *result) {
+static void judge_points(const Judge *judge, RtClaimPoint *points, uint32_t count, RtClaimResult *result) {
+    const RtExperiment *experiment = judge->results->experiment;
+    const RtClaim *claim = judge->claim;
     Figure *figures = rt_alloc(count, sizeof *figures);
-    const uint32_t made = figures ? make_figures(experiment, claim, points, count, figures) : 0;
+    const uint32_t made = figures ? make_figures(judge, points, count, figures) : 0;
     if (made == 0) {
         *result = (RtClaimResult){RT_CLAIM_UNDECIDED, "fewer than two values were measured"};
     } else if (claim->readout) {
@@ -334,74 +404,61 @@ static void judge(const RtExperiment *experiment, const RtClaim *claim, RtClaimP
         const Figure *worst = find_worst(claim, figures, made);
         result->verdict = worst->verdict;
         put_figure(result, experiment, claim, worst);
+        if (claim->each_kind) put_kinds(result, experiment, figures, made);
     }
     rt_free(figures);
 }
 
-void rt_claim_judge(const RtResults *results, uint32_t i, RtClaimResult *result) {
+double rt_claims_coverage(const RtResults *results, uint32_t *count) {
     const RtExperiment *experiment = results->experiment;
-    uint32_t count = 0, known = 0;
-    RtClaim claim = {0};
-    RtError error;
-    *result = (RtClaimResult){.verdict = RT_CLAIM_HOLDS};
-    RtClaimPoint *points =
-        rt_alloc((size_t)experiment->workload_count * experiment->candidate_count, sizeof *points);
-    RtStatus status = rt_claim_parse(experiment, experiment->claims[i], &claim, &error);
-    if (points && status == RT_OK) count = rt_claim_gather(results, &claim, points);
+    *count = 0;
+    for (uint32_t i = 0; i < experiment->claim_count; i++) {
+        RtClaim claim;
+        if (rt_claim_parse(experiment, experiment->claims[i], &claim, NULL) != RT_OK || claim.readout)
+            continue;
+        if (claim.measure == RT_CLAIM_TIME || claim.first == RT_CLAIM_TIME)
+            *count += rt_claim_gather(results, &claim, 0, NULL);
+    }
+    return rt_coverage_of_each(*count);
+}
+
+static void judge_parsed(const RtResults *results, const RtClaim *claim, RtClaimPoint *points,
+                         RtClaimResult *result) {
+    uint32_t known = 0, intervals;
+    const Judge judge = {results, claim,
+                         claim->readout ? rt_coverage_of_each(1) : rt_claims_coverage(results, &intervals)};
+    const uint32_t count = rt_claim_gather(results, claim, judge.coverage, points);
     for (uint32_t k = 0; k < count; k++) known += rt_claim_point_known(&points[k]) ? 1 : 0;
-    if (!rt_claim_any_measured(results, &claim, points, count)) {
+    if (!rt_claim_any_measured(results, claim, points, count)) {
         *result = (RtClaimResult){RT_CLAIM_UNMEASURED, "nothing that this claim is about was measured"};
     } else if (known == 0) {
-        *result = claim.measure >= RT_CLAIM_BUILD_TIME
+        *result = claim->measure >= RT_CLAIM_BUILD_TIME
                       ? (RtClaimResult){RT_CLAIM_UNDECIDED, "these structures have no such value"}
                       : (RtClaimResult){RT_CLAIM_UNDECIDED, "no measurements of all kinds of rays"};
     } else {
         /* An exponent needs all values; a crossover those between its ends. */
-        const bool whole = claim.form == RT_CLAIM_EXPONENT || claim.form == RT_CLAIM_CROSSOVER;
-        judge(experiment, &claim, points, whole ? count : drop_unknown(points, count), result);
+        const bool whole = claim->form == RT_CLAIM_EXPONENT || claim->form == RT_CLAIM_CROSSOVER;
+        judge_points(&judge, points, whole ? count : drop_unknown(points, count), result);
     }
     if (known > 0 && known < count) {
-        if (claim.form != RT_CLAIM_CROSSOVER) result->verdict = worse(result->verdict, RT_CLAIM_UNDECIDED);
+        if (claim->form != RT_CLAIM_CROSSOVER) result->verdict = worse(result->verdict, RT_CLAIM_UNDECIDED);
         PUT(result, "; %" PRIu32 " of %" PRIu32 " values are unknown", count - known, count);
     }
-    const char *refusal = known < count || count == 0 ? rt_claim_refusal(results, &claim) : NULL;
+    const char *refusal = known < count || count == 0 ? rt_claim_refusal(results, claim) : NULL;
     if (refusal && result->verdict == RT_CLAIM_UNMEASURED) result->verdict = RT_CLAIM_UNDECIDED;
     if (refusal) PUT(result, "; refused: %.300s", refusal);
-    if (claim.readout) result->verdict = RT_CLAIM_FIGURE;
+    if (claim->readout) result->verdict = RT_CLAIM_FIGURE;
+}
+
+void rt_claim_judge(const RtResults *results, uint32_t i, RtClaimResult *result) {
+    const RtExperiment *experiment = results->experiment;
+    RtClaim claim;
+    *result = (RtClaimResult){RT_CLAIM_UNMEASURED, "nothing that this claim is about was measured"};
+    const size_t most = (size_t)experiment->workload_count * experiment->candidate_count * RT_RAY_KIND_COUNT;
+    RtClaimPoint *points = rt_alloc(most, sizeof *points);
+    if (points && rt_claim_parse(experiment, experiment->claims[i], &claim, NULL) == RT_OK) {
+        *result = (RtClaimResult){.verdict = RT_CLAIM_HOLDS};
+        judge_parsed(results, &claim, points, result);
+    }
     rt_free(points);
-}
-
-RtStatus rt_claims_check(const RtResults *results, RtError *error) {
-    const RtExperiment *experiment = results->experiment;
-    uint32_t wrong = 0, first = 0, claims = 0;
-    RtClaimResult result;
-    for (uint32_t i = experiment->claim_count; i-- > 0;) {
-        rt_claim_judge(results, i, &result);
-        claims += result.verdict != RT_CLAIM_FIGURE;
-        if (result.verdict != RT_CLAIM_FALSE) continue;
-        first = i;
-        wrong++;
-    }
-    if (wrong == 0) return RT_OK;
-    return rt_fail(error, RT_MISMATCH, "%" PRIu32 " of %" PRIu32 " claims do not hold, the first: %s", wrong,
-                   claims, experiment->claims[first]);
-}
-
-void rt_claims_print(const RtResults *results, FILE *out) {
-    const RtExperiment *experiment = results->experiment;
-    bool open = false;
-    if (experiment->claim_count)
-        fprintf(out, "\nClaims%s:\n",
-                experiment->quick ? " (made for the full experiment; this is its --quick variant)" : "");
-    for (uint32_t i = 0; i < experiment->claim_count; i++) {
-        RtClaimResult result;
-        rt_claim_judge(results, i, &result);
-        fprintf(out, "  %-15s  %s\n  %-15s  %s\n", rt_claim_verdict_name(result.verdict),
-                experiment->claims[i], "", result.figures);
-        open |= result.verdict == RT_CLAIM_UNDECIDED;
-    }
-    if (open)
-        fputs(
-            "  undecided: the interval includes the bound, a value is missing, or no crossover is certain\n",
-            out);
 }

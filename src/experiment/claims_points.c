@@ -2,10 +2,15 @@
 #include "experiment/claims_points.h"
 
 #include "core/base/words.h"
+#include "experiment/paired.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+bool rt_claim_is_of_rays(const RtClaim *claim) {
+    return claim->measure < RT_CLAIM_BUILD_TIME || claim->first < RT_CLAIM_BUILD_TIME;
+}
 
 bool rt_claim_point_known(const RtClaimPoint *point) {
     return !isnan(point->x) && !isnan(point->y.median);
@@ -23,8 +28,16 @@ static RtEstimate break_even(const RtResults *results, uint32_t t, uint32_t c) {
                         .high = isinf(even.rays.low) ? 0 : never};
 }
 
-static RtEstimate value_at(const RtResults *results, RtClaimMeasure measure, RtRayKind kind, uint32_t t,
-                           uint32_t c) {
+/* What the values of a claim's cells depend on. */
+typedef struct Asked {
+    const RtResults *results;
+    const RtClaim *claim;
+    RtRayKind kind; /* of the cells now gathered, or RT_ALL_RAYS */
+    double coverage;
+} Asked;
+
+static RtEstimate value_at(const Asked *asked, RtClaimMeasure measure, uint32_t t, uint32_t c) {
+    const RtResults *results = asked->results;
     const RtEstimate unknown = rt_estimate_exactly((double)NAN);
     if (measure >= RT_CLAIM_BUILD_TIME) {
         const RtBuildResult *build = rt_build_at(results, t, c);
@@ -37,34 +50,13 @@ static RtEstimate value_at(const RtResults *results, RtClaimMeasure measure, RtR
         return rt_estimate_exactly(measure == RT_CLAIM_BYTES ? (double)build->structure.bytes
                                                              : build->structure.predicted_cost);
     }
-    const RtCost cost = rt_results_cost(results, t, c, kind);
+    if (measure == RT_CLAIM_TIME) return rt_results_time(results, t, c, asked->kind, asked->coverage);
+    const RtCost cost = rt_results_cost(results, t, c, asked->kind);
     const double counts[] = {[RT_CLAIM_OBJECT_TESTS] = cost.object_tests,
                              [RT_CLAIM_EXTENT_TESTS] = cost.extent_tests,
                              [RT_CLAIM_STEPS] = cost.steps,
                              [RT_CLAIM_CSG_TESTS] = cost.csg_tests};
-    if (!cost.whole) return unknown;
-    return measure == RT_CLAIM_TIME ? cost.seconds : rt_estimate_exactly(counts[measure]);
-}
-
-/* The time of `c` over that of `other`, from ratios of throughput paired by round. */
-static bool paired(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c, uint32_t other,
-                   RtEstimate *out) {
-    const RtExperiment *experiment = results->experiment;
-    const bool all = claim->kind == RT_ALL_RAYS;
-    const RtRayKind kind = all ? experiment->kinds[0] : claim->kind;
-    if (claim->measure != RT_CLAIM_TIME || (all && experiment->kind_count > 1)) return false;
-    const uint32_t over = rt_results_candidate(results, t, c, kind);
-    const uint32_t under = rt_results_candidate(results, t, other, kind);
-    if (over == RT_FASTEST_BASELINE || under == RT_FASTEST_BASELINE) return false; /* nothing was timed */
-    const RtCell *own = rt_cell_at(results, t, over, kind), *its = rt_cell_at(results, t, under, kind);
-    if (!own->timed || !its->timed) return false;
-    if (own->baseline == under) {
-        *out = (RtEstimate){
-            .median = 1 / own->ratio.median, .low = 1 / own->ratio.high, .high = 1 / own->ratio.low};
-        return true;
-    }
-    *out = its->ratio;
-    return its->baseline == over;
+    return cost.whole ? rt_estimate_exactly(counts[measure]) : unknown;
 }
 
 bool rt_claim_is_other(const RtExperiment *experiment, const RtClaim *claim, uint32_t t, uint32_t c,
@@ -88,14 +80,13 @@ static bool find_other(const RtExperiment *experiment, const RtClaim *claim, uin
     return false;
 }
 
-static RtEstimate ratio_at(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c) {
-    RtEstimate ratio;
-    uint32_t other;
-    if (!find_other(results->experiment, claim, t, c, &other)) return rt_estimate_exactly((double)NAN);
-    if (paired(results, claim, t, c, other, &ratio)) return ratio;
-    const RtEstimate over = value_at(results, claim->measure, claim->kind, t, c);
+static RtEstimate ratio_at(const Asked *asked, uint32_t t, uint32_t c, uint32_t other) {
+    const RtClaimMeasure measure = asked->claim->measure;
+    if (measure == RT_CLAIM_TIME)
+        return rt_results_time_ratio(asked->results, t, c, other, asked->kind, asked->coverage);
+    const RtEstimate over = value_at(asked, measure, t, c);
     if (other == c) return rt_estimate_exactly(over.median / over.median);
-    const RtEstimate under = value_at(results, claim->measure, claim->kind, t, other);
+    const RtEstimate under = value_at(asked, measure, t, other);
     return (RtEstimate){
         .median = over.median / under.median, .low = over.low / under.high, .high = over.high / under.low};
 }
@@ -132,10 +123,12 @@ static bool lacks(const RtResults *results, RtClaimMeasure measure, uint32_t t, 
 }
 
 /* The x of a cell; false if the claim excludes it. */
-static bool abscissa(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c, double *x) {
+static bool abscissa(const Asked *asked, uint32_t t, uint32_t c, double *x) {
+    const RtResults *results = asked->results;
+    const RtClaim *claim = asked->claim;
     *x = 0;
     if (claim->form == RT_CLAIM_CORRELATION) {
-        *x = value_at(results, claim->first, claim->kind, t, c).median;
+        *x = value_at(asked, claim->first, t, c).median;
         bool all = strcmp(claim->accel, RT_CLAIM_ALL) == 0;
         return !(all && (lacks(results, claim->first, t, c) || lacks(results, claim->measure, t, c)));
     }
@@ -148,30 +141,70 @@ static bool abscissa(const RtResults *results, const RtClaim *claim, uint32_t t,
     return value && rt_swept_number(value, x);
 }
 
-uint32_t rt_claim_gather(const RtResults *results, const RtClaim *claim, RtClaimPoint *points) {
-    const RtExperiment *experiment = results->experiment;
+static uint64_t rays_of(const Asked *asked, uint32_t t, uint32_t c) {
+    const bool all = asked->claim->measure == RT_CLAIM_BREAK_EVEN;
+    if (!rt_claim_is_of_rays(asked->claim) && !all) return UINT64_MAX;
+    return rt_results_cost(asked->results, t, c, all ? RT_ALL_RAYS : asked->kind).rays;
+}
+
+static void set_values(const Asked *asked, RtClaimPoint *point) {
+    const RtClaim *claim = asked->claim;
+    const uint32_t t = point->workload, c = point->candidate;
+    uint32_t other = c;
+    const bool found = !*claim->other || find_other(asked->results->experiment, claim, t, c, &other);
+    const uint64_t own = rays_of(asked, t, c), its = found ? rays_of(asked, t, other) : own;
+    point->rays = own < its ? own : its;
+    point->y = !found          ? rt_estimate_exactly((double)NAN)
+               : *claim->other ? ratio_at(asked, t, c, other)
+                               : value_at(asked, claim->measure, t, c);
+}
+
+/* Whether the scene has rays of that kind, as far as is known. */
+static bool has_rays(const RtResults *results, uint32_t t, RtRayKind kind) {
+    return !results->workloads[t].known || results->workloads[t].rays[kind] > 0;
+}
+
+/* Those of one kind of rays, or of RT_ALL_RAYS. */
+static uint32_t gather_kind(const Asked *asked, RtClaimPoint *points) {
+    const RtExperiment *experiment = asked->results->experiment;
+    const RtClaim *claim = asked->claim;
     const bool one = *experiment->best && strcmp(claim->accel, experiment->best) == 0;
     uint32_t count = 0;
     for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        if (claim->each_kind && !has_rays(asked->results, t, asked->kind)) continue;
         for (uint32_t i = 0; i < (one ? 1 : experiment->candidate_count); i++) {
             const uint32_t c = one ? RT_FASTEST_BASELINE : i;
-            RtClaimPoint point = {.workload = t, .candidate = c};
-            if (!is_about(experiment, claim, t, c) || !abscissa(results, claim, t, c, &point.x)) continue;
-            point.y = *claim->other ? ratio_at(results, claim, t, c)
-                                    : value_at(results, claim->measure, claim->kind, t, c);
-            points[count++] = point;
+            RtClaimPoint point = {.workload = t, .candidate = c, .kind = asked->kind};
+            if (!is_about(experiment, claim, t, c) || !abscissa(asked, t, c, &point.x)) continue;
+            if (points) set_values(asked, &point);
+            if (points) points[count] = point;
+            count++;
         }
     }
     return count;
 }
 
-static bool is_measured(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c) {
+uint32_t rt_claim_gather(const RtResults *results, const RtClaim *claim, double coverage,
+                         RtClaimPoint *points) {
+    const RtExperiment *experiment = results->experiment;
+    Asked asked = {results, claim, claim->kind, coverage};
+    uint32_t count = 0;
+    if (!claim->each_kind) return gather_kind(&asked, points);
+    for (uint32_t k = 0; k < experiment->kind_count; k++) {
+        asked.kind = experiment->kinds[k];
+        count += gather_kind(&asked, points ? points + count : NULL);
+    }
+    return count;
+}
+
+static bool is_measured(const RtResults *results, const RtClaim *claim, RtRayKind asked, uint32_t t,
+                        uint32_t c) {
     if (claim->measure >= RT_CLAIM_BUILD_TIME) return rt_build_at(results, t, c)->known;
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
         const RtRayKind kind = (RtRayKind)k;
         const uint32_t measured = rt_results_candidate(results, t, c, kind);
-        const bool asked = claim->kind == RT_ALL_RAYS || claim->kind == kind;
-        if (asked && measured != RT_FASTEST_BASELINE && rt_cell_at(results, t, measured, kind)->counted)
+        if ((asked == RT_ALL_RAYS || asked == kind) && measured != RT_FASTEST_BASELINE &&
+            rt_cell_at(results, t, measured, kind)->counted)
             return true;
     }
     return false;
@@ -183,8 +216,8 @@ bool rt_claim_any_measured(const RtResults *results, const RtClaim *claim, const
         const RtClaimPoint *p = &points[i];
         uint32_t other = p->candidate;
         bool found = !*claim->other || find_other(results->experiment, claim, p->workload, other, &other);
-        if (found && is_measured(results, claim, p->workload, p->candidate) &&
-            is_measured(results, claim, p->workload, other))
+        if (found && is_measured(results, claim, p->kind, p->workload, p->candidate) &&
+            is_measured(results, claim, p->kind, p->workload, other))
             return true;
     }
     return false;
@@ -198,6 +231,7 @@ static bool same_line(const RtExperiment *experiment, const RtClaim *claim, cons
     enum { ROOM = RT_MAX_LABEL + RT_MAX_SWEPT * (RT_MAX_NAME + RT_MAX_SWEPT_CHARS + 2) };
     char names[2][2 * ROOM];
     const RtClaimPoint *points[] = {a, b};
+    if (a->kind != b->kind) return false;
     if (a->candidate == RT_FASTEST_BASELINE && claim->by_objects) return true;
     for (int i = 0; i < 2; i++) {
         const RtWorkload *workload = &experiment->workloads[points[i]->workload];

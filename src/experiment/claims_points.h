@@ -8,9 +8,14 @@
 /* A cell. `candidate` may be RT_FASTEST_BASELINE. */
 typedef struct RtClaimPoint {
     uint32_t workload, candidate;
-    double x;     /* of the parameter; of a correlation: the first measure, NAN if unknown */
-    RtEstimate y; /* the measure, or the ratio of a ratio or a crossover; NAN if unknown */
+    RtRayKind kind; /* or RT_ALL_RAYS */
+    uint64_t rays;  /* measured: the fewest of both accelerators; UINT64_MAX if the claim is not of rays */
+    double x;       /* of the parameter; of a correlation: the first measure, NAN if unknown */
+    RtEstimate y;   /* the measure, or the ratio of a ratio or a crossover; NAN if unknown */
 } RtClaimPoint;
+
+/* Whether the claim, or one of a correlation's measures, is of a kind of rays. */
+bool rt_claim_is_of_rays(const RtClaim *claim);
 
 /* Whether x and y are known. An infinite break-even is known. */
 bool rt_claim_point_known(const RtClaimPoint *point);
@@ -20,8 +25,10 @@ bool rt_claim_point_known(const RtClaimPoint *point);
 bool rt_claim_is_other(const RtExperiment *experiment, const RtClaim *claim, uint32_t t, uint32_t c,
                        uint32_t other);
 
-/* Writes the cells of a claim to points[0..workload_count * candidate_count); returns their number. */
-uint32_t rt_claim_gather(const RtResults *results, const RtClaim *claim, RtClaimPoint *points);
+/* Writes the cells of a claim to points[0..workload_count * candidate_count * RT_RAY_KIND_COUNT), kind by
+ * kind; returns their number. Intervals of tracing times cover `coverage`. NULL: only their number. */
+uint32_t rt_claim_gather(const RtResults *results, const RtClaim *claim, double coverage,
+                         RtClaimPoint *points);
 
 /* Whether anything that the claim could be about was measured in any of the cells. */
 bool rt_claim_any_measured(const RtResults *results, const RtClaim *claim, const RtClaimPoint *points,

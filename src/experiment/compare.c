@@ -356,6 +356,13 @@ void rt_comparison_print(const RtComparison *comparison, FILE *out) {
             rt_comparison_count(comparison, RT_CHANGE_FASTER),
             rt_comparison_count(comparison, RT_CHANGE_SLOWER),
             rt_comparison_count(comparison, RT_CHANGE_NONE), changed);
+    const uint32_t other_rays = rt_comparison_count(comparison, RT_CHANGE_OTHER_RAYS);
+    if (other_rays)
+        fprintf(out,
+                "The rays of %" PRIu32
+                " cell%s are not the same in all results, so %s counts and times are not "
+                "compared.\n",
+                other_rays, rt_plural(other_rays), other_rays == 1 ? "its" : "their");
     print_plugins(comparison, out);
     print_instructions(comparison, out);
     explain_verdicts(comparison, text, sizeof text);

@@ -61,8 +61,10 @@ typedef enum RtChange {
 typedef struct RtComparedCell {
     char scene[RT_MAX_LABEL], accel[RT_MAX_LABEL], kind[RT_MAX_NAME];
     uint64_t rays;
-    RtChange change;
-    bool timed;                    /* ratio is known */
+    uint64_t scene_hash, ray_hash; /* of directories: of the first that has the cell */
+    RtChange change; /* RT_CHANGE_OTHER_RAYS if any directory has other rays or another scene: then nothing of
+                        the cell is compared */
+    bool timed;      /* ratio is known */
     RtEstimate ratio;              /* of throughput after to that before */
     double before, after;          /* seconds a ray: median */
     bool counted;                  /* both of these are known, and independent of the machine */

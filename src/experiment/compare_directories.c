@@ -28,6 +28,21 @@ static RtStatus take_times(RtComparedCell *cell, uint32_t pair, const RtCell *on
     return RT_OK;
 }
 
+/* Whether the run's rays and scene are those of the cell. */
+static bool is_of(const RtComparedCell *cell, const RtResults *results, uint32_t t, RtRayKind kind,
+                  const RtCell *run) {
+    return cell->scene_hash == results->workloads[t].scene &&
+           cell->ray_hash == results->workloads[t].ray_fingerprints[kind] && cell->rays == run->tally.rays;
+}
+
+static RtStatus exclude_cell(RtComparedCell *cell) {
+    rt_free(cell->runs);
+    cell->runs = NULL;
+    cell->timed = cell->counted = false;
+    cell->change = RT_CHANGE_OTHER_RAYS;
+    return RT_OK;
+}
+
 /* What a pair of runs is compared with. */
 typedef struct Pair {
     const RtResults *before, *after;
@@ -50,17 +65,19 @@ static RtStatus compare_cell(const Pair *pair, const RtCellCursor *at, RtCompari
     const uint32_t t2 = rt_workload_find(e, scene);
     const uint32_t c2 = t2 < e->workload_count ? rt_candidate_find(e, accel, t2) : e->candidate_count;
     const RtCell *other = c2 < e->candidate_count ? rt_cell_at(after, t2, c2, kind) : NULL;
-    cell->rays = one->tally.rays;
+    if (cell->change == RT_CHANGE_OTHER_RAYS) return RT_OK;
+    if (cell->rays == 0) {
+        cell->rays = one->tally.rays;
+        cell->scene_hash = before->workloads[t].scene;
+        cell->ray_hash = before->workloads[t].ray_fingerprints[kind];
+    }
+    if (!is_of(cell, before, t, kind, one)) return exclude_cell(cell);
     if (!other || (!other->counted && !other->timed)) {
         cell->change = pair->swapped ? RT_CHANGE_ONLY_AFTER : RT_CHANGE_ONLY_BEFORE;
         return RT_OK;
     }
     if (pair->swapped) return RT_OK;
-    if (before->workloads[t].ray_fingerprints[kind] != after->workloads[t2].ray_fingerprints[kind] ||
-        before->workloads[t].scene != after->workloads[t2].scene || one->tally.rays != other->tally.rays) {
-        cell->change = RT_CHANGE_OTHER_RAYS;
-        return RT_OK;
-    }
+    if (!is_of(cell, after, t2, kind, other)) return exclude_cell(cell);
     if (one->counted && other->counted && rt_build_at(before, t, c)->counts &&
         rt_build_at(after, t2, c2)->counts)
         take_counts(cell, &one->tally, &other->tally);

@@ -188,7 +188,8 @@ typedef struct RtExperiment {
      * accelerators (experiment/manifest_experiment.h). */
     const json_t *manifest;
     uint64_t fingerprint; /* of the YAML's bytes without the keys that affect no result: section, paper,
-                             expect, finding */
+                             expect, finding, plots */
+    uint64_t fingerprint_with_plots; /* that of version 1.0 */
 } RtExperiment;
 
 /* No scenes, no candidates, all ray kinds except occlusion (it repeats diffuse), and the defaults: limit
@@ -203,6 +204,9 @@ RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool qui
  * those of the manifest; this build may lack them. The experiment cannot be run. */
 RtStatus rt_experiment_load_from_manifest(RtExperiment *experiment, const char *path, const json_t *manifest,
                                           RtError *error);
+
+/* Whether `hash`, in a journal or a manifest, is that of this version of the experiment. */
+bool rt_experiment_has_hash(const RtExperiment *experiment, const json_t *hash);
 
 /* Rays of a file ask for the nearest hit or for any hit; tables show these names instead of kinds. */
 RtStatus rt_given_kind_parse(const char *name, RtRayKind *kind, RtError *error);

@@ -2,9 +2,11 @@
 /* Experiments as YAML: each part of RtExperiment from its mapping, over the defaults of rt_experiment_init.
  * Reports invalid values; rt_experiment_check reports inconsistent ones. */
 #include "core/base/memory.h"
+
 #include "core/text/yaml.h"
 #include "experiment/claims.h"
 #include "experiment/experiment.h"
+#include "experiment/record.h"
 #include "render/frame.h"
 
 #include <string.h>
@@ -327,16 +329,17 @@ static size_t begin_of(const char *text, size_t length, uint32_t line) {
 }
 
 /* The keys that affect no result, and may be edited after the run. */
-static bool is_editable(const char *key) {
+static bool is_editable(const char *key, bool plots) {
     static const char *const keys[] = {"section", "paper", "expect", "finding"};
     for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
         if (strcmp(key, keys[i]) == 0) return true;
     }
-    return false;
+    return plots && strcmp(key, "plots") == 0;
 }
 
-/* The hash of the text without the lines of editable keys. They count if they share a line with another. */
-static uint64_t fingerprint_of(const RtYaml *y, const char *text, size_t length) {
+/* The hash of the text without the lines of editable keys. They count if they share a line with another.
+ * `plots`: whether that is one of them. */
+static uint64_t fingerprint_of(const RtYaml *y, const char *text, size_t length, bool plots) {
     XXH3_state_t whole, *state = &whole;
     size_t from = 0;
     XXH3_64bits_reset(state);
@@ -347,7 +350,7 @@ static uint64_t fingerprint_of(const RtYaml *y, const char *text, size_t length)
         size_t begin = begin_of(text, length, key->line);
         size_t behind = next == end ? length : begin_of(text, length, next->line);
         bool apart = key->column == 1 && behind > begin;
-        if (apart && is_editable(rt_yaml_text_of(y, key))) {
+        if (apart && is_editable(rt_yaml_text_of(y, key), plots)) {
             XXH3_64bits_update(state, text + from, begin - from);
             from = behind;
         }
@@ -355,6 +358,12 @@ static uint64_t fingerprint_of(const RtYaml *y, const char *text, size_t length)
     }
     XXH3_64bits_update(state, text + from, length - from);
     return XXH3_64bits_digest(state);
+}
+
+bool rt_experiment_has_hash(const RtExperiment *experiment, const json_t *hash) {
+    bool good;
+    const uint64_t value = rt_json_parse_hex(hash, &good);
+    return good && (value == experiment->fingerprint || value == experiment->fingerprint_with_plots);
 }
 
 static RtStatus load(RtExperiment *experiment, const char *path, bool quick, RtError *error) {
@@ -368,7 +377,8 @@ static RtStatus load(RtExperiment *experiment, const char *path, bool quick, RtE
     RT_TRY(rt_file_read_text(path, RT_YAML_MAX_BYTES, &text, &length, error));
     RtStatus status = rt_yaml_parse(&yaml, path, text, length, error);
     bool mapping = status == RT_OK && yaml.nodes->kind == RT_YAML_MAPPING;
-    if (mapping) experiment->fingerprint = fingerprint_of(&yaml, text, length);
+    if (mapping) experiment->fingerprint = fingerprint_of(&yaml, text, length, true);
+    if (mapping) experiment->fingerprint_with_plots = fingerprint_of(&yaml, text, length, false);
     rt_free(text);
     RT_TRY(status);
     status = read_experiment(&yaml, quick, experiment, error);

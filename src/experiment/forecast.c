@@ -203,7 +203,9 @@ static void add_cell(Forecast *f, const RateEstimate *rates, uint32_t t, uint32_
     if (f->count_only) return;
     /* A thinned accelerator is timed together with the baseline on its rays. */
     double runs = (1 + e->rounds) * (stride > 1 ? 1.0 + e->baseline_count : 1.0);
-    add(f, cell->timed, runs * fmax(1e-3 * e->milliseconds, rays * ray));
+    const double round = fmax(1e-3 * e->milliseconds, rays * ray);
+    const double build = rt_build_at(f->results, t, c)->seconds.median; /* 0: not known yet */
+    add(f, cell->timed, runs * round + (e->rounds - 1) * fmin(build, fmax(RT_RENEWAL_BUDGET, round)));
 }
 
 RtForecast rt_forecast(const RtResults *results, const RtWorkloadOptions *options) {

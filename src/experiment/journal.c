@@ -3,6 +3,7 @@
 
 #include "core/base/versions.h"
 #include "core/text/json.h"
+#include "experiment/claims_changed.h"
 #include "experiment/journal_lines.h"
 #include "experiment/plugins_used.h"
 #include "measure/machine.h"
@@ -10,10 +11,11 @@
 #include <string.h>
 
 static json_t *header_json(const RtExperiment *experiment, const RtOnly *only) {
-    return json_pack("{s:i, s:s, s:o, s:b, s:s, s:i, s:i, s:o}", "format", RT_FILE_FORMAT, "experiment",
+    return json_pack("{s:i, s:s, s:o, s:b, s:s, s:i, s:i, s:o, s:o}", "format", RT_FILE_FORMAT, "experiment",
                      experiment->name, "hash", rt_json_hex(experiment->fingerprint), "quick",
                      experiment->quick, "build", rt_build_alone(), "shard", (int)only->shard, "shards",
-                     (int)only->shards, "plugins", rt_plugins_used(experiment));
+                     (int)only->shards, "plugins", rt_plugins_used(experiment), "claims",
+                     rt_claims_json(experiment));
 }
 
 /* ---- writing ---- */
@@ -32,7 +34,10 @@ static json_t *lines_without(const json_t *lines, const RtExperiment *experiment
     const json_t *plugins = json_object_get(json_array_get(lines, 0), "plugins");
     json_t *kept = json_array(), *line, *changed = rt_plugins_changed_since(plugins, experiment);
     size_t i;
-    json_array_append_new(kept, header_json(experiment, only));
+    json_t *header = header_json(experiment, only),
+           *first = json_object_get(json_array_get(lines, 0), "claims");
+    if (first) json_object_set(header, "claims", first); /* those of the run, not of its renewal */
+    json_array_append_new(kept, header);
     json_array_foreach((json_t *)lines, i, line) {
         if (i > 0 && json_is_object(line) && !rt_journal_line_concerns(line, experiment, changed))
             json_array_append(kept, line);
@@ -70,8 +75,7 @@ RtStatus rt_journal_add(RtOutputs *outputs, const char *path, const RtExperiment
 static RtStatus check_experiment(const char *path, const json_t *header, const RtExperiment *experiment,
                                  RtError *error) {
     bool quick = json_is_true(json_object_get(header, "quick"));
-    bool good;
-    if (rt_json_parse_hex(json_object_get(header, "hash"), &good) != experiment->fingerprint || !good) {
+    if (!rt_experiment_has_hash(experiment, json_object_get(header, "hash"))) {
         return rt_fail(error, RT_BAD_INPUT,
                        "%s: this is a run of another experiment, or of another version of it ('%s'): replace "
                        "it with --force, or choose another --out",
@@ -134,6 +138,8 @@ static RtStatus take_lines(const char *path, RtResults *results, const json_t *l
     RT_TRY(rt_json_check_format(header, path, error));
     RT_TRY(check_experiment(path, header, experiment, error));
     if (only) RT_TRY(check_build(path, header, only, error));
+    json_decref(results->first_claims);
+    results->first_claims = json_incref(json_object_get(header, "claims"));
     json_t *changed = only ? rt_plugins_changed_since(json_object_get(header, "plugins"), experiment) : NULL;
     RtStatus status = only ? check_plugins(path, experiment, changed, renew, error) : RT_OK;
     for (size_t i = 1; status == RT_OK && i < json_array_size(lines); i++) {
@@ -158,16 +164,15 @@ RtStatus rt_journal_load(const char *path, RtResults *results, const RtOnly *onl
 
 bool rt_journal_is_outdated(const char *path, const RtExperiment *experiment, const RtOnly *only) {
     json_t *lines;
-    bool good;
     if (rt_json_lines_load(path, &lines, NULL) != RT_OK) return false;
     const json_t *header = json_array_get(lines, 0);
     const bool same_run = strcmp(rt_json_text(header, "experiment", ""), experiment->name) == 0 &&
                           json_is_true(json_object_get(header, "quick")) == experiment->quick &&
                           is_of_shard(header, only);
     json_t *changed = rt_plugins_changed_since(json_object_get(header, "plugins"), experiment);
-    const bool same_version =
-        rt_json_parse_hex(json_object_get(header, "hash"), &good) == experiment->fingerprint && good &&
-        strcmp(rt_json_text(header, "build", ""), rt_build_alone()) == 0 && json_object_size(changed) == 0;
+    const bool same_version = rt_experiment_has_hash(experiment, json_object_get(header, "hash")) &&
+                              strcmp(rt_json_text(header, "build", ""), rt_build_alone()) == 0 &&
+                              json_object_size(changed) == 0;
     json_decref(changed);
     json_decref(lines);
     return same_run && !same_version;

@@ -51,13 +51,15 @@ static const RtMember build_members[] = {
 static const RtMember count_members[] = {RT_TALLY_COUNTERS(COUNTER)
                                              RT_MEMBER(RtCell, COUNT, "differ", differ)};
 
-static const RtMember time_members[] = {RT_MEMBER_RANGE(RtCell, COUNT, "rays", tally.rays, 1, 0),
-                                        RT_MEMBER_RANGE(RtCell, U32, "rounds", rounds, 1, RT_MAX_ROUNDS),
-                                        RT_MEMBER(RtCell, NUMBER, "repeats", repeats),
-                                        RT_MEMBER_RANGE(RtCell, INT, "threads", threads, 1, 0),
-                                        RT_MEMBER(RtCell, ESTIMATE, "seconds", seconds),
-                                        RT_MEMBER(RtCell, ESTIMATE, "wall", wall),
-                                        RT_MEMBER(RtCell, RATIO, "ratio", ratio)};
+static const RtMember time_members[] = {
+    RT_MEMBER_RANGE(RtCell, COUNT, "rays", tally.rays, 1, 0),
+    RT_MEMBER_RANGE(RtCell, U32, "rounds", rounds, 1, RT_MAX_ROUNDS),
+    RT_MEMBER(RtCell, NUMBER, "repeats", repeats),
+    RT_MEMBER_RANGE(RtCell, ADDED, "structures", structures, 0, RT_MAX_ROUNDS),
+    RT_MEMBER_RANGE(RtCell, INT, "threads", threads, 1, 0),
+    RT_MEMBER(RtCell, ESTIMATE, "seconds", seconds),
+    RT_MEMBER(RtCell, ESTIMATE, "wall", wall),
+    RT_MEMBER(RtCell, RATIO, "ratio", ratio)};
 
 #define EVENT(name, meaning) RT_MEMBER(RtCell, NUMBER, #name, hardware.counts.of[RT_HARDWARE_##name]),
 static const RtMember hardware_members[] = {RT_MEMBER(RtCell, INT, "threads", hardware.threads),

@@ -4,6 +4,7 @@
 #include "core/base/parallel.h"
 #include "core/base/versions.h"
 #include "core/text/json.h"
+#include "experiment/claims_changed.h"
 #include "experiment/journal_lines.h"
 #include "measure/machine.h"
 #include "measure/result_files.h"
@@ -62,11 +63,34 @@ static json_t *manifest_json(const RtResults *results, const RtWorkloadOptions *
                      candidates_json(experiment), "machine", rt_machine_json());
 }
 
+/* The claims with which the run began, and those of now if they are others. */
+static void set_claims(json_t *manifest, const RtResults *results) {
+    json_t *now = rt_claims_json(results->experiment);
+    json_object_set(manifest, "claims", results->first_claims ? results->first_claims : now);
+    if (rt_claims_are_changed(results))
+        json_object_set(manifest, "claims_changed", now);
+    else
+        json_object_del(manifest, "claims_changed");
+    json_decref(now);
+}
+
+RtStatus rt_manifest_set_claims(const RtResults *results, const char *directory, RtError *error) {
+    char path[RT_MAX_PATH];
+    json_t *manifest;
+    RT_TRY(rt_path_join(directory, RT_MANIFEST, path, error));
+    if (!results->first_claims) return RT_OK; /* of version 1.0 */
+    RT_TRY(rt_manifest_read(directory, &manifest, error));
+    set_claims(manifest, results);
+    return rt_json_save(path, manifest, error);
+}
+
 RtStatus rt_manifest_write(const RtResults *results, const RtWorkloadOptions *options, const char *directory,
                            RtError *error) {
     char path[RT_MAX_PATH];
     RT_TRY(rt_path_join(directory, RT_MANIFEST, path, error));
-    return rt_json_save(path, manifest_json(results, options), error);
+    json_t *manifest = manifest_json(results, options);
+    set_claims(manifest, results);
+    return rt_json_save(path, manifest, error);
 }
 
 RtStatus rt_manifest_read(const char *directory, json_t **manifest, RtError *error) {
@@ -111,12 +135,9 @@ static RtStatus load_experiment(const json_t *manifest, const char *directory, b
                        directory);
     }
     RT_TRY(rt_experiment_load(experiment, file, json_is_true(json_object_get(manifest, "quick")), error));
-    json_t *now = rt_json_hex(experiment->fingerprint);
-    bool same = now && json_equal(now, hash);
-    json_decref(now);
     const json_int_t run = json_integer_value(json_object_get(manifest, "coherent_run"));
     if (run > 0) experiment->coherent_run = (uint64_t)run; /* its default was another in older versions */
-    if (same) return RT_OK;
+    if (rt_experiment_has_hash(experiment, hash)) return RT_OK;
     return rt_fail(error, RT_MISMATCH,
                    "%s has changed since %s was made from it (its copy there is experiment.yaml)", file,
                    directory);

@@ -11,6 +11,10 @@
 RtStatus rt_manifest_write(const RtResults *results, const RtWorkloadOptions *options, const char *directory,
                            RtError *error);
 
+/* Sets the claims in the manifest of a finished run: `claims`, with which it began, and `claims_changed`,
+ * those of now, if they are others. */
+RtStatus rt_manifest_set_claims(const RtResults *results, const char *directory, RtError *error);
+
 /* Reads it back; the caller owns the reference. */
 RtStatus rt_manifest_read(const char *directory, json_t **manifest, RtError *error);
 

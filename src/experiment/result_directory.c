@@ -338,9 +338,11 @@ static RtStatus measure(Run *run, RtError *error) {
 
 static RtStatus finish(const Run *run, RtError *error) {
     const RtRunOptions *options = run->options;
-    /* If nothing was measured, the existing manifest stays valid. */
+    /* If nothing was measured, the existing manifest stays valid, except for claims. */
     if (run->measured || !rt_file_exists_in(options->directory, RT_MANIFEST))
         RT_TRY(rt_manifest_write(run->results, &options->workload, options->directory, error));
+    else
+        RT_TRY(rt_manifest_set_claims(run->results, options->directory, error));
     /* rt_merge has the report written of all shards. */
     if (!options->report || options->workload.only.shards) return RT_OK;
     return options->report->write(run->results, options->directory, &options->workload.observer, error);

@@ -49,6 +49,15 @@ static RtField break_even_of(const Row *r) {
     if (certain && (rays->median == 0 || isinf(rays->median)))
         return rt_field_text((rays->median == 0) == even.up_to ? "never faster" : "always faster");
     if (!rough && rays->low == 0 && isinf(rays->high)) return rt_field_text("undecided");
+    /* By the medians always; so the ends of the intervals that say less. */
+    if (even.up_to && isinf(rays->median)) {
+        rt_format_rough(rays->low, text);
+        return rt_field_print("faster, at least up to %s", text);
+    }
+    if (!even.up_to && rays->median == 0) {
+        rt_format_rough(rays->high, text);
+        return rt_field_print("faster from %s at the latest", text);
+    }
     const bool doubtful = even.up_to ? rays->median == 0 : isinf(rays->median); /* not by the medians */
     if (doubtful)
         rt_format_rough(even.up_to ? rays->high : rays->low, text);
@@ -159,6 +168,8 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
     X(threads, "threads", integer, "", "threads of the timing", threads_of(r))                               \
     X(rounds, "rounds", integer, "", "timing rounds", r->cell->rounds)                                       \
     X(repeats, "repeats", real6, "", "passes over the rays in a round", TIMED(r->cell->repeats))             \
+    X(structures, "structures", integer, "",                                                                 \
+      "structures built anew that its rounds timed in turns; 0: unknown", r->cell->structures)               \
     X(coverage, "coverage", real6, "", "probability that an interval contains the median",                   \
       TIMED(rt_interval_coverage(r->cell->rounds)))                                                          \
     ESTIMATE(X, ns, "ns", "processor time per ray (wall time on several threads)", 1e9, r->cell->seconds)    \

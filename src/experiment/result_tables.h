@@ -5,7 +5,7 @@
 #define RT_EXPERIMENT_RESULT_TABLES_H
 
 #include "core/text/table.h"
-#include "experiment/results.h"
+#include "experiment/paired.h"
 
 typedef enum RtResultTable {
     /* counts.csv: a row per cell of each accelerator whose counts are the same on every machine: every

@@ -25,6 +25,7 @@ void rt_results_clear(RtResults *results) {
     for (size_t i = 0; results->builds && i < builds; i++) rt_free(results->builds[i].leaves);
     rt_free(results->builds);
     rt_free(results->cells);
+    json_decref(results->first_claims);
     *results = (RtResults){0};
 }
 
@@ -355,42 +356,4 @@ RtBreakEven rt_results_break_even(const RtResults *results, uint32_t workload, u
     set_rays(&even, &more, &saved);
     even.builds = own->builds < baseline->builds ? own->builds : baseline->builds;
     return even;
-}
-
-/* ---- the best ---- */
-
-bool rt_candidate_is_compared(const RtExperiment *experiment, uint32_t candidate) {
-    return candidate < experiment->candidate_count &&
-           strcmp(experiment->candidates[candidate].spec, rt_accel_yardstick()) != 0;
-}
-
-static bool is_timed(const RtResults *results, uint32_t t) {
-    for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
-        if (at.workload == t && at.cell->timed) return true;
-    }
-    return false;
-}
-
-/* Time, or object tests, which have no interval. */
-static RtEstimate weigh(const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind, bool time) {
-    const RtCost cost = rt_results_cost(results, t, c, kind);
-    return time ? cost.seconds : rt_estimate_exactly(cost.object_tests);
-}
-
-RtStanding rt_standing(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
-    return rt_standing_by(is_timed(results, workload), results, workload, candidate, kind);
-}
-
-RtStanding rt_standing_by(bool time, const RtResults *results, uint32_t workload, uint32_t candidate,
-                          RtRayKind kind) {
-    const RtExperiment *experiment = results->experiment;
-    if (!rt_candidate_is_compared(experiment, candidate)) return RT_STANDING_BEHIND;
-    const RtEstimate own = weigh(results, workload, candidate, kind, time);
-    RtEstimate best = rt_estimate_exactly((double)INFINITY);
-    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        const RtEstimate other = weigh(results, workload, c, kind, time);
-        if (rt_candidate_is_compared(experiment, c) && other.median < best.median) best = other;
-    }
-    if (own.median == best.median) return RT_STANDING_BEST; /* not of NAN */
-    return own.low <= best.high ? RT_STANDING_LEVEL : RT_STANDING_BEHIND;
 }

@@ -5,6 +5,7 @@
 #ifndef RT_EXPERIMENT_RESULTS_H
 #define RT_EXPERIMENT_RESULTS_H
 
+#include "core/text/json.h"
 #include "core/text/table.h"
 #include "experiment/experiment.h"
 #include "measure/distribution.h"
@@ -87,6 +88,7 @@ typedef struct RtCell {
     RtDistribution *distributions; /* [RT_RAY_QUANTITY_COUNT] owned; NULL: not asked for */
     uint32_t rounds;
     double repeats;      /* passes over the rays in a round; NAN: unknown, as in older journals */
+    uint32_t structures; /* built anew and timed in turns; 0: unknown, from an older journal */
     int threads;         /* of the timing */
     uint32_t machine;    /* that timed it, in RtResults.machines */
     RtEstimate seconds;  /* per ray: processor time on one thread, wall time on several */
@@ -104,7 +106,8 @@ typedef struct RtResults {
     RtCell *cells;                       /* see rt_cell_at */
     RtMachine machines[RT_MAX_MACHINES]; /* the first is the unknown one */
     uint32_t machine_count;
-    bool old_rows; /* tables have no rows of refused accelerators, like files of version 1.0 */
+    bool old_rows;        /* tables have no rows of refused accelerators, like files of version 1.0 */
+    json_t *first_claims; /* owned: the list of claims when the run began, from its journal; NULL: unknown */
 } RtResults;
 
 /* All unknown. Clear with rt_results_clear, also after a failure. */
@@ -224,18 +227,6 @@ typedef struct RtBreakEven {
 } RtBreakEven;
 
 RtBreakEven rt_results_break_even(const RtResults *results, uint32_t workload, uint32_t candidate);
-
-/* False of null runs and the yardstick (rt_accel_yardstick). */
-bool rt_candidate_is_compared(const RtExperiment *experiment, uint32_t candidate);
-
-/* Compares a candidate with all others of the workload, for one kind of rays or RT_ALL_RAYS: by time if
- * anything was timed, else by object tests per ray. The best has the smallest median; an interval that
- * overlaps with the interval of the best is level with it. Only rt_candidate_is_compared are compared. */
-RtStanding rt_standing(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind);
-
-/* The same by time, or by object tests, whatever was timed. */
-RtStanding rt_standing_by(bool time, const RtResults *results, uint32_t workload, uint32_t candidate,
-                          RtRayKind kind);
 
 /* The most rounds of any timed cell of a workload, null runs included, and in *least the fewest; 0 if nothing
  * was timed. */

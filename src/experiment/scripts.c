@@ -31,6 +31,38 @@ RtStatus rt_scripts_copy(const RtExperiment *experiment, const char *directory, 
     return RT_OK;
 }
 
+typedef struct Found {
+    RtExperiment *experiment;
+    RtStatus status;
+    RtError *error;
+} Found;
+
+static void add_found(void *context, const char *path) {
+    static const char *const written[] = {"names.gp", "style.gp", "sweep.gp", "histograms.gp"};
+    Found *found = context;
+    RtExperiment *experiment = found->experiment;
+    const char *name = strrchr(path, '/') + 1;
+    bool known = false;
+    for (size_t i = 0; i < sizeof written / sizeof written[0]; i++) known |= strcmp(name, written[i]) == 0;
+    for (uint32_t i = 0; i < experiment->plot_count; i++)
+        known |= strcmp(name, rt_plot_name(experiment, i)) == 0;
+    if (known || found->status != RT_OK) return;
+    if (experiment->plot_count == RT_MAX_PLOTS || strlen(name) >= RT_MAX_LABEL)
+        found->status = rt_fail(found->error, RT_BAD_INPUT,
+                                "%s: there is room for %d scripts, with names of fewer than %d characters",
+                                path, RT_MAX_PLOTS, RT_MAX_LABEL);
+    else
+        strcpy(experiment->plots[experiment->plot_count++], name);
+}
+
+RtStatus rt_scripts_add_found(RtExperiment *experiment, const char *directory, RtError *error) {
+    char plots[RT_MAX_PATH];
+    Found found = {experiment, RT_OK, error};
+    RT_TRY(rt_path_join(directory, "plots", plots, error));
+    rt_directory_each(plots, ".gp", add_found, &found);
+    return found.status;
+}
+
 /* ---- trusted scripts ---- */
 
 enum { MOST_BYTES = 1 << 24 };

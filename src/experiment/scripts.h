@@ -33,4 +33,8 @@ RtStatus rt_scripts_check(const RtExperiment *experiment, const char *directory,
 RtStatus rt_scripts_copy(const RtExperiment *experiment, const char *directory, bool keep, RtOutputs *copies,
                          RtError *error);
 
+/* Adds to the experiment's plots the scripts in DIR/plots that it does not name, except those that raytally
+ * writes: a script may be added to results later. */
+RtStatus rt_scripts_add_found(RtExperiment *experiment, const char *directory, RtError *error);
+
 #endif

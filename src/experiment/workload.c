@@ -210,7 +210,7 @@ RtStatus rt_workload_measure(RtResults *results, uint32_t index, const RtWorkloa
     workload.scene = scene;
     if (workload_is_done(&workload)) return RT_OK;
     RtStatus status = measure(&workload, error);
-    for (uint32_t c = 0; c < workload.count; c++) rt_accel_destroy(workload.built[c]);
+    for (uint32_t c = 0; c < workload.count; c++) rt_workload_destroy(&workload, c);
     rt_accel_destroy(workload.reference);
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&workload.sets[k]);
     return status;

@@ -12,6 +12,9 @@
  * together have taken that long. */
 #define RT_BUILD_BUDGET 0.15
 
+/* Seconds for building a structure anew in each round of timing, if tracing takes no longer. */
+#define RT_RENEWAL_BUDGET 0.05
+
 typedef enum RtEventKind {
     RT_EVENT_WORKLOAD,     /* results->workloads[workload] is known */
     RT_EVENT_BUILD,        /* the build of `candidate` is known */

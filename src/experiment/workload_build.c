@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Structures. To time builds, each structure is built several times, in interleaved rounds like those of
  * rays, in place of the one before, so that no more of them exist at once. The first build of each is a
- * warm-up, which finds the memory that later ones use again. It counts only if it spends the whole budget. */
+ * warm-up, which finds the memory that later ones use again. It counts only if it spends the whole budget.
+ *
+ * Equal structures are not equally fast: where their data lies decides what shares a cache set or a page. So
+ * timing builds them anew for its rounds, each behind a block of random size. */
 #include "core/base/memory.h"
 #include "core/base/random.h"
 #include "experiment/workload_state.h"
@@ -67,8 +70,27 @@ static RtStatus build_limited(RtWorkloadState *workload, uint32_t c, RtError *er
 }
 
 RtStatus rt_workload_rebuild(RtWorkloadState *workload, uint32_t c, RtError *error) {
-    if (!workload->built[c] || rt_accel_check(workload->built[c], NULL) == RT_OK) return RT_OK;
+    if (!rt_workload_runs(workload, c)) return RT_OK;
+    if (workload->built[c] && rt_accel_check(workload->built[c], NULL) == RT_OK) return RT_OK;
     return build_limited(workload, c, error);
+}
+
+void rt_workload_destroy(RtWorkloadState *workload, uint32_t c) {
+    rt_accel_destroy(workload->built[c]);
+    rt_free(workload->displacements[c]);
+    workload->built[c] = NULL;
+    workload->displacements[c] = NULL;
+}
+
+RtStatus rt_workload_build_elsewhere(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtRandom *random,
+                                     RtError *error) {
+    enum { MOST_LINES = 4096 }; /* 256 KiB: pages and the sets of caches */
+    const size_t lines = rt_random_below(random, MOST_LINES);
+    rt_workload_destroy(workload, c);
+    workload->displacements[c] = rt_alloc_unset(1 + lines, RT_CACHE_LINE);
+    if (!workload->displacements[c]) return rt_fail_memory(error, "a block", lines * RT_CACHE_LINE);
+    RT_TRY(build_limited(workload, c, error));
+    return rt_workload_teach(workload, kind, workload->built[c], error);
 }
 
 /* Leaves out a candidate that refuses the scene, or whose plugin breaks: only its own results are lost. */

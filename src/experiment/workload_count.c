@@ -58,7 +58,8 @@ static RtStatus draw_probe(RtWorkloadState *workload, const RtRaySet *set, uint6
 /* Gives every candidate its share of the set, and the answers to those that learn. Thinned shares and the
  * probe are copies after the set, in the same array: the baseline is timed on all of them, and may be an
  * accelerator that learns, which knows rays by their addresses. */
-static RtStatus deal_shares(RtWorkloadState *workload, RtRaySet *set, RtError *error) {
+static RtStatus deal_shares(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
+    RtRaySet *set = &workload->sets[kind];
     uint64_t all = count_with_shares(workload, set), used = set->count;
     uint32_t capacity = (uint32_t)set->count;
     RT_TRY(rt_reserve(&set->rays, &capacity, all, sizeof(RtRay), error));
@@ -78,11 +79,15 @@ static RtStatus deal_shares(RtWorkloadState *workload, RtRaySet *set, RtError *e
         RT_TRY(draw_probe(workload, set, used, error));
         used += workload->probe.set.count;
     }
+    workload->answer_count = used;
     for (uint32_t c = 0; c < workload->count; c++) {
-        if (workload->accels[c])
-            RT_TRY(rt_accel_learn(workload->accels[c], set->rays, workload->answers, used, error));
+        if (workload->accels[c]) RT_TRY(rt_workload_teach(workload, kind, workload->accels[c], error));
     }
     return RT_OK;
+}
+
+RtStatus rt_workload_teach(const RtWorkloadState *workload, RtRayKind kind, RtAccel *accel, RtError *error) {
+    return rt_accel_learn(accel, workload->sets[kind].rays, workload->answers, workload->answer_count, error);
 }
 
 /* ---- limits ---- */
@@ -229,7 +234,7 @@ static RtStatus each_cell(RtWorkloadState *workload, RtRayKind kind, Step *step,
 }
 
 RtStatus rt_workload_count(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
-    RT_TRY(deal_shares(workload, &workload->sets[kind], error));
+    RT_TRY(deal_shares(workload, kind, error));
     if (workload->experiment->limit_seconds > 0) RT_TRY(each_cell(workload, kind, check_seconds, error));
     RT_TRY(each_cell(workload, kind, count_cell, error));
     if (workload->options->hits || workload->options->counts)

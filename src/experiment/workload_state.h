@@ -3,6 +3,7 @@
 #ifndef RT_EXPERIMENT_WORKLOAD_STATE_H
 #define RT_EXPERIMENT_WORKLOAD_STATE_H
 
+#include "core/base/random.h"
 #include "experiment/workload.h"
 #include "measure/measure.h"
 
@@ -21,13 +22,15 @@ typedef struct RtWorkloadState {
     uint32_t index, count; /* count: candidates and, if times are taken, the null run */
     bool count_only, hardware, distributions;
     RtScene *scene;
-    RtAccel *reference;               /* gives the expected answers */
-    RtAccel *built[RT_MAX_MEASURED];  /* [count], NULL for one that does not run here */
-    RtAccel *accels[RT_MAX_MEASURED]; /* [count], those that trace the current kind of rays, or NULL */
+    RtAccel *reference;                   /* gives the expected answers */
+    RtAccel *built[RT_MAX_MEASURED];      /* [count], NULL for one that does not run here */
+    RtAccel *accels[RT_MAX_MEASURED];     /* [count], those that trace the current kind of rays, or NULL */
+    void *displacements[RT_MAX_MEASURED]; /* [count] blocks in front of structures, or NULL */
     RtRaySet sets[RT_RAY_KIND_COUNT]; /* the current one is followed by its thinned shares and the probe */
     RtWorkloadShare shares[RT_MAX_MEASURED]; /* [count], of the current kind */
     RtWorkloadShare probe;                   /* the part of the set that predicts times */
     RtHit *answers;                          /* for the set of the current kind and what follows it */
+    uint64_t answer_count;
 } RtWorkloadState;
 
 /* The candidate that is built: itself, or the baseline for the null run. */
@@ -69,6 +72,17 @@ RtStatus rt_workload_build(RtWorkloadState *workload, RtError *error);
 
 /* Builds an accelerator again that broke on other rays. */
 RtStatus rt_workload_rebuild(RtWorkloadState *workload, uint32_t c, RtError *error);
+
+/* Destroys workload->built[c]; NULL is allowed. */
+void rt_workload_destroy(RtWorkloadState *workload, uint32_t c);
+
+/* Replaces workload->built[c] by a structure built anew at another address, which knows the answers to the
+ * current rays, of that kind, if it learns. After a failure there is none. */
+RtStatus rt_workload_build_elsewhere(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtRandom *random,
+                                     RtError *error);
+
+/* Hands the answers to the current rays, of that kind, to an accelerator that learns. */
+RtStatus rt_workload_teach(const RtWorkloadState *workload, RtRayKind kind, RtAccel *accel, RtError *error);
 
 /* Counts all candidates on their shares of the rays of one kind, and distributions if they are requested. */
 RtStatus rt_workload_count(RtWorkloadState *workload, RtRayKind kind, RtError *error);

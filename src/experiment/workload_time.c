@@ -12,24 +12,30 @@
 /* Each candidate is timed on its share, and the baseline (with all settings of a best-of) on every thinned
  * share, so that ratios compare times on the same rays. */
 typedef struct TimingRun {
-    const RtWorkloadState *workload;
+    RtWorkloadState *workload;
     RtRayKind kind;
     uint32_t count;
-    uint32_t rounds, most;           /* done, and most */
-    double start;                    /* wall seconds */
-    RtTimed *timed;                  /* [count] */
-    double *seconds;                 /* [count][2][most] of `timed` */
-    bool *broken;                    /* [count] */
-    uint32_t place[RT_MAX_MEASURED]; /* [workload->count] index of a candidate in `timed` */
+    uint32_t rounds, most; /* done, and most */
+    double start;          /* wall seconds */
+    RtTimed *timed;        /* [count] */
+    double *seconds;       /* [count][2][most] of `timed` */
+    bool *broken;          /* [count] */
+    uint32_t *candidates;  /* [count] */
+    RtRandom random;
+    double credit[RT_MAX_MEASURED];       /* [workload->count] seconds that may be spent on building */
+    uint32_t renewed;                     /* rounds after which that was done */
+    uint32_t structures[RT_MAX_MEASURED]; /* [workload->count] timed so far */
+    uint32_t place[RT_MAX_MEASURED];      /* [workload->count] index of a candidate in `timed` */
     uint32_t baselines[RT_MAX_CANDIDATES],
         baseline_count; /* those that did not refuse the scene; may be none */
     /* [workload->count] of the first candidate of the baseline on its rays; others follow */
     uint32_t baseline_entry[RT_MAX_MEASURED];
 } TimingRun;
 
-static uint32_t enter(TimingRun *run, const RtAccel *accel, const RtRaySet *set) {
+static uint32_t enter(TimingRun *run, uint32_t candidate, const RtRaySet *set) {
     double *place = run->seconds + 2 * (size_t)run->count * run->most;
-    run->timed[run->count] = (RtTimed){.accel = accel,
+    run->candidates[run->count] = candidate;
+    run->timed[run->count] = (RtTimed){.accel = run->workload->accels[candidate],
                                        .set = set,
                                        .seconds = place,
                                        .wall = place + run->most,
@@ -38,8 +44,7 @@ static uint32_t enter(TimingRun *run, const RtAccel *accel, const RtRaySet *set)
 }
 
 /* Clear it also after a failure. */
-static RtStatus timing_run_init(TimingRun *run, const RtWorkloadState *workload, RtRayKind kind,
-                                RtError *error) {
+static RtStatus timing_run_init(TimingRun *run, RtWorkloadState *workload, RtRayKind kind, RtError *error) {
     const uint32_t baselines = workload->experiment->baseline_count;
     const uint32_t rounds = workload->options->until > 0 ? RT_MAX_ROUNDS : workload->experiment->rounds;
     size_t most = (1 + (size_t)baselines) * workload->count, doubles = 2 * most * rounds;
@@ -49,11 +54,14 @@ static RtStatus timing_run_init(TimingRun *run, const RtWorkloadState *workload,
                        .start = rt_wall_seconds(),
                        .timed = rt_alloc(most, sizeof(RtTimed)),
                        .seconds = rt_alloc(doubles, sizeof(double)),
-                       .broken = rt_alloc(most, sizeof(bool))};
-    if (!run->timed || !run->seconds || !run->broken)
+                       .broken = rt_alloc(most, sizeof(bool)),
+                       .candidates = rt_alloc(most, sizeof(uint32_t)),
+                       .random = rt_random(workload->experiment->seed, 2 + (uint64_t)kind)};
+    if (!run->timed || !run->seconds || !run->broken || !run->candidates)
         return rt_fail_memory(error, "times", doubles * sizeof(double));
     for (uint32_t c = 0; c < workload->count; c++) {
-        if (workload->accels[c]) run->place[c] = enter(run, workload->accels[c], &workload->shares[c].set);
+        run->structures[c] = 1;
+        if (workload->accels[c]) run->place[c] = enter(run, c, &workload->shares[c].set);
     }
     for (uint32_t i = 0; i < baselines; i++) {
         const uint32_t c = workload->experiment->baseline + i;
@@ -64,7 +72,7 @@ static RtStatus timing_run_init(TimingRun *run, const RtWorkloadState *workload,
         if (!workload->accels[c] || rt_workload_setup(workload, c)->ray_stride == 1) continue;
         run->baseline_entry[c] = run->count;
         for (uint32_t i = 0; i < run->baseline_count; i++) {
-            enter(run, workload->accels[run->baselines[i]], &workload->shares[c].set);
+            enter(run, run->baselines[i], &workload->shares[c].set);
         }
     }
     return RT_OK;
@@ -74,6 +82,54 @@ static void timing_run_clear(TimingRun *run) {
     rt_free(run->timed);
     rt_free(run->seconds);
     rt_free(run->broken);
+    rt_free(run->candidates);
+}
+
+/* ---- structures built anew ---- */
+
+/* Earns what the last round of tracing took, but at least RT_RENEWAL_BUDGET, for building. So building takes
+ * no more time than tracing where that takes long; structures that take longer to build stay for some rounds.
+ */
+static void earn(TimingRun *run) {
+    const uint32_t round = run->renewed++;
+    for (uint32_t c = 0; c < run->workload->count; c++) {
+        const RtTimed *own = &run->timed[run->place[c]];
+        const double traced = own->wall[round] * (double)own->set->count * own->repeats;
+        run->credit[c] += fmax(RT_RENEWAL_BUDGET, traced);
+    }
+}
+
+static bool is_renewed(const TimingRun *run, uint32_t c) {
+    const RtWorkloadState *workload = run->workload;
+    const double once = rt_build_at(workload->results, workload->index, c)->seconds.median;
+    return workload->accels[c] && !run->broken[run->place[c]] && run->credit[c] >= once;
+}
+
+static RtStatus build_one(TimingRun *run, uint32_t c, RtError *error) {
+    RtWorkloadState *workload = run->workload;
+    const double start = rt_wall_seconds();
+    const RtStatus status = rt_workload_build_elsewhere(workload, c, run->kind, &run->random, error);
+    run->credit[c] -= rt_wall_seconds() - start;
+    run->structures[c]++;
+    workload->accels[c] = workload->built[c];
+    return status == RT_BROKEN ? rt_workload_break(workload, c, run->kind, error) : status;
+}
+
+/* First destroys all that are renewed, so that each may get the place of any of them. */
+static RtStatus renew(void *context, RtTimed *timed, size_t count, RtError *error) {
+    TimingRun *run = context;
+    RtWorkloadState *workload = run->workload;
+    size_t order[RT_MAX_MEASURED], renewed = 0;
+    earn(run);
+    for (uint32_t c = 0; c < workload->count; c++) {
+        if (!is_renewed(run, c)) continue;
+        order[renewed++] = c;
+        rt_workload_destroy(workload, c);
+    }
+    rt_random_shuffle(&run->random, order, renewed);
+    for (size_t i = 0; i < renewed; i++) RT_TRY(build_one(run, (uint32_t)order[i], error));
+    for (size_t i = 0; i < count; i++) timed[i].accel = workload->accels[run->candidates[i]];
+    return RT_OK;
 }
 
 /* The median part of baselines[i] in the time that baselines[0..count) take in a round: paired, as ratios
@@ -178,6 +234,7 @@ static RtStatus keep_times(RtWorkloadState *workload, RtRayKind kind, const Timi
         const RtTimed *own = &run->timed[run->place[c]];
         cell->rounds = rounds;
         cell->repeats = own->repeats;
+        cell->structures = run->structures[c];
         RT_TRY(rt_cell_make_round_times(cell, error));
         memcpy(rt_cell_round_times(cell, RT_ROUND_SECONDS), own->seconds, rounds * sizeof(double));
         memcpy(rt_cell_round_times(cell, RT_ROUND_WALL), own->wall, rounds * sizeof(double));
@@ -203,6 +260,7 @@ RtStatus rt_workload_time(RtWorkloadState *workload, RtRayKind kind, RtError *er
                                   .seed = experiment->seed + (uint64_t)kind,
                                   .enough = is_enough,
                                   .context = &run},
+                       .renew = renew,
                        .threads = workload->options->timing};
     if (status == RT_OK) status = rt_measure_time(run.timed, run.count, &timing, &run.rounds, error);
     if (status == RT_OK) status = rt_workload_exclude_broken(workload, kind, error);

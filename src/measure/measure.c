@@ -219,7 +219,7 @@ void rt_rows_clear(RtRows *rows) {
 /* ---- timing ---- */
 
 /* Traces blocks of rays whose places follow the golden ratio, so that even few blocks are spread over the
- * set; also touches the memory of the answers. */
+ * set. */
 static RtStatus warm_runner(void *context, double seconds, double *part, RtError *error) {
     const double golden = 0.6180339887498949;
     Pass *pass = context;
@@ -228,8 +228,6 @@ static RtStatus warm_runner(void *context, double seconds, double *part, RtError
     const uint64_t blocks = count / block;
     double start = rt_thread_seconds(), place = 0;
     uint64_t done = 0;
-    if (pass->hits) memset(pass->hits, 0, count * sizeof(RtHit));
-    if (pass->blocked) memset(pass->blocked, 0, count * sizeof(bool));
     do {
         trace(pass, 0, block * (uint64_t)(place * (double)blocks), block);
         place += place + golden < 1 ? golden : golden - 1;
@@ -249,7 +247,11 @@ RtStatus rt_runner_open_local(RtRunner *runner, const RtTimed *timed, int thread
                          .wall = timed->wall,
                          .broken = timed->broken};
     if (!pass) return rt_fail_memory(error, "a pass", sizeof(Pass));
-    return pass_init(pass, timed->accel, timed->set, threads, false, error);
+    RT_TRY(pass_init(pass, timed->accel, timed->set, threads, false, error));
+    /* Touches the memory, so that no round does that for the first time. */
+    if (pass->hits) memset(pass->hits, 0, timed->set->count * sizeof(RtHit));
+    if (pass->blocked) memset(pass->blocked, 0, timed->set->count * sizeof(bool));
+    return RT_OK;
 }
 
 void rt_runner_close_local(RtRunner *runner) {

@@ -56,7 +56,12 @@ typedef struct RtTimed {
 } RtTimed;
 
 typedef struct RtTiming {
-    RtRounds rounds;
+    RtRounds rounds; /* its `renew` is not used */
+    /* Called before each round but the first, while nothing uses the accelerators: may replace those of
+     * timed[] by others that are built alike, at other addresses; NULL for one that cannot be built any more,
+     * which is then `broken`. The memory of queries and answers is renewed with them. NULL: the same
+     * structures are timed in every round. */
+    RtStatus (*renew)(void *context, RtTimed *timed, size_t count, RtError *error);
     int threads; /* 1: the clock of the comparison is the thread's processor time; more: the wall clock;
                     0 = all processors */
 } RtTiming;

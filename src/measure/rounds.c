@@ -47,13 +47,36 @@ static bool is_excluded(const RtRunner *runner) {
 /* Loads code and data into the caches, and finds how often each must run to last `least` seconds. */
 static RtStatus warm_up(RtRunner *runners, size_t count, double least, RtError *error) {
     for (size_t i = 0; i < count; i++) {
-        double seconds;
-        if (is_excluded(&runners[i])) continue;
-        RtStatus status = warm_one(&runners[i], least, &seconds, error);
-        if (becomes_broken(&runners[i], status)) continue;
+        RtRunner *runner = &runners[i];
+        if (is_excluded(runner)) continue;
+        RtStatus status = warm_one(runner, least, &runner->once, error);
+        if (becomes_broken(runner, status)) continue;
         RT_TRY(status);
-        runners[i].repeats = rt_runner_repeats(seconds, least);
+        runner->repeats = rt_runner_repeats(runner->once, least);
     }
+    return RT_OK;
+}
+
+/* The first of several runs in a round finds other data in the caches than the next ones, so runners that are
+ * repeated more often would seem faster. Runs of `least` seconds before each round make all of them alike;
+ * those that take twice as long find that out for themselves. */
+static RtStatus settle(const RtRunner *runner, double least, RtError *error) {
+    double seconds, wall, part;
+    if (runner->once >= 2 * least) return RT_OK;
+    if (runner->warm && !runner->parallel) return runner->warm(runner->context, least, &part, error);
+    return rt_runner_time(runner, 1, &seconds, &wall, error);
+}
+
+static RtStatus run_round(RtRunner *runner, uint32_t round, double least, RtError *error) {
+    const double work = runner->repeats * runner->work;
+    double seconds, wall;
+    RT_TRY(settle(runner, least, error));
+    RT_TRY(rt_runner_time(runner, runner->repeats, &seconds, &wall, error));
+    runner->once = seconds / runner->repeats;
+    runner->seconds[round] = seconds / work;
+    if (runner->wall) runner->wall[round] = wall / work;
+    if (seconds < least) /* the extrapolation was wrong */
+        runner->repeats = rt_runner_repeats(runner->once, least);
     return RT_OK;
 }
 
@@ -64,18 +87,13 @@ static RtStatus run_rounds(RtRunner *runners, size_t *order, size_t count, const
     RT_TRY(warm_up(runners, count, rounds->least, error));
     for (uint32_t round = 0; round < rounds->most; round++) {
         if (round >= rounds->rounds && (!rounds->enough || rounds->enough(rounds->context, round))) break;
+        if (round > 0 && rounds->renew) RT_TRY(rounds->renew(rounds->renew_context, error));
         rt_random_shuffle(&random, order, count);
         for (size_t i = 0; i < count; i++) {
             RtRunner *runner = &runners[order[i]];
-            double seconds, wall, work = runner->repeats * runner->work;
             if (is_excluded(runner)) continue;
-            RtStatus status = rt_runner_time(runner, runner->repeats, &seconds, &wall, error);
-            if (becomes_broken(runner, status)) continue;
-            RT_TRY(status);
-            runner->seconds[round] = seconds / work;
-            if (seconds < rounds->least) /* the extrapolation was wrong */
-                runner->repeats = rt_runner_repeats(seconds / runner->repeats, rounds->least);
-            if (runner->wall) runner->wall[round] = wall / work;
+            RtStatus status = run_round(runner, round, rounds->least, error);
+            if (!becomes_broken(runner, status)) RT_TRY(status);
         }
         *done = round + 1;
     }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Interleaved rounds: timing several runners against each other. After a warm-up, each round runs all of them
  * once, in a new random order, so that drift of the machine affects all alike and the times of one round can
- * be paired. */
+ * be paired. Where data lies in memory changes its speed, too, for as long as it lies there: rounds are
+ * independent measurements only if the data is laid out anew for each (`renew`). */
 #ifndef RT_MEASURE_ROUNDS_H
 #define RT_MEASURE_ROUNDS_H
 
@@ -15,7 +16,7 @@
 
 typedef struct RtRunner {
     RtStatus (*run)(void *context, RtError *error); /* all of its work once */
-    /* Optional, for the warm-up: does a sample of the work on this thread, for about `seconds`; *part gets
+    /* Optional, before rounds: does a sample of the work on this thread, for about `seconds`; *part gets
      * the part of a run that it was, above 0. NULL: a whole run. */
     RtStatus (*warm)(void *context, double seconds, double *part, RtError *error);
     /* For work in another process: runs it `repeats` times, and returns the time that took there. NULL: it
@@ -27,6 +28,7 @@ typedef struct RtRunner {
     double work;      /* units of work in one run, > 0: times are per unit */
     double *seconds;  /* [most] out: by the clock of the comparison, else the thread's processor time */
     double *wall;     /* [most] out: by the wall clock, or NULL */
+    double once;      /* out: seconds of a run in the last round */
     uint32_t repeats; /* out: runs in the last round */
     bool parallel;    /* runs on several threads: the wall clock is then the clock of the comparison */
     bool *broken;     /* in and out: set by RT_BROKEN, and never run again. NULL: RT_BROKEN ends the rounds */
@@ -40,6 +42,10 @@ typedef struct RtRounds {
     /* Called after each round from number `rounds` on: whether these are enough. NULL: they are. */
     bool (*enough)(void *context, uint32_t rounds);
     void *context;
+    /* Called before each round but the first: replaces what the runners work on by the same at other
+     * addresses. It may change their `context`. NULL: nothing is replaced. */
+    RtStatus (*renew)(void *renew_context, RtError *error);
+    void *renew_context;
 } RtRounds;
 
 /* *done gets the number of rounds. */

@@ -6,6 +6,7 @@
 #include "accel/remote.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
+#include "core/base/random.h"
 
 #include <math.h>
 #include <string.h>
@@ -193,22 +194,70 @@ void rt_runner_close(RtRunner *runner) {
 
 /* ---- timing ---- */
 
+typedef struct TimingRun {
+    const RtTiming *timing;
+    RtTimed *timed;    /* [count] */
+    RtRunner *runners; /* [count] */
+    size_t *order;     /* [count] in which they are opened: what is opened first lies first in memory */
+    size_t count;
+    RtRandom random;
+} TimingRun;
+
+static RtStatus open_runners(TimingRun *run, RtError *error) {
+    rt_random_shuffle(&run->random, run->order, run->count);
+    for (size_t k = 0; k < run->count; k++) {
+        const size_t i = run->order[k];
+        const RtRunner before = run->runners[i];
+        RtStatus status = RT_BROKEN;
+        if (run->timed[i].accel)
+            status = rt_runner_open(&run->runners[i], &run->timed[i], run->timing->threads, error);
+        run->runners[i].repeats = before.repeats;
+        run->runners[i].once = before.once;
+        run->runners[i].broken = run->timed[i].broken;
+        if (status != RT_BROKEN || !run->timed[i].broken) RT_TRY(status);
+        if (status == RT_BROKEN) *run->timed[i].broken = true;
+    }
+    return RT_OK;
+}
+
+static void close_runners(TimingRun *run) {
+    for (size_t i = 0; i < run->count; i++) {
+        const RtRunner before = run->runners[i];
+        run->timed[i].repeats = before.repeats;
+        rt_runner_close(&run->runners[i]);
+        run->runners[i].repeats = before.repeats;
+        run->runners[i].once = before.once;
+    }
+}
+
+static RtStatus renew_runners(void *context, RtError *error) {
+    TimingRun *run = context;
+    close_runners(run);
+    RT_TRY(run->timing->renew(run->timing->rounds.context, run->timed, run->count, error));
+    return open_runners(run, error);
+}
+
 RtStatus rt_measure_time(RtTimed *timed, size_t count, const RtTiming *timing, uint32_t *done,
                          RtError *error) {
-    RtRunner *runners = rt_alloc(count, sizeof(RtRunner));
-    if (!runners) return rt_fail_memory(error, "the rounds", count * sizeof(RtRunner));
-    RtStatus status = RT_OK;
-    for (size_t i = 0; status == RT_OK && i < count; i++) {
-        status = rt_runner_open(&runners[i], &timed[i], timing->threads, error);
-        if (status != RT_BROKEN || !timed[i].broken) continue;
-        *timed[i].broken = true;
-        status = RT_OK;
+    TimingRun run = {.timing = timing,
+                     .timed = timed,
+                     .runners = rt_alloc(count, sizeof(RtRunner)),
+                     .order = rt_alloc(count, sizeof(size_t)),
+                     .count = count,
+                     .random = rt_random(timing->rounds.seed, 1)};
+    RtRounds rounds = timing->rounds;
+    rounds.renew = timing->renew ? renew_runners : NULL;
+    rounds.renew_context = &run;
+    RtStatus status = run.runners && run.order
+                          ? RT_OK
+                          : rt_fail_memory(error, "the rounds", count * (sizeof(RtRunner) + sizeof(size_t)));
+    if (status == RT_OK) {
+        for (size_t i = 0; i < count; i++) run.order[i] = i;
+        status = open_runners(&run, error);
+        if (status == RT_OK) status = rt_rounds_run(run.runners, count, &rounds, done, error);
+        close_runners(&run);
     }
-    if (status == RT_OK) status = rt_rounds_run(runners, count, &timing->rounds, done, error);
-    for (size_t i = 0; i < count; i++) {
-        timed[i].repeats = runners[i].repeats;
-        rt_runner_close(&runners[i]);
-    }
-    rt_free(runners);
+    rt_free(run.runners);
+    rt_free(run.order);
     return status;
 }

@@ -240,3 +240,15 @@ RtEstimate rt_estimate_student(const double *ratios, uint32_t count, double cove
                         .high = rt_power(e, mean + half),
                         .least = least};
 }
+
+RtEstimate rt_estimate_covering(const double *values, uint32_t count, double coverage) {
+    double covered;
+    RtEstimate estimate = rt_estimate_at(values, count, coverage);
+    outside(count, coverage, &covered);
+    if (covered >= coverage) return estimate;
+    if (count == 1) return (RtEstimate){estimate.median, 0, (double)INFINITY, estimate.least};
+    const RtEstimate student = rt_estimate_student(values, count, coverage);
+    estimate.low = fmin(estimate.low, student.low);
+    estimate.high = fmax(estimate.high, student.high);
+    return estimate;
+}

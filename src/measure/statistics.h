@@ -51,6 +51,11 @@ RtEstimate rt_estimate(const double *values, uint32_t count);
  * are too few measurements. */
 RtEstimate rt_estimate_at(const double *values, uint32_t count, double coverage);
 
+/* Estimate of values[0..count), all above 0, whose interval covers at least `coverage`, 0.95 or more, however
+ * few there are: the order statistics if they suffice, else the smallest to the largest, widened to Student's
+ * interval (rt_estimate_student). One measurement alone could be anything: 0 to INFINITY. */
+RtEstimate rt_estimate_covering(const double *values, uint32_t count, double coverage);
+
 /* The fewest measurements whose interval of that coverage discards one at each end, so that no single outlier
  * matters; at most RT_MAX_ROUNDS. */
 uint32_t rt_rounds_for(double coverage);

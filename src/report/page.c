@@ -4,7 +4,7 @@
 #include "core/base/words.h"
 #include "core/text/json.h"
 #include "core/text/table.h"
-#include "experiment/claims.h"
+#include "experiment/claims_changed.h"
 #include "page_css.h"
 #include "page_js.h"
 
@@ -72,6 +72,11 @@ void rt_page_card(FILE *out, const char *title, const char *text) {
     fputs("</p></section>\n", out);
 }
 
+static void put_dropped(void *context, const char *claim) {
+    rt_html_wrap(context, "<li><span class=\"verdict open\">dropped after the run began</span> ", claim,
+                 "</li>\n");
+}
+
 void rt_page_claims(FILE *out, const RtResults *results) {
     static const char *const classes[] = {[RT_CLAIM_HOLDS] = "holds",
                                           [RT_CLAIM_UNDECIDED] = "open",
@@ -79,6 +84,7 @@ void rt_page_claims(FILE *out, const RtResults *results) {
                                           [RT_CLAIM_UNMEASURED] = "open",
                                           [RT_CLAIM_FIGURE] = "readout"};
     const RtExperiment *experiment = results->experiment;
+    char level[RT_MAX_CLAIM_LEVEL];
     fputs("<ul class=\"claims\">", out);
     for (uint32_t i = 0; i < experiment->claim_count; i++) {
         RtClaimResult result;
@@ -86,9 +92,14 @@ void rt_page_claims(FILE *out, const RtResults *results) {
         fprintf(out, "<li><span class=\"verdict %s\">%s</span> ", classes[result.verdict],
                 rt_claim_verdict_name(result.verdict));
         rt_html_put(out, experiment->claims[i]);
+        if (rt_claim_is_later(results, i))
+            fputs(" <span class=\"verdict open\">" RT_CLAIM_LATER "</span>", out);
         rt_html_wrap(out, "<small>", result.figures, "</small></li>\n");
     }
+    rt_claims_dropped(results, put_dropped, out);
     fputs("</ul>\n", out);
+    rt_claims_level(results, level);
+    if (*level) rt_html_wrap(out, "<p class=\"meta\">", level, "</p>\n");
 }
 
 void rt_page_verdict(FILE *out, const RtResults *results) {

@@ -2,6 +2,7 @@
 #include "report/sweep_plot.h"
 
 #include "core/base/memory.h"
+#include "experiment/paired.h"
 #include "report/color.h"
 #include "report/page.h"
 #include "report/sweep_lines.h"

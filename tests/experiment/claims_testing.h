@@ -34,7 +34,7 @@ static inline int set_up(void **state) {
     assert_ok(rt_experiment_add_accels(e, &grid, error));
     assert_ok(rt_experiment_check(e, where, error));
     assert_ok(rt_results_init(&results, e, error));
-    for (uint32_t t = 0; t < 4; t++) results.workloads[t].rays[0] = results.workloads[t].rays[1] = 10;
+    for (uint32_t t = 0; t < 4; t++) results.workloads[t].rays[0] = results.workloads[t].rays[1] = 1000;
     return 0;
 }
 
@@ -45,13 +45,16 @@ static inline int tear_down(void **state) {
     return 0;
 }
 
-/* Both kinds of rays: `tests` in 10 rays, and nanoseconds from low to high, the median between them. */
+/* Both kinds of rays: `tests` in each 10 of 1000 rays, and nanoseconds from low to high, the median between
+ * them. */
 static inline void set(uint32_t t, uint32_t c, uint64_t tests, double low, double high) {
     for (uint32_t k = 0; k < 2; k++) {
         RtCell *cell = rt_cell_at(&results, t, c, (RtRayKind)k);
         RtEstimate ns = {0.5e-9 * (low + high), 1e-9 * low, 1e-9 * high, 1e-9 * low};
-        *cell = (RtCell){
-            .counted = true, .timed = true, .tally = {.rays = 10, .object_tests = tests}, .seconds = ns};
+        *cell = (RtCell){.counted = true,
+                         .timed = true,
+                         .tally = {.rays = 1000, .object_tests = 100 * tests},
+                         .seconds = ns};
     }
 }
 

@@ -6,13 +6,13 @@ static const char claiming[] = "name: small\n"
                                "question: Which density is best?\n"
                                "prediction: Four.\n"
                                "scenes:\n"
-                               "  - {scene: \"random:n=200\", size: 12x12}\n"
+                               "  - {scene: \"random:n=200\", size: 40x40}\n"
                                "accelerators:\n"
                                "  - {accel: bvh}\n"
                                "  - {accel: \"grid:density=1..16*4\"}\n"
                                "rays: [primary]\n"
                                "count_only: yes\n"
-                               "limit: 100\n"
+                               "limit: 1600\n"
                                "expect:\n"
                                "  - object_tests of grid falls with density\n"
                                "  - object_tests of bvh > 1000\n";
@@ -76,10 +76,53 @@ RT_TEST_IN_PLACE(a_finding_is_added_to_a_run_that_is_there_and_nothing_else_is) 
     assert_in_file(place, "out/report.html", "<h2>Finding</h2><p>Four it is, indeed.");
     assert_int_equal(raytally(place, "report out"), 0);
     assert_int_equal(raytally(place, "reproduce out"), 0);
-    write_changed(place, "small.yaml", claiming, "limit: 100", "finding: Four.\nlimit: 99");
+    write_changed(place, "small.yaml", claiming, "limit: 1600", "finding: Four.\nlimit: 1599");
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 2);
     write_changed(place, "small.yaml", claiming, "prediction: Four.", "prediction: Five.");
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 2);
+}
+
+/* One claim is new, one is gone, and one is as it was; a readout may come and go. */
+RT_TEST_IN_PLACE(claims_that_change_after_a_run_are_shown_as_such_beside_the_original) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_in_file(place, "out/manifest.json", "\"object_tests of bvh > 1000\"");
+    assert_not_in_file(place, "out/manifest.json", "claims_changed");
+    write_changed(place, "small.yaml", claiming, "bvh > 1000", "bvh < 1000\n  - object_tests of bvh");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 0);
+    assert_in_file(place, "output", "object_tests of bvh < 1000 [stated after the run began]");
+    assert_in_file(place, "output", "dropped since    object_tests of bvh > 1000");
+    assert_in_file(place, "output", "object_tests of grid falls with density\n");
+    assert_in_file(place, "output", "figure           object_tests of bvh\n");
+    assert_in_file(place, "out/report.html", "stated after the run began");
+    assert_in_file(place, "out/report.html",
+                   "dropped after the run began</span> object_tests of bvh &gt; 1000");
+    assert_in_file(place, "out/manifest.json", "claims_changed");
+    assert_in_file(place, "out/manifest.json", "\"object_tests of bvh > 1000\"");
+    assert_int_equal(raytally(place, "report out"), 0);
+    assert_in_file(place, "output", "[stated after the run began]");
+    write_in(place, "small.yaml", claiming);
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 0);
+    assert_not_in_file(place, "out/manifest.json", "claims_changed");
+    assert_not_in_file(place, "out/report.html", "after the run began");
+}
+
+RT_TEST_IN_PLACE(plots_may_change_after_a_run_and_scripts_be_added_to_its_results) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    write_in(place, "mine.gp", "set terminal svg\nset output \"plots/mine.svg.tmp\"\nplot 1\nunset output\n");
+    write_in(place, "out/plots/later.gp",
+             "set terminal svg\nset output \"plots/later.svg.tmp\"\nplot 2\nunset output\n");
+    assert_int_equal(raytally(place, "plot out"), 2); /* a script of somebody */
+    assert_in_file(place, "message", "later.gp: raytally does not ship this gnuplot script");
+    write_changed(place, "small.yaml", claiming, "count_only", "plots: [mine.gp]\ncount_only");
+    assert_ends(place, "run small.yaml --out out --threads 1 --resume", 0, "nothing was left to measure");
+    assert_in_file(place, "out/plots/mine.gp", "plot 1");
+    assert_int_equal(raytally(place, "reproduce out"), 0);
+    assert_int_equal(raytally(place, "plot out --trust"), 0);
+    if (system("gnuplot --version >/dev/null 2>&1") != 0) return;
+    assert_in_file(place, "out/plots/mine.svg", "</svg>");
+    assert_in_file(place, "out/plots/later.svg", "</svg>");
 }
 
 static const char quoting[] =

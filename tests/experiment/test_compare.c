@@ -310,6 +310,20 @@ RT_TEST(a_single_interval_holds_by_itself) {
     }
 }
 
+/* Each pair of runs has the same rays, but the pairs have not. */
+RT_TEST_IN_PLACE(results_of_other_rays_are_not_said_to_count_the_same) {
+    const Place *place = *state;
+    write_in(place, "small.yaml", experiment_yaml);
+    assert_int_equal(raytally(place, "run small.yaml --out a"), 0);
+    assert_int_equal(raytally(place, "run small.yaml --out b"), 0);
+    write_changed(place, "small.yaml", experiment_yaml, "name: small", "name: small\nseed: 7");
+    assert_int_equal(raytally(place, "run small.yaml --out c"), 0);
+    assert_int_equal(raytally(place, "run small.yaml --out d"), 0);
+    assert_int_equal(raytally(place, "compare a b c d"), 0);
+    assert_in_file(place, "output", "other rays");
+    assert_in_file(place, "output", "not the same in all results, so ");
+}
+
 RT_TEST_IN_PLACE(strict_makes_something_slower_an_exit_code) {
     const Place *place = *state;
     write_in(place, "small.yaml", experiment_yaml);

@@ -44,7 +44,7 @@ RT_TEST_IN_PLACE(four_shards_make_the_counts_of_one_run) {
     RtCsv csv;
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out one"), 0);
     assert_int_equal(raytally(place, "merge s3 s1 s4 s2 -o all"), 0);
-    assert_in_file(place, "output", "holds            object_tests of grid falls with density on cloud");
+    assert_in_file(place, "output", "undecided        object_tests of grid falls with density on cloud");
     assert_in_file(place, "message", "joined 4 shards: 30 cells of 5 scenes");
     assert_not_in_file(place, "message", "nothing was left to measure");
     assert_equal_files(place, "one/counts.csv", "all/counts.csv");

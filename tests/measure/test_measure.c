@@ -379,6 +379,14 @@ RT_TEST(a_break_even_that_only_the_intervals_allow_is_shown_as_perhaps) {
     assert_non_null(strstr(shown, "faster up to "));
 }
 
+RT_TEST(a_break_even_that_is_never_lost_by_the_medians_is_shown_without_infinity) {
+    break_even(3, 200, 1, 200, 0.001);
+    assert_non_null(strstr(shown, "faster, at least up to "));
+    assert_null(strstr(shown, "inf"));
+    break_even(1, 300, 1, 200, 0.001);
+    assert_non_null(strstr(shown, " at the latest"));
+}
+
 /* The first counting pass: its rays, and which of the eight parts of a frame of 64 rows they cover. */
 static uint64_t first_count;
 static unsigned first_parts;
@@ -529,6 +537,87 @@ RT_TEST(what_was_told_wrong_from_a_part_of_the_work_is_repeated_often_enough_fro
     for (int r = 0; r < 3; r++) assert_true(0.9e-3 < seconds[r] && seconds[r] < 2e-3);
 }
 
+/* ---- rounds are independent, and alike for all ---- */
+
+/* Processor caches: a run takes a millisecond, and a third more if another runner ran before it. */
+typedef struct Cached {
+    const struct Cached **last;
+    uint32_t runs;
+} Cached;
+
+static RtStatus run_cached(void *context, uint32_t repeats, double *seconds, double *wall, RtError *error) {
+    Cached *cached = context;
+    const bool cold = *cached->last != cached;
+    (void)error;
+    *cached->last = cached;
+    cached->runs += repeats;
+    *seconds = *wall = 1e-3 * (repeats + (cold ? 0.33 : 0));
+    return RT_OK;
+}
+
+/* The second has twice as many units of work, and is told to run for as long, so half as often. */
+RT_TEST(how_often_a_runner_is_repeated_in_a_round_does_not_change_its_time) {
+    enum { ROUNDS = 6 };
+    const Cached *last = NULL;
+    Cached cached[2] = {{&last, 0}, {&last, 0}};
+    double seconds[2][ROUNDS];
+    uint32_t done;
+    RtRunner runners[2];
+    for (int i = 0; i < 2; i++)
+        runners[i] = (RtRunner){.time = run_cached, .context = &cached[i], .work = 1, .seconds = seconds[i]};
+    RtRounds rounds = {.rounds = ROUNDS, .most = ROUNDS, .least = 1.2e-3, .seed = 1};
+    assert_ok(rt_rounds_run(runners, 2, &rounds, &done, error));
+    for (int r = 0; r < ROUNDS; r++)
+        assert_true(fabs(seconds[0][r] - 1e-3) < 1e-9 && fabs(seconds[1][r] - 1e-3) < 1e-9);
+    rounds.least = 0.4e-3; /* runs that take much longer than a round must are not run in vain */
+    cached[0].runs = 0;
+    assert_ok(rt_rounds_run(runners, 2, &rounds, &done, error));
+    assert_int_equal(cached[0].runs, 1 + ROUNDS);
+}
+
+/* Structures that change places, the last of them one that cannot be built any more. */
+typedef struct Renewals {
+    RtAccel *accels[2];
+    uint32_t count;
+} Renewals;
+
+static RtStatus renew_accels(void *context, RtTimed *timed, size_t count, RtError *error) {
+    Renewals *renewals = context;
+    (void)error;
+    renewals->count++;
+    assert_int_equal(count, 2);
+    timed[0].accel = renewals->accels[renewals->count % 2];
+    if (renewals->count == 3) timed[1].accel = NULL;
+    return RT_OK;
+}
+
+RT_TEST(each_round_but_the_first_times_structures_that_were_renewed_before_it) {
+    enum { ROUNDS = 6 };
+    double seconds[2][ROUNDS] = {{0}}, wall[2][ROUNDS];
+    bool broken[2] = {false, false};
+    uint32_t done;
+    Stage stage;
+    open_stage(&stage, "balls:size=3", 8, 2000, "brute", "bvh");
+    Renewals renewals = {{stage.accels[0], stage.accels[1]}, 0};
+    const RtTiming timing = {.rounds = {.rounds = ROUNDS, .most = ROUNDS, .seed = 1, .context = &renewals},
+                             .renew = renew_accels,
+                             .threads = 1};
+    RtTimed timed[2];
+    for (int i = 0; i < 2; i++)
+        timed[i] = (RtTimed){.accel = stage.accels[i],
+                             .set = &stage.sets[RT_RAY_RANDOM],
+                             .seconds = seconds[i],
+                             .wall = wall[i],
+                             .broken = &broken[i]};
+    assert_ok(rt_measure_time(timed, 2, &timing, &done, error));
+    assert_int_equal(renewals.count, ROUNDS - 1);
+    assert_true(!broken[0] && broken[1]);
+    assert_true(seconds[1][2] > 0 && seconds[1][3] == 0);
+    for (int r = 0; r + 1 < ROUNDS; r++) /* brute takes many times as long as bvh */
+        assert_true(r % 2 == 0 ? seconds[0][r] > seconds[0][r + 1] : seconds[0][r] < seconds[0][r + 1]);
+    close_stage(&stage);
+}
+
 /* ---- until the intervals are narrow ---- */
 
 static RtStatus do_nothing(void *context, RtError *error) {
@@ -595,6 +684,7 @@ static uint32_t rounds_until(double until, double patience, char says[256]) {
     uint32_t rounds = null->rounds;
     assert_true((rt_estimate_width(&null->ratio) <= until) == (says[0] == '\0'));
     assert_non_null(null->round_times);
+    assert_int_equal(null->structures, rounds); /* each round timed another build */
     rt_results_clear(&results);
     rt_free(e);
     return rounds;

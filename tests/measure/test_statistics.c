@@ -72,6 +72,51 @@ RT_TEST(intervals_hold_the_true_median_as_often_as_they_say) {
     }
 }
 
+/* A factor round 1 with as much weight above as below: the noise of a round, or where a structure lies. */
+static double draw_factor(RtRandom *random, double spread) {
+    double sum = 0;
+    for (int i = 0; i < 3; i++) sum += rt_random_betweend(random, -spread, spread);
+    return rt_random_below(random, 10) == 0 ? 1 / (1 - fmin(3 * sum, 0.9)) : 1 / (1 - sum);
+}
+
+/* How many of 4000 comparisons of two structures that are alike have an interval without 1. `builds`: after
+ * so many rounds each is built anew, and is a few percent faster or slower for where it lies then. */
+static double missing_share(uint32_t rounds, uint32_t builds, double coverage) {
+    enum { RUNS = 4000 };
+    uint32_t missing = 0;
+    for (uint64_t run = 0; run < RUNS; run++) {
+        RtRandom random = rt_random(5, run);
+        double ratios[30], place = 1;
+        for (uint32_t r = 0; r < rounds; r++) {
+            if (r % builds == 0) place = draw_factor(&random, 0.05) / draw_factor(&random, 0.05);
+            ratios[r] = place * draw_factor(&random, 0.05) / draw_factor(&random, 0.05);
+        }
+        const RtEstimate e = rt_estimate_covering(ratios, rounds, coverage);
+        missing += !rt_estimate_holds(&e, 1);
+    }
+    return (double)missing / RUNS;
+}
+
+/* With one structure each for all rounds the intervals describe that pair, and not the kinds of structure. */
+RT_TEST(intervals_of_equal_structures_miss_1_as_often_as_they_may_if_each_round_has_its_own) {
+    assert_true(fabs(missing_share(10, 1, 0.95) - (1 - rt_interval_coverage(10))) < 0.008);
+    assert_true(fabs(missing_share(7, 1, 0.95) - (1 - rt_interval_coverage(7))) < 0.008);
+    assert_true(missing_share(10, 10, 0.95) > 0.15);
+}
+
+/* Where the smallest to the largest cover less than is asked for. */
+RT_TEST(an_interval_of_few_measurements_covers_what_is_asked_for) {
+    const uint32_t rounds[] = {2, 3, 5, 10};
+    for (int i = 0; i < 4; i++) {
+        for (double missing = 0.05; missing > 0.0004; missing /= 10)
+            assert_true(missing_share(rounds[i], 1, 1 - missing) <= missing + 3 * sqrt(missing / 4000));
+    }
+    const double one = 3, seven[] = {1, 2, 3, 4, 5, 6, 7};
+    const RtEstimate any = rt_estimate_covering(&one, 1, 0.95), usual = rt_estimate_covering(seven, 7, 0.95);
+    assert_true(any.median == 3 && any.low == 0 && isinf(any.high));
+    assert_true(usual.low == 1 && usual.high == 7 && usual.median == 4);
+}
+
 /* Both slow down together from round to round; only pairing shows that one is always twice the other. */
 RT_TEST(the_chance_of_so_many_events_or_more_is_the_binomial_tail) {
     assert_true(rt_binomial_tail(0, 9, 0.3) == 1);
