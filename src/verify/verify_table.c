@@ -145,7 +145,7 @@ static const RtTableColumn sides[] = {RT_SIDES(SIDE)};
 static const RtTableColumn faults[] = {RT_FAULTS(FAULT)};
 
 static const RtTableColumn first_wrong[] = {
-    MEMBER("replay", text, "replay file of the first wrong answer; empty: it could not be written"),
+    MEMBER("replay", text, "replay file of the first wrong answer; empty: it was not kept"),
     MEMBER("objects_left", integer,
            "objects left in the reduced scene; empty: traced again, the answer is right"),
     MEMBER("shrunk", flag,
