@@ -223,6 +223,7 @@ MEMBER(raytally_description, predicted_steps, 64, double);
 VALUE(RAYTALLY_OWN_HITS, 1);
 VALUE(RAYTALLY_NO_COUNTS, 2);
 VALUE(RAYTALLY_OVERLAY, 4);
+VALUE(RAYTALLY_ABSOLUTE_HITS, 8);
 
 GROWS(raytally_accel_ops, 128);
 MEMBER(raytally_accel_ops, abi, 0, uint32_t);
@@ -330,6 +331,9 @@ MEMBER(raytally_verify_result, tie, 16, uint64_t);
 MEMBER(raytally_verify_result, marginal, 24, uint64_t);
 MEMBER(raytally_verify_result, wrong, 32, uint64_t);
 MEMBER(raytally_verify_result, occluded_wrong, 40, uint64_t);
+MEMBER(raytally_verify_result, certain, 48, uint64_t);
+MEMBER(raytally_verify_result, must_hit, 56, uint64_t);
+MEMBER(raytally_verify_result, certain_of, 64, uint64_t);
 
 FIXED(raytally_estimate, 64);
 MEMBER(raytally_estimate, median, 0, double);
