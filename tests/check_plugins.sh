@@ -30,7 +30,7 @@ forever=$!
 
 # ---- faults ----
 
-verify=(verify balls:size=1 --rays 600 --threads 2 --json)
+verify=(verify balls:size=1 --rays 2000 --threads 2 --json)
 bench=(bench balls:size=1 --rays 'primary,shadow' --size 16x16 --depth 2 --rounds 1 --json)
 ends 0 "${bench[@]}" --accel kd
 mv printed alone.json
@@ -158,7 +158,7 @@ right = ("verify-not.json", "verify-print.json", "verify-older.json", "verify-ow
          "verify-own-unnamed.json")
 for name in sorted(glob.glob("verify-*.json")):
     rows = [row for row in load(name)["rows"] if row["accel"] == "kd" or name in right]
-    if len(rows) != 1 + (name in right) or any(row["rays"] != 600 or row["equal"] != 600 or row["problem"] for row in rows):
+    if len(rows) != 1 + (name in right) or any(row["rays"] != 2000 or row["equal"] != 2000 or row["problem"] for row in rows):
         print(f"{name}: correct accelerators fail: {rows}")
         failed = True
 sys.exit(failed or len(alone) != 2)

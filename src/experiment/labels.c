@@ -105,7 +105,7 @@ uint32_t rt_candidate_find(const RtExperiment *experiment, const char *label, ui
     const uint32_t count = experiment->candidate_count;
     if (strcmp(label, experiment->again) == 0) return count;
     for (uint32_t i = 0; i < 2 * count; i++) {
-        const uint32_t c = i % count;
+        const uint32_t c = i < count ? i : i - count;
         const RtCandidate *candidate = &experiment->candidates[c];
         const bool called =
             i < count ? strcmp(candidate->label, label) == 0 : was_called(candidate->label, c, label);
