@@ -326,7 +326,8 @@ RtStatus rt_exact_csg_boundaries(const RtCsgForest *forest, const RtCsg *tree, c
     *at = rt_alloc(*count, sizeof **at);
     if (status == RT_OK && !*at)
         status = rt_fail_memory(error, "boundaries of a CSG tree", *count * sizeof **at);
-    for (uint32_t i = 0; *at && i < *count; i++)
+    if (!*at) *count = 0;
+    for (uint32_t i = 0; i < *count; i++)
         (*at)[i] = (double)rt_root_value(arena, &machine.roots[i], exact.zero);
     rt_free(machine.roots);
     rt_exact_arena_return(arena, mark);
