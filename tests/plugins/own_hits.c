@@ -99,11 +99,13 @@ static Vector cross(Vector a, Vector b) {
                      a.at[0] * b.at[1] - a.at[1] * b.at[0]}};
 }
 
-/* The t of a hit, or NaN, which no comparison lets through. */
+/* The t of a hit, or NaN, which no comparison lets through. Seen edge on, t would be anywhere. */
 static double triangle_hit(const float *v, const raytally_prepared *ray) {
     Vector e1 = from_to(v, v + 3), e2 = from_to(v, v + 6), s = from_to(v, ray->org), dir = widen(ray->dir);
     Vector p = cross(dir, e2), q = cross(s, e1);
     double determinant = dot(e1, p), u = dot(s, p) / determinant, w = dot(dir, q) / determinant;
+    double size = sqrt(dot(s, s) * dot(dir, dir)) * sqrt(fmax(dot(e1, e1), dot(e2, e2)));
+    if (!(fabs(determinant) > 0x1p-40 * size)) return (double)NAN;
     return u >= 0 && w >= 0 && u + w <= 1 ? dot(e2, q) / determinant : (double)NAN;
 }
 
