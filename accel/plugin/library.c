@@ -16,7 +16,8 @@
 /* The table of the first version; later ones have more members, which are optional. */
 enum { LEAST_BYTES = offsetof(raytally_accel_ops, each_box) + sizeof(((raytally_accel_ops *)0)->each_box) };
 
-#define KNOWN_FLAGS ((uint64_t)(RAYTALLY_OWN_HITS | RAYTALLY_NO_COUNTS | RAYTALLY_OVERLAY | RAYTALLY_ABSOLUTE_HITS))
+#define KNOWN_FLAGS                                                                                          \
+    ((uint64_t)(RAYTALLY_OWN_HITS | RAYTALLY_NO_COUNTS | RAYTALLY_OVERLAY | RAYTALLY_ABSOLUTE_HITS))
 
 RtStatus rt_library_fingerprint(const char *path, uint64_t *fingerprint, RtError *error) {
     char *data;

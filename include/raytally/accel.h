@@ -298,9 +298,9 @@ enum raytally_accel_flag {
      * accelerator below by raytally_nearest_below and raytally_occluded_below. In RAYTALLY_PASSED_ON it
      * counts those that it is made for and cannot answer. */
     RAYTALLY_OVERLAY = 4,
-    /** With RAYTALLY_OWN_HITS: it computes with absolute coordinates, without subtracting a ray's origin first.
-     * Then `verify` allows errors of 2^-21 of the scene's largest coordinate, and far from the origin it may
-     * be unable to decide. Since version 1.1. */
+    /** With RAYTALLY_OWN_HITS: it computes with absolute coordinates, without subtracting a ray's origin
+     * first. Then `verify` allows errors of 2^-21 of the scene's largest coordinate, and far from the origin
+     * it may be unable to decide. Since version 1.1. */
     RAYTALLY_ABSOLUTE_HITS = 8
 };
 

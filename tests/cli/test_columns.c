@@ -154,12 +154,13 @@ static void print_document(FILE *out) {
     for (size_t i = 0, named = 0; i < SECTIONS; i++) {
         if (sections[i].swept) fprintf(out, "%s`%s`", named++ ? ", " : "", sections[i].title);
     }
-    fputs(".\n`scene.KEY` is a parameter of scenes, `accel.KEY` one of accelerators, as in `accel.density`. "
-          "It is\n"
-          "empty if the row has no such parameter. Before them stands `refused` if an accelerator refuses a\n"
-          "scene: its rows say there why, and have no measurements. All other columns are the same for every\n"
-          "experiment.\n",
-          out);
+    fputs(
+        ".\n`scene.KEY` is a parameter of scenes, `accel.KEY` one of accelerators, as in `accel.density`. "
+        "It is\n"
+        "empty if the row has no such parameter. Before them stands `refused` if an accelerator refuses a\n"
+        "scene: its rows say there why, and have no measurements. All other columns are the same for every\n"
+        "experiment.\n",
+        out);
     for (size_t i = 0; i < SECTIONS; i++) {
         Row row = {.section = &sections[i]};
         const RtTable table = {RT_GROUPS(groups), .row_count = column_count(&sections[i].table),
