@@ -67,7 +67,7 @@ commands=(
     "bench scene.yaml $frame --accel bvh --accel item+light+octree --rays primary,shadow --count-only --csv out.csv --counts out.npz --json --threads 1"
     'bench scene.yaml --accel kd --rays-from rays.npy --rays nearest --count-only --hits out.npy --threads 2'
     'verify scene.yaml --accel bvh --accel wide --rays 20 --threads 1 --out checked'
-    'verify mesh.obj --accel embree --rays 20 --threads 1 --json'
+    'verify mesh.obj --accel embree:mode=user --rays 20 --threads 1 --json'
     'run small.yaml --out out --threads 1'
     'run small.yaml --out part --threads 1 --resume'
     'merge shard1 shard2 --out out'

@@ -108,8 +108,11 @@ bool rt_candidate_is_compared(const RtExperiment *experiment, uint32_t candidate
 }
 
 static bool is_timed(const RtResults *results, uint32_t t) {
-    for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
-        if (at.workload == t && at.cell->timed) return true;
+    const RtExperiment *e = results->experiment;
+    for (uint32_t c = 0; c <= e->candidate_count; c++) {
+        for (uint32_t k = 0; k < e->kind_count; k++) {
+            if (rt_cell_at(results, t, c, e->kinds[k])->timed) return true;
+        }
     }
     return false;
 }

@@ -210,8 +210,13 @@ static double student_tail(double w, uint32_t freedom) {
     return sum * step / 3;
 }
 
-/* By bisection of w. */
+/* By bisection of w. The last quantile is kept, because tables ask for the same one for each cell. */
 double rt_student_quantile(uint32_t freedom, double coverage) {
+    static _Thread_local struct {
+        uint32_t freedom;
+        double coverage, quantile;
+    } last;
+    if (freedom == last.freedom && coverage == last.coverage) return last.quantile;
     const double wanted = (1 - coverage) * student_tail(0, freedom);
     double lo = 0, hi = 1;
     for (int i = 0; i < 50; i++) {
@@ -221,7 +226,10 @@ double rt_student_quantile(uint32_t freedom, double coverage) {
         else
             hi = w;
     }
-    return sqrt(freedom) * 2 * lo / (1 - lo * lo);
+    last.freedom = freedom;
+    last.coverage = coverage;
+    last.quantile = sqrt(freedom) * 2 * lo / (1 - lo * lo);
+    return last.quantile;
 }
 
 RtEstimate rt_estimate_student(const double *ratios, uint32_t count, double coverage) {
