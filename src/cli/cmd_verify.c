@@ -251,12 +251,12 @@ static void print_total(const Options *o, const json_t *rows, const RtVerifySum 
     print_count(o->choice.spec_count, "accelerator");
     print_count(o->work.rays.count, "ray");
     printf("%" PRIu64 " comparison%s: ", total.pairs, rt_plural(total.pairs));
-    if (total.judged < total.pairs || total.judged == 0) print_wrong(sums, count, true);
-    if (total.judged > 0) {
-        if (total.judged < total.pairs) printf("; %" PRIu64 " of them", total.judged);
-        fputs(total.judged < total.pairs ? " by verdicts: " : "by verdicts, ", stdout);
-        print_wrong(sums, count, false);
-    }
+    const uint64_t exact = total.pairs - total.judged;
+    if (exact > 0 && total.judged > 0) printf("%" PRIu64 " bit for bit, ", exact);
+    if (exact > 0 || total.judged == 0) print_wrong(sums, count, true);
+    if (exact > 0 && total.judged > 0) printf("; %" PRIu64 " ", total.judged);
+    if (total.judged > 0) fputs("by verdicts, ", stdout);
+    if (total.judged > 0) print_wrong(sums, count, false);
     print_failed(sums, count);
     if (total.refused > 0) printf("; %u row%s refused", total.refused, rt_plural(total.refused));
     putchar('\n');
