@@ -35,7 +35,7 @@ failed=0 skipped=0
 for directory in "$reference"/*/; do
     directory=${directory%/}
     case ${directory##*/} in
-    verify) continue ;;                   # tests/check_verified.sh
+    verify | verdicts) continue ;; # tests/check_verified.sh, tests/check_verdicts.sh
     esac
     code=0
     message=$("$program" reproduce "${scenes[@]}" "$directory" 2>&1) || code=$?
