@@ -109,8 +109,10 @@ RtFlatMargin rt_flat_margin(const RtUnitLine *line, const RtVec3 *vertices, uint
     double far = rt_far_corner(line, box), across = rt_dotd(f.normal, line->dir), cosine = fabs(across);
     double slack = (delta * f.stretch + f.uneven) / cosine;
     m.possible = true;
-    if (rt_exceeds_float(f.longest * f.longest * fmin(far, line->length),
-                         far * f.longest * fmax(f.longest, line->length))) {
+    double length = line->length, square = f.longest * f.longest;
+    if (rt_exceeds_float(square * fmin(far, length), far * f.longest * fmax(f.longest, length)) ||
+        rt_exceeds_float(length * length, length * length) ||
+        rt_exceeds_float(square * far / length, square * far / length)) {
         m.lo = -HUGE_VAL;
         m.hi = HUGE_VAL;
         return m;

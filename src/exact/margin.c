@@ -8,7 +8,7 @@ RtMarginRay rt_margin_ray(const RtGeometry *geometry, const RtRay *ray, bool abs
     RtMarginRay m = {.wide = rt_wide_ray(ray)};
     m.line = rt_unit_line(&m.wide);
     m.first = m.wide.tmin * m.line.length;
-    m.last = m.wide.tmax * m.line.length;
+    m.last = fmin(m.wide.tmax, (double)FLT_MAX) * m.line.length;
     m.extra = 0x1p-149 * m.line.length;
     if (!absolute) return m;
     double largest = geometry->object_count > 0 ? rt_box_largest_coordinate(geometry->box) : 0;
@@ -214,18 +214,20 @@ RtStatus rt_margin_of(const RtMarginRay *ray, const RtGeometry *geometry, uint32
     if (!rt_line_in_box(&ray->line, box, delta, &lo, &hi) || hi < ray->first - delta ||
         lo > ray->last + delta)
         return RT_OK;
-    switch (rt_ref_shape(geometry->objects[id])) {
+    const RtShape shape = rt_ref_shape(geometry->objects[id]);
+    const bool flat = shape == RT_SHAPE_TRIANGLE || shape == RT_SHAPE_POLYGON;
+    if (!flat &&
+        rt_exceeds_float(fmin(far, length) * fmin(far, length), fmax(far, length) * fmax(far, length))) {
+        add_piece(m, ray, -HUGE_VAL, HUGE_VAL, false, delta, asked);
+        return RT_OK;
+    }
+    switch (shape) {
     case RT_SHAPE_TRIANGLE: flat_margin(m, ray, geometry->triangles[index].v, 3, box, delta, asked); break;
     case RT_SHAPE_POLYGON:
         flat_margin(m, ray, rt_polygon_vertices(geometry, index), geometry->polygons[index].count, box, delta,
                     asked);
         break;
-    case RT_SHAPE_SPHERE:
-        if (rt_exceeds_float(fmin(far, length) * fmin(far, length), fmax(far, length) * fmax(far, length)))
-            add_piece(m, ray, -HUGE_VAL, HUGE_VAL, false, delta, asked);
-        else
-            sphere_margin(m, ray, &geometry->spheres[index], delta, asked);
-        break;
+    case RT_SHAPE_SPHERE: sphere_margin(m, ray, &geometry->spheres[index], delta, asked); break;
     case RT_SHAPE_CONE: cone_margin(m, ray, &geometry->cones[index], delta, asked); break;
     case RT_SHAPE_CSG: return csg_margin(m, ray, geometry, index, delta, asked, error);
     case RT_SHAPE_COUNT: break;

@@ -71,13 +71,10 @@ RtStatus rt_verdict_certain(RtJudge judge, const RtRay *ray, bool *certain, bool
 
 /* ---- verdicts ---- */
 
-/* delta / |dir| of the object that an answer names, or of both. */
-static double tolerance_of(RtJudge judge, const RtMarginRay *ray, RtHit a, RtHit b) {
-    double delta = 0;
-    if (a.object < judge.geometry->object_count) delta = rt_margin_delta(ray, judge.geometry, a.object);
-    if (b.object < judge.geometry->object_count)
-        delta = fmax(delta, rt_margin_delta(ray, judge.geometry, b.object));
-    return delta / ray->line.length;
+/* delta / |dir| of the object that an answer names; 0 if it names none. */
+static double tolerance_of(RtJudge judge, const RtMarginRay *ray, RtHit hit) {
+    if (hit.object >= judge.geometry->object_count) return 0;
+    return rt_margin_delta(ray, judge.geometry, hit.object) / ray->line.length;
 }
 
 static RtStatus lack_memory(RtError *error) {
@@ -89,7 +86,7 @@ static RtStatus is_tie(RtJudge judge, const RtMarginRay *prepared, const RtRay *
                        RtHit answer, bool *tie, RtError *error) {
     int order;
     long double apart;
-    double tolerance = tolerance_of(judge, prepared, expected, answer);
+    double tolerance = fmin(tolerance_of(judge, prepared, expected), tolerance_of(judge, prepared, answer));
     *tie = false;
     if (!(fabs((double)answer.t - (double)expected.t) <= 2 * tolerance)) return RT_OK;
     RtExactResult result =
@@ -102,7 +99,7 @@ static RtStatus is_tie(RtJudge judge, const RtMarginRay *prepared, const RtRay *
 RtStatus rt_verdict_side(RtJudge judge, const RtRay *ray, RtHit expected, RtHit answer, RtSide *side,
                          RtError *error) {
     const RtMarginRay prepared = rt_margin_ray(judge.geometry, ray, judge.absolute);
-    double tolerance = tolerance_of(judge, &prepared, expected, answer);
+    double tolerance = fmax(tolerance_of(judge, &prepared, expected), tolerance_of(judge, &prepared, answer));
     *side = rt_referee_judge(judge.geometry, ray, expected, answer, tolerance).side;
     return *side == RT_SIDE_UNDECIDED ? lack_memory(error) : RT_OK;
 }
@@ -111,7 +108,7 @@ RtStatus rt_verdict_nearest(RtJudge judge, const RtRay *ray, RtHit expected, RtH
                             RtError *error) {
     const RtMarginRay prepared = rt_margin_ray(judge.geometry, ray, judge.absolute);
     const bool miss = answer.object == RT_NO_OBJECT;
-    double asked = (double)answer.t * prepared.line.length;
+    const double asked = (double)answer.t * prepared.line.length;
     RtMargin own;
     Margins others;
     *verdict = RT_EQUAL;
@@ -121,19 +118,18 @@ RtStatus rt_verdict_nearest(RtJudge judge, const RtRay *ray, RtHit expected, RtH
         if (answer.object >= judge.geometry->object_count) return RT_OK;
         RT_TRY(rt_margin_of(&prepared, judge.geometry, answer.object, asked, &own, error));
         if (!own.holds) return RT_OK;
-        *verdict = RT_EQUAL;
-        const double at = (double)expected.t * prepared.line.length;
-        if (answer.object == expected.object && at >= own.lo && at <= own.hi) return RT_OK;
-        if (expected.object != RT_NO_OBJECT && expected.object != answer.object) {
-            bool tie;
-            RT_TRY(is_tie(judge, &prepared, ray, expected, answer, &tie, error));
-            *verdict = RT_TIE;
-            if (tie) return RT_OK;
-        }
     }
     RT_TRY(margins(&prepared, judge.geometry, answer.object, &others, error));
-    bool overtaken = others.first_certain != RT_NO_OBJECT && (miss || asked > others.latest);
-    *verdict = overtaken ? RT_WRONG : RT_MARGINAL;
+    if (others.first_certain != RT_NO_OBJECT && (miss || asked > others.latest)) return RT_OK;
+    *verdict = RT_MARGINAL;
+    if (miss || expected.object == RT_NO_OBJECT) return RT_OK;
+    const double at = (double)expected.t * prepared.line.length;
+    bool tie = false;
+    if (answer.object != expected.object)
+        RT_TRY(is_tie(judge, &prepared, ray, expected, answer, &tie, error));
+    else if (at >= own.lo && at <= own.hi)
+        *verdict = RT_EQUAL;
+    if (tie) *verdict = RT_TIE;
     return RT_OK;
 }
 

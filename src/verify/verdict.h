@@ -21,8 +21,8 @@
 
 /* In order of severity. */
 typedef enum RtVerdict {
-    RT_EQUAL,    /* the same object, at a t that rounding makes of ours */
-    RT_TIE,      /* another object, whose exact t differs from the exact t of ours by at most delta / |dir| */
+    RT_EQUAL, /* the same object, at a t that rounding makes of ours */
+    RT_TIE, /* another object, whose exact t differs from that of ours by at most the lesser delta / |dir| */
     RT_MARGINAL, /* another answer that rounding explains */
     RT_WRONG,    /* anything else */
     RT_VERDICT_COUNT
