@@ -30,8 +30,8 @@ function about() {
     `The page has ${data.rays} rays ${every}.`];
   if (data.cut) notes.push(`${plural(data.cut, 'path')} had more than ${data.most_rows} rows, of which the first are here.`);
   if (data.scene.shown_every > 1) notes.push(`The 3-D view shows one object in ${data.scene.shown_every}.`);
-  for (const { spec, boxes, boxes_shown: shown, boxes_of: of, thinned_level: level, thinned_every: every_ } of data.accelerators) {
-    if (!of) notes.push(`${spec} has no boxes to draw.`);
+  for (const { accel, boxes, boxes_shown: shown, boxes_of: of, thinned_level: level, thinned_every: every_ } of data.accelerators) {
+    if (!of) notes.push(`${accel} has no boxes to draw.`);
     else if (shown < boxes) notes.push(`The 3-D view shows ${shown} of ${boxes} boxes of ${of}: of level ${level} ${every_ ? `one in ${every_}` : 'none'}, and none below.`);
   }
   byId('about').textContent = notes.join(' ');
@@ -108,7 +108,7 @@ function choices() {
   if (data.accelerators.length < 2) return;
   const select = (place) => {
     const made = element('select', { 'aria-label': place ? 'second accelerator' : 'accelerator' },
-      ...(place ? [element('option', { value: -1 }, 'none')] : []), ...data.accelerators.map(({ spec }, i) => element('option', { value: i }, spec)));
+      ...(place ? [element('option', { value: -1 }, 'none')] : []), ...data.accelerators.map(({ accel }, i) => element('option', { value: i }, accel)));
     made.value = String(state.shown[place]);
     return made;
   };
@@ -143,7 +143,7 @@ function showBoxes() {
   const drawn = data.accelerators.map((_, i) => space.boxes(i, choice));
   const missing = data.accelerators.filter(({ thinned_level: level }) => level !== null).map(({ boxes_of: of, thinned_level: level }) =>
     ` The page has no boxes of ${of} below level ${level}: deeper leaves are missing.`);
-  byId('legend').textContent = `Boxes drawn: ${data.accelerators.map(({ spec, boxes_of: of }, i) => `${of ?? spec} ${drawn[i]}`).join(', ')}` +
+  byId('legend').textContent = `Boxes drawn: ${data.accelerators.map(({ accel, boxes_of: of }, i) => `${of ?? accel} ${drawn[i]}`).join(', ')}` +
     (axis < 0 ? '.' : `, cut by ${'xyz'[axis]} = ${number(position)}.`) + missing.join('');
 }
 

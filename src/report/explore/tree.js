@@ -67,9 +67,9 @@ function showSample(data, primary) {
   const place = byId('sample');
   place.replaceChildren();
   if (!primary || !primary.paths.some(({ cell }) => cell)) return;
-  const items = data.accelerators.flatMap(({ spec }, i) => primary.paths[i].cell ? [[spec, primary.paths[i].cell]] : []);
+  const items = data.accelerators.flatMap(({ accel }, i) => primary.paths[i].cell ? [[accel, primary.paths[i].cell]] : []);
   place.append(element('h3', {}, 'The sample in the item buffer'),
-    ...items.map(([spec, cell]) => element('p', {}, `${spec}: sample ${cell.number} holds ${data.nameOf(cell.object)}.`)));
+    ...items.map(([accel, cell]) => element('p', {}, `${accel}: sample ${cell.number} holds ${data.nameOf(cell.object)}.`)));
   if (primary.candidates.length === 0) return;
   place.append(element('div', { class: 'wide', tabindex: 0, role: 'region', 'aria-label': 'Objects that compete for the sample' }, element('table', {},
     element('caption', {}, 'Objects that compete for the sample: the z-buffer keeps the nearest'),
