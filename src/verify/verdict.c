@@ -119,17 +119,15 @@ RtStatus rt_verdict_nearest(RtJudge judge, const RtRay *ray, RtHit expected, RtH
         RT_TRY(rt_margin_of(&prepared, judge.geometry, answer.object, asked, &own, error));
         if (!own.holds) return RT_OK;
     }
-    RT_TRY(margins(&prepared, judge.geometry, answer.object, &others, error));
-    if (others.first_certain != RT_NO_OBJECT && (miss || asked > others.latest)) return RT_OK;
-    *verdict = RT_MARGINAL;
-    if (miss || expected.object == RT_NO_OBJECT) return RT_OK;
+    const bool same = answer.object == expected.object, both = !miss && expected.object != RT_NO_OBJECT;
     const double at = (double)expected.t * prepared.line.length;
     bool tie = false;
-    if (answer.object != expected.object)
-        RT_TRY(is_tie(judge, &prepared, ray, expected, answer, &tie, error));
-    else if (at >= own.lo && at <= own.hi)
-        *verdict = RT_EQUAL;
-    if (tie) *verdict = RT_TIE;
+    if (both && !same) RT_TRY(is_tie(judge, &prepared, ray, expected, answer, &tie, error));
+    *verdict = tie ? RT_TIE : both && same && at >= own.lo && at <= own.hi ? RT_EQUAL : RT_MARGINAL;
+    /* Nothing fits between t's that are a few ulps apart; otherwise something may be hit before. */
+    if (*verdict != RT_MARGINAL && fabs(asked - at) <= 0x1p-21 * fabs(at)) return RT_OK;
+    RT_TRY(margins(&prepared, judge.geometry, answer.object, &others, error));
+    if (others.first_certain != RT_NO_OBJECT && (miss || asked > others.latest)) *verdict = RT_WRONG;
     return RT_OK;
 }
 
