@@ -306,10 +306,10 @@ bool rt_best_is(const char *text);
 /* The accelerator's RtBestOf of that name, or NULL. */
 const RtBestOf *rt_best_find(const RtAccelOps *ops, const char *name);
 
-/* Expands `text` ("embree:best") to the specs that are available here, specs[0..*count). RT_BAD_INPUT if
- * there is no such name, RT_NOT_AVAILABLE if no spec is available. */
+/* Expands `text` ("embree:best") to specs: specs[0..*count) are available here, specs[*count..*all) on other
+ * machines. RT_BAD_INPUT if there is no such name, RT_NOT_AVAILABLE if no spec is available. */
 RtStatus rt_best_specs(const char *text, char specs[RT_MAX_BEST][RT_MAX_SPEC_CHARS], size_t *count,
-                       RtError *error);
+                       size_t *all, RtError *error);
 
 /* ---- using an accelerator ---- */
 

@@ -42,20 +42,29 @@ static RtStatus fail_unknown(const RtAccelOps *ops, const char *text, RtError *e
 }
 
 RtStatus rt_best_specs(const char *text, char specs[RT_MAX_BEST][RT_MAX_SPEC_CHARS], size_t *count,
-                       RtError *error) {
+                       size_t *all, RtError *error) {
     char name[RT_MAX_NAME];
     const RtAccelOps *ops;
     snprintf(name, sizeof name, "%.*s", (int)strcspn(text, ":"), text);
     RT_TRY(rt_accel_find(name, &ops, error));
     const RtBestOf *best = rt_best_is(text) ? rt_best_find(ops, strchr(text, ':') + 1) : NULL;
     if (!best) return fail_unknown(ops, text, error);
-    *count = 0;
-    for (size_t n = 0; *count < RT_MAX_BEST && combine(ops, best, n, specs[*count]); n++) {
+    bool available[RT_MAX_BEST];
+    char spec_of[RT_MAX_BEST][RT_MAX_SPEC_CHARS];
+    size_t known = 0;
+    for (; known < RT_MAX_BEST && combine(ops, best, known, spec_of[known]); known++) {
         RtSpec spec;
-        RT_TRY(rt_spec_parse(specs[*count], &spec, error));
-        RtStatus status = rt_spec_available(&spec, error);
-        if (status == RT_OK) ++*count;
+        RT_TRY(rt_spec_parse(spec_of[known], &spec, error));
+        const RtStatus status = rt_spec_available(&spec, error);
+        available[known] = status == RT_OK;
         if (status != RT_OK && status != RT_NOT_AVAILABLE) return status;
+    }
+    *count = *all = 0;
+    for (int here = 1; here >= 0; here--) {
+        for (size_t n = 0; n < known; n++) {
+            if (available[n] == here) memcpy(specs[(*all)++], spec_of[n], RT_MAX_SPEC_CHARS);
+        }
+        if (here) *count = *all;
     }
     return *count > 0 ? RT_OK
                       : rt_fail(error, RT_NOT_AVAILABLE,

@@ -7,7 +7,8 @@
 
 #include "core/base/file.h"
 #include "core/base/memory.h"
-#include "experiment/result_directory.h"
+#include "results/result_directory.h"
+#include "run/run.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -6,11 +6,11 @@
 #include "cli/recording.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
-#include "experiment/callgrind.h"
-#include "experiment/distribution_tables.h"
-#include "experiment/result_tables.h"
-#include "experiment/worker.h"
 #include "measure/machine.h"
+#include "results/distribution_tables.h"
+#include "results/result_tables.h"
+#include "run/callgrind.h"
+#include "run/worker.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -24,7 +24,7 @@ typedef struct Options {
     uint32_t builds;   /* 0: the default */
     uint64_t memory;   /* bytes for each accelerator; 0: no limit */
     int threads;       /* -1: one to time, all to build and count */
-    bool worker;       /* it counts instructions for another one (experiment/worker.h) */
+    bool worker;       /* it counts instructions for another one (run/worker.h) */
     char *const *argv; /* all arguments, NULL behind the last */
 } Options;
 
@@ -148,7 +148,7 @@ static const RtOption options[] = {
      "Also show instructions per ray, counted by valgrind's callgrind: exact, the same on every run, and "
      "available where --hardware is not. raytally builds each accelerator again under valgrind, which is "
      "many times slower, and traces N rays of each kind (4096), without AVX-512, which valgrind lacks"},
-    {"worker", 0, NULL, RT_TO_HIDDEN_FLAG(worker), NULL}, /* experiment/worker.h */
+    {"worker", 0, NULL, RT_TO_HIDDEN_FLAG(worker), NULL}, /* run/worker.h */
     {"csv", 0, "FILE", RT_TO_TEXT(csv),
      "Also write a row per cell to FILE, in the columns of times.csv, or of counts.csv with --count-only"},
     {"hits", 0, "FILE.npy|.npz", RT_TO_TEXT(hits),

@@ -4,14 +4,14 @@
 #include "cli/cli.h"
 #include "cli/progress.h"
 #include "cli/recording.h"
+#include "compare/compare.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
-#include "experiment/callgrind.h"
-#include "experiment/compare.h"
-#include "experiment/manifest.h"
 #include "experiment/plugins_used.h"
-#include "experiment/result_directory.h"
-#include "experiment/worker.h"
+#include "results/manifest.h"
+#include "results/result_directory.h"
+#include "run/callgrind.h"
+#include "run/worker.h"
 
 #include <limits.h>
 #include <stdio.h>
@@ -79,7 +79,7 @@ static const RtOption options[] = {
     {"threads", 0, "N", RT_TO_INTEGER(threads, 0, 1024), "Threads, as in `raytally bench`"},
     RT_LIMIT_OPTIONS,
     {"json", 0, NULL, RT_TO_FLAG(json), "One JSON document on stdout instead of the table"},
-    {"worker", 0, NULL, RT_TO_HIDDEN_FLAG(worker), NULL}, /* experiment/worker.h */
+    {"worker", 0, NULL, RT_TO_HIDDEN_FLAG(worker), NULL}, /* run/worker.h */
     {0}};
 
 /* ---- two programs ---- */
@@ -214,7 +214,7 @@ static RtStatus compare_loaded(const Options *o, RtExperiment *experiments, RtRe
     const uint32_t pairs = o->subject_count / 2;
     RT_TRY(check_given_once(o, error));
     for (uint32_t i = 0; i < o->subject_count; i++) {
-        RT_TRY(rt_run_load(o->subjects[i], &experiments[i], &results[i], error));
+        RT_TRY(rt_results_load(o->subjects[i], &experiments[i], &results[i], error));
         names[i % 2][i / 2] = o->subjects[i];
     }
     for (size_t p = 0; p < pairs; p++)

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally merge: joins the shards of an experiment. */
+#include "claims/claims.h"
 #include "cli/cli.h"
 #include "cli/progress.h"
-#include "experiment/merge.h"
-#include "experiment/result_tables.h"
 #include "report/report.h"
+#include "results/result_tables.h"
+#include "run/merge.h"
 
 #include <stdio.h>
 

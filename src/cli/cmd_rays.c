@@ -3,8 +3,8 @@
 #include "cli/cli.h"
 #include "cli/recording.h"
 #include "core/base/words.h"
-#include "experiment/workload.h"
 #include "measure/ray_file.h"
+#include "run/workload.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally report: writes the report of a result directory again, or the index of several. */
+#include "claims/claims.h"
 #include "cli/cli.h"
 #include "cli/directory.h"
 #include "core/base/words.h"
-#include "experiment/claims.h"
 #include "report/index.h"
 #include "report/report.h"
 

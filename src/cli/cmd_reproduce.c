@@ -6,9 +6,9 @@
 #include "cli/progress.h"
 #include "core/base/memory.h"
 #include "core/base/versions.h"
-#include "experiment/manifest.h"
-#include "experiment/result_directory.h"
 #include "literature/published_tables.h"
+#include "results/manifest.h"
+#include "results/result_directory.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -44,8 +44,8 @@ static const char *cheapest_scene(const RtResults *results) {
     return best < RT_MAX_WORKLOADS ? results->experiment->workloads[best].label : NULL;
 }
 
-static RtOnly only_scene(const char *scene) {
-    return (RtOnly){.parts[0].scene = scene, .part_count = 1};
+static RtSelection only_scene(const char *scene) {
+    return (RtSelection){.parts[0].scene = scene, .part_count = 1};
 }
 
 static RtStatus count_again(RtResults *results, const char *scene, RtError *error) {
@@ -74,7 +74,7 @@ static const char *end_of_line(const char *line) {
 typedef struct Again {
     const char *directory;
     const RtResults *results;
-    RtOnly only;
+    RtSelection only;
     const char *scene;   /* the only one; NULL: all */
     const char *missing; /* a scene with rows in the directory whose file is missing here, or NULL */
     uint64_t compared;   /* lines */
@@ -89,7 +89,7 @@ static bool is_left_out(Again *again, const char *row) {
         const char *label = experiment->workloads[t].label;
         const size_t length = strlen(label);
         if (strncmp(row, label, length) != 0 || row[length] != end) continue;
-        if (!rt_only_scene(&again->only, experiment, t)) return true;
+        if (!rt_selection_has_scene(&again->only, experiment, t)) return true;
         if (!again->results->workloads[t].skipped) return false;
         again->missing = label;
         return true;
@@ -216,7 +216,7 @@ static RtStatus reproduce(const char *directory, RtResults *results, const void 
     memcpy(then, results->workloads, results->experiment->workload_count * sizeof *then);
     rt_results_clear(results);
     Again again = {.directory = directory, .results = results, .only = only_scene(scene), .scene = scene};
-    if (status == RT_OK) status = rt_only_check(&again.only, &original, error);
+    if (status == RT_OK) status = rt_selection_check(&again.only, &original, error);
     if (status == RT_OK) status = rt_results_init(results, &original, error);
     if (status == RT_OK) status = count_again(results, scene, error);
     if (status == RT_OK) status = check_scenes(&again, then, error);

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally run: experiments, from their YAML to result directories. */
+#include "claims/claims.h"
 #include "cli/cli.h"
 #include "cli/jobs.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
 #include "core/base/words.h"
-#include "experiment/claims.h"
-#include "experiment/journal.h"
-#include "experiment/manifest.h"
-#include "experiment/result_directory.h"
-#include "experiment/result_tables.h"
 #include "measure/result_files.h"
 #include "report/index.h"
 #include "report/report.h"
+#include "results/journal.h"
+#include "results/manifest.h"
+#include "results/result_tables.h"
+#include "run/run.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -36,7 +36,7 @@ typedef struct Options {
 
 static void take_only(void *options, const char *text, struct argp_state *state) {
     Options *o = options;
-    RtOnly *only = &o->how.workload.only;
+    RtSelection *only = &o->how.workload.only;
     if (only->part_count == RT_MAX_PARTS) argp_error(state, "--only: more than %d parts", RT_MAX_PARTS);
     if (strlen(text) >= sizeof o->parts[0]) argp_error(state, "--only: '%s' is too long", text);
     char *scene = strcpy(o->parts[only->part_count], text);
@@ -47,7 +47,7 @@ static void take_only(void *options, const char *text, struct argp_state *state)
 }
 
 static void take_shard(void *options, const char *text, struct argp_state *state) {
-    RtOnly *only = &((Options *)options)->how.workload.only;
+    RtSelection *only = &((Options *)options)->how.workload.only;
     unsigned shard, shards;
     int end = 0;
     bool fine = sscanf(text, "%3u/%3u%n", &shard, &shards, &end) == 2 && !text[end];
@@ -109,8 +109,8 @@ static const RtOption options[] = {
 
 /* ---- before ---- */
 
-static RtStatus check_part(const RtExperiment *e, const RtOnly *only, RtError *error) {
-    RT_TRY(rt_only_check(only, e, error));
+static RtStatus check_part(const RtExperiment *e, const RtSelection *only, RtError *error) {
+    RT_TRY(rt_selection_check(only, e, error));
     if (only->shards <= e->workload_count) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT, "--shard: %u scene%s: too few for %u shards", e->workload_count,
                    rt_plural(e->workload_count), only->shards);
@@ -131,7 +131,7 @@ static void print_cell(const RtResults *results, uint32_t t, uint32_t c, RtRayKi
 /* Opens no scenes: forecasts from the results in the directory. */
 static RtStatus dry_run(RtResults *results, const RtRunOptions *how, bool list, RtError *error) {
     const RtExperiment *e = results->experiment;
-    const RtOnly *only = &how->workload.only;
+    const RtSelection *only = &how->workload.only;
     char path[RT_MAX_PATH], duration[RT_MAX_DURATION];
     RT_TRY(rt_path_join(how->directory, RT_RUN_JOURNAL, path, error));
     const bool exists = rt_file_exists(path), anew = how->start == RT_START_ANEW;
@@ -143,7 +143,7 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, bool list, 
     for (uint32_t t = 0; list && t < e->workload_count; t++) {
         for (uint32_t c = 0; c < e->candidate_count; c++) {
             for (uint32_t k = 0; rt_candidate_runs(e, c, t) && k < e->kind_count; k++) {
-                if (rt_only_cell(only, e, t, c, e->kinds[k]))
+                if (rt_selection_has(only, e, t, c, e->kinds[k]))
                     print_cell(results, t, c, e->kinds[k], previous);
             }
         }
@@ -245,7 +245,7 @@ static RtStatus load(Options *o, RtExperiment *experiment, RtError *error) {
 
 /* Where the results of the experiment go. */
 static RtStatus choose_directory(Options *o, const RtExperiment *experiment, RtError *error) {
-    const RtOnly *only = &o->how.workload.only;
+    const RtSelection *only = &o->how.workload.only;
     o->how.directory = o->directory;
     if (o->count > 1 || !o->out) {
         char name[RT_MAX_WORD + 8];

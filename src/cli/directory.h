@@ -3,7 +3,7 @@
 #ifndef RT_CLI_DIRECTORY_H
 #define RT_CLI_DIRECTORY_H
 
-#include "experiment/result_directory.h"
+#include "results/result_directory.h"
 
 #define RT_DIRECTORY_MISSING  "a result DIR is missing, as in results/first-look"
 #define RT_DIRECTORY_ARGUMENT RT_ARGUMENT("DIR", directory, RT_DIRECTORY_MISSING)

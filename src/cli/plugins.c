@@ -5,8 +5,8 @@
 #include "core/base/file.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
-#include "experiment/manifest.h"
 #include "experiment/plugins_used.h"
+#include "results/manifest.h"
 
 #include <stdio.h>
 #include <stdlib.h>

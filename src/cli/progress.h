@@ -4,7 +4,7 @@
 #ifndef RT_CLI_PROGRESS_H
 #define RT_CLI_PROGRESS_H
 
-#include "experiment/forecast.h"
+#include "run/forecast.h"
 
 #include <pthread.h>
 

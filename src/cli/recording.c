@@ -2,8 +2,8 @@
 #include "cli/recording.h"
 
 #include "cli/cli.h"
-#include "experiment/callgrind.h"
 #include "render/frame.h"
+#include "run/callgrind.h"
 #include "verify/spread.h"
 
 #include <stdio.h>

@@ -86,31 +86,35 @@ static void label_setting(const char *spec, char label[RT_MAX_LABEL]) {
     label[used] = '\0';
 }
 
+/* Those that are missing come last, and are no baseline: claims may name them on every machine. */
 static void append_setting(RtExperiment *experiment, RtCandidate *candidate) {
     candidate->ray_stride = 1;
+    candidate->optional = true;
     memcpy(candidate->stem, candidate->label, sizeof candidate->stem);
     experiment->candidates[experiment->candidate_count++] = *candidate;
-    experiment->baseline_count++;
+    if (!candidate->missing) experiment->baseline_count++;
 }
 
 /* The baseline of the results: the accelerators after those of the YAML in the manifest. */
 static void append_from_manifest(RtExperiment *experiment) {
     RtCandidate candidate = {0};
     while (experiment->candidate_count < RT_MAX_CANDIDATES &&
-           rt_manifest_candidate(experiment->manifest, experiment->candidate_count, &candidate))
+           rt_manifest_candidate(experiment->manifest, experiment->candidate_count, &candidate)) {
+        candidate.missing = rt_manifest_is_missing(experiment->manifest, experiment->candidate_count);
         append_setting(experiment, &candidate);
+    }
 }
 
 static RtStatus append_best(RtExperiment *experiment, const char *label, RtError *error) {
     char specs[RT_MAX_BEST][RT_MAX_SPEC_CHARS];
-    size_t count = 0;
-    RT_TRY(rt_best_specs(label, specs, &count, error));
-    if (experiment->candidate_count + count > RT_MAX_CANDIDATES) {
+    size_t count = 0, all = 0;
+    RT_TRY(rt_best_specs(label, specs, &count, &all, error));
+    if (experiment->candidate_count + all > RT_MAX_CANDIDATES) {
         return rt_fail(error, RT_BAD_INPUT, "'%s' expands to %zu accelerators: an experiment has at most %d",
-                       label, count, RT_MAX_CANDIDATES);
+                       label, all, RT_MAX_CANDIDATES);
     }
-    for (size_t i = 0; i < count; i++) {
-        RtCandidate candidate = {0};
+    for (size_t i = 0; i < all; i++) {
+        RtCandidate candidate = {.missing = i >= count};
         memcpy(candidate.spec, specs[i], sizeof candidate.spec);
         label_setting(specs[i], candidate.label);
         append_setting(experiment, &candidate);
@@ -192,13 +196,22 @@ static bool is_unknown(const char *spec) {
     return rt_accel_find(name, &ops, NULL) != RT_OK;
 }
 
-/* Marks a candidate that this build lacks; for loaded results, that the build that made them lacked. */
+/* Whether it is optional, and this machine cannot run it. */
+static bool is_elsewhere(const RtCandidate *candidate) {
+    return candidate->optional && rt_spec_available(&candidate->parsed, NULL) == RT_NOT_AVAILABLE;
+}
+
+/* Marks a candidate that this build or machine lacks; for loaded results, that those that made them lacked.
+ */
 static RtStatus check_spec(RtExperiment *experiment, uint32_t i, RtError *error) {
     RtCandidate *candidate = &experiment->candidates[i];
     RtError why = {RT_OK, ""};
     candidate->missing = experiment->manifest && rt_manifest_is_missing(experiment->manifest, i);
-    if (experiment->manifest || rt_spec_parse(candidate->spec, &candidate->parsed, &why) == RT_OK)
+    if (experiment->manifest) return RT_OK;
+    if (rt_spec_parse(candidate->spec, &candidate->parsed, &why) == RT_OK) {
+        candidate->missing = is_elsewhere(candidate);
         return RT_OK;
+    }
     candidate->missing =
         why.status == RT_NOT_AVAILABLE || (candidate->optional && is_unknown(candidate->spec));
     return candidate->missing ? RT_OK : rt_fail(error, why.status, "%s", why.message);

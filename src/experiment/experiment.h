@@ -23,6 +23,8 @@
 #define RT_MAX_CLAIM      256
 #define RT_MAX_PAPERS     16
 
+#define RT_ALL_RAYS RT_RAY_KIND_COUNT /* stands for all ray kinds of an experiment together */
+
 #define RT_MAX_MILLISECONDS 60000 /* of a round of one cell */
 
 /* ---- sweeps (sweep.c) ---- */
@@ -83,9 +85,10 @@ typedef struct RtCandidate {
     RtSpec parsed;                /* by rt_experiment_check, if this build has it */
     uint64_t ray_stride;          /* k: measured on every kth ray of a set, for slow accelerators; >= 1 */
     uint32_t excluded;            /* bit t: it is not measured on workloads[t] */
-    bool optional;                /* an unknown accelerator, of a plugin not loaded, is missing, no error */
-    bool missing;                 /* this build lacks it: skipped with a notice */
-    bool ours;                    /* must need less than every published row */
+    bool optional; /* if a plugin that is not loaded has it, or the machine cannot run it, it is
+                      missing, no error */
+    bool missing;  /* this build or machine lacks it: skipped with a notice */
+    bool ours;     /* must need less than every published row */
 } RtCandidate;
 
 _Static_assert(RT_MAX_WORKLOADS <= 32, "a bit of excluded for every workload");
@@ -116,7 +119,7 @@ typedef struct RtPublishedSetup {
     double tolerance[RT_COLUMN_COUNT];          /* in percent; 0: shown but not checked */
 } RtPublishedSetup;
 
-/* The table of the costs of a whole frame (experiment/frame_table.h). */
+/* The table of the costs of a whole frame (results/frame_table.h). */
 typedef struct RtFrameSetup {
     char without[RT_MAX_LABEL]; /* the candidate without a structure; "": no such table */
     char among[RT_MAX_WORD];    /* the group whose fastest is marked */
@@ -148,7 +151,7 @@ typedef struct RtExperiment {
     uint32_t paper_count;
     char question[RT_MAX_TEXT], prediction[RT_MAX_TEXT];
     char finding[RT_MAX_TEXT];                /* the conclusion, or "" */
-    char claims[RT_MAX_CLAIMS][RT_MAX_CLAIM]; /* experiment/claims.h */
+    char claims[RT_MAX_CLAIMS][RT_MAX_CLAIM]; /* experiment/claim.h */
     uint32_t claim_count;
     RtWorkload workloads[RT_MAX_WORKLOADS];
     uint32_t workload_count;

@@ -3,10 +3,10 @@
  * Reports invalid values; rt_experiment_check reports inconsistent ones. */
 #include "core/base/memory.h"
 
+#include "core/text/json.h"
 #include "core/text/yaml.h"
-#include "experiment/claims.h"
+#include "experiment/claim.h"
 #include "experiment/experiment.h"
-#include "experiment/record.h"
 #include "render/frame.h"
 
 #include <string.h>

@@ -19,7 +19,7 @@
 #ifndef RT_LITERATURE_PUBLISHED_H
 #define RT_LITERATURE_PUBLISHED_H
 
-#include "experiment/results.h"
+#include "results/results.h"
 
 #define RT_MAX_FIGURE   16 /* characters */
 #define RT_MAX_REASON   512

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "literature/published_tables.h"
 
-#include "experiment/result_directory.h"
+#include "results/result_directory.h"
 
 #include <inttypes.h>
 #include <math.h>

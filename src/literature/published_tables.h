@@ -43,7 +43,7 @@ RtTable rt_published_table(RtPublishedTable which, RtPublishedCursor *cursor);
  * compared. In HTML a figure outside its tolerance shows its reason as a tooltip. */
 void rt_published_page(const RtPublished *published, bool html, FILE *out);
 
-/* A file of RT_FILE_COMPARED (experiment/result_directory.h); and all of them, if anything was compared. */
+/* A file of RT_FILE_COMPARED (results/result_directory.h); and all of them, if anything was compared. */
 void rt_published_file_write(RtResultFile file, const RtPublished *published, FILE *out);
 RtStatus rt_published_files_write(const RtPublished *published, const char *directory, RtError *error);
 

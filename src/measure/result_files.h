@@ -16,7 +16,7 @@ typedef enum RtStart {
 } RtStart;
 
 /* Every file of a result directory, X(ID, name). Journals come first; experiment.yaml is a copy, not a
- * result. experiment/result_directory.h defines which experiments have which files, and writes them. */
+ * result. results/result_directory.h defines which experiments have which files, and writes them. */
 #define RT_RESULT_FILES(X)                                                                                   \
     X(RUN_JOURNAL, "cells.jsonl")                                                                            \
     X(PACKED_JOURNAL, "cells.jsonl.gz")                                                                      \

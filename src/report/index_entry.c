@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "report/index_entry.h"
 
+#include "claims/claims.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "core/text/csv.h"
 #include "core/text/json.h"
 #include "core/text/table.h"
-#include "experiment/claims.h"
-#include "experiment/frame_table.h"
-#include "experiment/manifest.h"
-#include "experiment/result_directory.h"
 #include "measure/machine.h"
 #include "report/page.h"
+#include "results/frame_table.h"
+#include "results/manifest.h"
+#include "results/result_directory.h"
 
 #include <ctype.h>
 #include <inttypes.h>
@@ -203,7 +203,7 @@ static RtStatus put_experiment(RtIndexEntry *entry, const char *directory, const
                                RtExperiment *experiment, RtError *error) {
     RtResults results;
     json_t *manifest = NULL;
-    RtStatus status = rt_run_load(directory, experiment, &results, error);
+    RtStatus status = rt_results_load(directory, experiment, &results, error);
     if (status == RT_OK) status = rt_manifest_read(directory, &manifest, error);
     if (status == RT_OK) {
         strcpy(entry->section, experiment->section);

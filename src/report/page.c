@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "report/page.h"
 
+#include "claims/claims.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
 #include "core/text/table.h"
-#include "experiment/claims_changed.h"
 #include "page_css.h"
 #include "page_js.h"
+#include "results/claims_changed.h"
 
 #include <ctype.h>
 #include <inttypes.h>

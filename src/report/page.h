@@ -4,7 +4,7 @@
 #ifndef RT_REPORT_PAGE_H
 #define RT_REPORT_PAGE_H
 
-#include "experiment/results.h"
+#include "results/results.h"
 
 #include <jansson.h>
 #include <stdio.h>

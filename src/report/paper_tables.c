@@ -4,7 +4,7 @@
 #include "core/base/file.h"
 #include "core/base/words.h"
 #include "core/text/table.h"
-#include "experiment/result_tables.h"
+#include "results/result_tables.h"
 
 #include <math.h>
 #include <string.h>

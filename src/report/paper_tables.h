@@ -3,7 +3,7 @@
 #ifndef RT_REPORT_PAPER_TABLES_H
 #define RT_REPORT_PAPER_TABLES_H
 
-#include "experiment/results.h"
+#include "results/results.h"
 
 /* Writes `directory`/tables.md and tables.tex (for the package booktabs): for each measure a table with a row
  * per accelerator and a column per scene, all kinds of rays together; and for each kind of rays one of the

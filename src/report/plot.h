@@ -11,7 +11,7 @@
 #ifndef RT_REPORT_PLOT_H
 #define RT_REPORT_PLOT_H
 
-#include "experiment/results.h"
+#include "results/results.h"
 
 /* Draws with the experiment's scripts; with a generated one if it names none and sweeps parameters
  * (sweep_plot.h); and with experiments/histograms.gp if it has distributions. RT_NOT_AVAILABLE if gnuplot is

@@ -6,16 +6,16 @@
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
-#include "experiment/distribution_tables.h"
-#include "experiment/frame_table.h"
-#include "experiment/manifest.h"
-#include "experiment/result_directory.h"
-#include "experiment/result_tables.h"
 #include "literature/published_tables.h"
 #include "measure/result_files.h"
 #include "report/color.h"
 #include "report/page.h"
 #include "report/paper_tables.h"
+#include "results/distribution_tables.h"
+#include "results/frame_table.h"
+#include "results/manifest.h"
+#include "results/result_directory.h"
+#include "results/result_tables.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -162,7 +162,7 @@ static void put_scenes(FILE *out, const RtResults *results, const char *director
         const RtWorkloadResult *workload = &results->workloads[t];
         char path[RT_MAX_PATH], *picture;
         size_t size;
-        if (!workload->known || rt_run_image_path(directory, results->experiment, t, path, NULL) != RT_OK)
+        if (!workload->known || rt_results_image_path(directory, results->experiment, t, path, NULL) != RT_OK)
             continue;
         fputs("<figure>", out);
         if (rt_file_read(path, MOST_FILE_BYTES, &picture, &size, NULL) == RT_OK) {

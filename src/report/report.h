@@ -3,8 +3,8 @@
 #ifndef RT_REPORT_REPORT_H
 #define RT_REPORT_REPORT_H
 
-#include "experiment/result_directory.h"
 #include "literature/published.h"
+#include "run/run.h"
 
 /* Writes `directory`/report.html from the results, what was compared with published figures (perhaps
  * nothing), the manifest, and the plots and images that are there. */

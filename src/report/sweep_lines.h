@@ -4,7 +4,7 @@
 #ifndef RT_REPORT_SWEEP_LINES_H
 #define RT_REPORT_SWEEP_LINES_H
 
-#include "experiment/results.h"
+#include "results/results.h"
 
 #define RT_MAX_SWEEP_NAME (RT_MAX_LABEL + RT_MAX_SWEPT * (RT_MAX_NAME + RT_MAX_SWEPT_CHARS + 2))
 

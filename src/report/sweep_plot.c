@@ -2,10 +2,10 @@
 #include "report/sweep_plot.h"
 
 #include "core/base/memory.h"
-#include "experiment/paired.h"
 #include "report/color.h"
 #include "report/page.h"
 #include "report/sweep_lines.h"
+#include "results/paired.h"
 #include "style_gp.h"
 
 #include <math.h>

@@ -10,7 +10,7 @@
 #ifndef RT_REPORT_SWEEP_PLOT_H
 #define RT_REPORT_SWEEP_PLOT_H
 
-#include "experiment/results.h"
+#include "results/results.h"
 
 /* Whether the experiment sweeps parameters and names no plots. */
 bool rt_sweep_plots_needed(const RtExperiment *experiment);

@@ -3,16 +3,16 @@
  * committed files have these columns. */
 #include "testing.h"
 
+#include "compare/compare.h"
 #include "core/base/file.h"
 #include "core/base/memory.h"
 #include "core/text/csv.h"
-#include "experiment/callgrind.h"
-#include "experiment/compare.h"
-#include "experiment/distribution_tables.h"
-#include "experiment/frame_table.h"
-#include "experiment/result_tables.h"
 #include "literature/published_tables.h"
 #include "measure/extents_table.h"
+#include "results/distribution_tables.h"
+#include "results/frame_table.h"
+#include "results/result_tables.h"
+#include "run/callgrind.h"
 #include "verify/verify_table.h"
 
 #include <stdio.h>

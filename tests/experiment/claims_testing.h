@@ -5,9 +5,9 @@
 
 #include "testing.h"
 
+#include "claims/claims.h"
 #include "core/base/memory.h"
-#include "experiment/claims.h"
-#include "experiment/result_tables.h"
+#include "results/result_tables.h"
 
 #include <math.h>
 #include <stdio.h>

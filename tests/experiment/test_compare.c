@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* experiment/compare.h: result directories, one of which is changed; and other programs. */
+/* compare/compare.h: result directories, one of which is changed; and other programs. */
 #include "experiment_testing.h"
 
-#include "experiment/compare.h"
+#include "compare/compare.h"
 
 #include <math.h>
 
@@ -74,7 +74,7 @@ static void load_sides(const Place *place, Sides *sides) {
     *sides = (Sides){.experiments = rt_alloc(RUNS, sizeof(RtExperiment))};
     assert_non_null(sides->experiments);
     for (uint32_t i = 0; i < RUNS; i++) {
-        assert_ok(rt_run_load(out.text, &sides->experiments[i], &sides->results[i], error));
+        assert_ok(rt_results_load(out.text, &sides->experiments[i], &sides->results[i], error));
         draw_times(sides, i, 1);
     }
 }

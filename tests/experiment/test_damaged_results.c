@@ -3,8 +3,8 @@
  * system: each is read or refused, and nothing is left. Arbitrary damage is tried by tests/fuzz.sh. */
 #include "experiment_testing.h"
 
-#include "experiment/manifest.h"
 #include "literature/published.h"
+#include "results/manifest.h"
 
 static const char experiment_text[] =
     "name: small\n"
@@ -44,7 +44,7 @@ static RtStatus read_all(const Place *place, RtError *error) {
     OWNED_MEMORY RtPublished *published = rt_alloc(1, sizeof *published);
     json_t *manifest = NULL;
     assert_non_null(published);
-    RtStatus status = rt_run_load(out.text, place->experiment, &results, error);
+    RtStatus status = rt_results_load(out.text, place->experiment, &results, error);
     if (status == RT_OK) status = rt_published_load(published, place->experiment, error);
     if (status == RT_OK) status = rt_manifest_read(out.text, &manifest, error);
     json_decref(manifest);

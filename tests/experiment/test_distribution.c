@@ -4,7 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/random.h"
-#include "experiment/workload.h"
+#include "run/workload.h"
 
 #include <math.h>
 #include <string.h>

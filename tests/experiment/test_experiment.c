@@ -6,8 +6,8 @@
 
 #include "core/text/csv.h"
 #include "core/text/json.h"
-#include "experiment/result_tables.h"
 #include "report/report.h"
+#include "results/result_tables.h"
 
 #include <math.h>
 #include <unistd.h>
@@ -63,7 +63,7 @@ RT_TEST_IN_PLACE(the_work_of_a_build_is_in_the_journal) {
     OWNED_RESULTS results;
     write_changed(place, "small.yaml", small_experiment, "accel: ideal", "accel: item+bvh");
     assert_ok(run(place, "out", false, 1, nobody, error));
-    assert_ok(rt_run_load(path_in(place, "out").text, place->experiment, &results, error));
+    assert_ok(rt_results_load(path_in(place, "out").text, place->experiment, &results, error));
     assert_int_equal(rt_build_at(&results, 0, 1)->structure.build.object_tests, 0);
     assert_true(rt_build_at(&results, 0, 3)->structure.build.object_tests > 0);
 }

@@ -3,7 +3,7 @@
 #include "testing.h"
 
 #include "core/base/memory.h"
-#include "experiment/frame_table.h"
+#include "results/frame_table.h"
 
 #include <math.h>
 #include <string.h>

@@ -31,7 +31,7 @@ static int make_run(void **state) {
 /* Reads the journal of out/ as `text`. */
 static RtStatus read_journal(const Place *place, const char *text, RtResults *results, RtError *error) {
     write_in(place, "out/cells.jsonl", text);
-    return rt_run_load(path_in(place, "out").text, place->experiment, results, error);
+    return rt_results_load(path_in(place, "out").text, place->experiment, results, error);
 }
 
 RT_TEST_IN_PLACE(a_journal_without_the_times_of_rounds_is_read) {
@@ -97,7 +97,7 @@ RT_TEST_IN_PLACE(a_count_of_2_63_less_1_is_read_as_it_was_written) {
     const Place *place = *state;
     OWNED_RESULTS results;
     write_changed(place, "out/cells.jsonl", written, "\"differ\":0", "\"differ\":9223372036854775807");
-    assert_ok(rt_run_load(path_in(place, "out").text, place->experiment, &results, error));
+    assert_ok(rt_results_load(path_in(place, "out").text, place->experiment, &results, error));
     uint64_t most = 0;
     for (RtCellCursor at = {0}; rt_results_next(&results, &at);)
         if (at.cell->differ > most) most = at.cell->differ;

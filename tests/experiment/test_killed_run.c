@@ -5,8 +5,8 @@
  * Linked so that calls of the functions wrapped below come here. */
 #include "small_run_testing.h"
 
-#include "experiment/merge.h"
 #include "report/report.h"
+#include "run/merge.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -18,7 +18,7 @@
 static RtStatus run_shard(const Place *place, const char *directory, uint32_t shard, RtStart start,
                           RtError *error) {
     RtRunOptions how = {.start = start, .report = &rt_run_report};
-    if (shard) how.workload.only = (RtOnly){.shard = shard, .shards = 2};
+    if (shard) how.workload.only = (RtSelection){.shard = shard, .shards = 2};
     return run_small(place, directory, false, how, error);
 }
 

@@ -3,8 +3,8 @@
 #include "experiment_testing.h"
 
 #include "core/base/clock.h"
-#include "experiment/forecast.h"
-#include "experiment/result_tables.h"
+#include "results/result_tables.h"
+#include "run/forecast.h"
 
 #include <math.h>
 #include <signal.h>

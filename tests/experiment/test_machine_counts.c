@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* experiment/workload_hardware.c: what the machine did for the rays of cells. Where a
+/* run/workload_hardware.c: what the machine did for the rays of cells. Where a
  * test asks for it the linker's wrappers count rays in the place of the processor's events, so that what is
  * expected depends on no machine, its load or its kernel. */
 #include "testing.h"
 
 #include "accel/plugin.h"
 #include "core/base/memory.h"
-#include "experiment/result_tables.h"
-#include "experiment/workload.h"
+#include "results/result_tables.h"
+#include "run/workload.h"
 
 #include <math.h>
 #include <stdatomic.h>

@@ -24,7 +24,7 @@ static int make_small(void **state) {
 #define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_small, remove_place)
 
 static void load_results(const Place *place, const char *directory, RtResults *results) {
-    assert_ok(rt_run_load(path_in(place, directory).text, place->experiment, results, error));
+    assert_ok(rt_results_load(path_in(place, directory).text, place->experiment, results, error));
 }
 
 RT_TEST_IN_PLACE(the_same_frame_with_a_lower_limit_has_nearly_the_same_totals) {

@@ -4,8 +4,8 @@
 #include "accel/forged_testing.h"
 #include "fuzz.h"
 
+#include "compare/compare.h"
 #include "core/base/observe.h"
-#include "experiment/compare.h"
 
 #include <stdlib.h>
 #include <string.h>

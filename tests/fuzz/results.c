@@ -2,21 +2,21 @@
 /* Targets that read experiments, specs, claims, and the files of result directories. */
 #include "fuzz.h"
 
+#include "claims/claims.h"
+#include "compare/compare.h"
 #include "core/base/memory.h"
 #include "core/text/csv.h"
 #include "core/text/json.h"
-#include "experiment/claims.h"
-#include "experiment/compare.h"
-#include "experiment/distribution_tables.h"
-#include "experiment/frame_table.h"
-#include "experiment/journal.h"
-#include "experiment/manifest.h"
 #include "experiment/manifest_experiment.h"
-#include "experiment/result_directory.h"
-#include "experiment/result_tables.h"
 #include "literature/published_tables.h"
 #include "report/index_entry.h"
 #include "report/page.h"
+#include "results/distribution_tables.h"
+#include "results/frame_table.h"
+#include "results/journal.h"
+#include "results/manifest.h"
+#include "results/result_directory.h"
+#include "results/result_tables.h"
 #include "scenes/builtin.h"
 #include "verify/verify_table.h"
 
@@ -94,10 +94,10 @@ void fuzz_spec(const Input *input) {
     static char bests[RT_MAX_BEST][RT_MAX_SPEC_CHARS];
     RtSpec spec;
     RtError error = {RT_OK, ""};
-    size_t count;
+    size_t count, all;
     uint64_t objects;
     copy_text(input, text, sizeof text);
-    fuzz_accepted(rt_best_specs(text, bests, &count, &error), &error);
+    fuzz_accepted(rt_best_specs(text, bests, &count, &all, &error), &error);
     fuzz_accepted(rt_builtin_objects(text, &objects, &error), &error);
     if (!fuzz_accepted(rt_spec_parse(text, &spec, &error), &error)) return;
     rt_spec_format(&spec, formatted);
@@ -121,7 +121,7 @@ static RtStatus read_journal(const void *lines, size_t size, RtError *error) {
 }
 
 void fuzz_prepare_journal(void) {
-    const RtOnly all = {0};
+    const RtSelection all = {0};
     RtJsonLines journal;
     RtError error;
     char *text;

@@ -5,9 +5,9 @@
 
 #include "core/base/clock.h"
 #include "core/base/memory.h"
-#include "experiment/result_tables.h"
-#include "experiment/workload.h"
 #include "measure/measure.h"
+#include "results/result_tables.h"
+#include "run/workload.h"
 #include "scenes/open.h"
 
 #include <string.h>

@@ -3,8 +3,8 @@
  * the index. In a browser: tests/check_pages.sh. */
 #include "experiment_testing.h"
 
-#include "experiment/result_tables.h"
 #include "report/color.h"
+#include "results/result_tables.h"
 
 #include <unistd.h>
 #include <zlib.h>

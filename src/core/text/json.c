@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 static atomic_bool ran_out;
@@ -77,4 +78,18 @@ RtStatus rt_json_save(const char *path, json_t *document, RtError *error) {
     }
     json_decref(document);
     return status;
+}
+
+json_t *rt_json_add(json_t *json, const char *key, json_t *value) {
+    if (json_object_set_new(json, key, value) == 0) return json;
+    json_decref(json);
+    return NULL;
+}
+
+uint64_t rt_json_parse_hex(const json_t *value, bool *good) {
+    const char *text = json_string_value(value);
+    uint64_t number = 0;
+    *good = text && strlen(text) == 16 && strspn(text, "0123456789abcdef") == 16 &&
+            sscanf(text, "%16" SCNx64, &number) == 1;
+    return *good ? number : 0;
 }

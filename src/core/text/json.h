@@ -6,6 +6,7 @@
 #include "core/base/status.h"
 
 #include <jansson.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 /* If memory is short, json_object_set_new and others leave out a part of the document without an error. A
@@ -22,6 +23,10 @@ json_t *rt_json_number(double value);
 /* A fingerprint: 16 hexadecimal digits. */
 json_t *rt_json_hex(uint64_t value);
 
+/* Adds one value to `json`. Takes both references; returns `json`, or NULL if one of them is NULL or memory
+ * is short. */
+json_t *rt_json_add(json_t *json, const char *key, json_t *value);
+
 /* One end of a ratio's interval; if it is not 1, nine digits do not show it as 1. */
 json_t *rt_json_ratio_end(double value);
 
@@ -30,6 +35,9 @@ json_t *rt_json_now(void);
 
 /* The text of a member, borrowed; `otherwise` if there is none. */
 const char *rt_json_text(const json_t *object, const char *key, const char *otherwise);
+
+/* The fingerprint that rt_json_hex wrote; *good false if `value` is none. */
+uint64_t rt_json_parse_hex(const json_t *value, bool *good);
 
 /* Rejects the document of the file `path` if its member `format` is not a format that this version reads.
  * Without the member it is of format 1, as 0.1 wrote. */

@@ -1,0 +1,464 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Judging claims: a figure for each cell or line of cells, and the verdict over all of them. */
+#include "claims/claims_figures.h"
+
+#include "core/base/memory.h"
+#include "core/base/words.h"
+#include "core/text/table.h"
+#include "results/paired.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+/* What a claim says about some of its cells. */
+typedef struct Figure {
+    const RtClaimPoint *points; /* [count] */
+    uint32_t count;
+    RtClaimVerdict verdict; /* of claims */
+    uint64_t rays;          /* the fewest of any point */
+    RtEstimate value;       /* of a value, ratio, exponent or correlation */
+    double error;           /* of an exponent: the standard error */
+    uint32_t from, to;      /* of a trend: the points of the deciding step */
+    uint32_t found;         /* crossovers; the first of them: */
+    RtCrossover crossovers[RT_MAX_CROSSOVERS];
+} Figure;
+
+const char *rt_claim_verdict_name(RtClaimVerdict verdict) {
+    static const char *const names[] = {"holds", "undecided", "does not hold", "no measurements", "figure"};
+    return names[verdict];
+}
+
+/* ---- verdicts ---- */
+
+static RtClaimVerdict worse(RtClaimVerdict a, RtClaimVerdict b) {
+    return a > b ? a : b;
+}
+
+static double in_units(const RtClaim *claim, double value) {
+    bool time =
+        claim->measure == RT_CLAIM_TIME && (claim->form == RT_CLAIM_VALUE || claim->form == RT_CLAIM_TREND);
+    return time ? 1e9 * value : value;
+}
+
+static bool compares(const RtClaim *claim, double value) {
+    if (value == claim->number) return claim->or_equal;
+    return claim->greater ? value > claim->number : value < claim->number;
+}
+
+static RtClaimVerdict compare(const RtClaim *claim, double low, double high) {
+    bool first = compares(claim, in_units(claim, low)), last = compares(claim, in_units(claim, high));
+    return first && last ? RT_CLAIM_HOLDS : first || last ? RT_CLAIM_UNDECIDED : RT_CLAIM_FALSE;
+}
+
+/* What claims are judged by. */
+typedef struct Judge {
+    const RtResults *results;
+    const RtClaim *claim;
+    double coverage; /* of each interval of a tracing time */
+} Judge;
+
+/* The verdict on one step of a trend. */
+static RtClaimVerdict step_of(const Judge *judge, const RtClaimPoint *one, const RtClaimPoint *next) {
+    const RtClaim *claim = judge->claim;
+    RtEstimate before = one->y, after = next->y;
+    if (claim->measure == RT_CLAIM_TIME && one->workload == next->workload) {
+        before = rt_estimate_exactly(1);
+        after = rt_results_time_ratio(judge->results, one->workload, next->candidate, one->candidate,
+                                      one->kind, judge->coverage);
+    }
+    const RtEstimate *from = &before, *to = &after;
+    const RtEstimate *less = claim->rises ? from : to, *more = claim->rises ? to : from;
+    if (claim->strictly ? more->low > less->high : more->low >= less->high) return RT_CLAIM_HOLDS;
+    bool may = claim->strictly ? more->high > less->low : more->high >= less->low;
+    return may ? RT_CLAIM_UNDECIDED : RT_CLAIM_FALSE;
+}
+
+/* By the first step with the worst verdict; if all hold, from the first value to the last. */
+static void judge_trend(const Judge *judge, Figure *figure) {
+    const RtClaimPoint *points = figure->points;
+    figure->to = figure->count - 1;
+    for (uint32_t i = 0, next = 0; i < figure->count; i++) {
+        while (next < figure->count && points[next].x == points[i].x) next++;
+        for (uint32_t k = next; k < figure->count && points[k].x == points[next].x; k++) {
+            RtClaimVerdict step = step_of(judge, &points[i], &points[k]);
+            if (step <= figure->verdict) continue;
+            figure->verdict = step;
+            figure->from = i;
+            figure->to = k;
+        }
+    }
+}
+
+/* Whether the curves surely cross there: the ratio is below 1 on one side and above it on the other. */
+static bool is_certain(const RtCrossover *crossover) {
+    return crossover->before * crossover->after < 0;
+}
+
+static void judge_crossover(const RtClaim *claim, Figure *figure) {
+    RtClaimVerdict certain = RT_CLAIM_HOLDS, possible = RT_CLAIM_HOLDS;
+    bool any = false;
+    figure->found = rt_claim_crossovers(figure->points, figure->count, figure->crossovers);
+    if (figure->found > RT_MAX_CROSSOVERS) possible = RT_CLAIM_UNDECIDED;
+    for (uint32_t i = 0; i < figure->found && i < RT_MAX_CROSSOVERS; i++) {
+        const RtCrossover *crossover = &figure->crossovers[i];
+        const RtClaimVerdict verdict = compare(claim, crossover->low, crossover->high);
+        any |= is_certain(crossover);
+        if (is_certain(crossover))
+            certain = worse(certain, verdict);
+        else if (verdict != RT_CLAIM_HOLDS)
+            possible = RT_CLAIM_UNDECIDED;
+    }
+    /* Curves that do not cross here may do so beyond. */
+    figure->verdict = any ? worse(certain, possible) : RT_CLAIM_UNDECIDED;
+}
+
+static bool has_too_few_rays(const Figure *figure) {
+    return figure->rays < RT_CLAIM_RAYS;
+}
+
+static void judge_figure(const Judge *judge, Figure *figure) {
+    const RtClaim *claim = judge->claim;
+    figure->verdict = RT_CLAIM_HOLDS;
+    figure->rays = UINT64_MAX;
+    for (uint32_t i = 0; i < figure->count; i++)
+        figure->rays = figure->points[i].rays < figure->rays ? figure->points[i].rays : figure->rays;
+    if (claim->form == RT_CLAIM_TREND) {
+        judge_trend(judge, figure);
+    } else if (claim->form == RT_CLAIM_CROSSOVER) {
+        judge_crossover(claim, figure);
+    } else {
+        figure->value = claim->form == RT_CLAIM_EXPONENT
+                            ? rt_claim_exponent(figure->points, figure->count, &figure->error)
+                        : claim->form == RT_CLAIM_CORRELATION
+                            ? rt_claim_correlation(figure->points, figure->count)
+                            : figure->points->y;
+        figure->verdict = isnan(figure->value.median) ? RT_CLAIM_UNDECIDED
+                                                      : compare(claim, figure->value.low, figure->value.high);
+    }
+    if (has_too_few_rays(figure)) figure->verdict = RT_CLAIM_UNDECIDED;
+}
+
+/* ---- texts ---- */
+
+#define PUT(result, ...) rt_append_text((result)->figures, RT_MAX_CLAIM_FIGURES, __VA_ARGS__)
+
+static const char *const units[] = {
+#define UNIT(CONSTANT, name, unit) unit,
+    RT_CLAIM_MEASURES(UNIT)
+#undef UNIT
+};
+
+static void put_number(RtClaimResult *result, const RtClaim *claim, double value) {
+    char text[16];
+    const bool never = isinf(value) && claim->measure == RT_CLAIM_BREAK_EVEN && claim->form != RT_CLAIM_RATIO;
+    rt_format_figure(in_units(claim, value), text);
+    PUT(result, "%s", never ? "never" : text);
+}
+
+static void put_estimate(RtClaimResult *result, const RtClaim *claim, const RtEstimate *b) {
+    char text[RT_MAX_FIELD];
+    if (isnan(b->median)) {
+        PUT(result, "unknown");
+    } else if (b->low == b->high) {
+        put_number(result, claim, b->median);
+    } else {
+        rt_format_interval(in_units(claim, b->median), in_units(claim, b->low), in_units(claim, b->high),
+                           text);
+        PUT(result, "%s", text);
+    }
+}
+
+/* Both labels; of a line without the parameter. */
+static void put_place(RtClaimResult *result, const RtExperiment *experiment, const RtClaim *claim,
+                      const RtClaimPoint *point) {
+    const bool line = claim->form >= RT_CLAIM_EXPONENT && !claim->by_objects;
+    const RtWorkload *workload = &experiment->workloads[point->workload];
+    const bool kind = claim->each_kind && experiment->kind_count > 1;
+    const char *kind_name = kind ? rt_experiment_kind_name(experiment, point->kind) : "";
+    if (claim->form == RT_CLAIM_CORRELATION) {
+        if (kind) PUT(result, " (%s rays)", kind_name);
+        return;
+    }
+    if (line && !claim->key.scene && point->candidate != RT_FASTEST_BASELINE) {
+        const RtCandidate *candidate = &experiment->candidates[point->candidate];
+        PUT(result, " (%s", candidate->stem);
+        rt_swept_name(&candidate->swept, claim->key.key, result->figures, RT_MAX_CLAIM_FIGURES);
+    } else {
+        PUT(result, " (%s", rt_candidate_label(experiment, point->candidate));
+    }
+    if (line && claim->key.scene) {
+        PUT(result, " on %s", workload->stem);
+        rt_swept_name(&workload->swept, claim->key.key, result->figures, RT_MAX_CLAIM_FIGURES);
+    } else if (!claim->by_objects) {
+        PUT(result, " on %s", workload->label);
+    }
+    if (kind) PUT(result, ", %s rays", kind_name);
+    PUT(result, ")");
+}
+
+static void put_step(RtClaimResult *result, const RtClaim *claim, const Figure *figure) {
+    const RtClaimPoint *from = &figure->points[figure->from], *to = &figure->points[figure->to];
+    put_estimate(result, claim, &from->y);
+    PUT(result, " at %s=%.9g, ", claim->key.key, from->x);
+    put_estimate(result, claim, &to->y);
+    PUT(result, " at %s=%.9g", claim->key.key, to->x);
+}
+
+/* "n=5230 [3100, >10000]" */
+static void put_one_crossover(RtClaimResult *result, const RtClaim *claim, const Figure *figure,
+                              const RtCrossover *crossover) {
+    const RtClaimPoint *points = figure->points;
+    double x = rt_claim_median_crossover(points, figure->count, crossover, 0);
+    const char *before = "";
+    PUT(result, "%s=", claim->key.key);
+    for (; !isnan(x); before = " and ") {
+        PUT(result, "%s", before);
+        put_number(result, claim, x);
+        x = rt_claim_median_crossover(points, figure->count, crossover, x);
+    }
+    if (crossover->low == crossover->high) return;
+    PUT(result, "%s[%s", *before ? " " : "", crossover->low > 0 ? "" : "<");
+    put_number(result, claim, crossover->low > 0 ? crossover->low : points->x);
+    PUT(result, ", %s", isinf(crossover->high) ? ">" : "");
+    put_number(result, claim, isinf(crossover->high) ? points[figure->count - 1].x : crossover->high);
+    PUT(result, "]");
+}
+
+/* Of curves without a crossover: on which side of the other one is at all points, also at those without a
+ * logarithm, between which no crossover can be interpolated. */
+static const char *side_of(const Figure *figure) {
+    bool above = true, below = true;
+    for (uint32_t i = 0; i < figure->count; i++) {
+        above &= figure->points[i].y.median >= 1;
+        below &= figure->points[i].y.median <= 1;
+    }
+    return above ? "is above" : below ? "is below" : "may cross";
+}
+
+static void put_crossover(RtClaimResult *result, const RtClaim *claim, const Figure *figure) {
+    const RtClaimPoint *first = figure->points, *last = first + figure->count - 1;
+    const uint32_t count = figure->found < RT_MAX_CROSSOVERS ? figure->found : RT_MAX_CROSSOVERS;
+    uint32_t certain = 0;
+    for (uint32_t i = 0; i < count; i++) certain += is_certain(&figure->crossovers[i]);
+    if (certain > 1) PUT(result, "%" PRIu32 " crossovers: ", certain);
+    PUT(result, "%s", claim->accel);
+    for (uint32_t i = 0; i < count; i++) {
+        const RtCrossover *crossover = &figure->crossovers[i];
+        const bool is = is_certain(crossover), begins = !is && i == 0 && crossover->before != 0;
+        const int side = is ? crossover->after : crossover->before;
+        PUT(result, "%s", i > 0 ? "," : "");
+        if (is || begins) PUT(result, " is %s %s", side > 0 ? "above" : "below", claim->other);
+        if (is)
+            PUT(result, " from ");
+        else if (begins)
+            PUT(result, " and may cross it at ");
+        else
+            PUT(result, " may cross %s at ", claim->other);
+        put_one_crossover(result, claim, figure, crossover);
+    }
+    if (count > 0) return;
+    PUT(result, " %s %s from %s=%.9g to %.9g", side_of(figure), claim->other, claim->key.key, first->x,
+        last->x);
+}
+
+static void put_figure(RtClaimResult *result, const RtExperiment *experiment, const RtClaim *claim,
+                       const Figure *figure) {
+    if (claim->form == RT_CLAIM_TREND)
+        put_step(result, claim, figure);
+    else if (claim->form == RT_CLAIM_CROSSOVER)
+        put_crossover(result, claim, figure);
+    else
+        put_estimate(result, claim, &figure->value);
+    if (claim->readout && claim->form == RT_CLAIM_VALUE && isfinite(figure->value.median))
+        PUT(result, "%s", units[claim->measure]);
+    if (figure->error > 0) {
+        PUT(result, ", standard error ");
+        put_number(result, claim, figure->error);
+    }
+    if (claim->form == RT_CLAIM_EXPONENT || claim->form == RT_CLAIM_CORRELATION)
+        PUT(result, " over %" PRIu32 " values", figure->count);
+    put_place(result, experiment, claim, figure->points);
+    if (!claim->readout && has_too_few_rays(figure))
+        PUT(result, ", but of %" PRIu64 " ray%s, and fewer than %d decide nothing", figure->rays,
+            rt_plural(figure->rays), RT_CLAIM_RAYS);
+}
+
+/* "; holds for primary and shadow rays, does not hold for reflection rays", unless all kinds agree. */
+static void put_kinds(RtClaimResult *result, const RtExperiment *experiment, const Figure *figures,
+                      uint32_t count) {
+    RtClaimVerdict verdicts[RT_RAY_KIND_COUNT];
+    bool has[RT_RAY_KIND_COUNT] = {false}, agree = true;
+    for (uint32_t i = 0; i < count; i++) {
+        const RtRayKind kind = figures[i].points->kind;
+        verdicts[kind] = has[kind] ? worse(verdicts[kind], figures[i].verdict) : figures[i].verdict;
+        has[kind] = true;
+    }
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) agree &= !has[k] || verdicts[k] == result->verdict;
+    for (int v = 0; v < RT_CLAIM_VERDICT_COUNT && !agree; v++) {
+        const char *names[RT_RAY_KIND_COUNT];
+        char list[128];
+        uint32_t found = 0;
+        for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+            if (has[k] && verdicts[k] == (RtClaimVerdict)v)
+                names[found++] = rt_experiment_kind_name(experiment, (RtRayKind)k);
+        }
+        if (found == 0) continue;
+        rt_join_names(names, found, list, sizeof list);
+        PUT(result, "; %s for %s rays", rt_claim_verdict_name((RtClaimVerdict)v), list);
+    }
+}
+
+/* ---- the figures of a claim ---- */
+
+/* Drops the points without a value; returns the number left. */
+static uint32_t drop_unknown(RtClaimPoint *points, uint32_t count) {
+    uint32_t known = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        if (rt_claim_point_known(&points[i])) points[known++] = points[i];
+    }
+    return known;
+}
+
+/* Whether an unknown value matters: between known ones it may hide a crossover. */
+static bool trim_line(RtClaimPoint **points, uint32_t *count) {
+    while (*count > 0 && !rt_claim_point_known(*points)) ++*points, --*count;
+    while (*count > 0 && !rt_claim_point_known(*points + *count - 1)) --*count;
+    const uint32_t known = drop_unknown(*points, *count);
+    const bool hidden = known < *count;
+    *count = known;
+    return hidden;
+}
+
+/* How many points, from the first on, belong to the correlation of one kind of rays. */
+static uint32_t count_of_kind(const RtClaimPoint *points, uint32_t count) {
+    uint32_t same = 1;
+    while (same < count && points[same].kind == points->kind) same++;
+    return same;
+}
+
+/* Reorders the points; returns the number of figures[]. */
+static uint32_t make_figures(const Judge *judge, RtClaimPoint *points, uint32_t count, Figure *figures) {
+    const RtClaim *claim = judge->claim;
+    const bool line = claim->form >= RT_CLAIM_EXPONENT, all = claim->form == RT_CLAIM_CORRELATION;
+    uint32_t made = 0;
+    for (uint32_t first = 0, length; first < count; first += length) {
+        RtClaimPoint *start = points + first;
+        length = all    ? count_of_kind(start, count - first)
+                 : line ? rt_claim_line(judge->results->experiment, claim, start, count - first)
+                        : 1;
+        uint32_t left = length;
+        const bool hidden = claim->form == RT_CLAIM_CROSSOVER && trim_line(&start, &left);
+        if (line && left < 2) continue;
+        Figure *figure = &figures[made++];
+        *figure = (Figure){.points = start, .count = left};
+        judge_figure(judge, figure);
+        if (hidden) figure->verdict = worse(figure->verdict, RT_CLAIM_UNDECIDED);
+    }
+    return made;
+}
+
+/* The figure with the worst verdict, and among equal verdicts the furthest off. */
+static const Figure *find_worst(const RtClaim *claim, const Figure *figures, uint32_t count) {
+    const Figure *worst = figures;
+    for (uint32_t i = 1; i < count; i++) {
+        const double one = figures[i].value.median, other = worst->value.median;
+        const bool further = claim->greater ? one < other : one > other;
+        if (figures[i].verdict > worst->verdict || (figures[i].verdict == worst->verdict && further))
+            worst = &figures[i];
+    }
+    return worst;
+}
+
+/* A few figures, or the smallest and the largest of many. */
+static void put_readout(RtClaimResult *result, const RtExperiment *experiment, const RtClaim *claim,
+                        const Figure *figures, uint32_t count) {
+    enum { MOST_LISTED = 4 };
+    if (count <= MOST_LISTED || claim->form == RT_CLAIM_CROSSOVER) {
+        for (uint32_t i = 0; i < count; i++) {
+            PUT(result, "%s", i ? "; " : "");
+            put_figure(result, experiment, claim, &figures[i]);
+        }
+        return;
+    }
+    const Figure *least = figures, *most = figures;
+    for (uint32_t i = 1; i < count; i++) {
+        const double value = figures[i].value.median;
+        if (isnan(least->value.median) || value < least->value.median) least = &figures[i];
+        if (isnan(most->value.median) || value > most->value.median) most = &figures[i];
+    }
+    put_figure(result, experiment, claim, least);
+    PUT(result, " to ");
+    put_figure(result, experiment, claim, most);
+}
+
+static void judge_points(const Judge *judge, RtClaimPoint *points, uint32_t count, RtClaimResult *result) {
+    const RtExperiment *experiment = judge->results->experiment;
+    const RtClaim *claim = judge->claim;
+    Figure *figures = rt_alloc(count, sizeof *figures);
+    const uint32_t made = figures ? make_figures(judge, points, count, figures) : 0;
+    if (made == 0) {
+        *result = (RtClaimResult){RT_CLAIM_UNDECIDED, "fewer than two values were measured"};
+    } else if (claim->readout) {
+        put_readout(result, experiment, claim, figures, made);
+    } else {
+        const Figure *worst = find_worst(claim, figures, made);
+        result->verdict = worst->verdict;
+        put_figure(result, experiment, claim, worst);
+        if (claim->each_kind) put_kinds(result, experiment, figures, made);
+    }
+    rt_free(figures);
+}
+
+double rt_claims_coverage(const RtResults *results, uint32_t *count) {
+    const RtExperiment *experiment = results->experiment;
+    *count = 0;
+    for (uint32_t i = 0; i < experiment->claim_count; i++) {
+        RtClaim claim;
+        if (rt_claim_parse(experiment, experiment->claims[i], &claim, NULL) != RT_OK || claim.readout)
+            continue;
+        if (claim.measure == RT_CLAIM_TIME || claim.first == RT_CLAIM_TIME)
+            *count += rt_claim_gather(results, &claim, 0, NULL);
+    }
+    return rt_coverage_of_each(*count);
+}
+
+static void judge_parsed(const RtResults *results, const RtClaim *claim, RtClaimPoint *points,
+                         RtClaimResult *result) {
+    uint32_t known = 0, intervals;
+    const Judge judge = {results, claim,
+                         claim->readout ? rt_coverage_of_each(1) : rt_claims_coverage(results, &intervals)};
+    const uint32_t count = rt_claim_gather(results, claim, judge.coverage, points);
+    for (uint32_t k = 0; k < count; k++) known += rt_claim_point_known(&points[k]) ? 1 : 0;
+    if (!rt_claim_any_measured(results, claim, points, count)) {
+        *result = (RtClaimResult){RT_CLAIM_UNMEASURED, "nothing that this claim is about was measured"};
+    } else if (known == 0) {
+        *result = claim->measure >= RT_CLAIM_BUILD_TIME
+                      ? (RtClaimResult){RT_CLAIM_UNDECIDED, "these structures have no such value"}
+                      : (RtClaimResult){RT_CLAIM_UNDECIDED, "no measurements of all kinds of rays"};
+    } else {
+        /* An exponent needs all values; a crossover those between its ends. */
+        const bool whole = claim->form == RT_CLAIM_EXPONENT || claim->form == RT_CLAIM_CROSSOVER;
+        judge_points(&judge, points, whole ? count : drop_unknown(points, count), result);
+    }
+    if (known > 0 && known < count) {
+        if (claim->form != RT_CLAIM_CROSSOVER) result->verdict = worse(result->verdict, RT_CLAIM_UNDECIDED);
+        PUT(result, "; %" PRIu32 " of %" PRIu32 " values are unknown", count - known, count);
+    }
+    const char *refusal = known < count || count == 0 ? rt_claim_refusal(results, claim) : NULL;
+    if (refusal && result->verdict == RT_CLAIM_UNMEASURED) result->verdict = RT_CLAIM_UNDECIDED;
+    if (refusal) PUT(result, "; refused: %.300s", refusal);
+    if (claim->readout) result->verdict = RT_CLAIM_FIGURE;
+}
+
+void rt_claim_judge(const RtResults *results, uint32_t i, RtClaimResult *result) {
+    const RtExperiment *experiment = results->experiment;
+    RtClaim claim;
+    *result = (RtClaimResult){RT_CLAIM_UNMEASURED, "nothing that this claim is about was measured"};
+    const size_t most = (size_t)experiment->workload_count * experiment->candidate_count * RT_RAY_KIND_COUNT;
+    RtClaimPoint *points = rt_alloc(most, sizeof *points);
+    if (points && rt_claim_parse(experiment, experiment->claims[i], &claim, NULL) == RT_OK) {
+        *result = (RtClaimResult){.verdict = RT_CLAIM_HOLDS};
+        judge_parsed(results, &claim, points, result);
+    }
+    rt_free(points);
+}

@@ -1,0 +1,271 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "claims/claims_points.h"
+
+#include "core/base/words.h"
+#include "results/paired.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool rt_claim_point_known(const RtClaimPoint *point) {
+    return !isnan(point->x) && !isnan(point->y.median);
+}
+
+/* ---- values ---- */
+
+/* The rays from which on it is ahead. If it is ahead up to some number, that is never; up to any, from 0. */
+static RtEstimate break_even(const RtResults *results, uint32_t t, uint32_t c) {
+    const RtBreakEven even = rt_results_break_even(results, t, c);
+    const double never = (double)INFINITY;
+    if (!even.up_to) return even.rays;
+    return (RtEstimate){.median = isinf(even.rays.median) ? 0 : never,
+                        .low = isinf(even.rays.high) ? 0 : never,
+                        .high = isinf(even.rays.low) ? 0 : never};
+}
+
+/* What the values of a claim's cells depend on. */
+typedef struct Asked {
+    const RtResults *results;
+    const RtClaim *claim;
+    RtRayKind kind; /* of the cells now gathered, or RT_ALL_RAYS */
+    double coverage;
+} Asked;
+
+static RtEstimate value_at(const Asked *asked, RtClaimMeasure measure, uint32_t t, uint32_t c) {
+    const RtResults *results = asked->results;
+    const RtEstimate unknown = rt_estimate_exactly((double)NAN);
+    if (measure >= RT_CLAIM_BUILD_TIME) {
+        const RtBuildResult *build = rt_build_at(results, t, c);
+        if (!build->known) return unknown;
+        if (measure == RT_CLAIM_BUILD_TIME) return build->seconds;
+        if (measure >= RT_CLAIM_RENDER_TIME && !build->render.known) return unknown;
+        if (measure == RT_CLAIM_RENDER_TIME) return build->render.seconds;
+        if (measure == RT_CLAIM_QUERY_SHARE) return build->render.share;
+        if (measure == RT_CLAIM_BREAK_EVEN) return break_even(results, t, c);
+        return rt_estimate_exactly(measure == RT_CLAIM_BYTES ? (double)build->structure.bytes
+                                                             : build->structure.predicted_cost);
+    }
+    if (measure == RT_CLAIM_TIME) return rt_results_time(results, t, c, asked->kind, asked->coverage);
+    const RtCost cost = rt_results_cost(results, t, c, asked->kind);
+    const double counts[] = {[RT_CLAIM_OBJECT_TESTS] = cost.object_tests,
+                             [RT_CLAIM_EXTENT_TESTS] = cost.extent_tests,
+                             [RT_CLAIM_STEPS] = cost.steps,
+                             [RT_CLAIM_CSG_TESTS] = cost.csg_tests};
+    return cost.whole ? rt_estimate_exactly(counts[measure]) : unknown;
+}
+
+/* The accelerator that `c` is compared with on workload `t`; false if it is not measured there. */
+static bool find_other(const RtExperiment *experiment, const RtClaim *claim, uint32_t t, uint32_t c,
+                       uint32_t *other) {
+    *other = RT_FASTEST_BASELINE;
+    if (strcmp(claim->other, experiment->best) == 0) return true;
+    for (*other = 0; *other < experiment->candidate_count; ++*other) {
+        if (rt_candidate_runs(experiment, *other, t) && rt_claim_is_other(experiment, claim, t, c, *other))
+            return true;
+    }
+    return false;
+}
+
+static RtEstimate ratio_at(const Asked *asked, uint32_t t, uint32_t c, uint32_t other) {
+    const RtClaimMeasure measure = asked->claim->measure;
+    if (measure == RT_CLAIM_TIME)
+        return rt_results_time_ratio(asked->results, t, c, other, asked->kind, asked->coverage);
+    const RtEstimate over = value_at(asked, measure, t, c);
+    if (other == c) return rt_estimate_exactly(over.median / over.median);
+    const RtEstimate under = value_at(asked, measure, t, other);
+    return (RtEstimate){
+        .median = over.median / under.median, .low = over.low / under.high, .high = over.high / under.low};
+}
+
+/* ---- the cells of a claim ---- */
+
+static bool is_called(const RtExperiment *experiment, const RtClaim *claim, uint32_t c) {
+    if (c == RT_FASTEST_BASELINE) return strcmp(claim->accel, experiment->best) == 0;
+    if (strcmp(claim->accel, RT_CLAIM_ALL) != 0)
+        return rt_candidate_is_called(&experiment->candidates[c], claim->accel);
+    return !*experiment->best || !rt_candidate_is_baseline(experiment, c);
+}
+
+static bool is_about(const RtExperiment *experiment, const RtClaim *claim, uint32_t t, uint32_t c) {
+    if (!is_called(experiment, claim, c)) return false;
+    if (c != RT_FASTEST_BASELINE && !rt_candidate_runs(experiment, c, t)) return false;
+    if (*claim->scene && !rt_workload_is_called(&experiment->workloads[t], claim->scene)) return false;
+    for (uint32_t p = 0; p < claim->place_count; p++) {
+        const char *value = rt_swept_of(experiment, &claim->places[p].key, t, c);
+        if (!value || !rt_swept_equal(value, claim->places[p].value)) return false;
+    }
+    uint32_t other;
+    const bool all = claim->form == RT_CLAIM_CROSSOVER && strcmp(claim->accel, RT_CLAIM_ALL) == 0;
+    return !all || !find_other(experiment, claim, t, c, &other) || other != c;
+}
+
+/* Whether a measured structure has no such value: no prediction, no counts, or it is the baseline. */
+static bool lacks(const RtResults *results, RtClaimMeasure measure, uint32_t t, uint32_t c) {
+    const RtBuildResult *build = rt_build_at(results, t, c);
+    if (!build->known) return false;
+    if (measure == RT_CLAIM_PREDICTED_COST) return isnan(build->structure.predicted_cost);
+    if (measure == RT_CLAIM_BREAK_EVEN) return rt_candidate_is_baseline(results->experiment, c);
+    return measure > RT_CLAIM_TIME && measure < RT_CLAIM_BUILD_TIME && !build->counts;
+}
+
+/* The x of a cell; false if the claim excludes it. */
+static bool abscissa(const Asked *asked, uint32_t t, uint32_t c, double *x) {
+    const RtResults *results = asked->results;
+    const RtClaim *claim = asked->claim;
+    *x = 0;
+    if (claim->form == RT_CLAIM_CORRELATION) {
+        *x = value_at(asked, claim->first, t, c).median;
+        bool all = strcmp(claim->accel, RT_CLAIM_ALL) == 0;
+        return !(all && (lacks(results, claim->first, t, c) || lacks(results, claim->measure, t, c)));
+    }
+    if (claim->by_objects) {
+        const RtWorkloadResult *workload = &results->workloads[t];
+        *x = workload->known ? (double)workload->objects : (double)NAN;
+        return true;
+    }
+    const char *value = claim->key.key ? rt_swept_of(results->experiment, &claim->key, t, c) : "0";
+    return value && rt_swept_number(value, x);
+}
+
+static uint64_t rays_of(const Asked *asked, uint32_t t, uint32_t c) {
+    const bool all = asked->claim->measure == RT_CLAIM_BREAK_EVEN;
+    if (!rt_claim_is_of_rays(asked->claim) && !all) return UINT64_MAX;
+    return rt_results_cost(asked->results, t, c, all ? RT_ALL_RAYS : asked->kind).rays;
+}
+
+static void set_values(const Asked *asked, RtClaimPoint *point) {
+    const RtClaim *claim = asked->claim;
+    const uint32_t t = point->workload, c = point->candidate;
+    uint32_t other = c;
+    const bool found = !*claim->other || find_other(asked->results->experiment, claim, t, c, &other);
+    const uint64_t own = rays_of(asked, t, c), its = found ? rays_of(asked, t, other) : own;
+    point->rays = own < its ? own : its;
+    point->y = !found          ? rt_estimate_exactly((double)NAN)
+               : *claim->other ? ratio_at(asked, t, c, other)
+                               : value_at(asked, claim->measure, t, c);
+}
+
+/* Whether the scene has rays of that kind, as far as is known. */
+static bool has_rays(const RtResults *results, uint32_t t, RtRayKind kind) {
+    return !results->workloads[t].known || results->workloads[t].rays[kind] > 0;
+}
+
+/* Those of one kind of rays, or of RT_ALL_RAYS. */
+static uint32_t gather_kind(const Asked *asked, RtClaimPoint *points) {
+    const RtExperiment *experiment = asked->results->experiment;
+    const RtClaim *claim = asked->claim;
+    const bool one = *experiment->best && strcmp(claim->accel, experiment->best) == 0;
+    uint32_t count = 0;
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        if (claim->each_kind && !has_rays(asked->results, t, asked->kind)) continue;
+        for (uint32_t i = 0; i < (one ? 1 : experiment->candidate_count); i++) {
+            const uint32_t c = one ? RT_FASTEST_BASELINE : i;
+            RtClaimPoint point = {.workload = t, .candidate = c, .kind = asked->kind};
+            if (!is_about(experiment, claim, t, c) || !abscissa(asked, t, c, &point.x)) continue;
+            if (points) set_values(asked, &point);
+            if (points) points[count] = point;
+            count++;
+        }
+    }
+    return count;
+}
+
+uint32_t rt_claim_gather(const RtResults *results, const RtClaim *claim, double coverage,
+                         RtClaimPoint *points) {
+    const RtExperiment *experiment = results->experiment;
+    Asked asked = {results, claim, claim->kind, coverage};
+    uint32_t count = 0;
+    if (!claim->each_kind) return gather_kind(&asked, points);
+    for (uint32_t k = 0; k < experiment->kind_count; k++) {
+        asked.kind = experiment->kinds[k];
+        count += gather_kind(&asked, points ? points + count : NULL);
+    }
+    return count;
+}
+
+static bool is_measured(const RtResults *results, const RtClaim *claim, RtRayKind asked, uint32_t t,
+                        uint32_t c) {
+    if (claim->measure >= RT_CLAIM_BUILD_TIME) return rt_build_at(results, t, c)->known;
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        const RtRayKind kind = (RtRayKind)k;
+        const uint32_t measured = rt_results_candidate(results, t, c, kind);
+        if ((asked == RT_ALL_RAYS || asked == kind) && measured != RT_FASTEST_BASELINE &&
+            rt_cell_at(results, t, measured, kind)->counted)
+            return true;
+    }
+    return false;
+}
+
+bool rt_claim_any_measured(const RtResults *results, const RtClaim *claim, const RtClaimPoint *points,
+                           uint32_t count) {
+    for (uint32_t i = 0; i < count; i++) {
+        const RtClaimPoint *p = &points[i];
+        uint32_t other = p->candidate;
+        bool found = !*claim->other || find_other(results->experiment, claim, p->workload, other, &other);
+        if (found && is_measured(results, claim, p->kind, p->workload, p->candidate) &&
+            is_measured(results, claim, p->kind, p->workload, other))
+            return true;
+    }
+    return false;
+}
+
+/* ---- lines ---- */
+
+/* Whether two points differ only in the parameter. */
+static bool same_line(const RtExperiment *experiment, const RtClaim *claim, const RtClaimPoint *a,
+                      const RtClaimPoint *b) {
+    enum { ROOM = RT_MAX_LABEL + RT_MAX_SWEPT * (RT_MAX_NAME + RT_MAX_SWEPT_CHARS + 2) };
+    char names[2][2 * ROOM];
+    const RtClaimPoint *points[] = {a, b};
+    if (a->kind != b->kind) return false;
+    if (a->candidate == RT_FASTEST_BASELINE && claim->by_objects) return true;
+    for (int i = 0; i < 2; i++) {
+        const RtWorkload *workload = &experiment->workloads[points[i]->workload];
+        names[i][0] = '\0';
+        if (!claim->by_objects) {
+            snprintf(names[i], sizeof names[i], "%s ", workload->stem);
+            rt_swept_name(&workload->swept, claim->key.scene ? claim->key.key : NULL, names[i],
+                          sizeof names[i]);
+        }
+        if (points[i]->candidate == RT_FASTEST_BASELINE) continue;
+        const RtCandidate *candidate = &experiment->candidates[points[i]->candidate];
+        rt_append_text(names[i], sizeof names[i], " %s", candidate->stem);
+        rt_swept_name(&candidate->swept, claim->key.scene ? NULL : claim->key.key, names[i], sizeof names[i]);
+    }
+    return strcmp(names[0], names[1]) == 0;
+}
+
+/* Scenes may have equally many objects; unknown numbers come first. */
+static int by_x(const void *a, const void *b) {
+    const RtClaimPoint *p = a, *q = b;
+    if (isnan(p->x) != isnan(q->x)) return isnan(p->x) ? -1 : 1;
+    if (p->x != q->x && !isnan(p->x)) return p->x < q->x ? -1 : 1;
+    return (p->workload > q->workload) - (p->workload < q->workload);
+}
+
+uint32_t rt_claim_line(const RtExperiment *experiment, const RtClaim *claim, RtClaimPoint *points,
+                       uint32_t count) {
+    uint32_t end = 1;
+    for (uint32_t i = end; i < count; i++) {
+        if (!same_line(experiment, claim, &points[0], &points[i])) continue;
+        RtClaimPoint point = points[i];
+        points[i] = points[end];
+        points[end++] = point;
+    }
+    qsort(points, end, sizeof *points, by_x);
+    return end;
+}
+
+const char *rt_claim_refusal(const RtResults *results, const RtClaim *claim) {
+    const RtExperiment *e = results->experiment;
+    for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
+        const RtCandidate *candidate = &e->candidates[at.candidate];
+        const RtBuildResult *build = rt_build_at(results, at.workload, at.candidate);
+        const bool named =
+            is_called(e, claim, at.candidate) || rt_candidate_is_called(candidate, claim->other);
+        const bool here = !*claim->scene || rt_workload_is_called(&e->workloads[at.workload], claim->scene);
+        if (build->refused && named && here) return build->left_out;
+    }
+    return NULL;
+}

@@ -1,0 +1,396 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "results/frame_table.h"
+
+#include "accel/accel.h"
+#include "core/base/file.h"
+#include "core/base/words.h"
+#include "results/result_tables.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+/* ---- costs ---- */
+
+static RtKinds kinds_of(RtFramePart part) {
+    RtKinds kinds = 0;
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        const RtFramePart own = k == RT_RAY_PRIMARY  ? RT_FRAME_PRIMARY
+                                : k == RT_RAY_SHADOW ? RT_FRAME_SHADOW
+                                                     : RT_FRAME_SECONDARY;
+        if (rt_ray_kind_is_of_frame((RtRayKind)k) && (part == RT_FRAME_ALL || part == own)) kinds |= 1u << k;
+    }
+    return kinds;
+}
+
+static RtFrameCost cost_of(const RtResults *results, uint32_t workload, uint32_t candidate,
+                           RtFramePart part) {
+    const double unknown = (double)NAN;
+    const RtCost sum = rt_results_total(results, workload, candidate, kinds_of(part));
+    if (!sum.whole || sum.weight == 0) return (RtFrameCost){sum.weight, unknown, unknown, unknown, unknown};
+    return (RtFrameCost){sum.weight, sum.object_tests, sum.seconds.median, sum.seconds.low, sum.seconds.high};
+}
+
+static uint32_t without_of(const RtExperiment *experiment, uint32_t workload) {
+    return rt_candidate_find(experiment, experiment->frame.without, workload);
+}
+
+/* The accelerator below an overlay, if it is measured too; else candidate_count. */
+static uint32_t below_of(const RtResults *results, uint32_t workload, uint32_t candidate) {
+    const RtExperiment *experiment = results->experiment;
+    const char *plus = strchr(rt_build_at(results, workload, candidate)->spec, '+');
+    uint32_t c = plus ? 0 : experiment->candidate_count;
+    while (c < experiment->candidate_count && strcmp(rt_build_at(results, workload, c)->spec, plus + 1) != 0)
+        c++;
+    return c;
+}
+
+typedef double Measure(const RtResults *results, uint32_t workload, uint32_t candidate);
+
+static double tests_of(const RtResults *results, uint32_t workload, uint32_t candidate) {
+    return cost_of(results, workload, candidate, RT_FRAME_ALL).object_tests;
+}
+
+static double seconds_of(const RtResults *results, uint32_t workload, uint32_t candidate) {
+    return cost_of(results, workload, candidate, RT_FRAME_ALL).seconds;
+}
+
+static double build_of(const RtResults *results, uint32_t workload, uint32_t candidate) {
+    return rt_build_at(results, workload, candidate)->seconds.median;
+}
+
+static double seconds_with_build(const RtResults *results, uint32_t workload, uint32_t candidate) {
+    return seconds_of(results, workload, candidate) + build_of(results, workload, candidate);
+}
+
+static bool is_overlay(const RtExperiment *experiment, uint32_t candidate) {
+    return strchr(experiment->candidates[candidate].spec, '+') != NULL;
+}
+
+static double factor_of(const RtResults *results, uint32_t workload, uint32_t candidate, Measure *of) {
+    const RtExperiment *experiment = results->experiment;
+    uint32_t below = below_of(results, workload, candidate);
+    if (below == experiment->candidate_count && is_overlay(experiment, candidate)) return (double)NAN;
+    if (below == experiment->candidate_count) below = without_of(experiment, workload);
+    return of(results, workload, below) / of(results, workload, candidate);
+}
+
+/* Time, or object tests if nothing was timed. */
+static Measure *decisive(const RtExperiment *experiment) {
+    return experiment->count_only ? tests_of : seconds_of;
+}
+
+/* Of the compared accelerators, or of all, the one with the next greater measure after `previous`;
+ * candidate_count before the first and after the last. The yardstick is left out. */
+static uint32_t next_of(const RtResults *results, uint32_t workload, Measure *of, bool all,
+                        uint32_t previous) {
+    const RtExperiment *experiment = results->experiment;
+    const uint32_t none = experiment->candidate_count;
+    const double before = previous == none ? -INFINITY : of(results, workload, previous);
+    double least = INFINITY;
+    uint32_t best = none;
+    for (uint32_t c = 0; c < none; c++) {
+        const RtCandidate *candidate = &experiment->candidates[c];
+        const bool compared =
+            all || (strcmp(candidate->group, experiment->frame.among) == 0 && !is_overlay(experiment, c));
+        const double own = of(results, workload, c);
+        const bool after = own > before || (own == before && c > previous);
+        if (!compared || strcmp(candidate->spec, rt_accel_yardstick()) == 0) continue;
+        if (!rt_candidate_runs(experiment, c, workload) || !after || !(own < least)) continue;
+        least = own;
+        best = c;
+    }
+    return best;
+}
+
+static uint32_t winner_of(const RtResults *results, uint32_t workload) {
+    const RtExperiment *experiment = results->experiment;
+    return next_of(results, workload, decisive(experiment), false, experiment->candidate_count);
+}
+
+/* ---- the table ---- */
+
+typedef RtFrameRow Row;
+
+static double faster(const Row *r, RtFramePart part) {
+    return r->without[part].seconds / r->cost[part].seconds;
+}
+
+static const char *below_label(const Row *r) {
+    const uint32_t below = below_of(r->results, r->workload, r->candidate);
+    const RtExperiment *experiment = r->results->experiment;
+    return below < experiment->candidate_count ? rt_candidate_label(experiment, below) : NULL;
+}
+
+#define COLUMNS(X)                                                                                           \
+    X(scene, "scene", text, "", "the scene's label in the experiment",                                       \
+      r->results->experiment->workloads[r->workload].label)                                                  \
+    X(accel, "accelerator", text, "", "the accelerator's label in the experiment",                           \
+      rt_candidate_label(r->results->experiment, r->candidate))                                              \
+    X(group, "group", text, "", "its group in the experiment",                                               \
+      r->results->experiment->candidates[r->candidate].group)                                                \
+    X(rays, "rays", integer, "", "rays of the whole frame", (uint64_t)r->cost[RT_FRAME_ALL].rays)            \
+    X(object_tests, "object_tests", real6, "", "object tests of the frame", r->cost[0].object_tests)         \
+    X(times_fewer, "times_fewer", real6, "", "how many times fewer than without a structure",                \
+      r->without[0].object_tests / r->cost[0].object_tests)                                                  \
+    X(ms, "ms", real6, "ms", "time to trace the frame's rays, as the run timed it; sum of medians",          \
+      1e3 * r->cost[0].seconds)                                                                              \
+    X(ms_low, "ms_low", real6, "ms", "sum of the lower ends of the intervals", 1e3 * r->cost[0].low)         \
+    X(ms_high, "ms_high", real6, "ms", "sum of the upper ends", 1e3 * r->cost[0].high)                       \
+    X(times_faster, "times_faster", real6, "", "how many times faster than without a structure",             \
+      faster(r, RT_FRAME_ALL))                                                                               \
+    X(build_ms, "build_ms", real6, "ms", "time to build the structure",                                      \
+      1e3 * build_of(r->results, r->workload, r->candidate))                                                 \
+    X(primary_faster, "primary_faster", real6, "", "times_faster of the primary rays alone",                 \
+      faster(r, RT_FRAME_PRIMARY))                                                                           \
+    X(shadow_faster, "shadow_faster", real6, "", "times_faster of the shadow rays alone",                    \
+      faster(r, RT_FRAME_SHADOW))                                                                            \
+    X(secondary_faster, "secondary_faster", real6, "",                                                       \
+      "times_faster of reflection and transmission rays alone", faster(r, RT_FRAME_SECONDARY))               \
+    X(below, "below", text, "", "for an overlay: the accelerator below it, if that is measured too",         \
+      below_label(r))                                                                                        \
+    X(gain, "gain", real6, "", "times_faster; for an overlay, relative to the accelerator below it",         \
+      r->gain)                                                                                               \
+    X(tests_gain, "tests_gain", real6, "",                                                                   \
+      "times_fewer; for an overlay, relative to the accelerator below it", r->tests_gain)                    \
+    X(winner, "winner", flag, "", "whether it is marked as the fastest of the compared group",               \
+      rt_field_flag(r->candidate == r->winner))                                                              \
+    X(eye_label, "  accelerator", text, "", "> marks the fastest of those compared", r->shown)               \
+    X(mega_tests, "Mtests", figure, "million", "object tests of the frame", 1e-6 * r->cost[0].object_tests)  \
+    X(fewer, "fewer", figure, "", "times fewer object tests than without a structure",                       \
+      r->without[0].object_tests / r->cost[0].object_tests)                                                  \
+    X(eye_ms, "ms", figure, "ms", "time of the frame", 1e3 * r->cost[0].seconds)                             \
+    X(eye_faster, "faster", figure, "", "times faster than without a structure", faster(r, RT_FRAME_ALL))    \
+    X(eye_build, "build", interval, "ms", "time to build the structure, in ms, with its interval",           \
+      rt_build_ms(rt_build_at(r->results, r->workload, r->candidate)))                                       \
+    X(primary, "primary", figure, "", "times faster for primary rays", faster(r, RT_FRAME_PRIMARY))          \
+    X(shadow, "shadow", figure, "", "times faster for shadow rays", faster(r, RT_FRAME_SHADOW))              \
+    X(secondary, "bounce", figure, "", "times faster for reflection and transmission rays",                  \
+      faster(r, RT_FRAME_SECONDARY))
+
+RT_TABLE_COLUMNS(columns, COLUMNS)
+
+static const RtColumnGroup frame_csv[] = {RT_FROM_TO(columns, scene, winner)};
+static const RtColumnGroup for_the_eye[] = {RT_ONE(columns, accel),
+                                            RT_FROM_TO(columns, mega_tests, secondary)};
+static const RtColumnGroup for_terminals[] = {RT_FROM_TO(columns, eye_label, secondary)};
+
+static const void *row_at(void *context, size_t i) {
+    Row *r = context;
+    const RtExperiment *experiment = r->results->experiment;
+    r->candidate = (uint32_t)(i % experiment->candidate_count);
+    if (!r->one) r->workload = (uint32_t)(i / experiment->candidate_count);
+    if (!rt_candidate_runs(experiment, r->candidate, r->workload) ||
+        !rt_build_at(r->results, r->workload, r->candidate)->known)
+        return NULL;
+    const uint32_t without = without_of(experiment, r->workload);
+    for (int part = 0; part < RT_FRAME_PARTS; part++) {
+        r->cost[part] = cost_of(r->results, r->workload, r->candidate, (RtFramePart)part);
+        r->without[part] = cost_of(r->results, r->workload, without, (RtFramePart)part);
+    }
+    r->gain = factor_of(r->results, r->workload, r->candidate, seconds_of);
+    r->tests_gain = factor_of(r->results, r->workload, r->candidate, tests_of);
+    r->winner = winner_of(r->results, r->workload);
+    strcpy(r->shown, r->candidate == r->winner ? "> " : "  ");
+    rt_candidate_show(experiment, r->candidate, r->shown + 2);
+    return r;
+}
+
+static RtStanding standing_of(const void *row) {
+    const Row *r = row;
+    return r->candidate == r->winner ? RT_STANDING_BEST : RT_STANDING_BEHIND;
+}
+
+RtTable rt_frame_table(RtFrameRow *row) {
+    const RtExperiment *experiment = row->results->experiment;
+    RtTable csv = {RT_GROUPS(frame_csv)}, eye = {RT_GROUPS(for_the_eye)}, table = row->one ? eye : csv;
+    table.row_count = (size_t)experiment->candidate_count * (row->one ? 1 : experiment->workload_count);
+    table.row = row_at;
+    table.context = row;
+    table.standing = standing_of;
+    return table;
+}
+
+/* ---- in words ---- */
+
+static const char *figure(double value, char size[16]) {
+    rt_format_figure(value, size);
+    return size;
+}
+
+/* Whether the intervals of two timed frames overlap. */
+static bool is_level(const RtResults *results, uint32_t t, uint32_t one, uint32_t other) {
+    const RtFrameCost a = cost_of(results, t, one, RT_FRAME_ALL),
+                      b = cost_of(results, t, other, RT_FRAME_ALL);
+    return !results->experiment->count_only && a.low <= b.high && b.low <= a.high;
+}
+
+/* "octree follows with 230 times, grid with 122 (level with octree)." */
+static void say_followers(FILE *out, const RtResults *results, uint32_t t, uint32_t winner) {
+    const RtExperiment *experiment = results->experiment;
+    Measure *of = decisive(experiment);
+    char number[16];
+    uint32_t last = winner;
+    for (uint32_t c; (c = next_of(results, t, of, false, last)) < experiment->candidate_count; last = c) {
+        fprintf(out, last == winner ? " %s follows with %s times" : ", %s with %s",
+                rt_candidate_label(experiment, c), figure(factor_of(results, t, c, of), number));
+        if (is_level(results, t, last, c))
+            fprintf(out, " (level with %s)", rt_candidate_label(experiment, last));
+    }
+    fputs(last == winner ? "" : ".", out);
+}
+
+/* What the winner's time leaves out: who makes fewer object tests, and who is faster if each is built for one
+ * frame. */
+static void say_others(FILE *out, const RtResults *results, uint32_t t, uint32_t winner) {
+    const RtExperiment *experiment = results->experiment;
+    const uint32_t none = experiment->candidate_count;
+    const uint32_t fewest = next_of(results, t, tests_of, false, none);
+    const uint32_t first = next_of(results, t, seconds_with_build, false, none);
+    char number[16], other[16];
+    if (fewest != none && tests_of(results, t, fewest) < tests_of(results, t, winner))
+        fprintf(out, " %s needs the fewest object tests: %s times fewer than %s.",
+                rt_candidate_label(experiment, fewest),
+                figure(factor_of(results, t, fewest, tests_of), number), experiment->frame.without);
+    if (cost_of(results, t, first, RT_FRAME_ALL).high + rt_build_at(results, t, first)->seconds.high <
+        cost_of(results, t, winner, RT_FRAME_ALL).low + rt_build_at(results, t, winner)->seconds.low)
+        fprintf(out, " If each is built for one frame, %s is the fastest of %s: %s ms, %s %s ms.",
+                rt_candidate_label(experiment, first), experiment->frame.among,
+                figure(1e3 * seconds_with_build(results, t, first), number),
+                rt_candidate_label(experiment, winner),
+                figure(1e3 * seconds_with_build(results, t, winner), other));
+}
+
+/* "light+wide is 1.82 times as fast as wide alone, item+wide 1.12 times (level)." The overlays over candidate
+ * `below`. */
+static void say_overlays(FILE *out, const RtResults *results, uint32_t t, uint32_t below) {
+    const RtExperiment *experiment = results->experiment;
+    const bool counted = experiment->count_only;
+    bool any = false;
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        const double gain = factor_of(results, t, c, decisive(experiment));
+        char number[16];
+        if (below_of(results, t, c) != below || isnan(gain)) continue;
+        figure(gain, number);
+        if (any)
+            fprintf(out, ", %s %s times", rt_candidate_label(experiment, c), number);
+        else
+            fprintf(out,
+                    counted ? " %s needs %s times fewer object tests than %s alone"
+                            : " %s is %s times as fast as %s alone",
+                    rt_candidate_label(experiment, c), number, rt_candidate_label(experiment, below));
+        if (is_level(results, t, c, below)) fputs(" (level)", out);
+        any = true;
+    }
+    if (any) fputc('.', out);
+}
+
+/* The fastest of all, and which are level with it. */
+static void say_fastest(FILE *out, const RtResults *results, uint32_t t) {
+    const RtExperiment *experiment = results->experiment;
+    const uint32_t none = experiment->candidate_count, best = next_of(results, t, seconds_of, true, none);
+    const uint32_t without = without_of(experiment, t);
+    char number[16];
+    bool any = false;
+    fprintf(out, " The fastest of all is %s: %s times as fast as %s", rt_candidate_label(experiment, best),
+            figure(seconds_of(results, t, without) / seconds_of(results, t, best), number),
+            experiment->frame.without);
+    for (uint32_t c = best; (c = next_of(results, t, seconds_of, true, c)) != none;) {
+        if (!is_level(results, t, best, c)) continue;
+        fprintf(out, "%s %s", any ? "," : " (level with", rt_candidate_label(experiment, c));
+        any = true;
+    }
+    fputs(any ? ")." : ".", out);
+}
+
+static void say_frame(FILE *out, const RtResults *results, uint32_t t, uint32_t winner) {
+    const RtExperiment *experiment = results->experiment;
+    const bool timed = !experiment->count_only;
+    char number[16];
+    fprintf(out, "On %s, %s is the %s of %s: ", experiment->workloads[t].label,
+            rt_candidate_label(experiment, winner), timed ? "fastest" : "best", experiment->frame.among);
+    if (timed)
+        fprintf(out, "%s times as fast, with ", figure(factor_of(results, t, winner, seconds_of), number));
+    fprintf(out, "%s times fewer object tests than %s.",
+            figure(factor_of(results, t, winner, tests_of), number), experiment->frame.without);
+    say_followers(out, results, t, winner);
+    if (timed) say_others(out, results, t, winner);
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) say_overlays(out, results, t, c);
+    if (timed) say_fastest(out, results, t);
+}
+
+char *rt_frame_sentence(const RtResults *results, uint32_t workload) {
+    const uint32_t winner = winner_of(results, workload);
+    RtMemoryFile memory;
+    RtError ignored;
+    if (rt_memory_file_open(&memory, &ignored) != RT_OK) return NULL;
+    if (winner < results->experiment->candidate_count) say_frame(memory.file, results, workload, winner);
+    return rt_memory_file_close(&memory, "sentences", &ignored) == RT_OK ? memory.data : NULL;
+}
+
+void rt_frame_title(const RtResults *results, uint32_t workload, char out[RT_MAX_FRAME_TEXT]) {
+    const RtWorkloadResult *w = &results->workloads[workload];
+    const RtWorkload *setup = &results->experiment->workloads[workload];
+    const double samples = (double)(w->width + setup->corners) * (w->height + setup->corners);
+    double rays[RT_RAY_KIND_COUNT];
+    char part[RT_MAX_PART_TEXT];
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rays[k] = rt_results_weight(results, workload, (RtRayKind)k);
+    rt_results_say_part(results, 1u << workload, kinds_of(RT_FRAME_ALL), part);
+    snprintf(out, RT_MAX_FRAME_TEXT,
+             "%" PRIu32 " object%s, %s frame of %" PRIu32 "x%" PRIu32
+             ": %.0f primary, %.0f shadow and %.0f secondary rays; %s",
+             w->objects, rt_plural(w->objects), rays[RT_RAY_PRIMARY] == samples ? "a" : "a part of a",
+             w->width, w->height, rays[RT_RAY_PRIMARY], rays[RT_RAY_SHADOW],
+             rays[RT_RAY_REFLECTION] + rays[RT_RAY_TRANSMISSION], part);
+}
+
+/* ---- to read ---- */
+
+void rt_frame_legend(const RtExperiment *experiment, const char *mark, char out[RT_MAX_FRAME_TEXT]) {
+    snprintf(
+        out, RT_MAX_FRAME_TEXT,
+        "Mtests: object tests of a whole frame, in millions; ms: time to trace it on one thread; build: ms "
+        "to build, on all processors (--threads changes both). fewer, faster: how many times, than %s; "
+        "primary, shadow, bounce (reflection and transmission): how many times faster. -: no such rays, "
+        "or not counted. %s: the %s of %s. level: the difference is within the intervals of measurement.",
+        experiment->frame.without, mark, experiment->count_only ? "best" : "fastest",
+        experiment->frame.among);
+}
+
+static void print_rows(const RtResults *results, uint32_t workload, FILE *out) {
+    RtFrameRow row = {.results = results, .one = true, .workload = workload};
+    RtTable table = rt_frame_table(&row);
+    table.groups = for_terminals;
+    table.group_count = 1;
+    int widths[RT_MAX_TABLE_COLUMNS], part[RT_MAX_TABLE_COLUMNS];
+    rt_table_widths(&table, widths);
+    for (size_t next = 0; rt_table_part(&table, widths, rt_page_width(out), &next, part);) {
+        const char *group = "";
+        fputc('\n', out);
+        rt_table_line(&table, part, NULL, out);
+        for (size_t i = 0; i < table.row_count; i++) {
+            if (!table.row(table.context, i)) continue;
+            const char *own = results->experiment->candidates[row.candidate].group;
+            if (strcmp(own, group) != 0) fprintf(out, "%s\n", own);
+            group = own;
+            rt_table_line(&table, part, &row, out);
+        }
+    }
+}
+
+void rt_print_frames(const RtResults *results, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    char text[RT_MAX_FRAME_TEXT], title[RT_MAX_LABEL + RT_MAX_FRAME_TEXT];
+    fputc('\n', out);
+    rt_frame_legend(experiment, ">", text);
+    rt_print_wrapped(text, out);
+    if (*experiment->frame.note) rt_print_wrapped(experiment->frame.note, out);
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        if (!results->workloads[t].known) continue;
+        rt_frame_title(results, t, text);
+        snprintf(title, sizeof title, "%s: %s", experiment->workloads[t].label, text);
+        fputc('\n', out);
+        rt_print_wrapped(title, out);
+        print_rows(results, t, out);
+    }
+}

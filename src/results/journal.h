@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The journal of a run: a line of JSON for each measurement, on the disk before the next one starts.
+ * Interrupted runs resume from it; the tables and the report are made from it.
+ *
+ * The first line names the experiment (the fingerprint of its YAML), the variant (quick or not), the build,
+ * and the plugins that the experiment uses. A journal of another experiment or build is rejected. A truncated
+ * last line is ignored; any other invalid line is rejected by its number. */
+#ifndef RT_RESULTS_JOURNAL_H
+#define RT_RESULTS_JOURNAL_H
+
+#include "core/text/json_lines.h"
+#include "experiment/selection.h"
+#include "results/results.h"
+
+typedef enum RtEventKind {
+    RT_EVENT_WORKLOAD,     /* results->workloads[workload] is known */
+    RT_EVENT_BUILD,        /* the build of `candidate` is known */
+    RT_EVENT_COUNT,        /* the cell is counted */
+    RT_EVENT_DISTRIBUTION, /* the cell has its distributions */
+    RT_EVENT_TIME,         /* the cell is timed */
+    RT_EVENT_HARDWARE,     /* the cell has hardware counts, or the reason why not */
+    RT_EVENT_RENDER,       /* rendering with `candidate` is timed */
+    RT_EVENT_NO_BUILD,     /* `candidate` is left out: it refuses the scene, took too long, or broke */
+    RT_EVENT_NO_CELL /* the cell is left out: it would exceed a limit, or `candidate` broke on its rays */
+} RtEventKind;
+
+/* The part of the results that was just filled. */
+typedef struct RtEvent {
+    RtEventKind what;
+    uint32_t workload, candidate;
+    RtRayKind kind;
+} RtEvent;
+
+/* Whether the candidate or the cell is left out because it broke. */
+bool rt_event_is_broken(const RtResults *results, const RtEvent *event);
+
+/* Opens the journal at `path` for appending: with `resume` the existing one, else a new one, which records
+ * its shard (`only`). Close with rt_json_lines_close, also after a failure. */
+RtStatus rt_journal_open(RtJsonLines *journal, const char *path, const RtExperiment *experiment,
+                         const RtSelection *only, bool resume, RtError *error);
+
+/* Adds a whole journal to files that are replaced together: a header as above, then `lines`, borrowed. */
+RtStatus rt_journal_add(RtOutputs *outputs, const char *path, const RtExperiment *experiment,
+                        const RtSelection *only, const json_t *lines, RtError *error);
+
+/* Fills `results` from the journal at `path`. Rejects a journal of another experiment; with `only`, to resume
+ * it, also of another build, another shard, or another build of a plugin that the experiment uses. With
+ * `renew` a changed plugin only loses its own lines, unless it is the baseline. A journal whose results are
+ * given up (measure/result_files.h) is empty. */
+RtStatus rt_journal_load(const char *path, RtResults *results, const RtSelection *only, bool renew,
+                         RtError *error);
+
+/* Whether the journal at `path` is of the same experiment, --quick and --shard, but of another build, another
+ * version of the YAML, or other plugins; false if it cannot be read. */
+bool rt_journal_is_outdated(const char *path, const RtExperiment *experiment, const RtSelection *only);
+
+/* Rewrites the journal at `path`, which was loaded with `renew`, without the lines of changed plugins. At any
+ * time the old or the new journal is whole. */
+RtStatus rt_journal_renew(const char *path, const RtExperiment *experiment, const RtSelection *only,
+                          RtError *error);
+
+#endif

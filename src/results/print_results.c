@@ -1,0 +1,381 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Results for a terminal of 80 columns. */
+#include "core/base/file.h"
+#include "core/base/memory.h"
+#include "core/base/words.h"
+#include "results/frame_table.h"
+#include "results/result_tables.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+void rt_interval_title(const RtExperiment *experiment, char out[RT_MAX_INTERVAL_TITLE]) {
+    double coverage = rt_interval_coverage(experiment->rounds);
+    snprintf(out, RT_MAX_INTERVAL_TITLE, "%.3g %%",
+             experiment->rounds >= RT_FULL_ROUNDS ? 95 : 100 * coverage);
+}
+
+/* ---- one workload ---- */
+
+/* `totals`: of a table of all kinds of rays together. */
+static void print_title(const RtResults *results, uint32_t t, bool totals, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    const RtWorkloadResult *workload = &results->workloads[t];
+    fprintf(out, "\n%s: %" PRIu32 " object%s, ", experiment->workloads[t].label, workload->objects,
+            rt_plural(workload->objects));
+    if (*experiment->rays_from) {
+        fprintf(out, "rays of %s", experiment->rays_from);
+    } else {
+        fprintf(out, "%" PRIu32 "x%" PRIu32 ", depth %" PRIu32 ", seed %" PRIu64, workload->width,
+                workload->height, experiment->workloads[t].depth, experiment->seed);
+    }
+    char part[RT_MAX_PART_TEXT];
+    rt_results_say_part(results, 1u << t, rt_experiment_kinds(experiment), part);
+    if (totals) fprintf(out, "; %s", part);
+    fputc('\n', out);
+}
+
+/* Prints a heading before the rows of each kind of rays, and long labels on their own lines. */
+static void print_part(const RtTable *table, const RtResultRow *row, int *widths, FILE *out) {
+    const RtResultTable which = row->which;
+    bool by_kind = which == RT_CELLS || which == RT_COUNTED_CELLS || which == RT_PERCENTILES ||
+                   which == RT_HARDWARE_CELLS,
+         any = false;
+    RtRayKind kind = RT_RAY_PRIMARY;
+    fputc('\n', out);
+    rt_table_line(table, widths, NULL, out);
+    for (size_t i = 0; i < table->row_count; i++) {
+        char label[RT_MAX_EYE_LABEL];
+        if (!table->row(table->context, i)) continue;
+        if (by_kind && (!any || row->kind != kind)) {
+            const uint64_t rays = row->scene->rays[row->kind];
+            fprintf(out, "  %s, %" PRIu64 " ray%s\n",
+                    rt_experiment_kind_name(row->results->experiment, row->kind), rays, rt_plural(rays));
+        }
+        any = true;
+        kind = row->kind;
+        rt_result_eye_label(row, label);
+        if (strlen(label) > RT_EYE_WIDTH) fprintf(out, "%s\n", label);
+        rt_table_line(table, widths, row, out);
+    }
+}
+
+void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workload, FILE *out) {
+    RtResultRow row = {.results = results, .workload = workload};
+    const RtTable table = rt_result_table(which, &row);
+    int widths[RT_MAX_TABLE_COLUMNS], part[RT_MAX_TABLE_COLUMNS];
+    rt_table_widths(&table, widths);
+    for (size_t next = 0; rt_table_part(&table, widths, rt_page_width(out), &next, part);)
+        print_part(&table, &row, part, out);
+}
+
+static void print_all_rows(const RtResults *results, RtResultTable which, const char *title, FILE *out) {
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        if (!results->workloads[t].known) continue;
+        fprintf(out, "\n%s, %s:\n", results->experiment->workloads[t].label, title);
+        rt_print_rows(results, which, t, out);
+    }
+}
+
+/* The baseline of the ratios, and the coverage of the intervals. */
+static void print_ratios(const RtResults *results, uint32_t least, uint32_t most, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    char title[RT_MAX_INTERVAL_TITLE], rounds[32], text[RT_MAX_SENTENCE];
+    rt_interval_title(experiment, title);
+    snprintf(rounds, sizeof rounds, least == most ? "%" PRIu32 : "%" PRIu32 " to %" PRIu32, least, most);
+    snprintf(text, sizeof text,
+             "Ratios are throughput relative to %s, paired within each of %s round%s, with %s confidence "
+             "intervals.",
+             rt_baseline_label(experiment), rounds, rt_plural(most), title);
+    rt_print_wrapped(text, out);
+    if (experiment->baseline_count == 1) return;
+    snprintf(text, sizeof text,
+             "%s: the fastest of %" PRIu32 " settings for each kind of rays; the table shows it.",
+             experiment->best, experiment->baseline_count);
+    rt_print_wrapped(text, out);
+}
+
+/* Accelerators measured on a part of the rays: their ratios are not the quotients of the throughputs. */
+static void print_strides(const RtResults *results, uint32_t t, bool timed, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    char text[RT_MAX_SENTENCE];
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        const RtCandidate *candidate = &experiment->candidates[c];
+        if (candidate->ray_stride == 1 || !rt_candidate_runs(experiment, c, t)) continue;
+        snprintf(text, sizeof text, "* %s is measured on one in %" PRIu64 " rays.", candidate->label,
+                 candidate->ray_stride);
+        if (timed)
+            rt_append_text(text, sizeof text,
+                           "  Its ratio compares it with %s on the same rays, so it is not the quotient of "
+                           "the throughputs above.",
+                           rt_baseline_label(experiment));
+        rt_print_wrapped(text, out);
+    }
+}
+
+/* The accelerator of candidate c, if its answers there are of its own arithmetic; else NULL. */
+static const RtAccelOps *inexact_ops(const RtResults *results, uint32_t t, uint32_t c) {
+    const RtBuildResult *build = rt_build_at(results, t, c);
+    const RtSpec *spec = &results->experiment->candidates[c].parsed;
+    return build->known && !build->exact ? spec->layers[spec->layer_count - 1].ops : NULL;
+}
+
+/* Appends how many answers of rays of kind k differ from the reference's, the least and the most over all
+ * settings of an accelerator; false if none was counted. */
+static bool append_differing(const RtResults *results, uint32_t t, uint32_t k, const RtAccelOps *ops,
+                             const char *before, char *text) {
+    const RtExperiment *experiment = results->experiment;
+    uint64_t least = UINT64_MAX, most = 0, rays = 0;
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        const RtCell *cell = rt_cell_at(results, t, c, experiment->kinds[k]);
+        if (inexact_ops(results, t, c) != ops || !cell->counted) continue;
+        if (cell->differ < least) least = cell->differ;
+        if (cell->differ > most) most = cell->differ;
+        rays = cell->tally.rays;
+    }
+    if (rays == 0) return false;
+    rt_append_text(text, RT_MAX_SENTENCE, "%s %" PRIu64, before, least);
+    if (most > least) rt_append_text(text, RT_MAX_SENTENCE, " to %" PRIu64, most);
+    rt_append_text(text, RT_MAX_SENTENCE, " of %" PRIu64 " %s", rays,
+                   rt_experiment_kind_name(experiment, experiment->kinds[k]));
+    return true;
+}
+
+/* A sentence for each accelerator with its own arithmetic, whatever the number of its settings. */
+static void print_differing(const RtResults *results, uint32_t t, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    char text[RT_MAX_SENTENCE];
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        const RtAccelOps *ops = inexact_ops(results, t, c);
+        bool told = !ops, any = false;
+        for (uint32_t earlier = 0; earlier < c; earlier++) told |= inexact_ops(results, t, earlier) == ops;
+        if (told) continue;
+        snprintf(
+            text, sizeof text,
+            "%s uses its own arithmetic. Answers that differ from the reference, if only in the last bits "
+            "of t",
+            ops->name);
+        for (uint32_t k = 0; k < experiment->kind_count; k++)
+            any |= append_differing(results, t, k, ops, any ? "," : ":", text);
+        rt_append_text(text, sizeof text, " rays; `raytally verify --accel %s` judges them.", ops->name);
+        if (any) rt_print_wrapped(text, out);
+    }
+}
+
+/* ---- rays that are learnt ---- */
+
+/* The cell of a kind of rays that repeats its rays most often, if they are learnt; else NULL. */
+static const RtCell *learnt_cell(const RtResults *results, uint32_t t, RtRayKind kind) {
+    const RtCell *learnt = NULL;
+    for (uint32_t c = 0; c < results->experiment->candidate_count; c++) {
+        const RtCell *cell = rt_cell_at(results, t, c, kind);
+        const bool few = cell->timed && cell->tally.rays < RT_LEARNT_RAYS;
+        if (few && cell->repeats > (learnt ? learnt->repeats : RT_LEARNT_REPEATS)) learnt = cell;
+    }
+    return learnt;
+}
+
+/* The workload and its kinds: "on balls, 72 primary rays 12 times, 30 shadow rays 40 times"; false if none.
+ */
+static bool say_learnt(const RtResults *results, uint32_t t, const char *before, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    bool any = false;
+    for (uint32_t k = 0; results->workloads[t].known && k < experiment->kind_count; k++) {
+        const RtCell *cell = learnt_cell(results, t, experiment->kinds[k]);
+        if (!cell) continue;
+        if (any)
+            fputc(',', out);
+        else
+            fprintf(out, "%s on %s,", before, experiment->workloads[t].label);
+        fprintf(out, " %" PRIu64 " %s ray%s %.0f times", cell->tally.rays,
+                rt_experiment_kind_name(experiment, experiment->kinds[k]), rt_plural(cell->tally.rays),
+                cell->repeats);
+        any = true;
+    }
+    return any;
+}
+
+char *rt_learnt_sentence(const RtResults *results) {
+    const RtExperiment *experiment = results->experiment;
+    const char *before = "Too few rays. Each round repeats,";
+    RtMemoryFile memory;
+    RtError ignored;
+    bool any = false;
+    if (rt_memory_file_open(&memory, &ignored) != RT_OK) return NULL;
+    for (uint32_t t = 0; t < experiment->workload_count; t++)
+        any |= say_learnt(results, t, any ? ";" : before, memory.file);
+    if (any)
+        fprintf(memory.file,
+                ". Caches and branch predictors learn them, so they take less time than in a frame. %s, or "
+                "run them once per round (milliseconds: 0).",
+                *experiment->rays_from ? "Give more rays" : "Record more (a larger size or limit)");
+    return rt_memory_file_close(&memory, "a sentence", &ignored) == RT_OK ? memory.data : NULL;
+}
+
+/* Prints and frees a text; nothing for "" or NULL. */
+static void print_text(char *text, FILE *out) {
+    if (text && *text) fputc('\n', out);
+    if (text && *text) rt_print_wrapped(text, out);
+    rt_free(text);
+}
+
+/* ---- tables of a workload ---- */
+
+/* How often the structures were built. */
+static void print_builds(const RtResults *results, uint32_t t, FILE *out) {
+    uint32_t least = UINT32_MAX, most = 0;
+    char text[RT_MAX_SENTENCE];
+    for (uint32_t c = 0; c < results->experiment->candidate_count; c++) {
+        const RtBuildResult *build = rt_build_at(results, t, c);
+        if (!build->known) continue;
+        least = build->builds < least ? build->builds : least;
+        most = build->builds > most ? build->builds : most;
+    }
+    if (most == 0) return;
+    snprintf(text, sizeof text, "Build times are medians of %" PRIu32, least);
+    if (least < most) rt_append_text(text, sizeof text, " to %" PRIu32, most);
+    rt_append_text(text, sizeof text, " build%s%s", rt_plural(most),
+                   most == 1                ? ", without an interval."
+                   : least < RT_FULL_ROUNDS ? "; intervals of fewer than 6 cover less than 95 %."
+                                            : ", with 95 % intervals.");
+    rt_print_wrapped(text, out);
+}
+
+/* Over which rays a break-even is. */
+static void print_break_even(const RtResults *results, uint32_t t, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    char part[RT_MAX_PART_TEXT], text[RT_MAX_SENTENCE];
+    if (experiment->kind_count < 2 || experiment->candidate_count < 2) return;
+    rt_results_say_part(results, 1u << t, rt_experiment_kinds(experiment), part);
+    snprintf(text, sizeof text, "Break-evens are over all kinds of rays together: %s.", part);
+    rt_print_wrapped(text, out);
+}
+
+static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
+    uint32_t least = 0, most = rt_results_rounds(results, t, &least);
+    const bool timed = most > 0;
+    rt_print_wrapped("Object tests, extent tests and steps are per ray.", out);
+    if (timed) print_ratios(results, least, most, out);
+    rt_print_rows(results, timed ? RT_CELLS : RT_COUNTED_CELLS, t, out);
+    print_strides(results, t, timed, out);
+    print_differing(results, t, out);
+    rt_print_rows(results, timed ? RT_STRUCTURES : RT_COUNTED_STRUCTURES, t, out);
+    if (timed) print_builds(results, t, out);
+    if (timed) print_break_even(results, t, out);
+}
+
+void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) {
+    bool explained = which == RT_CELLS;
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        RtResultRow row = {.results = results, .workload = t};
+        RtTable table = rt_result_table(which, &row);
+        if (!results->workloads[t].known) continue;
+        print_title(results, t, which == RT_TOTALS, out);
+        if (which == RT_CELLS) {
+            print_cells(results, t, out);
+        } else {
+            uint32_t least = 0, most = explained ? 0 : rt_results_rounds(results, t, &least);
+            if (most > 0) print_ratios(results, least, most, out);
+            explained |= most > 0;
+            rt_table_text(&table, out);
+            print_differing(results, t, out);
+        }
+    }
+    print_text(rt_learnt_sentence(results), out);
+}
+
+/* ---- hardware counters ---- */
+
+/* The first reason; NULL if anything was counted. */
+static const char *find_why(const RtResults *results) {
+    const char *why = NULL;
+    for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
+        const RtCellHardware *hardware = &at.cell->hardware;
+        if (hardware->known && !*hardware->why) return NULL;
+        if (hardware->known && !why) why = hardware->why;
+    }
+    return why ? why : "no cell was measured";
+}
+
+void rt_print_hardware(const RtResults *results, FILE *out) {
+    const char *why = find_why(results);
+    char text[RT_MAX_SENTENCE];
+    if (why) {
+        snprintf(text, sizeof text, "Hardware counters: not available: %s.", why);
+        fputc('\n', out);
+        rt_print_wrapped(text, out);
+        return;
+    }
+    print_all_rows(results, RT_HARDWARE_CELLS, "hardware counters per ray", out);
+}
+
+/* ---- null runs ---- */
+
+/* How often the interval of a null run misses the median, on average over the null runs, which --until may
+ * have given different numbers of rounds; *fewest gets the least of these. */
+static double chance_of_missing(const RtResults *results, uint32_t *fewest) {
+    double sum = 0;
+    uint32_t runs = 0;
+    *fewest = RT_MAX_ROUNDS;
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
+            const RtCell *cell = rt_cell_at(results, t, results->experiment->candidate_count, (RtRayKind)k);
+            if (!cell->timed) continue;
+            sum += 1 - rt_interval_coverage(cell->rounds);
+            *fewest = cell->rounds < *fewest ? cell->rounds : *fewest;
+            runs++;
+        }
+    }
+    return sum / runs;
+}
+
+void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
+    const RtExperiment *experiment = results->experiment;
+    uint32_t runs, straddling;
+    rt_null_verdict(results, &runs, &straddling);
+    out[0] = '\0';
+    if (runs == 0) return;
+    snprintf(out, RT_MAX_SENTENCE,
+             "Null runs: %s is %s measured a second time, to show the noise; %" PRIu32 " of %" PRIu32
+             " interval%s include%s 1",
+             experiment->again, experiment->candidates[experiment->baseline].label, straddling, runs,
+             rt_plural(runs), runs == 1 ? "s" : "");
+    uint32_t misses = runs - straddling, rounds;
+    const double chance = chance_of_missing(results, &rounds);
+    if (misses == 0)
+        rt_append_text(out, RT_MAX_SENTENCE, ", as expected.");
+    else if (rt_binomial_tail(misses, runs, chance) >= 0.05)
+        rt_append_text(out, RT_MAX_SENTENCE, "; each misses it by chance in %.3g %% of all cases.",
+                       100 * chance);
+    else
+        rt_append_text(out, RT_MAX_SENTENCE, ": the machine was busy; treat small differences as noise.");
+    if (rounds >= RT_FULL_ROUNDS) return;
+    rt_append_text(out, RT_MAX_SENTENCE,
+                   " Rounds: %" PRIu32 ", too few for 95 %%; an interval spans all measurements and contains "
+                   "the median with %.3g %% confidence. Use %d or more.",
+                   rounds, 100 * rt_interval_coverage(rounds), RT_FULL_ROUNDS);
+}
+
+/* ---- the end of a run ---- */
+
+void rt_print_outcome(const RtResults *results, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    const bool frames = *experiment->frame.without;
+    if (frames)
+        rt_print_frames(results, out);
+    else
+        rt_print_results(results, RT_TOTALS, out);
+    for (uint32_t t = 0; frames && t < experiment->workload_count; t++)
+        print_text(rt_frame_sentence(results, t), out);
+    if (frames) print_text(rt_learnt_sentence(results), out);
+    if (experiment->render) print_all_rows(results, RT_RENDER_ROWS, "rendering the frame", out);
+    if (experiment->hardware) rt_print_hardware(results, out);
+    rt_print_left_out(results, out);
+}
+
+void rt_print_null_runs(const RtResults *results, FILE *out) {
+    char text[RT_MAX_SENTENCE];
+    rt_null_sentence(results, text);
+    fputc('\n', out);
+    if (*text) rt_print_wrapped(text, out);
+}

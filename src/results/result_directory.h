@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Result directories: their files, and loading one.
+ *
+ *   cells.jsonl      the journal: a line for each measurement, written at once
+ *   counts.csv       exact columns; byte-identical on every machine
+ *   times.csv        measured columns, if anything is timed
+ *   rounds.csv       the times of every round, the source of times.csv
+ *   hardware.csv     hardware counters per ray, if the experiment has them
+ *   distributions.csv, histograms.csv
+ *                    distributions of counts, if the experiment has them; exact
+ *   images/          a picture of each scene
+ *   experiment.yaml  a copy of the experiment
+ *   manifest.json    seed, fingerprints, version, compiler, machine, date
+ *   published.csv, best.csv, published.md
+ *                    published figures beside measured ones, if the experiment names any; exact
+ *   published/       (or the folder that they come from) copies of the published tables
+ *   plots/           the scripts and their plots
+ *   tables.md, tables.tex, report.html
+ *                    the results to read */
+#ifndef RT_RESULTS_RESULT_DIRECTORY_H
+#define RT_RESULTS_RESULT_DIRECTORY_H
+
+#include "measure/result_files.h"
+#include "results/results.h"
+
+/* When a file is written, and whether its bytes are reproducible. */
+typedef enum RtFileSort {
+    RT_FILE_OTHER,    /* none of these */
+    RT_FILE_MEASURED, /* written as cells are measured; depends on times */
+    RT_FILE_COUNTED,  /* written as cells are measured; byte-identical on every machine */
+    RT_FILE_COMPARED  /* made from published figures (literature/published_tables.h); as identical */
+} RtFileSort;
+
+/* RT_FILE_OTHER also if the experiment has no such file. */
+RtFileSort rt_result_file_sort(const RtExperiment *experiment, RtResultFile file);
+
+/* A file of RT_FILE_MEASURED or RT_FILE_COUNTED. */
+void rt_result_csv_write(RtResultFile file, const RtResults *results, FILE *out);
+
+/* The picture of a workload's scene in a result directory. */
+RtStatus rt_results_image_path(const char *directory, const RtExperiment *experiment, uint32_t workload,
+                               char *path, RtError *error);
+
+/* Loads experiment and results of a result directory; this build may lack its accelerators. Initialises
+ * `results`: rt_results_clear. */
+RtStatus rt_results_load(const char *directory, RtExperiment *experiment, RtResults *results, RtError *error);
+
+#endif

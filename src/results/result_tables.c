@@ -1,0 +1,490 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "results/result_tables.h"
+
+#include "accel/columns.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+typedef RtResultRow Row;
+
+/* ---- fields ---- */
+
+/* The null run is the baseline once more. */
+static uint64_t ray_stride_of(const Row *r) {
+    const RtExperiment *e = r->results->experiment;
+    return e->candidates[r->candidate < e->candidate_count ? r->candidate : e->baseline].ray_stride;
+}
+
+static RtField label_of(const Row *r) {
+    RtField field = rt_field_text(rt_candidate_label(r->results->experiment, r->candidate));
+    if (ray_stride_of(r) > 1) field.note = "measured on a part of the rays";
+    return field;
+}
+
+/* A label too long to fit beside the figures is printed on a line before them. */
+static RtField short_label_of(const Row *r) {
+    char label[RT_MAX_EYE_LABEL];
+    rt_result_eye_label(r, label);
+    return rt_field_print("%s", strlen(label) > RT_EYE_WIDTH ? " " : label);
+}
+
+static RtField estimate(const RtEstimate *e, double unit) {
+    return rt_field_interval(e->median / unit, e->low / unit, e->high / unit);
+}
+
+RtField rt_build_ms(const RtBuildResult *build) {
+    if (!build->known) return rt_field_missing();
+    if (build->builds < 2) return rt_field_real(1e3 * build->seconds.median);
+    return estimate(&build->seconds, 1e-3);
+}
+
+static RtField break_even_of(const Row *r) {
+    const RtBreakEven even = rt_results_break_even(r->results, r->workload, r->candidate);
+    const RtEstimate *rays = &even.rays;
+    const bool rough = even.builds < 2, certain = rough || rays->low == rays->high;
+    char text[RT_MAX_FIELD];
+    if (isnan(rays->median)) return rt_field_missing();
+    if (certain && (rays->median == 0 || isinf(rays->median)))
+        return rt_field_text((rays->median == 0) == even.up_to ? "never faster" : "always faster");
+    if (!rough && rays->low == 0 && isinf(rays->high)) return rt_field_text("undecided");
+    /* By the medians always; so the ends of the intervals that say less. */
+    if (even.up_to && isinf(rays->median)) {
+        rt_format_rough(rays->low, text);
+        return rt_field_print("faster, at least up to %s", text);
+    }
+    if (!even.up_to && rays->median == 0) {
+        rt_format_rough(rays->high, text);
+        return rt_field_print("faster from %s at the latest", text);
+    }
+    const bool doubtful = even.up_to ? rays->median == 0 : isinf(rays->median); /* not by the medians */
+    if (doubtful)
+        rt_format_rough(even.up_to ? rays->high : rays->low, text);
+    else if (rough)
+        rt_format_rough(rays->median, text);
+    else
+        rt_format_interval(rays->median, rays->low, rays->high, text);
+    return rt_field_print("%s %s %.100s", doubtful ? "perhaps" : "faster", even.up_to ? "up to" : "from",
+                          text);
+}
+
+void rt_result_eye_label(const RtResultRow *r, char out[RT_MAX_EYE_LABEL]) {
+    snprintf(out, RT_MAX_EYE_LABEL, "%s%s", r->shown, ray_stride_of(r) > 1 ? " *" : "");
+}
+
+/* A counter; missing if its value per ray is unknown. */
+static RtField known(uint64_t counter, double a_ray) {
+    return isnan(a_ray) ? rt_field_missing() : rt_field_integer(counter);
+}
+
+/* NULL of a row of a refused accelerator. */
+static const void *measured_of(const void *row) {
+    return ((const Row *)row)->cell->counted || ((const Row *)row)->cell->timed ? row : NULL;
+}
+
+static const void *tally_of(const void *row) {
+    return measured_of(row) ? &((const Row *)row)->cell->tally : NULL;
+}
+
+static const void *known_tally_of(const void *row) {
+    return isnan(((const Row *)row)->cost.object_tests) ? NULL : tally_of(row);
+}
+
+static const void *structure_of(const void *row) {
+    const RtBuildResult *build = ((const Row *)row)->build;
+    return build->known ? &build->structure : NULL;
+}
+
+static const void *build_of(const void *row) {
+    const RtBuildResult *build = ((const Row *)row)->build;
+    return build->known ? &build->structure.build : NULL;
+}
+
+/* Hardware counters and frames have their own rounds, and so their own machine and threads. */
+static const RtMachine *machine_of(const Row *r) {
+    return &r->results->machines[r->which == RT_HARDWARE   ? r->cell->hardware.machine
+                                 : r->which == RT_RENDERED ? r->build->render.machine
+                                                           : r->cell->machine];
+}
+
+static uint32_t threads_of(const Row *r) {
+    return (uint32_t)(r->which == RT_HARDWARE   ? r->cell->hardware.threads
+                      : r->which == RT_RENDERED ? r->build->render.threads
+                                                : r->cell->threads);
+}
+
+static double ns_of_round(const Row *r, RtRoundTime which) {
+    return 1e9 * rt_cell_round_times(r->cell, which)[r->round];
+}
+
+/* ---- columns ---- */
+
+#define OVER_RAYS(quantity)   (&r->cell->distributions[RT_QUANTITY_##quantity])
+#define OVER_LEAVES(quantity) (&r->build->leaves[RT_QUANTITY_##quantity])
+#define EVENT(name)           (r->cell->hardware.counts.of[RT_HARDWARE_##name])
+#define RENDER(part)          (r->build->render.part)
+#define TIMED(figure)         (r->cell->timed ? (figure) : (double)NAN)
+
+/* What a distribution shows. */
+#define VALUES(X, id, title, half, most_of, of)                                                              \
+    X(id##_median, title ": 50 %", integer, "", half, (of)->median)                                          \
+    X(id##_p99, "99 %", integer, "", "that 99 % do not exceed", (of)->p99)                                   \
+    X(id##_most, "max", integer, "", most_of, (of)->most)
+
+/* A measurement with its interval, in three columns. */
+#define ESTIMATE(X, id, unit, meaning, factor, e)                                                            \
+    X(id, #id, real6, unit, meaning "; median", (factor) * (e).median)                                       \
+    X(id##_low, #id "_low", real6, unit, "lower end of its interval", (factor) * (e).low)                    \
+    X(id##_high, #id "_high", real6, unit, "upper end of its interval", (factor) * (e).high)
+
+#define COLUMNS(X)                                                                                           \
+    X(scene, "scene", text, "", "the scene's label in the experiment", r->setup->label)                      \
+    X(scene_spec, "scene_spec", text, "", "the scene as it is opened: a file, or a built-in",                \
+      r->setup->spec)                                                                                        \
+    X(objects, "objects", integer, "", "objects in the scene", r->scene->objects)                            \
+    X(scene_hash, "scene_hash", hash, "", "fingerprint of the scene", r->scene->scene)                       \
+    X(width, "width", integer, "pixels", "width of the frame whose rays are recorded", r->scene->width)      \
+    X(height, "height", integer, "pixels", "height of the frame", r->scene->height)                          \
+    X(corners, "corners", flag, "", "samples at pixel corners, not centres", r->setup->corners)              \
+    X(depth, "depth", integer, "", "levels of the ray tree; the primary ray is the first", r->setup->depth)  \
+    X(kind, "kind", text, "", "kind of the rays", rt_experiment_kind_name(r->results->experiment, r->kind))  \
+    X(set_rays, "set_rays", integer, "", "rays in the set, after the limit", r->scene->rays[r->kind])        \
+    X(set_hash, "set_hash", hash, "", "fingerprint of the set", r->scene->ray_fingerprints[r->kind])         \
+    X(accel, "accel", text, "", "the accelerator's label in the experiment; (again): a null run",            \
+      label_of(r))                                                                                           \
+    X(spec, "spec", text, "", "the accelerator with every effective parameter", r->build->spec)              \
+    X(ray_stride, "ray_stride", integer, "", "k, if only every kth ray of the set is measured",              \
+      ray_stride_of(r))                                                                                      \
+    X(rays, "rays", integer, "", "rays measured", r->cost.rays)                                              \
+    X(hits, "hits", integer, "", "those that hit an object", r->cell->tally.hits)                            \
+    X(build_seconds, "build_seconds", real6, "s", "time to build; median", r->build->seconds.median)         \
+    X(build_low, "build_low", real6, "s", "lower end of its interval", r->build->seconds.low)                \
+    X(build_high, "build_high", real6, "s", "upper end of its interval", r->build->seconds.high)             \
+    X(builds, "builds", integer, "",                                                                         \
+      "builds timed, after a warm-up; fewer than 6 have no interval of 95 %, one has none; 0: unknown",      \
+      r->build->builds)                                                                                      \
+    X(bytes, "bytes", integer, "bytes", "memory of the structure's arrays", r->build->structure.bytes)       \
+    X(threads, "threads", integer, "", "threads of the timing", threads_of(r))                               \
+    X(rounds, "rounds", integer, "", "timing rounds", r->cell->rounds)                                       \
+    X(repeats, "repeats", real6, "", "passes over the rays in a round", TIMED(r->cell->repeats))             \
+    X(structures, "structures", integer, "",                                                                 \
+      "structures built anew that its rounds timed in turns; 0: unknown", r->cell->structures)               \
+    X(coverage, "coverage", real6, "", "probability that an interval contains the median",                   \
+      TIMED(rt_interval_coverage(r->cell->rounds)))                                                          \
+    ESTIMATE(X, ns, "ns", "processor time per ray (wall time on several threads)", 1e9, r->cell->seconds)    \
+    X(ns_min, "ns_min", real6, "ns", "smallest time", 1e9 * r->cell->seconds.least)                          \
+    ESTIMATE(X, wall_ns, "ns", "wall time per ray", 1e9, r->cell->wall)                                      \
+    X(mrays_per_s, "mrays_per_s", real6, "million/s", "rays per second, by the median",                      \
+      1e-6 / r->cost.seconds.median)                                                                         \
+    X(baseline, "baseline", text, "", "the accelerator that the ratio refers to",                            \
+      r->cell->timed ? rt_candidate_label(r->results->experiment, r->cell->baseline) : NULL)                 \
+    X(ratio, "ratio", real6, "", "throughput over the baseline's, paired by round; median",                  \
+      r->cost.ratio.median)                                                                                  \
+    X(ratio_low, "ratio_low", end, "", "lower end of its interval", r->cost.ratio.low)                       \
+    X(ratio_high, "ratio_high", end, "", "upper end of its interval", r->cost.ratio.high)                    \
+    X(straddles_1, "straddles_1", flag, "", "whether the interval contains 1, as it should in a null run",   \
+      rt_field_flag(rt_estimate_holds(&r->cell->ratio, 1)))                                                  \
+    X(object_tests, "object_tests", integer, "", "object tests counted here; empty: not known",              \
+      known(r->cell->tally.object_tests, r->cost.object_tests))                                              \
+    X(extent_tests, "extent_tests", integer, "", "extent tests counted here; empty: not known",              \
+      known(r->cell->tally.extent_tests, r->cost.extent_tests))                                              \
+    X(steps, "steps", integer, "", "steps counted here; empty: not known",                                   \
+      known(r->cell->tally.steps, r->cost.steps))                                                            \
+    X(differ, "differ", integer, "", "answers that differ from the reference; 0 if exact", r->cell->differ)  \
+    X(instructions, "instructions", real6, "", "instructions retired, per ray; median of 5 rounds",          \
+      EVENT(instructions))                                                                                   \
+    X(cycles, "cycles", real6, "", "processor cycles, per ray", EVENT(cycles))                               \
+    X(cache_misses, "cache_misses", real6, "", "misses of the last-level cache, per ray",                    \
+      EVENT(cache_misses))                                                                                   \
+    X(branch_misses, "branch_misses", real6, "", "mispredicted branches, per ray", EVENT(branch_misses))     \
+    X(instructions_per_cycle, "instructions_per_cycle", real6, "", "instructions per cycle",                 \
+      EVENT(instructions) / EVENT(cycles))                                                                   \
+    X(running, "running", real6, "",                                                                         \
+      "smallest fraction of the time in which an event was counted; below 1, events took turns and counts "  \
+      "are scaled",                                                                                          \
+      *r->cell->hardware.why ? (double)NAN : r->cell->hardware.counts.running)                               \
+    X(why, "why", text, "", "why nothing could be counted; else empty",                                      \
+      *r->cell->hardware.why ? r->cell->hardware.why : NULL)                                                 \
+    X(refused, "refused", text, "",                                                                          \
+      "why the accelerator refuses the scene (memory, a limit of its own); empty: it does not. The row "     \
+      "then "                                                                                                \
+      "has no rays",                                                                                         \
+      r->build->refused ? r->build->left_out : NULL)                                                         \
+    X(host, "host", text, "", "host of the measurement", machine_of(r)->host)                                \
+    X(cpu, "cpu", text, "", "its processor", machine_of(r)->cpu)                                             \
+    X(render_rounds, "rounds", integer, "", "frames rendered for the times", RENDER(rounds))                 \
+    ESTIMATE(X, render_ms, "ms",                                                                             \
+             "time to render the frame: rays, queries and illumination; processor time (wall time on "       \
+             "several threads)",                                                                             \
+             1e3, RENDER(seconds))                                                                           \
+    ESTIMATE(X, query_share, "", "part of it spent in queries of the accelerator", 1, RENDER(share))         \
+    X(eye_render, "ms/frame", interval, "ms", "time to render the frame", estimate(&RENDER(seconds), 1e-3))  \
+    X(eye_share, "% in queries", interval, "%", "part of it spent in queries",                               \
+      estimate(&RENDER(share), 1e-2))                                                                        \
+    X(tests_a_ray, "tests/ray", figure, "", "object tests per ray", r->cost.object_tests)                    \
+    X(extents_a_ray, "ext./ray", figure, "", "extent tests per ray", r->cost.extent_tests)                   \
+    X(steps_a_ray, "steps/ray", figure, "", "steps per ray", r->cost.steps)                                  \
+    X(ns_a_ray, "ns/ray", figure, "ns", "median time per ray", 1e9 * r->cost.seconds.median)                 \
+    X(ns_interval, "ns/ray", interval, "ns", "median time per ray, with its interval",                       \
+      estimate(&r->cost.seconds, 1e-9))                                                                      \
+    X(label, "accelerator", text, "", "the label", label_of(r))                                              \
+    X(shown, "accelerator", text, "", "the label, shortened if it is long", r->shown)                        \
+    X(eye_label, "accelerator", text, "", "the label, if there is room", short_label_of(r))                  \
+    X(eye_tests, "tests", figure, "", "object tests per ray", r->cost.object_tests)                          \
+    X(eye_extents, "ext.", figure, "", "extent tests per ray", r->cost.extent_tests)                         \
+    X(eye_steps, "steps", figure, "", "steps per ray", r->cost.steps)                                        \
+    X(mrays, "Mrays/s", figure, "million/s", "throughput", 1e-6 / r->cost.seconds.median)                    \
+    X(interval, "ratio", interval, "", "throughput over the baseline's", estimate(&r->cost.ratio, 1))        \
+    X(build_ms, "build ms", interval, "ms", "time to build the structure, with its interval",                \
+      rt_build_ms(r->build))                                                                                 \
+    X(mb, "MB", amount, "MB", "memory of the structure", 1e-6 * (double)r->build->structure.bytes)           \
+    X(break_even, "break-even (rays)", text, "rays",                                                         \
+      "the number of rays, with its interval, for which it takes less time than the baseline, including "    \
+      "both builds",                                                                                         \
+      break_even_of(r))                                                                                      \
+    X(min_ns, "min ns", figure, "ns", "smallest time per ray", 1e9 * r->cost.seconds.least)                  \
+    X(msteps_per_s, "msteps_per_s", real6, "million/s", "steps per second: mrays_per_s times steps per ray", \
+      1e-6 * r->cost.steps / r->cost.seconds.median)                                                         \
+    X(mtests_per_s, "mtests_per_s", real6, "million/s",                                                      \
+      "object tests per second: mrays_per_s times object tests per ray",                                     \
+      1e-6 * r->cost.object_tests / r->cost.seconds.median)                                                  \
+    VALUES(X, tests, "tests", "object tests that half of the rays do not exceed",                            \
+           "of the ray that has most", OVER_RAYS(object_tests))                                              \
+    VALUES(X, steps, "steps", "steps that half of the rays do not exceed", "of the ray that has most",       \
+           OVER_RAYS(steps))                                                                                 \
+    VALUES(X, size, "leaf size", "objects that half of the leaves do not exceed", "of the largest",          \
+           OVER_LEAVES(leaf_size))                                                                           \
+    VALUES(X, depth, "depth", "depth that half of the leaves do not exceed", "of the deepest",               \
+           OVER_LEAVES(leaf_depth))                                                                          \
+    X(eye_instructions, "instr./ray", figure, "", "instructions", EVENT(instructions))                       \
+    X(eye_cycles, "cycles/ray", figure, "", "cycles", EVENT(cycles))                                         \
+    X(eye_ipc, "instr./cycle", figure, "", "instructions per cycle", EVENT(instructions) / EVENT(cycles))    \
+    X(eye_cache, "cache m.", figure, "", "cache misses per ray", EVENT(cache_misses))                        \
+    X(eye_branch, "branch m.", figure, "", "mispredicted branches per ray", EVENT(branch_misses))            \
+    X(round, "round", integer, "", "number of the round, from 1", r->round + 1)                              \
+    X(round_ns, "ns", real6, "ns", "processor time per ray in this round (wall time on several threads)",    \
+      ns_of_round(r, RT_ROUND_SECONDS))                                                                      \
+    X(round_wall_ns, "wall_ns", real6, "ns", "wall time per ray", ns_of_round(r, RT_ROUND_WALL))             \
+    X(round_baseline_ns, "baseline_ns", real6, "ns",                                                         \
+      "time per ray of the baseline in this round, on the same rays; divided by round_ns it is the ratio",   \
+      ns_of_round(r, RT_ROUND_BASELINE))
+
+RT_TABLE_COLUMNS(columns, COLUMNS)
+
+/* ---- tables ---- */
+
+#define FROM_TO(first, last) RT_FROM_TO(columns, first, last)
+#define ONE(id)              RT_ONE(columns, id)
+#define MEASURED(first, last)                                                                                \
+    { NULL, &columns[AT_##first], AT_##last - AT_##first + 1, measured_of }
+
+/* What tables are and have. */
+enum {
+    ALL_SCENES = 1, /* by workload, then accelerator with the null run last, then kind; else one workload, by
+                       kind, then accelerator */
+    ALL_KINDS = 2,  /* a row is of all kinds of rays together */
+    SWEPT = 4,      /* a column for each swept parameter */
+    BEST = 8,       /* marks of the best */
+    REFUSED = 16    /* a column that says why rows are refused, if any are */
+};
+
+/* X(TABLE, what it is and has, which rows it has, its columns...) */
+#define TABLES(X)                                                                                            \
+    X(COUNTS, ALL_SCENES | SWEPT | REFUSED, (counted && r->build->counts) || refused,                        \
+      FROM_TO(scene, ray_stride), MEASURED(rays, rays),                                                      \
+      {NULL, rt_tally_columns + 1, RT_TALLY_COUNTER_COUNT - 1, tally_of},                                    \
+      {NULL, rt_structure_columns, RT_STRUCTURE_COUNTS, structure_of}, MEASURED(bytes, bytes),               \
+      {NULL, rt_structure_columns + RT_STRUCTURE_COUNTS, RT_PREDICTION_COLUMNS, structure_of})               \
+    X(TIMES, ALL_SCENES | SWEPT | REFUSED, timed || refused, FROM_TO(scene, ray_stride),                     \
+      MEASURED(rays, rays), MEASURED(threads, ratio_high), MEASURED(build_seconds, bytes),                   \
+      MEASURED(object_tests, differ),                                                                        \
+      {NULL, rt_structure_columns + RT_STRUCTURE_COUNTS, RT_PREDICTION_COLUMNS, structure_of},               \
+      MEASURED(host, cpu))                                                                                   \
+    X(ROUNDS, ALL_SCENES | SWEPT, timed && r->cell->round_times && r->round < r->cell->rounds, ONE(scene),   \
+      ONE(kind), ONE(accel), ONE(baseline), FROM_TO(round, round_baseline_ns))                               \
+    X(HARDWARE, ALL_SCENES, r->cell->hardware.known, ONE(scene), ONE(kind), FROM_TO(accel, spec), ONE(rays), \
+      ONE(threads), FROM_TO(instructions, cpu))                                                              \
+    X(RENDERED, ALL_SCENES | SWEPT, r->build->render.known && r->kind == e->kinds[0],                        \
+      FROM_TO(scene, objects), FROM_TO(width, depth), FROM_TO(accel, spec), ONE(threads),                    \
+      FROM_TO(render_rounds, query_share_high), FROM_TO(host, cpu))                                          \
+    X(BENCH, SWEPT, (counted && !null) || refused, FROM_TO(scene, scene_spec), FROM_TO(accel, ray_stride),   \
+      ONE(kind), ONE(refused), MEASURED(rays, bytes),                                                        \
+      {"structure", rt_structure_columns, RT_STRUCTURE_COLUMNS, structure_of},                               \
+      {"structure.build", rt_tally_columns, RT_TALLY_COUNTER_COUNT, build_of},                               \
+      {"counts", rt_tally_columns, RT_TALLY_COUNTER_COUNT, known_tally_of}, MEASURED(differ, differ),        \
+      MEASURED(threads, mrays_per_s), MEASURED(msteps_per_s, mtests_per_s), MEASURED(baseline, ratio_high))  \
+    X(NULL_RUNS, 0, (timed && null), FROM_TO(scene, scene_spec), ONE(kind), FROM_TO(accel, spec), ONE(rays), \
+      FROM_TO(build_seconds, straddles_1))                                                                   \
+    X(CELLS, 0, (counted || timed) && !is_lost(r, r->cell), FROM_TO(eye_label, interval))                    \
+    X(STRUCTURES, 0, (first && is_shown(r)), ONE(eye_label), FROM_TO(build_ms, break_even))                  \
+    X(COUNTED_CELLS, 0, counted, FROM_TO(eye_label, eye_steps))                                              \
+    X(COUNTED_STRUCTURES, 0, (first && is_shown(r)), ONE(eye_label), ONE(mb),                                \
+      {NULL, rt_structure_columns, RT_STRUCTURE_COUNTS, structure_of})                                       \
+    X(PERCENTILES, 0, r->cell->distributions && !isnan(r->cost.object_tests), ONE(eye_label),                \
+      FROM_TO(tests_median, steps_most))                                                                     \
+    X(LEAF_PERCENTILES, 0, first && r->build->leaves, ONE(eye_label), FROM_TO(size_median, depth_most))      \
+    X(HARDWARE_CELLS, 0, r->cell->hardware.known && !*r->cell->hardware.why, ONE(eye_label),                 \
+      FROM_TO(eye_instructions, eye_branch))                                                                 \
+    X(RENDER_ROWS, 0, (first && r->build->render.known), ONE(eye_label), FROM_TO(eye_render, eye_share))     \
+    X(CELLS_MORE, BEST, counted || timed, ONE(label), ONE(kind), ONE(rays),                                  \
+      FROM_TO(tests_a_ray, steps_a_ray), ONE(ns_interval), FROM_TO(mrays, interval), ONE(min_ns),            \
+      ONE(differ))                                                                                           \
+    X(TOTALS, ALL_KINDS | BEST, first && r->build->known, ONE(shown), ONE(rays),                             \
+      FROM_TO(tests_a_ray, ns_a_ray), FROM_TO(interval, break_even))                                         \
+    X(TOTALS_MORE, ALL_KINDS | BEST, first && r->build->known, ONE(label), ONE(rays),                        \
+      FROM_TO(tests_a_ray, steps_a_ray), ONE(ns_interval), FROM_TO(interval, break_even))
+
+static const struct {
+    int has;
+    RtTable table;
+} tables[] = {
+#define GROUPS(...) ((const RtColumnGroup[]){__VA_ARGS__})
+#define TABLE(id, has, rows, ...)                                                                            \
+    [RT_##id] = {has,                                                                                        \
+                 {.groups = GROUPS(__VA_ARGS__),                                                             \
+                  .group_count = sizeof(GROUPS(__VA_ARGS__)) / sizeof(RtColumnGroup)}},
+    TABLES(TABLE)
+#undef TABLE
+};
+
+/* ---- rows ---- */
+
+static void find(Row *r, size_t i) {
+    const RtExperiment *e = r->results->experiment;
+    const size_t kinds = e->kind_count, candidates = e->candidate_count + 1;
+    const bool by_workload = tables[r->which].has & ALL_SCENES;
+    if (r->which == RT_ROUNDS) {
+        r->round = (uint32_t)(i % r->most_rounds);
+        i /= r->most_rounds;
+    }
+    r->kind = e->kinds[by_workload ? i % kinds : i / candidates];
+    r->candidate = (uint32_t)((by_workload ? i / kinds : i) % candidates);
+    if (by_workload) r->workload = (uint32_t)(i / kinds / candidates);
+    r->setup = &e->workloads[r->workload];
+    r->scene = &r->results->workloads[r->workload];
+    r->build = rt_build_at(r->results, r->workload, r->candidate);
+    r->cell = rt_cell_at(r->results, r->workload, r->candidate, r->kind);
+}
+
+/* Whether the candidate is one of the baseline's, but not the fastest of them on these rays. */
+static bool is_lost(const Row *r, const RtCell *cell) {
+    return cell->timed && r->candidate < r->results->experiment->candidate_count &&
+           rt_candidate_is_baseline(r->results->experiment, r->candidate) && cell->baseline != r->candidate;
+}
+
+/* Whether any cell of the candidate is shown. */
+static bool is_shown(const Row *r) {
+    for (uint32_t k = 0; k < r->results->experiment->kind_count; k++) {
+        const RtCell *cell =
+            rt_cell_at(r->results, r->workload, r->candidate, r->results->experiment->kinds[k]);
+        if ((cell->counted || cell->timed) && !is_lost(r, cell)) return true;
+    }
+    return false;
+}
+
+/* The kinds of rays that the costs of a row are of. */
+static RtRayKind kinds_of(const Row *r) {
+    return tables[r->which].has & ALL_KINDS ? RT_ALL_RAYS : r->kind;
+}
+
+static const void *row_at(void *context, size_t i) {
+    Row *r = context;
+    find(r, i);
+    const RtExperiment *e = r->results->experiment;
+    const bool null = r->candidate == e->candidate_count, first = i < e->candidate_count;
+    const bool counted = r->cell->counted, timed = r->cell->timed;
+    const bool refused = !null && r->build->refused && !r->results->old_rows && r->scene->rays[r->kind] > 0;
+    r->cost = rt_results_cost(r->results, r->workload, r->candidate, kinds_of(r));
+    rt_candidate_show(e, r->candidate, r->shown);
+    const bool there[] = {
+#define ROWS(id, has, rows, ...) [RT_##id] = rows,
+        TABLES(ROWS)
+#undef ROWS
+    };
+    return there[r->which] ? r : NULL;
+}
+
+static RtStanding standing_of(const void *row) {
+    const Row *r = row;
+    return rt_standing(r->results, r->workload, r->candidate, kinds_of(r));
+}
+
+/* ---- swept parameters ---- */
+
+static RtField get_swept(const void *row, const RtTableColumn *column) {
+    const Row *r = row;
+    const RtSweptKey *key = &r->swept[column->key];
+    const char *value = rt_swept_of(r->results->experiment, key, r->workload, r->candidate);
+    double number;
+    if (!value || !key->number) return rt_field_text(value);
+    return rt_swept_number(value, &number) ? rt_field_real(number) : rt_field_missing();
+}
+
+/* Appends a column for each swept parameter; the columns before are the same in all experiments. */
+static void add_swept(RtTable *table, Row *row) {
+    row->swept_count = rt_experiment_swept(row->results->experiment, row->swept);
+    for (uint32_t i = 0; i < row->swept_count; i++) {
+        const RtSweptKey *key = &row->swept[i];
+        char *name = row->swept_names[i];
+        snprintf(name, sizeof row->swept_names[i], "%s.%s", key->scene ? "scene" : "accel", key->key);
+        row->swept_columns[i] = (RtTableColumn){.id = name,
+                                                .name = name,
+                                                .unit = "",
+                                                .meaning = "the swept parameter",
+                                                .get = get_swept,
+                                                .form = key->number ? RT_FORM_real9 : RT_FORM_text,
+                                                .key = (int)i};
+    }
+    if (!row->swept_count) return;
+    assert(table->group_count < RT_MAX_RESULT_GROUPS);
+    memmove(row->groups, table->groups, table->group_count * sizeof *row->groups);
+    row->groups[table->group_count++] = (RtColumnGroup){NULL, row->swept_columns, row->swept_count, NULL};
+    table->groups = row->groups;
+}
+
+/* Appends the column of reasons if there are any: files without are those of version 1.0. */
+static void add_refused(RtTable *table, Row *row) {
+    static const RtColumnGroup refused = ONE(refused);
+    const RtExperiment *e = row->results->experiment;
+    bool any = false;
+    for (uint32_t t = 0; t < e->workload_count; t++) {
+        for (uint32_t c = 0; c < e->candidate_count; c++) any |= rt_build_at(row->results, t, c)->refused;
+    }
+    if (!any || row->results->old_rows) return;
+    assert(table->group_count < RT_MAX_RESULT_GROUPS);
+    memmove(row->groups, table->groups, table->group_count * sizeof *row->groups);
+    row->groups[table->group_count++] = refused;
+    table->groups = row->groups;
+}
+
+/* Of any cell. */
+static uint32_t most_rounds(const RtResults *results) {
+    uint32_t most = 0, least;
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        const uint32_t rounds = rt_results_rounds(results, t, &least);
+        most = rounds > most ? rounds : most;
+    }
+    return most;
+}
+
+bool rt_result_table_sweeps(RtResultTable which) {
+    return tables[which].has & SWEPT;
+}
+
+RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
+    const RtExperiment *e = row->results->experiment;
+    const int has = tables[which].has;
+    const size_t workloads = has & ALL_SCENES ? e->workload_count : 1;
+    RtTable table = tables[which].table;
+    table.row_count = workloads * (e->candidate_count + 1) * e->kind_count;
+    if (which == RT_ROUNDS) row->most_rounds = most_rounds(row->results);
+    if (which == RT_ROUNDS) table.row_count *= row->most_rounds;
+    table.row = row_at;
+    table.context = row;
+    table.standing = has & BEST ? standing_of : NULL;
+    row->which = which;
+    if (has & REFUSED) add_refused(&table, row);
+    if (has & SWEPT) add_swept(&table, row);
+    return table;
+}

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Results as tables (core/text/table.h): CSV files of a result directory, bench --json, and tables to read.
+ */
+#ifndef RT_RESULTS_RESULT_TABLES_H
+#define RT_RESULTS_RESULT_TABLES_H
+
+#include "core/text/table.h"
+#include "results/paired.h"
+
+typedef enum RtResultTable {
+    /* counts.csv: a row per cell of each accelerator whose counts are the same on every machine: every
+       effective parameter, all counters, and the figures of the structure. Byte-identical on every machine.
+     */
+    RT_COUNTS,
+    /* times.csv: a row per timed cell, null runs included: times per ray with intervals, ratios, build
+       seconds, bytes, and the tests and steps counted here. Accelerators that are not in counts.csv may count
+       differently elsewhere. */
+    RT_TIMES,
+    /* rounds.csv: a row per round of a timed cell, null runs included. */
+    RT_ROUNDS,
+    /* hardware.csv: a row per cell with hardware counters, or the reason why there are none. */
+    RT_HARDWARE,
+    RT_RENDERED,  /* render.csv: a row per scene and accelerator: time to render the frame, and the part of
+                     it spent in queries */
+    RT_BENCH,     /* "rows" of bench --json: a row per counted cell */
+    RT_NULL_RUNS, /* "null_runs" there */
+    RT_CELLS, /* to read: one workload by accelerator and ray kind; of several baselines only the fastest */
+    RT_STRUCTURES,    /* to read: build time, memory and break-even of each accelerator */
+    RT_COUNTED_CELLS, /* both without times: sizes of structures instead */
+    RT_COUNTED_STRUCTURES,
+    RT_PERCENTILES, /* to read: one workload by accelerator and ray kind: medians, 99th percentiles and maxima
+                   of object tests and steps */
+    RT_LEAF_PERCENTILES, /* to read: the same of sizes and depths of leaves, by accelerator */
+    RT_HARDWARE_CELLS,   /* to read: one workload by accelerator and ray kind: hardware counters */
+    RT_RENDER_ROWS,      /* to read: one workload by accelerator: time of a frame and the part of queries */
+    RT_CELLS_MORE,       /* cells with more columns, and all rows */
+    RT_TOTALS,           /* one workload by accelerator, all kinds together */
+    RT_TOTALS_MORE,      /* these with the intervals of their times */
+} RtResultTable;
+
+#define RT_MAX_RESULT_GROUPS 16
+
+/* The row at hand. */
+typedef struct RtResultRow {
+    const RtResults *results;
+    RtResultTable which;
+    uint32_t workload; /* of tables of one workload */
+    uint32_t candidate;
+    char shown[RT_MAX_SHOWN]; /* its label on a screen */
+    RtRayKind kind;
+    uint32_t round, most_rounds; /* of RT_ROUNDS; most_rounds: of any cell */
+    const RtWorkload *setup;
+    const RtWorkloadResult *scene;
+    const RtBuildResult *build;
+    const RtCell *cell;
+    RtCost cost; /* of the cell; of all kinds of rays for RT_TOTALS... */
+    uint32_t swept_count;
+    RtSweptKey swept[RT_MAX_SWEPT_KEYS];                  /* the swept parameters */
+    char swept_names[RT_MAX_SWEPT_KEYS][RT_MAX_NAME + 8]; /* and their columns */
+    RtTableColumn swept_columns[RT_MAX_SWEPT_KEYS];
+    RtColumnGroup groups[RT_MAX_RESULT_GROUPS];
+} RtResultRow;
+
+/* `row` belongs to the table and must outlive it. The caller fills in its results, and its workload for a
+ * table of one workload. */
+RtTable rt_result_table(RtResultTable which, RtResultRow *row);
+
+/* Whether it has a column for each parameter that the experiment sweeps. */
+bool rt_result_table_sweeps(RtResultTable which);
+
+/* The label of a row in tables to read, with a star if it is measured on a part of the rays. A label of more
+ * than RT_EYE_WIDTH characters is printed on its own line. */
+#define RT_EYE_WIDTH     24
+#define RT_MAX_EYE_LABEL (RT_MAX_SHOWN + 8)
+void rt_result_eye_label(const RtResultRow *row, char out[RT_MAX_EYE_LABEL]);
+
+/* The time to build in ms, with its interval: without one if it was built once. */
+RtField rt_build_ms(const RtBuildResult *build);
+
+/* Prints RT_CELLS, with RT_STRUCTURES and an explanation of the figures (or the counted tables
+ * if nothing was timed), or RT_TOTALS; for each known workload. */
+void rt_print_results(const RtResults *results, RtResultTable which, FILE *out);
+
+/* Prints the hardware counters of each known workload, or why there are none. */
+void rt_print_hardware(const RtResults *results, FILE *out);
+
+/* Prints a blank line, the names of the columns, and the rows of one workload; in several parts if the page
+ * is narrower (rt_table_part). */
+void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workload, FILE *out);
+
+/* Prints the frames' costs and what follows from them, or the totals if the experiment has no frames;
+ * hardware counters; what was left out. */
+void rt_print_outcome(const RtResults *results, FILE *out);
+
+/* Prints a blank line and rt_null_sentence. */
+void rt_print_null_runs(const RtResults *results, FILE *out);
+
+/* "... 12 of 12 intervals include 1, ...", or a warning if fewer do; and the coverage of the intervals if
+ * rounds are too few. "" if nothing was timed. */
+#define RT_MAX_SENTENCE 640
+void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]);
+
+/* A warning that names the workloads and kinds of rays which some accelerator was timed on so few of,
+ * repeated so often, that processors learn them (RT_LEARNT_RAYS), and a remedy: for rt_free(). ""
+ * if there are none, NULL if memory is short. */
+char *rt_learnt_sentence(const RtResults *results);
+
+/* The least coverage of the intervals: "95 %", or less if rounds are too few. */
+#define RT_MAX_INTERVAL_TITLE 16
+void rt_interval_title(const RtExperiment *experiment, char out[RT_MAX_INTERVAL_TITLE]);
+
+#endif

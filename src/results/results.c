@@ -1,0 +1,359 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "results/results.h"
+
+#include "core/base/memory.h"
+
+#include <math.h>
+#include <string.h>
+
+RtStatus rt_results_init(RtResults *results, const RtExperiment *experiment, RtError *error) {
+    const size_t builds = experiment->workload_count * ((size_t)experiment->candidate_count + 1);
+    *results = (RtResults){.experiment = experiment, .machine_count = 1};
+    results->builds = rt_alloc(builds, sizeof(RtBuildResult));
+    results->cells = rt_alloc(builds * RT_RAY_KIND_COUNT, sizeof(RtCell));
+    if (results->builds && results->cells) return RT_OK;
+    return rt_fail_memory(error, "the results", builds * RT_RAY_KIND_COUNT * sizeof(RtCell));
+}
+
+void rt_results_clear(RtResults *results) {
+    const RtExperiment *e = results->experiment;
+    size_t builds = e ? e->workload_count * (e->candidate_count + (size_t)1) : 0;
+    for (size_t i = 0; results->cells && i < builds * RT_RAY_KIND_COUNT; i++) {
+        rt_free(results->cells[i].round_times);
+        rt_free(results->cells[i].distributions);
+    }
+    for (size_t i = 0; results->builds && i < builds; i++) rt_free(results->builds[i].leaves);
+    rt_free(results->builds);
+    rt_free(results->cells);
+    json_decref(results->first_claims);
+    *results = (RtResults){0};
+}
+
+uint32_t rt_results_machine(RtResults *results, const RtMachine *machine) {
+    uint32_t m = 0;
+    for (; m < results->machine_count; m++) {
+        const RtMachine *known = &results->machines[m];
+        if (strcmp(known->host, machine->host) == 0 && strcmp(known->cpu, machine->cpu) == 0) return m;
+    }
+    if (m == RT_MAX_MACHINES) return 0;
+    results->machines[results->machine_count++] = *machine;
+    return m;
+}
+
+static size_t build_index(const RtResults *results, uint32_t workload, uint32_t candidate) {
+    return (size_t)workload * (results->experiment->candidate_count + 1) + candidate;
+}
+
+RtBuildResult *rt_build_at(const RtResults *results, uint32_t workload, uint32_t candidate) {
+    return &results->builds[build_index(results, workload, candidate)];
+}
+
+RtCell *rt_cell_at(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
+    return &results->cells[build_index(results, workload, candidate) * RT_RAY_KIND_COUNT + (size_t)kind];
+}
+
+RtStatus rt_cell_make_round_times(RtCell *cell, RtError *error) {
+    rt_free(cell->round_times);
+    cell->round_times = rt_alloc((size_t)RT_ROUND_TIME_COUNT * cell->rounds, sizeof(double));
+    return cell->round_times ? RT_OK
+                             : rt_fail_memory(error, "the times of rounds", cell->rounds * sizeof(double));
+}
+
+double *rt_cell_round_times(const RtCell *cell, RtRoundTime which) {
+    return cell->round_times + (size_t)which * cell->rounds;
+}
+
+uint32_t rt_results_candidate(const RtResults *results, uint32_t workload, uint32_t candidate,
+                              RtRayKind kind) {
+    if (candidate != RT_FASTEST_BASELINE) return candidate;
+    for (uint32_t c = 0; c < results->experiment->candidate_count; c++) {
+        const RtCell *cell = rt_cell_at(results, workload, c, kind);
+        if (cell->timed) return cell->baseline;
+    }
+    return RT_FASTEST_BASELINE;
+}
+
+const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidate) {
+    if (candidate == RT_FASTEST_BASELINE) return rt_baseline_label(experiment);
+    return candidate < experiment->candidate_count ? experiment->candidates[candidate].label
+                                                   : experiment->again;
+}
+
+void rt_candidate_show(const RtExperiment *experiment, uint32_t candidate, char out[RT_MAX_SHOWN]) {
+    const bool null = candidate == experiment->candidate_count;
+    if (candidate == RT_FASTEST_BASELINE)
+        snprintf(out, RT_MAX_SHOWN, "%s", rt_baseline_label(experiment));
+    else
+        snprintf(out, RT_MAX_SHOWN, "%s%s",
+                 experiment->candidates[null ? experiment->baseline : candidate].shown,
+                 null ? " (again)" : "");
+}
+
+bool rt_results_next(const RtResults *results, RtCellCursor *at) {
+    const RtExperiment *e = results->experiment;
+    const uint32_t i = at->next++;
+    at->kind = e->kinds[i % e->kind_count];
+    at->candidate = i / e->kind_count % e->candidate_count;
+    at->workload = i / e->kind_count / e->candidate_count;
+    if (at->workload >= e->workload_count) return false;
+    at->cell = rt_cell_at(results, at->workload, at->candidate, at->kind);
+    return true;
+}
+
+uint64_t rt_results_size(const RtResults *results, uint32_t *scenes) {
+    uint64_t cells = 0;
+    *scenes = 0;
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) *scenes += results->workloads[t].known;
+    for (RtCellCursor at = {0}; rt_results_next(results, &at);) cells += at.cell->counted || at.cell->timed;
+    return cells;
+}
+
+uint32_t rt_results_rounds(const RtResults *results, uint32_t workload, uint32_t *least) {
+    uint32_t most = 0;
+    for (uint32_t c = 0; c <= results->experiment->candidate_count; c++) {
+        for (uint32_t k = 0; k < results->experiment->kind_count; k++) {
+            const RtCell *cell = rt_cell_at(results, workload, c, results->experiment->kinds[k]);
+            if (!cell->timed) continue;
+            *least = most == 0 || cell->rounds < *least ? cell->rounds : *least;
+            most = cell->rounds > most ? cell->rounds : most;
+        }
+    }
+    return most;
+}
+
+void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddling) {
+    *runs = *straddling = 0;
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
+            const RtCell *cell = rt_cell_at(results, t, results->experiment->candidate_count, (RtRayKind)k);
+            *runs += cell->timed;
+            *straddling += cell->timed && rt_estimate_holds(&cell->ratio, 1);
+        }
+    }
+}
+
+void rt_results_leave_out(RtResults *results, uint32_t workload, uint32_t candidate, const char *why,
+                          bool refused, bool broken) {
+    const RtExperiment *e = results->experiment;
+    RtBuildResult *build = rt_build_at(results, workload, candidate);
+    snprintf(build->left_out, sizeof build->left_out, "%s", why);
+    build->refused = refused;
+    build->broken = broken;
+    rt_spec_format(&e->candidates[candidate < e->candidate_count ? candidate : e->baseline].parsed,
+                   build->spec);
+}
+
+bool rt_results_refused(const RtResults *results, uint32_t workload, uint32_t candidate) {
+    const RtExperiment *e = results->experiment;
+    if (candidate != RT_FASTEST_BASELINE) return rt_build_at(results, workload, candidate)->refused;
+    for (uint32_t i = 0; i < e->baseline_count; i++) {
+        if (!rt_build_at(results, workload, e->baseline + i)->refused) return false;
+    }
+    return true;
+}
+
+/* The first reason, if all accelerators of all known scenes refused them; NULL if not. */
+static const char *refused_by_all(const RtResults *results) {
+    const char *why = NULL;
+    for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
+        const RtBuildResult *build = rt_build_at(results, at.workload, at.candidate);
+        if (!results->workloads[at.workload].known ||
+            !rt_candidate_runs(results->experiment, at.candidate, at.workload))
+            continue;
+        if (!build->refused) return NULL;
+        why = why ? why : build->left_out;
+    }
+    return why;
+}
+
+RtStatus rt_results_check(const RtResults *results, RtError *error) {
+    const RtExperiment *e = results->experiment;
+    const char *why = refused_by_all(results);
+    if (why)
+        return rt_fail(error, RT_BAD_INPUT, "every accelerator refuses %s: %s",
+                       e->workload_count == 1 ? "the scene" : "every scene; the first", why);
+    for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
+        if (!at.cell->broken && !rt_build_at(results, at.workload, at.candidate)->broken) continue;
+        return rt_fail(error, RT_BROKEN,
+                       "'%s' is broken and left out, at least on %s: see above; `raytally verify --accel %s` "
+                       "says more. All other accelerators were measured",
+                       e->candidates[at.candidate].label, e->workloads[at.workload].label,
+                       e->candidates[at.candidate].spec);
+    }
+    return RT_OK;
+}
+
+void rt_print_left_out(const RtResults *results, FILE *out) {
+    const RtExperiment *e = results->experiment;
+    for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
+        const char *scene = e->workloads[at.workload].label, *accel = e->candidates[at.candidate].label;
+        const RtBuildResult *build = rt_build_at(results, at.workload, at.candidate);
+        if (*build->left_out && at.kind == e->kinds[0])
+            fprintf(out, "%s: %s on %s: %s\n", build->refused ? "Refused" : "Left out", accel, scene,
+                    build->left_out);
+        if (*at.cell->left_out)
+            fprintf(out, "Left out: %s on %s, %s rays: %s\n", accel, scene, rt_ray_kind_name(at.kind),
+                    at.cell->left_out);
+    }
+}
+
+bool rt_results_has_kind(const RtResults *results, uint32_t workload, RtRayKind kind) {
+    for (uint32_t c = 0; c < results->experiment->candidate_count; c++) {
+        const RtCell *cell = rt_cell_at(results, workload, c, kind);
+        if (cell->counted || cell->timed) return true;
+    }
+    return false;
+}
+
+/* A count per ray. Unknown if nothing was counted, or if the counter stayed at 0 in an accelerator that does
+ * not count everything (Embree's own boxes). */
+static double per_ray(const RtCell *cell, const RtBuildResult *build, uint64_t counter) {
+    bool known = cell->counted && (counter || build->counts);
+    return known ? (double)counter / (double)cell->tally.rays : (double)NAN;
+}
+
+/* The seconds that a ray of the cell takes less than the baseline's. */
+static RtEstimate saved_by(const RtCell *cell) {
+    const RtEstimate *ratio = &cell->ratio, *wall = &cell->wall;
+    return (RtEstimate){.median = (ratio->median - 1) * wall->median,
+                        .low = (ratio->low - 1) * (ratio->low > 1 ? wall->low : wall->high),
+                        .high = (ratio->high - 1) * (ratio->high > 1 ? wall->high : wall->low)};
+}
+
+static RtCost cost_of_cell(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
+    static const RtBuildResult no_build = {0};
+    static const RtCell no_cell = {0};
+    const RtEstimate none = rt_estimate_exactly((double)NAN);
+    const uint32_t c = rt_results_candidate(results, workload, candidate, kind);
+    const bool known = c != RT_FASTEST_BASELINE;
+    const RtBuildResult *build = known ? rt_build_at(results, workload, c) : &no_build;
+    const RtCell *cell = known ? rt_cell_at(results, workload, c, kind) : &no_cell;
+    return (RtCost){.whole = true,
+                    .rays = cell->tally.rays,
+                    .weight = 1,
+#define PER_RAY(name) .name = per_ray(cell, build, cell->tally.name),
+                    RT_COST_COUNTERS(PER_RAY)
+#undef PER_RAY
+                        .seconds = cell->timed ? cell->seconds : none,
+                    .saved = cell->timed ? saved_by(cell) : none,
+                    .ratio = cell->timed ? cell->ratio : none};
+}
+
+double rt_results_weight(const RtResults *results, uint32_t workload, RtRayKind kind) {
+    const RtWorkloadResult *w = &results->workloads[workload];
+    return (double)(w->rays[kind] && w->whole_rays[kind] ? w->whole_rays[kind] : w->rays[kind]);
+}
+
+static void add_weighed(RtEstimate *sum, const RtEstimate *estimate, double weight) {
+    sum->median += weight * estimate->median;
+    sum->low += weight * estimate->low;
+    sum->high += weight * estimate->high;
+}
+
+RtCost rt_results_total(const RtResults *results, uint32_t workload, uint32_t candidate, RtKinds kinds) {
+    const double unknown = (double)NAN;
+    double baseline = 0;
+    RtCost sum = {.whole = true, .seconds.least = unknown, .saved.least = unknown};
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        const double weight = rt_results_weight(results, workload, (RtRayKind)k);
+        if (weight == 0 || !(kinds >> k & 1)) continue;
+        const bool measured = rt_results_has_kind(results, workload, (RtRayKind)k);
+        sum.whole &= measured;
+        if (!measured) continue;
+        const RtCost cost = cost_of_cell(results, workload, candidate, (RtRayKind)k);
+        sum.weight += weight;
+        sum.rays += cost.rays;
+#define ADD(name) sum.name += weight * cost.name;
+        RT_COST_COUNTERS(ADD)
+#undef ADD
+        add_weighed(&sum.seconds, &cost.seconds, weight);
+        add_weighed(&sum.saved, &cost.saved, weight);
+        baseline += weight * (cost.ratio.median * cost.seconds.median);
+    }
+    sum.ratio = (RtEstimate){baseline / sum.seconds.median, unknown, unknown, unknown};
+    return sum;
+}
+
+RtKinds rt_experiment_kinds(const RtExperiment *experiment) {
+    RtKinds kinds = 0;
+    for (uint32_t k = 0; k < experiment->kind_count; k++) kinds |= 1u << experiment->kinds[k];
+    return kinds;
+}
+
+RtCost rt_results_cost(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
+    if (kind != RT_ALL_RAYS) return cost_of_cell(results, workload, candidate, kind);
+    RtCost mean = rt_results_total(results, workload, candidate, rt_experiment_kinds(results->experiment));
+#define DIVIDE(name) mean.name /= mean.weight; /* 0 / 0 is NAN: unknown */
+    RT_COST_COUNTERS(DIVIDE)
+#undef DIVIDE
+    RtEstimate *const estimates[] = {&mean.seconds, &mean.saved};
+    for (int i = 0; i < 2; i++) {
+        estimates[i]->median /= mean.weight;
+        estimates[i]->low /= mean.weight;
+        estimates[i]->high /= mean.weight;
+    }
+    return mean;
+}
+
+void rt_results_say_part(const RtResults *results, uint32_t workloads, RtKinds kinds,
+                         char out[RT_MAX_PART_TEXT]) {
+    double rays = 0, whole = 0;
+    bool known = true;
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        const RtWorkloadResult *w = &results->workloads[t];
+        for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+            if (!(workloads >> t & 1) || !(kinds >> k & 1)) continue;
+            known &= w->rays[k] == 0 || w->whole_rays[k] > 0;
+            const double weight = rt_results_weight(results, t, (RtRayKind)k);
+            rays += fmin((double)w->rays[k], weight); /* there may be more random ones */
+            whole += weight;
+        }
+    }
+    if (known)
+        snprintf(out, RT_MAX_PART_TEXT, "of %.0f rays, %.0f measured", whole, rays);
+    else
+        snprintf(out, RT_MAX_PART_TEXT, "of the measured part");
+}
+
+/* Rays that save as much time as the build takes more, both above 0; else none or any. */
+static double rays_from(double more, double saved) {
+    return more <= 0 ? 0 : saved <= 0 ? INFINITY : more / saved;
+}
+
+/* Rays that lose as much time as the build takes less. */
+static double rays_up_to(double more, double saved) {
+    return more >= 0 ? 0 : saved >= 0 ? INFINITY : more / saved;
+}
+
+/* `more`: seconds that the build takes more than the baseline's; `saved`: seconds that a ray takes less. */
+static void set_rays(RtBreakEven *even, const RtEstimate *more, const RtEstimate *saved) {
+    even->up_to = saved->high < 0 || (saved->low <= 0 && more->median < 0);
+    if (even->up_to) {
+        even->rays.median = rays_up_to(more->median, saved->median);
+        even->rays.low = rays_up_to(more->high, saved->low);
+        even->rays.high = rays_up_to(more->low, saved->high);
+    } else {
+        even->rays.median = rays_from(more->median, saved->median);
+        even->rays.low = rays_from(more->low, saved->high);
+        even->rays.high = rays_from(more->high, saved->low);
+    }
+}
+
+RtBreakEven rt_results_break_even(const RtResults *results, uint32_t workload, uint32_t candidate) {
+    const double unknown = (double)NAN;
+    const RtBuildResult *own = rt_build_at(results, workload, candidate), *baseline = NULL;
+    RtBreakEven even = {.rays = rt_estimate_exactly(unknown)};
+    const RtEstimate saved = rt_results_cost(results, workload, candidate, RT_ALL_RAYS).saved;
+    if (rt_candidate_is_baseline(results->experiment, candidate) || isnan(saved.median)) return even;
+    for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        const RtCell *cell = rt_cell_at(results, workload, candidate, (RtRayKind)k);
+        if (!cell->timed) continue;
+        const RtBuildResult *build = rt_build_at(results, workload, cell->baseline);
+        if (!baseline || build->seconds.median < baseline->seconds.median) baseline = build;
+    }
+    const RtEstimate *a = &own->seconds, *b = &baseline->seconds,
+                     more = {a->median - b->median, a->low - b->high, a->high - b->low, unknown};
+    set_rays(&even, &more, &saved);
+    even.builds = own->builds < baseline->builds ? own->builds : baseline->builds;
+    return even;
+}

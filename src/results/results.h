@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The results of an experiment: dense arrays over workload x candidate x ray kind, filled cell by cell. The
+ * candidate after the last is the null run: the baseline (the first of several) built and measured a second
+ * time. The interval of its ratio to itself should contain 1. */
+#ifndef RT_RESULTS_RESULTS_H
+#define RT_RESULTS_RESULTS_H
+
+#include "core/text/json.h"
+#include "core/text/table.h"
+#include "experiment/experiment.h"
+#include "measure/distribution.h"
+#include "measure/hardware.h"
+#include "measure/machine.h"
+#include "measure/statistics.h"
+
+#include <stdio.h>
+
+#define RT_MAX_LEFT_OUT 512
+
+/* A set of ray kinds: a bit 1 << kind for each. */
+typedef uint32_t RtKinds;
+RtKinds rt_experiment_kinds(const RtExperiment *experiment);
+
+typedef struct RtWorkloadResult {
+    bool known;   /* the scene was opened and its rays recorded */
+    bool skipped; /* optional, and its file is missing */
+    uint32_t objects;
+    uint32_t width, height;                       /* of the frame */
+    uint64_t scene;                               /* rt_scene_fingerprint */
+    uint64_t rays[RT_RAY_KIND_COUNT];             /* in the set, after the limit */
+    uint64_t whole_rays[RT_RAY_KIND_COUNT];       /* in the whole set, before it; 0: unknown, as in results
+                                                     of version 1.0 (rt_workload_record) */
+    uint64_t ray_fingerprints[RT_RAY_KIND_COUNT]; /* of the set */
+} RtWorkloadResult;
+
+/* Rendering the whole frame with an accelerator (`render`). */
+typedef struct RtRenderResult {
+    bool known;
+    uint32_t rounds;
+    int threads;
+    uint32_t machine;   /* one of RtResults.machines */
+    RtEstimate seconds; /* a frame: processor time on one thread, wall time on several */
+    RtEstimate share;   /* of it spent in queries of the accelerator */
+} RtRenderResult;
+
+typedef struct RtBuildResult {
+    bool known, exact, counts;    /* as in RtAccel */
+    char spec[RT_MAX_SPEC_CHARS]; /* every effective parameter */
+    uint32_t builds;              /* timed; 0: unknown, from the journal of an older version */
+    RtEstimate seconds;           /* to build it; of fewer than two builds low = median = high */
+    /* Why no cell of it is measured: the structure's reason if it was `refused`, the time it would take, or
+     * the message of a `broken` plugin; or "". */
+    char left_out[RT_MAX_LEFT_OUT];
+    bool refused; /* rt_accel_refuses: its rows say why */
+    bool broken;  /* a plugin's fault */
+    RtDescription structure;
+    RtDistribution
+        *leaves; /* [RT_LEAF_QUANTITY_COUNT] owned, of the base; NULL: not asked for, or it has none */
+    RtRenderResult render;
+} RtBuildResult;
+
+/* Times of each round in seconds per ray: by the clock of the comparison, by the wall clock, and the
+ * baseline's on the same rays by the clock of the comparison. */
+typedef enum RtRoundTime {
+    RT_ROUND_SECONDS,
+    RT_ROUND_WALL,
+    RT_ROUND_BASELINE,
+    RT_ROUND_TIME_COUNT
+} RtRoundTime;
+
+/* Hardware counters of a cell. */
+#define RT_MAX_WHY 192
+typedef struct RtCellHardware {
+    bool known; /* counted, or there is a reason why not */
+    int threads;
+    uint32_t machine;        /* one of RtResults.machines */
+    RtHardwareCounts counts; /* a ray */
+    char why[RT_MAX_WHY];    /* nothing could be counted; else "" */
+} RtCellHardware;
+
+typedef struct RtCell {
+    bool counted, timed;
+    /* Why it is not measured: the limit that it would exceed, or the message of a `broken` plugin; or "". */
+    char left_out[RT_MAX_LEFT_OUT];
+    bool broken;                   /* a plugin's fault */
+    RtTally tally;                 /* tally.rays: of the thinned set */
+    uint64_t differ;               /* answers that differ from the reference's; 0 for exact accelerators */
+    RtDistribution *distributions; /* [RT_RAY_QUANTITY_COUNT] owned; NULL: not asked for */
+    uint32_t rounds;
+    double repeats;      /* passes over the rays in a round; NAN: unknown, as in older journals */
+    uint32_t structures; /* built anew and timed in turns; 0: unknown, from an older journal */
+    int threads;         /* of the timing */
+    uint32_t machine;    /* that timed it, in RtResults.machines */
+    RtEstimate seconds;  /* per ray: processor time on one thread, wall time on several */
+    RtEstimate wall;     /* per ray, by the wall clock */
+    RtEstimate ratio;    /* of throughput to the baseline's on the same rays, paired by round */
+    double *round_times; /* [RT_ROUND_TIME_COUNT][rounds] owned; NULL: not kept */
+    uint32_t baseline;   /* its candidate: of several the fastest on these rays */
+    RtCellHardware hardware;
+} RtCell;
+
+typedef struct RtResults {
+    const RtExperiment *experiment; /* borrowed */
+    RtWorkloadResult workloads[RT_MAX_WORKLOADS];
+    RtBuildResult *builds;               /* see rt_build_at */
+    RtCell *cells;                       /* see rt_cell_at */
+    RtMachine machines[RT_MAX_MACHINES]; /* the first is the unknown one */
+    uint32_t machine_count;
+    bool old_rows;        /* tables have no rows of refused accelerators, like files of version 1.0 */
+    json_t *first_claims; /* owned: the list of claims when the run began, from its journal; NULL: unknown */
+} RtResults;
+
+/* All unknown. Clear with rt_results_clear, also after a failure. */
+RtStatus rt_results_init(RtResults *results, const RtExperiment *experiment, RtError *error);
+void rt_results_clear(RtResults *results);
+
+/* The index of a machine in the results, which adds it; 0 if there are too many. */
+uint32_t rt_results_machine(RtResults *results, const RtMachine *machine);
+
+/* Places in the arrays; candidate = candidate_count is the null run. */
+RtBuildResult *rt_build_at(const RtResults *results, uint32_t workload, uint32_t candidate);
+RtCell *rt_cell_at(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind);
+
+/* Allocates the times of the cell's `rounds` rounds; returns one kind of them, [rounds]. */
+RtStatus rt_cell_make_round_times(RtCell *cell, RtError *error);
+double *rt_cell_round_times(const RtCell *cell, RtRoundTime which);
+
+/* Stands for the baseline that ratios refer to, the fastest of several on the rays of each cell. */
+#define RT_FASTEST_BASELINE UINT32_MAX
+
+/* The candidate that stands for `candidate` on these rays: itself; for RT_FASTEST_BASELINE the baseline,
+ * or RT_FASTEST_BASELINE where nothing was timed. */
+uint32_t rt_results_candidate(const RtResults *results, uint32_t workload, uint32_t candidate,
+                              RtRayKind kind);
+
+/* The candidate's label; for the null run the baseline's and " (again)"; for RT_FASTEST_BASELINE
+ * rt_baseline_label. */
+const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidate);
+
+/* The same for a screen (RtWorkload.shown). */
+#define RT_MAX_SHOWN (RT_MAX_LABEL + 8)
+void rt_candidate_show(const RtExperiment *experiment, uint32_t candidate, char out[RT_MAX_SHOWN]);
+
+/* Every cell of the experiment except null runs, scene by scene, accelerator by accelerator:
+ *     for (RtCellCursor at = {0}; rt_results_next(results, &at);) use(at.cell); */
+typedef struct RtCellCursor {
+    uint32_t next, workload, candidate;
+    RtRayKind kind;
+    RtCell *cell;
+} RtCellCursor;
+bool rt_results_next(const RtResults *results, RtCellCursor *at);
+
+/* Fewer rays than this, repeated more often than that within a round, take less time than they would among
+ * the rays of a frame: branch predictors and caches have learnt them. A ray depends on tens of branches and
+ * reads tens of cache lines; predictors and second-level caches hold some ten thousand. experiments/README.md
+ * shows the effect. */
+#define RT_LEARNT_RAYS    1024
+#define RT_LEARNT_REPEATS 4
+
+/* The number of measured cells, and of their scenes. */
+uint64_t rt_results_size(const RtResults *results, uint32_t *scenes);
+
+/* The number of null runs, and of those whose interval contains 1. */
+void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddling);
+
+/* RT_BROKEN with the first plugin that broke, if any did; RT_BAD_INPUT if all accelerators refused all
+ * scenes. */
+RtStatus rt_results_check(const RtResults *results, RtError *error);
+
+/* Whether the candidate was refused on the workload; of several baselines, whether all were. */
+bool rt_results_refused(const RtResults *results, uint32_t workload, uint32_t candidate);
+
+/* Notes why a candidate is left out of a workload: as in RtBuildResult. */
+void rt_results_leave_out(RtResults *results, uint32_t workload, uint32_t candidate, const char *why,
+                          bool refused, bool broken);
+
+/* Prints a line for each structure and each cell that was left out, with the reason. */
+void rt_print_left_out(const RtResults *results, FILE *out);
+
+/* Whether any candidate was measured on the workload's rays of that kind. */
+bool rt_results_has_kind(const RtResults *results, uint32_t workload, RtRayKind kind);
+
+/* What a ray kind weighs in every sum over kinds: the rays of its whole set, so that a lower limit changes no
+ * total; of the measured set if the size of the whole is unknown. */
+double rt_results_weight(const RtResults *results, uint32_t workload, RtRayKind kind);
+
+/* Beside a total: "of 326921 rays, 152585 measured", or "of the measured part" if the size of a whole set is
+ * unknown. `workloads`: a bit 1 << t for each. */
+#define RT_MAX_PART_TEXT 64
+void rt_results_say_part(const RtResults *results, uint32_t workloads, RtKinds kinds,
+                         char out[RT_MAX_PART_TEXT]);
+
+/* Counters of costs: X(name), as in RtTally. */
+#define RT_COST_COUNTERS(X)                                                                                  \
+    X(hits) X(object_tests) X(extent_tests) X(steps) X(leaf_steps) X(empty_steps) X(csg_tests)
+
+/* A cost: of a ray, or the total of many. Unknown values are NAN. */
+typedef struct RtCost {
+    bool whole;    /* it includes all kinds of rays that it is asked for */
+    uint64_t rays; /* measured */
+    double weight; /* rays that it stands for */
+#define RT_COST_COUNTER(name) double name;
+    RT_COST_COUNTERS(RT_COST_COUNTER)
+#undef RT_COST_COUNTER
+    RtEstimate seconds; /* of several kinds the weighted ends of their intervals: conservative */
+    RtEstimate saved;   /* wall seconds less than the baseline on the same rays, conservative; no `least` */
+    RtEstimate ratio;   /* of throughput to the baseline's on the same rays; of several kinds the median */
+} RtCost;
+
+/* The cost of a ray: of one kind, or of all kinds of the experiment together (RT_ALL_RAYS), each with its
+ * weight; all candidates of a workload use the kinds that any of them was measured on. `candidate` may be
+ * RT_FASTEST_BASELINE. */
+RtCost rt_results_cost(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind);
+
+/* The total of the whole sets of several kinds: the cost of a ray of each times its weight. */
+RtCost rt_results_total(const RtResults *results, uint32_t workload, uint32_t candidate, RtKinds kinds);
+
+/* The break-even with the baseline: the number of rays, of all kinds by their weights, from which
+ * on a candidate takes less time than the baseline, builds included (of several baselines the shortest
+ * build); or up to which, if it builds faster and traces slower. The interval follows from the ends of those
+ * of builds, ratios and times, and so is conservative. Assumes builds on as many threads as the timing. */
+typedef struct RtBreakEven {
+    bool up_to;      /* faster for at most so many rays; else for at least so many */
+    RtEstimate rays; /* each 0..INFINITY; NAN: unknown, or the baseline itself. `least` is NAN */
+    uint32_t builds; /* the fewest of a structure; fewer than two have no interval, nor has this then */
+} RtBreakEven;
+
+RtBreakEven rt_results_break_even(const RtResults *results, uint32_t workload, uint32_t candidate);
+
+/* The most rounds of any timed cell of a workload, null runs included, and in *least the fewest; 0 if nothing
+ * was timed. */
+uint32_t rt_results_rounds(const RtResults *results, uint32_t workload, uint32_t *least);
+
+#endif

@@ -1,0 +1,304 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A workload in order: record, build, and for each kind of rays count, time, and read hardware counters. */
+#include "core/base/memory.h"
+#include "core/base/words.h"
+#include "measure/ray_file.h"
+#include "run/workload_state.h"
+#include "scenes/open.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+/* ---- what is unknown ---- */
+
+static bool is_asked(const RtWorkloadState *workload, uint32_t c, RtRayKind kind) {
+    return rt_selection_has(&workload->options->only, workload->experiment, workload->index, c, kind);
+}
+
+static bool kind_is_done(const RtWorkloadState *workload, RtRayKind kind) {
+    for (uint32_t c = 0; c < workload->count; c++) {
+        const RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
+        bool null = c == workload->experiment->candidate_count;
+        if (!is_asked(workload, c, kind) || !rt_workload_runs(workload, c) || *cell->left_out) continue;
+        if ((!cell->counted && !null) || (!cell->timed && !workload->count_only)) return false;
+        if (workload->hardware && !cell->hardware.known && !null) return false;
+        if (workload->distributions && !cell->distributions && !null) return false;
+    }
+    return true;
+}
+
+static bool workload_is_done(const RtWorkloadState *workload) {
+    const RtWorkloadResult *result = &workload->results->workloads[workload->index];
+    if (!rt_selection_has_scene(&workload->options->only, workload->experiment, workload->index)) return true;
+    if (result->skipped || !result->known) return result->skipped;
+    for (uint32_t c = 0; c < workload->count; c++) {
+        const RtBuildResult *build = rt_build_at(workload->results, workload->index, c);
+        if (rt_workload_runs(workload, c) && !build->known) return false;
+        if (rt_workload_renders(workload, c) && !build->render.known) return false;
+    }
+    for (uint32_t k = 0; k < workload->experiment->kind_count; k++) {
+        RtRayKind kind = workload->experiment->kinds[k];
+        if (result->rays[kind] && !kind_is_done(workload, kind)) return false;
+    }
+    return true;
+}
+
+/* ---- the scene ---- */
+
+RtStatus rt_workload_open_scene(const RtWorkload *workload, RtScene *scene, RtError *error) {
+    *scene = (RtScene){0};
+    if (!workload->file || rt_file_exists(workload->path)) return rt_scene_open(workload->path, scene, error);
+    if (rt_file_is_dead_link(workload->path, error)) return RT_BAD_INPUT;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "%s: there is no such file; `scenes/fetch.sh` fetches the public meshes", workload->path);
+}
+
+RtStatus rt_workload_open(RtResults *results, uint32_t index, const RtWorkloadOptions *options,
+                          RtScene *scene, RtError *error) {
+    const RtWorkload *setup = &results->experiment->workloads[index];
+    *scene = (RtScene){0};
+    if (!setup->optional || !setup->file || rt_file_exists(setup->path))
+        return rt_workload_open_scene(setup, scene, error);
+    rt_notify(&options->observer,
+              "%s is missing, so '%s' is skipped; `scenes/fetch.sh` fetches the public meshes", setup->path,
+              setup->label);
+    results->workloads[index].skipped = true;
+    return RT_OK;
+}
+
+/* ---- the rays ---- */
+
+/* Keeps at most `limit` rays of each kind that the experiment asks for. */
+static RtStatus keep_sets(const RtExperiment *experiment, const RtScene *scene, const RtRaySet *recorded,
+                          RtRaySet *sets, uint64_t *whole_rays, RtError *error) {
+    const uint64_t samples = (uint64_t)scene->sampling.columns * scene->sampling.rows;
+    for (uint32_t k = 0; k < experiment->kind_count; k++) {
+        RtRayKind kind = experiment->kinds[k];
+        whole_rays[kind] = kind == RT_RAY_RANDOM ? samples : recorded[kind].count;
+        RT_TRY(rt_rayset_limit(&recorded[kind], experiment->limit, experiment->coherent_run, &sets[kind],
+                               error));
+    }
+    return RT_OK;
+}
+
+RtStatus rt_workload_record(const RtExperiment *experiment, uint32_t index, int threads, RtScene *scene,
+                            RtAccel **reference, RtRaySet *sets, uint64_t *whole_rays, RtError *error) {
+    const RtWorkload *setup = &experiment->workloads[index];
+    RtRecording recording = {.depth = setup->depth,
+                             .seed = experiment->seed,
+                             .random = experiment->limit,
+                             .threads = threads,
+                             .light_from_outside = setup->light_from_outside};
+    RtRaySet recorded[RT_RAY_KIND_COUNT] = {0};
+    for (uint32_t k = 0; k < experiment->kind_count; k++) recording.kinds |= 1u << experiment->kinds[k];
+    RT_TRY(rt_scene_sample(scene, setup->width, setup->height, 1, setup->corners, error));
+    RT_TRY(rt_accel_open_on(rt_accel_default(), scene, threads, reference, error));
+    if (*experiment->rays_from) {
+        RtRayKind kind = experiment->kinds[0];
+        RT_TRY(rt_rays_load(experiment->rays_from, kind, &sets[kind], error));
+        whole_rays[kind] = sets[kind].count;
+        return RT_OK;
+    }
+    RtStatus status = rt_rayset_record(recorded, *reference, &recording, error);
+    if (status == RT_OK) status = keep_sets(experiment, scene, recorded, sets, whole_rays, error);
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&recorded[k]);
+    return status;
+}
+
+/* Records the rays; fills the workload's part of the results, or compares it with the previous run's. */
+static RtStatus prepare(RtWorkloadState *workload, RtError *error) {
+    uint64_t whole_rays[RT_RAY_KIND_COUNT] = {0};
+    RT_TRY(rt_workload_record(workload->experiment, workload->index, workload->options->threads,
+                              workload->scene, &workload->reference, workload->sets, whole_rays, error));
+    RtWorkloadResult *result = &workload->results->workloads[workload->index];
+    RtWorkloadResult now = {.known = true,
+                            .objects = workload->scene->geometry.object_count,
+                            .width = workload->scene->sampling.width,
+                            .height = workload->scene->sampling.height,
+                            .scene = rt_scene_fingerprint(workload->scene)};
+    bool same = now.scene == result->scene;
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        now.rays[k] = workload->sets[k].count;
+        now.whole_rays[k] = whole_rays[k];
+        now.ray_fingerprints[k] = workload->sets[k].fingerprint;
+        same &= now.ray_fingerprints[k] == result->ray_fingerprints[k];
+    }
+    if (result->known && !same) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "'%s' has changed since this run was interrupted: start over with --force",
+                       workload->experiment->workloads[workload->index].label);
+    }
+    if (result->known) return RT_OK;
+    *result = now;
+    return rt_workload_tell(workload, RT_EVENT_WORKLOAD, 0, RT_RAY_PRIMARY, error);
+}
+
+/* ---- a kind of rays ---- */
+
+/* Selects accelerators that are not known to exceed a limit, or to break. */
+static RtStatus choose_accels(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
+    for (uint32_t c = 0; c < workload->count; c++) {
+        const RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
+        RtStatus status = rt_workload_rebuild(workload, c, error);
+        const bool traces = status == RT_OK && !*cell->left_out && is_asked(workload, c, kind);
+        workload->accels[c] = traces ? workload->built[c] : NULL;
+        if (status != RT_OK) RT_TRY(rt_workload_break(workload, c, kind, error));
+    }
+    return RT_OK;
+}
+
+static RtStatus measure_kind(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
+    if (workload->sets[kind].count == 0 || kind_is_done(workload, kind)) return RT_OK;
+    RT_TRY(choose_accels(workload, kind, error));
+    RtStatus status = rt_workload_count(workload, kind, error);
+    if (status == RT_OK && workload->options->rays)
+        status = workload->options->rays(workload->options->rays_context, workload->index,
+                                         &workload->sets[kind], workload->reference, error);
+    if (status == RT_OK && workload->options->timer) {
+        status = workload->options->timer(workload->options->timer_context, workload, kind, error);
+    } else if (status == RT_OK && !workload->count_only) {
+        status = rt_workload_time(workload, kind, error);
+    }
+    if (status == RT_OK && workload->hardware) status = rt_workload_hardware(workload, kind, error);
+    rt_free(workload->answers);
+    workload->answers = NULL;
+    return status;
+}
+
+/* Without rays of any kind the tables would be empty. */
+static void notify_empty(const RtWorkloadState *workload) {
+    const RtExperiment *experiment = workload->experiment;
+    const char *names[RT_RAY_KIND_COUNT];
+    char list[128];
+    for (uint32_t k = 0; k < experiment->kind_count; k++) {
+        if (workload->sets[experiment->kinds[k]].count > 0) return;
+        names[k] = rt_experiment_kind_name(experiment, experiment->kinds[k]);
+    }
+    rt_join_names(names, experiment->kind_count, list, sizeof list);
+    rt_notify(
+        &workload->options->observer,
+        "%s: there are no rays to measure (%s): no surface, light or material in its image causes them; "
+        "choose other kinds (--rays; in an experiment `rays`) or a larger image",
+        experiment->workloads[workload->index].label, list);
+}
+
+static RtStatus measure(RtWorkloadState *workload, RtError *error) {
+    RT_TRY(prepare(workload, error));
+    notify_empty(workload);
+    RT_TRY(rt_workload_build(workload, error));
+    for (uint32_t k = 0; k < workload->experiment->kind_count; k++) {
+        RT_TRY(measure_kind(workload, workload->experiment->kinds[k], error));
+    }
+    return rt_workload_render(workload, error);
+}
+
+static RtWorkloadState state_of(RtResults *results, uint32_t index, const RtWorkloadOptions *options) {
+    RtWorkloadState workload = {
+        .results = results, .experiment = results->experiment, .options = options, .index = index};
+    workload.count_only = options->count_only || workload.experiment->count_only;
+    workload.hardware = workload.experiment->hardware && !workload.count_only && !options->timer;
+    workload.distributions = workload.experiment->distributions && !options->timer;
+    workload.count = workload.experiment->candidate_count + (!workload.count_only && !options->timer);
+    return workload;
+}
+
+bool rt_workload_is_done(RtResults *results, uint32_t index, const RtWorkloadOptions *options) {
+    RtWorkloadState workload = state_of(results, index, options);
+    return workload_is_done(&workload);
+}
+
+RtStatus rt_workload_measure(RtResults *results, uint32_t index, const RtWorkloadOptions *options,
+                             RtScene *scene, RtError *error) {
+    RtWorkloadState workload = state_of(results, index, options);
+    workload.scene = scene;
+    if (workload_is_done(&workload)) return RT_OK;
+    RtStatus status = measure(&workload, error);
+    for (uint32_t c = 0; c < workload.count; c++) rt_workload_destroy(&workload, c);
+    rt_accel_destroy(workload.reference);
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&workload.sets[k]);
+    return status;
+}
+
+RtStatus rt_workloads_run(RtResults *results, const RtWorkloadOptions *options, RtError *error) {
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        RtScene scene;
+        if (rt_workload_is_done(results, t, options)) continue;
+        RT_TRY(rt_workload_open(results, t, options, &scene, error));
+        RtStatus status = rt_workload_measure(results, t, options, &scene, error);
+        rt_scene_clear(&scene);
+        RT_TRY(status);
+    }
+    return RT_OK;
+}
+
+bool rt_workload_runs(const RtWorkloadState *workload, uint32_t c) {
+    return rt_candidate_runs(workload->experiment, c, workload->index) &&
+           rt_selection_has(&workload->options->only, workload->experiment, workload->index, c,
+                            RT_ALL_RAYS) &&
+           !*rt_build_at(workload->results, workload->index, c)->left_out;
+}
+
+/* ---- reports ---- */
+
+void rt_notify(const RtRunObserver *observer, const char *format, ...) {
+    char message[RT_MAX_PATH + 1024];
+    va_list args;
+    if (!observer->notice) return;
+    va_start(args, format);
+    /* clang-tidy 14 does not see va_start. NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized) */
+    vsnprintf(message, sizeof message, format, args);
+    va_end(args);
+    observer->notice(observer->context, message);
+}
+
+RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKind what, RtRayKind kind,
+                               RtCause cause, RtError *error, const char *why, ...) {
+    const RtExperiment *experiment = workload->experiment;
+    const bool broken = cause == RT_CAUSE_BROKEN, refused = cause == RT_CAUSE_REFUSED;
+    const bool null = c == experiment->candidate_count;
+    const char *label = rt_candidate_label(experiment, c);
+    const char *scene = experiment->workloads[workload->index].label;
+    char text[RT_MAX_LEFT_OUT];
+    va_list args;
+    va_start(args, why);
+    /* clang-tidy 14 does not see va_start. NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized) */
+    vsnprintf(text, sizeof text, why, args);
+    va_end(args);
+    if (!refused && (null || rt_candidate_is_baseline(experiment, c)))
+        return rt_fail(error, broken ? RT_BROKEN : RT_BAD_INPUT, "the baseline '%s' %s on '%s': %s", label,
+                       broken ? "is broken" : "is left out", scene, text);
+    if (what == RT_EVENT_NO_BUILD) {
+        rt_results_leave_out(workload->results, workload->index, c, text, refused, broken);
+    } else {
+        RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
+        strcpy(cell->left_out, text);
+        cell->broken = broken;
+    }
+    if (!null)
+        rt_notify(&workload->options->observer, "%s on %s: %s%s", label, scene,
+                  broken    ? ""
+                  : refused ? "refused: "
+                            : "left out: ",
+                  text);
+    if (!null && refused && rt_results_refused(workload->results, workload->index, RT_FASTEST_BASELINE) &&
+        rt_candidate_is_baseline(experiment, c))
+        rt_notify(&workload->options->observer, "%s: without the baseline '%s' there are no ratios", scene,
+                  rt_baseline_label(experiment));
+    return rt_workload_tell(workload, what, c, kind, error);
+}
+
+RtStatus rt_workload_break(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtError *error) {
+    workload->accels[c] = NULL;
+    return rt_workload_leave_out(workload, c, RT_EVENT_NO_CELL, kind, RT_CAUSE_BROKEN, error, "%s",
+                                 error->message);
+}
+
+RtStatus rt_workload_exclude_broken(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
+    for (uint32_t c = 0; c < workload->count; c++) {
+        const RtAccel *accel = workload->accels[c];
+        if (!accel || rt_accel_check(accel, error) == RT_OK) continue;
+        RT_TRY(rt_workload_break(workload, c, kind, error));
+    }
+    return RT_OK;
+}

@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A workload: one scene of an experiment, with every candidate measured on the rays recorded from it. Results
+ * that are known from an earlier, interrupted run are not measured again. */
+#ifndef RT_RUN_WORKLOAD_H
+#define RT_RUN_WORKLOAD_H
+
+#include "core/text/npz.h"
+#include "experiment/selection.h"
+#include "rays/rayset.h"
+#include "results/journal.h"
+
+/* Seconds for each build that the experiment asks for: a structure is not built again once all its builds
+ * together have taken that long. */
+#define RT_BUILD_BUDGET 0.15
+
+/* Seconds for building a structure anew in each round of timing, if tracing takes no longer. */
+#define RT_RENEWAL_BUDGET 0.05
+
+/* Callbacks, called on the thread that runs the workload; each may be NULL. A status other than RT_OK ends
+ * the workload with that status. */
+typedef struct RtRunObserver {
+    void *context;
+    RtStatus (*event)(void *context, const RtResults *results, const RtEvent *event, RtError *error);
+    void (*notice)(void *context, const char *message);
+} RtRunObserver;
+
+/* Formats a notice like printf, and passes it to the observer. */
+__attribute__((format(printf, 2, 3))) void rt_notify(const RtRunObserver *observer, const char *format, ...);
+
+struct RtWorkloadState; /* run/workload_state.h */
+
+typedef struct RtWorkloadOptions {
+    int threads;     /* for recording, building and counting; 0 = all processors; changes no count */
+    int timing;      /* threads for timing, usually 1 */
+    bool count_only; /* no timing */
+    RtSelection only;
+    double until;    /* rounds continue until all intervals of ratios are within this part of their medians:
+                        0.01; 0: as many rounds as in the experiment */
+    double patience; /* most seconds of that for a kind of rays on a scene */
+    /* Open files that get the hit and the cost of each ray of every cell (measure/ray_file.h), as the array
+     * SCENE/ACCELERATOR/KIND, by labels; or NULL. Those that are no archives take one cell. */
+    RtArrayFile *hits, *counts;
+    RtRunObserver observer;
+    const RtHardwareEvent *events; /* [RT_HARDWARE_COUNT] instead of rt_hardware_events, or NULL */
+    /* Gets the recorded rays of each kind, and the exact accelerator that answers them; or NULL. */
+    RtStatus (*rays)(void *context, uint32_t workload, const RtRaySet *set, const RtAccel *exact,
+                     RtError *error);
+    void *rays_context;
+    /* Replaces the timing of one kind of rays; then there is no null run. Or NULL. */
+    RtStatus (*timer)(void *context, struct RtWorkloadState *workload, RtRayKind kind, RtError *error);
+    void *timer_context;
+} RtWorkloadOptions;
+
+/* Records the rays of workload number `index` on its scene, whose sampling it sets; or reads them from a
+ * file, if the experiment names one. At most the experiment's limit of each of its kinds, to
+ * sets[RT_RAY_KIND_COUNT]; the size of each whole set, before the limit, to whole_rays[RT_RAY_KIND_COUNT].
+ * There could be any number of random rays: their whole set has one for each sample of the frame, so that it
+ * does not depend on the limit either. *reference is the exact accelerator that recorded them. Destroy and
+ * clear both, also after a failure. */
+RtStatus rt_workload_record(const RtExperiment *experiment, uint32_t index, int threads, RtScene *scene,
+                            RtAccel **reference, RtRaySet *sets, uint64_t *whole_rays, RtError *error);
+
+/* Whether all results of workload number `index` are known. */
+bool rt_workload_is_done(RtResults *results, uint32_t index, const RtWorkloadOptions *options);
+
+/* Whether the experiment asks for frames rendered with candidate `c`: not with the null run, plugins, and
+ * candidates that are measured on a part of the rays. */
+bool rt_candidate_renders(const RtExperiment *experiment, uint32_t c);
+
+/* Opens the scene of a workload. Clear it with rt_scene_clear. */
+RtStatus rt_workload_open_scene(const RtWorkload *workload, RtScene *scene, RtError *error);
+
+/* The same; but if the scene is optional and missing, it stays empty, and the workload is skipped with a
+ * notice. */
+RtStatus rt_workload_open(RtResults *results, uint32_t index, const RtWorkloadOptions *options,
+                          RtScene *scene, RtError *error);
+
+/* Measures the unknown results of the workload on its scene, whose sampling it changes. RT_MISMATCH if an
+ * exact accelerator gives a wrong answer, or another number of hits. */
+RtStatus rt_workload_measure(RtResults *results, uint32_t index, const RtWorkloadOptions *options,
+                             RtScene *scene, RtError *error);
+
+/* Opens and measures each workload that is not done. */
+RtStatus rt_workloads_run(RtResults *results, const RtWorkloadOptions *options, RtError *error);
+
+#endif
