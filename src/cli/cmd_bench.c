@@ -19,7 +19,7 @@ typedef struct Options {
     RtRecordingOptions recording;
     const char *scene, *baseline, *csv, *hits, *counts;
     RtWorkloadOptions workload;
-    bool json, hardware, distributions;
+    bool json, distributions;
     uint32_t rounds;   /* 0: the default */
     uint32_t builds;   /* 0: the default */
     uint64_t memory;   /* bytes for each accelerator; 0: no limit */
@@ -104,10 +104,7 @@ static void finish(void *options, struct argp_state *state) {
     if (o->threads >= 0) o->workload.threads = o->workload.timing = o->threads;
     if (o->workload.until > 0 && e->rounds < RT_FULL_ROUNDS) e->rounds = RT_FULL_ROUNDS;
     e->limit_bytes = o->memory;
-    e->hardware = o->hardware;
     e->distributions = o->distributions;
-    if (o->hardware && o->workload.count_only)
-        argp_error(state, "--hardware needs timed rays, and --count-only times nothing: leave one out");
     rt_recording_finish(&o->recording, state);
     check_rows(o, state);
 }
@@ -140,14 +137,11 @@ static const RtOption options[] = {
      "depths over the leaves. Medians, 99th percentiles and maxima reveal the few rays that cost a hundred "
      "times the mean. --json adds all percentiles and the histograms. In an experiment: `distributions: "
      "yes`"},
-    {"hardware", 0, NULL, RT_TO_FLAG(hardware),
-     "Also show the processor's counters per ray: instructions, cycles, last-level cache misses, branch "
-     "mispredictions. They are read in separate rounds, so times do not change, and exclude the kernel. If "
-     "there are none, raytally says why. In an experiment: `hardware: yes`"},
+    RT_GONE("hardware", "run raytally under `perf stat`, see docs/guide/faq.md, or use --callgrind"),
     {"callgrind", 0, "N", RT_TO_TAKE_OPTIONAL(rt_recording_take_callgrind),
-     "Also show instructions per ray, counted by valgrind's callgrind: exact, the same on every run, and "
-     "available where --hardware is not. raytally builds each accelerator again under valgrind, which is "
-     "many times slower, and traces N rays of each kind (4096), without AVX-512, which valgrind lacks"},
+     "Also show instructions per ray, counted by valgrind's callgrind: exact, and the same on every run. "
+     "raytally builds each accelerator again under valgrind, which is many times slower, and traces N rays "
+     "of each kind (4096), without AVX-512, which valgrind lacks"},
     {"worker", 0, NULL, RT_TO_HIDDEN_FLAG(worker), NULL}, /* experiment/worker.h */
     {"csv", 0, "FILE", RT_TO_TEXT(csv),
      "Also write a row per cell to FILE, in the columns of times.csv, or of counts.csv with --count-only"},
@@ -205,13 +199,11 @@ static void print_json(const RtResults *results, const RtCallgrind *callgrind) {
                             scenes, "seed", (json_int_t)e->seed, "rounds", (json_int_t)e->rounds, "baseline",
                             rt_baseline_label(e), "rows", rows, "null_runs", nulls);
     RtDistributionRow distribution = {.results = results};
-    RtResultRow cell = {.results = results};
     RtInstructionsRow instructions = {.callgrind = callgrind};
     if (e->distributions) {
         add_table(all, "distributions", rt_distribution_table(RT_DISTRIBUTIONS, &distribution));
         add_table(all, "histograms", rt_distribution_table(RT_HISTOGRAMS, &distribution));
     }
-    if (e->hardware) add_table(all, "hardware", rt_result_table(RT_HARDWARE, &cell));
     if (callgrind->count) add_table(all, "instructions", rt_instructions_table(&instructions));
     rt_cli_print_json(all);
 }
@@ -237,7 +229,6 @@ static RtStatus report(const Options *o, const RtResults *results, const RtCallg
     }
     rt_print_results(results, RT_CELLS, stdout);
     rt_print_left_out(results, stdout);
-    if (e->hardware) rt_print_hardware(results, stdout);
     if (callgrind->count) rt_print_instructions(callgrind, stdout);
     if (e->distributions) rt_print_distributions(results, stdout);
     rt_null_sentence(results, sentence);

@@ -283,6 +283,7 @@ static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
     RtRunOptions *how = &o->how;
     RtResults results;
     RT_TRY(load(o, experiment, error));
+    if (*experiment->warning.message) fprintf(stderr, "raytally: %s\n", experiment->warning.message);
     RT_TRY(check_part(experiment, &how->workload.only, error));
     if (how->workload.until > 0 && experiment->rounds < RT_FULL_ROUNDS) experiment->rounds = RT_FULL_ROUNDS;
     if (o->memory) experiment->limit_bytes = o->memory;

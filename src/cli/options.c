@@ -67,6 +67,7 @@ static void take_value(const RtOptionValue *value, const char *name, char *optio
     case RT_OPTION_PIXEL: read_pixel(state, name, text, at); return;
     case RT_OPTION_PATH: rt_cli_set_path(state, name, (const char **)at, text, value->endings); return;
     case RT_OPTION_TAKE: value->take(options, text, state); return;
+    case RT_OPTION_GONE: argp_error(state, "%s is no longer there: %s", name, value->instead); return;
     }
 }
 

@@ -76,7 +76,6 @@ static void describe(RtProgress *progress, const RtResults *results, const RtEve
                                        [RT_EVENT_COUNT] = "counted",
                                        [RT_EVENT_TIME] = "timed",
                                        [RT_EVENT_DISTRIBUTION] = "distributed",
-                                       [RT_EVENT_HARDWARE] = "hardware counters",
                                        [RT_EVENT_RENDER] = "rendered",
                                        [RT_EVENT_NO_BUILD] = "left out",
                                        [RT_EVENT_NO_CELL] = "left out"};

@@ -9,7 +9,6 @@
 #include "core/text/table.h"
 #include "experiment/experiment.h"
 #include "measure/distribution.h"
-#include "measure/hardware.h"
 #include "measure/machine.h"
 #include "measure/statistics.h"
 
@@ -68,16 +67,6 @@ typedef enum RtRoundTime {
     RT_ROUND_TIME_COUNT
 } RtRoundTime;
 
-/* Hardware counters of a cell. */
-#define RT_MAX_WHY 192
-typedef struct RtCellHardware {
-    bool known; /* counted, or there is a reason why not */
-    int threads;
-    uint32_t machine;        /* one of RtResults.machines */
-    RtHardwareCounts counts; /* a ray */
-    char why[RT_MAX_WHY];    /* nothing could be counted; else "" */
-} RtCellHardware;
-
 typedef struct RtCell {
     bool counted, timed;
     /* Why it is not measured: the limit that it would exceed, or the message of a `broken` plugin; or "". */
@@ -96,7 +85,6 @@ typedef struct RtCell {
     RtEstimate ratio;    /* of throughput to the baseline's on the same rays, paired by round */
     double *round_times; /* [RT_ROUND_TIME_COUNT][rounds] owned; NULL: not kept */
     uint32_t baseline;   /* its candidate: of several the fastest on these rays */
-    RtCellHardware hardware;
 } RtCell;
 
 typedef struct RtResults {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A workload in order: record, build, and for each kind of rays count, time, and read hardware counters. */
+/* A workload in order: record, build, and for each kind of rays count and time. */
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "experiment/workload_state.h"
@@ -18,7 +18,6 @@ static bool kind_is_done(const RtWorkloadState *workload, RtRayKind kind) {
         bool null = c == workload->experiment->candidate_count;
         if (!is_asked(workload, c, kind) || !rt_workload_runs(workload, c) || *cell->left_out) continue;
         if ((!cell->counted && !null) || (!cell->timed && !workload->count_only)) return false;
-        if (workload->hardware && !cell->hardware.known && !null) return false;
         if (workload->distributions && !cell->distributions && !null) return false;
     }
     return true;
@@ -156,7 +155,6 @@ static RtStatus measure_kind(RtWorkloadState *workload, RtRayKind kind, RtError 
     } else if (status == RT_OK && !workload->count_only) {
         status = rt_workload_time(workload, kind, error);
     }
-    if (status == RT_OK && workload->hardware) status = rt_workload_hardware(workload, kind, error);
     rt_free(workload->answers);
     workload->answers = NULL;
     return status;
@@ -193,7 +191,6 @@ static RtWorkloadState state_of(RtResults *results, uint32_t index, const RtWork
     RtWorkloadState workload = {
         .results = results, .experiment = results->experiment, .options = options, .index = index};
     workload.count_only = options->count_only || workload.experiment->count_only;
-    workload.hardware = workload.experiment->hardware && !workload.count_only && !options->timer;
     workload.distributions = workload.experiment->distributions && !options->timer;
     workload.count = workload.experiment->candidate_count + (!workload.count_only && !options->timer);
     return workload;

@@ -21,7 +21,6 @@ typedef enum RtEventKind {
     RT_EVENT_COUNT,        /* the cell is counted */
     RT_EVENT_DISTRIBUTION, /* the cell has its distributions */
     RT_EVENT_TIME,         /* the cell is timed */
-    RT_EVENT_HARDWARE,     /* the cell has hardware counts, or the reason why not */
     RT_EVENT_RENDER,       /* rendering with `candidate` is timed */
     RT_EVENT_NO_BUILD,     /* `candidate` is left out: it refuses the scene, took too long, or broke */
     RT_EVENT_NO_CELL /* the cell is left out: it would exceed a limit, or `candidate` broke on its rays */
@@ -89,7 +88,6 @@ typedef struct RtWorkloadOptions {
      * SCENE/ACCELERATOR/KIND, by labels; or NULL. Those that are no archives take one cell. */
     RtArrayFile *hits, *counts;
     RtRunObserver observer;
-    const RtHardwareEvent *events; /* [RT_HARDWARE_COUNT] instead of rt_hardware_events, or NULL */
     /* Gets the recorded rays of each kind, and the exact accelerator that answers them; or NULL. */
     RtStatus (*rays)(void *context, uint32_t workload, const RtRaySet *set, const RtAccel *exact,
                      RtError *error);

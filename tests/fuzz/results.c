@@ -143,7 +143,6 @@ static void use_results(void) {
     for (RtResultFile file = 0; file < RT_RESULT_FILE_COUNT; file++) rt_result_csv_write(file, &results, out);
     rt_print_results(&results, RT_CELLS, out);
     rt_print_results(&results, RT_COUNTED_CELLS, out);
-    rt_print_hardware(&results, out);
     rt_print_summary(&results, out);
     rt_print_left_out(&results, out);
     rt_print_frames(&results, out);
