@@ -34,7 +34,24 @@ void rt_progress_notice(void *context, const char *message) {
     fprintf(stderr, "raytally: %s\n", message);
 }
 
-/* ---- time left ---- */
+/* ---- cells and time ---- */
+
+RtCellCount rt_count_cells(const RtResults *results, const RtWorkloadOptions *options) {
+    const RtExperiment *e = results->experiment;
+    const bool count_only = options->count_only || e->count_only;
+    RtCellCount count = {0, 0};
+    for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
+        const RtWorkloadResult *workload = &results->workloads[at.workload];
+        const bool no_rays = workload->known && !workload->rays[at.kind];
+        if (workload->skipped || no_rays || *rt_build_at(results, at.workload, at.candidate)->left_out ||
+            *at.cell->left_out || !rt_candidate_runs(e, at.candidate, at.workload) ||
+            !rt_only_cell(&options->only, e, at.workload, at.candidate, at.kind))
+            continue;
+        count.cells++;
+        count.finished += at.cell->counted && (at.cell->timed || count_only);
+    }
+    return count;
+}
 
 void rt_format_duration(double seconds, char out[RT_MAX_DURATION]) {
     int minutes = (int)fmin(round(seconds / 60), 1e8);
@@ -46,26 +63,28 @@ void rt_format_duration(double seconds, char out[RT_MAX_DURATION]) {
         snprintf(out, RT_MAX_DURATION, "%d h %d min", minutes / 60, minutes % 60);
 }
 
-/* Seconds left, from the forecast and the speed so far; NAN if unknown. */
+/* Seconds left if all cells take as long as those measured so far; NAN if there are none. */
 static double left_of(const RtProgress *progress, double now) {
-    double left = rt_forecast_left(&progress->forecast, progress->before, progress->asked - progress->start);
-    return isnan(left) ? left : fmax(left - (now - progress->asked), 0);
+    const RtCellCount *count = &progress->count;
+    const double done = count->finished - progress->before, left = count->cells - count->finished;
+    if (done <= 0) return (double)NAN;
+    return fmax((progress->counted - progress->start) * left / done - (now - progress->counted), 0);
 }
 
 /* ---- lines ---- */
 
 static void show(RtProgress *progress) {
-    const RtForecast *f = &progress->forecast;
+    const RtCellCount *count = &progress->count;
     double now = rt_wall_seconds(), left = left_of(progress, now);
     char duration[RT_MAX_DURATION], rest[RT_MAX_DURATION + 16] = "";
     rt_format_duration(left, duration);
     if (!isnan(left)) snprintf(rest, sizeof rest, ", about %s left", duration);
     if (progress->terminal)
-        fprintf(stderr, "\r\033[K%s[%u/%u] %s%s", progress->title, f->finished, f->cells, progress->doing,
-                rest);
+        fprintf(stderr, "\r\033[K%s[%u/%u] %s%s", progress->title, count->finished, count->cells,
+                progress->doing, rest);
     else
-        fprintf(stderr, "raytally: %s%u of %u cell%s, %s%s\n", progress->title, f->finished, f->cells,
-                rt_plural(f->cells), progress->doing, rest);
+        fprintf(stderr, "raytally: %s%u of %u cell%s, %s%s\n", progress->title, count->finished, count->cells,
+                rt_plural(count->cells), progress->doing, rest);
     fflush(stderr);
     progress->shown = now;
 }
@@ -96,9 +115,9 @@ static RtStatus on_event(void *context, const RtResults *results, const RtEvent 
     RtProgress *progress = context;
     double now = rt_wall_seconds();
     if (progress->watched) pthread_mutex_lock(&progress->lock);
-    progress->forecast = rt_forecast(results, &progress->options); /* much faster than a cell */
-    progress->asked = now;
-    if (!progress->begun) progress->before = progress->forecast.known; /* from earlier runs */
+    progress->count = rt_count_cells(results, &progress->options);
+    progress->counted = now;
+    if (!progress->begun) progress->before = progress->count.finished; /* in earlier runs */
     progress->begun = true;
     describe(progress, results, event);
     if (progress->terminal || now - progress->shown >= progress->every) show(progress);
@@ -118,8 +137,8 @@ static void leave(const RtProgress *progress, int number) {
     fprintf(stderr, "raytally: %s%s; ", progress->title, rt_stop_reason(number));
     if (progress->begun) {
         fprintf(stderr, "%u of %u cell%s %s finished, all measurements are kept in %s.",
-                progress->forecast.finished, progress->forecast.cells, rt_plural(progress->forecast.cells),
-                progress->forecast.cells == 1 ? "is" : "are", progress->keeps);
+                progress->count.finished, progress->count.cells, rt_plural(progress->count.cells),
+                progress->count.cells == 1 ? "is" : "are", progress->keeps);
     } else {
         fprintf(stderr, "nothing was measured yet, and %s is unchanged.", progress->keeps);
     }

@@ -4,18 +4,27 @@
 #ifndef RT_CLI_PROGRESS_H
 #define RT_CLI_PROGRESS_H
 
-#include "experiment/forecast.h"
+#include "experiment/workload.h"
 
 #include <pthread.h>
+
+/* The cells that are to be measured, and of them the finished ones. */
+typedef struct RtCellCount {
+    uint32_t cells, finished;
+} RtCellCount;
+
+/* Ignores kinds of rays that a recorded scene does not have, and cells that are left out. */
+RtCellCount rt_count_cells(const RtResults *results, const RtWorkloadOptions *options);
 
 typedef struct RtProgress {
     bool terminal;
     RtWorkloadOptions options; /* the measurement */
-    double start, before;      /* wall seconds at the start; the known part of the forecast then */
-    double asked;              /* time of the forecast */
+    double start;              /* wall seconds */
+    double counted;            /* time of the last count */
     double shown;              /* time of the last line */
     double every;              /* seconds between lines */
-    RtForecast forecast;
+    RtCellCount count;
+    uint32_t before; /* cells that were finished at the start */
     bool begun;
     char title[RT_MAX_LABEL + 32]; /* before what is shown: which of several runs this is; or "" */
     char doing[2 * RT_MAX_LABEL + 64];

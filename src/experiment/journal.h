@@ -21,19 +21,14 @@ RtStatus rt_journal_add(RtOutputs *outputs, const char *path, const RtExperiment
                         const RtOnly *only, const json_t *lines, RtError *error);
 
 /* Fills `results` from the journal at `path`. Rejects a journal of another experiment; with `only`, to resume
- * it, also of another build, another shard, or another build of a plugin that the experiment uses. With
- * `renew` a changed plugin only loses its own lines, unless it is the baseline. A journal whose results are
- * given up (measure/result_files.h) is empty. */
-RtStatus rt_journal_load(const char *path, RtResults *results, const RtOnly *only, bool renew,
-                         RtError *error);
+ * it, also of another build or another shard. A plugin of the experiment that has changed loses its lines; if
+ * it is the baseline, the journal is rejected. A journal whose results are given up (measure/result_files.h)
+ * is empty. */
+RtStatus rt_journal_load(const char *path, RtResults *results, const RtOnly *only, RtError *error);
 
-/* Whether the journal at `path` is of the same experiment, --quick and --shard, but of another build, another
- * version of the YAML, or other plugins; false if it cannot be read. */
-bool rt_journal_is_outdated(const char *path, const RtExperiment *experiment, const RtOnly *only);
-
-/* Rewrites the journal at `path`, which was loaded with `renew`, without the lines of changed plugins. At any
- * time the old or the new journal is whole. */
-RtStatus rt_journal_renew(const char *path, const RtExperiment *experiment, const RtOnly *only,
-                          RtError *error);
+/* Rewrites the journal at `path`, which was loaded, without the lines of changed plugins, and says which they
+ * are; if none has changed, it stays. At any time the old or the new journal is whole. */
+RtStatus rt_journal_drop_changed(const char *path, const RtExperiment *experiment, const RtOnly *only,
+                                 const RtRunObserver *observer, RtError *error);
 
 #endif

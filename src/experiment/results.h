@@ -15,6 +15,7 @@
 #include <stdio.h>
 
 #define RT_MAX_LEFT_OUT 512
+#define RT_MAX_WHY      192 /* of a reason why a figure is unknown */
 
 /* A set of ray kinds: a bit 1 << kind for each. */
 typedef uint32_t RtKinds;

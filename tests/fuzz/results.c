@@ -117,7 +117,7 @@ static RtStatus read_journal(const void *lines, size_t size, RtError *error) {
     fwrite(lines, 1, size, file);
     CHECK(fclose(file) == 0);
     CHECK(rt_results_init(&results, &experiment, error) == RT_OK);
-    return rt_journal_load(fuzz_path("cells.jsonl"), &results, NULL, false, error);
+    return rt_journal_load(fuzz_path("cells.jsonl"), &results, NULL, error);
 }
 
 void fuzz_prepare_journal(void) {
