@@ -113,7 +113,7 @@ for arguments in '-o full.png' '-o full.exr' '--heatmap steps full.png' '--struc
     # shellcheck disable=SC2086
     full full. render $small $arguments
 done
-for arguments in '--csv full.csv' '--hits full.npy' '--counts full.npy' '--hits full.npz'; do
+for arguments in '--csv full.csv' '--hits full.npy' '--counts full.npy'; do
     # shellcheck disable=SC2086
     full full. bench $small --accel bvh --rays primary --count-only $arguments
 done

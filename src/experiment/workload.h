@@ -4,7 +4,6 @@
 #ifndef RT_EXPERIMENT_WORKLOAD_H
 #define RT_EXPERIMENT_WORKLOAD_H
 
-#include "core/text/npz.h"
 #include "experiment/results.h"
 #include "rays/rayset.h"
 
@@ -84,9 +83,10 @@ typedef struct RtWorkloadOptions {
     double until;    /* rounds continue until all intervals of ratios are within this part of their medians:
                         0.01; 0: as many rounds as in the experiment */
     double patience; /* most seconds of that for a kind of rays on a scene */
-    /* Open files that get the hit and the cost of each ray of every cell (measure/ray_file.h), as the array
-     * SCENE/ACCELERATOR/KIND, by labels; or NULL. Those that are no archives take one cell. */
-    RtArrayFile *hits, *counts;
+    /* FILE.npy, which gets the hit and the cost of each ray (measure/ray_file.h); or NULL. If the experiment
+     * has several cells, FILE-NAME.npy for each, with the names of scene, accelerator and kind of rays of
+     * which there are several. */
+    const char *hits, *counts;
     RtRunObserver observer;
     /* Gets the recorded rays of each kind, and the exact accelerator that answers them; or NULL. */
     RtStatus (*rays)(void *context, uint32_t workload, const RtRaySet *set, const RtAccel *exact,

@@ -176,7 +176,7 @@ RT_TEST_IN_PLACE(hardware_counters_of_version_1_0_are_ignored_in_experiments_and
     char command[512];
     write_changed(place, "small.yaml", spread, "count_only: yes", "count_only: yes\nhardware: yes");
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
-    assert_in_file(place, "message", "small.yaml:14:11: hardware: ignored");
+    assert_in_file(place, "message", "small.yaml:15:11: hardware: ignored");
     OWNED_MEMORY char *counts = read_in(place, "out/counts.csv");
     snprintf(
         command, sizeof command,
