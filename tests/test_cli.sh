@@ -109,7 +109,7 @@ full() {
 }
 
 small='balls:size=1 --size 8x8'
-for arguments in '-o full.png' '-o full.exr' '--heatmap steps full.png' '--structure full.png' '--stats full.json'; do
+for arguments in '-o full.png' '--heatmap steps full.png' '--structure full.png' '--stats full.json'; do
     # shellcheck disable=SC2086
     full full. render $small $arguments
 done
@@ -280,7 +280,7 @@ refuses "1\.\.64" render balls:size=1 --depth 1000000000 -o x.png
 refuses "1\.\.64" render balls:size=1 --samples 0 -o x.png
 refuses "threads.*1\.\." render balls:size=1 --threads -1 -o x.png
 refuses "nothing to do" render balls:size=1
-refuses "\.png or \.exr" render balls:size=1 -o x.gif
+refuses "ends in \.png" render balls:size=1 -o x.gif
 refuses "missing/x\.png.*No such file" render balls:size=1 --size 8x8 -o missing/x.png
 mkdir taken.png
 refuses "taken\.png" render balls:size=1 --size 8x8 -o taken.png

@@ -148,9 +148,6 @@ RtRayKind rt_cli_image_ray_kind(struct argp_state *state, const char *option, co
 
 #define RT_CLI_PICTURES ".png, .svg or .pdf" /* the formats of pictures */
 
-/* Does the file name end in one of `extensions`, such as ".png, .svg or .pdf"? */
-bool rt_cli_has_extension(const char *path, const char *extensions);
-
 /* For parsers: stores `path` in *slot; ends the process by argp_error if it ends in none of `extensions`, or
  * if *slot is set. */
 void rt_cli_set_path(struct argp_state *state, const char *option, const char **slot, const char *path,

@@ -25,24 +25,15 @@ typedef struct Options {
     uint32_t samples, depth;
     int threads;
     bool corners, check;
-    const char *png, *exr, *stats; /* paths, or NULL */
+    const char *png, *stats; /* paths, or NULL */
     RtPictureOptions pictures;
 } Options;
 
 enum { MOST_OUTPUTS = RT_TALLY_COUNTER_COUNT + 4 };
 
-static void take_output(void *options, const char *path, struct argp_state *state) {
-    Options *o = options;
-    if (!rt_cli_has_extension(path, ".png or .exr"))
-        argp_error(state, "-o: invalid value '%s': expected a file name that ends in .png or .exr", path);
-    const char **slot = rt_cli_has_extension(path, ".png") ? &o->png : &o->exr;
-    if (*slot) argp_error(state, "-o: both '%s' and '%s': one file of each format is written", *slot, path);
-    *slot = path;
-}
-
 /* Lists the files to be written; returns their number. */
 static size_t list_outputs(const Options *o, const char *paths[MOST_OUTPUTS]) {
-    const char *const others[] = {o->png, o->exr, o->stats};
+    const char *const others[] = {o->png, o->stats};
     size_t count = 0;
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
         if (others[i]) paths[count++] = others[i];
@@ -78,8 +69,7 @@ static const RtOption options[] = {
      "Levels of the ray tree, the primary ray being the first, 1..64 (default 5)"},
     {"threads", 't', "N", RT_TO_INTEGER(threads, 1, 1024), "Threads (default: all processors)"},
     RT_LIMIT_OPTIONS,
-    {"output", 'o', "FILE", RT_TO_TAKE(take_output),
-     "The image, .png or .exr; may be repeated, once for each format"},
+    {"output", 'o', "FILE.png", RT_TO_PATH(png, ".png"), "The image"},
     {"stats", 0, "FILE.json", RT_TO_PATH(stats, ".json"),
      "Counts by ray kind, sizes and build times of each --accel; the image's time with the first"},
     {"check", 0, NULL, RT_TO_FLAG(check),
@@ -166,7 +156,7 @@ static RtStatus trace_frames(Run *run, RtError *error) {
     run->by_default = alone && run->accel->exact;
     if (run->by_default) return trace_background(run, f, error);
     RT_TRY(rt_frame_trace(&run->timed, run->accel, f, error));
-    if (!o->stats && !o->exr && !rt_pictures_any_heatmap(&o->pictures)) return RT_OK;
+    if (!o->stats && !rt_pictures_any_heatmap(&o->pictures)) return RT_OK;
     f->progress_context = "counting";
     f->counted = true;
     f->cost_kinds = o->pictures.kinds;
@@ -207,7 +197,6 @@ static RtStatus write_heatmaps(const Run *run, RtError *error) {
 
 static RtStatus write_images(const Run *run, RtError *error) {
     const Options *o = run->options;
-    if (o->exr) RT_TRY(rt_exr_write(&run->built[0].counted, o->exr, error));
     if (o->png) RT_TRY(rt_png_write(&run->timed, o->png, error));
     if (o->pictures.structure) RT_TRY(rt_pictures_structure(&o->pictures, run->accel, &run->timed, error));
     return rt_pictures_any_heatmap(&o->pictures) ? write_heatmaps(run, error) : RT_OK;
