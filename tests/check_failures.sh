@@ -52,7 +52,6 @@ frame='--size 6x6'
 commands=(
     'accels --json'
     'scenes'
-    'completion bash'
     'info scene.yaml --json'
     'info scene.nff'
     'info mesh.obj'

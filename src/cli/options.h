@@ -117,7 +117,4 @@ typedef struct RtSyntax {
 /* Fills `options`, a command's Options. Ends the process if the arguments are wrong, or ask for help. */
 void rt_cli_parse(const RtSyntax *syntax, int argc, char **argv, void *options);
 
-/* The syntax as argp has it, valid until the next call. */
-const struct argp *rt_cli_argp(const RtSyntax *syntax);
-
 #endif
