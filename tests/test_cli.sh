@@ -357,7 +357,6 @@ for says in '"scene": "balls:size=1"' '"scene": "balls:size=2"'; do
     [ "$(grep -c "$says" seconds.json)" = 3 ] || complain "bench --json: scenes, rows and null runs are not each of $says"
 done
 rm table seconds.json
-refuses '--hits and --counts write the rays of one scene' bench 'balls:size=1|2' --accel bvh --rays primary --size 8x8 --hits hits.npy
 refuses 'one SCENE at a time' rays 'balls:size=1|2' --size 8x8 -o rays.npy
 
 for subject in '' 'a' 'a b c' 'a b --with c' 'a b --accel bvh' 'a b --until 1%' 'a b --rounds 9' 'a b --size 8x8'; do

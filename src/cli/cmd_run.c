@@ -4,6 +4,7 @@
 #include "cli/jobs.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
+#include "cli/stop.h"
 #include "core/base/words.h"
 #include "experiment/claims.h"
 #include "experiment/journal.h"
@@ -167,7 +168,7 @@ static RtStatus measure(Options *o, RtResults *results, RtError *error) {
         snprintf(progress.title, sizeof progress.title, "%s, %" PRIu32 " of %" PRIu32 ": ",
                  results->experiment->name, o->current + 1, o->count);
     go_on(o, results->experiment, command);
-    rt_progress_watch(&progress, how->directory, command);
+    rt_stop_continue(how->directory, command);
     how->workload.observer = rt_progress_observer(&progress);
     RtStatus status = rt_run_experiment(results, how, error);
     rt_progress_end(&progress);

@@ -1,27 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/progress.h"
 
-#include "cli/stop.h"
 #include "core/base/clock.h"
 #include "core/base/words.h"
 
 #include <math.h>
-#include <signal.h>
 #include <stdio.h>
-#include <time.h>
 #include <unistd.h>
 
-/* Seconds. */
-static const double LINE_EVERY = 60, LINE_OF_TERMINAL_EVERY = 1;
+static const double LINE_EVERY = 60; /* seconds, where there is no terminal */
 
 RtProgress rt_progress_begin(const RtWorkloadOptions *options) {
-    double now = rt_wall_seconds();
-    bool terminal = isatty(STDERR_FILENO) == 1;
-    return (RtProgress){.terminal = terminal,
+    const double now = rt_wall_seconds();
+    return (RtProgress){.terminal = isatty(STDERR_FILENO) == 1,
                         .options = *options,
                         .start = now,
                         .shown = now,
-                        .every = terminal ? LINE_OF_TERMINAL_EVERY : LINE_EVERY};
+                        .every = LINE_EVERY};
 }
 
 void rt_progress_clear(void) {
@@ -63,22 +58,15 @@ void rt_format_duration(double seconds, char out[RT_MAX_DURATION]) {
         snprintf(out, RT_MAX_DURATION, "%d h %d min", minutes / 60, minutes % 60);
 }
 
-/* Seconds left if all cells take as long as those measured so far; NAN if there are none. */
-static double left_of(const RtProgress *progress, double now) {
-    const RtCellCount *count = &progress->count;
-    const double done = count->finished - progress->before, left = count->cells - count->finished;
-    if (done <= 0) return (double)NAN;
-    return fmax((progress->counted - progress->start) * left / done - (now - progress->counted), 0);
-}
-
 /* ---- lines ---- */
 
-static void show(RtProgress *progress) {
+/* The cells that are left take as long as those measured so far. */
+static void show(RtProgress *progress, double now) {
     const RtCellCount *count = &progress->count;
-    double now = rt_wall_seconds(), left = left_of(progress, now);
+    const uint32_t done = count->finished - progress->before, left = count->cells - count->finished;
     char duration[RT_MAX_DURATION], rest[RT_MAX_DURATION + 16] = "";
-    rt_format_duration(left, duration);
-    if (!isnan(left)) snprintf(rest, sizeof rest, ", about %s left", duration);
+    if (done > 0) rt_format_duration((now - progress->start) * left / done, duration);
+    if (done > 0) snprintf(rest, sizeof rest, ", about %s left", duration);
     if (progress->terminal)
         fprintf(stderr, "\r\033[K%s[%u/%u] %s%s", progress->title, count->finished, count->cells,
                 progress->doing, rest);
@@ -114,14 +102,11 @@ static RtStatus on_event(void *context, const RtResults *results, const RtEvent 
     (void)error;
     RtProgress *progress = context;
     double now = rt_wall_seconds();
-    if (progress->watched) pthread_mutex_lock(&progress->lock);
     progress->count = rt_count_cells(results, &progress->options);
-    progress->counted = now;
     if (!progress->begun) progress->before = progress->count.finished; /* in earlier runs */
     progress->begun = true;
     describe(progress, results, event);
-    if (progress->terminal || now - progress->shown >= progress->every) show(progress);
-    if (progress->watched) pthread_mutex_unlock(&progress->lock);
+    if (progress->terminal || now - progress->shown >= progress->every) show(progress, now);
     return RT_OK;
 }
 
@@ -129,70 +114,6 @@ RtRunObserver rt_progress_observer(RtProgress *progress) {
     return (RtRunObserver){progress, on_event, rt_progress_notice};
 }
 
-/* ---- the thread ---- */
-
-/* The journal is always whole. */
-static void leave(const RtProgress *progress, int number) {
-    rt_progress_clear();
-    fprintf(stderr, "raytally: %s%s; ", progress->title, rt_stop_reason(number));
-    if (progress->begun) {
-        fprintf(stderr, "%u of %u cell%s %s finished, all measurements are kept in %s.",
-                progress->count.finished, progress->count.cells, rt_plural(progress->count.cells),
-                progress->count.cells == 1 ? "is" : "are", progress->keeps);
-    } else {
-        fprintf(stderr, "nothing was measured yet, and %s is unchanged.", progress->keeps);
-    }
-    fprintf(stderr, " To continue:\n  %s\n", progress->go_on);
-    rt_stop_clean();
-    _exit(rt_stop_code(number));
-}
-
-/* Those that the thread takes; SIGUSR2 wakes it. */
-static sigset_t signals_taken(void) {
-    sigset_t signals = rt_stop_signals();
-    sigaddset(&signals, SIGUSR2);
-    return signals;
-}
-
-static void *watch(void *context) {
-    RtProgress *progress = context;
-    const struct timespec second = {.tv_sec = 1};
-    const sigset_t signals = signals_taken();
-    for (;;) {
-        int number = sigtimedwait(&signals, NULL, &second);
-        pthread_mutex_lock(&progress->lock);
-        bool ended = progress->ended;
-        if (!ended && number > 0 && number != SIGUSR2) leave(progress, number);
-        double since = rt_wall_seconds() - progress->shown;
-        if (!ended && progress->begun && since >= progress->every) show(progress);
-        pthread_mutex_unlock(&progress->lock);
-        if (ended) return NULL;
-    }
-}
-
-static void block(int how) {
-    const sigset_t signals = signals_taken();
-    pthread_sigmask(how, &signals, NULL);
-}
-
-void rt_progress_watch(RtProgress *progress, const char *directory, const char *go_on) {
-    progress->keeps = directory;
-    progress->go_on = go_on;
-    pthread_mutex_init(&progress->lock, NULL);
-    block(SIG_BLOCK);
-    progress->watched = pthread_create(&progress->watcher, NULL, watch, progress) == 0;
-    if (!progress->watched) block(SIG_UNBLOCK);
-}
-
-void rt_progress_end(RtProgress *progress) {
-    if (progress->watched) {
-        pthread_mutex_lock(&progress->lock);
-        progress->ended = true;
-        pthread_mutex_unlock(&progress->lock);
-        pthread_kill(progress->watcher, SIGUSR2);
-        pthread_join(progress->watcher, NULL);
-        pthread_mutex_destroy(&progress->lock);
-        block(SIG_UNBLOCK);
-    }
+void rt_progress_end(const RtProgress *progress) {
     if (progress->terminal) fputs("\r\033[K", stderr);
 }

@@ -91,8 +91,7 @@ RT_TEST_IN_PLACE(an_interrupted_run_says_what_is_kept_and_how_to_go_on) {
     while (journal_lines(place) < 20) wait_seconds(0.01);
     kill(child, SIGINT);
     assert_int_equal(end_of(child), 128 + SIGINT);
-    assert_in_file(place, "message",
-                   " of 56 cells are finished, all measurements are kept in out. To continue:");
+    assert_in_file(place, "message", "interrupted; what is finished is kept in out. To continue:");
     assert_in_file(place, "message", "raytally run small.yaml --out out --threads 1 --resume");
     assert_int_equal(raytally(place, RESUME " --dry-run"), 0);
     assert_in_file(place, "output", "finished\n");
