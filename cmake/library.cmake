@@ -54,7 +54,7 @@ write_basic_package_version_file(raytally-config-version.cmake COMPATIBILITY Sam
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/raytally-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/raytally-config-version.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/raytally)
 # What libraytally.a needs is named by its flags: by Requires.private, programs that link the shared library would need it too.
-pkg_check_modules(STATIC gmp jansson libpng libxxhash OpenEXR yaml-0.1)
+pkg_check_modules(STATIC gmp jansson libpng libxxhash yaml-0.1)
 set(private ${STATIC_STATIC_LDFLAGS} -lm -pthread)
 list(FILTER private EXCLUDE REGEX "^-L/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}$") # where linkers look anyway
 if(RT_WITH_EMBREE)

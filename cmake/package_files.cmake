@@ -6,7 +6,6 @@ set(source ${CMAKE_CURRENT_LIST_DIR}/..)
 if(CPACK_GENERATOR STREQUAL "DEB") # where and how Debian wants them
   set(share ${CPACK_TEMPORARY_DIRECTORY}/usr/share)
   set(doc ${share}/doc/raytally)
-  file(RENAME ${share}/zsh/site-functions ${share}/zsh/vendor-completions)
   file(REMOVE ${doc}/LICENSE)
   file(COPY_FILE ${CMAKE_CURRENT_LIST_DIR}/copyright ${doc}/copyright)
   file(READ ${doc}/README.md readme)

@@ -27,7 +27,7 @@ made deb "$deb"
 dpkg -x "$deb" "$work/root"
 cmake --install "$build" --prefix "$work/prefix" >/dev/null
 (cd "$work/prefix" && find . ! -type d | sort) >"$work/installed"
-(cd "$work/root/usr" && find . ! -type d | sed '/changelog\.Debian/d; s/\.gz$//; s/vendor-completions/site-functions/; s/copyright$/LICENSE/' |
+(cd "$work/root/usr" && find . ! -type d | sed '/changelog\.Debian/d; s/\.gz$//; s/copyright$/LICENSE/' |
     sort) >"$work/packed"
 diff "$work/installed" "$work/packed" >&2 || complain "the .deb does not hold what is installed"
 for file in bin/raytally include/raytally/raytally.h share/man/man1/raytally-bench.1.gz share/doc/raytally/docs/guide/README.md \
@@ -36,7 +36,7 @@ for file in bin/raytally include/raytally/raytally.h share/man/man1/raytally-ben
 done
 while read -r document; do check_links "$document"; done < <(find "$work/root" -name '*.md')
 needs=$(dpkg-deb -f "$deb" Depends)
-for library in libc6 libcairo2 libgmp10 libjansson4 libopenexr libyaml-0-2 fonts-dejavu-core; do
+for library in libc6 libcairo2 libgmp10 libjansson4 libyaml-0-2 fonts-dejavu-core; do
     [[ $needs == *"$library"* ]] || complain "the .deb depends on $needs, not on $library"
 done
 if command -v lintian >/dev/null; then

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # check_plugin_results.sh: results of plugins stay usable. Without the plugin they are plotted, reported and compared as with
 # it. A run resumes with other plugins loaded; if its own plugin has changed (here by a byte after the library), both builds are
-# named, and --renew measures only its cells again. Uses $RT_PROGRAM, in its build folder, and python3.
+# named, and --resume measures only its cells again. Uses $RT_PROGRAM, in its build folder, and python3.
 set -uo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/testing.sh"
 plugins=$(dirname "$program")/plugins
@@ -76,15 +76,13 @@ import json, sys
 change = json.load(sys.stdin)["plugins"]["my-accel"]
 sys.exit(change["before"]["hash"] == change["after"]["hash"] or len(change["after"]["hash"]) != 16)' ||
     complain 'compare --json does not name the plugin that has changed'
-ends 2 run mine.yaml --plugin new/mine.so --resume
-says "'my-accel' has changed: .*old/mine.so.* when this run began, .*new/mine.so.* now: .*--renew.*--force"
-cmp -s before.jsonl results/mine/cells.jsonl || complain 'a run that is refused changed the journal'
-ends 0 run mine.yaml --plugin new/mine.so --renew --dry-run
+ends 0 run mine.yaml --plugin new/mine.so --resume --dry-run
 says '16 cells, 8 of them finished'
-ends 0 run mine.yaml --plugin new/mine.so --update --dry-run
+ends 0 run mine.yaml --plugin new/mine.so --resume --force --dry-run
 says '16 cells, 8 of them finished'
 cmp -s before.jsonl results/mine/cells.jsonl || complain '--dry-run changed the journal'
-ends 0 run mine.yaml --plugin new/mine.so --renew
+ends 0 run mine.yaml --plugin new/mine.so --resume
+says "'my-accel' has changed: .*old/mine.so.* when this run began, .*new/mine.so.* now: its cells are measured again"
 python3 - <<'END_OF_PYTHON' || failures=$((failures + 1))
 import json, sys
 
@@ -95,26 +93,25 @@ def load(name):
 
 then, now = load("before.jsonl"), load("results/mine/cells.jsonl")
 if then[2] != now[2]:
-    print("--renew: what others did is not what it was")
+    print("--resume: what others did is not what it was")
 if len(then[1]) != len(now[1]) or any(line in then[1] for line in now[1] if "timed" in line):
-    print("--renew: the cells of the plugin are not measured again")
+    print("--resume: the cells of the plugin are not measured again")
 if then[0]["plugins"]["my-accel"]["hash"] == now[0]["plugins"]["my-accel"]["hash"]:
-    print("--renew: the journal is of the plugin that was")
+    print("--resume: the journal is of the plugin that was")
 manifest = json.load(open("results/mine/manifest.json"))
 if manifest["machine"]["plugins"][0]["hash"] != now[0]["plugins"]["my-accel"]["hash"]:
-    print("--renew: the manifest is of the plugin that was")
+    print("--resume: the manifest is of the plugin that was")
 sys.exit(then[2] != now[2] or len(then[1]) != len(now[1]) or then[0] == now[0])
 END_OF_PYTHON
 ends 0 run mine.yaml --plugin new/mine.so --resume
 says 'nothing was left'
-ends 2 run mine.yaml --plugin old/mine.so --resume
 ends 0 reproduce results/mine --plugin new/mine.so
 says_not 'has changed'
 
 # If it is the baseline, no results could be kept.
 ends 0 run based.yaml --plugin old/mine.so
 cp results/based/cells.jsonl before.jsonl
-ends 2 run based.yaml --plugin new/mine.so --renew
+ends 2 run based.yaml --plugin new/mine.so --resume
 says 'this changes the baseline: replace this run with --force'
 cmp -s before.jsonl results/based/cells.jsonl || complain 'a run that is refused changed the journal'
 

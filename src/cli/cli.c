@@ -136,14 +136,15 @@ static const char *extension_of(const char *path) {
     return dot && dot != path ? dot : "";
 }
 
-bool rt_cli_has_extension(const char *path, const char *extensions) {
+/* Does the file name end in one of `extensions`, such as ".png, .svg or .pdf"? */
+static bool has_extension(const char *path, const char *extensions) {
     const char *own = extension_of(path), *at = strstr(extensions, own);
     return *own && at && strchr(", ", at[strlen(own)]); /* or its end */
 }
 
 void rt_cli_set_path(struct argp_state *state, const char *option, const char **slot, const char *path,
                      const char *extensions) {
-    if (!rt_cli_has_extension(path, extensions))
+    if (!has_extension(path, extensions))
         argp_error(state, "%s: invalid value '%s': expected a file name that ends in %s", option, path,
                    extensions);
     if (*slot) argp_error(state, "%s: both '%s' and '%s': give one file", option, *slot, path);

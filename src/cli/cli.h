@@ -42,15 +42,11 @@ typedef struct RtCommand {
     X(report, "report", "DIR", "rewrite the report of a result directory, or an index")                      \
     X(reproduce, "reproduce", "DIR", "count again, compare with DIR/counts.csv byte for byte")               \
     X(convert, "convert", "IN OUT", "write a scene in another format")                                       \
-    X(new_accel, "new-accel", "NAME", "make a folder with a working plugin to start from")                   \
-    X(completion, "completion", "SHELL", "print a completion script for a shell")
+    X(new_accel, "new-accel", "NAME", "make a folder with a working plugin to start from")
 #define RT_COMMAND(id, name, arguments, summary)                                                             \
     RtStatus rt_command_##id(int argc, char **argv, RtError *error);                                         \
     extern const RtSyntax rt_##id##_syntax;
 RT_COMMANDS(RT_COMMAND)
-
-/* rt_command_completion with the table of all commands, which main has. */
-void rt_completion(const RtCommand *commands, int count, int argc, char **argv);
 
 /* RT_BAD_INPUT if the file name `name` is not UTF-8, and so cannot be in a JSON document. Call it first:
  * json_pack would only return NULL. */
@@ -147,9 +143,6 @@ RtStatus rt_cli_check_pixel(const RtSampling *sampling, RtPixel pixel, RtError *
 RtRayKind rt_cli_image_ray_kind(struct argp_state *state, const char *option, const char *text);
 
 #define RT_CLI_PICTURES ".png, .svg or .pdf" /* the formats of pictures */
-
-/* Does the file name end in one of `extensions`, such as ".png, .svg or .pdf"? */
-bool rt_cli_has_extension(const char *path, const char *extensions);
 
 /* For parsers: stores `path` in *slot; ends the process by argp_error if it ends in none of `extensions`, or
  * if *slot is set. */

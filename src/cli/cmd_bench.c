@@ -17,9 +17,9 @@
 
 typedef struct Options {
     RtRecordingOptions recording;
-    const char *scene, *baseline, *csv, *hits, *counts;
+    const char *scene, *baseline, *csv;
     RtWorkloadOptions workload;
-    bool json, hardware, distributions;
+    bool json, distributions;
     uint32_t rounds;   /* 0: the default */
     uint32_t builds;   /* 0: the default */
     uint64_t memory;   /* bytes for each accelerator; 0: no limit */
@@ -44,31 +44,17 @@ static void set_baseline(RtExperiment *experiment, const char *text, struct argp
     }
 }
 
-/* Whether a file of hits or counts takes only one array. */
-static bool takes_one(const Options *o) {
-    return (o->hits && !rt_array_file_is_archive(o->hits)) ||
-           (o->counts && !rt_array_file_is_archive(o->counts));
-}
-
 /* All files need different names. */
-static void check_rows(const Options *o, struct argp_state *state) {
+static void check_names(const Options *o, struct argp_state *state) {
     const RtExperiment *e = o->recording.experiment;
-    const char *const files[] = {o->hits, o->counts, o->csv, *e->rays_from ? e->rays_from : NULL};
+    const char *const files[] = {o->workload.hits, o->workload.counts, o->csv,
+                                 *e->rays_from ? e->rays_from : NULL};
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < i; k++) {
             if (files[i] && files[k] && strcmp(files[i], files[k]) == 0)
                 argp_error(state, "'%s' is named twice: give each file its own name", files[i]);
         }
     }
-    if (!takes_one(o)) return;
-    if (e->candidate_count != 1 || e->candidates[0].ray_stride != 1) {
-        argp_error(state,
-                   "--hits and --counts write the rays of one accelerator to FILE.npy: give one --accel, "
-                   "no --ray-stride, and no other --baseline; or name FILE.npz, which takes several");
-    }
-    if (e->kind_count != 1)
-        argp_error(state, "--hits and --counts write one kind of rays to FILE.npy: give --rays KIND, or name "
-                          "FILE.npz, which takes several");
 }
 
 /* Of all accelerators of the preceding --accel. */
@@ -104,12 +90,9 @@ static void finish(void *options, struct argp_state *state) {
     if (o->threads >= 0) o->workload.threads = o->workload.timing = o->threads;
     if (o->workload.until > 0 && e->rounds < RT_FULL_ROUNDS) e->rounds = RT_FULL_ROUNDS;
     e->limit_bytes = o->memory;
-    e->hardware = o->hardware;
     e->distributions = o->distributions;
-    if (o->hardware && o->workload.count_only)
-        argp_error(state, "--hardware needs timed rays, and --count-only times nothing: leave one out");
     rt_recording_finish(&o->recording, state);
-    check_rows(o, state);
+    check_names(o, state);
 }
 
 static const RtOption options[] = {
@@ -140,23 +123,20 @@ static const RtOption options[] = {
      "depths over the leaves. Medians, 99th percentiles and maxima reveal the few rays that cost a hundred "
      "times the mean. --json adds all percentiles and the histograms. In an experiment: `distributions: "
      "yes`"},
-    {"hardware", 0, NULL, RT_TO_FLAG(hardware),
-     "Also show the processor's counters per ray: instructions, cycles, last-level cache misses, branch "
-     "mispredictions. They are read in separate rounds, so times do not change, and exclude the kernel. If "
-     "there are none, raytally says why. In an experiment: `hardware: yes`"},
+    RT_GONE("hardware", "run raytally under `perf stat`, see docs/guide/faq.md, or use --callgrind"),
     {"callgrind", 0, "N", RT_TO_TAKE_OPTIONAL(rt_recording_take_callgrind),
-     "Also show instructions per ray, counted by valgrind's callgrind: exact, the same on every run, and "
-     "available where --hardware is not. raytally builds each accelerator again under valgrind, which is "
-     "many times slower, and traces N rays of each kind (4096), without AVX-512, which valgrind lacks"},
+     "Also show instructions per ray, counted by valgrind's callgrind: exact, and the same on every run. "
+     "raytally builds each accelerator again under valgrind, which is many times slower, and traces N rays "
+     "of each kind (4096), without AVX-512, which valgrind lacks"},
     {"worker", 0, NULL, RT_TO_HIDDEN_FLAG(worker), NULL}, /* run/worker.h */
     {"csv", 0, "FILE", RT_TO_TEXT(csv),
      "Also write a row per cell to FILE, in the columns of times.csv, or of counts.csv with --count-only"},
-    {"hits", 0, "FILE.npy|.npz", RT_TO_TEXT(hits),
+    {"hits", 0, "FILE.npy", RT_TO_PATH(workload.hits, ".npy"),
      "Also write each ray's hit for NumPy, a row per ray: t and object (inf and -1 for a miss); for shadow "
-     "and occlusion rays whether the ray is blocked. FILE.npy takes one --accel and one kind of --rays; "
-     "FILE.npz takes any number, each an array SCENE/ACCELERATOR/KIND"},
-    {"counts", 0, "FILE.npy|.npz", RT_TO_TEXT(counts),
-     "Also write each ray's cost for NumPy, a row per ray and a field per counter"},
+     "and occlusion rays whether the ray is blocked. Several scenes, accelerators or kinds of rays have a "
+     "file each, FILE-SCENE-ACCELERATOR-KIND.npy, without what they have in common"},
+    {"counts", 0, "FILE.npy", RT_TO_PATH(workload.counts, ".npy"),
+     "Also write each ray's cost for NumPy, a row per ray and a field per counter; files as with --hits"},
     {"json", 0, NULL, RT_TO_FLAG(json), "One JSON document on stdout instead of the table"},
     {"rays-from", 0, "FILE.npy", RT_TO_TAKE(take_rays_from),
      "Measure the rays of FILE instead of recorded ones: an array of float32 of shape (N, 8) as `raytally "
@@ -205,13 +185,11 @@ static void print_json(const RtResults *results, const RtCallgrind *callgrind) {
                             scenes, "seed", (json_int_t)e->seed, "rounds", (json_int_t)e->rounds, "baseline",
                             rt_baseline_label(e), "rows", rows, "null_runs", nulls);
     RtDistributionRow distribution = {.results = results};
-    RtResultRow cell = {.results = results};
     RtInstructionsRow instructions = {.callgrind = callgrind};
     if (e->distributions) {
         add_table(all, "distributions", rt_distribution_table(RT_DISTRIBUTIONS, &distribution));
         add_table(all, "histograms", rt_distribution_table(RT_HISTOGRAMS, &distribution));
     }
-    if (e->hardware) add_table(all, "hardware", rt_result_table(RT_HARDWARE, &cell));
     if (callgrind->count) add_table(all, "instructions", rt_instructions_table(&instructions));
     rt_cli_print_json(all);
 }
@@ -225,11 +203,17 @@ static RtStatus write_csv(const Options *o, const RtResults *results, RtError *e
     return rt_output_commit(&output, error);
 }
 
+/* `cells`: it stands for a file of each cell, if there are several. */
+static void say_written(const char *path, const RtExperiment *e, bool cells) {
+    const bool several = cells && e->workload_count * e->candidate_count * e->kind_count > 1;
+    const size_t length = path ? strlen(path) : 0;
+    if (path) printf("wrote %.*s%s\n", (int)(several ? length - 4 : length), path, several ? "-*.npy" : "");
+}
+
 static RtStatus report(const Options *o, const RtResults *results, const RtCallgrind *callgrind,
                        RtError *error) {
     const RtExperiment *e = results->experiment;
     char sentence[RT_MAX_SENTENCE];
-    const char *const files[] = {o->csv, o->hits, o->counts};
     if (o->csv) RT_TRY(write_csv(o, results, error));
     if (o->json) {
         print_json(results, callgrind);
@@ -237,39 +221,33 @@ static RtStatus report(const Options *o, const RtResults *results, const RtCallg
     }
     rt_print_results(results, RT_CELLS, stdout);
     rt_print_left_out(results, stdout);
-    if (e->hardware) rt_print_hardware(results, stdout);
     if (callgrind->count) rt_print_instructions(callgrind, stdout);
     if (e->distributions) rt_print_distributions(results, stdout);
     rt_null_sentence(results, sentence);
     if (*sentence) putchar('\n');
     if (*sentence) rt_print_wrapped(sentence, stdout);
-    if (o->csv || o->hits || o->counts) putchar('\n');
-    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
-        if (files[i]) printf("wrote %s\n", files[i]);
-    }
+    if (o->csv || o->workload.hits || o->workload.counts) putchar('\n');
+    say_written(o->csv, e, false);
+    say_written(o->workload.hits, e, true);
+    say_written(o->workload.counts, e, true);
     return RT_OK;
 }
 
 /* ---- the command ---- */
 
-/* Runs all cells, and writes the hits and counts of their rays. */
-static RtStatus run_cells(const Options *o, RtResults *results, RtError *error) {
-    RtWorkloadOptions how = o->workload;
-    RtArrayFile hits = {0}, counts = {0};
-    RtStatus status = o->hits ? rt_array_file_open(&hits, o->hits, error) : RT_OK;
-    if (status == RT_OK && o->counts) status = rt_array_file_open(&counts, o->counts, error);
-    how.hits = o->hits ? &hits : NULL;
-    how.counts = o->counts ? &counts : NULL;
-    if (status == RT_OK) status = rt_workloads_run(results, &how, error);
-    if (status == RT_OK) status = rt_array_file_commit(&hits, error);
-    if (status == RT_OK) status = rt_array_file_commit(&counts, error);
-    rt_array_file_discard(&hits);
-    rt_array_file_discard(&counts);
-    return status;
+/* Fails early if no file can be written there. */
+static RtStatus check_path(const char *path, RtError *error) {
+    RtOutput output;
+    if (!path) return RT_OK;
+    RT_TRY(rt_output_open(&output, path, error));
+    rt_output_discard(&output);
+    return RT_OK;
 }
 
 /* All but the report. */
 static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, RtError *error) {
+    RT_TRY(check_path(o->workload.hits, error));
+    RT_TRY(check_path(o->workload.counts, error));
     if (o->recording.callgrind) {
         RT_TRY(rt_callgrind_check(error));
         RT_TRY(rt_callgrind_init(callgrind, results->experiment, o->recording.callgrind, error));
@@ -278,7 +256,7 @@ static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, 
     }
     RtProgress progress = rt_progress_begin(&o->workload);
     o->workload.observer = rt_progress_observer(&progress);
-    RtStatus status = run_cells(o, results, error);
+    RtStatus status = rt_workloads_run(results, &o->workload, error);
     if (status == RT_OK && o->recording.callgrind)
         rt_notify(&o->workload.observer, "counting instructions under valgrind, which takes a while");
     rt_progress_end(&progress);
@@ -291,11 +269,6 @@ static RtStatus bench(Options *o, RtError *error) {
     char where[RT_MAX_LABEL];
     RtExperiment *experiment = o->recording.experiment;
     RT_TRY(rt_experiment_add_scenes(experiment, &o->recording.like, o->scene, "", error));
-    if (experiment->workload_count > 1 && takes_one(o))
-        return rt_fail(error, RT_BAD_INPUT,
-                       "--hits and --counts write the rays of one scene to FILE.npy: '%s' stands for %u; or "
-                       "name FILE.npz, which takes several",
-                       o->scene, experiment->workload_count);
     strcpy(experiment->name, "bench");
     RT_TRY(rt_experiment_check(experiment, where, error));
     if (o->worker) return rt_worker_serve(experiment, NULL, error);

@@ -137,6 +137,8 @@ static RtStatus compare_programs(Options *o, char **argv, RtComparison *comparis
         {"callgrind", false}, {"memory", true}, {"time", true}, {NULL, false}};
     char **arguments = NULL;
     RtStatus status = load(o, error); /* reports errors once */
+    if (*o->recording.experiment->warning.message)
+        rt_progress_notice(NULL, o->recording.experiment->warning.message);
     if (status == RT_OK) status = arguments_without(left_out, argv, &arguments, error);
     RtPrograms programs = {.before = o->with,
                            .after = "/proc/self/exe",

@@ -3,17 +3,22 @@
  * kernels trace a second frame if counts are needed. */
 #include "accel/columns.h"
 #include "cli/cli.h"
-#include "cli/pictures.h"
 #include "core/base/clock.h"
 #include "core/base/parallel.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
+#include "picture/buffers.h"
+#include "picture/heatmap.h"
+#include "picture/structure.h"
 #include "rays/rayset.h"
 #include "render/image.h"
+#include "render/path.h"
 #include "scenes/open.h"
 #include "verify/equivalence.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -25,29 +30,52 @@ typedef struct Options {
     uint32_t samples, depth;
     int threads;
     bool corners, check;
-    const char *png, *exr, *stats; /* paths, or NULL */
-    RtPictureOptions pictures;
+    const char *png, *stats;                      /* paths, or NULL */
+    const char *structure, *layer;                /* a path or NULL; a name or NULL */
+    const char *heatmaps[RT_TALLY_COUNTER_COUNT]; /* paths, by counter */
+    RtStructureOptions boxes;
+    bool in_middle; /* the slice is in the middle of the scene; boxes.at is not set */
+    RtHeatmapOptions heat;
+    uint32_t kinds; /* of rays, bits; 0: all */
+    uint32_t light; /* of an overlay for shadow rays */
+    RtPixel pixel;  /* of the marked ray */
+    /* The name of the last given option, or NULL, that needs a picture of boxes, a picture of a light's
+     * cells, or --heatmap. */
+    const char *of_boxes, *of_light, *thermal;
 } Options;
 
 enum { MOST_OUTPUTS = RT_TALLY_COUNTER_COUNT + 4 };
 
-static void take_output(void *options, const char *path, struct argp_state *state) {
-    Options *o = options;
-    if (!rt_cli_has_extension(path, ".png or .exr"))
-        argp_error(state, "-o: invalid value '%s': expected a file name that ends in .png or .exr", path);
-    const char **slot = rt_cli_has_extension(path, ".png") ? &o->png : &o->exr;
-    if (*slot) argp_error(state, "-o: both '%s' and '%s': one file of each format is written", *slot, path);
-    *slot = path;
-}
-
 /* Lists the files to be written; returns their number. */
 static size_t list_outputs(const Options *o, const char *paths[MOST_OUTPUTS]) {
-    const char *const others[] = {o->png, o->exr, o->stats};
+    const char *const others[] = {o->png, o->stats, o->structure};
     size_t count = 0;
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
         if (others[i]) paths[count++] = others[i];
     }
-    return rt_pictures_list(&o->pictures, paths, count);
+    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
+        if (o->heatmaps[i]) paths[count++] = o->heatmaps[i];
+    }
+    return count;
+}
+
+static bool any_heatmap(const Options *o) {
+    size_t i = 0;
+    while (i < RT_TALLY_COUNTER_COUNT && !o->heatmaps[i]) i++;
+    return i < RT_TALLY_COUNTER_COUNT;
+}
+
+static void check_pictures(const Options *o, struct argp_state *state) {
+    const bool heats = any_heatmap(o);
+    const char *structural = o->layer ? "layer" : o->of_boxes ? o->of_boxes : o->of_light;
+    if (structural && !o->structure)
+        argp_error(state, "--%s needs a picture of a structure: --structure FILE.png", structural);
+    if (o->thermal && !heats)
+        argp_error(state, "--%s needs a heatmap: --heatmap COUNTER FILE.png", o->thermal);
+    if (o->heat.difference && o->accel_count != 2)
+        argp_error(state, "--heatmap-difference needs two accelerators: give --accel twice");
+    if (o->accel_count > 1 && !heats)
+        argp_error(state, "only --heatmap takes several accelerators: give one --accel");
 }
 
 static void finish(void *options, struct argp_state *state) {
@@ -64,7 +92,84 @@ static void finish(void *options, struct argp_state *state) {
             argp_error(state, "'%s' would be written twice: give each output its own file", paths[i]);
         }
     }
-    rt_pictures_finish(&o->pictures, o->accel_count, state);
+    check_pictures(o, state);
+}
+
+static size_t counter_by_name(struct argp_state *state, const char *name) {
+    const char *names[RT_TALLY_COUNTER_COUNT];
+    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
+        names[i] = rt_tally_name(i);
+        if (strcmp(names[i], name) == 0) return i;
+    }
+    char list[256], suggestion[RT_MAX_SUGGESTION];
+    rt_join_names(names, RT_TALLY_COUNTER_COUNT, list, sizeof list);
+    rt_suggest(name, names, RT_TALLY_COUNTER_COUNT, suggestion);
+    argp_error(state, "--heatmap: there is no counter '%s'%s%s%s", name, suggestion,
+               *suggestion ? " The counters are: " : ": the counters are ", list);
+    return 0;
+}
+
+static void take_heatmap(void *options, const char *counter, struct argp_state *state) {
+    Options *o = options;
+    const char **slot = &o->heatmaps[counter_by_name(state, counter)];
+    if (state->next >= state->argc) argp_error(state, "--heatmap: a FILE.png is needed after the counter");
+    char option[64];
+    snprintf(option, sizeof option, "--heatmap %s", counter);
+    rt_cli_set_path(state, option, slot, state->argv[state->next++], RT_CLI_PICTURES);
+}
+
+/* "3" or "2..5" */
+static void take_level(void *options, const char *text, struct argp_state *state) {
+    RtStructureOptions *boxes = &((Options *)options)->boxes;
+    const char *at = text;
+    bool good = rt_cli_digits(&at, &boxes->first_level);
+    boxes->last_level = boxes->first_level;
+    if (good && strncmp(at, "..", 2) == 0) {
+        at += 2;
+        good = rt_cli_digits(&at, &boxes->last_level);
+    }
+    if (!good || *at || boxes->first_level > boxes->last_level)
+        argp_error(state, "--level: invalid value '%s': expected a level or a range, as in 3 or 2..5", text);
+}
+
+/* "y" or "y=0.5" */
+static void take_slice(void *options, const char *text, struct argp_state *state) {
+    Options *o = options;
+    const char *axis = strchr("xyz", text[0]);
+    char *end = NULL;
+    o->boxes.slice = true;
+    o->in_middle = text[0] && text[1] == 0;
+    if (text[0] && text[1] == '=') o->boxes.at = strtod(text + 2, &end);
+    bool number = end && end > text + 2 && *end == 0 && isfinite(o->boxes.at);
+    if (!text[0] || !axis || (!o->in_middle && !number))
+        argp_error(
+            state,
+            "--slice: invalid value '%s': expected an axis, or an axis and a position, as in z or z=0.5",
+            text);
+    o->boxes.axis = (int)(axis - "xyz");
+}
+
+static void take_rays(void *options, const char *text, struct argp_state *state) {
+    Options *o = options;
+    RtRayKind kind = rt_cli_image_ray_kind(state, "--heatmap-rays", text);
+    o->kinds = 1u << kind;
+    o->heat.rays = rt_ray_kind_name(kind);
+}
+
+static void take_max(void *options, const char *text, struct argp_state *state) {
+    Options *o = options;
+    char *end;
+    o->heat.most = strtod(text, &end);
+    if (end == text || *end || !(o->heat.most > 0) || !isfinite(o->heat.most))
+        argp_error(state, "--heatmap-max: invalid value '%s': expected a number above 0", text);
+}
+
+static void take_scale(void *options, const char *text, struct argp_state *state) {
+    Options *o = options;
+    bool linear = strcmp(text, "linear") == 0;
+    if (!linear && strcmp(text, "log") != 0)
+        argp_error(state, "--heatmap-scale: invalid value '%s': expected linear or log", text);
+    o->heat.scale = linear ? RT_HEATMAP_LINEAR : RT_HEATMAP_LOG;
 }
 
 static const RtOption options[] = {
@@ -78,16 +183,74 @@ static const RtOption options[] = {
      "Levels of the ray tree, the primary ray being the first, 1..64 (default 5)"},
     {"threads", 't', "N", RT_TO_INTEGER(threads, 1, 1024), "Threads (default: all processors)"},
     RT_LIMIT_OPTIONS,
-    {"output", 'o', "FILE", RT_TO_TAKE(take_output),
-     "The image, .png or .exr; may be repeated, once for each format"},
+    {"output", 'o', "FILE.png", RT_TO_PATH(png, ".png"), "The image"},
     {"stats", 0, "FILE.json", RT_TO_PATH(stats, ".json"),
      "Counts by ray kind, sizes and build times of each --accel; the image's time with the first"},
     {"check", 0, NULL, RT_TO_FLAG(check),
      "Compare the answer to every ray, and the frame, with those of brute; exit code 1 if one differs. brute "
      "is slow: try a small --size first"},
+    {NULL, 0, NULL, {0}, "Pictures of a structure:"},
+    {"structure", 0, "FILE", RT_TO_PATH(structure, RT_CLI_PICTURES),
+     "Draw the accelerator's boxes over the image; for item the objects in its samples, for light the "
+     "lengths of its lists on an unfolded cube. PNG, SVG or PDF, by the file name"},
+    {"layer", 0, "NAME", RT_TO_TEXT(layer),
+     "For overlays: the layer to draw (default: the topmost that can be drawn)"},
+    {"level", 0, "A[..B]", RT_MARKING(of_boxes, RT_CALLS(take_level)),
+     "Draw only the boxes of this level, or of these levels; the root is level 0"},
+    {"leaves", 0, NULL, RT_MARKING(of_boxes, RT_SETS_FLAG(boxes.leaves)),
+     "Draw only leaves: boxes that list objects"},
+    {"slice", 0, "AXIS[=AT]", RT_MARKING(of_boxes, RT_CALLS(take_slice)),
+     "Draw the section at x, y or z = AT (default: the middle of the scene), with the boxes and objects that "
+     "it cuts"},
+    {"light", 0, "N", RT_MARKING(of_light, RT_SETS_INTEGER(light, 0, UINT32_MAX)),
+     "For light: the light whose cells are drawn (default 0)"},
+    {"pixel", 0, "X,Y", RT_MARKING(of_light, RT_SETS_PIXEL(pixel)),
+     "For light: mark the cell that the shadow ray of this pixel reads"},
+    {NULL, 0, NULL, {0}, "Heatmaps, the cost of each pixel:"},
+    {"heatmap", 0, "COUNTER FILE", RT_TO_TAKE(take_heatmap),
+     "object_tests, extent_tests, steps, or any other counter; may be repeated. Several --accel are drawn "
+     "side by side on one scale"},
+    {"heatmap-max", 0, "VALUE", RT_MARKING(thermal, RT_CALLS(take_max)),
+     "Values of VALUE and above get the brightest colour (default: the maximum)"},
+    {"heatmap-scale", 0, "linear|log", RT_MARKING(thermal, RT_CALLS(take_scale)),
+     "How values map to colours (default: log if the mean is below an eighth of the maximum)"},
+    {"heatmap-rays", 0, "KIND", RT_MARKING(thermal, RT_CALLS(take_rays)),
+     "Count only primary, shadow, reflection or transmission rays"},
+    {"heatmap-difference", 0, NULL, RT_MARKING(thermal, RT_SETS_FLAG(heat.difference)),
+     "For two --accel: also draw the first minus the second, red where the first costs more"},
     {0}};
 
 /* ---- the frames ---- */
+
+/* Overlays for shadow rays that look rays up in cells. */
+static bool has_cells_of_lights(const RtAccel *layer) {
+    return layer->ops->find_cell && layer->ops->kinds >> RT_RAY_SHADOW & 1;
+}
+
+/* RT_BAD_INPUT if an option does not apply to the drawn layer. */
+static RtStatus check_layer(const Options *o, const RtAccel *accel, RtError *error) {
+    const RtAccel *layer;
+    if (!o->structure) return RT_OK;
+    RT_TRY(rt_structure_layer(accel, o->layer, &layer, error));
+    if (o->of_boxes && layer->ops->find_cell)
+        return rt_fail(error, RT_BAD_INPUT,
+                       "--%s needs a layer that has boxes, such as bvh or grid, but the picture shows %s: "
+                       "leave it out, or choose another --layer",
+                       o->of_boxes, layer->ops->name);
+    if (o->of_light && !has_cells_of_lights(layer))
+        return rt_fail(error, RT_BAD_INPUT,
+                       "--%s needs the cells around a light, which only the layer light has, but the picture "
+                       "shows %s: leave it out, or draw light, as in --accel light:cells=64+bvh",
+                       o->of_light, layer->ops->name);
+    return RT_OK;
+}
+
+/* Whether the picture of the structure needs the image of the scene; the cells of an overlay do not. */
+static bool needs_frame(const Options *o, const RtAccel *accel) {
+    RtError error;
+    const RtAccel *layer;
+    return rt_structure_layer(accel, o->layer, &layer, &error) == RT_OK && !layer->ops->find_cell;
+}
 
 typedef struct Built {
     char spec[RT_MAX_SPEC_CHARS];
@@ -148,7 +311,7 @@ static RtStatus count_other(Run *run, uint32_t i, RtError *error) {
  * difference of two heatmaps needs both. */
 static bool remove_refused(Run *run, RtStatus status, uint32_t i, const RtError *why) {
     Options *o = run->options;
-    const uint32_t count = o->pictures.heat.difference ? 1 : o->accel_count;
+    const uint32_t count = o->heat.difference ? 1 : o->accel_count;
     if (!rt_cli_goes_on(status, o->accels[i], count, why)) return false;
     rt_cli_remove(o->accels, &o->accel_count, i);
     return true;
@@ -161,15 +324,15 @@ static RtStatus trace_frames(Run *run, RtError *error) {
     if (isatty(STDERR_FILENO)) f->progress = show_progress;
     f->progress_context = "tracing";
     const char *paths[MOST_OUTPUTS];
-    bool alone = o->pictures.structure && list_outputs(o, paths) == 1 && !o->check;
-    if (alone && !rt_pictures_need_frame(&o->pictures, run->accel)) return RT_OK;
+    bool alone = o->structure && list_outputs(o, paths) == 1 && !o->check;
+    if (alone && !needs_frame(o, run->accel)) return RT_OK;
     run->by_default = alone && run->accel->exact;
     if (run->by_default) return trace_background(run, f, error);
     RT_TRY(rt_frame_trace(&run->timed, run->accel, f, error));
-    if (!o->stats && !o->exr && !rt_pictures_any_heatmap(&o->pictures)) return RT_OK;
+    if (!o->stats && !any_heatmap(o)) return RT_OK;
     f->progress_context = "counting";
     f->counted = true;
-    f->cost_kinds = o->pictures.kinds;
+    f->cost_kinds = o->kinds;
     RT_TRY(rt_frame_trace(&run->built[0].counted, run->accel, f, error));
     for (uint32_t i = 1; i < o->accel_count; i++) {
         const RtStatus status = count_other(run, i, error);
@@ -185,32 +348,57 @@ static RtStatus prepare(Run *run, RtError *error) {
     const Options *o = run->options;
     RtSpec spec;
     for (uint32_t i = o->accel_count; i-- > 0;) RT_TRY(rt_spec_parse(o->accels[i], &spec, error));
-    if (o->pictures.structure) RT_TRY(rt_structure_available(&spec, o->pictures.layer, error));
+    if (o->structure) RT_TRY(rt_structure_available(&spec, o->layer, error));
     if (o->stats) RT_TRY(rt_cli_check_json_name(o->scene, error));
     RT_TRY(rt_scene_open(o->scene, &run->scene, error));
     RT_TRY(rt_scene_sample(&run->scene, o->size[0], o->size[1], o->samples, o->corners, error));
     RtStatus status = build(run, 0, &run->accel, error);
     while (remove_refused(run, status, 0, error)) status = build(run, 0, &run->accel, error);
     RT_TRY(status);
-    return rt_pictures_check(&o->pictures, run->accel, error);
+    return check_layer(o, run->accel, error);
 }
 
 /* ---- what is written ---- */
+
+static RtStatus draw_cells(const Options *o, const RtAccel *accel, const RtAccel *layer, RtError *error) {
+    RtRay ray;
+    const RtSampling *s = &accel->scene->sampling;
+    if (o->pixel.given) RT_TRY(rt_cli_check_pixel(s, o->pixel, error));
+    if (o->pixel.given && o->light < accel->scene->light_count) {
+        RtFootprint f = rt_pixel_footprint(s, o->pixel.x, o->pixel.y);
+        RT_TRY(rt_path_ray(accel, RT_RAY_SHADOW, f.column + f.span / 2, f.row + f.span / 2, o->light, &ray,
+                           error));
+    }
+    return rt_buffer_draw(o->structure, layer, o->light, o->pixel.given ? &ray : NULL, error);
+}
+
+static RtStatus draw_structure(const Options *o, const RtAccel *accel, const RtFrame *frame, RtError *error) {
+    const RtAccel *layer;
+    RtStructureOptions boxes = o->boxes;
+    RT_TRY(rt_structure_layer(accel, o->layer, &layer, error));
+    if (layer->ops->find_cell) return draw_cells(o, accel, layer, error);
+    if (o->in_middle) boxes.at = (double)rt_box_center(accel->scene->geometry.box).at[boxes.axis];
+    return rt_structure_draw(o->structure, layer, frame, &boxes, error);
+}
 
 static RtStatus write_heatmaps(const Run *run, RtError *error) {
     const Options *o = run->options;
     RtHeatmapPanel panels[RT_MAX_PANELS];
     for (uint32_t i = 0; i < o->accel_count; i++)
         panels[i] = (RtHeatmapPanel){&run->built[i].counted, o->accel_count > 1 ? o->accels[i] : NULL};
-    return rt_pictures_heatmaps(&o->pictures, panels, o->accel_count, error);
+    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
+        RtHeatmapOptions heat = o->heat;
+        heat.counter = i;
+        if (o->heatmaps[i]) RT_TRY(rt_heatmap_draw(o->heatmaps[i], panels, o->accel_count, &heat, error));
+    }
+    return RT_OK;
 }
 
 static RtStatus write_images(const Run *run, RtError *error) {
     const Options *o = run->options;
-    if (o->exr) RT_TRY(rt_exr_write(&run->built[0].counted, o->exr, error));
     if (o->png) RT_TRY(rt_png_write(&run->timed, o->png, error));
-    if (o->pictures.structure) RT_TRY(rt_pictures_structure(&o->pictures, run->accel, &run->timed, error));
-    return rt_pictures_any_heatmap(&o->pictures) ? write_heatmaps(run, error) : RT_OK;
+    if (o->structure) RT_TRY(draw_structure(o, run->accel, &run->timed, error));
+    return any_heatmap(o) ? write_heatmaps(run, error) : RT_OK;
 }
 
 static uint64_t total_rays(const RtFrame *frame) {
@@ -286,7 +474,7 @@ static void print_counts(const Run *run, const char *spec, const RtFrame *counte
     fputs(spec, stdout);
     for (size_t c = 0; c < RT_TALLY_COUNTER_COUNT; c++) {
         double sum = 0;
-        if (!run->options->pictures.heatmaps[c]) continue;
+        if (!run->options->heatmaps[c]) continue;
         for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++)
             sum += (double)rt_tally_get(&counted->tallies[kind], c);
         printf("%s%.4g %s", separator, sum / (double)(rays ? rays : 1), rt_tally_name(c));
@@ -396,16 +584,11 @@ static const char help[] =
     "  raytally render balls --accel grid --accel kd \\\n"
     "    --heatmap object_tests tests.png --heatmap-difference\n\n"
     "`raytally trace` follows a single ray. docs/columns.md explains the counters.";
-const RtSyntax rt_render_syntax = {.options = options,
-                                   .shared = rt_picture_options,
-                                   .shared_at = offsetof(Options, pictures),
-                                   .plugins = true,
-                                   RT_ONE_SCENE,
-                                   .finish = finish,
-                                   .help = help};
+const RtSyntax rt_render_syntax = {
+    .options = options, .plugins = true, RT_ONE_SCENE, .finish = finish, .help = help};
 
 RtStatus rt_command_render(int argc, char **argv, RtError *error) {
-    Options o = {.samples = 1, .depth = RT_DEFAULT_DEPTH, .pictures = {.boxes = RT_ALL_LEVELS}};
+    Options o = {.samples = 1, .depth = RT_DEFAULT_DEPTH, .boxes = RT_ALL_LEVELS};
     rt_cli_parse(&rt_render_syntax, argc, argv, &o);
     Run run = {.options = &o};
     RtStatus status = prepare(&run, error);

@@ -5,6 +5,7 @@
 #include "cli/jobs.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
+#include "cli/stop.h"
 #include "core/base/words.h"
 #include "measure/result_files.h"
 #include "report/index.h"
@@ -27,7 +28,7 @@ typedef struct Options {
     const char *out;         /* as given: of one experiment the directory, of several the folder; or NULL */
     RtRunOptions how;
     char directory[RT_MAX_PATH]; /* of this run: results/NAME, or of several FOLDER/NAME */
-    bool quick, strict, dry, update;
+    bool quick, strict, dry, resume, force;
     bool found;                                 /* the experiment comes from a manifest */
     char parts[RT_MAX_PARTS][3 * RT_MAX_LABEL]; /* texts of how.workload.only */
     uint64_t memory;                            /* bytes for each accelerator; 0: the experiment's limit */
@@ -57,37 +58,25 @@ static void take_shard(void *options, const char *text, struct argp_state *state
     only->shards = shards;
 }
 
-static void take_renew(void *options, const char *text, struct argp_state *state) {
-    (void)text, (void)state;
-    RtRunOptions *how = &((Options *)options)->how;
-    how->start = RT_START_RESUME;
-    how->renew = true;
-}
-
 static void finish_options(void *options, struct argp_state *state) {
     const Options *o = options;
     if (o->count == 1) return;
     if (o->how.workload.only.part_count || o->how.workload.only.shards)
         argp_error(state, "--only and --shard take one experiment");
-    if (o->how.start == RT_START_ANEW)
-        argp_error(state, "--force takes one experiment: with several, every repetition would lose what is "
-                          "finished; use --update, or another --out");
 }
 
 static const RtOption options[] = {
     {"out", 'o', "DIR", RT_TO_TEXT(out),
      "The result directory (results/NAME); for several experiments, the folder of their directories DIR/NAME "
      "(results)"},
-    {"resume", 0, NULL, RT_TO_SET(how.start, RT_START_RESUME),
-     "Continue an interrupted run: its measurements stay. For a finished run, rewrite its tables and plots"},
-    {"update", 0, NULL, RT_TO_FLAG(update),
-     "As --renew, but start over where another build, or another version of the YAML, was measured: those "
-     "results are lost"},
-    {"renew", 0, NULL, RT_TO_TAKE(take_renew),
-     "As --resume, after a plugin has changed: measure its cells again, keep all others"},
-    {"force", 0, NULL, RT_TO_SET(how.start, RT_START_ANEW),
-     "Start over: the results in DIR are lost. The last of --resume and --force counts; --force overrides "
-     "--update"},
+    {"resume", 0, NULL, RT_TO_FLAG(resume),
+     "Keep what is finished and measure the rest, and again the cells of plugins that have changed. If "
+     "nothing is left to measure, write tables and plots anew"},
+    {"force", 0, NULL, RT_TO_FLAG(force),
+     "Start over: the results in DIR are lost; with --resume, only results that cannot be resumed, as of "
+     "another build or another version of the YAML"},
+    RT_GONE("renew", "--resume measures the cells of changed plugins again"),
+    RT_GONE("update", "use --resume, and --resume --force to start over what another build measured"),
     RT_TRUST_OPTION(how.scripts),
     {"threads", 't', "N", RT_TO_INTEGER(threads, 0, 1024), RT_THREADS_HELP},
     RT_MEMORY_OPTION(memory),
@@ -96,9 +85,7 @@ static const RtOption options[] = {
     {"quick", 0, NULL, RT_TO_FLAG(quick), "The smaller variant that the YAML describes under `quick`"},
     {"strict", 0, NULL, RT_TO_FLAG(strict),
      "Exit code 1 if a claim of the experiment (`expect`) does not hold"},
-    {"dry-run", 0, NULL, RT_TO_FLAG(dry),
-     "Measure nothing: list the cells, which of them are finished, and an estimate of the time for the "
-     "others"},
+    {"dry-run", 0, NULL, RT_TO_FLAG(dry), "Measure nothing: list the cells, and which of them are finished"},
     {"only", 0, "SCENE[/ACCEL[/KIND]]", RT_TO_TAKE(take_only),
      "Measure only the baseline and one scene, one accelerator on it, or one kind of rays, given by labels; "
      "may be repeated. --resume without --only measures the rest"},
@@ -116,56 +103,34 @@ static RtStatus check_part(const RtExperiment *e, const RtSelection *only, RtErr
                    rt_plural(e->workload_count), only->shards);
 }
 
-/* The line of a cell in --dry-run; cells of a `previous` run are measured again. */
-static void print_cell(const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind, bool previous) {
+/* The line of a cell in --dry-run. */
+static void print_cell(const RtResults *results, const RtCellCursor *at) {
     const RtExperiment *e = results->experiment;
-    const RtCell *cell = rt_cell_at(results, t, c, kind);
-    const char *left_out = *cell->left_out ? cell->left_out : rt_build_at(results, t, c)->left_out;
-    bool finished = cell->counted && (cell->timed || e->count_only);
-    if (results->workloads[t].known && !results->workloads[t].rays[kind]) return;
-    const char *state = *left_out ? left_out : finished ? (previous ? "measured before" : "finished") : "";
-    printf("%-24s %-28s %-*s%s%s\n", e->workloads[t].label, rt_candidate_label(e, c), *state ? 12 : 0,
-           rt_ray_kind_name(kind), *state ? " " : "", state);
+    const RtWorkloadResult *workload = &results->workloads[at->workload];
+    const RtBuildResult *build = rt_build_at(results, at->workload, at->candidate);
+    const char *left_out = *at->cell->left_out ? at->cell->left_out : build->left_out;
+    const bool finished = at->cell->counted && (at->cell->timed || e->count_only);
+    if (workload->known && !workload->rays[at->kind]) return;
+    const char *state = *left_out ? left_out : finished ? "finished" : "";
+    printf("%-24s %-28s %-*s%s%s\n", e->workloads[at->workload].label, rt_candidate_label(e, at->candidate),
+           *state ? 12 : 0, rt_ray_kind_name(at->kind), *state ? " " : "", state);
 }
 
-/* Opens no scenes: forecasts from the results in the directory. */
+/* Opens no scenes: what is finished is in the journal. */
 static RtStatus dry_run(RtResults *results, const RtRunOptions *how, bool list, RtError *error) {
     const RtExperiment *e = results->experiment;
     const RtSelection *only = &how->workload.only;
-    char path[RT_MAX_PATH], duration[RT_MAX_DURATION];
+    char path[RT_MAX_PATH];
     RT_TRY(rt_path_join(how->directory, RT_RUN_JOURNAL, path, error));
-    const bool exists = rt_file_exists(path), anew = how->start == RT_START_ANEW;
-    RtStatus status = exists && !anew ? rt_journal_load(path, results, only, how->renew, error) : RT_OK;
-    const bool refused = status == RT_BAD_INPUT, previous = exists && (anew || refused);
-    if (refused) fprintf(stderr, "raytally: %s\n", error->message);
-    if (previous) status = rt_forecast_learn(how->directory, results, error);
-    RT_TRY(status);
-    for (uint32_t t = 0; list && t < e->workload_count; t++) {
-        for (uint32_t c = 0; c < e->candidate_count; c++) {
-            for (uint32_t k = 0; rt_candidate_runs(e, c, t) && k < e->kind_count; k++) {
-                if (rt_selection_has(only, e, t, c, e->kinds[k]))
-                    print_cell(results, t, c, e->kinds[k], previous);
-            }
-        }
+    if (how->start != RT_START_ANEW && rt_file_exists(path))
+        RT_TRY(rt_journal_load(path, results, only, error));
+    for (RtCellCursor at = {0}; list && rt_results_next(results, &at);) {
+        if (rt_candidate_runs(e, at.candidate, at.workload) &&
+            rt_selection_has(only, e, at.workload, at.candidate, at.kind))
+            print_cell(results, &at);
     }
-    RtForecast forecast = rt_forecast(results, &how->workload);
-    if (previous) {
-        rt_format_duration(forecast.known + forecast.left, duration);
-        printf("%u cell%s, %u of them as in the previous run; all of them take %s %s\n", forecast.cells,
-               rt_plural(forecast.cells), forecast.finished, forecast.guessed ? "at least" : "about",
-               duration);
-        return RT_OK;
-    }
-    const bool cells = forecast.finished < forecast.cells; /* else what is left is of structures */
-    if (!cells && forecast.left == 0) {
-        printf("%u cell%s, all of them finished\n", forecast.cells, rt_plural(forecast.cells));
-        return RT_OK;
-    }
-    rt_format_duration(forecast.left, duration);
-    printf("%u cell%s, %u of them finished; %s take %s %s%s\n", forecast.cells, rt_plural(forecast.cells),
-           forecast.finished, cells ? "the others" : "null runs and frames",
-           forecast.guessed ? "at least" : "about", duration,
-           forecast.guessed ? " (estimated from rounds and milliseconds, since nothing is timed yet)" : "");
+    const RtCellCount count = rt_count_cells(results, &how->workload);
+    printf("%u cell%s, %u of them finished\n", count.cells, rt_plural(count.cells), count.finished);
     return RT_OK;
 }
 
@@ -191,22 +156,8 @@ static void go_on(const Options *o, const RtExperiment *e, char out[MOST_COMMAND
     if (how->until > 0)
         rt_append_text(out, size, " --until %g%% --patience %g", 100 * how->until, how->patience);
     rt_cli_plugin_arguments(out, size);
-    rt_append_text(out, size, "%s%s", o->how.scripts == RT_SCRIPTS_ALL ? " --trust" : "",
-                   o->update      ? " --update"
-                   : o->how.renew ? " --renew"
-                                  : " --resume");
-}
-
-/* With several experiments, --force is refused: --update is what continues them. */
-static RtStatus check_update(const Options *o, RtError *error) {
-    bool goes_on;
-    const RtStart start = o->how.start;
-    if (o->count == 1 || o->dry || start != RT_START_FRESH) return RT_OK;
-    if (rt_result_files_look(o->how.directory, RT_RUN_JOURNAL, start, &goes_on, NULL) == RT_OK) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT,
-                   "%s holds results of an earlier run: --update keeps what is up to date and measures the "
-                   "rest; or give another --out",
-                   o->how.directory);
+    rt_append_text(out, size, "%s --resume", o->how.scripts == RT_SCRIPTS_ALL ? " --trust" : "");
+    if (o->force && (o->resume || o->count > 1)) rt_append_text(out, size, " --force");
 }
 
 static RtStatus measure(Options *o, RtResults *results, RtError *error) {
@@ -217,7 +168,7 @@ static RtStatus measure(Options *o, RtResults *results, RtError *error) {
         snprintf(progress.title, sizeof progress.title, "%s, %" PRIu32 " of %" PRIu32 ": ",
                  results->experiment->name, o->current + 1, o->count);
     go_on(o, results->experiment, command);
-    rt_progress_watch(&progress, how->directory, command);
+    rt_stop_continue(how->directory, command);
     how->workload.observer = rt_progress_observer(&progress);
     RtStatus status = rt_run_experiment(results, how, error);
     rt_progress_end(&progress);
@@ -259,22 +210,23 @@ static RtStatus choose_directory(Options *o, const RtExperiment *experiment, RtE
     return RT_OK;
 }
 
-/* --update: resumes what this build began, and replaces what cannot be resumed, saying why; but not a run
- * of another experiment or with other options, which is more likely a mistake, nor what it cannot read. */
+/* With --resume and --force, says what cannot be resumed, and starts it over. */
 static RtStatus choose_start(Options *o, const RtExperiment *experiment, RtError *error) {
     RtResults results;
     RtRunOptions *how = &o->how;
+    bool goes_on;
     char path[RT_MAX_PATH];
+    how->start = o->resume ? RT_START_RESUME : o->force ? RT_START_ANEW : RT_START_FRESH;
+    if (!o->resume || !o->force) return RT_OK;
     RT_TRY(rt_path_join(how->directory, RT_RUN_JOURNAL, path, error));
-    how->start = RT_START_RESUME;
-    how->renew = true;
-    if (!rt_file_exists(path)) return RT_OK;
-    RtStatus status = rt_results_init(&results, experiment, error);
-    if (status == RT_OK) status = rt_journal_load(path, &results, &how->workload.only, how->renew, error);
-    rt_results_clear(&results);
-    if (status != RT_BAD_INPUT || !rt_journal_is_outdated(path, experiment, &how->workload.only))
-        return status;
-    fprintf(stderr, "raytally: %s; --update starts %s over\n", error->message, how->directory);
+    RtStatus status = rt_result_files_look(how->directory, RT_RUN_JOURNAL, how->start, &goes_on, error);
+    if (status == RT_OK && goes_on) {
+        status = rt_results_init(&results, experiment, error);
+        if (status == RT_OK) status = rt_journal_load(path, &results, &how->workload.only, error);
+        rt_results_clear(&results);
+    }
+    if (status != RT_BAD_INPUT) return status;
+    fprintf(stderr, "raytally: %s; --force starts %s over\n", error->message, how->directory);
     how->start = RT_START_ANEW;
     return RT_OK;
 }
@@ -283,12 +235,12 @@ static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
     RtRunOptions *how = &o->how;
     RtResults results;
     RT_TRY(load(o, experiment, error));
+    if (*experiment->warning.message) fprintf(stderr, "raytally: %s\n", experiment->warning.message);
     RT_TRY(check_part(experiment, &how->workload.only, error));
     if (how->workload.until > 0 && experiment->rounds < RT_FULL_ROUNDS) experiment->rounds = RT_FULL_ROUNDS;
     if (o->memory) experiment->limit_bytes = o->memory;
     RT_TRY(choose_directory(o, experiment, error));
-    if (o->update && how->start != RT_START_ANEW) RT_TRY(choose_start(o, experiment, error));
-    RT_TRY(check_update(o, error));
+    RT_TRY(choose_start(o, experiment, error));
     if (o->threads >= 0) how->workload.threads = how->workload.timing = o->threads;
     if (!o->found && how->scripts == RT_SCRIPTS_SHIPPED) how->scripts = RT_SCRIPTS_OWN;
     RtStatus status = rt_results_init(&results, experiment, error);
@@ -356,7 +308,7 @@ const RtSyntax rt_run_syntax = {
         "images and report.html. Several run one after the other, each in a separate process; one that "
         "fails does not stop the others, the worst exit code counts, and an index lists all results in the "
         "folder. Given a manifest, run its experiment again; start it in the same working directory as the "
-        "first run. A directory that has results, finished or not, needs --resume, --update or --force. "
+        "first run. A directory that has results, finished or not, needs --resume or --force. "
         "Only one process at a time may write to a directory. After Ctrl-C, finished cells are kept.\v"
         "Times per ray are in ns/ray, over all kinds of rays, on one thread unless --threads says otherwise; "
         "`raytally bench` prints them by kind, as throughput: Mrays/s = 1000 / (ns/ray).\n"

@@ -2,14 +2,15 @@
 /* raytally trace: one ray's path through an accelerator, step by step, or the ray tree of a pixel. */
 #include "accel/columns.h"
 #include "cli/cli.h"
-#include "cli/trace_tree.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
 #include "picture/path_picture.h"
+#include "render/ray_tree.h"
 #include "scenes/open.h"
 
 #include <stdio.h>
+#include <string.h>
 
 typedef struct Options {
     const char *scene, *accel, *svg;
@@ -152,6 +153,126 @@ static void print_path(const RtPath *path, const Options *o, const char *title, 
     print_answer(path, g);
 }
 
+/* ---- the ray tree in words ---- */
+
+enum { PAGE = 100, LEAST_HIT = 16 }; /* characters: of a line, and of the column of objects */
+
+/* A row of the tree as text. */
+enum { NUMBER, RAY, T, HIT, FACTOR, COLUMNS };
+typedef struct Row {
+    char of[COLUMNS][2 * RT_MAX_DEPTH + RT_TREE_HIT_TEXT];
+} Row;
+
+static Row row_of(const RtTreeRay *ray, const RtScene *scene) {
+    static const char object[] = "object "; /* the column's name says it */
+    const uint32_t indent = 2 * (ray->level - (ray->ray.kind != RT_RAY_SHADOW));
+    const size_t size = sizeof(((Row *)0)->of[0]);
+    Row row = {.of[T] = "-"};
+    char name[RT_TREE_RAY_TEXT], hit[RT_TREE_HIT_TEXT];
+    rt_tree_ray_name(ray, name);
+    rt_tree_ray_hit(ray, scene, hit);
+    snprintf(row.of[NUMBER], size, "%u", ray->number);
+    snprintf(row.of[RAY], size, "%*s%s", (int)indent, "", name);
+    if (isfinite((double)ray->hit.t)) snprintf(row.of[T], size, "%.5g", (double)ray->hit.t);
+    strcpy(row.of[HIT], hit + (strncmp(hit, object, strlen(object)) == 0 ? strlen(object) : 0));
+    snprintf(row.of[FACTOR], size, "%.4g", (double)ray->factor);
+    return row;
+}
+
+/* Widens the columns for all rows that are printed; that of objects is as wide as it needs, or as fits. */
+static void measure(const RtRayTree *tree, const RtScene *scene, uint32_t rows, int w[COLUMNS]) {
+    for (uint32_t i = 0, left = rows; left > 0; i = rt_ray_tree_next(tree, i), left--) {
+        const Row row = row_of(&tree->rays[i], scene);
+        for (int c = 0; c < COLUMNS; c++)
+            if ((int)strlen(row.of[c]) > w[c]) w[c] = (int)strlen(row.of[c]);
+    }
+    const int fits = PAGE - (w[NUMBER] + w[RAY] + w[T] + w[FACTOR] + 5 + 4 + 5 + 2 * 7);
+    if (w[HIT] > fits) w[HIT] = fits > LEAST_HIT ? fits : LEAST_HIT;
+}
+
+static void print_rays(const RtRayTree *tree, const RtTally *costs, const RtScene *scene, uint32_t rows) {
+    int w[COLUMNS] = {2, 3, 1, 6, 6};
+    measure(tree, scene, rows, w);
+    printf("\n%*s  %-*s  %*s  %-*s  %*s  %5s  %4s  %5s\n", w[NUMBER], "", w[RAY], "ray", w[T], "t", w[HIT],
+           "object", w[FACTOR], "factor", "tests", "ext.", "steps");
+    for (uint32_t i = 0, left = rows; left > 0; i = rt_ray_tree_next(tree, i), left--) {
+        Row row = row_of(&tree->rays[i], scene);
+        if ((int)strlen(row.of[HIT]) > w[HIT]) strcpy(row.of[HIT] + w[HIT] - 3, "...");
+        printf("%*s  %-*s  %*s  %-*s  %*s  %5llu  %4llu  %5llu\n", w[NUMBER], row.of[NUMBER], w[RAY],
+               row.of[RAY], w[T], row.of[T], w[HIT], row.of[HIT], w[FACTOR], row.of[FACTOR],
+               (unsigned long long)costs[i].object_tests, (unsigned long long)costs[i].extent_tests,
+               (unsigned long long)costs[i].steps);
+    }
+}
+
+/* Whether the light of a ray can have the term: of a hit any, of a shadow ray diffuse and specular. */
+static bool has_term(const RtTreeRay *ray, RtTerm term) {
+    if (ray->ray.kind == RT_RAY_SHADOW) return term == RT_TERM_DIFFUSE || term == RT_TERM_SPECULAR;
+    return ray->surface.material != NULL;
+}
+
+static int term_width(RtTerm term) {
+    const int name = (int)strlen(rt_term_name(term));
+    return name > 6 ? name : 6;
+}
+
+/* A line per channel: the terms, and the light that is their sum. */
+static void print_light_of(const RtTreeRay *ray) {
+    static const char *const channels[] = {"red", "green", "blue"};
+    for (int c = 0; c < 3; c++) {
+        if (c == 0)
+            printf("%5u  %-5s", ray->number, channels[c]);
+        else
+            printf("%5s  %-5s", "", channels[c]);
+        for (int t = 0; t < RT_TERM_COUNT; t++) {
+            if (has_term(ray, (RtTerm)t))
+                printf("  %*.4f", term_width((RtTerm)t), ray->terms[t].at[c]);
+            else
+                printf("  %*s", term_width((RtTerm)t), "-");
+        }
+        printf("  %6.4f\n", ray->light.at[c]);
+    }
+}
+
+/* Of all rays except shadow rays that end at an occluder: those bring no light. */
+static void print_light(const RtRayTree *tree, uint32_t rows) {
+    printf("\n%5s  %-5s", "ray", "");
+    for (int t = 0; t < RT_TERM_COUNT; t++) printf("  %*s", term_width((RtTerm)t), rt_term_name((RtTerm)t));
+    printf("  %6s\n", "light");
+    for (uint32_t i = 0, left = rows; left > 0; i = rt_ray_tree_next(tree, i), left--) {
+        const RtTreeRay *ray = &tree->rays[i];
+        if (ray->ray.kind != RT_RAY_SHADOW || ray->hit.object == RT_NO_OBJECT) print_light_of(ray);
+    }
+}
+
+static void print_sums(const RtRayTree *tree, const RtTally *costs) {
+    RtTally sum = {0};
+    uint32_t cut = 0;
+    for (uint32_t i = 0; i < tree->count; i++) {
+        rt_tally_add(&sum, &costs[i]);
+        cut += tree->rays[i].cut;
+    }
+    printf("\ntotal: %u ray%s in %u level%s, %llu object_tests, %llu extent_tests, %llu steps\n", tree->count,
+           rt_plural(tree->count), tree->levels, rt_plural(tree->levels),
+           (unsigned long long)sum.object_tests, (unsigned long long)sum.extent_tests,
+           (unsigned long long)sum.steps);
+    if (cut > 0)
+        printf("%u hit%s would reflect or transmit, but the depth is reached\n", cut, rt_plural(cut));
+    printf("colour: red %.6g, green %.6g, blue %.6g, the sum over the rays, as in the image\n",
+           (double)tree->color.x, (double)tree->color.y, (double)tree->color.z);
+}
+
+/* Prints at most `rows` rays, all for 0, depth first and indented; the light that each brings, and its terms;
+ * and sums: in 100 columns, unless rays are more than about 12 levels deep. */
+static void print_tree(const RtRayTree *tree, const RtTally *costs, const RtScene *scene, int64_t rows) {
+    const uint32_t shown = rows > 0 && rows < (int64_t)tree->count ? (uint32_t)rows : tree->count;
+    const uint32_t left = tree->count - shown;
+    print_rays(tree, costs, scene, shown);
+    if (left > 0) printf("       and %u more ray%s\n       --rows 0 prints each\n", left, rt_plural(left));
+    print_light(tree, shown);
+    print_sums(tree, costs);
+}
+
 /* ---- as JSON ---- */
 
 static json_t *row_json(const RtPathRow *row) {
@@ -165,21 +286,16 @@ static json_t *row_json(const RtPathRow *row) {
         rt_json_number(is_in ? row->leave : (double)NAN), "t",
         rt_json_number(row->kind == RT_TRACED_OBJECT_TEST && row->met ? (double)row->t : (double)NAN),
         "nearest", rt_json_number((double)row->nearest));
-    if (!json || !row->boxed) return json;
-    json_t *box = json_pack("[o, o]", rt_cli_vector_json(row->box.lo), rt_cli_vector_json(row->box.hi));
-    if (json_object_set_new(json, "box", box) == 0) return json;
-    json_decref(json);
-    return NULL;
+    if (row->boxed)
+        json_object_set_new(
+            json, "box",
+            json_pack("[o, o]", rt_cli_vector_json(row->box.lo), rt_cli_vector_json(row->box.hi)));
+    return json;
 }
 
-/* All rows, or NULL if memory is short. */
 static json_t *rows_json(const RtPath *path) {
     json_t *rows = json_array();
-    for (uint32_t i = 0; rows && i < path->count; i++) {
-        if (json_array_append_new(rows, row_json(&path->rows[i])) == 0) continue;
-        json_decref(rows);
-        return NULL;
-    }
+    for (uint32_t i = 0; i < path->count; i++) json_array_append_new(rows, row_json(&path->rows[i]));
     return rows;
 }
 
@@ -197,12 +313,70 @@ static json_t *path_json(const RtPath *path, const Options *o, const char *spec)
                      rt_json_number((double)path->hit.t));
 }
 
+static json_t *color_json(RtVec3d color) {
+    return json_pack("[f, f, f]", color.x, color.y, color.z);
+}
+
+static json_t *terms_json(const RtTreeRay *ray) {
+    json_t *terms = json_object();
+    for (int t = 0; t < RT_TERM_COUNT; t++)
+        json_object_set_new(terms, rt_term_name((RtTerm)t), color_json(ray->terms[t]));
+    return terms;
+}
+
+static json_t *surface_json(const RtSurface *s) {
+    if (!s->material) return json_null();
+    return json_pack("{s:o, s:o, s:b, s:s}", "point", color_json(s->point), "normal", color_json(s->normal),
+                     "from_inside", !s->entering, "material", s->material->name);
+}
+
+/* Without the rays that start at its hit. */
+static json_t *ray_json(const RtTreeRay *ray, const RtTally *cost, const RtScene *scene) {
+    char name[RT_TREE_RAY_TEXT];
+    const uint32_t object = ray->hit.object;
+    const bool named = object < RT_UNNAMED_OBJECT, shadow = ray->ray.kind == RT_RAY_SHADOW;
+    rt_tree_ray_name(ray, name);
+    return json_pack(
+        "{s:i, s:s, s:s, s:o, s:i, s:o, s:o, s:o, s:o, s:s?, s:o, s:o, s:f, s:b, s:b, s:o, s:o, s:o, s:o}",
+        "number", (int)ray->number, "ray", name, "kind", rt_ray_kind_name((RtRayKind)ray->ray.kind),
+        "to_light", shadow ? json_integer(ray->ray.source) : json_null(), "level", (int)ray->level, "org",
+        rt_cli_vector_json(ray->ray.org), "dir", rt_cli_vector_json(ray->ray.dir), "t",
+        rt_json_number((double)ray->hit.t), "object", named ? json_integer(object) : json_null(), "shape",
+        named ? rt_shape_name(rt_ref_shape(scene->geometry.objects[object])) : NULL, "blocked",
+        shadow ? json_boolean(object != RT_NO_OBJECT) : json_null(), "surface", surface_json(&ray->surface),
+        "factor", (double)ray->factor, "total_internal_reflection", ray->total, "cut", ray->cut, "terms",
+        terms_json(ray), "light", color_json(ray->light), "counts", rt_json_tally(cost), "rays",
+        json_array());
+}
+
+/* The primary ray, with the rays that start at its hit as its member "rays", and so on; null for an empty
+ * tree. */
+static json_t *rays_of_tree_json(const RtRayTree *tree, const RtTally *costs, const RtScene *scene) {
+    json_t **nodes = rt_alloc(tree->count, sizeof(json_t *)), *root = NULL;
+    if (tree->count == 0 || !nodes) {
+        rt_free(nodes);
+        return nodes ? json_null() : NULL;
+    }
+    bool made = true;
+    for (uint32_t i = 0; made && i < tree->count; i++) { /* parents come first */
+        const uint32_t parent = tree->rays[i].parent;
+        nodes[i] = ray_json(&tree->rays[i], &costs[i], scene);
+        if (parent == RT_NO_RAY) root = nodes[i];
+        made = nodes[i] && (parent == RT_NO_RAY ||
+                            json_array_append_new(json_object_get(nodes[parent], "rays"), nodes[i]) == 0);
+    }
+    rt_free(nodes);
+    if (made) return root;
+    json_decref(root);
+    return NULL;
+}
+
 static json_t *tree_json(const RtRayTree *tree, const RtTally *costs, const RtScene *scene, const Options *o,
                          const char *spec) {
     return json_pack("{s:s, s:s, s:s, s:[i, i], s:i, s:i, s:o, s:o}", "scene", o->scene, "accel", o->accel,
                      "spec", spec, "pixel", (int)o->pixel.x, (int)o->pixel.y, "depth", (int)tree->depth,
                      "levels", (int)tree->levels, "color", rt_cli_vector_json(tree->color), "tree",
-                     rt_cli_tree_json(tree, costs, scene));
+                     rays_of_tree_json(tree, costs, scene));
 }
 
 /* ---- the command ---- */
@@ -235,7 +409,7 @@ static RtStatus show_tree(const Options *o, const RtScene *scene, const RtRayTre
         return RT_OK;
     }
     printf("%s\n%s\n", spec, title);
-    rt_cli_print_tree(tree, costs, scene, o->rows);
+    print_tree(tree, costs, scene, o->rows);
     if (o->svg) printf("wrote %s\n", o->svg);
     return RT_OK;
 }

@@ -5,13 +5,16 @@
 #include "cli/plugins.h"
 #include "cli/progress.h"
 #include "cli/stop.h"
-#include "cli/verify_choice.h"
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
 #include "measure/ray_file.h"
+#include "scenes/builtin.h"
+#include "scenes/open.h"
 #include "verify/replay.h"
+#include "verify/spread.h"
+#include "verify/verify.h"
 #include "verify/verify_table.h"
 
 #include <inttypes.h>
@@ -19,17 +22,29 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Rays for each scene and accelerator. */
-enum { MANY_RAYS = 20000, QUICK_RAYS = 2000 };
+/* Rays for each scene and accelerator, by default and with --quick, which leaves out larger scenes. */
+enum { MANY_RAYS = 20000, QUICK_RAYS = 2000, QUICK_OBJECTS = 100 };
+
+enum { MOST_SCENES = 256, MOST_SPECS = 512 };
+
+/* The scenes and accelerators that are verified, given or by default. */
+typedef struct Choice {
+    const char *scenes[MOST_SCENES]; /* given, or in `families` */
+    uint32_t scene_count;
+    uint32_t scenes_left_out; /* of the default scenes */
+    RtVerifySpec specs[MOST_SPECS];
+    uint32_t spec_count;
+    char families[MOST_SCENES][RT_MAX_SPEC_CHARS];
+} Choice;
 
 typedef struct Options {
-    const char *scenes[RT_VERIFY_MAX_SCENES], *accels[RT_VERIFY_MAX_SPECS]; /* as given */
+    const char *scenes[MOST_SCENES], *accels[MOST_SPECS]; /* as given */
     uint32_t scene_count, accel_count;
     bool spread, quick, json;
     RtVerify work; /* work.rays.count 0: the default */
     const char *replay, *rays_from;
     RtRaySet given; /* those of rays_from */
-    RtVerifyChoice choice;
+    Choice choice;
     char go_on[1 << 16]; /* the command that continues */
 } Options;
 
@@ -88,13 +103,154 @@ static const RtOption options[] = {
     {"json", 'j', NULL, RT_TO_FLAG(json), "One JSON document on stdout"},
     {0}};
 
+/* ---- what is verified ---- */
+
+/* Verified by default, beside the families: their cameras see materials that reflect and transmit. */
+static const char *const default_scenes[] = {"balls:size=2",
+                                             "tetra:size=3",
+                                             "random:n=0",
+                                             "random:n=1",
+                                             "random:n=2,shape=mixed",
+                                             "random:n=200,shape=mixed",
+                                             "random:n=500,shape=triangle",
+                                             "random:n=500,distribution=clustered",
+                                             "random:n=40,shape=mixed,distribution=coincident",
+                                             "random:n=100,shape=mixed,distribution=line",
+                                             "random:n=100,shape=mixed,distribution=plane",
+                                             "random:n=200,shape=mixed,distribution=stadium"};
+
+/* ---- the scenes ---- */
+
+static RtStatus add_scene(Choice *choice, const char *spec, RtError *error) {
+    if (choice->scene_count == MOST_SCENES) {
+        return rt_fail(error, RT_BAD_INPUT, "more than %d scenes: verify fewer at a time", MOST_SCENES);
+    }
+    choice->scenes[choice->scene_count++] = spec;
+    return RT_OK;
+}
+
+static RtStatus add_families(Choice *choice, uint64_t seed, RtError *error) {
+    for (size_t i = 0; i < rt_family_count() && i < MOST_SCENES; i++) {
+        rt_family_spec(i, seed, choice->families[i]);
+        RT_TRY(add_scene(choice, choice->families[i], error));
+    }
+    return RT_OK;
+}
+
+static RtStatus add_default(Choice *choice, uint64_t seed, RtError *error) {
+    for (size_t i = 0; i < sizeof default_scenes / sizeof default_scenes[0]; i++) {
+        RT_TRY(add_scene(choice, default_scenes[i], error));
+    }
+    return add_families(choice, seed, error);
+}
+
+/* The default scenes that have no other shapes. */
+static RtStatus add_triangles(Choice *choice, uint64_t seed, RtError *error) {
+    uint32_t kept = choice->scene_count;
+    RT_TRY(add_default(choice, seed, error));
+    for (uint32_t i = kept; i < choice->scene_count; i++) {
+        RtScene scene;
+        RT_TRY(rt_scene_open(choice->scenes[i], &scene, error));
+        const RtGeometry *g = &scene.geometry;
+        if (g->triangle_count == g->object_count) choice->scenes[kept++] = choice->scenes[i];
+        rt_scene_clear(&scene);
+    }
+    choice->scene_count = kept;
+    return RT_OK;
+}
+
+/* Sorts built-in scenes by number of objects; with `quick` drops the large ones. */
+static RtStatus sort_scenes(Choice *choice, bool quick, RtError *error) {
+    uint64_t objects[MOST_SCENES];
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < choice->scene_count; i++) {
+        const char *scene = choice->scenes[i];
+        uint64_t count;
+        RT_TRY(rt_builtin_objects(scene, &count, error));
+        if (quick && count > QUICK_OBJECTS) continue;
+        uint32_t place = kept++;
+        for (; place > 0 && objects[place - 1] > count; place--) {
+            objects[place] = objects[place - 1];
+            choice->scenes[place] = choice->scenes[place - 1];
+        }
+        objects[place] = count;
+        choice->scenes[place] = scene;
+    }
+    choice->scenes_left_out = choice->scene_count - kept;
+    choice->scene_count = kept;
+    return RT_OK;
+}
+
+/* Those given; without any the default, by number of objects. */
+static RtStatus choose_scenes(Choice *choice, const char *const *given, uint32_t count, uint64_t seed,
+                              bool quick, RtError *error) {
+    for (uint32_t i = 0; i < count; i++) {
+        if (strcmp(given[i], "families") == 0)
+            RT_TRY(add_families(choice, seed, error));
+        else if (strcmp(given[i], "triangles") == 0)
+            RT_TRY(add_triangles(choice, seed, error));
+        else
+            RT_TRY(add_scene(choice, given[i], error));
+    }
+    if (count > 0) return RT_OK;
+    RT_TRY(add_default(choice, seed, error));
+    return sort_scenes(choice, quick, error);
+}
+
+/* ---- the accelerators ---- */
+
+static RtStatus add_spec(Choice *choice, const char *spec, bool named, bool judged, RtError *error) {
+    if (choice->spec_count == MOST_SPECS) {
+        return rt_fail(error, RT_BAD_INPUT, "more than %d accelerators: verify fewer at a time", MOST_SPECS);
+    }
+    RtVerifySpec *c = &choice->specs[choice->spec_count++];
+    *c = (RtVerifySpec){.named = named, .judged = judged};
+    snprintf(c->spec, sizeof c->spec, "%s", spec);
+    return RT_OK;
+}
+
+/* Adds its defaults and its trial, the first two of its spread, unless !`own` (it was named, and these are
+ * there); with `spread` the rest. */
+static RtStatus add_registered(Choice *choice, const RtAccelOps *ops, bool own, bool spread, RtError *error) {
+    char spec[RT_MAX_SPEC_CHARS];
+    size_t whole = ops->trial ? 2 : 1;
+    for (size_t n = own ? 0 : whole; (n < whole || spread) && rt_spread_spec(ops, n, spec); n++) {
+        RT_TRY(add_spec(choice, spec, false, !own, error));
+    }
+    return RT_OK;
+}
+
+static RtStatus add_named(Choice *choice, const char *text, bool spread, RtError *error) {
+    RtSpec spec;
+    char trial[RT_MAX_SPEC_CHARS];
+    RT_TRY(rt_spec_parse(text, &spec, error));
+    RT_TRY(add_spec(choice, text, true, true, error));
+    if (rt_trial_spec(text, trial)) RT_TRY(add_spec(choice, trial, true, true, error));
+    return add_registered(choice, spec.layers[0].ops, false, spread, error);
+}
+
+/* Each also as its trial (rt_trial_spec). */
+static RtStatus choose_specs(Choice *choice, const char *const *given, uint32_t count, bool spread,
+                             RtError *error) {
+    for (uint32_t i = 0; i < count; i++) {
+        if (strcmp(given[i], "all") != 0) {
+            RT_TRY(add_named(choice, given[i], spread, error));
+            continue;
+        }
+        for (size_t k = 0; k < rt_accel_count(); k++) {
+            RT_TRY(add_registered(choice, rt_accel_at(k), true, spread, error));
+        }
+    }
+    return RT_OK;
+}
+
 static RtStatus choose(Options *o, RtError *error) {
-    RtVerifyChoice *choice = &o->choice;
+    Choice *choice = &o->choice;
     RtVerifyRays *rays = &o->work.rays;
     if (o->accel_count == 0) o->accels[o->accel_count++] = "all";
     if (rays->count == 0) rays->count = o->quick ? QUICK_RAYS : MANY_RAYS;
-    RT_TRY(rt_verify_choose_scenes(choice, o->scenes, o->scene_count, rays->seed, o->quick, error));
-    RT_TRY(rt_verify_choose_specs(choice, o->accels, o->accel_count, o->spread, error));
+    RT_TRY(choose_scenes(choice, o->scenes, o->scene_count, rays->seed, o->quick, error));
+    RT_TRY(choose_specs(choice, o->accels, o->accel_count, o->spread, error));
     o->work.scenes = choice->scenes;
     o->work.scene_count = choice->scene_count;
     o->work.specs = choice->specs;
@@ -118,7 +274,7 @@ typedef struct Show {
 /* Redrawn at most ten times a second. From the first call on, --out has the journal. */
 static void on_doing(void *context, const RtVerifyProgress *p) {
     Show *show = context;
-    const RtVerifyChoice *choice = &show->options->choice;
+    const Choice *choice = &show->options->choice;
     double now = rt_wall_seconds(), passed = now - show->start;
     if (show->options->work.folder) rt_stop_continue(show->options->work.folder, show->options->go_on);
     if (!isatty(STDERR_FILENO) || now - show->drawn < 0.1) return;
@@ -140,7 +296,7 @@ static void widen(int *width, const char *text) {
 static const RtTable columns = {.groups = rt_verify_text, .group_count = RT_VERIFY_TEXT_GROUPS};
 
 static void print_header(Show *show) {
-    const RtVerifyChoice *choice = &show->options->choice;
+    const Choice *choice = &show->options->choice;
     if (show->widths[0]) return;
     rt_table_widths(&columns, show->widths);
     for (uint32_t i = 0; i < choice->scene_count; i++) widen(&show->widths[0], choice->scenes[i]);

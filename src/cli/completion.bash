@@ -1,28 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-# `raytally completion --words` prints what may follow. Words are read into arrays: if the shell split them, it would also replace
-# them by the names of matching files.
+# Completion in bash: commands, options, accelerators and built-in scenes, from what raytally prints of them; else files.
 _raytally() {
-    local line=${COMP_LINE:0:COMP_POINT} words word value found files
-    # Without -r a backslash keeps the blank behind it in its word, as in the shell.
-    # shellcheck disable=SC2162
-    read -a words <<<"$line"
-    case $line in *'\ ') ;; *' ') words+=('') ;; esac
-    word=${words[-1]}
-    mapfile -t found < <("${words[0]/#\~/$HOME}" completion --words "${words[@]:1}" 2>/dev/null)
-    case ${found[*]} in
-    *FILES)
-        value=$word
-        case $word in --*=*) value=${word#*=} ;; esac
-        mapfile -t files < <(compgen -f -- "$value")
-        unset 'found[-1]'
-        found+=("${files[@]/#/"${word%"$value"}"}")
-        if [ ${#files[@]} -gt 0 ]; then compopt -o filenames 2>/dev/null; fi
-        ;;
-    esac
-    # Behind : and = the shell sees a word of its own, and replaces no more than that.
-    local current=${COMP_WORDS[COMP_CWORD]//\\/}
-    case $current in [:=]*) current=${current#?} ;; esac
-    COMPREPLY=("${found[@]#"${word%"$current"}"}")
-    case ${COMPREPLY[*]} in *[=+]) compopt -o nospace 2>/dev/null ;; esac
+    local program=${COMP_WORDS[0]/#\~/$HOME} word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} names=''
+    # In --accel=bvh the shell sees three words.
+    if [ "$word" = = ]; then word=''; elif [ "$before" = = ]; then before=${COMP_WORDS[COMP_CWORD - 2]}; fi
+    if [ "$COMP_CWORD" = 1 ]; then
+        names=$("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\) .*/\1/p')
+    else
+        case $word:$before in
+        -*) names=$("$program" "${COMP_WORDS[1]}" --help | grep -oE '^(  -., |      )--[a-z-]+' | grep -o -e '--.*') ;;
+        *:--accel | *:-a | *:--baseline | *:accels) names="all $("$program" accels | sed -n 's/^\([a-z_]*\): .*/\1/p')" ;;
+        *:-*) ;;
+        *) names=$("$program" scenes | sed -n 's/^\([a-z_]*\): .*/\1/p') ;;
+        esac
+    fi 2>/dev/null
+    mapfile -t COMPREPLY < <(compgen -W "$names" -- "$word")
 }
-complete -F _raytally raytally
+complete -o default -F _raytally raytally

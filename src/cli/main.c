@@ -24,12 +24,6 @@ static const RtCommand commands[] = {
 
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
-RtStatus rt_command_completion(int argc, char **argv, RtError *error) {
-    (void)error;
-    rt_completion(commands, COMMAND_COUNT, argc, argv);
-    return RT_OK;
-}
-
 static void print_usage(FILE *to) {
     fprintf(to, "raytally " RT_VERSION ": a testbed for ray-tracing acceleration structures\n\n"
                 "Usage: raytally COMMAND [ARGUMENT...]\n\nCommands:\n");

@@ -67,6 +67,7 @@ static void take_value(const RtOptionValue *value, const char *name, char *optio
     case RT_OPTION_PIXEL: read_pixel(state, name, text, at); return;
     case RT_OPTION_PATH: rt_cli_set_path(state, name, (const char **)at, text, value->endings); return;
     case RT_OPTION_TAKE: value->take(options, text, state); return;
+    case RT_OPTION_GONE: argp_error(state, "%s is no longer there: %s", name, value->instead); return;
     }
 }
 
@@ -139,7 +140,8 @@ static struct argp_option *convert(const RtOption *list, struct argp_option out[
     return count > 0 ? out : NULL;
 }
 
-const struct argp *rt_cli_argp(const RtSyntax *syntax) {
+/* The syntax as argp has it, valid until the next call. */
+static const struct argp *argp_of(const RtSyntax *syntax) {
     static struct argp_option own[MOST_OPTIONS + 1], shared[MOST_OPTIONS + 1];
     static struct argp_child children[3];
     static struct argp argp, child;
@@ -159,7 +161,7 @@ const struct argp *rt_cli_argp(const RtSyntax *syntax) {
 void rt_cli_parse(const RtSyntax *syntax, int argc, char **argv, void *options) {
     Parse shared = {NULL, syntax->shared, (char *)options + syntax->shared_at, NULL};
     Parse parse = {syntax, syntax->options, options, &shared};
-    if (argp_parse(rt_cli_argp(syntax), argc, argv, 0, 0, &parse) == 0) return;
+    if (argp_parse(argp_of(syntax), argc, argv, 0, 0, &parse) == 0) return;
     fputs("raytally: out of memory: not enough to parse the arguments\n", stderr);
     exit(RT_EXIT_BAD_INPUT);
 }

@@ -32,13 +32,14 @@ typedef struct RtOptionValue {
         RT_OPTION_SIZE,    /* uint32_t[2]: WIDTHxHEIGHT */
         RT_OPTION_PIXEL,   /* RtPixel: X,Y */
         RT_OPTION_PATH,    /* const char *: a file name that ends in one of `endings` */
-        RT_OPTION_TAKE     /* as `take` reads it */
+        RT_OPTION_TAKE,    /* as `take` reads it */
+        RT_OPTION_GONE     /* none: an option of an earlier version; `instead` says what to do */
     } form;
     size_t offset, size; /* of the field */
     size_t count;        /* offset of the number of values of a list */
     int64_t low, high;
     RtTakeOption *take;
-    const char *endings;
+    const char *endings, *instead;
     size_t mark; /* of a const char * that gets the option's name; 0: none does */
     int flags;   /* argp's */
 } RtOptionValue;
@@ -74,6 +75,10 @@ typedef struct RtOptionValue {
 #define RT_TO_TAKE(function)    RT_VALUE(RT_CALLS(function))
 /* `text` may be NULL. */
 #define RT_TO_TAKE_OPTIONAL(function) RT_VALUE(RT_CALLS(function), .flags = OPTION_ARG_OPTIONAL)
+
+/* An option that is no longer there. */
+#define RT_GONE(name, use)                                                                                   \
+    { name, 0, NULL, RT_VALUE(.form = RT_OPTION_GONE, .instead = (use), .flags = OPTION_HIDDEN), NULL }
 
 typedef struct RtOption {
     const char *name;    /* NULL: `help` is the title of the options that follow */
@@ -111,8 +116,5 @@ typedef struct RtSyntax {
 
 /* Fills `options`, a command's Options. Ends the process if the arguments are wrong, or ask for help. */
 void rt_cli_parse(const RtSyntax *syntax, int argc, char **argv, void *options);
-
-/* The syntax as argp has it, valid until the next call. */
-const struct argp *rt_cli_argp(const RtSyntax *syntax);
 
 #endif

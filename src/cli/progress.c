@@ -1,27 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/progress.h"
 
-#include "cli/stop.h"
 #include "core/base/clock.h"
 #include "core/base/words.h"
 
 #include <math.h>
-#include <signal.h>
 #include <stdio.h>
-#include <time.h>
 #include <unistd.h>
 
-/* Seconds. */
-static const double LINE_EVERY = 60, LINE_OF_TERMINAL_EVERY = 1;
+static const double LINE_EVERY = 60; /* seconds, where there is no terminal */
 
 RtProgress rt_progress_begin(const RtWorkloadOptions *options) {
-    double now = rt_wall_seconds();
-    bool terminal = isatty(STDERR_FILENO) == 1;
-    return (RtProgress){.terminal = terminal,
+    const double now = rt_wall_seconds();
+    return (RtProgress){.terminal = isatty(STDERR_FILENO) == 1,
                         .options = *options,
                         .start = now,
                         .shown = now,
-                        .every = terminal ? LINE_OF_TERMINAL_EVERY : LINE_EVERY};
+                        .every = LINE_EVERY};
 }
 
 void rt_progress_clear(void) {
@@ -34,7 +29,24 @@ void rt_progress_notice(void *context, const char *message) {
     fprintf(stderr, "raytally: %s\n", message);
 }
 
-/* ---- time left ---- */
+/* ---- cells and time ---- */
+
+RtCellCount rt_count_cells(const RtResults *results, const RtWorkloadOptions *options) {
+    const RtExperiment *e = results->experiment;
+    const bool count_only = options->count_only || e->count_only;
+    RtCellCount count = {0, 0};
+    for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
+        const RtWorkloadResult *workload = &results->workloads[at.workload];
+        const bool no_rays = workload->known && !workload->rays[at.kind];
+        if (workload->skipped || no_rays || *rt_build_at(results, at.workload, at.candidate)->left_out ||
+            *at.cell->left_out || !rt_candidate_runs(e, at.candidate, at.workload) ||
+            !rt_selection_has(&options->only, e, at.workload, at.candidate, at.kind))
+            continue;
+        count.cells++;
+        count.finished += at.cell->counted && (at.cell->timed || count_only);
+    }
+    return count;
+}
 
 void rt_format_duration(double seconds, char out[RT_MAX_DURATION]) {
     int minutes = (int)fmin(round(seconds / 60), 1e8);
@@ -46,26 +58,21 @@ void rt_format_duration(double seconds, char out[RT_MAX_DURATION]) {
         snprintf(out, RT_MAX_DURATION, "%d h %d min", minutes / 60, minutes % 60);
 }
 
-/* Seconds left, from the forecast and the speed so far; NAN if unknown. */
-static double left_of(const RtProgress *progress, double now) {
-    double left = rt_forecast_left(&progress->forecast, progress->before, progress->asked - progress->start);
-    return isnan(left) ? left : fmax(left - (now - progress->asked), 0);
-}
-
 /* ---- lines ---- */
 
-static void show(RtProgress *progress) {
-    const RtForecast *f = &progress->forecast;
-    double now = rt_wall_seconds(), left = left_of(progress, now);
+/* The cells that are left take as long as those measured so far. */
+static void show(RtProgress *progress, double now) {
+    const RtCellCount *count = &progress->count;
+    const uint32_t done = count->finished - progress->before, left = count->cells - count->finished;
     char duration[RT_MAX_DURATION], rest[RT_MAX_DURATION + 16] = "";
-    rt_format_duration(left, duration);
-    if (!isnan(left)) snprintf(rest, sizeof rest, ", about %s left", duration);
+    if (done > 0) rt_format_duration((now - progress->start) * left / done, duration);
+    if (done > 0) snprintf(rest, sizeof rest, ", about %s left", duration);
     if (progress->terminal)
-        fprintf(stderr, "\r\033[K%s[%u/%u] %s%s", progress->title, f->finished, f->cells, progress->doing,
-                rest);
+        fprintf(stderr, "\r\033[K%s[%u/%u] %s%s", progress->title, count->finished, count->cells,
+                progress->doing, rest);
     else
-        fprintf(stderr, "raytally: %s%u of %u cell%s, %s%s\n", progress->title, f->finished, f->cells,
-                rt_plural(f->cells), progress->doing, rest);
+        fprintf(stderr, "raytally: %s%u of %u cell%s, %s%s\n", progress->title, count->finished, count->cells,
+                rt_plural(count->cells), progress->doing, rest);
     fflush(stderr);
     progress->shown = now;
 }
@@ -76,7 +83,6 @@ static void describe(RtProgress *progress, const RtResults *results, const RtEve
                                        [RT_EVENT_COUNT] = "counted",
                                        [RT_EVENT_TIME] = "timed",
                                        [RT_EVENT_DISTRIBUTION] = "distributed",
-                                       [RT_EVENT_HARDWARE] = "hardware counters",
                                        [RT_EVENT_RENDER] = "rendered",
                                        [RT_EVENT_NO_BUILD] = "left out",
                                        [RT_EVENT_NO_CELL] = "left out"};
@@ -96,14 +102,11 @@ static RtStatus on_event(void *context, const RtResults *results, const RtEvent 
     (void)error;
     RtProgress *progress = context;
     double now = rt_wall_seconds();
-    if (progress->watched) pthread_mutex_lock(&progress->lock);
-    progress->forecast = rt_forecast(results, &progress->options); /* much faster than a cell */
-    progress->asked = now;
-    if (!progress->begun) progress->before = progress->forecast.known; /* from earlier runs */
+    progress->count = rt_count_cells(results, &progress->options);
+    if (!progress->begun) progress->before = progress->count.finished; /* in earlier runs */
     progress->begun = true;
     describe(progress, results, event);
-    if (progress->terminal || now - progress->shown >= progress->every) show(progress);
-    if (progress->watched) pthread_mutex_unlock(&progress->lock);
+    if (progress->terminal || now - progress->shown >= progress->every) show(progress, now);
     return RT_OK;
 }
 
@@ -111,70 +114,6 @@ RtRunObserver rt_progress_observer(RtProgress *progress) {
     return (RtRunObserver){progress, on_event, rt_progress_notice};
 }
 
-/* ---- the thread ---- */
-
-/* The journal is always whole. */
-static void leave(const RtProgress *progress, int number) {
-    rt_progress_clear();
-    fprintf(stderr, "raytally: %s%s; ", progress->title, rt_stop_reason(number));
-    if (progress->begun) {
-        fprintf(stderr, "%u of %u cell%s %s finished, all measurements are kept in %s.",
-                progress->forecast.finished, progress->forecast.cells, rt_plural(progress->forecast.cells),
-                progress->forecast.cells == 1 ? "is" : "are", progress->keeps);
-    } else {
-        fprintf(stderr, "nothing was measured yet, and %s is unchanged.", progress->keeps);
-    }
-    fprintf(stderr, " To continue:\n  %s\n", progress->go_on);
-    rt_stop_clean();
-    _exit(rt_stop_code(number));
-}
-
-/* Those that the thread takes; SIGUSR2 wakes it. */
-static sigset_t signals_taken(void) {
-    sigset_t signals = rt_stop_signals();
-    sigaddset(&signals, SIGUSR2);
-    return signals;
-}
-
-static void *watch(void *context) {
-    RtProgress *progress = context;
-    const struct timespec second = {.tv_sec = 1};
-    const sigset_t signals = signals_taken();
-    for (;;) {
-        int number = sigtimedwait(&signals, NULL, &second);
-        pthread_mutex_lock(&progress->lock);
-        bool ended = progress->ended;
-        if (!ended && number > 0 && number != SIGUSR2) leave(progress, number);
-        double since = rt_wall_seconds() - progress->shown;
-        if (!ended && progress->begun && since >= progress->every) show(progress);
-        pthread_mutex_unlock(&progress->lock);
-        if (ended) return NULL;
-    }
-}
-
-static void block(int how) {
-    const sigset_t signals = signals_taken();
-    pthread_sigmask(how, &signals, NULL);
-}
-
-void rt_progress_watch(RtProgress *progress, const char *directory, const char *go_on) {
-    progress->keeps = directory;
-    progress->go_on = go_on;
-    pthread_mutex_init(&progress->lock, NULL);
-    block(SIG_BLOCK);
-    progress->watched = pthread_create(&progress->watcher, NULL, watch, progress) == 0;
-    if (!progress->watched) block(SIG_UNBLOCK);
-}
-
-void rt_progress_end(RtProgress *progress) {
-    if (progress->watched) {
-        pthread_mutex_lock(&progress->lock);
-        progress->ended = true;
-        pthread_mutex_unlock(&progress->lock);
-        pthread_kill(progress->watcher, SIGUSR2);
-        pthread_join(progress->watcher, NULL);
-        pthread_mutex_destroy(&progress->lock);
-        block(SIG_UNBLOCK);
-    }
+void rt_progress_end(const RtProgress *progress) {
     if (progress->terminal) fputs("\r\033[K", stderr);
 }

@@ -14,18 +14,14 @@ static pid_t owner; /* of the files and processes: plugins run in forks that hav
 static char time_is_over[64] = "stopped by an alarm";
 static const char *volatile keeps, *volatile go_on; /* NULL: nothing is kept, or continues */
 
-void rt_stop_clean(void) {
-    if (getpid() != owner) return;
+/* Removes temporary files, and kills children. */
+static void clean(void) {
     rt_outputs_remove_open();
     rt_processes_kill();
 }
 
 int rt_stop_code(int number) {
     return number == SIGALRM ? RT_EXIT_BAD_INPUT : 128 + number;
-}
-
-const char *rt_stop_reason(int number) {
-    return number == SIGALRM ? time_is_over : "interrupted";
 }
 
 void rt_stop_continue(const char *folder, const char *command) {
@@ -39,7 +35,7 @@ static void say(const char *text) {
 
 void rt_stop_say(int number) {
     say(isatty(STDERR_FILENO) == 1 ? "\r\033[Kraytally: " : "raytally: ");
-    say(rt_stop_reason(number));
+    say(number == SIGALRM ? time_is_over : "interrupted");
     if (keeps) say("; what is finished is kept in ");
     if (keeps) say(keeps);
     if (go_on) say(". To continue:\n  ");
@@ -48,10 +44,10 @@ void rt_stop_say(int number) {
 }
 
 static void stop(int number) {
-    const bool told = number == SIGALRM || (go_on && number != SIGABRT);
-    if (told && getpid() == owner) rt_stop_say(number);
-    rt_stop_clean();
-    if (number == SIGALRM) _exit(rt_stop_code(number));
+    const bool own = getpid() == owner, tells = go_on && number != SIGABRT;
+    if (own && (tells || number == SIGALRM)) rt_stop_say(number);
+    if (own) clean();
+    if ((own && tells) || number == SIGALRM) _exit(rt_stop_code(number));
     raise(number); /* which ends the process once the handler returns */
 }
 

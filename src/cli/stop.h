@@ -15,19 +15,15 @@ void rt_stop_init(void);
  * is NULL. Both are borrowed. */
 void rt_stop_continue(const char *folder, const char *command);
 
-/* The signals that a command may take itself: SIGINT, SIGTERM and SIGALRM, unless they are ignored. */
+/* The signals that a command with several jobs takes itself: SIGINT, SIGTERM and SIGALRM, unless they are
+ * ignored. */
 sigset_t rt_stop_signals(void);
-
-/* For such a command, at its end: removes temporary files, and kills children. In a handler, too. */
-void rt_stop_clean(void);
 
 /* The exit code after a signal: 128 + its number; after SIGALRM that of too little time. */
 int rt_stop_code(int number);
 
-/* What a signal says on stderr: "interrupted", or "stopped after 60 s (--time)". In a handler, too. */
-const char *rt_stop_reason(int number);
-
-/* Says that, and what rt_stop_continue has set, on stderr. In a handler, too. */
+/* Says on stderr "interrupted", or "stopped after 60 s (--time)", and what rt_stop_continue has set. In a
+ * handler, too. */
 void rt_stop_say(int number);
 
 /* --time: sends SIGALRM after so many seconds. */

@@ -366,10 +366,6 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
     if (experiment->render && experiment->count_only)
         return rt_fail(error, RT_BAD_INPUT,
                        "rendering is timed, and `count_only` times nothing: leave one out");
-    strcpy(where, "hardware");
-    if (experiment->hardware && experiment->count_only) /* then no rays are traced for the counters */
-        return rt_fail(error, RT_BAD_INPUT,
-                       "hardware counters need timed rays, and `count_only` times nothing: leave one out");
     strcpy(where, "name");
     if (*experiment->name == '.') {
         return rt_fail(error, RT_BAD_INPUT,

@@ -182,10 +182,10 @@ typedef struct RtExperiment {
                                     ones; or "" */
     bool count_only;             /* nothing is timed */
     bool render;                 /* frames are rendered, too */
-    bool hardware;               /* hardware counters, if the machine has them (measure/hardware.h) */
     bool distributions;          /* of counts over rays, and of leaves (measure/distribution.h) */
     bool quick;                  /* the smaller variant, for a first look */
     char path[RT_MAX_PATH];      /* of the YAML, or "" */
+    RtError warning;             /* about the YAML, for the user; or "" */
     char folder[RT_MAX_PATH];    /* of the YAML */
     /* Only while loading: the manifest of the results to read, or NULL. It replaces the registry of
      * accelerators (experiment/manifest_experiment.h). */

@@ -282,6 +282,14 @@ static RtStatus place(const RtYaml *y, RtStatus status, const char *where) {
     return rt_yaml_place(y, status, n, NULL);
 }
 
+/* Experiments of version 1.0 may have hardware counters. */
+static void warn_of_hardware(RtYaml y, const RtYamlNode *hardware, RtExperiment *experiment) {
+    y.error = &experiment->warning;
+    rt_yaml_fail(
+        &y, hardware,
+        "ignored: hardware counters are those of `perf stat` now (docs/guide/faq.md); remove this line");
+}
+
 static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *experiment, RtError *error) {
     const RtYamlNode *n = y->nodes;
     RT_TRY(rt_yaml_check_format(y));
@@ -303,8 +311,8 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
     RT_TRY(rt_yaml_u64(y, n, "seed", 0, INT64_MAX, &experiment->seed));
     RT_TRY(read_flag(y, n, "count_only", &experiment->count_only));
     RT_TRY(read_flag(y, n, "render", &experiment->render));
-    RT_TRY(read_flag(y, n, "hardware", &experiment->hardware));
     RT_TRY(read_flag(y, n, "distributions", &experiment->distributions));
+    if (rt_yaml_get(y, n, "hardware")) warn_of_hardware(*y, rt_yaml_get(y, n, "hardware"), experiment);
     RT_TRY(read_lists(y, n, experiment, error));
     RT_TRY(read_baseline(y, n, experiment, error));
     const RtYamlNode *published = rt_yaml_get(y, n, "published"), *smaller = rt_yaml_get(y, n, "quick");

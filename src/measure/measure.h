@@ -51,8 +51,7 @@ typedef struct RtTimed {
     double *seconds;     /* [rounds.most] out: seconds per ray, by the clock of the comparison */
     double *wall;        /* [rounds.most] out: seconds per ray by the wall clock, all threads together */
     bool *broken;        /* as in RtRunner, or NULL */
-    const RtHardwareEvent *events; /* [RT_HARDWARE_COUNT] that a remote runner counts; NULL: none */
-    uint32_t repeats;              /* out: passes over the rays in the last round */
+    uint32_t repeats;    /* out: passes over the rays in the last round */
 } RtTimed;
 
 typedef struct RtTiming {

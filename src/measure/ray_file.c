@@ -95,14 +95,3 @@ void rt_counts_put(const RtRows *rows, FILE *out) {
     fwrite(rows->tallies, sizeof(RtTally), rows->count, out);
 #undef FIELD
 }
-
-RtStatus rt_rows_add(const RtRows *rows, void (*put)(const RtRows *rows, FILE *out), RtArrayFile *file,
-                     const char *name, RtError *error) {
-    RtMemoryFile array;
-    RT_TRY(rt_memory_file_open(&array, error));
-    put(rows, array.file);
-    RT_TRY(rt_memory_file_close(&array, "an array", error));
-    RtStatus status = rt_array_file_add(file, name, array.data, array.size, error);
-    rt_free(array.data);
-    return status;
-}

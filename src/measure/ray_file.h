@@ -4,8 +4,9 @@
 #ifndef RT_MEASURE_RAY_FILE_H
 #define RT_MEASURE_RAY_FILE_H
 
-#include "core/text/npz.h"
 #include "measure/measure.h"
+
+#include <stdio.h>
 
 /* Floats per row: origin, tmin, direction, tmax. */
 #define RT_RAY_COLUMNS 8
@@ -23,9 +24,5 @@ void rt_hits_put(const RtRows *rows, FILE *out);
 
 /* Writes an array of the cost of each ray: a field of uint64 for each counter. */
 void rt_counts_put(const RtRows *rows, FILE *out);
-
-/* Adds the array that `put` writes to the file. */
-RtStatus rt_rows_add(const RtRows *rows, void (*put)(const RtRows *rows, FILE *out), RtArrayFile *file,
-                     const char *name, RtError *error);
 
 #endif

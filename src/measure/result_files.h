@@ -27,7 +27,7 @@ typedef enum RtStart {
     X(ROUNDS, "rounds.csv")                                                                                  \
     X(DISTRIBUTIONS, "distributions.csv")                                                                    \
     X(HISTOGRAMS, "histograms.csv")                                                                          \
-    X(HARDWARE, "hardware.csv")                                                                              \
+    X(HARDWARE, "hardware.csv") /* of version 1.0 */                                                         \
     X(RENDER, "render.csv")                                                                                  \
     X(FRAME, "frame.csv")                                                                                    \
     X(PUBLISHED, "published.csv")                                                                            \

@@ -7,7 +7,6 @@
 #define RT_MEASURE_ROUNDS_H
 
 #include "core/base/status.h"
-#include "measure/hardware.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -22,8 +21,6 @@ typedef struct RtRunner {
     /* For work in another process: runs it `repeats` times, and returns the time that took there. NULL: it
      * runs here, and this thread's clocks are used. */
     RtStatus (*time)(void *context, uint32_t repeats, double *seconds, double *wall, RtError *error);
-    /* The same for hardware counters of the other process. NULL: those of this thread are used. */
-    RtStatus (*count)(void *context, uint32_t repeats, RtHardwareCounts *counts, RtError *error);
     void *context;
     double work;      /* units of work in one run, > 0: times are per unit */
     double *seconds;  /* [most] out: by the clock of the comparison, else the thread's processor time */

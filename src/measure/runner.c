@@ -21,7 +21,6 @@ typedef struct Counterpart {
     RtRunner runner;
     RtRaySet set;
     XXH64_hash_t rays; /* hash of the rays when they were complete */
-    RtHardware hardware;
 } Counterpart;
 
 typedef struct Message {
@@ -33,9 +32,6 @@ typedef struct Message {
     int threads;
     uint32_t repeats;
     double seconds, wall;
-    bool counting; /* also `events` */
-    RtHardwareEvent events[RT_HARDWARE_COUNT];
-    RtHardwareCounts counts;
     uint64_t first, some; /* rays of the set: first..first + some - 1 */
 } Message;
 
@@ -64,9 +60,6 @@ static void open_counterpart(RtQuery *query, const RtRay *rays, void *message) {
     Message *m = message;
     RtTimed timed = {.accel = query->accel, .set = &m->counterpart->set};
     m->counterpart->rays = hash_rays(&m->counterpart->set);
-    for (int e = 0; e < RT_HARDWARE_COUNT; e++) m->counterpart->hardware.files[e] = -1;
-    if (m->counting) /* before its threads start; what cannot be opened is unknown */
-        rt_hardware_open(&m->counterpart->hardware, m->events, NULL);
     m->status = rt_runner_open_local(&m->counterpart->runner, &timed, m->threads, &m->error);
 }
 
@@ -74,9 +67,7 @@ static void open_counterpart(RtQuery *query, const RtRay *rays, void *message) {
 static void time_counterpart(RtQuery *query, const RtRay *rays, void *message) {
     (void)query, (void)rays;
     Message *m = message;
-    const RtHardwareStart start = rt_hardware_start(&m->counterpart->hardware);
     m->status = rt_runner_time(&m->counterpart->runner, m->repeats, &m->seconds, &m->wall, &m->error);
-    m->counts = rt_hardware_stop(&m->counterpart->hardware, &start);
     if (m->status == RT_OK && hash_rays(&m->counterpart->set) != m->counterpart->rays)
         m->status = rt_fail(&m->error, RT_BROKEN, "it wrote to the rays that it was given");
 }
@@ -86,7 +77,6 @@ static void destroy(RtQuery *query, const RtRay *rays, void *message) {
     Message *m = message;
     if (!m->counterpart) return;
     rt_runner_close_local(&m->counterpart->runner);
-    rt_hardware_close(&m->counterpart->hardware);
     rt_rayset_clear(&m->counterpart->set);
     rt_free(m->counterpart);
     m->counterpart = NULL;
@@ -124,22 +114,6 @@ static RtStatus time_remote(void *context, uint32_t repeats, double *seconds, do
     return rt_accel_check(remote->query.accel, error);
 }
 
-static bool is_counts(const RtHardwareCounts *counts) {
-    bool good = counts->running >= 0 && counts->running <= 1;
-    for (int e = 0; e < RT_HARDWARE_COUNT; e++) good &= isnan(counts->of[e]) || is_amount(counts->of[e]);
-    return good;
-}
-
-static RtStatus count_remote(void *context, uint32_t repeats, RtHardwareCounts *counts, RtError *error) {
-    Remote *remote = context;
-    Message message = {.repeats = repeats};
-    RT_TRY(request(remote, time_counterpart, NULL, &message, error));
-    *counts = message.counts;
-    if (is_counts(counts)) return RT_OK;
-    rt_remote_break(remote->query.accel, "it overwrote the counts", "it was timed");
-    return rt_accel_check(remote->query.accel, error);
-}
-
 static RtStatus run_remote(void *context, RtError *error) {
     double seconds, wall;
     return time_remote(context, 1, &seconds, &wall, error);
@@ -148,9 +122,7 @@ static RtStatus run_remote(void *context, RtError *error) {
 static RtStatus open_remote(Remote *remote, const RtTimed *timed, int threads, RtError *error) {
     enum { RAYS_A_MESSAGE = 4096 };
     const RtRaySet *set = timed->set;
-    Message message = {
-        .kind = set->kind, .count = set->count, .threads = threads, .counting = timed->events != NULL};
-    if (timed->events) memcpy(message.events, timed->events, sizeof message.events);
+    Message message = {.kind = set->kind, .count = set->count, .threads = threads};
     RT_TRY(rt_query_init(&remote->query, timed->accel, error));
     RT_TRY(request(remote, create, NULL, &message, error));
     for (message.first = 0; message.first < set->count; message.first += message.some) {
@@ -166,7 +138,6 @@ RtStatus rt_runner_open(RtRunner *runner, const RtTimed *timed, int threads, RtE
     Remote *remote = rt_alloc(1, sizeof(Remote));
     *runner = (RtRunner){.run = run_remote,
                          .time = time_remote,
-                         .count = timed->events ? count_remote : NULL,
                          .context = remote,
                          .work = (double)timed->set->count,
                          .parallel = rt_thread_count(threads) > 1,

@@ -37,12 +37,4 @@ RtStatus rt_image_from_frame(RtImage *image, const RtFrame *frame, RtError *erro
 /* That image: 8 bits a channel, sRGB. */
 RtStatus rt_png_write(const RtFrame *frame, const char *path, RtError *error);
 
-/* One part, scan lines, 32 bits a channel:
- *   R G B                             linear mean, FLOAT
- *   Z                                 depth along the camera's axis, FLOAT, infinite where nothing is hit
- *   id                                object, UINT, RT_NO_OBJECT for none
- *   object_tests extent_tests steps   mean of the samples' ray trees, FLOAT, if the frame is counted
- * Z and id cannot be averaged: they are those of the pixel's middle sample (of four, the upper left). */
-RtStatus rt_exr_write(const RtFrame *frame, const char *path, RtError *error);
-
 #endif

@@ -218,14 +218,12 @@ static void put_details(FILE *out, const char *summary, RtTable *table) {
 /* Optional tables, of all scenes. */
 static void put_more_tables(FILE *out, const RtResults *results) {
     RtDistributionRow distribution = {.results = results};
-    RtResultRow cell = {.results = results}, frame = cell;
+    RtResultRow frame = {.results = results};
     RtTable distributions = rt_distribution_table(RT_DISTRIBUTIONS, &distribution);
-    RtTable hardware = rt_result_table(RT_HARDWARE, &cell);
     RtTable rendered = rt_result_table(RT_RENDERED, &frame);
     if (results->experiment->distributions)
         put_details(out, "Distributions of counts over rays and over leaves", &distributions);
     if (results->experiment->render) put_details(out, "Rendering whole frames", &rendered);
-    if (results->experiment->hardware) put_details(out, "Hardware counters per ray", &hardware);
 }
 
 /* A paragraph; nothing for "" or NULL. Frees the text. */

@@ -8,6 +8,8 @@
 #include "results/claims_changed.h"
 #include "results/journal_lines.h"
 
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 
 static json_t *header_json(const RtExperiment *experiment, const RtSelection *only) {
@@ -29,30 +31,44 @@ RtStatus rt_journal_open(RtJsonLines *journal, const char *path, const RtExperim
     return status;
 }
 
-/* A new header, then all lines except those of accelerators whose plugin has changed. */
-static json_t *lines_without(const json_t *lines, const RtExperiment *experiment, const RtSelection *only) {
-    const json_t *plugins = json_object_get(json_array_get(lines, 0), "plugins");
-    json_t *kept = json_array(), *line, *changed = rt_plugins_changed_since(plugins, experiment);
+/* A new header, then all lines except those of `changed` plugins. */
+static json_t *lines_without(const json_t *lines, const RtExperiment *experiment, const RtSelection *only,
+                             const json_t *changed) {
+    json_t *kept = json_array(), *line, *header = header_json(experiment, only);
     size_t i;
-    json_t *header = header_json(experiment, only),
-           *first = json_object_get(json_array_get(lines, 0), "claims");
-    if (first) json_object_set(header, "claims", first); /* those of the run, not of its renewal */
+    json_t *first = json_object_get(json_array_get(lines, 0), "claims");
+    if (first) json_object_set(header, "claims", first); /* those with which the run began */
     json_array_append_new(kept, header);
     json_array_foreach((json_t *)lines, i, line) {
         if (i > 0 && json_is_object(line) && !rt_journal_line_concerns(line, experiment, changed))
             json_array_append(kept, line);
     }
-    json_decref(changed);
     return kept;
 }
 
-RtStatus rt_journal_renew(const char *path, const RtExperiment *experiment, const RtSelection *only,
-                          RtError *error) {
+static void format_change(const json_t *changed, void *at, char sentence[RT_MAX_PLUGIN_CHANGE]) {
+    const char *name = json_object_iter_key(at);
+    rt_plugins_change_format(name, json_object_get(changed, name), "when this run began", "now", sentence);
+}
+
+RtStatus rt_journal_drop_changed(const char *path, const RtExperiment *experiment, const RtSelection *only,
+                                 const RtRunObserver *observer, RtError *error) {
     json_t *lines;
+    char sentence[RT_MAX_PLUGIN_CHANGE];
     RT_TRY(rt_json_lines_load(path, &lines, error));
-    json_t *kept = lines_without(lines, experiment, only);
-    RtStatus status = rt_json_lines_save(path, kept, error);
-    json_decref(kept);
+    json_t *plugins = json_object_get(json_array_get(lines, 0), "plugins");
+    json_t *changed = rt_plugins_changed_since(plugins, experiment);
+    for (void *at = json_object_iter(changed); at; at = json_object_iter_next(changed, at)) {
+        format_change(changed, at, sentence);
+        rt_notify(observer, "%s: its cells are measured again", sentence);
+    }
+    RtStatus status = RT_OK;
+    if (json_object_size(changed) > 0) {
+        json_t *kept = lines_without(lines, experiment, only, changed);
+        status = rt_json_lines_save(path, kept, error);
+        json_decref(kept);
+    }
+    json_decref(changed);
     json_decref(lines);
     return status;
 }
@@ -109,29 +125,22 @@ static RtStatus check_build(const char *path, const json_t *header, const RtSele
 }
 
 /* A changed baseline invalidates the whole run. */
-static RtStatus check_plugins(const char *path, const RtExperiment *experiment, const json_t *changed,
-                              bool renew, RtError *error) {
+static RtStatus check_baseline(const char *path, const RtExperiment *experiment, json_t *changed,
+                               RtError *error) {
     char sentence[RT_MAX_PLUGIN_CHANGE];
     bool baseline = false;
-    if (json_object_size(changed) == 0) return RT_OK;
     for (uint32_t i = 0; i < experiment->baseline_count; i++)
         baseline |= rt_plugins_concern(changed, experiment, experiment->baseline + i);
-    if (renew && !baseline) return RT_OK;
-    const char *name = json_object_iter_key(json_object_iter((json_t *)changed));
-    rt_plugins_change_format(name, json_object_get(changed, name), "when this run began", "now", sentence);
-    if (baseline)
-        return rt_fail(
-            error, RT_BAD_INPUT,
-            "%s: %s; this changes the baseline: replace this run with --force, or choose another --out", path,
-            sentence);
-    return rt_fail(error, RT_BAD_INPUT,
-                   "%s: %s: measure its cells again and keep all others with --renew, replace the run with "
-                   "--force, or choose another --out",
-                   path, sentence);
+    if (!baseline) return RT_OK;
+    format_change(changed, json_object_iter(changed), sentence);
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "%s: %s; this changes the baseline: replace this run with --force, or choose another --out", path,
+        sentence);
 }
 
 static RtStatus take_lines(const char *path, RtResults *results, const json_t *lines, const RtSelection *only,
-                           bool renew, RtError *error) {
+                           RtError *error) {
     const RtExperiment *experiment = results->experiment;
     const json_t *header = json_array_get(lines, 0);
     if (json_is_true(json_object_get(header, "given_up"))) return RT_OK; /* rt_result_files_remove */
@@ -141,7 +150,7 @@ static RtStatus take_lines(const char *path, RtResults *results, const json_t *l
     json_decref(results->first_claims);
     results->first_claims = json_incref(json_object_get(header, "claims"));
     json_t *changed = only ? rt_plugins_changed_since(json_object_get(header, "plugins"), experiment) : NULL;
-    RtStatus status = only ? check_plugins(path, experiment, changed, renew, error) : RT_OK;
+    RtStatus status = only ? check_baseline(path, experiment, changed, error) : RT_OK;
     for (size_t i = 1; status == RT_OK && i < json_array_size(lines); i++) {
         const json_t *line = json_array_get(lines, i);
         if (changed && rt_journal_line_concerns(line, experiment, changed)) continue;
@@ -153,34 +162,30 @@ static RtStatus take_lines(const char *path, RtResults *results, const json_t *l
     return status;
 }
 
-RtStatus rt_journal_load(const char *path, RtResults *results, const RtSelection *only, bool renew,
-                         RtError *error) {
+RtStatus rt_journal_load(const char *path, RtResults *results, const RtSelection *only, RtError *error) {
     json_t *lines;
     RT_TRY(rt_json_lines_load(path, &lines, error));
-    RtStatus status = take_lines(path, results, lines, only, renew, error);
+    RtStatus status = take_lines(path, results, lines, only, error);
     json_decref(lines);
     return status;
 }
 
-bool rt_journal_is_outdated(const char *path, const RtExperiment *experiment, const RtSelection *only) {
-    json_t *lines;
-    if (rt_json_lines_load(path, &lines, NULL) != RT_OK) return false;
-    const json_t *header = json_array_get(lines, 0);
-    const bool same_run = strcmp(rt_json_text(header, "experiment", ""), experiment->name) == 0 &&
-                          json_is_true(json_object_get(header, "quick")) == experiment->quick &&
-                          is_of_shard(header, only);
-    json_t *changed = rt_plugins_changed_since(json_object_get(header, "plugins"), experiment);
-    const bool same_version = rt_experiment_has_hash(experiment, json_object_get(header, "hash")) &&
-                              strcmp(rt_json_text(header, "build", ""), rt_build_alone()) == 0 &&
-                              json_object_size(changed) == 0;
-    json_decref(changed);
-    json_decref(lines);
-    return same_run && !same_version;
-}
+/* ---- events ---- */
 
 bool rt_event_is_broken(const RtResults *results, const RtEvent *event) {
     if (event->what == RT_EVENT_NO_BUILD)
         return rt_build_at(results, event->workload, event->candidate)->broken;
     return event->what == RT_EVENT_NO_CELL &&
            rt_cell_at(results, event->workload, event->candidate, event->kind)->broken;
+}
+
+void rt_notify(const RtRunObserver *observer, const char *format, ...) {
+    char message[RT_MAX_PATH + 1024];
+    va_list args;
+    if (!observer->notice) return;
+    va_start(args, format);
+    /* clang-tidy 14 does not see va_start. NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized) */
+    vsnprintf(message, sizeof message, format, args);
+    va_end(args);
+    observer->notice(observer->context, message);
 }

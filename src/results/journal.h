@@ -18,7 +18,6 @@ typedef enum RtEventKind {
     RT_EVENT_COUNT,        /* the cell is counted */
     RT_EVENT_DISTRIBUTION, /* the cell has its distributions */
     RT_EVENT_TIME,         /* the cell is timed */
-    RT_EVENT_HARDWARE,     /* the cell has hardware counts, or the reason why not */
     RT_EVENT_RENDER,       /* rendering with `candidate` is timed */
     RT_EVENT_NO_BUILD,     /* `candidate` is left out: it refuses the scene, took too long, or broke */
     RT_EVENT_NO_CELL /* the cell is left out: it would exceed a limit, or `candidate` broke on its rays */
@@ -34,6 +33,17 @@ typedef struct RtEvent {
 /* Whether the candidate or the cell is left out because it broke. */
 bool rt_event_is_broken(const RtResults *results, const RtEvent *event);
 
+/* Callbacks, called on the thread that runs the workload; each may be NULL. A status other than RT_OK ends
+ * the workload with that status. */
+typedef struct RtRunObserver {
+    void *context;
+    RtStatus (*event)(void *context, const RtResults *results, const RtEvent *event, RtError *error);
+    void (*notice)(void *context, const char *message);
+} RtRunObserver;
+
+/* Formats a notice like printf, and passes it to the observer. */
+__attribute__((format(printf, 2, 3))) void rt_notify(const RtRunObserver *observer, const char *format, ...);
+
 /* Opens the journal at `path` for appending: with `resume` the existing one, else a new one, which records
  * its shard (`only`). Close with rt_json_lines_close, also after a failure. */
 RtStatus rt_journal_open(RtJsonLines *journal, const char *path, const RtExperiment *experiment,
@@ -44,19 +54,14 @@ RtStatus rt_journal_add(RtOutputs *outputs, const char *path, const RtExperiment
                         const RtSelection *only, const json_t *lines, RtError *error);
 
 /* Fills `results` from the journal at `path`. Rejects a journal of another experiment; with `only`, to resume
- * it, also of another build, another shard, or another build of a plugin that the experiment uses. With
- * `renew` a changed plugin only loses its own lines, unless it is the baseline. A journal whose results are
- * given up (measure/result_files.h) is empty. */
-RtStatus rt_journal_load(const char *path, RtResults *results, const RtSelection *only, bool renew,
-                         RtError *error);
+ * it, also of another build or another shard. A plugin of the experiment that has changed loses its lines; if
+ * it is the baseline, the journal is rejected. A journal whose results are given up (measure/result_files.h)
+ * is empty. */
+RtStatus rt_journal_load(const char *path, RtResults *results, const RtSelection *only, RtError *error);
 
-/* Whether the journal at `path` is of the same experiment, --quick and --shard, but of another build, another
- * version of the YAML, or other plugins; false if it cannot be read. */
-bool rt_journal_is_outdated(const char *path, const RtExperiment *experiment, const RtSelection *only);
-
-/* Rewrites the journal at `path`, which was loaded with `renew`, without the lines of changed plugins. At any
- * time the old or the new journal is whole. */
-RtStatus rt_journal_renew(const char *path, const RtExperiment *experiment, const RtSelection *only,
-                          RtError *error);
+/* Rewrites the journal at `path`, which was loaded, without the lines of changed plugins, and says which they
+ * are; if none has changed, it stays. At any time the old or the new journal is whole. */
+RtStatus rt_journal_drop_changed(const char *path, const RtExperiment *experiment, const RtSelection *only,
+                                 const RtRunObserver *observer, RtError *error);
 
 #endif

@@ -61,12 +61,6 @@ static const RtMember time_members[] = {
     RT_MEMBER(RtCell, ESTIMATE, "wall", wall),
     RT_MEMBER(RtCell, RATIO, "ratio", ratio)};
 
-#define EVENT(name, meaning) RT_MEMBER(RtCell, NUMBER, #name, hardware.counts.of[RT_HARDWARE_##name]),
-static const RtMember hardware_members[] = {RT_MEMBER(RtCell, INT, "threads", hardware.threads),
-                                            RT_MEMBER(RtCell, NUMBER, "running", hardware.counts.running),
-                                            RT_MEMBER(RtCell, TEXT, "why", hardware.why),
-                                            RT_HARDWARE_EVENTS(EVENT)};
-
 static const RtMember render_members[] = {
     RT_MEMBER_RANGE(RtBuildResult, U32, "rounds", render.rounds, 1, RT_MAX_ROUNDS),
     RT_MEMBER_RANGE(RtBuildResult, INT, "threads", render.threads, 1, 0),
@@ -94,7 +88,6 @@ static const struct Part {
              [RT_EVENT_COUNT] = {"counted", OF_CELL, RT_RECORD(count_members)},
              [RT_EVENT_DISTRIBUTION] = {"distributed", OF_CELL, {NULL, 0}},
              [RT_EVENT_TIME] = {"timed", OF_CELL, RT_RECORD(time_members)},
-             [RT_EVENT_HARDWARE] = {"hardware", OF_CELL, RT_RECORD(hardware_members)},
              [RT_EVENT_RENDER] = {"rendered", OF_BUILD, RT_RECORD(render_members)},
              [RT_EVENT_NO_BUILD] = {"too_large", OF_BUILD, {NULL, 0}},
              [RT_EVENT_NO_CELL] = {"too_long", OF_CELL, {NULL, 0}}};
@@ -130,13 +123,6 @@ static json_t *time_json(const RtResults *results, const RtCell *cell) {
     return json;
 }
 
-static json_t *hardware_json(const RtResults *results, RtCell cell) {
-    for (size_t i = 0; i < RT_HARDWARE_COUNT && *cell.hardware.why; i++)
-        cell.hardware.counts.of[i] = (double)NAN;
-    return add_machine(rt_record_json(&parts[RT_EVENT_HARDWARE].record, &cell), results,
-                       cell.hardware.machine);
-}
-
 static json_t *part_json(const RtResults *results, const RtEvent *event) {
     const RtCell *cell = rt_cell_at(results, event->workload, event->candidate, event->kind);
     const RtBuildResult *build = rt_build_at(results, event->workload, event->candidate);
@@ -147,7 +133,6 @@ static json_t *part_json(const RtResults *results, const RtEvent *event) {
     case RT_EVENT_COUNT: return rt_record_json(record, cell);
     case RT_EVENT_DISTRIBUTION: return rt_distributions_json(cell->distributions, 0, RT_RAY_QUANTITY_COUNT);
     case RT_EVENT_TIME: return time_json(results, cell);
-    case RT_EVENT_HARDWARE: return hardware_json(results, *cell);
     case RT_EVENT_RENDER: return add_machine(rt_record_json(record, build), results, build->render.machine);
     case RT_EVENT_NO_BUILD: return json_string(build->left_out);
     case RT_EVENT_NO_CELL: return json_string(cell->left_out);
@@ -270,9 +255,6 @@ static void take_cell(RtRecordReader *reader, const json_t *line, RtResults *res
         snprintf(cell->left_out, sizeof cell->left_out, "%s", why);
         cell->broken = take_added_flag(reader, line, "broken");
     }
-    const json_t *hardware = take_part(reader, line, RT_EVENT_HARDWARE, cell);
-    cell->hardware.known |= hardware != NULL;
-    if (hardware) cell->hardware.machine = take_machine(reader, results, hardware);
     const json_t *timed = take_part(reader, line, RT_EVENT_TIME, cell);
     cell->timed |= timed != NULL;
     if (!timed) return;

@@ -38,9 +38,8 @@ static void print_title(const RtResults *results, uint32_t t, bool totals, FILE 
 /* Prints a heading before the rows of each kind of rays, and long labels on their own lines. */
 static void print_part(const RtTable *table, const RtResultRow *row, int *widths, FILE *out) {
     const RtResultTable which = row->which;
-    bool by_kind = which == RT_CELLS || which == RT_COUNTED_CELLS || which == RT_PERCENTILES ||
-                   which == RT_HARDWARE_CELLS,
-         any = false;
+    const bool by_kind = which == RT_CELLS || which == RT_COUNTED_CELLS || which == RT_PERCENTILES;
+    bool any = false;
     RtRayKind kind = RT_RAY_PRIMARY;
     fputc('\n', out);
     rt_table_line(table, widths, NULL, out);
@@ -284,31 +283,6 @@ void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) 
     print_text(rt_learnt_sentence(results), out);
 }
 
-/* ---- hardware counters ---- */
-
-/* The first reason; NULL if anything was counted. */
-static const char *find_why(const RtResults *results) {
-    const char *why = NULL;
-    for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
-        const RtCellHardware *hardware = &at.cell->hardware;
-        if (hardware->known && !*hardware->why) return NULL;
-        if (hardware->known && !why) why = hardware->why;
-    }
-    return why ? why : "no cell was measured";
-}
-
-void rt_print_hardware(const RtResults *results, FILE *out) {
-    const char *why = find_why(results);
-    char text[RT_MAX_SENTENCE];
-    if (why) {
-        snprintf(text, sizeof text, "Hardware counters: not available: %s.", why);
-        fputc('\n', out);
-        rt_print_wrapped(text, out);
-        return;
-    }
-    print_all_rows(results, RT_HARDWARE_CELLS, "hardware counters per ray", out);
-}
-
 /* ---- null runs ---- */
 
 /* How often the interval of a null run misses the median, on average over the null runs, which --until may
@@ -369,7 +343,6 @@ void rt_print_outcome(const RtResults *results, FILE *out) {
         print_text(rt_frame_sentence(results, t), out);
     if (frames) print_text(rt_learnt_sentence(results), out);
     if (experiment->render) print_all_rows(results, RT_RENDER_ROWS, "rendering the frame", out);
-    if (experiment->hardware) rt_print_hardware(results, out);
     rt_print_left_out(results, out);
 }
 

@@ -17,7 +17,6 @@ RtFileSort rt_result_file_sort(const RtExperiment *e, RtResultFile file) {
     case RT_FILE_ROUNDS: return timed ? RT_FILE_MEASURED : RT_FILE_OTHER;
     case RT_FILE_FRAME: return timed && *e->frame.without ? RT_FILE_MEASURED : RT_FILE_OTHER;
     case RT_FILE_RENDER: return timed && e->render ? RT_FILE_MEASURED : RT_FILE_OTHER;
-    case RT_FILE_HARDWARE: return timed && e->hardware ? RT_FILE_MEASURED : RT_FILE_OTHER;
     case RT_FILE_PUBLISHED:
     case RT_FILE_BEST:
     case RT_FILE_PUBLISHED_PAGE: return e->published.table_count ? RT_FILE_COMPARED : RT_FILE_OTHER;
@@ -35,7 +34,6 @@ void rt_result_csv_write(RtResultFile file, const RtResults *results, FILE *out)
     case RT_FILE_TIMES: table = rt_result_table(RT_TIMES, &row); break;
     case RT_FILE_ROUNDS: table = rt_result_table(RT_ROUNDS, &row); break;
     case RT_FILE_RENDER: table = rt_result_table(RT_RENDERED, &row); break;
-    case RT_FILE_HARDWARE: table = rt_result_table(RT_HARDWARE, &row); break;
     case RT_FILE_DISTRIBUTIONS: table = rt_distribution_table(RT_DISTRIBUTIONS, &distribution); break;
     case RT_FILE_HISTOGRAMS: table = rt_distribution_table(RT_HISTOGRAMS, &distribution); break;
     case RT_FILE_FRAME: table = rt_frame_table(&frame); break;
@@ -69,5 +67,5 @@ RtStatus rt_results_load(const char *directory, RtExperiment *experiment, RtResu
     json_decref(manifest);
     RT_TRY(status);
     RT_TRY(rt_results_init(results, experiment, error));
-    return rt_journal_load(journal, results, NULL, false, error);
+    return rt_journal_load(journal, results, NULL, error);
 }

@@ -5,7 +5,6 @@
  *   counts.csv       exact columns; byte-identical on every machine
  *   times.csv        measured columns, if anything is timed
  *   rounds.csv       the times of every round, the source of times.csv
- *   hardware.csv     hardware counters per ray, if the experiment has them
  *   distributions.csv, histograms.csv
  *                    distributions of counts, if the experiment has them; exact
  *   images/          a picture of each scene

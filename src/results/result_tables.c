@@ -101,17 +101,13 @@ static const void *build_of(const void *row) {
     return build->known ? &build->structure.build : NULL;
 }
 
-/* Hardware counters and frames have their own rounds, and so their own machine and threads. */
+/* Frames have their own rounds, and so their own machine and threads. */
 static const RtMachine *machine_of(const Row *r) {
-    return &r->results->machines[r->which == RT_HARDWARE   ? r->cell->hardware.machine
-                                 : r->which == RT_RENDERED ? r->build->render.machine
-                                                           : r->cell->machine];
+    return &r->results->machines[r->which == RT_RENDERED ? r->build->render.machine : r->cell->machine];
 }
 
 static uint32_t threads_of(const Row *r) {
-    return (uint32_t)(r->which == RT_HARDWARE   ? r->cell->hardware.threads
-                      : r->which == RT_RENDERED ? r->build->render.threads
-                                                : r->cell->threads);
+    return (uint32_t)(r->which == RT_RENDERED ? r->build->render.threads : r->cell->threads);
 }
 
 static double ns_of_round(const Row *r, RtRoundTime which) {
@@ -122,7 +118,6 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
 
 #define OVER_RAYS(quantity)   (&r->cell->distributions[RT_QUANTITY_##quantity])
 #define OVER_LEAVES(quantity) (&r->build->leaves[RT_QUANTITY_##quantity])
-#define EVENT(name)           (r->cell->hardware.counts.of[RT_HARDWARE_##name])
 #define RENDER(part)          (r->build->render.part)
 #define TIMED(figure)         (r->cell->timed ? (figure) : (double)NAN)
 
@@ -192,20 +187,6 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
     X(steps, "steps", integer, "", "steps counted here; empty: not known",                                   \
       known(r->cell->tally.steps, r->cost.steps))                                                            \
     X(differ, "differ", integer, "", "answers that differ from the reference; 0 if exact", r->cell->differ)  \
-    X(instructions, "instructions", real6, "", "instructions retired, per ray; median of 5 rounds",          \
-      EVENT(instructions))                                                                                   \
-    X(cycles, "cycles", real6, "", "processor cycles, per ray", EVENT(cycles))                               \
-    X(cache_misses, "cache_misses", real6, "", "misses of the last-level cache, per ray",                    \
-      EVENT(cache_misses))                                                                                   \
-    X(branch_misses, "branch_misses", real6, "", "mispredicted branches, per ray", EVENT(branch_misses))     \
-    X(instructions_per_cycle, "instructions_per_cycle", real6, "", "instructions per cycle",                 \
-      EVENT(instructions) / EVENT(cycles))                                                                   \
-    X(running, "running", real6, "",                                                                         \
-      "smallest fraction of the time in which an event was counted; below 1, events took turns and counts "  \
-      "are scaled",                                                                                          \
-      *r->cell->hardware.why ? (double)NAN : r->cell->hardware.counts.running)                               \
-    X(why, "why", text, "", "why nothing could be counted; else empty",                                      \
-      *r->cell->hardware.why ? r->cell->hardware.why : NULL)                                                 \
     X(refused, "refused", text, "",                                                                          \
       "why the accelerator refuses the scene (memory, a limit of its own); empty: it does not. The row "     \
       "then "                                                                                                \
@@ -257,11 +238,6 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
            OVER_LEAVES(leaf_size))                                                                           \
     VALUES(X, depth, "depth", "depth that half of the leaves do not exceed", "of the deepest",               \
            OVER_LEAVES(leaf_depth))                                                                          \
-    X(eye_instructions, "instr./ray", figure, "", "instructions", EVENT(instructions))                       \
-    X(eye_cycles, "cycles/ray", figure, "", "cycles", EVENT(cycles))                                         \
-    X(eye_ipc, "instr./cycle", figure, "", "instructions per cycle", EVENT(instructions) / EVENT(cycles))    \
-    X(eye_cache, "cache m.", figure, "", "cache misses per ray", EVENT(cache_misses))                        \
-    X(eye_branch, "branch m.", figure, "", "mispredicted branches per ray", EVENT(branch_misses))            \
     X(round, "round", integer, "", "number of the round, from 1", r->round + 1)                              \
     X(round_ns, "ns", real6, "ns", "processor time per ray in this round (wall time on several threads)",    \
       ns_of_round(r, RT_ROUND_SECONDS))                                                                      \
@@ -303,8 +279,6 @@ enum {
       MEASURED(host, cpu))                                                                                   \
     X(ROUNDS, ALL_SCENES | SWEPT, timed && r->cell->round_times && r->round < r->cell->rounds, ONE(scene),   \
       ONE(kind), ONE(accel), ONE(baseline), FROM_TO(round, round_baseline_ns))                               \
-    X(HARDWARE, ALL_SCENES, r->cell->hardware.known, ONE(scene), ONE(kind), FROM_TO(accel, spec), ONE(rays), \
-      ONE(threads), FROM_TO(instructions, cpu))                                                              \
     X(RENDERED, ALL_SCENES | SWEPT, r->build->render.known && r->kind == e->kinds[0],                        \
       FROM_TO(scene, objects), FROM_TO(width, depth), FROM_TO(accel, spec), ONE(threads),                    \
       FROM_TO(render_rounds, query_share_high), FROM_TO(host, cpu))                                          \
@@ -324,8 +298,6 @@ enum {
     X(PERCENTILES, 0, r->cell->distributions && !isnan(r->cost.object_tests), ONE(eye_label),                \
       FROM_TO(tests_median, steps_most))                                                                     \
     X(LEAF_PERCENTILES, 0, first && r->build->leaves, ONE(eye_label), FROM_TO(size_median, depth_most))      \
-    X(HARDWARE_CELLS, 0, r->cell->hardware.known && !*r->cell->hardware.why, ONE(eye_label),                 \
-      FROM_TO(eye_instructions, eye_branch))                                                                 \
     X(RENDER_ROWS, 0, (first && r->build->render.known), ONE(eye_label), FROM_TO(eye_render, eye_share))     \
     X(CELLS_MORE, BEST, counted || timed, ONE(label), ONE(kind), ONE(rays),                                  \
       FROM_TO(tests_a_ray, steps_a_ray), ONE(ns_interval), FROM_TO(mrays, interval), ONE(min_ns),            \

@@ -18,8 +18,6 @@ typedef enum RtResultTable {
     RT_TIMES,
     /* rounds.csv: a row per round of a timed cell, null runs included. */
     RT_ROUNDS,
-    /* hardware.csv: a row per cell with hardware counters, or the reason why there are none. */
-    RT_HARDWARE,
     RT_RENDERED,  /* render.csv: a row per scene and accelerator: time to render the frame, and the part of
                      it spent in queries */
     RT_BENCH,     /* "rows" of bench --json: a row per counted cell */
@@ -31,7 +29,6 @@ typedef enum RtResultTable {
     RT_PERCENTILES, /* to read: one workload by accelerator and ray kind: medians, 99th percentiles and maxima
                    of object tests and steps */
     RT_LEAF_PERCENTILES, /* to read: the same of sizes and depths of leaves, by accelerator */
-    RT_HARDWARE_CELLS,   /* to read: one workload by accelerator and ray kind: hardware counters */
     RT_RENDER_ROWS,      /* to read: one workload by accelerator: time of a frame and the part of queries */
     RT_CELLS_MORE,       /* cells with more columns, and all rows */
     RT_TOTALS,           /* one workload by accelerator, all kinds together */
@@ -81,15 +78,12 @@ RtField rt_build_ms(const RtBuildResult *build);
  * if nothing was timed), or RT_TOTALS; for each known workload. */
 void rt_print_results(const RtResults *results, RtResultTable which, FILE *out);
 
-/* Prints the hardware counters of each known workload, or why there are none. */
-void rt_print_hardware(const RtResults *results, FILE *out);
-
 /* Prints a blank line, the names of the columns, and the rows of one workload; in several parts if the page
  * is narrower (rt_table_part). */
 void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workload, FILE *out);
 
 /* Prints the frames' costs and what follows from them, or the totals if the experiment has no frames;
- * hardware counters; what was left out. */
+ * what was left out. */
 void rt_print_outcome(const RtResults *results, FILE *out);
 
 /* Prints a blank line and rt_null_sentence. */

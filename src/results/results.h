@@ -9,13 +9,13 @@
 #include "core/text/table.h"
 #include "experiment/experiment.h"
 #include "measure/distribution.h"
-#include "measure/hardware.h"
 #include "measure/machine.h"
 #include "measure/statistics.h"
 
 #include <stdio.h>
 
 #define RT_MAX_LEFT_OUT 512
+#define RT_MAX_WHY      192 /* of a reason why a figure is unknown */
 
 /* A set of ray kinds: a bit 1 << kind for each. */
 typedef uint32_t RtKinds;
@@ -68,16 +68,6 @@ typedef enum RtRoundTime {
     RT_ROUND_TIME_COUNT
 } RtRoundTime;
 
-/* Hardware counters of a cell. */
-#define RT_MAX_WHY 192
-typedef struct RtCellHardware {
-    bool known; /* counted, or there is a reason why not */
-    int threads;
-    uint32_t machine;        /* one of RtResults.machines */
-    RtHardwareCounts counts; /* a ray */
-    char why[RT_MAX_WHY];    /* nothing could be counted; else "" */
-} RtCellHardware;
-
 typedef struct RtCell {
     bool counted, timed;
     /* Why it is not measured: the limit that it would exceed, or the message of a `broken` plugin; or "". */
@@ -96,7 +86,6 @@ typedef struct RtCell {
     RtEstimate ratio;    /* of throughput to the baseline's on the same rays, paired by round */
     double *round_times; /* [RT_ROUND_TIME_COUNT][rounds] owned; NULL: not kept */
     uint32_t baseline;   /* its candidate: of several the fastest on these rays */
-    RtCellHardware hardware;
 } RtCell;
 
 typedef struct RtResults {

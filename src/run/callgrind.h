@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Instructions per ray by valgrind's callgrind: exact, for machines without hardware counters.
+/* Instructions per ray by valgrind's callgrind: exact, and the same on every machine.
  *
  * A program, usually this one, runs as a worker (worker.h) under callgrind, with the same arguments. It
  * builds each accelerator and traces a few of the recorded rays twice, on one thread, with the timed kernels.

@@ -58,7 +58,7 @@ static RtStatus take_directory(Run *run, RtError *error) {
     RT_TRY(path_in(run, RT_RUN_JOURNAL, run->path, error));
     /* Loading a journal gives a better error than its existence. */
     if (options->start != RT_START_ANEW && rt_file_exists(run->path)) {
-        RT_TRY(rt_journal_load(run->path, run->results, &options->workload.only, options->renew, error));
+        RT_TRY(rt_journal_load(run->path, run->results, &options->workload.only, error));
     }
     return rt_result_files_look(options->directory, RT_RUN_JOURNAL, options->start, &run->resumed, error);
 }
@@ -172,7 +172,7 @@ static RtStatus prepare_directory(Run *run, RtError *error) {
 static RtStatus join_shards(Run *run, RtError *error) {
     RT_TRY(prepare_directory(run, error));
     run->resumed = true;
-    return rt_journal_load(run->path, run->results, &run->options->workload.only, false, error);
+    return rt_journal_load(run->path, run->results, &run->options->workload.only, error);
 }
 
 static RtStatus begin(Run *run, RtError *error) {
@@ -188,8 +188,9 @@ static RtStatus begin(Run *run, RtError *error) {
 
 static RtStatus open_journal(Run *run, RtError *error) {
     const RtSelection *only = &run->options->workload.only;
-    if (run->resumed && run->options->renew)
-        RT_TRY(rt_journal_renew(run->path, run->experiment, only, error));
+    if (run->resumed)
+        RT_TRY(rt_journal_drop_changed(run->path, run->experiment, only, &run->options->workload.observer,
+                                       error));
     return rt_journal_open(&run->journal, run->path, run->experiment, only, run->resumed, error);
 }
 

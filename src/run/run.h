@@ -28,7 +28,6 @@ typedef struct RtRunJoin {
 typedef struct RtRunOptions {
     const char *directory; /* created if missing */
     RtStart start;         /* what happens to the results of a previous run */
-    bool renew;            /* when resuming, measure cells of changed plugins again */
     RtScripts scripts;
     const RtRunJoin *join;      /* or NULL; with it, `start` does not resume */
     const RtRunReport *report;  /* or NULL */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A workload in order: record, build, and for each kind of rays count, time, and read hardware counters. */
+/* A workload in order: record, build, and for each kind of rays count and time. */
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "measure/ray_file.h"
@@ -22,7 +22,6 @@ static bool kind_is_done(const RtWorkloadState *workload, RtRayKind kind) {
         bool null = c == workload->experiment->candidate_count;
         if (!is_asked(workload, c, kind) || !rt_workload_runs(workload, c) || *cell->left_out) continue;
         if ((!cell->counted && !null) || (!cell->timed && !workload->count_only)) return false;
-        if (workload->hardware && !cell->hardware.known && !null) return false;
         if (workload->distributions && !cell->distributions && !null) return false;
     }
     return true;
@@ -160,7 +159,6 @@ static RtStatus measure_kind(RtWorkloadState *workload, RtRayKind kind, RtError 
     } else if (status == RT_OK && !workload->count_only) {
         status = rt_workload_time(workload, kind, error);
     }
-    if (status == RT_OK && workload->hardware) status = rt_workload_hardware(workload, kind, error);
     rt_free(workload->answers);
     workload->answers = NULL;
     return status;
@@ -197,7 +195,6 @@ static RtWorkloadState state_of(RtResults *results, uint32_t index, const RtWork
     RtWorkloadState workload = {
         .results = results, .experiment = results->experiment, .options = options, .index = index};
     workload.count_only = options->count_only || workload.experiment->count_only;
-    workload.hardware = workload.experiment->hardware && !workload.count_only && !options->timer;
     workload.distributions = workload.experiment->distributions && !options->timer;
     workload.count = workload.experiment->candidate_count + (!workload.count_only && !options->timer);
     return workload;
@@ -240,17 +237,6 @@ bool rt_workload_runs(const RtWorkloadState *workload, uint32_t c) {
 }
 
 /* ---- reports ---- */
-
-void rt_notify(const RtRunObserver *observer, const char *format, ...) {
-    char message[RT_MAX_PATH + 1024];
-    va_list args;
-    if (!observer->notice) return;
-    va_start(args, format);
-    /* clang-tidy 14 does not see va_start. NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized) */
-    vsnprintf(message, sizeof message, format, args);
-    va_end(args);
-    observer->notice(observer->context, message);
-}
 
 RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKind what, RtRayKind kind,
                                RtCause cause, RtError *error, const char *why, ...) {

@@ -4,7 +4,6 @@
 #ifndef RT_RUN_WORKLOAD_H
 #define RT_RUN_WORKLOAD_H
 
-#include "core/text/npz.h"
 #include "experiment/selection.h"
 #include "rays/rayset.h"
 #include "results/journal.h"
@@ -16,17 +15,6 @@
 /* Seconds for building a structure anew in each round of timing, if tracing takes no longer. */
 #define RT_RENEWAL_BUDGET 0.05
 
-/* Callbacks, called on the thread that runs the workload; each may be NULL. A status other than RT_OK ends
- * the workload with that status. */
-typedef struct RtRunObserver {
-    void *context;
-    RtStatus (*event)(void *context, const RtResults *results, const RtEvent *event, RtError *error);
-    void (*notice)(void *context, const char *message);
-} RtRunObserver;
-
-/* Formats a notice like printf, and passes it to the observer. */
-__attribute__((format(printf, 2, 3))) void rt_notify(const RtRunObserver *observer, const char *format, ...);
-
 struct RtWorkloadState; /* run/workload_state.h */
 
 typedef struct RtWorkloadOptions {
@@ -37,11 +25,11 @@ typedef struct RtWorkloadOptions {
     double until;    /* rounds continue until all intervals of ratios are within this part of their medians:
                         0.01; 0: as many rounds as in the experiment */
     double patience; /* most seconds of that for a kind of rays on a scene */
-    /* Open files that get the hit and the cost of each ray of every cell (measure/ray_file.h), as the array
-     * SCENE/ACCELERATOR/KIND, by labels; or NULL. Those that are no archives take one cell. */
-    RtArrayFile *hits, *counts;
+    /* FILE.npy, which gets the hit and the cost of each ray (measure/ray_file.h); or NULL. If the experiment
+     * has several cells, FILE-NAME.npy for each, with the names of scene, accelerator and kind of rays of
+     * which there are several. */
+    const char *hits, *counts;
     RtRunObserver observer;
-    const RtHardwareEvent *events; /* [RT_HARDWARE_COUNT] instead of rt_hardware_events, or NULL */
     /* Gets the recorded rays of each kind, and the exact accelerator that answers them; or NULL. */
     RtStatus (*rays)(void *context, uint32_t workload, const RtRaySet *set, const RtAccel *exact,
                      RtError *error);

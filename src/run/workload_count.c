@@ -3,7 +3,9 @@
  * excluded; the others are counted, their answers are compared with the expected ones, and distributions are
  * computed. */
 #include "accel/remote.h"
+#include "core/base/file.h"
 #include "core/base/memory.h"
+#include "core/base/words.h"
 #include "measure/ray_file.h"
 #include "run/workload_state.h"
 
@@ -196,21 +198,42 @@ static RtStatus distribute_cell(RtWorkloadState *workload, uint32_t c, RtRayKind
 
 /* ---- the hit and the cost of each ray ---- */
 
+/* The file of a cell (RtWorkloadOptions). */
+static RtStatus open_file(const RtWorkloadState *workload, uint32_t c, RtRayKind kind, const char *file,
+                          RtOutput *output, RtError *error) {
+    const RtExperiment *e = workload->experiment;
+    const char *const names[] = {e->workload_count > 1 ? e->workloads[workload->index].label : "",
+                                 e->candidate_count > 1 ? rt_candidate_label(e, c) : "",
+                                 e->kind_count > 1 ? rt_experiment_kind_name(e, kind) : ""};
+    char text[3 * RT_MAX_LABEL] = "", name[RT_MAX_FILE_NAME], path[RT_MAX_PATH];
+    for (int i = 0; i < 3; i++)
+        if (*names[i]) rt_append_text(text, sizeof text, "%s%s", *text ? "-" : "", names[i]);
+    if (!*text) return rt_output_open(output, file, error);
+    rt_file_name(text, name, sizeof name);
+    const int stem = (int)(strlen(file) - strlen(".npy"));
+    if (snprintf(path, sizeof path, "%.*s-%s.npy", stem, file, name) >= RT_MAX_PATH)
+        return rt_fail(error, RT_BAD_INPUT, "%.80s...: the path is too long", path);
+    return rt_output_open(output, path, error);
+}
+
+static RtStatus save_rows(const RtWorkloadState *workload, uint32_t c, RtRayKind kind, const RtRows *rows,
+                          void (*put)(const RtRows *rows, FILE *out), const char *file, RtError *error) {
+    RtOutput output;
+    if (!file) return RT_OK;
+    RT_TRY(open_file(workload, c, kind, file, &output, error));
+    put(rows, output.file);
+    return rt_output_commit(&output, error);
+}
+
 static RtStatus save_cell(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtCell *cell,
                           RtError *error) {
     (void)cell;
-    const RtExperiment *experiment = workload->experiment;
     const RtWorkloadOptions *options = workload->options;
-    char name[RT_MAX_ARRAY_NAME];
     RtRows rows;
-    snprintf(name, sizeof name, "%s/%s/%s", experiment->workloads[workload->index].label,
-             rt_candidate_label(experiment, c), rt_experiment_kind_name(experiment, kind));
     RtStatus status =
         rt_measure_rows(workload->accels[c], &workload->shares[c].set, options->threads, &rows, error);
-    if (status == RT_OK && options->hits)
-        status = rt_rows_add(&rows, rt_hits_put, options->hits, name, error);
-    if (status == RT_OK && options->counts)
-        status = rt_rows_add(&rows, rt_counts_put, options->counts, name, error);
+    if (status == RT_OK) status = save_rows(workload, c, kind, &rows, rt_hits_put, options->hits, error);
+    if (status == RT_OK) status = save_rows(workload, c, kind, &rows, rt_counts_put, options->counts, error);
     rt_rows_clear(&rows);
     return status;
 }

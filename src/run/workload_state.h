@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A workload while it runs, and its longer steps, one file each: build, count, time, hardware counters. */
+/* A workload while it runs, and its longer steps, one file each: build, count, time. */
 #ifndef RT_RUN_WORKLOAD_STATE_H
 #define RT_RUN_WORKLOAD_STATE_H
 
@@ -20,7 +20,7 @@ typedef struct RtWorkloadState {
     const RtExperiment *experiment;
     const RtWorkloadOptions *options;
     uint32_t index, count; /* count: candidates and, if times are taken, the null run */
-    bool count_only, hardware, distributions;
+    bool count_only, distributions;
     RtScene *scene;
     RtAccel *reference;                   /* gives the expected answers */
     RtAccel *built[RT_MAX_MEASURED];      /* [count], NULL for one that does not run here */
@@ -89,9 +89,6 @@ RtStatus rt_workload_count(RtWorkloadState *workload, RtRayKind kind, RtError *e
 
 /* Times all candidates on their shares of the rays of one kind. */
 RtStatus rt_workload_time(RtWorkloadState *workload, RtRayKind kind, RtError *error);
-
-/* Reads hardware counters while all candidates trace their shares of the rays of one kind. */
-RtStatus rt_workload_hardware(RtWorkloadState *workload, RtRayKind kind, RtError *error);
 
 /* Renders the frame with all candidates for which rt_workload_renders, if that is not known yet. */
 RtStatus rt_workload_render(RtWorkloadState *workload, RtError *error);

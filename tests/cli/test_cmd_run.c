@@ -98,7 +98,8 @@ RT_TEST_IN_PLACE(all_are_parsed_before_the_first_is_measured) {
     change(place, "b.yaml", "name: a", "name: x:Y");
     change(place, "a.yaml", "name: a", "name: X-y");
     assert_ends(place, "run a.yaml b.yaml", 2, "would share the directory results/x-Y");
-    assert_ends(place, "run a.yaml c.yaml --force", 2, "--force takes one experiment");
+    assert_ends(place, "run a.yaml c.yaml --update", 2, "--update is no longer there: use --resume");
+    assert_ends(place, "run a.yaml --renew", 2, "--renew is no longer there: --resume measures");
     assert_ends(place, "run a.yaml c.yaml --shard 1/2", 2, "--only and --shard take one experiment");
     assert_false(exists(place, "results"));
 }
@@ -109,10 +110,7 @@ RT_TEST_IN_PLACE(resume_finishes_and_starts_and_measures_nothing_again) {
     assert_int_equal(raytally(place, "run b.yaml --threads 1 --out all/b --only cloud/grid/random"), 0);
     char *finished = read_in(place, "all/a/cells.jsonl"), *part = read_in(place, "all/b/cells.jsonl");
     assert_ends(place, "run a.yaml b.yaml c.yaml --threads 1 --out all", 2, "2 of 3 experiments failed");
-    assert_in_file(
-        place, "message",
-        "all/a holds results of an earlier run: --update keeps what is up to date and measures the "
-        "rest; or give another --out");
+    assert_in_file(place, "message", "all/a holds a finished run: use --resume to rewrite its tables");
     assert_int_equal(raytally(place, "run a.yaml b.yaml c.yaml --threads 1 --out all --resume"), 0);
     assert_same_file(place, "all/a/cells.jsonl", finished);
     OWNED_MEMORY char *whole = read_in(place, "all/b/cells.jsonl");
@@ -122,36 +120,38 @@ RT_TEST_IN_PLACE(resume_finishes_and_starts_and_measures_nothing_again) {
     rt_free(part);
 }
 
-RT_TEST_IN_PLACE(update_starts_over_only_where_something_else_was_measured) {
+RT_TEST_IN_PLACE(resume_with_force_starts_over_only_what_cannot_be_resumed) {
     const Place *place = *state;
     assert_int_equal(raytally(place, "run a.yaml b.yaml --threads 1"), 0);
     OWNED_MEMORY char *a = read_in(place, "results/a/cells.jsonl");
     change(place, "b.yaml", "limit: 50", "limit: 40");
     assert_ends(place, "run a.yaml b.yaml --threads 1 --resume", 2, "another version of it ('b')");
-    assert_ends(place, "run a.yaml --threads 1 --update --quick", 2, "this is a run without --quick");
-    assert_ends(place, "run a.yaml b.yaml c.yaml --threads 1 --update", 0, "--update starts results/b over");
+    assert_ends(
+        place, "run a.yaml b.yaml c.yaml --threads 1 --resume --force", 0,
+        "another version of it ('b'): replace it with --force, or choose another --out; --force starts "
+        "results/b over");
     assert_same_file(place, "results/a/cells.jsonl", a);
     assert_in_file(place, "results/b/experiment.yaml", "limit: 40");
     assert_int_equal(raytally(place, "reproduce results/b"), 0);
 }
 
-RT_TEST_IN_PLACE(update_keeps_a_run_of_another_experiment_or_variant_and_what_it_cannot_read) {
+RT_TEST_IN_PLACE(resume_keeps_a_run_of_another_experiment_or_variant_and_what_it_cannot_read) {
     const Place *place = *state;
     assert_int_equal(raytally(place, "run a.yaml --threads 1 --out kept"), 0);
     OWNED_MEMORY char *kept = read_in(place, "kept/cells.jsonl");
-    assert_ends(place, "run b.yaml --out kept --update", 2, "this is a run of another experiment");
-    assert_ends(place, "run a.yaml --out kept --update --quick", 2, "this is a run without --quick");
-    assert_ends(place, "run a.yaml --out kept --update --shard 1/1", 2, "another --shard");
+    assert_ends(place, "run b.yaml --out kept --resume", 2, "this is a run of another experiment");
+    assert_ends(place, "run a.yaml --out kept --resume --quick", 2, "this is a run without --quick");
+    assert_ends(place, "run a.yaml --out kept --resume --shard 1/1", 2, "another --shard");
     assert_same_file(place, "kept/cells.jsonl", kept);
     change(place, "kept/cells.jsonl", "\"interior\":", "\"exterior\":");
-    assert_ends(place, "run a.yaml --out kept --update", 2, "kept/cells.jsonl:");
+    assert_ends(place, "run a.yaml --out kept --resume", 2, "kept/cells.jsonl:");
     assert_true(exists(place, "kept/report.html"));
 }
 
 RT_TEST_IN_PLACE(a_dry_run_of_several_sums_up_each_and_touches_nothing) {
     const Place *place = *state;
     assert_int_equal(raytally(place, "run a.yaml b.yaml --dry-run"), 0);
-    assert_in_file(place, "output", "== a, 1 of 2\n4 cells, 0 of them finished; the others take at least");
+    assert_in_file(place, "output", "== a, 1 of 2\n4 cells, 0 of them finished\n");
     assert_false(exists(place, "results"));
 }
 

@@ -67,7 +67,7 @@ typedef struct Section {
 
 #define RESULTS(which) .table = of_results(which), .swept = rt_result_table_sweeps(which)
 
-enum { SECTIONS = 20 };
+enum { SECTIONS = 18 };
 static void list(Section sections[SECTIONS]) {
     const RtTable verify_csv = {.groups = rt_verify_csv, .group_count = RT_VERIFY_CSV_GROUPS};
     const RtTable verify_json = {.groups = rt_verify_json, .group_count = RT_VERIFY_JSON_GROUPS};
@@ -78,7 +78,6 @@ static void list(Section sections[SECTIONS]) {
         {"rounds.csv", true, NULL, RESULTS(RT_ROUNDS)},
         {"frame.csv", true, NULL, .table = of_frames()},
         {"render.csv", true, NULL, RESULTS(RT_RENDERED)},
-        {"hardware.csv", true, NULL, RESULTS(RT_HARDWARE)},
         {"distributions.csv", true, NULL, .table = of_distributions(RT_DISTRIBUTIONS)},
         {"histograms.csv", true, NULL, .table = of_distributions(RT_HISTOGRAMS)},
         {"published.csv", true, "results/reference/havran-1999/published.csv",
@@ -87,7 +86,6 @@ static void list(Section sections[SECTIONS]) {
         {"verify.csv", true, "results/reference/verify/verify.csv", .table = verify_csv},
         {"bench --json: rows", false, NULL, RESULTS(RT_BENCH)},
         {"bench --json: null_runs", false, NULL, RESULTS(RT_NULL_RUNS)},
-        {"bench --json --hardware: hardware", false, NULL, RESULTS(RT_HARDWARE)},
         {"bench --json --distribution: distributions", false, NULL,
          .table = of_distributions(RT_DISTRIBUTIONS)},
         {"bench --json --callgrind: instructions", false, NULL, .table = of_instructions()},

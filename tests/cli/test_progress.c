@@ -92,9 +92,4 @@ RT_TEST_IN_PLACE(a_frame_is_of_no_kind_of_rays) {
     rt_free(text);
 }
 
-RT_TEST(a_line_comes_each_minute_and_on_a_terminal_each_second) {
-    RtProgress progress = rt_progress_begin(&(RtWorkloadOptions){.threads = 1});
-    assert_true(progress.every == (progress.terminal ? 1 : 60));
-}
-
 RT_TESTS(progress, NULL, NULL)

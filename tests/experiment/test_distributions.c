@@ -169,27 +169,25 @@ RT_TEST_IN_PLACE(bench_shows_medians_percentiles_and_maxima) {
     assert_in_file(place, "output", "\"histograms\"");
 }
 
-/* ---- what the machine did ---- */
+/* ---- frames, and what version 1.0 had ---- */
 
-/* Resumed, the second time without a table, which is made from the journal again. */
-RT_TEST_IN_PLACE(a_run_that_asks_for_hardware_counters_has_a_row_for_each_cell_with_them_or_the_reason) {
+RT_TEST_IN_PLACE(hardware_counters_of_version_1_0_are_ignored_in_experiments_and_journals) {
     const Place *place = *state;
-    OWNED_CSV csv;
-    Path path = path_in(place, "out/hardware.csv");
-    write_changed(place, "small.yaml", spread, "count_only: yes",
-                  "hardware: yes\nrounds: 2\nmilliseconds: 0");
+    char command[512];
+    write_changed(place, "small.yaml", spread, "count_only: yes", "count_only: yes\nhardware: yes");
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
-    OWNED_MEMORY char *first = read_in(place, "out/hardware.csv");
-    assert_int_equal(remove(path.text), 0);
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 0);
-    assert_same_file(place, "out/hardware.csv", first);
-    assert_ok(rt_csv_read(&csv, path.text, error));
-    assert_int_equal(csv.rows, 2 * 2 * 3);
-    for (uint32_t row = 0; row < csv.rows; row++) {
-        bool counted = *rt_csv_field(&csv, row, rt_csv_find(&csv, "running")) != '\0';
-        assert_true(counted != (*rt_csv_field(&csv, row, rt_csv_find(&csv, "why")) != '\0'));
-        assert_true(*rt_csv_field(&csv, row, rt_csv_find(&csv, "cpu")) != '\0');
-    }
+    assert_in_file(place, "message", "small.yaml:15:11: hardware: ignored");
+    OWNED_MEMORY char *counts = read_in(place, "out/counts.csv");
+    snprintf(
+        command, sizeof command,
+        "sed -i '$ a "
+        "{\"scene\":\"balls\",\"accel\":\"grid\",\"kind\":\"primary\",\"hardware\":{\"threads\":1}}' '%s'",
+        path_in(place, "out/cells.jsonl").text);
+    assert_int_equal(system(command), 0);
+    assert_ends(place, "run small.yaml --out out --threads 1 --resume", 0, "nothing was left to measure");
+    assert_same_file(place, "out/counts.csv", counts);
+    assert_ends(place, "bench balls --accel bvh --hardware", 2,
+                "--hardware is no longer there: run raytally");
 }
 
 static double real_at(const RtCsv *csv, uint32_t row, const char *name) {
@@ -224,7 +222,7 @@ RT_TEST_IN_PLACE(a_run_that_renders_has_the_time_of_a_frame_and_the_part_of_quer
     snprintf(command, sizeof command, "sed -i /rendered/d '%s'", path_in(place, "out/cells.jsonl").text);
     assert_int_equal(system(command), 0);
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume --dry-run"), 0);
-    assert_in_file(place, "output", " of them finished; null runs and frames take about ");
+    assert_in_file(place, "output", " of them finished");
 }
 
 RT_TEST_IN_PLACE(counting_again_renders_no_frame) {
@@ -270,13 +268,6 @@ RT_TEST_IN_PLACE(rendering_where_nothing_is_timed_is_refused) {
     const Place *place = *state;
     write_changed(place, "small.yaml", spread, "distributions: yes", "render: yes");
     assert_bad_input(load_small(place, false, error), ":13:9: render: rendering is timed");
-}
-
-RT_TEST_IN_PLACE(hardware_counters_where_nothing_is_timed_are_refused) {
-    const Place *place = *state;
-    write_changed(place, "small.yaml", spread, "distributions: yes", "hardware: yes");
-    assert_bad_input(load_small(place, false, error), ":13:11: hardware: hardware counters");
-    assert_ends(place, "bench balls --accel bvh --hardware --count-only", 2, "--count-only times nothing");
 }
 
 RT_TESTS(distributions, NULL, NULL)

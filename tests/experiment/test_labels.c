@@ -76,17 +76,15 @@ RT_TEST_IN_PLACE(files_have_whole_labels_and_csv_and_json_call_them_alike) {
     assert_in_file(place, "output", "\"spec\": \"grid:rule=");
 }
 
-RT_TEST_IN_PLACE(arrays_of_an_archive_have_whole_names) {
+RT_TEST_IN_PLACE(files_of_hits_have_the_names_of_their_cells) {
     const Place *place = *state;
-    static const char name[] = SCENE "0.025/" SPEC "12/random.npy";
-    char *data;
-    size_t size;
-    assert_int_equal(raytally(place, "bench '" SCENE "0.0125|0.025' -a '" SPEC
-                                     "10|12' --rays random --limit 50 --count-only --hits hits.npz"),
+    assert_int_equal(raytally(place, "bench 'balls:size=1|2' -a 'grid:density=4|8' --rays random --limit 50 "
+                                     "--count-only --hits hits.npy"),
                      0);
-    assert_ok(rt_file_read(path_in(place, "hits.npz").text, 1 << 24, &data, &size, error));
-    assert_non_null(memmem(data, size, name, strlen(name)));
-    rt_free(data);
+    assert_in_file(place, "output", "wrote hits-*.npy");
+    assert_true(rt_file_exists(path_in(place, "hits-balls-size-1-grid-density-8.npy").text));
+    assert_true(rt_file_exists(path_in(place, "hits-balls-size-2-grid-density-4.npy").text));
+    assert_false(rt_file_exists(path_in(place, "hits.npy").text));
 }
 
 static const char two_files[] =

@@ -4,7 +4,6 @@
 
 #include "core/base/clock.h"
 #include "results/result_tables.h"
-#include "run/forecast.h"
 
 #include <math.h>
 #include <signal.h>
@@ -92,12 +91,10 @@ RT_TEST_IN_PLACE(an_interrupted_run_says_what_is_kept_and_how_to_go_on) {
     while (journal_lines(place) < 20) wait_seconds(0.01);
     kill(child, SIGINT);
     assert_int_equal(end_of(child), 128 + SIGINT);
-    assert_in_file(place, "message",
-                   " of 56 cells are finished, all measurements are kept in out. To continue:");
+    assert_in_file(place, "message", "interrupted; what is finished is kept in out. To continue:");
     assert_in_file(place, "message", "raytally run small.yaml --out out --threads 1 --resume");
     assert_int_equal(raytally(place, RESUME " --dry-run"), 0);
     assert_in_file(place, "output", "finished\n");
-    assert_in_file(place, "output", "the others take about ");
     assert_int_equal(raytally(place, RESUME), 0);
 }
 
@@ -105,36 +102,21 @@ RT_TEST_IN_PLACE(a_dry_run_lists_the_cells_and_touches_nothing) {
     const Place *place = *state;
     assert_int_equal(raytally(place, "run small.yaml --out out --dry-run"), 0);
     assert_in_file(place, "output", "cloud:n=400              grid:density=16              diffuse\n");
-    /* 4 scenes by 2 kinds by 8 that are timed in 1 + 3 rounds, brute with the baseline on its rays. */
-    assert_in_file(place, "output", "56 cells, 0 of them finished; the others take at least 1 s");
+    assert_in_file(place, "output", "56 cells, 0 of them finished\n");
     assert_false(rt_file_exists(path_in(place, "out").text));
     assert_int_equal(raytally(place, "run small.yaml --out out --only cloud/grid/diffuse --dry-run"), 0);
     assert_in_file(place, "output", "12 cells"); /* bvh, the baseline, too */
 }
 
-RT_TEST_IN_PLACE(a_dry_run_of_a_changed_experiment_estimates_its_time_from_the_previous_results) {
+RT_TEST_IN_PLACE(a_dry_run_of_a_changed_experiment_is_refused_as_the_run_is) {
     const Place *place = *state;
-    write_changed(place, "first.yaml", long_experiment, "density=1..16*2", "density=1|4");
-    assert_int_equal(raytally(place, "run first.yaml --threads 1 --out out"), 0);
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --only balls/bvh"), 0);
     OWNED_MEMORY char *journal = read_in(place, "out/cells.jsonl");
-    write_changed(place, "small.yaml", long_experiment, "label: balls, size: 24x24",
-                  "label: balls, size: 32x32");
-    assert_ends(place, "run small.yaml --threads 1 --out out --dry-run", 0,
-                "replace it with --force, or choose");
-    assert_in_file(place, "message", "another version of it ('small')");
-    assert_in_file(place, "output",
-                   "cloud:n=400              grid:density=4               diffuse      measured before");
-    assert_in_file(place, "output", "cloud:n=400              grid:density=8               diffuse\n");
-    assert_in_file(place, "output", "balls                    grid:density=4               diffuse\n");
-    /* 3 scenes by 2 kinds by 4 accelerators. */
-    assert_in_file(place, "output", "56 cells, 24 of them as in the previous run; all of them take about ");
-    assert_same_file(place, "out/cells.jsonl", journal);
+    write_changed(place, "small.yaml", long_experiment, "density=1..16*2", "density=1|4");
+    assert_ends(place, "run small.yaml --out out --dry-run", 2, "another version of it ('small')");
     assert_ends(place, "run small.yaml --out out --force --dry-run", 0, "");
-    assert_in_file(place, "output", "56 cells, 24 of them as in the previous run");
-    /* Nothing is known if this program cannot read the previous experiment. */
-    write_in(place, "out/experiment.yaml", "name: unreadable\n");
-    assert_ends(place, "run small.yaml --out out --dry-run", 0, "another version of it");
-    assert_in_file(place, "output", "56 cells, 0 of them as in the previous run; all of them take at least ");
+    assert_in_file(place, "output", "32 cells, 0 of them finished");
+    assert_same_file(place, "out/cells.jsonl", journal);
 }
 
 RT_TEST_IN_PLACE(a_part_is_measured_and_then_the_rest) {
@@ -151,7 +133,7 @@ RT_TEST_IN_PLACE(a_part_is_measured_and_then_the_rest) {
     assert_int_equal(raytally(place, RESUME), 0);
     assert_equal_files(place, "whole/counts.csv", "out/counts.csv");
     assert_int_equal(raytally(place, RESUME " --dry-run"), 0);
-    assert_in_file(place, "output", "56 cells, all of them finished\n");
+    assert_in_file(place, "output", "56 cells, 56 of them finished\n");
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --only nowhere --resume"), 2);
 }
 
@@ -213,7 +195,7 @@ RT_TEST_IN_PLACE(several_parts_are_measured_together) {
     }
     snprintf(command, sizeof command, "run small.yaml --threads 1 --out out --resume --dry-run %s", parts);
     assert_int_equal(raytally(place, command), 0);
-    assert_in_file(place, "output", "all of them finished\n");
+    assert_in_file(place, "output", "20 cells, 20 of them finished\n");
     assert_ends(place, "run small.yaml --out out --only cloud --only nowhere --resume", 2,
                 "'nowhere' is not the label");
 }
@@ -273,111 +255,6 @@ RT_TEST_IN_PLACE(a_refusal_costs_its_own_rows_which_say_why) {
                 "render same.obj --size 9x9 -a grid:density=30000 -a bvh --heatmap steps x.png --check", 0,
                 "grid:density=30000 is refused: a grid of ");
     assert_ends(place, "render same.obj --size 9x9 -a grid:density=30000 --check", 2, "a grid of ");
-}
-
-/* ---- how long it will take ---- */
-
-typedef struct Watch {
-    double start, before, errors[512], passed[512];
-    uint32_t count;
-    bool begun;
-    RtWorkloadOptions options;
-    RtForecast last;
-} Watch;
-
-static RtStatus look(void *context, const RtResults *results, const RtEvent *event, RtError *error) {
-    Watch *w = context;
-    double now = rt_wall_seconds();
-    (void)event, (void)error;
-    w->last = rt_forecast(results, &w->options);
-    if (!w->begun) w->before = w->last.known;
-    w->begun = true;
-    w->passed[w->count] = now - w->start;
-    w->errors[w->count++] = now - w->start + rt_forecast_left(&w->last, w->before, now - w->start);
-    return RT_OK;
-}
-
-/* The whole, as it is foretold at every event from a tenth of it on, but for the burst in which one kind's
- * times come. The machine may be busy: most of them. */
-RT_TEST_IN_PLACE(the_time_that_is_left_is_foretold_from_a_tenth_on) {
-    const Place *place = *state;
-    static Watch watch;
-    OWNED_RESULTS results;
-    watch = (Watch){.options = {.threads = 1, .timing = 1}};
-    write_changed(place, "small.yaml", long_experiment, "milliseconds: 3", "milliseconds: 8");
-    assert_ok(load_small(place, false, error));
-    assert_ok(rt_results_init(&results, place->experiment, error));
-    watch.options.observer = (RtRunObserver){&watch, look, NULL};
-    watch.start = rt_wall_seconds();
-    assert_ok(rt_workloads_run(&results, &watch.options, error));
-    double whole = rt_wall_seconds() - watch.start;
-    uint32_t right = 0, all = 0;
-    for (uint32_t i = 0; i < watch.count; i++) {
-        if (watch.passed[i] < 0.1 * whole || isnan(watch.errors[i])) continue;
-        if (i + 1 < watch.count && watch.passed[i + 1] - watch.passed[i] < 0.01 * whole) continue;
-        all++;
-        right += watch.errors[i] < 1.5 * whole && watch.errors[i] > whole / 1.5;
-    }
-    assert_true(all >= 4);
-    assert_true(right * 4 >= all * 3);
-    assert_int_equal(watch.last.cells, 56);
-    assert_int_equal(watch.last.finished, 56);
-    assert_true(watch.last.left == 0);
-}
-
-/* bvh takes 1 s for 10000 steps; grid is counted alone. */
-RT_TEST_IN_PLACE(what_was_not_timed_yet_is_foretold_by_its_tests_and_steps) {
-    const Place *place = *state;
-    const RtWorkloadOptions options = {.threads = 1, .timing = 1};
-    OWNED_RESULTS results;
-    assert_ok(load_small(place, false, error));
-    assert_ok(rt_results_init(&results, place->experiment, error));
-    results.workloads[0].known = true;
-    results.workloads[0].rays[RT_RAY_PRIMARY] = 1000;
-    RtCell *bvh = rt_cell_at(&results, 0, 0, RT_RAY_PRIMARY),
-           *grid = rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
-    bvh->counted = bvh->timed = grid->counted = true;
-    bvh->wall.median = 1e-3;
-    bvh->tally = (RtTally){.rays = 1000, .steps = 10000};
-    grid->tally = (RtTally){.rays = 1000, .steps = 20000, .object_tests = 10000};
-    double once = rt_forecast(&results, &options).left;
-    grid->tally.steps += 300000;
-    double eleven_times = rt_forecast(&results, &options).left;
-    assert_true(fabs(eleven_times - once - 4 * 30) < 0.01); /* a warm-up and three rounds */
-    /* What was not even counted, or counts nothing, is taken for as fast as bvh, the baseline. */
-    *grid = (RtCell){0};
-    once = rt_forecast(&results, &options).left;
-    strcpy(grid->left_out, "for comparison");
-    assert_true(fabs(once - rt_forecast(&results, &options).left - 5 * 1) < 0.01); /* counting, too */
-}
-
-/* A warm-up and three rounds of 100 pixels, a millisecond each; diffuse rays are not of a frame, and brute is
- * measured on a part of the rays. */
-RT_TEST_IN_PLACE(frames_that_are_not_rendered_yet_are_foretold_by_their_rays) {
-    const Place *place = *state;
-    const RtWorkloadOptions options = {.threads = 1, .timing = 1};
-    RtWorkloadOptions counting = options;
-    OWNED_RESULTS results;
-    assert_ok(load_small(place, false, error));
-    place->experiment->render = true;
-    assert_ok(rt_results_init(&results, place->experiment, error));
-    results.workloads[0] = (RtWorkloadResult){.known = true, .width = 10, .height = 10};
-    results.workloads[0].rays[RT_RAY_PRIMARY] = results.workloads[0].rays[RT_RAY_DIFFUSE] = 1000;
-    for (RtCellCursor at = {0}; rt_results_next(&results, &at);) {
-        *at.cell = (RtCell){.counted = true, .timed = true, .wall.median = 1e-3};
-        if (at.workload > 0) results.workloads[at.workload].skipped = true;
-    }
-    const RtForecast before = rt_forecast(&results, &options);
-    RtRenderResult *render = &rt_build_at(&results, 0, 0)->render;
-    *render = (RtRenderResult){.known = true, .seconds = rt_estimate_exactly(0.3)};
-    const RtForecast after = rt_forecast(&results, &options);
-    assert_true(fabs(before.left - after.left - 4 * 0.1) < 1e-9);
-    assert_true(fabs(after.known - before.known - 4 * 0.3) < 1e-9);
-    rt_build_at(&results, 0, 6)->render = *render; /* brute */
-    assert_true(rt_forecast(&results, &options).known == after.known);
-    counting.count_only = true;
-    render->seconds.median = 1000;
-    assert_true(rt_forecast(&results, &counting).known < 1000);
 }
 
 RT_TESTS(long_run, NULL, NULL)

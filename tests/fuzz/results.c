@@ -117,7 +117,7 @@ static RtStatus read_journal(const void *lines, size_t size, RtError *error) {
     fwrite(lines, 1, size, file);
     CHECK(fclose(file) == 0);
     CHECK(rt_results_init(&results, &experiment, error) == RT_OK);
-    return rt_journal_load(fuzz_path("cells.jsonl"), &results, NULL, false, error);
+    return rt_journal_load(fuzz_path("cells.jsonl"), &results, NULL, error);
 }
 
 void fuzz_prepare_journal(void) {
@@ -143,7 +143,6 @@ static void use_results(void) {
     for (RtResultFile file = 0; file < RT_RESULT_FILE_COUNT; file++) rt_result_csv_write(file, &results, out);
     rt_print_results(&results, RT_CELLS, out);
     rt_print_results(&results, RT_COUNTED_CELLS, out);
-    rt_print_hardware(&results, out);
     rt_print_summary(&results, out);
     rt_print_left_out(&results, out);
     rt_print_frames(&results, out);

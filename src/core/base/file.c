@@ -381,23 +381,10 @@ RtStatus rt_path_join(const char *folder, const char *name, char *out, RtError *
     return rt_fail(error, RT_BAD_INPUT, "%.80s...: the path is too long", name);
 }
 
-/* Windows reserves these names, with any extension: CON, PRN, AUX, NUL, COM0 to COM9, LPT0 to LPT9. */
-static bool is_device(const char *name) {
-    const size_t length = strcspn(name, ".");
-    const char *const devices[] = {"con", "prn", "aux", "nul", "com", "lpt"};
-    for (int i = 0; i < 6; i++) {
-        const bool numbered = i >= 4;
-        if (strncasecmp(name, devices[i], 3) != 0 || length != (numbered ? 4 : 3)) continue;
-        return !numbered || (name[3] >= '0' && name[3] <= '9');
-    }
-    return false;
-}
-
 void rt_file_name(const char *text, char *out, size_t size) {
     enum { HASH_CHARS = 9 };
     static const char portable[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
-    const bool device = is_device(text);
-    const int length = snprintf(out, size, "%s%s", device || !*text ? "_" : "", text);
+    const int length = snprintf(out, size, "%s", *text ? text : "_");
     if (length >= (int)size)
         snprintf(out + size - 1 - HASH_CHARS, HASH_CHARS + 1, "-%08" PRIx32,
                  (uint32_t)XXH3_64bits(text, strlen(text)));
@@ -405,8 +392,6 @@ void rt_file_name(const char *text, char *out, size_t size) {
         if (!strchr(portable, *c)) *c = '-';
     }
     if (*out == '.' || *out == '-') *out = '_';
-    char *last = out + strlen(out) - 1;
-    if (*last == '.') *last = '_';
 }
 
 void rt_path_folder(const char *path, char *out) {

@@ -105,10 +105,9 @@ void rt_directory_remove_files(const char *folder, const char *suffix);
  * Rejects a path that is too long. */
 RtStatus rt_path_join(const char *folder, const char *name, char *out, RtError *error);
 
-/* Makes a file name that every system takes from `text`. POSIX's portable characters (letters, digits, '.',
- * '_', '-') stay, others become '-'; it has no '.' or '-' at the start, no '.' at the end, and is no device
- * of Windows ("con", "nul.txt"). One that does not fit `size`, 16 bytes or more, ends in a hash of the text.
- * Different texts that fit may get the same name. */
+/* Makes a file name from `text`. POSIX's portable characters (letters, digits, '.', '_', '-') stay, others
+ * become '-'; it has no '.' or '-' at the start. One that does not fit `size`, 16 bytes or more, ends in a
+ * hash of the text. Different texts that fit may get the same name. */
 void rt_file_name(const char *text, char *out, size_t size);
 
 /* Writes the folder of `path` ("" if it has none) to out[0..RT_MAX_PATH). */
