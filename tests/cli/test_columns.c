@@ -185,7 +185,7 @@ static void print_document(FILE *out) {
     for (size_t i = 0, named = 0; i < SECTIONS; i++) {
         if (sections[i].swept) fprintf(out, "%s`%s`", named++ ? ", " : "", sections[i].title);
     }
-    fputs(" end with a column for each parameter that the experiment sweeps: `scene.KEY` or `accel.KEY`, as "
+    fputs("\nend with a column for each parameter that the experiment sweeps: `scene.KEY` or `accel.KEY`, as "
           "in\n"
           "`accel.density`, empty where a row has no such parameter. If an accelerator refuses a scene, a "
           "column\n"
