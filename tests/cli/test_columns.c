@@ -116,10 +116,14 @@ static RtField name_of(const Row *r) {
     return rt_field_print("`%s%s%s`", in_group ? r->group : "", in_group ? "." : "", name);
 }
 
+static RtField form_of(const Row *r) {
+    const char *unit = r->column->unit;
+    return rt_field_print("%s%s%s", rt_form_name(r->column->form), *unit ? ", " : "", unit);
+}
+
 #define COLUMNS(X)                                                                                           \
     X(column, "column", markup, "", "", name_of(r))                                                          \
-    X(form, "form", text, "", "", rt_form_name(r->column->form))                                             \
-    X(unit, "unit", text, "", "", r->column->unit)                                                           \
+    X(form, "form, unit", markup, "", "", form_of(r))                                                        \
     X(meaning, "meaning", text, "", "", r->column->meaning)
 RT_TABLE_COLUMNS(columns, COLUMNS)
 
@@ -157,14 +161,33 @@ static const void *new_column_at(void *context, size_t i) {
     return is_described(r, i) ? NULL : r;
 }
 
+/* Lists the columns that are described before; a group of them by its name. Returns how many there are. */
+static size_t print_above(Row *r, FILE *out) {
+    const RtTable *table = &r->sections[r->number].table;
+    size_t above = 0;
+    for (size_t g = 0, first = 0; g < table->group_count; first += table->groups[g++].count) {
+        const RtColumnGroup *group = &table->groups[g];
+        size_t known = 0;
+        for (size_t i = 0; i < group->count; i++) known += !new_column_at(r, first + i);
+        bool whole = group->name && known == group->count && !r->sections[r->number].csv;
+        for (size_t i = 0; i < group->count; i++) {
+            if (new_column_at(r, first + i) || (whole && i > 0)) continue;
+            fputs(above++ ? ", " : "As above: ", out);
+            if (whole)
+                fprintf(out, "`%s.*`", group->name);
+            else
+                fputs(name_of(r).buffer, out);
+        }
+        above += whole ? known - 1 : 0;
+    }
+    return above;
+}
+
 static void print_section(Row *r, FILE *out) {
     static const RtColumnGroup groups[] = {RT_ALL(columns)};
     const Section *section = &r->sections[r->number];
-    size_t count = column_count(section), above = 0;
     fprintf(out, "\n## %s\n\n", section->title);
-    for (size_t i = 0; i < count; i++) {
-        if (!new_column_at(r, i)) fprintf(out, "%s%s", above++ ? ", " : "As above: ", name_of(r).buffer);
-    }
+    size_t count = column_count(section), above = print_above(r, out);
     if (above) fputs(above < count ? ".\n\n" : ".\n", out);
     if (above < count)
         rt_table_markdown(&(RtTable){RT_GROUPS(groups), count, new_column_at, .context = r}, out);
