@@ -196,23 +196,20 @@ static void print_section(Row *r, FILE *out) {
 static void print_document(FILE *out) {
     Section sections[SECTIONS];
     list(sections);
-    fputs(
-        "# Columns\n\n"
-        "All columns of the CSV files and all members of the JSON documents. Each is described where it\n"
-        "occurs first. `build/release/test_cli columns` generates this page from the program's tables; if\n"
-        "the page is out of date, the test writes the current one and says where. An unknown value is empty\n"
-        "in CSV and null in JSON. In JSON, a dot in a name separates an object from its member, yes is "
-        "true,\n"
-        "no is false, and an interval is an object of three numbers.\n\n",
-        out);
+    fputs("# Columns\n\n"
+          "All columns of the CSV files and all members of the JSON documents. Each is described where it\n"
+          "occurs first. `build/release/test_cli columns` generates this page from the program's tables; if\n"
+          "the page is out of date, the test writes the current one and says where. An unknown value is\n"
+          "empty in CSV and null in JSON. In JSON, a dot in a name separates an object from its member\n"
+          "(`counts.*`: all members of `counts`), yes is true, no is false, and an interval is an object of\n"
+          "three numbers.\n\n",
+          out);
     for (size_t i = 0, named = 0; i < SECTIONS; i++) {
         if (sections[i].swept) fprintf(out, "%s`%s`", named++ ? ", " : "", sections[i].title);
     }
-    fputs("\nend with a column for each parameter that the experiment sweeps: `scene.KEY` or `accel.KEY`, as "
-          "in\n"
-          "`accel.density`, empty where a row has no such parameter. If an accelerator refuses a scene, a "
-          "column\n"
-          "`refused` before them says why; its rows have no measurements.\n",
+    fputs("\nend with a column for each parameter that the experiment sweeps: `scene.KEY` or\n"
+          "`accel.KEY`, as in `accel.density`, empty where a row has no such parameter. If an accelerator\n"
+          "refuses a scene, a column `refused` before them says why; its rows have no measurements.\n",
           out);
     for (size_t i = 0; i < SECTIONS; i++) print_section(&(Row){.sections = sections, .number = i}, out);
 }
