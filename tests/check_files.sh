@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # check_files.sh [TREE]: every .c file of the tree is built: CMakeLists.txt lists it, or for tests/DIRECTORY/test_NAME.c lists
 # NAME in raytally_tests(DIRECTORY ...). Every source states its licence. CITATION.cff and CHANGELOG.md name the version of
-# CMakeLists.txt. Prints the files that fail; exit code 1 if there is one.
+# CMakeLists.txt. Files to which pages link exist. Prints the files that fail; exit code 1 if there is one.
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
 
@@ -34,5 +34,14 @@ of_another_version() {
     grep '^## ' CHANGELOG.md | grep -v -m 1 '(unreleased)$' | grep -q "^## $version " || echo "CHANGELOG.md: does not begin with version $version"
 }
 
-failed=$(unlisted && unlicensed && of_another_version)
+dead_links() { # check_slides.sh checks those of the slides
+    local page link
+    find . -name build -prune -o -name node_modules -prune -o -name slides.md -o -name '*.md' -print | sort | while read -r page; do
+        { grep -oE '\]\([^)# ]+' "$page" || true; } | sed 's/^](//; /:/d' | sort -u | while read -r link; do
+            [ -e "$(dirname "$page")/$link" ] || echo "$page: there is no $link"
+        done
+    done
+}
+
+failed=$(unlisted && unlicensed && of_another_version && dead_links)
 [ -z "$failed" ] || { echo "$failed" && exit 1; }

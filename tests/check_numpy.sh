@@ -1,10 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Rays, hits and counts as NumPy arrays: the commands and Python lines of experiments/README.md work as described,
-# and raytally reads NumPy's files correctly. Uses $RT_PROGRAM. Skipped (77) without python3 or NumPy.
+# Rays, hits and counts as NumPy arrays: raytally reads NumPy's files correctly, and NumPy raytally's. Uses $RT_PROGRAM.
+# Skipped (77) without python3 or NumPy.
 set -euo pipefail
 program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
-readme=$(realpath "$(dirname "$0")/../experiments/README.md")
 # Another python3, without Debian's NumPy, may come first in PATH.
 python=
 for candidate in python3 /usr/bin/python3; do
@@ -24,17 +23,6 @@ fail() {
     echo "check_numpy: $*" >&2
     exit 1
 }
-
-# The section as a script: indented commands, and blocks of Python.
-awk '/^## / { inside = /^## Your own rays$/ }
-    !inside { next }
-    /^```python/ { print "python3 - <<\047EOF\047"; next }
-    /^```/ { print "EOF"; next }
-    /^    raytally / { print substr($0, 5); next }
-    /^(import|hits|met|print|rays|numpy)/' "$readme" >section.sh
-[ "$(grep -c '^raytally' section.sh)" = 3 ] && [ "$(grep -c '^python3' section.sh)" = 2 ] ||
-    fail 'experiments/README.md has no such section'
-bash -e section.sh >said || fail 'what experiments/README.md says fails'
 
 # Several accelerators, kinds of rays and scenes: each has a file, the one that it would have alone.
 raytally bench 'balls:size=1|2' --size 16x16 --rays primary,shadow --accel bvh --accel 'grid:density=4' --accel brute \

@@ -479,7 +479,7 @@ const RtSyntax rt_trace_syntax = {
         "A row shows what was visited or tested, the interval of t in which the ray is inside its box (if it "
         "has one), whether the ray hit the extent or the object, and the t of the nearest hit so far. An "
         "extent that the ray enters beyond that hit counts as missed. A step is a visit to a node, voxel, "
-        "sample or list entry; docs/accelerators/README.md explains the other terms. The rows come from the "
+        "sample or list entry; docs/guide/tables.md explains the other terms. The rows come from the "
         "counted kernel itself; raytally checks that they add up to its tally.\n"
         "\n"
         "The upper part of the drawing is a section along the ray and one axis of the scene; it shows boxes "

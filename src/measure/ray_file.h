@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Ray sets as NumPy arrays (core/text/npy.h): rays may come from any other renderer, and answers and counts
- * may go to any other program. experiments/README.md describes the columns. */
+ * may go to any other program. docs/guide/own-rays.md describes the files. */
 #ifndef RT_MEASURE_RAY_FILE_H
 #define RT_MEASURE_RAY_FILE_H
 

@@ -9,11 +9,10 @@ typedef RtDistributionRow Row;
 /* ---- columns ---- */
 
 #define COLUMNS(X)                                                                                           \
-    X(scene, "scene", text, "", "the scene's label in the experiment",                                       \
-      r->results->experiment->workloads[r->workload].label)                                                  \
+    X(scene, "scene", text, "", "the scene's label", r->results->experiment->workloads[r->workload].label)   \
     X(kind, "kind", text, "", "kind of the rays; empty: leaves of the structure",                            \
       r->quantity < RT_RAY_QUANTITY_COUNT ? rt_experiment_kind_name(r->results->experiment, r->kind) : NULL) \
-    X(accel, "accel", text, "", "the accelerator's label in the experiment",                                 \
+    X(accel, "accel", text, "", "the accelerator's label",                                                   \
       rt_candidate_label(r->results->experiment, r->candidate))                                              \
     X(quantity, "quantity", text, "",                                                                        \
       "object_tests, extent_tests, steps: per ray, each traced alone; leaf_size, leaf_depth: objects in "    \

@@ -123,9 +123,8 @@ static const char *below_label(const Row *r) {
 }
 
 #define COLUMNS(X)                                                                                           \
-    X(scene, "scene", text, "", "the scene's label in the experiment",                                       \
-      r->results->experiment->workloads[r->workload].label)                                                  \
-    X(accel, "accelerator", text, "", "the accelerator's label in the experiment",                           \
+    X(scene, "scene", text, "", "the scene's label", r->results->experiment->workloads[r->workload].label)   \
+    X(accel, "accelerator", text, "", "the accelerator's label",                                             \
       rt_candidate_label(r->results->experiment, r->candidate))                                              \
     X(group, "group", text, "", "its group in the experiment",                                               \
       r->results->experiment->candidates[r->candidate].group)                                                \

@@ -134,7 +134,7 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
     X(id##_high, #id "_high", real6, unit, "upper end of its interval", (factor) * (e).high)
 
 #define COLUMNS(X)                                                                                           \
-    X(scene, "scene", text, "", "the scene's label in the experiment", r->setup->label)                      \
+    X(scene, "scene", text, "", "the scene's label", r->setup->label)                                        \
     X(scene_spec, "scene_spec", text, "", "the scene as it is opened: a file, or a built-in",                \
       r->setup->spec)                                                                                        \
     X(objects, "objects", integer, "", "objects in the scene", r->scene->objects)                            \
@@ -146,8 +146,7 @@ static double ns_of_round(const Row *r, RtRoundTime which) {
     X(kind, "kind", text, "", "kind of the rays", rt_experiment_kind_name(r->results->experiment, r->kind))  \
     X(set_rays, "set_rays", integer, "", "rays in the set, after the limit", r->scene->rays[r->kind])        \
     X(set_hash, "set_hash", hash, "", "fingerprint of the set", r->scene->ray_fingerprints[r->kind])         \
-    X(accel, "accel", text, "", "the accelerator's label in the experiment; (again): a null run",            \
-      label_of(r))                                                                                           \
+    X(accel, "accel", text, "", "the accelerator's label; (again): a null run", label_of(r))                 \
     X(spec, "spec", text, "", "the accelerator with every effective parameter", r->build->spec)              \
     X(ray_stride, "ray_stride", integer, "", "k, if only every kth ray of the set is measured",              \
       ray_stride_of(r))                                                                                      \

@@ -99,73 +99,117 @@ static void list(Section sections[SECTIONS]) {
 
 /* ---- the document ---- */
 
-/* A column of the table that is described; it is found anew for each row. */
+/* A column of a section, found anew for each row of its description. */
 typedef struct Row {
-    const Section *section;
+    const Section *sections; /* all; the row's is sections[number] */
+    size_t number;
     const char *group;
     const RtTableColumn *column;
 } Row;
 
 static RtField name_of(const Row *r) {
-    const char *name = r->section->csv ? r->column->id : r->column->name;
-    bool in_group = r->group && !r->section->csv;
+    bool csv = r->sections[r->number].csv;
+    const char *name = csv ? r->column->id : r->column->name;
+    bool in_group = r->group && !csv;
     return rt_field_print("`%s%s%s`", in_group ? r->group : "", in_group ? "." : "", name);
+}
+
+static RtField form_of(const Row *r) {
+    const char *unit = r->column->unit;
+    return rt_field_print("%s%s%s", rt_form_name(r->column->form), *unit ? ", " : "", unit);
 }
 
 #define COLUMNS(X)                                                                                           \
     X(column, "column", markup, "", "", name_of(r))                                                          \
-    X(form, "form", text, "", "", rt_form_name(r->column->form))                                             \
-    X(unit, "unit", text, "", "", r->column->unit)                                                           \
+    X(form, "form, unit", markup, "", "", form_of(r))                                                        \
     X(meaning, "meaning", text, "", "", r->column->meaning)
 RT_TABLE_COLUMNS(columns, COLUMNS)
 
-static const void *column_at(void *context, size_t i) {
-    Row *r = context;
-    const RtColumnGroup *group = r->section->table.groups;
-    for (; i >= group->count; group++) i -= group->count;
-    r->group = group->name;
-    r->column = &group->columns[i];
-    return r;
-}
-
-static size_t column_count(const RtTable *table) {
+static size_t column_count(const Section *section) {
     size_t count = 0;
-    for (size_t g = 0; g < table->group_count; g++) count += table->groups[g].count;
+    for (size_t g = 0; g < section->table.group_count; g++) count += section->table.groups[g].count;
     return count;
 }
 
-static void print_document(FILE *out) {
+static void find_column(Row *r, size_t i) {
+    const RtColumnGroup *group = r->sections[r->number].table.groups;
+    for (; i >= group->count; group++) i -= group->count;
+    r->group = group->name;
+    r->column = &group->columns[i];
+}
+
+/* Whether column i of the section is described before it, in this section or in an earlier one. */
+static bool is_described(const Row *r, size_t i) {
+    for (size_t s = 0; s <= r->number; s++) {
+        Row other = {.sections = r->sections, .number = s};
+        size_t count = s == r->number ? i : column_count(&r->sections[s]);
+        for (size_t k = 0; k < count; k++) {
+            find_column(&other, k);
+            if (strcmp(other.column->id, r->column->id) == 0 &&
+                strcmp(other.column->meaning, r->column->meaning) == 0)
+                return true;
+        }
+    }
+    return false;
+}
+
+static const void *new_column_at(void *context, size_t i) {
+    Row *r = context;
+    find_column(r, i);
+    return is_described(r, i) ? NULL : r;
+}
+
+/* Lists the columns that are described before; a group of them by its name. Returns how many there are. */
+static size_t print_above(Row *r, FILE *out) {
+    const RtTable *table = &r->sections[r->number].table;
+    size_t above = 0;
+    for (size_t g = 0, first = 0; g < table->group_count; first += table->groups[g++].count) {
+        const RtColumnGroup *group = &table->groups[g];
+        size_t known = 0;
+        for (size_t i = 0; i < group->count; i++) known += !new_column_at(r, first + i);
+        bool whole = group->name && known == group->count && !r->sections[r->number].csv;
+        for (size_t i = 0; i < group->count; i++) {
+            if (new_column_at(r, first + i) || (whole && i > 0)) continue;
+            fputs(above++ ? ", " : "As above: ", out);
+            if (whole)
+                fprintf(out, "`%s.*`", group->name);
+            else
+                fputs(name_of(r).buffer, out);
+        }
+        above += whole ? known - 1 : 0;
+    }
+    return above;
+}
+
+static void print_section(Row *r, FILE *out) {
     static const RtColumnGroup groups[] = {RT_ALL(columns)};
+    const Section *section = &r->sections[r->number];
+    fprintf(out, "\n## %s\n\n", section->title);
+    size_t count = column_count(section), above = print_above(r, out);
+    if (above) fputs(above < count ? ".\n\n" : ".\n", out);
+    if (above < count)
+        rt_table_markdown(&(RtTable){RT_GROUPS(groups), count, new_column_at, .context = r}, out);
+}
+
+static void print_document(FILE *out) {
     Section sections[SECTIONS];
     list(sections);
     fputs("# Columns\n\n"
-          "The columns of all CSV files and the members of all JSON documents: name, form, unit and\n"
-          "meaning. The page is generated from the program's tables: if it is out of date,\n"
-          "`build/release/test_cli columns` fails and writes the current page, to be copied here. An\n"
-          "unknown value is empty in CSV and null in JSON. In JSON a dot in a name separates an object\n"
-          "from its member; yes is true, no is false, and an interval is an object of three numbers.\n"
-          "CSV and JSON call the same thing alike: `scene` and `accel` are labels, whole however long,\n"
-          "`scene_spec` the scene as it is opened, `spec` the accelerator with every effective parameter.\n"
-          "\n"
-          "If an experiment sweeps parameters, these have one more column for each of them, at the end:\n",
+          "All columns of the CSV files and all members of the JSON documents. Each is described where it\n"
+          "occurs first. `build/release/test_cli columns` generates this page from the program's tables; if\n"
+          "the page is out of date, the test writes the current one and says where. An unknown value is\n"
+          "empty in CSV and null in JSON. In JSON, a dot in a name separates an object from its member\n"
+          "(`counts.*`: all members of `counts`), yes is true, no is false, and an interval is an object of\n"
+          "three numbers.\n\n",
           out);
     for (size_t i = 0, named = 0; i < SECTIONS; i++) {
         if (sections[i].swept) fprintf(out, "%s`%s`", named++ ? ", " : "", sections[i].title);
     }
-    fputs(
-        ".\n`scene.KEY` is a parameter of scenes, `accel.KEY` one of accelerators, as in `accel.density`. "
-        "It is\n"
-        "empty if the row has no such parameter. Before them stands `refused` if an accelerator refuses a\n"
-        "scene: its rows say there why, and have no measurements. All other columns are the same for every\n"
-        "experiment.\n",
-        out);
-    for (size_t i = 0; i < SECTIONS; i++) {
-        Row row = {.section = &sections[i]};
-        const RtTable table = {RT_GROUPS(groups), .row_count = column_count(&sections[i].table),
-                               .row = column_at, .context = &row};
-        fprintf(out, "\n## %s\n\n", sections[i].title);
-        rt_table_markdown(&table, out);
-    }
+    fputs("\nend with a column for each parameter that the experiment sweeps: `scene.KEY` or\n"
+          "`accel.KEY`, as in `accel.density`, empty where a row has no such parameter. If an accelerator\n"
+          "refuses a scene, a column `refused` before them says why; its rows have no measurements.\n",
+          out);
+    for (size_t i = 0; i < SECTIONS; i++) print_section(&(Row){.sections = sections, .number = i}, out);
 }
 
 RT_TEST(the_document_says_what_the_columns_say) {
@@ -190,14 +234,14 @@ RT_TEST(every_column_has_a_meaning_and_a_name_of_its_own) {
     Section sections[SECTIONS];
     list(sections);
     for (size_t i = 0; i < SECTIONS; i++) {
-        Row row = {.section = &sections[i]}, other = row;
-        size_t count = column_count(&sections[i].table);
+        Row row = {.sections = sections, .number = i}, other = row;
+        size_t count = column_count(&sections[i]);
         assert_true(count <= RT_MAX_TABLE_COLUMNS);
         for (size_t k = 0; k < count; k++) {
-            column_at(&row, k);
+            find_column(&row, k);
             assert_true(*row.column->meaning);
             for (size_t earlier = 0; earlier < k; earlier++) {
-                column_at(&other, earlier);
+                find_column(&other, earlier);
                 if (strcmp(name_of(&row).buffer, name_of(&other).buffer) == 0)
                     fail_msg("%s has two columns %s", sections[i].title, row.column->name);
             }
@@ -209,13 +253,13 @@ RT_TEST(the_files_that_are_kept_have_these_columns) {
     Section sections[SECTIONS];
     list(sections);
     for (size_t i = 0; i < SECTIONS; i++) {
-        Row row = {.section = &sections[i]};
+        Row row = {.sections = sections, .number = i};
         RtCsv csv;
         if (!sections[i].example) continue;
         assert_ok(rt_csv_read(&csv, sections[i].example, error));
-        assert_int_equal(csv.columns, column_count(&sections[i].table));
+        assert_int_equal(csv.columns, column_count(&sections[i]));
         for (uint32_t c = 0; c < csv.columns; c++) {
-            column_at(&row, c);
+            find_column(&row, c);
             assert_string_equal(rt_csv_name(&csv, c), row.column->id);
         }
         rt_csv_clear(&csv);

