@@ -6,10 +6,6 @@
 #include "scene_testing.h"
 
 #include "accel/accel.h"
-#include "core/base/memory.h"
-
-#include <stdio.h>
-#include <string.h>
 
 #define OWNED_QUERY OWNED(rt_query_clear) RtQuery
 #define OWNED_ACCEL OWNED(destroy_owned)
@@ -58,13 +54,12 @@ static inline RtDescription describe_spec(const RtScene *scene, const char *spec
 
 /* Builds and validates it, and allocates for rays; leaves nothing behind. */
 static inline RtStatus try_accel(const RtScene *scene, const char *spec, RtError *error) {
-    RtAccel *accel;
+    OWNED_ACCEL RtAccel *accel;
     RtQuery query;
     RT_TRY(rt_accel_open(spec, scene, &accel, error));
     RtStatus status = rt_accel_validate(accel, error);
     if (status == RT_OK) status = rt_query_init(&query, accel, error);
     if (status == RT_OK) rt_query_clear(&query);
-    rt_accel_destroy(accel);
     return status;
 }
 
@@ -81,6 +76,15 @@ static inline void assert_broken(const RtAccel *accel, const char *phrase) {
         assert_broken(accel, phrase);                                                                        \
         (member) = rt_right;                                                                                 \
     } while (0)
+
+/* Every counter is as by hand. */
+static inline void assert_tally(const char *what, const RtTally *got, const RtTally *by_hand) {
+    for (size_t c = 0; c < RT_TALLY_COUNTER_COUNT; c++) {
+        if (rt_tally_get(got, c) == rt_tally_get(by_hand, c)) continue;
+        fail_msg("%s: %s is %llu, by hand %llu", what, rt_tally_name(c),
+                 (unsigned long long)rt_tally_get(got, c), (unsigned long long)rt_tally_get(by_hand, c));
+    }
+}
 
 /* Builds one layer, which is refused above `limit` bytes. */
 static inline RtStatus build_within(const char *name, uint64_t limit, const RtScene *scene,
@@ -116,16 +120,6 @@ static inline bool fits_within(const char *name, uint64_t limit, const RtScene *
     return build_within(name, limit, scene, values, &accel, &refusal) == RT_OK;
 }
 
-/* A scene without objects, and a grey material, which is number 0. */
-static inline RtScene begin_scene(void) {
-    RtScene scene;
-    uint32_t material;
-    RtMaterial grey = rt_default_material();
-    rt_scene_init(&scene);
-    assert_ok(rt_scene_add_material(&scene, &grey, &material, error));
-    return scene;
-}
-
 /* Unit cubes' worth of spheres of radius 1/2 on an nx x ny x nz lattice of spacing 1. */
 static inline RtScene make_lattice(int nx, int ny, int nz) {
     RtScene scene = begin_scene();
@@ -147,6 +141,14 @@ static inline RtScene make_row(uint32_t count, float apart) {
     for (uint32_t i = 0; i < count; i++)
         assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(apart * (float)i, 0, 0), 1, error));
     assert_ok(rt_scene_finish(&scene, error));
+    return scene;
+}
+
+/* Two unit-diameter spheres, 0 about (0.5, 0.5, 0.5) and 1 about (3.5, 0.5, 0.5); not finished. */
+static inline RtScene begin_two_spheres(void) {
+    RtScene scene = begin_scene();
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0.5f, 0.5f, 0.5f), 0.5f, error));
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(3.5f, 0.5f, 0.5f), 0.5f, error));
     return scene;
 }
 

@@ -9,9 +9,11 @@
 #include "rays/rayset.h"
 #include "scenes/random_tree.h"
 
-#include <string.h>
-
 #define MAX_HITS 512
+
+#define OWNED_TREES(builder, forest)                                                                         \
+    OWNED_BUILDER builder = {0};                                                                             \
+    OWNED_FOREST forest = {0}
 
 static const RtVec3 along_x = {1, 0, 0};
 

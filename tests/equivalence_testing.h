@@ -10,8 +10,6 @@
 #include "verify/equivalence.h"
 #include "verify/ray_families.h"
 
-#include <string.h>
-
 /* The number of the family of scenes that is called so. */
 static inline size_t scene_family(const char *name) {
     size_t family = 0;

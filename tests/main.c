@@ -4,9 +4,6 @@
  * skipped, 2 for a name that is none. */
 #include "testing.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #define X(name) int test_##name(void);
 RT_TEST_GROUPS
 #undef X

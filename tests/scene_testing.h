@@ -5,13 +5,73 @@
 
 #include "testing.h"
 
-#include "core/base/memory.h"
 #include "scenes/open.h"
 
 static inline RtScene open_scene(const char *spec) {
     RtScene scene;
     assert_ok(rt_scene_open(spec, &scene, error));
     return scene;
+}
+
+/* A scene without objects, and a grey material, which is number 0. */
+static inline RtScene begin_scene(void) {
+    RtScene scene;
+    uint32_t material;
+    RtMaterial grey = rt_default_material();
+    rt_scene_init(&scene);
+    assert_ok(rt_scene_add_material(&scene, &grey, &material, error));
+    return scene;
+}
+
+/* A scene of one object: OWNED_SCENE_OF(scene, sphere, center, radius). */
+#define OWNED_SCENE_OF(scene, shape, ...)                                                                    \
+    OWNED_SCENE scene = begin_scene();                                                                       \
+    assert_ok(rt_scene_add_##shape(&(scene), 0, __VA_ARGS__, error));                                        \
+    assert_ok(rt_scene_finish(&(scene), error))
+
+/* A new file: closing one that was emptied would wait for the disk, as rt_file_write does. */
+static inline void write_bytes(const char *path, const void *bytes, size_t count) {
+    remove(path);
+    FILE *out = fopen(path, "wb");
+    assert_non_null(out);
+    assert_int_equal(fwrite(bytes, 1, count, out), count);
+    assert_int_equal(fclose(out), 0);
+}
+
+static inline void write_text(const char *path, const char *text) {
+    write_bytes(path, text, strlen(text));
+}
+
+/* Opens the file, whose name says its format, with these bytes. */
+static inline RtStatus open_bytes(const char *path, const void *bytes, size_t count, RtScene *scene,
+                                  RtError *error) {
+    write_bytes(path, bytes, count);
+    return rt_scene_open(path, scene, error);
+}
+
+static inline RtScene scene_of(const char *path, const char *text) {
+    write_text(path, text);
+    return open_scene(path);
+}
+
+/* The bytes are read or refused, and leave nothing behind. */
+static inline void assert_read_or_refused(const char *path, const void *bytes, size_t count) {
+    const int64_t live = rt_alloc_live();
+    RtScene scene;
+    RtError error;
+    const RtStatus status = open_bytes(path, bytes, count, &scene, &error);
+    assert_true(status == RT_OK || status == RT_BAD_INPUT);
+    if (status == RT_OK) rt_scene_clear(&scene);
+    assert_int_equal(rt_alloc_live(), live);
+}
+
+/* The text with the line ends of Windows; returns its length. */
+static inline size_t as_in_windows(const char *text, char *out) {
+    size_t size = 0;
+    for (; *text; out[size++] = *text++) {
+        if (*text == '\n') out[size++] = '\r';
+    }
+    return size;
 }
 
 typedef struct ShapeCounts {

@@ -7,13 +7,9 @@
 #include "random_testing.h"
 #include "testing.h"
 
-#include "core/base/memory.h"
 #include "core/shape/solid.h"
 
 #include <float.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* ---- lines ---- */
 

@@ -13,7 +13,9 @@
 #include "core/base/memory.h"
 
 #include <glob.h>
+#include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -99,6 +101,12 @@ static inline int assert_nothing_is_kept(void **state) {
 #define OWNED_SOLIDS   OWNED(rt_solid_set_clear) RtSolidSet
 #define OWNED_BUILDER  OWNED(rt_csg_builder_clear) RtCsgBuilder
 #define OWNED_FOREST   OWNED(rt_csg_forest_clear) RtCsgForest
+
+/* The geometry `g` of one object: OWNED_OBJECT(g, sphere, center, radius). */
+#define OWNED_OBJECT(g, shape, ...)                                                                          \
+    OWNED_GEOMETRY g = {0};                                                                                  \
+    assert_ok(rt_geometry_add_##shape(&(g), __VA_ARGS__, error));                                            \
+    assert_ok(rt_geometry_finish(&(g), error))
 
 static inline void free_owned(void *pointer) {
     rt_free(*(void **)pointer);

@@ -9,8 +9,6 @@
 
 #include "core/scene/scene.h"
 
-#include <math.h>
-
 /* As many rays as a packet holds, and how many bundles of each sort there are. A sanitizer looks at what is
  * read and written, which is the same in each round. */
 enum { BUNDLE = 64, ROUNDS = RT_SHARE(3, 1) };

@@ -9,8 +9,6 @@
 
 #include "scenes/random_tree.h"
 
-#include <stdio.h>
-
 /* Prints why not; then the tests are skipped. */
 static inline bool embree_is_built_in(void) {
     const RtAccelOps *ops;

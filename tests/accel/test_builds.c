@@ -3,8 +3,6 @@
  * not depend on threads. */
 #include "equivalence_testing.h"
 
-#include "accel_testing.h"
-
 #include "core/base/random.h"
 #include "verify/spread.h"
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* accel/clusters: every kind of extent with every order and method is exact; the shape of nodes; invariants,
  * each broken on purpose. */
-#include "accel_testing.h"
 #include "equivalence_testing.h"
 
 #include "accel/clusters/clusters.h"

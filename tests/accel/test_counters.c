@@ -164,30 +164,9 @@ static const Row rows[] = {
     {"extents:kind=box", BESIDE, NEAREST, {MISSES(0), .extent_tests = 2, .steps = 2}},
 };
 
-static void make_scene(RtScene *scene) {
-    *scene = begin_scene();
-    assert_ok(rt_scene_add_sphere(scene, 0, rt_vec3(0.5f, 0.5f, 0.5f), 0.5f, error));
-    assert_ok(rt_scene_add_sphere(scene, 0, rt_vec3(3.5f, 0.5f, 0.5f), 0.5f, error));
-    assert_ok(rt_scene_finish(scene, error));
-}
-
-static size_t differences(const Row *row, const RtTally *got) {
-    size_t wrong = 0;
-    for (size_t c = 0; c < RT_TALLY_COUNTER_COUNT; c++) {
-        uint64_t counted = rt_tally_get(got, c), expected = rt_tally_get(&row->expected, c);
-        if (counted == expected) continue;
-        wrong++;
-        print_error("%s, ray %d, %s: %s is %llu, by hand %llu\n", row->spec, row->ray,
-                    row->occluded ? "occluded" : "nearest", rt_tally_name(c), (unsigned long long)counted,
-                    (unsigned long long)expected);
-    }
-    return wrong;
-}
-
 RT_TEST(counters_are_what_was_counted_by_hand) {
-    RtScene scene;
-    size_t wrong = 0;
-    make_scene(&scene);
+    OWNED_SCENE scene = begin_two_spheres();
+    assert_ok(rt_scene_finish(&scene, error));
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         const Row *row = &rows[i];
         RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
@@ -203,16 +182,17 @@ RT_TEST(counters_are_what_was_counted_by_hand) {
             rt_nearest(&query, &rays[row->ray], 1, &hit, tallies);
             assert_memory_equal(&hit, &answers[row->ray], sizeof hit);
         }
-        wrong += differences(row, &tallies[RT_RAY_RANDOM]);
+        char what[RT_MAX_SPEC_CHARS + 32];
+        snprintf(what, sizeof what, "%s, ray %d, %s", row->spec, row->ray,
+                 row->occluded ? "occluded" : "nearest");
+        assert_tally(what, &tallies[RT_RAY_RANDOM], &row->expected);
         for (int kind = 0; kind < RT_RAY_RANDOM; kind++) assert_int_equal(tallies[kind].rays, 0);
     }
-    rt_scene_clear(&scene);
-    assert_int_equal(wrong, 0);
 }
 
 RT_TEST(ideal_is_broken_by_answers_that_are_no_objects) {
-    OWNED_SCENE scene;
-    make_scene(&scene);
+    OWNED_SCENE scene = begin_two_spheres();
+    assert_ok(rt_scene_finish(&scene, error));
     RtHit told[RAY_COUNT];
     for (size_t i = 0; i < RAY_COUNT; i++) told[i] = RT_MISS;
     OWNED_ACCEL RtAccel *accel = open_accel(&scene, "cache+ideal");

@@ -133,25 +133,22 @@ static void assert_every_shortage_is_a_status(Work *work, const Row *row, const 
 }
 
 static RtStatus trace_frame(const Row *row, RtError *error) {
-    RtAccel *brute;
+    OWNED_ACCEL RtAccel *brute;
     RtFrame frame;
     RtFrameOptions options = {.depth = 1, .threads = 1};
     RT_TRY(rt_accel_open("brute", &row->scene, &brute, error));
     RtStatus status = rt_frame_trace(&frame, brute, &options, error);
     for (size_t i = 0; status == RT_OK && i < (size_t)RAYS * RAYS; i++) assert_int_equal(frame.object[i], 0);
     if (status == RT_OK) rt_frame_clear(&frame);
-    rt_accel_destroy(brute);
     return status;
 }
 
 static RtStatus build_item(const Row *row, RtError *error) {
-    RtAccel *accel;
+    OWNED_ACCEL RtAccel *accel;
     RT_TRY(rt_accel_open("item+brute", &row->scene, &accel, error));
     const RtItemBuffer *buffer = (const RtItemBuffer *)accel;
     for (size_t i = 0; i < rt_item_sample_count(buffer); i++) assert_int_equal(buffer->samples[i], 0);
-    RtStatus status = accel->ops->validate(accel, error);
-    rt_accel_destroy(accel);
-    return status;
+    return accel->ops->validate(accel, error);
 }
 
 static RtStatus ask(const Row *row, RtError *error) {

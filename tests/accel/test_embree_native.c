@@ -3,7 +3,6 @@
  * Embree. */
 #include "embree_testing.h"
 
-#include "scenes/open.h"
 #include "verify/failure.h"
 
 static RtScene make_triangles(uint32_t count) {

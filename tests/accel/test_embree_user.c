@@ -131,9 +131,7 @@ RT_TEST(boxes_of_user_geometry_grow_even_among_the_least_numbers) {
 }
 
 RT_TEST(the_first_error_that_embree_reports_is_told) {
-    OWNED_SCENE scene = begin_scene();
-    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
-    assert_ok(rt_scene_finish(&scene, error));
+    OWNED_SCENE_OF(scene, sphere, rt_vec3(0, 0, 0), 1);
     OWNED_ACCEL RtEmbree *embree = open_accel(&scene, "embree:mode=user");
     assert_ok(rt_embree_device_check(&embree->device, error));
     RTCScene empty = rtcNewScene(embree->device.device);

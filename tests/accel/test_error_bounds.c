@@ -59,9 +59,7 @@ RT_TEST(the_pad_covers_the_last_places_of_coordinates_and_the_least_numbers) {
 RT_TEST(fitted_extents_are_inflated_by_their_rounding) {
     const double least = within * 0x1p-46 * 2, most = beyond * 0x1p-46 * 2;
     const uint32_t id = 0;
-    OWNED_GEOMETRY g = {0};
-    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(1, 0, 0), 1, error));
-    assert_ok(rt_geometry_finish(&g, error));
+    OWNED_OBJECT(g, sphere, rt_vec3(1, 0, 0), 1);
     const RtGroup group = {&g, &id, 1, g.box};
     for (RtExtentKind kind = RT_EXTENT_SPHERE; kind <= RT_EXTENT_SLABS; kind++) {
         RtExtentSet set;

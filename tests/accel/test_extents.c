@@ -26,29 +26,26 @@ static RtTally count(const RtScene *scene, const char *spec, RtVec3 org, RtVec3 
 }
 
 RT_TEST(a_ray_along_three_spheres_tests_three_extents_and_the_objects_not_yet_beyond_its_hit) {
+#define HITS(extents, tests)                                                                                 \
+    {                                                                                                        \
+        .rays = 1, .hits = 1, .extent_tests = (extents), .steps = (extents), .object_tests = (tests),        \
+        .object_hits = (tests)                                                                               \
+    }
+    static const struct {
+        float from, to; /* along x */
+        bool any;
+        RtTally by_hand;
+    } rows[] = {{-5, 1, false, HITS(3, 1)},  /* the others begin behind the first hit */
+                {25, -1, false, HITS(3, 3)}, /* every one is nearer than the last */
+                {25, -1, true, HITS(1, 1)},  /* any hit will do: the first ends the search */
+                {5, 1, false, HITS(3, 1)}};  /* from between the first two: the first is behind */
     OWNED_SCENE scene = three_spheres_in_a_row();
     for (int s = 0; s < SPEC_COUNT; s++) {
-        /* From the left the first is hit at once, and the others begin behind it. */
-        RtTally left = count(&scene, specs[s], rt_vec3(-5, 0, 0), rt_vec3(1, 0, 0), false);
-        assert_int_equal(left.rays, 1);
-        assert_int_equal(left.hits, 1);
-        assert_int_equal(left.extent_tests, 3);
-        assert_int_equal(left.steps, 3);
-        assert_int_equal(left.object_tests, 1);
-        assert_int_equal(left.object_hits, 1);
-        /* From the right every one is nearer than the last. */
-        RtTally right = count(&scene, specs[s], rt_vec3(25, 0, 0), rt_vec3(-1, 0, 0), false);
-        assert_int_equal(right.extent_tests, 3);
-        assert_int_equal(right.object_tests, 3);
-        assert_int_equal(right.object_hits, 3);
-        /* Any hit will do: the first ends the search. */
-        RtTally any = count(&scene, specs[s], rt_vec3(25, 0, 0), rt_vec3(-1, 0, 0), true);
-        assert_int_equal(any.extent_tests, 1);
-        assert_int_equal(any.object_tests, 1);
-        /* From between the first two, to the right: the first is behind. */
-        RtTally between = count(&scene, specs[s], rt_vec3(5, 0, 0), rt_vec3(1, 0, 0), false);
-        assert_int_equal(between.extent_tests, 3);
-        assert_int_equal(between.object_tests, 1);
+        for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+            const RtTally tally =
+                count(&scene, specs[s], rt_vec3(rows[i].from, 0, 0), rt_vec3(rows[i].to, 0, 0), rows[i].any);
+            assert_tally(specs[s], &tally, &rows[i].by_hand);
+        }
     }
 }
 

@@ -120,11 +120,10 @@ static RtRay make_ray(const RtGeometry *geometry, RtRandom *random) {
 enum { RAYS = 6000 };
 
 static void compare_with_brute(const RtScene *scene, const RtRay *rays) {
-    RtReference reference;
+    OWNED(rt_reference_clear) RtReference reference;
     OWNED_ACCEL RtAccel *brute = open_accel(scene, "brute");
     assert_ok(rt_reference_init(&reference, brute, rays, RAYS, 0, error));
     for (int s = 0; s < SPEC_COUNT; s++) assert_gives(&reference, specs[s]);
-    rt_reference_clear(&reference);
 }
 
 static void check_soup(uint64_t seed, float shift) {

@@ -4,8 +4,6 @@
 #include "accel_testing.h"
 #include "forged_testing.h"
 
-#include <stddef.h>
-
 typedef struct Answers {
     uint8_t bytes[1024];
     size_t size;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* accel/kd: splits computed by hand, invariants, each broken on purpose, and limits. */
-#include "accel_testing.h"
 #include "equivalence_testing.h"
 
 #include "accel/kd/kd.h"
@@ -28,9 +27,7 @@ static void add_floor(RtScene *scene, float x, float y, float z, float size) {
  * (0.3 * 7 + 3) * 0.8 instead of 7. */
 RT_TEST(two_spheres_are_split_as_by_hand) {
     RtDescription d;
-    OWNED_SCENE scene = begin_scene();
-    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0.5f, 0.5f, 0.5f), 0.5f, error));
-    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(3.5f, 0.5f, 0.5f), 0.5f, error));
+    OWNED_SCENE scene = begin_two_spheres();
     assert_ok(rt_scene_finish(&scene, error));
     RtKd *kd = open_valid(&scene, "kd:failures=0,traversal_cost=0.3,empty_bonus=0.2,max_leaf_size=0");
     assert_split(kd, 0, 0, 1);

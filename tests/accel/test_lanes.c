@@ -11,7 +11,6 @@
 #include "accel/kernel.h"
 #include "accel/sphere_prefilter.h"
 #include "accel/watertight.h"
-#include "accel_testing.h"
 
 /* What is asked, and what is answered, timed and counted. */
 typedef struct Asked {
@@ -37,7 +36,7 @@ static Asked begin_asking(const RtRay *rays, size_t count) {
 
 /* One ray, one object after the other. */
 static void by_definition(const RtGeometry *geometry, Asked *asked) {
-    RtCrossing *crossings;
+    OWNED_MEMORY RtCrossing *crossings;
     assert_ok(rt_crossings_alloc(geometry, &crossings, error));
     for (size_t i = 0; i < asked->count; i++) {
         const RtRay *ray = &asked->rays[i];
@@ -53,7 +52,6 @@ static void by_definition(const RtGeometry *geometry, Asked *asked) {
         asked->occluded[ray->kind].rays++;
         asked->occluded[ray->kind].hits += first.object != RT_NO_OBJECT;
     }
-    rt_free(crossings);
 }
 
 static void assert_same(const Asked *right, const Asked *got, bool counted, const char *who, size_t stream) {
@@ -332,9 +330,7 @@ RT_TEST(spheres_of_every_magnitude_that_rays_touch_are_hit_by_wide_as_by_brute) 
 RT_TEST(a_ray_that_begins_just_before_it_touches_a_sphere_hits_it_there) {
     RtRay rays[40];
     RtHit right[40];
-    OWNED_SCENE scene = begin_scene();
-    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
-    assert_ok(rt_scene_finish(&scene, error));
+    OWNED_SCENE_OF(scene, sphere, rt_vec3(0, 0, 0), 1);
     for (int i = 0; i < 40; i++) {
         float t = ldexpf(1.3f, -10 - i);
         rays[i] = (RtRay){{.x = -t, .y = 1}, 0, {.x = 1}, INFINITY, RT_RAY_RANDOM, 0};

@@ -5,7 +5,6 @@
 
 #include "accel/grid/grid.h"
 #include "render/frame.h"
-#include "scenes/open.h"
 
 static void assert_structure(const RtScene *scene, const char *spec, uint64_t interior, uint64_t leaves,
                              uint64_t empty, uint64_t references) {

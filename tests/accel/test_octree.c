@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* accel/octree: invariants, each broken on purpose, the cells of objects, and limits. */
-#include "accel_testing.h"
 #include "equivalence_testing.h"
 
 #include "accel/octree/octree.h"

@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* core/shape/overlap.h: boxes that the surface of an object meets, and grids that list objects by surface. */
-#include "accel_testing.h"
 #include "equivalence_testing.h"
 
 #include "accel/grid/grid.h"
 #include "accel/surface.h"
 #include "accel/tree/tree.h"
 #include "core/shape/overlap.h"
-#include "scenes/builtin.h"
-#include "verify/ray_families.h"
 
 static const double margin = 1e-9;
 
@@ -21,9 +18,7 @@ static bool meets(const RtGeometry *g, RtBox box) {
 }
 
 RT_TEST(a_box_inside_a_sphere_or_off_its_corner_is_not_met) {
-    OWNED_GEOMETRY g = {0};
-    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 1, error));
-    assert_ok(rt_geometry_finish(&g, error));
+    OWNED_OBJECT(g, sphere, rt_vec3(0, 0, 0), 1);
     assert_false(meets(&g, cube(0, 0, 0, 0.5f)));
     assert_true(meets(&g, cube(0, 0, 0, 0.6f))); /* its corners stick out */
     assert_true(meets(&g, cube(1, 0, 0, 0.1f)));
@@ -32,9 +27,7 @@ RT_TEST(a_box_inside_a_sphere_or_off_its_corner_is_not_met) {
 
 RT_TEST(a_box_in_the_box_of_a_triangle_is_met_by_plane_and_edges) {
     const RtVec3 v[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 1}};
-    OWNED_GEOMETRY g = {0};
-    assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
-    assert_ok(rt_geometry_finish(&g, error));
+    OWNED_OBJECT(g, triangle, v, NULL);
     assert_true(meets(&g, cube(0.25f, 0.25f, 0.25f, 0.01f)));
     assert_false(meets(&g, cube(0.25f, 0.25f, 0.5f, 0.1f))); /* above the plane */
     assert_false(meets(&g, cube(0.8f, 0.8f, 0.8f, 0.2f)));   /* beyond the slanted edge */
@@ -44,17 +37,13 @@ RT_TEST(a_box_in_the_box_of_a_triangle_is_met_by_plane_and_edges) {
 
 RT_TEST(a_slanted_polygon_is_met_like_a_triangle) {
     const RtVec3 v[4] = {{0, 0, 0}, {1, 0, 1}, {1, 1, 1}, {0, 1, 0}};
-    OWNED_GEOMETRY g = {0};
-    assert_ok(rt_geometry_add_polygon(&g, v, 4, error));
-    assert_ok(rt_geometry_finish(&g, error));
+    OWNED_OBJECT(g, polygon, v, 4);
     assert_true(meets(&g, cube(0.5f, 0.5f, 0.5f, 0.01f)));
     assert_false(meets(&g, cube(0.25f, 0.5f, 0.75f, 0.2f)));
 }
 
 RT_TEST(a_slanted_cylinder_leaves_corners_of_its_box_free) {
-    OWNED_GEOMETRY g = {0};
-    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 0.1f, rt_vec3(10, 10, 0), 0.1f, error));
-    assert_ok(rt_geometry_finish(&g, error));
+    OWNED_OBJECT(g, cone, rt_vec3(0, 0, 0), 0.1f, rt_vec3(10, 10, 0), 0.1f);
     assert_true(meets(&g, cube(5, 5, 0.1f, 0.01f)));
     assert_false(meets(&g, cube(1, 9, 0, 0.5f)));
 }
@@ -146,9 +135,7 @@ RT_TEST(boxes_about_hits_are_met) {
 /* One sphere in 4 x 4 x 4 voxels of half its radius: its box touches all of them, its surface all but the 8
  * in the middle, whose farthest points are at 0.87 of the radius, as are the nearest of the corners. */
 RT_TEST(a_grid_leaves_out_voxels_inside_a_sphere) {
-    OWNED_SCENE scene = begin_scene();
-    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
-    assert_ok(rt_scene_finish(&scene, error));
+    OWNED_SCENE_OF(scene, sphere, rt_vec3(0, 0, 0), 1);
     assert_int_equal(describe_spec(&scene, "grid:resolution=4x4x4").references, 64);
     assert_int_equal(describe_spec(&scene, "grid:resolution=4x4x4,overlap=exact").references, 56);
     assert_int_equal(describe_spec(&scene, "grid:resolution=1x1x1,overlap=exact").references, 1);
@@ -162,9 +149,7 @@ RT_TEST(a_ray_with_the_shortest_of_directions_is_not_trusted_to_voxels) {
     static const char *const specs[] = {"brute", "grid:resolution=32x32x32,overlap=exact"};
     const RtVec3 v[3] = {{0, 0, 0.5f}, {1, 0, 1.5f}, {1, 1, 1.5f}};
     const RtRay ray = {.org = {0.3f, 0.35f, 0}, .dir = {0x1p-129f, 0, 0x1p-126f}, .tmax = INFINITY};
-    OWNED_SCENE scene = begin_scene();
-    assert_ok(rt_scene_add_triangle(&scene, 0, v, NULL, error));
-    assert_ok(rt_scene_finish(&scene, error));
+    OWNED_SCENE_OF(scene, triangle, v, NULL);
     for (size_t i = 0; i < 2; i++) {
         RtHit hit;
         OWNED_ACCEL RtAccel *accel = open_accel(&scene, specs[i]);
@@ -227,10 +212,8 @@ RT_TEST(the_margin_of_surfaces_covers_large_coordinates_and_the_least_numbers) {
 RT_TEST(the_part_of_an_object_reaches_beyond_its_surface_by_the_margin) {
     const RtVec3 v[3] = {{{-1, -1, 0}}, {{1, 1, 0}}, {{1, -1, 0}}};
     const RtBox above = {{{-1, 0, -1}}, {{1, 1, 1}}};
-    OWNED_GEOMETRY g = {0};
     RtBox part;
-    assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
-    assert_ok(rt_geometry_finish(&g, error));
+    OWNED_OBJECT(g, triangle, v, NULL);
     assert_true(rt_object_part(&g, 0, &above, rt_tree_part_margin(&g.box), &part));
     assert_true((double)part.lo.x <= -within * 0x1p-39 && (double)part.lo.x >= -beyond * 0x1p-39);
 }
@@ -238,10 +221,8 @@ RT_TEST(the_part_of_an_object_reaches_beyond_its_surface_by_the_margin) {
 /* The pole of the unit sphere, where rounding the distance by 2^-40 moves the circle by 2^-20. */
 RT_TEST(the_part_of_a_sphere_covers_the_rounding_of_a_square) {
     const RtBox above = {{{-2, 1, -2}}, {{2, 2, 2}}};
-    OWNED_GEOMETRY g = {0};
     RtBox part;
-    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 1, error));
-    assert_ok(rt_geometry_finish(&g, error));
+    OWNED_OBJECT(g, sphere, rt_vec3(0, 0, 0), 1);
     assert_true(rt_object_part(&g, 0, &above, 0x1p-60, &part));
     assert_true((double)part.hi.x >= 0.98 * 0x1p-20 && (double)part.hi.x <= 1.02 * 0x1p-20);
 }

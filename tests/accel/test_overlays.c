@@ -2,13 +2,10 @@
 /* Overlays: specs with '+', their layers, the counts of each, and the shadow cache. */
 #include "accel_testing.h"
 
-/* Two unit-diameter spheres, 0 about (0.5, 0.5, 0.5) and 1 about (3.5, 0.5, 0.5), and two lights at x = 8:
- * one behind both spheres, seen along +x, one above them. */
+/* Two spheres, and two lights at x = 8: one behind both, seen along +x, one above them. */
 static int set_up(void **state) {
     static RtScene scene;
-    scene = begin_scene();
-    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0.5f, 0.5f, 0.5f), 0.5f, error));
-    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(3.5f, 0.5f, 0.5f), 0.5f, error));
+    scene = begin_two_spheres();
     assert_ok(rt_scene_add_light(&scene, rt_vec3(8, 0.5f, 0.5f), rt_vec3(1, 1, 1), error));
     assert_ok(rt_scene_add_light(&scene, rt_vec3(8, 0.5f, 9), rt_vec3(1, 1, 1), error));
     assert_ok(rt_scene_finish(&scene, error));
@@ -87,36 +84,27 @@ static RtStatus build_all_the_same(RtAccel *accel, const RtBuild *what, RtError 
 RT_TEST(a_stack_is_refused_before_it_is_built_where_a_layer_is_not_available) {
     RtSpec spec;
     RtAccel *accel;
-    RtError problem = {RT_OK, ""};
     assert_ok(rt_spec_parse("cache+grid", &spec, error));
     RtAccelOps absent = *spec.layers[0].ops;
     absent.available = refuse;
     absent.build = build_all_the_same;
     spec.layers[0].ops = &absent;
-    assert_int_equal(rt_accel_build(&spec, *state, 1, &accel, &problem), RT_NOT_AVAILABLE);
+    assert_fails_with(rt_accel_build(&spec, *state, 1, &accel, error), RT_NOT_AVAILABLE, "not here");
     assert_null(accel);
-    assert_string_equal(problem.message, "not here");
 }
 
 RT_TEST(layers_are_described_together) {
-    RtAccel *base, *top;
-    RtDescription of_base, of_top;
-    assert_ok(rt_accel_open("grid:resolution=3x1x1", *state, &base, error));
-    assert_ok(rt_accel_open("cache+light:cells=2+grid:resolution=3x1x1", *state, &top, error));
-    rt_accel_describe(base, &of_base);
+    OWNED_ACCEL RtAccel *top = open_valid(*state, "cache+light:cells=2+grid:resolution=3x1x1");
+    RtDescription of_base = describe_spec(*state, "grid:resolution=3x1x1"), of_top;
     rt_accel_describe(top, &of_top);
     assert_true(of_top.leaves > 3 + 2 * 2 * 2 && of_top.leaves <= 3 + 2 * 6 * 2 * 2); /* voxels, and cells */
     assert_true(of_top.references > of_base.references);
     assert_true(of_top.bytes > of_base.bytes);
     assert_string_equal(rt_accel_base(top)->ops->name, "grid");
-    assert_ok(rt_accel_validate(top, error));
-    rt_accel_destroy(base);
-    rt_accel_destroy(top);
 }
 
 RT_TEST(a_stack_is_only_as_exact_as_its_base) {
-    OWNED_ACCEL RtAccel *accel = NULL;
-    assert_ok(rt_accel_open("cache+bvh", *state, &accel, error));
+    OWNED_ACCEL RtAccel *accel = open_accel(*state, "cache+bvh");
     assert_true(accel->exact && accel->counts);
     rt_accel_destroy(accel);
     accel = open_available(*state, "cache+embree:mode=native", 0);
@@ -158,12 +146,7 @@ RT_TEST(the_cache_counts_what_was_counted_by_hand) {
         if (rows[i].begin) rt_query_begin(&query);
         rt_occluded(&query, &ray, 1, &blocked, tallies);
         assert_int_equal(blocked, rows[i].blocked);
-        for (size_t c = 0; c < RT_TALLY_COUNTER_COUNT; c++) {
-            uint64_t got = rt_tally_get(&tallies[RT_RAY_SHADOW], c),
-                     by_hand = rt_tally_get(&rows[i].expected, c);
-            if (got != by_hand)
-                fail_msg("row %zu, %s: %d, by hand %d", i, rt_tally_name(c), (int)got, (int)by_hand);
-        }
+        assert_tally("cache+brute", &tallies[RT_RAY_SHADOW], &rows[i].expected);
     }
 }
 

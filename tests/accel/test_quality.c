@@ -2,8 +2,6 @@
 /* End-point overlap and leaf-count variability of hierarchies small enough to compute them by hand. */
 #include "accel_testing.h"
 
-#include <math.h>
-
 /* Three standard errors of 4096 points and 8192 lines. */
 static const double CLOSE = 0.03;
 

@@ -9,9 +9,6 @@
 
 #include "core/base/random.h"
 #include "scenes/build.h"
-#include "scenes/open.h"
-
-#include <stdlib.h>
 
 enum { RAYS = 400000, CHUNK = 4096, SAMPLE_TESTS = 4000000, LEVELS = 2, SECTORS = 24 };
 

@@ -5,8 +5,6 @@
 #include "bundles_testing.h"
 #include "wide_testing.h"
 
-#include "scenes/open.h"
-
 /* ---- brute, and all of wide ---- */
 
 typedef struct Bench {

@@ -127,12 +127,11 @@ RT_TEST(split_references_keep_their_nodes_and_so_does_a_tree_if_memory_is_short)
 RT_TEST(a_million_triangles_are_built_in_140_bytes_each_beside_80_of_the_scene) {
     OWNED_SCENE scene = open_scene("forest:n=1030");
     const uint64_t count = scene.geometry.object_count;
-    RtAccel *accel;
+    OWNED_ACCEL RtAccel *accel;
     assert_true(count > 1 << 20);
     assert_true(rt_scene_bytes(&scene) < 80 * count);
     rt_memory_limit(140 * count);
     assert_ok(rt_memory_unlimit(rt_accel_open("wide", &scene, &accel, error), error));
-    rt_accel_destroy(accel);
 }
 
 RT_TEST(rays_in_lanes_are_as_thick_as_one_by_one) {

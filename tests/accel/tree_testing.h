@@ -6,7 +6,6 @@
 #include "accel_testing.h"
 
 #include "accel/tree/tree.h"
-#include "core/base/memory.h"
 #include "core/base/random.h"
 
 #define OWNED_TREE OWNED(rt_tree_clear) RtTree

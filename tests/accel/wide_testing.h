@@ -7,8 +7,6 @@
 
 #include "accel/wide/wide.h"
 
-#include <stdio.h>
-
 enum { BEST_SET, FIRST_SET };
 static const char *const instruction_sets[] = {"best", "portable", "avx2", "avx512"};
 enum { INSTRUCTION_SETS = sizeof instruction_sets / sizeof instruction_sets[0] };

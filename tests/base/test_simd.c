@@ -7,7 +7,6 @@
 #include "core/base/simd_across.h"
 
 #include <float.h>
-#include <string.h>
 
 enum { VALUES = 12 };
 static const float values[VALUES] = {0,   -0.0f, INFINITY, -INFINITY, NAN,     FLT_MIN / 4,

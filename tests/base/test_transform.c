@@ -4,8 +4,6 @@
 
 #include "core/base/transform.h"
 
-#include <string.h>
-
 static void assert_point(RtVec3 p, float x, float y, float z) {
     if (p.x == x && p.y == y && p.z == z) return;
     fail_msg("(%.9g, %.9g, %.9g) instead of (%g, %g, %g)", (double)p.x, (double)p.y, (double)p.z, (double)x,

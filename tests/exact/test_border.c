@@ -50,9 +50,7 @@ static Wrongs wrongs_of(HitFunction *decide, float size, int rays) {
     for (int i = 0; i < rays; i++) {
         RtVec3 v[3];
         for (int k = 0; k < 3; k++) v[k] = rt_scale(rt_random_point(&random, 1), size);
-        OWNED_GEOMETRY g = {0};
-        assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
-        assert_ok(rt_geometry_finish(&g, error));
+        OWNED_OBJECT(g, triangle, v, NULL);
         RtRay ray = ray_at_triangle(&random, v, i);
         RtDecision decision = decide(&g, &ray);
         RtWideRay line = rt_wide_ray(&ray);
@@ -83,9 +81,7 @@ RT_TEST(the_referee_decides_against_us_too) {
     for (int i = 1; i < 2000; i += 2) {
         RtVec3 v[3];
         for (int k = 0; k < 3; k++) v[k] = rt_random_point(&random, 1);
-        OWNED_GEOMETRY g = {0};
-        assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
-        assert_ok(rt_geometry_finish(&g, error));
+        OWNED_OBJECT(g, triangle, v, NULL);
         RtRay ray = ray_at_triangle(&random, v, i);
         RtHit expected = RT_MISS, right = RT_MISS;
         RtDecision decision = ours(&g, &ray);

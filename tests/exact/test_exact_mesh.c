@@ -62,14 +62,13 @@ static RtRay lattice_ray(RtRandom *random) {
 /* Writes the roots to out[0..MOST); returns their number. */
 static uint32_t places_of(const RtSolidSet *set, uint32_t index, const RtRay *ray, long double *out) {
     OWNED(rt_exact_arena_clear) RtExactArena arena = {0};
-    RtRational *places;
+    OWNED_MEMORY RtRational *places;
     uint32_t count;
     RtWideRay wide = rt_wide_ray(ray);
     RtExactLine line = rt_exact_line(&arena, &wide);
     assert_ok(rt_exact_mesh_roots(&arena, set, index, &line, &places, &count, error));
     assert_true(count <= MOST && count % 2 == 0);
     for (uint32_t i = 0; i < count; i++) out[i] = rt_exact_value(places[i]);
-    rt_free(places);
     return count;
 }
 

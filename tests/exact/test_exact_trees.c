@@ -7,8 +7,6 @@
 
 #include "exact/border.h"
 #include "exact/referee.h"
-#include "scenes/builtin.h"
-#include "verify/ray_families.h"
 
 /* ---- rings ---- */
 

@@ -5,13 +5,8 @@
 #include "testing.h"
 
 #include "core/base/file.h"
-#include "core/base/memory.h"
 #include "exact/exact.h"
 #include "exact/precision.h"
-
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { RAYS = 2000, MOST_CASES = 10 };
 
@@ -168,9 +163,7 @@ RT_TEST(t_of_a_needle_is_that_of_its_plane) {
         RtVec3 target = rt_add(v[0], rt_scale(rt_sub(v[1], v[0]), along));
         RtRay ray = {.org = rt_scale(rt_random_point(&random, 1), 3), .tmin = 0, .tmax = INFINITY};
         ray.dir = rt_sub(target, ray.org);
-        OWNED_GEOMETRY g = {0};
-        assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
-        assert_ok(rt_geometry_finish(&g, error));
+        OWNED_OBJECT(g, triangle, v, NULL);
         RtPreparedRay prepared;
         rt_hit_ray(&prepared, &g, &ray, NULL);
         float t;

@@ -90,9 +90,7 @@ static long double first_t_within(const RtGeometry *g, uint32_t id, RtRay ray, f
 }
 
 RT_TEST(the_unit_sphere_is_met_at_9_and_11) {
-    OWNED_GEOMETRY g = {0};
-    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 1, error));
-    assert_ok(rt_geometry_finish(&g, error));
+    OWNED_OBJECT(g, sphere, rt_vec3(0, 0, 0), 1);
     RtRay ray = ray_from(0, 0, 10, 0, 0, -1);
     assert_true(first_t(&g, 0, &ray) == 9);
     assert_true(first_t_within(&g, 0, ray, 9, 9) == 9);
@@ -148,10 +146,8 @@ RT_TEST(edges_and_vertices_belong_to_triangles_and_polygons) {
  * as far above two of them as below the others, a quarter of an ulp. */
 RT_TEST(a_polygon_that_is_not_planar_has_one_plane_all_the_same) {
     float one = 1, above = nextafterf(1, 2);
-    OWNED_GEOMETRY g = {0};
     const RtVec3 v[4] = {{0, 0, one}, {1, 0, one}, {1, 1, above}, {0, 1, one}};
-    assert_ok(rt_geometry_add_polygon(&g, v, 4, error));
-    assert_ok(rt_geometry_finish(&g, error));
+    OWNED_OBJECT(g, polygon, v, 4);
     RtRay middle = ray_from(0.5f, 0.5f, 2, 0, 0, -1);
     assert_true(first_t(&g, 0, &middle) == 1 - 0x1p-25L);
 }

@@ -23,7 +23,7 @@ RT_TEST(an_accelerator_that_no_loaded_plugin_has_needs_a_function_of_the_library
     char spec[RAYTALLY_SPEC_CHARS];
     raytally_error why;
     assert_int_equal(raytally_spec_format("own_hits", spec, &why), RAYTALLY_BAD_INPUT);
-    assert_says(why, "an accelerator of a plugin needs raytally_plugin_load");
+    assert_non_null(strstr(why.message, "an accelerator of a plugin needs raytally_plugin_load"));
     assert_null(strstr(why.message, "--"));
 }
 
@@ -35,10 +35,7 @@ RT_TEST(what_is_no_plugin_is_refused_with_and_without_room_for_a_message) {
                 {PLUGIN("unloadable-CONSTRUCTOR"), "loading it failed"}};
     size_t before = raytally_accelerator_count();
     for (size_t i = 0; i < sizeof none / sizeof none[0]; i++) {
-        raytally_error why;
-        assert_int_equal(raytally_plugin_load(none[i].path, &why), RAYTALLY_BAD_INPUT);
-        assert_int_equal(why.status, RAYTALLY_BAD_INPUT);
-        assert_says(why, none[i].says);
+        assert_refused(raytally_plugin_load(none[i].path, error), none[i].says);
         assert_int_equal(raytally_plugin_load(none[i].path, NULL), RAYTALLY_BAD_INPUT);
     }
     assert_int_equal(raytally_accelerator_count(), before);

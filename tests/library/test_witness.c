@@ -7,8 +7,6 @@
 
 #include <langinfo.h>
 #include <locale.h>
-#include <stdio.h>
-#include <unistd.h>
 #include <xxhash.h>
 
 static atomic_uint_fast64_t calls, rays_asked, rays_sum; /* the sum of the hashes of all rays */
@@ -139,8 +137,7 @@ static void verify_by_program(const char *scene, uint64_t rays, uint64_t seed) {
 
 RT_TEST(the_library_verifies_by_the_rays_of_the_program) {
     static const char name[] = "balls:size=1";
-    raytally_scene *scene;
-    raytally_accelerator *item;
+    OWNED_WORK on = {0};
     raytally_verify_options how = RAYTALLY_VERIFY_DEFAULTS;
     raytally_verify_result found;
     uint32_t width, height;
@@ -150,33 +147,29 @@ RT_TEST(the_library_verifies_by_the_rays_of_the_program) {
     assert_true(asked >= 4 * UINT64_C(3000));
 
     /* However the scene is sampled, and whatever is built over it. */
-    assert_fine(raytally_scene_open(name, &scene, error));
-    assert_fine(raytally_scene_set_sampling(scene, 30, 20, 2, error));
-    assert_fine(raytally_accelerator_build(scene, "item+bvh", 1, &item, error));
+    assert_fine(raytally_scene_open(name, &on.scene, error));
+    assert_fine(raytally_scene_set_sampling(on.scene, 30, 20, 2, error));
+    assert_fine(raytally_accelerator_build(on.scene, "item+bvh", 1, &on.accel, error));
     how.rays = 3000;
     how.seed = 7;
     forget_rays();
-    assert_fine(raytally_verify(scene, "witness", &how, &found, error));
+    assert_fine(raytally_verify(on.scene, "witness", &how, &found, error));
     assert_int_equal(rays_asked, asked);
     assert_int_equal(rays_sum, sum);
-    raytally_scene_size(scene, &width, &height);
+    raytally_scene_size(on.scene, &width, &height);
     assert_true(width == 30 && height == 20);
 
     /* And only with the given rays. */
-    raytally_rays *rays;
-    assert_fine(raytally_rays_record(item, RAYTALLY_PRIMARY, NULL, &rays, error));
-    how.given = rays;
-    assert_fine(raytally_verify(scene, "item+bvh", &how, &found, error));
-    assert_int_equal(found.equal, raytally_rays_count(rays));
+    assert_fine(raytally_rays_record(on.accel, RAYTALLY_PRIMARY, NULL, &on.rays, error));
+    how.given = on.rays;
+    assert_fine(raytally_verify(on.scene, "item+bvh", &how, &found, error));
+    assert_int_equal(found.equal, raytally_rays_count(on.rays));
     how.seed = 8;
     how.given = NULL;
     forget_rays();
-    assert_fine(raytally_verify(scene, "witness", &how, &found, error));
+    assert_fine(raytally_verify(on.scene, "witness", &how, &found, error));
     assert_int_equal(rays_asked, asked);
     assert_int_not_equal(rays_sum, sum);
-    raytally_rays_free(rays);
-    raytally_accelerator_free(item);
-    raytally_scene_free(scene);
 }
 
 /* ---- the locale ---- */
@@ -243,10 +236,7 @@ RT_TEST_WITH(numbers_in_files_have_a_point_in_every_locale, choose_comma, choose
 
 RT_TEST_WITH(whoever_is_called_works_in_the_locale_of_c, choose_comma, choose_standard) {
     if (*localeconv()->decimal_point != ',') RT_SKIP("a locale with a decimal comma, or locales to make one");
-    raytally_scene *scene;
-    raytally_accelerator *accel;
-    raytally_rays *rays;
-    raytally_tracer *tracer;
+    OWNED_WORK on = {0};
     raytally_statistics structure;
     raytally_counters counters;
     raytally_verify_result found;
@@ -261,55 +251,47 @@ RT_TEST_WITH(whoever_is_called_works_in_the_locale_of_c, choose_comma, choose_st
     verifying.rays = 2000;
     timing.rounds = 2;
     timing.least = 0;
-    assert_fine(raytally_scene_open("random:n=9,shape=mixed", &scene, error));
-    assert_fine(raytally_scene_set_sampling(scene, 16, 16, 1, error));
+    assert_fine(raytally_scene_open("random:n=9,shape=mixed", &on.scene, error));
+    assert_fine(raytally_scene_set_sampling(on.scene, 16, 16, 1, error));
     calls = 0;
-    assert_point(assert_fine(raytally_accelerator_build(scene, "witness", 3, &accel, error)));
-    assert_point(raytally_accelerator_describe(accel, &structure));
-    assert_point(assert_fine(raytally_rays_record(accel, RAYTALLY_PRIMARY, &recording, &rays, error)));
-    assert_point(assert_fine(raytally_verify(scene, "witness", &verifying, &found, error)));
-    assert_point(assert_fine(raytally_count(accel, rays, 3, &counters, error)));
-    assert_point(assert_fine(raytally_time_all(&accel, 1, rays, &timing, &time, error)));
-    assert_point(assert_fine(raytally_render(accel, 0, 3, NULL, NULL, error)));
-    const size_t count = raytally_rays_count(rays);
+    assert_point(assert_fine(raytally_accelerator_build(on.scene, "witness", 3, &on.accel, error)));
+    assert_point(raytally_accelerator_describe(on.accel, &structure));
+    assert_point(assert_fine(raytally_rays_record(on.accel, RAYTALLY_PRIMARY, &recording, &on.rays, error)));
+    assert_point(assert_fine(raytally_verify(on.scene, "witness", &verifying, &found, error)));
+    assert_point(assert_fine(raytally_count(on.accel, on.rays, 3, &counters, error)));
+    assert_point(assert_fine(raytally_time_all(&on.accel, 1, on.rays, &timing, &time, error)));
+    assert_point(assert_fine(raytally_render(on.accel, 0, 3, NULL, NULL, error)));
+    const size_t count = raytally_rays_count(on.rays);
     assert_true(count > 0 && count <= 64);
-    assert_point(assert_fine(raytally_tracer_new(accel, &tracer, error)));
-    assert_point(raytally_tracer_begin(tracer));
-    assert_point(raytally_nearest(tracer, raytally_rays_data(rays), count, hits, NULL));
-    assert_point(raytally_occluded(tracer, raytally_rays_data(rays), count, blocked, NULL));
-    assert_point(assert_fine(raytally_accelerator_check(accel, error)));
-    assert_point(raytally_tracer_free(tracer));
-    assert_point(raytally_accelerator_free(accel));
+    assert_point(assert_fine(raytally_tracer_new(on.accel, &on.tracer, error)));
+    assert_point(raytally_tracer_begin(on.tracer));
+    assert_point(raytally_nearest(on.tracer, raytally_rays_data(on.rays), count, hits, NULL));
+    assert_point(raytally_occluded(on.tracer, raytally_rays_data(on.rays), count, blocked, NULL));
+    assert_point(assert_fine(raytally_accelerator_check(on.accel, error)));
+    assert_point(raytally_tracer_free(on.tracer));
+    assert_point(raytally_accelerator_free(on.accel));
+    on.tracer = NULL;
+    on.accel = NULL;
     assert_true(calls > 100);
-    raytally_rays_free(rays);
-    raytally_scene_free(scene);
 }
 
 RT_TEST_WITH(numbers_are_written_and_read_with_a_point, choose_comma, choose_standard) {
     if (*localeconv()->decimal_point != ',') RT_SKIP("a locale with a decimal comma, or locales to make one");
     char text[16], spec[RAYTALLY_SPEC_CHARS];
-    raytally_scene *scene;
-    raytally_accelerator *accel;
-    raytally_rays *rays;
+    OWNED_WORK on = {0};
     raytally_time time;
-    raytally_error why;
     raytally_time_options timing = RAYTALLY_TIME_DEFAULTS;
     const raytally_camera camera = {{0, 0, 9}, {0, 0, 0}, {0, 1, 0}, 199.5f};
     assert_fine(raytally_spec_format("grid:density=4.5", spec, error));
     assert_non_null(strstr(spec, "density=4.5,"));
-    assert_int_equal(raytally_spec_format("grid:density=4,5", spec, &why), RAYTALLY_BAD_INPUT);
-    assert_fine(raytally_scene_open("balls:size=1", &scene, error));
-    assert_int_equal(raytally_scene_set_camera(scene, &camera, &why), RAYTALLY_BAD_INPUT);
-    assert_says(why, "199.5");
-    assert_fine(raytally_scene_set_sampling(scene, 4, 4, 1, error));
-    assert_fine(raytally_accelerator_build(scene, "bvh", 1, &accel, error));
-    assert_fine(raytally_rays_record(accel, RAYTALLY_PRIMARY, NULL, &rays, error));
+    assert_refused(raytally_spec_format("grid:density=4,5", spec, error), "");
+    assert_fine(raytally_scene_open("balls:size=1", &on.scene, error));
+    assert_refused(raytally_scene_set_camera(on.scene, &camera, error), "199.5");
+    assert_fine(raytally_scene_set_sampling(on.scene, 4, 4, 1, error));
+    assert_fine(raytally_accelerator_build(on.scene, "bvh", 1, &on.accel, error));
+    assert_fine(raytally_rays_record(on.accel, RAYTALLY_PRIMARY, NULL, &on.rays, error));
     timing.least = 99.5;
-    assert_int_equal(raytally_time_all(&accel, 1, rays, &timing, &time, &why), RAYTALLY_BAD_INPUT);
-    assert_says(why, "99.5 s");
-    raytally_rays_free(rays);
-    raytally_accelerator_free(accel);
-    raytally_scene_free(scene);
+    assert_refused(raytally_time_all(&on.accel, 1, on.rays, &timing, &time, error), "99.5 s");
     snprintf(text, sizeof text, "%.1f", 4.5);
     assert_string_equal(text, "4,5"); /* in the locale of the program */
 }

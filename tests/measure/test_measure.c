@@ -4,13 +4,10 @@
 #include "testing.h"
 
 #include "core/base/clock.h"
-#include "core/base/memory.h"
 #include "measure/measure.h"
 #include "results/result_tables.h"
 #include "run/workload.h"
 #include "scenes/open.h"
-
-#include <string.h>
 
 /* A scene, accelerators over it, and the rays that the first of them recorded. */
 typedef struct Stage {
@@ -47,7 +44,7 @@ static void count_enormously(const RtAccel *accel, const RtScratch *scratch, con
 }
 
 RT_TEST(counts_of_2_63_or_more_are_refused_and_never_wrap_around) {
-    Stage stage;
+    OWNED(close_stage) Stage stage;
     RtCount count;
     open_stage(&stage, "balls:size=1", 8, 100, "brute", NULL);
     const RtRaySet *set = &stage.sets[RT_RAY_RANDOM];
@@ -63,12 +60,11 @@ RT_TEST(counts_of_2_63_or_more_are_refused_and_never_wrap_around) {
     enormous_steps = UINT64_MAX - 1;
     assert_bad_input(rt_measure_count(stage.accels[0], set, expected, 1, &count, error),
                      "brute: it counts 2^63 steps or more");
-    close_stage(&stage);
 }
 
 /* The spheres of balls:size=1 are 10, and one polygon; brute tests each for every ray. */
 RT_TEST(a_count_is_the_sum_over_threads_and_finds_wrong_answers) {
-    Stage stage;
+    OWNED(close_stage) Stage stage;
     open_stage(&stage, "balls:size=1", 8, 10000, "brute", NULL);
     const RtRaySet *set = &stage.sets[RT_RAY_RANDOM];
     OWNED_MEMORY RtHit *expected = rt_alloc(set->count, sizeof(RtHit));
@@ -85,12 +81,11 @@ RT_TEST(a_count_is_the_sum_over_threads_and_finds_wrong_answers) {
     assert_ok(rt_measure_count(stage.accels[0], set, expected, 2, &count, error));
     assert_int_equal(count.differ, expected[4242].object == RT_NO_OBJECT ? 1 : 2);
     assert_int_equal(count.first, 42);
-    close_stage(&stage);
 }
 
 /* For `occluded`, t does not matter, and a ray that hits is done before every object was tested. */
 RT_TEST(shadow_and_occlusion_rays_are_traced_for_any_hit) {
-    Stage stage;
+    OWNED(close_stage) Stage stage;
     open_stage(&stage, "balls:size=1", 16, 100, "brute", NULL);
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
         const RtRaySet *set = &stage.sets[k];
@@ -108,25 +103,33 @@ RT_TEST(shadow_and_occlusion_rays_are_traced_for_any_hit) {
         assert_int_equal(count.differ, any ? 0 : set->count);
         assert_true((count.tally.object_tests < tests) == (any && hits > 0));
     }
-    close_stage(&stage);
 }
 
 /* ---- workloads ---- */
 
-/* An experiment with primary rays of one scene. */
-typedef struct Candidates {
-    RtCandidate of[2];
-} Candidates;
-
-static RtExperiment *experiment_of(const char *name, Candidates candidates) {
+/* An experiment with primary rays, of one or two specs. */
+static RtExperiment *experiment_of(const char *one, const char *other) {
     RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
     assert_non_null(e);
     rt_experiment_init(e);
-    strcpy(e->name, name);
+    strcpy(e->name, "measured");
     e->milliseconds = 1;
     e->kind_count = 1;
-    for (; e->candidate_count < 2 && *candidates.of[e->candidate_count].spec; e->candidate_count++)
-        e->candidates[e->candidate_count] = candidates.of[e->candidate_count];
+    for (const char *spec = one; spec; spec = spec == one ? other : NULL) {
+        RtCandidate *candidate = &e->candidates[e->candidate_count++];
+        *candidate = (RtCandidate){.ray_stride = 1};
+        strcpy(candidate->spec, spec);
+        strcpy(candidate->label, spec);
+    }
+    return e;
+}
+
+/* The second is measured on every `stride`th ray, and has a label of its own. */
+static RtExperiment *experiment_thinned(const char *spec, uint32_t stride) {
+    RtExperiment *e = experiment_of(spec, "");
+    strcpy(e->candidates[1].spec, spec);
+    strcpy(e->candidates[1].label, "some");
+    e->candidates[1].ray_stride = stride;
     return e;
 }
 
@@ -141,17 +144,14 @@ static void add_scene(RtExperiment *e, const char *scene, uint32_t size) {
  * of 8 x 8 that is the ray of the upper left corner, which misses everything. */
 static RtCell time_thinned(const char *spec) {
     const RtWorkloadOptions options = {.threads = 1, .timing = 1};
-    Candidates candidates = {{{.label = "all", .ray_stride = 1}, {.label = "some", .ray_stride = 64}}};
-    RtResults results;
-    for (int c = 0; c < 2; c++) strcpy(candidates.of[c].spec, spec);
-    OWNED_MEMORY RtExperiment *e = experiment_of("thinned", candidates);
+    OWNED_MEMORY RtExperiment *e = experiment_thinned(spec, 64);
+    OWNED_RESULTS results;
     add_scene(e, "random:n=300", 8);
     assert_ok(rt_results_init(&results, e, error));
     assert_ok(rt_workloads_run(&results, &options, error));
     RtCell cell = *rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
     assert_true(fabs(rt_results_cost(&results, 0, 1, RT_ALL_RAYS).ratio.median / cell.ratio.median - 1) <
                 1e-9);
-    rt_results_clear(&results);
     return cell;
 }
 
@@ -204,10 +204,8 @@ RtStatus __wrap_rt_accel_build(const RtSpec *spec, const RtScene *scene, int thr
 static RtBuildResult build_with(double first, double then, double step, double limit, bool count_only,
                                 RtBuildResult known) {
     const RtWorkloadOptions options = {.threads = 1, .timing = 1, .count_only = count_only};
-    RtResults results;
-    RtExperiment *e =
-        experiment_of("builds", (Candidates){{{.label = "bvh", .spec = "bvh", .ray_stride = 1},
-                                              {.label = "grid", .spec = "grid", .ray_stride = 1}}});
+    OWNED_MEMORY RtExperiment *e = experiment_of("bvh", "grid");
+    OWNED_RESULTS results;
     e->builds = 9;
     e->limit_seconds = limit;
     e->rounds = 1;
@@ -221,10 +219,7 @@ static RtBuildResult build_with(double first, double then, double step, double l
     takes.baseline = 0.001;
     assert_ok(rt_workloads_run(&results, &options, error));
     takes.baseline = 0;
-    const RtBuildResult grid = *rt_build_at(&results, 0, 1);
-    rt_results_clear(&results);
-    rt_free(e);
-    return grid;
+    return *rt_build_at(&results, 0, 1);
 }
 
 static const RtBuildResult unknown;
@@ -297,26 +292,21 @@ static void show_structures(const RtResults *results) {
 
 /* Two structures with given times, to within `error`: seconds to build, nanoseconds per ray. */
 static RtBreakEven break_even(double theirs, double their_ray, double ours, double our_ray, double error_of) {
-    OWNED_MEMORY RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
-    RtResults results;
-    assert_non_null(e);
-    rt_experiment_init(e);
-    e->workload_count = 1;
-    e->candidate_count = 2;
-    e->baseline_count = 1;
+    OWNED_MEMORY RtExperiment *e = experiment_of("theirs", "ours");
+    OWNED_RESULTS results;
+    e->workload_count = e->baseline_count = 1;
     assert_ok(rt_results_init(&results, e, error));
-    results.workloads[0].rays[RT_RAY_SHADOW] = 1000;
+    results.workloads[0].rays[RT_RAY_PRIMARY] = 1000;
     *rt_build_at(&results, 0, 0) = (RtBuildResult){.builds = 7, .seconds = measured(theirs, error_of)};
     *rt_build_at(&results, 0, 1) = (RtBuildResult){.builds = 6, .seconds = measured(ours, error_of)};
-    *rt_cell_at(&results, 0, 1, RT_RAY_SHADOW) = (RtCell){.timed = true,
-                                                          .counted = true,
-                                                          .baseline = 0,
-                                                          .wall = measured(1e-9 * our_ray, error_of),
-                                                          .ratio = measured(their_ray / our_ray, error_of)};
+    *rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY) = (RtCell){.timed = true,
+                                                           .counted = true,
+                                                           .baseline = 0,
+                                                           .wall = measured(1e-9 * our_ray, error_of),
+                                                           .ratio = measured(their_ray / our_ray, error_of)};
     const RtBreakEven even = rt_results_break_even(&results, 0, 1);
     assert_true(isnan(rt_results_break_even(&results, 0, 0).rays.median));
     show_structures(&results);
-    rt_results_clear(&results);
     assert_int_equal(even.builds, 6);
     return even;
 }
@@ -364,27 +354,23 @@ RT_TEST(the_interval_of_a_break_even_contains_those_of_all_times_within_theirs) 
     }
 }
 
-RT_TEST(a_break_even_of_builds_and_rays_that_may_be_equal_is_any_number) {
-    const RtBreakEven even = break_even(1, 300, 1.01, 299, 0.1);
-    assert_true(even.rays.low == 0 && isinf(even.rays.high));
-    assert_non_null(strstr(shown, "undecided"));
-}
-
-RT_TEST(a_break_even_that_only_the_intervals_allow_is_shown_as_perhaps) {
-    break_even(1, 300, 3, 310, 0.05);
-    assert_non_null(strstr(shown, "perhaps from "));
-    break_even(3, 310, 1, 300, 0.05);
-    assert_null(strstr(shown, "perhaps"));
-    break_even(3, 200, 1, 300, 0.001);
-    assert_non_null(strstr(shown, "faster up to "));
-}
-
-RT_TEST(a_break_even_that_is_never_lost_by_the_medians_is_shown_without_infinity) {
-    break_even(3, 200, 1, 200, 0.001);
-    assert_non_null(strstr(shown, "faster, at least up to "));
-    assert_null(strstr(shown, "inf"));
-    break_even(1, 300, 1, 200, 0.001);
-    assert_non_null(strstr(shown, " at the latest"));
+RT_TEST(a_break_even_is_shown_as_far_as_the_intervals_decide_and_without_infinity) {
+    static const struct {
+        double theirs, their_ray, ours, our_ray, error_of;
+        const char *says, *silent;
+    } cases[] = {{1, 300, 1.01, 299, 0.1, "undecided", NULL}, /* any number, as both may be equal */
+                 {1, 300, 3, 310, 0.05, "perhaps from ", NULL},
+                 {3, 310, 1, 300, 0.05, "", "perhaps"},
+                 {3, 200, 1, 300, 0.001, "faster up to ", NULL},
+                 {3, 200, 1, 200, 0.001, "faster, at least up to ", "inf"},
+                 {1, 300, 1, 200, 0.001, " at the latest", "inf"}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const RtBreakEven even = break_even(cases[i].theirs, cases[i].their_ray, cases[i].ours,
+                                            cases[i].our_ray, cases[i].error_of);
+        if (i == 0) assert_true(even.rays.low == 0 && isinf(even.rays.high));
+        if (!strstr(shown, cases[i].says) || (cases[i].silent && strstr(shown, cases[i].silent)))
+            fail_msg("case %zu: %s", i, shown);
+    }
 }
 
 /* The first counting pass: its rays, and which of the eight parts of a frame of 64 rows they cover. */
@@ -406,9 +392,8 @@ RtStatus __wrap_rt_measure_count(const RtAccel *accel, const RtRaySet *set, cons
 
 RT_TEST(a_time_is_foretold_from_rays_of_all_parts_of_the_image) {
     const RtWorkloadOptions options = {.threads = 1, .timing = 1, .count_only = true};
-    RtResults results;
-    RtExperiment *e =
-        experiment_of("limited", (Candidates){{{.label = "ideal", .spec = "ideal", .ray_stride = 1}}});
+    OWNED_MEMORY RtExperiment *e = experiment_of("ideal", NULL);
+    OWNED_RESULTS results;
     e->limit_seconds = 1e9;
     add_scene(e, "balls:size=1", 64);
     assert_ok(rt_results_init(&results, e, error));
@@ -419,8 +404,6 @@ RT_TEST(a_time_is_foretold_from_rays_of_all_parts_of_the_image) {
     const RtTally *tally = &rt_cell_at(&results, 0, 0, RT_RAY_PRIMARY)->tally;
     assert_int_equal(tally->rays, 64 * 64);
     assert_int_equal(tally->object_tests, tally->hits);
-    rt_results_clear(&results);
-    rt_free(e);
 }
 
 /* A name for the best of several, of any accelerator that has one; NULL where none was built in. */
@@ -463,9 +446,7 @@ RT_TEST(ratios_to_a_best_of_several_refer_to_the_fastest_of_them) {
     RtResults results;
     char name[RT_MAX_LABEL];
     if (!any_best(name)) return;
-    RtExperiment *e =
-        experiment_of("best", (Candidates){{{.label = "all", .spec = "bvh", .ray_stride = 1},
-                                            {.label = "some", .spec = "bvh", .ray_stride = 7}}});
+    OWNED_MEMORY RtExperiment *e = experiment_thinned("bvh", 7);
     e->kind_count = 2;
     assert_ok(rt_experiment_set_baseline(e, name, error));
     assert_true(e->baseline == 2 && e->baseline_count > 1 && e->candidate_count == 2 + e->baseline_count);
@@ -482,7 +463,6 @@ RT_TEST(ratios_to_a_best_of_several_refer_to_the_fastest_of_them) {
         rt_results_clear(&results);
     }
     assert_true(most);
-    rt_free(e);
 }
 
 /* ---- overhead of timing ---- */
@@ -495,7 +475,7 @@ RT_TEST(of_the_time_that_timing_takes_ninety_eight_percent_are_rounds) {
     double seconds[2][ROUNDS], wall[2][ROUNDS], best = 0;
     const RtTiming timing = {.rounds = {.rounds = ROUNDS, .most = ROUNDS, .least = 2e-3, .seed = 1},
                              .threads = 1};
-    Stage stage;
+    OWNED(close_stage) Stage stage;
     open_stage(&stage, "balls:size=3", 8, 20000, "brute", "extents");
     for (int attempt = 0; attempt < 5 && best < 0.98; attempt++) {
         const RtRaySet *set = &stage.sets[RT_RAY_RANDOM];
@@ -509,7 +489,6 @@ RT_TEST(of_the_time_that_timing_takes_ninety_eight_percent_are_rounds) {
         if (rounds / all > best) best = rounds / all;
     }
     if (best < 0.98) fail_msg("rounds are %.2f %% of the time", 100 * best);
-    close_stage(&stage);
 }
 
 static RtStatus spin_a_millisecond(void *context, RtError *error) {
@@ -596,7 +575,7 @@ RT_TEST(each_round_but_the_first_times_structures_that_were_renewed_before_it) {
     double seconds[2][ROUNDS] = {{0}}, wall[2][ROUNDS];
     bool broken[2] = {false, false};
     uint32_t done;
-    Stage stage;
+    OWNED(close_stage) Stage stage;
     open_stage(&stage, "balls:size=3", 8, 2000, "brute", "bvh");
     Renewals renewals = {{stage.accels[0], stage.accels[1]}, 0};
     const RtTiming timing = {.rounds = {.rounds = ROUNDS, .most = ROUNDS, .seed = 1, .context = &renewals},
@@ -615,7 +594,6 @@ RT_TEST(each_round_but_the_first_times_structures_that_were_renewed_before_it) {
     assert_true(seconds[1][2] > 0 && seconds[1][3] == 0);
     for (int r = 0; r + 1 < ROUNDS; r++) /* brute takes many times as long as bvh */
         assert_true(r % 2 == 0 ? seconds[0][r] > seconds[0][r + 1] : seconds[0][r] < seconds[0][r + 1]);
-    close_stage(&stage);
 }
 
 /* ---- until the intervals are narrow ---- */
@@ -668,25 +646,21 @@ int __wrap_clock_gettime(clockid_t clock, struct timespec *now) {
 /* Times bvh until its null run is as narrow as `until`, and returns the rounds; `says` gets the notice. */
 static uint32_t rounds_until(double until, double patience, char says[256]) {
     RtWorkloadOptions options = {.threads = 1, .timing = 1, .until = until, .patience = patience};
-    RtResults results;
-    RtExperiment *e =
-        experiment_of("until", (Candidates){{{.label = "bvh", .spec = "bvh", .ray_stride = 1}}});
+    OWNED_MEMORY RtExperiment *e = experiment_of("bvh", NULL);
+    OWNED_RESULTS results;
     says[0] = '\0';
     options.observer = (RtRunObserver){says, NULL, note};
     e->rounds = 6;
     add_scene(e, "random:n=300", 16);
     assert_ok(rt_results_init(&results, e, error));
     wall_ticks = true;
-    RtStatus status = rt_workloads_run(&results, &options, NULL);
+    assert_ok(rt_workloads_run(&results, &options, error));
     wall_ticks = false;
-    assert_int_equal(status, RT_OK);
     const RtCell *null = rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
     uint32_t rounds = null->rounds;
     assert_true((rt_estimate_width(&null->ratio) <= until) == (says[0] == '\0'));
     assert_non_null(null->round_times);
     assert_int_equal(null->structures, rounds); /* each round timed another build */
-    rt_results_clear(&results);
-    rt_free(e);
     return rounds;
 }
 

@@ -11,12 +11,8 @@ RT_TEST(the_median_is_the_middle_one_or_the_mean_of_the_middle_two) {
     assert_true(rt_median(odd, 3) == 5);
     assert_true(rt_median(even, 4) == 3);
     assert_true(rt_median(one, 1) == 7);
-    assert_true(odd[0] == 9); /* and its input stays as it was */
-}
-
-RT_TEST(equal_measurements_have_an_interval_of_no_width) {
-    const double same[] = {3, 3, 3, 3, 3};
-    RtEstimate e = rt_estimate(same, 5);
+    assert_true(odd[0] == 9);                                             /* and its input stays as it was */
+    const RtEstimate e = rt_estimate((const double[]){3, 3, 3, 3, 3}, 5); /* an interval of no width */
     assert_true(e.median == 3 && e.low == 3 && e.high == 3 && e.least == 3);
 }
 
@@ -117,7 +113,6 @@ RT_TEST(an_interval_of_few_measurements_covers_what_is_asked_for) {
     assert_true(usual.low == 1 && usual.high == 7 && usual.median == 4);
 }
 
-/* Both slow down together from round to round; only pairing shows that one is always twice the other. */
 RT_TEST(the_chance_of_so_many_events_or_more_is_the_binomial_tail) {
     assert_true(rt_binomial_tail(0, 9, 0.3) == 1);
     assert_true(rt_binomial_tail(3, 9, 1) == 1);
@@ -127,6 +122,7 @@ RT_TEST(the_chance_of_so_many_events_or_more_is_the_binomial_tail) {
     assert_true(fabs(rt_binomial_tail(3, 3, 0.1) - 1e-3) < 1e-15);
 }
 
+/* Both slow down together from round to round; only pairing shows that one is always twice the other. */
 RT_TEST(ratios_are_paired_within_a_round) {
     double over[20], under[20];
     for (int i = 0; i < 20; i++) {

@@ -72,34 +72,23 @@ RT_TEST(more_slabs_are_never_looser) {
     for (int c = 0; c < CHOICES; c++) assert_int_equal(found[c].object_hits, found[BOX].object_hits);
 }
 
-RT_TEST(extents_about_a_square_on_its_corner_are_as_calculated) {
-    RtGeometry g = {0};
+RT_TEST(extents_about_squares_and_a_triangle_are_as_calculated) {
+    RtGeometry on_its_corner = {0}, along_the_axes = {0}, right = {0};
     RtTightness found[CHOICES];
-    add_square(&g, 3, 0.5f);
-    count(&g, RT_SHAPE_POLYGON, found);
+    const RtVec3 square[4] = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}},
+                 triangle[3] = {{0, 0, 1}, {3, 0, 1}, {0, 3, 1}};
+    add_square(&on_its_corner, 3, 0.5f);
+    count(&on_its_corner, RT_SHAPE_POLYGON, found);
     assert_ratio(&found[BOX], 2);
     assert_ratio(&found[SPHERE], PI);
     assert_tight(&found[OBB]);
     assert_tight(&found[SLABS_13]); /* its edges run along two of the plane sets */
-}
-
-/* The sphere sticks out of the box on four sides. */
-RT_TEST(a_sphere_about_a_square_along_the_axes_has_pi_times_its_area) {
-    RtGeometry g = {0};
-    RtTightness found[CHOICES];
-    const RtVec3 v[4] = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-    assert_ok(rt_geometry_add_polygon(&g, v, 4, error));
-    count(&g, RT_SHAPE_POLYGON, found);
-    assert_ratio(&found[SPHERE], PI);
+    assert_ok(rt_geometry_add_polygon(&along_the_axes, square, 4, error));
+    count(&along_the_axes, RT_SHAPE_POLYGON, found);
+    assert_ratio(&found[SPHERE], PI); /* it sticks out of the box on four sides */
     assert_tight(&found[BOX]);
-}
-
-RT_TEST(extents_about_a_right_triangle_are_as_calculated) {
-    RtGeometry g = {0};
-    RtTightness found[CHOICES];
-    const RtVec3 v[3] = {{0, 0, 1}, {3, 0, 1}, {0, 3, 1}};
-    assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
-    count(&g, RT_SHAPE_TRIANGLE, found);
+    assert_ok(rt_geometry_add_triangle(&right, triangle, NULL, error));
+    count(&right, RT_SHAPE_TRIANGLE, found);
     assert_ratio(&found[BOX], 2);
     assert_ratio(&found[OBB], 2);
     assert_ratio(&found[SPHERE], 2 * PI);

@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Heatmaps: colours of costs, one scale for all panels, legends. */
 #define PICTURE_FILE RT_BINARY_DIR "/test_heatmap_picture.png"
-#include "testing.h"
 
 #include "picture/heatmap.h"
 #include "picture/picture_testing.h"
-
-#include <math.h>
-#include <string.h>
 
 RT_TEST(a_heatmap_is_dark_where_nothing_was_spent_and_yellow_at_the_most) {
     enum { W = 240, H = 20 };
@@ -42,9 +38,8 @@ RT_TEST(a_heatmap_of_nothing_or_of_one_pixel_has_its_legend) {
     for (uint64_t steps = 0; steps < 3; steps++) {
         cost.steps = steps == 2 ? UINT64_MAX : steps;
         assert_ok(rt_heatmap_draw(PICTURE_FILE, &panel, 1, &options, error));
-        RtImage image = read_picture();
+        OWNED_IMAGE image = read_picture();
         assert_true(image.width > 100);
-        rt_image_clear(&image);
     }
 }
 

@@ -5,24 +5,18 @@
 
 #include "picture/path_picture.h"
 #include "picture/picture_testing.h"
-#include "scenes/open.h"
 #include "verify/spread.h"
-
-#include <stdio.h>
-#include <string.h>
-#include <unistd.h>
 
 /* Looks on as a ray is traced by the counted kernels, which is what a path is made of, and compares with the
  * tally that the same ray has where nobody looks on. */
 static void assert_adds_up(RtAccel *accel, const char *spec, const RtRay *ray) {
-    RtQuery query;
     RtTally counted[RT_RAY_KIND_COUNT] = {0};
     OWNED(rt_path_clear) RtPath path;
     RtHit hit;
     bool occluded;
     RtError problem;
     if (rt_path_trace(&path, accel, ray, &problem) != RT_OK) fail_msg("%s: %s", spec, problem.message);
-    assert_ok(rt_query_init(&query, accel, error));
+    OWNED_QUERY query = open_query(accel);
     rt_query_begin(&query);
     if (path.any)
         rt_occluded(&query, &path.ray, 1, &occluded, counted);
@@ -34,7 +28,6 @@ static void assert_adds_up(RtAccel *accel, const char *spec, const RtRay *ray) {
         assert_int_equal(occluded, path.hit.object != RT_NO_OBJECT);
     else
         assert_memory_equal(&hit, &path.hit, sizeof hit);
-    rt_query_clear(&query);
 }
 
 static const RtRayKind kinds[] = {RT_RAY_PRIMARY, RT_RAY_SHADOW, RT_RAY_REFLECTION, RT_RAY_TRANSMISSION};
@@ -59,8 +52,7 @@ RT_TEST(what_happens_to_a_ray_adds_up_to_its_tally_for_every_accelerator_at_ever
                                          RT_SOURCE_DIR "/scenes/lecture.yaml"};
     uint32_t compared[RT_RAY_KIND_COUNT] = {0};
     for (size_t s = 0; s < sizeof scenes / sizeof scenes[0]; s++) {
-        RtScene scene;
-        assert_ok(rt_scene_open(scenes[s], &scene, error));
+        OWNED_SCENE scene = open_scene(scenes[s]);
         assert_ok(rt_scene_sample(&scene, 32, 32, 1, false, error));
         for (size_t i = 0; i < rt_accel_count(); i++) {
             char spec[RT_MAX_SPEC_CHARS];
@@ -69,33 +61,28 @@ RT_TEST(what_happens_to_a_ray_adds_up_to_its_tally_for_every_accelerator_at_ever
                 if (accel) assert_paths_add_up(accel, spec, compared);
             }
         }
-        rt_scene_clear(&scene);
     }
     for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
         if (compared[kinds[k]] == 0) fail_msg("no %s ray was compared", rt_ray_kind_name(kinds[k]));
     }
 }
 
-/* Three unit cubes' worth of spheres in a row, seen from the left, at a height `up` above their centres. */
-static RtPath path_along_the_row(const char *spec, float up, RtScene *scene, RtAccel **accel) {
+/* `path` along three unit cubes' worth of spheres in a row, seen from the left, at a height `up` above their
+ * centres. */
+#define PATH_ALONG_THE_ROW(spec, up)                                                                         \
+    OWNED_SCENE scene = make_lattice(3, 1, 1);                                                               \
+    OWNED_ACCEL RtAccel *accel = open_accel(&scene, spec);                                                   \
+    OWNED(rt_path_clear) RtPath path = path_at(accel, up)
+
+static RtPath path_at(RtAccel *accel, float up) {
     RtPath path;
     RtRay ray = {.org = {{-3, up, up}}, .dir = {{1, 0, 0}}, .tmax = INFINITY};
-    *scene = make_lattice(3, 1, 1);
-    assert_ok(rt_accel_open(spec, scene, accel, error));
-    assert_ok(rt_path_trace(&path, *accel, &ray, error));
+    assert_ok(rt_path_trace(&path, accel, &ray, error));
     return path;
 }
 
-static void forget(RtPath *path, RtScene *scene, RtAccel *accel) {
-    rt_path_clear(path);
-    rt_accel_destroy(accel);
-    rt_scene_clear(scene);
-}
-
 RT_TEST(a_path_says_where_the_ray_is_in_boxes_and_what_is_nearest_so_far) {
-    RtScene scene;
-    RtAccel *accel;
-    RtPath path = path_along_the_row("extents", 0, &scene, &accel);
+    PATH_ALONG_THE_ROW("extents", 0);
     /* Of each object a step, an extent test, and of the first an object test; the others lie behind its hit.
      */
     assert_int_equal(path.count, 7);
@@ -109,14 +96,11 @@ RT_TEST(a_path_says_where_the_ray_is_in_boxes_and_what_is_nearest_so_far) {
     assert_false(path.rows[4].met);
     assert_true(path.rows[4].enter == 3.5 && path.rows[4].leave == 4.5);
     assert_int_equal(path.hit.object, 0);
-    forget(&path, &scene, accel);
 }
 
 RT_TEST(voxels_are_met_in_order_each_where_the_one_before_is_left) {
-    RtScene scene;
-    RtAccel *accel;
     /* Past the spheres, in the corners of their boxes: nothing is hit, and the walk goes through. */
-    RtPath path = path_along_the_row("grid:resolution=6x1x1", 0.45f, &scene, &accel);
+    PATH_ALONG_THE_ROW("grid:resolution=6x1x1", 0.45f);
     double left = -INFINITY;
     uint32_t voxels = 0;
     for (uint32_t i = 0; i < path.count; i++) {
@@ -129,15 +113,11 @@ RT_TEST(voxels_are_met_in_order_each_where_the_one_before_is_left) {
     }
     assert_int_equal(path.hit.object, RT_NO_OBJECT);
     assert_int_equal(voxels, 6);
-    forget(&path, &scene, accel);
 }
 
 RT_TEST(nobody_looks_on_after_a_path) {
-    RtScene scene;
-    RtAccel *accel;
-    RtPath path = path_along_the_row("bvh", 0, &scene, &accel);
+    PATH_ALONG_THE_ROW("bvh", 0);
     assert_null(rt_trace_observer);
-    forget(&path, &scene, accel);
 }
 
 /* ---- the drawing ---- */
@@ -189,12 +169,11 @@ RT_TEST(an_axis_has_few_ticks_also_where_the_rows_are_far_away_and_of_no_length)
         RtPath path = {
             .ray = {.dir = {{1, 0, 0}}, .tmax = INFINITY}, .hit = RT_MISS, .rows = &row, .count = 1};
         assert_ok(rt_path_draw(&path, &scene, "title \xff", "spec", PICTURE_FILE, error));
-        RtImage image = read_picture();
+        OWNED_IMAGE image = read_picture();
         uint32_t ticks = 0;
         for (int x = 0; x < (int)image.width; x++)
             ticks += pixel(&image, x, 558)[0] == 221; /* above the row */
         assert_true(ticks >= 3 && ticks <= 20);
-        rt_image_clear(&image);
     }
 }
 
@@ -224,25 +203,21 @@ RT_TEST(a_path_is_drawn_large_where_objects_are_tested) {
 static uint32_t count_pale(const RtPath *path, const RtScene *scene) {
     uint32_t count = 0;
     assert_ok(rt_path_draw(path, scene, "title", "spec", PICTURE_FILE, error));
-    RtImage image = read_picture();
+    OWNED_IMAGE image = read_picture();
     for (int i = 0; i < 730 * 450; i++) {
         const uint8_t *rgb = pixel(&image, 250 + i % 730, 64 + i / 730);
         count += rgb[0] == rgb[1] && rgb[1] == rgb[2] && rgb[0] > 160 && rgb[0] < 254;
     }
-    rt_image_clear(&image);
     return count;
 }
 
 RT_TEST(objects_that_are_not_tested_and_leaves_that_are_not_visited_are_drawn_pale) {
-    RtScene scene, alone = make_lattice(1, 1, 1);
-    RtAccel *accel;
-    RtPath path = path_along_the_row("bvh:max_leaf_size=1", 0.3f, &scene, &accel);
+    OWNED_SCENE alone = make_lattice(1, 1, 1);
+    PATH_ALONG_THE_ROW("bvh:max_leaf_size=1", 0.3f);
     uint32_t all = count_pale(&path, &scene), first = count_pale(&path, &alone);
     assert_true(all > first + 100); /* the other spheres */
     path.accel = NULL;
     assert_true(count_pale(&path, &scene) + 30 < all); /* their leaves */
-    rt_scene_clear(&alone);
-    forget(&path, &scene, accel);
 }
 
 /* Each format begins with what names it, and is the same again when drawn again. */
@@ -252,11 +227,9 @@ RT_TEST(a_picture_is_png_svg_or_pdf_by_its_name_and_the_same_every_time) {
     } formats[] = {{RT_BINARY_DIR "/test_path.png", "\x89PNG"},
                    {RT_BINARY_DIR "/test_path.svg", "<?xml"},
                    {RT_BINARY_DIR "/test_path.pdf", "%PDF"}};
-    RtScene scene;
-    RtAccel *accel;
-    RtPath path = path_along_the_row("bvh", 0, &scene, &accel);
+    PATH_ALONG_THE_ROW("bvh", 0);
     for (size_t i = 0; i < 3; i++) {
-        char *first, *second;
+        OWNED_MEMORY char *first, *second;
         size_t size, again;
         assert_ok(rt_path_draw(&path, &scene, "title", "spec", formats[i].file, error));
         assert_ok(rt_file_read(formats[i].file, 1000000, &first, &size, error));
@@ -266,10 +239,7 @@ RT_TEST(a_picture_is_png_svg_or_pdf_by_its_name_and_the_same_every_time) {
         assert_memory_equal(first, formats[i].begins, strlen(formats[i].begins));
         assert_int_equal(size, again);
         if (i != 1) assert_memory_equal(first, second, size); /* cairo numbers surfaces of a process in SVG */
-        rt_free(first);
-        rt_free(second);
     }
-    forget(&path, &scene, accel);
 }
 
 RT_TESTS(path, NULL, assert_nothing_is_kept)

@@ -67,13 +67,11 @@ static RtImage draw_lecture(uint32_t column, uint32_t row, uint32_t depth) {
 
 /* Each colour has a key; rays of a kind add to it. */
 RT_TEST(each_kind_of_ray_has_its_color) {
-    RtImage one = draw_lecture(42, 42, 1), three = draw_lecture(42, 42, 3); /* the glass ball */
+    OWNED_IMAGE one = draw_lecture(42, 42, 1), three = draw_lecture(42, 42, 3); /* the glass ball */
     assert_true(count_color(&three, reflection) > count_color(&one, reflection) + 100);
     assert_true(count_color(&three, transmission) > count_color(&one, transmission) + 100);
     assert_true(count_color(&one, lit) > 50);
     assert_true(count_color(&three, blocked) > count_color(&one, blocked));
-    rt_image_clear(&one);
-    rt_image_clear(&three);
 }
 
 RT_TEST(a_ray_that_hits_nothing_is_drawn_past_the_scene) {

@@ -3,42 +3,39 @@
 #define PICTURE_FILE RT_BINARY_DIR "/test_structure_picture.png"
 #include "render/render_testing.h"
 
-#include "core/base/memory.h"
 #include "picture/buffers.h"
 #include "picture/extent_outline.h"
 #include "picture/picture_testing.h"
 #include "picture/structure.h"
 #include "scenes/open.h"
 
-#include <string.h>
-
 enum { SIDE = 200 };
 
 /* A sphere of radius 1 at the origin, and small ones far apart in a plane; a camera at z = 10. */
-static void open_scene(RtScene *scene) {
-    *scene = start_scene(rt_default_material());
-    scene->camera.fov = 45;
-    assert_ok(rt_scene_add_sphere(scene, 0, rt_vec3(0, 0, 0), 1, error));
+static RtScene five_balls(void) {
+    RtScene scene = start_scene(rt_default_material());
+    scene.camera.fov = 45;
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
     for (int i = 0; i < 4; i++) {
         RtVec3 center = {{i % 2 ? 2.5f : -2.5f, i / 2 ? 2.5f : -2.5f, 0.5f}};
-        assert_ok(rt_scene_add_sphere(scene, 0, center, 0.5f, error));
+        assert_ok(rt_scene_add_sphere(&scene, 0, center, 0.5f, error));
     }
-    assert_ok(rt_scene_finish(scene, error));
-    assert_ok(rt_scene_sample(scene, SIDE, SIDE, 1, false, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    assert_ok(rt_scene_sample(&scene, SIDE, SIDE, 1, false, error));
+    return scene;
+    return scene;
 }
 
 /* The picture of a structure over a frame of it. */
 static RtStatus draw(const RtScene *scene, const char *spec, RtStructureOptions options, RtImage *image,
                      RtError *error) {
-    RtAccel *accel;
-    RtFrame frame;
+    OWNED_ACCEL RtAccel *accel;
+    OWNED_FRAME frame;
     RtFrameOptions how = {.depth = 1, .threads = 1};
     RT_TRY(rt_accel_open(spec, scene, &accel, error));
     RtStatus status = rt_frame_trace(&frame, accel, &how, error);
     if (status == RT_OK) status = rt_structure_draw(PICTURE_FILE, accel, &frame, &options, error);
     if (status == RT_OK) *image = read_picture();
-    rt_frame_clear(&frame);
-    rt_accel_destroy(accel);
     return status;
 }
 
@@ -59,9 +56,8 @@ static int count_ink(const RtImage *image) {
 }
 
 RT_TEST(the_root_box_is_drawn_where_the_camera_sees_it) {
-    OWNED_SCENE scene;
     OWNED_IMAGE image = {0};
-    open_scene(&scene);
+    OWNED_SCENE scene = five_balls();
     assert_ok(draw(&scene, "bvh:max_leaf_size=64", RT_ALL_LEVELS, &image, error));
     /* The near face of the box is x, y in -3..3 at z = 1, 9 in front of the eye. */
     double reach = 3 / 9.0 / tan(45 * 3.14159265358979 / 360) * 100;
@@ -75,9 +71,8 @@ RT_TEST(the_root_box_is_drawn_where_the_camera_sees_it) {
 }
 
 RT_TEST(boxes_behind_what_is_seen_are_faint) {
-    OWNED_SCENE scene;
     OWNED_IMAGE image = {0};
-    open_scene(&scene);
+    OWNED_SCENE scene = five_balls();
     /* The box of the sphere in the middle: its far face, at z = -1, is behind the sphere. */
     assert_ok(draw(&scene, "extents", RT_ALL_LEVELS, &image, error));
     double scale = 100 / tan(45 * 3.14159265358979 / 360);
@@ -122,14 +117,11 @@ static void check_ball(void *context, const RtBoxView *view) {
 }
 
 RT_TEST(spheres_are_outlined_by_circles_and_cut_in_circles) {
-    OWNED_SCENE scene;
-    RtAccel *accel;
     int count = 0;
-    open_scene(&scene);
-    assert_ok(rt_accel_open("clusters:extent=sphere", &scene, &accel, error));
+    OWNED_SCENE scene = five_balls();
+    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "clusters:extent=sphere");
     accel->ops->each_box(accel, (RtBoxViewer){check_ball, &count});
     assert_int_equal(count, 9);
-    rt_accel_destroy(accel);
 }
 
 static void count_line(void *context, RtVec3d from, RtVec3d to) {
@@ -157,22 +149,18 @@ static void check_polytope(void *context, const RtBoxView *view) {
 
 RT_TEST(three_slabs_and_oriented_boxes_of_spheres_have_the_edges_of_boxes) {
     static const char *const specs[] = {"extents:kind=slabs,slabs=3", "extents:kind=obb"};
-    OWNED_SCENE scene;
-    open_scene(&scene);
+    OWNED_SCENE scene = five_balls();
     for (int i = 0; i < 2; i++) {
-        RtAccel *accel;
+        OWNED_ACCEL RtAccel *accel = open_accel(&scene, specs[i]);
         int count = 0;
-        assert_ok(rt_accel_open(specs[i], &scene, &accel, error));
         accel->ops->each_box(accel, (RtBoxViewer){check_polytope, &count});
         assert_int_equal(count, 5);
-        rt_accel_destroy(accel);
     }
 }
 
 RT_TEST(levels_and_leaves_leave_the_other_boxes_out) {
-    OWNED_SCENE scene;
-    RtImage all = {0}, root = {0}, leaves = {0};
-    open_scene(&scene);
+    OWNED_IMAGE all = {0}, root = {0}, leaves = {0};
+    OWNED_SCENE scene = five_balls();
     RtStructureOptions options = RT_ALL_LEVELS;
     assert_ok(draw(&scene, "bvh:max_leaf_size=1", options, &all, error));
     options.leaves = true;
@@ -185,18 +173,13 @@ RT_TEST(levels_and_leaves_leave_the_other_boxes_out) {
     int left = (int)floor(100 - reach); /* a place of the root's box alone */
     assert_true(ink_at(&root, left, 100) > 150);
     assert_true(ink_at(&leaves, left, 100) < 60);
-    rt_image_clear(&all);
-    rt_image_clear(&root);
-    rt_image_clear(&leaves);
     options.first_level = options.last_level = 60;
     assert_bad_input(draw(&scene, "bvh", options, &all, error), "levels");
 }
 
 RT_TEST(a_section_shows_the_boxes_and_outlines_of_what_the_plane_cuts) {
-    OWNED_SCENE scene;
-    RtImage image = {0};
-    RtError refusal;
-    open_scene(&scene);
+    OWNED_IMAGE image = {0};
+    OWNED_SCENE scene = five_balls();
     RtStructureOptions options = {.last_level = UINT32_MAX, .slice = true, .axis = 2, .at = -0.5};
     assert_ok(draw(&scene, "extents", options, &image, error));
     /* The scene is 6 wide, in 96 % of the image. Only the middle sphere reaches z = -0.5, in x from -1 to 1.
@@ -204,15 +187,13 @@ RT_TEST(a_section_shows_the_boxes_and_outlines_of_what_the_plane_cuts) {
     double scale = 0.96 * SIDE / 6;
     assert_true(ink_at(&image, (int)(100 - scale), 100) > 150);
     assert_int_equal(pixel(&image, (int)(100 - 3 * scale) + 1, 20)[0], 255);
-    rt_image_clear(&image);
     options.at = 5;
-    assert_int_equal(draw(&scene, "extents", options, &image, &refusal), RT_BAD_INPUT);
+    assert_bad_input(draw(&scene, "extents", options, &image, error), "");
 }
 
 RT_TEST(a_structure_is_drawn_on_white_over_a_pale_image) {
-    OWNED_SCENE scene;
     OWNED_IMAGE image = {0};
-    open_scene(&scene);
+    OWNED_SCENE scene = five_balls();
     assert_ok(draw(&scene, "bvh:max_leaf_size=64", RT_ALL_LEVELS, &image, error));
     assert_memory_equal(pixel(&image, 2, 2), RT_WHITE.rgb, 3);
     for (int c = 0; c < 3; c++) { /* the sphere in the middle */
@@ -229,9 +210,8 @@ static int ink_across(const RtImage *image, int x, int y) {
 }
 
 RT_TEST(deep_levels_have_lighter_and_thinner_lines_than_the_first) {
-    OWNED_SCENE scene;
     OWNED_IMAGE image = {0};
-    open_scene(&scene);
+    OWNED_SCENE scene = five_balls();
     RtStructureOptions options = {.last_level = UINT32_MAX, .slice = true, .axis = 2, .at = 0.5};
     assert_ok(draw(&scene, "bvh:max_leaf_size=1", options, &image, error));
     double scale = 0.96 * SIDE / 6;
@@ -242,10 +222,9 @@ RT_TEST(deep_levels_have_lighter_and_thinner_lines_than_the_first) {
 }
 
 RT_TEST(a_section_outlines_csg_trees) {
-    OWNED_SCENE scene;
     OWNED_IMAGE image = {0};
     uint32_t drawn = 0;
-    assert_ok(rt_scene_open("csg-field", &scene, error));
+    OWNED_SCENE scene = open_scene("csg-field");
     assert_ok(rt_scene_sample(&scene, SIDE, SIDE, 1, false, error));
     RtStructureOptions options = {.slice = true, .axis = 2}; /* no boxes inside that of the root */
     options.at = (double)rt_box_center(scene.geometry.box).z;
@@ -278,60 +257,49 @@ RT_TEST(a_wall_that_is_far_larger_than_a_section_is_outlined_where_it_is) {
 }
 
 RT_TEST(the_topmost_layer_that_can_be_drawn_is_and_any_can_be_named) {
-    OWNED_SCENE scene;
-    RtAccel *accel;
     const RtAccel *layer = NULL;
-    RtError refusal;
     RtSpec spec;
-    open_scene(&scene);
-    assert_ok(rt_accel_open("cache+item+bvh", &scene, &accel, error));
+    OWNED_SCENE scene = five_balls();
+    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "cache+item+bvh");
     assert_ok(rt_structure_layer(accel, NULL, &layer, error));
     assert_string_equal(layer->ops->name, "item");
     assert_ok(rt_structure_layer(accel, "bvh", &layer, error));
     assert_string_equal(layer->ops->name, "bvh");
-    assert_int_equal(rt_structure_layer(accel, "cache", &layer, &refusal), RT_NOT_AVAILABLE);
-    assert_int_equal(rt_structure_layer(accel, "grid", &layer, &refusal), RT_BAD_INPUT);
+    assert_fails_with(rt_structure_layer(accel, "cache", &layer, error), RT_NOT_AVAILABLE, "");
+    assert_bad_input(rt_structure_layer(accel, "grid", &layer, error), "");
     assert_ok(rt_spec_parse("brute", &spec, error));
-    assert_int_equal(rt_structure_available(&spec, NULL, &refusal), RT_NOT_AVAILABLE);
+    assert_fails_with(rt_structure_available(&spec, NULL, error), RT_NOT_AVAILABLE, "");
     assert_ok(rt_spec_parse("item+brute", &spec, error));
     assert_ok(rt_structure_available(&spec, NULL, error));
-    rt_accel_destroy(accel);
+}
+
+static RtImage draw_buffer(const RtScene *scene, const char *spec, const RtRay *ray) {
+    OWNED_ACCEL RtAccel *accel = open_accel(scene, spec);
+    assert_ok(rt_buffer_draw(PICTURE_FILE, accel, 0, ray, error));
+    return read_picture();
 }
 
 RT_TEST(the_item_buffer_has_a_color_for_each_object_white_for_none_and_magenta_for_undecided) {
-    OWNED_SCENE scene;
-    RtAccel *accel;
-    RtImage image = {0};
-    open_scene(&scene);
-    assert_ok(rt_accel_open("item+bvh", &scene, &accel, error));
-    assert_ok(rt_buffer_draw(PICTURE_FILE, accel, 0, NULL, error));
-    image = read_picture();
+    const RtColor undecided = {{255, 0, 200}};
+    OWNED_SCENE scene = five_balls();
+    OWNED_IMAGE settled = draw_buffer(&scene, "item+bvh", NULL);
+    OWNED_IMAGE open = draw_buffer(&scene, "item:settle=off+bvh", NULL);
     RtColor middle = rt_color_of_id(0);
-    assert_memory_equal(pixel(&image, 100, 100), middle.rgb, 3);
-    assert_memory_equal(pixel(&image, 2, 2), RT_WHITE.rgb, 3);
-    assert_true(count_color(&image, (RtColor){{255, 0, 200}}) < 100); /* the legend: all are settled */
-    rt_image_clear(&image);
-    rt_accel_destroy(accel);
-    assert_ok(rt_accel_open("item:settle=off+bvh", &scene, &accel, error));
-    assert_ok(rt_buffer_draw(PICTURE_FILE, accel, 0, NULL, error));
-    image = read_picture();
-    assert_true(count_color(&image, (RtColor){{255, 0, 200}}) > 200);
-    rt_image_clear(&image);
-    rt_accel_destroy(accel);
+    assert_memory_equal(pixel(&settled, 100, 100), middle.rgb, 3);
+    assert_memory_equal(pixel(&settled, 2, 2), RT_WHITE.rgb, 3);
+    assert_true(count_color(&settled, undecided) < 100); /* the legend */
+    assert_true(count_color(&open, undecided) > 200);
 }
 
 /* A picture looks up the cells that the kernel reads: a ray's steps are entries of that cell. */
 RT_TEST(a_shadow_ray_reads_the_cell_that_is_marked) {
-    OWNED_SCENE scene;
-    RtAccel *accel;
-    RtQuery query;
-    open_scene(&scene);
-    assert_ok(rt_accel_open("light:cells=16,extents=off,full_occlusion=off+bvh", &scene, &accel, error));
-    assert_ok(rt_query_init(&query, accel, error));
+    OWNED_SCENE scene = five_balls();
+    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "light:cells=16,extents=off,full_occlusion=off+bvh");
+    OWNED_QUERY query = open_query(accel);
     RtVec3 light = scene.lights[0].position;
     uint32_t listed = 0;
-    for (int i = 0; i < 400;
-         i++) { /* from the far side of the scene to the light: no entry is deeper than the ray */
+    for (int i = 0; i < 400; i++) {
+        /* From the far side of the scene to the light: no entry is deeper than the ray. */
         int column = i % 20, row = i / 20;
         RtRay ray = {.org = rt_vec3(-3 + 6 * (float)column / 19, -3 + 6 * (float)row / 19, -1),
                      .tmax = 1,
@@ -348,32 +316,22 @@ RT_TEST(a_shadow_ray_reads_the_cell_that_is_marked) {
         listed += there && cell.length > 0;
     }
     assert_true(listed > 20);
-    rt_query_clear(&query);
-    rt_accel_destroy(accel);
 }
 
 RT_TEST(the_cells_around_a_light_are_drawn_and_a_light_without_cells_is_refused) {
-    OWNED_SCENE scene;
-    RtAccel *accel;
-    RtImage image = {0};
-    RtError refusal;
-    open_scene(&scene);
-    assert_ok(rt_accel_open("light:cells=16+bvh", &scene, &accel, error));
+    OWNED_SCENE scene = five_balls();
+    OWNED_ACCEL RtAccel *cells = open_accel(&scene, "light:cells=16+bvh");
+    OWNED_ACCEL RtAccel *none = open_accel(&scene, "light+bvh");
     RtRay ray = {.org = rt_vec3(0, 0, -1), .tmax = 1, .kind = RT_RAY_SHADOW};
     ray.dir = rt_sub(scene.lights[0].position, ray.org);
-    assert_ok(rt_buffer_draw(PICTURE_FILE, accel, 0, &ray, error));
-    image = read_picture();
+    OWNED_IMAGE image = draw_buffer(&scene, "light:cells=16+bvh", &ray);
     assert_true(image.width > 900 && image.height > 700);
     const uint8_t *hidden = pixel(&image, 4 * 240 - 10, 10); /* beside the cross */
     assert_memory_equal(hidden, RT_WHITE.rgb, 3);
     /* Lists without an object have the scale's colour of 0. */
     assert_true(count_color(&image, rt_color_scale(0)) > 1000);
-    rt_image_clear(&image);
-    assert_int_equal(rt_buffer_draw(PICTURE_FILE, accel, 7, NULL, &refusal), RT_BAD_INPUT);
-    rt_accel_destroy(accel);
-    assert_ok(rt_accel_open("light+bvh", &scene, &accel, error));
-    assert_int_equal(rt_buffer_draw(PICTURE_FILE, accel, 0, NULL, &refusal), RT_NOT_AVAILABLE);
-    rt_accel_destroy(accel);
+    assert_bad_input(rt_buffer_draw(PICTURE_FILE, cells, 7, NULL, error), "");
+    assert_fails_with(rt_buffer_draw(PICTURE_FILE, none, 0, NULL, error), RT_NOT_AVAILABLE, "");
 }
 
 RT_TESTS(structure, NULL, assert_nothing_is_kept)

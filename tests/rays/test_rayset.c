@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Ray sets: the same on any number of threads, every ray valid, of its kind and where it should be. */
-#include "testing.h"
+#include "accel_testing.h"
 
-#include "core/base/memory.h"
 #include "measure/ray_file.h"
 #include "rays/rayset.h"
 
 #include <malloc.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 /* A mirror floor with a glass ball and a matte ball over it, and two lights. */
 static void make_scene(RtScene *scene) {
@@ -42,10 +38,14 @@ typedef struct Stage {
     RtRaySet sets[RT_RAY_KIND_COUNT];
 } Stage;
 
+static void clear_sets(RtRaySet *sets) {
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_clear(&sets[kind]);
+}
+
 static int set_up(void **state) {
     static Stage stage;
     make_scene(&stage.scene);
-    assert_ok(rt_accel_open("bvh", &stage.scene, &stage.accel, error));
+    stage.accel = open_accel(&stage.scene, "bvh");
     RtRecording recording = make_recording(1);
     assert_ok(rt_rayset_record(stage.sets, stage.accel, &recording, error));
     *state = &stage;
@@ -54,7 +54,7 @@ static int set_up(void **state) {
 
 static int tear_down(void **state) {
     Stage *stage = *state;
-    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_clear(&stage->sets[kind]);
+    clear_sets(stage->sets);
     rt_accel_destroy(stage->accel);
     rt_scene_clear(&stage->scene);
     return rt_alloc_live() == 0 ? 0 : -1;
@@ -68,10 +68,6 @@ static void record_again(const Stage *stage, const RtAccel *accel, RtRecording r
         bool same = sets[kind].fingerprint == stage->sets[kind].fingerprint;
         assert_true(same == !(changed >> kind & 1));
     }
-}
-
-static void clear_sets(RtRaySet *sets) {
-    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_clear(&sets[kind]);
 }
 
 RT_TEST(every_ray_is_valid_and_of_its_kind) {
@@ -114,9 +110,8 @@ RT_TEST(light_from_outside_is_asked_for_outside_of_glass_alone) {
 RT_TEST(sets_are_the_same_on_any_number_of_threads_and_any_accelerator) {
     const Stage *stage = *state;
     for (int threads = 2; threads <= 3; threads++) {
-        RtAccel *other;
+        OWNED_ACCEL RtAccel *other = open_accel(&stage->scene, threads == 2 ? "brute" : "grid");
         RtRaySet sets[RT_RAY_KIND_COUNT];
-        assert_ok(rt_accel_open(threads == 2 ? "brute" : "grid", &stage->scene, &other, error));
         record_again(stage, other, make_recording(threads), 0, sets);
         for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
             const RtRaySet *expected = &stage->sets[kind];
@@ -124,7 +119,6 @@ RT_TEST(sets_are_the_same_on_any_number_of_threads_and_any_accelerator) {
             assert_memory_equal(sets[kind].rays, expected->rays, expected->count * sizeof(RtRay));
         }
         clear_sets(sets);
-        rt_accel_destroy(other);
     }
 }
 
@@ -143,7 +137,7 @@ RT_TEST(a_kind_is_the_same_when_it_is_recorded_alone_and_random_rays_need_no_fra
         assert_ok(rt_rayset_record(sets, asked, &recording, error));
         assert_int_equal(sets[kind].count, stage->sets[kind].count);
         assert_true(sets[kind].fingerprint == stage->sets[kind].fingerprint);
-        for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&sets[k]);
+        clear_sets(sets);
     }
 }
 
@@ -159,8 +153,7 @@ RT_TEST(another_seed_changes_bounces_and_random_rays_alone) {
 RT_TEST(there_is_a_diffuse_ray_for_each_primary_hit_and_it_leaves_the_surface) {
     const Stage *stage = *state;
     const RtRaySet *primary = &stage->sets[RT_RAY_PRIMARY], *diffuse = &stage->sets[RT_RAY_DIFFUSE];
-    RtQuery query;
-    assert_ok(rt_query_init(&query, stage->accel, error));
+    OWNED_QUERY query = open_query(stage->accel);
     uint64_t next = 0, escaped = 0;
     for (uint64_t i = 0; i < primary->count; i++) {
         RtHit hit, bounced;
@@ -177,7 +170,6 @@ RT_TEST(there_is_a_diffuse_ray_for_each_primary_hit_and_it_leaves_the_surface) {
     }
     assert_int_equal(next, diffuse->count);
     assert_true(escaped > 0 && escaped < next);
-    rt_query_clear(&query);
 }
 
 RT_TEST(occlusion_rays_are_the_diffuse_ones) {
@@ -319,13 +311,7 @@ RT_TEST(rays_of_a_file_have_the_same_fingerprint_each_time_that_they_are_read) {
 /* There is no room for the usual distance behind it: the camera and the light that every scene gets are put
  * as far off as rays may begin. */
 RT_TEST(a_scene_at_the_end_of_coordinates_is_seen_and_lit) {
-    OWNED_SCENE scene;
-    RtMaterial grey = rt_default_material();
-    uint32_t material;
-    rt_scene_init(&scene);
-    assert_ok(rt_scene_add_material(&scene, &grey, &material, error));
-    assert_ok(rt_scene_add_sphere(&scene, material, rt_vec3(0, 0, 0), 0.9f * RT_MAX_COORDINATE, error));
-    assert_ok(rt_scene_finish(&scene, error));
+    OWNED_SCENE_OF(scene, sphere, rt_vec3(0, 0, 0), 0.9f * RT_MAX_COORDINATE);
     assert_int_equal(scene.light_count, 1);
     RtRay ray = {.org = scene.camera.from, .dir = {1, 0, 0}};
     assert_true(rt_ray_is_valid(&ray));

@@ -4,7 +4,7 @@
 #ifndef RT_TESTS_RENDER_TESTING_H
 #define RT_TESTS_RENDER_TESTING_H
 
-#include "testing.h"
+#include "accel_testing.h"
 
 #include "render/frame.h"
 #include "render/illumination.h"
@@ -35,10 +35,8 @@ static inline RtFrameOptions options_for(RtScene *scene, uint32_t width, uint32_
 
 static inline RtFrame trace(const RtScene *scene, const RtFrameOptions *options) {
     RtFrame frame;
-    RtAccel *accel;
-    assert_ok(rt_accel_open("brute", scene, &accel, error));
+    OWNED_ACCEL RtAccel *accel = open_accel(scene, "brute");
     assert_ok(rt_frame_trace(&frame, accel, options, error));
-    rt_accel_destroy(accel);
     return frame;
 }
 

@@ -6,9 +6,6 @@
 #include "render/image.h"
 
 #include <png.h>
-#include <stdio.h>
-#include <string.h>
-#include <unistd.h>
 #include <xxhash.h>
 
 #define PNG_FILE RT_BINARY_DIR "/test_image.png"

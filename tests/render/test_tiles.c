@@ -2,7 +2,6 @@
 /* render/tiles.h: every sample of a frame once, in blocks of neighbours. */
 #include "testing.h"
 
-#include "core/base/memory.h"
 #include "render/tiles.h"
 
 static const RtSampling samplings[] = {

@@ -3,9 +3,6 @@
 #include "core/scene/formula.h"
 #include "testing.h"
 
-#include <stdio.h>
-#include <string.h>
-
 /* Solids are called a to z; the term of each is made when it is named. */
 static RtStatus look_up(void *context, const char *name, RtCsgTerm *term, RtError *error) {
     RtCsgBuilder *builder = context;

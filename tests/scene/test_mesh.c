@@ -7,25 +7,13 @@
 #include "core/scene/load.h"
 #include "core/scene/mesh.h"
 
-#include <stdio.h>
-#include <string.h>
-#include <unistd.h>
-
 #define OBJ_NAME RT_BINARY_DIR "/test_mesh_scene.obj"
 #define PLY_NAME RT_BINARY_DIR "/test_mesh_scene.ply"
 #define BUNNY    "/usr/share/glmark2/models/bunny.obj"
 
-static RtStatus load_text(const char *path, const char *text, RtScene *scene, RtError *out) {
-    assert_ok(rt_file_write(path, text, strlen(text), error));
-    return rt_scene_open(path, scene, out);
-}
-
 RT_TEST(triangles_keep_the_order_of_the_file_and_have_no_normals_of_their_own) {
-    OWNED_SCENE scene;
-    assert_ok(load_text(OBJ_NAME,
-                        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 1 0\n"
-                        "f 1 2 3\nf 1 2 4\nf 1 1 1\nf 1 2 5 3\n",
-                        &scene, error));
+    OWNED_SCENE scene = scene_of(OBJ_NAME, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 1 0\n"
+                                           "f 1 2 3\nf 1 2 4\nf 1 1 1\nf 1 2 5 3\n");
     const RtGeometry *g = &scene.geometry;
     assert_int_equal(g->triangle_count, 5);
     assert_int_equal(g->vertex_normal_count, 0);
@@ -37,26 +25,20 @@ RT_TEST(triangles_keep_the_order_of_the_file_and_have_no_normals_of_their_own) {
 }
 
 RT_TEST(vertex_normals_of_the_file_are_kept) {
-    OWNED_SCENE scene;
-    assert_ok(load_text(OBJ_NAME,
-                        "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 2\nvn 0 1 0\nvn 1 0 0\nf 1//1 2//2 3//3\n", &scene,
-                        error));
+    OWNED_SCENE scene =
+        scene_of(OBJ_NAME, "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 2\nvn 0 1 0\nvn 1 0 0\nf 1//1 2//2 3//3\n");
     assert_int_equal(scene.geometry.vertex_normal_count, 1);
     const RtVec3 *n = scene.geometry.vertex_normals[0].n;
     assert_true(n[0].z == 1 && n[1].y == 1 && n[2].x == 1);
 }
 
 RT_TEST(a_mesh_goes_where_its_transform_puts_it) {
-    OWNED_SCENE scene;
-    uint32_t material;
-    RtMaterial standard = rt_default_material();
     RtTransform transform = rt_transform_identity();
     assert_ok(rt_transform_scale(&transform, rt_vec3(2, 2, 2), error));
     assert_ok(rt_transform_translate(&transform, rt_vec3(0, 0, 5), error));
-    assert_ok(rt_file_write(OBJ_NAME, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", 32, error));
-    rt_scene_init(&scene);
-    assert_ok(rt_scene_add_material(&scene, &standard, &material, error));
-    assert_ok(rt_mesh_append(&scene, OBJ_NAME, material, &transform, error));
+    write_text(OBJ_NAME, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    OWNED_SCENE scene = begin_scene();
+    assert_ok(rt_mesh_append(&scene, OBJ_NAME, 0, &transform, error));
     const RtVec3 *v = scene.geometry.triangles[0].v;
     assert_true(v[0].z == 5 && v[1].x == 2 && v[2].y == 2);
 }
@@ -73,8 +55,7 @@ static const char two_nodes[] =
     "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}";
 
 RT_TEST(the_matrices_of_nodes_are_applied_and_mirrors_keep_the_outside_out) {
-    OWNED_SCENE scene;
-    assert_ok(load_text(RT_BINARY_DIR "/test_mesh_scene.gltf", two_nodes, &scene, error));
+    OWNED_SCENE scene = scene_of(RT_BINARY_DIR "/test_mesh_scene.gltf", two_nodes);
     assert_int_equal(scene.geometry.triangle_count, 2);
     RtBox box = scene.geometry.box;
     assert_true(box.lo.x == -1 && box.hi.x == 1 && box.lo.z == 0 && box.hi.z == 7);
@@ -105,9 +86,8 @@ RT_TEST(a_mesh_that_goes_through_obj_keeps_each_bit) {
 /* `text` has a place for the number, which is the least x of a triangle; returns that. */
 static float read_as(const char *path, const char *text, const char *number) {
     char whole[512];
-    OWNED_SCENE scene;
     snprintf(whole, sizeof whole, text, number); /* NOLINT(clang-diagnostic-format-nonliteral) */
-    assert_ok(load_text(path, whole, &scene, error));
+    OWNED_SCENE scene = scene_of(path, whole);
     return scene.geometry.box.lo.x;
 }
 
@@ -189,8 +169,7 @@ RT_TEST(polygons_of_any_form_become_triangles_that_cover_them) {
          8, 24}, /* a square with a hole, cut open */
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        OWNED_SCENE scene;
-        assert_ok(load_text(OBJ_NAME, cases[i].text, &scene, error));
+        OWNED_SCENE scene = scene_of(OBJ_NAME, cases[i].text);
         assert_int_equal(scene.geometry.triangle_count, cases[i].triangles);
         double area = 0;
         for (uint32_t t = 0; t < scene.geometry.triangle_count; t++) {
@@ -207,7 +186,7 @@ RT_TEST(a_polygon_that_crosses_itself_is_refused) {
                                         "v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 2 0\nf 1 2 3 4\n"};
     for (int i = 0; i < 2; i++) {
         RtScene scene;
-        assert_bad_input_at(load_text(OBJ_NAME, texts[i], &scene, error),
+        assert_bad_input_at(open_bytes(OBJ_NAME, texts[i], strlen(texts[i]), &scene, error),
                             OBJ_NAME ":5: ", "face 0 (counted from 0) crosses itself");
     }
 }
@@ -222,10 +201,9 @@ RT_TEST(every_way_to_write_a_corner_of_obj_is_read) {
         "f 1 2 \\\n 3\n", "\tf  1\t2  3 # a face\n"};
     for (size_t i = 0; i < sizeof faces / sizeof faces[0]; i++) {
         char text[256];
-        OWNED_SCENE scene;
         snprintf(text, sizeof text, "# a comment\no name\n%sg a b c\nusemtl x\ns off\nl 1 2\n%s", head,
                  faces[i]);
-        assert_ok(load_text(OBJ_NAME, text, &scene, error));
+        OWNED_SCENE scene = scene_of(OBJ_NAME, text);
         assert_int_equal(scene.geometry.triangle_count, 1);
         assert_true(scene.geometry.triangles[0].v[1].x == 1 && scene.geometry.triangles[0].v[2].y == 1);
         assert_int_equal(scene.geometry.vertex_normal_count,
@@ -234,8 +212,7 @@ RT_TEST(every_way_to_write_a_corner_of_obj_is_read) {
 }
 
 RT_TEST(a_byte_order_mark_is_skipped) {
-    OWNED_SCENE scene;
-    assert_ok(load_text(OBJ_NAME, "\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", &scene, error));
+    OWNED_SCENE scene = scene_of(OBJ_NAME, "\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     assert_int_equal(scene.geometry.triangle_count, 1);
 }
 
@@ -244,9 +221,8 @@ RT_TEST(every_way_to_write_a_number_is_read) {
                                        "100e-1", "0000000010.", ".1e2"};
     for (size_t i = 0; i < sizeof tens / sizeof tens[0]; i++) {
         char text[256];
-        OWNED_SCENE scene;
         snprintf(text, sizeof text, "v %s 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", tens[i]);
-        assert_ok(load_text(OBJ_NAME, text, &scene, error));
+        OWNED_SCENE scene = scene_of(OBJ_NAME, text);
         assert_true(scene.geometry.triangles[0].v[0].x == 10);
     }
 }
@@ -266,9 +242,8 @@ RT_TEST(ply_is_read_with_all_its_types) {
                               "\0\0\0\xff\xff\xff\xff\0\1\0\xff\xff\xff\xff\0\0\1\xff\xff\xff\xff"
                               "\0\3\0\0\0\0\0\0\0\1\0\0\0\2";
     for (int i = 0; i < 2; i++) {
-        OWNED_SCENE scene;
-        assert_ok(rt_file_write(PLY_NAME, i ? big : text, (i ? sizeof big : sizeof text) - 1, error));
-        assert_ok(rt_scene_open(PLY_NAME, &scene, error));
+        write_bytes(PLY_NAME, i ? big : text, (i ? sizeof big : sizeof text) - 1);
+        OWNED_SCENE scene = open_scene(PLY_NAME);
         assert_int_equal(scene.geometry.triangle_count, 1);
         const RtVec3 *v = scene.geometry.triangles[0].v;
         assert_true(v[0].z == -1 && v[1].x == 1 && v[1].y == 0 && v[2].x == 0 && v[2].y == 1);
@@ -286,8 +261,7 @@ RT_TEST(ply_and_off_keep_the_normals_of_their_vertices) {
          "NOFF\n3 1 0\n0 0 0 0 0 2\n1 0 0 0 1 0\n0 1 0 1 0 0\n3 0 1 2 255 0 0\n"},
     };
     for (int i = 0; i < 2; i++) {
-        OWNED_SCENE scene;
-        assert_ok(load_text(texts[i][0], texts[i][1], &scene, error));
+        OWNED_SCENE scene = scene_of(texts[i][0], texts[i][1]);
         assert_int_equal(scene.geometry.vertex_normal_count, 1);
         const RtVec3 *n = scene.geometry.vertex_normals[0].n;
         assert_true(n[0].z == 1 && n[1].y == 1 && n[2].x == 1);
@@ -307,9 +281,8 @@ RT_TEST(strips_and_fans_of_gltf_keep_their_orientation) {
         "{\"byteLength\":4,\"uri\":\"data:;base64,AAECAA==\"}]}";
     for (int mode = 5; mode <= 6; mode++) {
         char text[1024];
-        OWNED_SCENE scene;
         snprintf(text, sizeof text, form, mode);
-        assert_ok(load_text(RT_BINARY_DIR "/test_mesh_scene.gltf", text, &scene, error));
+        OWNED_SCENE scene = scene_of(RT_BINARY_DIR "/test_mesh_scene.gltf", text);
         assert_int_equal(scene.geometry.triangle_count, 2);
         const RtVec3 *v = scene.geometry.triangles[1].v;
         assert_true(v[0].x == (mode == 5 ? 1 : 0) && v[1].y == (mode == 5 ? 0 : 1));
@@ -327,9 +300,8 @@ RT_TEST(steps_of_a_gltf_node_and_a_buffer_in_a_file_are_read) {
         "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
         "\"buffers\":[{\"byteLength\":36,\"uri\":\"test_mesh%20buffer.bin\"}]}";
     static const float triangle[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    OWNED_SCENE scene;
-    assert_ok(rt_file_write(RT_BINARY_DIR "/test_mesh buffer.bin", triangle, sizeof triangle, error));
-    assert_ok(load_text(RT_BINARY_DIR "/test_mesh_scene.gltf", document, &scene, error));
+    write_bytes(RT_BINARY_DIR "/test_mesh buffer.bin", triangle, sizeof triangle);
+    OWNED_SCENE scene = scene_of(RT_BINARY_DIR "/test_mesh_scene.gltf", document);
     const RtVec3 *v = scene.geometry.triangles[0].v;
     assert_true(v[0].z == 8 && fabsf(v[1].x - 0.56f) < 1e-6f && fabsf(v[1].y - 1.92f) < 1e-6f);
     assert_true(fabsf(v[2].x + 0.96f) < 1e-6f && fabsf(v[2].y - 0.28f) < 1e-6f);
@@ -337,10 +309,8 @@ RT_TEST(steps_of_a_gltf_node_and_a_buffer_in_a_file_are_read) {
 
 RT_TEST(normals_come_back_from_ply_and_glb) {
     static const char *const names[] = {PLY_NAME, RT_BINARY_DIR "/test_mesh.glb"};
-    OWNED_SCENE scene;
-    assert_ok(load_text(OBJ_NAME,
-                        "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 1 0 0\nf 1//1 2//2 3//1\nf 1 3 2\n", &scene,
-                        error));
+    OWNED_SCENE scene =
+        scene_of(OBJ_NAME, "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 1 0 0\nf 1//1 2//2 3//1\nf 1 3 2\n");
     for (size_t i = 0; i < 2; i++) {
         assert_ok(rt_scene_save(&scene, names[i], true, error));
         OWNED_SCENE again = open_scene(names[i]);
@@ -352,23 +322,20 @@ RT_TEST(normals_come_back_from_ply_and_glb) {
 }
 
 RT_TEST(a_text_stl_is_read_whatever_its_normals_say) {
-    OWNED_SCENE scene;
-    assert_ok(load_text(
-        RT_BINARY_DIR "/test_mesh.stl",
-        "solid a name # of words\nfacet normal nan nan nan\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
-        "vertex 0 1 0\nendloop\nendfacet\nendsolid a\nsolid\nfacet normal 0 0 -1\nouter loop\n"
-        "vertex 0 0 1\nvertex 1 0 1\nvertex 0 1 1\nendloop\nendfacet\nendsolid",
-        &scene, error));
+    OWNED_SCENE scene =
+        scene_of(RT_BINARY_DIR "/test_mesh.stl",
+                 "solid a name # of words\nfacet normal nan nan nan\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                 "vertex 0 1 0\nendloop\nendfacet\nendsolid a\nsolid\nfacet normal 0 0 -1\nouter loop\n"
+                 "vertex 0 0 1\nvertex 1 0 1\nvertex 0 1 1\nendloop\nendfacet\nendsolid");
     assert_int_equal(scene.geometry.triangle_count, 2);
     assert_int_equal(scene.geometry.vertex_normal_count, 0);
     assert_true(rt_triangle_normal(&scene.geometry.triangles[1]).z == 1);
 }
 
 RT_TEST(every_failed_allocation_is_reported_and_leaves_nothing) {
-    static const char text[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n";
-    assert_ok(rt_file_write(OBJ_NAME, text, strlen(text), error));
+    write_text(OBJ_NAME, "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n");
     assert_failed_allocations_are_reported(OBJ_NAME);
-    assert_ok(rt_file_write(RT_BINARY_DIR "/test_mesh_scene.gltf", two_nodes, strlen(two_nodes), error));
+    write_text(RT_BINARY_DIR "/test_mesh_scene.gltf", two_nodes);
     assert_failed_allocations_are_reported(RT_BINARY_DIR "/test_mesh_scene.gltf");
     OWNED_SCENE scene = open_scene(OBJ_NAME);
     assert_fails_cleanly(rt_scene_save(&scene, RT_BINARY_DIR "/test_mesh.ply", true, error), (void)0);

@@ -8,10 +8,7 @@
 #include "core/scene/load.h"
 #include "core/scene/mesh.h"
 
-#include <stdio.h>
-#include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 /* The same file for all tests; `extension` is its format. */
 static const char *path_of(const char *extension) {
@@ -20,19 +17,9 @@ static const char *path_of(const char *extension) {
     return path;
 }
 
-/* Without the waits for the disk of rt_file_write, and of closing a file that was emptied. */
-static void write_mesh(const char *extension, const void *bytes, size_t size) {
-    remove(path_of(extension));
-    FILE *file = fopen(path_of(extension), "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(bytes, 1, size, file), size);
-    assert_int_equal(fclose(file), 0);
-}
-
 static RtStatus load_bytes(const char *extension, const void *bytes, size_t size, RtScene *scene,
                            RtError *error) {
-    write_mesh(extension, bytes, size);
-    return rt_scene_open(path_of(extension), scene, error);
+    return open_bytes(path_of(extension), bytes, size, scene, error);
 }
 
 typedef struct Damaged {
@@ -93,18 +80,16 @@ static struct Mesh {
 static int make_meshes(void **state) {
     (void)state;
     mkdir(RT_TEST_FOLDER, 0777);
-    write_mesh("obj", OBJ, strlen(OBJ));
-    OWNED_SCENE square = open_scene(path_of("obj"));
+    OWNED_SCENE square = scene_of(path_of("obj"), OBJ);
     for (size_t i = 0; i < FORMATS; i++) {
-        char *bytes;
+        OWNED_MEMORY char *bytes;
         if (i < TEXTS)
-            write_mesh(extensions[i], texts[i], strlen(texts[i]));
+            write_text(path_of(extensions[i]), texts[i]);
         else
             assert_ok(rt_scene_save(&square, path_of(extensions[i]), true, error));
         assert_ok(rt_file_read(path_of(extensions[i]), MOST_BYTES, &bytes, &whole[i].size, error));
         memcpy(whole[i].bytes, bytes, whole[i].size);
         whole[i].extension = extensions[i];
-        rt_free(bytes);
     }
     return 0;
 }
@@ -174,12 +159,9 @@ RT_TEST(a_mesh_with_any_bytes_changed_is_read_or_refused) {
     for (uint64_t run = 0; run < RT_SHARE(8000, 800); run++) {
         struct Mesh changed = whole[run % FORMATS];
         RtRandom random = rt_random(3, run);
-        OWNED_SCENE scene;
-        RtError problem;
         for (int k = 0; k < 4; k++)
             changed.bytes[rt_random_bits(&random) % changed.size] = (char)rt_random_bits(&random);
-        const RtStatus status = load_bytes(changed.extension, changed.bytes, changed.size, &scene, &problem);
-        assert_true(status == RT_OK || status == RT_BAD_INPUT);
+        assert_read_or_refused(path_of(changed.extension), changed.bytes, changed.size);
     }
 }
 
@@ -187,10 +169,7 @@ RT_TEST(line_ends_of_windows_do_not_matter) {
     OWNED_SCENE square = open_whole(&whole[0]);
     for (size_t i = 0; i < TEXTS; i++) {
         struct Mesh windows = {.extension = extensions[i]};
-        for (const char *c = texts[i]; *c; c++) {
-            if (*c == '\n') windows.bytes[windows.size++] = '\r';
-            windows.bytes[windows.size++] = *c;
-        }
+        windows.size = as_in_windows(texts[i], windows.bytes);
         OWNED_SCENE scene = open_whole(&windows);
         assert_same_triangles(&scene, &square);
     }
@@ -457,7 +436,7 @@ RT_TEST(a_gigabyte_of_zeros_is_refused_soon) {
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         const char *path = path_of(names[i]);
         RtScene scene;
-        write_mesh(names[i], "", 0);
+        write_text(path, "");
         assert_int_equal(truncate(path, 1000000000), 0);
         const double start = rt_thread_seconds();
         assert_bad_input_at(rt_scene_open(path, &scene, error), path, "");
@@ -470,7 +449,7 @@ RT_TEST(a_polygon_of_many_corners_is_read_or_refused_soon) {
     enum { CORNERS = 99999 };
     static char text[60 * CORNERS];
     for (int concave = 0; concave < 2; concave++) {
-        RtScene scene;
+        OWNED_SCENE scene;
         RtError problem;
         size_t size = 0;
         for (int i = 0; i < CORNERS; i++)
@@ -483,7 +462,6 @@ RT_TEST(a_polygon_of_many_corners_is_read_or_refused_soon) {
         assert_int_equal(status, concave ? RT_BAD_INPUT : RT_OK);
         if (concave) assert_non_null(strstr(problem.message, "more than 1000: split it"));
         assert_true(rt_wall_seconds() - start < RT_SHARE(2, 20));
-        rt_scene_clear(&scene);
     }
 }
 

@@ -2,13 +2,9 @@
 /* NFF: reading, writing, and the lines of rejected input. */
 #include "scene_testing.h"
 
-#include "core/base/file.h"
 #include "core/base/random.h"
 #include "core/scene/load.h"
 #include "core/scene/nff.h"
-
-#include <stdio.h>
-#include <string.h>
 
 #define FILE_NAME RT_BINARY_DIR "/test_nff_scene.nff"
 
@@ -24,23 +20,8 @@ static const char everything[] = "# a comment\n"
                                  "p 3\n0 0 0\n1 0 0\n0 1 0\n"
                                  "pp 4\n0 0 0 0 0 1\n1 0 0 0 0 2\n1 1 0 0 0 1\n0 1 0 0 1 0\n";
 
-/* Without the waits for the disk of rt_file_write, and of closing a file that was emptied. */
-static RtStatus load_bytes(const char *text, size_t size, RtScene *scene, RtError *out) {
-    remove(FILE_NAME);
-    FILE *file = fopen(FILE_NAME, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(text, 1, size, file), size);
-    assert_int_equal(fclose(file), 0);
-    return rt_scene_open(FILE_NAME, scene, out);
-}
-
-static RtStatus load_text(const char *text, RtScene *scene, RtError *out) {
-    return load_bytes(text, strlen(text), scene, out);
-}
-
 RT_TEST(every_statement_is_read) {
-    OWNED_SCENE scene;
-    assert_ok(load_text(everything, &scene, error));
+    OWNED_SCENE scene = scene_of(FILE_NAME, everything);
     const RtGeometry *g = &scene.geometry;
     assert_int_equal(g->object_count, 6);
     assert_int_equal(g->sphere_count, 1);
@@ -66,25 +47,22 @@ RT_TEST(every_statement_is_read) {
 }
 
 RT_TEST(a_light_without_colour_has_the_suggested_intensity) {
-    OWNED_SCENE scene;
-    assert_ok(load_text(everything, &scene, error));
+    OWNED_SCENE scene = scene_of(FILE_NAME, everything);
     assert_int_equal(scene.light_count, 2);
     assert_true(scene.lights[0].intensity.x == (float)(sqrt(2.0) / 4));
     assert_true(scene.lights[1].intensity.x == 0.5f && scene.lights[1].intensity.z == 1);
 }
 
 RT_TEST(repeated_materials_are_stored_once) {
-    OWNED_SCENE scene;
-    assert_ok(load_text("f 1 0 0 1 0 0 0 1\ns 0 0 0 1\nf 0 1 0 1 0 0 0 1\ns 1 0 0 1\nf 1 0 0 1 0 0 0 1\n"
-                        "s 2 0 0 1\n",
-                        &scene, error));
+    OWNED_SCENE scene =
+        scene_of(FILE_NAME, "f 1 0 0 1 0 0 0 1\ns 0 0 0 1\nf 0 1 0 1 0 0 0 1\ns 1 0 0 1\nf 1 0 0 1 0 0 0 1\n"
+                            "s 2 0 0 1\n");
     assert_int_equal(scene.material_count, 2);
     assert_int_equal(scene.material_of[2], 0);
 }
 
 RT_TEST(signs_of_radii_and_line_ends_do_not_matter) {
-    OWNED_SCENE scene;
-    assert_ok(load_text("s 0 0 0 -2\r\nc 0 0 0 -1 0 0 1 -1\r\n\r\n\ts\t1\n1\n1\n1", &scene, error));
+    OWNED_SCENE scene = scene_of(FILE_NAME, "s 0 0 0 -2\r\nc 0 0 0 -1 0 0 1 -1\r\n\r\n\ts\t1\n1\n1\n1");
     assert_int_equal(scene.geometry.object_count, 3);
     assert_true(scene.geometry.spheres[0].radius == 2);
 }
@@ -106,23 +84,16 @@ RT_TEST(what_is_written_reads_back_bit_for_bit) {
 }
 
 RT_TEST(a_triangle_without_area_survives_being_written) {
-    OWNED_SCENE scene;
-    uint32_t material;
-    RtMaterial standard = rt_default_material();
     const RtVec3 point[3] = {{1, 2, 3}, {1, 2, 3}, {1, 2, 3}};
-    rt_scene_init(&scene);
-    assert_ok(rt_scene_add_material(&scene, &standard, &material, error));
-    assert_ok(rt_scene_add_triangle(&scene, material, point, NULL, error));
-    assert_ok(rt_scene_finish(&scene, error));
+    OWNED_SCENE_OF(scene, triangle, point, NULL);
     assert_ok(rt_scene_save(&scene, FILE_NAME, true, error));
     OWNED_SCENE again = open_scene(FILE_NAME);
     assert_memory_equal(again.geometry.triangles[0].v, point, sizeof point);
 }
 
 RT_TEST(an_existing_file_is_kept_unless_it_may_be_overwritten) {
-    OWNED_SCENE scene;
     RtError problem;
-    assert_ok(load_text("s 0 0 0 1\n", &scene, error));
+    OWNED_SCENE scene = scene_of(FILE_NAME, "s 0 0 0 1\n");
     assert_bad_input(rt_scene_save(&scene, FILE_NAME, false, error), "already exists");
     assert_bad_input(rt_scene_save(&scene, RT_BINARY_DIR "/x.nfff", true, error), "did you mean '.nff'?");
     assert_int_not_equal(rt_scene_save(&scene, RT_BINARY_DIR "/no/such/folder/x.nff", true, &problem), RT_OK);
@@ -181,30 +152,23 @@ RT_TEST(bad_files_are_refused_with_line_and_remedy) {
         RtScene scene;
         char place[256];
         snprintf(place, sizeof place, "%s%s", FILE_NAME, cases[i].line);
-        assert_bad_input_at(load_text(cases[i].text, &scene, error), place, cases[i].says);
+        assert_bad_input_at(open_bytes(FILE_NAME, cases[i].text, strlen(cases[i].text), &scene, error), place,
+                            cases[i].says);
     }
 }
 
 RT_TEST(a_binary_file_is_refused_as_such) {
     RtScene scene;
-    assert_bad_input(load_bytes("s 0 0 0 1\n\0\1\2", 13, &scene, error), "binary");
+    assert_bad_input(open_bytes(FILE_NAME, "s 0 0 0 1\n\0\1\2", 13, &scene, error), "binary");
 }
 
 RT_TEST(a_file_cut_anywhere_is_read_or_refused) {
-    int64_t before = rt_alloc_live();
-    for (size_t size = 0; size < sizeof everything; size++) {
-        RtScene scene;
-        RtError problem;
-        RtStatus status = load_bytes(everything, size, &scene, &problem);
-        assert_true(status == RT_OK || status == RT_BAD_INPUT);
-        if (status == RT_OK) rt_scene_clear(&scene);
-        assert_int_equal(rt_alloc_live(), before);
-    }
+    for (size_t size = 0; size < sizeof everything; size++)
+        assert_read_or_refused(FILE_NAME, everything, size);
 }
 
 RT_TEST(a_file_with_any_bytes_changed_is_read_or_refused) {
     static const char bytes[] = "0123456789-+.eE \n#pscfvblnx\x01\xff";
-    int64_t before = rt_alloc_live();
     for (uint64_t run = 0; run < 2000; run++) {
         char text[sizeof everything];
         RtRandom random = rt_random(2, run);
@@ -213,27 +177,17 @@ RT_TEST(a_file_with_any_bytes_changed_is_read_or_refused) {
             char byte = bytes[rt_random_bits(&random) % (sizeof bytes - 1)];
             text[rt_random_bits(&random) % (sizeof text - 1)] = byte;
         }
-        RtScene scene;
-        RtError problem;
-        RtStatus status = load_bytes(text, sizeof text - 1, &scene, &problem);
-        assert_true(status == RT_OK || status == RT_BAD_INPUT);
-        if (status == RT_OK) rt_scene_clear(&scene);
-        assert_int_equal(rt_alloc_live(), before);
+        assert_read_or_refused(FILE_NAME, text, sizeof text - 1);
     }
 }
 
 RT_TEST(every_failed_allocation_is_reported_and_leaves_nothing) {
-    assert_ok(rt_file_write(FILE_NAME, everything, strlen(everything), error));
+    write_text(FILE_NAME, everything);
     assert_failed_allocations_are_reported(FILE_NAME);
 }
 
 RT_TEST(the_jewel_is_whole) {
-    OWNED_SCENE scene = open_scene(RT_SOURCE_DIR "/scenes/jewel.nff");
-    assert_int_equal(scene.geometry.object_count, 1137);
-    assert_int_equal(scene.geometry.sphere_count, 100);
-    assert_int_equal(scene.geometry.polygon_count, 274);
-    assert_int_equal(scene.geometry.triangle_count, 656);
-    assert_int_equal(scene.geometry.cone_count, 107);
+    assert_shape_counts(&(ShapeCounts){RT_SOURCE_DIR "/scenes/jewel.nff", 100, 274, 656, 107}, 1);
 }
 
 RT_TESTS(nff, NULL, NULL)

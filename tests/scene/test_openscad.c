@@ -12,9 +12,6 @@
 #include "core/base/random.h"
 #include "rays/rayset.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-
 enum { RAYS = 20000, BUNDLE = 17 };
 
 typedef struct Model {

@@ -3,15 +3,10 @@
  * repository. */
 #include "yaml_testing.h"
 
-#include "scenes/builtin.h"
-
-#include <glob.h>
-
 /* ---- what a file says ---- */
 
 RT_TEST(a_scene_is_what_its_file_says) {
-    OWNED_SCENE s;
-    assert_ok(load_text(everything, &s, error));
+    OWNED_SCENE s = yaml_scene(everything);
     const RtGeometry *g = &s.geometry;
     assert_true(s.camera.from.y == -10 && s.camera.fov == 30 && s.camera.near == 0.5f);
     assert_int_equal(s.camera.width, 320);
@@ -31,18 +26,15 @@ RT_TEST(a_scene_is_what_its_file_says) {
 }
 
 RT_TEST(what_is_left_out_has_defaults) {
-    OWNED_SCENE s;
-    assert_ok(load_text("objects:\n  - sphere: {center: [1, 2, 3], radius: 1}\n", &s, error));
+    OWNED_SCENE s = yaml_scene("objects:\n  - sphere: {center: [1, 2, 3], radius: 1}\n");
     assert_int_equal(s.light_count, 1);
     assert_int_equal(s.material_count, 1);
     assert_true(s.camera.at.x == 1 && s.camera.at.z == 3 && s.camera.fov == 45);
 }
 
 RT_TEST(a_material_called_default_is_the_default) {
-    OWNED_SCENE s;
-    assert_ok(load_text("materials: [{name: default, color: [0, 1, 0]}]\n"
-                        "objects: [sphere: {center: [1, 2, 3], radius: 1}]\n",
-                        &s, error));
+    OWNED_SCENE s = yaml_scene("materials: [{name: default, color: [0, 1, 0]}]\n"
+                               "objects: [sphere: {center: [1, 2, 3], radius: 1}]\n");
     assert_int_equal(s.material_count, 1);
     assert_true(s.materials[0].color.y == 1);
 }

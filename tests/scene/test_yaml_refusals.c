@@ -4,7 +4,6 @@
 
 #include <sys/resource.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 /* ---- bad input: its line, and a phrase of the message ---- */
 
@@ -244,8 +243,7 @@ static RtStatus parse_much(const char *head, const char *part, size_t bytes, con
     strcpy(text + length, tail);
     OWNED_SCENE scene;
     rt_scene_init(&scene);
-    RtStatus status = rt_yaml_load_text("much", text, rt_builtin_open, &scene, error);
-    return status;
+    return rt_yaml_load_text("much", text, rt_builtin_open, &scene, error);
 }
 
 /* Most of these would take hours where time grows with the square of the text. */
@@ -286,28 +284,15 @@ RT_TEST(zero_bytes_are_refused_with_their_place) {
 }
 
 RT_TEST(line_ends_of_windows_do_not_matter) {
-    char text[2 * sizeof everything];
-    size_t size = 0;
-    for (const char *c = everything; *c; c++) {
-        if (*c == '\n') text[size++] = '\r';
-        text[size++] = *c;
-    }
-    OWNED_SCENE scene, windows;
-    assert_ok(load_text(everything, &scene, error));
-    write_bytes(RT_TEST_FOLDER "/scene.yaml", text, size);
-    assert_ok(load(RT_TEST_FOLDER "/scene.yaml", &windows, error));
+    char text[2 * sizeof everything] = "";
+    as_in_windows(everything, text);
+    OWNED_SCENE scene = yaml_scene(everything), windows = yaml_scene(text);
     assert_true(rt_scene_fingerprint(&scene) == rt_scene_fingerprint(&windows));
 }
 
 RT_TEST(every_prefix_of_a_scene_is_read_or_refused) {
-    int64_t live = rt_alloc_live();
-    for (size_t length = 0; length < sizeof everything; length += RT_SHARE(1, 7)) {
-        write_bytes(RT_TEST_FOLDER "/scene.yaml", everything, length);
-        RtScene scene;
-        RtError error;
-        if (load(RT_TEST_FOLDER "/scene.yaml", &scene, &error) == RT_OK) rt_scene_clear(&scene);
-        assert_int_equal(rt_alloc_live(), live);
-    }
+    for (size_t length = 0; length < sizeof everything; length += RT_SHARE(1, 7))
+        assert_read_or_refused(RT_TEST_FOLDER "/scene.yaml", everything, length);
 }
 
 /* ---- memory ---- */

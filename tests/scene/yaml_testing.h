@@ -10,22 +10,7 @@
 #include "core/scene/yaml.h"
 #include "scenes/builtin.h"
 
-#include <stdio.h>
-#include <string.h>
 #include <sys/stat.h>
-
-/* A new file: closing one that was emptied would wait for the disk. */
-static inline void write_bytes(const char *path, const void *bytes, size_t count) {
-    remove(path);
-    FILE *out = fopen(path, "wb");
-    assert_non_null(out);
-    assert_int_equal(fwrite(bytes, 1, count, out), count);
-    assert_int_equal(fclose(out), 0);
-}
-
-static inline void write_text(const char *path, const char *text) {
-    write_bytes(path, text, strlen(text));
-}
 
 /* Loads and finishes; on failure the scene is empty. */
 static inline RtStatus load(const char *path, RtScene *scene, RtError *error) {
@@ -39,6 +24,12 @@ static inline RtStatus load(const char *path, RtScene *scene, RtError *error) {
 static inline RtStatus load_text(const char *text, RtScene *scene, RtError *error) {
     write_text(RT_TEST_FOLDER "/scene.yaml", text);
     return load(RT_TEST_FOLDER "/scene.yaml", scene, error);
+}
+
+static inline RtScene yaml_scene(const char *text) {
+    RtScene scene;
+    assert_ok(load_text(text, &scene, error));
+    return scene;
 }
 
 static inline int make_folder(void **state) {

@@ -5,10 +5,6 @@
 
 #include "scenes/builtin.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 /* ---- counts ---- */
 
 RT_TEST(places_have_the_objects_that_they_say) {
@@ -26,24 +22,6 @@ RT_TEST(places_have_the_objects_that_they_say) {
     assert_shape_counts(rows, sizeof rows / sizeof rows[0]);
 }
 
-/* At other values than the defaults, which test_builtin.c goes through. */
-static const char *const specs[] = {"teapot:size=3", "stadium:size=2", "hall:size=3", "forest:n=30,seed=5",
-                                    "city:size=3,seed=9"};
-
-enum { SPECS = sizeof specs / sizeof specs[0] };
-
-RT_TEST(a_count_before_making_is_the_count_made) {
-    for (size_t i = 0; i < SPECS; i++) {
-        const RtBuiltin *builtin = rt_builtin_find(specs[i]);
-        const char *colon = strchr(specs[i], ':');
-        RtValue values[RT_MAX_PARAMS];
-        assert_ok(rt_params_parse(builtin->params, builtin->param_count, colon ? colon + 1 : NULL, "it",
-                                  values, error));
-        OWNED_SCENE scene = open_scene(specs[i]);
-        assert_int_equal(rt_builtin_object_count(builtin, values), scene.geometry.object_count);
-    }
-}
-
 /* ---- surfaces ---- */
 
 /* From one point to another, as bits: equal points have equal bits here, -0 made 0. */
@@ -57,6 +35,10 @@ static int compare_edges(const void *a, const void *b) {
 
 static RtVec3 without_negative_zero(RtVec3 p) {
     return rt_vec3(p.x + 0.0f, p.y + 0.0f, p.z + 0.0f);
+}
+
+static RtVec3d area_of(const RtVec3 v[3]) {
+    return rt_area_vector(rt_widen(v[0]), rt_widen(v[1]), rt_widen(v[2]));
 }
 
 /* How many edges of triangles first..end-1 no other triangle has the other way round. */
@@ -81,8 +63,7 @@ static void normals_point_where_the_triangles_do(const RtGeometry *g) {
     for (uint32_t i = 0; i < g->triangle_count; i++) {
         if (g->triangle_normals[i] == RT_NO_NORMALS) continue;
         const RtVec3 *v = g->triangles[i].v, *n = g->vertex_normals[g->triangle_normals[i]].n;
-        RtVec3d a = rt_widen(v[0]);
-        RtVec3d normal = rt_crossd(rt_subd(rt_widen(v[1]), a), rt_subd(rt_widen(v[2]), a));
+        RtVec3d normal = area_of(v);
         assert_true(rt_lengthd(normal) > 0);
         for (int k = 0; k < 3; k++) assert_true(rt_dotd(normal, rt_widen(n[k])) > 0);
     }
@@ -196,9 +177,7 @@ RT_TEST(a_forest_grows_from_a_thousand_triangles_to_any_number) {
         uint32_t trees = scene.geometry.triangle_count - ground;
         assert_true(trees >= 986 * n && trees <= 1036 * n && (trees - 986 * n) % 50 == 0);
         for (uint32_t i = 0; i < scene.geometry.triangle_count; i++) {
-            const RtVec3 *v = scene.geometry.triangles[i].v;
-            RtVec3d a = rt_widen(v[0]);
-            assert_true(rt_lengthd(rt_crossd(rt_subd(rt_widen(v[1]), a), rt_subd(rt_widen(v[2]), a))) > 0);
+            assert_true(rt_lengthd(area_of(scene.geometry.triangles[i].v)) > 0);
         }
     }
 }
@@ -262,9 +241,8 @@ RT_TEST(a_box_faces_outwards) {
     assert_int_equal(scene.geometry.triangle_count, 48);
     for (uint32_t i = 0; i < 48; i++) {
         const RtVec3 *v = scene.geometry.triangles[i].v;
-        RtVec3d a = rt_widen(v[0]), center = rt_vec3d(10 * (i / 12), 0, 0);
-        RtVec3d normal = rt_crossd(rt_subd(rt_widen(v[1]), a), rt_subd(rt_widen(v[2]), a));
-        assert_true(rt_lengthd(normal) == 4 && rt_dotd(normal, rt_subd(a, center)) == 4);
+        RtVec3d normal = area_of(v), center = rt_vec3d(10 * (i / 12), 0, 0);
+        assert_true(rt_lengthd(normal) == 4 && rt_dotd(normal, rt_subd(rt_widen(v[0]), center)) == 4);
     }
     assert_int_equal(open_edges(&scene.geometry, 0, 12), 0);
     rt_free(b.points);

@@ -2,8 +2,6 @@
 /* scenes/: the Standard Procedural Databases against the files that their package writes. */
 #include "scene_testing.h"
 
-#include <stdio.h>
-#include <string.h>
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
@@ -61,6 +59,7 @@ RT_TEST(they_have_as_many_objects_of_each_shape_as_published) {
     static const ShapeCounts rows[] = {
         {"balls", 7381, 1, 0, 0},
         {"balls:size=1", 10, 1, 0, 0},
+        {"balls:size=2", 91, 1, 0, 0},
         {"balls:size=5", 66430, 1, 0, 0},
         {"lattice", 2197, 0, 0, 6084},
         {"lattice:size=1", 8, 0, 0, 12},
@@ -68,6 +67,7 @@ RT_TEST(they_have_as_many_objects_of_each_shape_as_published) {
         {"gears", 0, 9345, 0, 0},
         {"gears:size=1", 0, 147, 0, 0},
         {"jacks", 438, 0, 0, 219},
+        {"jacks:size=2", 54, 0, 0, 27},
         {"jacks:size=1", 6, 0, 0, 3},
         {"rings", 4200, 1, 0, 4200},
         {"rings:size=1", 30, 1, 0, 30},
@@ -77,9 +77,11 @@ RT_TEST(they_have_as_many_objects_of_each_shape_as_published) {
         {"mount:size=1", 4, 0, 8, 0},
         {"mount:size=9", 4, 0, 524288, 0},
         {"tetra", 0, 0, 4096, 0},
+        {"tetra:size=2", 0, 0, 16, 0},
         {"tetra:size=1", 0, 0, 4, 0},
         {"tetra:size=9", 0, 0, 262144, 0},
         {"tree", 4095, 1, 0, 4095},
+        {"tree:size=3", 15, 1, 0, 15},
         {"tree:size=1", 3, 1, 0, 3},
         {"tree:size=14", 32767, 1, 0, 32767},
     };

@@ -238,12 +238,10 @@ RT_TEST(the_ball_of_a_polygon_of_many_vertices_is_that_of_its_circle) {
 }
 
 RT_TEST(the_box_of_a_polygon_in_a_coordinate_plane_is_flat_and_exact) {
-    OWNED_GEOMETRY g = {0};
     RtVec3 heptagon[7];
     for (int i = 0; i < 7; i++)
         heptagon[i] = rt_vec3(0.1f, (float)cos(i * 6.2831853 / 7), (float)sin(i * 6.2831853 / 7));
-    assert_ok(rt_geometry_add_polygon(&g, heptagon, 7, error));
-    assert_ok(rt_geometry_finish(&g, error));
+    OWNED_OBJECT(g, polygon, heptagon, 7);
     assert_true(g.boxes[0].lo.x == 0.1f && g.boxes[0].hi.x == 0.1f && g.boxes[0].hi.y == 1);
 }
 
@@ -288,9 +286,7 @@ RT_TEST(balls_are_larger_than_their_points_by_their_bound) {
     const float far = 125.0f / 64;
     const RtVec3 points[3] = {{{-far, 0, 0}}, {{far, 0, 0}}, {{0, 1, 0}}};
     assert_larger(rt_ball_of_points(points, 3).radius, (double)far, 0x1p-50);
-    OWNED_GEOMETRY g = {0};
-    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, -100), 75, rt_vec3(0, 0, 100), 75, error));
-    assert_ok(rt_geometry_finish(&g, error));
+    OWNED_OBJECT(g, cone, rt_vec3(0, 0, -100), 75, rt_vec3(0, 0, 100), 75);
     assert_larger(rt_object_ball(&g, 0).radius, 125, 0x1p-50);
     OWNED_SOLIDS set = {0};
     uint32_t mesh;
@@ -346,11 +342,9 @@ RT_TEST(the_ball_of_a_tree_is_larger_by_its_bound) {
 
 /* A cylinder and a ball that touch x = 0 from below. */
 RT_TEST(boxes_are_wider_than_their_solids_by_their_bound) {
-    OWNED_GEOMETRY g = {0};
     OWNED_SOLIDS set = {0};
     uint32_t ball;
-    assert_ok(rt_geometry_add_cone(&g, rt_vec3(-1, 0, 0), 1, rt_vec3(-1, 0, 2), 1, error));
-    assert_ok(rt_geometry_finish(&g, error));
+    OWNED_OBJECT(g, cone, rt_vec3(-1, 0, 0), 1, rt_vec3(-1, 0, 2), 1);
     assert_ok(rt_solid_add_ellipsoid(&set, rt_vec3(-1, 0, 0), rt_vec3(1, 1, 1), &ball, error));
     const double over[2] = {(double)g.boxes[0].hi.x / 4, (double)set.solids[ball].box.hi.x};
     for (int i = 0; i < 2; i++) assert_true(over[i] >= within * 0x1p-50 && over[i] <= 1.125 * 0x1p-50);

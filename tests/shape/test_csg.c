@@ -8,8 +8,7 @@
 /* ---- by hand ---- */
 
 RT_TEST(each_operation_keeps_its_part_of_two_boxes) {
-    OWNED_BUILDER b = {0};
-    OWNED_FOREST forest = {0};
+    OWNED_TREES(b, forest);
     RtCsgTerm left = box(&b, rt_vec3(0, 0, 0), rt_vec3(2, 1, 1), 0);
     RtCsgTerm right = box(&b, rt_vec3(1, 0, 0), rt_vec3(3, 1, 1), 1);
     RtRay ray = ray_along(rt_vec3(-1, 0.5f, 0.5f), along_x);
@@ -24,8 +23,7 @@ RT_TEST(each_operation_keeps_its_part_of_two_boxes) {
 }
 
 RT_TEST(touching_boxes_are_joined_without_a_wall) {
-    OWNED_BUILDER b = {0};
-    OWNED_FOREST forest = {0};
+    OWNED_TREES(b, forest);
     RtCsgTerm left = box(&b, rt_vec3(0, 0, 0), rt_vec3(1, 1, 1), 0);
     RtCsgTerm right = box(&b, rt_vec3(1, 0, 0), rt_vec3(2, 1, 1), 1);
     RtCsg joined = compile(&forest, &b, join(&b, left, right));
@@ -38,8 +36,7 @@ RT_TEST(touching_boxes_are_joined_without_a_wall) {
 }
 
 RT_TEST(the_wall_of_a_drilled_hole_looks_into_the_hole) {
-    OWNED_BUILDER b = {0};
-    OWNED_FOREST forest = {0};
+    OWNED_TREES(b, forest);
     RtCsgTerm plate = box(&b, rt_vec3(-2, -2, -1), rt_vec3(2, 2, 1), 1);
     RtCsg tree = compile(&forest, &b, cut(&b, plate, ball(&b, rt_vec3(0, 0, 0), 1, 2)));
     RtRay ray = ray_along(rt_vec3(-4, 0, 0), along_x);
@@ -54,8 +51,7 @@ RT_TEST(the_wall_of_a_drilled_hole_looks_into_the_hole) {
 }
 
 RT_TEST(what_is_taken_from_what_is_taken_away_looks_outward_again) {
-    OWNED_BUILDER b = {0};
-    OWNED_FOREST forest = {0};
+    OWNED_TREES(b, forest);
     RtCsgTerm hole = cut(&b, ball(&b, rt_vec3(0, 0, 0), 2, 2), ball(&b, rt_vec3(0, 0, 0), 1, 3));
     RtCsgTerm all = cut(&b, box(&b, rt_vec3(-4, -4, -4), rt_vec3(4, 4, 4), 1), hole);
     RtCsg tree = compile(&forest, &b, all);
@@ -70,8 +66,7 @@ RT_TEST(what_is_taken_from_what_is_taken_away_looks_outward_again) {
 }
 
 RT_TEST(the_left_operand_names_a_face_that_both_have) {
-    OWNED_BUILDER b = {0};
-    OWNED_FOREST forest = {0};
+    OWNED_TREES(b, forest);
     RtCsgTerm a = box(&b, rt_vec3(0, 0, 0), rt_vec3(1, 1, 1), 1);
     RtCsgTerm c = box(&b, rt_vec3(0, 0, 0), rt_vec3(2, 1, 1), 2);
     RtRay ray = ray_along(rt_vec3(-1, 0.5f, 0.5f), along_x);
@@ -86,8 +81,7 @@ RT_TEST(the_left_operand_names_a_face_that_both_have) {
 }
 
 RT_TEST(an_empty_result_is_a_point_and_never_hit) {
-    OWNED_BUILDER b = {0};
-    OWNED_FOREST forest = {0};
+    OWNED_TREES(b, forest);
     RtCsgTerm near = box(&b, rt_vec3(0, 0, 0), rt_vec3(1, 1, 1), 0);
     RtCsgTerm far = box(&b, rt_vec3(2, 0, 0), rt_vec3(3, 1, 1), 0);
     RtCsg tree = compile(&forest, &b, meet(&b, near, far));
@@ -97,8 +91,7 @@ RT_TEST(an_empty_result_is_a_point_and_never_hit) {
 }
 
 RT_TEST(a_ray_is_answered_within_its_interval_only) {
-    OWNED_BUILDER b = {0};
-    OWNED_FOREST forest = {0};
+    OWNED_TREES(b, forest);
     RtCsg tree = compile(&forest, &b, box(&b, rt_vec3(0, 0, 0), rt_vec3(1, 1, 1), 0));
     RtRay ray = ray_along(rt_vec3(-1, 0.5f, 0.5f), along_x);
     ray.tmin = 1, ray.tmax = 1;
@@ -110,8 +103,7 @@ RT_TEST(a_ray_is_answered_within_its_interval_only) {
 }
 
 RT_TEST(a_tree_without_end_is_refused_and_leaves_nothing_behind) {
-    OWNED_BUILDER b = {0};
-    OWNED_FOREST forest = {0};
+    OWNED_TREES(b, forest);
     RtTransform place = rt_transform_identity();
     RtPlane floor = {{0, 0, 1}, 0};
     uint32_t solid;
@@ -181,8 +173,7 @@ static RtCsg compile_formula(RtCsgForest *forest, RtCsgBuilder *b, RtCsgTerm ter
 static void check_identity(const char *const sides[2], uint64_t seed) {
     RtRandom random = rt_random(seed, 0);
     for (uint32_t round = 0; round < 60; round++) {
-        OWNED_BUILDER b = {0};
-        OWNED_FOREST forest = {0};
+        OWNED_TREES(b, forest);
         RtCsgTerm terms[TERMS];
         for (int i = A; i <= C; i++) terms[i] = random_term(&b, &random, 6, round % 2);
         terms[U] = box(&b, rt_vec3(-9, -9, -9), rt_vec3(9, 9, 9), 0);

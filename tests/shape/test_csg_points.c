@@ -8,10 +8,6 @@
 
 #include "core/scene/formula.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-
 typedef long double Real;
 
 typedef struct Point {

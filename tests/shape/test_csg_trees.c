@@ -2,8 +2,6 @@
 /* shape/csg: whole trees. Extents that change no hit, moves, trees of any depth, and lack of memory. */
 #include "csg_testing.h"
 
-#include "core/base/memory.h"
-
 #include <pthread.h>
 
 /* ---- extents ---- */
@@ -12,8 +10,7 @@ RT_TEST(tests_of_inner_nodes_change_no_bit) {
     RtRandom random = rt_random(5, 0);
     RtTally with = {0}, without = {0};
     for (uint32_t round = 0; round < 200; round++) {
-        OWNED_BUILDER b = {0};
-        OWNED_FOREST forest = {0};
+        OWNED_TREES(b, forest);
         RtCsgTerm root = random_term(&b, &random, RT_MAX_RANDOM_TREE, round % 2);
         RtCsg tested, plain;
         assert_ok(rt_csg_compile(&forest, &b, root, true, &tested, error));
@@ -38,8 +35,7 @@ RT_TEST(tests_of_inner_nodes_change_no_bit) {
 RT_TEST(a_tree_lies_within_its_extents) {
     RtRandom random = rt_random(6, 0);
     for (uint32_t round = 0; round < 100; round++) {
-        OWNED_BUILDER b = {0};
-        OWNED_FOREST forest = {0};
+        OWNED_TREES(b, forest);
         RtCsg tree = compile(&forest, &b, random_term(&b, &random, 12, round % 2));
         RtBall about = rt_csg_ball(&forest, &tree);
         RtVec3d direction = rt_random_direction(&random);
@@ -62,8 +58,7 @@ RT_TEST(a_tree_without_inside_reaches_into_its_box) {
     RtRandom random = rt_random(9, 0);
     static const float apart[2] = {1.3f, 3};
     for (uint32_t i = 0; i < 2; i++) {
-        OWNED_BUILDER b = {0};
-        OWNED_FOREST forest = {0};
+        OWNED_TREES(b, forest);
         RtCsgTerm other = ball(&b, rt_vec3(apart[i], apart[i], 0), 0.5f, 0);
         RtCsg tree = compile(&forest, &b, meet(&b, ball(&b, rt_vec3(0, 0, 0), 1, 0), other));
         for (uint32_t k = 0; k < 100; k++) {
@@ -87,8 +82,7 @@ RT_TEST(the_inner_move_comes_first) {
     assert_ok(rt_transform_rotate(&turn, rt_vec3(0, 0, 1), 90, error));
     assert_ok(rt_transform_translate(&shift, rt_vec3(8, 0, 0), error));
     for (int joined = 0; joined < 2; joined++) {
-        OWNED_BUILDER b = {0};
-        OWNED_FOREST forest = {0};
+        OWNED_TREES(b, forest);
         RtCsgTerm term = ball(&b, rt_vec3(4, 0, 0), 1, 0);
         assert_ok(rt_csg_move(&b, term, &turn, &term, error));
         if (joined) term = join(&b, term, ball(&b, rt_vec3(0, -10, 0), 1, 0));
@@ -101,8 +95,7 @@ RT_TEST(the_inner_move_comes_first) {
 RT_TEST(a_tree_moved_by_powers_of_two_is_met_at_the_same_bits) {
     RtRandom random = rt_random(7, 0);
     for (uint32_t round = 0; round < 60; round++) {
-        OWNED_BUILDER b = {0};
-        OWNED_FOREST forest = {0};
+        OWNED_TREES(b, forest);
         RtCsgTerm root = random_boxes(&b, &random, 8), moved;
         RtTransform move = rt_transform_identity();
         RtVec3 by = {16, -8, 4};
@@ -123,8 +116,7 @@ RT_TEST(moving_the_tree_and_moving_the_ray_agree) {
     RtRandom random = rt_random(8, 0);
     size_t hits = 0, agreed = 0;
     for (uint32_t round = 0; round < 100; round++) {
-        OWNED_BUILDER b = {0};
-        OWNED_FOREST forest = {0};
+        OWNED_TREES(b, forest);
         RtCsgTerm root = random_term(&b, &random, 10, false);
         RtTransform move = rt_transform_identity();
         RtVec3 axis = rt_narrow(rt_random_direction(&random));
@@ -200,8 +192,7 @@ static RtCsgTerm deep_tree(RtCsgBuilder *b, DeepShape shape, RtCsgOp op) {
 }
 
 static void check_deep(DeepShape shape, RtCsgOp op) {
-    OWNED_BUILDER b = {0};
-    OWNED_FOREST forest = {0};
+    OWNED_TREES(b, forest);
     RtCsg tree = compile(&forest, &b, deep_tree(&b, shape, op));
     assert_true(rt_csg_forest_bytes(&forest) < (uint64_t)DEEP * 2000);
     assert_int_equal(tree.most_crossings, 4 * DEEP);
@@ -250,27 +241,20 @@ static int run_deep(void) {
 
 /* ---- memory ---- */
 
+static RtStatus compile_anew(const RtCsgBuilder *b, RtCsgTerm root, RtError *error) {
+    OWNED_FOREST forest = {0};
+    RtCsg tree;
+    const RtStatus status = rt_csg_compile(&forest, b, root, true, &tree, error);
+    if (status != RT_OK)
+        assert_int_equal(forest.set.solid_count + forest.instruction_count + forest.box_count, 0);
+    return status;
+}
+
 RT_TEST(compiling_fails_cleanly_at_every_allocation) {
     RtRandom random = rt_random(10, 0);
-    RtCsgBuilder b = {0};
-    RtCsgTerm root = random_term(&b, &random, RT_MAX_RANDOM_TREE, false);
-    RtCsgForest forest = {0};
-    RtCsg tree;
-    RtStatus status = RT_NO_MEMORY;
-    uint64_t n = 1;
-    for (; n < 1000; n++) {
-        rt_alloc_fail_at(n);
-        status = rt_csg_compile(&forest, &b, root, true, &tree, NULL);
-        rt_alloc_fail_at(0);
-        if (status == RT_OK) break;
-        assert_int_equal(status, RT_NO_MEMORY);
-        assert_int_equal(forest.set.solid_count + forest.instruction_count + forest.box_count, 0);
-    }
-    assert_int_equal(status, RT_OK);
-    assert_true(n > 5);
-    rt_csg_forest_clear(&forest);
-    rt_csg_builder_clear(&b);
-    assert_int_equal(rt_alloc_live(), 0);
+    OWNED_BUILDER b = {0};
+    const RtCsgTerm root = random_term(&b, &random, RT_MAX_RANDOM_TREE, false);
+    assert_fails_cleanly(compile_anew(&b, root, error), (void)0);
 }
 
 RT_TEST_GROUP(csg_trees) {

@@ -94,10 +94,8 @@ RT_TEST(a_flat_cone_is_hit_between_its_circles_only) {
     RtRandom random = rt_random(4, 0);
     int hits = 0;
     for (int i = 0; i < RAYS; i++) {
-        OWNED_GEOMETRY g = {0};
         RtVec3 apex = rt_narrow(rt_scaled(rt_random_direction(&random), ldexp(1, -20 - i % 40)));
-        assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 0.75f, apex, 0.25f, error));
-        assert_ok(rt_geometry_finish(&g, error));
+        OWNED_OBJECT(g, cone, rt_vec3(0, 0, 0), 0.75f, apex, 0.25f);
         RtRay ray = random_ray(&random);
         float t;
         if (hit(&g, 0, &ray, &t)) {

@@ -2,8 +2,6 @@
 /* shape/: hits, normals and rejected input of every shape, against results known by hand. */
 #include "shape_testing.h"
 
-#include <string.h>
-
 /* ---- hits ---- */
 
 #define MISS NAN
@@ -33,7 +31,7 @@ static void check(RtGeometry *g, const Case *cases, size_t count) {
 
 RT_TEST(unit_normals_are_kept_bit_for_bit_and_others_made_unit) {
     const RtVec3 corners[3] = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}};
-    RtGeometry g = {0};
+    OWNED_GEOMETRY g = {0};
     for (uint32_t i = 0; i < 50; i++) {
         RtVec3d n = rt_vec3d(1, 0.1 * i, 0.01 * i * i);
         RtVec3 unit = rt_narrow(rt_scaled(rt_normalized(n), 1 + 0x1p-24)),
@@ -44,13 +42,10 @@ RT_TEST(unit_normals_are_kept_bit_for_bit_and_others_made_unit) {
         assert_memory_equal(kept, normals, 2 * sizeof(RtVec3));
         assert_true(fabs(rt_lengthd(rt_widen(kept[2])) - 1) < 1e-7);
     }
-    rt_geometry_clear(&g);
 }
 
 RT_TEST(the_lecture_ray_meets_the_unit_sphere_at_9_and_11) {
-    OWNED_GEOMETRY g = {0};
-    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 1, error));
-    assert_ok(rt_geometry_finish(&g, error));
+    OWNED_OBJECT(g, sphere, rt_vec3(0, 0, 0), 1);
     RtRay ray = make_ray(rt_vec3(0, 0, 10), rt_vec3(0, 0, -1));
     float t;
     assert_true(hit(&g, 0, &ray, &t));

@@ -5,10 +5,6 @@
 #include "core/text/npy.h"
 
 #include <fcntl.h>
-#include <string.h>
-#include <unistd.h>
-
-#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_place, remove_place)
 
 #define SHAPE(text) "{'descr': '<f4', 'fortran_order': False, 'shape': " text ", }"
 
@@ -32,8 +28,9 @@ static Path write_array(const Place *place, int major, int minor, const char *he
     return path;
 }
 
-RT_TEST_IN_PLACE(what_is_written_is_read) {
-    const Place *place = *state;
+PLACES_WITH(NULL)
+
+PLACE_TEST(what_is_written_is_read) {
     const float values[3][8] = {{1, 2, 3}, {4, 5, -6, 0, 0, 0, 0, 7e-40f}, {8}};
     float read[3][8];
     Path path = path_in(place, "some.npy");
@@ -51,7 +48,7 @@ RT_TEST_IN_PLACE(what_is_written_is_read) {
     assert_memory_equal(values, read, sizeof values);
 }
 
-RT_TEST_IN_PLACE(headers_of_any_version_and_order_of_keys_are_read) {
+PLACE_TEST(headers_of_any_version_and_order_of_keys_are_read) {
     const struct {
         int major;
         const char *header;
@@ -63,14 +60,14 @@ RT_TEST_IN_PLACE(headers_of_any_version_and_order_of_keys_are_read) {
                  {1, "  { 'fortran_order' : False , 'descr' : '<f4' , 'shape' : ( 2 , 8 ) , }\n\n"}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         RtNpy npy;
-        Path path = write_array(*state, cases[i].major, 0, cases[i].header, 64);
+        Path path = write_array(place, cases[i].major, 0, cases[i].header, 64);
         assert_ok(rt_npy_open(&npy, path.text, 8, 2, error));
         assert_int_equal(npy.rows, 2);
         rt_npy_close(&npy);
     }
 }
 
-RT_TEST_IN_PLACE(arrays_of_another_type_order_shape_or_length_are_refused) {
+PLACE_TEST(arrays_of_another_type_order_shape_or_length_are_refused) {
     const struct {
         int major, minor;
         const char *header;
@@ -113,16 +110,16 @@ RT_TEST_IN_PLACE(arrays_of_another_type_order_shape_or_length_are_refused) {
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         RtNpy npy;
-        Path path = write_array(*state, cases[i].major, cases[i].minor, cases[i].header, cases[i].bytes);
+        Path path = write_array(place, cases[i].major, cases[i].minor, cases[i].header, cases[i].bytes);
         assert_bad_input(rt_npy_open(&npy, path.text, 8, 1000, error), cases[i].says);
         rt_npy_close(&npy);
     }
 }
 
 /* Whichever byte changes, and wherever the file ends, it is read as the array or rejected. */
-RT_TEST_IN_PLACE(no_damage_to_a_file_goes_further_than_a_message) {
+PLACE_TEST(no_damage_to_a_file_goes_further_than_a_message) {
     const char header[] = "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 8), }\n";
-    Path path = write_array(*state, 1, 0, header, 64);
+    Path path = write_array(place, 1, 0, header, 64);
     char bytes[256];
     int file = open(path.text, O_RDWR); /* written in place: a file that is replaced may wait for the disk */
     size_t size = (size_t)read(file, bytes, sizeof bytes);

@@ -5,11 +5,6 @@
 #include "core/base/random.h"
 #include "core/text/number.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 static void assert_like_strtof(const char *text) {
     float value = 0;
     const float expected = strtof(text, NULL);

@@ -5,10 +5,6 @@
 #include "core/text/table.h"
 
 #include <inttypes.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 typedef struct Part {
     uint64_t rays;
@@ -110,11 +106,16 @@ static RtStanding first_is_best(const void *row) {
     return row == things ? RT_STANDING_BEST : RT_STANDING_BEHIND;
 }
 
+static RtTable first_columns(void) {
+    static const RtColumnGroup first[] = {RT_FROM_TO(columns, name, seconds)};
+    RtTable narrow = table;
+    narrow.groups = first;
+    narrow.group_count = 1;
+    return narrow;
+}
+
 RT_TEST(latex_has_bold_fields_and_escapes_what_it_must) {
-    RtTable marked = table;
-    const RtColumnGroup first[] = {RT_FROM_TO(columns, name, seconds)};
-    marked.groups = first;
-    marked.group_count = 1;
+    RtTable marked = first_columns();
     marked.caption = "50 % of {a_b}";
     marked.wide = true;
     assert_written(&marked, rt_table_tex,
@@ -127,10 +128,7 @@ RT_TEST(latex_has_bold_fields_and_escapes_what_it_must) {
 }
 
 RT_TEST(html_escapes_marks_notes_and_keeps_numbers_for_sorting) {
-    RtTable narrow = table;
-    const RtColumnGroup first[] = {RT_FROM_TO(columns, name, seconds)};
-    narrow.groups = first;
-    narrow.group_count = 1;
+    RtTable narrow = first_columns();
     narrow.caption = "a & b";
     narrow.standing = first_is_best;
     assert_written(
@@ -149,16 +147,14 @@ RT_TEST(html_escapes_marks_notes_and_keeps_numbers_for_sorting) {
 }
 
 RT_TEST(json_has_an_object_a_row_and_null_for_what_is_missing) {
-    json_t *rows = rt_table_json(&table);
-    json_t *expected = json_pack(
+    json_auto_t *rows = rt_table_json(&table);
+    json_auto_t *expected = json_pack(
         "[{s:s, s:i, s:f, s:b, s:{s:f, s:f, s:f}, s:{s:i}}, {s:s, s:i, s:n, s:b, s:{s:n, s:n, s:n}, s:n}]",
         "name", "a|b, `c` **d**", "hit count", 12, "seconds", 1.5, "exact", 1, "range", "value", 1.5, "low",
         0.75, "high", 3.0, "tally", "rays", 7, "name", "<x>", "hit count", 3456, "seconds", "exact", 0,
         "range", "value", "low", "high", "tally");
     assert_non_null(expected);
     assert_true(json_equal(rows, expected));
-    json_decref(rows);
-    json_decref(expected);
 }
 
 RT_TEST(lines_one_by_one_are_those_of_the_whole_table) {
@@ -218,11 +214,10 @@ static double nine_digits(double end) {
     static const RtTableColumn column = {"end", "end", "", "an end", get_ratio_end, RT_FORM_end, 0};
     char text[64];
     ratio_end = end;
-    json_t *object = rt_row_json(&(RtColumnGroup){NULL, &column, 1, NULL}, 1, &ratio_end);
+    json_auto_t *object = rt_row_json(&(RtColumnGroup){NULL, &column, 1, NULL}, 1, &ratio_end);
     size_t length = json_dumpb(json_object_get(object, "end"), text, sizeof text - 1,
                                JSON_ENCODE_ANY | JSON_REAL_PRECISION(9));
     text[length] = '\0';
-    json_decref(object);
     return strtod(text, NULL);
 }
 
@@ -295,12 +290,10 @@ RT_TEST(counts_keep_all_their_digits_up_to_the_last_that_json_has) {
         char buffer[RT_MAX_FIELD], expected[32];
         snprintf(expected, sizeof expected, "%" PRIu64, counts[i]);
         assert_string_equal(rt_field_show(RT_FORM_integer, &field, buffer), expected);
-        json_t *written = rt_row_json(groups, 1, &row);
+        json_auto_t *written = rt_row_json(groups, 1, &row);
         char *text = json_dumps(written, JSON_COMPACT);
-        json_t *read = json_loads(text, 0, NULL);
+        json_auto_t *read = json_loads(text, 0, NULL);
         assert_true((uint64_t)json_integer_value(json_object_get(read, "hit count")) == counts[i]);
-        json_decref(written);
-        json_decref(read);
         free(text);
     }
 }

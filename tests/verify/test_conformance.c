@@ -9,12 +9,8 @@
  * as many rays of each family (the default is 64; AddressSanitizer in ./test.sh --all takes 16). */
 #include "equivalence_testing.h"
 
-#include "scenes/builtin.h"
 #include "verify/spread.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <xxhash.h>
 
 enum { MAX_SCENES = 64 };
@@ -26,7 +22,7 @@ static size_t rays_per_family = 64;
  * be refused, with a value that fits, if `may_refuse`. */
 static bool conforms(const FamilyBench *bench, const char *spec, bool may_refuse) {
     RtError error = {RT_OK, ""};
-    RtAccel *accel;
+    OWNED_ACCEL RtAccel *accel;
     const char *scene = bench->scene.name;
     RtStatus status = rt_accel_open(spec, &bench->scene, &accel, &error);
     if (status == RT_NOT_AVAILABLE) {
@@ -58,7 +54,6 @@ static bool conforms(const FamilyBench *bench, const char *spec, bool may_refuse
                     rt_ray_family_name(result.first_wrong.index / each_family), text);
         good = false;
     }
-    rt_accel_destroy(accel);
     return good;
 }
 

@@ -6,8 +6,6 @@
 #include "core/base/parallel.h"
 #include "verify/spread.h"
 
-#include <string.h>
-
 enum { RAYS = RT_SHARE(3000, 600), PIECE = RAYS / 6 };
 
 typedef struct Stage {

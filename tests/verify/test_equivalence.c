@@ -8,9 +8,6 @@
 #include "verify/failure.h"
 #include "verify/verify_rays.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /* ---- an accelerator that lies ---- */
 
 typedef enum Lie { NO_LIE, T_IN_TIMED, ID_IN_COUNTED, BLOCKED_IN_STREAMS_OF_64, LOST_LAST_RAY } Lie;
@@ -153,12 +150,11 @@ RT_TEST(the_last_ray_counts_too) {
     char text[512];
     rt_wrong_answer_format(&e.first_wrong, text, sizeof text);
     assert_non_null(strstr(text, "got no hit"));
-    json_t *row = rt_equivalence_json(&e, "s", "a", "brute");
+    json_auto_t *row = rt_equivalence_json(&e, "s", "a", "brute");
     assert_int_equal(json_integer_value(json_object_get(row, "wrong")), 1);
     json_t *wrong = json_object_get(row, "first_wrong");
     const char *x = json_string_value(json_array_get(json_object_get(wrong, "org"), 0));
     assert_true(strtof(x, NULL) == rays[LAST].org.x);
-    json_decref(row);
 }
 
 RT_TEST(an_accelerator_that_is_not_exact_is_judged_by_verdicts) {
@@ -192,15 +188,11 @@ static RtStatus build_unlucky(const void *context, const RtScene *scene, int thr
     return RT_OK;
 }
 
-static void assert_went_wrong(RtStatus status, const RtError *error) {
-    assert_int_equal(status, RT_NO_MEMORY);
-    assert_string_equal(error->message, "went wrong while tracing");
-}
+#define assert_went_wrong(expr) assert_fails_at(expr, RT_NO_MEMORY, "went wrong while tracing", "")
 
 RT_TEST(what_goes_wrong_while_tracing_is_a_status_of_all_who_trace) {
     Stage *stage = *state;
-    RtAccel *accel;
-    RtError failure = {RT_OK, ""};
+    OWNED_ACCEL RtAccel *accel;
     RtEquivalence equivalence;
     RtReference reference;
     RtAnswer reply;
@@ -218,15 +210,14 @@ RT_TEST(what_goes_wrong_while_tracing_is_a_status_of_all_who_trace) {
     RtTimed timed = {.accel = accel, .set = &set, .seconds = &seconds, .wall = &wall};
     const RtTiming timing = {.rounds = {.rounds = 1, .most = 1}, .threads = 1};
     uint32_t done;
-    assert_went_wrong(rt_equivalence_check(&stage->reference, accel, 1, &equivalence, &failure), &failure);
-    assert_went_wrong(rt_reference_init(&reference, accel, rays, RAYS, 1, &failure), &failure);
-    assert_went_wrong(rt_failure_ask(&question, &stage->scene, builder, &reply, &failure), &failure);
-    assert_went_wrong(rt_frame_trace(&frame, accel, &options, &failure), &failure);
-    assert_went_wrong(rt_measure_answers(accel, &set, 1, hits, &failure), &failure);
-    assert_went_wrong(rt_measure_count(accel, &set, stage->reference.hits, 1, &count, &failure), &failure);
-    assert_went_wrong(rt_measure_time(&timed, 1, &timing, &done, &failure), &failure);
-    assert_went_wrong(rt_verify_rays(&wanted, accel, more, &failure), &failure);
-    rt_accel_destroy(accel);
+    assert_went_wrong(rt_equivalence_check(&stage->reference, accel, 1, &equivalence, error));
+    assert_went_wrong(rt_reference_init(&reference, accel, rays, RAYS, 1, error));
+    assert_went_wrong(rt_failure_ask(&question, &stage->scene, builder, &reply, error));
+    assert_went_wrong(rt_frame_trace(&frame, accel, &options, error));
+    assert_went_wrong(rt_measure_answers(accel, &set, 1, hits, error));
+    assert_went_wrong(rt_measure_count(accel, &set, stage->reference.hits, 1, &count, error));
+    assert_went_wrong(rt_measure_time(&timed, 1, &timing, &done, error));
+    assert_went_wrong(rt_verify_rays(&wanted, accel, more, error));
 }
 
 /* ---- verdicts ---- */
@@ -258,7 +249,7 @@ typedef struct Case {
 } Case;
 
 RT_TEST(verdicts_tell_ties_and_margins_from_errors) {
-    RtGeometry g;
+    OWNED_GEOMETRY g;
     make_geometry(&g);
     RtRay center = down_from(0, 0, 3), above_edge = down_from(0.5f, 0.5f, -2), inner = down_from(0.5f, 0, -2);
     RtRay tangent = down_from(1, 0, 3), beside = down_from(1.5f, 0, 3), far = down_from(20, 0, 3);
@@ -294,7 +285,6 @@ RT_TEST(verdicts_tell_ties_and_margins_from_errors) {
         print_error("%s: %s instead of %s\n", c->what, rt_verdict_name(got), rt_verdict_name(c->verdict));
         wrong++;
     }
-    rt_geometry_clear(&g);
     assert_int_equal(wrong, 0);
 }
 
@@ -306,7 +296,7 @@ static void assert_occluded(const RtGeometry *g, const RtRay *ray, bool expected
 }
 
 RT_TEST(occlusion_is_marginal_only_where_a_hit_is) {
-    RtGeometry g;
+    OWNED_GEOMETRY g;
     make_geometry(&g);
     RtRay up = down_from(0.5f, 0, -2), ends_before = up, ends_at = up;
     ends_before.tmax = 2.9f;
@@ -315,7 +305,6 @@ RT_TEST(occlusion_is_marginal_only_where_a_hit_is) {
     assert_occluded(&g, &up, true, false, RT_WRONG);
     assert_occluded(&g, &ends_before, false, true, RT_WRONG);
     assert_occluded(&g, &ends_at, true, false, RT_MARGINAL);
-    rt_geometry_clear(&g);
 }
 
 RT_TESTS(equivalence, set_up, tear_down)

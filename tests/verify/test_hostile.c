@@ -8,7 +8,6 @@
 #include "verify/spread.h"
 
 #include <float.h>
-#include <stdio.h>
 
 enum { RAYS = RT_SHARE(16, 4), SOME_SPECS = 3 }; /* of each family; of each accelerator */
 

@@ -17,10 +17,9 @@ static const char *const names[] = {
 
 static RtEquivalence check(const FamilyBench *bench, RtAccelBuilder builder) {
     RtEquivalence result;
-    RtAccel *accel;
+    OWNED_ACCEL RtAccel *accel;
     assert_ok(rt_accel_builder_run(&builder, &bench->scene, &accel, error));
     assert_ok(rt_equivalence_check(&bench->reference, accel, 0, &result, error));
-    rt_accel_destroy(accel);
     return result;
 }
 

@@ -211,7 +211,7 @@ static void add_one_of_each_shape(RtGeometry *g, const Place *p, RtRandom *rando
     assert_ok(rt_geometry_add_sphere(g, place(p, rt_random_point(random, 1)), p->scale * 0.75f, error));
     assert_ok(rt_geometry_add_cone(g, place(p, rt_vec3(1, 1, -1)), p->scale * 0.5f,
                                    place(p, rt_vec3(1, 2, 1)), p->scale * 0.125f, error));
-    RtCsgBuilder builder = {0};
+    OWNED_BUILDER builder = {0};
     uint32_t solid;
     RtCsgTerm box, ball, tree;
     RtVec3 lo = place(p, rt_vec3(-1, -1, -1)), hi = place(p, rt_vec3(0.5f, 0.5f, 0.5f));
@@ -222,7 +222,6 @@ static void add_one_of_each_shape(RtGeometry *g, const Place *p, RtRandom *rando
     assert_ok(rt_csg_solid(&builder, solid, 0, &ball, error));
     assert_ok(rt_csg_combine(&builder, RT_CSG_DIFFERENCE, box, ball, &tree, error));
     assert_ok(rt_geometry_add_csg(g, &builder, tree, true, error));
-    rt_csg_builder_clear(&builder);
     assert_ok(rt_geometry_finish(g, error));
 }
 
@@ -308,7 +307,6 @@ static Border sphere_border(const RtGeometry *g, const RtSphere *sphere, RtVec3 
 
 static void assert_borders_are_kept(const Place *p, bool round) {
     RtRandom random = rt_random(13, (uint64_t)(p - places));
-    int tried = 0;
     for (int i = 0; i < 400; i++) {
         OWNED_GEOMETRY g = {0};
         /* Nearly equilateral: needles have wider margins. */
@@ -344,9 +342,7 @@ static void assert_borders_are_kept(const Place *p, bool round) {
         assert_int_equal(verdict_of(&g, &ray, right, right), RT_EQUAL);
         assert_int_equal(verdict_of(&g, &ray, right, (RtHit){(float)((double)at.t + by), 0}), RT_WRONG);
         assert_int_equal(verdict_of(&g, &ray, right, (RtHit){(float)((double)at.t - by), 0}), RT_WRONG);
-        tried++;
     }
-    assert_int_equal(tried, 400);
 }
 
 RT_TEST(answers_across_a_border_at_four_times_delta_are_wrong) {
@@ -424,21 +420,23 @@ static RtEquivalence check_ignorant(const FamilyBench *bench, uint32_t known, bo
     return result;
 }
 
-static void set_up_geometry(FamilyBench *bench, const RtGeometry *geometry) {
+/* `rays` of each family, at these objects, which are finished here. */
+static void set_up_geometry(FamilyBench *bench, RtGeometry *geometry, uint64_t seed, size_t rays) {
+    assert_ok(rt_geometry_finish(geometry, error));
+    bench->scene = open_scene("random:n=1,shape=triangle");
+    rt_geometry_clear(&bench->scene.geometry);
     bench->scene.geometry = *geometry;
     bench->scene.name[0] = '\0';
+    set_up_rays(bench, seed, rays);
 }
 
 RT_TEST(a_library_that_never_hits_is_wrong_however_far_from_the_origin) {
-    OWNED_BENCH bench = {.scene = open_scene("random:n=1,shape=triangle")};
+    OWNED_BENCH bench;
     const RtVec3 v[3] = {{{1e6f, 0, 0}}, {{1000001, 0, 0}}, {{1e6f, 1, 0}}};
     RtGeometry g = {0};
     RtCertain certain;
     assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
-    assert_ok(rt_geometry_finish(&g, error));
-    rt_geometry_clear(&bench.scene.geometry);
-    set_up_geometry(&bench, &g);
-    set_up_rays(&bench, 1, 300);
+    set_up_geometry(&bench, &g, 1, 300);
     RtEquivalence result = check_ignorant(&bench, 0, false, &certain);
     assert_true(result.verdicts[RT_WRONG] > 100 && result.occluded_wrong > 100);
     assert_true(result.faults[RT_FAULT_LOST] == result.verdicts[RT_WRONG]);
@@ -452,7 +450,7 @@ RT_TEST(a_library_that_never_hits_is_wrong_however_far_from_the_origin) {
 }
 
 RT_TEST(small_objects_that_a_library_drops_above_a_large_floor_are_missed) {
-    OWNED_BENCH bench = {.scene = open_scene("random:n=1,shape=triangle")};
+    OWNED_BENCH bench;
     const RtVec3 a[3] = {{{-1e5f, -2, -1e5f}}, {{1e5f, -2, -1e5f}}, {{1e5f, -2, 1e5f}}};
     const RtVec3 b[3] = {{{-1e5f, -2, -1e5f}}, {{1e5f, -2, 1e5f}}, {{-1e5f, -2, 1e5f}}};
     RtGeometry g = {0};
@@ -461,10 +459,7 @@ RT_TEST(small_objects_that_a_library_drops_above_a_large_floor_are_missed) {
     assert_ok(rt_geometry_add_triangle(&g, a, NULL, error));
     assert_ok(rt_geometry_add_triangle(&g, b, NULL, error));
     add_triangles(&g, &places[0], &random, 400, 0.25f);
-    assert_ok(rt_geometry_finish(&g, error));
-    rt_geometry_clear(&bench.scene.geometry);
-    set_up_geometry(&bench, &g);
-    set_up_rays(&bench, 2, 200);
+    set_up_geometry(&bench, &g, 2, 200);
     RtEquivalence result = check_ignorant(&bench, 2, false, &certain);
     uint64_t small = 0;
     for (size_t i = 0; i < bench.reference.count; i++) {
@@ -491,7 +486,6 @@ RT_TEST(a_huge_floor_behind_a_small_object_is_neither_a_tie_nor_equal) {
 }
 
 RT_TEST(a_t_far_from_the_triangle_is_wrong) {
-    OWNED_GEOMETRY g = {0};
     const RtVec3 v[3] = {{{249.364905f, -84.8612486f, 125.024149f}},
                          {{240.195641f, -82.487118f, 130.617727f}},
                          {{241.128702f, -82.0216236f, 129.983131f}}};
@@ -499,8 +493,7 @@ RT_TEST(a_t_far_from_the_triangle_is_wrong) {
                        .dir = {{-0.6109671f, -0.652893543f, 0.44771564f}},
                        .tmax = INFINITY};
     RtFault fault;
-    assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
-    assert_ok(rt_geometry_finish(&g, error));
+    OWNED_OBJECT(g, triangle, v, NULL);
     assert_int_equal(verdict_of(&g, &ray, RT_MISS, (RtHit){1140.2f, 0}), RT_WRONG);
     assert_ok(rt_verdict_fault((RtJudge){.geometry = &g}, &ray, (RtHit){1140.2f, 0}, &fault, error));
     assert_int_equal(fault, RT_FAULT_EDGE_ON);

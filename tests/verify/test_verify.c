@@ -12,9 +12,6 @@
 #include "verify/verify.h"
 #include "verify/verify_table.h"
 
-#include <stdio.h>
-#include <unistd.h>
-
 #define OUT RT_BINARY_DIR "/test_verify.out"
 
 static const MutantRecipe unpadded = {UNPADDED_BOX, true}, padded = {UNPADDED_BOX, false};
@@ -49,39 +46,34 @@ RtStatus __wrap_rt_scene_open(const char *spec, RtScene *scene, RtError *error) 
 
 static const RtVerifyObserver observer = {on_doing, on_row, on_notice, NULL};
 
-/* Verifies grid and a mutant on both scenes; the rows are the caller's. */
-static json_t *verify(const char *folder, int threads, RtStart start) {
-    static const RtVerifySpec specs[] = {{"grid", true, true, {NULL, NULL, 0}},
-                                         {"unpadded", true, true, {build_mutant, &unpadded, 0}}};
-    RtVerify work = {.scenes = scenes,
-                     .scene_count = 2,
-                     .specs = specs,
-                     .spec_count = 2,
-                     .rays = {6000, 1, threads, NULL},
-                     .folder = folder,
-                     .start = start};
+static uint32_t shrink; /* RtVerify.shrink */
+
+/* Verifies `work`, to which this adds; the rows are the caller's. */
+static json_t *verify_as(RtVerify work, uint64_t rays, int threads, const char *folder) {
     json_t *rows;
+    work.rays = (RtVerifyRays){rays, 1, threads, NULL};
+    work.shrink = shrink;
+    work.folder = folder;
     rows_seen = scenes_worked_on = scenes_opened = 0;
     assert_ok(rt_verify_run(&work, &observer, &rows, error));
     return rows;
 }
 
-static uint32_t shrink; /* RtVerify.shrink of verify_spec */
+/* Verifies grid and a mutant on both scenes. */
+static json_t *verify(const char *folder, int threads, RtStart start) {
+    static const RtVerifySpec specs[] = {{"grid", true, true, {NULL, NULL, 0}},
+                                         {"unpadded", true, true, {build_mutant, &unpadded, 0}}};
+    const RtVerify work = {
+        .scenes = scenes, .scene_count = 2, .specs = specs, .spec_count = 2, .start = start};
+    return verify_as(work, 6000, threads, folder);
+}
 
-/* Verifies one spec on `count` scenes; the rows are the caller's. */
+/* Verifies one spec on `count` scenes. */
 static json_t *verify_spec(const RtVerifySpec *spec, const char *const *names, uint32_t count, uint64_t rays,
                            int threads, const char *folder) {
-    RtVerify work = {.scenes = names,
-                     .scene_count = count,
-                     .specs = spec,
-                     .spec_count = 1,
-                     .rays = {rays, 1, threads, NULL},
-                     .shrink = shrink,
-                     .folder = folder,
-                     .start = RT_START_ANEW};
-    json_t *rows;
-    assert_ok(rt_verify_run(&work, &observer, &rows, error));
-    return rows;
+    const RtVerify work = {
+        .scenes = names, .scene_count = count, .specs = spec, .spec_count = 1, .start = RT_START_ANEW};
+    return verify_as(work, rays, threads, folder);
 }
 
 static char *text_of(const char *folder, const char *name) {
@@ -93,10 +85,8 @@ static char *text_of(const char *folder, const char *name) {
 }
 
 static void assert_same_file(const char *name, const char *a, const char *b) {
-    char *x = text_of(a, name), *y = text_of(b, name);
+    OWNED_MEMORY char *x = text_of(a, name), *y = text_of(b, name);
     assert_string_equal(x, y);
-    rt_free(x);
-    rt_free(y);
 }
 
 static const char *replay_of(const json_t *row) {
@@ -106,11 +96,11 @@ static const char *replay_of(const json_t *row) {
 }
 
 RT_TEST(a_failure_can_be_replayed_until_it_is_mended) {
-    json_t *rows = verify(OUT "/a", 0, RT_START_ANEW);
+    json_auto_t *rows = verify(OUT "/a", 0, RT_START_ANEW);
     assert_int_equal(json_array_size(rows), 4);
     assert_false(rt_verify_row_fails(json_array_get(rows, 0)));
     assert_true(rt_verify_row_fails(json_array_get(rows, 1)));
-    RtReplay replay;
+    OWNED(rt_replay_clear) RtReplay replay;
     assert_ok(rt_replay_load(&replay, replay_of(json_array_get(rows, 1)), error));
     assert_string_equal(replay.scene_spec, scenes[0]);
     assert_string_equal(replay.accel_spec, "unpadded");
@@ -121,13 +111,12 @@ RT_TEST(a_failure_can_be_replayed_until_it_is_mended) {
         assert_true(broken.wrong);
         assert_false(mended.wrong);
     }
-    rt_replay_clear(&replay);
-    json_decref(rows);
 }
 
 /* The columns that docs/columns.md documents for `verify --json`. */
 RT_TEST(a_row_has_the_members_that_its_columns_name) {
-    json_t *rows = verify(OUT "/a", 0, RT_START_ANEW), *row = json_array_get(rows, 1);
+    json_auto_t *rows = verify(OUT "/a", 0, RT_START_ANEW);
+    const json_t *row = json_array_get(rows, 1);
     size_t members = 0; /* of the row itself */
     for (size_t g = 0; g < RT_VERIFY_JSON_GROUPS; g++) {
         const RtColumnGroup *group = &rt_verify_json[g];
@@ -140,7 +129,6 @@ RT_TEST(a_row_has_the_members_that_its_columns_name) {
         }
     }
     assert_int_equal(json_object_size(row), members);
-    json_decref(rows);
 }
 
 RT_TEST(threads_and_interruptions_change_no_byte) {
@@ -155,12 +143,10 @@ RT_TEST(threads_and_interruptions_change_no_byte) {
     json_decref(verify(OUT "/b", 0, RT_START_RESUME));
     assert_int_equal(rows_seen, 4);
     assert_int_equal(scenes_worked_on, 1);
-    char *a = text_of(OUT "/a", "verify.csv"), *b = text_of(OUT "/b", "verify.csv");
+    OWNED_MEMORY char *a = text_of(OUT "/a", "verify.csv"), *b = text_of(OUT "/b", "verify.csv");
     /* They differ in the folder of the replay files alone. */
     for (char *at; (at = strstr(a, OUT "/a"));) at[strlen(OUT) + 1] = 'b';
     assert_string_equal(a, b);
-    rt_free(a);
-    rt_free(b);
     assert_same_file("0002-family-kind-plane-seed-1-unpadded.json", OUT "/a", OUT "/b");
     json_decref(verify(OUT "/b", 0, RT_START_RESUME));
     assert_int_equal(scenes_worked_on, 0);
@@ -183,18 +169,16 @@ static RtStatus build_noting_threads(const void *context, const RtScene *scene, 
 RT_TEST(accelerators_are_built_on_the_threads_of_the_run) {
     const RtVerifySpec spec = {"noting", true, true, {build_noting_threads, &padded, 0}};
     for (int threads = 1; threads <= 3; threads += 2) {
-        json_t *rows = verify_spec(&spec, scenes, 1, 100, threads, NULL);
+        json_decref(verify_spec(&spec, scenes, 1, 100, threads, NULL));
         assert_int_equal(threads_of_build, threads);
-        json_decref(rows);
     }
 }
 
 RT_TEST(another_run_is_not_gone_on_with) {
     json_decref(verify(OUT "/c", 0, RT_START_ANEW));
     RtVerify work = {.scenes = scenes, .scene_count = 1, .folder = OUT "/c", .start = RT_START_RESUME};
-    json_t *rows;
+    json_auto_t *rows;
     assert_bad_input(rt_verify_run(&work, &observer, &rows, error), "another verification");
-    json_decref(rows);
 }
 
 static int notices;
@@ -216,7 +200,7 @@ RT_TEST(a_wrong_answer_is_shown_though_its_replay_file_cannot_be_written) {
                            .rays = {6000, 1, 0, NULL},
                            .folder = OUT "/u",
                            .start = RT_START_ANEW};
-    json_t *rows;
+    json_auto_t *rows;
     assert_ok(rt_directory_create(OUT "/u/0001-family-kind-plane-seed-1-unpadded.json", error));
     rows_seen = notices = 0;
     assert_ok(rt_verify_run(&work, &counting, &rows, error));
@@ -224,16 +208,15 @@ RT_TEST(a_wrong_answer_is_shown_though_its_replay_file_cannot_be_written) {
     assert_true(rt_verify_row_fails(row));
     assert_true(json_is_null(json_object_get(json_object_get(row, "first_wrong"), "replay")));
     assert_int_equal(notices, 1);
-    json_decref(rows);
 }
 
 /* Only its first failure is shrunk; the next one is kept with its whole scene. */
 RT_TEST(an_accelerator_has_one_failure_shrunk) {
     const char *const both[] = {scenes[0], "family:kind=axis-aligned,seed=1"};
     const RtVerifySpec spec = {"unpadded", true, true, {build_mutant, &unpadded, 0}};
-    json_t *rows = verify_spec(&spec, both, 2, 6000, 0, OUT "/g");
+    json_auto_t *rows = verify_spec(&spec, both, 2, 6000, 0, OUT "/g");
     for (size_t i = 0; i < 2; i++) {
-        RtReplay replay;
+        OWNED(rt_replay_clear) RtReplay replay;
         RtAnswer answer;
         const json_t *wrong = json_object_get(json_array_get(rows, i), "first_wrong");
         assert_true(json_is_true(json_object_get(wrong, "shrunk")) == (i == 0));
@@ -243,9 +226,7 @@ RT_TEST(an_accelerator_has_one_failure_shrunk) {
         assert_true((replay.shrunk_yaml != NULL) == (i == 0));
         assert_ok(rt_replay_ask(&replay, spec.builder, false, &answer, error));
         assert_true(answer.wrong);
-        rt_replay_clear(&replay);
     }
-    json_decref(rows);
 }
 
 RT_TEST(an_accelerator_has_as_many_failures_shrunk_as_are_asked_for) {
@@ -255,13 +236,12 @@ RT_TEST(an_accelerator_has_as_many_failures_shrunk_as_are_asked_for) {
     const RtVerifySpec spec = {"unpadded", true, true, {build_mutant, &unpadded, 0}};
     for (size_t w = 0; w < 2; w++) {
         shrink = wanted[w];
-        json_t *rows = verify_spec(&spec, three, 3, 6000, 0, OUT "/s");
+        json_auto_t *rows = verify_spec(&spec, three, 3, 6000, 0, OUT "/s");
         for (uint32_t i = 0; i < 3; i++) {
             const json_t *wrong = json_object_get(json_array_get(rows, i), "first_wrong");
             assert_true(json_is_true(json_object_get(wrong, "shrunk")) == (i < wanted[w]));
             assert_true((json_integer_value(json_object_get(wrong, "objects_left")) <= 3) == (i < wanted[w]));
         }
-        json_decref(rows);
     }
     shrink = 0;
 }
@@ -288,10 +268,10 @@ static RtStatus build_losing(const void *context, const RtScene *scene, int thre
 
 RT_TEST(a_failure_that_takes_its_neighbours_is_kept_with_them) {
     const RtVerifySpec spec = {"losing", true, true, {build_losing, &padded, 1}};
-    RtReplay replay;
+    OWNED(rt_replay_clear) RtReplay replay;
     RtAnswer answer;
     shortest_losing = 2;
-    json_t *rows = verify_spec(&spec, scenes, 1, 4000, 0, OUT "/d");
+    json_auto_t *rows = verify_spec(&spec, scenes, 1, 4000, 0, OUT "/d");
     assert_ok(rt_replay_load(&replay, replay_of(json_array_get(rows, 0)), error));
     assert_true(replay.failure.count > 1 && replay.failure.stream > 1);
     assert_int_equal((replay.failure.asked + 1) % replay.failure.stream, 0);
@@ -299,17 +279,14 @@ RT_TEST(a_failure_that_takes_its_neighbours_is_kept_with_them) {
         assert_ok(rt_replay_ask(&replay, spec.builder, shrunk, &answer, error));
         assert_true(answer.wrong);
     }
-    rt_replay_clear(&replay);
-    json_decref(rows);
 }
 
 /* Including the camera's rays, which come first: they form packets. */
 RT_TEST(the_first_rays_are_asked_in_long_streams_as_well_as_alone) {
     const RtVerifySpec spec = {"losing", true, true, {build_losing, &padded, 1}};
     shortest_losing = 64;
-    json_t *rows = verify_spec(&spec, scenes + 1, 1, 1000, 0, OUT "/h");
+    json_auto_t *rows = verify_spec(&spec, scenes + 1, 1, 1000, 0, OUT "/h");
     assert_true(rt_verify_row_fails(json_array_get(rows, 0)));
-    json_decref(rows);
 }
 
 RT_TEST(the_spread_has_the_trial_and_that_beside_each_value) {
@@ -351,7 +328,7 @@ RT_TEST(a_replay_file_needs_no_other_file) {
     assert_ok(rt_scene_open(RT_SOURCE_DIR "/scenes/csg-lecture.yaml", &scene, error));
     RtReplayRecord record = {"moved-away.yaml", "bvh", &scene, &failure, &answer, &shrunk};
     assert_ok(rt_replay_save(path, &record, error));
-    RtReplay replay;
+    OWNED(rt_replay_clear) RtReplay replay;
     assert_ok(rt_replay_load(&replay, path, error));
     assert_memory_equal(&replay.rays[0], &ray, sizeof ray);
     assert_true(replay.failure.occluded && replay.failure.counted);
@@ -361,10 +338,7 @@ RT_TEST(a_replay_file_needs_no_other_file) {
         assert_false(again.wrong);
     }
     replay.fingerprint ^= 1;
-    RtError error;
-    assert_int_equal(rt_replay_ask(&replay, rt_accel_builder_of_spec("bvh"), false, &again, &error),
-                     RT_BAD_INPUT);
-    rt_replay_clear(&replay);
+    assert_bad_input(rt_replay_ask(&replay, rt_accel_builder_of_spec("bvh"), false, &again, error), "");
 }
 
 RT_TEST(a_replay_file_of_a_later_format_is_refused_by_its_number) {
@@ -378,16 +352,14 @@ RT_TEST(what_is_no_replay_file_is_refused) {
     const char *const members[] = {"scene",  "fingerprint", "sampling", "accel", "query",
                                    "kernel", "stream",      "rays",     "asked"};
     const char *path = OUT "/broken.json";
-    json_t *rows = verify(OUT "/a", 0, RT_START_ANEW);
+    json_auto_t *rows = verify(OUT "/a", 0, RT_START_ANEW);
     RtReplay replay;
     for (size_t i = 0; i < sizeof members / sizeof members[0]; i++) {
-        json_t *document = json_load_file(replay_of(json_array_get(rows, 1)), 0, NULL);
+        json_auto_t *document = json_load_file(replay_of(json_array_get(rows, 1)), 0, NULL);
         json_object_set_new(document, members[i], json_real(0.5));
         assert_int_equal(json_dump_file(document, path, 0), 0);
         assert_bad_input(rt_replay_load(&replay, path, error), members[i]);
-        json_decref(document);
     }
-    json_decref(rows);
     assert_ok(rt_file_write(path, "{\n\"a\": nan}", 11, error));
     assert_bad_input(rt_replay_load(&replay, path, error), "broken.json:2");
 }
@@ -401,7 +373,7 @@ static json_t *row_of(const char *scene, const char *accel, bool exact, int marg
 }
 
 RT_TEST(rows_add_up_over_the_parameters_of_an_accelerator) {
-    json_t *rows =
+    json_auto_t *rows =
         json_pack("[o, o, o, o, o]", row_of("balls", "item:facets=on+bvh:max_leaf_size=1,bits=6", true, 0),
                   row_of("balls", "item+bvh", true, 0), row_of("balls", "embree", false, 7),
                   row_of("tetra", "item+bvh", true, 0), row_of("tetra", "embree", true, 0));
@@ -440,7 +412,6 @@ RT_TEST(rows_add_up_over_the_parameters_of_an_accelerator) {
     assert_non_null(strstr(table, "\n| `embree` * | 1 | 100 | 93 | 0 | 7 | 0 | 0 | 0 |\n"));
     assert_non_null(strstr(table, "\n| `embree` | 4 | 0 | 3 | 0 | 0 |\n"));
     assert_non_null(strstr(table, "\n| `tetra` | 2 | 200 | 200 | 0 | 0 | 0 | 5 | 0 |\n"));
-    json_decref(rows);
 }
 
 RT_TESTS(verify, NULL, assert_nothing_is_kept)
