@@ -182,7 +182,7 @@ notices refused '(refused|left out): faulty-refused: scenes of 11 objects are be
 notices mumble '(refused|left out): faulty-mumble: [?]{40}'
 notices leak 'faulty-leak: its process holds 3[0-9][0-9] MB of memory once it is built, and its .describe. says 0 MB'
 notices leaking 'faulty-leaking: its process holds 3[0-9][0-9] MB more memory after tracing'
-notices thread 'faulty-thread: it left 1 thread behind, still running after .destroy.'
+notices thread 'faulty-thread: it left a thread behind, still running after .destroy.'
 notices daemon 'faulty-daemon: it left 1 process behind \(raytally\), which raytally ended'
 
 RAYTALLY_PLUGIN_SECONDS=1

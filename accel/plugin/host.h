@@ -9,7 +9,6 @@
 #define RT_ACCEL_PLUGIN_HOST_H
 
 #include "accel/accel.h"
-#include "accel/plugin/guard.h"
 
 #include <raytally/accel.h>
 
@@ -53,26 +52,15 @@ void rt_plugin_query_ops(RtAccelOps *ops);
 /* Once the plugin has built its structure: sets what queries need. */
 void rt_plugin_query_init(RtPluginAccel *self);
 
-/* ---- the events of a ray that is traced for an observer ---- */
-
-typedef struct RtPluginEvents {
-    const char *name;                  /* of the accelerator */
-    const raytally_counters *counters; /* of the ray's kind, which the plugin counts in; NULL: none */
-    raytally_counters shown;           /* so many of them became events */
-    RtHit best;                        /* so far */
-} RtPluginEvents;
-
-/* Reports what the plugin counted since the last event. */
-void rt_plugin_catch_up(RtPluginEvents *events);
-
-/* raytally_show. */
-void rt_plugin_show(RtPluginEvents *events, const raytally_prepared *ray, uint32_t counter, uint32_t number,
-                    const raytally_box *theirs);
-
 /* ---- what a query is doing, for reports of crashes ---- */
 
-/* Its memory between guard pages. */
+/* Its memory between guard pages, where an access crashes. */
 enum { RT_GUARD_QUERY, RT_GUARD_ANSWERS, RT_GUARD_COUNT };
+typedef struct RtGuarded {
+    char *mapping; /* [mapped] with the guard pages, or NULL */
+    size_t mapped;
+    char *begin, *end; /* of the pages that may be accessed */
+} RtGuarded;
 
 typedef struct RtPluginNow {
     raytally_query face; /* the plugin's; its ray is the last prepared, or the first; NULL: idle */

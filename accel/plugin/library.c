@@ -1,14 +1,26 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Reading the tables of a library of any version, and packing them for another process. */
-#include "accel/plugin/library.h"
+/* The libraries of plugins: reading the tables in them, of any version, and registering what they describe.
+ *
+ * No code of a library ever runs in raytally's own process: effects of its constructors (the locale,
+ * rounding, signal handlers, a crash) stay in other processes. One process tries the library and copies its
+ * tables, that is their numbers and texts, into shared memory; raytally copies them from there and trusts
+ * them as little as any other input. Each process that builds an accelerator opens the library for itself. */
+#include "accel/plugin.h"
+#include "accel/plugin/host.h"
+#include "core/base/process.h"
 
 #include "core/base/file.h"
 #include "core/base/memory.h"
 
 #include <dlfcn.h>
+#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
@@ -19,7 +31,30 @@ enum { LEAST_BYTES = offsetof(raytally_accel_ops, each_box) + sizeof(((raytally_
 #define KNOWN_FLAGS                                                                                          \
     ((uint64_t)(RAYTALLY_OWN_HITS | RAYTALLY_NO_COUNTS | RAYTALLY_OVERLAY | RAYTALLY_ABSOLUTE_HITS))
 
-RtStatus rt_library_fingerprint(const char *path, uint64_t *fingerprint, RtError *error) {
+enum {
+    MOST_LIBRARIES = 32,
+    MOST_TABLES = sizeof(((RtPlugin *)0)->names) / sizeof(char *),
+    MOST_SECONDS = 10 /* to load a library and read its tables */
+};
+
+/* The tables of a library, converted to this version: members that theirs lack are NULL. */
+typedef struct Tables {
+    uint32_t count;
+    raytally_accel_ops at[MOST_TABLES];
+} Tables;
+
+static RtPlugin plugins[MOST_LIBRARIES];
+static size_t plugin_count;
+
+size_t rt_plugin_count(void) {
+    return plugin_count;
+}
+
+const RtPlugin *rt_plugin_at(size_t i) {
+    return &plugins[i];
+}
+
+static RtStatus hash_library(const char *path, uint64_t *fingerprint, RtError *error) {
     char *data;
     size_t size;
     RT_TRY(rt_file_read(path, (size_t)1 << 30, &data, &size, error));
@@ -31,7 +66,7 @@ RtStatus rt_library_fingerprint(const char *path, uint64_t *fingerprint, RtError
 /* ---- reading its tables ---- */
 
 /* Until its size is known, only members that every version has are read. */
-static RtStatus take_table(const char *path, const raytally_accel_ops *theirs, RtTables *tables,
+static RtStatus take_table(const char *path, const raytally_accel_ops *theirs, Tables *tables,
                            RtError *error) {
     if (theirs->abi == 0)
         return rt_fail(error, RT_BAD_INPUT, "%s: `abi` is not set: set it to RAYTALLY_ACCEL_ABI", path);
@@ -74,7 +109,9 @@ static RtStatus take_table(const char *path, const raytally_accel_ops *theirs, R
     return RT_OK;
 }
 
-RtStatus rt_library_open(const char *path, RtTables *tables, RtError *error) {
+/* Loads the library into this process, for as long as that lives. RT_BAD_INPUT if it is not a plugin, or one
+ * of another version. */
+static RtStatus open_library(const char *path, Tables *tables, RtError *error) {
     tables->count = 0;
     void *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     if (!library) return rt_fail(error, RT_BAD_INPUT, "it cannot be loaded: %s", dlerror());
@@ -92,9 +129,9 @@ RtStatus rt_library_open(const char *path, RtTables *tables, RtError *error) {
             return rt_fail(error, RT_BAD_INPUT,
                            "%s: it returns the same table for index %u and %u; NULL must end them", path,
                            tables->count - 1, tables->count);
-        if (tables->count == RT_MOST_TABLES)
+        if (tables->count == MOST_TABLES)
             return rt_fail(error, RT_BAD_INPUT, "%s: more than %d accelerators in one library", path,
-                           RT_MOST_TABLES);
+                           MOST_TABLES);
         RT_TRY(take_table(path, table, tables, error));
     }
     if (tables->count == 0) return rt_fail(error, RT_BAD_INPUT, "%s: there is no accelerator in it", path);
@@ -103,12 +140,12 @@ RtStatus rt_library_open(const char *path, RtTables *tables, RtError *error) {
 
 /* Opens the library of a plugin's accelerator, if the file is unchanged, and sets ops->table. */
 static RtStatus enter(RtPluginOps *ops, RtError *error) {
-    RtTables tables;
+    Tables tables;
     uint64_t fingerprint;
-    RT_TRY(rt_library_fingerprint(ops->path, &fingerprint, error));
+    RT_TRY(hash_library(ops->path, &fingerprint, error));
     if (fingerprint != ops->fingerprint)
         return rt_fail(error, RT_BROKEN, "%s has changed since it was loaded", ops->path);
-    RT_TRY(rt_library_open(ops->path, &tables, error));
+    RT_TRY(open_library(ops->path, &tables, error));
     const raytally_accel_ops *table = &tables.at[ops->place];
     if (ops->place >= tables.count || strcmp(table->name, ops->ops.name) != 0 ||
         table->param_count != ops->ops.param_count)
@@ -214,7 +251,7 @@ static const char *file_of(const char *name) {
     return rt_accel_find(name, &ops, NULL) == RT_OK && ops->remote ? ((const RtPluginOps *)ops)->path : "";
 }
 
-static RtStatus check_name(const char *path, const RtTables *tables, uint32_t place, RtError *error) {
+static RtStatus check_name(const char *path, const Tables *tables, uint32_t place, RtError *error) {
     RtError why;
     const char *name = tables->at[place].name;
     if (!name || !tables->at[place].summary || !tables->at[place].paper)
@@ -232,7 +269,8 @@ static RtStatus check_name(const char *path, const RtTables *tables, uint32_t pl
     return RT_OK;
 }
 
-RtStatus rt_tables_check(const char *path, const RtTables *tables, RtError *error) {
+/* Checks that the tables are complete and consistent, and that their names are free. */
+static RtStatus check_tables(const char *path, const Tables *tables, RtError *error) {
     for (uint32_t i = 0; i < tables->count; i++) {
         RT_TRY(check_name(path, tables, i, error));
         RT_TRY(check_params(path, &tables->at[i], error));
@@ -240,100 +278,212 @@ RtStatus rt_tables_check(const char *path, const RtTables *tables, RtError *erro
     return rt_accel_has_room(tables->count, error);
 }
 
-/* ---- tables as bytes ---- */
+/* ---- trying a library ---- */
 
-/* Numbers as in memory; a text as its length, its characters and a 0; NULL has no length.
- * Each function passes its values in one direction, to the bytes or from them. */
-#define NO_TEXT UINT32_MAX
+/* Written by the process that tries it; the plugin may write to all of this. */
+typedef struct Trial {
+    uint32_t complete; /* 1: the process has written what follows; 0: it has not */
+    RtError error;
+    Tables tables;        /* if error.status is RT_OK */
+    size_t used;          /* more than `memory` has: it is too small */
+    char memory[4 << 20]; /* the texts and parameters of the tables */
+} Trial;
 
-typedef struct Cursor {
-    char *at, *end; /* the next byte */
-    bool reading, good;
-} Cursor;
+/* Calls `visit` with the parameters of a table and then with each text, which may be NULL. */
+enum { A_TEXT = 0 /* as `bytes` */ };
+typedef bool Visit(void *context, const char **at, size_t bytes);
 
-static void pass(Cursor *c, void *value, size_t bytes) {
-    c->good = c->good && (size_t)(c->end - c->at) >= bytes;
-    if (!c->good) return;
-    memcpy(c->reading ? value : c->at, c->reading ? c->at : value, bytes);
-    c->at += bytes;
+static bool visit_table(raytally_accel_ops *table, Visit *visit, void *context) {
+    const char **texts[] = {&table->name, &table->summary, &table->paper};
+    const char *params = table->param_count > 0 ? (const char *)table->params : NULL;
+    bool good = table->param_count <= RAYTALLY_MAX_PARAMS &&
+                visit(context, &params, table->param_count * sizeof(raytally_param));
+    table->params = (const raytally_param *)params;
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0] && good; i++)
+        good = visit(context, texts[i], A_TEXT);
+    for (uint32_t p = 0; p < table->param_count && good; p++) {
+        raytally_param *param = (raytally_param *)&table->params[p];
+        const char **own[] = {&param->name,        &param->default_text, &param->choices,
+                              &param->test_values, &param->meaning,      &param->source};
+        for (size_t i = 0; i < sizeof own / sizeof own[0] && good; i++) good = visit(context, own[i], A_TEXT);
+    }
+    return good;
 }
 
-/* A text that is read stays in the bytes. */
-static void pass_text(Cursor *c, const char **text) {
-    size_t written = !c->reading && *text ? strlen(*text) : NO_TEXT;
-    uint32_t length = written < NO_TEXT ? (uint32_t)written : NO_TEXT;
-    c->good = c->good && (c->reading || !*text || length != NO_TEXT);
-    if (c->reading) *text = NULL;
-    pass(c, &length, sizeof length);
-    c->good = c->good && (length == NO_TEXT || (size_t)(c->end - c->at) > length);
-    if (!c->good || length == NO_TEXT) return;
-    if (c->reading)
-        *text = c->at;
+/* Copies it to the memory of the trial. */
+static bool keep(void *context, const char **at, size_t bytes) {
+    Trial *trial = context;
+    char *to = trial->memory + trial->used;
+    if (!*at) return true;
+    if (bytes == A_TEXT) bytes = strlen(*at) + 1;
+    trial->used += (bytes + 7) / 8 * 8;
+    if (trial->used > sizeof trial->memory) return false;
+    memcpy(to, *at, bytes);
+    *at = to;
+    return true;
+}
+
+static _Noreturn void try_as_child(const char *path, Trial *trial) {
+    RtError failure = {RT_OK, ""};
+    alarm(MOST_SECONDS + 1); /* if raytally has ended */
+    RtStatus status = open_library(path, &trial->tables, &failure);
+    for (uint32_t i = 0; i < trial->tables.count && status == RT_OK; i++) {
+        if (!visit_table(&trial->tables.at[i], keep, trial))
+            status = rt_fail(&failure, RT_BAD_INPUT, "%s: the text of its tables takes more than %zu bytes",
+                             path, sizeof trial->memory);
+    }
+    failure.status = status;
+    trial->error = failure;
+    trial->complete = 1;
+    _exit(EXIT_SUCCESS);
+}
+
+/* Loads the library in a process of its own, which may crash; *trial gets the result. */
+static RtStatus try_loading(const char *path, Trial *trial, RtError *error) {
+    char what[160];
+    RtProcess child;
+    RtProcessEnd end;
+    RT_TRY(rt_process_fork(&child, -1, error));
+    if (child.pid == 0) try_as_child(path, trial);
+    bool ended = rt_process_wait(&child, 1000 * MOST_SECONDS, &end);
+    rt_process_end(&child, 0);
+    if (ended && trial->complete) return RT_OK;
+    if (ended)
+        rt_process_end_format(end, 0, "", what, sizeof what);
     else
-        memcpy(c->at, *text, (size_t)length + 1);
-    c->at += (size_t)length + 1;
-    c->good = c->at[-1] == '\0';
+        snprintf(what, sizeof what, "it takes more than %d seconds", MOST_SECONDS);
+    return rt_fail(error, RT_BAD_INPUT, "%s: loading it failed: %s", path, what);
 }
 
-static void pass_param(Cursor *c, raytally_param *p) {
-    const char **texts[] = {&p->name,        &p->default_text, &p->choices,
-                            &p->test_values, &p->meaning,      &p->source};
-    pass(c, &p->type, sizeof p->type);
-    pass(c, &p->lo, sizeof p->lo);
-    pass(c, &p->hi, sizeof p->hi);
-    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) pass_text(c, texts[i]);
+/* A copy of a trial that nobody else can write to. */
+typedef struct Copied {
+    Trial *own; /* its memory ends after `used` bytes */
+    const Trial *from;
+} Copied;
+
+/* Lets *at point to the copy of what it points to; false if it pointed elsewhere. */
+static bool relocate(void *context, const char **at, size_t bytes) {
+    const Copied *copied = context;
+    const size_t offset = (size_t)((uintptr_t)*at - (uintptr_t)copied->from->memory);
+    if (!*at) return bytes == A_TEXT;
+    if (offset >= copied->own->used || bytes > copied->own->used - offset || (bytes != A_TEXT && offset % 8))
+        return false;
+    *at = copied->own->memory + offset;
+    return true;
 }
 
-static void each_box_is_remote(const void *self, raytally_box_visitor *visit, void *context) {
-    (void)self, (void)visit, (void)context;
+/* Copies the tables and checks them. The copy is the caller's, also after a failure. */
+static RtStatus take_tables(const char *path, const Trial *trial, Trial **out, RtError *error) {
+    RtError failure = trial->error;
+    failure.message[sizeof failure.message - 1] = '\0';
+    if (failure.status != RT_OK) return rt_fail(error, RT_BAD_INPUT, "%s", failure.message);
+    const size_t used = trial->used < sizeof trial->memory ? trial->used : sizeof trial->memory;
+    const size_t bytes = offsetof(Trial, memory) + used;
+    Trial *own = *out = rt_alloc_unset(bytes, 1);
+    if (!own) return rt_fail_memory(error, "a plugin", bytes);
+    memcpy(own, trial, bytes);
+    own->used = used;
+    if (used > 0) own->memory[used - 1] = '\0';
+    bool good = own->tables.count <= MOST_TABLES;
+    for (uint32_t i = 0; good && i < own->tables.count; i++)
+        good = visit_table(&own->tables.at[i], relocate, &(Copied){own, trial});
+    return good ? check_tables(path, &own->tables, error)
+                : rt_fail(error, RT_BAD_INPUT, "%s: its tables cannot be read", path);
 }
 
-static void pass_table(Cursor *c, raytally_accel_ops *table) {
-    uint8_t shows = table->each_box != NULL;
-    pass_text(c, &table->name);
-    pass_text(c, &table->summary);
-    pass_text(c, &table->paper);
-    pass(c, &shows, sizeof shows);
-    pass(c, &table->flags, sizeof table->flags);
-    pass(c, &table->param_count, sizeof table->param_count);
-    if (c->reading) {
-        c->good = c->good && table->param_count <= RAYTALLY_MAX_PARAMS;
-        table->each_box = shows ? each_box_is_remote : NULL;
-        if (!c->good || table->param_count == 0) return;
-        table->params = rt_alloc(table->param_count, sizeof(raytally_param));
-        c->good = table->params != NULL;
+/* ---- registering its tables ---- */
+
+static RtStatus register_tables(RtPlugin *plugin, const Tables *tables, RtError *error) {
+    RtPluginOps *all = rt_alloc(tables->count, sizeof(RtPluginOps)); /* for as long as the program runs */
+    if (!all) return rt_fail_memory(error, "a plugin", tables->count * sizeof(RtPluginOps));
+    for (uint32_t i = 0; i < tables->count; i++) {
+        rt_plugin_ops_init(&all[i], &tables->at[i]);
+        all[i].path = plugin->path;
+        all[i].fingerprint = plugin->fingerprint;
+        all[i].place = i;
+        RT_TRY(rt_accel_register(&all[i].ops, error)); /* check_tables has checked its conditions */
+        plugin->names[plugin->count++] = all[i].ops.name;
     }
-    for (uint32_t p = 0; p < table->param_count && c->good; p++)
-        pass_param(c, (raytally_param *)&table->params[p]);
+    return RT_OK;
 }
 
-size_t rt_tables_pack(const RtTables *tables, char *out, size_t size) {
-    Cursor c = {out, out + size, false, true};
-    uint32_t count = tables->count;
-    pass(&c, &count, sizeof count);
-    for (uint32_t i = 0; i < count; i++) {
-        raytally_accel_ops table = tables->at[i];
-        pass_table(&c, &table);
+/* What is registered stays for as long as the program runs, with the text of its tables. */
+static RtStatus try_and_register(RtPlugin *plugin, RtError *error) {
+    Trial *own = NULL, *trial = mmap(NULL, sizeof(Trial), PROT_READ | PROT_WRITE,
+                                     MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (trial == MAP_FAILED) return rt_fail_memory(error, "the tables of a plugin", sizeof(Trial));
+    RtStatus status = try_loading(plugin->path, trial, error);
+    if (status == RT_OK) status = take_tables(plugin->path, trial, &own, error);
+    munmap(trial, sizeof(Trial));
+    if (status == RT_OK) status = register_tables(plugin, &own->tables, error);
+    if (status != RT_OK) rt_free(own);
+    return status;
+}
+
+/* An absolute path: dlopen searches the system's folders for a name without a slash. */
+static RtStatus real_path(const char *path, char *out, RtError *error) {
+    char *found = realpath(path, NULL);
+    if (!found) return rt_fail(error, RT_BAD_INPUT, "%s: no such plugin: %s", path, strerror(errno));
+    snprintf(out, RT_MAX_PATH, "%s", found);
+    free(found);
+    return RT_OK;
+}
+
+RtStatus rt_plugin_load(const char *path, RtError *error) {
+    char real[RT_MAX_PATH];
+    RT_TRY(real_path(path, real, error));
+    for (size_t i = 0; i < plugin_count; i++) {
+        if (strcmp(plugins[i].path, real) == 0) return RT_OK;
     }
-    return c.good ? (size_t)(c.at - out) : 0;
+    if (plugin_count == MOST_LIBRARIES)
+        return rt_fail(error, RT_BAD_INPUT, "more than %d plugins", MOST_LIBRARIES);
+    RtPlugin *plugin = &plugins[plugin_count];
+    *plugin = (RtPlugin){0};
+    snprintf(plugin->path, sizeof plugin->path, "%s", real);
+    RT_TRY(hash_library(real, &plugin->fingerprint, error));
+    RT_TRY(try_and_register(plugin, error));
+    plugin_count++;
+    return RT_OK;
 }
 
-bool rt_tables_unpack(char *packed, size_t size, RtTables *tables) {
-    Cursor c = {packed, packed + size, true, true};
-    uint32_t count = 0;
-    *tables = (RtTables){0};
-    pass(&c, &count, sizeof count);
-    c.good = c.good && count <= RT_MOST_TABLES;
-    while (c.good && tables->count < count) {
-        raytally_accel_ops *table = &tables->at[tables->count++];
-        *table = (raytally_accel_ops){.abi = RAYTALLY_ACCEL_ABI, .size = sizeof *table};
-        pass_table(&c, table);
+/* ---- lists of libraries ---- */
+
+typedef struct Folder {
+    RtStatus status;
+    RtError *error;
+} Folder;
+
+static void load_from(void *context, const char *path) {
+    Folder *folder = context;
+    if (folder->status == RT_OK) folder->status = rt_plugin_load(path, folder->error);
+}
+
+/* Copies the first name of a list to path[0..size). Returns the rest of the list, or NULL if the name is too
+ * long. */
+static const char *take_path(const char *list, char *path, size_t size) {
+    size_t length = 0;
+    for (; *list && *list != ':' && length < size; list++) {
+        if (*list == '\\' && (list[1] == ':' || list[1] == '\\')) list++;
+        path[length++] = *list;
     }
-    if (!c.good) rt_tables_clear(tables);
-    return c.good;
+    if (length == size) return NULL;
+    path[length] = '\0';
+    return *list == ':' ? list + 1 : list;
 }
 
-void rt_tables_clear(RtTables *tables) {
-    for (uint32_t i = 0; i < tables->count; i++) rt_free((void *)tables->at[i].params);
-    *tables = (RtTables){0};
+RtStatus rt_plugin_load_all(const char *list, RtError *error) {
+    char path[RT_MAX_PATH];
+    struct stat about;
+    while (*list) {
+        list = take_path(list, path, sizeof path);
+        if (!list) return rt_fail(error, RT_BAD_INPUT, "the path of a plugin is too long");
+        Folder folder = {RT_OK, error};
+        if (*path && stat(path, &about) == 0 && S_ISDIR(about.st_mode)) {
+            rt_directory_each(path, ".so", load_from, &folder);
+            RT_TRY(folder.status);
+        } else if (*path) {
+            RT_TRY(rt_plugin_load(path, error));
+        }
+    }
+    return RT_OK;
 }

@@ -6,11 +6,14 @@
 #include "accel/kernel.h"
 #include "accel/remote.h"
 #include "core/base/memory.h"
+#include "core/base/observe.h"
 
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 /* Types of the interface have the layout of raytally's own. */
 _Static_assert(sizeof(raytally_ray) == sizeof(RtRay) && offsetof(raytally_ray, dir) == offsetof(RtRay, dir) &&
@@ -25,6 +28,13 @@ _Static_assert((int)RAYTALLY_SHAPE_SPHERE == (int)RT_SHAPE_SPHERE &&
                    (int)RAYTALLY_INDEX_BITS == (int)RT_REF_INDEX_BITS,
                "references to objects");
 
+typedef struct Events {
+    const char *name;                  /* of the accelerator */
+    const raytally_counters *counters; /* of the ray's kind, which the plugin counts in; NULL: none */
+    raytally_counters shown;           /* so many of them became events */
+    RtHit best;                        /* so far */
+} Events;
+
 /* The plugin sees only the first member of the first. */
 typedef struct PluginQuery {
     RtPluginNow now;
@@ -35,7 +45,7 @@ typedef struct PluginQuery {
     bool counting;
     /* In a stream that is counted: of object tests, and of the layers below. */
     RtTally tallies[RT_RAY_KIND_COUNT], below[RT_RAY_KIND_COUNT];
-    RtPluginEvents events;
+    Events events;
 } PluginQuery;
 
 /* ---- reports ---- */
@@ -75,6 +85,51 @@ static void break_at_ray(RtPluginAccel *accel, const RtRay *ray, const char *wha
                     accel->base.scene->geometry.object_count, text);
 }
 
+/* ---- the events of a ray that is traced for an observer ---- */
+
+/* Object tests and built-in layers report theirs, as everywhere (core/base/observe.h). A plugin counts its
+ * steps and extent tests, and may show each (raytally_show); what it counts and does not show becomes an
+ * event without a name and a box, before the next object test. */
+
+/* Beyond that it counted below zero, and breaks. */
+enum { MOST_COUNTED = 1 << 24 };
+
+/* Whether the plugin counted something that was not shown yet; then it counts as shown. */
+static bool take(Events *events, int counter) {
+    const uint64_t counted = events->counters->at[counter];
+    if (events->shown.at[counter] >= counted || counted > MOST_COUNTED) return false;
+    events->shown.at[counter]++;
+    return true;
+}
+
+static RtTraced next_step(Events *events) {
+    const bool leaf = take(events, RAYTALLY_LEAF_STEPS), empty = take(events, RAYTALLY_EMPTY_STEPS);
+    return (RtTraced){.kind = RT_TRACED_STEP, .leaf = leaf, .empty = empty};
+}
+
+/* All events except those of `but`. */
+static void catch_up(Events *events, int but) {
+    static const struct {
+        int counter;
+        RtTracedKind kind;
+    } others[] = {{RAYTALLY_EXTENT_TESTS, RT_TRACED_EXTENT_TEST},
+                  {RAYTALLY_REPEATS_AVOIDED, RT_TRACED_REPEAT_AVOIDED},
+                  {RAYTALLY_PASSED_ON, RT_TRACED_PASSED_ON}};
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+        const char *what = others[i].kind == RT_TRACED_PASSED_ON ? events->name : NULL;
+        while (others[i].counter != but && take(events, others[i].counter))
+            rt_observe(&(RtTraced){.kind = others[i].kind, .what = what, .index = RT_NO_OBJECT});
+    }
+    while (but != RAYTALLY_STEPS && take(events, RAYTALLY_STEPS)) {
+        const RtTraced step = next_step(events);
+        rt_observe(&step);
+    }
+}
+
+static void report_counted(Events *events) {
+    if (rt_trace_observer && events->counters) catch_up(events, RAYTALLY_COUNTERS);
+}
+
 /* ---- what the plugin calls ---- */
 
 static void prepare(raytally_query *query, const raytally_ray *ray, raytally_prepared *out) {
@@ -108,7 +163,7 @@ static int object_hits(const raytally_prepared *ray, const uint32_t *ids, uint32
     PluginQuery *query = (PluginQuery *)ray->query;
     if (!query->counting) return hits_of(ray, ids, count, any, best, NULL);
     RtTally tally = {0};
-    rt_plugin_catch_up(&query->events);
+    report_counted(&query->events);
     int over = hits_of(ray, ids, count, any, best, &tally);
     query->events.best = (RtHit){best->t, best->object};
     rt_tally_add(&query->tallies[ray->ray->kind], &tally);
@@ -143,7 +198,7 @@ static bool can_pass_on(PluginQuery *query, const RtRay *rays, size_t count) {
         PluginQuery *query = (PluginQuery *)face;                                                            \
         const RtRay *stream = (const RtRay *)rays;                                                           \
         Answer *out = (Answer *)answers;                                                                     \
-        rt_plugin_catch_up(&query->events);                                                                  \
+        report_counted(&query->events);                                                                      \
         if (can_pass_on(query, stream, count)) {                                                             \
             rt_hand_down_##question(&query->accel->base, query->scratch, stream, count, out,                 \
                                     query->counting ? query->below : NULL);                                  \
@@ -155,8 +210,26 @@ static bool can_pass_on(PluginQuery *query, const RtRay *rays, size_t count) {
 DEFINE_BELOW(nearest, RtHit, raytally_hit, RT_MISS)
 DEFINE_BELOW(occluded, uint32_t, uint32_t, RT_NO_OBJECT)
 
-static void show(const raytally_prepared *ray, uint32_t counter, uint32_t number, const raytally_box *box) {
-    rt_plugin_show(&((PluginQuery *)ray->query)->events, ray, counter, number, box);
+static void show(const raytally_prepared *ray, uint32_t counter, uint32_t number,
+                 const raytally_box *theirs) {
+    Events *events = &((PluginQuery *)ray->query)->events;
+    RtBox box;
+    RtTraced event = {.kind = RT_TRACED_EXTENT_TEST};
+    float enter;
+    if (!events->counters || !(counter == RAYTALLY_STEPS || (counter == RAYTALLY_EXTENT_TESTS && theirs)))
+        return;
+    catch_up(events, (int)counter);
+    if (!take(events, (int)counter)) return;
+    if (counter == RAYTALLY_STEPS) event = next_step(events);
+    event.what = "node";
+    event.index = number;
+    if (theirs) {
+        memcpy(&box, theirs, sizeof box);
+        event.box = &box;
+        event.met = counter == RAYTALLY_EXTENT_TESTS &&
+                    raytally_box_hit(theirs, ray, rt_limit(ray, &events->best), &enter);
+    }
+    rt_observe(&event);
 }
 
 #define HOST(show_or_null)                                                                                   \
@@ -168,17 +241,45 @@ static const raytally_host host = HOST(NULL), observed_host = HOST(show);
 
 /* ---- memory between guard pages ---- */
 
-enum { CANARIES = 1024, MOST_ANSWERS = 4096, UNSET = 0xFE };
+enum { GUARD = 64 * 1024, CANARY = 0xA5, CANARIES = 1024, MOST_ANSWERS = 4096, UNSET = 0xFE };
 
-static void unmap_guarded(PluginQuery *query) {
-    for (int i = 0; i < RT_GUARD_COUNT; i++) rt_guarded_unmap(&query->now.guarded[i]);
+/* Maps at least `bytes`, set to zero. */
+static RtStatus map_guarded(RtGuarded *guarded, size_t bytes, RtError *error) {
+    size_t page = (size_t)sysconf(_SC_PAGESIZE), pages = (bytes + page - 1) / page * page;
+    size_t mapped = pages + 2 * (size_t)GUARD;
+    char *mapping = mmap(NULL, mapped, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (mapping != MAP_FAILED && mprotect(mapping + GUARD, pages, PROT_READ | PROT_WRITE) == 0) {
+        *guarded = (RtGuarded){mapping, mapped, mapping + GUARD, mapping + GUARD + pages};
+        return RT_OK;
+    }
+    if (mapping != MAP_FAILED) munmap(mapping, mapped);
+    return rt_fail_memory(error, "the memory of a plugin's query", bytes);
+}
+
+static void unmap_guarded(RtGuarded *guarded) {
+    if (guarded->mapping) munmap(guarded->mapping, guarded->mapped);
+    *guarded = (RtGuarded){0};
+}
+
+static void lay_canaries(char *from, const char *end) {
+    memset(from, CANARY, (size_t)(end - from));
+}
+
+/* All bytes are CANARY if the first is and each equals the one before. */
+static bool canaries_are_intact(const char *from, const char *end) {
+    size_t bytes = (size_t)(end - from);
+    return bytes == 0 || ((unsigned char)*from == CANARY && memcmp(from, from + 1, bytes - 1) == 0);
+}
+
+static void unmap_memory(PluginQuery *query) {
+    for (int i = 0; i < RT_GUARD_COUNT; i++) unmap_guarded(&query->now.guarded[i]);
 }
 
 static bool wrote_beside_memory(const PluginQuery *query) {
     const char *memory = query->memory;
     const RtGuarded *own = &query->now.guarded[RT_GUARD_QUERY];
-    return memory && !(rt_canaries_are_intact(own->begin, memory) &&
-                       rt_canaries_are_intact(memory + query->accel->query_bytes, own->end));
+    return memory && !(canaries_are_intact(own->begin, memory) &&
+                       canaries_are_intact(memory + query->accel->query_bytes, own->end));
 }
 
 static RtStatus map_memory(PluginQuery *query, RtError *error) {
@@ -186,14 +287,14 @@ static RtStatus map_memory(PluginQuery *query, RtError *error) {
     RtGuarded *own = &query->now.guarded[RT_GUARD_QUERY];
     if (wanted > RT_ACCEL_MAX_BYTES)
         return rt_fail(error, RT_BROKEN, "its query_bytes asks for %zu bytes for each query", wanted);
-    RT_TRY(rt_guarded_map(&query->now.guarded[RT_GUARD_ANSWERS], CANARIES + MOST_ANSWERS * sizeof(RtHit),
-                          error));
+    RT_TRY(
+        map_guarded(&query->now.guarded[RT_GUARD_ANSWERS], CANARIES + MOST_ANSWERS * sizeof(RtHit), error));
     if (wanted == 0) return RT_OK;
     const size_t used = (wanted + RT_CACHE_LINE - 1) / RT_CACHE_LINE * RT_CACHE_LINE;
-    RT_TRY(rt_guarded_map(own, used, error));
+    RT_TRY(map_guarded(own, used, error));
     char *memory = query->memory = own->end - used;
-    rt_canaries_lay(own->begin, memory);
-    rt_canaries_lay(memory + wanted, own->end);
+    lay_canaries(own->begin, memory);
+    lay_canaries(memory + wanted, own->end);
     return RT_OK;
 }
 
@@ -212,7 +313,7 @@ static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) 
     for (const RtAccel *layer = accel; layer; layer = layer->below) query->now.layers++;
     RtStatus status = map_memory(query, error);
     if (status != RT_OK) {
-        unmap_guarded(query);
+        unmap_memory(query);
         return status;
     }
     for (int i = 0; i < MOST_QUERIES; i++) {
@@ -229,7 +330,7 @@ static void close_query(const RtAccel *accel, void *scratch) {
         PluginQuery *own = query;
         atomic_compare_exchange_strong(&open_queries[i], &own, NULL);
     }
-    unmap_guarded(query);
+    unmap_memory(query);
 }
 
 static void begin(const RtAccel *accel, void *scratch) {
@@ -243,7 +344,7 @@ static void begin(const RtAccel *accel, void *scratch) {
 static void *enter(PluginQuery *query, const RtScratch *scratch, const RtRay *rays, size_t count,
                    size_t size) {
     char *answers = query->now.guarded[RT_GUARD_ANSWERS].end - count * size;
-    rt_canaries_lay(answers - CANARIES, answers);
+    lay_canaries(answers - CANARIES, answers);
     memset(answers, UNSET, count * size);
     query->now.stream = rays;
     query->now.count = count;
@@ -262,7 +363,7 @@ static void *enter(PluginQuery *query, const RtScratch *scratch, const RtRay *ra
 static void leave(PluginQuery *query, const char *answers) {
     query->now.face.ray = NULL;
     now = NULL;
-    if (!rt_canaries_are_intact(answers - CANARIES, answers))
+    if (!canaries_are_intact(answers - CANARIES, answers))
         rt_plugin_break(query->accel, "it wrote in front of its answers");
     if (wrote_beside_memory(query))
         rt_plugin_break(query->accel,
@@ -426,13 +527,13 @@ static void add_counters(PluginQuery *query, const raytally_counters *counted, s
             query->counting = true;                                                                          \
             memset(query->tallies, 0, sizeof query->tallies);                                                \
             memset(query->below, 0, sizeof query->below);                                                    \
-            query->events = (RtPluginEvents){.name = accel->ops->name,                                       \
-                                             .counters = accel->counts ? &counters[rays[first].kind] : NULL, \
-                                             .best = RT_MISS};                                               \
+            query->events = (Events){.name = accel->ops->name,                                               \
+                                     .counters = accel->counts ? &counters[rays[first].kind] : NULL,         \
+                                     .best = RT_MISS};                                                       \
             question##_some(query, scratch, rays + first, n, answers + first,                                \
                             accel->counts ? counters : NULL);                                                \
             query->counting = false;                                                                         \
-            rt_plugin_catch_up(&query->events);                                                              \
+            report_counted(&query->events);                                                                  \
             add_counters(query, counters, n, tallies);                                                       \
         }                                                                                                    \
         for (size_t i = 0; i < count; i++) {                                                                 \

@@ -39,7 +39,7 @@ typedef struct Answers {
     bool blocked[PASSES * KERNELS][CHUNK];
 } Answers;
 
-_Static_assert(sizeof(Answers) + CHUNK * sizeof(RtRay) <= RT_REMOTE_BYTES, "it fits");
+_Static_assert(sizeof(Answers) <= RT_REMOTE_BYTES && CHUNK <= RT_REMOTE_RAYS, "it fits");
 
 /* One thread's memory. It has its own copy of the plan, because a plugin's process may have overwritten
  * the one in `answers`. */
