@@ -19,12 +19,13 @@ bool rt_accel_is_remote(const RtAccel *accel);
 
 /* Runs `work` where the query's accelerator is: for a remote one in its process, with the query there, and
  * with copies of rays[0..count), at most RT_REMOTE_RAYS, and of the `message`, of at most RT_REMOTE_BYTES,
- * which is copied back. The message must not contain pointers to memory of one process that the other reads.
- * False for a broken accelerator: nothing runs, and the message is unchanged. */
+ * which is copied back. The message must not contain pointers to memory of one process that the
+ * other reads. Returns what `work` returns, whose message names the accelerator unless it is RT_BROKEN; for a
+ * broken accelerator RT_BROKEN and why; nothing runs, and the message is unchanged. */
 enum { RT_REMOTE_RAYS = 4096, RT_REMOTE_BYTES = 256 * 1024 };
-typedef void RtRemoteWork(RtQuery *query, const RtRay *rays, void *message);
-bool rt_remote_do(RtQuery *query, RtRemoteWork *work, const RtRay *rays, size_t count, void *message,
-                  size_t bytes);
+typedef RtStatus RtRemoteWork(RtQuery *query, const RtRay *rays, void *message, RtError *error);
+RtStatus rt_remote_do(RtQuery *query, RtRemoteWork *work, const RtRay *rays, size_t count, void *message,
+                      size_t bytes, RtError *error);
 
 /* A pass over rays (accel/pass.h) that is timed in the process of a remote accelerator, on a copy of the rays
  * and by the clocks there: no communication is timed. `rays` is not empty. Close it also after a failure;

@@ -55,7 +55,7 @@ fault crash-build "$crash\) while it was built over 11 objects"
 fault crash-nearest "$crash\) .*$at_ray"
 fault crash-timed "$crash\) .*$at_ray"
 fault crash-rare "$crash\) .*$at_ray"
-fault crash-together "$crash\) .*, after it prepared the ray org .*; no ray of the stream fails alone"
+fault crash-together "$crash\) .*$at_ray t in .* or a later one of its stream"
 fault crash-destroy "$crash\) while it was destroyed"
 fault crash-describe "$crash\) while"
 fault abort "crashed \(Aborted\) .*$at_ray"
@@ -104,7 +104,7 @@ RAYTALLY_PLUGIN_SECONDS=1
 fault greedy 'memory is short'
 fault older ''
 
-# Overlays: the fault is named whichever layer has it, and its ray is found without the layers above.
+# Overlays: the fault is named whichever layer has it, and a ray of its stream.
 fault over+kd ''
 fault over-crash+bvh "$crash\) .*, at the ray org"
 fault over+faulty-crash-rare "$crash\) .*, at the ray org"

@@ -30,19 +30,17 @@ typedef struct Channel {
                                     channel */
     bool begin;                  /* rt_query_begin comes first */
     RtRay rays[RT_REMOTE_RAYS];
+    RtStatus status; /* of the answer */
+    RtError error;
     _Alignas(64) char message[RT_REMOTE_BYTES];
 } Channel;
 
 /* What the process recorded of its own end. */
 typedef struct Crash {
     atomic_int signal; /* 0: nothing */
-    uint32_t out_of;   /* 1 + the guard pages that were hit (RT_GUARD_QUERY, ..); 0: none */
-    /* The stream that was being traced. */
-    uint32_t count;             /* 0: none */
-    uint32_t ray;               /* index of the last one prepared; 0: perhaps none was prepared */
-    uint32_t any, counted;      /* which kernel; 0 or 1 */
-    uint32_t layers;            /* of the stack, from the bottom to the plugin */
-    RtRay rays[RT_REMOTE_RAYS]; /* [count] */
+    uint32_t out_of;   /* it left the memory of a query: 1; its answers: 2; 0: neither */
+    uint32_t traced;   /* 1: it traced `ray`, or a later one of the same stream; 0: unknown */
+    RtRay ray;
 } Crash;
 
 typedef struct Shared {
@@ -63,17 +61,10 @@ void rt_futex_set(atomic_uint *word, unsigned value);
 
 /* ---- requests on channel 0 ---- */
 
-/* Whether a request was fulfilled. */
-typedef struct Reply {
-    uint32_t channel; /* for rt_server_open */
-    RtStatus status;
-    RtError error;
-} Reply;
-RtRemoteWork rt_server_open, rt_server_validate, rt_server_check; /* message: Reply */
-RtRemoteWork rt_server_destroy;                                   /* no message */
+RtRemoteWork rt_server_validate, rt_server_check, rt_server_destroy; /* no message */
+RtRemoteWork rt_server_open;                                         /* message: uint32_t, the channel */
 
 typedef struct Built {
-    Reply reply;
     uint32_t exact, absolute, counts; /* 0 or 1 */
     double seconds;
     RtDescription description;
@@ -98,12 +89,15 @@ static inline bool rt_box_can_be_shown(const RtBox *box, uint32_t depth) {
 
 /* ---- requests on channels of queries ---- */
 
-/* A stream of rays. The answers are hits: an occluder is a hit at tmin. */
+/* A stream of rays. */
 typedef struct Stream {
     uint32_t count;
     bool any, counted;
     RtTally tallies[RT_RAY_KIND_COUNT]; /* out: to be added */
-    RtHit hits[RT_REMOTE_RAYS];         /* [count] out */
+    union {
+        RtHit hits[RT_REMOTE_RAYS];         /* [count] out, if not `any` */
+        uint32_t occluders[RT_REMOTE_RAYS]; /* [count] out, if `any` */
+    };
 } Stream;
 RtRemoteWork rt_server_trace;
 

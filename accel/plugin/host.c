@@ -28,8 +28,7 @@ static RtStatus refuse(const raytally_accel_ops *table, int result, const char *
         return rt_fail(error, RT_NO_MEMORY, "%s: memory is short%s%s", table->name, *message ? ": " : "",
                        message);
     if (result != RAYTALLY_BUILD_REFUSED)
-        return rt_fail(error, RT_BROKEN, "%s: its `build` returned %d, which is not a valid result",
-                       table->name, result);
+        return rt_fail(error, RT_BROKEN, "its `build` returned %d, which is not a valid result", result);
     return rt_fail(error, RT_BAD_INPUT, "%s: %s", table->name,
                    *message ? message : "it refuses this scene without giving a reason");
 }

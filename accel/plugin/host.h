@@ -54,27 +54,15 @@ void rt_plugin_query_init(RtPluginAccel *self);
 
 /* ---- what a query is doing, for reports of crashes ---- */
 
-/* Its memory between guard pages, where an access crashes. */
-enum { RT_GUARD_QUERY, RT_GUARD_ANSWERS, RT_GUARD_COUNT };
-typedef struct RtGuarded {
-    char *mapping; /* [mapped] with the guard pages, or NULL */
-    size_t mapped;
-    char *begin, *end; /* of the pages that may be accessed */
-} RtGuarded;
-
 typedef struct RtPluginNow {
     raytally_query face; /* the plugin's; its ray is the last prepared, or the first; NULL: idle */
-    const RtRay *stream; /* [count] that the plugin's kernel was called with */
-    size_t count;
-    bool any, counted;                 /* which kernel */
-    uint32_t layers;                   /* of the stack: this one and those below it */
-    RtGuarded guarded[RT_GUARD_COUNT]; /* the plugin's memory, and the answers */
+    /* The plugin's memory and, from `middle` on, its answers, between guard pages, where an access crashes.
+     */
+    char *mapping, *middle;
+    size_t mapped; /* bytes of all that */
 } RtPluginNow;
 
-/* Of the calling thread; NULL if it traces nothing. Safe in signal handlers. */
-const RtPluginNow *rt_plugin_now(void);
-
-/* Of any thread that traces, or NULL. */
-const RtPluginNow *rt_plugin_busy(void);
+/* Of the calling thread, or of any that traces; NULL if it, or none, does. Safe in signal handlers. */
+const RtPluginNow *rt_plugin_now(bool any_thread);
 
 #endif

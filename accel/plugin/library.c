@@ -3,7 +3,7 @@
  *
  * No code of a library ever runs in raytally's own process: effects of its constructors (the locale,
  * rounding, signal handlers, a crash) stay in other processes. One process tries the library and copies its
- * tables, that is their numbers and texts, into shared memory; raytally copies them from there and trusts
+ * tables, that is their numbers and texts, into shared memory; raytally trusts
  * them as little as any other input. Each process that builds an accelerator opens the library for itself. */
 #include "accel/plugin.h"
 #include "accel/plugin/host.h"
@@ -19,7 +19,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #define XXH_INLINE_ALL
@@ -171,24 +170,19 @@ static bool is_key(const char *name) {
     return length > 0 && length < RT_MAX_NAME && name[length] == '\0';
 }
 
-static RtStatus check_value(const char *path, const char *name, const RtParam *param, const char *member,
-                            const char *text, RtError *error) {
-    char setting[RT_MAX_SPEC_CHARS + RT_MAX_NAME], what[RT_MAX_NAME + 16];
+/* Its default and its test values are within its range. */
+static RtStatus check_values(const char *path, const char *name, const RtParam *param, RtError *error) {
+    char text[RT_MAX_SPEC_CHARS], setting[RT_MAX_SPEC_CHARS + RT_MAX_NAME], what[RT_MAX_NAME + 16];
     RtError why;
     RtValue value;
     snprintf(what, sizeof what, "accelerator %s", name);
-    snprintf(setting, sizeof setting, "%s=%s", param->name, text);
-    if (rt_params_parse(param, 1, setting, what, &value, &why) == RT_OK) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT, "%s: the table of '%s' contradicts itself: %s of '%s': %s", path,
-                   name, member, param->name, why.message);
-}
-
-/* Its default and its test values are within its range. */
-static RtStatus check_values(const char *path, const char *name, const RtParam *param, RtError *error) {
-    char text[RT_MAX_SPEC_CHARS];
-    RT_TRY(check_value(path, name, param, "`default_text`", param->default_text, error));
-    for (size_t n = 0; rt_param_try(param, n, text, sizeof text); n++)
-        RT_TRY(check_value(path, name, param, "`test_values`", text, error));
+    snprintf(text, sizeof text, "%s", param->default_text);
+    for (size_t n = 0; n == 0 || rt_param_try(param, n - 1, text, sizeof text); n++) {
+        snprintf(setting, sizeof setting, "%s=%s", param->name, text);
+        if (rt_params_parse(param, 1, setting, what, &value, &why) == RT_OK) continue;
+        return rt_fail(error, RT_BAD_INPUT, "%s: the table of '%s' contradicts itself: %s of '%s': %s", path,
+                       name, n == 0 ? "`default_text`" : "`test_values`", param->name, why.message);
+    }
     return RT_OK;
 }
 
@@ -254,8 +248,6 @@ static const char *file_of(const char *name) {
 static RtStatus check_name(const char *path, const Tables *tables, uint32_t place, RtError *error) {
     RtError why;
     const char *name = tables->at[place].name;
-    if (!name || !tables->at[place].summary || !tables->at[place].paper)
-        return rt_fail(error, RT_BAD_INPUT, "%s: a table in it has no name, summary or paper", path);
     if (rt_accel_name_is_free(name, &why) != RT_OK) {
         const char *file = file_of(name);
         return rt_fail(error, RT_BAD_INPUT, "%s: %s%s%s", path, why.message, *file ? "; it belongs to " : "",
@@ -300,7 +292,7 @@ static bool visit_table(raytally_accel_ops *table, Visit *visit, void *context) 
                 visit(context, &params, table->param_count * sizeof(raytally_param));
     table->params = (const raytally_param *)params;
     for (size_t i = 0; i < sizeof texts / sizeof texts[0] && good; i++)
-        good = visit(context, texts[i], A_TEXT);
+        good = *texts[i] && visit(context, texts[i], A_TEXT);
     for (uint32_t p = 0; p < table->param_count && good; p++) {
         raytally_param *param = (raytally_param *)&table->params[p];
         const char **own[] = {&param->name,        &param->default_text, &param->choices,
@@ -355,39 +347,22 @@ static RtStatus try_loading(const char *path, Trial *trial, RtError *error) {
     return rt_fail(error, RT_BAD_INPUT, "%s: loading it failed: %s", path, what);
 }
 
-/* A copy of a trial that nobody else can write to. */
-typedef struct Copied {
-    Trial *own; /* its memory ends after `used` bytes */
-    const Trial *from;
-} Copied;
-
-/* Lets *at point to the copy of what it points to; false if it pointed elsewhere. */
-static bool relocate(void *context, const char **at, size_t bytes) {
-    const Copied *copied = context;
-    const size_t offset = (size_t)((uintptr_t)*at - (uintptr_t)copied->from->memory);
-    if (!*at) return bytes == A_TEXT;
-    if (offset >= copied->own->used || bytes > copied->own->used - offset || (bytes != A_TEXT && offset % 8))
-        return false;
-    *at = copied->own->memory + offset;
-    return true;
+static bool is_kept(void *context, const char **at, size_t bytes) {
+    const Trial *trial = context;
+    const size_t offset = (size_t)((uintptr_t)*at - (uintptr_t)trial->memory);
+    return *at ? offset < sizeof trial->memory && bytes <= sizeof trial->memory - offset && offset % 8 == 0
+               : bytes == A_TEXT;
 }
 
-/* Copies the tables and checks them. The copy is the caller's, also after a failure. */
-static RtStatus take_tables(const char *path, const Trial *trial, Trial **out, RtError *error) {
-    RtError failure = trial->error;
-    failure.message[sizeof failure.message - 1] = '\0';
-    if (failure.status != RT_OK) return rt_fail(error, RT_BAD_INPUT, "%s", failure.message);
-    const size_t used = trial->used < sizeof trial->memory ? trial->used : sizeof trial->memory;
-    const size_t bytes = offsetof(Trial, memory) + used;
-    Trial *own = *out = rt_alloc_unset(bytes, 1);
-    if (!own) return rt_fail_memory(error, "a plugin", bytes);
-    memcpy(own, trial, bytes);
-    own->used = used;
-    if (used > 0) own->memory[used - 1] = '\0';
-    bool good = own->tables.count <= MOST_TABLES;
-    for (uint32_t i = 0; good && i < own->tables.count; i++)
-        good = visit_table(&own->tables.at[i], relocate, &(Copied){own, trial});
-    return good ? check_tables(path, &own->tables, error)
+/* Checks what the process has written, now that it has ended. */
+static RtStatus check_trial(const char *path, Trial *trial, RtError *error) {
+    trial->error.message[sizeof trial->error.message - 1] = '\0';
+    trial->memory[sizeof trial->memory - 1] = '\0';
+    if (trial->error.status != RT_OK) return rt_fail(error, RT_BAD_INPUT, "%s", trial->error.message);
+    bool good = trial->tables.count <= MOST_TABLES;
+    for (uint32_t i = 0; good && i < trial->tables.count; i++)
+        good = visit_table(&trial->tables.at[i], is_kept, trial);
+    return good ? check_tables(path, &trial->tables, error)
                 : rt_fail(error, RT_BAD_INPUT, "%s: its tables cannot be read", path);
 }
 
@@ -407,83 +382,36 @@ static RtStatus register_tables(RtPlugin *plugin, const Tables *tables, RtError 
     return RT_OK;
 }
 
-/* What is registered stays for as long as the program runs, with the text of its tables. */
+/* The tables stay for as long as the program runs; the processes of plugins cannot write to them. */
 static RtStatus try_and_register(RtPlugin *plugin, RtError *error) {
-    Trial *own = NULL, *trial = mmap(NULL, sizeof(Trial), PROT_READ | PROT_WRITE,
-                                     MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    Trial *trial =
+        mmap(NULL, sizeof(Trial), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (trial == MAP_FAILED) return rt_fail_memory(error, "the tables of a plugin", sizeof(Trial));
     RtStatus status = try_loading(plugin->path, trial, error);
-    if (status == RT_OK) status = take_tables(plugin->path, trial, &own, error);
-    munmap(trial, sizeof(Trial));
-    if (status == RT_OK) status = register_tables(plugin, &own->tables, error);
-    if (status != RT_OK) rt_free(own);
+    if (status == RT_OK) status = check_trial(plugin->path, trial, error);
+    if (status == RT_OK) status = register_tables(plugin, &trial->tables, error);
+    if (status == RT_OK)
+        mprotect(trial, sizeof(Trial), PROT_READ);
+    else
+        munmap(trial, sizeof(Trial));
     return status;
 }
 
-/* An absolute path: dlopen searches the system's folders for a name without a slash. */
-static RtStatus real_path(const char *path, char *out, RtError *error) {
-    char *found = realpath(path, NULL);
-    if (!found) return rt_fail(error, RT_BAD_INPUT, "%s: no such plugin: %s", path, strerror(errno));
-    snprintf(out, RT_MAX_PATH, "%s", found);
-    free(found);
-    return RT_OK;
-}
-
+/* By an absolute path: dlopen searches the system's folders for a name without a slash. */
 RtStatus rt_plugin_load(const char *path, RtError *error) {
-    char real[RT_MAX_PATH];
-    RT_TRY(real_path(path, real, error));
+    char *real = realpath(path, NULL);
+    if (!real) return rt_fail(error, RT_BAD_INPUT, "%s: no such plugin: %s", path, strerror(errno));
+    RtPlugin plugin = {.count = 0};
+    snprintf(plugin.path, sizeof plugin.path, "%s", real);
+    free(real);
     for (size_t i = 0; i < plugin_count; i++) {
-        if (strcmp(plugins[i].path, real) == 0) return RT_OK;
+        if (strcmp(plugins[i].path, plugin.path) == 0) return RT_OK;
     }
     if (plugin_count == MOST_LIBRARIES)
         return rt_fail(error, RT_BAD_INPUT, "more than %d plugins", MOST_LIBRARIES);
-    RtPlugin *plugin = &plugins[plugin_count];
-    *plugin = (RtPlugin){0};
-    snprintf(plugin->path, sizeof plugin->path, "%s", real);
-    RT_TRY(hash_library(real, &plugin->fingerprint, error));
-    RT_TRY(try_and_register(plugin, error));
+    RT_TRY(hash_library(plugin.path, &plugin.fingerprint, error));
+    plugins[plugin_count] = plugin;
+    RT_TRY(try_and_register(&plugins[plugin_count], error));
     plugin_count++;
-    return RT_OK;
-}
-
-/* ---- lists of libraries ---- */
-
-typedef struct Folder {
-    RtStatus status;
-    RtError *error;
-} Folder;
-
-static void load_from(void *context, const char *path) {
-    Folder *folder = context;
-    if (folder->status == RT_OK) folder->status = rt_plugin_load(path, folder->error);
-}
-
-/* Copies the first name of a list to path[0..size). Returns the rest of the list, or NULL if the name is too
- * long. */
-static const char *take_path(const char *list, char *path, size_t size) {
-    size_t length = 0;
-    for (; *list && *list != ':' && length < size; list++) {
-        if (*list == '\\' && (list[1] == ':' || list[1] == '\\')) list++;
-        path[length++] = *list;
-    }
-    if (length == size) return NULL;
-    path[length] = '\0';
-    return *list == ':' ? list + 1 : list;
-}
-
-RtStatus rt_plugin_load_all(const char *list, RtError *error) {
-    char path[RT_MAX_PATH];
-    struct stat about;
-    while (*list) {
-        list = take_path(list, path, sizeof path);
-        if (!list) return rt_fail(error, RT_BAD_INPUT, "the path of a plugin is too long");
-        Folder folder = {RT_OK, error};
-        if (*path && stat(path, &about) == 0 && S_ISDIR(about.st_mode)) {
-            rt_directory_each(path, ".so", load_from, &folder);
-            RT_TRY(folder.status);
-        } else if (*path) {
-            RT_TRY(rt_plugin_load(path, error));
-        }
-    }
     return RT_OK;
 }

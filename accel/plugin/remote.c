@@ -7,7 +7,6 @@
 #include "accel/remote.h"
 #include "accel/plugin/channel.h"
 #include "accel/plugin/host.h"
-#include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/observe.h"
 #include "core/base/process.h"
@@ -41,7 +40,6 @@ typedef struct Remote {
     RtDescription description;
     uint64_t before, built; /* bytes of memory that the process holds, at the fork and once it was built */
     uint64_t memory_limit;  /* the most bytes that it may hold beyond `before`; UINT64_MAX: any */
-    bool find_ray;          /* after a crash, a fresh process searches for the ray that fails */
     pthread_mutex_t lock;   /* of the following members */
     bool used[CHANNELS];    /* by queries; channel 0 by none */
     atomic_bool broken;     /* error says why */
@@ -51,7 +49,6 @@ typedef struct Remote {
 
 static const RtAccelOps remote_ops;
 static void destroy(RtAccel *accel);
-static uint32_t find_ray(const Remote *remote);
 
 static Remote *of(const RtAccel *accel) {
     return (Remote *)accel;
@@ -105,55 +102,34 @@ __attribute__((format(printf, 2, 3))) static void note(const Remote *remote, con
     pthread_mutex_unlock(&notice_lock);
 }
 
-/* The number in an entry of /proc/PID/status, "Threads"; 0 if it is unknown. */
-static uint64_t read_status(pid_t pid, const char *entry) {
-    char path[64], line[256];
-    uint64_t number = 0;
-    const size_t length = strlen(entry);
-    snprintf(path, sizeof path, "/proc/%d/status", (int)pid);
-    FILE *file = fopen(path, "re");
-    while (file && fgets(line, sizeof line, file)) {
-        if (strncmp(line, entry, length) == 0 && line[length] == ':')
-            number = strtoull(line + length + 1, NULL, 10);
-    }
-    if (file) fclose(file);
-    return number;
-}
-
 /* Bytes of memory that a process holds beyond `before`. */
 static uint64_t held_bytes(pid_t pid, uint64_t before) {
-    const uint64_t now = 1024 * read_status(pid, "RssAnon");
+    const uint64_t now = 1024 * rt_process_status(pid, "RssAnon");
     return now > before ? now - before : 0;
 }
 
 /* The most that it ever held beyond what it began with, which is a copy of raytally's memory. */
 static uint64_t peak_bytes(const Remote *remote) {
     const pid_t pid = remote->process.pid;
-    const uint64_t most = 1024 * read_status(pid, "VmHWM");
-    const uint64_t others = remote->before + 1024 * read_status(pid, "RssFile");
+    const uint64_t most = 1024 * rt_process_status(pid, "VmHWM");
+    const uint64_t others = remote->before + 1024 * rt_process_status(pid, "RssFile");
     return most > others ? most - others : 0;
 }
 
-#define MEGABYTE UINT64_C(1000000)
-
-/* Limits are wide: arenas of the C library, and large pages for the stacks of threads, are memory, too. */
+/* The limit is wide: arenas of the C library, and large pages for the stacks of threads, are memory, too. */
 static void note_build(const Remote *remote) {
-    const uint64_t held = held_bytes(remote->process.pid, remote->before), peak = peak_bytes(remote);
-    const uint64_t bytes = remote->description.bytes;
-    if (held > 256 * MEGABYTE + 4 * bytes)
+    const uint64_t held = held_bytes(remote->process.pid, remote->before), bytes = remote->description.bytes;
+    if ((double)held > 256e6 + 4.0 * (double)bytes)
         note(
             remote,
             "its process holds %.0f MB of memory once it is built, and its `describe` says %.3g MB: the rest "
             "is not described, or never freed",
             1e-6 * (double)held, 1e-6 * (double)bytes);
-    else if (peak > 1024 * MEGABYTE + 16 * bytes)
-        note(remote, "its build takes up to %.0f MB of memory, for a structure of %.3g MB",
-             1e-6 * (double)peak, 1e-6 * (double)bytes);
 }
 
 static void note_tracing(const Remote *remote) {
     const uint64_t kept = held_bytes(remote->process.pid, remote->built);
-    if (remote->built > 0 && kept > 256 * MEGABYTE)
+    if (remote->built > 0 && (double)kept > 256e6)
         note(remote, "its process holds %.0f MB more memory after tracing, which must allocate none",
              1e-6 * (double)kept);
 }
@@ -164,7 +140,7 @@ static void note_threads(const Remote *remote) {
     enum { OWN_THREADS = 2, PAUSE = 50000000 /* ns */ };
     struct timespec start = {0}, end = {0};
     clockid_t clock;
-    if (read_status(remote->process.pid, "Threads") <= OWN_THREADS ||
+    if (rt_process_status(remote->process.pid, "Threads") <= OWN_THREADS ||
         clock_getcpuclockid(remote->process.pid, &clock) != 0)
         return;
     clock_gettime(clock, &start);
@@ -184,67 +160,44 @@ static void note_processes(const Remote *remote, const RtProcessEnd *end) {
 
 /* ---- how it fails ---- */
 
-/* Searches the stream of a process that has ended for a ray that fails by itself: an index, FAILS_TOGETHER if
- * there is none, or FAILS_SOMEHOW if that cannot be found out. */
-enum { PLACE_TEXT = RT_RAY_TEXT + 96 };
-#define FAILS_TOGETHER (UINT32_MAX - 1)
-#define FAILS_SOMEHOW  UINT32_MAX
-
-/* Writes ", at the ray ...", or of which stream, to out[0..PLACE_TEXT). A hung process has shown the ray if
- * it prepared any; one that crashed may have been at another ray than the last that it prepared. */
-static void format_place(const Remote *remote, bool hung, char *out) {
+/* "NAME: WHAT while DOING, at the ray ...", if a ray is known: the last that the plugin prepared, or the
+ * first of its stream; it may have failed at a later one. Only the first failure is kept. */
+static void set_broken(Remote *remote, const char *what, const char *doing) {
     char text[RT_RAY_TEXT];
-    const Crash *crash = &remote->shared->crash;
-    const uint32_t count = crash->count, last = crash->ray;
-    *out = '\0';
-    if (count == 0 || count > RT_REMOTE_RAYS || last >= count) return;
-    const bool known = count == 1 || (hung && last > 0);
-    const uint32_t found = known ? last : find_ray(remote);
-    const RtRay ray = crash->rays[found < count ? found : last];
-    rt_ray_format(&ray, text, sizeof text);
-    if (found < count)
-        snprintf(out, PLACE_TEXT, ", at the ray %s", text);
-    else
-        snprintf(out, PLACE_TEXT, "%s %s%s",
-                 last > 0 ? ", after it prepared the ray" : "; the stream begins with the ray", text,
-                 found == FAILS_TOGETHER ? "; no ray of the stream fails alone" : "");
-}
-
-/* "NAME: WHAT while DOING, WHERE". Only the first failure is kept. */
-static void set_broken(Remote *remote, const char *what, const char *doing, const char *where) {
+    const RtRay ray = remote->shared->crash.ray;
+    const bool known = remote->shared->crash.traced == 1;
     if (remote->broken) return;
-    rt_fail(&remote->error, RT_BROKEN, "%s: %s while %s%s", remote->name, what, doing, where);
+    rt_ray_format(&ray, text, sizeof text);
+    rt_fail(&remote->error, RT_BROKEN, "%s: %s while %s%s%s%s", remote->name, what, doing,
+            known ? ", at the ray " : "", known ? text : "", known ? " or a later one of its stream" : "");
     remote->broken = true;
 }
 
 void rt_remote_break(const RtAccel *accel, const char *what, const char *doing) {
     pthread_mutex_lock(&of(accel)->lock);
-    set_broken(of(accel), what, doing, "");
+    set_broken(of(accel), what, doing);
     pthread_mutex_unlock(&of(accel)->lock);
 }
 
 static void report_end(Remote *remote, RtProcessEnd end, const char *doing) {
-    static const char *const past[1 + RT_GUARD_COUNT] = {
-        "", ": it wrote or read past the memory of its query", ": it wrote or read past its answers"};
+    static const char *const past[] = {"", ": it wrote or read past the memory of its query",
+                                       ": it wrote or read past its answers"};
     const Crash *crash = &remote->shared->crash;
     const uint32_t out_of = crash->out_of;
-    char what[160], where[PLACE_TEXT];
-    rt_process_end_format(end, crash->signal, out_of <= RT_GUARD_COUNT ? past[out_of] : "", what,
-                          sizeof what);
+    char what[160];
+    rt_process_end_format(end, crash->signal, out_of <= 2 ? past[out_of] : "", what, sizeof what);
     note_processes(remote, &end);
-    format_place(remote, false, where);
-    set_broken(remote, what, doing, where);
+    set_broken(remote, what, doing);
 }
 
 /* SIGXCPU makes a hung process record its ray. */
 static void end_hung(Remote *remote, const char *doing) {
-    char what[96], where[PLACE_TEXT];
-    remote->shared->crash.count = 0;
+    char what[96];
+    remote->shared->crash.traced = 0;
     rt_process_signal(&remote->process, SIGXCPU);
     rt_process_end(&remote->process, 1000);
     snprintf(what, sizeof what, "it made no progress for %g s (RAYTALLY_PLUGIN_SECONDS)", remote->time_limit);
-    format_place(remote, true, where);
-    set_broken(remote, what, doing, where);
+    set_broken(remote, what, doing);
 }
 
 /* Whether a structure exceeds the limit as it is built is no fault; later it is. */
@@ -253,7 +206,7 @@ static void end_large(Remote *remote, const char *doing, uint64_t bytes) {
     rt_process_end(&remote->process, 0);
     snprintf(what, sizeof what, "its process used %.4g MB of memory, more than %.4g MB (--memory),",
              1e-6 * (double)bytes, 1e-6 * (double)remote->memory_limit);
-    set_broken(remote, what, doing, "");
+    set_broken(remote, what, doing);
     if (remote->asked[0] == 1) remote->error.status = RT_BAD_INPUT;
 }
 
@@ -267,7 +220,7 @@ static bool check_process(Remote *remote, const char *doing, bool overwritten, d
         remote->ended = true;
         if (overwritten) {
             rt_process_end(&remote->process, 0);
-            set_broken(remote, "it overwrote memory that it shares with raytally", doing, "");
+            set_broken(remote, "it overwrote memory that it shares with raytally", doing);
         } else if (rt_process_wait(&remote->process, 0, &end)) {
             report_end(remote, end, doing);
         } else if (limited && peak_bytes(remote) > remote->memory_limit) {
@@ -286,68 +239,24 @@ static bool check_process(Remote *remote, const char *doing, bool overwritten, d
 /* ---- requests ---- */
 
 /* Waits for the answer to the last request on a channel. False if none will come: then the accelerator is
- * broken, and its process has ended. Each pause counts for at most a second: both processes may have been
- * stopped. */
+ * broken, and its process has ended. Time is counted in pauses: both processes may have been stopped. */
 static bool wait_for_answer(Remote *remote, uint32_t number, const char *doing) {
     enum { PAUSE = 50 /* ms */ };
     Channel *channel = &remote->shared->channels[number];
     const unsigned asked = remote->asked[number];
+    /* A plugin may take memory in many short requests, too. */
+    const bool checked = remote->memory_limit < UINT64_MAX && (number == 0 || asked % 64 == 1);
     unsigned long progress = remote->shared->progress;
-    double last = rt_wall_seconds(), waited = 0;
-    for (;;) {
+    for (double waited = 0;;) {
         const unsigned answered = atomic_load_explicit(&channel->answered, memory_order_acquire);
         const bool overwritten = channel->asked != asked || (answered != asked && answered != asked - 1);
-        /* A plugin may take memory in many short requests, too. */
-        const bool checked = remote->memory_limit < UINT64_MAX && (number == 0 || asked % 64 == 1);
         if (!overwritten && answered == asked) return !checked || !check_process(remote, doing, false, 0);
         if (!overwritten) rt_futex_wait(&channel->answered, answered, PAUSE);
         if (!overwritten && channel->answered != answered) continue;
-        const unsigned long seen = remote->shared->progress;
-        const double now = rt_wall_seconds();
-        waited = seen == progress ? waited + fmin(now - last, 1) : 0;
-        progress = seen;
-        last = now;
+        waited = progress == remote->shared->progress ? waited + PAUSE / 1000.0 : 0;
+        progress = remote->shared->progress;
         if (check_process(remote, doing, overwritten, waited)) return false;
     }
-}
-
-/* Asks for `work` on the message and the rays that lie in the channel. False if the accelerator is broken, or
- * breaks now. */
-static bool request(Remote *remote, uint32_t number, RtRemoteWork *work, const char *doing) {
-    Channel *channel = &remote->shared->channels[number];
-    if (remote->broken) return false;
-    channel->work = work;
-    rt_futex_set(&channel->asked, ++remote->asked[number]);
-    return wait_for_answer(remote, number, doing);
-}
-
-/* The same with a message that is copied to the channel and back; it is unchanged if there is no answer. */
-static bool request_with(Remote *remote, uint32_t number, RtRemoteWork *work, void *message, size_t bytes,
-                         const char *doing) {
-    char *to = remote->shared->channels[number].message;
-    if (bytes) memcpy(to, message, bytes);
-    bool answered = request(remote, number, work, doing);
-    if (answered && bytes) memcpy(message, to, bytes);
-    return answered;
-}
-
-static bool request_master(Remote *remote, RtRemoteWork *work, void *message, size_t bytes,
-                           const char *doing) {
-    pthread_mutex_lock(&remote->master);
-    bool answered = request_with(remote, 0, work, message, bytes, doing);
-    pthread_mutex_unlock(&remote->master);
-    return answered;
-}
-
-/* Takes an error from the process, whose text names the accelerator unless it is `unnamed`. It may lack its
- * end, or be missing, and its status may be invalid. */
-static RtStatus forward(const Remote *remote, Reply *reply, bool unnamed, RtError *error) {
-    const RtStatus status = reply->status;
-    reply->error.message[sizeof reply->error.message - 1] = '\0';
-    const char *why = *reply->error.message ? reply->error.message : "it failed and sent no reason";
-    unnamed |= !*reply->error.message;
-    return rt_fail(error, status > RT_OK && status <= RT_IO ? status : RT_BROKEN, "%s%s%s",
-                   unnamed ? remote->name : "", unnamed ? ": " : "", why);
 }
 
 static RtStatus fail_broken(const Remote *remote, RtError *error) {
@@ -355,26 +264,47 @@ static RtStatus fail_broken(const Remote *remote, RtError *error) {
     return remote->error.status;
 }
 
-static RtStatus request_check(Remote *remote, RtRemoteWork *work, const char *doing, RtError *error) {
-    Reply reply = {.status = RT_OK};
-    if (!request_master(remote, work, &reply, sizeof reply, doing)) return fail_broken(remote, error);
-    return reply.status == RT_OK ? RT_OK : forward(remote, &reply, reply.status == RT_BROKEN, error);
+/* Takes a failure from the process. Its text names the accelerator unless it is RT_BROKEN. It may lack its
+ * end, or be missing, and its status may be invalid. */
+static RtStatus forward(const Remote *remote, const Channel *channel, RtError *error) {
+    const RtStatus status = channel->status;
+    RtError why = channel->error;
+    why.message[sizeof why.message - 1] = '\0';
+    const bool named = *why.message && status != RT_BROKEN;
+    return rt_fail(error, status > RT_OK && status <= RT_IO ? status : RT_BROKEN, "%s%s%s",
+                   named ? "" : remote->name, named ? "" : ": ",
+                   *why.message ? why.message : "it failed and sent no reason");
 }
 
-static uint32_t channel_of(const RtQuery *query) {
-    return *(const uint32_t *)query->scratch[0].own;
+/* Asks for `work` on the rays in the channel and on a copy of the message, which is copied back if there is
+ * an answer. 0 bytes: the message, if any, lies in the channel. */
+static RtStatus request(Remote *remote, uint32_t number, RtRemoteWork *work, void *message, size_t bytes,
+                        const char *doing, RtError *error) {
+    Channel *channel = &remote->shared->channels[number];
+    if (remote->broken) return fail_broken(remote, error);
+    if (bytes) memcpy(channel->message, message, bytes);
+    channel->work = work;
+    rt_futex_set(&channel->asked, ++remote->asked[number]);
+    if (!wait_for_answer(remote, number, doing)) return fail_broken(remote, error);
+    if (bytes) memcpy(message, channel->message, bytes);
+    return channel->status == RT_OK ? RT_OK : forward(remote, channel, error);
 }
 
-bool rt_remote_do(RtQuery *query, RtRemoteWork *work, const RtRay *rays, size_t count, void *message,
-                  size_t bytes) {
-    if (!rt_accel_is_remote(query->accel)) {
-        work(query, rays, message);
-        return true;
-    }
+static RtStatus request_master(Remote *remote, RtRemoteWork *work, void *message, size_t bytes,
+                               const char *doing, RtError *error) {
+    pthread_mutex_lock(&remote->master);
+    RtStatus status = request(remote, 0, work, message, bytes, doing, error);
+    pthread_mutex_unlock(&remote->master);
+    return status;
+}
+
+RtStatus rt_remote_do(RtQuery *query, RtRemoteWork *work, const RtRay *rays, size_t count, void *message,
+                      size_t bytes, RtError *error) {
+    if (!rt_accel_is_remote(query->accel)) return work(query, rays, message, error);
     Remote *remote = of(query->accel);
-    const uint32_t channel = channel_of(query);
-    if (count) memcpy(remote->shared->channels[channel].rays, rays, count * sizeof(RtRay));
-    return request_with(remote, channel, work, message, bytes, "it was traced");
+    const uint32_t number = *(const uint32_t *)query->scratch[0].own;
+    if (count) memcpy(remote->shared->channels[number].rays, rays, count * sizeof(RtRay));
+    return request(remote, number, work, message, bytes, "it was traced", error);
 }
 
 /* ---- building ---- */
@@ -386,7 +316,7 @@ static RtStatus start(Remote *remote, RtError *error) {
     if (shared == MAP_FAILED) return rt_fail_memory(error, "memory shared with a plugin", sizeof(Shared));
     remote->shared = shared;
     if (pipe2(ends, O_CLOEXEC) != 0) return rt_fail(error, RT_IO, "a pipe: %s", strerror(errno));
-    remote->before = 1024 * read_status(getpid(), "RssAnon");
+    remote->before = 1024 * rt_process_status(getpid(), "RssAnon");
     RtStatus status = rt_process_fork(&remote->process, ends[0], error);
     if (status == RT_OK && remote->process.pid == 0)
         rt_server_run(shared, &remote->spec, remote->base.scene, remote->threads);
@@ -401,9 +331,7 @@ static RtStatus take_built(Remote *remote, RtError *error) {
     Built built = {.seconds = 0};
     snprintf(doing, sizeof doing, "it was built over %u object%s", remote->base.scene->geometry.object_count,
              rt_plural(remote->base.scene->geometry.object_count));
-    if (!request_master(remote, rt_server_build, &built, sizeof built, doing))
-        return fail_broken(remote, error);
-    if (built.reply.status != RT_OK) return forward(remote, &built.reply, false, error);
+    RT_TRY(request_master(remote, rt_server_build, &built, sizeof built, doing, error));
     /* The process has checked its description; an invalid one here was overwritten. */
     if (!(built.seconds >= 0 && built.seconds < INFINITY) || rt_description_impossible(&built.description)) {
         rt_remote_break(&remote->base, "it overwrote its description", doing);
@@ -415,14 +343,13 @@ static RtStatus take_built(Remote *remote, RtError *error) {
     remote->base.build_seconds = built.seconds;
     remote->base.build_tally = built.description.build;
     remote->description = built.description;
-    remote->built = 1024 * read_status(remote->process.pid, "RssAnon");
+    remote->built = 1024 * rt_process_status(remote->process.pid, "RssAnon");
     note_build(remote);
     return RT_OK;
 }
 
-/* Gives up after `limit` seconds without progress. */
-static RtStatus build(const RtSpec *spec, const RtScene *scene, int threads, double limit, RtAccel **out,
-                      RtError *error) {
+RtStatus rt_remote_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
+                         RtError *error) {
     Remote *remote = rt_alloc(1, sizeof(Remote));
     *out = NULL;
     if (!remote) return rt_fail_memory(error, "an accelerator", sizeof(Remote));
@@ -432,7 +359,7 @@ static RtStatus build(const RtSpec *spec, const RtScene *scene, int threads, dou
                        .threads = threads,
                        .pipe_end = -1,
                        .memory_limit = rt_memory_current_limit(),
-                       .time_limit = limit};
+                       .time_limit = 10 * time_limit_of_user()};
     const RtSpecLayer *plugin = spec->layers;
     while (!plugin->ops->remote) plugin++;
     remote->ops.name = plugin->ops->name;
@@ -441,6 +368,7 @@ static RtStatus build(const RtSpec *spec, const RtScene *scene, int threads, dou
     rt_spec_format(spec, remote->name);
     RtStatus status = start(remote, error);
     if (status == RT_OK) status = take_built(remote, error);
+    remote->time_limit = time_limit_of_user();
     if (status == RT_OK) {
         *out = &remote->base;
     } else {
@@ -448,50 +376,6 @@ static RtStatus build(const RtSpec *spec, const RtScene *scene, int threads, dou
         rt_accel_destroy(&remote->base);
     }
     return status;
-}
-
-/* In a fresh process, without the overlays above the plugin: traces each ray by itself, until the process
- * fails. The search takes at most the time limit to build, and MOST_SECONDS for a ray. */
-static uint32_t find_ray(const Remote *remote) {
-    enum { MOST_SECONDS = 10 };
-    const Crash *crash = &remote->shared->crash;
-    const uint32_t count = crash->count, layers = crash->layers, all = remote->spec.layer_count;
-    const bool any = crash->any, counted = crash->counted;
-    RtTally tallies[RT_RAY_KIND_COUNT] = {0};
-    RtSpec spec = {.layer_count = layers};
-    RtAccel *accel;
-    RtQuery query;
-    uint32_t found = FAILS_SOMEHOW;
-    if (!remote->find_ray || isinf(remote->time_limit) || layers == 0 || layers > all) return found;
-    memcpy(spec.layers, remote->spec.layers + (all - layers), layers * sizeof *spec.layers);
-    if (!spec.layers[0].ops->remote ||
-        build(&spec, remote->base.scene, remote->threads, remote->time_limit, &accel, NULL) != RT_OK)
-        return found;
-    of(accel)->time_limit = fmin(remote->time_limit, MOST_SECONDS);
-    if (rt_query_init(&query, accel, NULL) == RT_OK) {
-        found = FAILS_TOGETHER;
-        for (uint32_t i = 0; i < count && found == FAILS_TOGETHER; i++) {
-            RtHit hit;
-            bool blocked;
-            const RtRay ray = crash->rays[i];
-            if (any)
-                rt_occluded(&query, &ray, 1, &blocked, counted ? tallies : NULL);
-            else
-                rt_nearest(&query, &ray, 1, &hit, counted ? tallies : NULL);
-            if (of(accel)->broken) found = i;
-        }
-        rt_query_clear(&query);
-    }
-    rt_accel_destroy(accel);
-    return found;
-}
-
-RtStatus rt_remote_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
-                         RtError *error) {
-    RT_TRY(build(spec, scene, threads, 10 * time_limit_of_user(), out, error));
-    of(*out)->time_limit = time_limit_of_user();
-    of(*out)->find_ray = true;
-    return RT_OK;
 }
 
 static _Thread_local char exit_message[sizeof(((RtError *)0)->message)];
@@ -505,7 +389,8 @@ static void destroy(RtAccel *accel) {
     Remote *remote = of(accel);
     if (remote->process.pid > 0 && !remote->broken) {
         note_tracing(remote);
-        if (request_master(remote, rt_server_destroy, NULL, 0, "it was destroyed")) note_threads(remote);
+        if (request_master(remote, rt_server_destroy, NULL, 0, "it was destroyed", NULL) == RT_OK)
+            note_threads(remote);
         if (remote->broken) snprintf(exit_message, sizeof exit_message, "%s", remote->error.message);
     }
     if (remote->process.pid > 0) {
@@ -539,20 +424,15 @@ static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) 
         return rt_fail(error, RT_BAD_INPUT, "%s: a plugin traces on at most %d threads", remote->name,
                        CHANNELS - 1);
     *(uint32_t *)scratch = channel;
-    Reply reply = {.channel = channel};
-    if (!request_master(remote, rt_server_open, &reply, sizeof reply, "a query was opened"))
-        fail_broken(remote, error);
-    else if (reply.status != RT_OK)
-        forward(remote, &(Reply){.status = RT_BROKEN, .error = reply.error}, true, error);
-    else
-        return RT_OK;
-    release_channel(remote, channel);
-    return RT_BROKEN;
+    RtStatus status =
+        request_master(remote, rt_server_open, &channel, sizeof channel, "a query was opened", error);
+    if (status != RT_OK) release_channel(remote, channel);
+    return status;
 }
 
 static void close_query(const RtAccel *accel, void *scratch) {
     const uint32_t channel = *(uint32_t *)scratch;
-    request(of(accel), channel, NULL, "a query was closed");
+    request(of(accel), channel, NULL, NULL, 0, "a query was closed", NULL);
     release_channel(of(accel), channel);
 }
 
@@ -576,33 +456,34 @@ static void add_tallies(const RtAccel *accel, const RtTally *sent, size_t rays, 
     }
 }
 
-/* Traces at most RT_REMOTE_RAYS rays. The process has checked its answers; an invalid one here was
- * overwritten. */
+/* Traces at most RT_REMOTE_RAYS rays. One of `hits` and `occluders` is NULL. The process has checked its
+ * answers; an invalid one here was overwritten. */
 static void trace_part(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, uint32_t count,
-                       bool any, RtHit *hits, RtTally *tallies) {
+                       RtHit *hits, uint32_t *occluders, RtTally *tallies) {
     const uint32_t number = *(uint32_t *)scratch->own;
     Channel *channel = &of(accel)->shared->channels[number];
     Stream *stream = (Stream *)channel->message;
     char doing[64];
+    bool possible = true;
     snprintf(doing, sizeof doing, "it answered a stream of %u ray%s", count, rt_plural(count));
     stream->count = count;
-    stream->any = any;
+    stream->any = occluders != NULL;
     stream->counted = tallies != NULL;
     memset(stream->tallies, 0, sizeof stream->tallies);
     memcpy(channel->rays, rays, count * sizeof(RtRay));
-    if (!request(of(accel), number, rt_server_trace, doing)) {
-        for (uint32_t i = 0; i < count; i++) hits[i] = RT_MISS;
-        return;
+    const bool answered = request(of(accel), number, rt_server_trace, NULL, 0, doing, NULL) == RT_OK;
+    if (answered && tallies) add_tallies(accel, stream->tallies, count, tallies);
+    for (uint32_t i = 0; i < count && occluders; i++) {
+        occluders[i] = answered ? stream->occluders[i] : RT_NO_OBJECT;
+        possible &= rt_occluder_is_possible(accel, occluders[i]);
+        if (!possible) occluders[i] = RT_NO_OBJECT;
     }
-    if (tallies) add_tallies(accel, stream->tallies, count, tallies);
-    memcpy(hits, stream->hits, count * sizeof *hits);
-    for (uint32_t i = 0; i < count; i++) {
-        if (any ? rt_occluder_is_possible(accel, hits[i].object)
-                : rt_hit_is_possible(accel, &rays[i], hits[i]))
-            continue;
-        rt_remote_break(accel, "it overwrote its answers", "it answered a stream");
-        hits[i] = RT_MISS;
+    for (uint32_t i = 0; i < count && hits; i++) {
+        hits[i] = answered ? stream->hits[i] : RT_MISS;
+        possible &= rt_hit_is_possible(accel, &rays[i], hits[i]);
+        if (!possible) hits[i] = RT_MISS;
     }
+    if (!possible) rt_remote_break(accel, "it overwrote its answers", "it answered a stream");
 }
 
 /* Reports an event that was sent, whatever it holds, to the observer of this thread. */
@@ -635,37 +516,31 @@ static void observe(const RtAccel *accel, const RtScratch *scratch, const RtRay 
         events->any = any;
         channel->rays[0] = *ray;
         channel->begin = true;
-        if (!request(of(accel), number, rt_server_events, "it traced a ray step by step")) return;
+        if (request(of(accel), number, rt_server_events, NULL, 0, "it traced a ray step by step", NULL) !=
+            RT_OK)
+            return;
         count = events->count;
         count = count < MOST_EVENTS ? count : MOST_EVENTS;
         for (uint32_t i = 0; i < count; i++) observe_event(events->events[i]);
     }
 }
 
-/* One of `hits` and `occluders` is NULL. */
-static void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                  RtHit *hits, uint32_t *occluders, RtTally *tallies) {
-    RtHit some[RT_REMOTE_RAYS];
-    for (size_t first = 0; first < count; first += RT_REMOTE_RAYS) {
-        uint32_t n = (uint32_t)(count - first < RT_REMOTE_RAYS ? count - first : RT_REMOTE_RAYS);
-        trace_part(accel, scratch, rays + first, n, !hits, hits ? hits + first : some, tallies);
-        for (uint32_t i = 0; i < n && occluders; i++) occluders[first + i] = some[i].object;
-    }
-    for (size_t i = 0; i < count && RT_OBSERVED(tallies); i++) observe(accel, scratch, &rays[i], !hits);
-}
-
 /* The process times itself, so here a timed kernel is a counted one without tallies. */
-#define DEFINE_KERNELS(question, Answer, hits, occluders)                                                    \
-    static void question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,    \
-                         Answer *answers) {                                                                  \
-        trace(accel, scratch, rays, count, hits, occluders, NULL);                                           \
-    }                                                                                                        \
+#define DEFINE_KERNELS(question, Answer, any, hits, occluders)                                               \
     static void count_##question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,          \
                                  size_t count, Answer *answers, RtTally *tallies) {                          \
-        trace(accel, scratch, rays, count, hits, occluders, tallies);                                        \
+        for (size_t first = 0; first < count; first += RT_REMOTE_RAYS) {                                     \
+            const size_t left = count - first, some = left < RT_REMOTE_RAYS ? left : RT_REMOTE_RAYS;         \
+            trace_part(accel, scratch, rays + first, (uint32_t)some, hits, occluders, tallies);              \
+        }                                                                                                    \
+        for (size_t i = 0; i < count && RT_OBSERVED(tallies); i++) observe(accel, scratch, &rays[i], any);   \
+    }                                                                                                        \
+    static void question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,    \
+                         Answer *answers) {                                                                  \
+        count_##question(accel, scratch, rays, count, answers, NULL);                                        \
     }
-DEFINE_KERNELS(nearest, RtHit, answers, NULL)
-DEFINE_KERNELS(occluded, uint32_t, NULL, answers)
+DEFINE_KERNELS(nearest, RtHit, false, answers + first, NULL)
+DEFINE_KERNELS(occluded, uint32_t, true, NULL, answers + first)
 
 /* ---- the structure ---- */
 
@@ -674,7 +549,7 @@ static void describe(const RtAccel *accel, RtDescription *out) {
 }
 
 static RtStatus check(const RtAccel *accel, RtError *error) {
-    return request_check(of(accel), rt_server_check, "it was checked after tracing", error);
+    return request_master(of(accel), rt_server_check, NULL, 0, "it was checked after tracing", error);
 }
 
 /* The accelerator breaks if not all boxes could be shown; rt_accel_check reports it. */
@@ -685,7 +560,7 @@ static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
     uint32_t count = MOST_BOXES;
     for (uint64_t first = 0; some && count == MOST_BOXES && first < UINT32_MAX; first += count) {
         some->first = first;
-        if (!request_master(of(accel), rt_server_boxes, some, sizeof *some, doing)) break;
+        if (request_master(of(accel), rt_server_boxes, some, sizeof *some, doing, NULL) != RT_OK) break;
         count = some->count < MOST_BOXES ? some->count : MOST_BOXES;
         for (uint32_t i = 0; i < count; i++) {
             const RtBoxView view = {
@@ -705,7 +580,7 @@ static void ignore(void *context, const RtBoxView *view) {
 
 /* The process checks the boxes as it shows them. */
 static RtStatus validate(const RtAccel *accel, RtError *error) {
-    RT_TRY(request_check(of(accel), rt_server_validate, "it was validated", error));
+    RT_TRY(request_master(of(accel), rt_server_validate, NULL, 0, "it was validated", error));
     each_box(accel, (RtBoxViewer){ignore, NULL});
     return check(accel, error);
 }

@@ -48,32 +48,18 @@ void rt_futex_set(atomic_uint *word, unsigned value) {
 
 /* ---- how it ends ---- */
 
-/* Copies the stream. The plugin may have overwritten what the query is doing. */
-static void record_stream(Crash *crash, const RtPluginNow *now) {
-    const size_t count = now->count < RT_REMOTE_RAYS ? now->count : RT_REMOTE_RAYS;
-    const size_t ray = (size_t)((const RtRay *)now->face.ray - now->stream);
-    memcpy(crash->rays, now->stream, count * sizeof(RtRay));
-    crash->ray = ray < count ? (uint32_t)ray : 0;
-    crash->any = now->any;
-    crash->counted = now->counted;
-    crash->layers = now->layers;
-    crash->count = (uint32_t)count;
-}
-
-/* Records the signal and the rays, using only what is safe in a signal handler. */
+/* Records the signal and the ray, using only what is safe in a signal handler. */
 static void on_signal(int number, siginfo_t *info, void *unused) {
     (void)unused;
     Crash *crash = &server.shared->crash;
-    const RtPluginNow *now = number == SIGXCPU ? rt_plugin_busy() : rt_plugin_now();
-    if (now && now->face.ray) {
-        record_stream(crash, now);
-        const char *at = number == SIGSEGV || number == SIGBUS ? info->si_addr : NULL;
-        for (uint32_t i = 0; at && i < RT_GUARD_COUNT; i++) {
-            const RtGuarded *guarded = &now->guarded[i];
-            if (at >= guarded->mapping && at < guarded->mapping + guarded->mapped) crash->out_of = i + 1;
-        }
-    }
+    const RtPluginNow *now = rt_plugin_now(number == SIGXCPU);
+    const char *at = number == SIGSEGV || number == SIGBUS ? info->si_addr : NULL;
     crash->signal = number;
+    if (now && now->face.ray) {
+        if (at >= now->mapping && at < now->mapping + now->mapped) crash->out_of = at < now->middle ? 1 : 2;
+        memcpy(&crash->ray, now->face.ray, sizeof crash->ray);
+        crash->traced = 1;
+    }
     _exit(EXIT_FAILURE);
 }
 
@@ -115,20 +101,12 @@ static void *watch_raytally(void *unused) {
     _exit(EXIT_FAILURE);
 }
 
-/* Bytes that count for RLIMIT_DATA; 0 if they are unknown. */
-static rlim_t data_bytes(void) {
-    unsigned long pages = 0;
-    FILE *file = fopen("/proc/self/statm", "r");
-    if (file && fscanf(file, "%*u %*u %*u %*u %*u %lu", &pages) != 1) pages = 0;
-    if (file) fclose(file);
-    return (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE);
-}
-
 /* Limits what the plugin can allocate, in case that it is faster than raytally, which watches it. */
 static void limit_memory(const RtScene *scene) {
     const uint64_t limit = rt_memory_current_limit(), least = rt_accel_byte_limit(scene);
     const bool larger = limit > least && limit < UINT64_MAX;
-    const rlim_t used = data_bytes(), bytes = used + 2 * (rlim_t)(larger ? limit : least);
+    const rlim_t used = 1024 * rt_process_status(getpid(), "VmData");
+    const rlim_t bytes = used + 2 * (rlim_t)(larger ? limit : least);
     if (used) setrlimit(RLIMIT_DATA, &(struct rlimit){bytes, bytes});
     setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
 }
@@ -137,54 +115,40 @@ static void limit_memory(const RtScene *scene) {
 static void wait_for_debugger(void) {
     if (!getenv("RAYTALLY_PLUGIN_WAIT")) return;
     fprintf(stderr, "raytally: the process of the plugin waits for a debugger: gdb -p %d\n", (int)getpid());
-    raise(SIGSTOP);
+    while (rt_process_status(getpid(), "TracerPid") == 0)
+        nanosleep(&(struct timespec){.tv_nsec = 100000000}, NULL);
 }
 
 /* ---- requests on channel 0 ---- */
 
-/* A description with a number that no structure has breaks the plugin. */
-static RtStatus describe(RtDescription *out, RtError *error) {
-    char name[RT_MAX_SPEC_CHARS];
-    RtError why;
-    rt_accel_describe(server.accel, out);
-    const RtStatus status = rt_accel_check(server.accel, &why);
-    rt_spec_format(server.spec, name);
-    return status == RT_OK ? RT_OK : rt_fail(error, status, "%s: %s", name, why.message);
-}
-
-static RtStatus build(Built *built, RtError *error) {
+RtStatus rt_server_build(RtQuery *query, const RtRay *rays, void *message, RtError *error) {
+    (void)query, (void)rays;
+    Built *built = message;
     RT_TRY(rt_plugin_enter(server.spec, error));
     RT_TRY(rt_accel_build_here(server.spec, server.scene, server.threads, &server.accel, error));
+    rt_memory_limit(0);
     built->exact = server.accel->exact;
     built->absolute = server.accel->absolute;
     built->counts = server.accel->counts;
     built->seconds = server.accel->build_seconds;
-    return describe(&built->description, error);
+    rt_accel_describe(server.accel, &built->description);
+    return rt_accel_check(server.accel, error); /* a description may have a number that no structure has */
 }
 
-void rt_server_build(RtQuery *query, const RtRay *rays, void *message) {
-    (void)query, (void)rays;
-    Built built = {.seconds = 0};
-    built.reply.status = build(&built, &built.reply.error);
-    rt_memory_limit(0);
-    memcpy(message, &built, sizeof built);
-}
-
-void rt_server_validate(RtQuery *query, const RtRay *rays, void *message) {
-    (void)query, (void)rays;
-    Reply *reply = message;
-    reply->status = rt_accel_validate(server.accel, &reply->error);
-}
-
-void rt_server_check(RtQuery *query, const RtRay *rays, void *message) {
-    (void)query, (void)rays;
-    Reply *reply = message;
-    reply->status = rt_accel_check(server.accel, &reply->error);
-}
-
-void rt_server_destroy(RtQuery *query, const RtRay *rays, void *message) {
+RtStatus rt_server_validate(RtQuery *query, const RtRay *rays, void *message, RtError *error) {
     (void)query, (void)rays, (void)message;
+    return rt_accel_validate(server.accel, error);
+}
+
+RtStatus rt_server_check(RtQuery *query, const RtRay *rays, void *message, RtError *error) {
+    (void)query, (void)rays, (void)message;
+    return rt_accel_check(server.accel, error);
+}
+
+RtStatus rt_server_destroy(RtQuery *query, const RtRay *rays, void *message, RtError *error) {
+    (void)query, (void)rays, (void)message, (void)error;
     rt_accel_destroy(server.accel);
+    return RT_OK;
 }
 
 static void send_box(void *context, const RtBoxView *view) {
@@ -198,38 +162,30 @@ static void send_box(void *context, const RtBoxView *view) {
     to->boxes[to->count++].leaf = view->leaf;
 }
 
-void rt_server_boxes(RtQuery *query, const RtRay *rays, void *message) {
-    (void)query, (void)rays;
+RtStatus rt_server_boxes(RtQuery *query, const RtRay *rays, void *message, RtError *error) {
+    (void)query, (void)rays, (void)error;
     Boxes *to = message;
     const RtAccel *base = rt_accel_base(server.accel);
     to->count = 0;
     to->seen = 0;
     if (base->ops->each_box) base->ops->each_box(base, (RtBoxViewer){send_box, to});
+    return RT_OK;
 }
 
 /* ---- requests on channels of queries ---- */
 
-/* Occluders are written over the first hits, and then expanded to hits at tmin. */
-static void trace_occluded(RtQuery *query, Stream *stream, const RtRay *rays) {
-    const RtAccelOps *ops = query->accel->ops;
-    uint32_t *occluders = (uint32_t *)stream->hits;
-    if (stream->counted)
-        ops->occluded_counted(query->accel, query->scratch, rays, stream->count, occluders, stream->tallies);
-    else
-        ops->occluded(query->accel, query->scratch, rays, stream->count, occluders);
-    for (uint32_t i = stream->count; i-- > 0;) {
-        uint32_t occluder;
-        memcpy(&occluder, (const char *)stream->hits + i * sizeof occluder, sizeof occluder);
-        stream->hits[i] = (RtHit){rays[i].tmin, occluder};
-    }
-}
-
-void rt_server_trace(RtQuery *query, const RtRay *rays, void *message) {
+RtStatus rt_server_trace(RtQuery *query, const RtRay *rays, void *message, RtError *error) {
+    (void)error;
     Stream *stream = message;
-    if (stream->any)
-        trace_occluded(query, stream, rays);
+    const RtAccel *accel = query->accel;
+    const uint32_t count = stream->count;
+    if (!stream->any)
+        rt_nearest(query, rays, count, stream->hits, stream->counted ? stream->tallies : NULL);
+    else if (stream->counted)
+        accel->ops->occluded_counted(accel, query->scratch, rays, count, stream->occluders, stream->tallies);
     else
-        rt_nearest(query, rays, stream->count, stream->hits, stream->counted ? stream->tallies : NULL);
+        accel->ops->occluded(accel, query->scratch, rays, count, stream->occluders);
+    return RT_OK;
 }
 
 /* The observer. */
@@ -251,7 +207,8 @@ static void send_event(void *context, const RtTraced *event) {
     if (event->what) strncpy(out->what, event->what, sizeof out->what - 1);
 }
 
-void rt_server_events(RtQuery *query, const RtRay *rays, void *message) {
+RtStatus rt_server_events(RtQuery *query, const RtRay *rays, void *message, RtError *error) {
+    (void)error;
     Events *to = message;
     RtTally tallies[RT_RAY_KIND_COUNT] = {0};
     RtHit hit;
@@ -264,6 +221,7 @@ void rt_server_events(RtQuery *query, const RtRay *rays, void *message) {
     else
         rt_nearest(query, rays, 1, &hit, tallies);
     rt_trace_observer = NULL;
+    return RT_OK;
 }
 
 /* ---- channels ---- */
@@ -280,7 +238,7 @@ static void serve(Channel *channel, RtQuery *query) {
         if (more && query && channel->begin) rt_query_begin(query);
         channel->begin = false;
         if (more)
-            channel->work(query, channel->rays, channel->message);
+            channel->status = channel->work(query, channel->rays, channel->message, &channel->error);
         else
             rt_query_clear(query);
         rt_remote_progress();
@@ -293,19 +251,19 @@ static void *serve_query(void *channel) {
     return NULL;
 }
 
-void rt_server_open(RtQuery *query, const RtRay *rays, void *message) {
+/* Whatever a query lacks, the others do without this accelerator. */
+RtStatus rt_server_open(RtQuery *query, const RtRay *rays, void *message, RtError *error) {
     (void)query, (void)rays;
-    Reply *reply = message;
-    RtQuery *own = &server.queries[reply->channel];
+    const uint32_t number = *(uint32_t *)message;
+    RtQuery *own = &server.queries[number];
     pthread_t thread;
-    reply->status = rt_query_init(own, server.accel, &reply->error);
-    if (reply->status != RT_OK) return;
-    if (pthread_create(&thread, NULL, serve_query, &server.shared->channels[reply->channel]) == 0) {
+    if (rt_query_init(own, server.accel, error) != RT_OK) return RT_BROKEN;
+    if (pthread_create(&thread, NULL, serve_query, &server.shared->channels[number]) == 0) {
         pthread_detach(thread);
-    } else {
-        rt_query_clear(own);
-        reply->status = rt_fail_memory(&reply->error, "a thread", 0);
+        return RT_OK;
     }
+    rt_query_clear(own);
+    return rt_fail(error, RT_BROKEN, "there is no memory for a thread");
 }
 
 void rt_server_run(Shared *shared, const RtSpec *spec, const RtScene *scene, int threads) {

@@ -24,8 +24,6 @@ struct RtRemotePass {
 
 typedef struct Message {
     TimedPass *there;
-    RtStatus status;
-    RtError error;
     uint64_t count, first, some; /* rays in all; those sent: first..first + some - 1 */
     bool any;
     int threads;
@@ -39,59 +37,48 @@ static XXH64_hash_t hash_rays(const TimedPass *timed, uint64_t count) {
     return XXH3_64bits(timed->rays, count * sizeof(RtRay));
 }
 
-static RtStatus add_rays(RtQuery *query, const RtRay *rays, Message *m) {
+static RtStatus add_rays(RtQuery *query, const RtRay *rays, void *message, RtError *error) {
+    Message *m = message;
     if (m->first == 0) m->there = rt_alloc(1, sizeof(TimedPass));
     if (m->first == 0 && m->there) m->there->rays = rt_alloc_unset(m->count, sizeof(RtRay));
     TimedPass *timed = m->there;
-    if (!timed || !timed->rays) return rt_fail_memory(&m->error, "a ray set", m->count * sizeof(RtRay));
+    if (!timed || !timed->rays) return rt_fail_memory(error, "a ray set", m->count * sizeof(RtRay));
     memcpy(timed->rays + m->first, rays, m->some * sizeof(RtRay));
     if (m->first + m->some < m->count) return RT_OK;
     timed->hash = hash_rays(timed, m->count);
-    return rt_pass_init(&timed->pass, query->accel, timed->rays, m->count, m->any, m->threads, false,
-                        &m->error);
-}
-
-static void add(RtQuery *query, const RtRay *rays, void *message) {
-    ((Message *)message)->status = add_rays(query, rays, message);
+    return rt_pass_init(&timed->pass, query->accel, timed->rays, m->count, m->any, m->threads, false, error);
 }
 
 /* The accelerator could change the rays, so they are checked. */
-static void time_pass(RtQuery *query, const RtRay *rays, void *message) {
+static RtStatus time_pass(RtQuery *query, const RtRay *rays, void *message, RtError *error) {
     (void)query, (void)rays;
     Message *m = message;
     RtPass *pass = &m->there->pass;
     const double wall = rt_wall_seconds(), processor = rt_thread_seconds();
-    for (uint32_t i = 0; i < m->repeats && m->status == RT_OK; i++) m->status = rt_pass_run(pass, &m->error);
+    for (uint32_t i = 0; i < m->repeats; i++) RT_TRY(rt_pass_run(pass, error));
     m->wall = rt_wall_seconds() - wall;
     m->seconds = pass->threads > 1 ? m->wall : rt_thread_seconds() - processor;
-    if (m->status == RT_OK && hash_rays(m->there, pass->count) != m->there->hash)
-        m->status = rt_fail(&m->error, RT_BROKEN, "it wrote to the rays that it was given");
+    if (hash_rays(m->there, pass->count) == m->there->hash) return RT_OK;
+    return rt_fail(error, RT_BROKEN, "it wrote to the rays that it was given while it was timed");
 }
 
-static void destroy(RtQuery *query, const RtRay *rays, void *message) {
-    (void)query, (void)rays;
+static RtStatus destroy(RtQuery *query, const RtRay *rays, void *message, RtError *error) {
+    (void)query, (void)rays, (void)error;
     TimedPass *timed = ((Message *)message)->there;
     rt_pass_clear(&timed->pass);
     rt_free(timed->rays);
     rt_free(timed);
+    return RT_OK;
 }
 
 /* ---- in raytally's ---- */
 
 static RtStatus request(RtRemotePass *pass, RtRemoteWork *work, const RtRay *rays, Message *m,
                         RtError *error) {
-    const RtAccel *accel = pass->query.accel;
     m->there = pass->there;
-    m->status = RT_OK;
-    rt_remote_do(&pass->query, work, rays, m->some, m, sizeof *m);
+    RtStatus status = rt_remote_do(&pass->query, work, rays, m->some, m, sizeof *m, error);
     pass->there = m->there;
-    m->error.message[sizeof m->error.message - 1] = '\0';
-    if (m->status > RT_OK && m->status <= RT_IO && m->status != RT_BROKEN)
-        return rt_fail(error, m->status, "%s", m->error.message);
-    if (m->status != RT_OK) rt_remote_break(accel, m->error.message, "it was timed");
-    if (!(m->seconds >= 0 && m->seconds < INFINITY && m->wall >= 0 && m->wall < INFINITY))
-        rt_remote_break(accel, "it overwrote the times", "it was timed");
-    return rt_accel_check(accel, error);
+    return status;
 }
 
 RtStatus rt_remote_pass_open(RtRemotePass **out, const RtAccel *accel, const RtRay *rays, size_t count,
@@ -103,7 +90,7 @@ RtStatus rt_remote_pass_open(RtRemotePass **out, const RtAccel *accel, const RtR
     for (; message.first < count; message.first += message.some) {
         const uint64_t left = count - message.first;
         message.some = left < RT_REMOTE_RAYS ? left : RT_REMOTE_RAYS;
-        RT_TRY(request(pass, add, rays + message.first, &message, error));
+        RT_TRY(request(pass, add_rays, rays + message.first, &message, error));
     }
     return RT_OK;
 }
@@ -114,7 +101,9 @@ RtStatus rt_remote_pass_time(RtRemotePass *pass, uint32_t repeats, double *secon
     RT_TRY(request(pass, time_pass, NULL, &message, error));
     *seconds = message.seconds;
     *wall = message.wall;
-    return RT_OK;
+    if (*seconds >= 0 && *seconds < INFINITY && *wall >= 0 && *wall < INFINITY) return RT_OK;
+    rt_remote_break(pass->query.accel, "it overwrote the times", "it was timed");
+    return rt_accel_check(pass->query.accel, error);
 }
 
 void rt_remote_pass_close(RtRemotePass *pass) {

@@ -12,9 +12,10 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Each answer is a ForgedAnswer and then the `length` bytes that replace those of the message from `offset`
- * on: what raytally asked, or an earlier answer. After the last answer, and after a cut one, the process has
- * ended. */
+/* Each answer is a ForgedAnswer and then the `length` bytes that replace those of the channel from `offset`
+ * on, which counts from its `status`: what raytally asked, or an earlier answer. After the last answer, and
+ * after a cut one, the process has ended. */
+#define FORGED_MESSAGE (offsetof(Channel, message) - offsetof(Channel, status))
 typedef struct ForgedAnswer {
     uint16_t offset, length;
 } ForgedAnswer;
@@ -91,7 +92,7 @@ void __wrap_rt_futex_set(atomic_uint *word, unsigned value) {
     else
         channel->asked = value;
     if (forged.on && take_forged(&answer, sizeof answer) &&
-        take_forged(channel->message + answer.offset, answer.length))
+        take_forged((char *)&channel->status + answer.offset, answer.length))
         channel->answered = value;
 }
 

@@ -11,7 +11,7 @@ typedef struct Answers {
     size_t size;
 } Answers;
 
-/* The next answer: the bytes at `offset` of the message become `data`. */
+/* The next answer: the bytes at `offset` (of the channel, from its status on) become `data`. */
 static void add_answer(Answers *answers, size_t offset, const void *data, size_t length) {
     const ForgedAnswer head = {(uint16_t)offset, (uint16_t)length};
     assert_true(answers->size + sizeof head + length <= sizeof answers->bytes);
@@ -31,7 +31,7 @@ static void trace_overwritten(size_t offset, const void *data, size_t length, Rt
     RtTally tallies[RT_RAY_KIND_COUNT] = {0};
     RtAccel *accel;
     for (int i = 0; i < 2; i++) add_answer(&answers, 0, "", 0);
-    add_answer(&answers, offset, data, length);
+    add_answer(&answers, FORGED_MESSAGE + offset, data, length);
     add_answer(&answers, 0, "", 0);
     assert_ok(open_forged(&scene, answers.bytes, answers.size, &accel, error));
     RtQuery query = open_query(accel);
@@ -82,12 +82,12 @@ RT_TEST(a_description_with_a_number_that_no_structure_has_is_refused) {
     RtAccel *accel;
     for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
         Answers answers = {.size = 0};
-        add_answer(&answers, places[i], &below_zero, sizeof below_zero);
+        add_answer(&answers, FORGED_MESSAGE + places[i], &below_zero, sizeof below_zero);
         assert_fails_with(open_forged(&scene, answers.bytes, answers.size, &accel, error), RT_BROKEN,
                           "forged: it overwrote its description while it was built over 1 object");
     }
     Answers answers = {.size = 0};
-    add_answer(&answers, offsetof(Built, seconds), &never, sizeof never);
+    add_answer(&answers, FORGED_MESSAGE + offsetof(Built, seconds), &never, sizeof never);
     assert_fails_with(open_forged(&scene, answers.bytes, answers.size, &accel, error), RT_BROKEN,
                       "description");
 }
@@ -98,7 +98,7 @@ RT_TEST(a_failure_without_a_reason_still_names_the_accelerator) {
     RtAccel *accel;
     for (size_t i = 0; i < sizeof statuses / sizeof statuses[0]; i++) {
         Answers answers = {.size = 0};
-        add_answer(&answers, offsetof(Built, reply.status), &statuses[i], sizeof statuses[i]);
+        add_answer(&answers, 0, &statuses[i], sizeof statuses[i]);
         assert_fails_at(open_forged(&scene, answers.bytes, answers.size, &accel, error),
                         i ? RT_BROKEN : RT_BAD_INPUT, "forged: ", "it failed and sent no reason");
     }
