@@ -39,7 +39,8 @@ typedef struct Channel {
 typedef struct Crash {
     atomic_int signal; /* 0: nothing */
     uint32_t out_of;   /* it left the memory of a query: 1; its answers: 2; 0: neither */
-    uint32_t traced;   /* 1: it traced `ray`, or a later one of the same stream; 0: unknown */
+    uint32_t
+        traced; /* `ray` is: 2: the last that the plugin prepared; 1: the first of its stream; 0: unset */
     RtRay ray;
 } Crash;
 

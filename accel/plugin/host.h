@@ -55,7 +55,8 @@ void rt_plugin_query_init(RtPluginAccel *self);
 /* ---- what a query is doing, for reports of crashes ---- */
 
 typedef struct RtPluginNow {
-    raytally_query face; /* the plugin's; its ray is the last prepared, or the first; NULL: idle */
+    raytally_query face; /* the plugin's; its ray is the last that it prepared, or NULL */
+    const RtRay *stream; /* NULL: idle */
     /* The plugin's memory and, from `middle` on, its answers, between guard pages, where an access crashes.
      */
     char *mapping, *middle;

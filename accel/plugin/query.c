@@ -67,7 +67,7 @@ const RtPluginNow *rt_plugin_now(bool any_thread) {
     if (!any_thread) return now;
     for (int i = 0; i < MOST_QUERIES; i++) {
         const PluginQuery *query = atomic_load(&open_queries[i]);
-        if (query && query->now.face.ray) return &query->now;
+        if (query && query->now.stream) return &query->now;
     }
     return NULL;
 }
@@ -259,12 +259,6 @@ static bool canaries_are_intact(const char *from, const char *end) {
     return bytes == 0 || ((unsigned char)*from == CANARY && memcmp(from, from + 1, bytes - 1) == 0);
 }
 
-static bool wrote_beside_memory(const PluginQuery *query) {
-    const char *memory = query->memory;
-    return memory && !(canaries_are_intact(query->now.mapping + GUARD, memory) &&
-                       canaries_are_intact(memory + query->accel->query_bytes, query->memory_end));
-}
-
 /* One mapping: a guard, the plugin's memory, a guard, the answers, a guard. */
 static RtStatus map_memory(PluginQuery *query, RtError *error) {
     const size_t page = (size_t)sysconf(_SC_PAGESIZE), wanted = query->accel->query_bytes;
@@ -333,18 +327,21 @@ static void *enter(PluginQuery *query, const RtScratch *scratch, const RtRay *ra
     query->now.face.crossings = scratch->crossings;
     query->scratch = scratch;
     query->now.face.object_count = query->counting ? 0 : query->geometry->object_count;
-    query->now.face.ray = (const raytally_ray *)rays;
+    query->now.face.ray = NULL;
+    query->now.stream = rays;
     now = &query->now;
     return answers;
 }
 
 /* After a stream. */
 static void leave(PluginQuery *query, const char *answers) {
-    query->now.face.ray = NULL;
+    const char *memory = query->memory;
+    query->now.stream = NULL;
     now = NULL;
     if (!canaries_are_intact(answers - CANARIES, answers))
         rt_plugin_break(query->accel, "it wrote in front of its answers");
-    if (wrote_beside_memory(query))
+    if (memory && !(canaries_are_intact(query->now.mapping + GUARD, memory) &&
+                    canaries_are_intact(memory + query->accel->query_bytes, query->memory_end)))
         rt_plugin_break(query->accel,
                         "it wrote past the %zu bytes of its query's memory, or in front of them",
                         query->accel->query_bytes);
@@ -360,8 +357,9 @@ static void break_at_object(RtPluginAccel *accel, const RtRay *ray, uint32_t obj
 
 static void take_hits(PluginQuery *query, const RtRay *rays, size_t count, const RtHit *theirs, RtHit *hits) {
     RtPluginAccel *accel = query->accel;
+    memcpy(hits, theirs, count * sizeof *hits);
     for (size_t i = 0; i < count; i++) {
-        const RtHit hit = hits[i] = theirs[i];
+        const RtHit hit = hits[i];
         if (rt_hit_is_possible(&accel->base, &rays[i], hit)) continue;
         hits[i] = RT_MISS;
         if (hit.object < accel->base.scene->geometry.object_count || hit.object == RT_NO_OBJECT) {
@@ -420,14 +418,16 @@ static void add_counters(PluginQuery *query, const raytally_counters *counted, s
             const uint64_t count = rt_tally_get(&theirs, i), right = rt_tally_get(&query->tallies[kind], i);
             const bool test =
                 i == RAYTALLY_OBJECT_TESTS || i == RAYTALLY_OBJECT_HITS || i == RAYTALLY_CSG_TESTS;
-            if (!rt_count_is_possible(count, rays))
+            if (!rt_count_is_possible(count, rays)) {
                 rt_plugin_break(query->accel, "it counted %" PRIu64 " %s for %s rays, more than possible",
                                 count, name, of_kind);
-            else if (test && tests_here && count != right)
+                theirs = (RtTally){0};
+            } else if (test && tests_here && count != right) {
                 rt_plugin_break(query->accel,
                                 "its %s for %s rays add up to %" PRIu64 ", and were %" PRIu64
                                 ": raytally_object_hits counts them, in the counters passed to it",
                                 name, of_kind, count, right);
+            }
         }
         query->below[kind].rays = query->below[kind].hits = 0;
         rt_tally_add(&tallies[kind], &theirs);
@@ -456,7 +456,7 @@ static void start_counting(PluginQuery *query, raytally_counters *counters, uint
             if (tallies) start_counting(query, counters, rays[first].kind);                                  \
             Answer *theirs = enter(query, scratch, rays + first, n, sizeof(Answer));                         \
             query->accel->table->question(query->accel->self, query->memory, &query->now.face,               \
-                                          query->now.face.ray, n, (Theirs *)theirs,                          \
+                                          (const raytally_ray *)rays + first, n, (Theirs *)theirs,           \
                                           tallies && accel->counts ? counters : NULL);                       \
             leave(query, (const char *)theirs);                                                              \
             take(query, rays + first, n, theirs, answers + first);                                           \

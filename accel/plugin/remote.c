@@ -59,11 +59,10 @@ bool rt_accel_is_remote(const RtAccel *accel) {
 }
 
 static double time_limit_of_user(void) {
-    if (getenv("RAYTALLY_PLUGIN_WAIT")) return INFINITY; /* for a debugger */
     const char *text = getenv("RAYTALLY_PLUGIN_SECONDS");
-    char *end;
-    double seconds = text ? strtod(text, &end) : 0;
-    return text && end != text && *end == '\0' && seconds > 0 && seconds < 1e6 ? seconds : 60;
+    const double seconds = text ? strtod(text, NULL) : 0;
+    if (getenv("RAYTALLY_PLUGIN_WAIT")) return INFINITY; /* for a debugger */
+    return seconds > 0 && seconds < 1e6 ? seconds : 60;
 }
 
 /* ---- what it uses and leaves behind ---- */
@@ -127,13 +126,6 @@ static void note_build(const Remote *remote) {
             1e-6 * (double)held, 1e-6 * (double)bytes);
 }
 
-static void note_tracing(const Remote *remote) {
-    const uint64_t kept = held_bytes(remote->process.pid, remote->built);
-    if (remote->built > 0 && (double)kept > 256e6)
-        note(remote, "its process holds %.0f MB more memory after tracing, which must allocate none",
-             1e-6 * (double)kept);
-}
-
 /* Threads that sleep, such as those of a pool, disturb nothing, and are not reported. raytally's own two
  * threads sleep. */
 static void note_threads(const Remote *remote) {
@@ -160,16 +152,17 @@ static void note_processes(const Remote *remote, const RtProcessEnd *end) {
 
 /* ---- how it fails ---- */
 
-/* "NAME: WHAT while DOING, at the ray ...", if a ray is known: the last that the plugin prepared, or the
- * first of its stream; it may have failed at a later one. Only the first failure is kept. */
+/* "NAME: WHAT while DOING, at the ray ...", if that is known; `doing` may be NULL. Only the first failure is
+ * kept. */
 static void set_broken(Remote *remote, const char *what, const char *doing) {
+    static const char *const places[] = {"", "; its stream begins with the ray ", ", at the ray "};
     char text[RT_RAY_TEXT];
     const RtRay ray = remote->shared->crash.ray;
-    const bool known = remote->shared->crash.traced == 1;
+    const uint32_t traced = remote->shared->crash.traced, place = traced <= 2 ? traced : 0;
     if (remote->broken) return;
     rt_ray_format(&ray, text, sizeof text);
-    rt_fail(&remote->error, RT_BROKEN, "%s: %s while %s%s%s%s", remote->name, what, doing,
-            known ? ", at the ray " : "", known ? text : "", known ? " or a later one of its stream" : "");
+    rt_fail(&remote->error, RT_BROKEN, "%s: %s%s%s%s%s", remote->name, what, doing ? " while " : "",
+            doing ? doing : "", places[place], place ? text : "");
     remote->broken = true;
 }
 
@@ -264,16 +257,19 @@ static RtStatus fail_broken(const Remote *remote, RtError *error) {
     return remote->error.status;
 }
 
-/* Takes a failure from the process. Its text names the accelerator unless it is RT_BROKEN. It may lack its
- * end, or be missing, and its status may be invalid. */
-static RtStatus forward(const Remote *remote, const Channel *channel, RtError *error) {
+/* Takes a failure from the process; RT_BROKEN and invalid ones break the accelerator. The text may lack its
+ * end, or be missing. */
+static RtStatus forward(Remote *remote, const Channel *channel, RtError *error) {
     const RtStatus status = channel->status;
     RtError why = channel->error;
     why.message[sizeof why.message - 1] = '\0';
-    const bool named = *why.message && status != RT_BROKEN;
-    return rt_fail(error, status > RT_OK && status <= RT_IO ? status : RT_BROKEN, "%s%s%s",
-                   named ? "" : remote->name, named ? "" : ": ",
-                   *why.message ? why.message : "it failed and sent no reason");
+    const char *reason = *why.message ? why.message : "it failed and sent no reason";
+    if (status <= RT_OK || status > RT_IO || status == RT_BROKEN) {
+        rt_remote_break(&remote->base, reason, NULL);
+        return fail_broken(remote, error);
+    }
+    return rt_fail(error, status, "%s%s%s", *why.message ? "" : remote->name, *why.message ? "" : ": ",
+                   reason);
 }
 
 /* Asks for `work` on the rays in the channel and on a copy of the message, which is copied back if there is
@@ -388,7 +384,10 @@ const char *rt_remote_exit_message(void) {
 static void destroy(RtAccel *accel) {
     Remote *remote = of(accel);
     if (remote->process.pid > 0 && !remote->broken) {
-        note_tracing(remote);
+        const uint64_t kept = held_bytes(remote->process.pid, remote->built);
+        if (remote->built > 0 && (double)kept > 256e6)
+            note(remote, "its process holds %.0f MB more memory after tracing, which must allocate none",
+                 1e-6 * (double)kept);
         if (request_master(remote, rt_server_destroy, NULL, 0, "it was destroyed", NULL) == RT_OK)
             note_threads(remote);
         if (remote->broken) snprintf(exit_message, sizeof exit_message, "%s", remote->error.message);

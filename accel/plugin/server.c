@@ -55,10 +55,11 @@ static void on_signal(int number, siginfo_t *info, void *unused) {
     const RtPluginNow *now = rt_plugin_now(number == SIGXCPU);
     const char *at = number == SIGSEGV || number == SIGBUS ? info->si_addr : NULL;
     crash->signal = number;
-    if (now && now->face.ray) {
+    if (now && now->stream) {
         if (at >= now->mapping && at < now->mapping + now->mapped) crash->out_of = at < now->middle ? 1 : 2;
-        memcpy(&crash->ray, now->face.ray, sizeof crash->ray);
-        crash->traced = 1;
+        const void *ray = now->face.ray ? (const void *)now->face.ray : now->stream;
+        memcpy(&crash->ray, ray, sizeof crash->ray);
+        crash->traced = now->face.ray ? 2 : 1;
     }
     _exit(EXIT_FAILURE);
 }

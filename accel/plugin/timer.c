@@ -33,10 +33,6 @@ typedef struct Message {
 
 /* ---- in the accelerator's process ---- */
 
-static XXH64_hash_t hash_rays(const TimedPass *timed, uint64_t count) {
-    return XXH3_64bits(timed->rays, count * sizeof(RtRay));
-}
-
 static RtStatus add_rays(RtQuery *query, const RtRay *rays, void *message, RtError *error) {
     Message *m = message;
     if (m->first == 0) m->there = rt_alloc(1, sizeof(TimedPass));
@@ -45,7 +41,7 @@ static RtStatus add_rays(RtQuery *query, const RtRay *rays, void *message, RtErr
     if (!timed || !timed->rays) return rt_fail_memory(error, "a ray set", m->count * sizeof(RtRay));
     memcpy(timed->rays + m->first, rays, m->some * sizeof(RtRay));
     if (m->first + m->some < m->count) return RT_OK;
-    timed->hash = hash_rays(timed, m->count);
+    timed->hash = XXH3_64bits(timed->rays, m->count * sizeof(RtRay));
     return rt_pass_init(&timed->pass, query->accel, timed->rays, m->count, m->any, m->threads, false, error);
 }
 
@@ -58,7 +54,7 @@ static RtStatus time_pass(RtQuery *query, const RtRay *rays, void *message, RtEr
     for (uint32_t i = 0; i < m->repeats; i++) RT_TRY(rt_pass_run(pass, error));
     m->wall = rt_wall_seconds() - wall;
     m->seconds = pass->threads > 1 ? m->wall : rt_thread_seconds() - processor;
-    if (hash_rays(m->there, pass->count) == m->there->hash) return RT_OK;
+    if (XXH3_64bits(pass->rays, pass->count * sizeof(RtRay)) == m->there->hash) return RT_OK;
     return rt_fail(error, RT_BROKEN, "it wrote to the rays that it was given while it was timed");
 }
 

@@ -398,7 +398,7 @@ RT_TEST(a_crash_names_the_ray_prepared_last_or_the_first_of_the_stream) {
         open_stage(&stage, specs[k], 2000);
         while (k == 0 && !is_rare(&stage.set.rays[ray])) ray++;
         rt_ray_format(&stage.set.rays[ray], text, sizeof text);
-        snprintf(at, sizeof at, ", at the ray %s or a later one of its stream", text);
+        snprintf(at, sizeof at, "%s the ray %s", k == 0 ? ", at" : "; its stream begins with", text);
         break_by_tracing(&stage, &query);
         assert_it_broke(stage.accel, at);
         rt_query_clear(&query);
