@@ -23,10 +23,6 @@ typedef struct RtPlugin {
  * taken, or cannot be loaded. */
 RtStatus rt_plugin_load(const char *path, RtError *error);
 
-/* Loads every library in `list`: files and folders joined by ':'. Within a name, ':' is written '\:', and '\'
- * may be written '\\'. A folder stands for all its files that end in .so, in order of their names. */
-RtStatus rt_plugin_load_all(const char *list, RtError *error);
-
 /* Opens, in this process, the libraries of the accelerators in `spec`, so that rt_accel_build_here can build
  * them; for a process that a fault of theirs may end. RT_BROKEN if a library has changed. */
 RtStatus rt_plugin_enter(const RtSpec *spec, RtError *error);

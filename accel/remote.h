@@ -18,13 +18,27 @@ RtStatus rt_remote_build(const RtSpec *spec, const RtScene *scene, int threads, 
 bool rt_accel_is_remote(const RtAccel *accel);
 
 /* Runs `work` where the query's accelerator is: for a remote one in its process, with the query there, and
- * with copies of rays[0..count) and of the `message`, which is copied back. The message, of `bytes`, must not
- * contain pointers to memory of one process that the other reads; with the rays it has at most
- * RT_REMOTE_BYTES. False for a broken accelerator: nothing runs, and the message is unchanged. */
-enum { RT_REMOTE_BYTES = 255 * 1024 };
-typedef void RtRemoteWork(RtQuery *query, const RtRay *rays, void *message);
-bool rt_remote_do(RtQuery *query, RtRemoteWork *work, const RtRay *rays, size_t count, void *message,
-                  size_t bytes);
+ * with copies of rays[0..count), at most RT_REMOTE_RAYS, and of the `message`, of at most RT_REMOTE_BYTES,
+ * which is copied back. The message must not contain pointers to memory of one process that the
+ * other reads. Returns what `work` returns, whose message names the accelerator unless it is RT_BROKEN; for a
+ * broken accelerator RT_BROKEN and why; nothing runs, and the message is unchanged. */
+enum { RT_REMOTE_RAYS = 4096, RT_REMOTE_BYTES = 256 * 1024 };
+typedef RtStatus RtRemoteWork(RtQuery *query, const RtRay *rays, void *message, RtError *error);
+RtStatus rt_remote_do(RtQuery *query, RtRemoteWork *work, const RtRay *rays, size_t count, void *message,
+                      size_t bytes, RtError *error);
+
+/* A pass over rays (accel/pass.h) that is timed in the process of a remote accelerator, on a copy of the rays
+ * and by the clocks there: no communication is timed. `rays` is not empty. Close it also after a failure;
+ * NULL is allowed. */
+typedef struct RtRemotePass RtRemotePass;
+RtStatus rt_remote_pass_open(RtRemotePass **out, const RtAccel *accel, const RtRay *rays, size_t count,
+                             bool any, int threads, RtError *error);
+
+/* The seconds of `repeats` passes, by the wall clock and by the clock of the comparison: the thread's
+ * processor time, or the wall clock if there are several threads. */
+RtStatus rt_remote_pass_time(RtRemotePass *pass, uint32_t repeats, double *seconds, double *wall,
+                             RtError *error);
+void rt_remote_pass_close(RtRemotePass *pass);
 
 /* Marks a remote accelerator as broken: `what` was found wrong with it while it did `doing`. */
 void rt_remote_break(const RtAccel *accel, const char *what, const char *doing);

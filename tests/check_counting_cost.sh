@@ -38,7 +38,7 @@ costs() {
     /^(fl|fi|fe|cfi|cfl)=/ { source = number($0, files); if (/^fl/) within = files[source] ~ file; next }
     /^fn=/ {
         id = number($0, names)
-        inside = within && index(names[id], kernel) == 1 && names[id] ~ /run_pass/
+        inside = within && index(names[id], kernel) == 1 && names[id] ~ /pass_run/
         if (inside) own[id]
         next
     }

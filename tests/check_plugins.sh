@@ -55,7 +55,7 @@ fault crash-build "$crash\) while it was built over 11 objects"
 fault crash-nearest "$crash\) .*$at_ray"
 fault crash-timed "$crash\) .*$at_ray"
 fault crash-rare "$crash\) .*$at_ray"
-fault crash-together "$crash\) .*, after it prepared the ray org .*; no ray of the stream fails alone"
+fault crash-together "$crash\) .*$at_ray"
 fault crash-destroy "$crash\) while it was destroyed"
 fault crash-describe "$crash\) while"
 fault abort "crashed \(Aborted\) .*$at_ray"
@@ -104,12 +104,12 @@ RAYTALLY_PLUGIN_SECONDS=1
 fault greedy 'memory is short'
 fault older ''
 
-# Overlays: the fault is named whichever layer has it, and its ray is found without the layers above.
+# Overlays: the fault is named whichever layer has it, and a ray of its stream.
 fault over+kd ''
-fault over-crash+bvh "$crash\) .*, at the ray org"
+fault over-crash+bvh "$crash\) .*; its stream begins with the ray org"
 fault over+faulty-crash-rare "$crash\) .*, at the ray org"
-fault over-crash+faulty-not "$crash\) .*, at the ray org"
-fault over+faulty-over-crash+kd "$crash\) .*, at the ray org"
+fault over-crash+faulty-not "$crash\) .*; its stream begins with the ray org"
+fault over+faulty-over-crash+kd "$crash\) .*; its stream begins with the ray org"
 fault over-nan+bvh 'it passed on a ray that is not valid, of kind [0-6], org .* dir \(.*nan'
 fault over-kind+bvh 'it passed on a ray that is not valid, of kind 77, org'
 fault base 'it passes rays on, but its .flags. lack RAYTALLY_OVERLAY'
@@ -122,7 +122,7 @@ fault own-early 't = 0, which is not on the ray'
 fault own-occluder 'an object that does not exist, 11 \(the scene has 11 objects\)'
 fault own-moody 'counts [0-9]+ extent_tests on some [a-z]+ rays, and [0-9]+ when' \
     'counts [0-9]+ extent_tests on some rays, and [0-9]+ when they are traced again'
-fault own-unprepared "$crash\) .*$at_ray"
+fault own-unprepared "$crash\) .*; its stream begins with the ray org"
 fault own-farther ''
 fault own-uncounted ''
 fault own-unnamed ''
@@ -182,7 +182,7 @@ notices refused '(refused|left out): faulty-refused: scenes of 11 objects are be
 notices mumble '(refused|left out): faulty-mumble: [?]{40}'
 notices leak 'faulty-leak: its process holds 3[0-9][0-9] MB of memory once it is built, and its .describe. says 0 MB'
 notices leaking 'faulty-leaking: its process holds 3[0-9][0-9] MB more memory after tracing'
-notices thread 'faulty-thread: it left 1 thread behind, still running after .destroy.'
+notices thread 'faulty-thread: it left a thread behind, still running after .destroy.'
 notices daemon 'faulty-daemon: it left 1 process behind \(raytally\), which raytally ended'
 
 RAYTALLY_PLUGIN_SECONDS=1

@@ -3,7 +3,7 @@
  * numbers are checked before use, and failures take its message. */
 #include "accel/plugin/host.h"
 
-#include "accel/plugin/wire.h"
+#include "accel/plugin/channel.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 
@@ -28,8 +28,7 @@ static RtStatus refuse(const raytally_accel_ops *table, int result, const char *
         return rt_fail(error, RT_NO_MEMORY, "%s: memory is short%s%s", table->name, *message ? ": " : "",
                        message);
     if (result != RAYTALLY_BUILD_REFUSED)
-        return rt_fail(error, RT_BROKEN, "%s: its `build` returned %d, which is not a valid result",
-                       table->name, result);
+        return rt_fail(error, RT_BROKEN, "its `build` returned %d, which is not a valid result", result);
     return rt_fail(error, RT_BAD_INPUT, "%s: %s", table->name,
                    *message ? message : "it refuses this scene without giving a reason");
 }
@@ -154,7 +153,7 @@ static void show_box(void *context, const raytally_box *theirs, uint32_t depth, 
         return;
     }
     memcpy(&box, theirs, sizeof box);
-    if (!rt_wire_is_box(&box, depth)) {
+    if (!rt_box_can_be_shown(&box, depth)) {
         rt_plugin_break(showing->accel, "it showed a box at depth %u from (%g, %g, %g) to (%g, %g, %g)",
                         depth, (double)box.lo.x, (double)box.lo.y, (double)box.lo.z, (double)box.hi.x,
                         (double)box.hi.y, (double)box.hi.z);

@@ -9,7 +9,6 @@
 #define RT_ACCEL_PLUGIN_HOST_H
 
 #include "accel/accel.h"
-#include "accel/plugin/guard.h"
 
 #include <raytally/accel.h>
 
@@ -53,40 +52,18 @@ void rt_plugin_query_ops(RtAccelOps *ops);
 /* Once the plugin has built its structure: sets what queries need. */
 void rt_plugin_query_init(RtPluginAccel *self);
 
-/* ---- the events of a ray that is traced for an observer ---- */
-
-typedef struct RtPluginEvents {
-    const char *name;                  /* of the accelerator */
-    const raytally_counters *counters; /* of the ray's kind, which the plugin counts in; NULL: none */
-    raytally_counters shown;           /* so many of them became events */
-    RtHit best;                        /* so far */
-} RtPluginEvents;
-
-/* Reports what the plugin counted since the last event. */
-void rt_plugin_catch_up(RtPluginEvents *events);
-
-/* raytally_show. */
-void rt_plugin_show(RtPluginEvents *events, const raytally_prepared *ray, uint32_t counter, uint32_t number,
-                    const raytally_box *theirs);
-
 /* ---- what a query is doing, for reports of crashes ---- */
 
-/* Its memory between guard pages. */
-enum { RT_GUARD_QUERY, RT_GUARD_ANSWERS, RT_GUARD_COUNT };
-
 typedef struct RtPluginNow {
-    raytally_query face; /* the plugin's; its ray is the last prepared, or the first; NULL: idle */
-    const RtRay *stream; /* [count] that the plugin's kernel was called with */
-    size_t count;
-    bool any, counted;                 /* which kernel */
-    uint32_t layers;                   /* of the stack: this one and those below it */
-    RtGuarded guarded[RT_GUARD_COUNT]; /* the plugin's memory, and the answers */
+    raytally_query face; /* the plugin's; its ray is the last that it prepared, or NULL */
+    const RtRay *stream; /* NULL: idle */
+    /* The plugin's memory and, from `middle` on, its answers, between guard pages, where an access crashes.
+     */
+    char *mapping, *middle;
+    size_t mapped; /* bytes of all that */
 } RtPluginNow;
 
-/* Of the calling thread; NULL if it traces nothing. Safe in signal handlers. */
-const RtPluginNow *rt_plugin_now(void);
-
-/* Of any thread that traces, or NULL. */
-const RtPluginNow *rt_plugin_busy(void);
+/* Of the calling thread, or of any that traces; NULL if it, or none, does. Safe in signal handlers. */
+const RtPluginNow *rt_plugin_now(bool any_thread);
 
 #endif

@@ -1,14 +1,25 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Reading the tables of a library of any version, and packing them for another process. */
-#include "accel/plugin/library.h"
+/* The libraries of plugins: reading the tables in them, of any version, and registering what they describe.
+ *
+ * No code of a library ever runs in raytally's own process: effects of its constructors (the locale,
+ * rounding, signal handlers, a crash) stay in other processes. One process tries the library and copies its
+ * tables, that is their numbers and texts, into shared memory; raytally trusts
+ * them as little as any other input. Each process that builds an accelerator opens the library for itself. */
+#include "accel/plugin.h"
+#include "accel/plugin/host.h"
+#include "core/base/process.h"
 
 #include "core/base/file.h"
 #include "core/base/memory.h"
 
 #include <dlfcn.h>
+#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
@@ -19,7 +30,30 @@ enum { LEAST_BYTES = offsetof(raytally_accel_ops, each_box) + sizeof(((raytally_
 #define KNOWN_FLAGS                                                                                          \
     ((uint64_t)(RAYTALLY_OWN_HITS | RAYTALLY_NO_COUNTS | RAYTALLY_OVERLAY | RAYTALLY_ABSOLUTE_HITS))
 
-RtStatus rt_library_fingerprint(const char *path, uint64_t *fingerprint, RtError *error) {
+enum {
+    MOST_LIBRARIES = 32,
+    MOST_TABLES = sizeof(((RtPlugin *)0)->names) / sizeof(char *),
+    MOST_SECONDS = 10 /* to load a library and read its tables */
+};
+
+/* The tables of a library, converted to this version: members that theirs lack are NULL. */
+typedef struct Tables {
+    uint32_t count;
+    raytally_accel_ops at[MOST_TABLES];
+} Tables;
+
+static RtPlugin plugins[MOST_LIBRARIES];
+static size_t plugin_count;
+
+size_t rt_plugin_count(void) {
+    return plugin_count;
+}
+
+const RtPlugin *rt_plugin_at(size_t i) {
+    return &plugins[i];
+}
+
+static RtStatus hash_library(const char *path, uint64_t *fingerprint, RtError *error) {
     char *data;
     size_t size;
     RT_TRY(rt_file_read(path, (size_t)1 << 30, &data, &size, error));
@@ -31,7 +65,7 @@ RtStatus rt_library_fingerprint(const char *path, uint64_t *fingerprint, RtError
 /* ---- reading its tables ---- */
 
 /* Until its size is known, only members that every version has are read. */
-static RtStatus take_table(const char *path, const raytally_accel_ops *theirs, RtTables *tables,
+static RtStatus take_table(const char *path, const raytally_accel_ops *theirs, Tables *tables,
                            RtError *error) {
     if (theirs->abi == 0)
         return rt_fail(error, RT_BAD_INPUT, "%s: `abi` is not set: set it to RAYTALLY_ACCEL_ABI", path);
@@ -74,7 +108,9 @@ static RtStatus take_table(const char *path, const raytally_accel_ops *theirs, R
     return RT_OK;
 }
 
-RtStatus rt_library_open(const char *path, RtTables *tables, RtError *error) {
+/* Loads the library into this process, for as long as that lives. RT_BAD_INPUT if it is not a plugin, or one
+ * of another version. */
+static RtStatus open_library(const char *path, Tables *tables, RtError *error) {
     tables->count = 0;
     void *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     if (!library) return rt_fail(error, RT_BAD_INPUT, "it cannot be loaded: %s", dlerror());
@@ -92,9 +128,9 @@ RtStatus rt_library_open(const char *path, RtTables *tables, RtError *error) {
             return rt_fail(error, RT_BAD_INPUT,
                            "%s: it returns the same table for index %u and %u; NULL must end them", path,
                            tables->count - 1, tables->count);
-        if (tables->count == RT_MOST_TABLES)
+        if (tables->count == MOST_TABLES)
             return rt_fail(error, RT_BAD_INPUT, "%s: more than %d accelerators in one library", path,
-                           RT_MOST_TABLES);
+                           MOST_TABLES);
         RT_TRY(take_table(path, table, tables, error));
     }
     if (tables->count == 0) return rt_fail(error, RT_BAD_INPUT, "%s: there is no accelerator in it", path);
@@ -103,12 +139,12 @@ RtStatus rt_library_open(const char *path, RtTables *tables, RtError *error) {
 
 /* Opens the library of a plugin's accelerator, if the file is unchanged, and sets ops->table. */
 static RtStatus enter(RtPluginOps *ops, RtError *error) {
-    RtTables tables;
+    Tables tables;
     uint64_t fingerprint;
-    RT_TRY(rt_library_fingerprint(ops->path, &fingerprint, error));
+    RT_TRY(hash_library(ops->path, &fingerprint, error));
     if (fingerprint != ops->fingerprint)
         return rt_fail(error, RT_BROKEN, "%s has changed since it was loaded", ops->path);
-    RT_TRY(rt_library_open(ops->path, &tables, error));
+    RT_TRY(open_library(ops->path, &tables, error));
     const raytally_accel_ops *table = &tables.at[ops->place];
     if (ops->place >= tables.count || strcmp(table->name, ops->ops.name) != 0 ||
         table->param_count != ops->ops.param_count)
@@ -134,24 +170,19 @@ static bool is_key(const char *name) {
     return length > 0 && length < RT_MAX_NAME && name[length] == '\0';
 }
 
-static RtStatus check_value(const char *path, const char *name, const RtParam *param, const char *member,
-                            const char *text, RtError *error) {
-    char setting[RT_MAX_SPEC_CHARS + RT_MAX_NAME], what[RT_MAX_NAME + 16];
+/* Its default and its test values are within its range. */
+static RtStatus check_values(const char *path, const char *name, const RtParam *param, RtError *error) {
+    char text[RT_MAX_SPEC_CHARS], setting[RT_MAX_SPEC_CHARS + RT_MAX_NAME], what[RT_MAX_NAME + 16];
     RtError why;
     RtValue value;
     snprintf(what, sizeof what, "accelerator %s", name);
-    snprintf(setting, sizeof setting, "%s=%s", param->name, text);
-    if (rt_params_parse(param, 1, setting, what, &value, &why) == RT_OK) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT, "%s: the table of '%s' contradicts itself: %s of '%s': %s", path,
-                   name, member, param->name, why.message);
-}
-
-/* Its default and its test values are within its range. */
-static RtStatus check_values(const char *path, const char *name, const RtParam *param, RtError *error) {
-    char text[RT_MAX_SPEC_CHARS];
-    RT_TRY(check_value(path, name, param, "`default_text`", param->default_text, error));
-    for (size_t n = 0; rt_param_try(param, n, text, sizeof text); n++)
-        RT_TRY(check_value(path, name, param, "`test_values`", text, error));
+    snprintf(text, sizeof text, "%s", param->default_text);
+    for (size_t n = 0; n == 0 || rt_param_try(param, n - 1, text, sizeof text); n++) {
+        snprintf(setting, sizeof setting, "%s=%s", param->name, text);
+        if (rt_params_parse(param, 1, setting, what, &value, &why) == RT_OK) continue;
+        return rt_fail(error, RT_BAD_INPUT, "%s: the table of '%s' contradicts itself: %s of '%s': %s", path,
+                       name, n == 0 ? "`default_text`" : "`test_values`", param->name, why.message);
+    }
     return RT_OK;
 }
 
@@ -214,11 +245,9 @@ static const char *file_of(const char *name) {
     return rt_accel_find(name, &ops, NULL) == RT_OK && ops->remote ? ((const RtPluginOps *)ops)->path : "";
 }
 
-static RtStatus check_name(const char *path, const RtTables *tables, uint32_t place, RtError *error) {
+static RtStatus check_name(const char *path, const Tables *tables, uint32_t place, RtError *error) {
     RtError why;
     const char *name = tables->at[place].name;
-    if (!name || !tables->at[place].summary || !tables->at[place].paper)
-        return rt_fail(error, RT_BAD_INPUT, "%s: a table in it has no name, summary or paper", path);
     if (rt_accel_name_is_free(name, &why) != RT_OK) {
         const char *file = file_of(name);
         return rt_fail(error, RT_BAD_INPUT, "%s: %s%s%s", path, why.message, *file ? "; it belongs to " : "",
@@ -232,7 +261,8 @@ static RtStatus check_name(const char *path, const RtTables *tables, uint32_t pl
     return RT_OK;
 }
 
-RtStatus rt_tables_check(const char *path, const RtTables *tables, RtError *error) {
+/* Checks that the tables are complete and consistent, and that their names are free. */
+static RtStatus check_tables(const char *path, const Tables *tables, RtError *error) {
     for (uint32_t i = 0; i < tables->count; i++) {
         RT_TRY(check_name(path, tables, i, error));
         RT_TRY(check_params(path, &tables->at[i], error));
@@ -240,100 +270,148 @@ RtStatus rt_tables_check(const char *path, const RtTables *tables, RtError *erro
     return rt_accel_has_room(tables->count, error);
 }
 
-/* ---- tables as bytes ---- */
+/* ---- trying a library ---- */
 
-/* Numbers as in memory; a text as its length, its characters and a 0; NULL has no length.
- * Each function passes its values in one direction, to the bytes or from them. */
-#define NO_TEXT UINT32_MAX
+/* Written by the process that tries it; the plugin may write to all of this. */
+typedef struct Trial {
+    uint32_t complete; /* 1: the process has written what follows; 0: it has not */
+    RtError error;
+    Tables tables;        /* if error.status is RT_OK */
+    size_t used;          /* more than `memory` has: it is too small */
+    char memory[4 << 20]; /* the texts and parameters of the tables */
+} Trial;
 
-typedef struct Cursor {
-    char *at, *end; /* the next byte */
-    bool reading, good;
-} Cursor;
+/* Calls `visit` with the parameters of a table and then with each text, which may be NULL. */
+enum { A_TEXT = 0 /* as `bytes` */ };
+typedef bool Visit(void *context, const char **at, size_t bytes);
 
-static void pass(Cursor *c, void *value, size_t bytes) {
-    c->good = c->good && (size_t)(c->end - c->at) >= bytes;
-    if (!c->good) return;
-    memcpy(c->reading ? value : c->at, c->reading ? c->at : value, bytes);
-    c->at += bytes;
+static bool visit_table(raytally_accel_ops *table, Visit *visit, void *context) {
+    const char **texts[] = {&table->name, &table->summary, &table->paper};
+    const char *params = table->param_count > 0 ? (const char *)table->params : NULL;
+    bool good = table->param_count <= RAYTALLY_MAX_PARAMS &&
+                visit(context, &params, table->param_count * sizeof(raytally_param));
+    table->params = (const raytally_param *)params;
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0] && good; i++)
+        good = *texts[i] && visit(context, texts[i], A_TEXT);
+    for (uint32_t p = 0; p < table->param_count && good; p++) {
+        raytally_param *param = (raytally_param *)&table->params[p];
+        const char **own[] = {&param->name,        &param->default_text, &param->choices,
+                              &param->test_values, &param->meaning,      &param->source};
+        for (size_t i = 0; i < sizeof own / sizeof own[0] && good; i++) good = visit(context, own[i], A_TEXT);
+    }
+    return good;
 }
 
-/* A text that is read stays in the bytes. */
-static void pass_text(Cursor *c, const char **text) {
-    size_t written = !c->reading && *text ? strlen(*text) : NO_TEXT;
-    uint32_t length = written < NO_TEXT ? (uint32_t)written : NO_TEXT;
-    c->good = c->good && (c->reading || !*text || length != NO_TEXT);
-    if (c->reading) *text = NULL;
-    pass(c, &length, sizeof length);
-    c->good = c->good && (length == NO_TEXT || (size_t)(c->end - c->at) > length);
-    if (!c->good || length == NO_TEXT) return;
-    if (c->reading)
-        *text = c->at;
+/* Copies it to the memory of the trial. */
+static bool keep(void *context, const char **at, size_t bytes) {
+    Trial *trial = context;
+    char *to = trial->memory + trial->used;
+    if (!*at) return true;
+    if (bytes == A_TEXT) bytes = strlen(*at) + 1;
+    trial->used += (bytes + 7) / 8 * 8;
+    if (trial->used > sizeof trial->memory) return false;
+    memcpy(to, *at, bytes);
+    *at = to;
+    return true;
+}
+
+static _Noreturn void try_as_child(const char *path, Trial *trial) {
+    RtError failure = {RT_OK, ""};
+    alarm(MOST_SECONDS + 1); /* if raytally has ended */
+    RtStatus status = open_library(path, &trial->tables, &failure);
+    for (uint32_t i = 0; i < trial->tables.count && status == RT_OK; i++) {
+        if (!visit_table(&trial->tables.at[i], keep, trial))
+            status = rt_fail(&failure, RT_BAD_INPUT, "%s: the text of its tables takes more than %zu bytes",
+                             path, sizeof trial->memory);
+    }
+    failure.status = status;
+    trial->error = failure;
+    trial->complete = 1;
+    _exit(EXIT_SUCCESS);
+}
+
+/* Loads the library in a process of its own, which may crash; *trial gets the result. */
+static RtStatus try_loading(const char *path, Trial *trial, RtError *error) {
+    char what[160];
+    RtProcess child;
+    RtProcessEnd end;
+    RT_TRY(rt_process_fork(&child, -1, error));
+    if (child.pid == 0) try_as_child(path, trial);
+    bool ended = rt_process_wait(&child, 1000 * MOST_SECONDS, &end);
+    rt_process_end(&child, 0);
+    if (ended && trial->complete) return RT_OK;
+    if (ended)
+        rt_process_end_format(end, 0, "", what, sizeof what);
     else
-        memcpy(c->at, *text, (size_t)length + 1);
-    c->at += (size_t)length + 1;
-    c->good = c->at[-1] == '\0';
+        snprintf(what, sizeof what, "it takes more than %d seconds", MOST_SECONDS);
+    return rt_fail(error, RT_BAD_INPUT, "%s: loading it failed: %s", path, what);
 }
 
-static void pass_param(Cursor *c, raytally_param *p) {
-    const char **texts[] = {&p->name,        &p->default_text, &p->choices,
-                            &p->test_values, &p->meaning,      &p->source};
-    pass(c, &p->type, sizeof p->type);
-    pass(c, &p->lo, sizeof p->lo);
-    pass(c, &p->hi, sizeof p->hi);
-    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) pass_text(c, texts[i]);
+static bool is_kept(void *context, const char **at, size_t bytes) {
+    const Trial *trial = context;
+    const size_t offset = (size_t)((uintptr_t)*at - (uintptr_t)trial->memory);
+    return *at ? offset < sizeof trial->memory && bytes <= sizeof trial->memory - offset && offset % 8 == 0
+               : bytes == A_TEXT;
 }
 
-static void each_box_is_remote(const void *self, raytally_box_visitor *visit, void *context) {
-    (void)self, (void)visit, (void)context;
+/* Checks what the process has written, now that it has ended. */
+static RtStatus check_trial(const char *path, Trial *trial, RtError *error) {
+    trial->error.message[sizeof trial->error.message - 1] = '\0';
+    trial->memory[sizeof trial->memory - 1] = '\0';
+    if (trial->error.status != RT_OK) return rt_fail(error, RT_BAD_INPUT, "%s", trial->error.message);
+    bool good = trial->tables.count <= MOST_TABLES;
+    for (uint32_t i = 0; good && i < trial->tables.count; i++)
+        good = visit_table(&trial->tables.at[i], is_kept, trial);
+    return good ? check_tables(path, &trial->tables, error)
+                : rt_fail(error, RT_BAD_INPUT, "%s: its tables cannot be read", path);
 }
 
-static void pass_table(Cursor *c, raytally_accel_ops *table) {
-    uint8_t shows = table->each_box != NULL;
-    pass_text(c, &table->name);
-    pass_text(c, &table->summary);
-    pass_text(c, &table->paper);
-    pass(c, &shows, sizeof shows);
-    pass(c, &table->flags, sizeof table->flags);
-    pass(c, &table->param_count, sizeof table->param_count);
-    if (c->reading) {
-        c->good = c->good && table->param_count <= RAYTALLY_MAX_PARAMS;
-        table->each_box = shows ? each_box_is_remote : NULL;
-        if (!c->good || table->param_count == 0) return;
-        table->params = rt_alloc(table->param_count, sizeof(raytally_param));
-        c->good = table->params != NULL;
+/* ---- registering its tables ---- */
+
+static RtStatus register_tables(RtPlugin *plugin, const Tables *tables, RtError *error) {
+    RtPluginOps *all = rt_alloc(tables->count, sizeof(RtPluginOps)); /* for as long as the program runs */
+    if (!all) return rt_fail_memory(error, "a plugin", tables->count * sizeof(RtPluginOps));
+    for (uint32_t i = 0; i < tables->count; i++) {
+        rt_plugin_ops_init(&all[i], &tables->at[i]);
+        all[i].path = plugin->path;
+        all[i].fingerprint = plugin->fingerprint;
+        all[i].place = i;
+        RT_TRY(rt_accel_register(&all[i].ops, error)); /* check_tables has checked its conditions */
+        plugin->names[plugin->count++] = all[i].ops.name;
     }
-    for (uint32_t p = 0; p < table->param_count && c->good; p++)
-        pass_param(c, (raytally_param *)&table->params[p]);
+    return RT_OK;
 }
 
-size_t rt_tables_pack(const RtTables *tables, char *out, size_t size) {
-    Cursor c = {out, out + size, false, true};
-    uint32_t count = tables->count;
-    pass(&c, &count, sizeof count);
-    for (uint32_t i = 0; i < count; i++) {
-        raytally_accel_ops table = tables->at[i];
-        pass_table(&c, &table);
+/* The tables stay for as long as the program runs; the processes of plugins cannot write to them. */
+static RtStatus try_and_register(RtPlugin *plugin, RtError *error) {
+    Trial *trial =
+        mmap(NULL, sizeof(Trial), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (trial == MAP_FAILED) return rt_fail_memory(error, "the tables of a plugin", sizeof(Trial));
+    RtStatus status = try_loading(plugin->path, trial, error);
+    if (status == RT_OK) status = check_trial(plugin->path, trial, error);
+    if (status == RT_OK) status = register_tables(plugin, &trial->tables, error);
+    if (status == RT_OK)
+        mprotect(trial, sizeof(Trial), PROT_READ);
+    else
+        munmap(trial, sizeof(Trial));
+    return status;
+}
+
+/* By an absolute path: dlopen searches the system's folders for a name without a slash. */
+RtStatus rt_plugin_load(const char *path, RtError *error) {
+    char *real = realpath(path, NULL);
+    if (!real) return rt_fail(error, RT_BAD_INPUT, "%s: no such plugin: %s", path, strerror(errno));
+    RtPlugin plugin = {.count = 0};
+    snprintf(plugin.path, sizeof plugin.path, "%s", real);
+    free(real);
+    for (size_t i = 0; i < plugin_count; i++) {
+        if (strcmp(plugins[i].path, plugin.path) == 0) return RT_OK;
     }
-    return c.good ? (size_t)(c.at - out) : 0;
-}
-
-bool rt_tables_unpack(char *packed, size_t size, RtTables *tables) {
-    Cursor c = {packed, packed + size, true, true};
-    uint32_t count = 0;
-    *tables = (RtTables){0};
-    pass(&c, &count, sizeof count);
-    c.good = c.good && count <= RT_MOST_TABLES;
-    while (c.good && tables->count < count) {
-        raytally_accel_ops *table = &tables->at[tables->count++];
-        *table = (raytally_accel_ops){.abi = RAYTALLY_ACCEL_ABI, .size = sizeof *table};
-        pass_table(&c, table);
-    }
-    if (!c.good) rt_tables_clear(tables);
-    return c.good;
-}
-
-void rt_tables_clear(RtTables *tables) {
-    for (uint32_t i = 0; i < tables->count; i++) rt_free((void *)tables->at[i].params);
-    *tables = (RtTables){0};
+    if (plugin_count == MOST_LIBRARIES)
+        return rt_fail(error, RT_BAD_INPUT, "more than %d plugins", MOST_LIBRARIES);
+    RT_TRY(hash_library(plugin.path, &plugin.fingerprint, error));
+    plugins[plugin_count] = plugin;
+    RT_TRY(try_and_register(&plugins[plugin_count], error));
+    plugin_count++;
+    return RT_OK;
 }

@@ -25,21 +25,6 @@ static const struct argp_option options[] = {
      100},
     {0}};
 
-/* Finds folders of sources given instead of their build folders. */
-static void note_empty_folders(const char *list) {
-    for (const char *part = list; *part; part += strcspn(part, ":"), part += *part == ':') {
-        char path[RT_MAX_PATH];
-        struct stat is;
-        snprintf(path, sizeof path, "%.*s", (int)strcspn(part, ":"), part);
-        if (stat(path, &is) != 0 || !S_ISDIR(is.st_mode)) continue;
-        if (rt_directory_each(path, ".so", NULL, NULL) > 0) continue;
-        fprintf(stderr,
-                "raytally: $" VARIABLE ": there is no *.so in %s: name the folder that the plugin was built "
-                "in, as in %s/build\n",
-                path, path);
-    }
-}
-
 /* The files given by --plugin. */
 enum { MOST_GIVEN = 32 };
 static const char *given[MOST_GIVEN];
@@ -56,7 +41,56 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
 
 const struct argp rt_plugin_argp = {.options = options, .parser = parse_option};
 
-/* Escaped for rt_plugin_load_all; returns the end of the copy. */
+/* ---- the variable: files and folders joined by ':'; within a name '\:', and '\\' may be written, too ----
+ */
+
+typedef struct Folder {
+    RtStatus status;
+    RtError *error;
+} Folder;
+
+static void load_from(void *context, const char *path) {
+    Folder *folder = context;
+    if (folder->status == RT_OK) folder->status = rt_plugin_load(path, folder->error);
+}
+
+/* Copies the first name of a list to path[0..size). Returns the rest of the list, or NULL if the name is too
+ * long. */
+static const char *take_path(const char *list, char *path, size_t size) {
+    size_t length = 0;
+    for (; *list && *list != ':' && length < size; list++) {
+        if (*list == '\\' && (list[1] == ':' || list[1] == '\\')) list++;
+        path[length++] = *list;
+    }
+    if (length == size) return NULL;
+    path[length] = '\0';
+    return *list == ':' ? list + 1 : list;
+}
+
+/* A folder stands for all its files that end in .so, in order of their names. */
+static RtStatus load_list(const char *list, RtError *error) {
+    char path[RT_MAX_PATH];
+    struct stat about;
+    while (*list) {
+        list = take_path(list, path, sizeof path);
+        if (!list) return rt_fail(error, RT_BAD_INPUT, "the path of a plugin is too long");
+        Folder folder = {RT_OK, error};
+        if (*path && stat(path, &about) == 0 && S_ISDIR(about.st_mode)) {
+            if (rt_directory_each(path, ".so", load_from, &folder) == 0) /* of sources, perhaps */
+                fprintf(stderr,
+                        "raytally: $" VARIABLE
+                        ": there is no *.so in %s: name the folder that the plugin was "
+                        "built in, as in %s/build\n",
+                        path, path);
+            RT_TRY(folder.status);
+        } else if (*path) {
+            RT_TRY(rt_plugin_load(path, error));
+        }
+    }
+    return RT_OK;
+}
+
+/* Escaped; returns the end of the copy. */
 static char *write_name(const char *path, char *out) {
     for (; *path; path++) {
         if (*path == ':' || *path == '\\') *out++ = '\\';
@@ -85,8 +119,7 @@ RtStatus rt_cli_load_plugins(int argc, char *const *argv, RtError *error) {
     const size_t length = sizeof option - 1;
     const char *list = getenv(VARIABLE);
     rt_accel_plugin_hint = "--plugin FILE.so";
-    if (list) RT_TRY(rt_plugin_load_all(list, error));
-    if (list) note_empty_folders(list);
+    if (list) RT_TRY(load_list(list, error));
     for (int i = 1; i < argc; i++) {
         if (strcmp(argv[i], "--") == 0) break;
         if (strncmp(argv[i], option, length) != 0) continue;

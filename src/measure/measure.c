@@ -1,90 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A ray set is cut into chunks of CHUNK rays, which threads take in turn. A chunk begins with rt_query_begin,
- * so counts do not depend on the number of threads. */
 #include "measure/measure.h"
 
+#include "accel/pass.h"
 #include "accel/remote.h"
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
+#include "core/base/random.h"
 #include "measure/rounds.h"
 
 #include <string.h>
 
-/* Rays of a work item. */
-enum { CHUNK = 4096 };
-
 /* Rays traced at a time while warming up. */
 enum { MOST_WARM = 256 };
 
-/* One pass of an accelerator over a ray set. Either `hits` or `blocked` takes the answers. */
-typedef struct Pass {
-    const RtRaySet *set;
-    RtQuery *queries; /* [threads] */
-    int threads;
-    RtHit *hits;
-    bool *blocked;
-    RtTally (*tallies)[RT_RAY_KIND_COUNT]; /* [threads], or NULL: the timed kernels */
-} Pass;
-
-static void pass_clear(Pass *pass) {
-    for (int i = 0; pass->queries && i < pass->threads; i++) rt_query_clear(&pass->queries[i]);
-    rt_free(pass->queries);
-    rt_free(pass->tallies);
-    rt_free(pass->hits);
-    rt_free(pass->blocked);
-    *pass = (Pass){0};
-}
-
-/* Everything a pass needs, so that nothing is allocated while it runs. Clear it also after a failure. */
-static RtStatus pass_init(Pass *pass, const RtAccel *accel, const RtRaySet *set, int threads, bool counted,
+static RtStatus init_pass(RtPass *pass, const RtAccel *accel, const RtRaySet *set, int threads, bool counted,
                           RtError *error) {
-    *pass = (Pass){.set = set, .threads = rt_thread_count(threads)};
-    size_t count = set->count, answer = rt_ray_kind_is_any_hit(set->kind) ? sizeof(bool) : sizeof(RtHit);
-    pass->queries = rt_alloc((size_t)pass->threads, sizeof *pass->queries);
-    if (counted) pass->tallies = rt_alloc((size_t)pass->threads, sizeof *pass->tallies);
-    if (rt_ray_kind_is_any_hit(set->kind)) {
-        pass->blocked = rt_alloc_unset(count, answer);
-    } else {
-        pass->hits = rt_alloc_unset(count, answer);
-    }
-    if (!pass->queries || (counted && !pass->tallies) || (!pass->hits && !pass->blocked)) {
-        return rt_fail_memory(error, "the answers to a ray set", count * answer);
-    }
-    for (int i = 0; i < pass->threads; i++) RT_TRY(rt_query_init(&pass->queries[i], accel, error));
-    return RT_OK;
-}
-
-static void trace(Pass *pass, int thread, size_t first, size_t count) {
-    const RtRay *rays = pass->set->rays + first;
-    rt_remote_progress();
-    rt_query_begin(&pass->queries[thread]);
-    RtTally *tallies = pass->tallies ? pass->tallies[thread] : NULL;
-    if (pass->blocked) {
-        rt_occluded(&pass->queries[thread], rays, count, pass->blocked + first, tallies);
-    } else {
-        rt_nearest(&pass->queries[thread], rays, count, pass->hits + first, tallies);
-    }
-}
-
-static RtStatus trace_chunk(void *context, size_t item, int thread, RtError *error) {
-    (void)error;
-    Pass *pass = context;
-    size_t first = item * CHUNK, left = pass->set->count - first;
-    trace(pass, thread, first, left < CHUNK ? left : CHUNK);
-    return RT_OK;
-}
-
-/* Chunk by chunk also on a single thread: counts may depend on where chunks begin. */
-static RtStatus run_pass(void *context, RtError *error) {
-    Pass *pass = context;
-    size_t chunks = (pass->set->count + CHUNK - 1) / CHUNK;
-    if (pass->threads == 1) {
-        for (size_t chunk = 0; chunk < chunks; chunk++) RT_TRY(trace_chunk(pass, chunk, 0, error));
-    } else {
-        RT_TRY(rt_parallel_for(chunks, pass->threads, trace_chunk, pass, error));
-    }
-    return rt_accel_check(pass->queries[0].accel, error);
+    return rt_pass_init(pass, accel, set->rays, set->count, rt_ray_kind_is_any_hit(set->kind), threads,
+                        counted, error);
 }
 
 /* ---- counting ---- */
@@ -92,17 +25,15 @@ static RtStatus run_pass(void *context, RtError *error) {
 RtStatus rt_measure_answers(const RtAccel *accel, const RtRaySet *set, int threads, RtHit *hits,
                             RtError *error) {
     /* `nearest` also for shadow and occlusion rays: a hit is then known by its object. */
-    RtRaySet nearest = *set;
-    nearest.kind = RT_RAY_PRIMARY;
-    Pass pass;
-    RtStatus status = pass_init(&pass, accel, &nearest, threads, false, error);
-    if (status == RT_OK) status = run_pass(&pass, error);
+    RtPass pass;
+    RtStatus status = rt_pass_init(&pass, accel, set->rays, set->count, false, threads, false, error);
+    if (status == RT_OK) status = rt_pass_run(&pass, error);
     if (status == RT_OK) memcpy(hits, pass.hits, set->count * sizeof(RtHit));
-    pass_clear(&pass);
+    rt_pass_clear(&pass);
     return status;
 }
 
-static bool answers_agree(const Pass *pass, size_t i, RtHit expected) {
+static bool answers_agree(const RtPass *pass, size_t i, RtHit expected) {
     if (pass->blocked) return pass->blocked[i] == (expected.object != RT_NO_OBJECT);
     return memcmp(&pass->hits[i], &expected, sizeof expected) == 0;
 }
@@ -111,10 +42,10 @@ static bool answers_agree(const Pass *pass, size_t i, RtHit expected) {
 static RtStatus compare_pass(const RtAccel *accel, const RtRaySet *set, const RtHit *expected, int threads,
                              bool counted, RtCount *count, RtError *error) {
     *count = (RtCount){0};
-    Pass pass;
-    RtStatus status = pass_init(&pass, accel, set, threads, counted, error);
+    RtPass pass;
+    RtStatus status = init_pass(&pass, accel, set, threads, counted, error);
     double start = rt_wall_seconds();
-    if (status == RT_OK) status = run_pass(&pass, error);
+    if (status == RT_OK) status = rt_pass_run(&pass, error);
     count->seconds = rt_wall_seconds() - start;
     count->timed_kernel = !counted;
     for (int i = 0; status == RT_OK && counted && i < pass.threads; i++)
@@ -129,7 +60,7 @@ static RtStatus compare_pass(const RtAccel *accel, const RtRaySet *set, const Rt
             if (count->differ++ == 0) count->first = i;
         }
     }
-    pass_clear(&pass);
+    rt_pass_clear(&pass);
     return status;
 }
 
@@ -162,26 +93,26 @@ RtStatus rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit
 /* ---- ray by ray ---- */
 
 typedef struct RowsPass {
-    Pass pass;
+    RtPass pass;
+    RtRayKind kind;
     RtTally *rows; /* [set->count] */
 } RowsPass;
 
 static RtStatus count_rows(void *context, size_t item, int thread, RtError *error) {
     (void)error;
     RowsPass *work = context;
-    const RtRaySet *set = work->pass.set;
     RtQuery *query = &work->pass.queries[thread];
     rt_query_begin(query);
-    for (size_t i = item * CHUNK; i < set->count && i < (item + 1) * CHUNK; i++) {
+    for (size_t i = item * RT_PASS_CHUNK; i < work->pass.count && i < (item + 1) * RT_PASS_CHUNK; i++) {
         RtTally tallies[RT_RAY_KIND_COUNT] = {0};
         RtHit hit;
         bool blocked;
         if (work->pass.blocked) {
-            rt_occluded(query, &set->rays[i], 1, &blocked, tallies);
+            rt_occluded(query, &work->pass.rays[i], 1, &blocked, tallies);
         } else {
-            rt_nearest(query, &set->rays[i], 1, &hit, tallies);
+            rt_nearest(query, &work->pass.rays[i], 1, &hit, tallies);
         }
-        work->rows[i] = tallies[set->kind];
+        work->rows[i] = tallies[work->kind];
     }
     return RT_OK;
 }
@@ -192,10 +123,11 @@ RtStatus rt_measure_rows(const RtAccel *accel, const RtRaySet *set, int threads,
     *rows = (RtRows){.count = set->count, .tallies = rt_alloc(set->count, sizeof(RtTally))};
     if (!rows->tallies) return rt_fail_memory(error, "the counts of rays", set->count * sizeof(RtTally));
     work.rows = rows->tallies;
-    RtStatus status = pass_init(&work.pass, accel, set, threads, false, error);
-    if (status == RT_OK) status = run_pass(&work.pass, error);
+    work.kind = set->kind;
+    RtStatus status = init_pass(&work.pass, accel, set, threads, false, error);
+    if (status == RT_OK) status = rt_pass_run(&work.pass, error);
     if (status == RT_OK) {
-        size_t chunks = (set->count + CHUNK - 1) / CHUNK;
+        size_t chunks = (set->count + RT_PASS_CHUNK - 1) / RT_PASS_CHUNK;
         status = rt_parallel_for(chunks, work.pass.threads, count_rows, &work, error);
     }
     if (status == RT_OK) status = rt_accel_check(accel, error);
@@ -205,7 +137,7 @@ RtStatus rt_measure_rows(const RtAccel *accel, const RtRaySet *set, int threads,
         work.pass.hits = NULL;
         work.pass.blocked = NULL;
     }
-    pass_clear(&work.pass);
+    rt_pass_clear(&work.pass);
     return status;
 }
 
@@ -222,40 +154,136 @@ void rt_rows_clear(RtRows *rows) {
  * set. */
 static RtStatus warm_runner(void *context, double seconds, double *part, RtError *error) {
     const double golden = 0.6180339887498949;
-    Pass *pass = context;
-    const uint64_t count = pass->set->count;
+    RtPass *pass = context;
+    const uint64_t count = pass->count;
     const uint64_t block = count < 128 ? 1 : count / 64 < MOST_WARM ? count / 64 : MOST_WARM;
     const uint64_t blocks = count / block;
     double start = rt_thread_seconds(), place = 0;
     uint64_t done = 0;
     do {
-        trace(pass, 0, block * (uint64_t)(place * (double)blocks), block);
+        rt_pass_trace(pass, 0, block * (uint64_t)(place * (double)blocks), block);
         place += place + golden < 1 ? golden : golden - 1;
     } while (++done < blocks && rt_thread_seconds() - start < seconds);
     *part = (double)(done * block) / (double)count;
     return rt_accel_check(pass->queries[0].accel, error);
 }
 
-RtStatus rt_runner_open_local(RtRunner *runner, const RtTimed *timed, int threads, RtError *error) {
-    Pass *pass = rt_alloc(1, sizeof(Pass));
-    *runner = (RtRunner){.run = run_pass,
-                         .warm = warm_runner,
-                         .context = pass,
-                         .work = (double)timed->set->count,
-                         .parallel = rt_thread_count(threads) > 1,
-                         .seconds = timed->seconds,
-                         .wall = timed->wall,
-                         .broken = timed->broken};
-    if (!pass) return rt_fail_memory(error, "a pass", sizeof(Pass));
-    RT_TRY(pass_init(pass, timed->accel, timed->set, threads, false, error));
+static RtStatus run_runner(void *context, RtError *error) {
+    return rt_pass_run(context, error);
+}
+
+static RtStatus open_pass(RtRunner *runner, const RtTimed *timed, int threads, RtError *error) {
+    RtPass *pass = runner->context = rt_alloc(1, sizeof(RtPass));
+    runner->run = run_runner;
+    runner->warm = warm_runner;
+    if (!pass) return rt_fail_memory(error, "a pass", sizeof(RtPass));
+    RT_TRY(init_pass(pass, timed->accel, timed->set, threads, false, error));
     /* Touches the memory, so that no round does that for the first time. */
     if (pass->hits) memset(pass->hits, 0, timed->set->count * sizeof(RtHit));
     if (pass->blocked) memset(pass->blocked, 0, timed->set->count * sizeof(bool));
     return RT_OK;
 }
 
-void rt_runner_close_local(RtRunner *runner) {
-    if (runner->context) pass_clear(runner->context);
-    rt_free(runner->context);
+static RtStatus time_remote(void *context, uint32_t repeats, double *seconds, double *wall, RtError *error) {
+    return rt_remote_pass_time(context, repeats, seconds, wall, error);
+}
+
+static RtStatus open_remote(RtRunner *runner, const RtTimed *timed, int threads, RtError *error) {
+    const RtRaySet *set = timed->set;
+    RtRemotePass *pass;
+    runner->time = time_remote;
+    RtStatus status = rt_remote_pass_open(&pass, timed->accel, set->rays, set->count,
+                                          rt_ray_kind_is_any_hit(set->kind), threads, error);
+    runner->context = pass;
+    return status;
+}
+
+RtStatus rt_runner_open(RtRunner *runner, const RtTimed *timed, int threads, RtError *error) {
+    *runner = (RtRunner){.work = (double)timed->set->count,
+                         .parallel = rt_thread_count(threads) > 1,
+                         .seconds = timed->seconds,
+                         .wall = timed->wall,
+                         .broken = timed->broken};
+    return rt_accel_is_remote(timed->accel) ? open_remote(runner, timed, threads, error)
+                                            : open_pass(runner, timed, threads, error);
+}
+
+void rt_runner_close(RtRunner *runner) {
+    if (runner->time) {
+        rt_remote_pass_close(runner->context);
+    } else if (runner->context) {
+        rt_pass_clear(runner->context);
+        rt_free(runner->context);
+    }
     *runner = (RtRunner){0};
+}
+
+/* ---- in rounds ---- */
+
+typedef struct TimingRun {
+    const RtTiming *timing;
+    RtTimed *timed;    /* [count] */
+    RtRunner *runners; /* [count] */
+    size_t *order;     /* [count] in which they are opened: what is opened first lies first in memory */
+    size_t count;
+    RtRandom random;
+} TimingRun;
+
+static RtStatus open_runners(TimingRun *run, RtError *error) {
+    rt_random_shuffle(&run->random, run->order, run->count);
+    for (size_t k = 0; k < run->count; k++) {
+        const size_t i = run->order[k];
+        const RtRunner before = run->runners[i];
+        RtStatus status = RT_BROKEN;
+        if (run->timed[i].accel)
+            status = rt_runner_open(&run->runners[i], &run->timed[i], run->timing->threads, error);
+        run->runners[i].repeats = before.repeats;
+        run->runners[i].once = before.once;
+        run->runners[i].broken = run->timed[i].broken;
+        if (status != RT_BROKEN || !run->timed[i].broken) RT_TRY(status);
+        if (status == RT_BROKEN) *run->timed[i].broken = true;
+    }
+    return RT_OK;
+}
+
+static void close_runners(TimingRun *run) {
+    for (size_t i = 0; i < run->count; i++) {
+        const RtRunner before = run->runners[i];
+        run->timed[i].repeats = before.repeats;
+        rt_runner_close(&run->runners[i]);
+        run->runners[i].repeats = before.repeats;
+        run->runners[i].once = before.once;
+    }
+}
+
+static RtStatus renew_runners(void *context, RtError *error) {
+    TimingRun *run = context;
+    close_runners(run);
+    RT_TRY(run->timing->renew(run->timing->rounds.context, run->timed, run->count, error));
+    return open_runners(run, error);
+}
+
+RtStatus rt_measure_time(RtTimed *timed, size_t count, const RtTiming *timing, uint32_t *done,
+                         RtError *error) {
+    TimingRun run = {.timing = timing,
+                     .timed = timed,
+                     .runners = rt_alloc(count, sizeof(RtRunner)),
+                     .order = rt_alloc(count, sizeof(size_t)),
+                     .count = count,
+                     .random = rt_random(timing->rounds.seed, 1)};
+    RtRounds rounds = timing->rounds;
+    rounds.renew = timing->renew ? renew_runners : NULL;
+    rounds.renew_context = &run;
+    RtStatus status = run.runners && run.order
+                          ? RT_OK
+                          : rt_fail_memory(error, "the rounds", count * (sizeof(RtRunner) + sizeof(size_t)));
+    if (status == RT_OK) {
+        for (size_t i = 0; i < count; i++) run.order[i] = i;
+        status = open_runners(&run, error);
+        if (status == RT_OK) status = rt_rounds_run(run.runners, count, &rounds, done, error);
+        close_runners(&run);
+    }
+    rt_free(run.runners);
+    rt_free(run.order);
+    return status;
 }

@@ -71,10 +71,6 @@ typedef struct RtTiming {
 RtStatus rt_runner_open(RtRunner *runner, const RtTimed *timed, int threads, RtError *error);
 void rt_runner_close(RtRunner *runner);
 
-/* The same for an accelerator of this process alone. */
-RtStatus rt_runner_open_local(RtRunner *runner, const RtTimed *timed, int threads, RtError *error);
-void rt_runner_close_local(RtRunner *runner);
-
 /* Times timed[0..count) in interleaved rounds (rounds.h), *done of them. */
 RtStatus rt_measure_time(RtTimed *timed, size_t count, const RtTiming *timing, uint32_t *done,
                          RtError *error);

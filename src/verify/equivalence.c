@@ -39,7 +39,7 @@ typedef struct Answers {
     bool blocked[PASSES * KERNELS][CHUNK];
 } Answers;
 
-_Static_assert(sizeof(Answers) + CHUNK * sizeof(RtRay) <= RT_REMOTE_BYTES, "it fits");
+_Static_assert(sizeof(Answers) <= RT_REMOTE_BYTES && CHUNK <= RT_REMOTE_RAYS, "it fits");
 
 /* One thread's memory. It has its own copy of the plan, because a plugin's process may have overwritten
  * the one in `answers`. */
@@ -230,11 +230,13 @@ static void recount(RtQuery *query, const Plan *plan, const RtRay *rays, Answers
 }
 
 /* Where the accelerator is. */
-static void answer_chunk(RtQuery *query, const RtRay *rays, void *message) {
+static RtStatus answer_chunk(RtQuery *query, const RtRay *rays, void *message, RtError *error) {
+    (void)error;
     Answers *answers = message;
     const Plan plan = answers->plan;
     if (plan.recount) recount(query, &plan, rays, answers);
     answer(query, &plan, rays, answers);
+    return RT_OK;
 }
 
 RtJudge rt_judge_of(const RtAccel *accel) {
@@ -354,7 +356,8 @@ static RtStatus check_chunk(void *context, size_t chunk, int thread, RtError *er
     worker->plan.recount = chunk == 0;
     answers->plan = worker->plan;
     const RtRay *rays = job->reference->rays + chunk * CHUNK;
-    if (!rt_remote_do(&worker->query, answer_chunk, rays, worker->plan.count, answers, sizeof *answers))
+    if (rt_remote_do(&worker->query, answer_chunk, rays, worker->plan.count, answers, sizeof *answers,
+                     NULL) != RT_OK)
         return RT_OK; /* rt_accel_check reports it */
     if (rt_accel_is_remote(job->accel) && !hits_are_possible(job->accel, &worker->plan, rays, answers)) {
         rt_remote_break(job->accel, "it overwrote its answers", "it was traced");

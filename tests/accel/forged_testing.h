@@ -1,19 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A remote accelerator (accel/remote.h) whose process is forged: its answers are bytes of a test, which stand
  * for a plugin that overwrites the memory that it shares with raytally. The executable is linked with
- * --wrap for the four functions below; they are the real ones while nothing is forged. */
+ * --wrap for the five functions below; they are the real ones while nothing is forged. */
 #ifndef RT_TESTS_FORGED_TESTING_H
 #define RT_TESTS_FORGED_TESTING_H
 
-#include "accel/plugin/watch.h"
+#include "accel/plugin/channel.h"
 #include "accel/remote.h"
+#include "core/base/process.h"
 
 #include <string.h>
 #include <unistd.h>
 
-/* Each answer is a ForgedAnswer and then the `length` bytes that replace those of the message from `offset`
- * on: what raytally asked, or an earlier answer. After the last answer, and after a cut one, the process has
- * ended. */
+/* Each answer is a ForgedAnswer and then the `length` bytes that replace those of the channel from `offset`
+ * on, which counts from its `status`: what raytally asked, or an earlier answer. After the last answer, and
+ * after a cut one, the process has ended. */
+#define FORGED_MESSAGE (offsetof(Channel, message) - offsetof(Channel, status))
 typedef struct ForgedAnswer {
     uint16_t offset, length;
 } ForgedAnswer;
@@ -51,11 +53,13 @@ static inline void close_forged(RtAccel *accel) {
 RtStatus __real_rt_process_fork(RtProcess *process, int keep, RtError *error);
 void __real_rt_process_signal(const RtProcess *process, int number);
 bool __real_rt_process_wait(RtProcess *process, int milliseconds, RtProcessEnd *end);
-bool __real_rt_watched_wait(RtWatched *child, uint32_t channel, const char *doing, double limit);
+void __real_rt_futex_wait(atomic_uint *word, unsigned value, int milliseconds);
+void __real_rt_futex_set(atomic_uint *word, unsigned value);
 RtStatus __wrap_rt_process_fork(RtProcess *process, int keep, RtError *error);
 void __wrap_rt_process_signal(const RtProcess *process, int number);
 bool __wrap_rt_process_wait(RtProcess *process, int milliseconds, RtProcessEnd *end);
-bool __wrap_rt_watched_wait(RtWatched *child, uint32_t channel, const char *doing, double limit);
+void __wrap_rt_futex_wait(atomic_uint *word, unsigned value, int milliseconds);
+void __wrap_rt_futex_set(atomic_uint *word, unsigned value);
 
 /* This process stands for the other one, since its use of memory will be looked up. */
 RtStatus __wrap_rt_process_fork(RtProcess *process, int keep, RtError *error) {
@@ -75,14 +79,21 @@ bool __wrap_rt_process_wait(RtProcess *process, int milliseconds, RtProcessEnd *
     return true;
 }
 
-bool __wrap_rt_watched_wait(RtWatched *child, uint32_t channel, const char *doing, double limit) {
+void __wrap_rt_futex_wait(atomic_uint *word, unsigned value, int milliseconds) {
+    if (!forged.on) __real_rt_futex_wait(word, value, milliseconds);
+}
+
+/* Answers the request that this is. */
+void __wrap_rt_futex_set(atomic_uint *word, unsigned value) {
+    Channel *channel = (Channel *)word;
     ForgedAnswer answer;
-    if (!forged.on) return __real_rt_watched_wait(child, channel, doing, limit);
-    if (take_forged(&answer, sizeof answer) &&
-        take_forged(child->wire->channels[channel].message + answer.offset, answer.length))
-        return true;
-    rt_watched_break(child, "it ended", doing);
-    return false;
+    if (!forged.on)
+        __real_rt_futex_set(word, value);
+    else
+        channel->asked = value;
+    if (forged.on && take_forged(&answer, sizeof answer) &&
+        take_forged((char *)&channel->status + answer.offset, answer.length))
+        channel->answered = value;
 }
 
 #endif

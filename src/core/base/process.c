@@ -249,6 +249,20 @@ static bool is_of_group(const char *pid, pid_t group, char *name) {
     return true;
 }
 
+uint64_t rt_process_status(pid_t pid, const char *entry) {
+    char path[64], line[256];
+    uint64_t number = 0;
+    const size_t length = strlen(entry);
+    snprintf(path, sizeof path, "/proc/%d/status", (int)pid);
+    FILE *file = fopen(path, "re");
+    while (file && fgets(line, sizeof line, file)) {
+        if (strncmp(line, entry, length) == 0 && line[length] == ':')
+            number = strtoull(line + length + 1, NULL, 10);
+    }
+    if (file) fclose(file);
+    return number;
+}
+
 /* Counts and kills what a process that has ended leaves behind. */
 static void end_group(pid_t group, RtProcessEnd *end) {
     const struct dirent *entry;

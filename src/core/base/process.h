@@ -65,6 +65,9 @@ bool rt_process_wait(RtProcess *process, int milliseconds, RtProcessEnd *end);
 /* The same, but kills it if it still runs then. */
 void rt_process_end(RtProcess *process, int milliseconds);
 
+/* The number in an entry of /proc/PID/status, "Threads"; sizes of memory are in kB. 0 if it is unknown. */
+uint64_t rt_process_status(pid_t pid, const char *entry);
+
 /* Kills all that run, up to 64; for handlers of signals that end this process. In other threads,
  * rt_process_wait does not return any more: nobody takes their end for a crash. */
 void rt_processes_kill(void);
