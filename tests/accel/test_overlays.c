@@ -105,7 +105,7 @@ RT_TEST(layers_are_described_together) {
     assert_ok(rt_accel_open("cache+light:cells=2+grid:resolution=3x1x1", *state, &top, error));
     rt_accel_describe(base, &of_base);
     rt_accel_describe(top, &of_top);
-    assert_true(of_top.leaves > 3 + 2 * 2 * 2 && of_top.leaves <= 3 + 2 * 6 * 2 * 2); /* voxels, and cells */
+    assert_true(of_top.leaves > 3 + 2 * 2 && of_top.leaves <= 3 + 2 * 6 * 2 * 2); /* voxels, and cells */
     assert_true(of_top.references > of_base.references);
     assert_true(of_top.bytes > of_base.bytes);
     assert_string_equal(rt_accel_base(top)->ops->name, "grid");

@@ -326,7 +326,7 @@ RT_TEST(a_shadow_ray_reads_the_cell_that_is_marked) {
     RtAccel *accel;
     RtQuery query;
     open_scene(&scene);
-    assert_ok(rt_accel_open("light:cells=16,extents=off,full_occlusion=off+bvh", &scene, &accel, error));
+    assert_ok(rt_accel_open("light:cells=16,full_occlusion=off+bvh", &scene, &accel, error));
     assert_ok(rt_query_init(&query, accel, error));
     RtVec3 light = scene.lights[0].position;
     uint32_t listed = 0;
