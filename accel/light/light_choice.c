@@ -1,125 +1,79 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Which lights pay. Probes are shadow rays from points that the camera sees, or, if it sees few, that random
- * rays hit. A light has lists only if its probes cost less with them than without.
+/* Whether lists pay. Probes are shadow rays from points that the camera sees. The buffer serves only if they
+ * cost less with lists than in the layer below.
  *
  * A cost is a weighted sum of counts, so the choice is the same on every machine. It is made only over
- * structures whose counts are (RtAccel.counts); over others a light serves scenes of many objects. */
+ * structures whose counts are (RtAccel.counts). */
 #include "accel/light/light.h"
 
 #include "core/base/memory.h"
-#include "core/base/random.h"
 
-/* Nanoseconds, fitted to times of light+wide and wide on 33 scenes: a step of a hierarchy, or a list entry;
- * an object test; the lookup of a ray's cell; cache misses, for each doubling of a structure beyond 4 MB; and
+/* Nanoseconds, fitted to times of light+wide and wide on 16 scenes: a step of a hierarchy, and of a list; an
+ * object test; the lookup of a ray's cell; cache misses, for each doubling of a structure beyond 4 MB; and
  * the bytes of an object in the structure below. */
-static const double STEP = 4.3, TEST = 3, LOOKUP = 10, MISSES = 10, CACHE_BYTES = 4e6, BYTES_BELOW = 70;
+static const double STEP = 4.3, ENTRY = 7, TEST = 3, LOOKUP = 10;
+static const double MISSES = 10, CACHE_BYTES = 4e6, BYTES_BELOW = 70;
 
-/* Lists are made for lights whose rays cost at least so much below, and kept if in them rays cost less by
- * this factor. */
-static const double WORTH_TRYING = 30, MARGIN = 1.2;
+/* Lists are made if rays cost at least so much below, and kept if in them rays cost less by this factor. */
+static const double WORTH_TRYING = 30, MARGIN = 1.15;
 
-enum { EDGE = 32, PROBES = EDGE * EDGE, CHUNK = 64, FEW_PROBES = 64, FEW_OBJECTS = 12000 };
+enum { EDGE = 32, PROBES = EDGE * EDGE, FEW_PROBES = 64 };
 
 /* Where rays are slow fewer are traced: those of some 4 million steps and tests. */
 enum { MOST_WORK = 1 << 22 };
 
-typedef struct Probe {
-    RtVec3 org;
-    RtVec3d side; /* normal, towards the ray that hit */
-} Probe;
-
 struct RtLightProbes {
-    const RtScene *scene;
     RtRay rays[PROBES];
-    Probe probes[PROBES];
     uint32_t count;
-    RtTally last;        /* of the last call of trace */
-    RtTally *build;      /* of all calls: the build_tally */
-    double cost_below[]; /* [lights] of a ray, in the layer below, ns */
+    double cost_below; /* of a ray, ns; 0 if there are few probes */
 };
-
-/* ---- tracing ---- */
 
 /* A step of wide tests eight extents; a structure that tests one by one takes a step for each eight. */
 static double steps_of(const RtTally *tally) {
     return fmax((double)tally->steps, (double)tally->extent_tests / 8);
 }
 
-/* Traces the first `count` rays, all of one kind, or fewer; writes the answers to `hits`, unless it is NULL:
- * then they are shadow rays. */
-static RtStatus trace(RtLightProbes *p, const RtAccel *accel, uint32_t count, RtHit *hits, RtError *error) {
-    RtQuery query;
-    RtTally *tally = &p->last;
-    *tally = (RtTally){0};
-    RT_TRY(rt_query_init(&query, accel, error));
-    for (uint32_t i = 0; i < count && steps_of(tally) + (double)tally->object_tests < MOST_WORK; i += CHUNK) {
-        uint32_t n = count - i < CHUNK ? count - i : CHUNK;
-        RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
-        bool blocked[CHUNK];
-        if (hits)
-            rt_nearest(&query, p->rays + i, n, hits + i, tallies);
-        else
-            rt_occluded(&query, p->rays + i, n, blocked, tallies);
-        rt_tally_add(tally, &tallies[p->rays[i].kind]);
-    }
-    rt_query_clear(&query);
-    rt_tally_add(p->build, tally);
-    return RT_OK;
+static bool is_too_much(const RtTally *tally) {
+    return steps_of(tally) + (double)tally->object_tests > MOST_WORK;
 }
 
-/* ---- probes ---- */
+/* A ray from a hit to the light; false if the surface is turned away from it. */
+static bool make_probe(const RtScene *scene, const RtRay *ray, RtHit hit, uint32_t light,
+                       RtCrossing *crossings, RtRay *probe) {
+    RtVec3d point = rt_ray_point(ray, hit.t), dir = rt_widen(ray->dir);
+    RtVec3d side = rt_object_normals(&scene->geometry, hit.object, ray, hit.t, crossings).geometric;
+    if (rt_dotd(side, dir) > 0) side = rt_scaled(side, -1);
+    double reach = (double)hit.t * sqrt(rt_dotd(dir, dir)) + sqrt(rt_dotd(point, point));
+    *probe = (RtRay){.org = rt_narrow(rt_add_scaledd(point, side, 0x1p-18 * reach)),
+                     .tmax = 1,
+                     .kind = RT_RAY_SHADOW,
+                     .source = light};
+    probe->dir = rt_sub(scene->lights[light].position, probe->org);
+    return rt_dotd(side, rt_widen(probe->dir)) > 0 && rt_ray_is_valid(probe);
+}
 
-/* Every so many rows and columns of the image, in an order in which each part is a sample of the whole. */
-static RtStatus look(RtLightProbes *p, RtError *error) {
-    const RtCamera *camera = &p->scene->camera;
+/* From every so many rows and columns of the image, in an order in which each part is a sample of the whole,
+ * to one light after the other. */
+static RtStatus find_probes(RtLightBuffer *buffer, RtLightProbes *p, RtError *error) {
+    const RtScene *scene = buffer->isa.base.scene;
+    const RtCamera *camera = &scene->camera;
+    RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
     RtSampling sampling;
     RtView view;
+    RtQuery query;
     RT_TRY(rt_sampling_init(&sampling, camera->width, camera->height, 1, false, error));
     RT_TRY(rt_view_init(&view, camera, sampling, error));
-    for (uint32_t i = 0; i < PROBES; i++) {
+    RT_TRY(rt_query_init(&query, buffer->isa.base.below, error));
+    for (uint32_t i = 0; i < PROBES && !is_too_much(&tallies[RT_RAY_PRIMARY]); i++) {
         uint32_t at = i * 397 % PROBES, column = at % EDGE, row = at / EDGE;
-        p->rays[i] = rt_view_ray(&view, column * camera->width / EDGE, row * camera->height / EDGE);
+        RtRay ray = rt_view_ray(&view, column * camera->width / EDGE, row * camera->height / EDGE);
+        RtHit hit;
+        rt_nearest(&query, &ray, 1, &hit, tallies);
+        p->count += hit.object != RT_NO_OBJECT && make_probe(scene, &ray, hit, i % scene->light_count,
+                                                             rt_query_crossings(&query), &p->rays[p->count]);
     }
-    return RT_OK;
-}
-
-static RtVec3 random_point(const RtBox *box, RtRandom *random) {
-    RtVec3 point;
-    for (int a = 0; a < 3; a++) point.at[a] = rt_random_between(random, box->lo.at[a], box->hi.at[a]);
-    return point;
-}
-
-static void look_around(RtLightProbes *p) {
-    const RtBox *box = &p->scene->geometry.box;
-    RtRandom random = rt_random(1, 0);
-    for (uint32_t i = 0; i < PROBES; i++) {
-        RtVec3 org = random_point(box, &random);
-        RtRay ray = {.org = org, .tmax = INFINITY, .kind = RT_RAY_RANDOM};
-        ray.dir = rt_sub(random_point(box, &random), org);
-        p->rays[i] = rt_ray_is_valid(&ray) ? ray : p->rays[0];
-    }
-}
-
-static Probe probe_at(const RtGeometry *g, const RtRay *ray, RtHit hit, RtCrossing *crossings) {
-    RtVec3d point = rt_ray_point(ray, hit.t), dir = rt_widen(ray->dir);
-    RtVec3d normal = rt_object_normals(g, hit.object, ray, hit.t, crossings).geometric;
-    RtVec3d side = rt_scaled(normal, rt_dotd(normal, dir) < 0 ? 1 : -1);
-    double reach = (double)hit.t * sqrt(rt_dotd(dir, dir)) + sqrt(rt_dotd(point, point));
-    return (Probe){rt_narrow(rt_add_scaledd(point, side, 0x1p-18 * reach)), side};
-}
-
-static RtStatus find_surfaces(RtLightProbes *p, const RtAccel *below, RtError *error) {
-    RtHit hits[PROBES];
-    RtCrossing *crossings;
-    for (uint32_t i = 0; i < PROBES; i++) hits[i] = RT_MISS;
-    RT_TRY(trace(p, below, PROBES, hits, error));
-    RT_TRY(rt_crossings_alloc(&p->scene->geometry, &crossings, error));
-    p->count = 0;
-    for (uint32_t i = 0; i < PROBES; i++) {
-        if (hits[i].object == RT_NO_OBJECT) continue;
-        p->probes[p->count++] = probe_at(&p->scene->geometry, &p->rays[i], hits[i], crossings);
-    }
-    rt_free(crossings);
+    rt_query_clear(&query);
+    rt_tally_add(&buffer->isa.base.build_tally, &tallies[RT_RAY_PRIMARY]);
     return RT_OK;
 }
 
@@ -133,64 +87,43 @@ static double cost_of_misses(double bytes) {
     return ns;
 }
 
-/* The mean cost of shadow rays from the probes that face the light, in a structure of so many bytes; 0 if
- * none does. */
-static RtStatus cost(RtLightProbes *p, const RtAccel *accel, uint32_t light, double bytes, double *ns,
-                     RtError *error) {
-    const RtVec3 position = p->scene->lights[light].position;
+/* The mean cost of probes in a structure of so many bytes, whose steps cost `step`. */
+static RtStatus cost(RtLightBuffer *buffer, const RtLightProbes *p, const RtAccel *accel, double step,
+                     double bytes, double *ns, RtError *error) {
+    enum { CHUNK = 64 };
+    RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
+    const RtTally *tally = &tallies[RT_RAY_SHADOW];
+    RtQuery query;
     uint32_t count = 0;
-    for (uint32_t i = 0; i < p->count; i++) {
-        const Probe *probe = &p->probes[i];
-        RtRay ray = {
-            .org = probe->org, .dir = rt_sub(position, probe->org), .tmax = 1, .kind = RT_RAY_SHADOW};
-        ray.source = light;
-        if (rt_dotd(probe->side, rt_widen(ray.dir)) > 0 && rt_ray_is_valid(&ray)) p->rays[count++] = ray;
+    RT_TRY(rt_query_init(&query, accel, error));
+    for (uint32_t n; count < p->count && !is_too_much(tally); count += n) {
+        bool blocked[CHUNK];
+        n = p->count - count < CHUNK ? p->count - count : CHUNK;
+        rt_occluded(&query, p->rays + count, n, blocked, tallies);
     }
-    RT_TRY(trace(p, accel, count, NULL, error));
-    const double rays = (double)p->last.rays;
-    *ns = rays > 0 ? (STEP * steps_of(&p->last) + TEST * (double)p->last.object_tests) / rays +
-                         cost_of_misses(bytes)
-                   : 0;
+    rt_query_clear(&query);
+    rt_tally_add(&buffer->isa.base.build_tally, tally);
+    *ns = (step * steps_of(tally) + TEST * (double)tally->object_tests) / count + cost_of_misses(bytes);
     return RT_OK;
 }
 
-/* ---- the choice ---- */
-
-RtStatus rt_light_choose(RtLightBuffer *buffer, RtLightProbes **out, RtError *error) {
-    const RtAccel *below = buffer->isa.base.below;
-    const RtScene *scene = buffer->isa.base.scene;
-    *out = NULL;
-    bool all = buffer->cells > 0 || (!below->counts && scene->geometry.object_count >= FEW_OBJECTS);
-    for (uint32_t i = 0; i < scene->light_count; i++) buffer->cubes[i].serves = all;
-    if (all || !below->counts || scene->geometry.object_count == 0) return RT_OK;
-    size_t bytes = sizeof(RtLightProbes) + scene->light_count * sizeof(double);
-    RtLightProbes *p = *out = rt_alloc(1, bytes);
-    if (!p) return rt_fail_memory(error, "the probes of a light buffer", bytes);
-    p->scene = scene;
-    p->build = &buffer->isa.base.build_tally;
-    RT_TRY(look(p, error));
-    RT_TRY(find_surfaces(p, below, error));
-    if (p->count < FEW_PROBES) {
-        look_around(p);
-        RT_TRY(find_surfaces(p, below, error));
-    }
-    for (uint32_t i = 0; i < scene->light_count; i++) {
-        RT_TRY(cost(p, below, i, BYTES_BELOW * scene->geometry.object_count, &p->cost_below[i], error));
-        buffer->cubes[i].serves = p->cost_below[i] > WORTH_TRYING;
-    }
-    return RT_OK;
+RtStatus rt_light_make_probes(RtLightBuffer *buffer, RtLightProbes **out, RtError *error) {
+    const RtAccel *accel = &buffer->isa.base;
+    RtLightProbes *p = *out = rt_alloc(1, sizeof *p);
+    if (!p) return rt_fail_memory(error, "the probes of a light buffer", sizeof *p);
+    if (accel->scene->light_count > 0) RT_TRY(find_probes(buffer, p, error));
+    if (p->count < FEW_PROBES) return RT_OK;
+    return cost(buffer, p, accel->below, STEP, BYTES_BELOW * accel->scene->geometry.object_count,
+                &p->cost_below, error);
 }
 
-RtStatus rt_light_choose_again(RtLightBuffer *buffer, RtLightProbes *p, RtError *error) {
-    double bytes = 0;
-    if (!p) return RT_OK;
-    for (uint32_t i = 0; i < p->scene->light_count; i++) bytes += (double)rt_light_bytes(&buffer->cubes[i]);
-    for (uint32_t i = 0; i < p->scene->light_count; i++) {
-        double ns;
-        RtLightCube *cube = &buffer->cubes[i];
-        if (!cube->serves) continue;
-        RT_TRY(cost(p, &buffer->isa.base, i, bytes, &ns, error));
-        if (MARGIN * (LOOKUP + ns) > p->cost_below[i]) rt_light_drop(cube);
-    }
+bool rt_light_may_pay(const RtLightProbes *p) {
+    return p->cost_below > WORTH_TRYING;
+}
+
+RtStatus rt_light_pays(RtLightBuffer *buffer, RtLightProbes *p, bool *pays, RtError *error) {
+    double ns;
+    RT_TRY(cost(buffer, p, &buffer->isa.base, ENTRY, (double)rt_light_bytes(buffer), &ns, error));
+    *pays = MARGIN * (LOOKUP + ns) <= p->cost_below;
     return RT_OK;
 }

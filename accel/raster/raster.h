@@ -11,7 +11,7 @@
  * along each axis. Each buffer derives its own E, because its rays start elsewhere:
  *
  *     item    rays start at the centre:                  E = 2^-19 M + 2^-21 |eye|    (item_footprint.c)
- *     light   rays end there, and start in a domain:     E = 2^-18 reach + 2^-20 farthest (light_footprint.c)
+ *     light   rays end there, and start in a domain:     E = 2^-18 reach + 2^-20 farthest (light_project.c)
  *
  * with M the largest distance along an axis from the eye to the object, reach the longest side of the box
  * around domain and light, and farthest its largest coordinate. From this follows, for any projection:

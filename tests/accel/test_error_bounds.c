@@ -8,7 +8,6 @@
 #include "random_testing.h"
 
 #include "accel/extent.h"
-#include "accel/light/light_facing.h"
 #include "accel/sphere_prefilter.h"
 
 static const double within = 31.0 / 32, beyond = 33.0 / 32;
@@ -312,12 +311,6 @@ RT_TEST(boxes_seen_from_a_light_are_grown_by_the_margin) {
         assert_true(rt_light_view(&down, &box, &view));
         double by[2] = {1 - view.near, view.far - 2};
         for (int i = 0; i < 2; i++) assert_true(by[i] >= within * margin && by[i] <= beyond * margin);
-        /* Beside the light by this, which the last place of a coordinate far off leaves out. */
-        for (int side = 0; side < 2 && !far; side++) {
-            RtBox beside = {rt_add(place, rt_vec3((float)((side ? beyond : within) * margin), -1, -1)),
-                            rt_add(place, rt_vec3(1, 1, 1))};
-            assert_int_equal(rt_light_is_in(&down, &beside), side == 0);
-        }
     }
 }
 
@@ -337,58 +330,6 @@ RT_TEST(views_from_a_light_are_wider_by_an_edge) {
     for (int k = 0; k < 2; k++) {
         assert_true(view.hi[k] - without >= within * 0x1p-20 && view.hi[k] - without <= beyond * 0x1p-20);
         assert_true(-view.lo[k] - without >= within * 0x1p-20);
-    }
-}
-
-/* Borders of tiles and of cells: what is within 2^-6 of one is on both sides. */
-RT_TEST(objects_near_a_border_of_tiles_or_cells_are_on_both_sides) {
-    RtRandom random = rt_random(6, 0);
-    int near_borders = 0;
-    OWNED_SCENE scene = begin_scene();
-    for (int i = 0; i < 4000; i++)
-        assert_ok(rt_scene_add_sphere(&scene, 0, random_point(&random, 4), 0.02f, error));
-    assert_ok(rt_scene_add_light(&scene, rt_vec3(0, 0, 10), rt_vec3(1, 1, 1), error));
-    assert_ok(rt_scene_finish(&scene, error));
-    OWNED_ACCEL RtLightBuffer *buffer = open_accel(&scene, "light:cells=256+brute");
-    const RtLightFace down = rt_light_face(buffer, 0, 4);
-    const double slack = within * 0x1p-6;
-    for (uint32_t id = 0; id < scene.geometry.object_count; id++) {
-        RtLightFootprint at;
-        if (!rt_light_footprint(&down, id, &at)) continue;
-        for (int k = 0; k < 2; k++) {
-            uint32_t last = (k ? down.grid->rows : down.grid->columns) - 1;
-            double lo = fmax(floor((double)at.least[k] - slack), 0);
-            double hi = fmin(floor((double)at.most[k] + slack), last);
-            assert_true(at.lo[k] <= lo && at.hi[k] >= hi);
-            near_borders += hi > floor((double)at.most[k] + 0x1.ep-7) && hi < last;
-        }
-    }
-    assert_true(near_borders > 0);
-    const RtLightTile tile = {.on = down, .n = 8};
-    const RtLightFootprint at = {.least = {(float)((3 + slack) / 8), (float)((3 + slack) / 8)},
-                                 .most = {(float)((5 - slack) / 8), (float)((5 - slack) / 8)}};
-    RtLightCells cells = rt_light_cells(&tile, &at);
-    for (int k = 0; k < 2; k++) assert_true(cells.lo[k] == 2 && cells.hi[k] == 5);
-}
-
-static bool leaves(const RtScene *scene, uint32_t id, RtVec3 org, RtVec3 dir) {
-    const RtRay ray = {.org = org, .dir = dir, .tmax = 1, .kind = RT_RAY_SHADOW};
-    return rt_light_leaves(&scene->geometry, scene->geometry.objects[id], id, &ray);
-}
-
-/* A floor that reaches 1 from the origin of the ray, and the unit sphere, whose far side is 2 away. */
-RT_TEST(a_ray_leaves_an_object_only_if_it_starts_off_it_by_more_than_the_bound) {
-    const RtVec3 square[4] = {{{-1, -1, 0}}, {{1, -1, 0}}, {{1, 1, 0}}, {{-1, 1, 0}}};
-    const RtVec3 up = rt_vec3(0, 0, 1), far_up = rt_vec3(0, 0, 0x1p40f);
-    OWNED_SCENE scene = begin_scene();
-    assert_ok(rt_scene_add_polygon(&scene, 0, square, 4, error));
-    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
-    assert_ok(rt_scene_finish(&scene, error));
-    for (int side = 0; side < 2; side++) {
-        double part = side ? beyond : within;
-        assert_int_equal(leaves(&scene, 0, rt_vec3(0, 0, (float)(part * 0x1p-19)), up), side);
-        assert_int_equal(leaves(&scene, 0, rt_vec3(0, 0, (float)(part * 0x1p-6)), far_up), side);
-        assert_int_equal(leaves(&scene, 1, rt_vec3(0, 0, (float)(1 + part * 0x1.cp-18)), up), side);
     }
 }
 

@@ -46,7 +46,7 @@ static void make_awkward_rays(const RtScene *scene, RtRay *rays, float away) {
 
 RT_TEST(lights_in_awkward_places_are_answered_like_brute) {
     static RtRay rays[AWKWARD_RAYS];
-    const char *specs[] = {"light:cells=1+bvh", "light:cells=16+bvh", "light:cells=61,extents=off+bvh",
+    const char *specs[] = {"light:cells=1+bvh", "light:cells=16+bvh", "light:cells=61+bvh",
                            "light:cells=16,full_occlusion=off+bvh", "cache+light+bvh"};
     const float places[] = {0, 1000};
     for (size_t p = 0; p < 2; p++) {
@@ -95,13 +95,10 @@ static void check_far_off(float size, float in, const char *spec) {
     assert_true(tally.object_tests > COUNT / 20 && tally.passed_on == 0);
 }
 
-/* Cells of which a 64th, by which all grow, is more than the error, and less. */
 RT_TEST(rounding_far_off_is_within_the_margin) {
-    check_far_off(0.25f, 0x1p-18f, "light:cells=8,extents=off+brute");
     check_far_off(0.25f, 0x1p-18f, "light:cells=8+brute");
-    check_far_off(0.25f, 0x1.8p-16f, "light:cells=4096,extents=off+brute");    /* a large triangle */
-    check_far_off(0x1p-10f, 0x1.9p-17f, "light:cells=4096,extents=off+brute"); /* a small one */
-    check_far_off(0x1p-10f, 0x1.9p-17f, "light:cells=4096+brute");
+    check_far_off(0.25f, 0x1.8p-16f, "light:cells=4096+brute");    /* a large triangle */
+    check_far_off(0x1p-10f, 0x1.9p-17f, "light:cells=4096+brute"); /* a small one */
 }
 
 /* What a sphere over half of a cell does not hide is seen, without asking below. */
@@ -155,35 +152,9 @@ RT_TEST(directions_along_edges_and_corners_are_answered_like_brute) {
         RtTally tally = check_like_brute("light:cells=1+brute", &scene, rays, count);
         assert_true(lights ? tally.passed_on == 0 : tally.passed_on == count);
         check_like_brute("light:cells=4+brute", &scene, rays, count);
-        check_like_brute("light:cells=8,extents=off+brute", &scene, rays, count);
+        check_like_brute("light:cells=8+brute", &scene, rays, count);
         check_like_brute("light:cells=9+brute", &scene, rays, count);
     }
-}
-
-/* A ray that leaves a polygon or a sphere on the light's side tests neither it nor what is in its plane. */
-RT_TEST(a_receiver_that_faces_the_light_is_not_tested) {
-    const RtVec3 corners[6] = {{{-1, -1, -1}}, {{1, -1, 1}}, {{1, 0, 1}},
-                               {{-1, 0, -1}},  {{1, 1, 1}},  {{-1, 1, -1}}};
-    const RtVec3 beside[4] = {corners[3], corners[2], corners[4], corners[5]};
-    OWNED_SCENE scene = begin_scene();
-    assert_ok(rt_scene_add_polygon(&scene, 0, corners, 4, error));
-    assert_ok(rt_scene_add_polygon(&scene, 0, beside, 4, error));
-    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(3, 0, -3), 1, error));
-    assert_ok(rt_scene_add_light(&scene, rt_vec3(1, 2, 3), rt_vec3(1, 1, 1), error));
-    assert_ok(rt_scene_finish(&scene, error));
-    const char *spec = "light:cells=64,full_occlusion=off+brute";
-    RtRay off = shadow_ray(&scene, rt_vec3(-0x1p-17f, 0, 0x1p-17f), 0),
-          on = shadow_ray(&scene, rt_vec3(0, 0, 0), 0),
-          top = shadow_ray(&scene, rt_vec3(3, 0, -2 + 0x1p-15f), 0);
-    RtTally tally = check_like_brute(spec, &scene, &off, 1);
-    assert_int_equal(tally.steps, 2);
-    assert_int_equal(tally.extent_tests, 4);
-    assert_int_equal(tally.object_tests, 0);
-    tally = check_like_brute(spec, &scene, &on, 1);
-    assert_true(tally.object_hits > 0);
-    tally = check_like_brute(spec, &scene, &top, 1);
-    assert_int_equal(tally.steps, 1);
-    assert_int_equal(tally.object_tests, 0);
 }
 
 RT_TESTS(light_exact, NULL, assert_nothing_is_kept)

@@ -97,7 +97,7 @@ RT_TEST(layers_are_described_together) {
     OWNED_ACCEL RtAccel *top = open_valid(*state, "cache+light:cells=2+grid:resolution=3x1x1");
     RtDescription of_base = describe_spec(*state, "grid:resolution=3x1x1"), of_top;
     rt_accel_describe(top, &of_top);
-    assert_true(of_top.leaves > 3 + 2 * 2 * 2 && of_top.leaves <= 3 + 2 * 6 * 2 * 2); /* voxels, and cells */
+    assert_true(of_top.leaves > 3 + 2 * 2 && of_top.leaves <= 3 + 2 * 6 * 2 * 2); /* voxels, and cells */
     assert_true(of_top.references > of_base.references);
     assert_true(of_top.bytes > of_base.bytes);
     assert_string_equal(rt_accel_base(top)->ops->name, "grid");

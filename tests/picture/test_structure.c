@@ -294,7 +294,7 @@ RT_TEST(the_item_buffer_has_a_color_for_each_object_white_for_none_and_magenta_f
 /* A picture looks up the cells that the kernel reads: a ray's steps are entries of that cell. */
 RT_TEST(a_shadow_ray_reads_the_cell_that_is_marked) {
     OWNED_SCENE scene = five_balls();
-    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "light:cells=16,extents=off,full_occlusion=off+bvh");
+    OWNED_ACCEL RtAccel *accel = open_accel(&scene, "light:cells=16,full_occlusion=off+bvh");
     OWNED_QUERY query = open_query(accel);
     RtVec3 light = scene.lights[0].position;
     uint32_t listed = 0;

@@ -7,7 +7,7 @@
 #include <inttypes.h>
 
 #define RT_FILE_FORMAT    1 /* the newest that is read, and the one that is written: `format` in files */
-#define RT_COUNTS_VERSION 1 /* `counts` in manifests */
+#define RT_COUNTS_VERSION 2 /* `counts` in manifests */
 
 /* A message about a file of another format; takes that format, an int64_t, and RT_FILE_FORMAT. */
 #define RT_FORMAT_UNKNOWN                                                                                    \
