@@ -88,7 +88,8 @@ static RtField shown_figure(const void *row, const RtTableColumn *column) {
 /* ---- columns ---- */
 
 #define COLUMNS(X)                                                                                           \
-    X(scene, "scene", text, "", "the scene's label", r->published->experiment->workloads[r->workload].label) \
+    X(scene, "scene", text, "", "the scene's label in the experiment",                                       \
+      r->published->experiment->workloads[r->workload].label)                                                \
     X(source, "source", text, "", "who published it", r->row->source)                                        \
     X(structure, "structure", text, "", "name of the structure there", r->row->structure)                    \
     X(parameters, "parameters", text, "", "its parameters there", r->row->parameters)                        \
