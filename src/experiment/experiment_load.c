@@ -285,9 +285,7 @@ static RtStatus place(const RtYaml *y, RtStatus status, const char *where) {
 /* Experiments of version 1.0 may have hardware counters. */
 static void warn_of_hardware(RtYaml y, const RtYamlNode *hardware, RtExperiment *experiment) {
     y.error = &experiment->warning;
-    rt_yaml_fail(
-        &y, hardware,
-        "ignored: hardware counters are those of `perf stat` now (docs/guide/faq.md); remove this line");
+    rt_yaml_fail(&y, hardware, "ignored: `perf stat` counts these now (docs/guide/faq.md)");
 }
 
 static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *experiment, RtError *error) {

@@ -19,8 +19,8 @@ static inline bool rt_lock_is_held(const RtLock *lock) {
     return lock->descriptor >= 0;
 }
 
-/* Locks the directory at `path`, or fails with the number of the process that holds the lock. Succeeds
- * without a lock if there is no such directory or its file system has no locks. */
+/* Locks the directory at `path`, or fails if another process holds the lock for a second. Succeeds without a
+ * lock if there is no such directory or its file system has no locks. */
 RtStatus rt_lock_take(RtLock *lock, const char *path, RtError *error);
 
 void rt_lock_release(RtLock *lock);

@@ -1,17 +1,246 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* glTF 2.0, as JSON (.gltf) or binary (.glb): the triangles of all nodes of the scene, nodes depth first,
  * each with its matrices. Materials, skins and animations are ignored. Files that need an extension for their
- * geometry, or store it sparsely, are rejected. */
-#include "core/scene/mesh_gltf_data.h"
-
+ * geometry, or store it sparsely, are rejected. Every member is checked where it is read; what a view shows
+ * is inside its buffer. */
+#include "core/base/file.h"
 #include "core/base/memory.h"
+#include "core/scene/mesh_reader.h"
 
+#include <jansson.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
+
+typedef struct Buffer {
+    char *data;
+    size_t size;
+} Buffer;
+
+typedef struct Gltf {
+    RtMeshReader *mesh;
+    json_t *root;
+    Buffer chunk; /* the binary chunk of a .glb, borrowed; a zeroed struct: none */
+    size_t buffer_count;
+    Buffer *buffers; /* [buffer_count], owned, except `chunk` */
+    size_t size;     /* bytes of the document and its buffers */
+    uint64_t placed; /* primitives, their vertices and corners, in all nodes so far */
+    bool *visited;   /* [nodes], owned */
+} Gltf;
+
+/* An entry of one of the document's lists. */
+typedef struct Item {
+    const char *list;
+    size_t index;
+    json_t *object;
+} Item;
+
+/* The elements of an accessor. */
+typedef struct View {
+    const char *data;
+    uint32_t count;
+    uint64_t type; /* of a component, as the document says it */
+    size_t stride;
+} View;
+
+enum { UINT8 = 5121, UINT16 = 5123, UINT32 = 5125, FLOAT32 = 5126 };
+
+#define MOST_INTEGER ((json_int_t)1 << 40) /* sums, and products with 2^20, fit 64 bits */
+
+/* ---- the document ---- */
+
+/* Fails at "FILE: LIST[INDEX]: ". */
+__attribute__((format(printf, 3, 4))) static RtStatus fail_item(const Gltf *g, const Item *item,
+                                                                const char *format, ...) {
+    char message[256];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    return rt_mesh_fail(g->mesh, "%s[%zu]: %s", item->list, item->index, message);
+}
+
+/* Finds object `index` of `list`, or the one whose index is `reference`; `by` says where that is. */
+static RtStatus item_at(const Gltf *g, const char *list, json_int_t index, const char *by, Item *item) {
+    const json_t *all = json_object_get(g->root, list);
+    if (index < 0 || (uint64_t)index >= json_array_size(all))
+        return rt_mesh_fail(g->mesh, "%s names %s[%lld], but there are %zu (counted from 0)", by, list,
+                            (long long)index, json_array_size(all));
+    *item = (Item){list, (size_t)index, json_array_get(all, (size_t)index)};
+    return json_is_object(item->object) ? RT_OK : fail_item(g, item, "expected an object");
+}
+
+static RtStatus find_item(const Gltf *g, const char *list, const json_t *reference, const char *by,
+                          Item *item) {
+    if (json_is_integer(reference)) return item_at(g, list, json_integer_value(reference), by, item);
+    return rt_mesh_fail(g->mesh, "%s lacks the index of one of the %s", by, list);
+}
+
+/* Gets the integer `key`, or `otherwise` if there is none. Rejects less than `least`, so an `otherwise` below
+ * it makes the member mandatory; and more than 2^40. */
+static RtStatus read_integer(const Gltf *g, const Item *item, const char *key, json_int_t least,
+                             json_int_t otherwise, uint64_t *out) {
+    const json_t *member = json_object_get(item->object, key);
+    const json_int_t value = json_is_integer(member) ? json_integer_value(member) : member ? -1 : otherwise;
+    if (value < least || value > MOST_INTEGER)
+        return fail_item(g, item, "expected %s, an integer of at least %lld", key, (long long)least);
+    *out = (uint64_t)value;
+    return RT_OK;
+}
+
+/* Gets the list `key` of `count` numbers; out[] stays as it is if there is none. */
+static RtStatus read_numbers(const Gltf *g, const Item *item, const char *key, size_t count, double *out) {
+    const json_t *list = json_object_get(item->object, key);
+    if (!list) return RT_OK;
+    for (size_t i = 0; i < count; i++) {
+        const json_t *number = json_array_get(list, i);
+        if (!json_is_number(number) || json_array_size(list) != count)
+            return fail_item(g, item, "expected %s, a list of %zu numbers", key, count);
+        out[i] = json_number_value(number);
+    }
+    return RT_OK;
+}
+
+/* ---- buffers ---- */
+
+/* Decodes base64 to out[0..strlen(text)); returns the number of bytes, or SIZE_MAX if it is damaged. */
+static size_t decode(const char *text, char *out) {
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    size_t length = strlen(text), written = 0;
+    while (length > 0 && text[length - 1] == '=') length--;
+    uint32_t bits = 0;
+    for (size_t i = 0; i < length; i++) {
+        const char *digit = strchr(digits, text[i]);
+        if (!digit) return SIZE_MAX;
+        bits = bits << 6 | (uint32_t)(digit - digits);
+        if (i % 4 != 0) out[written++] = (char)(bits >> (6 - i % 4 * 2));
+    }
+    return written;
+}
+
+static RtStatus load_embedded(const Gltf *g, const Item *item, const char *text, Buffer *buffer) {
+    buffer->data = rt_alloc_unset(strlen(text) + 1, 1);
+    if (!buffer->data) return rt_fail_memory(g->mesh->text.error, "a buffer of glTF", strlen(text));
+    buffer->size = decode(text, buffer->data);
+    return buffer->size == SIZE_MAX ? fail_item(g, item, "its base64 is damaged") : RT_OK;
+}
+
+/* Decodes "%20" and the like. */
+static void decode_path(const char *uri, char out[RT_MAX_PATH]) {
+    size_t length = 0;
+    for (; *uri && length + 1 < RT_MAX_PATH; uri++) {
+        unsigned code;
+        int used = 0;
+        if (*uri == '%' && sscanf(uri + 1, "%2x%n", &code, &used) == 1 && used == 2 && code != 0) {
+            out[length++] = (char)code;
+            uri += 2;
+        } else {
+            out[length++] = *uri;
+        }
+    }
+    out[length] = '\0';
+}
+
+static RtStatus load_file(const Gltf *g, const Item *item, const char *uri, size_t limit, Buffer *buffer) {
+    char folder[RT_MAX_PATH], name[RT_MAX_PATH], path[RT_MAX_PATH];
+    if (strstr(uri, "://")) return fail_item(g, item, "its uri '%.60s' is not a file", uri);
+    decode_path(uri, name);
+    rt_path_folder(g->mesh->text.path, folder);
+    RT_TRY(rt_path_join(folder, name, path, g->mesh->text.error));
+    return rt_file_read(path, limit, &buffer->data, &buffer->size, g->mesh->text.error);
+}
+
+static RtStatus load_buffer(const Gltf *g, const Item *item, size_t limit, Buffer *buffer) {
+    static const char embedded[] = "data:";
+    const json_t *member = json_object_get(item->object, "uri");
+    const char *uri = json_string_value(member), *data = uri ? strstr(uri, ";base64,") : NULL;
+    uint64_t length = 0;
+    RT_TRY(read_integer(g, item, "byteLength", 1, 0, &length));
+    if (!uri && !member && item->index == 0 && g->chunk.data)
+        *buffer = g->chunk;
+    else if (!uri)
+        return fail_item(g, item, "expected uri, the data or the name of a file");
+    else if (strncmp(uri, embedded, strlen(embedded)) != 0)
+        RT_TRY(load_file(g, item, uri, limit, buffer));
+    else if (data)
+        RT_TRY(load_embedded(g, item, data + strlen(";base64,"), buffer));
+    else
+        return fail_item(g, item, "its data is not in base64");
+    if (buffer->size >= length) return RT_OK;
+    return fail_item(g, item, "it declares %llu bytes, but has %zu: it is cut off",
+                     (unsigned long long)length, buffer->size);
+}
+
+/* Loads all buffers: the chunk, embedded ones, files beside the document. */
+static RtStatus load_buffers(Gltf *g) {
+    const json_t *list = json_object_get(g->root, "buffers");
+    const size_t count = json_array_size(list);
+    size_t left = RT_MESH_MAX_BYTES; /* for files, together: a document may name one many times */
+    g->buffers = rt_alloc(count, sizeof *g->buffers);
+    if (!g->buffers)
+        return rt_fail_memory(g->mesh->text.error, "buffers of glTF", count * sizeof *g->buffers);
+    g->buffer_count = count;
+    for (size_t i = 0; i < count; i++) {
+        const Item item = {"buffers", i, json_array_get(list, i)};
+        RT_TRY(load_buffer(g, &item, left, &g->buffers[i]));
+        left -= g->buffers[i].size < left ? g->buffers[i].size : left;
+        g->size += g->buffers[i].size;
+    }
+    return RT_OK;
+}
+
+/* ---- accessors ---- */
+
+static size_t component_size(uint64_t type) {
+    return type == UINT8 ? 1 : type == UINT16 ? 2 : type == UINT32 || type == FLOAT32 ? 4 : 0;
+}
+
+/* Opens an accessor for `width` components: 3 of float32, or 1 of unsigned integers. */
+static RtStatus open_view(const Gltf *g, const json_t *reference, size_t width, View *view) {
+    static const char *const names[] = {"", "SCALAR", "VEC2", "VEC3"};
+    Item accessor = {0}, range = {0}, buffer = {0};
+    uint64_t type = 0, count = 0, skip = 0, begin = 0, length = 0, stride = 0;
+    RT_TRY(find_item(g, "accessors", reference, "a primitive", &accessor));
+    if (json_object_get(accessor.object, "sparse"))
+        return fail_item(g, &accessor, "it is sparse: cannot be read");
+    RT_TRY(read_integer(g, &accessor, "componentType", 0, -1, &type));
+    RT_TRY(read_integer(g, &accessor, "count", 1, 0, &count));
+    RT_TRY(read_integer(g, &accessor, "byteOffset", 0, 0, &skip));
+    const size_t size = component_size(type) * width;
+    const char *shape = json_string_value(json_object_get(accessor.object, "type"));
+    if (size == 0 || (type == FLOAT32) != (width == 3) || !shape || strcmp(shape, names[width]) != 0)
+        return fail_item(g, &accessor, "expected the type %s of %s", names[width],
+                         width == 3 ? "float32" : "unsigned integers");
+    RT_TRY(
+        find_item(g, "bufferViews", json_object_get(accessor.object, "bufferView"), "an accessor", &range));
+    RT_TRY(read_integer(g, &range, "byteOffset", 0, 0, &begin));
+    RT_TRY(read_integer(g, &range, "byteLength", 1, 0, &length));
+    RT_TRY(read_integer(g, &range, "byteStride", (json_int_t)size, (json_int_t)size, &stride));
+    RT_TRY(find_item(g, "buffers", json_object_get(range.object, "buffer"), "a bufferView", &buffer));
+    if (begin + length > g->buffers[buffer.index].size)
+        return fail_item(g, &range, "it ends at byte %llu of a buffer of %zu bytes",
+                         (unsigned long long)begin + length, g->buffers[buffer.index].size);
+    if (count > UINT32_MAX || stride > 252 || skip + stride * (count - 1) + size > length)
+        return fail_item(g, &accessor, "its %llu elements do not fit into the %llu bytes of bufferViews[%zu]",
+                         (unsigned long long)count, (unsigned long long)length, range.index);
+    *view = (View){g->buffers[buffer.index].data + begin + skip, (uint32_t)count, type, (size_t)stride};
+    return RT_OK;
+}
+
+/* Integer `i` of a view. */
+static uint32_t index_at(const View *view, uint32_t i) {
+    const unsigned char *at = (const unsigned char *)view->data + view->stride * i;
+    return view->type == UINT8    ? at[0]
+           : view->type == UINT16 ? at[0] | (uint32_t)at[1] << 8
+                                  : rt_mesh_u32(at);
+}
+
+/* ---- extensions ---- */
 
 enum { DEEPEST = 256 };
 
 /* Extensions of materials, textures and lights do not change the geometry. */
-static RtStatus check_extensions(const RtGltf *g) {
+static RtStatus check_extensions(const Gltf *g) {
     static const char *const harmless[] = {"KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_"};
     const json_t *required = json_object_get(g->root, "extensionsRequired"), *one;
     size_t i;
@@ -32,13 +261,13 @@ static RtStatus check_extensions(const RtGltf *g) {
 
 enum { TRIANGLES = 4, STRIP = 5, FAN = 6 };
 
-static RtStatus add_triangle(const RtGltf *g, const RtGltfView *indices, const uint32_t corners[3]) {
+static RtStatus add_triangle(const Gltf *g, const View *indices, const uint32_t corners[3]) {
     for (int k = 0; k < 3; k++)
-        RT_TRY(rt_mesh_add_index(g->mesh, indices->data ? rt_gltf_index(indices, corners[k]) : corners[k]));
+        RT_TRY(rt_mesh_add_index(g->mesh, indices->data ? index_at(indices, corners[k]) : corners[k]));
     return rt_mesh_add_polygon(g->mesh);
 }
 
-static RtStatus add_triangles(const RtGltf *g, uint64_t mode, const RtGltfView *indices) {
+static RtStatus add_triangles(const Gltf *g, uint64_t mode, const View *indices) {
     const uint32_t count = indices->count;
     if (count < 3 || (mode == TRIANGLES && count % 3 != 0))
         return rt_mesh_fail(g->mesh, "a primitive of triangles has %u corners", count);
@@ -50,15 +279,15 @@ static RtStatus add_triangles(const RtGltf *g, uint64_t mode, const RtGltfView *
     return RT_OK;
 }
 
-static RtStatus add_vertices(const RtGltf *g, const json_t *attributes, RtGltfView *positions) {
+static RtStatus add_vertices(const Gltf *g, const json_t *attributes, View *positions) {
     const json_t *normal = json_object_get(attributes, "NORMAL");
-    RtGltfView normals;
+    View normals;
     g->mesh->vertex_count = g->mesh->normal_count = 0;
-    RT_TRY(rt_gltf_open_view(g, json_object_get(attributes, "POSITION"), 3, positions));
+    RT_TRY(open_view(g, json_object_get(attributes, "POSITION"), 3, positions));
     for (uint32_t i = 0; i < positions->count; i++)
         RT_TRY(rt_mesh_add_vertex(g->mesh, rt_mesh_vector(positions->data + positions->stride * i)));
     if (!normal) return RT_OK;
-    RT_TRY(rt_gltf_open_view(g, normal, 3, &normals));
+    RT_TRY(open_view(g, normal, 3, &normals));
     if (normals.count != positions->count)
         return rt_mesh_fail(g->mesh, "a primitive has %u positions and %u normals", positions->count,
                             normals.count);
@@ -68,7 +297,7 @@ static RtStatus add_vertices(const RtGltf *g, const json_t *attributes, RtGltfVi
 }
 
 /* Nodes may place a mesh many times, and primitives share vertices: a small file could take days. */
-static RtStatus count_placed(RtGltf *g, uint64_t count) {
+static RtStatus count_placed(Gltf *g, uint64_t count) {
     enum { MOST = 1000 }; /* for each byte; a forest of 10,000 trees of 10,000 triangles has 400 */
     g->placed += count;
     if (g->placed / MOST <= g->size) return RT_OK;
@@ -78,29 +307,29 @@ static RtStatus count_placed(RtGltf *g, uint64_t count) {
                         MOST, g->size);
 }
 
-static RtStatus add_primitive(RtGltf *g, const RtGltfItem *mesh, json_t *primitive) {
-    const RtGltfItem item = {mesh->list, mesh->index, primitive}; /* for messages: of this mesh */
+static RtStatus add_primitive(Gltf *g, const Item *mesh, json_t *primitive) {
+    const Item item = {mesh->list, mesh->index, primitive}; /* for messages: of this mesh */
     const json_t *reference = json_object_get(primitive, "indices");
     uint64_t mode;
-    RtGltfView positions, indices;
+    View positions, indices;
     RT_TRY(count_placed(g, 1));
-    RT_TRY(rt_gltf_integer(g, &item, "mode", 0, TRIANGLES, &mode));
+    RT_TRY(read_integer(g, &item, "mode", 0, TRIANGLES, &mode));
     if (mode < TRIANGLES) return RT_OK; /* points and lines */
-    if (mode > FAN) return rt_gltf_fail(g, &item, "expected mode, 0 to 6");
+    if (mode > FAN) return fail_item(g, &item, "expected mode, 0 to 6");
     RT_TRY(add_vertices(g, json_object_get(primitive, "attributes"), &positions));
-    indices = (RtGltfView){.count = positions.count};
-    if (reference) RT_TRY(rt_gltf_open_view(g, reference, 1, &indices));
+    indices = (View){.count = positions.count};
+    if (reference) RT_TRY(open_view(g, reference, 1, &indices));
     RT_TRY(count_placed(g, (uint64_t)positions.count + indices.count));
     return add_triangles(g, mode, &indices);
 }
 
-static RtStatus add_mesh(RtGltf *g, const json_t *reference) {
-    RtGltfItem mesh;
+static RtStatus add_mesh(Gltf *g, const json_t *reference) {
+    Item mesh;
     json_t *primitive;
     size_t i;
-    RT_TRY(rt_gltf_find(g, "meshes", reference, "a node", &mesh));
+    RT_TRY(find_item(g, "meshes", reference, "a node", &mesh));
     const json_t *primitives = json_object_get(mesh.object, "primitives");
-    if (!json_is_array(primitives)) return rt_gltf_fail(g, &mesh, "expected primitives, a list");
+    if (!json_is_array(primitives)) return fail_item(g, &mesh, "expected primitives, a list");
     json_array_foreach(primitives, i, primitive) RT_TRY(add_primitive(g, &mesh, primitive));
     return RT_OK;
 }
@@ -108,11 +337,11 @@ static RtStatus add_mesh(RtGltf *g, const json_t *reference) {
 /* ---- nodes ---- */
 
 /* From the translation, the rotation (a quaternion x y z w) and the scale of a node. */
-static RtStatus get_steps(const RtGltf *g, const RtGltfItem *node, RtTransform *out) {
+static RtStatus get_steps(const Gltf *g, const Item *node, RtTransform *out) {
     double t[3] = {0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
-    RT_TRY(rt_gltf_numbers(g, node, "translation", 3, t));
-    RT_TRY(rt_gltf_numbers(g, node, "rotation", 4, q));
-    RT_TRY(rt_gltf_numbers(g, node, "scale", 3, s));
+    RT_TRY(read_numbers(g, node, "translation", 3, t));
+    RT_TRY(read_numbers(g, node, "rotation", 4, q));
+    RT_TRY(read_numbers(g, node, "scale", 3, s));
     const double x = q[0], y = q[1], z = q[2], w = q[3];
     *out = (RtTransform){
         {{(1 - 2 * (y * y + z * z)) * s[0], 2 * (x * y - z * w) * s[1], 2 * (x * z + y * w) * s[2], t[0]},
@@ -121,10 +350,10 @@ static RtStatus get_steps(const RtGltf *g, const RtGltfItem *node, RtTransform *
     return RT_OK;
 }
 
-static RtStatus get_transform(const RtGltf *g, const RtGltfItem *node, RtTransform *out) {
+static RtStatus get_transform(const Gltf *g, const Item *node, RtTransform *out) {
     double columns[16];
     if (!json_object_get(node->object, "matrix")) return get_steps(g, node, out);
-    RT_TRY(rt_gltf_numbers(g, node, "matrix", 16, columns));
+    RT_TRY(read_numbers(g, node, "matrix", 16, columns));
     for (int row = 0; row < 3; row++) {
         for (int column = 0; column < 4; column++) out->m[row][column] = columns[4 * column + row];
     }
@@ -132,15 +361,15 @@ static RtStatus get_transform(const RtGltf *g, const RtGltfItem *node, RtTransfo
 }
 
 /* Nodes are trees, so each is visited once. */
-static RtStatus add_node(RtGltf *g, const json_t *reference, const char *by, const RtTransform *above,
+static RtStatus add_node(Gltf *g, const json_t *reference, const char *by, const RtTransform *above,
                          int depth) {
-    RtGltfItem node;
+    Item node;
     RtTransform own, transform;
     const json_t *child;
     size_t i;
-    RT_TRY(rt_gltf_find(g, "nodes", reference, by, &node));
-    if (g->visited[node.index]) return rt_gltf_fail(g, &node, "it is named twice, but nodes form a tree");
-    if (depth == DEEPEST) return rt_gltf_fail(g, &node, "it is more than %d levels deep", DEEPEST);
+    RT_TRY(find_item(g, "nodes", reference, by, &node));
+    if (g->visited[node.index]) return fail_item(g, &node, "it is named twice, but nodes form a tree");
+    if (depth == DEEPEST) return fail_item(g, &node, "it is more than %d levels deep", DEEPEST);
     g->visited[node.index] = true;
     RT_TRY(get_transform(g, &node, &own));
     transform = rt_transform_compose(&own, above);
@@ -152,14 +381,14 @@ static RtStatus add_node(RtGltf *g, const json_t *reference, const char *by, con
     return RT_OK;
 }
 
-static RtStatus add_scene(RtGltf *g) {
+static RtStatus add_scene(Gltf *g) {
     const RtTransform outer = g->mesh->transform;
     const json_t *number = json_object_get(g->root, "scene"), *node;
     const size_t nodes = json_array_size(json_object_get(g->root, "nodes"));
-    RtGltfItem scene;
+    Item scene;
     size_t i;
-    RT_TRY(number ? rt_gltf_find(g, "scenes", number, "the file", &scene)
-                  : rt_gltf_at(g, "scenes", 0, "the file", &scene));
+    RT_TRY(number ? find_item(g, "scenes", number, "the file", &scene)
+                  : item_at(g, "scenes", 0, "the file", &scene));
     g->visited = rt_alloc(nodes, sizeof *g->visited);
     if (!g->visited) return rt_fail_memory(g->mesh->text.error, "nodes of glTF", nodes);
     json_array_foreach(json_object_get(scene.object, "nodes"), i, node)
@@ -169,7 +398,7 @@ static RtStatus add_scene(RtGltf *g) {
 
 /* ---- the file ---- */
 
-static RtStatus read_document(RtGltf *g, const char *text, size_t size) {
+static RtStatus read_document(Gltf *g, const char *text, size_t size) {
     const RtScanner *file = &g->mesh->text;
     json_error_t where;
     if (size > RT_MESH_MAX_JSON)
@@ -184,12 +413,12 @@ static RtStatus read_document(RtGltf *g, const char *text, size_t size) {
     if (!version || strncmp(version, "2.", 2) != 0)
         return rt_mesh_fail(g->mesh, "expected glTF 2.0, with {\"asset\": {\"version\": \"2.0\"}}");
     RT_TRY(check_extensions(g));
-    RT_TRY(rt_gltf_load_buffers(g));
+    RT_TRY(load_buffers(g));
     return add_scene(g);
 }
 
-static RtStatus read_all(RtMeshReader *r, const char *text, size_t size, RtGltfBuffer chunk) {
-    RtGltf g = {.mesh = r, .chunk = chunk, .size = size};
+static RtStatus read_all(RtMeshReader *r, const char *text, size_t size, Buffer chunk) {
+    Gltf g = {.mesh = r, .chunk = chunk, .size = size};
     RtStatus status = read_document(&g, text, size);
     for (size_t i = 0; i < g.buffer_count; i++) {
         if (g.buffers[i].data != chunk.data) rt_free(g.buffers[i].data);
@@ -201,7 +430,7 @@ static RtStatus read_all(RtMeshReader *r, const char *text, size_t size, RtGltfB
 }
 
 RtStatus rt_mesh_read_gltf(RtMeshReader *r) {
-    return read_all(r, r->text.at, (size_t)(r->text.end - r->text.at), (RtGltfBuffer){0});
+    return read_all(r, r->text.at, (size_t)(r->text.end - r->text.at), (Buffer){0});
 }
 
 enum { GLB_HEADER = 12, CHUNK_HEADER = 8 };
@@ -219,7 +448,7 @@ RtStatus rt_mesh_check_glb(const RtMeshHead *head, RtError *error) {
 }
 
 /* Takes a chunk, which must be of this type. */
-static RtStatus take_chunk(RtMeshReader *r, const char type[4], RtGltfBuffer *chunk) {
+static RtStatus take_chunk(RtMeshReader *r, const char type[4], Buffer *chunk) {
     RtScanner *text = &r->text;
     const size_t left = (size_t)(text->end - text->at);
     if (left < CHUNK_HEADER || memcmp(text->at + 4, type, 4) != 0)
@@ -235,7 +464,7 @@ static RtStatus take_chunk(RtMeshReader *r, const char type[4], RtGltfBuffer *ch
 }
 
 RtStatus rt_mesh_read_glb(RtMeshReader *r) {
-    RtGltfBuffer json = {0}, binary = {0};
+    Buffer json = {0}, binary = {0};
     if (r->text.end - r->text.at < GLB_HEADER) return rt_mesh_fail(r, "the file ends in its header");
     r->text.at += GLB_HEADER;
     RT_TRY(take_chunk(r, "JSON", &json));

@@ -4,7 +4,6 @@
 #include "core/scene/mesh_reader.h"
 
 #include "core/base/memory.h"
-#include "core/text/number.h"
 
 #include <inttypes.h>
 #include <stdarg.h>
@@ -206,7 +205,7 @@ RtStatus rt_mesh_expect(RtMeshReader *r, const char *text) {
 }
 
 RtStatus rt_mesh_float(const RtMeshReader *r, RtWord word, float *out) {
-    if (rt_number_float(word.text, word.length, out)) return RT_OK;
+    if (rt_scan_float(word, out)) return RT_OK;
     return rt_scan_fail(&r->text, word, "a finite number that fits float32");
 }
 

@@ -2,6 +2,8 @@
 #include "core/text/scanner.h"
 
 #include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static bool is_blank(char c) {
@@ -53,6 +55,14 @@ void rt_scan_skip_line(RtScanner *s) {
 
 bool rt_scan_is(RtWord word, const char *text) {
     return strlen(text) == word.length && strncmp(word.text, text, word.length) == 0;
+}
+
+bool rt_scan_float(RtWord word, float *out) {
+    char *end;
+    /* strtof also reads blanks, hexadecimal numbers, "inf" and "nan". */
+    if (word.length == 0 || strspn(word.text, "+-.0123456789eE") < word.length) return false;
+    *out = strtof(word.text, &end);
+    return end == word.text + word.length && isfinite(*out);
 }
 
 const char *rt_scan_show(RtWord word, char out[RT_WORD_SHOWN]) {

@@ -34,6 +34,10 @@ void rt_scan_skip_line(RtScanner *scanner);
 
 bool rt_scan_is(RtWord word, const char *text);
 
+/* Reads the whole word, a decimal number such as -1, .5 or 2.5e-3, as the float32 nearest to it, ties to
+ * even. False if it is no such number, or overflows. In the locale of C (library.h sees to that). */
+bool rt_scan_float(RtWord word, float *out);
+
 /* Fails at the line of the word: "expected WANTED, found 'WORD'". */
 RtStatus rt_scan_fail(const RtScanner *scanner, RtWord word, const char *wanted);
 
