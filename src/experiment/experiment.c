@@ -239,29 +239,6 @@ static RtStatus check_baseline(const RtExperiment *experiment, RtError *error) {
                    baseline->label);
 }
 
-/* The files are copied into the result directory under the same names. */
-static RtStatus check_beside(const char *name, RtError *error) {
-    if (rt_is_result_file(name)) {
-        return rt_fail(error, RT_BAD_INPUT,
-                       "the result directory has its own file '%s': rename this one, or put it into a folder "
-                       "beside the experiment",
-                       name);
-    }
-    if (*name != '/' && !strstr(name, "..")) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT,
-                   "'%s' must be beside the experiment, or in a folder there: its name may not begin with / "
-                   "or contain ..",
-                   name);
-}
-
-static RtStatus check_published(const RtExperiment *experiment, RtError *error) {
-    const RtPublishedSetup *published = &experiment->published;
-    for (uint32_t i = 0; i < published->table_count; i++) {
-        RT_TRY(check_beside(published->tables[i], error));
-    }
-    return check_beside(published->reasons, error);
-}
-
 /* All scripts are copied into one folder, which has names.gp and histograms.gp (report/plot.h). */
 static RtStatus check_plot(const RtExperiment *experiment, uint32_t i, RtError *error) {
     const char *name = rt_plot_name(experiment, i);
@@ -341,8 +318,6 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
     snprintf(experiment->again, sizeof experiment->again, "%s (again)",
              experiment->candidates[experiment->baseline].label);
     rt_labels_shorten(experiment);
-    strcpy(where, "published");
-    RT_TRY(check_published(experiment, error));
     strcpy(where, "frame");
     RT_TRY(check_frame(experiment, error));
     for (uint32_t i = 0; i < experiment->plot_count; i++) {

@@ -12,8 +12,7 @@
  *   experiment.yaml  a copy of the experiment
  *   manifest.json    seed, fingerprints, version, compiler, machine, date
  *   published.csv, best.csv, published.md
- *                    published figures beside measured ones, if the experiment names any; exact
- *   published/       (or the folder that they come from) copies of the published tables
+ *                    published figures beside measured ones (experiments/published)
  *   plots/           the scripts and their plots
  *   tables.md, tables.tex, report.html
  *                    the results to read */
@@ -28,8 +27,7 @@
 typedef enum RtFileSort {
     RT_FILE_OTHER,    /* none of these */
     RT_FILE_MEASURED, /* written as cells are measured; depends on times */
-    RT_FILE_COUNTED,  /* written as cells are measured; byte-identical on every machine */
-    RT_FILE_COMPARED  /* made from published figures (literature/published_tables.h); as identical */
+    RT_FILE_COUNTED   /* written as cells are measured; byte-identical on every machine */
 } RtFileSort;
 
 /* RT_FILE_OTHER also if the experiment has no such file. */
@@ -38,14 +36,10 @@ RtFileSort rt_result_file_sort(const RtExperiment *experiment, RtResultFile file
 /* A file of RT_FILE_MEASURED or RT_FILE_COUNTED. */
 void rt_result_csv_write(RtResultFile file, const RtResults *results, FILE *out);
 
-/* What else is made from the results of a finished run: report/report.h. */
-typedef struct RtRunReport {
-    /* Checks its input, before anything of a previous run is removed. */
-    RtStatus (*check)(const RtExperiment *experiment, RtError *error);
-    /* Writes it into the directory, which is locked and has its manifest. */
-    RtStatus (*write)(const RtResults *results, const char *directory, const RtRunObserver *observer,
-                      RtError *error);
-} RtRunReport;
+/* Writes what else is made from the results of a finished run (report/report.h) into the directory, which is
+ * locked and has its manifest. */
+typedef RtStatus RtRunReport(const RtResults *results, const char *directory, const RtRunObserver *observer,
+                             RtError *error);
 
 /* Results that were measured in shards, and are joined in a directory: experiment/merge.h. */
 typedef struct RtRunJoin {
@@ -62,7 +56,7 @@ typedef struct RtRunOptions {
     bool renew;            /* when resuming, measure cells of changed plugins again */
     RtScripts scripts;
     const RtRunJoin *join;      /* or NULL; with it, `start` does not resume */
-    const RtRunReport *report;  /* or NULL */
+    RtRunReport *report;        /* or NULL */
     RtWorkloadOptions workload; /* its observer is called after the journal */
 } RtRunOptions;
 

@@ -11,7 +11,6 @@
 #include "experiment/manifest.h"
 #include "experiment/result_directory.h"
 #include "experiment/result_tables.h"
-#include "literature/published_tables.h"
 #include "measure/result_files.h"
 #include "report/color.h"
 #include "report/page.h"
@@ -373,26 +372,23 @@ static void put_method(FILE *out, const RtResults *results, const json_t *manife
     fputs("</dl></details>\n", out);
 }
 
-static void put_page(FILE *out, const RtResults *results, const RtPublished *published,
-                     const json_t *manifest, const char *directory) {
+static void put_page(FILE *out, const RtResults *results, const json_t *manifest, const char *directory) {
     put_head(out, results, manifest, directory);
     put_plots(out, results->experiment, directory);
-    rt_published_page(published, true, out);
     put_scenes(out, results, directory);
     put_tables(out, results);
     put_method(out, results, manifest);
     rt_page_end(out);
 }
 
-RtStatus rt_report_write(const RtResults *results, const RtPublished *published, const char *directory,
-                         RtError *error) {
+RtStatus rt_report_write(const RtResults *results, const char *directory, RtError *error) {
     json_t *manifest;
     RtOutput output;
     RT_TRY(rt_manifest_read(directory, &manifest, error));
     RtStatus status = rt_paper_tables_write(results, directory, error);
     if (status == RT_OK) status = rt_output_open_in(&output, directory, "report.html", error);
     if (status == RT_OK) {
-        put_page(output.file, results, published, manifest, directory);
+        put_page(output.file, results, manifest, directory);
         status = rt_output_commit(&output, error);
     }
     json_decref(manifest);

@@ -11,7 +11,6 @@
 #include "experiment/distribution_tables.h"
 #include "experiment/frame_table.h"
 #include "experiment/result_tables.h"
-#include "literature/published_tables.h"
 #include "measure/extents_table.h"
 #include "verify/verify_table.h"
 
@@ -23,7 +22,6 @@
 
 static RtExperiment experiment; /* of nothing */
 static const RtResults results = {.experiment = &experiment};
-static RtPublished published = {.experiment = &experiment};
 
 static RtTable of_results(RtResultTable which) {
     static RtResultRow row = {.results = &results};
@@ -46,11 +44,6 @@ static RtTable of_instructions(void) {
     return rt_instructions_table(&row);
 }
 
-static RtTable of_published(RtPublishedTable which) {
-    static RtPublishedCursor cursor = {.published = &published};
-    return rt_published_table(which, &cursor);
-}
-
 static RtTable of_comparison(RtTable (*table)(RtComparedRow *row, bool all)) {
     static const RtComparison comparison = {0};
     static RtComparedRow row = {.comparison = &comparison};
@@ -67,7 +60,7 @@ typedef struct Section {
 
 #define RESULTS(which) .table = of_results(which), .swept = rt_result_table_sweeps(which)
 
-enum { SECTIONS = 20 };
+enum { SECTIONS = 18 };
 static void list(Section sections[SECTIONS]) {
     const RtTable verify_csv = {.groups = rt_verify_csv, .group_count = RT_VERIFY_CSV_GROUPS};
     const RtTable verify_json = {.groups = rt_verify_json, .group_count = RT_VERIFY_JSON_GROUPS};
@@ -81,9 +74,6 @@ static void list(Section sections[SECTIONS]) {
         {"hardware.csv", true, NULL, RESULTS(RT_HARDWARE)},
         {"distributions.csv", true, NULL, .table = of_distributions(RT_DISTRIBUTIONS)},
         {"histograms.csv", true, NULL, .table = of_distributions(RT_HISTOGRAMS)},
-        {"published.csv", true, "results/reference/havran-1999/published.csv",
-         .table = of_published(RT_FIGURES)},
-        {"best.csv", true, "results/reference/havran-1999/best.csv", .table = of_published(RT_BEST)},
         {"verify.csv", true, "results/reference/verify/verify.csv", .table = verify_csv},
         {"bench --json: rows", false, NULL, RESULTS(RT_BENCH)},
         {"bench --json: null_runs", false, NULL, RESULTS(RT_NULL_RUNS)},

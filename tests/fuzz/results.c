@@ -14,7 +14,6 @@
 #include "experiment/manifest_experiment.h"
 #include "experiment/result_directory.h"
 #include "experiment/result_tables.h"
-#include "literature/published_tables.h"
 #include "report/index_entry.h"
 #include "report/page.h"
 #include "scenes/builtin.h"
@@ -44,8 +43,6 @@ static const char experiment_text[] =
     "hardware: yes\n"
     "distributions: yes\n"
     "frame: {without: all, among: loops}\n"
-    "published: {tables: [figures.csv], reasons: reasons.csv, tolerance: {leaves: 1, object_tests: 3, "
-    "primary: 1}}\n"
     "expect:\n"
     "  - object_tests of grid falls with density\n"
     "  - ratio of time of grid:density=4 to bvh on balls > 5\n"
@@ -54,9 +51,6 @@ static const char experiment_text[] =
     "  - correlation of predicted_cost and time of all > 0.9\n"
     "  - break_even of grid\n"
     "  - render_time of all at largest n\n";
-static const char figures_header[] =
-    "scene,source,structure,parameters,accel,tests_per,leaves,object_tests,steps\n";
-static const char reasons_header[] = "scene,source,accel,column,reason\n";
 
 static RtExperiment experiment;
 static RtResults results;
@@ -64,8 +58,6 @@ static RtResults results;
 void fuzz_prepare_results(void) {
     RtError error;
     fuzz_write("experiment.yaml", experiment_text, strlen(experiment_text));
-    fuzz_write("figures.csv", figures_header, strlen(figures_header));
-    fuzz_write("reasons.csv", reasons_header, strlen(reasons_header));
     if (rt_experiment_load(&experiment, fuzz_path("experiment.yaml"), false, &error) != RT_OK)
         fuzz_fail("%s", error.message);
 }
@@ -266,22 +258,6 @@ void fuzz_csv(const Input *input) {
         rt_csv_clear(&again);
     }
     rt_csv_clear(&csv);
-}
-
-/* Published figures, or the reasons for those that differ. */
-void fuzz_figures(const Input *input) {
-    static RtPublished published;
-    RtError error = {RT_OK, ""};
-    CHECK(input->path && rt_results_init(&results, &experiment, &error) == RT_OK);
-    if (fuzz_accepted(rt_published_load(&published, &experiment, &error), &error)) {
-        rt_published_compare(&published, &results);
-        fuzz_accepted(rt_published_check(&published, &error), &error);
-        rt_published_page(&published, true, fuzz_nowhere());
-        rt_published_file_write(RT_FILE_PUBLISHED, &published, fuzz_nowhere());
-        rt_published_file_write(RT_FILE_BEST, &published, fuzz_nowhere());
-    }
-    rt_published_clear(&published);
-    rt_results_clear(&results);
 }
 
 /* Rows of a verification, without the header of their journal. A row counts only if its scene and its
