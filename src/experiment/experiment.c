@@ -239,14 +239,13 @@ static RtStatus check_baseline(const RtExperiment *experiment, RtError *error) {
                    baseline->label);
 }
 
-/* All scripts are copied into one folder, which has names.gp and histograms.gp (report/plot.h). */
+/* All scripts are copied into one folder (experiment/scripts.h). */
 static RtStatus check_plot(const RtExperiment *experiment, uint32_t i, RtError *error) {
     const char *name = rt_plot_name(experiment, i);
     if (!*name || strcmp(name, ".") == 0 || strcmp(name, "..") == 0) {
         return rt_fail(error, RT_BAD_INPUT, "'%s' does not name a gnuplot script", experiment->plots[i]);
     }
-    bool taken =
-        strcmp(name, "names.gp") == 0 || (experiment->distributions && strcmp(name, "histograms.gp") == 0);
+    bool taken = false;
     for (uint32_t k = 0; k < i; k++) taken |= strcmp(name, rt_plot_name(experiment, k)) == 0;
     if (!taken) return RT_OK;
     return rt_fail(
@@ -255,7 +254,7 @@ static RtStatus check_plot(const RtExperiment *experiment, uint32_t i, RtError *
         name);
 }
 
-/* Tables have a column for each; plots/sweep.gp quotes key and value. */
+/* Tables have a column for each. */
 static RtStatus check_swept(const RtExperiment *experiment, const RtSwept *swept, RtError *error) {
     RtSweptKey keys[RT_MAX_SWEPT_KEYS];
     uint32_t count = rt_experiment_swept(experiment, keys);

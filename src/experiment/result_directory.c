@@ -327,7 +327,8 @@ static RtStatus finish(const Run *run, RtError *error) {
         RT_TRY(rt_manifest_set_claims(run->results, options->directory, error));
     /* rt_merge has the report written of all shards. */
     if (!options->report || options->workload.only.shards) return RT_OK;
-    return options->report(run->results, options->directory, &options->workload.observer, error);
+    return options->report(run->results, options->directory, options->scripts, &options->workload.observer,
+                           error);
 }
 
 RtStatus rt_run_experiment(RtResults *results, const RtRunOptions *options, RtError *error) {

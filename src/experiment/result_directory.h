@@ -13,7 +13,7 @@
  *   manifest.json    seed, fingerprints, version, compiler, machine, date
  *   published.csv, best.csv, published.md
  *                    published figures beside measured ones (experiments/published)
- *   plots/           the scripts and their plots
+ *   plots/           plots, and the scripts that raytally does not ship
  *   tables.md, tables.tex, report.html
  *                    the results to read */
 #ifndef RT_EXPERIMENT_RESULT_DIRECTORY_H
@@ -37,9 +37,9 @@ RtFileSort rt_result_file_sort(const RtExperiment *experiment, RtResultFile file
 void rt_result_csv_write(RtResultFile file, const RtResults *results, FILE *out);
 
 /* Writes what else is made from the results of a finished run (report/report.h) into the directory, which is
- * locked and has its manifest. */
-typedef RtStatus RtRunReport(const RtResults *results, const char *directory, const RtRunObserver *observer,
-                             RtError *error);
+ * locked and has its manifest; draws plots with the allowed scripts. */
+typedef RtStatus RtRunReport(const RtResults *results, const char *directory, RtScripts scripts,
+                             const RtRunObserver *observer, RtError *error);
 
 /* Results that were measured in shards, and are joined in a directory: experiment/merge.h. */
 typedef struct RtRunJoin {

@@ -15,12 +15,13 @@
 #include "report/color.h"
 #include "report/page.h"
 #include "report/paper_tables.h"
+#include "report/plot.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_FILE_BYTES = 1 << 26, MAX_CAPTION = 1024 };
+enum { MOST_FILE_BYTES = 1 << 26 };
 
 /* ---- sections ---- */
 
@@ -51,39 +52,9 @@ static void put_links(FILE *out, const char *directory) {
 
 /* ---- plots ---- */
 
-/* The caption in a script: lines "#: NAME: text", continued in lines "#:   text". */
-typedef struct Caption {
-    const char *name;
-    char text[MAX_CAPTION];
-} Caption;
-
-static void take_caption(Caption *caption, const char *script) {
-    const size_t length = strlen(caption->name);
-    bool ours = false;
-    for (const char *line = script; *line; line += strcspn(line, "\n"), line += *line == '\n') {
-        if (strncmp(line, "#:", 2) != 0) continue;
-        const char *text = line + 2 + strspn(line + 2, " ");
-        if (strncmp(line, "#:   ", 5) != 0) {
-            ours = strncmp(text, caption->name, length) == 0 && text[length] == ':';
-            text += ours ? length + 1 + strspn(text + length + 1, " ") : 0;
-        }
-        if (ours)
-            rt_append_text(caption->text, sizeof caption->text, "%s%.*s", *caption->text ? " " : "",
-                           (int)strcspn(text, "\n"), text);
-    }
-}
-
-static void look_for_caption(void *context, const char *path) {
-    Caption *caption = context;
-    char *script;
-    size_t size;
-    if (*caption->text || rt_file_read(path, MOST_FILE_BYTES, &script, &size, NULL) != RT_OK) return;
-    take_caption(caption, script);
-    rt_free(script);
-}
-
 typedef struct Plots {
     FILE *out;
+    const RtExperiment *experiment;
     const char *directory;
     const char *shown; /* the file name of a plot shown elsewhere on the page, or NULL */
 } Plots;
@@ -100,22 +71,22 @@ static void read_size(const char *svg, int *width, int *height) {
     *height = 480;
 }
 
-static void put_svg(FILE *out, const char *svg, size_t size, const Caption *caption) {
+static void put_svg(FILE *out, const char *svg, size_t size, const char *name, const char *caption) {
     int width, height;
     read_size(svg, &width, &height);
     /* The first sentence of the caption. */
-    const char *end = strstr(caption->text, ". ");
-    size_t length = end ? (size_t)(end - caption->text) : strlen(caption->text);
-    if (length > 0 && caption->text[length - 1] == '.') length--;
+    const char *end = strstr(caption, ". ");
+    size_t length = end ? (size_t)(end - caption) : strlen(caption);
+    if (length > 0 && caption[length - 1] == '.') length--;
     fprintf(
         out,
         "<figure><div class=\"plot\" style=\"--w:%dpx\" tabindex=\"0\" role=\"region\" aria-label=\"plot ",
         width);
-    rt_html_put(out, caption->name);
+    rt_html_put(out, name);
     fprintf(out, "\"><img width=\"%d\" height=\"%d\" alt=\"Plot: ", width, height);
-    char text[MAX_CAPTION];
-    snprintf(text, sizeof text, "%.*s", (int)length, caption->text);
-    rt_html_wrap(out, "", *text ? text : caption->name,
+    char text[RT_MAX_CAPTION];
+    snprintf(text, sizeof text, "%.*s", (int)length, caption);
+    rt_html_wrap(out, "", *text ? text : name,
                  ". Its figures are in the tables and files of this page.\" src=\"");
     rt_page_data_url(out, "image/svg+xml", svg, size);
     fputs("\"></div>", out);
@@ -125,17 +96,15 @@ static void put_plot(void *context, const char *path) {
     const Plots *plots = context;
     const char *file = basename(path);
     if (plots->shown && strcmp(file, plots->shown) == 0) return;
-    char name[RT_MAX_PATH], folder[RT_MAX_PATH], pdf[RT_MAX_PATH + 16], *svg;
+    char name[RT_MAX_PATH], pdf[RT_MAX_PATH + 16], caption[RT_MAX_CAPTION], *svg;
     size_t size;
     snprintf(name, sizeof name, "%.*s", (int)(strlen(file) - strlen(".svg")), file);
     snprintf(pdf, sizeof pdf, "plots/%s.pdf", name);
-    Caption caption = {.name = name};
-    rt_path_folder(path, folder);
-    rt_directory_each(folder, ".gp", look_for_caption, &caption);
+    rt_plot_caption(plots->experiment, plots->directory, name, caption);
     if (rt_file_read(path, MOST_FILE_BYTES, &svg, &size, NULL) != RT_OK) return;
-    put_svg(plots->out, svg, size, &caption);
+    put_svg(plots->out, svg, size, name, caption);
     rt_free(svg);
-    rt_html_wrap(plots->out, "<figcaption>", *caption.text ? caption.text : name, "");
+    rt_html_wrap(plots->out, "<figcaption>", *caption ? caption : name, "");
     if (rt_file_exists_in(plots->directory, pdf)) {
         fputc(' ', plots->out);
         rt_page_link(plots->out, pdf, "PDF");
@@ -144,7 +113,7 @@ static void put_plot(void *context, const char *path) {
 }
 
 static void put_plots(FILE *out, const RtExperiment *experiment, const char *directory) {
-    Plots context = {out, directory, *experiment->frame.without ? basename(RT_FRAME_PLOT) : NULL};
+    Plots context = {out, experiment, directory, *experiment->frame.without ? basename(RT_FRAME_PLOT) : NULL};
     char plots[RT_MAX_PATH];
     fputs("<h2 id=\"plots\">Plots</h2>\n", out);
     if (rt_path_join(directory, "plots", plots, NULL) != RT_OK) return;
@@ -277,7 +246,7 @@ static void put_answer(FILE *out, const RtResults *results, const char *director
     fputs("</section>\n", out);
     if (rt_file_exists_in(directory, RT_FRAME_PLOT) &&
         rt_path_join(directory, RT_FRAME_PLOT, path, NULL) == RT_OK)
-        put_plot(&(Plots){out, directory, NULL}, path);
+        put_plot(&(Plots){out, experiment, directory, NULL}, path);
     for (uint32_t t = 0; t < experiment->workload_count; t++) {
         RtFrameRow row = {.results = results, .one = true, .workload = t};
         RtTable table = rt_frame_table(&row);
