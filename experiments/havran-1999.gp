@@ -9,6 +9,9 @@
 #:   per ray). A hierarchy trades object tests for extent tests: "more" or "fewer" compares the whole bars.
 #:   Axes begin at 0.
 
+# Writes published.csv and best.csv.
+system("'".shared."/published/havran-1999.sh' .")
+
 n_scenes = words(scenes)
 array structure[7] = ["Uniform Grid", "Recursive Grid", "Octree84-C", "Octree84-A", "Octree89-C", "Octree93-C", "Octree93-A"]
 array shade[7] = [0x8c8c8c, 0xa6761d, 0x56b4e9, 0xe69f00, 0x0072b2, 0x009e73, 0xd55e00]

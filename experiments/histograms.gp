@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 # Histograms of object tests and steps per ray, one figure per scene, one column of panels per ray kind, and one of the leaves of
 # structures. Both axes are logarithmic: heights are fractions per doubling of the value, so areas compare; a point
-# is in the middle of its bin, and 0 is drawn at 1/2. raytally writes this if an experiment sets `distributions`.
+# is in the middle of its bin, and 0 is drawn at 1/2. raytally runs this if an experiment sets `distributions`.
+#: histograms-*: Object tests and steps of each ray, and sizes and depths of leaves, as fractions per doubling of the value.
+#:   Both axes are logarithmic; 0 is drawn at 1/2.
 
+reset
+load shared."/style.gp"
 n_kinds = words(kinds); n_accels = words(accels)
 first(low) = low < 1 ? 0.5 : low
 middle(low, end) = low < 1 ? 0.5 : sqrt(low * (end - 1))

@@ -3,6 +3,7 @@
 #: 2-counts: Expected cost, object tests and steps per ray over those of the first accelerator, on one logarithmic scale.
 #:   All ray kinds together, one marker per scene; left of 1 there are fewer.
 
+set datafile separator tab
 n_scenes = words(scenes)
 first = word(accels, 1)
 shown = ""
@@ -11,17 +12,17 @@ n_shown = words(shown)
 row(name) = sum [i = 1:n_shown] (word(shown, i) eq name ? n_shown + 1 - i : 0)
 shift(s) = 0.7 / n_scenes * (0.5 * (n_scenes + 1) - s)
 
-# A row per scene and accelerator. Commas within quotes become semicolons first.
-table = "< awk -F '\"' '{ for (i = 2; i <= NF; i += 2) gsub(\",\", \";\", $i); print }' OFS= counts.csv | awk -F, -v first='".first."' -v sets='".sets."' '\
-BEGIN { gsub(\",\", \";\", sets); m = split(sets, list, \" \"); \
+# A row per scene and accelerator.
+table = tsv("counts.csv")." | awk -F '\t' -v OFS='\t' -v first='".first."' -v sets='".sets."' '\
+BEGIN { m = split(sets, list, \" \"); \
 for (i = 1; i <= m; i++) { end = match(list[i], \"=[0-9]+$\"); weights[substr(list[i], 1, end - 1)] = substr(list[i], end + 1) } } \
 function over(a, b) { return a + 0 == 0 || b + 0 == 0 ? \"NaN\" : a / b } \
-NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; print \"scene,accel,predicted_cost,object_tests,steps\"; next } \
+NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; print \"scene\", \"accel\", \"predicted_cost\", \"object_tests\", \"steps\"; next } \
 { key = $at[\"scene\"] SUBSEP $at[\"accel\"]; if (!(key in rays)) order[++n] = key; \
 weight = weights[$at[\"scene\"] \"/\" $at[\"kind\"]]; rays[key] += weight; weight /= $at[\"rays\"]; \
 cost[key] = $at[\"predicted_cost\"]; tests[key] += weight * $at[\"object_tests\"]; steps[key] += weight * $at[\"steps\"] } \
 END { for (i = 1; i <= n; i++) { o = order[i]; split(o, k, SUBSEP); f = k[1] SUBSEP first; if (!(f in rays)) continue; \
-print k[1] \",\" k[2] \",\" over(cost[o], cost[f]) \",\" over(tests[o] / rays[o], tests[f] / rays[f]) \",\" \
+print k[1], k[2], over(cost[o], cost[f]), over(tests[o] / rays[o], tests[f] / rays[f]), \
 over(steps[o] / rays[o], steps[f] / rays[f]) } }'"
 
 counters = "predicted_cost object_tests steps"

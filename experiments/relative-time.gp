@@ -3,6 +3,8 @@
 #: 1-time: Time per ray over that of the baseline, one panel per ray kind, all on one logarithmic scale, a row per accelerator.
 #:   Medians with intervals, one marker per scene; left of 1 it is faster than the baseline.
 
+set datafile separator tab
+table = tsv("times.csv")
 n_scenes = words(scenes); n_kinds = words(kinds)
 baseline = system("awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == \"baseline\") back = NF - i } \
 NR == 2 { print $(NF - back) }' times.csv")   # counted from the end: commas within quotes come before it
@@ -21,9 +23,9 @@ key_rows = (n_scenes - 1) / int((wide - 20) / (42 + 9 * longest)) + 1
 panel_height = 40 + n_shown * (18 + 4 * n_scenes)
 head = 44.0 + 20 * key_rows
 height = head + 2 + (panel_height + 68) * panel_rows
-stats "times.csv" using (row(strcol("accel")) > 0 ? 1 / column("ratio_high") : NaN) nooutput
+stats table using (row(strcol("accel")) > 0 ? 1 / column("ratio_high") : NaN) nooutput
 low = STATS_min / 1.1
-stats "times.csv" using (row(strcol("accel")) > 0 ? 1 / column("ratio_low") : NaN) nooutput
+stats table using (row(strcol("accel")) > 0 ? 1 / column("ratio_low") : NaN) nooutput
 high = STATS_max * 1.1
 set logscale x 2
 set xrange [low : high]
@@ -43,7 +45,7 @@ do for [k = 1:n_kinds] {
   } else { unset key }
   if (k > n_kinds - panel_columns) { set xlabel "time / ".baseline noenhanced textcolor rgb ink } else { unset xlabel }
   plot sample [t = 0.4 : n_shown + 0.6] "+" using (1):(t) with lines linewidth 1.5 dashtype 2 linecolor rgb soft notitle, \
-       for [s = 1:n_scenes] "times.csv" \
+       for [s = 1:n_scenes] table \
          using (on(s, k) ? 1 / column("ratio") : NaN):(row(strcol("accel")) + shift(s)): \
                (1 / column("ratio_high")):(1 / column("ratio_low")) \
          with xerrorbars linewidth 1.4 pointtype mark(s) pointsize 0.6 linecolor rgb hue(s) title word(scenes, s)

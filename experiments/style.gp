@@ -1,11 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
-# The common style of all plots, and functions to read the CSV files. names.gp runs before this.
+# The common style of all plots, and functions to read the CSV files. raytally runs this before other scripts, with variables
+# (gnuplot -e), in the order of the experiment and without what has no rows:
+#   scenes, files       labels of scenes, and these as parts of file names
+#   accels, groups      labels of accelerators, and their groups
+#   colors, markers, dashes   of each accelerator
+#   kinds, sets         kinds of rays; SCENE/KIND=WEIGHT of each set of rays
+#   without, among      of `frame` in the experiment
+#   sweeps, axes        swept parameters, and "log", "linear" or "words" for each (sweeps.gp)
+#   experiment, format, paper, shared   its name; svg or pdf; column or page; the folder of this file
+# Lists are of words. Totals weight a ray kind by the number of rays in its whole set (weight(0), the row at hand's), so
+# accelerators that were measured on every Kth ray compare with the others, and a lower limit changes nothing.
 #
-# Totals weight a ray kind by the number of rays in its whole set (weight(0), the row at hand's), so accelerators that were
-# measured on every Kth ray compare with the others, and a lower limit changes nothing.
-#
-# A comment "#: NAME: text" in a script, continued in lines "#:   text", is the caption of plot NAME in the report;
-# its first sentence is the alternative text of the plot.
+# A comment "#: NAME: text" in a script, continued in lines "#:   text", is the caption of plot NAME in the report; its first
+# sentence is the alternative text of the plot. * in NAME stands for any text.
+
+whole_rays(scene, kind) = (at_ = strstrt(' '.sets, ' '.scene.'/'.kind.'='), at_ == 0 ? 0 : \
+  real(word(sets[at_ + strlen(scene) + strlen(kind) + 2 : *], 1)))
+weight(unused) = whole_rays(strcol('scene'), strcol('kind'))
+
+# A CSV file as one of tabs, for `set datafile separator tab`: gnuplot 5.4 ends a quoted field at its first comma.
+tsv(file) = "< awk -F '\"' '{ for (i = 1; i <= NF; i += 2) gsub(\",\", \"\t\", $i); print }' OFS= ".file
 
 set datafile separator comma
 set datafile columnheaders

@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
 # A directory may include itself and those before it.
-rooms="base text shape scene scenes accel render picture rays measure exact verify library experiment results claims run compare literature report cli tests"
+rooms="base text shape scene scenes accel render picture rays measure exact verify library experiment results claims run compare report cli tests"
 
 includes_upward() {
     # shellcheck disable=SC2016 # the dollars are awk's

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # check_reference.sh [--whole]: counting again reproduces the counts of results/reference, byte for byte, of the cheapest scene in
-# each directory (--whole: of all, and compares them with published figures). The YAML files of experiments/ are those that were
+# each directory (--whole: of all). The YAML files of experiments/ are those that were
 # run; results of another system have a finding of their own. index.md lists the results. Skips (exit code 77) directories whose meshes were not fetched or whose instruction sets
 # this build lacks. Uses $RT_PROGRAM.
 set -euo pipefail

@@ -76,14 +76,6 @@ static inline RtStatus load_small(const Place *place, bool quick, RtError *error
 }
 
 /* Runs small.yaml into a directory of the place, timed on one thread, and counted on one by default. */
-static inline void copy_style(const Place *place, const char *name) {
-    char *text;
-    size_t size;
-    assert_ok(rt_file_read(RT_SOURCE_DIR "/experiments/style.gp", 1 << 20, &text, &size, error));
-    write_in(place, name, text);
-    rt_free(text);
-}
-
 static inline RtStatus run_small(const Place *place, const char *directory, bool quick, RtRunOptions how,
                                  RtError *error) {
     RtResults results;

@@ -30,7 +30,6 @@ seeds() {
     manifest) printf '%s\n' results/reference/*/manifest.json ;;
     packed-journal) printf '%s\n' results/reference/{bittner-2013,dammertz-2008}/*.gz ;;
     csv) printf '%s\n' results/reference/*/verify.csv experiments/published/*.csv ;;
-    figures | reasons) printf '%s\n' experiments/published/*.csv ;;
     esac
 }
 

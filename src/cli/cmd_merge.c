@@ -42,7 +42,7 @@ const RtSyntax rt_merge_syntax = {
         "  raytally merge results/first-look-*-of-3 -o results/first-look"};
 
 RtStatus rt_command_merge(int argc, char **argv, RtError *error) {
-    Options o = {.how = {.report = &rt_run_report, .workload.observer.notice = rt_progress_notice}};
+    Options o = {.how = {.report = rt_run_report, .workload.observer.notice = rt_progress_notice}};
     rt_cli_parse(&rt_merge_syntax, argc, argv, &o);
     RtResults results = {0};
     static RtExperiment experiment;

@@ -21,7 +21,7 @@ static RtStatus draw(const char *directory, RtResults *results, const void *opti
     RT_TRY(rt_scripts_add_found(&experiment, directory, error));
     results->experiment = &experiment;
     RT_TRY(rt_scripts_check(results->experiment, directory, true, o->allowed, error));
-    RtStatus status = rt_plots_draw(results, directory, o->column, error);
+    RtStatus status = rt_plots_draw(results, directory, o->allowed, o->column, error);
     if (status == RT_OK) printf("Plots: %s/plots\n", directory);
     if (status != RT_NOT_AVAILABLE) return status;
     fprintf(stderr, "raytally: %s\n", error->message);
@@ -46,10 +46,11 @@ const RtSyntax rt_plot_syntax = {
     .plugins = true,
     .arguments = "DIR",
     .argument = RT_DIRECTORY_ARGUMENT,
-    .help = "Redraw the plots of a result directory from its CSV files and the scripts in DIR/plots, "
-            "those included that were put there later. A "
-            "script that raytally does not ship, your own or a changed one, needs --trust: a gnuplot script "
-            "can run any command. Exit code 1 if gnuplot fails; without gnuplot there is a note."};
+    .help =
+        "Redraw the plots of a result directory from its CSV files, with the scripts that raytally ships "
+        "and those in DIR/plots, also those put there later. A script in DIR/plots, your own or a changed "
+        "copy of a shipped one, needs --trust: a gnuplot script can run any command. Exit code 1 if gnuplot "
+        "fails; without gnuplot there is a note."};
 
 RtStatus rt_command_plot(int argc, char **argv, RtError *error) {
     Options o = {0};

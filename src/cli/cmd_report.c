@@ -11,14 +11,7 @@
 
 static RtStatus report(const char *directory, RtResults *results, const void *options, RtError *error) {
     (void)options;
-    RtPublished published;
-    RtStatus status = rt_published_load(&published, results->experiment, error);
-    if (status == RT_OK) {
-        rt_published_compare(&published, results);
-        status = rt_report_write(results, &published, directory, error);
-    }
-    rt_published_clear(&published);
-    if (status != RT_OK) return status;
+    RT_TRY(rt_report_write(results, directory, error));
     rt_claims_print(results, stdout);
     printf("%sReport: %s/report.html\n", results->experiment->claim_count ? "\n" : "", directory);
     return RT_OK;

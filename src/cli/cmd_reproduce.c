@@ -6,7 +6,6 @@
 #include "cli/progress.h"
 #include "core/base/memory.h"
 #include "core/base/versions.h"
-#include "literature/published_tables.h"
 #include "results/manifest.h"
 #include "results/result_directory.h"
 
@@ -119,26 +118,23 @@ static RtStatus compare(Again *again, const char *path, const char *kept, const 
 
 /* Writes the file as it would be now; without rows of refused accelerators if the kept one, of an older
  * version, has no column for them. */
-static RtStatus write_again(const Again *again, RtResultFile file, const RtPublished *published,
-                            const char *kept, RtMemoryFile *counted, RtError *error) {
+static RtStatus write_again(const Again *again, RtResultFile file, const char *kept, RtMemoryFile *counted,
+                            RtError *error) {
     RtResults results = *again->results;
     const char *column = strstr(kept, ",refused");
     results.old_rows = !column || column > kept + strcspn(kept, "\n");
     RT_TRY(rt_memory_file_open(counted, error));
-    if (rt_result_file_sort(results.experiment, file) == RT_FILE_COMPARED)
-        rt_published_file_write(file, published, counted->file);
-    else
-        rt_result_csv_write(file, &results, counted->file);
+    rt_result_csv_write(file, &results, counted->file);
     return rt_memory_file_close(counted, "the counts", error);
 }
 
-static RtStatus compare_file(Again *again, RtResultFile file, const RtPublished *published, RtError *error) {
+static RtStatus compare_file(Again *again, RtResultFile file, RtError *error) {
     char path[RT_MAX_PATH], *kept = NULL;
     size_t size;
     RtMemoryFile counted = {0};
     RT_TRY(rt_path_join(again->directory, rt_result_files[file], path, error));
     RtStatus status = rt_file_read(path, MOST_CSV_BYTES, &kept, &size, error);
-    if (status == RT_OK) status = write_again(again, file, published, kept, &counted, error);
+    if (status == RT_OK) status = write_again(again, file, kept, &counted, error);
     again->compared = 0;
     if (status == RT_OK) status = compare(again, path, kept, counted.data, error);
     if (status == RT_OK && (again->compared > 1 || !again->missing)) /* more than the names of the columns */
@@ -152,24 +148,13 @@ static RtStatus compare_file(Again *again, RtResultFile file, const RtPublished 
     return status;
 }
 
-/* Comparisons with published figures need all scenes. */
 static RtStatus compare_all(Again *again, RtError *error) {
     const RtExperiment *experiment = again->results->experiment;
-    RtPublished published;
-    RtStatus status = rt_published_load(&published, experiment, error);
+    RtStatus status = RT_OK;
     for (RtResultFile file = 0; status == RT_OK && file < RT_RESULT_FILE_COUNT; file++) {
         if (rt_result_file_sort(experiment, file) == RT_FILE_COUNTED)
-            status = compare_file(again, file, &published, error);
+            status = compare_file(again, file, error);
     }
-    if (status == RT_OK && !again->scene && !again->missing) {
-        rt_published_compare(&published, again->results);
-        for (RtResultFile file = 0; status == RT_OK && file < RT_RESULT_FILE_COUNT; file++) {
-            if (rt_result_file_sort(experiment, file) == RT_FILE_COMPARED)
-                status = compare_file(again, file, &published, error);
-        }
-        if (status == RT_OK) status = rt_published_check(&published, error);
-    }
-    rt_published_clear(&published);
     if (status != RT_OK || !again->missing) return status;
     return rt_fail(error, RT_BAD_INPUT,
                    "%s: '%s' was not compared, because its scene is missing here: get it first, as "
@@ -228,7 +213,7 @@ static RtStatus reproduce(const char *directory, RtResults *results, const void 
 static const RtOption options[] = {
     {"only", 0, "SCENE", RT_TO_TEXT(scene),
      "Count and compare only the rows of one scene, or of a sweep of scenes, "
-     "by its label, without published figures"},
+     "by its label"},
     {"quick", 0, NULL, RT_TO_FLAG(quick), "The same for the cheapest scene of each directory"},
     RT_LIMIT_OPTIONS,
     {0}};
@@ -238,9 +223,9 @@ const RtSyntax rt_reproduce_syntax = {
     .arguments = "DIR...",
     .argument = {.name = "DIR", .missing = RT_DIRECTORY_MISSING, .value = RT_TO_LIST(directories, count)},
     .finish = finish,
-    .help = "Count everything in a result directory again and compare it with DIR/counts.csv, byte for byte, "
-            "and with published figures if the experiment names any. Several directories are compared one "
-            "after the other, and the worst exit code counts; verifications and plain files are skipped. "
+    .help = "Count everything in a result directory again and compare it with DIR/counts.csv, byte for byte. "
+            "Several directories are compared one after the other, and the worst exit code counts; "
+            "verifications and plain files are skipped. "
             "Start it in the directory in which the experiment was started."};
 
 /* Such as the index of results/, or a verification beside the experiments. */

@@ -314,12 +314,12 @@ const RtSyntax rt_run_syntax = {
         "`raytally bench` prints them by kind, as throughput: Mrays/s = 1000 / (ns/ray).\n"
         "\n"
         "Exit code 1 if an accelerator returns a wrong answer, gnuplot fails (without gnuplot there is a "
-        "note), a published figure is outside its tolerance, or with --strict a claim does not hold. "
+        "note), or with --strict a claim does not hold. "
         "experiments/README.md describes how to write an experiment."};
 
 RtStatus rt_command_run(int argc, char **argv, RtError *error) {
     Options o = {.threads = -1,
-                 .how = {.report = &rt_run_report, .workload = {.timing = 1, .patience = RT_PATIENCE}}};
+                 .how = {.report = rt_run_report, .workload = {.timing = 1, .patience = RT_PATIENCE}}};
     rt_cli_parse(&rt_run_syntax, argc, argv, &o);
     static RtExperiment experiment;
     return o.count == 1 ? run(&o, &experiment, error) : run_all(&o, &experiment, error);

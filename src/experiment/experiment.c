@@ -252,37 +252,13 @@ static RtStatus check_baseline(const RtExperiment *experiment, RtError *error) {
                    baseline->label);
 }
 
-/* The files are copied into the result directory under the same names. */
-static RtStatus check_beside(const char *name, RtError *error) {
-    if (rt_is_result_file(name)) {
-        return rt_fail(error, RT_BAD_INPUT,
-                       "the result directory has its own file '%s': rename this one, or put it into a folder "
-                       "beside the experiment",
-                       name);
-    }
-    if (*name != '/' && !strstr(name, "..")) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT,
-                   "'%s' must be beside the experiment, or in a folder there: its name may not begin with / "
-                   "or contain ..",
-                   name);
-}
-
-static RtStatus check_published(const RtExperiment *experiment, RtError *error) {
-    const RtPublishedSetup *published = &experiment->published;
-    for (uint32_t i = 0; i < published->table_count; i++) {
-        RT_TRY(check_beside(published->tables[i], error));
-    }
-    return check_beside(published->reasons, error);
-}
-
-/* All scripts are copied into one folder, which has names.gp and histograms.gp (report/plot.h). */
+/* All scripts are copied into one folder (experiment/scripts.h). */
 static RtStatus check_plot(const RtExperiment *experiment, uint32_t i, RtError *error) {
     const char *name = rt_plot_name(experiment, i);
     if (!*name || strcmp(name, ".") == 0 || strcmp(name, "..") == 0) {
         return rt_fail(error, RT_BAD_INPUT, "'%s' does not name a gnuplot script", experiment->plots[i]);
     }
-    bool taken =
-        strcmp(name, "names.gp") == 0 || (experiment->distributions && strcmp(name, "histograms.gp") == 0);
+    bool taken = false;
     for (uint32_t k = 0; k < i; k++) taken |= strcmp(name, rt_plot_name(experiment, k)) == 0;
     if (!taken) return RT_OK;
     return rt_fail(
@@ -291,7 +267,7 @@ static RtStatus check_plot(const RtExperiment *experiment, uint32_t i, RtError *
         name);
 }
 
-/* Tables have a column for each; plots/sweep.gp quotes key and value. */
+/* Tables have a column for each. */
 static RtStatus check_swept(const RtExperiment *experiment, const RtSwept *swept, RtError *error) {
     RtSweptKey keys[RT_MAX_SWEPT_KEYS];
     uint32_t count = rt_experiment_swept(experiment, keys);
@@ -354,8 +330,6 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
     snprintf(experiment->again, sizeof experiment->again, "%s (again)",
              experiment->candidates[experiment->baseline].label);
     rt_labels_shorten(experiment);
-    strcpy(where, "published");
-    RT_TRY(check_published(experiment, error));
     strcpy(where, "frame");
     RT_TRY(check_frame(experiment, error));
     for (uint32_t i = 0; i < experiment->plot_count; i++) {

@@ -88,36 +88,9 @@ typedef struct RtCandidate {
     bool optional; /* if a plugin that is not loaded has it, or the machine cannot run it, it is
                       missing, no error */
     bool missing;  /* this build or machine lacks it: skipped with a notice */
-    bool ours;     /* must need less than every published row */
 } RtCandidate;
 
 _Static_assert(RT_MAX_WORKLOADS <= 32, "a bit of excluded for every workload");
-
-/* The columns of published tables. Of structures: as in RtDescription. Per ray, over all kinds of the
- * experiment: as in RtTally. Of rays: their number, and the number that hit; secondary rays are reflection
- * and transmission. X(name) */
-#define RT_PUBLISHED_OF_STRUCTURES(X) X(interior) X(leaves) X(empty_leaves) X(references)
-#define RT_PUBLISHED_PER_RAY(X)       X(object_tests) X(steps) X(leaf_steps) X(empty_steps)
-#define RT_PUBLISHED_OF_RAYS(X)                                                                              \
-    X(primary) X(primary_hit) X(shadow) X(shadow_hit) X(secondary) X(secondary_hit)
-#define RT_PUBLISHED_COLUMNS(X) RT_PUBLISHED_OF_STRUCTURES(X) RT_PUBLISHED_PER_RAY(X) RT_PUBLISHED_OF_RAYS(X)
-
-typedef enum RtColumn {
-#define RT_COLUMN(name) RT_COLUMN_##name,
-    RT_PUBLISHED_COLUMNS(RT_COLUMN)
-#undef RT_COLUMN
-        RT_COLUMN_COUNT
-} RtColumn;
-
-#define RT_MAX_PUBLISHED 4
-
-/* Published figures that the measured ones are compared with (literature/published.h). */
-typedef struct RtPublishedSetup {
-    char tables[RT_MAX_PUBLISHED][RT_MAX_WORD]; /* CSV files, relative to the YAML's folder */
-    uint32_t table_count;                       /* 0: nothing is compared */
-    char reasons[RT_MAX_WORD];                  /* CSV file, or "" */
-    double tolerance[RT_COLUMN_COUNT];          /* in percent; 0: shown but not checked */
-} RtPublishedSetup;
 
 /* The table of the costs of a whole frame (results/frame_table.h). */
 typedef struct RtFrameSetup {
@@ -176,7 +149,6 @@ typedef struct RtExperiment {
     char plots[RT_MAX_PLOTS]
               [RT_MAX_WORD]; /* gnuplot scripts relative to the YAML, run in this order in one process */
     uint32_t plot_count;
-    RtPublishedSetup published;
     RtFrameSetup frame;
     char rays_from[RT_MAX_PATH]; /* a file of rays (measure/ray_file.h) of the one kind, in place of recorded
                                     ones; or "" */

@@ -125,42 +125,6 @@ static RtStatus read_candidates(const RtYaml *y, const RtYamlNode *n, uint32_t e
     return rt_yaml_place(y, rt_experiment_add_accels(experiment, &like, error), n, "accel");
 }
 
-static RtStatus read_tolerances(const RtYaml *y, const RtYamlNode *n, double tolerance[RT_COLUMN_COUNT]) {
-#define NAME(name) #name,
-#define KEY(name)  #name "? "
-    static const char *const names[] = {RT_PUBLISHED_COLUMNS(NAME)};
-    RT_TRY(rt_yaml_keys(y, n, RT_PUBLISHED_COLUMNS(KEY)));
-    for (int c = 0; c < RT_COLUMN_COUNT; c++) {
-        RT_TRY(rt_yaml_double(y, n, names[c], &tolerance[c]));
-        if (tolerance[c] >= 0) continue;
-        return rt_yaml_fail(y, rt_yaml_get(y, n, names[c]),
-                            "invalid value '%g': expected a percentage, 0 or more", tolerance[c]);
-    }
-    return RT_OK;
-}
-
-/* Several candidates on different scenes may share a label: all of them are ours. */
-static RtStatus read_published(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment) {
-    RtPublishedSetup *published = &experiment->published;
-    RT_TRY(rt_yaml_keys(y, n, "tables reasons? tolerance? ours?"));
-    RT_TRY(read_labels(y, n, "tables", RT_MAX_PUBLISHED, published->tables, &published->table_count));
-    RT_TRY(rt_yaml_copy(y, n, "reasons", RT_MAX_WORD, published->reasons));
-    const RtYamlNode *tolerance = rt_yaml_get(y, n, "tolerance"), *ours = rt_yaml_get(y, n, "ours");
-    if (tolerance) RT_TRY(read_tolerances(y, tolerance, published->tolerance));
-    RT_TRY(rt_yaml_list(y, ours, NULL, 1, RT_MAX_CANDIDATES, "labels"));
-    for (const RtYamlNode *e = rt_yaml_first(ours); e != rt_yaml_end(ours); e += e->size) {
-        const char *label = "";
-        bool found = false;
-        RT_TRY(rt_yaml_text(y, e, NULL, RT_MAX_LABEL - 1, &label));
-        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-            if (strcmp(experiment->candidates[c].label, label) != 0) continue;
-            experiment->candidates[c].ours = found = true;
-        }
-        if (!found) return rt_yaml_fail(y, e, "'%s' is not the label of one of the accelerators", label);
-    }
-    return RT_OK;
-}
-
 static RtStatus read_frame(const RtYaml *y, const RtYamlNode *n, RtFrameSetup *frame) {
     RT_TRY(rt_yaml_keys(y, n, "without among note?"));
     RT_TRY(rt_yaml_copy(y, n, "without", RT_MAX_LABEL, frame->without));
@@ -291,6 +255,7 @@ static void warn_of_hardware(RtYaml y, const RtYamlNode *hardware, RtExperiment 
 static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *experiment, RtError *error) {
     const RtYamlNode *n = y->nodes;
     RT_TRY(rt_yaml_check_format(y));
+    /* `published` is a key of 1.0; now a script compares published figures (experiments/published). */
     RT_TRY(rt_yaml_keys(
         y, n,
         "name section? paper? question prediction scenes accelerators baseline? rays? limit? coherent_run? "
@@ -313,10 +278,8 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
     if (rt_yaml_get(y, n, "hardware")) warn_of_hardware(*y, rt_yaml_get(y, n, "hardware"), experiment);
     RT_TRY(read_lists(y, n, experiment, error));
     RT_TRY(read_baseline(y, n, experiment, error));
-    const RtYamlNode *published = rt_yaml_get(y, n, "published"), *smaller = rt_yaml_get(y, n, "quick");
-    const RtYamlNode *frame = rt_yaml_get(y, n, "frame");
+    const RtYamlNode *smaller = rt_yaml_get(y, n, "quick"), *frame = rt_yaml_get(y, n, "frame");
     if (frame) RT_TRY(read_frame(y, frame, &experiment->frame));
-    if (published) RT_TRY(read_published(y, published, experiment));
     if (smaller) RT_TRY(read_quick(y, smaller, quick, experiment));
     experiment->quick = quick;
     char where[RT_MAX_LABEL] = "";

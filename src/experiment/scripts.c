@@ -2,16 +2,78 @@
 #include "experiment/scripts.h"
 
 #include "core/base/memory.h"
-#include "shipped_scripts.h"
 
 #include <errno.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
+
+enum { MOST_BYTES = 1 << 24 };
+
+/* ---- shipped scripts ---- */
+
+RtStatus rt_scripts_folder(char folder[RT_MAX_PATH], RtError *error) {
+    static const char *const places[] = {"share/raytally/experiments", "../share/raytally/experiments"};
+    char program[RT_MAX_PATH] = "", beside[RT_MAX_PATH];
+    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    program[length > 0 ? length : 0] = '\0';
+    rt_path_folder(program, beside);
+    for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
+        RT_TRY(rt_path_join(beside, places[i], folder, error));
+        if (rt_file_exists_in(folder, "style.gp")) return RT_OK;
+    }
+    return rt_fail(error, RT_NOT_AVAILABLE,
+                   "the gnuplot scripts that raytally ships are neither in %s/%s nor in ../share of that "
+                   "folder: install it again",
+                   beside, places[0]);
+}
+
+bool rt_scripts_shipped(const char *name, char path[RT_MAX_PATH]) {
+    static const char *const folders[] = {"", "lecture/", "papers/"};
+    char folder[RT_MAX_PATH], place[RT_MAX_PATH];
+    if (rt_scripts_folder(folder, NULL) != RT_OK) return false;
+    for (size_t i = 0; i < sizeof folders / sizeof folders[0]; i++) {
+        const int length = snprintf(place, sizeof place, "%s%s", folders[i], name);
+        if (length < (int)sizeof place && rt_path_join(folder, place, path, NULL) == RT_OK &&
+            rt_file_exists(path))
+            return true;
+    }
+    return false;
+}
+
+/* ---- those of an experiment ---- */
+
+static bool same_bytes(const char *path, const char *other_path) {
+    char *text = NULL, *other = NULL;
+    size_t size, other_size;
+    const bool same = rt_file_read(path, MOST_BYTES, &text, &size, NULL) == RT_OK &&
+                      rt_file_read(other_path, MOST_BYTES, &other, &other_size, NULL) == RT_OK &&
+                      other_size == size && memcmp(other, text, size) == 0;
+    rt_free(text);
+    rt_free(other);
+    return same;
+}
+
+/* Whether the script is to be copied: it is beside the experiment, at `path`, and is not the shipped one. */
+static bool is_own(const RtExperiment *experiment, uint32_t i, char path[RT_MAX_PATH]) {
+    char shipped[RT_MAX_PATH];
+    if (rt_path_join(experiment->folder, experiment->plots[i], path, NULL) != RT_OK || !rt_file_exists(path))
+        return false;
+    return !rt_scripts_shipped(rt_plot_name(experiment, i), shipped) || !same_bytes(path, shipped);
+}
+
+static RtStatus copy_path(const RtExperiment *experiment, uint32_t i, const char *directory,
+                          char path[RT_MAX_PATH], RtError *error) {
+    char plots[RT_MAX_PATH];
+    RT_TRY(rt_path_join(directory, "plots", plots, error));
+    return rt_path_join(plots, rt_plot_name(experiment, i), path, error);
+}
 
 RtStatus rt_scripts_find(const RtExperiment *experiment, RtError *error) {
     for (uint32_t i = 0; i < experiment->plot_count; i++) {
         char path[RT_MAX_PATH];
         FILE *script;
+        if (rt_scripts_shipped(rt_plot_name(experiment, i), path)) continue;
         RT_TRY(rt_path_join(experiment->folder, experiment->plots[i], path, error));
         RT_TRY(rt_file_open(path, &script, error));
         fclose(script);
@@ -21,14 +83,23 @@ RtStatus rt_scripts_find(const RtExperiment *experiment, RtError *error) {
 
 RtStatus rt_scripts_copy(const RtExperiment *experiment, const char *directory, bool keep, RtOutputs *copies,
                          RtError *error) {
-    char from[RT_MAX_PATH], plots[RT_MAX_PATH], to[RT_MAX_PATH];
-    RT_TRY(rt_path_join(directory, "plots", plots, error));
+    char from[RT_MAX_PATH], to[RT_MAX_PATH];
     for (uint32_t i = 0; i < experiment->plot_count; i++) {
-        RT_TRY(rt_path_join(experiment->folder, experiment->plots[i], from, error));
-        RT_TRY(rt_path_join(plots, rt_plot_name(experiment, i), to, error));
-        if (!keep || !rt_file_exists(to)) RT_TRY(rt_outputs_copy(copies, from, to, error));
+        RT_TRY(copy_path(experiment, i, directory, to, error));
+        if (is_own(experiment, i, from) && !(keep && rt_file_exists(to)))
+            RT_TRY(rt_outputs_copy(copies, from, to, error));
     }
     return RT_OK;
+}
+
+void rt_scripts_path(const RtExperiment *experiment, uint32_t plot, const char *directory, RtScripts allowed,
+                     char path[RT_MAX_PATH]) {
+    char own[RT_MAX_PATH], copy[RT_MAX_PATH] = "";
+    const bool shipped = rt_scripts_shipped(rt_plot_name(experiment, plot), path);
+    const bool there = copy_path(experiment, plot, directory, copy, NULL) == RT_OK && rt_file_exists(copy);
+    if (!shipped || (there && (allowed == RT_SCRIPTS_ALL ||
+                               (allowed == RT_SCRIPTS_OWN && is_own(experiment, plot, own)))))
+        snprintf(path, RT_MAX_PATH, "plots/%s", rt_plot_name(experiment, plot));
 }
 
 typedef struct Found {
@@ -38,12 +109,11 @@ typedef struct Found {
 } Found;
 
 static void add_found(void *context, const char *path) {
-    static const char *const written[] = {"names.gp", "style.gp", "sweep.gp", "histograms.gp"};
     Found *found = context;
     RtExperiment *experiment = found->experiment;
     const char *name = strrchr(path, '/') + 1;
-    bool known = false;
-    for (size_t i = 0; i < sizeof written / sizeof written[0]; i++) known |= strcmp(name, written[i]) == 0;
+    char shipped[RT_MAX_PATH];
+    bool known = strcmp(name, "names.gp") == 0 || rt_scripts_shipped(name, shipped);
     for (uint32_t i = 0; i < experiment->plot_count; i++)
         known |= strcmp(name, rt_plot_name(experiment, i)) == 0;
     if (known || found->status != RT_OK) return;
@@ -64,49 +134,6 @@ RtStatus rt_scripts_add_found(RtExperiment *experiment, const char *directory, R
 }
 
 /* ---- trusted scripts ---- */
-
-enum { MOST_BYTES = 1 << 24 };
-
-static bool is_text(const char *const *lines, const char *text) {
-    for (; *lines; lines++) {
-        size_t length = strlen(*lines);
-        if (strncmp(text, *lines, length) != 0) return false;
-        text += length;
-    }
-    return *text == '\0';
-}
-
-/* `text` has `size` bytes and ends with 0. */
-static bool is_shipped(const char *text, size_t size) {
-    if (strlen(text) != size) return false;
-    for (int i = 0; shipped_scripts[i]; i++) {
-        if (is_text(shipped_scripts[i], text)) return true;
-    }
-    return false;
-}
-
-static bool is_file(const char *path, const char *text, size_t size) {
-    char *other;
-    size_t other_size;
-    if (rt_file_read(path, MOST_BYTES, &other, &other_size, NULL) != RT_OK) return false;
-    bool same = other_size == size && memcmp(other, text, size) == 0;
-    rt_free(other);
-    return same;
-}
-
-/* `own` is the path of the user's own script of that name, or NULL. */
-static RtStatus check_script(const char *path, const char *own, RtError *error) {
-    char *text;
-    size_t size;
-    RT_TRY(rt_file_read(path, MOST_BYTES, &text, &size, error));
-    bool known = is_shipped(text, size) || (own && is_file(own, text, size));
-    rt_free(text);
-    if (known) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT,
-                   "%s: raytally does not ship this gnuplot script%s, and a script can run any command: read "
-                   "it, then allow it with --trust",
-                   path, own ? ", nor is it the one beside the experiment" : "");
-}
 
 typedef struct Links {
     RtStatus status;
@@ -136,27 +163,29 @@ static RtStatus refuse_links(const char *plots, RtError *error) {
     return links.status;
 }
 
-/* Checks a script that the experiment names. */
-static RtStatus check_named(const RtExperiment *experiment, uint32_t i, const char *plots, bool keep,
-                            RtScripts allowed, RtError *error) {
-    char beside[RT_MAX_PATH], copy[RT_MAX_PATH];
-    RT_TRY(rt_path_join(experiment->folder, experiment->plots[i], beside, error));
-    RT_TRY(rt_path_join(plots, rt_plot_name(experiment, i), copy, error));
-    return check_script(keep && rt_file_exists(copy) ? copy : beside,
-                        allowed == RT_SCRIPTS_OWN ? beside : NULL, error);
+/* Of a script that is not shipped: whether it is beside an experiment of the user's, and unchanged. */
+static RtStatus check_own(const RtExperiment *experiment, uint32_t i, const char *directory, bool keep,
+                          RtScripts allowed, RtError *error) {
+    char own[RT_MAX_PATH], copy[RT_MAX_PATH], shipped[RT_MAX_PATH];
+    const bool beside = is_own(experiment, i, own), is_users = allowed == RT_SCRIPTS_OWN && beside;
+    RT_TRY(copy_path(experiment, i, directory, copy, error));
+    const bool copied = keep && rt_file_exists(copy);
+    if (is_users ? !copied || same_bytes(own, copy)
+                 : rt_scripts_shipped(rt_plot_name(experiment, i), shipped))
+        return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "%s: raytally does not ship this gnuplot script%s, and a script can run any command: read "
+                   "it, then allow it with --trust",
+                   copied ? copy : own, is_users ? ", nor is it the one beside the experiment" : "");
 }
 
 RtStatus rt_scripts_check(const RtExperiment *experiment, const char *directory, bool keep, RtScripts allowed,
                           RtError *error) {
-    char plots[RT_MAX_PATH], style[RT_MAX_PATH];
-    bool style_named = false;
+    char plots[RT_MAX_PATH];
     if (allowed == RT_SCRIPTS_ALL) return RT_OK;
     RT_TRY(rt_path_join(directory, "plots", plots, error));
-    RT_TRY(rt_path_join(plots, "style.gp", style, error));
     RT_TRY(refuse_links(plots, error));
-    for (uint32_t i = 0; i < experiment->plot_count; i++) {
-        RT_TRY(check_named(experiment, i, plots, keep, allowed, error));
-        style_named |= strcmp(rt_plot_name(experiment, i), "style.gp") == 0;
-    }
-    return style_named || !rt_file_exists(style) ? RT_OK : check_script(style, NULL, error);
+    for (uint32_t i = 0; i < experiment->plot_count; i++)
+        RT_TRY(check_own(experiment, i, directory, keep, allowed, error));
+    return RT_OK;
 }

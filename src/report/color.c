@@ -5,15 +5,12 @@
 
 #include <stdio.h>
 
-/* How far from its colour candidate `k` of `count` with the same one is drawn: the first not at all, the
- * others in equal parts, half of them darker, from the darkest to the lightest. No part of a dark colour is
- * darker. */
+/* How far from its colour candidate `k` of `count` with the same one is drawn: the only one not at all,
+ * several evenly from dark to light in the order of the experiment. No part of a dark colour is darker. */
 static double shade(uint32_t color, uint32_t k, uint32_t count) {
-    const double most = 0.65;
     const bool dark = (color & 0xff) < 0x40 && (color >> 8 & 0xff) < 0x40 && color >> 16 < 0x40;
-    const uint32_t darker = dark ? 0 : count / 2, lighter = count - 1 - darker;
-    if (k == 0) return 0;
-    return k <= darker ? -most * (darker + 1 - k) / darker : most * (k - darker) / lighter;
+    const double darkest = dark ? 0 : -0.6, lightest = 0.65;
+    return count == 1 ? 0 : darkest + (lightest - darkest) * k / (count - 1);
 }
 
 /* From black, -1, to white, 1. */

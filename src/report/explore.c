@@ -97,23 +97,6 @@ static json_t *page_json(const RtScene *scene, const RtRecordedPixels *recording
                      "accelerators", accelerators);
 }
 
-/* `<` would end the element in some places. Takes the reference. */
-static RtStatus embed_json(json_t *json, FILE *out, RtError *error) {
-    char *text = json ? json_dumps(json, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
-    json_decref(json);
-    if (!text) return rt_fail(error, RT_NO_MEMORY, "memory is short for the data of the page");
-    fputs("<script type=\"application/json\" id=\"data\">", out);
-    for (const char *c = text; *c; c++) {
-        if (*c == '<')
-            fputs("\\u003c", out);
-        else
-            fputc(*c, out);
-    }
-    fputs("</script>\n", out);
-    free(text);
-    return RT_OK;
-}
-
 /* ---- the parts ---- */
 
 /* Compresses and embeds the bytes, and frees them. */
@@ -183,8 +166,8 @@ static RtStatus write_page(FILE *out, const char *name, const RtRecordedPixels *
     }
     uint32_t every = rt_explore_objects(scene, &objects);
     if (status == RT_OK)
-        status = embed_json(page_json(scene, recording, depth, scene_json(scene, name, every), accelerators),
-                            out, error);
+        status = rt_page_data(
+            page_json(scene, recording, depth, scene_json(scene, name, every), accelerators), out, error);
     else
         json_decref(accelerators);
     rt_bytes_embed(&recording->rays, "rays", out);

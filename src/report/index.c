@@ -1,27 +1,190 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Each result directory is loaded once, in the order of their names, and written into texts of its own for
- * both pages; the texts are then put together in the order of sections. */
+/* Each result directory is loaded once, in the order of their names, and becomes an entry for both pages; the
+ * entries are then put together in the order of sections. */
 #include "report/index.h"
 
+#include "claims/claims.h"
 #include "core/base/memory.h"
-#include "core/text/table.h"
-#include "report/index_entry.h"
+#include "core/base/words.h"
+#include "core/text/csv.h"
+#include "core/text/json.h"
+#include "measure/machine.h"
 #include "report/page.h"
+#include "results/frame_table.h"
+#include "results/manifest.h"
+#include "results/result_directory.h"
 
 #include <ctype.h>
+#include <inttypes.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { MAX_ORIGIN = 256, MAX_ANSWER = 1200 };
+
+/* A result directory, of an experiment or a verification. */
+typedef struct Entry {
+    char name[RT_MAX_LABEL];   /* of the directory: one experiment may have several, of different systems */
+    char section[RT_MAX_WORD]; /* or "" */
+    char question[RT_MAX_TEXT], answer[MAX_ANSWER];
+    char build[MAX_ORIGIN], machine[MAX_ORIGIN];
+    char again[MAX_ORIGIN]; /* the build that counted some scenes again, or "" */
+    char plot[RT_MAX_PATH]; /* seen from the index, or "" */
+    bool has_report;
+    uint32_t number;
+    RtMemoryFile verdict; /* HTML */
+} Entry;
 
 typedef struct Index {
     const char *folder;
     RtExperiment *experiment; /* for each in turn */
     bool inner;               /* in one of the folder's folders */
-    RtIndexEntry *entries;    /* owned */
+    Entry *entries;           /* owned */
     uint32_t count, capacity;
+    json_t *papers; /* of all */
     RtStatus status;
     RtError *error;
 } Index;
+
+/* ---- text ---- */
+
+/* Plain text as Markdown in a cell of a table; `code` stays. */
+static void put_markdown(FILE *out, const char *text) {
+    bool code = false;
+    for (const char *c = text; *c; c++) {
+        if (*c == '`') code = !code && strchr(c + 1, '`');
+        const bool entity = c[0] == '&' && (c[1] == '#' || isalpha((unsigned char)c[1]));
+        if (*c == '|' || (!code && (entity || strchr("\\*[]<", *c)))) fputc('\\', out);
+        fputc(*c, out);
+    }
+}
+
+/* The length of the first sentence: to a full stop before a blank and a capital. */
+static int first_sentence(const char *text) {
+    size_t i = 0;
+    while (text[i] && !(strchr(".!?", text[i]) && text[i + 1] == ' ' && isupper((unsigned char)text[i + 2])))
+        i++;
+    return (int)(i + (text[i] != '\0'));
+}
+
+/* Writes the beginning of a sentence for a line of a table: it ends where an explanation or an addition
+ * begins, unless that is early. */
+static void put_brief(FILE *out, const char *text) {
+    enum { EARLY = 40, MOST = 400 };
+    char brief[MOST + 8];
+    int length = first_sentence(text);
+    for (int i = EARLY; i + 1 < length; i++) {
+        const bool ends =
+            (strchr(";:", text[i]) && text[i + 1] == ' ') || (text[i] == ' ' && text[i + 1] == '(');
+        if (ends) length = i;
+    }
+    const bool whole = length == first_sentence(text);
+    snprintf(brief, sizeof brief, "%.*s%s", length < MOST ? length : MOST, text, whole ? "" : " ...");
+    put_markdown(out, brief);
+}
+
+/* ---- a directory ---- */
+
+static bool is_verification(const char *directory) {
+    return rt_file_exists_in(directory, rt_result_files[RT_FILE_VERIFY_CSV]);
+}
+
+static bool is_entry(const char *directory) {
+    return rt_file_exists_in(directory, RT_MANIFEST) &&
+           (is_verification(directory) || rt_file_exists_in(directory, rt_result_files[RT_FILE_EXPERIMENT]));
+}
+
+static void note_origin(Entry *entry, const json_t *manifest) {
+    const json_t *machine = json_object_get(manifest, "machine");
+    snprintf(entry->build, MAX_ORIGIN, "raytally %s (%s%s), %s", rt_json_text(machine, "version", "unknown"),
+             rt_json_text(machine, "commit", "unknown"),
+             json_is_true(json_object_get(machine, "dirty")) ? ", with changes" : "",
+             rt_json_text(machine, "compiler", "unknown"));
+    rt_machine_libraries(machine, ", ", entry->build, MAX_ORIGIN);
+    snprintf(entry->machine, MAX_ORIGIN, "%s", rt_json_text(machine, "cpu", "an unknown machine"));
+    const json_t *again = json_object_get(manifest, "recounted");
+    if (again)
+        snprintf(entry->again, MAX_ORIGIN, "raytally %s (%s)", rt_json_text(again, "version", "unknown"),
+                 rt_json_text(again, "commit", "unknown"));
+}
+
+static void take_first(void *context, const char *path) {
+    char *first = context;
+    if (!*first) snprintf(first, RT_MAX_PATH, "plots/%s", basename(path));
+}
+
+/* The main plot: that of frames, or the first. */
+static void find_plot(Entry *entry, const char *directory, const char *place) {
+    char folder[RT_MAX_PATH], name[RT_MAX_PATH] = "";
+    if (rt_file_exists_in(directory, RT_FRAME_PLOT)) strcpy(name, RT_FRAME_PLOT);
+    if (rt_path_join(directory, "plots", folder, NULL) == RT_OK)
+        rt_directory_each(folder, ".svg", take_first, name);
+    if (!*name || rt_path_join(place, name, entry->plot, NULL) != RT_OK) *entry->plot = '\0';
+}
+
+static RtStatus read_experiment(Index *index, Entry *entry, const char *directory, RtError *error) {
+    RtExperiment *experiment = index->experiment;
+    RtResults results;
+    json_t *manifest = NULL;
+    RtStatus status = rt_results_load(directory, experiment, &results, error);
+    if (status == RT_OK) status = rt_manifest_read(directory, &manifest, error);
+    if (status == RT_OK) {
+        const char *finding = *experiment->finding ? experiment->finding : "No finding yet.";
+        strcpy(entry->section, experiment->section);
+        note_origin(entry, manifest);
+        strcpy(entry->question, experiment->question);
+        snprintf(entry->answer, MAX_ANSWER, "%.*s", first_sentence(finding), finding);
+        rt_page_verdict(entry->verdict.file, &results);
+        json_t *papers = rt_page_papers(experiment);
+        json_array_extend(index->papers, papers);
+        json_decref(papers);
+    }
+    json_decref(manifest);
+    rt_results_clear(&results);
+    return status;
+}
+
+static uint64_t sum_of(const RtCsv *csv, const char *column) {
+    uint64_t sum = 0;
+    const uint32_t at = rt_csv_find(csv, column);
+    for (uint32_t i = 0; i < csv->rows; i++) sum += strtoull(rt_csv_field(csv, i, at), NULL, 10);
+    return sum;
+}
+
+static RtStatus read_verification(Entry *entry, const char *directory, RtError *error) {
+    RtCsv csv = {0};
+    json_t *manifest = NULL;
+    char path[RT_MAX_PATH];
+    RT_TRY(rt_path_join(directory, rt_result_files[RT_FILE_VERIFY_CSV], path, error));
+    RtStatus status = rt_csv_read(&csv, path, error);
+    if (status == RT_OK) status = rt_manifest_read(directory, &manifest, error);
+    if (status == RT_OK) {
+        strcpy(entry->section, "verification");
+        note_origin(entry, manifest);
+        snprintf(entry->answer, MAX_ANSWER,
+                 "%" PRIu64 " comparisons in %" PRIu32 " row%s: %" PRIu64
+                 " answers to nearest are wrong, %" PRIu64 " to occluded.",
+                 sum_of(&csv, "rays"), csv.rows, rt_plural(csv.rows), sum_of(&csv, "wrong"),
+                 sum_of(&csv, "occluded_wrong"));
+    }
+    json_decref(manifest);
+    rt_csv_clear(&csv);
+    return status;
+}
+
+/* A directory that cannot be read has the reason as its answer. */
+static RtStatus read_entry(Index *index, Entry *entry, const char *directory, const char *place) {
+    RtError why = {RT_OK, ""};
+    *entry = (Entry){.number = index->count};
+    snprintf(entry->name, sizeof entry->name, "%s", place);
+    RT_TRY(rt_memory_file_open(&entry->verdict, index->error));
+    if ((is_verification(directory) ? read_verification(entry, directory, &why)
+                                    : read_experiment(index, entry, directory, &why)) != RT_OK)
+        snprintf(entry->answer, MAX_ANSWER, "Cannot be read: %s", why.message);
+    find_plot(entry, directory, place);
+    entry->has_report = rt_file_exists_in(directory, "report.html");
+    return rt_memory_file_close(&entry->verdict, "the index", index->error);
+}
 
 /* ., .. and hidden folders. */
 static bool is_hidden(const char *path) {
@@ -29,19 +192,18 @@ static bool is_hidden(const char *path) {
 }
 
 static void add_entry(Index *index, const char *directory) {
-    index->status = rt_reserve(&index->entries, &index->capacity, index->count + UINT64_C(1),
-                               sizeof(RtIndexEntry), index->error);
-    if (index->status != RT_OK) return;
-    RtIndexEntry *entry = &index->entries[index->count];
-    index->status = rt_index_entry_read(entry, directory, directory + strlen(index->folder) + 1,
-                                        index->experiment, index->error);
-    entry->number = index->count++;
+    index->status = rt_reserve(&index->entries, &index->capacity, index->count + UINT64_C(1), sizeof(Entry),
+                               index->error);
+    if (index->status == RT_OK)
+        index->status = read_entry(index, &index->entries[index->count], directory,
+                                   directory + strlen(index->folder) + 1);
+    if (index->status == RT_OK) index->count++;
 }
 
 static void visit(void *context, const char *path) {
     Index *index = context;
     if (is_hidden(path) || index->status != RT_OK) return;
-    if (rt_index_is_entry(path)) {
+    if (is_entry(path)) {
         add_entry(index, path);
     } else if (!index->inner) {
         index->inner = true;
@@ -63,7 +225,7 @@ static int order_of(const char *section) {
 }
 
 static int compare(const void *a, const void *b) {
-    const RtIndexEntry *x = a, *y = b;
+    const Entry *x = a, *y = b;
     const int order = order_of(x->section) - order_of(y->section), names = strcmp(x->section, y->section);
     return order ? order : names ? names : x->number < y->number ? -1 : 1;
 }
@@ -109,72 +271,80 @@ static void put_origins(const Index *index, size_t origin, const char *before, F
     fputc('.', out);
 }
 
-static void put_entries(const Index *index, uint32_t from, uint32_t to, RtIndexPart part, FILE *out) {
-    for (uint32_t i = from; i < to; i++) fputs(index->entries[i].parts[part].data, out);
-}
+/* ---- pages ---- */
 
-static bool has_sentences(const Index *index, uint32_t from, uint32_t to) {
-    size_t size = 0;
-    for (uint32_t i = from; i < to; i++) size += index->entries[i].parts[RT_INDEX_ROWS].size;
-    return size > 0;
-}
-
-static void put_section(const Index *index, uint32_t from, uint32_t to, FILE *html, FILE *markdown) {
-    char title[RT_MAX_WORD];
-    title_of(index->entries[from].section, title);
-    rt_html_wrap(html, "<h2>", title, "</h2>\n");
-    fputs("## ", markdown);
-    rt_index_put_markdown(markdown, title, false);
-    fputs("\n\n", markdown);
-    if (has_sentences(index, from, to)) {
-        fputs(
-            "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Sentences of the "
-            "literature\"><table>"
-            "<thead><tr><th>paper</th><th>page</th><th>sentence</th><th>verdict</th><th>experiment</th></tr>"
-            "</thead><tbody>\n",
-            html);
-        put_entries(index, from, to, RT_INDEX_ROWS, html);
-        fputs("</tbody></table></div>\n", html);
-        fputs("| paper | page | sentence | verdict | experiment |\n| --- | --- | --- | --- | --- |\n",
-              markdown);
-        put_entries(index, from, to, RT_INDEX_LINES, markdown);
-        fputs("\n", markdown);
+static void put_card(const Entry *entry, FILE *out) {
+    char path[RT_MAX_PATH];
+    rt_html_wrap(out, "<section class=\"card entry\" id=\"", entry->name, "\">");
+    if (*entry->plot) {
+        fputs("<a class=\"thumb\" href=\"", out);
+        rt_page_path(out, entry->plot);
+        rt_html_wrap(out, "\"><img loading=\"lazy\" alt=\"Plot of ", entry->name, "\" src=\"");
+        rt_page_path(out, entry->plot);
+        fputs("\"></a>\n", out);
     }
-    put_entries(index, from, to, RT_INDEX_HTML, html);
-    put_entries(index, from, to, RT_INDEX_MARKDOWN, markdown);
+    fputs("<div><h3>", out);
+    if (entry->has_report && rt_path_join(entry->name, "report.html", path, NULL) == RT_OK)
+        rt_page_link(out, path, entry->name);
+    else
+        rt_html_put(out, entry->name);
+    fputs("</h3>\n<p>", out);
+    rt_html_markup(out, entry->question);
+    fputs("</p>\n<p><strong>", out);
+    rt_html_markup(out, entry->answer);
+    fprintf(out, "</strong></p>\n%s</div></section>\n", entry->verdict.data);
+}
+
+static void put_row(const Entry *entry, FILE *out) {
+    fputs("| [", out);
+    put_markdown(out, entry->name);
+    fputs("](", out);
+    rt_page_path(out, entry->name);
+    fputs(") | ", out);
+    put_brief(out, entry->question);
+    fputs(" | ", out);
+    put_brief(out, entry->answer);
+    fputs(" |\n", out);
 }
 
 static RtStatus put_pages(const Index *index, FILE *html, FILE *markdown, RtError *error) {
     RtMemoryFile origins;
     RT_TRY(rt_memory_file_open(&origins, error));
-    put_origins(index, offsetof(RtIndexEntry, build), "Measured by ", origins.file);
+    put_origins(index, offsetof(Entry, build), "Measured by ", origins.file);
     fputc(' ', origins.file);
-    put_origins(index, offsetof(RtIndexEntry, machine), "On ", origins.file);
-    put_origins(index, offsetof(RtIndexEntry, again), " Scenes that changed later were counted again by ",
+    put_origins(index, offsetof(Entry, machine), "On ", origins.file);
+    put_origins(index, offsetof(Entry, again), " Scenes that changed later were counted again by ",
                 origins.file);
     RT_TRY(rt_memory_file_close(&origins, "the index", error));
     rt_page_begin(html, "Experiments", true);
     rt_html_wrap(html, "<p class=\"meta\">", origins.data, "</p>\n");
     fputs("# Experiments\n\n", markdown);
-    rt_index_put_markdown(markdown, origins.data, false);
-    fputs(
-        "\n\nA name links to the files of the experiment; `raytally report DIR` makes a report of them.\n\n",
-        markdown);
+    put_markdown(markdown, origins.data);
+    fputs("\n\nA name links to the files of the experiment, of which experiment.yaml has prediction and "
+          "finding; "
+          "`raytally report DIR` makes a report of them.\n",
+          markdown);
     rt_free(origins.data);
-    for (uint32_t from = 0, to; from < index->count; from = to) {
-        to = from + 1;
-        while (to < index->count && strcmp(index->entries[from].section, index->entries[to].section) == 0)
-            to++;
-        put_section(index, from, to, html, markdown);
+    for (uint32_t i = 0; i < index->count; i++) {
+        const Entry *entry = &index->entries[i];
+        if (i == 0 || strcmp(entry[-1].section, entry->section) != 0) {
+            char title[RT_MAX_WORD];
+            title_of(entry->section, title);
+            rt_html_wrap(html, "<h2>", title, "</h2>\n");
+            fputs("\n## ", markdown);
+            put_markdown(markdown, title);
+            fputs("\n\n| experiment | question | answer |\n| --- | --- | --- |\n", markdown);
+        }
+        put_card(entry, html);
+        put_row(entry, markdown);
     }
-    rt_page_end(html);
-    return RT_OK;
+    return rt_page_end(json_pack("{s:O}", "papers", index->papers), html, error);
 }
 
 static RtStatus write_pages(Index *index, RtError *error) {
     RtOutput html, markdown;
     if (index->count == 0) return rt_fail(error, RT_BAD_INPUT, "%s holds no result directory", index->folder);
-    qsort(index->entries, index->count, sizeof(RtIndexEntry), compare);
+    qsort(index->entries, index->count, sizeof(Entry), compare);
     RT_TRY(rt_output_open_in(&html, index->folder, "index.html", error));
     RtStatus status = rt_output_open_in(&markdown, index->folder, "index.md", error);
     if (status == RT_OK) status = put_pages(index, html.file, markdown.file, error);
@@ -190,11 +360,15 @@ RtStatus rt_index_write(const char *folder, size_t *count, RtError *error) {
     /* Without trailing slashes, for paths relative to it. */
     snprintf(plain, sizeof plain, "%s", *folder ? folder : ".");
     for (size_t size = strlen(plain); size > 1 && plain[size - 1] == '/'; size--) plain[size - 1] = '\0';
-    Index index = {.folder = plain, .experiment = rt_alloc(1, sizeof(RtExperiment)), .error = error};
+    Index index = {.folder = plain,
+                   .experiment = rt_alloc(1, sizeof(RtExperiment)),
+                   .papers = json_array(),
+                   .error = error};
     if (!index.experiment) return rt_fail_memory(error, "an experiment", sizeof(RtExperiment));
     rt_directory_each(plain, "", visit, &index);
     if (index.status == RT_OK) index.status = write_pages(&index, error);
-    for (uint32_t i = 0; i < index.count; i++) rt_index_entry_clear(&index.entries[i]);
+    for (uint32_t i = 0; i < index.count; i++) rt_free(index.entries[i].verdict.data);
+    json_decref(index.papers);
     rt_free(index.entries);
     rt_free(index.experiment);
     *count = index.count;

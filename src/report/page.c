@@ -3,14 +3,13 @@
 
 #include "claims/claims.h"
 #include "core/base/words.h"
-#include "core/text/json.h"
-#include "core/text/table.h"
 #include "page_css.h"
 #include "page_js.h"
 #include "results/claims_changed.h"
 
 #include <ctype.h>
 #include <inttypes.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- the frame ---- */
@@ -33,10 +32,33 @@ void rt_page_begin(FILE *out, const char *title, bool images) {
     rt_html_wrap(out, "</style></head>\n<body><main>\n<h1>", title, "</h1>\n");
 }
 
-void rt_page_end(FILE *out) {
-    fputs("</main>\n<script>\n", out);
+/* `<` would end the element in some places. */
+RtStatus rt_page_data(json_t *data, FILE *out, RtError *error) {
+    char *text = data ? json_dumps(data, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
+    json_decref(data);
+    if (!text) return rt_fail(error, RT_NO_MEMORY, "memory is short for the data of the page");
+    fputs("<script type=\"application/json\" id=\"data\">", out);
+    for (const char *c = text; *c; c++) {
+        if (*c == '<')
+            fputs("\\u003c", out);
+        else
+            fputc(*c, out);
+    }
+    fputs("</script>\n", out);
+    free(text);
+    return RT_OK;
+}
+
+RtStatus rt_page_end(json_t *data, FILE *out, RtError *error) {
+    fputs("<div id=\"tables\"><noscript><p class=\"meta\">Tables need JavaScript; tables.md and the CSV "
+          "files have "
+          "their figures.</p></noscript></div>\n</main>\n",
+          out);
+    RT_TRY(rt_page_data(data, out, error));
+    fputs("<script>\n", out);
     rt_page_lines(out, page_js);
     fputs("</script></body></html>\n", out);
+    return RT_OK;
 }
 
 /* ---- files ---- */
@@ -65,6 +87,40 @@ void rt_page_link(FILE *out, const char *file, const char *text) {
 }
 
 /* ---- text ---- */
+
+static void put_character(FILE *out, char c) {
+    switch (c) {
+    case '<': fputs("&lt;", out); break;
+    case '>': fputs("&gt;", out); break;
+    case '&': fputs("&amp;", out); break;
+    case '"': fputs("&quot;", out); break;
+    default: fputc(c, out);
+    }
+}
+
+void rt_html_put(FILE *out, const char *text) {
+    for (; text && *text; text++) put_character(out, *text);
+}
+
+void rt_html_wrap(FILE *out, const char *before, const char *text, const char *after) {
+    fputs(before, out);
+    rt_html_put(out, text);
+    fputs(after, out);
+}
+
+void rt_html_markup(FILE *out, const char *text) {
+    bool code = false, bold = false;
+    for (; *text; text++) {
+        if (*text == '`' && (code || strchr(text + 1, '`'))) {
+            fputs((code = !code) ? "<code>" : "</code>", out);
+        } else if (text[0] == '*' && text[1] == '*' && (bold || strstr(text + 2, "**"))) {
+            fputs((bold = !bold) ? "<b>" : "</b>", out);
+            text++;
+        } else {
+            put_character(out, *text);
+        }
+    }
+}
 
 void rt_page_card(FILE *out, const char *title, const char *text) {
     if (!*text) return;
@@ -129,47 +185,14 @@ void rt_page_verdict(FILE *out, const RtResults *results) {
     fputs("</span>\n", out);
 }
 
-void rt_page_paper_verdict(FILE *out, const RtPaper *paper) {
-    static const char *const classes[] = {[RT_PAPER_UNJUDGED] = "open",
-                                          [RT_PAPER_CONFIRMED] = "holds",
-                                          [RT_PAPER_IN_PART] = "open",
-                                          [RT_PAPER_NOT_CONFIRMED] = "false",
-                                          [RT_PAPER_TRUE_OF_ITS_MACHINE] = "open"};
-    fprintf(out, "<span class=\"verdict %s\">%s</span>", classes[paper->verdict],
-            rt_paper_verdict_name(paper->verdict));
-}
-
-void rt_page_papers(FILE *out, const RtExperiment *experiment) {
-    if (!experiment->paper_count) return;
-    fputs("<section class=\"card\" id=\"papers\"><h2>From the literature</h2>\n", out);
+json_t *rt_page_papers(const RtExperiment *experiment) {
+    json_t *papers = json_array();
     for (uint32_t i = 0; i < experiment->paper_count; i++) {
         const RtPaper *paper = &experiment->papers[i];
-        const bool seen = rt_paper_is_seen(paper);
-        rt_html_wrap(out, seen ? "<blockquote><p>&ldquo;" : "<blockquote><p>", paper->quote,
-                     seen ? "&rdquo;" : "");
-        rt_html_wrap(out, "</p><footer class=\"meta\">", paper->citation, seen ? ", page " : "");
-        rt_html_wrap(out, "", seen ? paper->page : ". In our words: the text was not at hand.", "</footer> ");
-        rt_page_paper_verdict(out, paper);
-        fputs("</blockquote>\n", out);
+        json_array_append_new(
+            papers, json_pack("{s:s, s:s, s:s, s:b, s:s, s:s}", "experiment", experiment->name, "citation",
+                              paper->citation, "page", paper->page, "seen", rt_paper_is_seen(paper), "quote",
+                              paper->quote, "verdict", rt_paper_verdict_name(paper->verdict)));
     }
-    fputs("</section>\n", out);
-}
-
-void rt_page_provenance(FILE *out, const json_t *manifest) {
-    const json_t *machine = json_object_get(manifest, "machine");
-    const json_t *clock = json_object_get(machine, "clock_mhz");
-    rt_html_wrap(out, "<p class=\"meta\">", rt_json_text(manifest, "date", "unknown"), " &middot; ");
-    rt_html_put(out, rt_json_text(machine, "cpu", "unknown"));
-    if (json_is_number(clock)) {
-        fprintf(out, " &middot; clock %.2f GHz", 1e-3 * json_number_value(clock));
-    } else {
-        fputs(" &middot; clock unknown", out);
-    }
-    rt_html_wrap(out, " &middot; governor ", rt_json_text(machine, "governor", "unknown"),
-                 " &middot; raytally ");
-    rt_html_wrap(out, "", rt_json_text(machine, "version", "unknown"), " (");
-    rt_html_put(out, rt_json_text(machine, "commit", "unknown"));
-    fprintf(out, "%s)%s</p>\n", json_is_true(json_object_get(machine, "dirty")) ? ", with changes" : "",
-            json_is_true(json_object_get(manifest, "quick")) ? " &middot; <strong>quick variant</strong>"
-                                                             : "");
+    return papers;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The common parts of report.html and index.html: frame, verdicts, cards. A page is one self-contained file
- * with its style and script (page/page.css, page/page.js), and is complete without the script. */
+/* The frame of report.html and index.html, which is also the explorer's. A page is one self-contained file
+ * with its style, its data as JSON, and the script (page/page.js) that makes tables of them. Without the
+ * script it shows question, answer and plots. */
 #ifndef RT_REPORT_PAGE_H
 #define RT_REPORT_PAGE_H
 
@@ -9,16 +10,27 @@
 #include <jansson.h>
 #include <stdio.h>
 
-/* The beginning up to the heading, and the end after the last section. The page loads no files; with `images`
- * it may load pictures. */
+/* The beginning up to the heading. The page loads no files; with `images` it may load pictures. */
 void rt_page_begin(FILE *out, const char *title, bool images);
-void rt_page_end(FILE *out);
+
+/* The end after the last section, with the script and its data; page.js lists the members that it knows.
+ * Takes the reference. */
+RtStatus rt_page_end(json_t *data, FILE *out, RtError *error);
+
+/* The data alone, as the element `data`. Takes the reference. */
+RtStatus rt_page_data(json_t *data, FILE *out, RtError *error);
 
 /* Writes strings up to NULL, as in generated headers. */
 void rt_page_lines(FILE *out, const char *const *lines);
 
 /* `size` bytes at `data` as a data URL in base64, `type` being "image/png" and the like. */
 void rt_page_data_url(FILE *out, const char *type, const void *data, size_t size);
+
+/* Writes text as HTML, escaped; NULL is "". The same between `before` and `after`, which are HTML. The same
+ * with `code` and **bold** as in Markdown. */
+void rt_html_put(FILE *out, const char *text);
+void rt_html_wrap(FILE *out, const char *before, const char *text, const char *after);
+void rt_html_markup(FILE *out, const char *text);
 
 /* A heading with text below, which may have `code`; nothing if the text is empty. */
 void rt_page_card(FILE *out, const char *title, const char *text);
@@ -29,15 +41,8 @@ void rt_page_claims(FILE *out, const RtResults *results);
 /* "3 of 4 claims hold, 1 does not", in the colour of the worst verdict; or that there are no claims. */
 void rt_page_verdict(FILE *out, const RtResults *results);
 
-/* The sentences of the literature that the experiment tests, each with source and verdict, in a card; nothing
- * if there are none. */
-void rt_page_papers(FILE *out, const RtExperiment *experiment);
-
-/* The verdict on such a sentence, coloured. */
-void rt_page_paper_verdict(FILE *out, const RtPaper *paper);
-
-/* A line with date and machine, from the manifest. */
-void rt_page_provenance(FILE *out, const json_t *manifest);
+/* The sentences of the literature that the experiment tests, as data. */
+json_t *rt_page_papers(const RtExperiment *experiment);
 
 /* The name of a file beside the page, as in links; and a link to it. */
 void rt_page_path(FILE *out, const char *file);

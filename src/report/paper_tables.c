@@ -12,9 +12,9 @@
 /* Characters of `footnotesize` (8 points) that fit a column and a page of a two-column article. */
 enum { COLUMN_WIDTH = 50, PAGE_WIDTH = 104 };
 
-typedef enum Measure { TIME, OBJECT_TESTS, EXTENT_TESTS, STEPS, BUILD, MEASURE_COUNT } Measure;
+typedef enum Measure { TIME, OBJECT_TESTS, EXTENT_TESTS, STEPS, BUILD, RATIO } Measure;
 static const char *const titles[] = {"Time per ray in ns", "Object tests per ray", "Extent tests per ray",
-                                     "Steps per ray", "Time to build in ms"};
+                                     "Steps per ray",      "Time to build in ms",  "Throughput relative to"};
 
 /* A row per accelerator, a column per scene. */
 typedef struct Pivot {
@@ -34,6 +34,10 @@ static RtEstimate in_units(const RtEstimate *seconds, double a_second) {
     return (RtEstimate){a_second * seconds->median, a_second * seconds->low, a_second * seconds->high, 0};
 }
 
+static uint32_t baseline_of(const RtResults *results) {
+    return results->experiment->baseline_count > 1 ? RT_FASTEST_BASELINE : results->experiment->baseline;
+}
+
 static RtEstimate estimate_of(const Pivot *p, uint32_t workload, uint32_t candidate) {
     const RtCost cost = rt_results_cost(p->results, workload, candidate, p->kind);
     const RtBuildResult *build = rt_build_at(p->results, workload, candidate);
@@ -42,6 +46,8 @@ static RtEstimate estimate_of(const Pivot *p, uint32_t workload, uint32_t candid
     case OBJECT_TESTS: return rt_estimate_exactly(cost.object_tests);
     case EXTENT_TESTS: return rt_estimate_exactly(cost.extent_tests);
     case STEPS: return rt_estimate_exactly(cost.steps);
+    case RATIO:
+        return rt_results_time_ratio(p->results, workload, baseline_of(p->results), candidate, p->kind, 0.95);
     default: return build->known ? in_units(&build->seconds, 1e3) : rt_estimate_exactly((double)NAN);
     }
 }
@@ -49,8 +55,9 @@ static RtEstimate estimate_of(const Pivot *p, uint32_t workload, uint32_t candid
 /* Whether it is the least of the scene, or its interval overlaps with that of the least. Tables of extent
  * tests, of steps and of builds have no best: without a structure there are none. */
 static bool is_best(const Pivot *p, uint32_t workload) {
-    return p->measure <= OBJECT_TESTS && rt_standing_by(p->measure == TIME, p->results, workload,
-                                                        p->candidate, p->kind) != RT_STANDING_BEHIND;
+    const bool time = p->measure == TIME || p->measure == RATIO;
+    return (time || p->measure == OBJECT_TESTS) &&
+           rt_standing_by(time, p->results, workload, p->candidate, p->kind) != RT_STANDING_BEHIND;
 }
 
 static RtField get_label(const void *row, const RtTableColumn *column) {
@@ -153,7 +160,7 @@ static uint32_t add_scenes(Pivot *p, uint32_t first) {
 /* ---- files ---- */
 
 static bool has_intervals(Measure measure) {
-    return measure == TIME || measure == BUILD;
+    return measure == TIME || measure == BUILD || measure == RATIO;
 }
 
 static void put_table(Pivot *p, bool tex, FILE *out) {
@@ -163,6 +170,8 @@ static void put_table(Pivot *p, bool tex, FILE *out) {
     uint32_t scenes = 0;
     RtTable table = table_of(p);
     snprintf(caption, sizeof caption, "%s", titles[p->measure]);
+    if (p->measure == RATIO)
+        rt_append_text(caption, sizeof caption, " %s, paired by round", rt_baseline_label(experiment));
     if (p->measure != BUILD && p->kind == RT_ALL_RAYS) {
         for (uint32_t c = 1; c < p->count; c++) scenes |= 1u << p->columns[c].key;
         rt_results_say_part(p->results, scenes, rt_experiment_kinds(experiment), part);
@@ -217,15 +226,17 @@ static RtStatus write_tables(const RtResults *results, const char *directory, co
                              RtError *error) {
     const RtExperiment *experiment = results->experiment;
     const bool counts = experiment->count_only;
-    const Measure lead = counts ? OBJECT_TESTS : TIME, end = counts ? BUILD : MEASURE_COUNT;
+    const Measure lead = counts ? OBJECT_TESTS : TIME, last = counts ? STEPS : BUILD;
     const bool one = experiment->kind_count == 1;
     RtOutput output;
     RT_TRY(rt_output_open_in(&output, directory, name, error));
     put_head(results, tex, output.file);
-    for (Measure m = lead; m < end; m++)
+    for (Measure m = lead; m <= last; m++)
         put_pivots(results, m, one ? experiment->kinds[0] : RT_ALL_RAYS, tex, output.file);
     for (uint32_t k = 0; !one && k < experiment->kind_count; k++)
         put_pivots(results, lead, experiment->kinds[k], tex, output.file);
+    for (uint32_t k = 0; !counts && k < experiment->kind_count; k++)
+        put_pivots(results, RATIO, experiment->kinds[k], tex, output.file);
     return rt_output_commit(&output, error);
 }
 

@@ -4,21 +4,18 @@
 #include "core/base/memory.h"
 #include "core/base/process.h"
 #include "core/base/words.h"
-#include "histograms_gp.h"
 #include "report/color.h"
-#include "report/page.h"
-#include "report/sweep_plot.h"
-#include "style_gp.h"
+#include "report/sweep_data.h"
 
 #include <ctype.h>
 #include <errno.h>
+#include <fnmatch.h>
+#include <math.h>
 #include <string.h>
 
-enum { MOST_ARGUMENTS = RT_MAX_PLOTS + 4 };
+enum { MOST_SCRIPTS = RT_MAX_PLOTS + 4 };
 
-#define HISTOGRAM_SCRIPT "histograms.gp"
-
-/* ---- generated scripts ---- */
+/* ---- variables ---- */
 
 /* Whether the CSV files have rows of the candidate, and it is the first of its label. */
 static bool has_rows(const RtResults *results, uint32_t candidate) {
@@ -42,10 +39,9 @@ static bool has_rays(const RtResults *results, RtRayKind kind) {
     return false;
 }
 
-/* The weight of each set of rays, and weight(0), that of the row at hand in counts.csv or times.csv. */
-static void write_sets(const RtResults *results, FILE *out) {
+/* "SCENE/KIND=WEIGHT ...", for weight() of style.gp: the weight of each set of rays in sums over kinds. */
+static void put_sets(const RtResults *results, FILE *out) {
     const RtExperiment *experiment = results->experiment;
-    fprintf(out, "sets = \"");
     for (uint32_t t = 0; t < experiment->workload_count; t++) {
         for (uint32_t k = 0; k < experiment->kind_count; k++) {
             const RtRayKind kind = experiment->kinds[k];
@@ -54,77 +50,48 @@ static void write_sets(const RtResults *results, FILE *out) {
                         rt_experiment_kind_name(experiment, kind), rt_results_weight(results, t, kind));
         }
     }
-    fprintf(out,
-            "\"\n"
-            "whole_rays(scene, kind) = (at_ = strstrt(' '.sets, ' '.scene.'/'.kind.'='), at_ == 0 ? 0 : \\\n"
-            "  real(word(sets[at_ + strlen(scene) + strlen(kind) + 2 : *], 1)))\n"
-            "weight(unused) = whole_rays(strcol('scene'), strcol('kind'))\n");
 }
 
-/* Labels hold nothing that gnuplot's double quotes would interpret (rt_experiment_check). */
-static RtStatus write_names(const RtResults *results, const char *directory, const char *format, bool column,
-                            RtError *error) {
+static void put_candidate(const RtExperiment *experiment, uint32_t c, const char *list, FILE *out) {
+    char color[RT_COLOR_CHARS];
+    rt_candidate_color(experiment, c, color);
+    if (strcmp(list, "accels") == 0) fprintf(out, "%s ", experiment->candidates[c].label);
+    if (strcmp(list, "colors") == 0) fprintf(out, "%s ", color);
+    if (strcmp(list, "markers") == 0) fprintf(out, "%d ", rt_plot_marker(c));
+    if (strcmp(list, "dashes") == 0) fprintf(out, "%d ", rt_plot_dash(c));
+    if (strcmp(list, "groups") == 0) fprintf(out, "\\\"%s\\\" ", experiment->candidates[c].group);
+}
+
+/* What style.gp says; labels hold nothing that gnuplot's double quotes would interpret
+ * (rt_experiment_check). */
+static void put_variables(const RtResults *results, const char *shared, const char *format, bool column,
+                          FILE *out) {
+    static const char *const lists[] = {"accels", "colors", "markers", "dashes", "groups"};
     const RtExperiment *experiment = results->experiment;
-    RtOutput output;
-    RT_TRY(rt_output_open_in(&output, directory, "plots/names.gp", error));
-    FILE *out = output.file;
-    fprintf(out,
-            "# What counts.csv and times.csv have rows of, in the order of the experiment.\n"
-            "experiment = \"%s\"\nformat = \"%s\"\npaper = \"%s\"\nscenes = \"",
+    fprintf(out, "shared = \"%s\"; experiment = \"%s\"; format = \"%s\"; paper = \"%s\"; scenes = \"", shared,
             experiment->name, format, column ? "column" : "page");
     for (uint32_t t = 0; t < experiment->workload_count; t++) {
         if (results->workloads[t].known) fprintf(out, "%s ", experiment->workloads[t].label);
     }
-    fprintf(out, "\"\nfiles = \"");
+    fputs("\"; files = \"", out);
     for (uint32_t t = 0; t < experiment->workload_count; t++) {
         if (results->workloads[t].known) fprintf(out, "%s ", experiment->workloads[t].file_name);
     }
-    fprintf(out, "\"\naccels = \"");
-    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        if (has_rows(results, c)) fprintf(out, "%s ", experiment->candidates[c].label);
-    }
-    static const char *const lists[] = {"colors", "markers", "dashes"};
-    for (int i = 0; i < 3; i++) {
-        fprintf(out, "\"\n%s = \"", lists[i]);
+    for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
+        fprintf(out, "\"; %s = \"", lists[i]);
         for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-            char color[RT_COLOR_CHARS];
-            rt_candidate_color(experiment, c, color);
-            if (!has_rows(results, c)) continue;
-            if (i == 0) fprintf(out, "%s ", color);
-            if (i > 0) fprintf(out, "%d ", i == 1 ? rt_plot_marker(c) : rt_plot_dash(c));
+            if (has_rows(results, c)) put_candidate(experiment, c, lists[i], out);
         }
     }
-    fprintf(out, "\"\ngroups = \"");
-    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        if (has_rows(results, c)) fprintf(out, "\\\"%s\\\" ", experiment->candidates[c].group);
-    }
-    fprintf(out, "\"\nwithout = \"%s\"\namong = \"%s\"\nkinds = \"", experiment->frame.without,
+    fprintf(out, "\"; without = \"%s\"; among = \"%s\"; kinds = \"", experiment->frame.without,
             experiment->frame.among);
     for (uint32_t k = 0; k < experiment->kind_count; k++) {
         if (has_rays(results, experiment->kinds[k]))
             fprintf(out, "%s ", rt_ray_kind_name(experiment->kinds[k]));
     }
-    fprintf(out, "\"\n");
-    write_sets(results, out);
-    return rt_output_commit(&output, error);
-}
-
-/* The script that draws histograms.csv, with the style that it needs. */
-static RtStatus write_histograms(const RtResults *results, const char *directory, RtError *error) {
-    RtOutput output;
-    RT_TRY(rt_output_open_in(&output, directory, "plots/" HISTOGRAM_SCRIPT, error));
-    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
-        const RtWorkload *workload = &results->experiment->workloads[t];
-        fprintf(
-            output.file,
-            "#: histograms-%s: Object tests and steps of each ray on %s, and sizes and depths of leaves, as\n"
-            "#:   fractions per doubling of the value. Both axes are logarithmic; 0 is drawn at 1/2.\n",
-            workload->file_name, workload->label);
-    }
-    fputs("reset session\nload \"plots/names.gp\"\n", output.file);
-    rt_page_lines(output.file, style_gp);
-    rt_page_lines(output.file, histograms_gp);
-    return rt_output_commit(&output, error);
+    fputs("\"; sets = \"", out);
+    put_sets(results, out);
+    fputs("\"", out);
 }
 
 /* ---- gnuplot ---- */
@@ -135,7 +102,7 @@ static RtStatus fail_drawing(char **arguments, const char *directory, RtError *e
     char path[RT_MAX_PATH], scripts[MOST_SHOWN] = "", *log = NULL;
     size_t size = 0;
     RT_TRY(rt_path_join(directory, "plots/gnuplot.log", path, error));
-    for (char **script = arguments + 1; *script; script++)
+    for (char **script = arguments + 4; *script; script++) /* without those that are always there */
         rt_append_text(scripts, sizeof scripts, " %s", *script);
     RT_TRY(rt_file_read(path, MOST_BYTES, &log, &size, error));
     while (size > 0 && isspace((unsigned char)log[size - 1])) log[--size] = '\0';
@@ -205,37 +172,163 @@ static RtStatus settle(const char *directory, const char *format, bool keep, RtE
     return rt_fail(error, RT_IO, "%s: reading the folder failed: %s", plots, strerror(errno));
 }
 
-static RtStatus draw(const RtResults *results, const char *directory, const char *format, bool column,
-                     char **arguments, RtError *error) {
-    settle(directory, format, false, NULL); /* of an interrupted drawing */
-    RtStatus status = write_names(results, directory, format, column, error);
-    if (status == RT_OK) status = run_gnuplot(arguments, directory, error);
-    if (status == RT_OK) status = settle(directory, format, true, error);
-    if (status != RT_OK) settle(directory, format, false, NULL);
+/* What is drawn: the variables of all formats, and the paths of the scripts. */
+typedef struct Drawing {
+    const RtResults *results;
+    const char *directory;
+    bool column;
+    RtMemoryFile sweeps, axes; /* of sweeps.gp */
+    char shared[RT_MAX_PATH];
+    char scripts[MOST_SCRIPTS][RT_MAX_PATH];
+    uint32_t script_count;
+} Drawing;
+
+static RtStatus draw(const Drawing *drawing, const char *format, RtError *error) {
+    char program[] = "gnuplot", option[] = "-e";
+    char *arguments[MOST_SCRIPTS + 4] = {program, option};
+    RtMemoryFile variables;
+    RT_TRY(rt_memory_file_open(&variables, error));
+    put_variables(drawing->results, drawing->shared, format, drawing->column, variables.file);
+    fprintf(variables.file, "; sweeps = \"%s\"; axes = \"%s\"", drawing->sweeps.data, drawing->axes.data);
+    RT_TRY(rt_memory_file_close(&variables, "variables of plots", error));
+    arguments[2] = variables.data;
+    for (uint32_t i = 0; i < drawing->script_count; i++) arguments[3 + i] = (char *)drawing->scripts[i];
+    settle(drawing->directory, format, false, NULL); /* of an interrupted drawing */
+    RtStatus status = run_gnuplot(arguments, drawing->directory, error);
+    if (status == RT_OK) status = settle(drawing->directory, format, true, error);
+    if (status != RT_OK) settle(drawing->directory, format, false, NULL);
+    rt_free(variables.data);
     return status;
 }
 
-RtStatus rt_plots_draw(const RtResults *results, const char *directory, bool column, RtError *error) {
+static void add_shipped(Drawing *drawing, const char *name) {
+    if (rt_scripts_shipped(name, drawing->scripts[drawing->script_count])) drawing->script_count++;
+}
+
+/* Whether any accelerator beside the baseline has a ratio to it. */
+static bool has_ratios(const RtResults *results) {
+    for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
+        if (at.cell->timed && at.cell->baseline != at.candidate && isfinite(at.cell->ratio.median))
+            return true;
+    }
+    return false;
+}
+
+static uint32_t count_rows(const RtResults *results) {
+    uint32_t count = 0;
+    for (uint32_t c = 0; c < results->experiment->candidate_count; c++) count += has_rows(results, c);
+    return count;
+}
+
+static RtStatus choose_scripts(Drawing *drawing, RtScripts allowed, RtError *error) {
+    const RtResults *results = drawing->results;
     const RtExperiment *experiment = results->experiment;
-    char paths[RT_MAX_PLOTS + 1][RT_MAX_WORD + 8];
-    char program[] = "gnuplot", sweep_script[] = "plots/sweep.gp",
-         histogram_script[] = "plots/" HISTOGRAM_SCRIPT;
-    char *arguments[MOST_ARGUMENTS] = {program};
-    const bool sweeps = rt_sweep_plots_needed(experiment);
-    if (experiment->plot_count == 0 && !sweeps && !experiment->distributions) return RT_OK;
-    if (sweeps) RT_TRY(rt_sweep_plots_write(results, directory, column, error));
-    for (uint32_t i = 0; i <= experiment->plot_count; i++) {
-        snprintf(paths[i], sizeof paths[i], "plots/%s", i ? rt_plot_name(experiment, i - 1) : "names.gp");
-        arguments[i + 1] = paths[i];
+    RT_TRY(rt_scripts_folder(drawing->shared, error));
+    add_shipped(drawing, "style.gp");
+    for (uint32_t i = 0; i < experiment->plot_count; i++)
+        rt_scripts_path(experiment, i, drawing->directory, allowed,
+                        drawing->scripts[drawing->script_count++]);
+    if (experiment->plot_count == 0) {
+        if (*drawing->sweeps.data) {
+            add_shipped(drawing, "sweeps.gp");
+        } else if (count_rows(results) > 1) {
+            if (has_ratios(results)) add_shipped(drawing, "relative-time.gp");
+            add_shipped(drawing, "relative-counts.gp");
+        }
     }
-    if (sweeps) arguments[1] = sweep_script;
-    if (experiment->distributions) {
-        RT_TRY(write_histograms(results, directory, error));
-        arguments[experiment->plot_count + 2] = histogram_script;
+    if (experiment->distributions) add_shipped(drawing, "histograms.gp");
+    return RT_OK;
+}
+
+/* The files that sweeps.gp reads, and its variables; they are empty if the experiment has scripts of its own.
+ */
+static RtStatus write_sweeps(Drawing *drawing, RtError *error) {
+    RtStatus status = rt_memory_file_open(&drawing->sweeps, error);
+    if (status == RT_OK) status = rt_memory_file_open(&drawing->axes, error);
+    if (status == RT_OK && drawing->results->experiment->plot_count == 0)
+        status = rt_sweep_data_write(drawing->results, drawing->directory, drawing->sweeps.file,
+                                     drawing->axes.file, error);
+    RtMemoryFile *const files[] = {&drawing->sweeps, &drawing->axes};
+    for (int i = 0; i < 2; i++) {
+        if (!files[i]->file) continue;
+        RtStatus closed = rt_memory_file_close(files[i], "sweeps", status == RT_OK ? error : NULL);
+        if (status == RT_OK) status = closed;
     }
-    RT_TRY(draw(results, directory, "svg", column, arguments, error));
-    /* If only PDF fails, this gnuplot does not support it. */
+    return status;
+}
+
+static RtStatus draw_all(Drawing *drawing, RtScripts allowed, RtError *error) {
     RtError reason;
-    draw(results, directory, "pdf", column, arguments, &reason);
-    return write_names(results, directory, "svg", column, error); /* as it is kept */
+    RT_TRY(write_sweeps(drawing, error));
+    RT_TRY(choose_scripts(drawing, allowed, error));
+    if (drawing->script_count == 1) return RT_OK; /* style.gp alone */
+    RT_TRY(draw(drawing, "svg", error));
+    /* If only PDF fails, this gnuplot does not support it. */
+    draw(drawing, "pdf", &reason);
+    return RT_OK;
+}
+
+RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtScripts allowed, bool column,
+                       RtError *error) {
+    Drawing *drawing = rt_alloc(1, sizeof *drawing);
+    if (!drawing) return rt_fail_memory(error, "plots", sizeof *drawing);
+    *drawing = (Drawing){.results = results, .directory = directory, .column = column};
+    RtStatus status = draw_all(drawing, allowed, error);
+    rt_free(drawing->sweeps.data);
+    rt_free(drawing->axes.data);
+    rt_free(drawing);
+    return status;
+}
+
+/* ---- captions ---- */
+
+typedef struct Caption {
+    const char *name;
+    char *text; /* [RT_MAX_CAPTION] */
+} Caption;
+
+/* Of the lines "#: NAME: text", continued in lines "#:   text". */
+static void take_caption(const Caption *caption, const char *script) {
+    bool ours = false;
+    for (const char *line = script; *line; line += strcspn(line, "\n"), line += *line == '\n') {
+        if (strncmp(line, "#:", 2) != 0) continue;
+        const char *text = line + 2 + strspn(line + 2, " ");
+        if (strncmp(line, "#:   ", 5) != 0) {
+            char name[RT_MAX_LABEL];
+            const size_t length = strcspn(text, ":\n");
+            snprintf(name, sizeof name, "%.*s", (int)length, text);
+            ours = text[length] == ':' && fnmatch(name, caption->name, 0) == 0;
+            text += ours ? length + 1 + strspn(text + length + 1, " ") : 0;
+        }
+        if (ours)
+            rt_append_text(caption->text, RT_MAX_CAPTION, "%s%.*s", *caption->text ? " " : "",
+                           (int)strcspn(text, "\n"), text);
+    }
+}
+
+static void look_for_caption(void *context, const char *path) {
+    enum { MOST_BYTES = 1 << 24 };
+    const Caption *caption = context;
+    char *script;
+    size_t size;
+    if (*caption->text || rt_file_read(path, MOST_BYTES, &script, &size, NULL) != RT_OK) return;
+    take_caption(caption, script);
+    rt_free(script);
+}
+
+void rt_plot_caption(const RtExperiment *experiment, const char *directory, const char *name,
+                     char text[RT_MAX_CAPTION]) {
+    static const char *const standard[] = {"sweeps.gp", "relative-time.gp", "relative-counts.gp",
+                                           "histograms.gp"};
+    char path[RT_MAX_PATH];
+    Caption caption = {name, text};
+    *text = '\0';
+    if (rt_path_join(directory, "plots", path, NULL) == RT_OK)
+        rt_directory_each(path, ".gp", look_for_caption, &caption);
+    for (uint32_t i = 0; i < experiment->plot_count; i++) {
+        if (rt_scripts_shipped(rt_plot_name(experiment, i), path)) look_for_caption(&caption, path);
+    }
+    for (size_t i = 0; i < sizeof standard / sizeof standard[0]; i++) {
+        if (rt_scripts_shipped(standard[i], path)) look_for_caption(&caption, path);
+    }
 }

@@ -17,9 +17,6 @@ RtFileSort rt_result_file_sort(const RtExperiment *e, RtResultFile file) {
     case RT_FILE_ROUNDS: return timed ? RT_FILE_MEASURED : RT_FILE_OTHER;
     case RT_FILE_FRAME: return timed && *e->frame.without ? RT_FILE_MEASURED : RT_FILE_OTHER;
     case RT_FILE_RENDER: return timed && e->render ? RT_FILE_MEASURED : RT_FILE_OTHER;
-    case RT_FILE_PUBLISHED:
-    case RT_FILE_BEST:
-    case RT_FILE_PUBLISHED_PAGE: return e->published.table_count ? RT_FILE_COMPARED : RT_FILE_OTHER;
     default: return RT_FILE_OTHER;
     }
 }

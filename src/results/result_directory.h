@@ -11,9 +11,8 @@
  *   experiment.yaml  a copy of the experiment
  *   manifest.json    seed, fingerprints, version, compiler, machine, date
  *   published.csv, best.csv, published.md
- *                    published figures beside measured ones, if the experiment names any; exact
- *   published/       (or the folder that they come from) copies of the published tables
- *   plots/           the scripts and their plots
+ *                    published figures beside measured ones (experiments/published)
+ *   plots/           plots, and the scripts that raytally does not ship
  *   tables.md, tables.tex, report.html
  *                    the results to read */
 #ifndef RT_RESULTS_RESULT_DIRECTORY_H
@@ -26,8 +25,7 @@
 typedef enum RtFileSort {
     RT_FILE_OTHER,    /* none of these */
     RT_FILE_MEASURED, /* written as cells are measured; depends on times */
-    RT_FILE_COUNTED,  /* written as cells are measured; byte-identical on every machine */
-    RT_FILE_COMPARED  /* made from published figures (literature/published_tables.h); as identical */
+    RT_FILE_COUNTED   /* written as cells are measured; byte-identical on every machine */
 } RtFileSort;
 
 /* RT_FILE_OTHER also if the experiment has no such file. */

@@ -124,26 +124,12 @@ static RtStatus make_directory(Run *run, RtError *error) {
     return RT_OK;
 }
 
-/* Copies a table with its folder, where the copied YAML finds it. */
-static RtStatus copy_table(const Run *run, const char *name, RtOutputs *copies, RtError *error) {
-    char from[RT_MAX_PATH], to[RT_MAX_PATH], folder[RT_MAX_PATH];
-    RT_TRY(rt_path_join(run->experiment->folder, name, from, error));
-    RT_TRY(path_in(run, name, to, error));
-    rt_path_folder(to, folder);
-    RT_TRY(rt_directory_create(folder, error));
-    return rt_outputs_copy(copies, from, to, error);
-}
-
 static RtStatus copy_files(const Run *run, RtOutputs *copies, RtError *error) {
-    const RtPublishedSetup *published = &run->experiment->published;
     const char *directory = run->options->directory;
     const RtRunJoin *join = run->options->join;
     char path[RT_MAX_PATH];
     RT_TRY(path_in(run, rt_result_files[RT_FILE_EXPERIMENT], path, error));
     RT_TRY(rt_outputs_copy(copies, run->experiment->path, path, error));
-    for (uint32_t i = 0; i < published->table_count; i++)
-        RT_TRY(copy_table(run, published->tables[i], copies, error));
-    if (*published->reasons) RT_TRY(copy_table(run, published->reasons, copies, error));
     RT_TRY(rt_scripts_copy(run->experiment, directory, run->resumed, copies, error));
     return join ? join->add(join->context, run->experiment, directory, copies, error) : RT_OK;
 }
@@ -160,7 +146,6 @@ static RtStatus replace_previous(Run *run, RtError *error) {
 }
 
 static RtStatus prepare_directory(Run *run, RtError *error) {
-    if (run->options->report) RT_TRY(run->options->report->check(run->experiment, error));
     RT_TRY(rt_scripts_find(run->experiment, error));
     RT_TRY(rt_scripts_check(run->experiment, run->options->directory, run->resumed, run->options->scripts,
                             error));
@@ -304,7 +289,8 @@ static RtStatus finish(const Run *run, RtError *error) {
         RT_TRY(rt_manifest_set_claims(run->results, options->directory, error));
     /* rt_merge has the report written of all shards. */
     if (!options->report || options->workload.only.shards) return RT_OK;
-    return options->report->write(run->results, options->directory, &options->workload.observer, error);
+    return options->report(run->results, options->directory, options->scripts, &options->workload.observer,
+                           error);
 }
 
 RtStatus rt_run_experiment(RtResults *results, const RtRunOptions *options, RtError *error) {

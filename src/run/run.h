@@ -7,14 +7,10 @@
 #include "measure/result_files.h"
 #include "run/workload.h"
 
-/* What else is made from the results of a finished run: report/report.h. */
-typedef struct RtRunReport {
-    /* Checks its input, before anything of a previous run is removed. */
-    RtStatus (*check)(const RtExperiment *experiment, RtError *error);
-    /* Writes it into the directory, which is locked and has its manifest. */
-    RtStatus (*write)(const RtResults *results, const char *directory, const RtRunObserver *observer,
-                      RtError *error);
-} RtRunReport;
+/* Writes what else is made from the results of a finished run (report/report.h) into the directory, which is
+ * locked and has its manifest; draws plots with the allowed scripts. */
+typedef RtStatus RtRunReport(const RtResults *results, const char *directory, RtScripts scripts,
+                             const RtRunObserver *observer, RtError *error);
 
 /* Results that were measured in shards, and are joined in a directory: run/merge.h. */
 typedef struct RtRunJoin {
@@ -30,7 +26,7 @@ typedef struct RtRunOptions {
     RtStart start;         /* what happens to the results of a previous run */
     RtScripts scripts;
     const RtRunJoin *join;      /* or NULL; with it, `start` does not resume */
-    const RtRunReport *report;  /* or NULL */
+    RtRunReport *report;        /* or NULL */
     RtWorkloadOptions workload; /* its observer is called after the journal */
 } RtRunOptions;
 

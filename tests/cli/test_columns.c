@@ -7,7 +7,6 @@
 #include "core/base/file.h"
 #include "core/base/memory.h"
 #include "core/text/csv.h"
-#include "literature/published_tables.h"
 #include "measure/extents_table.h"
 #include "results/distribution_tables.h"
 #include "results/frame_table.h"
@@ -23,7 +22,6 @@
 
 static RtExperiment experiment; /* of nothing */
 static const RtResults results = {.experiment = &experiment};
-static RtPublished published = {.experiment = &experiment};
 
 static RtTable of_results(RtResultTable which) {
     static RtResultRow row = {.results = &results};
@@ -44,11 +42,6 @@ static RtTable of_instructions(void) {
     static const RtCallgrind callgrind = {0};
     static RtInstructionsRow row = {.callgrind = &callgrind};
     return rt_instructions_table(&row);
-}
-
-static RtTable of_published(RtPublishedTable which) {
-    static RtPublishedCursor cursor = {.published = &published};
-    return rt_published_table(which, &cursor);
 }
 
 static RtTable of_comparison(RtTable (*table)(RtComparedRow *row, bool all)) {
@@ -80,9 +73,6 @@ static void list(Section sections[SECTIONS]) {
         {"render.csv", true, NULL, RESULTS(RT_RENDERED)},
         {"distributions.csv", true, NULL, .table = of_distributions(RT_DISTRIBUTIONS)},
         {"histograms.csv", true, NULL, .table = of_distributions(RT_HISTOGRAMS)},
-        {"published.csv", true, "results/reference/havran-1999/published.csv",
-         .table = of_published(RT_FIGURES)},
-        {"best.csv", true, "results/reference/havran-1999/best.csv", .table = of_published(RT_BEST)},
         {"verify.csv", true, "results/reference/verify/verify.csv", .table = verify_csv},
         {"bench --json: rows", false, NULL, RESULTS(RT_BENCH)},
         {"bench --json: null_runs", false, NULL, RESULTS(RT_NULL_RUNS)},

@@ -137,11 +137,11 @@ RT_TEST_IN_PLACE(the_report_quotes_the_papers_with_page_and_verdict_and_marks_wh
     write_changed(place, "small.yaml", claiming, "rays: [primary]\n", quoting);
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
     assert_in_file(place, "out/report.html",
-                   "<p>&ldquo;Four &lt;is&gt; best.&rdquo;</p><footer class=\"meta\">A &amp; B, 1988, page "
-                   "19</footer> <span class=\"verdict open\">true of its machine</span>");
+                   "\"citation\":\"A & B, 1988\",\"page\":\"19\",\"seen\":true,"
+                   "\"quote\":\"Four \\u003cis> best.\",\"verdict\":\"true of its machine\"");
     assert_in_file(place, "out/report.html",
-                   "<p>Five is better.</p><footer class=\"meta\">C, 1989. In our words: the text was not at "
-                   "hand.</footer> <span class=\"verdict open\">not judged</span>");
+                   "\"citation\":\"C, 1989\",\"page\":\"unseen\",\"seen\":false,"
+                   "\"quote\":\"Five is better.\",\"verdict\":\"not judged\"");
 }
 
 RT_TEST_IN_PLACE(section_and_paper_may_change_after_a_run) {

@@ -17,7 +17,7 @@
 
 static RtStatus run_shard(const Place *place, const char *directory, uint32_t shard, RtStart start,
                           RtError *error) {
-    RtRunOptions how = {.start = start, .report = &rt_run_report};
+    RtRunOptions how = {.start = start, .report = rt_run_report};
     if (shard) how.workload.only = (RtSelection){.shard = shard, .shards = 2};
     return run_small(place, directory, false, how, error);
 }
@@ -31,7 +31,7 @@ static RtStatus merge(const Place *place, const char *directory, RtStart start, 
     RtResults results;
     Path shards[] = {path_in(place, "s1"), path_in(place, "s2")}, out = path_in(place, directory);
     const char *const directories[] = {shards[0].text, shards[1].text};
-    const RtRunOptions options = {.directory = out.text, .start = start, .report = &rt_run_report};
+    const RtRunOptions options = {.directory = out.text, .start = start, .report = rt_run_report};
     RtStatus status = rt_merge(directories, 2, &options, place->experiment, &results, error);
     rt_results_clear(&results);
     return status;

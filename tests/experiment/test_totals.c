@@ -131,12 +131,13 @@ RT_TEST_IN_PLACE(a_result_without_the_sizes_of_whole_sets_says_of_the_measured_p
 
 RT_TEST_IN_PLACE(whole_sets_are_in_the_manifest_and_in_the_names_for_plots_but_not_in_counts_csv) {
     const Place *place = *state;
-    write_changed(place, "small.yaml", small_experiment, "quick:", "distributions: yes\nquick:");
+    write_in(place, "x.gp", "set print '../sets'\nprint sets\n");
+    write_changed(place, "small.yaml", small_experiment, "quick:", "plots: [x.gp]\nquick:");
     assert_int_equal(raytally(place, "run small.yaml --quick --out out"), 0);
     assert_in_file(place, "out/manifest.json", "\"whole_rays\": 4096");
     assert_not_in_file(place, "out/counts.csv", "whole");
     if (access("/usr/bin/gnuplot", X_OK) != 0) RT_SKIP("gnuplot-nox");
-    assert_in_file(place, "out/plots/names.gp", "\nsets = \"gears:size=2/primary=4096 ");
+    assert_in_file(place, "sets", "gears:size=2/primary=4096 ");
 }
 
 RT_TEST_IN_PLACE(the_end_of_a_run_and_a_benchmark_say_how_many_rays_of_how_many_were_measured) {

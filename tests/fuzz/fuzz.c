@@ -38,8 +38,6 @@ static const struct Target {
     {"packed-journal", "cells.jsonl.gz", fuzz_packed_journal, NULL},
     {"verification", "rows.jsonl", fuzz_verification, NULL},
     {"csv", "verify.csv", fuzz_csv, NULL},
-    {"figures", "figures.csv", fuzz_figures, fuzz_prepare_results},
-    {"reasons", "reasons.csv", fuzz_figures, fuzz_prepare_results},
     {"plugin", NULL, fuzz_plugin, fuzz_prepare_plugin},
     {"worker", NULL, fuzz_worker, NULL},
 };

@@ -8,8 +8,7 @@
 #include "core/text/csv.h"
 #include "core/text/json.h"
 #include "experiment/manifest_experiment.h"
-#include "literature/published_tables.h"
-#include "report/index_entry.h"
+#include "report/index.h"
 #include "report/page.h"
 #include "results/distribution_tables.h"
 #include "results/frame_table.h"
@@ -44,8 +43,6 @@ static const char experiment_text[] =
     "hardware: yes\n"
     "distributions: yes\n"
     "frame: {without: all, among: loops}\n"
-    "published: {tables: [figures.csv], reasons: reasons.csv, tolerance: {leaves: 1, object_tests: 3, "
-    "primary: 1}}\n"
     "expect:\n"
     "  - object_tests of grid falls with density\n"
     "  - ratio of time of grid:density=4 to bvh on balls > 5\n"
@@ -54,9 +51,6 @@ static const char experiment_text[] =
     "  - correlation of predicted_cost and time of all > 0.9\n"
     "  - break_even of grid\n"
     "  - render_time of all at largest n\n";
-static const char figures_header[] =
-    "scene,source,structure,parameters,accel,tests_per,leaves,object_tests,steps\n";
-static const char reasons_header[] = "scene,source,accel,column,reason\n";
 
 static RtExperiment experiment;
 static RtResults results;
@@ -64,8 +58,6 @@ static RtResults results;
 void fuzz_prepare_results(void) {
     RtError error;
     fuzz_write("experiment.yaml", experiment_text, strlen(experiment_text));
-    fuzz_write("figures.csv", figures_header, strlen(figures_header));
-    fuzz_write("reasons.csv", reasons_header, strlen(reasons_header));
     if (rt_experiment_load(&experiment, fuzz_path("experiment.yaml"), false, &error) != RT_OK)
         fuzz_fail("%s", error.message);
 }
@@ -229,7 +221,6 @@ void fuzz_manifest(const Input *input) {
     for (uint32_t i = 0; rt_manifest_candidate(manifest, i, &candidate); i++)
         rt_manifest_is_missing(manifest, i);
     rt_manifest_is_whole(manifest, "grid", "density");
-    rt_page_provenance(fuzz_nowhere(), manifest);
     fuzz_accepted(rt_experiment_load_from_manifest(&loaded, fuzz_path("experiment.yaml"), manifest, &error),
                   &error);
     json_decref(manifest);
@@ -240,13 +231,11 @@ void fuzz_manifest(const Input *input) {
 /* As the index of all results reads it; and a table that can be read can be written, and is then the same. */
 void fuzz_csv(const Input *input) {
     static const char manifest[] = "{\"date\": \"2000-01-01\", \"machine\": {}}";
-    static RtExperiment scratch;
-    RtIndexEntry entry;
     RtCsv csv, again;
+    size_t count;
     RtError error = {RT_OK, ""};
     fuzz_write("manifest.json", manifest, strlen(manifest));
-    CHECK(rt_index_entry_read(&entry, folder_of_files(), "place", &scratch, &error) == RT_OK);
-    rt_index_entry_clear(&entry);
+    fuzz_accepted(rt_index_write(folder_of_files(), &count, &error), &error);
     if (fuzz_accepted(rt_csv_read(&csv, input->path, &error), &error) && csv.columns > 1) {
         FILE *out = fopen(fuzz_path("again.csv"), "wb");
         CHECK(out);
@@ -265,22 +254,6 @@ void fuzz_csv(const Input *input) {
         rt_csv_clear(&again);
     }
     rt_csv_clear(&csv);
-}
-
-/* Published figures, or the reasons for those that differ. */
-void fuzz_figures(const Input *input) {
-    static RtPublished published;
-    RtError error = {RT_OK, ""};
-    CHECK(input->path && rt_results_init(&results, &experiment, &error) == RT_OK);
-    if (fuzz_accepted(rt_published_load(&published, &experiment, &error), &error)) {
-        rt_published_compare(&published, &results);
-        fuzz_accepted(rt_published_check(&published, &error), &error);
-        rt_published_page(&published, true, fuzz_nowhere());
-        rt_published_file_write(RT_FILE_PUBLISHED, &published, fuzz_nowhere());
-        rt_published_file_write(RT_FILE_BEST, &published, fuzz_nowhere());
-    }
-    rt_published_clear(&published);
-    rt_results_clear(&results);
 }
 
 /* Rows of a verification, without the header of their journal. A row counts only if its scene and its

@@ -20,9 +20,8 @@ typedef struct Row {
 
 static RtField seconds_of(const Row *r) {
     RtField field = rt_field_real(r->seconds);
-    field.missed = r->seconds > 1;
-    field.bold = field.missed;
-    field.note = field.missed ? "a \"slow\" one" : NULL;
+    field.bold = r->seconds > 1;
+    field.note = field.bold ? "a \"slow\" one" : NULL;
     return field;
 }
 
@@ -127,23 +126,24 @@ RT_TEST(latex_has_bold_fields_and_escapes_what_it_must) {
                    "\\end{table*}\n");
 }
 
-RT_TEST(html_escapes_marks_notes_and_keeps_numbers_for_sorting) {
+RT_TEST(a_page_gets_columns_texts_with_their_numbers_notes_and_marks) {
     RtTable narrow = first_columns();
     narrow.caption = "a & b";
     narrow.standing = first_is_best;
-    assert_written(
-        &narrow, rt_table_html,
-        "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"a &amp; b\"><table>"
-        "<caption>a &amp; b</caption><thead><tr>"
-        "<th scope=\"col\" data-id=\"name\" title=\"what it is called\">name</th>"
-        "<th scope=\"col\" class=\"number\" data-id=\"hits\" title=\"hits\">hit count</th>"
-        "<th scope=\"col\" class=\"number\" data-id=\"seconds\" title=\"how long it took\">seconds</th>"
-        "</tr></thead><tbody>\n"
-        "<tr class=\"best\" style=\"--dot:red\"><td>a|b, <code>c</code> <b>d</b> <span class=\"mark\">"
-        "&#9733;&#8239;best</span></td><td data-value=\"12\">12</td>"
-        "<td class=\"missed\" data-value=\"1.5\" title=\"a &quot;slow&quot; one\">1.5</td></tr>\n"
-        "<tr><td>&lt;x&gt;</td><td data-value=\"3456\">3456</td><td data-value=\"\">-</td></tr>\n"
-        "</tbody></table></div>\n");
+    json_t *page = rt_table_page(&narrow);
+    json_t *expected =
+        json_pack("{s:s, s:[{s:s, s:s, s:s, s:b}, {s:s, s:s, s:s, s:b}, {s:s, s:s, s:s, s:b}], s:[{s:s, s:s, "
+                  "s:[s, [s, i], "
+                  "[s, f, s]]}, {s:s, s:s, s:[s, [s, i], [s, n]]}]}",
+                  "title", "a & b", "columns", "id", "name", "name", "name", "meaning", "what it is called",
+                  "number", 0, "id", "hits", "name", "hit count", "meaning", "hits", "number", 1, "id",
+                  "seconds", "name", "seconds", "meaning", "how long it took", "number", 1, "rows", "color",
+                  "red", "standing", "best", "fields", "a|b, `c` **d**", "12", 12, "1.5", 1.5,
+                  "a \"slow\" one", "color", "", "standing", "", "fields", "<x>", "3456", 3456, "");
+    assert_non_null(expected);
+    assert_true(json_equal(page, expected));
+    json_decref(expected);
+    json_decref(page);
 }
 
 RT_TEST(json_has_an_object_a_row_and_null_for_what_is_missing) {

@@ -29,6 +29,10 @@ bool rt_column_is_number(const RtTableColumn *column) {
     return column->form >= RT_FORM_integer;
 }
 
+bool rt_column_is_measured(const RtTableColumn *column) {
+    return rt_column_is_number(column) || column->form == RT_FORM_interval;
+}
+
 /* ---- fields ---- */
 
 RtField rt_field_missing(void) {
@@ -301,7 +305,7 @@ void rt_table_widths(const RtTable *table, int widths[RT_MAX_TABLE_COLUMNS]) {
 }
 
 void rt_table_line(const RtTable *table, int *widths, const void *row, FILE *out) {
-    write_row(&(RtTableWriter){table, put_text, out, widths}, row);
+    write_row(&(RtTableWriter){.table = table, .put = put_text, .out = out, .widths = widths}, row);
 }
 
 static size_t column_count(const RtTable *table) {
@@ -331,7 +335,7 @@ void rt_table_text(const RtTable *table, FILE *out) {
     for (const char *before = ""; rt_table_part(table, widths, rt_page_width(out), &next, part);
          before = "\n") {
         fputs(before, out);
-        rt_table_walk((RtTableWriter){table, put_text, out, part});
+        rt_table_walk((RtTableWriter){.table = table, .put = put_text, .out = out, .widths = part});
     }
 }
 
@@ -379,4 +383,44 @@ json_t *rt_table_json(const RtTable *table) {
         return NULL;
     }
     return rows;
+}
+
+/* ---- JSON for pages ---- */
+
+static json_t *page_field(const RtTableColumn *column, const RtField *field) {
+    char buffer[RT_MAX_FIELD];
+    const char *text = rt_field_show(column->form, field, buffer);
+    json_t *value = json_null();
+    if (!rt_column_is_measured(column) && !field->note) return json_string(text);
+    if (field->is == RT_FIELD_INTEGER) value = json_integer((json_int_t)field->integer);
+    if (field->is >= RT_FIELD_REAL) value = rt_json_number(field->real);
+    return json_pack("[s, o, s*]", text, value, field->note);
+}
+
+/* A context: the object of the table. */
+static void put_page(RtTableWriter *w, const RtTableLine *line, const void *row) {
+    static const char *const standings[] = {"", "level", "best"};
+    json_t *list = json_array();
+    for (size_t i = 0; i < line->count; i++) {
+        const RtTableColumn *column = line->columns[i];
+        json_array_append_new(list, row ? page_field(column, &line->fields[i])
+                                        : json_pack("{s:s, s:s, s:s, s:b}", "id", column->id, "name",
+                                                    column->name, "meaning", column->meaning, "number",
+                                                    rt_column_is_measured(column)));
+    }
+    if (!row) {
+        json_object_set_new(w->page, "columns", list);
+        return;
+    }
+    const char *color = w->table->color ? w->table->color(row) : NULL;
+    const RtStanding standing = w->table->standing ? w->table->standing(row) : RT_STANDING_BEHIND;
+    json_array_append_new(json_object_get(w->page, "rows"),
+                          json_pack("{s:s, s:s, s:o}", "color", color ? color : "", "standing",
+                                    standings[standing], "fields", list));
+}
+
+json_t *rt_table_page(const RtTable *table) {
+    json_t *page = json_pack("{s:s, s:[]}", "title", table->caption ? table->caption : "", "rows");
+    if (page) rt_table_walk((RtTableWriter){.table = table, .put = put_page, .page = page});
+    return page;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Tables: results, described once and written in every format: CSV, text for a terminal, Markdown, LaTeX,
- * HTML and JSON.
+/* Tables: results, described once and written in every format: CSV, text for a terminal, Markdown, LaTeX
+ * and JSON.
  *
  * A column has a name, a meaning, a unit, the format of its fields, and a getter that computes a field from a
  * row. Columns come in groups; a table is some groups over some rows. A row is whatever the getters take,
@@ -70,8 +70,7 @@ typedef struct RtField {
     const char *text; /* borrowed; NULL: it is in `buffer` */
     uint64_t integer; /* flags, too */
     double real, low, high;
-    const char *note; /* borrowed; a tooltip in HTML; or NULL */
-    bool missed;      /* marked in HTML as below expectation */
+    const char *note; /* borrowed; a tooltip in pages; or NULL */
     bool bold;        /* in Markdown and LaTeX */
     char buffer[RT_MAX_FIELD];
 } RtField;
@@ -171,9 +170,9 @@ typedef struct RtTable {
     size_t row_count;
     const void *(*row)(void *context, size_t i); /* NULL: skip this row; the next call may reuse the row */
     void *context;
-    const char *(*color)(const void *row);   /* HTML: colour of a dot before the row; or NULL */
-    RtStanding (*standing)(const void *row); /* HTML; NULL: no marks */
-    const char *caption;                     /* LaTeX, HTML; or NULL */
+    const char *(*color)(const void *row);   /* pages: colour of a dot before the row; or NULL */
+    RtStanding (*standing)(const void *row); /* pages; NULL: no marks */
+    const char *caption;                     /* LaTeX, pages; or NULL */
     bool ragged;                             /* Markdown: numbers are not right-aligned */
     bool wide;                               /* LaTeX: as wide as both columns of an article */
 } RtTable;
@@ -188,12 +187,14 @@ void rt_table_markdown(const RtTable *table, FILE *out);
 /* A table environment for the package booktabs. */
 void rt_table_tex(const RtTable *table, FILE *out);
 
-/* <table>, with data-id in headers and data-value in numbers for sorting. */
-void rt_table_html(const RtTable *table, FILE *out);
-
 /* An array of objects, and a single one: new references, NULL if memory is short. */
 json_t *rt_table_json(const RtTable *table);
 json_t *rt_row_json(const RtColumnGroup *groups, size_t count, const void *row);
+
+/* A table for the script of a page: {"title": the caption, "columns": [{"id", "name", "meaning", "number"}],
+ * "rows": [{"color", "standing": "" or "level" or "best", "fields"}]}. A field is its text; that of a number
+ * or with a note is [text, number or null, note]. A new reference; NULL or incomplete if memory is short. */
+json_t *rt_table_page(const RtTable *table);
 
 /* Text output line by line, for rows that arrive one by one: column widths for the header and all rows so
  * far, and one row (NULL: the header). */
@@ -205,14 +206,5 @@ void rt_table_line(const RtTable *table, int *widths, const void *row, FILE *out
  * column *next, 0 at first; other columns are hidden. Moves *next; false after the last part. */
 bool rt_table_part(const RtTable *table, const int widths[RT_MAX_TABLE_COLUMNS], int page, size_t *next,
                    int part[RT_MAX_TABLE_COLUMNS]);
-
-/* Writes text as HTML, escaped; NULL is "". */
-void rt_html_put(FILE *out, const char *text);
-
-/* The same between `before` and `after`, which are HTML. */
-void rt_html_wrap(FILE *out, const char *before, const char *text, const char *after);
-
-/* The same with `code` and **bold** as in Markdown. */
-void rt_html_markup(FILE *out, const char *text);
 
 #endif

@@ -1,15 +1,40 @@
 'use strict';
-// Sorting by a click on a header, filtering by words, larger plots. The page is whole without any of it.
+// What the data of a page adds to it. A report has `sections` (tables of each scene), `frames` (tables of the answer), `papers`, and
+// what describes the method: `manifest`, `counters`, `interval`, `null_runs`, `learnt`, `left_out`, `count_only`. An index has
+// `papers`. src/core/text/table.h says what a table is. Question, answer and plots are there without any of it.
 (() => {
+  const data = JSON.parse(document.getElementById('data').textContent);
   const all = (selector, root = document) => [...root.querySelectorAll(selector)];
+  const make = (name, properties = {}, ...children) => {
+    const element = Object.assign(document.createElement(name), properties);
+    element.append(...children);
+    return element;
+  };
+
+  // ---- tables ----
+
+  const marks = { best: '★ best', level: '≈ best' };
+  const makeField = (field, column, mark) => {
+    const [text, value, note] = Array.isArray(field) ? field : [field];
+    const cell = make('td', { title: note ?? '' }, text || '-');
+    if (column.number) cell.dataset.value = value ?? '';
+    if (column.prose) cell.className = 'prose';
+    if (mark) cell.append(' ', make('span', { className: 'mark' }, mark));
+    return cell;
+  };
+  const makeRow = (row, columns) => {
+    const line = make('tr', {}, ...row.fields.map((field, i) => makeField(field, columns[i], i ? '' : marks[row.standing])));
+    if (row.standing) line.className = 'best';
+    if (row.color) line.style.setProperty('--dot', row.color);
+    return line;
+  };
   const key = (cell) => {
     if (!('value' in cell.dataset)) return cell.textContent.trim();
-    const value = parseFloat(cell.dataset.value);
-    return Number.isNaN(value) ? null : value;
+    return cell.dataset.value === '' ? null : parseFloat(cell.dataset.value);
   };
-  // What is not known stands at the end in both directions.
   const compare = (a, b) => typeof a === 'number' && typeof b === 'number' ? a - b :
     String(a).localeCompare(String(b), 'en', { numeric: true });
+  // What is not known stands at the end in both directions.
   const sort = (header) => {
     const body = header.closest('table').tBodies[0], column = header.cellIndex;
     const up = header.getAttribute('aria-sort') !== 'ascending';
@@ -19,55 +44,112 @@
     rows.sort(([a], [b]) => a === null || b === null ? (a === null) - (b === null) : up ? compare(a, b) : compare(b, a));
     body.append(...rows.map(([, row]) => row));
   };
-  for (const header of all('.wide thead th')) {
-    const button = document.createElement('button');
-    button.type = 'button';
-    button.append(...header.childNodes);
+  const makeHeader = (column) => {
+    const button = make('button', { type: 'button' }, column.name);
+    const header = make('th', { scope: 'col', title: column.meaning, className: column.number ? 'number' : '' }, button);
+    header.dataset.id = column.id;
     button.addEventListener('click', () => sort(header));
-    header.append(button);
+    return header;
+  };
+  // The box scrolls if the table is wider; so it can be reached by keyboard and has a name.
+  const makeTable = ({ title, columns, rows }) => {
+    const table = make('table', {}, make('caption', {}, title), make('thead', {}, make('tr', {}, ...columns.map(makeHeader))),
+      make('tbody', {}, ...rows.map((row) => makeRow(row, columns))));
+    const box = make('div', { className: 'wide', tabIndex: 0 }, table);
+    box.setAttribute('role', 'region');
+    box.setAttribute('aria-label', title);
+    return box;
+  };
+  const makeDetails = (title, ...children) => make('details', {}, make('summary', {}, title), ...children);
+  const makeSection = ({ title, tables, folded }) => {
+    const section = make('section', { className: 'scene-tables' }, make('h3', {}, title), ...tables.map(makeTable),
+      ...folded.map((table) => makeDetails(table.title, makeTable(table))));
+    section.dataset.scene = title;
+    return section;
+  };
+
+  const place = document.getElementById('tables');
+  const put = (title, ...children) => place.append(make('h2', { id: title.toLowerCase().replaceAll(' ', '-') }, title), ...children);
+  const paragraph = (...children) => make('p', {}, ...children);
+  place.textContent = '';
+  document.getElementById('frames')?.append(...data.frames.map(makeTable));
+  if (data.sections) {
+    put('Tables', paragraph(`In brackets: ${data.interval} intervals. ★ marks the best of a scene and kind of rays, by ` +
+      `${data.count_only ? 'object tests' : 'time'}; ≈ marks intervals that overlap that of the best. Times over all kinds have ` +
+      'conservative intervals, and are unknown if a kind is missing.'));
+    if (data.learnt) place.append(paragraph(data.learnt));
+  }
+  const filter = make('div', { className: 'filter', id: 'filter' }), input = make('input', { type: 'search', id: 'words',
+    placeholder: 'words, e.g. of a scene, an accelerator, a kind' }), said = make('output', { className: 'meta' });
+  filter.append(make('label', { htmlFor: 'words' }, data.sections ? 'Rows with' : 'Experiments with'), input, said);
+  if (data.sections) place.append(filter, ...data.sections.map(makeSection));
+  else document.querySelector('h2')?.before(filter);
+
+  // ---- literature and method ----
+
+  if (data.papers.length) {
+    const names = ['citation', 'page', 'quote', 'verdict', 'experiment'];
+    const quote = (paper) => paper.seen ? `“${paper.quote}”` : `${paper.quote} (in our words: the text was not at hand)`;
+    put('From the literature', makeTable({ title: 'Sentences that are tested',
+      columns: names.map((name) => ({ id: name, name: name === 'quote' ? 'sentence' : name, meaning: '', prose: name !== 'page' })),
+      rows: data.papers.map((paper) => ({ fields: [paper.citation, paper.page, quote(paper), paper.verdict, paper.experiment] })) }));
+  }
+  const makeList = (pairs) => make('dl', {}, ...pairs.flatMap(([name, text]) => [make('dt', {}, name), make('dd', {}, String(text))]));
+  if (data.manifest) {
+    const { machine, ...run } = data.manifest, plain = (object) => Object.entries(object ?? {}).filter(([name, value]) =>
+      value !== null && typeof value !== 'object' && name !== 'question' && name !== 'prediction');
+    put('How it was measured', paragraph('Every accelerator traced the same recorded rays. Totals weight each kind of rays by the size ' +
+      'of its whole set, before any limit. Shadow rays stop at any hit. ', make('em', {}, 'ideal'), ' knows the answers in advance: it is ' +
+      'the lower bound. ', make('em', {}, 'differ'), ' counts answers that differ from the reference; the run fails if an exact ' +
+      'accelerator has any.'), paragraph(data.count_only ? 'Nothing was timed: this experiment counts.' :
+      'Counting and timing are separate passes. Times are medians over rounds that run all accelerators in random order; ratios are ' +
+      'throughput relative to the baseline, paired within a round. Intervals are order statistics: they contain the median with a ' +
+      `probability of at least ${data.interval}. ${data.null_runs}`), makeDetails('Counters', makeList(data.counters)));
+    if (data.left_out) place.append(make('pre', { className: 'meta' }, data.left_out));
+    const plugins = (machine?.plugins ?? []).map(({ accelerators, file, hash }) => [`plugin of ${accelerators.join(', ')}`, `${file}, hash ${hash}`]);
+    const manifest = makeDetails('Manifest', makeList([...plain(run), ...plain(machine), ...plugins]));
+    manifest.open = true;
+    place.append(manifest);
+    document.querySelector('.lede').after(make('p', { className: 'meta' }, [run.date, machine?.cpu,
+      `raytally ${machine?.version} (${machine?.commit})${machine?.dirty ? ', with changes' : ''}`,
+      ...(run.quick ? ['quick variant'] : [])].join(' · ')));
   }
 
-  const place = document.querySelector('#filter');
-  if (place) {
-    place.hidden = false;
-    const input = place.querySelector('input'), said = place.querySelector('output');
-    const sections = all('.scene-tables').map((section) => ({ section, details: all('details', section),
-      tables: all('table', section),
-      rows: all('tbody tr', section).map((row) => ({ row, text: null })) }));
-    const total = sections.reduce((sum, { rows }) => sum + rows.length, 0);
-    const filter = () => {
-      const words = input.value.toLowerCase().split(/\s+/).filter(Boolean);
-      let shown = 0;
-      for (const { section, details, tables, rows } of sections) {
-        let here = 0;
-        for (const entry of rows) {
-          // The words of a row: its fields, and the scene's name.
-          if (entry.text === null) {
-            const fields = [...entry.row.cells].map((cell) => cell.textContent);
-            entry.text = [section.dataset.scene, ...fields].join(' ').toLowerCase();
-          }
-          const there = words.every((word) => entry.text.includes(word));
-          entry.row.hidden = !there;
-          here += there;
-        }
-        shown += here;
-        section.hidden = here === 0;
-        const isEmpty = (part) => all('tbody tr', part).every((row) => row.hidden);
-        for (const part of [...tables, ...details]) part.hidden = isEmpty(part);
-        if (words.length) for (const each of details) each.open = true;
+  // ---- filtering ----
+
+  // Tables whose rows are filtered, or the cards of an index.
+  const groups = all('.scene-tables').map((section) => ({ section, details: all('details', section), tables: all('.wide', section),
+    rows: all('tbody tr', section).map((row) => ({ row, text: null })) }));
+  if (!data.sections) groups.push({ section: null, details: [], tables: [], rows: all('.entry').map((row) => ({ row, text: null })) });
+  const total = groups.reduce((sum, { rows }) => sum + rows.length, 0), unit = data.sections ? 'rows' : 'experiments';
+  const show = () => {
+    const words = input.value.toLowerCase().split(/\s+/).filter(Boolean);
+    let shown = 0;
+    for (const { section, details, tables, rows } of groups) {
+      let here = 0;
+      for (const entry of rows) {
+        // The words of a row: its fields, and the scene's name.
+        if (entry.text === null) entry.text = [section?.dataset.scene ?? '', ...[...entry.row.cells ?? [entry.row]].map((cell) => cell.textContent)].join(' ').toLowerCase();
+        const there = words.every((word) => entry.text.includes(word));
+        entry.row.hidden = !there;
+        here += there;
       }
-      said.textContent = words.length ? `${shown} of ${total} rows` : `${total} rows`;
-    };
-    let waiting;
-    input.addEventListener('input', () => { clearTimeout(waiting); waiting = setTimeout(filter, 80); });
-    filter();
-  }
+      shown += here;
+      if (section) section.hidden = here === 0;
+      const isEmpty = (part) => all('tbody tr', part).every((row) => row.hidden);
+      for (const part of [...tables, ...details]) part.hidden = isEmpty(part);
+      if (words.length) for (const each of details) each.open = true;
+    }
+    said.textContent = words.length ? `${shown} of ${total} ${unit}` : `${total} ${unit}`;
+  };
+  let waiting;
+  input.addEventListener('input', () => { clearTimeout(waiting); waiting = setTimeout(show, 80); });
+  show();
+
+  // ---- plots and print ----
 
   for (const plot of all('.plot')) {
-    const button = document.createElement('button');
-    button.type = 'button';
-    button.className = 'enlarge';
-    button.textContent = 'Enlarge';
+    const button = make('button', { type: 'button', className: 'enlarge' }, 'Enlarge');
     button.setAttribute('aria-label', 'Enlarge ' + plot.getAttribute('aria-label'));
     button.setAttribute('aria-pressed', 'false');
     button.addEventListener('click', () => {
@@ -77,7 +159,6 @@
     });
     plot.after(button);
   }
-
   // Print whole: what is folded opens, and folds again.
   let folded = [];
   addEventListener('beforeprint', () => { folded = all('details:not([open])'); for (const each of folded) each.open = true; });
