@@ -57,15 +57,14 @@ RT_TEST_IN_PLACE(a_run_that_asks_for_distributions_has_them_in_tables_of_their_o
     assert_in_file(place, "out/plots/histograms-balls.svg", "shadow rays");
 }
 
-RT_TEST_IN_PLACE(files_that_are_named_after_scenes_have_names_that_every_system_takes) {
+RT_TEST_IN_PLACE(files_that_are_named_after_scenes_have_portable_names_of_their_own) {
     const Place *place = *state;
     write_changed(place, "small.yaml", spread, "label: cloud, size: 16x16}",
-                  "label: \"n:50|x\", size: 16x16}\n  - {scene: \"balls:size=1\", label: N-50-X, size: 8x8}\n"
-                  "  - {scene: \"balls:size=1\", label: aux, size: 8x8}");
+                  "label: \"n:50|x\", size: 16x16}\n  - {scene: \"balls:size=1\", label: N-50-X, size: 8x8}");
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
-    const char *const names[] = {"n-50-x", "N-50-X-2", "_aux", "balls"};
+    const char *const names[] = {"n-50-x", "N-50-X-2", "balls"};
     char *page = read_in(place, "out/report.html"), *image = page;
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 3; i++) {
         char name[64];
         snprintf(name, sizeof name, "out/images/%s.png", names[i]);
         assert_true(rt_file_exists(path_in(place, name).text));
@@ -78,7 +77,7 @@ RT_TEST_IN_PLACE(files_that_are_named_after_scenes_have_names_that_every_system_
     assert_in_file(place, "out/plots/histograms-N-50-X-2.svg", "</svg>");
     assert_in_file(place, "out/report.html",
                    "Object tests and steps of each ray, and sizes and depths of leaves");
-    assert_in_file(place, "out/report.html", "plots/histograms-_aux.pdf");
+    assert_in_file(place, "out/report.html", "plots/histograms-N-50-X-2.pdf");
 }
 
 RT_TEST_IN_PLACE(a_run_that_does_not_ask_has_neither_tables_nor_plots_of_them) {
