@@ -3,14 +3,13 @@
  *
  * No code of a library ever runs in raytally's own process: effects of its constructors (the locale,
  * rounding, signal handlers, a crash) stay in other processes. One process tries the library and copies its
- * tables, that is their numbers and texts, into shared memory; raytally trusts
- * them as little as any other input. Each process that builds an accelerator opens the library for itself. */
+ * tables, their numbers and texts, into shared memory; raytally trusts them as little as any other input.
+ * Each process that builds an accelerator opens the library for itself. */
 #include "accel/plugin.h"
 #include "accel/plugin/host.h"
-#include "core/base/process.h"
-
 #include "core/base/file.h"
 #include "core/base/memory.h"
+#include "core/base/process.h"
 
 #include <dlfcn.h>
 #include <errno.h>

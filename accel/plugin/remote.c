@@ -38,11 +38,11 @@ typedef struct Remote {
     unsigned asked[CHANNELS]; /* number of the last request on each channel */
     pthread_mutex_t master;   /* of channel 0 */
     RtDescription description;
-    uint64_t before, built; /* bytes of memory that the process holds, at the fork and once it was built */
-    uint64_t memory_limit;  /* the most bytes that it may hold beyond `before`; UINT64_MAX: any */
-    pthread_mutex_t lock;   /* of the following members */
-    bool used[CHANNELS];    /* by queries; channel 0 by none */
-    atomic_bool broken;     /* error says why */
+    double before, built; /* megabytes of memory that the process holds, at the fork and once it was built */
+    double memory_limit;  /* the most megabytes that it may hold beyond `before` */
+    pthread_mutex_t lock; /* of the following members */
+    bool used[CHANNELS];  /* by queries; channel 0 by none */
+    atomic_bool broken;   /* error says why */
     bool ended;
     RtError error; /* its status is RT_BROKEN; RT_BAD_INPUT if the structure exceeds the limit of memory */
 } Remote;
@@ -101,29 +101,26 @@ __attribute__((format(printf, 2, 3))) static void note(const Remote *remote, con
     pthread_mutex_unlock(&notice_lock);
 }
 
-/* Bytes of memory that a process holds beyond `before`. */
-static uint64_t held_bytes(pid_t pid, uint64_t before) {
-    const uint64_t now = 1024 * rt_process_status(pid, "RssAnon");
-    return now > before ? now - before : 0;
+/* An entry of /proc/PID/status in megabytes; 0 if it is unknown. */
+static double megabytes(pid_t pid, const char *entry) {
+    return 1024e-6 * (double)rt_process_status(pid, entry);
 }
 
 /* The most that it ever held beyond what it began with, which is a copy of raytally's memory. */
-static uint64_t peak_bytes(const Remote *remote) {
+static double peak_megabytes(const Remote *remote) {
     const pid_t pid = remote->process.pid;
-    const uint64_t most = 1024 * rt_process_status(pid, "VmHWM");
-    const uint64_t others = remote->before + 1024 * rt_process_status(pid, "RssFile");
-    return most > others ? most - others : 0;
+    return megabytes(pid, "VmHWM") - megabytes(pid, "RssFile") - remote->before;
 }
 
 /* The limit is wide: arenas of the C library, and large pages for the stacks of threads, are memory, too. */
 static void note_build(const Remote *remote) {
-    const uint64_t held = held_bytes(remote->process.pid, remote->before), bytes = remote->description.bytes;
-    if ((double)held > 256e6 + 4.0 * (double)bytes)
+    const double held = remote->built - remote->before, described = 1e-6 * (double)remote->description.bytes;
+    if (held > 256 + 4 * described)
         note(
             remote,
             "its process holds %.0f MB of memory once it is built, and its `describe` says %.3g MB: the rest "
             "is not described, or never freed",
-            1e-6 * (double)held, 1e-6 * (double)bytes);
+            held, described);
 }
 
 /* Threads that sleep, such as those of a pool, disturb nothing, and are not reported. raytally's own two
@@ -152,8 +149,7 @@ static void note_processes(const Remote *remote, const RtProcessEnd *end) {
 
 /* ---- how it fails ---- */
 
-/* "NAME: WHAT while DOING, at the ray ...", if that is known; `doing` may be NULL. Only the first failure is
- * kept. */
+/* "NAME: WHAT[ while DOING][, at the ray ...]". Only the first failure is kept. */
 static void set_broken(Remote *remote, const char *what, const char *doing) {
     static const char *const places[] = {"", "; its stream begins with the ray ", ", at the ray "};
     char text[RT_RAY_TEXT];
@@ -175,10 +171,10 @@ void rt_remote_break(const RtAccel *accel, const char *what, const char *doing) 
 static void report_end(Remote *remote, RtProcessEnd end, const char *doing) {
     static const char *const past[] = {"", ": it wrote or read past the memory of its query",
                                        ": it wrote or read past its answers"};
-    const Crash *crash = &remote->shared->crash;
-    const uint32_t out_of = crash->out_of;
+    const uint32_t out_of = remote->shared->crash.out_of;
     char what[160];
-    rt_process_end_format(end, crash->signal, out_of <= 2 ? past[out_of] : "", what, sizeof what);
+    const int signal = remote->shared->crash.signal;
+    rt_process_end_format(end, signal, out_of <= 2 ? past[out_of] : "", what, sizeof what);
     note_processes(remote, &end);
     set_broken(remote, what, doing);
 }
@@ -194,11 +190,11 @@ static void end_hung(Remote *remote, const char *doing) {
 }
 
 /* Whether a structure exceeds the limit as it is built is no fault; later it is. */
-static void end_large(Remote *remote, const char *doing, uint64_t bytes) {
+static void end_large(Remote *remote, const char *doing, double peak) {
     char what[128];
     rt_process_end(&remote->process, 0);
-    snprintf(what, sizeof what, "its process used %.4g MB of memory, more than %.4g MB (--memory),",
-             1e-6 * (double)bytes, 1e-6 * (double)remote->memory_limit);
+    snprintf(what, sizeof what, "its process used %.4g MB of memory, more than %.4g MB (--memory),", peak,
+             remote->memory_limit);
     set_broken(remote, what, doing);
     if (remote->asked[0] == 1) remote->error.status = RT_BAD_INPUT;
 }
@@ -208,7 +204,7 @@ static void end_large(Remote *remote, const char *doing, uint64_t bytes) {
 static bool check_process(Remote *remote, const char *doing, bool overwritten, double waited) {
     pthread_mutex_lock(&remote->lock);
     RtProcessEnd end;
-    const bool limited = remote->memory_limit < UINT64_MAX;
+    const double peak = remote->memory_limit < INFINITY ? peak_megabytes(remote) : 0;
     if (!remote->ended) {
         remote->ended = true;
         if (overwritten) {
@@ -216,8 +212,8 @@ static bool check_process(Remote *remote, const char *doing, bool overwritten, d
             set_broken(remote, "it overwrote memory that it shares with raytally", doing);
         } else if (rt_process_wait(&remote->process, 0, &end)) {
             report_end(remote, end, doing);
-        } else if (limited && peak_bytes(remote) > remote->memory_limit) {
-            end_large(remote, doing, peak_bytes(remote));
+        } else if (peak > remote->memory_limit) {
+            end_large(remote, doing, peak);
         } else if (waited > remote->time_limit) {
             end_hung(remote, doing);
         } else {
@@ -238,7 +234,7 @@ static bool wait_for_answer(Remote *remote, uint32_t number, const char *doing) 
     Channel *channel = &remote->shared->channels[number];
     const unsigned asked = remote->asked[number];
     /* A plugin may take memory in many short requests, too. */
-    const bool checked = remote->memory_limit < UINT64_MAX && (number == 0 || asked % 64 == 1);
+    const bool checked = remote->memory_limit < INFINITY && (number == 0 || asked % 64 == 1);
     unsigned long progress = remote->shared->progress;
     for (double waited = 0;;) {
         const unsigned answered = atomic_load_explicit(&channel->answered, memory_order_acquire);
@@ -312,7 +308,7 @@ static RtStatus start(Remote *remote, RtError *error) {
     if (shared == MAP_FAILED) return rt_fail_memory(error, "memory shared with a plugin", sizeof(Shared));
     remote->shared = shared;
     if (pipe2(ends, O_CLOEXEC) != 0) return rt_fail(error, RT_IO, "a pipe: %s", strerror(errno));
-    remote->before = 1024 * rt_process_status(getpid(), "RssAnon");
+    remote->before = megabytes(getpid(), "RssAnon");
     RtStatus status = rt_process_fork(&remote->process, ends[0], error);
     if (status == RT_OK && remote->process.pid == 0)
         rt_server_run(shared, &remote->spec, remote->base.scene, remote->threads);
@@ -339,7 +335,7 @@ static RtStatus take_built(Remote *remote, RtError *error) {
     remote->base.build_seconds = built.seconds;
     remote->base.build_tally = built.description.build;
     remote->description = built.description;
-    remote->built = 1024 * rt_process_status(remote->process.pid, "RssAnon");
+    remote->built = megabytes(remote->process.pid, "RssAnon");
     note_build(remote);
     return RT_OK;
 }
@@ -347,6 +343,7 @@ static RtStatus take_built(Remote *remote, RtError *error) {
 RtStatus rt_remote_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
                          RtError *error) {
     Remote *remote = rt_alloc(1, sizeof(Remote));
+    const uint64_t limit = rt_memory_current_limit();
     *out = NULL;
     if (!remote) return rt_fail_memory(error, "an accelerator", sizeof(Remote));
     *remote = (Remote){.base = {.ops = &remote->ops, .scene = scene, .scratch_bytes = sizeof(uint32_t)},
@@ -354,7 +351,7 @@ RtStatus rt_remote_build(const RtSpec *spec, const RtScene *scene, int threads, 
                        .spec = *spec,
                        .threads = threads,
                        .pipe_end = -1,
-                       .memory_limit = rt_memory_current_limit(),
+                       .memory_limit = limit < UINT64_MAX ? 1e-6 * (double)limit : INFINITY,
                        .time_limit = 10 * time_limit_of_user()};
     const RtSpecLayer *plugin = spec->layers;
     while (!plugin->ops->remote) plugin++;
@@ -384,10 +381,10 @@ const char *rt_remote_exit_message(void) {
 static void destroy(RtAccel *accel) {
     Remote *remote = of(accel);
     if (remote->process.pid > 0 && !remote->broken) {
-        const uint64_t kept = held_bytes(remote->process.pid, remote->built);
-        if (remote->built > 0 && (double)kept > 256e6)
+        const double kept = megabytes(remote->process.pid, "RssAnon") - remote->built;
+        if (remote->built > 0 && kept > 256)
             note(remote, "its process holds %.0f MB more memory after tracing, which must allocate none",
-                 1e-6 * (double)kept);
+                 kept);
         if (request_master(remote, rt_server_destroy, NULL, 0, "it was destroyed", NULL) == RT_OK)
             note_threads(remote);
         if (remote->broken) snprintf(exit_message, sizeof exit_message, "%s", remote->error.message);
