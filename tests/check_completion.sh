@@ -103,8 +103,8 @@ offers_only 'raytally bench balls --accel grid:mailbox=' on off
 offers_only 'raytally bench balls --accel=grid:mailbox=of' off
 offers_only 'raytally bench balls --accel grid:mailbox=on,dep' on,depth=
 offers_only 'raytally bench balls --accel item+bv' item+bvh
-offers 'raytally bench balls --accel item:settle=off+bvh:' build=
-offers_only 'raytally bench balls --accel item:settle=off+bvh:build=sw' sweep
+offers 'raytally bench balls --accel item:isa=best+bvh:' build=
+offers_only 'raytally bench balls --accel item:isa=best+bvh:build=sw' sweep
 offers_only 'raytally bench tet' tetra
 offers 'raytally info ' balls stadium mine.yaml
 offers_only 'raytally info mi' mine.yaml

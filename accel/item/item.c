@@ -4,6 +4,7 @@
  * Exact: a sample names what its ray hits first. Rays that are not bit for bit those of the samples are
  * passed on. */
 #include "accel/item/item.h"
+#include "accel/kernel.h"
 
 #include "core/base/memory.h"
 
@@ -110,15 +111,16 @@ static RtStatus check_sample(const RtItemBuffer *buffer, size_t i, RtCrossing *c
     RtRay ray = rt_view_ray(&buffer->view, (uint32_t)(i % columns), (uint32_t)(i / columns));
     RtPreparedRay prepared;
     RtHit first = RT_MISS;
+    char names[48] = "no object";
     rt_hit_ray(&prepared, g, &ray, crossings);
-    for (uint32_t id = 0; id < g->object_count; id++) {
-        float t;
-        if (rt_object_hit(g, id, &prepared, &t, NULL) && rt_hit_before(t, id, first)) first = (RtHit){t, id};
-    }
+    for (uint32_t id = 0; id < g->object_count; id++) rt_test_object(g, id, &prepared, false, &first, NULL);
     if (first.object == named) return RT_OK;
-    return rt_fail(error, RT_MISMATCH,
-                   "item: sample %zu,%zu names object %d, but its ray hits object %d first, at %g",
-                   i % columns, i / columns, (int)named, (int)first.object, (double)first.t);
+    if (named != RT_NO_OBJECT) snprintf(names, sizeof names, "object %u", named);
+    if (first.object == RT_NO_OBJECT)
+        return rt_fail(error, RT_MISMATCH, "item: sample %u,%u names %s, but its ray hits nothing",
+                       ray.source % columns, ray.source / columns, names);
+    return rt_fail(error, RT_MISMATCH, "item: sample %u,%u names %s, but its ray hits object %u first, at %g",
+                   ray.source % columns, ray.source / columns, names, first.object, (double)first.t);
 }
 
 static RtStatus validate(const RtAccel *accel, RtError *error) {
