@@ -124,7 +124,7 @@ typedef struct RtBoxViewer {
 typedef struct RtCellView {
     uint32_t number; /* of the cell */
     uint32_t length; /* objects in its list */
-    uint32_t object; /* the first of them; RT_NO_OBJECT if there is none, RT_UNNAMED_OBJECT if undecided */
+    uint32_t object; /* the first of them; RT_NO_OBJECT if there is none */
     bool cut;        /* a ray that finds nothing in it is passed on */
 } RtCellView;
 

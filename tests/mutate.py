@@ -52,7 +52,7 @@ SUBJECTS = {
                       "extents:kind=sphere extents:kind=obb extents:kind=slabs clusters:extent=sphere"),
     "accel/extents/": ("extents extents_exact", "extents extents:lanes=1 extents:kind=sphere"),
     "accel/grid/": ("grid overlap nested_grid", "grid grid:depth=2 grid:overlap=exact"),
-    "accel/item/": ("error_bounds largest_errors item_exact item", "item+bvh item:settle=off+bvh"),
+    "accel/item/": ("error_bounds largest_errors item_exact item", "item+bvh"),
     "accel/kd/": ("overlap kd", "kd kd:overlap=exact"),
     "accel/light/": ("light_exact light_cells error_bounds light", "light+bvh light:cells=16,longest=1+bvh"),
     "accel/octree/": ("octree", "octree octree:traversal=points octree:traversal=neighbours"),

@@ -25,20 +25,18 @@ RtItemProjection rt_item_projection(const RtView *v) {
         .scale = {step[0] / right, step[1] / down},
         .longest = longest,
         .direction_error = 0x1p-22 * longest * (1 + 1 / right + 1 / down),
-        .across = across,
-        .down = downward,
     };
 }
 
-/* A point relative to the eye: position times depth, and depth. */
+/* A point relative to the eye: column and row times depth, and depth. */
 typedef struct Projected {
     double x[2], w;
 } Projected;
 
-/* Bounds of positions and depths; empty while lo > hi. */
+/* Bounds of columns, rows and depths; empty while lo > hi. */
 typedef struct Bounds {
     double lo[2], hi[2], near;
-    double zero; /* an x at w = 0 that is as good as 0 */
+    double zero[2]; /* an x at w = 0 that is as good as 0 */
 } Bounds;
 
 static void include(Bounds *b, const Projected *p) {
@@ -48,8 +46,8 @@ static void include(Bounds *b, const Projected *p) {
             b->lo[i] = fmin(b->lo[i], p->x[i] / p->w);
             b->hi[i] = fmax(b->hi[i], p->x[i] / p->w);
         } else {
-            if (p->x[i] < b->zero) b->lo[i] = -INFINITY;
-            if (p->x[i] > -b->zero) b->hi[i] = INFINITY;
+            if (p->x[i] < b->zero[i]) b->lo[i] = -INFINITY;
+            if (p->x[i] > -b->zero[i]) b->hi[i] = INFINITY;
         }
     }
 }
@@ -71,12 +69,14 @@ static Bounds project_box(const RtItemBuffer *buffer, const RtBox *box, double c
         eye = fmax(eye, fabs(buffer->view.eye.at[a]));
     }
     double margin = 0x1p-19 * reach + 0x1p-21 * eye + 0x1p-120;
-    Bounds bounds = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}, INFINITY, 0x1p-40 * (reach + margin)};
+    Bounds bounds = {.lo = {INFINITY, INFINITY}, .hi = {-INFINITY, -INFINITY}, .near = INFINITY};
+    bounds.zero[0] = 0x1p-40 * (reach + margin) * (to->scale[0] + buffer->view.sampling.columns);
+    bounds.zero[1] = 0x1p-40 * (reach + margin) * (to->scale[1] + buffer->view.sampling.rows);
     Projected corners[8];
     for (int i = 0; i < 8; i++) {
         RtVec3d q;
         for (int a = 0; a < 3; a++) q.at[a] = i >> a & 1 ? ends[1].at[a] + margin : ends[0].at[a] - margin;
-        corners[i] = (Projected){{rt_dotd(q, to->across), rt_dotd(q, to->down)}, rt_dotd(q, to->depth)};
+        corners[i] = (Projected){{rt_dotd(q, to->x), rt_dotd(q, to->y)}, rt_dotd(q, to->depth)};
         if (corners[i].w >= cut) include(&bounds, &corners[i]);
     }
     for (int i = 0; i < 8; i++) {
@@ -90,16 +90,6 @@ static Bounds project_box(const RtItemBuffer *buffer, const RtBox *box, double c
     return bounds;
 }
 
-/* The samples of a row or column at positions lo..hi; false if there are none. */
-static bool samples_between(double lo, double hi, uint32_t n, bool corners, uint32_t *first, uint32_t *last) {
-    double step = corners ? (n - 1) * 0.5 : n * 0.5, start = corners ? 0 : -0.5;
-    double from = ceil((lo + 1) * step + start), to = floor((hi + 1) * step + start);
-    if (!(to >= 0 && from < n && from <= to)) return false;
-    *first = from > 0 ? (uint32_t)from : 0;
-    *last = to < n ? (uint32_t)to : n - 1;
-    return true;
-}
-
 bool rt_item_footprint(const RtItemBuffer *buffer, uint32_t id, RtItemFootprint *footprint) {
     const RtSampling *s = &buffer->view.sampling;
     const uint32_t count[2] = {s->columns, s->rows};
@@ -111,23 +101,11 @@ bool rt_item_footprint(const RtItemBuffer *buffer, uint32_t id, RtItemFootprint 
     }
     Bounds b = project_box(buffer, &rt_item_geometry(buffer)->boxes[id], (double)tmin * (1 - error));
     for (int a = 0; a < 2; a++) {
-        if (!samples_between(b.lo[a] - error, b.hi[a] + error, count[a], s->corners, &footprint->lo[a],
-                             &footprint->hi[a])) {
-            return false;
-        }
+        double grow = error * count[a] / 2, first = ceil(b.lo[a] - grow), last = floor(b.hi[a] + grow);
+        if (!(last >= 0 && first < count[a] && first <= last)) return false;
+        footprint->lo[a] = first > 0 ? (uint32_t)first : 0;
+        footprint->hi[a] = last < count[a] ? (uint32_t)last : count[a] - 1;
     }
     footprint->near = rt_maxf(rt_float_below(b.near * (1 - error)), tmin);
     return true;
-}
-
-uint32_t rt_item_place_footprint(const RtItemBuffer *buffer, uint32_t id, uint16_t layer, RtTileRange *to) {
-    RtItemFootprint at;
-    if (!rt_item_footprint(buffer, id, &at)) return 0;
-    to->object = rt_item_geometry(buffer)->objects[id];
-    to->layer = layer;
-    for (int a = 0; a < 2; a++) {
-        to->lo[a] = (uint16_t)(at.lo[a] / RT_ITEM_TILE);
-        to->hi[a] = (uint16_t)(at.hi[a] / RT_ITEM_TILE);
-    }
-    return 1;
 }

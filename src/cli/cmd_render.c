@@ -578,7 +578,7 @@ static const char help[] =
     "  raytally render balls --accel octree --structure leaves.png --leaves \\\n"
     "    --level 0..6\n"
     "  raytally render balls --accel grid --structure section.png --slice z\n"
-    "  raytally render balls --accel item:settle=off+bvh --structure samples.png\n"
+    "  raytally render balls --accel item+bvh --structure samples.png\n"
     "  raytally render balls --accel light:cells=64+bvh --structure cells.png \\\n"
     "    --pixel 256,400\n"
     "  raytally render balls --accel grid --accel kd \\\n"

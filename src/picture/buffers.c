@@ -9,7 +9,7 @@
 
 enum { LEAST_WIDTH = 330 }; /* of a legend, pixels */
 
-static const RtColor magenta = {{255, 0, 200}}, unseen = {{225, 225, 225}}, red = {{230, 40, 40}};
+static const RtColor unseen = {{225, 225, 225}}, red = {{230, 40, 40}};
 
 /* The baseline of a legend line below `top`, and the height of `lines` lines. */
 static double baseline(double top, int line, double em) {
@@ -29,32 +29,24 @@ static RtColor color_of_sample(const void *context, uint32_t x, uint32_t y) {
     uint32_t sample = (f.row + f.span / 2) * s->columns + f.column + f.span / 2;
     RtCellView cell;
     layer->ops->find_cell(layer, &(RtRay){.source = sample}, &cell);
-    if (cell.object == RT_UNNAMED_OBJECT) return (x + y) % 4 ? magenta : RT_WHITE;
     return cell.object == RT_NO_OBJECT ? RT_WHITE : rt_color_of_id(cell.object);
 }
 
 static RtStatus draw_samples(cairo_t *cairo, const RtAccel *layer, double em, RtError *error) {
     const RtSampling *s = &layer->scene->sampling;
-    uint64_t named = 0, undecided = 0, samples = (uint64_t)s->columns * s->rows;
+    uint64_t named = 0, samples = (uint64_t)s->columns * s->rows;
     RtCellView cell;
     for (uint32_t i = 0; i < samples; i++) {
         layer->ops->find_cell(layer, &(RtRay){.source = i}, &cell);
-        named += cell.object < RT_UNNAMED_OBJECT;
-        undecided += cell.object == RT_UNNAMED_OBJECT;
+        named += cell.object != RT_NO_OBJECT;
     }
     RT_TRY(rt_paint_pixels(cairo, (RtPixels){s->width, s->height, color_of_sample, layer}, 0, 0, error));
-    const struct {
-        uint64_t count;
-        RtColor color;
-        const char *what;
-    } keys[] = {{named, rt_color_of_id(1), "name an object (a colour each)"},
-                {undecided, magenta, "are undecided and passed on"},
-                {samples - named - undecided, RT_WHITE, "see nothing"}};
     rt_draw_text(cairo, 0.5 * em, baseline(s->height, 0, em), RT_BLACK, "%s: %llu sample%s", layer->ops->name,
                  (unsigned long long)samples, rt_plural(samples));
-    for (int i = 0; i < 3; i++)
-        rt_draw_key(cairo, 0.5 * em, baseline(s->height, i + 1, em), keys[i].color, "%llu %s",
-                    (unsigned long long)keys[i].count, keys[i].what);
+    rt_draw_key(cairo, 0.5 * em, baseline(s->height, 1, em), rt_color_of_id(1),
+                "%llu name an object (a colour each)", (unsigned long long)named);
+    rt_draw_key(cairo, 0.5 * em, baseline(s->height, 2, em), RT_WHITE, "%llu see nothing",
+                (unsigned long long)(samples - named));
     return RT_OK;
 }
 
@@ -63,7 +55,7 @@ static RtStatus draw_item_buffer(const char *file, const RtAccel *layer, RtError
     uint32_t width = s->width > LEAST_WIDTH ? s->width : LEAST_WIDTH;
     double em = rt_font_size(width);
     RtCanvas canvas;
-    RT_TRY(rt_canvas_open(&canvas, file, width, s->height + legend_height(4, em), em, error));
+    RT_TRY(rt_canvas_open(&canvas, file, width, s->height + legend_height(3, em), em, error));
     return rt_canvas_close(&canvas, draw_samples(canvas.cairo, layer, em, error), error);
 }
 

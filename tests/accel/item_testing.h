@@ -29,35 +29,29 @@ static inline RtFrame trace(const char *spec, const RtScene *scene, bool counted
     return frame;
 }
 
-/* Traces the scene by brute and by item over brute, settled and not; the pictures must be the same bytes.
- * Gives the share of rays that item answers when it settles. */
-static inline double decided_share(const RtScene *scene) {
-    static const char *const specs[] = {"item:settle=off+brute", "item+brute"};
-    OWNED_FRAME right = trace("brute", scene, false);
+/* Traces the scene, which is finished, by brute and by item over brute: the pictures are the same bytes, and
+ * no ray is passed on. */
+static inline void assert_drawn_right(const RtScene *scene) {
+    OWNED_FRAME right = trace("brute", scene, false), frame = trace("item+brute", scene, true);
     size_t samples = (size_t)right.sampling.columns * right.sampling.rows;
-    double share = 0;
-    for (int i = 0; i < 2; i++) {
-        OWNED_FRAME frame = trace(specs[i], scene, true);
-        const RtTally *tally = &frame.tallies[RT_RAY_PRIMARY];
-        assert_memory_equal(frame.object, right.object, samples * sizeof *frame.object);
-        assert_memory_equal(frame.depth, right.depth, samples * sizeof *frame.depth);
-        assert_memory_equal(frame.color, right.color, samples * sizeof *frame.color);
-        assert_int_equal(tally->steps, tally->rays);
-        share = 1 - (double)tally->passed_on / (double)tally->rays;
-    }
-    return share;
+    const RtTally *tally = &frame.tallies[RT_RAY_PRIMARY];
+    assert_memory_equal(frame.object, right.object, samples * sizeof *frame.object);
+    assert_memory_equal(frame.depth, right.depth, samples * sizeof *frame.depth);
+    assert_memory_equal(frame.color, right.color, samples * sizeof *frame.color);
+    assert_int_equal(tally->steps, tally->rays);
+    assert_int_equal(tally->object_tests, tally->hits);
+    assert_int_equal(tally->passed_on, 0);
 }
 
-/* At least `least` of the rays of the scene, which is finished, are to be decided; clears it. */
-static inline void check_finished(RtScene *scene, double least) {
-    double share = decided_share(scene);
-    if (!(share >= least)) fail_msg("%.2f %% of the rays are decided", 100 * share);
+/* The same, and clears the scene. */
+static inline void check_finished(RtScene *scene) {
+    assert_drawn_right(scene);
     rt_scene_clear(scene);
 }
 
-static inline void check_scene(RtScene *scene, double least) {
+static inline void check_scene(RtScene *scene) {
     assert_ok(rt_scene_finish(scene, error));
-    check_finished(scene, least);
+    check_finished(scene);
 }
 
 #endif

@@ -124,8 +124,8 @@ RT_TEST(rounded_directions_are_seen_within_their_bound) {
         for (uint32_t i = 0; i < columns * rows; i++) {
             RtVec3d dir = rt_widen(rt_view_ray(&buffer->view, i % columns, i / columns).dir);
             double depth = rt_dotd(dir, to->depth);
-            double x = rt_dotd(dir, to->across) / depth - ((2 * (i % columns) + 1) / (double)columns - 1);
-            double y = rt_dotd(dir, to->down) / depth - ((2 * (i / columns) + 1) / (double)rows - 1);
+            double x = (rt_dotd(dir, to->x) / depth - i % columns) * 2 / columns;
+            double y = (rt_dotd(dir, to->y) / depth - i / columns) * 2 / rows;
             most = fmax(most, fmax(fabs(x), fmax(fabs(y), fabs(depth - 1))) / to->direction_error);
         }
     }

@@ -184,7 +184,7 @@ RT_TEST(work_of_the_build_is_reported_apart_from_tracing) {
 }
 
 RT_TEST(a_picture_of_cells_alone_takes_no_image_of_the_scene) {
-    const char *const layers[] = {"item:settle=off", "light:cells=8"};
+    const char *const layers[] = {"item", "light:cells=8"};
     for (int i = 0; i < 2; i++) {
         char arguments[512];
         snprintf(arguments, sizeof arguments, SMALL "--accel %s+bvh --structure " OUT ".png", layers[i]);

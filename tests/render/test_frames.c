@@ -39,7 +39,7 @@ static const char *const stacks[] = {
     "light+cache+octree",
     "cache+cache+light:cells=1+brute",
     "item+light:cells=16+grid",
-    "cache+item:settle=off+octree",
+    "cache+item+octree",
 };
 
 enum { STACK_COUNT = sizeof stacks / sizeof stacks[0] };
