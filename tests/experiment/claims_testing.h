@@ -5,13 +5,8 @@
 
 #include "testing.h"
 
-#include "core/base/memory.h"
 #include "experiment/claims.h"
 #include "experiment/result_tables.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* Scenes random:n=10, 100, 1000 and balls; accelerators bvh (the baseline), grid:density=1, 2, 4. */
 static RtExperiment *e;

@@ -7,21 +7,17 @@
 #include "literature/published.h"
 
 static const char experiment_text[] =
-    "name: small\n"
-    "question: What is left?\n"
-    "prediction: Nothing.\n"
+    "name: small\nquestion: What is left?\nprediction: Nothing.\n"
     "scenes: [{scene: \"random:n=10\", label: cloud, size: 4x4, depth: 1}]\n"
     "accelerators: [{accel: bvh}, {accel: \"grid:density=1|4\", label: grid}]\n"
-    "published: {tables: [figures.csv], reasons: reasons.csv}\n"
-    "rays: [primary]\n"
-    "expect: [object_tests of grid falls with density]\n"
-    "count_only: yes\n";
+    "published: {tables: [figures.csv], reasons: reasons.csv}\nrays: [primary]\n"
+    "expect: [object_tests of grid falls with density]\ncount_only: yes\n";
 
 static const char *const files[] = {"out/experiment.yaml", "out/cells.jsonl", "out/manifest.json",
                                     "out/figures.csv", "out/reasons.csv"};
 enum { FILES = sizeof files / sizeof files[0] };
 
-static int make_results(void **state) {
+static int make_places(void **state) {
     if (make_place_with(state, experiment_text) != 0) return -1;
     write_in(*state, "figures.csv",
              "scene,source,accel,structure,parameters,tests_per,leaves,object_tests\n"
@@ -35,21 +31,17 @@ static int make_results(void **state) {
     return 0;
 }
 
-#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_results, remove_place)
-
 /* Everything that is read of a result directory. */
 static RtStatus read_all(const Place *place, RtError *error) {
     Path out = path_in(place, "out");
-    RtResults results = {0};
+    OWNED_RESULTS results = {0};
     OWNED_MEMORY RtPublished *published = rt_alloc(1, sizeof *published);
-    json_t *manifest = NULL;
+    json_auto_t *manifest = NULL;
     assert_non_null(published);
     RtStatus status = rt_run_load(out.text, place->experiment, &results, error);
     if (status == RT_OK) status = rt_published_load(published, place->experiment, error);
     if (status == RT_OK) status = rt_manifest_read(out.text, &manifest, error);
-    json_decref(manifest);
     rt_published_clear(published);
-    rt_results_clear(&results);
     return status;
 }
 
@@ -66,8 +58,7 @@ static RtStatus read_with(const Place *place, const char *file, const char *byte
 }
 
 /* Some 300 places of each file. */
-RT_TEST_IN_PLACE(a_file_that_is_cut_off_or_has_a_zero_byte_is_read_or_refused) {
-    const Place *place = *state;
+PLACE_TEST(a_file_that_is_cut_off_or_has_a_zero_byte_is_read_or_refused) {
     assert_ok(read_all(place, error));
     for (size_t i = 0; i < FILES; i++) {
         OWNED_MEMORY char *text = read_in(place, files[i]);
@@ -83,17 +74,15 @@ RT_TEST_IN_PLACE(a_file_that_is_cut_off_or_has_a_zero_byte_is_read_or_refused) {
     }
 }
 
-RT_TEST_IN_PLACE(line_ends_of_windows_change_nothing) {
-    const Place *place = *state;
+PLACE_TEST(line_ends_of_windows_change_nothing) {
     for (size_t i = 1; i < FILES; i++) {
-        char *text = read_in(place, files[i]), *other = rt_alloc(2 * strlen(text) + 1, 1), *to = other;
+        OWNED_MEMORY char *text = read_in(place, files[i]), *other = rt_alloc(2 * strlen(text) + 1, 1);
+        char *to = other;
         assert_non_null(other);
         for (const char *c = text; *c; *to++ = *c++) {
             if (*c == '\n') *to++ = '\r';
         }
         assert_int_equal(read_with(place, files[i], other, strlen(other)), RT_OK);
-        rt_free(other);
-        rt_free(text);
     }
 }
 

@@ -2,11 +2,7 @@
 /* What whole frames cost, of results that are made by hand. */
 #include "testing.h"
 
-#include "core/base/memory.h"
 #include "experiment/frame_table.h"
-
-#include <math.h>
-#include <string.h>
 
 /* A scene with 100 primary, 300 shadow and 100 reflection rays; and one with primary rays alone. */
 static RtExperiment *e;
