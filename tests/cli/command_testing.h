@@ -5,9 +5,6 @@
 
 #include "testing.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/wait.h>
 
 /* Runs raytally with arguments as of printf, and these redirections; gives the exit code, or -1. */
@@ -31,6 +28,12 @@ static inline const char *text_of(const char *path) {
     text[fread(text, 1, sizeof text - 1, file)] = '\0';
     fclose(file);
     return text;
+}
+
+/* The last run ended with this exit code, and the file says so. */
+static inline void assert_said(int code, int expected, const char *path, const char *says) {
+    if (code == expected && strstr(text_of(path), says)) return;
+    fail_msg("exit code %d, expected %d with '%s': %s", code, expected, says, text_of(path));
 }
 
 #endif

@@ -5,8 +5,6 @@
 
 #include "core/base/file.h"
 
-#include <unistd.h>
-
 #define OUT RT_BINARY_DIR "/test_cmd_convert"
 
 static int convert(const char *arguments) {

@@ -3,11 +3,9 @@
 #include "command_testing.h"
 
 #include "core/base/file.h"
-#include "core/base/memory.h"
 #include "core/base/tally.h"
 
 #include <jansson.h>
-#include <math.h>
 
 #define OUT  RT_BINARY_DIR "/test_cmd_rays"
 #define RAYS OUT ".npy"
@@ -19,6 +17,12 @@ typedef struct Bytes {
     size_t size;
 } Bytes;
 
+static void free_bytes(Bytes *bytes) {
+    rt_free(bytes->data);
+}
+
+#define OWNED_BYTES OWNED(free_bytes) Bytes
+
 static Bytes bytes_of(const char *path) {
     Bytes bytes;
     assert_ok(rt_file_read(path, 1 << 28, &bytes.data, &bytes.size, error));
@@ -26,11 +30,9 @@ static Bytes bytes_of(const char *path) {
 }
 
 static void assert_same_bytes(const char *one, const char *other) {
-    Bytes a = bytes_of(one), b = bytes_of(other);
+    OWNED_BYTES a = bytes_of(one), b = bytes_of(other);
     assert_int_equal(a.size, b.size);
     assert_memory_equal(a.data, b.data, a.size);
-    rt_free(a.data);
-    rt_free(b.data);
 }
 
 /* The numbers behind the header of version 1.0. */
@@ -41,12 +43,10 @@ static const char *numbers_of(const Bytes *bytes) {
 
 /* Counts of the only row of the document that the last run printed. */
 static json_t *counts_of_run(void) {
-    json_t *document = json_load_file(OUT ".out", 0, NULL);
+    json_auto_t *document = json_load_file(OUT ".out", 0, NULL);
     assert_non_null(document);
     json_t *row = json_array_get(json_object_get(document, "rows"), 0);
-    json_t *counts = json_incref(json_object_get(row, "counts"));
-    json_decref(document);
-    return counts;
+    return json_incref(json_object_get(row, "counts"));
 }
 
 #define SMALL "--size 40x40 --limit 1000"
@@ -63,18 +63,16 @@ RT_TEST(recorded_rays_that_are_read_back_meet_and_cost_the_same) {
                 "--counts '%s.c1.npy'",
                 SMALL, spec, kind, OUT, OUT),
             0);
-        json_t *recorded = counts_of_run();
+        json_auto_t *recorded = counts_of_run();
         assert_int_equal(
             run("bench balls:size=2 --accel %s --rays-from '%s' --rays %s --count-only --json --hits "
                 "'%s.h2.npy' --counts '%s.c2.npy' --threads 2",
                 spec, RAYS, given, OUT, OUT),
             0);
-        json_t *read = counts_of_run();
+        json_auto_t *read = counts_of_run();
         assert_true(json_equal(recorded, read));
         assert_same_bytes(OUT ".h1.npy", OUT ".h2.npy");
         assert_same_bytes(OUT ".c1.npy", OUT ".c2.npy");
-        json_decref(recorded);
-        json_decref(read);
     }
 }
 
@@ -84,8 +82,8 @@ RT_TEST(rows_of_counts_sum_to_the_counts_and_rows_of_hits_to_the_hits) {
             "--counts '%s.c.npy'",
             SMALL, OUT, OUT),
         0);
-    json_t *counts = counts_of_run();
-    const Bytes hits = bytes_of(OUT ".h.npy"), rows = bytes_of(OUT ".c.npy");
+    json_auto_t *counts = counts_of_run();
+    OWNED_BYTES hits = bytes_of(OUT ".h.npy"), rows = bytes_of(OUT ".c.npy");
     RtTally sum = {0};
     const char *at = numbers_of(&rows);
     for (; at < rows.data + rows.size; at += sizeof(RtTally)) {
@@ -111,9 +109,6 @@ RT_TEST(rows_of_counts_sum_to_the_counts_and_rows_of_hits_to_the_hits) {
     assert_int_equal(hit, sum.hits);
     assert_int_equal(all, sum.rays);
     assert_true(0 < hit && hit < all);
-    rt_free(hits.data);
-    rt_free(rows.data);
-    json_decref(counts);
 }
 
 RT_TEST(occlusion_rays_say_whether_anything_lies_on_them) {
@@ -121,22 +116,18 @@ RT_TEST(occlusion_rays_say_whether_anything_lies_on_them) {
         run("bench balls:size=2 %s --accel bvh --rays shadow --count-only --json --hits '%s.h.npy'", SMALL,
             OUT),
         0);
-    json_t *counts = counts_of_run();
-    const Bytes hits = bytes_of(OUT ".h.npy");
+    json_auto_t *counts = counts_of_run();
+    OWNED_BYTES hits = bytes_of(OUT ".h.npy");
     assert_non_null(strstr(hits.data + 10, "'|b1'"));
     json_int_t hit = 0;
     for (const char *at = numbers_of(&hits); at < hits.data + hits.size; at++) hit += *at;
     assert_int_equal(hit, json_integer_value(json_object_get(counts, "hits")));
-    rt_free(hits.data);
-    json_decref(counts);
 }
 
 RT_TEST(verify_asks_the_rays_of_a_file) {
     assert_int_equal(run("rays balls:size=1 %s --rays random -o '%s'", SMALL, RAYS), 0);
-    assert_int_equal(run("verify balls:size=1 --accel bvh --accel grid --rays-from '%s'", RAYS), 0);
-    Bytes says = bytes_of(OUT ".out");
-    assert_non_null(strstr(says.data, "2000 comparisons: nothing wrong"));
-    rt_free(says.data);
+    assert_said(run("verify balls:size=1 --accel bvh --accel grid --rays-from '%s'", RAYS), 0, OUT ".out",
+                "2000 comparisons: nothing wrong");
 }
 
 /* A verification is gone on with only by the same rays. */
@@ -147,22 +138,18 @@ RT_TEST(a_verification_knows_its_rays_again) {
     assert_int_equal(run("verify balls:size=1 --accel bvh --rays-from '%s' --out '%s.d' --resume", RAYS, OUT),
                      0);
     assert_int_equal(run("rays balls:size=1 %s --rays random --seed 2 -o '%s'", SMALL, RAYS), 0);
-    assert_int_equal(run("verify balls:size=1 --accel bvh --rays-from '%s' --out '%s.d' --resume", RAYS, OUT),
-                     2);
-    Bytes says = bytes_of(OUT ".err");
-    assert_non_null(strstr(says.data, "with different rays_hash"));
-    rt_free(says.data);
+    assert_said(run("verify balls:size=1 --accel bvh --rays-from '%s' --out '%s.d' --resume", RAYS, OUT), 2,
+                OUT ".err", "with different rays_hash");
 }
 
 /* Puts `value` into a column of row 7. */
 static void damage(uint32_t column, float value) {
     assert_int_equal(run("rays balls:size=1 %s -o '%s'", SMALL, RAYS), 0);
-    Bytes bytes = bytes_of(RAYS);
+    OWNED_BYTES bytes = bytes_of(RAYS);
     size_t at = (size_t)(numbers_of(&bytes) - bytes.data) + (7 * 8 + column) * sizeof(float);
     memcpy(bytes.data + at, &value, sizeof value);
     if (column == 4) memset(bytes.data + at, 0, 3 * sizeof value);
     assert_ok(rt_file_write(RAYS, bytes.data, bytes.size, error));
-    rt_free(bytes.data);
 }
 
 RT_TEST(a_ray_that_is_none_is_refused_by_its_row) {
@@ -184,11 +171,8 @@ RT_TEST(a_ray_that_is_none_is_refused_by_its_row) {
         for (int verify = 0; verify < 2; verify++) {
             int code = verify ? run("verify balls:size=1 --accel bvh --rays-from '%s'", RAYS)
                               : run("bench balls:size=1 --accel bvh --rays nearest --rays-from '%s'", RAYS);
-            Bytes says = bytes_of(OUT ".err");
-            assert_int_equal(code, 2);
-            assert_non_null(strstr(says.data, "row 7 (the first is 0)"));
-            if (!strstr(says.data, cases[i].says)) fail_msg("column %u: %s", cases[i].column, says.data);
-            rt_free(says.data);
+            assert_said(code, 2, OUT ".err", "row 7 (the first is 0)");
+            assert_said(code, 2, OUT ".err", cases[i].says);
         }
     }
 }
@@ -216,11 +200,7 @@ RT_TEST(what_does_not_go_together_is_refused_and_leaves_no_file) {
         {"verify balls:size=1 --rays 10 --rays-from x.npy", "leave out --rays"},
         {"verify balls:size=1 --quick --rays-from x.npy", "leave out --rays, --quick"}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        int code = run("%s", cases[i][0]);
-        Bytes says = bytes_of(OUT ".err");
-        if (code != 2 || !strstr(says.data, cases[i][1]))
-            fail_msg("'%s' (%d): %s", cases[i][0], code, says.data);
-        rt_free(says.data);
+        assert_said(run("%s", cases[i][0]), 2, OUT ".err", cases[i][1]);
         assert_not_written("y.npy");
     }
 }

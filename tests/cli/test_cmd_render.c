@@ -6,8 +6,6 @@
 #include "core/base/file.h"
 
 #include <jansson.h>
-#include <math.h>
-#include <unistd.h>
 
 #define OUT   RT_BINARY_DIR "/test_cmd_render"
 #define STATS OUT ".json"
@@ -69,7 +67,7 @@ RT_TEST(the_databases_have_the_rays_that_spd_publishes) {
         const char *scene = cases[i].scene;
         char arguments[128];
         snprintf(arguments, sizeof arguments, "%s --size 512x512 --corners --depth 5", scene);
-        json_t *stats = stats_of(arguments);
+        json_auto_t *stats = stats_of(arguments);
         assert_int_equal(json_integer_value(json_object_get(stats, "objects")), cases[i].objects);
         assert_int_equal(counter(stats, "primary", "rays"), 513 * 513);
         assert_close(scene, "hit", counter(stats, "primary", "hits"), cases[i].hits, 1);
@@ -77,7 +75,6 @@ RT_TEST(the_databases_have_the_rays_that_spd_publishes) {
         assert_close(scene, "reflected", counter(stats, "reflection", "rays"), cases[i].reflection, 1);
         assert_close(scene, "transmitted", counter(stats, "transmission", "rays"), cases[i].transmission,
                      cases[i].percent);
-        json_decref(stats);
     }
 }
 
@@ -120,21 +117,18 @@ RT_TEST(every_heatmap_asked_for_is_written) {
 }
 
 RT_TEST(heatmaps_of_several_accelerators_come_with_the_counts_of_each) {
-    json_t *both = stats_of(SMALL "--accel grid --accel kd --heatmap steps " OUT ".png");
+    json_auto_t *both = stats_of(SMALL "--accel grid --accel kd --heatmap steps " OUT ".png");
     assert_says("grid: ");
     assert_says("kd: ");
     assert_says(" steps a ray.");
-    json_t *alone = stats_of(SMALL "--accel kd");
+    json_auto_t *alone = stats_of(SMALL "--accel kd");
     json_t *compared = json_object_get(both, "compared");
     assert_int_equal(json_array_size(compared), 1);
     json_t *kd = json_array_get(compared, 0);
     assert_true(json_equal(json_object_get(kd, "kinds"), json_object_get(alone, "kinds")));
     assert_true(json_equal(json_object_get(kd, "structure"), json_object_get(alone, "structure")));
     assert_int_equal(json_array_size(json_object_get(alone, "compared")), 0);
-    json_decref(both);
-    json_decref(alone);
     unlink(OUT ".png");
-    unlink(OUT ".txt");
 }
 
 RT_TEST(a_structure_is_a_vector_drawing_by_its_name_and_the_same_bytes_every_time) {
@@ -155,18 +149,16 @@ RT_TEST(a_structure_is_a_vector_drawing_by_its_name_and_the_same_bytes_every_tim
         snprintf(compare, sizeof compare, OUT ".1.%s", formats[i % 2]);
         unlink(compare);
     }
-    unlink(OUT ".txt");
 }
 
 RT_TEST(a_check_compares_every_ray_with_brute) {
-    assert_int_equal(render("balls:size=2 --size 64x64 --accel grid --check"), 0);
-    assert_says("the hits of all 4096 primary rays equal brute's");
+    assert_said(render("balls:size=2 --size 64x64 --accel grid --check"), 0, OUT ".txt",
+                "the hits of all 4096 primary rays equal brute's");
     assert_says("shadow rays equal brute's");
     assert_says("reflection rays equal brute's");
     assert_says("the frame equals brute's, bit for bit");
-    assert_int_equal(render("balls:size=2 --size 33x20 --corners --accel item+light+cache+octree --check"),
-                     0);
-    assert_says("the frame equals brute's, bit for bit");
+    assert_said(render("balls:size=2 --size 33x20 --corners --accel item+light+cache+octree --check"), 0,
+                OUT ".txt", "the frame equals brute's, bit for bit");
 }
 
 RT_TEST(work_of_the_build_is_reported_apart_from_tracing) {
@@ -174,12 +166,11 @@ RT_TEST(work_of_the_build_is_reported_apart_from_tracing) {
     for (int i = 0; i < 2; i++) {
         char arguments[128];
         snprintf(arguments, sizeof arguments, "balls:size=1 --size 32x32 --accel %s", specs[i]);
-        json_t *stats = stats_of(arguments);
+        json_auto_t *stats = stats_of(arguments);
         const json_t *build = json_object_get(json_object_get(stats, "structure"), "build");
         assert_true(json_is_object(build));
         assert_true((json_integer_value(json_object_get(build, "object_tests")) > 0) == (i == 1));
         assert_int_equal(counter(stats, "primary", "object_tests") < 32 * 32 * 2, i == 1);
-        json_decref(stats);
     }
 }
 
@@ -188,21 +179,19 @@ RT_TEST(a_picture_of_cells_alone_takes_no_image_of_the_scene) {
     for (int i = 0; i < 2; i++) {
         char arguments[512];
         snprintf(arguments, sizeof arguments, SMALL "--accel %s+bvh --structure " OUT ".png", layers[i]);
-        assert_int_equal(render(arguments), 0);
-        assert_says("8 x 8 pixels, not traced: the picture shows only cells");
+        assert_said(render(arguments), 0, OUT ".txt",
+                    "8 x 8 pixels, not traced: the picture shows only cells");
         snprintf(arguments, sizeof arguments,
                  SMALL "--accel %s+bvh --structure " OUT ".with.png -o " OUT ".image.png", layers[i]);
-        assert_int_equal(render(arguments), 0);
-        assert_says("64 primary");
+        assert_said(render(arguments), 0, OUT ".txt", "64 primary");
         assert_int_equal(system("cmp '" OUT ".png' '" OUT ".with.png'"), 0);
     }
-    assert_int_equal(render(SMALL "--accel item+bvh --layer bvh --structure " OUT ".png"), 0);
-    assert_says("drawn over an image by bvh");
+    assert_said(render(SMALL "--accel item+bvh --layer bvh --structure " OUT ".png"), 0, OUT ".txt",
+                "drawn over an image by bvh");
     assert_int_equal(system("grep -q Mrays " OUT ".txt"), 256); /* of bvh, under the name of another */
     unlink(OUT ".png");
     unlink(OUT ".with.png");
     unlink(OUT ".image.png");
-    unlink(OUT ".txt");
 }
 
 RT_TEST(options_of_structures_are_taken_by_the_layer_that_they_are_for) {
@@ -212,7 +201,6 @@ RT_TEST(options_of_structures_are_taken_by_the_layer_that_they_are_for) {
                                   "--structure " OUT ".png"),
                      0);
     unlink(OUT ".png");
-    unlink(OUT ".txt");
 }
 
 RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
@@ -273,11 +261,9 @@ RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
         {"balls:size=1 --size 8x8 -o " OUT "/nowhere/a.png", "nowhere"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        if (render(cases[i].arguments) != 2) fail_msg("'%s' did not exit with 2", cases[i].arguments);
-        assert_says(cases[i].says);
+        assert_said(render(cases[i].arguments), 2, OUT ".txt", cases[i].says);
         assert_not_written(OUT ".png");
     }
-    unlink(OUT ".txt");
 }
 
 RT_TESTS(cmd_render, NULL, NULL)

@@ -8,27 +8,20 @@
 #include <signal.h>
 #include <time.h>
 
-static const char pattern[] = "name: small\n"
-                              "question: Which is cheaper?\n"
-                              "prediction: The hierarchy.\n"
-                              "scenes: [{scene: \"random:n=60\", label: cloud, size: 12x12}]\n"
-                              "accelerators: [{accel: bvh}, {accel: grid}]\n"
-                              "rays: [primary, random]\n"
-                              "limit: 50\n"
-                              "rounds: 2\n"
-                              "milliseconds: 0\n"
-                              "expect: [bytes of bvh < 1000000]\n";
+static const char pattern[] =
+    "name: small\nquestion: Which is cheaper?\nprediction: The hierarchy.\n"
+    "scenes: [{scene: \"random:n=60\", label: cloud, size: 12x12}]\n"
+    "accelerators: [{accel: bvh}, {accel: grid}]\nrays: [primary, random]\nlimit: 50\nrounds: 2\n"
+    "milliseconds: 0\nexpect: [bytes of bvh < 1000000]\n";
 
 /* The pattern in a.yaml, b.yaml and c.yaml, each under its own name. */
-static int make_three(void **state) {
+static int make_places(void **state) {
     if (make_place(state) != 0) return -1;
     write_changed(*state, "a.yaml", pattern, "name: small", "name: a");
     write_changed(*state, "b.yaml", pattern, "name: small", "name: b");
     write_changed(*state, "c.yaml", pattern, "name: small", "name: c");
     return 0;
 }
-
-#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_three, remove_place)
 
 static void change(const Place *place, const char *name, const char *from, const char *to) {
     OWNED_MEMORY char *text = read_in(place, name);
@@ -39,22 +32,20 @@ static bool exists(const Place *place, const char *name) {
     return rt_file_exists(path_in(place, name).text);
 }
 
-RT_TEST_IN_PLACE(each_of_several_experiments_gets_its_directory_and_all_a_summary_and_an_index) {
-    const Place *place = *state;
-    assert_int_equal(raytally(place, "run a.yaml b.yaml --threads 1"), 0);
+PLACE_TEST(each_of_several_experiments_gets_its_directory_and_all_a_summary_and_an_index) {
+    assert_runs(place, "run a.yaml b.yaml --threads 1");
     assert_true(exists(place, "results/a/report.html") && exists(place, "results/b/report.html"));
     assert_true(exists(place, "results/index.html") && exists(place, "results/index.md"));
     assert_in_file(place, "output", "== b, 2 of 2\n");
     assert_in_file(place, "output", "\na                                finished ");
     assert_in_file(place, "output", "\nb                                finished ");
-    assert_int_equal(raytally(place, "run a.yaml c.yaml --threads 1 --out other"), 0);
+    assert_runs(place, "run a.yaml c.yaml --threads 1 --out other");
     assert_true(exists(place, "other/a/report.html") && exists(place, "other/c/report.html"));
     assert_equal_files(place, "results/a/counts.csv", "other/a/counts.csv");
 }
 
 /* Skipped without Embree. */
-RT_TEST_IN_PLACE(answers_by_another_arithmetic_are_said_to_differ) {
-    const Place *place = *state;
+PLACE_TEST(answers_by_another_arithmetic_are_said_to_differ) {
     change(place, "a.yaml", "{accel: grid}", "{accel: \"embree:mode=native\"}");
     const int code = raytally(place, "run a.yaml --threads 1");
     if (code == 2) {
@@ -65,17 +56,15 @@ RT_TEST_IN_PLACE(answers_by_another_arithmetic_are_said_to_differ) {
     assert_in_file(place, "output", "embree uses its own arithmetic. Answers that differ from");
 }
 
-RT_TEST_IN_PLACE(an_index_that_cannot_be_written_is_an_error) {
-    const Place *place = *state;
-    assert_int_equal(raytally(place, "run a.yaml b.yaml --threads 1"), 0);
+PLACE_TEST(an_index_that_cannot_be_written_is_an_error) {
+    assert_runs(place, "run a.yaml b.yaml --threads 1");
     remove(path_in(place, "results/index.md").text);
     assert_ok(rt_directory_create(path_in(place, "results/index.md").text, error));
     assert_ends(place, "run a.yaml b.yaml --threads 1 --resume", 2,
                 "there is no index: results/index.md is a folder");
 }
 
-RT_TEST_IN_PLACE(one_that_fails_does_not_stop_the_others_and_the_worst_exit_code_counts) {
-    const Place *place = *state;
+PLACE_TEST(one_that_fails_does_not_stop_the_others_and_the_worst_exit_code_counts) {
     change(place, "a.yaml", "random:n=60", "nowhere.yaml");
     change(place, "b.yaml", "bvh < 1000000", "bvh < 1");
     assert_ends(place, "run a.yaml b.yaml c.yaml --threads 1 --strict", 2,
@@ -88,8 +77,7 @@ RT_TEST_IN_PLACE(one_that_fails_does_not_stop_the_others_and_the_worst_exit_code
                 "1 of 2 experiments failed, the first: b");
 }
 
-RT_TEST_IN_PLACE(all_are_parsed_before_the_first_is_measured) {
-    const Place *place = *state;
+PLACE_TEST(all_are_parsed_before_the_first_is_measured) {
     change(place, "c.yaml", "limit: 50", "limmit: 50");
     assert_ends(place, "run a.yaml b.yaml c.yaml", 2, "c.yaml:7:1: unknown key 'limmit'");
     change(place, "b.yaml", "name: b", "name: a");
@@ -104,25 +92,22 @@ RT_TEST_IN_PLACE(all_are_parsed_before_the_first_is_measured) {
     assert_false(exists(place, "results"));
 }
 
-RT_TEST_IN_PLACE(resume_finishes_and_starts_and_measures_nothing_again) {
-    const Place *place = *state;
-    assert_int_equal(raytally(place, "run a.yaml --threads 1 --out all/a"), 0);
-    assert_int_equal(raytally(place, "run b.yaml --threads 1 --out all/b --only cloud/grid/random"), 0);
-    char *finished = read_in(place, "all/a/cells.jsonl"), *part = read_in(place, "all/b/cells.jsonl");
+PLACE_TEST(resume_finishes_and_starts_and_measures_nothing_again) {
+    assert_runs(place, "run a.yaml --threads 1 --out all/a");
+    assert_runs(place, "run b.yaml --threads 1 --out all/b --only cloud/grid/random");
+    OWNED_MEMORY char *finished = read_in(place, "all/a/cells.jsonl"),
+                      *part = read_in(place, "all/b/cells.jsonl");
     assert_ends(place, "run a.yaml b.yaml c.yaml --threads 1 --out all", 2, "2 of 3 experiments failed");
     assert_in_file(place, "message", "all/a holds a finished run: use --resume to rewrite its tables");
-    assert_int_equal(raytally(place, "run a.yaml b.yaml c.yaml --threads 1 --out all --resume"), 0);
+    assert_runs(place, "run a.yaml b.yaml c.yaml --threads 1 --out all --resume");
     assert_same_file(place, "all/a/cells.jsonl", finished);
     OWNED_MEMORY char *whole = read_in(place, "all/b/cells.jsonl");
     assert_memory_equal(whole, part, strlen(part));
     assert_true(exists(place, "all/b/report.html") && exists(place, "all/c/report.html"));
-    rt_free(finished);
-    rt_free(part);
 }
 
-RT_TEST_IN_PLACE(resume_with_force_starts_over_only_what_cannot_be_resumed) {
-    const Place *place = *state;
-    assert_int_equal(raytally(place, "run a.yaml b.yaml --threads 1"), 0);
+PLACE_TEST(resume_with_force_starts_over_only_what_cannot_be_resumed) {
+    assert_runs(place, "run a.yaml b.yaml --threads 1");
     OWNED_MEMORY char *a = read_in(place, "results/a/cells.jsonl");
     change(place, "b.yaml", "limit: 50", "limit: 40");
     assert_ends(place, "run a.yaml b.yaml --threads 1 --resume", 2, "another version of it ('b')");
@@ -132,12 +117,11 @@ RT_TEST_IN_PLACE(resume_with_force_starts_over_only_what_cannot_be_resumed) {
         "results/b over");
     assert_same_file(place, "results/a/cells.jsonl", a);
     assert_in_file(place, "results/b/experiment.yaml", "limit: 40");
-    assert_int_equal(raytally(place, "reproduce results/b"), 0);
+    assert_runs(place, "reproduce results/b");
 }
 
-RT_TEST_IN_PLACE(resume_keeps_a_run_of_another_experiment_or_variant_and_what_it_cannot_read) {
-    const Place *place = *state;
-    assert_int_equal(raytally(place, "run a.yaml --threads 1 --out kept"), 0);
+PLACE_TEST(resume_keeps_a_run_of_another_experiment_or_variant_and_what_it_cannot_read) {
+    assert_runs(place, "run a.yaml --threads 1 --out kept");
     OWNED_MEMORY char *kept = read_in(place, "kept/cells.jsonl");
     assert_ends(place, "run b.yaml --out kept --resume", 2, "this is a run of another experiment");
     assert_ends(place, "run a.yaml --out kept --resume --quick", 2, "this is a run without --quick");
@@ -148,15 +132,13 @@ RT_TEST_IN_PLACE(resume_keeps_a_run_of_another_experiment_or_variant_and_what_it
     assert_true(exists(place, "kept/report.html"));
 }
 
-RT_TEST_IN_PLACE(a_dry_run_of_several_sums_up_each_and_touches_nothing) {
-    const Place *place = *state;
-    assert_int_equal(raytally(place, "run a.yaml b.yaml --dry-run"), 0);
+PLACE_TEST(a_dry_run_of_several_sums_up_each_and_touches_nothing) {
+    assert_runs(place, "run a.yaml b.yaml --dry-run");
     assert_in_file(place, "output", "== a, 1 of 2\n4 cells, 0 of them finished\n");
     assert_false(exists(place, "results"));
 }
 
-RT_TEST_IN_PLACE(an_interruption_stops_all_and_says_the_one_command_that_continues) {
-    const Place *place = *state;
+PLACE_TEST(an_interruption_stops_all_and_says_the_one_command_that_continues) {
     change(place, "b.yaml", "rounds: 2\nmilliseconds: 0", "rounds: 50\nmilliseconds: 100");
     pid_t child = start_raytally(place, "run a.yaml b.yaml c.yaml --threads 1 --out all");
     while (!exists(place, "all/b/cells.jsonl")) nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
@@ -171,10 +153,9 @@ RT_TEST_IN_PLACE(an_interruption_stops_all_and_says_the_one_command_that_continu
 }
 
 /* As by nohup, or behind a shell's `&`. */
-RT_TEST_IN_PLACE(a_signal_that_was_ignored_from_the_start_stays_ignored) {
+PLACE_TEST(a_signal_that_was_ignored_from_the_start_stays_ignored) {
     static const char *const commands[] = {"run a.yaml --threads 1 --out one",
                                            "run a.yaml b.yaml --threads 1 --out all"};
-    const Place *place = *state;
     for (int i = 0; i < 2; i++) {
         int how;
         signal(SIGINT, SIG_IGN);
@@ -188,8 +169,7 @@ RT_TEST_IN_PLACE(a_signal_that_was_ignored_from_the_start_stays_ignored) {
     }
 }
 
-RT_TEST_IN_PLACE(an_interruption_between_two_experiments_says_how_to_continue_too) {
-    const Place *place = *state;
+PLACE_TEST(an_interruption_between_two_experiments_says_how_to_continue_too) {
     pid_t child = fork();
     assert_true(child >= 0);
     if (child == 0) {
@@ -204,8 +184,7 @@ RT_TEST_IN_PLACE(an_interruption_between_two_experiments_says_how_to_continue_to
     assert_in_file(place, "message", "To continue:\n  raytally run all --resume\n");
 }
 
-RT_TEST_IN_PLACE(a_limit_of_time_stops_all_and_says_the_command_that_continues) {
-    const Place *place = *state;
+PLACE_TEST(a_limit_of_time_stops_all_and_says_the_command_that_continues) {
     change(place, "b.yaml", "rounds: 2\nmilliseconds: 0", "rounds: 50\nmilliseconds: 200");
     assert_ends(place, "run b.yaml --threads 1 --out one --time 1", 2,
                 "raytally: stopped after 1 s (--time); ");
@@ -216,8 +195,7 @@ RT_TEST_IN_PLACE(a_limit_of_time_stops_all_and_says_the_command_that_continues) 
     assert_ends(place, "run b.yaml --time 0", 2, "--time: invalid value '0': expected a whole number 1..");
 }
 
-RT_TEST_IN_PLACE(a_directory_that_is_removed_in_mid_run_is_reported) {
-    const Place *place = *state;
+PLACE_TEST(a_directory_that_is_removed_in_mid_run_is_reported) {
     int how;
     char command[300];
     change(place, "a.yaml", "rounds: 2\nmilliseconds: 0", "rounds: 20\nmilliseconds: 50");
@@ -232,22 +210,20 @@ RT_TEST_IN_PLACE(a_directory_that_is_removed_in_mid_run_is_reported) {
     assert_in_file(place, "message", "raytally: gone");
 }
 
-RT_TEST_IN_PLACE(reproduce_takes_several_directories_and_goes_on_after_one_that_differs) {
-    const Place *place = *state;
-    assert_int_equal(raytally(place, "run a.yaml b.yaml --threads 1"), 0);
-    assert_int_equal(raytally(place, "verify tetra:size=1 --accel bvh --rays 10 --out results/judged"), 0);
-    assert_int_equal(raytally(place, "reproduce results/*"), 0);
+PLACE_TEST(reproduce_takes_several_directories_and_goes_on_after_one_that_differs) {
+    assert_runs(place, "run a.yaml b.yaml --threads 1");
+    assert_runs(place, "verify tetra:size=1 --accel bvh --rays 10 --out results/judged");
+    assert_runs(place, "reproduce results/*");
     write_in(place, "results/a/counts.csv", "scene\n");
     assert_ends(place, "reproduce results/*", 1, "results/a/counts.csv:1: differs from the new counts");
     assert_in_file(place, "output", "Reproduced: results/b/counts.csv, byte for byte");
     assert_ends(place, "reproduce results/a results/nowhere", 2, "2 of 2 directories failed");
 }
 
-RT_TEST_IN_PLACE(a_quick_reproduction_counts_the_scene_with_the_least_work) {
-    const Place *place = *state;
+PLACE_TEST(a_quick_reproduction_counts_the_scene_with_the_least_work) {
     change(place, "a.yaml", "random:n=60", "random:n=300|60|200");
-    assert_int_equal(raytally(place, "run a.yaml b.yaml --threads 1"), 0);
-    assert_int_equal(raytally(place, "reproduce results/a results/b --quick"), 0);
+    assert_runs(place, "run a.yaml b.yaml --threads 1");
+    assert_runs(place, "reproduce results/a results/b --quick");
     assert_in_file(place, "output", "Reproduced: cloud:n=60 in results/a/counts.csv, byte for byte");
     assert_ends(place, "reproduce results/a --quick --only cloud", 2, "both choose scenes");
 }

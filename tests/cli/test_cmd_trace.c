@@ -6,7 +6,6 @@
 #include "core/base/tally.h"
 
 #include <jansson.h>
-#include <unistd.h>
 
 #define OUT RT_BINARY_DIR "/test_cmd_trace"
 
@@ -49,16 +48,14 @@ RT_TEST(rows_are_steps_extent_tests_and_object_tests_as_many_as_are_counted) {
     for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
         char arguments[256];
         snprintf(arguments, sizeof arguments, "balls:size=2 --size 64x64 --pixel 32,30 --accel %s", specs[i]);
-        json_t *path = path_of(arguments);
+        json_auto_t *path = path_of(arguments);
         assert_int_equal(rows_of(path, "step"), count_of(path, "steps"));
         assert_int_equal(rows_of(path, "step, "), count_of(path, "leaf_steps"));
         assert_int_equal(rows_of(path, "extent test"), count_of(path, "extent_tests"));
         assert_int_equal(rows_of(path, "object test"), count_of(path, "object_tests"));
         assert_true(count_of(path, "object_tests") > 0);
         assert_int_equal(count_of(path, "rays"), 1);
-        json_decref(path);
     }
-    unlink(OUT ".txt");
 }
 
 RT_TEST(every_accelerator_says_the_same_of_where_a_ray_ends) {
@@ -70,55 +67,45 @@ RT_TEST(every_accelerator_says_the_same_of_where_a_ray_ends) {
     while (!found && fgets(line, sizeof line, file)) found = strncmp(line, "its nearest hit is", 18) == 0;
     fclose(file);
     assert_true(found);
-    assert_int_equal(trace("balls:size=2 --size 64x64 --pixel 32,30 --accel item+kd"), 0);
-    assert_true(says(OUT ".txt", line));
-    unlink(OUT ".txt");
+    assert_said(trace("balls:size=2 --size 64x64 --pixel 32,30 --accel item+kd"), 0, OUT ".txt", line);
 }
 
 RT_TEST(a_shadow_ray_is_followed_through_overlays) {
-    assert_int_equal(
-        trace("balls:size=2 --size 64x64 --pixel 32,50 --rays shadow --accel light:cells=16+bvh"), 0);
-    assert_true(says(OUT ".txt", "the shadow ray of pixel 32,50"));
-    assert_int_equal(trace("balls:size=2 --size 64x64 --pixel 32,50 --rays shadow --accel cache+bvh"), 0);
-    assert_true(says(OUT ".txt", "passed on       by cache"));
-    assert_int_equal(trace("balls:size=2 --size 64x64 --pixel 32,32 --rays reflection"), 0);
-    assert_true(says(OUT ".txt", "the reflection ray"));
-    unlink(OUT ".txt");
+    assert_said(trace("balls:size=2 --size 64x64 --pixel 32,50 --rays shadow --accel light:cells=16+bvh"), 0,
+                OUT ".txt", "the shadow ray of pixel 32,50");
+    assert_said(trace("balls:size=2 --size 64x64 --pixel 32,50 --rays shadow --accel cache+bvh"), 0,
+                OUT ".txt", "passed on       by cache");
+    assert_said(trace("balls:size=2 --size 64x64 --pixel 32,32 --rays reflection"), 0, OUT ".txt",
+                "the reflection ray");
 }
 
 /* Embree's own kernels count nothing and name no occluder; skipped where it was not built in. */
 RT_TEST(an_occluder_that_is_not_named_has_no_number) {
     const char *arguments = "balls:size=2 --size 64x64 --pixel 20,44 --rays shadow --accel embree";
     if (trace(arguments) == 2 && says(OUT ".err", "without Embree")) return;
-    assert_int_equal(trace(arguments), 0);
-    assert_true(says(OUT ".txt", "it is blocked\n"));
+    assert_said(trace(arguments), 0, OUT ".txt", "it is blocked\n");
     assert_true(says(OUT ".txt", "total: nothing is counted\n"));
-    json_t *path = path_of(arguments);
-    assert_true(json_is_null(json_object_get(path, "object")));
-    assert_true(json_is_true(json_object_get(path, "blocked")));
-    json_decref(path);
-    path = path_of("balls:size=2 --size 64x64 --pixel 20,44 --rays shadow --accel bvh");
-    assert_true(json_is_integer(json_object_get(path, "object")));
-    assert_true(json_is_true(json_object_get(path, "blocked")));
-    json_decref(path);
-    path = path_of("balls:size=2 --size 64x64 --pixel 20,40 --rays shadow --accel bvh");
-    assert_true(json_is_null(json_object_get(path, "object")));
-    assert_true(json_is_false(json_object_get(path, "blocked")));
-    json_decref(path);
-    path = path_of("balls:size=2 --size 64x64 --pixel 20,44 --accel bvh");
-    assert_true(json_is_null(json_object_get(path, "blocked")));
-    json_decref(path);
-    unlink(OUT ".txt");
-    unlink(OUT ".err");
+    static const struct {
+        const char *what;
+        json_type object, blocked;
+    } cases[] = {{"20,44 --rays shadow --accel embree", JSON_NULL, JSON_TRUE},
+                 {"20,44 --rays shadow --accel bvh", JSON_INTEGER, JSON_TRUE},
+                 {"20,40 --rays shadow --accel bvh", JSON_NULL, JSON_FALSE},
+                 {"20,44 --accel bvh", JSON_INTEGER, JSON_NULL}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char all[128];
+        snprintf(all, sizeof all, "balls:size=2 --size 64x64 --pixel %s", cases[i].what);
+        json_auto_t *path = path_of(all);
+        assert_int_equal(json_typeof(json_object_get(path, "object")), cases[i].object);
+        assert_int_equal(json_typeof(json_object_get(path, "blocked")), cases[i].blocked);
+    }
 }
 
 RT_TEST(many_object_tests_that_miss_are_one_row_unless_each_is_asked_for) {
-    assert_int_equal(trace("balls:size=2 --size 64x64 --pixel 32,30 --accel brute"), 0);
-    assert_true(says(OUT ".txt", "all missed"));
+    assert_said(trace("balls:size=2 --size 64x64 --pixel 32,30 --accel brute"), 0, OUT ".txt", "all missed");
     assert_int_equal(trace("balls:size=2 --size 64x64 --pixel 32,30 --accel brute --rows 0"), 0);
     assert_false(says(OUT ".txt", "all missed"));
     assert_true(says(OUT ".txt", "object 91, "));
-    unlink(OUT ".txt");
 }
 
 /* ---- ray trees ---- */
@@ -146,7 +133,7 @@ RT_TEST(a_tree_grows_by_one_level_with_depth_and_adds_up_to_the_color) {
         double sum[3] = {0};
         snprintf(arguments, sizeof arguments, LECTURE " --pixel 42,42 --depth %d",
                  depth); /* the glass ball */
-        json_t *tree = path_of(arguments);
+        json_auto_t *tree = path_of(arguments);
         json_int_t count = walk(json_object_get(tree, "tree"), sum);
         assert_int_equal(json_integer_value(json_object_get(tree, "levels")), depth);
         assert_true(count > before);
@@ -155,9 +142,7 @@ RT_TEST(a_tree_grows_by_one_level_with_depth_and_adds_up_to_the_color) {
             double color = json_number_value(json_array_get(json_object_get(tree, "color"), a));
             assert_true(sum[a] > 0 && sum[a] - color < 1e-5 && color - sum[a] < 1e-5);
         }
-        json_decref(tree);
     }
-    unlink(OUT ".txt");
 }
 
 RT_TEST(a_tree_is_printed_with_each_ray_the_five_terms_and_sums) {
@@ -176,12 +161,10 @@ RT_TEST(a_tree_is_printed_with_each_ray_the_five_terms_and_sums) {
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
         if (!says(OUT ".txt", parts[i])) fail_msg("the tree does not say '%s'", parts[i]);
     }
-    assert_int_equal(trace(LECTURE " --pixel 42,42 --depth 1"), 0);
-    assert_true(says(OUT ".txt", "the ray tree, 1 level, of"));
+    assert_said(trace(LECTURE " --pixel 42,42 --depth 1"), 0, OUT ".txt", "the ray tree, 1 level, of");
     assert_true(says(OUT ".txt", "in 1 level, "));
-    assert_int_equal(trace(LECTURE " --pixel 42,42 --depth 5 --rows 3"), 0);
-    assert_true(says(OUT ".txt", "more rays\n       --rows 0 prints each\n"));
-    unlink(OUT ".txt");
+    assert_said(trace(LECTURE " --pixel 42,42 --depth 5 --rows 3"), 0, OUT ".txt",
+                "more rays\n       --rows 0 prints each\n");
 }
 
 /* The longest line of the file after the first, the spec. */
@@ -206,13 +189,11 @@ RT_TEST(a_tree_is_printed_in_100_columns) {
         assert_int_equal(trace(trees[i]), 0);
         assert_in_range(longest_line(OUT ".txt"), 60, 100);
     }
-    unlink(OUT ".txt");
 }
 
 RT_TEST(ideal_tests_one_object_for_each_ray_of_a_tree_that_hits) {
-    assert_int_equal(trace(LECTURE " --pixel 35,44 --depth 4 --accel ideal"), 0);
-    assert_true(says(OUT ".txt", "total: 15 rays in 4 levels, 10 object_tests, 0 extent_tests"));
-    unlink(OUT ".txt");
+    assert_said(trace(LECTURE " --pixel 35,44 --depth 4 --accel ideal"), 0, OUT ".txt",
+                "total: 15 rays in 4 levels, 10 object_tests, 0 extent_tests");
 }
 
 static void assert_drawn_in_every_format(const char *what) {
@@ -222,12 +203,10 @@ static void assert_drawn_in_every_format(const char *what) {
         snprintf(file, sizeof file, OUT "%s", begins[i][0]);
         snprintf(arguments, sizeof arguments,
                  "balls:size=2 --size 64x64 --pixel 32,30 --accel kd %s --svg %s", what, file);
-        assert_int_equal(trace(arguments), 0);
-        assert_true(says(OUT ".txt", "wrote "));
+        assert_said(trace(arguments), 0, OUT ".txt", "wrote ");
         assert_true(says(file, begins[i][1]));
         unlink(file);
     }
-    unlink(OUT ".txt");
 }
 
 RT_TEST(a_path_or_a_tree_is_drawn_in_the_format_that_the_name_says) {
@@ -264,12 +243,8 @@ RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
         {"balls --pixel 0,0 --depth 2 --light 1", "leave out --rays"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        if (trace(cases[i].arguments) != 2) fail_msg("'%s' did not exit with 2", cases[i].arguments);
-        if (!says(OUT ".err", cases[i].says))
-            fail_msg("'%s' does not say '%s'", cases[i].arguments, cases[i].says);
+        assert_said(trace(cases[i].arguments), 2, OUT ".err", cases[i].says);
     }
-    unlink(OUT ".txt");
-    unlink(OUT ".err");
 }
 
 /* tests/check_pages.sh tests what the page does, in a browser. */
@@ -282,8 +257,6 @@ RT_TEST(a_page_to_explore_holds_the_rays_and_names_the_accelerators) {
     assert_true(says(OUT ".txt", "with the rays of all pixels"));
     assert_true(says(OUT ".html", "{\"accel\":\"bvh\",") &&
                 says(OUT ".html", "{\"accel\":\"grid:density=1\","));
-    unlink(OUT ".txt");
-    unlink(OUT ".err");
     unlink(OUT ".html");
 }
 

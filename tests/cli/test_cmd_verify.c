@@ -27,7 +27,7 @@ static json_int_t number(const json_t *row, const char *key) {
 }
 
 RT_TEST(a_row_says_how_each_ray_was_answered) {
-    json_t *json =
+    json_auto_t *json =
         document("balls:size=1 tetra:size=2 --accel bvh --accel grid:density=1 --rays 1001 --seed 9 --json");
     assert_int_equal(number(json, "seed"), 9);
     const json_t *rows = json_object_get(json, "rows");
@@ -45,11 +45,10 @@ RT_TEST(a_row_says_how_each_ray_was_answered) {
         assert_int_equal(number(row, "occluded_wrong"), 0);
         assert_true(json_is_null(json_object_get(row, "first_wrong")));
     }
-    json_decref(json);
 }
 
 RT_TEST(the_spread_tries_each_value_of_each_parameter) {
-    json_t *json = document("balls:size=1 --accel bvh --spread --rays 10 --json");
+    json_auto_t *json = document("balls:size=1 --accel bvh --spread --rays 10 --json");
     const json_t *rows = json_object_get(json, "rows");
     bool leaf = false;
     for (size_t i = 0; i < json_array_size(rows); i++) {
@@ -58,7 +57,6 @@ RT_TEST(the_spread_tries_each_value_of_each_parameter) {
         leaf |= strcmp(accel, "bvh:max_leaf_size=1") == 0;
     }
     assert_true(leaf && json_array_size(rows) > 5);
-    json_decref(json);
 }
 
 RT_TEST(all_is_the_default_and_threads_change_nothing) {
@@ -81,7 +79,7 @@ RT_TEST(embree_is_judged_if_it_is_named_and_says_how_much_could_be_seen) {
         return;
     }
     assert_non_null(strstr(said, "embree has its own arithmetic, so it is not among `all`"));
-    json_t *json =
+    json_auto_t *json =
         document("random:n=40,distribution=coincident random:n=0 --rays 3001 --accel embree --json");
     const json_t *rows = json_object_get(json, "rows");
     assert_true(json_array_size(rows) >= 2);
@@ -92,9 +90,7 @@ RT_TEST(embree_is_judged_if_it_is_named_and_says_how_much_could_be_seen) {
         assert_int_equal(number(row, "certain_of"), 3001);
         assert_true(number(row, "certain") > 1000);
     }
-    json_decref(json);
-    assert_int_equal(verify("random:n=40 --rays 300 --accel embree"), 1);
-    assert_non_null(strstr(text_of(OUT ".err"), "undecided: of 300 rays"));
+    assert_said(verify("random:n=40 --rays 300 --accel embree"), 1, OUT ".err", "undecided: of 300 rays");
     assert_non_null(strstr(text_of(OUT ".out"), "1 row undecided; rows that fail: 1 of embree"));
 }
 
@@ -104,19 +100,19 @@ static const char *accel_of(const json_t *rows, size_t i) {
 
 /* Left to itself light hands all on to what lies below it here. */
 RT_TEST(what_would_be_left_unused_is_tried_beside_the_default) {
-    json_t *json =
+    json_auto_t *json =
         document("balls:size=1 --accel light+wide --accel bvh --accel wide:max_leaf_size=2 --rays 10 --json");
     const json_t *rows = json_object_get(json, "rows");
     assert_int_equal(json_array_size(rows), 4);
     assert_string_equal(accel_of(rows, 0), "light+wide");
     assert_string_equal(accel_of(rows, 1), "light:cells=100+wide:sharing=0");
     assert_string_equal(accel_of(rows, 2), "bvh");
-    json_decref(json);
 }
 
 /* Those of the fewest objects first. */
 RT_TEST(hard_scenes_are_verified_unasked_and_the_small_ones_with_quick) {
-    json_t *json = document("--accel bvh --rays 20 --json"), *quick = document("--accel bvh --quick --json");
+    json_auto_t *json = document("--accel bvh --rays 20 --json"),
+                *quick = document("--accel bvh --quick --json");
     const json_t *rows = json_object_get(json, "rows"), *few = json_object_get(quick, "rows");
     assert_true(json_array_size(few) > 20 && json_array_size(few) < json_array_size(rows));
     for (size_t i = 0; i < json_array_size(few); i++) {
@@ -124,14 +120,12 @@ RT_TEST(hard_scenes_are_verified_unasked_and_the_small_ones_with_quick) {
                             json_string_value(json_object_get(json_array_get(rows, i), "scene")));
         assert_int_equal(number(json_array_get(few, i), "rays"), 2000);
     }
-    json_decref(json);
-    json_decref(quick);
     assert_int_equal(verify("--accel bvh --quick"), 0);
     const char *last = strstr(text_of(OUT ".out"), "--quick used 2000 rays");
     assert_non_null(last);
     assert_non_null(strstr(last, "larger scenes. Omit it for the full check."));
-    assert_int_equal(verify("balls:size=1 --accel bvh"), 0);
-    assert_non_null(strstr(text_of(OUT ".out"), "\n1 scene, 1 accelerator, 20000 rays, 20000 comparisons"));
+    assert_said(verify("balls:size=1 --accel bvh"), 0, OUT ".out",
+                "\n1 scene, 1 accelerator, 20000 rays, 20000 comparisons");
     assert_null(strstr(text_of(OUT ".out"), "--quick used"));
 }
 
@@ -164,16 +158,13 @@ RT_TEST(what_cannot_be_verified_is_refused_before_anything_is_printed) {
         {"--replay " RT_SOURCE_DIR "/README.md", "not JSON"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        if (verify(cases[i].arguments) != 2) fail_msg("'%s' is not refused", cases[i].arguments);
-        if (!strstr(text_of(OUT ".err"), cases[i].says)) {
-            fail_msg("'%s' says: %s", cases[i].arguments, text_of(OUT ".err"));
-        }
+        assert_said(verify(cases[i].arguments), 2, OUT ".err", cases[i].says);
         assert_string_equal(text_of(OUT ".out"), "");
     }
 }
 
 RT_TEST(scenes_of_families_have_the_seed_of_the_rays) {
-    json_t *json = document("families family:kind=soup,seed=9 --accel grid --rays 40 --seed 3 --json");
+    json_auto_t *json = document("families family:kind=soup,seed=9 --accel grid --rays 40 --seed 3 --json");
     const json_t *rows = json_object_get(json, "rows");
     size_t count = json_array_size(rows);
     assert_true(count > 20);
@@ -181,11 +172,10 @@ RT_TEST(scenes_of_families_have_the_seed_of_the_rays) {
     const char *last = json_string_value(json_object_get(json_array_get(rows, count - 1), "scene"));
     assert_string_equal(first, "family:kind=empty,seed=3");
     assert_string_equal(last, "family:kind=soup,seed=9");
-    json_decref(json);
 }
 
 RT_TEST(triangles_are_the_default_scenes_without_other_shapes) {
-    json_t *json = document("triangles --accel bvh --rays 40 --json");
+    json_auto_t *json = document("triangles --accel bvh --rays 40 --json");
     const json_t *rows = json_object_get(json, "rows");
     static const char *const others[] = {"balls", "shape=mixed", "=two", "csg", "spheres"};
     bool tetra = false, slivers = false;
@@ -196,18 +186,16 @@ RT_TEST(triangles_are_the_default_scenes_without_other_shapes) {
         slivers |= strcmp(scene, "family:kind=slivers,seed=1") == 0;
     }
     assert_true(tetra && slivers && json_array_size(rows) > 8);
-    json_decref(json);
 }
 
 RT_TEST(what_needs_more_memory_than_is_allowed_is_refused_and_the_others_are_verified) {
-    assert_int_equal(verify("random:n=20000 --accel kd --accel brute --rays 40 --memory 1M --json"), 0);
-    assert_non_null(strstr(text_of(OUT ".err"), "refused: it needs more than 1 MB of memory (--memory)"));
-    json_t *json = json_load_file(OUT ".out", 0, NULL);
+    assert_said(verify("random:n=20000 --accel kd --accel brute --rays 40 --memory 1M --json"), 0, OUT ".err",
+                "refused: it needs more than 1 MB of memory (--memory)");
+    json_auto_t *json = json_load_file(OUT ".out", 0, NULL);
     const json_t *rows = json_object_get(json, "rows");
     assert_int_equal(json_array_size(rows), 2);
     assert_int_equal(number(json_array_get(rows, 0), "rays"), 0);
     assert_int_equal(number(json_array_get(rows, 1), "equal"), 40);
-    json_decref(json);
 }
 
 RT_TEST(a_verification_stops_when_its_time_is_over) {
@@ -256,8 +244,7 @@ RT_TEST(a_run_is_gone_on_with) {
     assert_string_equal(text_of(OUT ".out"), whole);
     assert_string_equal(text_of(OUT ".rows/verify.csv"), table);
     snprintf(again, sizeof again, "%s --resume --seed 2", arguments);
-    assert_int_equal(verify(again), 2);
-    assert_non_null(strstr(text_of(OUT ".err"), "another verification, with different seed"));
+    assert_said(verify(again), 2, OUT ".err", "another verification, with different seed");
 }
 
 RT_TEST(rows_that_are_there_are_not_begun_anew_unasked) {
@@ -266,20 +253,17 @@ RT_TEST(rows_that_are_there_are_not_begun_anew_unasked) {
     char other[1024];
     begin_anew(arguments);
     strcpy(rows, text_of(OUT ".kept/rows.jsonl"));
-    assert_int_equal(verify(arguments), 2);
-    assert_non_null(strstr(text_of(OUT ".err"), OUT ".kept holds a finished run"));
+    assert_said(verify(arguments), 2, OUT ".err", OUT ".kept holds a finished run");
     assert_string_equal(text_of(OUT ".out"), "");
     assert_int_equal(remove(OUT ".kept/manifest.json"), 0);
-    assert_int_equal(verify(arguments), 2);
-    assert_non_null(strstr(text_of(OUT ".err"), "holds an unfinished run: use --resume to continue it"));
+    assert_said(verify(arguments), 2, OUT ".err", "holds an unfinished run: use --resume to continue it");
     /* A scene that cannot be opened is found before anything is lost. */
     snprintf(other, sizeof other, "nothing.nff %s --force", arguments);
     assert_int_equal(verify(other), 2);
     assert_string_equal(text_of(OUT ".kept/rows.jsonl"), rows);
     assert_int_equal(remove(OUT ".kept/rows.jsonl"), 0);
     snprintf(other, sizeof other, "%s --resume", arguments);
-    assert_int_equal(verify(other), 2);
-    assert_non_null(strstr(text_of(OUT ".err"), "verify.csv, but no rows.jsonl"));
+    assert_said(verify(other), 2, OUT ".err", "verify.csv, but no rows.jsonl");
 }
 
 static void write_sphere(const char *path, int radius) {
@@ -296,8 +280,7 @@ RT_TEST(a_run_is_not_gone_on_with_where_a_scene_file_was_edited) {
     begin_anew(arguments);
     snprintf(again, sizeof again, "%s --resume", arguments);
     write_sphere(OUT ".yaml", 2);
-    assert_int_equal(verify(again), 2);
-    assert_non_null(strstr(text_of(OUT ".err"), "with different fingerprints"));
+    assert_said(verify(again), 2, OUT ".err", "with different fingerprints");
 }
 
 /* No accelerator lies, so the journal is made to say so of one, and gone on with. */
@@ -335,8 +318,7 @@ static void write_replay(const char *path, const char *shrunk) {
  * does. */
 RT_TEST(a_replay_says_whether_the_answer_is_still_wrong) {
     write_replay(OUT ".json", "{\"yaml\": \"objects: [{sphere: {center: [0, 0, 0], radius: 1}}]\"}");
-    assert_int_equal(verify("--replay '" OUT ".json'"), 0);
-    assert_non_null(strstr(text_of(OUT ".err"), "has changed since"));
+    assert_said(verify("--replay '" OUT ".json'"), 0, OUT ".err", "has changed since");
     assert_non_null(strstr(text_of(OUT ".out"), "reduced: right: ray 0, nearest, timed kernel"));
     assert_non_null(strstr(text_of(OUT ".out"), "expected object 0 at t = 7, got object 0 at t = 7"));
 }
@@ -344,8 +326,7 @@ RT_TEST(a_replay_says_whether_the_answer_is_still_wrong) {
 /* By exit code 1 a bisection would take it for the fault that it looks for. */
 RT_TEST(a_replay_that_cannot_be_asked_is_not_called_wrong) {
     write_replay(OUT ".json", "null");
-    assert_int_equal(verify("--replay '" OUT ".json'"), 2);
-    assert_non_null(strstr(text_of(OUT ".err"), "has changed since"));
+    assert_said(verify("--replay '" OUT ".json'"), 2, OUT ".err", "has changed since");
 }
 
 RT_TESTS(cmd_verify, NULL, NULL)

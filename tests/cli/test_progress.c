@@ -7,7 +7,6 @@
 #include <fcntl.h>
 #include <stdatomic.h>
 #include <time.h>
-#include <unistd.h>
 
 /* The clock of everything that is linked into this program stands still but for said(). */
 static _Atomic int milliseconds;
@@ -19,7 +18,7 @@ int __wrap_clock_gettime(clockid_t clock, struct timespec *now) {
     return 0;
 }
 
-static int make_small(void **state) {
+static int make_places(void **state) {
     if (make_place(state) != 0) return -1;
     write_in(*state, "small.yaml",
              "name: small\nquestion: a\nprediction: b\nscenes: [{scene: \"balls:size=1\"}]\n"
@@ -27,11 +26,9 @@ static int make_small(void **state) {
     return 0;
 }
 
-#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_small, remove_place)
-
 /* Tells progress in each of some milliseconds that something was finished; what it says, for rt_free. */
 static char *said(const Place *place, RtEventKind what, bool terminal, double every, int duration) {
-    RtResults results;
+    OWNED_RESULTS results;
     RtWorkloadOptions options = {.threads = 1, .timing = 1};
     const char *path = path_in(place, "said").text;
     int file = open(path, O_RDWR | O_CREAT | O_TRUNC, 0666), stderr_was = dup(STDERR_FILENO);
@@ -51,7 +48,6 @@ static char *said(const Place *place, RtEventKind what, bool terminal, double ev
     dup2(stderr_was, STDERR_FILENO);
     close(stderr_was);
     close(file);
-    rt_results_clear(&results);
     return read_in(place, "said");
 }
 
@@ -61,20 +57,20 @@ static int count(const char *text, const char *part) {
     return n;
 }
 
-RT_TEST_IN_PLACE(without_a_terminal_a_line_comes_as_often_as_it_may_and_no_more) {
-    char *text = said(*state, RT_EVENT_BUILD, false, 0.2, 900);
+PLACE_TEST(without_a_terminal_a_line_comes_as_often_as_it_may_and_no_more) {
+    char *text = said(place, RT_EVENT_BUILD, false, 0.2, 900);
     int lines = count(text, "\n");
     assert_int_equal(lines, 4);
     assert_int_equal(count(text, "raytally: 0 of 2 cells, balls:size=1 grid: built\n"), lines);
     assert_int_equal(count(text, "\r"), 0);
     rt_free(text);
-    text = said(*state, RT_EVENT_BUILD, false, 60, 30000);
+    text = said(place, RT_EVENT_BUILD, false, 60, 30000);
     assert_string_equal(text, "");
     rt_free(text);
 }
 
-RT_TEST_IN_PLACE(on_a_terminal_one_line_is_drawn_in_place_and_taken_away) {
-    OWNED_MEMORY char *text = said(*state, RT_EVENT_BUILD, true, 1, 100);
+PLACE_TEST(on_a_terminal_one_line_is_drawn_in_place_and_taken_away) {
+    OWNED_MEMORY char *text = said(place, RT_EVENT_BUILD, true, 1, 100);
     const char *const away = "\r\033[K";
     size_t length = strlen(text);
     assert_int_equal(count(text, "\n"), 0);
@@ -83,11 +79,11 @@ RT_TEST_IN_PLACE(on_a_terminal_one_line_is_drawn_in_place_and_taken_away) {
     assert_string_equal(text + length - strlen(away), away);
 }
 
-RT_TEST_IN_PLACE(a_frame_is_of_no_kind_of_rays) {
-    char *text = said(*state, RT_EVENT_RENDER, false, 0.2, 300);
+PLACE_TEST(a_frame_is_of_no_kind_of_rays) {
+    char *text = said(place, RT_EVENT_RENDER, false, 0.2, 300);
     assert_string_equal(text, "raytally: 0 of 2 cells, balls:size=1 grid: rendered\n");
     rt_free(text);
-    text = said(*state, RT_EVENT_TIME, false, 0.2, 300);
+    text = said(place, RT_EVENT_TIME, false, 0.2, 300);
     assert_string_equal(text, "raytally: 0 of 2 cells, balls:size=1 grid primary: timed\n");
     rt_free(text);
 }

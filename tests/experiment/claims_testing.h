@@ -9,10 +9,6 @@
 #include "core/base/memory.h"
 #include "results/result_tables.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 /* Scenes random:n=10, 100, 1000 and balls; accelerators bvh (the baseline), grid:density=1, 2, 4. */
 static RtExperiment *e;
 static RtResults results;

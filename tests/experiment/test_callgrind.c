@@ -5,24 +5,20 @@
 #include "core/text/json.h"
 #include "measure/ray_file.h"
 
-#include <glob.h>
-#include <math.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 /* Valgrind cannot run a program that has sanitizers. */
 static bool has_valgrind(void) {
     return !RT_SANITIZED && system("valgrind --version >/dev/null 2>&1") == 0;
 }
 
-#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_place, remove_place)
+PLACES_WITH(NULL)
 
-/* A test that needs valgrind, in `place`. */
 #define RT_TEST_VALGRIND(name)                                                                               \
     static void name##_with(const Place *place);                                                             \
-    RT_TEST_IN_PLACE(name) {                                                                                 \
+    PLACE_TEST(name) {                                                                                       \
         if (!has_valgrind()) RT_SKIP("valgrind, and no sanitizers");                                         \
-        name##_with(*state);                                                                                 \
+        name##_with(place);                                                                                  \
     }                                                                                                        \
     static void name##_with(const Place *place)
 
@@ -50,15 +46,13 @@ static const char *text_of(const json_t *rows, size_t i, const char *key) {
 RT_TEST_VALGRIND(instructions_are_the_same_figure_twice_whatever_the_environment) {
     const char *const arguments = "balls:size=2 --accel bvh --accel grid --accel cache+wide --accel ideal "
                                   "--rays primary,shadow --size 32x32";
-    json_t *one = instructions_of(place, arguments);
+    json_auto_t *one = instructions_of(place, arguments);
     assert_int_equal(setenv("RT_TEST_FILLER", "some text that moves the stack to another place", 1), 0);
-    json_t *two = instructions_of(place, arguments);
+    json_auto_t *two = instructions_of(place, arguments);
     unsetenv("RT_TEST_FILLER");
     assert_int_equal(json_array_size(one), 4 * 2);
     for (size_t i = 0; i < 8; i++) assert_true(integer_of(one, i, "instructions") > 0);
     assert_true(json_equal(one, two));
-    json_decref(one);
-    json_decref(two);
 }
 
 /* `count` rays, all alike, to NAME. */
@@ -83,10 +77,9 @@ RT_TEST_VALGRIND(each_ray_more_costs_exactly_as_much_as_the_one_before) {
             write_alike(place, name, 32 * (uint64_t)(1 + i));
             snprintf(arguments, sizeof arguments, "random:n=50 --accel %s --rays-from %s --rays nearest",
                      specs[s], name);
-            json_t *rows = instructions_of(place, arguments);
+            json_auto_t *rows = instructions_of(place, arguments);
             assert_int_equal(integer_of(rows, 0, "rays"), 32 * (1 + i));
             sums[i] = integer_of(rows, 0, "instructions");
-            json_decref(rows);
         }
         assert_true(sums[0] < sums[1]);
         assert_int_equal(sums[2] - sums[1], sums[1] - sums[0]);
@@ -95,13 +88,12 @@ RT_TEST_VALGRIND(each_ray_more_costs_exactly_as_much_as_the_one_before) {
 }
 
 RT_TEST_VALGRIND(an_instruction_set_that_valgrind_does_not_know_is_replaced_and_said) {
-    json_t *rows =
+    json_auto_t *rows =
         instructions_of(place, "random:n=50 --accel wide --accel wide:isa=portable --rays primary --size "
                                "16x16");
     assert_null(strstr(text_of(rows, 0, "spec"), "isa=best"));
     assert_null(strstr(text_of(rows, 0, "spec"), "isa=avx512"));
     assert_non_null(strstr(text_of(rows, 1, "spec"), "isa=portable"));
-    json_decref(rows);
 }
 
 /* Plugins are built in the worker's own process; one that breaks is not built there. */
@@ -113,13 +105,12 @@ RT_TEST_VALGRIND(instructions_of_a_plugin_are_counted_and_a_broken_one_is_named)
                                      "--accel faulty-crash-nearest"),
                      1);
     OWNED_MEMORY char *text = read_in(place, "output");
-    json_t *document = json_loads(text, 0, NULL);
+    json_auto_t *document = json_loads(text, 0, NULL);
     const json_t *rows = json_object_get(document, "instructions");
     assert_int_equal(json_array_size(rows), 4 * 2);
     for (size_t i = 0; i < 6; i++) assert_true(integer_of(rows, i, "instructions") > 0);
     for (size_t i = 2; i < 4; i++) assert_string_equal(text_of(rows, i, "accel"), "bvh_copy");
     assert_non_null(strstr(text_of(rows, 6, "why"), "it crashed (Segmentation fault)"));
-    json_decref(document);
 }
 
 /* The worker gets at most so many rays, and no file stays behind. */
@@ -134,33 +125,21 @@ RT_TEST_VALGRIND(the_worker_gets_a_few_rays_and_leaves_nothing_behind) {
     globfree(&found);
 }
 
-RT_TEST_VALGRIND(the_table_names_the_instruction_set) {
-    assert_int_equal(raytally(place,
-                              "bench random:n=50 --accel wide:isa=portable --rays primary --size 16x16 "
-                              "--rounds 1 --callgrind"),
-                     0);
-    assert_in_file(place, "output", "instr./ray  isa");
-    assert_in_file(place, "output", "portable");
-}
-
 static double figure_of(const json_t *row, const char *key) {
     return json_number_value(json_object_get(row, key));
 }
 
 /* raytally_slower traces a fiftieth of the rays twice. */
 RT_TEST_VALGRIND(compare_shows_the_instructions_of_both_programs_and_their_ratio) {
-    assert_int_equal(raytally(place,
-                              "compare balls:size=1 --accel grid --rays primary --size 32x32 --rounds 1 "
-                              "--callgrind=512 --margin 1% --json --with " RT_BINARY_DIR "/raytally_slower"),
-                     0);
+    assert_runs(place, "compare balls:size=1 --accel grid --rays primary --size 32x32 --rounds 1 "
+                       "--callgrind=512 --margin 1% --json --with " RT_BINARY_DIR "/raytally_slower");
     OWNED_MEMORY char *text = read_in(place, "output");
-    json_t *document = json_loads(text, 0, NULL);
+    json_auto_t *document = json_loads(text, 0, NULL);
     const json_t *row = json_array_get(json_object_get(document, "cells"), 0);
     const double before = figure_of(row, "instructions_before"), after = figure_of(row, "instructions_after");
     assert_true(before > 100 && after > 100);
     assert_in_range((int)(1000 * before / after), 1005, 1035);
     assert_true(fabs(figure_of(row, "instructions_ratio") - after / before) < 1e-6);
-    json_decref(document);
 }
 
 RT_TEST_VALGRIND(a_program_that_cannot_count_instructions_is_told_apart_in_plain_words) {
@@ -173,8 +152,7 @@ RT_TEST_VALGRIND(a_program_that_cannot_count_instructions_is_told_apart_in_plain
 }
 
 /* Before anything is measured. */
-RT_TEST_IN_PLACE(without_valgrind_there_is_a_message_that_says_how_to_get_it) {
-    const Place *place = *state;
+PLACE_TEST(without_valgrind_there_is_a_message_that_says_how_to_get_it) {
     char command[512];
     snprintf(command, sizeof command,
              "cd '%s' && PATH=/nowhere '%s' bench balls --accel bvh --callgrind >output "

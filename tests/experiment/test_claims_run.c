@@ -2,44 +2,34 @@
 /* Claims and findings of an experiment, from its YAML to the report. */
 #include "experiment_testing.h"
 
-static const char claiming[] = "name: small\n"
-                               "question: Which density is best?\n"
-                               "prediction: Four.\n"
+static const char claiming[] = "name: small\nquestion: Which density is best?\nprediction: Four.\n"
                                "scenes:\n"
                                "  - {scene: \"random:n=200\", size: 40x40}\n"
                                "accelerators:\n"
                                "  - {accel: bvh}\n"
                                "  - {accel: \"grid:density=1..16*4\"}\n"
-                               "rays: [primary]\n"
-                               "count_only: yes\n"
-                               "limit: 1600\n"
+                               "rays: [primary]\ncount_only: yes\nlimit: 1600\n"
                                "expect:\n"
                                "  - object_tests of grid falls with density\n"
                                "  - object_tests of bvh > 1000\n";
 
-static int make_claiming(void **state) {
-    return make_place_with(state, claiming);
-}
+PLACES_WITH(claiming)
 
-#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_claiming, remove_place)
-
-RT_TEST_IN_PLACE(a_false_claim_is_said_to_be_and_is_exit_code_1_if_strict) {
-    const Place *place = *state;
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+PLACE_TEST(a_false_claim_is_said_to_be_and_is_exit_code_1_if_strict) {
+    assert_runs(place, "run small.yaml --out out --threads 1");
     assert_in_file(place, "output", "holds            object_tests of grid falls with density");
     assert_in_file(place, "output", "does not hold    object_tests of bvh > 1000");
     assert_in_file(place, "out/report.html", "does not hold");
     assert_ends(place, "run small.yaml --out out --threads 1 --resume --strict", 1,
                 "1 of 2 claims do not hold, the first: object_tests of bvh > 1000");
     write_changed(place, "small.yaml", claiming, "bvh > 1000", "bvh < 1000");
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume --strict"), 0);
+    assert_runs(place, "run small.yaml --out out --threads 1 --resume --strict");
 }
 
-RT_TEST_IN_PLACE(a_figure_is_shown_with_the_claims_and_counted_with_none) {
-    const Place *place = *state;
+PLACE_TEST(a_figure_is_shown_with_the_claims_and_counted_with_none) {
     write_changed(place, "small.yaml", claiming, "object_tests of bvh > 1000",
                   "object_tests of bvh\n  - exponent of object_tests of grid in density");
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --strict"), 0);
+    assert_runs(place, "run small.yaml --out out --threads 1 --strict");
     assert_in_file(place, "output", "figure           object_tests of bvh\n");
     assert_in_file(place, "output", " over 3 values (grid on random:n=200)\n");
     assert_in_file(place, "out/report.html",
@@ -47,19 +37,17 @@ RT_TEST_IN_PLACE(a_figure_is_shown_with_the_claims_and_counted_with_none) {
     assert_in_file(place, "out/report.html", "\"verdict holds\">1 of 1 claim holds</span>");
 }
 
-RT_TEST_IN_PLACE(a_claim_about_a_missing_plugin_has_no_measurements_and_is_no_failure) {
-    const Place *place = *state;
+PLACE_TEST(a_claim_about_a_missing_plugin_has_no_measurements_and_is_no_failure) {
     write_changed(place, "missing.yaml", claiming, "bvh > 1000", "nobodys > 1000");
     OWNED_MEMORY char *text = read_in(place, "missing.yaml");
     write_changed(place, "small.yaml", text, "{accel: bvh}\n",
                   "{accel: bvh}\n  - {accel: nobodys, optional: yes}\n");
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --strict"), 0);
+    assert_runs(place, "run small.yaml --out out --threads 1 --strict");
     assert_in_file(place, "output", "no measurements  object_tests of nobodys > 1000");
     assert_in_file(place, "out/report.html", "1 of 2 claims hold, 1 without measurements");
 }
 
-RT_TEST_IN_PLACE(a_bad_claim_is_refused_with_its_line_when_the_yaml_is_read) {
-    const Place *place = *state;
+PLACE_TEST(a_bad_claim_is_refused_with_its_line_when_the_yaml_is_read) {
     write_changed(place, "small.yaml", claiming, "bvh > 1000", "bhv > 1000");
     assert_bad_input(load_small(place, false, error),
                      ":14:5: expect[1]: 'bhv' is not the label of one of the accelerators: did you mean "
@@ -67,15 +55,14 @@ RT_TEST_IN_PLACE(a_bad_claim_is_refused_with_its_line_when_the_yaml_is_read) {
 }
 
 /* What is found, and better claims, come after the run. */
-RT_TEST_IN_PLACE(a_finding_is_added_to_a_run_that_is_there_and_nothing_else_is) {
-    const Place *place = *state;
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+PLACE_TEST(a_finding_is_added_to_a_run_that_is_there_and_nothing_else_is) {
+    assert_runs(place, "run small.yaml --out out --threads 1");
     write_changed(place, "small.yaml", claiming, "count_only",
                   "finding: >-\n  Four it is,\n  indeed.\ncount_only");
     assert_ends(place, "run small.yaml --out out --threads 1 --resume", 0, "nothing was left to measure");
     assert_in_file(place, "out/report.html", "<h2>Finding</h2><p>Four it is, indeed.");
-    assert_int_equal(raytally(place, "report out"), 0);
-    assert_int_equal(raytally(place, "reproduce out"), 0);
+    assert_runs(place, "report out");
+    assert_runs(place, "reproduce out");
     write_changed(place, "small.yaml", claiming, "limit: 1600", "finding: Four.\nlimit: 1599");
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 2);
     write_changed(place, "small.yaml", claiming, "prediction: Four.", "prediction: Five.");
@@ -83,13 +70,12 @@ RT_TEST_IN_PLACE(a_finding_is_added_to_a_run_that_is_there_and_nothing_else_is) 
 }
 
 /* One claim is new, one is gone, and one is as it was; a readout may come and go. */
-RT_TEST_IN_PLACE(claims_that_change_after_a_run_are_shown_as_such_beside_the_original) {
-    const Place *place = *state;
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+PLACE_TEST(claims_that_change_after_a_run_are_shown_as_such_beside_the_original) {
+    assert_runs(place, "run small.yaml --out out --threads 1");
     assert_in_file(place, "out/manifest.json", "\"object_tests of bvh > 1000\"");
     assert_not_in_file(place, "out/manifest.json", "claims_changed");
     write_changed(place, "small.yaml", claiming, "bvh > 1000", "bvh < 1000\n  - object_tests of bvh");
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 0);
+    assert_runs(place, "run small.yaml --out out --threads 1 --resume");
     assert_in_file(place, "output", "object_tests of bvh < 1000 [stated after the run began]");
     assert_in_file(place, "output", "dropped since    object_tests of bvh > 1000");
     assert_in_file(place, "output", "object_tests of grid falls with density\n");
@@ -99,17 +85,16 @@ RT_TEST_IN_PLACE(claims_that_change_after_a_run_are_shown_as_such_beside_the_ori
                    "dropped after the run began</span> object_tests of bvh &gt; 1000");
     assert_in_file(place, "out/manifest.json", "claims_changed");
     assert_in_file(place, "out/manifest.json", "\"object_tests of bvh > 1000\"");
-    assert_int_equal(raytally(place, "report out"), 0);
+    assert_runs(place, "report out");
     assert_in_file(place, "output", "[stated after the run began]");
     write_in(place, "small.yaml", claiming);
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 0);
+    assert_runs(place, "run small.yaml --out out --threads 1 --resume");
     assert_not_in_file(place, "out/manifest.json", "claims_changed");
     assert_not_in_file(place, "out/report.html", "after the run began");
 }
 
-RT_TEST_IN_PLACE(plots_may_change_after_a_run_and_scripts_be_added_to_its_results) {
-    const Place *place = *state;
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+PLACE_TEST(plots_may_change_after_a_run_and_scripts_be_added_to_its_results) {
+    assert_runs(place, "run small.yaml --out out --threads 1");
     write_in(place, "mine.gp", "set terminal svg\nset output \"plots/mine.svg.tmp\"\nplot 1\nunset output\n");
     write_in(place, "out/plots/later.gp",
              "set terminal svg\nset output \"plots/later.svg.tmp\"\nplot 2\nunset output\n");
@@ -118,8 +103,8 @@ RT_TEST_IN_PLACE(plots_may_change_after_a_run_and_scripts_be_added_to_its_result
     write_changed(place, "small.yaml", claiming, "count_only", "plots: [mine.gp]\ncount_only");
     assert_ends(place, "run small.yaml --out out --threads 1 --resume", 0, "nothing was left to measure");
     assert_in_file(place, "out/plots/mine.gp", "plot 1");
-    assert_int_equal(raytally(place, "reproduce out"), 0);
-    assert_int_equal(raytally(place, "plot out --trust"), 0);
+    assert_runs(place, "reproduce out");
+    assert_runs(place, "plot out --trust");
     if (system("gnuplot --version >/dev/null 2>&1") != 0) return;
     assert_in_file(place, "out/plots/mine.svg", "</svg>");
     assert_in_file(place, "out/plots/later.svg", "</svg>");
@@ -132,10 +117,9 @@ static const char quoting[] =
     "  - {citation: \"C, 1989\", page: unseen, quote: Five is better.}\n"
     "rays: [primary]\n";
 
-RT_TEST_IN_PLACE(the_report_quotes_the_papers_with_page_and_verdict_and_marks_what_was_not_seen) {
-    const Place *place = *state;
+PLACE_TEST(the_report_quotes_the_papers_with_page_and_verdict_and_marks_what_was_not_seen) {
     write_changed(place, "small.yaml", claiming, "rays: [primary]\n", quoting);
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_runs(place, "run small.yaml --out out --threads 1");
     assert_in_file(place, "out/report.html",
                    "\"citation\":\"A & B, 1988\",\"page\":\"19\",\"seen\":true,"
                    "\"quote\":\"Four \\u003cis> best.\",\"verdict\":\"true of its machine\"");
@@ -144,17 +128,16 @@ RT_TEST_IN_PLACE(the_report_quotes_the_papers_with_page_and_verdict_and_marks_wh
                    "\"quote\":\"Five is better.\",\"verdict\":\"not judged\"");
 }
 
-RT_TEST_IN_PLACE(section_and_paper_may_change_after_a_run) {
-    const Place *place = *state;
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+PLACE_TEST(section_and_paper_may_change_after_a_run) {
+    assert_runs(place, "run small.yaml --out out --threads 1");
     write_changed(place, "small.yaml", claiming, "rays: [primary]\n", quoting);
     assert_ends(place, "run small.yaml --out out --threads 1 --resume", 0, "nothing was left to measure");
     assert_in_file(place, "out/report.html", "From the literature");
     assert_in_file(place, "out/experiment.yaml", "section: papers");
-    assert_int_equal(raytally(place, "reproduce out"), 0);
+    assert_runs(place, "reproduce out");
 }
 
-RT_TEST_IN_PLACE(a_bad_paper_is_refused_with_its_line) {
+PLACE_TEST(a_bad_paper_is_refused_with_its_line) {
     static const struct {
         const char *key, *message;
     } cases[] = {
@@ -168,7 +151,6 @@ RT_TEST_IN_PLACE(a_bad_paper_is_refused_with_its_line) {
          ":12:8: paper: invalid value 'Glassner': expected a list of mappings with citation"},
         {"section: []\n", ":12:1: section: "},
     };
-    const Place *place = *state;
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         char with[256];
         snprintf(with, sizeof with, "%sexpect:\n", cases[i].key);

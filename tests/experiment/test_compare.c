@@ -4,20 +4,13 @@
 
 #include "compare/compare.h"
 
-#include <math.h>
-
 static const char experiment_yaml[] =
-    "name: small\n"
-    "question: Which is cheaper?\n"
-    "prediction: The hierarchy.\n"
+    "name: small\nquestion: Which is cheaper?\nprediction: The hierarchy.\n"
     "scenes: [{scene: \"balls:size=1\", size: 8x8, depth: 2}, {scene: \"tetra:size=1\", size: 8x8, depth: "
     "2},\n"
     "  {scene: \"random:n=20\", size: 8x8, depth: 2}, {scene: \"gears:size=1\", size: 8x8, depth: 2}]\n"
-    "accelerators: [{accel: bvh}, {accel: grid}, {accel: octree}, {accel: kd}]\n"
-    "rays: [primary, random]\n"
-    "limit: 100\n"
-    "rounds: 6\n"
-    "milliseconds: 0\n";
+    "accelerators: [{accel: bvh}, {accel: grid}, {accel: octree}, {accel: kd}]\nrays: [primary, random]\n"
+    "limit: 100\nrounds: 6\nmilliseconds: 0\n";
 
 enum { SCENES = 4, ACCELS = 4, KINDS = 2, ROUNDS = 6, MOST_PAIRS = 2, RUNS = 2 * MOST_PAIRS };
 
@@ -97,19 +90,13 @@ static const RtComparedCell *compared(Sides *sides, const char *accel, const cha
     return cell;
 }
 
-/* What is printed of it; free it. */
-static char *printed(const RtComparison *comparison) {
+/* Whether it is printed, whatever the line breaks. */
+static bool is_printed(const RtComparison *comparison, const char *words) {
     char *text;
     size_t size;
     FILE *out = open_memstream(&text, &size);
     rt_comparison_print(comparison, out);
     fclose(out);
-    return text;
-}
-
-/* Whether it is printed, whatever the line breaks. */
-static bool is_printed(const RtComparison *comparison, const char *words) {
-    char *text = printed(comparison);
     for (char *at = text; (at = strchr(at, '\n')) != NULL;) *at = ' ';
     bool found = strstr(text, words) != NULL;
     if (!found) print_message("%s\n", text);
@@ -117,11 +104,11 @@ static bool is_printed(const RtComparison *comparison, const char *words) {
     return found;
 }
 
-#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_place, remove_place)
+PLACES_WITH(NULL)
 
-RT_TEST_IN_PLACE(a_run_does_not_differ_from_itself) {
-    Sides sides;
-    load_sides(*state, &sides);
+PLACE_TEST(a_run_does_not_differ_from_itself) {
+    OWNED(clear_sides) Sides sides;
+    load_sides(place, &sides);
     for (uint32_t t = 0; t < SCENES; t++) {
         for (uint32_t c = 0; c < ACCELS; c++) {
             for (uint32_t k = 0; k < KINDS; k++) {
@@ -136,14 +123,13 @@ RT_TEST_IN_PLACE(a_run_does_not_differ_from_itself) {
     assert_int_equal(rt_comparison_count(&sides.comparison, RT_CHANGE_BY_ACCEL), SCENES * ACCELS * KINDS);
     assert_int_equal(rt_comparison_count(&sides.comparison, RT_CHANGE_NONE), ACCELS);
     assert_int_equal(rt_comparison_changed(&sides.comparison), 0);
-    clear_sides(&sides);
 }
 
 /* 5 %: one of twenty pairs of runs of one build. */
-RT_TEST_IN_PLACE(of_runs_of_one_build_at_most_five_in_a_hundred_pairs_report_a_difference) {
+PLACE_TEST(of_runs_of_one_build_at_most_five_in_a_hundred_pairs_report_a_difference) {
     enum { TRIALS = 400 };
-    Sides sides;
-    load_sides(*state, &sides);
+    OWNED(clear_sides) Sides sides;
+    load_sides(place, &sides);
     for (uint32_t pairs = 1; pairs <= MOST_PAIRS; pairs++) {
         int reports = 0;
         for (uint64_t seed = 0; seed < TRIALS; seed++) {
@@ -153,15 +139,14 @@ RT_TEST_IN_PLACE(of_runs_of_one_build_at_most_five_in_a_hundred_pairs_report_a_d
         }
         if (reports > TRIALS / 20) fail_msg("%d of %d with %u pairs", reports, TRIALS, pairs);
     }
-    clear_sides(&sides);
 }
 
 /* The same runs, one accelerator of which takes longer. */
-RT_TEST_IN_PLACE(an_accelerator_that_is_ten_per_cent_slower_is_found_and_no_other_is_called_different) {
+PLACE_TEST(an_accelerator_that_is_ten_per_cent_slower_is_found_and_no_other_is_called_different) {
     enum { TRIALS = 200 };
-    Sides sides;
+    OWNED(clear_sides) Sides sides;
     int found = 0, others = 0;
-    load_sides(*state, &sides);
+    load_sides(place, &sides);
     for (uint64_t seed = 0; seed < TRIALS; seed++) {
         for (uint32_t i = 0; i < RUNS; i++) draw_times(&sides, i, seed);
         for (uint32_t i = 1; i < RUNS; i += 2) scale_accel(&sides, i, 1, 1.1);
@@ -172,23 +157,21 @@ RT_TEST_IN_PLACE(an_accelerator_that_is_ten_per_cent_slower_is_found_and_no_othe
     if (found < TRIALS * 9 / 10 || others > TRIALS / 20)
         fail_msg("found in %d of %d, others in %d", found, TRIALS, others);
     assert_string_equal(sides.comparison.accels[1].accel, "grid");
-    clear_sides(&sides);
 }
 
-RT_TEST_IN_PLACE(a_change_of_all_accelerators_is_printed_and_no_verdict) {
-    Sides sides;
-    load_sides(*state, &sides);
+PLACE_TEST(a_change_of_all_accelerators_is_printed_and_no_verdict) {
+    OWNED(clear_sides) Sides sides;
+    load_sides(place, &sides);
     for (uint32_t c = 0; c < ACCELS; c++) scale_accel(&sides, 1, c, 1.5);
     compare_sides(&sides, 1, 0.02);
     assert_int_equal(rt_comparison_count(&sides.comparison, RT_CHANGE_NONE), ACCELS);
     assert_true(sides.comparison.all_accels > 0.6 && sides.comparison.all_accels < 0.74);
     assert_true(is_printed(&sides.comparison, "The median accelerator: 0."));
-    clear_sides(&sides);
 }
 
-RT_TEST_IN_PLACE(what_is_faster_slower_or_counts_otherwise_is_said) {
-    Sides sides;
-    load_sides(*state, &sides);
+PLACE_TEST(what_is_faster_slower_or_counts_otherwise_is_said) {
+    OWNED(clear_sides) Sides sides;
+    load_sides(place, &sides);
     scale_accel(&sides, 1, 0, 2);
     scale_accel(&sides, 1, 1, 0.5);
     cell_at(&sides, 1, 0, 0, 1)->tally.steps++;
@@ -202,14 +185,13 @@ RT_TEST_IN_PLACE(what_is_faster_slower_or_counts_otherwise_is_said) {
     assert_true(is_printed(&sides.comparison, "balls:size=1 bvh random: steps "));
     compare_sides(&sides, 1, 1.5); /* 2.5 times is the margin */
     assert_int_equal(rt_comparison_count(&sides.comparison, RT_CHANGE_NONE), ACCELS);
-    clear_sides(&sides);
 }
 
 /* 1 - 2 / C(12, 6) = 99.78 % for each; 32 of them miss by 6.93 % at most. 32 cells take 1 - 0.05 / 32 =
  * 99.84 %, and 1 - 2 / C(14, 7) is 99.94 %. */
-RT_TEST_IN_PLACE(the_confidence_that_the_rounds_reach_is_said_and_how_many_it_takes) {
-    Sides sides;
-    load_sides(*state, &sides);
+PLACE_TEST(the_confidence_that_the_rounds_reach_is_said_and_how_many_it_takes) {
+    OWNED(clear_sides) Sides sides;
+    load_sides(place, &sides);
     compare_sides(&sides, 1, 0);
     assert_true(fabs(sides.comparison.together - (1 - 32 * 2 / 924.0)) < 1e-9);
     assert_true(is_printed(&sides.comparison,
@@ -220,12 +202,11 @@ RT_TEST_IN_PLACE(the_confidence_that_the_rounds_reach_is_said_and_how_many_it_ta
     assert_true(is_printed(&sides.comparison, "all 32 together with 95 % confidence."));
     sides.comparison.coverage = rt_coverage_of_each(1064); /* as a large experiment needs */
     assert_true(is_printed(&sides.comparison, "each holds with 99.9953 %, all"));
-    clear_sides(&sides);
 }
 
-RT_TEST_IN_PLACE(too_few_accelerators_or_scenes_have_no_verdict) {
-    Sides sides;
-    load_sides(*state, &sides);
+PLACE_TEST(too_few_accelerators_or_scenes_have_no_verdict) {
+    OWNED(clear_sides) Sides sides;
+    load_sides(place, &sides);
     for (uint32_t t = 0; t < SCENES; t++) {
         for (uint32_t c = 0; c < ACCELS; c++) {
             for (uint32_t k = 0; k < KINDS && (t > 0 || c > 2); k++) {
@@ -242,12 +223,11 @@ RT_TEST_IN_PLACE(too_few_accelerators_or_scenes_have_no_verdict) {
     compare_sides(&sides, 2, 0); /* two pairs of runs */
     assert_int_equal(sides.comparison.accels[0].groups, 1 + SCENES);
     assert_int_equal(sides.comparison.accels[0].change, RT_CHANGE_SLOWER);
-    clear_sides(&sides);
 }
 
-RT_TEST_IN_PLACE(cells_that_do_not_compare_say_why) {
-    Sides sides;
-    load_sides(*state, &sides);
+PLACE_TEST(cells_that_do_not_compare_say_why) {
+    OWNED(clear_sides) Sides sides;
+    load_sides(place, &sides);
     sides.results[1].workloads[0].ray_fingerprints[RT_RAY_RANDOM]++;
     rt_free(cell_at(&sides, 1, 0, 0, 0)->round_times);
     cell_at(&sides, 1, 0, 0, 0)->round_times = NULL;
@@ -257,43 +237,29 @@ RT_TEST_IN_PLACE(cells_that_do_not_compare_say_why) {
     assert_int_equal(compared(&sides, "bvh", "random")->change, RT_CHANGE_OTHER_RAYS);
     assert_int_equal(compared(&sides, "grid", "primary")->change, RT_CHANGE_ONLY_BEFORE);
     assert_int_equal(compared(&sides, "grid2", "primary")->change, RT_CHANGE_ONLY_AFTER);
-    clear_sides(&sides);
 }
 
-/* A cell with the verdict `change`, and so many instructions after as a part of those before. */
-static bool says_of_instructions(RtChange change, double after, const char *words) {
-    RtComparison comparison = {0};
-    RtComparedCell *cell = rt_comparison_cell(&comparison, "balls", "bvh", "primary");
-    assert_non_null(cell);
-    cell->change = change;
-    cell->instructions[0] = 1000;
-    cell->instructions[1] = 1000 * after;
-    bool found = is_printed(&comparison, words);
-    rt_comparison_clear(&comparison);
-    return found;
-}
-
-RT_TEST(where_time_and_instructions_disagree_is_said_in_a_sentence) {
-    assert_true(says_of_instructions(RT_CHANGE_FASTER, 1.0002, "balls bvh primary: instructions equal"));
-    assert_true(says_of_instructions(RT_CHANGE_SLOWER, 1, "balls bvh primary: instructions equal"));
-    assert_true(
-        says_of_instructions(RT_CHANGE_FASTER, 1.008, "0.8 % more instructions although it measured faster"));
-    assert_true(
-        says_of_instructions(RT_CHANGE_SLOWER, 0.97, "3 % fewer instructions although it measured slower"));
-    assert_true(says_of_instructions(RT_CHANGE_NONE, 1.03, "1.0300"));
-}
-
-RT_TEST(where_they_agree_only_the_ratio_is_shown) {
-    OWNED(rt_comparison_clear) RtComparison comparison = {0};
-    RtComparedCell *cell = rt_comparison_cell(&comparison, "balls", "bvh", "primary");
-    assert_non_null(cell);
-    cell->change = RT_CHANGE_SLOWER;
-    cell->instructions[0] = 1000;
-    cell->instructions[1] = 1030;
-    char *text = printed(&comparison);
-    assert_non_null(strstr(text, "1.0300"));
-    assert_null(strstr(text, "balls bvh primary:"));
-    free(text);
+RT_TEST(where_time_and_instructions_disagree_is_said_in_a_sentence_and_else_the_ratio_alone) {
+    static const struct {
+        RtChange change;
+        double after; /* instructions, as a part of those before */
+        const char *says;
+    } cases[] = {{RT_CHANGE_FASTER, 1.0002, "balls bvh primary: instructions equal"},
+                 {RT_CHANGE_SLOWER, 1, "balls bvh primary: instructions equal"},
+                 {RT_CHANGE_FASTER, 1.008, "0.8 % more instructions although it measured faster"},
+                 {RT_CHANGE_SLOWER, 0.97, "3 % fewer instructions although it measured slower"},
+                 {RT_CHANGE_SLOWER, 1.03, NULL},
+                 {RT_CHANGE_NONE, 1.03, NULL}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        OWNED(rt_comparison_clear) RtComparison comparison = {0};
+        RtComparedCell *cell = rt_comparison_cell(&comparison, "balls", "bvh", "primary");
+        assert_non_null(cell);
+        cell->change = cases[i].change;
+        cell->instructions[0] = 1000;
+        cell->instructions[1] = 1000 * cases[i].after;
+        assert_true(is_printed(&comparison, cases[i].says ? cases[i].says : "1.0300"));
+        if (!cases[i].says) assert_false(is_printed(&comparison, "balls bvh primary:"));
+    }
 }
 
 RT_TEST(a_single_interval_holds_by_itself) {
@@ -311,27 +277,25 @@ RT_TEST(a_single_interval_holds_by_itself) {
 }
 
 /* Each pair of runs has the same rays, but the pairs have not. */
-RT_TEST_IN_PLACE(results_of_other_rays_are_not_said_to_count_the_same) {
-    const Place *place = *state;
+PLACE_TEST(results_of_other_rays_are_not_said_to_count_the_same) {
     write_in(place, "small.yaml", experiment_yaml);
-    assert_int_equal(raytally(place, "run small.yaml --out a"), 0);
-    assert_int_equal(raytally(place, "run small.yaml --out b"), 0);
+    assert_runs(place, "run small.yaml --out a");
+    assert_runs(place, "run small.yaml --out b");
     write_changed(place, "small.yaml", experiment_yaml, "name: small", "name: small\nseed: 7");
-    assert_int_equal(raytally(place, "run small.yaml --out c"), 0);
-    assert_int_equal(raytally(place, "run small.yaml --out d"), 0);
-    assert_int_equal(raytally(place, "compare a b c d"), 0);
+    assert_runs(place, "run small.yaml --out c");
+    assert_runs(place, "run small.yaml --out d");
+    assert_runs(place, "compare a b c d");
     assert_in_file(place, "output", "other rays");
     assert_in_file(place, "output", "not the same in all results, so ");
 }
 
-RT_TEST_IN_PLACE(strict_makes_something_slower_an_exit_code) {
-    const Place *place = *state;
+PLACE_TEST(strict_makes_something_slower_an_exit_code) {
     write_in(place, "small.yaml", experiment_yaml);
-    assert_int_equal(raytally(place, "run small.yaml --out a"), 0);
+    assert_runs(place, "run small.yaml --out a");
     char command[256];
     snprintf(command, sizeof command, "cp -r '%s/a' '%s/b'", place->folder, place->folder);
     assert_int_equal(system(command), 0);
-    assert_int_equal(raytally(place, "compare a b --strict"), 0);
+    assert_runs(place, "compare a b --strict");
     assert_in_file(place, "output", "0 faster, 0 slower, 4 with no difference found; counts changed in 0.");
     /* Times of 1e-7 s a ray become ten times longer by their exponents: those of the grid. */
     OWNED_MEMORY char *journal = read_in(place, "b/cells.jsonl");
@@ -345,10 +309,10 @@ RT_TEST_IN_PLACE(strict_makes_something_slower_an_exit_code) {
     write_in(place, "b/cells.jsonl", journal);
     assert_int_equal(raytally(place, "compare a b --strict --json"), 1);
     assert_in_file(place, "output", "\"time\": \"slower\"");
-    assert_int_equal(raytally(place, "compare a b"), 0);
-    assert_int_equal(raytally(place, "compare b a --strict"), 0);
+    assert_runs(place, "compare a b");
+    assert_runs(place, "compare b a --strict");
     assert_ends(place, "compare a b a/ b", 2, "a/ is given twice as BEFORE");
-    assert_int_equal(raytally(place, "compare a b b a"), 0);
+    assert_runs(place, "compare a b b a");
 }
 
 /* Writes the program `other` beside the experiment: runs `before`, then raytally with `arguments`. */
@@ -361,8 +325,7 @@ static void write_other(const Place *place, const char *before, const char *argu
     assert_int_equal(system(script), 0);
 }
 
-RT_TEST_IN_PLACE(a_program_that_crashes_while_it_is_compared_is_reported_with_its_signal) {
-    const Place *place = *state;
+PLACE_TEST(a_program_that_crashes_while_it_is_compared_is_reported_with_its_signal) {
     write_other(place, "echo '{\"worker\": 1, \"build\": \"none\"}'; kill -SEGV $$", "");
     assert_ends(place, "compare balls:size=1 --accel bvh --rays random --limit 100 --with ./other", 2,
                 "./other cannot be compared: it crashed (Segmentation fault)");
@@ -370,8 +333,7 @@ RT_TEST_IN_PLACE(a_program_that_crashes_while_it_is_compared_is_reported_with_it
 
 /* A cell has room for the times of RT_MAX_ROUNDS rounds, one each. The second of the two cells is asked for
  * as the first. */
-RT_TEST_IN_PLACE(a_program_that_lists_a_cell_twice_is_refused) {
-    const Place *place = *state;
+PLACE_TEST(a_program_that_lists_a_cell_twice_is_refused) {
     write_other(place, "exec 3<&0",
                 "\"$@\" < <(sed -u 's/^time 1 /time 0 /' <&3) > "
                 ">(sed -u 's/\"cells\":\\[\\(.*\\)\\]}$/\"cells\":[\\1,\\1]}/')");
@@ -381,27 +343,23 @@ RT_TEST_IN_PLACE(a_program_that_lists_a_cell_twice_is_refused) {
 
 /* The other program has another accelerator in the place of the grid in the second round, as one has none
  * whose limit of time it goes beyond. */
-RT_TEST_IN_PLACE(what_was_not_timed_in_every_round_is_not_compared) {
-    const Place *place = *state;
+PLACE_TEST(what_was_not_timed_in_every_round_is_not_compared) {
     write_other(place, "echo >>runs\n[ \"$(wc -l <runs)\" != 2 ] || set -- \"${@/grid/octree}\"", "\"$@\"");
-    assert_int_equal(raytally(place,
-                              "compare balls:size=1 --accel bvh --accel grid --rays random --limit 100 "
-                              "--rounds 3 --with ./other"),
-                     0);
+    assert_runs(place, "compare balls:size=1 --accel bvh --accel grid --rays random --limit 100 "
+                       "--rounds 3 --with ./other");
     assert_in_file(place, "output", "not timed");
     assert_in_file(place, "output", "only before");
 }
 
 /* The advice is correct: the commands that it names have the options that it names. */
-RT_TEST_IN_PLACE(programs_that_record_other_rays_are_told_how_to_compare_all_the_same) {
-    const Place *place = *state;
+PLACE_TEST(programs_that_record_other_rays_are_told_how_to_compare_all_the_same) {
     write_other(place, "", "\"$@\" --seed 7");
     assert_ends(place, "compare balls:size=1 --accel bvh --rays random --limit 100 --with ./other", 2,
                 "do not record the same rays");
     assert_in_file(
         place, "message",
         "with `raytally rays`, and measure each program on that file: `raytally bench --rays-from");
-    assert_int_equal(raytally(place, "rays balls:size=1 --rays random --limit 100 -o rays.npy"), 0);
+    assert_runs(place, "rays balls:size=1 --rays random --limit 100 -o rays.npy");
     assert_int_equal(
         raytally(place, "bench balls:size=1 --accel bvh --rays nearest --rays-from rays.npy --count-only"),
         0);

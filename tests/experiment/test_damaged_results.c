@@ -6,9 +6,7 @@
 #include "results/manifest.h"
 
 static const char experiment_text[] =
-    "name: small\n"
-    "question: What is left?\n"
-    "prediction: Nothing.\n"
+    "name: small\nquestion: What is left?\nprediction: Nothing.\n"
     "scenes: [{scene: \"random:n=10\", label: cloud, size: 4x4, depth: 1}]\n"
     "accelerators: [{accel: bvh}, {accel: \"grid:density=1|4\", label: grid}]\n"
     "rays: [primary]\n"
@@ -18,12 +16,10 @@ static const char experiment_text[] =
 static const char *const files[] = {"out/experiment.yaml", "out/cells.jsonl", "out/manifest.json"};
 enum { FILES = sizeof files / sizeof files[0] };
 
-static int make_results(void **state) {
+static int make_places(void **state) {
     if (make_place_with(state, experiment_text) != 0) return -1;
     return raytally(*state, "run small.yaml --out out") > 1 ? -1 : 0;
 }
-
-#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_results, remove_place)
 
 /* Everything that is read of a result directory. */
 static RtStatus read_all(const Place *place, RtError *error) {
@@ -50,8 +46,7 @@ static RtStatus read_with(const Place *place, const char *file, const char *byte
 }
 
 /* Some 300 places of each file. */
-RT_TEST_IN_PLACE(a_file_that_is_cut_off_or_has_a_zero_byte_is_read_or_refused) {
-    const Place *place = *state;
+PLACE_TEST(a_file_that_is_cut_off_or_has_a_zero_byte_is_read_or_refused) {
     assert_ok(read_all(place, error));
     for (size_t i = 0; i < FILES; i++) {
         OWNED_MEMORY char *text = read_in(place, files[i]);
@@ -67,17 +62,15 @@ RT_TEST_IN_PLACE(a_file_that_is_cut_off_or_has_a_zero_byte_is_read_or_refused) {
     }
 }
 
-RT_TEST_IN_PLACE(line_ends_of_windows_change_nothing) {
-    const Place *place = *state;
+PLACE_TEST(line_ends_of_windows_change_nothing) {
     for (size_t i = 1; i < FILES; i++) {
-        char *text = read_in(place, files[i]), *other = rt_alloc(2 * strlen(text) + 1, 1), *to = other;
+        OWNED_MEMORY char *text = read_in(place, files[i]), *other = rt_alloc(2 * strlen(text) + 1, 1);
+        char *to = other;
         assert_non_null(other);
         for (const char *c = text; *c; *to++ = *c++) {
             if (*c == '\n') *to++ = '\r';
         }
         assert_int_equal(read_with(place, files[i], other, strlen(other)), RT_OK);
-        rt_free(other);
-        rt_free(text);
     }
 }
 

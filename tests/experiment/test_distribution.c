@@ -2,12 +2,8 @@
 /* measure/distribution.h: bins, percentiles, JSON; and that what is distributed is what was counted. */
 #include "testing.h"
 
-#include "core/base/memory.h"
 #include "core/base/random.h"
 #include "run/workload.h"
-
-#include <math.h>
-#include <string.h>
 
 /* ---- bins ---- */
 
@@ -92,7 +88,7 @@ RT_TEST(a_distribution_that_does_not_fit_into_memory_is_refused) {
 RT_TEST(distributions_come_back_from_json_as_they_were) {
     const uint64_t few[] = {0, 1, 1, 300}, many[] = {5, 1000000, 70000};
     RtDistribution out[2], all[2] = {distribute(few, 4), distribute(many, 3)};
-    json_t *object = rt_distributions_json(all, RT_RAY_QUANTITY_COUNT, 2);
+    json_auto_t *object = rt_distributions_json(all, RT_RAY_QUANTITY_COUNT, 2);
     assert_non_null(json_object_get(object, "leaf_size"));
     assert_true(rt_distributions_take(out, RT_RAY_QUANTITY_COUNT, 2, object));
     assert_memory_equal(out, all, sizeof all);
@@ -100,7 +96,6 @@ RT_TEST(distributions_come_back_from_json_as_they_were) {
     json_array_append_new(json_object_get(json_object_get(object, "leaf_size"), "bins"),
                           json_pack("[i, i]", (int)RT_HISTOGRAM_BINS, 1));
     assert_false(rt_distributions_take(out, RT_RAY_QUANTITY_COUNT, 2, object));
-    json_decref(object);
 }
 
 /* ---- of a workload ---- */

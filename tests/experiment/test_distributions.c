@@ -4,11 +4,7 @@
 
 #include "core/text/csv.h"
 
-#include <unistd.h>
-
-static const char spread[] = "name: small\n"
-                             "question: How long is the tail?\n"
-                             "prediction: Long.\n"
+static const char spread[] = "name: small\nquestion: How long is the tail?\nprediction: Long.\n"
                              "scenes:\n"
                              "  - {scene: \"random:n=50\", label: cloud, size: 16x16}\n"
                              "  - {scene: \"balls:size=2\", label: balls, size: 16x16}\n"
@@ -16,16 +12,9 @@ static const char spread[] = "name: small\n"
                              "  - {accel: bvh}\n"
                              "  - {accel: grid}\n"
                              "  - {accel: brute, ray_stride: 3}\n"
-                             "rays: [primary, shadow]\n"
-                             "limit: 200\n"
-                             "distributions: yes\n"
-                             "count_only: yes\n";
+                             "rays: [primary, shadow]\nlimit: 200\ndistributions: yes\ncount_only: yes\n";
 
-static int make_spread(void **state) {
-    return make_place_with(state, spread);
-}
-
-#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_spread, remove_place)
+PLACES_WITH(spread)
 
 static uint64_t integer_at(const RtCsv *csv, uint32_t row, const char *name) {
     return strtoull(rt_csv_field(csv, row, rt_csv_find(csv, name)), NULL, 10);
@@ -33,10 +22,9 @@ static uint64_t integer_at(const RtCsv *csv, uint32_t row, const char *name) {
 
 /* Three quantities over two kinds of rays of three accelerators, and two over leaves of two; on two scenes.
  */
-RT_TEST_IN_PLACE(a_run_that_asks_for_distributions_has_them_in_tables_of_their_own) {
-    const Place *place = *state;
+PLACE_TEST(a_run_that_asks_for_distributions_has_them_in_tables_of_their_own) {
     RtCsv csv, bins;
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_runs(place, "run small.yaml --out out --threads 1");
     Path path = path_in(place, "out/distributions.csv"), histograms = path_in(place, "out/histograms.csv");
     assert_ok(rt_csv_read(&csv, path.text, error));
     assert_ok(rt_csv_read(&bins, histograms.text, error));
@@ -57,11 +45,10 @@ RT_TEST_IN_PLACE(a_run_that_asks_for_distributions_has_them_in_tables_of_their_o
     assert_in_file(place, "out/plots/histograms-balls.svg", "shadow rays");
 }
 
-RT_TEST_IN_PLACE(files_that_are_named_after_scenes_have_portable_names_of_their_own) {
-    const Place *place = *state;
+PLACE_TEST(files_that_are_named_after_scenes_have_portable_names_of_their_own) {
     write_changed(place, "small.yaml", spread, "label: cloud, size: 16x16}",
                   "label: \"n:50|x\", size: 16x16}\n  - {scene: \"balls:size=1\", label: N-50-X, size: 8x8}");
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_runs(place, "run small.yaml --out out --threads 1");
     const char *const names[] = {"n-50-x", "N-50-X-2", "balls"};
     char *page = read_in(place, "out/report.html"), *image = page;
     for (int i = 0; i < 3; i++) {
@@ -80,25 +67,23 @@ RT_TEST_IN_PLACE(files_that_are_named_after_scenes_have_portable_names_of_their_
     assert_in_file(place, "out/report.html", "plots/histograms-N-50-X-2.pdf");
 }
 
-RT_TEST_IN_PLACE(a_run_that_does_not_ask_has_neither_tables_nor_plots_of_them) {
-    const Place *place = *state;
+PLACE_TEST(a_run_that_does_not_ask_has_neither_tables_nor_plots_of_them) {
     write_changed(place, "small.yaml", spread, "distributions: yes", "distributions: no");
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_runs(place, "run small.yaml --out out --threads 1");
     assert_false(rt_file_exists(path_in(place, "out/distributions.csv").text));
     assert_false(rt_file_exists(path_in(place, "out/plots/histograms.gp").text));
 }
 
 /* On one thread and on two, and counted without them before: the journal of a shard has all that is needed.
  */
-RT_TEST_IN_PLACE(distributions_are_the_same_bytes_on_two_threads_in_parts_and_in_shards) {
-    const Place *place = *state;
-    assert_int_equal(raytally(place, "run small.yaml --out one --threads 1"), 0);
-    assert_int_equal(raytally(place, "run small.yaml --out two --threads 2"), 0);
-    assert_int_equal(raytally(place, "run small.yaml --out parts --only cloud/grid"), 0);
-    assert_int_equal(raytally(place, "run small.yaml --out parts --resume"), 0);
-    assert_int_equal(raytally(place, "run small.yaml --out s1 --shard 1/2"), 0);
-    assert_int_equal(raytally(place, "run small.yaml --out s2 --shard 2/2"), 0);
-    assert_int_equal(raytally(place, "merge s1 s2 -o merged"), 0);
+PLACE_TEST(distributions_are_the_same_bytes_on_two_threads_in_parts_and_in_shards) {
+    assert_runs(place, "run small.yaml --out one --threads 1");
+    assert_runs(place, "run small.yaml --out two --threads 2");
+    assert_runs(place, "run small.yaml --out parts --only cloud/grid");
+    assert_runs(place, "run small.yaml --out parts --resume");
+    assert_runs(place, "run small.yaml --out s1 --shard 1/2");
+    assert_runs(place, "run small.yaml --out s2 --shard 2/2");
+    assert_runs(place, "merge s1 s2 -o merged");
     const char *const others[] = {"two", "parts", "merged"};
     for (int i = 0; i < 3; i++) {
         char distributions[64], histograms[64];
@@ -109,72 +94,65 @@ RT_TEST_IN_PLACE(distributions_are_the_same_bytes_on_two_threads_in_parts_and_in
     }
 }
 
-RT_TEST_IN_PLACE(a_finished_run_with_distributions_that_is_resumed_measures_nothing_again) {
-    const Place *place = *state;
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
-    char *before = read_in(place, "out/cells.jsonl"), *table = read_in(place, "out/distributions.csv");
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 0);
+PLACE_TEST(a_finished_run_with_distributions_that_is_resumed_measures_nothing_again) {
+    assert_runs(place, "run small.yaml --out out --threads 1");
+    OWNED_MEMORY char *before = read_in(place, "out/cells.jsonl"),
+                      *table = read_in(place, "out/distributions.csv");
+    assert_runs(place, "run small.yaml --out out --threads 1 --resume");
     assert_same_file(place, "out/cells.jsonl", before);
     assert_same_file(place, "out/distributions.csv", table);
-    rt_free(before);
-    rt_free(table);
 }
 
-RT_TEST_IN_PLACE(reproduce_compares_distributions_byte_for_byte) {
-    const Place *place = *state;
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
-    assert_int_equal(raytally(place, "reproduce out"), 0);
+PLACE_TEST(reproduce_compares_distributions_byte_for_byte) {
+    assert_runs(place, "run small.yaml --out out --threads 1");
+    assert_runs(place, "reproduce out");
     assert_in_file(place, "output", "out/histograms.csv, byte for byte");
     write_in(place, "out/distributions.csv", "other\n");
     assert_ends(place, "reproduce out", 1, "out/distributions.csv:1: differs");
 }
 
-RT_TEST_IN_PLACE(reproduce_of_one_scene_compares_its_rows_alone) {
-    const Place *place = *state;
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+PLACE_TEST(reproduce_of_one_scene_compares_its_rows_alone) {
+    assert_runs(place, "run small.yaml --out out --threads 1");
     OWNED_MEMORY char *counts = read_in(place, "out/counts.csv");
     write_changed(place, "out/counts.csv", counts, "\nballs,", "\nballs,changed");
-    assert_int_equal(raytally(place, "reproduce out --only cloud"), 0);
+    assert_runs(place, "reproduce out --only cloud");
     assert_in_file(place, "output", "Reproduced: cloud in out/counts.csv");
     assert_ends(place, "reproduce out --only balls", 1, "out/counts.csv:8: differs");
     assert_ends(place, "reproduce out --only scattered", 2,
                 "'scattered' is not the label of one of the scenes");
 }
 
-RT_TEST_IN_PLACE(reproduce_of_a_sweep_of_scenes_compares_the_rows_of_each) {
-    const Place *place = *state;
+PLACE_TEST(reproduce_of_a_sweep_of_scenes_compares_the_rows_of_each) {
     write_changed(place, "small.yaml", spread, "n=50\"", "n=50..100*2\"");
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_runs(place, "run small.yaml --out out --threads 1");
     OWNED_MEMORY char *counts = read_in(place, "out/counts.csv");
     write_changed(place, "out/counts.csv", counts, "\nballs,", "\nballs,changed");
-    assert_int_equal(raytally(place, "reproduce out --only cloud"), 0);
-    assert_int_equal(raytally(place, "reproduce out --only cloud:n=100"), 0);
+    assert_runs(place, "reproduce out --only cloud");
+    assert_runs(place, "reproduce out --only cloud:n=100");
     write_changed(place, "out/counts.csv", counts, "\ncloud:n=100,", "\ncloud:n=100,changed");
-    assert_int_equal(raytally(place, "reproduce out --only cloud:n=50"), 0);
+    assert_runs(place, "reproduce out --only cloud:n=50");
     assert_int_equal(raytally(place, "reproduce out --only cloud"), 1);
 }
 
-RT_TEST_IN_PLACE(bench_shows_medians_percentiles_and_maxima) {
-    const Place *place = *state;
+PLACE_TEST(bench_shows_medians_percentiles_and_maxima) {
     const char *const command = "bench random:n=50 --accel grid --accel wide --rays primary --size 16x16 "
                                 "--count-only --distribution";
     char json[256];
-    assert_int_equal(raytally(place, command), 0);
+    assert_runs(place, command);
     assert_in_file(place, "output", "tests: 50 %  99 %  max  steps: 50 %  99 %  max");
     assert_in_file(place, "output", "leaf size: 50 %");
     snprintf(json, sizeof json, "%s --json", command);
-    assert_int_equal(raytally(place, json), 0);
+    assert_runs(place, json);
     assert_in_file(place, "output", "\"p999\"");
     assert_in_file(place, "output", "\"histograms\"");
 }
 
 /* ---- frames, and what version 1.0 had ---- */
 
-RT_TEST_IN_PLACE(hardware_counters_of_version_1_0_are_ignored_in_experiments_and_journals) {
-    const Place *place = *state;
+PLACE_TEST(hardware_counters_of_version_1_0_are_ignored_in_experiments_and_journals) {
     char command[512];
     write_changed(place, "small.yaml", spread, "count_only: yes", "count_only: yes\nhardware: yes");
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_runs(place, "run small.yaml --out out --threads 1");
     assert_in_file(place, "message", "small.yaml:15:11: hardware: ignored");
     OWNED_MEMORY char *counts = read_in(place, "out/counts.csv");
     snprintf(
@@ -194,19 +172,18 @@ static double real_at(const RtCsv *csv, uint32_t row, const char *name) {
 }
 
 /* brute, with a stride, is too slow for frames. Resumed, the second time without a table. */
-RT_TEST_IN_PLACE(a_run_that_renders_has_the_time_of_a_frame_and_the_part_of_queries_for_each_accelerator) {
-    const Place *place = *state;
+PLACE_TEST(a_run_that_renders_has_the_time_of_a_frame_and_the_part_of_queries_for_each_accelerator) {
     RtCsv csv;
     Path path = path_in(place, "out/render.csv");
     write_changed(place, "small.yaml", spread, "distributions: yes\ncount_only: yes",
                   "render: yes\nrounds: 6\nmilliseconds: 0\nexpect:\n"
                   "  - query_share of bvh < 1\n  - render_time of grid < 3600");
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --strict"), 0);
+    assert_runs(place, "run small.yaml --out out --threads 1 --strict");
     assert_in_file(place, "output", "% in queries");
     assert_in_file(place, "output", "holds            query_share of bvh < 1");
     OWNED_MEMORY char *first = read_in(place, "out/render.csv");
     assert_int_equal(remove(path.text), 0);
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 0);
+    assert_runs(place, "run small.yaml --out out --threads 1 --resume");
     assert_same_file(place, "out/render.csv", first);
     assert_ok(rt_csv_read(&csv, path.text, error));
     assert_int_equal(csv.rows, 2 * 2);
@@ -220,12 +197,11 @@ RT_TEST_IN_PLACE(a_run_that_renders_has_the_time_of_a_frame_and_the_part_of_quer
     char command[320];
     snprintf(command, sizeof command, "sed -i /rendered/d '%s'", path_in(place, "out/cells.jsonl").text);
     assert_int_equal(system(command), 0);
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume --dry-run"), 0);
+    assert_runs(place, "run small.yaml --out out --threads 1 --resume --dry-run");
     assert_in_file(place, "output", " of them finished");
 }
 
-RT_TEST_IN_PLACE(counting_again_renders_no_frame) {
-    const Place *place = *state;
+PLACE_TEST(counting_again_renders_no_frame) {
     const RtWorkloadOptions counting = {.threads = 1, .timing = 1, .count_only = true};
     OWNED_RESULTS results;
     write_changed(place, "small.yaml", spread, "distributions: yes\ncount_only: yes", "render: yes");
@@ -239,15 +215,15 @@ RT_TEST_IN_PLACE(counting_again_renders_no_frame) {
 }
 
 /* The journal of a run whose limit has left out a cell of grid: without its counts, times and frame. */
-RT_TEST_IN_PLACE(what_is_too_slow_for_the_rays_is_not_rendered) {
-    const Place *place = *state;
+PLACE_TEST(what_is_too_slow_for_the_rays_is_not_rendered) {
     write_in(place, "small.yaml",
              "name: small\nquestion: a\nprediction: b\nscenes: [{scene: balls:size=1, size: 8x8}]\n"
              "accelerators: [{accel: bvh}, {accel: grid}]\nrays: [primary]\nrender: yes\nrounds: 2\n"
              "milliseconds: 0\n");
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_runs(place, "run small.yaml --out out --threads 1");
     assert_in_file(place, "out/render.csv", ",grid,");
-    char *journal = read_in(place, "out/cells.jsonl"), *left = rt_alloc(strlen(journal) + 200, 1);
+    OWNED_MEMORY char *journal = read_in(place, "out/cells.jsonl"),
+                      *left = rt_alloc(strlen(journal) + 200, 1);
     for (const char *line = journal, *end; (end = strchr(line, '\n')) != NULL; line = end + 1) {
         const size_t length = (size_t)(end + 1 - line);
         if (!memmem(line, length, "\"grid\"", 6) || memmem(line, length, "\"built\"", 7))
@@ -259,12 +235,9 @@ RT_TEST_IN_PLACE(what_is_too_slow_for_the_rays_is_not_rendered) {
     assert_ends(place, "run small.yaml --out out --threads 1 --resume", 0, "nothing was left to measure");
     assert_in_file(place, "output", "Left out: grid on balls:size=1, primary rays: 3 s");
     assert_not_in_file(place, "out/render.csv", ",grid,");
-    rt_free(journal);
-    rt_free(left);
 }
 
-RT_TEST_IN_PLACE(rendering_where_nothing_is_timed_is_refused) {
-    const Place *place = *state;
+PLACE_TEST(rendering_where_nothing_is_timed_is_refused) {
     write_changed(place, "small.yaml", spread, "distributions: yes", "render: yes");
     assert_bad_input(load_small(place, false, error), ":13:9: render: rendering is timed");
 }

@@ -9,28 +9,19 @@
 #include "report/report.h"
 #include "results/result_tables.h"
 
-#include <math.h>
-#include <unistd.h>
+static const char small_experiment[] =
+    "name: small\nquestion: Which is cheaper?\nprediction: The hierarchy.\n"
+    "scenes:\n"
+    "  - {scene: \"balls:size=2\", size: 24x24, depth: 3}\n"
+    "  - {scene: \"random:n=50\", label: cloud, size: 16x16, depth: 2}\n"
+    "accelerators:\n"
+    "  - {accel: brute, ray_stride: 7}\n"
+    "  - {accel: bvh}\n"
+    "  - {accel: \"grid:density=4\", label: grid}\n"
+    "  - {accel: ideal}\n"
+    "baseline: bvh\nlimit: 300\nrounds: 3\nmilliseconds: 1\n";
 
-static const char small_experiment[] = "name: small\n"
-                                       "question: Which is cheaper?\n"
-                                       "prediction: The hierarchy.\n"
-                                       "scenes:\n"
-                                       "  - {scene: \"balls:size=2\", size: 24x24, depth: 3}\n"
-                                       "  - {scene: \"random:n=50\", label: cloud, size: 16x16, depth: 2}\n"
-                                       "accelerators:\n"
-                                       "  - {accel: brute, ray_stride: 7}\n"
-                                       "  - {accel: bvh}\n"
-                                       "  - {accel: \"grid:density=4\", label: grid}\n"
-                                       "  - {accel: ideal}\n"
-                                       "baseline: bvh\n"
-                                       "limit: 300\n"
-                                       "rounds: 3\n"
-                                       "milliseconds: 1\n";
-
-static int make_small(void **state) {
-    return make_place_with(state, small_experiment);
-}
+PLACES_WITH(small_experiment)
 
 /* Runs the experiment into `directory`; the observer may stop it. */
 static RtStatus run(const Place *place, const char *directory, RtStart start, int threads,
@@ -42,11 +33,8 @@ static RtStatus run(const Place *place, const char *directory, RtStart start, in
 
 static const RtRunObserver nobody = {NULL, NULL, NULL};
 
-#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_small, remove_place)
-
 /* Recording, building, counting, timing and drawing. */
-RT_TEST_IN_PLACE(a_run_on_one_thread_starts_no_other) {
-    const Place *place = *state;
+PLACE_TEST(a_run_on_one_thread_starts_no_other) {
     write_changed(
         place, "small.yaml", small_experiment,
         "n=50\", label: cloud, size: 16x16, depth: 2}\naccelerators:\n  - {accel: brute, ray_stride: 7}",
@@ -58,8 +46,7 @@ RT_TEST_IN_PLACE(a_run_on_one_thread_starts_no_other) {
     assert_true(labour.others < 0.05 * labour.own);
 }
 
-RT_TEST_IN_PLACE(the_work_of_a_build_is_in_the_journal) {
-    const Place *place = *state;
+PLACE_TEST(the_work_of_a_build_is_in_the_journal) {
     OWNED_RESULTS results;
     write_changed(place, "small.yaml", small_experiment, "accel: ideal", "accel: item+bvh");
     assert_ok(run(place, "out", false, 1, nobody, error));
@@ -70,8 +57,7 @@ RT_TEST_IN_PLACE(the_work_of_a_build_is_in_the_journal) {
 
 /* ---- the YAML ---- */
 
-RT_TEST_IN_PLACE(a_bad_experiment_is_refused_with_its_line) {
-    const Place *place = *state;
+PLACE_TEST(a_bad_experiment_is_refused_with_its_line) {
     const struct {
         const char *from, *to, *says;
     } cases[] = {
@@ -106,8 +92,7 @@ RT_TEST_IN_PLACE(a_bad_experiment_is_refused_with_its_line) {
     }
 }
 
-RT_TEST_IN_PLACE(a_zero_is_taken_where_it_means_something_and_refused_with_the_range_elsewhere) {
-    const Place *place = *state;
+PLACE_TEST(a_zero_is_taken_where_it_means_something_and_refused_with_the_range_elsewhere) {
     write_changed(place, "small.yaml", small_experiment, "rounds: 3", "seed: 0");
     assert_ok(load_small(place, false, error));
     assert_true(place->experiment->seed == 0);
@@ -137,8 +122,7 @@ RT_TEST_IN_PLACE(a_zero_is_taken_where_it_means_something_and_refused_with_the_r
     }
 }
 
-RT_TEST_IN_PLACE(quick_overrides_only_where_it_is_asked_for) {
-    const Place *place = *state;
+PLACE_TEST(quick_overrides_only_where_it_is_asked_for) {
     write_changed(place, "small.yaml", small_experiment, "rounds: 3",
                   "rounds: 3\nquick: {limit: 7, rounds: 2, milliseconds: 9, depth: 1, size: 8x4}");
     const RtExperiment *e = place->experiment;
@@ -149,20 +133,17 @@ RT_TEST_IN_PLACE(quick_overrides_only_where_it_is_asked_for) {
     assert_true(e->workloads[1].depth == 1 && e->workloads[1].width == 8 && e->workloads[1].height == 4);
 }
 
-RT_TEST_IN_PLACE(whichever_allocation_fails_loading_is_out_of_memory) {
-    const Place *place = *state;
+PLACE_TEST(whichever_allocation_fails_loading_is_out_of_memory) {
     assert_fails_cleanly(load_small(place, false, error), (void)0);
 }
 
-RT_TEST_IN_PLACE(the_command_refuses_a_bad_experiment_with_exit_code_2) {
-    const Place *place = *state;
+PLACE_TEST(the_command_refuses_a_bad_experiment_with_exit_code_2) {
     write_in(place, "small.yaml", "name: small\nnothing: else\n");
     assert_ends(place, "run small.yaml", 2, "small.yaml:2");
     assert_false(rt_file_exists(path_in(place, "results").text));
 }
 
-RT_TEST_IN_PLACE(what_is_left_out_of_the_yaml_has_its_default) {
-    const Place *place = *state;
+PLACE_TEST(what_is_left_out_of_the_yaml_has_its_default) {
     write_in(place, "small.yaml",
              "name: a\nquestion: b\nprediction: c\nscenes: [{scene: ../x/bunny.obj}]\n"
              "accelerators: [{accel: brute}]\n");
@@ -177,8 +158,7 @@ RT_TEST_IN_PLACE(what_is_left_out_of_the_yaml_has_its_default) {
 
 /* ---- runs ---- */
 
-RT_TEST_IN_PLACE(counts_are_the_same_bytes_on_one_thread_and_on_two) {
-    const Place *place = *state;
+PLACE_TEST(counts_are_the_same_bytes_on_one_thread_and_on_two) {
     assert_ok(run(place, "one", RT_START_FRESH, 1, nobody, error));
     assert_ok(run(place, "two", RT_START_FRESH, 2, nobody, error));
     OWNED_MEMORY char *one = read_in(place, "one/counts.csv");
@@ -220,10 +200,10 @@ static int count_of(const char *text, const char *part) {
 }
 
 /* Nothing is lost, nothing is counted twice, and another resumption finds all done. */
-RT_TEST_IN_PLACE(an_interrupted_run_resumes_and_loses_no_finished_cell) {
-    const Place *place = *state;
+PLACE_TEST(an_interrupted_run_resumes_and_loses_no_finished_cell) {
     assert_ok(run(place, "whole", RT_START_FRESH, 1, nobody, error));
-    char *whole = read_in(place, "whole/counts.csv"), *lines = read_in(place, "whole/cells.jsonl");
+    OWNED_MEMORY char *whole = read_in(place, "whole/counts.csv"),
+                      *lines = read_in(place, "whole/cells.jsonl");
     for (int events = 1; events < 60; events += 17) {
         Stopper stopper = {events};
         RtError stopped;
@@ -232,22 +212,18 @@ RT_TEST_IN_PLACE(an_interrupted_run_resumes_and_loses_no_finished_cell) {
         cut_last_line(place, "parts/cells.jsonl");
         OWNED_MEMORY char *before = read_in(place, "parts/cells.jsonl");
         assert_ok(run(place, "parts", RT_START_RESUME, 1, nobody, error));
-        char *after = read_in(place, "parts/cells.jsonl"), *counts = read_in(place, "parts/counts.csv");
+        OWNED_MEMORY char *after = read_in(place, "parts/cells.jsonl"),
+                          *counts = read_in(place, "parts/counts.csv");
         assert_kept(before, after);
         assert_string_equal(counts, whole);
         assert_int_equal(count_of(after, "\"counted\":"), count_of(lines, "\"counted\":"));
         stopper = (Stopper){0};
         assert_ok(run(place, "parts", RT_START_RESUME, 1, observer, error));
-        rt_free(after);
-        rt_free(counts);
     }
-    rt_free(whole);
-    rt_free(lines);
 }
 
 /* A line of its journal was lost; the run that measures it anew stops behind it. */
-RT_TEST_IN_PLACE(a_run_that_goes_on_measuring_is_not_finished_until_it_is) {
-    const Place *place = *state;
+PLACE_TEST(a_run_that_goes_on_measuring_is_not_finished_until_it_is) {
     RtError stopped;
     Stopper stopper = {0};
     RtRunObserver observer = {&stopper, stop_after, NULL};
@@ -260,10 +236,9 @@ RT_TEST_IN_PLACE(a_run_that_goes_on_measuring_is_not_finished_until_it_is) {
     assert_true(rt_file_exists(path_in(place, "parts/manifest.json").text));
 }
 
-RT_TEST_IN_PLACE(a_finished_run_that_is_resumed_measures_nothing_and_writes_the_same_tables) {
-    const Place *place = *state;
+PLACE_TEST(a_finished_run_that_is_resumed_measures_nothing_and_writes_the_same_tables) {
     assert_ok(run(place, "done", RT_START_FRESH, 1, nobody, error));
-    char *counts = read_in(place, "done/counts.csv"), *times = read_in(place, "done/times.csv");
+    OWNED_MEMORY char *counts = read_in(place, "done/counts.csv"), *times = read_in(place, "done/times.csv");
     OWNED_MEMORY char *rounds = read_in(place, "done/rounds.csv");
     Stopper stopper = {0}; /* the first event would stop it */
     RtRunObserver observer = {&stopper, stop_after, NULL};
@@ -271,8 +246,6 @@ RT_TEST_IN_PLACE(a_finished_run_that_is_resumed_measures_nothing_and_writes_the_
     assert_same_file(place, "done/counts.csv", counts);
     assert_same_file(place, "done/times.csv", times);
     assert_same_file(place, "done/rounds.csv", rounds);
-    rt_free(counts);
-    rt_free(times);
 }
 
 static double real_at(const RtCsv *csv, uint32_t row, const char *name) {
@@ -291,8 +264,7 @@ static bool is_same_row(const RtCsv *one, uint32_t row, const RtCsv *other, uint
 }
 
 /* Whoever has them can compute them again: medians and ratios, of thinned candidates, too. */
-RT_TEST_IN_PLACE(the_times_are_made_of_those_of_the_rounds) {
-    const Place *place = *state;
+PLACE_TEST(the_times_are_made_of_those_of_the_rounds) {
     RtCsv times, rounds;
     Path times_path = path_in(place, "out/times.csv"), rounds_path = path_in(place, "out/rounds.csv");
     assert_ok(run(place, "out", RT_START_FRESH, 1, nobody, error));
@@ -317,8 +289,7 @@ RT_TEST_IN_PLACE(the_times_are_made_of_those_of_the_rounds) {
     rt_csv_clear(&rounds);
 }
 
-RT_TEST_IN_PLACE(a_run_of_another_experiment_is_not_resumed) {
-    const Place *place = *state;
+PLACE_TEST(a_run_of_another_experiment_is_not_resumed) {
     assert_ok(run(place, "mixed", RT_START_FRESH, 1, nobody, error));
     char text[2048];
     snprintf(text, sizeof text, "%sseed: 2\n", small_experiment);
@@ -326,8 +297,7 @@ RT_TEST_IN_PLACE(a_run_of_another_experiment_is_not_resumed) {
     assert_bad_input(run(place, "mixed", RT_START_RESUME, 1, nobody, error), "another experiment");
 }
 
-RT_TEST_IN_PLACE(the_report_has_the_question_and_nothing_outside_itself) {
-    const Place *place = *state;
+PLACE_TEST(the_report_has_the_question_and_nothing_outside_itself) {
     assert_ok(run(place, "page", RT_START_FRESH, 1, nobody, error));
     OWNED_MEMORY char *page = read_in(place, "page/report.html");
     assert_non_null(strstr(page, "Which is cheaper?"));
@@ -336,16 +306,14 @@ RT_TEST_IN_PLACE(the_report_has_the_question_and_nothing_outside_itself) {
     assert_non_null(strstr(page, "</html>"));
 }
 
-RT_TEST_IN_PLACE(a_missing_scene_is_an_error_unless_it_is_optional) {
-    const Place *place = *state;
+PLACE_TEST(a_missing_scene_is_an_error_unless_it_is_optional) {
     write_changed(place, "small.yaml", small_experiment, "\"random:n=50\"", "nowhere.obj");
     assert_bad_input(run(place, "refused", RT_START_FRESH, 1, nobody, error), "fetch.sh");
     write_changed(place, "small.yaml", small_experiment, "\"random:n=50\"", "nowhere.obj, optional: yes");
     assert_ok(run(place, "skipped", RT_START_FRESH, 1, nobody, error));
 }
 
-RT_TEST_IN_PLACE(an_accelerator_of_a_missing_plugin_is_an_error_unless_it_is_optional) {
-    const Place *place = *state;
+PLACE_TEST(an_accelerator_of_a_missing_plugin_is_an_error_unless_it_is_optional) {
     const struct {
         const char *accel, *directory, *said;
     } tried[] = {{"\"nobodys:depth=3\"", "unknown", "no accelerator 'nobodys'"},
@@ -366,8 +334,7 @@ RT_TEST_IN_PLACE(an_accelerator_of_a_missing_plugin_is_an_error_unless_it_is_opt
 /* ---- tables ---- */
 
 /* The null run's interval begins just above 1: in every table, and in the verdict. */
-RT_TEST_IN_PLACE(the_verdict_on_null_runs_is_what_the_tables_show) {
-    const Place *place = *state;
+PLACE_TEST(the_verdict_on_null_runs_is_what_the_tables_show) {
     OWNED_RESULTS results;
     char sentence[RT_MAX_SENTENCE];
     assert_ok(load_small(place, false, error));

@@ -5,9 +5,6 @@
 #include "core/base/memory.h"
 #include "results/frame_table.h"
 
-#include <math.h>
-#include <string.h>
-
 /* A scene with 100 primary, 300 shadow and 100 reflection rays; and one with primary rays alone. */
 static RtExperiment *e;
 static RtResults results;

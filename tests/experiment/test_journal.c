@@ -2,21 +2,18 @@
 /* Reading the journal of a run, which somebody else may have written. */
 #include "experiment_testing.h"
 
-static const char small_experiment[] = "name: small\n"
-                                       "question: What does it say?\n"
-                                       "prediction: What was measured.\n"
-                                       "scenes:\n"
-                                       "  - {scene: \"random:n=50\", size: 16x16, depth: 2}\n"
-                                       "accelerators:\n"
-                                       "  - {accel: grid}\n"
-                                       "  - {accel: bvh}\n"
-                                       "baseline: bvh\n"
-                                       "rounds: 3\n"
-                                       "milliseconds: 1\n";
+static const char small_experiment[] =
+    "name: small\nquestion: What does it say?\nprediction: What was measured.\n"
+    "scenes:\n"
+    "  - {scene: \"random:n=50\", size: 16x16, depth: 2}\n"
+    "accelerators:\n"
+    "  - {accel: grid}\n"
+    "  - {accel: bvh}\n"
+    "baseline: bvh\nrounds: 3\nmilliseconds: 1\n";
 
 static char written[1 << 16]; /* the journal of out/, as the run left it */
 
-static int make_run(void **state) {
+static int make_places(void **state) {
     if (make_place_with(state, small_experiment) != 0) return -1;
     assert_ok(load_small(*state, false, error));
     if (raytally(*state, "run small.yaml --out out") != 0) return -1;
@@ -26,16 +23,13 @@ static int make_run(void **state) {
     return 0;
 }
 
-#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_run, remove_place)
-
 /* Reads the journal of out/ as `text`. */
 static RtStatus read_journal(const Place *place, const char *text, RtResults *results, RtError *error) {
     write_in(place, "out/cells.jsonl", text);
     return rt_results_load(path_in(place, "out").text, place->experiment, results, error);
 }
 
-RT_TEST_IN_PLACE(a_journal_without_the_times_of_rounds_is_read) {
-    const Place *place = *state;
+PLACE_TEST(a_journal_without_the_times_of_rounds_is_read) {
     OWNED_RESULTS results;
     for (char *at = written; (at = strstr(at, "\"each_")) != NULL;) memcpy(at, "\"EACH_", 6);
     assert_ok(read_journal(place, written, &results, error));
@@ -44,8 +38,7 @@ RT_TEST_IN_PLACE(a_journal_without_the_times_of_rounds_is_read) {
 }
 
 /* They gave the median of up to three builds. */
-RT_TEST_IN_PLACE(a_journal_with_one_time_for_each_structure_is_read_as_builds_of_unknown_number) {
-    const Place *place = *state;
+PLACE_TEST(a_journal_with_one_time_for_each_structure_is_read_as_builds_of_unknown_number) {
     OWNED_RESULTS results;
     for (char *at = written; (at = strstr(at, "\"builds\"")) != NULL;) memcpy(at, "\"BUILDS\"", 8);
     for (char *at = strstr(written, "\"built\""); at; at = strstr(at, "\"built\"")) {
@@ -61,8 +54,7 @@ RT_TEST_IN_PLACE(a_journal_with_one_time_for_each_structure_is_read_as_builds_of
 }
 
 /* The last line, and so some measurements, are missing. */
-RT_TEST_IN_PLACE(a_resumed_run_keeps_the_builds_and_their_intervals) {
-    const Place *place = *state;
+PLACE_TEST(a_resumed_run_keeps_the_builds_and_their_intervals) {
     char *last = strrchr(written, '{');
     const char *built = strstr(written, "\"built\"");
     static char line[sizeof written];
@@ -70,7 +62,7 @@ RT_TEST_IN_PLACE(a_resumed_run_keeps_the_builds_and_their_intervals) {
     assert_true(strstr(line, "\"builds\":20") && strstr(line, "\"seconds\":["));
     *last = '\0';
     write_in(place, "out/cells.jsonl", written);
-    assert_int_equal(raytally(place, "run small.yaml --out out --resume"), 0);
+    assert_runs(place, "run small.yaml --out out --resume");
     OWNED_MEMORY char *journal = read_in(place, "out/cells.jsonl");
     assert_non_null(strstr(journal, line));
     assert_null(strstr(strstr(journal, line) + strlen(line), line));
@@ -79,8 +71,7 @@ RT_TEST_IN_PLACE(a_resumed_run_keeps_the_builds_and_their_intervals) {
 }
 
 /* Of two lines about a cell the second counts: the times of the first are not those of its rounds. */
-RT_TEST_IN_PLACE(a_line_of_more_rounds_without_their_times_takes_the_place_of_one_with_them) {
-    const Place *place = *state;
+PLACE_TEST(a_line_of_more_rounds_without_their_times_takes_the_place_of_one_with_them) {
     OWNED_RESULTS results;
     static char both[2 * sizeof written];
     char *again = both + strlen(written);
@@ -93,8 +84,7 @@ RT_TEST_IN_PLACE(a_line_of_more_rounds_without_their_times_takes_the_place_of_on
     assert_true(cell->timed && cell->rounds == 9 && !cell->round_times);
 }
 
-RT_TEST_IN_PLACE(a_count_of_2_63_less_1_is_read_as_it_was_written) {
-    const Place *place = *state;
+PLACE_TEST(a_count_of_2_63_less_1_is_read_as_it_was_written) {
     OWNED_RESULTS results;
     write_changed(place, "out/cells.jsonl", written, "\"differ\":0", "\"differ\":9223372036854775807");
     assert_ok(rt_results_load(path_in(place, "out").text, place->experiment, &results, error));
@@ -104,7 +94,7 @@ RT_TEST_IN_PLACE(a_count_of_2_63_less_1_is_read_as_it_was_written) {
     assert_true(most == INT64_MAX);
 }
 
-RT_TEST_IN_PLACE(a_line_that_no_journal_has_is_refused_by_its_number) {
+PLACE_TEST(a_line_that_no_journal_has_is_refused_by_its_number) {
     static const char *const cases[][3] = {
         {"\"rounds\":3", "\"rounds\":5", "'each_seconds' is not a list of as many times"},
         {"\"rounds\":3", "\"rounds\":1001", "'rounds' is not a whole number from 1 to 1000"},
@@ -121,7 +111,6 @@ RT_TEST_IN_PLACE(a_line_that_no_journal_has_is_refused_by_its_number) {
         {"\"hash\":\"", "\"hash\":\"x", "'hash' is not a hash"},
         {"{\"scene\"", "{\"scene", "'this line' is not a JSON object"},
     };
-    const Place *place = *state;
     RtResults results = {0};
     static char changed[2 * sizeof written];
     char place_of[128];
@@ -138,13 +127,12 @@ RT_TEST_IN_PLACE(a_line_that_no_journal_has_is_refused_by_its_number) {
     }
 }
 
-RT_TEST_IN_PLACE(a_journal_that_gzip_has_packed_can_be_read_but_not_continued) {
-    const Place *place = *state;
+PLACE_TEST(a_journal_that_gzip_has_packed_can_be_read_but_not_continued) {
     char command[300];
     snprintf(command, sizeof command, "gzip '%s'", path_in(place, "out/cells.jsonl").text);
     assert_int_equal(system(command), 0);
-    assert_int_equal(raytally(place, "report out"), 0);
-    assert_int_equal(raytally(place, "compare out out"), 0);
+    assert_runs(place, "report out");
+    assert_runs(place, "compare out out");
     assert_ends(place, "run small.yaml --out out --resume", 2, "unpack it with gunzip");
     assert_ends(place, "run small.yaml --out out", 2, "out");
     write_in(place, "out/cells.jsonl.gz", "\x1f\x8b\x08 no gzip");

@@ -10,10 +10,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
-#include <stdarg.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 static RtStatus run_shard(const Place *place, const char *directory, uint32_t shard, RtStart start,
                           RtError *error) {
@@ -28,7 +25,7 @@ static RtStatus run(const Place *place, const char *directory, RtStart start, Rt
 
 /* The shards in s1 and s2. */
 static RtStatus merge(const Place *place, const char *directory, RtStart start, RtError *error) {
-    RtResults results;
+    OWNED_RESULTS results;
     Path shards[] = {path_in(place, "s1"), path_in(place, "s2")}, out = path_in(place, directory);
     const char *const directories[] = {shards[0].text, shards[1].text};
     const RtRunOptions options = {.directory = out.text, .start = start, .report = rt_run_report};
@@ -110,8 +107,6 @@ int __wrap_fdatasync(int file) {
     return 0;
 }
 
-#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_small, remove_place)
-
 /* ---- the end at any moment ---- */
 
 typedef RtStatus Work(const Place *place, const char *directory, RtStart start, RtError *error);
@@ -139,8 +134,7 @@ static void assert_no_temporary(const Place *place, const char *directory) {
 
 enum { MOMENTS = 24 };
 
-RT_TEST_IN_PLACE(a_run_that_is_killed_at_any_moment_resumes_to_the_same_counts) {
-    const Place *place = *state;
+PLACE_TEST(a_run_that_is_killed_at_any_moment_resumes_to_the_same_counts) {
     changes = 0;
     assert_ok(run(place, "whole", RT_START_FRESH, error));
     int all = changes;
@@ -227,16 +221,14 @@ static void kill_often(const Place *place, Work *work, int last) {
     assert_true(untouched > 3 && begun > 3);
 }
 
-RT_TEST_IN_PLACE(a_run_that_begins_anew_and_is_killed_leaves_the_old_one_whole_or_the_new_one_to_be_resumed) {
-    const Place *place = *state;
+PLACE_TEST(a_run_that_begins_anew_and_is_killed_leaves_the_old_one_whole_or_the_new_one_to_be_resumed) {
     assert_ok(run(place, "old", RT_START_FRESH, error));
     write_changed(place, "small.yaml", small_experiment, "cloud, size: 8x8", "cloud, size: 10x8");
     assert_ok(run(place, "new", RT_START_FRESH, error));
     kill_often(place, run, 49);
 }
 
-RT_TEST_IN_PLACE(a_merge_that_is_killed_leaves_the_earlier_results_whole_or_can_be_made_again) {
-    const Place *place = *state;
+PLACE_TEST(a_merge_that_is_killed_leaves_the_earlier_results_whole_or_can_be_made_again) {
     assert_ok(run(place, "old", RT_START_FRESH, error));
     write_changed(place, "small.yaml", small_experiment, "cloud, size: 8x8", "cloud, size: 10x8");
     for (uint32_t shard = 1; shard <= 2; shard++)

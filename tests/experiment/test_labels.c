@@ -8,9 +8,8 @@
 
 #include <strings.h>
 
-#define SCENE                  "random:n=50,distribution=clustered,shape=triangle,width="
-#define SPEC                   "kd:traversal_cost=0.3,empty_bonus=0.2,max_leaf_size=0,max_depth="
-#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_place, remove_place)
+#define SCENE "random:n=50,distribution=clustered,shape=triangle,width="
+#define SPEC  "kd:traversal_cost=0.3,empty_bonus=0.2,max_leaf_size=0,max_depth="
 
 static void add_scenes(const Place *place, const char *spec) {
     assert_ok(rt_experiment_add_scenes(place->experiment, &(RtWorkload){.depth = 1}, spec, "", error));
@@ -36,10 +35,12 @@ static void check(RtExperiment *e) {
     assert_ok(rt_experiment_check(e, where, error));
 }
 
-RT_TEST_IN_PLACE(a_sweep_of_a_long_spec_has_labels_that_are_whole_and_differ) {
-    RtExperiment *e = begin(*state);
-    add_scenes(*state, SCENE "0.0125|0.025");
-    add_accels(*state, SPEC "10|12");
+PLACES_WITH(NULL)
+
+PLACE_TEST(a_sweep_of_a_long_spec_has_labels_that_are_whole_and_differ) {
+    RtExperiment *e = begin(place);
+    add_scenes(place, SCENE "0.0125|0.025");
+    add_accels(place, SPEC "10|12");
     check(e);
     assert_string_equal(e->workloads[0].label, SCENE "0.0125");
     assert_string_equal(e->workloads[1].label, SCENE "0.025");
@@ -48,36 +49,34 @@ RT_TEST_IN_PLACE(a_sweep_of_a_long_spec_has_labels_that_are_whole_and_differ) {
     assert_string_equal(e->candidates[1].shown, "kd:...,max_depth=12");
 }
 
-RT_TEST_IN_PLACE(a_label_that_is_too_long_with_its_swept_values_is_refused) {
+PLACE_TEST(a_label_that_is_too_long_with_its_swept_values_is_refused) {
     RtCandidate like = {.ray_stride = 1, .spec = "grid:density=1|2"};
     memset(like.label, 'l', RT_MAX_LABEL - 8);
-    assert_bad_input(rt_experiment_add_accels(begin(*state), &like, error), "give a short `label`");
+    assert_bad_input(rt_experiment_add_accels(begin(place), &like, error), "give a short `label`");
 }
 
-RT_TEST_IN_PLACE(files_have_whole_labels_and_csv_and_json_call_them_alike) {
-    const Place *place = *state;
+PLACE_TEST(files_have_whole_labels_and_csv_and_json_call_them_alike) {
     static const char row[] = "\"" SCENE "0.025\",\"" SCENE "0.025\",50,";
     const char arguments[] = "bench '" SCENE "0.0125|0.025' -a '" SPEC
                              "10|12' --rays random --limit 50 --count-only --csv '%s' --json";
     char command[300];
     snprintf(command, sizeof command, arguments, "counts.csv");
-    assert_int_equal(raytally(place, command), 0);
+    assert_runs(place, command);
     assert_in_file(place, "counts.csv", row);
     assert_in_file(place, "counts.csv", ",\"" SPEC "12\",\"" SPEC "12,");
     assert_in_file(place, "output", "\"scene\": \"" SCENE "0.025\"");
     assert_in_file(place, "output", "\"scene_spec\": \"" SCENE "0.025\"");
     assert_in_file(place, "output", "\"accel\": \"" SPEC "12\"");
     assert_in_file(place, "output", "\"spec\": \"" SPEC "12,");
-    assert_int_equal(raytally(place, "render balls --accel grid --size 4x4 -o a.png --stats stats.json"), 0);
+    assert_runs(place, "render balls --accel grid --size 4x4 -o a.png --stats stats.json");
     assert_in_file(place, "stats.json", "\"accel\": \"grid\"");
     assert_in_file(place, "stats.json", "\"spec\": \"grid:rule=");
-    assert_int_equal(raytally(place, "trace balls --pixel 1,1 --size 4x4 --accel grid --json"), 0);
+    assert_runs(place, "trace balls --pixel 1,1 --size 4x4 --accel grid --json");
     assert_in_file(place, "output", "\"accel\": \"grid\"");
     assert_in_file(place, "output", "\"spec\": \"grid:rule=");
 }
 
-RT_TEST_IN_PLACE(files_of_hits_have_the_names_of_their_cells) {
-    const Place *place = *state;
+PLACE_TEST(files_of_hits_have_the_names_of_their_cells) {
     assert_int_equal(raytally(place, "bench 'balls:size=1|2' -a 'grid:density=4|8' --rays random --limit 50 "
                                      "--count-only --hits hits.npy"),
                      0);
@@ -99,11 +98,10 @@ static void run_files(const Place *place) {
     write_in(place, "s\xc3\xa4.off", triangle);
     write_in(place, "s\xc3\xb6.off", triangle);
     write_in(place, "small.yaml", two_files);
-    assert_int_equal(raytally(place, "run small.yaml --out out"), 0);
+    assert_runs(place, "run small.yaml --out out");
 }
 
-RT_TEST_IN_PLACE(a_run_with_long_labels_writes_them_whole_and_reads_them_again) {
-    const Place *place = *state;
+PLACE_TEST(a_run_with_long_labels_writes_them_whole_and_reads_them_again) {
     run_files(place);
     assert_in_file(place, "out/cells.jsonl", "\"scene\":\"" SCENE "0.025\",\"accel\":\"" SPEC "12\"");
     assert_in_file(place, "out/manifest.json", "\"accel\": \"" SPEC "12\"");
@@ -112,18 +110,16 @@ RT_TEST_IN_PLACE(a_run_with_long_labels_writes_them_whole_and_reads_them_again) 
     assert_in_file(place, "out/counts.csv", "\"" SPEC "12\"");
     assert_in_file(place, "out/report.html", SPEC "12");
     assert_in_file(place, "output", "kd:...,max_depth=12");
-    assert_int_equal(raytally(place, "report out"), 0);
-    assert_int_equal(raytally(place, "reproduce out"), 0);
-    assert_int_equal(raytally(place, "run small.yaml --out out --resume"), 0);
-    assert_int_equal(raytally(place, "bench balls -a '" SPEC "10|12' --size 8x8 --rays primary --count-only"),
-                     0);
+    assert_runs(place, "report out");
+    assert_runs(place, "reproduce out");
+    assert_runs(place, "run small.yaml --out out --resume");
+    assert_runs(place, "bench balls -a '" SPEC "10|12' --size 8x8 --rays primary --count-only");
     assert_in_file(place, "output", "\nkd:...,max_depth=10 ");
     assert_in_file(place, "output", "\nkd:...,max_depth=12 ");
 }
 
 /* Each letter outside ASCII is two bytes. */
-RT_TEST_IN_PLACE(files_whose_names_differ_in_letters_outside_ascii_have_labels_and_files_of_their_own) {
-    const Place *place = *state;
+PLACE_TEST(files_whose_names_differ_in_letters_outside_ascii_have_labels_and_files_of_their_own) {
     run_files(place);
     assert_in_file(place, "out/counts.csv", "\ns__,s\xc3\xa4.off,");
     assert_in_file(place, "out/counts.csv", "\ns__-2,s\xc3\xb6.off,");
@@ -131,8 +127,8 @@ RT_TEST_IN_PLACE(files_whose_names_differ_in_letters_outside_ascii_have_labels_a
     assert_true(rt_file_exists(path_in(place, "out/images/s__-2.png").text));
 }
 
-RT_TEST_IN_PLACE(names_of_files_are_short_enough_and_differ) {
-    RtExperiment *e = begin(*state);
+PLACE_TEST(names_of_files_are_short_enough_and_differ) {
+    RtExperiment *e = begin(place);
     RtWorkload like = {.depth = 1};
     for (int i = 0; i < 2; i++) {
         memset(like.label, 'l', 300);
@@ -143,7 +139,7 @@ RT_TEST_IN_PLACE(names_of_files_are_short_enough_and_differ) {
     assert_ok(rt_experiment_add_scenes(e, &like, "balls", "", error));
     strcpy(like.label, "A*B");
     assert_ok(rt_experiment_add_scenes(e, &like, "balls", "", error));
-    add_accels(*state, "bvh");
+    add_accels(place, "bvh");
     check(e);
     for (uint32_t t = 0; t < 4; t++) {
         assert_true(strlen(e->workloads[t].file_name) <= 200);
@@ -181,12 +177,12 @@ RT_TEST(a_long_name_without_parts_is_cut_in_the_middle_unless_it_differs_there) 
 
 /* ---- results of version 1.0 ---- */
 
-RT_TEST_IN_PLACE(labels_that_version_1_0_cut_are_found) {
-    RtExperiment *e = begin(*state);
+PLACE_TEST(labels_that_version_1_0_cut_are_found) {
+    RtExperiment *e = begin(place);
     char cut[RT_MAX_LABEL];
-    add_scenes(*state, "balls");
-    add_scenes(*state, SCENE "0.025");
-    add_accels(*state, SPEC "10|12");
+    add_scenes(place, "balls");
+    add_scenes(place, SCENE "0.025");
+    add_accels(place, SPEC "10|12");
     check(e);
     snprintf(cut, sizeof cut, "%.47s", SCENE "0.025");
     assert_int_equal(rt_workload_find(e, cut), 1);
@@ -205,12 +201,11 @@ RT_TEST(the_manifest_of_version_1_0_names_labels_and_specs_otherwise) {
         "{\"accelerators\": [{\"accel\": \"mine\", \"spec\": \"grid:density=4\"}]}"};
     for (int i = 0; i < 2; i++) {
         RtCandidate candidate = {0};
-        json_t *manifest = json_loads(texts[i], 0, NULL);
+        json_auto_t *manifest = json_loads(texts[i], 0, NULL);
         assert_true(rt_manifest_candidate(manifest, 0, &candidate));
         assert_string_equal(candidate.label, "mine");
         assert_string_equal(candidate.spec, "grid:density=4");
         assert_true(rt_manifest_is_whole(manifest, "grid", "density"));
-        json_decref(manifest);
     }
 }
 

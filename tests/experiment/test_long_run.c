@@ -5,13 +5,10 @@
 #include "core/base/clock.h"
 #include "results/result_tables.h"
 
-#include <math.h>
 #include <signal.h>
 #include <time.h>
 
-static const char long_experiment[] = "name: small\n"
-                                      "question: How long?\n"
-                                      "prediction: A second.\n"
+static const char long_experiment[] = "name: small\nquestion: How long?\nprediction: A second.\n"
                                       "scenes:\n"
                                       "  - {scene: \"balls:size=2\", label: balls, size: 24x24}\n"
                                       "  - {scene: \"random:n=200|400\", label: cloud, size: 24x24}\n"
@@ -20,18 +17,11 @@ static const char long_experiment[] = "name: small\n"
                                       "  - {accel: bvh}\n"
                                       "  - {accel: \"grid:density=1..16*2\"}\n"
                                       "  - {accel: brute, ray_stride: 10}\n"
-                                      "rays: [primary, diffuse]\n"
-                                      "limit: 300\n"
-                                      "rounds: 3\n"
-                                      "milliseconds: 3\n";
+                                      "rays: [primary, diffuse]\nlimit: 300\nrounds: 3\nmilliseconds: 3\n";
 
-static int make_long(void **state) {
-    return make_place_with(state, long_experiment);
-}
+PLACES_WITH(long_experiment)
 
 #define RESUME "run small.yaml --threads 1 --out out --resume"
-
-#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_long, remove_place)
 
 static void wait_seconds(double seconds) {
     struct timespec time = {.tv_sec = (time_t)seconds, .tv_nsec = (long)(1e9 * fmod(seconds, 1))};
@@ -55,10 +45,9 @@ static Path numbered(const Place *place, uint32_t number) {
 
 /* A hundred times, at moments that are drawn from a fifth of the time that the whole takes; nothing that was
  * finished is lost. A run that has come to its end is compared, and another is begun. */
-RT_TEST_IN_PLACE(a_run_that_is_killed_again_and_again_ends_as_one_that_was_not) {
-    const Place *place = *state;
+PLACE_TEST(a_run_that_is_killed_again_and_again_ends_as_one_that_was_not) {
     double began = rt_wall_seconds();
-    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out whole"), 0);
+    assert_runs(place, "run small.yaml --threads 1 --out whole");
     double whole = rt_wall_seconds() - began;
     uint32_t draw = 12345, killed = 0, ended = 0;
     size_t before = 0;
@@ -80,37 +69,34 @@ RT_TEST_IN_PLACE(a_run_that_is_killed_again_and_again_ends_as_one_that_was_not) 
             before = 0;
         }
     }
-    assert_int_equal(raytally(place, RESUME), 0);
+    assert_runs(place, RESUME);
     assert_equal_files(place, "whole/counts.csv", "out/counts.csv");
-    assert_int_equal(raytally(place, "reproduce out"), 0);
+    assert_runs(place, "reproduce out");
 }
 
-RT_TEST_IN_PLACE(an_interrupted_run_says_what_is_kept_and_how_to_go_on) {
-    const Place *place = *state;
+PLACE_TEST(an_interrupted_run_says_what_is_kept_and_how_to_go_on) {
     pid_t child = start_raytally(place, RESUME);
     while (journal_lines(place) < 20) wait_seconds(0.01);
     kill(child, SIGINT);
     assert_int_equal(end_of(child), 128 + SIGINT);
     assert_in_file(place, "message", "interrupted; what is finished is kept in out. To continue:");
     assert_in_file(place, "message", "raytally run small.yaml --out out --threads 1 --resume");
-    assert_int_equal(raytally(place, RESUME " --dry-run"), 0);
+    assert_runs(place, RESUME " --dry-run");
     assert_in_file(place, "output", "finished\n");
-    assert_int_equal(raytally(place, RESUME), 0);
+    assert_runs(place, RESUME);
 }
 
-RT_TEST_IN_PLACE(a_dry_run_lists_the_cells_and_touches_nothing) {
-    const Place *place = *state;
-    assert_int_equal(raytally(place, "run small.yaml --out out --dry-run"), 0);
+PLACE_TEST(a_dry_run_lists_the_cells_and_touches_nothing) {
+    assert_runs(place, "run small.yaml --out out --dry-run");
     assert_in_file(place, "output", "cloud:n=400              grid:density=16              diffuse\n");
     assert_in_file(place, "output", "56 cells, 0 of them finished\n");
     assert_false(rt_file_exists(path_in(place, "out").text));
-    assert_int_equal(raytally(place, "run small.yaml --out out --only cloud/grid/diffuse --dry-run"), 0);
+    assert_runs(place, "run small.yaml --out out --only cloud/grid/diffuse --dry-run");
     assert_in_file(place, "output", "12 cells"); /* bvh, the baseline, too */
 }
 
-RT_TEST_IN_PLACE(a_dry_run_of_a_changed_experiment_is_refused_as_the_run_is) {
-    const Place *place = *state;
-    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --only balls/bvh"), 0);
+PLACE_TEST(a_dry_run_of_a_changed_experiment_is_refused_as_the_run_is) {
+    assert_runs(place, "run small.yaml --threads 1 --out out --only balls/bvh");
     OWNED_MEMORY char *journal = read_in(place, "out/cells.jsonl");
     write_changed(place, "small.yaml", long_experiment, "density=1..16*2", "density=1|4");
     assert_ends(place, "run small.yaml --out out --dry-run", 2, "another version of it ('small')");
@@ -119,9 +105,8 @@ RT_TEST_IN_PLACE(a_dry_run_of_a_changed_experiment_is_refused_as_the_run_is) {
     assert_same_file(place, "out/cells.jsonl", journal);
 }
 
-RT_TEST_IN_PLACE(a_part_is_measured_and_then_the_rest) {
-    const Place *place = *state;
-    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out whole"), 0);
+PLACE_TEST(a_part_is_measured_and_then_the_rest) {
+    assert_runs(place, "run small.yaml --threads 1 --out whole");
     assert_ends(place, "run small.yaml --threads 1 --out out --only cloud:n=400/brute/primary", 0,
                 "a part was measured");
     assert_false(rt_file_exists(path_in(place, "out/manifest.json").text));
@@ -130,15 +115,14 @@ RT_TEST_IN_PLACE(a_part_is_measured_and_then_the_rest) {
     assert_null(strstr(counts, "grid"));
     assert_null(strstr(counts, "diffuse"));
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out"), 2);
-    assert_int_equal(raytally(place, RESUME), 0);
+    assert_runs(place, RESUME);
     assert_equal_files(place, "whole/counts.csv", "out/counts.csv");
-    assert_int_equal(raytally(place, RESUME " --dry-run"), 0);
+    assert_runs(place, RESUME " --dry-run");
     assert_in_file(place, "output", "56 cells, 56 of them finished\n");
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --only nowhere --resume"), 2);
 }
 
-RT_TEST_IN_PLACE(what_goes_beyond_a_limit_is_left_out_and_recorded) {
-    const Place *place = *state;
+PLACE_TEST(what_goes_beyond_a_limit_is_left_out_and_recorded) {
     write_changed(place, "small.yaml", long_experiment, "n=200|400\", label: cloud",
                   "n=20000\", label: cloud");
     write_changed(place, "limited.yaml", long_experiment, "limit: 300", "limits: {megabytes: 1}\nlimit: 300");
@@ -154,14 +138,14 @@ RT_TEST_IN_PLACE(what_goes_beyond_a_limit_is_left_out_and_recorded) {
     text = read_in(place, "small.yaml");
     write_changed(place, "small.yaml", text, ", ray_stride: 10", "");
     rt_free(text);
-    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --force"), 0);
+    assert_runs(place, "run small.yaml --threads 1 --out out --force");
     assert_in_file(place, "output", "Refused: bvh on cloud:n=30000: it needs more than 1 MB of memory");
     assert_in_file(place, "out/cells.jsonl", "too_large");
     assert_in_file(place, "out/report.html", "it needs more than 1 MB of memory");
     assert_ends(place, "run small.yaml --threads 1 --out out --resume", 0, "nothing was left to measure");
     assert_in_file(place, "output", "Refused: bvh on cloud:n=30000");
     /* The option takes the place of the limit in the YAML. */
-    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --force --memory 1G"), 0);
+    assert_runs(place, "run small.yaml --threads 1 --out out --force --memory 1G");
     OWNED_MEMORY char *lines = read_in(place, "out/cells.jsonl");
     assert_non_null(strstr(lines, "\"scene\":\"cloud:n=30000\",\"accel\":\"bvh\",\"kind\":\"primary\""));
     assert_ends(place, "run small.yaml --threads 1 --out out --memory 1Q", 2, "as in 512M or 4G");
@@ -174,16 +158,15 @@ static bool in_journal(const char *journal, const char *scene, const char *accel
 }
 
 /* bvh is the baseline. */
-RT_TEST_IN_PLACE(several_parts_are_measured_together) {
+PLACE_TEST(several_parts_are_measured_together) {
     static const char *const scenes[] = {"balls", "cloud:n=200", "cloud:n=400"},
                              *const accels[] = {"bvh", "grid:density=1", "brute"},
                              *const kinds[] = {"primary", "diffuse"};
-    const Place *place = *state;
     const char *parts =
         "--only cloud:n=200/grid/primary --only cloud:n=200/brute/diffuse --only cloud:n=400/grid";
     char command[256];
     snprintf(command, sizeof command, "run small.yaml --threads 1 --out out %s", parts);
-    assert_int_equal(raytally(place, command), 0);
+    assert_runs(place, command);
     OWNED_MEMORY char *journal = read_in(place, "out/cells.jsonl");
     for (int s = 0; s < 3; s++) {
         for (int a = 0; a < 3; a++) {
@@ -194,14 +177,13 @@ RT_TEST_IN_PLACE(several_parts_are_measured_together) {
         }
     }
     snprintf(command, sizeof command, "run small.yaml --threads 1 --out out --resume --dry-run %s", parts);
-    assert_int_equal(raytally(place, command), 0);
+    assert_runs(place, command);
     assert_in_file(place, "output", "20 cells, 20 of them finished\n");
     assert_ends(place, "run small.yaml --out out --only cloud --only nowhere --resume", 2,
                 "'nowhere' is not the label");
 }
 
-RT_TEST_IN_PLACE(a_cell_that_would_take_too_long_is_not_begun) {
-    const Place *place = *state;
+PLACE_TEST(a_cell_that_would_take_too_long_is_not_begun) {
     write_changed(place, "small.yaml", long_experiment, "limit: 300", "limits: {seconds: 1e-6}\nlimit: 300");
     assert_ends(place, "run small.yaml --threads 1 --out out", 2, "the baseline 'bvh' is left out");
     write_changed(place, "small.yaml", long_experiment, "limit: 300", "limits: {seconds: 0}\nlimit: 300");
@@ -221,8 +203,7 @@ RT_TEST_IN_PLACE(a_cell_that_would_take_too_long_is_not_begun) {
 }
 
 /* A refusal costs its own rows, which say why, and is reproduced; the baseline's costs the ratios, too. */
-RT_TEST_IN_PLACE(a_refusal_costs_its_own_rows_which_say_why) {
-    const Place *place = *state;
+PLACE_TEST(a_refusal_costs_its_own_rows_which_say_why) {
     char obj[30000] = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     for (int i = 0; i < 3500; i++) strcat(obj, "f 1 2 3\n");
     write_in(place, "same.obj", obj);
@@ -240,10 +221,10 @@ RT_TEST_IN_PLACE(a_refusal_costs_its_own_rows_which_say_why) {
     assert_non_null(strstr(counts, ",refused\n"));
     assert_non_null(strstr(counts, "would fit\"\n"));
     assert_non_null(strstr(counts, ",bvh,"));
-    assert_int_equal(raytally(place, "reproduce out"), 0);
+    assert_runs(place, "reproduce out");
     assert_ends(place, "run small.yaml --threads 1 --out out --resume", 0, "nothing was left to measure");
-    assert_int_equal(raytally(place, "compare out out"), 0);
-    assert_int_equal(raytally(place, "report out"), 0);
+    assert_runs(place, "compare out out");
+    assert_runs(place, "report out");
     assert_in_file(place, "out/report.html", "Refused: grid on same");
     assert_ends(place, "bench same.obj --size 9x9 -a grid:density=30000 --count-only", 2,
                 "every accelerator refuses the scene: a grid of ");

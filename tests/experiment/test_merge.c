@@ -7,22 +7,18 @@
 
 #include <sys/stat.h>
 
-static const char sharded[] = "name: small\n"
-                              "question: On how many machines?\n"
-                              "prediction: It does not matter.\n"
-                              "scenes:\n"
-                              "  - {scene: \"balls:size=1|2\", size: 12x12}\n"
-                              "  - {scene: \"random:n=50..200*2\", label: cloud, size: 12x12}\n"
-                              "accelerators:\n"
-                              "  - {accel: bvh}\n"
-                              "  - {accel: \"grid:density=1|4\"}\n"
-                              "rays: [primary, shadow]\n"
-                              "limit: 100\n"
-                              "rounds: 2\n"
-                              "milliseconds: 0\n"
-                              "expect: [object_tests of grid falls with density on cloud]\n";
+static const char sharded[] =
+    "name: small\nquestion: On how many machines?\nprediction: It does not matter.\n"
+    "scenes:\n"
+    "  - {scene: \"balls:size=1|2\", size: 12x12}\n"
+    "  - {scene: \"random:n=50..200*2\", label: cloud, size: 12x12}\n"
+    "accelerators:\n"
+    "  - {accel: bvh}\n"
+    "  - {accel: \"grid:density=1|4\"}\n"
+    "rays: [primary, shadow]\nlimit: 100\nrounds: 2\nmilliseconds: 0\n"
+    "expect: [object_tests of grid falls with density on cloud]\n";
 
-static int make_sharded(void **state) {
+static int make_places(void **state) {
     if (make_place_with(state, sharded) != 0) return -1;
     for (int i = 1; i <= 4; i++) {
         char command[128];
@@ -32,18 +28,15 @@ static int make_sharded(void **state) {
     return 0;
 }
 
-#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_sharded, remove_place)
-
 static void refused(const Place *place, const char *arguments, const char *says) {
     assert_ends(place, arguments, 2, says);
     assert_false(rt_file_exists(path_in(place, "all").text));
 }
 
-RT_TEST_IN_PLACE(four_shards_make_the_counts_of_one_run) {
-    const Place *place = *state;
+PLACE_TEST(four_shards_make_the_counts_of_one_run) {
     RtCsv csv;
-    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out one"), 0);
-    assert_int_equal(raytally(place, "merge s3 s1 s4 s2 -o all"), 0);
+    assert_runs(place, "run small.yaml --threads 1 --out one");
+    assert_runs(place, "merge s3 s1 s4 s2 -o all");
     assert_in_file(place, "output", "undecided        object_tests of grid falls with density on cloud");
     assert_in_file(place, "message", "joined 4 shards: 30 cells of 5 scenes");
     assert_not_in_file(place, "message", "nothing was left to measure");
@@ -51,7 +44,7 @@ RT_TEST_IN_PLACE(four_shards_make_the_counts_of_one_run) {
     assert_true(rt_file_exists(path_in(place, "all/manifest.json").text));
     assert_true(rt_file_exists(path_in(place, "all/images/cloud-n-200.png").text));
     assert_in_file(place, "all/report.html", "cloud:n=200");
-    assert_int_equal(raytally(place, "reproduce all"), 0);
+    assert_runs(place, "reproduce all");
     Path times = path_in(place, "all/times.csv");
     assert_ok(rt_csv_read(&csv, times.text, error));
     assert_int_equal(csv.rows, 5 * 2 * 4);
@@ -59,21 +52,20 @@ RT_TEST_IN_PLACE(four_shards_make_the_counts_of_one_run) {
     assert_true(rt_csv_find(&csv, "cpu") < csv.columns);
     rt_csv_clear(&csv);
     assert_int_equal(raytally(place, "merge s1 s2 s3 s4 -o all"), 2);
-    assert_int_equal(raytally(place, "merge s1 s2 s3 s4 -o all --force"), 0);
+    assert_runs(place, "merge s1 s2 s3 s4 -o all --force");
 }
 
-RT_TEST_IN_PLACE(what_does_not_make_a_whole_is_refused_and_nothing_is_written) {
-    const Place *place = *state;
+PLACE_TEST(what_does_not_make_a_whole_is_refused_and_nothing_is_written) {
     refused(place, "merge s1 s2 s4 -o all", "shard 3 of 4 is missing");
     refused(place, "merge s1 s2 s3 s4 s2 -o all", "shard 2 of 4 is given twice: s2 and s2");
     refused(place, "merge s1 s2 nowhere -o all", "nowhere is not the directory of a run");
     refused(place, "merge s1 s2", "the result directory is missing: -o DIR");
-    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out whole"), 0);
+    assert_runs(place, "run small.yaml --threads 1 --out whole");
     refused(place, "merge s1 whole -o all", "whole is not a shard");
-    assert_int_equal(raytally(place, "run small.yaml --threads 1 --shard 2/3 --out third"), 0);
+    assert_runs(place, "run small.yaml --threads 1 --shard 2/3 --out third");
     refused(place, "merge s1 third -o all", "s1 and third have different numbers of shards");
     write_changed(place, "small.yaml", sharded, "limit: 100", "limit: 99");
-    assert_int_equal(raytally(place, "run small.yaml --threads 1 --shard 2/4 --out other"), 0);
+    assert_runs(place, "run small.yaml --threads 1 --shard 2/4 --out other");
     refused(place, "merge s1 other s3 s4 -o all", "s1 and other have different experiments");
     refused(place, "merge s1 s2 s3 s4 -o all", "small.yaml has changed since the shards were made");
     assert_int_equal(remove(path_in(place, "s3/manifest.json").text), 0);
@@ -81,11 +73,10 @@ RT_TEST_IN_PLACE(what_does_not_make_a_whole_is_refused_and_nothing_is_written) {
 }
 
 /* A disk that is full fails alike: at a file that is to be written. */
-RT_TEST_IN_PLACE(a_merge_that_fails_loses_nothing_of_earlier_results) {
-    const Place *place = *state;
+PLACE_TEST(a_merge_that_fails_loses_nothing_of_earlier_results) {
     const char *const kept[] = {"all/cells.jsonl", "all/counts.csv", "all/report.html", "all/manifest.json"};
     char *before[4];
-    assert_int_equal(raytally(place, "merge s1 s2 s3 s4 -o all"), 0);
+    assert_runs(place, "merge s1 s2 s3 s4 -o all");
     for (int i = 0; i < 4; i++) before[i] = read_in(place, kept[i]);
     Path picture = path_in(place, "s4/images/cloud-n-100.png");
     assert_int_equal(remove(picture.text), 0);
@@ -99,10 +90,9 @@ RT_TEST_IN_PLACE(a_merge_that_fails_loses_nothing_of_earlier_results) {
     assert_true(rt_file_exists(path_in(place, "all/images/cloud-n-200.png").text));
 }
 
-RT_TEST_IN_PLACE(a_merge_into_the_directory_of_another_run_is_refused_and_removes_nothing) {
-    const Place *place = *state;
+PLACE_TEST(a_merge_into_the_directory_of_another_run_is_refused_and_removes_nothing) {
     RtLock lock = RT_NO_LOCK;
-    assert_int_equal(raytally(place, "merge s1 s2 s3 s4 -o all"), 0);
+    assert_runs(place, "merge s1 s2 s3 s4 -o all");
     OWNED_MEMORY char *before = read_in(place, "all/counts.csv");
     assert_ok(rt_lock_take(&lock, path_in(place, "all").text, error));
     assert_ends(place, "merge s1 s2 s3 s4 -o all --force", 2, "is writing");
@@ -110,8 +100,7 @@ RT_TEST_IN_PLACE(a_merge_into_the_directory_of_another_run_is_refused_and_remove
     rt_lock_release(&lock);
 }
 
-RT_TEST_IN_PLACE(a_shard_is_gone_on_with_as_the_shard_that_it_is) {
-    const Place *place = *state;
+PLACE_TEST(a_shard_is_gone_on_with_as_the_shard_that_it_is) {
     assert_ends(place, "run small.yaml --threads 1 --shard 3/4 --out s2 --resume", 2,
                 "this is a run with another --shard (2/4)");
     assert_ends(place, "run small.yaml --threads 1 --shard 2/4 --out s2 --resume", 0,
@@ -119,22 +108,20 @@ RT_TEST_IN_PLACE(a_shard_is_gone_on_with_as_the_shard_that_it_is) {
 }
 
 /* Times on one thread are processor time, those on two are wall time. */
-RT_TEST_IN_PLACE(cells_timed_on_other_numbers_of_threads_are_not_mixed) {
-    const Place *place = *state;
-    assert_int_equal(raytally(place, "run small.yaml --threads 2 --shard 3/4 --out two"), 0);
+PLACE_TEST(cells_timed_on_other_numbers_of_threads_are_not_mixed) {
+    assert_runs(place, "run small.yaml --threads 2 --shard 3/4 --out two");
     refused(place, "merge s1 s2 two s4 -o all",
             "s1 was timed on 1 thread, and two on 2: their times are not comparable. Run one of them again");
-    assert_int_equal(raytally(place, "run small.yaml --threads 2 --out part --only cloud:n=50"), 0);
+    assert_runs(place, "run small.yaml --threads 2 --out part --only cloud:n=50");
     assert_ends(place, "run small.yaml --out part --resume", 2,
                 "part was timed on 2 threads so far, and this command would use 1");
-    assert_int_equal(raytally(place, "run small.yaml --threads 2 --out part --resume"), 0);
-    assert_int_equal(raytally(place, "run small.yaml --out part --resume"), 0); /* nothing is left to time */
+    assert_runs(place, "run small.yaml --threads 2 --out part --resume");
+    assert_runs(place, "run small.yaml --out part --resume"); /* nothing is left to time */
 }
 
 /* A program with a byte more at its end does the same, but is another one. What a clean commit makes may
  * differ by paths. */
-RT_TEST_IN_PLACE(another_program_of_uncommitted_sources_is_another_build) {
-    const Place *place = *state;
+PLACE_TEST(another_program_of_uncommitted_sources_is_another_build) {
     char command[512], program[512];
     snprintf(command, sizeof command, "cd '%s' && cp '%s' other && printf x >>other && mv s2 mine",
              place->folder, RT_PROGRAM);

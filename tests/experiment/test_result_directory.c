@@ -9,8 +9,6 @@
 
 #include <signal.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 static RtStatus run(const Place *place, const char *directory, RtStart start, RtError *error) {
     return run_small(place, directory, false, (RtRunOptions){.start = start}, error);
@@ -28,13 +26,10 @@ RtStatus __wrap_rt_scene_open(const char *spec, RtScene *scene, RtError *error) 
     return __real_rt_scene_open(spec, scene, error);
 }
 
-#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_small, remove_place)
-
 /* ---- whose results they are ---- */
 
-RT_TEST_IN_PLACE(results_are_refused_unless_they_are_gone_on_with_or_begun_anew) {
-    const Place *place = *state;
-    assert_ends(place, "run small.yaml", 0, "");
+PLACE_TEST(results_are_refused_unless_they_are_gone_on_with_or_begun_anew) {
+    assert_runs(place, "run small.yaml");
     OWNED_MEMORY char *journal = read_in(place, "results/small/cells.jsonl"),
                       *page = read_in(place, "results/small/manifest.json");
     assert_ends(place, "run small.yaml", 2, "holds a finished run: use --resume to rewrite its tables");
@@ -51,7 +46,7 @@ RT_TEST_IN_PLACE(results_are_refused_unless_they_are_gone_on_with_or_begun_anew)
     assert_int_equal(remove(path_in(place, "results/small/manifest.json").text), 0);
     assert_ends(place, "run small.yaml", 2, "holds an unfinished run: use --resume to continue it");
     assert_same_file(place, "results/small/cells.jsonl", journal);
-    assert_ends(place, "run other.yaml --resume --force", 0, "");
+    assert_runs(place, "run other.yaml --resume --force");
     assert_ends(place, "run other.yaml --force --resume", 0, "nothing was left to measure");
 }
 
@@ -67,27 +62,25 @@ static void set_format(const Place *place, const char *member) {
     assert_int_equal(system(command), 0);
 }
 
-RT_TEST_IN_PLACE(results_of_0_1_which_name_no_format_are_read_and_those_of_a_later_format_refused) {
-    const Place *place = *state;
+PLACE_TEST(results_of_0_1_which_name_no_format_are_read_and_those_of_a_later_format_refused) {
     const char *const reading[] = {"report results/small", "reproduce results/small",
                                    "run small.yaml --resume", "compare results/small results/small"};
-    assert_ends(place, "run small.yaml --threads 1", 0, "");
+    assert_runs(place, "run small.yaml --threads 1");
     assert_in_file(place, "results/small/manifest.json", "\"format\": 1");
     assert_in_file(place, "results/small/cells.jsonl", "{\"format\":1,");
     set_format(place, "");
     assert_not_in_file(place, "results/small/cells.jsonl", "format");
-    for (size_t i = 0; i < sizeof reading / sizeof reading[0]; i++) assert_ends(place, reading[i], 0, "");
-    assert_ends(place, "run small.yaml --threads 1 --force", 0, "");
+    for (size_t i = 0; i < sizeof reading / sizeof reading[0]; i++) assert_runs(place, reading[i]);
+    assert_runs(place, "run small.yaml --threads 1 --force");
     set_format(place, "\"format\": 2,");
     for (size_t i = 0; i < sizeof reading / sizeof reading[0]; i++)
         assert_ends(place, reading[i], 2, "its format is 2, and raytally " RT_VERSION " reads formats 1..1");
 }
 
-RT_TEST_IN_PLACE(counts_of_another_version_may_differ_and_reproduce_says_so) {
-    const Place *place = *state;
-    assert_ends(place, "run small.yaml", 0, "");
+PLACE_TEST(counts_of_another_version_may_differ_and_reproduce_says_so) {
+    assert_runs(place, "run small.yaml");
     OWNED_MEMORY char *manifest = read_in(place, "results/small/manifest.json");
-    assert_ends(place, "reproduce results/small", 0, "");
+    assert_runs(place, "reproduce results/small");
     assert_not_in_file(place, "output", "some may differ");
     write_changed(place, "results/small/manifest.json", manifest, "\"counts\": 1", "\"counts\": 2");
     assert_ends(place, "reproduce results/small", 0,
@@ -96,12 +89,11 @@ RT_TEST_IN_PLACE(counts_of_another_version_may_differ_and_reproduce_says_so) {
 
 /* ---- what is measured ---- */
 
-RT_TEST_IN_PLACE(run_and_bench_thin_a_set_to_the_same_rays) {
-    const Place *place = *state;
+PLACE_TEST(run_and_bench_thin_a_set_to_the_same_rays) {
     write_in(place, "thin.yaml",
              "name: thin\nquestion: a\nprediction: b\nscenes: [{scene: balls:size=1, size: 200x200}]\n"
              "accelerators: [{accel: bvh}, {accel: grid}]\nlimit: 17000\ncount_only: yes\n");
-    assert_ends(place, "run thin.yaml", 0, "");
+    assert_runs(place, "run thin.yaml");
     assert_ends(place,
                 "bench balls:size=1 --size 200x200 --accel bvh --accel grid --limit 17000 --count-only "
                 "--csv thin.csv",
@@ -109,7 +101,7 @@ RT_TEST_IN_PLACE(run_and_bench_thin_a_set_to_the_same_rays) {
     assert_in_file(place, "output", "\nwrote thin.csv\n");
     assert_equal_files(place, "results/thin/counts.csv", "thin.csv");
     /* Runs are as long as when it was measured, even if the default has changed since. */
-    assert_ends(place, "reproduce results/thin", 0, "");
+    assert_runs(place, "reproduce results/thin");
     OWNED_MEMORY char *manifest = read_in(place, "results/thin/manifest.json");
     write_changed(place, "results/thin/manifest.json", manifest, "\"coherent_run\": 256",
                   "\"coherent_run\": 1");
@@ -123,60 +115,55 @@ static int occurrences(const Place *place, const char *name, const char *what) {
     return count;
 }
 
-RT_TEST_IN_PLACE(a_few_rays_that_are_repeated_until_they_are_learnt_cause_a_warning) {
-    const Place *place = *state;
+PLACE_TEST(a_few_rays_that_are_repeated_until_they_are_learnt_cause_a_warning) {
     const char *warning = "Too few rays. Each round repeats, on balls:size=1, 72 primary rays";
     write_changed(place, "short.yaml", small_experiment, "count_only: yes", "rounds: 2\nmilliseconds: 1");
-    assert_ends(place, "run short.yaml", 0, "");
+    assert_runs(place, "run short.yaml");
     assert_in_file(place, "output", "; on cloud, ");
     assert_int_equal(occurrences(place, "output", "Too few rays"), 1);
     assert_int_equal(occurrences(place, "results/small/report.html", "Too few rays"), 1);
     assert_in_file(place, "results/small/report.html", warning);
     assert_in_file(place, "results/small/times.csv", ",rounds,repeats,");
-    assert_ends(place, "report results/small", 0, ""); /* from the journal */
+    assert_runs(place, "report results/small"); /* from the journal */
     assert_in_file(place, "results/small/report.html", warning);
     write_changed(place, "once.yaml", small_experiment, "count_only: yes", "rounds: 2\nmilliseconds: 0");
-    assert_ends(place, "run once.yaml --force", 0, "");
+    assert_runs(place, "run once.yaml --force");
     assert_not_in_file(place, "output", "Too few rays");
     assert_not_in_file(place, "results/small/report.html", "Too few rays");
-    assert_ends(place, "bench balls:size=1 --accel bvh --rays primary --size 10x10 --rounds 2", 0, "");
+    assert_runs(place, "bench balls:size=1 --accel bvh --rays primary --size 10x10 --rounds 2");
     assert_in_file(place, "output", "Too few rays");
-    assert_ends(place, "bench balls:size=1 --accel bvh --rays primary --size 10x10 --milliseconds 0", 0, "");
+    assert_runs(place, "bench balls:size=1 --accel bvh --rays primary --size 10x10 --milliseconds 0");
     assert_not_in_file(place, "output", "Too few rays");
 }
 
-RT_TEST_IN_PLACE(a_finished_run_that_is_resumed_shows_its_table_and_keeps_its_manifest) {
-    const Place *place = *state;
-    assert_ends(place, "run small.yaml --threads 1 --resume", 0, "");
-    char *table = read_in(place, "output"), *manifest = read_in(place, "results/small/manifest.json");
+PLACE_TEST(a_finished_run_that_is_resumed_shows_its_table_and_keeps_its_manifest) {
+    assert_runs(place, "run small.yaml --threads 1 --resume");
+    OWNED_MEMORY char *table = read_in(place, "output"),
+                      *manifest = read_in(place, "results/small/manifest.json");
     assert_non_null(strstr(table, "cloud"));
     assert_int_equal(remove(path_in(place, "results/small/counts.csv").text), 0);
     assert_ends(place, "run small.yaml --threads 2 --resume", 0, "nothing was left to measure");
     assert_same_file(place, "output", table);
     assert_same_file(place, "results/small/manifest.json", manifest);
     assert_true(rt_file_exists(path_in(place, "results/small/counts.csv").text));
-    rt_free(table);
-    rt_free(manifest);
 }
 
-RT_TEST_IN_PLACE(results_without_their_journal_are_not_gone_on_with) {
-    const Place *place = *state;
-    assert_ends(place, "run small.yaml", 0, "");
+PLACE_TEST(results_without_their_journal_are_not_gone_on_with) {
+    assert_runs(place, "run small.yaml");
     OWNED_MEMORY char *counts = read_in(place, "results/small/counts.csv");
     assert_int_equal(remove(path_in(place, "results/small/cells.jsonl").text), 0);
     assert_ends(place, "run small.yaml --resume", 2, "no cells.jsonl");
     assert_same_file(place, "results/small/counts.csv", counts);
 }
 
-RT_TEST_IN_PLACE(what_begins_anew_leaves_nothing_of_what_was_there) {
-    const Place *place = *state;
-    assert_ends(place, "verify tetra:size=1 --accel bvh --rays 10 --out out", 0, "");
+PLACE_TEST(what_begins_anew_leaves_nothing_of_what_was_there) {
+    assert_runs(place, "verify tetra:size=1 --accel bvh --rays 10 --out out");
     assert_ends(place, "run small.yaml --out out --resume", 2, "no cells.jsonl");
-    assert_ends(place, "run small.yaml --out out --force", 0, "");
+    assert_runs(place, "run small.yaml --out out --force");
     write_in(place, "out/plots/old.svg", "<svg/>");
     write_in(place, "out/plots/old.pdf", "%PDF");
     write_in(place, "out/notes.txt", "mine");
-    assert_ends(place, "run small.yaml --out out --force", 0, "");
+    assert_runs(place, "run small.yaml --out out --force");
     for (int i = 0; i < 4; i++) {
         const char *const gone[] = {"out/rows.jsonl", "out/verify.csv", "out/plots/old.svg",
                                     "out/plots/old.pdf"};
@@ -186,8 +173,7 @@ RT_TEST_IN_PLACE(what_begins_anew_leaves_nothing_of_what_was_there) {
 }
 
 /* Each of these fails; with --force, too, no byte of the results that are there has changed then. */
-RT_TEST_IN_PLACE(nothing_is_touched_before_all_that_may_fail_was_tried) {
-    const Place *place = *state;
+PLACE_TEST(nothing_is_touched_before_all_that_may_fail_was_tried) {
     const struct {
         const char *from, *to;
     } faults[] = {{"limit: 100\n", "limit: -1\n"},  {"limit: 100\n", "limit: 100\nplots: [nowhere.gp]\n"},
@@ -195,9 +181,10 @@ RT_TEST_IN_PLACE(nothing_is_touched_before_all_that_may_fail_was_tried) {
                   {"random:n=50", "random:n=-50"},  {"\"random:n=50\"", "nowhere.obj"},
                   {"\"random:n=50\"", "broken.nff"}};
     write_in(place, "broken.nff", "s 0 0 0 nan\n");
-    assert_ends(place, "run small.yaml --out out", 0, "");
-    char *journal = read_in(place, "out/cells.jsonl"), *yaml = read_in(place, "out/experiment.yaml"),
-         *manifest = read_in(place, "out/manifest.json");
+    assert_runs(place, "run small.yaml --out out");
+    OWNED_MEMORY char *journal = read_in(place, "out/cells.jsonl"),
+                      *yaml = read_in(place, "out/experiment.yaml"),
+                      *manifest = read_in(place, "out/manifest.json");
     for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++) {
         write_changed(place, "faulty.yaml", small_experiment, faults[i].from, faults[i].to);
         assert_ends(place, "run faulty.yaml --out out --force", 2, "");
@@ -211,20 +198,16 @@ RT_TEST_IN_PLACE(nothing_is_touched_before_all_that_may_fail_was_tried) {
     assert_ends(place, "run small.yaml --out out --force", 2, "out/experiment.yaml is a folder");
     assert_same_file(place, "out/cells.jsonl", journal);
     assert_same_file(place, "out/manifest.json", manifest);
-    rt_free(journal);
-    rt_free(yaml);
-    rt_free(manifest);
 }
 
 /* ---- two at a time ---- */
 
-RT_TEST_IN_PLACE(a_second_process_is_refused) {
-    const Place *place = *state;
+PLACE_TEST(a_second_process_is_refused) {
     const char *const writing[] = {"run small.yaml --out out --force", "run small.yaml --out out --resume",
                                    "verify tetra:size=1 --rays 10 --out out --force", "plot out",
                                    "report out"};
     RtLock lock;
-    assert_ends(place, "run small.yaml --out out", 0, "");
+    assert_runs(place, "run small.yaml --out out");
     assert_ok(rt_lock_take(&lock, path_in(place, "out").text, error));
     assert_true(rt_lock_is_held(&lock));
     for (size_t i = 0; i < sizeof writing / sizeof writing[0]; i++)
@@ -232,11 +215,10 @@ RT_TEST_IN_PLACE(a_second_process_is_refused) {
     assert_ends(place, "reproduce out", 0, "");
     assert_bad_input(run(place, "out", RT_START_ANEW, error), "is writing");
     rt_lock_release(&lock);
-    for (size_t i = 0; i < sizeof writing / sizeof writing[0]; i += 3) assert_ends(place, writing[i], 0, "");
+    for (size_t i = 0; i < sizeof writing / sizeof writing[0]; i += 3) assert_runs(place, writing[i]);
 }
 
-RT_TEST_IN_PLACE(a_lock_goes_with_the_process_that_was_killed) {
-    const Place *place = *state;
+PLACE_TEST(a_lock_goes_with_the_process_that_was_killed) {
     RtLock lock;
     int status;
     pid_t child = fork();
@@ -252,23 +234,21 @@ RT_TEST_IN_PLACE(a_lock_goes_with_the_process_that_was_killed) {
 
 /* ---- plots ---- */
 
-RT_TEST_IN_PLACE(a_script_that_lies_elsewhere_is_copied_into_the_directory) {
-    const Place *place = *state;
+PLACE_TEST(a_script_that_lies_elsewhere_is_copied_into_the_directory) {
     assert_ok(rt_directory_create(path_in(place, "here").text, error));
     assert_ok(rt_directory_create(path_in(place, "there/deep").text, error));
     write_in(place, "x.gp", "print 1\n");
     write_in(place, "there/deep/y.gp", "print 2\n");
     write_changed(place, "here/small.yaml", small_experiment, "limit: 100\n",
                   "limit: 100\nplots: [../x.gp, ../there/deep/y.gp]\n");
-    assert_ends(place, "run here/small.yaml --out out/deep", 0, "");
+    assert_runs(place, "run here/small.yaml --out out/deep");
     assert_in_file(place, "out/deep/plots/x.gp", "print 1");
     assert_in_file(place, "out/deep/plots/y.gp", "print 2");
     assert_false(rt_file_exists(path_in(place, "out/deep/x.gp").text));
-    assert_ends(place, "plot out/deep --trust", 0, "");
+    assert_runs(place, "plot out/deep --trust");
 }
 
-RT_TEST_IN_PLACE(two_scripts_of_one_name_are_refused_with_their_line) {
-    const Place *place = *state;
+PLACE_TEST(two_scripts_of_one_name_are_refused_with_their_line) {
     const char *const lists[] = {"[x.gp,\n  ../x.gp]", "[x.gp,\n  there/]", "[x.gp,\n  ..]"};
     for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
         char plots[64];
@@ -278,8 +258,7 @@ RT_TEST_IN_PLACE(two_scripts_of_one_name_are_refused_with_their_line) {
     }
 }
 
-RT_TEST_IN_PLACE(an_experiment_that_is_named_like_a_folder_above_is_refused) {
-    const Place *place = *state;
+PLACE_TEST(an_experiment_that_is_named_like_a_folder_above_is_refused) {
     write_changed(place, "small.yaml", small_experiment, "name: small", "name: ..");
     assert_bad_input(load_small(place, false, error), "small.yaml:1:");
 }
@@ -301,8 +280,7 @@ static void assert_ends_with_path(const Place *place, const char *path, const ch
     assert_ended(place, arguments, ended, code, says);
 }
 
-RT_TEST_IN_PLACE(gnuplot_that_fails_is_told_of_by_exit_code_1_and_its_own_words) {
-    const Place *place = *state;
+PLACE_TEST(gnuplot_that_fails_is_told_of_by_exit_code_1_and_its_own_words) {
     Path bin = path_in(place, "bin");
     write_in(place, "x.gp", "plot nonsense\n");
     write_changed(place, "small.yaml", small_experiment, "limit: 100\n", "limit: 100\nplots: [x.gp]\n");
@@ -318,8 +296,7 @@ RT_TEST_IN_PLACE(gnuplot_that_fails_is_told_of_by_exit_code_1_and_its_own_words)
     assert_ends_with_path(place, bin.text, "plot out --trust", 1, "its scripts: plots/x.gp");
 }
 
-RT_TEST_IN_PLACE(where_there_is_no_gnuplot_a_note_says_so) {
-    const Place *place = *state;
+PLACE_TEST(where_there_is_no_gnuplot_a_note_says_so) {
     write_in(place, "x.gp", "print 1\n");
     write_changed(place, "small.yaml", small_experiment, "limit: 100\n", "limit: 100\nplots: [x.gp]\n");
     assert_ends_with_path(place, "/nowhere", "run small.yaml --out out", 0, "gnuplot is not installed");
@@ -345,8 +322,7 @@ static void name_plots(const Place *place, const char *plots) {
     write_changed(place, "small.yaml", small_experiment, "limit: 100\n", plots);
 }
 
-RT_TEST_IN_PLACE(a_script_in_a_result_directory_is_run_if_it_is_trusted) {
-    const Place *place = *state;
+PLACE_TEST(a_script_in_a_result_directory_is_run_if_it_is_trusted) {
     const char *says = "out/plots/x.gp: raytally does not ship this gnuplot script";
     write_in(place, "x.gp", "system('harm')\n");
     name_plots(place, "limit: 100\nplots: [style.gp, x.gp]\n");
@@ -358,8 +334,7 @@ RT_TEST_IN_PLACE(a_script_in_a_result_directory_is_run_if_it_is_trusted) {
     assert_draws(place, "reproduce out", 0, "", false);
 }
 
-RT_TEST_IN_PLACE(shipped_scripts_are_found_where_they_are_installed_and_not_copied) {
-    const Place *place = *state;
+PLACE_TEST(shipped_scripts_are_found_where_they_are_installed_and_not_copied) {
     name_plots(place, "limit: 100\nplots: [style.gp, ../lecture/growth.gp]\n");
     make_gnuplot(place, "#!/bin/sh\nprintf '%s\\n' \"$@\" >../arguments\n");
     assert_ends_with_path(place, path_in(place, "bin").text, "run small.yaml --out out", 0, "");
@@ -370,8 +345,7 @@ RT_TEST_IN_PLACE(shipped_scripts_are_found_where_they_are_installed_and_not_copi
 }
 
 /* A copy of a shipped script, perhaps changed by somebody else, is not run for its name. */
-RT_TEST_IN_PLACE(a_changed_copy_of_a_shipped_script_is_run_only_if_it_is_trusted) {
-    const Place *place = *state;
+PLACE_TEST(a_changed_copy_of_a_shipped_script_is_run_only_if_it_is_trusted) {
     name_plots(place, "limit: 100\nplots: [growth.gp]\n");
     assert_draws(place, "run small.yaml --out out", 0, "", true);
     write_in(place, "out/plots/growth.gp", "system('harm')\n");
@@ -382,8 +356,7 @@ RT_TEST_IN_PLACE(a_changed_copy_of_a_shipped_script_is_run_only_if_it_is_trusted
     assert_in_file(place, "arguments", "\nplots/growth.gp");
 }
 
-RT_TEST_IN_PLACE(nothing_is_drawn_through_a_link_out_of_the_directory) {
-    const Place *place = *state;
+PLACE_TEST(nothing_is_drawn_through_a_link_out_of_the_directory) {
     name_plots(place, "limit: 100\nplots: [growth.gp]\n");
     assert_draws(place, "run small.yaml --out out", 0, "", true);
     remove(path_in(place, "out/plots/gnuplot.log").text);
@@ -394,8 +367,7 @@ RT_TEST_IN_PLACE(nothing_is_drawn_through_a_link_out_of_the_directory) {
     assert_in_file(place, "mine", "mine");
 }
 
-RT_TEST_IN_PLACE(a_run_draws_by_the_scripts_beside_its_experiment_and_by_changed_copies_if_they_are_trusted) {
-    const Place *place = *state;
+PLACE_TEST(a_run_draws_by_the_scripts_beside_its_experiment_and_by_changed_copies_if_they_are_trusted) {
     write_in(place, "x.gp", "print 1\n");
     name_plots(place, "limit: 100\nplots: [x.gp]\n");
     assert_draws(place, "run small.yaml --out out", 0, "", true);
@@ -411,8 +383,7 @@ RT_TEST_IN_PLACE(a_run_draws_by_the_scripts_beside_its_experiment_and_by_changed
     assert_in_file(place, "out/plots/x.gp", "print 1");
 }
 
-RT_TEST_IN_PLACE(a_merge_draws_by_scripts_that_raytally_does_not_ship_only_if_they_are_trusted) {
-    const Place *place = *state;
+PLACE_TEST(a_merge_draws_by_scripts_that_raytally_does_not_ship_only_if_they_are_trusted) {
     const char *const runs[] = {"run small.yaml --shard 1/2 --out s1", "run small.yaml --shard 2/2 --out s2",
                                 "run t1/small.yaml --shard 1/2 --out t1",
                                 "run t1/small.yaml --shard 2/2 --out t2"};
@@ -434,8 +405,7 @@ RT_TEST_IN_PLACE(a_merge_draws_by_scripts_that_raytally_does_not_ship_only_if_th
 
 /* ---- scenes ---- */
 
-RT_TEST_IN_PLACE(a_scene_is_opened_once_in_a_run_and_not_at_all_when_nothing_is_left) {
-    const Place *place = *state;
+PLACE_TEST(a_scene_is_opened_once_in_a_run_and_not_at_all_when_nothing_is_left) {
     scenes_opened = 0;
     assert_ok(run(place, "out", RT_START_FRESH, error));
     assert_int_equal(scenes_opened, 2); /* the first and the last workload are on the same */

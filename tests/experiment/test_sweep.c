@@ -2,11 +2,7 @@
 /* Specs that stand for several. */
 #include "testing.h"
 
-#include "core/base/memory.h"
 #include "experiment/experiment.h"
-
-#include <stdio.h>
-#include <string.h>
 
 /* All that `text` stands for, with blanks between; or what is wrong with it. */
 static const char *expand_by_manifest(const char *text, bool scene, const json_t *manifest) {
@@ -67,7 +63,7 @@ RT_TEST(whole_numbers_are_rounded_and_none_comes_twice) {
 
 /* Of accelerators that need not be here. */
 RT_TEST(whole_numbers_of_results_are_told_by_their_manifest) {
-    json_t *kept =
+    json_auto_t *kept =
         json_pack("{s:[{s:s}, {s:s}, {s:s}, {s:s}]}", "accelerators", "accel", "mine:leaf=1,part=.5", "accel",
                   "mine:part=1,leaf=2", "accel", "light+mine:leaf=3", "accel", "other:leaf=0.5");
     assert_string_equal(expand_by_manifest("mine:leaf=1..2.3*1.5", false, kept), "mine:leaf=1 mine:leaf=2");
@@ -76,7 +72,6 @@ RT_TEST(whole_numbers_of_results_are_told_by_their_manifest) {
     assert_string_equal(expand_by_manifest("mine:part=1..1.6*1.5", false, kept), "mine:part=1 mine:part=1.5");
     assert_string_equal(expand_by_manifest("other:leaf=1..1.6*1.5", false, kept),
                         "other:leaf=1 other:leaf=1.5");
-    json_decref(kept);
 }
 
 RT_TEST(what_is_no_range_is_refused_with_what_would_be) {

@@ -2,33 +2,21 @@
 /* Totals over kinds of rays: each weighs as much as its whole set, whatever the limit. */
 #include "experiment_testing.h"
 
-#include <math.h>
-
 static const char small_experiment[] =
-    "name: small\n"
-    "question: What does a frame cost?\n"
-    "prediction: The same whatever is measured of it.\n"
+    "name: small\nquestion: What does a frame cost?\nprediction: The same whatever is measured of it.\n"
     "scenes: [{scene: \"gears:size=2\", size: 64x64, depth: 3}]\n"
     "accelerators: [{accel: brute, group: all}, {accel: grid, group: all}, "
     "{accel: bvh, group: all}]\n"
-    "count_only: yes\n"
-    "coherent_run: 1\n"
-    "frame: {without: brute, among: all}\n"
-    "limit: 100000\n"
+    "count_only: yes\ncoherent_run: 1\nframe: {without: brute, among: all}\nlimit: 100000\n"
     "quick: {limit: 4000}\n";
 
-static int make_small(void **state) {
-    return make_place_with(state, small_experiment);
-}
-
-#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_small, remove_place)
+PLACES_WITH(small_experiment)
 
 static void load_results(const Place *place, const char *directory, RtResults *results) {
     assert_ok(rt_results_load(path_in(place, directory).text, place->experiment, results, error));
 }
 
-RT_TEST_IN_PLACE(the_same_frame_with_a_lower_limit_has_nearly_the_same_totals) {
-    const Place *place = *state;
+PLACE_TEST(the_same_frame_with_a_lower_limit_has_nearly_the_same_totals) {
     OWNED_RESULTS part = {0};
     double whole[2][3];
     RtKinds frame = 0;
@@ -99,8 +87,7 @@ static RtCost total_of(const RtResults *results) {
     return rt_results_total(results, 0, 2, rt_experiment_kinds(results->experiment));
 }
 
-RT_TEST_IN_PLACE(a_total_weighs_each_kind_by_its_whole_set_to_the_digit) {
-    const Place *place = *state;
+PLACE_TEST(a_total_weighs_each_kind_by_its_whole_set_to_the_digit) {
     OWNED_RESULTS results = {0};
     assert_ok(run_small(place, "out", true, (RtRunOptions){0}, error));
     write_journal(place, "whole_rays");
@@ -109,46 +96,42 @@ RT_TEST_IN_PLACE(a_total_weighs_each_kind_by_its_whole_set_to_the_digit) {
     assert_true(total.whole && total.rays == 35 && total.weight == 8005);
     assert_true(total.object_tests == 1000 * 3 + 7000 * 9 + 5 * 5);
     assert_true(rt_results_cost(&results, 0, 2, RT_ALL_RAYS).object_tests == (3000 + 63000 + 25) / 8005.0);
-    assert_int_equal(raytally(place, "report out"), 0);
+    assert_runs(place, "report out");
     assert_in_file(place, "out/report.html", "all kinds of rays together, of 8005 rays, 35 measured");
     assert_in_file(place, "out/report.html", "1000 primary, 7000 shadow and 5 secondary rays; of 8005 rays");
     assert_in_file(place, "out/tables.md", "all kinds of rays, of 8005 rays, 35 measured.");
     assert_in_file(place, "out/tables.tex", "all kinds of rays, of 8005 rays, 35 measured.");
 }
 
-RT_TEST_IN_PLACE(a_result_without_the_sizes_of_whole_sets_says_of_the_measured_part) {
-    const Place *place = *state;
+PLACE_TEST(a_result_without_the_sizes_of_whole_sets_says_of_the_measured_part) {
     OWNED_RESULTS results = {0};
     assert_ok(run_small(place, "out", true, (RtRunOptions){0}, error));
     write_journal(place, "as_in_1.0");
     load_results(place, "out", &results);
     const RtCost total = total_of(&results);
     assert_true(total.weight == 35 && total.object_tests == 30 + 180 + 25);
-    assert_int_equal(raytally(place, "report out"), 0);
+    assert_runs(place, "report out");
     assert_in_file(place, "out/report.html", "all kinds of rays together, of the measured part");
     assert_in_file(place, "out/tables.md", "all kinds of rays, of the measured part.");
 }
 
-RT_TEST_IN_PLACE(whole_sets_are_in_the_manifest_and_in_the_names_for_plots_but_not_in_counts_csv) {
-    const Place *place = *state;
+PLACE_TEST(whole_sets_are_in_the_manifest_and_in_the_names_for_plots_but_not_in_counts_csv) {
     write_in(place, "x.gp", "set print '../sets'\nprint sets\n");
     write_changed(place, "small.yaml", small_experiment, "quick:", "plots: [x.gp]\nquick:");
-    assert_int_equal(raytally(place, "run small.yaml --quick --out out"), 0);
+    assert_runs(place, "run small.yaml --quick --out out");
     assert_in_file(place, "out/manifest.json", "\"whole_rays\": 4096");
     assert_not_in_file(place, "out/counts.csv", "whole");
     if (access("/usr/bin/gnuplot", X_OK) != 0) RT_SKIP("gnuplot-nox");
     assert_in_file(place, "sets", "gears:size=2/primary=4096 ");
 }
 
-RT_TEST_IN_PLACE(the_end_of_a_run_and_a_benchmark_say_how_many_rays_of_how_many_were_measured) {
-    const Place *place = *state;
+PLACE_TEST(the_end_of_a_run_and_a_benchmark_say_how_many_rays_of_how_many_were_measured) {
     write_changed(place, "small.yaml", small_experiment, "frame: {without: brute, among: all}\n", "");
-    assert_int_equal(raytally(place, "run small.yaml --quick --out out"), 0);
+    assert_runs(place, "run small.yaml --quick --out out");
     assert_in_file(place, "output", "seed 1; of ");
     assert_in_file(place, "output", " measured\n");
-    assert_int_equal(raytally(place, "bench balls --accel bvh --accel grid --rays primary,shadow "
-                                     "--size 32x32 --depth 1 --limit 500 --rounds 2"),
-                     0);
+    assert_runs(place, "bench balls --accel bvh --accel grid --rays primary,shadow "
+                       "--size 32x32 --depth 1 --limit 500 --rounds 2");
     assert_in_file(place, "output", "Break-evens are over all kinds of rays together: of ");
 }
 
