@@ -2,8 +2,8 @@
 # first-look: the table of frames as bars, one column of panels per scene.
 #: frame: Time to trace a whole frame on one thread, and its object and extent tests, with each accelerator, on logarithmic axes.
 #:   In brackets: how many times as fast as without a structure. Orange: the fastest of the four structures; blue: the other
-#:   classic ones. item and light are buffers over wide. Builds, which use all processors, are in the table. Embree counts
-#:   no tests of its own; ideal bounds object tests, not time.
+#:   classic ones. item and light are buffers over wide. Builds, which use all processors, are in the table. embree counts
+#:   no tests; ideal bounds object tests, not time.
 #: by-kind: Speedup over no structure, for each ray kind.
 #:   Logarithmic axes; secondary rays are reflected and transmitted ones. The item buffer answers only primary rays, the light
 #:   buffer only shadow rays.
@@ -47,7 +47,7 @@ do for [m = 0:1] {
   do for [s = 1:n_scenes] {
     do for [a = 1:n_accels] {
       is_row(i) = here(s) && strcol("accel") eq word(accels, a)
-      stats "counts.csv" using (is_row(0) ? 1e-6 * weight(0) * column(counter) / column("rays") : 0) nooutput
+      stats "times.csv" using (is_row(0) ? 1e-6 * weight(0) * column(counter) / column("rays") : 0) nooutput
       tests[at_test(m, s, a)] = STATS_sum > 0 ? STATS_sum : NaN
     }
   }
