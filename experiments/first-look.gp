@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # first-look: the table of frames as bars, one column of panels per scene.
-#: frame: Speedup and reduction in object tests of each accelerator for a whole frame over no structure, on logarithmic axes.
-#:   The columns at the right are milliseconds to trace a frame and to build, and millions of object tests. Blue: the classic ones;
-#:   orange: the best of the four structures. item and light are buffers over wide: the pale part of a bar is what wide alone
-#:   reaches, the figure in brackets the gain over it. ideal bounds object tests, not time.
+#: frame: Time to trace a whole frame on one thread, and its object and extent tests, with each accelerator, on logarithmic axes.
+#:   In brackets: how many times as fast as without a structure. Orange: the fastest of the four structures; blue: the other
+#:   classic ones. item and light are buffers over wide. Builds, which use all processors, are in the table. embree counts
+#:   no tests; ideal bounds object tests, not time.
 #: by-kind: Speedup over no structure, for each ray kind.
 #:   Logarithmic axes; secondary rays are reflected and transmitted ones. The item buffer answers only primary rays, the light
 #:   buffer only shadow rays.
@@ -37,47 +37,56 @@ names = "do for [a = 1:n_accels] { set label 100 + a word(accels, a) at graph -0
 do for [i = 1:words(headings) / 2] { set label 200 + i word(groups, int(word(headings, 2 * i - 1))) at screen 6.0 / 960, first int(word(headings, 2 * i)) \
 left textcolor rgb soft }"
 
-legend = "set label 11 'the six classic accelerators' at screen 6.0 / 960, screen 1 - 12.0 / height left textcolor rgb '#3a9fd8'; \
-set label 12 '{/:Bold the best of the four structures}' at screen 0.25, screen 1 - 12.0 / height left textcolor rgb '#d55e00'; \
-set label 13 'pale: wide alone; in brackets: gain over wide' at screen 0.995, screen 1 - 12.0 / height right textcolor rgb soft"
+# ---- a whole frame: time, and tests ----
 
-# ---- a whole frame: speedup, and reduction in object tests ----
-
-n_metrics = 2
-array metric[2] = ["times_faster", "times_fewer"]
-array gain[2] = ["gain", "tests_gain"]
-# Pixels of the columns at the right, and of a figure behind a bar.
-array columns[2] = [112, 52]; figure_width = 92
-whole(s, m) = figure_of(s, metric[m])
-below(s, m) = figure_of(s, metric[m]) / column(gain[m])
-array title[2] = ["A whole frame: how many times faster than ".without.", log scale", "How many times fewer object tests than ".without.", log scale"]
-array least[2]; array most[2]; array best[2 * n_scenes]
-do for [m = 1:n_metrics] {
-  stats "frame.csv" using (column(metric[m])) nooutput
-  least[m] = least_of(1, STATS_min); most[m] = STATS_max
+# The tests of a whole frame, in millions: per ray of each kind times its rays; NaN if they are not counted.
+array tests[2 * n_scenes * n_accels]
+at_test(m, s, a) = 1 + m + 2 * (s - 1 + n_scenes * (a - 1))
+do for [m = 0:1] {
+  counter = word("object_tests extent_tests", m + 1)
   do for [s = 1:n_scenes] {
-    stats "frame.csv" using (here(s) && strcol("group") eq among ? column(metric[m]) : NaN) nooutput
-    best[2 * s - 2 + m] = STATS_max
+    do for [a = 1:n_accels] {
+      is_row(i) = here(s) && strcol("accel") eq word(accels, a)
+      stats "times.csv" using (is_row(0) ? 1e-6 * weight(0) * column(counter) / column("rays") : 0) nooutput
+      tests[at_test(m, s, a)] = STATS_sum > 0 ? STATS_sum : NaN
+    }
   }
 }
-is_best(s, m) = strcol("group") eq among && column(metric[m]) == best[2 * s - 2 + m]
-label(s, m) = figure(whole(s, m)).(strcol("below") ne "" ? " (".figure(column(gain[m])).")" : "")
+tests_of(m, s) = tests[at_test(m, s, number(strcol("accel")))]
+is_best(s) = strcol("winner") eq "yes"
+speed(s) = figure(column("ms"))." (".figure(column("times_faster")).")"
+legend = "set label 11 'the fastest of the four structures' at screen 0.12, screen 1 - 10.0 / height left textcolor rgb '#b34e00'; \
+set label 12 'other classic ones' at screen 0.42, screen 1 - 10.0 / height left textcolor rgb '#2f8fc4'; \
+set label 13 'the rest' at screen 0.60, screen 1 - 10.0 / height left textcolor rgb soft"
+tests_legend = "set label 11 '■ object tests' at screen 0.56, screen 1 - (top + block - 2.0) / height left textcolor rgb '#0072b2'; \
+set label 12 '■ extent tests' at screen 0.71, screen 1 - (top + block - 2.0) / height left textcolor rgb '#9a6a00'"
+array title[2] = ["Time to trace a frame on one thread, ms (in brackets: times as fast as ".without.")", "Tests of a frame, millions: object + extent tests"]
 block = head + panel_height + foot
-height = top + n_metrics * block
+height = top + 2 * block
 eval canvas("frame", 960, height)
 set multiplot
 set logscale x
 set format x "10^{%T}"
-set yrange [rows + 0.7 : 0.3]
 unset ytics
 set grid xtics noytics
 set border 1
 set xtics scale 0.4 offset 0, 0.4
-do for [m = 1:n_metrics] {
-  lowest = least[m]
-  last = lowest * (most[m] / lowest) ** ((panel_width - gap) / (panel_width - gap - columns[m] - figure_width))
-  set xrange [lowest : last]
-  set xtics 1, (m == 1 ? 1000 : 100), 10 ** ceil(log10(most[m]))
+do for [m = 1:2] {
+  set autoscale # stats looks at what is in range
+  if (m == 1) {
+    stats "frame.csv" using (column("ms")) nooutput
+    least = STATS_min; most = STATS_max
+  } else {
+    least = 1e30; most = 0
+    do for [i = 1:|tests|] {
+      if (tests[i] > 0) { least = least_of(least, tests[i]); most = most_of(most, tests[i]) }
+    }
+  }
+  least = least / 1.5
+  last = least * (most / least) ** (1 / (m == 1 ? 0.66 : 0.60)) # room for figures behind the bars
+  set xrange [least : last]
+  set yrange [rows + 0.7 : 0.3]
+  set xtics 1, 100, 10 ** ceil(log10(most))
   do for [s = 1:n_scenes] {
     unset label
     set lmargin at screen (left + (s - 1) * panel_width) / 960
@@ -85,24 +94,24 @@ do for [m = 1:n_metrics] {
     set tmargin at screen 1 - (top + (m - 1) * block + head) / height
     set bmargin at screen 1 - (top + (m - 1) * block + head + panel_height) / height
     if (s == 1) {
-      set label 1 title[m] at screen 6.0 / 960, screen 1 - (top + (m - 1) * block + 2.0) / height left font ",15" textcolor rgb ink
+      set label 1 title[m] at screen 6.0 / 960, screen 1 - (top + (m - 1) * block - 2.0) / height left font ",15" textcolor rgb ink
       eval names
-      if (m == 1) { eval legend }
+      eval (m == 1 ? legend : tests_legend)
     }
     set label 2 word(scenes, s) at graph 0, graph 1 left offset 0, 0.7 font ",14" textcolor rgb ink
-    set label 3 (m == 1 ? "ms" : "") at graph 0.80, graph 1 right offset 0, 0.7 textcolor rgb soft
-    set label 4 (m == 1 ? "build" : "million tests") at graph 1, graph 1 right offset 0, 0.7 textcolor rgb soft
-    # The gain of the accelerator below an overlay, then that of the overlay: logarithms add.
-    plot "frame.csv" using (least_of(1, below(s, m))):(at(s)):(least_of(1, below(s, m))):(most_of(1, below(s, m))):(at(s) - 0.36):(at(s) + 0.36) \
-           with boxxyerror linecolor rgb faint, \
-         "" using (least_of(whole(s, m), below(s, m))):(at(s)):(least_of(whole(s, m), below(s, m))):(most_of(whole(s, m), below(s, m))): \
-           (at(s) - 0.36):(at(s) + 0.36):(paint(is_best(s, m))) with boxxyerror linecolor rgb variable, \
-         "" using (most_of(1, most_of(whole(s, m), below(s, m)))):(at(s)):(here(s) ? is_best(s, m) ? "{/:Bold ".label(s, m)."}" : label(s, m) : "") \
-           with labels left offset 0.4, 0 textcolor rgb ink, \
-         "" using (here(s) ? last : NaN):(at(s)):(here(s) ? figure(m == 1 ? column("build_ms") : 1e-6 * column("object_tests")) : "") \
-           with labels right textcolor rgb soft, \
-         "" using (here(s) && m == 1 ? lowest * (last / lowest) ** 0.79 : NaN):(at(s)):(here(s) ? figure(column("ms")) : "") \
-           with labels right textcolor rgb soft
+    if (m == 1) {
+      plot "frame.csv" using (least):(at(s)):(least):(column("ms")):(at(s) - 0.36):(at(s) + 0.36):(paint(is_best(s))) \
+             with boxxyerror linecolor rgb variable, \
+           "" using (column("ms")):(at(s)):(here(s) ? is_best(s) ? "{/:Bold ".speed(s)."}" : speed(s) : "") \
+             with labels left offset 0.4, 0 textcolor rgb ink
+    } else {
+      plot "frame.csv" using (least):(at(s)):(least):(here(s) ? tests_of(0, s) : NaN):(at(s) - 0.38):(at(s)) \
+             with boxxyerror linecolor rgb "#0072b2", \
+           "" using (least):(at(s)):(least):(here(s) ? tests_of(1, s) : NaN):(at(s)):(at(s) + 0.38) with boxxyerror linecolor rgb "#e69f00", \
+           "" using (here(s) ? most_of(tests_of(0, s), tests_of(1, s) > 0 ? tests_of(1, s) : 0) : NaN):(at(s)): \
+             (here(s) ? tests_of(1, s) > 0 ? figure(tests_of(0, s))." + ".figure(tests_of(1, s)) : figure(tests_of(0, s)) : "") \
+             with labels left offset 0.4, 0 textcolor rgb ink
+    }
   }
 }
 unset multiplot

@@ -9,7 +9,7 @@
  * several evenly from dark to light in the order of the experiment. No part of a dark colour is darker. */
 static double shade(uint32_t color, uint32_t k, uint32_t count) {
     const bool dark = (color & 0xff) < 0x40 && (color >> 8 & 0xff) < 0x40 && color >> 16 < 0x40;
-    const double darkest = dark ? 0 : -0.6, lightest = 0.65;
+    const double darkest = dark ? 0 : -0.6, lightest = dark ? 0.65 : 0.5;
     return count == 1 ? 0 : darkest + (lightest - darkest) * k / (count - 1);
 }
 

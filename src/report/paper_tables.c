@@ -22,6 +22,7 @@ typedef struct Pivot {
     Measure measure;
     RtRayKind kind; /* or RT_ALL_RAYS */
     bool intervals;
+    bool unmarked; /* only widths are wanted: looking for the best takes much longer */
     uint32_t candidate; /* of the row */
     uint32_t count;     /* of the columns, with that of accelerators */
     RtTableColumn columns[1 + RT_MAX_WORKLOADS];
@@ -74,7 +75,7 @@ static RtField get_cell(const void *row, const RtTableColumn *column) {
     const bool spread = p->intervals && value.low < value.high;
     RtField field =
         spread ? rt_field_interval(value.median, value.low, value.high) : rt_field_real(value.median);
-    field.bold = is_best(p, workload);
+    field.bold = !p->unmarked && is_best(p, workload);
     return field;
 }
 
@@ -132,7 +133,9 @@ static uint32_t width_of(Pivot *p) {
     int widths[RT_MAX_TABLE_COLUMNS];
     const RtTable table = table_of(p);
     uint32_t width = 0;
+    p->unmarked = true;
     rt_table_widths(&table, widths);
+    p->unmarked = false;
     for (uint32_t c = 0; c < p->count; c++) width += (uint32_t)widths[c] + (c > 0 ? 2 : 0);
     return width;
 }

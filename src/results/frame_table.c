@@ -59,10 +59,6 @@ static double build_of(const RtResults *results, uint32_t workload, uint32_t can
     return rt_build_at(results, workload, candidate)->seconds.median;
 }
 
-static double seconds_with_build(const RtResults *results, uint32_t workload, uint32_t candidate) {
-    return seconds_of(results, workload, candidate) + build_of(results, workload, candidate);
-}
-
 static bool is_overlay(const RtExperiment *experiment, uint32_t candidate) {
     return strchr(experiment->candidates[candidate].spec, '+') != NULL;
 }
@@ -239,25 +235,16 @@ static void say_followers(FILE *out, const RtResults *results, uint32_t t, uint3
     fputs(last == winner ? "" : ".", out);
 }
 
-/* What the winner's time leaves out: who makes fewer object tests, and who is faster if each is built for one
- * frame. */
+/* What the winner's time leaves out: who makes fewer object tests. */
 static void say_others(FILE *out, const RtResults *results, uint32_t t, uint32_t winner) {
     const RtExperiment *experiment = results->experiment;
     const uint32_t none = experiment->candidate_count;
     const uint32_t fewest = next_of(results, t, tests_of, false, none);
-    const uint32_t first = next_of(results, t, seconds_with_build, false, none);
-    char number[16], other[16];
+    char number[16];
     if (fewest != none && tests_of(results, t, fewest) < tests_of(results, t, winner))
         fprintf(out, " %s needs the fewest object tests: %s times fewer than %s.",
                 rt_candidate_label(experiment, fewest),
                 figure(factor_of(results, t, fewest, tests_of), number), experiment->frame.without);
-    if (cost_of(results, t, first, RT_FRAME_ALL).high + rt_build_at(results, t, first)->seconds.high <
-        cost_of(results, t, winner, RT_FRAME_ALL).low + rt_build_at(results, t, winner)->seconds.low)
-        fprintf(out, " If each is built for one frame, %s is the fastest of %s: %s ms, %s %s ms.",
-                rt_candidate_label(experiment, first), experiment->frame.among,
-                figure(1e3 * seconds_with_build(results, t, first), number),
-                rt_candidate_label(experiment, winner),
-                figure(1e3 * seconds_with_build(results, t, winner), other));
 }
 
 /* "light+wide is 1.82 times as fast as wide alone, item+wide 1.12 times (level)." The overlays over candidate

@@ -161,21 +161,6 @@ FRAME_TEST(frames_whose_intervals_overlap_are_level_whichever_is_compared_with_w
     assert_true(says(0, "light+wide: 364 times as fast as brute (level with wide, grid)."));
 }
 
-/* On tetra grid takes 0.008 ms and clusters 0.016 ms. */
-FRAME_TEST(a_build_that_makes_another_the_fastest_for_one_frame_is_told_unless_they_are_level) {
-    static const char told[] =
-        "If each is built for one frame, clusters is the fastest of the six: 2.02 ms, grid "
-        "2.03 ms.";
-    assert_false(says(1, "builds"));
-    rt_build_at(&results, 1, GRID)->seconds = (RtEstimate){0.00202, 0.00202, 0.00202, 0.00202};
-    assert_true(says(1, told));
-    rt_build_at(&results, 1, GRID)->seconds.low = 0.00199;
-    assert_false(says(1, "builds"));
-    rt_build_at(&results, 1, GRID)->seconds.low = 0.00202;
-    rt_cell_at(&results, 1, CLUSTERS, RT_RAY_PRIMARY)->seconds.high = 1;
-    assert_false(says(1, "builds"));
-}
-
 static bool is_unknown(double value) {
     return isnan(value) ? true : false;
 }

@@ -173,7 +173,6 @@ typedef struct RtTable {
     const char *(*color)(const void *row);   /* pages: colour of a dot before the row; or NULL */
     RtStanding (*standing)(const void *row); /* pages; NULL: no marks */
     const char *caption;                     /* LaTeX, pages; or NULL */
-    bool ragged;                             /* Markdown: numbers are not right-aligned */
     bool wide;                               /* LaTeX: as wide as both columns of an article */
 } RtTable;
 

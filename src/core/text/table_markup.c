@@ -18,7 +18,7 @@ static void put_markdown(RtTableWriter *w, const RtTableLine *line, const void *
     }
     fputs(row ? "\n" : "\n|", w->out);
     for (size_t i = 0; !row && i < line->count; i++) {
-        bool right = rt_column_is_measured(line->columns[i]) && !w->table->ragged;
+        bool right = rt_column_is_measured(line->columns[i]);
         fprintf(w->out, " ---%s |%s", right ? ":" : "", i + 1 < line->count ? "" : "\n");
     }
 }

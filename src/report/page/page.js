@@ -80,7 +80,7 @@
     if (data.learnt) place.append(paragraph(data.learnt));
   }
   const filter = make('div', { className: 'filter', id: 'filter' }), input = make('input', { type: 'search', id: 'words',
-    placeholder: 'words, e.g. of a scene, an accelerator, a kind' }), said = make('output', { className: 'meta' });
+    placeholder: data.sections ? 'words, e.g. of a scene, an accelerator, a kind' : 'words, e.g. of a question' }), said = make('output', { className: 'meta' });
   filter.append(make('label', { htmlFor: 'words' }, data.sections ? 'Rows with' : 'Experiments with'), input, said);
   if (data.sections) place.append(filter, ...data.sections.map(makeSection));
   else document.querySelector('h2')?.before(filter);
