@@ -245,8 +245,8 @@ RT_KERNEL RtFloats edge_at(const RtFloat4 edge[3], int i, RtFloats column, RtFlo
     return edge[0][i] + edge[1][i] * column + edge[2][i] * row;
 }
 
-/* The samples of the block at (column, row) of the image at which a triangle may be seen, a bit each: the
- * triangle is not nearer than `near`, and inside the edges. */
+/* The samples of the block at (column, row) of the image that are inside the edges and have no hit before
+ * `near`, a bit each. */
 RT_KERNEL uint32_t samples_of(const float *t, float near, const RtFloat4 edge[3], uint32_t column,
                               uint32_t row) {
     const RtFloats columns = rt_raster_columns((float)column);

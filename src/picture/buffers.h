@@ -8,8 +8,8 @@
 
 /* Draws an overlay to `file` (canvas.h).
  *
- * For primary rays: each pixel has the colour of the object in its middle sample, white for none, magenta
- * with white dots if undecided. A legend counts the samples of each kind.
+ * For primary rays: each pixel has the colour of the object in its middle sample, white for none. A legend
+ * counts the samples of each kind.
  *
  * For shadow rays: the cells around light `light` on the six faces of an unfolded cube, coloured by the
  * lengths of their lists on a logarithmic scale. Directions without objects are grey; a truncated list has
