@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-# relative-counts: expected cost, object tests and steps over those of the first accelerator, a row per accelerator.
+# relative-counts: expected cost, object tests and steps over those of the first accelerator in counts.csv, a row per accelerator.
 #: 2-counts: Expected cost, object tests and steps per ray over those of the first accelerator, on one logarithmic scale.
 #:   All ray kinds together, one marker per scene; left of 1 there are fewer.
 
 set datafile separator tab
 n_scenes = words(scenes)
-first = word(accels, 1)
+first = system(tsv("counts.csv")[3:*]." | awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i } NR == 2 { print $at[\"accel\"] }'")
 shown = ""
-do for [a = 2:words(accels)] { shown = shown.word(accels, a)." " }
+do for [accel in accels] { if (accel ne first) { shown = shown.accel." " } }
 n_shown = words(shown)
 row(name) = sum [i = 1:n_shown] (word(shown, i) eq name ? n_shown + 1 - i : 0)
 shift(s) = 0.7 / n_scenes * (0.5 * (n_scenes + 1) - s)

@@ -113,7 +113,8 @@ static void add_found(void *context, const char *path) {
     RtExperiment *experiment = found->experiment;
     const char *name = strrchr(path, '/') + 1;
     char shipped[RT_MAX_PATH];
-    bool known = strcmp(name, "names.gp") == 0 || rt_scripts_shipped(name, shipped);
+    bool known =
+        strcmp(name, "names.gp") == 0 || strcmp(name, "sweep.gp") == 0 || rt_scripts_shipped(name, shipped);
     for (uint32_t i = 0; i < experiment->plot_count; i++)
         known |= strcmp(name, rt_plot_name(experiment, i)) == 0;
     if (known || found->status != RT_OK) return;

@@ -22,7 +22,7 @@ typedef struct Pivot {
     Measure measure;
     RtRayKind kind; /* or RT_ALL_RAYS */
     bool intervals;
-    bool unmarked; /* only widths are wanted: looking for the best takes much longer */
+    bool unmarked;      /* only widths are wanted: looking for the best takes much longer */
     uint32_t candidate; /* of the row */
     uint32_t count;     /* of the columns, with that of accelerators */
     RtTableColumn columns[1 + RT_MAX_WORKLOADS];

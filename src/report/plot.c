@@ -214,9 +214,15 @@ static bool has_ratios(const RtResults *results) {
     return false;
 }
 
-static uint32_t count_rows(const RtResults *results) {
+/* How many accelerators have rows in counts.csv. */
+static uint32_t count_counted(const RtResults *results) {
+    bool counted[RT_MAX_CANDIDATES + 1] = {false};
     uint32_t count = 0;
-    for (uint32_t c = 0; c < results->experiment->candidate_count; c++) count += has_rows(results, c);
+    for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
+        const bool exact = at.cell->counted && rt_build_at(results, at.workload, at.candidate)->counts;
+        count += exact && !counted[at.candidate];
+        counted[at.candidate] |= exact;
+    }
     return count;
 }
 
@@ -231,9 +237,9 @@ static RtStatus choose_scripts(Drawing *drawing, RtScripts allowed, RtError *err
     if (experiment->plot_count == 0) {
         if (*drawing->sweeps.data) {
             add_shipped(drawing, "sweeps.gp");
-        } else if (count_rows(results) > 1) {
+        } else {
             if (has_ratios(results)) add_shipped(drawing, "relative-time.gp");
-            add_shipped(drawing, "relative-counts.gp");
+            if (count_counted(results) > 1) add_shipped(drawing, "relative-counts.gp");
         }
     }
     if (experiment->distributions) add_shipped(drawing, "histograms.gp");
