@@ -82,9 +82,9 @@ PLACE_TEST(counts_of_another_version_may_differ_and_reproduce_says_so) {
     OWNED_MEMORY char *manifest = read_in(place, "results/small/manifest.json");
     assert_runs(place, "reproduce results/small");
     assert_not_in_file(place, "output", "some may differ");
-    write_changed(place, "results/small/manifest.json", manifest, "\"counts\": 1", "\"counts\": 2");
+    write_changed(place, "results/small/manifest.json", manifest, "\"counts\": 2", "\"counts\": 1");
     assert_ends(place, "reproduce results/small", 0,
-                "counts of version 2, and this raytally makes version 1");
+                "counts of version 1, and this raytally makes version 2");
 }
 
 /* ---- what is measured ---- */
