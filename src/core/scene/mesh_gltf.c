@@ -281,7 +281,7 @@ static RtStatus add_triangles(const Gltf *g, uint64_t mode, const View *indices)
 
 static RtStatus add_vertices(const Gltf *g, const json_t *attributes, View *positions) {
     const json_t *normal = json_object_get(attributes, "NORMAL");
-    View normals;
+    View normals = {0};
     g->mesh->vertex_count = g->mesh->normal_count = 0;
     RT_TRY(open_view(g, json_object_get(attributes, "POSITION"), 3, positions));
     for (uint32_t i = 0; i < positions->count; i++)
@@ -310,8 +310,8 @@ static RtStatus count_placed(Gltf *g, uint64_t count) {
 static RtStatus add_primitive(Gltf *g, const Item *mesh, json_t *primitive) {
     const Item item = {mesh->list, mesh->index, primitive}; /* for messages: of this mesh */
     const json_t *reference = json_object_get(primitive, "indices");
-    uint64_t mode;
-    View positions, indices;
+    uint64_t mode = 0;
+    View positions = {0}, indices;
     RT_TRY(count_placed(g, 1));
     RT_TRY(read_integer(g, &item, "mode", 0, TRIANGLES, &mode));
     if (mode < TRIANGLES) return RT_OK; /* points and lines */
@@ -324,7 +324,7 @@ static RtStatus add_primitive(Gltf *g, const Item *mesh, json_t *primitive) {
 }
 
 static RtStatus add_mesh(Gltf *g, const json_t *reference) {
-    Item mesh;
+    Item mesh = {0};
     json_t *primitive;
     size_t i;
     RT_TRY(find_item(g, "meshes", reference, "a node", &mesh));
@@ -385,7 +385,7 @@ static RtStatus add_scene(Gltf *g) {
     const RtTransform outer = g->mesh->transform;
     const json_t *number = json_object_get(g->root, "scene"), *node;
     const size_t nodes = json_array_size(json_object_get(g->root, "nodes"));
-    Item scene;
+    Item scene = {0};
     size_t i;
     RT_TRY(number ? find_item(g, "scenes", number, "the file", &scene)
                   : item_at(g, "scenes", 0, "the file", &scene));
