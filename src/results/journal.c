@@ -8,8 +8,6 @@
 #include "results/claims_changed.h"
 #include "results/journal_lines.h"
 
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 static json_t *header_json(const RtExperiment *experiment, const RtSelection *only) {
@@ -168,24 +166,4 @@ RtStatus rt_journal_load(const char *path, RtResults *results, const RtSelection
     RtStatus status = take_lines(path, results, lines, only, error);
     json_decref(lines);
     return status;
-}
-
-/* ---- events ---- */
-
-bool rt_event_is_broken(const RtResults *results, const RtEvent *event) {
-    if (event->what == RT_EVENT_NO_BUILD)
-        return rt_build_at(results, event->workload, event->candidate)->broken;
-    return event->what == RT_EVENT_NO_CELL &&
-           rt_cell_at(results, event->workload, event->candidate, event->kind)->broken;
-}
-
-void rt_notify(const RtRunObserver *observer, const char *format, ...) {
-    char message[RT_MAX_PATH + 1024];
-    va_list args;
-    if (!observer->notice) return;
-    va_start(args, format);
-    /* clang-tidy 14 does not see va_start. NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized) */
-    vsnprintf(message, sizeof message, format, args);
-    va_end(args);
-    observer->notice(observer->context, message);
 }
