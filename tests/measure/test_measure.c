@@ -452,7 +452,8 @@ RT_TEST(ratios_to_a_best_of_several_refer_to_the_fastest_of_them) {
     assert_ok(rt_experiment_set_baseline(e, name, error));
     assert_true(e->baseline == 2 && e->baseline_count > 1);
     for (uint32_t c = 0; c < e->candidate_count; c++)
-        assert_int_equal(e->candidates[c].missing, c >= 2 + e->baseline_count); /* settings of other machines */
+        assert_int_equal(e->candidates[c].missing,
+                         c >= 2 + e->baseline_count); /* settings of other machines */
     assert_string_equal(rt_baseline_label(e), name);
     add_scene(e, "random:n=300", 32);
     /* Other programs may slow the fastest down for a while: one of some attempts is sufficient. */
