@@ -114,6 +114,19 @@ static RtStatus fail_drawing(char **arguments, const char *directory, RtError *e
     return RT_MISMATCH;
 }
 
+/* Whether gnuplot drew without a file that it could not open, of which it only warns. */
+static bool lacks_data(const char *directory) {
+    enum { MOST_BYTES = 1 << 24 };
+    char path[RT_MAX_PATH], *log = NULL;
+    size_t size;
+    if (rt_path_join(directory, "plots/gnuplot.log", path, NULL) != RT_OK ||
+        rt_file_read(path, MOST_BYTES, &log, &size, NULL) != RT_OK)
+        return true;
+    const bool lacks = strstr(log, "Cannot find or open file");
+    rt_free(log);
+    return lacks;
+}
+
 /* Runs gnuplot in `directory` with the scripts as arguments, its messages going to plots/gnuplot.log. */
 static RtStatus run_gnuplot(char **arguments, const char *directory, RtError *error) {
     const RtProcessCommand command = {
@@ -126,7 +139,7 @@ static RtStatus run_gnuplot(char **arguments, const char *directory, RtError *er
             "gnuplot is not installed, so no plots were drawn; `raytally plot %s` draws them later",
             directory);
     RT_TRY(status);
-    return end.code == 0 ? RT_OK : fail_drawing(arguments, directory, error);
+    return end.code == 0 && !lacks_data(directory) ? RT_OK : fail_drawing(arguments, directory, error);
 }
 
 /* gnuplot does not say when the disk is full: whether the file ends as files in its format do. */
