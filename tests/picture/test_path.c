@@ -117,6 +117,7 @@ RT_TEST(voxels_are_met_in_order_each_where_the_one_before_is_left) {
 
 RT_TEST(nobody_looks_on_after_a_path) {
     PATH_ALONG_THE_ROW("bvh", 0);
+    assert_true(path.hit.object != RT_NO_OBJECT);
     assert_null(rt_trace_observer);
 }
 
