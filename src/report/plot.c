@@ -96,15 +96,22 @@ static void put_variables(const RtResults *results, const char *shared, const ch
 
 /* ---- gnuplot ---- */
 
+/* Gnuplot's messages, for rt_free(). */
+static RtStatus read_log(const char *directory, char **log, size_t *size, RtError *error) {
+    enum { MOST_BYTES = 1 << 24 };
+    char path[RT_MAX_PATH];
+    RT_TRY(rt_path_join(directory, "plots/gnuplot.log", path, error));
+    return rt_file_read(path, MOST_BYTES, log, size, error);
+}
+
 /* Reports the end of gnuplot's log, which names the script and the line; if it is empty, the scripts. */
 static RtStatus fail_drawing(char **arguments, const char *directory, RtError *error) {
-    enum { MOST_BYTES = 1 << 24, MOST_SHOWN = 600 };
-    char path[RT_MAX_PATH], scripts[MOST_SHOWN] = "", *log = NULL;
+    enum { MOST_SHOWN = 600 };
+    char scripts[MOST_SHOWN] = "", *log = NULL;
     size_t size = 0;
-    RT_TRY(rt_path_join(directory, "plots/gnuplot.log", path, error));
     for (char **script = arguments + 4; *script; script++) /* without those that are always there */
         rt_append_text(scripts, sizeof scripts, " %s", *script);
-    RT_TRY(rt_file_read(path, MOST_BYTES, &log, &size, error));
+    RT_TRY(read_log(directory, &log, &size, error));
     while (size > 0 && isspace((unsigned char)log[size - 1])) log[--size] = '\0';
     const char *last = size > MOST_SHOWN ? log + size - MOST_SHOWN : log;
     while (isspace((unsigned char)*last)) last++;
@@ -116,12 +123,9 @@ static RtStatus fail_drawing(char **arguments, const char *directory, RtError *e
 
 /* Whether gnuplot drew without a file that it could not open, of which it only warns. */
 static bool lacks_data(const char *directory) {
-    enum { MOST_BYTES = 1 << 24 };
-    char path[RT_MAX_PATH], *log = NULL;
+    char *log = NULL;
     size_t size;
-    if (rt_path_join(directory, "plots/gnuplot.log", path, NULL) != RT_OK ||
-        rt_file_read(path, MOST_BYTES, &log, &size, NULL) != RT_OK)
-        return true;
+    if (read_log(directory, &log, &size, NULL) != RT_OK) return true;
     const bool lacks = strstr(log, "Cannot find or open file");
     rt_free(log);
     return lacks;
