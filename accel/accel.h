@@ -24,6 +24,7 @@
 #ifndef RT_ACCEL_ACCEL_H
 #define RT_ACCEL_ACCEL_H
 
+#include "core/base/memory.h"
 #include "core/base/param.h"
 #include "core/base/ray.h"
 #include "core/base/tally.h"
@@ -42,6 +43,7 @@ typedef struct RtAccel {
     bool counts;           /* its counts are the same on every machine, so counts.csv has them */
     double build_seconds;  /* wall seconds to build it and all layers below. Set by rt_accel_build */
     RtTally build_tally;   /* hit functions called while building; not part of tracing */
+    RtArena memory; /* of the structure: `build` allocates from it, and need not check; freed with it */
 } RtAccel;
 
 /* Expected values for a random line through the box of a structure, by ratios of areas (MacDonald & Booth

@@ -15,6 +15,7 @@ uint64_t rt_accel_byte_limit(const RtScene *scene) {
 
 static void destroy_layer(RtAccel *accel) {
     if (accel->ops->destroy) accel->ops->destroy(accel);
+    rt_arena_clear(&accel->memory);
     rt_free(accel);
 }
 
@@ -30,6 +31,7 @@ RtStatus rt_accel_build_layer(const RtAccelOps *ops, const RtBuild *what, RtAcce
                        .absolute = below && below->absolute,
                        .counts = !below || below->counts};
     RtStatus status = ops->build ? ops->build(accel, what, error) : RT_OK;
+    if (status == RT_OK) status = rt_arena_check(&accel->memory, ops->name, error);
     if (status == RT_OK)
         *out = accel;
     else

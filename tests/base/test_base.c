@@ -367,6 +367,26 @@ RT_TEST(the_nth_allocation_fails_when_told_to) {
     assert_null(rt_alloc(SIZE_MAX, 2));
 }
 
+RT_TEST(an_arena_remembers_the_first_block_that_failed_and_frees_all) {
+    const int64_t before = rt_alloc_live();
+    for (uint64_t n = 1; n <= 4; n++) {
+        RT_ARENA(arena);
+        rt_alloc_fail_at(n); /* the blocks, and the list of them, which is allocated once */
+        const uint32_t *zeros = rt_arena_alloc(&arena, 4, sizeof *zeros);
+        void *unset = rt_arena_alloc_unset(&arena, 1, 1);
+        rt_alloc_fail_at(0);
+        assert_int_equal(rt_arena_check(&arena, "a test", NULL), n < 4 ? RT_NO_MEMORY : RT_OK);
+        if (n < 4) assert_null(unset);
+        if (n == 4) assert_int_equal(zeros[3], 0);
+        rt_arena_free(&arena, unset);
+        assert_int_equal(rt_alloc_live() - before, n < 3 ? 0 : 2);
+    }
+    assert_int_equal(rt_alloc_live(), before);
+    RT_ARENA(huge);
+    assert_null(rt_arena_alloc(&huge, SIZE_MAX, 2));
+    assert_int_equal(rt_arena_check(&huge, "a test", NULL), RT_NO_MEMORY);
+}
+
 RT_TEST(a_trimmed_array_keeps_its_elements_and_no_unused_room) {
     enum { COUNT = 1 << 16 };
     OWNED_MEMORY uint32_t *array = NULL;

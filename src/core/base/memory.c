@@ -165,6 +165,44 @@ RtStatus rt_append(void *array, uint32_t *count, uint32_t *capacity, const void 
     return RT_OK;
 }
 
+/* Takes over `block`, of count * size bytes; NULL is a failure. */
+static void *keep(RtArena *arena, void *block, size_t count, size_t size) {
+    if (block &&
+        rt_append(&arena->blocks, &arena->count, &arena->capacity, &block, sizeof block, NULL) == RT_OK)
+        return block;
+    rt_free(block);
+    arena->failed = true;
+    arena->failed_bytes = size != 0 && count > SIZE_MAX / size ? 0 : count * size;
+    return NULL;
+}
+
+void *rt_arena_alloc(RtArena *arena, size_t count, size_t size) {
+    return arena->failed ? NULL : keep(arena, rt_alloc(count, size), count, size);
+}
+
+void *rt_arena_alloc_unset(RtArena *arena, size_t count, size_t size) {
+    return arena->failed ? NULL : keep(arena, rt_alloc_unset(count, size), count, size);
+}
+
+RtStatus rt_arena_check(const RtArena *arena, const char *what, RtError *error) {
+    return arena->failed ? rt_fail_memory(error, what, arena->failed_bytes) : RT_OK;
+}
+
+void rt_arena_free(RtArena *arena, void *block) {
+    for (uint32_t i = arena->count; block && i-- > 0;) {
+        if (arena->blocks[i] != block) continue;
+        arena->blocks[i] = arena->blocks[--arena->count];
+        rt_free(block);
+        return;
+    }
+}
+
+void rt_arena_clear(RtArena *arena) {
+    for (uint32_t i = 0; i < arena->count; i++) rt_free(arena->blocks[i]);
+    rt_free(arena->blocks);
+    *arena = (RtArena){0};
+}
+
 /* Lines are "0::/GROUP" (version 2) or "NUMBER:CONTROLLER,...:/GROUP". All groups around one limit it. */
 uint64_t rt_memory_of_groups(const char *groups, const char *mounted) {
     char line[4096], path[sizeof line + 4096];

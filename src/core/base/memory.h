@@ -23,6 +23,34 @@ void *rt_alloc_unset(size_t count, size_t size);
 /* Frees a block of rt_alloc or rt_alloc_unset; NULL is allowed. */
 void rt_free(void *block);
 
+/* Blocks that fail and are freed together: a build's, a command's, or one function's. Starts as {0}; used by
+ * one thread at a time. So that nobody asks after each block, an allocation that fails is remembered:
+ * rt_arena_check, once before the first use of any block, reports it. */
+typedef struct RtArena {
+    void **blocks; /* [capacity], of which [0, count) are in use */
+    uint32_t count, capacity;
+    bool failed;
+    size_t failed_bytes; /* of the first block that failed; 0: unknown */
+} RtArena;
+
+/* An arena that is cleared when its scope ends. */
+#define RT_ARENA(name) __attribute__((cleanup(rt_arena_clear))) RtArena name = {0}
+
+/* As rt_alloc and rt_alloc_unset, but the arena owns the block. NULL after a failure, also of an earlier
+ * block. */
+void *rt_arena_alloc(RtArena *arena, size_t count, size_t size);
+void *rt_arena_alloc_unset(RtArena *arena, size_t count, size_t size);
+
+/* RT_NO_MEMORY if a block since {0} failed; `what` names their use: "the lists of a grid". */
+RtStatus rt_arena_check(const RtArena *arena, const char *what, RtError *error);
+
+/* Frees one block before the others, to keep the peak low; NULL is allowed. The latest blocks are found
+ * first. */
+void rt_arena_free(RtArena *arena, void *block);
+
+/* Frees all blocks; the arena is {0} again. */
+void rt_arena_clear(RtArena *arena);
+
 /* Grows an array to at least `needed` elements. `array` is the address of a pointer (of any type) to
  * `*capacity` elements of `size` bytes, or of NULL. Contents are kept; new elements are not initialised.
  * On failure nothing changes. */
