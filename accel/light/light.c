@@ -138,7 +138,6 @@ static RtStatus fill_if_it_pays(RtLightBuffer *buffer, const RtBuild *what, RtLi
     const RtScene *scene = what->scene;
     uint64_t limit = (uint64_t)BYTES_OF_OBJECT * scene->geometry.object_count * scene->light_count;
     bool pays = scene->geometry.object_count >= MANY_OBJECTS;
-    if (getenv("FORCE")) probes = NULL, pays = true;
     if (probes) pays = rt_light_may_pay(probes);
     if (!pays) return RT_OK;
     RT_TRY(fill(buffer, limit < what->limit ? limit : what->limit, what->threads, error));
