@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Answering shadow rays in streams; compiled once for each instruction set (accel/isa.h).
  *
- * A stream is answered in blocks of rays. First each ray finds the list of its cell. Then rays walk through
+ * A stream is answered in blocks of rays, so that the memory each ray needs next is on its way while others
+ * are worked on. First each ray finds the list of its cell. Then rays walk through
  * their lists in rounds. In a round each ray that is left comes to its next entry that is not deeper than its
  * origin, which makes a pair of a ray and an object. Pairs with triangles are tested in lanes. A ray drops
  * out when it is occluded or at the end of its list. No ray depends on another, so counts are the same in
@@ -22,7 +23,13 @@ typedef struct Cursor {
     uint32_t ray; /* number in the block */
 } Cursor;
 
+typedef struct Cell {
+    const RtLightGrid *grid;
+    uint32_t number;
+} Cell;
+
 typedef struct Stream {
+    Cell cells[BLOCK];
     Cursor cursors[BLOCK];
     uint32_t cursor_count;
     uint32_t pair_ray[BLOCK];
@@ -77,11 +84,17 @@ RT_KERNEL void find_lists(const RayBatch *batch, uint32_t count) {
         const int face = rt_light_face_of(ray->dir);
         const RtLightGrid *grid = &batch->self->cubes[ray->source].grids[face];
         if (!rt_light_cell_of(grid, face, ray->dir, &cell)) continue;
-        const RtLightEntry *next = grid->entries + grid->first[cell];
-        float depth = fabsf(ray->dir.at[face / 2]);
-        __builtin_prefetch(next);
-        stream->cursors[stream->cursor_count++] =
-            (Cursor){next, grid->entries + grid->first[cell + 1], depth + depth * 0x1p-22f, i};
+        const float depth = fabsf(ray->dir.at[face / 2]);
+        __builtin_prefetch(&grid->first[cell]);
+        stream->cells[stream->cursor_count] = (Cell){grid, cell};
+        stream->cursors[stream->cursor_count++] = (Cursor){.depth = depth + depth * 0x1p-22f, .ray = i};
+    }
+    for (uint32_t i = 0; i < stream->cursor_count; i++) {
+        const Cell *cell = &stream->cells[i];
+        const uint32_t *first = &cell->grid->first[cell->number];
+        stream->cursors[i].next = cell->grid->entries + first[0];
+        stream->cursors[i].end = cell->grid->entries + first[1];
+        __builtin_prefetch(stream->cursors[i].next);
     }
 }
 
@@ -175,7 +188,10 @@ RT_KERNEL void take_round(const RayBatch *batch) {
         if (rt_raster_is_triangle(object)) {
             stream->pair_ray[stream->pair_count] = cursor.ray;
             stream->pair_triangle[stream->pair_count++] = object;
-            __builtin_prefetch(&g->triangles[rt_ref_index(object)]);
+            const RtTriangle *triangle = &g->triangles[rt_ref_index(object)];
+            __builtin_prefetch(triangle);
+            __builtin_prefetch((const char *)(triangle + 1) - 1); /* it may lie on two cache lines */
+            __builtin_prefetch(&g->triangle_ids[rt_ref_index(object)]);
         } else if (rt_ref_shape(object) == RT_SHAPE_SPHERE) {
             uint32_t index = rt_ref_index(object);
             stream->spheres[stream->sphere_count++] =
