@@ -58,8 +58,30 @@ void rt_item_update_farthest(RtItemTile *tile, uint32_t block) {
         tile->farthest[block] = rt_maxf(t[i], tile->farthest[block]);
 }
 
-void rt_item_draw_object(RtItemTile *tile, uint32_t id) {
+/* Tests the samples of a block that are in columns lo[0]..end[0]-1 and rows lo[1]..end[1]-1 of the tile. */
+static void draw_block(RtItemTile *tile, uint32_t block, const RtItemFootprint *at, uint32_t id,
+                       const uint32_t lo[2], const uint32_t end[2]) {
     const RtGeometry *g = rt_item_geometry(tile->buffer);
+    const uint32_t left = block % RT_ITEM_ACROSS * RT_ITEM_BLOCK,
+                   top = block / RT_ITEM_ACROSS * RT_ITEM_BLOCK;
+    RtRay ray = rt_view_ray(&tile->buffer->view, tile->column, tile->row);
+    for (uint32_t k = 0; k < RT_ITEM_BLOCK_SAMPLES; k++) {
+        const uint32_t i = block * RT_ITEM_BLOCK_SAMPLES + k;
+        const uint32_t column = left + k % RT_ITEM_BLOCK, row = top + k / RT_ITEM_BLOCK;
+        RtHit nearest = {tile->t[i], tile->id[i]};
+        if (column < lo[0] || column >= end[0] || row < lo[1] || row >= end[1] || at->near > nearest.t)
+            continue;
+        ray.dir = rt_vec3(tile->dir[i][0], tile->dir[i][1], tile->dir[i][2]);
+        RtPreparedRay prepared;
+        rt_hit_ray(&prepared, g, &ray, tile->crossings);
+        rt_test_object(g, id, &prepared, false, &nearest, &tile->tally);
+        tile->t[i] = nearest.t;
+        tile->id[i] = nearest.object;
+    }
+    rt_item_update_farthest(tile, block);
+}
+
+void rt_item_draw_object(RtItemTile *tile, uint32_t id) {
     const uint32_t corner[2] = {tile->column, tile->row}, count[2] = {tile->columns, tile->rows};
     uint32_t lo[2], end[2];
     RtItemFootprint at;
@@ -68,20 +90,10 @@ void rt_item_draw_object(RtItemTile *tile, uint32_t id) {
         lo[a] = at.lo[a] > corner[a] ? at.lo[a] - corner[a] : 0;
         end[a] = lesser(at.hi[a] + 1 - corner[a], count[a]);
     }
-    RtRay ray = rt_view_ray(&tile->buffer->view, tile->column, tile->row);
-    for (uint32_t row = lo[1]; row < end[1]; row++) {
-        for (uint32_t column = lo[0]; column < end[0]; column++) {
-            uint32_t i = sample_at(column, row);
-            RtHit nearest = {tile->t[i], tile->id[i]};
-            if (at.near > nearest.t) continue;
-            ray.dir = rt_vec3(tile->dir[i][0], tile->dir[i][1], tile->dir[i][2]);
-            RtPreparedRay prepared;
-            rt_hit_ray(&prepared, g, &ray, tile->crossings);
-            rt_test_object(g, id, &prepared, false, &nearest, &tile->tally);
-            if (nearest.object != id) continue;
-            tile->t[i] = nearest.t;
-            tile->id[i] = id;
-            rt_item_update_farthest(tile, i / RT_ITEM_BLOCK_SAMPLES);
+    for (uint32_t row = lo[1] / RT_ITEM_BLOCK; row * RT_ITEM_BLOCK < end[1]; row++) {
+        for (uint32_t column = lo[0] / RT_ITEM_BLOCK; column * RT_ITEM_BLOCK < end[0]; column++) {
+            const uint32_t block = row * RT_ITEM_ACROSS + column;
+            if (at.near <= tile->farthest[block]) draw_block(tile, block, &at, id, lo, end);
         }
     }
 }
