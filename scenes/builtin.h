@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Built-in scenes: one generator per file, listed in scenes/builtin.c. */
+/* Built-in scenes: generators, listed in scenes/builtin.c. */
 #ifndef RT_SCENES_BUILTIN_H
 #define RT_SCENES_BUILTIN_H
 
@@ -13,6 +13,8 @@
 /* The parameter `seed` of random scenes. */
 #define RT_BUILTIN_SEED "seed", RT_INT("1", 0, 1e15, "1"), "seed of the random numbers", "any"
 
+#define RT_SPD_SOURCE "SPD: E. Haines 1987, A Proposal for Standard Graphics Environments, IEEE CG&A 7(11)"
+
 typedef struct RtBuiltin {
     const char *name, *summary, *source; /* source: the origin of the scene */
     const RtParam *params;               /* params[0]: the integer that sets the size, if there is one */
@@ -25,7 +27,6 @@ typedef struct RtBuiltin {
     RtSceneGenerator *generate;
 } RtBuiltin;
 
-/* Each in its own file. */
 extern const RtBuiltin rt_builtin_balls, rt_builtin_city, rt_builtin_csg_field, rt_builtin_family,
     rt_builtin_forest, rt_builtin_gears, rt_builtin_hall, rt_builtin_jacks, rt_builtin_lattice,
     rt_builtin_mount, rt_builtin_random, rt_builtin_rings, rt_builtin_shells, rt_builtin_stadium,
