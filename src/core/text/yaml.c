@@ -5,7 +5,6 @@
 #include "core/text/yaml.h"
 
 #include "core/base/file.h"
-#include "core/base/memory.h"
 #include "core/base/versions.h"
 #include "core/base/words.h"
 
@@ -405,23 +404,16 @@ RtStatus rt_yaml_doubles(const RtYaml *yaml, const RtYamlNode *node, const char 
 }
 
 RtStatus rt_yaml_rows(const RtYaml *yaml, const RtYamlNode *node, const char *key, uint32_t least,
-                      uint32_t width, float **rows, uint32_t *count) {
+                      uint32_t width, RtArena *memory, float **rows, uint32_t *count) {
     const RtYamlNode *list = value_of(yaml, node, key);
     *rows = NULL;
-    *count = 0;
+    *count = rt_yaml_count(list);
     RT_TRY(rt_yaml_list(yaml, list, NULL, least, UINT32_MAX, "lists of numbers"));
     if (!list) return RT_OK;
-    float *all = rt_alloc(list->count, width * sizeof *all), *row = all;
-    if (!all)
-        return rt_fail_memory(yaml->error, "lists of numbers", (size_t)list->count * width * sizeof *all);
-    for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size, row += width) {
-        RtStatus status = read_numbers(yaml, n, width, row, NULL);
-        if (status == RT_OK) continue;
-        rt_free(all);
-        return status;
-    }
-    *rows = all;
-    *count = list->count;
+    float *row = *rows = rt_arena_alloc(memory, list->count, width * sizeof *row);
+    RT_TRY(rt_arena_check(memory, "lists of numbers", yaml->error));
+    for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size, row += width)
+        RT_TRY(read_numbers(yaml, n, width, row, NULL));
     return RT_OK;
 }
 
