@@ -229,10 +229,9 @@ static RtStatus open_view(const Gltf *g, const json_t *reference, size_t width, 
 
 /* Integer `i` of a view. */
 static uint32_t index_at(const View *view, uint32_t i) {
-    const unsigned char *at = (const unsigned char *)view->data + view->stride * i;
-    return view->type == UINT8    ? at[0]
-           : view->type == UINT16 ? at[0] | (uint32_t)at[1] << 8
-                                  : rt_mesh_u32(at);
+    uint32_t index = 0;
+    memcpy(&index, view->data + view->stride * i, component_size(view->type));
+    return index;
 }
 
 /* ---- extensions ---- */
@@ -435,16 +434,15 @@ RtStatus rt_mesh_read_gltf(RtMeshReader *r) {
 
 enum { GLB_HEADER = 12, CHUNK_HEADER = 8 };
 
-RtStatus rt_mesh_check_glb(const RtMeshHead *head, RtError *error) {
+RtStatus rt_mesh_check_glb(RtMeshReader *r, const RtMeshHead *head) {
     const unsigned char *b = head->bytes;
     if (memcmp(b, "glTF", 4) != 0)
-        return rt_fail_at(error, head->path, 0, 0, "this is no binary glTF: it does not begin with 'glTF'");
+        return rt_mesh_fail(r, "this is no binary glTF: it does not begin with 'glTF'");
     if (rt_mesh_u32(b + 4) != 2)
-        return rt_fail_at(error, head->path, 0, 0, "this is glTF %u: only 2 can be read", rt_mesh_u32(b + 4));
+        return rt_mesh_fail(r, "this is glTF %u: only 2 can be read", rt_mesh_u32(b + 4));
     if (rt_mesh_u32(b + 8) == head->size) return RT_OK;
-    return rt_fail_at(error, head->path, 0, 0,
-                      "the header declares %u bytes, but the file has %llu: it is cut off or damaged",
-                      rt_mesh_u32(b + 8), (unsigned long long)head->size);
+    return rt_mesh_fail(r, "the header declares %u bytes, but the file has %llu: it is cut off or damaged",
+                        rt_mesh_u32(b + 8), (unsigned long long)head->size);
 }
 
 /* Takes a chunk, which must be of this type. */
