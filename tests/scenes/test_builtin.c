@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* scenes/: random scenes, rejected specs, and memory; test_spd.c tests the databases. */
+/* scenes/: random scenes, rejected specs, and memory; test_places.c tests what the others contain. */
 #include "scene_testing.h"
 
 #include "scenes/builtin.h"
@@ -9,15 +9,6 @@
 /* Instead of the library's: as if there were no memory for what it keeps. */
 XXH3_state_t *XXH3_createState(void) {
     return NULL;
-}
-
-RT_TEST(random_scenes_have_as_many_objects_as_asked_for) {
-    static const ShapeCounts rows[] = {{"random:n=7", 7, 0, 0, 0},
-                                       {"random:n=1", 1, 0, 0, 0},
-                                       {"random:n=8,shape=triangle", 0, 0, 8, 0},
-                                       {"random:n=500,shape=mixed,seed=7", 125, 125, 125, 125},
-                                       {"random:n=0", 0, 0, 0, 0}};
-    assert_shape_counts(rows, sizeof rows / sizeof rows[0]);
 }
 
 static RtVec3 extent_of(const RtScene *scene, uint32_t first, uint32_t count) {
@@ -66,14 +57,6 @@ RT_TEST(a_fingerprint_needs_no_memory) {
 RT_TEST(a_fingerprint_tells_which_triangle_has_normals) {
     assert_int_not_equal(fingerprint_with_normals(0), fingerprint_with_normals(1));
     assert_int_equal(fingerprint_with_normals(1), fingerprint_with_normals(1));
-}
-
-RT_TEST(random_scenes_depend_on_the_seed_alone) {
-    OWNED_SCENE a = open_scene("random:n=500,shape=mixed,seed=7");
-    OWNED_SCENE b = open_scene("random:n=500,shape=mixed,seed=7");
-    OWNED_SCENE c = open_scene("random:n=500,shape=mixed,seed=8");
-    assert_int_equal(rt_scene_fingerprint(&a), rt_scene_fingerprint(&b));
-    assert_int_not_equal(rt_scene_fingerprint(&a), rt_scene_fingerprint(&c));
 }
 
 RT_TEST(a_random_object_does_not_depend_on_those_before_it) {
