@@ -3,7 +3,7 @@
  * measure begins the journal and fills the results; finish writes the files made from all of them. */
 #include "run/run.h"
 
-#include "core/base/lock.h"
+#include "core/base/file.h"
 #include "core/base/parallel.h"
 #include "core/base/words.h"
 #include "core/text/json_lines.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "verify/verify.h"
 
-#include "core/base/lock.h"
+#include "core/base/file.h"
 #include "core/base/memory.h"
 #include "core/base/versions.h"
 #include "core/base/words.h"
