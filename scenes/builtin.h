@@ -22,8 +22,10 @@ typedef struct RtBuiltin {
     /* The number of objects, to check memory before anything is built, where there may be so many that
      * counting takes long; NULL: `generate` counts. */
     uint64_t (*object_count)(const RtValue *values);
-    /* Bytes that each may take while the scene is built; NULL: RT_BUILTIN_OBJECT_BYTES. */
+    /* Bytes that each may take while the scene is built: where they depend on the values, or else the number
+     * below; 0: RT_BUILTIN_OBJECT_BYTES. */
     uint64_t (*object_bytes)(const RtValue *values);
+    uint64_t bytes_each;
     RtSceneGenerator *generate;
 } RtBuiltin;
 
@@ -51,9 +53,6 @@ RtStatus rt_builtin_objects(const char *spec, uint64_t *count, RtError *error);
 
 /* The number of objects for these values. */
 uint64_t rt_builtin_object_count(const RtBuiltin *builtin, const RtValue *values);
-
-/* Bytes that the scene may take while it is built. */
-uint64_t rt_builtin_bytes(const RtBuiltin *builtin, const RtValue *values);
 
 /* Rejects values whose scene may need more than `bytes`, with the value of params[0] that would fit. */
 RtStatus rt_builtin_check_memory(const RtBuiltin *builtin, const RtValue *values, uint64_t bytes,

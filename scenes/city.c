@@ -352,7 +352,8 @@ static void add_street(RtSceneBuilder *b, RtRandom *random, RtVec3d corner, int 
         rt_build_box(b, rt_vec3d(0.5, y, 0), rt_vec3d(3.5, y + 0.7, 0.02), RT_SIDE_TOP);
     }
     for (int i = 0; i < STREET_CARS; i++) {
-        double x = 8 + block * (i + rt_random_betweend(random, 0, 0.6)) / STREET_CARS, y = i == 1 ? -6.6 : -2.4;
+        double x = 8 + block * (i + rt_random_betweend(random, 0, 0.6)) / STREET_CARS,
+               y = i == 1 ? -6.6 : -2.4;
         turn_block(b, ground, quarters);
         RtVec3d at = rt_transform_pointd(&b->transform, rt_vec3d(x, y, 0));
         rt_build_origin(b, at, quarters);

@@ -365,12 +365,6 @@ static uint64_t object_count(const RtValue *values) {
     return recipe->make == AXIS_ALIGNED ? n + (n + 1) / 2 : n; /* every other one is two triangles */
 }
 
-/* A generous bound: there are few objects, and trees and meshes are the largest. */
-static uint64_t object_bytes(const RtValue *values) {
-    (void)values;
-    return UINT64_C(1) << 16;
-}
-
 static void generate(RtSceneBuilder *b, const RtValue *values) {
     uint32_t kind = values[KIND].choice;
     const Recipe *recipe = &recipes[kind];
@@ -392,7 +386,7 @@ const RtBuiltin rt_builtin_family = {
               "distinguish",
     RT_PARAMS_OF(params),
     .object_count = object_count,
-    .object_bytes = object_bytes,
+    .bytes_each = 1 << 16, /* generous: there are few objects, but trees and meshes are large */
     .generate = generate,
 };
 

@@ -24,8 +24,8 @@ static RtVec3d rotate_from_z(RtVec3d v, RtVec3d towards) {
     return rotate(v, rt_normalized(rt_vec3d(-towards.y, towards.x, 0)), turn);
 }
 
-/* Defines the built-in of generate_NAME; `most` is the largest size, `count` and `bytes` are those of
- * RtBuiltin. */
+/* Defines the built-in of generate_NAME; `most` is the largest size, `count` and `bytes` are object_count and
+ * bytes_each. */
 #define SPD_SCENE(scene, what, origin, count, bytes, standard, most, tested, meaning, why)                   \
     static const RtParam scene##_params[] = {{"size", RT_INT(standard, 1, most, tested), meaning, why}};     \
     const RtBuiltin rt_builtin_##scene = {.name = #scene,                                                    \
@@ -33,7 +33,7 @@ static RtVec3d rotate_from_z(RtVec3d v, RtVec3d towards) {
                                           .source = origin,                                                  \
                                           RT_PARAMS_OF(scene##_params),                                      \
                                           .object_count = count,                                             \
-                                          .object_bytes = bytes,                                             \
+                                          .bytes_each = bytes,                                               \
                                           .generate = generate_##scene};
 
 /* balls: the sphereflake over a floor, 9^0 + ... + 9^size spheres and one polygon. Every sphere carries nine
@@ -78,7 +78,7 @@ static void generate_balls(RtSceneBuilder *b, const RtValue *values) {
 }
 
 SPD_SCENE(balls, "a sphereflake over a floor: reflective spheres of very different sizes, touching",
-          RT_SPD_SOURCE, NULL, NULL, "4", 7, "1|3", "levels below the root: (9^(size+1) - 1) / 8 spheres",
+          RT_SPD_SOURCE, NULL, 0, "4", 7, "1|3", "levels below the root: (9^(size+1) - 1) / 8 spheres",
           "SPD: 7381 spheres")
 
 /* gears: size^3 gears that mesh, some of glass, above a mirror. A gear has two faces, which are concave
@@ -95,12 +95,6 @@ typedef struct Gear {
 static uint64_t gears_count(const RtValue *values) {
     uint64_t size = (uint64_t)values[0].i;
     return size * size * size * (GEAR_CORNERS + 2) + 1;
-}
-
-/* A 73rd of them are faces of 144 corners. */
-static uint64_t gears_bytes(const RtValue *values) {
-    (void)values;
-    return 384;
 }
 
 /* Counter-clockwise at the upper face, clockwise (`sense` -1) at the lower one. Each tooth has two corners at
@@ -171,8 +165,8 @@ static void generate_gears(RtSceneBuilder *b, const RtValue *values) {
 }
 
 SPD_SCENE(gears, "gears of concave polygons with 144 corners, some of glass, above a mirror", RT_SPD_SOURCE,
-          gears_count, gears_bytes, "4", 100, "1|2", "gears along an edge: 146 size^3 + 1 polygons",
-          "SPD: 9345 polygons")
+          gears_count, 384 /* a 73rd of them are faces of 144 corners */, "4", 100, "1|2",
+          "gears along an edge: 146 size^3 + 1 polygons", "SPD: 9345 polygons")
 
 /* jacks: jacks (three crossed cylinders with a sphere at each end) that carry smaller jacks between their
  * arms. Arms are 0.75 long; a jack has eight children of half its size, at the corners of the axis-aligned
@@ -225,7 +219,7 @@ static void generate_jacks(RtSceneBuilder *b, const RtValue *values) {
 }
 
 SPD_SCENE(jacks, "crossed cylinders with spheres at their ends, among smaller ones: mirrors that touch",
-          SPD_LATER_SOURCE, NULL, NULL, "3", 8, "1|2",
+          SPD_LATER_SOURCE, NULL, 0, "3", 8, "1|2",
           "levels: (8^size - 1) / 7 jacks of 3 cylinders and 6 spheres", "SPD: 219 cylinders, 438 spheres")
 
 /* lattice: a cube of (size + 1)^3 spheres, joined along the edges of the lattice by cylinders. The cube is
@@ -275,7 +269,7 @@ static void generate_lattice(RtSceneBuilder *b, const RtValue *values) {
 }
 
 SPD_SCENE(lattice, "spheres at the points of a cubic lattice, and the cylinders between them",
-          SPD_LATER_SOURCE, lattice_count, NULL, "12", 400, "1|3",
+          SPD_LATER_SOURCE, lattice_count, 0, "12", 400, "1|3",
           "cells along an edge: (size+1)^3 spheres, 3 size (size+1)^2 cylinders",
           "SPD: 2197 spheres, 6084 cylinders")
 
@@ -377,7 +371,7 @@ static void generate_mount(RtSceneBuilder *b, const RtValue *values) {
 }
 
 SPD_SCENE(mount, "a fractal mountain of triangles of one size, seen through spheres of glass", RT_SPD_SOURCE,
-          NULL, NULL, "6", 9, "1|3", "levels: 2 * 4^size triangles", "SPD: 8192 triangles")
+          NULL, 0, "6", 9, "1|3", "levels: 2 * 4^size triangles", "SPD: 8192 triangles")
 
 /* rings: a pyramid of objects made of six interlocked rings, seen from its tip in front of a wall. A ring is
  * a pentagon of five cylinders, with spheres where they meet. The six pass through the midpoints of the edges
@@ -462,7 +456,7 @@ static void generate_rings(RtSceneBuilder *b, const RtValue *values) {
 }
 
 SPD_SCENE(rings, "a pyramid of interlocked rings of cylinders and spheres, mirrors, before a wall",
-          RT_SPD_SOURCE, rings_count, NULL, "7", 200, "1|2",
+          RT_SPD_SOURCE, rings_count, 0, "7", 200, "1|2",
           "layers: 5 size (size+1) (2 size+1) spheres and as many cylinders",
           "SPD: 4200 spheres and cylinders")
 
@@ -505,9 +499,8 @@ static void generate_shells(RtSceneBuilder *b, const RtValue *values) {
     add_shell_sphere(b, 0, radius);
 }
 
-SPD_SCENE(shells, "a sea shell of spheres that overlap, many of them tiny", SPD_LATER_SOURCE, shells_count,
-          NULL, "5", 20, "1|3",
-          "doublings of the number of spheres, 180 * 2^size + 1, over the same nine turns",
+SPD_SCENE(shells, "a sea shell of spheres that overlap, many of them tiny", SPD_LATER_SOURCE, shells_count, 0,
+          "5", 20, "1|3", "doublings of the number of spheres, 180 * 2^size + 1, over the same nine turns",
           "SPD: 5761 spheres")
 
 /* tetra: a Sierpinski tetrahedron of 4^size triangles. A cube holds a regular tetrahedron at the four corners
@@ -542,8 +535,8 @@ static void generate_tetra(RtSceneBuilder *b, const RtValue *values) {
     add_tetra(b, rt_vec3d(0, 0, 0), 1, values[0].i);
 }
 
-SPD_SCENE(tetra, "a Sierpinski tetrahedron of triangles, mostly empty space", RT_SPD_SOURCE, NULL, NULL, "6",
-          9, "1|3", "levels: 4^size triangles", "SPD: 4096 triangles")
+SPD_SCENE(tetra, "a Sierpinski tetrahedron of triangles, mostly empty space", RT_SPD_SOURCE, NULL, 0, "6", 9,
+          "1|3", "levels: 4^size triangles", "SPD: 4096 triangles")
 
 /* tree: a binary tree of 2^(size+1) - 1 branches, each a cone with a sphere at its tip, on a field. The trunk
  * goes from the origin to (0, 0, 1). A branch has two children: smaller copies of it, rotated and moved to
@@ -603,5 +596,5 @@ static void generate_tree(RtSceneBuilder *b, const RtValue *values) {
 }
 
 SPD_SCENE(tree, "a tree of cones and spheres that get smaller and smaller, alone on a large field",
-          RT_SPD_SOURCE, NULL, NULL, "11", 20, "1|3",
+          RT_SPD_SOURCE, NULL, 0, "11", 20, "1|3",
           "levels above the trunk: 2^(size+1) - 1 cones and as many spheres", "SPD: 4095 cones and spheres")

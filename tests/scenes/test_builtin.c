@@ -119,7 +119,8 @@ RT_TEST(too_large_a_scene_is_refused_with_the_size_that_fits) {
         RtValue values[RT_MAX_PARAMS];
         assert_ok(rt_params_parse(builtin->params, builtin->param_count, NULL, "it", values, error));
         values[0].i = cases[i].value;
-        uint64_t each = builtin->object_bytes ? builtin->object_bytes(values) : RT_BUILTIN_OBJECT_BYTES;
+        const uint64_t constant = builtin->bytes_each ? builtin->bytes_each : RT_BUILTIN_OBJECT_BYTES;
+        const uint64_t each = builtin->object_bytes ? builtin->object_bytes(values) : constant;
         uint64_t bytes = cases[i].objects * each;
         assert_bad_input(rt_builtin_check_memory(builtin, values, bytes, error), cases[i].says);
     }
@@ -148,7 +149,8 @@ RT_TEST(objects_are_as_many_as_told_beforehand_and_take_no_more_memory_than_esti
         const RtBuiltin *builtin;
         RtValue values[RT_MAX_PARAMS];
         OWNED_SCENE scene = open_as_counted(spec, &builtin, values);
-        if (rt_scene_bytes(&scene) > rt_builtin_bytes(builtin, values)) fail_msg("%s takes more", spec);
+        const uint64_t too_few = rt_scene_bytes(&scene) - 1;
+        assert_bad_input(rt_builtin_check_memory(builtin, values, too_few, error), "would fit");
     }
 }
 
