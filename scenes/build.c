@@ -46,6 +46,10 @@ void rt_build_light(RtSceneBuilder *b, RtVec3d position, RtVec3 intensity) {
     if (adds(b)) b->status = rt_scene_add_light(b->scene, rt_narrow(position), intensity, b->error);
 }
 
+void rt_build_lights(RtSceneBuilder *b, const RtVec3d *positions, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++) rt_build_light(b, positions[i], rt_nff_light_intensity(count));
+}
+
 void rt_build_studio(RtSceneBuilder *b, bool glass) {
     rt_build_material(b, rt_nff_material("clay", rt_vec3(0.9f, 0.5f, 0.3f), 0.9f, 0, 1, 0, 1));
     rt_build_material(b, rt_nff_material("slate", rt_vec3(0.3f, 0.4f, 0.6f), 0.9f, 0, 1, 0, 1));

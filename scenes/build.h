@@ -43,6 +43,9 @@ void rt_build_material(RtSceneBuilder *b, RtMaterial material);
 void rt_build_materials(RtSceneBuilder *b, const RtMaterial *materials, uint32_t count);
 void rt_build_light(RtSceneBuilder *b, RtVec3d position, RtVec3 intensity);
 
+/* Adds white lights with the intensity of NFF (rt_nff_light_intensity). */
+void rt_build_lights(RtSceneBuilder *b, const RtVec3d *positions, uint32_t count);
+
 /* For scenes of random objects: two lights and RT_STUDIO_MATERIALS materials, numbers 0 to 3: matte ones,
  * a mirror (steel), and glass or a third matte one. */
 #define RT_STUDIO_MATERIALS 4
@@ -130,5 +133,11 @@ typedef struct RtTorus {
 } RtTorus;
 
 void rt_build_torus(RtSceneBuilder *b, const RtTorus *torus);
+
+/* Newell's teapot: 64 n^2 - 8 n triangles with vertex normals (32 patches of n x n cells, 1 <= n <=
+ * RT_TEAPOT_MAX_SIZE), 3.15 high and 6.43 long, on z = 0 about the z axis, its spout towards +x (teapot.c).
+ */
+#define RT_TEAPOT_MAX_SIZE 1000
+void rt_build_teapot(RtSceneBuilder *b, uint32_t n);
 
 #endif

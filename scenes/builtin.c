@@ -57,11 +57,8 @@ uint64_t rt_builtin_object_count(const RtBuiltin *builtin, const RtValue *values
 }
 
 static uint64_t bytes_each(const RtBuiltin *builtin, const RtValue *values) {
-    return builtin->object_bytes ? builtin->object_bytes(values) : RT_BUILTIN_OBJECT_BYTES;
-}
-
-uint64_t rt_builtin_bytes(const RtBuiltin *builtin, const RtValue *values) {
-    return rt_builtin_object_count(builtin, values) * bytes_each(builtin, values);
+    if (builtin->object_bytes) return builtin->object_bytes(values);
+    return builtin->bytes_each ? builtin->bytes_each : RT_BUILTIN_OBJECT_BYTES;
 }
 
 static bool fits(const RtBuiltin *builtin, const RtValue *values, uint64_t bytes) {

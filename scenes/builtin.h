@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Built-in scenes: one generator per file, listed in scenes/builtin.c. */
+/* Built-in scenes: generators, listed in scenes/builtin.c. */
 #ifndef RT_SCENES_BUILTIN_H
 #define RT_SCENES_BUILTIN_H
 
@@ -13,6 +13,8 @@
 /* The parameter `seed` of random scenes. */
 #define RT_BUILTIN_SEED "seed", RT_INT("1", 0, 1e15, "1"), "seed of the random numbers", "any"
 
+#define RT_SPD_SOURCE "SPD: E. Haines 1987, A Proposal for Standard Graphics Environments, IEEE CG&A 7(11)"
+
 typedef struct RtBuiltin {
     const char *name, *summary, *source; /* source: the origin of the scene */
     const RtParam *params;               /* params[0]: the integer that sets the size, if there is one */
@@ -20,12 +22,13 @@ typedef struct RtBuiltin {
     /* The number of objects, to check memory before anything is built, where there may be so many that
      * counting takes long; NULL: `generate` counts. */
     uint64_t (*object_count)(const RtValue *values);
-    /* Bytes that each may take while the scene is built; NULL: RT_BUILTIN_OBJECT_BYTES. */
+    /* Bytes that each may take while the scene is built: where they depend on the values, or else the number
+     * below; 0: RT_BUILTIN_OBJECT_BYTES. */
     uint64_t (*object_bytes)(const RtValue *values);
+    uint64_t bytes_each;
     RtSceneGenerator *generate;
 } RtBuiltin;
 
-/* Each in its own file. */
 extern const RtBuiltin rt_builtin_balls, rt_builtin_city, rt_builtin_csg_field, rt_builtin_family,
     rt_builtin_forest, rt_builtin_gears, rt_builtin_hall, rt_builtin_jacks, rt_builtin_lattice,
     rt_builtin_mount, rt_builtin_random, rt_builtin_rings, rt_builtin_shells, rt_builtin_stadium,
@@ -50,9 +53,6 @@ RtStatus rt_builtin_objects(const char *spec, uint64_t *count, RtError *error);
 
 /* The number of objects for these values. */
 uint64_t rt_builtin_object_count(const RtBuiltin *builtin, const RtValue *values);
-
-/* Bytes that the scene may take while it is built. */
-uint64_t rt_builtin_bytes(const RtBuiltin *builtin, const RtValue *values);
 
 /* Rejects values whose scene may need more than `bytes`, with the value of params[0] that would fit. */
 RtStatus rt_builtin_check_memory(const RtBuiltin *builtin, const RtValue *values, uint64_t bytes,

@@ -1,12 +1,85 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The families of scenes. One row per recipe: how many objects of which shapes, where, how large, and how
  * the whole is scaled and moved. */
+#include "core/base/random.h"
 #include "scenes/builtin.h"
-#include "scenes/family_places.h"
 #include "scenes/random_tree.h"
 
 #include <inttypes.h>
 #include <stdio.h>
+
+/* ---- places: position and size of an object, in a world of about [-1, 1]^3 ---- */
+
+typedef struct Placement {
+    RtVec3d center;
+    double size;
+} Placement;
+
+typedef enum Place {
+    UNIFORM,
+    COINCIDENT,
+    ON_A_LINE,
+    IN_A_PLANE,
+    HUGE_BESIDE_TINY,
+    CLUSTERED,        /* eight clusters, each a hundredth of the world */
+    DUPLICATED,       /* groups of four are identical */
+    ON_A_LATTICE,     /* corners and edges on multiples of 1/4, on the planes of a grid */
+    TOUCHING,         /* spheres of diameter 1/4 on multiples of 1/4: neighbours touch. Some are half as
+                       * large, and touch one from inside */
+    IN_PROGRESSION,   /* each half as large as the one before, and half as far from the origin */
+    CONCENTRIC,       /* nested: no plane separates them */
+    STACKED,          /* as large as the world, in planes that many share */
+    AROUND_THE_ORIGIN /* the lattice, and by turns the lattice moved by half its width: one has edges
+                       * in the coordinate planes, which meet at the origin, the next lies in them */
+} Place;
+
+/* Multiples of 1/4 from -most / 4 on, below most / 4. */
+static RtVec3d on_quarters(RtRandom *random, double most) {
+    RtVec3d p;
+    for (int a = 0; a < 3; a++) p.at[a] = floor(rt_random_betweend(random, -most, most)) / 4;
+    return p;
+}
+
+static Placement of_any_size(RtVec3d center, RtRandom *random) {
+    return (Placement){center, rt_random_betweend(random, 0.02, 0.2)};
+}
+
+/* Of object `i` of `count`. */
+static Placement placement_of(Place place, RtRandom *random, uint32_t i, uint32_t count) {
+    const RtVec3d aside = {0.25, 0.5, -0.125}, half = {0.125, 0.125, 0.125};
+    const double size = ldexp(1, -(int)i);
+    RtRandom shared = rt_random(11, i / 4);
+    RtVec3d p;
+    switch (place) {
+    case UNIFORM: return of_any_size(rt_random_in_cube(random), random);
+    case COINCIDENT: return (Placement){aside, 0.5};
+    case ON_A_LINE: return (Placement){{-1 + 2.0 * i / count, 0, 0}, 1.0 / count};
+    case IN_A_PLANE: p = rt_random_in_cube(random); return of_any_size(rt_vec3d(p.x, p.y, 0.5), random);
+    case HUGE_BESIDE_TINY:
+        p = rt_random_in_cube(random);
+        return i % 8 == 0 ? (Placement){rt_scaled(p, 3), 2} : (Placement){rt_scaled(p, 1e-3), 1e-4};
+    case CLUSTERED:
+        p = rt_vec3d(i & 1 ? 0.75 : -0.75, i & 2 ? 0.75 : -0.75, i & 4 ? 0.75 : -0.75);
+        p = rt_add_scaledd(p, rt_random_in_cube(random), 0.01);
+        return (Placement){p, rt_random_betweend(random, 0.001, 0.005)};
+    case DUPLICATED: return placement_of(UNIFORM, &shared, i, count);
+    case ON_A_LATTICE: return (Placement){rt_addd(on_quarters(random, 4), half), 0.125};
+    case TOUCHING:
+        p = on_quarters(random, 3);
+        if (i % 4 > 0) return (Placement){p, 0.125};
+        p.at[i / 4 % 3] += 0.0625;
+        return (Placement){p, 0.0625};
+    case IN_PROGRESSION: return (Placement){{size, size, size}, size / 4};
+    case CONCENTRIC: return (Placement){aside, (i + 1.0) / count};
+    case STACKED: p = on_quarters(random, 2); return (Placement){p, 0.5 + 0.25 * rt_random_below(random, 3)};
+    case AROUND_THE_ORIGIN:
+        p = rt_addd(on_quarters(random, 4), half);
+        return (Placement){i / 2 % 2 ? rt_subd(p, half) : p, 0.125};
+    }
+    return (Placement){aside, 0.5};
+}
+
+/* ---- recipes ---- */
 
 typedef enum Make {
     SPHERES,
@@ -32,7 +105,7 @@ typedef struct Recipe {
     const char *name;
     uint32_t count;
     Make make;
-    RtPlace place;
+    Place place;
     double scale, offset;
     Scaling scaling;
     Around around;
@@ -50,14 +123,14 @@ static void add_triangle_of(Family *f, const RtVec3d v[3]) {
     rt_build_triangle(f->b, v[0], v[1], v[2]);
 }
 
-static void add_triangle(Family *f, RtPlacement at) {
+static void add_triangle(Family *f, Placement at) {
     RtVec3d v[3];
     for (int i = 0; i < 3; i++) v[i] = rt_add_scaledd(at.center, rt_random_in_cube(&f->random), at.size);
     add_triangle_of(f, v);
 }
 
 /* Slivers, needles and degenerate triangles, among ordinary ones. */
-static void add_sliver(Family *f, RtPlacement at, uint32_t i) {
+static void add_sliver(Family *f, Placement at, uint32_t i) {
     static const double thin[] = {1e-3, 1e-5, 1e-7, 1e-9};
     RtVec3d p[3];
     for (int k = 0; k < 3; k++) p[k] = rt_add_scaledd(at.center, rt_random_in_cube(&f->random), at.size);
@@ -82,7 +155,7 @@ static void add_shared(Family *f, uint32_t i) {
 }
 
 /* A concave L of six vertices in a coordinate plane, which offsets and scales do not warp. */
-static void add_polygon(Family *f, RtPlacement at) {
+static void add_polygon(Family *f, Placement at) {
     static const double outline[6][2] = {{-1, -1}, {1, -1}, {1, 0}, {0, 0}, {0, 1}, {-1, 1}};
     uint32_t plane = rt_random_below(&f->random, 3);
     RtVec3d vertices[6];
@@ -94,7 +167,7 @@ static void add_polygon(Family *f, RtPlacement at) {
     rt_build_polygon(f->b, vertices, 6);
 }
 
-static void add_cone(Family *f, RtPlacement at) {
+static void add_cone(Family *f, Placement at) {
     RtVec3d axis = rt_random_direction(&f->random);
     double base = at.size * rt_random_betweend(&f->random, 0.2, 0.8);
     double apex = rt_random_below(&f->random, 2) ? base : 0; /* a cylinder or a full cone */
@@ -102,7 +175,7 @@ static void add_cone(Family *f, RtPlacement at) {
 }
 
 /* A rectangle in a coordinate plane, by turns as two triangles and as a polygon. */
-static void add_axis_aligned(Family *f, RtPlacement at, uint32_t i) {
+static void add_axis_aligned(Family *f, Placement at, uint32_t i) {
     int w = (int)(rt_random_below(&f->random, 3)), u = (w + 1) % 3, v = (w + 2) % 3;
     RtVec3d c[4];
     for (int k = 0; k < 4; k++) {
@@ -119,7 +192,7 @@ static void add_axis_aligned(Family *f, RtPlacement at, uint32_t i) {
 }
 
 /* Across the whole scene near each axis in turn: a triangle, or a cylinder. */
-static void add_needle(Family *f, RtPlacement at, uint32_t i) {
+static void add_needle(Family *f, Placement at, uint32_t i) {
     RtVec3d from = at.center, to = rt_add_scaledd(at.center, rt_random_in_cube(&f->random), at.size);
     from.at[i % 3] = -1;
     to.at[i % 3] = 1;
@@ -129,7 +202,7 @@ static void add_needle(Family *f, RtPlacement at, uint32_t i) {
         rt_build_triangle(f->b, from, to, rt_add_scaledd(to, rt_random_in_cube(&f->random), at.size / 32));
 }
 
-static void add_mixed(Family *f, RtPlacement at, uint32_t i) {
+static void add_mixed(Family *f, Placement at, uint32_t i) {
     switch (i % 4) {
     case 0: rt_build_sphere(f->b, at.center, at.size); break;
     case 1: add_triangle(f, at); break;
@@ -140,7 +213,7 @@ static void add_mixed(Family *f, RtPlacement at, uint32_t i) {
 
 /* A random CSG tree of up to 24 solids; the first of every eight is a single solid. Every other tree tests
  * inner nodes. RT_BAD_INPUT if rounding flattens one of its solids. */
-static RtStatus try_tree(Family *f, RtPlacement at, uint32_t i, RtError *error) {
+static RtStatus try_tree(Family *f, Placement at, uint32_t i, RtError *error) {
     RtTreeRecipe recipe = {i % 8 == 0 ? 1 : 2 + rt_random_below(&f->random, 23), i % 2};
     double o = f->b->transform.m[0][3], scale = f->b->transform.m[0][0], size = scale * at.size / 4;
     RtTransform move = {{{size, 0, 0, o + scale * at.center.x},
@@ -156,7 +229,7 @@ static RtStatus try_tree(Family *f, RtPlacement at, uint32_t i, RtError *error) 
 }
 
 /* Adds the next tree that is not flat. */
-static void add_tree(Family *f, RtPlacement at, uint32_t i) {
+static void add_tree(Family *f, Placement at, uint32_t i) {
     RtStatus status = RT_BAD_INPUT;
     for (int tries = 0; tries < 100 && status == RT_BAD_INPUT; tries++)
         status = try_tree(f, at, i, f->b->error);
@@ -184,7 +257,7 @@ static void add_mesh(Family *f, uint32_t n) {
 }
 
 static void add_object(Family *f, uint32_t i) {
-    RtPlacement at = rt_place(f->recipe->place, &f->random, i, f->recipe->count);
+    Placement at = placement_of(f->recipe->place, &f->random, i, f->recipe->count);
     switch (f->recipe->make) {
     case SPHERES: rt_build_sphere(f->b, at.center, at.size); break;
     case TRIANGLES: add_triangle(f, at); break;
@@ -227,42 +300,42 @@ static void add_eye(RtSceneBuilder *b) {
 
 /* X(name, count, make, place, scale, offset, scaling, around), in the order of the random streams. */
 #define RECIPES(X)                                                                                           \
-    X("empty", 0, SPHERES, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                            \
-    X("one-sphere", 1, SPHERES, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                       \
-    X("one-triangle", 1, TRIANGLES, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                   \
-    X("two", 2, ROUND_AND_FLAT, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                       \
-    X("coincident", 33, SPHERES, RT_PLACE_COINCIDENT, 1, 0, GIVEN, CAMERA)                                   \
-    X("line", 64, ROUND_AND_FLAT, RT_PLACE_ON_A_LINE, 1, 0, GIVEN, CAMERA)                                   \
-    X("plane", 96, AXIS_ALIGNED, RT_PLACE_IN_A_PLANE, 1, 0, GIVEN, CAMERA)                                   \
-    X("huge-beside-tiny", 96, ROUND_AND_FLAT, RT_PLACE_HUGE_BESIDE_TINY, 1, 0, GIVEN, CAMERA)                \
-    X("uniform", 150, SPHERES, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                        \
-    X("clustered", 160, ROUND_AND_FLAT, RT_PLACE_CLUSTERED, 1, 0, GIVEN, CAMERA)                             \
-    X("mixed", 160, ROUND_AND_FLAT, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                   \
-    X("soup", 200, TRIANGLES, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                         \
-    X("duplicates", 120, SPHERES, RT_PLACE_DUPLICATED, 1, 0, GIVEN, CAMERA)                                  \
-    X("axis-aligned", 100, AXIS_ALIGNED, RT_PLACE_ON_A_LATTICE, 1, 0, GIVEN, CAMERA)                         \
-    X("csg", 48, TREES, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                               \
-    X("csg-coincident", 12, TREES, RT_PLACE_COINCIDENT, 1, 0, GIVEN, CAMERA)                                 \
-    X("csg-tiny", 24, TREES, RT_PLACE_UNIFORM, 0x1p-30, 0, GIVEN, CAMERA)                                    \
-    X("csg-far", 24, TREES, RT_PLACE_UNIFORM, 1, 1e5, GIVEN, CAMERA)                                         \
-    X("mesh", 5, MESH, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                                \
-    X("mesh-far", 5, MESH, RT_PLACE_UNIFORM, 1, 1e5, GIVEN, CAMERA)                                          \
-    X("mixed-tiny", 100, ROUND_AND_FLAT, RT_PLACE_UNIFORM, 0x1p-30, 0, GIVEN, CAMERA)                        \
-    X("mixed-huge", 100, ROUND_AND_FLAT, RT_PLACE_UNIFORM, 0x1p30, 0, GIVEN, CAMERA)                         \
-    X("mixed-far", 100, ROUND_AND_FLAT, RT_PLACE_UNIFORM, 1, 1e5, GIVEN, CAMERA)                             \
-    X("slivers", 150, SLIVERS, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                        \
-    X("shared", 100, SHARED, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                          \
-    X("touching", 150, SPHERES, RT_PLACE_TOUCHING, 1, 0, GIVEN, CAMERA)                                      \
-    X("scaled", 100, ROUND_AND_FLAT, RT_PLACE_UNIFORM, 1, 0, DRAWN_SCALE, CAMERA)                            \
-    X("scaled-far", 100, ROUND_AND_FLAT, RT_PLACE_UNIFORM, 1, 0, DRAWN_SCALE_AND_OFFSET, CAMERA)             \
-    X("slivers-scaled", 100, SLIVERS, RT_PLACE_UNIFORM, 1, 0, DRAWN_SCALE, CAMERA)                           \
-    X("needles", 60, NEEDLES, RT_PLACE_UNIFORM, 1, 0, GIVEN, CAMERA)                                         \
-    X("progression", 60, ROUND_AND_FLAT, RT_PLACE_IN_PROGRESSION, 1, 0, GIVEN, CAMERA)                       \
-    X("concentric", 200, AXIS_ALIGNED, RT_PLACE_CONCENTRIC, 1, 0, GIVEN, CAMERA)                             \
-    X("stacked", 40, AXIS_ALIGNED, RT_PLACE_STACKED, 1, 0, GIVEN, CAMERA)                                    \
-    X("lit-within", 60, ROUND_AND_FLAT, RT_PLACE_UNIFORM, 1, 0, GIVEN, LIGHTS)                               \
-    X("eye-within", 80, AXIS_ALIGNED, RT_PLACE_AROUND_THE_ORIGIN, 1, 0, GIVEN, EYE)                          \
-    X("eye-among", 80, ROUND_AND_FLAT, RT_PLACE_AROUND_THE_ORIGIN, 1, 0, GIVEN, EYE)
+    X("empty", 0, SPHERES, UNIFORM, 1, 0, GIVEN, CAMERA)                                                     \
+    X("one-sphere", 1, SPHERES, UNIFORM, 1, 0, GIVEN, CAMERA)                                                \
+    X("one-triangle", 1, TRIANGLES, UNIFORM, 1, 0, GIVEN, CAMERA)                                            \
+    X("two", 2, ROUND_AND_FLAT, UNIFORM, 1, 0, GIVEN, CAMERA)                                                \
+    X("coincident", 33, SPHERES, COINCIDENT, 1, 0, GIVEN, CAMERA)                                            \
+    X("line", 64, ROUND_AND_FLAT, ON_A_LINE, 1, 0, GIVEN, CAMERA)                                            \
+    X("plane", 96, AXIS_ALIGNED, IN_A_PLANE, 1, 0, GIVEN, CAMERA)                                            \
+    X("huge-beside-tiny", 96, ROUND_AND_FLAT, HUGE_BESIDE_TINY, 1, 0, GIVEN, CAMERA)                         \
+    X("uniform", 150, SPHERES, UNIFORM, 1, 0, GIVEN, CAMERA)                                                 \
+    X("clustered", 160, ROUND_AND_FLAT, CLUSTERED, 1, 0, GIVEN, CAMERA)                                      \
+    X("mixed", 160, ROUND_AND_FLAT, UNIFORM, 1, 0, GIVEN, CAMERA)                                            \
+    X("soup", 200, TRIANGLES, UNIFORM, 1, 0, GIVEN, CAMERA)                                                  \
+    X("duplicates", 120, SPHERES, DUPLICATED, 1, 0, GIVEN, CAMERA)                                           \
+    X("axis-aligned", 100, AXIS_ALIGNED, ON_A_LATTICE, 1, 0, GIVEN, CAMERA)                                  \
+    X("csg", 48, TREES, UNIFORM, 1, 0, GIVEN, CAMERA)                                                        \
+    X("csg-coincident", 12, TREES, COINCIDENT, 1, 0, GIVEN, CAMERA)                                          \
+    X("csg-tiny", 24, TREES, UNIFORM, 0x1p-30, 0, GIVEN, CAMERA)                                             \
+    X("csg-far", 24, TREES, UNIFORM, 1, 1e5, GIVEN, CAMERA)                                                  \
+    X("mesh", 5, MESH, UNIFORM, 1, 0, GIVEN, CAMERA)                                                         \
+    X("mesh-far", 5, MESH, UNIFORM, 1, 1e5, GIVEN, CAMERA)                                                   \
+    X("mixed-tiny", 100, ROUND_AND_FLAT, UNIFORM, 0x1p-30, 0, GIVEN, CAMERA)                                 \
+    X("mixed-huge", 100, ROUND_AND_FLAT, UNIFORM, 0x1p30, 0, GIVEN, CAMERA)                                  \
+    X("mixed-far", 100, ROUND_AND_FLAT, UNIFORM, 1, 1e5, GIVEN, CAMERA)                                      \
+    X("slivers", 150, SLIVERS, UNIFORM, 1, 0, GIVEN, CAMERA)                                                 \
+    X("shared", 100, SHARED, UNIFORM, 1, 0, GIVEN, CAMERA)                                                   \
+    X("touching", 150, SPHERES, TOUCHING, 1, 0, GIVEN, CAMERA)                                               \
+    X("scaled", 100, ROUND_AND_FLAT, UNIFORM, 1, 0, DRAWN_SCALE, CAMERA)                                     \
+    X("scaled-far", 100, ROUND_AND_FLAT, UNIFORM, 1, 0, DRAWN_SCALE_AND_OFFSET, CAMERA)                      \
+    X("slivers-scaled", 100, SLIVERS, UNIFORM, 1, 0, DRAWN_SCALE, CAMERA)                                    \
+    X("needles", 60, NEEDLES, UNIFORM, 1, 0, GIVEN, CAMERA)                                                  \
+    X("progression", 60, ROUND_AND_FLAT, IN_PROGRESSION, 1, 0, GIVEN, CAMERA)                                \
+    X("concentric", 200, AXIS_ALIGNED, CONCENTRIC, 1, 0, GIVEN, CAMERA)                                      \
+    X("stacked", 40, AXIS_ALIGNED, STACKED, 1, 0, GIVEN, CAMERA)                                             \
+    X("lit-within", 60, ROUND_AND_FLAT, UNIFORM, 1, 0, GIVEN, LIGHTS)                                        \
+    X("eye-within", 80, AXIS_ALIGNED, AROUND_THE_ORIGIN, 1, 0, GIVEN, EYE)                                   \
+    X("eye-among", 80, ROUND_AND_FLAT, AROUND_THE_ORIGIN, 1, 0, GIVEN, EYE)
 
 #define AS_RECIPE(...)       {__VA_ARGS__},
 #define AS_CHOICE(name, ...) "|" name
@@ -292,12 +365,6 @@ static uint64_t object_count(const RtValue *values) {
     return recipe->make == AXIS_ALIGNED ? n + (n + 1) / 2 : n; /* every other one is two triangles */
 }
 
-/* A generous bound: there are few objects, and trees and meshes are the largest. */
-static uint64_t object_bytes(const RtValue *values) {
-    (void)values;
-    return UINT64_C(1) << 16;
-}
-
 static void generate(RtSceneBuilder *b, const RtValue *values) {
     uint32_t kind = values[KIND].choice;
     const Recipe *recipe = &recipes[kind];
@@ -319,7 +386,7 @@ const RtBuiltin rt_builtin_family = {
               "distinguish",
     RT_PARAMS_OF(params),
     .object_count = object_count,
-    .object_bytes = object_bytes,
+    .bytes_each = 1 << 16, /* generous: there are few objects, but trees and meshes are large */
     .generate = generate,
 };
 

@@ -212,16 +212,11 @@ static void generate(RtSceneBuilder *b, const RtValue *values) {
     for (uint64_t i = 0; i < (uint64_t)values[N].i; i++) add_tree(b, &ground, i);
 }
 
-static uint64_t object_bytes(const RtValue *values) {
-    (void)values;
-    return RT_BUILTIN_TRIANGLE_BYTES;
-}
-
 const RtBuiltin rt_builtin_forest = {
     .name = "forest",
     .summary = "n trees on hilly ground: a million small triangles in all orientations",
     .source = "made to measure how builders scale",
     RT_PARAMS_OF(params),
-    .object_bytes = object_bytes,
+    .bytes_each = RT_BUILTIN_TRIANGLE_BYTES,
     .generate = generate,
 };

@@ -6,7 +6,6 @@
  * stands at the origin; the stadium is `ratio` times as long. The bowl is an oval of SECTORS; each tier is
  * a step of two quads. */
 #include "scenes/builtin.h"
-#include "scenes/teapot_mesh.h"
 
 #define PARAMS(X)                                                                                            \
     X(SIZE, "size", RT_INT("12", 1, RT_TEAPOT_MAX_SIZE, "1|6"),                                              \
@@ -178,7 +177,7 @@ static void add_mast(Stadium *s, uint32_t i) {
 static void add_teapot(RtSceneBuilder *b, uint32_t n) {
     b->material = CHINA;
     rt_build_origin(b, rt_vec3d(0, 0, 3), 1);
-    rt_teapot(b, n);
+    rt_build_teapot(b, n);
     rt_build_origin(b, rt_vec3d(0, 0, 0), 0);
     b->material = WOOD;
     const RtVec3d foot = {0, 0, 0}, knee = {0, 0, 0.6}, under = {0, 0, 2.7}, top = {0, 0, 3};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/directory.h"
 
-#include "core/base/lock.h"
+#include "core/base/file.h"
 
 RtStatus rt_cli_directory_work(const char *directory, bool writes, RtDirectoryWork *work, const void *options,
                                RtError *error) {

@@ -3,10 +3,10 @@
  * measure begins the journal and fills the results; finish writes the files made from all of them. */
 #include "run/run.h"
 
-#include "core/base/lock.h"
+#include "core/base/file.h"
 #include "core/base/parallel.h"
 #include "core/base/words.h"
-#include "core/text/json_lines.h"
+#include "core/text/json.h"
 #include "render/image.h"
 #include "results/journal.h"
 #include "results/journal_lines.h"

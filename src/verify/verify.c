@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "verify/verify.h"
 
-#include "core/base/lock.h"
+#include "core/base/file.h"
 #include "core/base/memory.h"
 #include "core/base/versions.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
-#include "core/text/json_lines.h"
 #include "measure/machine.h"
 #include "scenes/open.h"
 #include "verify/replay.h"

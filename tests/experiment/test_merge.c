@@ -2,7 +2,7 @@
 /* Shards of one experiment, joined. */
 #include "experiment_testing.h"
 
-#include "core/base/lock.h"
+#include "core/base/file.h"
 #include "core/text/csv.h"
 
 #include <sys/stat.h>

@@ -4,7 +4,7 @@
  * Linked so that openings of scenes come here, to be counted. */
 #include "small_run_testing.h"
 
-#include "core/base/lock.h"
+#include "core/base/file.h"
 #include "scenes/open.h"
 
 #include <signal.h>

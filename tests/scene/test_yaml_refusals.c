@@ -56,20 +56,15 @@ static const struct {
     {"objects:\n- ? [a]\n  : 1\n", 2, "plain word"},
     /* numbers */
     {"objects:\n- sphere:\n    center: [0, 0, 0]\n    radius: 0\n", 4, "radius above 0"},
-    {"objects:\n- sphere:\n    center: [0, 0, 0]\n    radius: -3\n", 4, "radius above 0"},
     {"objects:\n- sphere:\n    radius: 1\n    center: [0,\n      nan, 0]\n", 5,
      "invalid value 'nan': expected a finite number"},
     {"objects:\n- sphere: {center: [0, .inf, 0], radius: 1}\n", 2,
      "invalid value '.inf': expected a finite number"},
     {"objects:\n- sphere: {center: [0, 1, 0], radius: 1e39}\n", 2, "fits float32"},
     {"objects:\n- sphere: {center: [0, 1, 0], radius: 1m}\n", 2, "invalid value '1m'"},
-    {"objects:\n- sphere: {center: [0, 1, 0], radius: 1e400}\n", 2,
-     "invalid value '1e400': expected a finite number"},
     {"objects:\n- sphere: {center: [-1e400, 1, 0], radius: 1}\n", 2,
      "invalid value '-1e400': expected a finite number"},
-    {"objects:\n- sphere: {center: [0, 1, 0], radius: -Infinity}\n", 2, "expected a finite number"},
     {SPHERE "camera: {size: [1e400, 1]}\n", 3, "a whole number 1..32768"},
-    {SPHERE "camera: {size: [nan, 1]}\n", 3, "a whole number 1..32768"},
     {"objects:\n- sphere: {center: [0, 1, 0], radius: }\n", 2, "expected a finite number"},
     {"objects:\n- sphere: {center: [0, 1, 0], radius: \"1\\02\"}\n", 2, "zero byte"},
     {"objects:\n- sphere: {center: [0, 1, 0], radius: [1]}\n", 2,
@@ -112,8 +107,6 @@ static const struct {
     {SPHERE "camera:\n  up: [0, 0, 1]\n  fov: 180\n", 5, "below 180"},
     {SPHERE "camera:\n  near: -1\n", 4, "at least 0"},
     {SPHERE "camera:\n  size: [0, 100]\n", 4, "1..32768"},
-    {SPHERE "camera:\n  size: [1000000000, 100]\n", 4, "1..32768"},
-    {SPHERE "camera:\n  size: [5000000000, 100]\n", 4, "whole number"},
     {SPHERE "camera:\n  size: [-5, 100]\n", 4, "whole number"},
     {SPHERE "camera:\n  size: [1.5, 100]\n", 4, "whole number"},
     {SPHERE "camera:\n  from: [1e18, 0, 0]\n  at: [0, 0, 0]\n", 4, "nearer"},
@@ -129,7 +122,6 @@ static const struct {
     {SPHERE "- mesh:\n    path: ../../../../../../../../dev/zero\n", 4,
      "no format '.' can be read as a mesh"},
     {SPHERE "- mesh:\n    path: /dev/zero.obj\n", 4, "No such file"},
-    {SPHERE "- mesh:\n    path: ../../../../../../../../dev/full.obj\n", 4, "No such file"},
     {SPHERE "- builtin:\n    name: scene.yaml\n", 4, "scene.yaml"}, /* scenes cannot include each other */
     {SPHERE "- builtin:\n    name: bals\n", 4, "balls"},
     {SPHERE "- builtin: {name: \"balls:size=1000000000\"}\n", 3, "size"},
@@ -174,17 +166,11 @@ static const struct {
     {SOLIDS "- name: c\n  mesh:\n    path: open.obj\n" CSG("a"), 7, "closed"},
     {SOLIDS CSG("x"), 6, "no solid 'x'"},
     {SOLIDS CSG("a |"), 6, "at character 4"},
-    {SOLIDS CSG("a h"), 6, "(difference) or ')'"},
-    {SOLIDS CSG("(a - h"), 6, "a ')' is missing"},
-    {SOLIDS CSG("a - h)"), 6, "has no '(' before it"},
-    {SOLIDS CSG("a - - h"), 6, "expected a name or '('"},
     {SOLIDS CSG("''"), 6, "0 characters"},
     {SOLIDS CSG("h"), 6, "unbounded"},
     {SOLIDS CSG("a | h"), 6, "unbounded"},
     {SOLIDS CSG("h - a"), 6, "unbounded"},
     {SOLIDS CSG("a, extents: maybe"), 6, "invalid value 'maybe': expected on or off"},
-    {SOLIDS CSG("a, extents: ''"), 6, "invalid value '': expected on or off"},
-    {SOLIDS CSG("a, extents: true"), 6, "invalid value 'true': expected on or off"},
     {SOLIDS CSG("a, material: blu"), 6, "no material 'blu'"},
     {"objects:\n- csg: {extents: on}\n", 2, "'formula' is missing"},
     {SOLIDS TIMES_64("c", "a") TIMES_64("d", "c") TIMES_64("e", "d") TIMES_64("f", "e") TIMES_64("g", "f")
@@ -214,9 +200,8 @@ RT_TEST(files_that_are_none_are_refused) {
     assert_bad_input(load(RT_TEST_FOLDER "/missing.yaml", &scene, error), "missing.yaml: cannot be opened");
     assert_bad_input(load(RT_TEST_FOLDER, &scene, error), "not a file");
     assert_bad_input(load("/dev/zero", &scene, error), "/dev/zero");
-    char zeros[4096] = "";
-    write_bytes(RT_TEST_FOLDER "/zeros.yaml", zeros, sizeof zeros);
-    assert_bad_input(load(RT_TEST_FOLDER "/zeros.yaml", &scene, error), "zeros.yaml");
+    write_bytes(RT_TEST_FOLDER "/zero.yaml", "objects:\n- \0", 12);
+    assert_bad_input(load(RT_TEST_FOLDER "/zero.yaml", &scene, error), "zero.yaml:2:3: there is a byte of 0");
 }
 
 RT_TEST(deep_nesting_is_refused_without_descending) {
@@ -273,14 +258,6 @@ RT_TEST(much_of_anything_is_refused_with_its_place_and_soon) {
                             cases[i].place, cases[i].says);
         assert_int_equal(rt_alloc_live(), live);
     }
-}
-
-RT_TEST(zero_bytes_are_refused_with_their_place) {
-    static const char text[] = "objects:\n- sphere: {center: [0, \0 0, 0], radius: 1}\n";
-    write_bytes(RT_TEST_FOLDER "/scene.yaml", text, sizeof text - 1);
-    RtScene scene;
-    assert_bad_input(load(RT_TEST_FOLDER "/scene.yaml", &scene, error),
-                     "scene.yaml:2:24: there is a byte of 0");
 }
 
 RT_TEST(line_ends_of_windows_do_not_matter) {

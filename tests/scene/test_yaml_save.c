@@ -42,49 +42,41 @@ RT_TEST(a_saved_scene_names_its_format_first) {
     assert_string_equal(line, "format: 1\n");
 }
 
-/* Half-spaces are saved as polyhedra of one plane, slabs as polyhedra of two. */
-RT_TEST(solids_without_an_end_survive_saving) {
-    OWNED_SCENE scene =
-        yaml_scene("solids:\n"
-                   "  - {name: ball, sphere: {center: [1, 2, 3], radius: 1.1}}\n"
-                   "  - {name: below, half_space: {point: [1, 2, 3], normal: [1, 2, 3]}}\n"
-                   "  - {name: slab, polyhedron: {planes: [[0.3, 1, 0, 2.5], [-0.3, -1, 0, -1.7]]}}\n"
-                   "objects:\n"
-                   "  - csg: {formula: ball & below}\n"
-                   "  - csg: {formula: ball & slab, transform: [{scale: 0.3}]}\n");
-    assert_survives(&scene);
-}
-
-/* They are saved as facets. */
-RT_TEST(meshes_as_solids_survive_saving) {
-    OWNED_SCENE scene = yaml_scene("solids:\n"
-                                   "  - {name: ball, sphere: {center: [0, 0, 0], radius: 0.9}}\n"
-                                   "  - name: corner\n"
-                                   "    facets:\n"
-                                   "      triangles:\n"
-                                   "        - [0.1, 0, 0, 0, 1.1, 0, 1.3, 0, 0]\n"
-                                   "        - [0.1, 0, 0, 1.3, 0, 0, 0, 0, 0.7]\n"
-                                   "        - [0.1, 0, 0, 0, 0, 0.7, 0, 1.1, 0]\n"
-                                   "        - [1.3, 0, 0, 0, 1.1, 0, 0, 0, 0.7]\n"
-                                   "objects:\n"
-                                   "  - csg: {formula: ball & corner}\n"
-                                   "  - csg: {formula: ball - corner, transform: [{scale: 0.3}]}\n");
-    assert_survives(&scene);
-}
-
-/* Moving them rounds otherwise than moving the cone and computing them again. */
-RT_TEST(the_caps_of_moved_cones_survive_saving) {
-    OWNED_SCENE scene =
-        yaml_scene("solids:\n"
-                   "  - {name: a, cone: {base: [1, 0, 0.1], base_radius: 0.26, apex: [0, 0, 0.34], "
-                   "apex_radius: 0.18}}\n"
-                   "  - {name: b, cone: {base: [1, 2, 3], base_radius: 1, apex: [0, 0, 0.34], "
-                   "apex_radius: 0}}\n"
-                   "objects:\n"
-                   "  - csg: {formula: a | b, transform: [{translate: [3.5, 0.5, 0]}]}\n"
-                   "  - csg: {formula: a - b, transform: [{rotate: {axis: [1, 2, 3], degrees: 20}}]}\n"
-                   "  - csg: {formula: a, transform: [{translate: [-2.5, 1.5, 1e6]}]}\n");
-    assert_survives(&scene);
+RT_TEST(solids_survive_saving) {
+    static const char *const texts[] = {
+        /* half-spaces become polyhedra of one plane, slabs of two */
+        "solids:\n"
+        "  - {name: ball, sphere: {center: [1, 2, 3], radius: 1.1}}\n"
+        "  - {name: below, half_space: {point: [1, 2, 3], normal: [1, 2, 3]}}\n"
+        "  - {name: slab, polyhedron: {planes: [[0.3, 1, 0, 2.5], [-0.3, -1, 0, -1.7]]}}\n"
+        "objects:\n"
+        "  - csg: {formula: ball & below}\n"
+        "  - csg: {formula: ball & slab, transform: [{scale: 0.3}]}\n",
+        /* facets */
+        "solids:\n"
+        "  - {name: ball, sphere: {center: [0, 0, 0], radius: 0.9}}\n"
+        "  - name: corner\n"
+        "    facets:\n"
+        "      triangles:\n"
+        "        - [0.1, 0, 0, 0, 1.1, 0, 1.3, 0, 0]\n"
+        "        - [0.1, 0, 0, 1.3, 0, 0, 0, 0, 0.7]\n"
+        "        - [0.1, 0, 0, 0, 0, 0.7, 0, 1.1, 0]\n"
+        "        - [1.3, 0, 0, 0, 1.1, 0, 0, 0, 0.7]\n"
+        "objects:\n"
+        "  - csg: {formula: ball & corner}\n"
+        "  - csg: {formula: ball - corner, transform: [{scale: 0.3}]}\n",
+        /* moving the caps rounds otherwise than moving the cone and computing them again */
+        "solids:\n"
+        "  - {name: a, cone: {base: [1, 0, 0.1], base_radius: 0.26, apex: [0, 0, 0.34], apex_radius: 0.18}}\n"
+        "  - {name: b, cone: {base: [1, 2, 3], base_radius: 1, apex: [0, 0, 0.34], apex_radius: 0}}\n"
+        "objects:\n"
+        "  - csg: {formula: a | b, transform: [{translate: [3.5, 0.5, 0]}]}\n"
+        "  - csg: {formula: a - b, transform: [{rotate: {axis: [1, 2, 3], degrees: 20}}]}\n"
+        "  - csg: {formula: a, transform: [{translate: [-2.5, 1.5, 1e6]}]}\n"};
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+        OWNED_SCENE scene = yaml_scene(texts[i]);
+        assert_survives(&scene);
+    }
 }
 
 RT_TEST(vertex_normals_survive_saving_bit_for_bit) {

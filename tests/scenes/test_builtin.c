@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* scenes/: random scenes, rejected specs, and memory; test_spd.c tests the databases. */
+/* scenes/: random scenes, rejected specs, and memory; test_places.c tests what the others contain. */
 #include "scene_testing.h"
 
 #include "scenes/builtin.h"
@@ -9,15 +9,6 @@
 /* Instead of the library's: as if there were no memory for what it keeps. */
 XXH3_state_t *XXH3_createState(void) {
     return NULL;
-}
-
-RT_TEST(random_scenes_have_as_many_objects_as_asked_for) {
-    static const ShapeCounts rows[] = {{"random:n=7", 7, 0, 0, 0},
-                                       {"random:n=1", 1, 0, 0, 0},
-                                       {"random:n=8,shape=triangle", 0, 0, 8, 0},
-                                       {"random:n=500,shape=mixed,seed=7", 125, 125, 125, 125},
-                                       {"random:n=0", 0, 0, 0, 0}};
-    assert_shape_counts(rows, sizeof rows / sizeof rows[0]);
 }
 
 static RtVec3 extent_of(const RtScene *scene, uint32_t first, uint32_t count) {
@@ -66,14 +57,6 @@ RT_TEST(a_fingerprint_needs_no_memory) {
 RT_TEST(a_fingerprint_tells_which_triangle_has_normals) {
     assert_int_not_equal(fingerprint_with_normals(0), fingerprint_with_normals(1));
     assert_int_equal(fingerprint_with_normals(1), fingerprint_with_normals(1));
-}
-
-RT_TEST(random_scenes_depend_on_the_seed_alone) {
-    OWNED_SCENE a = open_scene("random:n=500,shape=mixed,seed=7");
-    OWNED_SCENE b = open_scene("random:n=500,shape=mixed,seed=7");
-    OWNED_SCENE c = open_scene("random:n=500,shape=mixed,seed=8");
-    assert_int_equal(rt_scene_fingerprint(&a), rt_scene_fingerprint(&b));
-    assert_int_not_equal(rt_scene_fingerprint(&a), rt_scene_fingerprint(&c));
 }
 
 RT_TEST(a_random_object_does_not_depend_on_those_before_it) {
@@ -136,7 +119,8 @@ RT_TEST(too_large_a_scene_is_refused_with_the_size_that_fits) {
         RtValue values[RT_MAX_PARAMS];
         assert_ok(rt_params_parse(builtin->params, builtin->param_count, NULL, "it", values, error));
         values[0].i = cases[i].value;
-        uint64_t each = builtin->object_bytes ? builtin->object_bytes(values) : RT_BUILTIN_OBJECT_BYTES;
+        const uint64_t constant = builtin->bytes_each ? builtin->bytes_each : RT_BUILTIN_OBJECT_BYTES;
+        const uint64_t each = builtin->object_bytes ? builtin->object_bytes(values) : constant;
         uint64_t bytes = cases[i].objects * each;
         assert_bad_input(rt_builtin_check_memory(builtin, values, bytes, error), cases[i].says);
     }
@@ -165,7 +149,8 @@ RT_TEST(objects_are_as_many_as_told_beforehand_and_take_no_more_memory_than_esti
         const RtBuiltin *builtin;
         RtValue values[RT_MAX_PARAMS];
         OWNED_SCENE scene = open_as_counted(spec, &builtin, values);
-        if (rt_scene_bytes(&scene) > rt_builtin_bytes(builtin, values)) fail_msg("%s takes more", spec);
+        const uint64_t too_few = rt_scene_bytes(&scene) - 1;
+        assert_bad_input(rt_builtin_check_memory(builtin, values, too_few, error), "would fit");
     }
 }
 

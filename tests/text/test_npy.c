@@ -85,11 +85,11 @@ PLACE_TEST(arrays_of_another_type_order_shape_or_length_are_refused) {
         {1, 0, SHAPE("()"), 4, "expected the shape (N, 8)"},
         {1, 0, SHAPE("(2, 8, 1)"), 64, "expected the shape (N, 8)"},
         {1, 0, SHAPE("(1001, 8)"), 1001 * 32, "at most 1000"},
-        {1, 0, SHAPE("(18446744073709551615, 8)"), 64, "at most 1000"},
+        {1, 0, SHAPE("(9223372036854775807, 8)"), 64, "at most 1000"},
         {1, 0, SHAPE("(18446744073709551616, 8)"), 64, "the header is not"},
-        {1, 0, SHAPE("(-2, 8)"), 64, "the header is not"},
+        {1, 0, SHAPE("(-2, 8)"), 64, "expected the shape"},
         {1, 0, SHAPE("(2 8)"), 64, "the header is not"},
-        {1, 0, SHAPE("(2)"), 64, "the header is not"},
+        {1, 0, SHAPE("(2)"), 64, "expected the shape (N, 8)"},
         {1, 0, SHAPE("(2, 8"), 64, "the header is not"},
         {1, 0, SHAPE("2, 8"), 64, "the header is not"},
         {1, 0, SHAPE("(2, 8)") "x", 64, "the header is not"},
@@ -105,7 +105,7 @@ PLACE_TEST(arrays_of_another_type_order_shape_or_length_are_refused) {
          "the header is not"},
         {1, 0, "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 8), 'shape': (2, 8)}", 64,
          "the header is not"},
-        {1, 0, "{'descr': '<f4, 'fortran_order': False, 'shape': (2, 8)}", 64, "expected '<f4'"},
+        {1, 0, "{'descr': '<f4, 'fortran_order': False, 'shape': (2, 8)}", 64, "the header is not"},
         {1, 0, "", 64, "the header is not"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {

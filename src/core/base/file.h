@@ -101,6 +101,25 @@ size_t rt_directory_each(const char *folder, const char *suffix,
 /* Removes them. */
 void rt_directory_remove_files(const char *folder, const char *suffix);
 
+/* A lock on a directory that one process at a time writes into. It is the kernel's lock on the directory
+ * itself: it leaves no file behind and ends with its process, however that ends. RT_NO_LOCK holds nothing and
+ * may be released. */
+typedef struct RtLock {
+    int descriptor; /* of the directory, or -1 */
+} RtLock;
+
+#define RT_NO_LOCK ((RtLock){-1})
+
+static inline bool rt_lock_is_held(const RtLock *lock) {
+    return lock->descriptor >= 0;
+}
+
+/* Locks the directory at `path`, or fails if another process holds the lock for a second. Succeeds without a
+ * lock if there is no such directory or its file system has no locks. */
+RtStatus rt_lock_take(RtLock *lock, const char *path, RtError *error);
+
+void rt_lock_release(RtLock *lock);
+
 /* Writes "FOLDER/name" to out[0..RT_MAX_PATH); just the name if it is absolute or the folder is empty.
  * Rejects a path that is too long. */
 RtStatus rt_path_join(const char *folder, const char *name, char *out, RtError *error);

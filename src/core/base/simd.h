@@ -8,9 +8,9 @@
  *     RtInts inside = (x >= 0) & (x <= limit);            a comparison is -1 in lanes where it holds, else 0
  *     nearest = rt_min(rt_select(inside, x, far), nearest);
  *
- * RtFloats, RtInts, RtWords and RtDoubles fill a register of the instruction set that the file is compiled
- * for: RT_LANES floats (16 with AVX-512, 8 with AVX2, else 4, as with SSE2 and NEON), as many signed or
- * unsigned 32-bit words, half as many doubles. A kernel takes its items RT_LANES at a time. gcc would keep
+ * RtFloats, RtInts and RtDoubles fill a register of the instruction set that the file is compiled
+ * for: RT_LANES floats (16 with AVX-512, 8 with AVX2, else 4, as with SSE2 and NEON), as many 32-bit
+ * integers, half as many doubles. A kernel takes its items RT_LANES at a time. gcc would keep
  * wider vectors in memory, which doubles the instructions. Where the data set the width, use RtFloat4 or
  * RtFloat8.
  *
@@ -68,7 +68,6 @@
 #define RT_DEFINE_VECTORS(N, HALF)                                                                           \
     typedef float RtFloat##N __attribute__((vector_size(4 * N)));                                            \
     typedef int32_t RtInt##N __attribute__((vector_size(4 * N)));                                            \
-    typedef uint32_t RtWord##N __attribute__((vector_size(4 * N)));                                          \
     typedef double RtDouble##HALF __attribute__((vector_size(4 * N)));                                       \
     typedef int64_t RtLong##HALF __attribute__((vector_size(4 * N)));                                        \
     typedef RtFloat##N RtFloatAt##N __attribute__((may_alias));                                              \
@@ -79,9 +78,6 @@
     }                                                                                                        \
     RT_INLINE RtInt##N rt_all_ints##N(int32_t x) {                                                           \
         return x - (RtInt##N){0};                                                                            \
-    }                                                                                                        \
-    RT_INLINE RtDouble##HALF rt_all_doubles##HALF(double x) {                                                \
-        return x - (RtDouble##HALF){0};                                                                      \
     }                                                                                                        \
     RT_INLINE RtFloat##N rt_load##N(const void *at) {                                                        \
         return *(const RtFloatAt##N *)at;                                                                    \
@@ -321,11 +317,9 @@ RT_DEFINE_DOUBLE_COMPARISONS(2)
 RT_DEFINE_MASK_COMPARISON(le, float8, RtFloat8, _mm256_cmp_ps_mask, __m256, _CMP_LE_OQ)
 RT_DEFINE_MASK_COMPARISON(lt, float8, RtFloat8, _mm256_cmp_ps_mask, __m256, _CMP_LT_OQ)
 RT_DEFINE_MASK_COMPARISON(lt, int8, RtInt8, _mm256_cmp_epi32_mask, __m256i, _MM_CMPINT_LT)
-RT_DEFINE_MASK_COMPARISON(eq, int8, RtInt8, _mm256_cmp_epi32_mask, __m256i, _MM_CMPINT_EQ)
 RT_DEFINE_MASK_COMPARISON(le, float16, RtFloat16, _mm512_cmp_ps_mask, __m512, _CMP_LE_OQ)
 RT_DEFINE_MASK_COMPARISON(lt, float16, RtFloat16, _mm512_cmp_ps_mask, __m512, _CMP_LT_OQ)
 RT_DEFINE_MASK_COMPARISON(lt, int16, RtInt16, _mm512_cmp_epi32_mask, __m512i, _MM_CMPINT_LT)
-RT_DEFINE_MASK_COMPARISON(eq, int16, RtInt16, _mm512_cmp_epi32_mask, __m512i, _MM_CMPINT_EQ)
 RT_DEFINE_MASK_COMPARISON(le, double8, RtDouble8, _mm512_cmp_pd_mask, __m512d, _CMP_LE_OQ)
 #elif defined(__AVX2__)
 RT_DEFINE_COMPARISONS(8)
@@ -383,16 +377,13 @@ RT_INLINE uint32_t rt_one_sign_float8(RtFloat8 least, RtFloat8 most) {
 
 typedef RT_OF_LANES(RtFloat) RtFloats;
 typedef RT_OF_LANES(RtInt) RtInts;
-typedef RT_OF_LANES(RtWord) RtWords;
 typedef RT_OF_HALF(RtDouble) RtDoubles;
-typedef RT_OF_HALF(RtLong) RtLongs;
 
-#define rt_all         RT_OF_LANES(rt_all)
-#define rt_all_ints    RT_OF_LANES(rt_all_ints)
-#define rt_all_doubles RT_OF_HALF(rt_all_doubles)
-#define rt_load        RT_OF_LANES(rt_load)
-#define rt_loadu       RT_OF_LANES(rt_loadu)
-#define rt_load_ints   RT_OF_LANES(rt_load_ints)
+#define rt_all       RT_OF_LANES(rt_all)
+#define rt_all_ints  RT_OF_LANES(rt_all_ints)
+#define rt_load      RT_OF_LANES(rt_load)
+#define rt_loadu     RT_OF_LANES(rt_loadu)
+#define rt_load_ints RT_OF_LANES(rt_load_ints)
 
 #if RT_AVX512
 #define RT_BY_WIDTH(Type, f)        Type##4 : f##4, Type##8 : f##8, Type##16 : f##16
@@ -418,7 +409,6 @@ typedef RT_OF_HALF(RtLong) RtLongs;
 #define rt_bits(mask)                    _Generic((mask), RT_BY_INTS(rt_bits))(mask)
 #define rt_le_bits(a, b)                 _Generic((a), RT_BY_FLOATS(rt_le_bits), RT_BY_DOUBLES(rt_le_bits))(a, b)
 #define rt_lt_bits(a, b)                 _Generic((a), RT_BY_FLOATS(rt_lt_bits), RT_BY_INTS(rt_lt_bits))(a, b)
-#define rt_eq_bits(a, b)                 _Generic((a), RT_BY_INTS(rt_eq_bits))(a, b)
 #define rt_one_sign_bits(least, most)    _Generic((least), RT_BY_FLOATS(rt_one_sign))(least, most)
 #define rt_inside_bits(least, most, sum) _Generic((least), RT_BY_DOUBLES(rt_inside))(least, most, sum)
 #define rt_to_ints(a)                    __builtin_convertvector(a, RtInts) /* towards 0 */
@@ -438,34 +428,15 @@ RT_INLINE RtInts rt_lane_numbers(void) {
 
 /* ---- bits as masks ---- */
 
-/* a in the lanes of the bits, else b; and a stored to them, the others kept. */
+/* a in the lanes of the bits, else b. */
+RT_INLINE RtInt8 rt_select_bits8(uint32_t bits, RtInt8 a, RtInt8 b) {
 #if RT_AVX512
-RT_INLINE RtInt16 rt_select_bits(uint32_t bits, RtInt16 a, RtInt16 b) {
-    return (RtInt16)_mm512_mask_mov_epi32((__m512i)b, (__mmask16)bits, (__m512i)a);
-}
-RT_INLINE RtInt8 rt_select_bits8(uint32_t bits, RtInt8 a, RtInt8 b) {
     return (RtInt8)_mm256_mask_mov_epi32((__m256i)b, (__mmask8)bits, (__m256i)a);
-}
-RT_INLINE void rt_store_lanes(void *at, uint32_t bits, RtInt16 a) {
-    _mm512_mask_storeu_epi32(at, (__mmask16)bits, (__m512i)a);
-}
 #else
-RT_INLINE RtInt8 rt_select_bits8(uint32_t bits, RtInt8 a, RtInt8 b) {
     const RtInt8 lanes = {1, 2, 4, 8, 16, 32, 64, 128};
     return rt_select(rt_eq_int8(rt_all_ints8((int32_t)bits) & lanes, lanes), a, b);
-}
-RT_INLINE RtInts rt_select_bits(uint32_t bits, RtInts a, RtInts b) {
-#if RT_LANES == 8
-    return rt_select_bits8(bits, a, b);
-#else
-    const RtInts lanes = {1, 2, 4, 8};
-    return rt_select((rt_all_ints((int32_t)bits) & lanes) == lanes, a, b);
 #endif
 }
-RT_INLINE void rt_store_lanes(void *at, uint32_t bits, RtInts a) {
-    rt_store(at, rt_select_bits(bits, a, rt_load_ints(at)));
-}
-#endif
 
 /* ---- rounding, and doubles ---- */
 
@@ -521,17 +492,13 @@ RT_INLINE RtDouble2 rt_widen_lower(RtFloat4 a) {
 #endif
 }
 
-/* The lower lanes, half 0, or the upper, half 1, as doubles; floats of both, rounded; and RT_LANES / 2
- * doubles rounded to at[0..RT_LANES / 2). */
+/* The lower lanes, half 0, or the upper, half 1, as doubles; and floats of both, rounded. */
 #if RT_AVX512
 RT_INLINE RtDoubles rt_to_doubles(RtFloats a, int half) {
     return _mm512_cvtps_pd(half ? _mm512_extractf32x8_ps(a, 1) : _mm512_castps512_ps256(a));
 }
 RT_INLINE RtFloats rt_round_doubles(RtDoubles lower, RtDoubles upper) {
     return _mm512_insertf32x8(_mm512_castps256_ps512(_mm512_cvtpd_ps(lower)), _mm512_cvtpd_ps(upper), 1);
-}
-RT_INLINE void rt_store_doubles(float *at, RtDoubles a) {
-    _mm256_storeu_ps(at, _mm512_cvtpd_ps(a));
 }
 #elif RT_LANES == 8
 RT_INLINE RtDoubles rt_to_doubles(RtFloats a, int half) {
@@ -540,18 +507,12 @@ RT_INLINE RtDoubles rt_to_doubles(RtFloats a, int half) {
 RT_INLINE RtFloats rt_round_doubles(RtDoubles lower, RtDoubles upper) {
     return _mm256_set_m128(_mm256_cvtpd_ps(upper), _mm256_cvtpd_ps(lower));
 }
-RT_INLINE void rt_store_doubles(float *at, RtDoubles a) {
-    _mm_storeu_ps(at, _mm256_cvtpd_ps(a));
-}
 #elif defined(__SSE2__)
 RT_INLINE RtDoubles rt_to_doubles(RtFloats a, int half) {
     return _mm_cvtps_pd(half ? (RtFloats)_mm_movehl_ps(a, a) : a);
 }
 RT_INLINE RtFloats rt_round_doubles(RtDoubles lower, RtDoubles upper) {
     return _mm_movelh_ps(_mm_cvtpd_ps(lower), _mm_cvtpd_ps(upper));
-}
-RT_INLINE void rt_store_doubles(float *at, RtDoubles a) {
-    _mm_storel_epi64((__m128i *)(void *)at, _mm_castps_si128(_mm_cvtpd_ps(a)));
 }
 #elif RT_NEON
 RT_INLINE RtDoubles rt_to_doubles(RtFloats a, int half) {
@@ -560,9 +521,6 @@ RT_INLINE RtDoubles rt_to_doubles(RtFloats a, int half) {
 RT_INLINE RtFloats rt_round_doubles(RtDoubles lower, RtDoubles upper) {
     return vcvt_high_f32_f64(vcvt_f32_f64(lower), upper);
 }
-RT_INLINE void rt_store_doubles(float *at, RtDoubles a) {
-    vst1_f32(at, vcvt_f32_f64(a));
-}
 #else
 RT_INLINE RtDoubles rt_to_doubles(RtFloats a, int half) {
     return (RtDoubles){(double)a[2 * half], (double)a[2 * half + 1]};
@@ -570,15 +528,6 @@ RT_INLINE RtDoubles rt_to_doubles(RtFloats a, int half) {
 RT_INLINE RtFloats rt_round_doubles(RtDoubles lower, RtDoubles upper) {
     return (RtFloats){(float)lower[0], (float)lower[1], (float)upper[0], (float)upper[1]};
 }
-RT_INLINE void rt_store_doubles(float *at, RtDoubles a) {
-    at[0] = (float)a[0];
-    at[1] = (float)a[1];
-}
 #endif
-
-/* |a| with the sign of another; a >= 0. */
-RT_INLINE RtDoubles rt_copy_sign(RtDoubles a, RtDoubles sign) {
-    return (RtDoubles)((RtLongs)a | ((RtLongs)sign & INT64_MIN));
-}
 
 #endif

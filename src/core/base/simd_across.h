@@ -156,7 +156,7 @@ RT_INLINE void rt_sets8_compress(uint64_t *at, uint32_t bits, const RtSets8 *set
 
 /* ---- tables ---- */
 
-/* table[index[i]] in lane i, index < 2^31; of words table[(ptrdiff_t)stride * index[i]], stride 1 or 2. */
+/* table[index[i]] in lane i, index < 2^31. */
 RT_INLINE RtFloats rt_gather(const float *table, RtInts index) {
 #if RT_AVX512
     return _mm512_i32gather_ps((__m512i)index, table, 4);
@@ -166,19 +166,6 @@ RT_INLINE RtFloats rt_gather(const float *table, RtInts index) {
     return (RtFloats){table[index[0]], table[index[1]], table[index[2]], table[index[3]]};
 #endif
 }
-#if RT_AVX512
-#define rt_gather_words(table, index, stride)                                                                \
-    ((RtInts)_mm512_i32gather_epi32((__m512i)(index), table, 4 * (stride)))
-#elif RT_LANES == 8
-#define rt_gather_words(table, index, stride)                                                                \
-    ((RtInts)_mm256_i32gather_epi32((const int *)(table), (__m256i)(index), 4 * (stride)))
-#else
-RT_INLINE RtInts rt_gather_words(const uint32_t *table, RtInts index, int stride) {
-    RtInts out;
-    for (int i = 0; i < RT_LANES; i++) out[i] = (int32_t)table[(ptrdiff_t)stride * index[i]];
-    return out;
-}
-#endif
 /* The same of a table of sixty-four floats, aligned to 64 bytes. */
 RT_INLINE RtFloats rt_gather64(const float *table, RtInts index) {
 #if RT_AVX512

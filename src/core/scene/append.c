@@ -8,8 +8,6 @@
 typedef struct Append {
     RtScene *to;
     const RtScene *from;
-    const uint32_t *ids; /* [count] objects, or NULL: all */
-    uint32_t count;
     const RtTransform *transform; /* or NULL */
     double scale;                 /* the uniform scale, 0 if uneven */
     uint32_t *materials;          /* [from->material_count] index in `to` */
@@ -85,33 +83,24 @@ static RtStatus append_materials(const Append *a) {
     return RT_OK;
 }
 
-static RtStatus append_all(const Append *a) {
-    const RtGeometry *g = &a->from->geometry;
-    RT_TRY(append_materials(a));
-    for (uint32_t i = 0; i < g->polygon_vertex_count; i++)
-        a->vertices[i] = move_point(a, g->polygon_vertices[i]);
-    for (uint32_t i = 0; i < a->count; i++) RT_TRY(append_object(a, a->ids ? a->ids[i] : i));
-    return RT_OK;
-}
-
+/* The objects ids[0..count), or with NULL the first `count`. */
 static RtStatus append(RtScene *to, const RtScene *from, const uint32_t *ids, uint32_t count,
                        const RtTransform *transform, RtError *error) {
-    Append a = {.to = to,
-                .from = from,
-                .ids = ids,
-                .count = count,
-                .transform = transform,
-                .scale = transform ? rt_transform_uniform_scale(transform) : 1,
-                .materials = rt_alloc(from->material_count, sizeof(uint32_t)),
-                .vertices = rt_alloc(from->geometry.polygon_vertex_count, sizeof(RtVec3)),
-                .error = error};
-    RtStatus status = a.materials && a.vertices
-                          ? append_all(&a)
-                          : rt_fail_memory(error, "appending a scene",
-                                           from->geometry.polygon_vertex_count * sizeof(RtVec3));
-    rt_free(a.materials);
-    rt_free(a.vertices);
-    return status;
+    RT_ARENA(memory);
+    const RtGeometry *g = &from->geometry;
+    const Append a = {.to = to,
+                      .from = from,
+                      .transform = transform,
+                      .scale = transform ? rt_transform_uniform_scale(transform) : 1,
+                      .materials = rt_arena_alloc(&memory, from->material_count, sizeof(uint32_t)),
+                      .vertices = rt_arena_alloc(&memory, g->polygon_vertex_count, sizeof(RtVec3)),
+                      .error = error};
+    RT_TRY(rt_arena_check(&memory, "appending a scene", error));
+    RT_TRY(append_materials(&a));
+    for (uint32_t i = 0; i < g->polygon_vertex_count; i++)
+        a.vertices[i] = move_point(&a, g->polygon_vertices[i]);
+    for (uint32_t i = 0; i < count; i++) RT_TRY(append_object(&a, ids ? ids[i] : i));
+    return RT_OK;
 }
 
 RtStatus rt_scene_append(RtScene *to, const RtScene *from, const RtTransform *transform, RtError *error) {

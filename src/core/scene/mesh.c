@@ -8,7 +8,7 @@
 
 typedef struct Format {
     const char *extension;
-    RtStatus (*check)(const RtMeshHead *head, RtError *error); /* or NULL */
+    RtStatus (*check)(RtMeshReader *r, const RtMeshHead *head); /* or NULL */
     RtStatus (*read)(RtMeshReader *r);
     void (*write)(const RtGeometry *geometry, FILE *file); /* of the first RT_MESH_WRITTEN */
     uint32_t most;                                         /* triangles that can be written */
@@ -29,24 +29,15 @@ const char *rt_mesh_extension(size_t i) {
     return i < sizeof formats / sizeof formats[0] ? formats[i].extension : NULL;
 }
 
-static RtStatus check_head(const Format *format, const char *path, RtError *error) {
+static RtStatus check_head(const Format *format, RtMeshReader *r) {
     FILE *file;
-    RtMeshHead head = {.path = path};
-    if (!format->check) return RT_OK;
-    RT_TRY(rt_file_open(path, &file, error));
+    RtMeshHead head = {.size = 0};
+    RT_TRY(rt_file_open(r->text.path, &file, r->text.error));
     const size_t got = fread(head.bytes, 1, RT_MESH_HEAD, file);
     const long size = fseek(file, 0, SEEK_END) == 0 ? ftell(file) : -1;
     fclose(file);
     head.size = size < 0 ? got : (uint64_t)size;
-    return format->check(&head, error);
-}
-
-static RtStatus read_mesh(const Format *format, RtMeshReader *r) {
-    const uint32_t before = r->scene->geometry.object_count;
-    RT_TRY(format->read(r));
-    if (r->scene->geometry.object_count > before) return RT_OK;
-    return rt_fail_at(r->text.error, r->text.path, 0, 0,
-                      "there is no triangle in this file: a mesh needs at least one");
+    return format->check(r, &head);
 }
 
 RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, const RtTransform *transform,
@@ -56,21 +47,21 @@ RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, con
     size_t size, number;
     RT_TRY(rt_find_format(path, rt_mesh_extension, "read as a mesh", &number, error));
     const Format *format = &formats[number];
-    RT_TRY(check_head(format, path, error));
+    RtMeshReader r = {.text = {.path = path, .error = error ? error : &own},
+                      .scene = scene,
+                      .material = material,
+                      .transform = transform ? *transform : rt_transform_identity()};
+    if (format->check) RT_TRY(check_head(format, &r));
     RT_TRY((format->text ? rt_file_read_text : rt_file_read)(path, RT_MESH_MAX_BYTES, &data, &size, error));
-    RtMeshReader reader = {.text = {.path = path,
-                                    .at = data,
-                                    .end = data + size,
-                                    .line = 1,
-                                    .fresh = true,
-                                    .error = error ? error : &own},
-                           .scene = scene,
-                           .material = material,
-                           .transform = transform ? *transform : rt_transform_identity()};
-    RtStatus status = read_mesh(format, &reader);
-    rt_free(reader.vertices);
-    rt_free(reader.normals);
-    rt_free(reader.corners);
+    rt_scan_begin(&r.text, data, size);
+    const uint32_t before = scene->geometry.object_count;
+    RtStatus status = format->read(&r);
+    r.text.last = 0;
+    if (status == RT_OK && scene->geometry.object_count == before)
+        status = rt_mesh_fail(&r, "there is no triangle in this file: a mesh needs at least one");
+    rt_free(r.vertices);
+    rt_free(r.normals);
+    rt_free(r.corners);
     rt_free(data);
     return status;
 }

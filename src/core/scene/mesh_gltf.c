@@ -22,10 +22,11 @@ typedef struct Gltf {
     json_t *root;
     Buffer chunk; /* the binary chunk of a .glb, borrowed; a zeroed struct: none */
     size_t buffer_count;
-    Buffer *buffers; /* [buffer_count], owned, except `chunk` */
+    Buffer *buffers; /* [buffer_count], their data owned, except `chunk` */
     size_t size;     /* bytes of the document and its buffers */
     uint64_t placed; /* primitives, their vertices and corners, in all nodes so far */
-    bool *visited;   /* [nodes], owned */
+    bool *visited;   /* [nodes] */
+    RtArena memory;
 } Gltf;
 
 /* An entry of one of the document's lists. */
@@ -43,6 +44,7 @@ typedef struct View {
     size_t stride;
 } View;
 
+enum { NO_INDEX = -1 };
 enum { UINT8 = 5121, UINT16 = 5123, UINT32 = 5125, FLOAT32 = 5126 };
 
 #define MOST_INTEGER ((json_int_t)1 << 40) /* sums, and products with 2^20, fit 64 bits */
@@ -60,20 +62,18 @@ __attribute__((format(printf, 3, 4))) static RtStatus fail_item(const Gltf *g, c
     return rt_mesh_fail(g->mesh, "%s[%zu]: %s", item->list, item->index, message);
 }
 
-/* Finds object `index` of `list`, or the one whose index is `reference`; `by` says where that is. */
-static RtStatus item_at(const Gltf *g, const char *list, json_int_t index, const char *by, Item *item) {
+/* Finds the object of `list` whose index is `reference`, which stands in `by`; without one, `otherwise`. */
+static RtStatus find_item(const Gltf *g, const char *list, const json_t *reference, json_int_t otherwise,
+                          const char *by, Item *item) {
     const json_t *all = json_object_get(g->root, list);
+    const json_int_t index = json_is_integer(reference) ? json_integer_value(reference) : otherwise;
+    if (!json_is_integer(reference) && (reference || otherwise == NO_INDEX))
+        return rt_mesh_fail(g->mesh, "%s lacks the index of one of the %s", by, list);
     if (index < 0 || (uint64_t)index >= json_array_size(all))
         return rt_mesh_fail(g->mesh, "%s names %s[%lld], but there are %zu (counted from 0)", by, list,
                             (long long)index, json_array_size(all));
     *item = (Item){list, (size_t)index, json_array_get(all, (size_t)index)};
     return json_is_object(item->object) ? RT_OK : fail_item(g, item, "expected an object");
-}
-
-static RtStatus find_item(const Gltf *g, const char *list, const json_t *reference, const char *by,
-                          Item *item) {
-    if (json_is_integer(reference)) return item_at(g, list, json_integer_value(reference), by, item);
-    return rt_mesh_fail(g->mesh, "%s lacks the index of one of the %s", by, list);
 }
 
 /* Gets the integer `key`, or `otherwise` if there is none. Rejects less than `least`, so an `otherwise` below
@@ -176,9 +176,8 @@ static RtStatus load_buffers(Gltf *g) {
     const json_t *list = json_object_get(g->root, "buffers");
     const size_t count = json_array_size(list);
     size_t left = RT_MESH_MAX_BYTES; /* for files, together: a document may name one many times */
-    g->buffers = rt_alloc(count, sizeof *g->buffers);
-    if (!g->buffers)
-        return rt_fail_memory(g->mesh->text.error, "buffers of glTF", count * sizeof *g->buffers);
+    g->buffers = rt_arena_alloc(&g->memory, count, sizeof *g->buffers);
+    RT_TRY(rt_arena_check(&g->memory, "buffers of glTF", g->mesh->text.error));
     g->buffer_count = count;
     for (size_t i = 0; i < count; i++) {
         const Item item = {"buffers", i, json_array_get(list, i)};
@@ -200,7 +199,7 @@ static RtStatus open_view(const Gltf *g, const json_t *reference, size_t width, 
     static const char *const names[] = {"", "SCALAR", "VEC2", "VEC3"};
     Item accessor = {0}, range = {0}, buffer = {0};
     uint64_t type = 0, count = 0, skip = 0, begin = 0, length = 0, stride = 0;
-    RT_TRY(find_item(g, "accessors", reference, "a primitive", &accessor));
+    RT_TRY(find_item(g, "accessors", reference, NO_INDEX, "a primitive", &accessor));
     if (json_object_get(accessor.object, "sparse"))
         return fail_item(g, &accessor, "it is sparse: cannot be read");
     RT_TRY(read_integer(g, &accessor, "componentType", 0, -1, &type));
@@ -211,12 +210,13 @@ static RtStatus open_view(const Gltf *g, const json_t *reference, size_t width, 
     if (size == 0 || (type == FLOAT32) != (width == 3) || !shape || strcmp(shape, names[width]) != 0)
         return fail_item(g, &accessor, "expected the type %s of %s", names[width],
                          width == 3 ? "float32" : "unsigned integers");
-    RT_TRY(
-        find_item(g, "bufferViews", json_object_get(accessor.object, "bufferView"), "an accessor", &range));
+    RT_TRY(find_item(g, "bufferViews", json_object_get(accessor.object, "bufferView"), NO_INDEX,
+                     "an accessor", &range));
     RT_TRY(read_integer(g, &range, "byteOffset", 0, 0, &begin));
     RT_TRY(read_integer(g, &range, "byteLength", 1, 0, &length));
     RT_TRY(read_integer(g, &range, "byteStride", (json_int_t)size, (json_int_t)size, &stride));
-    RT_TRY(find_item(g, "buffers", json_object_get(range.object, "buffer"), "a bufferView", &buffer));
+    RT_TRY(
+        find_item(g, "buffers", json_object_get(range.object, "buffer"), NO_INDEX, "a bufferView", &buffer));
     if (begin + length > g->buffers[buffer.index].size)
         return fail_item(g, &range, "it ends at byte %llu of a buffer of %zu bytes",
                          (unsigned long long)begin + length, g->buffers[buffer.index].size);
@@ -229,10 +229,9 @@ static RtStatus open_view(const Gltf *g, const json_t *reference, size_t width, 
 
 /* Integer `i` of a view. */
 static uint32_t index_at(const View *view, uint32_t i) {
-    const unsigned char *at = (const unsigned char *)view->data + view->stride * i;
-    return view->type == UINT8    ? at[0]
-           : view->type == UINT16 ? at[0] | (uint32_t)at[1] << 8
-                                  : rt_mesh_u32(at);
+    uint32_t index = 0;
+    memcpy(&index, view->data + view->stride * i, component_size(view->type));
+    return index;
 }
 
 /* ---- extensions ---- */
@@ -261,20 +260,16 @@ static RtStatus check_extensions(const Gltf *g) {
 
 enum { TRIANGLES = 4, STRIP = 5, FAN = 6 };
 
-static RtStatus add_triangle(const Gltf *g, const View *indices, const uint32_t corners[3]) {
-    for (int k = 0; k < 3; k++)
-        RT_TRY(rt_mesh_add_index(g->mesh, indices->data ? index_at(indices, corners[k]) : corners[k]));
-    return rt_mesh_add_polygon(g->mesh);
-}
-
 static RtStatus add_triangles(const Gltf *g, uint64_t mode, const View *indices) {
     const uint32_t count = indices->count;
     if (count < 3 || (mode == TRIANGLES && count % 3 != 0))
         return rt_mesh_fail(g->mesh, "a primitive of triangles has %u corners", count);
     for (uint32_t i = 0; i + 2 < count; i += mode == TRIANGLES ? 3 : 1) {
         const uint32_t odd = mode == STRIP ? i % 2 : 0; /* every other triangle of a strip is reversed */
-        const uint32_t triangle[3] = {mode == FAN ? 0 : i, i + 1 + odd, i + 2 - odd};
-        RT_TRY(add_triangle(g, indices, triangle));
+        const uint32_t corners[3] = {mode == FAN ? 0 : i, i + 1 + odd, i + 2 - odd};
+        for (int k = 0; k < 3; k++)
+            RT_TRY(rt_mesh_add_index(g->mesh, indices->data ? index_at(indices, corners[k]) : corners[k]));
+        RT_TRY(rt_mesh_add_polygon(g->mesh));
     }
     return RT_OK;
 }
@@ -327,7 +322,7 @@ static RtStatus add_mesh(Gltf *g, const json_t *reference) {
     Item mesh = {0};
     json_t *primitive;
     size_t i;
-    RT_TRY(find_item(g, "meshes", reference, "a node", &mesh));
+    RT_TRY(find_item(g, "meshes", reference, NO_INDEX, "a node", &mesh));
     const json_t *primitives = json_object_get(mesh.object, "primitives");
     if (!json_is_array(primitives)) return fail_item(g, &mesh, "expected primitives, a list");
     json_array_foreach(primitives, i, primitive) RT_TRY(add_primitive(g, &mesh, primitive));
@@ -336,9 +331,14 @@ static RtStatus add_mesh(Gltf *g, const json_t *reference) {
 
 /* ---- nodes ---- */
 
-/* From the translation, the rotation (a quaternion x y z w) and the scale of a node. */
-static RtStatus get_steps(const Gltf *g, const Item *node, RtTransform *out) {
-    double t[3] = {0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
+/* A matrix, or translation, rotation (a quaternion x y z w) and scale. */
+static RtStatus get_transform(const Gltf *g, const Item *node, RtTransform *out) {
+    double t[3] = {0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1}, columns[16];
+    if (json_object_get(node->object, "matrix")) {
+        RT_TRY(read_numbers(g, node, "matrix", 16, columns));
+        for (int i = 0; i < 12; i++) out->m[i % 3][i / 3] = columns[i / 3 * 4 + i % 3];
+        return RT_OK;
+    }
     RT_TRY(read_numbers(g, node, "translation", 3, t));
     RT_TRY(read_numbers(g, node, "rotation", 4, q));
     RT_TRY(read_numbers(g, node, "scale", 3, s));
@@ -350,16 +350,6 @@ static RtStatus get_steps(const Gltf *g, const Item *node, RtTransform *out) {
     return RT_OK;
 }
 
-static RtStatus get_transform(const Gltf *g, const Item *node, RtTransform *out) {
-    double columns[16];
-    if (!json_object_get(node->object, "matrix")) return get_steps(g, node, out);
-    RT_TRY(read_numbers(g, node, "matrix", 16, columns));
-    for (int row = 0; row < 3; row++) {
-        for (int column = 0; column < 4; column++) out->m[row][column] = columns[4 * column + row];
-    }
-    return RT_OK;
-}
-
 /* Nodes are trees, so each is visited once. */
 static RtStatus add_node(Gltf *g, const json_t *reference, const char *by, const RtTransform *above,
                          int depth) {
@@ -367,7 +357,7 @@ static RtStatus add_node(Gltf *g, const json_t *reference, const char *by, const
     RtTransform own, transform;
     const json_t *child;
     size_t i;
-    RT_TRY(find_item(g, "nodes", reference, by, &node));
+    RT_TRY(find_item(g, "nodes", reference, NO_INDEX, by, &node));
     if (g->visited[node.index]) return fail_item(g, &node, "it is named twice, but nodes form a tree");
     if (depth == DEEPEST) return fail_item(g, &node, "it is more than %d levels deep", DEEPEST);
     g->visited[node.index] = true;
@@ -383,14 +373,13 @@ static RtStatus add_node(Gltf *g, const json_t *reference, const char *by, const
 
 static RtStatus add_scene(Gltf *g) {
     const RtTransform outer = g->mesh->transform;
-    const json_t *number = json_object_get(g->root, "scene"), *node;
+    const json_t *node;
     const size_t nodes = json_array_size(json_object_get(g->root, "nodes"));
     Item scene = {0};
     size_t i;
-    RT_TRY(number ? find_item(g, "scenes", number, "the file", &scene)
-                  : item_at(g, "scenes", 0, "the file", &scene));
-    g->visited = rt_alloc(nodes, sizeof *g->visited);
-    if (!g->visited) return rt_fail_memory(g->mesh->text.error, "nodes of glTF", nodes);
+    RT_TRY(find_item(g, "scenes", json_object_get(g->root, "scene"), 0, "the file", &scene));
+    g->visited = rt_arena_alloc(&g->memory, nodes, sizeof *g->visited);
+    RT_TRY(rt_arena_check(&g->memory, "nodes of glTF", g->mesh->text.error));
     json_array_foreach(json_object_get(scene.object, "nodes"), i, node)
         RT_TRY(add_node(g, node, "the scene", &outer, 0));
     return RT_OK;
@@ -423,8 +412,7 @@ static RtStatus read_all(RtMeshReader *r, const char *text, size_t size, Buffer 
     for (size_t i = 0; i < g.buffer_count; i++) {
         if (g.buffers[i].data != chunk.data) rt_free(g.buffers[i].data);
     }
-    rt_free(g.buffers);
-    rt_free(g.visited);
+    rt_arena_clear(&g.memory);
     json_decref(g.root);
     return status;
 }
@@ -435,16 +423,15 @@ RtStatus rt_mesh_read_gltf(RtMeshReader *r) {
 
 enum { GLB_HEADER = 12, CHUNK_HEADER = 8 };
 
-RtStatus rt_mesh_check_glb(const RtMeshHead *head, RtError *error) {
+RtStatus rt_mesh_check_glb(RtMeshReader *r, const RtMeshHead *head) {
     const unsigned char *b = head->bytes;
     if (memcmp(b, "glTF", 4) != 0)
-        return rt_fail_at(error, head->path, 0, 0, "this is no binary glTF: it does not begin with 'glTF'");
+        return rt_mesh_fail(r, "this is no binary glTF: it does not begin with 'glTF'");
     if (rt_mesh_u32(b + 4) != 2)
-        return rt_fail_at(error, head->path, 0, 0, "this is glTF %u: only 2 can be read", rt_mesh_u32(b + 4));
+        return rt_mesh_fail(r, "this is glTF %u: only 2 can be read", rt_mesh_u32(b + 4));
     if (rt_mesh_u32(b + 8) == head->size) return RT_OK;
-    return rt_fail_at(error, head->path, 0, 0,
-                      "the header declares %u bytes, but the file has %llu: it is cut off or damaged",
-                      rt_mesh_u32(b + 8), (unsigned long long)head->size);
+    return rt_mesh_fail(r, "the header declares %u bytes, but the file has %llu: it is cut off or damaged",
+                        rt_mesh_u32(b + 8), (unsigned long long)head->size);
 }
 
 /* Takes a chunk, which must be of this type. */

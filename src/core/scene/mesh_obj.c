@@ -7,69 +7,56 @@
 
 #include <inttypes.h>
 
-typedef struct Obj {
-    RtMeshReader *mesh;
-    uint32_t texture_count;
-} Obj;
-
 /* Takes what is left of the line, which must be numbers; *last is the last of them. */
 static RtStatus take_numbers(RtMeshReader *r, uint32_t *count, float *last) {
     *count = 0;
-    for (;; ++*count) {
-        const RtWord word = rt_scan_peek(&r->text);
-        if (word.length == 0 || word.first) return RT_OK;
-        rt_scan_take(&r->text, word);
-        RT_TRY(rt_mesh_float(r, word, last));
-    }
+    for (RtWord word; rt_mesh_more(r, &word); ++*count) RT_TRY(rt_mesh_float(r, word, last));
+    return RT_OK;
 }
 
 /* A fourth number is a weight, which must be 1; more are a colour. */
-static RtStatus read_vertex(Obj *obj) {
-    RtMeshReader *mesh = obj->mesh;
+static RtStatus read_vertex(RtMeshReader *r) {
     RtVec3 vertex;
     uint32_t more;
     float last;
-    RT_TRY(rt_mesh_take_vector(mesh, false, "the x y z of a vertex", &vertex));
-    RT_TRY(take_numbers(mesh, &more, &last));
+    RT_TRY(rt_mesh_take_vector(r, false, "the x y z of a vertex", &vertex));
+    RT_TRY(take_numbers(r, &more, &last));
     if (more == 1 && last != 1)
-        return rt_mesh_fail(mesh, "the vertex has a weight of %g: only 1 can be read", (double)last);
-    return rt_mesh_add_vertex(mesh, vertex);
+        return rt_mesh_fail(r, "the vertex has a weight of %g: only 1 can be read", (double)last);
+    return rt_mesh_add_vertex(r, vertex);
 }
 
-static RtStatus read_normal(Obj *obj) {
+static RtStatus read_normal(RtMeshReader *r) {
     RtVec3 normal;
     uint32_t more;
     float last;
-    RT_TRY(rt_mesh_take_vector(obj->mesh, false, "the x y z of a normal", &normal));
-    RT_TRY(take_numbers(obj->mesh, &more, &last));
-    if (more > 0) return rt_mesh_fail(obj->mesh, "a normal has 3 numbers, this one has %u", 3 + more);
-    return rt_mesh_add_normal(obj->mesh, normal);
+    RT_TRY(rt_mesh_take_vector(r, false, "the x y z of a normal", &normal));
+    RT_TRY(take_numbers(r, &more, &last));
+    if (more > 0) return rt_mesh_fail(r, "a normal has 3 numbers, this one has %u", 3 + more);
+    return rt_mesh_add_normal(r, normal);
 }
 
-static RtStatus read_texture(Obj *obj) {
+static RtStatus read_texture(RtMeshReader *r) {
     uint32_t count;
     float last;
-    obj->texture_count++;
-    return take_numbers(obj->mesh, &count, &last);
+    r->texture_count++;
+    return take_numbers(r, &count, &last);
 }
 
 /* Positive indices count from 1, negative ones from the latest, which is -1. */
-static RtStatus resolve(const RtMeshReader *mesh, RtWord part, const char *what, uint32_t count,
-                        uint32_t *out) {
+static RtStatus resolve(const RtMeshReader *r, RtWord part, const char *what, uint32_t count, uint32_t *out) {
     int64_t index = 0;
-    RT_TRY(rt_mesh_integer(mesh, part, &index));
+    RT_TRY(rt_mesh_integer(r, part, &index));
     const int64_t from_start = index < 0 ? count + index : index - 1;
     if (from_start < 0 || from_start >= count)
-        return rt_mesh_fail(mesh, "the face names %s %" PRId64 ", but there are %u so far", what, index,
-                            count);
+        return rt_mesh_fail(r, "the face names %s %" PRId64 ", but there are %u so far", what, index, count);
     *out = (uint32_t)from_start;
     return RT_OK;
 }
 
 /* "v", "v/vt", "v//vn" or "v/vt/vn". */
-static RtStatus read_corner(const Obj *obj, RtWord word) {
-    RtMeshReader *mesh = obj->mesh;
-    const uint32_t counts[3] = {mesh->vertex_count, obj->texture_count, mesh->normal_count};
+static RtStatus read_corner(RtMeshReader *r, RtWord word) {
+    const uint32_t counts[3] = {r->vertex_count, r->texture_count, r->normal_count};
     static const char *const names[3] = {"vertex", "texture coordinate", "normal"};
     uint32_t index[3] = {0, 0, RT_NO_NORMAL};
     const char *at = word.text, *end = at + word.length;
@@ -78,53 +65,45 @@ static RtStatus read_corner(const Obj *obj, RtWord word) {
         while (at < end && *at != '/') at++;
         part.length = (size_t)(at - part.text);
         if (part.length > 0)
-            RT_TRY(resolve(mesh, part, names[field], counts[field], &index[field]));
+            RT_TRY(resolve(r, part, names[field], counts[field], &index[field]));
         else if (field != 1 || at == end)
             break;
-        if (at == end) return rt_mesh_add_corner(mesh, (RtMeshCorner){index[0], index[2]});
+        if (at == end) return rt_mesh_add_corner(r, (RtMeshCorner){index[0], index[2]});
         at++;
     }
-    return rt_scan_fail(&mesh->text, word, "v, v/vt, v//vn or v/vt/vn");
+    return rt_scan_fail(&r->text, word, "v, v/vt, v//vn or v/vt/vn");
 }
 
-static RtStatus read_face(Obj *obj) {
-    for (;;) {
-        const RtWord word = rt_scan_peek(&obj->mesh->text);
-        if (word.length == 0 || word.first) return rt_mesh_add_polygon(obj->mesh);
-        rt_scan_take(&obj->mesh->text, word);
-        RT_TRY(read_corner(obj, word));
-    }
+static RtStatus read_face(RtMeshReader *r) {
+    for (RtWord word; rt_mesh_more(r, &word);) RT_TRY(read_corner(r, word));
+    return rt_mesh_add_polygon(r);
 }
 
-static RtStatus skip_line(Obj *obj) {
-    rt_scan_skip_line(&obj->mesh->text);
-    return RT_OK;
-}
-
-static RtStatus read_statement(Obj *obj, RtWord word) {
+static RtStatus read_statement(RtMeshReader *r, RtWord word) {
     static const struct {
         const char *word;
-        RtStatus (*read)(Obj *obj);
-    } statements[] = {{"v", read_vertex},    {"vn", read_normal},       {"vt", read_texture},
-                      {"f", read_face},      {"o", skip_line},          {"g", skip_line},
-                      {"s", skip_line},      {"mg", skip_line},         {"usemtl", skip_line},
-                      {"mtllib", skip_line}, {"usemap", skip_line},     {"maplib", skip_line},
-                      {"p", skip_line},      {"l", skip_line},          {"bevel", skip_line},
-                      {"lod", skip_line},    {"c_interp", skip_line},   {"d_interp", skip_line},
-                      {"vp", skip_line},     {"shadow_obj", skip_line}, {"trace_obj", skip_line}};
+        RtStatus (*read)(RtMeshReader *r);
+    } statements[] = {{"v", read_vertex}, {"vn", read_normal}, {"vt", read_texture}, {"f", read_face}};
+    static const char *const skipped[] = {"o",        "g",        "s",  "mg",         "usemtl",   "mtllib",
+                                          "usemap",   "maplib",   "p",  "l",          "bevel",    "lod",
+                                          "c_interp", "d_interp", "vp", "shadow_obj", "trace_obj"};
     for (size_t i = 0; i < sizeof statements / sizeof statements[0]; i++) {
-        if (rt_scan_is(word, statements[i].word)) return statements[i].read(obj);
+        if (rt_scan_is(word, statements[i].word)) return statements[i].read(r);
     }
-    return rt_scan_fail(&obj->mesh->text, word, "a statement of a polygon mesh (v vn vt f g o s usemtl ...)");
+    for (size_t i = 0; i < sizeof skipped / sizeof skipped[0]; i++) {
+        if (!rt_scan_is(word, skipped[i])) continue;
+        rt_scan_skip_line(&r->text);
+        return RT_OK;
+    }
+    return rt_scan_fail(&r->text, word, "a statement of a polygon mesh (v vn vt f g o s usemtl ...)");
 }
 
 RtStatus rt_mesh_read_obj(RtMeshReader *r) {
-    Obj obj = {.mesh = r};
     r->text.joins = true;
     for (;;) {
         const RtWord word = rt_scan_peek(&r->text);
         if (word.length == 0) return rt_mesh_end(r);
         rt_scan_take(&r->text, word); /* the first of its line, because statements take whole lines */
-        RT_TRY(read_statement(&obj, word));
+        RT_TRY(read_statement(r, word));
     }
 }

@@ -43,10 +43,11 @@ typedef struct Ply {
     Property properties[MOST_PROPERTIES];
 } Ply;
 
-RtStatus rt_mesh_check_ply(const RtMeshHead *head, RtError *error) {
+RtStatus rt_mesh_check_ply(RtMeshReader *r, const RtMeshHead *head) {
     const unsigned char *b = head->bytes;
     if (memcmp(b, "ply", 3) == 0 && (b[3] == '\n' || b[3] == '\r')) return RT_OK;
-    return rt_fail_at(error, head->path, 1, 0, "a PLY file begins with a line 'ply', this one does not");
+    r->text.last = 1;
+    return rt_mesh_fail(r, "a PLY file begins with a line 'ply', this one does not");
 }
 
 /* ---- the header ---- */

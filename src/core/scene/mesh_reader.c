@@ -6,18 +6,8 @@
 #include "core/base/memory.h"
 
 #include <inttypes.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-
-RtStatus rt_mesh_fail(const RtMeshReader *r, const char *format, ...) {
-    char message[512];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(message, sizeof message, format, arguments);
-    va_end(arguments);
-    return rt_fail_at(r->text.error, r->text.path, r->text.last, 0, "%s", message);
-}
 
 RtStatus rt_mesh_fail_short(const RtMeshReader *r, uint64_t count, uint64_t declared, const char *things) {
     return rt_mesh_fail(r, "the file ends after %" PRIu64 " of the %" PRIu64 " %s that its header declares",
@@ -193,6 +183,13 @@ RtStatus rt_mesh_take(RtMeshReader *r, bool first, const char *wanted, RtWord *w
     if (first && !word->first) return rt_scan_fail(&r->text, *word, "the end of the line");
     rt_scan_take(&r->text, *word);
     return RT_OK;
+}
+
+bool rt_mesh_more(RtMeshReader *r, RtWord *word) {
+    *word = rt_scan_peek(&r->text);
+    const bool more = word->length > 0 && !word->first;
+    if (more) rt_scan_take(&r->text, *word);
+    return more;
 }
 
 RtStatus rt_mesh_expect(RtMeshReader *r, const char *text) {

@@ -32,14 +32,15 @@ typedef struct RtMeshReader {
     uint32_t material;
     RtTransform transform; /* of the vertices and normals */
     uint32_t vertex_count, vertex_capacity, normal_count, normal_capacity, corner_count, corner_capacity;
-    RtVec3 *vertices;      /* [vertex_count] */
-    RtVec3 *normals;       /* [normal_count] */
-    RtMeshCorner *corners; /* [corner_count] of the polygon being read */
-    uint32_t face_count;   /* polygons added */
+    RtVec3 *vertices;       /* [vertex_count] */
+    RtVec3 *normals;        /* [normal_count] */
+    RtMeshCorner *corners;  /* [corner_count] of the polygon being read */
+    uint32_t face_count;    /* polygons added */
+    uint32_t texture_count; /* of OBJ, to check its indices */
 } RtMeshReader;
 
 /* Fails at the line of the last word; for binary formats, where there is none, at the file. */
-__attribute__((format(printf, 2, 3))) RtStatus rt_mesh_fail(const RtMeshReader *r, const char *format, ...);
+#define rt_mesh_fail(r, ...) rt_fail_at((r)->text.error, (r)->text.path, (r)->text.last, 0, __VA_ARGS__)
 
 /* Rejects coordinates that are not finite. */
 RtStatus rt_mesh_add_vertex(RtMeshReader *r, RtVec3 vertex);
@@ -61,6 +62,8 @@ RtStatus rt_mesh_add_polygon(RtMeshReader *r);
 
 /* Takes a word that must be the first of its line, or else must be on the line of the last one. */
 RtStatus rt_mesh_take(RtMeshReader *r, bool first, const char *wanted, RtWord *word);
+/* Takes a word if there is one more on the line. */
+bool rt_mesh_more(RtMeshReader *r, RtWord *word);
 /* Takes the word `text`, wherever it is. */
 RtStatus rt_mesh_expect(RtMeshReader *r, const char *text);
 
@@ -82,15 +85,14 @@ RtStatus rt_mesh_end(RtMeshReader *r);
 /* The first bytes of a binary file, and its size: what can be checked before the file is read. */
 enum { RT_MESH_HEAD = 84 };
 typedef struct RtMeshHead {
-    const char *path;
     unsigned char bytes[RT_MESH_HEAD + 1]; /* zeros behind the end of the file */
     uint64_t size;
 } RtMeshHead;
 
 /* Rejects a file that begins otherwise, or has another size, than its format says. */
-RtStatus rt_mesh_check_ply(const RtMeshHead *head, RtError *error);
-RtStatus rt_mesh_check_stl(const RtMeshHead *head, RtError *error);
-RtStatus rt_mesh_check_glb(const RtMeshHead *head, RtError *error);
+RtStatus rt_mesh_check_ply(RtMeshReader *r, const RtMeshHead *head);
+RtStatus rt_mesh_check_stl(RtMeshReader *r, const RtMeshHead *head);
+RtStatus rt_mesh_check_glb(RtMeshReader *r, const RtMeshHead *head);
 
 /* Each reads the whole file of r->text, and adds its triangles to r->scene. */
 RtStatus rt_mesh_read_obj(RtMeshReader *r);
@@ -106,18 +108,16 @@ void rt_mesh_write_ply(const RtGeometry *g, FILE *file);
 void rt_mesh_write_stl(const RtGeometry *g, FILE *file);
 void rt_mesh_write_glb(const RtGeometry *g, FILE *file);
 
-/* A number of 4 bytes, low byte first; and three float32. */
+/* A number of 4 bytes, low byte first, as in memory (core/text/npy.h); and three float32. */
 static inline uint32_t rt_mesh_u32(const void *at) {
-    const unsigned char *b = at;
-    return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+    uint32_t number;
+    memcpy(&number, at, sizeof number);
+    return number;
 }
 
-static inline RtVec3 rt_mesh_vector(const char *at) {
+static inline RtVec3 rt_mesh_vector(const void *at) {
     RtVec3 v;
-    for (size_t a = 0; a < 3; a++) {
-        const uint32_t bits = rt_mesh_u32(at + 4 * a);
-        memcpy(&v.at[a], &bits, sizeof bits);
-    }
+    memcpy(&v, at, sizeof v);
     return v;
 }
 

@@ -3,20 +3,14 @@
 #include "core/scene/mesh_reader.h"
 
 #include <inttypes.h>
-#include <string.h>
 
+/* As they lie in memory: rt_mesh_u32. */
 static void put_u32(FILE *file, uint32_t value) {
-    const unsigned char bytes[4] = {(unsigned char)value, (unsigned char)(value >> 8),
-                                    (unsigned char)(value >> 16), (unsigned char)(value >> 24)};
-    fwrite(bytes, 1, sizeof bytes, file);
+    fwrite(&value, sizeof value, 1, file);
 }
 
 static void put_vector(FILE *file, RtVec3 v) {
-    for (int a = 0; a < 3; a++) {
-        uint32_t bits;
-        memcpy(&bits, &v.at[a], sizeof bits);
-        put_u32(file, bits);
-    }
+    fwrite(&v, sizeof v, 1, file);
 }
 
 /* The file's own normal of a vertex, else that of the triangle. */

@@ -17,17 +17,17 @@ static bool is_text(const void *bytes) {
 }
 
 /* A binary file may begin with "solid", too: its size decides. */
-RtStatus rt_mesh_check_stl(const RtMeshHead *head, RtError *error) {
+RtStatus rt_mesh_check_stl(RtMeshReader *r, const RtMeshHead *head) {
     const bool zeros = memchr(head->bytes, 0, head->size < RT_MESH_HEAD ? (size_t)head->size : RT_MESH_HEAD);
     if (head->size >= RT_MESH_HEAD && head->size == binary_size(head->bytes)) return RT_OK;
     if (is_text(head->bytes) && !zeros) return RT_OK;
     if (head->size < RT_MESH_HEAD)
-        return rt_fail_at(error, head->path, 0, 0,
-                          "this is no STL file: it does not begin with 'solid', and has no binary header");
-    return rt_fail_at(error, head->path, 0, 0,
-                      "the header declares %u triangles, which take %" PRIu64
-                      " bytes, but the file has %" PRIu64 ": it is cut off or damaged",
-                      rt_mesh_u32(head->bytes + HEADER), binary_size(head->bytes), head->size);
+        return rt_mesh_fail(r,
+                            "this is no STL file: it does not begin with 'solid', and has no binary header");
+    return rt_mesh_fail(r,
+                        "the header declares %u triangles, which take %" PRIu64
+                        " bytes, but the file has %" PRIu64 ": it is cut off or damaged",
+                        rt_mesh_u32(head->bytes + HEADER), binary_size(head->bytes), head->size);
 }
 
 /* Adds the triangle of the last three vertices, and removes them. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Reading NFF. The file is read whole and split into words; line ends matter only for the optional colour of
+/* An NFF file is read whole and split into words; line ends matter only for the optional colour of
  * a light and for comments. Behind the file there is a 0, where strtod stops. Counts declared by the file are
  * checked against its remaining length before memory is allocated. */
 #include "core/scene/nff.h"
@@ -9,6 +9,7 @@
 #include "core/text/scanner.h"
 
 #include <ctype.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,6 +24,9 @@ typedef struct Reader {
 } Reader;
 
 #define NO_MATERIAL UINT32_MAX
+
+/* Fails at the line of the statement. */
+#define fail_statement(r, ...) rt_fail_at((r)->text.error, (r)->text.path, (r)->statement, 0, __VA_ARGS__)
 
 /* ---- words ---- */
 
@@ -128,9 +132,7 @@ static RtStatus read_camera(Reader *r) {
         snprintf(wanted, sizeof wanted, "'%s' of the camera (v: from, at, up, angle)", words[i]);
         if (!given[i]) return fail_inside(r, rt_scan_peek(&r->text), wanted);
     }
-    if (camera->near < 0)
-        return rt_fail_at(r->text.error, r->text.path, r->statement, 0, "hither is %g: expected at least 0",
-                          (double)camera->near);
+    if (camera->near < 0) return fail_statement(r, "hither is %g: expected at least 0", (double)camera->near);
     return check_camera(r, camera);
 }
 
@@ -226,9 +228,9 @@ static RtStatus read_vertices(Reader *r, bool patch, uint32_t *count) {
     size_t least = patch ? 12 : 6; /* bytes of the shortest vertex, with blanks */
     size_t size = (size_t)(r->text.end - r->text.at) / least + 1;
     if (*count > size)
-        return rt_fail_at(r->text.error, r->text.path, r->statement, 0,
-                          "the statement declares %u vertices, but the rest of the file holds at most %zu",
-                          *count, size);
+        return fail_statement(
+            r, "the statement declares %u vertices, but the rest of the file holds at most %zu", *count,
+            size);
     RT_TRY(rt_reserve(&r->vertices, &r->vertex_capacity, *count, sizeof(RtVec3), r->text.error));
     if (patch) RT_TRY(rt_reserve(&r->normals, &r->normal_capacity, *count, sizeof(RtVec3), r->text.error));
     for (uint32_t i = 0; i < *count; i++) {
@@ -245,8 +247,8 @@ static RtStatus read_polygon(Reader *r) {
         return located(r, rt_scene_add_polygon(r->scene, r->material, r->vertices, count, r->text.error));
     RtTriangle triangle = {{r->vertices[0], r->vertices[1], r->vertices[2]}};
     if (rt_lengthd(rt_triangle_normal(&triangle)) == 0)
-        return rt_fail_at(r->text.error, r->text.path, r->statement, 0,
-                          "the polygon has no area: its vertices lie on a line or in a point; remove it");
+        return fail_statement(r,
+                              "the polygon has no area: its vertices lie on a line or in a point; remove it");
     return located(r, rt_scene_add_triangle(r->scene, r->material, r->vertices, NULL, r->text.error));
 }
 
@@ -263,8 +265,8 @@ static RtStatus read_patch(Reader *r) {
     for (uint32_t i = 1; i + 1 < count; i++) whole = rt_addd(whole, fan_area(v, i));
     for (uint32_t i = 1; i + 1 < count; i++) {
         if (rt_dotd(whole, fan_area(v, i)) < 0)
-            return rt_fail_at(
-                r->text.error, r->text.path, r->statement, 0,
+            return fail_statement(
+                r,
                 "the patch is concave: vertex %u cannot be seen from the first; split the patch "
                 "into triangles",
                 i + 2);
@@ -282,8 +284,8 @@ static RtStatus read_background(Reader *r) {
     RtVec3 color;
     RT_TRY(read_vector(r, "a number of b r g b", &color));
     if (color.x < 0 || color.y < 0 || color.z < 0)
-        return rt_fail_at(r->text.error, r->text.path, r->statement, 0,
-                          "the background has a negative colour: expected at least 0 for each of r g b");
+        return fail_statement(r,
+                              "the background has a negative colour: expected at least 0 for each of r g b");
     r->scene->background = color;
     return RT_OK;
 }
@@ -321,18 +323,108 @@ RtStatus rt_nff_load(const char *path, RtScene *scene, RtError *error) {
     size_t size;
     RT_TRY(rt_file_read_text(path, RT_NFF_MAX_BYTES, &text, &size, error));
     RtError own;
-    Reader reader = {.text = {.path = path,
-                              .at = text,
-                              .end = text + size,
-                              .line = 1,
-                              .fresh = true,
-                              .error = error ? error : &own},
-                     .scene = scene,
-                     .material = NO_MATERIAL};
+    Reader reader = {
+        .text = {.path = path, .error = error ? error : &own}, .scene = scene, .material = NO_MATERIAL};
+    rt_scan_begin(&reader.text, text, size);
     RtStatus status = read_file(&reader);
     rt_free(reader.vertices);
     rt_free(reader.normals);
     rt_free(reader.plain);
     rt_free(text);
     return status;
+}
+
+/* ---- writing: an `f` wherever the material changes ---- */
+
+/* 9 digits restore every float32. */
+static void put(FILE *file, float number) {
+    fprintf(file, " %.9g", (double)number);
+}
+
+static void put_vector(FILE *file, const char *before, RtVec3 v) {
+    fputs(before, file);
+    for (int a = 0; a < 3; a++) put(file, v.at[a]);
+}
+
+static void save_header(const RtScene *scene, FILE *file) {
+    const RtCamera *camera = &scene->camera;
+    put_vector(file, "b", scene->background);
+    put_vector(file, "\nv\nfrom", camera->from);
+    put_vector(file, "\nat", camera->at);
+    put_vector(file, "\nup", camera->up);
+    fprintf(file, "\nangle");
+    put(file, camera->fov);
+    fprintf(file, "\nhither");
+    put(file, camera->near);
+    fprintf(file, "\nresolution %u %u\n", camera->width, camera->height);
+    for (uint32_t i = 0; i < scene->light_count; i++) {
+        put_vector(file, "l", scene->lights[i].position);
+        put_vector(file, "", scene->lights[i].intensity);
+        fprintf(file, "\n");
+    }
+}
+
+static void save_material(const RtMaterial *material, FILE *file) {
+    put_vector(file, "f", material->color);
+    put(file, material->diffuse);
+    put(file, material->reflection);
+    put(file, material->shine);
+    put(file, material->transmission);
+    put(file, material->ior);
+    fprintf(file, "\n");
+}
+
+static void save_polygon(const RtGeometry *g, uint32_t index, FILE *file) {
+    const RtPolygon *polygon = &g->polygons[index];
+    fprintf(file, "p %u", polygon->count);
+    for (uint32_t i = 0; i < polygon->count; i++)
+        put_vector(file, "\n", g->polygon_vertices[polygon->first + i]);
+}
+
+static void save_triangle(const RtGeometry *g, uint32_t index, FILE *file) {
+    static const RtVertexNormals any = {{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}};
+    const RtTriangle *triangle = &g->triangles[index];
+    uint32_t entry = g->triangle_normals ? g->triangle_normals[index] : RT_NO_NORMALS;
+    const RtVertexNormals *normals = entry != RT_NO_NORMALS ? &g->vertex_normals[entry] : NULL;
+    if (!normals && rt_lengthd(rt_triangle_normal(triangle)) == 0) normals = &any;
+    fprintf(file, normals ? "pp 3" : "p 3");
+    for (int i = 0; i < 3; i++) {
+        put_vector(file, "\n", triangle->v[i]);
+        if (normals) put_vector(file, "", normals->n[i]);
+    }
+}
+
+static void save_object(const RtGeometry *g, RtRef ref, FILE *file) {
+    uint32_t index = rt_ref_index(ref);
+    switch (rt_ref_shape(ref)) {
+    case RT_SHAPE_SPHERE:
+        put_vector(file, "s", g->spheres[index].center);
+        put(file, g->spheres[index].radius);
+        break;
+    case RT_SHAPE_CONE:
+        put_vector(file, "c", g->cones[index].base);
+        put(file, g->cones[index].base_radius);
+        put_vector(file, "\n", g->cones[index].apex);
+        put(file, g->cones[index].apex_radius);
+        break;
+    case RT_SHAPE_POLYGON: save_polygon(g, index, file); break;
+    case RT_SHAPE_TRIANGLE: save_triangle(g, index, file); break;
+    case RT_SHAPE_CSG: /* rejected earlier */
+    case RT_SHAPE_COUNT: break;
+    }
+    fprintf(file, "\n");
+}
+
+RtStatus rt_nff_save(const RtScene *scene, FILE *file, RtError *error) {
+    if (scene->geometry.csg_count > 0)
+        return rt_fail(error, RT_BAD_INPUT, "NFF has no CSG trees, and in this scene there are %u",
+                       scene->geometry.csg_count);
+    save_header(scene, file);
+    for (uint32_t id = 0; id < scene->geometry.object_count; id++) {
+        if (id == 0 || scene->material_of[id] != scene->material_of[id - 1])
+            save_material(&scene->materials[scene->material_of[id]], file);
+        save_object(&scene->geometry, scene->geometry.objects[id], file);
+        if (ferror(file)) return rt_fail(error, RT_IO, "NFF could not be written: %s", strerror(errno));
+    }
+    return RT_OK;
 }

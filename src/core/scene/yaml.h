@@ -7,6 +7,10 @@
 
 #include <stdio.h>
 
+/* X(name): the coefficients of a material, keys of the file and fields of RtMaterial alike. */
+#define RT_YAML_COEFFICIENTS(X)                                                                              \
+    X(ambient) X(diffuse) X(specular) X(shine) X(reflection) X(transmission) X(ior)
+
 /* Reads the file at `path` into `scene`, initialised by rt_scene_init; the caller then finishes it, or
  * clears it after a failure. Mesh paths are relative to the file; `open_named` opens scenes that it names.
  * The scene's name does not change. */

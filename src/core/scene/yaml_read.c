@@ -1,20 +1,180 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* From the nodes of a YAML file (core/text/yaml.h) to a scene. */
+/* From the nodes of a YAML file (core/text/yaml.h) to a scene. The functions that add objects and solids
+ * check the values; rt_yaml_place adds the position to their messages. A formula sees only the solids before
+ * it, so no solid can contain itself. */
+#include "core/base/file.h"
 #include "core/base/memory.h"
+#include "core/base/words.h"
 #include "core/scene/append.h"
+#include "core/scene/formula.h"
 #include "core/scene/mesh.h"
 #include "core/scene/yaml.h"
-#include "core/scene/yaml_reader.h"
+#include "core/text/yaml.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
+typedef struct Named {
+    const char *name;
+    const RtYamlNode *node; /* the entry of the list */
+    uint32_t index;         /* its position in the list */
+} Named;
+
+/* The entries of a list, sorted by name. */
+typedef struct Names {
+    Named *all; /* [count] */
+    uint32_t count;
+} Names;
+
+typedef struct Reader {
+    RtYaml yaml;
+    RtSceneOpener *open_named;
+    RtScene *scene;
+    Names materials;      /* entry i is material i of the scene */
+    uint32_t standard;    /* index of the default material; UINT32_MAX until it is needed */
+    RtCsgBuilder builder; /* holds the solids */
+    Names solids;         /* entry i is terms[i] */
+    RtCsgTerm *terms;
+    uint32_t solids_known; /* solids read so far */
+    RtArena memory;        /* of names and terms */
+    RtError *error;
+} Reader;
+
+/* For a list X(name) of alternatives: their keys (rt_yaml_keys). */
+#define ONE_OF(name) #name "| "
+
+/* ---- names ---- */
+
+static int by_name(const void *a, const void *b) {
+    return strcmp(((const Named *)a)->name, ((const Named *)b)->name);
+}
+
+/* Checks the entries of `list` (NULL: none) against `keys`, and fills `names` with their names, of at most
+ * `most` characters. Rejects duplicates; `what` describes the entries in messages. */
+static RtStatus read_names(Reader *r, const RtYamlNode *list, const char *keys, size_t most, const char *what,
+                           Names *names) {
+    RT_TRY(rt_yaml_list(&r->yaml, list, NULL, 0, UINT32_MAX, what));
+    uint32_t count = rt_yaml_count(list);
+    Named *all = names->all = rt_arena_alloc(&r->memory, count, sizeof *all);
+    RT_TRY(rt_arena_check(&r->memory, what, r->error));
+    for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
+        Named *named = &all[names->count];
+        RT_TRY(rt_yaml_keys(&r->yaml, n, keys));
+        RT_TRY(rt_yaml_text(&r->yaml, n, "name", most, &named->name));
+        named->node = n;
+        named->index = names->count++;
+    }
+    qsort(all, count, sizeof *all, by_name);
+    for (uint32_t i = 1; i < count; i++) {
+        if (strcmp(all[i - 1].name, all[i].name) != 0) continue;
+        const Named *later = &all[all[i].index > all[i - 1].index ? i : i - 1];
+        return rt_yaml_fail(&r->yaml, rt_yaml_get(&r->yaml, later->node, "name"),
+                            "there are two %s '%s': rename one", what, later->name);
+    }
+    return RT_OK;
+}
+
+static const Named *find_name(const Names *names, const char *name) {
+    Named wanted = {.name = name};
+    return bsearch(&wanted, names->all, names->count, sizeof wanted, by_name);
+}
+
+/* ---- what objects and solids share ---- */
+
+/* The `material` of an object; without one, the default material, created on first use. */
+static RtStatus find_material(Reader *r, const RtYamlNode *object, uint32_t *index) {
+    const RtYamlNode *node = rt_yaml_get(&r->yaml, object, "material");
+    const char *name = "default";
+    RT_TRY(rt_yaml_text(&r->yaml, object, "material", RT_MAX_NAME - 1, &name));
+    const Named *found = find_name(&r->materials, name);
+    if (node && !found)
+        return rt_yaml_fail(&r->yaml, node, "there is no material '%s': add it to the list of materials",
+                            name);
+    if (!found && r->standard == UINT32_MAX) {
+        RtMaterial material = rt_default_material();
+        RT_TRY(rt_scene_add_material(r->scene, &material, &r->standard, r->error));
+    }
+    *index = found ? found->index : r->standard;
+    return RT_OK;
+}
+
+static RtStatus add_rotation(Reader *r, const RtYamlNode *n, RtTransform *transform) {
+    RtVec3 axis = {0};
+    float degrees = 0;
+    RT_TRY(rt_yaml_keys(&r->yaml, n, "axis degrees"));
+    RT_TRY(rt_yaml_point(&r->yaml, n, "axis", &axis));
+    RT_TRY(rt_yaml_float(&r->yaml, n, "degrees", &degrees));
+    RtStatus status = rt_transform_rotate(transform, axis, (double)degrees, r->error);
+    return rt_yaml_place(&r->yaml, status, n, NULL);
+}
+
+static RtStatus add_step(Reader *r, const RtYamlNode *step, RtTransform *transform) {
+    const RtYaml *y = &r->yaml;
+    float scale = 1;
+    RtVec3 stretch, move = {0};
+    RT_TRY(rt_yaml_keys(y, step, "scale| stretch| rotate| translate|"));
+    const RtYamlNode *rotate = rt_yaml_get(y, step, "rotate");
+    if (rotate) return add_rotation(r, rotate, transform);
+    RT_TRY(rt_yaml_float(y, step, "scale", &scale));
+    stretch = rt_vec3(scale, scale, scale);
+    RT_TRY(rt_yaml_point(y, step, "stretch", &stretch));
+    RT_TRY(rt_yaml_point(y, step, "translate", &move));
+    RtStatus status = rt_yaml_get(y, step, "translate") ? rt_transform_translate(transform, move, r->error)
+                                                        : rt_transform_scale(transform, stretch, r->error);
+    return rt_yaml_place(y, status, step, NULL);
+}
+
+/* The `transform` of an object. *given is `transform`, or NULL if there are no steps. */
+static RtStatus read_transform(Reader *r, const RtYamlNode *object, RtTransform *transform,
+                               const RtTransform **given) {
+    const RtYamlNode *steps = rt_yaml_get(&r->yaml, object, "transform");
+    *transform = rt_transform_identity();
+    RT_TRY(rt_yaml_list(&r->yaml, steps, NULL, 0, UINT32_MAX, "steps"));
+    for (const RtYamlNode *n = rt_yaml_first(steps); n != rt_yaml_end(steps); n += n->size)
+        RT_TRY(add_step(r, n, transform));
+    *given = rt_yaml_count(steps) ? transform : NULL;
+    return RT_OK;
+}
+
+static RtStatus read_sphere(const RtYaml *y, const RtYamlNode *n, RtVec3 *center, float *radius) {
+    *center = rt_vec3(0, 0, 0);
+    *radius = 0;
+    RT_TRY(rt_yaml_keys(y, n, "center radius material?"));
+    RT_TRY(rt_yaml_point(y, n, "center", center));
+    return rt_yaml_float(y, n, "radius", radius);
+}
+
+/* A cone, or a cylinder: keys and values. */
+static RtStatus read_cone(const RtYaml *y, const RtYamlNode *n, bool cylinder, RtCone *cone) {
+    *cone = (RtCone){0};
+    RT_TRY(rt_yaml_keys(
+        y, n, cylinder ? "base apex radius material?" : "base base_radius apex apex_radius material?"));
+    RT_TRY(rt_yaml_point(y, n, "base", &cone->base));
+    RT_TRY(rt_yaml_point(y, n, "apex", &cone->apex));
+    RT_TRY(rt_yaml_float(y, n, cylinder ? "radius" : "base_radius", &cone->base_radius));
+    return rt_yaml_float(y, n, cylinder ? "radius" : "apex_radius", &cone->apex_radius);
+}
+
+/* Adds the triangles of the file at the `path` of an object to `scene`, moved by its `transform`. */
+static RtStatus append_mesh(Reader *r, const RtYamlNode *object, uint32_t material, RtScene *scene) {
+    RtTransform transform;
+    const RtTransform *given;
+    char folder[RT_MAX_PATH], path[RT_MAX_PATH];
+    const char *name = "";
+    RT_TRY(read_transform(r, object, &transform, &given));
+    RT_TRY(rt_yaml_text(&r->yaml, object, "path", RT_MAX_PATH - 1, &name));
+    rt_path_folder(r->yaml.path, folder);
+    RtStatus status = rt_path_join(folder, name, path, r->error);
+    if (status == RT_OK) status = rt_mesh_append(scene, path, material, given, r->error);
+    return rt_yaml_place(&r->yaml, status, object, "path");
+}
+
 /* ---- materials ---- */
 
 #define OPTIONAL_KEY(key) #key "? "
 
-static RtStatus add_material(RtYamlReader *r, const RtYamlNode *n) {
+static RtStatus add_material(Reader *r, const RtYamlNode *n) {
     RtMaterial material = rt_default_material();
     uint32_t index;
     RT_TRY(rt_yaml_copy(&r->yaml, n, "name", sizeof material.name, material.name));
@@ -25,38 +185,297 @@ static RtStatus add_material(RtYamlReader *r, const RtYamlNode *n) {
     return rt_yaml_place(&r->yaml, rt_scene_add_material(r->scene, &material, &index, r->error), n, NULL);
 }
 
-static RtStatus add_materials(RtYamlReader *r, const RtYamlNode *list) {
+static RtStatus add_materials(Reader *r, const RtYamlNode *list) {
     assert(r->scene->material_count == 0);
-    RT_TRY(rt_yaml_read_names(r, list, "name color? " RT_YAML_COEFFICIENTS(OPTIONAL_KEY), RT_MAX_NAME - 1,
-                              "materials", &r->materials));
+    RT_TRY(read_names(r, list, "name color? " RT_YAML_COEFFICIENTS(OPTIONAL_KEY), RT_MAX_NAME - 1,
+                      "materials", &r->materials));
     for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size)
         RT_TRY(add_material(r, n));
     return RT_OK;
 }
 
-/* ---- objects: one adder a kind, called add_KIND ---- */
+/* ---- solids: solid_KIND adds one kind and returns its index in the set ---- */
 
-static RtStatus add_sphere(RtYamlReader *r, const RtYamlNode *n) {
+static RtStatus solid_sphere(Reader *r, const RtYamlNode *n, uint32_t *index) {
     const RtYaml *y = &r->yaml;
-    RtVec3 center = {0};
-    float radius = 0;
-    uint32_t material;
-    RT_TRY(rt_yaml_keys(y, n, "center radius material?"));
-    RT_TRY(rt_yaml_find_material(r, n, &material));
+    RtVec3 center;
+    float radius;
+    RT_TRY(read_sphere(y, n, &center, &radius));
+    if (!(radius > 0))
+        return rt_yaml_fail(y, rt_yaml_get(y, n, "radius"),
+                            "a sphere needs a radius above 0, this one has %g", (double)radius);
+    RtVec3 radii = rt_vec3(radius, radius, radius);
+    return rt_yaml_place(y, rt_solid_add_ellipsoid(&r->builder.set, center, radii, index, r->error), n,
+                         "center");
+}
+
+typedef RtStatus AddPair(RtSolidSet *set, RtVec3 first, RtVec3 second, uint32_t *index, RtError *error);
+
+/* Adds a solid given by two points or vectors. */
+static RtStatus add_pair(Reader *r, const RtYamlNode *n, const char *first, const char *second, AddPair *add,
+                         uint32_t *index) {
+    char keys[64];
+    RtVec3 pair[2] = {{0}};
+    snprintf(keys, sizeof keys, "%s %s material?", first, second);
+    RT_TRY(rt_yaml_keys(&r->yaml, n, keys));
+    RT_TRY(rt_yaml_point(&r->yaml, n, first, &pair[0]));
+    RT_TRY(rt_yaml_point(&r->yaml, n, second, &pair[1]));
+    return rt_yaml_place(&r->yaml, add(&r->builder.set, pair[0], pair[1], index, r->error), n, NULL);
+}
+
+static RtStatus solid_ellipsoid(Reader *r, const RtYamlNode *n, uint32_t *index) {
+    return add_pair(r, n, "center", "radii", rt_solid_add_ellipsoid, index);
+}
+
+static RtStatus solid_box(Reader *r, const RtYamlNode *n, uint32_t *index) {
+    return add_pair(r, n, "lo", "hi", rt_solid_add_box, index);
+}
+
+static RtStatus solid_half_space(Reader *r, const RtYamlNode *n, uint32_t *index) {
+    return add_pair(r, n, "point", "normal", rt_solid_add_half_space, index);
+}
+
+static RtStatus solid_round(Reader *r, const RtYamlNode *n, bool cylinder, uint32_t *index) {
+    RtCone c;
+    RT_TRY(read_cone(&r->yaml, n, cylinder, &c));
+    RtStatus status =
+        rt_solid_add_frustum(&r->builder.set, c.base, c.base_radius, c.apex, c.apex_radius, index, r->error);
+    return rt_yaml_place(&r->yaml, status, n, NULL);
+}
+
+static RtStatus solid_cone(Reader *r, const RtYamlNode *n, uint32_t *index) {
+    return solid_round(r, n, false, index);
+}
+
+static RtStatus solid_cylinder(Reader *r, const RtYamlNode *n, uint32_t *index) {
+    return solid_round(r, n, true, index);
+}
+
+static RtStatus solid_torus(Reader *r, const RtYamlNode *n, uint32_t *index) {
+    const RtYaml *y = &r->yaml;
+    RtVec3 center = {0}, axis = rt_vec3(0, 0, 1);
+    float major = 0, minor = 0;
+    RT_TRY(rt_yaml_keys(y, n, "center axis? major minor material?"));
     RT_TRY(rt_yaml_point(y, n, "center", &center));
-    RT_TRY(rt_yaml_float(y, n, "radius", &radius));
-    return rt_yaml_place(y, rt_scene_add_sphere(r->scene, material, center, radius, r->error), n,
+    RT_TRY(rt_yaml_point(y, n, "axis", &axis));
+    RT_TRY(rt_yaml_float(y, n, "major", &major));
+    RT_TRY(rt_yaml_float(y, n, "minor", &minor));
+    RtStatus status = rt_solid_add_ring(&r->builder.set, center, axis, major, minor, index, r->error);
+    return rt_yaml_place(y, status, n, NULL);
+}
+
+/* The planes of a list, at most `most`: [nx, ny, nz, d] each. */
+static RtStatus read_planes(Reader *r, const RtYamlNode *list, uint32_t most, RtArena *memory,
+                            RtPlane **planes) {
+    RT_TRY(rt_yaml_list(&r->yaml, list, NULL, 1, most, "planes, as in [[0, 0, 1, 2]]"));
+    RtPlane *plane = *planes = rt_arena_alloc(memory, rt_yaml_count(list), sizeof *plane);
+    RT_TRY(rt_arena_check(memory, "planes", r->error));
+    for (const RtYamlNode *n = list + 1; n != rt_yaml_end(list); n += n->size) {
+        double p[4] = {0};
+        RT_TRY(rt_yaml_doubles(&r->yaml, n, NULL, 4, p));
+        *plane++ = (RtPlane){rt_vec3d(p[0], p[1], p[2]), p[3]};
+    }
+    return RT_OK;
+}
+
+static RtStatus solid_polyhedron(Reader *r, const RtYamlNode *n, uint32_t *index) {
+    RT_ARENA(memory);
+    const RtTransform here = rt_transform_identity();
+    RtSolidSet *set = &r->builder.set;
+    RtPlane *planes;
+    float *vertices;
+    uint32_t count;
+    RT_TRY(rt_yaml_keys(&r->yaml, n, "vertices| planes| material?"));
+    const RtYamlNode *list = rt_yaml_get(&r->yaml, n, "planes");
+    if (list) {
+        RT_TRY(read_planes(r, list, UINT32_MAX, &memory, &planes));
+        return rt_yaml_place(
+            &r->yaml, rt_solid_add_polyhedron(set, planes, rt_yaml_count(list), &here, index, r->error), list,
+            NULL);
+    }
+    RT_TRY(rt_yaml_rows(&r->yaml, n, "vertices", 4, 3, &memory, &vertices, &count));
+    RtStatus status = rt_solid_add_hull(set, (const RtVec3 *)vertices, count, index, r->error);
+    return rt_yaml_place(&r->yaml, status, n, "vertices");
+}
+
+/* Reads the triangles of a file through a temporary scene. */
+static RtStatus solid_mesh(Reader *r, const RtYamlNode *n, uint32_t *index) {
+    RtTransform here = rt_transform_identity();
+    RtMaterial standard = rt_default_material();
+    RtScene scene;
+    uint32_t material;
+    RT_TRY(rt_yaml_keys(&r->yaml, n, "path material? transform?"));
+    rt_scene_init(&scene);
+    RtStatus status = rt_scene_add_material(&scene, &standard, &material, r->error);
+    if (status == RT_OK) status = append_mesh(r, n, material, &scene);
+    if (status == RT_OK) {
+        const RtGeometry *g = &scene.geometry;
+        status = rt_solid_add_mesh(&r->builder.set, g->triangles, g->triangle_count, &here, index, r->error);
+        status = rt_yaml_place(&r->yaml, status, n, "path");
+    }
+    rt_scene_clear(&scene);
+    return status;
+}
+
+_Static_assert(sizeof(RtTriangle) == 9 * sizeof(float), "a facet is a row of 9");
+
+static RtStatus solid_facets(Reader *r, const RtYamlNode *n, uint32_t *index) {
+    RT_ARENA(memory);
+    const RtTransform here = rt_transform_identity();
+    float *rows;
+    uint32_t count;
+    RT_TRY(rt_yaml_keys(&r->yaml, n, "triangles material?"));
+    RT_TRY(rt_yaml_rows(&r->yaml, n, "triangles", 4, 9, &memory, &rows, &count));
+    const RtTriangle *facets = (const RtTriangle *)rows;
+    RtStatus status = rt_solid_add_mesh(&r->builder.set, facets, count, &here, index, r->error);
+    return rt_yaml_place(&r->yaml, status, n, "triangles");
+}
+
+/* A solid as raytally writes it: in object space (solid.h), with its transform. */
+static RtStatus solid_standard(Reader *r, const RtYamlNode *n, uint32_t *index) {
+    RT_ARENA(memory);
+    RtPlane *planes;
+    const RtYaml *y = &r->yaml;
+    RtSolidSet *set = &r->builder.set;
+    RtTransform place = rt_transform_identity();
+    double ratio = 1;
+    uint32_t kind = 0;
+    RT_TRY(rt_yaml_keys(y, n, "kind ratio? place caps? material?"));
+    RT_TRY(rt_yaml_word(y, n, "kind", "sphere cone torus", &kind));
+    RT_TRY(rt_yaml_double(y, n, "ratio", &ratio));
+    RT_TRY(rt_yaml_doubles(y, n, "place", 12, &place.m[0][0]));
+    RtStatus status = kind == 0   ? rt_solid_add_sphere(set, &place, index, r->error)
+                      : kind == 1 ? rt_solid_add_cone(set, ratio, &place, index, r->error)
+                                  : rt_solid_add_torus(set, ratio, &place, index, r->error);
+    RT_TRY(rt_yaml_place(y, status, n, NULL));
+    const RtYamlNode *caps = rt_yaml_get(y, n, "caps");
+    if (!caps) return RT_OK;
+    RT_TRY(read_planes(r, caps, 2, &memory, &planes));
+    status = rt_solid_set_caps(set, *index, planes, rt_yaml_count(caps), r->error);
+    return rt_yaml_place(y, status, caps, NULL);
+}
+
+/* ---- formulas ---- */
+
+static RtStatus look_up(void *context, const char *name, RtCsgTerm *term, RtError *error) {
+    Reader *r = context;
+    const Named *found = find_name(&r->solids, name);
+    if (found && found->index < r->solids_known) {
+        *term = r->terms[found->index];
+        return RT_OK;
+    }
+    if (found && found->index == r->solids_known)
+        return rt_fail(error, RT_BAD_INPUT,
+                       "the solid '%s' cannot contain itself: give the part another name", name);
+    if (found)
+        return rt_fail(error, RT_BAD_INPUT,
+                       "the solid '%s' comes after this formula, which can use only earlier solids", name);
+    const char *names[64];
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < r->solids.count && count < 64; i++) {
+        if (r->solids.all[i].index < r->solids_known) names[count++] = r->solids.all[i].name;
+    }
+    char suggestion[RT_MAX_SUGGESTION];
+    rt_suggest(name, names, count, suggestion);
+    return rt_fail(error, RT_BAD_INPUT, "there is no solid '%s'%s%s", name, suggestion,
+                   *suggestion ? "" : ": add it to the list of solids");
+}
+
+static RtStatus read_formula(Reader *r, const RtYamlNode *n, RtCsgTerm *term) {
+    const char *formula = "";
+    RT_TRY(rt_yaml_text(&r->yaml, n, "formula", RT_YAML_MAX_BYTES, &formula));
+    RtStatus status = rt_formula_read(formula, &r->builder, look_up, r, term, r->error);
+    return rt_yaml_place(&r->yaml, status, n, "formula");
+}
+
+static RtStatus move(Reader *r, const RtYamlNode *n, RtCsgTerm *term) {
+    RtTransform transform;
+    const RtTransform *given;
+    RT_TRY(read_transform(r, n, &transform, &given));
+    if (!given) return RT_OK;
+    return rt_yaml_place(&r->yaml, rt_csg_move(&r->builder, *term, given, term, r->error), n, "transform");
+}
+
+/* ---- the list ---- */
+
+#define SOLIDS(X)                                                                                            \
+    X(sphere)                                                                                                \
+    X(ellipsoid) X(box) X(cylinder) X(cone) X(torus) X(half_space) X(polyhedron) X(mesh) X(facets) X(standard)
+
+/* Adds a solid of any kind. */
+static RtStatus solid_kind(Reader *r, const RtYamlNode *entry, RtCsgTerm *term) {
+    uint32_t index = 0, material = 0;
+    const RtYamlNode *n;
+    if (rt_yaml_get(&r->yaml, entry, "formula")) return read_formula(r, entry, term);
+#define ADD(kind)                                                                                            \
+    if ((n = rt_yaml_get(&r->yaml, entry, #kind))) {                                                         \
+        RT_TRY(find_material(r, n, &material));                                                              \
+        RT_TRY(solid_##kind(r, n, &index));                                                                  \
+    }
+    SOLIDS(ADD)
+#undef ADD
+    return rt_csg_solid(&r->builder, index, material, term, r->error);
+}
+
+static RtStatus add_solid(Reader *r, const RtYamlNode *entry, RtCsgTerm *term) {
+    const char *name = "";
+    RT_TRY(rt_yaml_text(&r->yaml, entry, "name", RT_FORMULA_MAX_NAME - 1, &name));
+    if (!rt_formula_is_name(name))
+        return rt_yaml_fail(&r->yaml, rt_yaml_get(&r->yaml, entry, "name"),
+                            "'%s' is not a valid name in a formula: a name is a letter or _, then letters, "
+                            "digits and _",
+                            name);
+    RT_TRY(solid_kind(r, entry, term));
+    return move(r, entry, term);
+}
+
+static RtStatus add_solids(Reader *r, const RtYamlNode *list) {
+    uint32_t count = rt_yaml_count(list);
+    RT_TRY(read_names(r, list, "name formula| " SOLIDS(ONE_OF) "transform?", RT_FORMULA_MAX_NAME - 1,
+                      "solids", &r->solids));
+    r->terms = rt_arena_alloc(&r->memory, count, sizeof *r->terms);
+    RT_TRY(rt_arena_check(&r->memory, "the solids", r->error));
+    for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
+        RT_TRY(add_solid(r, n, &r->terms[r->solids_known]));
+        r->solids_known++;
+    }
+    return RT_OK;
+}
+
+/* A CSG tree as one object. */
+static RtStatus object_csg(Reader *r, const RtYamlNode *csg) {
+    const RtYaml *y = &r->yaml;
+    RtCsgTerm term;
+    uint32_t extents = 0, material;
+    RT_TRY(rt_yaml_keys(y, csg, "formula material? extents? transform?"));
+    RT_TRY(rt_yaml_word(y, csg, "extents", "on off", &extents));
+    RT_TRY(read_formula(r, csg, &term));
+    RT_TRY(move(r, csg, &term));
+    RtStatus status = rt_scene_add_csg(r->scene, &r->builder, term, extents == 0, r->error);
+    RT_TRY(rt_yaml_place(y, status, csg, "formula"));
+    if (!rt_yaml_get(y, csg, "material")) return RT_OK;
+    RT_TRY(find_material(r, csg, &material));
+    rt_scene_paint_csg(r->scene, material);
+    return RT_OK;
+}
+
+/* ---- objects: object_KIND adds one kind ---- */
+
+static RtStatus object_sphere(Reader *r, const RtYamlNode *n, uint32_t material) {
+    RtVec3 center;
+    float radius;
+    RT_TRY(read_sphere(&r->yaml, n, &center, &radius));
+    return rt_yaml_place(&r->yaml, rt_scene_add_sphere(r->scene, material, center, radius, r->error), n,
                          radius > 0 ? "center" : "radius");
 }
 
-static RtStatus add_polygon(RtYamlReader *r, const RtYamlNode *n) {
+static RtStatus object_polygon(Reader *r, const RtYamlNode *n, uint32_t material) {
+    RT_ARENA(memory);
     float *vertices;
-    uint32_t material, count;
+    uint32_t count;
     RT_TRY(rt_yaml_keys(&r->yaml, n, "vertices material?"));
-    RT_TRY(rt_yaml_find_material(r, n, &material));
-    RT_TRY(rt_yaml_rows(&r->yaml, n, "vertices", 3, 3, &vertices, &count));
+    RT_TRY(rt_yaml_rows(&r->yaml, n, "vertices", 3, 3, &memory, &vertices, &count));
     RtStatus status = rt_scene_add_polygon(r->scene, material, (const RtVec3 *)vertices, count, r->error);
-    rt_free(vertices);
     return rt_yaml_place(&r->yaml, status, n, "vertices");
 }
 
@@ -67,12 +486,10 @@ static RtStatus read_points(const RtYaml *y, const RtYamlNode *list, RtVec3 poin
     return RT_OK;
 }
 
-static RtStatus add_triangle(RtYamlReader *r, const RtYamlNode *n) {
+static RtStatus object_triangle(Reader *r, const RtYamlNode *n, uint32_t material) {
     const RtYaml *y = &r->yaml;
     RtVec3 v[3] = {{0}}, at_vertices[3] = {{0}};
-    uint32_t material;
     RT_TRY(rt_yaml_keys(y, n, "vertices normals? material?"));
-    RT_TRY(rt_yaml_find_material(r, n, &material));
     const RtYamlNode *normals = rt_yaml_get(y, n, "normals");
     RT_TRY(read_points(y, rt_yaml_get(y, n, "vertices"), v));
     RT_TRY(read_points(y, normals, at_vertices));
@@ -80,42 +497,34 @@ static RtStatus add_triangle(RtYamlReader *r, const RtYamlNode *n) {
     return rt_yaml_place(y, status, n, NULL);
 }
 
-static RtStatus add_round(RtYamlReader *r, const RtYamlNode *n, bool cylinder) {
+static RtStatus object_round(Reader *r, const RtYamlNode *n, bool cylinder, uint32_t material) {
     RtCone c;
-    uint32_t material;
-    RT_TRY(rt_yaml_read_cone(&r->yaml, n, cylinder, &c));
-    RT_TRY(rt_yaml_find_material(r, n, &material));
+    RT_TRY(read_cone(&r->yaml, n, cylinder, &c));
     RtStatus status =
         rt_scene_add_cone(r->scene, material, c.base, c.base_radius, c.apex, c.apex_radius, r->error);
     return rt_yaml_place(&r->yaml, status, n, NULL);
 }
 
-static RtStatus add_cone(RtYamlReader *r, const RtYamlNode *n) {
-    return add_round(r, n, false);
+static RtStatus object_cone(Reader *r, const RtYamlNode *n, uint32_t material) {
+    return object_round(r, n, false, material);
 }
 
-static RtStatus add_cylinder(RtYamlReader *r, const RtYamlNode *n) {
-    return add_round(r, n, true);
+static RtStatus object_cylinder(Reader *r, const RtYamlNode *n, uint32_t material) {
+    return object_round(r, n, true, material);
 }
 
-static RtStatus add_mesh(RtYamlReader *r, const RtYamlNode *n) {
-    uint32_t material;
+static RtStatus object_mesh(Reader *r, const RtYamlNode *n, uint32_t material) {
     RT_TRY(rt_yaml_keys(&r->yaml, n, "path material? transform?"));
-    RT_TRY(rt_yaml_find_material(r, n, &material));
-    return rt_yaml_append_mesh(r, n, material, r->scene);
+    return append_mesh(r, n, material, r->scene);
 }
 
-static RtStatus add_csg(RtYamlReader *r, const RtYamlNode *n) {
-    return rt_yaml_add_csg(r, n);
-}
-
-static RtStatus add_builtin(RtYamlReader *r, const RtYamlNode *n) {
+static RtStatus object_builtin(Reader *r, const RtYamlNode *n) {
     RtTransform transform;
     const RtTransform *given;
     const char *name = "";
     RtScene scene;
     RT_TRY(rt_yaml_keys(&r->yaml, n, "name transform?"));
-    RT_TRY(rt_yaml_read_transform(r, n, &transform, &given));
+    RT_TRY(read_transform(r, n, &transform, &given));
     RT_TRY(rt_yaml_text(&r->yaml, n, "name", RT_MAX_SCENE_NAME - 1, &name));
     RT_TRY(rt_yaml_place(&r->yaml, r->open_named(name, &scene, r->error), n, "name"));
     RtStatus status = rt_scene_append(r->scene, &scene, given, r->error);
@@ -123,14 +532,21 @@ static RtStatus add_builtin(RtYamlReader *r, const RtYamlNode *n) {
     return rt_yaml_place(&r->yaml, status, n, "transform");
 }
 
-#define OBJECTS(X) X(sphere) X(polygon) X(triangle) X(cone) X(cylinder) X(csg) X(mesh) X(builtin)
+/* Objects of one material; a tree may have one for each solid, and a built-in has its own. */
+#define PAINTED(X) X(sphere) X(polygon) X(triangle) X(cone) X(cylinder) X(mesh)
 
-static RtStatus add_object(RtYamlReader *r, const RtYamlNode *entry) {
+static RtStatus add_object(Reader *r, const RtYamlNode *entry) {
     const RtYamlNode *n;
-    RT_TRY(rt_yaml_keys(&r->yaml, entry, OBJECTS(RT_YAML_ONE_OF)));
+    uint32_t material;
+    RT_TRY(rt_yaml_keys(&r->yaml, entry, PAINTED(ONE_OF) "csg| builtin|"));
+    if ((n = rt_yaml_get(&r->yaml, entry, "csg"))) return object_csg(r, n);
+    if ((n = rt_yaml_get(&r->yaml, entry, "builtin"))) return object_builtin(r, n);
 #define ADD(kind)                                                                                            \
-    if ((n = rt_yaml_get(&r->yaml, entry, #kind))) return add_##kind(r, n);
-    OBJECTS(ADD)
+    if ((n = rt_yaml_get(&r->yaml, entry, #kind))) {                                                         \
+        RT_TRY(find_material(r, n, &material));                                                              \
+        return object_##kind(r, n, material);                                                                \
+    }
+    PAINTED(ADD)
 #undef ADD
     return RT_OK;
 }
@@ -162,7 +578,7 @@ static RtStatus check_camera(const RtCamera *camera, bool placed, const char **k
     return rt_view_init(&view, &tried, sampling, error);
 }
 
-static RtStatus set_camera(RtYamlReader *r, const RtYamlNode *n) {
+static RtStatus set_camera(Reader *r, const RtYamlNode *n) {
     const RtYaml *y = &r->yaml;
     RtCamera *camera = &r->scene->camera;
     RT_TRY(rt_yaml_keys(y, n, "from? at? up? fov? near? size?"));
@@ -188,14 +604,14 @@ static RtStatus set_camera(RtYamlReader *r, const RtYamlNode *n) {
     return rt_yaml_place(y, status, n, key);
 }
 
-static RtStatus set_color(RtYamlReader *r, const RtYamlNode *scene, const char *key, RtVec3 *color) {
+static RtStatus set_color(Reader *r, const RtYamlNode *scene, const char *key, RtVec3 *color) {
     RT_TRY(rt_yaml_point(&r->yaml, scene, key, color));
     if (color->x >= 0 && color->y >= 0 && color->z >= 0) return RT_OK;
     RtStatus status = rt_fail(r->error, RT_BAD_INPUT, "a colour must not be negative: [red, green, blue]");
     return rt_yaml_place(&r->yaml, status, scene, key);
 }
 
-static RtStatus add_lights(RtYamlReader *r, const RtYamlNode *list) {
+static RtStatus add_lights(Reader *r, const RtYamlNode *list) {
     const RtYaml *y = &r->yaml;
     RT_TRY(rt_yaml_list(y, list, NULL, 0, UINT32_MAX, "lights"));
     for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
@@ -210,7 +626,7 @@ static RtStatus add_lights(RtYamlReader *r, const RtYamlNode *list) {
 
 /* ---- the scene ---- */
 
-static RtStatus build(RtYamlReader *r) {
+static RtStatus build(Reader *r) {
     const RtYaml *y = &r->yaml;
     const RtYamlNode *root = y->nodes;
     RT_TRY(rt_yaml_check_format(y));
@@ -221,7 +637,7 @@ static RtStatus build(RtYamlReader *r) {
     RT_TRY(set_color(r, root, "ambient", &r->scene->ambient));
     RT_TRY(add_lights(r, rt_yaml_get(y, root, "lights")));
     RT_TRY(add_materials(r, rt_yaml_get(y, root, "materials")));
-    RT_TRY(rt_yaml_add_solids(r, rt_yaml_get(y, root, "solids")));
+    RT_TRY(add_solids(r, rt_yaml_get(y, root, "solids")));
     RT_TRY(rt_yaml_list(y, objects, NULL, 1, UINT32_MAX, "objects"));
     for (const RtYamlNode *n = rt_yaml_first(objects); n != rt_yaml_end(objects); n += n->size)
         RT_TRY(add_object(r, n));
@@ -229,25 +645,23 @@ static RtStatus build(RtYamlReader *r) {
 }
 
 /* Builds the scene from the open file, and closes it. */
-static RtStatus load(RtYamlReader *r) {
+static RtStatus load(Reader *r) {
     RtStatus status = build(r);
     rt_csg_builder_clear(&r->builder);
-    rt_free(r->materials.all);
-    rt_free(r->solids.all);
-    rt_free(r->terms);
+    rt_arena_clear(&r->memory);
     rt_yaml_close(&r->yaml);
     return status;
 }
 
 RtStatus rt_yaml_load(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error) {
-    RtYamlReader r = {.open_named = open_named, .scene = scene, .standard = UINT32_MAX, .error = error};
+    Reader r = {.open_named = open_named, .scene = scene, .standard = UINT32_MAX, .error = error};
     RT_TRY(rt_yaml_open(&r.yaml, path, error));
     return load(&r);
 }
 
 RtStatus rt_yaml_load_text(const char *name, const char *text, RtSceneOpener *open_named, RtScene *scene,
                            RtError *error) {
-    RtYamlReader r = {.open_named = open_named, .scene = scene, .standard = UINT32_MAX, .error = error};
+    Reader r = {.open_named = open_named, .scene = scene, .standard = UINT32_MAX, .error = error};
     RT_TRY(rt_yaml_parse(&r.yaml, name, text, strlen(text), error));
     return load(&r);
 }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Writing a scene as YAML. Numbers have as many significant digits as restore the float32 bit for bit: 9
  * always suffice, 6 often. */
-#include "core/base/memory.h"
 #include "core/base/versions.h"
+#include "core/scene/formula.h"
 #include "core/scene/yaml.h"
-#include "core/scene/yaml_reader.h"
+#include "core/text/yaml.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -224,13 +224,12 @@ static RtStatus try_names(const RtScene *scene, const char **names, bool *good, 
 /* ---- saving ---- */
 
 RtStatus rt_yaml_save(const RtScene *scene, FILE *out, RtError *error) {
+    RT_ARENA(memory);
     Writer w = {.scene = scene, .out = out};
-    const char **names = rt_alloc(scene->material_count, sizeof *names);
-    if (!names) return rt_fail_memory(error, "the names of materials", scene->material_count * sizeof *names);
+    const char **names = rt_arena_alloc(&memory, scene->material_count, sizeof *names);
     bool good;
-    RtStatus status = try_names(scene, names, &good, error);
-    rt_free(names);
-    RT_TRY(status);
+    RT_TRY(rt_arena_check(&memory, "the names of materials", error));
+    RT_TRY(try_names(scene, names, &good, error));
     w.numbered = !good;
     fprintf(out, "format: %d\n", RT_FILE_FORMAT);
     write_camera(&w, &scene->camera);

@@ -2,11 +2,10 @@
 #include "core/text/npy.h"
 
 #include "core/base/file.h"
-#include "core/base/words.h"
 
 #include <assert.h>
-#include <ctype.h>
 #include <inttypes.h>
+#include <jansson.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -17,112 +16,10 @@ enum {
 };
 static const char MAGIC[MAGIC_BYTES + 1] = "\x93NUMPY";
 
-/* ---- the dictionary ---- */
-
-typedef struct Header {
-    char text[MOST_HEADER + 1];
-    const char *at; /* in the text */
-    char descr[32]; /* the first characters; "" : not seen */
-    bool c_order, ordered;
-    bool shaped;
-    uint64_t shape[2];
-    uint32_t dimensions;
-} Header;
-
-static void skip_blanks(Header *h) {
-    while (*h->at == ' ' || *h->at == '\n' || *h->at == '\t' || *h->at == '\r') h->at++;
-}
-
-/* Skips `c` and the blanks around it. */
-static bool take(Header *h, char c) {
-    skip_blanks(h);
-    if (*h->at != c) return false;
-    h->at++;
-    skip_blanks(h);
-    return true;
-}
-
-/* A quoted string, with quotes of either kind, without escapes. */
-static bool take_text(Header *h, char *out, size_t size) {
-    skip_blanks(h);
-    char quote = *h->at;
-    if (quote != '\'' && quote != '"') return false;
-    const char *end = strchr(h->at + 1, quote);
-    size_t length = end ? (size_t)(end - h->at - 1) : size;
-    if (length >= size) return false;
-    memcpy(out, h->at + 1, length);
-    out[length] = '\0';
-    h->at = end + 1;
-    return !strchr(out, '\\');
-}
-
-static bool take_word(Header *h, const char *word) {
-    skip_blanks(h);
-    size_t length = strlen(word);
-    if (strncmp(h->at, word, length) != 0 || isalnum((unsigned char)h->at[length])) return false;
-    h->at += length;
-    return true;
-}
-
-static bool take_number(Header *h, uint64_t *number) {
-    skip_blanks(h);
-    if (!isdigit((unsigned char)*h->at)) return false;
-    for (*number = 0; isdigit((unsigned char)*h->at); h->at++) {
-        uint64_t digit = (uint64_t)(*h->at - '0');
-        if (*number > (UINT64_MAX - digit) / 10) return false;
-        *number = 10 * *number + digit;
-    }
-    return true;
-}
-
-/* (), (7,), (7, 8), (7, 8, 9): the first two dimensions are kept. */
-static bool take_shape(Header *h) {
-    if (!take(h, '(')) return false;
-    for (h->dimensions = 0; !take(h, ')'); h->dimensions++) {
-        uint64_t number;
-        if (!take_number(h, &number)) return false;
-        if (h->dimensions < 2) h->shape[h->dimensions] = number;
-        bool more = take(h, ',');
-        if (!more && *h->at != ')') return false;
-        if (!more && h->dimensions == 0) return false; /* (7) is a number */
-    }
-    return true;
-}
-
-/* A structured type is a list; its bracket suffices to reject it. */
-static bool take_descr(Header *h) {
-    if (*h->at != '[') return take_text(h, h->descr, sizeof h->descr);
-    strcpy(h->descr, "[...]");
-    return false;
-}
-
-static bool take_entry(Header *h) {
-    char key[32];
-    if (!take_text(h, key, sizeof key) || !take(h, ':')) return false;
-    if (strcmp(key, "descr") == 0 && !*h->descr) return take_descr(h);
-    if (strcmp(key, "fortran_order") == 0 && !h->ordered) {
-        h->ordered = true;
-        h->c_order = take_word(h, "False");
-        return h->c_order || take_word(h, "True");
-    }
-    if (strcmp(key, "shape") == 0 && !h->shaped) return h->shaped = take_shape(h);
-    return false;
-}
-
-/* {'descr': '<f4', 'fortran_order': False, 'shape': (7, 8), }, with keys in any order. */
-static bool parse(Header *h) {
-    h->at = h->text;
-    if (!take(h, '{')) return false;
-    while (!take(h, '}')) {
-        if (!take_entry(h)) return false;
-        if (!take(h, ',') && *h->at != '}') return false;
-    }
-    return *h->at == '\0' && *h->descr && h->ordered && h->shaped;
-}
-
 /* ---- reading ---- */
 
-static RtStatus read_text(RtNpy *npy, Header *h, RtError *error) {
+/* The text of the header, terminated. */
+static RtStatus read_text(RtNpy *npy, char text[MOST_HEADER + 1], RtError *error) {
     unsigned char start[MAGIC_BYTES + 2], size[4] = {0};
     if (fread(start, 1, sizeof start, npy->file) != sizeof start || memcmp(start, MAGIC, MAGIC_BYTES) != 0) {
         return rt_fail(error, RT_BAD_INPUT, "%s: this is not a NumPy array: write it with numpy.save",
@@ -141,38 +38,50 @@ static RtStatus read_text(RtNpy *npy, Header *h, RtError *error) {
         return rt_fail(error, RT_BAD_INPUT, "%s: a header of %" PRIu32 " bytes: at most %d are read",
                        npy->path, length, MOST_HEADER);
     }
-    if (fread(h->text, 1, length, npy->file) != length)
+    if (fread(text, 1, length, npy->file) != length)
         return rt_fail(error, RT_BAD_INPUT, "%s: the file ends within its header", npy->path);
-    h->text[length] = '\0';
-    if (strlen(h->text) == length) return RT_OK;
+    text[length] = '\0';
+    if (strlen(text) == length) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT, "%s: the header contains a zero byte", npy->path);
 }
 
-static RtStatus check(RtNpy *npy, const Header *h, bool parsed, uint64_t most_rows, RtError *error) {
-    uint32_t columns = npy->columns;
-    if (*h->descr && strcmp(h->descr, "<f4") != 0) {
-        return rt_fail(error, RT_BAD_INPUT,
-                       "%s: numbers of type %s: expected '<f4', as from array.astype('float32')", npy->path,
-                       h->descr);
+/* {'descr': '<f4', 'fortran_order': False, 'shape': (7, 8), } as JSON: brackets instead of parentheses,
+ * double quotes, `false`, and no comma before a bracket. */
+static void write_json(const char *text, char *out) {
+    char quote = '\0'; /* that began the string around `text` */
+    for (; *text; text++) {
+        const char next = text[1 + strspn(text + 1, " \t\r\n")];
+        if (quote ? *text == quote : *text == '\'' || *text == '"') {
+            quote = quote ? '\0' : *text;
+            *out++ = '"';
+        } else if (quote || *text != ',' || (next != ')' && next != '}')) {
+            const char *change = quote ? NULL : strchr("([)]TtFf", *text);
+            *out++ = change && strchr("()TF", *text) ? change[1] : *text;
+        }
     }
-    if (!parsed) {
+    *out = '\0';
+}
+
+static RtStatus check(RtNpy *npy, const json_t *header, const char *text, uint64_t most_rows,
+                      RtError *error) {
+    const json_t *descr = json_object_get(header, "descr"), *order = json_object_get(header, "fortran_order");
+    const json_t *shape = json_object_get(header, "shape"), *rows = json_array_get(shape, 0);
+    if (json_object_size(header) != 3 || !descr || !json_is_boolean(order) || !json_is_array(shape))
         return rt_fail(error, RT_BAD_INPUT,
                        "%s: the header is not {'descr': ..., 'fortran_order': ..., 'shape': ...}: %.80s",
-                       npy->path, h->text);
-    }
-    if (!h->c_order) {
+                       npy->path, text);
+    if (!json_is_string(descr) || strcmp(json_string_value(descr), "<f4") != 0)
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: expected '<f4', as from array.astype('float32'), found %.80s", npy->path, text);
+    if (json_is_true(order))
         return rt_fail(error, RT_BAD_INPUT,
                        "%s: the array is column-major: expected row-major, as from numpy.ascontiguousarray",
                        npy->path);
-    }
-    if (h->dimensions != 2 || h->shape[1] != columns) {
-        return rt_fail(error, RT_BAD_INPUT,
-                       "%s: an array of %" PRIu32 " dimension%s, and rows of %" PRIu64
-                       ": expected the shape (N, %" PRIu32 ")",
-                       npy->path, h->dimensions, rt_plural(h->dimensions),
-                       h->dimensions >= 2 ? h->shape[1] : 0, columns);
-    }
-    npy->rows = h->shape[0];
+    if (json_array_size(shape) != 2 || json_integer_value(json_array_get(shape, 1)) != npy->columns ||
+        !json_is_integer(rows) || json_integer_value(rows) < 0)
+        return rt_fail(error, RT_BAD_INPUT, "%s: expected the shape (N, %" PRIu32 "), found %.80s", npy->path,
+                       npy->columns, text);
+    npy->rows = (uint64_t)json_integer_value(rows);
     if (npy->rows <= most_rows) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT, "%s: %" PRIu64 " rows: at most %" PRIu64 " are read", npy->path,
                    npy->rows, most_rows);
@@ -195,12 +104,16 @@ static RtStatus check_length(const RtNpy *npy, RtError *error) {
 
 RtStatus rt_npy_open(RtNpy *npy, const char *path, uint32_t columns, uint64_t most_rows, RtError *error) {
     assert(most_rows <= UINT64_MAX / sizeof(float) / columns);
-    Header header = {.descr = ""};
+    char text[MOST_HEADER + 1], json[MOST_HEADER + 1];
+    json_error_t problem;
     *npy = (RtNpy){.path = path, .columns = columns};
     RT_TRY(rt_file_open(path, &npy->file, error));
-    RT_TRY(read_text(npy, &header, error));
-    bool parsed = parse(&header);
-    RT_TRY(check(npy, &header, parsed, most_rows, error));
+    RT_TRY(read_text(npy, text, error));
+    write_json(text, json);
+    json_auto_t *header = json_loads(json, JSON_REJECT_DUPLICATES, &problem);
+    if (!header && json_error_code(&problem) == json_error_out_of_memory)
+        return rt_fail_memory(error, path, 0);
+    RT_TRY(check(npy, header, text, most_rows, error));
     return check_length(npy, error);
 }
 

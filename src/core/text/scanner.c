@@ -22,6 +22,13 @@ static size_t joint(const RtScanner *s) {
     return s->at[length] == '\n' ? length + 1 : 0;
 }
 
+void rt_scan_begin(RtScanner *s, const char *text, size_t size) {
+    s->at = text;
+    s->end = text + size;
+    s->line = 1;
+    s->fresh = true;
+}
+
 RtWord rt_scan_peek(RtScanner *s) {
     while (s->at < s->end) {
         if (ends_line(s->at)) {

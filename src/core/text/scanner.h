@@ -15,7 +15,7 @@ typedef struct RtWord {
     bool first;       /* of its line */
 } RtWord;
 
-/* Initialise path, at, end and error, and `line` to 1 and `fresh` to true; *end must be a 0. */
+/* Initialise path and error, then rt_scan_begin. */
 typedef struct RtScanner {
     const char *path;
     const char *at, *end;
@@ -25,6 +25,9 @@ typedef struct RtScanner {
     bool joins;  /* a backslash at the end of a line joins it with the next one */
     RtError *error;
 } RtScanner;
+
+/* Begins with text[0..size), behind which must be a 0. */
+void rt_scan_begin(RtScanner *scanner, const char *text, size_t size);
 
 /* The next word, without taking it. */
 RtWord rt_scan_peek(RtScanner *scanner);

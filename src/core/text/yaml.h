@@ -11,7 +11,7 @@
 #ifndef RT_TEXT_YAML_H
 #define RT_TEXT_YAML_H
 
-#include "core/base/status.h"
+#include "core/base/memory.h"
 #include "core/base/vec.h"
 
 #include <stdint.h>
@@ -100,10 +100,10 @@ RtStatus rt_yaml_point(const RtYaml *yaml, const RtYamlNode *node, const char *k
 RtStatus rt_yaml_doubles(const RtYaml *yaml, const RtYamlNode *node, const char *key, uint32_t count,
                          double *values);
 
-/* A list of at least `least` lists of `width` numbers each, consecutively in *rows. On success the caller
- * owns *rows (rt_free); it is NULL if the key is missing. */
+/* A list of at least `least` lists of `width` numbers each, consecutively in *rows, a block of `memory`; NULL
+ * if the key is missing. */
 RtStatus rt_yaml_rows(const RtYaml *yaml, const RtYamlNode *node, const char *key, uint32_t least,
-                      uint32_t width, float **rows, uint32_t *count);
+                      uint32_t width, RtArena *memory, float **rows, uint32_t *count);
 
 /* An integer lo..hi in decimal digits without a sign. */
 RtStatus rt_yaml_u32(const RtYaml *yaml, const RtYamlNode *node, const char *key, uint32_t lo, uint32_t hi,
