@@ -5,7 +5,7 @@
 #include "cli/progress.h"
 #include "report/report.h"
 #include "results/result_tables.h"
-#include "run/merge.h"
+#include "run/run.h"
 
 #include <stdio.h>
 

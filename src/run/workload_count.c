@@ -88,10 +88,6 @@ static RtStatus deal_shares(RtWorkloadState *workload, RtRayKind kind, RtError *
     return RT_OK;
 }
 
-RtStatus rt_workload_teach(const RtWorkloadState *workload, RtRayKind kind, RtAccel *accel, RtError *error) {
-    return rt_accel_learn(accel, workload->sets[kind].rays, workload->answers, workload->answer_count, error);
-}
-
 /* ---- limits ---- */
 
 /* Predicts how long counting and timing a cell takes, from a part of its rays, and excludes it if that is too
