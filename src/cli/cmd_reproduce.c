@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally reproduce: counts a result directory again and compares its exact files byte for byte. */
 #include "cli/cli.h"
-#include "cli/directory.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
 #include "core/base/memory.h"

@@ -3,7 +3,7 @@
 #ifndef RT_CLI_RECORDING_H
 #define RT_CLI_RECORDING_H
 
-#include "cli/options.h"
+#include "cli/cli.h"
 #include "experiment/experiment.h"
 
 typedef struct RtRecordingOptions {
