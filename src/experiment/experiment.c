@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "experiment/labels.h"
+#include "experiment/experiment.h"
 
-#include "experiment/manifest_experiment.h"
-#include "measure/result_files.h"
+#include "core/base/words.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -168,6 +167,32 @@ const char *rt_plot_name(const RtExperiment *experiment, uint32_t plot) {
 
 /* ---- checks ---- */
 
+/* Names the files of workload `i`. Names that are equal but for case are numbered. */
+static void label_files(RtExperiment *experiment, uint32_t i) {
+    char name[RT_MAX_FILE_NAME], *file = experiment->workloads[i].file_name;
+    bool taken = true;
+    rt_file_name(experiment->workloads[i].label, name, sizeof name);
+    for (uint32_t number = 1; taken; number++) {
+        snprintf(file, sizeof experiment->workloads[i].file_name, number > 1 ? "%s-%" PRIu32 : "%s", name,
+                 number);
+        taken = false;
+        for (uint32_t t = 0; t < i; t++) taken |= strcasecmp(file, experiment->workloads[t].file_name) == 0;
+    }
+}
+
+/* Sets what is shown of all scenes and accelerators. */
+static void shorten_labels(RtExperiment *experiment) {
+    const char *labels[RT_MAX_CANDIDATES];
+    const uint32_t count = experiment->candidate_count;
+    for (uint32_t c = 0; c < count; c++) labels[c] = experiment->candidates[c].label;
+    for (uint32_t c = 0; c < count; c++)
+        rt_shorten_name(labels, count, c, RT_SHOWN_WIDTH, experiment->candidates[c].shown, RT_MAX_LABEL);
+    for (uint32_t t = 0; t < experiment->workload_count; t++) labels[t] = experiment->workloads[t].label;
+    for (uint32_t t = 0; t < experiment->workload_count; t++)
+        rt_shorten_name(labels, experiment->workload_count, t, RT_SHOWN_WIDTH, experiment->workloads[t].shown,
+                        RT_MAX_LABEL);
+}
+
 static RtStatus check_label(const char *label, RtError *error) {
     for (const char *c = label; *c; c++) {
         if (rt_may_label(*c)) continue;
@@ -232,7 +257,7 @@ static RtStatus check_candidate(RtExperiment *experiment, uint32_t i, RtError *e
 static RtStatus check_workload(RtExperiment *experiment, uint32_t i, RtError *error) {
     const RtWorkload *workload = &experiment->workloads[i];
     if (rt_workload_find(experiment, workload->label) < i) return fail_twice(workload->label, error);
-    rt_label_files(experiment, i);
+    label_files(experiment, i);
     return check_label(workload->label, error);
 }
 
@@ -329,7 +354,7 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
     RT_TRY(check_baseline(experiment, error));
     snprintf(experiment->again, sizeof experiment->again, "%s (again)",
              experiment->candidates[experiment->baseline].label);
-    rt_labels_shorten(experiment);
+    shorten_labels(experiment);
     strcpy(where, "frame");
     RT_TRY(check_frame(experiment, error));
     for (uint32_t i = 0; i < experiment->plot_count; i++) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Sweeps: one spec of a scene or an accelerator that expands to several, one for each value of a parameter.
+/* Labels; and sweeps: one spec of a scene or an accelerator that expands to several, one for each value of a
+ * parameter.
  *
  *     grid:density=1|4|16              a list
  *     grid:density=1..9+2              from 1 to 9 in steps of 2
@@ -10,8 +11,7 @@
  * number, values are rounded and duplicates dropped. The characters are unambiguous: no other value has two
  * dots or a bar, and a '+' before a digit never separates accelerators. */
 #include "core/base/words.h"
-#include "experiment/labels.h"
-#include "experiment/manifest_experiment.h"
+#include "experiment/experiment.h"
 #include "scenes/builtin.h"
 
 #include <ctype.h>
@@ -19,6 +19,105 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* ---- labels ---- */
+
+bool rt_may_label(char c) {
+    return isgraph((unsigned char)c) && !strchr("\"'`/\\$&<>@^{}", c);
+}
+
+/* Whether version 1.0, which cut labels, called number `i` of a list so: by the first 47 characters, or, if
+ * another had these, by the first 40 and the number. */
+static bool was_called(const char *label, uint32_t i, const char *name) {
+    enum { CUT = 47, NUMBERED = 40 };
+    char *end;
+    if (strlen(label) <= CUT) return false;
+    if (strlen(name) == CUT && strncmp(label, name, CUT) == 0) return true;
+    return strncmp(label, name, NUMBERED) == 0 && strncmp(name + NUMBERED, "...", 3) == 0 &&
+           isdigit((unsigned char)name[NUMBERED + 3]) && strtoul(name + NUMBERED + 3, &end, 10) == i + 1 &&
+           !*end;
+}
+
+uint32_t rt_candidate_find(const RtExperiment *experiment, const char *label, uint32_t t) {
+    const uint32_t count = experiment->candidate_count;
+    if (strcmp(label, experiment->again) == 0) return count;
+    for (uint32_t i = 0; i < 2 * count; i++) {
+        const uint32_t c = i < count ? i : i - count;
+        const RtCandidate *candidate = &experiment->candidates[c];
+        const bool called =
+            i < count ? strcmp(candidate->label, label) == 0 : was_called(candidate->label, c, label);
+        if (called && !(candidate->excluded >> t & 1)) return c;
+    }
+    return count + 1;
+}
+
+uint32_t rt_workload_find(const RtExperiment *experiment, const char *label) {
+    const uint32_t count = experiment->workload_count;
+    uint32_t t = 0, cut = 0;
+    while (t < count && strcmp(experiment->workloads[t].label, label) != 0) t++;
+    while (cut < count && !was_called(experiment->workloads[cut].label, cut, label)) cut++;
+    return t < count ? t : cut;
+}
+
+bool rt_candidate_is_called(const RtCandidate *candidate, const char *name) {
+    return strcmp(candidate->label, name) == 0 || strcmp(candidate->stem, name) == 0;
+}
+
+bool rt_workload_is_called(const RtWorkload *workload, const char *name) {
+    return strcmp(workload->label, name) == 0 || strcmp(workload->stem, name) == 0;
+}
+
+void rt_swept_name(const RtSwept *swept, const char *but, char *out, size_t size) {
+    for (uint32_t i = 0; i < swept->count; i++) {
+        if (but && strcmp(swept->keys[i], but) == 0) continue;
+        rt_append_text(out, size, ":%s=%s", swept->keys[i], swept->values[i]);
+    }
+}
+
+/* Makes stem and label of one of a sweep: the given label, and that with ":key=value" for what is swept. */
+static RtStatus label_sweep(const char *given, const RtSwept *swept, char stem[RT_MAX_LABEL],
+                            char label[RT_MAX_LABEL], RtError *error) {
+    char whole[RT_MAX_LABEL + RT_MAX_SWEPT * (RT_MAX_NAME + RT_MAX_SWEPT_CHARS + 2)];
+    strcpy(stem, given);
+    snprintf(whole, sizeof whole, "%s", given);
+    rt_swept_name(swept, NULL, whole, sizeof whole);
+    if (strlen(whole) >= RT_MAX_LABEL) {
+        return rt_fail(error, RT_BAD_INPUT, "'%s' is longer than %d characters: give a short `label`", whole,
+                       RT_MAX_LABEL - 1);
+    }
+    strcpy(label, whole);
+    return RT_OK;
+}
+
+/* Whether characters had to be replaced. */
+static bool name_scene(const char *spec, bool file, char label[RT_MAX_LABEL]) {
+    const char *start = file ? basename(spec) : spec;
+    size_t length = file ? strcspn(start, ".") : strlen(start);
+    bool replaced = false;
+    snprintf(label, RT_MAX_LABEL, "%.*s", (int)length, start);
+    for (char *c = label; *c; c++) {
+        if (rt_may_label(*c)) continue;
+        *c = '_';
+        replaced = true;
+    }
+    return replaced;
+}
+
+/* Makes stem and label of the last workload, from its spec and that without swept parameters: a file's name
+ * without folder and extension, or a built-in's spec, with _ for characters that labels may not have. If
+ * another scene then has that label, it gets a number. */
+static void label_scene(RtExperiment *experiment, RtWorkload *workload, const char *stem, const char *spec) {
+    char name[RT_MAX_LABEL];
+    name_scene(stem, workload->file, workload->stem);
+    const bool replaced = name_scene(spec, workload->file, workload->label);
+    strcpy(name, workload->label);
+    for (unsigned number = 2;
+         replaced && &experiment->workloads[rt_workload_find(experiment, workload->label)] != workload;
+         number++) {
+        snprintf(workload->label, RT_MAX_LABEL, "%.*s-%u", RT_MAX_LABEL - 8, name, number);
+        strcpy(workload->stem, workload->label);
+    }
+}
 
 /* ---- what was swept ---- */
 
@@ -144,6 +243,58 @@ static RtStatus read_values(const char *text, size_t length, bool whole, SweptPa
     return RT_OK;
 }
 
+/* ---- accelerators of results ---- */
+
+static const json_t *entry_at(const json_t *manifest, size_t i) {
+    return json_array_get(json_object_get(manifest, "accelerators"), i);
+}
+
+/* Version 1.0 wrote the label as "label", and the spec as "accel". */
+static const char *spec_of(const json_t *entry) {
+    const json_t *spec = json_object_get(entry, "spec");
+    return json_string_value(spec ? spec : json_object_get(entry, "accel"));
+}
+
+bool rt_manifest_candidate(const json_t *manifest, uint32_t i, RtCandidate *candidate) {
+    const json_t *entry = entry_at(manifest, i), *old = json_object_get(entry, "label");
+    const char *spec = spec_of(entry);
+    const char *label = json_string_value(old ? old : json_object_get(entry, "accel"));
+    if (!spec || !label) return false;
+    snprintf(candidate->spec, sizeof candidate->spec, "%s", spec);
+    snprintf(candidate->label, sizeof candidate->label, "%s", label);
+    return true;
+}
+
+bool rt_manifest_is_missing(const json_t *manifest, uint32_t i) {
+    return json_is_true(json_object_get(entry_at(manifest, i), "missing"));
+}
+
+/* In one layer, NAME:KEY=VALUE,KEY=VALUE. */
+static bool is_whole_in(const char *layer, const char *owner, const char *key) {
+    size_t name = strcspn(layer, ":+"), length = strlen(key);
+    if (name != strlen(owner) || strncmp(layer, owner, name) != 0) return true;
+    for (const char *c = layer + name; *c == ':' || *c == ','; c += 1 + strcspn(c + 1, ",")) {
+        char value[RT_MAX_SWEPT_CHARS];
+        char *end;
+        if (strncmp(c + 1, key, length) != 0 || c[1 + length] != '=') continue;
+        snprintf(value, sizeof value, "%.*s", (int)strcspn(c + 2 + length, ",+"), c + 2 + length);
+        double number = strtod(value, &end);
+        if (end == value || *end || number != round(number)) return false;
+    }
+    return true;
+}
+
+bool rt_manifest_is_whole(const json_t *manifest, const char *owner, const char *key) {
+    const json_t *list = json_object_get(manifest, "accelerators");
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        const char *layer = spec_of(json_array_get(list, i));
+        for (; layer; layer = strchr(layer, '+') ? strchr(layer, '+') + 1 : NULL) {
+            if (!is_whole_in(layer, owner, key)) return false;
+        }
+    }
+    return true;
+}
+
 /* ---- the text ---- */
 
 static bool is_whole(const char *owner, const char *key, bool scene, const json_t *manifest) {
@@ -196,7 +347,7 @@ static RtStatus read_param(Sweep *sweep, const char *layer, size_t start, size_t
 
 /* Reads `text`, a spec of a built-in scene (`scene`) or of an accelerator; files are never swept. Does not
  * check the resulting specs. `manifest` says which parameters are whole numbers for accelerators that this
- * build may lack (experiment/manifest_experiment.h); or NULL. */
+ * build may lack; or NULL. */
 static RtStatus parse_sweep(const char *text, bool scene, const json_t *manifest, Sweep *sweep,
                             RtError *error) {
     const char *layer = text;
@@ -277,8 +428,8 @@ static RtStatus add_scene(RtExperiment *experiment, const RtWorkload *like, cons
     RT_TRY(rt_path_join(workload->file ? folder : "", spec, workload->path, error));
     stem_of(sweep, stem, sizeof stem);
     if (*like->label)
-        return rt_label_sweep(like->label, &workload->swept, workload->stem, workload->label, error);
-    rt_label_scene(experiment, workload, stem, spec);
+        return label_sweep(like->label, &workload->swept, workload->stem, workload->label, error);
+    label_scene(experiment, workload, stem, spec);
     return RT_OK;
 }
 
@@ -304,7 +455,7 @@ static RtStatus add_accel(RtExperiment *experiment, const RtCandidate *like, con
     RT_TRY(spec_at(sweep, i, spec, &candidate->swept, error));
     strcpy(candidate->spec, spec);
     if (*like->label)
-        return rt_label_sweep(like->label, &candidate->swept, candidate->stem, candidate->label, error);
+        return label_sweep(like->label, &candidate->swept, candidate->stem, candidate->label, error);
     stem_of(sweep, candidate->stem, sizeof candidate->stem);
     strcpy(candidate->label, spec);
     return RT_OK;

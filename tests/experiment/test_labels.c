@@ -4,7 +4,6 @@
 #include "experiment_testing.h"
 
 #include "core/base/words.h"
-#include "experiment/manifest_experiment.h"
 
 #include <strings.h>
 
