@@ -107,14 +107,9 @@ static void on_progress(void *context, uint32_t round, uint32_t rounds, const ch
     fflush(stderr);
 }
 
-/* An option that only one side has. */
-typedef struct OwnOption {
-    const char *name; /* the last has none */
-    bool value;       /* it has one, which may be the next argument */
-} OwnOption;
-
-/* The arguments of argv without some options, in a new array, NULL behind the last. RT_NO_MEMORY. */
-static RtStatus arguments_without(const OwnOption *options_left_out, char **argv, char ***arguments,
+/* The arguments of argv without some options, in a new array, NULL behind the last. The names of those that
+ * have a value, which may be the next argument, end in '='. RT_NO_MEMORY. */
+static RtStatus arguments_without(const char *const *left_out, char **argv, char ***arguments,
                                   RtError *error) {
     int count = 0, used = 0;
     while (argv[count]) count++;
@@ -123,18 +118,17 @@ static RtStatus arguments_without(const OwnOption *options_left_out, char **argv
     for (int i = 1; i < count; i++) {
         const char *name = strncmp(argv[i], "--", 2) == 0 ? argv[i] + 2 : "";
         const size_t length = strcspn(name, "="); /* argp takes any unique beginning of a name */
-        const OwnOption *own = options_left_out;
-        while (own->name && (length == 0 || strncmp(name, own->name, length) != 0)) own++;
-        if (!own->name) (*arguments)[used++] = argv[i];
-        if (own->value && name[length] != '=') i++;
+        const char *const *out = left_out;
+        while (*out && (length == 0 || strncmp(name, *out, length) != 0)) out++;
+        if (!*out) (*arguments)[used++] = argv[i];
+        if (*out && strchr(*out, '=') && name[length] != '=') i++;
     }
     return RT_OK;
 }
 
 /* A worker gets the same arguments, so it measures the same; older ones do not know these. */
 static RtStatus compare_programs(Options *o, char **argv, RtComparison *comparison, RtError *error) {
-    static const OwnOption left_out[] = {
-        {"callgrind", false}, {"memory", true}, {"time", true}, {NULL, false}};
+    static const char *const left_out[] = {"callgrind", "memory=", "time=", NULL};
     char **arguments = NULL;
     RtStatus status = load(o, error); /* reports errors once */
     if (*o->recording.experiment->warning.message)
@@ -161,10 +155,8 @@ static RtStatus compare_programs(Options *o, char **argv, RtComparison *comparis
 
 static RtStatus compare_instructions(const Options *o, char **argv, RtComparison *comparison,
                                      RtError *error) {
-    static const OwnOption left_out[] = {/* `bench` lacks them */
-                                         {"with", true},   {"margin", true}, {"strict", false},
-                                         {"quick", false}, {"memory", true}, /* for each accelerator, there */
-                                         {"time", true},   {NULL, false}};
+    /* `bench` lacks them, or its --memory is for each accelerator. */
+    static const char *const left_out[] = {"with=", "margin=", "strict", "quick", "memory=", "time=", NULL};
     char **arguments = NULL;
     rt_progress_notice(NULL, "counting instructions under valgrind, which takes a while");
     RtStatus status = arguments_without(left_out, argv, &arguments, error);

@@ -99,17 +99,3 @@ void rt_plugins_change_format(const char *name, const json_t *change, const char
                  name, rt_json_text(now, "file", "unknown"), rt_json_text(now, "hash", "unknown"), after,
                  before);
 }
-
-void rt_plugins_tell_changes(const RtExperiment *experiment, const json_t *manifest,
-                             void (*tell)(void *context, const char *sentence), void *context) {
-    json_t *then = rt_plugins_used_then(experiment, manifest), *change;
-    json_t *changed = rt_plugins_changed_since(then, experiment);
-    const char *name;
-    json_object_foreach(changed, name, change) {
-        char sentence[RT_MAX_PLUGIN_CHANGE];
-        rt_plugins_change_format(name, change, "then", "now", sentence);
-        tell(context, sentence);
-    }
-    json_decref(changed);
-    json_decref(then);
-}

@@ -11,6 +11,7 @@
 #include "measure/rounds.h"
 #include "run/workload_state.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <sched.h>
@@ -41,11 +42,22 @@ RtStatus rt_worker_start(RtWorker *worker, const char *const *command, char *con
     return status;
 }
 
+/* With the end of the log. */
 static RtStatus fail_ended(RtWorker *worker, RtError *error) {
-    char how[160] = "it no longer answers";
+    enum { MOST_BYTES = 1 << 24, MOST_SHOWN = 600 };
+    char how[160] = "it no longer answers", *text;
+    size_t size;
     if (rt_process_wait(&worker->process, 1000, &worker->end))
         rt_process_end_format(worker->end, 0, "", how, sizeof how);
-    return worker->fail(worker, how, error);
+    if (!worker->log)
+        return rt_fail(error, RT_BAD_INPUT, "%s cannot be compared: %s; its messages are above",
+                       worker->program, how);
+    RT_TRY(rt_file_read(worker->log, MOST_BYTES, &text, &size, error));
+    while (size > 0 && isspace((unsigned char)text[size - 1])) text[--size] = '\0';
+    rt_fail(error, RT_NOT_AVAILABLE, "%s: %s\n%s", worker->failure, how,
+            size > MOST_SHOWN ? text + size - MOST_SHOWN : text);
+    rt_free(text);
+    return RT_NOT_AVAILABLE;
 }
 
 RtStatus rt_worker_take(RtWorker *worker, json_t **line, RtError *error) {
