@@ -79,13 +79,4 @@ PLACE_TEST(on_a_terminal_one_line_is_drawn_in_place_and_taken_away) {
     assert_string_equal(text + length - strlen(away), away);
 }
 
-PLACE_TEST(a_frame_is_of_no_kind_of_rays) {
-    char *text = said(place, RT_EVENT_RENDER, false, 0.2, 300);
-    assert_string_equal(text, "raytally: 0 of 2 cells, balls:size=1 grid: rendered\n");
-    rt_free(text);
-    text = said(place, RT_EVENT_TIME, false, 0.2, 300);
-    assert_string_equal(text, "raytally: 0 of 2 cells, balls:size=1 grid primary: timed\n");
-    rt_free(text);
-}
-
 RT_TESTS(progress, NULL, NULL)
