@@ -59,7 +59,7 @@ static RtImage draw_lecture(uint32_t column, uint32_t row, uint32_t depth) {
     RtRayTree tree;
     assert_ok(rt_scene_sample(&scene, 80, 60, 1, false, error));
     OWNED_ACCEL RtAccel *accel = open_accel(&scene, "bvh");
-    assert_ok(rt_ray_tree_trace(&tree, accel, (RtSample){column, row}, depth, error));
+    assert_ok(rt_ray_trees_trace(&tree, accel, &(RtSample){column, row}, 1, depth, error));
     assert_ok(rt_ray_tree_draw(&tree, &scene, "title", PICTURE_FILE, error));
     rt_ray_tree_clear(&tree);
     return read_picture();
