@@ -94,12 +94,6 @@ static RtStatus load(Options *o, RtError *error) {
     return rt_experiment_check(e, where, error);
 }
 
-static RtStatus work(Options *o, RtError *error) {
-    RtWorkloadOptions how = {.threads = o->threads >= 0 ? o->threads : 0, .timing = o->timing};
-    RT_TRY(load(o, error));
-    return rt_worker_serve(o->recording.experiment, &how, error);
-}
-
 static void on_progress(void *context, uint32_t round, uint32_t rounds, const char *scene, const char *kind) {
     (void)context;
     if (!isatty(STDERR_FILENO)) return;
@@ -107,36 +101,33 @@ static void on_progress(void *context, uint32_t round, uint32_t rounds, const ch
     fflush(stderr);
 }
 
-/* The arguments of argv without some options, in a new array, NULL behind the last. The names of those that
- * have a value, which may be the next argument, end in '='. RT_NO_MEMORY. */
-static RtStatus arguments_without(const char *const *left_out, char **argv, char ***arguments,
-                                  RtError *error) {
+/* The arguments of argv without some options, in a new array of the arena, NULL behind the last. The names of
+ * those that have a value, which may be the next argument, end in '='. */
+static char **arguments_without(const char *const *left_out, char **argv, RtArena *arena) {
     int count = 0, used = 0;
     while (argv[count]) count++;
-    *arguments = rt_alloc((size_t)count + 1, sizeof(char *));
-    if (!*arguments) return rt_fail_memory(error, "arguments", 0);
-    for (int i = 1; i < count; i++) {
+    char **arguments = rt_arena_alloc(arena, (size_t)count + 1, sizeof(char *));
+    for (int i = 1; arguments && i < count; i++) {
         const char *name = strncmp(argv[i], "--", 2) == 0 ? argv[i] + 2 : "";
         const size_t length = strcspn(name, "="); /* argp takes any unique beginning of a name */
         const char *const *out = left_out;
         while (*out && (length == 0 || strncmp(name, *out, length) != 0)) out++;
-        if (!*out) (*arguments)[used++] = argv[i];
+        if (!*out) arguments[used++] = argv[i];
         if (*out && strchr(*out, '=') && name[length] != '=') i++;
     }
-    return RT_OK;
+    return arguments;
 }
 
 /* A worker gets the same arguments, so it measures the same; older ones do not know these. */
 static RtStatus compare_programs(Options *o, char **argv, RtComparison *comparison, RtError *error) {
     static const char *const left_out[] = {"callgrind", "memory=", "time=", NULL};
-    char **arguments = NULL;
-    RtStatus status = load(o, error); /* reports errors once */
+    RT_ARENA(arena);
+    RT_TRY(load(o, error)); /* reports errors once */
     if (*o->recording.experiment->warning.message)
         rt_progress_notice(NULL, o->recording.experiment->warning.message);
-    if (status == RT_OK) status = arguments_without(left_out, argv, &arguments, error);
     RtPrograms programs = {.before = o->with,
                            .after = "/proc/self/exe",
-                           .arguments = arguments,
+                           .arguments = arguments_without(left_out, argv, &arena),
                            .rounds = o->rounds ? o->rounds : 10,
                            .until = o->until,
                            .patience = o->patience,
@@ -145,9 +136,9 @@ static RtStatus compare_programs(Options *o, char **argv, RtComparison *comparis
                            .seed = o->recording.experiment->seed,
                            .progress = on_progress,
                            .notice = rt_progress_notice};
-    if (status == RT_OK) status = rt_compare_programs(&programs, comparison, error);
+    RT_TRY(rt_arena_check(&arena, "arguments", error));
+    RtStatus status = rt_compare_programs(&programs, comparison, error);
     rt_progress_clear();
-    rt_free(arguments);
     return status;
 }
 
@@ -157,14 +148,12 @@ static RtStatus compare_instructions(const Options *o, char **argv, RtComparison
                                      RtError *error) {
     /* `bench` lacks them, or its --memory is for each accelerator. */
     static const char *const left_out[] = {"with=", "margin=", "strict", "quick", "memory=", "time=", NULL};
-    char **arguments = NULL;
+    RT_ARENA(arena);
+    char **arguments = arguments_without(left_out, argv, &arena);
+    RT_TRY(rt_arena_check(&arena, "arguments", error));
     rt_progress_notice(NULL, "counting instructions under valgrind, which takes a while");
-    RtStatus status = arguments_without(left_out, argv, &arguments, error);
-    if (status == RT_OK)
-        status = rt_compare_instructions(o->recording.experiment, o->recording.callgrind, o->with, arguments,
-                                         comparison, error);
-    rt_free(arguments);
-    return status;
+    return rt_compare_instructions(o->recording.experiment, o->recording.callgrind, o->with, arguments,
+                                   comparison, error);
 }
 
 /* ---- directories ---- */
@@ -220,11 +209,11 @@ static RtStatus compare_loaded(const Options *o, RtExperiment *experiments, RtRe
 
 static RtStatus compare_directories(const Options *o, RtComparison *comparison, RtError *error) {
     static RtResults results[MAX_SUBJECTS]; /* megabytes */
-    RtExperiment *experiments = rt_alloc(o->subject_count, sizeof(RtExperiment));
-    RtStatus status = experiments ? compare_loaded(o, experiments, results, comparison, error)
-                                  : rt_fail_memory(error, "experiments", 0);
+    RT_ARENA(arena);
+    RtExperiment *experiments = rt_arena_alloc(&arena, o->subject_count, sizeof(RtExperiment));
+    RT_TRY(rt_arena_check(&arena, "experiments", error));
+    RtStatus status = compare_loaded(o, experiments, results, comparison, error);
     for (uint32_t i = 0; i < o->subject_count; i++) rt_results_clear(&results[i]);
-    rt_free(experiments);
     return status;
 }
 
@@ -277,5 +266,8 @@ RtStatus rt_command_compare(int argc, char **argv, RtError *error) {
     Options o = {.threads = -1, .timing = 1, .patience = 600, .margin = -1};
     rt_recording_init(&o.recording);
     rt_cli_parse(&rt_compare_syntax, argc, argv, &o);
-    return o.worker ? work(&o, error) : compare(&o, argv, error);
+    if (!o.worker) return compare(&o, argv, error);
+    const RtWorkloadOptions how = {.threads = o.threads >= 0 ? o.threads : 0, .timing = o.timing};
+    RT_TRY(load(&o, error));
+    return rt_worker_serve(o.recording.experiment, &how, error);
 }

@@ -138,13 +138,6 @@ static RtStatus report(const char *directory, RtResults *results, const void *op
     return RT_OK;
 }
 
-static RtStatus write_index(const char *folder, RtError *error) {
-    size_t count;
-    RT_TRY(rt_index_write(folder, &count, error));
-    printf("Index: %s/index.html and index.md, of %zu experiment%s\n", folder, count, rt_plural(count));
-    return RT_OK;
-}
-
 static void take_index(void *options, const char *text, struct argp_state *state) {
     Options *o = options;
     if (o->folder) argp_error(state, "one FOLDER at a time; '%s' is a second one", text);
@@ -176,6 +169,11 @@ const RtSyntax rt_report_syntax = {
 RtStatus rt_command_report(int argc, char **argv, RtError *error) {
     Options o = {0};
     rt_cli_parse(&rt_report_syntax, argc, argv, &o);
-    if (o.folder) return write_index(o.folder, error);
+    if (o.folder) {
+        size_t count;
+        RT_TRY(rt_index_write(o.folder, &count, error));
+        printf("Index: %s/index.html and index.md, of %zu experiment%s\n", o.folder, count, rt_plural(count));
+        return RT_OK;
+    }
     return rt_cli_directory_work(o.directories[0], true, report, &o, error);
 }
