@@ -149,9 +149,8 @@ static const RtOption options[] = {
 static void extend(json_t *array, const RtResults *results, RtResultTable which, uint32_t workload) {
     RtResultRow row = {.results = results, .workload = workload};
     RtTable table = rt_result_table(which, &row);
-    json_t *rows = rt_table_json(&table);
+    json_auto_t *rows = rt_table_json(&table);
     json_array_extend(array, rows);
-    json_decref(rows);
 }
 
 /* One scene, and what was recorded of it. */
@@ -169,10 +168,6 @@ static json_t *scene_json(const RtResults *results, uint32_t workload) {
                      (json_int_t)scene->objects, "scene_hash", rt_json_hex(scene->scene), "recorded", rays);
 }
 
-static void add_table(json_t *all, const char *name, RtTable table) {
-    json_object_set_new(all, name, rt_table_json(&table));
-}
-
 static void print_json(const RtResults *results, const RtCallgrind *callgrind) {
     const RtExperiment *e = results->experiment;
     json_t *scenes = json_array(), *rows = json_array(), *nulls = json_array();
@@ -187,20 +182,14 @@ static void print_json(const RtResults *results, const RtCallgrind *callgrind) {
     RtDistributionRow distribution = {.results = results};
     RtInstructionsRow instructions = {.callgrind = callgrind};
     if (e->distributions) {
-        add_table(all, "distributions", rt_distribution_table(RT_DISTRIBUTIONS, &distribution));
-        add_table(all, "histograms", rt_distribution_table(RT_HISTOGRAMS, &distribution));
+        const RtTable table = rt_distribution_table(RT_DISTRIBUTIONS, &distribution);
+        json_object_set_new(all, "distributions", rt_table_json(&table));
+        const RtTable bins = rt_distribution_table(RT_HISTOGRAMS, &distribution);
+        json_object_set_new(all, "histograms", rt_table_json(&bins));
     }
-    if (callgrind->count) add_table(all, "instructions", rt_instructions_table(&instructions));
+    const RtTable counted = rt_instructions_table(&instructions);
+    if (callgrind->count) json_object_set_new(all, "instructions", rt_table_json(&counted));
     rt_cli_print_json(all);
-}
-
-static RtStatus write_csv(const Options *o, const RtResults *results, RtError *error) {
-    RtOutput output;
-    RtResultRow row = {.results = results};
-    RtTable table = rt_result_table(o->workload.count_only ? RT_COUNTS : RT_TIMES, &row);
-    RT_TRY(rt_output_open(&output, o->csv, error));
-    rt_table_csv(&table, output.file);
-    return rt_output_commit(&output, error);
 }
 
 /* `cells`: it stands for a file of each cell, if there are several. */
@@ -214,7 +203,14 @@ static RtStatus report(const Options *o, const RtResults *results, const RtCallg
                        RtError *error) {
     const RtExperiment *e = results->experiment;
     char sentence[RT_MAX_SENTENCE];
-    if (o->csv) RT_TRY(write_csv(o, results, error));
+    RtOutput output;
+    RtResultRow row = {.results = results};
+    const RtTable table = rt_result_table(o->workload.count_only ? RT_COUNTS : RT_TIMES, &row);
+    if (o->csv) {
+        RT_TRY(rt_output_open(&output, o->csv, error));
+        rt_table_csv(&table, output.file);
+        RT_TRY(rt_output_commit(&output, error));
+    }
     if (o->json) {
         print_json(results, callgrind);
         return RT_OK;
@@ -254,8 +250,8 @@ static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, 
         o->workload.rays = rt_callgrind_save_rays;
         o->workload.rays_context = callgrind;
     }
-    RtProgress progress = rt_progress_begin(&o->workload);
-    o->workload.observer = rt_progress_observer(&progress);
+    RtProgress progress;
+    rt_progress_begin(&progress, &o->workload);
     RtStatus status = rt_workloads_run(results, &o->workload, error);
     if (status == RT_OK && o->recording.callgrind)
         rt_notify(&o->workload.observer, "counting instructions under valgrind, which takes a while");

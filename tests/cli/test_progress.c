@@ -34,10 +34,11 @@ static char *said(const Place *place, RtEventKind what, bool terminal, double ev
     int file = open(path, O_RDWR | O_CREAT | O_TRUNC, 0666), stderr_was = dup(STDERR_FILENO);
     assert_ok(load_small(place, false, error));
     assert_ok(rt_results_init(&results, place->experiment, error));
-    RtProgress progress = rt_progress_begin(&options);
+    RtProgress progress;
+    rt_progress_begin(&progress, &options);
     progress.terminal = terminal;
     progress.every = every;
-    RtRunObserver observer = rt_progress_observer(&progress);
+    const RtRunObserver observer = options.observer;
     assert_true(file >= 0 && stderr_was >= 0);
     dup2(file, STDERR_FILENO);
     for (int end = milliseconds + duration; milliseconds < end; milliseconds++) {
