@@ -7,7 +7,6 @@
 #include "core/base/parallel.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
-#include "picture/buffers.h"
 #include "picture/heatmap.h"
 #include "picture/structure.h"
 #include "rays/rayset.h"

@@ -78,12 +78,9 @@ static double place_of_level(const Drawing *d, uint32_t level) {
     return d->last > d->first ? (double)(level - d->first) / (d->last - d->first) : 0;
 }
 
-static double place_of_size(const Drawing *d, double size) {
-    return rt_log(d->most / fmax(fmin(size, d->most), d->least)) / rt_log(d->most / d->least);
-}
-
 static double place_of_box(const Drawing *d, const RtBoxView *view) {
-    return is_by_size(d) ? place_of_size(d, size_of(view->box)) : place_of_level(d, view->depth);
+    if (!is_by_size(d)) return place_of_level(d, view->depth);
+    return rt_log(d->most / fmax(fmin(size_of(view->box), d->most), d->least)) / rt_log(d->most / d->least);
 }
 
 /* Dark and thick at 0, lighter and thinner towards 1. */
@@ -247,10 +244,6 @@ static RtStatus draw_section(Drawing *d, RtError *error) {
 
 /* ---- the legend ---- */
 
-static double legend_height(double em) {
-    return ceil((0.9 + RT_LINE * LINES) * em);
-}
-
 /* Samples of the lines of levels, of some if there are many, or of sizes; then of objects in a section. */
 static void draw_keys(const Drawing *d, double x, double y) {
     enum { MOST = 6, SIZES = 5 };
@@ -294,25 +287,18 @@ static void draw_legend(const Drawing *d) {
 
 /* ---- from outside ---- */
 
-static bool has_picture(const RtAccelOps *ops) {
-    return ops->each_box || ops->find_cell;
-}
-
-static RtStatus refuse(const RtAccelOps *ops, RtError *error) {
+/* Is this the layer to draw? `last`: no layer below. */
+static RtStatus choose(const RtAccelOps *ops, const char *name, bool last, bool *chosen, RtError *error) {
+    const bool can = ops->each_box || ops->find_cell;
+    *chosen = name ? strcmp(ops->name, name) == 0 : can;
+    if (*chosen ? can : !last) return RT_OK;
+    if (name && !*chosen)
+        return rt_fail(error, RT_BAD_INPUT, "there is no layer '%s' in this accelerator", name);
     return rt_fail(
         error, RT_NOT_AVAILABLE,
         "there is no picture of %s, which has neither boxes nor cells: choose another, such as bvh or grid; "
         "a plugin shows its boxes by `each_box`",
         ops->name);
-}
-
-/* Is this the layer to draw? `last`: no layer below. */
-static RtStatus choose(const RtAccelOps *ops, const char *name, bool last, bool *chosen, RtError *error) {
-    *chosen = name ? strcmp(ops->name, name) == 0 : has_picture(ops);
-    if (*chosen && !has_picture(ops)) return refuse(ops, error);
-    if (*chosen || !last) return RT_OK;
-    return name ? rt_fail(error, RT_BAD_INPUT, "there is no layer '%s' in this accelerator", name)
-                : refuse(ops, error);
 }
 
 RtStatus rt_structure_layer(const RtAccel *accel, const char *name, const RtAccel **layer, RtError *error) {
@@ -332,11 +318,10 @@ RtStatus rt_structure_available(const RtSpec *spec, const char *name, RtError *e
 }
 
 static RtStatus draw(Drawing *d, RtError *error) {
-    RtStatus status;
     cairo_save(d->cairo);
     cairo_rectangle(d->cairo, 0, 0, d->width, d->height);
     cairo_clip(d->cairo);
-    status = d->options->slice ? draw_section(d, error) : draw_perspective(d, error);
+    RtStatus status = d->options->slice ? draw_section(d, error) : draw_perspective(d, error);
     cairo_restore(d->cairo);
     RT_TRY(status);
     draw_legend(d);
@@ -365,7 +350,8 @@ RtStatus rt_structure_draw(const char *file, const RtAccel *layer, const RtFrame
         return rt_fail(error, RT_BAD_INPUT,
                        "none of the %llu boxes of %s is on the requested levels or in the slice",
                        (unsigned long long)d.all, layer->ops->name);
-    RT_TRY(rt_canvas_open(&canvas, file, width, s->height + legend_height(d.em), d.em, error));
+    RT_TRY(
+        rt_canvas_open(&canvas, file, width, s->height + ceil((0.9 + RT_LINE * LINES) * d.em), d.em, error));
     d.cairo = canvas.cairo;
     return rt_canvas_close(&canvas, draw(&d, error), error);
 }

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pictures of accelerators: the boxes of a structure over the scene, or in a section through it. */
+/* Pictures of accelerators: the boxes of a structure over the scene, or in a section through it; and overlays
+ * that look rays up in cells (RtAccelOps.find_cell), the item buffer as an image of object ids, a light
+ * buffer as an unfolded cube map of list lengths. */
 #ifndef RT_PICTURE_STRUCTURE_H
 #define RT_PICTURE_STRUCTURE_H
 
@@ -18,7 +20,7 @@ typedef struct RtStructureOptions {
 #define RT_ALL_LEVELS ((RtStructureOptions){.last_level = UINT32_MAX})
 
 /* Finds the layer of `accel` named `name`, or if that is NULL the topmost layer that can be drawn by its
- * boxes or cells (picture/buffers.h). RT_BAD_INPUT if no layer has that name, RT_NOT_AVAILABLE if it
+ * boxes or cells. RT_BAD_INPUT if no layer has that name, RT_NOT_AVAILABLE if it
  * cannot be drawn. rt_structure_available checks the same for a spec, before anything is built. */
 RtStatus rt_structure_layer(const RtAccel *accel, const char *name, const RtAccel **layer, RtError *error);
 RtStatus rt_structure_available(const RtSpec *spec, const char *name, RtError *error);
@@ -34,5 +36,19 @@ RtStatus rt_structure_available(const RtSpec *spec, const char *name, RtError *e
  * RT_BAD_INPUT if no box is left to draw. */
 RtStatus rt_structure_draw(const char *file, const RtAccel *layer, const RtFrame *frame,
                            const RtStructureOptions *options, RtError *error);
+
+/* Draws an overlay to `file` (canvas.h).
+ *
+ * For primary rays: each pixel has the colour of the object in its middle sample, white for none. A legend
+ * counts the samples of each kind.
+ *
+ * For shadow rays: the cells around light `light` on the six faces of an unfolded cube, coloured by the
+ * lengths of their lists on a logarithmic scale. Directions without objects are grey; a truncated list has
+ * every fourth pixel red. `marked` is a ray to this light, or NULL: its cell is outlined and circled, and the
+ * legend shows its number and list length.
+ *
+ * RT_BAD_INPUT if there is no such light, RT_NOT_AVAILABLE if the light has no cells. */
+RtStatus rt_buffer_draw(const char *file, const RtAccel *layer, uint32_t light, const RtRay *marked,
+                        RtError *error);
 
 #endif

@@ -171,14 +171,6 @@ static RtStatus check_whole(const Merge *merge, RtError *error) {
     return RT_OK;
 }
 
-/* Loads the experiment, which must not have changed. */
-static RtStatus load_experiment(const Merge *merge, RtExperiment *experiment, RtError *error) {
-    RtStatus status = rt_manifest_experiment(merge->directories[0], true, experiment, error);
-    if (status != RT_MISMATCH) return status;
-    return rt_fail(error, RT_BAD_INPUT, "%s has changed since the shards were made from it",
-                   experiment->path);
-}
-
 /* All lines, shard by shard, after a header without a shard. */
 static RtStatus add_journal(const Merge *merge, const RtExperiment *experiment, const char *directory,
                             RtOutputs *files, RtError *error) {
@@ -329,14 +321,6 @@ static RtStatus begin(Run *run, RtError *error) {
 
 /* ---- measuring ---- */
 
-static RtStatus open_journal(Run *run, RtError *error) {
-    const RtSelection *only = &run->options->workload.only;
-    if (run->resumed)
-        RT_TRY(rt_journal_drop_changed(run->path, run->experiment, only, &run->options->workload.observer,
-                                       error));
-    return rt_journal_open(&run->journal, run->path, run->experiment, only, run->resumed, error);
-}
-
 static void name_missing(const Run *run) {
     const char *names[RT_MAX_CANDIDATES];
     char list[1024];
@@ -351,19 +335,15 @@ static void name_missing(const Run *run) {
                   list);
 }
 
-/* The manifest marks a finished run. */
-static RtStatus unfinish(Run *run, RtError *error) {
-    char path[RT_MAX_PATH];
-    RT_TRY(path_in(run, RT_MANIFEST, path, error));
-    remove(path);
-    run->measured = true;
-    return RT_OK;
-}
-
 static RtStatus on_event(void *context, const RtResults *results, const RtEvent *event, RtError *error) {
     Run *run = context;
     const RtRunObserver *observer = &run->options->workload.observer;
-    if (!run->measured) RT_TRY(unfinish(run, error));
+    char path[RT_MAX_PATH];
+    if (!run->measured) { /* the manifest marks a finished run */
+        RT_TRY(path_in(run, RT_MANIFEST, path, error));
+        remove(path);
+        run->measured = true;
+    }
     RT_TRY(rt_json_lines_write(&run->journal, rt_journal_line(results, event), error));
     return observer->event ? observer->event(observer->context, results, event, error) : RT_OK;
 }
@@ -373,11 +353,17 @@ static void on_notice(void *context, const char *message) {
     rt_notify(&run->options->workload.observer, "%s", message);
 }
 
-static RtStatus draw_scene(RtScene *scene, const RtWorkloadResult *workload, int threads, const char *path,
-                           RtError *error) {
+/* The picture of a workload's scene, unless it exists. */
+static RtStatus write_image(Run *run, uint32_t t, RtError *error) {
+    const RtWorkloadResult *workload = &run->results->workloads[t];
+    const int threads = run->options->workload.threads;
+    RtScene *scene = &run->scenes[slot_of(run->experiment, t)];
+    char path[RT_MAX_PATH];
     RtAccel *accel;
     RtFrame frame = {0};
-    RtFrameOptions options = {.depth = RT_DEFAULT_DEPTH, .threads = threads};
+    const RtFrameOptions options = {.depth = RT_DEFAULT_DEPTH, .threads = threads};
+    RT_TRY(rt_results_image_path(run->options->directory, run->experiment, t, path, error));
+    if (workload->skipped || (run->resumed && rt_file_exists(path))) return RT_OK;
     RT_TRY(rt_scene_sample(scene, workload->width, workload->height, 2, false, error));
     RT_TRY(rt_accel_open_on(rt_accel_default(), scene, threads, &accel, error));
     RtStatus status = rt_frame_trace(&frame, accel, &options, error);
@@ -385,15 +371,6 @@ static RtStatus draw_scene(RtScene *scene, const RtWorkloadResult *workload, int
     rt_frame_clear(&frame);
     rt_accel_destroy(accel);
     return status;
-}
-
-/* The picture of a workload's scene, unless it exists. */
-static RtStatus write_image(Run *run, uint32_t t, RtError *error) {
-    char path[RT_MAX_PATH];
-    RT_TRY(rt_results_image_path(run->options->directory, run->experiment, t, path, error));
-    if (run->results->workloads[t].skipped || (run->resumed && rt_file_exists(path))) return RT_OK;
-    return draw_scene(&run->scenes[slot_of(run->experiment, t)], &run->results->workloads[t],
-                      run->options->workload.threads, path, error);
 }
 
 /* Frees the scene of workload `t`, unless a later workload uses it. */
@@ -420,7 +397,10 @@ static void tell_end(const Run *run) {
 static RtStatus measure(Run *run, RtError *error) {
     RtWorkloadOptions options = run->options->workload;
     options.observer = (RtRunObserver){run, on_event, on_notice};
-    RT_TRY(open_journal(run, error));
+    if (run->resumed)
+        RT_TRY(rt_journal_drop_changed(run->path, run->experiment, &options.only,
+                                       &run->options->workload.observer, error));
+    RT_TRY(rt_journal_open(&run->journal, run->path, run->experiment, &options.only, run->resumed, error));
     name_missing(run);
     for (uint32_t t = 0; t < run->experiment->workload_count; t++) {
         RtScene *scene = &run->scenes[slot_of(run->experiment, t)];
@@ -430,8 +410,7 @@ static RtStatus measure(Run *run, RtError *error) {
         RT_TRY(write_image(run, t, error));
         close_scene(run, t);
     }
-    if (run->measured || !run->resumed || !is_complete(run)) return RT_OK;
-    tell_end(run);
+    if (!run->measured && run->resumed && is_complete(run)) tell_end(run);
     return RT_OK;
 }
 
@@ -482,7 +461,11 @@ static RtStatus merge_all(Merge *merge, RtRunOptions options, RtExperiment *expe
     RT_TRY(check_alike(merge, error));
     RT_TRY(check_whole(merge, error));
     RT_TRY(check_same_threads(merge, &options.workload.timing, error));
-    RT_TRY(load_experiment(merge, experiment, error));
+    RtStatus status = rt_manifest_experiment(merge->directories[0], true, experiment, error);
+    if (status == RT_MISMATCH)
+        return rt_fail(error, RT_BAD_INPUT, "%s has changed since the shards were made from it",
+                       experiment->path);
+    RT_TRY(status);
     RT_TRY(check_plugins(merge, experiment, error));
     RT_TRY(rt_results_init(results, experiment, error));
     return run_all(merge, results, &options, error);

@@ -3,7 +3,6 @@
 #define PICTURE_FILE RT_BINARY_DIR "/test_structure_picture.png"
 #include "render/render_testing.h"
 
-#include "picture/buffers.h"
 #include "picture/picture_testing.h"
 #include "picture/section.h"
 #include "picture/structure.h"
