@@ -111,16 +111,12 @@ RtRayKind rt_cli_image_ray_kind(struct argp_state *state, const char *option, co
     return RT_RAY_PRIMARY;
 }
 
-/* From the last dot of a name that has something before it, or "". */
-static const char *extension_of(const char *path) {
-    const char *dot = strrchr(path, '.');
-    return dot && dot != path ? dot : "";
-}
-
-/* Does the file name end in one of `extensions`, such as ".png, .svg or .pdf"? */
+/* Does the name of the file end, after something else, in one of `extensions`, such as ".png, .svg or .pdf"?
+ */
 static bool has_extension(const char *path, const char *extensions) {
-    const char *own = extension_of(path), *at = strstr(extensions, own);
-    return *own && at && strchr(", ", at[strlen(own)]); /* or its end */
+    const char *own = strrchr(path, '.');
+    const char *at = own && own != path ? strstr(extensions, own) : NULL;
+    return at && strchr(", ", at[strlen(own)]); /* or its end */
 }
 
 void rt_cli_set_path(struct argp_state *state, const char *option, const char **slot, const char *path,
@@ -148,40 +144,25 @@ typedef struct Parse {
     struct Parse *shared;
 } Parse;
 
-/* "1%", more than 0 and at most 100 %, as a fraction: 0.01. */
-static double percent_of(struct argp_state *state, const char *option, const char *text) {
-    char *end;
-    double percent = strtod(text, &end);
-    if (end == text || strcmp(end, "%") != 0 || !(percent > 0 && percent <= 100))
-        argp_error(state, "%s: invalid value '%s': expected a percentage, as in 1%%", option, text);
-    return percent / 100;
-}
-
-static void read_pixel(struct argp_state *state, const char *option, const char *text, RtPixel *pixel) {
-    const char *at = text;
-    pixel->given = true;
-    if (rt_cli_digits(&at, &pixel->x) && *at++ == ',' && rt_cli_digits(&at, &pixel->y) && *at == '\0') return;
-    argp_error(state, "%s: invalid value '%s': expected X,Y, as in 256,200", option, text);
-}
-
-static void add_to_list(const RtOptionValue *value, const char *name, char *options, const char *text,
-                        struct argp_state *state) {
-    uint32_t *count = (uint32_t *)(options + value->count);
-    if (*count == value->high)
-        argp_error(state, "%s: '%s' is one too many: %lld at most", name, text, (long long)value->high);
-    ((const char **)(options + value->offset))[(*count)++] = text;
-}
-
 /* `name` is that of an option, with its dashes, or of an argument. */
 static void take_value(const RtOptionValue *value, const char *name, char *options, const char *text,
                        struct argp_state *state) {
     void *at = options + value->offset;
     const bool whole = value->form == RT_OPTION_INTEGER || value->form == RT_OPTION_SECONDS;
     const int64_t number = whole ? rt_cli_integer(state, name, text, value->low, value->high) : value->low;
+    RtPixel *pixel = at;
+    uint32_t *count = (uint32_t *)(options + value->count);
+    const char *rest = text;
+    char *end;
+    double percent;
     switch (value->form) {
     case RT_OPTION_FLAG: *(bool *)at = true; return;
     case RT_OPTION_TEXT: *(const char **)at = text; return;
-    case RT_OPTION_LIST: add_to_list(value, name, options, text, state); return;
+    case RT_OPTION_LIST:
+        if (*count == value->high)
+            argp_error(state, "%s: '%s' is one too many: %lld at most", name, text, (long long)value->high);
+        ((const char **)at)[(*count)++] = text;
+        return;
     case RT_OPTION_INTEGER:
         if (value->size == sizeof(uint32_t))
             *(uint32_t *)at = (uint32_t)number;
@@ -189,11 +170,20 @@ static void take_value(const RtOptionValue *value, const char *name, char *optio
             *(uint64_t *)at = (uint64_t)number;
         return;
     case RT_OPTION_SECONDS: *(double *)at = (double)number; return;
-    case RT_OPTION_PERCENT: *(double *)at = percent_of(state, name, text); return;
+    case RT_OPTION_PERCENT:
+        percent = strtod(text, &end);
+        if (end == text || strcmp(end, "%") != 0 || !(percent > 0 && percent <= 100))
+            argp_error(state, "%s: invalid value '%s': expected a percentage, as in 1%%", name, text);
+        *(double *)at = percent / 100;
+        return;
     case RT_OPTION_SET: *(int *)at = (int)number; return;
     case RT_OPTION_BYTES: *(uint64_t *)at = bytes_of(state, name, text); return;
     case RT_OPTION_SIZE: rt_cli_size(state, text, (uint32_t *)at, (uint32_t *)at + 1); return;
-    case RT_OPTION_PIXEL: read_pixel(state, name, text, at); return;
+    case RT_OPTION_PIXEL:
+        pixel->given = true;
+        if (!rt_cli_digits(&rest, &pixel->x) || *rest++ != ',' || !rt_cli_digits(&rest, &pixel->y) || *rest)
+            argp_error(state, "%s: invalid value '%s': expected X,Y, as in 256,200", name, text);
+        return;
     case RT_OPTION_PATH: rt_cli_set_path(state, name, (const char **)at, text, value->endings); return;
     case RT_OPTION_TAKE: value->take(options, text, state); return;
     case RT_OPTION_GONE: argp_error(state, "%s is no longer there: %s", name, value->instead); return;

@@ -29,12 +29,6 @@ static void pass_on(int number) {
     kill(running, number);
 }
 
-static void handle(const sigset_t *signals) {
-    const struct sigaction action = {.sa_handler = pass_on, .sa_mask = *signals};
-    for (int number = 1; number < _NSIG; number++)
-        if (sigismember(signals, number) == 1) sigaction(number, &action, NULL);
-}
-
 /* With these signals blocked, so that each goes to the fork, which stops as the command for one job does. */
 static RtStatus start(RtJob *job, RtError *error) {
     const sigset_t signals = rt_stop_signals();
@@ -45,10 +39,10 @@ static RtStatus start(RtJob *job, RtError *error) {
     const int why = errno;
     job->here = child == 0;
     running = child > 0 ? child : 0;
-    if (job->here)
-        rt_stop_init();
-    else
-        handle(&signals);
+    const struct sigaction action = {.sa_handler = pass_on, .sa_mask = signals};
+    if (job->here) rt_stop_init();
+    for (int number = 1; number < _NSIG && !job->here; number++)
+        if (sigismember(&signals, number) == 1) sigaction(number, &action, NULL);
     sigprocmask(SIG_SETMASK, &before, NULL);
     return child >= 0 ? RT_OK : rt_fail(error, RT_IO, "a process for %s: %s", job->name, strerror(why));
 }

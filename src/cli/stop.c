@@ -14,12 +14,6 @@ static pid_t owner; /* of the files and processes: plugins run in forks that hav
 static char time_is_over[64] = "stopped by an alarm";
 static const char *volatile keeps, *volatile go_on; /* NULL: nothing is kept, or continues */
 
-/* Removes temporary files, and kills children. */
-static void clean(void) {
-    rt_outputs_remove_open();
-    rt_processes_kill();
-}
-
 int rt_stop_code(int number) {
     return number == SIGALRM ? RT_EXIT_BAD_INPUT : 128 + number;
 }
@@ -46,7 +40,10 @@ void rt_stop_say(int number) {
 static void stop(int number) {
     const bool own = getpid() == owner, tells = go_on && number != SIGABRT;
     if (own && (tells || number == SIGALRM)) rt_stop_say(number);
-    if (own) clean();
+    if (own) {
+        rt_outputs_remove_open();
+        rt_processes_kill();
+    }
     if ((own && tells) || number == SIGALRM) _exit(rt_stop_code(number));
     raise(number); /* which ends the process once the handler returns */
 }

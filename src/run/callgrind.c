@@ -67,21 +67,21 @@ RtStatus rt_callgrind_save_rays(void *context, uint32_t workload, const RtRaySet
                                 RtError *error) {
     enum { RUN = 64 }; /* neighbours, so that packets are coherent */
     const RtCallgrind *callgrind = context;
+    RT_ARENA(arena);
     char path[RT_MAX_PATH];
     RtRaySet some;
     RtOutput output;
     RT_TRY(rays_path(callgrind, workload, set->kind, path, error));
     RT_TRY(rt_rayset_limit(set, callgrind->most, RUN, &some, error));
-    RtHit *hits = rt_alloc(some.count, sizeof(RtHit));
-    RtStatus status = hits ? rt_measure_answers(exact, &some, 1, hits, error)
-                           : rt_fail_memory(error, "answers", some.count * sizeof(RtHit));
+    RtHit *hits = rt_arena_alloc(&arena, some.count, sizeof(RtHit));
+    RtStatus status = rt_arena_check(&arena, "answers", error);
+    if (status == RT_OK) status = rt_measure_answers(exact, &some, 1, hits, error);
     if (status == RT_OK) status = rt_output_open(&output, path, error);
     if (status == RT_OK) {
         fwrite(some.rays, sizeof(RtRay), some.count, output.file);
         fwrite(hits, sizeof(RtHit), some.count, output.file);
         status = rt_output_commit(&output, error);
     }
-    rt_free(hits);
     rt_rayset_clear(&some);
     return status;
 }

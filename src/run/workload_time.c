@@ -92,12 +92,6 @@ static void earn(TimingRun *run) {
     }
 }
 
-static bool is_renewed(const TimingRun *run, uint32_t c) {
-    const RtWorkloadState *workload = run->workload;
-    const double once = rt_build_at(workload->results, workload->index, c)->seconds.median;
-    return workload->accels[c] && !run->broken[run->place[c]] && run->credit[c] >= once;
-}
-
 static RtStatus build_one(TimingRun *run, uint32_t c, RtError *error) {
     RtWorkloadState *workload = run->workload;
     const double start = rt_wall_seconds();
@@ -115,7 +109,8 @@ static RtStatus renew(void *context, RtTimed *timed, size_t count, RtError *erro
     size_t order[RT_MAX_MEASURED], renewed = 0;
     earn(run);
     for (uint32_t c = 0; c < workload->count; c++) {
-        if (!is_renewed(run, c)) continue;
+        const double once = rt_build_at(workload->results, workload->index, c)->seconds.median;
+        if (!workload->accels[c] || run->broken[run->place[c]] || run->credit[c] < once) continue;
         order[renewed++] = c;
         rt_workload_destroy(workload, c);
     }
