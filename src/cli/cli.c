@@ -2,8 +2,8 @@
 #include "cli/cli.h"
 
 #include "accel/accel.h"
+#include "cli/jobs.h"
 #include "cli/plugins.h"
-#include "cli/stop.h"
 #include "core/base/memory.h"
 #include "core/text/json.h"
 

@@ -5,7 +5,6 @@
 #include "cli/jobs.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
-#include "cli/stop.h"
 #include "core/base/words.h"
 #include "measure/result_files.h"
 #include "report/index.h"

@@ -5,7 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
-#include "picture/path_picture.h"
+#include "picture/pictures.h"
 #include "render/ray_tree.h"
 #include "scenes/open.h"
 

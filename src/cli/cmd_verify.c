@@ -2,9 +2,9 @@
 /* raytally verify: does every accelerator answer every ray like brute? With --replay: is an answer still
  * wrong? The command line of verify/verify.h and verify/replay.h. */
 #include "cli/cli.h"
+#include "cli/jobs.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
-#include "cli/stop.h"
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"

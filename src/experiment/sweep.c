@@ -164,83 +164,55 @@ typedef struct Sweep {
     SweptParam params[RT_MAX_SWEPT];
 } Sweep;
 
-static RtStatus fail_range(const char *text, int length, RtError *error) {
-    return rt_fail(
-        error, RT_BAD_INPUT,
-        "'%.*s' is not a range: write LOW..HIGH+STEP with a step above 0, or LOW..HIGH*FACTOR with a factor "
-        "above 1 and LOW above 0, LOW below HIGH, as in 1..9+2 or 1e2..1e7*10; a list is 1|4|16",
-        length, text);
-}
-
-static RtStatus add_value(SweptParam *param, const char *text, size_t length, RtError *error) {
-    if (length == 0 || length >= RT_MAX_SWEPT_CHARS) {
+static RtStatus add_value(SweptParam *param, const char *text, RtError *error) {
+    const size_t length = strlen(text);
+    if (length == 0 || length >= RT_MAX_SWEPT_CHARS)
         return rt_fail(error, RT_BAD_INPUT,
-                       "'%.*s' of %s is not a value for a list: values have 1..%d characters", (int)length,
-                       text, param->key, RT_MAX_SWEPT_CHARS - 1);
-    }
+                       "'%s' of %s is not a value for a list: values have 1..%d characters", text, param->key,
+                       RT_MAX_SWEPT_CHARS - 1);
     for (uint32_t i = 0; i < param->count; i++) {
-        if (strlen(param->values[i]) == length && strncmp(param->values[i], text, length) == 0) return RT_OK;
+        if (strcmp(param->values[i], text) == 0) return RT_OK;
     }
-    if (param->count == RT_MAX_SWEEP_VALUES) {
+    if (param->count == RT_MAX_SWEEP_VALUES)
         return rt_fail(error, RT_BAD_INPUT, "%s takes more than %d values: choose a larger step or factor",
                        param->key, RT_MAX_SWEEP_VALUES);
-    }
-    snprintf(param->values[param->count++], RT_MAX_SWEPT_CHARS, "%.*s", (int)length, text);
+    strcpy(param->values[param->count++], text);
     return RT_OK;
 }
 
-/* Whether all of text[0..length) is a number. */
-static bool read_number(const char *text, size_t length, double *number) {
-    char copy[RT_MAX_SWEPT_CHARS];
-    if (length == 0 || length >= sizeof copy) return false;
-    snprintf(copy, sizeof copy, "%.*s", (int)length, text);
-    return rt_swept_number(copy, number);
+/* The start of the step or factor after the dots, or the end; a '+' after an e belongs to an exponent. */
+static const char *find_step(const char *text) {
+    while (*text && text[1] != '*' && (text[1] != '+' || tolower((unsigned char)*text) == 'e')) text++;
+    return *text ? text + 1 : text;
 }
 
-/* The start of the step or factor after the dots; a '+' after an e belongs to an exponent. */
-static size_t find_step(const char *text, size_t length) {
-    for (size_t i = 1; i < length; i++) {
-        if (text[i] == '*' || (text[i] == '+' && tolower((unsigned char)text[i - 1]) != 'e')) return i;
-    }
-    return length;
-}
-
-/* Multiplies instead of adding, to avoid accumulated errors; nine digits hide the rest. */
-static RtStatus add_range(SweptParam *param, const char *text, size_t length, size_t dots, bool whole,
-                          RtError *error) {
-    const char *above = text + dots + 2;
-    size_t rest = length - dots - 2, at = find_step(above, rest);
+/* `text` is LOW..HIGH+STEP or LOW..HIGH*FACTOR, with the dots at `dots`. Multiplies instead of adding, to
+ * avoid accumulated errors; nine digits hide the rest. */
+static RtStatus add_range(SweptParam *param, const char *text, const char *dots, bool whole, RtError *error) {
+    const char *above = dots + 2, *sign = find_step(above);
+    char ends[2][RT_MAX_SPEC_CHARS];
     double low, high, step = 0, value = 0, power = 1;
-    bool factor = at < rest && above[at] == '*';
-    bool fine = read_number(text, dots, &low) && read_number(above, at, &high) && at < rest &&
-                read_number(above + at + 1, rest - at - 1, &step) && low < high;
-    if (!fine || (factor ? step <= 1 || low <= 0 : step <= 0)) return fail_range(text, (int)length, error);
+    const bool factor = *sign == '*';
+    snprintf(ends[0], sizeof ends[0], "%.*s", (int)(dots - text), text);
+    snprintf(ends[1], sizeof ends[1], "%.*s", (int)(sign - above), above);
+    bool fine = rt_swept_number(ends[0], &low) && rt_swept_number(ends[1], &high) && *sign &&
+                rt_swept_number(sign + 1, &step) && low < high;
+    if (!fine || (factor ? step <= 1 || low <= 0 : step <= 0))
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "'%s' is not a range: write LOW..HIGH+STEP with a step above 0, or LOW..HIGH*FACTOR with a "
+            "factor above 1 and LOW above 0, LOW below HIGH, as in 1..9+2 or 1e2..1e7*10; a list is "
+            "1|4|16",
+            text);
     for (uint32_t i = 0; i <= RT_MAX_SWEEP_VALUES; i++, power *= step) {
         char number[RT_MAX_SWEPT_CHARS];
         value = factor ? low * power : low + i * step;
         if (value > high + 1e-9 * (high - low)) return RT_OK;
         snprintf(number, sizeof number, "%.9g", whole ? round(value) : value);
-        RT_TRY(add_value(param, number, strlen(number), error));
+        RT_TRY(add_value(param, number, error));
     }
-    return rt_fail(error, RT_BAD_INPUT, "'%.*s' is more than %d values: choose a larger step or factor",
-                   (int)length, text, RT_MAX_SWEEP_VALUES);
-}
-
-static size_t find_dots(const char *text, size_t length) {
-    size_t at = 0;
-    while (at + 1 < length && !(text[at] == '.' && text[at + 1] == '.')) at++;
-    return at + 1 < length ? at : length;
-}
-
-static RtStatus read_values(const char *text, size_t length, bool whole, SweptParam *param, RtError *error) {
-    for (size_t start = 0, part; start <= length; start += part + 1) {
-        const char *bar = memchr(text + start, '|', length - start);
-        part = bar ? (size_t)(bar - text) - start : length - start;
-        size_t dots = find_dots(text + start, part);
-        RT_TRY(dots < part ? add_range(param, text + start, part, dots, whole, error)
-                           : add_value(param, text + start, part, error));
-    }
-    return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "'%s' is more than %d values: choose a larger step or factor", text,
+                   RT_MAX_SWEEP_VALUES);
 }
 
 /* ---- accelerators of results ---- */
@@ -318,14 +290,14 @@ static bool ends_layer(const char *c, bool scene) {
 /* Reads the value at `start`, after the '=' of a parameter of `layer`. */
 static RtStatus read_param(Sweep *sweep, const char *layer, size_t start, size_t length, bool scene,
                            const json_t *manifest, RtError *error) {
-    const char *text = sweep->text, *value = text + start;
-    if (!memchr(value, '|', length) && find_dots(value, length) == length) return RT_OK;
-    char owner[RT_MAX_NAME] = "";
+    const char *text = sweep->text;
+    char owner[RT_MAX_NAME] = "", value[RT_MAX_SPEC_CHARS];
     size_t key = start - 1, name = strcspn(layer, ":");
+    snprintf(value, sizeof value, "%.*s", (int)length, text + start);
+    if (!strchr(value, '|') && !strstr(value, "..")) return RT_OK;
     while (key > 0 && text[key - 1] != ',' && text[key - 1] != ':') key--;
-    if (sweep->param_count == RT_MAX_SWEPT) {
+    if (sweep->param_count == RT_MAX_SWEPT)
         return rt_fail(error, RT_BAD_INPUT, "'%.80s' sweeps more than %d parameters", text, RT_MAX_SWEPT);
-    }
     SweptParam *param = &sweep->params[sweep->param_count];
     param->start = start;
     param->length = length;
@@ -337,7 +309,11 @@ static RtStatus read_param(Sweep *sweep, const char *layer, size_t start, size_t
                        text, param->key);
     }
     if (name < sizeof owner) snprintf(owner, sizeof owner, "%.*s", (int)name, layer);
-    RT_TRY(read_values(value, length, is_whole(owner, param->key, scene, manifest), param, error));
+    const bool whole = is_whole(owner, param->key, scene, manifest);
+    for (char *rest = value, *part; (part = strsep(&rest, "|"));) {
+        const char *dots = strstr(part, "..");
+        RT_TRY(dots ? add_range(param, part, dots, whole, error) : add_value(param, part, error));
+    }
     sweep->param_count++;
     sweep->count *= param->count; /* at most 2^16 by 2^8 */
     if (sweep->count <= UINT16_MAX) return RT_OK;

@@ -5,7 +5,7 @@
 #include "accel/plugin.h"
 #include "core/base/memory.h"
 #include "library/library.h"
-#include "render/image.h"
+#include "render/frame.h"
 #include "scenes/open.h"
 
 #include <inttypes.h>

@@ -3,7 +3,7 @@
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "picture/canvas.h"
-#include "picture/structure.h"
+#include "picture/pictures.h"
 
 #include <stdio.h>
 

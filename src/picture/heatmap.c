@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "picture/heatmap.h"
+#include "picture/pictures.h"
 
 #include "picture/canvas.h"
 

@@ -7,7 +7,7 @@
  *
  * The lower part has a line for each row of the path, with a bar where the ray is in its box. Section and
  * bars share the x axis. */
-#include "picture/path_picture.h"
+#include "picture/pictures.h"
 
 #include "core/base/memory.h"
 #include "core/base/words.h"

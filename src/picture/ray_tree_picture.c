@@ -2,7 +2,7 @@
 /* The upper part is a section through a plane that contains the primary ray, turned about it so that the rays
  * that follow lie as close to it as they can: those of a ball lie in it. Rays that leave it are projected
  * onto it. The window shows the hits. The lower part has a row for each ray. */
-#include "picture/path_picture.h"
+#include "picture/pictures.h"
 
 #include "core/base/memory.h"
 #include "core/base/words.h"

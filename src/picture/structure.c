@@ -2,7 +2,7 @@
 /* In perspective, boxes are drawn in homogeneous view coordinates: (x, y, w) with w the distance along the
  * axis and -w <= x, y <= w inside the image, so that the near plane and the sides of the view clip alike.
  * In section, boxes and objects are cut by a plane. */
-#include "picture/structure.h"
+#include "picture/pictures.h"
 
 #include "core/base/elementary.h"
 #include "core/base/memory.h"

@@ -11,7 +11,7 @@
 #include "core/text/json_lines.h"
 #include "experiment/plugins_used.h"
 #include "measure/machine.h"
-#include "render/image.h"
+#include "render/frame.h"
 #include "results/journal.h"
 #include "results/journal_lines.h"
 #include "results/manifest.h"

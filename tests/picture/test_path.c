@@ -3,8 +3,8 @@
 #define PICTURE_FILE RT_BINARY_DIR "/test_path_picture.png"
 #include "accel_testing.h"
 
-#include "picture/path_picture.h"
 #include "picture/picture_testing.h"
+#include "picture/pictures.h"
 #include "verify/spread.h"
 
 /* Looks on as a ray is traced by the counted kernels, which is what a path is made of, and compares with the

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* picture/path_picture.h and picture/section.h: what is cut, and what is drawn. */
+/* picture/pictures.h and picture/section.h: what is cut, and what is drawn. */
 #define PICTURE_FILE RT_BINARY_DIR "/test_ray_tree_picture.png"
 #include "accel_testing.h"
 
-#include "picture/path_picture.h"
 #include "picture/picture_testing.h"
+#include "picture/pictures.h"
 #include "picture/section.h"
 
 static const RtColor reflection = {{0, 114, 178}}, transmission = {{0, 158, 115}}, lit = {{230, 159, 0}},

@@ -4,8 +4,8 @@
 #include "render/render_testing.h"
 
 #include "picture/picture_testing.h"
+#include "picture/pictures.h"
 #include "picture/section.h"
-#include "picture/structure.h"
 #include "scenes/open.h"
 
 enum { SIDE = 200 };

@@ -3,7 +3,6 @@
 #include "render_testing.h"
 
 #include "core/base/file.h"
-#include "render/image.h"
 
 #include <png.h>
 #include <xxhash.h>
