@@ -58,14 +58,11 @@ static uint64_t bytes_of(struct argp_state *state, const char *option, const cha
     return (uint64_t)bytes;
 }
 
-bool rt_cli_goes_on(RtStatus status, const char *spec, uint32_t count, const RtError *why) {
-    if (count == 1 || !rt_accel_refuses(status)) return false;
-    fprintf(stderr, "raytally: %s is refused: %s\n", spec, why->message);
+bool rt_cli_leave_out(RtStatus status, const char **specs, uint32_t *count, uint32_t i, const RtError *why) {
+    if (*count == 1 || !rt_accel_refuses(status)) return false;
+    fprintf(stderr, "raytally: %s is refused: %s\n", specs[i], why->message);
+    memmove(&specs[i], &specs[i + 1], (--*count - i) * sizeof *specs);
     return true;
-}
-
-void rt_cli_remove(const char **texts, uint32_t *count, uint32_t i) {
-    memmove(&texts[i], &texts[i + 1], (--*count - i) * sizeof *texts);
 }
 
 void rt_cli_take_memory(void *options, const char *text, struct argp_state *state) {
@@ -87,12 +84,6 @@ bool rt_cli_digits(const char **text, uint32_t *number) {
     *text = end;
     *number = (uint32_t)value;
     return true;
-}
-
-void rt_cli_size(struct argp_state *state, const char *text, uint32_t *width, uint32_t *height) {
-    if (rt_image_size_parse(text, width, height)) return;
-    argp_error(state, "--size: invalid value '%s': expected WIDTHxHEIGHT, each 1..%d, as in 640x480", text,
-               RT_MAX_IMAGE_SIDE);
 }
 
 RtStatus rt_cli_check_pixel(const RtSampling *sampling, RtPixel pixel, RtError *error) {
@@ -178,7 +169,11 @@ static void take_value(const RtOptionValue *value, const char *name, char *optio
         return;
     case RT_OPTION_SET: *(int *)at = (int)number; return;
     case RT_OPTION_BYTES: *(uint64_t *)at = bytes_of(state, name, text); return;
-    case RT_OPTION_SIZE: rt_cli_size(state, text, (uint32_t *)at, (uint32_t *)at + 1); return;
+    case RT_OPTION_SIZE:
+        if (!rt_image_size_parse(text, (uint32_t *)at, (uint32_t *)at + 1))
+            argp_error(state, "%s: invalid value '%s': expected WIDTHxHEIGHT, each 1..%d, as in 640x480",
+                       name, text, RT_MAX_IMAGE_SIDE);
+        return;
     case RT_OPTION_PIXEL:
         pixel->given = true;
         if (!rt_cli_digits(&rest, &pixel->x) || *rest++ != ',' || !rt_cli_digits(&rest, &pixel->y) || *rest)

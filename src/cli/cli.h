@@ -208,12 +208,10 @@ void rt_cli_take_time(void *options, const char *text, struct argp_state *state)
         "time", 0, "SECONDS", RT_TO_TAKE(rt_cli_take_time),                                                  \
             "Time limit for the whole command, which then ends with exit code 2" kept                        \
     }
-/* Whether the build of one of `count` accelerators was refused and the command goes on with the others; says
- * so. */
-bool rt_cli_goes_on(RtStatus status, const char *spec, uint32_t count, const RtError *why);
 
-/* Removes texts[i] of texts[0..*count). */
-void rt_cli_remove(const char **texts, uint32_t *count, uint32_t i);
+/* Whether the build of specs[i] of [0..*count) was refused, and the command goes on with the others: says so,
+ * and removes it. */
+bool rt_cli_leave_out(RtStatus status, const char **specs, uint32_t *count, uint32_t i, const RtError *why);
 
 #define RT_LIMIT_OPTIONS                                                                                     \
     {"memory", 0, "BYTES", RT_TO_TAKE(rt_cli_take_memory),                                                   \
@@ -245,9 +243,6 @@ RtRayKind rt_cli_image_ray_kind(struct argp_state *state, const char *option, co
  * if *slot is set. */
 void rt_cli_set_path(struct argp_state *state, const char *option, const char **slot, const char *path,
                      const char *extensions);
-
-/* "WxH" */
-void rt_cli_size(struct argp_state *state, const char *text, uint32_t *width, uint32_t *height);
 
 /* ---- commands on result directories: `raytally COMMAND DIR` ---- */
 

@@ -41,8 +41,8 @@ static RtStatus build(RtAccel **accels, RtExploredSpec *specs, char (*texts)[RT_
         RT_TRY(rt_spec_parse(o->accels[i], &spec, error));
         rt_spec_format(&spec, texts[i]);
         const RtStatus status = rt_accel_build(&spec, scene, 0, &accels[i], error);
-        if (rt_cli_goes_on(status, o->accels[i], o->accel_count, error)) {
-            rt_cli_remove(o->accels, &o->accel_count, i--);
+        if (rt_cli_leave_out(status, o->accels, &o->accel_count, i, error)) {
+            i--;
             continue;
         }
         RT_TRY(status);

@@ -272,14 +272,10 @@ static RtStatus build(Run *run, uint32_t i, RtAccel **accel, RtError *error) {
     return RT_OK;
 }
 
-/* Removes accelerator `i`, which ended its build with `status`, if the command goes on without it. The
- * difference of two heatmaps needs both. */
-static bool remove_refused(Run *run, RtStatus status, uint32_t i, const RtError *why) {
-    Options *o = run->options;
-    const uint32_t count = o->heat.difference ? 1 : o->accel_count;
-    if (!rt_cli_goes_on(status, o->accels[i], count, why)) return false;
-    rt_cli_remove(o->accels, &o->accel_count, i);
-    return true;
+/* Whether the command goes on without accelerator `i`, which ended its build with `status`. The difference of
+ * two heatmaps needs both. */
+static bool leave_out(Options *o, RtStatus status, uint32_t i, const RtError *why) {
+    return !o->heat.difference && rt_cli_leave_out(status, o->accels, &o->accel_count, i, why);
 }
 
 static RtStatus trace_frames(Run *run, RtError *error) {
@@ -310,7 +306,7 @@ static RtStatus trace_frames(Run *run, RtError *error) {
         RtStatus status = build(run, i, &accel, error);
         if (status == RT_OK) status = rt_frame_trace(&run->built[i].counted, accel, f, error);
         rt_accel_destroy(accel);
-        if (remove_refused(run, status, i, error))
+        if (leave_out(run->options, status, i, error))
             i--;
         else
             RT_TRY(status);
@@ -327,7 +323,7 @@ static RtStatus prepare(Run *run, RtError *error) {
     RT_TRY(rt_scene_open(o->scene, &run->scene, error));
     RT_TRY(rt_scene_sample(&run->scene, o->size[0], o->size[1], o->samples, o->corners, error));
     RtStatus status = build(run, 0, &run->accel, error);
-    while (remove_refused(run, status, 0, error)) status = build(run, 0, &run->accel, error);
+    while (leave_out(run->options, status, 0, error)) status = build(run, 0, &run->accel, error);
     RT_TRY(status);
     if (!o->structure) return RT_OK;
     RT_TRY(rt_structure_layer(run->accel, o->layer, &run->layer, error));

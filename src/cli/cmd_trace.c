@@ -115,17 +115,6 @@ static void print_rows(const RtPath *path, const Options *o, const RtGeometry *g
     if (joined + left_out > 0) puts("       --rows 0 prints each");
 }
 
-static void print_counts(const RtTally *t) {
-    bool any = false;
-    printf("\ntotal:");
-    for (size_t i = 2; i < RT_TALLY_COUNTER_COUNT; i++) { /* without rays and hits */
-        if (rt_tally_get(t, i) == 0) continue;
-        printf(" %llu %s,", (unsigned long long)rt_tally_get(t, i), rt_tally_name(i));
-        any = true;
-    }
-    puts(any ? " as in the counted kernel" : " nothing is counted");
-}
-
 static void print_answer(const RtPath *path, const RtGeometry *g) {
     if (path->hit.object == RT_NO_OBJECT) {
         puts(path->any ? "nothing blocks it" : "it hits nothing");
@@ -144,12 +133,19 @@ static void print_answer(const RtPath *path, const RtGeometry *g) {
 }
 
 static void print_path(const RtPath *path, const Options *o, const char *title, const RtGeometry *g) {
+    bool any = false;
     const RtRay *r = &path->ray;
     printf("%s\nfrom (%.6g, %.6g, %.6g) along (%.6g, %.6g, %.6g), t from %.6g to %.6g\n", title,
            (double)r->org.x, (double)r->org.y, (double)r->org.z, (double)r->dir.x, (double)r->dir.y,
            (double)r->dir.z, (double)r->tmin, (double)r->tmax);
     print_rows(path, o, g);
-    print_counts(&path->tally);
+    printf("\ntotal:");
+    for (size_t i = 2; i < RT_TALLY_COUNTER_COUNT; i++) { /* without rays and hits */
+        if (rt_tally_get(&path->tally, i) == 0) continue;
+        printf(" %llu %s,", (unsigned long long)rt_tally_get(&path->tally, i), rt_tally_name(i));
+        any = true;
+    }
+    puts(any ? " as in the counted kernel" : " nothing is counted");
     print_answer(path, g);
 }
 

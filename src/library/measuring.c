@@ -177,42 +177,33 @@ static RtStatus judge(const RtAccel *accel, const RtVerifyRays *wanted, const Rt
     return rt_fail(error, RT_MISMATCH, "%.200s: %s", spec, says);
 }
 
-static RtStatus verify(RtVerifyScene *stage, const RtVerifyRays *wanted, RtAccel *accel, const char *spec,
-                       raytally_verify_result *out, RtError *error) {
+/* Answering the rays takes longest, so the accelerator is built first: a bad spec fails at once. */
+static RtStatus verify(RtVerifyScene *stage, const RtScene *scene, const RtVerifyRays *wanted,
+                       const char *spec, raytally_verify_result *out, RtError *error) {
+    RtAccel *accel;
     RtEquivalence result;
     RtCertain certain = {0};
-    RT_TRY(rt_verify_scene_answer(stage, wanted, error));
-    RT_TRY(rt_equivalence_check(&stage->reference, accel, wanted->threads, &result, error));
-    if (!accel->exact)
-        RT_TRY(rt_reference_certain(&stage->reference, accel->absolute, wanted->threads, &certain, error));
-    *out = (raytally_verify_result){.rays = result.rays,
-                                    .equal = result.verdicts[RT_EQUAL],
-                                    .tie = result.verdicts[RT_TIE],
-                                    .marginal = result.verdicts[RT_MARGINAL],
-                                    .wrong = result.verdicts[RT_WRONG],
-                                    .occluded_wrong = result.occluded_wrong,
-                                    .certain = certain.certain,
-                                    .must_hit = certain.must_hit,
-                                    .certain_of = certain.rays};
-    return judge(accel, wanted, &result, &certain, spec, error);
-}
-
-/* Answering the rays takes longest, so the accelerator is built first: a bad spec fails at once. */
-static RtStatus build_and_verify(RtVerifyScene *stage, const RtScene *scene, const RtVerifyRays *wanted,
-                                 const char *spec, raytally_verify_result *out, RtError *error) {
-    RtAccel *accel;
     RT_TRY(rt_verify_scene_init(stage, scene, wanted, error));
     RT_TRY(rt_accel_open_on(spec, &stage->scene, wanted->threads, &accel, error));
-    RtStatus status = verify(stage, wanted, accel, spec, out, error);
+    RtStatus status = rt_verify_scene_answer(stage, wanted, error);
+    if (status == RT_OK)
+        status = rt_equivalence_check(&stage->reference, accel, wanted->threads, &result, error);
+    if (status == RT_OK && !accel->exact)
+        status = rt_reference_certain(&stage->reference, accel->absolute, wanted->threads, &certain, error);
+    if (status == RT_OK) {
+        *out = (raytally_verify_result){.rays = result.rays,
+                                        .equal = result.verdicts[RT_EQUAL],
+                                        .tie = result.verdicts[RT_TIE],
+                                        .marginal = result.verdicts[RT_MARGINAL],
+                                        .wrong = result.verdicts[RT_WRONG],
+                                        .occluded_wrong = result.occluded_wrong,
+                                        .certain = certain.certain,
+                                        .must_hit = certain.must_hit,
+                                        .certain_of = certain.rays};
+        status = judge(accel, wanted, &result, &certain, spec, error);
+    }
     rt_accel_destroy(accel);
     return status;
-}
-
-static RtStatus check(const raytally_verify_options *how, RtError *error) {
-    RT_TRY(rt_threads_check(how->threads, error));
-    if (how->given || (how->rays >= 1 && how->rays <= MOST_RAYS)) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT, "%" PRIu64 " rays to verify by: expected 1..%" PRIu64, how->rays,
-                   MOST_RAYS);
 }
 
 raytally_status raytally_verify(const raytally_scene *scene, const char *spec,
@@ -227,9 +218,11 @@ raytally_status raytally_verify(const raytally_scene *scene, const char *spec,
                            .seed = own.seed,
                            .threads = own.threads,
                            .given = own.given ? &own.given->set : NULL};
-    if (status == RT_OK) status = check(&own, rt_error_of(error));
-    if (status == RT_OK)
-        status = build_and_verify(&stage, &scene->scene, &wanted, spec, out, rt_error_of(error));
+    if (status == RT_OK) status = rt_threads_check(own.threads, rt_error_of(error));
+    if (status == RT_OK && !own.given && (own.rays < 1 || own.rays > MOST_RAYS))
+        status = rt_fail(rt_error_of(error), RT_BAD_INPUT,
+                         "%" PRIu64 " rays to verify by: expected 1..%" PRIu64, own.rays, MOST_RAYS);
+    if (status == RT_OK) status = verify(&stage, &scene->scene, &wanted, spec, out, rt_error_of(error));
     rt_verify_scene_clear(&stage);
     return (raytally_status)status;
 }

@@ -165,12 +165,6 @@ static RtStatus add_triangle(RtScene *scene, const raytally_objects *objects, ui
     return rt_scene_add_triangle(scene, material, vertices, NULL, error);
 }
 
-static RtStatus add_sphere(RtScene *scene, const raytally_objects *objects, uint32_t i, uint32_t material,
-                           RtError *error) {
-    const float *at = objects->spheres + 4 * (size_t)i;
-    return rt_scene_add_sphere(scene, material, rt_vec3(at[0], at[1], at[2]), at[3], error);
-}
-
 static RtStatus fill(RtScene *scene, const raytally_objects *objects, RtError *error) {
     RtMaterial grey = rt_default_material();
     uint32_t material;
@@ -182,7 +176,8 @@ static RtStatus fill(RtScene *scene, const raytally_objects *objects, RtError *e
             return fail_object(&why, "triangle", i, error);
     }
     for (uint32_t i = 0; i < objects->sphere_count; i++) {
-        if (add_sphere(scene, objects, i, material, &why) != RT_OK)
+        const float *at = objects->spheres + 4 * (size_t)i;
+        if (rt_scene_add_sphere(scene, material, rt_vec3(at[0], at[1], at[2]), at[3], &why) != RT_OK)
             return fail_object(&why, "sphere", i, error);
     }
     return rt_scene_finish(scene, error);
@@ -289,27 +284,27 @@ raytally_status raytally_plugin_load(const char *path, raytally_error *error) {
     return (raytally_status)rt_plugin_load(path, rt_error_of(error));
 }
 
-static RtStatus build(raytally_accelerator *made, const char *text, int threads, RtError *error) {
-    RtSpec spec;
-    RT_TRY(rt_threads_check(threads, error));
-    RT_TRY(rt_spec_parse(text, &spec, error));
-    RT_TRY(rt_accel_build(&spec, &made->scene->scene, threads, &made->accel, error));
-    rt_spec_format(&spec, made->spec);
-    atomic_fetch_add(&made->scene->accelerators, 1);
-    return RT_OK;
-}
-
 raytally_status raytally_accelerator_build(const raytally_scene *scene, const char *spec, int threads,
                                            raytally_accelerator **out, raytally_error *error) {
+    RtSpec parsed;
+    RtAccel *accel = NULL;
     RT_C_LOCALE;
-    raytally_accelerator *made = *out = rt_alloc(1, sizeof *made);
-    if (!made) return (raytally_status)rt_fail_memory(rt_error_of(error), "an accelerator", sizeof *made);
-    made->scene = (raytally_scene *)scene; /* it counts its accelerators */
-    RtStatus status = build(made, spec, threads, rt_error_of(error));
-    if (status == RT_OK) return RAYTALLY_OK;
-    rt_free(made);
     *out = NULL;
-    return (raytally_status)status;
+    RtStatus status = rt_threads_check(threads, rt_error_of(error));
+    if (status == RT_OK) status = rt_spec_parse(spec, &parsed, rt_error_of(error));
+    if (status == RT_OK) status = rt_accel_build(&parsed, &scene->scene, threads, &accel, rt_error_of(error));
+    raytally_accelerator *made = status == RT_OK ? rt_alloc(1, sizeof *made) : NULL;
+    if (status == RT_OK && !made) {
+        rt_accel_destroy(accel);
+        status = rt_fail_memory(rt_error_of(error), "an accelerator", sizeof *made);
+    }
+    if (status != RT_OK) return (raytally_status)status;
+    made->accel = accel;
+    made->scene = (raytally_scene *)scene; /* it counts its accelerators */
+    rt_spec_format(&parsed, made->spec);
+    atomic_fetch_add(&made->scene->accelerators, 1);
+    *out = made;
+    return RAYTALLY_OK;
 }
 
 void raytally_accelerator_free(raytally_accelerator *accelerator) {

@@ -144,14 +144,6 @@ static double clock_of(const Worker *worker) {
     return worker->job->options->share ? rt_wall_seconds() : 0;
 }
 
-/* Moves the cost of one ray to its sample and its kind. */
-static void charge(Worker *worker, uint32_t sample, uint32_t kind, RtTally cost[RT_RAY_KIND_COUNT]) {
-    uint32_t kinds = worker->job->options->cost_kinds;
-    if (kinds == 0 || kinds >> kind & 1) rt_tally_add(&worker->job->frame->cost[sample], &cost[kind]);
-    rt_tally_add(&worker->tallies[kind], &cost[kind]);
-    cost[kind] = (RtTally){0};
-}
-
 /* Counts rays by kind, and keeps them with keep_rays. */
 static RtStatus take_rays(Worker *worker, const RtRay *rays, uint32_t count, RtError *error) {
     TileRays *to = worker->job->kept ? &worker->job->kept[worker->tile] : NULL;
@@ -183,10 +175,15 @@ static RtStatus trace_stream(Worker *worker, const RtRay *rays, const Path *path
         worker->querying += clock_of(worker) - start;
         return RT_OK;
     }
+    const uint32_t kinds = worker->job->options->cost_kinds;
     RtTally cost[RT_RAY_KIND_COUNT] = {0};
     for (uint32_t i = 0; i < count; i++) {
+        const uint32_t kind = rays[i].kind;
         ask(worker, rays, i, 1, cost);
-        charge(worker, paths[i].sample, rays[i].kind, cost);
+        if (kinds == 0 || kinds >> kind & 1)
+            rt_tally_add(&worker->job->frame->cost[paths[i].sample], &cost[kind]);
+        rt_tally_add(&worker->tallies[kind], &cost[kind]);
+        cost[kind] = (RtTally){0};
     }
     return RT_OK;
 }
@@ -258,14 +255,6 @@ static void spawn(Worker *worker, uint32_t surface_count, Level *below) {
     }
 }
 
-static void record_primary(Worker *worker, const Path *paths, uint32_t count) {
-    RtFrame *frame = worker->job->frame;
-    for (uint32_t i = 0; i < count; i++) {
-        frame->object[paths[i].sample] = worker->hits[i].object;
-        frame->depth[paths[i].sample] = worker->hits[i].t;
-    }
-}
-
 static RtStatus trace_level(Worker *worker, uint32_t depth, RtError *error) {
     Level *level = &worker->levels[depth];
     bool deepest = depth + 1 == worker->job->options->depth;
@@ -274,7 +263,10 @@ static RtStatus trace_level(Worker *worker, uint32_t depth, RtError *error) {
         const RtRay *rays = level->rays + begin;
         const Path *paths = level->paths + begin;
         RT_TRY(trace_stream(worker, rays, paths, count, error));
-        if (depth == 0) record_primary(worker, paths, count);
+        for (uint32_t i = 0; depth == 0 && i < count; i++) {
+            worker->job->frame->object[paths[i].sample] = worker->hits[i].object;
+            worker->job->frame->depth[paths[i].sample] = worker->hits[i].t;
+        }
         uint32_t surface_count = find_surfaces(worker, rays, paths, count);
         RT_TRY(trace_shadows(worker, surface_count, error));
         if (deepest) continue;
