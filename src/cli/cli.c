@@ -2,7 +2,8 @@
 #include "cli/cli.h"
 
 #include "accel/accel.h"
-#include "cli/stop.h"
+#include "cli/jobs.h"
+#include "cli/plugins.h"
 #include "core/base/memory.h"
 #include "core/text/json.h"
 
@@ -32,27 +33,6 @@ void rt_cli_print_json(json_t *document) {
     json_decref(document);
 }
 
-void rt_cli_print_params(const RtParam *table, size_t count) {
-    for (size_t i = 0; i < count; i++) {
-        char range[RT_MAX_SPEC_CHARS];
-        rt_param_range(&table[i], range, sizeof range);
-        printf("  %-12s %s\n  %-12s   default %s (%s); %s\n", table[i].name, table[i].meaning, "",
-               table[i].default_text, table[i].source, range);
-    }
-}
-
-json_t *rt_cli_params_json(const RtParam *table, size_t count) {
-    json_t *params = json_array();
-    for (size_t i = 0; i < count; i++) {
-        char range[RT_MAX_SPEC_CHARS];
-        rt_param_range(&table[i], range, sizeof range);
-        json_array_append_new(params, json_pack("{s:s, s:s, s:s, s:s, s:s}", "name", table[i].name, "default",
-                                                table[i].default_text, "range", range, "meaning",
-                                                table[i].meaning, "source", table[i].source));
-    }
-    return params;
-}
-
 int64_t rt_cli_integer(struct argp_state *state, const char *option, const char *text, int64_t lo,
                        int64_t hi) {
     char *end;
@@ -65,7 +45,8 @@ int64_t rt_cli_integer(struct argp_state *state, const char *option, const char 
     return value;
 }
 
-uint64_t rt_cli_bytes(struct argp_state *state, const char *option, const char *text) {
+/* "512M": a number and K, M, G or T, powers of 1000, or neither. */
+static uint64_t bytes_of(struct argp_state *state, const char *option, const char *text) {
     static const char units[] = "KMGT";
     char *end;
     double bytes = strtod(text, &end);
@@ -77,19 +58,16 @@ uint64_t rt_cli_bytes(struct argp_state *state, const char *option, const char *
     return (uint64_t)bytes;
 }
 
-bool rt_cli_goes_on(RtStatus status, const char *spec, uint32_t count, const RtError *why) {
-    if (count == 1 || !rt_accel_refuses(status)) return false;
-    fprintf(stderr, "raytally: %s is refused: %s\n", spec, why->message);
+bool rt_cli_leave_out(RtStatus status, const char **specs, uint32_t *count, uint32_t i, const RtError *why) {
+    if (*count == 1 || !rt_accel_refuses(status)) return false;
+    fprintf(stderr, "raytally: %s is refused: %s\n", specs[i], why->message);
+    memmove(&specs[i], &specs[i + 1], (--*count - i) * sizeof *specs);
     return true;
-}
-
-void rt_cli_remove(const char **texts, uint32_t *count, uint32_t i) {
-    memmove(&texts[i], &texts[i + 1], (--*count - i) * sizeof *texts);
 }
 
 void rt_cli_take_memory(void *options, const char *text, struct argp_state *state) {
     (void)options;
-    rt_memory_limit_process(rt_cli_bytes(state, "--memory", text));
+    rt_memory_limit_process(bytes_of(state, "--memory", text));
 }
 
 void rt_cli_take_time(void *options, const char *text, struct argp_state *state) {
@@ -108,12 +86,6 @@ bool rt_cli_digits(const char **text, uint32_t *number) {
     return true;
 }
 
-void rt_cli_size(struct argp_state *state, const char *text, uint32_t *width, uint32_t *height) {
-    if (rt_image_size_parse(text, width, height)) return;
-    argp_error(state, "--size: invalid value '%s': expected WIDTHxHEIGHT, each 1..%d, as in 640x480", text,
-               RT_MAX_IMAGE_SIDE);
-}
-
 RtStatus rt_cli_check_pixel(const RtSampling *sampling, RtPixel pixel, RtError *error) {
     if (pixel.x < sampling->width && pixel.y < sampling->height) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT, "--pixel %u,%u is outside the image of %u x %u: choose 0..%u,0..%u",
@@ -130,16 +102,12 @@ RtRayKind rt_cli_image_ray_kind(struct argp_state *state, const char *option, co
     return RT_RAY_PRIMARY;
 }
 
-/* From the last dot of a name that has something before it, or "". */
-static const char *extension_of(const char *path) {
-    const char *dot = strrchr(path, '.');
-    return dot && dot != path ? dot : "";
-}
-
-/* Does the file name end in one of `extensions`, such as ".png, .svg or .pdf"? */
+/* Does the name of the file end, after something else, in one of `extensions`, such as ".png, .svg or .pdf"?
+ */
 static bool has_extension(const char *path, const char *extensions) {
-    const char *own = extension_of(path), *at = strstr(extensions, own);
-    return *own && at && strchr(", ", at[strlen(own)]); /* or its end */
+    const char *own = strrchr(path, '.');
+    const char *at = own && own != path ? strstr(extensions, own) : NULL;
+    return at && strchr(", ", at[strlen(own)]); /* or its end */
 }
 
 void rt_cli_set_path(struct argp_state *state, const char *option, const char **slot, const char *path,
@@ -151,19 +119,163 @@ void rt_cli_set_path(struct argp_state *state, const char *option, const char **
     *slot = path;
 }
 
-#define Options RtListOptions
-const RtOption rt_list_options[] = {{"json", 'j', NULL, RT_TO_FLAG(json), "One JSON document on stdout"},
-                                    {0}};
-#undef Options
-
-void rt_list_finish(const RtListOptions *options, const char *key, json_t *list, const char *syntax) {
-    if (options->json)
-        rt_cli_print_json(json_pack("{s:O}", key, list));
-    else if (!options->name)
-        puts(syntax);
-    json_decref(list);
-}
-
 json_t *rt_cli_vector_json(RtVec3 v) {
     return json_pack("[f, f, f]", (double)v.x, (double)v.y, (double)v.z);
+}
+
+/* ---- tables of options ---- */
+
+enum { MOST_OPTIONS = 32, FIRST_KEY = 256 };
+
+/* The input of a parser: of a command, or of its shared options. */
+typedef struct Parse {
+    const RtSyntax *syntax;
+    const RtOption *list;
+    char *options;
+    struct Parse *shared;
+} Parse;
+
+/* `name` is that of an option, with its dashes, or of an argument. */
+static void take_value(const RtOptionValue *value, const char *name, char *options, const char *text,
+                       struct argp_state *state) {
+    void *at = options + value->offset;
+    const bool whole = value->form == RT_OPTION_INTEGER || value->form == RT_OPTION_SECONDS;
+    const int64_t number = whole ? rt_cli_integer(state, name, text, value->low, value->high) : value->low;
+    RtPixel *pixel = at;
+    uint32_t *count = (uint32_t *)(options + value->count);
+    const char *rest = text;
+    char *end;
+    double percent;
+    switch (value->form) {
+    case RT_OPTION_FLAG: *(bool *)at = true; return;
+    case RT_OPTION_TEXT: *(const char **)at = text; return;
+    case RT_OPTION_LIST:
+        if (*count == value->high)
+            argp_error(state, "%s: '%s' is one too many: %lld at most", name, text, (long long)value->high);
+        ((const char **)at)[(*count)++] = text;
+        return;
+    case RT_OPTION_INTEGER:
+        if (value->size == sizeof(uint32_t))
+            *(uint32_t *)at = (uint32_t)number;
+        else
+            *(uint64_t *)at = (uint64_t)number;
+        return;
+    case RT_OPTION_SECONDS: *(double *)at = (double)number; return;
+    case RT_OPTION_PERCENT:
+        percent = strtod(text, &end);
+        if (end == text || strcmp(end, "%") != 0 || !(percent > 0 && percent <= 100))
+            argp_error(state, "%s: invalid value '%s': expected a percentage, as in 1%%", name, text);
+        *(double *)at = percent / 100;
+        return;
+    case RT_OPTION_SET: *(int *)at = (int)number; return;
+    case RT_OPTION_BYTES: *(uint64_t *)at = bytes_of(state, name, text); return;
+    case RT_OPTION_SIZE:
+        if (!rt_image_size_parse(text, (uint32_t *)at, (uint32_t *)at + 1))
+            argp_error(state, "%s: invalid value '%s': expected WIDTHxHEIGHT, each 1..%d, as in 640x480",
+                       name, text, RT_MAX_IMAGE_SIDE);
+        return;
+    case RT_OPTION_PIXEL:
+        pixel->given = true;
+        if (!rt_cli_digits(&rest, &pixel->x) || *rest++ != ',' || !rt_cli_digits(&rest, &pixel->y) || *rest)
+            argp_error(state, "%s: invalid value '%s': expected X,Y, as in 256,200", name, text);
+        return;
+    case RT_OPTION_PATH: rt_cli_set_path(state, name, (const char **)at, text, value->endings); return;
+    case RT_OPTION_TAKE: value->take(options, text, state); return;
+    case RT_OPTION_GONE: argp_error(state, "%s is no longer there: %s", name, value->instead); return;
+    }
+}
+
+static void take_option(const RtOption *o, char *options, const char *text, struct argp_state *state) {
+    char name[40];
+    snprintf(name, sizeof name, "--%s", o->name);
+    if (o->value.mark) *(const char **)(options + o->value.mark) = o->name;
+    take_value(&o->value, name, options, text, state);
+}
+
+static void take_argument(const Parse *parse, const char *text, struct argp_state *state) {
+    const RtArgument *argument = &parse->syntax->argument;
+    const char *const *slot = (const char *const *)(parse->options + argument->value.offset);
+    if (argument->value.form == RT_OPTION_TEXT && *slot)
+        argp_error(state, "one %s at a time; '%s' is a second one", argument->name, text);
+    take_value(&argument->value, argument->name, parse->options, text, state);
+}
+
+/* Whether the table has an entry `i`, given that it has all before. */
+static bool is_option(const RtOption *list, int i) {
+    return list && (list[i].name || list[i].help);
+}
+
+/* argp's key of an entry; 0 for a title. */
+static int key_of(const RtOption *list, int i) {
+    return !list[i].name ? 0 : list[i].letter ? list[i].letter : FIRST_KEY + i;
+}
+
+/* The parser of one table. */
+static error_t take_key(int key, char *text, struct argp_state *state) {
+    const Parse *parse = state->input;
+    for (int i = 0; is_option(parse->list, i); i++) {
+        if (!parse->list[i].name || key != key_of(parse->list, i)) continue;
+        take_option(&parse->list[i], parse->options, text, state);
+        return 0;
+    }
+    return ARGP_ERR_UNKNOWN;
+}
+
+static error_t parse_key(int key, char *text, struct argp_state *state) {
+    const Parse *parse = state->input;
+    const RtSyntax *syntax = parse->syntax;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        if (syntax->shared) state->child_inputs[0] = parse->shared;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (!syntax->argument.name) return ARGP_ERR_UNKNOWN;
+        take_argument(parse, text, state);
+        return 0;
+    case ARGP_KEY_END:
+        if (state->arg_num == 0 && syntax->argument.missing)
+            argp_error(state, "%s", syntax->argument.missing);
+        if (syntax->finish) syntax->finish(parse->options, state);
+        return 0;
+    default: return take_key(key, text, state);
+    }
+}
+
+/* The table as argp has it; NULL if it is empty, which glibc would leak. */
+static struct argp_option *convert(const RtOption *list, struct argp_option out[MOST_OPTIONS + 1]) {
+    int count = 0;
+    for (; is_option(list, count); count++) {
+        const RtOption *o = &list[count];
+        assert(count < MOST_OPTIONS);
+        out[count] =
+            (struct argp_option){o->name, key_of(list, count), o->operand, o->value.flags, o->help, 0};
+    }
+    out[count] = (struct argp_option){0};
+    return count > 0 ? out : NULL;
+}
+
+/* The syntax as argp has it, valid until the next call. */
+static const struct argp *argp_of(const RtSyntax *syntax) {
+    static struct argp_option own[MOST_OPTIONS + 1], shared[MOST_OPTIONS + 1];
+    static struct argp_child children[3];
+    static struct argp argp, child;
+    int count = 0;
+    child = (struct argp){.options = convert(syntax->shared, shared), .parser = take_key};
+    if (syntax->shared) children[count++] = (struct argp_child){&child, 0, NULL, syntax->shared_group};
+    if (syntax->plugins) children[count++] = (struct argp_child){&rt_plugin_argp, 0, NULL, 0};
+    children[count] = (struct argp_child){0};
+    argp = (struct argp){.options = convert(syntax->options, own),
+                         .parser = parse_key,
+                         .args_doc = syntax->arguments,
+                         .doc = syntax->help,
+                         .children = children};
+    return &argp;
+}
+
+void rt_cli_parse(const RtSyntax *syntax, int argc, char **argv, void *options) {
+    Parse shared = {NULL, syntax->shared, (char *)options + syntax->shared_at, NULL};
+    Parse parse = {syntax, syntax->options, options, &shared};
+    if (argp_parse(argp_of(syntax), argc, argv, 0, 0, &parse) == 0) return;
+    fputs("raytally: out of memory: not enough to parse the arguments\n", stderr);
+    exit(RT_EXIT_BAD_INPUT);
 }

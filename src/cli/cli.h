@@ -1,20 +1,135 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The command line: one file per command, each with its own argp parser (so `raytally COMMAND --help` teaches
- * it), and what they share. Only here is anything printed, and only main exits. */
+/* The command line: a file per command, or for a few small ones together, and what they share. Only here is
+ * anything printed, and only main exits.
+ *
+ * One table of a command's options says what --help prints and where each value goes: to a struct that the
+ * command's file calls Options. */
 #ifndef RT_CLI_CLI_H
 #define RT_CLI_CLI_H
 
-#include "cli/options.h"
-#include "core/base/param.h"
 #include "core/base/ray.h"
 #include "core/base/status.h"
 #include "core/scene/camera.h"
+#include "results/result_directory.h"
 
+#include <argp.h>
 #include <jansson.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 enum { RT_EXIT_OK = 0, RT_EXIT_CHECK_FAILED = 1, RT_EXIT_BAD_INPUT = 2 };
+
+/* ---- options ---- */
+
+typedef struct RtPixel {
+    uint32_t x, y;
+    bool given;
+} RtPixel;
+
+/* Reads `text`; ends the process by argp_error if it is wrong. */
+typedef void RtTakeOption(void *options, const char *text, struct argp_state *state);
+
+/* Where the value of an option goes, and what it may be. */
+typedef struct RtOptionValue {
+    enum {
+        RT_OPTION_FLAG,    /* bool: true */
+        RT_OPTION_TEXT,    /* const char *: as given */
+        RT_OPTION_LIST,    /* const char *[high], one value after the other; their number is at `count` */
+        RT_OPTION_INTEGER, /* an integer type of `size` bytes: low..high */
+        RT_OPTION_SECONDS, /* double: a whole number, low..high */
+        RT_OPTION_PERCENT, /* double: "1%" is 0.01 */
+        RT_OPTION_SET,     /* int, or an enum: `low` */
+        RT_OPTION_BYTES,   /* uint64_t: "512M" is 512 * 10^6; at least 1 */
+        RT_OPTION_SIZE,    /* uint32_t[2]: WIDTHxHEIGHT */
+        RT_OPTION_PIXEL,   /* RtPixel: X,Y */
+        RT_OPTION_PATH,    /* const char *: a file name that ends in one of `endings` */
+        RT_OPTION_TAKE,    /* as `take` reads it */
+        RT_OPTION_GONE     /* none: an option of an earlier version; `instead` says what to do */
+    } form;
+    size_t offset, size; /* of the field */
+    size_t count;        /* offset of the number of values of a list */
+    int64_t low, high;
+    RtTakeOption *take;
+    const char *endings, *instead;
+    size_t mark; /* of a const char * that gets the option's name; 0: none does */
+    int flags;   /* argp's */
+} RtOptionValue;
+
+/* Parts of RT_MARKING. */
+#define RT_AT(field)         .offset = offsetof(Options, field)
+#define RT_SETS_FLAG(field)  .form = RT_OPTION_FLAG, RT_AT(field)
+#define RT_SETS_PIXEL(field) .form = RT_OPTION_PIXEL, RT_AT(field)
+#define RT_SETS_INTEGER(field, from, to)                                                                     \
+    .form = RT_OPTION_INTEGER, RT_AT(field), .size = sizeof((Options *)0)->field, .low = (from), .high = (to)
+#define RT_CALLS(function) .form = RT_OPTION_TAKE, .take = (function)
+
+#define RT_VALUE(...)                                                                                        \
+    { __VA_ARGS__ }
+/* A value whose option leaves its name in `field`. */
+#define RT_MARKING(field, ...) RT_VALUE(.mark = offsetof(Options, field), __VA_ARGS__)
+
+#define RT_TO_FLAG(field)        RT_VALUE(RT_SETS_FLAG(field))
+#define RT_TO_HIDDEN_FLAG(field) RT_VALUE(RT_SETS_FLAG(field), .flags = OPTION_HIDDEN)
+#define RT_TO_TEXT(field)        RT_VALUE(.form = RT_OPTION_TEXT, RT_AT(field))
+#define RT_TO_LIST(array, number)                                                                            \
+    RT_VALUE(.form = RT_OPTION_LIST, RT_AT(array), .count = offsetof(Options, number),                       \
+             .high = sizeof((Options *)0)->array / sizeof(char *))
+#define RT_TO_INTEGER(field, from, to) RT_VALUE(RT_SETS_INTEGER(field, from, to))
+#define RT_TO_SECONDS(field, from, to)                                                                       \
+    RT_VALUE(.form = RT_OPTION_SECONDS, RT_AT(field), .low = (from), .high = (to))
+#define RT_TO_PERCENT(field)    RT_VALUE(.form = RT_OPTION_PERCENT, RT_AT(field))
+#define RT_TO_BYTES(field)      RT_VALUE(.form = RT_OPTION_BYTES, RT_AT(field))
+#define RT_TO_SET(field, value) RT_VALUE(.form = RT_OPTION_SET, RT_AT(field), .low = (value))
+#define RT_TO_SIZE(field)       RT_VALUE(.form = RT_OPTION_SIZE, RT_AT(field))
+#define RT_TO_PIXEL(field)      RT_VALUE(RT_SETS_PIXEL(field))
+#define RT_TO_PATH(field, ends) RT_VALUE(.form = RT_OPTION_PATH, RT_AT(field), .endings = (ends))
+#define RT_TO_TAKE(function)    RT_VALUE(RT_CALLS(function))
+/* `text` may be NULL. */
+#define RT_TO_TAKE_OPTIONAL(function) RT_VALUE(RT_CALLS(function), .flags = OPTION_ARG_OPTIONAL)
+
+/* An option that is no longer there. */
+#define RT_GONE(name, use)                                                                                   \
+    { name, 0, NULL, RT_VALUE(.form = RT_OPTION_GONE, .instead = (use), .flags = OPTION_HIDDEN), NULL }
+
+typedef struct RtOption {
+    const char *name;    /* NULL: `help` is the title of the options that follow */
+    int letter;          /* of the short option, or 0 */
+    const char *operand; /* what --help calls the value; NULL: it takes none */
+    RtOptionValue value;
+    const char *help;
+} RtOption;
+
+/* The arguments that are no options. */
+typedef struct RtArgument {
+    const char *name;    /* SCENE */
+    const char *missing; /* what is said if there is none; NULL: there may be none */
+    RtOptionValue value; /* of each; if it is a text, there is one at most */
+} RtArgument;
+
+#define RT_ARGUMENT(name, field, missing)                                                                    \
+    { name, missing, RT_TO_TEXT(field) }
+/* Members of the RtSyntax of a command that takes one SCENE. */
+#define RT_ONE_SCENE                                                                                         \
+    .arguments = "SCENE",                                                                                    \
+    .argument =                                                                                              \
+        RT_ARGUMENT("SCENE", scene, "a SCENE is missing: a file, or a built-in as `raytally scenes` lists")
+
+typedef struct RtSyntax {
+    const RtOption *options;      /* the last has no name and no help; NULL: none */
+    const RtOption *shared;       /* options of several commands, or NULL */
+    size_t shared_at;             /* offset of their own Options */
+    int shared_group;             /* argp's, in --help */
+    bool plugins;                 /* it takes --plugin */
+    const char *arguments, *help; /* args_doc and doc of argp */
+    RtArgument argument;
+    void (*finish)(void *options, struct argp_state *state); /* checks all values together; or NULL */
+} RtSyntax;
+
+/* Fills `options`, a command's Options. Ends the process if the arguments are wrong, or ask for help. */
+void rt_cli_parse(const RtSyntax *syntax, int argc, char **argv, void *options);
+
+/* ---- commands ---- */
 
 typedef struct RtCommand {
     const char *name, *arguments, *summary;
@@ -55,17 +170,10 @@ RtStatus rt_cli_check_json_name(const char *name, RtError *error);
 /* Prints one JSON document to stdout, indented, and takes the reference. */
 void rt_cli_print_json(json_t *document);
 
-/* A parameter table: two lines per parameter, or an array of objects. */
-void rt_cli_print_params(const RtParam *table, size_t count);
-json_t *rt_cli_params_json(const RtParam *table, size_t count);
-
 /* For parsers of options: the number in `text`, lo..hi; ends the process by argp_error if it is wrong.
  * `state` is argp's. */
 int64_t rt_cli_integer(struct argp_state *state, const char *option, const char *text, int64_t lo,
                        int64_t hi);
-
-/* The same for bytes, "512M": a number and K, M, G or T, powers of 1000, or neither. */
-uint64_t rt_cli_bytes(struct argp_state *state, const char *option, const char *text);
 
 /* For parsers of several numbers: reads the digits at *text, up to UINT32_MAX, and moves *text past them;
  * false if there are none, or the number is larger. */
@@ -75,7 +183,8 @@ bool rt_cli_digits(const char **text, uint32_t *number);
 void rt_cli_take_memory(void *options, const char *text, struct argp_state *state);
 void rt_cli_take_time(void *options, const char *text, struct argp_state *state);
 
-/* Options of several commands. */
+/* ---- options of several commands ---- */
+
 #define RT_PATIENCE 60 /* seconds */
 #define RT_UNTIL_OPTIONS(until, patience)                                                                    \
     {"until", 0, "P%", RT_TO_PERCENT(until),                                                                 \
@@ -99,12 +208,10 @@ void rt_cli_take_time(void *options, const char *text, struct argp_state *state)
         "time", 0, "SECONDS", RT_TO_TAKE(rt_cli_take_time),                                                  \
             "Time limit for the whole command, which then ends with exit code 2" kept                        \
     }
-/* Whether the build of one of `count` accelerators was refused and the command goes on with the others; says
- * so. */
-bool rt_cli_goes_on(RtStatus status, const char *spec, uint32_t count, const RtError *why);
 
-/* Removes texts[i] of texts[0..*count). */
-void rt_cli_remove(const char **texts, uint32_t *count, uint32_t i);
+/* Whether the build of specs[i] of [0..*count) was refused, and the command goes on with the others: says so,
+ * and removes it. */
+bool rt_cli_leave_out(RtStatus status, const char **specs, uint32_t *count, uint32_t i, const RtError *why);
 
 #define RT_LIMIT_OPTIONS                                                                                     \
     {"memory", 0, "BYTES", RT_TO_TAKE(rt_cli_take_memory),                                                   \
@@ -120,18 +227,6 @@ void rt_cli_remove(const char **texts, uint32_t *count, uint32_t i);
 #define RT_THREADS_HELP                                                                                      \
     "Threads, 0 for all processors. Default: time on one thread, by processor time, and build and count on " \
     "all. Times on several threads are wall times"
-
-/* Commands that list what there is: all of it, or one by name. */
-typedef struct RtListOptions {
-    const char *name; /* NULL: all */
-    bool json;
-} RtListOptions;
-extern const RtOption rt_list_options[];
-#define RT_LIST_ARGUMENT                                                                                     \
-    { "NAME", NULL, RT_VALUE(.form = RT_OPTION_TEXT, .offset = offsetof(RtListOptions, name)) }
-
-/* Prints `list`, an array, under `key` with `json`; else `syntax`, without a name. Takes the reference. */
-void rt_list_finish(const RtListOptions *options, const char *key, json_t *list, const char *syntax);
 
 /* A vector as [x, y, z]. */
 json_t *rt_cli_vector_json(RtVec3 v);
@@ -149,7 +244,16 @@ RtRayKind rt_cli_image_ray_kind(struct argp_state *state, const char *option, co
 void rt_cli_set_path(struct argp_state *state, const char *option, const char **slot, const char *path,
                      const char *extensions);
 
-/* "WxH" */
-void rt_cli_size(struct argp_state *state, const char *text, uint32_t *width, uint32_t *height);
+/* ---- commands on result directories: `raytally COMMAND DIR` ---- */
+
+#define RT_DIRECTORY_MISSING "a result DIR is missing, as in results/first-look"
+
+/* What such a command does with the directory once its results are loaded; `options` are the command's. */
+typedef RtStatus RtDirectoryWork(const char *directory, RtResults *results, const void *options,
+                                 RtError *error);
+
+/* Loads the directory and works on it. A command that writes into the directory locks it. */
+RtStatus rt_cli_directory_work(const char *directory, bool writes, RtDirectoryWork *work, const void *options,
+                               RtError *error);
 
 #endif

@@ -2,8 +2,8 @@
 /* raytally bench: counts and times accelerators on the rays of one scene, as an experiment without a
  * directory. */
 #include "cli/cli.h"
+#include "cli/experiment_options.h"
 #include "cli/progress.h"
-#include "cli/recording.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
 #include "measure/machine.h"
@@ -16,13 +16,10 @@
 #include <string.h>
 
 typedef struct Options {
-    RtRecordingOptions recording;
+    RtExperimentOptions shared;
     const char *scene, *baseline, *csv;
     RtWorkloadOptions workload;
-    bool json, distributions;
-    uint32_t rounds;   /* 0: the default */
-    uint32_t builds;   /* 0: the default */
-    uint64_t memory;   /* bytes for each accelerator; 0: no limit */
+    bool json;
     int threads;       /* -1: one to time, all to build and count */
     bool worker;       /* it counts instructions for another one (run/worker.h) */
     char *const *argv; /* all arguments, NULL behind the last */
@@ -38,7 +35,7 @@ static void set_baseline(RtExperiment *experiment, const char *text, struct argp
     experiment->baseline = c;
     if (c < experiment->candidate_count) return;
     if (!rt_best_is(text)) {
-        rt_recording_add_accel(experiment, text, state);
+        rt_add_accel(experiment, text, state);
     } else if (rt_experiment_set_baseline(experiment, text, &error) != RT_OK) {
         argp_error(state, "--baseline: %s", error.message);
     }
@@ -46,7 +43,7 @@ static void set_baseline(RtExperiment *experiment, const char *text, struct argp
 
 /* All files need different names. */
 static void check_names(const Options *o, struct argp_state *state) {
-    const RtExperiment *e = o->recording.experiment;
+    const RtExperiment *e = &o->shared.experiment;
     const char *const files[] = {o->workload.hits, o->workload.counts, o->csv,
                                  *e->rays_from ? e->rays_from : NULL};
     for (int i = 0; i < 4; i++) {
@@ -59,7 +56,7 @@ static void check_names(const Options *o, struct argp_state *state) {
 
 /* Of all accelerators of the preceding --accel. */
 static void take_ray_stride(void *options, const char *text, struct argp_state *state) {
-    RtExperiment *e = ((Options *)options)->recording.experiment;
+    RtExperiment *e = &((Options *)options)->shared.experiment;
     if (!e->candidate_count) argp_error(state, "--ray-stride comes after the --accel that it applies to");
     const int64_t stride = rt_cli_integer(state, "--ray-stride", text, 1, (int64_t)RT_MAX_RAYS_A_KIND);
     const uint32_t last = e->candidate_count - 1, entry = e->candidates[last].entry;
@@ -68,35 +65,26 @@ static void take_ray_stride(void *options, const char *text, struct argp_state *
     }
 }
 
-static void take_milliseconds(void *options, const char *text, struct argp_state *state) {
-    ((Options *)options)->recording.experiment->milliseconds =
-        (uint32_t)rt_cli_integer(state, "--milliseconds", text, 0, RT_MAX_MILLISECONDS);
-}
-
 static void take_rays_from(void *options, const char *text, struct argp_state *state) {
-    RtExperiment *e = ((Options *)options)->recording.experiment;
+    RtExperiment *e = &((Options *)options)->shared.experiment;
     if (strlen(text) >= RT_MAX_PATH) argp_error(state, "--rays-from: the path is too long");
     strcpy(e->rays_from, text);
 }
 
 static void finish(void *options, struct argp_state *state) {
     Options *o = options;
-    RtExperiment *e = o->recording.experiment;
+    RtExperiment *e = &o->shared.experiment;
     if (!e->candidate_count) argp_error(state, "an accelerator is missing: --accel SPEC, or --accel all");
     if (o->baseline) set_baseline(e, o->baseline, state);
     if (!o->baseline) rt_experiment_set_baseline(e, NULL, NULL);
-    if (o->rounds) e->rounds = o->rounds;
-    if (o->builds) e->builds = o->builds;
     if (o->threads >= 0) o->workload.threads = o->workload.timing = o->threads;
     if (o->workload.until > 0 && e->rounds < RT_FULL_ROUNDS) e->rounds = RT_FULL_ROUNDS;
-    e->limit_bytes = o->memory;
-    e->distributions = o->distributions;
-    rt_recording_finish(&o->recording, state);
+    rt_experiment_options_finish(&o->shared, state);
     check_names(o, state);
 }
 
 static const RtOption options[] = {
-    {"accel", 'a', "SPEC", RT_TO_TAKE(rt_recording_take_accel),
+    {"accel", 'a', "SPEC", RT_TO_TAKE(rt_take_accel),
      "An accelerator, NAME[:KEY=VALUE,...]; repeat the option for several. `all`: every accelerator at its "
      "defaults. A VALUE may be a list, 1|4|16, or a range, 1..9+2 (steps of 2) or 1..64*2 (doubling): "
      "raytally then measures an accelerator for each value, or combination of values"},
@@ -106,25 +94,25 @@ static const RtOption options[] = {
      "The accelerator that ratios are relative to (default: the first that is not a plugin). NAME:best is "
      "the "
      "fastest of several settings for each kind of rays, as in embree:best (`raytally accels NAME`)"},
-    {"milliseconds", 0, "N", RT_TO_TAKE(take_milliseconds),
+    {"milliseconds", 0, "N", RT_TO_INTEGER(shared.experiment.milliseconds, 0, RT_MAX_MILLISECONDS),
      "Repeat a short set of rays within a round until N milliseconds have passed (20); 0: run it once"},
-    {"rounds", 0, "N", RT_TO_INTEGER(rounds, 1, RT_MAX_ROUNDS),
+    {"rounds", 0, "N", RT_TO_INTEGER(shared.experiment.rounds, 1, RT_MAX_ROUNDS),
      "Timing rounds, each in a new random order (10); 95 % intervals need 6 or more"},
-    {"builds", 0, "N", RT_TO_INTEGER(builds, 1, RT_MAX_ROUNDS),
+    {"builds", 0, "N", RT_TO_INTEGER(shared.experiment.builds, 1, RT_MAX_ROUNDS),
      "Time at most N builds of each accelerator, in rounds too, after a warm-up (20); fewer if they take "
      "longer than 0.15 s times N. --count-only builds once"},
     RT_UNTIL_OPTIONS(workload.until, workload.patience),
     {"threads", 0, "N", RT_TO_INTEGER(threads, 0, 1024), RT_THREADS_HELP},
-    RT_MEMORY_OPTION(memory),
+    RT_MEMORY_OPTION(shared.experiment.limit_bytes),
     RT_TIME_OPTION(""),
     {"count-only", 0, NULL, RT_TO_FLAG(workload.count_only), "Count, do not time"},
-    {"distribution", 0, NULL, RT_TO_FLAG(distributions),
+    {"distribution", 0, NULL, RT_TO_FLAG(shared.experiment.distributions),
      "Also show distributions: object tests and steps over the rays, each ray traced alone, and objects and "
      "depths over the leaves. Medians, 99th percentiles and maxima reveal the few rays that cost a hundred "
      "times the mean. --json adds all percentiles and the histograms. In an experiment: `distributions: "
      "yes`"},
     RT_GONE("hardware", "run raytally under `perf stat`, see docs/guide/faq.md, or use --callgrind"),
-    {"callgrind", 0, "N", RT_TO_TAKE_OPTIONAL(rt_recording_take_callgrind),
+    {"callgrind", 0, "N", RT_TO_TAKE_OPTIONAL(rt_take_callgrind),
      "Also show instructions per ray, counted by valgrind's callgrind: exact, and the same on every run. "
      "raytally builds each accelerator again under valgrind, which is many times slower, and traces N rays "
      "of each kind (4096), without AVX-512, which valgrind lacks"},
@@ -149,9 +137,8 @@ static const RtOption options[] = {
 static void extend(json_t *array, const RtResults *results, RtResultTable which, uint32_t workload) {
     RtResultRow row = {.results = results, .workload = workload};
     RtTable table = rt_result_table(which, &row);
-    json_t *rows = rt_table_json(&table);
+    json_auto_t *rows = rt_table_json(&table);
     json_array_extend(array, rows);
-    json_decref(rows);
 }
 
 /* One scene, and what was recorded of it. */
@@ -169,10 +156,6 @@ static json_t *scene_json(const RtResults *results, uint32_t workload) {
                      (json_int_t)scene->objects, "scene_hash", rt_json_hex(scene->scene), "recorded", rays);
 }
 
-static void add_table(json_t *all, const char *name, RtTable table) {
-    json_object_set_new(all, name, rt_table_json(&table));
-}
-
 static void print_json(const RtResults *results, const RtCallgrind *callgrind) {
     const RtExperiment *e = results->experiment;
     json_t *scenes = json_array(), *rows = json_array(), *nulls = json_array();
@@ -187,20 +170,14 @@ static void print_json(const RtResults *results, const RtCallgrind *callgrind) {
     RtDistributionRow distribution = {.results = results};
     RtInstructionsRow instructions = {.callgrind = callgrind};
     if (e->distributions) {
-        add_table(all, "distributions", rt_distribution_table(RT_DISTRIBUTIONS, &distribution));
-        add_table(all, "histograms", rt_distribution_table(RT_HISTOGRAMS, &distribution));
+        const RtTable table = rt_distribution_table(RT_DISTRIBUTIONS, &distribution);
+        json_object_set_new(all, "distributions", rt_table_json(&table));
+        const RtTable bins = rt_distribution_table(RT_HISTOGRAMS, &distribution);
+        json_object_set_new(all, "histograms", rt_table_json(&bins));
     }
-    if (callgrind->count) add_table(all, "instructions", rt_instructions_table(&instructions));
+    const RtTable counted = rt_instructions_table(&instructions);
+    if (callgrind->count) json_object_set_new(all, "instructions", rt_table_json(&counted));
     rt_cli_print_json(all);
-}
-
-static RtStatus write_csv(const Options *o, const RtResults *results, RtError *error) {
-    RtOutput output;
-    RtResultRow row = {.results = results};
-    RtTable table = rt_result_table(o->workload.count_only ? RT_COUNTS : RT_TIMES, &row);
-    RT_TRY(rt_output_open(&output, o->csv, error));
-    rt_table_csv(&table, output.file);
-    return rt_output_commit(&output, error);
 }
 
 /* `cells`: it stands for a file of each cell, if there are several. */
@@ -214,7 +191,14 @@ static RtStatus report(const Options *o, const RtResults *results, const RtCallg
                        RtError *error) {
     const RtExperiment *e = results->experiment;
     char sentence[RT_MAX_SENTENCE];
-    if (o->csv) RT_TRY(write_csv(o, results, error));
+    RtOutput output;
+    RtResultRow row = {.results = results};
+    const RtTable table = rt_result_table(o->workload.count_only ? RT_COUNTS : RT_TIMES, &row);
+    if (o->csv) {
+        RT_TRY(rt_output_open(&output, o->csv, error));
+        rt_table_csv(&table, output.file);
+        RT_TRY(rt_output_commit(&output, error));
+    }
     if (o->json) {
         print_json(results, callgrind);
         return RT_OK;
@@ -248,27 +232,27 @@ static RtStatus check_path(const char *path, RtError *error) {
 static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, RtError *error) {
     RT_TRY(check_path(o->workload.hits, error));
     RT_TRY(check_path(o->workload.counts, error));
-    if (o->recording.callgrind) {
+    if (o->shared.callgrind) {
         RT_TRY(rt_callgrind_check(error));
-        RT_TRY(rt_callgrind_init(callgrind, results->experiment, o->recording.callgrind, error));
+        RT_TRY(rt_callgrind_init(callgrind, results->experiment, o->shared.callgrind, error));
         o->workload.rays = rt_callgrind_save_rays;
         o->workload.rays_context = callgrind;
     }
-    RtProgress progress = rt_progress_begin(&o->workload);
-    o->workload.observer = rt_progress_observer(&progress);
+    RtProgress progress;
+    rt_progress_begin(&progress, &o->workload);
     RtStatus status = rt_workloads_run(results, &o->workload, error);
-    if (status == RT_OK && o->recording.callgrind)
+    if (status == RT_OK && o->shared.callgrind)
         rt_notify(&o->workload.observer, "counting instructions under valgrind, which takes a while");
     rt_progress_end(&progress);
-    if (status == RT_OK && o->recording.callgrind)
+    if (status == RT_OK && o->shared.callgrind)
         status = rt_callgrind_run(callgrind, NULL, results, o->argv + 1, error);
     return status;
 }
 
 static RtStatus bench(Options *o, RtError *error) {
     char where[RT_MAX_LABEL];
-    RtExperiment *experiment = o->recording.experiment;
-    RT_TRY(rt_experiment_add_scenes(experiment, &o->recording.like, o->scene, "", error));
+    RtExperiment *experiment = &o->shared.experiment;
+    RT_TRY(rt_experiment_add_scenes(experiment, &o->shared.like, o->scene, "", error));
     strcpy(experiment->name, "bench");
     RT_TRY(rt_experiment_check(experiment, where, error));
     if (o->worker) return rt_worker_serve(experiment, NULL, error);
@@ -285,8 +269,8 @@ static RtStatus bench(Options *o, RtError *error) {
 
 const RtSyntax rt_bench_syntax = {
     .options = options,
-    .shared = rt_recording_options,
-    .shared_at = offsetof(Options, recording),
+    .shared = rt_experiment_options,
+    .shared_at = offsetof(Options, shared),
     .shared_group = 1,
     .plugins = true,
     RT_ONE_SCENE,
@@ -305,8 +289,12 @@ const RtSyntax rt_bench_syntax = {
         "    --hits hits.npy"};
 
 RtStatus rt_command_bench(int argc, char **argv, RtError *error) {
-    Options o = {.threads = -1, .workload = {.timing = 1, .patience = RT_PATIENCE}, .argv = argv};
-    rt_recording_init(&o.recording);
+    static Options o;
+    o.threads = -1;
+    o.workload.timing = 1;
+    o.workload.patience = RT_PATIENCE;
+    o.argv = argv;
+    rt_experiment_options_init(&o.shared);
     rt_cli_parse(&rt_bench_syntax, argc, argv, &o);
     return bench(&o, error);
 }

@@ -2,8 +2,8 @@
 /* raytally compare: what a change made faster or slower, and which counts it changed; from two result
  * directories, or two programs that run in turns. */
 #include "cli/cli.h"
+#include "cli/experiment_options.h"
 #include "cli/progress.h"
-#include "cli/recording.h"
 #include "compare/compare.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
@@ -25,7 +25,7 @@ static const double MARGIN_OF_DIRECTORIES = 0.02;
 enum { MAX_SUBJECTS = 64 };
 
 typedef struct Options {
-    RtRecordingOptions recording;
+    RtExperimentOptions shared;
     const char *subjects[MAX_SUBJECTS]; /* directories; or an experiment or a scene */
     uint32_t subject_count;
     const char *with;
@@ -38,29 +38,29 @@ typedef struct Options {
 
 static void finish(void *options, struct argp_state *state) {
     Options *o = options;
-    RtExperiment *e = o->recording.experiment;
+    RtExperiment *e = &o->shared.experiment;
     const bool programs = o->with || o->worker;
     if (!programs && (o->subject_count == 0 || o->subject_count % 2 != 0))
         argp_error(state, "give two result directories, or pairs of them, BEFORE AFTER BEFORE AFTER; or "
                           "--with PROGRAM and an EXPERIMENT or a SCENE");
     if (programs && o->subject_count != 1)
         argp_error(state, "--with takes one EXPERIMENT.yaml, or one SCENE with --accel");
-    if (!programs && (e->candidate_count || o->recording.frame || o->recording.kinds || o->until > 0 ||
-                      o->rounds || o->recording.callgrind))
+    if (!programs && (e->candidate_count || o->shared.frame || o->shared.kinds || o->until > 0 || o->rounds ||
+                      o->shared.callgrind))
         argp_error(state, "rays, --accel, --rounds, --until and --callgrind need --with PROGRAM: result "
                           "directories are compared as they are");
-    if (o->recording.callgrind && !e->candidate_count)
+    if (o->shared.callgrind && !e->candidate_count)
         argp_error(state, "--callgrind takes a SCENE with --accel, as `bench` does, and no EXPERIMENT");
-    if (programs && !e->candidate_count && (o->recording.frame || o->recording.kinds))
+    if (programs && !e->candidate_count && (o->shared.frame || o->shared.kinds))
         argp_error(state, "an EXPERIMENT defines its rays; for a SCENE give --accel");
     if (o->threads >= 0) o->timing = o->threads;
-    rt_recording_finish(&o->recording, state);
+    rt_experiment_options_finish(&o->shared, state);
 }
 
 static const RtOption options[] = {
     {"with", 0, "PROGRAM", RT_TO_TEXT(with),
      "Another raytally, such as ../old/build/release/raytally, as `before`; this one is `after`"},
-    {"accel", 'a', "SPEC", RT_TO_TAKE(rt_recording_take_accel),
+    {"accel", 'a', "SPEC", RT_TO_TAKE(rt_take_accel),
      "For a SCENE: an accelerator, or `all` of them; may be repeated"},
     {"strict", 0, NULL, RT_TO_FLAG(strict), "Exit code 1 if anything is slower"},
     {"margin", 0, "P%", RT_TO_PERCENT(margin),
@@ -72,7 +72,7 @@ static const RtOption options[] = {
      "--patience seconds"},
     {"patience", 0, "SECONDS", RT_TO_SECONDS(patience, 1, 86400),
      "With --until: at most this many seconds in total (600)"},
-    {"callgrind", 0, "N", RT_TO_TAKE_OPTIONAL(rt_recording_take_callgrind),
+    {"callgrind", 0, "N", RT_TO_TAKE_OPTIONAL(rt_take_callgrind),
      "With --with and a SCENE: also compare instructions per ray of both programs, on N rays of each kind "
      "(4096), as `bench --callgrind` does. Equal counts mean that code only moved"},
     {"quick", 0, NULL, RT_TO_FLAG(quick), "Run the smaller variant of the EXPERIMENT"},
@@ -86,18 +86,12 @@ static const RtOption options[] = {
 
 /* The experiment of the YAML, or of a scene and accelerators, as `bench` measures them. */
 static RtStatus load(Options *o, RtError *error) {
-    RtExperiment *e = o->recording.experiment;
+    RtExperiment *e = &o->shared.experiment;
     char where[RT_MAX_LABEL];
     if (e->candidate_count == 0) return rt_experiment_load(e, o->subjects[0], o->quick, error);
     strcpy(e->name, "compare");
-    RT_TRY(rt_experiment_add_scenes(e, &o->recording.like, o->subjects[0], "", error));
+    RT_TRY(rt_experiment_add_scenes(e, &o->shared.like, o->subjects[0], "", error));
     return rt_experiment_check(e, where, error);
-}
-
-static RtStatus work(Options *o, RtError *error) {
-    RtWorkloadOptions how = {.threads = o->threads >= 0 ? o->threads : 0, .timing = o->timing};
-    RT_TRY(load(o, error));
-    return rt_worker_serve(o->recording.experiment, &how, error);
 }
 
 static void on_progress(void *context, uint32_t round, uint32_t rounds, const char *scene, const char *kind) {
@@ -107,53 +101,43 @@ static void on_progress(void *context, uint32_t round, uint32_t rounds, const ch
     fflush(stderr);
 }
 
-/* An option that only one side has. */
-typedef struct OwnOption {
-    const char *name; /* the last has none */
-    bool value;       /* it has one, which may be the next argument */
-} OwnOption;
-
-/* The arguments of argv without some options, in a new array, NULL behind the last. RT_NO_MEMORY. */
-static RtStatus arguments_without(const OwnOption *options_left_out, char **argv, char ***arguments,
-                                  RtError *error) {
+/* The arguments of argv without some options, in a new array of the arena, NULL behind the last. The names of
+ * those that have a value, which may be the next argument, end in '='. */
+static char **arguments_without(const char *const *left_out, char **argv, RtArena *arena) {
     int count = 0, used = 0;
     while (argv[count]) count++;
-    *arguments = rt_alloc((size_t)count + 1, sizeof(char *));
-    if (!*arguments) return rt_fail_memory(error, "arguments", 0);
-    for (int i = 1; i < count; i++) {
+    char **arguments = rt_arena_alloc(arena, (size_t)count + 1, sizeof(char *));
+    for (int i = 1; arguments && i < count; i++) {
         const char *name = strncmp(argv[i], "--", 2) == 0 ? argv[i] + 2 : "";
         const size_t length = strcspn(name, "="); /* argp takes any unique beginning of a name */
-        const OwnOption *own = options_left_out;
-        while (own->name && (length == 0 || strncmp(name, own->name, length) != 0)) own++;
-        if (!own->name) (*arguments)[used++] = argv[i];
-        if (own->value && name[length] != '=') i++;
+        const char *const *out = left_out;
+        while (*out && (length == 0 || strncmp(name, *out, length) != 0)) out++;
+        if (!*out) arguments[used++] = argv[i];
+        if (*out && strchr(*out, '=') && name[length] != '=') i++;
     }
-    return RT_OK;
+    return arguments;
 }
 
 /* A worker gets the same arguments, so it measures the same; older ones do not know these. */
 static RtStatus compare_programs(Options *o, char **argv, RtComparison *comparison, RtError *error) {
-    static const OwnOption left_out[] = {
-        {"callgrind", false}, {"memory", true}, {"time", true}, {NULL, false}};
-    char **arguments = NULL;
-    RtStatus status = load(o, error); /* reports errors once */
-    if (*o->recording.experiment->warning.message)
-        rt_progress_notice(NULL, o->recording.experiment->warning.message);
-    if (status == RT_OK) status = arguments_without(left_out, argv, &arguments, error);
+    static const char *const left_out[] = {"callgrind", "memory=", "time=", NULL};
+    RT_ARENA(arena);
+    RT_TRY(load(o, error)); /* reports errors once */
+    if (*o->shared.experiment.warning.message) rt_progress_notice(NULL, o->shared.experiment.warning.message);
     RtPrograms programs = {.before = o->with,
                            .after = "/proc/self/exe",
-                           .arguments = arguments,
+                           .arguments = arguments_without(left_out, argv, &arena),
                            .rounds = o->rounds ? o->rounds : 10,
                            .until = o->until,
                            .patience = o->patience,
-                           .least = 1e-3 * o->recording.experiment->milliseconds,
+                           .least = 1e-3 * o->shared.experiment.milliseconds,
                            .pinned = o->timing == 1,
-                           .seed = o->recording.experiment->seed,
+                           .seed = o->shared.experiment.seed,
                            .progress = on_progress,
                            .notice = rt_progress_notice};
-    if (status == RT_OK) status = rt_compare_programs(&programs, comparison, error);
+    RT_TRY(rt_arena_check(&arena, "arguments", error));
+    RtStatus status = rt_compare_programs(&programs, comparison, error);
     rt_progress_clear();
-    rt_free(arguments);
     return status;
 }
 
@@ -161,18 +145,14 @@ static RtStatus compare_programs(Options *o, char **argv, RtComparison *comparis
 
 static RtStatus compare_instructions(const Options *o, char **argv, RtComparison *comparison,
                                      RtError *error) {
-    static const OwnOption left_out[] = {/* `bench` lacks them */
-                                         {"with", true},   {"margin", true}, {"strict", false},
-                                         {"quick", false}, {"memory", true}, /* for each accelerator, there */
-                                         {"time", true},   {NULL, false}};
-    char **arguments = NULL;
+    /* `bench` lacks them, or its --memory is for each accelerator. */
+    static const char *const left_out[] = {"with=", "margin=", "strict", "quick", "memory=", "time=", NULL};
+    RT_ARENA(arena);
+    char **arguments = arguments_without(left_out, argv, &arena);
+    RT_TRY(rt_arena_check(&arena, "arguments", error));
     rt_progress_notice(NULL, "counting instructions under valgrind, which takes a while");
-    RtStatus status = arguments_without(left_out, argv, &arguments, error);
-    if (status == RT_OK)
-        status = rt_compare_instructions(o->recording.experiment, o->recording.callgrind, o->with, arguments,
-                                         comparison, error);
-    rt_free(arguments);
-    return status;
+    return rt_compare_instructions(&o->shared.experiment, o->shared.callgrind, o->with, arguments, comparison,
+                                   error);
 }
 
 /* ---- directories ---- */
@@ -228,11 +208,11 @@ static RtStatus compare_loaded(const Options *o, RtExperiment *experiments, RtRe
 
 static RtStatus compare_directories(const Options *o, RtComparison *comparison, RtError *error) {
     static RtResults results[MAX_SUBJECTS]; /* megabytes */
-    RtExperiment *experiments = rt_alloc(o->subject_count, sizeof(RtExperiment));
-    RtStatus status = experiments ? compare_loaded(o, experiments, results, comparison, error)
-                                  : rt_fail_memory(error, "experiments", 0);
+    RT_ARENA(arena);
+    RtExperiment *experiments = rt_arena_alloc(&arena, o->subject_count, sizeof(RtExperiment));
+    RT_TRY(rt_arena_check(&arena, "experiments", error));
+    RtStatus status = compare_loaded(o, experiments, results, comparison, error);
     for (uint32_t i = 0; i < o->subject_count; i++) rt_results_clear(&results[i]);
-    rt_free(experiments);
     return status;
 }
 
@@ -240,11 +220,11 @@ static RtStatus compare_directories(const Options *o, RtComparison *comparison, 
 
 static RtStatus compare(Options *o, char **argv, RtError *error) {
     RtComparison comparison = {.margin = o->margin >= 0 ? o->margin : o->with ? 0 : MARGIN_OF_DIRECTORIES};
-    RtStatus status = o->recording.callgrind ? rt_callgrind_check(error) : RT_OK;
+    RtStatus status = o->shared.callgrind ? rt_callgrind_check(error) : RT_OK;
     if (status == RT_OK)
         status = o->with ? compare_programs(o, argv, &comparison, error)
                          : compare_directories(o, &comparison, error);
-    if (status == RT_OK && o->recording.callgrind) status = compare_instructions(o, argv, &comparison, error);
+    if (status == RT_OK && o->shared.callgrind) status = compare_instructions(o, argv, &comparison, error);
     if (status == RT_OK && o->json) rt_cli_print_json(rt_comparison_json(&comparison));
     if (status == RT_OK && !o->json) rt_comparison_print(&comparison, stdout);
     if (status == RT_OK && o->strict && rt_comparison_count(&comparison, RT_CHANGE_SLOWER) > 0) {
@@ -257,8 +237,8 @@ static RtStatus compare(Options *o, char **argv, RtError *error) {
 
 const RtSyntax rt_compare_syntax = {
     .options = options,
-    .shared = rt_recording_options,
-    .shared_at = offsetof(Options, recording),
+    .shared = rt_experiment_options,
+    .shared_at = offsetof(Options, shared),
     .shared_group = 1,
     .plugins = true,
     .arguments =
@@ -282,8 +262,15 @@ const RtSyntax rt_compare_syntax = {
         "  raytally compare results/last-month results/first-look --strict"};
 
 RtStatus rt_command_compare(int argc, char **argv, RtError *error) {
-    Options o = {.threads = -1, .timing = 1, .patience = 600, .margin = -1};
-    rt_recording_init(&o.recording);
+    static Options o;
+    o.threads = -1;
+    o.margin = -1;
+    o.timing = 1;
+    o.patience = 600;
+    rt_experiment_options_init(&o.shared);
     rt_cli_parse(&rt_compare_syntax, argc, argv, &o);
-    return o.worker ? work(&o, error) : compare(&o, argv, error);
+    if (!o.worker) return compare(&o, argv, error);
+    const RtWorkloadOptions how = {.threads = o.threads >= 0 ? o.threads : 0, .timing = o.timing};
+    RT_TRY(load(&o, error));
+    return rt_worker_serve(&o.shared.experiment, &how, error);
 }

@@ -33,53 +33,44 @@ static const RtOption options[] = {
     RT_LIMIT_OPTIONS,
     {0}};
 
-typedef struct Built {
-    RtAccel *accels[RT_MAX_EXPLORED];
-    char texts[RT_MAX_EXPLORED][RT_MAX_SPEC_CHARS];
-} Built;
-
 /* Builds all; those that refuse the scene are removed from the options. */
-static RtStatus build(Built *built, Options *o, const RtScene *scene, RtError *error) {
+static RtStatus build(RtAccel **accels, RtExploredSpec *specs, char (*texts)[RT_MAX_SPEC_CHARS], Options *o,
+                      const RtScene *scene, RtError *error) {
     for (uint32_t i = 0; i < o->accel_count; i++) {
         RtSpec spec;
         RT_TRY(rt_spec_parse(o->accels[i], &spec, error));
-        rt_spec_format(&spec, built->texts[i]);
-        const RtStatus status = rt_accel_build(&spec, scene, 0, &built->accels[i], error);
-        if (rt_cli_goes_on(status, o->accels[i], o->accel_count, error)) {
-            rt_cli_remove(o->accels, &o->accel_count, i--);
+        rt_spec_format(&spec, texts[i]);
+        const RtStatus status = rt_accel_build(&spec, scene, 0, &accels[i], error);
+        if (rt_cli_leave_out(status, o->accels, &o->accel_count, i, error)) {
+            i--;
             continue;
         }
         RT_TRY(status);
-        RT_TRY(rt_path_available(built->accels[i], built->texts[i], error));
+        RT_TRY(rt_path_available(accels[i], texts[i], error));
+        specs[i] = (RtExploredSpec){o->accels[i], texts[i]};
     }
     return RT_OK;
 }
 
-static RtStatus explore(Options *o, Built *built, const RtScene *scene, RtError *error) {
-    const RtExploreOptions how = {.depth = o->depth, .bytes = o->megabytes * 1000000};
-    RtExploredSpec specs[RT_MAX_EXPLORED];
-    uint32_t stride;
-    RT_TRY(build(built, o, scene, error));
-    for (uint32_t i = 0; i < o->accel_count; i++) specs[i] = (RtExploredSpec){o->accels[i], built->texts[i]};
-    RT_TRY(rt_explore_write(o->page, scene->name[0] ? scene->name : o->scene, built->accels, specs,
-                            o->accel_count, &how, &stride, error));
-    printf("wrote %s, with the rays of ", o->page);
-    if (stride == 1)
-        puts("all pixels");
-    else
-        printf("one pixel in %u x %u\n", stride, stride);
-    return RT_OK;
-}
-
 static RtStatus run(Options *o, RtError *error) {
-    Built built = {0};
+    const RtExploreOptions how = {.depth = o->depth, .bytes = o->megabytes * 1000000};
+    RtAccel *accels[RT_MAX_EXPLORED] = {NULL};
+    RtExploredSpec specs[RT_MAX_EXPLORED];
+    char texts[RT_MAX_EXPLORED][RT_MAX_SPEC_CHARS];
     RtScene scene;
+    uint32_t stride;
     RT_TRY(rt_explore_available(error));
     RT_TRY(rt_cli_check_json_name(o->scene, error));
     RT_TRY(rt_scene_open(o->scene, &scene, error));
     RtStatus status = rt_scene_sample(&scene, o->size[0], o->size[1], 1, false, error);
-    if (status == RT_OK) status = explore(o, &built, &scene, error);
-    for (uint32_t i = 0; i < o->accel_count; i++) rt_accel_destroy(built.accels[i]);
+    if (status == RT_OK) status = build(accels, specs, texts, o, &scene, error);
+    if (status == RT_OK)
+        status = rt_explore_write(o->page, scene.name[0] ? scene.name : o->scene, accels, specs,
+                                  o->accel_count, &how, &stride, error);
+    if (status == RT_OK && stride == 1) printf("wrote %s, with the rays of all pixels\n", o->page);
+    if (status == RT_OK && stride > 1)
+        printf("wrote %s, with the rays of one pixel in %u x %u\n", o->page, stride, stride);
+    for (uint32_t i = 0; i < o->accel_count; i++) rt_accel_destroy(accels[i]);
     rt_scene_clear(&scene);
     return status;
 }

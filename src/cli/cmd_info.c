@@ -113,19 +113,6 @@ static json_t *material_json(const RtMaterial *m) {
                      (double)m->ior);
 }
 
-static json_t *camera_json(const RtCamera *camera) {
-    return json_pack("{s:o, s:o, s:o, s:f, s:f, s:I, s:I}", "from", rt_cli_vector_json(camera->from), "at",
-                     rt_cli_vector_json(camera->at), "up", rt_cli_vector_json(camera->up), "fov",
-                     (double)camera->fov, "near", (double)camera->near, "width", (json_int_t)camera->width,
-                     "height", (json_int_t)camera->height);
-}
-
-/* null without objects. */
-static json_t *bounds_json(const RtGeometry *g) {
-    if (g->object_count == 0) return json_null();
-    return json_pack("{s:o, s:o}", "lo", rt_cli_vector_json(g->box.lo), "hi", rt_cli_vector_json(g->box.hi));
-}
-
 static json_t *info_json(const RtScene *scene, const Counts *counts) {
     const RtGeometry *g = &scene->geometry;
     json_t *shapes = json_object(), *materials = json_array(), *lights = json_array();
@@ -140,14 +127,22 @@ static json_t *info_json(const RtScene *scene, const Counts *counts) {
         json_array_append_new(lights, json_pack("{s:o, s:o}", "position", rt_cli_vector_json(light->position),
                                                 "intensity", rt_cli_vector_json(light->intensity)));
     }
-    return json_pack("{s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:I}", "scene",
-                     scene->name, "fingerprint", counts->fingerprint, "objects", (json_int_t)g->object_count,
-                     "shapes", shapes, "solids", (json_int_t)g->forest.set.solid_count,
-                     "triangles_with_normals", (json_int_t)g->vertex_normal_count, "triangles_without_area",
-                     (json_int_t)counts->zero_area, "bounds", bounds_json(g), "materials", materials,
-                     "lights", lights, "ambient", rt_cli_vector_json(scene->ambient), "background",
-                     rt_cli_vector_json(scene->background), "camera", camera_json(&scene->camera), "bytes",
-                     (json_int_t)rt_scene_bytes(scene));
+    const RtCamera *camera = &scene->camera;
+    json_t *bounds = g->object_count == 0 ? json_null()
+                                          : json_pack("{s:o, s:o}", "lo", rt_cli_vector_json(g->box.lo), "hi",
+                                                      rt_cli_vector_json(g->box.hi));
+    return json_pack(
+        "{s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o,"
+        " s:{s:o, s:o, s:o, s:f, s:f, s:I, s:I}, s:I}",
+        "scene", scene->name, "fingerprint", counts->fingerprint, "objects", (json_int_t)g->object_count,
+        "shapes", shapes, "solids", (json_int_t)g->forest.set.solid_count, "triangles_with_normals",
+        (json_int_t)g->vertex_normal_count, "triangles_without_area", (json_int_t)counts->zero_area, "bounds",
+        bounds, "materials", materials, "lights", lights, "ambient", rt_cli_vector_json(scene->ambient),
+        "background", rt_cli_vector_json(scene->background), "camera", "from",
+        rt_cli_vector_json(camera->from), "at", rt_cli_vector_json(camera->at), "up",
+        rt_cli_vector_json(camera->up), "fov", (double)camera->fov, "near", (double)camera->near, "width",
+        (json_int_t)camera->width, "height", (json_int_t)camera->height, "bytes",
+        (json_int_t)rt_scene_bytes(scene));
 }
 
 /* ---- the command ---- */

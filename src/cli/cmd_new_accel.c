@@ -32,17 +32,6 @@ const RtSyntax rt_new_accel_syntax = {
 
 /* ---- files ---- */
 
-/* A file of the new folder: NAME and `extension`, or a `title` of its own. */
-typedef struct Template {
-    const char *title, *extension;
-    const char *const *lines;
-} Template;
-
-static const Template templates[] = {
-    {NULL, ".c", new_accel_c}, {"CMakeLists.txt", "", new_accel_cmake}, {"README.md", "", new_accel_readme}};
-
-enum { TEMPLATE_COUNT = sizeof templates / sizeof templates[0] };
-
 #define PLACEHOLDER "my-accel"
 
 static void write_line(const char *line, const char *name, FILE *out) {
@@ -53,44 +42,31 @@ static void write_line(const char *line, const char *name, FILE *out) {
     fputs(line, out);
 }
 
-static RtStatus template_path(const Template *file, const char *folder, const char *name, char *path,
-                              RtError *error) {
-    char title[RT_MAX_NAME + 8];
-    snprintf(title, sizeof title, "%s%s", file->title ? file->title : name, file->extension);
-    return rt_path_join(folder, title, path, error);
-}
-
-static RtStatus write_template(const Template *file, const char *folder, const char *name, RtError *error) {
-    char path[RT_MAX_PATH];
+static RtStatus write_template(const char *const *lines, const char *folder, const char *title,
+                               const char *name, RtError *error) {
     RtOutput output;
-    RT_TRY(template_path(file, folder, name, path, error));
-    RT_TRY(rt_output_open(&output, path, error));
-    for (const char *const *line = file->lines; *line; line++) {
-        if (!strstr(*line, "SPDX-License-Identifier")) write_line(*line, name, output.file);
+    RT_TRY(rt_output_open_in(&output, folder, title, error));
+    for (; *lines; lines++) {
+        if (!strstr(*lines, "SPDX-License-Identifier")) write_line(*lines, name, output.file);
     }
     return rt_output_commit(&output, error);
 }
 
-/* Removes what was written, after a failure. */
-static void remove_folder(const char *folder, const char *name) {
-    char path[RT_MAX_PATH];
-    for (int i = 0; i < TEMPLATE_COUNT; i++) {
-        if (template_path(&templates[i], folder, name, path, NULL) == RT_OK) remove(path);
-    }
-    rmdir(folder);
-}
-
 static RtStatus write_folder(const char *folder, const char *name, RtError *error) {
+    char code[RT_MAX_NAME + 8];
     if (mkdir(folder, 0777) != 0) {
         if (errno == EEXIST)
             return rt_fail(error, RT_BAD_INPUT, "%s already exists: choose another name or another --out",
                            folder);
         return rt_fail(error, RT_IO, "%s: creating the folder failed: %s", folder, strerror(errno));
     }
-    RtStatus status = RT_OK;
-    for (int i = 0; i < TEMPLATE_COUNT && status == RT_OK; i++)
-        status = write_template(&templates[i], folder, name, error);
-    if (status != RT_OK) remove_folder(folder, name);
+    snprintf(code, sizeof code, "%s.c", name);
+    RtStatus status = write_template(new_accel_c, folder, code, name, error);
+    if (status == RT_OK) status = write_template(new_accel_cmake, folder, "CMakeLists.txt", name, error);
+    if (status == RT_OK) status = write_template(new_accel_readme, folder, "README.md", name, error);
+    if (status == RT_OK) return RT_OK;
+    rt_directory_remove_files(folder, "");
+    rmdir(folder);
     return status;
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally rays: writes the rays that `bench` records as a NumPy array. */
 #include "cli/cli.h"
-#include "cli/recording.h"
+#include "cli/experiment_options.h"
 #include "core/base/words.h"
 #include "measure/ray_file.h"
 #include "run/workload.h"
@@ -10,15 +10,15 @@
 #include <stdio.h>
 
 typedef struct Options {
-    RtRecordingOptions recording;
+    RtExperimentOptions shared;
     const char *scene, *out;
     int threads;
 } Options;
 
 static void finish(void *options, struct argp_state *state) {
-    const Options *o = options;
+    Options *o = options;
     if (!o->out) argp_error(state, "the output file is missing: -o FILE.npy");
-    rt_recording_finish(&o->recording, state);
+    rt_experiment_options_finish(&o->shared, state);
 }
 
 static const RtOption options[] = {{"out", 'o', "FILE.npy", RT_TO_TEXT(out), "The file to write"},
@@ -36,13 +36,13 @@ static RtStatus save(const Options *o, const RtRaySet *set, RtError *error) {
     return RT_OK;
 }
 
-static RtStatus record(const Options *o, RtError *error) {
-    RtExperiment *e = o->recording.experiment;
+static RtStatus record(Options *o, RtError *error) {
+    RtExperiment *e = &o->shared.experiment;
     RtScene scene;
     RtAccel *reference = NULL;
     RtRaySet sets[RT_RAY_KIND_COUNT] = {0};
     uint64_t whole_rays[RT_RAY_KIND_COUNT];
-    RT_TRY(rt_experiment_add_scenes(e, &o->recording.like, o->scene, "", error));
+    RT_TRY(rt_experiment_add_scenes(e, &o->shared.like, o->scene, "", error));
     if (e->workload_count > 1)
         return rt_fail(error, RT_BAD_INPUT, "one SCENE at a time: '%s' stands for %u", o->scene,
                        e->workload_count);
@@ -57,8 +57,8 @@ static RtStatus record(const Options *o, RtError *error) {
 
 const RtSyntax rt_rays_syntax = {
     .options = options,
-    .shared = rt_recording_options,
-    .shared_at = offsetof(Options, recording),
+    .shared = rt_experiment_options,
+    .shared_at = offsetof(Options, shared),
     RT_ONE_SCENE,
     .finish = finish,
     .help = "Write the rays that `raytally bench` measures to a file for NumPy.\v"
@@ -71,8 +71,9 @@ const RtSyntax rt_rays_syntax = {
             "  python3 -c \"import numpy; print(numpy.load('hits.npy')['object'])\""};
 
 RtStatus rt_command_rays(int argc, char **argv, RtError *error) {
-    Options o = {.recording = {.one_kind = true}};
-    rt_recording_init(&o.recording);
+    static Options o;
+    o.shared.one_kind = true;
+    rt_experiment_options_init(&o.shared);
     rt_cli_parse(&rt_rays_syntax, argc, argv, &o);
     return record(&o, error);
 }

@@ -7,11 +7,9 @@
 #include "core/base/parallel.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
-#include "picture/buffers.h"
-#include "picture/heatmap.h"
-#include "picture/structure.h"
+#include "picture/pictures.h"
 #include "rays/rayset.h"
-#include "render/image.h"
+#include "render/frame.h"
 #include "render/path.h"
 #include "scenes/open.h"
 #include "verify/equivalence.h"
@@ -60,22 +58,10 @@ static size_t list_outputs(const Options *o, const char *paths[MOST_OUTPUTS]) {
 }
 
 static bool any_heatmap(const Options *o) {
-    size_t i = 0;
-    while (i < RT_TALLY_COUNTER_COUNT && !o->heatmaps[i]) i++;
-    return i < RT_TALLY_COUNTER_COUNT;
-}
-
-static void check_pictures(const Options *o, struct argp_state *state) {
-    const bool heats = any_heatmap(o);
-    const char *structural = o->layer ? "layer" : o->of_boxes ? o->of_boxes : o->of_light;
-    if (structural && !o->structure)
-        argp_error(state, "--%s needs a picture of a structure: --structure FILE.png", structural);
-    if (o->thermal && !heats)
-        argp_error(state, "--%s needs a heatmap: --heatmap COUNTER FILE.png", o->thermal);
-    if (o->heat.difference && o->accel_count != 2)
-        argp_error(state, "--heatmap-difference needs two accelerators: give --accel twice");
-    if (o->accel_count > 1 && !heats)
-        argp_error(state, "only --heatmap takes several accelerators: give one --accel");
+    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
+        if (o->heatmaps[i]) return true;
+    }
+    return false;
 }
 
 static void finish(void *options, struct argp_state *state) {
@@ -92,7 +78,16 @@ static void finish(void *options, struct argp_state *state) {
             argp_error(state, "'%s' would be written twice: give each output its own file", paths[i]);
         }
     }
-    check_pictures(o, state);
+    const bool heats = any_heatmap(o);
+    const char *structural = o->layer ? "layer" : o->of_boxes ? o->of_boxes : o->of_light;
+    if (structural && !o->structure)
+        argp_error(state, "--%s needs a picture of a structure: --structure FILE.png", structural);
+    if (o->thermal && !heats)
+        argp_error(state, "--%s needs a heatmap: --heatmap COUNTER FILE.png", o->thermal);
+    if (o->heat.difference && o->accel_count != 2)
+        argp_error(state, "--heatmap-difference needs two accelerators: give --accel twice");
+    if (o->accel_count > 1 && !heats)
+        argp_error(state, "only --heatmap takes several accelerators: give one --accel");
 }
 
 static size_t counter_by_name(struct argp_state *state, const char *name) {
@@ -222,34 +217,20 @@ static const RtOption options[] = {
 
 /* ---- the frames ---- */
 
-/* Overlays for shadow rays that look rays up in cells. */
-static bool has_cells_of_lights(const RtAccel *layer) {
-    return layer->ops->find_cell && layer->ops->kinds >> RT_RAY_SHADOW & 1;
-}
-
 /* RT_BAD_INPUT if an option does not apply to the drawn layer. */
-static RtStatus check_layer(const Options *o, const RtAccel *accel, RtError *error) {
-    const RtAccel *layer;
-    if (!o->structure) return RT_OK;
-    RT_TRY(rt_structure_layer(accel, o->layer, &layer, error));
+static RtStatus check_layer(const Options *o, const RtAccel *layer, RtError *error) {
+    const bool of_lights = layer->ops->find_cell && layer->ops->kinds >> RT_RAY_SHADOW & 1;
     if (o->of_boxes && layer->ops->find_cell)
         return rt_fail(error, RT_BAD_INPUT,
                        "--%s needs a layer that has boxes, such as bvh or grid, but the picture shows %s: "
                        "leave it out, or choose another --layer",
                        o->of_boxes, layer->ops->name);
-    if (o->of_light && !has_cells_of_lights(layer))
+    if (o->of_light && !of_lights)
         return rt_fail(error, RT_BAD_INPUT,
                        "--%s needs the cells around a light, which only the layer light has, but the picture "
                        "shows %s: leave it out, or draw light, as in --accel light:cells=64+bvh",
                        o->of_light, layer->ops->name);
     return RT_OK;
-}
-
-/* Whether the picture of the structure needs the image of the scene; the cells of an overlay do not. */
-static bool needs_frame(const Options *o, const RtAccel *accel) {
-    RtError error;
-    const RtAccel *layer;
-    return rt_structure_layer(accel, o->layer, &layer, &error) == RT_OK && !layer->ops->find_cell;
 }
 
 typedef struct Built {
@@ -263,7 +244,8 @@ typedef struct Built {
 typedef struct Run {
     Options *options; /* accelerators that refuse the scene are removed */
     RtScene scene;
-    RtAccel *accel; /* the first */
+    RtAccel *accel;       /* the first */
+    const RtAccel *layer; /* of it, drawn as the structure */
     RtFrameOptions frame_options;
     RtFrame timed;              /* by it */
     Built built[RT_MAX_PANELS]; /* [accel_count] */
@@ -278,15 +260,6 @@ static void show_progress(void *context, size_t tiles_done, size_t tiles) {
     if (tiles_done == tiles) fprintf(stderr, "\r%*s\r", (int)strlen(context) + 6, "");
 }
 
-/* The same image bit for bit, by the default accelerator. */
-static RtStatus trace_background(Run *run, const RtFrameOptions *f, RtError *error) {
-    RtAccel *quick;
-    RT_TRY(rt_accel_open_on(rt_accel_default(), &run->scene, f->threads, &quick, error));
-    RtStatus status = rt_frame_trace(&run->timed, quick, f, error);
-    rt_accel_destroy(quick);
-    return status;
-}
-
 static RtStatus build(Run *run, uint32_t i, RtAccel **accel, RtError *error) {
     Built *built = &run->built[i];
     RtSpec spec;
@@ -299,22 +272,10 @@ static RtStatus build(Run *run, uint32_t i, RtAccel **accel, RtError *error) {
     return RT_OK;
 }
 
-static RtStatus count_other(Run *run, uint32_t i, RtError *error) {
-    RtAccel *accel = NULL;
-    RT_TRY(build(run, i, &accel, error));
-    RtStatus status = rt_frame_trace(&run->built[i].counted, accel, &run->frame_options, error);
-    rt_accel_destroy(accel);
-    return status;
-}
-
-/* Removes accelerator `i`, which ended its build with `status`, if the command goes on without it. The
- * difference of two heatmaps needs both. */
-static bool remove_refused(Run *run, RtStatus status, uint32_t i, const RtError *why) {
-    Options *o = run->options;
-    const uint32_t count = o->heat.difference ? 1 : o->accel_count;
-    if (!rt_cli_goes_on(status, o->accels[i], count, why)) return false;
-    rt_cli_remove(o->accels, &o->accel_count, i);
-    return true;
+/* Whether the command goes on without accelerator `i`, which ended its build with `status`. The difference of
+ * two heatmaps needs both. */
+static bool leave_out(Options *o, RtStatus status, uint32_t i, const RtError *why) {
+    return !o->heat.difference && rt_cli_leave_out(status, o->accels, &o->accel_count, i, why);
 }
 
 static RtStatus trace_frames(Run *run, RtError *error) {
@@ -325,9 +286,15 @@ static RtStatus trace_frames(Run *run, RtError *error) {
     f->progress_context = "tracing";
     const char *paths[MOST_OUTPUTS];
     bool alone = o->structure && list_outputs(o, paths) == 1 && !o->check;
-    if (alone && !needs_frame(o, run->accel)) return RT_OK;
+    if (alone && run->layer->ops->find_cell) return RT_OK; /* cells are drawn without an image */
     run->by_default = alone && run->accel->exact;
-    if (run->by_default) return trace_background(run, f, error);
+    if (run->by_default) { /* the same image bit for bit */
+        RtAccel *quick;
+        RT_TRY(rt_accel_open_on(rt_accel_default(), &run->scene, f->threads, &quick, error));
+        RtStatus status = rt_frame_trace(&run->timed, quick, f, error);
+        rt_accel_destroy(quick);
+        return status;
+    }
     RT_TRY(rt_frame_trace(&run->timed, run->accel, f, error));
     if (!o->stats && !any_heatmap(o)) return RT_OK;
     f->progress_context = "counting";
@@ -335,8 +302,11 @@ static RtStatus trace_frames(Run *run, RtError *error) {
     f->cost_kinds = o->kinds;
     RT_TRY(rt_frame_trace(&run->built[0].counted, run->accel, f, error));
     for (uint32_t i = 1; i < o->accel_count; i++) {
-        const RtStatus status = count_other(run, i, error);
-        if (remove_refused(run, status, i, error))
+        RtAccel *accel = NULL;
+        RtStatus status = build(run, i, &accel, error);
+        if (status == RT_OK) status = rt_frame_trace(&run->built[i].counted, accel, f, error);
+        rt_accel_destroy(accel);
+        if (leave_out(run->options, status, i, error))
             i--;
         else
             RT_TRY(status);
@@ -353,9 +323,11 @@ static RtStatus prepare(Run *run, RtError *error) {
     RT_TRY(rt_scene_open(o->scene, &run->scene, error));
     RT_TRY(rt_scene_sample(&run->scene, o->size[0], o->size[1], o->samples, o->corners, error));
     RtStatus status = build(run, 0, &run->accel, error);
-    while (remove_refused(run, status, 0, error)) status = build(run, 0, &run->accel, error);
+    while (leave_out(run->options, status, 0, error)) status = build(run, 0, &run->accel, error);
     RT_TRY(status);
-    return check_layer(o, run->accel, error);
+    if (!o->structure) return RT_OK;
+    RT_TRY(rt_structure_layer(run->accel, o->layer, &run->layer, error));
+    return check_layer(o, run->layer, error);
 }
 
 /* ---- what is written ---- */
@@ -372,13 +344,12 @@ static RtStatus draw_cells(const Options *o, const RtAccel *accel, const RtAccel
     return rt_buffer_draw(o->structure, layer, o->light, o->pixel.given ? &ray : NULL, error);
 }
 
-static RtStatus draw_structure(const Options *o, const RtAccel *accel, const RtFrame *frame, RtError *error) {
-    const RtAccel *layer;
+static RtStatus draw_structure(const Run *run, RtError *error) {
+    const Options *o = run->options;
     RtStructureOptions boxes = o->boxes;
-    RT_TRY(rt_structure_layer(accel, o->layer, &layer, error));
-    if (layer->ops->find_cell) return draw_cells(o, accel, layer, error);
-    if (o->in_middle) boxes.at = (double)rt_box_center(accel->scene->geometry.box).at[boxes.axis];
-    return rt_structure_draw(o->structure, layer, frame, &boxes, error);
+    if (run->layer->ops->find_cell) return draw_cells(o, run->accel, run->layer, error);
+    if (o->in_middle) boxes.at = (double)rt_box_center(run->scene.geometry.box).at[boxes.axis];
+    return rt_structure_draw(o->structure, run->layer, &run->timed, &boxes, error);
 }
 
 static RtStatus write_heatmaps(const Run *run, RtError *error) {
@@ -392,13 +363,6 @@ static RtStatus write_heatmaps(const Run *run, RtError *error) {
         if (o->heatmaps[i]) RT_TRY(rt_heatmap_draw(o->heatmaps[i], panels, o->accel_count, &heat, error));
     }
     return RT_OK;
-}
-
-static RtStatus write_images(const Run *run, RtError *error) {
-    const Options *o = run->options;
-    if (o->png) RT_TRY(rt_png_write(&run->timed, o->png, error));
-    if (o->structure) RT_TRY(draw_structure(o, run->accel, &run->timed, error));
-    return any_heatmap(o) ? write_heatmaps(run, error) : RT_OK;
 }
 
 static uint64_t total_rays(const RtFrame *frame) {
@@ -448,11 +412,6 @@ static json_t *stats_json(const Run *run) {
         kinds_json(&b->counted), "compared", compared_json(run));
 }
 
-static RtStatus write_stats(const Run *run, RtError *error) {
-    const char *path = run->options->stats;
-    return path ? rt_json_save(path, stats_json(run), error) : RT_OK;
-}
-
 static void print_rays(const Run *run) {
     uint64_t rays = total_rays(&run->timed);
     int threads = rt_thread_count(run->options->threads);
@@ -483,12 +442,6 @@ static void print_counts(const Run *run, const char *spec, const RtFrame *counte
     puts(" a ray.");
 }
 
-static void print_compared(const Run *run) {
-    if (run->options->accel_count == 1) return;
-    for (uint32_t i = 0; i < run->options->accel_count; i++)
-        print_counts(run, run->options->accels[i], &run->built[i].counted);
-}
-
 static void print_summary(const Run *run) {
     const Options *o = run->options;
     const RtSampling *s = &run->scene.sampling;
@@ -508,7 +461,8 @@ static void print_summary(const Run *run) {
     size_t count = list_outputs(o, written);
     for (size_t i = 0; i < count; i++) printf("%s%s", i ? ", " : " Wrote ", written[i]);
     puts(count ? "." : "");
-    print_compared(run);
+    for (uint32_t i = 0; o->accel_count > 1 && i < o->accel_count; i++)
+        print_counts(run, o->accels[i], &run->built[i].counted);
 }
 
 /* ---- the check ---- */
@@ -556,7 +510,6 @@ static RtStatus check_frame(const Run *run, const RtAccel *brute, RtError *error
 }
 
 static RtStatus check_rays(const Run *run, RtError *error) {
-    if (!run->options->check) return RT_OK;
     RtRaySet sets[RT_RAY_KIND_COUNT] = {0};
     RtRecording recording = {.depth = run->options->depth, .threads = run->options->threads};
     RtAccel *brute;
@@ -593,10 +546,12 @@ RtStatus rt_command_render(int argc, char **argv, RtError *error) {
     Run run = {.options = &o};
     RtStatus status = prepare(&run, error);
     if (status == RT_OK) status = trace_frames(&run, error);
-    if (status == RT_OK) status = write_images(&run, error);
-    if (status == RT_OK) status = write_stats(&run, error);
+    if (status == RT_OK && o.png) status = rt_png_write(&run.timed, o.png, error);
+    if (status == RT_OK && o.structure) status = draw_structure(&run, error);
+    if (status == RT_OK && any_heatmap(&o)) status = write_heatmaps(&run, error);
+    if (status == RT_OK && o.stats) status = rt_json_save(o.stats, stats_json(&run), error);
     if (status == RT_OK) print_summary(&run);
-    if (status == RT_OK) status = check_rays(&run, error);
+    if (status == RT_OK && o.check) status = check_rays(&run, error);
     rt_frame_clear(&run.timed);
     for (uint32_t i = 0; i < o.accel_count; i++) rt_frame_clear(&run.built[i].counted);
     rt_accel_destroy(run.accel);

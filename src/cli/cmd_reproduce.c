@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally reproduce: counts a result directory again and compares its exact files byte for byte. */
 #include "cli/cli.h"
-#include "cli/directory.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
 #include "core/base/memory.h"
@@ -43,20 +42,17 @@ static const char *cheapest_scene(const RtResults *results) {
     return best < RT_MAX_WORKLOADS ? results->experiment->workloads[best].label : NULL;
 }
 
-static RtSelection only_scene(const char *scene) {
-    return (RtSelection){.parts[0].scene = scene, .part_count = 1};
-}
-
-static RtStatus count_again(RtResults *results, const char *scene, RtError *error) {
-    RtWorkloadOptions options = {.timing = 1, .count_only = true, .only = only_scene(scene)};
-    RtProgress progress = rt_progress_begin(&options);
-    options.observer = rt_progress_observer(&progress);
+/* Of one scene, or of all. */
+static RtStatus count_again(RtResults *results, const RtSelection *only, RtError *error) {
+    RtWorkloadOptions options = {.timing = 1, .count_only = true, .only = *only};
+    RtProgress progress;
+    rt_progress_begin(&progress, &options);
     RtStatus status = rt_workloads_run(results, &options, error);
     rt_progress_end(&progress);
     return status;
 }
 
-/* With its '\n', if there is one. */
+/* The length of a line with its '\n', if there is one. */
 static size_t line_length(const char *line) {
     size_t length = strcspn(line, "\n");
     return length + (line[length] != '\0');
@@ -64,9 +60,8 @@ static size_t line_length(const char *line) {
 
 /* A note if the line is not followed by another. */
 static const char *end_of_line(const char *line) {
-    return *line == '\0'                       ? "(nothing more)"
-           : line[strcspn(line, "\n")] == '\0' ? " (without an end of line)"
-                                               : "";
+    if (*line == '\0') return "(nothing more)";
+    return strchr(line, '\n') ? "" : " (without an end of line)";
 }
 
 /* What was counted again, and what became of it. */
@@ -116,25 +111,20 @@ static RtStatus compare(Again *again, const char *path, const char *kept, const 
     return RT_OK;
 }
 
-/* Writes the file as it would be now; without rows of refused accelerators if the kept one, of an older
- * version, has no column for them. */
-static RtStatus write_again(const Again *again, RtResultFile file, const char *kept, RtMemoryFile *counted,
-                            RtError *error) {
-    RtResults results = *again->results;
-    const char *column = strstr(kept, ",refused");
-    results.old_rows = !column || column > kept + strcspn(kept, "\n");
-    RT_TRY(rt_memory_file_open(counted, error));
-    rt_result_csv_write(file, &results, counted->file);
-    return rt_memory_file_close(counted, "the counts", error);
-}
-
+/* Writes the file as it would be now, and compares; without rows of refused accelerators if the kept one, of
+ * an older version, has no column for them. */
 static RtStatus compare_file(Again *again, RtResultFile file, RtError *error) {
-    char path[RT_MAX_PATH], *kept = NULL;
+    char path[RT_MAX_PATH], *kept;
     size_t size;
     RtMemoryFile counted = {0};
+    RtResults results = *again->results;
     RT_TRY(rt_path_join(again->directory, rt_result_files[file], path, error));
-    RtStatus status = rt_file_read(path, MOST_CSV_BYTES, &kept, &size, error);
-    if (status == RT_OK) status = write_again(again, file, kept, &counted, error);
+    RT_TRY(rt_file_read(path, MOST_CSV_BYTES, &kept, &size, error));
+    const char *column = strstr(kept, ",refused");
+    results.old_rows = !column || column > kept + strcspn(kept, "\n");
+    RtStatus status = rt_memory_file_open(&counted, error);
+    if (status == RT_OK) rt_result_csv_write(file, &results, counted.file);
+    if (status == RT_OK) status = rt_memory_file_close(&counted, "the counts", error);
     again->compared = 0;
     if (status == RT_OK) status = compare(again, path, kept, counted.data, error);
     if (status == RT_OK && (again->compared > 1 || !again->missing)) /* more than the names of the columns */
@@ -200,10 +190,13 @@ static RtStatus reproduce(const char *directory, RtResults *results, const void 
     RtStatus status = rt_manifest_experiment(directory, true, &original, error);
     memcpy(then, results->workloads, results->experiment->workload_count * sizeof *then);
     rt_results_clear(results);
-    Again again = {.directory = directory, .results = results, .only = only_scene(scene), .scene = scene};
+    Again again = {.directory = directory,
+                   .results = results,
+                   .only = {.parts[0].scene = scene, .part_count = 1},
+                   .scene = scene};
     if (status == RT_OK) status = rt_selection_check(&again.only, &original, error);
     if (status == RT_OK) status = rt_results_init(results, &original, error);
-    if (status == RT_OK) status = count_again(results, scene, error);
+    if (status == RT_OK) status = count_again(results, &again.only, error);
     if (status == RT_OK) status = check_scenes(&again, then, error);
     if (status == RT_OK) status = compare_all(&again, error);
     rt_results_clear(results);
@@ -228,20 +221,18 @@ const RtSyntax rt_reproduce_syntax = {
             "verifications and plain files are skipped. "
             "Start it in the directory in which the experiment was started."};
 
-/* Such as the index of results/, or a verification beside the experiments. */
-static bool is_skipped(const char *path) {
-    return rt_file_exists_in(path, rt_result_files[RT_FILE_VERIFY_CSV]) ||
-           (rt_file_exists(path) && rt_directory_each(path, "", NULL, NULL) == 0);
-}
-
 /* Exit code 2 is worse than 1. */
 static RtStatus reproduce_all(const Options *o, RtError *error) {
     RtStatus worst = RT_OK;
     uint32_t failed = 0;
     for (uint32_t i = 0; i < o->count; i++) {
+        const char *path = o->directories[i];
         RtError why;
-        if (is_skipped(o->directories[i])) continue;
-        RtStatus status = rt_cli_directory_work(o->directories[i], false, reproduce, o, &why);
+        if (rt_file_exists_in(path,
+                              rt_result_files[RT_FILE_VERIFY_CSV]) || /* a verification, or a plain file */
+            (rt_file_exists(path) && rt_directory_each(path, "", NULL, NULL) == 0))
+            continue;
+        RtStatus status = rt_cli_directory_work(path, false, reproduce, o, &why);
         if (status == RT_OK) continue;
         fprintf(stderr, "raytally: %s\n", why.message);
         if (worst == RT_OK || worst == RT_MISMATCH || worst == RT_BROKEN) worst = status;

@@ -5,7 +5,6 @@
 #include "cli/jobs.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
-#include "cli/stop.h"
 #include "core/base/words.h"
 #include "measure/result_files.h"
 #include "report/index.h"
@@ -96,13 +95,6 @@ static const RtOption options[] = {
 
 /* ---- before ---- */
 
-static RtStatus check_part(const RtExperiment *e, const RtSelection *only, RtError *error) {
-    RT_TRY(rt_selection_check(only, e, error));
-    if (only->shards <= e->workload_count) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT, "--shard: %u scene%s: too few for %u shards", e->workload_count,
-                   rt_plural(e->workload_count), only->shards);
-}
-
 /* The line of a cell in --dry-run. */
 static void print_cell(const RtResults *results, const RtCellCursor *at) {
     const RtExperiment *e = results->experiment;
@@ -163,13 +155,13 @@ static void go_on(const Options *o, const RtExperiment *e, char out[MOST_COMMAND
 static RtStatus measure(Options *o, RtResults *results, RtError *error) {
     RtRunOptions *how = &o->how;
     static char command[MOST_COMMAND];
-    RtProgress progress = rt_progress_begin(&how->workload);
+    RtProgress progress;
+    rt_progress_begin(&progress, &how->workload);
     if (o->count > 1)
         snprintf(progress.title, sizeof progress.title, "%s, %" PRIu32 " of %" PRIu32 ": ",
                  results->experiment->name, o->current + 1, o->count);
     go_on(o, results->experiment, command);
     rt_stop_continue(how->directory, command);
-    how->workload.observer = rt_progress_observer(&progress);
     RtStatus status = rt_run_experiment(results, how, error);
     rt_progress_end(&progress);
     if (status != RT_OK) return status;
@@ -197,14 +189,10 @@ static RtStatus load(Options *o, RtExperiment *experiment, RtError *error) {
 /* Where the results of the experiment go. */
 static RtStatus choose_directory(Options *o, const RtExperiment *experiment, RtError *error) {
     const RtSelection *only = &o->how.workload.only;
-    o->how.directory = o->directory;
-    if (o->count > 1 || !o->out) {
-        char name[RT_MAX_WORD + 8];
-        rt_file_name(experiment->name, name, sizeof name);
-        RT_TRY(rt_path_join(folder_of(o), name, o->directory, error));
-    } else {
-        o->how.directory = o->out;
-    }
+    char name[RT_MAX_WORD + 8];
+    o->how.directory = o->count == 1 && o->out ? o->out : o->directory;
+    rt_file_name(experiment->name, name, sizeof name);
+    RT_TRY(rt_path_join(folder_of(o), name, o->directory, error));
     if (only->shards && !o->out)
         rt_append_text(o->directory, sizeof o->directory, "-%u-of-%u", only->shard, only->shards);
     return RT_OK;
@@ -236,7 +224,11 @@ static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
     RtResults results;
     RT_TRY(load(o, experiment, error));
     if (*experiment->warning.message) fprintf(stderr, "raytally: %s\n", experiment->warning.message);
-    RT_TRY(check_part(experiment, &how->workload.only, error));
+    RT_TRY(rt_selection_check(&how->workload.only, experiment, error));
+    if (how->workload.only.shards > experiment->workload_count)
+        return rt_fail(error, RT_BAD_INPUT, "--shard: %u scene%s: too few for %u shards",
+                       experiment->workload_count, rt_plural(experiment->workload_count),
+                       how->workload.only.shards);
     if (how->workload.until > 0 && experiment->rounds < RT_FULL_ROUNDS) experiment->rounds = RT_FULL_ROUNDS;
     if (o->memory) experiment->limit_bytes = o->memory;
     RT_TRY(choose_directory(o, experiment, error));

@@ -5,7 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
-#include "picture/path_picture.h"
+#include "picture/pictures.h"
 #include "render/ray_tree.h"
 #include "scenes/open.h"
 
@@ -115,17 +115,6 @@ static void print_rows(const RtPath *path, const Options *o, const RtGeometry *g
     if (joined + left_out > 0) puts("       --rows 0 prints each");
 }
 
-static void print_counts(const RtTally *t) {
-    bool any = false;
-    printf("\ntotal:");
-    for (size_t i = 2; i < RT_TALLY_COUNTER_COUNT; i++) { /* without rays and hits */
-        if (rt_tally_get(t, i) == 0) continue;
-        printf(" %llu %s,", (unsigned long long)rt_tally_get(t, i), rt_tally_name(i));
-        any = true;
-    }
-    puts(any ? " as in the counted kernel" : " nothing is counted");
-}
-
 static void print_answer(const RtPath *path, const RtGeometry *g) {
     if (path->hit.object == RT_NO_OBJECT) {
         puts(path->any ? "nothing blocks it" : "it hits nothing");
@@ -144,12 +133,19 @@ static void print_answer(const RtPath *path, const RtGeometry *g) {
 }
 
 static void print_path(const RtPath *path, const Options *o, const char *title, const RtGeometry *g) {
+    bool any = false;
     const RtRay *r = &path->ray;
     printf("%s\nfrom (%.6g, %.6g, %.6g) along (%.6g, %.6g, %.6g), t from %.6g to %.6g\n", title,
            (double)r->org.x, (double)r->org.y, (double)r->org.z, (double)r->dir.x, (double)r->dir.y,
            (double)r->dir.z, (double)r->tmin, (double)r->tmax);
     print_rows(path, o, g);
-    print_counts(&path->tally);
+    printf("\ntotal:");
+    for (size_t i = 2; i < RT_TALLY_COUNTER_COUNT; i++) { /* without rays and hits */
+        if (rt_tally_get(&path->tally, i) == 0) continue;
+        printf(" %llu %s,", (unsigned long long)rt_tally_get(&path->tally, i), rt_tally_name(i));
+        any = true;
+    }
+    puts(any ? " as in the counted kernel" : " nothing is counted");
     print_answer(path, g);
 }
 
@@ -205,43 +201,32 @@ static void print_rays(const RtRayTree *tree, const RtTally *costs, const RtScen
     }
 }
 
-/* Whether the light of a ray can have the term: of a hit any, of a shadow ray diffuse and specular. */
-static bool has_term(const RtTreeRay *ray, RtTerm term) {
-    if (ray->ray.kind == RT_RAY_SHADOW) return term == RT_TERM_DIFFUSE || term == RT_TERM_SPECULAR;
-    return ray->surface.material != NULL;
-}
-
-static int term_width(RtTerm term) {
-    const int name = (int)strlen(rt_term_name(term));
-    return name > 6 ? name : 6;
-}
-
-/* A line per channel: the terms, and the light that is their sum. */
-static void print_light_of(const RtTreeRay *ray) {
-    static const char *const channels[] = {"red", "green", "blue"};
-    for (int c = 0; c < 3; c++) {
-        if (c == 0)
-            printf("%5u  %-5s", ray->number, channels[c]);
-        else
-            printf("%5s  %-5s", "", channels[c]);
-        for (int t = 0; t < RT_TERM_COUNT; t++) {
-            if (has_term(ray, (RtTerm)t))
-                printf("  %*.4f", term_width((RtTerm)t), ray->terms[t].at[c]);
-            else
-                printf("  %*s", term_width((RtTerm)t), "-");
-        }
-        printf("  %6.4f\n", ray->light.at[c]);
-    }
-}
-
-/* Of all rays except shadow rays that end at an occluder: those bring no light. */
+/* A line per channel: the terms that a ray can have, of a shadow ray diffuse and specular, and the light that
+ * is their sum. Of all rays except shadow rays that end at an occluder: those bring no light. */
 static void print_light(const RtRayTree *tree, uint32_t rows) {
+    static const char *const channels[] = {"red", "green", "blue"};
+    int width[RT_TERM_COUNT];
     printf("\n%5s  %-5s", "ray", "");
-    for (int t = 0; t < RT_TERM_COUNT; t++) printf("  %*s", term_width((RtTerm)t), rt_term_name((RtTerm)t));
+    for (int t = 0; t < RT_TERM_COUNT; t++) {
+        width[t] = (int)fmax((double)strlen(rt_term_name((RtTerm)t)), 6);
+        printf("  %*s", width[t], rt_term_name((RtTerm)t));
+    }
     printf("  %6s\n", "light");
     for (uint32_t i = 0, left = rows; left > 0; i = rt_ray_tree_next(tree, i), left--) {
         const RtTreeRay *ray = &tree->rays[i];
-        if (ray->ray.kind != RT_RAY_SHADOW || ray->hit.object == RT_NO_OBJECT) print_light_of(ray);
+        const bool shadow = ray->ray.kind == RT_RAY_SHADOW;
+        for (int c = 0; c < 3 && !(shadow && ray->hit.object != RT_NO_OBJECT); c++) {
+            printf("%5.0u  %-5s", c == 0 ? ray->number : 0, channels[c]);
+            for (int t = 0; t < RT_TERM_COUNT; t++) {
+                const bool can =
+                    shadow ? t == RT_TERM_DIFFUSE || t == RT_TERM_SPECULAR : ray->surface.material != NULL;
+                if (can)
+                    printf("  %*.4f", width[t], ray->terms[t].at[c]);
+                else
+                    printf("  %*s", width[t], "-");
+            }
+            printf("  %6.4f\n", ray->light.at[c]);
+        }
     }
 }
 
@@ -293,21 +278,17 @@ static json_t *row_json(const RtPathRow *row) {
     return json;
 }
 
-static json_t *rows_json(const RtPath *path) {
-    json_t *rows = json_array();
-    for (uint32_t i = 0; i < path->count; i++) json_array_append_new(rows, row_json(&path->rows[i]));
-    return rows;
-}
-
 /* `object` is null if none is hit, or if the occluder is unknown; `blocked` is null for nearest-hit rays. */
 static json_t *path_json(const RtPath *path, const Options *o, const char *spec) {
     const RtRay *r = &path->ray;
+    json_t *rows = json_array();
+    for (uint32_t i = 0; i < path->count; i++) json_array_append_new(rows, row_json(&path->rows[i]));
     return json_pack("{s:s, s:s, s:s, s:[i, i], s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
                      o->scene, "accel", o->accel, "spec", spec, "pixel", (int)o->pixel.x, (int)o->pixel.y,
                      "kind", rt_ray_kind_name(o->kind), "org", rt_cli_vector_json(r->org), "dir",
                      rt_cli_vector_json(r->dir), "tmin", rt_json_number((double)r->tmin), "tmax",
-                     rt_json_number((double)r->tmax), "rows", rows_json(path), "counts",
-                     rt_json_tally(&path->tally), "object",
+                     rt_json_number((double)r->tmax), "rows", rows, "counts", rt_json_tally(&path->tally),
+                     "object",
                      path->hit.object >= RT_UNNAMED_OBJECT ? json_null() : json_integer(path->hit.object),
                      "blocked", path->any ? json_boolean(path->hit.object != RT_NO_OBJECT) : json_null(), "t",
                      rt_json_number((double)path->hit.t));
@@ -317,25 +298,20 @@ static json_t *color_json(RtVec3d color) {
     return json_pack("[f, f, f]", color.x, color.y, color.z);
 }
 
-static json_t *terms_json(const RtTreeRay *ray) {
-    json_t *terms = json_object();
-    for (int t = 0; t < RT_TERM_COUNT; t++)
-        json_object_set_new(terms, rt_term_name((RtTerm)t), color_json(ray->terms[t]));
-    return terms;
-}
-
-static json_t *surface_json(const RtSurface *s) {
-    if (!s->material) return json_null();
-    return json_pack("{s:o, s:o, s:b, s:s}", "point", color_json(s->point), "normal", color_json(s->normal),
-                     "from_inside", !s->entering, "material", s->material->name);
-}
-
 /* Without the rays that start at its hit. */
 static json_t *ray_json(const RtTreeRay *ray, const RtTally *cost, const RtScene *scene) {
     char name[RT_TREE_RAY_TEXT];
     const uint32_t object = ray->hit.object;
     const bool named = object < RT_UNNAMED_OBJECT, shadow = ray->ray.kind == RT_RAY_SHADOW;
+    const RtSurface *surface = &ray->surface;
+    json_t *terms = json_object(), *met = json_null();
     rt_tree_ray_name(ray, name);
+    for (int t = 0; t < RT_TERM_COUNT; t++)
+        json_object_set_new(terms, rt_term_name((RtTerm)t), color_json(ray->terms[t]));
+    if (surface->material)
+        met = json_pack("{s:o, s:o, s:b, s:s}", "point", color_json(surface->point), "normal",
+                        color_json(surface->normal), "from_inside", !surface->entering, "material",
+                        surface->material->name);
     return json_pack(
         "{s:i, s:s, s:s, s:o, s:i, s:o, s:o, s:o, s:o, s:s?, s:o, s:o, s:f, s:b, s:b, s:o, s:o, s:o, s:o}",
         "number", (int)ray->number, "ray", name, "kind", rt_ray_kind_name((RtRayKind)ray->ray.kind),
@@ -343,40 +319,24 @@ static json_t *ray_json(const RtTreeRay *ray, const RtTally *cost, const RtScene
         rt_cli_vector_json(ray->ray.org), "dir", rt_cli_vector_json(ray->ray.dir), "t",
         rt_json_number((double)ray->hit.t), "object", named ? json_integer(object) : json_null(), "shape",
         named ? rt_shape_name(rt_ref_shape(scene->geometry.objects[object])) : NULL, "blocked",
-        shadow ? json_boolean(object != RT_NO_OBJECT) : json_null(), "surface", surface_json(&ray->surface),
-        "factor", (double)ray->factor, "total_internal_reflection", ray->total, "cut", ray->cut, "terms",
-        terms_json(ray), "light", color_json(ray->light), "counts", rt_json_tally(cost), "rays",
-        json_array());
+        shadow ? json_boolean(object != RT_NO_OBJECT) : json_null(), "surface", met, "factor",
+        (double)ray->factor, "total_internal_reflection", ray->total, "cut", ray->cut, "terms", terms,
+        "light", color_json(ray->light), "counts", rt_json_tally(cost), "rays", json_array());
 }
 
-/* The primary ray, with the rays that start at its hit as its member "rays", and so on; null for an empty
- * tree. */
-static json_t *rays_of_tree_json(const RtRayTree *tree, const RtTally *costs, const RtScene *scene) {
-    json_t **nodes = rt_alloc(tree->count, sizeof(json_t *)), *root = NULL;
-    if (tree->count == 0 || !nodes) {
-        rt_free(nodes);
-        return nodes ? json_null() : NULL;
-    }
-    bool made = true;
-    for (uint32_t i = 0; made && i < tree->count; i++) { /* parents come first */
+/* `nodes` has room for the rays. "tree" is the primary ray, with the rays that start at its hit as its member
+ * "rays", and so on; null for an empty tree. */
+static json_t *tree_json(const RtRayTree *tree, const RtTally *costs, json_t **nodes, const RtScene *scene,
+                         const Options *o, const char *spec) {
+    for (uint32_t i = 0; i < tree->count; i++) { /* parents come first */
         const uint32_t parent = tree->rays[i].parent;
         nodes[i] = ray_json(&tree->rays[i], &costs[i], scene);
-        if (parent == RT_NO_RAY) root = nodes[i];
-        made = nodes[i] && (parent == RT_NO_RAY ||
-                            json_array_append_new(json_object_get(nodes[parent], "rays"), nodes[i]) == 0);
+        if (parent != RT_NO_RAY) json_array_append_new(json_object_get(nodes[parent], "rays"), nodes[i]);
     }
-    rt_free(nodes);
-    if (made) return root;
-    json_decref(root);
-    return NULL;
-}
-
-static json_t *tree_json(const RtRayTree *tree, const RtTally *costs, const RtScene *scene, const Options *o,
-                         const char *spec) {
     return json_pack("{s:s, s:s, s:s, s:[i, i], s:i, s:i, s:o, s:o}", "scene", o->scene, "accel", o->accel,
                      "spec", spec, "pixel", (int)o->pixel.x, (int)o->pixel.y, "depth", (int)tree->depth,
                      "levels", (int)tree->levels, "color", rt_cli_vector_json(tree->color), "tree",
-                     rays_of_tree_json(tree, costs, scene));
+                     tree->count > 0 ? nodes[0] : json_null());
 }
 
 /* ---- the command ---- */
@@ -387,25 +347,14 @@ static void make_title(const Options *o, const RtScene *scene, const char *what,
              what, o->pixel.x, o->pixel.y, scene->sampling.width, scene->sampling.height);
 }
 
-/* The counts of each ray of the tree, traced on its own. */
-static RtStatus count_rays(const RtRayTree *tree, RtAccel *accel, RtTally *costs, RtError *error) {
-    for (uint32_t i = 0; i < tree->count; i++) {
-        RtPath path;
-        RT_TRY(rt_path_trace(&path, accel, &tree->rays[i].ray, error));
-        costs[i] = path.tally;
-        rt_path_clear(&path);
-    }
-    return RT_OK;
-}
-
 static RtStatus show_tree(const Options *o, const RtScene *scene, const RtRayTree *tree, const RtTally *costs,
-                          const char *spec, RtError *error) {
+                          json_t **nodes, const char *spec, RtError *error) {
     char title[512], what[64];
     snprintf(what, sizeof what, "ray tree, %u level%s,", o->depth, rt_plural(o->depth));
     make_title(o, scene, what, title, sizeof title);
     if (o->svg) RT_TRY(rt_ray_tree_draw(tree, scene, title, o->svg, error));
     if (o->json) {
-        rt_cli_print_json(tree_json(tree, costs, scene, o, spec));
+        rt_cli_print_json(tree_json(tree, costs, nodes, scene, o, spec));
         return RT_OK;
     }
     printf("%s\n%s\n", spec, title);
@@ -414,16 +363,23 @@ static RtStatus show_tree(const Options *o, const RtScene *scene, const RtRayTre
     return RT_OK;
 }
 
+/* The counts of each ray of the tree are those of the ray traced on its own. */
 static RtStatus trace_tree(const Options *o, const RtScene *scene, RtAccel *accel, const char *spec,
                            RtError *error) {
     RtRayTree tree;
-    RT_TRY(rt_ray_tree_trace(&tree, accel, (RtSample){o->pixel.x, o->pixel.y}, o->depth, error));
-    RtTally *costs = rt_alloc(tree.count, sizeof(RtTally));
-    RtStatus status =
-        costs ? RT_OK : rt_fail_memory(error, "the counts of rays", tree.count * sizeof(RtTally));
-    if (status == RT_OK) status = count_rays(&tree, accel, costs, error);
-    if (status == RT_OK) status = show_tree(o, scene, &tree, costs, spec, error);
-    rt_free(costs);
+    RT_ARENA(arena);
+    RT_TRY(rt_ray_trees_trace(&tree, accel, &(RtSample){o->pixel.x, o->pixel.y}, 1, o->depth, error));
+    RtTally *costs = rt_arena_alloc(&arena, tree.count, sizeof(RtTally));
+    json_t **nodes = rt_arena_alloc(&arena, tree.count, sizeof *nodes);
+    RtStatus status = rt_arena_check(&arena, "the counts of rays", error);
+    for (uint32_t i = 0; i < tree.count && status == RT_OK; i++) {
+        RtPath path;
+        status = rt_path_trace(&path, accel, &tree.rays[i].ray, error);
+        if (status != RT_OK) break;
+        costs[i] = path.tally;
+        rt_path_clear(&path);
+    }
+    if (status == RT_OK) status = show_tree(o, scene, &tree, costs, nodes, spec, error);
     rt_ray_tree_clear(&tree);
     return status;
 }

@@ -2,9 +2,9 @@
 /* raytally verify: does every accelerator answer every ray like brute? With --replay: is an answer still
  * wrong? The command line of verify/verify.h and verify/replay.h. */
 #include "cli/cli.h"
+#include "cli/jobs.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
-#include "cli/stop.h"
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
@@ -27,24 +27,17 @@ enum { MANY_RAYS = 20000, QUICK_RAYS = 2000, QUICK_OBJECTS = 100 };
 
 enum { MOST_SCENES = 256, MOST_SPECS = 512 };
 
-/* The scenes and accelerators that are verified, given or by default. */
-typedef struct Choice {
-    const char *scenes[MOST_SCENES]; /* given, or in `families` */
-    uint32_t scene_count;
-    uint32_t scenes_left_out; /* of the default scenes */
-    RtVerifySpec specs[MOST_SPECS];
-    uint32_t spec_count;
-    char families[MOST_SCENES][RT_MAX_SPEC_CHARS];
-} Choice;
-
 typedef struct Options {
-    const char *scenes[MOST_SCENES], *accels[MOST_SPECS]; /* as given */
-    uint32_t scene_count, accel_count;
+    const char *given[MOST_SCENES], *accels[MOST_SPECS]; /* as given */
+    uint32_t given_count, accel_count;
     bool spread, quick, json;
     RtVerify work; /* work.rays.count 0: the default */
     const char *replay, *rays_from;
-    RtRaySet given; /* those of rays_from */
-    Choice choice;
+    RtRaySet given_rays;             /* those of rays_from */
+    const char *scenes[MOST_SCENES]; /* of `work`: given, or by default; some are in `families` */
+    RtVerifySpec specs[MOST_SPECS];  /* of `work` */
+    char families[MOST_SCENES][RT_MAX_SPEC_CHARS];
+    uint32_t left_out;   /* default scenes that --quick leaves out */
     char go_on[1 << 16]; /* the command that continues */
 } Options;
 
@@ -57,11 +50,11 @@ static void take_shrink(void *options, const char *text, struct argp_state *stat
 
 static void finish(void *options, struct argp_state *state) {
     const Options *o = options;
-    if (o->replay && (o->scene_count > 0 || o->accel_count > 0 || o->work.folder || o->json))
+    if (o->replay && (o->given_count > 0 || o->accel_count > 0 || o->work.folder || o->json))
         argp_error(
             state,
             "--replay traces the ray in FILE and prints text: it takes no SCENE, --accel, --out or --json");
-    if (o->rays_from && (o->quick || o->work.rays.count > 0 || o->replay || o->scene_count == 0))
+    if (o->rays_from && (o->quick || o->work.rays.count > 0 || o->replay || o->given_count == 0))
         argp_error(state, "--rays-from replaces the rays of one SCENE: name the SCENE, and leave out --rays, "
                           "--quick and --replay");
     if (o->work.start != RT_START_FRESH && !o->work.folder)
@@ -121,144 +114,124 @@ static const char *const default_scenes[] = {"balls:size=2",
 
 /* ---- the scenes ---- */
 
-static RtStatus add_scene(Choice *choice, const char *spec, RtError *error) {
-    if (choice->scene_count == MOST_SCENES) {
+static RtStatus add_scene(Options *o, const char *spec, RtError *error) {
+    if (o->work.scene_count == MOST_SCENES)
         return rt_fail(error, RT_BAD_INPUT, "more than %d scenes: verify fewer at a time", MOST_SCENES);
-    }
-    choice->scenes[choice->scene_count++] = spec;
+    o->scenes[o->work.scene_count++] = spec;
     return RT_OK;
 }
 
-static RtStatus add_families(Choice *choice, uint64_t seed, RtError *error) {
+static RtStatus add_families(Options *o, RtError *error) {
     for (size_t i = 0; i < rt_family_count() && i < MOST_SCENES; i++) {
-        rt_family_spec(i, seed, choice->families[i]);
-        RT_TRY(add_scene(choice, choice->families[i], error));
+        rt_family_spec(i, o->work.rays.seed, o->families[i]);
+        RT_TRY(add_scene(o, o->families[i], error));
     }
     return RT_OK;
 }
 
-static RtStatus add_default(Choice *choice, uint64_t seed, RtError *error) {
-    for (size_t i = 0; i < sizeof default_scenes / sizeof default_scenes[0]; i++) {
-        RT_TRY(add_scene(choice, default_scenes[i], error));
-    }
-    return add_families(choice, seed, error);
+static RtStatus add_default(Options *o, RtError *error) {
+    for (size_t i = 0; i < sizeof default_scenes / sizeof default_scenes[0]; i++)
+        RT_TRY(add_scene(o, default_scenes[i], error));
+    return add_families(o, error);
 }
 
 /* The default scenes that have no other shapes. */
-static RtStatus add_triangles(Choice *choice, uint64_t seed, RtError *error) {
-    uint32_t kept = choice->scene_count;
-    RT_TRY(add_default(choice, seed, error));
-    for (uint32_t i = kept; i < choice->scene_count; i++) {
+static RtStatus add_triangles(Options *o, RtError *error) {
+    uint32_t kept = o->work.scene_count;
+    RT_TRY(add_default(o, error));
+    for (uint32_t i = kept; i < o->work.scene_count; i++) {
         RtScene scene;
-        RT_TRY(rt_scene_open(choice->scenes[i], &scene, error));
-        const RtGeometry *g = &scene.geometry;
-        if (g->triangle_count == g->object_count) choice->scenes[kept++] = choice->scenes[i];
+        RT_TRY(rt_scene_open(o->scenes[i], &scene, error));
+        if (scene.geometry.triangle_count == scene.geometry.object_count) o->scenes[kept++] = o->scenes[i];
         rt_scene_clear(&scene);
     }
-    choice->scene_count = kept;
+    o->work.scene_count = kept;
     return RT_OK;
 }
 
-/* Sorts built-in scenes by number of objects; with `quick` drops the large ones. */
-static RtStatus sort_scenes(Choice *choice, bool quick, RtError *error) {
+/* Sorts built-in scenes by number of objects; with --quick drops the large ones. */
+static RtStatus sort_scenes(Options *o, RtError *error) {
     uint64_t objects[MOST_SCENES];
     uint32_t kept = 0;
-    for (uint32_t i = 0; i < choice->scene_count; i++) {
-        const char *scene = choice->scenes[i];
+    for (uint32_t i = 0; i < o->work.scene_count; i++) {
+        const char *scene = o->scenes[i];
         uint64_t count;
         RT_TRY(rt_builtin_objects(scene, &count, error));
-        if (quick && count > QUICK_OBJECTS) continue;
+        if (o->quick && count > QUICK_OBJECTS) continue;
         uint32_t place = kept++;
         for (; place > 0 && objects[place - 1] > count; place--) {
             objects[place] = objects[place - 1];
-            choice->scenes[place] = choice->scenes[place - 1];
+            o->scenes[place] = o->scenes[place - 1];
         }
         objects[place] = count;
-        choice->scenes[place] = scene;
+        o->scenes[place] = scene;
     }
-    choice->scenes_left_out = choice->scene_count - kept;
-    choice->scene_count = kept;
+    o->left_out = o->work.scene_count - kept;
+    o->work.scene_count = kept;
     return RT_OK;
 }
 
 /* Those given; without any the default, by number of objects. */
-static RtStatus choose_scenes(Choice *choice, const char *const *given, uint32_t count, uint64_t seed,
-                              bool quick, RtError *error) {
-    for (uint32_t i = 0; i < count; i++) {
-        if (strcmp(given[i], "families") == 0)
-            RT_TRY(add_families(choice, seed, error));
-        else if (strcmp(given[i], "triangles") == 0)
-            RT_TRY(add_triangles(choice, seed, error));
-        else
-            RT_TRY(add_scene(choice, given[i], error));
+static RtStatus choose_scenes(Options *o, RtError *error) {
+    for (uint32_t i = 0; i < o->given_count; i++) {
+        const char *given = o->given[i];
+        RT_TRY(strcmp(given, "families") == 0    ? add_families(o, error)
+               : strcmp(given, "triangles") == 0 ? add_triangles(o, error)
+                                                 : add_scene(o, given, error));
     }
-    if (count > 0) return RT_OK;
-    RT_TRY(add_default(choice, seed, error));
-    return sort_scenes(choice, quick, error);
+    if (o->given_count > 0) return RT_OK;
+    RT_TRY(add_default(o, error));
+    return sort_scenes(o, error);
 }
 
 /* ---- the accelerators ---- */
 
-static RtStatus add_spec(Choice *choice, const char *spec, bool named, bool judged, RtError *error) {
-    if (choice->spec_count == MOST_SPECS) {
+static RtStatus add_spec(Options *o, const char *spec, bool named, bool judged, RtError *error) {
+    if (o->work.spec_count == MOST_SPECS)
         return rt_fail(error, RT_BAD_INPUT, "more than %d accelerators: verify fewer at a time", MOST_SPECS);
-    }
-    RtVerifySpec *c = &choice->specs[choice->spec_count++];
-    *c = (RtVerifySpec){.named = named, .judged = judged};
-    snprintf(c->spec, sizeof c->spec, "%s", spec);
+    RtVerifySpec *added = &o->specs[o->work.spec_count++];
+    *added = (RtVerifySpec){.named = named, .judged = judged};
+    snprintf(added->spec, sizeof added->spec, "%s", spec);
     return RT_OK;
 }
 
 /* Adds its defaults and its trial, the first two of its spread, unless !`own` (it was named, and these are
- * there); with `spread` the rest. */
-static RtStatus add_registered(Choice *choice, const RtAccelOps *ops, bool own, bool spread, RtError *error) {
+ * there); with --spread the rest. */
+static RtStatus add_registered(Options *o, const RtAccelOps *ops, bool own, RtError *error) {
     char spec[RT_MAX_SPEC_CHARS];
     size_t whole = ops->trial ? 2 : 1;
-    for (size_t n = own ? 0 : whole; (n < whole || spread) && rt_spread_spec(ops, n, spec); n++) {
-        RT_TRY(add_spec(choice, spec, false, !own, error));
-    }
+    for (size_t n = own ? 0 : whole; (n < whole || o->spread) && rt_spread_spec(ops, n, spec); n++)
+        RT_TRY(add_spec(o, spec, false, !own, error));
     return RT_OK;
 }
 
-static RtStatus add_named(Choice *choice, const char *text, bool spread, RtError *error) {
+/* Also as its trial (rt_trial_spec). */
+static RtStatus add_named(Options *o, const char *text, RtError *error) {
     RtSpec spec;
     char trial[RT_MAX_SPEC_CHARS];
     RT_TRY(rt_spec_parse(text, &spec, error));
-    RT_TRY(add_spec(choice, text, true, true, error));
-    if (rt_trial_spec(text, trial)) RT_TRY(add_spec(choice, trial, true, true, error));
-    return add_registered(choice, spec.layers[0].ops, false, spread, error);
-}
-
-/* Each also as its trial (rt_trial_spec). */
-static RtStatus choose_specs(Choice *choice, const char *const *given, uint32_t count, bool spread,
-                             RtError *error) {
-    for (uint32_t i = 0; i < count; i++) {
-        if (strcmp(given[i], "all") != 0) {
-            RT_TRY(add_named(choice, given[i], spread, error));
-            continue;
-        }
-        for (size_t k = 0; k < rt_accel_count(); k++) {
-            RT_TRY(add_registered(choice, rt_accel_at(k), true, spread, error));
-        }
-    }
-    return RT_OK;
+    RT_TRY(add_spec(o, text, true, true, error));
+    if (rt_trial_spec(text, trial)) RT_TRY(add_spec(o, trial, true, true, error));
+    return add_registered(o, spec.layers[0].ops, false, error);
 }
 
 static RtStatus choose(Options *o, RtError *error) {
-    Choice *choice = &o->choice;
     RtVerifyRays *rays = &o->work.rays;
     if (o->accel_count == 0) o->accels[o->accel_count++] = "all";
     if (rays->count == 0) rays->count = o->quick ? QUICK_RAYS : MANY_RAYS;
-    RT_TRY(choose_scenes(choice, o->scenes, o->scene_count, rays->seed, o->quick, error));
-    RT_TRY(choose_specs(choice, o->accels, o->accel_count, o->spread, error));
-    o->work.scenes = choice->scenes;
-    o->work.scene_count = choice->scene_count;
-    o->work.specs = choice->specs;
-    o->work.spec_count = choice->spec_count;
+    o->work.scenes = o->scenes;
+    o->work.specs = o->specs;
+    RT_TRY(choose_scenes(o, error));
+    for (uint32_t i = 0; i < o->accel_count; i++) {
+        const bool all = strcmp(o->accels[i], "all") == 0;
+        if (!all) RT_TRY(add_named(o, o->accels[i], error));
+        for (size_t k = 0; all && k < rt_accel_count(); k++)
+            RT_TRY(add_registered(o, rt_accel_at(k), true, error));
+    }
     if (!o->rays_from) return RT_OK;
-    RT_TRY(rt_rays_load(o->rays_from, RT_RAY_RANDOM, &o->given, error));
-    rays->given = &o->given;
-    rays->count = o->given.count;
+    RT_TRY(rt_rays_load(o->rays_from, RT_RAY_RANDOM, &o->given_rays, error));
+    rays->given = &o->given_rays;
+    rays->count = o->given_rays.count;
     return RT_OK;
 }
 
@@ -274,13 +247,13 @@ typedef struct Show {
 /* Redrawn at most ten times a second. From the first call on, --out has the journal. */
 static void on_doing(void *context, const RtVerifyProgress *p) {
     Show *show = context;
-    const Choice *choice = &show->options->choice;
+    const RtVerify *work = &show->options->work;
     double now = rt_wall_seconds(), passed = now - show->start;
-    if (show->options->work.folder) rt_stop_continue(show->options->work.folder, show->options->go_on);
+    if (work->folder) rt_stop_continue(work->folder, show->options->go_on);
     if (!isatty(STDERR_FILENO) || now - show->drawn < 0.1) return;
     show->drawn = now;
-    fprintf(stderr, "\r\033[Kverify: scene %u of %u, %s: %s", p->scene + 1, choice->scene_count,
-            choice->scenes[p->scene], p->what);
+    fprintf(stderr, "\r\033[Kverify: scene %u of %u, %s: %s", p->scene + 1, work->scene_count,
+            work->scenes[p->scene], p->what);
     if (p->done > 0 && passed > 0) {
         double rate = (double)p->done / passed, left = (double)(p->all - p->done) / rate;
         fprintf(stderr, ", %.3g Mrays/s, about %.0f %s left", 1e-6 * rate, left < 120 ? left : left / 60,
@@ -296,11 +269,11 @@ static void widen(int *width, const char *text) {
 static const RtTable columns = {.groups = rt_verify_text, .group_count = RT_VERIFY_TEXT_GROUPS};
 
 static void print_header(Show *show) {
-    const Choice *choice = &show->options->choice;
+    const RtVerify *work = &show->options->work;
     if (show->widths[0]) return;
     rt_table_widths(&columns, show->widths);
-    for (uint32_t i = 0; i < choice->scene_count; i++) widen(&show->widths[0], choice->scenes[i]);
-    for (uint32_t i = 0; i < choice->spec_count; i++) widen(&show->widths[1], choice->specs[i].spec);
+    for (uint32_t i = 0; i < work->scene_count; i++) widen(&show->widths[0], work->scenes[i]);
+    for (uint32_t i = 0; i < work->spec_count; i++) widen(&show->widths[1], work->specs[i].spec);
     for (int i = 2; i < RT_MAX_TABLE_COLUMNS; i++) widen(&show->widths[i], "20000000"); /* the most rays */
     rt_table_line(&columns, show->widths, NULL, stdout);
 }
@@ -403,8 +376,8 @@ static void print_wrong(const RtVerifySum *sums, uint32_t count, bool exact) {
 
 static void print_total(const Options *o, const json_t *rows, const RtVerifySum *sums, uint32_t count) {
     RtVerifySum total = rt_verify_total(rows);
-    print_count(o->choice.scene_count, "scene");
-    print_count(o->choice.spec_count, "accelerator");
+    print_count(o->work.scene_count, "scene");
+    print_count(o->work.spec_count, "accelerator");
     print_count(o->work.rays.count, "ray");
     printf("%" PRIu64 " comparison%s: ", total.pairs, rt_plural(total.pairs));
     const uint64_t exact = total.pairs - total.judged;
@@ -419,12 +392,9 @@ static void print_total(const Options *o, const json_t *rows, const RtVerifySum 
 }
 
 static void print_left_out(const Options *o) {
-    if (!o->quick) return;
     printf("--quick used %" PRIu64 " ray%s per scene instead of %d", o->work.rays.count,
            rt_plural(o->work.rays.count), MANY_RAYS);
-    if (o->choice.scenes_left_out > 0)
-        printf(", and left out %u larger scene%s", o->choice.scenes_left_out,
-               rt_plural(o->choice.scenes_left_out));
+    if (o->left_out > 0) printf(", and left out %u larger scene%s", o->left_out, rt_plural(o->left_out));
     puts(". Omit it for the full check.");
 }
 
@@ -435,7 +405,7 @@ static RtStatus print_totals(const Options *o, const json_t *rows, RtError *erro
     for (uint32_t i = 0; i < count; i++) print_judged(&sums[i]);
     if (status == RT_OK) {
         print_total(o, rows, sums, count);
-        print_left_out(o);
+        if (o->quick) print_left_out(o);
     }
     rt_free(sums);
     return status;
@@ -512,7 +482,7 @@ const RtSyntax rt_verify_syntax = {
     .options = options,
     .plugins = true,
     .arguments = "[SCENE...]\n--replay FILE",
-    .argument = {.name = "SCENE", .value = RT_TO_LIST(scenes, scene_count)},
+    .argument = {.name = "SCENE", .value = RT_TO_LIST(given, given_count)},
     .finish = finish,
     .help =
         "Verify that each accelerator hits the same object as brute, with the same bits of t, for every "
@@ -541,7 +511,7 @@ RtStatus rt_command_verify(int argc, char **argv, RtError *error) {
     bool failed = false;
     RtStatus status = o.replay ? replay(&o, &failed, error) : choose(&o, error);
     if (status == RT_OK && !o.replay) status = verify(&o, &failed, error);
-    rt_rayset_clear(&o.given);
+    rt_rayset_clear(&o.given_rays);
     if (status != RT_OK || !failed) return status;
     *error = (RtError){RT_MISMATCH, ""};
     return RT_MISMATCH;

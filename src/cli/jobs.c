@@ -3,24 +3,100 @@
 
 #include "cli/cli.h"
 #include "cli/progress.h"
-#include "cli/stop.h"
 #include "core/base/clock.h"
+#include "core/base/file.h"
+#include "core/base/process.h"
 #include "core/base/words.h"
 
 #include <errno.h>
 #include <inttypes.h>
-#include <signal.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+/* ---- what ends a command early ---- */
+
+static pid_t owner; /* of the files and processes: plugins run in forks that have the same handlers */
+static char time_is_over[64] = "stopped by an alarm";
+static const char *volatile keeps, *volatile go_on; /* NULL: nothing is kept, or continues */
+
+/* The exit code after a signal: after SIGALRM that of too little time. */
+static int code_of(int number) {
+    return number == SIGALRM ? RT_EXIT_BAD_INPUT : 128 + number;
+}
+
+void rt_stop_continue(const char *folder, const char *command) {
+    keeps = folder;
+    go_on = command;
+}
+
+static void say(const char *text) {
+    if (write(STDERR_FILENO, text, strlen(text)) < 0) return;
+}
+
+/* "interrupted", or "stopped after 60 s (--time)", and what rt_stop_continue has set. In a handler, too. */
+static void say_stopped(int number) {
+    say(isatty(STDERR_FILENO) == 1 ? "\r\033[Kraytally: " : "raytally: ");
+    say(number == SIGALRM ? time_is_over : "interrupted");
+    if (keeps) say("; what is finished is kept in ");
+    if (keeps) say(keeps);
+    if (go_on) say(". To continue:\n  ");
+    if (go_on) say(go_on);
+    say("\n");
+}
+
+static void stop(int number) {
+    const bool own = getpid() == owner, tells = go_on && number != SIGABRT;
+    if (own && (tells || number == SIGALRM)) say_stopped(number);
+    if (own) {
+        rt_outputs_remove_open();
+        rt_processes_kill();
+    }
+    if ((own && tells) || number == SIGALRM) _exit(code_of(number));
+    raise(number); /* which ends the process once the handler returns */
+}
+
+static bool is_ignored(int number) {
+    struct sigaction action;
+    return sigaction(number, NULL, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+void rt_stop_init(void) {
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGALRM, SIGABRT};
+    owner = getpid();
+    rt_stop_continue(NULL, NULL);
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+        struct sigaction action = {.sa_handler = stop, .sa_flags = (int)SA_RESETHAND};
+        sigemptyset(&action.sa_mask);
+        if (!is_ignored(numbers[i])) sigaction(numbers[i], &action, NULL);
+    }
+}
+
+/* The signals that a command with several jobs takes itself, unless they are ignored. */
+static sigset_t signals_of_jobs(void) {
+    static const int numbers[] = {SIGINT, SIGTERM, SIGALRM};
+    sigset_t signals;
+    sigemptyset(&signals);
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
+        if (!is_ignored(numbers[i])) sigaddset(&signals, numbers[i]);
+    return signals;
+}
+
+void rt_stop_after(unsigned seconds) {
+    snprintf(time_is_over, sizeof time_is_over, "stopped after %u s (--time)", seconds);
+    alarm(seconds);
+}
+
+/* ---- several jobs ---- */
 
 static volatile sig_atomic_t last_signal; /* 0: none */
 static volatile pid_t running;            /* the fork; 0: none, as between two jobs and after the last */
 
 /* Also in a handler of signals. */
 _Noreturn static void leave(int number, bool told) {
-    if (!told) rt_stop_say(number);
-    _exit(rt_stop_code(number));
+    if (!told) say_stopped(number);
+    _exit(code_of(number));
 }
 
 static void pass_on(int number) {
@@ -29,15 +105,9 @@ static void pass_on(int number) {
     kill(running, number);
 }
 
-static void handle(const sigset_t *signals) {
-    const struct sigaction action = {.sa_handler = pass_on, .sa_mask = *signals};
-    for (int number = 1; number < _NSIG; number++)
-        if (sigismember(signals, number) == 1) sigaction(number, &action, NULL);
-}
-
 /* With these signals blocked, so that each goes to the fork, which stops as the command for one job does. */
 static RtStatus start(RtJob *job, RtError *error) {
-    const sigset_t signals = rt_stop_signals();
+    const sigset_t signals = signals_of_jobs();
     sigset_t before;
     fflush(NULL); /* or the fork would write it again */
     sigprocmask(SIG_BLOCK, &signals, &before);
@@ -45,18 +115,18 @@ static RtStatus start(RtJob *job, RtError *error) {
     const int why = errno;
     job->here = child == 0;
     running = child > 0 ? child : 0;
-    if (job->here)
-        rt_stop_init();
-    else
-        handle(&signals);
+    const struct sigaction action = {.sa_handler = pass_on, .sa_mask = signals};
+    if (job->here) rt_stop_init();
+    for (int number = 1; number < _NSIG && !job->here; number++)
+        if (sigismember(&signals, number) == 1) sigaction(number, &action, NULL);
     sigprocmask(SIG_SETMASK, &before, NULL);
     return child >= 0 ? RT_OK : rt_fail(error, RT_IO, "a process for %s: %s", job->name, strerror(why));
 }
 
-RtStatus rt_job_run(RtJob *job, const char *go_on, RtError *error) {
+RtStatus rt_job_run(RtJob *job, const char *command, RtError *error) {
     const double began = rt_wall_seconds();
     int how = 0;
-    rt_stop_continue(NULL, go_on);
+    rt_stop_continue(NULL, command);
     RT_TRY(start(job, error));
     if (job->here) return RT_OK;
     pid_t ended;
@@ -69,7 +139,7 @@ RtStatus rt_job_run(RtJob *job, const char *go_on, RtError *error) {
     job->code = job->signal ? RT_EXIT_BAD_INPUT : WEXITSTATUS(how);
     if (!last_signal) return RT_OK;
     fflush(NULL);
-    leave(last_signal, job->code == rt_stop_code(last_signal));
+    leave(last_signal, job->code == code_of(last_signal));
 }
 
 void rt_jobs_print(const RtJob *jobs, uint32_t count, FILE *out) {

@@ -3,8 +3,8 @@
 #include "accel/isa.h"
 #include "accel/remote.h"
 #include "cli/cli.h"
+#include "cli/jobs.h"
 #include "cli/plugins.h"
-#include "cli/stop.h"
 #include "core/base/memory.h"
 #include "core/base/versions.h"
 #include "core/base/words.h"
@@ -57,20 +57,17 @@ static void print_version(void) {
     json_decref(machine);
 }
 
-static int run_unknown(const char *name) {
+/* NULL, and a message, if there is none. */
+static const RtCommand *find_command(const char *name) {
     const char *names[COMMAND_COUNT];
-    for (int i = 0; i < COMMAND_COUNT; i++) names[i] = commands[i].name;
+    for (int i = 0; i < COMMAND_COUNT; i++) {
+        names[i] = commands[i].name;
+        if (strcmp(names[i], name) == 0) return &commands[i];
+    }
     char suggestion[RT_MAX_SUGGESTION];
     rt_suggest(name, names, COMMAND_COUNT, suggestion);
     fprintf(stderr, "raytally: there is no command '%s'%s\n`raytally --help` lists the commands.\n", name,
             suggestion);
-    return RT_EXIT_BAD_INPUT;
-}
-
-static const RtCommand *find_command(const char *name) {
-    for (int i = 0; i < COMMAND_COUNT; i++) {
-        if (strcmp(commands[i].name, name) == 0) return &commands[i];
-    }
     return NULL;
 }
 
@@ -84,7 +81,7 @@ static int fail(const RtError *error) {
 /* argv[0] is the command's name. */
 static int run_command(int argc, char **argv) {
     const RtCommand *command = find_command(argv[0]);
-    if (!command) return run_unknown(argv[0]);
+    if (!command) return RT_EXIT_BAD_INPUT;
     char title[64];
     snprintf(title, sizeof title, "raytally %s", command->name);
     argv[0] = title;

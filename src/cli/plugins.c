@@ -3,7 +3,6 @@
 
 #include "accel/plugin.h"
 #include "core/base/file.h"
-#include "core/base/memory.h"
 #include "core/base/words.h"
 #include "experiment/plugins_used.h"
 #include "results/manifest.h"
@@ -44,14 +43,10 @@ const struct argp rt_plugin_argp = {.options = options, .parser = parse_option};
 /* ---- the variable: files and folders joined by ':'; within a name '\:', and '\\' may be written, too ----
  */
 
-typedef struct Folder {
-    RtStatus status;
-    RtError *error;
-} Folder;
-
+/* After the first error nothing more is loaded. */
 static void load_from(void *context, const char *path) {
-    Folder *folder = context;
-    if (folder->status == RT_OK) folder->status = rt_plugin_load(path, folder->error);
+    RtError *error = context;
+    if (error->status == RT_OK) rt_plugin_load(path, error);
 }
 
 /* Copies the first name of a list to path[0..size). Returns the rest of the list, or NULL if the name is too
@@ -74,43 +69,19 @@ static RtStatus load_list(const char *list, RtError *error) {
     while (*list) {
         list = take_path(list, path, sizeof path);
         if (!list) return rt_fail(error, RT_BAD_INPUT, "the path of a plugin is too long");
-        Folder folder = {RT_OK, error};
+        error->status = RT_OK;
         if (*path && stat(path, &about) == 0 && S_ISDIR(about.st_mode)) {
-            if (rt_directory_each(path, ".so", load_from, &folder) == 0) /* of sources, perhaps */
+            if (rt_directory_each(path, ".so", load_from, error) == 0) /* of sources, perhaps */
                 fprintf(stderr,
                         "raytally: $" VARIABLE
                         ": there is no *.so in %s: name the folder that the plugin was "
                         "built in, as in %s/build\n",
                         path, path);
-            RT_TRY(folder.status);
+            RT_TRY(error->status);
         } else if (*path) {
             RT_TRY(rt_plugin_load(path, error));
         }
     }
-    return RT_OK;
-}
-
-/* Escaped; returns the end of the copy. */
-static char *write_name(const char *path, char *out) {
-    for (; *path; path++) {
-        if (*path == ':' || *path == '\\') *out++ = '\\';
-        *out++ = *path;
-    }
-    return out;
-}
-
-/* Replaces the variable: its names may be relative, these are absolute. */
-static RtStatus tell_children(RtError *error) {
-    size_t count = rt_plugin_count(), size = 0;
-    for (size_t i = 0; i < count; i++) size += 2 * strlen(rt_plugin_at(i)->path) + 1;
-    char *list = rt_alloc(size, 1), *end = list;
-    if (!list) return rt_fail_memory(error, "names of plugins", size);
-    for (size_t i = 0; i < count; i++) {
-        end = write_name(rt_plugin_at(i)->path, end);
-        *end++ = i + 1 < count ? ':' : '\0';
-    }
-    setenv(VARIABLE, list, 1);
-    rt_free(list);
     return RT_OK;
 }
 
@@ -126,7 +97,7 @@ RtStatus rt_cli_load_plugins(int argc, char *const *argv, RtError *error) {
         if (argv[i][length] == '=') RT_TRY(rt_plugin_load(argv[i] + length + 1, error));
         if (argv[i][length] == '\0' && i + 1 < argc) RT_TRY(rt_plugin_load(argv[++i], error));
     }
-    return rt_plugin_count() > 0 ? tell_children(error) : RT_OK;
+    return RT_OK;
 }
 
 void rt_cli_plugin_arguments(char *out, size_t size) {
@@ -136,16 +107,18 @@ void rt_cli_plugin_arguments(char *out, size_t size) {
     }
 }
 
-static void tell(void *context, const char *sentence) {
-    const char *directory = context;
-    fprintf(stderr, "raytally: %s%smanifest.json: %s\n", directory, *directory ? "/" : "", sentence);
-}
-
 void rt_cli_tell_plugins(const char *directory, const RtExperiment *experiment) {
-    json_t *manifest;
-    char copy[RT_MAX_PATH];
+    json_t *manifest, *change;
+    const char *name;
     if (rt_manifest_read(directory, &manifest, NULL) != RT_OK) return;
-    snprintf(copy, sizeof copy, "%s", directory);
-    rt_plugins_tell_changes(experiment, manifest, tell, copy);
+    json_t *then = rt_plugins_used_then(experiment, manifest);
+    json_t *changed = rt_plugins_changed_since(then, experiment);
+    json_object_foreach(changed, name, change) {
+        char sentence[RT_MAX_PLUGIN_CHANGE];
+        rt_plugins_change_format(name, change, "then", "now", sentence);
+        fprintf(stderr, "raytally: %s%smanifest.json: %s\n", directory, *directory ? "/" : "", sentence);
+    }
+    json_decref(changed);
+    json_decref(then);
     json_decref(manifest);
 }

@@ -11,7 +11,7 @@
 extern const struct argp rt_plugin_argp;
 
 /* Loads the plugins that the environment and these arguments name, before the arguments are parsed, since
- * they may name accelerators of plugins. Then sets the environment for child processes. */
+ * they may name accelerators of plugins. */
 RtStatus rt_cli_load_plugins(int argc, char *const *argv, RtError *error);
 
 /* Appends " --plugin 'FILE'" for each given plugin to out[0..size), for commands shown to the user. */

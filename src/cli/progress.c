@@ -10,15 +10,6 @@
 
 static const double LINE_EVERY = 60; /* seconds, where there is no terminal */
 
-RtProgress rt_progress_begin(const RtWorkloadOptions *options) {
-    const double now = rt_wall_seconds();
-    return (RtProgress){.terminal = isatty(STDERR_FILENO) == 1,
-                        .options = *options,
-                        .start = now,
-                        .shown = now,
-                        .every = LINE_EVERY};
-}
-
 void rt_progress_clear(void) {
     if (isatty(STDERR_FILENO)) fputs("\r\033[K", stderr);
 }
@@ -110,8 +101,14 @@ static RtStatus on_event(void *context, const RtResults *results, const RtEvent 
     return RT_OK;
 }
 
-RtRunObserver rt_progress_observer(RtProgress *progress) {
-    return (RtRunObserver){progress, on_event, rt_progress_notice};
+void rt_progress_begin(RtProgress *progress, RtWorkloadOptions *options) {
+    const double now = rt_wall_seconds();
+    *progress = (RtProgress){.terminal = isatty(STDERR_FILENO) == 1,
+                             .options = *options,
+                             .start = now,
+                             .shown = now,
+                             .every = LINE_EVERY};
+    options->observer = (RtRunObserver){progress, on_event, rt_progress_notice};
 }
 
 void rt_progress_end(const RtProgress *progress) {

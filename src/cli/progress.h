@@ -25,17 +25,14 @@ typedef struct RtProgress {
     char doing[2 * RT_MAX_LABEL + 64];
 } RtProgress;
 
-/* `options`: of the measurement, without its observer. */
-RtProgress rt_progress_begin(const RtWorkloadOptions *options);
+/* Becomes the observer of the measurement with these options. */
+void rt_progress_begin(RtProgress *progress, RtWorkloadOptions *options);
 
 /* Clears the line, if stderr is a terminal. */
 void rt_progress_clear(void);
 
 /* Prints a message on a line of its own. `context` is not used. */
 void rt_progress_notice(void *context, const char *message);
-
-/* The observer of a workload. */
-RtRunObserver rt_progress_observer(RtProgress *progress);
 
 /* "3 h 20 min", "5 min", "40 s"; room for RT_MAX_DURATION. */
 #define RT_MAX_DURATION 32

@@ -201,17 +201,11 @@ static RtStatus compare_sections(Run *run, bool *more, RtError *error) {
     return status;
 }
 
-static RtStatus fail_ended(const RtWorker *worker, const char *how, RtError *error) {
-    return rt_fail(error, RT_BAD_INPUT, "%s cannot be compared: %s; its messages are above", worker->program,
-                   how);
-}
-
 static RtStatus start(Run *run, int who, RtError *error) {
     static const char *const command[] = {"raytally", "compare", "--worker", NULL};
     const bool after = who == AFTER;
     RtWorker *worker = &run->workers[who];
     json_t *hello = NULL;
-    worker->fail = fail_ended;
     worker->program = after ? run->programs->after : run->programs->before;
     if (rt_worker_start(worker, command, run->programs->arguments, error) != RT_OK) return RT_BAD_INPUT;
     if (rt_worker_take(worker, &hello, error) != RT_OK ||

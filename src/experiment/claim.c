@@ -33,12 +33,10 @@ static const char *example(const Reader *r) {
     static const char *const examples[] = {"exponent of time of bvh in n < 0.5",
                                            "crossover of time of octree and grid in n > 1e4",
                                            "correlation of predicted_cost and time of bvh > 0.9"};
-    for (size_t i = 1; i < sizeof examples / sizeof examples[0]; i++) {
-        const size_t length = strcspn(examples[i], " ");
-        if (r->count > 0 && strlen(r->words[0]) == length && strncmp(r->words[0], examples[i], length) == 0)
-            return examples[i];
-    }
-    return examples[0];
+    size_t i = sizeof examples / sizeof examples[0];
+    while (--i > 0 && (r->count == 0 || strncmp(examples[i], r->words[0], strcspn(examples[i], " ")) != 0))
+        continue;
+    return examples[i];
 }
 
 __attribute__((format(printf, 2, 3))) static RtStatus fail(const Reader *r, const char *format, ...) {
@@ -148,23 +146,16 @@ static RtStatus read_accel(Reader *r, char accel[RT_MAX_LABEL], bool may_be_all)
     return RT_OK;
 }
 
-/* The number of accelerators on workload `t` that the other of a claim could be as well as `c`. */
-static uint32_t count_alike(const Reader *r, uint32_t t, uint32_t c) {
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < r->experiment->candidate_count; i++) {
-        const bool excluded = r->experiment->candidates[i].excluded >> t & 1;
-        count += !excluded && rt_claim_is_other(r->experiment, r->claim, t, c, i);
-    }
-    return count;
-}
-
 /* After the parameter is read, because the other accelerator may sweep that, too. */
 static RtStatus check_other(const Reader *r) {
     const RtExperiment *experiment = r->experiment;
     for (uint32_t t = 0; t < experiment->workload_count; t++) {
         for (uint32_t c = 0; c < experiment->candidate_count; c++) {
             if (!rt_candidate_is_called(&experiment->candidates[c], r->claim->other)) continue;
-            const uint32_t count = count_alike(r, t, c);
+            uint32_t count = 0; /* that the other could be as well */
+            for (uint32_t i = 0; i < experiment->candidate_count; i++)
+                count += !(experiment->candidates[i].excluded >> t & 1) &&
+                         rt_claim_is_other(experiment, r->claim, t, c, i);
             if (count <= 1) continue;
             return fail(r, "'%s' names %" PRIu32 " accelerators: name one of them, as in '%s'",
                         r->claim->other, count, experiment->candidates[c].label);
@@ -227,16 +218,6 @@ static RtStatus read_axis(Reader *r) {
 
 /* ---- places ---- */
 
-static void extreme(const Choice *values, bool largest, char *value) {
-    double best = 0, number;
-    for (uint32_t i = 0; i < values->count; i++) {
-        if (!rt_swept_number(values->names[i], &number)) continue;
-        if (*value && (largest ? number <= best : number >= best)) continue;
-        best = number;
-        strcpy(value, values->names[i]);
-    }
-}
-
 static RtStatus read_at(Reader *r) {
     RtClaim *claim = r->claim;
     bool largest = take(r, "largest"), smallest = !largest && take(r, "smallest");
@@ -261,12 +242,17 @@ static RtStatus read_at(Reader *r) {
             if (text) offer(&values, text);
         }
     }
-    if (largest || smallest)
-        extreme(&values, largest, value);
-    else
-        snprintf(value, RT_MAX_SWEPT_CHARS, "%s", given + 1);
     bool found = false;
-    for (uint32_t i = 0; i < values.count; i++) found |= rt_swept_equal(values.names[i], value);
+    double best = 0, number;
+    if (!largest && !smallest) snprintf(value, RT_MAX_SWEPT_CHARS, "%s", given + 1);
+    for (uint32_t i = 0; i < values.count; i++) {
+        if ((largest || smallest) && rt_swept_number(values.names[i], &number) &&
+            (!*value || (largest ? number > best : number < best))) {
+            best = number;
+            strcpy(value, values.names[i]);
+        }
+        found |= rt_swept_equal(values.names[i], value);
+    }
     char what[RT_MAX_LABEL];
     snprintf(what, sizeof what, "a value of %s", key->key);
     if (!found) return fail_choice(r, value, what, &values);
@@ -330,23 +316,17 @@ static RtStatus read_comparison(Reader *r) {
     return RT_OK;
 }
 
-/* The form by its first word; a value begins with its measure. */
-static RtStatus read_form(Reader *r) {
+static RtStatus read_claim(Reader *r) {
     static const char *const forms[] = {[RT_CLAIM_RATIO] = "ratio",
                                         [RT_CLAIM_EXPONENT] = "exponent",
                                         [RT_CLAIM_CROSSOVER] = "crossover",
                                         [RT_CLAIM_CORRELATION] = "correlation"};
-    for (uint32_t form = RT_CLAIM_RATIO; form <= RT_CLAIM_CORRELATION; form++) {
-        if (!take(r, forms[form])) continue;
-        r->claim->form = (RtClaimForm)form;
-        return need(r, "of");
+    RtClaim *claim = r->claim; /* a value begins with its measure */
+    for (uint32_t form = RT_CLAIM_RATIO; form <= RT_CLAIM_CORRELATION && claim->form == RT_CLAIM_VALUE;
+         form++) {
+        if (take(r, forms[form])) claim->form = (RtClaimForm)form;
     }
-    return RT_OK;
-}
-
-static RtStatus read_claim(Reader *r) {
-    RtClaim *claim = r->claim;
-    RT_TRY(read_form(r));
+    if (claim->form != RT_CLAIM_VALUE) RT_TRY(need(r, "of"));
     const bool ratio = claim->form == RT_CLAIM_RATIO, crossover = claim->form == RT_CLAIM_CROSSOVER;
     RT_TRY(read_measure(r, &claim->measure));
     claim->first = claim->measure;

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "experiment/labels.h"
+#include "experiment/experiment.h"
 
-#include "experiment/manifest_experiment.h"
-#include "measure/result_files.h"
+#include "core/base/words.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -122,19 +121,12 @@ static RtStatus append_best(RtExperiment *experiment, const char *label, RtError
     return RT_OK;
 }
 
-/* The first that is not a plugin's: without a working baseline nothing could be compared. */
-static uint32_t default_baseline(const RtExperiment *experiment) {
-    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        if (!rt_spec_text_is_remote(experiment->candidates[c].spec)) return c;
-    }
-    return 0;
-}
-
 RtStatus rt_experiment_set_baseline(RtExperiment *experiment, const char *label, RtError *error) {
     uint32_t c = 0;
     if (!label) label = json_string_value(json_object_get(experiment->manifest, "baseline"));
-    if (!label) {
-        experiment->baseline = default_baseline(experiment);
+    if (!label) { /* the first that is not a plugin's: without a working baseline nothing could be compared */
+        while (c < experiment->candidate_count && rt_spec_text_is_remote(experiment->candidates[c].spec)) c++;
+        experiment->baseline = c < experiment->candidate_count ? c : 0;
         return RT_OK;
     }
     while (c < experiment->candidate_count && strcmp(experiment->candidates[c].label, label) != 0) c++;
@@ -168,6 +160,32 @@ const char *rt_plot_name(const RtExperiment *experiment, uint32_t plot) {
 
 /* ---- checks ---- */
 
+/* Names the files of workload `i`. Names that are equal but for case are numbered. */
+static void label_files(RtExperiment *experiment, uint32_t i) {
+    char name[RT_MAX_FILE_NAME], *file = experiment->workloads[i].file_name;
+    bool taken = true;
+    rt_file_name(experiment->workloads[i].label, name, sizeof name);
+    for (uint32_t number = 1; taken; number++) {
+        snprintf(file, sizeof experiment->workloads[i].file_name, number > 1 ? "%s-%" PRIu32 : "%s", name,
+                 number);
+        taken = false;
+        for (uint32_t t = 0; t < i; t++) taken |= strcasecmp(file, experiment->workloads[t].file_name) == 0;
+    }
+}
+
+/* Sets what is shown of all scenes and accelerators. */
+static void shorten_labels(RtExperiment *experiment) {
+    const char *labels[RT_MAX_CANDIDATES];
+    const uint32_t count = experiment->candidate_count;
+    for (uint32_t c = 0; c < count; c++) labels[c] = experiment->candidates[c].label;
+    for (uint32_t c = 0; c < count; c++)
+        rt_shorten_name(labels, count, c, RT_SHOWN_WIDTH, experiment->candidates[c].shown, RT_MAX_LABEL);
+    for (uint32_t t = 0; t < experiment->workload_count; t++) labels[t] = experiment->workloads[t].label;
+    for (uint32_t t = 0; t < experiment->workload_count; t++)
+        rt_shorten_name(labels, experiment->workload_count, t, RT_SHOWN_WIDTH, experiment->workloads[t].shown,
+                        RT_MAX_LABEL);
+}
+
 static RtStatus check_label(const char *label, RtError *error) {
     for (const char *c = label; *c; c++) {
         if (rt_may_label(*c)) continue;
@@ -196,11 +214,6 @@ static bool is_unknown(const char *spec) {
     return rt_accel_find(name, &ops, NULL) != RT_OK;
 }
 
-/* Whether it is optional, and this machine cannot run it. */
-static bool is_elsewhere(const RtCandidate *candidate) {
-    return candidate->optional && rt_spec_available(&candidate->parsed, NULL) == RT_NOT_AVAILABLE;
-}
-
 /* Marks a candidate that this build or machine lacks; for loaded results, that those that made them lacked.
  */
 static RtStatus check_spec(RtExperiment *experiment, uint32_t i, RtError *error) {
@@ -209,7 +222,8 @@ static RtStatus check_spec(RtExperiment *experiment, uint32_t i, RtError *error)
     candidate->missing = experiment->manifest && rt_manifest_is_missing(experiment->manifest, i);
     if (experiment->manifest) return RT_OK;
     if (rt_spec_parse(candidate->spec, &candidate->parsed, &why) == RT_OK) {
-        candidate->missing = is_elsewhere(candidate);
+        candidate->missing =
+            candidate->optional && rt_spec_available(&candidate->parsed, NULL) == RT_NOT_AVAILABLE;
         return RT_OK;
     }
     candidate->missing =
@@ -227,13 +241,6 @@ static RtStatus check_candidate(RtExperiment *experiment, uint32_t i, RtError *e
         if (meet && strcmp(candidate->label, other->label) == 0) return fail_twice(candidate->label, error);
     }
     return check_label(candidate->label, error);
-}
-
-static RtStatus check_workload(RtExperiment *experiment, uint32_t i, RtError *error) {
-    const RtWorkload *workload = &experiment->workloads[i];
-    if (rt_workload_find(experiment, workload->label) < i) return fail_twice(workload->label, error);
-    rt_label_files(experiment, i);
-    return check_label(workload->label, error);
 }
 
 static RtStatus check_baseline(const RtExperiment *experiment, RtError *error) {
@@ -308,8 +315,11 @@ static RtStatus check_frame(const RtExperiment *experiment, RtError *error) {
 RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *error) {
     for (uint32_t i = 0; i < experiment->workload_count; i++) {
         snprintf(where, RT_MAX_LABEL, "scenes[%u]", experiment->workloads[i].entry);
-        RT_TRY(check_workload(experiment, i, error));
-        RT_TRY(check_swept(experiment, &experiment->workloads[i].swept, error));
+        const RtWorkload *workload = &experiment->workloads[i];
+        if (rt_workload_find(experiment, workload->label) < i) return fail_twice(workload->label, error);
+        label_files(experiment, i);
+        RT_TRY(check_label(workload->label, error));
+        RT_TRY(check_swept(experiment, &workload->swept, error));
     }
     for (uint32_t i = 0; i < experiment->candidate_count; i++) {
         snprintf(where, RT_MAX_LABEL, "accelerators[%u]", experiment->candidates[i].entry);
@@ -329,7 +339,7 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
     RT_TRY(check_baseline(experiment, error));
     snprintf(experiment->again, sizeof experiment->again, "%s (again)",
              experiment->candidates[experiment->baseline].label);
-    rt_labels_shorten(experiment);
+    shorten_labels(experiment);
     strcpy(where, "frame");
     RT_TRY(check_frame(experiment, error));
     for (uint32_t i = 0; i < experiment->plot_count; i++) {

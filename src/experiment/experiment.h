@@ -160,7 +160,7 @@ typedef struct RtExperiment {
     RtError warning;             /* about the YAML, for the user; or "" */
     char folder[RT_MAX_PATH];    /* of the YAML */
     /* Only while loading: the manifest of the results to read, or NULL. It replaces the registry of
-     * accelerators (experiment/manifest_experiment.h). */
+     * accelerators. */
     const json_t *manifest;
     uint64_t fingerprint; /* of the YAML's bytes without the keys that affect no result: section, paper,
                              expect, finding, plots */
@@ -258,5 +258,19 @@ bool rt_may_label(char c);
  * lacks. *where, RT_MAX_LABEL characters, gets the path of the fault in the YAML ("name", "accelerators[2]").
  */
 RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *error);
+
+/* ---- accelerators of results ----
+ *
+ * As the manifest of results lists them, for commands that only read these: this build may lack them, or have
+ * others (a plugin that is not loaded or has changed; a library's settings on another machine). */
+
+/* Copies spec and label of accelerator number `i` to *candidate; false if there is none. */
+bool rt_manifest_candidate(const json_t *manifest, uint32_t i, RtCandidate *candidate);
+
+/* Whether the build that ran it lacked accelerator number `i`. */
+bool rt_manifest_is_missing(const json_t *manifest, uint32_t i);
+
+/* Whether parameter `key` of the accelerator `owner` has only whole numbers in the manifest. */
+bool rt_manifest_is_whole(const json_t *manifest, const char *owner, const char *key);
 
 #endif

@@ -144,13 +144,6 @@ static RtStatus read_rays(const RtYaml *y, const RtYamlNode *list, RtExperiment 
     return RT_OK;
 }
 
-static RtStatus read_baseline(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment,
-                              RtError *error) {
-    const char *label = NULL;
-    RT_TRY(rt_yaml_text(y, n, "baseline", RT_MAX_LABEL - 1, &label));
-    return rt_yaml_place(y, rt_experiment_set_baseline(experiment, label, error), n, "baseline");
-}
-
 /* Parsed even without --quick, to find mistakes early. */
 static RtStatus read_quick(const RtYaml *y, const RtYamlNode *n, bool quick, RtExperiment *experiment) {
     uint64_t limit = experiment->limit;
@@ -217,21 +210,19 @@ static RtStatus read_paper_verdict(const RtYaml *y, const RtYamlNode *n, RtPaper
                         text);
 }
 
-static RtStatus read_paper(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment) {
-    RtPaper *paper = &experiment->papers[experiment->paper_count++];
-    RT_TRY(rt_yaml_keys(y, n, "citation page quote verdict?"));
-    RT_TRY(rt_yaml_copy(y, n, "citation", RT_MAX_TEXT, paper->citation));
-    RT_TRY(rt_yaml_copy(y, n, "page", RT_MAX_WORD, paper->page));
-    RT_TRY(rt_yaml_copy(y, n, "quote", RT_MAX_TEXT, paper->quote));
-    return read_paper_verdict(y, n, &paper->verdict);
-}
-
 /* One mapping, or a list of them. */
-static RtStatus read_papers(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment) {
-    if (!n || n->kind == RT_YAML_MAPPING) return n ? read_paper(y, n, experiment) : RT_OK;
-    RT_TRY(rt_yaml_list(y, n, NULL, 1, RT_MAX_PAPERS, "mappings with citation, page and quote"));
-    for (const RtYamlNode *e = rt_yaml_first(n); e != rt_yaml_end(n); e += e->size)
-        RT_TRY(read_paper(y, e, experiment));
+static RtStatus read_papers(const RtYaml *y, const RtYamlNode *list, RtExperiment *experiment) {
+    const bool one = list && list->kind == RT_YAML_MAPPING;
+    if (!one) RT_TRY(rt_yaml_list(y, list, NULL, 1, RT_MAX_PAPERS, "mappings with citation, page and quote"));
+    const RtYamlNode *end = one ? list + list->size : rt_yaml_end(list);
+    for (const RtYamlNode *n = one ? list : rt_yaml_first(list); n != end; n += n->size) {
+        RtPaper *paper = &experiment->papers[experiment->paper_count++];
+        RT_TRY(rt_yaml_keys(y, n, "citation page quote verdict?"));
+        RT_TRY(rt_yaml_copy(y, n, "citation", RT_MAX_TEXT, paper->citation));
+        RT_TRY(rt_yaml_copy(y, n, "page", RT_MAX_WORD, paper->page));
+        RT_TRY(rt_yaml_copy(y, n, "quote", RT_MAX_TEXT, paper->quote));
+        RT_TRY(read_paper_verdict(y, n, &paper->verdict));
+    }
     return RT_OK;
 }
 
@@ -244,12 +235,6 @@ static RtStatus place(const RtYaml *y, RtStatus status, const char *where) {
     if (!list) return rt_yaml_place(y, status, y->nodes, NULL);
     for (; index > 0; index--) n += n->size;
     return rt_yaml_place(y, status, n, NULL);
-}
-
-/* Experiments of version 1.0 may have hardware counters. */
-static void warn_of_hardware(RtYaml y, const RtYamlNode *hardware, RtExperiment *experiment) {
-    y.error = &experiment->warning;
-    rt_yaml_fail(&y, hardware, "ignored: `perf stat` counts these now (docs/guide/faq.md)");
 }
 
 static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *experiment, RtError *error) {
@@ -275,9 +260,15 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
     RT_TRY(read_flag(y, n, "count_only", &experiment->count_only));
     RT_TRY(read_flag(y, n, "render", &experiment->render));
     RT_TRY(read_flag(y, n, "distributions", &experiment->distributions));
-    if (rt_yaml_get(y, n, "hardware")) warn_of_hardware(*y, rt_yaml_get(y, n, "hardware"), experiment);
+    RtYaml warned = *y; /* experiments of version 1.0 may have hardware counters */
+    warned.error = &experiment->warning;
+    if (rt_yaml_get(y, n, "hardware"))
+        rt_yaml_fail(&warned, rt_yaml_get(y, n, "hardware"),
+                     "ignored: `perf stat` counts these now (docs/guide/faq.md)");
     RT_TRY(read_lists(y, n, experiment, error));
-    RT_TRY(read_baseline(y, n, experiment, error));
+    const char *baseline = NULL;
+    RT_TRY(rt_yaml_text(y, n, "baseline", RT_MAX_LABEL - 1, &baseline));
+    RT_TRY(rt_yaml_place(y, rt_experiment_set_baseline(experiment, baseline, error), n, "baseline"));
     const RtYamlNode *smaller = rt_yaml_get(y, n, "quick"), *frame = rt_yaml_get(y, n, "frame");
     if (frame) RT_TRY(read_frame(y, frame, &experiment->frame));
     if (smaller) RT_TRY(read_quick(y, smaller, quick, experiment));
@@ -335,10 +326,13 @@ bool rt_experiment_has_hash(const RtExperiment *experiment, const json_t *hash) 
     return good && (value == experiment->fingerprint || value == experiment->fingerprint_with_plots);
 }
 
-static RtStatus load(RtExperiment *experiment, const char *path, bool quick, RtError *error) {
+/* With a manifest the experiment is that of results. */
+static RtStatus load(RtExperiment *experiment, const char *path, bool quick, const json_t *manifest,
+                     RtError *error) {
     char *text;
     size_t length;
     RtYaml yaml;
+    rt_experiment_init(experiment);
     if (strlen(path) >= RT_MAX_PATH)
         return rt_fail(error, RT_BAD_INPUT, "%.80s...: the path is too long", path);
     strcpy(experiment->path, path);
@@ -350,21 +344,18 @@ static RtStatus load(RtExperiment *experiment, const char *path, bool quick, RtE
     if (mapping) experiment->fingerprint_with_plots = fingerprint_of(&yaml, text, length, false);
     rt_free(text);
     RT_TRY(status);
+    experiment->manifest = manifest;
     status = read_experiment(&yaml, quick, experiment, error);
     rt_yaml_close(&yaml);
+    experiment->manifest = NULL;
     return status;
 }
 
 RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool quick, RtError *error) {
-    rt_experiment_init(experiment);
-    return load(experiment, path, quick, error);
+    return load(experiment, path, quick, NULL, error);
 }
 
 RtStatus rt_experiment_load_from_manifest(RtExperiment *experiment, const char *path, const json_t *manifest,
                                           RtError *error) {
-    rt_experiment_init(experiment);
-    experiment->manifest = manifest;
-    RtStatus status = load(experiment, path, json_is_true(json_object_get(manifest, "quick")), error);
-    experiment->manifest = NULL;
-    return status;
+    return load(experiment, path, json_is_true(json_object_get(manifest, "quick")), manifest, error);
 }

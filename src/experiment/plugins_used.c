@@ -17,10 +17,9 @@ static bool has_layer(const char *spec, const char *name) {
 }
 
 static bool is_used(const RtExperiment *experiment, const char *name) {
-    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        if (has_layer(experiment->candidates[c].spec, name)) return true;
-    }
-    return false;
+    uint32_t c = 0;
+    while (c < experiment->candidate_count && !has_layer(experiment->candidates[c].spec, name)) c++;
+    return c < experiment->candidate_count;
 }
 
 /* From the list under "plugins" of rt_machine_json. */
@@ -82,34 +81,23 @@ bool rt_plugins_concern(const json_t *object, const RtExperiment *experiment, ui
 
 /* ---- sentences ---- */
 
+static const char *describe(const json_t *plugin, char out[256]) {
+    snprintf(out, 256, "%.200s (%.16s)", rt_json_text(plugin, "file", "unknown"),
+             rt_json_text(plugin, "hash", "unknown"));
+    return out;
+}
+
 void rt_plugins_change_format(const char *name, const json_t *change, const char *before, const char *after,
                               char out[RT_MAX_PLUGIN_CHANGE]) {
     const json_t *then = json_object_get(change, "before"), *now = json_object_get(change, "after");
+    char one[256], other[256];
     if (json_is_object(then) && json_is_object(now))
-        snprintf(out, RT_MAX_PLUGIN_CHANGE,
-                 "the plugin of '%s' has changed: %.200s (%.16s) %s, %.200s (%.16s) %s", name,
-                 rt_json_text(then, "file", "unknown"), rt_json_text(then, "hash", "unknown"), before,
-                 rt_json_text(now, "file", "unknown"), rt_json_text(now, "hash", "unknown"), after);
+        snprintf(out, RT_MAX_PLUGIN_CHANGE, "the plugin of '%s' has changed: %s %s, %s %s", name,
+                 describe(then, one), before, describe(now, other), after);
     else if (json_is_object(then))
-        snprintf(out, RT_MAX_PLUGIN_CHANGE, "'%s' belonged to the plugin %.400s (%.16s) %s, and does not %s",
-                 name, rt_json_text(then, "file", "unknown"), rt_json_text(then, "hash", "unknown"), before,
-                 after);
+        snprintf(out, RT_MAX_PLUGIN_CHANGE, "'%s' belonged to the plugin %s %s, and does not %s", name,
+                 describe(then, one), before, after);
     else
-        snprintf(out, RT_MAX_PLUGIN_CHANGE, "'%s' belongs to the plugin %.400s (%.16s) %s, and did not %s",
-                 name, rt_json_text(now, "file", "unknown"), rt_json_text(now, "hash", "unknown"), after,
-                 before);
-}
-
-void rt_plugins_tell_changes(const RtExperiment *experiment, const json_t *manifest,
-                             void (*tell)(void *context, const char *sentence), void *context) {
-    json_t *then = rt_plugins_used_then(experiment, manifest), *change;
-    json_t *changed = rt_plugins_changed_since(then, experiment);
-    const char *name;
-    json_object_foreach(changed, name, change) {
-        char sentence[RT_MAX_PLUGIN_CHANGE];
-        rt_plugins_change_format(name, change, "then", "now", sentence);
-        tell(context, sentence);
-    }
-    json_decref(changed);
-    json_decref(then);
+        snprintf(out, RT_MAX_PLUGIN_CHANGE, "'%s' belongs to the plugin %s %s, and did not %s", name,
+                 describe(now, one), after, before);
 }

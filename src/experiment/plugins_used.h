@@ -30,9 +30,4 @@ bool rt_plugins_concern(const json_t *object, const RtExperiment *experiment, ui
 void rt_plugins_change_format(const char *name, const json_t *change, const char *before, const char *after,
                               char out[RT_MAX_PLUGIN_CHANGE]);
 
-/* Calls `tell` with such a sentence for each accelerator of the experiment whose plugin differs from the
- * manifest's. */
-void rt_plugins_tell_changes(const RtExperiment *experiment, const json_t *manifest,
-                             void (*tell)(void *context, const char *sentence), void *context);
-
 #endif

@@ -136,32 +136,26 @@ RtStatus rt_scripts_add_found(RtExperiment *experiment, const char *directory, R
 
 /* ---- trusted scripts ---- */
 
-typedef struct Links {
-    RtStatus status;
-    RtError *error;
-} Links;
-
-/* gnuplot would write through a link. */
+/* After the first failure nothing more is refused. gnuplot would write through a link. */
 static void refuse_link(void *context, const char *path) {
-    Links *links = context;
+    RtError *error = context;
     struct stat info;
-    if (links->status != RT_OK || lstat(path, &info) != 0 || !S_ISLNK(info.st_mode)) return;
-    links->status = rt_fail(
-        links->error, RT_BAD_INPUT,
+    if (error->status != RT_OK || lstat(path, &info) != 0 || !S_ISLNK(info.st_mode)) return;
+    rt_fail(
+        error, RT_BAD_INPUT,
         "%s is a symbolic link, and gnuplot would write to its target: remove it, or allow it with --trust",
         path);
 }
 
 static RtStatus refuse_links(const char *plots, RtError *error) {
-    Links links = {RT_OK, error};
-    refuse_link(&links, plots);
-    RT_TRY(links.status);
+    RtError why = {RT_OK, ""};
+    refuse_link(&why, plots);
     errno = 0;
-    if (rt_directory_each(plots, "", refuse_link, &links) == 0 && errno != ENOENT && errno != ENOTDIR)
-        return rt_fail(error, RT_IO,
-                       "%s cannot be read (%s), so it may hold symbolic links: allow that with --trust",
-                       plots, strerror(errno));
-    return links.status;
+    if (why.status == RT_OK && rt_directory_each(plots, "", refuse_link, &why) == 0 && errno != ENOENT &&
+        errno != ENOTDIR)
+        rt_fail(&why, RT_IO, "%s cannot be read (%s), so it may hold symbolic links: allow that with --trust",
+                plots, strerror(errno));
+    return why.status == RT_OK ? RT_OK : rt_fail(error, why.status, "%s", why.message);
 }
 
 /* Of a script that is not shipped: whether it is beside an experiment of the user's, and unchanged. */

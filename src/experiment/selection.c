@@ -7,11 +7,6 @@ static bool has_scene(const RtPart *part, const RtExperiment *experiment, uint32
     return !part->scene || rt_workload_is_called(&experiment->workloads[workload], part->scene);
 }
 
-static bool has_accel(const RtPart *part, const RtExperiment *experiment, uint32_t candidate) {
-    return candidate == experiment->candidate_count || rt_candidate_is_baseline(experiment, candidate) ||
-           !part->accel || rt_candidate_is_called(&experiment->candidates[candidate], part->accel);
-}
-
 static bool has_kind(const RtPart *part, RtRayKind kind) {
     return kind == RT_ALL_RAYS || !part->kind || strcmp(part->kind, rt_ray_kind_name(kind)) == 0;
 }
@@ -22,8 +17,10 @@ bool rt_selection_has(const RtSelection *only, const RtExperiment *experiment, u
     if (only->shards && workload % only->shards != only->shard - 1) return false;
     for (uint32_t i = 0; i < only->part_count && !found; i++) {
         const RtPart *part = &only->parts[i];
-        found = has_scene(part, experiment, workload) && has_accel(part, experiment, candidate) &&
-                has_kind(part, kind);
+        const bool accel = candidate == experiment->candidate_count || !part->accel ||
+                           rt_candidate_is_baseline(experiment, candidate) ||
+                           rt_candidate_is_called(&experiment->candidates[candidate], part->accel);
+        found = accel && has_scene(part, experiment, workload) && has_kind(part, kind);
     }
     return found;
 }

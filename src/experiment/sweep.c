@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Sweeps: one spec of a scene or an accelerator that expands to several, one for each value of a parameter.
+/* Labels; and sweeps: one spec of a scene or an accelerator that expands to several, one for each value of a
+ * parameter.
  *
  *     grid:density=1|4|16              a list
  *     grid:density=1..9+2              from 1 to 9 in steps of 2
@@ -10,8 +11,7 @@
  * number, values are rounded and duplicates dropped. The characters are unambiguous: no other value has two
  * dots or a bar, and a '+' before a digit never separates accelerators. */
 #include "core/base/words.h"
-#include "experiment/labels.h"
-#include "experiment/manifest_experiment.h"
+#include "experiment/experiment.h"
 #include "scenes/builtin.h"
 
 #include <ctype.h>
@@ -19,6 +19,105 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* ---- labels ---- */
+
+bool rt_may_label(char c) {
+    return isgraph((unsigned char)c) && !strchr("\"'`/\\$&<>@^{}", c);
+}
+
+/* Whether version 1.0, which cut labels, called number `i` of a list so: by the first 47 characters, or, if
+ * another had these, by the first 40 and the number. */
+static bool was_called(const char *label, uint32_t i, const char *name) {
+    enum { CUT = 47, NUMBERED = 40 };
+    char *end;
+    if (strlen(label) <= CUT) return false;
+    if (strlen(name) == CUT && strncmp(label, name, CUT) == 0) return true;
+    return strncmp(label, name, NUMBERED) == 0 && strncmp(name + NUMBERED, "...", 3) == 0 &&
+           isdigit((unsigned char)name[NUMBERED + 3]) && strtoul(name + NUMBERED + 3, &end, 10) == i + 1 &&
+           !*end;
+}
+
+uint32_t rt_candidate_find(const RtExperiment *experiment, const char *label, uint32_t t) {
+    const uint32_t count = experiment->candidate_count;
+    if (strcmp(label, experiment->again) == 0) return count;
+    for (uint32_t i = 0; i < 2 * count; i++) {
+        const uint32_t c = i < count ? i : i - count;
+        const RtCandidate *candidate = &experiment->candidates[c];
+        const bool called =
+            i < count ? strcmp(candidate->label, label) == 0 : was_called(candidate->label, c, label);
+        if (called && !(candidate->excluded >> t & 1)) return c;
+    }
+    return count + 1;
+}
+
+uint32_t rt_workload_find(const RtExperiment *experiment, const char *label) {
+    const uint32_t count = experiment->workload_count;
+    uint32_t t = 0, cut = 0;
+    while (t < count && strcmp(experiment->workloads[t].label, label) != 0) t++;
+    while (cut < count && !was_called(experiment->workloads[cut].label, cut, label)) cut++;
+    return t < count ? t : cut;
+}
+
+bool rt_candidate_is_called(const RtCandidate *candidate, const char *name) {
+    return strcmp(candidate->label, name) == 0 || strcmp(candidate->stem, name) == 0;
+}
+
+bool rt_workload_is_called(const RtWorkload *workload, const char *name) {
+    return strcmp(workload->label, name) == 0 || strcmp(workload->stem, name) == 0;
+}
+
+void rt_swept_name(const RtSwept *swept, const char *but, char *out, size_t size) {
+    for (uint32_t i = 0; i < swept->count; i++) {
+        if (but && strcmp(swept->keys[i], but) == 0) continue;
+        rt_append_text(out, size, ":%s=%s", swept->keys[i], swept->values[i]);
+    }
+}
+
+/* Makes stem and label of one of a sweep: the given label, and that with ":key=value" for what is swept. */
+static RtStatus label_sweep(const char *given, const RtSwept *swept, char stem[RT_MAX_LABEL],
+                            char label[RT_MAX_LABEL], RtError *error) {
+    char whole[RT_MAX_LABEL + RT_MAX_SWEPT * (RT_MAX_NAME + RT_MAX_SWEPT_CHARS + 2)];
+    strcpy(stem, given);
+    snprintf(whole, sizeof whole, "%s", given);
+    rt_swept_name(swept, NULL, whole, sizeof whole);
+    if (strlen(whole) >= RT_MAX_LABEL) {
+        return rt_fail(error, RT_BAD_INPUT, "'%s' is longer than %d characters: give a short `label`", whole,
+                       RT_MAX_LABEL - 1);
+    }
+    strcpy(label, whole);
+    return RT_OK;
+}
+
+/* Whether characters had to be replaced. */
+static bool name_scene(const char *spec, bool file, char label[RT_MAX_LABEL]) {
+    const char *start = file ? basename(spec) : spec;
+    size_t length = file ? strcspn(start, ".") : strlen(start);
+    bool replaced = false;
+    snprintf(label, RT_MAX_LABEL, "%.*s", (int)length, start);
+    for (char *c = label; *c; c++) {
+        if (rt_may_label(*c)) continue;
+        *c = '_';
+        replaced = true;
+    }
+    return replaced;
+}
+
+/* Makes stem and label of the last workload, from its spec and that without swept parameters: a file's name
+ * without folder and extension, or a built-in's spec, with _ for characters that labels may not have. If
+ * another scene then has that label, it gets a number. */
+static void label_scene(RtExperiment *experiment, RtWorkload *workload, const char *stem, const char *spec) {
+    char name[RT_MAX_LABEL];
+    name_scene(stem, workload->file, workload->stem);
+    const bool replaced = name_scene(spec, workload->file, workload->label);
+    strcpy(name, workload->label);
+    for (unsigned number = 2;
+         replaced && &experiment->workloads[rt_workload_find(experiment, workload->label)] != workload;
+         number++) {
+        snprintf(workload->label, RT_MAX_LABEL, "%.*s-%u", RT_MAX_LABEL - 8, name, number);
+        strcpy(workload->stem, workload->label);
+    }
+}
 
 /* ---- what was swept ---- */
 
@@ -65,83 +164,107 @@ typedef struct Sweep {
     SweptParam params[RT_MAX_SWEPT];
 } Sweep;
 
-static RtStatus fail_range(const char *text, int length, RtError *error) {
-    return rt_fail(
-        error, RT_BAD_INPUT,
-        "'%.*s' is not a range: write LOW..HIGH+STEP with a step above 0, or LOW..HIGH*FACTOR with a factor "
-        "above 1 and LOW above 0, LOW below HIGH, as in 1..9+2 or 1e2..1e7*10; a list is 1|4|16",
-        length, text);
-}
-
-static RtStatus add_value(SweptParam *param, const char *text, size_t length, RtError *error) {
-    if (length == 0 || length >= RT_MAX_SWEPT_CHARS) {
+static RtStatus add_value(SweptParam *param, const char *text, RtError *error) {
+    const size_t length = strlen(text);
+    if (length == 0 || length >= RT_MAX_SWEPT_CHARS)
         return rt_fail(error, RT_BAD_INPUT,
-                       "'%.*s' of %s is not a value for a list: values have 1..%d characters", (int)length,
-                       text, param->key, RT_MAX_SWEPT_CHARS - 1);
-    }
+                       "'%s' of %s is not a value for a list: values have 1..%d characters", text, param->key,
+                       RT_MAX_SWEPT_CHARS - 1);
     for (uint32_t i = 0; i < param->count; i++) {
-        if (strlen(param->values[i]) == length && strncmp(param->values[i], text, length) == 0) return RT_OK;
+        if (strcmp(param->values[i], text) == 0) return RT_OK;
     }
-    if (param->count == RT_MAX_SWEEP_VALUES) {
+    if (param->count == RT_MAX_SWEEP_VALUES)
         return rt_fail(error, RT_BAD_INPUT, "%s takes more than %d values: choose a larger step or factor",
                        param->key, RT_MAX_SWEEP_VALUES);
-    }
-    snprintf(param->values[param->count++], RT_MAX_SWEPT_CHARS, "%.*s", (int)length, text);
+    strcpy(param->values[param->count++], text);
     return RT_OK;
 }
 
-/* Whether all of text[0..length) is a number. */
-static bool read_number(const char *text, size_t length, double *number) {
-    char copy[RT_MAX_SWEPT_CHARS];
-    if (length == 0 || length >= sizeof copy) return false;
-    snprintf(copy, sizeof copy, "%.*s", (int)length, text);
-    return rt_swept_number(copy, number);
+/* The start of the step or factor after the dots, or the end; a '+' after an e belongs to an exponent. */
+static const char *find_step(const char *text) {
+    while (*text && text[1] != '*' && (text[1] != '+' || tolower((unsigned char)*text) == 'e')) text++;
+    return *text ? text + 1 : text;
 }
 
-/* The start of the step or factor after the dots; a '+' after an e belongs to an exponent. */
-static size_t find_step(const char *text, size_t length) {
-    for (size_t i = 1; i < length; i++) {
-        if (text[i] == '*' || (text[i] == '+' && tolower((unsigned char)text[i - 1]) != 'e')) return i;
-    }
-    return length;
-}
-
-/* Multiplies instead of adding, to avoid accumulated errors; nine digits hide the rest. */
-static RtStatus add_range(SweptParam *param, const char *text, size_t length, size_t dots, bool whole,
-                          RtError *error) {
-    const char *above = text + dots + 2;
-    size_t rest = length - dots - 2, at = find_step(above, rest);
+/* `text` is LOW..HIGH+STEP or LOW..HIGH*FACTOR, with the dots at `dots`. Multiplies instead of adding, to
+ * avoid accumulated errors; nine digits hide the rest. */
+static RtStatus add_range(SweptParam *param, const char *text, const char *dots, bool whole, RtError *error) {
+    const char *above = dots + 2, *sign = find_step(above);
+    char ends[2][RT_MAX_SPEC_CHARS];
     double low, high, step = 0, value = 0, power = 1;
-    bool factor = at < rest && above[at] == '*';
-    bool fine = read_number(text, dots, &low) && read_number(above, at, &high) && at < rest &&
-                read_number(above + at + 1, rest - at - 1, &step) && low < high;
-    if (!fine || (factor ? step <= 1 || low <= 0 : step <= 0)) return fail_range(text, (int)length, error);
+    const bool factor = *sign == '*';
+    snprintf(ends[0], sizeof ends[0], "%.*s", (int)(dots - text), text);
+    snprintf(ends[1], sizeof ends[1], "%.*s", (int)(sign - above), above);
+    bool fine = rt_swept_number(ends[0], &low) && rt_swept_number(ends[1], &high) && *sign &&
+                rt_swept_number(sign + 1, &step) && low < high;
+    if (!fine || (factor ? step <= 1 || low <= 0 : step <= 0))
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "'%s' is not a range: write LOW..HIGH+STEP with a step above 0, or LOW..HIGH*FACTOR with a "
+            "factor above 1 and LOW above 0, LOW below HIGH, as in 1..9+2 or 1e2..1e7*10; a list is "
+            "1|4|16",
+            text);
     for (uint32_t i = 0; i <= RT_MAX_SWEEP_VALUES; i++, power *= step) {
         char number[RT_MAX_SWEPT_CHARS];
         value = factor ? low * power : low + i * step;
         if (value > high + 1e-9 * (high - low)) return RT_OK;
         snprintf(number, sizeof number, "%.9g", whole ? round(value) : value);
-        RT_TRY(add_value(param, number, strlen(number), error));
+        RT_TRY(add_value(param, number, error));
     }
-    return rt_fail(error, RT_BAD_INPUT, "'%.*s' is more than %d values: choose a larger step or factor",
-                   (int)length, text, RT_MAX_SWEEP_VALUES);
+    return rt_fail(error, RT_BAD_INPUT, "'%s' is more than %d values: choose a larger step or factor", text,
+                   RT_MAX_SWEEP_VALUES);
 }
 
-static size_t find_dots(const char *text, size_t length) {
-    size_t at = 0;
-    while (at + 1 < length && !(text[at] == '.' && text[at + 1] == '.')) at++;
-    return at + 1 < length ? at : length;
+/* ---- accelerators of results ---- */
+
+static const json_t *entry_at(const json_t *manifest, size_t i) {
+    return json_array_get(json_object_get(manifest, "accelerators"), i);
 }
 
-static RtStatus read_values(const char *text, size_t length, bool whole, SweptParam *param, RtError *error) {
-    for (size_t start = 0, part; start <= length; start += part + 1) {
-        const char *bar = memchr(text + start, '|', length - start);
-        part = bar ? (size_t)(bar - text) - start : length - start;
-        size_t dots = find_dots(text + start, part);
-        RT_TRY(dots < part ? add_range(param, text + start, part, dots, whole, error)
-                           : add_value(param, text + start, part, error));
+/* Version 1.0 wrote the label as "label", and the spec as "accel". */
+static const char *spec_of(const json_t *entry) {
+    const json_t *spec = json_object_get(entry, "spec");
+    return json_string_value(spec ? spec : json_object_get(entry, "accel"));
+}
+
+bool rt_manifest_candidate(const json_t *manifest, uint32_t i, RtCandidate *candidate) {
+    const json_t *entry = entry_at(manifest, i), *old = json_object_get(entry, "label");
+    const char *spec = spec_of(entry);
+    const char *label = json_string_value(old ? old : json_object_get(entry, "accel"));
+    if (!spec || !label) return false;
+    snprintf(candidate->spec, sizeof candidate->spec, "%s", spec);
+    snprintf(candidate->label, sizeof candidate->label, "%s", label);
+    return true;
+}
+
+bool rt_manifest_is_missing(const json_t *manifest, uint32_t i) {
+    return json_is_true(json_object_get(entry_at(manifest, i), "missing"));
+}
+
+/* In one layer, NAME:KEY=VALUE,KEY=VALUE. */
+static bool is_whole_in(const char *layer, const char *owner, const char *key) {
+    size_t name = strcspn(layer, ":+"), length = strlen(key);
+    if (name != strlen(owner) || strncmp(layer, owner, name) != 0) return true;
+    for (const char *c = layer + name; *c == ':' || *c == ','; c += 1 + strcspn(c + 1, ",")) {
+        char value[RT_MAX_SWEPT_CHARS];
+        char *end;
+        if (strncmp(c + 1, key, length) != 0 || c[1 + length] != '=') continue;
+        snprintf(value, sizeof value, "%.*s", (int)strcspn(c + 2 + length, ",+"), c + 2 + length);
+        double number = strtod(value, &end);
+        if (end == value || *end || number != round(number)) return false;
     }
-    return RT_OK;
+    return true;
+}
+
+bool rt_manifest_is_whole(const json_t *manifest, const char *owner, const char *key) {
+    const json_t *list = json_object_get(manifest, "accelerators");
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        const char *layer = spec_of(json_array_get(list, i));
+        for (; layer; layer = strchr(layer, '+') ? strchr(layer, '+') + 1 : NULL) {
+            if (!is_whole_in(layer, owner, key)) return false;
+        }
+    }
+    return true;
 }
 
 /* ---- the text ---- */
@@ -167,14 +290,14 @@ static bool ends_layer(const char *c, bool scene) {
 /* Reads the value at `start`, after the '=' of a parameter of `layer`. */
 static RtStatus read_param(Sweep *sweep, const char *layer, size_t start, size_t length, bool scene,
                            const json_t *manifest, RtError *error) {
-    const char *text = sweep->text, *value = text + start;
-    if (!memchr(value, '|', length) && find_dots(value, length) == length) return RT_OK;
-    char owner[RT_MAX_NAME] = "";
+    const char *text = sweep->text;
+    char owner[RT_MAX_NAME] = "", value[RT_MAX_SPEC_CHARS];
     size_t key = start - 1, name = strcspn(layer, ":");
+    snprintf(value, sizeof value, "%.*s", (int)length, text + start);
+    if (!strchr(value, '|') && !strstr(value, "..")) return RT_OK;
     while (key > 0 && text[key - 1] != ',' && text[key - 1] != ':') key--;
-    if (sweep->param_count == RT_MAX_SWEPT) {
+    if (sweep->param_count == RT_MAX_SWEPT)
         return rt_fail(error, RT_BAD_INPUT, "'%.80s' sweeps more than %d parameters", text, RT_MAX_SWEPT);
-    }
     SweptParam *param = &sweep->params[sweep->param_count];
     param->start = start;
     param->length = length;
@@ -186,7 +309,11 @@ static RtStatus read_param(Sweep *sweep, const char *layer, size_t start, size_t
                        text, param->key);
     }
     if (name < sizeof owner) snprintf(owner, sizeof owner, "%.*s", (int)name, layer);
-    RT_TRY(read_values(value, length, is_whole(owner, param->key, scene, manifest), param, error));
+    const bool whole = is_whole(owner, param->key, scene, manifest);
+    for (char *rest = value, *part; (part = strsep(&rest, "|"));) {
+        const char *dots = strstr(part, "..");
+        RT_TRY(dots ? add_range(param, part, dots, whole, error) : add_value(param, part, error));
+    }
     sweep->param_count++;
     sweep->count *= param->count; /* at most 2^16 by 2^8 */
     if (sweep->count <= UINT16_MAX) return RT_OK;
@@ -196,7 +323,7 @@ static RtStatus read_param(Sweep *sweep, const char *layer, size_t start, size_t
 
 /* Reads `text`, a spec of a built-in scene (`scene`) or of an accelerator; files are never swept. Does not
  * check the resulting specs. `manifest` says which parameters are whole numbers for accelerators that this
- * build may lack (experiment/manifest_experiment.h); or NULL. */
+ * build may lack; or NULL. */
 static RtStatus parse_sweep(const char *text, bool scene, const json_t *manifest, Sweep *sweep,
                             RtError *error) {
     const char *layer = text;
@@ -277,8 +404,8 @@ static RtStatus add_scene(RtExperiment *experiment, const RtWorkload *like, cons
     RT_TRY(rt_path_join(workload->file ? folder : "", spec, workload->path, error));
     stem_of(sweep, stem, sizeof stem);
     if (*like->label)
-        return rt_label_sweep(like->label, &workload->swept, workload->stem, workload->label, error);
-    rt_label_scene(experiment, workload, stem, spec);
+        return label_sweep(like->label, &workload->swept, workload->stem, workload->label, error);
+    label_scene(experiment, workload, stem, spec);
     return RT_OK;
 }
 
@@ -304,7 +431,7 @@ static RtStatus add_accel(RtExperiment *experiment, const RtCandidate *like, con
     RT_TRY(spec_at(sweep, i, spec, &candidate->swept, error));
     strcpy(candidate->spec, spec);
     if (*like->label)
-        return rt_label_sweep(like->label, &candidate->swept, candidate->stem, candidate->label, error);
+        return label_sweep(like->label, &candidate->swept, candidate->stem, candidate->label, error);
     stem_of(sweep, candidate->stem, sizeof candidate->stem);
     strcpy(candidate->label, spec);
     return RT_OK;

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Counting, timing and statistics of the embedding interface. */
+/* Counting, timing, statistics and verification of the embedding interface. */
 #include "core/base/memory.h"
 #include "library/library.h"
 #include "measure/measure.h"
+#include "verify/verify_rays.h"
 
 #include <inttypes.h>
 
@@ -43,8 +44,11 @@ static RtStatus count_taught(RtAccel *accel, const RtRaySet *set, const RtHit *h
                    accel->ops->name, count.differ, count.first);
 }
 
-static RtStatus count_rays(RtAccel *accel, const RtRaySet *set, RtHit *hits, int threads,
-                           raytally_counters *out, RtError *error) {
+static RtStatus count_rays(RtAccel *accel, const RtRaySet *set, int threads, raytally_counters *out,
+                           RtError *error) {
+    RT_ARENA(arena);
+    RtHit *hits = rt_arena_alloc(&arena, (size_t)set->count, sizeof *hits);
+    RT_TRY(rt_arena_check(&arena, "answers", error));
     RT_TRY(rt_threads_check(threads, error));
     RT_TRY(answer(accel, set, threads, hits, error));
     RtStatus status = rt_accel_learn(accel, set->rays, hits, (size_t)set->count, error);
@@ -56,12 +60,7 @@ raytally_status raytally_count(raytally_accelerator *accelerator, const raytally
                                raytally_counters *out, raytally_error *error) {
     *out = (raytally_counters){{0}};
     RT_C_LOCALE;
-    RtHit *hits = rt_alloc((size_t)rays->set.count, sizeof *hits);
-    RtStatus status =
-        hits ? count_rays(accelerator->accel, &rays->set, hits, threads, out, rt_error_of(error))
-             : rt_fail_memory(rt_error_of(error), "answers", (size_t)rays->set.count * sizeof *hits);
-    rt_free(hits);
-    return (raytally_status)status;
+    return (raytally_status)count_rays(accelerator->accel, &rays->set, threads, out, rt_error_of(error));
 }
 
 /* ---- statistics ---- */
@@ -97,86 +96,133 @@ raytally_status raytally_estimate_ratio(const double *over, const double *under,
 
 /* ---- timing ---- */
 
-typedef struct TimingRun {
-    raytally_accelerator *const *accelerators; /* [count] */
-    size_t count;
-    const RtRaySet *set;
-    RtHit *hits;     /* [set->count] */
-    RtTimed *timed;  /* [count] */
-    double *seconds; /* [count][2][rounds] */
-} TimingRun;
-
-static RtStatus check_timing(const raytally_time_options *how, const TimingRun *run, RtError *error) {
+static RtStatus check_timing(const raytally_time_options *how, size_t count, const RtRaySet *set,
+                             RtError *error) {
     RT_TRY(check_rounds(how->rounds, "rounds", error));
     RT_TRY(rt_threads_check(how->threads, error));
     if (!(how->least >= 0 && how->least <= 60))
         return rt_fail(error, RT_BAD_INPUT, "a round of at least %g s: expected 0..60", how->least);
-    if (run->count == 0) return rt_fail(error, RT_BAD_INPUT, "no accelerator to time");
-    if (run->set->count == 0) return rt_fail(error, RT_BAD_INPUT, "no rays to time accelerators on");
+    if (count == 0) return rt_fail(error, RT_BAD_INPUT, "no accelerator to time");
+    if (set->count == 0) return rt_fail(error, RT_BAD_INPUT, "no rays to time accelerators on");
     return RT_OK;
 }
 
-static RtStatus timing_run_init(TimingRun *run, const raytally_time_options *how, RtError *error) {
-    size_t doubles = 2 * (size_t)how->rounds;
-    run->hits = rt_alloc((size_t)run->set->count, sizeof(RtHit));
-    run->timed = rt_alloc(run->count, sizeof(RtTimed));
-    run->seconds = rt_alloc(run->count, doubles * sizeof(double));
-    if (!run->hits || !run->timed || !run->seconds)
-        return rt_fail_memory(error, "times", run->count * doubles * sizeof(double));
-    for (size_t i = 0; i < run->count; i++) {
-        double *place = run->seconds + doubles * i;
-        run->timed[i] = (RtTimed){.accel = run->accelerators[i]->accel,
-                                  .set = run->set,
-                                  .seconds = place,
-                                  .wall = place + how->rounds};
-    }
-    return RT_OK;
-}
-
-static RtStatus teach(const TimingRun *run, int threads, RtError *error) {
-    const RtRaySet *set = run->set;
-    for (size_t i = 0; i < run->count; i++) {
-        RtAccel *accel = run->accelerators[i]->accel;
+static RtStatus teach(raytally_accelerator *const *accelerators, size_t count, const RtRaySet *set,
+                      int threads, RtHit *hits, RtError *error) {
+    for (size_t i = 0; i < count; i++) {
+        RtAccel *accel = accelerators[i]->accel;
         if (!learns(accel)) continue;
-        RT_TRY(answer(accel, set, threads, run->hits, error));
-        RT_TRY(rt_accel_learn(accel, set->rays, run->hits, (size_t)set->count, error));
+        RT_TRY(answer(accel, set, threads, hits, error));
+        RT_TRY(rt_accel_learn(accel, set->rays, hits, (size_t)set->count, error));
     }
     return RT_OK;
 }
 
-static RtStatus take_times(TimingRun *run, const raytally_time_options *how, raytally_time *times,
-                           RtError *error) {
+static RtStatus time_all(raytally_accelerator *const *accelerators, size_t count, const RtRaySet *set,
+                         const raytally_time_options *how, raytally_time *times, RtError *error) {
     const RtTiming timing = {
         .rounds = {.rounds = how->rounds, .most = how->rounds, .least = how->least, .seed = how->seed},
         .threads = how->threads};
     uint32_t done = 0;
-    RT_TRY(teach(run, how->threads, error));
-    RT_TRY(rt_measure_time(run->timed, run->count, &timing, &done, error));
-    const double *first = run->timed[0].seconds;
-    for (size_t i = 0; i < run->count; i++) {
-        const double *own = run->timed[i].seconds;
-        times[i] = (raytally_time){.seconds = public_estimate(rt_estimate(own, done), done),
-                                   .ratio = public_estimate(rt_estimate_ratio(first, own, done), done)};
+    RT_ARENA(arena);
+    RtHit *hits = rt_arena_alloc(&arena, (size_t)set->count, sizeof(RtHit));
+    RtTimed *timed = rt_arena_alloc(&arena, count, sizeof(RtTimed));
+    double *seconds = rt_arena_alloc(&arena, count, 2 * (size_t)how->rounds * sizeof(double));
+    RT_TRY(rt_arena_check(&arena, "times", error));
+    for (size_t i = 0; i < count; i++, seconds += 2 * (size_t)how->rounds) {
+        timed[i] = (RtTimed){
+            .accel = accelerators[i]->accel, .set = set, .seconds = seconds, .wall = seconds + how->rounds};
     }
-    return RT_OK;
+    RtStatus status = teach(accelerators, count, set, how->threads, hits, error);
+    if (status == RT_OK) status = rt_measure_time(timed, count, &timing, &done, error);
+    for (size_t i = 0; i < count; i++) {
+        const double *first = timed[0].seconds, *own = timed[i].seconds;
+        status = forget(accelerators[i]->accel, status, error);
+        if (status == RT_OK)
+            times[i] = (raytally_time){.seconds = public_estimate(rt_estimate(own, done), done),
+                                       .ratio = public_estimate(rt_estimate_ratio(first, own, done), done)};
+    }
+    return status;
 }
 
 raytally_status raytally_time_all(raytally_accelerator *const *accelerators, size_t count,
                                   const raytally_rays *rays, const raytally_time_options *how,
                                   raytally_time *times, raytally_error *error) {
-    TimingRun run = {.accelerators = accelerators, .count = count, .set = &rays->set};
     raytally_time_options own = RAYTALLY_TIME_DEFAULTS;
     RT_C_LOCALE;
     RtStatus status = rt_options_take(&own, sizeof own, how, "raytally_time_options", rt_error_of(error));
-    if (status == RT_OK) status = check_timing(&own, &run, rt_error_of(error));
-    if (status == RT_OK) status = timing_run_init(&run, &own, rt_error_of(error));
-    if (status == RT_OK) {
-        status = take_times(&run, &own, times, rt_error_of(error));
-        for (size_t i = 0; i < count; i++)
-            status = forget(accelerators[i]->accel, status, rt_error_of(error));
+    if (status == RT_OK) status = check_timing(&own, count, &rays->set, rt_error_of(error));
+    if (status == RT_OK) status = time_all(accelerators, count, &rays->set, &own, times, rt_error_of(error));
+    return (raytally_status)status;
+}
+
+/* ---- verifying: one accelerator against brute on one scene ---- */
+
+/* The limit of `raytally verify`. */
+#define MOST_RAYS UINT64_C(20000000)
+
+/* Reports the first wrong answer; a broken structure, and too few certain rays, only if all answers are
+ * right. */
+static RtStatus judge(const RtAccel *accel, const RtVerifyRays *wanted, const RtEquivalence *result,
+                      const RtCertain *certain, const char *spec, RtError *error) {
+    char says[512];
+    if (result->any_wrong) {
+        rt_wrong_answer_format(&result->first_wrong, says, sizeof says);
+        return rt_fail(error, RT_MISMATCH, "%.200s differs from %s, first on %s", spec, rt_accel_truth(),
+                       says);
     }
-    rt_free(run.hits);
-    rt_free(run.timed);
-    rt_free(run.seconds);
+    RT_TRY(rt_accel_validate(accel, error));
+    if (accel->exact || rt_certain_suffices(certain, wanted->count, wanted->given)) return RT_OK;
+    rt_certain_undecided(certain, wanted->count, wanted->given, accel->absolute, says, sizeof says);
+    return rt_fail(error, RT_MISMATCH, "%.200s: %s", spec, says);
+}
+
+/* Answering the rays takes longest, so the accelerator is built first: a bad spec fails at once. */
+static RtStatus verify(RtVerifyScene *stage, const RtScene *scene, const RtVerifyRays *wanted,
+                       const char *spec, raytally_verify_result *out, RtError *error) {
+    RtAccel *accel;
+    RtEquivalence result;
+    RtCertain certain = {0};
+    RT_TRY(rt_verify_scene_init(stage, scene, wanted, error));
+    RT_TRY(rt_accel_open_on(spec, &stage->scene, wanted->threads, &accel, error));
+    RtStatus status = rt_verify_scene_answer(stage, wanted, error);
+    if (status == RT_OK)
+        status = rt_equivalence_check(&stage->reference, accel, wanted->threads, &result, error);
+    if (status == RT_OK && !accel->exact)
+        status = rt_reference_certain(&stage->reference, accel->absolute, wanted->threads, &certain, error);
+    if (status == RT_OK) {
+        *out = (raytally_verify_result){.rays = result.rays,
+                                        .equal = result.verdicts[RT_EQUAL],
+                                        .tie = result.verdicts[RT_TIE],
+                                        .marginal = result.verdicts[RT_MARGINAL],
+                                        .wrong = result.verdicts[RT_WRONG],
+                                        .occluded_wrong = result.occluded_wrong,
+                                        .certain = certain.certain,
+                                        .must_hit = certain.must_hit,
+                                        .certain_of = certain.rays};
+        status = judge(accel, wanted, &result, &certain, spec, error);
+    }
+    rt_accel_destroy(accel);
+    return status;
+}
+
+raytally_status raytally_verify(const raytally_scene *scene, const char *spec,
+                                const raytally_verify_options *how, raytally_verify_result *out,
+                                raytally_error *error) {
+    RtVerifyScene stage = {0};
+    raytally_verify_options own = RAYTALLY_VERIFY_DEFAULTS;
+    *out = (raytally_verify_result){0};
+    RT_C_LOCALE;
+    RtStatus status = rt_options_take(&own, sizeof own, how, "raytally_verify_options", rt_error_of(error));
+    RtVerifyRays wanted = {.count = own.given ? own.given->set.count : own.rays,
+                           .seed = own.seed,
+                           .threads = own.threads,
+                           .given = own.given ? &own.given->set : NULL};
+    if (status == RT_OK) status = rt_threads_check(own.threads, rt_error_of(error));
+    if (status == RT_OK && !own.given && (own.rays < 1 || own.rays > MOST_RAYS))
+        status = rt_fail(rt_error_of(error), RT_BAD_INPUT,
+                         "%" PRIu64 " rays to verify by: expected 1..%" PRIu64, own.rays, MOST_RAYS);
+    if (status == RT_OK) status = verify(&stage, &scene->scene, &wanted, spec, out, rt_error_of(error));
+    rt_verify_scene_clear(&stage);
     return (raytally_status)status;
 }

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "picture/buffers.h"
-
+/* Pictures of overlays that look rays up in cells. */
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "picture/canvas.h"
+#include "picture/pictures.h"
 
 #include <stdio.h>
 
@@ -219,17 +219,15 @@ static RtStatus draw_light_buffer(const char *file, const RtAccel *layer, uint32
     if (light >= scene->light_count)
         return rt_fail(error, RT_BAD_INPUT, "there is no light %u: the scene has %u, numbered from 0", light,
                        scene->light_count);
+    RT_ARENA(arena);
     CubeMap map = {.layer = layer,
                    .light = light,
                    .up = rt_major_axis(scene->camera.up),
-                   .cells = rt_alloc((size_t)WIDTH * HEIGHT, sizeof(RtCellView)),
+                   .cells = rt_arena_alloc(&arena, (size_t)WIDTH * HEIGHT, sizeof(RtCellView)),
                    .scale = {.logarithmic = true},
                    .em = rt_font_size(WIDTH)};
-    if (!map.cells)
-        return rt_fail_memory(error, "a picture of cells", (size_t)WIDTH * HEIGHT * sizeof(RtCellView));
-    RtStatus status = draw_cube_map(&map, file, marked, error);
-    rt_free(map.cells);
-    return status;
+    RT_TRY(rt_arena_check(&arena, "a picture of cells", error));
+    return draw_cube_map(&map, file, marked, error);
 }
 
 RtStatus rt_buffer_draw(const char *file, const RtAccel *layer, uint32_t light, const RtRay *marked,

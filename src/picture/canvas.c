@@ -263,10 +263,13 @@ double rt_text_width(cairo_t *cairo, const char *text) {
     return extents.x_advance;
 }
 
-static double draw_text(cairo_t *cairo, double x, double y, RtColor color, const char *format, va_list args) {
+double rt_draw_text(cairo_t *cairo, double x, double y, RtColor color, const char *format, ...) {
     char text[MAX_TEXT], utf8[MAX_TEXT];
     double end;
+    va_list args;
+    va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
+    va_end(args);
     make_utf8(text, utf8);
     rt_set_color(cairo, color, 1);
     cairo_move_to(cairo, x, y);
@@ -274,14 +277,6 @@ static double draw_text(cairo_t *cairo, double x, double y, RtColor color, const
     cairo_get_current_point(cairo, &end, &y);
     cairo_new_path(cairo);
     return end - x;
-}
-
-double rt_draw_text(cairo_t *cairo, double x, double y, RtColor color, const char *format, ...) {
-    va_list args;
-    va_start(args, format);
-    const double width = draw_text(cairo, x, y, color, format, args);
-    va_end(args);
-    return width;
 }
 
 void rt_draw_text_within(cairo_t *cairo, double x, double y, double room, RtColor color, const char *text) {
@@ -298,17 +293,18 @@ static double font_size(cairo_t *cairo) {
     return matrix.xx;
 }
 
-double rt_draw_key(cairo_t *cairo, double x, double y, RtColor color, const char *format, ...) {
+void rt_draw_key(cairo_t *cairo, double x, double y, RtColor color, const char *format, ...) {
     double em = font_size(cairo), side = floor(0.75 * em);
+    char text[MAX_TEXT];
     va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
     rt_fill_rectangle(cairo, floor(x), floor(y) - side, side, side, color);
     rt_set_color(cairo, RT_GREY, 1);
     cairo_rectangle(cairo, floor(x) + 0.5, floor(y) - side + 0.5, side - 1, side - 1);
     cairo_stroke(cairo);
-    va_start(args, format);
-    const double width = draw_text(cairo, x + 1.1 * em, y, RT_BLACK, format, args);
-    va_end(args);
-    return 1.1 * em + width;
+    rt_draw_text(cairo, x + 1.1 * em, y, RT_BLACK, "%s", text);
 }
 
 /* ---- scales ---- */

@@ -5,7 +5,7 @@
 #define RT_PICTURE_CANVAS_H
 
 #include "core/base/file.h"
-#include "render/image.h"
+#include "render/frame.h"
 
 #include <cairo.h>
 
@@ -107,10 +107,9 @@ double rt_text_width(cairo_t *cairo, const char *text);
 /* The same, truncated with "..." if the text is wider than `room`. */
 void rt_draw_text_within(cairo_t *cairo, double x, double y, double room, RtColor color, const char *text);
 
-/* A legend entry: a square of `color` as high as a capital letter, with an outline, and black text; returns
- * the width of both. */
-__attribute__((format(printf, 5, 6))) double rt_draw_key(cairo_t *cairo, double x, double y, RtColor color,
-                                                         const char *format, ...);
+/* A legend entry: a square of `color` as high as a capital letter, with an outline, and black text. */
+__attribute__((format(printf, 5, 6))) void rt_draw_key(cairo_t *cairo, double x, double y, RtColor color,
+                                                       const char *format, ...);
 
 /* Maps values to positions on a colour scale: `least` to 0, `most` to 1. A logarithmic scale, of log(1 +
  * value), starts at 0. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "picture/heatmap.h"
+#include "picture/pictures.h"
 
 #include "picture/canvas.h"
 
@@ -21,13 +21,10 @@ typedef struct Drawing {
     RtScale scale, difference;
 } Drawing;
 
-static double cost(const Drawing *d, uint32_t panel, uint32_t x, uint32_t y) {
-    return rt_frame_cost(d->panels[panel].frame, d->options->counter, x, y);
-}
-
 /* The value of a pixel; panel `count` is the difference. */
 static double value_of(const Drawing *d, uint32_t panel, uint32_t x, uint32_t y) {
-    return panel < d->count ? cost(d, panel, x, y) : cost(d, 0, x, y) - cost(d, 1, x, y);
+    if (panel == d->count) return value_of(d, 0, x, y) - value_of(d, 1, x, y);
+    return rt_frame_cost(d->panels[panel].frame, d->options->counter, x, y);
 }
 
 static Statistics statistics_of(const Drawing *d, uint32_t panel) {
@@ -101,13 +98,6 @@ static void draw_legend(const Drawing *d) {
                  d->options->rays ? d->options->rays : "all");
 }
 
-static RtStatus draw(Drawing *d, RtError *error) {
-    find_scales(d);
-    for (uint32_t i = 0; i < d->count + d->options->difference; i++) RT_TRY(draw_panel(d, i, error));
-    draw_legend(d);
-    return RT_OK;
-}
-
 RtStatus rt_heatmap_draw(const char *file, const RtHeatmapPanel *panels, uint32_t count,
                          const RtHeatmapOptions *options, RtError *error) {
     const RtSampling *s = &panels[0].frame->sampling;
@@ -121,7 +111,11 @@ RtStatus rt_heatmap_draw(const char *file, const RtHeatmapPanel *panels, uint32_
     d.pad = 0.5 * d.em;
     d.top = panels[0].label ? ceil((RT_LINE + 0.3) * d.em) : 0;
     double below = ceil(2 * d.pad + 2 * RT_LINE * d.em + rt_scale_height(d.em));
+    find_scales(&d);
     RT_TRY(rt_canvas_open(&canvas, file, d.width, d.top + s->height + below, d.em, error));
     d.cairo = canvas.cairo;
-    return rt_canvas_close(&canvas, draw(&d, error), error);
+    RtStatus status = RT_OK;
+    for (uint32_t i = 0; i < all && status == RT_OK; i++) status = draw_panel(&d, i, error);
+    draw_legend(&d);
+    return rt_canvas_close(&canvas, status, error);
 }

@@ -2,7 +2,7 @@
 /* The upper part is a section through a plane that contains the primary ray, turned about it so that the rays
  * that follow lie as close to it as they can: those of a ball lie in it. Rays that leave it are projected
  * onto it. The window shows the hits. The lower part has a row for each ray. */
-#include "picture/path_picture.h"
+#include "picture/pictures.h"
 
 #include "core/base/memory.h"
 #include "core/base/words.h"
@@ -119,14 +119,6 @@ static bool matters(const RtTreeRay *ray) {
     return ray->surface.material && (ray->factor >= 0.1f || ray->level == 1);
 }
 
-/* The ball around object `id`, unless the object is flat or the ball larger than `most`. */
-static void include_object(const Drawing *d, Window *window, uint32_t id, double most) {
-    const RtShape shape = rt_ref_shape(d->scene->geometry.objects[id]);
-    const RtBall ball = rt_object_ball(&d->scene->geometry, id);
-    if (shape == RT_SHAPE_POLYGON || shape == RT_SHAPE_TRIANGLE || ball.radius > most) return;
-    include(window, rt_section_point(&d->section, ball.center), ball.radius);
-}
-
 /* Of a ray that hits nothing: it and the scene. */
 static Window window_of_miss(const Drawing *d) {
     const RtBox *box = &d->scene->geometry.box;
@@ -149,7 +141,12 @@ static Window find_window(const Drawing *d) {
     }
     const double most = span_of(&window) > 1e-4 * far ? 2 * span_of(&window) : far / 4;
     for (uint32_t i = 0; i < d->tree->count; i++) {
-        if (matters(&d->tree->rays[i])) include_object(d, &window, d->tree->rays[i].hit.object, most);
+        const uint32_t id = d->tree->rays[i].hit.object;
+        if (!matters(&d->tree->rays[i])) continue;
+        const RtShape shape = rt_ref_shape(d->scene->geometry.objects[id]);
+        const RtBall ball = rt_object_ball(&d->scene->geometry, id);
+        if (shape != RT_SHAPE_POLYGON && shape != RT_SHAPE_TRIANGLE && ball.radius <= most)
+            include(&window, rt_section_point(&d->section, ball.center), ball.radius);
     }
     const double span = span_of(&window) > 1e-4 * far ? span_of(&window) : far / 4;
     const RtVec3d before = rt_add_scaledd(d->section.on, direction_of(primary), -span / 2);
@@ -190,9 +187,10 @@ static void draw_object(const Drawing *d, uint32_t id, bool met) {
 
 /* Those that rays hit over the others. */
 static RtStatus draw_objects(const Drawing *d, RtError *error) {
+    RT_ARENA(arena);
     const uint32_t count = d->scene->geometry.object_count;
-    bool *met = rt_alloc(count, sizeof(bool));
-    if (!met) return rt_fail_memory(error, "the objects of a drawing", count);
+    bool *met = rt_arena_alloc(&arena, count, sizeof(bool));
+    RT_TRY(rt_arena_check(&arena, "the objects of a drawing", error));
     for (uint32_t i = 0; i < d->tree->count; i++) {
         if (d->tree->rays[i].hit.object < count) met[d->tree->rays[i].hit.object] = true;
     }
@@ -201,7 +199,6 @@ static RtStatus draw_objects(const Drawing *d, RtError *error) {
             if (met[id] == (pass == 1)) draw_object(d, id, met[id]);
         }
     }
-    rt_free(met);
     return RT_OK;
 }
 
@@ -234,19 +231,6 @@ static RtVec3d drawn_end(const Drawing *d, const RtTreeRay *ray) {
                           2 * (d->width + d->height) / d->section.scale);
 }
 
-/* Shadow rays nearly always leave it: lights are elsewhere. */
-static bool leaves_plane(const Drawing *d, const RtTreeRay *ray) {
-    RtVec3d from_plane = rt_subd(rt_widen(ray->ray.org), d->section.on);
-    return ray->ray.kind != RT_RAY_SHADOW &&
-           (fabs(rt_dotd(from_plane, d->section.normal)) * d->section.scale > BESIDE ||
-            fabs(rt_dotd(direction_of(ray), d->section.normal)) > slant);
-}
-
-static RtColor paler(RtColor color) {
-    for (int c = 0; c < 3; c++) color.rgb[c] = (uint8_t)(127 + color.rgb[c] / 2);
-    return color;
-}
-
 static void draw_number(const Drawing *d, const RtTreeRay *ray, RtPoint from, RtPoint to, RtColor color) {
     const double dx = to.x - from.x, dy = to.y - from.y, length = sqrt(dx * dx + dy * dy);
     char text[16];
@@ -265,13 +249,6 @@ static void draw_arrow(const Drawing *d, RtPoint from, RtPoint to, RtStyle style
     rt_draw_arrow_head(d->cairo, from, to, head, style.color);
 }
 
-static void draw_cross(const Drawing *d, RtPoint at, RtStyle style) {
-    rt_add_line(d->cairo, (RtPoint){at.x - 5, at.y - 5}, (RtPoint){at.x + 5, at.y + 5});
-    rt_add_line(d->cairo, (RtPoint){at.x - 5, at.y + 5}, (RtPoint){at.x + 5, at.y - 5});
-    style.width = 2, style.dashed = false;
-    rt_paint(d->cairo, style);
-}
-
 static void draw_ray(const Drawing *d, const RtTreeRay *ray) {
     const bool shadow = ray->ray.kind == RT_RAY_SHADOW, ends = isfinite((double)ray->hit.t);
     RtPoint from = rt_section_point(&d->section, rt_widen(ray->ray.org));
@@ -280,14 +257,22 @@ static void draw_ray(const Drawing *d, const RtTreeRay *ray) {
     bool whole;
     if (!cut_line(d, &from, &to, &whole)) return;
     if (!shadow) style.width = 0.8 + 1.4 * sqrt((double)ray->factor);
-    if (leaves_plane(d, ray)) style.color = paler(style.color);
+    /* Shadow rays nearly always leave the plane: lights are elsewhere. */
+    RtVec3d from_plane = rt_subd(rt_widen(ray->ray.org), d->section.on);
+    const double beside = fabs(rt_dotd(from_plane, d->section.normal)) * d->section.scale;
+    const bool leaves = beside > BESIDE || fabs(rt_dotd(direction_of(ray), d->section.normal)) > slant;
+    for (int c = 0; c < 3 && !shadow && leaves; c++)
+        style.color.rgb[c] = (uint8_t)(127 + style.color.rgb[c] / 2); /* paler */
     draw_arrow(d, from, to, style, shadow ? 8 : 11);
     if (d->tree->count <= MOST_ROWS) draw_number(d, ray, from, to, style.color);
     if (!whole || !ends) return;
-    if (shadow)
-        draw_cross(d, to, style);
-    else
+    if (!shadow) {
         rt_draw_disc(d->cairo, to, 4, style.color);
+        return;
+    }
+    rt_add_line(d->cairo, (RtPoint){to.x - 5, to.y - 5}, (RtPoint){to.x + 5, to.y + 5});
+    rt_add_line(d->cairo, (RtPoint){to.x - 5, to.y + 5}, (RtPoint){to.x + 5, to.y - 5});
+    rt_paint(d->cairo, (RtStyle){style.color, 2, 0, false});
 }
 
 static void draw_normal(const Drawing *d, const RtTreeRay *ray) {

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* In perspective, boxes are drawn in homogeneous view coordinates: (x, y, w) with w the distance along the
  * axis and -w <= x, y <= w inside the image, so that the near plane and the sides of the view clip alike.
- * In section, boxes and objects are cut by a plane (section.h). */
-#include "picture/structure.h"
+ * In section, boxes and objects are cut by a plane. */
+#include "picture/pictures.h"
 
 #include "core/base/elementary.h"
 #include "core/base/memory.h"
-#include "picture/extent_outline.h"
 #include "picture/section.h"
 
 #include <stdio.h>
@@ -25,8 +24,8 @@ typedef struct Drawing {
     double em;            /* the font size */
     RtView view;
     double near;
-    RtSectionPlane plane;
-    RtSection section;    /* the plane in the picture */
+    RtSection section;    /* the slice */
+    int across, up;       /* its axes */
     uint32_t first, last; /* range of drawn levels */
     uint32_t level;       /* current level */
     bool hidden;          /* draw hidden or visible edges */
@@ -45,11 +44,10 @@ static bool is_empty_leaf(const Drawing *d, const RtBoxView *view) {
 /* Is the box within the requested levels and slice? */
 static bool is_shown(const Drawing *d, const RtBoxView *view) {
     const RtStructureOptions *o = d->options;
-    RtPoint corners[RT_OUTLINE_CORNERS];
     if (rt_box_is_empty(*view->box) || view->depth < o->first_level || view->depth > o->last_level ||
         (o->leaves && !view->leaf) || is_empty_leaf(d, view))
         return false;
-    return !o->slice || rt_outline_section(view, d->plane, corners) > 0;
+    return !o->slice || rt_section_add_extent(&d->section, NULL, view);
 }
 
 static double size_of(const RtBox *box) {
@@ -80,12 +78,9 @@ static double place_of_level(const Drawing *d, uint32_t level) {
     return d->last > d->first ? (double)(level - d->first) / (d->last - d->first) : 0;
 }
 
-static double place_of_size(const Drawing *d, double size) {
-    return rt_log(d->most / fmax(fmin(size, d->most), d->least)) / rt_log(d->most / d->least);
-}
-
 static double place_of_box(const Drawing *d, const RtBoxView *view) {
-    return is_by_size(d) ? place_of_size(d, size_of(view->box)) : place_of_level(d, view->depth);
+    if (!is_by_size(d)) return place_of_level(d, view->depth);
+    return rt_log(d->most / fmax(fmin(size_of(view->box), d->most), d->least)) / rt_log(d->most / d->least);
 }
 
 /* Dark and thick at 0, lighter and thinner towards 1. */
@@ -196,20 +191,8 @@ static RtStatus draw_perspective(Drawing *d, RtError *error) {
 
 static void fill_box(void *context, const RtBoxView *view) {
     const Drawing *d = context;
-    RtPoint corners[RT_OUTLINE_CORNERS];
     if (!is_shown(d, view)) return;
-    if (rt_outline_kind(view) == RT_EXTENT_SPHERE) {
-        const RtBall *ball = &view->extents->balls[view->extent];
-        rt_section_add_ball(&d->section, d->cairo, ball->center, ball->radius);
-    } else {
-        uint32_t count = rt_outline_section(view, d->plane, corners);
-        for (uint32_t i = 0; i < count; i++) {
-            RtVec3d corner = d->section.on;
-            corner.at[d->plane.across] = corners[i].x, corner.at[d->plane.up] = corners[i].y;
-            corners[i] = rt_section_point(&d->section, corner);
-        }
-        rt_add_polygon(d->cairo, corners, count);
-    }
+    rt_section_add_extent(&d->section, d->cairo, view);
     if (view->leaf) {
         set_line(d, place_of_box(d, view), 0.12);
         cairo_fill_preserve(d->cairo);
@@ -218,42 +201,35 @@ static void fill_box(void *context, const RtBoxView *view) {
     cairo_stroke(d->cairo);
 }
 
-static void choose_plane(Drawing *d) {
-    RtVec3 up = d->layer->scene->camera.up;
-    d->plane.axis = d->options->axis;
-    d->plane.at = d->options->at;
-    up.at[d->plane.axis] = 0;
-    d->plane.up = rt_major_axis(up) != d->plane.axis ? rt_major_axis(up) : (d->plane.axis + 1) % 3;
-    d->plane.across = 3 - d->plane.up - d->plane.axis;
-}
-
 /* The region that the camera sees at its target, or the whole scene if that is smaller. */
-static void choose_window(Drawing *d) {
+static void choose_section(Drawing *d) {
     const RtBox *box = &d->layer->scene->geometry.box;
     const RtCamera *camera = &d->layer->scene->camera;
+    const int axis = d->options->axis;
+    RtVec3 up = camera->up;
+    up.at[axis] = 0;
+    d->up = rt_major_axis(up) != axis ? rt_major_axis(up) : (axis + 1) % 3;
+    d->across = 3 - d->up - axis;
     RtVec3d size = rt_subd(rt_widen(box->hi), rt_widen(box->lo)), center = rt_widen(rt_box_center(*box));
     double distance = rt_lengthd(rt_subd(rt_widen(camera->at), rt_widen(camera->from)));
     RtTurn half = rt_turn((double)camera->fov / 2);
     double seen = d->height / (2 * distance * half.sine / half.cosine);
-    double scale = 0.96 * fmin(d->width / fmax(size.at[d->plane.across], 1e-30),
-                               d->height / fmax(size.at[d->plane.up], 1e-30));
+    double scale =
+        0.96 * fmin(d->width / fmax(size.at[d->across], 1e-30), d->height / fmax(size.at[d->up], 1e-30));
     if (seen > scale) scale = seen, center = rt_widen(camera->at);
     d->section = (RtSection){.on = center, .origin = {d->width / 2, d->height / 2}, .scale = scale};
-    d->section.on.at[d->plane.axis] = d->plane.at;
-    d->section.right.at[d->plane.across] = 1;
-    d->section.up.at[d->plane.up] = 1;
-    d->section.normal.at[d->plane.axis] = 1;
+    d->section.on.at[axis] = d->options->at;
+    d->section.right.at[d->across] = 1;
+    d->section.up.at[d->up] = 1;
+    d->section.normal.at[axis] = 1;
 }
 
 static RtStatus draw_section(Drawing *d, RtError *error) {
     const RtGeometry *g = &d->layer->scene->geometry;
     RtCrossing *crossings;
     RT_TRY(rt_crossings_alloc(g, &crossings, error));
-    choose_window(d);
     for (uint32_t id = 0; id < g->object_count; id++) {
-        const RtBox *box = &g->boxes[id];
-        if ((double)box->lo.at[d->plane.axis] <= d->plane.at &&
-            d->plane.at <= (double)box->hi.at[d->plane.axis])
+        if (rt_section_add_extent(&d->section, NULL, &(RtBoxView){.box = &g->boxes[id]}))
             rt_section_add_object(&d->section, d->cairo, g, id, crossings);
     }
     rt_free(crossings);
@@ -267,10 +243,6 @@ static RtStatus draw_section(Drawing *d, RtError *error) {
 }
 
 /* ---- the legend ---- */
-
-static double legend_height(double em) {
-    return ceil((0.9 + RT_LINE * LINES) * em);
-}
 
 /* Samples of the lines of levels, of some if there are many, or of sizes; then of objects in a section. */
 static void draw_keys(const Drawing *d, double x, double y) {
@@ -304,7 +276,7 @@ static void draw_legend(const Drawing *d) {
     double left = 0.5 * d->em, y = d->height + 1.5 * d->em;
     if (d->options->slice)
         rt_draw_text(d->cairo, left, y, RT_BLACK, "%s, section at %c = %.4g, %c up", d->layer->ops->name,
-                     axes[d->plane.axis], d->plane.at, axes[d->plane.up]);
+                     axes[d->options->axis], d->options->at, axes[d->up]);
     else
         rt_draw_text(d->cairo, left, y, RT_BLACK, "%s", d->layer->ops->name);
     rt_draw_text(d->cairo, left, y + RT_LINE * d->em, RT_BLACK, "%llu of %llu %s%s",
@@ -315,25 +287,18 @@ static void draw_legend(const Drawing *d) {
 
 /* ---- from outside ---- */
 
-static bool has_picture(const RtAccelOps *ops) {
-    return ops->each_box || ops->find_cell;
-}
-
-static RtStatus refuse(const RtAccelOps *ops, RtError *error) {
+/* Is this the layer to draw? `last`: no layer below. */
+static RtStatus choose(const RtAccelOps *ops, const char *name, bool last, bool *chosen, RtError *error) {
+    const bool can = ops->each_box || ops->find_cell;
+    *chosen = name ? strcmp(ops->name, name) == 0 : can;
+    if (*chosen ? can : !last) return RT_OK;
+    if (name && !*chosen)
+        return rt_fail(error, RT_BAD_INPUT, "there is no layer '%s' in this accelerator", name);
     return rt_fail(
         error, RT_NOT_AVAILABLE,
         "there is no picture of %s, which has neither boxes nor cells: choose another, such as bvh or grid; "
         "a plugin shows its boxes by `each_box`",
         ops->name);
-}
-
-/* Is this the layer to draw? `last`: no layer below. */
-static RtStatus choose(const RtAccelOps *ops, const char *name, bool last, bool *chosen, RtError *error) {
-    *chosen = name ? strcmp(ops->name, name) == 0 : has_picture(ops);
-    if (*chosen && !has_picture(ops)) return refuse(ops, error);
-    if (*chosen || !last) return RT_OK;
-    return name ? rt_fail(error, RT_BAD_INPUT, "there is no layer '%s' in this accelerator", name)
-                : refuse(ops, error);
 }
 
 RtStatus rt_structure_layer(const RtAccel *accel, const char *name, const RtAccel **layer, RtError *error) {
@@ -353,11 +318,10 @@ RtStatus rt_structure_available(const RtSpec *spec, const char *name, RtError *e
 }
 
 static RtStatus draw(Drawing *d, RtError *error) {
-    RtStatus status;
     cairo_save(d->cairo);
     cairo_rectangle(d->cairo, 0, 0, d->width, d->height);
     cairo_clip(d->cairo);
-    status = d->options->slice ? draw_section(d, error) : draw_perspective(d, error);
+    RtStatus status = d->options->slice ? draw_section(d, error) : draw_perspective(d, error);
     cairo_restore(d->cairo);
     RT_TRY(status);
     draw_legend(d);
@@ -376,7 +340,7 @@ RtStatus rt_structure_draw(const char *file, const RtAccel *layer, const RtFrame
                  .width = s->width,
                  .height = s->height,
                  .em = rt_font_size(width)};
-    choose_plane(&d);
+    choose_section(&d);
     layer->ops->each_box(layer, (RtBoxViewer){count_box, &d});
     RT_TRY(rt_accel_check(layer, error));
     /* A floor much larger than the view should not determine the scale. */
@@ -386,7 +350,8 @@ RtStatus rt_structure_draw(const char *file, const RtAccel *layer, const RtFrame
         return rt_fail(error, RT_BAD_INPUT,
                        "none of the %llu boxes of %s is on the requested levels or in the slice",
                        (unsigned long long)d.all, layer->ops->name);
-    RT_TRY(rt_canvas_open(&canvas, file, width, s->height + legend_height(d.em), d.em, error));
+    RT_TRY(
+        rt_canvas_open(&canvas, file, width, s->height + ceil((0.9 + RT_LINE * LINES) * d.em), d.em, error));
     d.cairo = canvas.cairo;
     return rt_canvas_close(&canvas, draw(&d, error), error);
 }

@@ -156,21 +156,21 @@ static RtStatus trace_frame(Recorder *recorder, const RtAccel *accel, uint32_t k
     return kinds & BIT(OCCLUSION) ? make_occlusion(recorder, error) : RT_OK;
 }
 
-static RtStatus make_sets(Recorder *recorder, const RtAccel *accel, RtError *error) {
-    const uint32_t kinds = recorder->recording->kinds ? recorder->recording->kinds : RT_ALL_RAY_KINDS;
-    if (kinds & (OF_HITS | OF_TREE)) RT_TRY(trace_frame(recorder, accel, kinds, error));
-    if (kinds & BIT(RANDOM)) RT_TRY(make_random(recorder, error));
-    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_seal(&recorder->sets[kind]);
-    return RT_OK;
-}
-
 RtStatus rt_rayset_record(RtRaySet *sets, const RtAccel *accel, const RtRecording *recording,
                           RtError *error) {
+    const uint32_t kinds = recording->kinds ? recording->kinds : RT_ALL_RAY_KINDS;
     Recorder recorder = {.recording = recording, .scene = accel->scene, .sets = sets};
+    RtStatus status = RT_OK;
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) sets[kind] = (RtRaySet){.kind = (RtRayKind)kind};
-    RtStatus status = make_sets(&recorder, accel, error);
+    if (kinds & (OF_HITS | OF_TREE)) status = trace_frame(&recorder, accel, kinds, error);
+    if (status == RT_OK && kinds & BIT(RANDOM)) status = make_random(&recorder, error);
     rt_frame_clear(&recorder.frame);
-    for (int kind = 0; status != RT_OK && kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_clear(&sets[kind]);
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
+        if (status == RT_OK)
+            rt_rayset_seal(&sets[kind]);
+        else
+            rt_rayset_clear(&sets[kind]);
+    }
     return status;
 }
 

@@ -2,7 +2,7 @@
 /* Ray sets: rays of one kind recorded from one scene, and traced by every accelerator alike.
  *
  * Primary, shadow, reflection and transmission rays are those of a frame of the scene, in the order of the
- * frame's tiles (each along a Z-order curve: render/tiles.h), on any number of threads: neighbours in a set
+ * frame's tiles (each along a Z-order curve: render/frame.h), on any number of threads: neighbours in a set
  * start and end close to one another if the kind allows it. Diffuse rays start at the primary hits,
  * cosine-distributed about the normal; random rays are chords of the scene's bounding sphere between two
  * uniform points of it. Occlusion rays are the diffuse ones, of another kind. */

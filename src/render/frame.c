@@ -15,6 +15,53 @@
 #include <pthread.h>
 #include <string.h>
 
+/* ---- the order of tiles ---- */
+
+typedef struct Walk {
+    const RtSampling *sampling;
+    uint32_t across, down; /* tiles */
+    bool whole;            /* visit whole or cut tiles */
+    RtSample *next;
+} Walk;
+
+static uint32_t tiles_along(uint32_t samples) {
+    return (samples + RT_TILE - 1) / RT_TILE;
+}
+
+size_t rt_tile_count(const RtSampling *sampling) {
+    return (size_t)tiles_along(sampling->columns) * tiles_along(sampling->rows);
+}
+
+/* Does the part of the tile inside the frame consist of whole 8 x 8 blocks? */
+static bool is_whole(const RtSampling *sampling, RtSample tile) {
+    uint32_t right = sampling->columns - tile.column, below = sampling->rows - tile.row;
+    return (right >= RT_TILE || right % 8 == 0) && (below >= RT_TILE || below % 8 == 0);
+}
+
+/* Visits the square of side x side tiles from that column and row of tiles on. */
+static void walk_square(Walk *walk, uint32_t column, uint32_t row, uint32_t side) {
+    if (column >= walk->across || row >= walk->down) return;
+    if (side == 1) {
+        RtSample tile = {column * RT_TILE, row * RT_TILE};
+        if (is_whole(walk->sampling, tile) == walk->whole) *walk->next++ = tile;
+        return;
+    }
+    side /= 2;
+    for (uint32_t quarter = 0; quarter < 4; quarter++)
+        walk_square(walk, column + (quarter & 1) * side, row + (quarter >> 1) * side, side);
+}
+
+void rt_tiles_in_order(const RtSampling *sampling, RtSample *tiles) {
+    Walk walk = {sampling, tiles_along(sampling->columns), tiles_along(sampling->rows), true, tiles};
+    uint32_t side = 1;
+    while (side < walk.across || side < walk.down) side *= 2;
+    walk_square(&walk, 0, 0, side);
+    walk.whole = false;
+    walk_square(&walk, 0, 0, side);
+}
+
+/* ---- workers ---- */
+
 enum { STREAM = 1024, LEVEL = RT_MAX_SPAWN * STREAM };
 
 /* Where the light of a ray goes. */
@@ -71,6 +118,7 @@ struct Job {
     size_t tile_count, tiles_done;
     pthread_mutex_t lock; /* guards tiles_done and the calls of progress */
     Worker *workers;
+    RtArena memory; /* of these arrays */
 };
 
 static void add_light(Worker *worker, Path path, RtVec3 light) {
@@ -94,14 +142,6 @@ static uint32_t show(Worker *worker, Path path, RtFrameRay ray) {
 
 static double clock_of(const Worker *worker) {
     return worker->job->options->share ? rt_wall_seconds() : 0;
-}
-
-/* Moves the cost of one ray to its sample and its kind. */
-static void charge(Worker *worker, uint32_t sample, uint32_t kind, RtTally cost[RT_RAY_KIND_COUNT]) {
-    uint32_t kinds = worker->job->options->cost_kinds;
-    if (kinds == 0 || kinds >> kind & 1) rt_tally_add(&worker->job->frame->cost[sample], &cost[kind]);
-    rt_tally_add(&worker->tallies[kind], &cost[kind]);
-    cost[kind] = (RtTally){0};
 }
 
 /* Counts rays by kind, and keeps them with keep_rays. */
@@ -135,10 +175,15 @@ static RtStatus trace_stream(Worker *worker, const RtRay *rays, const Path *path
         worker->querying += clock_of(worker) - start;
         return RT_OK;
     }
+    const uint32_t kinds = worker->job->options->cost_kinds;
     RtTally cost[RT_RAY_KIND_COUNT] = {0};
     for (uint32_t i = 0; i < count; i++) {
+        const uint32_t kind = rays[i].kind;
         ask(worker, rays, i, 1, cost);
-        charge(worker, paths[i].sample, rays[i].kind, cost);
+        if (kinds == 0 || kinds >> kind & 1)
+            rt_tally_add(&worker->job->frame->cost[paths[i].sample], &cost[kind]);
+        rt_tally_add(&worker->tallies[kind], &cost[kind]);
+        cost[kind] = (RtTally){0};
     }
     return RT_OK;
 }
@@ -210,14 +255,6 @@ static void spawn(Worker *worker, uint32_t surface_count, Level *below) {
     }
 }
 
-static void record_primary(Worker *worker, const Path *paths, uint32_t count) {
-    RtFrame *frame = worker->job->frame;
-    for (uint32_t i = 0; i < count; i++) {
-        frame->object[paths[i].sample] = worker->hits[i].object;
-        frame->depth[paths[i].sample] = worker->hits[i].t;
-    }
-}
-
 static RtStatus trace_level(Worker *worker, uint32_t depth, RtError *error) {
     Level *level = &worker->levels[depth];
     bool deepest = depth + 1 == worker->job->options->depth;
@@ -226,7 +263,10 @@ static RtStatus trace_level(Worker *worker, uint32_t depth, RtError *error) {
         const RtRay *rays = level->rays + begin;
         const Path *paths = level->paths + begin;
         RT_TRY(trace_stream(worker, rays, paths, count, error));
-        if (depth == 0) record_primary(worker, paths, count);
+        for (uint32_t i = 0; depth == 0 && i < count; i++) {
+            worker->job->frame->object[paths[i].sample] = worker->hits[i].object;
+            worker->job->frame->depth[paths[i].sample] = worker->hits[i].t;
+        }
         uint32_t surface_count = find_surfaces(worker, rays, paths, count);
         RT_TRY(trace_shadows(worker, surface_count, error));
         if (deepest) continue;
@@ -273,44 +313,32 @@ static RtStatus trace_tile(void *context, size_t tile, int thread, RtError *erro
 
 /* ---- memory ---- */
 
-static RtStatus init_worker(Worker *worker, Job *job, const RtAccel *accel, RtError *error) {
-    uint32_t depth = job->options->depth;
-    worker->job = job;
-    worker->levels = rt_alloc(depth, sizeof(Level));
-    if (!worker->levels) return rt_fail_memory(error, "the rays of a thread", depth * sizeof(Level));
-    return rt_query_init(&worker->query, accel, error);
-}
-
 static RtStatus init_frame(RtFrame *frame, const RtSampling *sampling, bool counted, RtError *error) {
-    size_t samples = (size_t)sampling->columns * sampling->rows;
+    const size_t samples = (size_t)sampling->columns * sampling->rows;
     if (samples > RT_MAX_FRAME_SAMPLES)
         return rt_fail(error, RT_BAD_INPUT,
                        "a frame of %u x %u samples: at most %u samples fit; take a smaller image or fewer "
                        "samples per pixel",
                        sampling->columns, sampling->rows, RT_MAX_FRAME_SAMPLES);
     frame->sampling = *sampling;
-    frame->color = rt_alloc(samples, sizeof(RtVec3));
-    frame->object = rt_alloc(samples, sizeof(uint32_t));
-    frame->depth = rt_alloc(samples, sizeof(float));
-    if (counted) frame->cost = rt_alloc(samples, sizeof(RtTally));
-    if (frame->color && frame->object && frame->depth && (frame->cost || !counted)) return RT_OK;
-    size_t each = sizeof(RtVec3) + sizeof(uint32_t) + sizeof(float) + (counted ? sizeof(RtTally) : 0);
-    return rt_fail_memory(error, "a frame", samples * each);
+    frame->color = rt_arena_alloc(&frame->memory, samples, sizeof(RtVec3));
+    frame->object = rt_arena_alloc(&frame->memory, samples, sizeof(uint32_t));
+    frame->depth = rt_arena_alloc(&frame->memory, samples, sizeof(float));
+    if (counted) frame->cost = rt_arena_alloc(&frame->memory, samples, sizeof(RtTally));
+    return rt_arena_check(&frame->memory, "a frame", error);
 }
 
 static RtStatus init_tiles(Job *job, const RtSampling *sampling, RtError *error) {
     const RtFrameObserver *observer = job->options->observer;
     job->tile_count = observer ? 1 : rt_tile_count(sampling);
-    job->tiles = rt_alloc(job->tile_count, sizeof(RtSample));
-    if (!job->tiles) return rt_fail_memory(error, "the tiles of a frame", job->tile_count * sizeof(RtSample));
+    job->tiles = rt_arena_alloc(&job->memory, job->tile_count, sizeof(RtSample));
+    if (job->options->keep_rays) job->kept = rt_arena_alloc(&job->memory, job->tile_count, sizeof(TileRays));
+    RT_TRY(rt_arena_check(&job->memory, "the tiles of a frame", error));
     if (observer)
         job->tiles[0] = observer->tile;
     else
         rt_tiles_in_order(sampling, job->tiles);
-    if (!job->options->keep_rays) return RT_OK;
-    job->kept = rt_alloc(job->tile_count, sizeof(TileRays));
-    if (job->kept) return RT_OK;
-    return rt_fail_memory(error, "the ray lists of tiles", job->tile_count * sizeof(TileRays));
+    return RT_OK;
 }
 
 /* Concatenates the lists of all tiles, kind by kind, and frees them on the way. */
@@ -331,19 +359,8 @@ static RtStatus join_rays(Job *job, RtError *error) {
     return RT_OK;
 }
 
-static void clear_tiles(Job *job) {
-    for (size_t i = 0; job->kept && i < job->tile_count; i++) {
-        for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_free(job->kept[i].rays[kind]);
-    }
-    rt_free(job->kept);
-    rt_free(job->tiles);
-}
-
 void rt_frame_clear(RtFrame *frame) {
-    rt_free(frame->color);
-    rt_free(frame->object);
-    rt_free(frame->depth);
-    rt_free(frame->cost);
+    rt_arena_clear(&frame->memory);
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_free(frame->rays[kind]);
     *frame = (RtFrame){0};
 }
@@ -353,11 +370,16 @@ void rt_frame_clear(RtFrame *frame) {
 static RtStatus run(Job *job, const RtAccel *accel, RtError *error) {
     int threads = rt_thread_count(job->options->threads);
     if ((size_t)threads > job->tile_count) threads = (int)job->tile_count;
-    job->workers = rt_alloc((size_t)threads, sizeof(Worker));
-    if (!job->workers) return rt_fail_memory(error, "workers", (size_t)threads * sizeof(Worker));
+    const uint32_t depth = job->options->depth;
+    job->workers = rt_arena_alloc(&job->memory, (size_t)threads, sizeof(Worker));
+    Level *levels = rt_arena_alloc(&job->memory, (size_t)threads * depth, sizeof(Level));
+    RT_TRY(rt_arena_check(&job->memory, "the rays of threads", error));
     RtStatus status = RT_OK;
-    for (int i = 0; i < threads && status == RT_OK; i++)
-        status = init_worker(&job->workers[i], job, accel, error);
+    for (int i = 0; i < threads && status == RT_OK; i++) {
+        job->workers[i].job = job;
+        job->workers[i].levels = levels + (size_t)i * depth;
+        status = rt_query_init(&job->workers[i].query, accel, error);
+    }
     double start = rt_wall_seconds();
     if (status == RT_OK) status = rt_parallel_for(job->tile_count, threads, trace_tile, job, error);
     job->frame->seconds = rt_wall_seconds() - start;
@@ -371,10 +393,8 @@ static RtStatus run(Job *job, const RtAccel *accel, RtError *error) {
             job->frame->ray_count[kind] += job->workers[i].ray_count[kind];
         }
         rt_query_clear(&job->workers[i].query);
-        rt_free(job->workers[i].levels);
     }
     job->frame->share = working > 0 ? querying / working : 0;
-    rt_free(job->workers);
     return status == RT_OK ? join_rays(job, error) : status;
 }
 
@@ -393,7 +413,10 @@ RtStatus rt_frame_trace(RtFrame *frame, const RtAccel *accel, const RtFrameOptio
         status = run(&job, accel, error);
         pthread_mutex_destroy(&job.lock);
     }
-    clear_tiles(&job);
+    for (size_t i = 0; status != RT_OK && job.kept && i < job.tile_count; i++) {
+        for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_free(job.kept[i].rays[kind]);
+    }
+    rt_arena_clear(&job.memory);
     if (status != RT_OK) rt_frame_clear(frame);
     return status;
 }

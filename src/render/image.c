@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "render/image.h"
+#include "render/frame.h"
 
 #include "core/base/elementary.h"
 #include "core/base/file.h"

@@ -106,15 +106,6 @@ static RtStatus teach(RtAccel *accel, RtQuery *query, const RtRay *ray, RtError 
     return rt_accel_learn(accel, ray, &hit, 1, error);
 }
 
-/* The kernels of the top layer are called directly, because they name the occluder. */
-static void ask(const RtQuery *query, const RtRay *ray, RtPath *path, RtTally *tallies) {
-    const RtAccel *accel = query->accel;
-    if (path->any)
-        accel->ops->occluded_counted(accel, query->scratch, ray, 1, &path->hit.object, tallies);
-    else
-        accel->ops->nearest_counted(accel, query->scratch, ray, 1, &path->hit, tallies);
-}
-
 static RtStatus compare(RtPath *path, const RtTally *counted, bool remote, RtError *error) {
     path->tally.rays = counted->rays;
     path->tally.hits = counted->hits;
@@ -148,7 +139,10 @@ RtStatus rt_path_trace(RtPath *path, RtAccel *accel, const RtRay *ray, RtError *
         Recorder recorder = {path, RT_OK, error};
         rt_query_begin(&query);
         rt_trace_observer = &(RtTraceObserver){record, &recorder};
-        ask(&query, &path->ray, path, tallies);
+        if (path->any) /* the kernels of the top layer are called directly, because they name the occluder */
+            accel->ops->occluded_counted(accel, query.scratch, &path->ray, 1, &path->hit.object, tallies);
+        else
+            accel->ops->nearest_counted(accel, query.scratch, &path->ray, 1, &path->hit, tallies);
         rt_trace_observer = NULL;
         status = recorder.status;
     }

@@ -120,11 +120,6 @@ RtStatus rt_ray_trees_trace(RtRayTree *trees, const RtAccel *accel, const RtSamp
     return status;
 }
 
-RtStatus rt_ray_tree_trace(RtRayTree *tree, const RtAccel *accel, RtSample sample, uint32_t depth,
-                           RtError *error) {
-    return rt_ray_trees_trace(tree, accel, &sample, 1, depth, error);
-}
-
 void rt_ray_tree_clear(RtRayTree *tree) {
     rt_free(tree->rays);
     *tree = (RtRayTree){0};

@@ -55,12 +55,9 @@ typedef struct RtRayTree {
                       * children; empty if the sample has no valid ray */
 } RtRayTree;
 
-/* Traces the sample of the frame's grid, to `depth` levels, 1..RT_MAX_DEPTH. */
-RtStatus rt_ray_tree_trace(RtRayTree *tree, const RtAccel *accel, RtSample sample, uint32_t depth,
-                           RtError *error);
-
-/* The same for samples[0..count) of one tile (rt_tile_of). The order of a sample's rays depends on those of
- * its tile, so a tile is traced as a whole, once for all samples. After a failure all trees are empty. */
+/* Traces samples[0..count) of one tile (rt_tile_of) of the frame's grid, to `depth` levels, 1..RT_MAX_DEPTH.
+ * The order of a sample's rays depends on those of its tile, so a tile is traced as a whole, once for all
+ * samples. After a failure all trees are empty. */
 RtStatus rt_ray_trees_trace(RtRayTree *trees, const RtAccel *accel, const RtSample *samples, uint32_t count,
                             uint32_t depth, RtError *error);
 

@@ -9,7 +9,6 @@
 #include "results/result_tables.h"
 #include "run/worker.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
@@ -68,21 +67,21 @@ RtStatus rt_callgrind_save_rays(void *context, uint32_t workload, const RtRaySet
                                 RtError *error) {
     enum { RUN = 64 }; /* neighbours, so that packets are coherent */
     const RtCallgrind *callgrind = context;
+    RT_ARENA(arena);
     char path[RT_MAX_PATH];
     RtRaySet some;
     RtOutput output;
     RT_TRY(rays_path(callgrind, workload, set->kind, path, error));
     RT_TRY(rt_rayset_limit(set, callgrind->most, RUN, &some, error));
-    RtHit *hits = rt_alloc(some.count, sizeof(RtHit));
-    RtStatus status = hits ? rt_measure_answers(exact, &some, 1, hits, error)
-                           : rt_fail_memory(error, "answers", some.count * sizeof(RtHit));
+    RtHit *hits = rt_arena_alloc(&arena, some.count, sizeof(RtHit));
+    RtStatus status = rt_arena_check(&arena, "answers", error);
+    if (status == RT_OK) status = rt_measure_answers(exact, &some, 1, hits, error);
     if (status == RT_OK) status = rt_output_open(&output, path, error);
     if (status == RT_OK) {
         fwrite(some.rays, sizeof(RtRay), some.count, output.file);
         fwrite(hits, sizeof(RtHit), some.count, output.file);
         status = rt_output_commit(&output, error);
     }
-    rt_free(hits);
     rt_rayset_clear(&some);
     return status;
 }
@@ -119,30 +118,6 @@ static RtStatus take_answer(RtCallgrind *callgrind, const json_t *answer, RtInst
     return RT_OK;
 }
 
-/* With the end of its messages. */
-static RtStatus fail_with_log(const RtWorker *worker, const char *what, const char *how, RtError *error) {
-    enum { MOST_BYTES = 1 << 24, MOST_SHOWN = 600 };
-    char *text;
-    size_t size;
-    RT_TRY(rt_file_read(worker->log, MOST_BYTES, &text, &size, error));
-    while (size > 0 && isspace((unsigned char)text[size - 1])) text[--size] = '\0';
-    rt_fail(error, RT_NOT_AVAILABLE, "%s: %s\n%s", what, how,
-            size > MOST_SHOWN ? text + size - MOST_SHOWN : text);
-    rt_free(text);
-    return RT_NOT_AVAILABLE;
-}
-
-static RtStatus fail_ended(const RtWorker *worker, const char *how, RtError *error) {
-    return fail_with_log(worker, "valgrind, or raytally in it, failed", how, error);
-}
-
-static RtStatus fail_other_ended(const RtWorker *worker, const char *how, RtError *error) {
-    return fail_with_log(worker,
-                         "the other program cannot count instructions: it must be a raytally whose `bench` "
-                         "has --callgrind and the options given here",
-                         how, error);
-}
-
 /* A run of the worker, and what starts it again. */
 typedef struct Session {
     RtCallgrind *callgrind;
@@ -165,7 +140,12 @@ static RtStatus start(Session *session, RtError *error) {
                                    "--worker",
                                    NULL};
     session->passes = 0;
-    session->worker = (RtWorker){.log = session->log, .fail = session->other ? fail_other_ended : fail_ended};
+    session->worker = (RtWorker){
+        .log = session->log,
+        .failure = session->other
+                       ? "the other program cannot count instructions: it must be a raytally whose `bench` "
+                         "has --callgrind and the options given here"
+                       : "valgrind, or raytally in it, failed"};
     return rt_worker_start(&session->worker, command, session->arguments, error);
 }
 
@@ -208,20 +188,14 @@ static RtStatus count_cell(Session *session, const RtResults *results, const RtC
     return status;
 }
 
-static RtStatus find_program(Session *session, const char *program, RtError *error) {
-    session->other = program != NULL;
-    if (!program) program = "/proc/self/exe"; /* valgrind has its own */
-    return realpath(program, session->program) ? RT_OK
-                                               : rt_fail(error, RT_IO, "%s: %s", program, strerror(errno));
-}
-
 RtStatus rt_callgrind_run(RtCallgrind *callgrind, const char *program, const RtResults *results,
                           char *const *arguments, RtError *error) {
     const RtExperiment *e = callgrind->experiment;
     const size_t cells = (size_t)e->workload_count * e->candidate_count * e->kind_count;
     char out[RT_MAX_PATH];
-    Session session = {.callgrind = callgrind, .arguments = arguments};
-    RT_TRY(find_program(&session, program, error));
+    Session session = {.callgrind = callgrind, .arguments = arguments, .other = program != NULL};
+    if (!program) program = "/proc/self/exe"; /* valgrind has its own */
+    if (!realpath(program, session.program)) return rt_fail(error, RT_IO, "%s: %s", program, strerror(errno));
     RT_TRY(rt_path_join(callgrind->folder, "log", session.log, error));
     RT_TRY(rt_path_join(callgrind->folder, "out", out, error));
     snprintf(session.out_file, sizeof session.out_file, "--callgrind-out-file=%s", out);

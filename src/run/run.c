@@ -1,13 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A run in order: begin looks at the directory, opens the scenes, and removes the results of a previous run;
- * measure begins the journal and fills the results; finish writes the files made from all of them. */
+ * measure begins the journal and fills the results; finish writes the files made from all of them. Shards are
+ * merged by a run that has nothing left to measure, once the directory has their journal. */
 #include "run/run.h"
 
 #include "core/base/file.h"
 #include "core/base/parallel.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
-#include "render/image.h"
+#include "experiment/plugins_used.h"
+#include "measure/machine.h"
+#include "render/frame.h"
 #include "results/journal.h"
 #include "results/journal_lines.h"
 #include "results/manifest.h"
@@ -31,7 +34,15 @@ static RtStatus write_csvs(const RtResults *results, const char *directory, RtEr
 
 /* ---- a run ---- */
 
+/* The shards that a run joins. */
+typedef struct Merge {
+    const char *const *directories;
+    uint32_t count;
+    json_t *journals[RT_MAX_SHARDS];
+} Merge;
+
 typedef struct Run {
+    const Merge *merge;             /* or NULL */
     RtResults *results;             /* borrowed, like what follows */
     const RtExperiment *experiment; /* that of the results */
     const RtRunOptions *options;
@@ -46,6 +57,149 @@ typedef struct Run {
 
 static RtStatus path_in(const Run *run, const char *name, char *path, RtError *error) {
     return rt_path_join(run->options->directory, name, path, error);
+}
+
+/* ---- the shards ---- */
+
+static const json_t *header_of(const Merge *merge, uint32_t i) {
+    return json_array_get(merge->journals[i], 0);
+}
+
+static uint32_t number_of(const Merge *merge, uint32_t i, const char *key) {
+    return (uint32_t)json_integer_value(json_object_get(header_of(merge, i), key));
+}
+
+static RtStatus load_journals(Merge *merge, RtError *error) {
+    for (uint32_t i = 0; i < merge->count; i++) {
+        char path[RT_MAX_PATH];
+        json_t *manifest;
+        RT_TRY(rt_path_join(merge->directories[i], RT_RUN_JOURNAL, path, error));
+        if (!rt_file_exists(path)) {
+            return rt_fail(error, RT_BAD_INPUT, "%s is not the directory of a run: it has no %s",
+                           merge->directories[i], RT_RUN_JOURNAL);
+        }
+        if (rt_manifest_read(merge->directories[i], &manifest, NULL) != RT_OK) {
+            return rt_fail(error, RT_BAD_INPUT,
+                           "%s is not finished: finish it with raytally run ... --resume",
+                           merge->directories[i]);
+        }
+        json_decref(manifest);
+        RT_TRY(rt_json_lines_load(path, &merge->journals[i], error));
+        if (number_of(merge, i, "shards") > 0) continue;
+        return rt_fail(error, RT_BAD_INPUT, "%s is not a shard: it was not run with --shard",
+                       merge->directories[i]);
+    }
+    return RT_OK;
+}
+
+static RtStatus check_alike(const Merge *merge, RtError *error) {
+    static const char *const keys[] = {"hash", "quick", "build", "shards"};
+    static const char *const what[] = {"experiments, or versions of one", "variants (--quick)",
+                                       "builds of raytally", "numbers of shards"};
+    for (uint32_t i = 1; i < merge->count; i++) {
+        for (int k = 0; k < 4; k++) {
+            const json_t *a = json_object_get(header_of(merge, 0), keys[k]);
+            const json_t *b = json_object_get(header_of(merge, i), keys[k]);
+            if (json_equal(a, b)) continue;
+            return rt_fail(error, RT_BAD_INPUT, "%s and %s have different %s", merge->directories[0],
+                           merge->directories[i], what[k]);
+        }
+    }
+    const char *build = rt_json_text(header_of(merge, 0), "build", "unknown");
+    if (strcmp(build, rt_build_alone()) == 0) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "%s was measured by another build of raytally (%s; this is %s): merge with that one",
+                   merge->directories[0], build, rt_build_alone());
+}
+
+/* The number of threads that timed the shards, 1 if nothing was timed. It must be the same for all: times on
+ * one thread are processor times, times on several are wall times. */
+static RtStatus check_same_threads(const Merge *merge, int *threads, RtError *error) {
+    uint32_t first = merge->count;
+    *threads = 1;
+    for (uint32_t i = 0; i < merge->count; i++) {
+        for (size_t line = 1; line < json_array_size(merge->journals[i]); line++) {
+            const json_t *timed = json_object_get(json_array_get(merge->journals[i], line), "timed");
+            int here = (int)json_integer_value(json_object_get(timed, "threads"));
+            if (!timed || (first < merge->count && here == *threads)) continue;
+            if (first < merge->count) {
+                return rt_fail(error, RT_BAD_INPUT,
+                               "%s was timed on %d thread%s, and %s on %d: their times are not comparable. "
+                               "Run one of them again with the --threads of the other, and --force",
+                               merge->directories[first], *threads, rt_plural((uint64_t)*threads),
+                               merge->directories[i], here);
+            }
+            first = i;
+            *threads = here;
+        }
+    }
+    return RT_OK;
+}
+
+/* The shards must have used the plugins that are loaded here, which the manifest will name. */
+static RtStatus check_plugins(const Merge *merge, const RtExperiment *experiment, RtError *error) {
+    RtStatus status = RT_OK;
+    for (uint32_t i = 0; i < merge->count && status == RT_OK; i++) {
+        json_t *changed =
+            rt_plugins_changed_since(json_object_get(header_of(merge, i), "plugins"), experiment);
+        const char *name = json_object_iter_key(json_object_iter(changed));
+        char sentence[RT_MAX_PLUGIN_CHANGE];
+        if (name) {
+            rt_plugins_change_format(name, json_object_get(changed, name), "there", "here", sentence);
+            status = rt_fail(error, RT_BAD_INPUT, "%s: %s: load that one", merge->directories[i], sentence);
+        }
+        json_decref(changed);
+    }
+    return status;
+}
+
+static RtStatus check_whole(const Merge *merge, RtError *error) {
+    const char *found[RT_MAX_SHARDS + 1] = {NULL};
+    const uint32_t shards = number_of(merge, 0, "shards");
+    for (uint32_t i = 0; i < merge->count; i++) {
+        const uint32_t shard = number_of(merge, i, "shard");
+        if (shard <= RT_MAX_SHARDS && found[shard])
+            return rt_fail(error, RT_BAD_INPUT, "shard %u of %u is given twice: %s and %s", shard, shards,
+                           found[shard], merge->directories[i]);
+        if (shard <= RT_MAX_SHARDS) found[shard] = merge->directories[i];
+    }
+    for (uint32_t shard = 1; shard <= shards; shard++) {
+        if (shard > RT_MAX_SHARDS || !found[shard])
+            return rt_fail(error, RT_BAD_INPUT, "shard %u of %u is missing", shard, shards);
+    }
+    return RT_OK;
+}
+
+/* All lines, shard by shard, after a header without a shard. */
+static RtStatus add_journal(const Merge *merge, const RtExperiment *experiment, const char *directory,
+                            RtOutputs *files, RtError *error) {
+    static const RtSelection all = {0};
+    char path[RT_MAX_PATH];
+    RT_TRY(rt_path_join(directory, RT_RUN_JOURNAL, path, error));
+    json_t *lines = json_array();
+    for (uint32_t i = 0; i < merge->count; i++) {
+        for (size_t line = 1; line < json_array_size(merge->journals[i]); line++) {
+            json_t *object = json_array_get(merge->journals[i], line);
+            if (json_is_object(object)) json_array_append(lines, object);
+        }
+    }
+    RtStatus status = rt_journal_add(files, path, experiment, &all, lines, error);
+    json_decref(lines);
+    return status;
+}
+
+/* And their pictures. */
+static RtStatus add_shards(const Merge *merge, const RtExperiment *experiment, const char *directory,
+                           RtOutputs *files, RtError *error) {
+    for (uint32_t i = 0; i < merge->count; i++) {
+        for (uint32_t t = 0; t < experiment->workload_count; t++) {
+            char from[RT_MAX_PATH], to[RT_MAX_PATH];
+            RT_TRY(rt_results_image_path(merge->directories[i], experiment, t, from, error));
+            RT_TRY(rt_results_image_path(directory, experiment, t, to, error));
+            if (rt_file_exists(from)) RT_TRY(rt_outputs_copy(files, from, to, error));
+        }
+    }
+    return add_journal(merge, experiment, directory, files, error);
 }
 
 /* ---- before ---- */
@@ -126,12 +280,11 @@ static RtStatus make_directory(Run *run, RtError *error) {
 
 static RtStatus copy_files(const Run *run, RtOutputs *copies, RtError *error) {
     const char *directory = run->options->directory;
-    const RtRunJoin *join = run->options->join;
     char path[RT_MAX_PATH];
     RT_TRY(path_in(run, rt_result_files[RT_FILE_EXPERIMENT], path, error));
     RT_TRY(rt_outputs_copy(copies, run->experiment->path, path, error));
     RT_TRY(rt_scripts_copy(run->experiment, directory, run->resumed, copies, error));
-    return join ? join->add(join->context, run->experiment, directory, copies, error) : RT_OK;
+    return run->merge ? add_shards(run->merge, run->experiment, directory, copies, error) : RT_OK;
 }
 
 /* Writes the copies, removes the previous results, and then renames the copies. */
@@ -153,31 +306,19 @@ static RtStatus prepare_directory(Run *run, RtError *error) {
     return replace_previous(run, error);
 }
 
-/* Writes the journal of the joined shards, which is then resumed. */
-static RtStatus join_shards(Run *run, RtError *error) {
-    RT_TRY(prepare_directory(run, error));
-    run->resumed = true;
-    return rt_journal_load(run->path, run->results, &run->options->workload.only, error);
-}
-
 static RtStatus begin(Run *run, RtError *error) {
-    const RtRunJoin *join = run->options->join;
     RT_TRY(take_directory(run, error));
-    if (join) RT_TRY(join_shards(run, error));
+    if (run->merge) { /* whose journal is then resumed */
+        RT_TRY(prepare_directory(run, error));
+        run->resumed = true;
+        RT_TRY(rt_journal_load(run->path, run->results, &run->options->workload.only, error));
+    }
     RT_TRY(open_scenes(run, error));
     if (run->resumed && !is_complete(run)) RT_TRY(check_threads(run, error));
-    return join ? RT_OK : prepare_directory(run, error);
+    return run->merge ? RT_OK : prepare_directory(run, error);
 }
 
 /* ---- measuring ---- */
-
-static RtStatus open_journal(Run *run, RtError *error) {
-    const RtSelection *only = &run->options->workload.only;
-    if (run->resumed)
-        RT_TRY(rt_journal_drop_changed(run->path, run->experiment, only, &run->options->workload.observer,
-                                       error));
-    return rt_journal_open(&run->journal, run->path, run->experiment, only, run->resumed, error);
-}
 
 static void name_missing(const Run *run) {
     const char *names[RT_MAX_CANDIDATES];
@@ -193,19 +334,15 @@ static void name_missing(const Run *run) {
                   list);
 }
 
-/* The manifest marks a finished run. */
-static RtStatus unfinish(Run *run, RtError *error) {
-    char path[RT_MAX_PATH];
-    RT_TRY(path_in(run, RT_MANIFEST, path, error));
-    remove(path);
-    run->measured = true;
-    return RT_OK;
-}
-
 static RtStatus on_event(void *context, const RtResults *results, const RtEvent *event, RtError *error) {
     Run *run = context;
     const RtRunObserver *observer = &run->options->workload.observer;
-    if (!run->measured) RT_TRY(unfinish(run, error));
+    char path[RT_MAX_PATH];
+    if (!run->measured) { /* the manifest marks a finished run */
+        RT_TRY(path_in(run, RT_MANIFEST, path, error));
+        remove(path);
+        run->measured = true;
+    }
     RT_TRY(rt_json_lines_write(&run->journal, rt_journal_line(results, event), error));
     return observer->event ? observer->event(observer->context, results, event, error) : RT_OK;
 }
@@ -215,11 +352,17 @@ static void on_notice(void *context, const char *message) {
     rt_notify(&run->options->workload.observer, "%s", message);
 }
 
-static RtStatus draw_scene(RtScene *scene, const RtWorkloadResult *workload, int threads, const char *path,
-                           RtError *error) {
+/* The picture of a workload's scene, unless it exists. */
+static RtStatus write_image(Run *run, uint32_t t, RtError *error) {
+    const RtWorkloadResult *workload = &run->results->workloads[t];
+    const int threads = run->options->workload.threads;
+    RtScene *scene = &run->scenes[slot_of(run->experiment, t)];
+    char path[RT_MAX_PATH];
     RtAccel *accel;
     RtFrame frame = {0};
-    RtFrameOptions options = {.depth = RT_DEFAULT_DEPTH, .threads = threads};
+    const RtFrameOptions options = {.depth = RT_DEFAULT_DEPTH, .threads = threads};
+    RT_TRY(rt_results_image_path(run->options->directory, run->experiment, t, path, error));
+    if (workload->skipped || (run->resumed && rt_file_exists(path))) return RT_OK;
     RT_TRY(rt_scene_sample(scene, workload->width, workload->height, 2, false, error));
     RT_TRY(rt_accel_open_on(rt_accel_default(), scene, threads, &accel, error));
     RtStatus status = rt_frame_trace(&frame, accel, &options, error);
@@ -227,15 +370,6 @@ static RtStatus draw_scene(RtScene *scene, const RtWorkloadResult *workload, int
     rt_frame_clear(&frame);
     rt_accel_destroy(accel);
     return status;
-}
-
-/* The picture of a workload's scene, unless it exists. */
-static RtStatus write_image(Run *run, uint32_t t, RtError *error) {
-    char path[RT_MAX_PATH];
-    RT_TRY(rt_results_image_path(run->options->directory, run->experiment, t, path, error));
-    if (run->results->workloads[t].skipped || (run->resumed && rt_file_exists(path))) return RT_OK;
-    return draw_scene(&run->scenes[slot_of(run->experiment, t)], &run->results->workloads[t],
-                      run->options->workload.threads, path, error);
 }
 
 /* Frees the scene of workload `t`, unless a later workload uses it. */
@@ -250,7 +384,7 @@ static void close_scene(Run *run, uint32_t t) {
 /* Says what was done if nothing was measured. */
 static void tell_end(const Run *run) {
     const RtRunObserver *observer = &run->options->workload.observer;
-    uint32_t scenes, shards = run->options->join ? run->options->join->shards : 0;
+    uint32_t scenes, shards = run->merge ? run->merge->count : 0;
     uint64_t cells = rt_results_size(run->results, &scenes);
     if (shards)
         rt_notify(observer, "joined %" PRIu32 " shard%s: %" PRIu64 " cell%s of %" PRIu32 " scene%s", shards,
@@ -262,7 +396,10 @@ static void tell_end(const Run *run) {
 static RtStatus measure(Run *run, RtError *error) {
     RtWorkloadOptions options = run->options->workload;
     options.observer = (RtRunObserver){run, on_event, on_notice};
-    RT_TRY(open_journal(run, error));
+    if (run->resumed)
+        RT_TRY(rt_journal_drop_changed(run->path, run->experiment, &options.only,
+                                       &run->options->workload.observer, error));
+    RT_TRY(rt_journal_open(&run->journal, run->path, run->experiment, &options.only, run->resumed, error));
     name_missing(run);
     for (uint32_t t = 0; t < run->experiment->workload_count; t++) {
         RtScene *scene = &run->scenes[slot_of(run->experiment, t)];
@@ -272,8 +409,7 @@ static RtStatus measure(Run *run, RtError *error) {
         RT_TRY(write_image(run, t, error));
         close_scene(run, t);
     }
-    if (run->measured || !run->resumed || !is_complete(run)) return RT_OK;
-    tell_end(run);
+    if (!run->measured && run->resumed && is_complete(run)) tell_end(run);
     return RT_OK;
 }
 
@@ -293,8 +429,12 @@ static RtStatus finish(const Run *run, RtError *error) {
                            error);
 }
 
-RtStatus rt_run_experiment(RtResults *results, const RtRunOptions *options, RtError *error) {
-    Run run = {.results = results, .experiment = results->experiment, .options = options, .lock = RT_NO_LOCK};
+static RtStatus run_all(const Merge *merge, RtResults *results, const RtRunOptions *options, RtError *error) {
+    Run run = {.merge = merge,
+               .results = results,
+               .experiment = results->experiment,
+               .options = options,
+               .lock = RT_NO_LOCK};
     RtStatus status = begin(&run, error);
     if (status == RT_OK) status = measure(&run, error);
     if (status == RT_OK && is_complete(&run)) {
@@ -307,5 +447,34 @@ RtStatus rt_run_experiment(RtResults *results, const RtRunOptions *options, RtEr
     rt_json_lines_close(&run.journal);
     for (uint32_t t = 0; t < RT_MAX_WORKLOADS; t++) rt_scene_clear(&run.scenes[t]);
     rt_lock_release(&run.lock);
+    return status;
+}
+
+RtStatus rt_run_experiment(RtResults *results, const RtRunOptions *options, RtError *error) {
+    return run_all(NULL, results, options, error);
+}
+
+static RtStatus merge_all(Merge *merge, RtRunOptions options, RtExperiment *experiment, RtResults *results,
+                          RtError *error) {
+    RT_TRY(load_journals(merge, error));
+    RT_TRY(check_alike(merge, error));
+    RT_TRY(check_whole(merge, error));
+    RT_TRY(check_same_threads(merge, &options.workload.timing, error));
+    RtStatus status = rt_manifest_experiment(merge->directories[0], true, experiment, error);
+    if (status == RT_MISMATCH)
+        return rt_fail(error, RT_BAD_INPUT, "%s has changed since the shards were made from it",
+                       experiment->path);
+    RT_TRY(status);
+    RT_TRY(check_plugins(merge, experiment, error));
+    RT_TRY(rt_results_init(results, experiment, error));
+    return run_all(merge, results, &options, error);
+}
+
+RtStatus rt_merge(const char *const *directories, uint32_t count, const RtRunOptions *options,
+                  RtExperiment *experiment, RtResults *results, RtError *error) {
+    Merge merge = {.directories = directories, .count = count};
+    *results = (RtResults){0};
+    RtStatus status = merge_all(&merge, *options, experiment, results, error);
+    for (uint32_t i = 0; i < count; i++) json_decref(merge.journals[i]);
     return status;
 }

@@ -11,6 +11,7 @@
 #include "measure/rounds.h"
 #include "run/workload_state.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <sched.h>
@@ -23,11 +24,12 @@
 
 RtStatus rt_worker_start(RtWorker *worker, const char *const *command, char *const *arguments,
                          RtError *error) {
+    RT_ARENA(arena);
     size_t words = 0, count = 0;
     while (command[words]) words++;
     while (arguments[count]) count++;
-    char **all = rt_alloc(words + count + 1, sizeof(char *));
-    if (!all) return rt_fail_memory(error, "arguments", (words + count) * sizeof(char *));
+    char **all = rt_arena_alloc(&arena, words + count + 1, sizeof(char *));
+    RT_TRY(rt_arena_check(&arena, "arguments", error));
     memcpy(all, command, words * sizeof(char *));
     memcpy(all + words, arguments, count * sizeof(char *));
     const RtProcessCommand run = {.program = worker->program,
@@ -36,16 +38,25 @@ RtStatus rt_worker_start(RtWorker *worker, const char *const *command, char *con
                                   .to = &worker->to,
                                   .from = &worker->from};
     signal(SIGPIPE, SIG_IGN); /* a worker that has ended sends no answer */
-    RtStatus status = rt_process_spawn(&worker->process, &run, error);
-    rt_free(all);
-    return status;
+    return rt_process_spawn(&worker->process, &run, error);
 }
 
+/* With the end of the log. */
 static RtStatus fail_ended(RtWorker *worker, RtError *error) {
-    char how[160] = "it no longer answers";
+    enum { MOST_BYTES = 1 << 24, MOST_SHOWN = 600 };
+    char how[160] = "it no longer answers", *text;
+    size_t size;
     if (rt_process_wait(&worker->process, 1000, &worker->end))
         rt_process_end_format(worker->end, 0, "", how, sizeof how);
-    return worker->fail(worker, how, error);
+    if (!worker->log)
+        return rt_fail(error, RT_BAD_INPUT, "%s cannot be compared: %s; its messages are above",
+                       worker->program, how);
+    RT_TRY(rt_file_read(worker->log, MOST_BYTES, &text, &size, error));
+    while (size > 0 && isspace((unsigned char)text[size - 1])) text[--size] = '\0';
+    rt_fail(error, RT_NOT_AVAILABLE, "%s: %s\n%s", worker->failure, how,
+            size > MOST_SHOWN ? text + size - MOST_SHOWN : text);
+    rt_free(text);
+    return RT_NOT_AVAILABLE;
 }
 
 RtStatus rt_worker_take(RtWorker *worker, json_t **line, RtError *error) {
@@ -131,18 +142,11 @@ static void pin(const cpu_set_t *allowed, uint32_t number) {
     sched_setaffinity(0, sizeof one, &one);
 }
 
-static RtStatus answer_time(Server *server, const RtRunner *runner, uint32_t repeats, RtError *error) {
-    double seconds, wall;
-    RT_TRY(rt_runner_time(runner, repeats, &seconds, &wall, error));
-    fprintf(server->out, "%.17g\n", seconds / (repeats * runner->work));
-    fflush(server->out);
-    return RT_OK;
-}
-
 static RtStatus serve_runners(Server *server, const RtRunner *runners, uint32_t count, RtError *error) {
     char line[MOST_LINE];
     cpu_set_t allowed;
     uint32_t number, repeats;
+    double seconds, wall;
     RtStatus status = RT_OK;
     bool pinned = sched_getaffinity(0, sizeof allowed, &allowed) == 0;
     while (status == RT_OK) {
@@ -152,7 +156,9 @@ static RtStatus serve_runners(Server *server, const RtRunner *runners, uint32_t 
             if (pinned) pin(&allowed, number);
         } else if (sscanf(line, "time %" SCNu32 " %" SCNu32, &number, &repeats) == 2 && number < count &&
                    repeats > 0) {
-            status = answer_time(server, &runners[number], repeats, error);
+            status = rt_runner_time(&runners[number], repeats, &seconds, &wall, error);
+            if (status == RT_OK) fprintf(server->out, "%.17g\n", seconds / (repeats * runners[number].work));
+            fflush(server->out);
         } else {
             status = fail_request(line, error);
         }
@@ -251,20 +257,11 @@ static RtStatus open_accel(Counting *counting, const RtSpec *spec, uint32_t c, R
     return rt_accel_build_here(spec, &counting->scene, 1, &counting->accel, error);
 }
 
-static RtStatus trace(RtAccel *accel, const RtRaySet *set, const RtHit *hits, int *passes, RtError *error) {
-    RtRunner runner;
-    RtTimed timed = {.accel = accel, .set = set};
-    RT_TRY(rt_accel_learn(accel, set->rays, hits, set->count, error));
-    RtStatus status = rt_runner_open(&runner, &timed, 1, error);
-    for (; *passes < PASSES && status == RT_OK; ++*passes) status = rt_callgrind_pass(&runner, error);
-    rt_runner_close(&runner);
-    return status;
-}
-
 /* Answers a request about candidate `c` and the rays of a kind in the file at `path`. */
 static RtStatus answer_count(Server *server, Counting *counting, uint32_t c, RtRayKind kind, const char *path,
                              RtError *error) {
     RtSpec spec = server->experiment->candidates[c].parsed;
+    RtRunner runner = {0};
     char text[RT_MAX_SPEC_CHARS], *data;
     size_t size;
     int passes = 0;
@@ -275,8 +272,12 @@ static RtStatus answer_count(Server *server, Counting *counting, uint32_t c, RtR
     settle_isa(&spec);
     rt_spec_format(&spec, text);
     RtStatus status = open_accel(counting, &spec, c, &why);
+    const RtTimed timed = {.accel = counting->accel, .set = &set};
     if (status == RT_OK)
-        status = trace(counting->accel, &set, (const RtHit *)(set.rays + count), &passes, &why);
+        status = rt_accel_learn(counting->accel, set.rays, (const RtHit *)(set.rays + count), count, &why);
+    if (status == RT_OK) status = rt_runner_open(&runner, &timed, 1, &why);
+    for (; passes < PASSES && status == RT_OK; passes++) status = rt_callgrind_pass(&runner, &why);
+    rt_runner_close(&runner);
     say(server, status == RT_OK
                     ? json_pack("{s:i, s:s, s:I}", "passes", passes, "spec", text, "rays", (json_int_t)count)
                     : json_pack("{s:i, s:s}", "passes", passes, "why", why.message));

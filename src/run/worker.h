@@ -25,22 +25,20 @@
 
 /* ---- the program that starts it ---- */
 
-typedef struct RtWorker RtWorker;
-struct RtWorker {
+typedef struct RtWorker {
     const char *program; /* path of the program; NULL: it is searched for in $PATH */
     const char *log;     /* the file of its messages; NULL: stderr */
-    /* Reports that the worker answers no longer; `how` it ended. */
-    RtStatus (*fail)(const RtWorker *worker, const char *how, RtError *error);
+    const char *failure; /* with a log, what it means if the worker ends: the message of RT_NOT_AVAILABLE */
     RtProcess process;
-    RtProcessEnd end; /* once `fail` is called, how it ended, if it has */
+    RtProcessEnd end; /* after a failure how it ended, if it has */
     FILE *to, *from;
-};
+} RtWorker;
 
 /* Runs `command` (NULL behind the last word) followed by `arguments`. */
 RtStatus rt_worker_start(RtWorker *worker, const char *const *command, char *const *arguments,
                          RtError *error);
 
-/* Takes the next line, a new reference. If there is none, `fail` reports it. */
+/* Takes the next line, a new reference. If there is none, the failure says how the worker ended. */
 RtStatus rt_worker_take(RtWorker *worker, json_t **line, RtError *error);
 
 /* Sends a request, as of printf; then takes the answer, unless `answer` is NULL. */

@@ -1,12 +1,27 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A workload in order: record, build, and for each kind of rays count and time. */
+/* A workload in order: record, build, for each kind of rays count and time, and render. */
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/words.h"
 #include "measure/ray_file.h"
+#include "measure/rounds.h"
+#include "render/frame.h"
 #include "run/workload_state.h"
 #include "scenes/open.h"
 
 /* ---- what is unknown ---- */
+
+/* Whether a frame is rendered with candidate `c`: with the null run none is. */
+static bool renders(const RtWorkloadState *workload, uint32_t c) {
+    const RtExperiment *e = workload->experiment;
+    if (!e->render || workload->count_only || workload->options->timer || c == e->candidate_count)
+        return false;
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        if (*rt_cell_at(workload->results, workload->index, c, (RtRayKind)k)->left_out) return false;
+    }
+    return e->candidates[c].ray_stride == 1 && !rt_spec_is_remote(&e->candidates[c].parsed) &&
+           rt_workload_runs(workload, c);
+}
 
 static bool is_asked(const RtWorkloadState *workload, uint32_t c, RtRayKind kind) {
     return rt_selection_has(&workload->options->only, workload->experiment, workload->index, c, kind);
@@ -30,7 +45,7 @@ static bool workload_is_done(const RtWorkloadState *workload) {
     for (uint32_t c = 0; c < workload->count; c++) {
         const RtBuildResult *build = rt_build_at(workload->results, workload->index, c);
         if (rt_workload_runs(workload, c) && !build->known) return false;
-        if (rt_workload_renders(workload, c) && !build->render.known) return false;
+        if (renders(workload, c) && !build->render.known) return false;
     }
     for (uint32_t k = 0; k < workload->experiment->kind_count; k++) {
         RtRayKind kind = workload->experiment->kinds[k];
@@ -160,6 +175,87 @@ static RtStatus measure_kind(RtWorkloadState *workload, RtRayKind kind, RtError 
     return status;
 }
 
+/* ---- frames: how long rendering takes with each candidate, and which part of that its queries take ----
+ *
+ * Candidates with a stride, or of which a limit left out a cell, are too slow for whole frames. Plugins are
+ * left out: their rays travel to another process. */
+
+typedef struct Rendering {
+    uint32_t candidate;
+    const RtAccel *accel;
+    RtFrameOptions options;
+    double seconds[RT_MAX_ROUNDS], shares[RT_MAX_ROUNDS];
+    uint32_t runs; /* the first is the warm-up */
+} Rendering;
+
+static RtStatus render_once(void *context, RtError *error) {
+    Rendering *rendering = context;
+    RtFrame frame;
+    RT_TRY(rt_frame_trace(&frame, rendering->accel, &rendering->options, error));
+    if (rendering->runs > 0) rendering->shares[rendering->runs - 1] = frame.share;
+    rendering->runs++;
+    rt_frame_clear(&frame);
+    return RT_OK;
+}
+
+/* The candidates still to be rendered, one runner each. */
+static uint32_t enter(RtWorkloadState *workload, Rendering *renderings, RtRunner *runners) {
+    const RtExperiment *experiment = workload->experiment;
+    const RtWorkload *setup = &experiment->workloads[workload->index];
+    const int threads = workload->options->timing;
+    uint32_t count = 0;
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        if (!workload->built[c] || !renders(workload, c) ||
+            rt_build_at(workload->results, workload->index, c)->render.known)
+            continue;
+        Rendering *rendering = &renderings[count];
+        *rendering = (Rendering){.candidate = c,
+                                 .accel = workload->built[c],
+                                 .options = {.depth = setup->depth,
+                                             .threads = threads,
+                                             .light_from_outside = setup->light_from_outside,
+                                             .share = true}};
+        runners[count++] = (RtRunner){.run = render_once,
+                                      .context = rendering,
+                                      .work = 1,
+                                      .parallel = rt_thread_count(threads) > 1,
+                                      .seconds = rendering->seconds};
+    }
+    return count;
+}
+
+static RtStatus keep(RtWorkloadState *workload, const Rendering *renderings, uint32_t count, RtError *error) {
+    const RtMachine here = rt_machine_here();
+    const uint32_t rounds = workload->experiment->rounds;
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t c = renderings[i].candidate;
+        rt_build_at(workload->results, workload->index, c)->render =
+            (RtRenderResult){.known = true,
+                             .rounds = rounds,
+                             .threads = rt_thread_count(workload->options->timing),
+                             .machine = rt_results_machine(workload->results, &here),
+                             .seconds = rt_estimate(renderings[i].seconds, rounds),
+                             .share = rt_estimate(renderings[i].shares, rounds)};
+        RT_TRY(rt_workload_tell(workload, RT_EVENT_RENDER, c, RT_RAY_PRIMARY, error));
+    }
+    return RT_OK;
+}
+
+static RtStatus render(RtWorkloadState *workload, RtError *error) {
+    const RtExperiment *experiment = workload->experiment;
+    RT_ARENA(arena);
+    const RtRounds rounds = {
+        .rounds = experiment->rounds, .most = experiment->rounds, .seed = experiment->seed};
+    Rendering *renderings = rt_arena_alloc(&arena, experiment->candidate_count, sizeof(Rendering));
+    RT_TRY(rt_arena_check(&arena, "times of frames", error));
+    RtRunner runners[RT_MAX_CANDIDATES];
+    uint32_t count = enter(workload, renderings, runners), done;
+    if (count > 0) RT_TRY(rt_rounds_run(runners, count, &rounds, &done, error));
+    return keep(workload, renderings, count, error);
+}
+
+/* ---- all of it ---- */
+
 /* Without rays of any kind the tables would be empty. */
 static void notify_empty(const RtWorkloadState *workload) {
     const RtExperiment *experiment = workload->experiment;
@@ -184,7 +280,7 @@ static RtStatus measure(RtWorkloadState *workload, RtError *error) {
     for (uint32_t k = 0; k < workload->experiment->kind_count; k++) {
         RT_TRY(measure_kind(workload, workload->experiment->kinds[k], error));
     }
-    return rt_workload_render(workload, error);
+    return render(workload, error);
 }
 
 static RtWorkloadState state_of(RtResults *results, uint32_t index, const RtWorkloadOptions *options) {

@@ -51,10 +51,6 @@ RtStatus rt_workload_record(const RtExperiment *experiment, uint32_t index, int 
 /* Whether all results of workload number `index` are known. */
 bool rt_workload_is_done(RtResults *results, uint32_t index, const RtWorkloadOptions *options);
 
-/* Whether the experiment asks for frames rendered with candidate `c`: not with the null run, plugins, and
- * candidates that are measured on a part of the rays. */
-bool rt_candidate_renders(const RtExperiment *experiment, uint32_t c);
-
 /* Opens the scene of a workload. Clear it with rt_scene_clear. */
 RtStatus rt_workload_open_scene(const RtWorkload *workload, RtScene *scene, RtError *error);
 

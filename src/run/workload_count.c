@@ -21,16 +21,6 @@ static uint64_t thinned_count(const RtRaySet *set, uint64_t stride) {
     return (set->count + stride - 1) / stride;
 }
 
-/* Rays of the set, of all thinned shares, and of the probe. */
-static uint64_t count_with_shares(const RtWorkloadState *workload, const RtRaySet *set) {
-    uint64_t count = set->count + PROBE_RAYS;
-    for (uint32_t c = 0; c < workload->count; c++) {
-        if (workload->accels[c] && rt_workload_setup(workload, c)->ray_stride > 1)
-            count += thinned_count(set, rt_workload_setup(workload, c)->ray_stride);
-    }
-    return count;
-}
-
 /* Copies the rays and answers of a thinned share to index `first`. */
 static void thin_share(const RtWorkloadState *workload, const RtRaySet *set, uint64_t stride, uint64_t first,
                        RtWorkloadShare *share) {
@@ -62,8 +52,12 @@ static RtStatus draw_probe(RtWorkloadState *workload, const RtRaySet *set, uint6
  * accelerator that learns, which knows rays by their addresses. */
 static RtStatus deal_shares(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
     RtRaySet *set = &workload->sets[kind];
-    uint64_t all = count_with_shares(workload, set), used = set->count;
+    uint64_t all = set->count + PROBE_RAYS, used = set->count;
     uint32_t capacity = (uint32_t)set->count;
+    for (uint32_t c = 0; c < workload->count; c++) {
+        const uint64_t stride = rt_workload_setup(workload, c)->ray_stride;
+        if (workload->accels[c] && stride > 1) all += thinned_count(set, stride);
+    }
     RT_TRY(rt_reserve(&set->rays, &capacity, all, sizeof(RtRay), error));
     workload->answers = rt_alloc(all, sizeof(RtHit));
     if (!workload->answers) return rt_fail_memory(error, "answers", all * sizeof(RtHit));
@@ -86,10 +80,6 @@ static RtStatus deal_shares(RtWorkloadState *workload, RtRayKind kind, RtError *
         if (workload->accels[c]) RT_TRY(rt_workload_teach(workload, kind, workload->accels[c], error));
     }
     return RT_OK;
-}
-
-RtStatus rt_workload_teach(const RtWorkloadState *workload, RtRayKind kind, RtAccel *accel, RtError *error) {
-    return rt_accel_learn(accel, workload->sets[kind].rays, workload->answers, workload->answer_count, error);
 }
 
 /* ---- limits ---- */
@@ -166,18 +156,6 @@ static uint64_t value_of(const RtTally *tally, RtRayQuantity quantity) {
     return 0;
 }
 
-static RtStatus distribute_rows(const RtRows *rows, RtDistribution *out, RtError *error) {
-    RtStatus status = RT_OK;
-    for (int q = 0; q < RT_RAY_QUANTITY_COUNT && status == RT_OK; q++) {
-        RtOccurrences values = {0};
-        for (uint64_t i = 0; i < rows->count && status == RT_OK; i++)
-            status = rt_occurrences_add(&values, value_of(&rows->tallies[i], (RtRayQuantity)q), error);
-        out[q] = rt_distribution_of(&values);
-        rt_occurrences_clear(&values);
-    }
-    return status;
-}
-
 static RtStatus distribute_cell(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtCell *cell,
                                 RtError *error) {
     RtRows rows;
@@ -186,14 +164,20 @@ static RtStatus distribute_cell(RtWorkloadState *workload, uint32_t c, RtRayKind
     if (!made) return rt_fail_memory(error, "distributions", RT_RAY_QUANTITY_COUNT * sizeof(RtDistribution));
     RtStatus status = rt_measure_rows(workload->accels[c], &workload->shares[c].set,
                                       workload->options->threads, &rows, error);
-    if (status == RT_OK) status = distribute_rows(&rows, made, error);
-    rt_rows_clear(&rows);
-    if (status != RT_OK) {
-        rt_free(made);
-        return status;
+    for (int q = 0; q < RT_RAY_QUANTITY_COUNT && status == RT_OK; q++) {
+        RtOccurrences values = {0};
+        for (uint64_t i = 0; i < rows.count && status == RT_OK; i++)
+            status = rt_occurrences_add(&values, value_of(&rows.tallies[i], (RtRayQuantity)q), error);
+        made[q] = rt_distribution_of(&values);
+        rt_occurrences_clear(&values);
     }
-    cell->distributions = made;
-    return rt_workload_tell(workload, RT_EVENT_DISTRIBUTION, c, kind, error);
+    rt_rows_clear(&rows);
+    if (status == RT_OK) {
+        cell->distributions = made;
+        return rt_workload_tell(workload, RT_EVENT_DISTRIBUTION, c, kind, error);
+    }
+    rt_free(made);
+    return status;
 }
 
 /* ---- the hit and the cost of each ray ---- */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A workload while it runs, and its longer steps, one file each: build, count, time. */
+/* A workload while it runs, and its longer steps. */
 #ifndef RT_RUN_WORKLOAD_STATE_H
 #define RT_RUN_WORKLOAD_STATE_H
 
@@ -61,9 +61,6 @@ __attribute__((format(printf, 7, 8))) RtStatus rt_workload_leave_out(RtWorkloadS
 /* Excludes the candidate on rays of that kind as broken, for the reason in *error. */
 RtStatus rt_workload_break(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtError *error);
 
-/* Excludes candidates that broke on any rays; the baseline may have broken on another's share. */
-RtStatus rt_workload_exclude_broken(RtWorkloadState *workload, RtRayKind kind, RtError *error);
-
 /* ---- the steps ---- */
 
 /* Builds all candidates within the limits, and times that unless it is known. One that refuses the scene, or
@@ -89,12 +86,6 @@ RtStatus rt_workload_count(RtWorkloadState *workload, RtRayKind kind, RtError *e
 
 /* Times all candidates on their shares of the rays of one kind. */
 RtStatus rt_workload_time(RtWorkloadState *workload, RtRayKind kind, RtError *error);
-
-/* Renders the frame with all candidates for which rt_workload_renders, if that is not known yet. */
-RtStatus rt_workload_render(RtWorkloadState *workload, RtError *error);
-
-/* Whether frames are rendered with candidate `c`. */
-bool rt_workload_renders(const RtWorkloadState *workload, uint32_t c);
 
 /* Whether candidate `c` takes part in the workload, so far. */
 bool rt_workload_runs(const RtWorkloadState *workload, uint32_t c);

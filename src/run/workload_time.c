@@ -21,6 +21,7 @@ typedef struct TimingRun {
     double *seconds;       /* [count][2][most] of `timed` */
     bool *broken;          /* [count] */
     uint32_t *candidates;  /* [count] */
+    RtArena memory;        /* of these */
     RtRandom random;
     double credit[RT_MAX_MEASURED];       /* [workload->count] seconds that may be spent on building */
     uint32_t renewed;                     /* rounds after which that was done */
@@ -43,7 +44,7 @@ static uint32_t enter(TimingRun *run, uint32_t candidate, const RtRaySet *set) {
     return run->count++;
 }
 
-/* Clear it also after a failure. */
+/* Clear its memory also after a failure. */
 static RtStatus timing_run_init(TimingRun *run, RtWorkloadState *workload, RtRayKind kind, RtError *error) {
     const uint32_t baselines = workload->experiment->baseline_count;
     const uint32_t rounds = workload->options->until > 0 ? RT_MAX_ROUNDS : workload->experiment->rounds;
@@ -52,13 +53,12 @@ static RtStatus timing_run_init(TimingRun *run, RtWorkloadState *workload, RtRay
                        .kind = kind,
                        .most = rounds,
                        .start = rt_wall_seconds(),
-                       .timed = rt_alloc(most, sizeof(RtTimed)),
-                       .seconds = rt_alloc(doubles, sizeof(double)),
-                       .broken = rt_alloc(most, sizeof(bool)),
-                       .candidates = rt_alloc(most, sizeof(uint32_t)),
                        .random = rt_random(workload->experiment->seed, 2 + (uint64_t)kind)};
-    if (!run->timed || !run->seconds || !run->broken || !run->candidates)
-        return rt_fail_memory(error, "times", doubles * sizeof(double));
+    run->timed = rt_arena_alloc(&run->memory, most, sizeof(RtTimed));
+    run->seconds = rt_arena_alloc(&run->memory, doubles, sizeof(double));
+    run->broken = rt_arena_alloc(&run->memory, most, sizeof(bool));
+    run->candidates = rt_arena_alloc(&run->memory, most, sizeof(uint32_t));
+    RT_TRY(rt_arena_check(&run->memory, "times", error));
     for (uint32_t c = 0; c < workload->count; c++) {
         run->structures[c] = 1;
         if (workload->accels[c]) run->place[c] = enter(run, c, &workload->shares[c].set);
@@ -78,13 +78,6 @@ static RtStatus timing_run_init(TimingRun *run, RtWorkloadState *workload, RtRay
     return RT_OK;
 }
 
-static void timing_run_clear(TimingRun *run) {
-    rt_free(run->timed);
-    rt_free(run->seconds);
-    rt_free(run->broken);
-    rt_free(run->candidates);
-}
-
 /* ---- structures built anew ---- */
 
 /* Earns what the last round of tracing took, but at least RT_RENEWAL_BUDGET, for building. So building takes
@@ -97,12 +90,6 @@ static void earn(TimingRun *run) {
         const double traced = own->wall[round] * (double)own->set->count * own->repeats;
         run->credit[c] += fmax(RT_RENEWAL_BUDGET, traced);
     }
-}
-
-static bool is_renewed(const TimingRun *run, uint32_t c) {
-    const RtWorkloadState *workload = run->workload;
-    const double once = rt_build_at(workload->results, workload->index, c)->seconds.median;
-    return workload->accels[c] && !run->broken[run->place[c]] && run->credit[c] >= once;
 }
 
 static RtStatus build_one(TimingRun *run, uint32_t c, RtError *error) {
@@ -122,7 +109,8 @@ static RtStatus renew(void *context, RtTimed *timed, size_t count, RtError *erro
     size_t order[RT_MAX_MEASURED], renewed = 0;
     earn(run);
     for (uint32_t c = 0; c < workload->count; c++) {
-        if (!is_renewed(run, c)) continue;
+        const double once = rt_build_at(workload->results, workload->index, c)->seconds.median;
+        if (!workload->accels[c] || run->broken[run->place[c]] || run->credit[c] < once) continue;
         order[renewed++] = c;
         rt_workload_destroy(workload, c);
     }
@@ -250,6 +238,16 @@ static RtStatus keep_times(RtWorkloadState *workload, RtRayKind kind, const Timi
     return RT_OK;
 }
 
+/* Excludes candidates that broke on any rays; the baseline may have broken on another's share. */
+static RtStatus exclude_broken(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
+    for (uint32_t c = 0; c < workload->count; c++) {
+        const RtAccel *accel = workload->accels[c];
+        if (!accel || rt_accel_check(accel, error) == RT_OK) continue;
+        RT_TRY(rt_workload_break(workload, c, kind, error));
+    }
+    return RT_OK;
+}
+
 RtStatus rt_workload_time(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
     const RtExperiment *experiment = workload->experiment;
     TimingRun run;
@@ -263,9 +261,9 @@ RtStatus rt_workload_time(RtWorkloadState *workload, RtRayKind kind, RtError *er
                        .renew = renew,
                        .threads = workload->options->timing};
     if (status == RT_OK) status = rt_measure_time(run.timed, run.count, &timing, &run.rounds, error);
-    if (status == RT_OK) status = rt_workload_exclude_broken(workload, kind, error);
+    if (status == RT_OK) status = exclude_broken(workload, kind, error);
     if (status == RT_OK) report_width(&run);
     if (status == RT_OK) status = keep_times(workload, kind, &run, error);
-    timing_run_clear(&run);
+    rt_arena_clear(&run.memory);
     return status;
 }

@@ -80,39 +80,17 @@ RT_TEST(the_databases_have_the_rays_that_spd_publishes) {
 
 RT_TEST(everything_is_written_at_once_and_the_image_depends_on_no_thread) {
     assert_int_equal(render("balls:size=2 --size 80x60 --threads 1 -o " OUT ".png --structure " OUT
-                            ".structure.png --heatmap object_tests " OUT ".heat.png --stats " STATS),
+                            ".structure.png --heatmap object_tests " OUT ".heat.png --heatmap steps " OUT
+                            ".steps.png --stats " STATS),
                      0);
     assert_says("Wrote");
     assert_int_equal(render("balls:size=2 --size 80x60 --threads 2 --accel brute -o " OUT ".2.png"), 0);
     assert_int_equal(system("cmp -s '" OUT ".png' '" OUT ".2.png'"), 0);
-    const char *const files[] = {OUT ".png", OUT ".2.png", OUT ".structure.png", OUT ".heat.png", STATS};
+    const char *const files[] = {OUT ".png",      OUT ".2.png",     OUT ".structure.png",
+                                 OUT ".heat.png", OUT ".steps.png", STATS};
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
         if (!rt_file_exists(files[i])) fail_msg("%s was not written", files[i]);
         unlink(files[i]);
-    }
-}
-
-RT_TEST(every_heatmap_asked_for_is_written) {
-    static const char *const counters[] = {"object_tests", "extent_tests", "steps"};
-    char alone[256], together[1024] = "balls:size=2 --size 80x60";
-    for (int i = 0; i < 3; i++) {
-        snprintf(alone, sizeof alone, "balls:size=2 --size 80x60 --heatmap %s " OUT ".%d.png", counters[i],
-                 i);
-        assert_int_equal(render(alone), 0);
-        size_t used = strlen(together);
-        snprintf(together + used, sizeof together - used, " --heatmap %s " OUT ".with.%d.png", counters[i],
-                 i);
-    }
-    assert_int_equal(render(together), 0);
-    for (int i = 0; i < 3; i++) {
-        char a[256], b[256], compare[600];
-        snprintf(a, sizeof a, OUT ".%d.png", i);
-        snprintf(b, sizeof b, OUT ".with.%d.png", i);
-        assert_says(b);
-        snprintf(compare, sizeof compare, "cmp '%s' '%s'", a, b);
-        assert_int_equal(system(compare), 0);
-        unlink(a);
-        unlink(b);
     }
 }
 

@@ -34,10 +34,11 @@ static char *said(const Place *place, RtEventKind what, bool terminal, double ev
     int file = open(path, O_RDWR | O_CREAT | O_TRUNC, 0666), stderr_was = dup(STDERR_FILENO);
     assert_ok(load_small(place, false, error));
     assert_ok(rt_results_init(&results, place->experiment, error));
-    RtProgress progress = rt_progress_begin(&options);
+    RtProgress progress;
+    rt_progress_begin(&progress, &options);
     progress.terminal = terminal;
     progress.every = every;
-    RtRunObserver observer = rt_progress_observer(&progress);
+    const RtRunObserver observer = options.observer;
     assert_true(file >= 0 && stderr_was >= 0);
     dup2(file, STDERR_FILENO);
     for (int end = milliseconds + duration; milliseconds < end; milliseconds++) {
@@ -77,15 +78,6 @@ PLACE_TEST(on_a_terminal_one_line_is_drawn_in_place_and_taken_away) {
     assert_int_equal(count(text, "\r\033[K[0/2] balls:size=1 grid: built"), 100);
     assert_true(length > strlen(away));
     assert_string_equal(text + length - strlen(away), away);
-}
-
-PLACE_TEST(a_frame_is_of_no_kind_of_rays) {
-    char *text = said(place, RT_EVENT_RENDER, false, 0.2, 300);
-    assert_string_equal(text, "raytally: 0 of 2 cells, balls:size=1 grid: rendered\n");
-    rt_free(text);
-    text = said(place, RT_EVENT_TIME, false, 0.2, 300);
-    assert_string_equal(text, "raytally: 0 of 2 cells, balls:size=1 grid primary: timed\n");
-    rt_free(text);
 }
 
 RT_TESTS(progress, NULL, NULL)

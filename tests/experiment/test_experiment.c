@@ -137,12 +137,6 @@ PLACE_TEST(whichever_allocation_fails_loading_is_out_of_memory) {
     assert_fails_cleanly(load_small(place, false, error), (void)0);
 }
 
-PLACE_TEST(the_command_refuses_a_bad_experiment_with_exit_code_2) {
-    write_in(place, "small.yaml", "name: small\nnothing: else\n");
-    assert_ends(place, "run small.yaml", 2, "small.yaml:2");
-    assert_false(rt_file_exists(path_in(place, "results").text));
-}
-
 PLACE_TEST(what_is_left_out_of_the_yaml_has_its_default) {
     write_in(place, "small.yaml",
              "name: a\nquestion: b\nprediction: c\nscenes: [{scene: ../x/bunny.obj}]\n"
@@ -287,23 +281,6 @@ PLACE_TEST(the_times_are_made_of_those_of_the_rounds) {
     }
     rt_csv_clear(&times);
     rt_csv_clear(&rounds);
-}
-
-PLACE_TEST(a_run_of_another_experiment_is_not_resumed) {
-    assert_ok(run(place, "mixed", RT_START_FRESH, 1, nobody, error));
-    char text[2048];
-    snprintf(text, sizeof text, "%sseed: 2\n", small_experiment);
-    write_in(place, "small.yaml", text);
-    assert_bad_input(run(place, "mixed", RT_START_RESUME, 1, nobody, error), "another experiment");
-}
-
-PLACE_TEST(the_report_has_the_question_and_nothing_outside_itself) {
-    assert_ok(run(place, "page", RT_START_FRESH, 1, nobody, error));
-    OWNED_MEMORY char *page = read_in(place, "page/report.html");
-    assert_non_null(strstr(page, "Which is cheaper?"));
-    assert_non_null(strstr(page, "data:image/png;base64,"));
-    assert_null(strstr(page, "src=\"http"));
-    assert_non_null(strstr(page, "</html>"));
 }
 
 PLACE_TEST(a_missing_scene_is_an_error_unless_it_is_optional) {

@@ -6,7 +6,7 @@
 #include "small_run_testing.h"
 
 #include "report/report.h"
-#include "run/merge.h"
+#include "run/run.h"
 
 #include <fcntl.h>
 #include <signal.h>

@@ -2,7 +2,6 @@
 /* Runs that take long: how long, a part of them, what is left out, and what remains of them when they end. */
 #include "experiment_testing.h"
 
-#include "core/base/clock.h"
 #include "results/result_tables.h"
 
 #include <signal.h>
@@ -35,43 +34,6 @@ static size_t journal_lines(const Place *place) {
     size_t lines = 0;
     for (const char *c = text; *c; c++) lines += *c == '\n';
     return lines;
-}
-
-static Path numbered(const Place *place, uint32_t number) {
-    char name[32];
-    snprintf(name, sizeof name, "ended-%u", number);
-    return path_in(place, name);
-}
-
-/* A hundred times, at moments that are drawn from a fifth of the time that the whole takes; nothing that was
- * finished is lost. A run that has come to its end is compared, and another is begun. */
-PLACE_TEST(a_run_that_is_killed_again_and_again_ends_as_one_that_was_not) {
-    double began = rt_wall_seconds();
-    assert_runs(place, "run small.yaml --threads 1 --out whole");
-    double whole = rt_wall_seconds() - began;
-    uint32_t draw = 12345, killed = 0, ended = 0;
-    size_t before = 0;
-    while (killed < 100) {
-        pid_t child = start_raytally(place, RESUME);
-        draw = draw * 1664525 + 1013904223;
-        wait_seconds(0.2 * whole * draw / 4294967296.0);
-        kill(child, SIGKILL);
-        const int end = end_of(child);
-        size_t now = journal_lines(place);
-        assert_true(now >= before);
-        before = now;
-        if (end == 128 + SIGKILL) {
-            killed++;
-        } else {
-            if (end != 0) fail_msg("exit code %d: %s", end, read_in(place, "message"));
-            assert_equal_files(place, "whole/counts.csv", "out/counts.csv");
-            assert_int_equal(rename(path_in(place, "out").text, numbered(place, ended++).text), 0);
-            before = 0;
-        }
-    }
-    assert_runs(place, RESUME);
-    assert_equal_files(place, "whole/counts.csv", "out/counts.csv");
-    assert_runs(place, "reproduce out");
 }
 
 PLACE_TEST(an_interrupted_run_says_what_is_kept_and_how_to_go_on) {

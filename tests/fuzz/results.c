@@ -7,7 +7,7 @@
 #include "core/base/memory.h"
 #include "core/text/csv.h"
 #include "core/text/json.h"
-#include "experiment/manifest_experiment.h"
+#include "experiment/experiment.h"
 #include "report/index.h"
 #include "report/page.h"
 #include "results/distribution_tables.h"

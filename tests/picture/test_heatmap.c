@@ -2,8 +2,8 @@
 /* Heatmaps: colours of costs, one scale for all panels, legends. */
 #define PICTURE_FILE RT_BINARY_DIR "/test_heatmap_picture.png"
 
-#include "picture/heatmap.h"
 #include "picture/picture_testing.h"
+#include "picture/pictures.h"
 
 RT_TEST(a_heatmap_is_dark_where_nothing_was_spent_and_yellow_at_the_most) {
     enum { W = 240, H = 20 };

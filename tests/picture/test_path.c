@@ -3,8 +3,8 @@
 #define PICTURE_FILE RT_BINARY_DIR "/test_path_picture.png"
 #include "accel_testing.h"
 
-#include "picture/path_picture.h"
 #include "picture/picture_testing.h"
+#include "picture/pictures.h"
 #include "verify/spread.h"
 
 /* Looks on as a ray is traced by the counted kernels, which is what a path is made of, and compares with the
@@ -219,28 +219,6 @@ RT_TEST(objects_that_are_not_tested_and_leaves_that_are_not_visited_are_drawn_pa
     assert_true(all > first + 100); /* the other spheres */
     path.accel = NULL;
     assert_true(count_pale(&path, &scene) + 30 < all); /* their leaves */
-}
-
-/* Each format begins with what names it, and is the same again when drawn again. */
-RT_TEST(a_picture_is_png_svg_or_pdf_by_its_name_and_the_same_every_time) {
-    static const struct {
-        const char *file, *begins;
-    } formats[] = {{RT_BINARY_DIR "/test_path.png", "\x89PNG"},
-                   {RT_BINARY_DIR "/test_path.svg", "<?xml"},
-                   {RT_BINARY_DIR "/test_path.pdf", "%PDF"}};
-    PATH_ALONG_THE_ROW("bvh", 0);
-    for (size_t i = 0; i < 3; i++) {
-        OWNED_MEMORY char *first, *second;
-        size_t size, again;
-        assert_ok(rt_path_draw(&path, &scene, "title", "spec", formats[i].file, error));
-        assert_ok(rt_file_read(formats[i].file, 1000000, &first, &size, error));
-        assert_ok(rt_path_draw(&path, &scene, "title", "spec", formats[i].file, error));
-        assert_ok(rt_file_read(formats[i].file, 1000000, &second, &again, error));
-        unlink(formats[i].file);
-        assert_memory_equal(first, formats[i].begins, strlen(formats[i].begins));
-        assert_int_equal(size, again);
-        if (i != 1) assert_memory_equal(first, second, size); /* cairo numbers surfaces of a process in SVG */
-    }
 }
 
 RT_TESTS(path, NULL, assert_nothing_is_kept)

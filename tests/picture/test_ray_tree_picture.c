@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* picture/path_picture.h and picture/section.h: what is cut, and what is drawn. */
+/* picture/pictures.h and picture/section.h: what is cut, and what is drawn. */
 #define PICTURE_FILE RT_BINARY_DIR "/test_ray_tree_picture.png"
 #include "accel_testing.h"
 
-#include "picture/path_picture.h"
 #include "picture/picture_testing.h"
+#include "picture/pictures.h"
 #include "picture/section.h"
 
 static const RtColor reflection = {{0, 114, 178}}, transmission = {{0, 158, 115}}, lit = {{230, 159, 0}},
@@ -59,7 +59,7 @@ static RtImage draw_lecture(uint32_t column, uint32_t row, uint32_t depth) {
     RtRayTree tree;
     assert_ok(rt_scene_sample(&scene, 80, 60, 1, false, error));
     OWNED_ACCEL RtAccel *accel = open_accel(&scene, "bvh");
-    assert_ok(rt_ray_tree_trace(&tree, accel, (RtSample){column, row}, depth, error));
+    assert_ok(rt_ray_trees_trace(&tree, accel, &(RtSample){column, row}, 1, depth, error));
     assert_ok(rt_ray_tree_draw(&tree, &scene, "title", PICTURE_FILE, error));
     rt_ray_tree_clear(&tree);
     return read_picture();

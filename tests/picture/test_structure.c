@@ -3,10 +3,9 @@
 #define PICTURE_FILE RT_BINARY_DIR "/test_structure_picture.png"
 #include "render/render_testing.h"
 
-#include "picture/buffers.h"
-#include "picture/extent_outline.h"
 #include "picture/picture_testing.h"
-#include "picture/structure.h"
+#include "picture/pictures.h"
+#include "picture/section.h"
 #include "scenes/open.h"
 
 enum { SIDE = 200 };
@@ -98,21 +97,20 @@ static void see_line(void *context, RtVec3d from, RtVec3d to) {
     seen->lines++;
 }
 
+/* The plane of this z, as it is. */
+static RtSection section_at(double z) {
+    return (RtSection){{{0, 0, z}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}, {0, 0}, 1};
+}
+
 static void check_ball(void *context, const RtBoxView *view) {
     Seen seen = {.view = view};
-    RtPoint corners[RT_OUTLINE_CORNERS];
     const RtBall *ball = &view->extents->balls[view->extent];
-    double cut = ball->center.z + 0.6 * ball->radius;
     rt_outline_edges(view, rt_vec3d(0, 0, 10), (RtLineViewer){see_line, &seen});
-    assert_int_equal(seen.lines, 4 * RT_OUTLINE_CORNERS);
+    assert_int_equal(seen.lines, 4 * RT_CIRCLE_CORNERS);
     assert_true(seen.least >= 1 && seen.most < 1.01);
-    assert_int_equal(rt_outline_section(view, (RtSectionPlane){2, 0, 1, cut}, corners), RT_OUTLINE_CORNERS);
-    for (int i = 0; i < RT_OUTLINE_CORNERS; i++) {
-        RtVec3d corner = rt_vec3d(corners[i].x, corners[i].y, cut);
-        assert_true(fabs(rt_lengthd(rt_subd(corner, ball->center)) / ball->radius - 1) < 1e-9);
-    }
-    cut = ball->center.z + 1.01 * ball->radius;
-    assert_int_equal(rt_outline_section(view, (RtSectionPlane){2, 0, 1, cut}, corners), 0);
+    const RtSection within = section_at(ball->center.z + 0.6 * ball->radius);
+    const RtSection beside = section_at(ball->center.z + 1.01 * ball->radius);
+    assert_true(rt_section_add_extent(&within, NULL, view) && !rt_section_add_extent(&beside, NULL, view));
     ++*(int *)context;
 }
 
@@ -131,16 +129,16 @@ static void count_line(void *context, RtVec3d from, RtVec3d to) {
 
 /* Its three slabs are the box: the twelve edges of either, and the four corners of a section. */
 static void check_polytope(void *context, const RtBoxView *view) {
-    RtPoint corners[RT_OUTLINE_CORNERS];
-    double middle = (double)rt_box_center(*view->box).z;
+    RtPoint corners[RT_MAX_CORNERS];
+    const RtSection middle = section_at((double)rt_box_center(*view->box).z);
     int lines = 0;
     rt_outline_edges(view, rt_vec3d(0, 0, 10), (RtLineViewer){count_line, &lines});
     assert_int_equal(lines, 12);
-    assert_int_equal(rt_outline_section(view, (RtSectionPlane){2, 0, 1, middle}, corners), 4);
+    assert_int_equal(rt_section_cut(&middle, view, corners), 4);
     for (int i = 0; i < 4; i++) {
         for (int a = 0; a < 2; a++) {
             double lo = (double)view->box->lo.at[a], hi = (double)view->box->hi.at[a];
-            double at = a == 0 ? corners[i].x : corners[i].y;
+            double at = a == 0 ? corners[i].x : -corners[i].y;
             assert_true(fmin(fabs(at - lo), fabs(at - hi)) < 1e-4);
         }
     }

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* render/: images, read back from their files. */
-#include "accel_testing.h"
+#include "render_testing.h"
 
 #include "core/base/file.h"
-#include "render/image.h"
 
 #include <png.h>
 #include <xxhash.h>
@@ -12,34 +11,20 @@
 
 /* A sphere of radius 1 with id 1 before a wall at z = -2 with id 0, seen from (0, 0, 10); matte red under
  * white ambient light, so that colours are 1, 0, 0 on objects and 0, 0, 1 beside them. */
-static RtScene make_scene(void) {
-    RtScene scene;
-    uint32_t red;
-    RtMaterial material = {.color = {1, 0, 0}, .ambient = 1, .ior = 1};
-    RtVec3 corners[4] = {{-3, -3, -2}, {3, -3, -2}, {3, 3, -2}, {-3, 3, -2}};
-    rt_scene_init(&scene);
+static RtFrame trace_red(uint32_t width, uint32_t height) {
+    OWNED_SCENE scene = start_scene((RtMaterial){.color = {1, 0, 0}, .ambient = 1, .ior = 1});
     scene.background = rt_vec3(0, 0, 1);
-    scene.camera =
-        (RtCamera){.from = {0, 0, 10}, .at = {0, 0, 0}, .up = {0, 1, 0}, .fov = 45, .width = 1, .height = 1};
-    assert_ok(rt_scene_add_material(&scene, &material, &red, error));
-    assert_ok(rt_scene_add_polygon(&scene, red, corners, 4, error));
-    assert_ok(rt_scene_add_sphere(&scene, red, rt_vec3(0, 0, 0), 1, error));
+    scene.camera.fov = 45;
+    add_square(&scene, 3, -2);
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
     assert_ok(rt_scene_finish(&scene, error));
-    return scene;
-}
-
-static RtFrame trace(const char *spec, uint32_t width, uint32_t height, uint32_t samples, bool corners) {
-    OWNED_SCENE scene = make_scene();
-    RtFrame frame;
-    RtFrameOptions options = {.depth = 1, .threads = 1, .counted = true};
-    assert_ok(rt_scene_sample(&scene, width, height, samples, corners, error));
-    OWNED_ACCEL RtAccel *accel = open_accel(&scene, spec);
-    assert_ok(rt_frame_trace(&frame, accel, &options, error));
-    return frame;
+    RtFrameOptions options = options_for(&scene, width, height, false);
+    options.counted = true;
+    return trace(&scene, &options);
 }
 
 RT_TEST(a_png_reads_back_as_the_image) {
-    OWNED_FRAME frame = trace("brute", 40, 30, 1, false);
+    OWNED_FRAME frame = trace_red(40, 30);
     OWNED(rt_image_clear) RtImage image;
     assert_ok(rt_image_from_frame(&image, &frame, error));
     assert_ok(rt_png_write(&frame, PNG_FILE, error));
@@ -116,7 +101,7 @@ RT_TEST(a_pixel_is_the_mean_of_its_samples_or_of_its_corners) {
 
 RT_TEST(a_counted_frame_has_the_object_and_the_cost_of_each_sample) {
     enum { W = 37, H = 41, MIDDLE = H / 2 * W + W / 2 };
-    OWNED_FRAME frame = trace("brute", W, H, 1, false);
+    OWNED_FRAME frame = trace_red(W, H);
     assert_int_equal(frame.object[0], RT_NO_OBJECT);
     assert_true(isinf(frame.depth[0]));
     assert_int_equal(frame.object[MIDDLE], 1);
@@ -125,7 +110,7 @@ RT_TEST(a_counted_frame_has_the_object_and_the_cost_of_each_sample) {
 }
 
 RT_TEST(a_file_that_cannot_be_written_is_a_status_and_leaves_nothing) {
-    OWNED_FRAME frame = trace("brute", 4, 4, 1, false);
+    OWNED_FRAME frame = trace_red(4, 4);
     int64_t live = rt_alloc_live();
     const char *const folders[] = {RT_BINARY_DIR "/no such folder/a", RT_BINARY_DIR};
     for (int i = 0; i < 2; i++) {

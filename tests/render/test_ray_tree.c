@@ -9,7 +9,7 @@
 
 static RtRayTree tree_of(const RtAccel *accel, uint32_t column, uint32_t row, uint32_t depth) {
     RtRayTree tree;
-    assert_ok(rt_ray_tree_trace(&tree, accel, (RtSample){column, row}, depth, error));
+    assert_ok(rt_ray_trees_trace(&tree, accel, &(RtSample){column, row}, 1, depth, error));
     return tree;
 }
 
@@ -206,7 +206,7 @@ RT_TEST(a_tree_that_memory_does_not_suffice_for_leaves_nothing_behind) {
     assert_ok(rt_scene_sample(&scene, 4, 4, 1, false, error));
     OWNED_ACCEL RtAccel *accel = open_accel(&scene, "bvh");
     RtRayTree tree;
-    assert_fails_cleanly(rt_ray_tree_trace(&tree, accel, (RtSample){1, 1}, 8, error),
+    assert_fails_cleanly(rt_ray_trees_trace(&tree, accel, &(RtSample){1, 1}, 1, 8, error),
                          rt_ray_tree_clear(&tree));
 }
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* render/tiles.h: every sample of a frame once, in blocks of neighbours. */
+/* render/frame.h: every sample of a frame once, in blocks of neighbours. */
 #include "testing.h"
 
-#include "render/tiles.h"
+#include "render/frame.h"
 
 static const RtSampling samplings[] = {
     {.columns = 1, .rows = 1},    {.columns = 16, .rows = 16}, {.columns = 50, .rows = 37},

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "cli/recording.h"
+#include "cli/experiment_options.h"
 
 #include "cli/cli.h"
 #include "render/frame.h"
@@ -9,24 +9,20 @@
 #include <stdio.h>
 #include <string.h>
 
-static void take_size(void *options, const char *text, struct argp_state *state) {
-    RtRecordingOptions *o = options;
-    rt_cli_size(state, text, &o->like.width, &o->like.height);
-}
-
-#define Options RtRecordingOptions
-const RtOption rt_recording_options[] = {
+#define Options RtExperimentOptions
+const RtOption rt_experiment_options[] = {
     {NULL, 0, NULL, {0}, "The rays:"},
     {"rays", 0, "KIND,...", RT_TO_TEXT(kinds),
      "Kinds of rays: primary, shadow, reflection, transmission, diffuse, random, and occlusion, the diffuse "
      "rays as any-hit queries (default: all but occlusion; primary where only one kind is possible)"},
-    {"limit", 0, "N", RT_MARKING(frame, RT_SETS_INTEGER(limit, 1, RT_MAX_RAYS_A_KIND)),
+    {"limit", 0, "N", RT_MARKING(frame, RT_SETS_INTEGER(experiment.limit, 1, RT_MAX_RAYS_A_KIND)),
      "At most N rays of a kind; a larger set is thinned evenly (100000)"},
-    {"coherent-run", 0, "N", RT_MARKING(frame, RT_SETS_INTEGER(coherent_run, 1, RT_MAX_RAYS_A_KIND)),
+    {"coherent-run", 0, "N",
+     RT_MARKING(frame, RT_SETS_INTEGER(experiment.coherent_run, 1, RT_MAX_RAYS_A_KIND)),
      "Thin a set in runs of N neighbouring rays, for packets and caches (256)"},
-    {"seed", 0, "S", RT_TO_INTEGER(seed, 0, INT64_MAX),
+    {"seed", 0, "S", RT_TO_INTEGER(experiment.seed, 0, INT64_MAX),
      "Seed of diffuse and random rays and of the order of timing (1)"},
-    {"size", 0, "WxH", RT_MARKING(frame, RT_CALLS(take_size)),
+    {"size", 0, "WxH", RT_MARKING(frame, .form = RT_OPTION_SIZE, RT_AT(like.width)),
      "Size of the frame whose rays are recorded (the camera's)"},
     {"corners", 0, NULL, RT_MARKING(frame, RT_SETS_FLAG(like.corners)),
      "Sample pixel corners, (W+1) x (H+1) rays"},
@@ -35,13 +31,8 @@ const RtOption rt_recording_options[] = {
     {0}};
 #undef Options
 
-void rt_recording_init(RtRecordingOptions *o) {
-    static RtExperiment experiment;
-    rt_experiment_init(&experiment);
-    o->experiment = &experiment;
-    o->limit = experiment.limit;
-    o->coherent_run = experiment.coherent_run;
-    o->seed = experiment.seed;
+void rt_experiment_options_init(RtExperimentOptions *o) {
+    rt_experiment_init(&o->experiment);
     o->like.depth = RT_DEFAULT_DEPTH;
 }
 
@@ -61,12 +52,9 @@ static void parse_kinds(RtExperiment *experiment, const char *text, struct argp_
     if (!experiment->kind_count) argp_error(state, "--rays: give at least one kind");
 }
 
-void rt_recording_finish(const RtRecordingOptions *o, struct argp_state *state) {
-    RtExperiment *e = o->experiment;
+void rt_experiment_options_finish(RtExperimentOptions *o, struct argp_state *state) {
+    RtExperiment *e = &o->experiment;
     const bool given = *e->rays_from, one = given || o->one_kind;
-    e->limit = o->limit;
-    e->coherent_run = o->coherent_run;
-    e->seed = o->seed;
     if (given && o->frame)
         argp_error(state, "--%s applies to recorded rays; --rays-from measures all rays of its file",
                    o->frame);
@@ -83,13 +71,13 @@ void rt_recording_finish(const RtRecordingOptions *o, struct argp_state *state) 
     if (one && e->kind_count > 1) argp_error(state, "--rays: one kind at a time");
 }
 
-void rt_recording_take_callgrind(void *options, const char *text, struct argp_state *state) {
-    RtRecordingOptions *o = options;
+void rt_take_callgrind(void *options, const char *text, struct argp_state *state) {
+    RtExperimentOptions *o = options;
     o->callgrind = RT_CALLGRIND_RAYS;
     if (text) o->callgrind = (uint64_t)rt_cli_integer(state, "--callgrind", text, 1, 100000000);
 }
 
-void rt_recording_add_accel(RtExperiment *experiment, const char *text, struct argp_state *state) {
+void rt_add_accel(RtExperiment *experiment, const char *text, struct argp_state *state) {
     RtError error;
     RtCandidate like = {.entry = experiment->candidate_count, .ray_stride = 1};
     if (strlen(text) >= RT_MAX_SPEC_CHARS) {
@@ -100,15 +88,15 @@ void rt_recording_add_accel(RtExperiment *experiment, const char *text, struct a
         argp_error(state, "--accel: %s", error.message);
 }
 
-void rt_recording_take_accel(void *options, const char *text, struct argp_state *state) {
-    RtExperiment *experiment = ((RtRecordingOptions *)options)->experiment;
+void rt_take_accel(void *options, const char *text, struct argp_state *state) {
+    RtExperiment *experiment = &((RtExperimentOptions *)options)->experiment;
     if (strcmp(text, "all") != 0) {
-        rt_recording_add_accel(experiment, text, state);
+        rt_add_accel(experiment, text, state);
         return;
     }
     for (size_t i = 0; i < rt_accel_count(); i++) {
         char spec[RT_MAX_SPEC_CHARS];
         rt_spread_spec(rt_accel_at(i), 0, spec);
-        rt_recording_add_accel(experiment, spec, state);
+        rt_add_accel(experiment, spec, state);
     }
 }
