@@ -4,8 +4,6 @@
  * rounding errors. */
 #include "accel/extent.h"
 
-#include "core/base/memory.h"
-
 #define THIRD 0.57735026918962576451
 #define HALF  0.70710678118654752440
 const RtVec3d rt_slab_normals[RT_MAX_SLABS] = {
@@ -43,27 +41,15 @@ size_t rt_extent_set_bytes(const RtExtentSet *set) {
     return set->count * bytes_each(set);
 }
 
-RtStatus rt_extent_set_init(RtExtentSet *set, RtExtentKind kind, uint32_t slabs_each, uint32_t count,
-                            RtError *error) {
+RtStatus rt_extent_set_init(RtExtentSet *set, RtArena *memory, RtExtentKind kind, uint32_t slabs_each,
+                            uint32_t count, RtError *error) {
     *set = (RtExtentSet){.kind = kind, .slabs_each = slabs_each, .count = count};
     if (kind == RT_EXTENT_BOX) return RT_OK;
-    void *block = rt_alloc(count, bytes_each(set));
-    if (!block) {
-        RtStatus status = rt_fail_memory(error, "extents", rt_extent_set_bytes(set));
-        *set = (RtExtentSet){.kind = RT_EXTENT_BOX};
-        return status;
-    }
+    void *block = rt_arena_alloc(memory, count, bytes_each(set));
     if (kind == RT_EXTENT_SPHERE) set->balls = block;
     if (kind == RT_EXTENT_OBB) set->oriented = block;
     if (kind == RT_EXTENT_SLABS) set->slabs = block;
-    return RT_OK;
-}
-
-void rt_extent_set_clear(RtExtentSet *set) {
-    rt_free(set->balls);
-    rt_free(set->oriented);
-    rt_free(set->slabs);
-    *set = (RtExtentSet){.kind = RT_EXTENT_BOX};
+    return rt_arena_check(memory, "extents", error);
 }
 
 /* ---- making ---- */

@@ -184,79 +184,31 @@ static RtStatus lay_out_all(Layout *layout, int threads, RtError *error) {
     return RT_OK;
 }
 
-static RtStatus lay_out(Layout *layout, RtTree *tree, int threads, RtError *error) {
-    RtHierarchy *self = layout->self;
-    RtReduction reduction = {sizeof(Cost), reduce_subtree, combine_children, layout};
-    Cost whole;
-    RT_TRY(rt_tree_reduce(tree, &reduction, threads, &layout->reduced, &whole, error));
-    size_t most = 2 * (size_t)whole.leaves - 1;
-    self->nodes = rt_alloc_unset(most, sizeof(RtNode));
-    self->ids = rt_alloc_unset(whole.references, sizeof(uint32_t));
-    self->split_refs = tree->split_refs;
-    if (self->nodes && self->ids) return lay_out_all(layout, threads, error);
-    return rt_fail_memory(error, "the nodes of a hierarchy",
-                          most * sizeof(RtNode) + whole.references * sizeof(uint32_t));
-}
-
-RtStatus rt_hierarchy_lay_out(RtHierarchy *self, RtTree *tree, int threads, RtError *error) {
-    assert(self->width >= 2 && self->width <= RT_NODE_MAX_WIDTH);
+/* Lays out a complete tree. */
+static RtStatus lay_out(RtHierarchy *self, RtArena *memory, RtTree *tree, int threads, RtError *error) {
+    RT_ARENA(arena);
     Layout layout = {.self = self,
                      .tree = tree,
-                     .leaf = rt_alloc_unset(tree->used, sizeof(bool)),
-                     .parts = rt_alloc(RT_REDUCTION_MAX_PARTS, sizeof(Part))};
-    RtStatus status = layout.leaf && layout.parts
-                          ? lay_out(&layout, tree, threads, error)
-                          : rt_fail_memory(error, "the leaves of a hierarchy", tree->used * sizeof(bool));
-    rt_free(layout.leaf);
-    rt_free(layout.parts);
-    rt_reduced_parts_clear(&layout.reduced);
-    if (status != RT_OK) rt_hierarchy_clear(self);
-    return status;
+                     .leaf = rt_arena_alloc_unset(&arena, tree->used, sizeof(bool)),
+                     .parts = rt_arena_alloc(&arena, RT_REDUCTION_MAX_PARTS, sizeof(Part))};
+    const RtReduction reduction = {sizeof(Cost), reduce_subtree, combine_children, &layout};
+    Cost whole;
+    assert(self->width >= 2 && self->width <= RT_NODE_MAX_WIDTH);
+    RT_TRY(rt_arena_check(&arena, "the leaves of a hierarchy", error));
+    RT_TRY(rt_tree_reduce(tree, &reduction, &arena, threads, &layout.reduced, &whole, error));
+    self->nodes = rt_arena_alloc_unset(memory, 2 * (size_t)whole.leaves - 1, sizeof(RtNode));
+    self->ids = rt_arena_alloc_unset(memory, whole.references, sizeof(uint32_t));
+    self->split_refs = tree->split_refs;
+    RT_TRY(rt_arena_check(memory, "the nodes of a hierarchy", error));
+    return lay_out_all(&layout, threads, error);
 }
 
-void rt_hierarchy_clear(RtHierarchy *self) {
-    rt_free(self->nodes);
-    rt_free(self->ids);
-    self->nodes = NULL;
-    self->ids = NULL;
-    self->node_count = self->id_count = 0;
-}
-
-/* ---- building ---- */
-
-/* The default, binned SAH, is the method without a case of its own. */
-static RtStatus build_tree(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options,
-                           int threads, RtError *error) {
-    const RtBox *boxes = geometry->boxes;
-    uint32_t count = geometry->object_count;
-    switch (options->method) {
-    case RT_TREE_BINNED: break;
-    case RT_TREE_SWEEP: return rt_tree_sweep(tree, boxes, count, error);
-    case RT_TREE_LBVH: return rt_tree_lbvh(tree, boxes, count, options->bits, threads, error);
-    case RT_TREE_PLOC:
-        return rt_tree_ploc(tree, boxes, count, options->bits, options->radius, threads, error);
-    case RT_TREE_SPATIAL: return rt_tree_spatial(tree, geometry, &options->spatial, threads, error);
-    case RT_TREE_AGGLOMERATIVE: return rt_tree_agglomerative(tree, boxes, count, error);
-    case RT_TREE_INSERTION: return rt_tree_insertion(tree, boxes, count, &options->insertion, error);
-    case RT_TREE_MEDIAN: return rt_tree_topdown(tree, boxes, count, 0, threads, error);
-    }
-    return rt_tree_topdown(tree, boxes, count, options->spatial.bins, threads, error);
-}
-
-RtStatus rt_tree_build(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options, int threads,
-                       RtError *error) {
-    RT_TRY(build_tree(tree, geometry, options, threads, error));
-    RtStatus status = rt_tree_reinsert(tree, options->reinsertion, options->batch, threads, error);
-    if (status != RT_OK) rt_tree_clear(tree);
-    return status;
-}
-
-RtStatus rt_hierarchy_build(RtHierarchy *self, const RtGeometry *geometry, const RtTreeOptions *options,
-                            int threads, RtError *error) {
+RtStatus rt_hierarchy_build(RtHierarchy *self, RtArena *memory, const RtGeometry *geometry,
+                            const RtTreeOptions *options, int threads, RtError *error) {
     RtTree tree;
     if (geometry->object_count == 0) return RT_OK;
     RT_TRY(rt_tree_build(&tree, geometry, options, threads, error));
-    RtStatus status = rt_hierarchy_lay_out(self, &tree, threads, error);
+    RtStatus status = lay_out(self, memory, &tree, threads, error);
     rt_tree_clear(&tree);
     return status;
 }

@@ -3,7 +3,6 @@
  * values form a stack, two for each level. */
 #include "accel/tree/reduction.h"
 
-#include "core/base/memory.h"
 #include "core/base/parallel.h"
 
 #include <string.h>
@@ -63,11 +62,10 @@ static RtStatus reduce_parts(Job *job, int threads, bool *too_deep, RtError *err
     return RT_OK;
 }
 
-RtStatus rt_tree_reduce(RtTree *tree, const RtReduction *reduction, int threads, RtReducedParts *parts,
-                        void *whole, RtError *error) {
-    size_t most = RT_REDUCTION_MAX_PARTS + PENDING;
-    *parts = (RtReducedParts){.values = rt_alloc(most, reduction->size)};
-    if (!parts->values) return rt_fail_memory(error, "a reduction over a tree", most * reduction->size);
+RtStatus rt_tree_reduce(RtTree *tree, const RtReduction *reduction, RtArena *memory, int threads,
+                        RtReducedParts *parts, void *whole, RtError *error) {
+    parts->values = rt_arena_alloc(memory, RT_REDUCTION_MAX_PARTS + PENDING, reduction->size);
+    RT_TRY(rt_arena_check(memory, "a reduction over a tree", error));
     Job job = {.tree = tree,
                .reduction = reduction,
                .parts = parts,
@@ -80,9 +78,4 @@ RtStatus rt_tree_reduce(RtTree *tree, const RtReduction *reduction, int threads,
     }
     reduce_top(&job, tree->root, 0, whole);
     return RT_OK;
-}
-
-void rt_reduced_parts_clear(RtReducedParts *parts) {
-    rt_free(parts->values);
-    parts->values = NULL;
 }

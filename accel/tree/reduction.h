@@ -6,6 +6,7 @@
 #define RT_ACCEL_TREE_REDUCTION_H
 
 #include "accel/tree/tree.h"
+#include "core/base/memory.h"
 
 enum { RT_REDUCTION_LEVELS = 9, RT_REDUCTION_MAX_PARTS = 1 << RT_REDUCTION_LEVELS };
 
@@ -21,7 +22,7 @@ typedef struct RtReduction {
 typedef struct RtReducedParts {
     uint32_t index[RT_REDUCTION_MAX_PARTS]; /* [count] their roots, from left to right */
     uint32_t count;
-    char *values; /* [count] owned */
+    char *values; /* [count] */
 } RtReducedParts;
 
 /* Whether a node at this depth belongs to the top, and is not the root of a part. */
@@ -31,9 +32,8 @@ static inline bool rt_reduction_is_top(const RtTree *tree, uint32_t index, uint3
 }
 
 /* Computes the value of a complete tree, whose depth is limited first if necessary (rt_tree_limit_depth), and
- * those of its parts. The caller clears *parts, also on failure. */
-RtStatus rt_tree_reduce(RtTree *tree, const RtReduction *reduction, int threads, RtReducedParts *parts,
-                        void *whole, RtError *error);
-void rt_reduced_parts_clear(RtReducedParts *parts);
+ * those of its parts, in `memory`. */
+RtStatus rt_tree_reduce(RtTree *tree, const RtReduction *reduction, RtArena *memory, int threads,
+                        RtReducedParts *parts, void *whole, RtError *error);
 
 #endif

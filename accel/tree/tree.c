@@ -2,7 +2,7 @@
 /* Binary trees of references: the bound on their depth, and leaves without nodes. */
 #include "accel/tree/tree.h"
 
-#include "accel/tree/sah_split.h"
+#include "accel/tree/topdown.h"
 #include "core/base/memory.h"
 
 #include <assert.h>
@@ -115,17 +115,15 @@ static uint32_t limited(Rebuild *parts, uint32_t node, uint32_t depth) {
 
 RtStatus rt_tree_limit_depth(RtTree *tree, RtError *error) {
     if (!reaches_below(tree, tree->root, RT_TREE_MAX_DEPTH)) return RT_OK;
+    RT_ARENA(arena);
     uint32_t count = rt_tree_leaf_count(tree);
     Rebuild parts = {.tree = tree,
-                     .leaves = rt_alloc(count, sizeof(RtTreeRef)),
-                     .unions = rt_alloc(count, sizeof(uint32_t)),
-                     .todo = rt_alloc(count, sizeof(uint32_t))};
-    bool enough = parts.leaves && parts.unions && parts.todo;
-    if (enough) tree->root = limited(&parts, tree->root, 0);
-    rt_free(parts.leaves);
-    rt_free(parts.unions);
-    rt_free(parts.todo);
-    return enough ? RT_OK : rt_fail_memory(error, "limiting the depth of a tree", count * sizeof(RtTreeRef));
+                     .leaves = rt_arena_alloc(&arena, count, sizeof(RtTreeRef)),
+                     .unions = rt_arena_alloc(&arena, count, sizeof(uint32_t)),
+                     .todo = rt_arena_alloc(&arena, count, sizeof(uint32_t))};
+    RT_TRY(rt_arena_check(&arena, "limiting the depth of a tree", error));
+    tree->root = limited(&parts, tree->root, 0);
+    return RT_OK;
 }
 
 /* ---- without nodes for leaves ---- */
@@ -135,22 +133,39 @@ RtStatus rt_tree_drop_leaves(RtTree *tree, const RtBox *boxes, RtError *error) {
     uint32_t next = 0;
     RT_TRY(rt_tree_limit_depth(tree, error));
     if (tree->split_refs) return RT_OK;
+    RT_ARENA(arena);
+    uint32_t *moved =
+        rt_arena_alloc_unset(&arena, tree->used, sizeof *moved); /* the new number of each node */
+    RT_TRY(rt_arena_check(&arena, "the inner nodes of a tree", error));
     RtTreeNode *nodes = rt_alloc_unset(inner, sizeof *nodes);
-    uint32_t *moved = rt_alloc_unset(tree->used, sizeof *moved); /* the new number of each node */
-    const bool enough = nodes && moved;
-    for (uint32_t i = 0; enough && i < tree->used; i++)
+    if (!nodes) return rt_fail_memory(error, "the inner nodes of a tree", inner * sizeof *nodes);
+    for (uint32_t i = 0; i < tree->used; i++)
         moved[i] = rt_tree_is_leaf(tree, i) ? RT_TREE_OBJECT + tree->nodes[i].child[1] : next++;
-    for (uint32_t i = 0; enough && i < tree->used; i++) {
+    for (uint32_t i = 0; i < tree->used; i++) {
         const RtTreeNode *node = &tree->nodes[i];
         if (moved[i] >= RT_TREE_OBJECT) continue;
         nodes[moved[i]] = (RtTreeNode){node->box, {moved[node->child[0]], moved[node->child[1]]}};
     }
-    if (enough) {
-        rt_free(tree->nodes);
-        *tree = (RtTree){nodes, inner, inner, moved[tree->root], false, boxes};
-    } else {
-        rt_free(nodes);
-    }
-    rt_free(moved);
-    return enough ? RT_OK : rt_fail_memory(error, "the inner nodes of a tree", inner * sizeof *nodes);
+    rt_free(tree->nodes);
+    *tree = (RtTree){nodes, inner, inner, moved[tree->root], false, boxes};
+    return RT_OK;
+}
+
+/* ---- building ---- */
+
+static RtTreeBuild *const methods[RT_TREE_METHOD_COUNT] = {
+    [RT_TREE_BINNED] = rt_tree_topdown,      [RT_TREE_SWEEP] = rt_tree_sweep,
+    [RT_TREE_LBVH] = rt_tree_lbvh,           [RT_TREE_PLOC] = rt_tree_ploc,
+    [RT_TREE_SPATIAL] = rt_tree_spatial,     [RT_TREE_AGGLOMERATIVE] = rt_tree_agglomerative,
+    [RT_TREE_INSERTION] = rt_tree_insertion, [RT_TREE_MEDIAN] = rt_tree_topdown,
+};
+
+RtStatus rt_tree_build(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options, int threads,
+                       RtError *error) {
+    *tree = (RtTree){.nodes = NULL};
+    RtStatus status = methods[options->method](tree, geometry, options, threads, error);
+    if (status == RT_OK)
+        status = rt_tree_reinsert(tree, options->reinsertion, options->batch, threads, error);
+    if (status != RT_OK) rt_tree_clear(tree);
+    return status;
 }

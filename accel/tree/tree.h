@@ -101,61 +101,84 @@ RtStatus rt_tree_limit_depth(RtTree *tree, RtError *error);
  * split references, whose boxes are their own. On failure the leaves are still there. */
 RtStatus rt_tree_drop_leaves(RtTree *tree, const RtBox *boxes, RtError *error);
 
-/* ---- methods ----
- *
- * Each builds a complete tree of `count` objects, at least 1, with these boxes. The tree depends on the
- * arguments alone, not on the number of `threads` (0 = all processors); its depth is not limited. On failure
- * nothing is left behind. */
+/* ---- building ---- */
+
+enum { RT_MAX_MORTON_BITS = 21, RT_MAX_BINS = 64 };
+
+/* In the order of RT_TREE_METHODS, the choices of a parameter. */
+#define RT_TREE_METHODS "binned|sweep|lbvh|ploc|spatial"
+typedef enum RtTreeMethod {
+    RT_TREE_BINNED,
+    RT_TREE_SWEEP,
+    RT_TREE_LBVH,
+    RT_TREE_PLOC,
+    RT_TREE_SPATIAL,
+    RT_TREE_AGGLOMERATIVE, /* from here on not among RT_TREE_METHODS */
+    RT_TREE_INSERTION,
+    RT_TREE_MEDIAN,
+    RT_TREE_METHOD_COUNT
+} RtTreeMethod;
+
+typedef struct RtTreeOptions {
+    RtTreeMethod method;
+    uint32_t bits;   /* lbvh, ploc: of a Morton code along each axis, 1..RT_MAX_MORTON_BITS */
+    uint32_t radius; /* ploc: neighbours searched on either side */
+    struct {
+        int bins;         /* also binned: along each axis, 2..RT_MAX_BINS */
+        double alpha;     /* spatial splits are tried where the sides overlap by more than this part of the
+                             root's area */
+        double budget;    /* most references per object; at least 1 */
+        uint32_t leaf;    /* a group of at most so many references is not cut if a leaf is cheaper */
+        double traversal; /* cost of an inner node, in object tests */
+        uint64_t limit;   /* most bytes of the tree and its layout */
+    } spatial;
+    struct {
+        bool random;           /* the first attempt is a random permutation, too, not the order of ids */
+        uint32_t permutations; /* attempts; the cheapest tree is kept */
+        uint64_t seed;
+    } insertion;
+    uint32_t reinsertion; /* most rounds */
+    double batch;         /* of reinsertion: part of the nodes */
+} RtTreeOptions;
+
+/* Builds a complete tree of all objects, at least 1, by a method, and improves it by reinsertion. The tree
+ * depends on the objects and the options alone, not on the number of `threads` (0 = all processors); its
+ * depth is not limited. On failure nothing is left behind. */
+RtStatus rt_tree_build(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options, int threads,
+                       RtError *error);
+
+/* The methods, for rt_tree_build, which clears the tree if they fail. */
+typedef RtStatus RtTreeBuild(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options,
+                             int threads, RtError *error);
 
 /* Walter, Bala, Kulkarni & Pingali 2008: unites the two nearest nodes until one is left. */
-RtStatus rt_tree_agglomerative(RtTree *tree, const RtBox *boxes, uint32_t count, RtError *error);
+RtTreeBuild rt_tree_agglomerative;
 
-/* Meister & Bittner 2018: in rounds, along the Morton order of centres (`bits` bits an axis, order.h), unites
- * nodes that are each other's nearest among the `radius` before and after. */
-RtStatus rt_tree_ploc(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits, uint32_t radius,
-                      int threads, RtError *error);
+/* Meister & Bittner 2018: in rounds, along the Morton order of centres, unites nodes that are each other's
+ * nearest among the `radius` before and after. */
+RtTreeBuild rt_tree_ploc;
 
 /* Lauterbach et al. 2009: splits the Morton order where the highest differing bit of the codes changes. */
-RtStatus rt_tree_lbvh(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits, int threads,
-                      RtError *error);
-
-typedef struct RtInsertionOrder {
-    bool random;           /* the first attempt is a random permutation, too, not the order of ids */
-    uint32_t permutations; /* attempts; the cheapest tree is kept */
-    uint64_t seed;
-} RtInsertionOrder;
+RtTreeBuild rt_tree_lbvh;
 
 /* Goldsmith & Salmon 1987: inserts objects one by one where the sum of areas grows least. */
-RtStatus rt_tree_insertion(RtTree *tree, const RtBox *boxes, uint32_t count, const RtInsertionOrder *order,
-                           RtError *error);
+RtTreeBuild rt_tree_insertion;
 
-/* Top-down, at the median of centres along the longest axis (bins = 0; Rubin & Whitted 1980, whose
- * hierarchies were made by hand), or by the surface area heuristic in `bins` bins (Wald 2007). A subtree of n
- * references is a run of 2 n - 1 nodes: its root, the left subtree, the right one. */
-RtStatus rt_tree_topdown(RtTree *tree, const RtBox *boxes, uint32_t count, int bins, int threads,
-                         RtError *error);
+/* Top-down, at the median of centres along the longest axis (Rubin & Whitted 1980, whose hierarchies were
+ * made by hand), or by the surface area heuristic in bins (Wald 2007). A subtree of n references is a run of
+ * 2 n - 1 nodes: its root, the left subtree, the right one. */
+RtTreeBuild rt_tree_topdown;
 
 /* Top-down by the surface area heuristic, all positions between centres tried (MacDonald & Booth 1990). */
-RtStatus rt_tree_sweep(RtTree *tree, const RtBox *boxes, uint32_t count, RtError *error);
+RtTreeBuild rt_tree_sweep;
 
-typedef struct RtSpatial {
-    int bins;         /* along each axis, 2..RT_MAX_BINS */
-    double alpha;     /* spatial splits are tried where the sides overlap by more than this part of the root's
-                         area */
-    double budget;    /* most references per object; at least 1 */
-    uint32_t leaf;    /* a group of at most so many references is not cut if a leaf is cheaper */
-    double traversal; /* cost of an inner node, in object tests */
-    uint64_t limit;   /* most bytes of the tree and its layout */
-} RtSpatial;
+/* Top-down, by object splits and spatial splits: Stich, Friedrich & Dietrich 2009. */
+RtTreeBuild rt_tree_spatial;
 
 /* The margin of rt_object_part (core/shape/overlap.h) in a scene with this box. */
 static inline double rt_tree_part_margin(const RtBox *scene) {
     return 0x1p-40 * rt_box_largest_coordinate(*scene);
 }
-
-/* Top-down, by object splits and spatial splits: Stich, Friedrich & Dietrich 2009. */
-RtStatus rt_tree_spatial(RtTree *tree, const RtGeometry *geometry, const RtSpatial *how, int threads,
-                         RtError *error);
 
 /* Bittner, Hapala & Havran 2013; Meister & Bittner 2018: moves subtrees of a complete tree to where its cost
  * (rt_tree_cost) is least, until no move gains, in at most so many rounds. It moves this part of the nodes

@@ -5,12 +5,11 @@
 /* A binned tree, and bad ones: medians, and chains in the order of ids. */
 enum { BINNED, MEDIANS, CHAIN, KINDS };
 
-static RtTree make_tree(const RtBox *boxes, uint32_t count, int kind) {
+static RtTree make_tree(RtBox *boxes, uint32_t count, int kind) {
+    const RtTreeOptions options = {.method = kind == BINNED ? RT_TREE_BINNED : RT_TREE_MEDIAN,
+                                   .spatial.bins = 16};
+    if (kind != CHAIN) return build_tree(boxes, count, options, 1);
     RtTree tree;
-    if (kind != CHAIN) {
-        assert_ok(rt_tree_topdown(&tree, boxes, count, kind == BINNED ? 16 : 0, 1, error));
-        return tree;
-    }
     assert_ok(rt_tree_init_leaves(&tree, boxes, count, error));
     for (uint32_t i = 1, top = 0; i < count; i++) top = rt_tree_unite(&tree, top, i);
     return tree;
