@@ -153,15 +153,12 @@ RT_KERNEL bool next_moment(Walk *walk, float limit) {
 }
 
 RT_COLD static void observe_voxel(const RtGridLevel *level, size_t voxel, bool leaf, bool empty) {
-    const RtGridBlock *block = &level->blocks[level->block_count - 1];
-    while (block->voxel > voxel) block--;
-    const uint32_t within = (uint32_t)voxel - block->voxel, row = within / block->n[0];
-    const uint32_t at[3] = {within % block->n[0], row % block->n[1], row / block->n[1]};
-    const RtBox box = rt_grid_voxel_box(block, at);
+    RtGridVoxel found = {.level = level, .number = (uint32_t)voxel};
+    rt_grid_find_voxel(&found);
     rt_observe(&(RtTraced){.kind = RT_TRACED_STEP,
                            .what = "voxel",
                            .index = (uint32_t)voxel,
-                           .box = &box,
+                           .box = &found.box,
                            .leaf = leaf,
                            .empty = empty});
 }
@@ -389,8 +386,7 @@ static RtStatus check_nested(Check *check, const RtGridVoxel *voxel, uint32_t in
     return RT_OK;
 }
 
-static RtStatus check_voxel(void *context, const RtGridVoxel *voxel) {
-    Check *check = context;
+static RtStatus check_voxel(Check *check, const RtGridVoxel *voxel) {
     const RtGrid *grid = check->grid;
     const RtGridLevel *level = voxel->level;
     uint32_t from = level->first[voxel->number], to = level->first[voxel->number + 1];
@@ -428,7 +424,8 @@ static RtStatus check_level(Check *check, const RtGridLevel *level) {
         }
     }
     check->nested = 0;
-    RT_TRY(rt_grid_each_voxel(level, check_voxel, check));
+    for (RtGridVoxel voxel = {.level = level}; rt_grid_find_voxel(&voxel); voxel.number++)
+        RT_TRY(check_voxel(check, &voxel));
     bool last = level + 1 == check->grid->levels + check->grid->depth;
     if (last || check->nested == level[1].block_count) return RT_OK;
     return rt_fail(check->error, RT_MISMATCH, "grid: a nested grid is in no voxel");
@@ -496,32 +493,21 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
     return RT_OK;
 }
 
-/* ---- boxes ---- */
-
-typedef struct Show {
-    RtBoxViewer viewer;
-    uint32_t depth;
-} Show;
-
-static RtStatus show_voxel(void *context, const RtGridVoxel *voxel) {
-    const Show *show = context;
-    const uint32_t *first = &voxel->level->first[voxel->number];
-    show->viewer.show(show->viewer.context,
-                      &(RtBoxView){.box = &voxel->box,
-                                   .depth = show->depth,
-                                   .leaf = rt_grid_inner(voxel->level, voxel->number) == RT_GRID_LEAF,
-                                   .objects = first[1] - first[0]});
-    return RT_OK;
-}
-
 /* Voxels of the outermost grid have depth 1. */
 static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
     const RtGrid *grid = (const RtGrid *)accel;
     if (grid->depth == 0) return;
     viewer.show(viewer.context, &(RtBoxView){.box = &grid->box});
     for (uint32_t i = 0; i < grid->depth; i++) {
-        Show show = {viewer, i + 1};
-        rt_grid_each_voxel(&grid->levels[i], show_voxel, &show);
+        const RtGridLevel *level = &grid->levels[i];
+        for (RtGridVoxel voxel = {.level = level}; rt_grid_find_voxel(&voxel); voxel.number++) {
+            const uint32_t *first = &level->first[voxel.number];
+            viewer.show(viewer.context,
+                        &(RtBoxView){.box = &voxel.box,
+                                     .depth = i + 1,
+                                     .leaf = rt_grid_inner(level, voxel.number) == RT_GRID_LEAF,
+                                     .objects = first[1] - first[0]});
+        }
     }
 }
 

@@ -117,17 +117,16 @@ RtBox rt_grid_voxel_box(const RtGridBlock *block, const uint32_t at[3]);
 /* Bytes of the arrays of a level. */
 uint64_t rt_grid_level_bytes(const RtGridLevel *level);
 
-/* The argument of rt_grid_each_voxel's visitor. */
+/* A voxel of a level, by its number. */
 typedef struct RtGridVoxel {
     const RtGridLevel *level;
-    uint32_t at[3]; /* in its block */
-    size_t number;
+    uint32_t number;
+    uint32_t block, at[3]; /* where it is */
     RtBox box;
 } RtGridVoxel;
 
-/* Calls visit for every voxel of a level, in the order of their numbers, until it returns a status other than
- * RT_OK. */
-RtStatus rt_grid_each_voxel(const RtGridLevel *level,
-                            RtStatus (*visit)(void *context, const RtGridVoxel *voxel), void *context);
+/* Finds where a voxel is, from its number and `block`, which may be any before its own; false if the level
+ * has no such voxel. */
+bool rt_grid_find_voxel(RtGridVoxel *voxel);
 
 #endif

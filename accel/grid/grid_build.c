@@ -97,27 +97,22 @@ bool rt_grid_surface_meets(const RtGrid *grid, const RtOutline *outline, const R
     return rt_outline_meets_box(outline, box, grid->slack + grid->served.margin);
 }
 
-/* The first and last interval of planes on `axis` that [lo, hi], which meets the block, overlaps. An interval
- * contains its lower plane but not its upper one, unless it is the last. */
-static void find_touched(const RtGridBlock *block, int axis, float lo, float hi, uint32_t *first,
-                         uint32_t *last) {
-    const float *plane = block->planes[axis];
-    uint32_t n = block->n[axis];
-    float width = plane[n] - plane[0];
-    float guess = width > 0 ? (lo - plane[0]) / width * (float)n : 0;
-    uint32_t i = guess > 0 ? (uint32_t)rt_minf(guess, (float)(n - 1)) : 0;
-    while (i > 0 && plane[i] > lo) i--;
-    while (i + 1 < n && plane[i + 1] <= lo) i++;
-    *first = i;
-    while (i + 1 < n && plane[i + 1] <= hi) i++;
-    *last = i;
-}
-
-/* The range of voxels that a box overlaps, which must meet the block's. */
+/* The intervals of planes that a box, which meets the block, overlaps on each axis. An interval contains its
+ * lower plane but not its upper one, unless it is the last. */
 static Range find_range(const RtGridBlock *block, const RtBox *box) {
     Range range;
-    for (int a = 0; a < 3; a++)
-        find_touched(block, a, box->lo.at[a], box->hi.at[a], &range.from[a], &range.to[a]);
+    for (int a = 0; a < 3; a++) {
+        const float *plane = block->planes[a], lo = box->lo.at[a];
+        uint32_t n = block->n[a];
+        float width = plane[n] - plane[0];
+        float guess = width > 0 ? (lo - plane[0]) / width * (float)n : 0;
+        uint32_t i = guess > 0 ? (uint32_t)rt_minf(guess, (float)(n - 1)) : 0;
+        while (i > 0 && plane[i] > lo) i--;
+        while (i + 1 < n && plane[i + 1] <= lo) i++;
+        range.from[a] = i;
+        while (i + 1 < n && plane[i + 1] <= box->hi.at[a]) i++;
+        range.to[a] = i;
+    }
     return range;
 }
 
@@ -135,29 +130,47 @@ static bool halve(Range *range, Range *other) {
     return true;
 }
 
+/* Both passes over the lists of a block: adds 1 to slot[v] for every voxel v of an object and, in the fill
+ * pass, stores the object at that slot. */
+typedef struct Lists {
+    const RtGridBlock *block;
+    uint32_t *slot, *ids;
+} Lists;
+
+static void add_range(const Lists *lists, uint32_t id, const Range *range) {
+    uint32_t at[3];
+    for (at[2] = range->from[2]; at[2] <= range->to[2]; at[2]++) {
+        for (at[1] = range->from[1]; at[1] <= range->to[1]; at[1]++) {
+            for (at[0] = range->from[0]; at[0] <= range->to[0]; at[0]++) {
+                uint32_t *entry = &lists->slot[rt_grid_voxel_at(lists->block, at)];
+                if (lists->ids) lists->ids[*entry] = id;
+                ++*entry;
+            }
+        }
+    }
+}
+
 /* Each halving pushes one range; 3 axes of 4096 voxels are halved 36 times. */
 enum { MAX_RANGES = 40 };
 
-/* Calls `visit` for disjoint ranges that together are the voxels of the block that list object `id`, which
- * belongs into the block. */
-static void each_range(const RtGrid *grid, const RtGridBlock *block, uint32_t id,
-                       void (*visit)(void *context, const Range *range), void *context) {
+/* Adds an object, which belongs into the block, to the voxels that list it, disjoint ranges. */
+static void add_object(const RtGrid *grid, const Lists *lists, uint32_t id) {
     RtBox object = rt_grid_object_box(grid, id);
-    Range stack[MAX_RANGES], range = find_range(block, &object);
+    Range stack[MAX_RANGES], range = find_range(lists->block, &object);
     uint32_t stacked = 0;
     if (!grid->surfaces) {
-        visit(context, &range);
+        add_range(lists, id, &range);
         return;
     }
     RtOutline outline = rt_object_outline(&grid->base.scene->geometry, id);
     for (;;) {
-        RtBox box = range_box(block, &range);
+        RtBox box = range_box(lists->block, &range);
         if (rt_grid_surface_meets(grid, &outline, &box)) {
             if (halve(&range, &stack[stacked])) {
                 stacked++;
                 continue;
             }
-            visit(context, &range);
+            add_range(lists, id, &range);
         }
         if (stacked == 0) return;
         range = stack[--stacked];
@@ -216,25 +229,20 @@ static RtStatus check_limit(const RtGrid *grid, const uint32_t n[3], const uint3
                    n[0], n[1], n[2], bytes / 0x1p30, most / 0x1p30, smaller[0], smaller[1], smaller[2]);
 }
 
-/* ---- levels ---- */
+/* ---- the blocks of a level ---- */
 
-RtStatus rt_grid_each_voxel(const RtGridLevel *level,
-                            RtStatus (*visit)(void *context, const RtGridVoxel *voxel), void *context) {
-    RtGridVoxel voxel = {.level = level};
-    for (uint32_t b = 0; b < level->block_count; b++) {
-        const RtGridBlock *block = &level->blocks[b];
-        uint32_t *at = voxel.at;
-        for (at[2] = 0; at[2] < block->n[2]; at[2]++) {
-            for (at[1] = 0; at[1] < block->n[1]; at[1]++) {
-                for (at[0] = 0; at[0] < block->n[0]; at[0]++) {
-                    voxel.number = rt_grid_voxel_at(block, at);
-                    voxel.box = rt_grid_voxel_box(block, at);
-                    RT_TRY(visit(context, &voxel));
-                }
-            }
-        }
-    }
-    return RT_OK;
+bool rt_grid_find_voxel(RtGridVoxel *voxel) {
+    const RtGridLevel *level = voxel->level;
+    if (voxel->number >= level->voxel_count) return false;
+    while (voxel->block + 1 < level->block_count && level->blocks[voxel->block + 1].voxel <= voxel->number)
+        voxel->block++;
+    const RtGridBlock *block = &level->blocks[voxel->block];
+    const uint32_t within = voxel->number - block->voxel, row = within / block->n[0];
+    voxel->at[0] = within % block->n[0];
+    voxel->at[1] = row % block->n[1];
+    voxel->at[2] = row / block->n[1];
+    voxel->box = rt_grid_voxel_box(block, voxel->at);
+    return true;
 }
 
 /* Of a block with n voxels along each axis. */
@@ -242,92 +250,11 @@ static size_t planes_of(const uint32_t n[3]) {
     return (size_t)n[0] + n[1] + n[2] + 3;
 }
 
-static size_t plane_count(const RtGridLevel *level) {
-    size_t planes = 0;
-    for (uint32_t b = 0; b < level->block_count; b++) {
-        planes += planes_of(level->blocks[b].n);
-    }
-    return planes;
-}
-
 uint64_t rt_grid_level_bytes(const RtGridLevel *level) {
-    size_t entries = (size_t)level->voxel_count + 1 + level->first[level->voxel_count];
+    size_t entries = (size_t)level->voxel_count + 1 + level->first[level->voxel_count], planes = 0;
     if (level->inner) entries += level->voxel_count;
-    return level->block_count * sizeof(RtGridBlock) + plane_count(level) * sizeof(float) +
-           entries * sizeof(uint32_t);
-}
-
-typedef struct Builder {
-    RtGrid *grid;
-    const RtValue *values;
-    uint64_t limit; /* bytes */
-    RtError *error;
-} Builder;
-
-/* ---- the blocks of a level ---- */
-
-/* Cutting the voxels of one level into blocks of the next. */
-typedef struct Cut {
-    const Builder *builder;
-    RtGridLevel *from, *to;
-    double bytes;  /* of the levels so far, and estimated for the new one */
-    size_t planes; /* of the new level's blocks; then those filled so far */
-} Cut;
-
-/* Whether dividing a box can separate its objects: some object does not fill it, and float32 has a plane
- * inside it. */
-static bool divisible(const RtGrid *grid, const RtBox *box, const uint32_t *ids, uint32_t count) {
-    bool has_plane = false;
-    for (int a = 0; a < 3; a++) has_plane |= nextafterf(box->lo.at[a], INFINITY) < box->hi.at[a];
-    for (uint32_t i = 0; has_plane && i < count; i++) {
-        if (!rt_box_contains(rt_grid_object_box(grid, ids[i]), *box)) return true;
-    }
-    return false;
-}
-
-/* Numbers the voxels that are to be cut, and adds up their memory until it exceeds the limit. A resolution of
- * one voxel makes no grid. */
-static RtStatus choose_voxel(void *context, const RtGridVoxel *voxel) {
-    Cut *cut = context;
-    const Builder *builder = cut->builder;
-    const uint32_t *ids = cut->from->ids + cut->from->first[voxel->number];
-    uint32_t count = cut->from->first[voxel->number + 1] - cut->from->first[voxel->number], n[3];
-    cut->from->inner[voxel->number] = RT_GRID_LEAF;
-    if (count <= builder->values[RT_GRID_NEST].i) return RT_OK;
-    if (!divisible(builder->grid, &voxel->box, ids, count)) return RT_OK;
-    choose_resolution(&voxel->box, count, builder->values, n);
-    if ((size_t)n[0] * n[1] * n[2] == 1) return RT_OK;
-    cut->from->inner[voxel->number] = cut->to->block_count++;
-    size_t planes = planes_of(n);
-    cut->planes += planes;
-    cut->bytes += rt_grid_estimate(builder->grid, &voxel->box, n, ids, count) +
-                  (double)(planes * sizeof(float) + sizeof(RtGridBlock));
-    return cut->bytes <= (double)builder->limit ? RT_OK : RT_BAD_INPUT;
-}
-
-/* Fills the planes of a block, the next ones of the level. */
-static void make_planes(RtGridBlock *block, const RtBox *box, float *plane) {
-    for (int a = 0; a < 3; a++) {
-        uint32_t n = block->n[a];
-        double lo = (double)box->lo.at[a], width = (double)box->hi.at[a] - lo;
-        block->planes[a] = plane;
-        for (uint32_t i = 0; i <= n; i++) plane[i] = (float)(lo + width * i / n);
-        plane[n] = box->hi.at[a];
-        plane += n + 1;
-    }
-}
-
-static RtStatus cut_voxel(void *context, const RtGridVoxel *voxel) {
-    Cut *cut = context;
-    if (cut->from->inner[voxel->number] == RT_GRID_LEAF) return RT_OK;
-    RtGridBlock *block = &cut->to->blocks[cut->from->inner[voxel->number]];
-    uint32_t count = cut->from->first[voxel->number + 1] - cut->from->first[voxel->number];
-    choose_resolution(&voxel->box, count, cut->builder->values, block->n);
-    make_planes(block, &voxel->box, cut->to->planes + cut->planes);
-    cut->planes += planes_of(block->n);
-    block->voxel = cut->to->voxel_count;
-    cut->to->voxel_count += block->n[0] * block->n[1] * block->n[2];
-    return RT_OK;
+    for (uint32_t b = 0; b < level->block_count; b++) planes += planes_of(level->blocks[b].n);
+    return level->block_count * sizeof(RtGridBlock) + planes * sizeof(float) + entries * sizeof(uint32_t);
 }
 
 static RtStatus allocate_blocks(RtGrid *grid, RtGridLevel *level, size_t planes, RtError *error) {
@@ -336,58 +263,82 @@ static RtStatus allocate_blocks(RtGrid *grid, RtGridLevel *level, size_t planes,
     return rt_arena_check(&grid->base.memory, "the planes of a grid", error);
 }
 
+/* Makes the next block of a level, n voxels along each axis of `box`, whose planes begin at `plane`; returns
+ * where they end. */
+static float *make_block(RtGridLevel *level, RtGridBlock *block, const RtBox *box, const uint32_t n[3],
+                         float *plane) {
+    memcpy(block->n, n, sizeof block->n);
+    block->voxel = level->voxel_count;
+    level->voxel_count += n[0] * n[1] * n[2];
+    for (int a = 0; a < 3; a++) {
+        double lo = (double)box->lo.at[a], width = (double)box->hi.at[a] - lo;
+        block->planes[a] = plane;
+        for (uint32_t i = 0; i <= n[a]; i++) plane[i] = (float)(lo + width * i / n[a]);
+        plane[n[a]] = box->hi.at[a];
+        plane += n[a] + 1;
+    }
+    return plane;
+}
+
+/* Whether dividing a voxel of more than `nest` objects can separate them: some object does not fill it, and
+ * float32 has a plane inside it. */
+static bool divisible(const RtGrid *grid, const RtBox *box, const uint32_t *ids, uint32_t count,
+                      int64_t nest) {
+    bool has_plane = false;
+    if (count <= nest) return false;
+    for (int a = 0; a < 3; a++) has_plane |= nextafterf(box->lo.at[a], INFINITY) < box->hi.at[a];
+    for (uint32_t i = 0; has_plane && i < count; i++) {
+        if (!rt_box_contains(rt_grid_object_box(grid, ids[i]), *box)) return true;
+    }
+    return false;
+}
+
 /* Cuts the voxels of level `depth - 1` that hold too many objects into blocks of level `depth`, without
- * lists yet. */
-static RtStatus cut_level(const Builder *builder, uint32_t depth) {
-    RtGrid *grid = builder->grid;
-    Cut cut = {builder, &grid->levels[depth - 1], &grid->levels[depth], 0, 0};
-    cut.from->inner = rt_arena_alloc(&grid->base.memory, cut.from->voxel_count, sizeof(uint32_t));
-    RT_TRY(rt_arena_check(&grid->base.memory, "nested grids", builder->error));
+ * lists yet. A resolution of one voxel makes no grid. */
+static RtStatus cut_level(RtGrid *grid, const RtBuild *what, uint32_t depth, RtError *error) {
+    RtGridLevel *from = &grid->levels[depth - 1], *to = &grid->levels[depth];
+    double bytes = 0; /* of the levels so far, and estimated for the new one */
+    size_t planes = 0;
+    uint32_t n[3];
+    from->inner = rt_arena_alloc(&grid->base.memory, from->voxel_count, sizeof(uint32_t));
+    RT_TRY(rt_arena_check(&grid->base.memory, "nested grids", error));
     for (uint32_t level = 0; level < depth; level++)
-        cut.bytes += (double)rt_grid_level_bytes(&grid->levels[level]);
-    if (rt_grid_each_voxel(cut.from, choose_voxel, &cut) != RT_OK)
-        return rt_fail(builder->error, RT_BAD_INPUT,
-                       "%u levels of grids may take more than %.3g GiB: depth=%u would fit", depth + 1,
-                       (double)builder->limit / 0x1p30, depth);
-    RT_TRY(allocate_blocks(grid, cut.to, cut.planes, builder->error));
-    cut.planes = 0;
-    return rt_grid_each_voxel(cut.from, cut_voxel, &cut);
+        bytes += (double)rt_grid_level_bytes(&grid->levels[level]);
+    for (RtGridVoxel voxel = {.level = from}; rt_grid_find_voxel(&voxel); voxel.number++) {
+        const uint32_t first = from->first[voxel.number], count = from->first[voxel.number + 1] - first;
+        from->inner[voxel.number] = RT_GRID_LEAF;
+        if (!divisible(grid, &voxel.box, from->ids + first, count, what->values[RT_GRID_NEST].i)) continue;
+        choose_resolution(&voxel.box, count, what->values, n);
+        if ((size_t)n[0] * n[1] * n[2] == 1) continue;
+        from->inner[voxel.number] = to->block_count++;
+        planes += planes_of(n);
+        bytes += rt_grid_estimate(grid, &voxel.box, n, from->ids + first, count) +
+                 (double)(planes_of(n) * sizeof(float) + sizeof(RtGridBlock));
+        if (bytes > (double)what->limit)
+            return rt_fail(error, RT_BAD_INPUT,
+                           "%u levels of grids may take more than %.3g GiB: depth=%u would fit", depth + 1,
+                           (double)what->limit / 0x1p30, depth);
+    }
+    RT_TRY(allocate_blocks(grid, to, planes, error));
+    float *plane = to->planes;
+    for (RtGridVoxel voxel = {.level = from}; rt_grid_find_voxel(&voxel); voxel.number++) {
+        if (from->inner[voxel.number] == RT_GRID_LEAF) continue;
+        choose_resolution(&voxel.box, from->first[voxel.number + 1] - from->first[voxel.number], what->values,
+                          n);
+        plane = make_block(to, &to->blocks[from->inner[voxel.number]], &voxel.box, n, plane);
+    }
+    return RT_OK;
 }
 
 /* ---- the lists of a level ---- */
-
-/* Both passes over the lists: adds 1 to slot[v] for every voxel v of an object and, in the fill pass, stores
- * the object at that slot. */
-typedef struct Lists {
-    const RtGridBlock *block;
-    uint32_t *slot, *ids;
-    uint32_t id;
-} Lists;
-
-static void add_range(void *context, const Range *range) {
-    const Lists *lists = context;
-    uint32_t at[3];
-    for (at[2] = range->from[2]; at[2] <= range->to[2]; at[2]++) {
-        for (at[1] = range->from[1]; at[1] <= range->to[1]; at[1]++) {
-            for (at[0] = range->from[0]; at[0] <= range->to[0]; at[0]++) {
-                uint32_t *entry = &lists->slot[rt_grid_voxel_at(lists->block, at)];
-                if (lists->ids) lists->ids[*entry] = lists->id;
-                ++*entry;
-            }
-        }
-    }
-}
 
 /* Distributes the objects of the voxels of `from` to the blocks of `to` that are nested in them. */
 static void scatter(const RtGrid *grid, const RtGridLevel *from, const RtGridLevel *to, uint32_t *slot,
                     uint32_t *ids) {
     for (uint32_t v = 0; v < from->voxel_count; v++) {
         if (from->inner[v] == RT_GRID_LEAF) continue;
-        Lists lists = {&to->blocks[from->inner[v]], slot, ids, 0};
-        for (uint32_t i = from->first[v]; i < from->first[v + 1]; i++) {
-            lists.id = from->ids[i];
-            each_range(grid, lists.block, lists.id, add_range, &lists);
-        }
+        const Lists lists = {&to->blocks[from->inner[v]], slot, ids};
+        for (uint32_t i = from->first[v]; i < from->first[v + 1]; i++) add_object(grid, &lists, from->ids[i]);
     }
 }
 
@@ -422,10 +373,11 @@ static RtStatus drop_lists(RtGrid *grid, RtGridLevel *level, RtError *error) {
         kept += count;
     }
     level->first[level->voxel_count] = kept;
-    uint32_t *ids = rt_arena_alloc(&grid->base.memory, kept, sizeof(uint32_t));
-    RT_TRY(rt_arena_check(&grid->base.memory, "the lists of a grid", error));
+    RtArena *memory = &grid->base.memory;
+    uint32_t *ids = rt_arena_alloc(memory, kept, sizeof(uint32_t));
+    RT_TRY(rt_arena_check(memory, "the lists of a grid", error));
     memcpy(ids, level->ids, kept * sizeof(uint32_t));
-    rt_arena_free(&grid->base.memory, level->ids);
+    rt_arena_free(memory, level->ids);
     level->ids = ids;
     return RT_OK;
 }
@@ -433,44 +385,36 @@ static RtStatus drop_lists(RtGrid *grid, RtGridLevel *level, RtError *error) {
 /* ---- build ---- */
 
 /* Level 0, from a single voxel that holds everything. */
-static RtStatus make_root(const Builder *builder) {
-    RtGrid *grid = builder->grid;
+static RtStatus make_root(RtGrid *grid, const RtBuild *what, RtError *error) {
     RtGridLevel *level = &grid->levels[0];
-    uint32_t objects = (uint32_t)grid->base.scene->geometry.object_count, root = 0, n[3];
-    uint32_t first[2] = {0, objects};
+    uint32_t objects = what->scene->geometry.object_count, root = 0, first[2] = {0, objects}, n[3];
+    const uint32_t *given = what->values[RT_GRID_RESOLUTION].resolution;
     RT_ARENA(arena);
     uint32_t *ids = rt_arena_alloc(&arena, objects, sizeof(uint32_t));
-    RT_TRY(rt_arena_check(&arena, "the objects of a grid", builder->error));
+    RT_TRY(rt_arena_check(&arena, "the objects of a grid", error));
     for (uint32_t id = 0; id < objects; id++) ids[id] = id;
-    RtGridLevel all = {.first = first, .ids = ids, .inner = &root, .voxel_count = 1};
-
-    const uint32_t *given = builder->values[RT_GRID_RESOLUTION].resolution;
-    choose_resolution(&grid->box, objects, builder->values, n);
+    const RtGridLevel all = {.first = first, .ids = ids, .inner = &root, .voxel_count = 1};
+    choose_resolution(&grid->box, objects, what->values, n);
     if (given[0] > 0) memcpy(n, given, sizeof n);
-    RT_TRY(check_limit(grid, n, ids, objects, builder->limit, builder->error));
+    RT_TRY(check_limit(grid, n, ids, objects, what->limit, error));
     level->block_count = 1;
-    RT_TRY(allocate_blocks(grid, level, planes_of(n), builder->error));
-    memcpy(level->blocks->n, n, sizeof n);
-    make_planes(level->blocks, &grid->box, level->planes);
-    level->voxel_count = n[0] * n[1] * n[2];
-    return make_lists(grid, &all, level, builder->error);
+    RT_TRY(allocate_blocks(grid, level, planes_of(n), error));
+    make_block(level, level->blocks, &grid->box, n, level->planes);
+    return make_lists(grid, &all, level, error);
 }
 
-static RtStatus make_levels(const Builder *builder) {
-    RtGrid *grid = builder->grid;
-    RT_TRY(make_root(builder));
-    grid->depth = 1;
-    while (grid->depth < builder->values[RT_GRID_DEPTH].i) {
+static RtStatus make_levels(RtGrid *grid, const RtBuild *what, RtError *error) {
+    RT_TRY(make_root(grid, what, error));
+    for (grid->depth = 1; grid->depth < what->values[RT_GRID_DEPTH].i; grid->depth++) {
         RtGridLevel *from = &grid->levels[grid->depth - 1], *to = from + 1;
-        RT_TRY(cut_level(builder, grid->depth));
+        RT_TRY(cut_level(grid, what, grid->depth, error));
         if (to->block_count == 0) {
             rt_arena_free(&grid->base.memory, from->inner);
             from->inner = NULL;
             break;
         }
-        RT_TRY(make_lists(grid, from, to, builder->error));
-        RT_TRY(drop_lists(grid, from, builder->error));
-        grid->depth++;
+        RT_TRY(make_lists(grid, from, to, error));
+        RT_TRY(drop_lists(grid, from, error));
     }
     return RT_OK;
 }
@@ -494,7 +438,6 @@ RtStatus rt_grid_build(RtAccel *accel, const RtBuild *what, RtError *error) {
     const RtGeometry *g = &what->scene->geometry;
     const RtValue *values = what->values;
     RtGrid *grid = (RtGrid *)accel;
-    const Builder builder = {grid, values, what->limit, error};
     grid->box = g->box;
     grid->mailbox = values[RT_GRID_MAILBOX].flag;
     if (grid->mailbox) accel->scratch_bytes = rt_mailbox_bytes(g);
@@ -503,5 +446,5 @@ RtStatus rt_grid_build(RtAccel *accel, const RtBuild *what, RtError *error) {
     if (g->object_count == 0) return RT_OK;
     grid->box = choose_box(g, values[RT_GRID_FLAT].f, values[RT_GRID_MARGIN].f);
     grid->served = rt_surface_rays(&g->box, &grid->box);
-    return make_levels(&builder);
+    return make_levels(grid, what, error);
 }

@@ -120,46 +120,22 @@ RT_DEFINE_KERNELS(RtKd, search)
 
 /* ---- looking at it ---- */
 
-/* Calls visit for each node with its cell and depth, parents first, until it returns a status other than
- * RT_OK. Cells are not stored, but cut from the root's on the way down. In a broken tree, `visit` must reject
- * children that come before their parents and nodes deeper than RT_KD_DEPTH_LIMIT. */
-typedef struct CellView {
-    uint32_t node, depth;
-    RtBox cell;
-} CellView;
-
-static RtStatus each_node(const RtKd *kd,
-                          RtStatus (*visit)(void *context, const RtKd *kd, const CellView *view),
-                          void *context) {
-    CellView stack[RT_KD_DEPTH_LIMIT + 2];
-    uint32_t stacked = 0;
-    if (kd->node_count > 0) stack[stacked++] = (CellView){0, 0, kd->box};
-    while (stacked > 0) {
-        CellView view = stack[--stacked];
-        const RtKdNode *node = &kd->nodes[view.node];
-        RT_TRY(visit(context, kd, &view));
-        if (rt_kd_is_leaf(node)) continue;
-        for (uint32_t c = 2; c-- > 0;) {
-            RtBox half = rt_kd_half(view.cell, rt_kd_axis(node), node->split, c);
-            stack[stacked++] = (CellView){rt_kd_child(node) + c, view.depth + 1, half};
-        }
-    }
-    return RT_OK;
-}
-
-static RtStatus show_node(void *context, const RtKd *kd, const CellView *view) {
-    const RtBoxViewer *viewer = context;
-    const RtKdNode *node = &kd->nodes[view->node];
+/* Cells are not stored, but cut from the root's on the way down. */
+static void show_node(const RtKd *kd, uint32_t index, RtBox cell, uint32_t depth, RtBoxViewer viewer) {
+    const RtKdNode *node = &kd->nodes[index];
     bool leaf = rt_kd_is_leaf(node);
-    viewer->show(viewer->context, &(RtBoxView){.box = &view->cell,
-                                               .depth = view->depth,
-                                               .leaf = leaf,
-                                               .objects = leaf ? rt_kd_length(node) : 0});
-    return RT_OK;
+    viewer.show(
+        viewer.context,
+        &(RtBoxView){.box = &cell, .depth = depth, .leaf = leaf, .objects = leaf ? rt_kd_length(node) : 0});
+    for (uint32_t c = 0; c < 2 && !leaf; c++) {
+        RtBox half = rt_kd_half(cell, rt_kd_axis(node), node->split, c);
+        show_node(kd, rt_kd_child(node) + c, half, depth + 1, viewer);
+    }
 }
 
 static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
-    each_node((const RtKd *)accel, show_node, &viewer);
+    const RtKd *kd = (const RtKd *)accel;
+    if (kd->node_count > 0) show_node(kd, 0, kd->box, 0, viewer);
 }
 
 static void describe(const RtAccel *accel, RtDescription *out) {
@@ -174,6 +150,7 @@ static void describe(const RtAccel *accel, RtDescription *out) {
 /* ---- validate ---- */
 
 typedef struct Check {
+    const RtKd *kd;
     RtError *error;
     uint64_t *listed; /* [object_count] leaves that list each object */
     uint8_t *reached; /* [node_count] whether it is the child of a visited node */
@@ -182,38 +159,37 @@ typedef struct Check {
 
 #define BROKEN(check, ...) rt_fail((check)->error, RT_MISMATCH, "kd: " __VA_ARGS__)
 
-static RtStatus check_inner(const Check *check, const RtKd *kd, const CellView *view) {
-    const RtKdNode *node = &kd->nodes[view->node];
-    uint32_t child = rt_kd_child(node), axis = rt_kd_axis(node);
-    if (child <= view->node || child >= kd->node_count - 1 || check->reached[child])
-        return BROKEN(check, "the children of node %u lie outside the nodes", view->node);
-    if (view->depth >= kd->max_depth)
-        return BROKEN(check, "the children of node %u are deeper than %u", view->node, kd->max_depth);
-    if (!(node->split >= view->cell.lo.at[axis] && node->split <= view->cell.hi.at[axis]))
-        return BROKEN(check, "the split of node %u lies outside its cell", view->node);
-    check->reached[child] = check->reached[child + 1] = 1;
-    return RT_OK;
-}
-
-static RtStatus check_leaf(Check *check, const RtKd *kd, const CellView *view) {
-    const RtGeometry *g = &kd->base.scene->geometry;
-    const RtKdNode *leaf = &kd->nodes[view->node];
+static RtStatus check_leaf(Check *check, uint32_t index) {
+    const RtKd *kd = check->kd;
+    const RtKdNode *leaf = &kd->nodes[index];
     uint32_t length = rt_kd_length(leaf);
     if (leaf->first > kd->id_count || length > kd->id_count - leaf->first)
-        return BROKEN(check, "the list of leaf %u lies outside the lists", view->node);
+        return BROKEN(check, "the list of leaf %u lies outside the lists", index);
     const uint32_t *ids = kd->ids + leaf->first;
     for (uint32_t i = 0; i < length; i++) {
-        if (ids[i] >= g->object_count || (i > 0 && ids[i - 1] >= ids[i]))
-            return BROKEN(check, "the list of leaf %u is not ascending ids", view->node);
+        if (ids[i] >= kd->base.scene->geometry.object_count || (i > 0 && ids[i - 1] >= ids[i]))
+            return BROKEN(check, "the list of leaf %u is not ascending ids", index);
         check->listed[ids[i]]++;
     }
     check->ids += length;
     return RT_OK;
 }
 
-static RtStatus check_node(void *context, const RtKd *kd, const CellView *view) {
-    Check *check = context;
-    return rt_kd_is_leaf(&kd->nodes[view->node]) ? check_leaf(check, kd, view) : check_inner(check, kd, view);
+static RtStatus check_node(Check *check, uint32_t index, RtBox cell, uint32_t depth) {
+    const RtKd *kd = check->kd;
+    const RtKdNode *node = &kd->nodes[index];
+    if (rt_kd_is_leaf(node)) return check_leaf(check, index);
+    uint32_t child = rt_kd_child(node), axis = rt_kd_axis(node);
+    if (child <= index || child >= kd->node_count - 1 || check->reached[child])
+        return BROKEN(check, "the children of node %u lie outside the nodes", index);
+    if (depth >= kd->max_depth)
+        return BROKEN(check, "the children of node %u are deeper than %u", index, kd->max_depth);
+    if (!(node->split >= cell.lo.at[axis] && node->split <= cell.hi.at[axis]))
+        return BROKEN(check, "the split of node %u lies outside its cell", index);
+    check->reached[child] = check->reached[child + 1] = 1;
+    for (uint32_t c = 0; c < 2; c++)
+        RT_TRY(check_node(check, child + c, rt_kd_half(cell, axis, node->split, c), depth + 1));
+    return RT_OK;
 }
 
 static bool lists(const RtKd *kd, const RtKdNode *leaf, uint32_t id) {
@@ -256,12 +232,13 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
     const RtGeometry *g = &accel->scene->geometry;
     RT_ARENA(arena);
     if (kd->node_count == 0) return RT_OK;
-    Check check = {.error = error,
+    Check check = {.kd = kd,
+                   .error = error,
                    .listed = rt_arena_alloc(&arena, g->object_count, sizeof(uint64_t)),
                    .reached = rt_arena_alloc(&arena, kd->node_count, 1)};
     RT_TRY(rt_arena_check(&arena, "validating a kd-tree", error));
     if (!rt_box_contains(kd->box, g->box)) return BROKEN(&check, "its root does not contain the scene");
-    RT_TRY(each_node(kd, check_node, &check));
+    RT_TRY(check_node(&check, 0, kd->box, 0));
     for (uint32_t i = 1; i < kd->node_count; i++) {
         if (!check.reached[i]) return BROKEN(&check, "node %u has no parent", i);
     }

@@ -122,39 +122,21 @@ static void lay_out_node(const Layout *layout, uint32_t node_index, uint32_t ind
     used->nodes += node->count;
 }
 
-static void lay_out_subtree(const Layout *layout, uint32_t node_index, uint32_t index, Used *used) {
-    const RtNode *node = &layout->self->nodes[node_index];
-    uint32_t children[RT_NODE_MAX_WIDTH] = {0};
-    lay_out_node(layout, node_index, index, children, used);
-    if (rt_node_is_leaf(node)) return;
-    for (uint32_t i = 0; i < node->count; i++) lay_out_subtree(layout, node->first + i, children[i], used);
-}
-
-static void lay_out_part(void *context, size_t item) {
-    const Layout *layout = context;
-    const Part *part = &layout->parts[item];
-    Used used = part->used;
-    if (part->has_node) lay_out_subtree(layout, part->node, layout->reduced.index[item], &used);
-}
-
-/* Skips the parts of a subtree. */
+/* Passes the parts below a node of the top. */
 static void skip_parts(Layout *layout, uint32_t index, uint32_t depth) {
     const uint32_t *child = layout->tree->nodes[index].child;
-    if (!rt_reduction_is_top(layout->tree, index, depth)) {
-        layout->next++;
-        return;
-    }
-    for (int s = 0; s < 2; s++) skip_parts(layout, child[s], depth + 1);
+    bool top = rt_reduction_is_top(layout->tree, index, depth);
+    layout->next += !top;
+    for (int s = 0; s < 2 && top; s++) skip_parts(layout, child[s], depth + 1);
 }
 
-/* Binary nodes without split references: the sizes of the parts are known. */
-static void lay_out_top(Layout *layout, uint32_t node_index, uint32_t index, uint32_t depth, Used *used) {
-    if (!rt_reduction_is_top(layout->tree, index, depth)) {
+/* Lays out the subtree of a node; if `top`, leaves out the parts, whose sizes are known: nodes are binary,
+ * and no references split. */
+static void lay_out_subtree(Layout *layout, uint32_t node_index, uint32_t index, bool top, uint32_t depth,
+                            Used *used) {
+    if (top && !rt_reduction_is_top(layout->tree, index, depth)) {
         const Cost *cost = (const Cost *)(const void *)layout->reduced.values + layout->next;
-        Part *part = &layout->parts[layout->next++];
-        part->node = node_index;
-        part->used = *used;
-        part->has_node = true;
+        layout->parts[layout->next++] = (Part){node_index, *used, true};
         used->nodes += 2 * cost->leaves - 2;
         used->ids += cost->references;
         return;
@@ -163,25 +145,18 @@ static void lay_out_top(Layout *layout, uint32_t node_index, uint32_t index, uin
     uint32_t children[RT_NODE_MAX_WIDTH] = {0};
     lay_out_node(layout, node_index, index, children, used);
     if (rt_node_is_leaf(node)) {
-        skip_parts(layout, index, depth);
+        if (top) skip_parts(layout, index, depth);
         return;
     }
-    for (uint32_t i = 0; i < 2; i++) lay_out_top(layout, node->first + i, children[i], depth + 1, used);
+    for (uint32_t i = 0; i < node->count; i++)
+        lay_out_subtree(layout, node->first + i, children[i], top, depth + 1, used);
 }
 
-static RtStatus lay_out_all(Layout *layout, int threads, RtError *error) {
-    RtHierarchy *self = layout->self;
-    uint32_t root = layout->tree->root;
-    Used used = {1, 0};
-    if (self->width > 2 || self->split_refs) {
-        lay_out_subtree(layout, 0, root, &used);
-    } else {
-        lay_out_top(layout, 0, root, 0, &used);
-        RT_TRY(rt_parallel_each(layout->reduced.count, threads, lay_out_part, layout, error));
-    }
-    self->node_count = used.nodes;
-    self->id_count = used.ids;
-    return RT_OK;
+static void lay_out_part(void *context, size_t item) {
+    Layout *layout = context;
+    const Part *part = &layout->parts[item];
+    Used used = part->used;
+    if (part->has_node) lay_out_subtree(layout, part->node, layout->reduced.index[item], false, 0, &used);
 }
 
 /* Lays out a complete tree. */
@@ -200,7 +175,13 @@ static RtStatus lay_out(RtHierarchy *self, RtArena *memory, RtTree *tree, int th
     self->ids = rt_arena_alloc_unset(memory, whole.references, sizeof(uint32_t));
     self->split_refs = tree->split_refs;
     RT_TRY(rt_arena_check(memory, "the nodes of a hierarchy", error));
-    return lay_out_all(&layout, threads, error);
+    const bool top = self->width == 2 && !self->split_refs;
+    Used used = {1, 0};
+    lay_out_subtree(&layout, 0, tree->root, top, 0, &used);
+    if (top) RT_TRY(rt_parallel_each(layout.reduced.count, threads, lay_out_part, &layout, error));
+    self->node_count = used.nodes;
+    self->id_count = used.ids;
+    return RT_OK;
 }
 
 RtStatus rt_hierarchy_build(RtHierarchy *self, RtArena *memory, const RtGeometry *geometry,

@@ -400,23 +400,33 @@ typedef struct TopNode {
     uint32_t node, left; /* references of the left child */
 } TopNode;
 
+typedef struct OpenGroup OpenGroup;
+
 /* Some references of a group that is being split. */
 typedef struct Chunk {
-    uint32_t group, first, count; /* refs[first..first + count) of the group's */
-    uint32_t to[2];               /* where those of either side go in the group */
-    RtBox4 centers[2];            /* of either side */
+    OpenGroup *of;
+    uint32_t first, count; /* refs[first..first + count) of the group's */
+    uint32_t to[2];        /* where those of either side go in the group */
+    RtBox4 centers[2];     /* of either side */
     Bins bins;
 } Chunk;
+
+/* A group of the top, of which some level is being split. */
+struct OpenGroup {
+    RtRefGroup group;
+    Split split;
+    Chunk *chunks, *end;
+};
 
 typedef struct Top {
     const RtSubtreeBuilder *b;
     const RtBox *boxes;
     RtTreeRef *rows[2]; /* [count] the references, alternating; the second is the memory of the nodes */
-    uint32_t count, row, chunk_size;
-    uint32_t top_limit;               /* larger groups belong to the top; at least share_limit */
-    uint32_t share_limit;             /* larger groups are shared among threads */
-    RtRefGroup *groups, *next, *done; /* of this level, of the next, and those below the top */
-    Split *splits;                    /* [open] of the groups of this level */
+    uint32_t count, row;
+    uint32_t top_limit;       /* larger groups belong to the top; at least share_limit */
+    uint32_t share_limit;     /* larger groups are shared among threads */
+    OpenGroup *groups, *next; /* of this level, and of the next */
+    RtRefGroup *done;         /* below the top */
     Chunk *chunks;
     TopNode *nodes; /* parents before their children */
     uint32_t open, next_count, done_count, chunk_count;
@@ -425,22 +435,23 @@ typedef struct Top {
 
 /* Divides the references of all open groups into chunks. */
 static void make_chunks(Top *top) {
-    top->chunk_count = 0;
-    for (uint32_t g = 0; g < top->open; g++) {
-        for (uint32_t first = 0; first < top->groups[g].count; first += top->chunk_size) {
-            uint32_t rest = top->groups[g].count - first;
-            Chunk *chunk = &top->chunks[top->chunk_count++];
-            chunk->group = g;
-            chunk->first = first;
-            chunk->count = rest < top->chunk_size ? rest : top->chunk_size;
+    Chunk *next = top->chunks;
+    for (OpenGroup *g = top->groups; g < top->groups + top->open; g++) {
+        g->chunks = next;
+        for (uint32_t first = 0; first < g->group.count; first += CHUNK, next++) {
+            next->of = g;
+            next->first = first;
+            next->count = g->group.count - first < CHUNK ? g->group.count - first : CHUNK;
         }
+        g->end = next;
     }
+    top->chunk_count = (uint32_t)(next - top->chunks);
 }
 
 static void make_refs(void *context, size_t item) {
     Top *top = context;
     Chunk *chunk = &top->chunks[item];
-    RtTreeRef *refs = top->rows[top->row] + chunk->first;
+    RtTreeRef *refs = chunk->of->group.refs + chunk->first;
     for (uint32_t i = 0; i < chunk->count; i++)
         refs[i] = (RtTreeRef){top->boxes[chunk->first + i], chunk->first + i};
     chunk->centers[0] = rt_refs_centers(refs, chunk->count);
@@ -449,41 +460,36 @@ static void make_refs(void *context, size_t item) {
 static void fill_chunk(void *context, size_t item) {
     Top *top = context;
     Chunk *chunk = &top->chunks[item];
-    const RtRefGroup *group = &top->groups[chunk->group];
+    const RtRefGroup *group = &chunk->of->group;
     bins_init(&chunk->bins, (uint32_t)top->b->bins, group->centers);
     bins_add(&chunk->bins, group->refs + chunk->first, chunk->count);
 }
 
-/* Splits each group by the bins of all its chunks, and computes where the references of each chunk go. */
-static void choose_splits(Top *top) {
-    for (uint32_t c = 0, end; c < top->chunk_count; c = end) {
-        uint32_t g = top->chunks[c].group;
-        Bins all = top->chunks[c].bins;
-        for (end = c + 1; end < top->chunk_count && top->chunks[end].group == g; end++)
-            bins_merge(&all, &top->chunks[end].bins);
-        Split split = top->splits[g] = bins_split(&all, top->groups[g].count);
-        uint32_t to[2] = {0, split.left};
-        for (; c < end; c++) {
-            Chunk *chunk = &top->chunks[c];
-            uint32_t left = 0;
-            for (uint32_t i = 0; i < split.bin; i++) left += chunk->bins.bins[split.axis][i].number;
-            for (int s = 0; s < 2; s++) chunk->to[s] = to[s];
-            to[0] += left;
-            to[1] += chunk->count - left;
-        }
+/* Splits a group by the bins of all its chunks, and computes where the references of each chunk go. */
+static void choose_split(OpenGroup *g) {
+    Bins all = g->chunks->bins;
+    for (const Chunk *chunk = g->chunks + 1; chunk < g->end; chunk++) bins_merge(&all, &chunk->bins);
+    const Split split = g->split = bins_split(&all, g->group.count);
+    uint32_t to[2] = {0, split.left};
+    for (Chunk *chunk = g->chunks; chunk < g->end; chunk++) {
+        uint32_t left = 0;
+        for (uint32_t i = 0; i < split.bin; i++) left += chunk->bins.bins[split.axis][i].number;
+        memcpy(chunk->to, to, sizeof to);
+        to[0] += left;
+        to[1] += chunk->count - left;
     }
 }
 
 static void partition_chunk(void *context, size_t item) {
     Top *top = context;
     Chunk *chunk = &top->chunks[item];
-    const RtRefGroup *group = &top->groups[chunk->group];
+    const RtRefGroup *group = &chunk->of->group;
     const RtTreeRef *from = group->refs + chunk->first;
     RtTreeRef *into = top->rows[1 - top->row] + (group->refs - top->rows[top->row]);
-    Side side = bins_side(&chunk->bins, &top->splits[chunk->group]);
+    Side side = bins_side(&chunk->bins, &chunk->of->split);
     uint32_t left = chunk->to[0], right = chunk->to[1];
     RtBox4 centers[2] = {rt_box4_empty(), rt_box4_empty()};
-    if (!(top->splits[chunk->group].cost < INFINITY)) return;
+    if (!(chunk->of->split.cost < INFINITY)) return;
     for (uint32_t i = 0; i < chunk->count; i++) {
         __builtin_prefetch(from + i + REFS_AHEAD);
         RtFloat4 center = rt_box4_center(rt_box4_load(&from[i].box));
@@ -496,46 +502,46 @@ static void partition_chunk(void *context, size_t item) {
     memcpy(chunk->centers, centers, sizeof centers);
 }
 
-/* A group is open while it belongs to the top and is split by bins. */
-static void add_group(Top *top, RtRefGroup group) {
-    bool large = group.count > top->top_limit && group.depth < RT_TREE_MEDIAN_DEPTH;
-    if (large)
-        top->next[top->next_count++] = group;
-    else
-        top->done[top->done_count++] = group;
-}
-
 static void add_node(Top *top, uint32_t node, uint32_t left) {
     top->nodes[atomic_fetch_add(&top->node_count, 1)] = (TopNode){node, left};
 }
 
-/* The sides of the split groups are the groups of the next level. */
-static void descend(Top *top) {
-    RtTreeRef *into = top->rows[1 - top->row], *from = top->rows[top->row];
-    top->next_count = 0;
-    for (uint32_t c = 0; c < top->chunk_count;) {
-        uint32_t g = top->chunks[c].group;
-        const RtRefGroup *group = &top->groups[g];
-        const Split *split = &top->splits[g];
-        RtBox4 centers[2] = {rt_box4_empty(), rt_box4_empty()};
-        for (; c < top->chunk_count && top->chunks[c].group == g; c++) {
-            for (int s = 0; s < 2; s++) centers[s] = rt_box4_union(centers[s], top->chunks[c].centers[s]);
-        }
-        if (!(split->cost < INFINITY)) {
-            top->done[top->done_count++] = *group;
-            continue;
-        }
-        RtRefGroup sides[2], moved = *group;
-        moved.refs = into + (group->refs - from);
-        get_sides(&moved, split->left, centers, sides);
-        add_node(top, group->node, split->left);
-        for (int s = 0; s < 2; s++) add_group(top, sides[s]);
+/* The sides of a group that was split are groups of the next level while they belong to the top and are split
+ * by bins. */
+static void descend(Top *top, const OpenGroup *g) {
+    RtBox4 centers[2] = {rt_box4_empty(), rt_box4_empty()};
+    RtRefGroup sides[2], moved = g->group;
+    if (!(g->split.cost < INFINITY)) {
+        top->done[top->done_count++] = g->group;
+        return;
     }
-    RtRefGroup *kept = top->groups;
+    for (const Chunk *chunk = g->chunks; chunk < g->end; chunk++) {
+        for (int s = 0; s < 2; s++) centers[s] = rt_box4_union(centers[s], chunk->centers[s]);
+    }
+    moved.refs = top->rows[1 - top->row] + (moved.refs - top->rows[top->row]);
+    get_sides(&moved, g->split.left, centers, sides);
+    add_node(top, g->group.node, g->split.left);
+    for (int s = 0; s < 2; s++) {
+        if (sides[s].count > top->top_limit && sides[s].depth < RT_TREE_MEDIAN_DEPTH)
+            top->next[top->next_count++].group = sides[s];
+        else
+            top->done[top->done_count++] = sides[s];
+    }
+}
+
+static RtStatus split_level(Top *top, int threads, RtError *error) {
+    make_chunks(top);
+    RT_TRY(rt_parallel_each(top->chunk_count, threads, fill_chunk, top, error));
+    for (uint32_t g = 0; g < top->open; g++) choose_split(&top->groups[g]);
+    RT_TRY(rt_parallel_each(top->chunk_count, threads, partition_chunk, top, error));
+    top->next_count = 0;
+    for (uint32_t g = 0; g < top->open; g++) descend(top, &top->groups[g]);
+    OpenGroup *kept = top->groups;
     top->groups = top->next;
     top->next = kept;
     top->open = top->next_count;
     top->row = 1 - top->row;
+    return RT_OK;
 }
 
 /* Moves a group out of the second row, whose memory the nodes need; levels alternate between the rows. */
@@ -589,40 +595,6 @@ static void unite_top(Top *top) {
     }
 }
 
-/* Makes the references, and the group of them all. */
-static RtStatus begin(Top *top, int threads, RtError *error) {
-    top->groups[0] = (RtRefGroup){top->rows[top->row], top->count, 0, 0, rt_box4_empty()};
-    top->open = 1;
-    make_chunks(top);
-    RT_TRY(rt_parallel_each(top->chunk_count, threads, make_refs, top, error));
-    for (uint32_t c = 0; c < top->chunk_count; c++)
-        top->groups[0].centers = rt_box4_union(top->groups[0].centers, top->chunks[c].centers[0]);
-    return RT_OK;
-}
-
-static RtStatus build_on_one(Top *top, RtError *error) {
-    RT_TRY(begin(top, 1, error));
-    rt_subtree_build(top->b, top->groups[0]);
-    return RT_OK;
-}
-
-static RtStatus build_on_several(Top *top, int threads, RtError *error) {
-    RT_TRY(begin(top, threads, error));
-    while (top->open > 0) {
-        make_chunks(top);
-        RT_TRY(rt_parallel_each(top->chunk_count, threads, fill_chunk, top, error));
-        choose_splits(top);
-        RT_TRY(rt_parallel_each(top->chunk_count, threads, partition_chunk, top, error));
-        descend(top);
-    }
-    RT_TRY(rt_parallel_each(top->done_count, threads, move_back, top, error));
-    qsort(top->done, top->done_count, sizeof(RtRefGroup), larger_first);
-    RT_TRY(
-        rt_parallel_tasks(top->done, top->done_count, sizeof(RtRefGroup), threads, build_group, top, error));
-    unite_top(top);
-    return RT_OK;
-}
-
 /* Groups of one depth are disjoint. So fewer than count / top_limit are open at a time, beside the root, and
  * fewer than count / share_limit of a depth are split, in the top or below it. Each split makes one node and
  * at most one more group below the top. */
@@ -630,34 +602,52 @@ static void allocate(Top *top, RtArena *arena) {
     size_t open = top->count / top->top_limit + 1;
     size_t nodes = (size_t)(top->count / top->share_limit + 1) * RT_TREE_MEDIAN_DEPTH;
     top->rows[0] = rt_arena_alloc_unset(arena, top->count, sizeof(RtTreeRef));
-    top->groups = rt_arena_alloc(arena, open, sizeof(RtRefGroup));
-    top->next = rt_arena_alloc(arena, open, sizeof(RtRefGroup));
+    top->groups = rt_arena_alloc(arena, open, sizeof(OpenGroup));
+    top->next = rt_arena_alloc(arena, open, sizeof(OpenGroup));
     top->done = rt_arena_alloc(arena, nodes + 1, sizeof(RtRefGroup));
-    top->splits = rt_arena_alloc(arena, open, sizeof(Split));
-    top->chunks = rt_arena_alloc_unset(arena, open + top->count / top->chunk_size + 1, sizeof(Chunk));
+    top->chunks = rt_arena_alloc_unset(arena, open + top->count / CHUNK + 1, sizeof(Chunk));
     top->nodes = rt_arena_alloc(arena, nodes, sizeof(TopNode));
+}
+
+static RtStatus build_on_several(const RtSubtreeBuilder *b, const RtGeometry *geometry, int threads,
+                                 RtError *error) {
+    const uint32_t count = geometry->object_count, workers = (uint32_t)rt_thread_count(threads);
+    const uint32_t share = count / (SHARES * workers), even = count / workers + count / workers / 2;
+    RT_ARENA(arena);
+    Top top = {.b = b, .boxes = geometry->boxes, .count = count, .open = 1};
+    top.share_limit = share > SMALL ? share : SMALL;
+    top.top_limit = even > top.share_limit ? even : top.share_limit;
+    allocate(&top, &arena);
+    RT_TRY(rt_arena_check(&arena, "a tree from the top", error));
+    top.rows[1] = (RtTreeRef *)b->tree->nodes;
+    top.row = 1; /* so that the groups usually end up in the first row */
+    RtRefGroup *root = &top.groups[0].group;
+    *root = (RtRefGroup){top.rows[1], count, 0, 0, rt_box4_empty()};
+    make_chunks(&top);
+    RT_TRY(rt_parallel_each(top.chunk_count, threads, make_refs, &top, error));
+    for (uint32_t c = 0; c < top.chunk_count; c++)
+        root->centers = rt_box4_union(root->centers, top.chunks[c].centers[0]);
+    while (top.open > 0) RT_TRY(split_level(&top, threads, error));
+    RT_TRY(rt_parallel_each(top.done_count, threads, move_back, &top, error));
+    qsort(top.done, top.done_count, sizeof(RtRefGroup), larger_first);
+    RT_TRY(
+        rt_parallel_tasks(top.done, top.done_count, sizeof(RtRefGroup), threads, build_group, &top, error));
+    unite_top(&top);
+    return RT_OK;
 }
 
 RtStatus rt_tree_topdown(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options, int threads,
                          RtError *error) {
-    const int bins = options->method == RT_TREE_MEDIAN ? 0 : options->spatial.bins;
-    const uint32_t count = geometry->object_count, workers = (uint32_t)rt_thread_count(threads);
-    const uint32_t share = count / (SHARES * workers), even = count / workers + count / workers / 2;
-    const bool one = workers == 1 || bins == 0 || count < LARGE;
-    const uint32_t share_limit = one ? count : share > SMALL ? share : SMALL;
-    RT_ARENA(arena);
+    const uint32_t count = geometry->object_count;
+    const RtSubtreeBuilder b = {tree, options->method == RT_TREE_MEDIAN ? 0 : options->spatial.bins};
     RT_TRY(rt_tree_init(tree, count, error));
-    RtSubtreeBuilder builder = {tree, bins};
-    Top top = {.b = &builder,
-               .boxes = geometry->boxes,
-               .rows[1] = (RtTreeRef *)tree->nodes,
-               .count = count,
-               .row = one ? 0 : 1, /* so that the groups usually end up in the first row */
-               .chunk_size = one ? count : CHUNK,
-               .share_limit = share_limit,
-               .top_limit = even > share_limit ? even : share_limit};
-    allocate(&top, &arena);
-    RT_TRY(rt_arena_check(&arena, "a tree from the top", error));
     tree->used = tree->capacity;
-    return one ? build_on_one(&top, error) : build_on_several(&top, threads, error);
+    if (rt_thread_count(threads) > 1 && b.bins > 0 && count >= LARGE)
+        return build_on_several(&b, geometry, threads, error);
+    RT_ARENA(arena);
+    RtTreeRef *refs = rt_arena_alloc_unset(&arena, count, sizeof(RtTreeRef));
+    RT_TRY(rt_arena_check(&arena, "a tree from the top", error));
+    for (uint32_t i = 0; i < count; i++) refs[i] = (RtTreeRef){geometry->boxes[i], i};
+    rt_subtree_build(&b, (RtRefGroup){refs, count, 0, 0, rt_refs_centers(refs, count)});
+    return RT_OK;
 }

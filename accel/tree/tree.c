@@ -68,24 +68,25 @@ static bool reaches_below(const RtTree *tree, uint32_t node, uint32_t levels) {
 /* The nodes of a subtree that is rebuilt. */
 typedef struct Rebuild {
     RtTree *tree;
-    RtTreeRef *leaves;       /* [references] ids are nodes */
-    uint32_t *unions, *todo; /* [references] nodes */
+    RtTreeRef *leaves; /* [references] ids are nodes */
+    uint32_t *unions;  /* [references] nodes */
     uint32_t leaf_count, union_count;
 } Rebuild;
 
+/* `top` is no leaf. */
 static void collect(Rebuild *parts, uint32_t top) {
-    uint32_t stacked = 0;
-    parts->leaf_count = parts->union_count = 0;
-    parts->todo[stacked++] = top;
-    while (stacked > 0) {
-        uint32_t at = parts->todo[--stacked];
-        const RtTreeNode *node = &parts->tree->nodes[at];
-        if (rt_tree_is_leaf(parts->tree, at)) {
-            parts->leaves[parts->leaf_count++] = (RtTreeRef){node->box, at};
-            continue;
+    const RtTree *tree = parts->tree;
+    parts->leaf_count = 0;
+    parts->union_count = 1;
+    parts->unions[0] = top;
+    for (uint32_t i = 0; i < parts->union_count; i++) {
+        for (int s = 0; s < 2; s++) {
+            uint32_t child = tree->nodes[parts->unions[i]].child[s];
+            if (rt_tree_is_leaf(tree, child))
+                parts->leaves[parts->leaf_count++] = (RtTreeRef){tree->nodes[child].box, child};
+            else
+                parts->unions[parts->union_count++] = child;
         }
-        parts->unions[parts->union_count++] = at;
-        for (int s = 0; s < 2; s++) parts->todo[stacked++] = node->child[s];
     }
 }
 
@@ -119,8 +120,7 @@ RtStatus rt_tree_limit_depth(RtTree *tree, RtError *error) {
     uint32_t count = rt_tree_leaf_count(tree);
     Rebuild parts = {.tree = tree,
                      .leaves = rt_arena_alloc(&arena, count, sizeof(RtTreeRef)),
-                     .unions = rt_arena_alloc(&arena, count, sizeof(uint32_t)),
-                     .todo = rt_arena_alloc(&arena, count, sizeof(uint32_t))};
+                     .unions = rt_arena_alloc(&arena, count, sizeof(uint32_t))};
     RT_TRY(rt_arena_check(&arena, "limiting the depth of a tree", error));
     tree->root = limited(&parts, tree->root, 0);
     return RT_OK;

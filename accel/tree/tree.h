@@ -105,17 +105,17 @@ RtStatus rt_tree_drop_leaves(RtTree *tree, const RtBox *boxes, RtError *error);
 
 enum { RT_MAX_MORTON_BITS = 21, RT_MAX_BINS = 64 };
 
-/* In the order of RT_TREE_METHODS, the choices of a parameter. */
+/* In the order of RT_TREE_METHODS, the choices of a parameter. The papers: the files of the methods. */
 #define RT_TREE_METHODS "binned|sweep|lbvh|ploc|spatial"
 typedef enum RtTreeMethod {
-    RT_TREE_BINNED,
-    RT_TREE_SWEEP,
-    RT_TREE_LBVH,
-    RT_TREE_PLOC,
-    RT_TREE_SPATIAL,
-    RT_TREE_AGGLOMERATIVE, /* from here on not among RT_TREE_METHODS */
-    RT_TREE_INSERTION,
-    RT_TREE_MEDIAN,
+    RT_TREE_BINNED,        /* top-down by the surface area heuristic, in bins (topdown.c) */
+    RT_TREE_SWEEP,         /* the same, all positions between centres tried */
+    RT_TREE_LBVH,          /* splits of the Morton order where the highest differing bit changes */
+    RT_TREE_PLOC,          /* unites mutual nearest neighbours in Morton order, in rounds */
+    RT_TREE_SPATIAL,       /* top-down, by object splits and spatial splits */
+    RT_TREE_AGGLOMERATIVE, /* unites the two nearest; from here on not among RT_TREE_METHODS */
+    RT_TREE_INSERTION,     /* one by one where the sum of areas grows least */
+    RT_TREE_MEDIAN,        /* top-down, at the median of centres along the longest axis (topdown.c) */
     RT_TREE_METHOD_COUNT
 } RtTreeMethod;
 
@@ -150,30 +150,8 @@ RtStatus rt_tree_build(RtTree *tree, const RtGeometry *geometry, const RtTreeOpt
 /* The methods, for rt_tree_build, which clears the tree if they fail. */
 typedef RtStatus RtTreeBuild(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options,
                              int threads, RtError *error);
-
-/* Walter, Bala, Kulkarni & Pingali 2008: unites the two nearest nodes until one is left. */
-RtTreeBuild rt_tree_agglomerative;
-
-/* Meister & Bittner 2018: in rounds, along the Morton order of centres, unites nodes that are each other's
- * nearest among the `radius` before and after. */
-RtTreeBuild rt_tree_ploc;
-
-/* Lauterbach et al. 2009: splits the Morton order where the highest differing bit of the codes changes. */
-RtTreeBuild rt_tree_lbvh;
-
-/* Goldsmith & Salmon 1987: inserts objects one by one where the sum of areas grows least. */
-RtTreeBuild rt_tree_insertion;
-
-/* Top-down, at the median of centres along the longest axis (Rubin & Whitted 1980, whose hierarchies were
- * made by hand), or by the surface area heuristic in bins (Wald 2007). A subtree of n references is a run of
- * 2 n - 1 nodes: its root, the left subtree, the right one. */
-RtTreeBuild rt_tree_topdown;
-
-/* Top-down by the surface area heuristic, all positions between centres tried (MacDonald & Booth 1990). */
-RtTreeBuild rt_tree_sweep;
-
-/* Top-down, by object splits and spatial splits: Stich, Friedrich & Dietrich 2009. */
-RtTreeBuild rt_tree_spatial;
+RtTreeBuild rt_tree_topdown, rt_tree_sweep, rt_tree_lbvh, rt_tree_ploc, rt_tree_spatial,
+    rt_tree_agglomerative, rt_tree_insertion;
 
 /* The margin of rt_object_part (core/shape/overlap.h) in a scene with this box. */
 static inline double rt_tree_part_margin(const RtBox *scene) {
