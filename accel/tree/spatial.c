@@ -50,14 +50,32 @@ typedef struct SpatialSplit {
     float at;
 } SpatialSplit;
 
-/* refs[0..count), in `box`. */
-typedef struct SpatialGroup {
+/* The references of a subtree: refs[first..first + count), followed by `spare` free slots. Its nodes are
+ * among nodes[node..node + 2 * (count + spare) - 1). */
+typedef struct Group {
+    uint32_t first, count, spare, node;
+    int depth;
+    bool was_cut; /* some reference in it was cut */
+} Group;
+
+/* Nodes without gaps: a subtree, or one node of the top. */
+typedef struct Run {
+    Group group;
+    uint32_t children; /* of a node of the top: the first of two runs; 0 for a subtree */
+    uint32_t used;     /* number of nodes */
+} Run;
+
+typedef struct Builder {
+    RtTree *tree; /* with room for all references that the budget allows */
     const RtGeometry *geometry;
-    const RtTreeRef *refs;
-    uint32_t count, spare; /* references, and how many a split may add */
-    RtBox4 box;
-    double margin; /* for rt_object_part */
-} SpatialGroup;
+    RtTreeRef *refs; /* [budget] */
+    const RtTreeOptions *options;
+    double least_overlap; /* half area above which spatial splits are tried */
+    double margin;        /* for rt_object_part */
+    Run *runs;            /* [run_count] parents before their children */
+    _Atomic uint32_t run_count;
+    uint32_t limit; /* larger groups belong to the top */
+} Builder;
 
 /* ---- spatial bins ---- */
 
@@ -78,14 +96,13 @@ typedef struct Bins {
 
 /* Clips a reference to `lo`..`hi` along `axis`: *part contains all of its surface there, or all of a CSG
  * tree's box (accel/surface.h). False if there is none. */
-static bool ref_part(const SpatialGroup *group, const RtTreeRef *ref, int axis, float lo, float hi,
-                     RtBox *part) {
+static bool ref_part(const Builder *b, const RtTreeRef *ref, int axis, float lo, float hi, RtBox *part) {
     RtBox box = ref->box;
     box.lo.at[axis] = rt_maxf(lo, box.lo.at[axis]);
     box.hi.at[axis] = rt_minf(hi, box.hi.at[axis]);
     *part = box;
-    if (rt_ref_shape(group->geometry->objects[ref->id]) == RT_SHAPE_CSG) return !rt_box_is_empty(box);
-    return rt_object_part(group->geometry, ref->id, &box, group->margin, part);
+    if (rt_ref_shape(b->geometry->objects[ref->id]) == RT_SHAPE_CSG) return !rt_box_is_empty(box);
+    return rt_object_part(b->geometry, ref->id, &box, b->margin, part);
 }
 
 static void init(Bins *self, int count, RtBox4 box) {
@@ -170,24 +187,24 @@ static void chop_triangle(const Bins *self, int axis, const RtTriangle *triangle
     }
 }
 
-static void chop_other(const Bins *self, const SpatialGroup *group, const RtTreeRef *ref, int axis, int first,
+static void chop_other(const Bins *self, const Builder *b, const RtTreeRef *ref, int axis, int first,
                        int last, RtBox4 *parts) {
     for (int i = first; i <= last; i++) {
         RtBox part;
-        bool any = ref_part(group, ref, axis, self->plane[axis][i], self->plane[axis][i + 1], &part);
+        bool any = ref_part(b, ref, axis, self->plane[axis][i], self->plane[axis][i + 1], &part);
         parts[i] = any ? rt_box4_load(&part) : rt_box4_empty();
     }
 }
 
-static void chop(Bins *self, const SpatialGroup *group, const RtTreeRef *ref, int axis, int first, int last) {
+static void chop(Bins *self, const Builder *b, const RtTreeRef *ref, int axis, int first, int last) {
     RtBox4 parts[RT_MAX_BINS], box = rt_box4_load(&ref->box);
-    RtRef object = group->geometry->objects[ref->id];
+    RtRef object = b->geometry->objects[ref->id];
     Bin *bins = self->bins[axis];
     int begin = last, finish = first;
     if (rt_ref_shape(object) == RT_SHAPE_TRIANGLE)
-        chop_triangle(self, axis, &group->geometry->triangles[rt_ref_index(object)], first, last, parts);
+        chop_triangle(self, axis, &b->geometry->triangles[rt_ref_index(object)], first, last, parts);
     else
-        chop_other(self, group, ref, axis, first, last, parts);
+        chop_other(self, b, ref, axis, first, last, parts);
     for (int i = first; i <= last; i++) {
         RtBox4 part = {rt_max(parts[i].lo, box.lo), rt_min(parts[i].hi, box.hi)};
         if (is_empty(part)) continue;
@@ -201,9 +218,9 @@ static void chop(Bins *self, const SpatialGroup *group, const RtTreeRef *ref, in
     bins[finish].finish++;
 }
 
-static void fill(Bins *self, const SpatialGroup *group) {
+static void fill(Bins *self, const Builder *b, const Group *group) {
     for (uint32_t i = 0; i < group->count; i++) {
-        const RtTreeRef *ref = &group->refs[i];
+        const RtTreeRef *ref = &b->refs[group->first + i];
         RtBox4 box = rt_box4_load(&ref->box);
         RtInt4 from = bins_of(self, box.lo), to = bins_of(self, box.hi);
         for (int axis = 0; axis < 3; axis++) {
@@ -211,7 +228,7 @@ static void fill(Bins *self, const SpatialGroup *group) {
             int first = first_bin(self, axis, from[axis], ref->box.lo.at[axis]);
             int last = last_bin(self, axis, to[axis], ref->box.hi.at[axis], first);
             if (first < last) {
-                chop(self, group, ref, axis, first, last);
+                chop(self, b, ref, axis, first, last);
                 continue;
             }
             Bin *bin = &self->bins[axis][first];
@@ -224,7 +241,7 @@ static void fill(Bins *self, const SpatialGroup *group) {
 
 /* ---- the best plane ---- */
 
-static void try_planes(const Bins *self, int axis, const SpatialGroup *group, SpatialSplit *best) {
+static void try_planes(const Bins *self, int axis, const Group *group, SpatialSplit *best) {
     const Bin *bins = self->bins[axis];
     RtBox4 right[RT_MAX_BINS], box = rt_box4_empty();
     uint32_t left_count = 0, right_count = group->count;
@@ -244,35 +261,16 @@ static void try_planes(const Bins *self, int axis, const SpatialGroup *group, Sp
 
 /* The cheapest plane between `count` bins, 2..RT_MAX_BINS, along any axis. Ties go to the lower axis, then to
  * the lower plane. */
-static SpatialSplit find_plane(const SpatialGroup *group, int count) {
+static SpatialSplit find_plane(const Builder *b, const Group *group, RtBox4 box, int count) {
     SpatialSplit best = {.sides.cost = INFINITY};
     Bins bins;
-    init(&bins, count, group->box);
-    fill(&bins, group);
+    init(&bins, count, box);
+    fill(&bins, b, group);
     for (int axis = 0; axis < 3; axis++) {
         if (bins.divides[axis]) try_planes(&bins, axis, group, &best);
     }
     return best;
 }
-
-/* ---- groups ---- */
-
-typedef struct Builder {
-    RtTree *tree; /* with room for all references that the budget allows */
-    const RtGeometry *geometry;
-    RtTreeRef *refs; /* [budget] */
-    const RtTreeOptions *options;
-    double least_overlap; /* half area above which spatial splits are tried */
-    double margin;        /* for rt_object_part */
-} Builder;
-
-/* The references of a subtree: refs[first..first + count), followed by `spare` free slots. Its nodes are
- * among nodes[node..node + 2 * (count + spare) - 1). */
-typedef struct Group {
-    uint32_t first, count, spare, node;
-    int depth;
-    bool was_cut; /* some reference in it was cut */
-} Group;
 
 static RtBox4 box_of(const RtTreeRef *refs, uint32_t count) {
     RtBox4 box = rt_box4_empty();
@@ -306,17 +304,17 @@ static int choose_side(Sides *sides, RtBox4 whole, bool may_cut) {
 }
 
 /* Partitions the group at the plane, left side first; counts[2] are the numbers of references. */
-static void cut_at(RtTreeRef *refs, const SpatialGroup *group, const SpatialSplit *plane,
-                   uint32_t counts[2]) {
+static void cut_at(const Builder *b, const Group *group, const SpatialSplit *plane, uint32_t counts[2]) {
     Sides sides = plane->sides;
+    RtTreeRef *refs = b->refs + group->first;
     uint32_t left = 0, end = group->count, added = 0;
     while (left < end) {
         RtTreeRef ref = refs[left];
         int side = ref.box.lo.at[plane->axis] >= plane->at ? RIGHT : LEFT;
         if (side == LEFT && ref.box.hi.at[plane->axis] > plane->at) {
             RtBox lower, upper;
-            bool below = ref_part(group, &ref, plane->axis, -INFINITY, plane->at, &lower);
-            bool above = ref_part(group, &ref, plane->axis, plane->at, INFINITY, &upper);
+            bool below = ref_part(b, &ref, plane->axis, -INFINITY, plane->at, &lower);
+            bool above = ref_part(b, &ref, plane->axis, plane->at, INFINITY, &upper);
             side = below && above ? choose_side(&sides, rt_box4_load(&ref.box), added < group->spare)
                    : above        ? RIGHT
                                   : LEFT;
@@ -353,16 +351,15 @@ static bool split_group(const Builder *b, Group *group, uint32_t counts[2]) {
     Sides sides = {0, {box_of(refs, counts[0]), box_of(refs + counts[0], counts[1])}, {counts[0], counts[1]}};
     set_cost(&sides);
     RtBox4 common = {rt_max(sides.box[0].lo, sides.box[1].lo), rt_min(sides.box[0].hi, sides.box[1].hi)};
-    SpatialGroup spatial = {b->geometry, refs, count, group->spare, box, b->margin};
     SpatialSplit plane = {.sides.cost = INFINITY};
     /* Cutting takes most of the time, so there are never more bins than for small groups. */
     if (area_of(common) > b->least_overlap)
-        plane = find_plane(&spatial, (int)rt_bin_count(b->options->spatial.bins, 0));
+        plane = find_plane(b, group, box, (int)rt_bin_count(b->options->spatial.bins, 0));
     double least = fmin(sides.cost, plane.sides.cost);
     if (count <= b->options->spatial.leaf && area * count <= area * b->options->spatial.traversal + least)
         return false;
     if (!(plane.sides.cost < sides.cost)) return true;
-    cut_at(refs, &spatial, &plane, counts);
+    cut_at(b, group, &plane, counts);
     group->was_cut |= counts[0] + counts[1] > count;
     if (counts[0] == 0 || counts[1] == 0) {
         counts[0] = rt_split_median(refs, count);
@@ -428,80 +425,43 @@ static uint32_t build(const Builder *b, Group *group) {
 
 enum { SHARES = 16 }; /* subtrees are built by one thread below this fraction of a thread's share */
 
-/* Nodes without gaps: a subtree, or one node of the top. */
-typedef struct Run {
-    Group group;
-    uint32_t children; /* of a node of the top: the first of two runs; 0 for a subtree */
-    uint32_t used, at; /* number of nodes, and the first of them in the final tree */
-} Run;
-
-typedef struct Top {
-    const Builder *b;
-    Run *runs; /* [run_count] parents before their children */
-    _Atomic uint32_t run_count;
-    uint32_t limit; /* larger groups belong to the top */
-    RtTree into;    /* the tree without gaps */
-} Top;
-
 /* Splits a run while it is large, and builds the last left side; the right sides become tasks. */
 static RtStatus build_run(void *context, RtTasks *tasks, const void *task, RtError *error) {
-    Top *top = context;
-    Run *run = &top->runs[*(const uint32_t *)task];
+    Builder *b = context;
+    Run *run = &b->runs[*(const uint32_t *)task];
     uint32_t counts[2];
-    while (run->group.count > top->limit && split_group(top->b, &run->group, counts)) {
+    while (run->group.count > b->limit && split_group(b, &run->group, counts)) {
         Group sides[2];
-        make_sides(top->b, &run->group, counts, sides);
-        uint32_t left = atomic_fetch_add(&top->run_count, 2), right = left + 1;
-        for (uint32_t s = 0; s < 2; s++) top->runs[left + s] = (Run){.group = sides[s]};
+        make_sides(b, &run->group, counts, sides);
+        uint32_t left = atomic_fetch_add(&b->run_count, 2), right = left + 1;
+        for (uint32_t s = 0; s < 2; s++) b->runs[left + s] = (Run){.group = sides[s]};
         run->children = left;
-        run->used = 1;
         if (!rt_tasks_add(tasks, &right)) return rt_fail_memory(error, "a subtree", sizeof(Run));
-        run = &top->runs[left];
+        run = &b->runs[left];
     }
-    run->used = build(top->b, &run->group);
+    run->used = build(b, &run->group);
     return RT_OK;
 }
 
-static void move_run(void *context, size_t item) {
-    Top *top = context;
-    const Run *run = &top->runs[item];
-    uint32_t from = run->group.node;
-    for (uint32_t i = 0; i < run->used && run->children == 0; i++) {
-        RtTreeNode node = top->b->tree->nodes[from + i];
+/* Moves the nodes of a run, and of those below it, to `at`, not behind where they are; returns where they
+ * end. */
+static uint32_t close_gaps(Builder *b, const Run *run, uint32_t at) {
+    RtTreeNode *nodes = b->tree->nodes;
+    const uint32_t from = run->group.node;
+    b->tree->split_refs |= run->group.was_cut;
+    if (run->children > 0) {
+        const Run *child = &b->runs[run->children];
+        const uint32_t second = close_gaps(b, &child[0], at + 1), end = close_gaps(b, &child[1], second);
+        rt_tree_set_union(b->tree, at, at + 1, second);
+        return end;
+    }
+    for (uint32_t i = 0; i < run->used && from > at; i++) {
+        RtTreeNode node = nodes[from + i];
         bool leaf = node.child[0] == RT_TREE_LEAF;
-        for (int s = 0; s < 2 && !leaf; s++) node.child[s] = node.child[s] - from + run->at;
-        top->into.nodes[run->at + i] = node;
+        for (int s = 0; s < 2 && !leaf; s++) node.child[s] -= from - at;
+        nodes[at + i] = node;
     }
-}
-
-/* Assigns nodes, from `at` on, to a run and those below it; returns the end. */
-static uint32_t assign_nodes(Top *top, uint32_t index, uint32_t at) {
-    Run *run = &top->runs[index];
-    run->at = at;
-    at += run->used;
-    for (uint32_t s = 0; s < 2 && run->children > 0; s++) at = assign_nodes(top, run->children + s, at);
-    return at;
-}
-
-/* Copies the runs to a tree without gaps between them. */
-static RtStatus close_gaps(Top *top, RtTree *tree, int threads, RtError *error) {
-    uint32_t used = assign_nodes(top, 0, 0), runs = top->run_count;
-    bool was_cut = false;
-    for (uint32_t r = 0; r < runs; r++) was_cut |= top->runs[r].group.was_cut;
-    if (runs > 1) {
-        RT_TRY(rt_tree_init(&top->into, (used + 1) / 2, error));
-        RtStatus status = rt_parallel_each(runs, threads, move_run, top, error);
-        for (uint32_t r = runs; r-- > 0 && status == RT_OK;) {
-            const Run *run = &top->runs[r], *child = &top->runs[run->children];
-            if (run->children > 0) rt_tree_set_union(&top->into, run->at, child[0].at, child[1].at);
-        }
-        rt_tree_clear(tree);
-        *tree = top->into;
-        RT_TRY(status);
-    }
-    tree->used = tree->capacity = used;
-    tree->split_refs = was_cut;
-    return RT_OK;
+    return at + run->used;
 }
 
 /* Peak bytes per reference: the tree, and the hierarchy that is laid out from it. */
@@ -525,8 +485,8 @@ static RtStatus check_limit(double budget, uint64_t limit, uint32_t count, RtErr
 
 RtStatus rt_tree_spatial(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options, int threads,
                          RtError *error) {
-    const uint32_t count = geometry->object_count, parts = SHARES * (uint32_t)rt_thread_count(threads),
-                   root = 0;
+    const uint32_t count = geometry->object_count, root = 0;
+    const uint32_t parts = SHARES * (uint32_t)rt_thread_count(threads);
     RT_TRY(check_limit(options->spatial.budget, options->spatial.limit, count, error));
     bool is_tiny = rt_box_longest_side(geometry->box) < RT_SURFACE_LEAST_SIDE;
     uint32_t most = is_tiny ? count : (uint32_t)(count * options->spatial.budget);
@@ -537,15 +497,14 @@ RtStatus rt_tree_spatial(RtTree *tree, const RtGeometry *geometry, const RtTreeO
                  .refs = rt_arena_alloc_unset(&arena, most, sizeof(RtTreeRef)),
                  .options = options,
                  .least_overlap = options->spatial.alpha * rt_box_half_area(geometry->box),
-                 .margin = rt_tree_part_margin(&geometry->box)};
-    Top top = {.b = &b, .run_count = 1};
-    top.limit = parts == SHARES ? most : most / parts > SMALL ? most / parts : SMALL;
-    top.runs = rt_arena_alloc(&arena, 1 + (size_t)2 * RT_TREE_MEDIAN_DEPTH * (most / top.limit), sizeof(Run));
+                 .margin = rt_tree_part_margin(&geometry->box),
+                 .run_count = 1};
+    b.limit = parts == SHARES ? most : most / parts > SMALL ? most / parts : SMALL;
+    b.runs = rt_arena_alloc(&arena, 1 + (size_t)2 * RT_TREE_MEDIAN_DEPTH * (most / b.limit), sizeof(Run));
     RT_TRY(rt_arena_check(&arena, "a tree with spatial splits", error));
     for (uint32_t i = 0; i < count; i++) b.refs[i] = (RtTreeRef){geometry->boxes[i], i};
-    top.runs[0].group = (Group){.count = count, .spare = most - count};
-    int workers = count > top.limit ? threads : 1;
-    RT_TRY(rt_parallel_tasks(&root, 1, sizeof root, workers, build_run, &top, error));
-    rt_arena_free(&arena, b.refs); /* before there are two trees */
-    return close_gaps(&top, tree, threads, error);
+    b.runs[0].group = (Group){.count = count, .spare = most - count};
+    RT_TRY(rt_parallel_tasks(&root, 1, sizeof root, count > b.limit ? threads : 1, build_run, &b, error));
+    tree->used = tree->capacity = close_gaps(&b, &b.runs[0], 0);
+    return RT_OK;
 }
