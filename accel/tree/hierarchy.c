@@ -2,7 +2,6 @@
 /* Laying out a binary tree of references for tracing: which subtrees become leaves, which nodes are replaced
  * by their children in their parent. */
 #include "accel/tree/hierarchy.h"
-#include "accel/tree/reduction.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 

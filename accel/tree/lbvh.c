@@ -8,7 +8,6 @@
  * Bisection finds the position of the change, as in Karras 2012, "Maximizing Parallelism in the Construction
  * of BVHs, Octrees, and k-d Trees". His numbering of nodes, which allows to make all nodes at once, is left
  * out. */
-#include "accel/tree/order.h"
 #include "accel/tree/tree.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "accel/tree/order.h"
+/* Sorting boxes by their centres: along the Morton curve (Morton 1966) or along an axis. Radix sort, in
+ * linear time; equal keys stay in the order of ids. */
+#include "accel/tree/tree.h"
 
 #include "core/base/parallel.h"
 

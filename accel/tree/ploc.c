@@ -15,7 +15,6 @@
  * only one pair of a round is mutual. After PATIENCE rounds, which suffice for most scenes, a cluster is also
  * merged with its nearest neighbour if that one is free. So there are far fewer rounds than objects, and the
  * time is linear in the objects up to a logarithm. */
-#include "accel/tree/order.h"
 #include "accel/tree/tree.h"
 #include "core/base/box4.h"
 #include "core/base/parallel.h"

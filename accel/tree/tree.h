@@ -8,7 +8,7 @@
 #ifndef RT_ACCEL_TREE_TREE_H
 #define RT_ACCEL_TREE_TREE_H
 
-#include "core/base/status.h"
+#include "core/base/memory.h"
 #include "core/shape/geometry.h"
 
 #include <stdbool.h>
@@ -163,5 +163,55 @@ static inline double rt_tree_part_margin(const RtBox *scene) {
  * (0 < batch <= 1), those with the largest boxes. The cost never rises, except where the depth has to
  * be limited first. On failure *tree is still a complete tree of the same references. */
 RtStatus rt_tree_reinsert(RtTree *tree, uint32_t rounds, double batch, int threads, RtError *error);
+
+/* ---- orders ---- */
+
+typedef struct RtKeyed {
+    uint64_t key;
+    uint32_t id;
+} RtKeyed;
+
+/* Allocates in `memory`, and sets *order to, boxes[0..count) in ascending order of keys, equal ones by id. It
+ * does not depend on the number of `threads` (0 = all processors). Keys of an axis increase with the centre.
+ * Morton codes: the box of all centres is divided into 2^bits cells along each axis, bits 1..
+ * RT_MAX_MORTON_BITS; the key interleaves the coordinates of the centre's cell, x in the lowest bit, then y,
+ * then z. */
+RtStatus rt_order_axis(const RtBox *boxes, uint32_t count, int axis, int threads, RtArena *memory,
+                       const RtKeyed **order, RtError *error);
+RtStatus rt_order_morton(const RtBox *boxes, uint32_t count, uint32_t bits, int threads, RtArena *memory,
+                         const RtKeyed **order, RtError *error);
+
+/* ---- reductions ---- */
+
+enum { RT_REDUCTION_LEVELS = 9, RT_REDUCTION_MAX_PARTS = 1 << RT_REDUCTION_LEVELS };
+
+/* In parallel: a value for each subtree, computed bottom-up from those of its two children. The top of the
+ * tree is a few levels deep. The subtrees below it, the parts, are reduced in parallel, then the top by the
+ * calling thread. */
+typedef struct RtReduction {
+    size_t size; /* of a value, in bytes */
+    /* Computes the value of the subtree of node `index`; false if a leaf is more than `levels` below it. */
+    bool (*reduce)(void *context, uint32_t index, uint32_t levels, void *value);
+    /* Computes the value of inner node `index` from those of its children. */
+    void (*combine)(void *context, uint32_t index, const void *const children[2], void *value);
+    void *context;
+} RtReduction;
+
+typedef struct RtReducedParts {
+    uint32_t index[RT_REDUCTION_MAX_PARTS]; /* [count] their roots, from left to right */
+    uint32_t count;
+    char *values; /* [count] */
+} RtReducedParts;
+
+/* Whether a node at this depth belongs to the top, and is not the root of a part. */
+static inline bool rt_reduction_is_top(const RtTree *tree, uint32_t index, uint32_t depth) {
+    RtTreeLeaf leaf;
+    return depth < RT_REDUCTION_LEVELS && !rt_tree_get_leaf(tree, index, &leaf);
+}
+
+/* Computes the value of a complete tree, whose depth is limited first if necessary (rt_tree_limit_depth), and
+ * those of its parts, in `memory`. */
+RtStatus rt_tree_reduce(RtTree *tree, const RtReduction *reduction, RtArena *memory, int threads,
+                        RtReducedParts *parts, void *whole, RtError *error);
 
 #endif

@@ -14,7 +14,6 @@
  * cost, so the offset of every subtree is known before any is laid out. */
 #include "accel/wide/plan.h"
 
-#include "accel/tree/reduction.h"
 #include "core/base/memory.h"
 
 #include <math.h>

@@ -3,7 +3,6 @@
  */
 #include "tree_testing.h"
 
-#include "accel/tree/order.h"
 #include "accel/tree/topdown.h"
 
 static const RtTreeOptions methods[] = {
