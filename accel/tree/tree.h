@@ -161,7 +161,7 @@ static inline double rt_tree_part_margin(const RtBox *scene) {
 /* Bittner, Hapala & Havran 2013; Meister & Bittner 2018: moves subtrees of a complete tree to where its cost
  * (rt_tree_cost) is least, until no move gains, in at most so many rounds. It moves this part of the nodes
  * (0 < batch <= 1), those with the largest boxes. The cost never rises, except where the depth has to
- * be limited first. On failure *tree is still a complete tree of the same references. */
+ * be limited first. */
 RtStatus rt_tree_reinsert(RtTree *tree, uint32_t rounds, double batch, int threads, RtError *error);
 
 /* ---- orders ---- */

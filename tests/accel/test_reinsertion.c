@@ -231,21 +231,4 @@ RT_TEST(a_tree_that_is_too_deep_is_limited_first) {
     assert_true(assert_tree(&tree) < 2 * RT_TREE_MAX_DEPTH);
 }
 
-RT_TEST(every_allocation_may_fail) {
-    OWNED_MEMORY RtBox *boxes = make_boxes(100, 5);
-    OWNED_TREE tree = make_tree(boxes, 100, MEDIANS);
-    int64_t live = rt_alloc_live();
-    RtStatus status = RT_NO_MEMORY;
-    for (uint64_t n = 1; status != RT_OK; n++) {
-        RtError failure = {RT_OK, ""};
-        rt_alloc_fail_at(n);
-        status = rt_tree_reinsert(&tree, 2, 0.5, 1, &failure);
-        rt_alloc_fail_at(0);
-        if (status != RT_OK) assert_int_equal(status, RT_NO_MEMORY);
-        assert_int_equal(rt_alloc_live(), live);
-        assert_same_references(&tree, boxes);
-        assert_in_range(n, 1, 10);
-    }
-}
-
 RT_TESTS(reinsertion, NULL, NULL)

@@ -302,6 +302,29 @@ RT_TEST(a_chain_of_growing_distances_is_cut_by_medians) {
     }
 }
 
+static const char *const builds[] = {"binned,bins=2", "sweep", "lbvh", "lbvh,bits=1", "ploc"};
+enum { BUILD_COUNT = sizeof builds / sizeof builds[0] };
+
+/* Spheres at distances that grow by powers of 2: each split cuts off only the last few, the worst case for
+ * depth. */
+RT_TEST(a_chain_of_growing_distances_stays_within_the_depth_limit) {
+    OWNED_SCENE scene = begin_scene();
+    float x = 1e-17f;
+    for (int i = 0; i < 110; i++, x *= 2) {
+        for (int copy = 0; copy < 40; copy++)
+            assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(x, 0, 0), x / 8, error));
+    }
+    assert_ok(rt_scene_finish(&scene, error));
+    for (int b = 0; b < BUILD_COUNT; b++) {
+        char spec[64];
+        snprintf(spec, sizeof spec, "bvh:max_leaf_size=1,build=%s", builds[b]);
+        RtDescription description = describe_spec(&scene, spec);
+        if (b < 2 || b == 4) assert_true(description.depth > 34); /* otherwise the test proves nothing */
+        assert_true(description.depth <= RT_TREE_MAX_DEPTH);
+        if (b == 1) assert_int_equal(description.depth, 43); /* 34, and 350 spheres that are halved */
+    }
+}
+
 RT_TEST(what_is_shallow_enough_is_left_as_it_is) {
     OWNED_MEMORY RtBox *boxes = make_boxes(500, 1);
     OWNED_TREE tree = build_tree(boxes, 500, methods[AGGLOMERATIVE], 1);
@@ -351,8 +374,12 @@ RT_TEST(every_allocation_of_a_build_may_fail) {
     OWNED_MEMORY RtBox *boxes = make_boxes(100, 1);
     const RtGeometry geometry = {.boxes = boxes, .object_count = 100};
     RtTree tree;
-    for (int m = 0; m < METHOD_COUNT; m++)
-        assert_fails_cleanly(rt_tree_build(&tree, &geometry, &methods[m], 1, error), rt_tree_clear(&tree));
+    for (int m = 0; m < METHOD_COUNT; m++) {
+        RtTreeOptions options = methods[m];
+        options.reinsertion = 2;
+        options.batch = m % 2 ? 0.5 : 1;
+        assert_fails_cleanly(rt_tree_build(&tree, &geometry, &options, 1, error), rt_tree_clear(&tree));
+    }
 }
 
 RT_TESTS(trees, NULL, NULL)
