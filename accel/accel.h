@@ -53,8 +53,8 @@ typedef struct RtAccel {
     X(predicted_tests, "expected object tests")                                                              \
     X(predicted_steps, "expected steps")
 
-/* Further quality metrics of hierarchies of boxes (Aila, Karras & Laine 2013; accel/tree/quality.c). NaN for
- * other structures. X(name, meaning). */
+/* Further quality metrics of hierarchies of boxes (Aila, Karras & Laine 2013; accel/tree/hierarchy_stats.c).
+ * NaN for other structures. X(name, meaning). */
 #define RT_QUALITIES(X)                                                                                      \
     X(end_point_overlap,                                                                                     \
       "expected cost of the nodes that contain a point of the surface but not its object; triangles only")   \

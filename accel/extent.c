@@ -4,8 +4,6 @@
  * rounding errors. */
 #include "accel/extent.h"
 
-#include "core/base/memory.h"
-
 #define THIRD 0.57735026918962576451
 #define HALF  0.70710678118654752440
 const RtVec3d rt_slab_normals[RT_MAX_SLABS] = {
@@ -43,27 +41,15 @@ size_t rt_extent_set_bytes(const RtExtentSet *set) {
     return set->count * bytes_each(set);
 }
 
-RtStatus rt_extent_set_init(RtExtentSet *set, RtExtentKind kind, uint32_t slabs_each, uint32_t count,
-                            RtError *error) {
+RtStatus rt_extent_set_init(RtExtentSet *set, RtArena *memory, RtExtentKind kind, uint32_t slabs_each,
+                            uint32_t count, RtError *error) {
     *set = (RtExtentSet){.kind = kind, .slabs_each = slabs_each, .count = count};
     if (kind == RT_EXTENT_BOX) return RT_OK;
-    void *block = rt_alloc(count, bytes_each(set));
-    if (!block) {
-        RtStatus status = rt_fail_memory(error, "extents", rt_extent_set_bytes(set));
-        *set = (RtExtentSet){.kind = RT_EXTENT_BOX};
-        return status;
-    }
+    void *block = rt_arena_alloc(memory, count, bytes_each(set));
     if (kind == RT_EXTENT_SPHERE) set->balls = block;
     if (kind == RT_EXTENT_OBB) set->oriented = block;
     if (kind == RT_EXTENT_SLABS) set->slabs = block;
-    return RT_OK;
-}
-
-void rt_extent_set_clear(RtExtentSet *set) {
-    rt_free(set->balls);
-    rt_free(set->oriented);
-    rt_free(set->slabs);
-    *set = (RtExtentSet){.kind = RT_EXTENT_BOX};
+    return rt_arena_check(memory, "extents", error);
 }
 
 /* ---- making ---- */
@@ -235,88 +221,55 @@ double rt_extent_half_area(const RtExtentSet *set, uint32_t index, const RtBox *
 
 /* ---- checking ---- */
 
-/* The extent and its group. */
-typedef struct Check {
-    const RtExtentSet *set;
-    uint32_t index;
-    const RtGroup *group;
-    const char *owner;
-    RtError *error;
-} Check;
-
-/* The reach of an extent along `direction`, the normal of one of its faces: any axis of a box, any unit
- * vector for a sphere. */
-static double extent_support(const Check *check, RtVec3d direction) {
-    const RtExtentSet *set = check->set;
-    double sum = 0;
-    if (set->kind == RT_EXTENT_BOX) {
-        const RtBox *own = &check->group->box;
-        for (int a = 0; a < 3; a++)
-            sum += direction.at[a] * (double)(direction.at[a] < 0 ? own->lo.at[a] : own->hi.at[a]);
-        return sum;
+/* How far the extent reaches in `direction`, `sense` (1 or -1) times the i-th normal of its faces: any unit
+ * vector for a sphere. Up to the rounding of sums, except for slabs, which are rounded outward. */
+static double reach_of(const RtExtentSet *set, uint32_t index, const RtBox *own, uint32_t i, int sense,
+                       RtVec3d direction) {
+    double sum = 0.25 * inflation(own);
+    if (set->kind == RT_EXTENT_SLABS) {
+        const RtSlab *slab = &set->slabs[(size_t)index * set->slabs_each + i];
+        return sense < 0 ? -(double)slab->lo : (double)slab->hi;
     }
-    if (set->kind == RT_EXTENT_SPHERE) {
-        const RtBall *ball = &set->balls[check->index];
-        return rt_dotd(ball->center, direction) + ball->radius;
-    }
-    const RtOrientedBox *box = &set->oriented[check->index];
-    sum = rt_dotd(box->center, direction);
+    if (set->kind == RT_EXTENT_BOX) return sum + sense * (double)(sense < 0 ? own->lo : own->hi).at[i];
+    if (set->kind == RT_EXTENT_SPHERE)
+        return sum + rt_dotd(set->balls[index].center, direction) + set->balls[index].radius;
+    const RtOrientedBox *box = &set->oriented[index];
     for (int a = 0; a < 3; a++) sum += box->half[a] * fabs(rt_dotd(box->axes[a], direction));
-    return sum;
+    return sum + rt_dotd(box->center, direction);
 }
 
-/* Whether the extent reaches `reach` along `direction`, the reach of its objects. */
-static RtStatus check_reach(const Check *check, RtVec3d direction, double reach) {
-    const RtGroup *group = check->group;
+/* RT_OK if the extent, which reaches so far in `direction`, contains the group. */
+static RtStatus check_reach(const RtExtentSet *set, uint32_t index, const RtGroup *group, const char *owner,
+                            RtVec3d direction, double reach, RtError *error) {
     for (uint32_t i = 0; i < group->count; i++) {
         if (reach >= rt_object_support(group->geometry, group->ids[i], direction)) continue;
-        return rt_fail(check->error, RT_MISMATCH,
-                       "%s: the %s %u does not contain object %u (%s) along (%g, %g, %g)", check->owner,
-                       kind_names[check->set->kind], check->index, group->ids[i],
+        return rt_fail(error, RT_MISMATCH, "%s: the %s %u does not contain object %u (%s) along (%g, %g, %g)",
+                       owner, kind_names[set->kind], index, group->ids[i],
                        rt_shape_name(rt_ref_shape(group->geometry->objects[group->ids[i]])), direction.x,
                        direction.y, direction.z);
     }
     return RT_OK;
 }
 
-/* Checks both senses of a direction, up to the rounding of the two sums. */
-static RtStatus check_along(const Check *check, RtVec3d direction) {
-    double slack = 0.25 * inflation(&check->group->box);
-    const RtVec3d both[2] = {direction, opposite(direction)};
-    for (int i = 0; i < 2; i++) RT_TRY(check_reach(check, both[i], extent_support(check, both[i]) + slack));
-    return RT_OK;
-}
-
-static RtStatus check_slabs(const Check *check) {
-    const RtSlab *slabs = check->set->slabs + (size_t)check->index * check->set->slabs_each;
-    for (uint32_t i = 0; i < check->set->slabs_each; i++) {
-        RT_TRY(check_reach(check, rt_slab_normals[i], (double)slabs[i].hi));
-        RT_TRY(check_reach(check, opposite(rt_slab_normals[i]), -(double)slabs[i].lo));
-    }
-    return RT_OK;
-}
-
-static RtStatus check_axes(const Check *check) {
-    const RtVec3d *axes = check->set->oriented[check->index].axes;
-    for (int a = 0; a < 3; a++) {
-        int b = a == 2 ? 0 : a + 1;
-        bool unit = fabs(rt_dotd(axes[a], axes[a]) - 1) <= 0x1p-48;
-        if (!unit || !(fabs(rt_dotd(axes[a], axes[b])) <= 0x1p-48))
-            return rt_fail(check->error, RT_MISMATCH,
-                           "%s: the axes of the oriented box %u are not orthonormal", check->owner,
-                           check->index);
-        RT_TRY(check_along(check, axes[a]));
-    }
-    return RT_OK;
-}
-
+/* Oriented boxes along their own axes: along other directions support functions may be less tight than the
+ * faces of the extent together. */
 RtStatus rt_extent_check(const RtExtentSet *set, uint32_t index, const RtGroup *group, const char *owner,
                          RtError *error) {
-    Check check = {set, index, group, owner, error};
-    if (set->kind == RT_EXTENT_SLABS) return check_slabs(&check);
-    /* Along other directions support functions may be less tight than the extent's own faces together. */
-    if (set->kind == RT_EXTENT_OBB) return check_axes(&check);
-    for (uint32_t i = 0; i < (set->kind == RT_EXTENT_BOX ? 3 : RT_MAX_SLABS); i++)
-        RT_TRY(check_along(&check, rt_slab_normals[i]));
+    const RtVec3d *normals = set->kind == RT_EXTENT_OBB ? set->oriented[index].axes : rt_slab_normals;
+    const uint32_t count = set->kind == RT_EXTENT_SPHERE  ? RT_MAX_SLABS
+                           : set->kind == RT_EXTENT_SLABS ? set->slabs_each
+                                                          : 3;
+    for (uint32_t i = 0; i < count; i++) {
+        const double square = rt_dotd(normals[i], normals[i]),
+                     across = rt_dotd(normals[i], normals[(i + 1) % 3]);
+        if (set->kind == RT_EXTENT_OBB && !(fabs(square - 1) <= 0x1p-48 && fabs(across) <= 0x1p-48))
+            return rt_fail(error, RT_MISMATCH, "%s: the axes of the oriented box %u are not orthonormal",
+                           owner, index);
+        for (int sense = 1; sense >= -1; sense -= 2) {
+            const RtVec3d direction = sense > 0 ? normals[i] : opposite(normals[i]);
+            const double reach = reach_of(set, index, &group->box, i, sense, direction);
+            RT_TRY(check_reach(set, index, group, owner, direction, reach, error));
+        }
+    }
     return RT_OK;
 }

@@ -71,10 +71,9 @@ typedef struct RtGroup {
  * faces. */
 extern const RtVec3d rt_slab_normals[RT_MAX_SLABS];
 
-/* Allocates `count` extents. On failure the set is empty. Free with rt_extent_set_clear. */
-RtStatus rt_extent_set_init(RtExtentSet *set, RtExtentKind kind, uint32_t slabs_each, uint32_t count,
-                            RtError *error);
-void rt_extent_set_clear(RtExtentSet *set);
+/* Allocates `count` extents in `memory`. */
+RtStatus rt_extent_set_init(RtExtentSet *set, RtArena *memory, RtExtentKind kind, uint32_t slabs_each,
+                            uint32_t count, RtError *error);
 
 /* Bytes of the set's array. */
 size_t rt_extent_set_bytes(const RtExtentSet *set);

@@ -13,8 +13,6 @@
 
 #include "accel/mailbox.h"
 #include "accel/surface.h"
-#include "accel/tree/order.h"
-#include "accel/tree/sah_split.h"
 
 #define PARAMS(X)                                                                                            \
     X(PARAM_BUILD, "build", RT_CHOICE("binned", RT_TREE_METHODS),                                            \
@@ -48,34 +46,25 @@ static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 /* ---- build ---- */
 
-static void destroy(RtAccel *accel) {
-    rt_hierarchy_clear(&((RtBvh *)accel)->hierarchy);
-}
-
-static RtTreeOptions options_of(const RtBuild *what) {
-    const RtValue *values = what->values;
-    return (RtTreeOptions){.method = (RtTreeMethod)values[PARAM_BUILD].choice,
-                           .bits = (uint32_t)values[PARAM_BITS].i,
-                           .radius = (uint32_t)values[PARAM_RADIUS].i,
-                           .spatial = {.bins = (int)values[PARAM_BINS].i,
-                                       .alpha = values[PARAM_ALPHA].f,
-                                       .budget = values[PARAM_BUDGET].f,
-                                       .leaf = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
-                                       .traversal = values[PARAM_TRAVERSAL_COST].f,
-                                       .limit = what->limit},
-                           .reinsertion = (uint32_t)values[PARAM_REINSERTION].i,
-                           .batch = 1};
-}
-
 static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     const RtGeometry *geometry = &what->scene->geometry;
     const RtValue *values = what->values;
-    const RtTreeOptions options = options_of(what);
     RtBvh *self = (RtBvh *)accel;
     self->hierarchy = (RtHierarchy){.width = 2,
                                     .leaf_limit = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
                                     .traversal_cost = values[PARAM_TRAVERSAL_COST].f};
-    RT_TRY(rt_hierarchy_build(&self->hierarchy, geometry, &options, what->threads, error));
+    const RtTreeOptions options = {.method = (RtTreeMethod)values[PARAM_BUILD].choice,
+                                   .bits = (uint32_t)values[PARAM_BITS].i,
+                                   .radius = (uint32_t)values[PARAM_RADIUS].i,
+                                   .spatial = {.bins = (int)values[PARAM_BINS].i,
+                                               .alpha = values[PARAM_ALPHA].f,
+                                               .budget = values[PARAM_BUDGET].f,
+                                               .leaf = self->hierarchy.leaf_limit,
+                                               .traversal = self->hierarchy.traversal_cost,
+                                               .limit = what->limit},
+                                   .reinsertion = (uint32_t)values[PARAM_REINSERTION].i,
+                                   .batch = 1};
+    RT_TRY(rt_hierarchy_build(&self->hierarchy, &accel->memory, geometry, &options, what->threads, error));
     self->mailbox = values[PARAM_MAILBOX].flag && self->hierarchy.split_refs;
     if (self->mailbox) accel->scratch_bytes = rt_mailbox_bytes(geometry);
     return RT_OK;
@@ -186,7 +175,6 @@ const RtAccelOps rt_bvh_ops = {
     RT_PARAMS_OF(params),
     .bytes = sizeof(RtBvh),
     .build = build,
-    .destroy = destroy,
     RT_KERNEL_OPS,
     .describe = describe,
     .validate = validate,

@@ -16,8 +16,6 @@
  * them. */
 #include "accel/clusters/clusters.h"
 
-#include "accel/tree/order.h"
-
 #define PARAMS(X)                                                                                            \
     X(PARAM_METHOD, "method",                                                                                \
       RT_CHOICE("agglomerative", "agglomerative|ploc|goldsmith-salmon|rubin-whitted|sah"),                   \
@@ -52,25 +50,9 @@ static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 /* ---- build ---- */
 
-static void destroy(RtAccel *accel) {
-    RtClusters *self = (RtClusters *)accel;
-    rt_extent_set_clear(&self->set);
-    rt_hierarchy_clear(&self->hierarchy);
-}
-
 /* In the order of the choices of `method`. */
 static const RtTreeMethod methods[] = {RT_TREE_AGGLOMERATIVE, RT_TREE_PLOC, RT_TREE_INSERTION, RT_TREE_MEDIAN,
                                        RT_TREE_BINNED};
-
-static RtTreeOptions options_of(const RtValue *values) {
-    return (RtTreeOptions){.method = methods[values[PARAM_METHOD].choice],
-                           .bits = RT_MAX_MORTON_BITS,
-                           .radius = (uint32_t)values[PARAM_RADIUS].i,
-                           .spatial = {.bins = 16},
-                           .insertion = {values[PARAM_ORDER].choice == 1,
-                                         (uint32_t)values[PARAM_PERMUTATIONS].i,
-                                         (uint64_t)values[PARAM_SEED].i}};
-}
 
 /* The objects below node `index`, a run of ids. */
 static RtGroup group_of(const RtClusters *self, uint32_t index) {
@@ -83,19 +65,25 @@ static RtGroup group_of(const RtClusters *self, uint32_t index) {
 }
 
 static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
-    const RtGeometry *geometry = &what->scene->geometry;
     const RtValue *values = what->values;
-    const RtTreeOptions options = options_of(values);
+    const RtTreeOptions options = {.method = methods[values[PARAM_METHOD].choice],
+                                   .bits = RT_MAX_MORTON_BITS,
+                                   .radius = (uint32_t)values[PARAM_RADIUS].i,
+                                   .spatial = {.bins = 16},
+                                   .insertion = {values[PARAM_ORDER].choice == 1,
+                                                 (uint32_t)values[PARAM_PERMUTATIONS].i,
+                                                 (uint64_t)values[PARAM_SEED].i}};
     RtClusters *self = (RtClusters *)accel;
-    self->hierarchy = (RtHierarchy){.width = (uint32_t)values[PARAM_WIDTH].i,
-                                    .leaf_limit = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
-                                    .traversal_cost = 1};
+    RtHierarchy *hierarchy = &self->hierarchy;
+    *hierarchy = (RtHierarchy){.width = (uint32_t)values[PARAM_WIDTH].i,
+                               .leaf_limit = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
+                               .traversal_cost = 1};
     self->nearest_first = values[PARAM_TRAVERSAL_ORDER].choice == 1;
-    RT_TRY(rt_hierarchy_build(&self->hierarchy, geometry, &options, what->threads, error));
-    uint32_t node_count = self->hierarchy.node_count;
-    RT_TRY(rt_extent_set_init(&self->set, (RtExtentKind)values[PARAM_EXTENT].choice,
-                              (uint32_t)values[PARAM_SLABS].i, node_count, error));
-    for (uint32_t index = 0; index < node_count; index++) {
+    RT_TRY(rt_hierarchy_build(hierarchy, &accel->memory, &what->scene->geometry, &options, what->threads,
+                              error));
+    RT_TRY(rt_extent_set_init(&self->set, &accel->memory, (RtExtentKind)values[PARAM_EXTENT].choice,
+                              (uint32_t)values[PARAM_SLABS].i, hierarchy->node_count, error));
+    for (uint32_t index = 0; index < hierarchy->node_count; index++) {
         RtGroup group = group_of(self, index);
         rt_extent_fit(&self->set, index, &group);
     }
@@ -210,7 +198,6 @@ const RtAccelOps rt_clusters_ops = {
     RT_PARAMS_OF(params),
     .bytes = sizeof(RtClusters),
     .build = build,
-    .destroy = destroy,
     RT_KERNEL_OPS,
     .describe = describe,
     .validate = validate,

@@ -41,10 +41,6 @@ static const RtKernels one_lane = {RT_KERNEL_OPS};
 
 /* ---- building ---- */
 
-static void destroy(RtAccel *accel) {
-    rt_extent_set_clear(&((RtExtents *)accel)->set);
-}
-
 #define PARAMS(X)                                                                                            \
     X(PARAM_KIND, "kind", RT_CHOICE("box", RT_EXTENT_KINDS),                                                 \
       "the extent of an object: axis-aligned box, sphere, oriented box, or k slabs", "the cheapest test")    \
@@ -68,7 +64,8 @@ static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     RtExtentKind kind = (RtExtentKind)values[PARAM_KIND].choice;
     bool in_lanes = kind == RT_EXTENT_BOX && rt_has_lanes(values[PARAM_LANES]);
     rt_isa_use(accel, in_lanes ? RT_KERNELS_FOR(extents, rt_isa_best()) : &one_lane);
-    RT_TRY(rt_extent_set_init(&self->set, kind, (uint32_t)values[PARAM_SLABS].i, count, error));
+    RT_TRY(
+        rt_extent_set_init(&self->set, &accel->memory, kind, (uint32_t)values[PARAM_SLABS].i, count, error));
     for (uint32_t id = 0; id < count; id++) {
         RtGroup group = group_of(geometry, &id);
         rt_extent_fit(&self->set, id, &group);
@@ -118,7 +115,6 @@ const RtAccelOps rt_extents_ops = {
     RT_PARAMS_OF(params),
     .bytes = sizeof(RtExtents),
     .build = build,
-    .destroy = destroy,
     RT_ISA_OPS,
     .describe = describe,
     .validate = validate,

@@ -153,11 +153,12 @@ RT_KERNEL bool next_moment(Walk *walk, float limit) {
 }
 
 RT_COLD static void observe_voxel(const RtGridLevel *level, size_t voxel, bool leaf, bool empty) {
-    RtBox box = rt_grid_voxel_box(level, (uint32_t)voxel);
+    RtGridVoxel found = {.level = level, .number = (uint32_t)voxel};
+    rt_grid_find_voxel(&found);
     rt_observe(&(RtTraced){.kind = RT_TRACED_STEP,
                            .what = "voxel",
                            .index = (uint32_t)voxel,
-                           .box = &box,
+                           .box = &found.box,
                            .leaf = leaf,
                            .empty = empty});
 }
@@ -313,6 +314,203 @@ RT_KERNEL void search(const RtGrid *self, void *scratch, const RtPreparedRay *ra
 
 RT_DEFINE_KERNELS(RtGrid, search)
 
+/* ---- describing ---- */
+
+/* A random line through the box of the grid meets a voxel with the ratio of their areas; the voxels of a
+ * block are equal. A voxel with a nested grid counts as the step of that grid. */
+static void predict(const RtGrid *grid, const RtGridLevel *level, RtDescription *out) {
+    double whole = rt_box_half_area(grid->box);
+    for (uint32_t b = 0; b < level->block_count; b++) {
+        const RtGridBlock *block = &level->blocks[b];
+        const uint32_t corner[3] = {0, 0, 0};
+        size_t voxels = (size_t)block->n[0] * block->n[1] * block->n[2];
+        uint32_t references = level->first[block->voxel + voxels] - level->first[block->voxel];
+        double ratio = rt_box_half_area(rt_grid_voxel_box(block, corner)) / whole;
+        out->predicted_steps += (double)voxels * ratio;
+        out->predicted_tests += (double)references * ratio;
+    }
+    out->predicted_cost = out->predicted_tests;
+}
+
+static void describe(const RtAccel *accel, RtDescription *out) {
+    const RtGrid *grid = (const RtGrid *)accel;
+    if (grid->depth == 0) {
+        *out = (RtDescription){RT_NO_PREDICTION};
+        return;
+    }
+    *out = (RtDescription){.depth = grid->depth, RT_NO_QUALITY};
+    for (uint32_t i = 0; i < grid->depth; i++) {
+        const RtGridLevel *level = &grid->levels[i];
+        for (uint32_t v = 0; v < level->voxel_count; v++) {
+            if (rt_grid_inner(level, v) != RT_GRID_LEAF) continue;
+            out->leaves++;
+            out->empty_leaves += level->first[v] == level->first[v + 1];
+        }
+        if (grid->depth > 1) out->interior += level->block_count;
+        out->references += level->first[level->voxel_count];
+        out->bytes += rt_grid_level_bytes(level);
+        predict(grid, level, out);
+    }
+    if (grid->depth > 1) out->predicted_steps += 1; /* the outermost grid */
+    out->bytes -= sizeof(RtGridBlock);              /* the outermost, which is one per accelerator */
+}
+
+/* ---- validate ---- */
+
+typedef struct Check {
+    const RtGrid *grid;
+    uint64_t *listed;    /* [object_count] voxels that list each object */
+    RtOutline *outlines; /* [object_count] */
+    uint32_t nested;     /* blocks nested in the voxels so far */
+    RtError *error;
+} Check;
+
+/* Fails with the name of a voxel and `words`. */
+static RtStatus fail_voxel(const Check *check, const RtGridVoxel *voxel, const char *words) {
+    return rt_fail(check->error, RT_MISMATCH, "grid: voxel (%u, %u, %u) of level %d %s", voxel->at[0],
+                   voxel->at[1], voxel->at[2], (int)(voxel->level - check->grid->levels), words);
+}
+
+/* A voxel with a nested block, which must be the next one and have the same box. */
+static RtStatus check_nested(Check *check, const RtGridVoxel *voxel, uint32_t inner) {
+    const RtGridLevel *next = voxel->level + 1;
+    if (inner != check->nested++ || inner >= next->block_count)
+        return fail_voxel(check, voxel, "does not hold the next grid of its level");
+    const RtGridBlock *block = &next->blocks[inner];
+    for (int a = 0; a < 3; a++) {
+        if (block->planes[a][0] == voxel->box.lo.at[a] &&
+            block->planes[a][block->n[a]] == voxel->box.hi.at[a])
+            continue;
+        return fail_voxel(check, voxel, "is not filled by the grid that is nested in it");
+    }
+    return RT_OK;
+}
+
+static RtStatus check_voxel(Check *check, const RtGridVoxel *voxel) {
+    const RtGrid *grid = check->grid;
+    const RtGridLevel *level = voxel->level;
+    uint32_t from = level->first[voxel->number], to = level->first[voxel->number + 1];
+    uint32_t inner = rt_grid_inner(level, voxel->number);
+    if (from > to || to > level->first[level->voxel_count] || (from < to && inner != RT_GRID_LEAF))
+        return fail_voxel(check, voxel, "has a list that is broken");
+    if (inner != RT_GRID_LEAF) return check_nested(check, voxel, inner);
+    for (uint32_t i = from; i < to; i++) {
+        uint32_t id = level->ids[i];
+        if (id >= grid->base.scene->geometry.object_count || (i > from && level->ids[i - 1] >= id))
+            return fail_voxel(check, voxel, "has a list that is not ascending ids");
+        RtBox object = rt_grid_object_box(grid, id);
+        bool apart = rt_box_is_empty(rt_box_common(voxel->box, object));
+        if (grid->surfaces) apart |= !rt_grid_surface_meets(grid, &check->outlines[id], &voxel->box);
+        if (apart) return fail_voxel(check, voxel, "lists an object which it does not touch");
+        check->listed[id]++;
+    }
+    return RT_OK;
+}
+
+/* Planes ascend, voxels are numbered without gaps, and each block of the next level is in some voxel. */
+static RtStatus check_level(Check *check, const RtGridLevel *level) {
+    uint32_t voxels = 0;
+    for (uint32_t b = 0; b < level->block_count; b++) {
+        const RtGridBlock *block = &level->blocks[b];
+        if (block->voxel != voxels)
+            return rt_fail(check->error, RT_MISMATCH, "grid: the voxels of grid %u are misnumbered", b);
+        voxels += block->n[0] * block->n[1] * block->n[2];
+        for (int a = 0; a < 3; a++) {
+            for (uint32_t i = 0; i < block->n[a]; i++) {
+                if (block->planes[a][i] <= block->planes[a][i + 1]) continue;
+                return rt_fail(check->error, RT_MISMATCH, "grid: plane %u of axis %d lies behind plane %u", i,
+                               a, i + 1);
+            }
+        }
+    }
+    check->nested = 0;
+    for (RtGridVoxel voxel = {.level = level}; rt_grid_find_voxel(&voxel); voxel.number++)
+        RT_TRY(check_voxel(check, &voxel));
+    bool last = level + 1 == check->grid->levels + check->grid->depth;
+    if (last || check->nested == level[1].block_count) return RT_OK;
+    return rt_fail(check->error, RT_MISMATCH, "grid: a nested grid is in no voxel");
+}
+
+/* The first voxel on `axis` that touches [lo, hi], and their number, by a linear search. */
+static uint32_t count_touched(const RtGridBlock *block, int axis, const RtBox *box, uint32_t *first) {
+    const float *plane = block->planes[axis];
+    uint32_t count = 0;
+    for (uint32_t i = block->n[axis]; i-- > 0;) {
+        bool last = i + 1 == block->n[axis];
+        if (plane[i] > box->hi.at[axis] || (plane[i + 1] <= box->lo.at[axis] && !last)) continue;
+        *first = i;
+        count++;
+    }
+    return count;
+}
+
+/* Voxels of a block, and of blocks nested in it, that must list an object, found one by one, not by bisecting
+ * ranges as in the build. */
+static uint64_t voxels_touched(const Check *check, const RtGridLevel *level, uint32_t index, uint32_t id) {
+    const RtGrid *grid = check->grid;
+    const RtGridBlock *block = &level->blocks[index];
+    RtBox object = rt_grid_object_box(grid, id);
+    uint32_t first[3], n[3], at[3];
+    uint64_t met = 0;
+    for (int a = 0; a < 3; a++) n[a] = count_touched(block, a, &object, &first[a]);
+    for (at[2] = first[2]; at[2] < first[2] + n[2]; at[2]++) {
+        for (at[1] = first[1]; at[1] < first[1] + n[1]; at[1]++) {
+            for (at[0] = first[0]; at[0] < first[0] + n[0]; at[0]++) {
+                RtBox box = rt_grid_voxel_box(block, at);
+                uint32_t inner = rt_grid_inner(level, rt_grid_voxel_at(block, at));
+                if (grid->surfaces && !rt_grid_surface_meets(grid, &check->outlines[id], &box)) continue;
+                met += inner == RT_GRID_LEAF ? 1 : voxels_touched(check, level + 1, inner, id);
+            }
+        }
+    }
+    return met;
+}
+
+static RtStatus validate(const RtAccel *accel, RtError *error) {
+    const RtGrid *grid = (const RtGrid *)accel;
+    const RtGeometry *g = &accel->scene->geometry;
+    if (grid->depth == 0) return RT_OK;
+    const RtGridBlock *root = grid->levels[0].blocks;
+    for (int a = 0; a < 3; a++) {
+        if (root->planes[a][0] <= grid->box.lo.at[a] && root->planes[a][root->n[a]] >= grid->box.hi.at[a])
+            continue;
+        return rt_fail(error, RT_MISMATCH, "grid: the planes of axis %d do not enclose its box", a);
+    }
+    if (!rt_box_contains(grid->box, g->box))
+        return rt_fail(error, RT_MISMATCH, "grid: its box does not contain the scene");
+    RT_ARENA(arena);
+    Check check = {grid, rt_arena_alloc(&arena, g->object_count, sizeof(uint64_t)),
+                   rt_arena_alloc(&arena, g->object_count, sizeof(RtOutline)), 0, error};
+    RT_TRY(rt_arena_check(&arena, "validating a grid", error));
+    for (uint32_t id = 0; id < g->object_count; id++) check.outlines[id] = rt_object_outline(g, id);
+    for (uint32_t i = 0; i < grid->depth; i++) RT_TRY(check_level(&check, &grid->levels[i]));
+    for (uint32_t id = 0; id < g->object_count; id++) {
+        uint64_t touched = voxels_touched(&check, &grid->levels[0], 0, id);
+        if (check.listed[id] == touched) continue;
+        return rt_fail(error, RT_MISMATCH, "grid: object %u touches %llu voxels, but %llu list it", id,
+                       (unsigned long long)touched, (unsigned long long)check.listed[id]);
+    }
+    return RT_OK;
+}
+
+/* Voxels of the outermost grid have depth 1. */
+static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
+    const RtGrid *grid = (const RtGrid *)accel;
+    if (grid->depth == 0) return;
+    viewer.show(viewer.context, &(RtBoxView){.box = &grid->box});
+    for (uint32_t i = 0; i < grid->depth; i++) {
+        const RtGridLevel *level = &grid->levels[i];
+        for (RtGridVoxel voxel = {.level = level}; rt_grid_find_voxel(&voxel); voxel.number++) {
+            const uint32_t *first = &level->first[voxel.number];
+            viewer.show(viewer.context,
+                        &(RtBoxView){.box = &voxel.box,
+                                     .depth = i + 1,
+                                     .leaf = rt_grid_inner(level, voxel.number) == RT_GRID_LEAF,
+                                     .objects = first[1] - first[0]});
+        }
+    }
+}
+
 const RtAccelOps rt_grid_ops = {
     .name = "grid",
     .summary = "uniform grid: equal voxels with lists of objects, visited in order",
@@ -321,10 +519,9 @@ const RtAccelOps rt_grid_ops = {
     RT_PARAMS_OF(rt_grid_params),
     .bytes = sizeof(RtGrid),
     .build = rt_grid_build,
-    .destroy = rt_grid_destroy,
     RT_KERNEL_OPS,
-    .describe = rt_grid_describe,
-    .validate = rt_grid_validate,
-    .each_box = rt_grid_each_box,
+    .describe = describe,
+    .validate = validate,
+    .each_box = each_box,
     .shows_lists = true,
 };

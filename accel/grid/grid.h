@@ -86,53 +86,6 @@ typedef struct RtGrid {
     RtSurfaceRays served; /* rays that lists of surfaces serve */
 } RtGrid;
 
-/* ---- grid_voxels.c ---- */
-
-/* The resolution, by the rule, of a grid over a box with so many objects. */
-void rt_grid_choose_resolution(const RtBox *box, uint32_t objects, const RtValue *values, uint32_t n[3]);
-
-/* A range of voxels, inclusive on each axis. */
-typedef struct RtGridRange {
-    uint32_t from[3], to[3];
-} RtGridRange;
-
-/* The box of an object, grown by the slack. */
-RtBox rt_grid_object_box(const RtGrid *grid, uint32_t id);
-
-RtBox rt_grid_range_box(const RtGridBlock *block, const RtGridRange *range);
-
-/* With overlap=exact: whether a voxel with this box, which the object's box touches, lists the object. */
-bool rt_grid_surface_meets(const RtGrid *grid, const RtOutline *outline, const RtBox *box);
-
-/* Calls `visit` for disjoint ranges that together are the voxels of the block that list object `id`, which
- * belongs into the block. */
-void rt_grid_each_range(const RtGrid *grid, const RtGridBlock *block, uint32_t id,
-                        void (*visit)(void *context, const RtGridRange *range), void *context);
-
-/* An upper bound on the bytes of the voxels and lists of a block with n voxels along each axis, by the boxes
- * of objects whatever the overlap. */
-double rt_grid_estimate(const RtGrid *grid, const RtBox *box, const uint32_t n[3], const uint32_t *ids,
-                        uint32_t count);
-
-/* Fails if level 0 with all objects ids[0..count) would exceed `limit` bytes by that bound; the message names
- * a resolution that would fit. */
-RtStatus rt_grid_check_limit(const RtGrid *grid, const uint32_t n[3], const uint32_t *ids, uint32_t count,
-                             uint64_t limit, RtError *error);
-
-/* ---- grid_build.c ---- */
-
-RtStatus rt_grid_build(RtAccel *accel, const RtBuild *what, RtError *error);
-void rt_grid_destroy(RtAccel *accel);
-
-/* ---- grid_stats.c ---- */
-
-void rt_grid_describe(const RtAccel *accel, RtDescription *out);
-RtStatus rt_grid_validate(const RtAccel *accel, RtError *error);
-void rt_grid_each_box(const RtAccel *accel, RtBoxViewer viewer);
-
-/* The box of a voxel, by its number in the level. */
-RtBox rt_grid_voxel_box(const RtGridLevel *level, uint32_t voxel);
-
 /* The voxel of `block` at given coordinates, by its number in the level. */
 static inline size_t rt_grid_voxel_at(const RtGridBlock *block, const uint32_t at[3]) {
     return block->voxel + ((size_t)at[2] * block->n[1] + at[1]) * block->n[0] + at[0];
@@ -143,20 +96,37 @@ static inline uint32_t rt_grid_inner(const RtGridLevel *level, size_t voxel) {
     return level->inner ? level->inner[voxel] : RT_GRID_LEAF;
 }
 
+/* ---- grid_build.c ---- */
+
+RtStatus rt_grid_build(RtAccel *accel, const RtBuild *what, RtError *error);
+
+/* An upper bound on the bytes of the voxels and lists of a block with n voxels along each axis, by the boxes
+ * of objects whatever the overlap. */
+double rt_grid_estimate(const RtGrid *grid, const RtBox *box, const uint32_t n[3], const uint32_t *ids,
+                        uint32_t count);
+
+/* The box of an object, grown by the slack. */
+RtBox rt_grid_object_box(const RtGrid *grid, uint32_t id);
+
+/* With overlap=exact: whether a voxel with this box, which the object's box touches, lists the object. */
+bool rt_grid_surface_meets(const RtGrid *grid, const RtOutline *outline, const RtBox *box);
+
+/* The box of a voxel of `block`. */
+RtBox rt_grid_voxel_box(const RtGridBlock *block, const uint32_t at[3]);
+
 /* Bytes of the arrays of a level. */
 uint64_t rt_grid_level_bytes(const RtGridLevel *level);
 
-/* The argument of rt_grid_each_voxel's visitor. */
+/* A voxel of a level, by its number. */
 typedef struct RtGridVoxel {
     const RtGridLevel *level;
-    uint32_t at[3]; /* in its block */
-    size_t number;
+    uint32_t number;
+    uint32_t block, at[3]; /* where it is */
     RtBox box;
 } RtGridVoxel;
 
-/* Calls visit for every voxel of a level, in the order of their numbers, until it returns a status other than
- * RT_OK. */
-RtStatus rt_grid_each_voxel(const RtGridLevel *level,
-                            RtStatus (*visit)(void *context, const RtGridVoxel *voxel), void *context);
+/* Finds where a voxel is, from its number and `block`, which may be any before its own; false if the level
+ * has no such voxel. */
+bool rt_grid_find_voxel(RtGridVoxel *voxel);
 
 #endif

@@ -31,9 +31,27 @@ typedef struct Span {
     float enter, leave;
 } Span;
 
+/* The cell of a node, found by the numbers of nodes: a node is below the child whose own children come last
+ * before it, because the nodes below a child are adjacent. */
+static RtBox cell_of(const RtKd *kd, uint32_t index) {
+    RtBox cell = kd->box;
+    for (uint32_t at = 0, next; at != index; at = next) {
+        const RtKdNode *node = &kd->nodes[at];
+        const uint32_t lower = rt_kd_child(node), upper = lower + 1;
+        uint32_t first[2] = {0, 0};
+        for (uint32_t c = 0; c < 2; c++) {
+            const RtKdNode *child = &kd->nodes[lower + c];
+            if (!rt_kd_is_leaf(child) && rt_kd_child(child) <= index) first[c] = rt_kd_child(child);
+        }
+        next = index <= upper ? index : first[1] > first[0] ? upper : lower;
+        cell = rt_kd_half(cell, rt_kd_axis(node), node->split, next - lower);
+    }
+    return cell;
+}
+
 RT_COLD static void observe_node(const RtKd *self, uint32_t index) {
     const RtKdNode *node = &self->nodes[index];
-    RtBox cell = rt_kd_cell(self, index);
+    RtBox cell = cell_of(self, index);
     bool leaf = rt_kd_is_leaf(node);
     rt_observe(&(RtTraced){.kind = RT_TRACED_STEP,
                            .what = "node",
@@ -100,6 +118,143 @@ RT_KERNEL void search(const RtKd *self, void *scratch, const RtPreparedRay *ray,
 
 RT_DEFINE_KERNELS(RtKd, search)
 
+/* ---- looking at it ---- */
+
+/* Cells are not stored, but cut from the root's on the way down. */
+static void show_node(const RtKd *kd, uint32_t index, RtBox cell, uint32_t depth, RtBoxViewer viewer) {
+    const RtKdNode *node = &kd->nodes[index];
+    bool leaf = rt_kd_is_leaf(node);
+    viewer.show(
+        viewer.context,
+        &(RtBoxView){.box = &cell, .depth = depth, .leaf = leaf, .objects = leaf ? rt_kd_length(node) : 0});
+    for (uint32_t c = 0; c < 2 && !leaf; c++) {
+        RtBox half = rt_kd_half(cell, rt_kd_axis(node), node->split, c);
+        show_node(kd, rt_kd_child(node) + c, half, depth + 1, viewer);
+    }
+}
+
+static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
+    const RtKd *kd = (const RtKd *)accel;
+    if (kd->node_count > 0) show_node(kd, 0, kd->box, 0, viewer);
+}
+
+static void describe(const RtAccel *accel, RtDescription *out) {
+    const RtKd *kd = (const RtKd *)accel;
+    RtBoxSums sums = {.out = out};
+    *out = (RtDescription){.bytes = kd->node_count * sizeof(RtKdNode) + kd->id_count * sizeof(uint32_t),
+                           RT_NO_PREDICTION};
+    each_box(accel, (RtBoxViewer){rt_box_sums_add, &sums});
+    if (kd->node_count > 0) rt_box_sums_predict(&sums, &kd->box, kd->traversal_cost);
+}
+
+/* ---- validate ---- */
+
+typedef struct Check {
+    const RtKd *kd;
+    RtError *error;
+    uint64_t *listed; /* [object_count] leaves that list each object */
+    uint8_t *reached; /* [node_count] whether it is the child of a visited node */
+    uint32_t ids;     /* entries in the lists so far */
+} Check;
+
+#define BROKEN(check, ...) rt_fail((check)->error, RT_MISMATCH, "kd: " __VA_ARGS__)
+
+static RtStatus check_leaf(Check *check, uint32_t index) {
+    const RtKd *kd = check->kd;
+    const RtKdNode *leaf = &kd->nodes[index];
+    uint32_t length = rt_kd_length(leaf);
+    if (leaf->first > kd->id_count || length > kd->id_count - leaf->first)
+        return BROKEN(check, "the list of leaf %u lies outside the lists", index);
+    const uint32_t *ids = kd->ids + leaf->first;
+    for (uint32_t i = 0; i < length; i++) {
+        if (ids[i] >= kd->base.scene->geometry.object_count || (i > 0 && ids[i - 1] >= ids[i]))
+            return BROKEN(check, "the list of leaf %u is not ascending ids", index);
+        check->listed[ids[i]]++;
+    }
+    check->ids += length;
+    return RT_OK;
+}
+
+static RtStatus check_node(Check *check, uint32_t index, RtBox cell, uint32_t depth) {
+    const RtKd *kd = check->kd;
+    const RtKdNode *node = &kd->nodes[index];
+    if (rt_kd_is_leaf(node)) return check_leaf(check, index);
+    uint32_t child = rt_kd_child(node), axis = rt_kd_axis(node);
+    if (child <= index || child >= kd->node_count - 1 || check->reached[child])
+        return BROKEN(check, "the children of node %u lie outside the nodes", index);
+    if (depth >= kd->max_depth)
+        return BROKEN(check, "the children of node %u are deeper than %u", index, kd->max_depth);
+    if (!(node->split >= cell.lo.at[axis] && node->split <= cell.hi.at[axis]))
+        return BROKEN(check, "the split of node %u lies outside its cell", index);
+    check->reached[child] = check->reached[child + 1] = 1;
+    for (uint32_t c = 0; c < 2; c++)
+        RT_TRY(check_node(check, child + c, rt_kd_half(cell, axis, node->split, c), depth + 1));
+    return RT_OK;
+}
+
+static bool lists(const RtKd *kd, const RtKdNode *leaf, uint32_t id) {
+    uint32_t from = leaf->first, to = leaf->first + rt_kd_length(leaf);
+    while (from < to) {
+        uint32_t middle = from + (to - from) / 2;
+        if (kd->ids[middle] == id) return true;
+        if (kd->ids[middle] < id)
+            from = middle + 1;
+        else
+            to = middle;
+    }
+    return false;
+}
+
+/* Adds to *leaves the number of leaves below a node that must list an object with this part of its cell;
+ * false if one of them does not list it. */
+static bool listed_below(const RtKd *kd, uint32_t index, RtBox cell, uint32_t id, RtBox part,
+                         uint64_t *leaves) {
+    const RtKdNode *node = &kd->nodes[index];
+    ++*leaves;
+    if (rt_kd_is_leaf(node)) return lists(kd, node, id);
+    --*leaves;
+    uint32_t axis = rt_kd_axis(node);
+    bool goes[2] = {part.lo.at[axis]<node->split, part.hi.at[axis]> node->split}, found[2];
+    bool cut = goes[0] && goes[1], flat = !goes[0] && !goes[1];
+    uint64_t count[2] = {0, 0};
+    for (uint32_t c = 0; c < 2; c++) {
+        RtBox half = rt_kd_half(cell, axis, node->split, c), inside = part;
+        if (cut) goes[c] = rt_kd_part(kd, id, &half, &inside);
+        found[c] = !(goes[c] || flat) || listed_below(kd, rt_kd_child(node) + c, half, id, inside, &count[c]);
+        if (flat && !found[c]) count[c] = 0;
+    }
+    *leaves += flat && count[0] > 0 ? count[0] : count[0] + count[1];
+    return flat ? found[0] || found[1] : found[0] && found[1];
+}
+
+static RtStatus validate(const RtAccel *accel, RtError *error) {
+    const RtKd *kd = (const RtKd *)accel;
+    const RtGeometry *g = &accel->scene->geometry;
+    RT_ARENA(arena);
+    if (kd->node_count == 0) return RT_OK;
+    Check check = {.kd = kd,
+                   .error = error,
+                   .listed = rt_arena_alloc(&arena, g->object_count, sizeof(uint64_t)),
+                   .reached = rt_arena_alloc(&arena, kd->node_count, 1)};
+    RT_TRY(rt_arena_check(&arena, "validating a kd-tree", error));
+    if (!rt_box_contains(kd->box, g->box)) return BROKEN(&check, "its root does not contain the scene");
+    RT_TRY(check_node(&check, 0, kd->box, 0));
+    for (uint32_t i = 1; i < kd->node_count; i++) {
+        if (!check.reached[i]) return BROKEN(&check, "node %u has no parent", i);
+    }
+    if (check.ids != kd->id_count)
+        return BROKEN(&check, "the lists of leaves hold %u ids, but the lists end at %u", check.ids,
+                      kd->id_count);
+    for (uint32_t id = 0; id < g->object_count; id++) {
+        uint64_t leaves = 0;
+        bool found = listed_below(kd, 0, kd->box, id, g->boxes[id], &leaves);
+        if (found && leaves == check.listed[id]) continue;
+        return BROKEN(&check, "%llu leaves list object %u, not just those it has a part in",
+                      (unsigned long long)check.listed[id], id);
+    }
+    return RT_OK;
+}
+
 const RtAccelOps rt_kd_ops = {
     .name = "kd",
     .summary = "cells split at the plane of least expected cost, by the surface area heuristic",
@@ -111,8 +266,8 @@ const RtAccelOps rt_kd_ops = {
     .build = rt_kd_build,
     .destroy = rt_kd_destroy,
     RT_KERNEL_OPS,
-    .describe = rt_kd_describe,
-    .validate = rt_kd_validate,
-    .each_box = rt_kd_each_box,
+    .describe = describe,
+    .validate = validate,
+    .each_box = each_box,
     .shows_lists = true,
 };

@@ -164,8 +164,8 @@ typedef struct RtKdBuilder {
     /* Scratch: the parts of clipped objects, and their events. */
     uint32_t *cut_ids[2];
     RtBox *cut_parts[2];
-    RtKdEvent *fresh, *spare;
-    uint32_t cut_id_capacity[2], cut_part_capacity[2], fresh_capacity, spare_capacity;
+    RtKdEvent *fresh;
+    uint32_t cut_id_capacity[2], cut_part_capacity[2], fresh_capacity;
 } RtKdBuilder;
 
 /* The cells of a depth: their number, list entries and shares of the objects, and those of leaves. */
@@ -204,25 +204,9 @@ static inline bool rt_kd_is_too_large(const RtKdMemory *memory) {
 RtStatus rt_kd_divide(RtKdBuilder *b, const RtKdCell *cell, RtError *error);
 void rt_kd_clear(RtKdBuilder *b);
 
-/* kd_subtrees.c. Builds the tree of the root, which is pending, on all threads, each cell of at most `most`
- * objects on one: node by node the tree that one thread builds. *fits is false if it may exceed the limit;
- * then the result is useless. */
-RtStatus rt_kd_build_subtrees(RtKdBuilder *b, uint32_t most, int threads, bool *fits, RtError *error);
-
-/* kd_events.c. Writes the sorted events of the parts of ids[0..count) in a cell along an axis to out[0..2 *
- * count), and returns their number. `spare`: a buffer of the same size. */
+/* Writes the sorted events of the parts of ids[0..count) in a cell along an axis to the front of out[0..4 *
+ * count), and returns their number. */
 uint32_t rt_kd_make_events(const uint32_t *ids, const RtBox *parts, uint32_t count, const RtBox *cell,
-                           int axis, RtKdEvent *out, RtKdEvent *spare);
-
-/* Merges more[0..n) into events[0..count), which has room; both sorted. */
-void rt_kd_merge_events(RtKdEvent *events, uint32_t count, const RtKdEvent *more, uint32_t n);
-
-/* kd_stats.c */
-void rt_kd_describe(const RtAccel *accel, RtDescription *out);
-RtStatus rt_kd_validate(const RtAccel *accel, RtError *error);
-void rt_kd_each_box(const RtAccel *accel, RtBoxViewer viewer);
-
-/* The cell of a node, found by a search of the tree: for pictures. */
-RtBox rt_kd_cell(const RtKd *kd, uint32_t node);
+                           int axis, RtKdEvent *out);
 
 #endif

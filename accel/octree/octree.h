@@ -85,11 +85,6 @@ void rt_octree_destroy(RtAccel *accel);
 bool rt_octree_divisible(const RtOctree *tree, const RtBox *boxes, const RtBox *cell, const uint32_t *ids,
                          uint32_t count);
 
-/* octree_stats.c */
-void rt_octree_describe(const RtAccel *accel, RtDescription *out);
-RtStatus rt_octree_validate(const RtAccel *accel, RtError *error);
-void rt_octree_each_box(const RtAccel *accel, RtBoxViewer viewer);
-
 /* The children on the lower or upper side along an axis, as bits. */
 static inline uint32_t rt_octree_lower(int axis) {
     return axis == 0 ? 0x55 : axis == 1 ? 0x33 : 0x0f;

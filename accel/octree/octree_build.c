@@ -102,10 +102,12 @@ bool rt_octree_divisible(const RtOctree *tree, const RtBox *boxes, const RtBox *
     return false;
 }
 
-/* Whether a cell of the current level is to be divided. */
-static bool divides(const Builder *b, const RtBox *cell, const uint32_t *ids, uint32_t count) {
-    return count > b->tree->max_leaf_size && b->depth < b->tree->max_depth &&
-           rt_octree_divisible(b->tree, b->objects, cell, ids, count);
+/* Whether node `index` of the current level is to be divided. */
+static bool divides(const Builder *b, uint32_t index) {
+    const RtOctree *tree = b->tree;
+    const RtOctreeNode *node = &tree->nodes[index];
+    return node->count > tree->max_leaf_size && b->depth < tree->max_depth &&
+           rt_octree_divisible(tree, b->objects, &tree->boxes[index], b->list + node->first, node->count);
 }
 
 /* ---- dividing ---- */
@@ -150,18 +152,20 @@ static void next_level(Builder *b) {
     b->depth++;
 }
 
-static RtStatus make_leaf(Builder *b, uint32_t index, const uint32_t *ids, uint32_t count, RtError *error) {
+static RtStatus make_leaf(Builder *b, uint32_t index, RtError *error) {
     RtOctree *tree = b->tree;
-    RT_TRY(make_room(b, 0, count, 0, error));
+    const RtOctreeNode node = tree->nodes[index];
+    RT_TRY(make_room(b, 0, node.count, 0, error));
     tree->nodes[index].first = tree->id_count;
-    for (uint32_t i = 0; i < count; i++) tree->ids[tree->id_count++] = ids[i];
+    for (uint32_t i = 0; i < node.count; i++) tree->ids[tree->id_count++] = b->list[node.first + i];
     return RT_OK;
 }
 
 /* Divides node `index` of the current level: a count pass and a fill pass distribute its objects to eight new
  * children. */
-static RtStatus divide(Builder *b, uint32_t index, const uint32_t *ids, uint32_t count, RtError *error) {
+static RtStatus divide(Builder *b, uint32_t index, RtError *error) {
     RtOctree *tree = b->tree;
+    const uint32_t count = tree->nodes[index].count, *ids = b->list + tree->nodes[index].first;
     RtBox cell = tree->boxes[index];
     RtVec3 split = choose_split(b, &cell, ids, count);
     uint32_t length[8] = {0}, end[8];
@@ -222,49 +226,34 @@ static bool is_long(const Builder *b, uint32_t index) {
     return b->tree->nodes[index].count > b->tree->max_leaf_size;
 }
 
-/* Bytes of the tree that is cut off at the current level, nodes [from, to). */
-static double bytes_so_far(const Builder *b, uint32_t from, uint32_t to) {
-    uint64_t references = b->tree->id_count;
-    for (uint32_t i = from; i < to; i++) references += b->tree->nodes[i].count;
-    return (double)(to * RT_OCTREE_NODE_BYTES + references * sizeof(uint32_t));
-}
-
-/* Picks one of the eight nodes from `first` on that would be divided; 0 if there is none. Multiplies *weight
- * by their number. */
-static uint32_t pick_child(const Builder *probe, uint32_t first, RtRandom *random, double *weight) {
-    const RtOctree *tree = probe->tree;
-    uint32_t open[8], n = 0;
-    for (uint32_t child = first; child < first + 8; child++) {
-        const RtOctreeNode *node = &tree->nodes[child];
-        bool divided = divides(probe, &tree->boxes[child], probe->list + node->first, node->count);
-        if (divided) open[n++] = child;
-    }
-    *weight *= n;
-    return n == 0 ? 0 : open[(uint64_t)rt_random_bits(random) * n >> 32];
-}
-
-/* Walks down from the root of the probe's tree, which stands for `weight` nodes. */
+/* Walks down from the root of the probe's tree, which stands for `weight` nodes, to one of the children that
+ * would be divided at a time. */
 static RtStatus walk_probe(Builder *probe, double weight, RtRandom *random, Estimate *estimate,
                            RtError *error) {
-    RtOctree *tree = probe->tree;
+    const RtOctree *tree = probe->tree;
     double bytes = 0;
-    uint32_t index = 0;
+    uint32_t index = 0, open[8], n;
     do {
         uint32_t count = tree->nodes[index].count, children = tree->node_count;
-        RT_TRY(divide(probe, index, probe->list + tree->nodes[index].first, count, error));
+        RT_TRY(divide(probe, index, error));
         bytes += weight * (8.0 * RT_OCTREE_NODE_BYTES +
                            ((double)probe->next_count - count) * (double)sizeof(uint32_t));
         next_level(probe);
         add_sample(estimate, probe->depth, probe->depth, bytes);
-        index = pick_child(probe, children, random, &weight);
-    } while (index != 0);
+        n = 0;
+        for (uint32_t child = children; child < children + 8; child++) {
+            if (divides(probe, child)) open[n++] = child;
+        }
+        weight *= n;
+        if (n > 0) index = open[(uint64_t)rt_random_bits(random) * n >> 32];
+    } while (n > 0);
     add_sample(estimate, probe->depth + 1, tree->max_depth, bytes);
     return RT_OK;
 }
 
 /* Starts a probe at a node of the current level of `b`. */
 static RtStatus start_probe(Builder *probe, const Builder *b, uint32_t index, RtError *error) {
-    RtOctreeNode node = b->tree->nodes[index];
+    const RtOctreeNode node = b->tree->nodes[index];
     probe->depth = b->depth;
     probe->tree->node_count = 0;
     rt_free(probe->list);
@@ -283,8 +272,7 @@ static RtStatus probe_level(const Builder *b, Builder *probe, uint32_t from, uin
     for (uint32_t p = 0; p < PROBES; p++) {
         double at = (p + (double)rt_random_unit(&random)) * candidates / PROBES;
         for (; !is_long(b, index) || seen < (uint32_t)at; index++) seen += is_long(b, index);
-        const RtOctreeNode *node = &b->tree->nodes[index];
-        if (!divides(b, &b->tree->boxes[index], b->list + node->first, node->count)) continue;
+        if (!divides(b, index)) continue;
         RT_TRY(start_probe(probe, b, index, error));
         RT_TRY(walk_probe(probe, candidates, &random, estimate, error));
     }
@@ -301,9 +289,15 @@ static double bound(const Estimate *estimate, uint32_t depth, double certain) {
 /* Refuses a tree whose current level, nodes [from, to), is about to be divided, if its estimated size exceeds
  * the limit with certainty. */
 static RtStatus check_limit(const Builder *b, uint32_t from, uint32_t to, RtError *error) {
-    double bytes = bytes_so_far(b, from, to), limit = (double)b->limit;
+    double limit = (double)b->limit;
+    uint64_t references = b->tree->id_count;
     uint32_t candidates = 0, max_depth = b->tree->max_depth, fits = b->depth;
-    for (uint32_t i = from; i < to; i++) candidates += is_long(b, i);
+    for (uint32_t i = from; i < to; i++) {
+        candidates += is_long(b, i);
+        references += b->tree->nodes[i].count;
+    }
+    /* Of the tree that is cut off at this level. */
+    const double bytes = (double)(to * RT_OCTREE_NODE_BYTES + references * sizeof(uint32_t));
     if (b->depth == max_depth || candidates < PROBES || bytes < CHEAP * limit) return RT_OK;
 
     Estimate estimate = {{0}, {0}};
@@ -335,19 +329,6 @@ static uint32_t usual_depth(uint32_t objects) {
     return depth;
 }
 
-static RtStatus build_level(Builder *b, uint32_t from, uint32_t to, RtError *error) {
-    RtOctree *tree = b->tree;
-    for (uint32_t index = from; index < to; index++) {
-        uint32_t count = tree->nodes[index].count;
-        const uint32_t *ids = b->list + tree->nodes[index].first;
-        if (divides(b, &tree->boxes[index], ids, count))
-            RT_TRY(divide(b, index, ids, count, error));
-        else
-            RT_TRY(make_leaf(b, index, ids, count, error));
-    }
-    return RT_OK;
-}
-
 static RtStatus build_levels(Builder *b, RtBox root, uint32_t object_count, RtError *error) {
     RtOctree *tree = b->tree;
     b->list = rt_alloc(object_count, sizeof(uint32_t));
@@ -356,7 +337,8 @@ static RtStatus build_levels(Builder *b, RtBox root, uint32_t object_count, RtEr
     RT_TRY(begin(b, root, object_count, error));
     for (uint32_t from = 0, to = 1; from < to; from = to, to = tree->node_count) {
         RT_TRY(check_limit(b, from, to, error));
-        RT_TRY(build_level(b, from, to, error));
+        for (uint32_t index = from; index < to; index++)
+            RT_TRY(divides(b, index) ? divide(b, index, error) : make_leaf(b, index, error));
         next_level(b);
     }
     return RT_OK;

@@ -2,7 +2,6 @@
 /* Laying out a binary tree of references for tracing: which subtrees become leaves, which nodes are replaced
  * by their children in their parent. */
 #include "accel/tree/hierarchy.h"
-#include "accel/tree/reduction.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 
@@ -122,39 +121,21 @@ static void lay_out_node(const Layout *layout, uint32_t node_index, uint32_t ind
     used->nodes += node->count;
 }
 
-static void lay_out_subtree(const Layout *layout, uint32_t node_index, uint32_t index, Used *used) {
-    const RtNode *node = &layout->self->nodes[node_index];
-    uint32_t children[RT_NODE_MAX_WIDTH] = {0};
-    lay_out_node(layout, node_index, index, children, used);
-    if (rt_node_is_leaf(node)) return;
-    for (uint32_t i = 0; i < node->count; i++) lay_out_subtree(layout, node->first + i, children[i], used);
-}
-
-static void lay_out_part(void *context, size_t item) {
-    const Layout *layout = context;
-    const Part *part = &layout->parts[item];
-    Used used = part->used;
-    if (part->has_node) lay_out_subtree(layout, part->node, layout->reduced.index[item], &used);
-}
-
-/* Skips the parts of a subtree. */
+/* Passes the parts below a node of the top. */
 static void skip_parts(Layout *layout, uint32_t index, uint32_t depth) {
     const uint32_t *child = layout->tree->nodes[index].child;
-    if (!rt_reduction_is_top(layout->tree, index, depth)) {
-        layout->next++;
-        return;
-    }
-    for (int s = 0; s < 2; s++) skip_parts(layout, child[s], depth + 1);
+    bool top = rt_reduction_is_top(layout->tree, index, depth);
+    layout->next += !top;
+    for (int s = 0; s < 2 && top; s++) skip_parts(layout, child[s], depth + 1);
 }
 
-/* Binary nodes without split references: the sizes of the parts are known. */
-static void lay_out_top(Layout *layout, uint32_t node_index, uint32_t index, uint32_t depth, Used *used) {
-    if (!rt_reduction_is_top(layout->tree, index, depth)) {
+/* Lays out the subtree of a node; if `top`, leaves out the parts, whose sizes are known: nodes are binary,
+ * and no references split. */
+static void lay_out_subtree(Layout *layout, uint32_t node_index, uint32_t index, bool top, uint32_t depth,
+                            Used *used) {
+    if (top && !rt_reduction_is_top(layout->tree, index, depth)) {
         const Cost *cost = (const Cost *)(const void *)layout->reduced.values + layout->next;
-        Part *part = &layout->parts[layout->next++];
-        part->node = node_index;
-        part->used = *used;
-        part->has_node = true;
+        layout->parts[layout->next++] = (Part){node_index, *used, true};
         used->nodes += 2 * cost->leaves - 2;
         used->ids += cost->references;
         return;
@@ -163,100 +144,51 @@ static void lay_out_top(Layout *layout, uint32_t node_index, uint32_t index, uin
     uint32_t children[RT_NODE_MAX_WIDTH] = {0};
     lay_out_node(layout, node_index, index, children, used);
     if (rt_node_is_leaf(node)) {
-        skip_parts(layout, index, depth);
+        if (top) skip_parts(layout, index, depth);
         return;
     }
-    for (uint32_t i = 0; i < 2; i++) lay_out_top(layout, node->first + i, children[i], depth + 1, used);
+    for (uint32_t i = 0; i < node->count; i++)
+        lay_out_subtree(layout, node->first + i, children[i], top, depth + 1, used);
 }
 
-static RtStatus lay_out_all(Layout *layout, int threads, RtError *error) {
-    RtHierarchy *self = layout->self;
-    uint32_t root = layout->tree->root;
+static void lay_out_part(void *context, size_t item) {
+    Layout *layout = context;
+    const Part *part = &layout->parts[item];
+    Used used = part->used;
+    if (part->has_node) lay_out_subtree(layout, part->node, layout->reduced.index[item], false, 0, &used);
+}
+
+/* Lays out a complete tree. */
+static RtStatus lay_out(RtHierarchy *self, RtArena *memory, RtTree *tree, int threads, RtError *error) {
+    RT_ARENA(arena);
+    Layout layout = {.self = self,
+                     .tree = tree,
+                     .leaf = rt_arena_alloc_unset(&arena, tree->used, sizeof(bool)),
+                     .parts = rt_arena_alloc(&arena, RT_REDUCTION_MAX_PARTS, sizeof(Part))};
+    const RtReduction reduction = {sizeof(Cost), reduce_subtree, combine_children, &layout};
+    Cost whole;
+    assert(self->width >= 2 && self->width <= RT_NODE_MAX_WIDTH);
+    RT_TRY(rt_arena_check(&arena, "the leaves of a hierarchy", error));
+    RT_TRY(rt_tree_reduce(tree, &reduction, &arena, threads, &layout.reduced, &whole, error));
+    self->nodes = rt_arena_alloc_unset(memory, 2 * (size_t)whole.leaves - 1, sizeof(RtNode));
+    self->ids = rt_arena_alloc_unset(memory, whole.references, sizeof(uint32_t));
+    self->split_refs = tree->split_refs;
+    RT_TRY(rt_arena_check(memory, "the nodes of a hierarchy", error));
+    const bool top = self->width == 2 && !self->split_refs;
     Used used = {1, 0};
-    if (self->width > 2 || self->split_refs) {
-        lay_out_subtree(layout, 0, root, &used);
-    } else {
-        lay_out_top(layout, 0, root, 0, &used);
-        RT_TRY(rt_parallel_each(layout->reduced.count, threads, lay_out_part, layout, error));
-    }
+    lay_out_subtree(&layout, 0, tree->root, top, 0, &used);
+    if (top) RT_TRY(rt_parallel_each(layout.reduced.count, threads, lay_out_part, &layout, error));
     self->node_count = used.nodes;
     self->id_count = used.ids;
     return RT_OK;
 }
 
-static RtStatus lay_out(Layout *layout, RtTree *tree, int threads, RtError *error) {
-    RtHierarchy *self = layout->self;
-    RtReduction reduction = {sizeof(Cost), reduce_subtree, combine_children, layout};
-    Cost whole;
-    RT_TRY(rt_tree_reduce(tree, &reduction, threads, &layout->reduced, &whole, error));
-    size_t most = 2 * (size_t)whole.leaves - 1;
-    self->nodes = rt_alloc_unset(most, sizeof(RtNode));
-    self->ids = rt_alloc_unset(whole.references, sizeof(uint32_t));
-    self->split_refs = tree->split_refs;
-    if (self->nodes && self->ids) return lay_out_all(layout, threads, error);
-    return rt_fail_memory(error, "the nodes of a hierarchy",
-                          most * sizeof(RtNode) + whole.references * sizeof(uint32_t));
-}
-
-RtStatus rt_hierarchy_lay_out(RtHierarchy *self, RtTree *tree, int threads, RtError *error) {
-    assert(self->width >= 2 && self->width <= RT_NODE_MAX_WIDTH);
-    Layout layout = {.self = self,
-                     .tree = tree,
-                     .leaf = rt_alloc_unset(tree->used, sizeof(bool)),
-                     .parts = rt_alloc(RT_REDUCTION_MAX_PARTS, sizeof(Part))};
-    RtStatus status = layout.leaf && layout.parts
-                          ? lay_out(&layout, tree, threads, error)
-                          : rt_fail_memory(error, "the leaves of a hierarchy", tree->used * sizeof(bool));
-    rt_free(layout.leaf);
-    rt_free(layout.parts);
-    rt_reduced_parts_clear(&layout.reduced);
-    if (status != RT_OK) rt_hierarchy_clear(self);
-    return status;
-}
-
-void rt_hierarchy_clear(RtHierarchy *self) {
-    rt_free(self->nodes);
-    rt_free(self->ids);
-    self->nodes = NULL;
-    self->ids = NULL;
-    self->node_count = self->id_count = 0;
-}
-
-/* ---- building ---- */
-
-/* The default, binned SAH, is the method without a case of its own. */
-static RtStatus build_tree(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options,
-                           int threads, RtError *error) {
-    const RtBox *boxes = geometry->boxes;
-    uint32_t count = geometry->object_count;
-    switch (options->method) {
-    case RT_TREE_BINNED: break;
-    case RT_TREE_SWEEP: return rt_tree_sweep(tree, boxes, count, error);
-    case RT_TREE_LBVH: return rt_tree_lbvh(tree, boxes, count, options->bits, threads, error);
-    case RT_TREE_PLOC:
-        return rt_tree_ploc(tree, boxes, count, options->bits, options->radius, threads, error);
-    case RT_TREE_SPATIAL: return rt_tree_spatial(tree, geometry, &options->spatial, threads, error);
-    case RT_TREE_AGGLOMERATIVE: return rt_tree_agglomerative(tree, boxes, count, error);
-    case RT_TREE_INSERTION: return rt_tree_insertion(tree, boxes, count, &options->insertion, error);
-    case RT_TREE_MEDIAN: return rt_tree_topdown(tree, boxes, count, 0, threads, error);
-    }
-    return rt_tree_topdown(tree, boxes, count, options->spatial.bins, threads, error);
-}
-
-RtStatus rt_tree_build(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options, int threads,
-                       RtError *error) {
-    RT_TRY(build_tree(tree, geometry, options, threads, error));
-    RtStatus status = rt_tree_reinsert(tree, options->reinsertion, options->batch, threads, error);
-    if (status != RT_OK) rt_tree_clear(tree);
-    return status;
-}
-
-RtStatus rt_hierarchy_build(RtHierarchy *self, const RtGeometry *geometry, const RtTreeOptions *options,
-                            int threads, RtError *error) {
+RtStatus rt_hierarchy_build(RtHierarchy *self, RtArena *memory, const RtGeometry *geometry,
+                            const RtTreeOptions *options, int threads, RtError *error) {
     RtTree tree;
     if (geometry->object_count == 0) return RT_OK;
     RT_TRY(rt_tree_build(&tree, geometry, options, threads, error));
-    RtStatus status = rt_hierarchy_lay_out(self, &tree, threads, error);
+    RtStatus status = lay_out(self, memory, &tree, threads, error);
     rt_tree_clear(&tree);
     return status;
 }

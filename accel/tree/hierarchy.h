@@ -33,41 +33,6 @@ typedef struct RtHierarchy {
     bool split_refs;       /* objects may be in several leaves (accel/surface.h) */
 } RtHierarchy;
 
-/* ---- building ---- */
-
-/* In the order of RT_TREE_METHODS, the choices of a parameter. */
-#define RT_TREE_METHODS "binned|sweep|lbvh|ploc|spatial"
-typedef enum RtTreeMethod {
-    RT_TREE_BINNED,
-    RT_TREE_SWEEP,
-    RT_TREE_LBVH,
-    RT_TREE_PLOC,
-    RT_TREE_SPATIAL,
-    RT_TREE_AGGLOMERATIVE, /* from here on not among RT_TREE_METHODS */
-    RT_TREE_INSERTION,
-    RT_TREE_MEDIAN
-} RtTreeMethod;
-
-typedef struct RtTreeOptions {
-    RtTreeMethod method;
-    uint32_t bits;     /* lbvh, ploc: of a Morton code along each axis */
-    uint32_t radius;   /* ploc: neighbours searched on either side */
-    RtSpatial spatial; /* spatial; its bins also apply to binned */
-    RtInsertionOrder insertion;
-    uint32_t reinsertion; /* most rounds */
-    double batch;         /* of reinsertion: part of the nodes */
-} RtTreeOptions;
-
-/* Builds a complete tree of all objects, at least 1; the same on any number of `threads` (0 = all
- * processors). On failure nothing is left behind. */
-RtStatus rt_tree_build(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options, int threads,
-                       RtError *error);
-
-/* Builds such a tree of all objects, if there are any, and lays it out: sets the nodes and ids of a hierarchy
- * whose other members are set. */
-RtStatus rt_hierarchy_build(RtHierarchy *self, const RtGeometry *geometry, const RtTreeOptions *options,
-                            int threads, RtError *error);
-
 static inline bool rt_node_is_leaf(const RtNode *node) {
     return (node->count & RT_NODE_LEAF) != 0;
 }
@@ -77,19 +42,17 @@ static inline uint32_t rt_node_fanout(const RtNode *node) {
     return node->count & ~RT_NODE_LEAF;
 }
 
-/* Lays out a complete tree: sets the nodes and ids of a hierarchy whose other members are set. Limits the
- * depth of the tree first if necessary. The references of a subtree share a leaf where that costs no more by
- * the surface area heuristic; where width > 2, the largest children are replaced by their own. The result
- * does not depend on the number of `threads` (0 = all processors). On failure nothing is left behind. */
-RtStatus rt_hierarchy_lay_out(RtHierarchy *self, RtTree *tree, int threads, RtError *error);
-void rt_hierarchy_clear(RtHierarchy *self);
+/* Builds a tree of all objects, if there are any, and lays it out: sets the nodes and ids of a hierarchy
+ * whose other members are set, in `memory`. The depth of the tree is limited first if necessary. The
+ * references of a subtree share a leaf where that costs no more by the surface area heuristic; where width >
+ * 2, the largest children are replaced by their own. The result does not depend on the number of `threads` (0
+ * = all processors). */
+RtStatus rt_hierarchy_build(RtHierarchy *self, RtArena *memory, const RtGeometry *geometry,
+                            const RtTreeOptions *options, int threads, RtError *error);
 
-/* For RtAccelOps. The predictions are those of boxes. The qualities are sampled (quality.c), in about 0.1 s
- * for a million objects. */
+/* For RtAccelOps. The predictions are those of boxes. The qualities are sampled, in about 0.1 s for a million
+ * objects. */
 void rt_hierarchy_describe(const RtHierarchy *self, const RtGeometry *geometry, RtDescription *out);
-
-/* quality.c, for rt_hierarchy_describe: sets the qualities. */
-void rt_hierarchy_measure(const RtHierarchy *self, const RtGeometry *geometry, RtDescription *out);
 
 /* `extents`: those of the nodes, by index, or NULL. */
 void rt_hierarchy_each_box(const RtHierarchy *self, const struct RtExtentSet *extents, RtBoxViewer viewer);

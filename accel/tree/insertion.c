@@ -78,51 +78,40 @@ static void shuffle(uint32_t *order, uint32_t count, uint64_t seed, uint32_t str
     }
 }
 
-static void build_once(Insertion *insertion, const RtInsertionOrder *order, uint32_t attempt) {
+static void build_once(Insertion *insertion, const RtTreeOptions *options, uint32_t attempt) {
     RtTree *tree = insertion->tree;
     uint32_t count = insertion->count;
     for (uint32_t i = 0; i < count; i++) insertion->order[i] = i;
-    if (order->random || attempt > 0) shuffle(insertion->order, count, order->seed, attempt);
+    if (options->insertion.random || attempt > 0)
+        shuffle(insertion->order, count, options->insertion.seed, attempt);
     tree->used = count;
     tree->root = insertion->order[0];
     for (uint32_t i = 1; i < count; i++) insert(insertion, insertion->order[i]);
 }
 
-/* Tries all orders in `tree` and `spare`; the cheapest ends up in `tree`. */
-static void build_all(RtTree *tree, RtTree *spare, Insertion *insertion, const RtInsertionOrder *order) {
-    insertion->tree = tree;
-    build_once(insertion, order, 0);
+RtStatus rt_tree_insertion(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options,
+                           int threads, RtError *error) {
+    const uint32_t count = geometry->object_count, attempts = options->insertion.permutations;
+    RT_ARENA(arena);
+    RtTree spare = {.nodes = NULL};
+    (void)threads;
+    RT_TRY(rt_tree_init_leaves(tree, geometry->boxes, count, error));
+    Insertion insertion = {tree, rt_arena_alloc(&arena, tree->capacity, sizeof(uint32_t)),
+                           rt_arena_alloc(&arena, count, sizeof(uint32_t)), count};
+    RT_TRY(rt_arena_check(&arena, "a tree by insertion", error));
+    if (attempts > 1) RT_TRY(rt_tree_init_leaves(&spare, geometry->boxes, count, error));
+    build_once(&insertion, options, 0);
     double best = rt_tree_cost(tree);
-    for (uint32_t attempt = 1; attempt < order->permutations; attempt++) {
-        insertion->tree = spare;
-        build_once(insertion, order, attempt);
-        double cost = rt_tree_cost(spare);
+    insertion.tree = &spare;
+    for (uint32_t attempt = 1; attempt < attempts; attempt++) {
+        build_once(&insertion, options, attempt);
+        double cost = rt_tree_cost(&spare);
         if (!(cost < best)) continue;
         RtTree kept = *tree;
-        *tree = *spare;
-        *spare = kept;
+        *tree = spare;
+        spare = kept;
         best = cost;
     }
-}
-
-static RtStatus complete(RtTree *tree, const RtBox *boxes, uint32_t count, const RtInsertionOrder *order,
-                         RtError *error) {
-    RtTree spare = {.nodes = NULL};
-    if (order->permutations > 1) RT_TRY(rt_tree_init_leaves(&spare, boxes, count, error));
-    Insertion insertion = {NULL, rt_alloc(tree->capacity, sizeof(uint32_t)),
-                           rt_alloc(count, sizeof(uint32_t)), count};
-    bool enough = insertion.parent && insertion.order;
-    if (enough) build_all(tree, &spare, &insertion, order);
-    rt_free(insertion.parent);
-    rt_free(insertion.order);
     rt_tree_clear(&spare);
-    return enough ? RT_OK : rt_fail_memory(error, "a tree by insertion", tree->capacity * sizeof(uint32_t));
-}
-
-RtStatus rt_tree_insertion(RtTree *tree, const RtBox *boxes, uint32_t count, const RtInsertionOrder *order,
-                           RtError *error) {
-    RT_TRY(rt_tree_init_leaves(tree, boxes, count, error));
-    RtStatus status = complete(tree, boxes, count, order, error);
-    if (status != RT_OK) rt_tree_clear(tree);
-    return status;
+    return RT_OK;
 }

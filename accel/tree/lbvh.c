@@ -8,7 +8,6 @@
  * Bisection finds the position of the change, as in Karras 2012, "Maximizing Parallelism in the Construction
  * of BVHs, Octrees, and k-d Trees". His numbering of nodes, which allows to make all nodes at once, is left
  * out. */
-#include "accel/tree/order.h"
 #include "accel/tree/tree.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
@@ -100,26 +99,17 @@ static RtStatus build_all(Builder *b, uint32_t count, int threads, RtError *erro
     return RT_OK;
 }
 
-RtStatus rt_tree_lbvh(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits, int threads,
+RtStatus rt_tree_lbvh(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options, int threads,
                       RtError *error) {
+    const uint32_t count = geometry->object_count,
+                   share = count / SHARES / (uint32_t)rt_thread_count(threads);
+    RT_ARENA(arena);
+    Builder builder = {.tree = tree, .boxes = geometry->boxes, .limit = share > CHUNK ? share : CHUNK};
     RT_TRY(rt_tree_init(tree, count, error));
-    uint32_t share = count / SHARES / (uint32_t)rt_thread_count(threads);
-    RtKeyed *row = rt_order_morton(boxes, count, bits, threads);
-    Builder builder = {.tree = tree,
-                       .boxes = boxes,
-                       .row = row,
-                       .in_row = rt_alloc_unset(count, sizeof(RtBox)),
-                       .limit = share > CHUNK ? share : CHUNK};
+    RT_TRY(rt_order_morton(geometry->boxes, count, options->bits, threads, &arena, &builder.row, error));
+    builder.in_row = rt_arena_alloc_unset(&arena, count, sizeof(RtBox));
     /* At most so many groups have two sides at each level, of 63 bits and then of halvings. */
-    builder.groups = rt_alloc(2 * (size_t)LEVELS * (count / builder.limit + 1), sizeof(Group));
-    RtStatus status = RT_NO_MEMORY;
-    if (row && builder.in_row && builder.groups)
-        status = build_all(&builder, count, threads, error);
-    else
-        rt_fail_memory(error, "Morton codes", 2 * (size_t)count * sizeof(RtKeyed));
-    rt_free(row);
-    rt_free(builder.in_row);
-    rt_free(builder.groups);
-    if (status != RT_OK) rt_tree_clear(tree);
-    return status;
+    builder.groups = rt_arena_alloc(&arena, 2 * (size_t)LEVELS * (count / builder.limit + 1), sizeof(Group));
+    RT_TRY(rt_arena_check(&arena, "a tree by Morton codes", error));
+    return build_all(&builder, count, threads, error);
 }

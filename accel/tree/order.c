@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "accel/tree/order.h"
+/* Sorting boxes by their centres: along the Morton curve (Morton 1966) or along an axis. Radix sort, in
+ * linear time; equal keys stay in the order of ids. */
+#include "accel/tree/tree.h"
 
-#include "core/base/memory.h"
 #include "core/base/parallel.h"
 
 #include <string.h>
@@ -73,11 +74,11 @@ static bool find_offsets(Sorter *s, size_t chunks) {
 }
 
 /* Sorts the items, whose keys have `bits` bits. */
-static RtStatus sort(Sorter *s, uint32_t bits, size_t chunks, int threads) {
+static RtStatus sort(Sorter *s, uint32_t bits, size_t chunks, int threads, RtError *error) {
     for (s->shift = 0; s->shift < bits; s->shift += DIGIT_BITS) {
-        RT_TRY(rt_parallel_each(chunks, threads, count_digits, s, NULL));
+        RT_TRY(rt_parallel_each(chunks, threads, count_digits, s, error));
         if (!find_offsets(s, chunks)) continue;
-        RT_TRY(rt_parallel_each(chunks, threads, move_items, s, NULL));
+        RT_TRY(rt_parallel_each(chunks, threads, move_items, s, error));
         RtKeyed *kept = s->items;
         s->items = s->out;
         s->out = kept;
@@ -122,36 +123,31 @@ static void make_keys(void *context, size_t chunk) {
     }
 }
 
-static RtStatus make_order(Sorter *s, size_t chunks, int threads) {
-    RT_TRY(rt_parallel_each(chunks, threads, find_centers, s, NULL));
+static RtStatus make_order(Sorter *s, int threads, RtArena *memory, const RtKeyed **order, RtError *error) {
+    const uint32_t share = s->count / (uint32_t)rt_thread_count(threads) + 1;
+    s->chunk_size = share > CHUNK ? share : CHUNK;
+    const size_t chunks = s->count / s->chunk_size + 1;
+    s->items = rt_arena_alloc_unset(memory, s->count, sizeof(RtKeyed));
+    s->out = rt_arena_alloc_unset(memory, s->count, sizeof(RtKeyed));
+    s->offsets = rt_arena_alloc(memory, chunks, sizeof(Offsets));
+    s->centers_of = rt_arena_alloc(memory, chunks, sizeof(RtBox));
+    RT_TRY(rt_arena_check(memory, "an order of objects", error));
+    RT_TRY(rt_parallel_each(chunks, threads, find_centers, s, error));
     s->centers = RT_EMPTY_BOX;
     for (size_t c = 0; c < chunks; c++) s->centers = rt_box_union(s->centers, s->centers_of[c]);
-    RT_TRY(rt_parallel_each(chunks, threads, make_keys, s, NULL));
-    return sort(s, s->bits > 0 ? 3 * s->bits : 32, chunks, threads);
+    RT_TRY(rt_parallel_each(chunks, threads, make_keys, s, error));
+    RT_TRY(sort(s, s->bits > 0 ? 3 * s->bits : 32, chunks, threads, error));
+    rt_arena_free(memory, s->out);
+    *order = s->items;
+    return RT_OK;
 }
 
-/* The items in order, or NULL. */
-static RtKeyed *ordered(Sorter s, int threads) {
-    uint32_t most = (uint32_t)rt_thread_count(threads);
-    s.chunk_size = s.count / most + 1 > CHUNK ? s.count / most + 1 : CHUNK;
-    size_t chunks = s.count / s.chunk_size + 1;
-    s.items = rt_alloc_unset(s.count, sizeof(RtKeyed));
-    s.out = rt_alloc_unset(s.count, sizeof(RtKeyed));
-    s.offsets = rt_alloc(chunks, sizeof(Offsets));
-    s.centers_of = rt_alloc(chunks, sizeof(RtBox));
-    bool done = s.items && s.out && s.offsets && s.centers_of && make_order(&s, chunks, threads) == RT_OK;
-    rt_free(s.out);
-    rt_free(s.offsets);
-    rt_free(s.centers_of);
-    if (done) return s.items;
-    rt_free(s.items);
-    return NULL;
+RtStatus rt_order_morton(const RtBox *boxes, uint32_t count, uint32_t bits, int threads, RtArena *memory,
+                         const RtKeyed **order, RtError *error) {
+    return make_order(&(Sorter){.boxes = boxes, .count = count, .bits = bits}, threads, memory, order, error);
 }
 
-RtKeyed *rt_order_morton(const RtBox *boxes, uint32_t count, uint32_t bits, int threads) {
-    return ordered((Sorter){.boxes = boxes, .count = count, .bits = bits}, threads);
-}
-
-RtKeyed *rt_order_axis(const RtBox *boxes, uint32_t count, int axis, int threads) {
-    return ordered((Sorter){.boxes = boxes, .count = count, .axis = axis}, threads);
+RtStatus rt_order_axis(const RtBox *boxes, uint32_t count, int axis, int threads, RtArena *memory,
+                       const RtKeyed **order, RtError *error) {
+    return make_order(&(Sorter){.boxes = boxes, .count = count, .axis = axis}, threads, memory, order, error);
 }

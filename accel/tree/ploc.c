@@ -15,10 +15,8 @@
  * only one pair of a round is mutual. After PATIENCE rounds, which suffice for most scenes, a cluster is also
  * merged with its nearest neighbour if that one is free. So there are far fewer rounds than objects, and the
  * time is linear in the objects up to a logarithm. */
-#include "accel/tree/order.h"
 #include "accel/tree/tree.h"
 #include "core/base/box4.h"
-#include "core/base/memory.h"
 #include "core/base/parallel.h"
 
 enum { PATIENCE = RT_TREE_MAX_DEPTH, CHUNK = 1 << 12 };
@@ -172,38 +170,23 @@ static void set_leaves(void *context, size_t chunk) {
     }
 }
 
-static RtStatus run_rounds(Rounds *r, uint32_t bits, int threads, RtError *error) {
-    RtKeyed *order = rt_order_morton(r->boxes, r->count, bits, threads);
-    if (!order) return rt_fail_memory(error, "Morton codes", 2 * (size_t)r->count * sizeof(RtKeyed));
-    r->order = order;
-    RtStatus status = rt_parallel_each((r->count + CHUNK - 1) / CHUNK, threads, set_leaves, r, error);
-    rt_free(order);
-    r->tree->used = r->count;
-    for (uint32_t round = 0; status == RT_OK && r->count > 1; round++)
-        status = run_round(r, round, threads, error);
-    return status;
-}
-
-RtStatus rt_tree_ploc(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits, uint32_t radius,
-                      int threads, RtError *error) {
+RtStatus rt_tree_ploc(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options, int threads,
+                      RtError *error) {
+    const uint32_t count = geometry->object_count;
+    RT_ARENA(arena);
     RT_TRY(rt_tree_init(tree, count, error));
     Rounds r = {.tree = tree,
-                .row = rt_alloc_unset(count, sizeof(Cluster)),
-                .next = rt_alloc_unset(count, sizeof(Cluster)),
-                .distance = rt_alloc_unset(count, sizeof(double)),
-                .nearest = rt_alloc_unset(count, sizeof(uint32_t)),
-                .left = rt_alloc((size_t)count / CHUNK + 1, sizeof(Remaining)),
+                .row = rt_arena_alloc_unset(&arena, count, sizeof(Cluster)),
+                .next = rt_arena_alloc_unset(&arena, count, sizeof(Cluster)),
+                .distance = rt_arena_alloc_unset(&arena, count, sizeof(double)),
+                .nearest = rt_arena_alloc_unset(&arena, count, sizeof(uint32_t)),
+                .left = rt_arena_alloc(&arena, (size_t)count / CHUNK + 1, sizeof(Remaining)),
                 .count = count,
-                .radius = radius,
-                .boxes = boxes};
-    bool enough = r.row && r.next && r.distance && r.nearest && r.left;
-    RtStatus status = enough ? run_rounds(&r, bits, threads, error)
-                             : rt_fail_memory(error, "a row of clusters", (size_t)count * sizeof(Cluster));
-    rt_free(r.row);
-    rt_free(r.next);
-    rt_free(r.distance);
-    rt_free(r.nearest);
-    rt_free(r.left);
-    if (status != RT_OK) rt_tree_clear(tree);
-    return status;
+                .radius = options->radius,
+                .boxes = geometry->boxes};
+    RT_TRY(rt_order_morton(geometry->boxes, count, options->bits, threads, &arena, &r.order, error));
+    RT_TRY(rt_parallel_each((count + CHUNK - 1) / CHUNK, threads, set_leaves, &r, error));
+    tree->used = count;
+    for (uint32_t round = 0; r.count > 1; round++) RT_TRY(run_round(&r, round, threads, error));
+    return RT_OK;
 }

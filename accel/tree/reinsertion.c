@@ -240,24 +240,18 @@ static RtStatus run_round(Optimizer *o, int threads, uint32_t *made, RtError *er
 static RtStatus reinsert_all(RtTree *tree, uint32_t rounds, int threads, RtError *error) {
     uint32_t used = tree->used, made = 1;
     RT_TRY(rt_tree_limit_depth(tree, error));
-    Optimizer o = {tree, rt_alloc(used, sizeof(uint32_t)), rt_alloc(used, sizeof(uint32_t)),
-                   rt_alloc(used, sizeof(Move)), 0};
-    RtStatus status = RT_OK;
-    if (!o.parent || !o.mark || !o.moves) {
-        status = rt_fail_memory(error, "reinsertion", used * (2 * sizeof(uint32_t) + sizeof(Move)));
-    } else {
-        o.parent[tree->root] = NONE;
-        for (uint32_t i = 0; i < used; i++) {
-            const uint32_t *child = tree->nodes[i].child;
-            if (!rt_tree_is_leaf(tree, i)) o.parent[child[0]] = o.parent[child[1]] = i;
-        }
+    RT_ARENA(arena);
+    Optimizer o = {tree, rt_arena_alloc(&arena, used, sizeof(uint32_t)),
+                   rt_arena_alloc(&arena, used, sizeof(uint32_t)), rt_arena_alloc(&arena, used, sizeof(Move)),
+                   0};
+    RT_TRY(rt_arena_check(&arena, "reinsertion", error));
+    o.parent[tree->root] = NONE;
+    for (uint32_t i = 0; i < used; i++) {
+        const uint32_t *child = tree->nodes[i].child;
+        if (!rt_tree_is_leaf(tree, i)) o.parent[child[0]] = o.parent[child[1]] = i;
     }
-    for (uint32_t i = 0; status == RT_OK && made > 0 && i < rounds; i++)
-        status = run_round(&o, threads, &made, error);
-    rt_free(o.parent);
-    rt_free(o.mark);
-    rt_free(o.moves);
-    return status;
+    for (uint32_t i = 0; made > 0 && i < rounds; i++) RT_TRY(run_round(&o, threads, &made, error));
+    return RT_OK;
 }
 
 /* ---- the top of a tree ---- */
@@ -322,18 +316,13 @@ RtStatus rt_tree_reinsert(RtTree *tree, uint32_t rounds, double batch, int threa
     const uint32_t leaves = (uint32_t)ceil(batch * rt_tree_leaf_count(tree));
     if (rounds == 0) return RT_OK;
     if (leaves == rt_tree_leaf_count(tree)) return reinsert_all(tree, rounds, threads, error);
-    Top top;
-    RT_TRY(rt_tree_init(&top.tree, leaves, error));
-    top.nodes = rt_alloc_unset(top.tree.capacity, sizeof(uint32_t));
-    RtStatus status = RT_OK;
-    if (top.nodes) {
-        fill_top(&top, tree);
-        status = reinsert_all(&top.tree, rounds, threads, error);
-        if (status == RT_OK) put_back(&top, tree);
-    } else {
-        status = rt_fail_memory(error, "reinsertion", top.tree.capacity * sizeof(uint32_t));
-    }
-    rt_free(top.nodes);
-    rt_tree_clear(&top.tree);
-    return status;
+    RT_ARENA(arena);
+    const uint32_t most = 2 * leaves - 1;
+    Top top = {.tree = {.nodes = rt_arena_alloc_unset(&arena, most, sizeof(RtTreeNode)), .capacity = most},
+               .nodes = rt_arena_alloc_unset(&arena, most, sizeof(uint32_t))};
+    RT_TRY(rt_arena_check(&arena, "reinsertion", error));
+    fill_top(&top, tree);
+    RT_TRY(reinsert_all(&top.tree, rounds, threads, error));
+    put_back(&top, tree);
+    return RT_OK;
 }

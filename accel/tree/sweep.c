@@ -6,10 +6,8 @@
  *
  * There are three rows of the same references, each sorted along one axis. The references of a node are one
  * run, at the same position in all rows, so every pass reads memory sequentially. */
-#include "accel/tree/order.h"
-#include "accel/tree/sah_split.h"
+#include "accel/tree/topdown.h"
 #include "accel/tree/tree.h"
-#include "core/base/memory.h"
 
 typedef struct Sweep {
     RtTree *tree;
@@ -92,32 +90,29 @@ static uint32_t build(const Sweep *s, uint32_t begin, uint32_t count, int depth)
     return node;
 }
 
-/* The references sorted along an axis, or NULL. */
-static RtTreeRef *make_row(const RtBox *boxes, uint32_t count, int axis) {
-    RtKeyed *order = rt_order_axis(boxes, count, axis, 1);
-    RtTreeRef *row = order ? rt_alloc(count, sizeof(RtTreeRef)) : NULL;
-    for (uint32_t i = 0; row && i < count; i++) row[i] = (RtTreeRef){boxes[order[i].id], order[i].id};
-    rt_free(order);
-    return row;
+/* The references sorted along an axis. */
+static RtStatus make_row(Sweep *s, const RtGeometry *geometry, int axis, RtArena *memory, RtError *error) {
+    const uint32_t count = geometry->object_count;
+    RT_ARENA(arena);
+    const RtKeyed *order;
+    RT_TRY(rt_order_axis(geometry->boxes, count, axis, 1, &arena, &order, error));
+    RtTreeRef *row = s->rows[axis] = rt_arena_alloc(memory, count, sizeof(RtTreeRef));
+    RT_TRY(rt_arena_check(memory, "the rows of a sweep", error));
+    for (uint32_t i = 0; i < count; i++) row[i] = (RtTreeRef){geometry->boxes[order[i].id], order[i].id};
+    return RT_OK;
 }
 
-RtStatus rt_tree_sweep(RtTree *tree, const RtBox *boxes, uint32_t count, RtError *error) {
+RtStatus rt_tree_sweep(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options, int threads,
+                       RtError *error) {
+    const uint32_t count = geometry->object_count;
+    RT_ARENA(arena);
+    (void)options, (void)threads;
     RT_TRY(rt_tree_init(tree, count, error));
     Sweep s = {.tree = tree,
-               .spare = rt_alloc(count, sizeof(RtTreeRef)),
-               .right_costs = rt_alloc(count, sizeof(double)),
-               .right = rt_alloc((size_t)count / 64 + 1, sizeof(uint64_t))};
-    bool enough = s.spare && s.right_costs && s.right;
-    for (int axis = 0; enough && axis < 3; axis++) {
-        s.rows[axis] = make_row(boxes, count, axis);
-        enough = s.rows[axis] != NULL;
-    }
-    if (enough) tree->root = build(&s, 0, count, 0);
-    for (int axis = 0; axis < 3; axis++) rt_free(s.rows[axis]);
-    rt_free(s.spare);
-    rt_free(s.right_costs);
-    rt_free(s.right);
-    if (enough) return RT_OK;
-    rt_tree_clear(tree);
-    return rt_fail_memory(error, "the rows of a sweep", 4 * (size_t)count * sizeof(RtTreeRef));
+               .spare = rt_arena_alloc(&arena, count, sizeof(RtTreeRef)),
+               .right_costs = rt_arena_alloc(&arena, count, sizeof(double)),
+               .right = rt_arena_alloc(&arena, (size_t)count / 64 + 1, sizeof(uint64_t))};
+    for (int axis = 0; axis < 3; axis++) RT_TRY(make_row(&s, geometry, axis, &arena, error));
+    tree->root = build(&s, 0, count, 0);
+    return RT_OK;
 }

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Binary trees of references: the bound on their depth, and leaves without nodes. */
+/* Binary trees of references: the bound on their depth, leaves without nodes, and reductions. */
 #include "accel/tree/tree.h"
 
-#include "accel/tree/sah_split.h"
-#include "core/base/memory.h"
+#include "accel/tree/topdown.h"
+#include "core/base/parallel.h"
 
 #include <assert.h>
+#include <string.h>
 
 RtStatus rt_tree_init(RtTree *tree, uint32_t most, RtError *error) {
     assert(most > 0 && most <= UINT32_MAX / 2);
@@ -68,24 +69,25 @@ static bool reaches_below(const RtTree *tree, uint32_t node, uint32_t levels) {
 /* The nodes of a subtree that is rebuilt. */
 typedef struct Rebuild {
     RtTree *tree;
-    RtTreeRef *leaves;       /* [references] ids are nodes */
-    uint32_t *unions, *todo; /* [references] nodes */
+    RtTreeRef *leaves; /* [references] ids are nodes */
+    uint32_t *unions;  /* [references] nodes */
     uint32_t leaf_count, union_count;
 } Rebuild;
 
+/* `top` is no leaf. */
 static void collect(Rebuild *parts, uint32_t top) {
-    uint32_t stacked = 0;
-    parts->leaf_count = parts->union_count = 0;
-    parts->todo[stacked++] = top;
-    while (stacked > 0) {
-        uint32_t at = parts->todo[--stacked];
-        const RtTreeNode *node = &parts->tree->nodes[at];
-        if (rt_tree_is_leaf(parts->tree, at)) {
-            parts->leaves[parts->leaf_count++] = (RtTreeRef){node->box, at};
-            continue;
+    const RtTree *tree = parts->tree;
+    parts->leaf_count = 0;
+    parts->union_count = 1;
+    parts->unions[0] = top;
+    for (uint32_t i = 0; i < parts->union_count; i++) {
+        for (int s = 0; s < 2; s++) {
+            uint32_t child = tree->nodes[parts->unions[i]].child[s];
+            if (rt_tree_is_leaf(tree, child))
+                parts->leaves[parts->leaf_count++] = (RtTreeRef){tree->nodes[child].box, child};
+            else
+                parts->unions[parts->union_count++] = child;
         }
-        parts->unions[parts->union_count++] = at;
-        for (int s = 0; s < 2; s++) parts->todo[stacked++] = node->child[s];
     }
 }
 
@@ -115,17 +117,14 @@ static uint32_t limited(Rebuild *parts, uint32_t node, uint32_t depth) {
 
 RtStatus rt_tree_limit_depth(RtTree *tree, RtError *error) {
     if (!reaches_below(tree, tree->root, RT_TREE_MAX_DEPTH)) return RT_OK;
+    RT_ARENA(arena);
     uint32_t count = rt_tree_leaf_count(tree);
     Rebuild parts = {.tree = tree,
-                     .leaves = rt_alloc(count, sizeof(RtTreeRef)),
-                     .unions = rt_alloc(count, sizeof(uint32_t)),
-                     .todo = rt_alloc(count, sizeof(uint32_t))};
-    bool enough = parts.leaves && parts.unions && parts.todo;
-    if (enough) tree->root = limited(&parts, tree->root, 0);
-    rt_free(parts.leaves);
-    rt_free(parts.unions);
-    rt_free(parts.todo);
-    return enough ? RT_OK : rt_fail_memory(error, "limiting the depth of a tree", count * sizeof(RtTreeRef));
+                     .leaves = rt_arena_alloc(&arena, count, sizeof(RtTreeRef)),
+                     .unions = rt_arena_alloc(&arena, count, sizeof(uint32_t))};
+    RT_TRY(rt_arena_check(&arena, "limiting the depth of a tree", error));
+    tree->root = limited(&parts, tree->root, 0);
+    return RT_OK;
 }
 
 /* ---- without nodes for leaves ---- */
@@ -135,22 +134,115 @@ RtStatus rt_tree_drop_leaves(RtTree *tree, const RtBox *boxes, RtError *error) {
     uint32_t next = 0;
     RT_TRY(rt_tree_limit_depth(tree, error));
     if (tree->split_refs) return RT_OK;
+    RT_ARENA(arena);
+    uint32_t *moved =
+        rt_arena_alloc_unset(&arena, tree->used, sizeof *moved); /* the new number of each node */
+    RT_TRY(rt_arena_check(&arena, "the inner nodes of a tree", error));
     RtTreeNode *nodes = rt_alloc_unset(inner, sizeof *nodes);
-    uint32_t *moved = rt_alloc_unset(tree->used, sizeof *moved); /* the new number of each node */
-    const bool enough = nodes && moved;
-    for (uint32_t i = 0; enough && i < tree->used; i++)
+    if (!nodes) return rt_fail_memory(error, "the inner nodes of a tree", inner * sizeof *nodes);
+    for (uint32_t i = 0; i < tree->used; i++)
         moved[i] = rt_tree_is_leaf(tree, i) ? RT_TREE_OBJECT + tree->nodes[i].child[1] : next++;
-    for (uint32_t i = 0; enough && i < tree->used; i++) {
+    for (uint32_t i = 0; i < tree->used; i++) {
         const RtTreeNode *node = &tree->nodes[i];
         if (moved[i] >= RT_TREE_OBJECT) continue;
         nodes[moved[i]] = (RtTreeNode){node->box, {moved[node->child[0]], moved[node->child[1]]}};
     }
-    if (enough) {
-        rt_free(tree->nodes);
-        *tree = (RtTree){nodes, inner, inner, moved[tree->root], false, boxes};
-    } else {
-        rt_free(nodes);
+    rt_free(tree->nodes);
+    *tree = (RtTree){nodes, inner, inner, moved[tree->root], false, boxes};
+    return RT_OK;
+}
+
+/* ---- reductions ---- */
+
+/* The top is reduced in the order of a depth-first walk, in which the parts are numbered: two values of each
+ * level are pending at a time. */
+enum { PENDING = 2 * RT_REDUCTION_LEVELS };
+
+typedef struct Job {
+    const RtTree *tree;
+    const RtReduction *reduction;
+    RtReducedParts *parts;
+    uint8_t depth[RT_REDUCTION_MAX_PARTS]; /* of each part */
+    bool too_deep[RT_REDUCTION_MAX_PARTS]; /* it reaches below RT_TREE_MAX_DEPTH */
+    char *pending;                         /* [PENDING] values */
+    uint32_t next;                         /* part */
+} Job;
+
+static void list_parts(Job *job, uint32_t index, uint32_t depth) {
+    if (!rt_reduction_is_top(job->tree, index, depth)) {
+        job->depth[job->parts->count] = (uint8_t)depth;
+        job->parts->index[job->parts->count++] = index;
+        return;
     }
-    rt_free(moved);
-    return enough ? RT_OK : rt_fail_memory(error, "the inner nodes of a tree", inner * sizeof *nodes);
+    const uint32_t *child = job->tree->nodes[index].child;
+    for (int s = 0; s < 2; s++) list_parts(job, child[s], depth + 1);
+}
+
+static void reduce_part(void *context, size_t item) {
+    Job *job = context;
+    job->too_deep[item] = !job->reduction->reduce(job->reduction->context, job->parts->index[item],
+                                                  RT_TREE_MAX_DEPTH - (uint32_t)job->depth[item],
+                                                  job->parts->values + item * job->reduction->size);
+}
+
+/* Takes the values of the parts in order. */
+static void reduce_top(Job *job, uint32_t index, uint32_t depth, void *value) {
+    size_t size = job->reduction->size;
+    if (!rt_reduction_is_top(job->tree, index, depth)) {
+        memcpy(value, job->parts->values + job->next++ * size, size);
+        return;
+    }
+    const uint32_t *child = job->tree->nodes[index].child;
+    char *values[2] = {job->pending + (size_t)2 * depth * size,
+                       job->pending + ((size_t)2 * depth + 1) * size};
+    for (int s = 0; s < 2; s++) reduce_top(job, child[s], depth + 1, values[s]);
+    job->reduction->combine(job->reduction->context, index, (const void *const[2]){values[0], values[1]},
+                            value);
+}
+
+/* Reduces the parts; *too_deep: some leaf is below RT_TREE_MAX_DEPTH. */
+static RtStatus reduce_parts(Job *job, int threads, bool *too_deep, RtError *error) {
+    job->parts->count = 0;
+    list_parts(job, job->tree->root, 0);
+    RT_TRY(rt_parallel_each(job->parts->count, threads, reduce_part, job, error));
+    *too_deep = false;
+    for (uint32_t i = 0; i < job->parts->count; i++) *too_deep |= job->too_deep[i];
+    return RT_OK;
+}
+
+RtStatus rt_tree_reduce(RtTree *tree, const RtReduction *reduction, RtArena *memory, int threads,
+                        RtReducedParts *parts, void *whole, RtError *error) {
+    parts->values = rt_arena_alloc(memory, RT_REDUCTION_MAX_PARTS + PENDING, reduction->size);
+    RT_TRY(rt_arena_check(memory, "a reduction over a tree", error));
+    Job job = {.tree = tree,
+               .reduction = reduction,
+               .parts = parts,
+               .pending = parts->values + RT_REDUCTION_MAX_PARTS * reduction->size};
+    bool too_deep;
+    RT_TRY(reduce_parts(&job, threads, &too_deep, error));
+    if (too_deep) {
+        RT_TRY(rt_tree_limit_depth(tree, error));
+        RT_TRY(reduce_parts(&job, threads, &too_deep, error));
+    }
+    reduce_top(&job, tree->root, 0, whole);
+    return RT_OK;
+}
+
+/* ---- building ---- */
+
+static RtTreeBuild *const methods[RT_TREE_METHOD_COUNT] = {
+    [RT_TREE_BINNED] = rt_tree_topdown,      [RT_TREE_SWEEP] = rt_tree_sweep,
+    [RT_TREE_LBVH] = rt_tree_lbvh,           [RT_TREE_PLOC] = rt_tree_ploc,
+    [RT_TREE_SPATIAL] = rt_tree_spatial,     [RT_TREE_AGGLOMERATIVE] = rt_tree_agglomerative,
+    [RT_TREE_INSERTION] = rt_tree_insertion, [RT_TREE_MEDIAN] = rt_tree_topdown,
+};
+
+RtStatus rt_tree_build(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options, int threads,
+                       RtError *error) {
+    *tree = (RtTree){.nodes = NULL};
+    RtStatus status = methods[options->method](tree, geometry, options, threads, error);
+    if (status == RT_OK)
+        status = rt_tree_reinsert(tree, options->reinsertion, options->batch, threads, error);
+    if (status != RT_OK) rt_tree_clear(tree);
+    return status;
 }

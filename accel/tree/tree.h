@@ -8,7 +8,7 @@
 #ifndef RT_ACCEL_TREE_TREE_H
 #define RT_ACCEL_TREE_TREE_H
 
-#include "core/base/status.h"
+#include "core/base/memory.h"
 #include "core/shape/geometry.h"
 
 #include <stdbool.h>
@@ -101,66 +101,117 @@ RtStatus rt_tree_limit_depth(RtTree *tree, RtError *error);
  * split references, whose boxes are their own. On failure the leaves are still there. */
 RtStatus rt_tree_drop_leaves(RtTree *tree, const RtBox *boxes, RtError *error);
 
-/* ---- methods ----
- *
- * Each builds a complete tree of `count` objects, at least 1, with these boxes. The tree depends on the
- * arguments alone, not on the number of `threads` (0 = all processors); its depth is not limited. On failure
- * nothing is left behind. */
+/* ---- building ---- */
 
-/* Walter, Bala, Kulkarni & Pingali 2008: unites the two nearest nodes until one is left. */
-RtStatus rt_tree_agglomerative(RtTree *tree, const RtBox *boxes, uint32_t count, RtError *error);
+enum { RT_MAX_MORTON_BITS = 21, RT_MAX_BINS = 64 };
 
-/* Meister & Bittner 2018: in rounds, along the Morton order of centres (`bits` bits an axis, order.h), unites
- * nodes that are each other's nearest among the `radius` before and after. */
-RtStatus rt_tree_ploc(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits, uint32_t radius,
-                      int threads, RtError *error);
+/* In the order of RT_TREE_METHODS, the choices of a parameter. The papers: the files of the methods. */
+#define RT_TREE_METHODS "binned|sweep|lbvh|ploc|spatial"
+typedef enum RtTreeMethod {
+    RT_TREE_BINNED,        /* top-down by the surface area heuristic, in bins (topdown.c) */
+    RT_TREE_SWEEP,         /* the same, all positions between centres tried */
+    RT_TREE_LBVH,          /* splits of the Morton order where the highest differing bit changes */
+    RT_TREE_PLOC,          /* unites mutual nearest neighbours in Morton order, in rounds */
+    RT_TREE_SPATIAL,       /* top-down, by object splits and spatial splits */
+    RT_TREE_AGGLOMERATIVE, /* unites the two nearest; from here on not among RT_TREE_METHODS */
+    RT_TREE_INSERTION,     /* one by one where the sum of areas grows least */
+    RT_TREE_MEDIAN,        /* top-down, at the median of centres along the longest axis (topdown.c) */
+    RT_TREE_METHOD_COUNT
+} RtTreeMethod;
 
-/* Lauterbach et al. 2009: splits the Morton order where the highest differing bit of the codes changes. */
-RtStatus rt_tree_lbvh(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits, int threads,
-                      RtError *error);
+typedef struct RtTreeOptions {
+    RtTreeMethod method;
+    uint32_t bits;   /* lbvh, ploc: of a Morton code along each axis, 1..RT_MAX_MORTON_BITS */
+    uint32_t radius; /* ploc: neighbours searched on either side */
+    struct {
+        int bins;         /* also binned: along each axis, 2..RT_MAX_BINS */
+        double alpha;     /* spatial splits are tried where the sides overlap by more than this part of the
+                             root's area */
+        double budget;    /* most references per object; at least 1 */
+        uint32_t leaf;    /* a group of at most so many references is not cut if a leaf is cheaper */
+        double traversal; /* cost of an inner node, in object tests */
+        uint64_t limit;   /* most bytes of the tree and its layout */
+    } spatial;
+    struct {
+        bool random;           /* the first attempt is a random permutation, too, not the order of ids */
+        uint32_t permutations; /* attempts; the cheapest tree is kept */
+        uint64_t seed;
+    } insertion;
+    uint32_t reinsertion; /* most rounds */
+    double batch;         /* of reinsertion: part of the nodes */
+} RtTreeOptions;
 
-typedef struct RtInsertionOrder {
-    bool random;           /* the first attempt is a random permutation, too, not the order of ids */
-    uint32_t permutations; /* attempts; the cheapest tree is kept */
-    uint64_t seed;
-} RtInsertionOrder;
+/* Builds a complete tree of all objects, at least 1, by a method, and improves it by reinsertion. The tree
+ * depends on the objects and the options alone, not on the number of `threads` (0 = all processors); its
+ * depth is not limited. On failure nothing is left behind. */
+RtStatus rt_tree_build(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options, int threads,
+                       RtError *error);
 
-/* Goldsmith & Salmon 1987: inserts objects one by one where the sum of areas grows least. */
-RtStatus rt_tree_insertion(RtTree *tree, const RtBox *boxes, uint32_t count, const RtInsertionOrder *order,
-                           RtError *error);
-
-/* Top-down, at the median of centres along the longest axis (bins = 0; Rubin & Whitted 1980, whose
- * hierarchies were made by hand), or by the surface area heuristic in `bins` bins (Wald 2007). A subtree of n
- * references is a run of 2 n - 1 nodes: its root, the left subtree, the right one. */
-RtStatus rt_tree_topdown(RtTree *tree, const RtBox *boxes, uint32_t count, int bins, int threads,
-                         RtError *error);
-
-/* Top-down by the surface area heuristic, all positions between centres tried (MacDonald & Booth 1990). */
-RtStatus rt_tree_sweep(RtTree *tree, const RtBox *boxes, uint32_t count, RtError *error);
-
-typedef struct RtSpatial {
-    int bins;         /* along each axis, 2..RT_MAX_BINS */
-    double alpha;     /* spatial splits are tried where the sides overlap by more than this part of the root's
-                         area */
-    double budget;    /* most references per object; at least 1 */
-    uint32_t leaf;    /* a group of at most so many references is not cut if a leaf is cheaper */
-    double traversal; /* cost of an inner node, in object tests */
-    uint64_t limit;   /* most bytes of the tree and its layout */
-} RtSpatial;
+/* The methods, for rt_tree_build, which clears the tree if they fail. */
+typedef RtStatus RtTreeBuild(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options,
+                             int threads, RtError *error);
+RtTreeBuild rt_tree_topdown, rt_tree_sweep, rt_tree_lbvh, rt_tree_ploc, rt_tree_spatial,
+    rt_tree_agglomerative, rt_tree_insertion;
 
 /* The margin of rt_object_part (core/shape/overlap.h) in a scene with this box. */
 static inline double rt_tree_part_margin(const RtBox *scene) {
     return 0x1p-40 * rt_box_largest_coordinate(*scene);
 }
 
-/* Top-down, by object splits and spatial splits: Stich, Friedrich & Dietrich 2009. */
-RtStatus rt_tree_spatial(RtTree *tree, const RtGeometry *geometry, const RtSpatial *how, int threads,
-                         RtError *error);
-
 /* Bittner, Hapala & Havran 2013; Meister & Bittner 2018: moves subtrees of a complete tree to where its cost
  * (rt_tree_cost) is least, until no move gains, in at most so many rounds. It moves this part of the nodes
  * (0 < batch <= 1), those with the largest boxes. The cost never rises, except where the depth has to
- * be limited first. On failure *tree is still a complete tree of the same references. */
+ * be limited first. */
 RtStatus rt_tree_reinsert(RtTree *tree, uint32_t rounds, double batch, int threads, RtError *error);
+
+/* ---- orders ---- */
+
+typedef struct RtKeyed {
+    uint64_t key;
+    uint32_t id;
+} RtKeyed;
+
+/* Allocates in `memory`, and sets *order to, boxes[0..count) in ascending order of keys, equal ones by id. It
+ * does not depend on the number of `threads` (0 = all processors). Keys of an axis increase with the centre.
+ * Morton codes: the box of all centres is divided into 2^bits cells along each axis, bits 1..
+ * RT_MAX_MORTON_BITS; the key interleaves the coordinates of the centre's cell, x in the lowest bit, then y,
+ * then z. */
+RtStatus rt_order_axis(const RtBox *boxes, uint32_t count, int axis, int threads, RtArena *memory,
+                       const RtKeyed **order, RtError *error);
+RtStatus rt_order_morton(const RtBox *boxes, uint32_t count, uint32_t bits, int threads, RtArena *memory,
+                         const RtKeyed **order, RtError *error);
+
+/* ---- reductions ---- */
+
+enum { RT_REDUCTION_LEVELS = 9, RT_REDUCTION_MAX_PARTS = 1 << RT_REDUCTION_LEVELS };
+
+/* In parallel: a value for each subtree, computed bottom-up from those of its two children. The top of the
+ * tree is a few levels deep. The subtrees below it, the parts, are reduced in parallel, then the top by the
+ * calling thread. */
+typedef struct RtReduction {
+    size_t size; /* of a value, in bytes */
+    /* Computes the value of the subtree of node `index`; false if a leaf is more than `levels` below it. */
+    bool (*reduce)(void *context, uint32_t index, uint32_t levels, void *value);
+    /* Computes the value of inner node `index` from those of its children. */
+    void (*combine)(void *context, uint32_t index, const void *const children[2], void *value);
+    void *context;
+} RtReduction;
+
+typedef struct RtReducedParts {
+    uint32_t index[RT_REDUCTION_MAX_PARTS]; /* [count] their roots, from left to right */
+    uint32_t count;
+    char *values; /* [count] */
+} RtReducedParts;
+
+/* Whether a node at this depth belongs to the top, and is not the root of a part. */
+static inline bool rt_reduction_is_top(const RtTree *tree, uint32_t index, uint32_t depth) {
+    RtTreeLeaf leaf;
+    return depth < RT_REDUCTION_LEVELS && !rt_tree_get_leaf(tree, index, &leaf);
+}
+
+/* Computes the value of a complete tree, whose depth is limited first if necessary (rt_tree_limit_depth), and
+ * those of its parts, in `memory`. */
+RtStatus rt_tree_reduce(RtTree *tree, const RtReduction *reduction, RtArena *memory, int threads,
+                        RtReducedParts *parts, void *whole, RtError *error);
 
 #endif

@@ -14,7 +14,6 @@
  * cost, so the offset of every subtree is known before any is laid out. */
 #include "accel/wide/plan.h"
 
-#include "accel/tree/reduction.h"
 #include "core/base/memory.h"
 
 #include <math.h>
@@ -213,6 +212,7 @@ static void weigh_node(void *context, uint32_t index, const void *const sides[2]
 RtStatus rt_wide_plan_init(RtWidePlan *self, RtTree *tree, const RtGeometry *geometry,
                            const RtWideLayout *how, RtError *error) {
     RtReduction reduction = {sizeof(Weight), weigh, weigh_node, self};
+    RT_ARENA(arena);
     RtReducedParts parts;
     Weight whole;
     *self = (RtWidePlan){.tree = tree,
@@ -223,9 +223,7 @@ RtStatus rt_wide_plan_init(RtWidePlan *self, RtTree *tree, const RtGeometry *geo
                          .choices = rt_alloc_unset(tree->used, sizeof(RtWideChoice))};
     if (!self->choices)
         return rt_fail_memory(error, "the plan of a hierarchy", tree->used * sizeof(RtWideChoice));
-    RtStatus status = rt_tree_reduce(tree, &reduction, how->threads, &parts, &whole, error);
-    rt_reduced_parts_clear(&parts);
-    if (status != RT_OK) return status;
+    RT_TRY(rt_tree_reduce(tree, &reduction, &arena, how->threads, &parts, &whole, error));
     self->units = whole.units[0] + (rt_wide_becomes_leaf(self, tree->root) ? RT_WIDE_NODE_UNITS : 0);
     return RT_OK;
 }

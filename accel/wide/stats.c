@@ -52,8 +52,8 @@ static RtBox root_box(const RtWideTree *self) {
     return rt_wide_children_box(rt_wide_node(self, 0));
 }
 
-/* The same hierarchy in plain form, which the caller clears; false if memory is short. */
-static bool flatten(const RtWideTree *self, RtHierarchy *to) {
+/* The same hierarchy in plain form. */
+static RtStatus flatten(const RtWideTree *self, RtArena *memory, RtHierarchy *to, RtError *error) {
     RtWideRef top = root_of(self);
     Sizes sizes = {0, 0};
     measure(self, top, &sizes);
@@ -61,27 +61,24 @@ static bool flatten(const RtWideTree *self, RtHierarchy *to) {
                         .leaf_limit = RT_WIDE_MAX_LEAF,
                         .traversal_cost = 1,
                         .split_refs = self->split_refs,
-                        .nodes = rt_alloc(sizes.nodes, sizeof(RtNode)),
-                        .ids = rt_alloc(sizes.ids, sizeof(uint32_t)),
+                        .nodes = rt_arena_alloc(memory, sizes.nodes, sizeof(RtNode)),
+                        .ids = rt_arena_alloc(memory, sizes.ids, sizeof(uint32_t)),
                         .node_count = 1};
-    if (!to->nodes || !to->ids) {
-        rt_hierarchy_clear(to);
-        return false;
-    }
+    RT_TRY(rt_arena_check(memory, "the plain form of a hierarchy", error));
     to->nodes[0].box = root_box(self);
     copy(self, to, 0, top);
-    return true;
+    return RT_OK;
 }
 
 /* ---- for the table of operations ---- */
 
 /* The quality figures are those of the plain hierarchy, whose leaves cost one test per object. */
 void rt_wide_describe(const RtWideTree *self, const RtGeometry *geometry, RtDescription *out) {
+    RT_ARENA(arena);
     RtHierarchy plain;
     *out = (RtDescription){.bytes = self->bytes, RT_NO_PREDICTION};
-    if (self->node_count == 0 || !flatten(self, &plain)) return;
+    if (self->node_count == 0 || flatten(self, &arena, &plain, NULL) != RT_OK) return;
     rt_hierarchy_describe(&plain, geometry, out);
-    rt_hierarchy_clear(&plain);
     out->bytes = self->bytes;
     out->predicted_cost = self->cost;
 }
@@ -208,9 +205,8 @@ RtStatus rt_wide_validate(const RtWideTree *self, const RtGeometry *geometry, Rt
     if (check.nodes != self->node_count)
         return rt_fail(error, RT_MISMATCH, "wide: %u of %u nodes are in the tree", check.nodes,
                        self->node_count);
+    RT_ARENA(arena);
     RtHierarchy plain;
-    if (!flatten(self, &plain)) return rt_fail_memory(error, "validating a hierarchy", self->bytes);
-    RtStatus status = rt_hierarchy_validate(&plain, geometry, "wide", error);
-    rt_hierarchy_clear(&plain);
-    return status;
+    RT_TRY(flatten(self, &arena, &plain, error));
+    return rt_hierarchy_validate(&plain, geometry, "wide", error);
 }

@@ -17,7 +17,6 @@
 
 #include "accel/isa.h"
 #include "accel/tree/hierarchy.h"
-#include "accel/tree/sah_split.h"
 
 enum {
     RT_WIDE = 8,                /* children of a node at most */

@@ -108,9 +108,10 @@ static void fill_bench(Bench *bench, const RtPopulation *population, uint64_t se
     }
 }
 
-static RtStatus fit_extents(Extents *extents, Bench *bench, RtExtentChoice choice, RtError *error) {
+static RtStatus fit_extents(Extents *extents, Bench *bench, RtExtentChoice choice, RtArena *memory,
+                            RtError *error) {
     extents->bench = bench;
-    RT_TRY(rt_extent_set_init(&extents->set, choice.kind, choice.slabs, bench->count, error));
+    RT_TRY(rt_extent_set_init(&extents->set, memory, choice.kind, choice.slabs, bench->count, error));
     for (uint32_t i = 0; i < bench->count; i++) {
         const RtGroup group = {bench->geometry, &bench->ids[i], 1, bench->boxes[i]};
         rt_extent_fit(&extents->set, i, &group);
@@ -173,17 +174,16 @@ static RtStatus run(const Times *times, Bench *bench, Extents *extents, RtError 
 RtStatus rt_extent_cost_time(const RtPopulation *population, const RtExtentChoice *choices, size_t count,
                              const RtTightness *tightness, const RtRounds *rounds, RtEstimate *object,
                              RtExtentCost *out, RtError *error) {
-    Bench *bench = rt_alloc(1, sizeof(Bench));
-    Extents *extents = rt_alloc(count, sizeof(Extents));
-    Times times = {rounds, rt_alloc((count + 3) * rounds->rounds, sizeof(double)), count};
+    RT_ARENA(arena);
+    Bench *bench = rt_arena_alloc(&arena, 1, sizeof(Bench));
+    Extents *extents = rt_arena_alloc(&arena, count, sizeof(Extents));
+    Times times = {rounds, rt_arena_alloc(&arena, (count + 3) * rounds->rounds, sizeof(double)), count};
     RtStatus status = RT_OK;
-    if (!bench || !extents || !times.seconds) {
-        status = rt_fail_memory(error, "timing extents", sizeof(Bench));
-    }
-    if (status == RT_OK) status = rt_crossings_alloc(population->geometry, &bench->crossings, error);
-    if (status == RT_OK) fill_bench(bench, population, rounds->seed);
+    RT_TRY(rt_arena_check(&arena, "timing extents", error));
+    RT_TRY(rt_crossings_alloc(population->geometry, &bench->crossings, error));
+    fill_bench(bench, population, rounds->seed);
     for (size_t c = 0; status == RT_OK && c < count; c++) {
-        status = fit_extents(&extents[c], bench, choices[c], error);
+        status = fit_extents(&extents[c], bench, choices[c], &arena, error);
     }
     if (status == RT_OK) status = run(&times, bench, extents, error);
     if (status == RT_OK) {
@@ -191,10 +191,6 @@ RtStatus rt_extent_cost_time(const RtPopulation *population, const RtExtentChoic
         *object = rt_estimate(row(&times, count), rounds->rounds);
         if (bench->chords.count == 0) *object = rt_estimate_exactly((double)NAN);
     }
-    for (size_t c = 0; extents && c < count; c++) rt_extent_set_clear(&extents[c].set);
-    rt_free(times.seconds);
-    rt_free(extents);
-    if (bench) rt_free(bench->crossings);
-    rt_free(bench);
+    rt_free(bench->crossings);
     return status;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Every accelerator, on any number of threads and at any scale: no array overflows, and the structure does
  * not depend on threads. */
+#include "clock_testing.h"
 #include "equivalence_testing.h"
 
 #include "core/base/random.h"
@@ -57,19 +58,34 @@ RT_TEST(few_objects_on_several_threads_make_the_structure_of_one_at_every_settin
 }
 
 RT_TEST(many_objects_on_many_threads_make_the_structure_of_one) {
-    static const char *const specs[] = {
-        "bvh",         "wide",           "bvh:build=spatial", "kd",
-        "bvh:bins=64", "bvh:build=lbvh", "bvh:build=ploc",    "clusters:method=sah",
-        "light+bvh",   "item+bvh"};
+    static const char *const specs[] = {"bvh",
+                                        "wide",
+                                        "bvh:build=spatial",
+                                        "kd",
+                                        "bvh:bins=64",
+                                        "bvh:build=lbvh",
+                                        "bvh:build=ploc",
+                                        "clusters:method=sah",
+                                        "light+bvh",
+                                        "item+bvh",
+                                        "bvh:build=lbvh,reinsertion=3"};
     static const struct {
         uint32_t objects;
         size_t specs;
         int threads[3];
-    } cases[] = {{4097, 10, {65}}, {33000, 10, {255}}, {100000, 2, {128}}};
+    } cases[] = {{4097, 11, {65}}, {33000, 11, {255}}, {100000, 2, {128}}};
     for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
         OWNED_SCENE scene = make_triangles(cases[c].objects, 1, 0.005f);
         for (size_t i = 0; i < cases[c].specs; i++) assert_same_on(specs[i], &scene, cases[c].threads);
     }
+}
+
+RT_TEST(a_build_on_one_thread_stays_there) {
+    OWNED_SCENE scene = make_triangles(30000, 1, 0.005f);
+    Labour before = labour_so_far();
+    rt_accel_destroy(open_available(&scene, "bvh:build=lbvh,reinsertion=3", 1));
+    Labour labour = labour_since(before);
+    assert_true(labour.others < 0.05 * labour.own);
 }
 
 /* ---- scales ---- */

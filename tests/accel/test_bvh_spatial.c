@@ -181,37 +181,40 @@ RT_TEST(degenerate_scenes_are_built) {
 
 /* Enough objects for all threads to build the top, and for groups of more than SMALL references. */
 RT_TEST(the_tree_is_the_same_bit_for_bit_on_any_number_of_threads) {
+    const RtTreeOptions options = {
+        .method = RT_TREE_SPATIAL,
+        .spatial = {
+            .bins = 16, .alpha = 1e-5, .budget = 1.5, .leaf = 8, .traversal = 1, .limit = UINT64_MAX}};
     OWNED_SCENE scene = make_slivers(12000, 7, 1, 0);
-    RtSpatial how = {
-        .bins = 16, .alpha = 1e-5, .budget = 1.5, .leaf = 8, .traversal = 1, .limit = UINT64_MAX};
-    RtTree one, other;
-    assert_ok(rt_tree_spatial(&one, &scene.geometry, &how, 1, error));
+    OWNED_TREE one = {0};
+    assert_ok(rt_tree_build(&one, &scene.geometry, &options, 1, error));
     assert_true(one.split_refs);
     assert_tree(&one);
     for (int threads = 2; threads <= 5; threads++) {
-        assert_ok(rt_tree_spatial(&other, &scene.geometry, &how, threads, error));
+        OWNED_TREE other = {0};
+        assert_ok(rt_tree_build(&other, &scene.geometry, &options, threads, error));
         assert_int_equal(one.used, other.used);
         assert_true(other.split_refs);
         assert_memory_equal(one.nodes, other.nodes, one.used * sizeof(RtTreeNode));
-        rt_tree_clear(&other);
     }
-    rt_tree_clear(&one);
 }
 
 RT_TEST(what_may_take_too_much_is_refused_with_what_would_fit) {
     OWNED_SCENE scene = make_slivers(1000, 5, 1, 0);
-    RtSpatial how = {.bins = 16, .alpha = 0, .budget = 4, .leaf = 8, .traversal = 1, .limit = 300000};
+    RtTreeOptions options = {
+        .method = RT_TREE_SPATIAL,
+        .spatial = {.bins = 16, .alpha = 0, .budget = 4, .leaf = 8, .traversal = 1, .limit = 300000}};
     RtTree tree;
     RtError refusal;
-    assert_int_equal(rt_tree_spatial(&tree, &scene.geometry, &how, 1, &refusal), RT_BAD_INPUT);
+    assert_int_equal(rt_tree_build(&tree, &scene.geometry, &options, 1, &refusal), RT_BAD_INPUT);
     const char *fits = strstr(refusal.message, "budget=");
     assert_non_null(fits);
-    how.budget = atof(fits + strlen("budget="));
-    assert_in_range((int64_t)how.budget, 1, 3);
-    assert_ok(rt_tree_spatial(&tree, &scene.geometry, &how, 1, error));
+    options.spatial.budget = atof(fits + strlen("budget="));
+    assert_in_range((int64_t)options.spatial.budget, 1, 3);
+    assert_ok(rt_tree_build(&tree, &scene.geometry, &options, 1, error));
     rt_tree_clear(&tree);
-    how.limit = 1000;
-    assert_bad_input(rt_tree_spatial(&tree, &scene.geometry, &how, 1, error), "another build");
+    options.spatial.limit = 1000;
+    assert_bad_input(rt_tree_build(&tree, &scene.geometry, &options, 1, error), "another build");
 }
 
 RT_TEST(every_allocation_may_fail) {

@@ -57,22 +57,6 @@ RT_TEST(objects_share_a_leaf_where_that_costs_no_more) {
     assert_int_equal(one->hierarchy.node_count, 1);
 }
 
-static void count_box(void *context, const RtBoxView *view) {
-    uint32_t *at_depth = context;
-    assert_false(rt_box_is_empty(*view->box));
-    at_depth[view->depth]++;
-}
-
-RT_TEST(pictures_get_every_node_with_its_depth) {
-    OWNED_SCENE scene = make_row(4, 4);
-    OWNED_ACCEL RtClusters *self = open_valid(&scene, "clusters");
-    uint32_t at_depth[3] = {0};
-    self->base.ops->each_box(&self->base, (RtBoxViewer){count_box, at_depth});
-    assert_int_equal(at_depth[0], 1);
-    assert_int_equal(at_depth[1], 2);
-    assert_int_equal(at_depth[2], 4);
-}
-
 RT_TEST(groups_of_spheres_get_tight_extents) {
     OWNED_SCENE scene = make_row(2, 4); /* a capsule 6 long, 2 thick */
     OWNED_ACCEL RtClusters *self = open_valid(&scene, "clusters:extent=sphere");

@@ -61,14 +61,14 @@ RT_TEST(fitted_extents_are_inflated_by_their_rounding) {
     OWNED_OBJECT(g, sphere, rt_vec3(1, 0, 0), 1);
     const RtGroup group = {&g, &id, 1, g.box};
     for (RtExtentKind kind = RT_EXTENT_SPHERE; kind <= RT_EXTENT_SLABS; kind++) {
+        RT_ARENA(arena);
         RtExtentSet set;
-        assert_ok(rt_extent_set_init(&set, kind, 3, 1, error));
+        assert_ok(rt_extent_set_init(&set, &arena, kind, 3, 1, error));
         rt_extent_fit(&set, 0, &group);
         double by = kind == RT_EXTENT_SPHERE ? set.balls[0].radius - 1
                     : kind == RT_EXTENT_OBB  ? set.oriented[0].half[0] - 1
                                              : -(double)set.slabs[0].lo;
         assert_true(by >= least && by <= most);
-        rt_extent_set_clear(&set);
     }
 }
 

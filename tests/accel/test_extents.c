@@ -6,11 +6,6 @@
 
 /* ---- counters by hand ---- */
 
-/* At x = 0, 10 and 20. */
-static RtScene three_spheres_in_a_row(void) {
-    return make_row(3, 10);
-}
-
 static RtTally count(const RtScene *scene, const char *spec, RtVec3 org, RtVec3 dir, bool any) {
     RtTally tallies[RT_RAY_KIND_COUNT] = {0};
     RtRay ray = {.org = org, .dir = dir, .tmin = 0, .tmax = INFINITY};
@@ -39,7 +34,7 @@ RT_TEST(a_ray_along_three_spheres_tests_three_extents_and_the_objects_not_yet_be
                 {25, -1, false, HITS(3, 3)}, /* every one is nearer than the last */
                 {25, -1, true, HITS(1, 1)},  /* any hit will do: the first ends the search */
                 {5, 1, false, HITS(3, 1)}};  /* from between the first two: the first is behind */
-    OWNED_SCENE scene = three_spheres_in_a_row();
+    OWNED_SCENE scene = make_row(3, 10);
     for (int s = 0; s < SPEC_COUNT; s++) {
         for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
             const RtTally tally =
@@ -50,7 +45,7 @@ RT_TEST(a_ray_along_three_spheres_tests_three_extents_and_the_objects_not_yet_be
 }
 
 RT_TEST(a_ray_by_the_corner_of_the_boxes_meets_the_boxes_only) {
-    OWNED_SCENE scene = three_spheres_in_a_row();
+    OWNED_SCENE scene = make_row(3, 10);
     RtVec3 org = rt_vec3(-5, 0.9f, 0.9f), dir = rt_vec3(1, 0, 0);
     static const uint64_t object_tests[SPEC_COUNT] = {3, 3, 0, 3, 3, 0, 0};
     for (int s = 0; s < SPEC_COUNT; s++) {
@@ -64,7 +59,7 @@ RT_TEST(a_ray_by_the_corner_of_the_boxes_meets_the_boxes_only) {
 /* ---- describe and validate ---- */
 
 RT_TEST(describe_tells_references_bytes_and_expected_tests) {
-    OWNED_SCENE scene = three_spheres_in_a_row();
+    OWNED_SCENE scene = make_row(3, 10);
     /* The scene's box is 22 x 2 x 2, of half area 92; a sphere's box has 12, a sphere 2 pi. */
     static const double expected[SPEC_COUNT] = {
         36.0 / 92, 36.0 / 92, 6 * 3.14159265358979 / 92, 36.0 / 92, NAN, NAN, NAN};
@@ -89,13 +84,12 @@ RT_TEST(describe_tells_references_bytes_and_expected_tests) {
 }
 
 static void count_box(void *context, const RtBoxView *view) {
-    assert_int_equal(view->depth, 0);
-    assert_true(view->leaf);
+    assert_true(view->depth == 0 && view->leaf);
     ++*(uint32_t *)context;
 }
 
 RT_TEST(each_box_gives_the_box_of_every_object) {
-    OWNED_SCENE scene = three_spheres_in_a_row();
+    OWNED_SCENE scene = make_row(3, 10);
     uint32_t boxes = 0;
     OWNED_ACCEL RtAccel *accel = open_accel(&scene, "extents");
     accel->ops->each_box(accel, (RtBoxViewer){count_box, &boxes});
@@ -103,7 +97,7 @@ RT_TEST(each_box_gives_the_box_of_every_object) {
 }
 
 RT_TEST(validate_names_the_extent_that_is_too_small) {
-    OWNED_SCENE scene = three_spheres_in_a_row();
+    OWNED_SCENE scene = make_row(3, 10);
     OWNED_ACCEL RtExtents *sphere = open_valid(&scene, "extents:kind=sphere");
     OWNED_ACCEL RtExtents *obb = open_valid(&scene, "extents:kind=obb");
     OWNED_ACCEL RtExtents *slabs = open_valid(&scene, "extents:kind=slabs,slabs=5");

@@ -172,22 +172,4 @@ RT_TEST(every_kind_answers_like_brute_among_the_least_numbers) {
     compare_with_brute(&scene, rays);
 }
 
-RT_TEST(a_scene_without_objects_is_missed) {
-    OWNED_SCENE scene;
-    rt_scene_init(&scene);
-    assert_ok(rt_scene_finish(&scene, error));
-    RtRay ray = {.dir = {{0, 0, 1}}, .tmax = INFINITY};
-    for (int s = 0; s < SPEC_COUNT; s++) {
-        RtHit hit;
-        RtDescription description;
-        OWNED_ACCEL RtAccel *accel = open_accel(&scene, specs[s]);
-        assert_ok(accel->ops->validate(accel, error));
-        accel->ops->describe(accel, &description);
-        assert_int_equal(description.references, 0);
-        OWNED_QUERY query = open_query(accel);
-        rt_nearest(&query, &ray, 1, &hit, NULL);
-        assert_int_equal(hit.object, RT_NO_OBJECT);
-    }
-}
-
 RT_TESTS(extents_exact, NULL, NULL)

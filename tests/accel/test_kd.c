@@ -35,7 +35,7 @@ RT_TEST(two_spheres_are_split_as_by_hand) {
     assert_split(kd, 2, 0, 3);
     assert_lists(kd, 3, 0, 0);
     assert_lists(kd, 4, 1, 1);
-    rt_kd_describe(&kd->base, &d);
+    rt_accel_describe(&kd->base, &d);
     rt_accel_destroy(&kd->base);
     assert_int_equal(d.interior, 2);
     assert_int_equal(d.leaves, 3);
@@ -143,7 +143,7 @@ RT_TEST(validate_names_each_invariant_that_is_broken) {
     assert_true(*last != 63);
     assert_broken_by(accel, *last, 63, "not just those it has a part in");
     assert_broken_by(accel, *root, ((RtKdNode){.first = 0, .link = RT_KD_LEAF}), "has no parent");
-    assert_ok(rt_kd_validate(accel, error));
+    assert_ok(rt_accel_validate(accel, error));
 }
 
 RT_TEST(a_tree_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {

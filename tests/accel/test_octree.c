@@ -33,7 +33,7 @@ RT_TEST(a_split_by_cost_is_nearer_to_the_objects) {
     OWNED_ACCEL RtOctree *cost = open_valid(&apart, "octree:split=cost");
     assert_true(centre->nodes[0].split.x == 4.5f);
     assert_true(cost->nodes[0].split.x < 4.5f && cost->nodes[0].split.x >= 1);
-    assert_ok(rt_octree_validate(&cost->base, error));
+    assert_ok(rt_accel_validate(&cost->base, error));
 }
 
 /* Thirty objects with the same box cannot be separated, so no depth is spent on them. */
@@ -81,7 +81,7 @@ RT_TEST(validate_names_each_invariant_that_is_broken) {
     assert_true(leaf->count > 1);
     assert_broken_by(accel, tree->ids[leaf->first], tree->ids[leaf->first + 1], "not ascending ids");
     assert_broken_by(accel, leaf->count, leaf->count - 1, "leaves, but");
-    assert_ok(rt_octree_validate(accel, error));
+    assert_ok(rt_accel_validate(accel, error));
 }
 
 static void parse(const char *parameters, RtValue *values) {
@@ -134,7 +134,7 @@ RT_TEST(the_estimate_is_near_what_a_build_takes) {
         parse(specs[i], values);
         double estimate = refused_bytes("octree", 1 << 20, &scene, values, &depth);
         assert_ok(build_within("octree", 1 << 28, &scene, values, &accel, error));
-        rt_octree_describe(accel, &description);
+        rt_accel_describe(accel, &description);
         rt_accel_destroy(accel);
         double ratio = estimate / (double)description.bytes;
         if (!(ratio > 0.75 && ratio < 1.33)) fail_msg("%s: %g of what is taken", specs[i], ratio);

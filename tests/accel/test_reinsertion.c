@@ -5,12 +5,11 @@
 /* A binned tree, and bad ones: medians, and chains in the order of ids. */
 enum { BINNED, MEDIANS, CHAIN, KINDS };
 
-static RtTree make_tree(const RtBox *boxes, uint32_t count, int kind) {
+static RtTree make_tree(RtBox *boxes, uint32_t count, int kind) {
+    const RtTreeOptions options = {.method = kind == BINNED ? RT_TREE_BINNED : RT_TREE_MEDIAN,
+                                   .spatial.bins = 16};
+    if (kind != CHAIN) return build_tree(boxes, count, options, 1);
     RtTree tree;
-    if (kind != CHAIN) {
-        assert_ok(rt_tree_topdown(&tree, boxes, count, kind == BINNED ? 16 : 0, 1, error));
-        return tree;
-    }
     assert_ok(rt_tree_init_leaves(&tree, boxes, count, error));
     for (uint32_t i = 1, top = 0; i < count; i++) top = rt_tree_unite(&tree, top, i);
     return tree;
@@ -230,23 +229,6 @@ RT_TEST(a_tree_that_is_too_deep_is_limited_first) {
     assert_int_equal(assert_tree(&tree), COUNT - 1);
     assert_ok(rt_tree_reinsert(&tree, 1, 1, 0, error));
     assert_true(assert_tree(&tree) < 2 * RT_TREE_MAX_DEPTH);
-}
-
-RT_TEST(every_allocation_may_fail) {
-    OWNED_MEMORY RtBox *boxes = make_boxes(100, 5);
-    OWNED_TREE tree = make_tree(boxes, 100, MEDIANS);
-    int64_t live = rt_alloc_live();
-    RtStatus status = RT_NO_MEMORY;
-    for (uint64_t n = 1; status != RT_OK; n++) {
-        RtError failure = {RT_OK, ""};
-        rt_alloc_fail_at(n);
-        status = rt_tree_reinsert(&tree, 2, 0.5, 1, &failure);
-        rt_alloc_fail_at(0);
-        if (status != RT_OK) assert_int_equal(status, RT_NO_MEMORY);
-        assert_int_equal(rt_alloc_live(), live);
-        assert_same_references(&tree, boxes);
-        assert_in_range(n, 1, 10);
-    }
 }
 
 RT_TESTS(reinsertion, NULL, NULL)

@@ -9,6 +9,8 @@
 static const RtWideLayout plain = {
     .leaf_limit = 4, .block_cost = 1, .huge_pages = true, .threads = 1, .limit = UINT64_MAX};
 
+static const RtTreeOptions binned = {.method = RT_TREE_BINNED, .spatial.bins = 16};
+
 /* Nodes and leaves, from `ref` on, in bytes. */
 static uint64_t bytes_below(const RtWideTree *wide, RtWideRef ref) {
     uint32_t blocks = rt_wide_has_more(ref) ? 2 : 1;
@@ -31,8 +33,7 @@ static RtWideTree lay_out(const RtScene *scene, RtTree *tree, const RtWideLayout
 
 RT_TEST(a_leaf_is_next_to_its_node_or_another_leaf) {
     OWNED_SCENE scene = open_scene("random:n=5000,shape=mixed");
-    OWNED_TREE tree;
-    assert_ok(rt_tree_topdown(&tree, scene.geometry.boxes, scene.geometry.object_count, 16, 1, error));
+    OWNED_TREE tree = build_tree(scene.geometry.boxes, scene.geometry.object_count, binned, 1);
     OWNED(rt_wide_clear) RtWideTree wide = lay_out(&scene, &tree, &plain);
     const RtWideNode *root = rt_wide_node(&wide, 0);
     uint64_t end = sizeof(RtWideNode);
@@ -49,7 +50,6 @@ RT_TEST(a_leaf_is_next_to_its_node_or_another_leaf) {
 /* Four triangles in a row, with gaps, share a block: halves of them have a little less area, and empty lanes.
  */
 RT_TEST(a_block_is_filled_where_halves_have_hardly_less_area) {
-    OWNED_TREE tree;
     OWNED_SCENE scene = begin_scene();
     for (int i = 0; i < 16; i++) {
         float x = 1.1f * (float)i;
@@ -57,7 +57,7 @@ RT_TEST(a_block_is_filled_where_halves_have_hardly_less_area) {
         assert_ok(rt_scene_add_triangle(&scene, 0, vertices, NULL, error));
     }
     assert_ok(rt_scene_finish(&scene, error));
-    assert_ok(rt_tree_topdown(&tree, scene.geometry.boxes, 16, 0, 1, error));
+    OWNED_TREE tree = build_tree(scene.geometry.boxes, 16, (RtTreeOptions){.method = RT_TREE_MEDIAN}, 1);
     OWNED(rt_wide_clear) RtWideTree wide = lay_out(&scene, &tree, &plain);
     assert_int_equal(wide.node_count, 1);
     assert_int_equal(wide.bytes, sizeof(RtWideNode) + 4 * sizeof(RtWideTriangles));
@@ -66,9 +66,8 @@ RT_TEST(a_block_is_filled_where_halves_have_hardly_less_area) {
 
 RT_TEST(one_object_is_a_leaf_below_a_root_and_what_takes_too_much_is_refused) {
     OWNED_SCENE scene = open_scene("random:n=1,shape=triangle");
-    OWNED_TREE tree;
+    OWNED_TREE tree = build_tree(scene.geometry.boxes, 1, binned, 1);
     RtWideLayout how = plain;
-    assert_ok(rt_tree_topdown(&tree, scene.geometry.boxes, 1, 16, 1, error));
     RtWideTree wide = lay_out(&scene, &tree, &plain);
     assert_int_equal(wide.node_count, 1);
     assert_int_equal(wide.bytes, sizeof(RtWideNode) + sizeof(RtWideTriangles));
@@ -83,13 +82,12 @@ RT_TEST(one_object_is_a_leaf_below_a_root_and_what_takes_too_much_is_refused) {
 /* Trees of each method number their nodes in another order. */
 RT_TEST(a_tree_is_laid_out_alike_when_its_leaves_have_no_nodes) {
     OWNED_SCENE scene = open_scene("random:n=5000,shape=mixed");
-    const RtBox *boxes = scene.geometry.boxes;
+    const RtTreeOptions methods[3] = {
+        binned, {.method = RT_TREE_LBVH, .bits = 21}, {.method = RT_TREE_SWEEP}};
+    RtBox *boxes = scene.geometry.boxes;
     for (uint32_t variant = 0; variant < 6; variant++) {
         uint32_t count = variant < 3 ? 5000 : variant - 2;
-        OWNED_TREE tree;
-        if (variant % 3 == 0) assert_ok(rt_tree_topdown(&tree, boxes, count, 16, 1, error));
-        if (variant % 3 == 1) assert_ok(rt_tree_lbvh(&tree, boxes, count, 21, 1, error));
-        if (variant % 3 == 2) assert_ok(rt_tree_sweep(&tree, boxes, count, error));
+        OWNED_TREE tree = build_tree(boxes, count, methods[variant % 3], 1);
         RtWideTree before, after;
         assert_ok(rt_wide_lay_out(&before, &tree, &scene.geometry, &plain, error));
         assert_ok(rt_tree_drop_leaves(&tree, boxes, error));
@@ -106,14 +104,15 @@ RT_TEST(a_tree_is_laid_out_alike_when_its_leaves_have_no_nodes) {
 
 RT_TEST(split_references_keep_their_nodes_and_so_does_a_tree_if_memory_is_short) {
     OWNED_SCENE scene = open_scene("random:n=200,shape=triangle,radius=3");
-    const RtSpatial how = {.bins = 16, .budget = 2, .leaf = 4, .traversal = 1, .limit = UINT64_MAX};
-    OWNED_TREE split, whole;
-    assert_ok(rt_tree_spatial(&split, &scene.geometry, &how, 1, error));
+    const RtTreeOptions how = {
+        .method = RT_TREE_SPATIAL,
+        .spatial = {.bins = 16, .budget = 2, .leaf = 4, .traversal = 1, .limit = UINT64_MAX}};
+    OWNED_TREE split = {0}, whole = build_tree(scene.geometry.boxes, 200, binned, 1);
+    assert_ok(rt_tree_build(&split, &scene.geometry, &how, 1, error));
     const uint32_t used = split.used;
     assert_true(split.split_refs);
     assert_ok(rt_tree_drop_leaves(&split, scene.geometry.boxes, error));
     assert_int_equal(split.used, used);
-    assert_ok(rt_tree_topdown(&whole, scene.geometry.boxes, 200, 16, 1, error));
     for (uint64_t n = 1; n <= 2; n++) {
         RtError refusal;
         rt_alloc_fail_at(n);

@@ -25,6 +25,13 @@ static inline RtBox *make_boxes(uint32_t count, uint64_t seed) {
     return boxes;
 }
 
+static inline RtTree build_tree(RtBox *boxes, uint32_t count, RtTreeOptions options, int threads) {
+    const RtGeometry geometry = {.boxes = boxes, .object_count = count};
+    RtTree tree;
+    assert_ok(rt_tree_build(&tree, &geometry, &options, threads, error));
+    return tree;
+}
+
 /* Marks the nodes from `at` down, checks boxes, and returns the height. */
 static inline uint32_t height_of(const RtTree *tree, uint32_t at, uint32_t *seen) {
     const RtTreeNode *node = &tree->nodes[at];
