@@ -133,10 +133,10 @@ RT_TEST(boxes_of_user_geometry_grow_even_among_the_least_numbers) {
 RT_TEST(the_first_error_that_embree_reports_is_told) {
     OWNED_SCENE_OF(scene, sphere, rt_vec3(0, 0, 0), 1);
     OWNED_ACCEL RtEmbree *embree = open_accel(&scene, "embree:mode=user");
-    assert_ok(rt_embree_device_check(&embree->device, error));
+    assert_ok(rt_embree_check(&embree->base, error));
     RTCScene empty = rtcNewScene(embree->device.device);
     rtcAttachGeometry(empty, NULL);
-    assert_fails_with(rt_embree_device_check(&embree->device, error), RT_MISMATCH, "invalid argument");
+    assert_fails_with(rt_embree_check(&embree->base, error), RT_MISMATCH, "invalid argument");
     rtcReleaseScene(empty);
 }
 
