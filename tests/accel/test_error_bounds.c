@@ -8,7 +8,7 @@
 #include "random_testing.h"
 
 #include "accel/extent.h"
-#include "accel/sphere_prefilter.h"
+#include "accel/batch.h"
 
 static const double within = 31.0 / 32, beyond = 33.0 / 32;
 
