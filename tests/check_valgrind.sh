@@ -18,7 +18,7 @@ text csv npy table
 shape bounds csg csg_trees hits shape solid_cases solid_faces triangle
 scene csg_scene formula mesh mesh_damage nff yaml
 scenes places
-accel best bvh counters extents grid leaves nested_grid overlap overlays predictions trees wide_layout
+accel bvh counters extents grid leaves nested_grid overlap overlays predictions trees wide_layout
 END
 }
 [ $# = 0 ] || groups() { echo "$@"; }
