@@ -1,6 +1,229 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What accelerators share: the test of all objects, and sums over boxes. */
+/* Stacks of accelerators, overlays over a base: building, describing and querying them; and what accelerators
+ * share: the test of all objects, and sums over boxes. */
 #include "accel/kernel.h"
+#include "accel/remote.h"
+#include "core/base/clock.h"
+#include "core/base/parallel.h"
+
+#include <assert.h>
+
+/* ---- building ---- */
+
+uint64_t rt_accel_byte_limit(const RtScene *scene) {
+    const uint64_t bytes = scene->geometry.object_count * RT_ACCEL_OBJECT_BYTES;
+    return bytes > RT_ACCEL_MAX_BYTES ? bytes : RT_ACCEL_MAX_BYTES;
+}
+
+static void destroy_layer(RtAccel *accel) {
+    if (accel->ops->destroy) accel->ops->destroy(accel);
+    rt_arena_clear(&accel->memory);
+    rt_free(accel);
+}
+
+RtStatus rt_accel_build_layer(const RtAccelOps *ops, const RtBuild *what, RtAccel *below, RtAccel **out,
+                              RtError *error) {
+    assert(ops->bytes >= sizeof(RtAccel));
+    RtAccel *accel = rt_alloc(1, ops->bytes);
+    if (!accel) return rt_fail_memory(error, ops->name, ops->bytes);
+    *accel = (RtAccel){.ops = ops,
+                       .scene = what->scene,
+                       .below = below,
+                       .exact = !below || below->exact,
+                       .absolute = below && below->absolute,
+                       .counts = !below || below->counts};
+    RtStatus status = ops->build ? ops->build(accel, what, error) : RT_OK;
+    if (status == RT_OK) status = rt_arena_check(&accel->memory, ops->name, error);
+    if (status == RT_OK)
+        *out = accel;
+    else
+        destroy_layer(accel);
+    return status;
+}
+
+static RtStatus build_layers(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
+                             RtError *error) {
+    RtAccel *top = NULL;
+    double start = rt_wall_seconds();
+    *out = NULL;
+    RT_TRY(rt_spec_available(spec, error));
+    for (uint32_t i = spec->layer_count; i-- > 0;) {
+        const RtBuild what = {scene, spec->layers[i].values, threads, rt_accel_byte_limit(scene)};
+        RtStatus status = rt_accel_build_layer(spec->layers[i].ops, &what, top, &top, error);
+        if (status != RT_OK) {
+            rt_accel_destroy(top);
+            return status;
+        }
+        top->build_seconds = rt_wall_seconds() - start;
+    }
+    *out = top;
+    return RT_OK;
+}
+
+RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
+                             RtError *error) {
+    const RtStatus status = build_layers(spec, scene, threads, out, error);
+    const bool too_large = status == RT_NO_MEMORY && rt_memory_limit_was_reached();
+    return too_large && rt_thread_count(threads) > 1 ? build_layers(spec, scene, 1, out, error) : status;
+}
+
+RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
+                        RtError *error) {
+    return rt_spec_is_remote(spec) ? rt_remote_build(spec, scene, threads, out, error)
+                                   : rt_accel_build_here(spec, scene, threads, out, error);
+}
+
+RtStatus rt_accel_open_on(const char *spec, const RtScene *scene, int threads, RtAccel **out,
+                          RtError *error) {
+    RtSpec parsed;
+    *out = NULL;
+    RT_TRY(rt_spec_parse(spec, &parsed, error));
+    return rt_accel_build(&parsed, scene, threads, out, error);
+}
+
+RtStatus rt_accel_open(const char *spec, const RtScene *scene, RtAccel **out, RtError *error) {
+    return rt_accel_open_on(spec, scene, 0, out, error);
+}
+
+bool rt_accel_refuses(RtStatus status) {
+    return status == RT_BAD_INPUT || (status == RT_NO_MEMORY && rt_memory_limit_was_reached());
+}
+
+void rt_accel_destroy(RtAccel *accel) {
+    while (accel) {
+        RtAccel *below = accel->below;
+        destroy_layer(accel);
+        accel = below;
+    }
+}
+
+/* ---- the whole stack ---- */
+
+const RtAccel *rt_accel_base(const RtAccel *accel) {
+    while (accel->below) accel = accel->below;
+    return accel;
+}
+
+void rt_accel_describe(const RtAccel *accel, RtDescription *out) {
+    accel->ops->describe(accel, out);
+    out->build = accel->build_tally;
+    while ((accel = accel->below)) {
+        RtDescription own;
+        accel->ops->describe(accel, &own);
+        out->interior += own.interior;
+        out->leaves += own.leaves;
+        out->empty_leaves += own.empty_leaves;
+        out->references += own.references;
+        out->bytes += own.bytes;
+        rt_tally_add(&out->build, &accel->build_tally);
+        if (own.depth > out->depth) out->depth = own.depth;
+#define COPY_PREDICTION(name, meaning) out->name = own.name;
+        RT_PREDICTIONS(COPY_PREDICTION)
+        RT_QUALITIES(COPY_PREDICTION)
+#undef COPY_PREDICTION
+    }
+}
+
+RtStatus rt_accel_validate(const RtAccel *accel, RtError *error) {
+    for (; accel; accel = accel->below) {
+        if (accel->ops->validate) RT_TRY(accel->ops->validate(accel, error));
+    }
+    return RT_OK;
+}
+
+RtStatus rt_accel_check(const RtAccel *accel, RtError *error) {
+    for (; accel; accel = accel->below) {
+        if (accel->ops->check) RT_TRY(accel->ops->check(accel, error));
+    }
+    return RT_OK;
+}
+
+RtStatus rt_accel_learn(RtAccel *accel, const RtRay *rays, const RtHit *hits, size_t count, RtError *error) {
+    for (; accel; accel = accel->below) {
+        if (accel->ops->learn) RT_TRY(accel->ops->learn(accel, rays, hits, count, error));
+    }
+    return RT_OK;
+}
+
+/* ---- queries ---- */
+
+/* Closes the layers above `end`. */
+static void close_layers(const RtQuery *query, const RtAccel *end) {
+    const RtScratch *scratch = query->scratch;
+    for (const RtAccel *layer = query->accel; layer != end; layer = layer->below, scratch++) {
+        if (layer->ops->close) layer->ops->close(layer, scratch->own);
+    }
+}
+
+/* Bytes of the scratch memory of a layer: whole cache lines. */
+static size_t scratch_stride(const RtAccel *layer) {
+    return (layer->scratch_bytes + RT_CACHE_LINE - 1) / RT_CACHE_LINE * RT_CACHE_LINE;
+}
+
+/* On failure nothing is left of the query. */
+static RtStatus open_layers(RtQuery *query, RtError *error) {
+    const RtScratch *scratch = query->scratch;
+    for (const RtAccel *layer = query->accel; layer; layer = layer->below, scratch++) {
+        RtStatus status = layer->ops->open ? layer->ops->open(layer, scratch->own, error) : RT_OK;
+        if (status == RT_OK) continue;
+        close_layers(query, layer);
+        query->accel = NULL;
+        rt_query_clear(query);
+        return status;
+    }
+    return RT_OK;
+}
+
+RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error) {
+    RtScratch scratch = {NULL, NULL};
+    size_t bytes = 0;
+    *query = (RtQuery){0};
+    RT_TRY(rt_crossings_alloc(&accel->scene->geometry, &scratch.crossings, error));
+    for (const RtAccel *layer = accel; layer; layer = layer->below) bytes += scratch_stride(layer);
+    if (bytes > 0 && !(scratch.own = rt_alloc(bytes, 1))) {
+        rt_free(scratch.crossings);
+        return rt_fail_memory(error, "the scratch memory of a query", bytes);
+    }
+    query->accel = accel;
+    uint32_t layers = 0;
+    for (const RtAccel *layer = accel; layer; layer = layer->below) {
+        query->scratch[layers++] = scratch;
+        if (scratch.own) scratch.own = (char *)scratch.own + scratch_stride(layer);
+    }
+    RT_TRY(open_layers(query, error));
+    if (bytes > 0) rt_query_begin(query);
+    return RT_OK;
+}
+
+void rt_query_clear(RtQuery *query) {
+    close_layers(query, NULL);
+    rt_free(query->scratch[0].own);
+    rt_free(query->scratch[0].crossings);
+    *query = (RtQuery){0};
+}
+
+void rt_query_begin(RtQuery *query) {
+    const RtScratch *scratch = query->scratch;
+    for (const RtAccel *layer = query->accel; layer; layer = layer->below, scratch++) {
+        if (layer->ops->begin) layer->ops->begin(layer, scratch->own);
+    }
+}
+
+void rt_nearest(RtQuery *query, const RtRay *rays, size_t count, RtHit *hits, RtTally *tallies) {
+    rt_trace_stream(query->accel, query->scratch, rays, count, hits, NULL, tallies);
+}
+
+void rt_occluded(RtQuery *query, const RtRay *rays, size_t count, bool *blocked, RtTally *tallies) {
+    enum { STREAM = 1024 };
+    uint32_t occluders[STREAM];
+    for (size_t first = 0; first < count; first += STREAM) {
+        size_t n = count - first < STREAM ? count - first : STREAM;
+        rt_trace_stream(query->accel, query->scratch, rays + first, n, NULL, occluders, tallies);
+        for (size_t i = 0; i < n; i++) blocked[first + i] = occluders[i] != RT_NO_OBJECT;
+    }
+}
+
+/* ---- what accelerators share ---- */
 
 RT_KERNEL bool test_all(const RtGeometry *geometry, const RtPreparedRay *ray, bool any, RtHit *best,
                         RtTally *tally) {

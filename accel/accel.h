@@ -19,8 +19,8 @@
  * in `rays` and `hits` once, in the layer that answers it, and in `passed_on` in each overlay that should
  * have.
  *
- * Specs are parsed in spec.c and find their accelerators in registry.c; layers.c stacks layers; queries.c
- * answers queries; plugin/ runs plugins in processes of their own. */
+ * Specs are parsed in spec.c and find their accelerators in registry.c; accel.c stacks layers and answers
+ * queries; plugin/ runs plugins in processes of their own. */
 #ifndef RT_ACCEL_ACCEL_H
 #define RT_ACCEL_ACCEL_H
 
@@ -369,6 +369,21 @@ static inline RtCrossing *rt_query_crossings(const RtQuery *query) {
  * on later rays alone. Called at the start of each unit of work that is the same on any number of threads: a
  * tile of a frame, a chunk of a ray set. Answers never depend on it. */
 void rt_query_begin(RtQuery *query);
+
+/* Calls one of the four kernels: answers to `hits` or, if that is NULL, to `occluders`; timed if `tallies` is
+ * NULL. */
+static inline void rt_trace_stream(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
+                                   size_t count, RtHit *hits, uint32_t *occluders, RtTally *tallies) {
+    const RtAccelOps *ops = accel->ops;
+    if (hits && tallies)
+        ops->nearest_counted(accel, scratch, rays, count, hits, tallies);
+    else if (hits)
+        ops->nearest(accel, scratch, rays, count, hits);
+    else if (tallies)
+        ops->occluded_counted(accel, scratch, rays, count, occluders, tallies);
+    else
+        ops->occluded(accel, scratch, rays, count, occluders);
+}
 
 /* Nearest hits of a stream of valid rays: timed if `tallies` is NULL, otherwise counted in
  * tallies[RT_RAY_KIND_COUNT]. */

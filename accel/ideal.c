@@ -7,8 +7,6 @@
  * against every object, as by brute, so every answer is right. */
 #include "accel/kernel.h"
 
-#include "core/base/memory.h"
-
 typedef struct Ideal {
     RtAccel base;
     const RtRay *rays; /* borrowed; NULL before `learn` */
@@ -16,16 +14,12 @@ typedef struct Ideal {
     size_t count;
 } Ideal;
 
-static void destroy(RtAccel *accel) {
-    rt_free(((Ideal *)accel)->objects);
-}
-
 static RtStatus learn(RtAccel *accel, const RtRay *rays, const RtHit *hits, size_t count, RtError *error) {
     Ideal *self = (Ideal *)accel;
-    uint32_t *objects = rt_alloc(count, sizeof(uint32_t));
-    if (!objects) return rt_fail_memory(error, "the answers of ideal", count * sizeof(uint32_t));
+    uint32_t *objects = rt_arena_alloc(&accel->memory, count, sizeof(uint32_t));
+    RT_TRY(rt_arena_check(&accel->memory, "the answers of ideal", error));
     for (size_t i = 0; i < count; i++) objects[i] = hits[i].object;
-    rt_free(self->objects);
+    rt_arena_free(&accel->memory, self->objects);
     self->rays = rays;
     self->objects = objects;
     self->count = count;
@@ -73,7 +67,6 @@ const RtAccelOps rt_ideal_ops = {
                "object tests",
     .paper = "none: a reference",
     .bytes = sizeof(Ideal),
-    .destroy = destroy,
     RT_KERNEL_OPS,
     .describe = describe,
     .validate = validate,

@@ -122,21 +122,16 @@ RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
 
 /* ---- overlays ---- */
 
-/* Hands a stream of rays down to the layer below. `tallies` may be NULL. `query` is nearest or occluded,
- * whose answers are of type Answer. */
-#define RT_DEFINE_HAND_DOWN(query, Answer)                                                                   \
-    RT_KERNEL void rt_hand_down_##query(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,   \
-                                        size_t count, Answer *answers, RtTally *tallies) {                   \
-        const RtAccel *below = accel->below;                                                                 \
-        scratch++; /* of the layer below */                                                                  \
-        if (tallies) {                                                                                       \
-            below->ops->query##_counted(below, scratch, rays, count, answers, tallies);                      \
-        } else {                                                                                             \
-            below->ops->query(below, scratch, rays, count, answers);                                         \
-        }                                                                                                    \
-    }
-RT_DEFINE_HAND_DOWN(nearest, RtHit)
-RT_DEFINE_HAND_DOWN(occluded, uint32_t)
+/* Hand a stream of rays down to the layer below. `tallies` may be NULL. */
+RT_KERNEL void rt_hand_down_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
+                                    size_t count, RtHit *hits, RtTally *tallies) {
+    rt_trace_stream(accel->below, scratch + 1, rays, count, hits, NULL, tallies);
+}
+
+RT_KERNEL void rt_hand_down_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
+                                     size_t count, uint32_t *occluders, RtTally *tallies) {
+    rt_trace_stream(accel->below, scratch + 1, rays, count, NULL, occluders, tallies);
+}
 
 /* Passes on one shadow ray that the overlay cannot decide; returns its occluder. */
 RT_KERNEL uint32_t rt_pass_on_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *ray,

@@ -131,10 +131,3 @@ RtStatus rt_accel_find(const char *name, const RtAccelOps **out, RtError *error)
                    "plugin needs %s",
                    name, suggestion, *suggestion ? "" : ";", rt_accel_plugin_hint);
 }
-
-const RtBestOf *rt_best_find(const RtAccelOps *ops, const char *name) {
-    for (size_t i = 0; i < ops->best_count; i++) {
-        if (strcmp(ops->bests[i].name, name) == 0) return &ops->bests[i];
-    }
-    return NULL;
-}

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Specs: "name:key=value,key=value", with '+' between layers. */
+/* Specs: "name:key=value,key=value", with '+' between layers. And names for the fastest of several
+ * (RtBestOf), which stand for all combinations of the choices listed there, those of the first parameter
+ * varying fastest. */
 #include "accel/accel.h"
 #include "accel/isa.h"
 
@@ -101,4 +103,73 @@ void rt_spec_format(const RtSpec *spec, char *out) {
                          RT_MAX_SPEC_CHARS - used);
         used = strlen(out);
     }
+}
+
+/* ---- the best of several ---- */
+
+const RtBestOf *rt_best_find(const RtAccelOps *ops, const char *name) {
+    for (size_t i = 0; i < ops->best_count; i++) {
+        if (strcmp(ops->bests[i].name, name) == 0) return &ops->bests[i];
+    }
+    return NULL;
+}
+
+bool rt_best_is(const char *text) {
+    const char *colon = strchr(text, ':');
+    return colon && colon > text && colon[1] && !strpbrk(text, "=,+");
+}
+
+/* Writes the spec of combination `n` to out[0..RT_MAX_SPEC_CHARS); false if there are no more. */
+static bool combine(const RtAccelOps *ops, const RtBestOf *best, size_t n, char *out) {
+    int used = snprintf(out, RT_MAX_SPEC_CHARS, "%s", ops->name);
+    for (const char *key = best->settings; *key;) {
+        size_t key_chars = strcspn(key, "=") + 1, all = key_chars + strcspn(key + key_chars, ",");
+        size_t choices = 1;
+        for (size_t i = key_chars; i < all; i++) choices += key[i] == '|';
+        const char *choice = key + key_chars;
+        for (size_t k = n % choices; k > 0; k--) choice += strcspn(choice, "|") + 1;
+        used += snprintf(out + used, (size_t)(RT_MAX_SPEC_CHARS - used), "%c%.*s%.*s",
+                         key == best->settings ? ':' : ',', (int)key_chars, key, (int)strcspn(choice, "|,"),
+                         choice);
+        n /= choices;
+        key += all + (key[all] == ',');
+    }
+    return n == 0;
+}
+
+static RtStatus fail_unknown(const RtAccelOps *ops, const char *text, RtError *error) {
+    char names[128] = "";
+    for (size_t i = 0, used = 0; i < ops->best_count && used < sizeof names; i++)
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s:%s", i > 0 ? ", " : "", ops->name,
+                                 ops->bests[i].name);
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "'%.80s' is neither a spec, NAME:KEY=VALUE, nor one of the names that stand for the fastest "
+        "of several settings%s%s",
+        text, *names ? ": " : "", names);
+}
+
+RtStatus rt_best_specs(const char *text, char specs[RT_MAX_BEST][RT_MAX_SPEC_CHARS], size_t *count,
+                       size_t *all, RtError *error) {
+    char name[RT_MAX_NAME];
+    const RtAccelOps *ops;
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(text, ":"), text);
+    RT_TRY(rt_accel_find(name, &ops, error));
+    const RtBestOf *best = rt_best_is(text) ? rt_best_find(ops, strchr(text, ':') + 1) : NULL;
+    if (!best) return fail_unknown(ops, text, error);
+    char spec[RT_MAX_SPEC_CHARS];
+    *count = *all = 0;
+    while (*all < RT_MAX_BEST && combine(ops, best, *all, spec)) {
+        RtSpec parsed;
+        RT_TRY(rt_spec_parse(spec, &parsed, error));
+        const RtStatus status = rt_spec_available(&parsed, error);
+        if (status != RT_OK && status != RT_NOT_AVAILABLE) return status;
+        const size_t at = status == RT_OK ? (*count)++ : *all;
+        memmove(specs[at + 1], specs[at], (*all - at) * sizeof *specs);
+        memcpy(specs[at], spec, sizeof spec);
+        ++*all;
+    }
+    return *count > 0 ? RT_OK
+                      : rt_fail(error, RT_NOT_AVAILABLE,
+                                "this machine can run none of the settings of '%.80s'", text);
 }

@@ -3,7 +3,7 @@
  * by the same operations in double.
  *
  * A hit at a sure t (defined below) needs no rt_box_admit: if tmin <= t <= tmax, the result is the same, for
- * the reason given in wide/ray_state.h. The proof there needs a point P of the box near t dir: |t d_x - P_x|
+ * the reason given in wide/ray.h. The proof there needs a point P of the box near t dir: |t d_x - P_x|
  * <= 7 e D for each axis x, and 2 e D along the longest. Let s be the root in double of which t is the
  * rounding. Then 1.1 e D is enough, because org + s dir is within 2^-29 D of the ball, and t = s within e.
  *

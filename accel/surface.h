@@ -14,7 +14,7 @@
  *
  * 2. p is within 9 units of a point s of the surface, along each axis. Let D be the largest distance along
  * one axis from the origin to a point of the scene; a unit is 2^-24 D.
- * - Triangles: 9 units, by accel/wide/ray_state.h, 1, which includes the rounding of t.
+ * - Triangles: 9 units, by accel/wide/ray.h, 1, which includes the rounding of t.
  * - Others: that moves p by a unit. Before it, polygons and spheres, in double, are off by less than a unit.
  *   (The error of a sphere is divided by its radius, whose square is subtracted. Coordinates are at most 2^24
  *   times as large as D.)

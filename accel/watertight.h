@@ -85,6 +85,21 @@ typedef RT_OF_LANES(RtShear) RtShear;
 #define rt_edge_prefilter RT_OF_LANES(rt_edge_prefilter)
 #define rt_cross          RT_OF_LANES(rt_cross)
 
+/* The thickness of rays by rt_ray_prepare_in, for hits in `box`, and by how much it shifts their origins
+ * along an axis. */
+RT_KERNEL RtFloats rt_lanes_thickness(const RtFloats org[3], const RtBox *box) {
+    RtFloats farthest = rt_all(0);
+    for (int a = 0; a < 3; a++) {
+        farthest = rt_max(rt_abs(box->lo.at[a] - org[a]), farthest);
+        farthest = rt_max(rt_abs(box->hi.at[a] - org[a]), farthest);
+    }
+    return farthest * 0x1p-20f;
+}
+
+RT_KERNEL RtFloats rt_lanes_shift(RtFloats thickness, RtFloats org) {
+    return thickness + rt_abs(org) * 0x1p-23f;
+}
+
 /* What rt_box_admit needs of each ray, by axis. */
 typedef struct RtLaneRays {
     RtFloats org[3], inv[3], tmin, tmax; /* tmax finite */
@@ -102,7 +117,7 @@ RT_KERNEL uint32_t rt_admit(const RtLaneRays *ray, RtFloats v[3][3], uint32_t hi
     }
     RtFloats thickness = farthest * 0x1p-20f, near = rt_all(-INFINITY), far = rt_all(INFINITY);
     for (int a = 0; a < 3; a++) {
-        RtFloats org = ray->org[a], shift = thickness + rt_abs(org) * 0x1p-23f;
+        RtFloats org = ray->org[a], shift = rt_lanes_shift(thickness, org);
         RtFloats above = org + shift, below = org - shift;
         RtInts down = ray->negative[a];
         RtFloats first = rt_select(down, hi[a], lo[a]) - rt_select(down, below, above);

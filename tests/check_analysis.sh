@@ -30,7 +30,7 @@ accepted() {
 src/core/base/file.c       analyzer-malloc-leak              fdopen(descriptor                 the caller has it, in *output
 src/core/base/process.c    analyzer-malloc-leak              *command->from = fdopen           the caller has both streams, in *command->to and *command->from
 accel/tree/spatial.c       identicalConditionAfterEarlyExit  counts[0] == 0 || counts[1] == 0  cut_at has changed the counts since they were compared with 0
-accel/wide/stream.h        nullPointerRedundantCheck         f->tally->steps++                 counted kernels have a tally; RT_OBSERVED asks because timed ones have none
+accel/wide/wide_kernels.c  nullPointerRedundantCheck         f->tally->steps++                 counted kernels have a tally; RT_OBSERVED asks because timed ones have none
 src/core/base/param.c      incorrectLogicOperator            -0x1p63                           cppcheck takes numbers with a binary exponent for 0
 END
 }

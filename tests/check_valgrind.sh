@@ -18,7 +18,7 @@ text csv npy table
 shape bounds csg csg_trees hits shape solid_cases solid_faces triangle
 scene csg_scene formula mesh mesh_damage nff yaml
 scenes places
-accel best counters descriptions extents grid overlap overlays trees wide_layout
+accel counters descriptions extents grid overlap overlays trees wide_layout
 END
 }
 [ $# = 0 ] || groups() { echo "$@"; }

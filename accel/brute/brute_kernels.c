@@ -7,7 +7,7 @@
  * (accel/watertight.h). If all three are numbers, rt_triangle_hit rejects the same triangles. Coordinates
  * below RT_MAX_COORDINATE cannot overflow, so one is NaN only if a shear is infinite or NaN, for the shortest
  * dir: then the weights in double are infinite or NaN too, t is NaN, and the triangle is not hit. For spheres
- * see accel/sphere_prefilter.h.
+ * see accel/batch.h.
  *
  * The same counts: a ray meets objects shape by shape in the order of RT_SHAPES, by ascending id, as in
  * rt_test_all, so it has tested all objects up to the one at which it stops. */

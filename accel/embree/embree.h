@@ -22,9 +22,15 @@
 #define RT_ACCEL_EMBREE_H
 
 #include "accel/accel.h"
-#include "accel/embree/embree_api.h"
 
-/* ---- the device ---- */
+/* RT_WITH_EMBREE is the major version. Embree 4 no longer has streams of single rays. */
+#if RT_WITH_EMBREE >= 4
+#include <embree4/rtcore.h>
+#define RT_EMBREE_STREAMS 0
+#else
+#include <embree3/rtcore.h>
+#define RT_EMBREE_STREAMS 1
+#endif
 
 /* One Embree device, and what it reports. */
 typedef struct RtEmbreeDevice {
@@ -33,42 +39,6 @@ typedef struct RtEmbreeDevice {
     _Atomic int code;      /* RTCError: the first one, on whatever thread */
     char message[256];     /* of that error; read only while no thread builds or traces */
 } RtEmbreeDevice;
-
-/* The choices of the parameter `isa`, in order, "default" first. */
-#define RT_EMBREE_ISAS "default|sse2|sse4.2|avx|avx2|avx512"
-
-/* RT_OK, or RT_NOT_AVAILABLE if the processor lacks instruction set number `isa` of RT_EMBREE_ISAS. */
-RtStatus rt_embree_isa_check(uint32_t isa, RtError *error);
-
-/* Opens a device that uses instruction set number `isa` of RT_EMBREE_ISAS, which the processor has, and
- * builds on `threads` threads (0 = all processors). `device` must stay where it is until it is closed. */
-RtStatus rt_embree_device_open(RtEmbreeDevice *device, uint32_t isa, int threads, RtError *error);
-
-/* RT_OK, or the first error that the device reported, while building or tracing. */
-RtStatus rt_embree_device_check(const RtEmbreeDevice *device, RtError *error);
-void rt_embree_device_close(RtEmbreeDevice *device); /* may be zeroed */
-
-/* RtAccelOps.library: the version at run time, and the instruction set of isa=default on this machine. */
-bool rt_embree_library(char *out, size_t size);
-
-/* ---- the accelerator ---- */
-
-#define RT_EMBREE_PARAMS(X)                                                                                  \
-    X(RT_EMBREE_MODE, "mode", RT_CHOICE("native", "native|user"),                                            \
-      "Embree's own triangles and spheres, or our hit functions in its hierarchy",                           \
-      "native is the competitor")                                                                            \
-    X(RT_EMBREE_QUALITY, "quality", RT_CHOICE("medium", "low|medium|high"),                                  \
-      "build: Morton codes, binned SAH, SAH with spatial splits", "Embree's default")                        \
-    X(RT_EMBREE_ISA, "isa", RT_CHOICE("default", RT_EMBREE_ISAS),                                            \
-      "instruction set; default: the widest that the processor has", "Embree's default")                     \
-    X(RT_EMBREE_ROBUST, "robust", RT_FLAG("off"),                                                            \
-      "no ray passes between triangles that share an edge; user mode is exact either way",                   \
-      "Embree's default")                                                                                    \
-    X(RT_EMBREE_QUERY, "query", RT_CHOICE("1", "1|8|16|stream"),                                             \
-      "rays per call: one, a packet of 8 or 16, a stream (not in Embree 4)", "the most general one")
-
-enum { RT_EMBREE_PARAMS(RT_PARAM_INDEX) RT_EMBREE_PARAM_COUNT };
-extern const RtParam rt_embree_params[RT_EMBREE_PARAM_COUNT];
 
 typedef struct RtEmbree RtEmbree;
 
@@ -99,57 +69,49 @@ struct RtEmbree {
     float max_thickness; /* of a ray from within reach */
 };
 
-/* ---- queries ---- */
+/* The largest components of an ordinary direction; others are scaled by a power of two, which scales t by the
+ * inverse power and changes no bit of its mantissa. */
+#define RT_EMBREE_SHORT 0x1p-16f
+#define RT_EMBREE_LONG  0x1p16f
 
-/* Rays per chunk as single rays or packets: 32 to 128 were slower by up to a tenth. */
-#define RT_EMBREE_PACKET_RAYS 16
-#define RT_EMBREE_STREAM_RAYS 256 /* and as a stream */
-
-/* A ray of user mode, and its best hit. */
-typedef struct RtEmbreeSearch {
-    RtPreparedRay ray;
-    double shrink; /* Embree's t is t * shrink, a power of two */
-    RtHit best;
-    RtTally *tally; /* NULL in the timed kernels */
-} RtEmbreeSearch;
-
-/* Embree's context of one call, extended for the callbacks. Those of user mode are called through it, so one
- * structure serves the timed and the counted kernels. */
-typedef struct RtEmbreeTrace {
-    RtEmbreeContext context; /* first, because callbacks get a pointer to it */
-    RTCIntersectFunctionN intersect;
-    RTCOccludedFunctionN occluded;
-    RtEmbreeSearch *searches; /* by ray id */
-    RtCrossing *crossings;    /* of hit functions */
-} RtEmbreeTrace;
-
-/* The tfar for hits up to t: slightly larger. */
+/* The tfar for hits up to t, where Embree's t is t * shrink: slightly larger. */
 static inline float rt_embree_limit(float t, double shrink) {
     return (float)((double)t * shrink * (1 + 0x1p-20)) + FLT_MIN;
 }
 
-/* Callbacks of user geometry: the enlarged box of a primitive; the candidates of user mode, which call those
- * of the context; and the candidates of native mode. */
-void rt_embree_bounds(const struct RTCBoundsFunctionArguments *arguments);
-void rt_embree_user_intersect(const struct RTCIntersectFunctionNArguments *arguments);
-void rt_embree_user_occluded(const struct RTCOccludedFunctionNArguments *arguments);
-void rt_embree_native_intersect(const struct RTCIntersectFunctionNArguments *arguments);
-void rt_embree_native_occluded(const struct RTCOccludedFunctionNArguments *arguments);
+/* ---- embree.c: callbacks of user geometry, which get a primitive and a packet of rays ---- */
 
-/* A context for one chunk of rays. */
-void rt_embree_trace_init(RtEmbreeTrace *trace, bool coherent, bool counted, RtEmbreeSearch *searches,
-                          RtCrossing *crossings);
+void rt_embree_intersect(const struct RTCIntersectFunctionNArguments *arguments);
+void rt_embree_occluded(const struct RTCOccludedFunctionNArguments *arguments);
 
-/* embree_native.c. Native mode: answers to `hits`, or if that is NULL, to `occluders`. */
-void rt_embree_answer_native(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays, size_t count,
-                             RtHit *hits, uint32_t *occluders);
+/* ---- embree_build.c, for the table of operations ---- */
 
-/* embree_build.c, for the table of operations. */
+/* The choices of `isa`, in order, "default" first. */
+#define RT_EMBREE_ISAS "default|sse2|sse4.2|avx|avx2|avx512"
+
+#define RT_EMBREE_PARAMS(X)                                                                                  \
+    X(RT_EMBREE_MODE, "mode", RT_CHOICE("native", "native|user"),                                            \
+      "Embree's own triangles and spheres, or our hit functions in its hierarchy",                           \
+      "native is the competitor")                                                                            \
+    X(RT_EMBREE_QUALITY, "quality", RT_CHOICE("medium", "low|medium|high"),                                  \
+      "build: Morton codes, binned SAH, SAH with spatial splits", "Embree's default")                        \
+    X(RT_EMBREE_ISA, "isa", RT_CHOICE("default", RT_EMBREE_ISAS),                                            \
+      "instruction set; default: the widest that the processor has", "Embree's default")                     \
+    X(RT_EMBREE_ROBUST, "robust", RT_FLAG("off"),                                                            \
+      "no ray passes between triangles that share an edge; user mode is exact either way",                   \
+      "Embree's default")                                                                                    \
+    X(RT_EMBREE_QUERY, "query", RT_CHOICE("1", "1|8|16|stream"),                                             \
+      "rays per call: one, a packet of 8 or 16, a stream (not in Embree 4)", "the most general one")
+
+enum { RT_EMBREE_PARAMS(RT_PARAM_INDEX) RT_EMBREE_PARAM_COUNT };
+extern const RtParam rt_embree_params[RT_EMBREE_PARAM_COUNT];
+
 RtStatus rt_embree_available(const RtValue *values, RtError *error);
 RtStatus rt_embree_build(RtAccel *accel, const RtBuild *what, RtError *error);
 void rt_embree_destroy(RtAccel *accel);
 void rt_embree_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_embree_validate(const RtAccel *accel, RtError *error);
 RtStatus rt_embree_check(const RtAccel *accel, RtError *error);
+bool rt_embree_library(char *out, size_t size);
 
 #endif

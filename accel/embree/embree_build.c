@@ -1,20 +1,115 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Building, describing and validating Embree's scene. */
-#include "accel/embree/embree_batch.h"
+/* Embree's device and scene: building, describing and validating.
+ *
+ * The device is opened for one instruction set. It records errors instead of printing them, and counts the
+ * bytes that it allocates. It ignores configuration files in the home or the program's folder, so the spec
+ * alone determines its behaviour. */
+#include "accel/embree/embree.h"
 
 #include <stdatomic.h>
-#include <string.h>
+#include <stdio.h>
 
 const RtParam rt_embree_params[RT_EMBREE_PARAM_COUNT] = {RT_EMBREE_PARAMS(RT_PARAM_ENTRY)};
 
+/* ---- the device ---- */
+
+enum { ISA_DEFAULT, ISA_SSE2, ISA_SSE42, ISA_AVX, ISA_AVX2, ISA_AVX512, ISA_COUNT };
+
+static const char *const isa_names[ISA_COUNT] = {"default", "sse2", "sse4.2", "avx", "avx2", "avx512"};
+
+/* Only the default is available on other processors than x86. */
+static bool processor_has(uint32_t isa) {
+    switch (isa) {
+    case ISA_DEFAULT: return true;
+#if defined(__x86_64__)
+    case ISA_SSE2: return __builtin_cpu_supports("sse2");
+    case ISA_SSE42: return __builtin_cpu_supports("sse4.2");
+    case ISA_AVX: return __builtin_cpu_supports("avx");
+    case ISA_AVX2: return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+    case ISA_AVX512:
+        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+               __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512bw") &&
+               __builtin_cpu_supports("avx512vl");
+#endif
+    default: return false;
+    }
+}
+
 RtStatus rt_embree_available(const RtValue *values, RtError *error) {
+    const uint32_t isa = values[RT_EMBREE_ISA].choice;
     if (values[RT_EMBREE_QUERY].choice == RT_EMBREE_STREAM && !RT_EMBREE_STREAMS)
         return rt_fail(error, RT_NOT_AVAILABLE,
                        "accelerator embree: Embree 4 has no streams; choose query=1, 8 or 16");
-    return rt_embree_isa_check(values[RT_EMBREE_ISA].choice, error);
+    if (processor_has(isa)) return RT_OK;
+    return rt_fail(error, RT_NOT_AVAILABLE,
+                   "accelerator embree: this processor has no %s; choose a smaller isa, or isa=default",
+                   isa_names[isa]);
+}
+
+static void note_error(void *device, enum RTCError code, const char *message) {
+    RtEmbreeDevice *d = device;
+    int none = RTC_ERROR_NONE;
+    if (!atomic_compare_exchange_strong(&d->code, &none, (int)code)) return;
+    snprintf(d->message, sizeof d->message, "%s", message ? message : "no message");
+}
+
+static bool note_memory(void *device, ssize_t bytes, bool done) {
+    (void)done;
+    RtEmbreeDevice *d = device;
+    atomic_fetch_add(&d->bytes, bytes);
+    return true;
+}
+
+static RtStatus fail(int code, const char *message, RtError *error) {
+    RtStatus status = code == RTC_ERROR_OUT_OF_MEMORY     ? RT_NO_MEMORY
+                      : code == RTC_ERROR_UNSUPPORTED_CPU ? RT_NOT_AVAILABLE
+                                                          : RT_MISMATCH;
+    return rt_fail(error, status, "Embree reports error %d: %s", code, message);
+}
+
+/* Builds on `threads` threads (0 = all processors). `device` must stay where it is until it is released. */
+static RtStatus open_device(RtEmbreeDevice *device, uint32_t isa, int threads, RtError *error) {
+    char config[64];
+    int length = snprintf(config, sizeof config, "ignore_config_files=1,threads=%d", threads);
+    if (isa != ISA_DEFAULT)
+        snprintf(config + length, sizeof config - (size_t)length, ",isa=%s", isa_names[isa]);
+    *device = (RtEmbreeDevice){.device = rtcNewDevice(config)};
+    if (!device->device) return fail((int)rtcGetDeviceError(NULL), "no device can be opened", error);
+    rtcSetDeviceErrorFunction(device->device, note_error, device);
+    rtcSetDeviceMemoryMonitorFunction(device->device, note_memory, device);
+    return RT_OK;
+}
+
+/* The version at run time, and the instruction set of isa=default on this machine. */
+bool rt_embree_library(char *out, size_t size) {
+    if (size > 0) out[0] = '\0';
+    RtEmbreeDevice device;
+    if (open_device(&device, ISA_DEFAULT, 0, NULL) != RT_OK) return false;
+    long version = (long)rtcGetDeviceProperty(device.device, RTC_DEVICE_PROPERTY_VERSION);
+    uint32_t isa = ISA_COUNT - 1;
+    while (isa > ISA_DEFAULT && !processor_has(isa)) isa--;
+    snprintf(out, size, "%ld.%ld.%ld %s", version / 10000, version / 100 % 100, version % 100,
+             isa_names[isa]);
+    rtcReleaseDevice(device.device);
+    return true;
 }
 
 /* ---- build ---- */
+
+/* Embree asks for the box of each primitive: enlarged. */
+static void bounds_of(const struct RTCBoundsFunctionArguments *arguments) {
+    const RtEmbreeSlot *slot = arguments->geometryUserPtr;
+    const RtBox *box = &slot->self->base.scene->geometry.boxes[slot->ids[arguments->primID]];
+    double growth = (double)slot->self->growth;
+    *arguments->bounds_o = (struct RTCBounds){
+        .lower_x = rt_float_below((double)box->lo.x - growth),
+        .lower_y = rt_float_below((double)box->lo.y - growth),
+        .lower_z = rt_float_below((double)box->lo.z - growth),
+        .upper_x = rt_float_above((double)box->hi.x + growth),
+        .upper_y = rt_float_above((double)box->hi.y + growth),
+        .upper_z = rt_float_above((double)box->hi.z + growth),
+    };
+}
 
 /* Sets what follows from the reach: at least four times the size of the scene, and twice the distance of the
  * camera. */
@@ -41,21 +136,19 @@ static void attach_user(RtEmbree *self, RtShape shape, const uint32_t *ids, uint
     RTCGeometry geometry = rtcNewGeometry(self->device.device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, count);
     rtcSetGeometryUserData(geometry, &self->slots[shape]);
-    rtcSetGeometryBoundsFunction(geometry, rt_embree_bounds, NULL);
-    rtcSetGeometryIntersectFunction(geometry,
-                                    self->user ? rt_embree_user_intersect : rt_embree_native_intersect);
-    rtcSetGeometryOccludedFunction(geometry,
-                                   self->user ? rt_embree_user_occluded : rt_embree_native_occluded);
+    rtcSetGeometryBoundsFunction(geometry, bounds_of, NULL);
+    rtcSetGeometryIntersectFunction(geometry, rt_embree_intersect);
+    rtcSetGeometryOccludedFunction(geometry, rt_embree_occluded);
     attach(self, geometry, shape, ids, count);
 }
 
 /* Embree uses the scene's vertices. It reads 16 bytes of each, 4 beyond the end of the last one; a block of
  * rt_alloc is padded enough. */
-static RtStatus attach_triangles(RtEmbree *self, enum RTCBuildQuality quality, RtError *error) {
+static void attach_triangles(RtEmbree *self, enum RTCBuildQuality quality) {
     const RtGeometry *g = &self->base.scene->geometry;
     size_t count = (size_t)g->triangle_count * 3;
-    self->indices = rt_alloc(count, sizeof(uint32_t));
-    if (!self->indices) return rt_fail_memory(error, "Embree's list of vertices", count * sizeof(uint32_t));
+    self->indices = rt_arena_alloc(&self->base.memory, count, sizeof(uint32_t));
+    if (!self->indices) return;
     for (size_t i = 0; i < count; i++) self->indices[i] = (uint32_t)i;
     RTCGeometry geometry = rtcNewGeometry(self->device.device, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetGeometryBuildQuality(geometry, quality);
@@ -64,7 +157,6 @@ static RtStatus attach_triangles(RtEmbree *self, enum RTCBuildQuality quality, R
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, self->indices, 0,
                                3 * sizeof(uint32_t), g->triangle_count);
     attach(self, geometry, RT_SHAPE_TRIANGLE, g->triangle_ids, g->triangle_count);
-    return RT_OK;
 }
 
 _Static_assert(sizeof(RtSphere) == 4 * sizeof(float), "centre and radius, as Embree wants them");
@@ -78,12 +170,12 @@ static void attach_spheres(RtEmbree *self, enum RTCBuildQuality quality) {
     attach(self, geometry, RT_SHAPE_SPHERE, g->sphere_ids, g->sphere_count);
 }
 
-static RtStatus attach_all(RtEmbree *self, enum RTCBuildQuality quality, RtError *error) {
+static void attach_all(RtEmbree *self, enum RTCBuildQuality quality) {
     const RtGeometry *g = &self->base.scene->geometry;
     bool own[RT_SHAPE_COUNT] = {false}; /* as Embree's own geometry */
     if (!self->user) {
         own[RT_SHAPE_TRIANGLE] = own[RT_SHAPE_SPHERE] = true;
-        if (g->triangle_count > 0) RT_TRY(attach_triangles(self, quality, error));
+        if (g->triangle_count > 0) attach_triangles(self, quality);
         if (g->sphere_count > 0) attach_spheres(self, quality);
     }
 #define ATTACH(CONSTANT, name, Type)                                                                         \
@@ -92,7 +184,6 @@ static RtStatus attach_all(RtEmbree *self, enum RTCBuildQuality quality, RtError
     }
     RT_SHAPES(ATTACH)
 #undef ATTACH
-    return RT_OK;
 }
 
 /* Directions have components up to 2^16 (RT_EMBREE_LONG). In a wider scene their products with two edges may
@@ -120,30 +211,31 @@ RtStatus rt_embree_build(RtAccel *accel, const RtBuild *what, RtError *error) {
     /* Without the flag its box test is one fused multiply-add of plane, 1 / dir and org / dir. */
     accel->absolute = !self->user && !values[RT_EMBREE_ROBUST].flag;
     accel->counts = false;
-    accel->scratch_bytes = sizeof(RtEmbreeBatch);
     if (!self->user) RT_TRY(check_width(&self->base.scene->geometry.box, error));
-    RT_TRY(rt_embree_device_open(&self->device, values[RT_EMBREE_ISA].choice, what->threads, error));
+    RT_TRY(open_device(&self->device, values[RT_EMBREE_ISA].choice, what->threads, error));
     set_reach(self);
     self->scene = rtcNewScene(self->device.device);
     rtcSetSceneFlags(self->scene,
                      values[RT_EMBREE_ROBUST].flag ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
     rtcSetSceneBuildQuality(self->scene, quality);
-    RT_TRY(attach_all(self, quality, error));
+    attach_all(self, quality);
+    RT_TRY(rt_arena_check(&accel->memory, "Embree's list of vertices", error));
     rtcCommitScene(self->scene);
-    return rt_embree_device_check(&self->device, error);
+    return rt_embree_check(accel, error);
 }
 
 void rt_embree_destroy(RtAccel *accel) {
     RtEmbree *self = (RtEmbree *)accel;
     if (self->scene) rtcReleaseScene(self->scene);
-    rt_embree_device_close(&self->device);
-    rt_free(self->indices);
+    if (self->device.device) rtcReleaseDevice(self->device.device);
 }
 
 /* ---- describe, validate ---- */
 
 RtStatus rt_embree_check(const RtAccel *accel, RtError *error) {
-    return rt_embree_device_check(&((const RtEmbree *)accel)->device, error);
+    const RtEmbreeDevice *device = &((const RtEmbree *)accel)->device;
+    int code = atomic_load(&device->code);
+    return code == RTC_ERROR_NONE ? RT_OK : fail(code, device->message, error);
 }
 
 /* Bytes: what Embree has allocated, and our list of indices, which it needs; not the vertices, which belong

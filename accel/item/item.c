@@ -6,8 +6,6 @@
 #include "accel/item/item.h"
 #include "accel/kernel.h"
 
-#include "core/base/memory.h"
-
 #include <stdio.h>
 
 /* Validating asks hit functions at most about this often. */
@@ -21,7 +19,7 @@ static const RtParam params[] = {
 static RtStatus refuse_size(const RtItemBuffer *buffer, RtError *error) {
     const RtSampling *s = &buffer->view.sampling;
     double a_sample = sizeof(uint32_t), most = (double)RT_ACCEL_MAX_BYTES;
-    double rest = (double)rt_item_geometry(buffer)->object_count * sizeof(RtTileRange) +
+    double rest = (double)rt_item_geometry(buffer)->object_count * sizeof(RtItemRange) +
                   ((double)s->columns + s->rows) * sizeof(RtItemTerm);
     double bytes = (double)s->columns * s->rows * a_sample;
     if (bytes + rest <= most) return RT_OK;
@@ -39,25 +37,18 @@ static RtStatus refuse_size(const RtItemBuffer *buffer, RtError *error) {
 }
 
 /* The terms that rt_view_ray adds to make directions. */
-static RtStatus make_terms(RtItemBuffer *buffer, RtError *error) {
+static void make_terms(RtItemBuffer *buffer) {
     const RtView *view = &buffer->view;
     const RtSampling *s = &view->sampling;
-    const uint32_t columns = rt_item_tiles(s->columns) * RT_ITEM_TILE;
-    const uint32_t rows = rt_item_tiles(s->rows) * RT_ITEM_TILE;
-    buffer->columns = rt_alloc(columns, sizeof(RtItemTerm));
-    buffer->rows = rt_alloc(rows, sizeof(RtItemTerm));
-    if (!buffer->columns || !buffer->rows)
-        return rt_fail_memory(error, "an item buffer", columns * sizeof(RtItemTerm));
-    for (uint32_t i = 0; i < columns; i++) {
+    for (uint32_t i = 0; i < rt_item_tiles(s->columns) * RT_ITEM_TILE; i++) {
         double at = rt_sample_position(i, s->columns, s->corners);
         RtVec3d term = rt_add_scaledd(view->forward, view->right, at);
         buffer->columns[i] = (RtItemTerm){term.x, term.y, term.z, INFINITY};
     }
-    for (uint32_t i = 0; i < rows; i++) {
+    for (uint32_t i = 0; i < rt_item_tiles(s->rows) * RT_ITEM_TILE; i++) {
         RtVec3d term = rt_scaled(view->down, rt_sample_position(i, s->rows, s->corners));
         buffer->rows[i] = (RtItemTerm){term.x, term.y, term.z, 0};
     }
-    return RT_OK;
 }
 
 static RtStatus available(const RtValue *values, RtError *error) {
@@ -71,20 +62,15 @@ static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
     buffer->raster = RT_KERNELS_FOR(item_raster, isa);
     RT_TRY(rt_view_init(&buffer->view, &what->scene->camera, what->scene->sampling, error));
     RT_TRY(refuse_size(buffer, error));
+    const RtSampling *s = &buffer->view.sampling;
+    RtArena *memory = &accel->memory;
+    buffer->columns = rt_arena_alloc(memory, rt_item_tiles(s->columns) * RT_ITEM_TILE, sizeof(RtItemTerm));
+    buffer->rows = rt_arena_alloc(memory, rt_item_tiles(s->rows) * RT_ITEM_TILE, sizeof(RtItemTerm));
+    buffer->samples = rt_arena_alloc_unset(memory, rt_item_sample_count(buffer), sizeof(uint32_t));
+    RT_TRY(rt_arena_check(memory, "an item buffer", error));
     buffer->projection = rt_item_projection(&buffer->view);
-    RT_TRY(make_terms(buffer, error));
-    size_t count = rt_item_sample_count(buffer);
-    buffer->samples = rt_alloc_unset(count, sizeof(uint32_t));
-    if (!buffer->samples)
-        return rt_fail_memory(error, "the samples of an item buffer", count * sizeof(uint32_t));
+    make_terms(buffer);
     return rt_item_draw_all(buffer, what->threads, error);
-}
-
-static void destroy(RtAccel *accel) {
-    RtItemBuffer *buffer = (RtItemBuffer *)accel;
-    rt_free(buffer->samples);
-    rt_free(buffer->columns);
-    rt_free(buffer->rows);
 }
 
 static bool find_cell(const RtAccel *accel, const RtRay *ray, RtCellView *cell) {
@@ -145,7 +131,6 @@ const RtAccelOps rt_item_ops = {
     .kinds = 1u << RT_RAY_PRIMARY,
     .bytes = sizeof(RtItemBuffer),
     .build = build,
-    .destroy = destroy,
     RT_ISA_OPS,
     .describe = describe,
     .validate = validate,

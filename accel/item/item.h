@@ -10,14 +10,14 @@
  *
  * A z-buffer that interpolated depths would round otherwise than a ray tracer. This one has no arithmetic of
  * its own: at each sample that an object may be seen at, the object's hit function tells coverage and depth,
- * for the very ray that will be traced. Only where an object cannot be seen (item_footprint.c,
- * item_triangles.h), or is behind all that is drawn already, is it not asked. */
+ * for the very ray that will be traced. Only where an object cannot be seen (item_draw.c,
+ * item_kernels.c), or is behind all that is drawn already, is it not asked. */
 #ifndef RT_ACCEL_ITEM_ITEM_H
 #define RT_ACCEL_ITEM_ITEM_H
 
 #include "accel/accel.h"
 #include "accel/isa.h"
-#include "accel/raster/bins.h"
+#include "accel/raster/raster.h"
 #include "core/base/simd.h"
 
 RT_DECLARE_KERNELS(item);
@@ -31,7 +31,7 @@ enum {
     RT_ITEM_BLOCK_SAMPLES = RT_ITEM_BLOCK * RT_ITEM_BLOCK,
     RT_ITEM_BLOCKS = RT_ITEM_ACROSS * RT_ITEM_ACROSS,
     RT_ITEM_TILE_SAMPLES = RT_ITEM_TILE * RT_ITEM_TILE,
-    RT_ITEM_CLASSES = RT_TILE_LAYERS /* of depth: near ones are drawn first, to hide others */
+    RT_ITEM_CLASSES = 8 /* of depth: near ones are drawn first, to hide others */
 };
 
 /* A vector in double, and a fourth component. */
@@ -70,7 +70,7 @@ static inline const RtGeometry *rt_item_geometry(const RtItemBuffer *buffer) {
     return &buffer->isa.base.scene->geometry;
 }
 
-/* ---- item_footprint.c ---- */
+/* ---- item_draw.c ---- */
 
 /* In views so wide that direction_error is larger everything is seen everywhere. */
 #define RT_ITEM_MAX_DIRECTION_ERROR 0x1p-10
@@ -87,7 +87,15 @@ typedef struct RtItemFootprint {
 /* The samples whose rays may hit an object, from its box; false if there are none. */
 bool rt_item_footprint(const RtItemBuffer *buffer, uint32_t id, RtItemFootprint *footprint);
 
-/* ---- item_draw.c ---- */
+/* The tiles that an object may be seen in: columns lo[0]..hi[0] of rows lo[1]..hi[1]; and its class of
+ * depth. */
+typedef struct RtItemRange {
+    RtRef object;
+    uint16_t lo[2], hi[2];
+    uint16_t depth;
+} RtItemRange;
+
+RtItemRange rt_item_range(const RtItemBuffer *buffer, RtRef object, const RtItemFootprint *at);
 
 /* The z-buffer of a tile, one for each thread: block after block, row after row in a block. */
 typedef struct RtItemTile {
@@ -102,9 +110,6 @@ typedef struct RtItemTile {
     RtTally tally;          /* of the hit functions asked */
 } RtItemTile;
 
-/* Sets the tiles and the class of an object. */
-void rt_item_place(const RtItemBuffer *buffer, RtRef object, const RtItemFootprint *at, RtTileRange *to);
-
 /* Draws an object that is no triangle. */
 void rt_item_draw_object(RtItemTile *tile, uint32_t id);
 
@@ -117,8 +122,8 @@ RtStatus rt_item_draw_all(RtItemBuffer *buffer, int threads, RtError *error);
 /* ---- item_kernels.c, for each instruction set ---- */
 
 struct RtItemRaster {
-    /* For RtBinning, the view being the buffer. */
-    uint32_t (*place)(const void *buffer, uint32_t first, uint32_t count, RtTileRange *to);
+    /* Writes the ranges of those of the triangles first..first + count - 1 that may be seen; their number. */
+    uint32_t (*place)(const RtItemBuffer *buffer, uint32_t first, uint32_t count, RtItemRange *to);
     void (*draw)(RtItemTile *tile, const RtRef *objects, size_t count);
 };
 

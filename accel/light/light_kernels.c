@@ -11,7 +11,7 @@
 #include "accel/light/light.h"
 
 #include "accel/kernel.h"
-#include "accel/raster/lanes.h"
+#include "accel/raster/raster.h"
 #include "accel/sphere_pairs.h"
 
 enum { BLOCK = 1024 }; /* rays */

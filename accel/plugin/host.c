@@ -1,25 +1,516 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Building, describing, validating and destroying a plugin's structure; query.c has its queries. The plugin's
- * numbers are checked before use, and failures take its message. */
+/* An accelerator of a plugin as an RtAccel, in its own process: the host's side of include/raytally/accel.h.
+ *
+ * The plugin's numbers are checked before use, and failures take its message. Each query has a mapping of its
+ * own: the answers and the plugin's memory, both between guard pages; known bytes (canaries) fill the rest of
+ * their pages. Every answer is checked before anything else reads it: the object exists, and t is on the ray.
+ * Object tests are counted here, whatever the plugin does with its counters, unless it has hit functions of
+ * its own. */
 #include "accel/plugin/host.h"
 
+#include "accel/kernel.h"
 #include "accel/plugin/channel.h"
-#include "core/base/memory.h"
 #include "core/base/parallel.h"
 
 #include <inttypes.h>
+#include <pthread.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+/* Types of the interface have the layout of raytally's own. */
+_Static_assert(sizeof(raytally_ray) == sizeof(RtRay) && offsetof(raytally_ray, dir) == offsetof(RtRay, dir) &&
+                   offsetof(raytally_ray, source) == offsetof(RtRay, source) &&
+                   (int)RAYTALLY_RAY_KINDS == (int)RT_RAY_KIND_COUNT,
+               "rays");
+_Static_assert(sizeof(raytally_hit) == sizeof(RtHit) && RAYTALLY_NO_OBJECT == RT_NO_OBJECT, "hits");
+_Static_assert((uint64_t)RAYTALLY_UNNAMED_OBJECT == RT_UNNAMED_OBJECT, "occluders");
+_Static_assert(sizeof(raytally_box) == sizeof(RtBox), "boxes");
+_Static_assert((int)RAYTALLY_SHAPE_SPHERE == (int)RT_SHAPE_SPHERE &&
+                   (int)RAYTALLY_SHAPE_TRIANGLE == (int)RT_SHAPE_TRIANGLE &&
+                   (int)RAYTALLY_INDEX_BITS == (int)RT_REF_INDEX_BITS,
+               "references to objects");
+
+_Static_assert(sizeof(RtTriangle) == 9 * sizeof(float) && sizeof(RtSphere) == 4 * sizeof(float) &&
+                   offsetof(RtSphere, radius) == 3 * sizeof(float),
+               "triangles and spheres are arrays of floats");
+
+typedef struct Plugin {
+    RtAccel base;
+    const raytally_accel_ops *table;
+    void *self;
+    size_t query_bytes;
+    atomic_bool broken; /* `error` says why */
+    pthread_mutex_t lock;
+    RtError error;
+} Plugin;
+
+static const Plugin *plugin_of(const RtAccel *accel) {
+    return (const Plugin *)accel;
+}
+
+typedef struct ShownEvents {
+    const char *name;                  /* of the accelerator */
+    const raytally_counters *counters; /* of the ray's kind, which the plugin counts in; NULL: none */
+    raytally_counters shown;           /* so many of them became events */
+    RtHit best;                        /* so far */
+} ShownEvents;
+
+/* The plugin sees only the first member of the first. */
+typedef struct PluginQuery {
+    RtPluginNow now;
+    Plugin *accel;
+    const RtGeometry *geometry;
+    char *memory;     /* [accel->query_bytes] or NULL */
+    char *memory_end; /* of its pages */
+    char *answers_end;
+    const RtScratch *scratch; /* of this layer and those below */
+    bool counting;
+    /* In a stream that is counted: of object tests, and of the layers below. */
+    RtTally tallies[RT_RAY_KIND_COUNT], below[RT_RAY_KIND_COUNT];
+    ShownEvents events;
+} PluginQuery;
+
+/* ---- reports ---- */
+
+enum { MOST_QUERIES = 2048 }; /* whose ray can be reported after a hang */
+static _Atomic(PluginQuery *) open_queries[MOST_QUERIES];
+static _Thread_local const RtPluginNow *now;
+
+static void list_query(PluginQuery *from, PluginQuery *to) {
+    for (int i = 0; i < MOST_QUERIES; i++) {
+        PluginQuery *was = from;
+        if (atomic_compare_exchange_strong(&open_queries[i], &was, to)) return;
+    }
+}
+
+const RtPluginNow *rt_plugin_now(bool any_thread) {
+    if (!any_thread) return now;
+    for (int i = 0; i < MOST_QUERIES; i++) {
+        const PluginQuery *query = atomic_load(&open_queries[i]);
+        if (query && query->now.stream) return &query->now;
+    }
+    return NULL;
+}
+
+/* Marks it as broken, with a message as of printf. Only the first failure is kept. */
+__attribute__((format(printf, 2, 3))) static void break_it(Plugin *accel, const char *what, ...) {
+    char text[sizeof accel->error.message];
+    va_list arguments;
+    va_start(arguments, what);
+    vsnprintf(text, sizeof text, what, arguments);
+    va_end(arguments);
+    pthread_mutex_lock(&accel->lock);
+    if (!accel->broken) rt_fail(&accel->error, RT_BROKEN, "%s", text);
+    accel->broken = true;
+    pthread_mutex_unlock(&accel->lock);
+}
+
+static void break_at_ray(Plugin *accel, const RtRay *ray, const char *what, uint32_t object) {
+    char text[RT_RAY_TEXT];
+    rt_ray_format(ray, text, sizeof text);
+    break_it(accel, "%s, %u (the scene has %u objects), for the ray %s", what, object,
+             accel->base.scene->geometry.object_count, text);
+}
+
+/* ---- the events of a ray that is traced for an observer ---- */
+
+/* Object tests and built-in layers report theirs, as everywhere (core/base/observe.h). A plugin counts its
+ * steps and extent tests, and may show each (raytally_show); what it counts and does not show becomes an
+ * event without a name and a box, before the next object test. */
+
+/* Beyond that it counted below zero, and breaks. */
+enum { MOST_COUNTED = 1 << 24 };
+
+/* Whether the plugin counted something that was not shown yet; then it counts as shown. */
+static bool take(ShownEvents *events, int counter) {
+    const uint64_t counted = events->counters->at[counter];
+    if (events->shown.at[counter] >= counted || counted > MOST_COUNTED) return false;
+    events->shown.at[counter]++;
+    return true;
+}
+
+static RtTraced next_step(ShownEvents *events) {
+    const bool leaf = take(events, RAYTALLY_LEAF_STEPS), empty = take(events, RAYTALLY_EMPTY_STEPS);
+    return (RtTraced){.kind = RT_TRACED_STEP, .leaf = leaf, .empty = empty};
+}
+
+/* All events except those of `but`. */
+static void catch_up(ShownEvents *events, int but) {
+    static const struct {
+        int counter;
+        RtTracedKind kind;
+    } others[] = {{RAYTALLY_EXTENT_TESTS, RT_TRACED_EXTENT_TEST},
+                  {RAYTALLY_REPEATS_AVOIDED, RT_TRACED_REPEAT_AVOIDED},
+                  {RAYTALLY_PASSED_ON, RT_TRACED_PASSED_ON}};
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+        const char *what = others[i].kind == RT_TRACED_PASSED_ON ? events->name : NULL;
+        while (others[i].counter != but && take(events, others[i].counter))
+            rt_observe(&(RtTraced){.kind = others[i].kind, .what = what, .index = RT_NO_OBJECT});
+    }
+    while (but != RAYTALLY_STEPS && take(events, RAYTALLY_STEPS)) {
+        const RtTraced step = next_step(events);
+        rt_observe(&step);
+    }
+}
+
+static void report_counted(ShownEvents *events) {
+    if (rt_trace_observer && events->counters) catch_up(events, RAYTALLY_COUNTERS);
+}
+
+/* ---- what the plugin calls ---- */
+
+static int other_hit(const raytally_prepared *ray, uint32_t id, float *t) {
+    return rt_rarer_hit(((PluginQuery *)ray->query)->geometry, id, ray, t, NULL);
+}
+
+RT_KERNEL int hits_of(const raytally_prepared *ray, const uint32_t *ids, uint32_t count, bool any,
+                      raytally_hit *best, RtTally *tally) {
+    PluginQuery *query = (PluginQuery *)ray->query;
+    const RtGeometry *geometry = query->geometry;
+    RtHit hit = {best->t, best->object};
+    bool over = false;
+    for (uint32_t i = 0; i < count && !over; i++) {
+        if (ids[i] >= geometry->object_count) {
+            break_at_ray(query->accel, (const RtRay *)ray->ray, "it tested an object that does not exist",
+                         ids[i]);
+            break;
+        }
+        over = rt_test_object(geometry, ids[i], ray, any, &hit, tally);
+    }
+    *best = (raytally_hit){hit.t, hit.object};
+    return over;
+}
+
+static int object_hits(const raytally_prepared *ray, const uint32_t *ids, uint32_t count, int any,
+                       raytally_hit *best, raytally_counters *counters) {
+    PluginQuery *query = (PluginQuery *)ray->query;
+    if (!query->counting) return hits_of(ray, ids, count, any, best, NULL);
+    RtTally tally = {0};
+    report_counted(&query->events);
+    int over = hits_of(ray, ids, count, any, best, &tally);
+    query->events.best = (RtHit){best->t, best->object};
+    rt_tally_add(&query->tallies[ray->ray->kind], &tally);
+    if (!counters) return over;
+    counters->at[RAYTALLY_OBJECT_TESTS] += tally.object_tests;
+    counters->at[RAYTALLY_OBJECT_HITS] += tally.object_hits;
+    counters->at[RAYTALLY_CSG_TESTS] += tally.csg_tests;
+    return over;
+}
+
+/* The rays may be the plugin's own. They are checked only in counted streams, because it takes time. */
+static bool can_pass_on(PluginQuery *query, const RtRay *rays, size_t count) {
+    char text[RT_RAY_TEXT];
+    if (!query->accel->base.below) {
+        break_it(query->accel, "it passes rays on, but its `flags` lack RAYTALLY_OVERLAY");
+        return false;
+    }
+    for (size_t i = 0; i < count && query->counting; i++) {
+        if (rt_ray_is_valid(&rays[i]) && rays[i].kind < RT_RAY_KIND_COUNT) continue;
+        rt_ray_format(&rays[i], text, sizeof text);
+        break_it(query->accel, "it passed on a ray that is not valid, of kind %u, %s", rays[i].kind, text);
+        return false;
+    }
+    return true;
+}
+
+/* Traces a stream in the layer below, which may be a plugin's, too. */
+#define DEFINE_BELOW(question, Answer, Theirs, miss)                                                         \
+    static void question##_below(raytally_query *face, const raytally_ray *rays, size_t count,               \
+                                 Theirs *answers) {                                                          \
+        PluginQuery *query = (PluginQuery *)face;                                                            \
+        const RtRay *stream = (const RtRay *)rays;                                                           \
+        Answer *out = (Answer *)answers;                                                                     \
+        report_counted(&query->events);                                                                      \
+        if (can_pass_on(query, stream, count)) {                                                             \
+            rt_hand_down_##question(&query->accel->base, query->scratch, stream, count, out,                 \
+                                    query->counting ? query->below : NULL);                                  \
+        } else {                                                                                             \
+            for (size_t i = 0; i < count; i++) out[i] = miss;                                                \
+        }                                                                                                    \
+        now = &query->now;                                                                                   \
+    }
+DEFINE_BELOW(nearest, RtHit, raytally_hit, RT_MISS)
+DEFINE_BELOW(occluded, uint32_t, uint32_t, RT_NO_OBJECT)
+
+static void show(const raytally_prepared *ray, uint32_t counter, uint32_t number,
+                 const raytally_box *theirs) {
+    ShownEvents *events = &((PluginQuery *)ray->query)->events;
+    RtBox box;
+    RtTraced event = {.kind = RT_TRACED_EXTENT_TEST};
+    float enter;
+    if (!events->counters || !(counter == RAYTALLY_STEPS || (counter == RAYTALLY_EXTENT_TESTS && theirs)))
+        return;
+    catch_up(events, (int)counter);
+    if (!take(events, (int)counter)) return;
+    if (counter == RAYTALLY_STEPS) event = next_step(events);
+    event.what = "node";
+    event.index = number;
+    if (theirs) {
+        memcpy(&box, theirs, sizeof box);
+        event.box = &box;
+        event.met = counter == RAYTALLY_EXTENT_TESTS &&
+                    raytally_box_hit(theirs, ray, rt_limit(ray, &events->best), &enter);
+    }
+    rt_observe(&event);
+}
+
+#define HOST(show_or_null)                                                                                   \
+    {                                                                                                        \
+        RAYTALLY_ACCEL_ABI, sizeof(raytally_host), raytally_prepare, object_hits, other_hit, nearest_below,  \
+            occluded_below, show_or_null                                                                     \
+    }
+static const raytally_host host = HOST(NULL), observed_host = HOST(show);
+
+/* ---- memory between guard pages ---- */
+
+enum { GUARD = 64 * 1024, CANARY = 0xA5, CANARIES = 1024, MOST_ANSWERS = 4096, UNSET = 0xFE };
+
+static size_t round_up(size_t bytes, size_t unit) {
+    return (bytes + unit - 1) / unit * unit;
+}
+
+static void lay_canaries(char *from, const char *end) {
+    memset(from, CANARY, (size_t)(end - from));
+}
+
+/* All bytes are CANARY if the first is and each equals the one before. */
+static bool canaries_are_intact(const char *from, const char *end) {
+    size_t bytes = (size_t)(end - from);
+    return bytes == 0 || ((unsigned char)*from == CANARY && memcmp(from, from + 1, bytes - 1) == 0);
+}
+
+/* One mapping: a guard, the plugin's memory, a guard, the answers, a guard. */
+static RtStatus map_memory(PluginQuery *query, RtError *error) {
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE), wanted = query->accel->query_bytes;
+    if (wanted > RT_ACCEL_MAX_BYTES)
+        return rt_fail(error, RT_BROKEN, "its query_bytes asks for %zu bytes for each query", wanted);
+    const size_t own = round_up(wanted, page);
+    const size_t answers = round_up(CANARIES + MOST_ANSWERS * sizeof(RtHit), page);
+    const size_t mapped = own + answers + 3 * (size_t)GUARD;
+    char *mapping = mmap(NULL, mapped, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (mapping == MAP_FAILED) return rt_fail_memory(error, "the memory of a plugin's query", mapped);
+    query->now.mapping = mapping;
+    query->now.mapped = mapped;
+    query->memory_end = mapping + GUARD + own;
+    query->now.middle = query->memory_end + GUARD / 2;
+    query->answers_end = mapping + mapped - GUARD;
+    if ((own && mprotect(mapping + GUARD, own, PROT_READ | PROT_WRITE) != 0) ||
+        mprotect(query->answers_end - answers, answers, PROT_READ | PROT_WRITE) != 0) {
+        munmap(mapping, mapped);
+        return rt_fail_memory(error, "the memory of a plugin's query", mapped);
+    }
+    if (wanted == 0) return RT_OK;
+    char *memory = query->memory = query->memory_end - round_up(wanted, RT_CACHE_LINE);
+    lay_canaries(mapping + GUARD, memory);
+    lay_canaries(memory + wanted, query->memory_end);
+    return RT_OK;
+}
+
+/* ---- queries ---- */
+
+static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) {
+    PluginQuery *query = scratch;
+    const RtGeometry *geometry = &accel->scene->geometry;
+    *query = (PluginQuery){.now.face = {.boxes = rt_public_box(geometry->boxes),
+                                        .triangles = (const float *)geometry->triangles,
+                                        .spheres = (const float *)geometry->spheres,
+                                        .objects = geometry->objects},
+                           .accel = (Plugin *)accel,
+                           .geometry = geometry};
+    memcpy(&query->now.face.box, &geometry->box, sizeof geometry->box);
+    RT_TRY(map_memory(query, error));
+    list_query(NULL, query);
+    return RT_OK;
+}
+
+static void close_query(const RtAccel *accel, void *scratch) {
+    (void)accel;
+    PluginQuery *query = scratch;
+    list_query(query, NULL);
+    munmap(query->now.mapping, query->now.mapped);
+}
+
+static void begin(const RtAccel *accel, void *scratch) {
+    const Plugin *self = plugin_of(accel);
+    if (self->table->begin) self->table->begin(self->self, ((PluginQuery *)scratch)->memory);
+}
+
+/* ---- kernels ---- */
+
+/* Before a stream: returns memory for `count` answers of `size` bytes, set to no valid answer. */
+static void *enter(PluginQuery *query, const RtScratch *scratch, const RtRay *rays, size_t count,
+                   size_t size) {
+    char *answers = query->answers_end - count * size;
+    lay_canaries(answers - CANARIES, answers);
+    memset(answers, UNSET, count * size);
+    query->now.face.host = query->counting && rt_trace_observer ? &observed_host : &host;
+    query->now.face.crossings = scratch->crossings;
+    query->scratch = scratch;
+    query->now.face.object_count = query->counting ? 0 : query->geometry->object_count;
+    query->now.face.ray = NULL;
+    query->now.stream = rays;
+    now = &query->now;
+    return answers;
+}
+
+/* After a stream. */
+static void leave(PluginQuery *query, const char *answers) {
+    const char *memory = query->memory;
+    query->now.stream = NULL;
+    now = NULL;
+    if (!canaries_are_intact(answers - CANARIES, answers))
+        break_it(query->accel, "it wrote in front of its answers");
+    if (memory && !(canaries_are_intact(query->now.mapping + GUARD, memory) &&
+                    canaries_are_intact(memory + query->accel->query_bytes, query->memory_end)))
+        break_it(query->accel, "it wrote past the %zu bytes of its query's memory, or in front of them",
+                 query->accel->query_bytes);
+}
+
+static void break_at_object(Plugin *accel, const RtRay *ray, uint32_t object) {
+    uint32_t unset;
+    memset(&unset, UNSET, sizeof unset);
+    break_at_ray(accel, ray,
+                 object == unset ? "it wrote no answer" : "it answered with an object that does not exist",
+                 object);
+}
+
+static void take_hits(PluginQuery *query, const RtRay *rays, size_t count, const RtHit *theirs, RtHit *hits) {
+    Plugin *accel = query->accel;
+    memcpy(hits, theirs, count * sizeof *hits);
+    for (size_t i = 0; i < count; i++) {
+        const RtHit hit = hits[i];
+        if (rt_hit_is_possible(&accel->base, &rays[i], hit)) continue;
+        hits[i] = RT_MISS;
+        if (hit.object < accel->base.scene->geometry.object_count || hit.object == RT_NO_OBJECT) {
+            char text[RT_RAY_TEXT];
+            rt_ray_format(&rays[i], text, sizeof text);
+            break_it(accel, "it answered %s at t = %.9g, which is not on the ray %s",
+                     hit.object == RT_NO_OBJECT ? "no object" : "an object", (double)hit.t, text);
+        } else {
+            break_at_object(accel, &rays[i], hit.object);
+        }
+    }
+}
+
+/* Tests each occluder by its exact hit function; only in counted streams, because it takes time. */
+static void test_occluders(PluginQuery *query, const RtRay *rays, size_t count, const uint32_t *occluders) {
+    for (size_t i = 0; i < count; i++) {
+        RtPreparedRay ray;
+        float t;
+        if (occluders[i] == RT_NO_OBJECT) continue;
+        rt_hit_ray(&ray, query->geometry, &rays[i], query->now.face.crossings);
+        if (rt_object_hit(query->geometry, occluders[i], &ray, &t, NULL)) continue;
+        break_at_ray(query->accel, &rays[i], "it answered with an occluder that the ray does not hit",
+                     occluders[i]);
+    }
+}
+
+static void take_occluders(PluginQuery *query, const RtRay *rays, size_t count, const uint32_t *theirs,
+                           uint32_t *occluders) {
+    Plugin *accel = query->accel;
+    for (size_t i = 0; i < count; i++) {
+        occluders[i] = theirs[i];
+        if (rt_occluder_is_possible(&accel->base, theirs[i])) continue;
+        break_at_object(accel, &rays[i], theirs[i]);
+        occluders[i] = RT_NO_OBJECT;
+    }
+    if (query->counting && accel->base.exact) test_occluders(query, rays, count, occluders);
+}
+
+_Static_assert((int)RAYTALLY_COUNTERS_KNOWN == (int)RT_TALLY_COUNTER_COUNT &&
+                   offsetof(RtTally, object_tests) == RAYTALLY_OBJECT_TESTS * sizeof(uint64_t) &&
+                   offsetof(RtTally, csg_tests) == RAYTALLY_CSG_TESTS * sizeof(uint64_t) &&
+                   offsetof(RtTally, passed_on) == RAYTALLY_PASSED_ON * sizeof(uint64_t),
+               "a tally begins with the counters of the interface");
+
+/* Checks the counts of a stream of so many rays, and adds them and those of the layers below, where rays and
+ * hits count again. */
+static void add_counters(PluginQuery *query, const raytally_counters *counted, size_t rays,
+                         RtTally *tallies) {
+    const bool tests_here = !(query->accel->table->flags & RAYTALLY_OWN_HITS) && query->accel->base.counts;
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
+        RtTally theirs;
+        memcpy(&theirs, counted[kind].at, sizeof theirs);
+        theirs.rays = theirs.hits = 0; /* counted here */
+        for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
+            const char *name = rt_tally_name(i), *of_kind = rt_ray_kind_name((RtRayKind)kind);
+            const uint64_t count = rt_tally_get(&theirs, i), right = rt_tally_get(&query->tallies[kind], i);
+            const bool test =
+                i == RAYTALLY_OBJECT_TESTS || i == RAYTALLY_OBJECT_HITS || i == RAYTALLY_CSG_TESTS;
+            if (!rt_count_is_possible(count, rays)) {
+                break_it(query->accel, "it counted %" PRIu64 " %s for %s rays, more than possible", count,
+                         name, of_kind);
+                theirs = (RtTally){0};
+            } else if (test && tests_here && count != right) {
+                break_it(query->accel,
+                         "its %s for %s rays add up to %" PRIu64 ", and were %" PRIu64
+                         ": raytally_object_hits counts them, in the counters passed to it",
+                         name, of_kind, count, right);
+            }
+        }
+        query->below[kind].rays = query->below[kind].hits = 0;
+        rt_tally_add(&tallies[kind], &theirs);
+        rt_tally_add(&tallies[kind], &query->below[kind]);
+    }
+}
+
+static void start_counting(PluginQuery *query, raytally_counters *counters, uint32_t kind) {
+    const RtAccel *accel = &query->accel->base;
+    memset(counters, 0, RAYTALLY_RAY_KINDS * sizeof *counters);
+    memset(query->tallies, 0, sizeof query->tallies);
+    memset(query->below, 0, sizeof query->below);
+    query->counting = true;
+    query->events = (ShownEvents){
+        .name = accel->ops->name, .counters = accel->counts ? &counters[kind] : NULL, .best = RT_MISS};
+}
+
+/* The two kernels of a question. Answers have the type Answer, which the plugin calls Theirs. */
+#define DEFINE_KERNELS(question, Answer, Theirs, take, is_hit)                                               \
+    static void count_##question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,          \
+                                 size_t count, Answer *answers, RtTally *tallies) {                          \
+        PluginQuery *query = scratch->own;                                                                   \
+        for (size_t first = 0; first < count; first += MOST_ANSWERS) {                                       \
+            const size_t n = count - first < MOST_ANSWERS ? count - first : MOST_ANSWERS;                    \
+            raytally_counters counters[RAYTALLY_RAY_KINDS];                                                  \
+            if (tallies) start_counting(query, counters, rays[first].kind);                                  \
+            Answer *theirs = enter(query, scratch, rays + first, n, sizeof(Answer));                         \
+            query->accel->table->question(query->accel->self, query->memory, &query->now.face,               \
+                                          (const raytally_ray *)rays + first, n, (Theirs *)theirs,           \
+                                          tallies && accel->counts ? counters : NULL);                       \
+            leave(query, (const char *)theirs);                                                              \
+            take(query, rays + first, n, theirs, answers + first);                                           \
+            query->counting = false;                                                                         \
+            if (tallies) report_counted(&query->events);                                                     \
+            if (tallies) add_counters(query, counters, n, tallies);                                          \
+        }                                                                                                    \
+        for (size_t i = 0; tallies && i < count; i++) {                                                      \
+            tallies[rays[i].kind].rays++;                                                                    \
+            tallies[rays[i].kind].hits += (is_hit);                                                          \
+        }                                                                                                    \
+    }                                                                                                        \
+    static void time_##question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,           \
+                                size_t count, Answer *answers) {                                             \
+        count_##question(accel, scratch, rays, count, answers, NULL);                                        \
+    }
+DEFINE_KERNELS(nearest, RtHit, raytally_hit, take_hits, answers[i].object != RT_NO_OBJECT)
+DEFINE_KERNELS(occluded, uint32_t, uint32_t, take_occluders, answers[i] != RT_NO_OBJECT)
+
+static RtStatus check(const RtAccel *accel, RtError *error) {
+    const Plugin *self = plugin_of(accel);
+    return self->broken ? rt_fail(error, RT_BROKEN, "%s", self->error.message) : RT_OK;
+}
 
 /* ---- the structure ---- */
 
 /* Without a table its build has failed. */
 static void destroy(RtAccel *accel) {
-    RtPluginAccel *self = (RtPluginAccel *)accel;
-    if (self->table) {
-        self->table->destroy(self->self);
-        pthread_mutex_destroy(&self->lock);
-    }
-    rt_free(self->other_objects);
+    Plugin *self = (Plugin *)accel;
+    if (!self->table) return;
+    self->table->destroy(self->self);
+    pthread_mutex_destroy(&self->lock);
 }
 
 /* Reports that `build` failed, with the plugin's message if it wrote one. */
@@ -46,12 +537,7 @@ static void copy_values(const RtAccelOps *ops, const RtValue *from, raytally_val
     }
 }
 
-/* The arrays of triangles and spheres are the scene's own. */
-_Static_assert(sizeof(RtTriangle) == 9 * sizeof(float) && sizeof(RtSphere) == 4 * sizeof(float) &&
-                   offsetof(RtSphere, radius) == 3 * sizeof(float),
-               "triangles and spheres are arrays of floats");
-
-static RtStatus add_geometry(RtPluginAccel *self, const RtGeometry *geometry, raytally_build_input *input,
+static RtStatus add_geometry(RtArena *memory, const RtGeometry *geometry, raytally_build_input *input,
                              RtError *error) {
     input->triangles = (const float *)geometry->triangles;
     input->triangle_objects = geometry->triangle_ids;
@@ -60,20 +546,18 @@ static RtStatus add_geometry(RtPluginAccel *self, const RtGeometry *geometry, ra
     input->sphere_objects = geometry->sphere_ids;
     input->sphere_count = geometry->sphere_count;
     const uint32_t others = geometry->object_count - geometry->triangle_count - geometry->sphere_count;
-    if (others == 0) return RT_OK;
-    self->other_objects = rt_alloc_unset(others, sizeof(uint32_t));
-    if (!self->other_objects) return rt_fail_memory(error, "a list of objects", others * sizeof(uint32_t));
+    uint32_t *list = rt_arena_alloc_unset(memory, others, sizeof(uint32_t));
+    RT_TRY(rt_arena_check(memory, "a list of objects", error));
     for (uint32_t id = 0; id < geometry->object_count; id++) {
         const RtShape shape = rt_ref_shape(geometry->objects[id]);
-        if (shape != RT_SHAPE_TRIANGLE && shape != RT_SHAPE_SPHERE)
-            self->other_objects[input->other_count++] = id;
+        if (shape != RT_SHAPE_TRIANGLE && shape != RT_SHAPE_SPHERE) list[input->other_count++] = id;
     }
-    input->other_objects = self->other_objects;
+    if (others > 0) input->other_objects = list;
     return RT_OK;
 }
 
 static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
-    RtPluginAccel *self = (RtPluginAccel *)accel;
+    Plugin *self = (Plugin *)accel;
     const raytally_accel_ops *table = &((const RtPluginOps *)accel->ops)->table;
     const RtGeometry *geometry = &what->scene->geometry;
     const uint64_t memory = rt_memory_current_limit();
@@ -89,14 +573,16 @@ static RtStatus build(RtAccel *accel, const RtBuild *what, RtError *error) {
                                   .message = message,
                                   .message_room = sizeof message - 1};
     memcpy(&input.box, &geometry->box, sizeof input.box);
-    RT_TRY(add_geometry(self, geometry, &input, error));
+    RT_TRY(add_geometry(&accel->memory, geometry, &input, error));
     int result = table->build(&input, &self->self);
     if (result != RAYTALLY_BUILD_OK) return refuse(table, result, message, error);
     self->table = table;
     accel->exact &= !(table->flags & RAYTALLY_OWN_HITS);
     accel->absolute |= (table->flags & RAYTALLY_ABSOLUTE_HITS) != 0;
     accel->counts &= !(table->flags & RAYTALLY_NO_COUNTS);
-    rt_plugin_query_init(self);
+    accel->scratch_bytes = sizeof(PluginQuery);
+    self->query_bytes = table->query_bytes ? table->query_bytes(self->self) : 0;
+    pthread_mutex_init(&self->lock, NULL);
     return RT_OK;
 }
 
@@ -112,7 +598,7 @@ uint64_t rt_description_impossible(const RtDescription *d) {
 }
 
 static void describe(const RtAccel *accel, RtDescription *out) {
-    const RtPluginAccel *self = rt_plugin_of(accel);
+    const Plugin *self = plugin_of(accel);
     raytally_description d = {.predicted_cost = NAN, .predicted_tests = NAN, .predicted_steps = NAN};
     if (self->table->describe) self->table->describe(self->self, &d);
     *out = (RtDescription){.interior = d.interior,
@@ -127,12 +613,11 @@ static void describe(const RtAccel *accel, RtDescription *out) {
                            RT_NO_QUALITY};
     const uint64_t impossible = rt_description_impossible(out);
     if (impossible)
-        rt_plugin_break((RtPluginAccel *)accel, "its description has the impossible number %" PRIu64,
-                        impossible);
+        break_it((Plugin *)accel, "its description has the impossible number %" PRIu64, impossible);
 }
 
 static RtStatus validate(const RtAccel *accel, RtError *error) {
-    const RtPluginAccel *self = rt_plugin_of(accel);
+    const Plugin *self = plugin_of(accel);
     char message[900] = "";
     if (!self->table->validate || self->table->validate(self->self, message, sizeof message - 1) == 0)
         return RT_OK;
@@ -141,7 +626,7 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
 }
 
 typedef struct Showing {
-    RtPluginAccel *accel;
+    Plugin *accel;
     RtBoxViewer viewer;
 } Showing;
 
@@ -149,14 +634,14 @@ static void show_box(void *context, const raytally_box *theirs, uint32_t depth, 
     const Showing *showing = context;
     RtBox box;
     if (!theirs) {
-        rt_plugin_break(showing->accel, "one of its boxes is NULL");
+        break_it(showing->accel, "one of its boxes is NULL");
         return;
     }
     memcpy(&box, theirs, sizeof box);
     if (!rt_box_can_be_shown(&box, depth)) {
-        rt_plugin_break(showing->accel, "it showed a box at depth %u from (%g, %g, %g) to (%g, %g, %g)",
-                        depth, (double)box.lo.x, (double)box.lo.y, (double)box.lo.z, (double)box.hi.x,
-                        (double)box.hi.y, (double)box.hi.z);
+        break_it(showing->accel, "it showed a box at depth %u from (%g, %g, %g) to (%g, %g, %g)", depth,
+                 (double)box.lo.x, (double)box.lo.y, (double)box.lo.z, (double)box.hi.x, (double)box.hi.y,
+                 (double)box.hi.z);
         return;
     }
     showing->viewer.show(showing->viewer.context,
@@ -164,7 +649,7 @@ static void show_box(void *context, const raytally_box *theirs, uint32_t depth, 
 }
 
 static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
-    Showing showing = {(RtPluginAccel *)accel, viewer};
+    Showing showing = {(Plugin *)accel, viewer};
     showing.accel->table->each_box(showing.accel->self, show_box, &showing);
 }
 
@@ -187,11 +672,18 @@ void rt_plugin_ops_init(RtPluginOps *ops, const raytally_accel_ops *table) {
                             .param_count = table->param_count,
                             .kinds = table->flags & RAYTALLY_OVERLAY ? RT_ALL_RAY_KINDS : 0,
                             .remote = true,
-                            .bytes = sizeof(RtPluginAccel),
+                            .bytes = sizeof(Plugin),
                             .build = build,
                             .destroy = destroy,
                             .describe = describe,
                             .validate = validate,
-                            .each_box = table->each_box ? each_box : NULL};
-    rt_plugin_query_ops(&ops->ops);
+                            .each_box = table->each_box ? each_box : NULL,
+                            .nearest = time_nearest,
+                            .occluded = time_occluded,
+                            .nearest_counted = count_nearest,
+                            .occluded_counted = count_occluded,
+                            .open = open_query,
+                            .close = close_query,
+                            .begin = begin,
+                            .check = check};
 }

@@ -178,14 +178,8 @@ RtStatus rt_server_boxes(RtQuery *query, const RtRay *rays, void *message, RtErr
 RtStatus rt_server_trace(RtQuery *query, const RtRay *rays, void *message, RtError *error) {
     (void)error;
     Stream *stream = message;
-    const RtAccel *accel = query->accel;
-    const uint32_t count = stream->count;
-    if (!stream->any)
-        rt_nearest(query, rays, count, stream->hits, stream->counted ? stream->tallies : NULL);
-    else if (stream->counted)
-        accel->ops->occluded_counted(accel, query->scratch, rays, count, stream->occluders, stream->tallies);
-    else
-        accel->ops->occluded(accel, query->scratch, rays, count, stream->occluders);
+    rt_trace_stream(query->accel, query->scratch, rays, stream->count, stream->any ? NULL : stream->hits,
+                    stream->occluders, stream->counted ? stream->tallies : NULL);
     return RT_OK;
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What the item buffer and the light buffer share as rasterisers: the bounds of rounding below, triangles in
- * lanes, and the ranges of tiles that bins.h sorts.
+ * lanes.
  *
  * Setting. All points q are relative to a centre of projection, the eye or a light. A point of depth
  * z = depth . q > 0 is seen at (x . q) / z, (y . q) / z: in columns and rows of samples for item, whose axes
@@ -10,7 +10,7 @@
  * reports a hit at t, the ray's exact point at t is q - e, where q is a point of the object and |e| <= E
  * along each axis. Each buffer derives its own E, because its rays start elsewhere:
  *
- *     item    rays start at the centre:                  E = 2^-19 M + 2^-21 |eye|    (item_footprint.c)
+ *     item    rays start at the centre:                  E = 2^-19 M + 2^-21 |eye|    (item_draw.c)
  *     light   rays end there, and start in a domain:     E = 2^-18 reach + 2^-20 farthest (light_project.c)
  *
  * with M the largest distance along an axis from the eye to the object, reach the longest side of the box
@@ -31,14 +31,7 @@
 #ifndef RT_ACCEL_RASTER_RASTER_H
 #define RT_ACCEL_RASTER_RASTER_H
 
-#include "core/shape/geometry.h"
-
-/* The tiles that an object may be seen in: columns lo[0]..hi[0] of rows lo[1]..hi[1] of a layer of tiles. */
-typedef struct RtTileRange {
-    uint32_t object; /* an RtRef; what else it holds is up to the buffer */
-    uint16_t lo[2], hi[2];
-    uint16_t layer;
-} RtTileRange;
+#include "accel/watertight.h"
 
 /* The id of the object that a reference stands for. */
 static inline uint32_t rt_raster_id(const RtGeometry *g, RtRef object) {
@@ -53,6 +46,15 @@ static inline uint32_t rt_raster_id(const RtGeometry *g, RtRef object) {
 
 static inline bool rt_raster_is_triangle(RtRef object) {
     return rt_ref_shape(object) == RT_SHAPE_TRIANGLE;
+}
+
+/* Triangles objects[0..count), by reference or index, to v by vertex and axis. Lanes from `count` on repeat
+ * the first. */
+RT_KERNEL void rt_raster_gather(const RtGeometry *g, const uint32_t *objects, uint32_t count,
+                                RtFloats v[3][3]) {
+    const RtTriangle *at[RT_LANES];
+    for (uint32_t i = 0; i < RT_LANES; i++) at[i] = &g->triangles[rt_ref_index(objects[i < count ? i : 0])];
+    rt_load_triangles(at, v);
 }
 
 #endif

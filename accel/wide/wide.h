@@ -166,15 +166,12 @@ typedef struct RtWideLayout {
     uint64_t limit; /* bytes */
 } RtWideLayout;
 
-/* Lays out a complete tree, whose depth it limits. On failure *self is empty. */
+/* Lays out a complete tree, whose depth it limits, in a block of `memory`. */
 RtStatus rt_wide_lay_out(RtWideTree *self, RtTree *tree, const RtGeometry *geometry, const RtWideLayout *how,
-                         RtError *error);
-void rt_wide_clear(RtWideTree *self);
+                         RtArena *memory, RtError *error);
 
-/* For RtAccelOps. */
-void rt_wide_describe(const RtWideTree *self, const RtGeometry *geometry, RtDescription *out);
+/* RT_OK, or RT_MISMATCH with the first broken invariant. */
 RtStatus rt_wide_validate(const RtWideTree *self, const RtGeometry *geometry, RtError *error);
-void rt_wide_each_box(const RtWideTree *self, RtBoxViewer viewer);
 
 /* ---- the accelerator ---- */
 

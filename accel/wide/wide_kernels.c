@@ -1,10 +1,302 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The kernels of `wide`, compiled once for each instruction set (accel/isa.h).
+/* The kernels of `wide`, compiled once for each instruction set (accel/isa.h): rays traced independently, one
+ * after the other or many interleaved on one thread, and the choice of packets (packet.h).
+ *
+ * A single ray waits for memory and for long chains of dependent arithmetic. So many rays are in flight, in
+ * queues by what each visits next: a node, a leaf of triangles, one of spheres, another leaf or nothing. Each
+ * queue is processed by a loop with one short body: the processor overlaps several rays, and no branch
+ * depends on the path of a ray. What a ray visits next is prefetched when it is enqueued. Wald, Gribble,
+ * Boulos & Kensler 2007 ("SIMD Ray Stream Tracing") process rays in lists; their lists share a node, these
+ * queues only share the kind of work. A ray takes the same path either way, so the counts are equal.
  *
  * Rays are traced in packets while the rays of a packet share enough of their visits, else one by one in
  * streams. The sharing is estimated from the packets traced last, and packets are tried again from time to
  * time. Counted kernels trace no packets, because a count belongs to one ray. */
-#include "accel/wide/packet_trace.h"
+#include "accel/wide/packet.h"
+
+/* Writes the answer of a ray. */
+RT_KERNEL void finish_ray(const Query *q, const RayState *f, bool any, bool counted) {
+    RtTally *tally = counted ? f->tally : NULL;
+    RT_COUNT(tally, rays, 1);
+    RT_COUNT(tally, hits, f->best.object != RT_NO_OBJECT);
+    if (any)
+        q->occluders[f->index] = f->best.object;
+    else
+        q->hits[f->index] = f->best;
+}
+
+/* ---- one ray after the other ---- */
+
+/* Pops the stack until an entry is not entered beyond the best hit; the bottom is entered at -infinity. */
+RT_KERNEL RtWideRef pop(const RayState *f, uint32_t *top, bool any) {
+    do {
+        --*top;
+    } while (!any && f->enter[*top] > f->limit);
+    return f->stack[*top];
+}
+
+/* With one ray nothing overlaps a chain of dependent operations. Branches on the number of children hit cut
+ * it, and an entry beyond the best hit is dropped when it is popped, not after each hit. */
+RT_KERNEL void trace_one(const Query *q, RayState *f, bool any, bool counted) {
+    const RtWideTree tree = *q->tree;
+    RtTally *tally = counted ? f->tally : NULL;
+    const bool ordered = !any && q->self->order, ahead = q->self->prefetch;
+    uint32_t top = 1;
+    RtWideRef ref = 0;
+    do {
+        if (rt_wide_kind(ref) == RT_WIDE_NODE) {
+            const RtWideNode *node = rt_wide_node(&tree, ref);
+            RtFloat8 enter;
+            uint32_t mask = hit_children(node, f, &enter);
+            RT_COUNT(tally, steps, 1);
+            RT_COUNT(tally, extent_tests, node->count);
+            if (RT_OBSERVED(tally)) observe_node(node, ref, mask);
+            if (mask == 0) {
+                ref = pop(f, &top, any);
+            } else if ((mask & (mask - 1)) == 0) {
+                ref = node->child[__builtin_ctz(mask)];
+            } else {
+                uint32_t lane = choose_child(mask, enter, ordered), others = mask & ~(1u << lane);
+                ref = node->child[lane];
+                push(f, top, node, others, enter, any);
+                top += (uint32_t)__builtin_popcount(others);
+                if (ahead) prefetch(&tree, f->stack[top - 1]);
+            }
+            continue;
+        }
+        count_leaf(tally, &tree, q->geometry, ref);
+        if (rt_wide_kind(ref) == RT_WIDE_TRIANGLES) {
+            const RtWideTriangles *blocks = rt_wide_leaf_at(&tree, ref);
+            uint32_t mask = prefilter_leaf(blocks, ref, f);
+            if (test_triangles(blocks, mask, f, q, any, tally)) return;
+        } else if (rt_wide_kind(ref) == RT_WIDE_SPHERES) {
+            if (test_spheres(q, ref, f, any, tally)) return;
+        } else if (test_objects(q, ref, state_ray(f, q), any, &f->best, tally)) {
+            return;
+        }
+        if (!any) f->limit = rt_minf(f->best.t, f->limit);
+        ref = pop(f, &top, any);
+    } while (ref != RT_WIDE_DONE);
+}
+
+RT_KERNEL void trace_one_by_one(const Query *q, size_t count, bool any, bool counted) {
+    RayState *f = q->scratch->own;
+    for (size_t i = 0; i < count; i++) {
+        RtTally *tally = counted ? &q->tallies[q->rays[i].kind] : NULL;
+        if (init_ray(f, q, i, any, tally)) trace_one(q, f, any, counted);
+        finish_ray(q, f, any, counted);
+    }
+}
+
+/* ---- many at once ---- */
+
+typedef struct RayQueues {
+    uint32_t in_flight;
+    uint32_t count[4]; /* rays in the queue of each RtWideKind */
+    RayState *list[4][RT_WIDE_MAX_IN_FLIGHT];
+} RayQueues;
+
+/* Enqueues a ray if `one` is 1; if it is 0, the next entry overwrites it. */
+RT_KERNEL void enqueue(RayQueues *t, const RtWideTree *tree, RayState *f, RtWideRef next, uint32_t one,
+                       bool ahead) {
+    uint32_t kind = rt_wide_kind(next), count = t->count[kind];
+    f->next = next;
+    t->list[kind][count] = f;
+    t->count[kind] = count + one;
+    if (ahead) prefetch(tree, next);
+}
+
+/* Empties a queue and returns its length. The entries stay in place until new ones overwrite them. */
+RT_KERNEL uint32_t take_queue(RayQueues *t, RtWideKind kind) {
+    uint32_t count = t->count[kind];
+    t->count[kind] = 0;
+    return count;
+}
+
+RT_KERNEL void visit_nodes(const Query *q, RayQueues *t, bool any, bool counted, bool ahead) {
+    _Alignas(RT_CACHE_LINE) float enters[RT_WIDE_MAX_IN_FLIGHT][RT_WIDE];
+    uint32_t masks[RT_WIDE_MAX_IN_FLIGHT], n = take_queue(t, RT_WIDE_NODE);
+    const bool ordered = !any && q->self->order;
+    const RtWideTree tree = *q->tree;
+    for (uint32_t i = 0; i < n; i++) {
+        RayState *f = t->list[RT_WIDE_NODE][i];
+        const RtWideNode *node = rt_wide_node(&tree, f->next);
+        RtFloat8 enter;
+        masks[i] = hit_children(node, f, &enter);
+        if (!any) rt_store(enters[i], enter);
+        if (counted) {
+            f->tally->steps++, f->tally->extent_tests += node->count;
+            if (RT_OBSERVED(f->tally)) observe_node(node, f->next, masks[i]);
+        }
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        RayState *f = t->list[RT_WIDE_NODE][i];
+        const RtWideNode *node = rt_wide_node(&tree, f->next);
+        RtFloat8 enter = any ? rt_all8(0) : rt_load8(enters[i]);
+        enqueue(t, &tree, f, descend(f, node, masks[i], enter, ordered, any), 1, ahead);
+    }
+}
+
+/* The triangles of a leaf that pass the prefilter for a ray. */
+typedef struct Candidates {
+    RayState *state;
+    uint32_t mask;
+} Candidates;
+
+/* Prefilters all queued leaves of triangles: rays with candidates go to found[0..result), the others to
+ * their next queue. */
+RT_KERNEL uint32_t prefilter_leaves(const Query *q, RayQueues *t, Candidates *found, bool counted,
+                                    bool ahead) {
+    uint32_t masks[RT_WIDE_MAX_IN_FLIGHT], n = take_queue(t, RT_WIDE_TRIANGLES), count = 0;
+    const RtWideTree tree = *q->tree;
+    for (uint32_t i = 0; i < n; i++) {
+        RayState *f = t->list[RT_WIDE_TRIANGLES][i];
+        if (counted) count_leaf(f->tally, &tree, q->geometry, f->next);
+        masks[i] = prefilter_leaf(rt_wide_leaf_at(&tree, f->next), f->next, f);
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        RayState *f = t->list[RT_WIDE_TRIANGLES][i];
+        uint32_t none = masks[i] == 0;
+        RtWideRef popped = f->stack[f->top - 1];
+        found[count] = (Candidates){f, masks[i]};
+        count += !none;
+        f->top -= none;
+        enqueue(t, &tree, f, none ? popped : f->next, none, ahead);
+    }
+    return count;
+}
+
+RT_KERNEL void finish_leaf(const Query *q, RayQueues *t, RayState *f, bool over, bool any, bool ahead) {
+    RtWideRef next = RT_WIDE_DONE;
+    if (!over) {
+        if (!any) cull_stack(f);
+        next = f->stack[--f->top];
+    }
+    enqueue(t, q->tree, f, next, 1, ahead);
+}
+
+/* Tests all queued leaves of spheres. */
+RT_KERNEL void visit_spheres(const Query *q, RayQueues *t, bool any, bool counted, bool ahead) {
+    SpherePair pairs[RT_WIDE_MAX_IN_FLIGHT * RT_WIDE_MAX_LEAF];
+    float at[RT_WIDE_MAX_IN_FLIGHT * RT_WIDE_MAX_LEAF];
+    uint32_t n = take_queue(t, RT_WIDE_SPHERES), count = 0, first = 0, ends[RT_WIDE_MAX_IN_FLIGHT];
+    for (uint32_t i = 0; i < n; i++) {
+        const RayState *f = t->list[RT_WIDE_SPHERES][i];
+        ends[i] = count + list_count(q, f->next);
+        for (uint32_t k = 0; count < ends[i]; k++)
+            pairs[count++] = sphere_pair(q, &q->rays[f->index], f->next, k);
+    }
+    hit_sphere_pairs(q->geometry, pairs, count, at);
+    for (uint32_t i = 0; i < n; i++) {
+        RayState *f = t->list[RT_WIDE_SPHERES][i];
+        RtTally *tally = counted ? f->tally : NULL;
+        bool over = false;
+        count_leaf(tally, q->tree, q->geometry, f->next);
+        for (uint32_t k = first; k < ends[i] && !over; k++)
+            over = rt_take_test(q->geometry, pairs[k].id, at[k], any, &f->best, tally);
+        finish_leaf(q, t, f, over, any, ahead);
+        first = ends[i];
+    }
+}
+
+/* Starts rays until one is in flight, or none are left. */
+RT_KERNEL void start_next_ray(const Query *q, RayQueues *t, RayState *f, bool any, bool counted, bool ahead) {
+    while (more_rays(q)) {
+        size_t i = q->source->index[q->source->taken++];
+        RtTally *tally = counted ? &q->tallies[q->rays[i].kind] : NULL;
+        if (init_ray(f, q, i, any, tally)) {
+            t->in_flight++;
+            enqueue(t, q->tree, f, 0, 1, ahead);
+            return;
+        }
+        finish_ray(q, f, any, counted);
+    }
+}
+
+/* Tests the other leaves, and starts other rays in place of those that have finished. */
+RT_KERNEL void visit_others(const Query *q, RayQueues *t, bool any, bool counted, bool ahead) {
+    uint32_t n = take_queue(t, RT_WIDE_OBJECTS);
+    for (uint32_t i = 0; i < n; i++) {
+        RayState *f = t->list[RT_WIDE_OBJECTS][i];
+        RtTally *tally = counted ? f->tally : NULL;
+        if (f->next == RT_WIDE_DONE) {
+            t->in_flight--;
+            finish_ray(q, f, any, counted);
+            start_next_ray(q, t, f, any, counted, ahead);
+            continue;
+        }
+        count_leaf(tally, q->tree, q->geometry, f->next);
+        finish_leaf(q, t, f, test_objects(q, f->next, state_ray(f, q), any, &f->best, tally), any, ahead);
+    }
+}
+
+RT_KERNEL void trace_many(const Query *q, bool any, bool counted) {
+    const bool ahead = q->self->prefetch;
+    Candidates candidates[RT_WIDE_MAX_IN_FLIGHT];
+    RayState *states = q->scratch->own;
+    RayQueues t = {0};
+    for (uint32_t i = 0; i < q->self->in_flight; i++) start_next_ray(q, &t, &states[i], any, counted, ahead);
+    while (t.in_flight > 0) {
+        while (t.count[RT_WIDE_NODE] > t.in_flight / 4) visit_nodes(q, &t, any, counted, ahead);
+        uint32_t n = prefilter_leaves(q, &t, candidates, counted, ahead);
+        for (uint32_t i = 0; i < n; i++) {
+            RayState *f = candidates[i].state;
+            const RtWideTriangles *blocks = rt_wide_leaf_at(q->tree, f->next);
+            bool over = test_triangles(blocks, candidates[i].mask, f, q, any, counted ? f->tally : NULL);
+            finish_leaf(q, &t, f, over, any, ahead);
+        }
+        if (t.count[RT_WIDE_SPHERES]) visit_spheres(q, &t, any, counted, ahead);
+        visit_others(q, &t, any, counted, ahead);
+    }
+}
+
+/* ---- packets ---- */
+
+/* A single packet would wait for each node to come from memory. So several are interleaved: while one waits
+ * for its prefetched node, the others continue. */
+
+RT_KERNEL void finish_packet(Packet *p, const Query *q, bool any) {
+    test_pairs(p, q->tree, 1, any);
+    for (uint32_t i = 0; i < p->count; i++) {
+        if (any)
+            q->occluders[p->index[i]] = p->best[i].object;
+        else
+            q->hits[p->index[i]] = p->best[i];
+    }
+}
+
+/* Traces the next rays of a query, about `count`. */
+RT_KERNEL Shared trace_packets(const Query *q, Packet *packets, Sorter *sorter, int32_t count, bool any) {
+    Shared shared = {0};
+    Packet *active[RT_WIDE_MAX_PACKETS];
+    uint32_t n = 0, class;
+    begin_sorting(sorter, count);
+    for (; n < q->self->packets; n++) {
+        class = sort_rays(sorter, q);
+        if (class == CLASSES) break;
+        active[n] = &packets[n];
+        init_packet(active[n], q, sorter, class, any);
+    }
+    while (n > 0) {
+        uint32_t kept = 0;
+        for (uint32_t i = 0; i < n; i++) {
+            Packet *p = active[kept] = active[i];
+            if (step_packet(p, q, &shared, any)) {
+                kept++;
+                continue;
+            }
+            finish_packet(p, q, any);
+            class = sort_rays(sorter, q);
+            if (class == CLASSES) continue;
+            init_packet(p, q, sorter, class, any);
+            kept++;
+        }
+        n = kept;
+    }
+    return shared;
+}
+
+/* ---- packets or streams ---- */
 
 /* What is known of the rays of a kind. */
 typedef struct RateEstimate {

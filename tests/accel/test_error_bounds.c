@@ -8,7 +8,7 @@
 #include "random_testing.h"
 
 #include "accel/extent.h"
-#include "accel/sphere_prefilter.h"
+#include "accel/batch.h"
 
 static const double within = 31.0 / 32, beyond = 33.0 / 32;
 
@@ -153,11 +153,11 @@ RT_TEST(the_footprint_of_an_object_covers_the_rounding_of_directions) {
 /* A triangle at depth 1 in a picture of 64 x 64, 2 wide, whose vertex is seen to the right of column 31 by a
  * part of the bound; and the part of the bound by which its t may be less. Both rise with |q|, the largest
  * sum of a vertex's coordinates. */
-static RtTileRange place_triangle(float height, double part) {
+static RtItemRange place_triangle(float height, double part) {
     const double longest = 3.001, reach = (32 + 64) * longest, oblique = 1.25 + (double)height;
     const double pad = reach * (0x1p-17 + oblique * 0x1p-20) * oblique, x = (31.5 + part * pad) / 32 - 1;
     const RtVec3 v[3] = {{{(float)x, 1, 0}}, {{0.25f, 1, -height}}, {{0.25f, 1, height}}};
-    RtTileRange placed[1];
+    RtItemRange placed[1];
     OWNED_SCENE scene = begin_square(rt_vec3(0, 0, 0), 1, 64);
     assert_ok(rt_scene_add_triangle(&scene, 0, v, NULL, error));
     assert_ok(rt_scene_finish(&scene, error));
@@ -171,9 +171,9 @@ static RtTileRange place_triangle(float height, double part) {
 RT_TEST(a_triangle_is_placed_where_its_vertices_may_be_seen_within_their_bound) {
     for (int tall = 0; tall < 2; tall++) {
         float height = tall ? 30 : 0.25f;
-        RtTileRange in = place_triangle(height, within), out = place_triangle(height, beyond);
-        assert_true(in.lo[0] == 0 && in.layer == 0);
-        assert_true(out.lo[0] == 1 && out.layer > 0);
+        RtItemRange in = place_triangle(height, within), out = place_triangle(height, beyond);
+        assert_true(in.lo[0] == 0 && in.depth == 0);
+        assert_true(out.lo[0] == 1 && out.depth > 0);
     }
 }
 

@@ -9,7 +9,7 @@
 #include "accel/brute/brute.h"
 #include "accel/extents/extents.h"
 #include "accel/kernel.h"
-#include "accel/sphere_prefilter.h"
+#include "accel/batch.h"
 #include "accel/watertight.h"
 
 /* What is asked, and what is answered, timed and counted. */

@@ -5,7 +5,7 @@
 #include "item_testing.h"
 #include "random_testing.h"
 
-#include "accel/sphere_prefilter.h"
+#include "accel/batch.h"
 
 typedef struct Case {
     RtRay ray;

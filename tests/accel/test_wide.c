@@ -158,9 +158,8 @@ RT_TEST(validate_names_a_node_that_is_too_deep) {
     RtWideTree *tree = &wide->trees[0];
     const uint32_t nodes = CHAIN * sizeof(RtWideNode);
     RtBox box = scene.geometry.box;
-    rt_free(tree->arena);
     tree->bytes = nodes + (CHAIN + 1) * sizeof(RtWideList);
-    tree->arena = rt_alloc(tree->bytes, 1);
+    tree->arena = rt_arena_alloc(&wide->isa.base.memory, tree->bytes, 1);
     tree->node_count = CHAIN;
     for (uint32_t i = 0; i < CHAIN; i++) {
         const uint32_t units = sizeof(RtWideNode) / RT_WIDE_UNIT;

@@ -137,48 +137,23 @@ static void check(RtScene scene, uint64_t seed, Bundle *only) {
     rt_scene_clear(&bench.scene);
 }
 
-static void check_scene(const char *spec) {
-    check(open_scene(spec), 1, NULL);
-}
-
 /* ---- scenes ---- */
 
-RT_TEST(triangles_are_hit_as_by_brute) {
-    check_scene("random:n=400,shape=triangle");
-}
-
-RT_TEST(slivers_are_hit_as_by_brute) {
-    check_scene("family:kind=slivers,seed=2");
-}
-
-RT_TEST(a_mesh_far_from_the_zero_of_coordinates_is_hit_as_by_brute) {
-    check_scene("family:kind=mesh-far,seed=3");
-}
-
-RT_TEST(objects_in_planes_of_boxes_are_hit_as_by_brute) {
-    check_scene("family:kind=axis-aligned,seed=1");
-}
-
-RT_TEST(spheres_of_which_some_are_the_same_are_hit_as_by_brute) {
-    check_scene("family:kind=duplicates,seed=1");
-}
-
-RT_TEST(spheres_alone_and_in_lists_are_hit_as_by_brute) {
-    check_scene("random:n=300,shape=sphere,distribution=clustered");
-    check_scene("shells:size=2");
-}
-
-RT_TEST(mixed_objects_are_hit_as_by_brute) {
-    check_scene("family:kind=mixed,seed=4");
-}
-
-RT_TEST(tiny_and_huge_objects_are_hit_as_by_brute) {
-    check_scene("family:kind=mixed-tiny,seed=1");
-    check_scene("family:kind=mixed-huge,seed=1");
-}
-
-RT_TEST(csg_trees_are_hit_as_by_brute) {
-    check_scene("family:kind=csg,seed=1");
+/* Triangles; slivers; a mesh far from the zero of coordinates; objects in planes of boxes; spheres, some the
+ * same, alone and in lists; all shapes, tiny and huge; CSG trees. */
+RT_TEST(objects_of_every_sort_are_hit_as_by_brute) {
+    static const char *const specs[] = {"random:n=400,shape=triangle",
+                                        "family:kind=slivers,seed=2",
+                                        "family:kind=mesh-far,seed=3",
+                                        "family:kind=axis-aligned,seed=1",
+                                        "family:kind=duplicates,seed=1",
+                                        "random:n=300,shape=sphere,distribution=clustered",
+                                        "shells:size=2",
+                                        "family:kind=mixed,seed=4",
+                                        "family:kind=mixed-tiny,seed=1",
+                                        "family:kind=mixed-huge,seed=1",
+                                        "family:kind=csg,seed=1"};
+    for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) check(open_scene(specs[i]), 1, NULL);
 }
 
 RT_TEST(scenes_of_no_object_and_of_one_are_answered_as_by_brute) {

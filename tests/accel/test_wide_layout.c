@@ -4,7 +4,8 @@
 #include "random_testing.h"
 #include "tree_testing.h"
 
-#include "accel/wide/ray_source.h"
+#include "accel/watertight.h"
+#include "accel/wide/wide.h"
 
 static const RtWideLayout plain = {
     .leaf_limit = 4, .block_cost = 1, .huge_pages = true, .threads = 1, .limit = UINT64_MAX};
@@ -23,9 +24,9 @@ static uint64_t bytes_below(const RtWideTree *wide, RtWideRef ref) {
 }
 
 /* Without gaps. */
-static RtWideTree lay_out(const RtScene *scene, RtTree *tree, const RtWideLayout *how) {
+static RtWideTree lay_out(const RtScene *scene, RtTree *tree, RtArena *memory) {
     RtWideTree wide;
-    assert_ok(rt_wide_lay_out(&wide, tree, &scene->geometry, how, error));
+    assert_ok(rt_wide_lay_out(&wide, tree, &scene->geometry, &plain, memory, error));
     assert_ok(rt_wide_validate(&wide, &scene->geometry, error));
     assert_int_equal(bytes_below(&wide, 0), wide.bytes);
     return wide;
@@ -34,7 +35,8 @@ static RtWideTree lay_out(const RtScene *scene, RtTree *tree, const RtWideLayout
 RT_TEST(a_leaf_is_next_to_its_node_or_another_leaf) {
     OWNED_SCENE scene = open_scene("random:n=5000,shape=mixed");
     OWNED_TREE tree = build_tree(scene.geometry.boxes, scene.geometry.object_count, binned, 1);
-    OWNED(rt_wide_clear) RtWideTree wide = lay_out(&scene, &tree, &plain);
+    RT_ARENA(memory);
+    const RtWideTree wide = lay_out(&scene, &tree, &memory);
     const RtWideNode *root = rt_wide_node(&wide, 0);
     uint64_t end = sizeof(RtWideNode);
     for (int leaves = 1; leaves >= 0; leaves--) {
@@ -58,7 +60,8 @@ RT_TEST(a_block_is_filled_where_halves_have_hardly_less_area) {
     }
     assert_ok(rt_scene_finish(&scene, error));
     OWNED_TREE tree = build_tree(scene.geometry.boxes, 16, (RtTreeOptions){.method = RT_TREE_MEDIAN}, 1);
-    OWNED(rt_wide_clear) RtWideTree wide = lay_out(&scene, &tree, &plain);
+    RT_ARENA(memory);
+    const RtWideTree wide = lay_out(&scene, &tree, &memory);
     assert_int_equal(wide.node_count, 1);
     assert_int_equal(wide.bytes, sizeof(RtWideNode) + 4 * sizeof(RtWideTriangles));
     assert_true(fabs(wide.cost - (1 + 4 * 4.3 / 17.5)) < 1e-5);
@@ -68,15 +71,14 @@ RT_TEST(one_object_is_a_leaf_below_a_root_and_what_takes_too_much_is_refused) {
     OWNED_SCENE scene = open_scene("random:n=1,shape=triangle");
     OWNED_TREE tree = build_tree(scene.geometry.boxes, 1, binned, 1);
     RtWideLayout how = plain;
-    RtWideTree wide = lay_out(&scene, &tree, &plain);
+    RT_ARENA(memory);
+    RtWideTree wide = lay_out(&scene, &tree, &memory);
     assert_int_equal(wide.node_count, 1);
     assert_int_equal(wide.bytes, sizeof(RtWideNode) + sizeof(RtWideTriangles));
-    rt_wide_clear(&wide);
     how.limit = sizeof(RtWideNode) + sizeof(RtWideTriangles) - 1;
     RtError refusal;
-    assert_int_equal(rt_wide_lay_out(&wide, &tree, &scene.geometry, &how, &refusal), RT_BAD_INPUT);
+    assert_int_equal(rt_wide_lay_out(&wide, &tree, &scene.geometry, &how, &memory, &refusal), RT_BAD_INPUT);
     assert_null(wide.arena);
-    assert_true(wide.bytes == 0);
 }
 
 /* Trees of each method number their nodes in another order. */
@@ -88,17 +90,16 @@ RT_TEST(a_tree_is_laid_out_alike_when_its_leaves_have_no_nodes) {
     for (uint32_t variant = 0; variant < 6; variant++) {
         uint32_t count = variant < 3 ? 5000 : variant - 2;
         OWNED_TREE tree = build_tree(boxes, count, methods[variant % 3], 1);
+        RT_ARENA(memory);
         RtWideTree before, after;
-        assert_ok(rt_wide_lay_out(&before, &tree, &scene.geometry, &plain, error));
+        assert_ok(rt_wide_lay_out(&before, &tree, &scene.geometry, &plain, &memory, error));
         assert_ok(rt_tree_drop_leaves(&tree, boxes, error));
         assert_int_equal(tree.used, count - 1);
         assert_int_equal(rt_tree_leaf_count(&tree), count);
-        assert_ok(rt_wide_lay_out(&after, &tree, &scene.geometry, &plain, error));
+        assert_ok(rt_wide_lay_out(&after, &tree, &scene.geometry, &plain, &memory, error));
         assert_int_equal(before.bytes, after.bytes);
         assert_true(before.cost == after.cost);
         assert_memory_equal(before.arena, after.arena, before.bytes);
-        rt_wide_clear(&before);
-        rt_wide_clear(&after);
     }
 }
 
@@ -143,7 +144,7 @@ RT_TEST(rays_in_lanes_are_as_thick_as_one_by_one) {
         RtPreparedRay prepared = rt_ray_prepare(&ray, &g.box);
         float lanes[RT_LANES];
         for (int a = 0; a < 3; a++) {
-            rt_store(lanes, org[a] + shift_of(thickness_of(org, &g), org[a]));
+            rt_store(lanes, org[a] + rt_lanes_shift(rt_lanes_thickness(org, &g.box), org[a]));
             for (int k = 0; k < RT_LANES; k++) assert_true(lanes[k] == prepared.org_near[a]);
         }
     }
