@@ -5,7 +5,6 @@
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "core/text/table.h"
-#include "results/paired.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -2,7 +2,6 @@
 #include "claims/claims_points.h"
 
 #include "core/base/words.h"
-#include "results/paired.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,6 @@
 #include "claims/claims.h"
 
 #include "core/base/words.h"
-#include "results/claims_changed.h"
 #include "results/result_tables.h"
 
 #include <inttypes.h>

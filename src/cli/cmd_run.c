@@ -11,7 +11,7 @@
 #include "report/index.h"
 #include "report/report.h"
 #include "results/journal.h"
-#include "results/manifest.h"
+#include "results/result_directory.h"
 #include "results/result_tables.h"
 #include "run/run.h"
 

@@ -6,7 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "experiment/plugins_used.h"
-#include "results/manifest.h"
+#include "results/result_directory.h"
 
 #include <stdio.h>
 #include <stdlib.h>

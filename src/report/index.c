@@ -11,7 +11,6 @@
 #include "measure/machine.h"
 #include "report/page.h"
 #include "results/frame_table.h"
-#include "results/manifest.h"
 #include "results/result_directory.h"
 
 #include <ctype.h>

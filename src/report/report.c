@@ -11,9 +11,7 @@
 #include "report/page.h"
 #include "report/paper_tables.h"
 #include "report/plot.h"
-#include "results/distribution_tables.h"
 #include "results/frame_table.h"
-#include "results/manifest.h"
 #include "results/result_directory.h"
 #include "results/result_tables.h"
 
@@ -186,12 +184,9 @@ static json_t *tables_of(const RtResults *results) {
                                         table_of(results, t, RT_CELLS_MORE, "By kind of rays")));
     }
     json_t *more = json_array();
-    if (experiment->distributions) {
-        RtDistributionRow distribution = {.results = results};
-        RtTable table = rt_distribution_table(RT_DISTRIBUTIONS, &distribution);
-        table.caption = "Distributions of counts over rays and over leaves";
-        json_array_append_new(more, rt_table_page(&table));
-    }
+    if (experiment->distributions)
+        json_array_append_new(more, table_of(results, 0, RT_DISTRIBUTIONS,
+                                             "Distributions of counts over rays and over leaves"));
     if (experiment->render)
         json_array_append_new(more, table_of(results, 0, RT_RENDERED, "Rendering whole frames"));
     if (json_array_size(more))

@@ -343,25 +343,12 @@ void rt_frame_legend(const RtExperiment *experiment, const char *mark, char out[
         experiment->frame.among);
 }
 
-static void print_rows(const RtResults *results, uint32_t workload, FILE *out) {
-    RtFrameRow row = {.results = results, .one = true, .workload = workload};
-    RtTable table = rt_frame_table(&row);
-    table.groups = for_terminals;
-    table.group_count = 1;
-    int widths[RT_MAX_TABLE_COLUMNS], part[RT_MAX_TABLE_COLUMNS];
-    rt_table_widths(&table, widths);
-    for (size_t next = 0; rt_table_part(&table, widths, rt_page_width(out), &next, part);) {
-        const char *group = "";
-        fputc('\n', out);
-        rt_table_line(&table, part, NULL, out);
-        for (size_t i = 0; i < table.row_count; i++) {
-            if (!table.row(table.context, i)) continue;
-            const char *own = results->experiment->candidates[row.candidate].group;
-            if (strcmp(own, group) != 0) fprintf(out, "%s\n", own);
-            group = own;
-            rt_table_line(&table, part, &row, out);
-        }
-    }
+/* The group of the rows below, where it is another one. */
+static void put_group(void *context, const void *current, FILE *out) {
+    Row *r = context;
+    const char *group = current ? r->results->experiment->candidates[r->candidate].group : "";
+    if (current && strcmp(group, r->group) != 0) fprintf(out, "%s\n", group);
+    r->group = group;
 }
 
 void rt_print_frames(const RtResults *results, FILE *out) {
@@ -377,6 +364,12 @@ void rt_print_frames(const RtResults *results, FILE *out) {
         snprintf(title, sizeof title, "%s: %s", experiment->workloads[t].label, text);
         fputc('\n', out);
         rt_print_wrapped(title, out);
-        print_rows(results, t, out);
+        RtFrameRow row = {.results = results, .one = true, .workload = t};
+        RtTable table = rt_frame_table(&row);
+        table.groups = for_terminals;
+        table.group_count = 1;
+        table.above = put_group;
+        fputc('\n', out);
+        rt_table_text(&table, out);
     }
 }

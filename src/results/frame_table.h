@@ -36,6 +36,7 @@ typedef struct RtFrameRow {
     uint32_t workload; /* of the row; given if `one` */
     uint32_t candidate;
     char shown[2 + RT_MAX_SHOWN]; /* its mark and its label, for a screen */
+    const char *group;            /* printed rows: that of the last heading */
     RtFrameCost cost[RT_FRAME_PARTS], without[RT_FRAME_PARTS];
     double gain, tests_gain; /* in time, and in object tests */
     uint32_t winner; /* the fastest of the group, without overlays; of the fewest object tests if nothing was

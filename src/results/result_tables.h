@@ -5,7 +5,7 @@
 #define RT_RESULTS_RESULT_TABLES_H
 
 #include "core/text/table.h"
-#include "results/paired.h"
+#include "results/results.h"
 
 typedef enum RtResultTable {
     /* counts.csv: a row per cell of each accelerator whose counts are the same on every machine: every
@@ -18,8 +18,13 @@ typedef enum RtResultTable {
     RT_TIMES,
     /* rounds.csv: a row per round of a timed cell, null runs included. */
     RT_ROUNDS,
-    RT_RENDERED,  /* render.csv: a row per scene and accelerator: time to render the frame, and the part of
-                     it spent in queries */
+    RT_RENDERED, /* render.csv: a row per scene and accelerator: time to render the frame, and the part of
+                    it spent in queries */
+    /* distributions.csv: a row per cell and quantity over rays, and per structure and quantity over leaves:
+       percentiles; histograms.csv: a row for each bin that is not empty. As exact as counts.csv, for the same
+       accelerators. */
+    RT_DISTRIBUTIONS,
+    RT_HISTOGRAMS,
     RT_BENCH,     /* "rows" of bench --json: a row per counted cell */
     RT_NULL_RUNS, /* "null_runs" there */
     RT_CELLS, /* to read: one workload by accelerator and ray kind; of several baselines only the fastest */
@@ -46,6 +51,10 @@ typedef struct RtResultRow {
     char shown[RT_MAX_SHOWN]; /* its label on a screen */
     RtRayKind kind;
     uint32_t round, most_rounds; /* of RT_ROUNDS; most_rounds: of any cell */
+    size_t quantity;             /* rt_quantity_name, of RT_DISTRIBUTIONS and RT_HISTOGRAMS */
+    uint32_t bin;                /* of RT_HISTOGRAMS */
+    const RtDistribution *distribution;
+    uint32_t headed; /* printed rows: 1 + the kind of rays of the last heading */
     const RtWorkload *setup;
     const RtWorkloadResult *scene;
     const RtBuildResult *build;
@@ -65,12 +74,6 @@ RtTable rt_result_table(RtResultTable which, RtResultRow *row);
 /* Whether it has a column for each parameter that the experiment sweeps. */
 bool rt_result_table_sweeps(RtResultTable which);
 
-/* The label of a row in tables to read, with a star if it is measured on a part of the rays. A label of more
- * than RT_EYE_WIDTH characters is printed on its own line. */
-#define RT_EYE_WIDTH     24
-#define RT_MAX_EYE_LABEL (RT_MAX_SHOWN + 8)
-void rt_result_eye_label(const RtResultRow *row, char out[RT_MAX_EYE_LABEL]);
-
 /* The time to build in ms, with its interval: without one if it was built once. */
 RtField rt_build_ms(const RtBuildResult *build);
 
@@ -78,9 +81,8 @@ RtField rt_build_ms(const RtBuildResult *build);
  * if nothing was timed), or RT_TOTALS; for each known workload. */
 void rt_print_results(const RtResults *results, RtResultTable which, FILE *out);
 
-/* Prints a blank line, the names of the columns, and the rows of one workload; in several parts if the page
- * is narrower (rt_table_part). */
-void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workload, FILE *out);
+/* Prints the percentiles of each known workload: a row per cell, and then a row per structure. */
+void rt_print_distributions(const RtResults *results, FILE *out);
 
 /* Prints the frames' costs and what follows from them, or the totals if the experiment has no frames;
  * what was left out. */

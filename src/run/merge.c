@@ -6,7 +6,6 @@
 #include "experiment/plugins_used.h"
 #include "measure/machine.h"
 #include "results/journal.h"
-#include "results/manifest.h"
 #include "results/result_directory.h"
 
 #include <string.h>

@@ -9,8 +9,6 @@
 #include "core/text/json_lines.h"
 #include "render/image.h"
 #include "results/journal.h"
-#include "results/journal_lines.h"
-#include "results/manifest.h"
 #include "results/result_directory.h"
 
 #include <inttypes.h>

@@ -8,7 +8,6 @@
 #include "core/base/memory.h"
 #include "core/text/csv.h"
 #include "measure/extents_table.h"
-#include "results/distribution_tables.h"
 #include "results/frame_table.h"
 #include "results/result_tables.h"
 #include "run/callgrind.h"
@@ -26,11 +25,6 @@ static const RtResults results = {.experiment = &experiment};
 static RtTable of_results(RtResultTable which) {
     static RtResultRow row = {.results = &results};
     return rt_result_table(which, &row);
-}
-
-static RtTable of_distributions(RtDistributionTable which) {
-    static RtDistributionRow rows[2] = {{.results = &results}, {.results = &results}};
-    return rt_distribution_table(which, &rows[which]);
 }
 
 static RtTable of_frames(void) {
@@ -71,13 +65,12 @@ static void list(Section sections[SECTIONS]) {
         {"rounds.csv", true, NULL, RESULTS(RT_ROUNDS)},
         {"frame.csv", true, NULL, .table = of_frames()},
         {"render.csv", true, NULL, RESULTS(RT_RENDERED)},
-        {"distributions.csv", true, NULL, .table = of_distributions(RT_DISTRIBUTIONS)},
-        {"histograms.csv", true, NULL, .table = of_distributions(RT_HISTOGRAMS)},
+        {"distributions.csv", true, NULL, RESULTS(RT_DISTRIBUTIONS)},
+        {"histograms.csv", true, NULL, RESULTS(RT_HISTOGRAMS)},
         {"verify.csv", true, "results/reference/verify/verify.csv", .table = verify_csv},
         {"bench --json: rows", false, NULL, RESULTS(RT_BENCH)},
         {"bench --json: null_runs", false, NULL, RESULTS(RT_NULL_RUNS)},
-        {"bench --json --distribution: distributions", false, NULL,
-         .table = of_distributions(RT_DISTRIBUTIONS)},
+        {"bench --json --distribution: distributions", false, NULL, RESULTS(RT_DISTRIBUTIONS)},
         {"bench --json --callgrind: instructions", false, NULL, .table = of_instructions()},
         {"compare --json: cells", false, NULL, .table = of_comparison(rt_comparison_table)},
         {"compare --json: accelerators", false, NULL, .table = of_comparison(rt_compared_accels_table)},

@@ -4,7 +4,6 @@
 #include "core/base/words.h"
 #include "core/text/csv.h"
 #include "core/text/json.h"
-#include "core/text/table_line.h"
 
 #include <assert.h>
 #include <inttypes.h>
@@ -25,12 +24,14 @@ const char *rt_form_name(RtForm form) {
     return forms[form].says;
 }
 
-bool rt_column_is_number(const RtTableColumn *column) {
+/* Whether the fields are numbers, which are right-aligned. */
+static bool is_number(const RtTableColumn *column) {
     return column->form >= RT_FORM_integer;
 }
 
-bool rt_column_is_measured(const RtTableColumn *column) {
-    return rt_column_is_number(column) || column->form == RT_FORM_interval;
+/* The same, or numbers with intervals. */
+static bool is_measured(const RtTableColumn *column) {
+    return is_number(column) || column->form == RT_FORM_interval;
 }
 
 /* ---- fields ---- */
@@ -218,13 +219,29 @@ static json_t *field_json(RtForm form, const RtField *field) {
 
 /* ---- rows ---- */
 
+/* The fields of a row, in the order of the columns. */
+typedef struct Line {
+    size_t count;
+    const RtTableColumn *columns[RT_MAX_TABLE_COLUMNS];
+    RtField fields[RT_MAX_TABLE_COLUMNS];
+} Line;
+
+typedef struct Writer Writer;
+struct Writer {
+    const RtTable *table;
+    void (*put)(Writer *writer, const Line *line, const void *row); /* `row` NULL: the header */
+    FILE *out;
+    int *widths;  /* of text */
+    json_t *page; /* of rt_table_page */
+};
+
 static RtField field_of(const RtColumnGroup *group, size_t i, const void *row) {
     if (row && group->of) row = group->of(row);
     return row ? group->columns[i].get(row, &group->columns[i]) : rt_field_missing();
 }
 
 /* Without a row, only the columns. */
-static void take(RtTableLine *line, const RtTable *table, const void *row) {
+static void take(Line *line, const RtTable *table, const void *row) {
     line->count = 0;
     for (size_t g = 0; g < table->group_count; g++) {
         const RtColumnGroup *group = &table->groups[g];
@@ -236,17 +253,19 @@ static void take(RtTableLine *line, const RtTable *table, const void *row) {
     }
 }
 
-const char *rt_line_show(const RtTableLine *line, size_t i, char buffer[RT_MAX_FIELD]) {
+/* Field `i` as text; in `buffer` or the line. */
+static const char *line_show(const Line *line, size_t i, char buffer[RT_MAX_FIELD]) {
     return rt_field_show(line->columns[i]->form, &line->fields[i], buffer);
 }
 
-static void write_row(RtTableWriter *w, const void *row) {
-    RtTableLine line;
+static void write_row(Writer *w, const void *row) {
+    Line line;
     take(&line, w->table, row);
     w->put(w, &line, row);
 }
 
-void rt_table_walk(RtTableWriter w) {
+/* Writes the header and then each row. */
+static void walk(Writer w) {
     write_row(&w, NULL);
     for (size_t i = 0; i < w.table->row_count; i++) {
         const void *row = w.table->row(w.table->context, i);
@@ -256,27 +275,27 @@ void rt_table_walk(RtTableWriter w) {
 
 /* ---- CSV ---- */
 
-static void put_csv(RtTableWriter *w, const RtTableLine *line, const void *row) {
+static void put_csv(Writer *w, const Line *line, const void *row) {
     char buffer[RT_MAX_FIELD];
     for (size_t i = 0; i < line->count; i++) {
         if (i) fputc(',', w->out);
-        rt_csv_put(w->out, row ? rt_line_show(line, i, buffer) : line->columns[i]->id);
+        rt_csv_put(w->out, row ? line_show(line, i, buffer) : line->columns[i]->id);
     }
     fputc('\n', w->out);
 }
 
 void rt_table_csv(const RtTable *table, FILE *out) {
-    rt_table_walk((RtTableWriter){.table = table, .put = put_csv, .out = out});
+    walk((Writer){.table = table, .put = put_csv, .out = out});
 }
 
 /* ---- text ---- */
 
-static const char *show_text(const RtTableLine *line, size_t i, const void *row, char buffer[RT_MAX_FIELD]) {
-    const char *text = row ? rt_line_show(line, i, buffer) : line->columns[i]->name;
+static const char *show_text(const Line *line, size_t i, const void *row, char buffer[RT_MAX_FIELD]) {
+    const char *text = row ? line_show(line, i, buffer) : line->columns[i]->name;
     return *text ? text : "-";
 }
 
-static void widen(RtTableWriter *w, const RtTableLine *line, const void *row) {
+static void widen(Writer *w, const Line *line, const void *row) {
     char buffer[RT_MAX_FIELD];
     for (size_t i = 0; i < line->count; i++) {
         int width = (int)strlen(show_text(line, i, row, buffer));
@@ -286,13 +305,14 @@ static void widen(RtTableWriter *w, const RtTableLine *line, const void *row) {
 
 enum { HIDDEN = -1, GAP = 2 }; /* the width of a column of another part; between columns */
 
-static void put_text(RtTableWriter *w, const RtTableLine *line, const void *row) {
+static void put_text(Writer *w, const Line *line, const void *row) {
     char buffer[RT_MAX_FIELD];
     size_t last_shown = line->count - 1;
+    if (w->table->above) w->table->above(w->table->context, row, w->out);
     while (last_shown > 0 && w->widths[last_shown] == HIDDEN) last_shown--;
     for (size_t i = 0; i < line->count; i++) {
         if (w->widths[i] == HIDDEN) continue;
-        bool last = i == last_shown, left = !rt_column_is_number(line->columns[i]);
+        bool last = i == last_shown, left = !is_number(line->columns[i]);
         int width = left && last ? 0 : w->widths[i];
         fprintf(w->out, left ? "%-*s%s" : "%*s%s", width, show_text(line, i, row, buffer),
                 last ? "\n" : "  ");
@@ -301,22 +321,19 @@ static void put_text(RtTableWriter *w, const RtTableLine *line, const void *row)
 
 void rt_table_widths(const RtTable *table, int widths[RT_MAX_TABLE_COLUMNS]) {
     memset(widths, 0, RT_MAX_TABLE_COLUMNS * sizeof *widths);
-    rt_table_walk((RtTableWriter){.table = table, .put = widen, .widths = widths});
+    walk((Writer){.table = table, .put = widen, .widths = widths});
 }
 
 void rt_table_line(const RtTable *table, int *widths, const void *row, FILE *out) {
-    write_row(&(RtTableWriter){.table = table, .put = put_text, .out = out, .widths = widths}, row);
+    write_row(&(Writer){.table = table, .put = put_text, .out = out, .widths = widths}, row);
 }
 
-static size_t column_count(const RtTable *table) {
+/* Sets part[] to the widths of the part that begins with column *next, 0 at first. Moves *next; false after
+ * the last part. */
+static bool next_part(const RtTable *table, const int widths[RT_MAX_TABLE_COLUMNS], int page, size_t *next,
+                      int part[RT_MAX_TABLE_COLUMNS]) {
     size_t count = 0;
     for (size_t g = 0; g < table->group_count; g++) count += table->groups[g].count;
-    return count;
-}
-
-bool rt_table_part(const RtTable *table, const int widths[RT_MAX_TABLE_COLUMNS], int page, size_t *next,
-                   int part[RT_MAX_TABLE_COLUMNS]) {
-    const size_t count = column_count(table);
     size_t end = *next > 0 ? *next : 1;
     int left = page - widths[0];
     if (*next == count) return false;
@@ -332,11 +349,89 @@ void rt_table_text(const RtTable *table, FILE *out) {
     int widths[RT_MAX_TABLE_COLUMNS], part[RT_MAX_TABLE_COLUMNS];
     rt_table_widths(table, widths);
     size_t next = 0;
-    for (const char *before = ""; rt_table_part(table, widths, rt_page_width(out), &next, part);
-         before = "\n") {
+    for (const char *before = ""; next_part(table, widths, rt_page_width(out), &next, part); before = "\n") {
         fputs(before, out);
-        rt_table_walk((RtTableWriter){.table = table, .put = put_text, .out = out, .widths = part});
+        walk((Writer){.table = table, .put = put_text, .out = out, .widths = part});
     }
+}
+
+/* ---- Markdown ---- */
+
+static void put_markdown(Writer *w, const Line *line, const void *row) {
+    char buffer[RT_MAX_FIELD];
+    fputc('|', w->out);
+    for (size_t i = 0; i < line->count; i++) {
+        const char *text = row ? line_show(line, i, buffer) : line->columns[i]->name;
+        const char *mark = row && line->fields[i].bold ? "**" : "";
+        if (*text) fprintf(w->out, " %s", mark);
+        for (const char *c = text; *c; c++) fprintf(w->out, *c == '|' ? "\\|" : "%c", *c);
+        fprintf(w->out, "%s |", *text ? mark : "");
+    }
+    fputs(row ? "\n" : "\n|", w->out);
+    for (size_t i = 0; !row && i < line->count; i++) {
+        bool right = is_measured(line->columns[i]);
+        fprintf(w->out, " ---%s |%s", right ? ":" : "", i + 1 < line->count ? "" : "\n");
+    }
+}
+
+void rt_table_markdown(const RtTable *table, FILE *out) {
+    walk((Writer){.table = table, .put = put_markdown, .out = out});
+}
+
+/* ---- LaTeX ---- */
+
+static void put_tex_text(const char *text, FILE *out) {
+    for (; *text; text++) {
+        switch (*text) {
+        case '\\': fputs("\\textbackslash{}", out); break;
+        case '~': fputs("\\textasciitilde{}", out); break;
+        case '^': fputs("\\textasciicircum{}", out); break;
+        case '<': fputs("\\textless{}", out); break;
+        case '>': fputs("\\textgreater{}", out); break;
+        case '|': fputs("\\textbar{}", out); break;
+        case '&':
+        case '%':
+        case '$':
+        case '#':
+        case '_':
+        case '{':
+        case '}': fprintf(out, "\\%c", *text); break;
+        default: fputc(*text, out);
+        }
+    }
+}
+
+static void put_tex(Writer *w, const Line *line, const void *row) {
+    char buffer[RT_MAX_FIELD];
+    if (!row) {
+        fputs("\\begin{tabular}{@{}", w->out);
+        for (size_t i = 0; i < line->count; i++) fputc(is_measured(line->columns[i]) ? 'r' : 'l', w->out);
+        fputs("@{}}\n\\toprule\n", w->out);
+    }
+    for (size_t i = 0; i < line->count; i++) {
+        const char *text = row ? line_show(line, i, buffer) : line->columns[i]->name;
+        const bool bold = row && line->fields[i].bold;
+        fputs(i ? " & " : "", w->out);
+        fputs(bold ? "\\textbf{" : "", w->out);
+        if (*text)
+            put_tex_text(text, w->out);
+        else
+            fputs("--", w->out);
+        fputs(bold ? "}" : "", w->out);
+    }
+    fputs(row ? " \\\\\n" : " \\\\\n\\midrule\n", w->out);
+}
+
+void rt_table_tex(const RtTable *table, FILE *out) {
+    const char *star = table->wide ? "*" : "";
+    fprintf(out, "\\begin{table%s}\n\\footnotesize\\centering\\setlength{\\tabcolsep}{3pt}\n", star);
+    if (table->caption) {
+        fputs("\\caption{", out);
+        put_tex_text(table->caption, out);
+        fputs("}\\smallskip\n", out);
+    }
+    walk((Writer){.table = table, .put = put_tex, .out = out});
+    fprintf(out, "\\bottomrule\n\\end{tabular}\n\\end{table%s}\n", star);
 }
 
 /* ---- JSON ---- */
@@ -391,22 +486,22 @@ static json_t *page_field(const RtTableColumn *column, const RtField *field) {
     char buffer[RT_MAX_FIELD];
     const char *text = rt_field_show(column->form, field, buffer);
     json_t *value = json_null();
-    if (!rt_column_is_measured(column) && !field->note) return json_string(text);
+    if (!is_measured(column) && !field->note) return json_string(text);
     if (field->is == RT_FIELD_INTEGER) value = json_integer((json_int_t)field->integer);
     if (field->is >= RT_FIELD_REAL) value = rt_json_number(field->real);
     return json_pack("[s, o, s*]", text, value, field->note);
 }
 
 /* A context: the object of the table. */
-static void put_page(RtTableWriter *w, const RtTableLine *line, const void *row) {
+static void put_page(Writer *w, const Line *line, const void *row) {
     static const char *const standings[] = {"", "level", "best"};
     json_t *list = json_array();
     for (size_t i = 0; i < line->count; i++) {
         const RtTableColumn *column = line->columns[i];
-        json_array_append_new(list, row ? page_field(column, &line->fields[i])
-                                        : json_pack("{s:s, s:s, s:s, s:b}", "id", column->id, "name",
-                                                    column->name, "meaning", column->meaning, "number",
-                                                    rt_column_is_measured(column)));
+        json_array_append_new(list,
+                              row ? page_field(column, &line->fields[i])
+                                  : json_pack("{s:s, s:s, s:s, s:b}", "id", column->id, "name", column->name,
+                                              "meaning", column->meaning, "number", is_measured(column)));
     }
     if (!row) {
         json_object_set_new(w->page, "columns", list);
@@ -421,6 +516,6 @@ static void put_page(RtTableWriter *w, const RtTableLine *line, const void *row)
 
 json_t *rt_table_page(const RtTable *table) {
     json_t *page = json_pack("{s:s, s:[]}", "title", table->caption ? table->caption : "", "rows");
-    if (page) rt_table_walk((RtTableWriter){.table = table, .put = put_page, .page = page});
+    if (page) walk((Writer){.table = table, .put = put_page, .page = page});
     return page;
 }
