@@ -7,7 +7,6 @@
 #include "core/base/words.h"
 #include "core/text/json.h"
 #include "measure/result_files.h"
-#include "report/color.h"
 #include "report/page.h"
 #include "report/paper_tables.h"
 #include "report/plot.h"

@@ -71,7 +71,7 @@ RT_TEST_IN_PLACE(without_scripts_a_plot_is_drawn_for_each_parameter_and_measure)
     assert_in_file(place, drawn[5], "viewBox=\"0 0 480 ");
 }
 
-/* Lines by line as src/report/sweep_data.h says; a legend and shades in the order of the sweep need it. */
+/* Lines by line as src/report/plot.c says; a legend and shades in the order of the sweep need it. */
 RT_TEST_IN_PLACE(the_data_of_a_plot_has_a_block_per_scene_and_in_it_a_line_per_accelerator) {
     const Place *place = *state;
     unsigned color, before = 0;
