@@ -4,7 +4,6 @@
 #include "cli/cli.h"
 #include "cli/directory.h"
 #include "core/base/words.h"
-#include "report/index.h"
 #include "report/report.h"
 
 #include <stdio.h>

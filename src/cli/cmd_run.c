@@ -8,7 +8,6 @@
 #include "cli/stop.h"
 #include "core/base/words.h"
 #include "measure/result_files.h"
-#include "report/index.h"
 #include "report/report.h"
 #include "results/journal.h"
 #include "results/result_directory.h"

@@ -2,7 +2,6 @@
 #include "compare/compare.h"
 #include "accel/columns.h"
 
-#include "core/base/memory.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
 #include "experiment/plugins_used.h"
@@ -18,12 +17,8 @@ static const char *const change_names[] = {
 };
 
 void rt_comparison_clear(RtComparison *comparison) {
-    for (uint32_t i = 0; i < comparison->count; i++) {
-        rt_free(comparison->cells[i].ratios);
-        rt_free(comparison->cells[i].runs);
-    }
+    rt_arena_clear(&comparison->memory);
     rt_free(comparison->cells);
-    rt_free(comparison->accels);
     json_decref(comparison->plugins);
     *comparison = (RtComparison){0};
 }

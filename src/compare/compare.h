@@ -34,6 +34,7 @@
 #ifndef RT_COMPARE_COMPARE_H
 #define RT_COMPARE_COMPARE_H
 
+#include "core/base/memory.h"
 #include "core/text/table.h"
 #include "run/workload.h"
 
@@ -69,8 +70,8 @@ typedef struct RtComparedCell {
     double before, after;          /* seconds a ray: median */
     bool counted;                  /* both of these are known, and independent of the machine */
     RtTally counts_before, counts; /* of the cell */
-    const RtCell *(*runs)[2];      /* [pairs] owned: before, after; NULL: not timed */
-    double *ratios;                /* [RT_MAX_ROUNDS] owned: of each round of two programs; or NULL */
+    const RtCell *(*runs)[2];      /* [pairs]: before, after; NULL: not timed */
+    double *ratios;                /* [RT_MAX_ROUNDS]: of each round of two programs; or NULL */
     uint32_t rounds;               /* of these; fewer if a limit excluded the cell from some */
     double instructions[2];        /* a ray, before and after; 0: not counted */
     char uncounted[RT_MAX_WHY];    /* why instructions of one are not, though asked for; else "" */
@@ -85,11 +86,12 @@ typedef struct RtComparedAccel {
 } RtComparedAccel;
 
 typedef struct RtComparison {
+    RtArena memory;        /* of all but the cells */
     RtComparedCell *cells; /* [count] owned */
     uint32_t count, capacity;
     uint32_t timed;               /* cells with an interval */
     uint32_t rounds;              /* of two programs; 0: of directories */
-    RtComparedAccel *accels;      /* [accel_count] owned; of directories */
+    RtComparedAccel *accels;      /* [accel_count]; of directories */
     uint32_t accel_count, judged; /* and those with an interval */
     uint32_t pairs;               /* of directories */
     double all_accels;            /* ratio of the median accelerator; NAN: unknown */

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Pairs of result directories: their cells, and verdicts of accelerators over scenes. */
 #include "compare/compare.h"
-#include "core/base/memory.h"
 
 #include <math.h>
 #include <string.h>
@@ -16,10 +15,10 @@ static void take_counts(RtComparedCell *cell, const RtTally *before, const RtTal
     cell->counts = *after;
 }
 
-static RtStatus take_times(RtComparedCell *cell, uint32_t pair, const RtCell *one, const RtCell *other,
-                           uint32_t pairs, RtError *error) {
-    if (!cell->runs) cell->runs = rt_alloc(pairs, sizeof *cell->runs);
-    if (!cell->runs) return rt_fail_memory(error, "times", pairs * sizeof *cell->runs);
+static RtStatus take_times(RtComparison *comparison, RtComparedCell *cell, uint32_t pair, const RtCell *one,
+                           const RtCell *other, RtError *error) {
+    if (!cell->runs) cell->runs = rt_arena_alloc(&comparison->memory, comparison->pairs, sizeof *cell->runs);
+    RT_TRY(rt_arena_check(&comparison->memory, "times", error));
     cell->runs[pair][0] = one;
     cell->runs[pair][1] = other;
     cell->timed = true;
@@ -36,8 +35,6 @@ static bool is_of(const RtComparedCell *cell, const RtResults *results, uint32_t
 }
 
 static RtStatus exclude_cell(RtComparedCell *cell) {
-    rt_free(cell->runs);
-    cell->runs = NULL;
     cell->timed = cell->counted = false;
     cell->change = RT_CHANGE_OTHER_RAYS;
     return RT_OK;
@@ -82,7 +79,7 @@ static RtStatus compare_cell(const Pair *pair, const RtCellCursor *at, RtCompari
         rt_build_at(after, t2, c2)->counts)
         take_counts(cell, &one->tally, &other->tally);
     if (!one->round_times || !other->round_times || one->threads != other->threads) return RT_OK;
-    return take_times(cell, pair->number, one, other, comparison->pairs, error);
+    return take_times(comparison, cell, pair->number, one, other, error);
 }
 
 static RtStatus compare_all(const Pair *pair, RtComparison *comparison, RtError *error) {
@@ -93,11 +90,11 @@ static RtStatus compare_all(const Pair *pair, RtComparison *comparison, RtError 
 
 /* ---- intervals of cells, over the rounds of these processes ---- */
 
-/* All times of a cell on one side, a new array. */
-static double *gather(const RtComparedCell *cell, int side, uint32_t pairs, uint32_t *count) {
+/* All times of a cell on one side. */
+static double *gather(const RtComparedCell *cell, int side, uint32_t pairs, RtArena *arena, uint32_t *count) {
     uint32_t all = 0;
     for (uint32_t p = 0; p < pairs; p++) all += cell->runs[p][side] ? cell->runs[p][side]->rounds : 0;
-    double *times = rt_alloc(all, sizeof(double));
+    double *times = rt_arena_alloc(arena, all, sizeof(double));
     *count = 0;
     for (uint32_t p = 0; p < pairs && times; p++) {
         const RtCell *run = cell->runs[p][side];
@@ -109,18 +106,17 @@ static double *gather(const RtComparedCell *cell, int side, uint32_t pairs, uint
 }
 
 static RtStatus estimate_cell(RtComparison *comparison, RtComparedCell *cell, RtError *error) {
+    RT_ARENA(arena);
     const double each = rt_coverage_of_each(comparison->timed);
     uint32_t rounds[2];
-    double *times[2], covered;
-    for (int side = 0; side < 2; side++) times[side] = gather(cell, side, comparison->pairs, &rounds[side]);
-    RtStatus status = !times[0] || !times[1] ? rt_fail_memory(error, "times", 0)
-                                             : rt_estimate_unpaired(times[0], rounds[0], times[1], rounds[1],
-                                                                    each, &cell->ratio, error);
-    for (int side = 0; side < 2; side++) rt_free(times[side]);
-    covered = fmin(each, rt_unpaired_coverage(rounds[0], rounds[1]));
+    const double *before = gather(cell, 0, comparison->pairs, &arena, &rounds[0]),
+                 *after = gather(cell, 1, comparison->pairs, &arena, &rounds[1]);
+    RT_TRY(rt_arena_check(&arena, "times", error));
+    RT_TRY(rt_estimate_unpaired(before, rounds[0], after, rounds[1], each, &cell->ratio, error));
+    const double covered = fmin(each, rt_unpaired_coverage(rounds[0], rounds[1]));
     comparison->together -= 1 - covered;
     comparison->coverage = fmin(comparison->coverage, covered);
-    return status;
+    return RT_OK;
 }
 
 /* ---- verdicts of accelerators ---- */
@@ -140,9 +136,7 @@ static double ratio_on(const RtComparison *comparison, const char *scene, const 
     return count > 0 ? rt_median(ratios, count) : (double)NAN;
 }
 
-static RtStatus find_accels(RtComparison *comparison, RtError *error) {
-    comparison->accels = rt_alloc(comparison->count, sizeof(RtComparedAccel));
-    if (!comparison->accels) return rt_fail_memory(error, "a comparison", 0);
+static void find_accels(RtComparison *comparison) {
     for (uint32_t i = 0; i < comparison->count; i++) {
         uint32_t found = 0;
         if (!comparison->cells[i].timed) continue;
@@ -152,7 +146,6 @@ static RtStatus find_accels(RtComparison *comparison, RtError *error) {
         if (found == comparison->accel_count)
             strcpy(comparison->accels[comparison->accel_count++].accel, comparison->cells[i].accel);
     }
-    return RT_OK;
 }
 
 /* Ratios of all accelerators on one scene in a pair of runs, each relative to their median; only where three
@@ -204,22 +197,21 @@ static bool is_first_of_scene(const RtComparison *comparison, uint32_t cell) {
 }
 
 static RtStatus judge_accels(RtComparison *comparison, RtError *error) {
+    RtArena *memory = &comparison->memory;
     const size_t most = (size_t)RT_MAX_WORKLOADS * comparison->pairs;
-    RT_TRY(find_accels(comparison, error));
-    Groups groups = {.ratios = rt_alloc(comparison->accel_count * most, sizeof(double)),
-                     .together = rt_alloc(most, sizeof(double)),
+    comparison->accels = rt_arena_alloc(memory, comparison->count, sizeof(RtComparedAccel));
+    Groups groups = {.ratios = rt_arena_alloc(memory, comparison->count * most, sizeof(double)),
+                     .together = rt_arena_alloc(memory, most, sizeof(double)),
                      .most = most};
-    RtStatus status =
-        groups.ratios && groups.together ? RT_OK : rt_fail_memory(error, "ratios", most * sizeof(double));
-    for (uint32_t i = 0; i < comparison->count && status == RT_OK; i++) {
+    RT_TRY(rt_arena_check(memory, "the comparison of accelerators", error));
+    find_accels(comparison);
+    for (uint32_t i = 0; i < comparison->count; i++) {
         if (!is_first_of_scene(comparison, i)) continue;
         for (uint32_t p = 0; p < comparison->pairs; p++)
             add_group(comparison, comparison->cells[i].scene, p, &groups);
     }
-    if (status == RT_OK) judge(comparison, &groups);
-    rt_free(groups.ratios);
-    rt_free(groups.together);
-    return status;
+    judge(comparison, &groups);
+    return RT_OK;
 }
 
 RtStatus rt_compare_results(const RtResults *results, uint32_t pairs, RtComparison *comparison,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Each result directory is loaded once, in the order of their names, and becomes an entry for both pages; the
  * entries are then put together in the order of sections. */
-#include "report/index.h"
+#include "report/report.h"
 
 #include "claims/claims.h"
 #include "core/base/memory.h"
@@ -10,8 +10,8 @@
 #include "core/text/json.h"
 #include "measure/machine.h"
 #include "report/page.h"
-#include "results/frame_table.h"
 #include "results/result_directory.h"
+#include "results/result_tables.h"
 
 #include <ctype.h>
 #include <inttypes.h>
@@ -25,7 +25,7 @@ enum { MAX_ORIGIN = 256, MAX_ANSWER = 1200 };
 typedef struct Entry {
     char name[RT_MAX_LABEL];   /* of the directory: one experiment may have several, of different systems */
     char section[RT_MAX_WORD]; /* or "" */
-    char question[RT_MAX_TEXT], answer[MAX_ANSWER];
+    char question[RT_MAX_TEXT], answer[MAX_ANSWER]; /* of the finding the first sentence */
     char build[MAX_ORIGIN], machine[MAX_ORIGIN];
     char again[MAX_ORIGIN]; /* the build that counted some scenes again, or "" */
     char plot[RT_MAX_PATH]; /* seen from the index, or "" */
@@ -64,22 +64,6 @@ static int first_sentence(const char *text) {
     while (text[i] && !(strchr(".!?", text[i]) && text[i + 1] == ' ' && isupper((unsigned char)text[i + 2])))
         i++;
     return (int)(i + (text[i] != '\0'));
-}
-
-/* Writes the beginning of a sentence for a line of a table: it ends where an explanation or an addition
- * begins, unless that is early. */
-static void put_brief(FILE *out, const char *text) {
-    enum { EARLY = 40, MOST = 400 };
-    char brief[MOST + 8];
-    int length = first_sentence(text);
-    for (int i = EARLY; i + 1 < length; i++) {
-        const bool ends =
-            (strchr(";:", text[i]) && text[i + 1] == ' ') || (text[i] == ' ' && text[i + 1] == '(');
-        if (ends) length = i;
-    }
-    const bool whole = length == first_sentence(text);
-    snprintf(brief, sizeof brief, "%.*s%s", length < MOST ? length : MOST, text, whole ? "" : " ...");
-    put_markdown(out, brief);
 }
 
 /* ---- a directory ---- */
@@ -295,14 +279,16 @@ static void put_card(const Entry *entry, FILE *out) {
 }
 
 static void put_row(const Entry *entry, FILE *out) {
+    char question[RT_MAX_TEXT];
     fputs("| [", out);
     put_markdown(out, entry->name);
     fputs("](", out);
     rt_page_path(out, entry->name);
     fputs(") | ", out);
-    put_brief(out, entry->question);
+    snprintf(question, sizeof question, "%.*s", first_sentence(entry->question), entry->question);
+    put_markdown(out, question);
     fputs(" | ", out);
-    put_brief(out, entry->answer);
+    put_markdown(out, entry->answer);
     fputs(" |\n", out);
 }
 

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "results/frame_table.h"
 
 #include "accel/accel.h"
 #include "core/base/file.h"

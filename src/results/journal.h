@@ -8,7 +8,7 @@
 #ifndef RT_RESULTS_JOURNAL_H
 #define RT_RESULTS_JOURNAL_H
 
-#include "core/text/json_lines.h"
+#include "core/text/json.h"
 #include "experiment/selection.h"
 #include "results/results.h"
 

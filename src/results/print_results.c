@@ -3,7 +3,6 @@
 #include "core/base/file.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
-#include "results/frame_table.h"
 #include "results/result_tables.h"
 
 #include <inttypes.h>

@@ -4,7 +4,6 @@
 #include "core/base/parallel.h"
 #include "core/base/versions.h"
 #include "measure/machine.h"
-#include "results/frame_table.h"
 #include "results/journal.h"
 #include "results/result_tables.h"
 

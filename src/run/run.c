@@ -6,7 +6,7 @@
 #include "core/base/lock.h"
 #include "core/base/parallel.h"
 #include "core/base/words.h"
-#include "core/text/json_lines.h"
+#include "core/text/json.h"
 #include "render/image.h"
 #include "results/journal.h"
 #include "results/result_directory.h"

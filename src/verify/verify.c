@@ -6,7 +6,6 @@
 #include "core/base/versions.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
-#include "core/text/json_lines.h"
 #include "measure/machine.h"
 #include "scenes/open.h"
 #include "verify/replay.h"

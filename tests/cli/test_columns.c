@@ -8,7 +8,6 @@
 #include "core/base/memory.h"
 #include "core/text/csv.h"
 #include "measure/extents_table.h"
-#include "results/frame_table.h"
 #include "results/result_tables.h"
 #include "run/callgrind.h"
 #include "verify/verify_table.h"

@@ -3,7 +3,7 @@
 #include "testing.h"
 
 #include "core/base/memory.h"
-#include "results/frame_table.h"
+#include "results/result_tables.h"
 
 /* A scene with 100 primary, 300 shadow and 100 reflection rays; and one with primary rays alone. */
 static RtExperiment *e;

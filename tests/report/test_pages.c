@@ -291,6 +291,7 @@ RT_TEST_IN_PLACE(a_table_wider_than_a_column_takes_both_and_one_wider_than_the_p
 static void set_time(const RtResults *results, uint32_t candidate, double low, double median, double high) {
     RtCell *cell = rt_cell_at(results, 0, candidate, RT_RAY_PRIMARY);
     cell->timed = true;
+    cell->rounds = 6;
     cell->seconds = (RtEstimate){.median = median, .low = low, .high = high};
 }
 

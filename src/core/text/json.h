@@ -3,7 +3,7 @@
 #ifndef RT_TEXT_JSON_H
 #define RT_TEXT_JSON_H
 
-#include "core/base/status.h"
+#include "core/base/file.h"
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -46,5 +46,33 @@ RtStatus rt_json_check_format(const json_t *document, const char *path, RtError 
 /* Writes `document`, indented, to `path`, completely or not at all. NULL counts as short memory. Takes the
  * reference. */
 RtStatus rt_json_save(const char *path, json_t *document, RtError *error);
+
+/* ---- lines ---- */
+
+/* A file with one JSON object per line, each flushed to disk before the next result is computed, so that an
+ * interrupted run can resume. An incomplete last line is ignored. */
+typedef struct RtJsonLines {
+    FILE *file;
+    char path[RT_MAX_PATH];
+} RtJsonLines;
+
+/* Opens the file at `path` for appending. With `first` (borrowed), that line replaces the whole file: if
+ * this fails, or the process dies at any time, either the old or the new content is complete. Close with
+ * rt_json_lines_close, also after a failure. */
+RtStatus rt_json_lines_open(RtJsonLines *lines, const char *path, const json_t *first, RtError *error);
+void rt_json_lines_close(RtJsonLines *lines);
+
+/* Writes all lines of an array (borrowed) to an open file; a failure discards the file. */
+RtStatus rt_json_lines_put(RtOutput *output, const json_t *lines, RtError *error);
+
+/* Replaces the whole file by the lines of an array (borrowed), as above. */
+RtStatus rt_json_lines_save(const char *path, const json_t *lines, RtError *error);
+
+/* Writes one line, which is on disk when this returns. Takes the reference; NULL counts as short memory. */
+RtStatus rt_json_lines_write(RtJsonLines *lines, json_t *line, RtError *error);
+
+/* Reads all lines of the file, or of `path`.gz if there is only that, into a new array; lines that are not
+ * JSON become null. Rejects a file without lines. RT_BAD_INPUT if `path`.gz is damaged. */
+RtStatus rt_json_lines_load(const char *path, json_t **lines, RtError *error);
 
 #endif
