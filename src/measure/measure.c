@@ -265,25 +265,20 @@ static RtStatus renew_runners(void *context, RtError *error) {
 
 RtStatus rt_measure_time(RtTimed *timed, size_t count, const RtTiming *timing, uint32_t *done,
                          RtError *error) {
+    RT_ARENA(arena);
     TimingRun run = {.timing = timing,
                      .timed = timed,
-                     .runners = rt_alloc(count, sizeof(RtRunner)),
-                     .order = rt_alloc(count, sizeof(size_t)),
+                     .runners = rt_arena_alloc(&arena, count, sizeof(RtRunner)),
+                     .order = rt_arena_alloc(&arena, count, sizeof(size_t)),
                      .count = count,
                      .random = rt_random(timing->rounds.seed, 1)};
     RtRounds rounds = timing->rounds;
     rounds.renew = timing->renew ? renew_runners : NULL;
     rounds.renew_context = &run;
-    RtStatus status = run.runners && run.order
-                          ? RT_OK
-                          : rt_fail_memory(error, "the rounds", count * (sizeof(RtRunner) + sizeof(size_t)));
-    if (status == RT_OK) {
-        for (size_t i = 0; i < count; i++) run.order[i] = i;
-        status = open_runners(&run, error);
-        if (status == RT_OK) status = rt_rounds_run(run.runners, count, &rounds, done, error);
-        close_runners(&run);
-    }
-    rt_free(run.runners);
-    rt_free(run.order);
+    RT_TRY(rt_arena_check(&arena, "the rounds", error));
+    for (size_t i = 0; i < count; i++) run.order[i] = i;
+    RtStatus status = open_runners(&run, error);
+    if (status == RT_OK) status = rt_rounds_run(run.runners, count, &rounds, done, error);
+    close_runners(&run);
     return status;
 }

@@ -80,9 +80,13 @@ static RtStatus run_round(RtRunner *runner, uint32_t round, double least, RtErro
     return RT_OK;
 }
 
-static RtStatus run_rounds(RtRunner *runners, size_t *order, size_t count, const RtRounds *rounds,
-                           uint32_t *done, RtError *error) {
+RtStatus rt_rounds_run(RtRunner *runners, size_t count, const RtRounds *rounds, uint32_t *done,
+                       RtError *error) {
+    RT_ARENA(arena);
     RtRandom random = rt_random(rounds->seed, 0);
+    size_t *order = rt_arena_alloc(&arena, count, sizeof(size_t));
+    assert(rounds->rounds >= 1 && rounds->rounds <= rounds->most && rounds->most <= RT_MAX_ROUNDS);
+    RT_TRY(rt_arena_check(&arena, "the rounds", error));
     for (size_t i = 0; i < count; i++) order[i] = i;
     RT_TRY(warm_up(runners, count, rounds->least, error));
     for (uint32_t round = 0; round < rounds->most; round++) {
@@ -98,14 +102,4 @@ static RtStatus run_rounds(RtRunner *runners, size_t *order, size_t count, const
         *done = round + 1;
     }
     return RT_OK;
-}
-
-RtStatus rt_rounds_run(RtRunner *runners, size_t count, const RtRounds *rounds, uint32_t *done,
-                       RtError *error) {
-    assert(rounds->rounds >= 1 && rounds->rounds <= rounds->most && rounds->most <= RT_MAX_ROUNDS);
-    size_t *order = rt_alloc(count, sizeof(size_t));
-    if (!order) return rt_fail_memory(error, "the rounds", count * sizeof(size_t));
-    RtStatus status = run_rounds(runners, order, count, rounds, done, error);
-    rt_free(order);
-    return status;
 }

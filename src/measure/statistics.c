@@ -156,9 +156,10 @@ static uint64_t outside_nearly(double n, double m, double tail) {
 RtStatus rt_estimate_unpaired(const double *over, uint32_t over_count, const double *under,
                               uint32_t under_count, double coverage, RtEstimate *estimate, RtError *error) {
     assert(over_count >= 1 && under_count >= 1);
+    RT_ARENA(arena);
     size_t count = (size_t)over_count * under_count, used = 0;
-    double *ratios = rt_alloc(count, sizeof(double)), tail = 0.5 * (1 - coverage);
-    if (!ratios) return rt_fail_memory(error, "ratios", count * sizeof(double));
+    double *ratios = rt_arena_alloc(&arena, count, sizeof(double)), tail = 0.5 * (1 - coverage);
+    RT_TRY(rt_arena_check(&arena, "ratios", error));
     for (uint32_t i = 0; i < over_count; i++) {
         for (uint32_t k = 0; k < under_count; k++) ratios[used++] = over[i] / under[k];
     }
@@ -170,7 +171,6 @@ RtStatus rt_estimate_unpaired(const double *over, uint32_t over_count, const dou
                              .low = ratios[out],
                              .high = ratios[count - 1 - out],
                              .least = ratios[0]};
-    rt_free(ratios);
     return RT_OK;
 }
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* docs/columns.md is generated from the columns of all tables; the test says where the current page is. The
  * committed files have these columns. */
+#include "csv_testing.h"
 #include "testing.h"
 
 #include "compare/compare.h"
 #include "core/base/file.h"
 #include "core/base/memory.h"
-#include "core/text/csv.h"
 #include "measure/extents_table.h"
 #include "results/result_tables.h"
 #include "run/callgrind.h"
@@ -236,15 +236,15 @@ RT_TEST(the_files_that_are_kept_have_these_columns) {
     list(sections);
     for (size_t i = 0; i < SECTIONS; i++) {
         Row row = {.sections = sections, .number = i};
-        RtCsv csv;
+        Csv csv;
         if (!sections[i].example) continue;
-        assert_ok(rt_csv_read(&csv, sections[i].example, error));
+        read_csv(&csv, sections[i].example);
         assert_int_equal(csv.columns, column_count(&sections[i]));
         for (uint32_t c = 0; c < csv.columns; c++) {
             find_column(&row, c);
-            assert_string_equal(rt_csv_name(&csv, c), row.column->id);
+            assert_string_equal(csv_name(&csv, c), row.column->id);
         }
-        rt_csv_clear(&csv);
+        clear_csv(&csv);
     }
 }
 

@@ -2,7 +2,6 @@
 #include "core/text/table.h"
 
 #include "core/base/words.h"
-#include "core/text/csv.h"
 #include "core/text/json.h"
 
 #include <assert.h>
@@ -275,11 +274,23 @@ static void walk(Writer w) {
 
 /* ---- CSV ---- */
 
+/* Quoted if necessary (RFC 4180): a line that begins with # would be a comment; a carriage return before a
+ * line break belongs to that. */
+static void put_csv_field(FILE *out, const char *field) {
+    if (!strpbrk(field, ",\"\r\n") && *field != '#') {
+        fputs(field, out);
+        return;
+    }
+    fputc('"', out);
+    for (; *field; field++) fprintf(out, *field == '"' ? "\"\"" : "%c", *field);
+    fputc('"', out);
+}
+
 static void put_csv(Writer *w, const Line *line, const void *row) {
     char buffer[RT_MAX_FIELD];
     for (size_t i = 0; i < line->count; i++) {
         if (i) fputc(',', w->out);
-        rt_csv_put(w->out, row ? line_show(line, i, buffer) : line->columns[i]->id);
+        put_csv_field(w->out, row ? line_show(line, i, buffer) : line->columns[i]->id);
     }
     fputc('\n', w->out);
 }
