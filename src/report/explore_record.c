@@ -11,6 +11,8 @@
 
 /* ---- bytes ---- */
 
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "numbers are written as they lie in memory");
+
 void rt_bytes_clear(RtBytes *bytes) {
     rt_free(bytes->data);
     *bytes = (RtBytes){0};
@@ -26,25 +28,18 @@ void rt_bytes_put(RtBytes *bytes, const void *data, size_t size) {
     bytes->count += (uint32_t)size;
 }
 
-static void store_u32(uint8_t out[4], uint32_t value) {
-    for (int i = 0; i < 4; i++) out[i] = (uint8_t)(value >> 8 * i);
+static void put_float(RtBytes *bytes, float value) {
+    rt_bytes_put(bytes, &value, sizeof value);
 }
 
-void rt_bytes_put_float(RtBytes *bytes, float value) {
-    uint32_t bits;
-    uint8_t out[4];
-    memcpy(&bits, &value, sizeof bits);
-    store_u32(out, bits);
-    rt_bytes_put(bytes, out, sizeof out);
+static void put_vector(RtBytes *bytes, RtVec3 v) {
+    rt_bytes_put(bytes, v.at, 3 * sizeof(float));
 }
 
-void rt_bytes_put_vector(RtBytes *bytes, RtVec3 v) {
-    for (int a = 0; a < 3; a++) rt_bytes_put_float(bytes, v.at[a]);
-}
-
-void rt_bytes_put_box(RtBytes *bytes, const RtBox *box) {
-    rt_bytes_put_vector(bytes, box->lo);
-    rt_bytes_put_vector(bytes, box->hi);
+/* lo, then hi: six floats. */
+static void put_box(RtBytes *bytes, const RtBox *box) {
+    put_vector(bytes, box->lo);
+    put_vector(bytes, box->hi);
 }
 
 void rt_bytes_put_number(RtBytes *bytes, uint64_t value) {
@@ -55,14 +50,17 @@ void rt_bytes_put_number(RtBytes *bytes, uint64_t value) {
     rt_bytes_put(bytes, out, size);
 }
 
-uint32_t rt_bytes_begin(RtBytes *bytes) {
-    uint32_t place = bytes->count;
-    rt_bytes_put(bytes, (uint8_t[4]){0}, 4);
+/* Appends four bytes, to be filled in by end_length with the number of bytes that follow them. Returns their
+ * place. */
+static uint32_t begin_length(RtBytes *bytes) {
+    uint32_t place = bytes->count, length = 0;
+    rt_bytes_put(bytes, &length, sizeof length);
     return place;
 }
 
-void rt_bytes_end(RtBytes *bytes, uint32_t place) {
-    if (bytes->status == RT_OK) store_u32(bytes->data + place, bytes->count - place - 4);
+static void end_length(RtBytes *bytes, uint32_t place) {
+    const uint32_t length = bytes->count - place - (uint32_t)sizeof(uint32_t);
+    if (bytes->status == RT_OK) memcpy(bytes->data + place, &length, sizeof length);
 }
 
 RtStatus rt_bytes_compress(RtBytes *bytes, RtError *error) {
@@ -103,9 +101,9 @@ static void end_part(Shapes *shapes, int part, uint32_t object) {
 
 static void put_triangle(Shapes *shapes, uint32_t object, RtVec3 a, RtVec3 b, RtVec3 c) {
     RtBytes *out = &shapes->parts[TRIANGLES];
-    rt_bytes_put_vector(out, a);
-    rt_bytes_put_vector(out, b);
-    rt_bytes_put_vector(out, c);
+    put_vector(out, a);
+    put_vector(out, b);
+    put_vector(out, c);
     end_part(shapes, TRIANGLES, object);
 }
 
@@ -147,8 +145,8 @@ static void put_drawn(Shapes *shapes, uint32_t object) {
     uint32_t i = rt_ref_index(g->objects[object]);
     switch (rt_ref_shape(g->objects[object])) {
     case RT_SHAPE_SPHERE:
-        rt_bytes_put_vector(&shapes->parts[SPHERES], g->spheres[i].center);
-        rt_bytes_put_float(&shapes->parts[SPHERES], g->spheres[i].radius);
+        put_vector(&shapes->parts[SPHERES], g->spheres[i].center);
+        put_float(&shapes->parts[SPHERES], g->spheres[i].radius);
         end_part(shapes, SPHERES, object);
         break;
     case RT_SHAPE_POLYGON:
@@ -157,7 +155,7 @@ static void put_drawn(Shapes *shapes, uint32_t object) {
     case RT_SHAPE_TRIANGLE: put_polygon(shapes, object, g->triangles[i].v, 3); break;
     case RT_SHAPE_CONE: put_cone(shapes, object, &g->cones[i]); break;
     case RT_SHAPE_CSG:
-        rt_bytes_put_box(&shapes->parts[BOXES], &g->boxes[object]);
+        put_box(&shapes->parts[BOXES], &g->boxes[object]);
         end_part(shapes, BOXES, object);
         break;
     case RT_SHAPE_COUNT: break;
@@ -196,13 +194,13 @@ static void count_box(void *context, const RtBoxView *view) {
     ((Levels *)context)->count[level_of(view)]++;
 }
 
-static void put_box(void *context, const RtBoxView *view) {
+static void put_shown_box(void *context, const RtBoxView *view) {
     Levels *levels = context;
     RtShownBoxes *result = levels->result;
     uint32_t level = level_of(view), number = levels->seen[level]++;
     bool left_out = level > result->level || (level == result->level && number % result->every != 0);
     if (left_out || rt_box_is_empty(*view->box)) return;
-    rt_bytes_put_box(levels->out, view->box);
+    put_box(levels->out, view->box);
     rt_bytes_put_number(levels->out, view->depth);
     rt_bytes_put_number(levels->out, view->leaf ? 1 + (uint64_t)view->objects : 0);
     result->shown++;
@@ -221,7 +219,7 @@ RtShownBoxes rt_explore_boxes(const RtAccel *accel, RtBytes *out) {
         result.level = i;
         result.every = room ? 1 + (levels.count[i] - 1) / room : UINT32_MAX;
     }
-    accel->ops->each_box(accel, (RtBoxViewer){put_box, &levels});
+    accel->ops->each_box(accel, (RtBoxViewer){put_shown_box, &levels});
     return result;
 }
 
@@ -342,7 +340,7 @@ void rt_recorded_events(const RtRecordedPaths *paths, RtBytes *out) {
         rt_bytes_put_number(out, event->form);
         rt_bytes_put_number(out, event->index);
         rt_bytes_put_number(out, event->boxed);
-        if (event->boxed) rt_bytes_put_box(out, &event->box);
+        if (event->boxed) put_box(out, &event->box);
     }
 }
 
@@ -371,7 +369,7 @@ static RtStatus put_path(RtRecordedPixels *recording, RtRecordedPaths *to, const
                          RtError *error) {
     uint32_t kept = path->count < RT_MAX_RECORDED_ROWS ? path->count : RT_MAX_RECORDED_ROWS;
     put_object(&to->paths, path->hit.object);
-    rt_bytes_put_float(&to->paths, path->hit.t);
+    put_float(&to->paths, path->hit.t);
     for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++)
         rt_bytes_put_number(&to->paths, rt_tally_get(&path->tally, i));
     put_cell(&to->paths, to->accel, &path->ray);
@@ -382,7 +380,7 @@ static RtStatus put_path(RtRecordedPixels *recording, RtRecordedPaths *to, const
         uint32_t event;
         RT_TRY(find_event(to, &path->rows[i], &event, error));
         rt_bytes_put_number(&to->paths, event);
-        if (is_hit(&path->rows[i])) rt_bytes_put_float(&to->paths, path->rows[i].t);
+        if (is_hit(&path->rows[i])) put_float(&to->paths, path->rows[i].t);
     }
     return RT_OK;
 }
@@ -407,7 +405,7 @@ static RtStatus put_candidates(RtBytes *out, const RtAccel *base, RtRay ray, RtE
     rt_bytes_put_number(out, count);
     for (uint32_t i = 0; i < count; i++) {
         put_object(out, hits[i].object);
-        rt_bytes_put_float(out, hits[i].t);
+        put_float(out, hits[i].t);
     }
     return RT_OK;
 }
@@ -423,13 +421,13 @@ static RtStatus put_ray(RtRecordedPixels *recording, const RtTreeRay *ray, RtErr
     rt_bytes_put_number(out, ray->parent == RT_NO_RAY ? 0 : (uint64_t)ray->parent + 1);
     rt_bytes_put_number(out, ray->ray.source);
     rt_bytes_put_number(out, (uint64_t)ray->total + 2 * (uint64_t)ray->cut);
-    rt_bytes_put_vector(out, ray->ray.org);
-    rt_bytes_put_vector(out, ray->ray.dir);
-    rt_bytes_put_float(out, ray->ray.tmax);
+    put_vector(out, ray->ray.org);
+    put_vector(out, ray->ray.dir);
+    put_float(out, ray->ray.tmax);
     put_object(out, ray->hit.object);
-    rt_bytes_put_float(out, ray->hit.t);
-    rt_bytes_put_vector(out, ray->added);
-    if (ray->ray.kind == RT_RAY_SHADOW) rt_bytes_put_vector(out, rt_narrow(ray->terms[RT_TERM_DIFFUSE]));
+    put_float(out, ray->hit.t);
+    put_vector(out, ray->added);
+    if (ray->ray.kind == RT_RAY_SHADOW) put_vector(out, rt_narrow(ray->terms[RT_TERM_DIFFUSE]));
     if (ray->ray.kind != RT_RAY_PRIMARY) return RT_OK;
     if (looked_up) return put_candidates(out, rt_accel_base(first), ray->ray, error);
     rt_bytes_put_number(out, 0);
@@ -438,7 +436,7 @@ static RtStatus put_ray(RtRecordedPixels *recording, const RtTreeRay *ray, RtErr
 
 static uint32_t begin_pixel(RtBytes *bytes, uint32_t number) {
     rt_bytes_put_number(bytes, number);
-    return rt_bytes_begin(bytes);
+    return begin_length(bytes);
 }
 
 static RtStatus record_tree(RtRecordedPixels *recording, uint32_t number, const RtRayTree *tree,
@@ -455,8 +453,8 @@ static RtStatus record_tree(RtRecordedPixels *recording, uint32_t number, const 
             RT_TRY(status);
         }
     }
-    rt_bytes_end(&recording->rays, place);
-    for (uint32_t i = 0; i < recording->count; i++) rt_bytes_end(&recording->of[i].paths, places[i]);
+    end_length(&recording->rays, place);
+    for (uint32_t i = 0; i < recording->count; i++) end_length(&recording->of[i].paths, places[i]);
     recording->ray_count += tree->count;
     return RT_OK;
 }

@@ -117,17 +117,6 @@ static const char quoting[] =
     "  - {citation: \"C, 1989\", page: unseen, quote: Five is better.}\n"
     "rays: [primary]\n";
 
-PLACE_TEST(the_report_quotes_the_papers_with_page_and_verdict_and_marks_what_was_not_seen) {
-    write_changed(place, "small.yaml", claiming, "rays: [primary]\n", quoting);
-    assert_runs(place, "run small.yaml --out out --threads 1");
-    assert_in_file(place, "out/report.html",
-                   "\"citation\":\"A & B, 1988\",\"page\":\"19\",\"seen\":true,"
-                   "\"quote\":\"Four \\u003cis> best.\",\"verdict\":\"true of its machine\"");
-    assert_in_file(place, "out/report.html",
-                   "\"citation\":\"C, 1989\",\"page\":\"unseen\",\"seen\":false,"
-                   "\"quote\":\"Five is better.\",\"verdict\":\"not judged\"");
-}
-
 PLACE_TEST(section_and_paper_may_change_after_a_run) {
     assert_runs(place, "run small.yaml --out out --threads 1");
     write_changed(place, "small.yaml", claiming, "rays: [primary]\n", quoting);

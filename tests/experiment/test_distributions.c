@@ -93,15 +93,6 @@ PLACE_TEST(distributions_are_the_same_bytes_on_two_threads_in_parts_and_in_shard
     }
 }
 
-PLACE_TEST(a_finished_run_with_distributions_that_is_resumed_measures_nothing_again) {
-    assert_runs(place, "run small.yaml --out out --threads 1");
-    OWNED_MEMORY char *before = read_in(place, "out/cells.jsonl"),
-                      *table = read_in(place, "out/distributions.csv");
-    assert_runs(place, "run small.yaml --out out --threads 1 --resume");
-    assert_same_file(place, "out/cells.jsonl", before);
-    assert_same_file(place, "out/distributions.csv", table);
-}
-
 PLACE_TEST(reproduce_compares_distributions_byte_for_byte) {
     assert_runs(place, "run small.yaml --out out --threads 1");
     assert_runs(place, "reproduce out");
@@ -119,18 +110,6 @@ PLACE_TEST(reproduce_of_one_scene_compares_its_rows_alone) {
     assert_ends(place, "reproduce out --only balls", 1, "out/counts.csv:8: differs");
     assert_ends(place, "reproduce out --only scattered", 2,
                 "'scattered' is not the label of one of the scenes");
-}
-
-PLACE_TEST(reproduce_of_a_sweep_of_scenes_compares_the_rows_of_each) {
-    write_changed(place, "small.yaml", spread, "n=50\"", "n=50..100*2\"");
-    assert_runs(place, "run small.yaml --out out --threads 1");
-    OWNED_MEMORY char *counts = read_in(place, "out/counts.csv");
-    write_changed(place, "out/counts.csv", counts, "\nballs,", "\nballs,changed");
-    assert_runs(place, "reproduce out --only cloud");
-    assert_runs(place, "reproduce out --only cloud:n=100");
-    write_changed(place, "out/counts.csv", counts, "\ncloud:n=100,", "\ncloud:n=100,changed");
-    assert_runs(place, "reproduce out --only cloud:n=50");
-    assert_int_equal(raytally(place, "reproduce out --only cloud"), 1);
 }
 
 PLACE_TEST(bench_shows_medians_percentiles_and_maxima) {

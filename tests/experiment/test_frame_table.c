@@ -108,41 +108,12 @@ FRAME_TEST(an_accelerator_without_one_kind_of_ray_has_no_frame_and_does_not_win)
            "all is wide: 200 times as fast as brute.");
 }
 
-FRAME_TEST(an_overlay_is_never_the_fastest_of_the_group) {
-    set(0, WIDE, "wide:width=8", 4000, 4000, 6);
-    expect_sentence(
-        0, "On balls, clusters is the fastest of the six: 50.0 times as fast, with 200 times fewer object "
-           "tests than brute. grid follows with 29.4 times. light+wide is 182 times as fast as wide alone. "
-           "The fastest of all is light+wide: 364 times as fast as brute.");
-}
-
 FRAME_TEST(fewer_object_tests_than_the_fastest_makes_are_told) {
     expect_sentence(
         1, "On tetra, grid is the fastest of the six: 100 times as fast, with 30.0 times fewer object tests "
            "than brute. clusters follows with 50.0 times. clusters needs the fewest object tests: 200 times "
            "fewer than brute. light+wide is 1.00 times as fast as wide alone (level). The fastest of all is "
            "light+wide: 200 times as fast as brute (level with wide).");
-}
-
-/* Over wide, which takes 0.02 ms on balls. */
-FRAME_TEST(a_sentence_about_many_overlays_is_not_cut_off) {
-    char where[RT_MAX_LABEL], spec[RT_MAX_SPEC_CHARS];
-    rt_results_clear(&results);
-    for (int i = 1; i <= 60; i++) {
-        snprintf(spec, sizeof spec, "light:cells=%d+wide", i);
-        add(spec, "over wide");
-    }
-    assert_ok(rt_experiment_check(e, where, error));
-    fill();
-    for (uint32_t c = IDEAL + 1; c < e->candidate_count; c++)
-        set(0, c, "light:cells=1+wide:width=8", 40, 40, 6);
-    OWNED_MEMORY char *text = rt_frame_sentence(&results, 0);
-    assert_true(strlen(text) > 2000);
-    assert_non_null(
-        strstr(text, "light+wide is 1.82 times as fast as wide alone, light:cells=1+wide 1.00 times"));
-    assert_non_null(
-        strstr(text, ", light:cells=60+wide 1.00 times (level). The fastest of all is light+wide: "));
-    assert_string_equal(text + strlen(text) - 6, "brute.");
 }
 
 static bool says(uint32_t t, const char *part) {

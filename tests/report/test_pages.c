@@ -133,23 +133,6 @@ static bool pdf_has(const char *path, const char *text) {
     return found;
 }
 
-RT_TEST_IN_PLACE(plots_are_drawn_as_pdf_too_as_wide_as_a_column_of_a_paper) {
-    const Place *place = *state;
-    if (access("/usr/bin/gnuplot", X_OK) != 0) RT_SKIP("gnuplot-nox");
-    write_in(place, "my.gp",
-             "eval canvas(\"mine\", 480, 240)\nplot x\nunset output\n"
-             "eval canvas(\"both\", wide, 240)\nplot x\nunset output\n");
-    write_small(place, "plots: [style.gp, my.gp]");
-    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
-    assert_in_file(place, "out/plots/mine.svg", "viewBox=\"0 0 480 240\"");
-    assert_in_file(place, "out/report.html", "<a href=\"plots/mine.pdf\">PDF</a>");
-    assert_true(pdf_has(path_in(place, "out/plots/mine.pdf").text, "/MediaBox [ 0 0 252 126 ]"));
-    /* A PDF font's size is the scale of its text matrix. */
-    assert_true(pdf_has(path_in(place, "out/plots/mine.pdf").text, "\n8.1904"));
-    assert_true(pdf_has(path_in(place, "out/plots/both.pdf").text, "\n8.3769"));
-    assert_true(pdf_has(path_in(place, "out/plots/both.pdf").text, "/FontFile"));
-}
-
 RT_TEST_IN_PLACE(a_plot_of_several_panels_is_laid_out_for_the_page_or_for_a_column) {
     const Place *place = *state;
     if (access("/usr/bin/gnuplot", X_OK) != 0) RT_SKIP("gnuplot-nox");
@@ -157,6 +140,7 @@ RT_TEST_IN_PLACE(a_plot_of_several_panels_is_laid_out_for_the_page_or_for_a_colu
     write_small(place, "plots: [style.gp, my.gp]");
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
     assert_in_file(place, "out/plots/mine.svg", "viewBox=\"0 0 960 240\"");
+    assert_in_file(place, "out/report.html", "<a href=\"plots/mine.pdf\">PDF</a>");
     assert_int_equal(raytally(place, "plot out --trust --paper column"), 0);
     assert_in_file(place, "out/plots/mine.svg", "viewBox=\"0 0 480 240\"");
     assert_true(pdf_has(path_in(place, "out/plots/mine.pdf").text, "/MediaBox [ 0 0 252 126 ]"));
@@ -346,18 +330,6 @@ RT_TEST_IN_PLACE(an_accelerator_has_its_colour_in_every_experiment) {
     assert_string_equal(color_of(experiment, 0).text, grid.text);
     assert_string_equal(color_of(experiment, 2).text, bvh.text);
     assert_string_not_equal(grid.text, bvh.text);
-}
-
-RT_TEST_IN_PLACE(of_fifty_accelerators_no_two_have_a_colour) {
-    const Place *place = *state;
-    RtExperiment *experiment = place->experiment;
-    const char *specs[50];
-    for (int c = 0; c < 50; c++) specs[c] = c % 5 == 0 ? "bvh" : c % 5 == 1 ? "mine" : "grid:density=2";
-    take_accelerators(experiment, specs, 50);
-    for (uint32_t a = 0; a < 50; a++) {
-        const Color color = color_of(experiment, a);
-        for (uint32_t b = 0; b < a; b++) assert_string_not_equal(color.text, color_of(experiment, b).text);
-    }
 }
 
 /* Rec. 709, of 0..255. */
